@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Everything Insula uses, all from Debian 12.
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(fmt REQUIRED)
+find_package(spdlog REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(EXPAT REQUIRED)
+find_package(GTest REQUIRED)
+find_package(benchmark REQUIRED)
+find_package(Threads REQUIRED)
+find_package(PkgConfig REQUIRED)
+find_package(Boost REQUIRED)
+find_package(ZLIB REQUIRED)
+pkg_check_modules(ASSIMP REQUIRED IMPORTED_TARGET assimp)
+pkg_check_modules(URDFDOM REQUIRED IMPORTED_TARGET urdfdom)
+# Not by pkg-config: lcm.pc asks for glib's development files, which nothing here needs.
+find_library(LCM_LIBRARY lcm REQUIRED)
+find_path(LCM_INCLUDE lcm/lcm.h REQUIRED)
+find_library(CHOLMOD_LIBRARY cholmod REQUIRED)
+find_path(CHOLMOD_INCLUDE cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
+find_program(LCM_GEN lcm-gen REQUIRED)
+
+# Bullet in double precision: Debian ships it beside the float one with its own names.
+find_package(Bullet QUIET)
+find_path(BULLET_INCLUDE btBulletCollisionCommon.h PATH_SUFFIXES bullet REQUIRED)
+find_library(BULLET_COLLISION_LIBRARY NAMES BulletCollision-float64 BulletCollision REQUIRED)
+find_library(BULLET_MATH_LIBRARY NAMES LinearMath-float64 LinearMath REQUIRED)
+
+add_library(insula_warnings INTERFACE)
+target_compile_options(insula_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Werror -ffp-contract=off)

@@ -1,0 +1,15 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# The dense kernels, once per instruction set, always optimised the same way: their bits must not depend on the build type.
+function(insula_kernels name width nv nr)
+  add_library(kernels_${name} OBJECT core/linalg/kernels_impl.cpp)
+  target_compile_definitions(kernels_${name} PRIVATE KERNEL_NAME=${name} KERNEL_WIDTH=${width} KERNEL_NV=${nv} KERNEL_NR=${nr})
+  target_compile_options(kernels_${name} PRIVATE -O3 -ffp-contract=fast -Wall -Wextra -Wno-psabi -fno-sanitize=all ${ARGN})
+  target_sources(insula_core PRIVATE $<TARGET_OBJECTS:kernels_${name}>)
+endfunction()
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  insula_kernels(sse2 2 2 4)
+  insula_kernels(avx2 4 3 4 -mavx2 -mfma)
+  insula_kernels(avx512 8 3 8 -mavx512f -mavx512dq -mavx512vl -mavx2 -mfma -mprefer-vector-width=512)
+else()
+  insula_kernels(sse2 2 2 4)
+endif()

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Errors as data: everything wrong with a scene is collected and shown together, with its place.
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace insula {
+
+/// A place in a text file; line and column count from 1, 0 means "the whole file".
+struct SourcePos {
+  std::string file;
+  int line = 0;
+  int column = 0;
+};
+
+enum class Severity { error, warning };
+
+struct Diagnostic {
+  Severity severity = Severity::error;
+  SourcePos pos;
+  std::string text;
+};
+
+class Diagnostics {
+ public:
+  void error(const SourcePos& pos, std::string text);
+  void warning(const SourcePos& pos, std::string text);
+  bool ok() const { return errors_ == 0; }
+  int errors() const { return errors_; }
+  const std::vector<Diagnostic>& all() const { return all_; }
+  /// "file:line:column: error: text" lines, in order of file position as met, duplicates removed.
+  std::string format() const;
+  /// Orders by file (in the order the files were first met), line, column; equal places keep their order.
+  void sort_by_position();
+
+ private:
+  std::vector<Diagnostic> all_;
+  int errors_ = 0;
+};
+
+/// The candidate nearest to `word` by edit distance, or empty when none is near enough to suggest.
+std::string nearest_name(std::string_view word, const std::vector<std::string>& candidates);
+
+}  // namespace insula

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Both buses: delivery, order, several endpoints; LCM only where the machine lets multicast through.
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <numeric>
+#include <stdexcept>
+#include <thread>
+
+#include "core/bus/channels.h"
+#include "core/bus/lcm_bus.h"
+#include "core/bus/mem_bus.h"
+
+namespace insula {
+namespace {
+
+using Buffer = std::vector<std::uint8_t>;
+
+TEST(MemBus, DeliversInOrderToEverySubscriber) {
+  auto hub = std::make_shared<MemHub>();
+  MemBus a(hub), b(hub), c(hub);
+  std::vector<int> at_a, at_b;
+  a.subscribe("X", [&](Bytes m) { at_a.push_back(m[0]); });
+  b.subscribe("X", [&](Bytes m) { at_b.push_back(m[0]); });
+  b.subscribe("Y", [&](Bytes m) { at_b.push_back(100 + m[0]); });
+  for (std::uint8_t i = 0; i < 5; ++i) {
+    EXPECT_TRUE(c.publish("X", Buffer{i}));
+    EXPECT_TRUE(a.publish("Y", Buffer{i}));
+  }
+  EXPECT_EQ(b.poll(0), 10);
+  EXPECT_EQ(a.poll(0), 5);
+  EXPECT_EQ(c.poll(0), 0);
+  EXPECT_EQ(at_a, (std::vector<int>{0, 1, 2, 3, 4}));
+  EXPECT_EQ(at_b, (std::vector<int>{0, 100, 1, 101, 2, 102, 3, 103, 4, 104}));
+}
+
+TEST(MemBus, HandlersMayPublish) {
+  MemBus bus;
+  int seen = 0;
+  bus.subscribe("X", [&](Bytes m) {
+    ++seen;
+    if (m[0] > 0) bus.publish("X", Buffer{std::uint8_t(m[0] - 1)});
+  });
+  bus.publish("X", Buffer{3});
+  while (bus.poll(0) > 0) {
+  }
+  EXPECT_EQ(seen, 4);
+}
+
+TEST(MemBus, KeepsTheNewestWhenNobodyPolls) {
+  MemBus bus;
+  std::vector<std::uint8_t> first;
+  bus.subscribe("X", [&](Bytes m) {
+    if (first.empty()) first.assign(m.begin(), m.end());
+  });
+  for (std::size_t i = 0; i < MemHub::capacity + 3; ++i) bus.publish("X", Buffer{std::uint8_t(i)});
+  EXPECT_EQ(bus.dropped(), 3u);
+  EXPECT_EQ(bus.poll(0), int(MemHub::capacity));
+  EXPECT_EQ(first, Buffer{3});
+}
+
+TEST(MemBus, WakesAWaitingThread) {
+  auto hub = std::make_shared<MemHub>();
+  MemBus a(hub), b(hub);
+  int got = 0;
+  b.subscribe("X", [&](Bytes) { ++got; });
+  std::thread sender([&] { a.publish("X", Buffer{1}); });
+  while (got == 0) b.poll(100);
+  sender.join();
+  EXPECT_EQ(got, 1);
+}
+
+TEST(LcmBus, UrlGetsAReceiveBuffer) {
+  EXPECT_EQ(with_receive_buffer("udpm://239.255.76.67:7667?ttl=0"), "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=2097152");
+  EXPECT_EQ(with_receive_buffer("udpm://239.255.76.67:7667"), "udpm://239.255.76.67:7667?recv_buf_size=2097152");
+  EXPECT_EQ(with_receive_buffer("udpm://a:1?recv_buf_size=9"), "udpm://a:1?recv_buf_size=9");
+  EXPECT_EQ(with_receive_buffer("memq://"), "memq://");
+}
+
+TEST(LcmBus, SaysWhatToDoWhenItCannotWork) {
+  LcmBus bus("nonsense://");
+  EXPECT_FALSE(bus.good());
+  EXPECT_NE(bus.error().find("ip route add 224.0.0.0/4 dev lo"), std::string::npos) << bus.error();
+  EXPECT_FALSE(bus.publish("X", Buffer{1}));
+  EXPECT_EQ(bus.poll(0), 0);
+}
+
+TEST(LcmBus, MakeBusChoosesByUrl) {
+  EXPECT_NE(dynamic_cast<MemBus*>(make_bus("memq://").get()), nullptr);
+  EXPECT_NE(dynamic_cast<LcmBus*>(make_bus("nonsense://").get()), nullptr);
+}
+
+int free_udp_port() {
+  const int s = ::socket(AF_INET, SOCK_DGRAM, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  socklen_t size = sizeof address;
+  const bool ok = ::bind(s, reinterpret_cast<sockaddr*>(&address), size) == 0 &&
+                  ::getsockname(s, reinterpret_cast<sockaddr*>(&address), &size) == 0;
+  ::close(s);
+  return ok ? ntohs(address.sin_port) : 7999;
+}
+
+class LcmLoopback : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const std::string url = "udpm://239.255.76.67:" + std::to_string(free_udp_port()) + "?ttl=0";
+    sender_ = std::make_unique<LcmBus>(url);
+    receiver_ = std::make_unique<LcmBus>(url);
+    if (!sender_->good() || !receiver_->good()) GTEST_SKIP() << "no multicast here: " << sender_->error();
+    receiver_->subscribe("PROBE", [this](Bytes) { ++probes_; });
+    for (int i = 0; i < 50 && probes_ == 0; ++i) {
+      sender_->publish("PROBE", Buffer{1});
+      receiver_->poll(20);
+    }
+    if (probes_ == 0) GTEST_SKIP() << "multicast messages do not come back on this machine";
+  }
+  std::unique_ptr<LcmBus> sender_, receiver_;
+  int probes_ = 0;
+};
+
+TEST_F(LcmLoopback, SmallAndLargeMessagesArriveWhole) {
+  Buffer got;
+  receiver_->subscribe("DATA", [&](Bytes m) { got.assign(m.begin(), m.end()); });
+  for (std::size_t size : {std::size_t(1), std::size_t(1400), std::size_t(40'000), std::size_t(115'000)}) {
+    Buffer sent(size);
+    std::iota(sent.begin(), sent.end(), std::uint8_t(size));
+    got.clear();
+    for (int attempt = 0; attempt < 5 && got.empty(); ++attempt) {
+      EXPECT_TRUE(sender_->publish("DATA", sent)) << sender_->error();
+      for (int i = 0; i < 50 && got.empty(); ++i) receiver_->poll(10);
+    }
+    EXPECT_EQ(got, sent) << size;
+  }
+}
+
+TEST_F(LcmLoopback, HandlerExceptionsComeOutOfPoll) {
+  receiver_->subscribe("BOOM", [](Bytes) { throw std::runtime_error("boom"); });
+  bool thrown = false;
+  for (int i = 0; i < 50 && !thrown; ++i) {
+    sender_->publish("BOOM", Buffer{1});
+    try {
+      receiver_->poll(20);
+    } catch (const std::runtime_error&) {
+      thrown = true;
+    }
+  }
+  EXPECT_TRUE(thrown);
+}
+
+TEST_F(LcmLoopback, LongChannelNamesAreRefused) {
+  EXPECT_FALSE(sender_->publish(std::string(64, 'x'), Buffer{1}));
+  EXPECT_FALSE(sender_->good());
+  EXPECT_TRUE(sender_->publish("PROBE", Buffer{1}));
+  EXPECT_TRUE(sender_->good());
+}
+
+}  // namespace
+}  // namespace insula

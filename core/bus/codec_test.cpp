@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The decoders of the generated message types: round trips, truncation, damage, and each rule of plausibility.
+#include "core/bus/codec.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "core/bus/mutate_for_test.h"
+
+namespace insula {
+namespace {
+
+using Buffer = std::vector<std::uint8_t>;
+
+template <class T>
+T sample();
+
+void set_quaternion(double* q) {
+  q[0] = 0.6;
+  q[1] = 0;
+  q[2] = -0.8;
+  q[3] = 0;
+}
+
+template <>
+insula_lcm::device_state_t sample() {
+  insula_lcm::device_state_t m{};
+  m.session = 5;
+  m.sequence = 6;
+  m.time_us = 7;
+  m.hands = 2;
+  for (int i = 0; i < 2; ++i) {
+    insula_lcm::hand_state_t h{};
+    h.hand = int8_t(i);
+    h.device = "simulated";
+    h.connected = 1;
+    h.p_m[0] = 0.01 * i;
+    set_quaternion(h.q);
+    h.button1 = 1;
+    h.force_N[2] = 1.5;
+    m.hand.push_back(h);
+  }
+  return m;
+}
+template <>
+insula_lcm::hand_input_t sample() {
+  insula_lcm::hand_input_t m{};
+  m.time_us = 9;
+  m.hand = 1;
+  m.p_m[1] = 0.02;
+  set_quaternion(m.q);
+  m.button2 = 1;
+  return m;
+}
+template <>
+insula_lcm::haptic_status_t sample() {
+  insula_lcm::haptic_status_t m{};
+  m.sequence = 3;
+  m.ticks_per_s = 1000;
+  m.fresh_forces_per_s[0] = 999;
+  m.lateness_us_max = 120;
+  m.rows = 130;
+  m.problem_age_ms = -1;
+  m.note = "no real-time priority";
+  return m;
+}
+template <>
+insula_lcm::render_frame_t sample() {
+  insula_lcm::render_frame_t m{};
+  m.session = 1;
+  m.sequence = 2;
+  m.sim_time_s = 0.5;
+  m.bodies = 2;
+  for (int i = 0; i < 2; ++i) {
+    insula_lcm::render_body_t b;
+    b.index = i;
+    b.nodes = 3;
+    b.x_m = {{0.f, 0.f, 0.f}, {0.01f, 0.f, 0.f}, {0.f, 0.01f, float(i)}};
+    m.body.push_back(b);
+    m.body_force_N.push_back(0.2 * i);
+  }
+  m.strands = 2;
+  m.strand_points = 4;
+  m.strand_x_m.assign(4, {0.f, 0.1f, 0.2f});
+  m.strand_health = {1.f, -1.f};
+  m.strand_tension_N = {0.05f, 0.f};
+  m.tools = 1;
+  insula_lcm::render_tool_t t{};
+  t.index = 0;
+  t.hand = 1;
+  set_quaternion(t.q);
+  t.activity = 0.5f;
+  m.tool.push_back(t);
+  m.contacts = 1;
+  m.contact_x_m = {{0.f, 0.f, 0.1f}};
+  m.contact_N = {0.3f};
+  m.step_ms = 5;
+  m.step_period_ms = 16.7;
+  m.hud_json = R"({"goals":[],"state":"running"})";
+  return m;
+}
+template <>
+insula_lcm::scene_info_t sample() {
+  insula_lcm::scene_info_t m{};
+  m.session = 11;
+  m.scene = "scenes/training/1_sylvian_fissure.xml";
+  m.title = "Sylvian fissure";
+  m.state = "running";
+  return m;
+}
+template <>
+insula_lcm::sim_event_t sample() {
+  insula_lcm::sim_event_t m{};
+  m.session = 11;
+  m.kind = "goal";
+  m.id = "open";
+  m.text = "Fissure open";
+  m.value = 3;
+  return m;
+}
+template <>
+insula_lcm::user_command_t sample() {
+  insula_lcm::user_command_t m{};
+  m.sender = "viewer-1";
+  m.command = "pause";
+  return m;
+}
+
+template <class T>
+Buffer encoded(const T& m) {
+  Buffer out;
+  EXPECT_TRUE(encode(m, out));
+  return out;
+}
+
+template <class T>
+class Codec : public ::testing::Test {};
+using Types = ::testing::Types<insula_lcm::device_state_t, insula_lcm::hand_input_t, insula_lcm::haptic_status_t,
+                               insula_lcm::render_frame_t, insula_lcm::scene_info_t, insula_lcm::sim_event_t,
+                               insula_lcm::user_command_t>;
+TYPED_TEST_SUITE(Codec, Types);
+
+TYPED_TEST(Codec, RoundTrip) {
+  const Buffer bytes = encoded(sample<TypeParam>());
+  TypeParam got;
+  std::string why;
+  ASSERT_TRUE(decode(bytes, got, why)) << why;
+  EXPECT_EQ(encoded(got), bytes);
+  ASSERT_TRUE(decode(bytes, got, why)) << "again, into the same object: " << why;
+  EXPECT_EQ(encoded(got), bytes);
+}
+
+TYPED_TEST(Codec, EveryTruncationIsRefused) {
+  const Buffer whole = encoded(sample<TypeParam>());
+  for (std::size_t n = 0; n < whole.size(); ++n) {
+    const Buffer cut(whole.begin(), whole.begin() + std::ptrdiff_t(n));
+    TypeParam got;
+    std::string why;
+    ASSERT_FALSE(decode(Bytes(cut), got, why)) << n;
+    ASSERT_FALSE(why.empty());
+  }
+  Buffer longer = whole;
+  longer.push_back(0);
+  EXPECT_FALSE(decode<TypeParam>(longer).has_value());
+  EXPECT_FALSE(decode<TypeParam>(Buffer(max_message_bytes + 1)).has_value());
+}
+
+TYPED_TEST(Codec, RandomDamage) {
+  const Buffer whole = encoded(sample<TypeParam>());
+  testing::Mutator mutate(4711);
+  TypeParam got = sample<TypeParam>();
+  std::string why;
+  int refused = 0;
+  for (int i = 0; i < 200'000; ++i) {
+    const Buffer damaged = mutate(whole);
+    if (decode(Bytes(damaged), got, why)) {
+      ASSERT_TRUE(plausible(got, why));
+      // What was accepted is what was said, byte for byte.
+      ASSERT_EQ(encoded(got), damaged);
+    } else {
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 50'000);
+}
+
+TYPED_TEST(Codec, OtherTypesAreRefused) {
+  const Buffer bytes = encoded(sample<TypeParam>());
+  int taken = 0;
+  taken += decode<insula_lcm::device_state_t>(bytes).has_value();
+  taken += decode<insula_lcm::hand_input_t>(bytes).has_value();
+  taken += decode<insula_lcm::haptic_status_t>(bytes).has_value();
+  taken += decode<insula_lcm::render_frame_t>(bytes).has_value();
+  taken += decode<insula_lcm::scene_info_t>(bytes).has_value();
+  taken += decode<insula_lcm::sim_event_t>(bytes).has_value();
+  taken += decode<insula_lcm::user_command_t>(bytes).has_value();
+  EXPECT_EQ(taken, 1);
+}
+
+template <class T>
+void expect_refused(const char* name, const std::function<void(T&)>& make) {
+  T m = sample<T>();
+  std::string why;
+  ASSERT_TRUE(plausible(m, why)) << why;
+  make(m);
+  EXPECT_FALSE(plausible(m, why)) << name;
+  EXPECT_FALSE(why.empty());
+}
+
+TEST(Plausible, DeviceState) {
+  using T = insula_lcm::device_state_t;
+  expect_refused<T>("nan force", [](T& m) { m.hand[1].force_N[0] = std::nan(""); });
+  expect_refused<T>("force", [](T& m) { m.hand[0].force_N[0] = 1000; });
+  expect_refused<T>("same hand", [](T& m) { m.hand[1].hand = 0; });
+  expect_refused<T>("hand 3", [](T& m) { m.hand[1].hand = 3; });
+  expect_refused<T>("quaternion", [](T& m) { m.hand[0].q[0] = 0; });
+  expect_refused<T>("count", [](T& m) { m.hands = 1; });
+  expect_refused<T>("flag", [](T& m) { m.hand[0].button1 = 2; });
+}
+
+TEST(Plausible, HandInput) {
+  using T = insula_lcm::hand_input_t;
+  expect_refused<T>("nan", [](T& m) { m.p_m[2] = std::nan(""); });
+  expect_refused<T>("infinite", [](T& m) { m.p_m[2] = INFINITY; });
+  expect_refused<T>("far", [](T& m) { m.p_m[0] = 50; });
+  expect_refused<T>("quaternion", [](T& m) { m.q[2] = 0.8001 * 2; });
+  expect_refused<T>("hand", [](T& m) { m.hand = -1; });
+}
+
+TEST(Plausible, RenderFrame) {
+  using T = insula_lcm::render_frame_t;
+  expect_refused<T>("nan node", [](T& m) { m.body[0].x_m[2][1] = NAN; });
+  expect_refused<T>("body twice", [](T& m) { m.body[1].index = 0; });
+  expect_refused<T>("nodes", [](T& m) { m.body[1].nodes = 4; });
+  expect_refused<T>("points", [](T& m) { m.strand_points = 3; });
+  expect_refused<T>("health", [](T& m) { m.strand_health[0] = 1.5f; });
+  expect_refused<T>("tension", [](T& m) { m.strand_tension_N[0] = NAN; });
+  expect_refused<T>("json", [](T& m) { m.hud_json = "{"; });
+  expect_refused<T>("tool", [](T& m) { m.tool[0].activity = 2; });
+  expect_refused<T>("contact", [](T& m) { m.contact_N[0] = INFINITY; });
+}
+
+TEST(Plausible, Others) {
+  expect_refused<insula_lcm::haptic_status_t>("nan", [](auto& m) { m.sweeps_mean = NAN; });
+  expect_refused<insula_lcm::haptic_status_t>("negative", [](auto& m) { m.missed_ticks = -1; });
+  expect_refused<insula_lcm::scene_info_t>("state", [](auto& m) { m.state = "lost"; });
+  expect_refused<insula_lcm::scene_info_t>("NUL", [](auto& m) { m.bundle = std::string("a\0b", 3); });
+  expect_refused<insula_lcm::sim_event_t>("kind", [](auto& m) { m.kind = ""; });
+  expect_refused<insula_lcm::sim_event_t>("value", [](auto& m) { m.value = NAN; });
+  expect_refused<insula_lcm::user_command_t>("command", [](auto& m) { m.command = "rm -rf"; });
+  expect_refused<insula_lcm::user_command_t>("sender", [](auto& m) { m.sender = std::string(65, 'a'); });
+}
+
+TEST(Codec, CountsAndVectorsMustAgreeBeforeEncoding) {
+  auto frame = sample<insula_lcm::render_frame_t>();
+  frame.contacts = 5;
+  Buffer out;
+  EXPECT_FALSE(encode(frame, out));
+  EXPECT_TRUE(out.empty());
+}
+
+TEST(Codec, EmptyFrameIntoAUsedObject) {
+  insula_lcm::render_frame_t used = sample<insula_lcm::render_frame_t>(), empty{};
+  std::string why;
+  ASSERT_TRUE(decode(encoded(empty), used, why)) << why;
+  EXPECT_TRUE(used.strand_health.empty());
+  EXPECT_TRUE(used.contact_x_m.empty());
+}
+
+}  // namespace
+}  // namespace insula

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a message may say, beyond its structure: finite numbers, unit quaternions, known hands, magnitudes of an operating
+// table. A message that is not plausible is dropped whole.
+#pragma once
+#include <insula_lcm/device_state_t.hpp>
+#include <insula_lcm/hand_input_t.hpp>
+#include <insula_lcm/haptic_status_t.hpp>
+#include <insula_lcm/render_frame_t.hpp>
+#include <insula_lcm/scene_info_t.hpp>
+#include <insula_lcm/sim_event_t.hpp>
+#include <insula_lcm/user_command_t.hpp>
+#include <string>
+
+namespace insula {
+
+/// False with the reason in `why`, which is left alone otherwise.
+bool plausible(const insula_lcm::device_state_t& message, std::string& why);
+bool plausible(const insula_lcm::hand_input_t& message, std::string& why);
+bool plausible(const insula_lcm::haptic_status_t& message, std::string& why);
+bool plausible(const insula_lcm::render_frame_t& message, std::string& why);
+bool plausible(const insula_lcm::scene_info_t& message, std::string& why);
+bool plausible(const insula_lcm::sim_event_t& message, std::string& why);
+bool plausible(const insula_lcm::user_command_t& message, std::string& why);
+
+/// Whether each count equals the size of its vector, so that the generated encoder stays within them.
+bool consistent(const insula_lcm::device_state_t& message);
+bool consistent(const insula_lcm::render_frame_t& message);
+template <class Message>
+bool consistent(const Message&) {
+  return true;  // types without counts
+}
+
+/// Shared with the haptic problem's decoder.
+namespace limits {
+inline constexpr double position_m = 10;      ///< of any coordinate in the scene frame
+inline constexpr double unit_tolerance = 1e-4;  ///< of a quaternion's norm
+inline constexpr double force_N = 1e4;
+}  // namespace limits
+
+/// |v_i| <= most for all; false for NaN.
+bool within(const double* values, int count, double most);
+bool within(const float* values, int count, double most);
+/// A finite quaternion of norm 1.
+bool unit_quaternion(const double* wxyz);
+
+}  // namespace insula

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A deforming triangle surface as collision sees it: its box tree, its neighbourhoods, and where each point is during
+// the step: x(t) = x + t u, t in [0, 1], u the displacement of the free motion. Scene frame, m.
+#pragma once
+#include <array>
+#include <span>
+#include <vector>
+
+#include "core/collision/aabb_tree.h"
+#include "core/collision/closest.h"
+
+namespace insula {
+
+class CollisionMesh {
+ public:
+  /// Counter-clockwise triangles seen from outside; closed surfaces and open sheets (one-sided, facing along their normals).
+  void build(std::span<const Vec3> rest, std::span<const std::array<int, 3>> triangles);
+  /// Takes this step's positions and free displacements (empty: a surface that does not move) and refits the tree. The
+  /// arrays must live until the next update.
+  void update(std::span<const Vec3> positions, std::span<const Vec3> free);
+
+  const AabbTree& tree() const { return tree_; }
+  int vertex_count() const { return int(positions_.size()); }
+  int triangle_count() const { return int(triangles_.size()); }
+  const std::array<int, 3>& triangle(int i) const { return triangles_[std::size_t(i)]; }
+  double largest_displacement() const { return largest_displacement_; }  ///< of any vertex in the free motion
+
+  Vec3 vertex(int v, double t = 0) const {
+    const Vec3& x = positions_[std::size_t(v)];
+    return free_.empty() || t == 0 ? x : Vec3(x + t * free_[std::size_t(v)]);
+  }
+  Vec3 free(int v) const { return free_.empty() ? Vec3(Vec3::Zero()) : free_[std::size_t(v)]; }
+  Vec3 point(int tri, const Vec3& bary, double t = 0) const {
+    const auto& v = triangle(tri);
+    return bary[0] * vertex(v[0], t) + bary[1] * vertex(v[1], t) + bary[2] * vertex(v[2], t);
+  }
+  Vec3 free_at(int tri, const Vec3& bary) const {
+    const auto& v = triangle(tri);
+    return bary[0] * free(v[0]) + bary[1] * free(v[1]) + bary[2] * free(v[2]);
+  }
+  Vec3 face_normal(int tri, double t = 0) const;    ///< unit
+  Vec3 vertex_normal(int v, double t = 0) const;    ///< unit, weighted by angle
+  /// Outward normal of the feature (face, mean of an edge's faces, angle-weighted at a vertex): its product with p - c
+  /// has the sign of the distance of p, c the surface point closest to p (Baerentzen, Aanaes 2005). Unit.
+  Vec3 pseudo_normal(int tri, const TriangleFeature& f, double t = 0) const;
+  /// Whether c, closest to something in direction d (unit, from c) on this triangle, is so on the neighbouring triangles
+  /// too: no step from c into one of them leads along d by more than `slack` (a sine).
+  bool locally_closest(int tri, const TriangleFeature& f, const Vec3& d, double t, double slack) const;
+
+ private:
+  AabbTree tree_;
+  std::vector<std::array<int, 3>> triangles_;
+  std::vector<std::array<int, 3>> across_;  ///< neighbour across the edge that starts at each corner, -1 at a border
+  std::vector<int> ring_start_, ring_;      ///< triangles around each vertex
+  std::span<const Vec3> positions_, free_;
+  double largest_displacement_ = 0;
+};
+
+}  // namespace insula

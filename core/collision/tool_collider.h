@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A rigid tool of rounded convex pieces against a surface, looking ahead over the step.
+//
+// Geometry is taken at the start of the step and, when the free motion is larger than what is close, along it: tool pose
+// start -> free, surface x -> x + u. Each piece advances no faster than its distance to the surface allows (conservative
+// advancement; Mirtich 1996) until it touches or the step ends, so that a fast tool meets the surface it would have passed
+// through. Contacts are those within the alarm distance
+//   - at the start,
+//   - where the piece first touches, or at the end of its free motion,
+//   - where it would be after sliding along what it touches by the rest of its motion.
+// A contact found later in the step is used only if the tool starts on its free side; its start_gap is measured between
+// the same material points along the same normal, so that start_gap + H dq is the gap at the end of the step.
+//
+// One triangle gives a contact only where the distance is smallest among its neighbours too (no ghost contacts at inner
+// edges), plus the corners of the piece's core that stand right above it (a flat or long piece lies on several points).
+// Sides are told by the surface's outward normals: a core behind the surface has a negative gap and the outward normal.
+#pragma once
+#include <vector>
+
+#include "core/collision/collision_mesh.h"
+#include "core/collision/contact_set.h"
+#include "core/model/tool_model.h"
+
+namespace insula {
+
+struct ToolContactSettings {
+  double alarm = 1e-3;         ///< m
+  double max_recovery = 1e-3;  ///< an overlap is undone by no more than this in a step, m
+  double max_depth = 5e-3;     ///< a core this far behind the surface is no longer pushed out, m
+};
+
+/// A piece as used for collision: core of at most 24 points and a radius that is never 0 (flat blades are shrunk by a
+/// tenth of a millimetre or a quarter of their least extent and rounded by as much, so that resting contact keeps the
+/// core clear of the surface and normals well defined).
+struct RoundedPiece {
+  std::vector<Vec3> core;  ///< tool frame
+  double radius = 0;
+  Vec3 axis0 = Vec3::Zero(), axis1 = Vec3::Zero();  ///< segment that the core lies about ...
+  double bound = 0;                                 ///< ... within this distance
+};
+RoundedPiece rounded(const ConvexPiece& piece);
+
+/// One tool, one surface. Keeps which pieces overlapped last step (they are looked for deeper); allocates in the
+/// constructor only, as long as `out` has capacity.
+class ToolCollider {
+ public:
+  ToolCollider(const std::vector<ConvexPiece>& pieces, int triangles);
+  /// Appends to `out`, piece by piece, in an order that depends on the arguments alone.
+  void detect(const CollisionMesh& mesh, const Pose& start, const Pose& free, const ToolContactSettings& settings,
+              std::vector<Proximity>& out);
+  void reset();
+
+ private:
+  struct Candidate {
+    int triangle;
+    double clear;   ///< lower bound of the unsigned gap ...
+    double time;    ///< ... at this time
+    double speed;   ///< bound on the relative motion over the whole step, m
+  };
+  struct Placed;  // a piece at a moment
+  void evaluate(const CollisionMesh& mesh, const Placed& at, const ToolContactSettings& settings, double range,
+                std::vector<Proximity>& found);
+  void drop_wrong_exits(std::vector<Proximity>& found, std::size_t from) const;
+
+  std::vector<RoundedPiece> pieces_;
+  std::vector<char> deep_;  ///< per piece
+  std::vector<Candidate> candidates_;
+  std::vector<Proximity> found_;
+};
+
+/// Two tools: one contact a pair of pieces that is, or may come in this step, within the alarm distance. A pair whose
+/// cores meet is pushed apart along the line between their middles.
+void detect_tools(const std::vector<RoundedPiece>& a, const Pose& a_start, const Pose& a_free,
+                  const std::vector<RoundedPiece>& b, const Pose& b_start, const Pose& b_free,
+                  const ToolContactSettings& settings, std::vector<Proximity>& out);
+
+}  // namespace insula

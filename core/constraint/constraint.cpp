@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Collects the rows that constraints add.
+#include "core/constraint/constraint.h"
+
+#include "core/mechanics/surface.h"
+
+namespace insula {
+
+void ConstraintBuilder::clear() {
+  delta_.clear();
+  blocks_.clear();
+  for (Body* b : bodies_) b->rows.clear();
+}
+
+int ConstraintBuilder::add(Block block) {
+  block.row = rows();
+  delta_.resize(delta_.size() + std::size_t(block.rows()), 0.0);
+  blocks_.push_back(block);
+  return block.row;
+}
+
+void ConstraintBuilder::point(int row, const MaterialPoint& p, const Vec3& d) {
+  p.body->rows.open(row);
+  p.body->add_row(p.body->rows, p, d);
+  delta_[std::size_t(row)] += d.dot(p.body->free_displacement(p));
+}
+
+void ConstraintBuilder::finish() {
+  problem_.resize(rows());
+  std::copy(delta_.begin(), delta_.end(), problem_.delta_free.begin());
+  problem_.blocks.assign(blocks_.begin(), blocks_.end());
+}
+
+}  // namespace insula

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One contact with Coulomb friction, solved exactly: Signorini on the normal, |lambda_t| <= mu lambda_n with the tangential
+// force opposite to the slip.
+//   sticking   lambda = -W^-1 q, if inside the cone
+//   sliding    delta_n = 0, delta_t = -s lambda_t with s > 0 and |lambda_t| = mu lambda_n: with the normal eliminated
+//              (S + s I) lambda_t = b, S the 2x2 Schur complement; one scalar equation for s, bracketed Newton.
+#pragma once
+#include <cmath>
+
+namespace insula {
+
+struct LocalContact {
+  double wnn, wn1, wn2, w11, w12, w22;  ///< block of W (symmetric), m/N
+  double qn, q1, q2;                    ///< delta with lambda of this contact at zero, m
+};
+
+/// Writes (normal, tangent, tangent) in newtons.
+inline void solve_contact(const LocalContact& c, double mu, double* out) {
+  out[0] = out[1] = out[2] = 0;
+  if (c.qn >= 0 || !(c.wnn > 0)) return;  // separates
+  if (mu <= 0) {
+    out[0] = -c.qn / c.wnn;
+    return;
+  }
+  // Normal eliminated: S lambda_t = b sticks.
+  const double i = 1.0 / c.wnn;
+  const double s11 = c.w11 - c.wn1 * c.wn1 * i, s12 = c.w12 - c.wn1 * c.wn2 * i, s22 = c.w22 - c.wn2 * c.wn2 * i;
+  const double b1 = -c.q1 + c.wn1 * c.qn * i, b2 = -c.q2 + c.wn2 * c.qn * i;
+  // Eigenvalues and -vectors of S: every lambda_t(s) is then two divisions.
+  const double mean = 0.5 * (s11 + s22), half = 0.5 * (s11 - s22);
+  const double radius = std::sqrt(half * half + s12 * s12);
+  double e1 = mean + radius, e2 = mean - radius;
+  const double least = 1e-12 * (std::abs(e1) + c.wnn);
+  if (e1 < least) e1 = least;
+  if (e2 < least) e2 = least;
+  double vx = 1, vy = 0;
+  if (radius > 0) {
+    if (half >= 0) {
+      vx = half + radius;
+      vy = s12;
+    } else {
+      vx = s12;
+      vy = radius - half;
+    }
+    const double norm = std::sqrt(vx * vx + vy * vy);
+    vx /= norm;
+    vy /= norm;
+  }
+  const double g1 = vx * b1 + vy * b2, g2 = -vy * b1 + vx * b2;          // b in the eigenbasis
+  const double m1 = vx * c.wn1 + vy * c.wn2, m2 = -vy * c.wn1 + vx * c.wn2;  // normal coupling in the eigenbasis
+  double s = 0, t1 = g1 / e1, t2 = g2 / e2;
+  auto normal = [&] { return (-c.qn - m1 * t1 - m2 * t2) * i; };
+  double n = normal();
+  double size = std::sqrt(t1 * t1 + t2 * t2);
+  if (!(size <= mu * n)) {
+    double low = 0, high = e1;  // f(low) > 0
+    auto excess = [&](double at) {
+      t1 = g1 / (e1 + at);
+      t2 = g2 / (e2 + at);
+      n = normal();
+      size = std::sqrt(t1 * t1 + t2 * t2);
+      return size - mu * n;
+    };
+    for (int k = 0; k < 60 && excess(high) > 0; ++k) {
+      low = high;
+      high *= 4;
+    }
+    s = high;
+    double f = excess(s);
+    for (int k = 0; k < 60; ++k) {
+      // d|t|/ds and dn/ds
+      const double d1 = -t1 / (e1 + s), d2 = -t2 / (e2 + s);
+      const double df = (size > 0 ? (t1 * d1 + t2 * d2) / size : 0) + mu * i * (m1 * d1 + m2 * d2);
+      double next = df != 0 ? s - f / df : 0.5 * (low + high);
+      if (!(next > low && next < high)) next = 0.5 * (low + high);
+      const double step = next - s;
+      s = next;
+      f = excess(s);
+      if (f > 0) low = s;
+      else high = s;
+      if (std::abs(step) <= 1e-15 * (s + e2) || f == 0) break;
+    }
+    // On the cone to the last bit that matters.
+    if (size > 0 && n > 0) {
+      const double scale = mu * n / size;
+      t1 *= scale;
+      t2 *= scale;
+    }
+  }
+  out[0] = n;
+  out[1] = vx * t1 - vy * t2;
+  out[2] = vy * t1 + vx * t2;
+}
+
+}  // namespace insula

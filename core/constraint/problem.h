@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The constraint problem of one step as a value: everything `solve` needs and nothing else.
+//   delta = W lambda + delta_free          delta in metres (or rad), lambda in newtons (or N m)
+// The same value is solved by the engine once a step and by the haptic server every millisecond
+// (Dequidt, Coevoet, Thines, Duriez 2015, equations 5 to 7).
+#pragma once
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "core/base/math.h"
+
+namespace insula {
+
+inline constexpr double infinite = std::numeric_limits<double>::infinity();
+
+/// What relates delta and lambda on a block of rows.
+enum class LawKind : std::uint8_t {
+  box,       ///< one row: lambda in [lower, upper]; inside the bounds delta + compliance * lambda = 0.
+             ///< bilateral: c = 0, no bounds; compliant: c > 0; contact without friction: c = 0, [0, inf);
+             ///< a fibre that carries tension only: c = 1/k, (-inf, 0]
+  friction,  ///< three rows (normal, tangent, tangent): Signorini on the normal, Coulomb on the tangents
+};
+
+struct Block {
+  std::uint64_t id = 0;  ///< stable from step to step, unique in a problem: the warm start's key
+  int row = 0;           ///< first row
+  LawKind law = LawKind::box;
+  double compliance = 0;      ///< m/N, >= 0; for friction blocks on the normal row
+  double lower = -infinite;   ///< N, box only
+  double upper = infinite;    ///< N, box only
+  double friction = 0;        ///< Coulomb coefficient, friction blocks only
+  int rows() const { return law == LawKind::friction ? 3 : 1; }
+};
+
+/// A hand-held tool in the problem: how its free pose follows the device and how it yields to lambda.
+struct ToolTerms {
+  int hand = 0;                      ///< 0 left, 1 right
+  Pose device;                       ///< device pose (with the tool's offset applied) the problem was built with
+  Pose free;                         ///< the tool's free pose at the end of the step
+  Mat6 gain = Mat6::Identity();      ///< d(free displacement)/d(device displacement)
+  Mat6 compliance = Mat6::Zero();    ///< A_tool^-1, (m, rad) per (N, N m)
+  Mat6 stiffness = Mat6::Zero();     ///< coupling spring; force on the hand = stiffness * displacement(device, tool)
+  Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor> jacobian;  ///< H_tool, rows x 6
+};
+
+struct ConstraintProblem {
+  int rows = 0;
+  int stride = 0;                  ///< leading dimension of w, >= rows, a multiple of 8
+  std::vector<double> w;           ///< W, symmetric, rows x stride, row-major; padding is zero
+  std::vector<double> delta_free;  ///< rows
+  std::vector<double> lambda;      ///< warm start, rows
+  std::vector<Block> blocks;       ///< in row order, covering every row once
+  std::vector<ToolTerms> tools;    ///< at most two
+
+  double w_at(int i, int j) const { return w[std::size_t(i) * stride + j]; }
+  /// Sets the size and zeroes W, delta_free and lambda; keeps capacity.
+  void resize(int n);
+};
+
+}  // namespace insula

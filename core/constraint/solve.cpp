@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Block Gauss-Seidel with residual updates: delta is kept current, so a block that does not move costs nothing.
+#include "core/constraint/solve.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/constraint/friction.h"
+#include "core/linalg/kernels.h"
+
+namespace insula {
+
+void SolveWorkspace::reserve(int rows) {
+  const std::size_t n = std::size_t(rows) + 8;
+  if (lambda.capacity() < n) lambda.reserve(n);
+  if (delta.capacity() < n) delta.reserve(n);
+}
+
+namespace {
+
+// The block's lambda that satisfies its law while the other blocks keep theirs.
+void local_solution(const ConstraintProblem& p, const Block& b, const double* lambda, const double* delta, double* out) {
+  const int r = b.row;
+  const double* w = p.w.data() + std::size_t(r) * p.stride + r;
+  if (b.law == LawKind::box) {
+    const double a = w[0] + b.compliance;
+    if (!(a > 0)) {
+      out[0] = lambda[r];
+      return;
+    }
+    out[0] = std::clamp(lambda[r] - (delta[r] + b.compliance * lambda[r]) / a, b.lower, b.upper);
+    return;
+  }
+  const int s = p.stride;
+  LocalContact c;
+  c.wnn = w[0] + b.compliance;
+  c.wn1 = w[1];
+  c.wn2 = w[2];
+  c.w11 = w[s + 1];
+  c.w12 = w[s + 2];
+  c.w22 = w[2 * s + 2];
+  // Violation with this block's own lambda taken out.
+  const double l0 = lambda[r], l1 = lambda[r + 1], l2 = lambda[r + 2];
+  c.qn = delta[r] - (w[0] * l0 + w[1] * l1 + w[2] * l2);
+  c.q1 = delta[r + 1] - (w[s] * l0 + w[s + 1] * l1 + w[s + 2] * l2);
+  c.q2 = delta[r + 2] - (w[2 * s] * l0 + w[2 * s + 1] * l1 + w[2 * s + 2] * l2);
+  solve_contact(c, b.friction, out);
+}
+
+void full_delta(const Kernels& k, const ConstraintProblem& p, std::span<const double> free, const double* lambda, double* delta) {
+  std::copy(free.begin(), free.end(), delta);
+  for (int i = 0; i < p.rows; ++i)
+    if (lambda[i] != 0) k.axpy(delta, p.w.data() + std::size_t(i) * p.stride, lambda[i], p.rows);
+}
+
+}  // namespace
+
+SolveStats solve(const ConstraintProblem& p, std::span<const double> free, const SolveSettings& settings, SolveWorkspace& ws) {
+  const Kernels& k = kernels();
+  const int n = p.rows;
+  ws.lambda.resize(std::size_t(n));
+  ws.delta.resize(std::size_t(n));
+  double* lambda = ws.lambda.data();
+  double* delta = ws.delta.data();
+  SolveStats stats;
+  if (n == 0) return stats;
+  full_delta(k, p, free.first(std::size_t(n)), lambda, delta);
+
+  double next[3];
+  for (stats.sweeps = 0; stats.sweeps < settings.max_sweeps;) {
+    double moved = 0;
+    for (const Block& b : p.blocks) {
+      local_solution(p, b, lambda, delta, next);
+      const int r = b.row;
+      const double* w = p.w.data() + std::size_t(r) * p.stride;
+      if (b.law == LawKind::box) {
+        const double d = next[0] - lambda[r];
+        if (d == 0) continue;
+        k.axpy(delta, w, d, n);
+        lambda[r] = next[0];
+        moved = std::max(moved, std::abs(d) * (w[r] + b.compliance));
+      } else {
+        const double d0 = next[0] - lambda[r], d1 = next[1] - lambda[r + 1], d2 = next[2] - lambda[r + 2];
+        if (d0 == 0 && d1 == 0 && d2 == 0) continue;
+        k.axpy3(delta, w, w + p.stride, w + 2 * p.stride, d0, d1, d2, n);
+        lambda[r] = next[0];
+        lambda[r + 1] = next[1];
+        lambda[r + 2] = next[2];
+        moved = std::max({moved, std::abs(d0) * w[r], std::abs(d1) * w[p.stride + r + 1], std::abs(d2) * w[2 * p.stride + r + 2]});
+      }
+    }
+    ++stats.sweeps;
+    if (moved <= settings.tolerance_m) break;
+  }
+
+  // Residual on a delta computed afresh: what each law would still move.
+  full_delta(k, p, free.first(std::size_t(n)), lambda, delta);
+  for (const Block& b : p.blocks) {
+    local_solution(p, b, lambda, delta, next);
+    for (int i = 0; i < b.rows(); ++i) {
+      const double d = std::abs(next[i] - lambda[b.row + i]);
+      stats.residual_N = std::max(stats.residual_N, d);
+      stats.residual_m = std::max(stats.residual_m, d * p.w_at(b.row + i, b.row + i));
+    }
+  }
+  return stats;
+}
+
+}  // namespace insula

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Block Gauss-Seidel on the mixed nonlinear complementarity problem. Pure and bounded: the result depends on the
+// arguments alone, time is at most max_sweeps sweeps, and nothing is allocated once the workspace has its size.
+#pragma once
+#include <span>
+#include <vector>
+
+#include "core/constraint/problem.h"
+
+namespace insula {
+
+struct SolveSettings {
+  int max_sweeps = 200;
+  /// Stop when no lambda of a sweep would move its row by more than this (metres): |W_ii * change| <= tolerance.
+  double tolerance_m = 1e-9;
+};
+
+struct SolveStats {
+  int sweeps = 0;
+  double residual_m = 0;  ///< largest violation of a law over all rows, metres (natural map scaled by 1/W_ii)
+  double residual_N = 0;  ///< the same in newtons
+};
+
+/// Everything solve writes. One per caller; grows in reserve() only.
+struct SolveWorkspace {
+  std::vector<double> lambda;  ///< in: warm start, out: solution; N
+  std::vector<double> delta;   ///< out: W lambda + delta_free, m
+  void reserve(int rows);
+  struct LocalBlock {
+    double inverse[9];  ///< inverse of the block's W (friction) or 1 / (W_ii + c)
+  };
+  std::vector<LocalBlock> local;
+};
+
+/// Solves with the given delta_free (problem.rows values; the problem's own or the servo's). workspace.lambda must hold
+/// the warm start (problem.rows values). Never allocates if workspace.reserve(rows) was called.
+SolveStats solve(const ConstraintProblem& problem, std::span<const double> delta_free, const SolveSettings& settings,
+                 SolveWorkspace& workspace);
+
+}  // namespace insula

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Direct solver of one body's system matrix: multifrontal supernodal Cholesky A = P^T L L^T P on 3x3 blocks, and the
+// compliance H A^-1 H^T of sparse rows by forward substitution on the rows that the elimination tree reaches.
+// Ordering and supernodes come from CHOLMOD once per topology; everything after analyse() allocates nothing unless the
+// number of rows grows past what was seen.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "core/linalg/block_matrix.h"
+#include "core/mechanics/rows.h"
+
+namespace insula {
+
+class BlockCholesky {
+ public:
+  /// Symbolic work. Throws std::runtime_error when CHOLMOD refuses (out of memory).
+  void analyse(const BlockMatrix& a);
+  /// Numeric factor. False when a pivot is not positive (the matrix is not positive definite): the factor is then unusable.
+  bool factorise(const BlockMatrix& a);
+  /// x := A^-1 x, 3 * nodes values in natural order.
+  void solve(double* x);
+  /// Computes H A^-1 H^T in memory of its own; keeps Y = L^-1 P H^T for correct(). `node_of_block` maps a row's block to a
+  /// node of the matrix, -1 for a held one.
+  void compute_compliance(const BodyRows& rows, const std::vector<int>& node_of_block);
+  /// Adds what compute_compliance found into w at the rows' numbers, both triangles.
+  void add_compliance(const BodyRows& rows, double* w, int stride) const;
+  /// x := A^-1 H^T lambda with the rows of the last compute_compliance; lambda is indexed by row number.
+  void correct(const BodyRows& rows, const double* lambda, double* x);
+
+  std::int64_t factor_entries() const { return entries_; }  ///< doubles in L, padding not counted
+  double factor_flops() const { return flops_; }
+  int supernodes() const { return int(front_.size()); }
+
+ private:
+  struct Front {
+    int first = 0;        ///< first own node, permuted order
+    int own = 0;          ///< own nodes (columns)
+    int rows = 0;         ///< nodes in all (own + below)
+    int row_begin = 0;    ///< into row_node_
+    int lda = 0;          ///< of the panel, scalars
+    long panel = 0;       ///< offset into panel_
+    long update = -1;     ///< offset into update_, of the below x below matrix
+    int ldu = 0;
+    int parent = -1;
+    int map_begin = 0;    ///< into map_: below nodes as positions in the parent's rows
+    int scatter_begin = 0, scatter_end = 0;
+    int first_descendant = 0;  ///< first own node of the subtree
+    std::vector<int> children;
+  };
+  struct Scatter {
+    int slot;
+    long offset;   ///< of the block's first entry in the panel
+    bool transpose;
+  };
+  void forward(double* x) const;
+  void backward(double* x) const;
+
+  int nodes_ = 0;
+  std::vector<Front> front_;
+  std::vector<int> row_node_, map_, row_scalar_;
+  std::vector<int> permuted_;   ///< natural node -> permuted node
+  std::vector<int> natural_;
+  std::vector<int> front_of_;   ///< permuted node -> front
+  std::vector<Scatter> scatter_;
+  std::vector<double> panel_, update_, x_;
+  std::int64_t entries_ = 0;
+  double flops_ = 0;
+
+  // Rows in flight.
+  std::vector<double> y_, s_, lambda_;
+  std::vector<int> order_, begin_, active_lo_, active_hi_;
+  long ldy_ = 0;
+  int columns_ = 0;
+};
+
+}  // namespace insula

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Pattern and product of the block matrix.
+#include "core/linalg/block_matrix.h"
+
+namespace insula {
+
+void BlockMatrix::set_pattern(int nodes, std::vector<std::pair<int, int>> couplings) {
+  nodes_ = nodes;
+  for (auto& [i, j] : couplings)
+    if (i > j) std::swap(i, j);  // (column, row)
+  for (int i = 0; i < nodes; ++i) couplings.emplace_back(i, i);
+  std::sort(couplings.begin(), couplings.end());
+  couplings.erase(std::unique(couplings.begin(), couplings.end()), couplings.end());
+  start_.assign(std::size_t(nodes) + 1, 0);
+  row_.clear();
+  for (auto [column, row] : couplings) {
+    ++start_[std::size_t(column) + 1];
+    row_.push_back(row);
+  }
+  for (int j = 0; j < nodes; ++j) start_[std::size_t(j) + 1] += start_[std::size_t(j)];
+  value_.assign(9 * row_.size(), 0.0);
+}
+
+int BlockMatrix::slot(int i, int j) const {
+  const auto begin = row_.begin() + start_[std::size_t(j)], end = row_.begin() + start_[std::size_t(j) + 1];
+  const auto at = std::lower_bound(begin, end, i);
+  return at != end && *at == i ? int(at - row_.begin()) : -1;
+}
+
+void BlockMatrix::add_product(const double* x, double* y) const {
+  for (int j = 0; j < nodes_; ++j) {
+    Eigen::Map<const Vec3> xj(x + 3 * j);
+    Eigen::Map<Vec3> yj(y + 3 * j);
+    for (int s = column_start(j); s < column_start(j + 1); ++s) {
+      Eigen::Map<const Mat3> b(block(s));
+      const int i = row(s);
+      Eigen::Map<Vec3>(y + 3 * i) += b * xj;
+      if (i != j) yj += b.transpose() * Eigen::Map<const Vec3>(x + 3 * i);
+    }
+  }
+}
+
+}  // namespace insula

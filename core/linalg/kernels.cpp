@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Chooses the instruction set once.
+#include "core/linalg/kernels.h"
+
+#include <cstdlib>
+#include <string_view>
+
+namespace insula {
+namespace sse2 { extern const Kernels table; }
+#if defined(__x86_64__)
+namespace avx2 { extern const Kernels table; }
+namespace avx512 { extern const Kernels table; }
+#endif
+
+namespace {
+const Kernels& choose() {
+#if defined(__x86_64__)
+  const char* wanted = std::getenv("INSULA_KERNELS");
+  const std::string_view most = wanted ? wanted : "avx512";
+  __builtin_cpu_init();
+  const bool has512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
+  const bool has2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+  if (has512 && most == "avx512") return avx512::table;
+  if (has2 && (most == "avx512" || most == "avx2")) return avx2::table;
+#endif
+  return sse2::table;
+}
+}  // namespace
+
+const Kernels& kernels() {
+  static const Kernels& chosen = choose();
+  return chosen;
+}
+
+}  // namespace insula

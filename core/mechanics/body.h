@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A body of the simulation: generalised position q, velocity v and what its system matrix A answers.
+// Degrees of freedom come in blocks of three: a node of a soft body is one block; a rigid body has two
+// (translation, rotation vector); a fixed obstacle has none.
+#pragma once
+#include <array>
+#include <vector>
+
+#include "core/mechanics/rows.h"
+#include "core/mechanics/step_context.h"
+#include "core/registry/component.h"
+
+namespace insula {
+
+class Body;
+
+/// A point that moves with a body.
+struct MaterialPoint {
+  Body* body = nullptr;
+  int count = 0;                            ///< nodes used (soft bodies), 0 for rigid and fixed bodies
+  std::array<int, 4> node{};                ///< node indices
+  std::array<double, 4> weight{};           ///< sum 1
+  Vec3 local = Vec3::Zero();                ///< body frame (rigid), scene frame (fixed), m
+};
+
+class Body : public Component {
+ public:
+  static constexpr std::string_view kind_name = "body";
+
+  int index = -1;  ///< position among the simulation's bodies
+
+  /// Once, after this body and everything it owns are prepared: topology, masses, symbolic factorisation.
+  virtual void connect(PrepareContext&) {}
+
+  virtual int blocks() const = 0;  ///< number of 3-blocks of degrees of freedom
+  /// Position at the start of the step (current q), scene frame.
+  virtual Vec3 position(const MaterialPoint& p) const = 0;
+  /// Displacement that the free motion gives the point over the step, linearised, scene frame. Valid after free_motion.
+  virtual Vec3 free_displacement(const MaterialPoint& p) const = 0;
+  /// The point's row entries for a direction d: adds d . d(point)/d(q) to the open row.
+  virtual void add_row(BodyRows& rows, const MaterialPoint& p, const Vec3& d) const = 0;
+
+  /// Assembles and factorises A, solves the free motion.
+  virtual void free_motion(const StepContext& context) = 0;
+  /// Computes H A^-1 H^T of these rows into the body's own memory; bodies do this in parallel.
+  virtual void compute_compliance(const BodyRows&) {}
+  /// Adds it into `w` (row-major, leading dimension `stride`), at the rows' numbers; one body after the other.
+  virtual void add_compliance(const BodyRows& rows, double* w, int stride) = 0;
+  /// q += free displacement + A^-1 H^T lambda; v = dq / h.
+  virtual void apply(const StepContext& context, const BodyRows& rows, const double* lambda) = 0;
+  virtual void reset() = 0;
+  /// Kinetic plus elastic energy, J.
+  virtual double energy() const = 0;
+  /// Appends the state that a hash or a recorder needs.
+  virtual void append_state(std::vector<double>& out) const = 0;
+
+  BodyRows rows;  ///< rebuilt every step
+};
+
+}  // namespace insula

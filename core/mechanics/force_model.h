@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Base of every force plugin: mass, force, stiffness and energy of the soft body that owns it.
+#pragma once
+#include <utility>
+#include <vector>
+
+#include "core/linalg/block_matrix.h"
+#include "core/registry/component.h"
+
+namespace insula {
+
+class SoftBody;
+
+/// Which derivative of the force goes into the system matrix.
+enum class Tangent {
+  exact,   ///< the force's full gradient; may be indefinite (contract tests)
+  system,  ///< what the step uses: positive semidefinite
+};
+
+class ForceModel : public Component {
+ public:
+  static constexpr std::string_view kind_name = "force model";
+
+  /// Once, when the body's rest shape is known; may report errors.
+  virtual void attach(PrepareContext&, SoftBody&) {}
+  /// Pairs of nodes whose forces depend on each other.
+  virtual void couplings(std::vector<std::pair<int, int>>& pairs) const = 0;
+  /// Once, when the matrix pattern is known. free_of_node: node -> block of `a`, -1 when held.
+  virtual void bind(const BlockMatrix& a, const std::vector<int>& free_of_node) = 0;
+  /// Lumped mass (kg) and Rayleigh mass damping (kg/s), one value a node; added to what is there.
+  virtual void add_mass(std::vector<double>&, std::vector<double>&) const {}
+  /// force (3 values a node, N) += -dE/dx at positions x (m). If `stiffness` is not null: its blocks +=
+  /// (1 + stiffness_damping()/h) * d2E/dx2 as `tangent` says.
+  virtual void linearise(const double* x, double* force, BlockMatrix* stiffness, double h, Tangent tangent) = 0;
+  /// J
+  virtual double energy(const double* x) = 0;
+  /// Rayleigh stiffness damping, s.
+  virtual double stiffness_damping() const { return 0; }
+  virtual void reset() {}
+};
+
+/// Base of every support plugin: says which nodes of the body that owns it are held.
+class Support : public Component {
+ public:
+  static constexpr std::string_view kind_name = "support";
+  /// Sets held[i] for the nodes it holds. Rest positions in metres, scene frame.
+  virtual void hold(PrepareContext&, const std::vector<Vec3>& rest, std::vector<char>& held) = 0;
+};
+
+}  // namespace insula

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A hand-held tool: a rigid body tied to the device pose by a 6-DoF spring and damper (virtual coupling), with its own
+// 6x6 system matrix. Instrument plugins add what their tip does.
+#pragma once
+#include "core/constraint/constraint.h"
+#include "core/mechanics/body.h"
+#include "core/model/tool_model.h"
+
+namespace insula {
+
+/// What a hand asks for during a step.
+struct HandState {
+  bool present = false;
+  Pose device;          ///< at the end of the step, scene frame
+  bool button1 = false;
+  bool button2 = false;
+};
+
+class Instrument : public Body {
+ public:
+  static constexpr std::string_view kind_name = "instrument";
+
+  Param<File> model{this, {.name = "model", .doc = "URDF of the tool"}};
+  Param<Choice> hand{this, {.name = "hand", .choices = {"left", "right", "none"}, .doc = "hand that holds the tool; none: a table-mounted arm holds it at home"}};
+  Param<Vec<Length>> home{this, {.name = "home", .doc = "tip at the start, scene frame"}};
+  Param<Vec<Scalar>> shaft{this, {.name = "shaft", .doc = "direction from the tip along the shaft to the handle at the start"}};
+  Param<Vec<Scalar>> flat{this, {.name = "flat", .fallback = "0 0 1", .doc = "normal of the blade's flat side at the start"}};
+  Param<Stiffness> coupling{this, {.name = "coupling", .fallback = "300 N/m", .min = "10 N/m", .max = "5000 N/m", .doc = "translational stiffness of the virtual coupling"}};
+  Param<AngularStiffness> angular_coupling{this, {.name = "angular_coupling", .fallback = "0.3 N m/rad", .min = "0.001 N m/rad", .max = "10 N m/rad", .doc = "rotational stiffness of the virtual coupling"}};
+  Param<Duration> coupling_time{this, {.name = "coupling_time", .fallback = "0 ms", .min = "0 ms", .max = "100 ms", .doc = "damping of the virtual coupling over its stiffness"}};
+  Param<Mass> mass{this, {.name = "mass", .fallback = "0 g", .min = "0 g", .max = "1 kg", .doc = "mass that the coupling moves; 0: the tool follows the hand without lag"}};
+
+  void prepare(PrepareContext& context) override;
+  int hand_index() const { return hand.is("right") ? 1 : hand.is("left") ? 0 : -1; }  ///< -1: held by an arm
+  const ToolModel& tool() const { return tool_; }
+  const Pose& pose() const { return pose_; }             ///< tool pose at the start of the step
+  const Pose& device() const { return device_; }         ///< device pose at the end of the step
+  const Pose& free_pose() const { return free_pose_; }
+  const HandState& state() const { return hand_state_; }
+  Pose home_pose() const;
+  void set_hand(const HandState& s) { hand_state_ = s; }
+
+  /// Coupling force and torque on the hand at the end of the step: stiffness * displacement(device, tool).
+  const Vec6& hand_force() const { return hand_force_; }
+  /// Terms of the haptic problem (jacobian is filled from `rows`).
+  void fill_terms(ToolTerms& terms, int problem_rows) const;
+
+  /// Cutting edges in the scene frame are active (default: whenever the tool has edges).
+  virtual bool cutting() const { return !tool_.blade_edges.empty(); }
+  /// 0..1 for the picture: suction on, blade at work.
+  virtual double activity() const { return 0; }
+  /// Rows of the tool's own effect (suction pull, ...), after contacts are detected. Default: none.
+  virtual void join(PrepareContext&, Simulation&) {}
+  virtual void build(const StepContext&, ConstraintBuilder&) {}
+  virtual void finish(const StepContext&, const ConstraintSolution&) {}
+
+  int blocks() const override { return 2; }
+  Vec3 position(const MaterialPoint& p) const override { return pose_.apply(p.local); }
+  Vec3 free_displacement(const MaterialPoint& p) const override;
+  void add_row(BodyRows& rows, const MaterialPoint& p, const Vec3& d) const override;
+  void free_motion(const StepContext& context) override;
+  void add_compliance(const BodyRows& rows, double* w, int stride) override;
+  void apply(const StepContext& context, const BodyRows& rows, const double* lambda) override;
+  void reset() override;
+  double energy() const override;
+  void append_state(std::vector<double>& out) const override;
+  MaterialPoint point(const Vec3& scene_position) const;  ///< the tool's point now at that place
+
+ private:
+  ToolModel tool_;
+  HandState hand_state_;
+  Pose pose_, device_, last_device_, free_pose_;
+  Vec6 velocity_ = Vec6::Zero(), free_dq_ = Vec6::Zero(), hand_force_ = Vec6::Zero();
+  Mat6 compliance_ = Mat6::Zero(), gain_ = Mat6::Identity(), stiffness_ = Mat6::Zero();
+};
+
+}  // namespace insula

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Embedding of a surface in its body.
+#include "core/mechanics/surface.h"
+
+#include "core/base/input_error.h"
+#include "core/mechanics/soft_body.h"
+
+namespace insula {
+
+void Surface::prepare(PrepareContext& context) {
+  body_ = dynamic_cast<Body*>(parent);
+  if (!body_) return error(context, "a surface belongs inside a body");
+  auto* soft = dynamic_cast<SoftBody*>(body_);
+  try {
+    if (!mesh.empty()) {
+      rest_ = read_surface(mesh(), mesh_unit());
+    } else if (soft) {
+      rest_.triangles = boundary_triangles(soft->rest());
+      std::vector<int> number(soft->rest().nodes.size(), -1);
+      for (auto& t : rest_.triangles)
+        for (int& i : t) {
+          if (number[std::size_t(i)] < 0) {
+            number[std::size_t(i)] = int(rest_.vertices.size());
+            rest_.vertices.push_back(soft->rest().nodes[std::size_t(i)]);
+          }
+          i = number[std::size_t(i)];
+        }
+    } else {
+      return error(context, "this body has no mesh of its own: the surface needs a file (mesh=\"...\")");
+    }
+  } catch (const InputError& e) {
+    return error(context, mesh, e.what());
+  }
+  points_.assign(rest_.vertices.size(), {});
+  if (soft) {
+    if (soft->rest().tets.empty()) return;  // its own error is reported
+    const Embedding e = embed(soft->rest(), rest_.vertices);
+    // Points far from the tetrahedra would be flung about by extrapolation: more likely the wrong unit or frame.
+    if (e.outside_m > 0.005)
+      return error(context, mesh, "the surface reaches " + std::to_string(e.outside_m * 1000) +
+                                      " mm outside the body's tetrahedra; is its unit or frame another one?");
+    for (std::size_t i = 0; i < points_.size(); ++i) points_[i] = {body_, 4, e.nodes[i], e.weights[i], Vec3::Zero()};
+  } else {
+    for (std::size_t i = 0; i < points_.size(); ++i) points_[i] = {body_, 0, {}, {}, rest_.vertices[i]};
+  }
+  positions_ = rest_.vertices;
+  free_.assign(positions_.size(), Vec3::Zero());
+}
+
+void Surface::update() {
+  if (body_->blocks() == 0) return;
+  for (std::size_t i = 0; i < points_.size(); ++i) positions_[i] = body_->position(points_[i]);
+}
+
+void Surface::update_free() {
+  if (body_->blocks() == 0) return;
+  for (std::size_t i = 0; i < points_.size(); ++i) free_[i] = body_->free_displacement(points_[i]);
+}
+
+void Surface::add_row(BodyRows& rows, int triangle, const Vec3& bary, const Vec3& d) const {
+  if (body_->blocks() == 0) return;
+  // The three vertices often share nodes: merging them keeps rows short.
+  std::array<int, 12> node;
+  std::array<double, 12> weight;
+  int count = 0;
+  const auto& t = rest_.triangles[std::size_t(triangle)];
+  for (int k = 0; k < 3; ++k) {
+    if (bary[k] == 0) continue;
+    const MaterialPoint& p = points_[std::size_t(t[std::size_t(k)])];
+    for (int i = 0; i < p.count; ++i) {
+      const double w = bary[k] * p.weight[std::size_t(i)];
+      if (w == 0) continue;
+      int at = 0;
+      while (at < count && node[std::size_t(at)] != p.node[std::size_t(i)]) ++at;
+      if (at == count) {
+        node[std::size_t(count)] = p.node[std::size_t(i)];
+        weight[std::size_t(count++)] = 0;
+      }
+      weight[std::size_t(at)] += w;
+    }
+  }
+  for (int i = 0; i < count; ++i) rows.add(node[std::size_t(i)], weight[std::size_t(i)] * d);
+}
+
+}  // namespace insula

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A surface that moves with its body: a fine triangle mesh embedded in the tetrahedra (or rigid, on an obstacle), for
+// contact and for the picture.
+#pragma once
+#include <array>
+#include <vector>
+
+#include "core/mechanics/body.h"
+#include "core/model/mesh.h"
+
+namespace insula {
+
+class Surface : public Component {
+ public:
+  static constexpr std::string_view kind_name = "surface";
+
+  /// `<surface mesh="..." mesh_unit="mm" material="cortex" contact="true"/>`; without a mesh: the boundary of the body's tetrahedra.
+  Param<File> mesh{this, {.name = "mesh", .fallback = "", .doc = "surface file; none: the boundary of the body's tetrahedra"}};
+  Param<LengthUnit> mesh_unit{this, {.name = "mesh_unit", .fallback = "mm", .doc = "unit of length of the surface file"}};
+  Param<Choice> material{this, {.name = "material", .fallback = "cortex",
+      .choices = {"cortex", "pia", "insula", "bone", "dura", "drape", "vessel", "steel", "polymer"},
+      .doc = "look in the viewer"}};
+
+  void prepare(PrepareContext& context) override;
+
+  Body& body() const { return *body_; }
+  const TriMesh& rest() const { return rest_; }                             ///< rest shape, scene frame
+  const std::vector<MaterialPoint>& points() const { return points_; }      ///< one a vertex
+  const std::vector<Vec3>& positions() const { return positions_; }         ///< at the start of the step; update() refreshes
+  const std::vector<Vec3>& free_displacements() const { return free_; }     ///< of the vertices in this step's free motion
+  const std::vector<std::array<int, 3>>& triangles() const { return rest_.triangles; }
+
+  /// Recomputes positions() from the body's q.
+  void update();
+  /// Recomputes free_displacements() after free motion.
+  void update_free();
+  /// The material point of a triangle at barycentric coordinates; up to twelve nodes, merged and sorted.
+  /// Adds direction d of it to the open row of the body.
+  void add_row(BodyRows& rows, int triangle, const Vec3& bary, const Vec3& d) const;
+
+ private:
+  Body* body_ = nullptr;
+  TriMesh rest_;
+  std::vector<MaterialPoint> points_;
+  std::vector<Vec3> positions_, free_;
+};
+
+}  // namespace insula

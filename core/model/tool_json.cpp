@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What URDF cannot say about a tool: the cutting edge and the suction opening, in tool.json beside the URDF.
+#include "core/model/tool_json.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/base/text.h"
+#include "core/model/file_bytes.h"
+
+namespace insula {
+namespace {
+
+using Json = nlohmann::json;
+constexpr double mm = 1e-3;
+
+double length_mm(const std::filesystem::path& file, const Json& value, const std::string& what) {
+  if (!value.is_number() || !std::isfinite(value.get<double>())) fail(file, what + " must be a number (mm)");
+  return value.get<double>() * mm;
+}
+
+Vec3 point_mm(const std::filesystem::path& file, const Json& value, const std::string& what) {
+  if (!value.is_array() || value.size() != 3) fail(file, what + " must be three numbers (mm)");
+  return {length_mm(file, value[0], what), length_mm(file, value[1], what), length_mm(file, value[2], what)};
+}
+
+void read_blade(const std::filesystem::path& file, const Json& blade, ToolModel& tool) {
+  if (!blade.is_object()) fail(file, "blade must be an object");
+  if (blade.contains("cuts") && !blade["cuts"].is_boolean()) fail(file, "blade.cuts must be true or false");
+  const bool cuts = blade.value("cuts", true);
+  if (!blade.contains("edge")) {
+    if (cuts) fail(file, "blade.edge is missing, and the blade cuts");
+    return;
+  }
+  const Json& edge = blade["edge"];
+  if (!edge.is_array() || edge.size() < 2 || edge.size() > 1000) fail(file, "blade.edge must be a list of two or more points");
+  std::vector<Vec3> points;
+  for (std::size_t i = 0; i < edge.size(); ++i) points.push_back(point_mm(file, edge[i], "blade.edge[" + std::to_string(i) + "]"));
+  if (!cuts) return;
+  for (std::size_t i = 1; i < points.size(); ++i)
+    if ((points[i] - points[i - 1]).norm() > 1e-9) tool.blade_edges.push_back({points[i - 1], points[i]});
+  if (tool.blade_edges.empty()) fail(file, "blade.edge has no length");
+}
+
+}  // namespace
+
+void read_tool_json(const std::filesystem::path& file, ToolModel& tool) {
+  std::error_code error;
+  if (!std::filesystem::exists(file, error)) return;
+  Json json;
+  try {
+    json = Json::parse(read_file_bytes(file, 1u << 20));
+  } catch (const Json::exception& e) {
+    fail(file, "is no valid JSON: " + shown(e.what()));
+  }
+  if (!json.is_object()) fail(file, "must hold one object");
+  if (json.contains("unit") && json["unit"] != "mm") fail(file, "unit must be \"mm\"");
+  if (json.contains("tip")) {
+    const Json& tip = json["tip"];
+    if (!tip.is_object()) fail(file, "tip must be an object");
+    if (tip.contains("inner_radius_mm")) {
+      tool.tip_inner_radius = length_mm(file, tip["inner_radius_mm"], "tip.inner_radius_mm");
+      if (!(tool.tip_inner_radius > 0)) fail(file, "tip.inner_radius_mm must be positive");
+    }
+  }
+  if (json.contains("blade")) read_blade(file, json["blade"], tool);
+}
+
+}  // namespace insula

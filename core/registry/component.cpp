@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What all components share.
+#include "core/registry/component.h"
+
+namespace insula {
+
+std::string_view kind_name(Kind kind) {
+  switch (kind) {
+    case Kind::scene: return "scene";
+    case Kind::settings: return "settings";
+    case Kind::body: return "body";
+    case Kind::surface: return "surface";
+    case Kind::force_model: return "force model";
+    case Kind::support: return "support";
+    case Kind::constraint: return "constraint";
+    case Kind::instrument: return "instrument";
+    case Kind::exercise: return "exercise";
+    case Kind::exercise_rule: return "exercise rule";
+    case Kind::motion: return "motion";
+  }
+  return "component";
+}
+
+ParamBase* Component::find_param(std::string_view name) const {
+  for (ParamBase* p : params_)
+    if (p->spec().name == name) return p;
+  return nullptr;
+}
+
+void Component::error(PrepareContext& context, std::string text) const { context.diagnostics.error(pos, std::move(text)); }
+
+void Component::error(PrepareContext& context, const ParamBase& param, std::string text) const {
+  context.diagnostics.error(param.given() ? param.pos() : pos, param.name() + ": " + text);
+}
+
+}  // namespace insula

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where shared plugins are looked for. `load_plugin` itself is declared in registry.h.
+#pragma once
+#include <filesystem>
+#include <vector>
+
+namespace insula {
+
+/// The `.so` files of a folder by name; empty when there is no such folder.
+std::vector<std::filesystem::path> plugin_files(const std::filesystem::path& folder);
+/// <prefix>/lib/insula/plugins for a program in <prefix>/bin.
+std::filesystem::path installed_plugin_folder();
+
+}  // namespace insula

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which elements exist. Plugins add themselves by an explicit function; nothing registers as a side effect of linking.
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/registry/abi.h"
+#include "core/registry/component.h"
+
+namespace insula {
+
+struct ComponentInfo {
+  std::string element;              ///< unique element name
+  Kind kind = Kind::constraint;
+  std::string doc;                  ///< one line
+  std::vector<Kind> parents;        ///< kinds of component it may stand in
+  std::string plugin;               ///< folder name of the plugin that brought it, or "core"
+  std::function<std::unique_ptr<Component>()> create;
+};
+
+class Registry {
+ public:
+  /// Adds T as <element>. Where it may stand follows from its kind: body, constraint, instrument, settings, exercise in
+  /// the scene; force_model, support, surface in a body; rules and motions in an exercise. Throws std::logic_error when
+  /// the element name is taken.
+  template <class T>
+  void add(std::string_view element, Kind kind, std::string_view doc) {
+    add_info({std::string(element), kind, std::string(doc), {}, current_plugin_, [] { return std::make_unique<T>(); }});
+  }
+  void add_info(ComponentInfo info);
+
+  const ComponentInfo* find(std::string_view element) const;
+  std::vector<const ComponentInfo*> all() const;  ///< by kind, then name
+  std::unique_ptr<Component> create(std::string_view element) const;  ///< with defaults in place; null when unknown
+
+  void set_current_plugin(std::string_view name) { current_plugin_ = name; }
+
+ private:
+  std::map<std::string, ComponentInfo, std::less<>> infos_;
+  std::string current_plugin_ = "core";
+};
+
+/// Registers the elements of core and of every plugin built in, in alphabetical order.
+void register_builtin(Registry& registry);
+
+/// Loads a shared plugin: checks its ABI string before anything else is called. Returns the error text, empty when loaded.
+std::string load_plugin(Registry& registry, const std::filesystem::path& so);
+
+/// ABI identity: version of the public headers, compiler, C++ library, Eigen alignment. Two equal strings may be mixed.
+const char* abi_string();
+
+}  // namespace insula
+
+/// At file scope of a plugin's .cpp: INSULA_PLUGIN(contact) { registry.add<Contact>("contact", ...); }
+#ifdef INSULA_PLUGIN_SHARED
+#define INSULA_PLUGIN(name)                                                                    \
+  static void insula_register_##name(::insula::Registry& registry);                            \
+  extern "C" __attribute__((visibility("default"))) const char* insula_plugin_abi() { return INSULA_ABI_STRING; } \
+  extern "C" __attribute__((visibility("default"))) const char* insula_plugin_name() { return #name; }            \
+  extern "C" __attribute__((visibility("default"))) void insula_plugin_register(::insula::Registry* r) { insula_register_##name(*r); } \
+  static void insula_register_##name(::insula::Registry& registry)
+#else
+#define INSULA_PLUGIN(name) void insula_register_##name(::insula::Registry& registry)
+#endif

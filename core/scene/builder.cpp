@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Elements to components: names, places, parameters, ids.
+#include "core/scene/builder.h"
+
+#include <algorithm>
+
+
+namespace insula {
+namespace {
+
+std::string quoted_list(const std::vector<std::string>& names) {
+  constexpr std::size_t most = 12;
+  if (names.size() <= most) return joined(names);
+  return joined({names.begin(), names.begin() + most}) + ", ...";
+}
+
+bool is_id(std::string_view text) {
+  const auto good = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' || c == '.' ||
+           (static_cast<unsigned char>(c) & 0x80);  // letters of other languages
+  };
+  return !text.empty() && text.size() <= 128 && std::all_of(text.begin(), text.end(), good);
+}
+
+bool may_stand_in(const ComponentInfo& info, Kind parent) {
+  return std::find(info.parents.begin(), info.parents.end(), parent) != info.parents.end();
+}
+
+}  // namespace
+
+void SceneBuilder::report(Component& component, const SourcePos& pos, std::string text) {
+  failed_.insert(&component);
+  diagnostics_.error(pos, std::move(text));
+}
+
+std::unique_ptr<Scene> SceneBuilder::build(const std::filesystem::path& file) {
+  const Element& root = *tree_.root;
+  if (root.name != "scene") {
+    diagnostics_.error(root.pos, root.name == "part" ? "this is a part, which scenes include; the root of a scene is <scene>"
+                                                     : "the root element must be <scene>, not <" + shown(root.name) + ">");
+    return nullptr;
+  }
+  scene_ = std::make_unique<Scene>();
+  for (ParamBase* p : scene_->params()) p->assign_fallback();
+  scene_->element = "scene";
+  scene_->kind = Kind::scene;
+  scene_->pos = root.pos;
+  scene_->order = order_++;
+  scene_->file_ = file;
+  scene_->root_folder_ = tree_.root_folder;
+  scene_->base_folder_ = root.part->path.parent_path();
+  part_of_[scene_.get()] = root.part;
+  read_id(root, *scene_);
+  read_params(root, *scene_);
+  add_children(root, *scene_);
+  for (Component* c : scene_->in_order_) {
+    resolve_references(*c);
+    find_files(*c);
+  }
+  scene_->content_hash_ = tree_.hash.value();
+  prepare_all();
+  return std::move(scene_);
+}
+
+void SceneBuilder::add_children(const Element& element, Component& parent) {
+  for (const auto& child : element.children) add(*child, parent);
+}
+
+void SceneBuilder::add(const Element& element, Component& parent) {
+  const ComponentInfo* info = registry_.find(element.name);
+  if (!info) return unknown_element(element, parent);
+  if (!may_stand_in(*info, parent.kind)) return misplaced(element, *info, parent);
+  if (info->kind == Kind::settings) {
+    for (const auto& other : parent.children)
+      if (other->element == element.name) {
+        diagnostics_.error(element.pos, "<" + element.name + "> may stand only once in a scene; the first is at line " +
+                                            std::to_string(other->pos.line));
+        return lose_ids(element);
+      }
+  }
+  auto owned = registry_.create(element.name);
+  Component& component = *owned;
+  component.pos = element.pos;
+  component.order = order_++;
+  component.parent = &parent;
+  part_of_[&component] = element.part;
+  parent.children.push_back(std::move(owned));
+  scene_->in_order_.push_back(&component);
+  read_id(element, component);
+  read_params(element, component);
+  add_children(element, component);
+}
+
+void SceneBuilder::unknown_element(const Element& element, const Component& parent) {
+  std::vector<std::string> here, anywhere;
+  for (const auto* info : registry_.all()) {
+    anywhere.push_back(info->element);
+    if (may_stand_in(*info, parent.kind)) here.push_back(info->element);
+  }
+  for (const char* name : {"include", "variable"}) here.push_back(name);
+  std::string near = nearest_name(element.name, here);
+  if (near.empty()) near = nearest_name(element.name, anywhere);
+  std::string text = "unknown element <" + shown(element.name) + ">";
+  if (!near.empty())
+    text += "; did you mean <" + near + ">?";
+  else
+    text += " in <" + parent.element + "> (it may hold: " + quoted_list(here) + ")";
+  diagnostics_.error(element.pos, text);
+  lose_ids(element);
+}
+
+void SceneBuilder::misplaced(const Element& element, const ComponentInfo& info, const Component& parent) {
+  std::vector<std::string> places;
+  for (const Kind kind : info.parents) {
+    if (kind == Kind::scene) {
+      places.push_back("directly in <scene>");
+      continue;
+    }
+    std::vector<std::string> names;
+    for (const auto* other : registry_.all())
+      if (other->kind == kind) names.push_back("<" + other->element + ">");
+    places.push_back("in " + with_article(kind_name(kind)) + (names.empty() ? "" : " (" + quoted_list(names) + ")"));
+  }
+  diagnostics_.error(element.pos, "<" + element.name + "> may not stand in <" + parent.element + ">" +
+                                      (places.empty() ? "; it is the root of a scene" : "; it belongs " + joined(places, " or ")));
+  lose_ids(element);
+}
+
+void SceneBuilder::lose_ids(const Element& element) {
+  if (const Attribute* id = element.find("id")) lost_ids_.insert(element.part->prefixes.front() + id->value);
+  for (const auto& child : element.children) lose_ids(*child);
+}
+
+void SceneBuilder::read_id(const Element& element, Component& component) {
+  const int ordinal = ++ordinals_[component.element];
+  component.id = component.element + "#" + std::to_string(ordinal);
+  const Attribute* attribute = element.find("id");
+  if (attribute && !is_id(attribute->value)) {
+    report(component, attribute->value_pos, "id: " + in_quotes(attribute->value) + " may have only letters, digits and . _ -");
+    lost_ids_.insert(element.part->prefixes.front() + attribute->value);
+  } else if (attribute) {
+    const std::string id = element.part->prefixes.front() + attribute->value;
+    if (const Component* other = scene_->find(id)) {
+      report(component, attribute->value_pos, "id " + in_quotes(id) + " is already used at " + other->pos.file + ":" +
+                                                  std::to_string(other->pos.line) + ":" + std::to_string(other->pos.column));
+    } else {
+      component.id = id;
+    }
+  }
+  scene_->by_id_.emplace(component.id, &component);
+}
+
+void SceneBuilder::read_params(const Element& element, Component& component) {
+  std::vector<std::string> names, suggested = element.broken_attributes;
+  for (const ParamBase* p : component.params()) names.push_back(p->name());
+  for (const auto& a : element.attributes) {
+    if (a.name == "id") continue;
+    ParamBase* p = component.find_param(a.name);
+    if (!p) {
+      const std::string near = nearest_name(a.name, names);
+      std::string text = "<" + component.element + "> has no parameter " + in_quotes(a.name);
+      if (!near.empty())
+        text += "; did you mean \"" + near + "\"?";
+      else if (names.empty())
+        text += "; it has none";
+      else
+        text += " (it has: " + quoted_list(names) + ")";
+      report(component, a.name_pos, text);
+      suggested.push_back(near);
+      continue;
+    }
+    if (const std::string error = p->assign(a.value, a.value_pos); !error.empty())
+      report(component, a.value_pos, p->name() + ": " + error);
+  }
+  if (!element.broken_attributes.empty()) failed_.insert(&component);
+  for (const ParamBase* p : component.params()) {
+    if (!p->required() || p->given()) continue;
+    // A mistyped name has been reported as such; saying that the right one is missing would be the same news twice.
+    if (std::find(suggested.begin(), suggested.end(), p->name()) != suggested.end()) continue;
+    report(component, element.pos, "<" + component.element + "> needs parameter \"" + p->name() + "\" (" + p->type_name() +
+                                       ": " + std::string(p->spec().doc) + ")");
+  }
+}
+
+}  // namespace insula

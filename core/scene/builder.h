@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Second half of loading: the expanded tree becomes components, ids are joined, files found, everything prepared.
+#pragma once
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "core/registry/registry.h"
+#include "core/scene/expand.h"
+#include "core/scene/scene.h"
+
+namespace insula {
+
+class SceneBuilder {
+ public:
+  SceneBuilder(const Registry& registry, ExpandedScene& tree, Diagnostics& diagnostics)
+      : registry_(registry), tree_(tree), diagnostics_(diagnostics) {}
+
+  std::unique_ptr<Scene> build(const std::filesystem::path& file);
+
+ private:
+  void add_children(const Element& element, Component& parent);
+  void add(const Element& element, Component& parent);
+  void read_params(const Element& element, Component& component);
+  void read_id(const Element& element, Component& component);
+  void unknown_element(const Element& element, const Component& parent);
+  void misplaced(const Element& element, const ComponentInfo& info, const Component& parent);
+  void lose_ids(const Element& element);
+
+  void resolve_references(Component& component);
+  void unresolved(const RefParamBase& ref, const std::string& id);
+  /// The component that `id` means in that part of the scene, with the prefixes of its includes.
+  Component* lookup(const ScenePart& part, const std::string& id, bool& lost) const;
+  void find_files(Component& component);
+
+  void prepare_all();
+  void prepare(Component& component);
+  void prepare_tree(Component& component);
+
+  void report(Component& component, const SourcePos& pos, std::string text);
+
+  const Registry& registry_;
+  ExpandedScene& tree_;
+  Diagnostics& diagnostics_;
+  std::unique_ptr<Scene> scene_;
+  std::map<const Component*, const ScenePart*> part_of_;
+  std::set<const Component*> failed_, prepared_;
+  std::map<std::string, int> ordinals_;
+  std::set<std::string> lost_ids_;  ///< of elements that could not be built: naming them is no second mistake
+  int order_ = 0;
+};
+
+}  // namespace insula

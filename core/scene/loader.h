@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From a scene file to checked components.
+//
+// Everything that is wrong is found and reported together, in order of file and position; a scene comes out only when
+// nothing is. No exception leaves these functions, whatever the file holds.
+#pragma once
+#include <filesystem>
+#include <memory>
+#include <string_view>
+
+#include "core/base/diagnostic.h"
+#include "core/registry/registry.h"
+#include "core/scene/scene.h"
+
+namespace insula {
+
+struct LoadResult {
+  std::unique_ptr<Scene> scene;  ///< null when diagnostics has an error
+  Diagnostics diagnostics;
+
+  bool ok() const { return scene != nullptr; }
+};
+
+LoadResult load_scene(const std::filesystem::path& file, const Registry& registry);
+
+/// The same for a text; relative paths in it are read from the folder of `virtual_path`, which need not exist.
+LoadResult load_scene_text(std::string_view text, const std::filesystem::path& virtual_path, const Registry& registry);
+
+}  // namespace insula

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Things that happen once, in the order they happened.
+#pragma once
+#include <string>
+#include <vector>
+
+namespace insula {
+
+struct Event {
+  std::string kind;   ///< "goal", "fault", "strand_cut", "message", "end", "reset", "warning"
+  std::string id;     ///< of the component, goal or fault
+  std::string text;   ///< for the trainee
+  double value = 0;   ///< SI, as the kind says
+  double time = 0;    ///< simulated time, s
+};
+
+class EventSink {
+ public:
+  void emit(Event e) { events_.push_back(std::move(e)); }
+  const std::vector<Event>& events() const { return events_; }
+  void clear() { events_.clear(); }
+
+ private:
+  std::vector<Event> events_;
+};
+
+}  // namespace insula

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Book-keeping of an exercise.
+#include "core/sim/exercise.h"
+
+#include <nlohmann/json.hpp>
+
+namespace insula {
+
+int ExerciseLog::add_goal(std::string id, std::string text, bool required) {
+  goals_.push_back({std::move(id), std::move(text), false, -1, required});
+  return int(goals_.size()) - 1;
+}
+
+int ExerciseLog::add_fault(std::string id, std::string text) {
+  faults_.push_back({std::move(id), std::move(text), 0, -1});
+  return int(faults_.size()) - 1;
+}
+
+void ExerciseLog::goal(int index, double time) {
+  GoalState& g = goals_[std::size_t(index)];
+  if (g.done || state_ != ExerciseState::running) return;
+  g.done = true;
+  g.time = time;
+  events.emit({"goal", g.id, g.text, 0, time});
+  for (const GoalState& other : goals_)
+    if (other.required && !other.done) return;
+  state_ = ExerciseState::done;
+  end_time_ = time;
+  events.emit({"end", "done", "Exercise complete", 0, time});
+}
+
+void ExerciseLog::fault(int index, double time, double value) {
+  if (state_ != ExerciseState::running) return;
+  FaultState& f = faults_[std::size_t(index)];
+  ++f.count;
+  f.last_time = time;
+  message_ = f.text;
+  events.emit({"fault", f.id, f.text, value, time});
+}
+
+void ExerciseLog::message(std::string text, double time) {
+  message_ = text;
+  events.emit({"message", "", std::move(text), 0, time});
+}
+
+void ExerciseLog::fail(std::string why, double time) {
+  if (state_ != ExerciseState::running) return;
+  state_ = ExerciseState::failed;
+  message_ = why;
+  end_time_ = time;
+  events.emit({"end", "failed", std::move(why), 0, time});
+}
+
+void ExerciseLog::reset() {
+  for (GoalState& g : goals_) {
+    g.done = false;
+    g.time = -1;
+  }
+  for (FaultState& f : faults_) {
+    f.count = 0;
+    f.last_time = -1;
+  }
+  state_ = ExerciseState::running;
+  message_.clear();
+  end_time_ = -1;
+  events.clear();
+}
+
+void Exercise::connect(PrepareContext& context, const Simulation& simulation) {
+  rules_ = children_of<ExerciseRule>();
+  for (ExerciseRule* r : rules_) r->declare(context, simulation, log_);
+}
+
+void Exercise::observe(const StepReport& report) {
+  for (ExerciseRule* r : rules_) r->observe(report, log_);
+}
+
+void Exercise::reset() {
+  log_.reset();
+  for (ExerciseRule* r : rules_) r->reset();
+}
+
+std::string Exercise::hud_json(const StepReport& report) const {
+  nlohmann::json j;
+  j["goals"] = nlohmann::json::array();
+  for (const GoalState& g : log_.goals()) j["goals"].push_back({{"id", g.id}, {"text", g.text}, {"done", g.done}});
+  j["faults"] = nlohmann::json::array();
+  for (const FaultState& f : log_.faults()) j["faults"].push_back({{"id", f.id}, {"text", f.text}, {"count", f.count}});
+  j["strands_left"] = report.strands_left;
+  j["strands_total"] = report.strands_total;
+  j["message"] = log_.last_message();
+  j["state"] = log_.state() == ExerciseState::running ? "running" : log_.state() == ExerciseState::done ? "done" : "failed";
+  j["elapsed_s"] = log_.end_time() >= 0 ? log_.end_time() : report.time;
+  return j.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+}  // namespace insula

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A scripted two-hand motion: poses of the hands over time, read from CSV.
+#pragma once
+#include <array>
+#include <filesystem>
+#include <string_view>
+#include <vector>
+
+#include "core/base/math.h"
+
+namespace insula {
+
+/// What a hand does at one moment: device pose in the scene frame (m) and the device's two buttons.
+struct HandSample {
+  Pose pose;
+  bool button1 = false;
+  bool button2 = false;
+};
+
+/// Keys of both hands in rising time. Positions are interpolated linearly, rotations by slerp the short way round;
+/// buttons keep the value of the last key. Outside its keys a hand stays at the first or the last one.
+class Motion {
+ public:
+  struct Key {
+    double time_s = 0;
+    HandSample sample;
+  };
+
+  /// Appends a key; the time must be later than that hand's last one. hand: 0 left, 1 right.
+  /// Throws InputError otherwise.
+  void add(int hand, const Key& key);
+
+  bool has(int hand) const { return hand >= 0 && hand < 2 && !keys_[std::size_t(hand)].empty(); }
+  bool empty() const { return !has(0) && !has(1); }
+  /// State of the hand at t (s). A hand without keys gives the identity pose. Neither allocates nor throws.
+  HandSample at(int hand, double t) const noexcept;
+  /// Time of the latest key, 0 when empty.
+  double duration() const;
+  /// Corners of the box that holds all positions of a hand; false when it has none.
+  bool bounds(int hand, Vec3& low, Vec3& high) const;
+  const std::vector<Key>& keys(int hand) const { return keys_[std::size_t(hand)]; }
+
+ private:
+  std::array<std::vector<Key>, 2> keys_;
+};
+
+/// Reads `time_s,hand,px_m,py_m,pz_m,qw,qx,qy,qz,button1,button2` (the header line is required; hand is left or right;
+/// buttons are 0 or 1). Throws InputError "file:line: error: text" at the first line that is wrong.
+Motion load_motion(const std::filesystem::path& path);
+/// The same from text; `name` stands for the file in messages.
+Motion parse_motion(std::string_view text, std::string_view name);
+
+}  // namespace insula

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What one step did, as plain data: read by exercise rules, the recorder, the publisher and the report writer.
+#pragma once
+#include <array>
+#include <string>
+#include <vector>
+
+#include "core/constraint/solve.h"
+#include "core/sim/events.h"
+
+namespace insula {
+
+class Body;
+class Component;
+
+enum Stage { stage_free_motion, stage_collision, stage_build, stage_solve, stage_correct, stage_publish, stage_count };
+
+struct ContactPoint {
+  const Body* a = nullptr;   ///< pushed along +normal
+  const Body* b = nullptr;   ///< pushed along -normal
+  Vec3 position = Vec3::Zero();
+  Vec3 normal = Vec3::Zero();
+  double gap = 0;            ///< start of step, m
+  double normal_force = 0;   ///< N
+  Vec3 tangent_force = Vec3::Zero();  ///< on a, N
+};
+
+struct StrandState {
+  Vec3 a = Vec3::Zero(), b = Vec3::Zero();  ///< end points, scene frame
+  double health = 1;    ///< 1 whole, 0 about to part, -1 parted
+  double tension = 0;   ///< N
+};
+
+struct ToolReport {
+  const Body* tool = nullptr;
+  int hand = 0;
+  Vec6 hand_force = Vec6::Zero();   ///< coupling force and torque on the hand
+  double contact_force = 0;         ///< norm of the sum of its contact forces, N
+};
+
+struct StepReport {
+  double time = 0;   ///< at the end of the step, s
+  double h = 0;
+  std::int64_t step = 0;
+  int rows = 0;
+  SolveStats solve;
+  double energy = 0; ///< J
+  std::vector<ContactPoint> contacts;
+  std::vector<StrandState> strands;  ///< all sets in document order
+  int strands_total = 0, strands_left = 0;
+  std::vector<ToolReport> tools;
+  std::array<double, stage_count> stage_ms{};
+  double step_ms = 0;
+  std::vector<Event> events;         ///< of this step, before the exercise speaks
+  bool finite = true;
+  void clear();
+};
+
+}  // namespace insula

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Scene-wide settings: the nonlinear solver and the first look at the field.
+#pragma once
+#include "core/registry/component.h"
+
+namespace insula {
+
+class SolverSettings final : public Component {
+ public:
+  static constexpr std::string_view kind_name = "settings";
+  Param<int> max_sweeps{this, {.name = "max_sweeps", .fallback = "100", .min = "1", .max = "10000", .doc = "most Gauss-Seidel sweeps a step"}};
+  Param<Length> tolerance{this, {.name = "tolerance", .fallback = "1e-9 m", .min = "1e-15 m", .max = "1e-3 m", .doc = "a sweep that moves no row by more than this is the last"}};
+};
+
+class ViewSettings final : public Component {
+ public:
+  static constexpr std::string_view kind_name = "settings";
+  Param<Vec<Length>> eye{this, {.name = "eye", .doc = "where the microscope stands"}};
+  Param<Vec<Length>> target{this, {.name = "target", .doc = "what it looks at"}};
+  Param<Vec<Scalar>> up{this, {.name = "up", .fallback = "0 0 1", .doc = "direction that is up in the picture"}};
+  Param<Angle> field_of_view{this, {.name = "field_of_view", .fallback = "20 deg", .min = "1 deg", .max = "120 deg", .doc = "vertical opening angle"}};
+};
+
+}  // namespace insula

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Everything of one run: the scene's bodies and constraints, stepped. Several may live in one program.
+//
+// One step: free motion per body (parallel) -> collision -> rows -> W = sum_b H_b A_b^-1 H_b^T (parallel) -> solve ->
+// corrective motion (parallel) -> report -> exercise. Order everywhere is document order, so the same scene and the same
+// hands give the same bits for any number of threads.
+#pragma once
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/base/workers.h"
+#include "core/constraint/constraint.h"
+#include "core/mechanics/instrument.h"
+#include "core/mechanics/surface.h"
+#include "core/scene/scene.h"
+#include "core/sim/exercise.h"
+#include "core/sim/report.h"
+#include "core/sim/settings.h"
+
+namespace insula {
+
+class Registry;
+
+class Simulation {
+ public:
+  /// Connects the scene's components; what does not fit is reported. threads: 0 takes the machine's.
+  Simulation(std::unique_ptr<Scene> scene, Diagnostics& diagnostics, int threads = 0);
+  ~Simulation();
+
+  /// What a hand asks for at the end of the coming step (0 left, 1 right).
+  void set_hand(int hand, const HandState& state);
+  void step();
+  /// Back to the start, to the same bits.
+  void reset();
+
+  const Scene& scene() const { return *scene_; }
+  double h() const { return context_.h; }
+  double time() const { return context_.time; }
+  std::int64_t steps() const { return context_.step; }
+  const StepReport& report() const { return report_; }
+  /// The last step's problem with its solution as warm start: what the haptic server gets.
+  const ConstraintProblem& problem() const { return problem_; }
+  const std::vector<Body*>& bodies() const { return bodies_; }            ///< instruments included, document order
+  const std::vector<Instrument*>& instruments() const { return instruments_; }
+  const std::vector<Surface*>& surfaces() const { return surfaces_; }
+  const std::vector<Constraint*>& constraints() const { return constraints_; }
+  Exercise* exercise() const { return exercise_; }                        ///< null when the scene has none
+  const ViewSettings* view() const { return view_; }
+  Instrument* instrument_of(int hand) const;
+  Workers& workers() { return workers_; }
+  /// Events of the last step: constraints' first, then the exercise's.
+  const std::vector<Event>& events() const { return events_; }
+  /// FNV-1a over the bits of every body's and constraint's state.
+  std::uint64_t state_hash() const;
+
+ private:
+  void warm_start();
+  void remember_solution();
+  void make_report();
+
+  std::unique_ptr<Scene> scene_;
+  Workers workers_;
+  std::vector<Body*> bodies_;
+  std::vector<Body*> heavy_first_;  ///< the same, by degrees of freedom: evens out the threads
+  std::vector<Instrument*> instruments_;
+  std::vector<Surface*> surfaces_;
+  std::vector<Constraint*> constraints_;
+  Exercise* exercise_ = nullptr;
+  const ViewSettings* view_ = nullptr;
+  SolveSettings solve_settings_;
+  StepContext context_;
+  EventSink sink_;
+  std::vector<Event> events_;
+  ConstraintProblem problem_;
+  std::unique_ptr<ConstraintBuilder> builder_;
+  SolveWorkspace workspace_;
+  struct Remembered {
+    std::uint64_t id;
+    int rows;
+    std::array<double, 3> lambda;
+  };
+  std::vector<Remembered> remembered_;
+  StepReport report_;
+};
+
+struct SimulationResult {
+  std::unique_ptr<Simulation> simulation;  ///< null when diagnostics has an error
+  Diagnostics diagnostics;
+};
+/// Loads, prepares and connects a scene.
+SimulationResult load_simulation(const std::filesystem::path& file, const Registry& registry, int threads = 0);
+SimulationResult load_simulation_text(std::string_view text, const std::filesystem::path& virtual_path, const Registry& registry, int threads = 0);
+
+}  // namespace insula

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The commands of the program `insula` that need no running simulation. Each returns the exit status: 0 well, 1 the
+// system's fault (a file that cannot be written), 2 the input's.
+#pragma once
+#include <filesystem>
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+#include "core/registry/registry.h"
+
+namespace insula {
+
+struct CommandContext {
+  const Registry& registry;
+  std::ostream& out;
+  std::ostream& err;
+};
+
+/// Loads each scene; prints one line per good one to `out`, everything wrong to `err`.
+int cmd_check(const CommandContext& context, const std::vector<std::filesystem::path>& files);
+/// All elements by kind, one line each.
+int cmd_list(const CommandContext& context);
+/// One element: where it stands, its parameters.
+int cmd_describe(const CommandContext& context, const std::string& element);
+/// The XML schema (XSD 1.0) for editors, to a file, or to `out` when the path is empty or "-".
+int cmd_schema(const CommandContext& context, const std::filesystem::path& file);
+/// A Markdown page per element and an index into a folder. With `plugin_folder`, a plugin's example.xml is shown.
+int cmd_docs(const CommandContext& context, const std::filesystem::path& folder, const std::filesystem::path& plugin_folder = {});
+
+}  // namespace insula

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Words for what a component declares, shared by list, describe, schema and docs.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "core/registry/registry.h"
+
+namespace insula {
+
+/// "1 Pa to 1 GPa", "at least 1 Pa", "left, right", or empty.
+std::string allowed_text(const ParamBase& param);
+/// "2100 Pa", "(required)", "(none)".
+std::string default_text(const ParamBase& param);
+/// "directly in <scene>", "in a body: <obstacle>, <soft_body>".
+std::string place_text(const Registry& registry, const ComponentInfo& info);
+/// Elements that may stand in a component of that kind, by kind and name.
+std::vector<const ComponentInfo*> children_of_kind(const Registry& registry, Kind parent);
+/// The units as an author may write them, "Pa, kPa, MPa, mmHg", or empty.
+std::string units_text(const ParamBase& param);
+
+}  // namespace insula

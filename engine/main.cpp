@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The program `insula`: one subcommand each for what can be done with scenes.
+#include <CLI/CLI.hpp>
+
+#include <functional>
+#include <iostream>
+
+#include "core/registry/plugin_loader.h"
+#include "core/registry/registry.h"
+#include "engine/commands.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Built-in elements, then the installation's plugins, then those of --plugin-path. Exit status 2 on the first bad one.
+int fill_registry(insula::Registry& registry, const std::vector<fs::path>& plugin_paths) {
+  insula::register_builtin(registry);
+  std::vector<fs::path> files = insula::plugin_files(insula::installed_plugin_folder());
+  for (const auto& path : plugin_paths) {
+    if (!fs::is_directory(path)) {
+      files.push_back(path);
+      continue;
+    }
+    const auto found = insula::plugin_files(path);
+    files.insert(files.end(), found.begin(), found.end());
+  }
+  int status = 0;
+  for (const auto& file : files) {
+    const std::string error = insula::load_plugin(registry, file);
+    if (error.empty()) continue;
+    std::cerr << "error: " << error << '\n';
+    status = 2;
+  }
+  return status;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Insula: aneurysm surgery with two-handed haptics", "insula"};
+  app.require_subcommand(1);
+  std::vector<fs::path> plugin_paths;
+  app.add_option("--plugin-path", plugin_paths, "folder of shared plugins, or one plugin (may be given more than once)")
+      ->allow_extra_args(false);
+
+  std::vector<fs::path> files;
+  std::string element;
+  fs::path output, folder, plugin_folder;
+  std::function<int(const insula::CommandContext&)> run;
+
+  auto* check = app.add_subcommand("check", "read scenes and report everything that is wrong with them");
+  check->add_option("scene", files, "scene files")->required();
+  check->callback([&] { run = [&](const auto& c) { return insula::cmd_check(c, files); }; });
+
+  auto* list = app.add_subcommand("list", "all elements a scene may hold");
+  list->callback([&] { run = [](const auto& c) { return insula::cmd_list(c); }; });
+
+  auto* describe = app.add_subcommand("describe", "one element and its parameters");
+  describe->add_option("name", element, "element name")->required();
+  describe->callback([&] { run = [&](const auto& c) { return insula::cmd_describe(c, element); }; });
+
+  auto* schema = app.add_subcommand("schema", "XML schema of scene files, for editors");
+  schema->add_option("-o,--output,file", output, "file to write (default: standard output)");
+  schema->callback([&] { run = [&](const auto& c) { return insula::cmd_schema(c, output); }; });
+
+  auto* docs = app.add_subcommand("docs", "reference pages of all elements, in Markdown");
+  docs->add_option("-o,--output,folder", folder, "folder to write to")->required();
+  docs->add_option("--plugins", plugin_folder, "folder of plugin sources, for their examples");
+  docs->callback([&] { run = [&](const auto& c) { return insula::cmd_docs(c, folder, plugin_folder); }; });
+
+  // --- commands that run a simulation are added here ---
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    const int status = app.exit(e);
+    return status == 0 ? 0 : 2;
+  }
+  try {
+    insula::Registry registry;
+    if (const int status = fill_registry(registry, plugin_paths)) return status;
+    return run({registry, std::cout, std::cerr});
+  } catch (const std::exception& e) {
+    std::cerr << "error: " << e.what() << '\n';
+    return 1;
+  }
+}

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Nothing that runs in the servo thread allocates: every operator new of this program counts.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <atomic>
+#include <cstdlib>
+#include <new>
+#include <vector>
+
+#include "haptic_server/devices/make_device.h"
+#include "haptic_server/hand_guide.h"
+#include "haptic_server/in_process.h"
+#include "haptic_server/safety_gate.h"
+#include "haptic_server/servo.h"
+#include "haptic_server/test_problem.h"
+
+namespace {
+std::atomic<long> allocations{0};
+
+void* counted(std::size_t size) {
+  allocations.fetch_add(1, std::memory_order_relaxed);
+  if (void* p = std::malloc(size ? size : 1)) return p;
+  throw std::bad_alloc();
+}
+void* counted_aligned(std::size_t size, std::align_val_t alignment) {
+  allocations.fetch_add(1, std::memory_order_relaxed);
+  const std::size_t a = std::size_t(alignment);
+  if (void* p = std::aligned_alloc(a, (size + a - 1) / a * a)) return p;
+  throw std::bad_alloc();
+}
+}  // namespace
+
+void* operator new(std::size_t size) { return counted(size); }
+void* operator new[](std::size_t size) { return counted(size); }
+void* operator new(std::size_t size, std::align_val_t a) { return counted_aligned(size, a); }
+void* operator new[](std::size_t size, std::align_val_t a) { return counted_aligned(size, a); }
+void operator delete(void* p) noexcept { std::free(p); }
+void operator delete[](void* p) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+void operator delete[](void* p, std::size_t) noexcept { std::free(p); }
+void operator delete(void* p, std::align_val_t) noexcept { std::free(p); }
+void operator delete[](void* p, std::align_val_t) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t, std::align_val_t) noexcept { std::free(p); }
+void operator delete[](void* p, std::size_t, std::align_val_t) noexcept { std::free(p); }
+
+namespace insula {
+namespace {
+
+TEST(Allocation, TheCounterCounts) {
+  const long before = allocations.load();
+  std::vector<double>* v = new std::vector<double>(100);
+  EXPECT_GE(allocations.load() - before, 2);
+  delete v;
+}
+
+TEST(Allocation, TheServoDoesNone) {
+  const std::array<ConstraintProblem, 3> problems{testing::two_tool_problem(10, 20, 1), testing::two_tool_problem(60, 60, 2),
+                                                  testing::two_tool_problem(30, 40, 3)};
+  Servo servo;
+  ServoInput in;
+  for (std::size_t i = 0; i < 2; ++i) {
+    in.device[i] = problems[0].tools[i].device;
+    in.connected[i] = true;
+  }
+  double sum = 0;
+  const long before = allocations.load();
+  for (std::size_t k = 0; k < 30; ++k) {  // problems of changing size, from the very first tick on
+    servo.set_problem(&problems[k % 3]);
+    for (int tick = 0; tick < 4; ++tick) {
+      in.device[0].p.z() -= 1e-5;
+      sum += servo.tick(in).hand[0].force.norm();
+    }
+    if (k % 7 == 6) servo.set_problem(nullptr);
+  }
+  EXPECT_EQ(allocations.load() - before, 0);
+  EXPECT_GT(sum, 0);
+}
+
+TEST(Allocation, DevicesGatesAndGuidesDoNone) {
+  Motion motion;
+  motion.add(0, {0, {Pose{Vec3(0, 0, 0), Quat::Identity()}, false, false}});
+  motion.add(0, {1, {Pose{Vec3(0.01, 0, 0), from_rotation_vector(Vec3(0, 0, 1))}, true, false}});
+  DeviceChoice choice = make_device("simulated", 0);
+  SafetyGate gate(choice.device->profile());
+  HandGuide guide;
+  MotionClock clock;
+  choice.device->place(Pose(), Vec3::Zero(), choice.device->profile().workspace_m);
+  guide.place(Pose());
+  const long before = allocations.load();
+  for (int tick = 0; tick < 1000; ++tick) {
+    choice.device->guide(guide.advance(1e-3, motion.at(0, clock.advance(1e-3))));
+    choice.device->advance(1e-3);
+    const DeviceReading r = choice.device->read();
+    gate.apply(1e-3, true, -300 * r.pose.p, Vec3::Zero());
+    choice.device->write(gate.force(), gate.torque());
+    if (tick % 16 == 0) clock.step_arrived(1e-3 * tick, 0.016);
+    if (tick == 700) guide.take_over(HandSample{});
+  }
+  EXPECT_EQ(allocations.load() - before, 0);
+}
+
+TEST(Allocation, TheInProcessTickDoesNone) {
+  const ConstraintProblem p = testing::two_tool_problem(20, 60);
+  std::array<HandHome, 2> home;
+  for (std::size_t i = 0; i < 2; ++i) home[i] = {true, p.tools[i].device};
+  InProcessHaptics haptics(Motion(), home);
+  haptics.set_problem(p);
+  haptics.set_problem(p);  // both copies have their size
+  const long before = allocations.load();
+  haptics.advance(100);
+  EXPECT_EQ(allocations.load() - before, 0);
+}
+
+}  // namespace
+}  // namespace insula

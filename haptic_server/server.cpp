@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The servo thread's side of the haptic server.
+#include "haptic_server/server.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace insula {
+namespace {
+
+constexpr double longest_arm_step_s = 0.02;
+/// Simulated time up to which a scene counts as just begun.
+constexpr double beginning_s = 0.25;
+
+bool finite(const Pose& pose) {
+  return pose.p.allFinite() && pose.q.coeffs().allFinite() && std::abs(pose.q.squaredNorm() - 1) < 1e-3;
+}
+
+/// The device pose that the problem was built with; false when it has no tool of this hand.
+bool device_in_problem(const HapticUpdate& update, int hand, Pose& pose) {
+  for (std::size_t t = 0; t < update.problem.tools.size() && t < 2; ++t) {
+    const ToolTerms& tool = update.problem.tools[t];
+    if (tool.hand != hand) continue;
+    pose.q = tool.device.q * update.offset[t].q.conjugate();
+    pose.p = tool.device.p - pose.q * update.offset[t].p;
+    return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+HapticServer::Hand::Hand(DeviceChoice choice)
+    : device(std::move(choice.device)), source(choice.source), gate(device->profile()) {}
+
+HapticServer::HapticServer(Bus& bus, std::array<DeviceChoice, 2> devices, const Clock& clock, ServerOptions options)
+    : bus_(bus),
+      clock_(clock),
+      options_(std::move(options)),
+      run_(clock.now_ns() / 1000),
+      servo_(options_.servo),
+      hands_{Hand(std::move(devices[0])), Hand(std::move(devices[1]))},
+      status_start_ns_(clock.now_ns()) {
+  bus_.subscribe(channel::haptic_problem, [this](Bytes b) { on_problem(b); });
+  bus_.subscribe(channel::scene_info, [this](Bytes b) { on_scene(b); });
+  bus_.subscribe(channel::hand_input, [this](Bytes b) { on_input(b); });
+}
+
+const Motion* HapticServer::motion() const noexcept {
+  if (options_.motion) return &*options_.motion;
+  return setup_ && setup_->session == session_ ? &setup_->motion : nullptr;
+}
+
+void HapticServer::take_problem(std::int64_t now) noexcept {
+  if (!problems_.pending()) return;
+  servo_.set_problem(nullptr);  // keeps the solution; the old problem's memory goes back to the receiving thread
+  problems_.update();
+  const Received& r = problems_.front();
+  const HapticUpdate& u = r.update;
+  const bool new_session = !has_problem_ || u.session != session_;
+  const bool back_in_time = !new_session && u.sim_time_s < last_sim_time_ - 1e-9;
+  if (new_session || back_in_time) {
+    servo_.reset();
+    session_ = u.session;
+    session_start_ns_ = now;
+    fresh_start_ = u.sim_time_s < beginning_s;
+    motion_clock_.reset(u.sim_time_s);
+    for (Hand& hand : hands_) hand.placed = false;
+  }
+  servo_.set_problem(&u.problem, u.offset);
+  if (u.sim_time_s > last_sim_time_ || new_session || back_in_time) motion_clock_.step_arrived(u.sim_time_s, u.step_s);
+  last_sim_time_ = u.sim_time_s;
+  has_problem_ = true;
+}
+
+void HapticServer::take_wishes() noexcept {
+  inputs_.update();
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Wish& wish = inputs_.front()[i];
+    Hand& hand = hands_[i];
+    if (wish.count == hand.wishes_seen) continue;
+    hand.wishes_seen = wish.count;
+    if (hand.placed && hand.source != HandSource::person) hand.guide.take_over(wish.sample);
+  }
+}
+
+void HapticServer::place_hands(std::int64_t now) noexcept {
+  if (!has_problem_) return;
+  const HapticUpdate& update = problems_.front().update;
+  const bool setup_known = setup_ && setup_->session == session_;
+  if (!setup_known && double(now - session_start_ns_) * 1e-9 < setup_patience_s) return;
+  for (std::size_t i = 0; i < 2; ++i) {
+    Hand& hand = hands_[i];
+    if (hand.placed || !hand.device->simulated()) continue;
+    Pose here;
+    const bool in_problem = device_in_problem(update, int(i), here);
+    const bool has_home = setup_known && setup_->has_home[i];
+    if (!in_problem && !has_home) continue;  // the scene has no such hand
+    hand.home.pose = has_home ? setup_->home[i] : here;
+    const Motion* script = hand.source == HandSource::motion_or_viewer ? motion() : nullptr;
+    if (script && !script->has(int(i))) script = nullptr;
+    Pose start = hand.home.pose;
+    if (script) start = script->at(int(i), motion_clock_.time()).pose;
+    if (!fresh_start_ && in_problem) start = here;
+    if (!finite(start)) continue;
+    Vec3 centre, extent;
+    lay_workspace(script, int(i), hand.home.pose.p, hand.device->profile().workspace_m, centre, extent);
+    hand.device->place(start, centre, extent);
+    hand.guide.place(start);
+    hand.placed = true;
+  }
+}
+
+bool HapticServer::live(const ServoHand& hand, std::int64_t now) const noexcept {
+  if (stopping_.load(std::memory_order_relaxed) || !last_.solved || !hand.valid) return false;
+  const Received& r = problems_.front();
+  const std::int64_t stale_ns = std::int64_t(SafetyGate::stale_after_s * 1e9);
+  // By arrival and by the engine's own stamp: a queue that drains late must not pass for a living engine.
+  return now - r.receive_ns <= stale_ns && now - r.update.time_us * 1000 <= stale_ns;
+}
+
+void HapticServer::tick(std::int64_t due_ns, std::int64_t missed) noexcept {
+  const std::int64_t now = clock_.now_ns();
+  const double dt = last_tick_ns_ == 0 ? options_.period_s : double(now - last_tick_ns_) * 1e-9;
+  last_tick_ns_ = now;
+  missed_.fetch_add(missed, std::memory_order_relaxed);
+  TickSample sample;
+  sample.lateness_us = float(std::max<std::int64_t>(0, now - due_ns)) * 1e-3f;
+
+  setup_ = setups_.take();
+  take_problem(now);
+  place_hands(now);
+  take_wishes();
+
+  const double arm_dt = std::clamp(dt, 0.0, longest_arm_step_s);
+  const double script_time = motion_clock_.advance(arm_dt);
+  ServoInput input;
+  for (std::size_t i = 0; i < 2; ++i) {
+    Hand& hand = hands_[i];
+    if (hand.placed) {
+      const Motion* script = hand.source == HandSource::motion_or_viewer ? motion() : nullptr;
+      const HandSample wish = script && script->has(int(i)) ? script->at(int(i), script_time) : hand.home;
+      hand.device->guide(hand.guide.advance(arm_dt, wish));
+      hand.device->advance(arm_dt);
+    }
+    hand.reading = hand.device->read();
+    if (!finite(hand.reading.pose)) hand.reading = DeviceReading{};
+    // An arm that waits for its place is at no place at all.
+    if (hand.device->simulated() && !hand.placed) hand.reading.connected = false;
+    input.device[i] = hand.reading.pose;
+    input.connected[i] = hand.reading.connected;
+  }
+
+  const std::int64_t before = clock_.now_ns();
+  last_ = servo_.tick(input);
+  sample.solve_us = float(clock_.now_ns() - before) * 1e-3f;
+  sample.solved = last_.solved;
+  sample.sweeps = std::int16_t(last_.stats.sweeps);
+  sample.rows = std::int16_t(last_.rows);
+  sample.residual_m = float(last_.stats.residual_m);
+
+  bool quiet = true;
+  for (std::size_t i = 0; i < 2; ++i) {
+    Hand& hand = hands_[i];
+    const ServoHand& wanted = last_.hand[i];
+    const bool alive = live(wanted, now);
+    hand.gate.apply(dt, alive, wanted.force, wanted.torque);
+    hand.device->write(hand.gate.force(), hand.gate.torque());
+    sample.fresh[i] = alive && wanted.force != hand.last_force;
+    hand.last_force = wanted.force;
+    quiet = quiet && hand.gate.force().isZero(0) && hand.gate.torque().isZero(0);
+  }
+  quiet_.store(quiet, std::memory_order_relaxed);
+  samples_.push(sample);
+  leave_snapshot(now);
+}
+
+void HapticServer::leave_snapshot(std::int64_t now) noexcept {
+  Snapshot& s = snapshots_.back();
+  s.time_ns = now;
+  s.receive_ns = has_problem_ ? problems_.front().receive_ns : 0;
+  for (std::size_t i = 0; i < 2; ++i) {
+    s.reading[i] = hands_[i].reading;
+    s.force[i] = hands_[i].gate.force();
+    s.torque[i] = hands_[i].gate.torque();
+    s.in_range[i] = !last_.solved || !hands_[i].reading.connected || last_.hand[i].valid;
+  }
+  snapshots_.publish();
+}
+
+}  // namespace insula

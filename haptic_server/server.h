@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The haptic server without its threads: messages in, ticks, messages out, each for a thread of its own.
+#pragma once
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/bus/bus.h"
+#include "core/bus/codec.h"
+#include "haptic_server/clock.h"
+#include "haptic_server/devices/make_device.h"
+#include "haptic_server/hand_guide.h"
+#include "haptic_server/safety_gate.h"
+#include "haptic_server/sample_ring.h"
+#include "haptic_server/scene_setup.h"
+#include "haptic_server/servo.h"
+#include "haptic_server/status.h"
+#include "haptic_server/triple_buffer.h"
+
+namespace insula {
+
+struct ServerOptions {
+  ServoSettings servo;
+  double period_s = 1e-3;
+  /// Instead of the scene's motion: this one (may be empty: none).
+  std::optional<Motion> motion;
+  bool realtime = false;   ///< what HAPTIC_STATUS says about the servo's scheduling
+  std::string advice;      ///< shown in HAPTIC_STATUS when nothing more urgent is to be said
+};
+
+/// Three threads meet here without locks: `receive` in one, `tick` in the servo thread, `publish_*` in a third.
+/// Messages: in HAPTIC_PROBLEM, SCENE_INFO, HAND_INPUT; out DEVICE_STATE, HAPTIC_STATUS.
+///
+/// A new engine (session) or a simulated time that goes back puts simulated arms at the start of the motion (or at home)
+/// and hands them back to the script. A server that comes into a running scene starts its arms where the engine has the
+/// tools and walks to the motion from there.
+class HapticServer {
+ public:
+  HapticServer(Bus& bus, std::array<DeviceChoice, 2> devices, const Clock& clock, ServerOptions options = {});
+
+  /// Receiving thread: handles what has arrived, waiting at most timeout_ms for a first message.
+  int receive(int timeout_ms);
+
+  /// Servo thread: one tick, due at `due_ns` of the clock; `missed` ticks were skipped before it.
+  void tick(std::int64_t due_ns, std::int64_t missed = 0) noexcept;
+
+  /// Publishing thread: the newest DEVICE_STATE, if there was a tick since the last one.
+  bool publish_state();
+  /// Publishing thread, once a second: HAPTIC_STATUS over the time since the last call.
+  const insula_lcm::haptic_status_t& publish_status();
+  /// Publishing thread, often enough (every 100 ms): takes the ticks' samples over.
+  void collect();
+
+  /// Any thread: from now on forces go to zero, and stay there.
+  void begin_stop() { stopping_.store(true, std::memory_order_relaxed); }
+  /// Any thread: the last forces sent were zero.
+  bool quiet() const { return quiet_.load(std::memory_order_relaxed); }
+
+  /// Servo thread, or after it has ended.
+  const Vec3& force(int hand) const { return hands_[std::size_t(hand)].gate.force(); }
+  const DeviceReading& reading(int hand) const { return hands_[std::size_t(hand)].reading; }
+  const ServoResult& last() const { return last_; }
+  std::int64_t messages_refused() const { return refused_.load(std::memory_order_relaxed); }
+
+  /// After this time without SCENE_INFO of a session its arms start without it.
+  static constexpr double setup_patience_s = 1.3;
+
+ private:
+  struct Received {
+    HapticUpdate update;
+    std::int64_t receive_ns = 0;
+  };
+  struct Wish {
+    HandSample sample;
+    std::int64_t count = 0;
+  };
+  struct Hand {
+    explicit Hand(DeviceChoice choice);
+    std::unique_ptr<Device> device;
+    HandSource source;
+    SafetyGate gate;
+    HandGuide guide;
+    DeviceReading reading;
+    HandSample home;
+    bool placed = false;
+    std::int64_t wishes_seen = 0;
+    Vec3 last_force = Vec3::Zero();
+  };
+  struct Snapshot {
+    std::int64_t time_ns = 0;
+    std::int64_t receive_ns = 0;  ///< of the newest problem, 0: none
+    std::array<DeviceReading, 2> reading;
+    std::array<Vec3, 2> force{Vec3::Zero(), Vec3::Zero()}, torque{Vec3::Zero(), Vec3::Zero()};
+    std::array<bool, 2> in_range{true, true};
+  };
+
+  // Receiving thread.
+  void on_problem(Bytes bytes);
+  void on_scene(Bytes bytes);
+  void on_input(Bytes bytes);
+  void refuse(const std::string& channel, const std::string& why);
+  void set_remark(const std::string& text);
+  // Servo thread.
+  void take_problem(std::int64_t now) noexcept;
+  void take_wishes() noexcept;
+  void place_hands(std::int64_t now) noexcept;
+  const Motion* motion() const noexcept;
+  bool live(const ServoHand& hand, std::int64_t now) const noexcept;
+  void leave_snapshot(std::int64_t now) noexcept;
+  // Publishing thread.
+  std::string note(double age_ms) const;
+
+  Bus& bus_;
+  const Clock& clock_;
+  ServerOptions options_;
+  std::int64_t run_ = 0;
+
+  // Receiving thread's own.
+  std::int64_t newest_session_ = 0, newest_sequence_ = 0, newest_ns_ = 0;
+  std::string setup_key_;
+  std::array<Wish, 2> wishes_{};
+  insula_lcm::scene_info_t scene_info_;
+  insula_lcm::hand_input_t hand_input_;
+  std::string why_;
+
+  // Across threads.
+  TripleBuffer<Received> problems_;
+  TripleBuffer<std::array<Wish, 2>> inputs_;
+  TripleBuffer<Snapshot> snapshots_;
+  SampleRing<TickSample, 8192> samples_;
+  SetupExchange setups_;
+  std::atomic<std::int64_t> received_{0}, refused_{0}, missed_{0};
+  std::atomic<bool> stopping_{false}, quiet_{true};
+  mutable std::mutex remark_mutex_;  // never taken by the servo thread
+  std::string remark_;
+
+  // Servo thread's own.
+  Servo servo_;
+  std::array<Hand, 2> hands_;
+  const SceneSetup* setup_ = nullptr;
+  MotionClock motion_clock_;
+  ServoResult last_;
+  std::int64_t session_ = 0, session_start_ns_ = 0, last_tick_ns_ = 0;
+  double last_sim_time_ = 0;
+  bool has_problem_ = false, fresh_start_ = false;
+
+  // Publishing thread's own.
+  StatusCollector collector_;
+  insula_lcm::haptic_status_t status_{};
+  insula_lcm::device_state_t state_{};
+  std::int64_t status_start_ns_ = 0, status_sequence_ = 0, state_sequence_ = 0;
+  std::vector<std::uint8_t> scratch_;
+};
+
+}  // namespace insula

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The haptic tick.
+#include "haptic_server/servo.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/linalg/kernels.h"
+
+namespace insula {
+namespace {
+
+// Products with the tall Jacobians are spelled out so that nothing can be allocated.
+template <class Jacobian>
+void add_product(const Jacobian& h, const Vec6& x, std::vector<double>& y, int rows) {
+  for (int i = 0; i < rows; ++i) {
+    double sum = 0;
+    for (int c = 0; c < 6; ++c) sum += h(i, c) * x[c];
+    y[std::size_t(i)] += sum;
+  }
+}
+
+template <class Jacobian>
+Vec6 transposed_product(const Jacobian& h, const std::vector<double>& lambda, int rows) {
+  Vec6 sum = Vec6::Zero();
+  for (int i = 0; i < rows; ++i)
+    for (int c = 0; c < 6; ++c) sum[c] += h(i, c) * lambda[std::size_t(i)];
+  return sum;
+}
+
+bool finite(const Vec6& v) {
+  for (int i = 0; i < 6; ++i)
+    if (!std::isfinite(v[i])) return false;
+  return true;
+}
+
+}  // namespace
+
+Servo::Servo(const ServoSettings& settings) : settings_(settings) {
+  workspace_.reserve(servo_max_rows);
+  kernels();  // chosen here once and not at the first tick
+  delta_free_.assign(servo_max_rows, 0.0);
+  last_lambda_.assign(servo_max_rows, 0.0);
+  known_.resize(servo_max_rows);
+}
+
+void Servo::reset() noexcept { known_count_ = 0; }
+
+void Servo::remember_solution() noexcept {
+  if (!problem_) return;  // keeps the solution of the problem before
+  known_count_ = 0;
+  for (const Block& b : problem_->blocks) known_[known_count_++] = {b.id, b.row, b.law};
+  std::sort(known_.begin(), known_.begin() + std::ptrdiff_t(known_count_),
+            [](const Known& a, const Known& b) { return a.id < b.id; });
+  std::copy_n(workspace_.lambda.begin(), problem_->rows, last_lambda_.begin());
+}
+
+void Servo::set_problem(const ConstraintProblem* problem, const std::array<Pose, 2>& offset) noexcept {
+  // The old problem's memory may be rewritten after this call, so all that is needed of it is copied now.
+  remember_solution();
+  const bool fits = problem && problem->rows <= servo_max_rows && problem->blocks.size() <= std::size_t(servo_max_rows);
+  problem_ = fits ? problem : nullptr;
+  if (!problem_) return;
+  offset_ = offset;
+  workspace_.lambda.resize(std::size_t(problem_->rows));  // within its capacity
+  const auto known_end = known_.begin() + std::ptrdiff_t(known_count_);
+  for (const Block& b : problem_->blocks) {
+    const auto found = std::lower_bound(known_.begin(), known_end, b.id,
+                                        [](const Known& k, std::uint64_t id) { return k.id < id; });
+    const bool same = found != known_end && found->id == b.id && found->law == b.law;
+    for (int k = 0; k < b.rows(); ++k) {
+      double value = same ? last_lambda_[std::size_t(found->row + k)] : problem_->lambda[std::size_t(b.row + k)];
+      if (!std::isfinite(value)) value = 0;
+      workspace_.lambda[std::size_t(b.row + k)] = value;
+    }
+  }
+}
+
+ServoResult Servo::tick(const ServoInput& input) noexcept {
+  ServoResult result;
+  if (!problem_) return result;
+  const ConstraintProblem& p = *problem_;
+  const int n = p.rows;
+  result.rows = n;
+
+  std::array<Vec6, 2> moved{Vec6::Zero(), Vec6::Zero()};
+  std::array<Pose, 2> device;  // with the tool's offset applied
+  std::array<bool, 2> in_range{true, true};
+  const std::size_t tools = std::min<std::size_t>(p.tools.size(), 2);
+  std::copy_n(p.delta_free.begin(), n, delta_free_.begin());
+  for (std::size_t t = 0; t < tools; ++t) {
+    const ToolTerms& tool = p.tools[t];
+    device[t] = tool.device;
+    const std::size_t hand = std::size_t(tool.hand & 1);
+    if (!input.connected[hand]) continue;
+    device[t].p = input.device[hand].apply(offset_[t].p);
+    device[t].q = input.device[hand].q * offset_[t].q;
+    const Vec6 d = displacement(tool.device, device[t]);
+    in_range[t] = finite(d) && d.head<3>().norm() <= settings_.max_displacement_m &&
+                  d.tail<3>().norm() <= settings_.max_rotation_rad;
+    if (!in_range[t]) {
+      device[t] = tool.device;  // the other hand goes on
+      continue;
+    }
+    moved[t] = tool.gain * d;
+    add_product(tool.jacobian, moved[t], delta_free_, n);
+  }
+
+  if (n > 0) {
+    SolveSettings s;
+    s.tolerance_m = settings_.tolerance_m;
+    s.max_sweeps = std::clamp(int(settings_.max_operations / (double(n) * n)), 1, settings_.max_sweeps);
+    result.stats = solve(p, std::span<const double>(delta_free_.data(), std::size_t(n)), s, workspace_);
+  }
+  result.solved = true;
+
+  for (std::size_t t = 0; t < tools; ++t) {
+    const ToolTerms& tool = p.tools[t];
+    const std::size_t index = std::size_t(tool.hand & 1);
+    ServoHand& hand = result.hand[index];
+    const Vec6 push = transposed_product(tool.jacobian, workspace_.lambda, n);
+    hand.tool = displaced(tool.free, moved[t] + tool.compliance * push);
+    const Vec6 wrench = tool.stiffness * displacement(device[t], hand.tool);
+    hand.valid = in_range[t] && input.connected[index] && finite(wrench);
+    if (!hand.valid) continue;
+    hand.force = wrench.head<3>();
+    // The wrench acts at the tool's frame; the hand holds the device's.
+    hand.torque = wrench.tail<3>() + (device[t].p - input.device[index].p).cross(hand.force);
+  }
+
+  // A solution that is not finite must not poison the warm starts to come.
+  bool good = true;
+  for (int i = 0; i < n; ++i) good = good && std::isfinite(workspace_.lambda[std::size_t(i)]);
+  if (!good) {
+    std::fill_n(workspace_.lambda.begin(), n, 0.0);
+    for (ServoHand& hand : result.hand) hand.valid = false;
+  }
+  return result;
+}
+
+}  // namespace insula

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One tick of the haptic loop for both hands in one problem (Dequidt, Coevoet, Thines, Duriez 2015, equation 7).
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/constraint/problem.h"
+#include "core/constraint/solve.h"
+
+namespace insula {
+
+inline constexpr int servo_max_rows = 240;
+
+struct ServoSettings {
+  int max_sweeps = 50;
+  /// Sweeps times rows squared stays below this, so that a tick keeps to its millisecond whatever the rows.
+  double max_operations = 1.2e6;
+  double tolerance_m = 1e-9;
+  /// A device further than this from the pose the problem was built with is outside the linearisation: no force.
+  double max_displacement_m = 0.03;
+  double max_rotation_rad = 0.8;
+};
+
+/// Device poses at the tick; a hand that is not connected is taken to rest where the problem has it.
+struct ServoInput {
+  std::array<Pose, 2> device;
+  std::array<bool, 2> connected{false, false};
+};
+
+/// One hand's outcome. Force and torque (about the device's origin) act on the hand, scene frame.
+struct ServoHand {
+  bool valid = false;  ///< a tool of this hand is in the problem, everything is finite and in range
+  Vec3 force = Vec3::Zero();
+  Vec3 torque = Vec3::Zero();
+  Pose tool;           ///< predicted tool pose
+};
+
+struct ServoResult {
+  bool solved = false;  ///< there was a problem and it was solved at this tick
+  std::array<ServoHand, 2> hand;
+  SolveStats stats;
+  int rows = 0;
+};
+
+/// The servo's whole state is its last solution; tick reads nothing but its arguments and that.
+///   d_t         = displacement(device pose of the problem, device pose now)        6 components, tool by tool
+///   delta_free' = delta_free + sum_t H_t G_t d_t
+///   lambda      = solve(problem with delta_free', warm start)
+///   x_tool      = x_free + G d + A_tool^-1 H^T lambda
+///   force       = stiffness * displacement(device pose now, x_tool)
+/// Neither tick nor set_problem allocates, locks, waits or throws.
+class Servo {
+ public:
+  explicit Servo(const ServoSettings& settings = {});
+
+  /// The problem to solve from now on; must stay as it is until the next call. nullptr: none.
+  /// offset: tool frame relative to the device's pose, tool by tool in the problem's order (tool = device * offset).
+  /// The warm start comes from the last solution by block id; a block that is new starts from the problem's lambda.
+  /// A problem of more than servo_max_rows rows counts as none.
+  void set_problem(const ConstraintProblem* problem, const std::array<Pose, 2>& offset = {}) noexcept;
+  const ConstraintProblem* problem() const { return problem_; }
+
+  ServoResult tick(const ServoInput& input) noexcept;
+
+  /// Solution of the last tick (or the warm start, before it); the first problem()->rows values count.
+  const std::vector<double>& lambda() const { return workspace_.lambda; }
+  /// Forgets the last solution: the next problem starts from its own lambda.
+  void reset() noexcept;
+
+ private:
+  struct Known {
+    std::uint64_t id;
+    int row;
+    LawKind law;
+  };
+  void remember_solution() noexcept;
+
+  ServoSettings settings_;
+  const ConstraintProblem* problem_ = nullptr;
+  std::array<Pose, 2> offset_;
+  SolveWorkspace workspace_;
+  std::vector<double> delta_free_;
+  std::vector<double> last_lambda_;
+  std::vector<Known> known_;  ///< blocks of last_lambda_, by id; room for servo_max_rows
+  std::size_t known_count_ = 0;
+};
+
+}  // namespace insula

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From ticks to the figures of HAPTIC_STATUS.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <insula_lcm/haptic_status_t.hpp>
+#include <vector>
+
+namespace insula {
+
+/// What one tick leaves for the statistics; small, it crosses threads by the thousand.
+struct TickSample {
+  float lateness_us = 0;
+  float solve_us = 0;
+  float residual_m = 0;
+  std::int16_t sweeps = 0;
+  std::int16_t rows = 0;
+  bool solved = false;
+  std::array<bool, 2> fresh{false, false};
+};
+
+/// Collects a period (a second) of samples. One thread.
+class StatusCollector {
+ public:
+  void add(const TickSample& sample);
+  int ticks() const { return int(lateness_.size()); }
+  /// Fills the statistical fields and starts a new period. elapsed_s: the period's length.
+  void finish(double elapsed_s, insula_lcm::haptic_status_t& status);
+
+ private:
+  std::vector<float> lateness_, solve_;
+  std::array<int, 2> fresh_{0, 0};
+  double sweeps_ = 0, residual_ = 0;
+  int rows_ = 0;
+};
+
+}  // namespace insula

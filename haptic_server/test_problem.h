@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Explicit two-tool constraint problems for the servo's tests.
+#pragma once
+#include <cmath>
+#include <cstdint>
+
+#include "core/constraint/problem.h"
+#include "core/constraint/solve.h"
+
+namespace insula::testing {
+
+/// Small deterministic generator (splitmix64), uniform in [-1, 1).
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : state_(seed) {}
+  std::uint64_t bits() {
+    std::uint64_t z = (state_ += 0x9e3779b97f4a7c15ull);
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
+    return z ^ (z >> 31);
+  }
+  double next() { return double(bits() >> 11) * 0x1p-52 - 1; }
+  Vec3 vector(double size) {
+    const double x = next(), y = next(), z = next();
+    return size * Vec3(x, y, z);
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
+/// Two tools, each with a virtual coupling of 300 N/m and 0.3 N m/rad and a rigid-body compliance, in `contacts` frictional
+/// contacts and `strands` compliant rows with soft bodies behind. W = H C H^T (tools) + a soft part, so it is what an
+/// engine would build.
+inline ConstraintProblem two_tool_problem(int contacts, int strands, std::uint64_t seed = 1) {
+  Random random(seed);
+  ConstraintProblem p;
+  const int n = 3 * contacts + strands;
+  p.resize(n);
+  for (int hand = 0; hand < 2; ++hand) {
+    ToolTerms t;
+    t.hand = hand;
+    t.device.p = Vec3(hand ? 0.02 : -0.02, 0.01, 0.03);
+    t.device.q = from_rotation_vector(Vec3(0.1, hand ? -0.3 : 0.2, 0.4));
+    t.free = displaced(t.device, (Vec6() << 2e-4, -1e-4, 3e-4, 0.002, 0.001, -0.003).finished());
+    t.stiffness.setZero();
+    t.stiffness.diagonal() << 300, 300, 300, 0.3, 0.3, 0.3;
+    Mat6 a = t.stiffness * 1.12;  // coupling, its damping and the tool's inertia
+    a.diagonal().array() += Eigen::Array<double, 6, 1>(20, 20, 20, 0.01, 0.01, 0.01);
+    t.compliance = a.inverse();
+    t.gain = t.compliance * (t.stiffness * 1.12);
+    t.jacobian.setZero(n, 6);
+    p.tools.push_back(t);
+  }
+  MatX soft(n, n);
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) soft(i, j) = random.next();
+  MatX w = 1e-3 / n * (soft * soft.transpose()) + 1e-3 * MatX::Identity(n, n);
+  for (int i = 0; i < n; ++i) {
+    const int hand = (i / 3) % 2;
+    const Vec3 d = random.vector(1).normalized();
+    const Vec3 arm = random.vector(0.01);
+    p.tools[std::size_t(hand)].jacobian.row(i) << d.transpose(), arm.cross(d).transpose();
+  }
+  // Frictional blocks have orthonormal directions at one point.
+  for (int c = 0; c < contacts; ++c) {
+    const int hand = c % 2;
+    const Vec3 normal = random.vector(1).normalized();
+    const Vec3 t1 = normal.unitOrthogonal();
+    const Vec3 arm = random.vector(0.01);
+    const Vec3 axes[3] = {normal, t1, normal.cross(t1)};
+    for (int k = 0; k < 3; ++k) {
+      auto& h = p.tools[std::size_t(hand)].jacobian;
+      p.tools[std::size_t(1 - hand)].jacobian.row(3 * c + k).setZero();
+      h.row(3 * c + k) << axes[k].transpose(), arm.cross(axes[k]).transpose();
+    }
+  }
+  for (const ToolTerms& t : p.tools) w += t.jacobian * t.compliance * t.jacobian.transpose();
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) p.w[std::size_t(i) * p.stride + j] = w(i, j);
+  for (int i = 0; i < n; ++i) p.delta_free[std::size_t(i)] = 1e-3 * random.next();
+  for (int c = 0; c < contacts; ++c) {
+    Block b;
+    b.id = 1000 + std::uint64_t(c);
+    b.row = 3 * c;
+    b.law = LawKind::friction;
+    b.friction = 0.3;
+    p.delta_free[std::size_t(3 * c)] -= 5e-4;
+    p.blocks.push_back(b);
+  }
+  for (int s = 0; s < strands; ++s) {
+    Block b;
+    b.id = 5000 + std::uint64_t(s);
+    b.row = 3 * contacts + s;
+    b.compliance = 1 / 150.0;
+    b.upper = 0;
+    p.blocks.push_back(b);
+  }
+  return p;
+}
+
+/// The engine's side: solves tightly and stores lambda in the problem.
+inline void solve_as_engine(ConstraintProblem& p) {
+  SolveWorkspace ws;
+  ws.reserve(p.rows);
+  ws.lambda = p.lambda;
+  SolveSettings s;
+  s.max_sweeps = 5000;
+  s.tolerance_m = 1e-14;
+  solve(p, p.delta_free, s, ws);
+  p.lambda = ws.lambda;
+}
+
+}  // namespace insula::testing

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Newest-value hand-over between one writing and one reading thread, without locks and without waiting on either side.
+#pragma once
+#include <array>
+#include <atomic>
+#include <cstdint>
+
+namespace insula {
+
+/// Three slots: the writer owns one, the reader owns one, the third lies between them. publish() swaps the writer's
+/// slot with the middle one, update() the reader's; values that were never read are overwritten. Both are wait-free.
+template <class T>
+class TripleBuffer {
+ public:
+  TripleBuffer() = default;
+  /// Every slot starts as a copy of `start` (so that capacities can be reserved once).
+  explicit TripleBuffer(const T& start) : slot_{start, start, start} {}
+  TripleBuffer(const TripleBuffer&) = delete;
+  TripleBuffer& operator=(const TripleBuffer&) = delete;
+
+  /// The writer's slot: holds an old value until written.
+  T& back() { return slot_[write_]; }
+  /// Hands back() to the reader and gives the writer another slot.
+  void publish() {
+    // release: the reader sees what was written; acquire: the reader is done with the slot that is taken over.
+    write_ = middle_.exchange(std::uint8_t(write_ | fresh), std::memory_order_acq_rel) & index_mask;
+  }
+
+  /// Whether update() would take something.
+  bool pending() const { return (middle_.load(std::memory_order_relaxed) & fresh) != 0; }
+  /// Takes the newest published value; false when nothing was published since the last call.
+  bool update() {
+    if (!pending()) return false;
+    read_ = middle_.exchange(read_, std::memory_order_acq_rel) & index_mask;
+    return true;
+  }
+  /// The reader's value; stays as it is until the next update().
+  const T& front() const { return slot_[read_]; }
+
+ private:
+  static constexpr std::uint8_t fresh = 4;
+  static constexpr std::uint8_t index_mask = 3;
+  std::array<T, 3> slot_{};
+  // Each thread's index on a cache line of its own.
+  alignas(64) std::uint8_t write_ = 0;
+  alignas(64) std::atomic<std::uint8_t> middle_{1};
+  alignas(64) std::uint8_t read_ = 2;
+};
+
+}  // namespace insula

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Neighbour grid, normals and segments.
+#include "plugins/strand_springs/nearest.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace insula {
+
+NearestVertices::NearestVertices(const std::vector<Vec3>& vertices, double cell) : vertices_(vertices), cell_(cell) {
+  if (vertices.empty()) return;
+  Vec3 high = low_ = vertices.front();
+  for (const Vec3& v : vertices) {
+    low_ = low_.cwiseMin(v);
+    high = high.cwiseMax(v);
+  }
+  // A grid finer than a million cubes helps nobody.
+  cell_ = std::max(cell, (high - low_).maxCoeff() / 100);
+  for (int k = 0; k < 3; ++k) n_[k] = int((high[k] - low_[k]) / cell_) + 1;
+  std::vector<int> of(vertices.size());
+  start_.assign(std::size_t(n_[0]) * std::size_t(n_[1]) * std::size_t(n_[2]) + 1, 0);
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    int c[3];
+    for (int k = 0; k < 3; ++k) c[k] = std::clamp(int((vertices[i][k] - low_[k]) / cell_), 0, n_[k] - 1);
+    of[i] = (c[2] * n_[1] + c[1]) * n_[0] + c[0];
+    ++start_[std::size_t(of[i]) + 1];
+  }
+  for (std::size_t i = 1; i < start_.size(); ++i) start_[i] += start_[i - 1];
+  index_.resize(vertices.size());
+  std::vector<int> at(start_.begin(), start_.end() - 1);
+  for (std::size_t i = 0; i < vertices.size(); ++i) index_[std::size_t(at[std::size_t(of[i])]++)] = int(i);
+}
+
+void NearestVertices::within(const Vec3& p, double r, std::vector<int>& out) const {
+  out.clear();
+  if (vertices_.empty()) return;
+  int lo[3], hi[3];
+  for (int k = 0; k < 3; ++k) {
+    lo[k] = std::clamp(int(std::floor((p[k] - r - low_[k]) / cell_)), 0, n_[k] - 1);
+    hi[k] = std::clamp(int(std::floor((p[k] + r - low_[k]) / cell_)), 0, n_[k] - 1);
+  }
+  for (int z = lo[2]; z <= hi[2]; ++z)
+    for (int y = lo[1]; y <= hi[1]; ++y)
+      for (int x = lo[0]; x <= hi[0]; ++x) {
+        const std::size_t c = std::size_t((z * n_[1] + y) * n_[0] + x);
+        for (int i = start_[c]; i < start_[c + 1]; ++i)
+          if ((vertices_[std::size_t(index_[std::size_t(i)])] - p).squaredNorm() <= r * r) out.push_back(index_[std::size_t(i)]);
+      }
+  std::sort(out.begin(), out.end());
+}
+
+std::vector<Vec3> vertex_normals(const TriMesh& mesh) {
+  std::vector<Vec3> n(mesh.vertices.size(), Vec3::Zero());
+  for (const auto& t : mesh.triangles) {
+    const Vec3 &a = mesh.vertices[std::size_t(t[0])], &b = mesh.vertices[std::size_t(t[1])], &c = mesh.vertices[std::size_t(t[2])];
+    const Vec3 w = (b - a).cross(c - a);
+    for (int v : t) n[std::size_t(v)] += w;
+  }
+  for (Vec3& v : n)
+    if (v.norm() > 0) v.normalize();
+  return n;
+}
+
+void closest_on_segments(const Vec3& a0, const Vec3& a1, const Vec3& b0, const Vec3& b1, double& s, double& t) {
+  const Vec3 d1 = a1 - a0, d2 = b1 - b0, r = a0 - b0;
+  const double a = d1.squaredNorm(), e = d2.squaredNorm(), f = d2.dot(r), tiny = 1e-18;
+  if (a <= tiny && e <= tiny) {
+    s = t = 0;
+  } else if (a <= tiny) {
+    s = 0;
+    t = std::clamp(f / e, 0.0, 1.0);
+  } else {
+    const double c = d1.dot(r);
+    if (e <= tiny) {
+      t = 0;
+      s = std::clamp(-c / a, 0.0, 1.0);
+    } else {
+      const double b = d1.dot(d2), denominator = a * e - b * b;
+      s = denominator > 1e-12 * a * e ? std::clamp((b * f - c * e) / denominator, 0.0, 1.0) : 0.0;
+      t = (b * s + f) / e;
+      if (t < 0) {
+        t = 0;
+        s = std::clamp(-c / a, 0.0, 1.0);
+      } else if (t > 1) {
+        t = 1;
+        s = std::clamp((b - c) / a, 0.0, 1.0);
+      }
+    }
+  }
+}
+
+}  // namespace insula

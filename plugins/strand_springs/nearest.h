@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Small geometry for strands: vertices in reach, normals, closest points of two segments.
+#pragma once
+#include <vector>
+
+#include "core/model/mesh.h"
+
+namespace insula {
+
+/// Vertices sorted into cubes, for reproducible neighbour queries (ascending index).
+class NearestVertices {
+ public:
+  NearestVertices(const std::vector<Vec3>& vertices, double cell);
+  /// Indices of the vertices within r of p, ascending; r at most the cell size.
+  void within(const Vec3& p, double r, std::vector<int>& out) const;
+
+ private:
+  const std::vector<Vec3>& vertices_;
+  double cell_;
+  Vec3 low_ = Vec3::Zero();
+  int n_[3] = {0, 0, 0};
+  std::vector<int> start_, index_;
+};
+
+/// Area-weighted unit normals.
+std::vector<Vec3> vertex_normals(const TriMesh& mesh);
+
+/// Parameters in [0, 1] of the closest points of segments a0a1 and b0b1 (Ericson, Real-Time Collision Detection, 5.1.9).
+void closest_on_segments(const Vec3& a0, const Vec3& a1, const Vec3& b0, const Vec3& b1, double& s, double& t);
+
+}  // namespace insula

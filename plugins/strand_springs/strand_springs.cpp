@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/*
+# strand_springs
+
+Arachnoid strands between two bodies. Each is one compliant row on the distance of its ends,
+
+    delta = |qi - qj| - l0,   delta + lambda / k = 0,   lambda <= 0  (tension only)
+
+solved with the contacts, so a strand is never stiffer or later than the tissue it pulls. They are generated across the
+gap between two surfaces from a density and a maximal length; the same seed gives the same strands.
+
+A blade that touches a strand meets a rigid-plastic resistance: one row on their relative motion whose force is at most
+cut_force. Where the strand gives way, the blade's travel through it wears it: k falls in proportion, and after
+cut_length it parts. Pulled beyond `strength` it tears.
+
+Source: Dequidt et al. 2015, section 3.3 (springs between lobes as constraints); forces of dissection: Marcus et al. 2014.
+*/
+#include "plugins/strand_springs/strand_springs.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/random.h"
+#include "core/registry/registry.h"
+#include "plugins/strand_springs/nearest.h"
+
+namespace insula {
+
+void StrandSprings::add_strand(const MaterialPoint& a, const MaterialPoint& b) {
+  Strand s;
+  s.a = a;
+  s.b = b;
+  s.rest = slack() * (a.body->position(a) - b.body->position(b)).norm();
+  strands_.push_back(s);
+}
+
+void StrandSprings::connect(PrepareContext& context, Simulation& simulation) {
+  instruments_ = simulation.instruments();
+  if (bool(from) != bool(to)) return error(context, "from and to belong together");
+  if (from) {
+    if (&from->body() == &to->body()) return error(context, to, "to: the strands would tie a body to itself");
+    generate(context);
+  }
+}
+
+void StrandSprings::generate(PrepareContext& context) {
+  const TriMesh& mesh = from->rest();
+  const TriMesh& other = to->rest();
+  const std::vector<Vec3> normals = vertex_normals(mesh), other_normals = vertex_normals(other);
+  const NearestVertices nearest(other.vertices, max_length());
+  std::vector<int> found;
+  // Partners a strand from vertex v may have: facing, in reach, not much farther than the nearest.
+  auto partners = [&](int v) {
+    const Vec3& p = mesh.vertices[std::size_t(v)];
+    nearest.within(p, max_length(), found);
+    double least = max_length();
+    std::vector<int> out;
+    for (int pass = 0; pass < 2; ++pass)
+      for (int o : found) {
+        const Vec3 d = other.vertices[std::size_t(o)] - p;
+        const double length = d.norm();
+        if (length < 1e-6 || d.dot(normals[std::size_t(v)]) < 0.2 * length || d.dot(other_normals[std::size_t(o)]) > -0.2 * length) continue;
+        if (pass == 0) least = std::min(least, length);
+        else if (length <= std::min(max_length(), 1.7 * least)) out.push_back(o);
+      }
+    return out;
+  };
+  // Area that faces the other surface within reach, triangle by triangle.
+  std::vector<double> until;
+  std::vector<int> triangle;
+  double area = 0;
+  std::vector<signed char> faces(mesh.vertices.size(), -1);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    bool all = true;
+    for (int v : mesh.triangles[t]) {
+      if (faces[std::size_t(v)] < 0)
+        faces[std::size_t(v)] = (mesh.vertices[std::size_t(v)] - centre()).norm() <= radius() && !partners(v).empty();
+      all = all && faces[std::size_t(v)] == 1;
+    }
+    if (!all) continue;
+    const auto& tri = mesh.triangles[t];
+    const Vec3 &a = mesh.vertices[std::size_t(tri[0])], &b = mesh.vertices[std::size_t(tri[1])], &c = mesh.vertices[std::size_t(tri[2])];
+    area += 0.5 * (b - a).cross(c - a).norm();
+    until.push_back(area);
+    triangle.push_back(int(t));
+  }
+  const int wanted = int(std::lround(density() * area));
+  Random random{std::uint64_t(seed())};
+  std::vector<std::pair<int, int>> pairs;
+  for (int i = 0; i < wanted; ++i) {  // systematic sampling over the area: even, yet not regular
+    const double at = (i + random.uniform()) / wanted * area;
+    const std::size_t t = std::size_t(std::upper_bound(until.begin(), until.end(), at) - until.begin());
+    const int v = mesh.triangles[std::size_t(triangle[std::min(t, triangle.size() - 1)])][random.below(3)];
+    const std::vector<int> choice = partners(v);
+    const std::pair<int, int> pair{v, choice[random.below(std::uint32_t(choice.size()))]};
+    if (std::find(pairs.begin(), pairs.end(), pair) == pairs.end()) pairs.push_back(pair);
+  }
+  for (auto [v, o] : pairs) add_strand(from->points()[std::size_t(v)], to->points()[std::size_t(o)]);
+  if (strands_.empty() && density() > 0)
+    error(context, "no strand fits: the surfaces are nowhere closer than max_length within the ball");
+}
+
+void StrandSprings::detect(const StepContext& context) {
+  for (Strand& s : strands_) {
+    s.blade = nullptr;
+    if (s.parted) continue;
+    const Vec3 pa = s.a.body->position(s.a), pb = s.b.body->position(s.b);
+    double best = reach();
+    for (Instrument* tool : instruments_) {
+      if (!tool->cutting()) continue;
+      for (const auto& edge : tool->tool().blade_edges) {
+        const Vec3 e0 = tool->pose().apply(edge[0]), e1 = tool->pose().apply(edge[1]);
+        double u, w;
+        closest_on_segments(pa, pb, e0, e1, u, w);
+        const Vec3 on_strand = pa + u * (pb - pa), on_edge = e0 + w * (e1 - e0);
+        const double distance = (on_strand - on_edge).norm();
+        if (distance > best) continue;
+        best = distance;
+        s.blade = tool;
+        s.blade_point = tool->point(on_edge);
+        s.along = u;
+      }
+    }
+    if (!s.blade) continue;
+    // The strand resists along the blade's motion across it.
+    const Vec3 axis = (pb - pa).normalized();
+    Vec3 motion = s.blade->free_displacement(s.blade_point) - (1 - s.along) * s.a.body->free_displacement(s.a) - s.along * s.b.body->free_displacement(s.b);
+    motion -= motion.dot(axis) * axis;
+    if (motion.norm() > 1e-9) s.push = motion.normalized();
+    else if (s.push.norm() < 0.5) s.blade = nullptr;  // never moved: nothing to resist
+  }
+  (void)context;
+}
+
+void StrandSprings::build(const StepContext&, ConstraintBuilder& builder) {
+  std::uint64_t key = 0;
+  for (Strand& s : strands_) {
+    s.row = s.blade_row = -1;
+    key += 2;
+    if (s.parted) continue;
+    const Vec3 d = s.a.body->position(s.a) - s.b.body->position(s.b);
+    const double length = d.norm();
+    if (length > 1e-9) {
+      const Vec3 u = d / length;
+      const double next = length + u.dot(s.a.body->free_displacement(s.a) - s.b.body->free_displacement(s.b));
+      // A strand that is slack by more than half a millimetre cannot become taut within a step's correction.
+      if (carries.is("both") || next > s.rest - 0.0005) {
+        Block block;
+        block.id = row_id(*this, key);
+        block.compliance = 1.0 / (stiffness() * (1 - s.wear));
+        block.upper = carries.is("both") ? infinite : 0.0;
+        s.row = builder.add(block);
+        builder.violation(s.row, length - s.rest);
+        builder.point(s.row, s.a, u);
+        builder.point(s.row, s.b, -u);
+      }
+    }
+    if (s.blade && cut_force() > 0) {
+      Block block;
+      block.id = row_id(*this, key + 1);
+      block.lower = -cut_force();
+      block.upper = 0;
+      s.blade_row = builder.add(block);
+      builder.point(s.blade_row, s.blade_point, s.push);
+      if (s.along < 1) builder.point(s.blade_row, s.a, -(1 - s.along) * s.push);
+      if (s.along > 0) builder.point(s.blade_row, s.b, -s.along * s.push);
+    }
+  }
+}
+
+void StrandSprings::part(const StepContext& context, Strand& s, const char* kind, double value) {
+  s.parted = true;
+  s.wear = 1;
+  s.tension = 0;
+  if (context.events) context.events->emit({kind, id, "", value, context.time + context.h});
+}
+
+void StrandSprings::finish(const StepContext& context, const ConstraintSolution& solution) {
+  for (Strand& s : strands_) {
+    if (s.parted) continue;
+    s.tension = s.row >= 0 ? -solution.lambda[s.row] : 0;
+    if (s.blade) {
+      double travel;
+      if (s.blade_row >= 0)
+        travel = solution.delta[s.blade_row];
+      else  // no resistance: the free motion cuts
+        travel = s.push.dot(s.blade->free_displacement(s.blade_point));
+      s.wear += std::max(0.0, travel) / cut_length();
+      if (s.wear >= 1) {
+        part(context, s, "strand_cut", cut_force());
+        continue;
+      }
+    } else {
+      s.push.setZero();
+    }
+    if (strength() > 0 && s.tension > strength() * (1 - s.wear)) part(context, s, "strand_torn", s.tension);
+  }
+}
+
+void StrandSprings::report(StepReport& report) const {
+  for (const Strand& s : strands_)
+    report.strands.push_back({s.a.body->position(s.a), s.b.body->position(s.b), s.parted ? -1.0 : 1 - s.wear, s.tension});
+  report.strands_total += count();
+  report.strands_left += left();
+}
+
+int StrandSprings::left() const {
+  return int(std::count_if(strands_.begin(), strands_.end(), [](const Strand& s) { return !s.parted; }));
+}
+
+void StrandSprings::reset() {
+  for (Strand& s : strands_) {
+    s.wear = s.tension = 0;
+    s.parted = false;
+    s.blade = nullptr;
+    s.push.setZero();
+  }
+}
+
+void StrandSprings::append_state(std::vector<double>& out) const {
+  for (const Strand& s : strands_) out.push_back(s.wear);
+}
+
+}  // namespace insula
+
+INSULA_PLUGIN(strand_springs) {
+  registry.add<insula::StrandSprings>("strand_springs", insula::Kind::constraint, "arachnoid strands between two surfaces");
+}

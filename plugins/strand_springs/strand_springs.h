@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Fibres of the arachnoid between two bodies, as compliant rows.
+#pragma once
+#include <vector>
+
+#include "core/constraint/constraint.h"
+#include "core/mechanics/surface.h"
+#include "core/sim/simulation.h"
+
+namespace insula {
+
+class StrandSprings final : public Constraint {
+ public:
+  Ref<Surface> from{this, {.name = "from", .fallback = "", .doc = "surface where the strands start"}};
+  Ref<Surface> to{this, {.name = "to", .fallback = "", .doc = "surface where they end"}};
+  Param<AreaDensity> density{this, {.name = "density", .fallback = "10 1/cm2", .min = "0 1/cm2", .max = "10000 1/cm2", .doc = "strands per area of the start surface that faces the other one"}};
+  Param<Length> max_length{this, {.name = "max_length", .fallback = "3 mm", .min = "0.01 mm", .max = "50 mm", .doc = "no strand is longer at rest"}};
+  Param<Vec<Length>> centre{this, {.name = "centre", .fallback = "0 0 0 m", .doc = "centre of the ball that strands start in"}};
+  Param<Length> radius{this, {.name = "radius", .fallback = "10 m", .min = "0.1 mm", .max = "10 m", .doc = "radius of that ball"}};
+  Param<int> seed{this, {.name = "seed", .fallback = "1", .min = "0", .max = "2147483647", .doc = "start of the random choice"}};
+  Param<Stiffness> stiffness{this, {.name = "stiffness", .fallback = "20 N/m", .min = "0.001 N/m", .max = "100000 N/m", .doc = "of a whole strand"}};
+  Param<Scalar> slack{this, {.name = "slack", .fallback = "1.1", .min = "0.5", .max = "3", .doc = "length without tension over the length at the start"}};
+  Param<Choice> carries{this, {.name = "carries", .fallback = "tension", .choices = {"tension", "both"}, .doc = "a fibre carries tension only; both: a two-sided spring"}};
+  Param<Force> cut_force{this, {.name = "cut_force", .fallback = "0.03 N", .min = "0 N", .max = "5 N", .doc = "force with which a strand resists a blade that cuts it"}};
+  Param<Length> cut_length{this, {.name = "cut_length", .fallback = "1 mm", .min = "0.01 mm", .max = "50 mm", .doc = "travel of the blade through a strand that parts it"}};
+  Param<Length> reach{this, {.name = "reach", .fallback = "0.5 mm", .min = "0.01 mm", .max = "5 mm", .doc = "distance at which an edge touches a strand"}};
+  Param<Force> strength{this, {.name = "strength", .fallback = "0 N", .min = "0 N", .max = "100 N", .doc = "tension that tears a whole strand; 0: it does not tear"}};
+
+  /// Adds one strand between two points (positions at rest in the scene frame); its rest length is slack times their distance.
+  void add_strand(const MaterialPoint& a, const MaterialPoint& b);
+
+  void connect(PrepareContext& context, Simulation& simulation) override;
+  void detect(const StepContext& context) override;
+  void build(const StepContext& context, ConstraintBuilder& builder) override;
+  void finish(const StepContext& context, const ConstraintSolution& solution) override;
+  void report(StepReport& report) const override;
+  void reset() override;
+  void append_state(std::vector<double>& out) const override;
+
+  int count() const { return int(strands_.size()); }
+  int left() const;
+  double health(int i) const { return 1 - strands_[std::size_t(i)].wear; }
+  double tension(int i) const { return strands_[std::size_t(i)].tension; }
+
+ private:
+  struct Strand {
+    MaterialPoint a, b;
+    double rest = 0;      ///< length without tension, m
+    double wear = 0;      ///< 0 whole ... 1 parted
+    bool parted = false;
+    double tension = 0;   ///< N
+    int row = -1;
+    // The blade that touches it in this step.
+    int blade_row = -1;
+    Instrument* blade = nullptr;
+    MaterialPoint blade_point;
+    double along = 0;     ///< 0 at a, 1 at b
+    Vec3 push = Vec3::Zero();
+  };
+  void generate(PrepareContext& context);
+  void part(const StepContext& context, Strand& s, const char* kind, double value);
+
+  std::vector<Strand> strands_;
+  std::vector<Instrument*> instruments_;
+};
+
+}  // namespace insula

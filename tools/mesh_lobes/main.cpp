@@ -1,0 +1,320 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// insula_mesh_volume: turns labels of a NIfTI volume into tetrahedral meshes and fine surfaces. See usage() below.
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <map>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+#include "cleft.h"
+#include "mesh_data.h"
+#include "meshing.h"
+#include "part_fields.h"
+#include "separate.h"
+
+namespace insula::mesh_tool {
+namespace {
+
+const char* const usage_text = R"(usage: insula_mesh_volume --labels FILE.nii[.gz] --part NAME=LABELS ... [options]
+
+Input (lengths in mm, positions in the volume's right-anterior-superior frame)
+  --labels FILE          label volume; 0 is background
+  --part NAME=LIST       a part: labels to unite, e.g. frontal=2,4,10-16 (repeat; parts are kept apart)
+  --intensity FILE       image of the same head: sharpens the border of tissue and steers the borders between parts
+  --tissue VALUE         intensity at which tissue begins
+  --tissue-slope VALUE   change of intensity a millimetre across that border (25)
+Region and shape
+  --roi X,Y,Z,R          only inside this sphere
+  --spacing MM           working grid (0.5)
+  --gap MM               free space between the fine surfaces of two parts (1)
+  --smooth MM            Gaussian on the fine shape (0.6);  --border-smooth MM  on borders between parts (1.2)
+  --close MM             radius of sulci filled in the fine shape (1);  --open MM  of specks taken off it (1)
+  --coarse-close MM      the same in the tetrahedral shape (2.5);  --coarse-smooth MM (1.5)
+  --coarse-outset MM     how far the tetrahedral shape reaches past the fine one (0.6)
+  --coarse-gap MM        free space between tetrahedral parts (0.35)
+Sizes: edge length NEAR,FAR in mm, growing from the one to the other along the distance D to the focus
+  --focus R0,R1          D below R0: near; above R1: far. D is the distance to the other parts, or, when greater, to ...
+  --focus-point X,Y,Z,R  ... this ball
+  --cell NEAR,FAR        tetrahedra (4,9);  --cell-error NEAR,FAR  distance of their boundary to the shape (0.5,1.5)
+  --edge NEAR,FAR        triangles of the fine surfaces (1,3);  --edge-error MM (0.1)
+  --cell-of NAME=NEAR,FAR, --edge-of NAME=NEAR,FAR   the same for one part
+Output
+  --tet NAME=FILE[:2.2|:4.1|:4.1b]   gmsh file: 2.2 ASCII, 4.1 ASCII (default) or 4.1 binary
+  --surface NAME=FILE.ply
+  --cleft NAME,NAME=FILE.json        superficial line, depth and outward normal of the cleft between two parts
+  --view X,Y,Z           direction from the field to the observer, for --cleft (1,0,0)
+)";
+
+std::vector<double> numbers(const std::string& text, std::size_t count, const std::string& option) {
+  std::vector<double> out;
+  std::stringstream stream(text);
+  std::string item;
+  while (std::getline(stream, item, ',')) {
+    std::size_t used = 0;
+    double value = 0;
+    try {
+      value = std::stod(item, &used);
+    } catch (const std::exception&) {
+      used = 0;
+    }
+    if (!used || used != item.size() || !std::isfinite(value)) throw std::runtime_error(option + ": '" + item + "' is not a number");
+    out.push_back(value);
+  }
+  if (out.size() != count) throw std::runtime_error(option + " takes " + std::to_string(count) + " numbers separated by commas");
+  return out;
+}
+
+std::vector<int> label_list(const std::string& text) {
+  std::vector<int> out;
+  std::stringstream stream(text);
+  std::string item;
+  while (std::getline(stream, item, ',')) {
+    int first = 0, last = 0, used = 0;
+    if (std::sscanf(item.c_str(), "%d-%d%n", &first, &last, &used) != 2) {
+      if (std::sscanf(item.c_str(), "%d%n", &first, &used) != 1) used = -1;
+      last = first;
+    }
+    if (used != static_cast<int>(item.size()) || first < 1 || last < first || last > 1000000)
+      throw std::runtime_error("--part: '" + item + "' is not a label or a range of labels");
+    for (int label = first; label <= last; ++label) out.push_back(label);
+  }
+  if (out.empty()) throw std::runtime_error("--part: no labels given");
+  return out;
+}
+
+struct Sizes {
+  double near = 0, far = 0;
+};
+
+struct Job {
+  std::string labels, intensity;
+  std::vector<Part> parts;
+  FieldOptions fields;
+  Sizes focus{2, 20}, cell{4, 9}, cell_error{0.5, 1.5}, edge{1, 3};
+  double edge_error = 0.1, focus_radius = -1;
+  Vec3 focus_point{}, view{1, 0, 0};
+  std::map<std::string, Sizes> edge_of, cell_of;
+  std::vector<std::pair<std::string, std::string>> tets, surfaces, clefts;
+
+  std::size_t part(const std::string& name) const {
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      if (parts[i].name == name) return i;
+    throw std::runtime_error("there is no part called '" + name + "'");
+  }
+};
+
+std::pair<std::string, std::string> split(const std::string& text, const std::string& option) {
+  const auto at = text.find('=');
+  if (at == std::string::npos || at == 0 || at + 1 == text.size()) throw std::runtime_error(option + " takes NAME=VALUE");
+  return {text.substr(0, at), text.substr(at + 1)};
+}
+
+Job parse(int argc, char** argv) {
+  Job job;
+  bool has_tissue = false;
+  for (int i = 1; i < argc; ++i) {
+    const std::string option = argv[i];
+    if (option == "--help" || option == "-h") {
+      std::fputs(usage_text, stdout);
+      std::exit(0);
+    }
+    if (i + 1 >= argc) throw std::runtime_error(option + ": unknown option or missing value (see --help)");
+    const std::string value = argv[++i];
+    const auto one = [&] { return numbers(value, 1, option)[0]; };
+    const auto length = [&] {
+      const double v = one();
+      if (v < 0) throw std::runtime_error(option + " must not be negative");
+      return v;
+    };
+    const auto two = [&](const std::string& text) {
+      const auto v = numbers(text, 2, option);
+      if (!(v[0] > 0 && v[1] >= v[0])) throw std::runtime_error(option + " takes NEAR,FAR with 0 < NEAR <= FAR");
+      return Sizes{v[0], v[1]};
+    };
+    if (option == "--labels") job.labels = value;
+    else if (option == "--intensity") job.intensity = value;
+    else if (option == "--part") {
+      const auto [name, list] = split(value, option);
+      for (const Part& p : job.parts)
+        if (p.name == name) throw std::runtime_error("--part: '" + name + "' is given twice");
+      job.parts.push_back({name, label_list(list)});
+    } else if (option == "--tissue") job.fields.tissue = one(), has_tissue = true;
+    else if (option == "--tissue-slope") job.fields.tissue_slope = one();
+    else if (option == "--roi") {
+      const auto v = numbers(value, 4, option);
+      job.fields.centre = {v[0], v[1], v[2]};
+      job.fields.radius = v[3];
+      if (!(v[3] > 0)) throw std::runtime_error("--roi: the radius must be positive");
+    } else if (option == "--spacing") job.fields.spacing = one();
+    else if (option == "--gap") job.fields.gap = length();
+    else if (option == "--smooth") job.fields.smoothing = length();
+    else if (option == "--border-smooth") job.fields.border_smoothing = length();
+    else if (option == "--close") job.fields.fine_closing = length();
+    else if (option == "--open") job.fields.fine_opening = length();
+    else if (option == "--coarse-close") job.fields.coarse_closing = length();
+    else if (option == "--coarse-smooth") job.fields.coarse_smoothing = length();
+    else if (option == "--coarse-outset") job.fields.coarse_outset = length();
+    else if (option == "--coarse-gap") job.fields.coarse_gap = length();
+    else if (option == "--focus") job.focus = two(value);
+    else if (option == "--focus-point") {
+      const auto v = numbers(value, 4, option);
+      job.focus_point = {v[0], v[1], v[2]};
+      job.focus_radius = v[3];
+    } else if (option == "--cell") job.cell = two(value);
+    else if (option == "--cell-error") job.cell_error = two(value);
+    else if (option == "--edge") job.edge = two(value);
+    else if (option == "--edge-error") job.edge_error = one();
+    else if (option == "--edge-of") {
+      const auto [name, list] = split(value, option);
+      job.edge_of[name] = two(list);
+    } else if (option == "--cell-of") {
+      const auto [name, list] = split(value, option);
+      job.cell_of[name] = two(list);
+    } else if (option == "--tet") job.tets.push_back(split(value, option));
+    else if (option == "--surface") job.surfaces.push_back(split(value, option));
+    else if (option == "--cleft") job.clefts.push_back(split(value, option));
+    else if (option == "--view") {
+      const auto v = numbers(value, 3, option);
+      job.view = {v[0], v[1], v[2]};
+    } else throw std::runtime_error(option + ": unknown option (see --help)");
+  }
+  if (job.labels.empty() || job.parts.empty()) throw std::runtime_error("--labels and at least one --part are needed (see --help)");
+  if (!job.intensity.empty() && !has_tissue) throw std::runtime_error("--intensity needs --tissue");
+  if (!(job.fields.spacing > 0) || !(job.fields.tissue_slope > 0) || !(job.edge_error > 0))
+    throw std::runtime_error("--spacing, --tissue-slope and --edge-error must be positive");
+  for (const auto* list : {&job.tets, &job.surfaces})
+    for (const auto& [name, file] : *list) job.part(name);
+  for (const auto* list : {&job.edge_of, &job.cell_of})
+    for (const auto& [name, sizes] : *list) job.part(name);
+  return job;
+}
+
+// Edge length near the focus, growing smoothly to the far one.
+SizeField sizes(const Job& job, const PartFields& fields, const Field& distance, Sizes size) {
+  return [&job, &fields, &distance, size](const Vec3& p) {
+    double d = sample(fields.grid, distance, p);
+    if (job.focus_radius >= 0) d = std::max(d, norm(p - job.focus_point) - job.focus_radius);
+    double t = (d - job.focus.near) / (job.focus.far - job.focus.near);
+    t = t < 0 ? 0 : t > 1 ? 1 : t;
+    return size.near + t * (size.far - size.near);
+  };
+}
+
+void make_tets(const Job& job, const PartFields& fields) {
+  std::vector<TetMesh> meshes;
+  for (std::size_t a = 0; a < job.parts.size(); ++a) {
+    const auto own = job.cell_of.find(job.parts[a].name);
+    meshes.push_back(mesh_volume(fields.grid, fields.coarse[a],
+                                 sizes(job, fields, fields.others[a], own == job.cell_of.end() ? job.cell : own->second),
+                                 sizes(job, fields, fields.others[a], job.cell_error)));
+  }
+  // Nodes of the working grid just inside each fine shape: what the tetrahedra are to hold.
+  std::vector<std::vector<Vec3>> shape(meshes.size());
+  const Grid& g = fields.grid;
+  for (std::size_t a = 0; a < meshes.size(); ++a)
+    for (int k = 0; k < g.size[2]; ++k)
+      for (int j = 0; j < g.size[1]; ++j)
+        for (int i = 0; i < g.size[0]; ++i)
+          if (const float v = fields.fine[a][g.index(i, j, k)]; v > 0 && v < 0.5f) shape[a].push_back(g.point(i, j, k));
+  for (int pass = 0; pass < 6; ++pass) {
+    for (std::size_t a = 0; pass < 4 && a < meshes.size(); ++a) {
+      reach_out(meshes[a], shape[a], 0.4, 4);
+      improve_dihedral(meshes[a], 14, 0.3);
+    }
+    separate_parts(meshes, job.fields.coarse_gap, 12);
+    for (TetMesh& mesh : meshes) improve_dihedral(mesh, 12, 0.8);
+  }
+  std::vector<TriangleMesh> borders;
+  for (const TetMesh& mesh : meshes) borders.push_back(boundary_mesh(mesh));
+  for (std::size_t a = 0; a < meshes.size(); ++a)
+    for (std::size_t b = a + 1; b < meshes.size(); ++b) {
+      const Clearance c = clearance(borders[a], borders[b]);
+      std::printf("tetrahedra %s - %s: gap %.3f mm%s\n", job.parts[a].name.c_str(), job.parts[b].name.c_str(), c.distance,
+                  c.intersect ? ", INTERSECT" : "");
+      std::fflush(stdout);
+      if (c.intersect) throw std::runtime_error("parts intersect; take smaller cells, a smaller --cell-error or a greater --coarse-gap");
+    }
+  for (const auto& [name, target] : job.tets) {
+    std::string file = target;
+    MshFormat format = MshFormat::v4_ascii;
+    if (const auto colon = file.rfind(':'); colon != std::string::npos) {
+      const std::string version = file.substr(colon + 1);
+      if (version == "2.2") format = MshFormat::v2_ascii;
+      else if (version == "4.1b") format = MshFormat::v4_binary;
+      else if (version != "4.1") throw std::runtime_error("--tet: '" + version + "' is not 2.2, 4.1 or 4.1b");
+      file.resize(colon);
+    }
+    const TetMesh& mesh = meshes[job.part(name)];
+    write_msh(file, mesh, format);
+    const DihedralRange angles = dihedral_range(mesh);
+    std::printf("%s: %zu nodes, %zu tetrahedra, dihedral %.2f to %.2f deg, volume %.0f mm3, boundary %s, %s\n", name.c_str(),
+                mesh.points.size(), mesh.tets.size(), angles.min_deg, angles.max_deg, volume(mesh),
+                is_closed(boundary_triangles(mesh)) ? "closed" : "NOT A CLOSED MANIFOLD", file.c_str());
+    const Embedding e = embedding({shape[job.part(name)], {}}, mesh);
+    std::printf("  fine shape outside the tetrahedra: %.1f %% of its border, at most %.2f mm\n", 100 * e.share_outside, e.furthest);
+  }
+}
+
+void make_surfaces(const Job& job, const PartFields& fields) {
+  std::vector<TriangleMesh> meshes;
+  std::vector<std::string> names;
+  for (const auto& [name, file] : job.surfaces) {
+    const std::size_t part = job.part(name);
+    const auto own = job.edge_of.find(name);
+    meshes.push_back(mesh_surface(fields.grid, fields.fine[part],
+                                  sizes(job, fields, fields.others[part], own == job.edge_of.end() ? job.edge : own->second),
+                                  job.edge_error));
+    names.push_back(name);
+    write_ply(file, meshes.back());
+    double shortest = 1e30, longest = 0;
+    for (const Triangle& t : meshes.back().triangles)
+      for (std::size_t e = 0; e < 3; ++e) {
+        const double d = norm(meshes.back().points[static_cast<std::size_t>(t[e])] - meshes.back().points[static_cast<std::size_t>(t[(e + 1) % 3])]);
+        shortest = std::min(shortest, d), longest = std::max(longest, d);
+      }
+    std::printf("%s surface: %zu points, %zu triangles, edges %.2f to %.2f mm, volume %.0f mm3, closed, %s\n", name.c_str(),
+                meshes.back().points.size(), meshes.back().triangles.size(), shortest, longest, signed_volume(meshes.back()), file.c_str());
+  }
+  for (std::size_t a = 0; a < meshes.size(); ++a)
+    for (std::size_t b = a + 1; b < meshes.size(); ++b) {
+      const Clearance c = clearance(meshes[a], meshes[b]);
+      std::printf("surfaces %s - %s: gap %.3f mm%s\n", names[a].c_str(), names[b].c_str(), c.distance, c.intersect ? ", INTERSECT" : "");
+      if (c.intersect) throw std::runtime_error("surfaces intersect; take a greater --gap");
+    }
+}
+
+int run(int argc, char** argv) {
+  const Job job = parse(argc, argv);
+  const NiftiVolume labels = read_nifti(job.labels);
+  NiftiVolume intensity;
+  if (!job.intensity.empty()) intensity = read_nifti(job.intensity);
+  const PartFields fields = build_part_fields(labels, job.intensity.empty() ? nullptr : &intensity, job.parts, job.fields);
+  std::printf("working grid %d x %d x %d at %.2f mm\n", fields.grid.size[0], fields.grid.size[1], fields.grid.size[2], fields.grid.spacing);
+  std::fflush(stdout);
+  if (!job.surfaces.empty()) make_surfaces(job, fields);
+  std::fflush(stdout);
+  for (const auto& [names, file] : job.clefts) {
+    const auto comma = names.find(',');
+    if (comma == std::string::npos) throw std::runtime_error("--cleft takes NAME,NAME=FILE");
+    const std::string a = names.substr(0, comma), b = names.substr(comma + 1);
+    const Cleft cleft = describe_cleft(fields, job.part(a), job.part(b), job.fields, job.view);
+    write_cleft_json(file, cleft, a, b, job.fields);
+    std::printf("cleft %s - %s: %zu stations, %.1f mm long, %s\n", a.c_str(), b.c_str(), cleft.stations.size(), cleft.length, file.c_str());
+  }
+  if (!job.tets.empty()) make_tets(job, fields);
+  return 0;
+}
+
+}  // namespace
+}  // namespace insula::mesh_tool
+
+int main(int argc, char** argv) {
+  try {
+    return insula::mesh_tool::run(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "insula_mesh_volume: error: %s\n", error.what());
+    return 2;
+  }
+}

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Level functions of the parts of a label volume.
+#include "part_fields.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "grid_ops.h"
+
+namespace insula::mesh_tool {
+namespace {
+
+Grid make_grid(const NiftiVolume& labels, const FieldOptions& options) {
+  Vec3 low{1e30, 1e30, 1e30}, high{-1e30, -1e30, -1e30};
+  for (int corner = 0; corner < 8; ++corner) {
+    double ijk[3];
+    for (int a = 0; a < 3; ++a) ijk[a] = (corner >> a) & 1 ? labels.size[static_cast<std::size_t>(a)] - 1 : 0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double* m = &labels.to_world[4 * a];
+      const double w = m[0] * ijk[0] + m[1] * ijk[1] + m[2] * ijk[2] + m[3];
+      low[a] = std::min(low[a], w);
+      high[a] = std::max(high[a], w);
+    }
+  }
+  Grid grid;
+  grid.spacing = options.spacing;
+  constexpr double margin = 5;  // room for closings and for kernels beyond the region
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (options.radius > 0) {
+      low[a] = std::max(low[a], options.centre[a] - options.radius);
+      high[a] = std::min(high[a], options.centre[a] + options.radius);
+    }
+    if (high[a] <= low[a]) throw std::runtime_error("the region of interest lies outside the label volume");
+    grid.origin[a] = low[a] - margin;
+    grid.size[a] = static_cast<int>(std::ceil((high[a] - low[a] + 2 * margin) / grid.spacing)) + 1;
+  }
+  if (grid.count() > (std::size_t{1} << 28)) throw std::runtime_error("the working grid is too fine for this region");
+  return grid;
+}
+
+template <class F>
+void for_nodes(const Grid& g, F&& f) {
+  for (int k = 0; k < g.size[2]; ++k)
+    for (int j = 0; j < g.size[1]; ++j)
+      for (int i = 0; i < g.size[0]; ++i) f(g.index(i, j, k), g.point(i, j, k));
+}
+
+double smoothstep(double x) {
+  x = std::clamp(x, 0.0, 1.0);
+  return x * x * (3 - 2 * x);
+}
+
+// Class of each node: part number from 1, parts + 1 for any other label, 0 without a label.
+std::vector<unsigned char> classify(const Grid& grid, const NiftiVolume& labels, const std::vector<Part>& parts) {
+  std::vector<unsigned char> out(grid.count(), 0);
+  for_nodes(grid, [&](std::size_t n, const Vec3& p) {
+    const int label = static_cast<int>(std::lround(labels.nearest(p)));
+    if (!label) return;
+    out[n] = static_cast<unsigned char>(parts.size() + 1);
+    for (std::size_t a = 0; a < parts.size(); ++a)
+      if (std::find(parts[a].labels.begin(), parts[a].labels.end(), label) != parts[a].labels.end())
+        out[n] = static_cast<unsigned char>(a + 1);
+  });
+  return out;
+}
+
+// Removes seeds near labels of another class, and seeds outside tissue.
+std::vector<unsigned char> make_seeds(const Grid& grid, const std::vector<unsigned char>& classes, int class_count,
+                                      const Field& tissue, double depth) {
+  std::vector<unsigned char> seeds(classes.size(), 0);
+  Mask set(classes.size());
+  for (int c = 1; c <= class_count; ++c) {
+    for (std::size_t i = 0; i < set.size(); ++i) set[i] = classes[i] && classes[i] != c;
+    const Field d = distance_to(grid, set);
+    for (std::size_t i = 0; i < set.size(); ++i)
+      if (classes[i] == c && tissue[i] > 0 && static_cast<double>(d[i]) > depth) seeds[i] = static_cast<unsigned char>(c);
+  }
+  return seeds;
+}
+
+}  // namespace
+
+PartFields build_part_fields(const NiftiVolume& labels, const NiftiVolume* intensity, const std::vector<Part>& parts,
+                             const FieldOptions& options) {
+  if (parts.empty() || parts.size() > 200) throw std::runtime_error("between 1 and 200 parts are needed");
+  PartFields out;
+  out.grid = make_grid(labels, options);
+  const Grid& grid = out.grid;
+  const std::size_t n = grid.count();
+  const int class_count = static_cast<int>(parts.size()) + 1;
+  const auto classes = classify(grid, labels, parts);
+
+  // Tissue: a level from the intensity (sharper than a voxel), or from the labels alone.
+  Field tissue(n), cost(n, 1.0f);
+  if (intensity) {
+    for_nodes(grid, [&](std::size_t i, const Vec3& p) { tissue[i] = intensity->linear(p); });
+    for (std::size_t i = 0; i < n; ++i) {
+      const double above = (static_cast<double>(tissue[i]) - options.tissue) / options.tissue_slope;
+      // Dark sulci cost up to 40 times the way through tissue: borders between parts settle in them.
+      cost[i] = static_cast<float>(1 + 40 * (1 - smoothstep((above + 0.3) / 1.0)));
+      tissue[i] = static_cast<float>(std::clamp(above, -3.0, 3.0));
+    }
+  } else {
+    Mask any(n);
+    for (std::size_t i = 0; i < n; ++i) any[i] = classes[i] != 0;
+    tissue = signed_distance(grid, any);
+  }
+  const auto owner = grow(grid, make_seeds(grid, classes, class_count, tissue, options.seed_depth), cost);
+
+  Field region(n, 1e3f);
+  if (options.radius > 0)
+    for_nodes(grid, [&](std::size_t i, const Vec3& p) {
+      region[i] = static_cast<float>(options.radius - norm(p - options.centre));
+    });
+
+  std::vector<Field> own(parts.size());
+  std::vector<Mask> masks(parts.size());
+  Mask mask(n);
+  const float slack = 0.3f;  // mm; a plain surface is left as it is by closing and opening
+  const float half_gap = static_cast<float>(options.gap / 2);
+  for (std::size_t a = 0; a < parts.size(); ++a) {
+    for (std::size_t i = 0; i < n; ++i) mask[i] = owner[i] == a + 1;
+    own[a] = signed_distance(grid, mask);
+    smooth(grid, own[a], options.border_smoothing);
+
+    // Small sulci and holes are closed on the tissue, then the part is cut out, cleaned and smoothed.
+    for (std::size_t i = 0; i < n; ++i) mask[i] = mask[i] && tissue[i] > 0;
+    const Field closed = closing_level(grid, mask, options.fine_closing);
+    Field fine(n);
+    for (std::size_t i = 0; i < n; ++i)
+      fine[i] = std::min({std::max(tissue[i], std::min(closed[i] - slack, 0.5f)), own[a][i] - half_gap, region[i]});
+    smooth(grid, fine, options.smoothing);
+    // Opening: the closing of the complement, read backwards. What it takes, the components clean up below.
+    Mask outside(n);
+    for (std::size_t i = 0; i < n; ++i) outside[i] = !(fine[i] > 0);
+    const Field opened = closing_level(grid, outside, options.fine_opening);
+    if (options.fine_opening > 0)
+      for (std::size_t i = 0; i < n; ++i) fine[i] = std::min(fine[i], std::max(slack - opened[i], -0.5f));
+    smooth(grid, fine, options.smoothing / 2);
+    for (std::size_t i = 0; i < n; ++i) mask[i] = fine[i] > 0;
+    const Mask kept = fill_holes(grid, largest_component(grid, mask));
+    bool empty = true;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (mask[i] && !kept[i]) fine[i] = -0.25f;  // an island
+      if (!mask[i] && kept[i]) fine[i] = 0.25f;   // a cavity
+      empty = empty && !kept[i];
+    }
+    if (empty) throw std::runtime_error("part " + parts[a].name + " is empty in the region of interest");
+    masks[a] = kept;
+    out.fine.push_back(std::move(fine));
+  }
+
+  for (std::size_t a = 0; a < parts.size(); ++a) {
+    Field coarse = closing_level(grid, masks[a], options.coarse_closing);
+    smooth(grid, coarse, options.coarse_smoothing);
+    const float outset = static_cast<float>(options.coarse_outset), apart = static_cast<float>(options.coarse_gap);
+    for (std::size_t i = 0; i < n; ++i)
+      coarse[i] = std::min({coarse[i] + outset, own[a][i] - apart, region[i] + outset});
+    for (std::size_t i = 0; i < n; ++i) mask[i] = coarse[i] > 0;
+    const Mask kept = fill_holes(grid, largest_component(grid, mask));
+    for (std::size_t i = 0; i < n; ++i) {
+      if (mask[i] && !kept[i]) coarse[i] = -0.25f;
+      if (!mask[i] && kept[i]) coarse[i] = 0.25f;
+    }
+    out.coarse.push_back(std::move(coarse));
+
+    for (std::size_t i = 0; i < n; ++i) {
+      mask[i] = 0;
+      for (std::size_t b = 0; b < parts.size(); ++b) mask[i] = mask[i] || (b != a && masks[b][i]);
+    }
+    out.others.push_back(distance_to(grid, mask));
+  }
+  return out;
+}
+
+}  // namespace insula::mesh_tool

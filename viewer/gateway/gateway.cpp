@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Threads and the listening socket of the gateway.
+#include "viewer/gateway/gateway.h"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <thread>
+
+#include "viewer/gateway/http_session.h"
+#include "viewer/gateway/hub.h"
+
+namespace asio = boost::asio;
+using asio::ip::tcp;
+
+namespace insula::gateway {
+
+struct Gateway::Impl {
+  Impl(Bus& bus, Options o)
+      : options(std::move(o)), hub(bus, [this](std::function<void()> f) { asio::post(io, std::move(f)); }) {}
+
+  Options options;
+  asio::io_context io{1};
+  tcp::acceptor acceptor{io};
+  asio::steady_timer retry{io};
+  Hub hub;
+  std::atomic<bool> stopping{false};
+  std::thread network, bus_thread;
+  std::uint16_t port = 0;
+
+  std::string open();
+  void accept();
+};
+
+std::string Gateway::Impl::open() {
+  boost::system::error_code error;
+  const auto address = asio::ip::make_address(options.listen, error);
+  if (error) return fmt::format("\"{}\" is no address to listen on", options.listen);
+  for (int i = 0; i <= options.more_ports; ++i) {
+    const int wanted = options.port == 0 ? 0 : options.port + i;
+    if (wanted > 65535) break;
+    const tcp::endpoint endpoint(address, std::uint16_t(wanted));
+    acceptor.open(endpoint.protocol(), error);
+    if (!error) acceptor.set_option(tcp::acceptor::reuse_address(true), error);  // a port whose old connections linger
+    if (!error) acceptor.bind(endpoint, error);
+    if (!error) acceptor.listen(tcp::acceptor::max_listen_connections, error);
+    if (!error) {
+      port = acceptor.local_endpoint().port();
+      return {};
+    }
+    boost::system::error_code ignored;
+    acceptor.close(ignored);
+    if (error != asio::error::address_in_use) break;
+  }
+  return fmt::format("cannot listen on {} port {}: {}", options.listen, options.port, error.message());
+}
+
+void Gateway::Impl::accept() {
+  acceptor.async_accept([this](boost::system::error_code error, tcp::socket socket) {
+    if (stopping) return;
+    if (!error) {
+      std::make_shared<HttpSession>(std::move(socket), hub, options.page)->start();
+      return accept();
+    }
+    // Out of file descriptors, most likely: wait for some to come back instead of spinning.
+    retry.expires_after(std::chrono::milliseconds(100));
+    retry.async_wait([this](boost::system::error_code stopped) {
+      if (!stopped && !stopping) accept();
+    });
+  });
+}
+
+Gateway::Gateway(Bus& bus, Options options) : impl_(std::make_unique<Impl>(bus, std::move(options))) {}
+
+Gateway::~Gateway() { stop(); }
+
+std::string Gateway::start() {
+  if (std::string error = impl_->open(); !error.empty()) return error;
+  impl_->accept();
+  impl_->network = std::thread([this] { impl_->io.run(); });
+  impl_->bus_thread = std::thread([this] {
+    while (!impl_->stopping) impl_->hub.poll(50);
+  });
+  return {};
+}
+
+void Gateway::stop() {
+  impl_->stopping = true;
+  if (impl_->bus_thread.joinable()) impl_->bus_thread.join();
+  impl_->io.stop();
+  if (impl_->network.joinable()) impl_->network.join();
+}
+
+std::uint16_t Gateway::port() const { return impl_->port; }
+
+std::string Gateway::url() const {
+  const std::string& at = impl_->options.listen;
+  std::string host = at == "0.0.0.0" || at == "::" ? "localhost" : at;
+  if (host.find(':') != std::string::npos) host = "[" + host + "]";
+  return fmt::format("http://{}:{}/", host, impl_->port);
+}
+
+}  // namespace insula::gateway

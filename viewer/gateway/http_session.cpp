@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// HTTP requests and their answers.
+#include "viewer/gateway/http_session.h"
+
+#include <boost/beast/websocket.hpp>
+#include <type_traits>
+
+#include "viewer/gateway/static_files.h"
+#include "viewer/gateway/ws_client.h"
+
+namespace insula::gateway {
+namespace {
+
+constexpr auto request_timeout = std::chrono::seconds(30);
+constexpr std::uint32_t header_limit = 16 * 1024;
+constexpr std::string_view not_built =
+    "<!doctype html><meta charset=utf-8><title>Insula</title><p>The viewer's page is not built. "
+    "Run <code>npm ci &amp;&amp; npm run build</code> in <code>viewer/page</code>, then start again.</p>\n";
+
+std::string_view view(beast::string_view s) { return {s.data(), s.size()}; }
+
+/// Host without its port.
+std::string_view host_name(std::string_view host) {
+  if (host.starts_with('[')) return host.substr(0, host.find(']') + 1);
+  return host.substr(0, host.find(':'));
+}
+
+/// A page of another site may open a WebSocket to this one: browsers send its origin, which must be ours. The port may
+/// differ (the page's development server). Programs that are no browsers send no origin.
+bool same_site(const http::request<http::empty_body>& request) {
+  std::string_view origin = view(request[http::field::origin]);
+  if (origin.empty()) return true;
+  const std::size_t scheme = origin.find("://");
+  if (scheme == std::string_view::npos) return false;
+  return host_name(origin.substr(scheme + 3)) == host_name(view(request[http::field::host]));
+}
+
+}  // namespace
+
+HttpSession::HttpSession(boost::asio::ip::tcp::socket&& socket, Hub& hub, const std::filesystem::path& page)
+    : stream_(std::move(socket)), hub_(hub), page_(page) {}
+
+void HttpSession::read() {
+  parser_.emplace();
+  parser_->header_limit(header_limit);
+  parser_->body_limit(0);
+  stream_.expires_after(request_timeout);
+  http::async_read(stream_, in_, *parser_, [self = shared_from_this()](beast::error_code error, std::size_t) {
+    self->on_read(error);
+  });
+}
+
+void HttpSession::on_read(beast::error_code error) {
+  if (error) return close();
+  const Request request = parser_->release();
+  if (beast::websocket::is_upgrade(request)) {
+    if (request.target() != "/ws" && !request.target().starts_with("/ws?"))
+      return send_text(request, http::status::not_found, "text/plain", "no WebSocket here\n");
+    if (!same_site(request)) return send_text(request, http::status::forbidden, "text/plain", "foreign origin\n");
+    return std::make_shared<WsClient>(std::move(stream_), hub_)->start(request);
+  }
+  answer(request);
+}
+
+void HttpSession::answer(const Request& request) {
+  if (request.method() != http::verb::get && request.method() != http::verb::head)
+    return send_text(request, http::status::method_not_allowed, "text/plain", "only GET and HEAD\n");
+  auto parts = split_target(view(request.target()));
+  const auto not_found = [&] { send_text(request, http::status::not_found, "text/plain", "not found\n"); };
+  if (!parts) return not_found();
+  if (*parts == std::vector<std::string>{"healthz"})
+    return send_text(request, http::status::ok, "application/json", hub_.health());
+  if (parts->front() == "bundle") {
+    if (parts->size() < 3) return not_found();
+    const auto file = hub_.bundle().find((*parts)[1], {parts->begin() + 2, parts->end()});
+    return file ? send_file(request, *file, "no-store") : not_found();
+  }
+  if (parts->back().empty()) parts->back() = "index.html";
+  const auto file = page_.empty() ? std::nullopt : file_below(page_, *parts);
+  if (file) {
+    // Built assets carry a hash in their name; everything else must be asked for again.
+    const bool hashed = parts->front() == "assets";
+    return send_file(request, *file, hashed ? "public, max-age=31536000, immutable" : "no-cache");
+  }
+  if (page_.empty() && *parts == std::vector<std::string>{"index.html"})
+    return send_text(request, http::status::service_unavailable, "text/html; charset=utf-8", std::string(not_built));
+  not_found();
+}
+
+void HttpSession::send_text(const Request& request, http::status status, std::string_view type, std::string body) {
+  http::response<http::string_body> response{status, request.version()};
+  response.set(http::field::content_type, beast::string_view(type.data(), type.size()));
+  response.set(http::field::cache_control, "no-store");
+  response.keep_alive(request.keep_alive());
+  if (request.method() == http::verb::head) {
+    response.content_length(body.size());  // of what GET would give
+  } else {
+    response.body() = std::move(body);
+    response.prepare_payload();
+  }
+  send(std::move(response));
+}
+
+void HttpSession::send_file(const Request& request, const std::filesystem::path& file, std::string_view caching) {
+  http::file_body::value_type body;
+  beast::error_code error;
+  body.open(file.c_str(), beast::file_mode::scan, error);
+  if (error) return send_text(request, http::status::not_found, "text/plain", "not found\n");
+  const auto set_head = [&](auto& response) {
+    const auto type = mime_type(file);
+    response.set(http::field::content_type, beast::string_view(type.data(), type.size()));
+    response.set(http::field::cache_control, beast::string_view(caching.data(), caching.size()));
+    response.set("X-Content-Type-Options", "nosniff");
+    response.keep_alive(request.keep_alive());
+  };
+  if (request.method() == http::verb::head) {
+    http::response<http::empty_body> response{http::status::ok, request.version()};
+    set_head(response);
+    response.content_length(body.size());
+    return send(std::move(response));
+  }
+  http::response<http::file_body> response{std::piecewise_construct, std::make_tuple(std::move(body)),
+                                           std::make_tuple(http::status::ok, request.version())};
+  set_head(response);
+  response.prepare_payload();
+  send(std::move(response));
+}
+
+template <class Response>
+void HttpSession::send(Response&& response) {
+  using Value = std::decay_t<Response>;
+  auto kept = std::make_shared<Value>(std::forward<Response>(response));
+  http::async_write(stream_, *kept, [self = shared_from_this(), kept](beast::error_code error, std::size_t) {
+    if (error || kept->need_eof()) return self->close();
+    self->read();
+  });
+}
+
+void HttpSession::close() {
+  beast::error_code ignored;
+  stream_.socket().shutdown(boost::asio::ip::tcp::socket::shutdown_send, ignored);
+}
+
+}  // namespace insula::gateway

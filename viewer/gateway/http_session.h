@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One HTTP connection: the page, the scene bundle, /healthz, and the upgrade to a WebSocket at /ws.
+#pragma once
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "viewer/gateway/hub.h"
+
+namespace insula::gateway {
+
+namespace beast = boost::beast;
+namespace http = beast::http;
+
+class HttpSession : public std::enable_shared_from_this<HttpSession> {
+ public:
+  HttpSession(boost::asio::ip::tcp::socket&& socket, Hub& hub, const std::filesystem::path& page);
+  void start() { read(); }
+
+ private:
+  using Request = http::request<http::empty_body>;
+  void read();
+  void on_read(beast::error_code error);
+  void answer(const Request& request);
+  void send_text(const Request& request, http::status status, std::string_view type, std::string body);
+  void send_file(const Request& request, const std::filesystem::path& file, std::string_view caching);
+  template <class Response>
+  void send(Response&& response);
+  void close();
+
+  beast::tcp_stream stream_;
+  Hub& hub_;
+  const std::filesystem::path& page_;
+  beast::flat_buffer in_;
+  std::optional<http::request_parser<http::empty_body>> parser_;
+};
+
+}  // namespace insula::gateway

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Bus messages to clients and back.
+#include "viewer/gateway/hub.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "core/bus/codec.h"
+
+namespace insula::gateway {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr auto device_state_period = std::chrono::microseconds(1'000'000 / 30);
+
+std::int64_t now_us() {
+  return std::chrono::duration_cast<std::chrono::microseconds>(Clock::now().time_since_epoch()).count();
+}
+
+constexpr std::array<std::string_view, topics> channel_of{channel::scene_info, channel::sim_event, channel::render_frame,
+                                                          channel::device_state, channel::haptic_status};
+
+}  // namespace
+
+Hub::Hub(Bus& bus, Post on_network_thread) : bus_(bus), post_(std::move(on_network_thread)) {
+  forward(channel::render_frame, Topic::render_frame, render_frame_);
+  forward(channel::scene_info, Topic::scene_info, scene_info_);
+  forward(channel::sim_event, Topic::sim_event, sim_event_);
+  forward(channel::haptic_status, Topic::haptic_status, haptic_status_);
+  forward(channel::device_state, Topic::device_state, device_state_);
+}
+
+template <class T>
+void Hub::forward(std::string_view channel, Topic topic, T& scratch) {
+  bus_.subscribe(channel, [this, channel, topic, &scratch](Bytes payload) {
+    Count& count = counts_[std::size_t(topic)];
+    ++count.received;
+    if (topic == Topic::device_state) {
+      // 250 a second on the bus; a picture needs 30.
+      const auto now = Clock::now();
+      if (now < next_device_state_) return;
+      next_device_state_ = std::max(next_device_state_ + device_state_period, now);
+    }
+    std::string why;
+    if (!decode(payload, scratch, why)) {
+      ++count.refused;
+      return;
+    }
+    Message message = frame(channel, payload);
+    if constexpr (std::is_same_v<T, insula_lcm::scene_info_t>) {
+      post_([this, message, info = scratch] {
+        last_scene_info_ = message;
+        session_ = info.session;
+        state_ = info.state;
+        bundle_.set(info.session, info.bundle);
+        broadcast(Topic::scene_info, message);
+      });
+    } else {
+      if (topic == Topic::render_frame) last_frame_us_ = now_us();
+      post_([this, topic, message] { broadcast(topic, message); });
+    }
+  });
+}
+
+void Hub::poll(int timeout_ms) { bus_.poll(timeout_ms); }
+
+void Hub::broadcast(Topic topic, const Message& message) {
+  for (const auto& client : clients_) client->send(topic, message);
+  sent_ += clients_.size();
+}
+
+void Hub::join(const std::shared_ptr<Client>& client) {
+  clients_.insert(client);
+  ++clients_ever_;
+  if (last_scene_info_) client->send(Topic::scene_info, last_scene_info_);
+}
+
+void Hub::leave(const Client* client) {
+  const auto found = std::find_if(clients_.begin(), clients_.end(), [&](const auto& c) { return c.get() == client; });
+  if (found == clients_.end()) return;
+  dropped_by_left_ += (*found)->dropped();
+  clients_.erase(found);
+}
+
+template <class T>
+bool Hub::republish(std::string_view channel, Bytes payload) {
+  auto message = decode<T>(payload);
+  if (!message) return false;
+  message->time_us = now_us();  // a browser's clock means nothing here
+  return publish(bus_, channel, *message, scratch_);
+}
+
+bool Hub::from_page(Bytes framed) {
+  bool ok = false;
+  if (const auto parts = unframe(framed)) {
+    if (parts->channel == channel::user_command)
+      ok = republish<insula_lcm::user_command_t>(channel::user_command, parts->payload);
+    else if (parts->channel == channel::hand_input)
+      ok = republish<insula_lcm::hand_input_t>(channel::hand_input, parts->payload);
+  }
+  ++(ok ? page_accepted_ : page_refused_);
+  return ok;
+}
+
+std::string Hub::health() const {
+  std::uint64_t dropped = dropped_by_left_;
+  for (const auto& client : clients_) dropped += client->dropped();
+  nlohmann::ordered_json j;
+  j["ok"] = bus_.good();
+  if (!bus_.good()) j["error"] = bus_.error();
+  j["uptime_s"] = std::chrono::duration<double>(Clock::now() - started_).count();
+  j["session"] = session_;
+  j["state"] = state_;
+  j["last_frame_age_ms"] = last_frame_us_ == 0 ? -1.0 : double(now_us() - last_frame_us_) / 1000;
+  j["clients"] = clients_.size();
+  j["clients_ever"] = clients_ever_;
+  j["sent"] = sent_;
+  j["dropped"] = dropped;
+  j["from_pages"] = {{"accepted", page_accepted_}, {"refused", page_refused_}};
+  for (std::size_t i = 0; i < topics; ++i)
+    j["channels"][std::string(channel_of[i])] = {{"received", counts_[i].received.load()}, {"refused", counts_[i].refused.load()}};
+  return j.dump(1) + "\n";
+}
+
+}  // namespace insula::gateway

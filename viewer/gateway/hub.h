@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Between the bus and the clients: what came from the bus goes to every client's outbox; what a page says is checked and
+// goes to the bus.
+#pragma once
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <insula_lcm/device_state_t.hpp>
+#include <insula_lcm/haptic_status_t.hpp>
+#include <insula_lcm/render_frame_t.hpp>
+#include <insula_lcm/scene_info_t.hpp>
+#include <insula_lcm/sim_event_t.hpp>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "core/bus/bus.h"
+#include "viewer/gateway/bundle.h"
+#include "viewer/gateway/outbox.h"
+
+namespace insula::gateway {
+
+/// A connected page, as the hub sees it. Called on the network thread.
+class Client {
+ public:
+  virtual ~Client() = default;
+  virtual void send(Topic topic, const Message& message) = 0;
+  virtual std::uint64_t dropped() const = 0;
+};
+
+class Hub {
+ public:
+  /// `on_network_thread` runs a function on the network thread, later, in order.
+  using Post = std::function<void(std::function<void()>)>;
+  Hub(Bus& bus, Post on_network_thread);
+
+  /// Waits up to timeout_ms for messages and passes them on. Called by the bus thread alone.
+  void poll(int timeout_ms);
+
+  // The rest is called on the network thread alone.
+  void join(const std::shared_ptr<Client>& client);  ///< gets the last SCENE_INFO at once
+  void leave(const Client* client);
+  /// A page's message. Anything but a whole, plausible USER_COMMAND or HAND_INPUT is counted and dropped.
+  bool from_page(Bytes framed);
+  /// Counts a page's message dropped before it was looked at (text, too many a second).
+  void refuse_from_page() { ++page_refused_; }
+  std::string health() const;  ///< JSON
+  Bundle& bundle() { return bundle_; }
+
+ private:
+  template <class T>
+  void forward(std::string_view channel, Topic topic, T& scratch);
+  void broadcast(Topic topic, const Message& message);
+  template <class T>
+  bool republish(std::string_view channel, Bytes payload);
+
+  Bus& bus_;
+  Post post_;
+
+  // Bus thread.
+  insula_lcm::render_frame_t render_frame_;
+  insula_lcm::scene_info_t scene_info_;
+  insula_lcm::sim_event_t sim_event_;
+  insula_lcm::haptic_status_t haptic_status_;
+  insula_lcm::device_state_t device_state_;
+  std::chrono::steady_clock::time_point next_device_state_{};
+
+  // Both threads.
+  struct Count {
+    std::atomic<std::uint64_t> received{0}, refused{0};
+  };
+  std::array<Count, topics> counts_;
+  std::atomic<std::int64_t> last_frame_us_{0};
+
+  // Network thread.
+  std::set<std::shared_ptr<Client>> clients_;  // order does not matter: each gets the same
+  Message last_scene_info_;
+  std::int64_t session_ = 0;
+  std::string state_;
+  Bundle bundle_;
+  std::vector<std::uint8_t> scratch_;
+  std::uint64_t page_accepted_ = 0, page_refused_ = 0, clients_ever_ = 0, sent_ = 0, dropped_by_left_ = 0;
+  std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace insula::gateway

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The gateway program: LCM on one side, browsers on the other.
+#include <fmt/format.h>
+#include <signal.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "core/bus/bus.h"
+#include "viewer/gateway/gateway.h"
+#include "viewer/gateway/static_files.h"
+
+int main(int argc, char** argv) {
+  CLI::App app{"Insula's gateway: serves the viewer's page and joins it to the running simulation"};
+  insula::gateway::Options options;
+  bool exact = false;
+  app.add_option("--page", options.page, "folder with the built page (index.html)");
+  app.add_option("--port", options.port, "port to listen on; following ones are tried when it is busy; 0: any")->capture_default_str();
+  app.add_flag("--exact-port", exact, "fail when the port is busy");
+  app.add_option("--listen", options.listen, "address to listen on; 0.0.0.0 lets other machines watch")->capture_default_str();
+  CLI11_PARSE(app, argc, argv);
+  if (exact) options.more_ports = 0;
+  if (options.page.empty()) options.page = insula::gateway::find_page();
+
+  // Before any thread starts, so that all of them leave these signals to sigwait below.
+  sigset_t ends;
+  sigemptyset(&ends);
+  sigaddset(&ends, SIGINT);
+  sigaddset(&ends, SIGTERM);
+  pthread_sigmask(SIG_BLOCK, &ends, nullptr);
+  signal(SIGPIPE, SIG_IGN);
+
+  const auto bus = insula::make_bus();
+  if (!bus->good()) {
+    fmt::print(stderr, "{}\n", bus->error());
+    return 1;
+  }
+  insula::gateway::Gateway gateway(*bus, options);
+  if (const std::string error = gateway.start(); !error.empty()) {
+    fmt::print(stderr, "{}\n", error);
+    return 1;
+  }
+  if (!bus->good()) {  // subscribing is where a missing multicast route shows
+    fmt::print(stderr, "{}\n", bus->error());
+    return 1;
+  }
+  if (options.page.empty()) fmt::print("the viewer's page is not built; serving the data alone\n");
+  fmt::print("serving {}\n", gateway.url());
+  std::fflush(stdout);
+  int which = 0;
+  sigwait(&ends, &which);
+  gateway.stop();
+  return 0;
+}

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What waits to be sent to one client. Its size is bounded whatever the client does: of each kind of state only the newest
+// message is kept, of events (which happen once) the last few hundred.
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+
+#include "viewer/gateway/framing.h"
+
+namespace insula::gateway {
+
+/// In order of urgency.
+enum class Topic { scene_info, sim_event, render_frame, device_state, haptic_status };
+inline constexpr std::size_t topics = 5;
+
+class Outbox {
+ public:
+  static constexpr std::size_t most_events = 256;
+
+  void put(Topic topic, Message message) {
+    if (topic == Topic::sim_event) {
+      if (events_.size() == most_events) {
+        events_.pop_front();
+        ++dropped_;
+      }
+      events_.push_back(std::move(message));
+      return;
+    }
+    Message& slot = newest_[std::size_t(topic)];
+    if (slot) ++dropped_;
+    slot = std::move(message);
+  }
+
+  /// The most urgent message, or null. Topics take turns below the first two, so that none starves.
+  Message take() {
+    if (Message m = std::move(newest_[std::size_t(Topic::scene_info)])) return m;
+    if (!events_.empty()) {
+      Message m = std::move(events_.front());
+      events_.pop_front();
+      return m;
+    }
+    constexpr std::size_t first = std::size_t(Topic::render_frame), count = topics - first;
+    for (std::size_t i = 0; i < count; ++i) {
+      turn_ = (turn_ + 1) % count;
+      if (Message m = std::move(newest_[first + turn_])) return m;
+    }
+    return nullptr;
+  }
+
+  std::uint64_t dropped() const { return dropped_; }  ///< messages a newer one replaced before they were sent
+
+  /// Bytes held, for the tests.
+  std::size_t bytes() const {
+    std::size_t n = 0;
+    for (const Message& m : newest_) n += m ? m->size() : 0;
+    for (const Message& m : events_) n += m->size();
+    return n;
+  }
+
+ private:
+  std::array<Message, topics> newest_;
+  std::deque<Message> events_;
+  std::size_t turn_ = topics - 1 - std::size_t(Topic::render_frame);
+  std::uint64_t dropped_ = 0;
+};
+
+}  // namespace insula::gateway

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The help overlay: every key and mouse action.
+import { el } from './dom';
+
+const rows: [string, string][] = [
+  ['Tab, 1, 2', 'choose the left or the right hand'],
+  ['left drag, arrow keys', 'move the tool in the picture plane (Shift: finer)'],
+  ['Shift + wheel, W / S', 'push the tool deeper, draw it back'],
+  ['Q / E', 'roll the tool about its shaft'],
+  ['A / D, R / F', 'swing the tool left and right, up and down about its tip'],
+  ['Space', 'button 1: suction, blade'],
+  ['B', 'button 2'],
+  ['G', 'release the hand (back to device or script)'],
+  ['right drag', 'turn the microscope'],
+  ['middle drag', 'move the field of view'],
+  ['wheel', 'zoom'],
+  ['double click', 'focus on that point; C: on the active tool'],
+  ['V', 'microscope back to its first view'],
+  ['P', 'pause, resume'],
+  ['H or ?', 'this help'],
+  ['touch', 'one finger moves the tool, two turn and zoom'],
+];
+
+export function make_help(): HTMLElement {
+  const table = el('table', {}, ...rows.map(([k, t]) => el('tr', {}, el('th', {}, k), el('td', {}, t))));
+  const panel = el('div', { class: 'panel help', role: 'dialog', 'aria-label': 'Help' }, el('h2', {}, 'Mouse and keyboard'), table);
+  panel.hidden = true;
+  return panel;
+}

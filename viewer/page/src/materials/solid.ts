@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Everything that is not brain: bone, dura, drape, instrument metals and plastics.
+import * as THREE from 'three';
+import { noise_glsl, noise_texture } from './noise';
+
+interface Recipe {
+  base: THREE.MeshPhysicalMaterialParameters;
+  /** GLSL run after the base colour is known: may change diffuseColor; p is the position in millimetres. */
+  colour: string;
+  /** GLSL expression of the normal's tilt (object space). */
+  relief: string;
+}
+
+const recipes: Record<string, Recipe> = {
+  bone: {
+    base: { color: '#d9c9a8', roughness: 0.62, clearcoat: 0.35, clearcoatRoughness: 0.35 },
+    colour: `
+      vec4 a = noise(p * 0.22), b = noise(p * 1.3), c = noise(p * 3.4);
+      // Cut edge: the spongy layer between the tables, red marrow in its pores.
+      float cut = 1.0 - smoothstep(0.25, 0.65, abs(dot(normalize(v_object_normal), field_axis)));
+      float pores = smoothstep(0.10, 0.50, b.x + 0.35 * c.x);
+      diffuseColor.rgb *= 1.0 + 0.10 * a.x + 0.05 * b.x;
+      diffuseColor.rgb = mix(diffuseColor.rgb, vec3(0.42, 0.10, 0.06), cut * (0.18 + 0.60 * pores));
+      // A film of blood left on the outer table.
+      diffuseColor.rgb = mix(diffuseColor.rgb, diffuseColor.rgb * vec3(0.95, 0.60, 0.50), 0.55 * smoothstep(0.05, 0.65, a.x + 0.3 * b.x));`,
+    relief: '0.10 * noise(p * 1.3).yzw + 0.12 * noise(p * 3.4).yzw',
+  },
+  dura: {
+    base: { color: '#d2b1a2', roughness: 0.5, clearcoat: 0.8, clearcoatRoughness: 0.22, side: THREE.DoubleSide },
+    colour: `
+      vec4 a = noise(p * vec3(0.25, 0.9, 0.5)), b = noise(p * vec3(0.7, 2.6, 1.4));
+      diffuseColor.rgb *= 1.0 + 0.10 * a.x + 0.08 * b.x;
+      float line = 1.0 - smoothstep(0.0, 0.07, abs(noise(p * 0.24 + a.yzw * 0.5).x));
+      diffuseColor.rgb = mix(diffuseColor.rgb, vec3(0.45, 0.08, 0.07), 0.5 * line);
+      diffuseColor.rgb = mix(diffuseColor.rgb, vec3(0.50, 0.16, 0.13), 0.35 * smoothstep(0.2, 0.8, noise(p * 0.15 + 4.0).x));`,
+    relief: '0.16 * noise(p * vec3(0.25, 0.9, 0.5)).yzw + 0.12 * noise(p * vec3(0.7, 2.6, 1.4)).yzw',
+  },
+  drape: {
+    base: { color: '#1e5b55', roughness: 0.92, sheen: 0.4, sheenRoughness: 0.6, sheenColor: new THREE.Color('#3f8a82'), side: THREE.DoubleSide },
+    colour: `
+      vec4 a = noise(p * 0.12);
+      vec2 weave = sin(vec2(dot(p, vec3(1.0, 0.35, -0.2)), dot(p, vec3(-0.3, 0.9, 0.55))) * 9.0);
+      diffuseColor.rgb *= 0.95 + 0.12 * a.x + 0.07 * weave.x * weave.y;
+      // Damp near the wound.
+      diffuseColor.rgb *= 0.80 + 0.20 * smoothstep(-0.4, 0.5, a.x);`,
+    relief: '0.22 * noise(p * 0.12).yzw + 0.10 * noise(p * 0.45).yzw + 0.10 * noise(p * 4.0).yzw',
+  },
+  steel: {
+    base: { color: '#c9ccd0', metalness: 1, roughness: 0.27 },
+    colour: 'diffuseColor.rgb *= 0.97 + 0.05 * noise(p * 0.6).x;',
+    relief: '0.012 * noise(p * vec3(6.0, 6.0, 0.4)).yzw',
+  },
+  steel_dark: {
+    base: { color: '#6d7076', metalness: 1, roughness: 0.4 },
+    colour: 'diffuseColor.rgb *= 0.95 + 0.08 * noise(p * 0.6).x;',
+    relief: '0.03 * noise(p * vec3(5.0, 5.0, 0.5)).yzw',
+  },
+  polymer: {
+    base: { color: '#20242b', roughness: 0.5, clearcoat: 0.25, clearcoatRoughness: 0.4 },
+    colour: '',
+    relief: '0.02 * noise(p * 3.0).yzw',
+  },
+  gold: {
+    base: { color: '#e0b45c', metalness: 1, roughness: 0.26 },
+    colour: '',
+    relief: '0.012 * noise(p * vec3(5.0, 5.0, 0.5)).yzw',
+  },
+};
+
+export const solid_names = Object.keys(recipes);
+
+/** `field_axis`: direction out of the operating field, to tell tables of bone from cut edges. */
+export function solid_material(name: string, field_axis = new THREE.Vector3(0, 0, 1), rgba?: readonly number[]): THREE.MeshPhysicalMaterial {
+  const recipe = recipes[name] ?? recipes.steel!;
+  const m = new THREE.MeshPhysicalMaterial(recipe.base);
+  if (name === 'polymer' && rgba) m.color.setRGB(rgba[0]!, rgba[1]!, rgba[2]!, THREE.SRGBColorSpace);
+  m.onBeforeCompile = (shader) => {
+    shader.uniforms.noise_map = { value: noise_texture() };
+    shader.uniforms.field_axis = { value: field_axis };
+    shader.vertexShader = shader.vertexShader
+      .replace('#include <common>', '#include <common>\nvarying vec3 v_object; varying vec3 v_object_normal;')
+      .replace('#include <project_vertex>', '#include <project_vertex>\nv_object = position * 1000.0; v_object_normal = normal;');
+    shader.fragmentShader = shader.fragmentShader
+      .replace('#include <common>', `#include <common>\n${noise_glsl}\nvarying vec3 v_object; varying vec3 v_object_normal; uniform vec3 field_axis; uniform mat3 normalMatrix;`)
+      .replace('#include <color_fragment>', `#include <color_fragment>\nvec3 p = v_object;\n{${recipe.colour}}`)
+      .replace('#include <normal_fragment_maps>', `#include <normal_fragment_maps>\nnormal = bump(normal, normalMatrix * (${recipe.relief}));`);
+  };
+  m.customProgramCacheKey = () => `solid_${name}`;
+  return m;
+}

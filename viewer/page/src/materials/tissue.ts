@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Wet brain surface: colour from baked convexity and openness, fine capillaries and mottling from noise, a glistening film
+// (clearcoat) broken up by small bumps, red light bleeding at grazing angles, fissure and sulci dark.
+import * as THREE from 'three';
+import { inject_skinning, type SkinTexture } from '../skin_shader';
+import { noise_glsl, noise_texture } from './noise';
+
+export interface TissueLook {
+  crown: string;
+  sulcus: string;
+  deep: string;
+  capillary: string;
+  /** 0..1: how many capillaries show. */
+  capillaries: number;
+  /** 0..1: whitish arachnoid haze over the sulci. */
+  haze: number;
+}
+
+export const looks: Record<string, TissueLook> = {
+  cortex: { crown: '#dcab97', sulcus: '#b9645a', deep: '#5c1a17', capillary: '#a02a24', capillaries: 1.0, haze: 0.5 },
+  pia: { crown: '#d9a795', sulcus: '#b05d54', deep: '#5c1a17', capillary: '#9c2822', capillaries: 1.0, haze: 0.7 },
+  insula: { crown: '#d39c8a', sulcus: '#a9584f', deep: '#571815', capillary: '#9a241f', capillaries: 0.9, haze: 0.3 },
+};
+
+export function tissue_material(look: TissueLook, skin: SkinTexture | null): THREE.MeshPhysicalMaterial {
+  const m = new THREE.MeshPhysicalMaterial({
+    color: 0xffffff, roughness: 0.62, metalness: 0, ior: 1.38, specularIntensity: 0.6,
+    clearcoat: 1, clearcoatRoughness: 0.2,
+  });
+  m.onBeforeCompile = (shader) => {
+    if (skin) inject_skinning(shader, skin);
+    shader.uniforms.noise_map = { value: noise_texture() };
+    shader.uniforms.crown = { value: new THREE.Color(look.crown) };
+    shader.uniforms.sulcus = { value: new THREE.Color(look.sulcus) };
+    shader.uniforms.deep = { value: new THREE.Color(look.deep) };
+    shader.uniforms.capillary = { value: new THREE.Color(look.capillary) };
+    shader.uniforms.amounts = { value: new THREE.Vector2(look.capillaries, look.haze) };
+    shader.vertexShader = shader.vertexShader
+      .replace('#include <common>', '#include <common>\nattribute vec2 shading; varying vec2 v_shading; varying vec3 v_rest;')
+      .replace('#include <project_vertex>', '#include <project_vertex>\nv_shading = shading; v_rest = position * 1000.0;');
+    shader.fragmentShader = shader.fragmentShader
+      .replace('#include <common>', `#include <common>
+        ${noise_glsl}
+        uniform vec3 crown, sulcus, deep, capillary;
+        uniform vec2 amounts;
+        uniform mat3 normalMatrix;
+        varying vec2 v_shading;
+        varying vec3 v_rest;
+        // Network of thin lines where warped noise crosses zero; width in noise units.
+        float network(vec3 p, vec3 warp, float width) {
+          float n = noise(p + warp).x;
+          return 1.0 - smoothstep(0.0, width, abs(n));
+        }`)
+      .replace('#include <color_fragment>', `#include <color_fragment>
+        float openness = v_shading.x;
+        vec4 coarse = noise(v_rest * 0.16);
+        vec4 middle = noise(v_rest * 0.55);
+        vec4 fine = noise(v_rest * 2.1);
+        vec3 warp = middle.yzw * 0.9;
+        float convexity = v_shading.y + 0.18 * coarse.x + 0.08 * middle.x;
+        float fold = smoothstep(0.22, -0.42, convexity);
+        vec3 tint = mix(crown, sulcus, fold);
+        // Patches: perfusion differs a little from gyrus to gyrus.
+        tint *= 1.0 + 0.07 * coarse.x + 0.05 * middle.x + 0.05 * fine.x;
+        tint = mix(tint, tint * vec3(1.08, 0.86, 0.80), smoothstep(0.0, 0.7, noise(v_rest * 0.3 + 7.3).x));
+        // Capillaries: a coarse and a fine net, patchy.
+        float net = 0.75 * network(v_rest * 0.34, warp, 0.055) * smoothstep(-0.25, 0.35, noise(v_rest * 0.21 + 3.1).x)
+          + 0.55 * network(v_rest * 0.95 + 11.0, warp * 0.7, 0.11) * smoothstep(-0.1, 0.5, noise(v_rest * 0.33 + 5.7).x);
+        tint = mix(tint, capillary, clamp(net, 0.0, 1.0) * 0.62 * amounts.x);
+        tint = mix(tint, vec3(0.86, 0.78, 0.74), amounts.y * 0.30 * smoothstep(0.1, 0.9, fold) * smoothstep(-0.3, 0.6, middle.x) * openness);
+        tint = mix(deep, tint, smoothstep(0.06, 0.62, openness));
+        diffuseColor.rgb *= tint;`)
+      .replace('#include <roughnessmap_fragment>', `#include <roughnessmap_fragment>
+        roughnessFactor = clamp(roughnessFactor + 0.12 * fine.x, 0.3, 0.9);`)
+      .replace('#include <normal_fragment_maps>', `#include <normal_fragment_maps>
+        vec3 ripple = normalMatrix * (0.16 * middle.yzw + 0.13 * fine.yzw + 0.05 * noise(v_rest * 5.3).yzw);
+        normal = bump(normal, ripple);`)
+      .replace('#include <clearcoat_normal_fragment_maps>', `#include <clearcoat_normal_fragment_maps>
+        // The fluid film evens out the finest relief.
+        clearcoatNormal = bump(clearcoatNormal, normalMatrix * (0.17 * middle.yzw + 0.12 * fine.yzw));`)
+      .replace('#include <lights_physical_fragment>', `#include <lights_physical_fragment>
+        material.clearcoatRoughness = clamp(0.17 + 0.09 * coarse.x + 0.05 * fine.x, 0.06, 1.0);`)
+      .replace('#include <lights_fragment_end>', `#include <lights_fragment_end>
+        // Light scattered below the surface comes out redder where the surface turns away.
+        float facing = saturate(dot(normalize(vViewPosition), nonPerturbedNormal));
+        float rim = (1.0 - facing) * (1.0 - facing);
+        reflectedLight.directDiffuse *= mix(vec3(1.0), vec3(1.06, 0.74, 0.68), rim);
+        reflectedLight.indirectDiffuse += diffuseColor.rgb * vec3(0.20, 0.045, 0.03) * openness;
+        float shut = openness * openness;
+        reflectedLight.indirectDiffuse *= openness;
+        reflectedLight.indirectSpecular *= shut;
+        reflectedLight.directDiffuse *= mix(0.25, 1.0, openness);
+        reflectedLight.directSpecular *= mix(0.15, 1.0, openness);
+        clearcoatSpecularIndirect *= shut;
+        clearcoatSpecularDirect *= mix(0.1, 1.0, shut);`);
+  };
+  m.customProgramCacheKey = () => `tissue_${skin ? 'skinned' : 'static'}`;
+  return m;
+}
+
+/** Vessel walls: wet, dark at the edges as blood absorbs more along the longer path. */
+export function vessel_material(skin: SkinTexture | null): THREE.MeshPhysicalMaterial {
+  const m = new THREE.MeshPhysicalMaterial({ color: 0xffffff, roughness: 0.42, clearcoat: 1, clearcoatRoughness: 0.14, ior: 1.4 });
+  m.onBeforeCompile = (shader) => {
+    if (skin) inject_skinning(shader, skin);
+    shader.uniforms.noise_map = { value: noise_texture() };
+    shader.vertexShader = shader.vertexShader
+      .replace('#include <common>', '#include <common>\nattribute vec2 vessel; varying vec2 v_vessel; varying vec3 v_rest;')
+      .replace('#include <project_vertex>', '#include <project_vertex>\nv_vessel = vessel; v_rest = position * 1000.0;');
+    shader.fragmentShader = shader.fragmentShader
+      .replace('#include <common>', `#include <common>\n${noise_glsl}\nvarying vec2 v_vessel; varying vec3 v_rest; uniform mat3 normalMatrix;`)
+      .replace('#include <color_fragment>', `#include <color_fragment>
+        vec4 blood = noise(v_rest * 0.8);
+        vec3 artery = vec3(0.42, 0.030, 0.026), vein = vec3(0.145, 0.020, 0.042);
+        float edge = saturate(dot(normalize(vViewPosition), normalize(vNormal)));
+        diffuseColor.rgb = mix(artery, vein, v_vessel.x) * (0.9 + 0.2 * blood.x) * mix(0.5, 1.25, edge);
+        diffuseColor.rgb *= mix(0.35, 1.0, v_vessel.y);`)
+      .replace('#include <clearcoat_normal_fragment_maps>', `#include <clearcoat_normal_fragment_maps>
+        clearcoatNormal = bump(clearcoatNormal, normalMatrix * (0.10 * noise(v_rest * 1.4).yzw));`)
+      .replace('#include <lights_fragment_end>', `#include <lights_fragment_end>
+        reflectedLight.indirectDiffuse *= v_vessel.y;
+        reflectedLight.indirectSpecular *= v_vessel.y;
+        clearcoatSpecularIndirect *= v_vessel.y * v_vessel.y;
+        clearcoatSpecularDirect *= mix(0.1, 1.0, v_vessel.y);`);
+  };
+  m.customProgramCacheKey = () => `vessel_${skin ? 'skinned' : 'static'}`;
+  return m;
+}

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Fine surfaces that follow the nodes of a body. Positions: x = sum_i w_i x_i over four nodes. Normals: the cofactor matrix of
+// the deformation gradient F of each tetrahedron, averaged to the nodes and interpolated like the positions, so that the
+// shading stays smooth across tetrahedra: n' ~ sum_i w_i C_i n, with C = cof(F) = sum_k c_k (x) e_k / det(E),
+// e_k the rest edges, c_k the cross products of the deformed edges (cof(D) columns).
+
+/** Texels per node in the node texture: position and the three columns of C. */
+export const texels_per_node = 4;
+export const texture_width = 256;
+
+/** Node positions and normal transforms of one body in the layout of its float texture (RGBA per texel). */
+export class NodeField {
+  readonly rows: number;
+  readonly texels: Float32Array<ArrayBuffer>;
+  private readonly tets: Uint32Array;
+  private readonly rest_edges: Float32Array;
+
+  /** `quads`: node quadruples of the tetrahedra that carry surface vertices, repeats allowed. */
+  constructor(readonly rest: Float32Array, quads: Uint32Array[]) {
+    const nodes = rest.length / 3;
+    this.rows = Math.max(1, Math.ceil((nodes * texels_per_node) / texture_width));
+    this.texels = new Float32Array(this.rows * texture_width * 4);
+    this.tets = unique_tets(rest, quads);
+    this.rest_edges = new Float32Array((this.tets.length / 4) * 9);
+    const e = new Float64Array(9);
+    for (let t = 0; t < this.tets.length / 4; t++) {
+      edges(rest, this.tets, t, e);
+      // Inverted numbering would flip the normals: the sign goes into the rest edges once.
+      const sign = determinant(e) < 0 ? -1 : 1;
+      for (let k = 0; k < 9; k++) this.rest_edges[t * 9 + k] = e[k]! * sign;
+    }
+    this.update(rest);
+  }
+
+  /** x: node positions, 3 per node. */
+  update(x: Float32Array): void {
+    const nodes = this.rest.length / 3;
+    const out = this.texels;
+    for (let i = 0; i < nodes; i++) {
+      const o = i * 16;
+      out[o] = x[3 * i]!; out[o + 1] = x[3 * i + 1]!; out[o + 2] = x[3 * i + 2]!; out[o + 3] = 1;
+      out.fill(0, o + 4, o + 16);
+    }
+    const d = new Float64Array(9);
+    const c = new Float64Array(9);
+    const E = this.rest_edges;
+    for (let t = 0; t < this.tets.length / 4; t++) {
+      edges(x, this.tets, t, d);
+      cross(d, 3, 6, c, 0);
+      cross(d, 6, 0, c, 3);
+      cross(d, 0, 3, c, 6);
+      for (let j = 0; j < 3; j++) {
+        // Column j of the volume-weighted C.
+        const ex = E[t * 9 + j]!, ey = E[t * 9 + 3 + j]!, ez = E[t * 9 + 6 + j]!;
+        const cx = c[0]! * ex + c[3]! * ey + c[6]! * ez;
+        const cy = c[1]! * ex + c[4]! * ey + c[7]! * ez;
+        const cz = c[2]! * ex + c[5]! * ey + c[8]! * ez;
+        for (let k = 0; k < 4; k++) {
+          const o = this.tets[t * 4 + k]! * 16 + 4 + j * 4;
+          out[o] = out[o]! + cx; out[o + 1] = out[o + 1]! + cy; out[o + 2] = out[o + 2]! + cz;
+        }
+      }
+    }
+    for (let i = 0; i < nodes; i++) {
+      const o = i * 16 + 4;
+      // Only directions matter later; one common scale a node keeps the interpolation well weighted.
+      let s = 0;
+      for (let k = 0; k < 12; k++) s += out[o + k]! * out[o + k]!;
+      if (s > 0) {
+        s = Math.sqrt(3 / s);
+        for (let k = 0; k < 12; k++) out[o + k] = out[o + k]! * s;
+      } else {
+        out[o] = 1; out[o + 5] = 1; out[o + 10] = 1;
+      }
+    }
+  }
+}
+
+/** The same law as the vertex shader, on the CPU; writes position and unit normal. */
+export function skin_vertex(field: NodeField, nodes: ArrayLike<number>, weights: ArrayLike<number>, v: number, normal: ArrayLike<number>,
+  out_position: number[], out_normal: number[]): void {
+  const m = new Float64Array(12);
+  let p0 = 0, p1 = 0, p2 = 0;
+  for (let k = 0; k < 4; k++) {
+    const o = nodes[v * 4 + k]! * 16;
+    const w = weights[v * 4 + k]!;
+    p0 += w * field.texels[o]!; p1 += w * field.texels[o + 1]!; p2 += w * field.texels[o + 2]!;
+    for (let j = 0; j < 12; j++) m[j] = m[j]! + w * field.texels[o + 4 + j]!;
+  }
+  out_position[0] = p0; out_position[1] = p1; out_position[2] = p2;
+  const a = normal[0]!, b = normal[1]!, c = normal[2]!;
+  const nx = m[0]! * a + m[4]! * b + m[8]! * c, ny = m[1]! * a + m[5]! * b + m[9]! * c, nz = m[2]! * a + m[6]! * b + m[10]! * c;
+  const l = Math.hypot(nx, ny, nz) || 1;
+  out_normal[0] = nx / l; out_normal[1] = ny / l; out_normal[2] = nz / l;
+}
+
+/** Weights of a point in a tetrahedron of rest nodes, extrapolated outside; null when the tetrahedron is flat. */
+export function barycentric(rest: Float32Array, quad: ArrayLike<number>, at: number, p: ArrayLike<number>): [number, number, number, number] | null {
+  const e = new Float64Array(9);
+  const n0 = quad[at]! * 3;
+  for (let k = 0; k < 3; k++) for (let j = 0; j < 3; j++) e[k * 3 + j] = rest[quad[at + k + 1]! * 3 + j]! - rest[n0 + j]!;
+  const det = determinant(e);
+  const size = Math.hypot(e[0]!, e[1]!, e[2]!) * Math.hypot(e[3]!, e[4]!, e[5]!) * Math.hypot(e[6]!, e[7]!, e[8]!);
+  if (Math.abs(det) <= 1e-6 * size) return null;
+  const d = [p[0]! - rest[n0]!, p[1]! - rest[n0 + 1]!, p[2]! - rest[n0 + 2]!];
+  const c = new Float64Array(9);
+  cross(e, 3, 6, c, 0);
+  cross(e, 6, 0, c, 3);
+  cross(e, 0, 3, c, 6);
+  const w = [0, 1, 2].map((k) => (d[0]! * c[k * 3]! + d[1]! * c[k * 3 + 1]! + d[2]! * c[k * 3 + 2]!) / det) as [number, number, number];
+  return [1 - w[0] - w[1] - w[2], w[0], w[1], w[2]];
+}
+
+function edges(x: Float32Array, tets: Uint32Array, t: number, out: Float64Array): void {
+  const a = tets[t * 4]! * 3;
+  for (let k = 0; k < 3; k++) {
+    const b = tets[t * 4 + 1 + k]! * 3;
+    for (let j = 0; j < 3; j++) out[k * 3 + j] = x[b + j]! - x[a + j]!;
+  }
+}
+
+function determinant(e: Float64Array): number {
+  return e[0]! * (e[4]! * e[8]! - e[5]! * e[7]!) - e[1]! * (e[3]! * e[8]! - e[5]! * e[6]!) + e[2]! * (e[3]! * e[7]! - e[4]! * e[6]!);
+}
+
+function cross(a: Float64Array, i: number, j: number, out: Float64Array, o: number): void {
+  out[o] = a[i + 1]! * a[j + 2]! - a[i + 2]! * a[j + 1]!;
+  out[o + 1] = a[i + 2]! * a[j]! - a[i]! * a[j + 2]!;
+  out[o + 2] = a[i]! * a[j + 1]! - a[i + 1]! * a[j]!;
+}
+
+function unique_tets(rest: Float32Array, quads: Uint32Array[]): Uint32Array {
+  const seen = new Map<string, number[]>();
+  const e = new Float64Array(9);
+  for (const q of quads) {
+    for (let i = 0; i + 3 < q.length; i += 4) {
+      const key = `${q[i]},${q[i + 1]},${q[i + 2]},${q[i + 3]}`;
+      if (seen.has(key)) continue;
+      const quad = [q[i]!, q[i + 1]!, q[i + 2]!, q[i + 3]!];
+      edges(rest, Uint32Array.from(quad), 0, e);
+      const size = Math.hypot(e[0]!, e[1]!, e[2]!) * Math.hypot(e[3]!, e[4]!, e[5]!) * Math.hypot(e[6]!, e[7]!, e[8]!);
+      if (Math.abs(determinant(e)) > 1e-6 * size) seen.set(key, quad);
+    }
+  }
+  return Uint32Array.from([...seen.values()].flat());
+}

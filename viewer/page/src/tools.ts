@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Instruments at their streamed poses, and a faint ghost where the hand is when the tool is held back far from it.
+import * as THREE from 'three';
+import type { ToolData } from './bundle';
+import { creased } from './geometry';
+import { solid_material } from './materials/solid';
+
+const ghost_from_m = 0.004;
+
+export class Tool {
+  readonly group = new THREE.Group();
+  private readonly ghost = new THREE.Group();
+  private readonly ghost_material = new THREE.MeshBasicMaterial({ color: 0x8fd8ff, transparent: true, opacity: 0, depthWrite: false });
+  private readonly owned: { dispose(): void }[] = [];
+
+  constructor(readonly data: ToolData) {
+    for (const part of data.parts) {
+      const shape = creased(part.positions, part.indices, 0.6);
+      const geometry = new THREE.BufferGeometry();
+      geometry.setAttribute('position', new THREE.BufferAttribute(shape.positions, 3));
+      geometry.setAttribute('normal', new THREE.BufferAttribute(shape.normals, 3));
+      const material = solid_material(part.material, undefined, part.rgba);
+      const mesh = new THREE.Mesh(geometry, material);
+      mesh.castShadow = true;
+      mesh.receiveShadow = true;
+      this.group.add(mesh);
+      this.ghost.add(new THREE.Mesh(geometry, this.ghost_material));
+      this.owned.push(geometry, material);
+    }
+    this.owned.push(this.ghost_material);
+    this.ghost.visible = false;
+    this.group.visible = false;
+  }
+
+  add_to(scene: THREE.Object3D): void { scene.add(this.group, this.ghost); }
+
+  set_pose(p: THREE.Vector3, q: THREE.Quaternion, device: THREE.Vector3): void {
+    this.group.visible = true;
+    this.group.position.copy(p);
+    this.group.quaternion.copy(q);
+    const gap = device.distanceTo(p);
+    this.ghost.visible = gap > ghost_from_m;
+    this.ghost.position.copy(device);
+    this.ghost.quaternion.copy(q);
+    this.ghost_material.opacity = Math.min(0.16, (gap - ghost_from_m) * 12);
+  }
+
+  hide(): void {
+    this.group.visible = false;
+    this.ghost.visible = false;
+  }
+
+  dispose(): void {
+    this.group.removeFromParent();
+    this.ghost.removeFromParent();
+    for (const o of this.owned) o.dispose();
+  }
+}

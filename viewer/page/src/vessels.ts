@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Pial vessels: arteries and veins grown over a tissue surface at load as branching random walks, and made into half-sunk tubes.
+import { make_random } from './random';
+import type { Shading, Tissue } from './occlusion';
+import { PointGrid } from './spatial';
+
+export interface Vessel {
+  kind: 'artery' | 'vein';
+  points: number[][];
+  normals: number[][];
+  radii: number[];
+}
+
+export interface VesselStyle {
+  /** Trees per square metre of surface. */
+  density_m2: number;
+  radius_m: [number, number];
+  length_m: [number, number];
+  vein_share: number;
+}
+
+const step_m = 0.0006;
+
+/** Walks over a point-sampled surface; each step is projected onto the local average plane, so paths are smooth. */
+class Walker {
+  private readonly grid: PointGrid;
+  constructor(private readonly t: Tissue) { this.grid = new PointGrid(t.positions, 0.0015); }
+
+  /** Foot point and normal near q, or null off the mesh. */
+  project(q: number[]): { x: number[]; n: number[] } | null {
+    let w = 0;
+    const c = [0, 0, 0];
+    const n = [0, 0, 0];
+    let near = Infinity;
+    this.grid.near(q[0]!, q[1]!, q[2]!, 0.0022, (i, d2) => {
+      const g = Math.exp(-d2 / 1.0e-6);
+      near = Math.min(near, d2);
+      w += g;
+      for (let k = 0; k < 3; k++) { c[k] = c[k]! + g * this.t.positions[i * 3 + k]!; n[k] = n[k]! + g * this.t.normals[i * 3 + k]!; }
+    });
+    if (!(w > 0) || near > 1.4e-6) return null;
+    const l = Math.hypot(n[0]!, n[1]!, n[2]!);
+    // Opposite walls of a sulcus cancel: no surface to follow there.
+    if (l < 0.5 * w) return null;
+    for (let k = 0; k < 3; k++) { c[k] = c[k]! / w; n[k] = n[k]! / l; }
+    const h = (q[0]! - c[0]!) * n[0]! + (q[1]! - c[1]!) * n[1]! + (q[2]! - c[2]!) * n[2]!;
+    return { x: [q[0]! - h * n[0]!, q[1]! - h * n[1]!, q[2]! - h * n[2]!], n };
+  }
+}
+
+export function grow_vessels(tissue: Tissue, shading: Shading, style: VesselStyle, seed: number): Vessel[] {
+  const random = make_random(seed);
+  const walker = new Walker(tissue);
+  const p = tissue.positions;
+  const count = p.length / 3;
+  const vessels: Vessel[] = [];
+  const taken: number[][] = [];
+  let area = 0;
+  for (let i = 0; i < tissue.indices.length; i += 3) area += triangle_area(p, tissue.indices, i);
+  const trees = Math.round(area * style.density_m2);
+
+  // Seeds lie at the lips of sulci and of the fissure, where the vessels come up; they keep their distance.
+  const seeds: number[] = [];
+  const spacing = 0.7 * Math.sqrt(1 / style.density_m2);
+  for (let tries = 0; tries < trees * 60 && seeds.length < trees; tries++) {
+    const v = Math.floor(random() * count);
+    if (shading.openness[v]! < 0.3 || shading.openness[v]! > 0.85) continue;
+    if (seeds.some((s) => distance(p, s, p, v) < spacing)) continue;
+    seeds.push(v);
+  }
+
+  const free = (x: number[], own: number[][], clearance: number) =>
+    taken.every((t) => t === x || own.includes(t) || Math.hypot(t[0]! - x[0]!, t[1]! - x[1]!, t[2]! - x[2]!) > clearance);
+
+  const grow = (kind: Vessel['kind'], start: number[], direction: number[], radius: number, length: number, depth: number, own: number[][]) => {
+    const vessel: Vessel = { kind, points: [], normals: [], radii: [] };
+    let x = start;
+    let d = direction;
+    let bend = 0;
+    const steps = Math.round(length / step_m);
+    const branches: (() => void)[] = [];
+    let since_branch = 0;
+    for (let s = 0; s < steps; s++) {
+      const foot = walker.project(x);
+      if (!foot) break;
+      if (s > 6 && !free(foot.x, own, radius * 2 + 0.0012)) break;
+      const n = foot.n;
+      const along = d[0]! * n[0]! + d[1]! * n[1]! + d[2]! * n[2]!;
+      d = unit([d[0]! - along * n[0]!, d[1]! - along * n[1]!, d[2]! - along * n[2]!]);
+      vessel.points.push(foot.x);
+      vessel.normals.push(n);
+      const left = 1 - s / steps;
+      vessel.radii.push(radius * (0.35 + 0.65 * Math.sqrt(left)) * (1 + 0.06 * (random() - 0.5)));
+      // Meander: a slowly changing turn about the normal.
+      bend = 0.86 * bend + (random() - 0.5) * (kind === 'artery' ? 0.34 : 0.22);
+      d = turn(d, n, bend * 0.42);
+      since_branch++;
+      if (depth < 3 && since_branch > 8 && s < steps - 8 && random() < 0.085) {
+        since_branch = 0;
+        const side = random() < 0.5 ? -1 : 1;
+        const from = foot.x;
+        const heading = turn(d, n, side * (0.6 + 0.5 * random()));
+        const r = vessel.radii[s]! * (0.55 + 0.2 * random());
+        const l = length * left * (0.5 + 0.4 * random());
+        branches.push(() => grow(kind, from, heading, r, l, depth + 1, own));
+      }
+      x = [foot.x[0]! + d[0]! * step_m, foot.x[1]! + d[1]! * step_m, foot.x[2]! + d[2]! * step_m];
+    }
+    if (vessel.points.length < 6) return;
+    // Everything of this tree may touch itself; other trees stay clear of it.
+    for (let i = 0; i < vessel.points.length; i += 2) { taken.push(vessel.points[i]!); own.push(vessel.points[i]!); }
+    vessels.push(vessel);
+    for (const b of branches) b();
+  };
+
+  for (const v of seeds) {
+    const n = [...tissue.normals.subarray(v * 3, v * 3 + 3)];
+    const around = random() * Math.PI * 2;
+    const side = unit(Math.abs(n[0]!) < 0.8 ? [0, n[2]!, -n[1]!] : [n[1]!, -n[0]!, 0]);
+    const kind = random() < style.vein_share ? 'vein' : 'artery';
+    const size = style.radius_m[0] + (style.radius_m[1] - style.radius_m[0]) * random() ** 2;
+    const length = style.length_m[0] + (style.length_m[1] - style.length_m[0]) * random();
+    const start = [...p.subarray(v * 3, v * 3 + 3)];
+    const own: number[][] = [];
+    const heading = turn(side, n, around);
+    grow(kind, start, heading, size * (kind === 'vein' ? 1.3 : 1), length, 0, own);
+    // The trunk runs on to the other side, into the depth.
+    grow(kind, start, [-heading[0]!, -heading[1]!, -heading[2]!], size * (kind === 'vein' ? 1.3 : 1), length * 0.5, 1, own);
+  }
+  return vessels;
+}
+
+export interface TubeData {
+  positions: number[];
+  normals: number[];
+  indices: number[];
+  /** 0 artery, 1 vein. */
+  kind: number[];
+  /** Surface point below each vertex, for shading and skinning. */
+  foot: number[];
+}
+
+export function make_tubes(vessels: Vessel[], sides: number): TubeData {
+  const out: TubeData = { positions: [], normals: [], indices: [], kind: [], foot: [] };
+  for (const v of vessels) {
+    const points = smooth_path(v.points);
+    const base = out.positions.length / 3;
+    for (let i = 0; i < points.length; i++) {
+      const a = points[Math.max(0, i - 1)]!, b = points[Math.min(points.length - 1, i + 1)]!;
+      const t = unit([b[0]! - a[0]!, b[1]! - a[1]!, b[2]! - a[2]!]);
+      const n = v.normals[i]!;
+      const s = unit(cross(t, n));
+      // Ends sink into the tissue instead of stopping in the air.
+      const end = Math.min(i, points.length - 1 - i);
+      const rise = Math.min(1, end / 5);
+      const r = v.radii[i]!;
+      const lift = r * (0.45 * rise - 0.9 * (1 - rise));
+      for (let k = 0; k < sides; k++) {
+        const angle = (k / sides) * Math.PI * 2;
+        const c = Math.cos(angle), h = Math.sin(angle);
+        for (let j = 0; j < 3; j++) {
+          out.positions.push(points[i]![j]! + n[j]! * (lift + 0.8 * r * h) + s[j]! * r * c);
+          out.normals.push(n[j]! * h * 1.1 + s[j]! * c);
+          out.foot.push(points[i]![j]!);
+        }
+        out.kind.push(v.kind === 'vein' ? 1 : 0);
+        if (i + 1 < points.length) {
+          const p00 = base + i * sides + k, p01 = base + i * sides + ((k + 1) % sides);
+          out.indices.push(p00, p00 + sides, p01, p01, p00 + sides, p01 + sides);
+        }
+      }
+    }
+  }
+  return out;
+}
+
+function smooth_path(points: number[][]): number[][] {
+  let now = points;
+  for (let n = 0; n < 3; n++)
+    now = now.map((p, i) => (i === 0 || i === now.length - 1 ? p : p.map((x, k) => 0.5 * x + 0.25 * (now[i - 1]![k]! + now[i + 1]![k]!))));
+  return now;
+}
+
+const cross = (a: number[], b: number[]) => [a[1]! * b[2]! - a[2]! * b[1]!, a[2]! * b[0]! - a[0]! * b[2]!, a[0]! * b[1]! - a[1]! * b[0]!];
+
+function unit(v: number[]): number[] {
+  const l = Math.hypot(v[0]!, v[1]!, v[2]!) || 1;
+  return [v[0]! / l, v[1]! / l, v[2]! / l];
+}
+
+/** Rotates tangent d about unit normal n. */
+function turn(d: number[], n: number[], angle: number): number[] {
+  const c = Math.cos(angle), s = Math.sin(angle);
+  const x = cross(n, d);
+  return unit([d[0]! * c + x[0]! * s, d[1]! * c + x[1]! * s, d[2]! * c + x[2]! * s]);
+}
+
+function distance(a: Float32Array, i: number, b: Float32Array, j: number): number {
+  return Math.hypot(a[i * 3]! - b[j * 3]!, a[i * 3 + 1]! - b[j * 3 + 1]!, a[i * 3 + 2]! - b[j * 3 + 2]!);
+}
+
+function triangle_area(p: Float32Array, idx: Uint32Array, i: number): number {
+  const a = idx[i]! * 3, b = idx[i + 1]! * 3, c = idx[i + 2]! * 3;
+  const u = [p[b]! - p[a]!, p[b + 1]! - p[a + 1]!, p[b + 2]! - p[a + 2]!], v = [p[c]! - p[a]!, p[c + 1]! - p[a + 1]!, p[c + 2]! - p[a + 2]!];
+  const n = cross(u, v);
+  return Math.hypot(n[0]!, n[1]!, n[2]!) / 2;
+}

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Everything drawn of one session: built from a bundle, moved by frames, thrown away when the session changes.
+import * as THREE from 'three';
+import type { Bundle, SkinnedSurface, SurfaceData } from './bundle';
+import { creased, smooth_normals } from './geometry';
+import { looks, tissue_material, vessel_material } from './materials/tissue';
+import { solid_material } from './materials/solid';
+import { bake_shading, type Shading, type Tissue } from './occlusion';
+import { Playback } from './playback';
+import { hash_text } from './random';
+import { barycentric, NodeField } from './skinning';
+import { set_skin_attributes, SkinTexture, skinned_depth_material } from './skin_shader';
+import { PointGrid } from './spatial';
+import { Strands } from './strands';
+import { Tool } from './tools';
+import { grow_vessels, make_tubes, type VesselStyle } from './vessels';
+
+const vessel_styles: Record<string, VesselStyle> = {
+  cortex: { density_m2: 9000, radius_m: [0.00016, 0.00052], length_m: [0.012, 0.042], vein_share: 0.42 },
+  insula: { density_m2: 5000, radius_m: [0.0004, 0.0010], length_m: [0.02, 0.045], vein_share: 0.12 },
+};
+
+const tissue_kinds = new Set(['cortex', 'pia', 'insula']);
+
+interface Moving {
+  index: number;
+  skin: SkinTexture;
+}
+
+export class World {
+  readonly root = new THREE.Group();
+  readonly tools = new Map<number, Tool>();
+  readonly strands: Strands | null;
+  /** What a double click can hit: static and skinned surfaces at rest. */
+  readonly bounds = new THREE.Box3();
+  private readonly moving: Moving[] = [];
+  private readonly owned: { dispose(): void }[] = [];
+
+  constructor(readonly bundle: Bundle, field_axis: THREE.Vector3) {
+    const plan: { surface: SurfaceData; skinned: SkinnedSurface | null; skin: SkinTexture | null; rest: Float32Array | null; tissue: Tissue }[] = [];
+    for (const body of bundle.bodies) {
+      if (body.surfaces.length === 0) continue;
+      const skin = new SkinTexture(new NodeField(body.rest, body.surfaces.map((s) => s.skin_nodes)));
+      this.moving.push({ index: body.index, skin });
+      this.owned.push(skin);
+      for (const s of body.surfaces) plan.push({ surface: s, skinned: s, skin, rest: body.rest, tissue: as_tissue(s) });
+    }
+    for (const s of bundle.static) {
+      if (tissue_kinds.has(s.material)) plan.push({ surface: s, skinned: null, skin: null, rest: null, tissue: as_tissue(s) });
+      else if (s.material === 'vessel') this.add_artery(s);
+      else this.add_solid(s, field_axis);
+    }
+    const shading = bake_shading(plan.map((p) => p.tissue));
+    plan.forEach((p, i) => {
+      if (tissue_kinds.has(p.surface.material)) this.add_tissue(p.surface, p.tissue, shading[i]!, p.skinned, p.skin, p.rest);
+      else this.add_tissue({ ...p.surface, material: p.surface.material === 'vessel' ? 'vessel' : 'pia' }, p.tissue, shading[i]!, p.skinned, p.skin, p.rest);
+    });
+    for (const t of bundle.tools) {
+      const tool = new Tool(t);
+      tool.add_to(this.root);
+      this.tools.set(t.index, tool);
+      this.owned.push(tool);
+    }
+    this.strands = bundle.strands.count > 0 ? new Strands(bundle.strands.count, bundle.strands.radius_m) : null;
+    if (this.strands) {
+      this.root.add(this.strands.mesh);
+      this.owned.push(this.strands);
+    }
+  }
+
+  update(playback: Playback, now_ms: number): void {
+    const frame = playback.latest;
+    if (!frame) return;
+    const t = playback.blend(now_ms);
+    for (const m of this.moving) {
+      const x = playback.nodes(m.index, t);
+      if (x && x.length === m.skin.field.rest.length) m.skin.update(x);
+    }
+    this.strands?.update(playback.strand_ends(t), frame.strand_health, frame.strand_tension_N, now_ms / 1000);
+    for (const [index, tool] of this.tools) {
+      const pair = playback.tool(index);
+      if (!pair) { tool.hide(); continue; }
+      const { a, b } = pair;
+      const p = vector(a.p_m).lerp(vector(b.p_m), t);
+      const q = quaternion(a.q).slerp(quaternion(b.q), t);
+      tool.set_pose(p, q, vector(a.device_p_m).lerp(vector(b.device_p_m), t));
+    }
+  }
+
+  set_shadows(on: boolean): void {
+    this.root.traverse((o) => { if (o instanceof THREE.Mesh && o.userData.casts !== undefined) o.castShadow = on && o.userData.casts; });
+  }
+
+  dispose(): void {
+    this.root.removeFromParent();
+    for (const o of this.owned) o.dispose();
+  }
+
+  private add(geometry: THREE.BufferGeometry, material: THREE.Material, casts: boolean, skin: SkinTexture | null): THREE.Mesh {
+    const mesh = new THREE.Mesh(geometry, material);
+    mesh.castShadow = casts;
+    mesh.receiveShadow = true;
+    mesh.userData.casts = casts;
+    if (skin) {
+      mesh.customDepthMaterial = skinned_depth_material(skin);
+      this.owned.push(mesh.customDepthMaterial);
+      mesh.frustumCulled = false;
+    }
+    this.root.add(mesh);
+    this.owned.push(geometry, material);
+    return mesh;
+  }
+
+  private add_solid(s: SurfaceData, field_axis: THREE.Vector3): void {
+    const shape = creased(s.positions, s.indices, s.material === 'bone' ? 0.75 : 1.1);
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute('position', new THREE.BufferAttribute(shape.positions, 3));
+    geometry.setAttribute('normal', new THREE.BufferAttribute(shape.normals, 3));
+    this.add(geometry, solid_material(s.material, field_axis.clone()), true, null);
+  }
+
+  private add_artery(s: SurfaceData): void {
+    const tissue = as_tissue(s);
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute('position', new THREE.BufferAttribute(s.positions, 3));
+    geometry.setAttribute('normal', new THREE.BufferAttribute(tissue.normals, 3));
+    geometry.setIndex(new THREE.BufferAttribute(s.indices, 1));
+    geometry.setAttribute('vessel', new THREE.BufferAttribute(new Float32Array((s.positions.length / 3) * 2).map((_, i) => i % 2), 2));
+    this.add(geometry, vessel_material(null), true, null);
+  }
+
+  private add_tissue(s: SurfaceData, tissue: Tissue, shading: Shading, skinned: SkinnedSurface | null, skin: SkinTexture | null, rest: Float32Array | null): void {
+    const n = s.positions.length / 3;
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute('position', new THREE.BufferAttribute(s.positions, 3));
+    geometry.setAttribute('normal', new THREE.BufferAttribute(tissue.normals, 3));
+    geometry.setIndex(new THREE.BufferAttribute(s.indices, 1));
+    if (skinned) set_skin_attributes(geometry, skinned.skin_nodes, skinned.skin_weights);
+    const pairs = new Float32Array(n * 2);
+    if (s.material === 'vessel') {
+      for (let i = 0; i < n; i++) pairs[i * 2 + 1] = shading.openness[i]!;
+      geometry.setAttribute('vessel', new THREE.BufferAttribute(pairs, 2));
+      this.add(geometry, vessel_material(skin), true, skin);
+      return;
+    }
+    for (let i = 0; i < n; i++) { pairs[i * 2] = shading.openness[i]!; pairs[i * 2 + 1] = shading.convexity[i]!; }
+    geometry.setAttribute('shading', new THREE.BufferAttribute(pairs, 2));
+    this.add(geometry, tissue_material(looks[s.material] ?? looks.cortex!, skin), true, skin);
+    this.add_vessels(s, tissue, shading, skinned, skin, rest);
+  }
+
+  private add_vessels(s: SurfaceData, tissue: Tissue, shading: Shading, skinned: SkinnedSurface | null, skin: SkinTexture | null, rest: Float32Array | null): void {
+    const vessels = grow_vessels(tissue, shading, vessel_styles[s.material] ?? vessel_styles.cortex!, hash_text(s.id));
+    const tubes = make_tubes(vessels, 8);
+    const n = tubes.kind.length;
+    if (n === 0) return;
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute('position', new THREE.Float32BufferAttribute(tubes.positions, 3));
+    geometry.setAttribute('normal', new THREE.Float32BufferAttribute(tubes.normals, 3));
+    geometry.setIndex(tubes.indices);
+    const grid = new PointGrid(s.positions, 0.002);
+    const pairs = new Float32Array(n * 2);
+    const nodes = new Uint32Array(n * 4);
+    const weights = new Float32Array(n * 4);
+    for (let i = 0; i < n; i++) {
+      const f = tubes.foot.slice(i * 3, i * 3 + 3);
+      const v = Math.max(0, grid.nearest(f[0]!, f[1]!, f[2]!, 0.004));
+      pairs[i * 2] = tubes.kind[i]!;
+      pairs[i * 2 + 1] = Math.min(1, shading.openness[v]! * 1.15);
+      if (!skinned || !rest) continue;
+      // The tube follows the tetrahedron of the nearest surface vertex.
+      const w = barycentric(rest, skinned.skin_nodes, v * 4, tubes.positions.slice(i * 3, i * 3 + 3));
+      for (let k = 0; k < 4; k++) {
+        nodes[i * 4 + k] = skinned.skin_nodes[v * 4 + k]!;
+        weights[i * 4 + k] = w ? w[k]! : skinned.skin_weights[v * 4 + k]!;
+      }
+    }
+    geometry.setAttribute('vessel', new THREE.BufferAttribute(pairs, 2));
+    if (skinned) set_skin_attributes(geometry, nodes, weights);
+    this.add(geometry, vessel_material(skin), false, skin);
+  }
+}
+
+function as_tissue(s: SurfaceData): Tissue {
+  return { positions: s.positions, indices: s.indices, normals: smooth_normals(s.positions, s.indices) };
+}
+
+export const vector = (a: ArrayLike<number>) => new THREE.Vector3(a[0], a[1], a[2]);
+/** w x y z, as in the messages. */
+export const quaternion = (a: ArrayLike<number>) => new THREE.Quaternion(a[1], a[2], a[3], a[0]).normalize();

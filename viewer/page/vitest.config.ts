@@ -1,0 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Unit tests run in node; the browser test is test/e2e.mjs.
+import { defineConfig } from 'vitest/config';
+
+export default defineConfig({ test: { include: ['test/*.test.ts'], environment: 'node' } });
