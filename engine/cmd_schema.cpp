@@ -56,7 +56,7 @@ class Schema {
   std::string text() {
     std::string types, groups;
     for (const auto* info : registry_.all()) types += element_type(*info);
-    std::set<Kind> parents;
+    std::set<Kind> parents{Kind::scene};
     for (const auto* info : registry_.all()) parents.insert(info->parents.begin(), info->parents.end());
     for (const Kind kind : parents) groups += group(kind);
     std::ostringstream out;
@@ -113,7 +113,7 @@ class Schema {
 
   std::string element_type(const ComponentInfo& info) {
     std::string out = fmt::format("  <xs:complexType name=\"{}\">\n{}", info.element, annotation(info.doc, "    "));
-    if (!children_of_kind(registry_, info.kind).empty())
+    if (info.kind == Kind::scene || !children_of_kind(registry_, info.kind).empty())
       out += fmt::format("    <xs:group ref=\"{}\" minOccurs=\"0\" maxOccurs=\"unbounded\"/>\n", type_id("in_", kind_name(info.kind)));
     out += "    <xs:attribute name=\"id\" type=\"with_id\"/>\n";
     const auto component = registry_.create(info.element);
@@ -160,12 +160,12 @@ class Schema {
     simple_types_["references"] = R"([^$#]*)";
     simple_types_["whole_number"] = R"([+\-]?[0-9]+)";
     std::string out =
-        "  <xs:simpleType name=\"with_variable\"><xs:restriction base=\"xs:string\"><xs:pattern value=\".*\\$.*\"/>"
+        "  <xs:simpleType name=\"with_variable\"><xs:restriction base=\"xs:string\"><xs:pattern value=\".*[$].*\"/>"
         "</xs:restriction></xs:simpleType>\n";
     for (const auto& [name, pattern] : simple_types_)
       out += fmt::format(
           "  <xs:simpleType name=\"{}\"><xs:restriction base=\"xs:string\"><xs:pattern value=\"\\s*{}\\s*\"/>"
-          "<xs:pattern value=\".*\\$.*\"/></xs:restriction></xs:simpleType>\n",
+          "<xs:pattern value=\".*[$].*\"/></xs:restriction></xs:simpleType>\n",
           name, escaped(pattern));
     out += enumeration("true_or_false", {"true", "false"});
     std::vector<std::string> lengths;

@@ -8,6 +8,7 @@
 #include "core/registry/plugin_loader.h"
 #include "core/registry/registry.h"
 #include "engine/commands.h"
+#include "engine/play.h"
 
 namespace {
 
@@ -70,6 +71,23 @@ int main(int argc, char** argv) {
   docs->callback([&] { run = [&](const auto& c) { return insula::cmd_docs(c, folder, plugin_folder); }; });
 
   // --- commands that run a simulation are added here ---
+
+  insula::PlayOptions play_options;
+  bool no_browser = false;
+  auto* play = app.add_subcommand("play", "engine, haptic server and viewer together, until Ctrl-C");
+  play->add_option("scene", play_options.scene, "scene file (default: the first training exercise)");
+  play->add_option("--motion", play_options.motion, "what simulated hands follow: a motion of the scene, a CSV file, or none");
+  play->add_option("--left", play_options.left, "device of the left hand (see haptic_server --help)");
+  play->add_option("--right", play_options.right, "device of the right hand");
+  play->add_option("--port", play_options.port, "port of the viewer; following ones are tried when it is busy")->capture_default_str();
+  play->add_option("--listen", play_options.listen, "address of the viewer; 0.0.0.0 lets other machines watch")->capture_default_str();
+  play->add_option("--duration", play_options.duration_s, "end after so many seconds; 0: never")->check(CLI::NonNegativeNumber);
+  play->add_flag("--no-browser", no_browser, "open no browser");
+  play->callback([&] {
+    play_options.browser = !no_browser;
+    for (const auto& path : plugin_paths) play_options.engine_arguments.insert(play_options.engine_arguments.end(), {"--plugin-path", path.string()});
+    run = [&](const auto& c) { return insula::cmd_play(c, play_options); };
+  });
 
   try {
     app.parse(argc, argv);

@@ -38,7 +38,8 @@ void SafetyGate::Channel::step(double dt, const Vec3& wanted) {
   shorten(target, limit);
   const Vec3 change = target - out;
   const double length = change.norm();
-  if (length <= slew * dt)
+  // A ramp as steep as the limit must end at its end, not a rounding error before it.
+  if (length <= slew * dt * (1 + 1e-12))
     out = target;
   else if (length > 0)
     out += change * (slew * dt / length);

@@ -13,6 +13,7 @@ struct Proximity {
   int piece = -1;       ///< convex piece of tool a; -1 when a is a surface
   int vertex = -1;      ///< vertex of surface a; -1 when a is a tool
   int other_piece = -1; ///< convex piece of tool b; -1 when b is a surface
+  int side = 0;         ///< surface pairs: 0 the vertex is of the first surface of the pair, 1 of the second
   int triangle = -1;    ///< of surface b
   Vec3 bary = Vec3::Zero();      ///< in that triangle
   Vec3 normal = Vec3::UnitZ();   ///< unit, from b to a

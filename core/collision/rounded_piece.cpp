@@ -13,26 +13,27 @@ RoundedPiece rounded(const ConvexPiece& piece) {
   r.core = piece.points;
   r.radius = piece.radius;
   if (r.core.empty()) return r;
+  constexpr double least_radius = 5e-5;
+  if (r.core.size() <= 2) {
+    r.radius = std::max(r.radius, least_radius);
+    r.axis0 = r.core.front();
+    r.axis1 = r.core.back();
+    return r;
+  }
   Vec3 mean = Vec3::Zero();
   for (const Vec3& p : r.core) mean += p;
   mean /= double(r.core.size());
-  Mat3 axes = Mat3::Identity();
-  if (r.core.size() == 2) {
-    const Vec3 d = r.core[1] - r.core[0];
-    if (d.norm() > 0) axes.col(0) = d.normalized();
-  } else if (r.core.size() > 2) {
-    Mat3 spread = Mat3::Zero();
-    for (const Vec3& p : r.core) spread += (p - mean) * (p - mean).transpose();
-    const Eigen::SelfAdjointEigenSolver<Mat3> solver(spread);
-    axes = solver.eigenvectors().rowwise().reverse();  // longest first
-  }
+  Mat3 covariance = Mat3::Zero();
+  for (const Vec3& p : r.core) covariance += (p - mean) * (p - mean).transpose();
+  const Eigen::SelfAdjointEigenSolver<Mat3> solver(covariance);
+  const Mat3 axes = solver.eigenvectors().rowwise().reverse();  // longest first
   Vec3 low = Vec3::Constant(1e300), high = Vec3::Constant(-1e300);
   for (const Vec3& p : r.core) {
     const Vec3 x = axes.transpose() * (p - mean);
     low = low.cwiseMin(x);
     high = high.cwiseMax(x);
   }
-  if (r.core.size() > 2 && r.radius < rounding) {
+  if (r.radius < rounding) {
     const Vec3 size = high - low;
     const double s = std::min(rounding - r.radius, 0.25 * size.minCoeff());
     if (s > 0) {
@@ -47,7 +48,7 @@ RoundedPiece rounded(const ConvexPiece& piece) {
       r.radius += s;
     }
   }
-  r.radius = std::max(r.radius, 1e-5);
+  r.radius = std::max(r.radius, least_radius);
   // A segment along the longest axis, as short as the other two extents allow.
   const Vec3 middle = 0.5 * (low + high);
   Vec3 end0 = middle, end1 = middle;

@@ -25,6 +25,15 @@ void ConstraintBuilder::point(int row, const MaterialPoint& p, const Vec3& d) {
   delta_[std::size_t(row)] += d.dot(p.body->free_displacement(p));
 }
 
+void ConstraintBuilder::surface_point(int row, const Surface& s, int triangle, const Vec3& bary, const Vec3& d) {
+  Body& body = s.body();
+  if (body.blocks() == 0) return;
+  body.rows.open(row);
+  s.add_row(body.rows, triangle, bary, d);
+  const auto& t = s.triangles()[std::size_t(triangle)];
+  for (int k = 0; k < 3; ++k) delta_[std::size_t(row)] += bary[k] * d.dot(s.free_displacements()[std::size_t(t[std::size_t(k)])]);
+}
+
 void ConstraintBuilder::finish() {
   problem_.resize(rows());
   std::copy(delta_.begin(), delta_.end(), problem_.delta_free.begin());

@@ -10,6 +10,8 @@
 
 namespace insula {
 
+class Surface;
+
 /// Where constraints put their rows. For every row: delta_free = violation at the start of the step + H dq_free, the
 /// second term summed here from the points' free displacements.
 class ConstraintBuilder {
@@ -22,6 +24,8 @@ class ConstraintBuilder {
   void violation(int row, double value) { delta_[std::size_t(row)] += value; }
   /// H(row) += d . d(point). Rows in ascending order.
   void point(int row, const MaterialPoint& p, const Vec3& d);
+  /// The same for a point of a surface's triangle; its free displacement is that of the surface's vertices.
+  void surface_point(int row, const Surface& s, int triangle, const Vec3& bary, const Vec3& d);
   int rows() const { return int(delta_.size()); }
 
   void clear();

@@ -39,6 +39,8 @@ class Instrument : public Body {
   const HandState& state() const { return hand_state_; }
   Pose home_pose() const;
   void set_hand(const HandState& s) { hand_state_ = s; }
+  /// Puts the tool somewhere at once; velocity and history stay (tests, replays).
+  void place(const Pose& pose) { pose_ = pose; }
 
   /// Coupling force and torque on the hand at the end of the step: stiffness * displacement(device, tool).
   const Vec6& hand_force() const { return hand_force_; }

@@ -18,8 +18,9 @@ class Surface : public Component {
   Param<File> mesh{this, {.name = "mesh", .fallback = "", .doc = "surface file; none: the boundary of the body's tetrahedra"}};
   Param<LengthUnit> mesh_unit{this, {.name = "mesh_unit", .fallback = "mm", .doc = "unit of length of the surface file"}};
   Param<Choice> material{this, {.name = "material", .fallback = "cortex",
-      .choices = {"cortex", "pia", "insula", "bone", "dura", "drape", "vessel", "steel", "polymer"},
+      .choices = {"cortex", "pia", "insula", "bone", "dura", "skin", "drape", "vessel", "steel", "polymer"},
       .doc = "look in the viewer"}};
+  Param<bool> contact{this, {.name = "contact", .fallback = "true", .doc = "whether things touch it; false: for the picture alone"}};
 
   void prepare(PrepareContext& context) override;
 

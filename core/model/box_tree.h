@@ -13,7 +13,7 @@ using Box = Eigen::AlignedBox3d;
 
 class BoxTree {
  public:
-  explicit BoxTree(const std::vector<Box>& items);
+  explicit BoxTree(std::vector<Box> items);
 
   /// Calls visit(item) for each item whose box holds p; stops when visit returns true.
   template <class Visit>
@@ -26,7 +26,7 @@ class BoxTree {
       if (!node.box.contains(p)) continue;
       if (node.right < 0) {
         for (int i = node.begin; i < node.end; ++i)
-          if (visit(order_[std::size_t(i)])) return;
+          if (boxes_[std::size_t(order_[std::size_t(i)])].contains(p) && visit(order_[std::size_t(i)])) return;
       } else {
         stack.push_back(node.right);
         stack.push_back(node.left);
@@ -68,8 +68,9 @@ class BoxTree {
     int left = -1, right = -1;  ///< inner nodes
     int begin = 0, end = 0;     ///< items of leaves, in order_
   };
-  int build(const std::vector<Box>& items, int begin, int end);
+  int build(int begin, int end);
 
+  std::vector<Box> boxes_;
   std::vector<Node> nodes_;
   std::vector<int> order_;
 };

@@ -27,6 +27,9 @@ RawTets read_medit(const std::filesystem::path& file, std::string_view bytes);
 /// Checks and scales. Throws InputError naming the first offender of each trouble.
 TetMesh checked_mesh(const std::filesystem::path& file, const RawTets& raw, double metres_per_unit);
 
+/// What read_tet_mesh does with the bytes of `file` (its extension names the format).
+TetMesh tet_mesh_from_bytes(const std::filesystem::path& file, std::string_view bytes, double metres_per_unit);
+
 /// Throws InputError unless `metres_per_unit` is positive and finite.
 void check_unit(const std::filesystem::path& file, double metres_per_unit);
 

@@ -6,8 +6,9 @@
 
 namespace insula {
 
-/// Extension known, announced counts against the bytes that follow (STL, PLY, GLB, OFF), PLY face indices in range.
-/// Throws InputError.
-void precheck_surface(const std::filesystem::path& file, std::string_view bytes);
+/// Extension known, announced counts against the bytes that follow (STL, PLY, GLB, OFF), face indices of PLY and
+/// OFF, references within glTF.
+/// Throws InputError. Returns the number of triangles to expect where the file says it, else 0.
+std::size_t precheck_surface(const std::filesystem::path& file, std::string_view bytes);
 
 }  // namespace insula

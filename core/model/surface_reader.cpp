@@ -12,12 +12,16 @@
 #include <memory>
 
 #include "core/base/text.h"
+#include "core/model/assimp_assert.h"
 #include "core/model/file_bytes.h"
 #include "core/model/raw_tets.h"
 #include "core/model/surface_precheck.h"
 
 namespace insula {
 namespace {
+
+// A reference, so that a static library brings the handler along.
+[[maybe_unused]] void (*const volatile assertion_handler)(const char*, const char*, int) = Assimp::aiAssertViolation;
 
 /// Opens nothing outside the folder of the mesh file (buffers of glTF, materials of OBJ).
 class FolderIO : public Assimp::DefaultIOSystem {
@@ -88,14 +92,9 @@ class Joiner {
 
 TriMesh read_surface(const std::filesystem::path& file, double metres_per_unit) {
   check_unit(file, metres_per_unit);
-  {
-    const std::string bytes = read_file_bytes(file);
-    precheck_surface(file, bytes);
-  }
+  const std::size_t expected = precheck_surface(file, read_file_bytes(file));
   Assimp::Importer importer;
   importer.SetIOHandler(new FolderIO(file));  // the importer owns it
-  // The file's coordinates are kept: no turning of Z-up COLLADA.
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
   const aiScene* scene = nullptr;
   try {
@@ -105,6 +104,10 @@ TriMesh read_surface(const std::filesystem::path& file, double metres_per_unit) 
   }
   if (!scene) fail(file, std::string("cannot be read: ") + shown(importer.GetErrorString()));
   if (!scene->mRootNode || scene->mNumMeshes == 0) fail(file, "holds no triangles, or ends early");
+  std::size_t faces = 0;
+  for (unsigned m = 0; m < scene->mNumMeshes; ++m) faces += scene->mMeshes[m]->mNumFaces;
+  if (expected > 0 && faces < expected)  // assimp leaves triangles with bad indices out
+    fail(file, "announces " + std::to_string(expected) + " triangles, of which " + std::to_string(faces) + " can be read");
 
   Joiner joiner(file, metres_per_unit);
   struct Visit {

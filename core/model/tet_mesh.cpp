@@ -53,6 +53,17 @@ void check_shape(const std::filesystem::path& file, const RawTets& raw, const Te
   if (flat) fail(file, "tetrahedron " + std::to_string(raw.tet_number[first_flat]) + and_more(flat - 1) + " is flat");
 }
 
+using Reader = RawTets (*)(const std::filesystem::path&, std::string_view);
+
+Reader reader_for(const std::filesystem::path& file) {
+  const std::string kind = lower_extension(file);
+  if (kind == ".msh") return read_gmsh;
+  if (kind == ".vtk") return read_vtk_legacy;
+  if (kind == ".vtu") return read_vtu;
+  if (kind == ".mesh") return read_medit;
+  fail(file, "is no known tetrahedral mesh (use .msh, .vtk, .vtu or .mesh)");
+}
+
 }  // namespace
 
 void check_unit(const std::filesystem::path& file, double metres_per_unit) {
@@ -89,17 +100,14 @@ TetMesh checked_mesh(const std::filesystem::path& file, const RawTets& raw, doub
   return mesh;
 }
 
+TetMesh tet_mesh_from_bytes(const std::filesystem::path& file, std::string_view bytes, double metres_per_unit) {
+  return checked_mesh(file, reader_for(file)(file, bytes), metres_per_unit);
+}
+
 TetMesh read_tet_mesh(const std::filesystem::path& file, double metres_per_unit) {
   check_unit(file, metres_per_unit);
-  const std::string kind = lower_extension(file);
-  RawTets (*reader)(const std::filesystem::path&, std::string_view) = nullptr;
-  if (kind == ".msh") reader = read_gmsh;
-  if (kind == ".vtk") reader = read_vtk_legacy;
-  if (kind == ".vtu") reader = read_vtu;
-  if (kind == ".mesh") reader = read_medit;
-  if (!reader) fail(file, "is no known tetrahedral mesh (use .msh, .vtk, .vtu or .mesh)");
-  const std::string bytes = read_file_bytes(file);
-  return checked_mesh(file, reader(file, bytes), metres_per_unit);
+  reader_for(file);  // a wrong kind of file is said before a missing one is looked for
+  return tet_mesh_from_bytes(file, read_file_bytes(file), metres_per_unit);
 }
 
 }  // namespace insula

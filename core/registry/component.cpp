@@ -2,6 +2,8 @@
 // What all components share.
 #include "core/registry/component.h"
 
+#include "core/base/text.h"
+
 namespace insula {
 
 std::string_view kind_name(Kind kind) {
@@ -30,7 +32,14 @@ ParamBase* Component::find_param(std::string_view name) const {
 void Component::error(PrepareContext& context, std::string text) const { context.diagnostics.error(pos, std::move(text)); }
 
 void Component::error(PrepareContext& context, const ParamBase& param, std::string text) const {
-  context.diagnostics.error(param.given() ? param.pos() : pos, param.name() + ": " + text);
+  // Readers name the file they failed on by its full path; the author knows it as written.
+  if (const auto* file = dynamic_cast<const Param<File>*>(&param); file && !file->empty()) {
+    const std::string path = (*file)().string() + ": ";
+    if (text.starts_with(path)) text.replace(0, path.size(), in_quotes(param.text()) + ": ");
+  }
+  const std::string name = param.name() + ": ";
+  if (!text.starts_with(name)) text.insert(0, name);
+  context.diagnostics.error(param.given() ? param.pos() : pos, std::move(text));
 }
 
 }  // namespace insula

@@ -65,7 +65,8 @@ class Component {
       if (auto* t = dynamic_cast<T*>(c.get())) out.push_back(t);
     return out;
   }
-  /// Reports an error at this component's start tag, or at a parameter's value.
+  /// Reports an error at this component's start tag, or at a parameter's value; then the parameter's name is put before
+  /// the text, and the full path of a file parameter is replaced by what the author wrote.
   void error(PrepareContext& context, std::string text) const;
   void error(PrepareContext& context, const ParamBase& param, std::string text) const;
 

@@ -12,7 +12,8 @@ std::vector<std::string> device_kinds() { return {"simulated", "mouse"}; }
 ArmParameters simulated_arm(int hand) {
   ArmParameters p;
   p.profile = omni_profile();
-  p.tremor_m = 20e-6;
+  // Physiological tremor, tens of micrometres; more than half a count of the encoders, so that a held arm never reads as dead.
+  p.tremor_m = 40e-6;
   p.tremor_rad = 0.3e-3;
   p.tremor_seed = hand;
   return p;

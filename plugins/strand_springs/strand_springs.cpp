@@ -117,7 +117,7 @@ void StrandSprings::detect(const StepContext& context) {
         if (distance > best) continue;
         best = distance;
         s.blade = tool;
-        s.blade_point = tool->point(on_edge);
+        s.blade_point = tool->point(on_strand);  // the same place as the strand's side: no net moment
         s.along = u;
       }
     }
@@ -168,11 +168,11 @@ void StrandSprings::build(const StepContext&, ConstraintBuilder& builder) {
   }
 }
 
-void StrandSprings::part(const StepContext& context, Strand& s, const char* kind, double value) {
+void StrandSprings::part(const StepContext& context, Strand& s, const char* what, double value) {
   s.parted = true;
   s.wear = 1;
   s.tension = 0;
-  if (context.events) context.events->emit({kind, id, "", value, context.time + context.h});
+  if (context.events) context.events->emit({what, id, "", value, context.time + context.h});
 }
 
 void StrandSprings::finish(const StepContext& context, const ConstraintSolution& solution) {

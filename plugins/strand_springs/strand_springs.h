@@ -58,7 +58,7 @@ class StrandSprings final : public Constraint {
     Vec3 push = Vec3::Zero();
   };
   void generate(PrepareContext& context);
-  void part(const StepContext& context, Strand& s, const char* kind, double value);
+  void part(const StepContext& context, Strand& s, const char* what, double value);
 
   std::vector<Strand> strands_;
   std::vector<Instrument*> instruments_;

@@ -39,7 +39,6 @@ class Suction final : public Instrument {
   }
 
   void build(const StepContext&, ConstraintBuilder& builder) override {
-    row_ = -1;
     if (!state().button1 || suction() <= 0) {
       held_ = {};
       return;
@@ -50,7 +49,9 @@ class Suction final : public Instrument {
     const double radius = tool().tip_inner_radius > 0 ? tool().tip_inner_radius : 0.0007;
     const double force = suction() * 3.14159265358979323846 * radius * radius;
     const Mat3 axes = pose().q.toRotationMatrix();
-    const MaterialPoint tip = point(pose().p);
+    // The tube's side of the rows is its point at the held tissue: no net moment, and the exact derivative as d turns with it.
+    const Vec3 at = held_.body->position(held_);
+    const MaterialPoint own = point(at);
     for (int k = 0; k < 3; ++k) {
       const Vec3 d = axes.col((k + 2) % 3);  // the tube's axis first
       const double limit = k == 0 ? force : grip() * force;
@@ -59,10 +60,9 @@ class Suction final : public Instrument {
       block.lower = -limit;
       block.upper = limit;
       const int row = builder.add(block);
-      if (k == 0) row_ = row;
-      builder.violation(row, d.dot(held_.body->position(held_) - pose().p));
+      builder.violation(row, d.dot(at - pose().p));
       builder.point(row, held_, d);
-      builder.point(row, tip, -d);
+      builder.point(row, own, -d);
     }
   }
 
@@ -87,7 +87,6 @@ class Suction final : public Instrument {
 
   std::vector<Surface*> surfaces_;
   MaterialPoint held_;
-  int row_ = -1;
 };
 
 }  // namespace

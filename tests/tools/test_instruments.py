@@ -16,6 +16,7 @@ sys.path.insert(0, os.path.join(ROOT, "tools", "instruments"))
 
 import bone_window  # noqa: E402
 import generate  # noqa: E402
+import window_fit  # noqa: E402
 from mesh import Mesh, convex_hull, number  # noqa: E402
 from shapes import Spine, bar  # noqa: E402
 from vec import cross, dot, norm, sub, unit  # noqa: E402
@@ -276,6 +277,38 @@ class Urdf(unittest.TestCase):
                 self.assertTrue(all(len(p) == 3 and -0.01 <= p[2] <= tool["blade"]["length_mm"] + 0.5 for p in edge))
         suction = Instrument("suction").tool["tip"]
         self.assertTrue(0.0 < suction["inner_radius_mm"] < suction["outer_radius_mm"])
+
+
+class WindowFitsTheBrain(unittest.TestCase):
+    """Against the shipped lobes; when this fails after a change of the lobes, run window_fit.py and bone_window.py."""
+
+    LOBES = os.path.join(ROOT, "meshes", "lobes")
+
+    def setUp(self):
+        with open(os.path.join(ROOT, "tools", "instruments", "bone_window.json"), encoding="utf-8") as f:
+            self.par = json.load(f)
+        self.window = bone_window.Window(self.par)
+
+    def local(self, p):
+        d = sub(p, self.window.centre)
+        return dot(d, self.window.x), dot(d, self.window.y), dot(d, self.window.n)
+
+    def test_brain_stays_below_bone_and_dura(self):
+        below = self.par["dura"]["thickness"] + 0.25
+        for lobe in ("frontal", "temporal"):
+            nearest = math.inf
+            for p in window_fit.ply_vertices(os.path.join(self.LOBES, f"{lobe}_surface.ply")):
+                x, y, z = self.local(p)
+                if math.hypot(x, y) > self.window.rim(math.atan2(y, x)) - self.par["dura"]["strip"]:
+                    nearest = min(nearest, self.window.table(x, y) - z)
+            self.assertGreater(nearest, below, lobe)
+            self.assertLess(nearest, 6.0, f"{lobe}: the bone floats above the brain")
+
+    def test_opening_frames_the_fissure(self):
+        with open(os.path.join(self.LOBES, "fissure.json"), encoding="utf-8") as f:
+            stations = [self.local(s["superficial"]) for s in json.load(f)["stations"]]
+        inside = [math.hypot(x, y) < self.window.rim(math.atan2(y, x)) for x, y, _ in stations]
+        self.assertGreaterEqual(sum(inside), 0.5 * len(inside))
 
 
 class Generator(unittest.TestCase):

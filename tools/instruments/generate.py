@@ -19,7 +19,7 @@ import sys
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 from mesh import Mesh, convex_hull, number, obj_text  # noqa: E402
-from shapes import Spine, bar, expand_stations, plate, section  # noqa: E402
+from shapes import Spine, bar, expand_stations, plate  # noqa: E402
 from vec import add, combine, lerp, mul, norm, sub, unit  # noqa: E402
 
 HERE = os.path.dirname(os.path.abspath(__file__))

@@ -4,7 +4,7 @@ import math
 from bisect import bisect_right
 
 from mesh import Mesh
-from vec import add, combine, cross, dot, lerp, mul, norm, sub, unit
+from vec import add, combine, cross, dot, lerp, norm, sub, unit
 
 ARC_STEP = math.radians(5.0)
 

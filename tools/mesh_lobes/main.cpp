@@ -35,7 +35,8 @@ Region and shape
   --coarse-outset MM     how far the tetrahedral shape reaches past the fine one (0.6)
   --coarse-gap MM        free space between tetrahedral parts (0.35)
 Sizes: edge length NEAR,FAR in mm, growing from the one to the other along the distance D to the focus
-  --focus R0,R1          D below R0: near; above R1: far. D is the distance to the other parts, or, when greater, to ...
+  --focus R0,R1          D below R0: near; above R1: far. D is the distance to the other parts (0 with a
+                         single part) or, when greater, to ...
   --focus-point X,Y,Z,R  ... this ball
   --cell NEAR,FAR        tetrahedra (4,9);  --cell-error NEAR,FAR  distance of their boundary to the shape (0.5,1.5)
   --edge NEAR,FAR        triangles of the fine surfaces (1,3);  --edge-error MM (0.1)
@@ -194,7 +195,7 @@ Job parse(int argc, char** argv) {
 // Edge length near the focus, growing smoothly to the far one.
 SizeField sizes(const Job& job, const PartFields& fields, const Field& distance, Sizes size) {
   return [&job, &fields, &distance, size](const Vec3& p) {
-    double d = sample(fields.grid, distance, p);
+    double d = job.parts.size() > 1 ? sample(fields.grid, distance, p) : 0;
     if (job.focus_radius >= 0) d = std::max(d, norm(p - job.focus_point) - job.focus_radius);
     double t = (d - job.focus.near) / (job.focus.far - job.focus.near);
     t = t < 0 ? 0 : t > 1 ? 1 : t;

@@ -153,6 +153,7 @@ double improve_dihedral(TetMesh& mesh, double target_deg, double boundary_shift)
 }
 
 double separate_parts(std::vector<TetMesh>& parts, double gap, int rounds) {
+  if (parts.size() < 2) return std::numeric_limits<double>::infinity();
   double least = -1;
   for (int round = 0; round <= rounds; ++round) {
     least = std::numeric_limits<double>::infinity();

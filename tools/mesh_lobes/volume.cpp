@@ -135,7 +135,14 @@ NiftiVolume read_nifti(const std::string& path) {
 
   const int type = get<std::int16_t>(bytes, 70, swap);
   const auto copy = [&]<class T>(T) { copy_values<T>(volume, bytes, offset, swap, slope, intercept, path); };
-  const std::size_t width = type == 2 || type == 256 ? 1 : type == 4 || type == 512 ? 2 : type == 64 ? 8 : 4;
+  std::size_t width = 0;
+  switch (type) {
+    case 2: case 256: width = 1; break;
+    case 4: case 512: width = 2; break;
+    case 8: case 16: case 768: width = 4; break;
+    case 64: width = 8; break;
+    default: fail(path, "has the unsupported data type " + std::to_string(type));
+  }
   if (bytes.size() < offset + count * width) fail(path, "is truncated");
   volume.value.resize(count);
   switch (type) {
@@ -147,7 +154,7 @@ NiftiVolume read_nifti(const std::string& path) {
     case 256: copy(std::int8_t{}); break;
     case 512: copy(std::uint16_t{}); break;
     case 768: copy(std::uint32_t{}); break;
-    default: fail(path, "has the unsupported data type " + std::to_string(type));
+    default: break;
   }
   volume.to_world = read_affine(bytes, swap);
   volume.from_world = inverse(volume.to_world, path);

@@ -67,6 +67,7 @@ export async function start_mock({ port = 8080, start_s = 0, dist = join(here, '
     if (!state.paused) state.time += dt;
     if (sockets.clients.size === 0) return;
     const f = make_frame(scene, lcm, state.time, state.held);
+    if (!state.held[0]) state.last_tool = [...f.tool[0].p_m];
     f.session = state.session;
     f.sequence = state.sequence++;
     f.time_us = BigInt(Math.round(now * 1000));

@@ -17,6 +17,8 @@ await page.goto(`${option('--url', mock.url)}?t=${at}&${option('--query', 'quali
 await page.waitForFunction(() => window.__insula?.frozen, null, { timeout: 120000, polling: 500 });
 const setup = option('--run', '');
 if (setup) await page.evaluate(setup);
+const wheel = Number(option('--wheel', '0'));
+if (wheel) { await page.mouse.move(width / 2, height / 2); for (let i = 0; i < Math.abs(wheel); i++) await page.mouse.wheel(0, 100 * Math.sign(wheel)); }
 const from = await page.evaluate(() => window.__insula.pictures);
 await page.waitForFunction((n) => window.__insula.pictures > n + 8, from, { timeout: 120000, polling: 500 });
 await page.screenshot({ path: process.argv[2], timeout: 120000 });

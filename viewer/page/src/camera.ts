@@ -12,7 +12,7 @@ interface Pose {
 
 export class Microscope {
   readonly camera = new THREE.PerspectiveCamera(30, 1, 0.01, 3);
-  readonly lamp = new THREE.SpotLight(0xfff4e6, 4.4, 0, 0.2, 0.85, 0);
+  readonly lamp = new THREE.SpotLight(0xfff2e2, 3.3, 0, 0.2, 0.8, 0);
   readonly fill = new THREE.SpotLight(0xe8eeff, 0.55, 0, 0.4, 0.9, 0);
   private home: Pose;
   private wanted: Pose;
@@ -26,9 +26,9 @@ export class Microscope {
     this.wanted = clone(this.home);
     this.now = clone(this.home);
     this.lamp.castShadow = true;
-    this.lamp.shadow.bias = -0.0004;
-    this.lamp.shadow.normalBias = 0.00025;
-    this.lamp.shadow.radius = 3.2;
+    this.lamp.shadow.bias = -0.0012;
+    this.lamp.shadow.normalBias = 0.0005;
+    this.lamp.shadow.radius = 3;
     this.set_frame(new THREE.Vector3(0, 0, 1), new THREE.Vector3(0, 1, 0));
   }
 

@@ -26,6 +26,7 @@ float hash(vec2 p) { return fract(52.9829189 * fract(dot(p, vec2(0.06711056, 0.0
 
 #ifdef OCCLUSION
 float gap_shade(vec2 uv, float z) {
+  uv = (floor(uv * size) + 0.5) / size;
   float aspect = size.x / size.y;
   float spin = hash(gl_FragCoord.xy) * 6.2832;
   float shut = 0.0;
@@ -34,11 +35,13 @@ float gap_shade(vec2 uv, float z) {
     vec2 r = radius / (2.0 * z * tan_half) * vec2(1.0 / aspect, 1.0);
     for (int i = 0; i < 4; i++) {
       float a = spin + (float(i) + 0.5 * float(ring)) * 1.5708;
-      vec2 o = vec2(cos(a), sin(a)) * r;
+      // Whole pixels: both samples then lie equally far from the middle, and a plane stays a plane.
+      vec2 o = round(vec2(cos(a), sin(a)) * r * size) / size;
       float za = distance_at(uv + o), zb = distance_at(uv - o);
       // Opposite neighbours both nearer: a groove. Slopes and single edges cancel or are cut off.
       float da = clamp((z - za) / radius, -1.0, 1.4), db = clamp((z - zb) / radius, -1.0, 1.4);
-      shut += clamp(da + db, 0.0, 1.2);
+      // Gentle curvature is no gap.
+      shut += clamp(da + db - 0.3, 0.0, 1.2);
     }
   }
   return 1.0 / (1.0 + 0.16 * shut);
@@ -84,6 +87,8 @@ void main() {
 `;
 
 export class Lens {
+  /** Of the last picture, shadows included. */
+  triangles = 0;
   private target: THREE.WebGLRenderTarget | null = null;
   private readonly scene = new THREE.Scene();
   private readonly eye = new THREE.OrthographicCamera(-1, 1, 1, -1, 0, 1);
@@ -121,6 +126,7 @@ export class Lens {
     const target = this.target!;
     this.renderer.setRenderTarget(target);
     this.renderer.render(scene, camera);
+    this.triangles = this.renderer.info.render.triangles;
     this.renderer.setRenderTarget(null);
     const u = this.material.uniforms;
     u.picture!.value = target.texture;

@@ -29,7 +29,7 @@ renderer.debug.onShaderError = (gl, program, vs, fs) => {
 };
 const scene = new THREE.Scene();
 scene.background = new THREE.Color(0x040303);
-scene.environmentIntensity = 0.55;
+scene.environmentIntensity = 0.42;
 const scope = new Microscope();
 scope.add_to(scene);
 const lens = new Lens(renderer);
@@ -39,13 +39,14 @@ let info: SceneInfo | null = null;
 let haptic: HapticStatus | null = null;
 let haptic_ms = 0;
 let info_ms = 0;
+let frame_ms = -1e9;
 let watch = new QualityWatch(options.quality);
 let load_error = '';
 let frozen = false;
 
 const status = {
   ready: false, frames: 0, pictures: 0, fps: 0, session: '', quality: '', connected: false, frozen: false, refused: 0, error: '',
-  taken: [false, false], active: 1,
+  taken: [false, false], active: 1, triangles: 0,
 };
 (window as unknown as { __insula: typeof status }).__insula = status;
 
@@ -57,7 +58,9 @@ ws_url.search = '';
 
 const link = new Connection(ws_url.href, {
   frame: (m) => {
-    if (!world || world.bundle.session !== m.session.toString() || frozen) return;
+    if (!world || world.bundle.session !== m.session.toString()) return;
+    frame_ms = performance.now();
+    if (frozen) return;
     playback.push(m, performance.now());
     if (options.freeze_at_s !== null && m.sim_time_s >= options.freeze_at_s) frozen = status.frozen = true;
   },
@@ -107,7 +110,7 @@ async function follow(m: SceneInfo): Promise<void> {
     const old = scene.environment;
     scene.environment = make_environment(renderer, scope.field_axis, vector(bundle.view.up));
     old?.dispose();
-    world = new World(bundle, scope.field_axis);
+    world = new World(bundle, scope.field_axis, scene.environment);
     scene.add(world.root);
     apply_quality();
     hud.show_scene(bundle);
@@ -152,7 +155,7 @@ function banner(now: number): string {
   if (info.state === 'error') return `The scene has errors\n${info.message}`;
   if (load_error) return `Scene data cannot be read\n${load_error}`;
   if (!world || info.state === 'loading') return 'Loading the scene …';
-  if (playback.frames === 0 || playback.age_ms(now) > 2500) return info.state === 'ended' ? 'The session has ended' : frozen ? '' : 'No pictures from the engine: waiting for it to come back …';
+  if (playback.frames === 0 || now - frame_ms > 2500) return info.state === 'ended' ? 'The session has ended' : 'No pictures from the engine: waiting for it to come back …';
   return playback.latest?.paused ? 'Paused' : '';
 }
 
@@ -171,11 +174,12 @@ function draw(now: number): void {
   scope.update(dt, wide / Math.max(1, high));
   world?.update(playback, now);
   lens.render(scene, scope.camera, scope.distance);
+  status.triangles = lens.triangles;
   counted++;
   status.pictures++;
   status.frames = playback.frames;
   status.refused = link.refused;
-  status.ready = world !== null && playback.frames > 1;
+  status.ready = world !== null && playback.frames > 0;
   if (now - counted_from > 1000) {
     const seconds = (now - counted_from) / 1000;
     status.fps = counted / seconds;
@@ -190,8 +194,9 @@ function draw(now: number): void {
     const kinds = [0, 1].map((h) => world!.bundle.tools.find((t) => t.hand === (h === 0 ? 'left' : 'right'))?.kind ?? '');
     hud.show_frame(playback.latest, kinds, may_drive ? hands.active : -1, hands.hands.map((h) => h.taken));
   }
-  hud.show_machine(playback.age_ms(now) < 2500 ? playback.latest : null, fresh_haptic, status.fps, status.quality);
-  hud.show_link(link.open ? (playback.age_ms(now) < 1000 ? 'connected' : 'gateway only') : 'disconnected', link.open && playback.age_ms(now) < 1000);
+  hud.show_machine(now - frame_ms < 2500 ? playback.latest : null, fresh_haptic, status.fps, status.quality);
+  const alive = now - frame_ms < Math.max(1000, 3000 * dt);
+  hud.show_link(link.open ? (alive ? 'connected' : 'gateway only') : 'disconnected', link.open && alive);
   hud.show_banner(banner(now));
   hud.tick(now);
 }

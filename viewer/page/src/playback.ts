@@ -27,8 +27,6 @@ export class Playback {
     this.scratch.clear();
   }
 
-  age_ms(now_ms: number): number { return this.latest ? now_ms - this.arrived_ms : Infinity; }
-
   /** 0: the previous frame, 1: the newest. */
   blend(now_ms: number): number {
     return Math.max(0, Math.min(1, (now_ms - this.arrived_ms) / Math.max(1, this.period_ms)));

@@ -45,7 +45,7 @@ export class Strands {
     this.parted_at = new Float64Array(count).fill(whole_mark);
     const random = make_random(101);
     for (let i = 0; i < count; i++)
-      for (let k = 0; k < fibres_per_strand; k++) this.fibres.push({ a: i, b: i, ta: 0, tb: 1, radius: radius_m * (k === 0 ? 0.8 : 0.35 + 0.25 * random()) });
+      for (let k = 0; k < fibres_per_strand; k++) this.fibres.push({ a: i, b: i, ta: 0, tb: 1, radius: radius_m * (k === 0 ? 0.75 : 0.28 + 0.22 * random()) });
     this.build_tube();
     const dynamic = (size: number) => {
       const a = new THREE.InstancedBufferAttribute(new Float32Array(capacity * size), size);
@@ -170,7 +170,7 @@ attribute vec2 slack; // sag in metres, seed
 varying vec4 v_strand;
 vec3 strand_root(bool second, vec3 n1, vec3 n2) {
   float seed = slack.y * 6.2832;
-  return (second ? end_b : end_a) + (n1 * sin(seed * 7.0) + n2 * cos(seed * 7.0)) * min(0.00055, 0.16 * distance(end_a, end_b));
+  return (second ? end_b : end_a) + (n1 * sin(seed * 7.0) + n2 * cos(seed * 7.0)) * min(0.0003, 0.10 * distance(end_a, end_b));
 }
 vec3 strand_centre(float t, bool second, vec3 n1, vec3 n2) {
   float length_m = distance(end_a, end_b);
@@ -179,11 +179,11 @@ vec3 strand_centre(float t, bool second, vec3 n1, vec3 n2) {
   vec3 c = mix(end_a, end_b, t);
   vec3 sag = n1 * cos(seed) + n2 * sin(seed);
   float loose = clamp(slack.x / (0.3 * length_m + 1e-6), 0.0, 1.0);
-  float wave = length_m * (0.012 + 0.05 * loose) * bow;
-  c += sag * slack.x * bow + wave * (n1 * sin(t * 11.0 + seed * 3.0) + n2 * sin(t * 16.0 + seed * 5.0));
+  float wave = length_m * (0.020 + 0.06 * loose) * bow;
+  c += sag * slack.x * bow + wave * (n1 * sin(t * (5.0 + 6.0 * fract(seed * 1.7)) + seed * 3.0) + n2 * sin(t * (8.0 + 7.0 * fract(seed * 2.9)) + seed * 5.0));
   // The fibres of a bundle part company towards the attachments.
   float out_there = abs(2.0 * t - 1.0);
-  c += (n1 * sin(seed * 7.0) + n2 * cos(seed * 7.0)) * min(0.00055, 0.16 * length_m) * out_there * out_there;
+  c += (n1 * sin(seed * 7.0) + n2 * cos(seed * 7.0)) * min(0.0003, 0.10 * length_m) * out_there * out_there;
   if (state.w >= 0.0) {
     float keep = mix(0.16, 1.0, exp(-state.w * 8.0));
     float s = second ? (1.0 - t) * 2.0 : t * 2.0;
@@ -219,7 +219,7 @@ function strand_material(): THREE.MeshPhysicalMaterial {
       .replace('#include <begin_vertex>', `
         float at_end = abs(2.0 * t - 1.0);
         float worn = 1.0 - state.y;
-        float radius = state.x * (0.55 + 0.35 * at_end + 1.1 * at_end * at_end * at_end * at_end);
+        float radius = state.x * (0.62 + 0.18 * at_end + 0.9 * smoothstep(0.88, 1.0, at_end));
         radius *= (1.0 - 0.45 * worn) * (1.0 - 0.55 * worn * exp(-pow((t - 0.5) / 0.16, 2.0)));
         if (state.w >= 0.0) radius *= 1.0 - 0.9 * (1.0 - at_end);
         vec3 transformed = here + objectNormal * radius;
@@ -228,12 +228,12 @@ function strand_material(): THREE.MeshPhysicalMaterial {
       .replace('#include <common>', '#include <common>\nvarying vec4 v_strand; // health, tension, age, t')
       .replace('#include <color_fragment>', `#include <color_fragment>
         float pull = v_strand.y / (v_strand.y + 0.025);
-        vec3 strand = mix(vec3(0.86, 0.80, 0.75), vec3(0.80, 0.26, 0.20), clamp(pull * 0.9 + 0.25 * (1.0 - v_strand.x), 0.0, 1.0));
+        vec3 strand = mix(vec3(0.80, 0.74, 0.69), vec3(0.72, 0.20, 0.15), clamp(pull * 0.9 + 0.25 * (1.0 - v_strand.x), 0.0, 1.0));
         // Attachments take the colour of the pia.
         strand = mix(strand, vec3(0.66, 0.33, 0.29), smoothstep(0.72, 1.0, abs(2.0 * v_strand.w - 1.0)));
         diffuseColor.rgb = strand;
         float edge_on = 1.0 - abs(dot(normalize(vViewPosition), normalize(vNormal)));
-        diffuseColor.a = mix(0.50, 0.92, edge_on * edge_on);
+        diffuseColor.a = mix(0.36, 0.78, edge_on * edge_on);
         if (v_strand.z >= 0.0) diffuseColor.a *= 1.0 - smoothstep(0.8, ${fade_s.toFixed(1)}, v_strand.z);`);
   };
   m.customProgramCacheKey = () => 'strands';

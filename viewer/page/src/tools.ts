@@ -13,13 +13,15 @@ export class Tool {
   private readonly ghost_material = new THREE.MeshBasicMaterial({ color: 0x8fd8ff, transparent: true, opacity: 0, depthWrite: false });
   private readonly owned: { dispose(): void }[] = [];
 
-  constructor(readonly data: ToolData) {
+  constructor(readonly data: ToolData, environment: THREE.Texture | null) {
     for (const part of data.parts) {
       const shape = creased(part.positions, part.indices, 0.6);
       const geometry = new THREE.BufferGeometry();
       geometry.setAttribute('position', new THREE.BufferAttribute(shape.positions, 3));
       geometry.setAttribute('normal', new THREE.BufferAttribute(shape.normals, 3));
       const material = solid_material(part.material, undefined, part.rgba);
+      // Metal lives from its reflections: it gets the room brighter than tissue does.
+      material.envMap = environment;
       const mesh = new THREE.Mesh(geometry, material);
       mesh.castShadow = true;
       mesh.receiveShadow = true;

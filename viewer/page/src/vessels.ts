@@ -9,6 +9,8 @@ export interface Vessel {
   points: number[][];
   normals: number[][];
   radii: number[];
+  /** The first point lies in the tissue, not in a parent vessel. */
+  sunk_start?: boolean;
 }
 
 export interface VesselStyle {
@@ -29,11 +31,14 @@ class Walker {
   /** Foot point and normal near q, or null off the mesh. */
   project(q: number[]): { x: number[]; n: number[] } | null {
     let w = 0;
+    let planes = 0;
     const c = [0, 0, 0];
     const n = [0, 0, 0];
     let near = Infinity;
     this.grid.near(q[0]!, q[1]!, q[2]!, 0.0022, (i, d2) => {
-      const g = Math.exp(-d2 / 1.0e-6);
+      const g = Math.exp(-d2 / 0.7e-6);
+      const v = i * 3;
+      for (let k = 0; k < 3; k++) planes += g * (q[k]! - this.t.positions[v + k]!) * this.t.normals[v + k]!;
       near = Math.min(near, d2);
       w += g;
       for (let k = 0; k < 3; k++) { c[k] = c[k]! + g * this.t.positions[i * 3 + k]!; n[k] = n[k]! + g * this.t.normals[i * 3 + k]!; }
@@ -43,7 +48,9 @@ class Walker {
     // Opposite walls of a sulcus cancel: no surface to follow there.
     if (l < 0.5 * w) return null;
     for (let k = 0; k < 3; k++) { c[k] = c[k]! / w; n[k] = n[k]! / l; }
-    const h = (q[0]! - c[0]!) * n[0]! + (q[1]! - c[1]!) * n[1]! + (q[2]! - c[2]!) * n[2]!;
+    // The mean point lies below a bulging surface, the mean of the tangent planes as far above it: halfway is right.
+    const below = (q[0]! - c[0]!) * n[0]! + (q[1]! - c[1]!) * n[1]! + (q[2]! - c[2]!) * n[2]!;
+    const h = 0.5 * (below + planes / w);
     return { x: [q[0]! - h * n[0]!, q[1]! - h * n[1]!, q[2]! - h * n[2]!], n };
   }
 }
@@ -64,7 +71,7 @@ export function grow_vessels(tissue: Tissue, shading: Shading, style: VesselStyl
   const spacing = 0.7 * Math.sqrt(1 / style.density_m2);
   for (let tries = 0; tries < trees * 60 && seeds.length < trees; tries++) {
     const v = Math.floor(random() * count);
-    if (shading.openness[v]! < 0.3 || shading.openness[v]! > 0.85) continue;
+    if (shading.openness[v]! < 0.3 || shading.openness[v]! > 0.9) continue;
     if (seeds.some((s) => distance(p, s, p, v) < spacing)) continue;
     seeds.push(v);
   }
@@ -72,7 +79,7 @@ export function grow_vessels(tissue: Tissue, shading: Shading, style: VesselStyl
   const free = (x: number[], own: number[][], clearance: number) =>
     taken.every((t) => t === x || own.includes(t) || Math.hypot(t[0]! - x[0]!, t[1]! - x[1]!, t[2]! - x[2]!) > clearance);
 
-  const grow = (kind: Vessel['kind'], start: number[], direction: number[], radius: number, length: number, depth: number, own: number[][]) => {
+  const grow = (kind: Vessel['kind'], start: number[], direction: number[], radius: number, length: number, depth: number, own: number[][]): Vessel | null => {
     const vessel: Vessel = { kind, points: [], normals: [], radii: [] };
     let x = start;
     let d = direction;
@@ -83,19 +90,19 @@ export function grow_vessels(tissue: Tissue, shading: Shading, style: VesselStyl
     for (let s = 0; s < steps; s++) {
       const foot = walker.project(x);
       if (!foot) break;
-      if (s > 6 && !free(foot.x, own, radius * 2 + 0.0012)) break;
+      if (s > 6 && !free(foot.x, own, radius * 1.5 + 0.0006)) break;
       const n = foot.n;
       const along = d[0]! * n[0]! + d[1]! * n[1]! + d[2]! * n[2]!;
       d = unit([d[0]! - along * n[0]!, d[1]! - along * n[1]!, d[2]! - along * n[2]!]);
       vessel.points.push(foot.x);
       vessel.normals.push(n);
       const left = 1 - s / steps;
-      vessel.radii.push(radius * (0.35 + 0.65 * Math.sqrt(left)) * (1 + 0.06 * (random() - 0.5)));
+      vessel.radii.push(radius * (0.3 + 0.7 * Math.sqrt(left)) * (1 + 0.06 * (random() - 0.5)));
       // Meander: a slowly changing turn about the normal.
       bend = 0.86 * bend + (random() - 0.5) * (kind === 'artery' ? 0.34 : 0.22);
       d = turn(d, n, bend * 0.42);
       since_branch++;
-      if (depth < 3 && since_branch > 8 && s < steps - 8 && random() < 0.085) {
+      if (depth < 4 && since_branch > 6 && s < steps - 6 && random() < 0.12) {
         since_branch = 0;
         const side = random() < 0.5 ? -1 : 1;
         const from = foot.x;
@@ -106,11 +113,15 @@ export function grow_vessels(tissue: Tissue, shading: Shading, style: VesselStyl
       }
       x = [foot.x[0]! + d[0]! * step_m, foot.x[1]! + d[1]! * step_m, foot.x[2]! + d[2]! * step_m];
     }
-    if (vessel.points.length < 6) return;
+    const reached = vessel.points.length;
+    if (reached < (depth === 0 ? 14 : 7)) return null;
+    // Cut short by a neighbour or an edge: the taper follows the length that was reached.
+    vessel.radii = vessel.radii.map((_, i) => radius * Math.min(1, depth === 0 ? 1 : 0.45 + reached / 60) * (0.3 + 0.7 * Math.sqrt(1 - i / reached)) * (1 + 0.06 * (random() - 0.5)));
     // Everything of this tree may touch itself; other trees stay clear of it.
     for (let i = 0; i < vessel.points.length; i += 2) { taken.push(vessel.points[i]!); own.push(vessel.points[i]!); }
-    vessels.push(vessel);
+    if (depth > 0) vessels.push(vessel);
     for (const b of branches) b();
+    return vessel;
   };
 
   for (const v of seeds) {
@@ -123,11 +134,19 @@ export function grow_vessels(tissue: Tissue, shading: Shading, style: VesselStyl
     const start = [...p.subarray(v * 3, v * 3 + 3)];
     const own: number[][] = [];
     const heading = turn(side, n, around);
-    grow(kind, start, heading, size * (kind === 'vein' ? 1.3 : 1), length, 0, own);
-    // The trunk runs on to the other side, into the depth.
-    grow(kind, start, [-heading[0]!, -heading[1]!, -heading[2]!], size * (kind === 'vein' ? 1.3 : 1), length * 0.5, 1, own);
+    const radius = size * (kind === 'vein' ? 1.3 : 1);
+    // A trunk runs to both sides of its seed.
+    const one = grow(kind, start, heading, radius, length, 0, own);
+    const other = one && grow(kind, start, [-heading[0]!, -heading[1]!, -heading[2]!], radius, length * 0.6, 0, own);
+    if (one) vessels.push(other ? join(other, one) : { ...one, sunk_start: true });
   }
   return vessels;
+}
+
+/** Two halves that start at the same point, as one path. */
+function join(a: Vessel, b: Vessel): Vessel {
+  const both = <T>(x: T[], y: T[]) => [...x.slice(1).reverse(), ...y];
+  return { kind: a.kind, points: both(a.points, b.points), normals: both(a.normals, b.normals), radii: both(a.radii, b.radii), sunk_start: true };
 }
 
 export interface TubeData {
@@ -140,21 +159,21 @@ export interface TubeData {
   foot: number[];
 }
 
-export function make_tubes(vessels: Vessel[], sides: number): TubeData {
+export function make_tubes(vessels: Vessel[]): TubeData {
   const out: TubeData = { positions: [], normals: [], indices: [], kind: [], foot: [] };
   for (const v of vessels) {
     const points = smooth_path(v.points);
+    const sides = Math.max(...v.radii) > 0.0003 ? 8 : 5;
     const base = out.positions.length / 3;
     for (let i = 0; i < points.length; i++) {
       const a = points[Math.max(0, i - 1)]!, b = points[Math.min(points.length - 1, i + 1)]!;
       const t = unit([b[0]! - a[0]!, b[1]! - a[1]!, b[2]! - a[2]!]);
       const n = v.normals[i]!;
       const s = unit(cross(t, n));
-      // Ends sink into the tissue instead of stopping in the air.
-      const end = Math.min(i, points.length - 1 - i);
-      const rise = Math.min(1, end / 5);
+      // The far end sinks into the tissue instead of stopping in the air; the near one lies in the parent or the other half.
+      const rise = Math.min(1, (points.length - 1 - i) / 4, v.sunk_start ? i / 4 : 1);
       const r = v.radii[i]!;
-      const lift = r * (0.45 * rise - 0.9 * (1 - rise));
+      const lift = r * (0.5 * rise - 0.8 * (1 - rise)) + 0.00004;
       for (let k = 0; k < sides; k++) {
         const angle = (k / sides) * Math.PI * 2;
         const c = Math.cos(angle), h = Math.sin(angle);

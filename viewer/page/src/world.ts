@@ -16,7 +16,7 @@ import { Tool } from './tools';
 import { grow_vessels, make_tubes, type VesselStyle } from './vessels';
 
 const vessel_styles: Record<string, VesselStyle> = {
-  cortex: { density_m2: 9000, radius_m: [0.00016, 0.00052], length_m: [0.012, 0.042], vein_share: 0.42 },
+  cortex: { density_m2: 11000, radius_m: [0.00018, 0.00050], length_m: [0.018, 0.050], vein_share: 0.45 },
   insula: { density_m2: 5000, radius_m: [0.0004, 0.0010], length_m: [0.02, 0.045], vein_share: 0.12 },
 };
 
@@ -36,7 +36,7 @@ export class World {
   private readonly moving: Moving[] = [];
   private readonly owned: { dispose(): void }[] = [];
 
-  constructor(readonly bundle: Bundle, field_axis: THREE.Vector3) {
+  constructor(readonly bundle: Bundle, field_axis: THREE.Vector3, environment: THREE.Texture | null) {
     const plan: { surface: SurfaceData; skinned: SkinnedSurface | null; skin: SkinTexture | null; rest: Float32Array | null; tissue: Tissue }[] = [];
     for (const body of bundle.bodies) {
       if (body.surfaces.length === 0) continue;
@@ -56,7 +56,7 @@ export class World {
       else this.add_tissue({ ...p.surface, material: p.surface.material === 'vessel' ? 'vessel' : 'pia' }, p.tissue, shading[i]!, p.skinned, p.skin, p.rest);
     });
     for (const t of bundle.tools) {
-      const tool = new Tool(t);
+      const tool = new Tool(t, environment);
       tool.add_to(this.root);
       this.tools.set(t.index, tool);
       this.owned.push(tool);
@@ -151,7 +151,7 @@ export class World {
 
   private add_vessels(s: SurfaceData, tissue: Tissue, shading: Shading, skinned: SkinnedSurface | null, skin: SkinTexture | null, rest: Float32Array | null): void {
     const vessels = grow_vessels(tissue, shading, vessel_styles[s.material] ?? vessel_styles.cortex!, hash_text(s.id));
-    const tubes = make_tubes(vessels, 8);
+    const tubes = make_tubes(vessels);
     const n = tubes.kind.length;
     if (n === 0) return;
     const geometry = new THREE.BufferGeometry();

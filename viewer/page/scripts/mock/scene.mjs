@@ -44,7 +44,7 @@ export function make_scene(meshes) {
     fixed.push({ id, material, vertices: p.length / 3, triangles: mesh.indices.length / 3, positions: put(`static_${id}_p.bin`, p), indices: put(`static_${id}_i.bin`, mesh.indices) });
   };
   add_static('insula', 'insula', read_ply(join(meshes, 'lobes/insula_surface.ply')));
-  for (const id of ['bone', 'dura', 'drape']) if (existsSync(join(meshes, `window/${id}.obj`))) add_static(id, id, read_obj(join(meshes, `window/${id}.obj`)));
+  for (const id of ['bone', 'dura', 'skin', 'drape']) if (existsSync(join(meshes, `window/${id}.obj`))) add_static(id, id, read_obj(join(meshes, `window/${id}.obj`)));
 
   const tools = [['left', 'suction'], ['right', 'dissector']].map(([hand, kind], index) => {
     const dir = join(meshes, 'instruments', kind);
@@ -80,7 +80,7 @@ function make_strands(bodies, stations, out) {
     const inward = unit(sub(s.deep, s.superficial));
     for (let k = 0; k < 9; k++) {
       const depth = (0.02 + 0.5 * random()) * Math.hypot(...sub(s.deep, s.superficial));
-      const jitter = [0, 0, 0].map(() => (random() - 0.5) * 0.005);
+      const jitter = [0, 0, 0].map(() => (random() - 0.5) * 0.009);
       const at = add(add(s.superficial, inward, depth), jitter);
       const va = nearest(a.fine, at), vb = nearest(b.fine, [0, 1, 2].map((j) => a.fine[va * 3 + j]));
       const length = Math.hypot(...[0, 1, 2].map((j) => a.fine[va * 3 + j] - b.fine[vb * 3 + j]));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What steel and wet tissue reflect: a dim operating room, two lamps overhead, and the bright ring of the microscope.
+// What steel and wet tissue reflect: a dim operating room, lamps around, and the bright ring of the microscope.
 import * as THREE from 'three';
 
 export function make_environment(renderer: THREE.WebGLRenderer, towards_eye: THREE.Vector3, up: THREE.Vector3): THREE.Texture {
@@ -24,21 +24,26 @@ export function make_environment(renderer: THREE.WebGLRenderer, towards_eye: THR
   const colours = new Float32Array(dome.attributes.position!.count * 3);
   for (let i = 0; i < colours.length / 3; i++) {
     const t = dome.attributes.position!.getZ(i) / 10;
-    const c = t > 0 ? [0.10 + 0.18 * t, 0.11 + 0.19 * t, 0.13 + 0.20 * t] : [0.06, 0.085, 0.08];
+    const horizon = Math.exp(-((t / 0.35) ** 2));
+    const c = [0.05 + 0.10 * Math.max(0, t) + 0.07 * horizon, 0.055 + 0.10 * Math.max(0, t) + 0.08 * horizon, 0.055 + 0.11 * Math.max(0, t) + 0.085 * horizon];
     colours.set(c, i * 3);
   }
   dome.setAttribute('color', new THREE.BufferAttribute(colours, 3));
   holder.add(new THREE.Mesh(dome, new THREE.MeshBasicMaterial({ vertexColors: true, side: THREE.BackSide })));
-  add(new THREE.PlaneGeometry(5, 2.2), glow(3.2, 3.3, 3.5), [-5.5, 4.5, 4.5]);
-  add(new THREE.PlaneGeometry(4.5, 1.6), glow(2.4, 2.4, 2.3), [6, 2.5, 4]);
-  add(new THREE.PlaneGeometry(1.2, 6), glow(1.4, 1.5, 1.6), [7, -5, 2.5]);
-  add(new THREE.PlaneGeometry(1.4, 5), glow(1.2, 1.25, 1.3), [-7.5, -4, 1.5]);
+  // Lamps all around at mid height, dark between them: that contrast is what makes metal look like metal.
+  const lamps: [azimuth: number, polar: number, wide: number, high: number, power: number][] = [
+    [0.35, 1.05, 2.0, 4.2, 4.6], [1.35, 0.85, 3.2, 1.6, 5.2], [2.35, 1.1, 1.4, 4.4, 4.4], [3.25, 1.25, 2.4, 2.6, 3.2],
+    [4.05, 0.95, 1.6, 4.0, 4.8], [4.9, 1.2, 3.0, 1.5, 3.6], [5.65, 0.9, 1.2, 4.2, 5.0],
+  ];
+  for (const [azimuth, polar, wide, high, power] of lamps)
+    add(new THREE.PlaneGeometry(wide, high), glow(power, power, power * 1.03),
+      [8 * Math.sin(polar) * Math.cos(azimuth), 8 * Math.sin(polar) * Math.sin(azimuth), 8 * Math.cos(polar)]);
   // Microscope: dark body with a ring of light around the lens.
-  add(new THREE.CircleGeometry(1.9, 32), glow(0.02, 0.02, 0.022), [0, 0, 8]);
-  add(new THREE.RingGeometry(0.75, 1.15, 40), glow(17, 16, 14.5), [0, 0, 7.9]);
+  add(new THREE.CircleGeometry(1.9, 32), glow(0.10, 0.10, 0.11), [0, 0, 8]);
+  add(new THREE.RingGeometry(0.75, 1.3, 40), glow(17, 16, 14.5), [0, 0, 7.9]);
   for (const s of [-1, 1]) add(new THREE.CircleGeometry(0.4, 20), glow(14, 13.2, 12), [s * 1.55, 0.5, 7.8]);
   const generator = new THREE.PMREMGenerator(renderer);
-  const target = generator.fromScene(room, 0.012, 0.1, 50);
+  const target = generator.fromScene(room, 0.004, 0.1, 50);
   generator.dispose();
   room.traverse((o) => {
     if (o instanceof THREE.Mesh) { o.geometry.dispose(); (o.material as THREE.Material).dispose(); }

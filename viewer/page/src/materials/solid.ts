@@ -13,7 +13,7 @@ interface Recipe {
 
 const recipes: Record<string, Recipe> = {
   bone: {
-    base: { color: '#d9c9a8', roughness: 0.62, clearcoat: 0.35, clearcoatRoughness: 0.35 },
+    base: { color: '#bba684', roughness: 0.62, clearcoat: 0.35, clearcoatRoughness: 0.35 },
     colour: `
       vec4 a = noise(p * 0.22), b = noise(p * 1.3), c = noise(p * 3.4);
       // Cut edge: the spongy layer between the tables, red marrow in its pores.
@@ -26,12 +26,12 @@ const recipes: Record<string, Recipe> = {
     relief: '0.10 * noise(p * 1.3).yzw + 0.12 * noise(p * 3.4).yzw',
   },
   dura: {
-    base: { color: '#d2b1a2', roughness: 0.5, clearcoat: 0.8, clearcoatRoughness: 0.22, side: THREE.DoubleSide },
+    base: { color: '#a87b6b', roughness: 0.5, clearcoat: 0.8, clearcoatRoughness: 0.22, side: THREE.DoubleSide },
     colour: `
       vec4 a = noise(p * vec3(0.25, 0.9, 0.5)), b = noise(p * vec3(0.7, 2.6, 1.4));
       diffuseColor.rgb *= 1.0 + 0.10 * a.x + 0.08 * b.x;
-      float line = 1.0 - smoothstep(0.0, 0.07, abs(noise(p * 0.24 + a.yzw * 0.5).x));
-      diffuseColor.rgb = mix(diffuseColor.rgb, vec3(0.45, 0.08, 0.07), 0.5 * line);
+      float line = (1.0 - smoothstep(0.0, 0.05, abs(noise(p * 0.20 + a.yzw * 0.35).x))) * smoothstep(0.0, 0.5, noise(p * 0.11 + 2.0).x);
+      diffuseColor.rgb = mix(diffuseColor.rgb, vec3(0.34, 0.06, 0.05), 0.45 * line);
       diffuseColor.rgb = mix(diffuseColor.rgb, vec3(0.50, 0.16, 0.13), 0.35 * smoothstep(0.2, 0.8, noise(p * 0.15 + 4.0).x));`,
     relief: '0.16 * noise(p * vec3(0.25, 0.9, 0.5)).yzw + 0.12 * noise(p * vec3(0.7, 2.6, 1.4)).yzw',
   },
@@ -45,13 +45,23 @@ const recipes: Record<string, Recipe> = {
       diffuseColor.rgb *= 0.80 + 0.20 * smoothstep(-0.4, 0.5, a.x);`,
     relief: '0.22 * noise(p * 0.12).yzw + 0.10 * noise(p * 0.45).yzw + 0.10 * noise(p * 4.0).yzw',
   },
+  skin: {
+    base: { color: '#c08a6c', roughness: 0.6, clearcoat: 0.3, clearcoatRoughness: 0.4 },
+    colour: `
+      vec4 a = noise(p * 0.3), b = noise(p * 2.2);
+      diffuseColor.rgb *= 1.0 + 0.10 * a.x + 0.08 * b.x;
+      // The cut edge shows fat and blood, the surface the iodine it was painted with.
+      float cut = 1.0 - smoothstep(0.25, 0.7, abs(dot(normalize(v_object_normal), field_axis)));
+      diffuseColor.rgb = mix(diffuseColor.rgb, mix(vec3(0.62, 0.36, 0.10), vec3(0.36, 0.05, 0.03), smoothstep(-0.2, 0.4, noise(p * 0.7).x)), cut);`,
+    relief: '0.14 * noise(p * 0.9).yzw + 0.14 * noise(p * 2.2).yzw',
+  },
   steel: {
-    base: { color: '#c9ccd0', metalness: 1, roughness: 0.27 },
+    base: { color: '#d3d6da', metalness: 1, roughness: 0.17, envMapIntensity: 1.5 },
     colour: 'diffuseColor.rgb *= 0.97 + 0.05 * noise(p * 0.6).x;',
     relief: '0.012 * noise(p * vec3(6.0, 6.0, 0.4)).yzw',
   },
   steel_dark: {
-    base: { color: '#6d7076', metalness: 1, roughness: 0.4 },
+    base: { color: '#85888e', metalness: 1, roughness: 0.32, envMapIntensity: 1.5 },
     colour: 'diffuseColor.rgb *= 0.95 + 0.08 * noise(p * 0.6).x;',
     relief: '0.03 * noise(p * vec3(5.0, 5.0, 0.5)).yzw',
   },
@@ -61,7 +71,7 @@ const recipes: Record<string, Recipe> = {
     relief: '0.02 * noise(p * 3.0).yzw',
   },
   gold: {
-    base: { color: '#e0b45c', metalness: 1, roughness: 0.26 },
+    base: { color: '#e0b45c', metalness: 1, roughness: 0.2, envMapIntensity: 1.6 },
     colour: '',
     relief: '0.012 * noise(p * vec3(5.0, 5.0, 0.5)).yzw',
   },

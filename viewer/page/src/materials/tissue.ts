@@ -17,9 +17,9 @@ export interface TissueLook {
 }
 
 export const looks: Record<string, TissueLook> = {
-  cortex: { crown: '#dcab97', sulcus: '#b9645a', deep: '#5c1a17', capillary: '#a02a24', capillaries: 1.0, haze: 0.5 },
-  pia: { crown: '#d9a795', sulcus: '#b05d54', deep: '#5c1a17', capillary: '#9c2822', capillaries: 1.0, haze: 0.7 },
-  insula: { crown: '#d39c8a', sulcus: '#a9584f', deep: '#571815', capillary: '#9a241f', capillaries: 0.9, haze: 0.3 },
+  cortex: { crown: '#be7c69', sulcus: '#983f33', deep: '#4a1210', capillary: '#8a1f1a', capillaries: 1.0, haze: 0.4 },
+  pia: { crown: '#c48a79', sulcus: '#9a4c42', deep: '#4a1210', capillary: '#861e19', capillaries: 1.0, haze: 0.6 },
+  insula: { crown: '#b67462', sulcus: '#8c3d33', deep: '#46110f', capillary: '#841c17', capillaries: 0.9, haze: 0.3 },
 };
 
 export function tissue_material(look: TissueLook, skin: SkinTexture | null): THREE.MeshPhysicalMaterial {
@@ -64,7 +64,7 @@ export function tissue_material(look: TissueLook, skin: SkinTexture | null): THR
         tint *= 1.0 + 0.07 * coarse.x + 0.05 * middle.x + 0.05 * fine.x;
         tint = mix(tint, tint * vec3(1.08, 0.86, 0.80), smoothstep(0.0, 0.7, noise(v_rest * 0.3 + 7.3).x));
         // Capillaries: a coarse and a fine net, patchy.
-        float net = 0.75 * network(v_rest * 0.34, warp, 0.055) * smoothstep(-0.25, 0.35, noise(v_rest * 0.21 + 3.1).x)
+        float net = 0.45 * network(v_rest * 0.34, warp, 0.055) * smoothstep(-0.25, 0.35, noise(v_rest * 0.21 + 3.1).x)
           + 0.55 * network(v_rest * 0.95 + 11.0, warp * 0.7, 0.11) * smoothstep(-0.1, 0.5, noise(v_rest * 0.33 + 5.7).x);
         tint = mix(tint, capillary, clamp(net, 0.0, 1.0) * 0.62 * amounts.x);
         tint = mix(tint, vec3(0.86, 0.78, 0.74), amounts.y * 0.30 * smoothstep(0.1, 0.9, fold) * smoothstep(-0.3, 0.6, middle.x) * openness);
@@ -77,9 +77,9 @@ export function tissue_material(look: TissueLook, skin: SkinTexture | null): THR
         normal = bump(normal, ripple);`)
       .replace('#include <clearcoat_normal_fragment_maps>', `#include <clearcoat_normal_fragment_maps>
         // The fluid film evens out the finest relief.
-        clearcoatNormal = bump(clearcoatNormal, normalMatrix * (0.17 * middle.yzw + 0.12 * fine.yzw));`)
+        clearcoatNormal = bump(clearcoatNormal, normalMatrix * (0.13 * middle.yzw + 0.06 * fine.yzw));`)
       .replace('#include <lights_physical_fragment>', `#include <lights_physical_fragment>
-        material.clearcoatRoughness = clamp(0.17 + 0.09 * coarse.x + 0.05 * fine.x, 0.06, 1.0);`)
+        material.clearcoatRoughness = clamp(0.19 + 0.10 * coarse.x + 0.03 * fine.x, 0.08, 1.0);`)
       .replace('#include <lights_fragment_end>', `#include <lights_fragment_end>
         // Light scattered below the surface comes out redder where the surface turns away.
         float facing = saturate(dot(normalize(vViewPosition), nonPerturbedNormal));
@@ -111,7 +111,7 @@ export function vessel_material(skin: SkinTexture | null): THREE.MeshPhysicalMat
       .replace('#include <common>', `#include <common>\n${noise_glsl}\nvarying vec2 v_vessel; varying vec3 v_rest; uniform mat3 normalMatrix;`)
       .replace('#include <color_fragment>', `#include <color_fragment>
         vec4 blood = noise(v_rest * 0.8);
-        vec3 artery = vec3(0.42, 0.030, 0.026), vein = vec3(0.145, 0.020, 0.042);
+        vec3 artery = vec3(0.30, 0.020, 0.017), vein = vec3(0.105, 0.014, 0.030);
         float edge = saturate(dot(normalize(vViewPosition), normalize(vNormal)));
         diffuseColor.rgb = mix(artery, vein, v_vessel.x) * (0.9 + 0.2 * blood.x) * mix(0.5, 1.25, edge);
         diffuseColor.rgb *= mix(0.35, 1.0, v_vessel.y);`)

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From many proximities to few contacts, and the same contact's name from step to step.
+//
+// Greedy by gap: a proximity is kept if every kept one is farther than `spacing` or has a normal turned by more than 40
+// degrees. Those of the last step have a small advantage, so that the choice does not flicker. A tool's contact keeps its
+// key and its tangent as long as one of the same pieces stays near in the tool's frame; a tissue contact is known by its
+// vertex. Keys are unique among all selections that share a counter; they serve the warm start.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "core/collision/contact_set.h"
+
+namespace insula {
+
+struct SelectionSettings {
+  double spacing = 2e-3;    ///< m
+  double advantage = 0.2e-3;  ///< m of gap that a contact of the last step may be farther and still win
+  int max_contacts = 8;
+  int max_per_piece = 4;
+};
+
+class ContactSelection {
+ public:
+  /// Reduces `all` (in any order that is reproducible) in place and fills in keys and tangents. `next_key` counts up for
+  /// every new contact. Allocates only to grow.
+  void select(std::vector<Proximity>& all, const SelectionSettings& settings, std::uint64_t& next_key);
+  void reset() { last_.clear(); }
+
+ private:
+  struct Known {
+    int piece, other_piece, vertex, side;
+    Vec3 local, tangent;
+    std::uint64_t key;
+    bool taken;
+  };
+  struct Order {
+    double rank;
+    int index;
+  };
+  std::vector<Known> last_, next_;
+  std::vector<Order> order_;
+  std::vector<Proximity> kept_;
+};
+
+/// A unit vector perpendicular to n, as near to `wish` as can be; a fixed choice where wish is parallel to n or zero.
+Vec3 tangent_to(const Vec3& n, const Vec3& wish);
+
+}  // namespace insula

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Surface against surface: sample vertices of a against the triangles of b.
+//
+// The samples are an even choice of a's vertices, fixed at the start (a contact is then known by its vertex, which stays
+// the same while the surfaces slide). For each, the nearest triangle of b that faces it, within the alarm distance plus
+// what both may move in the step's free motion; a vertex behind that triangle is an overlap and has a negative gap.
+// Geometry is that of the start of the step: tissue moves by less than its own details in a step. A bump narrower than
+// the samples' distance s can reach into the other surface by about s^2 / (8 R), R its radius of curvature.
+#pragma once
+#include <vector>
+
+#include "core/collision/collision_mesh.h"
+#include "core/collision/contact_set.h"
+
+namespace insula {
+
+struct TissueContactSettings {
+  double alarm = 0.5e-3;        ///< m
+  double max_motion = 5e-3;     ///< the look-ahead goes no farther than this, m
+  double max_recovery = 0.5e-3; ///< an overlap is undone by no more than this in a step, m
+};
+
+/// Vertices of the surface no two of which are closer than `distance`, such that every used vertex is that close to one.
+/// In order of vertex number. Deterministic.
+std::vector<int> sample_vertices(std::span<const Vec3> rest, std::span<const std::array<int, 3>> triangles, double distance);
+
+class TissueCollider {
+ public:
+  explicit TissueCollider(std::vector<int> samples);
+  /// Appends one contact a sample that has one, in order of vertex. Does not allocate while `out` has capacity.
+  void detect(const CollisionMesh& a, const CollisionMesh& b, const TissueContactSettings& settings, std::vector<Proximity>& out) const;
+  const std::vector<int>& samples() const { return samples_; }
+
+ private:
+  std::vector<int> samples_;
+};
+
+}  // namespace insula

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Example scenes of plugins as tests see them: loaded with every message shown, with hands that follow a plain script.
+#pragma once
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "core/registry/registry.h"
+#include "core/mechanics/soft_body.h"
+#include "core/sim/simulation.h"
+
+namespace insula::test {
+
+/// Every built-in element; one for the program.
+const Registry& builtin();
+
+/// Loads a scene; what is wrong becomes a test failure and the result is null. Warnings are failures too.
+std::unique_ptr<Simulation> load(const std::filesystem::path& file, int threads = 1);
+std::unique_ptr<Simulation> load_text(const std::string& xml, const std::filesystem::path& virtual_path, int threads = 1);
+
+/// Both hands for the coming step: in from home along the shaft by 5 mm within half a second, then across by 2 mm and back
+/// within another; button 1 is held from 0.2 s on. From 1 s on the hands are still.
+void drive(Simulation& simulation);
+inline constexpr double script_length = 1.0;  ///< s
+
+/// Drives and steps n times.
+void run_script(Simulation& simulation, int n);
+
+/// A shape, turned, bent and noisy, for the soft body's q: strain of the order of `strain`, reproducible by `seed`.
+VecX deformed(const SoftBody& body, double strain, std::uint64_t seed);
+
+}  // namespace insula::test

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Contract of force models: energy, force, stiffness and invariance under rigid motion.
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <numeric>
+
+#include "core/base/random.h"
+#include "core/testing/contracts.h"
+#include "core/testing/example.h"
+
+namespace insula::test {
+namespace {
+
+/// The model bound to a matrix of its own in which no node is held.
+struct Bench {
+  SoftBody& body;
+  ForceModel& model;
+  BlockMatrix matrix;
+  int n;
+
+  Bench(SoftBody& b, ForceModel& m) : body(b), model(m), n(3 * b.nodes()) {
+    std::vector<std::pair<int, int>> pairs;
+    model.couplings(pairs);
+    matrix.set_pattern(body.nodes(), std::move(pairs));
+    std::vector<int> all(std::size_t(body.nodes()));
+    std::iota(all.begin(), all.end(), 0);
+    model.bind(matrix, all);
+  }
+  VecX force(const VecX& x) {
+    VecX f = VecX::Zero(n);
+    model.linearise(x.data(), f.data(), nullptr, 0, Tangent::system);
+    return f;
+  }
+  MatX stiffness(const VecX& x, double h, Tangent which) {
+    VecX f = VecX::Zero(n);
+    matrix.set_zero();
+    model.linearise(x.data(), f.data(), &matrix, h, which);
+    MatX k = MatX::Zero(n, n);
+    for (int j = 0; j < matrix.nodes(); ++j) {
+      const int end = j + 1 < matrix.nodes() ? matrix.column_start(j + 1) : matrix.slots();
+      for (int s = matrix.column_start(j); s < end; ++s) {
+        const Eigen::Map<const Mat3> block(matrix.block(s));
+        k.block<3, 3>(3 * matrix.row(s), 3 * j) = block;
+        if (matrix.row(s) != j) k.block<3, 3>(3 * j, 3 * matrix.row(s)) = block.transpose();
+      }
+    }
+    return k;
+  }
+};
+
+void expect_balanced(const Bench& b, const VecX& x, const VecX& f, double reference) {
+  Vec3 sum = Vec3::Zero(), moment = Vec3::Zero(), centre = Vec3::Zero();
+  double size = 0;
+  const int nodes = b.body.nodes();
+  for (int i = 0; i < nodes; ++i) centre += x.segment<3>(3 * i) / nodes;
+  for (int i = 0; i < nodes; ++i) {
+    const Vec3 r = x.segment<3>(3 * i) - centre, fi = f.segment<3>(3 * i);
+    sum += fi;
+    moment += r.cross(fi);
+    size = std::max(size, r.norm());
+  }
+  EXPECT_LT(sum.norm(), 1e-10 * reference) << "the forces do not add up to nothing";
+  EXPECT_LT(moment.norm(), 1e-10 * reference * size) << "the moments do not add up to nothing";
+}
+
+void check_state(Bench& b, const VecX& x, std::uint64_t seed) {
+  Random random(seed);
+  double edge = 1;  // shortest edge: the scale of differences
+  for (const auto& t : b.body.rest().tets)
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        edge = std::min(edge, (b.body.rest().nodes[std::size_t(t[i])] - b.body.rest().nodes[std::size_t(t[j])]).norm());
+  const VecX f = b.force(x);
+  const double largest = f.lpNorm<Eigen::Infinity>();
+  ASSERT_GT(largest, 0) << "the deformed state gives no force";
+  expect_balanced(b, x, f, f.lpNorm<1>());
+
+  // Fourth-order central differences of the energy at a sample of the degrees of freedom.
+  for (int trial = 0; trial < 60; ++trial) {
+    const int i = int(random.below(std::uint32_t(b.n)));
+    const double e = 1e-3 * edge;
+    const auto energy = [&](double d) {
+      VecX y = x;
+      y[i] += d;
+      return b.model.energy(y.data());
+    };
+    const double slope = (8 * (energy(e) - energy(-e)) - (energy(2 * e) - energy(-2 * e))) / (12 * e);
+    EXPECT_NEAR(f[i], -slope, 1e-7 * largest) << "force differs from the energy's gradient at degree of freedom " << i;
+  }
+
+  // Stiffness against differences of the force, along random directions.
+  const MatX exact = b.stiffness(x, 0, Tangent::exact);
+  EXPECT_LT((exact - exact.transpose()).norm(), 1e-12 * exact.norm());
+  for (int trial = 0; trial < 10; ++trial) {
+    VecX d(b.n);
+    for (int i = 0; i < b.n; ++i) d[i] = random.uniform(-1, 1);
+    const double e = 1e-3 * edge;
+    const VecX slope = (8 * (b.force(x + e * d) - b.force(x - e * d)) - (b.force(x + 2 * e * d) - b.force(x - 2 * e * d))) / (12 * e);
+    const VecX product = exact * d;
+    EXPECT_LT((product + slope).norm(), 1e-6 * product.norm()) << "the exact tangent differs from the force's gradient";
+  }
+
+  const MatX system = b.stiffness(x, 0, Tangent::system);
+  EXPECT_LT((system - system.transpose()).norm(), 1e-12 * system.norm());
+  const VecX values = Eigen::SelfAdjointEigenSolver<MatX>(system, Eigen::EigenvaluesOnly).eigenvalues();
+  EXPECT_GT(values[0], -1e-10 * values[b.n - 1]) << "the step's tangent has a negative eigenvalue";
+  const double h = 0.01;
+  EXPECT_LT((b.stiffness(x, h, Tangent::system) - (1 + b.model.stiffness_damping() / h) * system).norm(), 1e-12 * system.norm() * (1 + b.model.stiffness_damping() / h));
+}
+
+}  // namespace
+
+void check_force_model(const std::filesystem::path& scene, const std::string& element) {
+  auto simulation = load(scene);
+  ASSERT_TRUE(simulation);
+  int found = 0;
+  for (ForceModel* m : simulation->scene().all<ForceModel>()) {
+    if (m->element != element) continue;
+    auto* body = dynamic_cast<SoftBody*>(m->parent);
+    ASSERT_TRUE(body);
+    ++found;
+    Bench bench(*body, *m);
+    const VecX rest = body->q();
+    double reference = 0;
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      SCOPED_TRACE("deformed state " + std::to_string(seed));
+      const VecX x = deformed(*body, 0.1, seed);
+      m->reset();
+      reference = bench.force(x).lpNorm<Eigen::Infinity>();
+      check_state(bench, x, seed);
+    }
+    // Rigid motions, also far ones and without a warm start.
+    Random random(5);
+    for (int trial = 0; trial < 10; ++trial) {
+      const Vec3 turn(random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(-2, 2)), shift(random.uniform(-0.1, 0.1), 0.05, -0.02);
+      const Quat q = from_rotation_vector(turn);
+      VecX x(rest.size());
+      for (int i = 0; i < body->nodes(); ++i) x.segment<3>(3 * i) = q * rest.segment<3>(3 * i) + shift;
+      m->reset();
+      EXPECT_LT(bench.force(x).lpNorm<Eigen::Infinity>(), 1e-10 * reference) << "a rigid motion gives forces";
+      EXPECT_GE(m->energy(x.data()), 0);
+    }
+    EXPECT_GE(m->stiffness_damping(), 0);
+  }
+  EXPECT_GT(found, 0) << "its example holds no <" << element << ">";
+}
+
+}  // namespace insula::test

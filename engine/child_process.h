@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A child process whose output comes back line by line, and which does not outlive its parent.
+#pragma once
+#include <sys/types.h>
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace insula {
+
+struct ChildExit {
+  int status = 0;  ///< exit status, -1 when a signal ended it
+  int signal = 0;
+  std::string text() const;  ///< "ended with status 1", "was killed by signal 9 (Killed)"
+};
+
+class ChildProcess {
+ public:
+  using Line = std::function<void(std::string_view)>;
+
+  ChildProcess() = default;
+  ~ChildProcess();  ///< kills what still runs
+  ChildProcess(const ChildProcess&) = delete;
+  ChildProcess& operator=(const ChildProcess&) = delete;
+
+  /// Starts command[0] with its arguments, in a process group of its own (a terminal's Ctrl-C reaches the parent alone) and
+  /// with SIGTERM on the parent's death. Returns the error text, empty when started; a program that cannot be executed
+  /// ends with status 127.
+  std::string start(const std::vector<std::string>& command);
+  bool running() const { return pid_ > 0; }
+  pid_t pid() const { return pid_; }
+  int output() const { return output_; }  ///< descriptor to wait on, -1 when closed
+  /// Passes on the whole lines that have come. Never waits.
+  void read_lines(const Line& line);
+  /// How it ended, once; nothing while it runs. Never waits.
+  std::optional<ChildExit> reap();
+  /// After reap: the rest of its output, a last unfinished line included.
+  void finish_output(const Line& line);
+  void send(int signal) const;
+
+ private:
+  void close_output();
+
+  pid_t pid_ = -1;
+  int output_ = -1;
+  std::string pending_;
+};
+
+}  // namespace insula

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Simulation -> render_frame_t.
+#include "engine/frame.h"
+
+#include <algorithm>
+
+#include "core/mechanics/soft_body.h"
+
+namespace insula {
+namespace {
+
+void put(float* to, const Vec3& v) {
+  for (int k = 0; k < 3; ++k) to[k] = float(v[k]);
+}
+void put(double* to, const Vec3& v) {
+  for (int k = 0; k < 3; ++k) to[k] = v[k];
+}
+template <class Row>
+void put(std::vector<Row>& to, std::size_t i, const Vec3& v) {
+  to[i].resize(3);
+  put(to[i].data(), v);
+}
+
+// Contacts shown at most: a picture needs no more, and frames stay small.
+constexpr std::size_t most_contacts = 120;
+
+}  // namespace
+
+std::vector<const SoftBody*> picture_bodies(const Simulation& simulation) {
+  std::vector<const SoftBody*> out;
+  for (const Body* b : simulation.bodies())
+    if (auto* soft = dynamic_cast<const SoftBody*>(b)) out.push_back(soft);
+  return out;
+}
+
+void fill_frame(const Simulation& simulation, insula_lcm::render_frame_t& f) {
+  const StepReport& r = simulation.report();
+  const auto bodies = picture_bodies(simulation);
+  f.sim_time_s = r.time;
+  f.bodies = std::int32_t(bodies.size());
+  f.body.resize(bodies.size());
+  f.body_force_N.assign(bodies.size(), 0.0);
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    auto& to = f.body[b];
+    to.index = std::int32_t(b);
+    to.nodes = bodies[b]->nodes();
+    to.x_m.resize(std::size_t(to.nodes));
+    for (int i = 0; i < to.nodes; ++i) put(to.x_m, std::size_t(i), bodies[b]->q().segment<3>(3 * i));
+    // The largest force any one tool puts on the body.
+    for (const Instrument* tool : simulation.instruments()) {
+      Vec3 sum = Vec3::Zero();
+      for (const ContactPoint& c : r.contacts) {
+        if (c.a == tool && c.b == bodies[b]) sum -= c.normal_force * c.normal + c.tangent_force;
+        if (c.b == tool && c.a == bodies[b]) sum += c.normal_force * c.normal + c.tangent_force;
+      }
+      f.body_force_N[b] = std::max(f.body_force_N[b], sum.norm());
+    }
+  }
+  f.strands = std::int32_t(r.strands.size());
+  f.strand_points = 2 * f.strands;
+  f.strand_x_m.resize(2 * r.strands.size());
+  f.strand_health.resize(r.strands.size());
+  f.strand_tension_N.resize(r.strands.size());
+  for (std::size_t i = 0; i < r.strands.size(); ++i) {
+    put(f.strand_x_m, 2 * i, r.strands[i].a);
+    put(f.strand_x_m, 2 * i + 1, r.strands[i].b);
+    f.strand_health[i] = float(r.strands[i].health);
+    f.strand_tension_N[i] = float(r.strands[i].tension);
+  }
+  const auto& tools = simulation.instruments();
+  f.tools = std::int8_t(tools.size());
+  f.tool.resize(tools.size());
+  for (std::size_t i = 0; i < tools.size(); ++i) {
+    auto& to = f.tool[i];
+    const Pose& pose = tools[i]->pose();
+    to.index = std::int32_t(i);
+    to.hand = std::int8_t(tools[i]->hand_index());
+    put(to.p_m, pose.p);
+    to.q[0] = pose.q.w();
+    to.q[1] = pose.q.x();
+    to.q[2] = pose.q.y();
+    to.q[3] = pose.q.z();
+    put(to.device_p_m, tools[i]->device().p);
+    put(to.force_N, tools[i]->hand_force().head<3>());
+    to.button1 = tools[i]->state().button1;
+    to.button2 = tools[i]->state().button2;
+    to.activity = float(tools[i]->activity());
+  }
+  const std::size_t contacts = std::min(most_contacts, r.contacts.size());
+  f.contacts = std::int32_t(contacts);
+  f.contact_x_m.resize(contacts);
+  f.contact_N.resize(contacts);
+  for (std::size_t i = 0; i < contacts; ++i) {
+    put(f.contact_x_m, i, r.contacts[i].position);
+    f.contact_N[i] = float(r.contacts[i].normal_force);
+  }
+  f.step_ms = r.step_ms;
+  f.step_period_ms = simulation.h() * 1000;
+  f.rows = r.rows;
+  f.sweeps = r.solve.sweeps;
+  f.hud_json = simulation.exercise() ? simulation.exercise()->hud_json(r) : "{}";
+}
+
+}  // namespace insula

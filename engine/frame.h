@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the viewers get of a step.
+#pragma once
+#include <insula_lcm/render_frame_t.hpp>
+
+#include "core/sim/simulation.h"
+
+namespace insula {
+
+class SoftBody;
+
+/// The bodies of frames and bundles: soft bodies in document order; a body's place here is its `index` there.
+std::vector<const SoftBody*> picture_bodies(const Simulation& simulation);
+
+/// Fills a frame from the simulation's last step; keeps the capacity of its vectors. Header fields are the caller's.
+void fill_frame(const Simulation& simulation, insula_lcm::render_frame_t& frame);
+
+}  // namespace insula

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Lock-step of servo and engine.
+#include "engine/headless.h"
+
+#include <chrono>
+#include <cmath>
+
+namespace insula {
+namespace {
+std::array<HandHome, 2> homes(const Simulation& simulation) {
+  std::array<HandHome, 2> out;
+  for (int h = 0; h < 2; ++h)
+    if (const Instrument* i = simulation.instrument_of(h)) out[std::size_t(h)] = {true, i->home_pose()};
+  return out;
+}
+}  // namespace
+
+HeadlessRun::HeadlessRun(Simulation& simulation, const Motion& motion)
+    : simulation_(simulation), haptics_(motion, homes(simulation)) {}
+
+void HeadlessRun::step() {
+  const auto begin = std::chrono::steady_clock::now();
+  const int ticks = std::max(1, int(std::lround(simulation_.h() * 1000)));
+  const double start = simulation_.time();
+  for (int k = 1; k <= ticks; ++k) haptics_.tick(start + k * simulation_.h() / ticks);
+  for (int h = 0; h < 2; ++h) {
+    const auto& hand = haptics_.hand(h);
+    if (hand.present) simulation_.set_hand(h, {true, hand.device, hand.button1, hand.button2});
+  }
+  haptic_ms_ = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+  simulation_.step();
+  haptics_.set_problem(simulation_.problem());
+}
+
+void HeadlessRun::reset() {
+  simulation_.reset();
+  haptics_.reset();
+}
+
+}  // namespace insula

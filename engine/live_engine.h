@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The engine as a process: steps a scene in real time, hands from DEVICE_STATE, results onto the bus.
+#pragma once
+#include <atomic>
+#include <filesystem>
+#include <string>
+
+#include "core/bus/bus.h"
+#include "core/registry/registry.h"
+#include "core/sim/simulation.h"
+
+namespace insula {
+
+struct LiveOptions {
+  std::filesystem::path scene;
+  std::string motion = "steady";  ///< id of a motion of the exercise, a CSV file, or "none": what simulated hands follow
+  std::filesystem::path bundle_root;  ///< folder for viewer bundles; empty: the user's runtime folder
+  double duration = 0;            ///< simulated seconds; 0: until asked to stop
+  bool unthrottled = false;       ///< as fast as the machine can, for measurements
+  int threads = 0;
+};
+
+/// Runs until `stop` is set, the duration is over or a viewer says quit. Exit status: 0, or 2 when the scene has errors.
+int run_live(const LiveOptions& options, const Registry& registry, Bus& bus, const std::atomic<bool>& stop);
+
+/// The file of a motion named by id in the scene's exercise, or a path; empty for "none". Throws InputError naming what there is.
+std::filesystem::path find_motion(const Simulation& simulation, const std::string& id_or_file);
+
+}  // namespace insula

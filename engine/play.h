@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// insula play: engine, haptic server and gateway, watched over until the session ends.
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/registry/registry.h"
+#include "engine/commands.h"
+
+namespace insula {
+
+struct PlayOptions {
+  std::filesystem::path scene;        ///< empty: the first training exercise
+  std::string motion;                 ///< id, CSV file or "none" for simulated hands; empty: the engine's default
+  std::string left, right;            ///< device kinds; empty: the haptic server's default
+  int port = 8080;                    ///< the viewer's; following ones are tried when it is busy
+  std::string listen = "127.0.0.1";   ///< 0.0.0.0 lets other machines watch
+  bool browser = true;                ///< open one when there is a display
+  double duration_s = 0;              ///< 0: until Ctrl-C
+  std::vector<std::string> engine_arguments;  ///< passed on before the subcommand, such as --plugin-path
+};
+
+/// Checks the scene first: nothing starts when it has errors (status 2).
+int cmd_play(const CommandContext& context, const PlayOptions& options);
+
+/// The scene that is played when none is named: beside the program's installation or sources, or below the current folder.
+std::filesystem::path default_scene();
+
+}  // namespace insula

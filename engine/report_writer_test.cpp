@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The report of a run: keys, numbers, plots and a page that is well-formed whatever the texts hold.
+#include "engine/report_writer.h"
+
+#include <expat.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "core/base/input_error.h"
+#include "engine/svg_plot.h"
+
+namespace insula {
+namespace {
+
+using Json = nlohmann::json;
+
+std::string xml_error(const std::string& text) {
+  XML_Parser parser = XML_ParserCreate(nullptr);
+  std::string error;
+  if (XML_Parse(parser, text.data(), int(text.size()), 1) != XML_STATUS_OK)
+    error = std::string(XML_ErrorString(XML_GetErrorCode(parser))) + " in line " + std::to_string(XML_GetCurrentLineNumber(parser));
+  XML_ParserFree(parser);
+  return error;
+}
+
+/// 100 steps of 0.1 s; in step k (from 1): k rows, solve takes k ms, 10 strands of which one is cut every ten steps.
+RunRecorder hundred_steps() {
+  RunRecorder recorder;
+  for (int k = 1; k <= 100; ++k) {
+    StepReport r;
+    r.time = 0.1 * k;
+    r.h = 0.1;
+    r.rows = k;
+    r.contacts.resize(std::size_t(k % 3));
+    r.solve.sweeps = 2 * k;
+    r.solve.residual_N = 1e-6 * k;
+    r.solve.residual_m = 1e-9 * k;
+    r.strands_total = 10;
+    r.strands_left = 10 - k / 10;
+    r.stage_ms[stage_solve] = k;
+    r.step_ms = k + 1;
+    ToolReport tool;
+    tool.hand = 1;
+    tool.contact_force = k == 50 ? 2.5 : 0.5;
+    r.tools.push_back(tool);
+    std::vector<Event> events;
+    if (k % 10 == 0) events.push_back({"strand_cut", "s", "", 1, r.time});
+    if (k == 70) events.push_back({"fault", "force", "Too much <force> & \"more\"", 2.5, r.time});
+    recorder.record(r, events, {0.1, k == 30 ? 1.5 : 0.2});
+  }
+  return recorder;
+}
+
+RunSummary summary(const Exercise* exercise) {
+  RunSummary s;
+  s.title = "A <title> & more";
+  s.scene = "scenes/a.xml";
+  s.motion = "steady";
+  s.wall_seconds = 2;
+  s.fresh_forces_per_s = 991.5;
+  s.max_force_N = {0.25, 1.75};
+  s.state_hash = 0xfedcba9876543210ull;
+  s.exercise = exercise;
+  return s;
+}
+
+void fill(Exercise& exercise) {
+  exercise.id = "fissure";
+  exercise.log().add_goal("open", "Open it");
+  exercise.log().add_goal("all", "Divide all", false);
+  exercise.log().add_fault("force", "Too much <force>");
+  exercise.log().goal(0, 4.5);
+  exercise.log().fault(0, 7.0, 2.5);
+}
+
+TEST(ReportJson, HasEveryKeyWithItsNumber) {
+  Exercise exercise;
+  fill(exercise);
+  const Json j = Json::parse(report_json(hundred_steps(), summary(&exercise)));
+  EXPECT_EQ(j.at("steps"), 100);
+  EXPECT_NEAR(j.at("sim_seconds").get<double>(), 10, 1e-5);
+  EXPECT_EQ(j.at("wall_seconds"), 2);
+  EXPECT_NEAR(j.at("real_time_factor").get<double>(), 5, 1e-5);
+  for (const char* stage : {"free_motion", "collision", "build", "solve", "correct", "publish"})
+    for (const char* part : {"p50", "p95"}) EXPECT_TRUE(j.at("stage_ms").at(stage).at(part).is_number()) << stage << part;
+  EXPECT_EQ(j.at("stage_ms").at("solve").at("p50"), 50);
+  EXPECT_EQ(j.at("stage_ms").at("solve").at("p95"), 95);
+  EXPECT_EQ(j.at("rows").at("mean"), 50.5);
+  EXPECT_EQ(j.at("rows").at("max"), 100);
+  EXPECT_EQ(j.at("contacts").at("mean"), 1);
+  EXPECT_EQ(j.at("contacts").at("max"), 2);
+  EXPECT_EQ(j.at("sweeps").at("mean"), 101);
+  EXPECT_EQ(j.at("sweeps").at("max"), 200);
+  EXPECT_NEAR(j.at("residual").at("p50").get<double>(), 50e-6, 1e-11);
+  EXPECT_NEAR(j.at("residual").at("max").get<double>(), 100e-6, 1e-11);
+  EXPECT_EQ(j.at("haptic").at("fresh_forces_per_s"), 991.5);
+  EXPECT_EQ(j.at("haptic").at("max_force_N").at("left"), 0.25);
+  EXPECT_EQ(j.at("haptic").at("max_force_N").at("right"), 1.75);
+  const Json& e = j.at("exercise");
+  EXPECT_EQ(e.at("goals").at(0).at("id"), "open");
+  EXPECT_EQ(e.at("goals").at(0).at("done"), true);
+  EXPECT_EQ(e.at("goals").at(0).at("time_s"), 4.5);
+  EXPECT_EQ(e.at("goals").at(1).at("done"), false);
+  EXPECT_TRUE(e.at("goals").at(1).at("time_s").is_null());
+  EXPECT_EQ(e.at("faults").at(0).at("id"), "force");
+  EXPECT_EQ(e.at("faults").at(0).at("count"), 1);
+  EXPECT_EQ(e.at("strands_cut"), 10);
+  EXPECT_EQ(j.at("state_hash"), "fedcba9876543210");
+  EXPECT_EQ(j.at("events").size(), 11u);
+  EXPECT_EQ(j.at("series").at("time_s").size(), 100u);
+  EXPECT_EQ(j.at("series").at("tool_force_N").at("right").at(49), 2.5);
+  EXPECT_EQ(j.at("series").at("strands_left").at(99), 0);
+}
+
+TEST(ReportJson, StandsWithoutExerciseAndSteps) {
+  const Json j = Json::parse(report_json(RunRecorder(), summary(nullptr)));
+  EXPECT_EQ(j.at("steps"), 0);
+  EXPECT_EQ(j.at("rows").at("max"), 0);
+  EXPECT_TRUE(j.at("exercise").at("goals").empty());
+  EXPECT_EQ(j.at("exercise").at("strands_cut"), 0);
+  EXPECT_EQ(xml_error(report_html(RunRecorder(), summary(nullptr))), "");
+}
+
+TEST(ReportJson, IsJsonEvenWhenTheSimulationIsNot) {
+  RunRecorder recorder;
+  StepReport r;
+  r.finite = false;
+  r.energy = std::numeric_limits<double>::quiet_NaN();
+  r.solve.residual_N = std::numeric_limits<double>::infinity();
+  r.time = 0.1;
+  recorder.record(r, {{"message", "\xff", "bad \xc3 bytes \x01", 0, 0.1}}, {0, std::numeric_limits<double>::quiet_NaN()});
+  const Json j = Json::parse(report_json(recorder, summary(nullptr)));
+  EXPECT_EQ(j.at("finite"), false);
+  EXPECT_EQ(xml_error(report_html(recorder, summary(nullptr))), "");
+}
+
+TEST(ReportHtml, IsWellFormedAndSaysWhatItMust) {
+  Exercise exercise;
+  fill(exercise);
+  const std::string html = report_html(hundred_steps(), summary(&exercise));
+  EXPECT_EQ(xml_error(html), "");
+  for (const char* part : {"For training only", "A &lt;title&gt; &amp; more", "Force on the hands", "Strands left", "Rows, contacts and sweeps", "Residual of the solver",
+                           "Stages", "force (N)", "wall time (ms)", "Open it", "Too much &lt;force&gt;", "fedcba9876543210", "@media print"})
+    EXPECT_NE(html.find(part), std::string::npos) << part;
+  // Self-contained: nothing is fetched.
+  for (const char* part : {"<script", "src=", "<link", "url("}) EXPECT_EQ(html.find(part), std::string::npos) << part;
+}
+
+TEST(RunSeries, KeepsPeaksWhenItGathers) {
+  RunRecorder recorder;
+  for (int k = 0; k < 10007; ++k) {
+    StepReport r;
+    r.time = 0.001 * k;
+    r.rows = k == 5003 ? 999 : 1;
+    r.strands_left = 10007 - k;
+    recorder.record(r, {}, {k == 77 ? 3.0 : 0.0, 0});
+  }
+  const RunSeries s = series_of(recorder, 500);
+  EXPECT_LE(s.time_s.size(), 500u);
+  EXPECT_EQ(*std::max_element(s.rows.begin(), s.rows.end()), 999);
+  EXPECT_EQ(*std::max_element(s.hand_force_N[0].begin(), s.hand_force_N[0].end()), 3);
+  EXPECT_EQ(s.strands_left.back(), 1);
+  EXPECT_NEAR(s.time_s.back(), 10.006, 1e-5);
+}
+
+TEST(RunRecorder, LimitsItsEvents) {
+  RunRecorder recorder;
+  StepReport r;
+  for (int k = 0; k < 5100; ++k) recorder.record(r, {{"message", "a", "b", 0, 0}}, {0, 0});
+  EXPECT_EQ(recorder.events().size(), 5000u);
+  EXPECT_EQ(recorder.events_left_out(), 100);
+  recorder.clear();
+  EXPECT_TRUE(recorder.events().empty());
+  EXPECT_TRUE(recorder.samples().empty());
+}
+
+TEST(Percentile, IsTheNearestRank) {
+  EXPECT_EQ(percentile({}, 0.5), 0);
+  EXPECT_EQ(percentile({7}, 0.95), 7);
+  EXPECT_EQ(percentile({3, 1, 2}, 0.5), 2);
+  EXPECT_EQ(percentile({4, 3, 1, 2}, 0.5), 2);
+  EXPECT_EQ(percentile({4, 3, 1, 2}, 1), 4);
+  EXPECT_EQ(percentile({4, 3, 1, 2}, 0), 1);
+}
+
+TEST(Svg, TicksAreRoundAndCoverTheRange) {
+  EXPECT_EQ(nice_ticks(0, 10, 5), (std::vector<double>{0, 2, 4, 6, 8, 10}));
+  std::mt19937 random(1);
+  for (int i = 0; i < 1000; ++i) {
+    const double low = -1 + double(random() % 1000) / 500, high = low + std::pow(10.0, int(random() % 12) - 6);
+    const auto ticks = nice_ticks(low, high, 5);
+    EXPECT_LE(ticks.front(), low + 1e-9 * std::abs(high - low));
+    EXPECT_GE(ticks.back(), high - 1e-9 * std::abs(high - low));
+    EXPECT_LE(ticks.size(), 9u);
+  }
+}
+
+TEST(Svg, IsWellFormedForEveryCurve) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const auto& y : {std::vector<double>{}, {0, 0, 0}, {nan, nan, nan}, {1, nan, 3}, {-1, 0, 1e30}, {1e-12, 1e-12, 1e-12}})
+    for (bool log : {false, true}) {
+      const std::string text = svg({"t & t", "x", "y <N>", {0, 1, 2}, {{"c", "#111", y, "2 2"}}, {{1, "m & m", "#222"}}, log});
+      EXPECT_EQ(xml_error(text), "");
+      EXPECT_EQ(text.find("nan"), std::string::npos);
+      EXPECT_EQ(text.find("inf"), std::string::npos);
+    }
+}
+
+TEST(WriteReport, WritesBothFilesOrSaysWhyNot) {
+  const auto dir = std::filesystem::temp_directory_path() / ("insula_report_" + std::to_string(std::random_device()()));
+  write_report(dir / "deep", hundred_steps(), summary(nullptr));
+  std::ifstream in(dir / "deep" / "report.json");
+  EXPECT_EQ(Json::parse(in).at("steps"), 100);
+  EXPECT_TRUE(std::filesystem::exists(dir / "deep" / "report.html"));
+  std::ofstream(dir / "file") << "x";
+  EXPECT_THROW(write_report(dir / "file", RunRecorder(), summary(nullptr)), InputError);
+  std::filesystem::remove_all(dir);
+}
+
+}  // namespace
+}  // namespace insula

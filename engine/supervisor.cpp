@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One loop over signals, output and due restarts.
+#include "engine/supervisor.h"
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/signalfd.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <optional>
+
+namespace insula {
+namespace {
+
+std::chrono::nanoseconds seconds(double s) { return std::chrono::nanoseconds(std::int64_t(s * 1e9)); }
+
+/// Signals come through a descriptor while this lives; the mask is put back after.
+class SignalDescriptor {
+ public:
+  SignalDescriptor() {
+    sigset_t set;
+    sigemptyset(&set);
+    for (int s : {SIGINT, SIGTERM, SIGHUP, SIGCHLD}) sigaddset(&set, s);
+    sigprocmask(SIG_BLOCK, &set, &before_);
+    descriptor_ = signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK);
+  }
+  ~SignalDescriptor() {
+    while (next() != 0) {
+    }
+    close(descriptor_);
+    sigprocmask(SIG_SETMASK, &before_, nullptr);
+  }
+  SignalDescriptor(const SignalDescriptor&) = delete;
+  SignalDescriptor& operator=(const SignalDescriptor&) = delete;
+  int descriptor() const { return descriptor_; }
+  int next() const {
+    signalfd_siginfo info;
+    return read(descriptor_, &info, sizeof info) == ssize_t(sizeof info) ? int(info.ssi_signo) : 0;
+  }
+
+ private:
+  sigset_t before_;
+  int descriptor_ = -1;
+};
+
+}  // namespace
+
+struct Supervisor::Child {
+  ChildSpec spec;
+  ChildProcess process;
+  double wait_s = 0;
+  Clock::time_point started{};
+  std::optional<Clock::time_point> due;  // start at this time
+};
+
+Supervisor::Supervisor(SupervisorSettings settings, Print print) : settings_(settings), print_(std::move(print)) {}
+Supervisor::~Supervisor() = default;
+
+void Supervisor::add(ChildSpec spec) {
+  auto child = std::make_unique<Child>();
+  child->spec = std::move(spec);
+  child->wait_s = settings_.first_wait_s;
+  children_.push_back(std::move(child));
+}
+
+void Supervisor::start(Child& child) {
+  child.due.reset();
+  child.started = Clock::now();
+  if (const std::string error = child.process.start(child.spec.command); !error.empty()) {
+    print_(fmt::format("insula: cannot start {}: {}", child.spec.name, error));
+    child.due = Clock::now() + seconds(settings_.longest_wait_s);
+    return;
+  }
+  print_(fmt::format("insula: {} started (pid {})", child.spec.name, child.process.pid()));
+}
+
+void Supervisor::pass_on(Child& child, bool rest) {
+  const auto line = [&](std::string_view text) {
+    if (!child.spec.on_line || child.spec.on_line(child.spec, text)) print_(fmt::format("[{}] {}", child.spec.name, text));
+  };
+  if (rest)
+    child.process.finish_output(line);
+  else
+    child.process.read_lines(line);
+}
+
+void Supervisor::collect() {
+  for (auto& child : children_) {
+    pass_on(*child, false);
+    if (const auto exit = child->process.reap()) {
+      pass_on(*child, true);
+      after_exit(*child, *exit);
+    }
+  }
+}
+
+void Supervisor::after_exit(Child& child, const ChildExit& exit) {
+  if (ending_) return;
+  if (exit.status == 0 && child.spec.ends_session) return end_all(0);
+  if (exit.status == 2 || exit.status >= 100) {
+    print_(fmt::format("insula: {} {}; ending", child.spec.name, exit.text()));
+    return end_all(exit.status == 2 ? 2 : 1);
+  }
+  const double lived = std::chrono::duration<double>(Clock::now() - child.started).count();
+  if (lived >= settings_.settled_s) child.wait_s = settings_.first_wait_s;
+  print_(fmt::format("insula: {} {}, starting it again in {:.1f} s", child.spec.name, exit.text(), child.wait_s));
+  child.due = Clock::now() + seconds(child.wait_s);
+  child.wait_s = std::min(2 * child.wait_s, settings_.longest_wait_s);
+}
+
+void Supervisor::end_all(int status) {
+  if (ending_) return;
+  ending_ = true;
+  status_ = status;
+  kill_at_ = Clock::now() + seconds(settings_.patience_s);
+  for (auto& child : children_) {
+    child->due.reset();
+    child->process.send(SIGTERM);
+  }
+}
+
+int Supervisor::wait_ms() const {
+  std::optional<Clock::time_point> next;
+  const auto consider = [&](Clock::time_point t) { next = next ? std::min(*next, t) : t; };
+  for (const auto& child : children_)
+    if (child->due) consider(*child->due);
+  if (ending_) consider(kill_at_);
+  if (!ending_ && settings_.duration_s > 0) consider(began_ + seconds(settings_.duration_s));
+  if (!next) return 1000;  // a safety net; signals wake us
+  const auto ms = std::chrono::ceil<std::chrono::milliseconds>(*next - Clock::now()).count();
+  return int(std::clamp<std::int64_t>(ms, 0, 1000));
+}
+
+void Supervisor::wait(int signal_descriptor) {
+  std::vector<pollfd> waits{{signal_descriptor, POLLIN, 0}};
+  for (const auto& child : children_)
+    if (child->process.output() >= 0) waits.push_back({child->process.output(), POLLIN, 0});
+  ::poll(waits.data(), waits.size(), wait_ms());
+}
+
+int Supervisor::run() {
+  const SignalDescriptor signals;
+  ending_ = false;
+  status_ = 0;
+  began_ = Clock::now();
+  for (auto& child : children_) start(*child);
+  for (;;) {
+    wait(signals.descriptor());
+    while (const int signal = signals.next())
+      if (signal != SIGCHLD) end_all(0);
+    collect();
+    const auto now = Clock::now();
+    if (!ending_ && settings_.duration_s > 0 && now >= began_ + seconds(settings_.duration_s)) end_all(0);
+    bool any_runs = false;
+    for (auto& child : children_) {
+      if (child->due && now >= *child->due) start(*child);
+      any_runs |= child->process.running();
+    }
+    if (ending_ && !any_runs) break;
+    if (ending_ && now >= kill_at_) {
+      for (auto& child : children_) child->process.send(SIGKILL);
+      kill_at_ = now + seconds(settings_.patience_s);
+    }
+  }
+  print_("insula: ended");
+  return status_;
+}
+
+}  // namespace insula

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Goals of simulated hands: steady, limited in speed, taken over and handed back.
+#include "haptic_server/hand_guide.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace insula {
+namespace {
+
+constexpr double dt = 1e-3;
+
+TEST(HandGuide, FollowsAScriptWithItsVelocity) {
+  HandGuide guide;
+  guide.place(Pose());
+  HandSample wish;
+  for (int k = 1; k <= 100; ++k) {
+    wish.pose.p.x() = 0.05 * dt * k;
+    wish.button1 = k > 50;
+    const HandGoal& g = guide.advance(dt, wish);
+    EXPECT_EQ(g.pose.p, wish.pose.p);
+    EXPECT_NEAR(g.v.x(), 0.05, 1e-9);
+    EXPECT_EQ(g.button1, k > 50);
+    EXPECT_TRUE(g.stops);
+  }
+}
+
+TEST(HandGuide, WalksWhereTheWishJumps) {
+  const GuideSettings s;
+  HandGuide guide(s);
+  guide.place(Pose());
+  HandSample wish;
+  wish.pose.p = Vec3(0.03, 0, 0.04);
+  wish.pose.q = from_rotation_vector(Vec3(0, 2, 0));
+  Pose last;
+  int ticks = 0;
+  for (; ticks < 1000; ++ticks) {
+    const HandGoal& g = guide.advance(dt, wish);
+    const Vec6 d = displacement(last, g.pose);
+    ASSERT_LE(d.head<3>().norm(), s.max_speed_m_s * dt * (1 + 1e-9));
+    ASSERT_LE(d.tail<3>().norm(), s.max_spin_rad_s * dt * (1 + 1e-9));
+    last = g.pose;
+    if ((g.pose.p - wish.pose.p).norm() == 0 && displacement(g.pose, wish.pose).tail<3>().norm() == 0) break;
+  }
+  EXPECT_NEAR(ticks, 2 / s.max_spin_rad_s / dt, 2);  // the turn takes longest
+}
+
+TEST(HandGuide, AViewerTakesOverUntilPlaced) {
+  HandGuide guide;
+  guide.place(Pose());
+  HandSample viewer, script;
+  viewer.pose.p = Vec3(0.01, 0, 0);
+  viewer.button2 = true;
+  script.pose.p = Vec3(-0.01, 0, 0);
+  guide.take_over(viewer);
+  for (int k = 0; k < 1000; ++k) guide.advance(dt, script);  // held although no new pose comes
+  EXPECT_NEAR((guide.goal().pose.p - viewer.pose.p).norm(), 0, 1e-9);
+  EXPECT_TRUE(guide.goal().button2);
+  EXPECT_FALSE(guide.goal().stops);
+  guide.place(Pose());
+  EXPECT_FALSE(guide.taken_over());
+  for (int k = 0; k < 1000; ++k) guide.advance(dt, script);
+  EXPECT_EQ(guide.goal().pose.p, script.pose.p);
+}
+
+TEST(HandGuide, SmoothsSixtyPosesASecond) {
+  HandGuide guide;
+  guide.place(Pose());
+  double fastest = 0;
+  for (int k = 0; k < 1000; ++k) {
+    if (k % 16 == 0) {
+      HandSample s;
+      s.pose.p.x() = 0.05 * dt * k;  // steps of 0.8 mm
+      guide.take_over(s);
+    }
+    guide.advance(dt, HandSample{});
+    if (k > 200) fastest = std::max(fastest, guide.goal().v.x());
+  }
+  EXPECT_LT(fastest, 0.08);  // a raw step would be 0.3 m/s, the limit
+}
+
+TEST(MotionClock, FollowsStepsSmoothly) {
+  MotionClock clock;
+  clock.reset(0);
+  double last = 0, slowest = 1, fastest = 0;
+  for (int k = 0; k < 2000; ++k) {
+    if (k % 17 == 0) clock.step_arrived(k * dt, 17 * dt);
+    const double t = clock.advance(dt);
+    ASSERT_GE(t, last);
+    if (k > 500) {
+      slowest = std::min(slowest, (t - last) / dt);
+      fastest = std::max(fastest, (t - last) / dt);
+      ASSERT_NEAR(t, (k + 1) * dt, 2e-3);
+    }
+    last = t;
+  }
+  EXPECT_GT(slowest, 0.9);
+  EXPECT_LT(fastest, 1.1);
+}
+
+TEST(MotionClock, StopsWithTheEngineAndFollowsASlowOne) {
+  MotionClock clock;
+  clock.reset(0);
+  for (int k = 0; k < 500; ++k) {
+    if (k % 17 == 0) clock.step_arrived(k * dt, 17 * dt);
+    clock.advance(dt);
+  }
+  for (int k = 0; k < 1000; ++k) clock.advance(dt);  // no more steps
+  EXPECT_LE(clock.time(), 0.5 + 17 * dt + 1e-9);
+  clock.reset(0);
+  for (int k = 0; k < 4000; ++k) {  // at half speed
+    if (k % 34 == 0) clock.step_arrived(0.5 * k * dt, 17 * dt);
+    clock.advance(dt);
+  }
+  EXPECT_NEAR(clock.time(), 2.0, 0.02);
+}
+
+TEST(Workspace, LiesOverTheMotion) {
+  const Vec3 reach(0.160, 0.120, 0.070);
+  Vec3 centre, extent;
+  lay_workspace(nullptr, 0, Vec3(1, 2, 3), reach, centre, extent);
+  EXPECT_EQ(centre, Vec3(1, 2, 3));
+  EXPECT_EQ(extent, reach);
+  Motion m;
+  m.add(0, {0, {Pose{Vec3(0, 0, 0), Quat::Identity()}, false, false}});
+  m.add(0, {1, {Pose{Vec3(0.01, 0.02, 0.09), Quat::Identity()}, false, false}});
+  lay_workspace(&m, 0, Vec3(0, 0, 0.1), reach, centre, extent);
+  EXPECT_NEAR((centre - Vec3(0.005, 0.01, 0.05)).norm(), 0, 1e-15);
+  EXPECT_EQ(extent, Vec3(0.070, 0.120, 0.160));
+}
+
+}  // namespace
+}  // namespace insula

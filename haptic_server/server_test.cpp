@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The haptic server on an in-process bus with a clock that the test turns: engines come and go, messages are garbage.
+#include "haptic_server/server.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <thread>
+
+#include "core/bus/mem_bus.h"
+#include "haptic_server/servo_loop.h"
+#include "haptic_server/test_problem.h"
+#include "haptic_server/test_rig.h"
+
+namespace insula {
+namespace {
+
+using testing::Rig;
+using testing::TestDirectory;
+
+TEST(Server, FollowsTheScenesMotionAndFeelsTheTissue) {
+  Rig rig;
+  rig.write_motion();
+  rig.send_scene();
+  rig.run(50);
+  EXPECT_NEAR(rig.server->reading(0).pose.p.z(), 0.01, 1.5e-3);  // starts at the motion's start, not at the tool
+  rig.run(2000);
+  EXPECT_TRUE(rig.server->reading(0).button1);
+  // Goal at -6 mm; hand 400 N/m, coupling and tissue 300 N/m each in series.
+  EXPECT_NEAR(rig.server->force(0).z(), 0.006 / (1 / 400.0 + 1 / 150.0), 0.05);
+  EXPECT_TRUE(rig.server->reading(1).connected);
+  EXPECT_NEAR((rig.server->reading(1).pose.p - Vec3(0.02, 0, 0.002)).norm(), 0, 2e-4);  // unscripted: home
+  const auto& status = rig.server->publish_status();
+  EXPECT_GT(status.fresh_forces_per_s[0], 950 * 0.9);
+  EXPECT_EQ(status.messages_refused, 0);
+  EXPECT_EQ(status.problems_received, 129);
+  EXPECT_TRUE(rig.state_seen);
+  EXPECT_NEAR(rig.state.hand[0].force_N[2], rig.server->force(0).z(), 0.3);
+}
+
+TEST(Server, ForcesEndWithin100msOfTheLastProblemAndComeBackGently) {
+  Rig rig;
+  rig.write_motion();
+  rig.send_scene();
+  rig.run(1500);
+  ASSERT_GT(rig.server->force(0).norm(), 0.4);
+  rig.engine_alive = false;
+  rig.run(102);  // 50 ms until it is stale, 50 ms of ramp
+  EXPECT_EQ(rig.server->force(0), Vec3(0, 0, 0));
+  EXPECT_GT(rig.server->publish_status().problem_age_ms, 90);
+  rig.run(500);
+  EXPECT_EQ(rig.server->force(0), Vec3(0, 0, 0));
+  rig.engine_alive = true;
+  rig.run(60);
+  EXPECT_LT(rig.server->force(0).norm(), 0.2);
+  rig.run(300);
+  EXPECT_GT(rig.server->force(0).norm(), 0.4);
+}
+
+TEST(Server, AStalledEnginesOldStampsDoNotPassForFreshOnes) {
+  Rig rig;
+  rig.write_motion();
+  rig.send_scene();
+  rig.run(1500);
+  rig.engine_alive = false;
+  const std::int64_t stamp = rig.clock.now_ns() / 1000;
+  for (int k = 0; k < 20; ++k) {  // keeps arriving, keeps its old stamp
+    HapticUpdate u = rig.update();
+    u.time_us = stamp;
+    encode_problem(u, rig.bytes);
+    rig.engine_bus.publish(channel::haptic_problem, rig.bytes);
+    rig.run(10);
+  }
+  EXPECT_EQ(rig.server->force(0), Vec3(0, 0, 0));
+}
+
+TEST(Server, ANewEngineStartsTheMotionAgain) {
+  Rig rig;
+  rig.write_motion();
+  rig.send_scene();
+  rig.run(1500);
+  rig.engine_alive = false;
+  rig.run(300);
+  rig.session = 200;
+  rig.sequence = 0;
+  rig.sim_time = 0;
+  rig.engine_alive = true;
+  rig.send_scene();
+  rig.run(40);
+  EXPECT_GT(rig.server->reading(0).pose.p.z(), 0.008);
+  rig.run(1500);
+  EXPECT_GT(rig.server->force(0).norm(), 0.4);
+}
+
+TEST(Server, AResetStartsTheMotionAgainAndEndsATakeover) {
+  Rig rig;
+  rig.write_motion();
+  rig.send_scene();
+  rig.run(500);
+  insula_lcm::hand_input_t input{};
+  input.hand = 0;
+  input.p_m[0] = -0.03;
+  input.p_m[2] = 0.02;
+  input.q[0] = 1;
+  input.button2 = 1;
+  rig.engine_bus.publish(channel::hand_input, rig.encoded(input));
+  rig.run(1000);
+  EXPECT_NEAR((rig.server->reading(0).pose.p - Vec3(-0.03, 0, 0.02)).norm(), 0, 2e-4);
+  EXPECT_TRUE(rig.server->reading(0).button2);
+  rig.sim_time = 0;
+  rig.run(40);
+  EXPECT_NEAR(rig.server->reading(0).pose.p.z(), 0.01, 2e-3);
+  EXPECT_FALSE(rig.server->reading(0).button2);
+}
+
+TEST(Server, AServerThatComesLateStartsWhereTheToolsAre) {
+  Rig rig;
+  rig.write_motion();
+  rig.sim_time = 1.5;  // the engine has been running; the motion is elsewhere by now
+  rig.tool[0].p = Vec3(-0.02, 0.01, 0.02);
+  rig.send_scene();
+  rig.run(5);
+  EXPECT_NEAR((rig.server->reading(0).pose.p - rig.tool[0].p).norm(), 0, 3e-3);
+  Vec3 last = rig.server->reading(0).pose.p;
+  for (int k = 0; k < 400; ++k) {
+    rig.run(1);
+    ASSERT_LT((rig.server->reading(0).pose.p - last).norm(), 1e-3);  // walks, never jumps
+    last = rig.server->reading(0).pose.p;
+  }
+  EXPECT_NEAR(last.y(), 0, 1e-3);
+}
+
+TEST(Server, WithoutSceneInfoArmsStartAtTheToolsAfterAWhile) {
+  Rig rig;
+  rig.run(1000);
+  EXPECT_FALSE(rig.server->reading(0).connected);
+  rig.run(500);
+  EXPECT_TRUE(rig.server->reading(0).connected);
+  EXPECT_NEAR((rig.server->reading(0).pose.p - Vec3(-0.02, 0, 0.002)).norm(), 0, 2e-4);
+}
+
+TEST(Server, HomesComeFromTheScenesBundle) {
+  TestDirectory directory;
+  std::ofstream(directory.path / "scene.json")
+      << R"({"version":1,"hands":[{"hand":"left","tool":0,"home_p_m":[0.1,0.2,0.3],"home_q":[1,0,0,0]}]})";
+  const SceneSetup setup = read_scene_setup(7, "", directory.path);
+  EXPECT_TRUE(setup.has_home[0]);
+  EXPECT_FALSE(setup.has_home[1]);
+  EXPECT_EQ(setup.home[0].p, Vec3(0.1, 0.2, 0.3));
+  EXPECT_EQ(setup.problem, "");
+  std::ofstream(directory.path / "scene.json") << "{\"hands\": [{\"hand\": 3}";
+  EXPECT_NE(read_scene_setup(7, "", directory.path).problem, "");
+  EXPECT_NE(read_scene_setup(7, "/nowhere.csv", "").problem, "");
+}
+
+TEST(Server, AMouseFollowsTheViewerAndNotTheScript) {
+  Rig rig("mouse", "simulated");
+  rig.write_motion();
+  rig.send_scene();
+  rig.run(1500);
+  EXPECT_NEAR((rig.server->reading(0).pose.p - Vec3(-0.02, 0, 0.002)).norm(), 0, 2e-4);
+  insula_lcm::hand_input_t input{};
+  input.hand = 0;
+  input.p_m[2] = 0.03;
+  input.q[0] = 1;
+  rig.engine_bus.publish(channel::hand_input, rig.encoded(input));
+  rig.run(1000);
+  EXPECT_NEAR((rig.server->reading(0).pose.p - Vec3(0, 0, 0.03)).norm(), 0, 2e-4);
+  EXPECT_EQ(rig.state.hand[0].device, "mouse");
+}
+
+TEST(Server, GarbageChangesNothing) {
+  // Two servers hear the same engine; one also hears garbage on all its channels. They must do the same.
+  Rig clean, dirty;
+  for (Rig* r : {&clean, &dirty}) {
+    r->write_motion();
+    r->send_scene();
+    r->run(1200);
+  }
+  testing::Random random(21);
+  std::vector<std::uint8_t> good;
+  encode_problem(dirty.update(), good);
+  --dirty.sequence;
+  long sent = 0;
+  for (int k = 0; k < 300; ++k) {
+    for (std::string_view name : {channel::haptic_problem, channel::scene_info, channel::hand_input}) {
+      std::vector<std::uint8_t> bytes(random.bits() % 400);
+      for (std::uint8_t& b : bytes) b = std::uint8_t(random.bits());
+      dirty.engine_bus.publish(name, bytes);
+      good.resize(good.size());
+      std::vector<std::uint8_t> cut(good.begin(), good.begin() + std::ptrdiff_t(random.bits() % good.size()));
+      dirty.engine_bus.publish(name, cut);
+      sent += 2;
+    }
+    HapticUpdate poisoned = dirty.update();
+    --dirty.sequence;
+    poisoned.sequence += 1000;
+    poisoned.problem.delta_free[0] = NAN;
+    encode_problem(poisoned, dirty.bytes);
+    dirty.engine_bus.publish(channel::haptic_problem, dirty.bytes);
+    poisoned.problem.delta_free[0] = 0;
+    poisoned.time_us += 10'000'000;  // from the future
+    encode_problem(poisoned, dirty.bytes);
+    dirty.engine_bus.publish(channel::haptic_problem, dirty.bytes);
+    sent += 2;
+    clean.run(1);
+    dirty.run(1);
+    ASSERT_EQ(clean.server->force(0), dirty.server->force(0)) << k;
+    ASSERT_EQ(clean.server->reading(0).pose.p, dirty.server->reading(0).pose.p) << k;
+  }
+  EXPECT_EQ(dirty.server->messages_refused(), sent);
+  EXPECT_EQ(clean.server->messages_refused(), 0);
+}
+
+TEST(Server, OldAndDoubledMessagesAreIgnored) {
+  Rig rig;
+  rig.send_scene();
+  rig.run(100);
+  HapticUpdate old = rig.update();
+  const std::int64_t before = rig.server->publish_status().problems_received;
+  rig.sequence--;
+  old.sequence -= 3;
+  encode_problem(old, rig.bytes);
+  rig.engine_bus.publish(channel::haptic_problem, rig.bytes);
+  old.session = 5;  // an engine that was replaced
+  old.sequence += 1000;
+  encode_problem(old, rig.bytes);
+  rig.engine_bus.publish(channel::haptic_problem, rig.bytes);
+  rig.server->receive(0);
+  EXPECT_EQ(rig.server->publish_status().problems_received, before);
+}
+
+TEST(Server, StopsWithForcesAtZero) {
+  Rig rig;
+  rig.write_motion();
+  rig.send_scene();
+  rig.run(1500);
+  ASSERT_FALSE(rig.server->quiet());
+  rig.server->begin_stop();
+  rig.run(51);
+  EXPECT_TRUE(rig.server->quiet());
+}
+
+TEST(Server, ThreeThreadsAtOnce) {
+  // Real clock and threads, for the thread sanitizer; says nothing about timing.
+  auto hub = std::make_shared<MemHub>();
+  MemBus bus(hub);
+  Rig engine;  // its problems
+  const MonotonicClock clock;
+  HapticServer server(bus, {make_device("simulated", 0), make_device("simulated", 1)}, clock);
+  MemBus other(hub);
+  std::atomic<bool> run{true};
+  std::thread receiver([&] {
+    while (run) server.receive(5);
+  });
+  std::thread servo([&] { run_servo(server, LoopSettings{}, run); });
+  insula_lcm::scene_info_t info;
+  info.session = engine.session;
+  info.state = "running";
+  std::vector<std::uint8_t> bytes;
+  insula_lcm::hand_input_t input{};
+  input.q[0] = 1;
+  for (int k = 0; k < 60; ++k) {
+    engine.sim_time += 0.016;
+    HapticUpdate u = engine.update();
+    u.time_us = clock.now_ns() / 1000;
+    encode_problem(u, bytes);
+    other.publish(channel::haptic_problem, bytes);
+    info.motion = k % 20 < 10 ? "" : "/nowhere.csv";
+    publish(other, channel::scene_info, info, bytes);
+    publish(other, channel::hand_input, input, bytes);
+    server.publish_state();
+    if (k % 10 == 9) server.publish_status();
+    std::this_thread::sleep_for(std::chrono::milliseconds(4));
+  }
+  server.begin_stop();
+  run = false;
+  servo.join();
+  receiver.join();
+  EXPECT_GT(server.publish_status().problems_received, 0);
+  EXPECT_TRUE(server.reading(0).connected);
+}
+
+}  // namespace
+}  // namespace insula

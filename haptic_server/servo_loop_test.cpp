@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The servo's beat and its statistics.
+#include "haptic_server/servo_loop.h"
+
+#include <gtest/gtest.h>
+
+#include "haptic_server/status.h"
+
+namespace insula {
+namespace {
+
+constexpr std::int64_t ms = 1'000'000;
+
+TEST(TickSchedule, SkipsWhatItMissedAndKeepsItsBeat) {
+  TickSchedule s(10 * ms, ms);
+  std::int64_t missed = -1;
+  EXPECT_EQ(s.wake(10 * ms + 5, missed), 10 * ms);
+  EXPECT_EQ(missed, 0);
+  EXPECT_EQ(s.due_ns(), 11 * ms);
+  EXPECT_EQ(s.wake(14 * ms + ms / 2, missed), 11 * ms);  // 12, 13 and 14 are gone
+  EXPECT_EQ(missed, 3);
+  EXPECT_EQ(s.due_ns(), 15 * ms);
+  EXPECT_EQ(s.wake(15 * ms, missed), 15 * ms);
+  EXPECT_EQ(missed, 0);
+}
+
+TEST(Status, PercentilesRatesAndANewPeriod) {
+  StatusCollector c;
+  for (int k = 1; k <= 100; ++k) {
+    TickSample s;
+    s.lateness_us = float(k);
+    s.solve_us = float(2 * k);
+    s.solved = true;
+    s.sweeps = 4;
+    s.residual_m = k == 50 ? 1e-6f : 1e-9f;
+    s.fresh = {true, k % 2 == 0};
+    c.add(s);
+  }
+  insula_lcm::haptic_status_t m{};
+  c.finish(0.1, m);
+  EXPECT_NEAR(m.ticks_per_s, 1000, 1e-9);
+  EXPECT_NEAR(m.fresh_forces_per_s[0], 1000, 1e-9);
+  EXPECT_NEAR(m.fresh_forces_per_s[1], 500, 1e-9);
+  EXPECT_NEAR(m.lateness_us_p50, 51, 0);
+  EXPECT_NEAR(m.lateness_us_p99, 100, 0);
+  EXPECT_NEAR(m.lateness_us_max, 100, 0);
+  EXPECT_NEAR(m.solve_us_p50, 102, 0);
+  EXPECT_NEAR(m.sweeps_mean, 4, 0);
+  EXPECT_NEAR(m.residual_m_max, 1e-6, 1e-12);
+  c.finish(0.1, m);
+  EXPECT_EQ(m.ticks_per_s, 0);
+  EXPECT_EQ(m.residual_m_max, 0);
+}
+
+}  // namespace
+}  // namespace insula

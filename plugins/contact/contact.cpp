@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/*
+# contact
+
+Signorini contact with Coulomb friction among the bodies and tools named in `between`:
+
+    <contact between="frontal temporal floor" friction="0.1"/>
+    <contact between="suction frontal temporal floor" friction="0.2"/>
+    <contact between="suction frontal" friction="0.05"/>
+
+Every pair of the names is looked after, except two things that never move and a body with itself. One coefficient
+holds for all pairs of an element; a pair that several elements name belongs to the one with the fewest names, and among
+those of equal length to the last, so that a pair can be given its own coefficient.
+
+Each contact is one block: the gap at the end of the step and its force obey 0 <= gap _|_ force >= 0, and the friction
+|f_t| <= mu f_n opposes the slip of the step (normal row, then two tangent rows; without friction the normal row alone).
+
+    gap(end) = gap(start) + n . (H dq)      n fixed over the step, from b to a
+
+Tools are rounded convex pieces and look ahead along their free motion, so that contact is there before it happens
+(`core/collision/tool_collider.h`); surfaces meet by sampled vertices (`core/collision/tissue_collider.h`). `alarm` is the
+distance at which a contact enters the problem; the haptic loop needs it too, since it moves the tool between steps. Contact
+forces act on both sides at the same place of the triangle's side of the gap, so a tool's contact adds neither force nor
+moment to the whole; between two surfaces the moment is exact once the gap is closed.
+
+Sources: Dequidt et al. 2015, sections 3.3 and 3.4; Duriez, Dubois, Kheddar, Andriot 2006 (friction in the block solve).
+*/
+#include "plugins/contact/contact.h"
+
+#include <algorithm>
+
+#include "core/registry/registry.h"
+#include "core/sim/simulation.h"
+
+namespace insula {
+
+void ContactSurface::update(std::int64_t step) {
+  if (refitted_at == step) return;
+  const bool fixed = surface->body().blocks() == 0;
+  if (fixed && refitted_at >= 0) return;
+  refitted_at = step;
+  if (fixed) mesh.update(surface->positions(), {});
+  else mesh.update(surface->positions(), surface->free_displacements());
+}
+
+// Whether this element looks after the pair that several may name.
+bool Contact::owns(Simulation& simulation, const Body* a, const Body* b) const {
+  const auto names = [](const Contact& c, const Body* body) {
+    return std::find(c.between().begin(), c.between().end(), body) != c.between().end();
+  };
+  for (const Constraint* other : simulation.constraints()) {
+    const auto* c = dynamic_cast<const Contact*>(other);
+    if (!c || c == this || !names(*c, a) || !names(*c, b)) continue;
+    if (c->between().size() < between().size()) return false;
+    if (c->between().size() == between().size() && c->order > order) return false;
+  }
+  return true;
+}
+
+std::shared_ptr<ContactSurface> Contact::shared_surface(Simulation& simulation, Surface* surface) {
+  for (Constraint* other : simulation.constraints())
+    if (auto* c = dynamic_cast<Contact*>(other))
+      for (const auto& s : c->surfaces_)
+        if (s->surface == surface) {
+          if (c != this) surfaces_.push_back(s);
+          return s;
+        }
+  auto s = std::make_shared<ContactSurface>();
+  s->surface = surface;
+  s->mesh.build(surface->rest().vertices, surface->triangles());
+  surfaces_.push_back(s);
+  return s;
+}
+
+void Contact::add_pairs(Simulation& simulation, Body* a, Body* b) {
+  auto* tool_a = dynamic_cast<Instrument*>(a);
+  auto* tool_b = dynamic_cast<Instrument*>(b);
+  if (tool_b && !tool_a) return add_pairs(simulation, b, a);
+  constexpr std::size_t room = 2048;  // proximities before selection
+  if (tool_a && tool_b) {
+    Pair p;
+    p.tool_a = tool_a;
+    p.tool_b = tool_b;
+    for (const ConvexPiece& piece : tool_a->tool().pieces) p.pieces_a.push_back(rounded(piece));
+    for (const ConvexPiece& piece : tool_b->tool().pieces) p.pieces_b.push_back(rounded(piece));
+    p.contacts.reserve(room);
+    pairs_.push_back(std::move(p));
+    return;
+  }
+  for (Surface* sb : b->children_of<Surface>()) {
+    if (!sb->contact()) continue;
+    if (tool_a) {
+      Pair p;
+      p.tool_a = tool_a;
+      p.b = shared_surface(simulation, sb);
+      p.tool_collider = std::make_unique<ToolCollider>(tool_a->tool().pieces, p.b->mesh.triangle_count());
+      p.contacts.reserve(room);
+      pairs_.push_back(std::move(p));
+      continue;
+    }
+    for (Surface* sa : a->children_of<Surface>()) {
+      if (!sa->contact()) continue;
+      Pair p;
+      p.a = shared_surface(simulation, sa);
+      p.b = shared_surface(simulation, sb);
+      const double distance = 0.5 * tissue_spacing();
+      p.a_on_b = std::make_unique<TissueCollider>(sample_vertices(sa->rest().vertices, sa->triangles(), distance));
+      p.b_on_a = std::make_unique<TissueCollider>(sample_vertices(sb->rest().vertices, sb->triangles(), distance));
+      p.contacts.reserve(p.a_on_b->samples().size() + p.b_on_a->samples().size());
+      pairs_.push_back(std::move(p));
+    }
+  }
+}
+
+void Contact::connect(PrepareContext& context, Simulation& simulation) {
+  const auto& all = between();
+  if (all.size() < 2) return error(context, between, "between: contact needs two names or more");
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j)
+      if (all[i] == all[j]) return error(context, between, "between: \"" + all[i]->id + "\" is named twice");
+    if (dynamic_cast<Instrument*>(all[i])) continue;
+    const auto surfaces = all[i]->children_of<Surface>();
+    if (std::none_of(surfaces.begin(), surfaces.end(), [](const Surface* s) { return s->contact(); }))
+      return error(context, between, "between: \"" + all[i]->id + "\" has no surface to touch; give it a <surface/>");
+  }
+  if (std::all_of(all.begin(), all.end(), [](const Body* b) { return b->blocks() == 0; }))
+    return error(context, between, "between: none of these can move");
+  for (std::size_t i = 0; i < all.size(); ++i)
+    for (std::size_t j = i + 1; j < all.size(); ++j) {
+      if (all[i]->blocks() == 0 && all[j]->blocks() == 0) continue;
+      if (owns(simulation, all[i], all[j])) add_pairs(simulation, all[i], all[j]);
+    }
+}
+
+void Contact::detect(const StepContext& context) {
+  for (const auto& s : surfaces_) s->update(context.step);
+  ToolContactSettings tool;
+  tool.alarm = alarm();
+  tool.max_recovery = std::max(tool.max_recovery, alarm());
+  TissueContactSettings tissue;
+  tissue.alarm = tissue_alarm();
+  for (Pair& p : pairs_) {
+    p.contacts.clear();
+    SelectionSettings choice;
+    if (p.tool_a) {
+      choice.spacing = spacing();
+      choice.advantage = 0.2 * alarm();
+      choice.max_contacts = max_contacts();
+      choice.max_per_piece = std::max(2, (max_contacts() + 1) / 2);
+      if (p.tool_b)
+        detect_tools(p.pieces_a, p.tool_a->pose(), p.tool_a->free_pose(), p.pieces_b, p.tool_b->pose(), p.tool_b->free_pose(), tool, p.contacts);
+      else
+        p.tool_collider->detect(p.b->mesh, p.tool_a->pose(), p.tool_a->free_pose(), tool, p.contacts);
+    } else {
+      choice.spacing = tissue_spacing();
+      choice.advantage = 0.5 * tissue_alarm();
+      choice.max_contacts = tissue_max_contacts();
+      p.a_on_b->detect(p.a->mesh, p.b->mesh, tissue, p.contacts);
+      const std::size_t first = p.contacts.size();
+      p.b_on_a->detect(p.b->mesh, p.a->mesh, tissue, p.contacts);
+      for (std::size_t i = first; i < p.contacts.size(); ++i) p.contacts[i].side = 1;
+    }
+    p.selection.select(p.contacts, choice, next_key_);
+  }
+}
+
+// d of the relative displacement a - b at the contact.
+void Contact::add_row(ConstraintBuilder& builder, int row, const Pair& p, const Proximity& x, const Vec3& d) const {
+  if (p.tool_a) {
+    MaterialPoint at;
+    at.body = p.tool_a;
+    at.local = x.local;
+    builder.point(row, at, d);
+    if (p.tool_b) {
+      at.body = p.tool_b;
+      at.local = x.other_local;
+      builder.point(row, at, -d);
+      return;
+    }
+    builder.surface_point(row, *p.b->surface, x.triangle, x.bary, -d);
+    return;
+  }
+  const Surface& vertex = x.side == 0 ? *p.a->surface : *p.b->surface;
+  const Surface& face = x.side == 0 ? *p.b->surface : *p.a->surface;
+  if (vertex.body().blocks() > 0) builder.point(row, vertex.points()[std::size_t(x.vertex)], d);
+  builder.surface_point(row, face, x.triangle, x.bary, -d);
+}
+
+void Contact::build(const StepContext&, ConstraintBuilder& builder) {
+  for (Pair& p : pairs_) {
+    p.rows.clear();
+    for (const Proximity& x : p.contacts) {
+      Block block;
+      block.id = row_id(*this, x.key);
+      if (friction() > 0) {
+        block.law = LawKind::friction;
+        block.friction = friction();
+      } else {
+        block.lower = 0;
+      }
+      const int row = builder.add(block);
+      p.rows.push_back(row);
+      builder.violation(row, x.start_gap);
+      add_row(builder, row, p, x, x.normal);
+      if (friction() > 0) {
+        add_row(builder, row + 1, p, x, x.tangent);
+        add_row(builder, row + 2, p, x, x.normal.cross(x.tangent));
+      }
+    }
+  }
+}
+
+void Contact::finish(const StepContext&, const ConstraintSolution& solution) {
+  for (Pair& p : pairs_) {
+    p.forces.clear();
+    for (int row : p.rows) {
+      Vec3 f(solution.lambda[row], 0, 0);
+      if (friction() > 0) f = Vec3(f[0], solution.lambda[row + 1], solution.lambda[row + 2]);
+      p.forces.push_back(f);
+    }
+  }
+}
+
+void Contact::report(StepReport& out) const {
+  for (const Pair& p : pairs_)
+    for (std::size_t i = 0; i < p.forces.size(); ++i) {
+      const Proximity& x = p.contacts[i];
+      ContactPoint c;
+      c.a = x.side == 0 ? p.body_a() : p.body_b();
+      c.b = x.side == 0 ? p.body_b() : p.body_a();
+      c.position = x.point;
+      c.normal = x.normal;
+      c.gap = x.start_gap;
+      c.normal_force = p.forces[i][0];
+      c.tangent_force = p.forces[i][1] * x.tangent + p.forces[i][2] * x.normal.cross(x.tangent);
+      out.contacts.push_back(c);
+    }
+}
+
+void Contact::reset() {
+  next_key_ = 0;
+  for (const auto& s : surfaces_) s->refitted_at = -1;
+  for (Pair& p : pairs_) {
+    p.selection.reset();
+    if (p.tool_collider) p.tool_collider->reset();
+    p.contacts.clear();
+    p.rows.clear();
+    p.forces.clear();
+  }
+}
+
+void Contact::append_state(std::vector<double>& out) const {
+  for (const Pair& p : pairs_)
+    for (std::size_t i = 0; i < p.forces.size(); ++i) {
+      out.push_back(double(p.contacts[i].key));
+      for (int k = 0; k < 3; ++k) out.push_back(p.forces[i][k]);
+    }
+}
+
+}  // namespace insula
+
+INSULA_PLUGIN(contact) {
+  registry.add<insula::Contact>("contact", insula::Kind::constraint, "contact with friction among bodies and tools");
+}

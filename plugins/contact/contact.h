@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Contact among bodies and tools; what it does and its scene element are described in contact.cpp.
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "core/collision/contact_selection.h"
+#include "core/collision/tissue_collider.h"
+#include "core/collision/tool_collider.h"
+#include "core/constraint/constraint.h"
+#include "core/mechanics/instrument.h"
+#include "core/mechanics/surface.h"
+#include "core/sim/report.h"
+
+namespace insula {
+
+/// A surface's collision data; every <contact> of a scene that touches the surface shares one.
+struct ContactSurface {
+  Surface* surface = nullptr;
+  CollisionMesh mesh;
+  std::int64_t refitted_at = -1;  ///< step
+  void update(std::int64_t step);
+};
+
+class Contact final : public Constraint {
+ public:
+  RefList<Body> between{this, {.name = "between", .doc = "bodies and tools that may touch one another, two or more"}};
+  Param<Scalar> friction{this, {.name = "friction", .fallback = "0.2", .min = "0", .max = "10", .doc = "Coulomb coefficient; 0 is frictionless"}};
+  Param<Length> alarm{this, {.name = "alarm", .fallback = "1 mm", .min = "0.01 mm", .max = "10 mm", .doc = "a tool closer than this is in contact's care"}};
+  Param<Length> spacing{this, {.name = "spacing", .fallback = "2 mm", .min = "0.01 mm", .max = "100 mm", .doc = "contacts of a tool are no closer than this unless the surface turns"}};
+  Param<int> max_contacts{this, {.name = "max_contacts", .fallback = "8", .min = "1", .max = "100", .doc = "most contacts of a tool with one surface"}};
+  Param<Length> tissue_alarm{this, {.name = "tissue_alarm", .fallback = "0.5 mm", .min = "0.01 mm", .max = "10 mm", .doc = "the same distance between two surfaces"}};
+  Param<Length> tissue_spacing{this, {.name = "tissue_spacing", .fallback = "4 mm", .min = "0.05 mm", .max = "100 mm", .doc = "contacts of two surfaces are no closer than this; their vertices are sampled at half of it"}};
+  Param<int> tissue_max_contacts{this, {.name = "tissue_max_contacts", .fallback = "16", .min = "1", .max = "200", .doc = "most contacts of one surface with another"}};
+
+  void connect(PrepareContext& context, Simulation& simulation) override;
+  void detect(const StepContext& context) override;
+  void build(const StepContext& context, ConstraintBuilder& builder) override;
+  void finish(const StepContext& context, const ConstraintSolution& solution) override;
+  void report(StepReport& report) const override;
+  void reset() override;
+  void append_state(std::vector<double>& out) const override;
+
+  /// Two things that may touch, and what was found between them in this step.
+  struct Pair {
+    Instrument* tool_a = nullptr;  ///< a is a tool ...
+    Instrument* tool_b = nullptr;
+    std::shared_ptr<ContactSurface> a, b;  ///< ... or a surface
+    std::vector<RoundedPiece> pieces_a, pieces_b;  ///< tool against tool
+    std::unique_ptr<ToolCollider> tool_collider;
+    std::unique_ptr<TissueCollider> a_on_b, b_on_a;
+    ContactSelection selection;
+    std::vector<Proximity> contacts;
+    std::vector<int> rows;      ///< first row of each contact
+    std::vector<Vec3> forces;   ///< along (normal, tangent, other tangent), N
+    const Body* body_a() const { return tool_a ? static_cast<const Body*>(tool_a) : &a->surface->body(); }
+    const Body* body_b() const { return tool_b ? static_cast<const Body*>(tool_b) : &b->surface->body(); }
+  };
+  const std::vector<Pair>& pairs() const { return pairs_; }
+
+ private:
+  bool owns(Simulation& simulation, const Body* a, const Body* b) const;
+  std::shared_ptr<ContactSurface> shared_surface(Simulation& simulation, Surface* surface);
+  void add_pairs(Simulation& simulation, Body* a, Body* b);
+  void add_row(ConstraintBuilder& builder, int row, const Pair& pair, const Proximity& x, const Vec3& direction) const;
+
+  std::vector<std::shared_ptr<ContactSurface>> surfaces_;
+  std::vector<Pair> pairs_;
+  std::uint64_t next_key_ = 0;
+};
+
+}  // namespace insula

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/*
+# exercise_rules
+
+Goals, faults and the clock of training exercises. Rules read the report of each step and the positions of surfaces; they
+write to the exercise's log alone.
+
+A force fault counts once each time a tool presses a body harder than the limit for longer than the grace time, and is
+armed again when the force has fallen below nine tenths of the limit. An order fault counts a strand that was parted
+while a good number of strands nearer to the surface still stood.
+*/
+#include <algorithm>
+#include <cmath>
+
+#include "core/registry/registry.h"
+#include "core/sim/exercise.h"
+#include "core/sim/simulation.h"
+
+namespace insula {
+namespace {
+
+class GoalStrands final : public ExerciseRule {
+ public:
+  Param<std::string> text{this, {.name = "text", .fallback = "Divide the arachnoid strands", .doc = "what the trainee is to do"}};
+  Param<Scalar> fraction{this, {.name = "fraction", .fallback = "1", .min = "0.01", .max = "1", .doc = "share of all strands that must be parted"}};
+
+  void declare(PrepareContext&, const Simulation&, ExerciseLog& log) override { goal_ = log.add_goal(id, text()); }
+  void observe(const StepReport& r, ExerciseLog& log) override {
+    if (r.strands_total > 0 && r.strands_total - r.strands_left >= fraction() * r.strands_total - 1e-9) log.goal(goal_, r.time);
+  }
+
+ private:
+  int goal_ = 0;
+};
+
+// Two surfaces held apart at a place: the distance of the two vertices that are nearest to it at rest.
+class GoalOpening final : public ExerciseRule {
+ public:
+  Param<std::string> text{this, {.name = "text", .fallback = "Open the fissure", .doc = "what the trainee is to do"}};
+  Ref<Surface> a{this, {.name = "a", .doc = "one lip"}};
+  Ref<Surface> b{this, {.name = "b", .doc = "the other lip"}};
+  Param<Vec<Length>> at{this, {.name = "at", .doc = "place between the lips at rest"}};
+  Param<Length> distance{this, {.name = "distance", .fallback = "4 mm", .min = "0.1 mm", .max = "100 mm", .doc = "distance of the lips that counts as open"}};
+  Param<Duration> hold{this, {.name = "hold", .fallback = "1 s", .min = "0 s", .max = "600 s", .doc = "how long they must stay open"}};
+
+  void declare(PrepareContext&, const Simulation&, ExerciseLog& log) override {
+    goal_ = log.add_goal(id, text());
+    va_ = nearest(*a);
+    vb_ = nearest(*b);
+  }
+  void observe(const StepReport& r, ExerciseLog& log) override {
+    const double d = (a->body().position(a->points()[va_]) - b->body().position(b->points()[vb_])).norm();
+    open_ = d >= distance() ? open_ + r.h : 0;
+    if (open_ >= hold()) log.goal(goal_, r.time);
+  }
+  void reset() override { open_ = 0; }
+
+ private:
+  std::size_t nearest(const Surface& s) const {
+    std::size_t best = 0;
+    for (std::size_t i = 1; i < s.rest().vertices.size(); ++i)
+      if ((s.rest().vertices[i] - at()).squaredNorm() < (s.rest().vertices[best] - at()).squaredNorm()) best = i;
+    return best;
+  }
+  int goal_ = 0;
+  std::size_t va_ = 0, vb_ = 0;
+  double open_ = 0;
+};
+
+class FaultForce final : public ExerciseRule {
+ public:
+  Param<std::string> text{this, {.name = "text", .fallback = "Too much force on the brain", .doc = "what the trainee is told"}};
+  RefList<Body> on{this, {.name = "on", .doc = "bodies that must be spared"}};
+  Param<Force> limit{this, {.name = "limit", .fallback = "0.3 N", .min = "0.001 N", .max = "20 N", .doc = "largest force of one tool on one body"}};
+  Param<Duration> grace{this, {.name = "grace", .fallback = "100 ms", .min = "0 s", .max = "10 s", .doc = "shorter peaks are forgiven"}};
+
+  void declare(PrepareContext&, const Simulation& simulation, ExerciseLog& log) override {
+    fault_ = log.add_fault(id, text());
+    tools_ = simulation.instruments();
+    reset();
+  }
+  void observe(const StepReport& r, ExerciseLog& log) override {
+    std::size_t k = 0;
+    for (const Body* body : on())
+      for (const Body* tool : tools_) {
+        Vec3 sum = Vec3::Zero();
+        for (const ContactPoint& c : r.contacts)
+          if ((c.a == tool && c.b == body) || (c.b == tool && c.a == body))
+            sum += (c.a == tool ? 1.0 : -1.0) * (c.normal_force * c.normal + c.tangent_force);
+        const double f = sum.norm();
+        Watch& w = watch_[k++];
+        w.above = f > limit() ? w.above + r.h : 0;
+        if (w.above > grace() && w.armed) {
+          w.armed = false;
+          log.fault(fault_, r.time, f);
+        }
+        if (f < 0.9 * limit()) w.armed = true;
+      }
+  }
+  void reset() override { watch_.assign(on().size() * tools_.size(), {}); }
+
+ private:
+  struct Watch {
+    double above = 0;
+    bool armed = true;
+  };
+  int fault_ = 0;
+  std::vector<Instrument*> tools_;
+  std::vector<Watch> watch_;
+};
+
+class FaultTorn final : public ExerciseRule {
+ public:
+  Param<std::string> text{this, {.name = "text", .fallback = "A strand was torn instead of cut", .doc = "what the trainee is told"}};
+  void declare(PrepareContext&, const Simulation&, ExerciseLog& log) override { fault_ = log.add_fault(id, text()); }
+  void observe(const StepReport& r, ExerciseLog& log) override {
+    for (const Event& e : r.events)
+      if (e.kind == "strand_torn") log.fault(fault_, r.time, e.value);
+  }
+
+ private:
+  int fault_ = 0;
+};
+
+class FaultOrder final : public ExerciseRule {
+ public:
+  Param<std::string> text{this, {.name = "text", .fallback = "Work from the surface to the depth", .doc = "what the trainee is told"}};
+  Param<Vec<Scalar>> inward{this, {.name = "inward", .doc = "direction from the surface to the depth"}};
+  Param<Length> margin{this, {.name = "margin", .fallback = "4 mm", .min = "0 mm", .max = "100 mm", .doc = "strands this much nearer to the surface come first"}};
+  Param<int> allowed{this, {.name = "allowed", .fallback = "3", .min = "0", .max = "100000", .doc = "that many of them may still stand"}};
+
+  void prepare(PrepareContext& context) override {
+    if (inward().norm() < 1e-9) error(context, inward, "inward: a direction must not be zero");
+  }
+  void declare(PrepareContext&, const Simulation&, ExerciseLog& log) override { fault_ = log.add_fault(id, text()); }
+  void observe(const StepReport& r, ExerciseLog& log) override {
+    if (depth_.size() != r.strands.size()) {  // first step: depths at the start
+      depth_.clear();
+      for (const StrandState& s : r.strands) depth_.push_back(0.5 * (s.a + s.b).dot(inward().normalized()));
+      parted_.assign(r.strands.size(), 0);
+    }
+    for (std::size_t i = 0; i < r.strands.size(); ++i) {
+      if (parted_[i] || r.strands[i].health >= 0) continue;
+      parted_[i] = 1;
+      int before = 0;
+      for (std::size_t k = 0; k < r.strands.size(); ++k) before += !parted_[k] && r.strands[k].health >= 0 && depth_[k] < depth_[i] - margin();
+      if (before > allowed()) log.fault(fault_, r.time, before);
+    }
+  }
+  void reset() override { depth_.clear(); }
+
+ private:
+  int fault_ = 0;
+  std::vector<double> depth_;
+  std::vector<char> parted_;
+};
+
+class TimeLimit final : public ExerciseRule {
+ public:
+  Param<std::string> text{this, {.name = "text", .fallback = "The time is over", .doc = "what the trainee is told"}};
+  Param<Duration> limit{this, {.name = "limit", .min = "1 s", .max = "7200 s", .doc = "simulated time until the exercise has failed"}};
+  void declare(PrepareContext&, const Simulation&, ExerciseLog&) override {}
+  void observe(const StepReport& r, ExerciseLog& log) override {
+    if (r.time > limit()) log.fail(text(), r.time);
+  }
+};
+
+}  // namespace
+}  // namespace insula
+
+INSULA_PLUGIN(exercise_rules) {
+  using namespace insula;
+  registry.add<GoalStrands>("goal_strands", Kind::exercise_rule, "reached when enough strands are parted");
+  registry.add<GoalOpening>("goal_opening", Kind::exercise_rule, "reached when two surfaces are held apart");
+  registry.add<FaultForce>("fault_force", Kind::exercise_rule, "counts too much force of a tool on a body");
+  registry.add<FaultTorn>("fault_torn", Kind::exercise_rule, "counts strands torn by pulling");
+  registry.add<FaultOrder>("fault_order", Kind::exercise_rule, "counts strands cut in the depth before the surface");
+  registry.add<TimeLimit>("time_limit", Kind::exercise_rule, "ends the exercise when the time is over");
+}

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The built page in headless Chromium (software rendering) against the mock server: it becomes ready, frames come in, the
+// canvas shows something, pause and reset reach the server, a hand is taken without a jump, and it comes back by itself after
+// the server was away. CHROMIUM names the browser when it is not /usr/bin/chromium. Exit status 77: no browser, skipped.
+import assert from 'node:assert/strict';
+import { existsSync } from 'node:fs';
+import { chromium } from 'playwright-core';
+import { start_mock } from '../scripts/mock-server.mjs';
+
+const executablePath = process.env.CHROMIUM ?? '/usr/bin/chromium';
+if (!existsSync(executablePath)) {
+  console.log(`skipped: no browser at ${executablePath}`);
+  process.exit(77);
+}
+const patience = { timeout: 180_000, polling: 250 };
+let mock = await start_mock({ port: 0, start_s: 3 });
+const port = Number(new URL(mock.url).port);
+const browser = await chromium.launch({ executablePath, args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist'] });
+const errors = [];
+const check = (text) => console.log(`ok  ${text}`);
+try {
+  const page = await browser.newPage({ viewport: { width: 480, height: 320 } });
+  page.on('console', (m) => { if (m.type() === 'error' && !away) errors.push(m.text()); });
+  page.on('pageerror', (e) => errors.push(e.message));
+  let away = false;
+  const status = () => page.evaluate(() => ({ ...window.__insula }));
+
+  await page.goto(`${mock.url}?quality=low`);
+  await page.waitForFunction(() => window.__insula?.ready, null, patience);
+  check('page is ready');
+  const before = await status();
+  await page.waitForFunction((n) => window.__insula.frames > n + 20 && window.__insula.pictures > 3, before.frames, patience);
+  assert.equal((await status()).refused, 0);
+  check('frames and pictures go on');
+
+  const shot = await page.screenshot({ clip: { x: 140, y: 60, width: 200, height: 200 }, timeout: 120_000 });
+  const seen = await page.evaluate(async (base64) => {
+    const image = await createImageBitmap(await (await fetch(`data:image/png;base64,${base64}`)).blob());
+    const canvas = new OffscreenCanvas(image.width, image.height);
+    const context = canvas.getContext('2d');
+    context.drawImage(image, 0, 0);
+    const d = context.getImageData(0, 0, image.width, image.height).data;
+    let mean = 0, square = 0, red = 0;
+    for (let i = 0; i < d.length; i += 4) { const y = (d[i] + d[i + 1] + d[i + 2]) / 3; mean += y; square += y * y; if (d[i] > d[i + 2] + 15) red++; }
+    const n = d.length / 4;
+    return { mean: mean / n, deviation: Math.sqrt(square / n - (mean / n) ** 2), red: red / n };
+  }, shot.toString('base64'));
+  assert.ok(seen.mean > 25 && seen.mean < 230, `mean brightness ${seen.mean}`);
+  assert.ok(seen.deviation > 15, `contrast ${seen.deviation}`);
+  assert.ok(seen.red > 0.2, `share of reddish pixels ${seen.red}`);
+  check(`canvas shows tissue (brightness ${seen.mean.toFixed(0)}, contrast ${seen.deviation.toFixed(0)}, reddish ${(100 * seen.red).toFixed(0)} %)`);
+
+  const wait_for = async (what, test) => {
+    for (let k = 0; k < 400; k++) { if (test()) return; await new Promise((r) => setTimeout(r, 100)); }
+    assert.fail(`no ${what} within 40 s`);
+  };
+  await page.keyboard.press('p');
+  await wait_for('pause', () => mock.state.commands.includes('pause'));
+  await page.waitForFunction(() => document.querySelector('.banner')?.textContent === 'Paused', null, patience);
+  await page.keyboard.press('p');
+  await wait_for('resume', () => mock.state.commands.includes('resume'));
+  check('pause and resume reach the engine');
+
+  assert.equal(mock.state.inputs, 0, 'no hand input before a hand is taken');
+  await page.keyboard.press('1');
+  await page.mouse.move(240, 160);
+  await page.mouse.down();
+  await wait_for('hand input', () => mock.state.held[0] !== null);
+  const first = [...mock.state.held[0].p_m];
+  assert.ok(Math.hypot(...first.map((x, i) => x - mock_tool(mock.state)[i])) < 0.003, 'the hand starts at the tool');
+  await page.mouse.move(250, 160, { steps: 4 });
+  await wait_for('movement', () => Math.hypot(...[...mock.state.held[0].p_m].map((x, i) => x - first[i])) > 1e-4);
+  await page.mouse.up();
+  await page.keyboard.down('Space');
+  await wait_for('button 1', () => mock.state.held[0].button1);
+  await page.keyboard.up('Space');
+  await wait_for('button 1 up', () => !mock.state.held[0].button1);
+  await page.keyboard.press('g');
+  await page.waitForFunction(() => !window.__insula.taken[0], null, patience);
+  check('mouse and keys drive a hand, without a jump, until it is released');
+
+  away = true;
+  const session = (await status()).session;
+  await mock.stop();
+  await page.waitForFunction(() => !window.__insula.connected && document.querySelector('.banner')?.textContent.startsWith('Viewer gateway'), null, patience);
+  mock = await start_mock({ port, start_s: 3 });
+  await page.waitForFunction((old) => window.__insula.connected && window.__insula.ready && window.__insula.session !== old, session, patience);
+  check('it says that the gateway is gone, reconnects, and loads the new session');
+  assert.deepEqual(errors, []);
+  check('no errors in the console');
+} finally {
+  await browser.close();
+  await mock.stop();
+}
+
+/** Where the mock's left tool is when nobody holds it: it hardly moves. */
+function mock_tool(state) { return state.last_tool; }
