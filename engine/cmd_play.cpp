@@ -68,9 +68,7 @@ void open_browser(const std::string& url) {
   const char* address = url.c_str();
   const pid_t pid = fork();
   if (pid == 0) {
-    sigset_t none;
-    sigemptyset(&none);
-    sigprocmask(SIG_SETMASK, &none, nullptr);
+    for (int s : {SIGINT, SIGTERM, SIGHUP, SIGCHLD, SIGPIPE}) signal(s, SIG_DFL);
     setsid();
     if (fork() == 0) {
       if (freopen("/dev/null", "w", stdout) == nullptr || freopen("/dev/null", "w", stderr) == nullptr) _exit(1);
@@ -82,7 +80,29 @@ void open_browser(const std::string& url) {
   if (pid > 0) waitpid(pid, nullptr, 0);
 }
 
-ChildSpec engine_child(const PlayOptions& options, const fs::path& program) {
+/// Where the engine writes what the viewer needs. An engine that is killed leaves its files: they go with the session.
+class BundleFolder {
+ public:
+  BundleFolder() {
+    const char* runtime = std::getenv("XDG_RUNTIME_DIR");
+    std::error_code error;
+    const bool usable = runtime != nullptr && *runtime != '\0' && fs::is_directory(runtime, error);
+    std::string name = ((usable ? fs::path(runtime) : fs::temp_directory_path(error)) / "insula-XXXXXX").string();
+    if (mkdtemp(name.data()) != nullptr) path_ = name;
+  }
+  ~BundleFolder() {
+    std::error_code ignored;
+    if (!path_.empty()) fs::remove_all(path_, ignored);
+  }
+  BundleFolder(const BundleFolder&) = delete;
+  BundleFolder& operator=(const BundleFolder&) = delete;
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+ChildSpec engine_child(const PlayOptions& options, const fs::path& program, const fs::path& bundles) {
   ChildSpec engine;
   engine.name = "engine";
   engine.ends_session = true;
@@ -90,6 +110,7 @@ ChildSpec engine_child(const PlayOptions& options, const fs::path& program) {
   engine.command.insert(engine.command.end(), options.engine_arguments.begin(), options.engine_arguments.end());
   engine.command.insert(engine.command.end(), {"engine", options.scene.string()});
   if (!options.motion.empty()) engine.command.insert(engine.command.end(), {"--motion", options.motion});
+  if (!bundles.empty()) engine.command.insert(engine.command.end(), {"--bundle-dir", bundles.string()});
   return engine;
 }
 
@@ -151,13 +172,14 @@ int cmd_play(const CommandContext& context, const PlayOptions& given) {
     }
   signal(SIGPIPE, SIG_IGN);
   const Supervisor::Print print = [&out = context.out](std::string_view line) { out << line << std::endl; };
+  const BundleFolder bundles;
   SupervisorSettings settings;
   settings.duration_s = options.duration_s;
   Supervisor supervisor(settings, print);
   // The viewer first: it is up while the engine still loads.
   supervisor.add(gateway_child(options, folder, print));
   supervisor.add(haptic_child(options, folder));
-  supervisor.add(engine_child(options, program));
+  supervisor.add(engine_child(options, program, bundles.path()));
   return supervisor.run();
 }
 

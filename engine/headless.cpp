@@ -5,6 +5,8 @@
 #include <chrono>
 #include <cmath>
 
+#include "engine/condense.h"
+
 namespace insula {
 namespace {
 std::array<HandHome, 2> homes(const Simulation& simulation) {
@@ -29,7 +31,8 @@ void HeadlessRun::step() {
   }
   haptic_ms_ = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
   simulation_.step();
-  haptics_.set_problem(simulation_.problem());
+  condense(simulation_.problem(), 240, condensed_);
+  haptics_.set_problem(condensed_);
 }
 
 void HeadlessRun::reset() {

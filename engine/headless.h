@@ -25,6 +25,7 @@ class HeadlessRun {
   Simulation& simulation_;
   InProcessHaptics haptics_;
   double haptic_ms_ = 0;
+  ConstraintProblem condensed_;
 };
 
 }  // namespace insula

@@ -21,6 +21,7 @@ namespace {
 
 // A device state older than this no longer moves a tool.
 constexpr std::int64_t stale_us = 200'000;
+constexpr double settle_s = 0.3;
 
 struct Inputs {
   insula_lcm::device_state_t devices{};
@@ -49,6 +50,8 @@ struct Inputs {
 
   void apply(Simulation& simulation) const {
     if (monotonic_us() - received_us > stale_us) return;
+    // Until the haptic server has seen this session its hands are still where the last one left them.
+    if (simulation.time() < settle_s) return;
     for (const auto& h : devices.hand) {
       if (!h.connected || h.hand < 0 || h.hand > 1) continue;
       HandState s;

@@ -9,6 +9,7 @@
 #include "core/registry/registry.h"
 #include "engine/commands.h"
 #include "engine/play.h"
+#include "engine/run.h"
 
 namespace {
 
@@ -70,7 +71,37 @@ int main(int argc, char** argv) {
   docs->add_option("--plugins", plugin_folder, "folder of plugin sources, for their examples");
   docs->callback([&] { run = [&](const auto& c) { return insula::cmd_docs(c, folder, plugin_folder); }; });
 
-  // --- commands that run a simulation are added here ---
+  // --- commands that run a simulation ---
+  insula::RunOptions run_options;
+  auto* headless = app.add_subcommand("run", "a scene from start to end without devices or viewer, with a report");
+  headless->add_option("scene", run_options.scene, "scene file")->required();
+  headless->add_option("--duration", run_options.duration, "simulated seconds (default: the motion and one second more)")->check(CLI::NonNegativeNumber);
+  headless->add_option("--motion", run_options.motion, "what the hands do: a motion of the exercise, a CSV file, or none");
+  headless->add_option("--report", run_options.report, "folder for report.json and report.html");
+  headless->add_option("--export", run_options.export_folder, "folder for the bodies' final nodes as .vtu");
+  headless->add_option("--threads", run_options.threads, "threads; 0 takes the machine's");
+  headless->add_flag("--quiet", run_options.quiet, "print the last line only");
+  headless->callback([&] { run = [&](const auto& c) { return insula::cmd_run(c, run_options); }; });
+
+  insula::BenchOptions bench_options;
+  auto* bench = app.add_subcommand("bench", "where the time of a step goes");
+  bench->add_option("scene", bench_options.scene, "scene file")->required();
+  bench->add_option("--steps", bench_options.steps, "steps to measure")->check(CLI::PositiveNumber)->capture_default_str();
+  bench->add_option("--from", bench_options.from, "simulated second at which measuring begins")->check(CLI::NonNegativeNumber);
+  bench->add_option("--motion", bench_options.motion, "what the hands do: a motion of the exercise, a CSV file, or none")->capture_default_str();
+  bench->add_option("--threads", bench_options.threads, "threads; 0 takes the machine's");
+  bench->add_flag("--json", bench_options.json, "print JSON");
+  bench->callback([&] { run = [&](const auto& c) { return insula::cmd_bench(c, bench_options); }; });
+
+  insula::EngineOptions engine_options;
+  auto* engine = app.add_subcommand("engine", "the engine process of a session, over the bus");
+  engine->add_option("scene", engine_options.scene, "scene file")->required();
+  engine->add_option("--motion", engine_options.motion, "what simulated hands follow")->capture_default_str();
+  engine->add_option("--bundle-dir", engine_options.bundle_root, "folder for the viewer's scene bundles");
+  engine->add_option("--duration", engine_options.duration, "end after so many simulated seconds; 0: never")->check(CLI::NonNegativeNumber);
+  engine->add_flag("--unthrottled", engine_options.unthrottled, "as fast as the machine can, for measurements");
+  engine->add_option("--threads", engine_options.threads, "threads; 0 takes the machine's");
+  engine->callback([&] { run = [&](const auto& c) { return insula::cmd_engine(c, engine_options); }; });
 
   insula::PlayOptions play_options;
   bool no_browser = false;

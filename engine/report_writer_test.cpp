@@ -74,8 +74,8 @@ void fill(Exercise& exercise) {
   exercise.log().add_goal("open", "Open it");
   exercise.log().add_goal("all", "Divide all", false);
   exercise.log().add_fault("force", "Too much <force>");
-  exercise.log().goal(0, 4.5);
-  exercise.log().fault(0, 7.0, 2.5);
+  exercise.log().fault(0, 3.0, 2.5);
+  exercise.log().goal(0, 4.5);  // the last required one: that is the end
 }
 
 TEST(ReportJson, HasEveryKeyWithItsNumber) {

@@ -5,45 +5,16 @@
 #include <fmt/format.h>
 #include <poll.h>
 #include <signal.h>
-#include <sys/signalfd.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <optional>
+
+#include "core/base/signal_pipe.h"
 
 namespace insula {
 namespace {
 
 std::chrono::nanoseconds seconds(double s) { return std::chrono::nanoseconds(std::int64_t(s * 1e9)); }
-
-/// Signals come through a descriptor while this lives; the mask is put back after.
-class SignalDescriptor {
- public:
-  SignalDescriptor() {
-    sigset_t set;
-    sigemptyset(&set);
-    for (int s : {SIGINT, SIGTERM, SIGHUP, SIGCHLD}) sigaddset(&set, s);
-    sigprocmask(SIG_BLOCK, &set, &before_);
-    descriptor_ = signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK);
-  }
-  ~SignalDescriptor() {
-    while (next() != 0) {
-    }
-    close(descriptor_);
-    sigprocmask(SIG_SETMASK, &before_, nullptr);
-  }
-  SignalDescriptor(const SignalDescriptor&) = delete;
-  SignalDescriptor& operator=(const SignalDescriptor&) = delete;
-  int descriptor() const { return descriptor_; }
-  int next() const {
-    signalfd_siginfo info;
-    return read(descriptor_, &info, sizeof info) == ssize_t(sizeof info) ? int(info.ssi_signo) : 0;
-  }
-
- private:
-  sigset_t before_;
-  int descriptor_ = -1;
-};
 
 }  // namespace
 
@@ -141,7 +112,7 @@ void Supervisor::wait(int signal_descriptor) {
 }
 
 int Supervisor::run() {
-  const SignalDescriptor signals;
+  const SignalPipe signals{SIGINT, SIGTERM, SIGHUP, SIGCHLD};
   ending_ = false;
   status_ = 0;
   began_ = Clock::now();

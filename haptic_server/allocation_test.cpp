@@ -14,6 +14,7 @@
 #include "haptic_server/safety_gate.h"
 #include "haptic_server/servo.h"
 #include "haptic_server/test_problem.h"
+#include "haptic_server/test_rig.h"
 
 namespace {
 std::atomic<long> allocations{0};
@@ -35,6 +36,13 @@ void* operator new(std::size_t size) { return counted(size); }
 void* operator new[](std::size_t size) { return counted(size); }
 void* operator new(std::size_t size, std::align_val_t a) { return counted_aligned(size, a); }
 void* operator new[](std::size_t size, std::align_val_t a) { return counted_aligned(size, a); }
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  allocations.fetch_add(1, std::memory_order_relaxed);
+  return std::malloc(size ? size : 1);
+}
+void* operator new[](std::size_t size, const std::nothrow_t& tag) noexcept { return operator new(size, tag); }
+void operator delete(void* p, const std::nothrow_t&) noexcept { std::free(p); }
+void operator delete[](void* p, const std::nothrow_t&) noexcept { std::free(p); }
 void operator delete(void* p) noexcept { std::free(p); }
 void operator delete[](void* p) noexcept { std::free(p); }
 void operator delete(void* p, std::size_t) noexcept { std::free(p); }
@@ -110,6 +118,35 @@ TEST(Allocation, TheInProcessTickDoesNone) {
   const long before = allocations.load();
   haptics.advance(100);
   EXPECT_EQ(allocations.load() - before, 0);
+}
+
+TEST(Allocation, TheServersTickDoesNone) {
+  testing::Rig rig;
+  rig.write_motion();
+  rig.send_scene();
+  insula_lcm::hand_input_t input{};
+  input.q[0] = 1;
+  long counted_here = 0;
+  for (int k = 0; k < 400; ++k) {  // start, placement, running, takeover, reset, a new engine, silence
+    if (k == 100) rig.engine_bus.publish(channel::hand_input, rig.encoded(input));
+    if (k == 200) rig.sim_time = 0;
+    if (k == 300) {
+      rig.session = 300;
+      rig.sim_time = 0;
+      rig.send_scene();
+    }
+    rig.sim_time += 1e-3;
+    if (k % 16 == 0 && k < 350) rig.send_problem();
+    rig.server->receive(0);
+    rig.clock.advance_ns(testing::ms);
+    const long before = allocations.load();
+    rig.server->tick(rig.clock.now_ns());
+    counted_here += allocations.load() - before;
+    rig.server->publish_state();
+    rig.engine_bus.poll(0);
+  }
+  EXPECT_EQ(counted_here, 0);
+  EXPECT_TRUE(rig.server->reading(0).connected);
 }
 
 }  // namespace

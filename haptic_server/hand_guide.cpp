@@ -66,9 +66,10 @@ void lay_workspace(const Motion* motion, int hand, const Vec3& home, const Vec3&
   centre = 0.5 * (low + high);
   const Vec3 box = high - low;
   std::array<int, 3> axes{0, 1, 2};
-  std::stable_sort(axes.begin(), axes.end(), [&](int a, int b) { return box[a] > box[b]; });
+  // Not stable_sort, which allocates; equal edges keep the order of the axes.
+  std::sort(axes.begin(), axes.end(), [&](int a, int b) { return box[a] != box[b] ? box[a] > box[b] : a < b; });
   std::array<double, 3> edges{workspace.x(), workspace.y(), workspace.z()};
-  std::stable_sort(edges.begin(), edges.end(), [](double a, double b) { return a > b; });
+  std::sort(edges.begin(), edges.end(), [](double a, double b) { return a > b; });
   for (std::size_t i = 0; i < 3; ++i) extent[axes[i]] = edges[i];
 }
 

@@ -143,10 +143,6 @@ void ToolCollider::evaluate(const CollisionMesh& mesh, const Placed& at, const T
       const bool outside = d.dot(mesh.pseudo_normal(k.triangle, f, t)) >= 0;
       if (outside && clear <= settings.alarm) emit(n.bary, n.c, d, clear);
       if (!outside && n.distance <= settings.max_depth) emit(n.bary, n.c, -d, -n.distance - at.radius);
-    } else if (face.dot(d) > 0.99 && mesh.locally_closest(k.triangle, f, d, t, 0.05)) {
-      // Beside the closest place by less than three degrees, as under a long piece that lies nearly flat.
-      const double h = n.distance * face.dot(d);
-      if (h - at.radius <= settings.alarm) emit(n.bary, n.c, face, h - at.radius);
     }
     if (at.count < 2 || clear > settings.alarm) continue;
     for (int i = 0; i < at.count; ++i) {

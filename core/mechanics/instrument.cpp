@@ -68,7 +68,8 @@ void Instrument::free_motion(const StepContext& context) {
     const double m = mass(), scale = m / tool_.mass;
     const Mat3 r = pose_.q.toRotationMatrix();
     const Vec3 c = r * tool_.centre_of_mass;
-    Mat6 inertia = Mat6::Zero();
+    Mat6& inertia = inertia_;
+    inertia.setZero();
     inertia.topLeftCorner<3, 3>().diagonal().setConstant(m);
     inertia.topRightCorner<3, 3>() = -m * skew(c);
     inertia.bottomLeftCorner<3, 3>() = m * skew(c);
@@ -136,7 +137,7 @@ void Instrument::fill_terms(ToolTerms& t, int problem_rows) const {
 
 double Instrument::energy() const {
   const Vec6 d = displacement(device_, pose_);
-  return 0.5 * d.dot(stiffness_ * d) + 0.5 * mass() * velocity_.head<3>().squaredNorm();
+  return 0.5 * d.dot(stiffness_ * d) + 0.5 * velocity_.dot(inertia_ * velocity_);
 }
 
 void Instrument::append_state(std::vector<double>& out) const {

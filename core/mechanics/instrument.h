@@ -74,6 +74,7 @@ class Instrument : public Body {
   Pose pose_, device_, last_device_, free_pose_;
   Vec6 velocity_ = Vec6::Zero(), free_dq_ = Vec6::Zero(), hand_force_ = Vec6::Zero();
   Mat6 compliance_ = Mat6::Zero(), gain_ = Mat6::Identity(), stiffness_ = Mat6::Zero();
+  Mat6 inertia_ = Mat6::Zero();  ///< about the tip, of this step
 };
 
 }  // namespace insula

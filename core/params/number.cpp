@@ -67,8 +67,12 @@ std::string unit_list(std::span<const Unit> units) {
 }
 
 std::string written(double si, const Unit* unit) {
-  if (!unit) return fmt::format("{:.6g}", si);
-  return fmt::format("{:.6g} {}", si / unit->to_si, unit->symbol);
+  const double value = unit ? si / unit->to_si : si;
+  // Six digits hide the rounding of the factor; "1e+09" is no way to talk to people.
+  const bool whole = std::abs(value) >= 1e5 && std::abs(value) < 1e15;
+  std::string text = whole ? fmt::format("{:.0f}", value) : fmt::format("{:.6g}", value);
+  if (unit) text += " " + std::string(unit->symbol);
+  return text;
 }
 
 std::size_t number_length(std::string_view text) {

@@ -147,6 +147,28 @@ class Reader {
     }
   }
 
+  /// Where the first entity behind `at` stands that XML does not know of itself.
+  std::size_t unknown_entity(std::size_t at) const {
+    for (std::size_t i = text_.find('&', at); i != std::string_view::npos; i = text_.find('&', i + 1)) {
+      const std::string_view rest = text_.substr(i + 1);
+      bool known = rest.starts_with("#");
+      for (const char* name : {"lt;", "gt;", "amp;", "quot;", "apos;"}) known = known || rest.starts_with(name);
+      if (!known) return i;
+    }
+    return at;
+  }
+
+  /// What usually lies behind a character that may not stand there.
+  std::string hint(std::size_t at) const {
+    const char here = at < text_.size() ? text_[at] : ' ', before = at > 0 && at <= text_.size() ? text_[at - 1] : ' ';
+    if (before == '&' || here == '&') return "write \"&amp;\" for an ampersand";
+    if (before == '=') return "a value must stand in quotes";
+    if (here == '<') return "\"<\" may not stand here; is a quote or a \">\" missing before it?";
+    std::size_t end = std::min(at + 1, text_.size());  // a whole character, not its first byte
+    while (end < text_.size() && (static_cast<unsigned char>(text_[end]) & 0xC0) == 0x80) ++end;
+    return in_quotes(text_.substr(std::min(at, end), end - std::min(at, end))) + " may not stand here";
+  }
+
   void report_syntax_error() {
     const auto code = XML_GetErrorCode(parser_);
     const std::size_t at = offset();
@@ -178,7 +200,15 @@ class Reader {
                                                              std::to_string(open_.back()->pos.line) + " is closed");
         break;
       case XML_ERROR_UNDEFINED_ENTITY:
-        return diagnostics_.error(place(at), "unknown entity; only &lt; &gt; &amp; &quot; &apos; and &#...; exist");
+        return diagnostics_.error(place(unknown_entity(at)),
+                                  "unknown entity; only &lt; &gt; &amp; &quot; &apos; and &#...; exist");
+      case XML_ERROR_JUNK_AFTER_DOC_ELEMENT:
+        return diagnostics_.error(place(at), "nothing may follow the root element");
+      case XML_ERROR_SYNTAX:
+        if (!root_) return diagnostics_.error(place(at), "this is no XML: an element such as <scene> is expected");
+        break;
+      case XML_ERROR_INVALID_TOKEN:
+        return diagnostics_.error(place(at), "not well-formed XML: " + hint(at));
       default: break;
     }
     const char* why = XML_ErrorString(code);

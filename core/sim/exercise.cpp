@@ -4,6 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/base/input_error.h"
+#include "core/sim/motion.h"
+
 namespace insula {
 
 int ExerciseLog::add_goal(std::string id, std::string text, bool required) {
@@ -64,6 +67,14 @@ void ExerciseLog::reset() {
   message_.clear();
   end_time_ = -1;
   events.clear();
+}
+
+void MotionEntry::prepare(PrepareContext& context) {
+  try {
+    load_motion(file());
+  } catch (const InputError& e) {
+    error(context, file, e.what());
+  }
 }
 
 void Exercise::connect(PrepareContext& context, const Simulation& simulation) {

@@ -66,6 +66,7 @@ class MotionEntry final : public Component {
  public:
   static constexpr std::string_view kind_name = "motion";
   Param<File> file{this, {.name = "file", .doc = "CSV of the motion: time_s,hand,px_m,...,button2"}};
+  void prepare(PrepareContext& context) override;
 };
 
 class Exercise final : public Component {

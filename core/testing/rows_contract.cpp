@@ -16,6 +16,7 @@ namespace {
 struct RowData {
   LawKind law = LawKind::box;
   int offset = 0;         ///< row within its block
+  bool unilateral = false;
   double violation = 0;   ///< at the start of the step
   std::vector<VecX> h;    ///< one piece a body, blocks() * 3 long
 };
@@ -50,6 +51,7 @@ class RowBench {
         RowData& r = out[{b.id, k}];
         r.law = b.law;
         r.offset = k;
+        r.unilateral = b.law == LawKind::friction || b.lower == 0;
         for (const Body* body : simulation_.bodies()) r.h.push_back(VecX::Zero(3 * body->blocks()));
         by_row.push_back(&r);
       }
@@ -152,7 +154,8 @@ int check_derivatives(Simulation& s, Component& c, std::uint64_t seed) {
     for (const auto& [key, row] : base) {
       const auto p = plus.find(key), m = minus.find(key);
       if (p == plus.end() || m == minus.end()) continue;
-      if (row.violation == 0 && p->second.violation == 0 && m->second.violation == 0) continue;  // a row on motion alone
+      // A row on motion alone: its violation is zero wherever the bodies are (differences here are of 1e-7 m).
+      if (std::max({std::abs(row.violation), std::abs(p->second.violation), std::abs(m->second.violation)}) < 1e-12) continue;
       if (row.law == LawKind::friction && row.offset > 0) continue;
       double slope = 0, scale = 0;
       for (std::size_t b = 0; b < dq.size(); ++b)
@@ -161,7 +164,10 @@ int check_derivatives(Simulation& s, Component& c, std::uint64_t seed) {
           scale += row.h[b].cwiseAbs().dot(dq[b].cwiseAbs());
         }
       const double found = (p->second.violation - m->second.violation) / (2 * e);
-      EXPECT_NEAR(found, slope, 1e-5 * scale) << "H differs from the derivative of the violation, row id " << key.first << " + " << key.second;
+      // The normal of a contact is fixed over a step; where it is no direction of least distance (an edge, a corner) an
+      // open gap turns with it.
+      const double turning = row.unilateral ? 50 * std::abs(row.violation) : 0.0;
+      EXPECT_NEAR(found, slope, (1e-5 + turning) * scale) << "violation " << row.violation << " m:" << "H differs from the derivative of the violation, row id " << key.first << " + " << key.second;
       compared.insert(key);
     }
   }

@@ -40,7 +40,7 @@ void check_example(const std::filesystem::path& scene) {
       }
     const double e = total_energy(*s);
     most = std::max(most, std::abs(e));
-    if (i > n) EXPECT_LE(e, before + 0.01 * most + 1e-15) << "energy grows while the hands are still, step " << i;
+    if (i > n) { EXPECT_LE(e, before + 0.01 * most + 1e-15) << "energy grows while the hands are still, step " << i; }
     before = e;
   }
 }
@@ -84,7 +84,7 @@ void check_support(const std::filesystem::path& scene, const std::string& elemen
     int own = 0;
     for (std::size_t i = 0; i < held.size(); ++i) {
       own += held[i] != 0;
-      if (held[i]) EXPECT_TRUE(body->held()[i]) << "node " << i;
+      if (held[i]) { EXPECT_TRUE(body->held()[i]) << "node " << i; }
     }
     EXPECT_GT(own, 0) << support->id << " holds nothing";
   }
@@ -96,7 +96,7 @@ void check_support(const std::filesystem::path& scene, const std::string& elemen
     int moved = 0;
     for (int i = 0; i < body->nodes(); ++i) {
       const bool same = body->q().segment<3>(3 * i) == body->rest().nodes[std::size_t(i)];
-      if (body->held()[std::size_t(i)]) EXPECT_TRUE(same && body->v().segment<3>(3 * i).isZero(0)) << "held node " << i << " moved";
+      if (body->held()[std::size_t(i)]) { EXPECT_TRUE(same && body->v().segment<3>(3 * i).isZero(0)) << "held node " << i << " moved"; }
       else moved += !same;
     }
     EXPECT_GT(moved, 0) << "nothing moves in the example, so it shows nothing";

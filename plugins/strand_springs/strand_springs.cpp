@@ -11,7 +11,7 @@ gap between two surfaces from a density and a maximal length; the same seed give
 
 A blade that touches a strand meets a rigid-plastic resistance: one row on their relative motion whose force is at most
 cut_force. Where the strand gives way, the blade's travel through it wears it: k falls in proportion, and after
-cut_length it parts. Pulled beyond `strength` it tears.
+cut_length it parts. Pulled beyond `strength` (of what is left of it) it parts too: torn, or cut if a blade is in it.
 
 Source: Dequidt et al. 2015, section 3.3 (springs between lobes as constraints); forces of dissection: Marcus et al. 2014.
 */
@@ -193,7 +193,8 @@ void StrandSprings::finish(const StepContext& context, const ConstraintSolution&
     } else {
       s.push.setZero();
     }
-    if (strength() > 0 && s.tension > strength() * (1 - s.wear)) part(context, s, "strand_torn", s.tension);
+    // Under a blade a taut strand is cut: pulling it tight first is how it is done.
+    if (strength() > 0 && s.tension > strength() * (1 - s.wear)) part(context, s, s.blade ? "strand_cut" : "strand_torn", s.tension);
   }
 }
 

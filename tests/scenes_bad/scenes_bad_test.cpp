@@ -61,7 +61,7 @@ TEST_P(BadScene, IsReportedAsExpected) {
   for (const auto& line : printed) ADD_FAILURE() << "reported, but not expected: " << line;
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, BadScene, testing::ValuesIn(scene_names()), [](const auto& info) { return info.param; });
+INSTANTIATE_TEST_SUITE_P(Scenes, BadScene, testing::ValuesIn(scene_names()), [](const auto& scene) { return scene.param; });
 
 TEST(BadScenes, ThereAreManyAndNoExpectationWithoutScene) {
   EXPECT_GE(scene_names().size(), 60u);

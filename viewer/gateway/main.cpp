@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
+#include "core/base/signal_pipe.h"
 #include "core/bus/bus.h"
 #include "viewer/gateway/gateway.h"
 #include "viewer/gateway/static_files.h"
@@ -22,12 +23,7 @@ int main(int argc, char** argv) {
   if (exact) options.more_ports = 0;
   if (options.page.empty()) options.page = insula::gateway::find_page();
 
-  // Before any thread starts, so that all of them leave these signals to sigwait below.
-  sigset_t ends;
-  sigemptyset(&ends);
-  sigaddset(&ends, SIGINT);
-  sigaddset(&ends, SIGTERM);
-  pthread_sigmask(SIG_BLOCK, &ends, nullptr);
+  const insula::SignalPipe ends{SIGINT, SIGTERM, SIGHUP};
   signal(SIGPIPE, SIG_IGN);
 
   const auto bus = insula::make_bus();
@@ -47,8 +43,7 @@ int main(int argc, char** argv) {
   if (options.page.empty()) fmt::print("the viewer's page is not built; serving the data alone\n");
   fmt::print("serving {}\n", gateway.url());
   std::fflush(stdout);
-  int which = 0;
-  sigwait(&ends, &which);
+  ends.wait(-1);
   gateway.stop();
   return 0;
 }

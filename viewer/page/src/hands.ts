@@ -28,7 +28,7 @@ export class Hands {
   readonly hands = [new HandPose(), new HandPose()];
   active = 1;
   private readonly keys = new Set<string>();
-  private readonly pointers = new Map<number, { x: number; y: number; button: number }>();
+  private readonly pointers = new Map<number, { x: number; y: number; button: number; dragged: boolean }>();
   private last_sent_ms = 0;
   private pinch = 0;
 
@@ -68,10 +68,10 @@ export class Hands {
     this.actions.changed();
   }
 
-  /** Every picture: held keys move the hand; poses go out at 60 Hz at most. */
+  /** Held keys move the hand; poses go out at 60 Hz at most. */
   update(dt: number, now_ms: number): void {
     this.apply_keys(dt);
-    if (now_ms - this.last_sent_ms < send_period_ms - 1) return;
+    if (now_ms - this.last_sent_ms < send_period_ms - 2) return;
     this.last_sent_ms = now_ms;
     this.hands.forEach((h, hand) => {
       if (!h.taken) return;
@@ -116,9 +116,8 @@ export class Hands {
   private down(e: PointerEvent): void {
     this.canvas.focus({ preventScroll: true });
     this.canvas.setPointerCapture(e.pointerId);
-    this.pointers.set(e.pointerId, { x: e.clientX, y: e.clientY, button: e.button });
+    this.pointers.set(e.pointerId, { x: e.clientX, y: e.clientY, button: e.button, dragged: false });
     if (e.button === 1) e.preventDefault();
-    if (e.button === 0 && this.pointers.size === 1 && e.detail < 2) this.take();
     this.pinch = 0;
   }
 
@@ -126,6 +125,9 @@ export class Hands {
     const p = this.pointers.get(e.pointerId);
     if (!p) return;
     const dx = e.clientX - p.x, dy = e.clientY - p.y;
+    // A click is no drag: it must not take the hand.
+    if (!p.dragged && Math.hypot(dx, dy) < 3) return;
+    p.dragged = true;
     p.x = e.clientX; p.y = e.clientY;
     const height = this.canvas.clientHeight;
     if (this.pointers.size >= 2) {

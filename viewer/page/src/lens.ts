@@ -28,13 +28,12 @@ float hash(vec2 p) { return fract(52.9829189 * fract(dot(p, vec2(0.06711056, 0.0
 float gap_shade(vec2 uv, float z) {
   uv = (floor(uv * size) + 0.5) / size;
   float aspect = size.x / size.y;
-  float spin = hash(gl_FragCoord.xy) * 6.2832;
   float shut = 0.0;
   for (int ring = 0; ring < 2; ring++) {
     float radius = ring == 0 ? 0.0011 : 0.0034;
     vec2 r = radius / (2.0 * z * tan_half) * vec2(1.0 / aspect, 1.0);
-    for (int i = 0; i < 4; i++) {
-      float a = spin + (float(i) + 0.5 * float(ring)) * 1.5708;
+    for (int i = 0; i < 5; i++) {
+      float a = (float(i) + 0.5 * float(ring)) * 0.62832;
       // Whole pixels: both samples then lie equally far from the middle, and a plane stays a plane.
       vec2 o = round(vec2(cos(a), sin(a)) * r * size) / size;
       float za = distance_at(uv + o), zb = distance_at(uv - o);
@@ -44,7 +43,7 @@ float gap_shade(vec2 uv, float z) {
       shut += clamp(da + db - 0.3, 0.0, 1.2);
     }
   }
-  return 1.0 / (1.0 + 0.16 * shut);
+  return 1.0 / (1.0 + 0.13 * shut);
 }
 #endif
 

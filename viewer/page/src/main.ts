@@ -20,7 +20,7 @@ const canvas = document.getElementById('view') as HTMLCanvasElement;
 const may_drive = options.role === 'trainee';
 const may_command = options.role !== 'observer';
 
-const renderer = new THREE.WebGLRenderer({ canvas, antialias: false, powerPreference: 'high-performance' });
+const renderer = make_renderer();
 renderer.toneMapping = THREE.ACESFilmicToneMapping;
 renderer.toneMappingExposure = 1.0;
 renderer.shadowMap.type = THREE.PCFSoftShadowMap;
@@ -46,7 +46,7 @@ let frozen = false;
 
 const status = {
   ready: false, frames: 0, pictures: 0, fps: 0, session: '', quality: '', connected: false, frozen: false, refused: 0, error: '',
-  taken: [false, false], active: 1, triangles: 0,
+  build_ms: 0, taken: [false, false], active: 1, triangles: 0,
 };
 (window as unknown as { __insula: typeof status }).__insula = status;
 
@@ -110,7 +110,9 @@ async function follow(m: SceneInfo): Promise<void> {
     const old = scene.environment;
     scene.environment = make_environment(renderer, scope.field_axis, vector(bundle.view.up));
     old?.dispose();
+    const from = performance.now();
     world = new World(bundle, scope.field_axis, scene.environment);
+    status.build_ms = Math.round(performance.now() - from);
     scene.add(world.root);
     apply_quality();
     hud.show_scene(bundle);
@@ -159,6 +161,15 @@ function banner(now: number): string {
   return playback.latest?.paused ? 'Paused' : '';
 }
 
+function make_renderer(): THREE.WebGLRenderer {
+  try {
+    return new THREE.WebGLRenderer({ canvas, antialias: false, powerPreference: 'high-performance' });
+  } catch (e) {
+    document.body.textContent = 'This browser offers no WebGL 2, which the picture needs. Switch on hardware acceleration or use another browser.';
+    throw e;
+  }
+}
+
 let last = performance.now();
 let counted = 0;
 let counted_from = last;
@@ -170,7 +181,6 @@ function draw(now: number): void {
   const wide = canvas.clientWidth, high = canvas.clientHeight;
   const size = renderer.getSize(new THREE.Vector2());
   if (size.x !== wide || size.y !== high) renderer.setSize(wide, high, false);
-  hands.update(dt, now);
   scope.update(dt, wide / Math.max(1, high));
   world?.update(playback, now);
   lens.render(scene, scope.camera, scope.distance);
@@ -200,6 +210,14 @@ function draw(now: number): void {
   hud.show_banner(banner(now));
   hud.tick(now);
 }
+
+// Hands keep their own time: a slow picture must not make them slow.
+let hands_last = performance.now();
+setInterval(() => {
+  const now = performance.now();
+  hands.update(Math.min(0.1, (now - hands_last) / 1000), now);
+  hands_last = now;
+}, 1000 / 60);
 
 apply_quality();
 requestAnimationFrame(draw);

@@ -219,7 +219,7 @@ function strand_material(): THREE.MeshPhysicalMaterial {
       .replace('#include <begin_vertex>', `
         float at_end = abs(2.0 * t - 1.0);
         float worn = 1.0 - state.y;
-        float radius = state.x * (0.62 + 0.18 * at_end + 0.9 * smoothstep(0.88, 1.0, at_end));
+        float radius = state.x * (0.62 + 0.18 * at_end + 0.4 * smoothstep(0.88, 1.0, at_end));
         radius *= (1.0 - 0.45 * worn) * (1.0 - 0.55 * worn * exp(-pow((t - 0.5) / 0.16, 2.0)));
         if (state.w >= 0.0) radius *= 1.0 - 0.9 * (1.0 - at_end);
         vec3 transformed = here + objectNormal * radius;

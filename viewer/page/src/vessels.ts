@@ -77,7 +77,7 @@ export function grow_vessels(tissue: Tissue, shading: Shading, style: VesselStyl
   }
 
   const free = (x: number[], own: number[][], clearance: number) =>
-    taken.every((t) => t === x || own.includes(t) || Math.hypot(t[0]! - x[0]!, t[1]! - x[1]!, t[2]! - x[2]!) > clearance);
+    taken.every((t) => (t[0]! - x[0]!) ** 2 + (t[1]! - x[1]!) ** 2 + (t[2]! - x[2]!) ** 2 > clearance * clearance || own.includes(t));
 
   const grow = (kind: Vessel['kind'], start: number[], direction: number[], radius: number, length: number, depth: number, own: number[][]): Vessel | null => {
     const vessel: Vessel = { kind, points: [], normals: [], radii: [] };

@@ -3,9 +3,10 @@
 import * as THREE from 'three';
 import type { Bundle, SkinnedSurface, SurfaceData } from './bundle';
 import { creased, smooth_normals } from './geometry';
-import { looks, tissue_material, vessel_material } from './materials/tissue';
+import { looks, pressed_count, tissue_material, vessel_material } from './materials/tissue';
 import { solid_material } from './materials/solid';
 import { bake_shading, type Shading, type Tissue } from './occlusion';
+import type { RenderFrame } from './lcm';
 import { Playback } from './playback';
 import { hash_text } from './random';
 import { barycentric, NodeField } from './skinning';
@@ -16,7 +17,7 @@ import { Tool } from './tools';
 import { grow_vessels, make_tubes, type VesselStyle } from './vessels';
 
 const vessel_styles: Record<string, VesselStyle> = {
-  cortex: { density_m2: 11000, radius_m: [0.00018, 0.00050], length_m: [0.018, 0.050], vein_share: 0.45 },
+  cortex: { density_m2: 11000, radius_m: [0.00018, 0.00050], length_m: [0.018, 0.050], vein_share: 0.52 },
   insula: { density_m2: 5000, radius_m: [0.0004, 0.0010], length_m: [0.02, 0.045], vein_share: 0.12 },
 };
 
@@ -31,8 +32,7 @@ export class World {
   readonly root = new THREE.Group();
   readonly tools = new Map<number, Tool>();
   readonly strands: Strands | null;
-  /** What a double click can hit: static and skinned surfaces at rest. */
-  readonly bounds = new THREE.Box3();
+  private readonly pressed = Array.from({ length: pressed_count }, () => new THREE.Vector4());
   private readonly moving: Moving[] = [];
   private readonly owned: { dispose(): void }[] = [];
 
@@ -77,6 +77,7 @@ export class World {
       if (x && x.length === m.skin.field.rest.length) m.skin.update(x);
     }
     this.strands?.update(playback.strand_ends(t), frame.strand_health, frame.strand_tension_N, now_ms / 1000);
+    this.update_pressed(frame);
     for (const [index, tool] of this.tools) {
       const pair = playback.tool(index);
       if (!pair) { tool.hide(); continue; }
@@ -87,8 +88,15 @@ export class World {
     }
   }
 
-  set_shadows(on: boolean): void {
-    this.root.traverse((o) => { if (o instanceof THREE.Mesh && o.userData.casts !== undefined) o.castShadow = on && o.userData.casts; });
+  /** The strongest contacts; they fade in and out, since contacts flicker from step to step. */
+  private update_pressed(frame: RenderFrame): void {
+    const order = [...frame.contact_N.keys()].filter((i) => frame.contact_N[i]! > 0.005).sort((a, b) => frame.contact_N[b]! - frame.contact_N[a]!).slice(0, pressed_count);
+    this.pressed.forEach((p, k) => {
+      const i = order[k];
+      if (i === undefined) { p.w *= 0.9; return; }
+      const force = p.w + 0.15 * (frame.contact_N[i]! - p.w);
+      p.set(frame.contact_x_m[3 * i]!, frame.contact_x_m[3 * i + 1]!, frame.contact_x_m[3 * i + 2]!, force);
+    });
   }
 
   dispose(): void {
@@ -100,7 +108,6 @@ export class World {
     const mesh = new THREE.Mesh(geometry, material);
     mesh.castShadow = casts;
     mesh.receiveShadow = true;
-    mesh.userData.casts = casts;
     if (skin) {
       mesh.customDepthMaterial = skinned_depth_material(skin);
       this.owned.push(mesh.customDepthMaterial);
@@ -145,7 +152,7 @@ export class World {
     }
     for (let i = 0; i < n; i++) { pairs[i * 2] = shading.openness[i]!; pairs[i * 2 + 1] = shading.convexity[i]!; }
     geometry.setAttribute('shading', new THREE.BufferAttribute(pairs, 2));
-    this.add(geometry, tissue_material(looks[s.material] ?? looks.cortex!, skin), true, skin);
+    this.add(geometry, tissue_material(looks[s.material] ?? looks.cortex!, skin, this.pressed), true, skin);
     this.add_vessels(s, tissue, shading, skinned, skin, rest);
   }
 

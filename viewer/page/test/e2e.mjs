@@ -17,12 +17,12 @@ let mock = await start_mock({ port: 0, start_s: 3 });
 const port = Number(new URL(mock.url).port);
 const browser = await chromium.launch({ executablePath, args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist'] });
 const errors = [];
+let away = false;
 const check = (text) => console.log(`ok  ${text}`);
 try {
   const page = await browser.newPage({ viewport: { width: 480, height: 320 } });
   page.on('console', (m) => { if (m.type() === 'error' && !away) errors.push(m.text()); });
   page.on('pageerror', (e) => errors.push(e.message));
-  let away = false;
   const status = () => page.evaluate(() => ({ ...window.__insula }));
 
   await page.goto(`${mock.url}?quality=low`);
@@ -65,6 +65,7 @@ try {
   await page.keyboard.press('1');
   await page.mouse.move(240, 160);
   await page.mouse.down();
+  await page.mouse.move(244, 160);
   await wait_for('hand input', () => mock.state.held[0] !== null);
   const first = [...mock.state.held[0].p_m];
   assert.ok(Math.hypot(...first.map((x, i) => x - mock_tool(mock.state)[i])) < 0.003, 'the hand starts at the tool');

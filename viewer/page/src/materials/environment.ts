@@ -19,14 +19,19 @@ export function make_environment(renderer: THREE.WebGLRenderer, towards_eye: THR
     mesh.lookAt(0, 0, 0);
     holder.add(mesh);
   };
-  // Walls: darker below, a little cool; the drapes send green from around the field.
-  const dome = new THREE.SphereGeometry(10, 24, 16);
+  // Above: a dim room. Below: what instruments really mirror, the lit field itself: brain, bone around it, drapes.
+  const dome = new THREE.SphereGeometry(10, 48, 48);
   const colours = new Float32Array(dome.attributes.position!.count * 3);
+  const bands: [down: number, colour: [number, number, number]][] = [
+    [-1, [0.17, 0.17, 0.18]], [0, [0.07, 0.075, 0.08]], [0.2, [0.03, 0.05, 0.05]], [0.35, [0.07, 0.12, 0.12]], [0.6, [0.14, 0.22, 0.215]],
+    [0.68, [0.62, 0.52, 0.40]], [0.8, [0.85, 0.74, 0.58]], [0.86, [0.60, 0.24, 0.18]], [1, [0.80, 0.36, 0.28]],
+  ];
   for (let i = 0; i < colours.length / 3; i++) {
-    const t = dome.attributes.position!.getZ(i) / 10;
-    const horizon = Math.exp(-((t / 0.35) ** 2));
-    const c = [0.05 + 0.10 * Math.max(0, t) + 0.07 * horizon, 0.055 + 0.10 * Math.max(0, t) + 0.08 * horizon, 0.055 + 0.11 * Math.max(0, t) + 0.085 * horizon];
-    colours.set(c, i * 3);
+    const down = -dome.attributes.position!.getZ(i) / 10;
+    const k = Math.max(1, bands.findIndex((b) => b[0] >= down));
+    const [d0, c0] = bands[k - 1]!, [d1, c1] = bands[k]!;
+    const t = Math.max(0, Math.min(1, (down - d0) / (d1 - d0)));
+    colours.set(c0.map((v, j) => v + (c1[j]! - v) * t), i * 3);
   }
   dome.setAttribute('color', new THREE.BufferAttribute(colours, 3));
   holder.add(new THREE.Mesh(dome, new THREE.MeshBasicMaterial({ vertexColors: true, side: THREE.BackSide })));
@@ -34,6 +39,8 @@ export function make_environment(renderer: THREE.WebGLRenderer, towards_eye: THR
   const lamps: [azimuth: number, polar: number, wide: number, high: number, power: number][] = [
     [0.35, 1.05, 2.0, 4.2, 4.6], [1.35, 0.85, 3.2, 1.6, 5.2], [2.35, 1.1, 1.4, 4.4, 4.4], [3.25, 1.25, 2.4, 2.6, 3.2],
     [4.05, 0.95, 1.6, 4.0, 4.8], [4.9, 1.2, 3.0, 1.5, 3.6], [5.65, 0.9, 1.2, 4.2, 5.0],
+    // Just under the horizon: sterile white trays and sheets that catch the light; they streak slanting shafts.
+    [0.8, 1.75, 1.0, 1.6, 3.4], [2.0, 1.85, 1.2, 1.8, 3.0], [2.9, 1.8, 0.8, 2.0, 3.4], [3.7, 1.8, 1.0, 1.8, 2.8], [5.2, 1.75, 1.3, 1.6, 3.0], [6.1, 1.9, 0.9, 1.8, 3.2],
   ];
   for (const [azimuth, polar, wide, high, power] of lamps)
     add(new THREE.PlaneGeometry(wide, high), glow(power, power, power * 1.03),

@@ -56,12 +56,12 @@ const recipes: Record<string, Recipe> = {
     relief: '0.14 * noise(p * 0.9).yzw + 0.14 * noise(p * 2.2).yzw',
   },
   steel: {
-    base: { color: '#d3d6da', metalness: 1, roughness: 0.17, envMapIntensity: 1.5 },
+    base: { color: '#d3d6da', metalness: 1, roughness: 0.22, envMapIntensity: 1.25 },
     colour: 'diffuseColor.rgb *= 0.97 + 0.05 * noise(p * 0.6).x;',
     relief: '0.012 * noise(p * vec3(6.0, 6.0, 0.4)).yzw',
   },
   steel_dark: {
-    base: { color: '#85888e', metalness: 1, roughness: 0.32, envMapIntensity: 1.5 },
+    base: { color: '#85888e', metalness: 1, roughness: 0.36, envMapIntensity: 1.2 },
     colour: 'diffuseColor.rgb *= 0.95 + 0.08 * noise(p * 0.6).x;',
     relief: '0.03 * noise(p * vec3(5.0, 5.0, 0.5)).yzw',
   },

@@ -17,12 +17,16 @@ export interface TissueLook {
 }
 
 export const looks: Record<string, TissueLook> = {
-  cortex: { crown: '#be7c69', sulcus: '#983f33', deep: '#4a1210', capillary: '#8a1f1a', capillaries: 1.0, haze: 0.4 },
+  cortex: { crown: '#bf7e6e', sulcus: '#963c34', deep: '#4a1210', capillary: '#8a1f1a', capillaries: 1.0, haze: 0.4 },
   pia: { crown: '#c48a79', sulcus: '#9a4c42', deep: '#4a1210', capillary: '#861e19', capillaries: 1.0, haze: 0.6 },
   insula: { crown: '#b67462', sulcus: '#8c3d33', deep: '#46110f', capillary: '#841c17', capillaries: 0.9, haze: 0.3 },
 };
 
-export function tissue_material(look: TissueLook, skin: SkinTexture | null): THREE.MeshPhysicalMaterial {
+/** Where tissue is pressed: place in the scene and force in newtons, strongest first; w = 0 is none. */
+export type Pressed = THREE.Vector4[];
+export const pressed_count = 8;
+
+export function tissue_material(look: TissueLook, skin: SkinTexture | null, pressed: Pressed): THREE.MeshPhysicalMaterial {
   const m = new THREE.MeshPhysicalMaterial({
     color: 0xffffff, roughness: 0.62, metalness: 0, ior: 1.38, specularIntensity: 0.6,
     clearcoat: 1, clearcoatRoughness: 0.2,
@@ -34,10 +38,11 @@ export function tissue_material(look: TissueLook, skin: SkinTexture | null): THR
     shader.uniforms.sulcus = { value: new THREE.Color(look.sulcus) };
     shader.uniforms.deep = { value: new THREE.Color(look.deep) };
     shader.uniforms.capillary = { value: new THREE.Color(look.capillary) };
+    shader.uniforms.pressed = { value: pressed };
     shader.uniforms.amounts = { value: new THREE.Vector2(look.capillaries, look.haze) };
     shader.vertexShader = shader.vertexShader
-      .replace('#include <common>', '#include <common>\nattribute vec2 shading; varying vec2 v_shading; varying vec3 v_rest;')
-      .replace('#include <project_vertex>', '#include <project_vertex>\nv_shading = shading; v_rest = position * 1000.0;');
+      .replace('#include <common>', '#include <common>\nattribute vec2 shading; varying vec2 v_shading; varying vec3 v_rest, v_place;')
+      .replace('#include <project_vertex>', '#include <project_vertex>\nv_shading = shading; v_rest = position * 1000.0; v_place = (modelMatrix * vec4(transformed, 1.0)).xyz;');
     shader.fragmentShader = shader.fragmentShader
       .replace('#include <common>', `#include <common>
         ${noise_glsl}
@@ -45,7 +50,8 @@ export function tissue_material(look: TissueLook, skin: SkinTexture | null): THR
         uniform vec2 amounts;
         uniform mat3 normalMatrix;
         varying vec2 v_shading;
-        varying vec3 v_rest;
+        varying vec3 v_rest, v_place;
+        uniform vec4 pressed[${pressed_count}];
         // Network of thin lines where warped noise crosses zero; width in noise units.
         float network(vec3 p, vec3 warp, float width) {
           float n = noise(p + warp).x;
@@ -68,6 +74,16 @@ export function tissue_material(look: TissueLook, skin: SkinTexture | null): THR
           + 0.55 * network(v_rest * 0.95 + 11.0, warp * 0.7, 0.11) * smoothstep(-0.1, 0.5, noise(v_rest * 0.33 + 5.7).x);
         tint = mix(tint, capillary, clamp(net, 0.0, 1.0) * 0.62 * amounts.x);
         tint = mix(tint, vec3(0.86, 0.78, 0.74), amounts.y * 0.30 * smoothstep(0.1, 0.9, fold) * smoothstep(-0.3, 0.6, middle.x) * openness);
+        // Pressed tissue blanches, with a flushed ring around.
+        float pale = 0.0, flush = 0.0;
+        for (int i = 0; i < ${pressed_count}; i++) {
+          float d = distance(v_place, pressed[i].xyz) * 1000.0;
+          float f = clamp(pressed[i].w * 5.0, 0.0, 1.0);
+          pale += f * exp(-d * d / 2.2);
+          flush += f * exp(-(d - 2.6) * (d - 2.6) / 1.2);
+        }
+        tint = mix(tint, vec3(0.74, 0.60, 0.52), 0.55 * min(1.0, pale));
+        tint *= mix(vec3(1.0), vec3(0.95, 0.80, 0.78), min(1.0, flush) * (1.0 - min(1.0, pale)));
         tint = mix(deep, tint, smoothstep(0.06, 0.62, openness));
         diffuseColor.rgb *= tint;`)
       .replace('#include <roughnessmap_fragment>', `#include <roughnessmap_fragment>

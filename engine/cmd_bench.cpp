@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// insula bench: where the time of a step goes.
+#include <fmt/ostream.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/base/input_error.h"
+#include "core/linalg/kernels.h"
+#include "core/mechanics/soft_body.h"
+#include "engine/headless.h"
+#include "engine/live_engine.h"
+#include "engine/report_writer.h"
+#include "engine/run.h"
+
+namespace insula {
+
+int cmd_bench(const CommandContext& context, const BenchOptions& options) {
+  SimulationResult loaded = load_simulation(options.scene, context.registry, options.threads);
+  context.err << loaded.diagnostics.format();
+  if (!loaded.simulation) return 2;
+  Simulation& simulation = *loaded.simulation;
+  Motion motion;
+  try {
+    const auto file = find_motion(simulation, options.motion);
+    if (!file.empty()) motion = load_motion(file);
+  } catch (const InputError& e) {
+    if (options.motion != "steady") {
+      fmt::print(context.err, "{}: error: {}\n", options.scene.string(), e.what());
+      return 2;
+    }
+  }
+  HeadlessRun run(simulation, motion);
+  const auto warm_up = std::max<std::int64_t>(5, std::int64_t(options.from / simulation.h()));
+  for (std::int64_t k = 0; k < warm_up; ++k) run.step();
+
+  std::array<std::vector<double>, stage_count> stage;
+  std::vector<double> step, haptic, rows, sweeps, residual;
+  for (int k = 0; k < options.steps; ++k) {
+    run.step();
+    const StepReport& r = simulation.report();
+    for (int s = 0; s < stage_count; ++s) stage[std::size_t(s)].push_back(r.stage_ms[std::size_t(s)]);
+    step.push_back(r.step_ms);
+    haptic.push_back(run.haptic_ms());
+    rows.push_back(r.rows);
+    sweeps.push_back(r.solve.sweeps);
+    residual.push_back(r.solve.residual_m);
+  }
+  auto mean = [](const std::vector<double>& v) {
+    double sum = 0;
+    for (double x : v) sum += x;
+    return v.empty() ? 0.0 : sum / double(v.size());
+  };
+  const double factor = simulation.h() * 1000 / std::max(1e-9, mean(step));
+  if (options.json) {
+    nlohmann::json j;
+    j["scene"] = options.scene.string();
+    j["kernels"] = kernels().name;
+    j["threads"] = simulation.workers().threads();
+    j["steps"] = options.steps;
+    j["step_ms"] = {{"mean", mean(step)}, {"p50", percentile(step, 0.5)}, {"p95", percentile(step, 0.95)}};
+    for (int s = 0; s < stage_count; ++s)
+      j["stage_ms"][stage_names()[std::size_t(s)]] = {{"p50", percentile(stage[std::size_t(s)], 0.5)}, {"p95", percentile(stage[std::size_t(s)], 0.95)}};
+    j["servo_ms_per_step"] = mean(haptic);
+    j["rows"] = {{"mean", mean(rows)}, {"max", percentile(rows, 1.0)}};
+    j["sweeps"] = {{"mean", mean(sweeps)}, {"max", percentile(sweeps, 1.0)}};
+    j["residual_m"] = {{"p50", percentile(residual, 0.5)}, {"max", percentile(residual, 1.0)}};
+    j["real_time_factor"] = factor;
+    context.out << j.dump(2) << '\n';
+    return 0;
+  }
+  fmt::print(context.out, "{}  ({} kernels, {} threads, {} steps of {:.2f} ms)\n", options.scene.string(), kernels().name,
+             simulation.workers().threads(), options.steps, simulation.h() * 1000);
+  for (const Body* b : simulation.bodies())
+    if (const auto* soft = dynamic_cast<const SoftBody*>(b))
+      fmt::print(context.out, "  {:<12} {} nodes, {} tetrahedra, factor of {} numbers and {:.1f} Mflop\n", soft->id, soft->nodes(),
+                 soft->rest().tets.size(), soft->solver().factor_entries(), soft->solver().factor_flops() * 1e-6);
+  fmt::print(context.out, "\n  {:<14}{:>9}{:>9}\n", "stage, ms", "p50", "p95");
+  for (int s = 0; s < stage_count; ++s)
+    fmt::print(context.out, "  {:<14}{:>9.3f}{:>9.3f}\n", stage_names()[std::size_t(s)], percentile(stage[std::size_t(s)], 0.5),
+               percentile(stage[std::size_t(s)], 0.95));
+  fmt::print(context.out, "  {:<14}{:>9.3f}{:>9.3f}\n\n", "step", percentile(step, 0.5), percentile(step, 0.95));
+  fmt::print(context.out, "  rows {:.0f} mean, {:.0f} max; sweeps {:.1f} mean; residual {:.1e} m at most\n", mean(rows), percentile(rows, 1.0),
+             mean(sweeps), percentile(residual, 1.0));
+  fmt::print(context.out, "  servo of both hands: {:.3f} ms a step; real_time_factor of the engine alone {:.2f}\n", mean(haptic), factor);
+  return 0;
+}
+
+}  // namespace insula

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The commands that step a scene: run (headless, with a report), bench (stage times), engine (the live process).
+#pragma once
+#include <filesystem>
+#include <string>
+
+#include "engine/commands.h"
+
+namespace insula {
+
+struct RunOptions {
+  std::filesystem::path scene;
+  std::string motion = "none";         ///< id of a motion of the exercise, CSV file, or none
+  double duration = 0;                 ///< simulated seconds; 0: the motion and one second more, or 10 s without one
+  std::filesystem::path report;        ///< folder for report.json and report.html; empty: none
+  std::filesystem::path export_folder; ///< folder for the bodies' final nodes as .vtu; empty: none
+  int threads = 0;
+  bool quiet = false;
+};
+/// Runs a scene headless and deterministic with both hands inside the process. Status 0, or 2 for bad input, 1 when the
+/// simulation left the range of numbers or a file could not be written.
+int cmd_run(const CommandContext& context, const RunOptions& options);
+
+struct BenchOptions {
+  std::filesystem::path scene;
+  std::string motion = "steady";
+  int steps = 600;
+  double from = 0;   ///< simulated time at which measuring begins, s
+  int threads = 0;
+  bool json = false;
+};
+/// Steps a scene as fast as it goes and prints where each millisecond went.
+int cmd_bench(const CommandContext& context, const BenchOptions& options);
+
+struct EngineOptions {
+  std::filesystem::path scene;
+  std::string motion = "steady";
+  std::filesystem::path bundle_root;
+  double duration = 0;
+  bool unthrottled = false;
+  int threads = 0;
+};
+/// The engine process of a session; talks over the bus of LCM_DEFAULT_URL until SIGINT or SIGTERM.
+int cmd_engine(const CommandContext& context, const EngineOptions& options);
+
+}  // namespace insula

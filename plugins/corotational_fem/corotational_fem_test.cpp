@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Rotations of elements, and what the two tangents are worth in a Newton iteration. Bars, beams and patches: tests/physics.
+#include <gtest/gtest.h>
+
+#include "core/base/random.h"
+#include "core/mechanics/soft_body.h"
+#include "core/testing/block_mesh.h"
+#include "core/testing/example.h"
+#include "plugins/corotational_fem/polar.h"
+
+namespace insula {
+namespace {
+
+Vec3 any(Random& r) { return Vec3(r.uniform(-1, 1), r.uniform(-1, 1), r.uniform(-1, 1)); }
+
+TEST(Polar, TurnsAnyStretchIntoItsRotation) {
+  Random random(1);
+  for (int trial = 0; trial < 2000; ++trial) {
+    const Quat turn = from_rotation_vector(3 * any(random));
+    // A symmetric positive stretch between 0.2 and 2.2.
+    const Mat3 axes = from_rotation_vector(any(random)).toRotationMatrix();
+    const Mat3 s = axes * Vec3(Vec3::Constant(1.2) + any(random)).asDiagonal() * axes.transpose();
+    const Mat3 expected = turn.toRotationMatrix();
+    Quat guess = trial % 3 == 0 ? Quat::Identity() : (from_rotation_vector(0.3 * any(random)) * turn).normalized();
+    const Mat3 r = polar_rotation(expected * s, guess);
+    EXPECT_LT((r - expected).norm(), 1e-11) << trial;
+    EXPECT_LT((guess.toRotationMatrix() - r).norm(), 1e-12);
+  }
+}
+
+TEST(Polar, InvertedAndFlatElementsGetAProperRotation) {
+  Random random(2);
+  for (int trial = 0; trial < 500; ++trial) {
+    Mat3 f;
+    f << any(random), any(random), any(random);
+    if (trial % 5 == 0) f.col(1) = f.col(0);
+    if (trial % 50 == 0) f.setZero();
+    Quat guess = Quat::Identity();
+    const Mat3 r = polar_rotation(f, guess);
+    EXPECT_TRUE(r.allFinite());
+    EXPECT_NEAR(r.determinant(), 1, 1e-12);
+    EXPECT_LT((r.transpose() * r - Mat3::Identity()).norm(), 1e-12);
+    if (std::abs(f.determinant()) > 1e-2) {
+      const Mat3 s = r.transpose() * f;
+      EXPECT_LT((s - s.transpose()).norm(), 1e-10) << trial;
+    }
+  }
+}
+
+std::unique_ptr<Simulation> bar(const std::string& fem, const test::SceneFolder& folder) {
+  folder.write("meshes/bar.msh", test::gmsh_text(test::block_mesh({6, 2, 2}, Vec3(0, 0, 0), Vec3(0.06, 0.02, 0.02))));
+  return test::load_text("<scene><soft_body id=\"bar\" mesh=\"meshes/bar.msh\" mesh_unit=\"m\"><corotational_fem " + fem +
+                         "/><fixed region=\"beyond\" centre=\"0.001 0 0 m\" normal=\"-1 0 0\"/></soft_body></scene>", folder.path() / "bar.xml");
+}
+
+/// Static Newton on a bent bar: residual force after each step, N.
+std::vector<double> newton(SoftBody& body, int steps) {
+  for (int i = 0; i < body.nodes(); ++i)
+    if (body.rest().nodes[std::size_t(i)].x() > 0.0599) body.external[3 * i + 2] = -2e-4;
+  std::vector<double> residual;
+  StepContext context;
+  context.h = 1e6;
+  for (int k = 0; k < steps; ++k) {
+    body.v().setZero();
+    body.rows.clear();
+    body.free_motion(context);
+    body.apply(context, body.rows, nullptr);
+    VecX f = body.external;
+    for (ForceModel* m : body.forces()) m->linearise(body.q().data(), f.data(), nullptr, 0, Tangent::system);
+    double worst = 0;
+    for (int i = 0; i < body.nodes(); ++i)
+      if (!body.held()[std::size_t(i)]) worst = std::max(worst, f.segment<3>(3 * i).norm());
+    residual.push_back(worst);
+  }
+  return residual;
+}
+
+TEST(CorotationalFem, BothTangentsReachTheSameEquilibrium) {
+  test::SceneFolder folder;
+  auto rotated = bar("young=\"3 kPa\" poisson=\"0.3\" rayleigh_stiffness=\"0 s\"", folder);
+  auto exact = bar("young=\"3 kPa\" poisson=\"0.3\" rayleigh_stiffness=\"0 s\" tangent=\"exact\"", folder);
+  ASSERT_TRUE(rotated && exact);
+  auto& a = *rotated->scene().find_as<SoftBody>("bar");
+  auto& b = *exact->scene().find_as<SoftBody>("bar");
+  const auto slow = newton(a, 200), fast = newton(b, 200);
+  EXPECT_LT(slow.back(), 1e-12);
+  EXPECT_LT(fast.back(), 1e-12);
+  EXPECT_LT((a.q() - b.q()).lpNorm<Eigen::Infinity>(), 1e-9);
+  EXPECT_GT((a.q() - rotated->scene().find_as<SoftBody>("bar")->rest().nodes[0][0] * VecX::Ones(a.q().size())).norm(), 0);
+}
+
+TEST(CorotationalFem, MassIsDensityTimesVolume) {
+  test::SceneFolder folder;
+  auto s = bar("density=\"1.2 g/cm3\"", folder);
+  ASSERT_TRUE(s);
+  double mass = 0;
+  for (double m : s->scene().find_as<SoftBody>("bar")->node_mass()) mass += m;
+  EXPECT_NEAR(mass, 1200 * 0.06 * 0.02 * 0.02, 1e-12);
+}
+
+// A twist by several turns' worth of steps: elements follow their own rotation without flipping back.
+TEST(CorotationalFem, SpinningBodyKeepsItsShape) {
+  test::SceneFolder folder;
+  folder.write("meshes/cube.msh", test::gmsh_text(test::block_mesh({2, 2, 2}, Vec3::Constant(-0.01), Vec3::Constant(0.01))));
+  auto s = test::load_text("<scene time_step=\"2 ms\"><soft_body id=\"cube\" mesh=\"meshes/cube.msh\" mesh_unit=\"m\"><corotational_fem young=\"50 kPa\" rayleigh_mass=\"0 1/s\"/></soft_body></scene>", folder.path() / "cube.xml");
+  ASSERT_TRUE(s);
+  auto& body = *s->scene().find_as<SoftBody>("cube");
+  const Vec3 spin(0, 0, 30);
+  for (int i = 0; i < body.nodes(); ++i) body.v().segment<3>(3 * i) = spin.cross(body.rest().nodes[std::size_t(i)]);
+  double turned = 0;
+  Vec3 before = body.rest().nodes.front();
+  for (int n = 0; n < 400; ++n) {
+    s->step();
+    const Vec3 now = body.q().head<3>();
+    turned += std::atan2(before.cross(now).z(), before.head<2>().dot(now.head<2>()));
+    before = now;
+    for (int i = 1; i < body.nodes(); ++i) {
+      const double rest = (body.rest().nodes[std::size_t(i)] - body.rest().nodes[0]).norm();
+      ASSERT_NEAR((body.q().segment<3>(3 * i) - body.q().head<3>()).norm(), rest, 0.1 * rest) << "step " << n;
+    }
+  }
+  EXPECT_GT(turned, 2 * 3.14159265358979) << "it stopped turning";
+}
+
+}  // namespace
+}  // namespace insula

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Strands against the closed form of the discretised law; cutting and tearing; generation.
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <set>
+
+#include "core/mechanics/obstacle.h"
+#include "core/testing/block_mesh.h"
+#include "core/testing/example.h"
+#include "plugins/strand_springs/strand_springs.h"
+
+namespace insula {
+namespace {
+
+constexpr double a = 0.01, gap = 0.02;  // height of a tetrahedron, from its apex to what the strand leads to
+constexpr double young = 1000, poisson = 0.3, density = 1000, alpha = 2, beta = 0.01;
+constexpr double mu = young / (2 * (1 + poisson)), lame = young * poisson / ((1 + poisson) * (1 - 2 * poisson));
+constexpr double volume = a * a * a / 6, spring = volume * (2 * mu + lame) / (a * a), mass = density * volume / 4;
+constexpr double h = 0.01;
+
+/// A tetrahedron on three held nodes whose apex, on the z axis, is a linear spring along z; and `other`.
+std::string scene(const std::string& strands, const std::string& other) {
+  return fmt::format(R"(<scene time_step="10 ms">
+  <solver tolerance="1e-15 m" max_sweeps="10000"/>
+  <soft_body id="mass" mesh="meshes/tet.msh" mesh_unit="m">
+    <corotational_fem young="{} Pa" poisson="{}" density="{} kg/m3" rayleigh_mass="{} 1/s" rayleigh_stiffness="{} s"/>
+    <fixed region="beyond" centre="0 0 0.005 m" normal="0 0 -1"/>
+  </soft_body>
+  {}
+  <strand_springs id="strands" {}/>
+</scene>)", young, poisson, density, alpha, beta, other, strands);
+}
+
+struct Bed {
+  test::SceneFolder folder;
+  std::unique_ptr<Simulation> s;
+  StrandSprings* strands = nullptr;
+  Bed(const std::string& attributes, const std::string& other) {
+    folder.write("meshes/tet.msh", test::gmsh_text(test::single_tet(a)));
+    TetMesh flipped = test::single_tet(a);
+    for (Vec3& x : flipped.nodes) x = Vec3(x.x(), -x.y(), 2 * a + gap - x.z());
+    folder.write("meshes/flipped.msh", test::gmsh_text(flipped));
+    s = test::load_text(scene(attributes, other), folder.path() / "strand.xml");
+    if (s) strands = s->scene().find_as<StrandSprings>("strands");
+  }
+  MaterialPoint apex(const char* id) const {
+    MaterialPoint p;
+    p.body = s->scene().find_as<Body>(id);
+    p.count = 1;
+    p.node[0] = 3;
+    p.weight[0] = 1;
+    return p;
+  }
+  MaterialPoint wall(const Vec3& at) const {
+    MaterialPoint p;
+    p.body = s->scene().find_as<Body>("wall");
+    p.local = at;
+    return p;
+  }
+  double height(const char* id) const { return s->scene().find_as<SoftBody>(id)->q()[11]; }
+};
+
+TEST(StrandSprings, PullsAsTheDiscretisedLawSays) {
+  for (const bool both : {false, true}) {
+    for (const double slack : {0.8, 1.0, 1.3}) {
+      Bed t(fmt::format("stiffness=\"30 N/m\" slack=\"{}\" carries=\"{}\"", slack, both ? "both" : "tension"), "<obstacle id=\"wall\"/>");
+      ASSERT_TRUE(t.strands);
+      t.strands->add_strand(t.apex("mass"), t.wall(Vec3(0, 0, a + gap)));
+      const double k = 30, rest = slack * gap;
+      double u = 0, v = 0;
+      for (int n = 1; n <= 200; ++n) {
+        t.s->step();
+        const double inertia = mass / (h * h) + alpha * mass / h + (1 + beta / h) * spring, b = -spring * u + mass * v / h;
+        double dq = b / inertia, tension = 0;
+        if (both || gap - u - dq > rest) {  // stretched at the end of the free step
+          dq = (b + k * (gap - u - rest)) / (inertia + k);
+          tension = k * (gap - u - dq - rest);
+        }
+        u += dq;
+        v = dq / h;
+        ASSERT_NEAR(t.height("mass") - a, u, 1e-9 * gap) << "step " << n << " slack " << slack;
+        ASSERT_NEAR(t.strands->tension(0), tension, 1e-9 * k * gap) << "step " << n << " slack " << slack;
+      }
+      if (slack > 1 && !both) { EXPECT_EQ(u, 0); }
+      if (slack > 1 && both) { EXPECT_LT(u, -1e-4); }
+      if (slack < 1) { EXPECT_GT(u, 1e-4); }
+    }
+  }
+}
+
+// F = k (l - l0) in series with the two bodies' own springs.
+TEST(StrandSprings, TwoBodiesInEquilibrium) {
+  Bed t("stiffness=\"20 N/m\" slack=\"0.7\"", fmt::format(R"(<soft_body id="second" mesh="meshes/flipped.msh" mesh_unit="m">
+    <corotational_fem young="{} Pa" poisson="{}" density="{} kg/m3" rayleigh_mass="0 1/s" rayleigh_stiffness="{} s"/>
+    <fixed region="beyond" centre="0 0 0.035 m" normal="0 0 1"/></soft_body>)", 2 * young, poisson, density, beta));
+  ASSERT_TRUE(t.strands);
+  t.strands->add_strand(t.apex("second"), t.apex("mass"));
+  for (int n = 0; n < 1500; ++n) t.s->step();
+  const double expected = (1 - 0.7) * gap / (1 / 20.0 + 1 / spring + 1 / (2 * spring));
+  EXPECT_NEAR(t.strands->tension(0), expected, 1e-6 * expected);
+  EXPECT_NEAR(t.height("mass") - a, expected / spring, 1e-6 * expected / spring);
+  EXPECT_NEAR(a + gap - t.height("second"), expected / (2 * spring), 1e-6 * expected / spring);
+  const double length = t.height("second") - t.height("mass");
+  EXPECT_NEAR(t.strands->tension(0), 20 * (length - 0.7 * gap), 1e-6 * expected);
+}
+
+/// A strand along z between two fixed points, and a blade whose edge lies across it, 0.45 mm off, to be moved along -x.
+struct CutBed : Bed {
+  Instrument* knife = nullptr;
+  explicit CutBed(const std::string& attributes, const std::string& sharp = "always")
+      : Bed(attributes, "<obstacle id=\"wall\"/>") {
+    folder.write("meshes/knife/knife.urdf", test::test_tool_urdf(0.0005));
+    folder.write("meshes/knife/tool.json", test::test_tool_json(0.003, 0));
+    s = test::load_text(scene(attributes, R"(<obstacle id="wall"/><dissector id="knife" model="meshes/knife/knife.urdf" hand="right"
+      home="0.45 0 5 mm" shaft="1 0 0" flat="0 0 1" coupling="300 N/m" sharp=")" + sharp + "\"/>"), folder.path() / "cut.xml");
+    if (!s) return;
+    strands = s->scene().find_as<StrandSprings>("strands");
+    knife = s->scene().find_as<Instrument>("knife");
+    strands->add_strand(wall(Vec3(0, 0, 0)), wall(Vec3(0, 0, 0.01)));
+  }
+  void move(double x, bool button = false) {
+    HandState hand;
+    hand.present = true;
+    hand.device = knife->home_pose();
+    hand.device.p.x() = x;
+    hand.button1 = button;
+    s->set_hand(1, hand);
+    s->step();
+  }
+};
+
+// The hand moves 0.1 mm a step. Until the coupling carries cut_force the blade stands; then the hand feels cut_force
+// exactly, and the strand parts when the blade's travel has reached cut_length.
+TEST(StrandSprings, ResistsWithCutForceAndPartsAfterCutLength) {
+  CutBed t("stiffness=\"30 N/m\" slack=\"0.9\" cut_force=\"0.045 N\" cut_length=\"0.3 mm\" reach=\"0.5 mm\"");
+  ASSERT_TRUE(t.strands && t.knife);
+  double travel = 0;
+  int parted_at = -1;
+  for (int n = 1; n <= 10; ++n) {
+    const double before = t.knife->pose().p.x(), wear = 1 - t.strands->health(0);
+    t.move(0.00045 - n * 1e-4);
+    if (parted_at >= 0) {
+      EXPECT_LT(t.knife->hand_force().norm(), 1e-12) << "a parted strand resists, step " << n;
+      EXPECT_EQ(t.s->report().strands_left, 0);
+      continue;
+    }
+    const double force = n * 1e-4 * 300 < 0.045 ? n * 1e-4 * 300 : 0.045;
+    EXPECT_NEAR(t.knife->hand_force()[0], force, 1e-9) << "step " << n;
+    EXPECT_LT(t.knife->hand_force().tail<5>().norm(), 1e-12);
+    travel += before - t.knife->pose().p.x();
+    if (travel >= 0.0003 - 1e-12) {
+      parted_at = n;
+      ASSERT_EQ(t.s->events().size(), 1u);
+      EXPECT_EQ(t.s->events()[0].kind, "strand_cut");
+      EXPECT_EQ(t.strands->left(), 0);
+    } else {
+      EXPECT_EQ(t.strands->left(), 1);
+      EXPECT_NEAR(t.strands->health(0), 1 - travel / 0.0003, 1e-9) << "step " << n;
+      EXPECT_NEAR(t.strands->tension(0), 30 * (1 - wear) * 0.1 * 0.01, 1e-9) << "stiffness falls with the wear";
+      EXPECT_TRUE(t.s->events().empty());
+    }
+  }
+  EXPECT_EQ(parted_at, 5);
+}
+
+TEST(StrandSprings, BluntOrWithoutTheButtonDoesNotCut) {
+  for (const char* sharp : {"never", "button"}) {
+    CutBed t("cut_force=\"0.045 N\" cut_length=\"0.3 mm\"", sharp);
+    ASSERT_TRUE(t.strands && t.knife);
+    for (int n = 1; n <= 10; ++n) t.move(0.00045 - n * 1e-4);
+    EXPECT_EQ(t.strands->health(0), 1) << sharp;
+    EXPECT_EQ(t.strands->left(), 1);
+  }
+  CutBed t("cut_force=\"0.045 N\" cut_length=\"0.3 mm\"", "button");
+  ASSERT_TRUE(t.strands && t.knife);
+  for (int n = 1; n <= 10; ++n) t.move(0.00045 - n * 1e-4, true);
+  EXPECT_EQ(t.strands->left(), 0);
+}
+
+TEST(StrandSprings, WithoutResistanceTheBladeGoesThroughFreely) {
+  CutBed t("cut_force=\"0 N\" cut_length=\"0.35 mm\"");
+  ASSERT_TRUE(t.strands && t.knife);
+  for (int n = 1; n <= 4; ++n) {
+    EXPECT_EQ(t.strands->left(), 1) << n;
+    t.move(0.00045 - n * 1e-4);
+    EXPECT_LT(t.knife->hand_force().norm(), 1e-12);
+  }
+  EXPECT_EQ(t.strands->left(), 0);
+}
+
+TEST(StrandSprings, ResetMakesThemWholeAgain) {
+  CutBed t("cut_force=\"0.045 N\" cut_length=\"0.3 mm\"");
+  ASSERT_TRUE(t.strands && t.knife);
+  for (int n = 1; n <= 10; ++n) t.move(0.00045 - n * 1e-4);
+  ASSERT_EQ(t.strands->left(), 0);
+  t.s->reset();
+  EXPECT_EQ(t.strands->left(), 1);
+  EXPECT_EQ(t.strands->health(0), 1);
+}
+
+TEST(StrandSprings, TearsBeyondItsStrength) {
+  for (const double strength : {0.029, 0.031}) {  // tension at rest 30 N/m * 1 mm = 0.03 N
+    Bed t(fmt::format("stiffness=\"30 N/m\" slack=\"0.9\" strength=\"{} N\"", strength), "<obstacle id=\"wall\"/>");
+    ASSERT_TRUE(t.strands);
+    t.strands->add_strand(t.wall(Vec3(0.1, 0, 0)), t.wall(Vec3(0.1, 0, 0.01)));
+    t.s->step();
+    EXPECT_EQ(t.strands->left(), strength > 0.03 ? 1 : 0);
+    ASSERT_EQ(t.s->events().size(), strength > 0.03 ? 0u : 1u);
+    if (strength < 0.03) { EXPECT_EQ(t.s->events()[0].kind, "strand_torn"); }
+  }
+}
+
+TEST(StrandSprings, GeneratedAcrossTheGap) {
+  const auto example = std::filesystem::path(INSULA_SOURCE_DIR) / "plugins/strand_springs/example.xml";
+  auto one = test::load(example), two = test::load(example);
+  ASSERT_TRUE(one && two);
+  auto* strands = one->scene().find_as<StrandSprings>("strands");
+  one->step();
+  two->step();
+  const auto& a_ends = one->report().strands;
+  const auto& b_ends = two->report().strands;
+  ASSERT_EQ(a_ends.size(), b_ends.size());
+  EXPECT_LE(strands->count(), 32);  // 8 per cm2 on 4 cm2, doubles left out
+  EXPECT_GE(strands->count(), 14);
+  std::set<std::pair<double, double>> starts;
+  for (std::size_t i = 0; i < a_ends.size(); ++i) {
+    EXPECT_EQ(a_ends[i].a, b_ends[i].a);
+    EXPECT_EQ(a_ends[i].b, b_ends[i].b);
+    EXPECT_LE((a_ends[i].a - a_ends[i].b).norm(), 0.0062);
+    EXPECT_LT(a_ends[i].a.z(), 0.0005);
+    EXPECT_GT(a_ends[i].b.z(), 0.0015);
+    starts.insert({a_ends[i].a.x(), a_ends[i].a.y()});
+  }
+  EXPECT_GT(starts.size(), 8u) << "strands bunch up";
+}
+
+}  // namespace
+}  // namespace insula

@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A session with real processes: kills, garbage on the bus, pages that watch.
+#include <gtest/gtest.h>
+
+#include <boost/asio/connect.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/websocket.hpp>
+#include <random>
+
+#include "core/bus/mutate_for_test.h"
+#include "tests/process/play_session.h"
+#include "viewer/gateway/framing.h"
+
+namespace insula {
+namespace {
+
+using namespace testing;
+namespace beast = boost::beast;
+using tcp = boost::asio::ip::tcp;
+using Buffer = std::vector<std::uint8_t>;
+
+// The simulated arm's largest change of force (haptic_server's profile of a Phantom Omni): all of it within 50 ms.
+constexpr double slew_N_s = 66;
+
+/// A page: counts the frames it gets, on a thread of its own; comes back when the connection ends.
+class Page {
+ public:
+  explicit Page(const PlaySession& session) : session_(session), thread_([this] { run(); }) {}
+  ~Page() {
+    stop_ = true;
+    thread_.join();
+  }
+  Page(const Page&) = delete;
+  Page& operator=(const Page&) = delete;
+
+  std::set<std::int64_t> frames(std::int64_t session) const {
+    std::lock_guard lock(mutex_);
+    const auto found = frames_.find(session);
+    return found == frames_.end() ? std::set<std::int64_t>{} : found->second;
+  }
+  int connections() const { return connections_; }
+
+ private:
+  void run() {
+    while (!stop_) {
+      try {
+        connect_and_read();
+      } catch (const std::exception&) {
+        std::this_thread::sleep_for(50ms);
+      }
+    }
+  }
+  void connect_and_read() {
+    boost::asio::io_context io;
+    beast::websocket::stream<tcp::socket> ws(io);
+    ws.next_layer().connect({boost::asio::ip::make_address("127.0.0.1"), std::uint16_t(session_.port())});
+    timeval limit{1, 0};
+    ::setsockopt(ws.next_layer().native_handle(), SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
+    ws.handshake("127.0.0.1", "/ws");
+    ++connections_;
+    beast::flat_buffer in;
+    while (!stop_) {
+      ws.read(in);
+      const auto parts = gateway::unframe(Bytes(static_cast<const std::uint8_t*>(in.cdata().data()), in.size()));
+      if (parts && parts->channel == channel::render_frame)
+        if (const auto m = decode<insula_lcm::render_frame_t>(parts->payload)) {
+          std::lock_guard lock(mutex_);
+          frames_[m->session].insert(m->sequence);
+        }
+      in.consume(in.size());
+    }
+  }
+
+  const PlaySession& session_;
+  std::atomic<bool> stop_{false};
+  std::atomic<int> connections_{0};
+  mutable std::mutex mutex_;
+  std::map<std::int64_t, std::set<std::int64_t>> frames_;
+  std::thread thread_;
+};
+
+class Play : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!multicast_works()) GTEST_SKIP() << "no multicast on this machine, and no rights to add a route";
+    session_ = std::make_unique<PlaySession>();
+    ASSERT_EQ(session_->start(), "");
+    watcher_ = std::make_unique<Watcher>(session_->url());
+    ASSERT_TRUE(runs()) << session_->log();
+  }
+  void TearDown() override {
+    if (!watcher_) return;
+    expect_slew_limit();
+    if (HasFailure()) std::fputs(session_->log().c_str(), stderr);
+  }
+  bool runs() const {
+    return wait_for([&] { return session_->port() > 0 && watcher_->frames_now() > 20 && watcher_->last() && watcher_->status().rows >= 0; });
+  }
+  /// Over everything seen: within one life of the server no two samples differ by more than the limit allows in the time
+  /// between them, and each life starts from nothing.
+  void expect_slew_limit() const {
+    const auto samples = watcher_->samples();
+    int steps = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const Sample& b = samples[i];
+      if (i == 0 || samples[i - 1].session != b.session) {
+        // The first sample of a life may be some ticks old.
+        for (const Vec3& f : b.force) EXPECT_LE(i == 0 ? 0.0 : f.norm(), slew_N_s * 0.1);
+        continue;
+      }
+      const Sample& a = samples[i - 1];
+      ASSERT_GE(b.time_us, a.time_us);
+      const double limit = slew_N_s * double(b.time_us - a.time_us) * 1e-6 + slew_N_s * 1e-3;  // and one tick
+      for (int hand = 0; hand < 2; ++hand) {
+        ASSERT_TRUE(b.force[hand].allFinite());
+        EXPECT_LE((b.force[hand] - a.force[hand]).norm(), limit) << "sample " << i;
+        EXPECT_LE(b.force[hand].norm(), 3.3 + 1e-9);
+      }
+      ++steps;
+    }
+    EXPECT_GT(steps, 20);
+  }
+  /// Forces of one life of the server are exactly zero at some time at most `longest_us` after `since_us`.
+  void expect_silence(std::int64_t server, std::int64_t since_us, std::int64_t longest_us) const {
+    const auto silent = [&]() -> std::optional<Sample> {
+      for (const Sample& s : watcher_->samples())
+        if (s.session == server && s.time_us > since_us && s.force[0].norm() == 0 && s.force[1].norm() == 0) return s;
+      return std::nullopt;
+    };
+    ASSERT_TRUE(wait_for([&] { return silent().has_value(); }));
+    EXPECT_LE(silent()->time_us - since_us, longest_us);
+  }
+
+  std::unique_ptr<PlaySession> session_;
+  std::unique_ptr<Watcher> watcher_;
+};
+
+// 50 ms until a problem is too old, 50 ms to ramp out, the rest for a machine with other things to do. These are stamps of
+// the servo's own ticks.
+constexpr std::int64_t silence_us = 400'000;
+
+TEST_F(Play, EngineKilled) {
+  const Page page(*session_);
+  ASSERT_TRUE(wait_for([&] { return page.frames(watcher_->frame_session()).size() > 20; }));
+  ASSERT_TRUE(watcher_->press(0.1)) << watcher_->force();
+  const std::int64_t engine = watcher_->frame_session(), server = watcher_->last()->session;
+  const pid_t haptic = session_->pid("haptic_server"), gateway = session_->pid("gateway");
+  session_->kill_child("engine");
+  expect_silence(server, now_us(), silence_us);
+  // It comes back as a new run; server, gateway and page have stayed.
+  ASSERT_TRUE(wait_for([&] { return watcher_->frame_session() != engine && watcher_->frames_now() > 20; }));
+  EXPECT_EQ(watcher_->last()->session, server);
+  EXPECT_EQ(session_->pid("haptic_server"), haptic);
+  EXPECT_EQ(session_->pid("gateway"), gateway);
+  ASSERT_TRUE(wait_for([&] { return page.frames(watcher_->frame_session()).size() > 20; }));
+  EXPECT_EQ(page.connections(), 1);
+  EXPECT_TRUE(watcher_->press(0.1)) << "no force after the engine came back: " << watcher_->force();
+}
+
+TEST_F(Play, HapticServerKilled) {
+  ASSERT_TRUE(watcher_->press(0.1)) << watcher_->force();
+  const std::int64_t engine = watcher_->frame_session(), server = watcher_->last()->session;
+  session_->kill_child("haptic_server");
+  const std::size_t frames = watcher_->frames(engine);
+  ASSERT_TRUE(wait_for([&] { return watcher_->last()->session != server; }));
+  ASSERT_TRUE(wait_for([&] { return watcher_->frames(engine) > frames + 60; }));
+  EXPECT_EQ(watcher_->frame_session(), engine);  // the engine went on
+  EXPECT_EQ(session_->count("engine started"), 1);
+  EXPECT_TRUE(watcher_->press(0.1)) << "no force after the server came back: " << watcher_->force();
+}
+
+TEST_F(Play, GatewayKilled) {
+  const Page page(*session_);
+  ASSERT_TRUE(wait_for([&] { return page.frames(watcher_->frame_session()).size() > 20; }));
+  const std::int64_t engine = watcher_->frame_session(), server = watcher_->last()->session;
+  const int port = session_->port();
+  session_->kill_child("gateway");
+  ASSERT_TRUE(wait_for([&] { return page.connections() == 2; }));  // back at the same address
+  const std::size_t before = page.frames(engine).size();
+  ASSERT_TRUE(wait_for([&] { return page.frames(engine).size() > before + 20; }));
+  EXPECT_EQ(session_->port(), port);
+  EXPECT_EQ(watcher_->frame_session(), engine);
+  EXPECT_EQ(watcher_->last()->session, server);
+}
+
+TEST_F(Play, AllKilledTogether) {
+  const Page page(*session_);
+  ASSERT_TRUE(watcher_->press(0.1)) << watcher_->force();
+  const std::int64_t engine = watcher_->frame_session(), server = watcher_->last()->session;
+  for (const char* name : {"engine", "haptic_server", "gateway"}) session_->kill_child(name);
+  ASSERT_TRUE(wait_for([&] { return watcher_->last()->session != server; }));
+  ASSERT_TRUE(wait_for([&] { return watcher_->frame_session() != engine && watcher_->frames_now() > 20; }));
+  ASSERT_TRUE(wait_for([&] { return page.frames(watcher_->frame_session()).size() > 20; }));
+  EXPECT_TRUE(watcher_->press(0.1)) << "no force after all came back: " << watcher_->force();
+}
+
+TEST_F(Play, EngineAndServerKilledOneAfterTheOther) {
+  for (const char* name : {"engine", "haptic_server", "engine"}) {
+    const int starts = session_->count(std::string(name) + " started");
+    const std::int64_t engine = watcher_->frame_session();
+    session_->kill_child(name);
+    ASSERT_TRUE(wait_for([&] { return session_->count(std::string(name) + " started") > starts; }));
+    if (std::string(name) == "engine") {
+      ASSERT_TRUE(wait_for([&] { return watcher_->frame_session() != engine; }));
+    }
+    const std::size_t frames = watcher_->frames_now();
+    ASSERT_TRUE(wait_for([&] { return watcher_->frames_now() > frames + 20; }));
+  }
+  EXPECT_TRUE(watcher_->press(0.1)) << watcher_->force();
+}
+
+TEST_F(Play, AWatchingPageGetsEveryFrame) {
+  const Page page(*session_), second(*session_);
+  const std::int64_t engine = watcher_->frame_session();
+  ASSERT_TRUE(wait_for([&] { return page.frames(engine).size() > 600 && second.frames(engine).size() > 600; }));
+  for (const Page* p : {&page, &second}) {
+    const auto frames = p->frames(engine);
+    const double sent = double(*frames.rbegin() - *frames.begin() + 1);
+    EXPECT_GE(double(frames.size()), 0.95 * sent);
+  }
+}
+
+TEST_F(Play, GarbageOnEveryChannelChangesNothing) {
+  // What really goes over the bus, to be damaged.
+  std::map<std::string, Buffer> real;
+  std::mutex mutex;
+  {
+    LcmBus listen(session_->url());
+    for (const auto name : {channel::haptic_problem, channel::device_state, channel::haptic_status, channel::render_frame, channel::scene_info})
+      listen.subscribe(name, [&real, name](Bytes b) { real[std::string(name)].assign(b.begin(), b.end()); });
+    ASSERT_TRUE(wait_for([&] {
+      listen.poll(20);
+      return real.size() == 5;
+    }));
+  }
+  insula_lcm::hand_input_t input{};
+  input.q[0] = 1;
+  ASSERT_TRUE(encode(input, real["HAND_INPUT"]));
+  insula_lcm::user_command_t command{};
+  command.command = "frobnicate";
+  ASSERT_TRUE(encode(command, real["USER_COMMAND"]));
+  real["SIM_EVENT"] = real["SCENE_INFO"];
+  const Page page(*session_);
+  ASSERT_TRUE(wait_for([&] { return page.frames(watcher_->frame_session()).size() > 20; }));
+  const std::int64_t engine = watcher_->frame_session(), server = watcher_->last()->session;
+
+  std::mt19937 random(99);
+  LcmBus evil(session_->url());
+  for (int round = 0; round < 150; ++round) {
+    for (const auto& [name, bytes] : real) {
+      Buffer noise(1 + random() % 2000);
+      for (auto& b : noise) b = std::uint8_t(random());
+      evil.publish(name, noise);
+      Buffer cut = bytes;
+      cut.resize(random() % cut.size());
+      evil.publish(name, cut);
+      Buffer nan = bytes;  // NaN somewhere among the doubles; a text or a count is broken by it too
+      for (int i = 0; i < 4 && nan.size() > 40; ++i) {
+        const std::size_t at = 32 + random() % (nan.size() - 40);
+        static constexpr std::uint8_t quiet[8] = {0x7f, 0xf8};
+        std::copy(quiet, quiet + 8, nan.begin() + std::ptrdiff_t(at));
+      }
+      if (name != "SCENE_INFO" && name != "RENDER_FRAME" && name != "DEVICE_STATE") evil.publish(name, nan);
+    }
+    std::this_thread::sleep_for(10ms);
+  }
+  const std::size_t frames = watcher_->frames(engine), seen = page.frames(engine).size();
+  ASSERT_TRUE(wait_for([&] { return watcher_->frames(engine) > frames + 60 && page.frames(engine).size() > seen + 60; }));
+  EXPECT_EQ(watcher_->frame_session(), engine);
+  EXPECT_EQ(watcher_->last()->session, server);
+  EXPECT_EQ(page.connections(), 1);
+  for (const char* name : {"engine", "haptic_server", "gateway"})
+    EXPECT_EQ(session_->count(std::string(name) + " started"), 1) << name;
+  EXPECT_TRUE(wait_for([&] { return watcher_->status().messages_refused >= 100; }));
+}
+
+TEST_F(Play, InterruptEndsAllProcesses) {
+  std::vector<pid_t> pids;
+  for (const char* name : {"engine", "haptic_server", "gateway"}) pids.push_back(session_->pid(name));
+  const ChildExit exit = session_->end();
+  EXPECT_EQ(exit.status, 0) << exit.text();
+  for (const pid_t p : pids) EXPECT_NE(::kill(p, 0), 0) << p;
+  // All ended when asked: nobody had to be killed, so each said its last word or none.
+  EXPECT_EQ(session_->count("insula: ended"), 1);
+}
+
+TEST_F(Play, NothingIsLeftWhenTheSupervisorIsKilled) {
+  std::vector<pid_t> pids;
+  for (const char* name : {"engine", "haptic_server", "gateway"}) pids.push_back(session_->pid(name));
+  ::kill(session_->supervisor(), SIGKILL);
+  EXPECT_TRUE(session_->ended().has_value());
+  const auto gone = [](pid_t p) {
+    if (::kill(p, 0) != 0) return true;
+    std::ifstream stat("/proc/" + std::to_string(p) + "/stat");
+    const std::string text((std::istreambuf_iterator<char>(stat)), {});
+    return text.find(") Z ") != std::string::npos;
+  };
+  for (const pid_t p : pids) EXPECT_TRUE(wait_for([&] { return gone(p); })) << p;
+}
+
+TEST(PlayErrors, ASceneWithErrorsStartsNothing) {
+  if (!multicast_works()) GTEST_SKIP() << "no multicast on this machine";
+  PlaySession session;
+  std::ofstream(session.folder() / "press.xml") << "<scene titel=\"x\"/>\n";
+  ASSERT_EQ(session.start(), "");
+  const auto exit = session.ended();
+  ASSERT_TRUE(exit);
+  EXPECT_EQ(exit->status, 2);
+  session.end();
+  EXPECT_EQ(session.count("started (pid"), 0);
+  EXPECT_EQ(session.count("did you mean \"title\"?"), 1) << session.log();
+}
+
+TEST(PlayErrors, DurationEndsTheSession) {
+  if (!multicast_works()) GTEST_SKIP() << "no multicast on this machine";
+  PlaySession session;
+  ASSERT_EQ(session.start({"--duration", "2"}), "");
+  const auto exit = session.ended();
+  ASSERT_TRUE(exit);
+  EXPECT_EQ(exit->status, 0);
+}
+
+}  // namespace
+}  // namespace insula
