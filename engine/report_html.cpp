@@ -118,7 +118,7 @@ std::string plots(const RunRecorder& recorder) {
   out += svg({"Rows, contacts and sweeps", "time (s)", "count", s.time_s, {{"rows", "#1f6fb2", s.rows, ""}, {"contacts", "#15803d", s.contacts, ""}, {"sweeps", "#9333ea", s.sweeps, "4 3"}}, {}, false});
   out += svg({"Residual of the solver", "time (s)", "residual (N)", s.time_s, {{"residual", "#4b5563", s.residual_N, ""}}, {}, true});
   out += "<h2>Time of a step</h2>\n";
-  static constexpr const char* colours[] = {"#1f6fb2", "#15803d", "#b45309", "#c2410c", "#9333ea", "#6b7280"};
+  static constexpr const char* colours[] = {"#1f6fb2", "#15803d", "#d4a017", "#dc2626", "#9333ea", "#9ca3af"};
   std::vector<PlotCurve> curves;
   for (std::size_t k = 0; k < stage_count; ++k) {
     std::string name = stage_names()[k];

@@ -19,6 +19,7 @@ struct Axis {
   double low = 0, high = 1, from = 0, to = 1;
   bool log = false;
   double map(double v) const {
+    v = std::clamp(v, low, high);
     const double a = log ? std::log10(v) : v, l = log ? std::log10(low) : low, h = log ? std::log10(high) : high;
     return from + (a - l) / (h - l) * (to - from);
   }
@@ -36,7 +37,8 @@ Axis y_axis(const Plot& plot) {
     return axis;
   }
   if (plot.log_y) {
-    axis.low = std::pow(10, std::floor(std::log10(low)));
+    // Eight decades at most: what lies below is drawn at the foot.
+    axis.low = std::pow(10, std::floor(std::log10(std::max(low, 1e-8 * high))));
     axis.high = std::pow(10, std::ceil(std::log10(high)));
     if (axis.high <= axis.low) axis.high = 10 * axis.low;
   } else {
@@ -58,7 +60,7 @@ std::vector<double> ticks_of(const Axis& axis, int count) {
   return out;
 }
 
-std::string number(double v) { return fmt::format("{:.4g}", std::abs(v) < 1e-15 ? 0.0 : v); }
+std::string number(double v) { return fmt::format("{:.4g}", v == 0 ? 0.0 : v); }
 
 void text(std::string& to, double x, double y, const char* anchor, const char* style, const std::string& content) {
   to += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\" {}>{}</text>\n", x, y, anchor, style, escaped(content));
@@ -94,7 +96,7 @@ std::vector<double> nice_ticks(double low, double high, int count) {
   const double step = power * (ratio <= 1 ? 1 : ratio <= 2 ? 2 : ratio <= 5 ? 5 : 10);
   std::vector<double> out;
   const double first = std::floor(low / step + 1e-9), last = std::ceil(high / step - 1e-9);
-  for (double k = first; k <= last; ++k) out.push_back(k * step);
+  for (double k = first; k <= last; ++k) out.push_back(k == 0 ? 0.0 : k * step);
   return out;
 }
 

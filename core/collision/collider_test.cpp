@@ -190,7 +190,7 @@ TEST(ToolCollider, TwoTools) {
 
 TEST(RoundedPiece, ABladeKeepsItsSize) {
   const RoundedPiece r = rounded(blade()[0]);
-  EXPECT_NEAR(r.radius, 1e-4, 1e-12);
+  EXPECT_NEAR(r.radius, 0.45 * 4e-4, 1e-12);
   double x = 0, y = 0, z = 0;
   for (const Vec3& p : r.core) {
     x = std::max(x, std::abs(p.x()) + r.radius);

@@ -8,7 +8,7 @@
 namespace insula {
 
 RoundedPiece rounded(const ConvexPiece& piece) {
-  constexpr double rounding = 1e-4;
+  constexpr double rounding = 2e-4;
   RoundedPiece r;
   r.core = piece.points;
   r.radius = piece.radius;
@@ -35,7 +35,7 @@ RoundedPiece rounded(const ConvexPiece& piece) {
   }
   if (r.radius < rounding) {
     const Vec3 size = high - low;
-    const double s = std::min(rounding - r.radius, 0.25 * size.minCoeff());
+    const double s = std::min(rounding - r.radius, 0.45 * size.minCoeff());
     if (s > 0) {
       const Vec3 middle = 0.5 * (low + high);
       for (Vec3& p : r.core) {

@@ -38,6 +38,35 @@ Narrow closest(std::span<const Vec3> core, const std::array<Vec3, 3>& tri) {
   return r;
 }
 
+struct Exit {
+  bool behind = false;
+  int triangle = -1;
+  double distance = 0;
+  Vec3 bary, point, normal;
+};
+
+// The surface point nearest to p, no farther than `limit`, at time t.
+Exit nearest_exit(const CollisionMesh& mesh, const Vec3& p, double t, double limit) {
+  Exit e;
+  double bound2 = limit * limit * (1 + 1e-9);
+  mesh.tree().nearest(p, bound2, [&](int tri, double& least2) {
+    const auto& v = mesh.triangle(tri);
+    const ClosestPair q = point_triangle(p, mesh.vertex(v[0], t), mesh.vertex(v[1], t), mesh.vertex(v[2], t));
+    if (q.distance2 > least2 || (q.distance2 == least2 && e.triangle >= 0 && tri > e.triangle)) return;
+    least2 = q.distance2;
+    e.triangle = tri;
+    e.bary = q.bary;
+    e.point = q.c;
+  });
+  if (e.triangle < 0) return e;
+  const Vec3 outward = mesh.pseudo_normal(e.triangle, feature_of(e.bary), t);
+  const Vec3 d = e.point - p;
+  e.distance = d.norm();
+  e.behind = d.dot(outward) > 0;
+  e.normal = e.distance > 1e-9 ? Vec3(d / e.distance) : outward;
+  return e;
+}
+
 bool above(const Vec3& q, const std::array<Vec3, 3>& t, const Vec3& n, Vec3& bary) {
   const Vec3 w(n.dot((t[2] - t[1]).cross(q - t[1])), n.dot((t[0] - t[2]).cross(q - t[2])),
                n.dot((t[1] - t[0]).cross(q - t[0])));
@@ -134,7 +163,7 @@ void ToolCollider::evaluate(const CollisionMesh& mesh, const Placed& at, const T
       // The core goes through this triangle: out along its normal, as deep as the core reaches.
       double deepest = 0;
       for (const Vec3& q : core) deepest = std::max(deepest, face.dot(tri[0] - q));
-      emit(n.bary, n.c, face, -at.radius - deepest);
+      emit(n.bary, n.c, face, -at.radius - std::min(deepest, settings.max_recovery));
       continue;
     }
     const Vec3 d = (n.p - n.c) / n.distance;
@@ -142,7 +171,15 @@ void ToolCollider::evaluate(const CollisionMesh& mesh, const Placed& at, const T
     if (mesh.locally_closest(k.triangle, f, d, t, 1e-6)) {
       const bool outside = d.dot(mesh.pseudo_normal(k.triangle, f, t)) >= 0;
       if (outside && clear <= settings.alarm) emit(n.bary, n.c, d, clear);
-      if (!outside && n.distance <= settings.max_depth) emit(n.bary, n.c, -d, -n.distance - at.radius);
+      // Behind this triangle, but perhaps before another one: only the nearest of all tells, and it is the way out.
+      if (!outside && n.distance <= settings.max_depth) {
+        const Exit e = nearest_exit(mesh, n.p, t, n.distance);
+        if (e.behind) {
+          x.triangle = e.triangle;
+          emit(e.bary, e.point, e.normal, -e.distance - at.radius);
+          x.triangle = k.triangle;
+        }
+      }
     }
     if (at.count < 2 || clear > settings.alarm) continue;
     for (int i = 0; i < at.count; ++i) {
@@ -226,7 +263,7 @@ void ToolCollider::detect(const CollisionMesh& mesh, const Pose& start, const Po
       if (t == 0) {
         drop_wrong_exits(found_, 0);
         for (Proximity& x : found_) {
-          if (x.gap < -0.5 * piece.radius) deep_[std::size_t(index)] = 1;
+          if (x.gap < -0.9 * piece.radius) deep_[std::size_t(index)] = 1;
           out.push_back(x);
         }
       }

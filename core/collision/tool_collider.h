@@ -30,7 +30,7 @@ struct ToolContactSettings {
 };
 
 /// A piece as used for collision: core of at most 24 points and a radius that is never 0 (flat blades are shrunk by a
-/// tenth of a millimetre or a quarter of their least extent and rounded by as much, so that resting contact keeps the
+/// fifth of a millimetre or 0.45 of their least extent and rounded by as much, so that resting contact keeps the
 /// core clear of the surface and normals well defined).
 struct RoundedPiece {
   std::vector<Vec3> core;  ///< tool frame
