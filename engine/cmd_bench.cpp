@@ -4,31 +4,19 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/base/input_error.h"
 #include "core/linalg/kernels.h"
 #include "core/mechanics/soft_body.h"
 #include "engine/headless.h"
-#include "engine/live_engine.h"
 #include "engine/report_writer.h"
 #include "engine/run.h"
 
 namespace insula {
 
 int cmd_bench(const CommandContext& context, const BenchOptions& options) {
-  SimulationResult loaded = load_simulation(options.scene, context.registry, options.threads);
-  context.err << loaded.diagnostics.format();
-  if (!loaded.simulation) return 2;
-  Simulation& simulation = *loaded.simulation;
-  Motion motion;
-  try {
-    const auto file = find_motion(simulation, options.motion);
-    if (!file.empty()) motion = load_motion(file);
-  } catch (const InputError& e) {
-    if (options.motion != "steady") {
-      fmt::print(context.err, "{}: error: {}\n", options.scene.string(), e.what());
-      return 2;
-    }
-  }
+  const OpenedRun opened = open_run(context, options.scene, options.motion, options.motion == "steady", options.threads);
+  if (!opened.simulation) return 2;
+  Simulation& simulation = *opened.simulation;
+  const Motion& motion = opened.motion;
   HeadlessRun run(simulation, motion);
   const auto warm_up = std::max<std::int64_t>(5, std::int64_t(options.from / simulation.h()));
   for (std::int64_t k = 0; k < warm_up; ++k) run.step();

@@ -5,10 +5,8 @@
 #include <cmath>
 #include <fstream>
 
-#include "core/base/input_error.h"
 #include "core/mechanics/soft_body.h"
 #include "engine/headless.h"
-#include "engine/live_engine.h"
 #include "engine/report_writer.h"
 #include "engine/run.h"
 
@@ -32,18 +30,10 @@ void export_bodies(const Simulation& simulation, const std::filesystem::path& fo
 }  // namespace
 
 int cmd_run(const CommandContext& context, const RunOptions& options) {
-  SimulationResult loaded = load_simulation(options.scene, context.registry, options.threads);
-  context.err << loaded.diagnostics.format();
-  if (!loaded.simulation) return 2;
-  Simulation& simulation = *loaded.simulation;
-  Motion motion;
-  try {
-    const auto file = find_motion(simulation, options.motion);
-    if (!file.empty()) motion = load_motion(file);
-  } catch (const InputError& e) {
-    fmt::print(context.err, "{}: error: {}\n", options.scene.string(), e.what());
-    return 2;
-  }
+  const OpenedRun opened = open_run(context, options.scene, options.motion, false, options.threads);
+  if (!opened.simulation) return 2;
+  Simulation& simulation = *opened.simulation;
+  const Motion& motion = opened.motion;
   const double duration = options.duration > 0 ? options.duration : motion.empty() ? 10.0 : motion.duration() + 1.0;
   const auto steps = std::int64_t(std::ceil(duration / simulation.h() - 1e-9));
 

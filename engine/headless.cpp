@@ -4,8 +4,11 @@
 
 #include <chrono>
 #include <cmath>
+#include <ostream>
 
+#include "core/base/input_error.h"
 #include "engine/condense.h"
+#include "engine/live_engine.h"
 
 namespace insula {
 namespace {
@@ -38,6 +41,24 @@ void HeadlessRun::step() {
 void HeadlessRun::reset() {
   simulation_.reset();
   haptics_.reset();
+}
+
+OpenedRun open_run(const CommandContext& context, const std::filesystem::path& scene, const std::string& motion, bool optional, int threads) {
+  OpenedRun out;
+  SimulationResult loaded = load_simulation(scene, context.registry, threads);
+  context.err << loaded.diagnostics.format();
+  if (!loaded.simulation) return out;
+  try {
+    const auto file = find_motion(*loaded.simulation, motion);
+    if (!file.empty()) out.motion = load_motion(file);
+  } catch (const InputError& e) {
+    if (!optional) {
+      context.err << scene.string() << ": error: " << e.what() << '\n';
+      return out;
+    }
+  }
+  out.simulation = std::move(loaded.simulation);
+  return out;
 }
 
 }  // namespace insula

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "core/sim/simulation.h"
+#include "engine/commands.h"
 #include "haptic_server/in_process.h"
 
 namespace insula {
@@ -27,5 +28,13 @@ class HeadlessRun {
   double haptic_ms_ = 0;
   ConstraintProblem condensed_;
 };
+
+/// A scene and a motion of it, ready to run.
+struct OpenedRun {
+  std::unique_ptr<Simulation> simulation;  ///< null when something is wrong; it was said on `err`
+  Motion motion;
+};
+/// Loads a scene and the motion named by id or file (see find_motion). `optional`: an id the scene lacks means no motion.
+OpenedRun open_run(const CommandContext& context, const std::filesystem::path& scene, const std::string& motion, bool optional, int threads);
 
 }  // namespace insula

@@ -8,10 +8,17 @@ Hooke's law. With F the deformation gradient, F = R S (polar), e = S - I:
     energy density   mu |e|^2 + lambda/2 tr(e)^2
     P = R (2 mu e + lambda tr(e) I),   force on node i = -V P b_i,   b_i the rest gradient of its shape function
 
-which is the exact gradient of the energy. Its exact derivative adds to the rotated Hooke stiffness a term on the
-spin of the element; it is part of `tangent="exact"` with negative eigenvalues set to zero, and left out otherwise.
+which is the exact gradient of the energy. Hooke's law lets an element be crushed flat, and through itself, by a few times
+E; soft tissue stiffens long before. So a principal stretch s below `least_stretch` s0 costs in addition
 
-Sources: Felippa, Haugen 2005 (co-rotational formulation); Mueller, Gross 2004; Dequidt et al. 2015, section 3.1.
+    energy density   stiffening E / 2 (s0 - s)^2           (s < s0; nothing above)
+
+which keeps elements under a tool's tip from inverting and leaves the law as it is elsewhere. Hooke's exact derivative adds
+to the rotated stiffness a term on the spin of the element; it is part of `tangent="exact"` with negative eigenvalues set to
+zero, and left out otherwise.
+
+Sources: Felippa, Haugen 2005 (co-rotational formulation); Mueller, Gross 2004; Dequidt et al. 2015, section 3.1; Smith,
+de Goes, Kim 2019 (Hessian of energies of the principal stretches).
 */
 #include <Eigen/Eigenvalues>
 #include <cmath>
@@ -32,6 +39,9 @@ class CorotationalFem final : public ForceModel {
   Param<Duration> rayleigh_stiffness{this, {.name = "rayleigh_stiffness", .fallback = "20 ms", .min = "0 s", .max = "1 s", .doc = "Rayleigh damping in proportion to stiffness"}};
   Param<Choice> tangent{this, {.name = "tangent", .fallback = "rotated", .choices = {"rotated", "exact"}, .doc = "stiffness used in a step: rotated Hooke, or with the element's spin as well"}};
 
+  Param<Scalar> least_stretch{this, {.name = "least_stretch", .fallback = "0.4", .min = "0", .max = "0.9", .doc = "principal stretch below which an element stiffens; 0: only once it is inverted"}};
+  Param<Scalar> stiffening{this, {.name = "stiffening", .fallback = "30", .min = "0", .max = "1000", .doc = "stiffness below that stretch, in Young's moduli; 0: none"}};
+
   void attach(PrepareContext& context, SoftBody& body) override;
   void couplings(std::vector<std::pair<int, int>>& pairs) const override;
   void bind(const BlockMatrix& a, const std::vector<int>& free_of_node) override;
@@ -50,6 +60,8 @@ class CorotationalFem final : public ForceModel {
     double b[4][3];        // rest gradients of the shape functions, 1/m
   };
   Mat3 gradient(const Element& e, const double* x) const;
+  bool crushed(const Mat3& strain) const;
+  void stiffen(const Element& e, const Mat3& r, const Mat3& s, double* force, BlockMatrix* stiffness, double scale, bool project) const;
   void spin_stiffness(const Element& e, const Mat3& r, const Mat3& s, double mu, double lambda, bool project, Mat3& out) const;
 
   std::vector<Element> elements_;
@@ -143,6 +155,65 @@ void CorotationalFem::spin_stiffness(const Element&, const Mat3& r, const Mat3& 
   out = v * g.asDiagonal() * v.transpose();
 }
 
+// No principal stretch is less than 1 - |e|: spares nearly every element the eigenvalues.
+bool CorotationalFem::crushed(const Mat3& strain) const {
+  const double far = 1 - least_stretch();
+  return stiffening() > 0 && strain.squaredNorm() > far * far;
+}
+
+// Energy sum of f(s_i) over the principal stretches, F = U diag(s) V^T with U = R Q, V = Q, S = Q diag(s) Q^T. In that
+// basis the Hessian is diagonal: stretches f'', shears (f'_i - f'_j)/(s_i - s_j), spins (f'_i + f'_j)/(s_i + s_j)
+// (Smith, de Goes, Kim 2019, "Analytic eigensystems for isotropic distortion energies").
+void CorotationalFem::stiffen(const Element& e, const Mat3& r, const Mat3& s, double* force, BlockMatrix* stiffness, double scale,
+                              bool project) const {
+  Eigen::SelfAdjointEigenSolver<Mat3> eigen;
+  eigen.computeDirect(s);
+  const Vec3 stretch = eigen.eigenvalues();
+  if (stretch[0] >= least_stretch()) return;
+  const Mat3 v = eigen.eigenvectors(), u = r * v;
+  const double k = stiffening() * young();
+  Vec3 slope, curve;
+  for (int i = 0; i < 3; ++i) {
+    slope[i] = std::min(0.0, k * (stretch[i] - least_stretch()));
+    curve[i] = slope[i] < 0 ? k : 0;
+  }
+  Vec3 b[4];  // rest gradients in the principal frame
+  for (int n = 0; n < 4; ++n) {
+    b[n] = v.transpose() * Vec3(e.b[n][0], e.b[n][1], e.b[n][2]);
+    Eigen::Map<Vec3> f(force + 3 * e.node[n]);
+    f -= e.volume * (u * slope.cwiseProduct(b[n]));
+  }
+  if (!stiffness) return;
+  double shear[3][3], spin[3][3];
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < i; ++j) {
+      const double apart = stretch[i] - stretch[j], sum = stretch[i] + stretch[j];
+      shear[i][j] = std::abs(apart) > 1e-9 ? (slope[i] - slope[j]) / apart : 0.5 * (curve[i] + curve[j]);
+      spin[i][j] = std::abs(sum) > 1e-9 ? (slope[i] + slope[j]) / sum : 0;
+      if (project) spin[i][j] = std::max(0.0, spin[i][j]);
+      shear[j][i] = shear[i][j];
+      spin[j][i] = spin[i][j];
+    }
+  for (int n = 0, slot = 0; n < 4; ++n)
+    for (int m = 0; m <= n; ++m, ++slot) {
+      if (e.slot[slot] < 0) continue;
+      const Vec3& row = e.transpose[slot] ? b[m] : b[n];
+      const Vec3& column = e.transpose[slot] ? b[n] : b[m];
+      Mat3 h;
+      for (int i = 0; i < 3; ++i) {
+        h(i, i) = curve[i] * row[i] * column[i];
+        for (int j = 0; j < 3; ++j) {
+          if (i == j) continue;
+          h(i, i) += 0.5 * (shear[i][j] + spin[i][j]) * row[j] * column[j];
+          h(i, j) = 0.5 * (shear[i][j] - spin[i][j]) * row[j] * column[i];
+        }
+      }
+      const Mat3 turned = scale * e.volume * (u * h * u.transpose());
+      double* out = stiffness->block(e.slot[slot]);
+      for (int c = 0; c < 9; ++c) out[c] += turned.data()[c];
+    }
+}
+
 void CorotationalFem::linearise(const double* x, double* force, BlockMatrix* stiffness, double h, Tangent which) {
   const double mu = young() / (2 * (1 + poisson()));
   const double lambda = young() * poisson() / ((1 + poisson()) * (1 - 2 * poisson()));
@@ -168,6 +239,7 @@ void CorotationalFem::linearise(const double* x, double* force, BlockMatrix* sti
         g[k][c] = r(c, 0) * b[0] + r(c, 1) * b[1] + r(c, 2) * b[2];
       }
     }
+    if (crushed(strain)) stiffen(e, r, s, force, stiffness, scale, which == Tangent::system);
     if (!stiffness) continue;
     const double wm = scale * e.volume * mu, wl = scale * e.volume * lambda;
     Mat3 spin_g;
@@ -210,6 +282,13 @@ double CorotationalFem::energy(const double* x) {
     strain.diagonal().array() -= 1;
     const double trace = strain.trace();
     sum += e.volume * (mu * strain.squaredNorm() + 0.5 * lambda * trace * trace);
+    if (!crushed(strain)) continue;
+    Eigen::SelfAdjointEigenSolver<Mat3> eigen;
+    eigen.computeDirect(strain, Eigen::EigenvaluesOnly);
+    for (int i = 0; i < 3; ++i) {
+      const double short_of = std::max(0.0, least_stretch() - 1 - eigen.eigenvalues()[i]);
+      sum += e.volume * 0.5 * stiffening() * young() * short_of * short_of;
+    }
   }
   return sum;
 }

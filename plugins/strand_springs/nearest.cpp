@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Neighbour grid, normals and segments.
+// Neighbour grid and normals.
 #include "plugins/strand_springs/nearest.h"
 
 #include <algorithm>
@@ -59,34 +59,6 @@ std::vector<Vec3> vertex_normals(const TriMesh& mesh) {
   for (Vec3& v : n)
     if (v.norm() > 0) v.normalize();
   return n;
-}
-
-void closest_on_segments(const Vec3& a0, const Vec3& a1, const Vec3& b0, const Vec3& b1, double& s, double& t) {
-  const Vec3 d1 = a1 - a0, d2 = b1 - b0, r = a0 - b0;
-  const double a = d1.squaredNorm(), e = d2.squaredNorm(), f = d2.dot(r), tiny = 1e-18;
-  if (a <= tiny && e <= tiny) {
-    s = t = 0;
-  } else if (a <= tiny) {
-    s = 0;
-    t = std::clamp(f / e, 0.0, 1.0);
-  } else {
-    const double c = d1.dot(r);
-    if (e <= tiny) {
-      t = 0;
-      s = std::clamp(-c / a, 0.0, 1.0);
-    } else {
-      const double b = d1.dot(d2), denominator = a * e - b * b;
-      s = denominator > 1e-12 * a * e ? std::clamp((b * f - c * e) / denominator, 0.0, 1.0) : 0.0;
-      t = (b * s + f) / e;
-      if (t < 0) {
-        t = 0;
-        s = std::clamp(-c / a, 0.0, 1.0);
-      } else if (t > 1) {
-        t = 1;
-        s = std::clamp((b - c) / a, 0.0, 1.0);
-      }
-    }
-  }
 }
 
 }  // namespace insula

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Small geometry for strands: vertices in reach, normals, closest points of two segments.
+// Small geometry for strands: vertices in reach and normals.
 #pragma once
 #include <vector>
 
@@ -24,8 +24,5 @@ class NearestVertices {
 
 /// Area-weighted unit normals.
 std::vector<Vec3> vertex_normals(const TriMesh& mesh);
-
-/// Parameters in [0, 1] of the closest points of segments a0a1 and b0b1 (Ericson, Real-Time Collision Detection, 5.1.9).
-void closest_on_segments(const Vec3& a0, const Vec3& a1, const Vec3& b0, const Vec3& b1, double& s, double& t);
 
 }  // namespace insula

@@ -21,6 +21,7 @@ Source: Dequidt et al. 2015, section 3.3 (springs between lobes as constraints);
 #include <cmath>
 
 #include "core/base/random.h"
+#include "core/collision/closest.h"
 #include "core/registry/registry.h"
 #include "plugins/strand_springs/nearest.h"
 
@@ -111,7 +112,7 @@ void StrandSprings::detect(const StepContext& context) {
       for (const auto& edge : tool->tool().blade_edges) {
         const Vec3 e0 = tool->pose().apply(edge[0]), e1 = tool->pose().apply(edge[1]);
         double u, w;
-        closest_on_segments(pa, pb, e0, e1, u, w);
+        closest_segments(pa, pb, e0, e1, u, w);
         const Vec3 on_strand = pa + u * (pb - pa), on_edge = e0 + w * (e1 - e0);
         const double distance = (on_strand - on_edge).norm();
         if (distance > best) continue;

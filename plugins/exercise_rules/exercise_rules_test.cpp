@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Each rule against step reports made by hand: what counts, what is forgiven, what is counted once.
+#include <gtest/gtest.h>
+
+#include "core/testing/example.h"
+
+namespace insula {
+namespace {
+
+const std::filesystem::path example = std::filesystem::path(INSULA_SOURCE_DIR) / "plugins/exercise_rules/example.xml";
+
+/// The example scene; its exercise is shown reports instead of steps.
+class Rules : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    s = test::load(example);
+    ASSERT_TRUE(s && s->exercise());
+    knife = s->scene().find_as<Instrument>("knife");
+    lower = s->scene().find_as<SoftBody>("lower");
+    upper = s->scene().find_as<SoftBody>("upper");
+    ASSERT_TRUE(knife && lower && upper);
+    report.h = 0.05;
+  }
+  void show() {
+    report.time += report.h;
+    s->exercise()->log().events.clear();
+    s->exercise()->observe(report);
+  }
+  const GoalState& goal(const std::string& id) {
+    for (const GoalState& g : s->exercise()->log().goals())
+      if (g.id == id) return g;
+    throw std::runtime_error("no goal " + id);
+  }
+  int faults(const std::string& id) {
+    for (const FaultState& f : s->exercise()->log().faults())
+      if (f.id == id) return f.count;
+    throw std::runtime_error("no fault " + id);
+  }
+  int all_faults() { return faults("force") + faults("torn") + faults("order"); }
+  /// The knife and a body push each other with this force on the body.
+  ContactPoint press(const Body* body, double newtons, bool knife_first = true) {
+    ContactPoint c;
+    c.a = knife_first ? static_cast<const Body*>(knife) : body;
+    c.b = knife_first ? body : static_cast<const Body*>(knife);
+    c.normal = Vec3::UnitZ();
+    c.normal_force = newtons;
+    return c;
+  }
+  /// Strands along x, the first nearest to the surface (inward is -x), 3 mm apart.
+  void strands(int n) {
+    report.strands.clear();
+    for (int i = 0; i < n; ++i) {
+      StrandState t;
+      t.a = Vec3(-0.003 * i, 0, 0);
+      t.b = Vec3(-0.003 * i, 0, 0.002);
+      report.strands.push_back(t);
+    }
+    report.strands_total = report.strands_left = n;
+  }
+  void part(std::initializer_list<int> which) {
+    for (int i : which) {
+      report.strands[std::size_t(i)].health = -1;
+      --report.strands_left;
+    }
+  }
+
+  std::unique_ptr<Simulation> s;
+  Instrument* knife = nullptr;
+  SoftBody *lower = nullptr, *upper = nullptr;
+  StepReport report;
+};
+
+TEST_F(Rules, StrandsGoalWantsItsFraction) {
+  strands(4);
+  show();
+  EXPECT_FALSE(goal("divide").done);
+  part({0});
+  show();
+  EXPECT_FALSE(goal("divide").done) << "a quarter is not half";
+  part({1});
+  show();
+  EXPECT_TRUE(goal("divide").done);
+  EXPECT_DOUBLE_EQ(goal("divide").time, report.time);
+  EXPECT_EQ(s->exercise()->log().state(), ExerciseState::running) << "the other goal is still open";
+}
+
+TEST_F(Rules, NoStrandsIsNoGoal) {
+  show();
+  EXPECT_FALSE(goal("divide").done);
+}
+
+TEST_F(Rules, OpeningMustBeHeldWithoutABreak) {
+  const VecX rest = upper->q();
+  const auto lift = [&](double metres) {
+    upper->q() = rest;
+    for (int i = 0; i < upper->nodes(); ++i) upper->q()[3 * i + 2] += metres;
+  };
+  lift(0.0038);  // 5.8 mm
+  for (int i = 0; i < 10; ++i) show();
+  EXPECT_FALSE(goal("open").done) << "too narrow";
+  lift(0.0042);  // 6.2 mm
+  for (int i = 0; i < 3; ++i) show();
+  EXPECT_FALSE(goal("open").done) << "0.15 s of 0.2 s";
+  lift(0);
+  show();
+  lift(0.0042);
+  for (int i = 0; i < 3; ++i) show();
+  EXPECT_FALSE(goal("open").done) << "the time counts afresh after a break";
+  for (int i = 0; i < 2; ++i) show();
+  EXPECT_TRUE(goal("open").done);
+}
+
+TEST_F(Rules, ForceCountsAfterTheGraceAndOncePerPush) {
+  report.contacts = {press(lower, 0.29)};
+  for (int i = 0; i < 20; ++i) show();
+  EXPECT_EQ(faults("force"), 0) << "below the limit";
+  report.contacts = {press(lower, 0.31)};
+  for (int i = 0; i < 2; ++i) show();
+  EXPECT_EQ(faults("force"), 0) << "no longer than the grace";
+  show();
+  EXPECT_EQ(faults("force"), 1);
+  ASSERT_EQ(s->exercise()->log().events.events().size(), 1u);
+  EXPECT_NEAR(s->exercise()->log().events.events()[0].value, 0.31, 1e-12);
+  for (int i = 0; i < 20; ++i) show();
+  EXPECT_EQ(faults("force"), 1) << "one push, one fault";
+  report.contacts = {press(lower, 0.28)};  // not below nine tenths: the same push
+  show();
+  report.contacts = {press(lower, 0.31)};
+  for (int i = 0; i < 4; ++i) show();
+  EXPECT_EQ(faults("force"), 1);
+  report.contacts = {press(lower, 0.2)};
+  show();
+  report.contacts = {press(lower, 0.31)};
+  for (int i = 0; i < 4; ++i) show();
+  EXPECT_EQ(faults("force"), 2);
+}
+
+TEST_F(Rules, ForceIsTheSumOfOneToolsContactsOnOneBody) {
+  report.contacts = {press(lower, 0.2), press(upper, 0.2)};
+  for (int i = 0; i < 5; ++i) show();
+  EXPECT_EQ(faults("force"), 0) << "two bodies, each below the limit";
+  report.contacts = {press(lower, 0.2), press(lower, -0.2)};
+  for (int i = 0; i < 5; ++i) show();
+  EXPECT_EQ(faults("force"), 0) << "opposite forces cancel";
+  report.contacts = {press(lower, 0.2), press(lower, -0.2, false)};  // the same force, told from the body's side
+  for (int i = 0; i < 5; ++i) show();
+  EXPECT_EQ(faults("force"), 1);
+  ContactPoint rub = press(upper, 0.25);
+  rub.tangent_force = Vec3(0.25, 0, 0);
+  report.contacts = {rub};
+  for (int i = 0; i < 5; ++i) show();
+  EXPECT_EQ(faults("force"), 2) << "friction counts too";
+  ContactPoint tissue;
+  tissue.a = lower;
+  tissue.b = upper;
+  tissue.normal = Vec3::UnitZ();
+  tissue.normal_force = 5;
+  report.contacts = {tissue};
+  for (int i = 0; i < 5; ++i) show();
+  EXPECT_EQ(faults("force"), 2) << "tissue on tissue is nobody's fault";
+}
+
+TEST_F(Rules, TornStrandsCountAndCutOnesDoNot) {
+  report.events = {{"strand_cut", "strands", "", 0.03, 1}, {"strand_torn", "strands", "", 0.05, 1}, {"strand_torn", "strands", "", 0.06, 1}};
+  show();
+  EXPECT_EQ(faults("torn"), 2);
+  report.events.clear();
+  show();
+  EXPECT_EQ(faults("torn"), 2);
+}
+
+TEST_F(Rules, OrderForgivesNeighboursAndAFewThatStand) {
+  strands(5);  // at 0, 3, 6, 9, 12 mm
+  show();
+  part({1});   // 0 stands before it, but within the margin
+  show();
+  EXPECT_EQ(faults("order"), 0);
+  part({2});   // 0 stands 6 mm nearer to the surface: one is allowed
+  show();
+  EXPECT_EQ(faults("order"), 0);
+  part({4});   // 0 stands, and 3 within the margin
+  show();
+  EXPECT_EQ(faults("order"), 0);
+  show();
+  EXPECT_EQ(all_faults(), 0);
+}
+
+TEST_F(Rules, OrderCountsAStrandPartedInTheDepth) {
+  strands(5);
+  show();
+  part({4});  // 0, 1, 2 stand 12, 9 and 6 mm nearer to the surface
+  show();
+  EXPECT_EQ(faults("order"), 1);
+  show();
+  EXPECT_EQ(faults("order"), 1) << "once a strand";
+  for (StrandState& t : report.strands) t.a.x() = t.b.x() = -t.a.x();  // depth is that of the start
+  part({3});
+  show();
+  EXPECT_EQ(faults("order"), 2);
+}
+
+TEST_F(Rules, TimeLimitEndsTheExercise) {
+  report.time = 59.9;
+  show();
+  EXPECT_EQ(s->exercise()->log().state(), ExerciseState::running);
+  report.time = 60.0;
+  show();
+  EXPECT_EQ(s->exercise()->log().state(), ExerciseState::failed);
+  report.contacts = {press(lower, 1)};
+  for (int i = 0; i < 5; ++i) show();
+  EXPECT_EQ(faults("force"), 0) << "nothing counts after the end";
+}
+
+TEST_F(Rules, AllGoalsReachedIsTheEnd) {
+  strands(2);
+  part({0, 1});
+  for (int i = 0; i < upper->nodes(); ++i) upper->q()[3 * i + 2] += 0.01;
+  for (int i = 0; i < 6; ++i) show();
+  EXPECT_EQ(s->exercise()->log().state(), ExerciseState::done);
+  EXPECT_NEAR(s->exercise()->log().end_time(), goal("open").time, 1e-12);
+}
+
+TEST_F(Rules, ResetForgetsEverything) {
+  strands(5);
+  show();
+  part({4});
+  report.contacts = {press(lower, 0.31)};
+  report.events = {{"strand_torn", "strands", "", 0.05, 1}};
+  for (int i = 0; i < 3; ++i) show();
+  ASSERT_GE(faults("force"), 1);
+  ASSERT_GE(faults("torn"), 1);
+  ASSERT_GE(faults("order"), 1);
+  s->reset();
+  EXPECT_EQ(all_faults(), 0);
+  report.events.clear();
+  report.contacts = {press(lower, 0.31)};
+  strands(5);
+  for (int i = 0; i < 2; ++i) show();
+  EXPECT_EQ(all_faults(), 0) << "the time of a push before the reset must not count";
+}
+
+TEST(RulesOfAScene, ZeroDirectionIsAnError) {
+  const auto loaded = load_simulation_text(
+      "<scene><exercise id=\"e\" title=\"t\"><fault_order id=\"o\" inward=\"0 0 0\"/></exercise></scene>", example, test::builtin());
+  EXPECT_FALSE(loaded.simulation);
+  EXPECT_NE(loaded.diagnostics.format().find("a direction must not be zero"), std::string::npos) << loaded.diagnostics.format();
+}
+
+}  // namespace
+}  // namespace insula
