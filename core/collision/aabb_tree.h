@@ -68,6 +68,18 @@ class AabbTree {
     }
   }
 
+  /// Whether any leaf's box overlaps `box`.
+  bool any_overlapping(const Aabb& box) const {
+    const int end = int(nodes_.size());
+    for (int i = 0; i < end;) {
+      const Node& n = nodes_[std::size_t(i)];
+      if (!n.box.overlaps(box)) i = n.skip;
+      else if (n.count > 0) return true;
+      else ++i;
+    }
+    return false;
+  }
+
   /// Branch and bound: visit(triangle, bound2) for triangles of leaves closer to p than sqrt(bound2); the visitor lowers
   /// bound2 as it finds closer ones. Nearer children first.
   template <class Visit>

@@ -41,9 +41,6 @@ void CollisionMesh::update(std::span<const Vec3> positions, std::span<const Vec3
   positions_ = positions;
   free_ = free;
   tree_.refit(positions, free);
-  double most = 0;
-  for (const Vec3& u : free) most = std::max(most, u.squaredNorm());
-  largest_displacement_ = std::sqrt(most);
 }
 
 Vec3 CollisionMesh::face_normal(int tri, double t) const {
@@ -64,6 +61,17 @@ Vec3 CollisionMesh::vertex_normal(int v, double t) const {
     const Vec3 n = e.cross(f);
     const double l = n.norm();
     if (l > 0) sum += n * (std::atan2(l, e.dot(f)) / l);
+  }
+  const double l = sum.norm();
+  return l > 0 ? Vec3(sum / l) : Vec3(Vec3::UnitZ());
+}
+
+Vec3 CollisionMesh::rough_normal(int v) const {
+  Vec3 sum = Vec3::Zero();
+  for (int k = ring_start_[std::size_t(v)]; k < ring_start_[std::size_t(v) + 1]; ++k) {
+    const auto& tri = triangle(ring_[std::size_t(k)]);
+    const Vec3& a = positions_[std::size_t(tri[0])];
+    sum += (positions_[std::size_t(tri[1])] - a).cross(positions_[std::size_t(tri[2])] - a);
   }
   const double l = sum.norm();
   return l > 0 ? Vec3(sum / l) : Vec3(Vec3::UnitZ());

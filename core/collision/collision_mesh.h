@@ -23,7 +23,6 @@ class CollisionMesh {
   int vertex_count() const { return int(positions_.size()); }
   int triangle_count() const { return int(triangles_.size()); }
   const std::array<int, 3>& triangle(int i) const { return triangles_[std::size_t(i)]; }
-  double largest_displacement() const { return largest_displacement_; }  ///< of any vertex in the free motion
 
   Vec3 vertex(int v, double t = 0) const {
     const Vec3& x = positions_[std::size_t(v)];
@@ -40,6 +39,7 @@ class CollisionMesh {
   }
   Vec3 face_normal(int tri, double t = 0) const;    ///< unit
   Vec3 vertex_normal(int v, double t = 0) const;    ///< unit, weighted by angle
+  Vec3 rough_normal(int v) const;                   ///< unit, weighted by area, at the start of the step
   /// Outward normal of the feature (face, mean of an edge's faces, angle-weighted at a vertex): its product with p - c
   /// has the sign of the distance of p, c the surface point closest to p (Baerentzen, Aanaes 2005). Unit.
   Vec3 pseudo_normal(int tri, const TriangleFeature& f, double t = 0) const;
@@ -53,7 +53,6 @@ class CollisionMesh {
   std::vector<std::array<int, 3>> across_;  ///< neighbour across the edge that starts at each corner, -1 at a border
   std::vector<int> ring_start_, ring_;      ///< triangles around each vertex
   std::span<const Vec3> positions_, free_;
-  double largest_displacement_ = 0;
 };
 
 }  // namespace insula

@@ -34,65 +34,111 @@ std::vector<int> sample_vertices(std::span<const Vec3> rest, std::span<const std
   return samples;
 }
 
-TissueCollider::TissueCollider(std::vector<int> samples) : samples_(std::move(samples)) {}
+namespace {
+
+// Halves by the longest side until a group is left.
+void order_by_place(int* first, int* last, std::span<const Vec3> rest, std::ptrdiff_t group) {
+  if (last - first <= group) return;
+  Aabb box;
+  for (const int* v = first; v != last; ++v) box.add(rest[std::size_t(*v)]);
+  int axis = 0;
+  (box.high - box.low).maxCoeff(&axis);
+  std::sort(first, last, [&](int a, int b) {
+    const double x = rest[std::size_t(a)][axis], y = rest[std::size_t(b)][axis];
+    return x != y ? x < y : a < b;
+  });
+  const std::ptrdiff_t groups = (last - first + group - 1) / group;
+  int* middle = first + groups / 2 * group;  // whole groups to the left
+  order_by_place(first, middle, rest, group);
+  order_by_place(middle, last, rest, group);
+}
+
+Aabb swept(const CollisionMesh& mesh, int v) {
+  Aabb box;
+  const Vec3 x = mesh.vertex(v);
+  box.add(x);
+  box.add(Vec3(x + mesh.free(v)));
+  return box;
+}
+
+}  // namespace
+
+TissueCollider::TissueCollider(std::vector<int> samples, std::span<const Vec3> rest) : samples_(std::move(samples)) {
+  order_by_place(samples_.data(), samples_.data() + samples_.size(), rest, std::ptrdiff_t(group));
+  reset();
+}
+
+void TissueCollider::reset() { behind_.assign(samples_.size(), 1); }
 
 void TissueCollider::detect(const CollisionMesh& a, const CollisionMesh& b, const TissueContactSettings& settings,
-                            std::vector<Proximity>& out) const {
+                            std::vector<Proximity>& out) {
   if (b.tree().empty()) return;
-  const AabbTree& tree = b.tree();
-  for (int v : samples_) {
-    const Vec3 x = a.vertex(v);
-    const Vec3 u = a.free(v);
-    const double radius = settings.alarm + std::min(settings.max_motion, u.norm() + b.largest_displacement());
-    double bound2 = radius * radius;
-    if (tree.bounds().distance2(x) > bound2) continue;
-    bool have_normal = false;
-    Vec3 normal = Vec3::Zero();
-    int best = -1;
-    Vec3 best_bary = Vec3::Zero(), best_point = Vec3::Zero();
-    tree.nearest(x, bound2, [&](int tri, double& limit2) {
-      const auto& t = b.triangle(tri);
-      const Vec3 &p = b.vertex(t[0]), &q = b.vertex(t[1]), &r = b.vertex(t[2]);
-      // The triangle's plane is no farther than the triangle.
-      const Vec3 n = (q - p).cross(r - p);
-      const double h = n.dot(x - p), nn = n.squaredNorm();
-      if (h * h > limit2 * nn) return;
-      const Vec3 bary = closest_on_triangle(x, p, q, r);
-      const Vec3 c = bary[0] * p + bary[1] * q + bary[2] * r;
-      const double d2 = (x - c).squaredNorm();
-      if (d2 > limit2 || (d2 == limit2 && best >= 0 && tri > best)) return;
-      if (!have_normal) {
-        normal = a.vertex_normal(v);
-        have_normal = true;
-      }
-      if (normal.dot(n) > -0.25 * std::sqrt(nn)) return;  // faces away
-      limit2 = d2;
-      best = tri;
-      best_bary = bary;
-      best_point = c;
-    });
-    if (best < 0) continue;
-    const TriangleFeature f = feature_of(best_bary);
-    const Vec3 outward = b.pseudo_normal(best, f);
-    const Vec3 d = x - best_point;
-    const double distance = d.norm();
-    const bool outside = d.dot(outward) >= 0;
-    Proximity c;
-    c.vertex = v;
-    c.triangle = best;
-    c.bary = best_bary;
-    c.point = best_point;
-    if (distance > 1e-6) {
-      if (!b.locally_closest(best, f, d / distance, 0, 0.05)) continue;  // beside a border, or seen past one that faces away
-      c.normal = (outside ? d : Vec3(-d)) / distance;
-    } else {
-      c.normal = outward;
+  for (std::size_t first = 0; first < samples_.size(); first += group) {
+    const std::size_t last = std::min(first + group, samples_.size());
+    Aabb all;
+    bool deep = false;
+    for (std::size_t i = first; i < last; ++i) {
+      all.add(swept(a, samples_[i]));
+      deep = deep || behind_[i] != 0;
     }
-    c.gap = outside ? distance : -distance;
-    const double approach = c.normal.dot(u - b.free_at(best, best_bary));
-    if (c.gap > settings.alarm && c.gap + approach > settings.alarm) continue;
-    c.start_gap = std::max(c.gap, -settings.max_recovery);
-    out.push_back(c);
+    all.inflate(deep ? std::max(settings.alarm, settings.max_depth) : settings.alarm);
+    if (!b.tree().any_overlapping(all)) {
+      std::fill(behind_.begin() + std::ptrdiff_t(first), behind_.begin() + std::ptrdiff_t(last), char(0));
+      continue;
+    }
+    for (std::size_t i = first; i < last; ++i) {
+      const int v = samples_[i];
+      const double range = behind_[i] ? std::max(settings.alarm, settings.max_depth) : settings.alarm;
+      behind_[i] = 0;
+      Aabb box = swept(a, v);
+      box.inflate(range);
+      const Vec3 x = a.vertex(v), u = a.free(v);
+      Vec3 normal = Vec3::Zero();
+      double least2 = 1e300;
+      int best = -1;
+      Vec3 best_bary = Vec3::Zero(), best_point = Vec3::Zero();
+      b.tree().overlapping(box, [&](int tri) {
+        const auto& t = b.triangle(tri);
+        const Vec3 p = b.vertex(t[0]), q = b.vertex(t[1]), r = b.vertex(t[2]);
+        const Vec3 n = (q - p).cross(r - p);
+        const double h = n.dot(x - p), nn = n.squaredNorm();
+        if (h * h > least2 * nn) return;  // its plane is farther than the best
+        if (normal.isZero(0)) normal = a.rough_normal(v);
+        if (normal.dot(n) > -0.25 * std::sqrt(nn)) return;  // faces away
+        const Vec3 bary = closest_on_triangle(x, p, q, r);
+        const Vec3 c = bary[0] * p + bary[1] * q + bary[2] * r;
+        const double d2 = (x - c).squaredNorm();
+        if (d2 > least2 || (d2 == least2 && tri > best)) return;
+        least2 = d2;
+        best = tri;
+        best_bary = bary;
+        best_point = c;
+      });
+      if (best < 0) continue;
+      const TriangleFeature f = feature_of(best_bary);
+      const Vec3 outward = b.pseudo_normal(best, f);
+      const Vec3 d = x - best_point;
+      const double distance = d.norm();
+      const bool outside = d.dot(outward) >= 0;
+      if (!outside && distance > settings.max_depth) continue;
+      Proximity c;
+      c.vertex = v;
+      c.triangle = best;
+      c.bary = best_bary;
+      c.point = best_point;
+      if (distance > 1e-6) {
+        if (!b.locally_closest(best, f, d / distance, 0, 0.05)) continue;  // beside a border, or past one that faces away
+        c.normal = (outside ? d : Vec3(-d)) / distance;
+      } else {
+        c.normal = outward;
+      }
+      c.gap = outside ? distance : -distance;
+      const double approach = c.normal.dot(u - b.free_at(best, best_bary));
+      if (c.gap > settings.alarm && c.gap + approach > settings.alarm) continue;
+      behind_[i] = !outside;
+      c.start_gap = std::max(c.gap, -settings.max_recovery);
+      out.push_back(c);
+    }
   }
 }
 

@@ -2,8 +2,8 @@
 // Surface against surface: sample vertices of a against the triangles of b.
 //
 // The samples are an even choice of a's vertices, fixed at the start (a contact is then known by its vertex, which stays
-// the same while the surfaces slide). For each, the nearest triangle of b that faces it, within the alarm distance plus
-// what both may move in the step's free motion; a vertex behind that triangle is an overlap and has a negative gap.
+// the same while the surfaces slide). For each, the nearest triangle of b that faces it among those it is, or may come in
+// the step's free motion, within the alarm distance of; a vertex behind that triangle is an overlap and has a negative gap.
 // Geometry is that of the start of the step: tissue moves by less than its own details in a step. A bump narrower than
 // the samples' distance s can reach into the other surface by about s^2 / (8 R), R its radius of curvature.
 #pragma once
@@ -16,8 +16,8 @@ namespace insula {
 
 struct TissueContactSettings {
   double alarm = 0.5e-3;        ///< m
-  double max_motion = 5e-3;     ///< the look-ahead goes no farther than this, m
   double max_recovery = 0.5e-3; ///< an overlap is undone by no more than this in a step, m
+  double max_depth = 5e-3;      ///< a vertex this far behind the surface is no longer pushed out, m
 };
 
 /// Vertices of the surface no two of which are closer than `distance`, such that every used vertex is that close to one.
@@ -26,13 +26,18 @@ std::vector<int> sample_vertices(std::span<const Vec3> rest, std::span<const std
 
 class TissueCollider {
  public:
-  explicit TissueCollider(std::vector<int> samples);
-  /// Appends one contact a sample that has one, in order of vertex. Does not allocate while `out` has capacity.
-  void detect(const CollisionMesh& a, const CollisionMesh& b, const TissueContactSettings& settings, std::vector<Proximity>& out) const;
+  /// Samples in an order of neighbourhoods, by the rest shape.
+  TissueCollider(std::vector<int> samples, std::span<const Vec3> rest);
+  /// Appends one contact a sample that has one, in the order of samples(). Keeps which samples were behind the surface
+  /// (they are looked for deeper). Does not allocate while `out` has capacity.
+  void detect(const CollisionMesh& a, const CollisionMesh& b, const TissueContactSettings& settings, std::vector<Proximity>& out);
   const std::vector<int>& samples() const { return samples_; }
+  void reset();
 
  private:
+  static constexpr std::size_t group = 16;  ///< samples that are ruled out together
   std::vector<int> samples_;
+  std::vector<char> behind_;
 };
 
 }  // namespace insula

@@ -79,6 +79,7 @@ Simulation::Simulation(std::unique_ptr<Scene> scene, Diagnostics& diagnostics, i
   }
   heavy_first_ = bodies_;
   std::stable_sort(heavy_first_.begin(), heavy_first_.end(), [](Body* a, Body* b) { return a->blocks() > b->blocks(); });
+  energy_.assign(bodies_.size(), 0.0);
   builder_ = std::make_unique<ConstraintBuilder>(problem_, bodies_);
   context_.h = scene_->time_step();
   context_.gravity = scene_->gravity();
@@ -181,7 +182,11 @@ void Simulation::make_report() {
   r.h = context_.h;
   r.step = context_.step;
   r.rows = problem_.rows;
-  for (Body* b : bodies_) r.energy += b->energy();
+  workers_.run(int(heavy_first_.size()), [this](int i) {
+    const Body* b = heavy_first_[std::size_t(i)];
+    energy_[std::size_t(b->index)] = b->energy();
+  });
+  for (double e : energy_) r.energy += e;
   for (Constraint* c : constraints_) c->report(r);
   for (Instrument* i : instruments_) {
     ToolReport t;

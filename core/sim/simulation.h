@@ -83,6 +83,7 @@ class Simulation {
     std::array<double, 3> lambda;
   };
   std::vector<Remembered> remembered_;
+  std::vector<double> energy_;  ///< of each body, J
   StepReport report_;
 };
 

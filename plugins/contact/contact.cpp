@@ -104,8 +104,8 @@ void Contact::add_pairs(Simulation& simulation, Body* a, Body* b) {
       p.a = shared_surface(simulation, sa);
       p.b = shared_surface(simulation, sb);
       const double distance = 0.5 * tissue_spacing();
-      p.a_on_b = std::make_unique<TissueCollider>(sample_vertices(sa->rest().vertices, sa->triangles(), distance));
-      p.b_on_a = std::make_unique<TissueCollider>(sample_vertices(sb->rest().vertices, sb->triangles(), distance));
+      p.a_on_b = std::make_unique<TissueCollider>(sample_vertices(sa->rest().vertices, sa->triangles(), distance), sa->rest().vertices);
+      p.b_on_a = std::make_unique<TissueCollider>(sample_vertices(sb->rest().vertices, sb->triangles(), distance), sb->rest().vertices);
       p.contacts.reserve(p.a_on_b->samples().size() + p.b_on_a->samples().size());
       pairs_.push_back(std::move(p));
     }
@@ -243,6 +243,8 @@ void Contact::reset() {
   for (Pair& p : pairs_) {
     p.selection.reset();
     if (p.tool_collider) p.tool_collider->reset();
+    if (p.a_on_b) p.a_on_b->reset();
+    if (p.b_on_a) p.b_on_a->reset();
     p.contacts.clear();
     p.rows.clear();
     p.forces.clear();

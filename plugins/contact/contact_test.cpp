@@ -295,11 +295,11 @@ TEST(Contact, SurfacesDoNotPassThroughOneAnother) {
     for (std::size_t v = 0; v < surfaces[1]->positions().size(); ++v) {
       if (surfaces[1]->rest().vertices[v].z() > 0.001) continue;
       std::vector<Proximity> found;
-      TissueCollider one(std::vector<int>{int(v)});
+      TissueCollider one(std::vector<int>{int(v)}, surfaces[1]->positions());
       CollisionMesh other;
       other.build(surfaces[1]->rest().vertices, surfaces[1]->triangles());
       other.update(surfaces[1]->positions(), {});
-      one.detect(other, mesh, {.alarm = 1e-3, .max_motion = 2e-3, .max_recovery = 1}, found);
+      one.detect(other, mesh, {.alarm = 1e-3, .max_recovery = 1, .max_depth = 2e-3}, found);
       for (const auto& x : found) deepest = std::min(deepest, x.gap);
     }
   }

@@ -24,9 +24,9 @@ inline Mat3 rotation_by_svd(const Mat3& f) {
 inline Mat3 polar_rotation(const Mat3& f, Quat& q) {
   Mat3 r = q.toRotationMatrix();
   for (int k = 0; k < 12; ++k) {
-    const Mat3 a = r.transpose() * f;
-    const Vec3 w(a(2, 1) - a(1, 2), a(0, 2) - a(2, 0), a(1, 0) - a(0, 1));
-    const double t = a.trace();
+    const Mat3 a = r.transpose().lazyProduct(f);
+    const double w0 = a(2, 1) - a(1, 2), w1 = a(0, 2) - a(2, 0), w2 = a(1, 0) - a(0, 1);
+    const double t = a(0, 0) + a(1, 1) + a(2, 2);
     const double xx = t - a(0, 0), yy = t - a(1, 1), zz = t - a(2, 2);
     const double xy = -0.5 * (a(0, 1) + a(1, 0)), xz = -0.5 * (a(0, 2) + a(2, 0)), yz = -0.5 * (a(1, 2) + a(2, 1));
     // Inverse of the symmetric 3x3 matrix by cofactors; it must be positive definite at a maximum.
@@ -34,15 +34,15 @@ inline Mat3 polar_rotation(const Mat3& f, Quat& q) {
     const double det = xx * c00 + xy * c01 + xz * c02;
     const double scale = std::abs(t) + std::abs(xy) + std::abs(xz) + std::abs(yz);
     if (!(xx > 0) || !(xx * yy - xy * xy > 0) || !(det > 1e-9 * scale * scale * scale)) break;
-    const double inv = 1.0 / det;
+    const double half = 0.5 / det;
     const double c11 = xx * zz - xz * xz, c12 = xy * xz - xx * yz, c22 = xx * yy - xy * xy;
-    const Vec3 d = inv * Vec3(c00 * w.x() + c01 * w.y() + c02 * w.z(), c01 * w.x() + c11 * w.y() + c12 * w.z(),
-                              c02 * w.x() + c12 * w.y() + c22 * w.z());
-    const double size2 = d.squaredNorm();
-    if (size2 > 1.0) break;  // far off: start from the singular values
-    q = (q * Quat(1.0, 0.5 * d.x(), 0.5 * d.y(), 0.5 * d.z())).normalized();
+    const double d0 = half * (c00 * w0 + c01 * w1 + c02 * w2), d1 = half * (c01 * w0 + c11 * w1 + c12 * w2),
+                 d2 = half * (c02 * w0 + c12 * w1 + c22 * w2);
+    const double half_size2 = d0 * d0 + d1 * d1 + d2 * d2;
+    if (half_size2 > 0.25) break;  // far off: start from the singular values
+    q = (q * Quat(1.0, d0, d1, d2)).normalized();
     r = q.toRotationMatrix();
-    if (size2 < 1e-14) return r;  // the next correction would be of the order of size^3
+    if (half_size2 < 2.5e-15) return r;  // the next correction would be of the order of its cube
   }
   r = rotation_by_svd(f);
   q = Quat(r).normalized();

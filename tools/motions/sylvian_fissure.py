@@ -88,8 +88,8 @@ ROUGH_LEFT = [
     (0.8, -1, 6.0, -0.4, 0, "plunge between the lips"),
     (0.4, -1, 6.0, -0.8, 1, "take hold"),
     (3.4, -1, 6.0, -1.0, 1, "hold"),
-    (1.0, -1, 7.0, -14.0, 1, "tear the lips apart"),
-    (1.0, -1, 7.0, -14.0, 1, "and keep on pulling"),
+    (0.9, -1, 7.0, -16.0, 1, "tear the lips apart"),
+    (1.0, -1, 7.0, -16.0, 1, "and keep on pulling"),
     (1.2, -1, 3.0, 0.0, 0, "let go"),
     (2.0, -14, -24, -10, 0, "withdraw"),
 ]
@@ -102,8 +102,8 @@ ROUGH_RIGHT = [
     (0.8, 9, -4.0, 0.5, 0, "out"),
     (2.0, 9, -4.0, 0.5, 0, "look on"),
     (0.6, 8, 4.0, 2.0, 0, "back in"),
-    (0.7, 8, 4.0, 13.0, 0, "press on the frontal lobe"),
-    (0.7, 8, 4.0, 13.0, 0, "and stay"),
+    (0.7, 8, 4.0, 15.0, 0, "press on the frontal lobe"),
+    (0.7, 8, 4.0, 15.0, 0, "and stay"),
     (0.8, 11, -4.0, 0.5, 0, "leave"),
     (1.5, 16, -26, 8, 0, "withdraw"),
 ]

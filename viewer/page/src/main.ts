@@ -77,7 +77,7 @@ const hud = new Hud(hud_root, {
   choose_hand: (h) => hands.set_active(h),
   release_hand: (h) => hands.release(h),
   button: (b, on) => hands.press(b, on),
-}, may_command, may_drive);
+}, may_command, may_drive, options.quality ?? '');
 
 const hands: Hands = new Hands(canvas, scope, link, {
   tool_pose: (hand) => {

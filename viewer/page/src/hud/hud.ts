@@ -59,7 +59,7 @@ export class Hud {
   private state: HudState | null = null;
   private message_until = 0;
 
-  constructor(root: HTMLElement, actions: HudActions, may_command: boolean, may_drive: boolean) {
+  constructor(root: HTMLElement, actions: HudActions, may_command: boolean, may_drive: boolean, quality: string) {
     this.hands = [0, 1].map((h) => new HandPanel(h, () => actions.choose_hand(h), () => actions.release_hand(h)));
     this.pause.onclick = () => { actions.command(this.pause.dataset.paused ? 'resume' : 'pause'); this.pause.blur(); };
     const reset = el('button', {}, 'Reset');
@@ -67,6 +67,7 @@ export class Hud {
     const help = el('button', { title: 'H' }, 'Help');
     help.onclick = () => { this.toggle_help(); help.blur(); };
     this.quality.append(el('option', { value: '' }, 'Auto'), ...levels.map((l) => el('option', { value: l.name }, l.name[0]!.toUpperCase() + l.name.slice(1))));
+    this.quality.value = quality;
     this.quality.onchange = () => { actions.quality(this.quality.value); this.quality.blur(); };
     const touch = el('div', { class: 'touch' });
     for (const b of [1, 2] as const) {
