@@ -151,7 +151,7 @@ std::string report_html(const RunRecorder& recorder, const RunSummary& summary) 
   out += row("simulated time", fmt::format("{:.3f} s", sim));
   out += row("wall time of the steps", fmt::format("{:.3f} s", summary.wall_seconds));
   out += row("simulated over wall time", fmt::format("{:.2f}", summary.wall_seconds > 0 ? sim / summary.wall_seconds : 0));
-  out += row("fresh forces", fmt::format("{:.0f} per second", summary.fresh_forces_per_s));
+  out += row("fresh forces", fmt::format("{:.0f} per second of touch", summary.fresh_forces_per_s));
   out += row("largest force on the left hand", fmt::format("{:.3f} N", summary.max_force_N[0]));
   out += row("largest force on the right hand", fmt::format("{:.3f} N", summary.max_force_N[1]));
   if (recorder.strands_total() > 0) out += row("strands divided", fmt::format("{} of {}", recorder.strands_cut(), recorder.strands_total()));

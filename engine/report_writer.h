@@ -18,7 +18,7 @@ struct RunSummary {
   std::string title;               ///< of the scene
   std::string scene, motion;       ///< as named on the command line
   double wall_seconds = 0;         ///< of all steps
-  double fresh_forces_per_s = 0;   ///< distinct fresh forces a simulated second
+  double fresh_forces_per_s = 0;   ///< distinct fresh forces a simulated second of touch
   std::array<double, 2> max_force_N{};  ///< on the hands: left, right
   std::uint64_t state_hash = 0;
   const Exercise* exercise = nullptr;   ///< null when the scene has none

@@ -25,7 +25,7 @@ void InProcessHaptics::reset() {
   servo_.set_problem(nullptr);
   servo_.reset();
   last_ = ServoResult{};
-  time_ = problem_time_ = served_s_ = 0;
+  time_ = problem_time_ = 0;
   ticks_ = 0;
   started_ = false;
   for (std::size_t i = 0; i < 2; ++i) {
@@ -59,7 +59,6 @@ void InProcessHaptics::tick(double t) {
   started_ = true;
   time_ = t;
   ++ticks_;
-  served_s_ += dt;
 
   ServoInput input;
   std::array<DeviceReading, 2> reading;
@@ -89,6 +88,7 @@ void InProcessHaptics::tick(double t) {
     hand.torque = gate_[i].torque();
     hand.max_force_N = std::max(hand.max_force_N, hand.force.norm());
     if (live && wanted.force != last_force_[i]) ++hand.fresh_forces;
+    if (!wanted.force.isZero(0) || !last_force_[i].isZero(0)) hand.touching_s += dt;
     last_force_[i] = wanted.force;
   }
 }
@@ -101,8 +101,8 @@ void InProcessHaptics::advance(int ticks, double dt) {
 double InProcessHaptics::fresh_forces_per_s() const {
   double least = -1;
   for (const Hand& hand : hands_) {
-    if (!hand.present || !(served_s_ > 0)) continue;
-    const double rate = double(hand.fresh_forces) / served_s_;
+    if (!hand.present || !(hand.touching_s > 0)) continue;
+    const double rate = double(hand.fresh_forces) / hand.touching_s;
     least = least < 0 ? rate : std::min(least, rate);
   }
   return std::max(least, 0.0);

@@ -35,6 +35,7 @@ class InProcessHaptics {
     Vec3 torque = Vec3::Zero();  ///< N m
     double max_force_N = 0;      ///< since the start
     std::int64_t fresh_forces = 0;  ///< forces from a new solve that differ from the one before
+    double touching_s = 0;          ///< time with a force to feel; in free air there is none, new or old
   };
 
   /// Hands that the motion does not move stay at `home`; without a home they are absent. The motion's hands begin at its
@@ -60,7 +61,7 @@ class InProcessHaptics {
   std::int64_t ticks() const { return ticks_; }
   /// Of the last tick.
   const ServoResult& last() const { return last_; }
-  /// Fresh forces per simulated second, the lesser of the hands that are present.
+  /// Fresh forces per simulated second of touch, the lesser of the hands that touched anything; 0 when none did.
   double fresh_forces_per_s() const;
 
  private:
@@ -76,7 +77,7 @@ class InProcessHaptics {
   std::array<Hand, 2> hands_;
   std::array<Vec3, 2> last_force_{Vec3::Zero(), Vec3::Zero()};
   ServoResult last_;
-  double time_ = 0, problem_time_ = 0, served_s_ = 0;
+  double time_ = 0, problem_time_ = 0;
   std::int64_t ticks_ = 0;
   bool started_ = false;
 };

@@ -84,6 +84,11 @@ class AabbTree {
   /// bound2 as it finds closer ones. Nearer children first.
   template <class Visit>
   void nearest(const Vec3& p, double& bound2, Visit&& visit) const {
+    nearest(p, nullptr, bound2, visit);
+  }
+  /// The same among the leaves whose boxes overlap `within` (null: all).
+  template <class Visit>
+  void nearest(const Vec3& p, const Aabb* within, double& bound2, Visit&& visit) const {
     if (nodes_.empty()) return;
     struct Open {
       int node;
@@ -96,6 +101,7 @@ class AabbTree {
       const Open o = stack[--size];
       if (o.d2 > bound2) continue;
       const Node& n = nodes_[std::size_t(o.node)];
+      if (within && !n.box.overlaps(*within)) continue;
       if (n.count > 0) {
         for (int k = 0; k < n.count; ++k) visit(order_[std::size_t(n.first + k)], bound2);
         continue;

@@ -123,4 +123,25 @@ bool CollisionMesh::locally_closest(int tri, const TriangleFeature& f, const Vec
   return true;
 }
 
+NearestPoint CollisionMesh::nearest(const Vec3& p, double t, double limit) const {
+  NearestPoint e;
+  double bound2 = limit * limit * (1 + 1e-9);
+  tree_.nearest(p, bound2, [&](int tri, double& least2) {
+    const auto& v = triangle(tri);
+    const ClosestPair q = point_triangle(p, vertex(v[0], t), vertex(v[1], t), vertex(v[2], t));
+    if (q.distance2 > least2 || (q.distance2 == least2 && e.triangle >= 0 && tri > e.triangle)) return;
+    least2 = q.distance2;
+    e.triangle = tri;
+    e.bary = q.bary;
+    e.point = q.c;
+  });
+  if (e.triangle < 0) return e;
+  const Vec3 normal = pseudo_normal(e.triangle, feature_of(e.bary), t);
+  const Vec3 d = e.point - p;
+  e.distance = d.norm();
+  e.behind = d.dot(normal) > 0;
+  e.outward = e.distance > 1e-9 ? Vec3((e.behind ? d : Vec3(-d)) / e.distance) : normal;
+  return e;
+}
+
 }  // namespace insula

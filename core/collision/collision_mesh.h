@@ -11,6 +11,15 @@
 
 namespace insula {
 
+/// The surface point nearest to some point p.
+struct NearestPoint {
+  int triangle = -1;       ///< -1: none within the limit
+  Vec3 bary = Vec3::Zero(), point = Vec3::Zero();
+  double distance = 0;
+  bool behind = false;     ///< p is behind the surface
+  Vec3 outward = Vec3::UnitZ();  ///< unit, along the line through p and the point, out of the surface
+};
+
 class CollisionMesh {
  public:
   /// Counter-clockwise triangles seen from outside; closed surfaces and open sheets (one-sided, facing along their normals).
@@ -46,6 +55,8 @@ class CollisionMesh {
   /// Whether c, closest to something in direction d (unit, from c) on this triangle, is so on the neighbouring triangles
   /// too: no step from c into one of them leads along d by more than `slack` (a sine).
   bool locally_closest(int tri, const TriangleFeature& f, const Vec3& d, double t, double slack) const;
+  /// Nearest point of the surface at time t, if no farther than `limit`.
+  NearestPoint nearest(const Vec3& p, double t, double limit) const;
 
  private:
   AabbTree tree_;

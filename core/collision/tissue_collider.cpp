@@ -68,7 +68,10 @@ TissueCollider::TissueCollider(std::vector<int> samples, std::span<const Vec3> r
   reset();
 }
 
-void TissueCollider::reset() { behind_.assign(samples_.size(), 1); }
+void TissueCollider::reset() {
+  behind_.assign(samples_.size(), 1);
+  last_.assign(samples_.size(), -1);
+}
 
 void TissueCollider::detect(const CollisionMesh& a, const CollisionMesh& b, const TissueContactSettings& settings,
                             std::vector<Proximity>& out) {
@@ -97,30 +100,39 @@ void TissueCollider::detect(const CollisionMesh& a, const CollisionMesh& b, cons
       double least2 = 1e300;
       int best = -1;
       Vec3 best_bary = Vec3::Zero(), best_point = Vec3::Zero();
-      b.tree().overlapping(box, [&](int tri) {
+      const auto look = [&](int tri, double& limit2) {
         const auto& t = b.triangle(tri);
         const Vec3 p = b.vertex(t[0]), q = b.vertex(t[1]), r = b.vertex(t[2]);
         const Vec3 n = (q - p).cross(r - p);
         const double h = n.dot(x - p), nn = n.squaredNorm();
-        if (h * h > least2 * nn) return;  // its plane is farther than the best
+        if (h * h > limit2 * nn) return;  // its plane is farther than the best
         if (normal.isZero(0)) normal = a.rough_normal(v);
         if (normal.dot(n) > -0.25 * std::sqrt(nn)) return;  // faces away
         const Vec3 bary = closest_on_triangle(x, p, q, r);
         const Vec3 c = bary[0] * p + bary[1] * q + bary[2] * r;
         const double d2 = (x - c).squaredNorm();
-        if (d2 > least2 || (d2 == least2 && tri > best)) return;
-        least2 = d2;
+        if (d2 > limit2 || (d2 == limit2 && best >= 0 && tri > best)) return;
+        limit2 = d2;
         best = tri;
         best_bary = bary;
         best_point = c;
-      });
+      };
+      // The last step's triangle first: a good bound for the search. It must pass the search's own test of nearness.
+      if (const int guess = last_[i]; guess >= 0) {
+        Aabb near;
+        for (int w : b.triangle(guess)) near.add(swept(b, w));
+        if (near.overlaps(box)) look(guess, least2);
+      }
+      b.tree().nearest(x, &box, least2, look);
+      last_[i] = best;
       if (best < 0) continue;
       const TriangleFeature f = feature_of(best_bary);
       const Vec3 outward = b.pseudo_normal(best, f);
       const Vec3 d = x - best_point;
       const double distance = d.norm();
       const bool outside = d.dot(outward) >= 0;
-      if (!outside && distance > settings.max_depth) continue;
+      // Behind what faces it, but perhaps outside of a fold that does not: the nearest of all tells.
+      if (!outside && (distance > settings.max_depth || !b.nearest(x, 0, distance).behind)) continue;
       Proximity c;
       c.vertex = v;
       c.triangle = best;

@@ -38,6 +38,7 @@ class TissueCollider {
   static constexpr std::size_t group = 16;  ///< samples that are ruled out together
   std::vector<int> samples_;
   std::vector<char> behind_;
+  std::vector<int> last_;  ///< triangle of the last step: where to look first; does not change what is found
 };
 
 }  // namespace insula

@@ -38,35 +38,6 @@ Narrow closest(std::span<const Vec3> core, const std::array<Vec3, 3>& tri) {
   return r;
 }
 
-struct Exit {
-  bool behind = false;
-  int triangle = -1;
-  double distance = 0;
-  Vec3 bary, point, normal;
-};
-
-// The surface point nearest to p, no farther than `limit`, at time t.
-Exit nearest_exit(const CollisionMesh& mesh, const Vec3& p, double t, double limit) {
-  Exit e;
-  double bound2 = limit * limit * (1 + 1e-9);
-  mesh.tree().nearest(p, bound2, [&](int tri, double& least2) {
-    const auto& v = mesh.triangle(tri);
-    const ClosestPair q = point_triangle(p, mesh.vertex(v[0], t), mesh.vertex(v[1], t), mesh.vertex(v[2], t));
-    if (q.distance2 > least2 || (q.distance2 == least2 && e.triangle >= 0 && tri > e.triangle)) return;
-    least2 = q.distance2;
-    e.triangle = tri;
-    e.bary = q.bary;
-    e.point = q.c;
-  });
-  if (e.triangle < 0) return e;
-  const Vec3 outward = mesh.pseudo_normal(e.triangle, feature_of(e.bary), t);
-  const Vec3 d = e.point - p;
-  e.distance = d.norm();
-  e.behind = d.dot(outward) > 0;
-  e.normal = e.distance > 1e-9 ? Vec3(d / e.distance) : outward;
-  return e;
-}
-
 bool above(const Vec3& q, const std::array<Vec3, 3>& t, const Vec3& n, Vec3& bary) {
   const Vec3 w(n.dot((t[2] - t[1]).cross(q - t[1])), n.dot((t[0] - t[2]).cross(q - t[2])),
                n.dot((t[1] - t[0]).cross(q - t[0])));
@@ -173,10 +144,10 @@ void ToolCollider::evaluate(const CollisionMesh& mesh, const Placed& at, const T
       if (outside && clear <= settings.alarm) emit(n.bary, n.c, d, clear);
       // Behind this triangle, but perhaps before another one: only the nearest of all tells, and it is the way out.
       if (!outside && n.distance <= settings.max_depth) {
-        const Exit e = nearest_exit(mesh, n.p, t, n.distance);
+        const NearestPoint e = mesh.nearest(n.p, t, n.distance);
         if (e.behind) {
           x.triangle = e.triangle;
-          emit(e.bary, e.point, e.normal, -e.distance - at.radius);
+          emit(e.bary, e.point, e.outward, -e.distance - at.radius);
           x.triangle = k.triangle;
         }
       }

@@ -213,6 +213,17 @@ TEST(StrandSprings, TearsBeyondItsStrength) {
   }
 }
 
+// Pulled tight and touched by a blade it is cut; out of the blade's reach the same pull tears it.
+TEST(StrandSprings, ATautStrandUnderABladeIsCut) {
+  for (const char* reach : {"0.5 mm", "0.3 mm"}) {
+    CutBed t(fmt::format("stiffness=\"30 N/m\" slack=\"0.9\" strength=\"0.029 N\" reach=\"{}\"", reach));
+    ASSERT_TRUE(t.strands && t.knife);
+    t.move(0.00044);
+    ASSERT_EQ(t.s->events().size(), 1u);
+    EXPECT_EQ(t.s->events()[0].kind, std::string_view(reach) == "0.5 mm" ? "strand_cut" : "strand_torn");
+  }
+}
+
 TEST(StrandSprings, GeneratedAcrossTheGap) {
   const auto example = std::filesystem::path(INSULA_SOURCE_DIR) / "plugins/strand_springs/example.xml";
   auto one = test::load(example), two = test::load(example);

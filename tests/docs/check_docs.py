@@ -182,7 +182,11 @@ class Checker:
         self.test_names(page, outside)
         for block in blocks:
             if block.language == "sh":
-                for i, line in enumerate(block.text.split("\n")):
+                lines = block.text.split("\n")
+                for i, line in enumerate(lines):
+                    while line.endswith("\\") and i + 1 < len(lines):  # goes on in the next line
+                        i += 1
+                        line, lines[i] = line[:-1] + lines[i], ""
                     self.command_line((page, block.line + 1 + i), line)
         if any(b.language == "xml" or b.role == "output" for b in blocks):
             # A page that brings a plugin shows scenes for it; the build of that plugin checks them.

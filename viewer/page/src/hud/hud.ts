@@ -117,7 +117,7 @@ export class Hud {
   show_machine(f: RenderFrame | null, haptic: HapticStatus | null, fps: number, quality: string): void {
     const parts: string[] = [];
     if (f) parts.push(`step ${f.step_ms.toFixed(1)} / ${f.step_period_ms.toFixed(1)} ms`, `${f.rows} rows`);
-    if (haptic) parts.push(`haptics ${haptic.fresh_forces_per_s[0]!.toFixed(0)} · ${haptic.fresh_forces_per_s[1]!.toFixed(0)} /s`);
+    if (haptic) parts.push(`haptics ${haptic.ticks_per_s.toFixed(0)} /s, fresh ${haptic.fresh_forces_per_s[0]!.toFixed(0)} · ${haptic.fresh_forces_per_s[1]!.toFixed(0)}`);
     else parts.push('haptics –');
     parts.push(`${fps.toFixed(0)} fps ${quality}`);
     set_text(this.machine, parts.join('   '));
