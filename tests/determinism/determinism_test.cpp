@@ -23,8 +23,8 @@ std::string everything() {
   <soft_body id="upper" mesh="meshes/examples/block_upper.msh" mesh_unit="mm"><corotational_fem tangent="exact" young="3 kPa"/>
     <fixed region="beyond" centre="0 0 21 mm" normal="0 0 1"/><surface id="upper_surface"/></soft_body>
   <obstacle id="plate"><surface mesh="meshes/examples/plate.obj" mesh_unit="mm" material="bone"/></obstacle>
-  <strand_springs from="lower_surface" to="upper_surface" density="6 1/cm2" max_length="6 mm" slack="0.8" strength="0.05 N" cut_length="0.3 mm"/>
-  <dissector id="knife" model="meshes/instruments/arachnoid_knife/arachnoid_knife.urdf" hand="right" home="11 1 1 mm" shaft="1 0 0" flat="0 0 1"/>
+  <strand_springs from="lower_surface" to="upper_surface" density="15 1/cm2" max_length="6 mm" slack="0.8" strength="0.5 N" cut_length="0.3 mm" reach="1 mm"/>
+  <dissector id="knife" model="meshes/instruments/arachnoid_knife/arachnoid_knife.urdf" hand="right" home="9 1 1 mm" shaft="1 0 0" flat="0 0 1"/>
   <suction id="tube" model="meshes/instruments/suction/suction.urdf" hand="left" home="-12 1 1 mm" shaft="-1 0 0.1" flat="0 0 1" capture="4 mm"/>
   <retractor id="arm" model="meshes/instruments/retractor/retractor.urdf" hand="none" home="0 -9 1 mm" shaft="0 -1 0" flat="0 0 1"/>
   <contact between="lower upper plate" friction="0.3"/>

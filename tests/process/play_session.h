@@ -206,6 +206,8 @@ class PlaySession {
     std::ofstream(folder_ / "press.xml") << scene_text;
     url_ = "udpm://239.255.76.67:" + std::to_string(free_udp_port()) + "?ttl=0";
     ::setenv("LCM_DEFAULT_URL", url_.c_str(), 1);
+    // Also when the supervisor is killed and cannot clean up: what it leaves goes with the folder.
+    ::setenv("XDG_RUNTIME_DIR", folder_.c_str(), 1);
     ::unsetenv("DISPLAY");
     ::unsetenv("WAYLAND_DISPLAY");
   }
