@@ -20,6 +20,13 @@ Vec3 tangent_to(const Vec3& n, const Vec3& wish) {
   return t.normalized();
 }
 
+void ContactSelection::reserve(std::size_t before, std::size_t after) {
+  order_.reserve(before);
+  kept_.reserve(after);
+  last_.reserve(after);
+  next_.reserve(after);
+}
+
 void ContactSelection::select(std::vector<Proximity>& all, const SelectionSettings& settings, std::uint64_t& next_key) {
   const double spacing2 = settings.spacing * settings.spacing;
   for (Known& k : last_) k.taken = false;

@@ -26,6 +26,8 @@ class ContactSelection {
   /// every new contact. Allocates only to grow.
   void select(std::vector<Proximity>& all, const SelectionSettings& settings, std::uint64_t& next_key);
   void reset() { last_.clear(); }
+  /// Makes room: proximities before and contacts after a selection.
+  void reserve(std::size_t before, std::size_t after);
 
  private:
   struct Known {

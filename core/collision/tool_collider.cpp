@@ -259,16 +259,15 @@ void ToolCollider::detect(const CollisionMesh& mesh, const Pose& start, const Po
       for (const Proximity& x : found_)
         if (on_free_side(x)) out.push_back(x);
 
-    // Slide along what is touched by the motion that is left.
+    // Slide along what is touched (out of it, if behind) by the motion that is left.
     if (!reached || t >= 1 || found_.empty()) continue;
     const Proximity* touched = &found_[0];
     for (const Proximity& x : found_)
       if (x.gap < touched->gap) touched = &x;
-    if (touched->gap < -piece.radius) continue;
     Vec3 slide = (1 - t) * (velocity - mesh.free_at(touched->triangle, touched->bary));
     for (int pass = 0; pass < 3; ++pass)
       for (const Proximity& x : found_) {
-        const double c = x.normal.dot(slide) + std::max(0.0, x.gap);
+        const double c = x.normal.dot(slide) + std::max(-settings.max_recovery, x.gap);
         if (c < 0) slide -= c * x.normal;
       }
     for (int attempt = 0; attempt < 3 && slide.norm() > 0.25 * alarm; ++attempt, slide *= 0.5) {

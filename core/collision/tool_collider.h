@@ -13,7 +13,8 @@
 //
 // One triangle gives a contact only where the distance is smallest among its neighbours too (no ghost contacts at inner
 // edges), plus the corners of the piece's core that stand right above it (a flat or long piece lies on several points).
-// Sides are told by the surface's outward normals: a core behind the surface has a negative gap and the outward normal.
+// Sides are told by the surface's outward normals. A core behind the surface has a negative gap and is pushed to the nearest
+// place of the surface, as long as it is no deeper than max_depth; one that goes through a triangle is pushed along its normal.
 #pragma once
 #include <vector>
 

@@ -103,10 +103,11 @@ void Contact::add_pairs(Simulation& simulation, Body* a, Body* b) {
       Pair p;
       p.a = shared_surface(simulation, sa);
       p.b = shared_surface(simulation, sb);
-      const double distance = 0.5 * tissue_spacing();
+      const double distance = 0.75 * tissue_spacing();
       p.a_on_b = std::make_unique<TissueCollider>(sample_vertices(sa->rest().vertices, sa->triangles(), distance), sa->rest().vertices);
       p.b_on_a = std::make_unique<TissueCollider>(sample_vertices(sb->rest().vertices, sb->triangles(), distance), sb->rest().vertices);
       p.contacts.reserve(p.a_on_b->samples().size() + p.b_on_a->samples().size());
+      p.other_way.reserve(p.b_on_a->samples().size());
       pairs_.push_back(std::move(p));
     }
   }
@@ -130,35 +131,64 @@ void Contact::connect(PrepareContext& context, Simulation& simulation) {
       if (all[i]->blocks() == 0 && all[j]->blocks() == 0) continue;
       if (owns(simulation, all[i], all[j])) add_pairs(simulation, all[i], all[j]);
     }
+  for (Pair& p : pairs_) {
+    const std::size_t most = std::size_t(p.tool_a ? max_contacts() : tissue_max_contacts());
+    p.selection.reserve(p.contacts.capacity() + p.other_way.capacity(), most);
+    p.contacts.reserve(p.contacts.capacity() + p.other_way.capacity());
+    p.rows.reserve(most);
+    p.forces.reserve(most);
+  }
+  // Surfaces against surfaces take longest: first, so that threads end together.
+  workers_ = &simulation.workers();
+  for (const bool surfaces : {true, false})
+    for (int i = 0; i < int(pairs_.size()); ++i) {
+      const bool both = pairs_[std::size_t(i)].a != nullptr;
+      if (both != surfaces) continue;
+      searches_.push_back({i, false});
+      if (both) searches_.push_back({i, true});
+    }
+}
+
+void Contact::search(const Search& what) {
+  Pair& p = pairs_[std::size_t(what.pair)];
+  if (p.tool_a) {
+    ToolContactSettings settings;
+    settings.alarm = alarm();
+    settings.max_recovery = std::max(settings.max_recovery, alarm());
+    p.contacts.clear();
+    if (p.tool_b)
+      detect_tools(p.pieces_a, p.tool_a->pose(), p.tool_a->free_pose(), p.pieces_b, p.tool_b->pose(), p.tool_b->free_pose(), settings, p.contacts);
+    else
+      p.tool_collider->detect(p.b->mesh, p.tool_a->pose(), p.tool_a->free_pose(), settings, p.contacts);
+    return;
+  }
+  TissueContactSettings settings;
+  settings.alarm = tissue_alarm();
+  auto& out = what.other_way ? p.other_way : p.contacts;
+  out.clear();
+  if (what.other_way) p.b_on_a->detect(p.b->mesh, p.a->mesh, settings, out);
+  else p.a_on_b->detect(p.a->mesh, p.b->mesh, settings, out);
 }
 
 void Contact::detect(const StepContext& context) {
-  for (const auto& s : surfaces_) s->update(context.step);
-  ToolContactSettings tool;
-  tool.alarm = alarm();
-  tool.max_recovery = std::max(tool.max_recovery, alarm());
-  TissueContactSettings tissue;
-  tissue.alarm = tissue_alarm();
+  workers_->run(int(surfaces_.size()), [&](int i) { surfaces_[std::size_t(i)]->update(context.step); });
+  workers_->run(int(searches_.size()), [this](int i) { search(searches_[std::size_t(i)]); });
+  // Names are given in the order of the pairs, for any number of threads.
   for (Pair& p : pairs_) {
-    p.contacts.clear();
     SelectionSettings choice;
     if (p.tool_a) {
       choice.spacing = spacing();
       choice.advantage = 0.2 * alarm();
       choice.max_contacts = max_contacts();
       choice.max_per_piece = std::max(2, (max_contacts() + 1) / 2);
-      if (p.tool_b)
-        detect_tools(p.pieces_a, p.tool_a->pose(), p.tool_a->free_pose(), p.pieces_b, p.tool_b->pose(), p.tool_b->free_pose(), tool, p.contacts);
-      else
-        p.tool_collider->detect(p.b->mesh, p.tool_a->pose(), p.tool_a->free_pose(), tool, p.contacts);
     } else {
       choice.spacing = tissue_spacing();
       choice.advantage = 0.5 * tissue_alarm();
       choice.max_contacts = tissue_max_contacts();
-      p.a_on_b->detect(p.a->mesh, p.b->mesh, tissue, p.contacts);
-      const std::size_t first = p.contacts.size();
-      p.b_on_a->detect(p.b->mesh, p.a->mesh, tissue, p.contacts);
-      for (std::size_t i = first; i < p.contacts.size(); ++i) p.contacts[i].side = 1;
+      for (Proximity& x : p.other_way) {
+        x.side = 1;
+        p.contacts.push_back(x);
+      }
     }
     p.selection.select(p.contacts, choice, next_key_);
   }

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/base/workers.h"
 #include "core/collision/contact_selection.h"
 #include "core/collision/tissue_collider.h"
 #include "core/collision/tool_collider.h"
@@ -30,7 +31,7 @@ class Contact final : public Constraint {
   Param<Length> spacing{this, {.name = "spacing", .fallback = "2 mm", .min = "0.01 mm", .max = "100 mm", .doc = "contacts of a tool are no closer than this unless the surface turns"}};
   Param<int> max_contacts{this, {.name = "max_contacts", .fallback = "8", .min = "1", .max = "100", .doc = "most contacts of a tool with one surface"}};
   Param<Length> tissue_alarm{this, {.name = "tissue_alarm", .fallback = "0.5 mm", .min = "0.01 mm", .max = "10 mm", .doc = "the same distance between two surfaces"}};
-  Param<Length> tissue_spacing{this, {.name = "tissue_spacing", .fallback = "4 mm", .min = "0.05 mm", .max = "100 mm", .doc = "contacts of two surfaces are no closer than this; their vertices are sampled at half of it"}};
+  Param<Length> tissue_spacing{this, {.name = "tissue_spacing", .fallback = "4 mm", .min = "0.05 mm", .max = "100 mm", .doc = "contacts of two surfaces are no closer than this; their vertices are sampled at three quarters of it"}};
   Param<int> tissue_max_contacts{this, {.name = "tissue_max_contacts", .fallback = "16", .min = "1", .max = "200", .doc = "most contacts of one surface with another"}};
 
   void connect(PrepareContext& context, Simulation& simulation) override;
@@ -51,6 +52,7 @@ class Contact final : public Constraint {
     std::unique_ptr<TissueCollider> a_on_b, b_on_a;
     ContactSelection selection;
     std::vector<Proximity> contacts;
+    std::vector<Proximity> other_way;  ///< of b's vertices on a, before selection
     std::vector<int> rows;      ///< first row of each contact
     std::vector<Vec3> forces;   ///< along (normal, tangent, other tangent), N
     const Body* body_a() const { return tool_a ? static_cast<const Body*>(tool_a) : &a->surface->body(); }
@@ -59,13 +61,21 @@ class Contact final : public Constraint {
   const std::vector<Pair>& pairs() const { return pairs_; }
 
  private:
+  /// What one thread may search at a time: a pair, for two surfaces one way of it.
+  struct Search {
+    int pair;
+    bool other_way;
+  };
   bool owns(Simulation& simulation, const Body* a, const Body* b) const;
   std::shared_ptr<ContactSurface> shared_surface(Simulation& simulation, Surface* surface);
+  void search(const Search& what);
   void add_pairs(Simulation& simulation, Body* a, Body* b);
   void add_row(ConstraintBuilder& builder, int row, const Pair& pair, const Proximity& x, const Vec3& direction) const;
 
   std::vector<std::shared_ptr<ContactSurface>> surfaces_;
   std::vector<Pair> pairs_;
+  std::vector<Search> searches_;
+  Workers* workers_ = nullptr;
   std::uint64_t next_key_ = 0;
 };
 

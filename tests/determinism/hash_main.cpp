@@ -18,7 +18,7 @@ int main(int argc, char** argv) {
   Registry registry;
   register_builtin(registry);
   for (int a = 2; a < argc; ++a) {
-    auto result = load_simulation(argv[a], registry, 2);
+    auto result = load_simulation(argv[a], registry, 1);
     if (!result.simulation) {
       std::fprintf(stderr, "%s", result.diagnostics.format().c_str());
       return 2;

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Detection and selection allocate nothing once they have their room: every operator new of this program counts.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+#include "core/collision/contact_selection.h"
+#include "core/collision/shapes_for_test.h"
+#include "core/collision/tissue_collider.h"
+#include "core/collision/tool_collider.h"
+
+namespace {
+std::atomic<long> allocations{0};
+void* counted(std::size_t n) {
+  ++allocations;
+  if (void* p = std::malloc(n > 0 ? n : 1)) return p;
+  throw std::bad_alloc();
+}
+}  // namespace
+
+void* operator new(std::size_t n) { return counted(n); }
+void* operator new[](std::size_t n) { return counted(n); }
+void operator delete(void* p) noexcept { std::free(p); }
+void operator delete[](void* p) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+void operator delete[](void* p, std::size_t) noexcept { std::free(p); }
+
+namespace insula {
+namespace {
+
+TEST(Detection, AllocatesNothing) {
+  TriMesh lower = shapes::sphere(Vec3(0, 0, -0.03), 0.03, 4), upper = shapes::sphere(Vec3(0, 0, 0.0303), 0.03, 4);
+  CollisionMesh a, b;
+  a.build(lower.vertices, lower.triangles);
+  b.build(upper.vertices, upper.triangles);
+  std::vector<Vec3> up(lower.vertices.size(), Vec3(0, 0, 0.0008)), down(upper.vertices.size(), Vec3(0, 0, -0.0005));
+  ConvexPiece blade{"blade", {}, 0};
+  for (int i = 0; i < 8; ++i) blade.points.push_back({i & 1 ? 2e-4 : -2e-4, i & 2 ? 2e-3 : -2e-3, i & 4 ? 0.01 : 0.0});
+  ToolCollider tool({blade, {"rod", {Vec3(0, 0, 0.01), Vec3(0, 0, 0.05)}, 1e-3}}, a.triangle_count());
+  TissueCollider tissue(sample_vertices(upper.vertices, upper.triangles, 2e-3), upper.vertices);
+  std::vector<Proximity> found, faces;
+  found.reserve(2048);
+  faces.reserve(2048);
+  ContactSelection of_tool, of_tissue;
+  of_tool.reserve(2048, 8);
+  of_tissue.reserve(2048, 8);
+  std::uint64_t key = 0;
+  long seen = 0;
+  const long before = allocations;
+  for (int i = 0; i < 200; ++i) {
+    a.update(lower.vertices, up);
+    b.update(upper.vertices, down);
+    found.clear();
+    faces.clear();
+    const Pose start{Vec3(0.012 + 1e-4 * (i % 40), 0.001, 0.002 - 1e-4 * (i % 30)), from_rotation_vector(Vec3(0, 1.2, 0))};
+    const Pose free = displaced(start, (Vec6() << 1e-3, 5e-4, -4e-3, 0.01, 0.02, 0).finished());
+    tool.detect(a, start, free, {}, found);
+    tissue.detect(b, a, {}, faces);
+    of_tool.select(found, {}, key);
+    of_tissue.select(faces, {.spacing = 4e-3, .advantage = 0, .max_contacts = 8, .max_per_piece = 8}, key);
+    seen += long(found.size() + faces.size());
+  }
+  EXPECT_EQ(allocations - before, 0);
+  EXPECT_GT(seen, 400);
+}
+
+}  // namespace
+}  // namespace insula
