@@ -34,10 +34,10 @@ add_dependencies(insula_lcm insula_lcm_headers)
 insula_glob(core_src core/*.cpp)
 list(FILTER core_src EXCLUDE REGEX "/core/testing/|/core/bus/")
 add_library(insula_core STATIC ${core_src})
-target_include_directories(insula_core SYSTEM PUBLIC ${CHOLMOD_INCLUDE} ${BULLET_INCLUDE})
-target_compile_definitions(insula_core PUBLIC BT_USE_DOUBLE_PRECISION EIGEN_DONT_PARALLELIZE)
+target_include_directories(insula_core SYSTEM PUBLIC ${CHOLMOD_INCLUDE})
+target_compile_definitions(insula_core PUBLIC EIGEN_DONT_PARALLELIZE)
 target_link_libraries(insula_core PUBLIC insula_warnings Eigen3::Eigen fmt::fmt spdlog::spdlog nlohmann_json::nlohmann_json
-  EXPAT::EXPAT PkgConfig::ASSIMP PkgConfig::URDFDOM ${CHOLMOD_LIBRARY} ${BULLET_COLLISION_LIBRARY} ${BULLET_MATH_LIBRARY}
+  EXPAT::EXPAT PkgConfig::ASSIMP PkgConfig::URDFDOM ${CHOLMOD_LIBRARY}
   Threads::Threads ZLIB::ZLIB ${CMAKE_DL_LIBS})
 include(cmake/kernels.cmake OPTIONAL)
 

@@ -143,7 +143,7 @@ void write_bundle(const Simulation& simulation, const fs::path& dir, std::int64_
   json["hands"] = Json::array();
   for (std::size_t i = 0; i < simulation.instruments().size(); ++i) {
     const Instrument& tool = *simulation.instruments()[i];
-    const char* hand = tool.hand_index() ? "right" : "left";
+    const std::string hand = tool.hand();
     Json parts = Json::array();
     for (std::size_t p = 0; p < tool.tool().parts.size(); ++p) {
       const ToolPart& part = tool.tool().parts[p];
@@ -152,6 +152,7 @@ void write_bundle(const Simulation& simulation, const fs::path& dir, std::int64_
       parts.push_back(entry);
     }
     json["tools"].push_back({{"index", i}, {"id", tool.id}, {"hand", hand}, {"kind", tool.element}, {"parts", parts}});
+    if (tool.hand_index() < 0) continue;  // a table-mounted arm is nobody's hand
     const Pose home = tool.home_pose();
     json["hands"].push_back({{"hand", hand}, {"tool", i}, {"home_p_m", list(home.p)}, {"home_q", {home.q.w(), home.q.x(), home.q.y(), home.q.z()}}});
   }

@@ -13,16 +13,22 @@ Workers::Workers(int threads) {
 
 Workers::~Workers() {
   stop_ = true;
-  ++round_;
-  round_.notify_all();
+  ticket_ += std::uint64_t(1) << 32;
+  ticket_.notify_all();
   for (std::thread& t : threads_) t.join();
 }
 
-void Workers::work() {
+// Takes indices of the ticket's loop until none is left. A piece that was taken keeps the loop open, so call_ and task_
+// hold; a ticket of a loop that is over, or being set up, cannot be taken any more.
+void Workers::work(std::uint64_t ticket) {
+  const std::uint64_t round = ticket >> 32;
   for (;;) {
-    const int i = next_.fetch_add(1);
-    if (i >= count_) return;
-    call_(task_, i);
+    const int count = count_;
+    if (ticket >> 32 != round || int(ticket & closed) >= count || (ticket & closed) == closed) return;
+    if (!ticket_.compare_exchange_strong(ticket, ticket + 1)) continue;
+    call_(task_, int(ticket & closed));
+    if (done_.fetch_add(1) + 1 == count) done_.notify_all();
+    ticket = ticket_;
   }
 }
 
@@ -31,26 +37,25 @@ void Workers::run_raw(int count, Call call, void* task) {
     for (int i = 0; i < count; ++i) call(task, i);
     return;
   }
+  const std::uint64_t round = (ticket_ >> 32) + 1;
+  ticket_ = (round << 32) | closed;  // late comers of the last loop find it shut before anything changes
   count_ = count;
+  done_ = 0;
   call_ = call;
   task_ = task;
-  next_ = 0;
-  busy_ = int(threads_.size());
-  ++round_;
-  round_.notify_all();
-  work();
-  // The others are in their last piece or waking up in vain; both are short.
-  for (int left = busy_; left != 0; left = busy_) busy_.wait(left);
+  ticket_ = round << 32;
+  ticket_.notify_all();
+  work(round << 32);
+  for (int d = done_; d != count; d = done_) done_.wait(d);
 }
 
 void Workers::loop() {
-  std::uint64_t seen = 0;
-  for (;;) {
-    round_.wait(seen);
-    seen = round_;
-    if (stop_) return;
-    work();
-    if (busy_.fetch_sub(1) == 1) busy_.notify_all();
+  std::uint64_t seen = ticket_;
+  while (!stop_) {
+    work(seen);
+    const std::uint64_t now = ticket_;
+    if (now >> 32 == seen >> 32 && (now & closed) != 0) ticket_.wait(now);  // wakes for the next loop
+    seen = ticket_;
   }
 }
 

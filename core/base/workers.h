@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A few threads that share a loop. Which thread does which index is open, so loop bodies must not depend on it: then the
-// bits of a step are the same for any number of threads.
+// bits of a step are the same for any number of threads. The caller never waits for a thread that has not begun a piece:
+// on a busy machine it does the whole loop itself.
 #pragma once
 #include <atomic>
-#include <functional>
+#include <cstdint>
 #include <thread>
+#include <type_traits>
 #include <vector>
 
 namespace insula {
@@ -27,13 +29,13 @@ class Workers {
  private:
   using Call = void (*)(void*, int);
   void run_raw(int count, Call call, void* task);
-  void work();
+  void work(std::uint64_t ticket);
   void loop();
 
+  static constexpr std::uint64_t closed = 0xffffffff;  ///< low half of a ticket between loops
   std::vector<std::thread> threads_;
-  std::atomic<std::uint64_t> round_{0};
-  std::atomic<int> next_{0}, busy_{0};
-  int count_ = 0;
+  std::atomic<std::uint64_t> ticket_{closed};  ///< high half: loop number; low half: next index
+  std::atomic<int> count_{0}, done_{0};
   Call call_ = nullptr;
   void* task_ = nullptr;
   std::atomic<bool> stop_{false};

@@ -7,6 +7,7 @@ namespace insula {
 
 class Obstacle final : public Body {
  public:
+  void prepare(PrepareContext& context) override;
   int blocks() const override { return 0; }
   Vec3 position(const MaterialPoint& p) const override { return p.local; }
   Vec3 free_displacement(const MaterialPoint&) const override { return Vec3::Zero(); }

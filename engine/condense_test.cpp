@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Cutting a problem down keeps what the tools feel.
+#include "engine/condense.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "core/constraint/solve.h"
+
+namespace insula {
+namespace {
+
+// n box rows with a dense positive W; the tool touches the first `felt`.
+ConstraintProblem make(int n, int felt) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> u(-1, 1);
+  ConstraintProblem p;
+  p.resize(n);
+  const MatX a = MatX::NullaryExpr(n, n, [&] { return u(random); });
+  const MatX w = a * a.transpose() / n + 0.5 * MatX::Identity(n, n);
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n; ++j) p.w[std::size_t(i) * std::size_t(p.stride) + std::size_t(j)] = w(i, j);
+    p.delta_free[std::size_t(i)] = 1e-3 * u(random);
+    Block b;
+    b.id = std::uint64_t(100 + i);
+    b.row = i;
+    b.lower = 0;
+    p.blocks.push_back(b);
+  }
+  ToolTerms tool;
+  tool.jacobian.setZero(n, 6);
+  for (int i = 0; i < felt; ++i) tool.jacobian.row(i).setConstant(1.0 + i);
+  p.tools.push_back(tool);
+  SolveWorkspace ws;
+  ws.lambda.assign(std::size_t(n), 0.0);
+  solve(p, p.delta_free, {5000, 1e-15}, ws);
+  p.lambda = ws.lambda;
+  return p;
+}
+
+TEST(Condense, SmallProblemsAreCopied) {
+  const ConstraintProblem full = make(12, 3);
+  ConstraintProblem small;
+  condense(full, 12, small);
+  EXPECT_EQ(small.rows, 12);
+  EXPECT_EQ(small.w, full.w);
+  EXPECT_EQ(small.lambda, full.lambda);
+}
+
+TEST(Condense, KeepsTheFeltRowsAndTheirSolution) {
+  const ConstraintProblem full = make(60, 7);
+  ConstraintProblem small;
+  condense(full, 20, small);
+  ASSERT_EQ(small.rows, 20);
+  ASSERT_EQ(small.blocks.size(), 20u);
+  for (int i = 0; i < 7; ++i) {  // felt rows come along, in their order
+    EXPECT_EQ(small.blocks[std::size_t(i)].id, std::uint64_t(100 + i));
+    EXPECT_EQ(small.blocks[std::size_t(i)].row, i);
+    EXPECT_TRUE(small.tools[0].jacobian.row(i) == full.tools[0].jacobian.row(i));
+  }
+  // Solved from nothing, the small problem gives the forces of the full one.
+  SolveWorkspace ws;
+  ws.lambda.assign(20, 0.0);
+  solve(small, small.delta_free, {5000, 1e-15}, ws);
+  for (std::size_t i = 0; i < 20; ++i) {
+    const std::size_t row = std::size_t(small.blocks[i].id - 100);
+    EXPECT_NEAR(ws.lambda[i], full.lambda[row], 1e-12);
+    EXPECT_EQ(small.lambda[i], full.lambda[row]);
+  }
+}
+
+TEST(Condense, NeverSplitsAContact) {
+  ConstraintProblem full = make(60, 3);
+  full.blocks.clear();
+  for (int r = 0; r < 60; r += 3) {
+    Block b;
+    b.id = std::uint64_t(r);
+    b.row = r;
+    b.law = LawKind::friction;
+    b.friction = 0.2;
+    full.blocks.push_back(b);
+  }
+  ConstraintProblem small;
+  condense(full, 20, small);
+  EXPECT_EQ(small.rows, 18);
+  EXPECT_EQ(small.blocks.size(), 6u);
+}
+
+}  // namespace
+}  // namespace insula
