@@ -282,7 +282,7 @@ TEST_F(Play, InterruptEndsAllProcesses) {
   EXPECT_EQ(exit.status, 0) << exit.text();
   for (const pid_t p : pids) EXPECT_NE(::kill(p, 0), 0) << p;
   // All ended when asked: nobody had to be killed, so each said its last word or none.
-  EXPECT_EQ(session_->count("insula: ended"), 1);
+  EXPECT_TRUE(wait_for([&] { return session_->count("insula: ended") == 1; }));
 }
 
 TEST_F(Play, NothingIsLeftWhenTheSupervisorIsKilled) {
