@@ -228,6 +228,8 @@ class PlaySession {
         process_.read_lines([this](std::string_view line) { on_line(std::string(line)); });
         std::this_thread::sleep_for(5ms);
       }
+      // Its last words, written just before it ended.
+      if (process_.output() >= 0) process_.read_lines([this](std::string_view line) { on_line(std::string(line)); });
     });
     return error;
   }
