@@ -2,30 +2,11 @@
 // Detection and selection allocate nothing once they have their room: every operator new of this program counts.
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cstdlib>
-#include <new>
-
 #include "core/collision/contact_selection.h"
 #include "core/collision/shapes_for_test.h"
 #include "core/collision/tissue_collider.h"
 #include "core/collision/tool_collider.h"
-
-namespace {
-std::atomic<long> allocations{0};
-void* counted(std::size_t n) {
-  ++allocations;
-  if (void* p = std::malloc(n > 0 ? n : 1)) return p;
-  throw std::bad_alloc();
-}
-}  // namespace
-
-void* operator new(std::size_t n) { return counted(n); }
-void* operator new[](std::size_t n) { return counted(n); }
-void operator delete(void* p) noexcept { std::free(p); }
-void operator delete[](void* p) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t) noexcept { std::free(p); }
-void operator delete[](void* p, std::size_t) noexcept { std::free(p); }
+#include "core/testing/count_allocations.h"
 
 namespace insula {
 namespace {

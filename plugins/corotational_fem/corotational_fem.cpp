@@ -62,7 +62,7 @@ class CorotationalFem final : public ForceModel {
   Mat3 gradient(const Element& e, const double* x) const;
   bool crushed(const Mat3& strain) const;
   void stiffen(const Element& e, const Mat3& r, const Mat3& s, double* force, BlockMatrix* stiffness, double scale, bool project) const;
-  void spin_stiffness(const Element& e, const Mat3& r, const Mat3& s, double mu, double lambda, bool project, Mat3& out) const;
+  void spin_stiffness(const Mat3& r, const Mat3& s, double mu, double lambda, bool project, Mat3& out) const;
 
   std::vector<Element> elements_;
   std::vector<Quat> rotation_;
@@ -136,7 +136,7 @@ Mat3 CorotationalFem::gradient(const Element& e, const double* x) const {
 }
 
 // G' = R (2 mu I - 2 (2 mu - lambda tr e) (tr(S) I - S)^-1) R^T: how the spin of the element resists.
-void CorotationalFem::spin_stiffness(const Element&, const Mat3& r, const Mat3& s, double mu, double lambda, bool project, Mat3& out) const {
+void CorotationalFem::spin_stiffness(const Mat3& r, const Mat3& s, double mu, double lambda, bool project, Mat3& out) const {
   const double trace = s.trace();
   const double k = 2 * (2 * mu - lambda * (trace - 3));
   if (!project) {
@@ -244,7 +244,7 @@ void CorotationalFem::linearise(const double* x, double* force, BlockMatrix* sti
     const double wm = scale * e.volume * mu, wl = scale * e.volume * lambda;
     Mat3 spin_g;
     if (spin) {
-      spin_stiffness(e, r, s, mu, lambda, which == Tangent::system, spin_g);
+      spin_stiffness(r, s, mu, lambda, which == Tangent::system, spin_g);
       spin_g *= 0.5 * scale * e.volume;
     }
     for (int i = 0, k = 0; i < 4; ++i)

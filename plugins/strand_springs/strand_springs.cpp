@@ -101,7 +101,7 @@ void StrandSprings::generate(PrepareContext& context) {
     error(context, "no strand fits: the surfaces are nowhere closer than max_length within the ball");
 }
 
-void StrandSprings::detect(const StepContext& context) {
+void StrandSprings::detect(const StepContext&) {
   for (Strand& s : strands_) {
     s.blade = nullptr;
     if (s.parted) continue;
@@ -130,7 +130,6 @@ void StrandSprings::detect(const StepContext& context) {
     if (motion.norm() > 1e-9) s.push = motion.normalized();
     else if (s.push.norm() < 0.5) s.blade = nullptr;  // never moved: nothing to resist
   }
-  (void)context;
 }
 
 void StrandSprings::build(const StepContext&, ConstraintBuilder& builder) {
