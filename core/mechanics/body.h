@@ -17,10 +17,12 @@ class Body;
 /// A point that moves with a body.
 struct MaterialPoint {
   Body* body = nullptr;
-  int count = 0;                            ///< nodes used (soft bodies), 0 for rigid and fixed bodies
+  int count = 0;                            ///< nodes used (deformable bodies), 0 for rigid and fixed bodies
+  int link = 0;                             ///< rigid bodies: which link
   std::array<int, 4> node{};                ///< node indices
   std::array<double, 4> weight{};           ///< sum 1
-  Vec3 local = Vec3::Zero();                ///< body frame (rigid), scene frame (fixed), m
+  Vec3 local = Vec3::Zero();                ///< frame of the link (rigid), scene frame (fixed), m; deformable: a constant
+                                            ///< offset added to the weighted nodes, scene frame
 };
 
 class Body : public Component {
@@ -33,6 +35,8 @@ class Body : public Component {
   virtual void connect(PrepareContext&) {}
 
   virtual int blocks() const = 0;  ///< number of 3-blocks of degrees of freedom
+  /// Whether it takes part in the step; tools and clips that lie on the tray do not.
+  virtual bool active() const { return true; }
   /// Position at the start of the step (current q), scene frame.
   virtual Vec3 position(const MaterialPoint& p) const = 0;
   /// Displacement that the free motion gives the point over the step, linearised, scene frame. Valid after free_motion.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Base of every force plugin: mass, force, stiffness and energy of the soft body that owns it.
+// Base of every force plugin: mass, force, stiffness and energy of the deformable body that owns it.
 #pragma once
 #include <utility>
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace insula {
 
-class SoftBody;
+class DeformableBody;
 
 /// Which derivative of the force goes into the system matrix.
 enum class Tangent {
@@ -21,8 +21,8 @@ class ForceModel : public Component {
  public:
   static constexpr std::string_view kind_name = "force model";
 
-  /// Once, when the body's rest shape is known; may report errors.
-  virtual void attach(PrepareContext&, SoftBody&) {}
+  /// Once, when the body's rest shape is known; may report errors, also that the body is not of its topology.
+  virtual void attach(PrepareContext&, DeformableBody&) {}
   /// Pairs of nodes whose forces depend on each other.
   virtual void couplings(std::vector<std::pair<int, int>>& pairs) const = 0;
   /// Once, when the matrix pattern is known. free_of_node: node -> block of `a`, -1 when held.

@@ -30,11 +30,23 @@ Pose Instrument::home_pose() const {
 }
 
 void Instrument::reset() {
-  pose_ = device_ = last_device_ = free_pose_ = home_pose();
+  active_ = in_hand_at_start_;
+  pose_ = device_ = last_device_ = free_pose_ = hand_index() < 0 ? arm_pose(-infinite) : home_pose();
   velocity_.setZero();
   free_dq_.setZero();
   hand_force_.setZero();
   hand_state_ = {};
+}
+
+void Instrument::take_up(const Pose& device) {
+  reset();
+  pose_ = device_ = last_device_ = free_pose_ = device;
+  active_ = true;
+}
+
+void Instrument::lay_down() {
+  reset();
+  active_ = false;
 }
 
 MaterialPoint Instrument::point(const Vec3& scene_position) const {
@@ -56,7 +68,8 @@ void Instrument::add_row(BodyRows& out, const MaterialPoint& p, const Vec3& d) c
 void Instrument::free_motion(const StepContext& context) {
   const double h = context.h;
   last_device_ = device_;
-  if (hand_index() >= 0 && hand_state_.present) device_ = hand_state_.device;
+  if (hand_index() < 0) device_ = arm_pose(context.time + h);
+  else if (hand_state_.present) device_ = hand_state_.device;
   stiffness_.setZero();
   stiffness_.topLeftCorner<3, 3>().diagonal().setConstant(coupling());
   stiffness_.bottomRightCorner<3, 3>().diagonal().setConstant(angular_coupling());
@@ -136,6 +149,7 @@ void Instrument::fill_terms(ToolTerms& t, int problem_rows) const {
 }
 
 double Instrument::energy() const {
+  if (!active_) return 0;
   const Vec6 d = displacement(device_, pose_);
   return 0.5 * d.dot(stiffness_ * d) + 0.5 * velocity_.dot(inertia_ * velocity_);
 }
@@ -143,6 +157,7 @@ double Instrument::energy() const {
 void Instrument::append_state(std::vector<double>& out) const {
   out.insert(out.end(), {pose_.p.x(), pose_.p.y(), pose_.p.z(), pose_.q.w(), pose_.q.x(), pose_.q.y(), pose_.q.z()});
   for (int i = 0; i < 6; ++i) out.push_back(velocity_[i]);
+  out.push_back(active_);
 }
 
 }  // namespace insula

@@ -3,8 +3,7 @@
 // 6x6 system matrix. Instrument plugins add what their tip does.
 #pragma once
 #include "core/constraint/constraint.h"
-#include "core/mechanics/body.h"
-#include "core/model/tool_model.h"
+#include "core/mechanics/rigid_body.h"
 
 namespace insula {
 
@@ -16,12 +15,12 @@ struct HandState {
   bool button2 = false;
 };
 
-class Instrument : public Body {
+class Instrument : public RigidBody {
  public:
   static constexpr std::string_view kind_name = "instrument";
 
   Param<File> model{this, {.name = "model", .doc = "URDF of the tool"}};
-  Param<Choice> hand{this, {.name = "hand", .choices = {"left", "right", "none"}, .doc = "hand that holds the tool; none: a table-mounted arm holds it at home"}};
+  Param<Choice> hand{this, {.name = "hand", .choices = {"left", "right", "none"}, .doc = "hand that uses the tool; the first one of a hand is in it at the start, the others lie on the tray; none: a table-mounted arm holds it"}};
   Param<Vec<Length>> home{this, {.name = "home", .doc = "tip at the start, scene frame"}};
   Param<Vec<Scalar>> shaft{this, {.name = "shaft", .doc = "direction from the tip along the shaft to the handle at the start"}};
   Param<Vec<Scalar>> flat{this, {.name = "flat", .fallback = "0 0 1", .doc = "normal of the blade's flat side at the start"}};
@@ -31,6 +30,8 @@ class Instrument : public Body {
   Param<Mass> mass{this, {.name = "mass", .fallback = "0 g", .min = "0 g", .max = "1 kg", .doc = "mass that the coupling moves; 0: the tool follows the hand without lag"}};
 
   void prepare(PrepareContext& context) override;
+  /// Once: whether it begins in its hand or on the tray.
+  void start_in_hand(bool yes) { active_ = in_hand_at_start_ = yes; }
   int hand_index() const { return hand.is("right") ? 1 : hand.is("left") ? 0 : -1; }  ///< -1: held by an arm
   const ToolModel& tool() const { return tool_; }
   const Pose& pose() const { return pose_; }             ///< tool pose at the start of the step
@@ -39,6 +40,13 @@ class Instrument : public Body {
   const HandState& state() const { return hand_state_; }
   Pose home_pose() const;
   void set_hand(const HandState& s) { hand_state_ = s; }
+  /// In its hand (or on its arm); false: on the tray, out of the step.
+  bool active() const override { return active_; }
+  /// Tool exchange: into the hand, which is at `device`; or onto the tray.
+  virtual void take_up(const Pose& device);
+  virtual void lay_down();
+  /// Whether its hand may lay it down now; the reason why not, empty when it may.
+  virtual std::string why_kept() const { return {}; }
   /// Puts the tool somewhere at once; velocity and history stay (tests, replays).
   void place(const Pose& pose) { pose_ = pose; }
 
@@ -46,6 +54,9 @@ class Instrument : public Body {
   const Vec6& hand_force() const { return hand_force_; }
   /// Terms of the haptic problem (jacobian is filled from `rows`).
   void fill_terms(ToolTerms& terms, int problem_rows) const;
+
+  /// Where a table-mounted arm (hand="none") holds the tool at this time, s.
+  virtual Pose arm_pose(double) const { return home_pose(); }
 
   /// Cutting edges in the scene frame are active (default: whenever the tool has edges).
   virtual bool cutting() const { return !tool_.blade_edges.empty(); }
@@ -56,6 +67,9 @@ class Instrument : public Body {
   virtual void build(const StepContext&, ConstraintBuilder&) {}
   virtual void finish(const StepContext&, const ConstraintSolution&) {}
 
+  const std::vector<ConvexPiece>& link_pieces(int) const override { return tool_.pieces; }
+  Pose link_pose(int) const override { return pose_; }
+  Pose link_free_pose(int) const override { return free_pose_; }
   int blocks() const override { return 2; }
   Vec3 position(const MaterialPoint& p) const override { return pose_.apply(p.local); }
   Vec3 free_displacement(const MaterialPoint& p) const override;
@@ -71,6 +85,7 @@ class Instrument : public Body {
  private:
   ToolModel tool_;
   HandState hand_state_;
+  bool active_ = true, in_hand_at_start_ = true;
   Pose pose_, device_, last_device_, free_pose_;
   Vec6 velocity_ = Vec6::Zero(), free_dq_ = Vec6::Zero(), hand_force_ = Vec6::Zero();
   Mat6 compliance_ = Mat6::Zero(), gain_ = Mat6::Identity(), stiffness_ = Mat6::Zero();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Assembly and stepping of a soft body.
+// Reading a soft body's mesh.
 #include "core/mechanics/soft_body.h"
 
 #include "core/base/input_error.h"
@@ -15,125 +15,7 @@ void SoftBody::prepare(PrepareContext& context) {
       return;
     }
   }
-  q_.resize(3 * nodes());
-  for (int i = 0; i < nodes(); ++i) q_.segment<3>(3 * i) = rest_.nodes[std::size_t(i)];
-  v_ = VecX::Zero(3 * nodes());
-  external = VecX::Zero(3 * nodes());
-}
-
-void SoftBody::connect(PrepareContext& context) {
-  const std::size_t n = std::size_t(nodes());
-  forces_ = children_of<ForceModel>();
-  held_.assign(n, 0);
-  for (Support* s : children_of<Support>()) s->hold(context, rest_.nodes, held_);
-  free_.assign(n, -1);
-  free_count_ = 0;
-  for (std::size_t i = 0; i < n; ++i)
-    if (!held_[i]) free_[i] = free_count_++;
-
-  for (ForceModel* f : forces_) f->attach(context, *this);
-  std::vector<std::pair<int, int>> all, pairs;
-  for (ForceModel* f : forces_) f->couplings(all);
-  for (auto [i, j] : all)
-    if (free_[std::size_t(i)] >= 0 && free_[std::size_t(j)] >= 0)
-      pairs.emplace_back(free_[std::size_t(i)], free_[std::size_t(j)]);
-  a_.set_pattern(free_count_, std::move(pairs));
-  mass_.assign(n, 0.0);
-  damping_.assign(n, 0.0);
-  for (ForceModel* f : forces_) {
-    f->bind(a_, free_);
-    f->add_mass(mass_, damping_);
-  }
-  for (std::size_t i = 0; i < n; ++i)
-    if (!held_[i] && !(mass_[i] > 0)) {
-      error(context, "node " + std::to_string(i) + " has no mass; a force model with a density is needed");
-      return;
-    }
-  solver_ = std::make_unique<BlockCholesky>();
-  solver_->analyse(a_);
-  force_ = dq_ = correction_ = VecX::Zero(3 * nodes());
-  packed_ = VecX::Zero(3 * free_count_);
-}
-
-Vec3 SoftBody::position(const MaterialPoint& p) const {
-  Vec3 x = Vec3::Zero();
-  for (int k = 0; k < p.count; ++k) x += p.weight[std::size_t(k)] * q_.segment<3>(3 * p.node[std::size_t(k)]);
-  return x;
-}
-
-Vec3 SoftBody::free_displacement(const MaterialPoint& p) const {
-  Vec3 x = Vec3::Zero();
-  for (int k = 0; k < p.count; ++k) x += p.weight[std::size_t(k)] * dq_.segment<3>(3 * p.node[std::size_t(k)]);
-  return x;
-}
-
-void SoftBody::add_row(BodyRows& out, const MaterialPoint& p, const Vec3& d) const {
-  for (int k = 0; k < p.count; ++k)
-    if (p.weight[std::size_t(k)] != 0) out.add(p.node[std::size_t(k)], p.weight[std::size_t(k)] * d);
-}
-
-void SoftBody::free_motion(const StepContext& context) {
-  const double h = context.h;
-  force_ = external;
-  a_.set_zero();
-  for (ForceModel* f : forces_) f->linearise(q_.data(), force_.data(), &a_, h, Tangent::system);
-  double extra = 1;
-  for (int attempt = 0;; ++attempt) {
-    for (int i = 0; i < nodes(); ++i) {
-      const int b = free_[std::size_t(i)];
-      if (b < 0) continue;
-      const double inertia = mass_[std::size_t(i)] / (h * h) + damping_[std::size_t(i)] / h;
-      double* d = a_.block(a_.diagonal(b));
-      const double add = attempt == 0 ? inertia : (extra - extra / 10) * inertia;
-      d[0] += add;
-      d[4] += add;
-      d[8] += add;
-      if (attempt == 0)
-        packed_.segment<3>(3 * b) = force_.segment<3>(3 * i) + mass_[std::size_t(i)] * (context.gravity + v_.segment<3>(3 * i) / h);
-    }
-    // An indefinite matrix (force models promise not to make one) is met with ten times the inertia, as often as needed.
-    if (solver_->factorise(a_) || attempt == 12) break;
-    ++indefinite_;
-    extra *= 10;
-  }
-  solver_->solve(packed_.data());
-  dq_.setZero();
-  for (int i = 0; i < nodes(); ++i)
-    if (free_[std::size_t(i)] >= 0) dq_.segment<3>(3 * i) = packed_.segment<3>(3 * free_[std::size_t(i)]);
-}
-
-void SoftBody::compute_compliance(const BodyRows& r) { solver_->compute_compliance(r, free_); }
-void SoftBody::add_compliance(const BodyRows& r, double* w, int stride) { solver_->add_compliance(r, w, stride); }
-
-void SoftBody::apply(const StepContext& context, const BodyRows& r, const double* lambda) {
-  if (r.count() > 0) {
-    solver_->correct(r, lambda, packed_.data());
-    for (int i = 0; i < nodes(); ++i)
-      if (free_[std::size_t(i)] >= 0) dq_.segment<3>(3 * i) += packed_.segment<3>(3 * free_[std::size_t(i)]);
-  }
-  q_ += dq_;
-  v_ = dq_ / context.h;
-}
-
-void SoftBody::reset() {
-  for (int i = 0; i < nodes(); ++i) q_.segment<3>(3 * i) = rest_.nodes[std::size_t(i)];
-  v_.setZero();
-  external.setZero();
-  dq_.setZero();
-  indefinite_ = 0;
-  for (ForceModel* f : forces_) f->reset();
-}
-
-double SoftBody::energy() const {
-  double e = 0;
-  for (int i = 0; i < nodes(); ++i) e += 0.5 * mass_[std::size_t(i)] * v_.segment<3>(3 * i).squaredNorm();
-  for (ForceModel* f : forces_) e += f->energy(q_.data());
-  return e;
-}
-
-void SoftBody::append_state(std::vector<double>& out) const {
-  out.insert(out.end(), q_.data(), q_.data() + q_.size());
-  out.insert(out.end(), v_.data(), v_.data() + v_.size());
+  start_at_rest();
 }
 
 }  // namespace insula

@@ -3,6 +3,9 @@
 #include "core/mechanics/surface.h"
 
 #include "core/base/input_error.h"
+#include "core/collision/aabb_tree.h"
+#include "core/collision/closest.h"
+#include "core/mechanics/shell_body.h"
 #include "core/mechanics/soft_body.h"
 
 namespace insula {
@@ -11,6 +14,7 @@ void Surface::prepare(PrepareContext& context) {
   body_ = dynamic_cast<Body*>(parent);
   if (!body_) return error(context, "a surface belongs inside a body");
   auto* soft = dynamic_cast<SoftBody*>(body_);
+  auto* shell = dynamic_cast<ShellBody*>(body_);
   try {
     if (!mesh.empty()) {
       rest_ = read_surface(mesh(), mesh_unit());
@@ -25,6 +29,8 @@ void Surface::prepare(PrepareContext& context) {
           }
           i = number[std::size_t(i)];
         }
+    } else if (shell) {
+      rest_ = shell->rest();
     } else {
       return error(context, "this body has no mesh of its own: the surface needs a file (mesh=\"...\")");
     }
@@ -39,12 +45,49 @@ void Surface::prepare(PrepareContext& context) {
     if (e.outside_m > 0.005)
       return error(context, mesh, "the surface reaches " + std::to_string(e.outside_m * 1000) +
                                       " mm outside the body's tetrahedra; is its unit or frame another one?");
-    for (std::size_t i = 0; i < points_.size(); ++i) points_[i] = {body_, 4, e.nodes[i], e.weights[i], Vec3::Zero()};
+    for (std::size_t i = 0; i < points_.size(); ++i) points_[i] = {body_, 4, 0, e.nodes[i], e.weights[i], Vec3::Zero()};
+  } else if (shell) {
+    if (shell->rest().triangles.empty()) return;  // its own error is reported
+    if (!attach_to_shell(*shell)) return error(context, mesh, "the surface lies more than 5 mm off the body's wall; is its unit or frame another one?");
   } else {
-    for (std::size_t i = 0; i < points_.size(); ++i) points_[i] = {body_, 0, {}, {}, rest_.vertices[i]};
+    for (std::size_t i = 0; i < points_.size(); ++i) points_[i] = {body_, 0, 0, {}, {}, rest_.vertices[i]};
   }
   positions_ = rest_.vertices;
   free_.assign(positions_.size(), Vec3::Zero());
+}
+
+// A vertex follows the nearest triangle of the wall and keeps its distance to it; a surface of the body's own is its nodes.
+bool Surface::attach_to_shell(const ShellBody& shell) {
+  const TriMesh& wall = shell.rest();
+  if (mesh.empty()) {
+    for (std::size_t i = 0; i < points_.size(); ++i) points_[i] = {body_, 1, 0, {int(i)}, {1}, Vec3::Zero()};
+    return true;
+  }
+  AabbTree tree;
+  tree.build(wall.vertices, wall.triangles);
+  tree.refit(wall.vertices, {});
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const Vec3& x = rest_.vertices[i];
+    double least2 = 0.005 * 0.005;
+    int best = -1;
+    Vec3 bary = Vec3::Zero(), at = Vec3::Zero();
+    tree.nearest(x, nullptr, least2, [&](int t, double& limit2) {
+      const auto& v = wall.triangles[std::size_t(t)];
+      const Vec3 &a = wall.vertices[std::size_t(v[0])], &b = wall.vertices[std::size_t(v[1])], &c = wall.vertices[std::size_t(v[2])];
+      const Vec3 w = closest_on_triangle(x, a, b, c);
+      const Vec3 p = w[0] * a + w[1] * b + w[2] * c;
+      const double d2 = (p - x).squaredNorm();
+      if (d2 >= limit2) return;
+      limit2 = d2;
+      best = t;
+      bary = w;
+      at = p;
+    });
+    if (best < 0) return false;
+    const auto& v = wall.triangles[std::size_t(best)];
+    points_[i] = {body_, 3, 0, {v[0], v[1], v[2]}, {bary[0], bary[1], bary[2]}, x - at};
+  }
+  return true;
 }
 
 void Surface::update() {

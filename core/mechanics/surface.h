@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A surface that moves with its body: a fine triangle mesh embedded in the tetrahedra (or rigid, on an obstacle), for
-// contact and for the picture.
+// A surface that moves with its body, for contact and for the picture: a fine triangle mesh embedded in tetrahedra, riding
+// on a shell's wall, or rigid on an obstacle.
 #pragma once
 #include <array>
 #include <vector>
@@ -9,6 +9,8 @@
 #include "core/model/mesh.h"
 
 namespace insula {
+
+class ShellBody;
 
 class Surface : public Component {
  public:
@@ -40,6 +42,7 @@ class Surface : public Component {
   void add_row(BodyRows& rows, int triangle, const Vec3& bary, const Vec3& d) const;
 
  private:
+  bool attach_to_shell(const ShellBody& shell);
   Body* body_ = nullptr;
   TriMesh rest_;
   std::vector<MaterialPoint> points_;

@@ -8,6 +8,7 @@
 
 #include "core/base/diagnostic.h"
 #include "core/params/param.h"
+#include "core/registry/command.h"
 
 namespace insula {
 
@@ -45,6 +46,11 @@ class Component {
   /// parameters, build rest state. Report through the context; never throw for bad input. Called in document order,
   /// bodies first, children after their parent.
   virtual void prepare(PrepareContext&) {}
+
+  /// What it can be asked for while the scene runs.
+  virtual std::vector<CommandInfo> commands() const { return {}; }
+  /// Does it, between two steps. Returns why not; empty when done. Bad arguments are refused, never clamped.
+  virtual std::string run_command(std::string_view, std::string_view) { return "unknown command"; }
 
   const std::vector<ParamBase*>& params() const { return params_; }  ///< in order of declaration
   ParamBase* find_param(std::string_view name) const;

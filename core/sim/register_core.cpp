@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The elements that are not plugins.
 #include "core/mechanics/obstacle.h"
+#include "core/mechanics/shell_body.h"
 #include "core/mechanics/soft_body.h"
 #include "core/mechanics/surface.h"
 #include "core/registry/registry.h"
@@ -13,9 +14,11 @@ namespace insula {
 void register_core(Registry& registry) {
   register_scene(registry);
   registry.add<SoftBody>("soft_body", Kind::body, "a deformable body on a tetrahedral mesh");
+  registry.add<ShellBody>("shell_body", Kind::body, "a thin-walled body on a triangle surface, such as an artery");
   registry.add<Obstacle>("obstacle", Kind::body, "something that never moves");
   registry.add<Surface>("surface", Kind::surface, "a surface that follows its body, for contact and for the picture");
   registry.add<SolverSettings>("solver", Kind::settings, "limits of the constraint solver");
+  registry.add<SettleSettings>("settle", Kind::settings, "lets the scene come to rest before the exercise begins");
   registry.add<ViewSettings>("view", Kind::settings, "where the microscope stands at the start");
   registry.add<Exercise>("exercise", Kind::exercise, "goals, faults and motions of a training exercise");
   registry.add<MotionEntry>("motion", Kind::motion, "a scripted motion of both hands");

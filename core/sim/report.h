@@ -3,6 +3,7 @@
 #pragma once
 #include <array>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/constraint/solve.h"
@@ -31,6 +32,38 @@ struct StrandState {
   double tension = 0;   ///< N
 };
 
+/// A stretch of vessel, or the sac, as the blood sees it.
+struct VesselState {
+  std::string_view id;       ///< of the network element: "superior", "sac"; lives as long as the simulation
+  double pressure = 0;       ///< Pa, of this moment
+  double flow = 0;           ///< m3/s, mean of the last heartbeat
+  double flow_at_rest = 0;   ///< m3/s, the same before anything was touched
+  double lumen = 1;          ///< narrowest cross-section over its own at rest
+  double dye = 0;            ///< concentration of indocyanine green, 0..1
+};
+
+/// Blood outside the vessels.
+struct BleedingState {
+  bool open = false;         ///< there is a tear
+  double rate = 0;           ///< m3/s out of the tear, of this moment
+  double lost = 0;           ///< m3 since the tear
+  double height = 0;         ///< of the blood over the bottom of the field, m; 0: dry
+  Vec3 origin = Vec3::Zero();///< bottom of the field, scene frame
+  Vec3 up = Vec3::UnitZ();   ///< the blood's surface stands at origin + height * up, normal up
+  double radius = 0;         ///< of the field, m
+  double since = -1;         ///< simulated time of the rupture, s; -1: none yet
+};
+
+struct ClipState {
+  const Body* clip = nullptr;
+  const Body* holder = nullptr;  ///< the applier that holds it, null: released or on the tray
+  bool on_tray = true;
+  bool temporary = false;
+  double opening = 0;            ///< rad
+  double force = 0;              ///< of the blades on what is between them, N
+  int applications = 0;          ///< times it was released in the field
+};
+
 struct ToolReport {
   const Body* tool = nullptr;
   int hand = 0;
@@ -49,6 +82,10 @@ struct StepReport {
   std::vector<StrandState> strands;  ///< all sets in document order
   int strands_total = 0, strands_left = 0;
   std::vector<ToolReport> tools;
+  std::vector<VesselState> vessels;  ///< document order
+  std::vector<BleedingState> bleeding;
+  std::vector<ClipState> clips;
+  double heart_phase = 0;            ///< 0..1, 0 the start of systole
   std::array<double, stage_count> stage_ms{};
   double step_ms = 0;
   std::vector<Event> events;         ///< of this step, before the exercise speaks

@@ -12,6 +12,12 @@ class SolverSettings final : public Component {
   Param<Length> tolerance{this, {.name = "tolerance", .fallback = "1e-9 m", .min = "1e-15 m", .max = "1e-3 m", .doc = "a sweep that moves no row by more than this is the last"}};
 };
 
+class SettleSettings final : public Component {
+ public:
+  static constexpr std::string_view kind_name = "settings";
+  Param<Duration> time{this, {.name = "time", .min = "0 s", .max = "60 s", .doc = "simulated time before the exercise begins, in which arms take their places and tissue comes to rest"}};
+};
+
 class ViewSettings final : public Component {
  public:
   static constexpr std::string_view kind_name = "settings";

@@ -36,6 +36,10 @@ void StepReport::clear() {
   contacts.clear();
   strands.clear();
   tools.clear();
+  vessels.clear();
+  bleeding.clear();
+  clips.clear();
+  heart_phase = 0;
   events.clear();
   strands_total = strands_left = 0;
   rows = 0;
@@ -59,15 +63,15 @@ Simulation::Simulation(std::unique_ptr<Scene> scene, Diagnostics& diagnostics, i
     solve_settings_.tolerance_m = s.front()->tolerance();
   }
   if (auto v = scene_->all<ViewSettings>(); !v.empty()) view_ = v.front();
-  std::array<const Instrument*, 2> held{};
+  // A hand begins with its first tool; the others lie on the tray.
+  std::array<bool, 2> full{};
   for (Instrument* i : instruments_) {
     const int hand = i->hand_index();
     if (hand < 0) continue;
-    if (held[std::size_t(hand)])
-      i->error(prepare, i->hand, "the " + i->hand() + " hand already holds \"" + held[std::size_t(hand)]->id + "\"");
-    else
-      held[std::size_t(hand)] = i;
+    i->start_in_hand(!full[std::size_t(hand)]);
+    full[std::size_t(hand)] = true;
   }
+  if (auto s = scene_->all<SettleSettings>(); !s.empty()) settle_time_ = s.front()->time();
   for (Body* b : bodies_) b->connect(prepare);
   if (diagnostics.ok()) {
     for (Constraint* c : constraints_) c->connect(prepare, *this);
@@ -84,13 +88,14 @@ Simulation::Simulation(std::unique_ptr<Scene> scene, Diagnostics& diagnostics, i
   context_.h = scene_->time_step();
   context_.gravity = scene_->gravity();
   context_.events = &sink_;
+  if (diagnostics.ok() && settle_time_ > 0) reset();
 }
 
 Simulation::~Simulation() = default;
 
 Instrument* Simulation::instrument_of(int hand) const {
   for (Instrument* i : instruments_)
-    if (i->hand_index() == hand) return i;
+    if (i->hand_index() == hand && i->active()) return i;
   return nullptr;
 }
 
@@ -102,9 +107,13 @@ void Simulation::step() {
   report_.clear();
   sink_.clear();
   events_.clear();
+  for (Event& e : commanded_) sink_.emit(std::move(e));
+  commanded_.clear();
   StageClock clock(report_);
 
-  workers_.run(int(heavy_first_.size()), [this](int i) { heavy_first_[std::size_t(i)]->free_motion(context_); });
+  workers_.run(int(heavy_first_.size()), [this](int i) {
+    if (Body* b = heavy_first_[std::size_t(i)]; b->active()) b->free_motion(context_);
+  });
   clock.done(stage_free_motion);
 
   workers_.run(int(surfaces_.size()), [this](int i) {
@@ -116,7 +125,8 @@ void Simulation::step() {
 
   builder_->clear();
   for (Constraint* c : constraints_) c->build(context_, *builder_);
-  for (Instrument* i : instruments_) i->build(context_, *builder_);
+  for (Instrument* i : instruments_)
+    if (i->active()) i->build(context_, *builder_);
   builder_->finish();
   workers_.run(int(heavy_first_.size()), [this](int i) {
     Body* b = heavy_first_[std::size_t(i)];
@@ -135,18 +145,19 @@ void Simulation::step() {
   // The haptic problem wants the tools' terms of this step, before they move.
   std::size_t hands = 0;
   for (Instrument* i : instruments_)
-    if (i->hand_index() >= 0) ++hands;
+    if (i->hand_index() >= 0 && i->active()) ++hands;
   problem_.tools.resize(hands);
   hands = 0;
   for (Instrument* i : instruments_)
-    if (i->hand_index() >= 0) i->fill_terms(problem_.tools[hands++], problem_.rows);
+    if (i->hand_index() >= 0 && i->active()) i->fill_terms(problem_.tools[hands++], problem_.rows);
   workers_.run(int(heavy_first_.size()), [this](int i) {
     Body* b = heavy_first_[std::size_t(i)];
-    b->apply(context_, b->rows, workspace_.lambda.data());
+    if (b->active()) b->apply(context_, b->rows, workspace_.lambda.data());
   });
   const ConstraintSolution solution{problem_, workspace_.lambda.data(), workspace_.delta.data()};
   for (Constraint* c : constraints_) c->finish(context_, solution);
-  for (Instrument* i : instruments_) i->finish(context_, solution);
+  for (Instrument* i : instruments_)
+    if (i->active()) i->finish(context_, solution);
   remember_solution();
   clock.done(stage_correct);
 
@@ -189,6 +200,7 @@ void Simulation::make_report() {
   for (double e : energy_) r.energy += e;
   for (Constraint* c : constraints_) c->report(r);
   for (Instrument* i : instruments_) {
+    if (!i->active()) continue;
     ToolReport t;
     t.tool = i;
     t.hand = i->hand_index();
@@ -218,6 +230,7 @@ void Simulation::reset() {
   for (Constraint* c : constraints_) c->reset();
   if (exercise_) exercise_->reset();
   remembered_.clear();
+  commanded_.clear();
   context_.time = 0;
   context_.step = 0;
   problem_.resize(0);
@@ -228,6 +241,25 @@ void Simulation::reset() {
   report_.step = 0;
   events_.clear();
   sink_.clear();
+  if (settle_time_ > 0) settle();
+}
+
+// The exercise sees nothing of it, and time is negative until it begins.
+void Simulation::settle() {
+  const int n = int(std::ceil(settle_time_ / context_.h - 1e-9));
+  Exercise* const exercise = exercise_;
+  exercise_ = nullptr;
+  context_.step = -n;
+  for (int i = 0; i < n; ++i) {
+    context_.time = double(i - n) * context_.h;
+    step();
+  }
+  exercise_ = exercise;
+  context_.time = 0;
+  context_.step = 0;
+  events_.clear();
+  sink_.clear();
+  report_.events.clear();
 }
 
 std::uint64_t Simulation::state_hash() const {

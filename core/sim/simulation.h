@@ -33,6 +33,12 @@ class Simulation {
   /// What a hand asks for at the end of the coming step (0 left, 1 right).
   void set_hand(int hand, const HandState& state);
   void step();
+  /// What a viewer, a script or a complication asks for between two steps:
+  ///   exchange  "right applier"               the hand lays down its tool and takes that one
+  ///   ask       "bleeding rupture", "artery_pressure set_systolic 160"   a command of a component (Component::commands)
+  ///   message   "text"                        said to the trainee
+  /// Returns why it was not done; empty when done. What was done, and what was refused, becomes an event.
+  std::string command(std::string_view verb, std::string_view argument);
   /// Back to the start, to the same bits.
   void reset();
 
@@ -49,7 +55,7 @@ class Simulation {
   const std::vector<Constraint*>& constraints() const { return constraints_; }
   Exercise* exercise() const { return exercise_; }                        ///< null when the scene has none
   const ViewSettings* view() const { return view_; }
-  Instrument* instrument_of(int hand) const;
+  Instrument* instrument_of(int hand) const;  ///< the one in that hand now; null when there is none
   Workers& workers() { return workers_; }
   /// Events of the last step: constraints' first, then the exercise's.
   const std::vector<Event>& events() const { return events_; }
@@ -57,6 +63,9 @@ class Simulation {
   std::uint64_t state_hash() const;
 
  private:
+  std::string exchange(std::string_view argument);
+  std::string ask(std::string_view argument);
+  void settle();
   void warm_start();
   void remember_solution();
   void make_report();
@@ -83,6 +92,8 @@ class Simulation {
     std::array<double, 3> lambda;
   };
   std::vector<Remembered> remembered_;
+  std::vector<Event> commanded_;  ///< between the last step and the next
+  double settle_time_ = 0;
   std::vector<double> energy_;  ///< of each body, J
   StepReport report_;
 };

@@ -73,29 +73,37 @@ std::shared_ptr<ContactSurface> Contact::shared_surface(Simulation& simulation, 
 }
 
 void Contact::add_pairs(Simulation& simulation, Body* a, Body* b) {
-  auto* tool_a = dynamic_cast<Instrument*>(a);
-  auto* tool_b = dynamic_cast<Instrument*>(b);
+  auto* tool_a = dynamic_cast<RigidBody*>(a);
+  auto* tool_b = dynamic_cast<RigidBody*>(b);
   if (tool_b && !tool_a) return add_pairs(simulation, b, a);
   constexpr std::size_t room = 2048;  // proximities before selection
   if (tool_a && tool_b) {
-    Pair p;
-    p.tool_a = tool_a;
-    p.tool_b = tool_b;
-    for (const ConvexPiece& piece : tool_a->tool().pieces) p.pieces_a.push_back(rounded(piece));
-    for (const ConvexPiece& piece : tool_b->tool().pieces) p.pieces_b.push_back(rounded(piece));
-    p.contacts.reserve(room);
-    pairs_.push_back(std::move(p));
+    for (int i = 0; i < tool_a->links(); ++i)
+      for (int j = 0; j < tool_b->links(); ++j) {
+        Pair p;
+        p.tool_a = tool_a;
+        p.tool_b = tool_b;
+        p.link_a = i;
+        p.link_b = j;
+        for (const ConvexPiece& piece : tool_a->link_pieces(i)) p.pieces_a.push_back(rounded(piece));
+        for (const ConvexPiece& piece : tool_b->link_pieces(j)) p.pieces_b.push_back(rounded(piece));
+        p.contacts.reserve(room);
+        pairs_.push_back(std::move(p));
+      }
     return;
   }
   for (Surface* sb : b->children_of<Surface>()) {
     if (!sb->contact()) continue;
     if (tool_a) {
-      Pair p;
-      p.tool_a = tool_a;
-      p.b = shared_surface(simulation, sb);
-      p.tool_collider = std::make_unique<ToolCollider>(tool_a->tool().pieces, p.b->mesh.triangle_count());
-      p.contacts.reserve(room);
-      pairs_.push_back(std::move(p));
+      for (int i = 0; i < tool_a->links(); ++i) {
+        Pair p;
+        p.tool_a = tool_a;
+        p.link_a = i;
+        p.b = shared_surface(simulation, sb);
+        p.tool_collider = std::make_unique<ToolCollider>(tool_a->link_pieces(i), p.b->mesh.triangle_count());
+        p.contacts.reserve(room);
+        pairs_.push_back(std::move(p));
+      }
       continue;
     }
     for (Surface* sa : a->children_of<Surface>()) {
@@ -119,7 +127,7 @@ void Contact::connect(PrepareContext& context, Simulation& simulation) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j)
       if (all[i] == all[j]) return error(context, between, "between: \"" + all[i]->id + "\" is named twice");
-    if (dynamic_cast<Instrument*>(all[i])) continue;
+    if (dynamic_cast<RigidBody*>(all[i])) continue;
     const auto surfaces = all[i]->children_of<Surface>();
     if (std::none_of(surfaces.begin(), surfaces.end(), [](const Surface* s) { return s->contact(); }))
       return error(context, between, "between: \"" + all[i]->id + "\" has no surface to touch; give it a <surface/>");
@@ -156,10 +164,12 @@ void Contact::search(const Search& what) {
     settings.alarm = alarm();
     settings.max_recovery = std::max(settings.max_recovery, alarm());
     p.contacts.clear();
+    if (!p.active()) return;
+    const Pose start = p.tool_a->link_pose(p.link_a), free = p.tool_a->link_free_pose(p.link_a);
     if (p.tool_b)
-      detect_tools(p.pieces_a, p.tool_a->pose(), p.tool_a->free_pose(), p.pieces_b, p.tool_b->pose(), p.tool_b->free_pose(), settings, p.contacts);
+      detect_tools(p.pieces_a, start, free, p.pieces_b, p.tool_b->link_pose(p.link_b), p.tool_b->link_free_pose(p.link_b), settings, p.contacts);
     else
-      p.tool_collider->detect(p.b->mesh, p.tool_a->pose(), p.tool_a->free_pose(), settings, p.contacts);
+      p.tool_collider->detect(p.b->mesh, start, free, settings, p.contacts);
     return;
   }
   TissueContactSettings settings;
@@ -197,16 +207,8 @@ void Contact::detect(const StepContext& context) {
 // d of the relative displacement a - b at the contact.
 void Contact::add_row(ConstraintBuilder& builder, int row, const Pair& p, const Proximity& x, const Vec3& d) const {
   if (p.tool_a) {
-    MaterialPoint at;
-    at.body = p.tool_a;
-    at.local = x.local;
-    builder.point(row, at, d);
-    if (p.tool_b) {
-      at.body = p.tool_b;
-      at.local = x.other_local;
-      builder.point(row, at, -d);
-      return;
-    }
+    builder.point(row, p.tool_a->link_point(p.link_a, x.local), d);
+    if (p.tool_b) return builder.point(row, p.tool_b->link_point(p.link_b, x.other_local), -d);
     builder.surface_point(row, *p.b->surface, x.triangle, x.bary, -d);
     return;
   }

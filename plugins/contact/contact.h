@@ -9,7 +9,7 @@
 #include "core/collision/tissue_collider.h"
 #include "core/collision/tool_collider.h"
 #include "core/constraint/constraint.h"
-#include "core/mechanics/instrument.h"
+#include "core/mechanics/rigid_body.h"
 #include "core/mechanics/surface.h"
 #include "core/sim/report.h"
 
@@ -44,8 +44,9 @@ class Contact final : public Constraint {
 
   /// Two things that may touch, and what was found between them in this step.
   struct Pair {
-    Instrument* tool_a = nullptr;  ///< a is a tool ...
-    Instrument* tool_b = nullptr;
+    RigidBody* tool_a = nullptr;  ///< a is a link of a tool or clip ...
+    RigidBody* tool_b = nullptr;
+    int link_a = 0, link_b = 0;
     std::shared_ptr<ContactSurface> a, b;  ///< ... or a surface
     std::vector<RoundedPiece> pieces_a, pieces_b;  ///< tool against tool
     std::unique_ptr<ToolCollider> tool_collider;
@@ -55,6 +56,7 @@ class Contact final : public Constraint {
     std::vector<Proximity> other_way;  ///< of b's vertices on a, before selection
     std::vector<int> rows;      ///< first row of each contact
     std::vector<Vec3> forces;   ///< along (normal, tangent, other tangent), N
+    bool active() const { return (!tool_a || tool_a->active()) && (!tool_b || tool_b->active()); }
     const Body* body_a() const { return tool_a ? static_cast<const Body*>(tool_a) : &a->surface->body(); }
     const Body* body_b() const { return tool_b ? static_cast<const Body*>(tool_b) : &b->surface->body(); }
   };

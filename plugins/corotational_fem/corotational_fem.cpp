@@ -42,7 +42,7 @@ class CorotationalFem final : public ForceModel {
   Param<Scalar> least_stretch{this, {.name = "least_stretch", .fallback = "0.4", .min = "0", .max = "0.9", .doc = "principal stretch below which an element stiffens; 0: only once it is inverted"}};
   Param<Scalar> stiffening{this, {.name = "stiffening", .fallback = "30", .min = "0", .max = "1000", .doc = "stiffness below that stretch, in Young's moduli; 0: none"}};
 
-  void attach(PrepareContext& context, SoftBody& body) override;
+  void attach(PrepareContext& context, DeformableBody& body) override;
   void couplings(std::vector<std::pair<int, int>>& pairs) const override;
   void bind(const BlockMatrix& a, const std::vector<int>& free_of_node) override;
   void add_mass(std::vector<double>& mass, std::vector<double>& damping) const override;
@@ -69,8 +69,10 @@ class CorotationalFem final : public ForceModel {
   int nodes_ = 0;
 };
 
-void CorotationalFem::attach(PrepareContext&, SoftBody& body) {
-  const TetMesh& mesh = body.rest();
+void CorotationalFem::attach(PrepareContext& context, DeformableBody& body) {
+  const auto* solid = dynamic_cast<const SoftBody*>(&body);
+  if (!solid) return error(context, "needs tetrahedra: it belongs in a <soft_body>");
+  const TetMesh& mesh = solid->rest();
   nodes_ = body.nodes();
   elements_.resize(mesh.tets.size());
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {

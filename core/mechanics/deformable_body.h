@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A deformable body of any topology: nodes with lumped masses, force models, supports, and one implicit Euler
+// linearisation a step:
+//   (M/h^2 + C/h + K) dq = f + M v/h,   C = alpha M + beta K
+#pragma once
+#include <memory>
+
+#include "core/linalg/block_cholesky.h"
+#include "core/mechanics/body.h"
+#include "core/mechanics/force_model.h"
+
+namespace insula {
+
+class DeformableBody : public Body {
+ public:
+  /// Rest positions of the nodes, scene frame, m. Known after prepare().
+  virtual const std::vector<Vec3>& rest_nodes() const = 0;
+  /// Nodes that the topology itself holds (a shell's caps); supports hold more. Default: none.
+  virtual void hold_own(std::vector<char>&) const {}
+  void connect(PrepareContext& context) override;
+
+  int nodes() const { return int(rest_nodes().size()); }
+  const VecX& q() const { return q_; }    ///< 3 values a node, m
+  const VecX& v() const { return v_; }    ///< m/s
+  VecX& q() { return q_; }
+  VecX& v() { return v_; }
+  const std::vector<double>& node_mass() const { return mass_; }
+  const std::vector<char>& held() const { return held_; }
+  const std::vector<int>& free_of_node() const { return free_; }  ///< node -> block of the system matrix, -1 when held
+  const std::vector<ForceModel*>& forces() const { return forces_; }
+  const BlockCholesky& solver() const { return *solver_; }
+  /// Steps whose matrix was not positive definite; they were solved with more mass (see step()).
+  int indefinite_steps() const { return indefinite_; }
+  /// External force for the next steps, 3 values a node, N (tests, loads).
+  VecX external;
+
+  int blocks() const override { return nodes(); }
+  Vec3 position(const MaterialPoint& p) const override;
+  Vec3 free_displacement(const MaterialPoint& p) const override;
+  void add_row(BodyRows& rows, const MaterialPoint& p, const Vec3& d) const override;
+  void free_motion(const StepContext& context) override;
+  void compute_compliance(const BodyRows& rows) override;
+  void add_compliance(const BodyRows& rows, double* w, int stride) override;
+  void apply(const StepContext& context, const BodyRows& rows, const double* lambda) override;
+  void reset() override;
+  double energy() const override;
+  void append_state(std::vector<double>& out) const override;
+
+ protected:
+  /// Sizes q and v and puts the nodes at rest: the last act of a subclass' prepare().
+  void start_at_rest();
+
+ private:
+  std::vector<ForceModel*> forces_;
+  std::vector<char> held_;
+  std::vector<int> free_;
+  int free_count_ = 0;
+  std::vector<double> mass_, damping_;
+  VecX q_, v_, force_, dq_, correction_, packed_;
+  BlockMatrix a_;
+  std::unique_ptr<BlockCholesky> solver_;
+  int indefinite_ = 0;
+};
+
+}  // namespace insula

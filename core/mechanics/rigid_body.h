@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A rigid thing that is no obstacle: a hand-held tool, a clip. It has one or more links, each a set of convex pieces that
+// moves as one; contact asks for the poses of the links and nothing else.
+#pragma once
+#include <vector>
+
+#include "core/mechanics/body.h"
+#include "core/model/tool_model.h"
+
+namespace insula {
+
+class RigidBody : public Body {
+ public:
+  virtual int links() const { return 1; }
+  /// Convex pieces of a link, in the link's frame.
+  virtual const std::vector<ConvexPiece>& link_pieces(int link) const = 0;
+  virtual Pose link_pose(int link) const = 0;       ///< at the start of the step, scene frame
+  virtual Pose link_free_pose(int link) const = 0;  ///< at the end of the free motion
+  /// The material point of a link given in the link's frame.
+  MaterialPoint link_point(int link, const Vec3& local) const {
+    MaterialPoint p;
+    p.body = const_cast<RigidBody*>(this);
+    p.link = link;
+    p.local = local;
+    return p;
+  }
+};
+
+}  // namespace insula

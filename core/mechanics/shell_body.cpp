@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Reading a shell's surface and telling its wall from its caps.
+#include "core/mechanics/shell_body.h"
+
+#include <algorithm>
+
+#include "core/base/input_error.h"
+
+namespace insula {
+
+void ShellBody::set_mesh(TriMesh m) {
+  VesselModel model;
+  model.wall = std::move(m);
+  set_model(std::move(model));
+}
+
+void ShellBody::set_model(VesselModel m) {
+  model_ = std::move(m);
+  given_ = true;
+}
+
+void ShellBody::prepare(PrepareContext& context) {
+  if (!given_) {
+    if (vessel.empty() == mesh.empty()) return error(context, "a shell needs a vessel or a mesh, one of the two");
+    try {
+      if (!vessel.empty()) model_ = read_vessel(vessel());
+      else model_.wall = read_surface(mesh(), mesh_unit());
+    } catch (const InputError& e) {
+      return vessel.empty() ? error(context, mesh, e.what()) : error(context, vessel, e.what());
+    }
+  }
+  finish_model();
+  start_at_rest();
+}
+
+void ShellBody::finish_model() {
+  if (model_.regions.empty()) {
+    model_.regions = {"wall"};
+    model_.vertex_region.assign(model_.wall.vertices.size(), 0);
+  }
+  std::vector<char> cap(model_.wall.triangles.size(), 0);
+  for (const auto& c : model_.caps)
+    for (int t : c.triangles) cap[std::size_t(t)] = 1;
+  wall_.clear();
+  for (std::size_t t = 0; t < cap.size(); ++t)
+    if (!cap[t]) wall_.push_back(model_.wall.triangles[t]);
+}
+
+void ShellBody::hold_own(std::vector<char>& held) const {
+  for (const auto& c : model_.caps)
+    for (int t : c.triangles)
+      for (int v : model_.wall.triangles[std::size_t(t)]) held[std::size_t(v)] = 1;
+}
+
+int ShellBody::region(std::string_view name) const {
+  for (std::size_t i = 0; i < model_.regions.size(); ++i)
+    if (model_.regions[i] == name) return int(i);
+  return -1;
+}
+
+int ShellBody::region_of_triangle(const std::array<int, 3>& t) const {
+  const auto r = [&](int k) { return model_.vertex_region[std::size_t(t[std::size_t(k)])]; };
+  if (r(0) == r(1) || r(0) == r(2)) return r(0);
+  if (r(1) == r(2)) return r(1);
+  return std::min({r(0), r(1), r(2)});
+}
+
+}  // namespace insula
