@@ -60,6 +60,8 @@ class Constraint : public Component {
 
   /// Once, after every component is prepared: generate what spans bodies. May report errors.
   virtual void connect(PrepareContext&, Simulation&) {}
+  /// Once the scene has settled (<settle>), before the exercise begins; again after every reset. May report errors.
+  virtual void settled(PrepareContext&) {}
   /// Stage 2, collision: find what is close. Free motion is known. Default: nothing.
   virtual void detect(const StepContext&) {}
   /// Stage 3: add rows.

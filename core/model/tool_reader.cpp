@@ -90,7 +90,7 @@ class ToolReader {
       h.multiplier = joint.mimic->multiplier;
       if (!std::isfinite(h.multiplier) || h.multiplier == 0) fail(file_, what + ": the multiplier of its <mimic> must be finite and not zero");
       if (joint.mimic->offset != 0) fail(file_, what + ": the offset of its <mimic> must be 0");
-      const auto [least, most] = std::minmax(h.multiplier * tool_.opening_min, h.multiplier * tool_.opening_max);
+      const auto [least, most] = std::minmax({h.multiplier * tool_.opening_min, h.multiplier * tool_.opening_max});
       if (least < lower - 1e-6 || most > upper + 1e-6) fail(file_, what + ": its limits are narrower than those of the joint it mimics");
     } else {
       tool_.opening_min = lower;

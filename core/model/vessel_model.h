@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A vessel as made by tools/artery: wall surface with named regions, the caps that close it, and its centrelines.
+// A vessel for simulation: its closed wall with named regions, caps and centrelines, as tools/artery writes it.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -9,29 +9,39 @@
 
 namespace insula {
 
+/// Lengths in metres, positions in the frame of the files.
 struct VesselModel {
-  TriMesh wall;                           ///< watertight, caps included; m, scene frame
-  std::vector<std::string> regions;       ///< names, unique
-  std::vector<int> vertex_region;         ///< one a vertex
   struct Cap {
-    std::string name;                     ///< "inlet", "superior_outlet", ...
-    std::vector<int> triangles;           ///< of `wall`
+    std::string name;
+    std::vector<int> triangles;  ///< of the wall, ascending
   };
-  std::vector<Cap> caps;
   struct Centreline {
-    std::string name, region, from, to;   ///< from and to: names of caps or of junctions
-    std::vector<Vec3> points;             ///< m
-    std::vector<double> radius;           ///< of the lumen at each point, m
+    std::string name;
+    std::string region;          ///< one of `regions`
+    std::string from, to;        ///< caps, "bifurcation", "dome"
+    std::vector<Vec3> points;    ///< two or more, in flow direction
+    std::vector<double> radius;  ///< one a point, > 0
   };
+
+  TriMesh wall;                    ///< closed, outward, caps included; vertices numbered as in wall.ply
+  std::vector<std::string> regions;
+  std::vector<int> vertex_region;  ///< index into regions, one a wall vertex
+  std::vector<Cap> caps;
   std::vector<Centreline> centrelines;
-  Vec3 neck_centre = Vec3::Zero(), neck_normal = Vec3::UnitZ();  ///< the normal points to the dome
-  double neck_diameter = 0;               ///< m; 0: the vessel has no aneurysm
-  double dome_height = 0;                 ///< m
+
+  bool has_neck = false;           ///< a vessel without an aneurysm has none
+  Vec3 neck_centre = Vec3::Zero(), neck_normal = Vec3::UnitZ();  ///< unit, towards the dome
+  double neck_diameter = 0;
+  double dome_height = 0;          ///< over the neck's plane; 0 without a neck
+  double bleb_radius = 0;          ///< 0 when there is no bleb
   Vec3 bleb_centre = Vec3::Zero();
-  double bleb_radius = 0;                 ///< m
+
+  /// Index of a region, or -1.
+  int region(const std::string& name) const;
 };
 
-/// Reads vessel.json and the surface beside it. Checks sizes, indices, finiteness, names, closedness; throws InputError.
-VesselModel read_vessel(const std::filesystem::path& json);
+/// Reads vessel.json and the wall.ply beside it. Throws InputError: unreadable, malformed, wrong unit, sizes that do not
+/// fit one another, indices out of range, names used twice, not finite, a wall that is open or turned inside out.
+VesselModel read_vessel(const std::filesystem::path& json_file);
 
 }  // namespace insula

@@ -80,6 +80,11 @@ Simulation::Simulation(std::unique_ptr<Scene> scene, Diagnostics& diagnostics, i
       exercise_ = e.front();
       exercise_->connect(prepare, *this);
     }
+    if (auto c = scene_->all<Complications>(); !c.empty()) {
+      complications_ = c.front();
+      complications_->connect(prepare, *this);
+      complications_->draw(0, *this);
+    }
   }
   heavy_first_ = bodies_;
   std::stable_sort(heavy_first_.begin(), heavy_first_.end(), [](Body* a, Body* b) { return a->blocks() > b->blocks(); });
@@ -88,7 +93,7 @@ Simulation::Simulation(std::unique_ptr<Scene> scene, Diagnostics& diagnostics, i
   context_.h = scene_->time_step();
   context_.gravity = scene_->gravity();
   context_.events = &sink_;
-  if (diagnostics.ok() && settle_time_ > 0) reset();
+  if (diagnostics.ok() && settle_time_ > 0) settle(diagnostics);
 }
 
 Simulation::~Simulation() = default;
@@ -107,6 +112,7 @@ void Simulation::step() {
   report_.clear();
   sink_.clear();
   events_.clear();
+  if (complications_ && context_.step >= 0) complications_->act(*this);
   for (Event& e : commanded_) sink_.emit(std::move(e));
   commanded_.clear();
   StageClock clock(report_);
@@ -125,8 +131,8 @@ void Simulation::step() {
 
   builder_->clear();
   for (Constraint* c : constraints_) c->build(context_, *builder_);
-  for (Instrument* i : instruments_)
-    if (i->active()) i->build(context_, *builder_);
+  for (Body* b : bodies_)
+    if (b->active()) b->build(context_, *builder_);
   builder_->finish();
   workers_.run(int(heavy_first_.size()), [this](int i) {
     Body* b = heavy_first_[std::size_t(i)];
@@ -156,8 +162,8 @@ void Simulation::step() {
   });
   const ConstraintSolution solution{problem_, workspace_.lambda.data(), workspace_.delta.data()};
   for (Constraint* c : constraints_) c->finish(context_, solution);
-  for (Instrument* i : instruments_)
-    if (i->active()) i->finish(context_, solution);
+  for (Body* b : bodies_)
+    if (b->active()) b->finish(context_, solution);
   remember_solution();
   clock.done(stage_correct);
 
@@ -199,6 +205,7 @@ void Simulation::make_report() {
   });
   for (double e : energy_) r.energy += e;
   for (Constraint* c : constraints_) c->report(r);
+  for (const Body* b : bodies_) b->report(r);
   for (Instrument* i : instruments_) {
     if (!i->active()) continue;
     ToolReport t;
@@ -229,6 +236,7 @@ void Simulation::reset() {
   for (Surface* s : surfaces_) s->update();
   for (Constraint* c : constraints_) c->reset();
   if (exercise_) exercise_->reset();
+  if (complications_) complications_->draw(complication_seed_, *this);
   remembered_.clear();
   commanded_.clear();
   context_.time = 0;
@@ -241,11 +249,19 @@ void Simulation::reset() {
   report_.step = 0;
   events_.clear();
   sink_.clear();
-  if (settle_time_ > 0) settle();
+  if (settle_time_ > 0) {
+    Diagnostics none;  // the same as at the start, where they were reported
+    settle(none);
+  }
+}
+
+void Simulation::draw_complications(std::uint64_t seed) {
+  complication_seed_ = seed;
+  if (complications_) complications_->draw(seed, *this);
 }
 
 // The exercise sees nothing of it, and time is negative until it begins.
-void Simulation::settle() {
+void Simulation::settle(Diagnostics& diagnostics) {
   const int n = int(std::ceil(settle_time_ / context_.h - 1e-9));
   Exercise* const exercise = exercise_;
   exercise_ = nullptr;
@@ -255,6 +271,9 @@ void Simulation::settle() {
     step();
   }
   exercise_ = exercise;
+  for (Surface* s : surfaces_) s->update();
+  PrepareContext prepare{diagnostics, context_.h};
+  for (Constraint* c : constraints_) c->settled(prepare);
   context_.time = 0;
   context_.step = 0;
   events_.clear();

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/base/workers.h"
@@ -16,6 +17,7 @@
 #include "core/mechanics/instrument.h"
 #include "core/mechanics/surface.h"
 #include "core/scene/scene.h"
+#include "core/sim/complications.h"
 #include "core/sim/exercise.h"
 #include "core/sim/report.h"
 #include "core/sim/settings.h"
@@ -39,6 +41,12 @@ class Simulation {
   ///   message   "text"                        said to the trainee
   /// Returns why it was not done; empty when done. What was done, and what was refused, becomes an event.
   std::string command(std::string_view verb, std::string_view argument);
+  /// An event of the coming step.
+  void announce(Event event) { commanded_.push_back(std::move(event)); }
+  /// Takes away what the coming step would announce: for who cannot wait for it, as while paused.
+  std::vector<Event> take_announced() { return std::exchange(commanded_, {}); }
+  /// Draws the scene's complications anew from that seed, now and after every reset; 0: from the scene's own.
+  void draw_complications(std::uint64_t seed);
   /// Back to the start, to the same bits.
   void reset();
 
@@ -53,6 +61,7 @@ class Simulation {
   const std::vector<Instrument*>& instruments() const { return instruments_; }
   const std::vector<Surface*>& surfaces() const { return surfaces_; }
   const std::vector<Constraint*>& constraints() const { return constraints_; }
+  Complications* complications() const { return complications_; }         ///< null when the scene has none
   Exercise* exercise() const { return exercise_; }                        ///< null when the scene has none
   const ViewSettings* view() const { return view_; }
   Instrument* instrument_of(int hand) const;  ///< the one in that hand now; null when there is none
@@ -65,7 +74,7 @@ class Simulation {
  private:
   std::string exchange(std::string_view argument);
   std::string ask(std::string_view argument);
-  void settle();
+  void settle(Diagnostics& diagnostics);
   void warm_start();
   void remember_solution();
   void make_report();
@@ -78,6 +87,8 @@ class Simulation {
   std::vector<Surface*> surfaces_;
   std::vector<Constraint*> constraints_;
   Exercise* exercise_ = nullptr;
+  Complications* complications_ = nullptr;
+  std::uint64_t complication_seed_ = 0;
   const ViewSettings* view_ = nullptr;
   SolveSettings solve_settings_;
   StepContext context_;

@@ -40,13 +40,18 @@ void StrandSprings::connect(PrepareContext& context, Simulation& simulation) {
   if (bool(from) != bool(to)) return error(context, "from and to belong together");
   if (from) {
     if (&from->body() == &to->body()) return error(context, to, "to: the strands would tie a body to itself");
-    generate(context);
+    if (made.is("at_rest")) generate(context);
   }
 }
 
+void StrandSprings::settled(PrepareContext& context) {
+  if (!from || !made.is("settled")) return;
+  strands_.clear();
+  generate(context);
+}
+
 void StrandSprings::generate(PrepareContext& context) {
-  const TriMesh& mesh = from->rest();
-  const TriMesh& other = to->rest();
+  const TriMesh mesh{from->positions(), from->triangles()}, other{to->positions(), to->triangles()};
   const std::vector<Vec3> normals = vertex_normals(mesh), other_normals = vertex_normals(other);
   const NearestVertices nearest(other.vertices, max_length());
   std::vector<int> found;
@@ -210,6 +215,7 @@ int StrandSprings::left() const {
 }
 
 void StrandSprings::reset() {
+  if (made.is("settled")) strands_.clear();
   for (Strand& s : strands_) {
     s.wear = s.tension = 0;
     s.parted = false;

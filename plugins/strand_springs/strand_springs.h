@@ -17,6 +17,7 @@ class StrandSprings final : public Constraint {
   Param<Length> max_length{this, {.name = "max_length", .fallback = "3 mm", .min = "0.01 mm", .max = "50 mm", .doc = "no strand is longer at rest"}};
   Param<Vec<Length>> centre{this, {.name = "centre", .fallback = "0 0 0 m", .doc = "centre of the ball that strands start in"}};
   Param<Length> radius{this, {.name = "radius", .fallback = "10 m", .min = "0.1 mm", .max = "10 m", .doc = "radius of that ball"}};
+  Param<Choice> made{this, {.name = "made", .fallback = "at_rest", .choices = {"at_rest", "settled"}, .doc = "when the strands are spun: between the surfaces at rest, or as they lie once the scene has settled"}};
   Param<int> seed{this, {.name = "seed", .fallback = "1", .min = "0", .max = "2147483647", .doc = "start of the random choice"}};
   Param<Stiffness> stiffness{this, {.name = "stiffness", .fallback = "20 N/m", .min = "0.001 N/m", .max = "100000 N/m", .doc = "of a whole strand"}};
   Param<Scalar> slack{this, {.name = "slack", .fallback = "1.1", .min = "0.5", .max = "3", .doc = "length without tension over the length at the start"}};
@@ -30,6 +31,7 @@ class StrandSprings final : public Constraint {
   void add_strand(const MaterialPoint& a, const MaterialPoint& b);
 
   void connect(PrepareContext& context, Simulation& simulation) override;
+  void settled(PrepareContext& context) override;
   void detect(const StepContext& context) override;
   void build(const StepContext& context, ConstraintBuilder& builder) override;
   void finish(const StepContext& context, const ConstraintSolution& solution) override;

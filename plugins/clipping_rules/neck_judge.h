@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a clip has left of an aneurysm, from the shape of the wall and the line of the blades.
+//
+// Sindou, Acevedo, Turjman 1998 grade the remnant: I less than half of the neck, II more than half of the neck, III a lobe
+// of the sac, IV less than three quarters of the sac, V more. Here 0 stands for nothing left.
+//   neck      the ring of wall vertices at the neck plane; a vertex is left open when it is farther from the blades than
+//             half their width and `margin`
+//   sac       the share of the sac's wall that lies between the neck and the blades
+//   lobe      the bleb lies on the near side of the blades while most of the sac does not
+#pragma once
+#include <vector>
+
+#include "core/mechanics/shell_body.h"
+#include "core/sim/report.h"
+
+namespace insula {
+
+struct NeckJudgement {
+  int grade = 5;              ///< 0..5
+  double neck_open = 1;       ///< share of the neck ring that is left
+  double sac_open = 1;        ///< share of the sac's wall that is left
+  double tip_past_neck = 0;   ///< how far the blades' tips reach beyond the far side of the neck, m; negative: short of it
+  double gap = 0;             ///< slit between the blades that close most, m
+  int clips = 0;              ///< clips on the neck
+};
+
+class NeckJudge {
+ public:
+  double margin = 0.6e-3;     ///< m
+  double near_neck = 6e-3;    ///< a clip whose blades are farther from the neck is not one on the neck, m
+
+  /// False when the vessel has no aneurysm (no neck, or no region "sac").
+  bool attach(const ShellBody& vessel);
+  /// `sealed`: no blood passes the neck. Neither allocates nor writes anywhere but the result.
+  NeckJudgement judge(const std::vector<ClipState>& clips, bool sealed) const;
+
+ private:
+  struct Patch {
+    int node;
+    double area;  ///< at rest, m2
+  };
+  const ShellBody* vessel_ = nullptr;
+  std::vector<Patch> ring_, sac_;
+  std::vector<int> bleb_;
+  double ring_area_ = 0, sac_area_ = 0;
+  Vec3 up_ = Vec3::UnitZ();  ///< towards the dome
+};
+
+}  // namespace insula

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/*
+# rupture_rules
+
+Goals and clocks of an intraoperative rupture.
+
+- `fault_rupture` counts a rupture (one that the trainee caused, or any).
+- `goal_bleeding_stopped` is reached when a tear, once open, has let out no more than `rate` for `hold`.
+- `timer_rupture` runs from the rupture until a permanent clip is on and the bleeding stands; beyond `limit` the exercise has failed.
+- `timer_temporary_clip` runs while a temporary clip is on; beyond `limit` (three minutes: longer occlusion risks a stroke) it
+  counts a fault.
+- `goal_temporary_removed` is reached when a temporary clip that was on is off again, with a permanent clip on and no bleeding.
+*/
+#include <algorithm>
+
+#include "core/registry/registry.h"
+#include "core/sim/exercise.h"
+#include "core/sim/simulation.h"
+
+namespace insula {
+namespace {
+
+bool released(const ClipState& c) { return !c.on_tray && !c.holder; }
+bool any_clip(const StepReport& r, bool temporary) {
+  return std::any_of(r.clips.begin(), r.clips.end(), [&](const ClipState& c) { return released(c) && c.temporary == temporary; });
+}
+double bleeding_rate(const StepReport& r) {
+  double rate = 0;
+  for (const BleedingState& b : r.bleeding) rate += b.rate;
+  return rate;
+}
+double ruptured_at(const StepReport& r) {
+  double at = -1;
+  for (const BleedingState& b : r.bleeding)
+    if (b.since >= 0 && (at < 0 || b.since < at)) at = b.since;
+  return at;
+}
+
+class FaultRupture final : public ExerciseRule {
+ public:
+  Param<std::string> text{this, {.name = "text", .fallback = "The aneurysm has ruptured", .doc = "what the trainee is told"}};
+  Param<bool> fails{this, {.name = "fails", .fallback = "false", .doc = "whether the exercise ends with it"}};
+  void declare(PrepareContext&, const Simulation&, ExerciseLog& log) override { fault_ = log.add_fault(id, text()); }
+  void observe(const StepReport& r, ExerciseLog& log) override {
+    for (const Event& e : r.events) {
+      if (e.kind != "rupture") continue;
+      log.fault(fault_, r.time, e.value);
+      if (fails()) log.fail(text(), r.time);
+    }
+  }
+
+ private:
+  int fault_ = 0;
+};
+
+class GoalBleedingStopped final : public ExerciseRule {
+ public:
+  Param<std::string> text{this, {.name = "text", .fallback = "Stop the bleeding", .doc = "what the trainee is to do"}};
+  Param<FlowRate> rate{this, {.name = "rate", .fallback = "1 ml/min", .min = "0 ml/min", .max = "1000 ml/min", .doc = "bleeding that counts as none"}};
+  Param<Duration> hold{this, {.name = "hold", .fallback = "2 s", .min = "0 s", .max = "600 s", .doc = "how long it must stand"}};
+  void declare(PrepareContext&, const Simulation&, ExerciseLog& log) override { goal_ = log.add_goal(id, text()); }
+  void observe(const StepReport& r, ExerciseLog& log) override {
+    const bool dry = ruptured_at(r) >= 0 && bleeding_rate(r) <= rate();
+    held_ = dry ? held_ + r.h : 0;
+    if (dry && held_ >= hold()) log.goal(goal_, r.time);
+    if (!dry && log.goals()[std::size_t(goal_)].done) log.goal_lost(goal_, r.time);
+  }
+  void reset() override { held_ = 0; }
+
+ private:
+  int goal_ = 0;
+  double held_ = 0;
+};
+
+class TimerRupture final : public ExerciseRule {
+ public:
+  Param<std::string> text{this, {.name = "text", .fallback = "From rupture to the final clip", .doc = "what the clock is called"}};
+  Param<std::string> over{this, {.name = "over", .fallback = "Too much time has passed since the rupture", .doc = "what the trainee is told when the time is over"}};
+  Param<Duration> limit{this, {.name = "limit", .fallback = "300 s", .min = "1 s", .max = "7200 s", .doc = "time until the exercise has failed"}};
+  Param<FlowRate> rate{this, {.name = "rate", .fallback = "1 ml/min", .min = "0 ml/min", .max = "1000 ml/min", .doc = "bleeding that counts as none"}};
+  void declare(PrepareContext&, const Simulation&, ExerciseLog& log) override { timer_ = log.add_timer(id, text(), limit()); }
+  void observe(const StepReport& r, ExerciseLog& log) override {
+    const double since = ruptured_at(r);
+    if (since < 0) return;
+    const bool mastered = any_clip(r, false) && !any_clip(r, true) && bleeding_rate(r) <= rate();
+    if (!mastered) elapsed_ = r.time - since;
+    log.timer(timer_, elapsed_, !mastered);
+    if (elapsed_ > limit()) log.fail(over(), r.time);
+  }
+  void reset() override { elapsed_ = 0; }
+
+ private:
+  int timer_ = 0;
+  double elapsed_ = 0;
+};
+
+class TimerTemporaryClip final : public ExerciseRule {
+ public:
+  Param<std::string> text{this, {.name = "text", .fallback = "Temporary clip", .doc = "what the clock is called"}};
+  Param<std::string> over{this, {.name = "over", .fallback = "The temporary clip has been on for too long", .doc = "what the trainee is told when the time is over"}};
+  Param<Duration> limit{this, {.name = "limit", .fallback = "180 s", .min = "1 s", .max = "3600 s", .doc = "longest occlusion without a fault"}};
+  void declare(PrepareContext&, const Simulation&, ExerciseLog& log) override {
+    timer_ = log.add_timer(id, text(), limit());
+    fault_ = log.add_fault(id + "_over", over());
+  }
+  void observe(const StepReport& r, ExerciseLog& log) override {
+    const bool on = any_clip(r, true);
+    elapsed_ = on ? elapsed_ + r.h : 0;
+    log.timer(timer_, elapsed_, on);
+    if (!on) warned_ = false;
+    if (elapsed_ > limit() && !warned_) {
+      warned_ = true;
+      log.fault(fault_, r.time, elapsed_);
+    }
+  }
+  void reset() override {
+    elapsed_ = 0;
+    warned_ = false;
+  }
+
+ private:
+  int timer_ = 0, fault_ = 0;
+  double elapsed_ = 0;
+  bool warned_ = false;
+};
+
+class GoalTemporaryRemoved final : public ExerciseRule {
+ public:
+  Param<std::string> text{this, {.name = "text", .fallback = "Remove the temporary clip", .doc = "what the trainee is to do"}};
+  Param<FlowRate> rate{this, {.name = "rate", .fallback = "1 ml/min", .min = "0 ml/min", .max = "1000 ml/min", .doc = "bleeding that counts as none"}};
+  void declare(PrepareContext&, const Simulation&, ExerciseLog& log) override { goal_ = log.add_goal(id, text()); }
+  void observe(const StepReport& r, ExerciseLog& log) override {
+    const bool on = any_clip(r, true);
+    was_on_ = was_on_ || on;
+    const bool good = was_on_ && !on && any_clip(r, false) && bleeding_rate(r) <= rate();
+    if (good) log.goal(goal_, r.time);
+    if (!good && log.goals()[std::size_t(goal_)].done) log.goal_lost(goal_, r.time);
+  }
+  void reset() override { was_on_ = false; }
+
+ private:
+  int goal_ = 0;
+  bool was_on_ = false;
+};
+
+}  // namespace
+}  // namespace insula
+
+INSULA_PLUGIN(rupture_rules) {
+  using namespace insula;
+  registry.add<FaultRupture>("fault_rupture", Kind::exercise_rule, "counts ruptures of the aneurysm");
+  registry.add<GoalBleedingStopped>("goal_bleeding_stopped", Kind::exercise_rule, "reached when a bleeding has come to a stand");
+  registry.add<TimerRupture>("timer_rupture", Kind::exercise_rule, "clock from the rupture to the final clip");
+  registry.add<TimerTemporaryClip>("timer_temporary_clip", Kind::exercise_rule, "clock of a temporary clip");
+  registry.add<GoalTemporaryRemoved>("goal_temporary_removed", Kind::exercise_rule, "reached when the temporary clip is off again");
+}
