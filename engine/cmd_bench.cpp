@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/linalg/kernels.h"
-#include "core/mechanics/soft_body.h"
+#include "core/mechanics/deformable_body.h"
 #include "engine/headless.h"
 #include "engine/report_writer.h"
 #include "engine/run.h"
@@ -59,9 +59,9 @@ int cmd_bench(const CommandContext& context, const BenchOptions& options) {
   fmt::print(context.out, "{}  ({} kernels, {} threads, {} steps of {:.2f} ms)\n", options.scene.string(), kernels().name,
              simulation.workers().threads(), options.steps, simulation.h() * 1000);
   for (const Body* b : simulation.bodies())
-    if (const auto* soft = dynamic_cast<const SoftBody*>(b))
-      fmt::print(context.out, "  {:<12} {} nodes, {} tetrahedra, factor of {} numbers and {:.1f} Mflop\n", soft->id, soft->nodes(),
-                 soft->rest().tets.size(), soft->solver().factor_entries(), soft->solver().factor_flops() * 1e-6);
+    if (const auto* soft = dynamic_cast<const DeformableBody*>(b))
+      fmt::print(context.out, "  {:<12} {} nodes, factor of {} numbers and {:.1f} Mflop\n", soft->id, soft->nodes(),
+                 soft->solver().factor_entries(), soft->solver().factor_flops() * 1e-6);
   fmt::print(context.out, "\n  {:<14}{:>9}{:>9}\n", "stage, ms", "p50", "p95");
   for (int s = 0; s < stage_count; ++s)
     fmt::print(context.out, "  {:<14}{:>9.3f}{:>9.3f}\n", stage_names()[std::size_t(s)], percentile(stage[std::size_t(s)], 0.5),

@@ -2,6 +2,8 @@
 // Assembly and stepping of a deformable body.
 #include "core/mechanics/deformable_body.h"
 
+#include <algorithm>
+
 namespace insula {
 
 void DeformableBody::start_at_rest() {
@@ -28,6 +30,15 @@ void DeformableBody::connect(PrepareContext& context) {
   for (auto [i, j] : all)
     if (free_[std::size_t(i)] >= 0 && free_[std::size_t(j)] >= 0)
       pairs.emplace_back(free_[std::size_t(i)], free_[std::size_t(j)]);
+  neighbours_.clear();
+  if (tangent_tolerance() > 0) {
+    for (auto& [i, j] : all)
+      if (i > j) std::swap(i, j);
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    for (auto [i, j] : all)
+      if (i != j) neighbours_.push_back({i, j, (rest_nodes()[std::size_t(i)] - rest_nodes()[std::size_t(j)]).squaredNorm()});
+  }
   a_.set_pattern(free_count_, std::move(pairs));
   mass_.assign(n, 0.0);
   damping_.assign(n, 0.0);
@@ -63,9 +74,20 @@ void DeformableBody::add_row(BodyRows& out, const MaterialPoint& p, const Vec3& 
     if (p.weight[std::size_t(k)] != 0) out.add(p.node[std::size_t(k)], p.weight[std::size_t(k)] * d);
 }
 
-void DeformableBody::free_motion(const StepContext& context) {
-  const double h = context.h;
-  force_ = external;
+// Whether the factor at hand still serves: no pair of neighbours has turned or stretched much since it was made.
+bool DeformableBody::tangent_is_good(double h) const {
+  if (factor_h_ != h || tangent_tolerance() <= 0) return false;
+  const double limit = tangent_tolerance() * tangent_tolerance();
+  for (const Neighbours& n : neighbours_) {
+    const Vec3 now = q_.segment<3>(3 * n.i) - q_.segment<3>(3 * n.j);
+    const Vec3 then = factor_q_.segment<3>(3 * n.i) - factor_q_.segment<3>(3 * n.j);
+    if ((now - then).squaredNorm() > limit * n.distance2) return false;
+  }
+  return true;
+}
+
+// Assembles force and A, factorises A.
+void DeformableBody::make_tangent(double h) {
   a_.set_zero();
   for (ForceModel* f : forces_) f->linearise(q_.data(), force_.data(), &a_, h, Tangent::system);
   double extra = 1;
@@ -79,14 +101,27 @@ void DeformableBody::free_motion(const StepContext& context) {
       d[0] += add;
       d[4] += add;
       d[8] += add;
-      if (attempt == 0)
-        packed_.segment<3>(3 * b) = force_.segment<3>(3 * i) + mass_[std::size_t(i)] * (context.gravity + v_.segment<3>(3 * i) / h);
     }
     // An indefinite matrix (force models promise not to make one) is met with ten times the inertia, as often as needed.
     if (solver_->factorise(a_) || attempt == 12) break;
     ++indefinite_;
     extra *= 10;
   }
+  ++factorisations_;
+  factor_q_ = q_;
+  factor_h_ = h;
+}
+
+void DeformableBody::free_motion(const StepContext& context) {
+  const double h = context.h;
+  force_ = external;
+  if (tangent_is_good(h))
+    for (ForceModel* f : forces_) f->linearise(q_.data(), force_.data(), nullptr, h, Tangent::system);
+  else
+    make_tangent(h);
+  for (int i = 0; i < nodes(); ++i)
+    if (const int b = free_[std::size_t(i)]; b >= 0)
+      packed_.segment<3>(3 * b) = force_.segment<3>(3 * i) + mass_[std::size_t(i)] * (context.gravity + v_.segment<3>(3 * i) / h);
   solver_->solve(packed_.data());
   dq_.setZero();
   for (int i = 0; i < nodes(); ++i)
@@ -112,6 +147,8 @@ void DeformableBody::reset() {
   external.setZero();
   dq_.setZero();
   indefinite_ = 0;
+  factorisations_ = 0;
+  factor_h_ = 0;
   for (ForceModel* f : forces_) f->reset();
 }
 

@@ -13,6 +13,9 @@ namespace insula {
 
 class DeformableBody : public Body {
  public:
+  /// The tangent may be older than the force: the equilibrium is the same, and so is the order of the time integration.
+  Param<Scalar> tangent_tolerance{this, {.name = "tangent_tolerance", .fallback = "0", .min = "0", .max = "0.5", .doc = "change of shape (of the distance vector of neighbouring nodes, over their distance) up to which the system matrix and its factor are used again; 0: made anew every step"}};
+
   /// Rest positions of the nodes, scene frame, m. Known after prepare().
   virtual const std::vector<Vec3>& rest_nodes() const = 0;
   /// Nodes that the topology itself holds (a shell's caps); supports hold more. Default: none.
@@ -31,6 +34,8 @@ class DeformableBody : public Body {
   const BlockCholesky& solver() const { return *solver_; }
   /// Steps whose matrix was not positive definite; they were solved with more mass (see step()).
   int indefinite_steps() const { return indefinite_; }
+  /// Steps that made and factorised the system matrix anew.
+  int factorisations() const { return factorisations_; }
   /// External force for the next steps, 3 values a node, N (tests, loads).
   VecX external;
 
@@ -60,6 +65,17 @@ class DeformableBody : public Body {
   BlockMatrix a_;
   std::unique_ptr<BlockCholesky> solver_;
   int indefinite_ = 0;
+
+  bool tangent_is_good(double h) const;
+  void make_tangent(double h);
+  struct Neighbours {
+    int i, j;
+    double distance2;  ///< at rest, m2
+  };
+  std::vector<Neighbours> neighbours_;  ///< watched for changes of shape
+  VecX factor_q_;                       ///< where the tangent was taken
+  double factor_h_ = 0;                 ///< 0: there is no factor yet
+  int factorisations_ = 0;
 };
 
 }  // namespace insula
