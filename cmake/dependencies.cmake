@@ -18,6 +18,8 @@ find_library(LCM_LIBRARY lcm REQUIRED)
 find_path(LCM_INCLUDE lcm/lcm.h REQUIRED)
 find_library(CHOLMOD_LIBRARY cholmod REQUIRED)
 find_path(CHOLMOD_INCLUDE cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
+# The generator that belongs to the installed headers, not one that a Python environment put first in the path.
+find_program(LCM_GEN lcm-gen HINTS /usr/bin NO_DEFAULT_PATH)
 find_program(LCM_GEN lcm-gen REQUIRED)
 
 add_library(insula_warnings INTERFACE)

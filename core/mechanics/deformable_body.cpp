@@ -26,7 +26,7 @@ void DeformableBody::connect(PrepareContext& context) {
 
   for (ForceModel* f : forces_) f->attach(context, *this);
   std::vector<std::pair<int, int>> all, pairs;
-  for (ForceModel* f : forces_) f->couplings(all);
+  for (ForceModel* f : forces_) f->couplings(all, Tangent::system);
   for (auto [i, j] : all)
     if (free_[std::size_t(i)] >= 0 && free_[std::size_t(j)] >= 0)
       pairs.emplace_back(free_[std::size_t(i)], free_[std::size_t(j)]);

@@ -14,7 +14,7 @@ class DeformableBody;
 /// Which derivative of the force goes into the system matrix.
 enum class Tangent {
   exact,   ///< the force's full gradient; may be indefinite (contract tests)
-  system,  ///< what the step uses: positive semidefinite
+  system,  ///< what the step uses: positive semidefinite, and at least half of the exact one where it is an approximation
 };
 
 class ForceModel : public Component {
@@ -23,8 +23,8 @@ class ForceModel : public Component {
 
   /// Once, when the body's rest shape is known; may report errors, also that the body is not of its topology.
   virtual void attach(PrepareContext&, DeformableBody&) {}
-  /// Pairs of nodes whose forces depend on each other.
-  virtual void couplings(std::vector<std::pair<int, int>>& pairs) const = 0;
+  /// Pairs of nodes that this tangent couples.
+  virtual void couplings(std::vector<std::pair<int, int>>& pairs, Tangent which) const = 0;
   /// Once, when the matrix pattern is known. free_of_node: node -> block of `a`, -1 when held.
   virtual void bind(const BlockMatrix& a, const std::vector<int>& free_of_node) = 0;
   /// Lumped mass (kg) and Rayleigh mass damping (kg/s), one value a node; added to what is there.
@@ -36,6 +36,8 @@ class ForceModel : public Component {
   virtual double energy(const double* x) = 0;
   /// Rayleigh stiffness damping, s.
   virtual double stiffness_damping() const { return 0; }
+  /// Whether the body acts on itself alone: no force in rigid motion, forces and moments add up to nothing.
+  virtual bool internal() const { return true; }
   virtual void reset() {}
 };
 

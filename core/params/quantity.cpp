@@ -28,6 +28,8 @@ constexpr Units<2> angle{{{"rad", 1}, {"deg", std::numbers::pi / 180}}};
 constexpr Units<3> speed{{{"m/s", 1}, {"cm/s", 1e-2}, {"mm/s", 1e-3}}};
 constexpr Units<2> acceleration{{{"m/s2", 1}, {"mm/s2", 1e-3}}};
 constexpr Units<3> area_density{{{"1/m2", 1}, {"1/cm2", 1e4}, {"1/mm2", 1e6}}};
+constexpr Units<2> surface_mass{{{"kg/m2", 1}, {"g/cm2", 10}}};
+constexpr Units<3> foundation_modulus{{{"N/m3", 1}, {"kPa/mm", 1e6}, {"N/mm3", 1e9}}};
 constexpr Units<3> flow_rate{{{"m3/s", 1}, {"ml/s", 1e-6}, {"ml/min", 1e-6 / 60}}};
 constexpr Units<4> viscosity{{{"Pa s", 1}, {"mPa s", 1e-3}, {"Pas", 1, false}, {"mPas", 1e-3, false}}};
 }  // namespace
@@ -50,14 +52,16 @@ std::span<const Unit> Angle::units() { return angle; }
 std::span<const Unit> Speed::units() { return speed; }
 std::span<const Unit> Acceleration::units() { return acceleration; }
 std::span<const Unit> AreaDensity::units() { return area_density; }
+std::span<const Unit> SurfaceMass::units() { return surface_mass; }
+std::span<const Unit> FoundationModulus::units() { return foundation_modulus; }
 std::span<const Unit> FlowRate::units() { return flow_rate; }
 std::span<const Unit> Viscosity::units() { return viscosity; }
 
 bool is_known_unit(std::string_view symbol) {
   const std::span<const Unit> all[] = {length,       area,         duration, frequency, rate,         mass,
                                        density,      force,        torque,   pressure,  stiffness,    angular_stiffness,
-                                       damping,      angle,        speed,    acceleration, area_density, flow_rate,
-                                       viscosity};
+                                       damping,      angle,        speed,    acceleration, area_density, surface_mass,
+                                       foundation_modulus, flow_rate, viscosity};
   for (const auto& units : all)
     for (const auto& u : units)
       if (u.symbol == symbol) return true;

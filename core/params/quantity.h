@@ -38,6 +38,8 @@ INSULA_QUANTITY(Angle, "angle", "rad");             // rad deg
 INSULA_QUANTITY(Speed, "speed", "m/s");             // m/s mm/s cm/s
 INSULA_QUANTITY(Acceleration, "acceleration", "m/s2");
 INSULA_QUANTITY(AreaDensity, "number per area", "1/m2");  // 1/m2 1/cm2 1/mm2
+INSULA_QUANTITY(SurfaceMass, "mass per area", "kg/m2");   // kg/m2 g/cm2
+INSULA_QUANTITY(FoundationModulus, "foundation modulus", "N/m3");  // N/m3 kPa/mm N/mm3
 INSULA_QUANTITY(FlowRate, "flow rate", "m3/s");     // m3/s ml/s ml/min
 INSULA_QUANTITY(Viscosity, "viscosity", "Pa s");    // Pa s, mPa s
 #undef INSULA_QUANTITY

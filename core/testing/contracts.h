@@ -18,8 +18,12 @@ void check_deterministic(const std::filesystem::path& scene);
 void check_rows(const std::filesystem::path& scene, const std::string& element, bool rows_expected);
 
 /// Force = -dE/dx to 1e-7, exact tangent = -df/dx to 1e-6, both with the promised damping factor; the step's tangent is
-/// symmetric and has no negative eigenvalue; rigid motion gives no force (1e-10); forces and moments add up to nothing.
+/// symmetric and has no negative eigenvalue. Of models that say internal(): rigid motion gives no force (1e-10), forces
+/// and moments add up to nothing.
 void check_force_model(const std::filesystem::path& scene, const std::string& element);
+/// A rigid body that is no instrument (a clip): H of a point of any link is the derivative of its position, and its rows hold
+/// the contract of rows.
+void check_rigid_body(const std::filesystem::path& scene, const std::string& element);
 /// Holds at least one node, holds it to the bit, and leaves others free.
 void check_support(const std::filesystem::path& scene, const std::string& element);
 /// The free tool follows the hand; coupling force = stiffness times displacement; its terms for the haptic loop are

@@ -58,11 +58,24 @@ void run_script(Simulation& simulation, int n) {
   }
 }
 
-VecX deformed(const SoftBody& body, double strain, std::uint64_t seed) {
+double shortest_edge(const DeformableBody& body) {
+  double edge = 1;
+  const auto take = [&](const auto& cells) {
+    for (const auto& cell : cells)
+      for (std::size_t i = 0; i < cell.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j)
+          edge = std::min(edge, (body.rest_nodes()[std::size_t(cell[i])] - body.rest_nodes()[std::size_t(cell[j])]).norm());
+  };
+  if (const auto* soft = dynamic_cast<const SoftBody*>(&body)) take(soft->rest().tets);
+  if (const auto* shell = dynamic_cast<const ShellBody*>(&body)) take(shell->rest().triangles);
+  return edge;
+}
+
+VecX deformed(const DeformableBody& body, double strain, std::uint64_t seed) {
   Random random(seed);
   const auto any = [&] { return Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)); };
-  Vec3 low = body.rest().nodes.front(), high = low;
-  for (const Vec3& x : body.rest().nodes) {
+  Vec3 low = body.rest_nodes().front(), high = low;
+  for (const Vec3& x : body.rest_nodes()) {
     low = low.cwiseMin(x);
     high = high.cwiseMax(x);
   }
@@ -73,14 +86,10 @@ VecX deformed(const SoftBody& body, double strain, std::uint64_t seed) {
   stretch << any(), any(), any();
   const Vec3 bend = any(), shift = size * any();
   // Noise must not turn small elements inside out: scaled by the shortest edge.
-  double edge = size;
-  for (const auto& t : body.rest().tets)
-    for (std::size_t i = 0; i < 4; ++i)
-      for (std::size_t j = 0; j < i; ++j)
-        edge = std::min(edge, (body.rest().nodes[std::size_t(t[i])] - body.rest().nodes[std::size_t(t[j])]).norm());
+  const double edge = std::min(size, shortest_edge(body));
   VecX q(3 * body.nodes());
   for (int i = 0; i < body.nodes(); ++i) {
-    const Vec3 r = body.rest().nodes[std::size_t(i)] - centre;
+    const Vec3 r = body.rest_nodes()[std::size_t(i)] - centre;
     Vec3 x = r + strain * stretch * r + strain * (r.squaredNorm() / size) * bend + 0.3 * strain * edge * any();
     q.segment<3>(3 * i) = centre + shift + turn * x;
   }

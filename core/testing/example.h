@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/registry/registry.h"
+#include "core/mechanics/shell_body.h"
 #include "core/mechanics/soft_body.h"
 #include "core/sim/simulation.h"
 
@@ -26,7 +27,9 @@ inline constexpr double script_length = 1.0;  ///< s
 /// Drives and steps n times.
 void run_script(Simulation& simulation, int n);
 
-/// A shape, turned, bent and noisy, for the soft body's q: strain of the order of `strain`, reproducible by `seed`.
-VecX deformed(const SoftBody& body, double strain, std::uint64_t seed);
+/// Length of the body's shortest edge at rest, m: the scale of noise and of differences.
+double shortest_edge(const DeformableBody& body);
+/// A shape, turned, bent and noisy, for the body's q: strain of the order of `strain`, reproducible by `seed`.
+VecX deformed(const DeformableBody& body, double strain, std::uint64_t seed);
 
 }  // namespace insula::test

@@ -40,8 +40,8 @@ class RowBench {
     if (auto* c = dynamic_cast<Constraint*>(&component_)) {
       c->detect(context_);
       c->build(context_, builder_);
-    } else if (auto* i = dynamic_cast<Instrument*>(&component_)) {
-      i->build(context_, builder_);
+    } else if (auto* b = dynamic_cast<Body*>(&component_)) {
+      b->build(context_, builder_);
     }
     builder_.finish();
     RowMap out;
@@ -85,11 +85,27 @@ class RowBench {
         p.weight[0] = 1;
         dq.segment<3>(3 * i) = soft->free_displacement(p);
       }
-    } else if (auto* tool = dynamic_cast<Instrument*>(&body)) {
+    } else if (auto* tool = dynamic_cast<RigidBody*>(&body)) {
       // Translation from the tip; the rotation from two points a metre off.
-      const auto at = [&](const Vec3& offset) { return tool->free_displacement(tool->point(tool->pose().p + offset)); };
+      const Pose pose = tool->link_pose(0);
+      const auto at = [&](const Vec3& offset) { return tool->free_displacement(tool->link_point(0, pose.q.conjugate() * offset)); };
       const Vec3 t = at(Vec3::Zero()), x = at(Vec3::UnitX()) - t, y = at(Vec3::UnitY()) - t;
-      dq << t, Vec3(y.z(), -x.z(), x.y());
+      dq.head<6>() << t, Vec3(y.z(), -x.z(), x.y());
+      if (tool->blocks() < 3) return dq;
+      // The opening from a point of the first jaw, along the direction in which it turns.
+      const MaterialPoint p = tool->link_point(1, Vec3::Zero());
+      Vec3 turn;
+      for (int k = 0; k < 3; ++k) {
+        BodyRows rows;
+        rows.clear();
+        rows.open(0);
+        tool->add_row(rows, p, Vec3::Unit(k));
+        turn[k] = 0;
+        for (std::size_t e = 0; e < rows.block.size(); ++e)
+          if (rows.block[e] == 2) turn[k] += rows.coeff[e].x();
+      }
+      const Vec3 rigid = t + Vec3(dq.segment<3>(3)).cross(tool->position(p) - pose.p);
+      dq[6] = turn.dot(tool->free_displacement(p) - rigid) / turn.squaredNorm();
     }
     return dq;
   }
@@ -105,26 +121,27 @@ class RowBench {
 void move(Simulation& s, const std::vector<VecX>& dq, double scale) {
   for (std::size_t b = 0; b < s.bodies().size(); ++b) {
     if (auto* soft = dynamic_cast<SoftBody*>(s.bodies()[b])) soft->q() += scale * dq[b];
-    else if (auto* tool = dynamic_cast<Instrument*>(s.bodies()[b])) tool->place(displaced(tool->pose(), scale * Vec6(dq[b])));
+    else if (auto* tool = dynamic_cast<RigidBody*>(s.bodies()[b]))
+      tool->place(displaced(tool->link_pose(0), scale * Vec6(dq[b].head<6>())), tool->opening() + (dq[b].size() > 6 ? scale * dq[b][6] : 0));
   }
 }
 
 struct Restore {
   Simulation& s;
   std::vector<VecX> q;
-  std::vector<Pose> pose;
+  std::vector<std::pair<Pose, double>> pose;  // with the opening
   explicit Restore(Simulation& sim) : s(sim) {
     for (Body* b : s.bodies()) {
       if (auto* soft = dynamic_cast<SoftBody*>(b)) q.push_back(soft->q());
       else q.emplace_back();
-      if (auto* tool = dynamic_cast<Instrument*>(b)) pose.push_back(tool->pose());
+      if (auto* tool = dynamic_cast<RigidBody*>(b)) pose.emplace_back(tool->link_pose(0), tool->opening());
       else pose.emplace_back();
     }
   }
   void operator()() const {
     for (std::size_t b = 0; b < s.bodies().size(); ++b) {
       if (auto* soft = dynamic_cast<SoftBody*>(s.bodies()[b])) soft->q() = q[b];
-      if (auto* tool = dynamic_cast<Instrument*>(s.bodies()[b])) tool->place(pose[b]);
+      if (auto* tool = dynamic_cast<RigidBody*>(s.bodies()[b])) tool->place(pose[b].first, pose[b].second);
     }
   }
 };
@@ -140,7 +157,7 @@ int check_derivatives(Simulation& s, Component& c, std::uint64_t seed) {
     std::vector<VecX> dq;
     for (const Body* b : s.bodies()) {
       VecX d(3 * b->blocks());
-      const bool rigid = dynamic_cast<const Instrument*>(b) != nullptr;
+      const bool rigid = dynamic_cast<const RigidBody*>(b) != nullptr;
       for (int i = 0; i < d.size(); ++i) d[i] = random.uniform(-1, 1) * (rigid && i > 2 ? 20.0 : 1.0);  // rad per metre
       dq.push_back(d);
     }
@@ -194,13 +211,13 @@ void check_balance(Simulation& s, Component& c) {
           if (!f.isZero(0)) arm = std::max(arm, x.norm());
         }
       } else {
-        const auto* tool = dynamic_cast<Instrument*>(s.bodies()[b]);
+        const auto* tool = dynamic_cast<RigidBody*>(s.bodies()[b]);
         ASSERT_TRUE(tool);
-        const Vec3 f = row.h[b].head<3>(), m = row.h[b].tail<3>();
+        const Vec3 f = row.h[b].head<3>(), m = row.h[b].segment<3>(3), at = tool->link_pose(0).p;
         force += f;
-        moment += tool->pose().p.cross(f) + m;
-        size += f.norm();
-        arm = std::max(arm, tool->pose().p.norm());
+        moment += at.cross(f) + m;
+        size += std::max(f.norm(), m.norm());
+        arm = std::max(arm, at.norm());
       }
     }
     if (bodies < 2) continue;  // pushes against something that never moves

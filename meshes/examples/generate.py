@@ -7,6 +7,7 @@ Usage: generate.py [--check]      --check compares with what lies beside this fi
 import hashlib
 import itertools
 import json
+import math
 import pathlib
 import sys
 
@@ -57,6 +58,24 @@ def plate(low, high):
     return "\n".join(lines + [""])
 
 
+def tube(radius, length, around, along):
+    """The open wall of a tube about x as OBJ (mm), outward."""
+    lines = ["# SPDX-License-Identifier: GPL-3.0-or-later"]
+    for j in range(along + 1):
+        for i in range(around):
+            angle = 2 * math.pi * (i + 0.5 * (j % 2)) / around
+            lines.append("v %.6g %.6g %.6g" % (length * (j / along - 0.5), radius * math.cos(angle), radius * math.sin(angle)))
+    for j in range(along):
+        for i in range(around):
+            a, b = 1 + j * around + i, 1 + j * around + (i + 1) % around
+            c, d = a + around, b + around
+            if j % 2 == 0:
+                lines += ["f %d %d %d" % (a, b, c), "f %d %d %d" % (b, d, c)]
+            else:
+                lines += ["f %d %d %d" % (a, b, d), "f %d %d %d" % (a, d, c)]
+    return "\n".join(lines + [""])
+
+
 def entry(name, text, **counts):
     return dict(file=name, unit="mm", frame="the scene's", source="generated", licence="GPL-3.0-or-later",
                 sha256=hashlib.sha256(text.encode()).hexdigest(), rebuild="python3 meshes/examples/generate.py", **counts)
@@ -70,6 +89,8 @@ def main():
         manifest.append(entry(name, files[name], nodes=len(nodes), tetrahedra=len(tets)))
     files["plate.obj"] = plate((-20, -20, -24), (20, 20, -20.2))
     manifest.append(entry("plate.obj", files["plate.obj"], triangles=12))
+    files["tube.obj"] = tube(2, 14, 12, 8)
+    manifest.append(entry("tube.obj", files["tube.obj"], triangles=192))
     files["manifest.json"] = json.dumps(manifest, indent=2) + "\n"
     if "--check" in sys.argv[1:]:
         wrong = [n for n, t in files.items() if not (FOLDER / n).is_file() or (FOLDER / n).read_text() != t]

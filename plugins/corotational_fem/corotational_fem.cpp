@@ -43,7 +43,7 @@ class CorotationalFem final : public ForceModel {
   Param<Scalar> stiffening{this, {.name = "stiffening", .fallback = "30", .min = "0", .max = "1000", .doc = "stiffness below that stretch, in Young's moduli; 0: none"}};
 
   void attach(PrepareContext& context, DeformableBody& body) override;
-  void couplings(std::vector<std::pair<int, int>>& pairs) const override;
+  void couplings(std::vector<std::pair<int, int>>& pairs, Tangent) const override;
   void bind(const BlockMatrix& a, const std::vector<int>& free_of_node) override;
   void add_mass(std::vector<double>& mass, std::vector<double>& damping) const override;
   void linearise(const double* x, double* force, BlockMatrix* stiffness, double h, Tangent which) override;
@@ -99,7 +99,7 @@ void CorotationalFem::attach(PrepareContext& context, DeformableBody& body) {
 
 void CorotationalFem::reset() { rotation_.assign(elements_.size(), Quat::Identity()); }
 
-void CorotationalFem::couplings(std::vector<std::pair<int, int>>& pairs) const {
+void CorotationalFem::couplings(std::vector<std::pair<int, int>>& pairs, Tangent) const {
   for (const Element& e : elements_)
     for (int i = 0; i < 4; ++i)
       for (int j = 0; j < i; ++j) pairs.emplace_back(e.node[i], e.node[j]);

@@ -25,7 +25,7 @@ struct Crushed : ::testing::Test {
     ASSERT_TRUE(body && !body->forces().empty());
     model = body->forces()[0];
     std::vector<std::pair<int, int>> pairs;
-    model->couplings(pairs);
+    model->couplings(pairs, Tangent::exact);
     matrix.set_pattern(body->nodes(), std::move(pairs));
     std::vector<int> all(std::size_t(body->nodes()));
     std::iota(all.begin(), all.end(), 0);

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Support of a wall from outside: closed forms of force, creep and regions.
+#include <gtest/gtest.h>
+
+#include "plugins/membrane/shell_fixture.h"
+
+namespace insula {
+namespace {
+
+constexpr double side = 0.02;
+
+std::string prepared(ShellBody& body, double stiffness, double damping, const std::string& regions) {
+  auto springs = test::builtin().create("anchor_springs");
+  dynamic_cast<QuantityParam&>(*springs->find_param("stiffness")).set(stiffness);
+  dynamic_cast<QuantityParam&>(*springs->find_param("damping")).set(damping);
+  dynamic_cast<Param<std::string>&>(*springs->find_param("regions")).set(regions);
+  springs->parent = &body;
+  test::add_membrane(body, {.thickness = 1e-3, .density = 1000});
+  body.children.push_back(std::move(springs));
+  return test::finish(body);
+}
+
+// Moved as a whole by d the plate is drawn back with k A d, each node by its share.
+TEST(AnchorSprings, DrawBackWithModulusTimesAreaTimesDistance) {
+  ShellBody body;
+  body.set_mesh(test::plate(side, side, 5, 5, test::Cut::shaken));
+  ASSERT_EQ(prepared(body, 3e5, 0, ""), "");
+  const Vec3 moved(1e-4, -2e-4, 3e-4);
+  VecX x = body.q();
+  for (int i = 0; i < body.nodes(); ++i) x.segment<3>(3 * i) += moved;
+  const VecX f = test::elastic_force(body, x);
+  Vec3 sum = Vec3::Zero();
+  for (int i = 0; i < body.nodes(); ++i) {
+    sum += f.segment<3>(3 * i);
+    // Mass and spring share the node's area.
+    EXPECT_LT((f.segment<3>(3 * i) + 3e5 * body.node_mass()[std::size_t(i)] * moved).norm(), 1e-12);
+  }
+  EXPECT_LT((sum + 3e5 * side * side * moved).norm(), 1e-12);
+  EXPECT_NEAR(body.forces()[1]->energy(x.data()), 0.5 * 3e5 * side * side * moved.squaredNorm(), 1e-15);
+}
+
+// The rigid plate is an oscillator under implicit Euler: (m/h^2 + (1 + T/h) k) dq = -k u + m v/h, per area.
+TEST(AnchorSprings, WholeFollowsTheDiscretisedOscillator) {
+  ShellBody body;
+  body.set_mesh(test::plate(side, side, 4, 4, test::Cut::one_way));
+  const double k = 2e3, time = 0.03, m = 1, h = 0.005;  // 1000 kg/m3 of 1 mm: 1 kg/m2
+  ASSERT_EQ(prepared(body, k, time, ""), "");
+  double u = 1e-3, v = 0;
+  for (int i = 0; i < body.nodes(); ++i) body.q()[3 * i + 1] += u;
+  for (int n = 0; n < 50; ++n) {
+    test::step(body, h);
+    const double d = (-k * u + m * v / h) / (m / (h * h) + (1 + time / h) * k);
+    u += d;
+    v = d / h;
+    for (int i = 0; i < body.nodes(); ++i) ASSERT_NEAR(body.q()[3 * i + 1] - body.rest_nodes()[std::size_t(i)].y(), u, 1e-12) << n;
+  }
+}
+
+TEST(AnchorSprings, HoldTheirRegionsOnly) {
+  const auto model = [] {
+    VesselModel v;
+    v.wall = test::plate(side, side, 4, 4, test::Cut::one_way);
+    v.regions = {"parent", "sac"};
+    for (const Vec3& x : v.wall.vertices) v.vertex_region.push_back(x.x() > 0.51 * side);
+    return v;
+  };
+  ShellBody body;
+  body.set_model(model());
+  ASSERT_EQ(prepared(body, 1e5, 0, "sac"), "");
+  VecX x = body.q();
+  for (int i = 0; i < body.nodes(); ++i) x[3 * i + 2] += 1e-4;
+  const VecX f = test::elastic_force(body, x);
+  double sum = 0, area = 0;
+  for (int i = 0; i < body.nodes(); ++i) sum += f[3 * i + 2];
+  for (const auto& t : body.wall_triangles()) area += body.region_of_triangle(t) == 1 ? 0.5 * side * side / 16 : 0;
+  EXPECT_NEAR(sum, -1e5 * area * 1e-4, 1e-12);
+  EXPECT_GT(area, 0);
+  ShellBody wrong;
+  wrong.set_model(model());
+  EXPECT_NE(prepared(wrong, 1e5, 0, "sax").find("regions: \"sax\" is no region of the wall; did you mean \"sac\"?"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace insula

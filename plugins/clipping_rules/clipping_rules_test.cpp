@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The judge of a clipping against blades put at known places, and the rules against reports made by hand.
+#include <gtest/gtest.h>
+
+#include "core/mechanics/shell_body.h"
+#include "core/testing/example.h"
+#include "plugins/clipping_rules/neck_judge.h"
+
+namespace insula {
+namespace {
+
+const std::filesystem::path example = std::filesystem::path(INSULA_SOURCE_DIR) / "plugins/clipping_rules/example.xml";
+
+class ClippingRules : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    s = test::load(example);
+    ASSERT_TRUE(s && s->exercise());
+    artery = s->scene().find_as<ShellBody>("artery");
+    ASSERT_TRUE(artery);
+    const VesselModel& m = artery->model();
+    up = m.neck_normal;
+    centre = m.neck_centre;
+    across = up.unitOrthogonal();
+    report.h = 0.05;
+    for (const char* id : {"parent", "superior", "inferior", "sac"}) {
+      VesselState v;
+      v.id = id;
+      v.flow = v.flow_at_rest = 1e-6;
+      report.vessels.push_back(v);
+    }
+  }
+  /// A released clip whose blades cross the neck's axis at this height, `past` beyond the neck's far side.
+  ClipState clip(double height, double past = 2e-3) const {
+    ClipState c;
+    c.on_tray = false;
+    c.applications = 1;
+    c.gap = 0.6e-3;
+    c.blade_width = 1.3e-3;
+    const double radius = 0.5 * artery->model().neck_diameter;
+    c.blade_tip = centre + height * up + (radius + past) * across;
+    c.blade_root = centre + height * up - (radius + 3e-3) * across;
+    return c;
+  }
+  /// The wall as if the blades had drawn it together into their plane, up to this height above the neck plane.
+  void pinch(double to) {
+    const Vec3 x = up.cross(across);
+    for (int i = 0; i < artery->nodes(); ++i) {
+      auto p = artery->q().segment<3>(3 * i);
+      const Vec3 d = p - centre;
+      if (d.dot(up) > -1e-3 && d.dot(up) < to && d.norm() < 6e-3) p -= 0.95 * x.dot(d) * x;
+    }
+  }
+  NeckJudgement judge(const ClipState& c, bool sealed = true) {
+    NeckJudge j;
+    EXPECT_TRUE(j.attach(*artery));
+    return j.judge({c}, sealed);
+  }
+  void show(double seconds) {
+    for (double t = 0; t < seconds - 1e-9; t += report.h) {
+      report.time += report.h;
+      s->exercise()->log().events.clear();
+      s->exercise()->observe(report);
+    }
+  }
+  const ExerciseLog& log() { return s->exercise()->log(); }
+  double measure(const std::string& id) {
+    for (const MeasureState& m : log().measures())
+      if (m.id == id) return m.value;
+    throw std::runtime_error("no measure " + id);
+  }
+  std::unique_ptr<Simulation> s;
+  ShellBody* artery = nullptr;
+  Vec3 up, centre, across;
+  StepReport report;
+};
+
+TEST_F(ClippingRules, GradesOfSindou) {
+  NeckJudge j;
+  ASSERT_TRUE(j.attach(*artery));
+  EXPECT_EQ(j.judge({}, false).grade, 5);
+  EXPECT_EQ(j.judge({}, false).clips, 0);
+  pinch(1.5e-3);
+  EXPECT_EQ(judge(clip(0)).grade, 0) << "flush with the neck";
+  EXPECT_EQ(judge(clip(0), false).grade, 5) << "blood still passes";
+  // A clip that reaches the neck's middle only closes half of it.
+  const NeckJudgement half = judge(clip(0, -0.5 * artery->model().neck_diameter));
+  EXPECT_EQ(half.grade, 1);
+  EXPECT_GT(half.neck_open, 0.1);
+  EXPECT_LT(half.neck_open, 0.5);
+  EXPECT_EQ(judge(clip(0, -1.1 * artery->model().neck_diameter)).grade, 2);
+  EXPECT_EQ(judge(clip(2.4e-3)).grade, 4);
+  EXPECT_EQ(judge(clip(4.0e-3)).grade, 5);
+}
+
+TEST_F(ClippingRules, MoreOfTheSacIsLeftTheHigherTheClip) {
+  double last = -1;
+  for (double h = 0; h < 4e-3; h += 0.5e-3) {
+    const double open = judge(clip(h)).sac_open;
+    EXPECT_GE(open, last);
+    last = open;
+  }
+  EXPECT_GT(last, 0.5);
+}
+
+TEST_F(ClippingRules, TipAndSlitAreMeasured) {
+  const NeckJudgement a = judge(clip(0, 1e-3)), b = judge(clip(0, 3e-3));
+  EXPECT_NEAR(b.tip_past_neck - a.tip_past_neck, 2e-3, 1e-12);
+  EXPECT_NEAR(a.gap, 0.6e-3, 1e-15);
+  ClipState far = clip(0);
+  far.blade_root += 0.02 * up;
+  far.blade_tip += 0.02 * up;
+  EXPECT_EQ(judge(far).clips, 0) << "a clip elsewhere is not on the neck";
+}
+
+TEST_F(ClippingRules, GoalNeedsASealedNeckAndOpenBranches) {
+  pinch(1.5e-3);
+  report.clips = {clip(0)};
+  show(1);
+  EXPECT_FALSE(log().goals()[0].done) << "the sac still fills";
+  report.vessels[3].lumen = 0;
+  report.vessels[1].flow = 0.5e-6;
+  show(1);
+  EXPECT_FALSE(log().goals()[0].done) << "a branch is narrowed";
+  EXPECT_NEAR(measure("clip_flow_superior"), 50, 1e-12);
+  report.vessels[1].flow = 0.9e-6;
+  show(0.4);
+  EXPECT_FALSE(log().goals()[0].done) << "not long enough";
+  show(0.2);
+  EXPECT_TRUE(log().goals()[0].done);
+  EXPECT_EQ(measure("clip_remnant"), 0);
+}
+
+TEST_F(ClippingRules, AnotherPlacementCanBeAskedFor) {
+  pinch(1.5e-3);
+  EXPECT_TRUE(s->command("ask", "clip ask_again").empty());
+  report.clips = {clip(0)};
+  report.vessels[3].lumen = 0;
+  show(2);
+  EXPECT_FALSE(log().goals()[0].done) << "the same placement does not count again";
+  report.clips[0].applications = 2;
+  show(1);
+  EXPECT_TRUE(log().goals()[0].done);
+}
+
+TEST_F(ClippingRules, AClosedBranchIsOneFault) {
+  report.vessels[2].flow = 0.2e-6;
+  show(0.4);
+  EXPECT_EQ(log().faults()[0].count, 0);
+  show(2);
+  EXPECT_EQ(log().faults()[0].count, 1);
+  ClipState temporary = clip(0);
+  temporary.temporary = true;
+  report.vessels[2].flow = 1e-6;
+  show(0.1);
+  report.clips = {temporary};
+  report.vessels[2].flow = 0;
+  show(2);
+  EXPECT_EQ(log().faults()[0].count, 1) << "a temporary clip is meant to";
+}
+
+}  // namespace
+}  // namespace insula

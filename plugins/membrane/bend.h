@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Bending of a wall: Morley's plate element whose slopes across edges are interpolated from the hinges' angles (slope.h).
+//
+//   curvature of a triangle  kappa = 1/A sum over its edges  l sigma nu nu^T,  nu the edge's normal in the plane at rest
+//   energy                   A/2 (kappa - kappa0)^T D (kappa - kappa0),
+//   D = E t^3 / (12 (1 - nu^2)) [1 nu 0; nu 1 0; 0 0 (1-nu)/2]  on (k11, k22, 2 k12)
+//
+// So kappa is a constant linear map of at most nine angles, the rest curvature is what the same map gives at rest, and the
+// whole is objective at any rotation. No function of the slaved Morley space but a rigid one bends without energy, and the
+// interpolation is exact for quadratics: the element converges on any mesh of sound triangles. On a free rim the slope is an
+// unknown of its one triangle and is eliminated there: no moment about the rim.
+//
+// The exact tangent couples the twelve nodes of a patch, which would fill the factor several times over. The step takes
+// a stiffness of each hinge by itself instead, K~ = sum k_q grad(phi_q) grad(phi_q)^T with k_q = 0.6 sum_r |c_q . c_r|: by
+// Gershgorin's theorem K~ >= 0.6 K, so the linearly implicit step is stable and tends to the same equilibrium.
+#pragma once
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "core/mechanics/force_model.h"
+#include "plugins/membrane/assemble.h"
+#include "plugins/membrane/slope.h"
+#include "plugins/membrane/stretch.h"
+
+namespace insula {
+
+class BendPatches {
+ public:
+  /// Patches of the wall's triangles for which material(t) is not null.
+  void build(const WallTopology& wall, const std::vector<Vec3>& rest, const std::vector<const StretchTriangles::Material*>& material);
+  void couplings(std::vector<std::pair<int, int>>& pairs, Tangent which, bool patches) const;
+  void bind(const BlockMatrix& a, const std::vector<int>& free_of_node);
+  void linearise(const double* x, double* force, BlockMatrix* stiffness, double scale, Tangent which, bool patches);
+  double energy(const double* x);
+  /// Forgets how often a hinge has turned.
+  void reset() { angle_ = rest_angle_; }
+
+ private:
+  static constexpr int max_nodes = patch_nodes, max_hinges = 9;
+  static constexpr int no_slot = std::numeric_limits<int>::min();
+  struct Patch {
+    int hinges = 0, nodes = 0;
+    int hinge[max_hinges];
+    unsigned char local[max_hinges][4];  // the hinge's nodes among the patch's
+    double c[max_hinges][3];             // sqrt(A D) times what the angle gives to the curvature
+    int node[max_nodes];                 // in the order of the matrix once bound
+    int first_slot = 0;                  // of its blocks (0,0) (1,0) (1,1) ...
+  };
+  void residual(const Patch& p, const std::vector<double>& angle, double r[3]) const;
+  void assemble(const Patch& p, double scale, BlockMatrix& stiffness);
+  void add_hinges(BlockMatrix& stiffness, double scale) const;
+  void add_curvature_of_hinges(const double* x, BlockMatrix& stiffness, double scale) const;
+
+  std::vector<WallHinge> hinges_;
+  std::vector<double> step_stiffness_;  // of each hinge, N m
+  std::vector<double> rest_angle_, angle_, energy_angle_, moment_, gradient_;
+  std::vector<std::array<int, 10>> hinge_slot_;  // lower triangle of the hinge's blocks; ~slot where stored the other way round
+  std::vector<Patch> patches_;
+  std::vector<int> slots_;
+  PatchRows rows_{};  // work of assemble()
+};
+
+}  // namespace insula

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Two triangles that share an edge: the angle between them, its gradient and its second derivatives.
+#pragma once
+#include "core/base/math.h"
+
+namespace insula {
+
+/// Edge (node[0], node[1]) as the first triangle runs through it; apex node[2] of the first triangle, node[3] of the second.
+struct WallHinge {
+  int node[4];
+  double least[2] = {0, 0};  ///< squared doubled areas below which a triangle counts as collapsed (its gradient is bounded), m4
+};
+
+/// Angle by which the second triangle is turned from the plane of the first, rad in (-pi, pi]; positive where the apexes
+/// rise along the normals. Its gradient (12 values, 1/m) goes into `gradient` if that is not null.
+///   at the apexes |e| N / |N|^2 with N the doubled area vector; at the edge's ends what makes rigid motion free.
+double hinge_angle(const double* x, const WallHinge& hinge, double* gradient);
+
+using Mat12 = Eigen::Matrix<double, 12, 12>;
+/// Second derivatives of the angle, 1/m2, in the order of the nodes.
+Mat12 hinge_hessian(const double* x, const WallHinge& hinge);
+
+/// `angle` plus the multiple of a full turn that brings it nearest to `before`.
+double unwrapped(double angle, double before);
+
+}  // namespace insula

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The slope of a wall across an edge, from the angles of the hinges about it.
+//
+// Morley's plate element needs, beside the corners, the slope across the middle of each edge. Here it is no unknown: it is
+// interpolated from the two triangles of the edge and their four neighbours, unfolded into one plane, so that it is exact
+// for every quadratic deflection. Relative to the plane of the edge's first triangle (the deflection at an apex counts as
+// that apex rising) it is a sum over the edge's hinge and the four hinges about it,
+//
+//   sigma = sum rho_q phi_q,     and from the second triangle  sigma' = phi_edge - sigma,
+//
+// three equations for five weights; of all solutions the one nearest to the two-triangle formula
+// rho_edge = y1 / (y1 + y2), with heights y, is taken.
+#pragma once
+#include "plugins/membrane/wall_topology.h"
+
+namespace insula {
+
+struct SlopeWeights {
+  int count = 0;
+  int hinge[5];
+  double weight[5];  ///< of the angles, seen from the first triangle of the edge; hinge[0] is the edge's own
+};
+
+SlopeWeights slope_weights(const WallTopology& wall, const std::vector<Vec3>& rest, int hinge);
+
+}  // namespace insula

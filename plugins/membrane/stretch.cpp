@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Plane-stress triangles.
+#include "plugins/membrane/stretch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace insula {
+namespace {
+
+// A triangle crushed to less than this part of its area keeps the direction of its stress.
+constexpr double least_area = 1e-3;
+
+struct Stretch {
+  Vec3 f0, f1;               // columns of F
+  double c00, c01, c11;      // F^T F
+  double det, trace;         // of S
+  double i00, i01, i11;      // S^-1
+};
+
+Stretch stretch_of(const double* x, const int node[3], const double b[3][2]) {
+  Stretch s;
+  for (int c = 0; c < 3; ++c) {
+    const double x0 = x[3 * node[0] + c], x1 = x[3 * node[1] + c], x2 = x[3 * node[2] + c];
+    // Differences first: what is far from the origin must not lose digits.
+    s.f0[c] = (x1 - x0) * b[1][0] + (x2 - x0) * b[2][0];
+    s.f1[c] = (x1 - x0) * b[1][1] + (x2 - x0) * b[2][1];
+  }
+  s.c00 = s.f0.squaredNorm();
+  s.c01 = s.f0.dot(s.f1);
+  s.c11 = s.f1.squaredNorm();
+  s.det = s.f0.cross(s.f1).norm();
+  s.trace = std::sqrt(s.c00 + s.c11 + 2 * s.det);
+  const double scale = 1 / (std::max(s.trace, 1e-9) * std::max(s.det, least_area));
+  s.i00 = scale * (s.c11 + s.det);
+  s.i01 = -scale * s.c01;
+  s.i11 = scale * (s.c00 + s.det);
+  return s;
+}
+
+/// The part of a symmetric 2x2 matrix with eigenvalues above zero.
+void keep_positive(double& a, double& b, double& d) {
+  const double mean = 0.5 * (a + d), half = 0.5 * (a - d), radius = std::sqrt(half * half + b * b);
+  if (mean - radius >= 0) return;
+  const double top = mean + radius;
+  if (top <= 0 || radius == 0) {
+    a = b = d = std::max(0.0, top);
+    b = 0;
+    return;
+  }
+  // top times the projector (I + deviator / radius) / 2
+  a = 0.5 * top * (1 + half / radius);
+  d = 0.5 * top * (1 - half / radius);
+  b = 0.5 * top * b / radius;
+}
+
+}  // namespace
+
+void StretchTriangles::add(const std::vector<Vec3>& rest, const std::array<int, 3>& nodes, const Material& m) {
+  Triangle t;
+  Vec3 p[3];
+  for (int k = 0; k < 3; ++k) {
+    t.node[k] = nodes[std::size_t(k)];
+    p[k] = rest[std::size_t(t.node[k])];
+  }
+  const Vec3 along = (p[1] - p[0]).normalized(), normal = (p[1] - p[0]).cross(p[2] - p[0]).normalized(), across = normal.cross(along);
+  const double u1 = (p[1] - p[0]).dot(along), u2 = (p[2] - p[0]).dot(along), v2 = (p[2] - p[0]).dot(across), twice = u1 * v2;
+  t.b[1][0] = v2 / twice;
+  t.b[1][1] = -u2 / twice;
+  t.b[2][0] = 0;
+  t.b[2][1] = u1 / twice;
+  for (int c = 0; c < 2; ++c) t.b[0][c] = -t.b[1][c] - t.b[2][c];
+  const double weight = 0.5 * twice * m.thickness;
+  t.mu = weight * m.young / (2 * (1 + m.poisson));
+  t.lambda = weight * m.young * m.poisson / (1 - m.poisson * m.poisson);
+  std::fill(std::begin(t.slot), std::end(t.slot), -1);
+  triangles_.push_back(t);
+}
+
+void StretchTriangles::couplings(std::vector<std::pair<int, int>>& pairs) const {
+  for (const Triangle& t : triangles_)
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < i; ++j) pairs.emplace_back(t.node[i], t.node[j]);
+}
+
+// Nodes go into the order of the matrix, so no block is stored the other way round. A turned normal changes nothing.
+void StretchTriangles::bind(const BlockMatrix& a, const std::vector<int>& free_of_node) {
+  for (Triangle& t : triangles_) {
+    int order[3] = {0, 1, 2};
+    std::sort(order, order + 3, [&](int i, int j) {
+      const int fi = free_of_node[std::size_t(t.node[i])], fj = free_of_node[std::size_t(t.node[j])];
+      return fi != fj ? fi < fj : t.node[i] < t.node[j];
+    });
+    const Triangle old = t;
+    for (int k = 0; k < 3; ++k) {
+      t.node[k] = old.node[order[k]];
+      t.b[k][0] = old.b[order[k]][0];
+      t.b[k][1] = old.b[order[k]][1];
+    }
+    for (int i = 0, s = 0; i < 3; ++i)
+      for (int j = 0; j <= i; ++j, ++s) {
+        const int fi = free_of_node[std::size_t(t.node[i])], fj = free_of_node[std::size_t(t.node[j])];
+        t.slot[s] = fi < 0 || fj < 0 ? -1 : a.slot(fi, fj);
+      }
+  }
+}
+
+void StretchTriangles::linearise(const double* x, double* force, BlockMatrix* stiffness, double scale, Tangent which) const {
+  for (const Triangle& t : triangles_) {
+    const Stretch s = stretch_of(x, t.node, t.b);
+    const double strain = s.trace - 2, k = t.lambda * strain - 2 * t.mu;
+    double g00 = 2 * t.mu + k * s.i00, g01 = k * s.i01, g11 = 2 * t.mu + k * s.i11;
+    const Vec3 p0 = s.f0 * g00 + s.f1 * g01, p1 = s.f0 * g01 + s.f1 * g11;
+    for (int i = 0; i < 3; ++i) {
+      double* f = force + 3 * t.node[i];
+      for (int c = 0; c < 3; ++c) f[c] -= p0[c] * t.b[i][0] + p1[c] * t.b[i][1];
+    }
+    if (!stiffness) continue;
+    const Vec3 r0 = s.f0 * s.i00 + s.f1 * s.i01, r1 = s.f0 * s.i01 + s.f1 * s.i11;
+    const Vec3 n = s.f0.cross(s.f1) / std::max(s.det, 1e-30);
+    double spin = (t.mu + t.lambda) * strain / std::max(s.trace, 1e-9);
+    if (which == Tangent::system) {
+      spin = std::max(spin, 0.0);
+      keep_positive(g00, g01, g11);
+    }
+    Vec3 g[3], p[3];
+    for (int i = 0; i < 3; ++i) {
+      g[i] = r0 * t.b[i][0] + r1 * t.b[i][1];
+      p[i] = n.cross(g[i]);
+    }
+    const double mu = scale * t.mu, lambda = scale * t.lambda;
+    for (int i = 0, slot = 0; i < 3; ++i)
+      for (int j = 0; j <= i; ++j, ++slot) {
+        if (t.slot[slot] < 0) continue;
+        double* out = stiffness->block(t.slot[slot]);
+        const double d = mu * g[i].dot(g[j]);
+        const double tension = scale * (t.b[i][0] * (g00 * t.b[j][0] + g01 * t.b[j][1]) + t.b[i][1] * (g01 * t.b[j][0] + g11 * t.b[j][1]));
+        const double across = tension - d;
+        for (int c = 0; c < 3; ++c) {
+          const double gi = mu * g[i][c], gj = lambda * g[j][c], pj = scale * spin * p[j][c], nc = across * n[c];
+          for (int r = 0; r < 3; ++r) out[3 * c + r] += gi * g[j][r] + gj * g[i][r] + pj * p[i][r] + nc * n[r];
+          out[4 * c] += d;
+        }
+      }
+  }
+}
+
+double StretchTriangles::energy(const double* x) const {
+  double sum = 0;
+  for (const Triangle& t : triangles_) {
+    const Stretch s = stretch_of(x, t.node, t.b);
+    const double strain = s.trace - 2;
+    // |e|^2 = tr C - 2 tr S + 2, written without its cancellation: |S - I|^2 with S = (C + det I) / tr S.
+    const double e00 = (s.c00 + s.det) / s.trace - 1, e01 = s.c01 / s.trace, e11 = (s.c11 + s.det) / s.trace - 1;
+    sum += t.mu * (e00 * e00 + 2 * e01 * e01 + e11 * e11) + 0.5 * t.lambda * strain * strain;
+  }
+  return sum;
+}
+
+}  // namespace insula

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Stretch of a wall: linear plane-stress triangles in a frame that turns with each of them.
+//
+//   F = sum x_i b_i^T (3 x 2) = R S,   e = S - I,   energy per area  t (mu |e|^2 + lambda/2 tr(e)^2)
+//   mu = E / (2 (1 + nu)),   lambda = E nu / (1 - nu^2)   (plane stress)
+//   G = 2 mu I + (lambda tr e - 2 mu) S^-1,   force on node i = -A t F G b_i
+//
+// With g_i = R b_i, n the normal, p_i = n x g_i the exact second derivative is, over A t,
+//   mu (g_i.g_j) (I - n n^T) + mu g_j g_i^T + lambda g_i g_j^T      Hooke's law in the turned frame
+//   + (mu + lambda) tr e / (2 + tr e) p_i p_j^T                      spin in the plane
+//   + (b_i^T G b_j) n n^T                                            tension against deflection
+// The last two are the geometric stiffness: the step's tangent keeps their part under tension (negative eigenvalues, which
+// pressure in the plane brings, are set to zero), so it is positive semidefinite and still stiff across a tensed wall.
+#pragma once
+#include <utility>
+#include <vector>
+
+#include "core/mechanics/force_model.h"
+
+namespace insula {
+
+class StretchTriangles {
+ public:
+  struct Material {
+    double thickness, young, poisson;
+  };
+  void clear() { triangles_.clear(); }
+  void add(const std::vector<Vec3>& rest, const std::array<int, 3>& nodes, const Material& material);
+  void couplings(std::vector<std::pair<int, int>>& pairs) const;
+  void bind(const BlockMatrix& a, const std::vector<int>& free_of_node);
+  void linearise(const double* x, double* force, BlockMatrix* stiffness, double scale, Tangent which) const;
+  double energy(const double* x) const;
+
+ private:
+  struct Triangle {
+    int node[3];      // in the order of the matrix once bound
+    int slot[6];      // (0,0) (1,0) (1,1) (2,0) (2,1) (2,2); -1 where a node is held
+    double b[3][2];   // rest gradients of the shape functions, 1/m
+    double mu, lambda;  // times area and thickness, N m
+  };
+  std::vector<Triangle> triangles_;
+};
+
+}  // namespace insula
