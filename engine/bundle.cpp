@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "core/base/input_error.h"
-#include "core/mechanics/soft_body.h"
+#include "core/mechanics/shell_body.h"
 #include "engine/frame.h"
 
 namespace insula {
@@ -59,6 +59,16 @@ class BundleWriter {
     to["skin_weights"] = file(name + "_weights.bin", weights);
   }
 
+  /// A picture beside a tool's URDF; false when it has none.
+  bool picture(const fs::path& urdf, const std::string& name) const {
+    const fs::path from = urdf.parent_path() / "picture.svg";
+    std::error_code error;
+    if (!fs::is_regular_file(from, error)) return false;
+    fs::copy_file(from, dir_ / name, fs::copy_options::overwrite_existing, error);
+    if (error) throw InputError((dir_ / name).string() + ": cannot be written: " + error.message());
+    return true;
+  }
+
   template <class T>
   std::string file(const std::string& name, const std::vector<T>& values) const {
     static_assert(sizeof(T) == 4);
@@ -93,14 +103,120 @@ Json exercise_of(const Exercise& exercise) {
   Json goals = Json::array(), faults = Json::array();
   for (const GoalState& g : exercise.log().goals()) goals.push_back({{"id", g.id}, {"text", g.text}});
   for (const FaultState& f : exercise.log().faults()) faults.push_back({{"id", f.id}, {"text", f.text}});
-  return {{"id", exercise.id}, {"title", exercise.title()}, {"text", exercise.text()}, {"goals", goals}, {"faults", faults}};
+  Json timers = Json::array(), measures = Json::array();
+  for (const TimerState& t : exercise.log().timers()) timers.push_back({{"id", t.id}, {"text", t.text}, {"limit_s", t.limit}});
+  for (const MeasureState& m : exercise.log().measures()) measures.push_back({{"id", m.id}, {"text", m.text}, {"unit", m.unit}});
+  return {{"id", exercise.id}, {"title", exercise.title()}, {"text", exercise.text()}, {"goals", goals}, {"faults", faults}, {"timers", timers}, {"measures", measures}};
 }
 
-/// Strands are known to their constraints before the first step has reported any.
-std::size_t strand_count(const Simulation& simulation) {
+/// What the constraints know before the first step has reported anything: strands, the bleeding's field.
+StepReport first_report(const Simulation& simulation) {
   StepReport report;
   for (const Constraint* c : simulation.constraints()) c->report(report);
-  return report.strands.size();
+  return report;
+}
+
+/// The region of each vertex: that of the wall's vertex it follows most closely at rest.
+std::vector<std::uint32_t> vertex_regions(const Surface& surface, const ShellBody& shell) {
+  std::vector<std::uint32_t> out;
+  for (std::size_t i = 0; i < surface.points().size(); ++i) {
+    const MaterialPoint& p = surface.points()[i];
+    int best = p.node[0];
+    double least = infinite;
+    for (int k = 0; k < p.count; ++k) {
+      const int node = p.node[std::size_t(k)];
+      const double d = (shell.rest().vertices[std::size_t(node)] - surface.rest().vertices[i]).squaredNorm();
+      if (d < least) {
+        least = d;
+        best = node;
+      }
+    }
+    out.push_back(std::uint32_t(shell.model().vertex_region[std::size_t(best)]));
+  }
+  return out;
+}
+
+/// Centrelines, neck and bleb of a vessel.
+void add_vessel(Json& to, const VesselModel& vessel) {
+  to["regions"] = vessel.regions;
+  to["centrelines"] = Json::array();
+  for (const auto& c : vessel.centrelines) {
+    Json points = Json::array();
+    for (const Vec3& p : c.points) points.push_back(list(p));
+    to["centrelines"].push_back({{"name", c.name}, {"region", c.region}, {"from", c.from}, {"to", c.to}, {"points", points}, {"radius", c.radius}});
+  }
+  if (vessel.neck_diameter > 0)
+    to["neck"] = {{"centre", list(vessel.neck_centre)}, {"normal", list(vessel.neck_normal)}, {"diameter", vessel.neck_diameter}};
+  if (vessel.bleb_radius > 0) to["bleb"] = {{"centre", list(vessel.bleb_centre)}, {"radius", vessel.bleb_radius}};
+}
+
+std::string title_of(const std::string& name) {
+  std::string out = name;
+  std::replace(out.begin(), out.end(), '_', ' ');
+  return out;
+}
+
+Json clip_json(const ToolModel& model) {
+  const ClipData& c = *model.clip;
+  return {{"kind", c.kind},
+          {"shape", c.shape},
+          {"temporary", c.kind.find("temporary") != std::string::npos},
+          {"blade_length_m", c.blade_length},
+          {"closing_force_N", c.closing_force},
+          {"opening_max_rad", model.opening_max}};
+}
+
+Json tool_json(const BundleWriter& writer, const RigidBody& body, std::size_t index) {
+  const auto* instrument = dynamic_cast<const Instrument*>(&body);
+  const auto* file = dynamic_cast<const Param<File>*>(body.find_param("model"));
+  // A clip keeps its model to itself; what it was read from is there for everybody.
+  const ToolModel model = instrument ? instrument->tool() : file && !file->empty() ? read_tool((*file)()) : ToolModel();
+  const std::string name = "t" + std::to_string(index);
+  Json out = {{"index", index}, {"id", body.id}, {"kind", body.element}, {"hand", instrument ? instrument->hand() : "none"}, {"title", title_of(model.name)}};
+  if (file && !file->empty() && writer.picture((*file)(), name + "_picture.svg")) out["picture"] = name + "_picture.svg";
+  if (model.clip) out["clip"] = clip_json(model);
+  out["hinges"] = Json::array();
+  for (const Hinge& h : model.hinges) out["hinges"].push_back({{"origin", list(h.origin)}, {"axis", list(h.axis)}, {"multiplier", h.multiplier}});
+  out["parts"] = Json::array();
+  for (std::size_t p = 0; p < model.parts.size(); ++p) {
+    const ToolPart& part = model.parts[p];
+    Json entry = {{"name", part.name}, {"link", part.link}, {"rgba", part.rgba}, {"material", part.material}};
+    writer.mesh(entry, name + "_" + std::to_string(p), part.mesh.vertices, part.mesh.triangles);
+    out["parts"].push_back(entry);
+  }
+  return out;
+}
+
+/// A hand with all its tools, in order; at home where its first one is.
+Json hands_json(const Simulation& simulation) {
+  Json out = Json::array();
+  for (int h = 0; h < 2; ++h) {
+    Json tools = Json::array();
+    const Instrument* first = nullptr;
+    for (std::size_t i = 0; i < simulation.instruments().size(); ++i) {
+      const Instrument* tool = simulation.instruments()[i];
+      if (tool->hand_index() != h) continue;
+      if (!first) first = tool;
+      tools.push_back(i);
+    }
+    if (!first) continue;
+    const Pose home = first->home_pose();
+    out.push_back({{"hand", first->hand()}, {"tool", tools.front()}, {"tools", tools}, {"home_p_m", list(home.p)},
+                   {"home_q", {home.q.w(), home.q.x(), home.q.y(), home.q.z()}}});
+  }
+  return out;
+}
+
+/// What may be asked of whom, for pages and scripts.
+Json commands_json(const Scene& scene) {
+  Json out = Json::array();
+  for (const Component* c : scene.components()) {
+    Json commands = Json::array();
+    for (const CommandInfo& info : c->commands())
+      commands.push_back({{"name", info.name}, {"doc", info.doc}, {"argument", info.argument}, {"min", info.min}, {"max", info.max}});
+    if (!commands.empty()) out.push_back({{"id", c->id}, {"element", c->element}, {"commands", commands}});
+  }
+  return out;
 }
 
 }  // namespace
@@ -111,7 +227,7 @@ void write_bundle(const Simulation& simulation, const fs::path& dir, std::int64_
   if (error) throw InputError(dir.string() + ": cannot be created: " + error.message());
   const BundleWriter writer(dir);
   Json json;
-  json["version"] = 1;
+  json["version"] = 2;
   json["session"] = session;
   const Exercise* exercise = simulation.exercise();
   json["title"] = !simulation.scene().title().empty() ? simulation.scene().title() : exercise ? exercise->title() : simulation.scene().file().stem().string();
@@ -120,43 +236,43 @@ void write_bundle(const Simulation& simulation, const fs::path& dir, std::int64_
 
   const auto bodies = picture_bodies(simulation);
   json["bodies"] = Json::array();
-  for (std::size_t b = 0; b < bodies.size(); ++b)
-    json["bodies"].push_back({{"index", b}, {"id", bodies[b]->id}, {"nodes", bodies[b]->nodes()},
-                              {"rest", writer.points("body" + std::to_string(b) + "_rest.bin", bodies[b]->rest().nodes)},
-                              {"surfaces", Json::array()}});
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    Json entry = {{"index", b}, {"id", bodies[b]->id}, {"nodes", bodies[b]->nodes()},
+                  {"rest", writer.points("body" + std::to_string(b) + "_rest.bin", bodies[b]->rest_nodes())},
+                  {"surfaces", Json::array()}};
+    if (const auto* shell = dynamic_cast<const ShellBody*>(bodies[b])) add_vessel(entry, shell->model());
+    json["bodies"].push_back(entry);
+  }
   json["static"] = Json::array();
   for (std::size_t s = 0; s < simulation.surfaces().size(); ++s) {
     const Surface& surface = *simulation.surfaces()[s];
     const std::string name = "s" + std::to_string(s);
     Json entry = {{"id", surface.id}, {"material", surface.material()}};
     writer.mesh(entry, name, surface.rest().vertices, surface.triangles());
-    const auto at = std::find(bodies.begin(), bodies.end(), dynamic_cast<const SoftBody*>(&surface.body()));
+    const auto at = std::find(bodies.begin(), bodies.end(), dynamic_cast<const DeformableBody*>(&surface.body()));
     if (at == bodies.end()) {
       json["static"].push_back(entry);
     } else {
       writer.skin(entry, name, surface);
+      if (const auto* shell = dynamic_cast<const ShellBody*>(*at)) {
+        entry["regions"] = shell->model().regions;
+        entry["vertex_region"] = writer.file(name + "_regions.bin", vertex_regions(surface, *shell));
+      }
       json["bodies"][std::size_t(at - bodies.begin())]["surfaces"].push_back(entry);
     }
   }
 
   json["tools"] = Json::array();
-  json["hands"] = Json::array();
-  for (std::size_t i = 0; i < simulation.instruments().size(); ++i) {
-    const Instrument& tool = *simulation.instruments()[i];
-    const std::string hand = tool.hand();
-    Json parts = Json::array();
-    for (std::size_t p = 0; p < tool.tool().parts.size(); ++p) {
-      const ToolPart& part = tool.tool().parts[p];
-      Json entry = {{"name", part.name}, {"rgba", part.rgba}, {"material", part.material}};
-      writer.mesh(entry, "t" + std::to_string(i) + "_" + std::to_string(p), part.mesh.vertices, part.mesh.triangles);
-      parts.push_back(entry);
-    }
-    json["tools"].push_back({{"index", i}, {"id", tool.id}, {"hand", hand}, {"kind", tool.element}, {"parts", parts}});
-    if (tool.hand_index() < 0) continue;  // a table-mounted arm is nobody's hand
-    const Pose home = tool.home_pose();
-    json["hands"].push_back({{"hand", hand}, {"tool", i}, {"home_p_m", list(home.p)}, {"home_q", {home.q.w(), home.q.x(), home.q.y(), home.q.z()}}});
+  const auto tools = picture_tools(simulation);
+  for (std::size_t i = 0; i < tools.size(); ++i) json["tools"].push_back(tool_json(writer, *tools[i], i));
+  json["hands"] = hands_json(simulation);
+  json["commands"] = commands_json(simulation.scene());
+  const StepReport start = first_report(simulation);
+  json["strands"] = {{"count", start.strands.size()}, {"radius_m", strand_radius_m}};
+  if (!start.bleeding.empty()) {
+    const BleedingState& b = start.bleeding.front();
+    json["bleeding"] = {{"origin", list(b.origin)}, {"up", list(b.up)}, {"radius_m", b.radius}};
   }
-  json["strands"] = {{"count", strand_count(simulation)}, {"radius_m", strand_radius_m}};
   if (exercise) json["exercise"] = exercise_of(*exercise);
 
   const fs::path whole = dir / "scene.json", part = dir / "scene.json.part";

@@ -13,6 +13,7 @@
 #include "core/mechanics/soft_body.h"
 #include "core/testing/block_mesh.h"
 #include "core/testing/example.h"
+#include "engine/frame.h"
 
 namespace insula {
 namespace {
@@ -73,7 +74,7 @@ class BundleOfAScene : public testing::Test {
 
 TEST_F(BundleOfAScene, NamesWhatTheSceneHolds) {
   const Json j = written();
-  EXPECT_EQ(j.at("version"), 1);
+  EXPECT_EQ(j.at("version"), 2);
   EXPECT_EQ(j.at("session"), 42);
   EXPECT_EQ(j.at("title"), "Two <blocks>");
   EXPECT_NEAR(j.at("view").at("fov_deg").get<double>(), 25, 1e-12);
@@ -132,6 +133,84 @@ TEST_F(BundleOfAScene, ToolsStandAtHome) {
   const Pose home = simulation_->instruments()[0]->home_pose();
   for (int k = 0; k < 3; ++k) EXPECT_EQ(hand.at("home_p_m").at(std::size_t(k)), home.p[k]);
   EXPECT_EQ(hand.at("home_q").at(0), home.q.w());
+}
+
+TEST_F(BundleOfAScene, AHandHasAllItsToolsAndAnArmNone) {
+  simulation_ = test::load_text(R"(<scene>
+  <retractor id="arm" hand="none" model="meshes/tool/probe.urdf" home="0 0 30 mm" shaft="0 0 1" flat="1 0 0"/>
+  <dissector id="first" hand="right" model="meshes/tool/probe.urdf" home="0 0 10 mm" shaft="0 0 1" flat="1 0 0"/>
+  <retractor id="other" hand="left" model="meshes/tool/probe.urdf" home="0 0 30 mm" shaft="0 0 1" flat="1 0 0"/>
+  <dissector id="second" hand="right" model="meshes/tool/probe.urdf" home="0 0 20 mm" shaft="0 0 1" flat="1 0 0"/>
+</scene>)", scene_.path() / "scene.xml");
+  ASSERT_TRUE(simulation_);
+  const Json j = written();
+  ASSERT_EQ(j.at("hands").size(), 2u);
+  EXPECT_EQ(j.at("hands").at(0).at("hand"), "left");
+  EXPECT_EQ(j.at("hands").at(0).at("tools"), Json({2}));
+  EXPECT_EQ(j.at("hands").at(1).at("tools"), Json({1, 3}));
+  EXPECT_EQ(j.at("hands").at(1).at("tool"), 1);
+  EXPECT_EQ(j.at("hands").at(1).at("home_p_m").at(2), 0.01);
+  // In frames: in the hand, on the tray, on its arm.
+  simulation_->step();
+  EXPECT_EQ(simulation_->command("exchange", "right second"), "");
+  simulation_->step();
+  insula_lcm::render_frame_t f{};
+  fill_frame(*simulation_, f);
+  ASSERT_EQ(f.tools, 4);
+  const int state[] = {1, 0, 1, 1}, hand[] = {-1, 1, 0, 1};
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(f.tool[i].state, state[i]) << i;
+    EXPECT_EQ(f.tool[i].hand, hand[i]) << i;
+  }
+}
+
+// Shipped geometry: a vessel with its picture surface, and a clip's model in a hand.
+TEST_F(BundleOfAScene, TellsOfVesselsAndArticulatedTools) {
+  const std::filesystem::path source = INSULA_SOURCE_DIR;
+  simulation_ = test::load_text(R"(<scene>
+  <shell_body id="artery" vessel="../../meshes/arteries/narrow_neck/vessel.json"><fixed/>
+    <surface id="wall" material="vessel"/>
+    <surface id="picture" mesh="../../meshes/arteries/narrow_neck/picture.ply" mesh_unit="mm" material="vessel" contact="false"/></shell_body>
+  <retractor id="clip" hand="right" model="../../meshes/clips/straight/straight.urdf" home="0 0 90 mm" shaft="0 0 1" flat="1 0 0"/>
+</scene>)", source / "scenes/training/bundle_test.xml");
+  ASSERT_TRUE(simulation_);
+  const Json j = written();
+  const auto* shell = simulation_->scene().find_as<ShellBody>("artery");
+  const Json& body = j.at("bodies").at(0);
+  EXPECT_EQ(body.at("nodes"), shell->nodes());
+  EXPECT_EQ(body.at("centrelines").size(), shell->model().centrelines.size());
+  EXPECT_GE(body.at("centrelines").size(), 3u);
+  for (const Json& c : body.at("centrelines")) EXPECT_EQ(c.at("points").size(), c.at("radius").size());
+  EXPECT_NEAR(body.at("neck").at("diameter").get<double>(), shell->model().neck_diameter, 0);
+  ASSERT_EQ(body.at("surfaces").size(), 2u);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Json& s = body.at("surfaces").at(k);
+    check_mesh(s);
+    EXPECT_EQ(s.at("regions"), Json(shell->model().regions));
+    const auto region = values<std::uint32_t>(s.at("vertex_region"));
+    ASSERT_EQ(region.size(), s.at("vertices").get<std::size_t>());
+    const Surface& surface = *simulation_->surfaces()[k];
+    // Each vertex has the region of the wall vertex that is nearest among those it follows.
+    for (std::size_t v = 0; v < region.size(); ++v) {
+      ASSERT_LT(region[v], shell->model().regions.size());
+      const MaterialPoint& p = surface.points()[v];
+      bool found = false;
+      for (int n = 0; n < p.count; ++n) found = found || shell->model().vertex_region[std::size_t(p.node[std::size_t(n)])] == int(region[v]);
+      ASSERT_TRUE(found) << v;
+      if (k == 0) { ASSERT_EQ(int(region[v]), shell->model().vertex_region[v]); }
+    }
+  }
+  const Json& tool = j.at("tools").at(0);
+  const ToolModel& model = simulation_->instruments()[0]->tool();
+  ASSERT_EQ(tool.at("hinges").size(), model.hinges.size());
+  EXPECT_EQ(model.hinges.size(), 2u);
+  EXPECT_EQ(tool.at("hinges").at(1).at("multiplier"), model.hinges[1].multiplier);
+  int links = 0;
+  for (const Json& part : tool.at("parts")) links = std::max(links, part.at("link").get<int>());
+  EXPECT_EQ(links, 2);
+  EXPECT_EQ(tool.at("clip").at("kind"), model.clip->kind);
+  EXPECT_EQ(tool.at("clip").at("closing_force_N"), model.clip->closing_force);
+  EXPECT_TRUE(std::filesystem::file_size(dir_ / tool.at("picture").get<std::string>()) > 100);
 }
 
 TEST_F(BundleOfAScene, SaysWhenItCannotBeWritten) {

@@ -33,6 +33,7 @@ int cmd_run(const CommandContext& context, const RunOptions& options) {
   const OpenedRun opened = open_run(context, options.scene, options.motion, false, options.threads);
   if (!opened.simulation) return 2;
   Simulation& simulation = *opened.simulation;
+  if (options.seed != 0) simulation.draw_complications(options.seed);
   const Motion& motion = opened.motion;
   const double duration = options.duration > 0 ? options.duration : motion.empty() ? 10.0 : motion.duration() + 1.0;
   const auto steps = std::int64_t(std::ceil(duration / simulation.h() - 1e-9));
@@ -66,6 +67,7 @@ int cmd_run(const CommandContext& context, const RunOptions& options) {
   for (int h = 0; h < 2; ++h) summary.max_force_N[std::size_t(h)] = run.haptics().hand(h).max_force_N;
   summary.state_hash = simulation.state_hash();
   summary.exercise = simulation.exercise();
+  summary.complications = simulation.complications();
   try {
     if (!options.report.empty()) write_report(options.report, recorder, summary);
     if (!options.export_folder.empty()) export_bodies(simulation, options.export_folder);

@@ -4,7 +4,8 @@
 
 #include <algorithm>
 
-#include "core/mechanics/soft_body.h"
+#include "core/mechanics/deformable_body.h"
+#include "engine/hud.h"
 
 namespace insula {
 namespace {
@@ -21,15 +22,51 @@ void put(std::vector<Row>& to, std::size_t i, const Vec3& v) {
   put(to[i].data(), v);
 }
 
+constexpr std::int8_t on_tray = 0, held = 1, free_in_field = 2;
+
+void fill_tool(const StepReport& r, const RigidBody& body, insula_lcm::render_tool_t& to) {
+  const Pose pose = body.link_pose(0);
+  put(to.p_m, pose.p);
+  to.q[0] = pose.q.w();
+  to.q[1] = pose.q.x();
+  to.q[2] = pose.q.y();
+  to.q[3] = pose.q.z();
+  put(to.device_p_m, pose.p);
+  to.hand = -1;
+  to.state = body.active() ? held : on_tray;
+  if (const auto* tool = dynamic_cast<const Instrument*>(&body)) {
+    to.hand = std::int8_t(tool->hand_index());
+    put(to.device_p_m, tool->device().p);
+    put(to.force_N, tool->hand_force().head<3>());
+    to.button1 = tool->state().button1;
+    to.button2 = tool->state().button2;
+    to.activity = float(tool->activity());
+    return;
+  }
+  for (const ClipState& c : r.clips) {
+    if (c.clip != &body) continue;
+    to.state = c.on_tray ? on_tray : c.holder ? held : free_in_field;
+    to.opening_rad = float(c.opening);
+    if (const auto* holder = dynamic_cast<const Instrument*>(c.holder)) to.hand = std::int8_t(holder->hand_index());
+  }
+}
+
 // Contacts shown at most: a picture needs no more, and frames stay small.
 constexpr std::size_t most_contacts = 120;
 
 }  // namespace
 
-std::vector<const SoftBody*> picture_bodies(const Simulation& simulation) {
-  std::vector<const SoftBody*> out;
+std::vector<const DeformableBody*> picture_bodies(const Simulation& simulation) {
+  std::vector<const DeformableBody*> out;
   for (const Body* b : simulation.bodies())
-    if (auto* soft = dynamic_cast<const SoftBody*>(b)) out.push_back(soft);
+    if (auto* body = dynamic_cast<const DeformableBody*>(b)) out.push_back(body);
+  return out;
+}
+
+std::vector<const RigidBody*> picture_tools(const Simulation& simulation) {
+  std::vector<const RigidBody*> out(simulation.instruments().begin(), simulation.instruments().end());
+  for (const Body* b : simulation.bodies())
+    if (auto* body = dynamic_cast<const RigidBody*>(b); body && !dynamic_cast<const Instrument*>(b)) out.push_back(body);
   return out;
 }
 
@@ -67,24 +104,13 @@ void fill_frame(const Simulation& simulation, insula_lcm::render_frame_t& f) {
     f.strand_health[i] = float(r.strands[i].health);
     f.strand_tension_N[i] = float(r.strands[i].tension);
   }
-  const auto& tools = simulation.instruments();
+  const auto tools = picture_tools(simulation);
   f.tools = std::int8_t(tools.size());
   f.tool.resize(tools.size());
   for (std::size_t i = 0; i < tools.size(); ++i) {
-    auto& to = f.tool[i];
-    const Pose& pose = tools[i]->pose();
-    to.index = std::int32_t(i);
-    to.hand = std::int8_t(tools[i]->hand_index());
-    put(to.p_m, pose.p);
-    to.q[0] = pose.q.w();
-    to.q[1] = pose.q.x();
-    to.q[2] = pose.q.y();
-    to.q[3] = pose.q.z();
-    put(to.device_p_m, tools[i]->device().p);
-    put(to.force_N, tools[i]->hand_force().head<3>());
-    to.button1 = tools[i]->state().button1;
-    to.button2 = tools[i]->state().button2;
-    to.activity = float(tools[i]->activity());
+    f.tool[i] = insula_lcm::render_tool_t{};
+    f.tool[i].index = std::int32_t(i);
+    fill_tool(r, *tools[i], f.tool[i]);
   }
   const std::size_t contacts = std::min(most_contacts, r.contacts.size());
   f.contacts = std::int32_t(contacts);
@@ -98,7 +124,7 @@ void fill_frame(const Simulation& simulation, insula_lcm::render_frame_t& f) {
   f.step_period_ms = simulation.h() * 1000;
   f.rows = r.rows;
   f.sweeps = r.solve.sweeps;
-  f.hud_json = simulation.exercise() ? simulation.exercise()->hud_json(r) : "{}";
+  f.hud_json = hud_json(simulation);
 }
 
 }  // namespace insula

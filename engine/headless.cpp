@@ -21,7 +21,7 @@ std::array<HandHome, 2> homes(const Simulation& simulation) {
 }  // namespace
 
 HeadlessRun::HeadlessRun(Simulation& simulation, const Motion& motion)
-    : simulation_(simulation), haptics_(motion, homes(simulation)) {}
+    : simulation_(simulation), haptics_(motion, homes(simulation)), script_(motion.commands()) {}
 
 void HeadlessRun::step() {
   const auto begin = std::chrono::steady_clock::now();
@@ -33,14 +33,18 @@ void HeadlessRun::step() {
     if (hand.present) simulation_.set_hand(h, {true, hand.device, hand.button1, hand.button2});
   }
   haptic_ms_ = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+  script_.advance(simulation_);
   simulation_.step();
   condense(simulation_.problem(), 240, condensed_);
+  pause_.apply(simulation_, condensed_);
   haptics_.set_problem(condensed_);
 }
 
 void HeadlessRun::reset() {
   simulation_.reset();
   haptics_.reset();
+  script_.reset();
+  pause_ = {};
 }
 
 OpenedRun open_run(const CommandContext& context, const std::filesystem::path& scene, const std::string& motion, bool optional, int threads) {

@@ -4,14 +4,16 @@
 #include <memory>
 
 #include "core/sim/simulation.h"
+#include "engine/command_script.h"
 #include "engine/commands.h"
+#include "engine/exchange_pause.h"
 #include "haptic_server/in_process.h"
 
 namespace insula {
 
 class HeadlessRun {
  public:
-  /// Hands follow the motion; one it does not move stays at its tool's home.
+  /// Hands follow the motion, whose commands are done at their times; a hand it does not move stays at its tool's home.
   HeadlessRun(Simulation& simulation, const Motion& motion);
 
   /// The servo's ticks up to the end of the coming step, then the step with the hands as they then are.
@@ -25,8 +27,10 @@ class HeadlessRun {
  private:
   Simulation& simulation_;
   InProcessHaptics haptics_;
+  CommandScript script_;
   double haptic_ms_ = 0;
   ConstraintProblem condensed_;
+  ExchangePause pause_;
 };
 
 /// A scene and a motion of it, ready to run.

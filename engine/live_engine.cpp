@@ -12,7 +12,9 @@
 #include "core/base/input_error.h"
 #include "core/bus/channels.h"
 #include "core/bus/codec.h"
+#include "core/base/text.h"
 #include "engine/bundle.h"
+#include "engine/command_script.h"
 #include "engine/publisher.h"
 
 namespace insula {
@@ -22,11 +24,15 @@ namespace {
 // A device state older than this no longer moves a tool.
 constexpr std::int64_t stale_us = 200'000;
 constexpr double settle_s = 0.3;
+// Requests taken between two steps; more is a script gone wild.
+constexpr std::size_t most_asked = 100;
 
 struct Inputs {
   insula_lcm::device_state_t devices{};
   std::int64_t received_us = 0;
   bool pause = false, reset = false, quit = false;
+  bool driven = false;  ///< a person has moved a hand since the start
+  std::vector<std::pair<std::string, std::string>> asked;  ///< command and argument, in order of arrival
 
   void subscribe(Bus& bus) {
     bus.subscribe(channel::device_state, [this](Bytes b) {
@@ -36,6 +42,11 @@ struct Inputs {
       devices = std::move(m);
       received_us = monotonic_us();
     });
+    bus.subscribe(channel::hand_input, [this](Bytes b) {
+      std::string why;
+      insula_lcm::hand_input_t m;
+      if (decode(b, m, why)) driven = true;
+    });
     bus.subscribe(channel::user_command, [this](Bytes b) {
       std::string why;
       insula_lcm::user_command_t m;
@@ -44,8 +55,20 @@ struct Inputs {
       else if (m.command == "resume") pause = false;
       else if (m.command == "reset") reset = true;
       else if (m.command == "quit") quit = true;
-      else spdlog::info("unknown command \"{}\" ignored", m.command.substr(0, 40));
+      else if (m.command == "exchange" || m.command == "ask" || m.command == "message") {
+        if (asked.size() < most_asked) asked.emplace_back(m.command, m.argument);
+      } else spdlog::info("unknown command \"{}\" ignored", m.command.substr(0, 40));
     });
+  }
+
+  /// Whether the arms do what the motion says: simulated ones that nobody has taken over.
+  bool follows(const Motion& motion) const {
+    if (driven) return false;
+    if (!motion.has(0) && !motion.has(1)) return true;
+    if (monotonic_us() - received_us > stale_us) return false;
+    for (const auto& h : devices.hand)
+      if (motion.has(h.hand) && !(h.connected && h.device == "simulated")) return false;
+    return true;
   }
 
   void apply(Simulation& simulation) const {
@@ -102,9 +125,12 @@ int run_live(const LiveOptions& options, const Registry& registry, Bus& bus, con
   if (!said.empty()) std::fputs(said.c_str(), stderr);
   if (!loaded.simulation) return 2;
   Simulation& simulation = *loaded.simulation;
+  if (options.seed != 0) simulation.draw_complications(options.seed);
   fs::path motion;
+  Motion script;
   try {
     motion = find_motion(simulation, options.motion);
+    if (!motion.empty()) script = load_motion(motion);
   } catch (const InputError& e) {
     // A scene without the default motion is played by hand.
     if (options.motion != "steady") {
@@ -119,6 +145,7 @@ int run_live(const LiveOptions& options, const Registry& registry, Bus& bus, con
   Publisher publisher(bus, session, options.scene, bundle, motion, title);
   Inputs inputs;
   inputs.subscribe(bus);
+  CommandScript commands(script.commands());
   spdlog::info("\"{}\" runs: {} bodies, {} constraints, step {:.2f} ms", title, simulation.bodies().size(),
                simulation.constraints().size(), simulation.h() * 1000);
   publisher.info("running");
@@ -133,18 +160,28 @@ int run_live(const LiveOptions& options, const Registry& registry, Bus& bus, con
     }
     if (inputs.reset) {
       inputs.reset = false;
+      inputs.driven = false;  // the haptic server gives the hands back to the motion
+      commands.reset();
       simulation.reset();
       spdlog::info("reset");
     }
+    for (const auto& [verb, argument] : inputs.asked) {
+      const std::string why = simulation.command(verb, argument);
+      if (!why.empty()) spdlog::info("{} \"{}\" refused: {}", verb, shown(argument), why);
+    }
+    inputs.asked.clear();
     if (inputs.pause) {
+      publisher.events(simulation.take_announced());  // no step will
       publisher.paused_frame(simulation);
       publisher.info("paused");
     } else {
       inputs.apply(simulation);
+      commands.advance(simulation, inputs.follows(script));
       simulation.step();
       if (!simulation.report().finite) {
         spdlog::error("the simulation left the range of numbers at {:.3f} s; it starts again", simulation.time());
         simulation.reset();
+        commands.reset();
         continue;
       }
       publisher.step(simulation);

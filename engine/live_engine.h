@@ -18,6 +18,7 @@ struct LiveOptions {
   double duration = 0;            ///< simulated seconds; 0: until asked to stop
   bool unthrottled = false;       ///< as fast as the machine can, for measurements
   int threads = 0;
+  std::uint64_t seed = 0;         ///< of the complications; 0: the scene's
 };
 
 /// Runs until `stop` is set, the duration is over or a viewer says quit. Exit status: 0, or 2 when the scene has errors.

@@ -80,6 +80,7 @@ int main(int argc, char** argv) {
   headless->add_option("--report", run_options.report, "folder for report.json and report.html");
   headless->add_option("--export", run_options.export_folder, "folder for the bodies' final nodes as .vtu");
   headless->add_option("--threads", run_options.threads, "threads; 0 takes the machine's");
+  headless->add_option("--seed", run_options.seed, "what complications are drawn from; 0: the scene's own seed");
   headless->add_flag("--quiet", run_options.quiet, "print the last line only");
   headless->callback([&] { run = [&](const auto& c) { return insula::cmd_run(c, run_options); }; });
 
@@ -101,6 +102,7 @@ int main(int argc, char** argv) {
   engine->add_option("--duration", engine_options.duration, "end after so many simulated seconds; 0: never")->check(CLI::NonNegativeNumber);
   engine->add_flag("--unthrottled", engine_options.unthrottled, "as fast as the machine can, for measurements");
   engine->add_option("--threads", engine_options.threads, "threads; 0 takes the machine's");
+  engine->add_option("--seed", engine_options.seed, "what complications are drawn from; 0: the scene's own seed");
   engine->callback([&] { run = [&](const auto& c) { return insula::cmd_engine(c, engine_options); }; });
 
   insula::PlayOptions play_options;
@@ -113,6 +115,7 @@ int main(int argc, char** argv) {
   play->add_option("--port", play_options.port, "port of the viewer; following ones are tried when it is busy")->capture_default_str();
   play->add_option("--listen", play_options.listen, "address of the viewer; 0.0.0.0 lets other machines watch")->capture_default_str();
   play->add_option("--duration", play_options.duration_s, "end after so many seconds; 0: never")->check(CLI::NonNegativeNumber);
+  play->add_option("--seed", play_options.seed, "what complications are drawn from; 0: the scene's own seed");
   play->add_flag("--no-browser", no_browser, "open no browser");
   play->callback([&] {
     play_options.browser = !no_browser;

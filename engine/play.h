@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // insula play: engine, haptic server and gateway, watched over until the session ends.
 #pragma once
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -18,6 +19,7 @@ struct PlayOptions {
   std::string listen = "127.0.0.1";   ///< 0.0.0.0 lets other machines watch
   bool browser = true;                ///< open one when there is a display
   double duration_s = 0;              ///< 0: until Ctrl-C
+  std::uint64_t seed = 0;             ///< of the complications; 0: the scene's
   std::vector<std::string> engine_arguments;  ///< passed on before the subcommand, such as --plugin-path
 };
 

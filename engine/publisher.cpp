@@ -43,9 +43,14 @@ void Publisher::step(const Simulation& simulation) {
   update_.step_s = simulation.h();
   update_.sim_time_s = simulation.time();
   condense(simulation.problem(), most_rows, update_.problem);
+  pause_.apply(simulation, update_.problem);
   if (!encode_problem(update_, scratch_) || !bus_.publish(channel::haptic_problem, scratch_)) ++failed_;
   frame(simulation, false);
-  for (const Event& e : simulation.events()) {
+  events(simulation.events());
+}
+
+void Publisher::events(const std::vector<Event>& events) {
+  for (const Event& e : events) {
     insula_lcm::sim_event_t m;
     m.session = session_;
     m.sequence = ++event_sequence_;

@@ -9,6 +9,7 @@
 #include "core/bus/bus.h"
 #include "core/bus/haptic_update.h"
 #include "core/sim/simulation.h"
+#include "engine/exchange_pause.h"
 
 namespace insula {
 
@@ -25,6 +26,8 @@ class Publisher {
 
   /// After a step: problem, frame, events.
   void step(const Simulation& simulation);
+  /// Events that belong to no step.
+  void events(const std::vector<Event>& events);
   /// The frame alone, while paused.
   void paused_frame(const Simulation& simulation);
   /// Repeats the scene's state when a second has passed since the last time, or at once when it changed.
@@ -39,6 +42,7 @@ class Publisher {
   insula_lcm::scene_info_t info_;
   insula_lcm::render_frame_t frame_;
   HapticUpdate update_;
+  ExchangePause pause_;
   std::vector<std::uint8_t> scratch_;
 };
 

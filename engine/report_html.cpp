@@ -67,6 +67,20 @@ std::string exercise_part(const Exercise& exercise) {
                          f.count ? fmt::format("{:.1f}", f.last_time) : "");
     out += "</tbody></table>\n";
   }
+  if (!log.measures().empty()) {
+    out += "<table><thead><tr><th>Measure</th><th class=\"n\">At the end</th></tr></thead><tbody>\n";
+    for (const auto& m : log.measures())
+      out += fmt::format("<tr><td>{}</td><td class=\"n {}\">{}</td></tr>\n", escaped(m.text), m.good > 0 ? "good" : m.good < 0 ? "bad" : "",
+                         m.known ? escaped(fmt::format("{:.3g} {}", m.value, m.unit)) : "");
+    out += "</tbody></table>\n";
+  }
+  if (!log.timers().empty()) {
+    out += "<table><thead><tr><th>Clock</th><th class=\"n\">Longest (s)</th><th class=\"n\">Limit (s)</th></tr></thead><tbody>\n";
+    for (const auto& t : log.timers())
+      out += fmt::format("<tr><td>{}</td><td class=\"n {}\">{:.1f}</td><td class=\"n\">{}</td></tr>\n", escaped(t.text), t.limit > 0 && t.longest > t.limit ? "bad" : "",
+                         t.longest, t.limit > 0 ? fmt::format("{:.0f}", t.limit) : "");
+    out += "</tbody></table>\n";
+  }
   return out;
 }
 
@@ -74,13 +88,13 @@ std::string events_part(const RunRecorder& recorder) {
   std::string rows;
   std::size_t shown = 0, more = 0;
   for (const auto& e : recorder.events()) {
-    if (e.kind == "strand_cut") continue;  // the plot shows them
+    if (e.kind == "strand_cut" || e.kind == "command" || e.kind == "refused") continue;  // shown elsewhere
     if (++shown > 200) {
       ++more;
       continue;
     }
     rows += fmt::format("<tr><td class=\"n\">{:.2f}</td><td class=\"{}\">{}</td><td>{}</td></tr>\n", e.time,
-                        e.kind == "fault" ? "bad" : e.kind == "goal" ? "good" : "", escaped(e.kind), escaped(e.text.empty() ? e.id : e.text));
+                        e.kind == "fault" || e.kind == "rupture" || e.kind == "goal_lost" ? "bad" : e.kind == "goal" ? "good" : "", escaped(e.kind), escaped(e.text.empty() ? e.id : e.text));
   }
   if (rows.empty()) return "";
   std::string out = "<h2>What happened</h2>\n<table><thead><tr><th class=\"n\">Time (s)</th><th>Kind</th><th>Text</th></tr></thead><tbody>\n" + rows + "</tbody></table>\n";
@@ -144,6 +158,8 @@ std::string report_html(const RunRecorder& recorder, const RunSummary& summary) 
   out += "<p class=\"notice\">For training only. Not a medical device, and no measure of fitness to operate.</p>\n";
   if (!recorder.finite()) out += "<p class=\"bad\">The simulation lost its numbers (not finite): nothing below can be relied upon.</p>\n";
   if (summary.exercise) out += exercise_part(*summary.exercise);
+  out += recorder.outcome().html();
+  if (summary.complications) out += complications_html(*summary.complications);
   out += "<h2>The run</h2>\n<table><tbody>\n";
   if (!summary.scene.empty()) out += row("scene", summary.scene);
   if (!summary.motion.empty()) out += row("motion", summary.motion);

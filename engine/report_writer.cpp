@@ -36,12 +36,16 @@ double largest(const std::vector<double>& v) { return v.empty() ? 0 : *std::max_
 Json mean_max(const std::vector<double>& v) { return {{"mean", mean(v)}, {"max", largest(v)}}; }
 
 Json exercise_json(const RunRecorder& recorder, const Exercise* exercise) {
-  Json goals = Json::array(), faults = Json::array();
+  Json goals = Json::array(), faults = Json::array(), timers = Json::array(), measures = Json::array();
   Json out;
   if (exercise) {
     for (const auto& g : exercise->log().goals())
       goals.push_back({{"id", g.id}, {"done", g.done}, {"time_s", g.done ? Json(g.time) : Json()}, {"required", g.required}, {"text", g.text}});
     for (const auto& f : exercise->log().faults()) faults.push_back({{"id", f.id}, {"count", f.count}, {"text", f.text}});
+    for (const auto& t : exercise->log().timers())
+      timers.push_back({{"id", t.id}, {"elapsed_s", t.elapsed}, {"longest_s", t.longest}, {"limit_s", t.limit}, {"running", t.running}, {"text", t.text}});
+    for (const auto& m : exercise->log().measures())
+      measures.push_back({{"id", m.id}, {"value", m.known ? Json(m.value) : Json()}, {"unit", m.unit}, {"good", m.good}, {"text", m.text}});
     static constexpr const char* states[] = {"running", "done", "failed"};
     out["id"] = exercise->id;
     out["title"] = exercise->title();
@@ -49,6 +53,8 @@ Json exercise_json(const RunRecorder& recorder, const Exercise* exercise) {
   }
   out["goals"] = goals;
   out["faults"] = faults;
+  out["timers"] = timers;
+  out["measures"] = measures;
   out["strands_cut"] = recorder.strands_cut();
   out["strands_total"] = recorder.strands_total();
   return out;
@@ -96,6 +102,7 @@ void RunRecorder::record(const StepReport& r, const std::vector<Event>& events, 
   strands_total_ = r.strands_total;
   strands_left_ = r.strands_left;
   finite_ = finite_ && r.finite;
+  outcome_.observe(r, events);
 }
 
 void RunRecorder::clear() { *this = RunRecorder(); }
@@ -170,6 +177,8 @@ std::string report_json(const RunRecorder& recorder, const RunSummary& summary) 
   json["haptic"] = {{"fresh_forces_per_s", summary.fresh_forces_per_s},
                     {"max_force_N", {{"left", summary.max_force_N[0]}, {"right", summary.max_force_N[1]}}}};
   json["exercise"] = exercise_json(recorder, summary.exercise);
+  if (summary.complications) json["complications"] = complications_json(*summary.complications);
+  recorder.outcome().add_to(json);
   json["finite"] = recorder.finite();
   json["state_hash"] = fmt::format("{:016x}", summary.state_hash);
   json["events"] = Json::array();

@@ -10,6 +10,7 @@
 
 #include "core/sim/exercise.h"
 #include "core/sim/report.h"
+#include "engine/run_outcome.h"
 
 namespace insula {
 
@@ -22,6 +23,7 @@ struct RunSummary {
   std::array<double, 2> max_force_N{};  ///< on the hands: left, right
   std::uint64_t state_hash = 0;
   const Exercise* exercise = nullptr;   ///< null when the scene has none
+  const Complications* complications = nullptr;  ///< the same
 };
 
 class RunRecorder {
@@ -50,6 +52,7 @@ class RunRecorder {
   int strands_total() const { return strands_total_; }
   int strands_cut() const { return strands_total_ - strands_left_; }
   bool finite() const { return finite_; }
+  const RunOutcome& outcome() const { return outcome_; }
 
  private:
   std::deque<Sample> samples_;  // grows by blocks: no step pays for the copy of all others
@@ -57,6 +60,7 @@ class RunRecorder {
   std::int64_t events_left_out_ = 0;
   int strands_total_ = 0, strands_left_ = 0;
   bool finite_ = true;
+  RunOutcome outcome_;
 };
 
 /// Steps gathered for a plot: at most `most` moments, each the largest value of its steps (strands: the last).

@@ -12,6 +12,8 @@
 #include <random>
 
 #include "core/base/input_error.h"
+#include "core/registry/registry.h"
+#include "core/sim/simulation.h"
 #include "engine/svg_plot.h"
 
 namespace insula {
@@ -115,6 +117,102 @@ TEST(ReportJson, HasEveryKeyWithItsNumber) {
   EXPECT_EQ(j.at("series").at("time_s").size(), 100u);
   EXPECT_EQ(j.at("series").at("tool_force_N").at("right").at(49), 2.5);
   EXPECT_EQ(j.at("series").at("strands_left").at(99), 0);
+}
+
+TEST(ReportJson, TellsOfBleedingVesselsClipsAndCommands) {
+  Exercise exercise;
+  fill(exercise);
+  exercise.log().add_timer("t", "Temporary clip", 2);
+  exercise.log().add_measure("m", "Neck <remnant>", "%");
+  exercise.log().timer(0, 3, true);
+  exercise.log().timer(0, 1, false);
+  exercise.log().measure(0, 12.5, -1);
+  RunRecorder recorder;
+  const std::string vessel = "superior";
+  for (int k = 1; k <= 10; ++k) {
+    StepReport r;
+    r.time = 0.1 * k;
+    r.h = 0.1;
+    BleedingState b;
+    b.open = k >= 3;
+    b.rate = k >= 3 && k < 8 ? 1e-6 : 0;
+    b.lost = 2.5e-6;
+    b.height = k == 5 ? 0.007 : 0.001;
+    b.since = k >= 3 ? 0.2 : -1;
+    r.bleeding.push_back(b);
+    r.vessels.push_back({vessel, 10665.790993, 1e-6, 2e-6, 0.5, 0});
+    std::vector<Event> events;
+    if (k == 4) events = {{"command", "ask", "applier load a", 0, 0.4}, {"refused", "exchange", "draw the <instrument> out", 0, 0.4}, {"message", "message", "well done", 0, 0.4}};
+    recorder.record(r, events, {0, 0});
+  }
+  const Json j = Json::parse(report_json(recorder, summary(&exercise)));
+  EXPECT_NEAR(j.at("bleeding").at("lost_mL").get<double>(), 2.5, 1e-12);
+  EXPECT_NEAR(j.at("bleeding").at("duration_s").get<double>(), 0.5, 1e-12);
+  EXPECT_NEAR(j.at("bleeding").at("highest_mm").get<double>(), 7, 1e-12);
+  EXPECT_EQ(j.at("bleeding").at("rupture_s"), 0.2);
+  EXPECT_EQ(j.at("bleeding").at("open"), false);
+  EXPECT_NEAR(j.at("vessels").at(0).at("pressure_mmHg").get<double>(), 80, 1e-6);
+  EXPECT_NEAR(j.at("vessels").at(0).at("flow_percent").get<double>(), 50, 1e-9);
+  ASSERT_EQ(j.at("commands").size(), 3u);
+  EXPECT_EQ(j.at("commands").at(0).at("argument"), "applier load a");
+  EXPECT_EQ(j.at("commands").at(1).at("done"), false);
+  EXPECT_EQ(j.at("commands").at(1).at("refused"), "draw the <instrument> out");
+  EXPECT_EQ(j.at("commands").at(2).at("command"), "message");
+  EXPECT_EQ(j.at("exercise").at("timers").at(0).at("longest_s"), 3);
+  EXPECT_EQ(j.at("exercise").at("timers").at(0).at("elapsed_s"), 1);
+  EXPECT_EQ(j.at("exercise").at("measures").at(0).at("value"), 12.5);
+  EXPECT_FALSE(j.contains("complications"));
+  const std::string html = report_html(recorder, summary(&exercise));
+  EXPECT_EQ(xml_error(html), "");
+  for (const char* part : {"2.5 mL lost in 0.5 s", "superior", "refused: draw the &lt;instrument&gt; out", "Neck &lt;remnant&gt;", "12.5 %", "Temporary clip"})
+    EXPECT_NE(html.find(part), std::string::npos) << part;
+}
+
+/// Something that can go wrong.
+class Valve final : public Constraint {
+ public:
+  std::vector<CommandInfo> commands() const override { return {{"burst", "bursts", "", 0, 0}}; }
+  std::string run_command(std::string_view, std::string_view) override { return burst_++ ? "it has burst already" : ""; }
+  void build(const StepContext&, ConstraintBuilder&) override {}
+  void reset() override { burst_ = 0; }
+
+ private:
+  int burst_ = 0;
+};
+
+TEST(ReportJson, StatesTheSeedAndWhatWasDrawn) {
+  Registry registry;
+  register_builtin(registry);
+  registry.add<Valve>("valve", Kind::constraint, "for tests");
+  const auto loaded = load_simulation_text(R"(<scene time_step="10 ms"><valve id="v"/><complications seed="12">
+  <complication id="one" command="v burst" from="0.05 s" to="0.05 s"/><complication id="two" command="v burst" from="0.1 s" to="0.1 s"/>
+  <complication id="late" command="v burst" from="9 s" to="9 s"/><complication id="never" command="v burst" probability="0" to="1 s"/>
+</complications></scene>)", "/s.xml", registry, 1);
+  ASSERT_TRUE(loaded.simulation) << loaded.diagnostics.format();
+  RunRecorder recorder;
+  for (int k = 0; k < 20; ++k) {
+    loaded.simulation->step();
+    recorder.record(loaded.simulation->report(), loaded.simulation->events(), {0, 0});
+  }
+  RunSummary s = summary(nullptr);
+  s.complications = loaded.simulation->complications();
+  const Json j = Json::parse(report_json(recorder, s));
+  EXPECT_EQ(j.at("complications").at("seed"), 12);
+  const Json& drawn = j.at("complications").at("drawn");
+  ASSERT_EQ(drawn.size(), 4u);
+  EXPECT_EQ(drawn.at(0).at("time_s"), 0.05);
+  EXPECT_EQ(drawn.at(0).at("refused"), "");
+  EXPECT_EQ(drawn.at(1).at("refused"), "it has burst already");
+  EXPECT_EQ(drawn.at(2).at("happens"), true);
+  EXPECT_EQ(drawn.at(2).at("begun"), false);
+  EXPECT_EQ(drawn.at(3).at("happens"), false);
+  EXPECT_TRUE(drawn.at(3).at("time_s").is_null());
+  ASSERT_EQ(j.at("commands").size(), 2u);
+  EXPECT_NEAR(j.at("commands").at(0).at("time_s").get<double>(), 0.05, 1e-9);
+  const std::string html = report_html(recorder, s);
+  EXPECT_EQ(xml_error(html), "");
+  for (const char* part : {"Drawn from seed 12", "refused: it has burst already", "not in this run", "drawn for 9.0 s, not reached"})
+    EXPECT_NE(html.find(part), std::string::npos) << part;
 }
 
 TEST(ReportJson, StandsWithoutExerciseAndSteps) {

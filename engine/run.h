@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The commands that step a scene: run (headless, with a report), bench (stage times), engine (the live process).
 #pragma once
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -15,6 +16,7 @@ struct RunOptions {
   std::filesystem::path report;        ///< folder for report.json and report.html; empty: none
   std::filesystem::path export_folder; ///< folder for the bodies' final nodes as .vtu; empty: none
   int threads = 0;
+  std::uint64_t seed = 0;              ///< of the complications; 0: the scene's
   bool quiet = false;
 };
 /// Runs a scene headless and deterministic with both hands inside the process. Status 0, or 2 for bad input, 1 when the
@@ -39,6 +41,7 @@ struct EngineOptions {
   double duration = 0;
   bool unthrottled = false;
   int threads = 0;
+  std::uint64_t seed = 0;
 };
 /// The engine process of a session; talks over the bus of LCM_DEFAULT_URL until SIGINT or SIGTERM.
 int cmd_engine(const CommandContext& context, const EngineOptions& options);

@@ -183,7 +183,9 @@ void HapticServer::leave_snapshot(std::int64_t now) noexcept {
     s.reading[i] = hands_[i].reading;
     s.force[i] = hands_[i].gate.force();
     s.torque[i] = hands_[i].gate.torque();
-    s.in_range[i] = !last_.solved || !hands_[i].reading.connected || last_.hand[i].valid;
+    // While a tool is exchanged the problem has none for its hand: that is not out of range.
+    Pose none;
+    s.in_range[i] = !last_.solved || !hands_[i].reading.connected || last_.hand[i].valid || !device_in_problem(problems_.front().update, int(i), none);
   }
   snapshots_.publish();
 }

@@ -28,7 +28,7 @@ void walk_render_body(ByteReader& in) {
   in.take_array(in.i32(), 3 * size_f32);
 }
 
-constexpr std::size_t render_tool_bytes = size_i32 + size_i8 + (3 + 4 + 3 + 3) * size_f64 + 2 * size_i8 + size_f32;
+constexpr std::size_t render_tool_bytes = size_i32 + 2 * size_i8 + (3 + 4 + 3 + 3) * size_f64 + 2 * size_i8 + 2 * size_f32;
 
 }  // namespace
 

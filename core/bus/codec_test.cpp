@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 
 #include "core/bus/mutate_for_test.h"
 
@@ -92,6 +93,8 @@ insula_lcm::render_frame_t sample() {
   t.hand = 1;
   set_quaternion(t.q);
   t.activity = 0.5f;
+  t.state = 2;
+  t.opening_rad = 0.25f;
   m.tool.push_back(t);
   m.contacts = 1;
   m.contact_x_m = {{0.f, 0.f, 0.1f}};
@@ -238,6 +241,13 @@ TEST(Plausible, RenderFrame) {
   expect_refused<T>("health", [](T& m) { m.strand_health[0] = 1.5f; });
   expect_refused<T>("tension", [](T& m) { m.strand_tension_N[0] = NAN; });
   expect_refused<T>("json", [](T& m) { m.hud_json = "{"; });
+  for (const int s : {-1, 3, 127}) expect_refused<T>("state", [s](T& m) { m.tool[0].state = std::int8_t(s); });
+  for (const float o : {4.f, -4.f, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()})
+    expect_refused<T>("opening", [o](T& m) { m.tool[0].opening_rad = o; });
+  expect_refused<T>("too many", [](T& m) {
+    m.tools = 101;
+    m.tool.resize(101, m.tool[0]);
+  });
   expect_refused<T>("tool", [](T& m) { m.tool[0].activity = 2; });
   expect_refused<T>("contact", [](T& m) { m.contact_N[0] = INFINITY; });
 }
@@ -250,6 +260,8 @@ TEST(Plausible, Others) {
   expect_refused<insula_lcm::sim_event_t>("kind", [](auto& m) { m.kind = ""; });
   expect_refused<insula_lcm::sim_event_t>("value", [](auto& m) { m.value = NAN; });
   expect_refused<insula_lcm::user_command_t>("command", [](auto& m) { m.command = "rm -rf"; });
+  expect_refused<insula_lcm::user_command_t>("argument", [](auto& m) { m.argument = "two\nlines"; });
+  expect_refused<insula_lcm::user_command_t>("argument", [](auto& m) { m.argument = "a\x7f"; });
   expect_refused<insula_lcm::user_command_t>("sender", [](auto& m) { m.sender = std::string(65, 'a'); });
 }
 

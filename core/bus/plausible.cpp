@@ -98,7 +98,7 @@ bool plausible(const insula_lcm::render_frame_t& m, std::string& why) {
   if (!consistent(m)) return fail(why, "counts disagree");
   if (!non_negative(m.sim_time_s, most_seconds)) return fail(why, "simulated time out of range");
   if (!flag_ok(m.paused)) return fail(why, "flag is neither 0 nor 1");
-  if (m.bodies > 256 || m.tools > 16) return fail(why, "too many bodies or tools");
+  if (m.bodies > 256 || m.tools > 100) return fail(why, "too many bodies or tools");
   for (std::size_t i = 0; i < m.body.size(); ++i) {
     const auto& b = m.body[i];
     if (b.index < 0 || b.index > 4095) return fail(why, "body number out of range");
@@ -120,6 +120,8 @@ bool plausible(const insula_lcm::render_frame_t& m, std::string& why) {
     if (!unit_quaternion(t.q)) return fail(why, "tool orientation is no unit quaternion");
     if (!within(t.force_N, 3, limits::force_N)) return fail(why, "tool force out of range");
     if (!(t.activity >= 0.f && t.activity <= 1.f)) return fail(why, "tool activity out of range");
+    if (t.state < 0 || t.state > 2) return fail(why, "tool state is none of 0, 1, 2");
+    if (!(t.opening_rad >= -limits::opening_rad && t.opening_rad <= limits::opening_rad)) return fail(why, "tool opening out of range");
   }
   for (const auto& x : m.contact_x_m)
     if (!within(x.data(), 3, limits::position_m)) return fail(why, "contact position out of range");
@@ -156,6 +158,9 @@ bool plausible(const insula_lcm::user_command_t& m, std::string& why) {
   if (m.command.empty() || !word_ok(m.command, 64)) return fail(why, "command is no short word");
   if (!word_ok(m.sender, 64)) return fail(why, "sender is no short word");
   if (!text_ok(m.argument, path_text)) return fail(why, "argument too long");
+  // What a component or a person is asked goes into logs and onto screens.
+  if (std::any_of(m.argument.begin(), m.argument.end(), [](char c) { return (c >= 0 && c < 0x20 && c != '\t') || c == 0x7f; }))
+    return fail(why, "argument holds control characters");
   return true;
 }
 

@@ -13,6 +13,9 @@
 namespace insula {
 
 class Body;
+class ConstraintBuilder;
+struct ConstraintSolution;
+struct StepReport;
 
 /// A point that moves with a body.
 struct MaterialPoint {
@@ -52,6 +55,12 @@ class Body : public Component {
   virtual void add_compliance(const BodyRows& rows, double* w, int stride) = 0;
   /// q += free displacement + A^-1 H^T lambda; v = dq / h.
   virtual void apply(const StepContext& context, const BodyRows& rows, const double* lambda) = 0;
+  /// Rows of its own (stops of a hinge, a tool's pull), after those of the constraints; bodies in document order.
+  virtual void build(const StepContext&, ConstraintBuilder&) {}
+  /// After stage 5: reads the lambda of its rows.
+  virtual void finish(const StepContext&, const ConstraintSolution&) {}
+  /// Stage 6: adds its own numbers to the report; also called while it lies on the tray.
+  virtual void report(StepReport&) const {}
   virtual void reset() = 0;
   /// Kinetic plus elastic energy, J.
   virtual double energy() const = 0;

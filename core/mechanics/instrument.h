@@ -33,7 +33,7 @@ class Instrument : public RigidBody {
   /// Once: whether it begins in its hand or on the tray.
   void start_in_hand(bool yes) { active_ = in_hand_at_start_ = yes; }
   int hand_index() const { return hand.is("right") ? 1 : hand.is("left") ? 0 : -1; }  ///< -1: held by an arm
-  const ToolModel& tool() const { return tool_; }
+  const ToolModel& tool() const override { return tool_; }
   const Pose& pose() const { return pose_; }             ///< tool pose at the start of the step
   const Pose& device() const { return device_; }         ///< device pose at the end of the step
   const Pose& free_pose() const { return free_pose_; }
@@ -48,7 +48,7 @@ class Instrument : public RigidBody {
   /// Whether its hand may lay it down now; the reason why not, empty when it may.
   virtual std::string why_kept() const { return {}; }
   /// Puts the tool somewhere at once; velocity and history stay (tests, replays).
-  void place(const Pose& pose) { pose_ = pose; }
+  void place(const Pose& pose, double = 0) override { pose_ = pose; }
 
   /// Coupling force and torque on the hand at the end of the step: stiffness * displacement(device, tool).
   const Vec6& hand_force() const { return hand_force_; }
@@ -62,10 +62,8 @@ class Instrument : public RigidBody {
   virtual bool cutting() const { return !tool_.blade_edges.empty(); }
   /// 0..1 for the picture: suction on, blade at work.
   virtual double activity() const { return 0; }
-  /// Rows of the tool's own effect (suction pull, ...), after contacts are detected. Default: none.
+  /// Once, after every component is connected: what its own effect (suction pull, ...) acts on. Its rows come by build().
   virtual void join(PrepareContext&, Simulation&) {}
-  virtual void build(const StepContext&, ConstraintBuilder&) {}
-  virtual void finish(const StepContext&, const ConstraintSolution&) {}
 
   const std::vector<ConvexPiece>& link_pieces(int) const override { return tool_.pieces; }
   Pose link_pose(int) const override { return pose_; }

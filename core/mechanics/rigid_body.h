@@ -11,11 +11,17 @@ namespace insula {
 
 class RigidBody : public Body {
  public:
+  /// Its shape in links, its picture, its masses.
+  virtual const ToolModel& tool() const = 0;
+  /// Angle of its hinges now, rad; 0 when it has none.
+  virtual double opening() const { return 0; }
   virtual int links() const { return 1; }
   /// Convex pieces of a link, in the link's frame.
   virtual const std::vector<ConvexPiece>& link_pieces(int link) const = 0;
   virtual Pose link_pose(int link) const = 0;       ///< at the start of the step, scene frame
   virtual Pose link_free_pose(int link) const = 0;  ///< at the end of the free motion
+  /// Puts it somewhere at once; velocity and history stay (tests, replays).
+  virtual void place(const Pose& pose, double opening) = 0;
   /// The material point of a link given in the link's frame.
   MaterialPoint link_point(int link, const Vec3& local) const {
     MaterialPoint p;

@@ -22,6 +22,7 @@ class Surface : public Component {
   Param<Choice> material{this, {.name = "material", .fallback = "cortex",
       .choices = {"cortex", "pia", "insula", "bone", "dura", "skin", "drape", "vessel", "steel", "polymer"},
       .doc = "look in the viewer"}};
+  Param<Length> thickness{this, {.name = "thickness", .fallback = "0 mm", .min = "0 mm", .max = "10 mm", .doc = "of the wall whose middle this surface is; contact keeps half of it away; 0: the surface itself is touched"}};
   Param<bool> contact{this, {.name = "contact", .fallback = "true", .doc = "whether things touch it; false: for the picture alone"}};
 
   void prepare(PrepareContext& context) override;

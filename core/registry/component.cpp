@@ -19,6 +19,8 @@ std::string_view kind_name(Kind kind) {
     case Kind::exercise: return "exercise";
     case Kind::exercise_rule: return "exercise rule";
     case Kind::motion: return "motion";
+    case Kind::complications: return "list of complications";
+    case Kind::complication: return "complication";
   }
   return "component";
 }

@@ -25,6 +25,8 @@ enum class Kind {
   exercise,     ///< goals, faults, motions
   exercise_rule,///< owned by an exercise
   motion,       ///< scripted two-hand motion, owned by an exercise
+  complications,///< what may go wrong by chance: at most one directly under the scene
+  complication, ///< one of them
 };
 std::string_view kind_name(Kind kind);  ///< "force model", "exercise rule", ...
 

@@ -17,12 +17,14 @@ std::vector<Kind> usual_parents(Kind kind) {
     case Kind::body:
     case Kind::constraint:
     case Kind::instrument:
-    case Kind::exercise: return {Kind::scene};
+    case Kind::exercise:
+    case Kind::complications: return {Kind::scene};
     case Kind::surface:
     case Kind::force_model:
     case Kind::support: return {Kind::body};
     case Kind::exercise_rule:
     case Kind::motion: return {Kind::exercise};
+    case Kind::complication: return {Kind::complications};
   }
   return {};
 }

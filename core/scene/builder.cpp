@@ -70,7 +70,7 @@ void SceneBuilder::add(const Element& element, Component& parent) {
   const ComponentInfo* info = registry_.find(element.name);
   if (!info) return unknown_element(element, parent);
   if (!may_stand_in(*info, parent.kind)) return misplaced(element, *info, parent);
-  if (info->kind == Kind::settings) {
+  if (info->kind == Kind::settings || info->kind == Kind::complications) {
     for (const auto& other : parent.children)
       if (other->element == element.name) {
         diagnostics_.error(element.pos, "<" + element.name + "> may stand only once in a scene; the first is at line " +

@@ -2,7 +2,8 @@
 // Book-keeping of an exercise.
 #include "core/sim/exercise.h"
 
-#include <nlohmann/json.hpp>
+#include <algorithm>
+#include <cmath>
 
 #include "core/base/input_error.h"
 #include "core/sim/motion.h"
@@ -19,6 +20,16 @@ int ExerciseLog::add_fault(std::string id, std::string text) {
   return int(faults_.size()) - 1;
 }
 
+int ExerciseLog::add_timer(std::string id, std::string text, double limit_s) {
+  timers_.push_back({std::move(id), std::move(text), limit_s, 0, false, 0});
+  return int(timers_.size()) - 1;
+}
+
+int ExerciseLog::add_measure(std::string id, std::string text, std::string unit) {
+  measures_.push_back({std::move(id), std::move(text), std::move(unit), false, 0, 0});
+  return int(measures_.size()) - 1;
+}
+
 void ExerciseLog::goal(int index, double time) {
   GoalState& g = goals_[std::size_t(index)];
   if (g.done || state_ != ExerciseState::running) return;
@@ -30,6 +41,28 @@ void ExerciseLog::goal(int index, double time) {
   state_ = ExerciseState::done;
   end_time_ = time;
   events.emit({"end", "done", "Exercise complete", 0, time});
+}
+
+void ExerciseLog::goal_lost(int index, double time) {
+  GoalState& g = goals_[std::size_t(index)];
+  if (!g.done || state_ != ExerciseState::running) return;
+  g.done = false;
+  g.time = -1;
+  events.emit({"goal_lost", g.id, g.text, 0, time});
+}
+
+void ExerciseLog::timer(int index, double elapsed_s, bool running) {
+  TimerState& t = timers_[std::size_t(index)];
+  t.elapsed = std::isfinite(elapsed_s) ? elapsed_s : 0;
+  t.running = running;
+  t.longest = std::max(t.longest, t.elapsed);
+}
+
+void ExerciseLog::measure(int index, double value, int good) {
+  MeasureState& m = measures_[std::size_t(index)];
+  m.known = std::isfinite(value);
+  m.value = m.known ? value : 0;
+  m.good = m.known ? good : 0;
 }
 
 void ExerciseLog::fault(int index, double time, double value) {
@@ -63,6 +96,15 @@ void ExerciseLog::reset() {
     f.count = 0;
     f.last_time = -1;
   }
+  for (TimerState& t : timers_) {
+    t.elapsed = t.longest = 0;
+    t.running = false;
+  }
+  for (MeasureState& m : measures_) {
+    m.known = false;
+    m.value = 0;
+    m.good = 0;
+  }
   state_ = ExerciseState::running;
   message_.clear();
   end_time_ = -1;
@@ -89,20 +131,6 @@ void Exercise::observe(const StepReport& report) {
 void Exercise::reset() {
   log_.reset();
   for (ExerciseRule* r : rules_) r->reset();
-}
-
-std::string Exercise::hud_json(const StepReport& report) const {
-  nlohmann::json j;
-  j["goals"] = nlohmann::json::array();
-  for (const GoalState& g : log_.goals()) j["goals"].push_back({{"id", g.id}, {"text", g.text}, {"done", g.done}});
-  j["faults"] = nlohmann::json::array();
-  for (const FaultState& f : log_.faults()) j["faults"].push_back({{"id", f.id}, {"text", f.text}, {"count", f.count}});
-  j["strands_left"] = report.strands_left;
-  j["strands_total"] = report.strands_total;
-  j["message"] = log_.last_message();
-  j["state"] = log_.state() == ExerciseState::running ? "running" : log_.state() == ExerciseState::done ? "done" : "failed";
-  j["elapsed_s"] = log_.end_time() >= 0 ? log_.end_time() : report.time;
-  return j.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 }  // namespace insula

@@ -24,6 +24,23 @@ struct FaultState {
   double last_time = -1;
 };
 
+/// A clock shown to the trainee: how long a temporary clip has been on, how long a vessel has bled.
+struct TimerState {
+  std::string id, text;
+  double limit = 0;       ///< s; 0: none
+  double elapsed = 0;     ///< s
+  bool running = false;
+  double longest = 0;     ///< largest elapsed so far, s
+};
+
+/// A figure of merit as it is now: neck remnant, narrowing of a branch, ...
+struct MeasureState {
+  std::string id, text, unit;
+  bool known = false;     ///< has a value
+  double value = 0;       ///< in `unit`
+  int good = 0;           ///< 1 good, 0 neutral, -1 bad
+};
+
 enum class ExerciseState { running, done, failed };
 
 /// What rules write: goals reached, faults made, messages, the end.
@@ -31,14 +48,22 @@ class ExerciseLog {
  public:
   int add_goal(std::string id, std::string text, bool required = true);
   int add_fault(std::string id, std::string text);
+  int add_timer(std::string id, std::string text, double limit_s);
+  int add_measure(std::string id, std::string text, std::string unit);
   void goal(int index, double time);
+  /// What was reached is so no more (a clip was taken back). Only while the exercise runs: an end stays.
+  void goal_lost(int index, double time);
   void fault(int index, double time, double value);
+  void timer(int index, double elapsed_s, bool running);
+  void measure(int index, double value, int good);
   void message(std::string text, double time);
   void fail(std::string why, double time);
   void reset();
 
   const std::vector<GoalState>& goals() const { return goals_; }
   const std::vector<FaultState>& faults() const { return faults_; }
+  const std::vector<TimerState>& timers() const { return timers_; }
+  const std::vector<MeasureState>& measures() const { return measures_; }
   ExerciseState state() const { return state_; }
   const std::string& last_message() const { return message_; }
   double end_time() const { return end_time_; }
@@ -47,6 +72,8 @@ class ExerciseLog {
  private:
   std::vector<GoalState> goals_;
   std::vector<FaultState> faults_;
+  std::vector<TimerState> timers_;
+  std::vector<MeasureState> measures_;
   ExerciseState state_ = ExerciseState::running;
   std::string message_;
   double end_time_ = -1;
@@ -65,7 +92,7 @@ class ExerciseRule : public Component {
 class MotionEntry final : public Component {
  public:
   static constexpr std::string_view kind_name = "motion";
-  Param<File> file{this, {.name = "file", .doc = "CSV of the motion: time_s,hand,px_m,...,button2"}};
+  Param<File> file{this, {.name = "file", .doc = "CSV of the motion: rows of hand poses and of commands"}};
   void prepare(PrepareContext& context) override;
 };
 
@@ -81,8 +108,6 @@ class Exercise final : public Component {
   ExerciseLog& log() { return log_; }
   const ExerciseLog& log() const { return log_; }
   std::vector<MotionEntry*> motions() const { return children_of<MotionEntry>(); }
-  /// The hud_json of render_frame_t.
-  std::string hud_json(const StepReport& report) const;
 
  private:
   std::vector<ExerciseRule*> rules_;

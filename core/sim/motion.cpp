@@ -10,6 +10,7 @@
 #include <fstream>
 #include <string>
 
+#include "core/base/diagnostic.h"
 #include "core/base/input_error.h"
 
 namespace insula {
@@ -53,7 +54,58 @@ std::string_view stripped(std::string_view s) {
   return s;
 }
 
+constexpr std::size_t longest_argument = 400;  // bytes, as Simulation::command takes it
+constexpr std::array<std::string_view, 3> verbs = {"exchange", "ask", "message"};
+
+/// The text of a field that may stand in quotes.
+std::string unquoted(const Reader& at, std::string_view field) {
+  if (field.empty() || field.front() != '"') return std::string(field);
+  std::string out;
+  for (std::size_t i = 1; i < field.size(); ++i) {
+    if (field[i] != '"') {
+      out += field[i];
+    } else if (i + 1 < field.size() && field[i + 1] == '"') {
+      out += '"';
+      ++i;
+    } else if (i + 1 == field.size()) {
+      return out;
+    } else {
+      at.fail("argument: text after the closing quote");
+    }
+  }
+  at.fail("argument: the closing quote is missing");
+}
+
+/// `rest`: what follows "time,command,".
+void read_command(const Reader& at, double time, std::string_view rest, Motion& motion) {
+  const std::size_t comma = rest.find(',');
+  if (comma == std::string_view::npos) at.fail("a command needs a verb and an argument: time_s,command,verb,argument");
+  MotionCommand c;
+  c.time_s = time;
+  c.verb = stripped(rest.substr(0, comma));
+  if (std::find(verbs.begin(), verbs.end(), c.verb) == verbs.end()) {
+    const std::string near = nearest_name(c.verb, {verbs.begin(), verbs.end()});
+    at.fail(fmt::format("verb: \"{}\" is none of exchange, ask, message{}", c.verb.substr(0, 40),
+                        near.empty() ? "" : "; did you mean \"" + near + "\"?"));
+  }
+  c.argument = unquoted(at, stripped(rest.substr(comma + 1)));
+  if (c.argument.empty()) at.fail(fmt::format("{} needs an argument", c.verb));
+  if (c.argument.size() > longest_argument) at.fail(fmt::format("argument: longer than {} bytes", longest_argument));
+  for (const char ch : c.argument)
+    if ((ch >= 0 && ch < 0x20 && ch != '\t') || ch == 0x7f) at.fail("argument: holds a control character");
+  motion.add(std::move(c));
+}
+
 void read_row(const Reader& at, std::string_view line, Motion& motion) {
+  // The argument of a command may hold commas, so its row is not split any further.
+  if (const std::size_t first = line.find(','); first != std::string_view::npos) {
+    const std::size_t second = line.find(',', first + 1);
+    if (stripped(line.substr(first + 1, second == std::string_view::npos ? second : second - first - 1)) == "command") {
+      const double time = at.number(stripped(line.substr(0, first)), columns[0]);
+      if (time < 0) at.fail("time_s must not be negative");
+      return read_command(at, time, second == std::string_view::npos ? std::string_view() : line.substr(second + 1), motion);
+    }
+  }
   std::array<std::string_view, columns.size()> field;
   std::size_t count = 0;
   for (std::string_view rest = line;;) {
@@ -102,6 +154,12 @@ void Motion::add(int hand, const Key& key) {
   keys.push_back(key);
 }
 
+void Motion::add(MotionCommand command) {
+  const auto after = std::upper_bound(commands_.begin(), commands_.end(), command.time_s,
+                                      [](double t, const MotionCommand& c) { return t < c.time_s; });
+  commands_.insert(after, std::move(command));
+}
+
 HandSample Motion::at(int hand, double t) const noexcept {
   if (!has(hand)) return {};
   const auto& keys = keys_[std::size_t(hand)];
@@ -121,6 +179,7 @@ double Motion::duration() const {
   double end = 0;
   for (const auto& keys : keys_)
     if (!keys.empty()) end = std::max(end, keys.back().time_s);
+  if (!commands_.empty()) end = std::max(end, commands_.back().time_s);
   return end;
 }
 

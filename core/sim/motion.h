@@ -3,6 +3,7 @@
 #pragma once
 #include <array>
 #include <filesystem>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -15,6 +16,13 @@ struct HandSample {
   Pose pose;
   bool button1 = false;
   bool button2 = false;
+};
+
+/// Something asked for at one moment of a motion: Simulation::command(verb, argument).
+struct MotionCommand {
+  double time_s = 0;
+  std::string verb;      ///< "exchange", "ask", "message"
+  std::string argument;  ///< "right applier"
 };
 
 /// Keys of both hands in rising time. Positions are interpolated linearly, rotations by slerp the short way round;
@@ -31,10 +39,13 @@ class Motion {
   void add(int hand, const Key& key);
 
   bool has(int hand) const { return hand >= 0 && hand < 2 && !keys_[std::size_t(hand)].empty(); }
-  bool empty() const { return !has(0) && !has(1); }
+  bool empty() const { return !has(0) && !has(1) && commands_.empty(); }
   /// State of the hand at t (s). A hand without keys gives the identity pose. Neither allocates nor throws.
   HandSample at(int hand, double t) const noexcept;
-  /// Time of the latest key, 0 when empty.
+  /// Commands in the order of their times; of the same time in the order they were added.
+  const std::vector<MotionCommand>& commands() const { return commands_; }
+  void add(MotionCommand command);
+  /// Time of the latest key or command, 0 when empty.
   double duration() const;
   /// Corners of the box that holds all positions of a hand; false when it has none.
   bool bounds(int hand, Vec3& low, Vec3& high) const;
@@ -42,10 +53,13 @@ class Motion {
 
  private:
   std::array<std::vector<Key>, 2> keys_;
+  std::vector<MotionCommand> commands_;
 };
 
 /// Reads `time_s,hand,px_m,py_m,pz_m,qw,qx,qy,qz,button1,button2` (the header line is required; hand is left or right;
-/// buttons are 0 or 1). Throws InputError "file:line: error: text" at the first line that is wrong.
+/// buttons are 0 or 1). A row `time_s,command,verb,argument` asks for something at that time; the argument is the rest of the
+/// line, or stands in double quotes (a quote inside is written twice). Command rows may stand anywhere below the header.
+/// Throws InputError "file:line: error: text" at the first line that is wrong.
 Motion load_motion(const std::filesystem::path& path);
 /// The same from text; `name` stands for the file in messages.
 Motion parse_motion(std::string_view text, std::string_view name);

@@ -87,6 +87,53 @@ TEST(Motion, SaysFileLineAndWhatIsWrong) {
   for (const auto& [text, expected] : bad) EXPECT_NE(error_of(text).find(expected), std::string::npos) << error_of(text);
 }
 
+TEST(Motion, HoldsCommandsInTheOrderOfTheirTimes) {
+  const Motion m = parse_motion(head + "5,command,ask,applier load straight_9\n"
+                                       "0,left,0,0,0,1,0,0,0,0,0\n"
+                                       "2.5 , command , exchange , right applier\n"
+                                       "5,command,message,\"Now, \"\"gently\"\"\"\n"
+                                       "0.5,command,message,one, two\r\n"
+                                       "1,left,0.1,0,0,1,0,0,0,0,0\n",
+                                "m.csv");
+  ASSERT_EQ(m.commands().size(), 4u);
+  const MotionCommand expected[] = {{0.5, "message", "one, two"}, {2.5, "exchange", "right applier"},
+                                    {5, "ask", "applier load straight_9"}, {5, "message", "Now, \"gently\""}};
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(m.commands()[i].time_s, expected[i].time_s);
+    EXPECT_EQ(m.commands()[i].verb, expected[i].verb);
+    EXPECT_EQ(m.commands()[i].argument, expected[i].argument);
+  }
+  EXPECT_EQ(m.duration(), 5.0);
+  EXPECT_EQ(m.keys(0).size(), 2u);
+  EXPECT_FALSE(m.has(1));
+}
+
+TEST(Motion, MayConsistOfCommandsAlone) {
+  const Motion m = parse_motion(head + "3,command,exchange,left dissector\n", "m.csv");
+  EXPECT_FALSE(m.empty());
+  EXPECT_FALSE(m.has(0) || m.has(1));
+  EXPECT_EQ(m.duration(), 3.0);
+}
+
+TEST(Motion, RefusesBadCommands) {
+  const std::pair<std::string, std::string> bad[] = {
+      {"1,command\n", "m.csv:2: error: a command needs a verb and an argument"},
+      {"1,command,exchange\n", "m.csv:2: error: a command needs a verb and an argument"},
+      {"1,command,exchagne,right a\n", "m.csv:2: error: verb: \"exchagne\" is none of exchange, ask, message; did you mean \"exchange\"?"},
+      {"1,command,pause,now\n", "m.csv:2: error: verb: \"pause\" is none of"},
+      {"1,command,ask,  \n", "m.csv:2: error: ask needs an argument"},
+      {"1,command,ask,\"\"\n", "m.csv:2: error: ask needs an argument"},
+      {"1,command,ask,\"a b\n", "m.csv:2: error: argument: the closing quote is missing"},
+      {"1,command,ask,\"a\" b\n", "m.csv:2: error: argument: text after the closing quote"},
+      {"1,command,message,a\x01z\n", "m.csv:2: error: argument: holds a control character"},
+      {"1,command,message," + std::string(401, 'x') + "\n", "m.csv:2: error: argument: longer than 400 bytes"},
+      {"-1,command,ask,a b\n", "m.csv:2: error: time_s must not be negative"},
+      {"x,command,ask,a b\n", "m.csv:2: error: time_s: \"x\" is not a number"},
+      {"nan,command,ask,a b\n", "m.csv:2: error: time_s must be finite"},
+  };
+  for (const auto& [text, expected] : bad) EXPECT_NE(error_of(head + text).find(expected), std::string::npos) << error_of(head + text);
+}
+
 TEST(Motion, ReadsFilesAndNamesMissingOnes) {
   EXPECT_THROW(load_motion("/nowhere/at_all.csv"), InputError);
   EXPECT_THROW(load_motion("/"), InputError);

@@ -6,6 +6,7 @@
 #include "core/mechanics/surface.h"
 #include "core/registry/registry.h"
 #include "core/scene/scene.h"
+#include "core/sim/complications.h"
 #include "core/sim/exercise.h"
 #include "core/sim/settings.h"
 
@@ -21,6 +22,8 @@ void register_core(Registry& registry) {
   registry.add<SettleSettings>("settle", Kind::settings, "lets the scene come to rest before the exercise begins");
   registry.add<ViewSettings>("view", Kind::settings, "where the microscope stands at the start");
   registry.add<Exercise>("exercise", Kind::exercise, "goals, faults and motions of a training exercise");
+  registry.add<Complications>("complications", Kind::complications, "what may go wrong by chance, drawn from a seed that the report states");
+  registry.add<Complication>("complication", Kind::complication, "a command that comes by chance, at a time drawn between two");
   registry.add<MotionEntry>("motion", Kind::motion, "a scripted motion of both hands");
 }
 

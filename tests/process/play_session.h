@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdlib>
@@ -94,6 +95,14 @@ class Watcher {
         std::lock_guard lock(mutex_);
         frames_[m->session].insert(m->sequence);
         frame_session_ = m->session;
+        tool_states_.clear();
+        for (const auto& t : m->tool) tool_states_.push_back(t.state);
+      }
+    });
+    bus_.subscribe(channel::sim_event, [this](Bytes b) {
+      if (const auto m = decode<insula_lcm::sim_event_t>(b)) {
+        std::lock_guard lock(mutex_);
+        events_.push_back(*m);
       }
     });
     bus_.subscribe(channel::haptic_status, [this](Bytes b) {
@@ -136,6 +145,33 @@ class Watcher {
     return status_;
   }
   LcmBus& out() { return out_; }
+  /// States of the tools in the last frame.
+  std::vector<int> tool_states() const {
+    std::lock_guard lock(mutex_);
+    return tool_states_;
+  }
+  std::vector<insula_lcm::sim_event_t> events() const {
+    std::lock_guard lock(mutex_);
+    return events_;
+  }
+  void ask(const std::string& command, const std::string& argument = "") {
+    insula_lcm::user_command_t m{};
+    m.time_us = now_us();
+    m.sender = "test";
+    m.command = command;
+    m.argument = argument;
+    publish(out_, channel::user_command, m, scratch_);
+  }
+  /// Asks again and again until an event of that kind says so; messages may be lost.
+  bool asked(const std::string& command, const std::string& argument, const std::string& kind) {
+    const std::size_t seen = events().size();
+    return wait_for([&] {
+      ask(command, argument);
+      std::this_thread::sleep_for(100ms);
+      const auto all = events();
+      return std::any_of(all.begin() + std::ptrdiff_t(seen), all.end(), [&](const auto& e) { return e.kind == kind && e.id == command; });
+    });
+  }
 
   /// The largest force on a hand now, N.
   double force() const {
@@ -188,6 +224,8 @@ class Watcher {
   std::vector<Sample> samples_;
   std::map<std::int64_t, std::set<std::int64_t>> frames_;
   std::int64_t frame_session_ = 0;
+  std::vector<int> tool_states_;
+  std::vector<insula_lcm::sim_event_t> events_;
   insula_lcm::haptic_status_t status_{};
   std::array<std::array<double, 4>, 2> quaternion_{};
   std::vector<std::uint8_t> scratch_;
@@ -294,7 +332,9 @@ class PlaySession {
              home="-5 0 3 mm" shaft="0 0 1" flat="1 0 0"/>
   <retractor id="right" model="meshes/instruments/retractor/retractor.urdf" hand="right"
              home="5 0 3 mm" shaft="0 0 1" flat="1 0 0"/>
-  <contact between="left right block" friction="0.2"/>
+  <retractor id="spare" model="meshes/instruments/retractor/retractor.urdf" hand="left"
+             home="-5 0 3 mm" shaft="0 0 1" flat="1 0 0" coupling="1000 N/m"/>
+  <contact between="left right spare block" friction="0.2"/>
 </scene>
 )";
 

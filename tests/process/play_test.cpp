@@ -221,6 +221,30 @@ TEST_F(Play, AWatchingPageGetsEveryFrame) {
   }
 }
 
+// Refused while the tool presses; done in free air, with forces that stay within the gate's limit (checked over everything
+// seen, when the test ends), and with a tool that can press again.
+TEST_F(Play, AToolIsExchanged) {
+  EXPECT_EQ(watcher_->tool_states(), (std::vector<int>{1, 1, 0}));
+  ASSERT_TRUE(watcher_->press(0.1)) << watcher_->force();
+  EXPECT_TRUE(watcher_->asked("exchange", "left spare", "refused"));
+  EXPECT_EQ(watcher_->tool_states(), (std::vector<int>{1, 1, 0}));
+  EXPECT_TRUE(watcher_->asked("exchange", "left spar", "refused"));
+  watcher_->ask("reset");  // hands are back at home
+  ASSERT_TRUE(wait_for([&] { return watcher_->force() < 0.01; }));
+  std::this_thread::sleep_for(1s);
+  ASSERT_TRUE(watcher_->asked("exchange", "left spare", "command"));
+  EXPECT_TRUE(wait_for([&] { return watcher_->tool_states() == std::vector<int>{0, 1, 1}; }));
+  EXPECT_TRUE(watcher_->press(0.1)) << "no force with the new tool: " << watcher_->force();
+}
+
+TEST_F(Play, AMessageIsAnsweredWhilePaused) {
+  watcher_->ask("pause");
+  EXPECT_TRUE(watcher_->asked("message", "look at the branch", "message"));
+  const auto events = watcher_->events();
+  EXPECT_EQ(events.back().text, "look at the branch");
+  watcher_->ask("resume");
+}
+
 TEST_F(Play, GarbageOnEveryChannelChangesNothing) {
   // What really goes over the bus, to be damaged.
   std::map<std::string, Buffer> real;

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a hand feels while its tool is exchanged: nothing, and then the new tool gently. The two tools have different
+// couplings, and the new one may come up against what the old one never touched. So the hand's tool is left out of the
+// haptic problem for a while: the safety gate takes that for a lost source, lets the force go to zero, and fades it in again
+// when the tool is back.
+#pragma once
+#include <array>
+
+#include "core/sim/simulation.h"
+
+namespace insula {
+
+class ExchangePause {
+ public:
+  /// Longer than the 50 ms in which a gate lets a force go to zero, by a step or two.
+  static constexpr double pause_s = 0.09;
+
+  /// After a step: takes the tools of hands that exchanged theirs a moment ago out of the problem.
+  void apply(const Simulation& simulation, ConstraintProblem& problem) {
+    for (int h = 0; h < 2; ++h) {
+      Hand& hand = hands_[std::size_t(h)];
+      const Instrument* tool = simulation.instrument_of(h);
+      // A reset puts the first tools back; its hands begin anew and need no pause.
+      if (simulation.time() < last_) hand = {};
+      if (hand.tool && tool != hand.tool) hand.since = simulation.time();
+      hand.tool = tool;
+      if (simulation.time() >= hand.since + pause_s) continue;
+      std::erase_if(problem.tools, [h](const ToolTerms& t) { return t.hand == h; });
+    }
+    last_ = simulation.time();
+  }
+
+ private:
+  struct Hand {
+    const Instrument* tool = nullptr;
+    double since = -infinite;  ///< of the last exchange, s
+  };
+  std::array<Hand, 2> hands_;
+  double last_ = -infinite;
+};
+
+}  // namespace insula

@@ -1,0 +1,121 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Runs examples/python/exchange_and_forces.py in a virtual environment of its own against a real engine and haptic server
+on a bus of their own, and checks what it prints.
+
+    run_example.py SOURCE_FOLDER BUILD_FOLDER LCM_GEN
+"""
+import os
+import pathlib
+import re
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+
+SKIPPED = 77
+SCENE = """<scene title="Two hands">
+  <soft_body id="block" mesh="meshes/examples/block.msh" mesh_unit="mm">
+    <corotational_fem/>
+    <fixed region="beyond" centre="0 0 -19 mm" normal="0 0 -1"/>
+    <surface/>
+  </soft_body>
+  <retractor id="left_spatula" model="meshes/instruments/retractor/retractor.urdf" hand="left" home="-5 0 3 mm" shaft="0 0 1" flat="1 0 0"/>
+  <dissector id="left_dissector" model="meshes/instruments/dissector/dissector.urdf" hand="left" home="-5 0 3 mm" shaft="0 0 1" flat="1 0 0"/>
+  <retractor id="right_spatula" model="meshes/instruments/retractor/retractor.urdf" hand="right" home="5 0 3 mm" shaft="0 0 1" flat="1 0 0"/>
+  %s
+</scene>
+"""
+CLIP = """<clip id="straight" model="meshes/clips/straight/straight.urdf"/>
+  <clip_applier id="applier" model="meshes/instruments/clip_applier/clip_applier.urdf" hand="right" clips="straight"
+                home="5 0 12 mm" shaft="0 0 1" flat="1 0 0"/>"""
+
+
+def skip(why):
+    print("SKIPPED:", why)
+    sys.exit(SKIPPED)
+
+
+def environment(build):
+    """A virtual environment with the package lcm; kept from one run to the next."""
+    folder = build / "python_venv"
+    python = folder / "bin" / "python"
+    if subprocess.run([python, "-c", "import lcm"], capture_output=True).returncode == 0 if python.exists() else False:
+        return python
+    shutil.rmtree(folder, ignore_errors=True)
+    made = subprocess.run([sys.executable, "-m", "venv", str(folder)], capture_output=True, text=True)
+    if made.returncode != 0:
+        sys.exit("error: no virtual environment (package python3-venv):\n" + made.stdout + made.stderr)
+    got = subprocess.run([python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "lcm"], capture_output=True, text=True)
+    if got.returncode != 0:
+        if re.search(r"NewConnectionError|ConnectionError|Temporary failure|timed out|No matching distribution|ProxyError|SSLError", got.stdout + got.stderr):
+            shutil.rmtree(folder, ignore_errors=True)
+            skip("PyPI cannot be reached, so there is no package lcm:\n" + got.stderr[-500:])
+        sys.exit("error: pip install lcm:\n" + got.stdout + got.stderr)
+    return python
+
+
+def multicast(python, url):
+    """Whether LCM messages come back here; as root, a missing route is added."""
+    probe = "import lcm,sys\nb=lcm.LCM(sys.argv[1])\ns=[]\nb.subscribe('P',lambda c,d:s.append(d))\n" \
+            "for i in range(50):\n  b.publish('P',b'x')\n  b.handle_timeout(20)\n  if s: sys.exit(0)\nsys.exit(1)"
+    for attempt in range(2):
+        if subprocess.run([python, "-c", probe, url], capture_output=True, timeout=60).returncode == 0:
+            return True
+        if attempt == 0 and os.geteuid() == 0:
+            subprocess.run("ip link set lo up multicast on && ip route add 224.0.0.0/4 dev lo", shell=True, capture_output=True)
+    return False
+
+
+def main():
+    source, build, lcm_gen = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), sys.argv[3]
+    python = environment(build)
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as s:
+        s.bind(("", 0))
+        url = "udpm://239.255.76.67:%d?ttl=0" % s.getsockname()[1]
+    if not multicast(python, url):
+        skip("no multicast on this machine")
+    types = build / "python"
+    subprocess.run([lcm_gen, "-p", "--ppath", str(types)] + [str(f) for f in sorted((source / "lcm_types").glob("*.lcm"))], check=True)
+
+    insula = str(build / "bin" / "insula")
+    with tempfile.TemporaryDirectory(prefix="insula_python_") as name:
+        folder = pathlib.Path(name)
+        for part in ("examples", "instruments/retractor", "instruments/dissector", "instruments/clip_applier", "clips/straight"):
+            if (source / "meshes" / part).is_dir():
+                shutil.copytree(source / "meshes" / part, folder / "meshes" / part)
+        elements = subprocess.run([insula, "list"], capture_output=True, text=True, check=True).stdout
+        clips = "clip_applier" in elements and (folder / "meshes/clips/straight").is_dir()
+        (folder / "scene.xml").write_text(SCENE % (CLIP if clips else ""), encoding="utf-8")
+        env = dict(os.environ, LCM_DEFAULT_URL=url, XDG_RUNTIME_DIR=name)
+        logs = [open(folder / n, "w+") for n in ("engine.log", "server.log")]
+        processes = [subprocess.Popen([insula, "engine", "scene.xml", "--motion", "none"], cwd=name, env=env, stdout=logs[0], stderr=subprocess.STDOUT),
+                     subprocess.Popen([str(build / "bin" / "haptic_server")], cwd=name, env=env, stdout=logs[1], stderr=subprocess.STDOUT)]
+        try:
+            run = subprocess.run([python, str(source / "examples/python/exchange_and_forces.py"), "--types", str(types), "--seconds", "2", "--wait", "90"],
+                                 env=env, capture_output=True, text=True, timeout=240)
+            alive = [p.poll() is None for p in processes]
+        finally:
+            for p in processes:
+                p.send_signal(signal.SIGINT)
+            status = [p.wait(60) for p in processes]
+        said = "".join(log.seek(0) * "" + log.read() for log in logs)
+    print(run.stdout, run.stderr, said, sep="\n")
+    expected = [r"^scene: Two hands$", r"^left hand: left_dissector taken up$", r"^left hand: left_spatula taken up$", r"^right hand: right_spatula taken up$"]
+    if clips:
+        expected += [r"^right hand: applier taken up$", r"^applier: straight loaded$"]
+    for side in ("left", "right"):
+        expected.append(r"^%s hand: [1-9]\d+ forces, mean \d+\.\d+ N, largest \d+\.\d+ N$" % side)
+    missing = [e for e in expected if not re.search(e, run.stdout, re.M)]
+    assert run.returncode == 0, run.returncode
+    assert not missing, missing
+    assert "refused" not in run.stdout
+    assert all(alive), "a process ended by itself"
+    assert status == [0, 0], status
+    print("the example does what it says" + ("" if clips else " (no clips in this build)"))
+
+
+if __name__ == "__main__":
+    main()
