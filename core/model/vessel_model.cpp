@@ -104,12 +104,13 @@ void check_wall(const std::filesystem::path& file, const TriMesh& wall) {
   const auto unused = std::find(used.begin(), used.end(), 0);
   if (unused != used.end()) fail(file, "no triangle uses vertex " + std::to_string(unused - used.begin()));
   std::sort(edges.begin(), edges.end());
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    const auto [a, b] = edges[i];
-    const std::string name = "the edge between vertices " + std::to_string(a) + " and " + std::to_string(b);
-    if (i > 0 && edges[i - 1] == edges[i]) fail(file, name + " belongs to two triangles in the same direction");
-    if (!std::binary_search(edges.begin(), edges.end(), std::pair(b, a))) fail(file, "is not closed: " + name + " is open");
-  }
+  const auto name = [](const std::pair<int, int>& e) {
+    return "the edge between vertices " + std::to_string(e.first) + " and " + std::to_string(e.second);
+  };
+  const auto twice = std::adjacent_find(edges.begin(), edges.end());
+  if (twice != edges.end()) fail(file, name(*twice) + " belongs to two triangles in the same direction");
+  for (const auto& e : edges)
+    if (!std::binary_search(edges.begin(), edges.end(), std::pair(e.second, e.first))) fail(file, "is not closed: " + name(e) + " is open");
   if (!(volume > 0)) fail(file, "is turned inside out: its triangles must be counter-clockwise as seen from outside");
 }
 

@@ -35,7 +35,7 @@ VesselModel read(const Json& json, const std::string& ply = header + vertices + 
   return read_vessel(folder.write("vessel.json", json.dump()));
 }
 
-TEST(vessel_model, everything_is_read_in_metres) {
+TEST(VesselModel, EverythingIsReadInMetres) {
   const VesselModel v = read(good());
   ASSERT_EQ(v.wall.vertices.size(), 4u);
   EXPECT_EQ(v.wall.vertices[2], Vec3(0, 2e-3, 0));
@@ -63,7 +63,7 @@ TEST(vessel_model, everything_is_read_in_metres) {
   EXPECT_NEAR(v.bleb_centre.z(), 5e-3, 1e-15);
 }
 
-TEST(vessel_model, neck_and_bleb_may_be_absent) {
+TEST(VesselModel, NeckAndBlebMayBeAbsent) {
   Json json = good();
   json.erase("neck"), json.erase("bleb"), json.erase("dome_height");
   const VesselModel v = read(json);
@@ -71,7 +71,7 @@ TEST(vessel_model, neck_and_bleb_may_be_absent) {
   EXPECT_EQ(v.bleb_radius, 0);
 }
 
-TEST(vessel_model, vertices_keep_their_numbers) {
+TEST(VesselModel, VerticesKeepTheirNumbers) {
   // The first triangle uses vertex 3 first; a reader that renumbers by use would show.
   const VesselModel v = read(good(), header + "0 0 2\n0 0 0\n2 0 0\n0 2 0\n" + "3 3 2 1\n3 1 2 0\n3 1 0 3\n3 2 3 0\n");
   EXPECT_EQ(v.wall.vertices[0], Vec3(0, 0, 2e-3));
@@ -83,9 +83,9 @@ struct Bad {
   std::function<void(Json&)> spoil;
   const char* message;
 };
-class bad_vessel : public testing::TestWithParam<Bad> {};
+class BadVessel : public testing::TestWithParam<Bad> {};
 
-TEST_P(bad_vessel, is_refused_with_its_file_and_a_reason) {
+TEST_P(BadVessel, IsRefusedWithItsFileAndAReason) {
   Json json = good();
   GetParam().spoil(json);
   try {
@@ -98,7 +98,7 @@ TEST_P(bad_vessel, is_refused_with_its_file_and_a_reason) {
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    json, bad_vessel,
+    Json, BadVessel,
     testing::Values(
         Bad{"list", [](Json& j) { j = Json::array(); }, "must hold one object"},
         Bad{"no_unit", [](Json& j) { j.erase("unit"); }, "unit must be \"mm\""},
@@ -142,9 +142,9 @@ struct BadWall {
   std::string ply;
   const char* message;
 };
-class bad_wall : public testing::TestWithParam<BadWall> {};
+class BadWallFile : public testing::TestWithParam<BadWall> {};
 
-TEST_P(bad_wall, is_refused_with_its_file_and_a_reason) {
+TEST_P(BadWallFile, IsRefusedWithItsFileAndAReason) {
   try {
     read(good(), GetParam().ply);
     FAIL() << "was accepted";
@@ -158,7 +158,7 @@ std::string changed(std::string text, const std::string& from, const std::string
 const std::string whole = header + vertices + faces;
 
 INSTANTIATE_TEST_SUITE_P(
-    ply, bad_wall,
+    Ply, BadWallFile,
     testing::Values(BadWall{"empty", "", "ply"}, BadWall{"short", header + vertices, "ends early"},
                     BadWall{"nan", changed(whole, "0 2 0", "0 nan 0"), "not finite"},
                     BadWall{"far", changed(whole, "0 2 0", "0 2e9 0"), "too far away"},
@@ -173,7 +173,7 @@ INSTANTIATE_TEST_SUITE_P(
                     BadWall{"edges", changed(whole, "end_header", "element edge 0\nproperty int a\nend_header"), "nothing else"}),
     [](const auto& test) { return std::string(test.param.name); });
 
-TEST(vessel_model, missing_files_and_broken_json_are_named) {
+TEST(VesselModel, MissingFilesAndBrokenJsonAreNamed) {
   const test_files::TempFolder folder;
   EXPECT_THROW(read_vessel(folder.path() / "vessel.json"), InputError);
   const auto file = folder.write("vessel.json", good().dump());

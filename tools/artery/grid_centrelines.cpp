@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Centrelines of a real surface by cheapest paths through a grid in its inside.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <queue>
+#include <set>
+
+#include "import_parts.h"
+
+namespace insula::artery {
+namespace {
+
+constexpr int cells_across = 90;  // along the longest side
+
+struct InnerGrid {
+  Vec3 low;
+  double step = 0;
+  int n[3] = {0, 0, 0};
+  std::vector<char> inside;
+
+  int index(int i, int j, int k) const { return (k * n[1] + j) * n[0] + i; }
+  Vec3 point(int v) const { return low + step * Vec3(v % n[0], v / n[0] % n[1], v / (n[0] * n[1])); }
+
+  explicit InnerGrid(const TriMesh& m) {
+    Box box;
+    for (const Vec3& p : m.vertices) box.extend(p);
+    step = box.sizes().maxCoeff() / cells_across;
+    low = box.min() - step * Vec3(1.31, 1.37, 1.43);  // lines of the grid run through no vertex of a regular mesh
+    for (int a = 0; a < 3; ++a) n[a] = int(std::ceil((box.max()[a] - low[a]) / step)) + 2;
+    const std::size_t across = std::size_t(n[0]) * std::size_t(n[1]);
+    inside.assign(across * std::size_t(n[2]), 0);
+    // Parity along z: where each line of the grid crosses the surface.
+    std::vector<std::vector<double>> crossings(across);
+    for (const auto& t : m.triangles) {
+      const Vec3 &a = m.vertices[std::size_t(t[0])], &b = m.vertices[std::size_t(t[1])], &c = m.vertices[std::size_t(t[2])];
+      const double det = (b.x() - a.x()) * (c.y() - a.y()) - (c.x() - a.x()) * (b.y() - a.y());
+      if (det == 0) continue;
+      const Vec3 least = a.cwiseMin(b).cwiseMin(c), most = a.cwiseMax(b).cwiseMax(c);
+      for (int i = int(std::ceil((least.x() - low.x()) / step)); low.x() + i * step <= most.x(); ++i)
+        for (int j = int(std::ceil((least.y() - low.y()) / step)); low.y() + j * step <= most.y(); ++j) {
+          const double x = low.x() + i * step - a.x(), y = low.y() + j * step - a.y();
+          const double u = (x * (c.y() - a.y()) - (c.x() - a.x()) * y) / det, w = ((b.x() - a.x()) * y - x * (b.y() - a.y())) / det;
+          if (u >= 0 && w >= 0 && u + w < 1) crossings[std::size_t(j * n[0] + i)].push_back(a.z() + u * (b.z() - a.z()) + w * (c.z() - a.z()));
+        }
+    }
+    for (int j = 0; j < n[1]; ++j)
+      for (int i = 0; i < n[0]; ++i) {
+        auto& line = crossings[std::size_t(j * n[0] + i)];
+        std::sort(line.begin(), line.end());
+        for (std::size_t c = 0; c + 1 < line.size(); c += 2)
+          for (int k = int(std::ceil((line[c] - low.z()) / step)); k < n[2] && low.z() + k * step < line[c + 1]; ++k) inside[std::size_t(index(i, j, k))] = 1;
+      }
+  }
+};
+
+/// A path through cell centres becomes a smooth curve; its ends stay.
+Curve smoothed(std::vector<Vec3> p, const WallPoints& wall, double step) {
+  for (int round = 0; round < 30; ++round) {
+    const std::vector<Vec3> old = p;
+    for (std::size_t i = 1; i + 1 < p.size(); ++i) p[i] = 0.25 * old[i - 1] + 0.5 * old[i] + 0.25 * old[i + 1];
+  }
+  Curve out{p, std::vector<double>(p.size(), 0.0)};
+  out = resampled(out, step);
+  for (std::size_t i = 0; i < out.size(); ++i) out.radius[i] = std::max(wall.distance(out.points[i]), 1e-3);
+  return out;
+}
+
+}  // namespace
+
+std::vector<NamedCurve> grid_centrelines(const Surface& surface, const WallPoints& wall) {
+  const InnerGrid grid(surface.mesh);
+  const std::size_t cells = grid.inside.size();
+  std::vector<double> depth(cells, 0.0);
+  for (std::size_t v = 0; v < cells; ++v)
+    if (grid.inside[v]) depth[v] = wall.distance(grid.point(int(v)));
+  const auto cell_at = [&](const CapPlane& cap) {
+    const Vec3 want = cap.centre - 1.5 * grid.step * cap.normal;
+    int best = -1;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t v = 0; v < cells; ++v) {
+      if (!grid.inside[v]) continue;
+      const double d = (grid.point(int(v)) - want).squaredNorm();
+      if (d < least) least = d, best = int(v);
+    }
+    if (best < 0) throw std::runtime_error("the surface has no inside");
+    return best;
+  };
+
+  // Dijkstra from the inlet; equal costs go by cell number.
+  const int start = cell_at(surface.caps[0]);
+  std::vector<double> cost(cells, std::numeric_limits<double>::infinity());
+  std::vector<int> before(cells, -1);
+  std::priority_queue<std::pair<double, int>, std::vector<std::pair<double, int>>, std::greater<>> queue;
+  cost[std::size_t(start)] = 0;
+  queue.emplace(0.0, start);
+  while (!queue.empty()) {
+    const auto [c, v] = queue.top();
+    queue.pop();
+    if (c > cost[std::size_t(v)]) continue;
+    for (int dk = -1; dk <= 1; ++dk)
+      for (int dj = -1; dj <= 1; ++dj)
+        for (int di = -1; di <= 1; ++di) {
+          const int to = v + grid.index(di, dj, dk);  // the grid's border is outside, so this stays within
+          if (to == v || !grid.inside[std::size_t(to)]) continue;
+          const double d = 0.5 * (depth[std::size_t(v)] + depth[std::size_t(to)]) + 0.1 * grid.step;
+          const double through = c + std::sqrt(double(di * di + dj * dj + dk * dk)) * grid.step * grid.step / (d * d);
+          if (through < cost[std::size_t(to)]) cost[std::size_t(to)] = through, before[std::size_t(to)] = v, queue.emplace(through, to);
+        }
+  }
+
+  // The union of the paths is a tree: it is walked from the inlet, fork by fork.
+  std::map<int, std::set<int>> after;
+  std::map<int, std::size_t> outlet;
+  for (std::size_t c = 1; c < surface.caps.size(); ++c) {
+    int v = cell_at(surface.caps[c]);
+    if (!std::isfinite(cost[std::size_t(v)])) throw std::runtime_error("no way leads from the inlet to a cap");
+    outlet[v] = c;
+    for (; before[std::size_t(v)] >= 0; v = before[std::size_t(v)]) after[before[std::size_t(v)]].insert(v);
+  }
+  struct Walk {
+    int from, next;
+    std::string name;
+  };
+  std::vector<NamedCurve> out;
+  std::vector<Walk> todo{{start, *after.at(start).begin(), surface.caps[0].name}};
+  int forks = 0, trunks = 0, branches = 0;
+  while (!todo.empty()) {
+    const Walk w = todo.back();
+    todo.pop_back();
+    std::vector<Vec3> points;
+    if (w.from == start) points.push_back(surface.caps[0].centre);
+    points.push_back(grid.point(w.from));
+    int v = w.next;
+    points.push_back(grid.point(v));
+    while (!outlet.count(v) && after.at(v).size() == 1) v = *after.at(v).begin(), points.push_back(grid.point(v));
+    NamedCurve c;
+    c.from = w.name;
+    if (outlet.count(v)) {
+      c.to = surface.caps[outlet[v]].name;
+      points.push_back(surface.caps[outlet[v]].centre);
+      c.name = out.empty() ? "parent" : "branch_" + std::to_string(++branches);
+    } else {
+      c.to = forks++ == 0 ? "bifurcation" : "bifurcation_" + std::to_string(forks);
+      c.name = out.empty() ? "parent" : "trunk_" + std::to_string(++trunks);
+      for (auto next = after.at(v).rbegin(); next != after.at(v).rend(); ++next) todo.push_back({v, *next, c.to});
+    }
+    c.region = c.name;
+    c.curve = smoothed(points, wall, 2 * grid.step);
+    out.push_back(std::move(c));
+  }
+  return out;
+}
+
+}  // namespace insula::artery

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A finished vessel: wall, picture, regions, caps, centrelines and what was measured on it; how it is made and written.
+#pragma once
+#include <array>
+#include <filesystem>
+#include <map>
+#include <optional>
+
+#include "case_table.h"
+#include "curve.h"
+#include "surface.h"
+
+namespace insula::artery {
+
+struct NamedCurve {
+  std::string name, region, from, to;
+  Curve curve;
+};
+
+struct Neck {
+  Vec3 centre, normal;  ///< normal towards the dome
+  double diameter = 0;
+};
+
+struct Vessel {
+  Surface wall;
+  TriMesh picture;
+  std::vector<std::string> regions;
+  std::vector<int> region;  ///< a wall vertex's
+  std::vector<NamedCurve> centrelines;
+  std::optional<Neck> neck;
+  double dome_height = 0;
+  std::optional<std::pair<Vec3, double>> bleb;  ///< centre, radius
+  std::map<std::string, double> dimensions;     ///< measured on the made mesh, mm and degrees
+};
+
+/// The vessel of a table's entry. Throws std::runtime_error when its dimensions make no sound surface.
+Vessel make_case(const CaseSpec& spec);
+
+struct ImportOptions {
+  double edge_length = 0;  ///< 0: chosen for about 1,700 vertices
+  Vec3 inlet = Vec3::Constant(1e300);  ///< the cap nearest to this point; by default the widest
+};
+/// The vessel of a closed surface whose openings are flat caps.
+Vessel import_surface(const TriMesh& surface, const ImportOptions& options);
+
+/// Equivalent diameter (of the circle of equal area) of the loop that a plane cuts out of the wall about a point on it.
+/// Segments farther than `reach` from the point are left out. 0 when there is no loop.
+double section_diameter(const TriMesh& mesh, const Vec3& point, const Vec3& normal, double reach);
+/// Neighbours of each vertex, in a fixed order.
+std::vector<std::vector<int>> neighbours(const TriMesh& mesh);
+/// Each region but the ends keeps its largest connected piece; smaller ones go to the region they touch most.
+void join_fragments(Vessel& vessel);
+/// Fills the dimensions that every vessel has.
+void measure(Vessel& vessel);
+
+/// Writes wall.ply, picture.ply and vessel.json; the same vessel gives the same bytes. Throws std::runtime_error.
+void write_vessel(const Vessel& vessel, const std::filesystem::path& folder);
+
+}  // namespace insula::artery
