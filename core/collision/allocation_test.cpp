@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/collision/contact_selection.h"
+#include "core/collision/self_collider.h"
 #include "core/collision/shapes_for_test.h"
 #include "core/collision/tissue_collider.h"
 #include "core/collision/tool_collider.h"
@@ -42,6 +43,34 @@ TEST(Detection, AllocatesNothing) {
     of_tool.select(found, {}, key);
     of_tissue.select(faces, {.spacing = 4e-3, .advantage = 0, .max_contacts = 8, .max_per_piece = 8}, key);
     seen += long(found.size() + faces.size());
+  }
+  EXPECT_EQ(allocations - before, 0);
+  EXPECT_GT(seen, 400);
+}
+
+TEST(Detection, OfAWallAgainstItselfAllocatesNothing) {
+  const TriMesh rest = shapes::box(Vec3(-5e-3, -5e-3, -1e-3), Vec3(5e-3, 5e-3, 1e-3), 8);
+  std::vector<Vec3> now = rest.vertices, free(now.size(), Vec3::Zero());
+  CollisionMesh mesh;
+  mesh.build(rest.vertices, rest.triangles);
+  SelfCollider collider(rest.vertices, rest.triangles, 0.9e-3, 0.3e-3);
+  std::vector<Proximity> found;
+  found.reserve(2 * collider.samples().size());
+  ContactSelection selection;
+  selection.reserve(found.capacity(), 20);
+  std::uint64_t key = 0;
+  long seen = 0;
+  SelfContactSettings settings;
+  settings.outer = true;
+  const long before = allocations;
+  for (int i = 0; i < 100; ++i) {
+    for (std::size_t v = 0; v < now.size(); ++v) now[v].z() = rest.vertices[v].z() * (1 - 0.01 * i);
+    mesh.update(now, free);
+    found.clear();
+    collider.detect(mesh, settings, found);
+    seen += collider.opposite(mesh, 5, Vec3(0.3, 0.3, 0.4), -mesh.face_normal(5), 3e-3).triangle >= 0;
+    selection.select(found, {.spacing = 1.2e-3, .advantage = 1e-4, .max_contacts = 20, .max_per_piece = 4, .both_ends = true}, key);
+    seen += long(found.size());
   }
   EXPECT_EQ(allocations - before, 0);
   EXPECT_GT(seen, 400);

@@ -123,10 +123,11 @@ bool CollisionMesh::locally_closest(int tri, const TriangleFeature& f, const Vec
   return true;
 }
 
-NearestPoint CollisionMesh::nearest(const Vec3& p, double t, double limit) const {
+NearestPoint CollisionMesh::nearest(const Vec3& p, double t, double limit, const Vec3* side) const {
   NearestPoint e;
   double bound2 = limit * limit * (1 + 1e-9);
   tree_.nearest(p, bound2, [&](int tri, double& least2) {
+    if (side && face_normal(tri, t).dot(*side) < 0.2) return;
     const auto& v = triangle(tri);
     const ClosestPair q = point_triangle(p, vertex(v[0], t), vertex(v[1], t), vertex(v[2], t));
     if (q.distance2 > least2 || (q.distance2 == least2 && e.triangle >= 0 && tri > e.triangle)) return;

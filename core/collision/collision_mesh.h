@@ -55,8 +55,8 @@ class CollisionMesh {
   /// Whether c, closest to something in direction d (unit, from c) on this triangle, is so on the neighbouring triangles
   /// too: no step from c into one of them leads along d by more than `slack` (a sine).
   bool locally_closest(int tri, const TriangleFeature& f, const Vec3& d, double t, double slack) const;
-  /// Nearest point of the surface at time t, if no farther than `limit`.
-  NearestPoint nearest(const Vec3& p, double t, double limit) const;
+  /// Nearest point of the surface at time t, if no farther than `limit`; with `side`, of the triangles that face that way.
+  NearestPoint nearest(const Vec3& p, double t, double limit, const Vec3* side = nullptr) const;
 
  private:
   AabbTree tree_;

@@ -20,6 +20,10 @@ Vec3 tangent_to(const Vec3& n, const Vec3& wish) {
   return t.normalized();
 }
 
+namespace {
+Vec3 other_end(const Proximity& x) { return x.point + x.gap * x.normal; }
+}  // namespace
+
 void ContactSelection::reserve(std::size_t before, std::size_t after) {
   order_.reserve(before);
   kept_.reserve(after);
@@ -58,7 +62,15 @@ void ContactSelection::select(std::vector<Proximity>& all, const SelectionSettin
       constexpr double cos40 = 0.766;
       const double cosine = k.normal.dot(x.normal);
       // Tissue finds the same place from both sides, with opposite normals.
-      const bool alike = x.vertex >= 0 && k.side != x.side ? cosine < -cos40 : cosine > cos40;
+      bool alike = x.vertex >= 0 && k.side != x.side ? cosine < -cos40 : cosine > cos40;
+      if (settings.both_ends && alike) {
+        alike = k.side == x.side && (other_end(k) - other_end(x)).squaredNorm() < spacing2;
+      } else if (settings.both_ends && cosine < -cos40 && k.side == x.side) {
+        if ((k.point - other_end(x)).squaredNorm() < spacing2 && (other_end(k) - x.point).squaredNorm() < spacing2) {
+          keep = false;
+          break;
+        }
+      }
       if (alike && (k.point - x.point).squaredNorm() < spacing2) {
         keep = false;
         break;

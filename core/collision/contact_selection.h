@@ -18,6 +18,7 @@ struct SelectionSettings {
   double advantage = 0.2e-3;  ///< m of gap that a contact of the last step may be farther and still win
   int max_contacts = 8;
   int max_per_piece = 4;
+  bool both_ends = false;  ///< a surface with itself: alike are those with both ends near, whichever way round
 };
 
 class ContactSelection {

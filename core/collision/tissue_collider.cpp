@@ -84,14 +84,15 @@ void TissueCollider::detect(const CollisionMesh& a, const CollisionMesh& b, cons
       all.add(swept(a, samples_[i]));
       deep = deep || behind_[i] != 0;
     }
-    all.inflate(deep ? std::max(settings.alarm, settings.max_depth) : settings.alarm);
+    const double open_range = settings.alarm + settings.offset;
+    all.inflate(deep ? std::max(open_range, settings.max_depth) : open_range);
     if (!b.tree().any_overlapping(all)) {
       std::fill(behind_.begin() + std::ptrdiff_t(first), behind_.begin() + std::ptrdiff_t(last), char(0));
       continue;
     }
     for (std::size_t i = first; i < last; ++i) {
       const int v = samples_[i];
-      const double range = behind_[i] ? std::max(settings.alarm, settings.max_depth) : settings.alarm;
+      const double range = behind_[i] ? std::max(open_range, settings.max_depth) : open_range;
       behind_[i] = 0;
       Aabb box = swept(a, v);
       box.inflate(range);
@@ -144,7 +145,7 @@ void TissueCollider::detect(const CollisionMesh& a, const CollisionMesh& b, cons
       } else {
         c.normal = outward;
       }
-      c.gap = outside ? distance : -distance;
+      c.gap = (outside ? distance : -distance) - settings.offset;
       const double approach = c.normal.dot(u - b.free_at(best, best_bary));
       if (c.gap > settings.alarm && c.gap + approach > settings.alarm) continue;
       behind_[i] = !outside;

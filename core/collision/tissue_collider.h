@@ -18,6 +18,7 @@ struct TissueContactSettings {
   double alarm = 0.5e-3;        ///< m
   double max_recovery = 0.5e-3; ///< an overlap is undone by no more than this in a step, m
   double max_depth = 5e-3;      ///< a vertex this far behind the surface is no longer pushed out, m
+  double offset = 0;            ///< half the thicknesses of both walls, where surfaces are the middle of a wall, m
 };
 
 /// Vertices of the surface no two of which are closer than `distance`, such that every used vertex is that close to one.

@@ -61,7 +61,8 @@ struct ToolCollider::Placed {
   Vec3 axis0, axis1;
   double radius = 0, bound = 0;
 
-  Placed(const RoundedPiece& r, int index, const Pose& s, const Vec6& motion, double t, const Vec3& slid) : piece(index), time(t), shift(slid), start(s) {
+  Placed(const RoundedPiece& r, int index, const Pose& s, const Vec6& motion, double t, const Vec3& slid, double offset)
+      : piece(index), time(t), shift(slid), start(s) {
     pose = t > 0 ? displaced(s, t * motion) : s;
     pose.p += slid;
     const Mat3 rotation = pose.q.toRotationMatrix();
@@ -69,7 +70,7 @@ struct ToolCollider::Placed {
     for (int i = 0; i < count; ++i) points[std::size_t(i)] = pose.p + rotation * r.core[std::size_t(i)];
     axis0 = pose.p + rotation * r.axis0;
     axis1 = pose.p + rotation * r.axis1;
-    radius = r.radius;
+    radius = r.radius + offset;
     bound = r.bound;
   }
   std::span<const Vec3> core() const { return {points.data(), std::size_t(count)}; }
@@ -77,18 +78,22 @@ struct ToolCollider::Placed {
 
 ToolCollider::ToolCollider(const std::vector<ConvexPiece>& pieces, int triangles) {
   for (const ConvexPiece& p : pieces) pieces_.push_back(rounded(p));
-  deep_.assign(pieces_.size(), 1);
+  reset();
   candidates_.reserve(std::size_t(triangles));
   found_.reserve(4096);
 }
 
-void ToolCollider::reset() { deep_.assign(deep_.size(), 1); }
+void ToolCollider::reset() {
+  deep_.assign(pieces_.size(), 1);
+  side_.assign(pieces_.size(), Vec3::Zero());
+}
 
 // Brings the candidates' bounds up to date and appends the contacts within `range`.
 void ToolCollider::evaluate(const CollisionMesh& mesh, const Placed& at, const ToolContactSettings& settings, double range,
                             std::vector<Proximity>& found) {
   const double t = at.time;
   const double slid = at.shift.norm();
+  const Vec3 side = t == 0 && slid == 0 ? side_[std::size_t(at.piece)] : Vec3(Vec3::Zero());
   const auto core = at.core();
   for (Candidate& k : candidates_) {
     if (k.clear - k.speed * std::abs(t - k.time) - slid > range) continue;
@@ -144,8 +149,9 @@ void ToolCollider::evaluate(const CollisionMesh& mesh, const Placed& at, const T
       if (outside && clear <= settings.alarm) emit(n.bary, n.c, d, clear);
       // Behind this triangle, but perhaps before another one: only the nearest of all tells, and it is the way out.
       if (!outside && n.distance <= settings.max_depth) {
-        const NearestPoint e = mesh.nearest(n.p, t, n.distance);
-        if (e.behind) {
+        NearestPoint e = mesh.nearest(n.p, t, n.distance);
+        if (e.behind && e.outward.dot(side) < -0.2) e = mesh.nearest(n.p, t, settings.max_depth, &side);
+        if (e.triangle >= 0 && e.behind) {
           x.triangle = e.triangle;
           emit(e.bary, e.point, e.outward, -e.distance - at.radius);
           x.triangle = k.triangle;
@@ -163,41 +169,40 @@ void ToolCollider::evaluate(const CollisionMesh& mesh, const Placed& at, const T
   }
 }
 
-// Behind the surface the way out is the nearest one: contacts of opposite walls are dropped.
-void ToolCollider::drop_wrong_exits(std::vector<Proximity>& found, std::size_t from) const {
+// Behind the surface the way out is the nearest one on the piece's own side: contacts of opposite walls are dropped.
+void ToolCollider::drop_wrong_exits(std::vector<Proximity>& found, const Vec3& side, double offset) const {
+  const auto behind = [&](const Proximity& x) { return x.gap < -pieces_[std::size_t(x.piece)].radius - offset; };
   Vec3 out = Vec3::Zero();
   double least = 1e300;
-  for (std::size_t i = from; i < found.size(); ++i) {
-    const Proximity& x = found[i];
-    const double r = pieces_[std::size_t(x.piece)].radius;
-    if (x.gap >= -r) continue;  // the core is outside
+  for (const Proximity& x : found) {
+    if (!behind(x) || x.normal.dot(side) < -0.2) continue;
     if (-x.gap < least) {
       least = -x.gap;
       out = x.normal;
     }
   }
-  if (least > 1e299) return;
-  std::size_t kept = from;
-  for (std::size_t i = from; i < found.size(); ++i) {
-    const Proximity& x = found[i];
-    const bool behind = x.gap < -pieces_[std::size_t(x.piece)].radius;
-    if (!behind || x.normal.dot(out) >= 0.3) found[kept++] = x;
-  }
+  std::size_t kept = 0;
+  for (const Proximity& x : found)
+    if (!behind(x) || (x.normal.dot(side) >= -0.2 && x.normal.dot(out) >= 0.3)) found[kept++] = x;
   found.resize(kept);
 }
 
 void ToolCollider::detect(const CollisionMesh& mesh, const Pose& start, const Pose& free, const ToolContactSettings& settings,
                           std::vector<Proximity>& out) {
+  touch_time_ = 1;
+  touching_piece_ = -1;
   if (mesh.tree().empty()) return;
   const Vec6 motion = displacement(start, free);
   const double turn = motion.tail<3>().norm();
   const double alarm = settings.alarm;
   for (int index = 0; index < int(pieces_.size()); ++index) {
     const RoundedPiece& piece = pieces_[std::size_t(index)];
-    const Placed first(piece, index, start, motion, 0, Vec3::Zero()), last(piece, index, start, motion, 1, Vec3::Zero());
+    const double radius = piece.radius + settings.offset;
+    const Placed first(piece, index, start, motion, 0, Vec3::Zero(), settings.offset),
+        last(piece, index, start, motion, 1, Vec3::Zero(), settings.offset);
     const bool deep = deep_[std::size_t(index)] != 0;
     deep_[std::size_t(index)] = 0;
-    const double range = deep ? std::max(alarm, settings.max_depth - piece.radius) : alarm;
+    const double range = deep ? std::max(alarm, settings.max_depth - radius) : alarm;
 
     // Everything the piece may meet on its way. A slid pose leaves the swept box by half its motion at most.
     Aabb box;
@@ -213,7 +218,7 @@ void ToolCollider::detect(const CollisionMesh& mesh, const Pose& start, const Po
       spread = std::max(spread, (p - centre).norm());
     }
     const double lever = (centre - start.p).norm();
-    box.inflate(piece.radius + range + 0.5 * farthest + turn * turn * (lever + spread));
+    box.inflate(radius + range + 0.5 * farthest + turn * turn * (lever + spread));
     candidates_.clear();
     const Vec3 velocity = motion.head<3>() + motion.tail<3>().cross(centre - start.p);
     const double uneven = turn * (spread + turn * lever);
@@ -222,21 +227,32 @@ void ToolCollider::detect(const CollisionMesh& mesh, const Pose& start, const Po
       for (int v : mesh.triangle(tri)) speed2 = std::max(speed2, (mesh.free(v) - velocity).squaredNorm());
       candidates_.push_back({tri, 0.0, 0.0, std::sqrt(speed2) + uneven});
     });
-    if (candidates_.empty()) continue;
+    if (candidates_.empty()) {
+      side_[std::size_t(index)].setZero();
+      continue;
+    }
 
     double t = 0;
     bool reached = false;
     Placed at = first;
     for (int iteration = 0; iteration < 64; ++iteration) {
-      if (iteration > 0) at = Placed(piece, index, start, motion, t, Vec3::Zero());
+      if (iteration > 0) at = Placed(piece, index, start, motion, t, Vec3::Zero(), settings.offset);
       found_.clear();
       evaluate(mesh, at, settings, t == 0 ? range : alarm, found_);
       if (t == 0) {
-        drop_wrong_exits(found_, 0);
+        Vec3& side = side_[std::size_t(index)];
+        drop_wrong_exits(found_, side, settings.offset);
+        double least = 1e300;
+        Vec3 nearest = Vec3::Zero();
         for (Proximity& x : found_) {
-          if (x.gap < -0.9 * piece.radius) deep_[std::size_t(index)] = 1;
+          if (x.gap < -0.9 * radius) deep_[std::size_t(index)] = 1;
+          if (x.gap < least) {
+            least = x.gap;
+            nearest = x.normal;
+          }
           out.push_back(x);
         }
+        if (least > -0.9 * radius) side = nearest;  // zero where nothing is near
       }
       reached = false;
       for (const Proximity& x : found_) {
@@ -253,6 +269,10 @@ void ToolCollider::detect(const CollisionMesh& mesh, const Pose& start, const Po
       }
       if (fastest > 0) next = std::max(next, t + 0.5 * alarm / fastest);
       t = std::min(1.0, next);
+    }
+    if (reached && (touching_piece_ < 0 || t < touch_time_)) {
+      touch_time_ = t;
+      touching_piece_ = index;
     }
     const auto on_free_side = [&](const Proximity& x) { return x.start_gap >= -0.05 * alarm; };
     if (t > 0)
@@ -272,7 +292,7 @@ void ToolCollider::detect(const CollisionMesh& mesh, const Pose& start, const Po
       }
     for (int attempt = 0; attempt < 3 && slide.norm() > 0.25 * alarm; ++attempt, slide *= 0.5) {
       found_.clear();
-      evaluate(mesh, Placed(piece, index, start, motion, t, slide), settings, alarm, found_);
+      evaluate(mesh, Placed(piece, index, start, motion, t, slide, settings.offset), settings, alarm, found_);
       double least = 0;
       for (const Proximity& x : found_) least = std::min(least, x.gap);
       if (least < -0.5 * alarm) continue;

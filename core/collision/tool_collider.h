@@ -15,6 +15,9 @@
 // edges), plus the corners of the piece's core that stand right above it (a flat or long piece lies on several points).
 // Sides are told by the surface's outward normals. A core behind the surface has a negative gap and is pushed to the nearest
 // place of the surface, as long as it is no deeper than max_depth; one that goes through a triangle is pushed along its normal.
+//
+// A vessel pressed flat is thinner than a blade, and what is behind its one wall is soon nearest to the other. So each piece
+// remembers on which side of the surface it was when it was last outside, and never leaves towards the opposite one.
 #pragma once
 #include <vector>
 
@@ -28,6 +31,7 @@ struct ToolContactSettings {
   double alarm = 1e-3;         ///< m
   double max_recovery = 1e-3;  ///< an overlap is undone by no more than this in a step, m
   double max_depth = 5e-3;     ///< a core this far behind the surface is no longer pushed out, m
+  double offset = 0;           ///< the surface is the middle of a wall of twice this thickness, m
 };
 
 /// A piece as used for collision: core of at most 24 points and a radius that is never 0 (flat blades are shrunk by a
@@ -41,8 +45,8 @@ struct RoundedPiece {
 };
 RoundedPiece rounded(const ConvexPiece& piece);
 
-/// One tool, one surface. Keeps which pieces overlapped last step (they are looked for deeper); allocates in the
-/// constructor only, as long as `out` has capacity.
+/// One tool, one surface. Keeps which pieces overlapped last step (they are looked for deeper) and their sides; allocates in
+/// the constructor only, as long as `out` has capacity.
 class ToolCollider {
  public:
   ToolCollider(const std::vector<ConvexPiece>& pieces, int triangles);
@@ -50,6 +54,10 @@ class ToolCollider {
   void detect(const CollisionMesh& mesh, const Pose& start, const Pose& free, const ToolContactSettings& settings,
               std::vector<Proximity>& out);
   void reset();
+  /// When in the last detect's step a piece first touched on its free way, moving inward; 1: none did.
+  double touch_time() const { return touch_time_; }
+  const RoundedPiece& piece(int i) const { return pieces_[std::size_t(i)]; }
+  int touching_piece() const { return touching_piece_; }  ///< the first to touch, -1: none
 
  private:
   struct Candidate {
@@ -61,10 +69,13 @@ class ToolCollider {
   struct Placed;  // a piece at a moment
   void evaluate(const CollisionMesh& mesh, const Placed& at, const ToolContactSettings& settings, double range,
                 std::vector<Proximity>& found);
-  void drop_wrong_exits(std::vector<Proximity>& found, std::size_t from) const;
+  void drop_wrong_exits(std::vector<Proximity>& found, const Vec3& side, double offset) const;
 
   std::vector<RoundedPiece> pieces_;
   std::vector<char> deep_;  ///< per piece
+  std::vector<Vec3> side_;  ///< per piece: surface normal where it was last near and outside; zero: none known
+  double touch_time_ = 1;
+  int touching_piece_ = -1;
   std::vector<Candidate> candidates_;
   std::vector<Proximity> found_;
 };

@@ -18,7 +18,9 @@ Each contact is one block: the gap at the end of the step and its force obey 0 <
     gap(end) = gap(start) + n . (H dq)      n fixed over the step, from b to a
 
 Tools are rounded convex pieces and look ahead along their free motion, so that contact is there before it happens
-(`core/collision/tool_collider.h`); surfaces meet by sampled vertices (`core/collision/tissue_collider.h`). `alarm` is the
+(`core/collision/tool_collider.h`); surfaces meet by sampled vertices (`core/collision/tissue_collider.h`). A surface with
+a `thickness` is the middle of a wall: gaps are measured to the wall's faces, and a tool that touches such a wall
+goes on by no more than `max_push` in a step (rows on the tool alone), however fast the hand is. `alarm` is the
 distance at which a contact enters the problem; the haptic loop needs it too, since it moves the tool between steps. Contact
 forces act on both sides at the same place of the triangle's side of the gap, so a tool's contact adds neither force nor
 moment to the whole; between two surfaces the moment is exact once the gap is closed.
@@ -28,6 +30,7 @@ Sources: Dequidt et al. 2015, sections 3.3 and 3.4; Duriez, Dubois, Kheddar, And
 #include "plugins/contact/contact.h"
 
 #include <algorithm>
+#include <array>
 
 #include "core/registry/registry.h"
 #include "core/sim/simulation.h"
@@ -162,7 +165,8 @@ void Contact::search(const Search& what) {
   if (p.tool_a) {
     ToolContactSettings settings;
     settings.alarm = alarm();
-    settings.max_recovery = std::max(settings.max_recovery, alarm());
+    settings.max_recovery = recovery();
+    if (p.b) settings.offset = 0.5 * p.b->surface->thickness();
     p.contacts.clear();
     if (!p.active()) return;
     const Pose start = p.tool_a->link_pose(p.link_a), free = p.tool_a->link_free_pose(p.link_a);
@@ -174,6 +178,7 @@ void Contact::search(const Search& what) {
   }
   TissueContactSettings settings;
   settings.alarm = tissue_alarm();
+  settings.offset = 0.5 * (p.a->surface->thickness() + p.b->surface->thickness());
   auto& out = what.other_way ? p.other_way : p.contacts;
   out.clear();
   if (what.other_way) p.b_on_a->detect(p.b->mesh, p.a->mesh, settings, out);
@@ -190,7 +195,8 @@ void Contact::detect(const StepContext& context) {
       choice.spacing = spacing();
       choice.advantage = 0.2 * alarm();
       choice.max_contacts = max_contacts();
-      choice.max_per_piece = std::max(2, (max_contacts() + 1) / 2);
+      // A jaw is one piece and may use all; of several pieces none takes more than half.
+      choice.max_per_piece = p.single_piece() ? max_contacts() : std::max(2, (max_contacts() + 1) / 2);
     } else {
       choice.spacing = tissue_spacing();
       choice.advantage = 0.5 * tissue_alarm();
@@ -218,8 +224,42 @@ void Contact::add_row(ConstraintBuilder& builder, int row, const Pair& p, const 
   builder.surface_point(row, face, x.triangle, x.bary, -d);
 }
 
+// A thin wall answers linearly over a step, while its true motion is not: a far push would turn it inside out, a far slide
+// would leave the places that contact looked at. So a tool that touches goes on by no more than max_push: three rows along
+// the free motion of three places of the touching piece.
+void Contact::limit_motion(ConstraintBuilder& builder, const Pair& p) const {
+  if (!p.tool_collider || p.b->surface->thickness() == 0 || p.b->surface->body().blocks() == 0 || !p.active()) return;
+  const int piece = p.tool_collider->touching_piece();
+  if (piece < 0) return;
+  const RoundedPiece& r = p.tool_collider->piece(piece);
+  Vec3 third = r.core.front();
+  double farthest = -1;
+  for (const Vec3& q : r.core) {
+    const double s = closest_on_segment(q, r.axis0, r.axis1), d = (r.axis0 + s * (r.axis1 - r.axis0) - q).norm();
+    if (d > farthest) {
+      farthest = d;
+      third = q;
+    }
+  }
+  int count = 0;
+  for (const Vec3& place : {r.axis0, r.axis1, third}) {
+    const MaterialPoint point = p.tool_a->link_point(p.link_a, place);
+    const Vec3 u = p.tool_a->free_displacement(point);
+    const double way = u.norm(), allowed = p.tool_collider->touch_time() * way + max_push();
+    ++count;
+    if (way <= allowed) continue;
+    Block block;
+    block.id = row_id(*this, std::uint64_t(1) << 43 | std::uint64_t(&p - pairs_.data()) << 16 | std::uint64_t(piece) << 2 | std::uint64_t(count));
+    block.lower = 0;
+    const int row = builder.add(block);
+    builder.violation(row, allowed);
+    builder.point(row, point, -u / way);
+  }
+}
+
 void Contact::build(const StepContext&, ConstraintBuilder& builder) {
   for (Pair& p : pairs_) {
+    limit_motion(builder, p);
     p.rows.clear();
     for (const Proximity& x : p.contacts) {
       Block block;

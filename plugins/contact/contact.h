@@ -30,6 +30,8 @@ class Contact final : public Constraint {
   Param<Length> alarm{this, {.name = "alarm", .fallback = "1 mm", .min = "0.01 mm", .max = "10 mm", .doc = "a tool closer than this is in contact's care"}};
   Param<Length> spacing{this, {.name = "spacing", .fallback = "2 mm", .min = "0.01 mm", .max = "100 mm", .doc = "contacts of a tool are no closer than this unless the surface turns"}};
   Param<int> max_contacts{this, {.name = "max_contacts", .fallback = "8", .min = "1", .max = "100", .doc = "most contacts of a tool with one surface"}};
+  Param<Length> max_push{this, {.name = "max_push", .fallback = "0.5 mm", .min = "0.05 mm", .max = "100 mm", .doc = "a tool that touches a wall (a surface with a thickness) goes on by no more than this in a step; the rest of the hand's motion follows in the next ones"}};
+  Param<Length> recovery{this, {.name = "recovery", .fallback = "1 mm", .min = "0.001 mm", .max = "10 mm", .doc = "an overlap of a tool is undone by no more than this in a step: less is gentler on thin walls"}};
   Param<Length> tissue_alarm{this, {.name = "tissue_alarm", .fallback = "0.5 mm", .min = "0.01 mm", .max = "10 mm", .doc = "the same distance between two surfaces"}};
   Param<Length> tissue_spacing{this, {.name = "tissue_spacing", .fallback = "4 mm", .min = "0.05 mm", .max = "100 mm", .doc = "contacts of two surfaces are no closer than this; their vertices are sampled at three quarters of it"}};
   Param<int> tissue_max_contacts{this, {.name = "tissue_max_contacts", .fallback = "16", .min = "1", .max = "200", .doc = "most contacts of one surface with another"}};
@@ -57,6 +59,7 @@ class Contact final : public Constraint {
     std::vector<int> rows;      ///< first row of each contact
     std::vector<Vec3> forces;   ///< along (normal, tangent, other tangent), N
     bool active() const { return (!tool_a || tool_a->active()) && (!tool_b || tool_b->active()); }
+    bool single_piece() const { return tool_a && tool_a->link_pieces(link_a).size() == 1 && (!tool_b || tool_b->link_pieces(link_b).size() == 1); }
     const Body* body_a() const { return tool_a ? static_cast<const Body*>(tool_a) : &a->surface->body(); }
     const Body* body_b() const { return tool_b ? static_cast<const Body*>(tool_b) : &b->surface->body(); }
   };
@@ -72,6 +75,7 @@ class Contact final : public Constraint {
   std::shared_ptr<ContactSurface> shared_surface(Simulation& simulation, Surface* surface);
   void search(const Search& what);
   void add_pairs(Simulation& simulation, Body* a, Body* b);
+  void limit_motion(ConstraintBuilder& builder, const Pair& pair) const;
   void add_row(ConstraintBuilder& builder, int row, const Pair& pair, const Proximity& x, const Vec3& direction) const;
 
   std::vector<std::shared_ptr<ContactSurface>> surfaces_;

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Wall against wall of one surface.
+#include "core/collision/self_collider.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/collision/tissue_collider.h"
+
+namespace insula {
+namespace {
+
+constexpr double facing = 0.1;      ///< cosine by which two normals must oppose one another
+constexpr double along_wall = 0.92; ///< normals that agree by this at rest belong to one stretch of wall ...
+constexpr double bent = 0.8;        ///< ... those that agree by this need looking at only once the wall between them is bent
+constexpr double horizon = 1e-3;    ///< farther than needed, to know for how long nothing will come, m
+
+Aabb swept(const CollisionMesh& mesh, int v) {
+  Aabb box;
+  const Vec3 x = mesh.vertex(v);
+  box.add(x);
+  box.add(Vec3(x + mesh.free(v)));
+  return box;
+}
+
+/// Where the ray from `from` along the unit vector `along` goes out through triangle pqr; -1 if it does not.
+double exit_through(const Vec3& from, const Vec3& along, const Vec3& p, const Vec3& q, const Vec3& r, Vec3& bary) {
+  const Vec3 n = (q - p).cross(r - p);
+  const double rate = n.dot(along);
+  if (!(rate > facing * n.norm())) return -1;
+  const double t = n.dot(p - from) / rate;
+  const Vec3 x = from + t * along;
+  const Vec3 w(n.dot((r - q).cross(x - q)), n.dot((p - r).cross(x - r)), n.dot((q - p).cross(x - p)));
+  if (w.minCoeff() < 0) return -1;
+  bary = w / w.sum();
+  return t;
+}
+
+}  // namespace
+
+SelfCollider::SelfCollider(std::span<const Vec3> rest, std::span<const std::array<int, 3>> triangles, double spacing, double thickness)
+    : samples_(sample_vertices(rest, triangles, spacing)), neighbour_(2 * thickness) {
+  for (const auto& t : triangles) {
+    const Vec3 &a = rest[std::size_t(t[0])], &b = rest[std::size_t(t[1])], &c = rest[std::size_t(t[2])];
+    face_place_.push_back((a + b + c) / 3);
+    face_normal_.push_back((b - a).cross(c - a).normalized());
+  }
+  CollisionMesh mesh;
+  mesh.build(rest, triangles);
+  mesh.update(rest, {});
+  for (int v : samples_) {
+    place_.push_back(rest[std::size_t(v)]);
+    normal_.push_back(mesh.vertex_normal(v));
+    // A few lumens: across an ellipse, a neck or a bifurcation, but not through one vessel into the next.
+    reach_.push_back(2.5 * lumen(mesh, v));
+  }
+  last_.resize(rest.size());
+  outward_.resize(samples_.size());
+  outward_known_.resize(samples_.size());
+  reset();
+}
+
+void SelfCollider::reset() {
+  for (auto& c : close_) c.assign(samples_.size(), 0);
+  for (auto& c : clear_) c.assign(samples_.size(), 0.0);
+  std::fill(last_.begin(), last_.end(), Vec3(Vec3::Constant(1e3)));
+}
+
+// From a vertex straight inward to the opposite wall; 0 if there is none.
+double SelfCollider::lumen(const CollisionMesh& rest, int vertex) const {
+  const Vec3 from = rest.vertex(vertex), along = -rest.vertex_normal(vertex);
+  double least = 1e300;
+  Aabb box;
+  box.add(from);
+  box.add(Vec3(from + 0.03 * along));  // no lumen is wider
+  rest.tree().overlapping(box, [&](int tri) {
+    const auto& v = rest.triangle(tri);
+    if (v[0] == vertex || v[1] == vertex || v[2] == vertex) return;
+    Vec3 bary;
+    const double t = exit_through(from, along, rest.vertex(v[0]), rest.vertex(v[1]), rest.vertex(v[2]), bary);
+    if (t > 0) least = std::min(least, t);
+  });
+  return least < 0.03 ? least : 0.0;
+}
+
+int SelfCollider::kind(std::size_t sample, int triangle) const {
+  const Vec3 d = face_place_[std::size_t(triangle)] - place_[sample];
+  const double d2 = d.squaredNorm();
+  if (d2 < neighbour_ * neighbour_ || normal_[sample].dot(face_normal_[std::size_t(triangle)]) > along_wall) return -1;
+  const double leaves = normal_[sample].dot(d), ends = face_normal_[std::size_t(triangle)].dot(d);
+  if (leaves < 0 && ends > 0 && d2 < reach_[sample] * reach_[sample]) return inner;
+  return leaves > 0 && ends < 0 ? outer : -1;
+}
+
+void SelfCollider::near(const CollisionMesh& mesh, const SelfContactSettings& settings, std::size_t sample, int side,
+                        std::vector<Proximity>& out) {
+  const int v = samples_[sample];
+  const bool was = close_[side][sample] != 0;
+  const double range = was ? std::max(settings.alarm + settings.thickness, settings.max_depth) : settings.alarm + settings.thickness;
+  double& clear = clear_[side][sample];
+  clear -= 2 * moved_;
+  if (!was && clear > range + free_) return;
+  close_[side][sample] = 0;
+  const Vec3 x = mesh.vertex(v);
+  // Boxes are swept by the free motion, so whatever may come within range is seen.
+  Aabb box = swept(mesh, v);
+  box.inflate(was ? range : range + horizon);
+  double least2 = 1e300, any2 = (range + horizon) * (range + horizon);
+  int best = -1;
+  Vec3 bary = Vec3::Zero(), point = Vec3::Zero();
+  if (!outward_known_[sample]) {
+    outward_[sample] = mesh.rough_normal(v);
+    outward_known_[sample] = 1;
+  }
+  mesh.tree().nearest(x, &box, least2, [&](int tri, double& limit2) {
+    if (kind(sample, tri) != side) return;
+    const auto& t = mesh.triangle(tri);
+    const Vec3 p = mesh.vertex(t[0]), q = mesh.vertex(t[1]), r = mesh.vertex(t[2]);
+    const Vec3 n = (q - p).cross(r - p);
+    const double h = n.dot(x - p), nn = n.squaredNorm();
+    if (h * h > limit2 * nn) return;  // its plane is farther than the best
+    const double agree = outward_[sample].dot(n) / std::sqrt(nn);
+    if (agree > 0.5 && normal_[sample].dot(face_normal_[std::size_t(tri)]) > bent) return;
+    const Vec3 w = closest_on_triangle(x, p, q, r);
+    const Vec3 c = w[0] * p + w[1] * q + w[2] * r;
+    const double d2 = (x - c).squaredNorm();
+    any2 = std::min(any2, d2);
+    if (agree > -facing || d2 > limit2 || (d2 == limit2 && best >= 0 && tri > best)) return;
+    limit2 = d2;
+    best = tri;
+    bary = w;
+    point = c;
+  });
+  clear = was ? 0.0 : std::sqrt(any2);
+  if (best < 0) return;
+  const TriangleFeature f = feature_of(bary);
+  const Vec3 free_side = (side == inner ? -1.0 : 1.0) * mesh.pseudo_normal(best, f);
+  const Vec3 d = x - point;
+  const double distance = d.norm();
+  const bool crossed = d.dot(free_side) < 0;
+  Proximity c;
+  c.vertex = v;
+  c.side = side;
+  c.triangle = best;
+  c.bary = bary;
+  c.point = point;
+  if (distance > 1e-6) {
+    // Beside it rather than over it: something nearer was no partner.
+    if (std::abs(d.dot(mesh.face_normal(best))) < 0.6 * distance) return;
+    c.normal = (crossed ? Vec3(-d) : d) / distance;
+  } else {
+    c.normal = free_side;
+  }
+  // Outside, two vessels side by side and two that have crossed look alike: only what touched before can have crossed.
+  if (crossed && (distance > settings.max_depth || (side == outer && !was))) return;
+  c.gap = (crossed ? -distance : distance) - settings.thickness;
+  const double approach = c.normal.dot(mesh.free(v) - mesh.free_at(best, bary));
+  if (c.gap > settings.alarm && c.gap + approach > settings.alarm) return;
+  close_[side][sample] = 1;
+  c.start_gap = std::max(c.gap, -settings.max_recovery);
+  out.push_back(c);
+}
+
+Opposite SelfCollider::opposite(const CollisionMesh& mesh, int triangle, const Vec3& bary, const Vec3& along, double far) const {
+  Opposite best;
+  best.distance = far;
+  const Vec3 from = mesh.point(triangle, bary);
+  Aabb way;
+  way.add(from);
+  way.add(Vec3(from + far * along));
+  const auto& own = mesh.triangle(triangle);
+  mesh.tree().overlapping(way, [&](int tri) {
+    const auto& t = mesh.triangle(tri);
+    for (int v : t)
+      if (v == own[0] || v == own[1] || v == own[2]) return;
+    // Inner by the rest shape, as for samples.
+    const Vec3 d = face_place_[std::size_t(tri)] - face_place_[std::size_t(triangle)];
+    if (d.squaredNorm() < neighbour_ * neighbour_ || face_normal_[std::size_t(triangle)].dot(d) >= 0 || face_normal_[std::size_t(tri)].dot(d) <= 0) return;
+    Vec3 w;
+    const double s = exit_through(from, along, mesh.vertex(t[0]), mesh.vertex(t[1]), mesh.vertex(t[2]), w);
+    if (s < 0 || s > best.distance || (s == best.distance && best.triangle >= 0 && tri > best.triangle)) return;
+    best = {tri, w, s};
+  });
+  return best;
+}
+
+void SelfCollider::detect(const CollisionMesh& mesh, const SelfContactSettings& settings, std::vector<Proximity>& out) {
+  if (mesh.tree().empty()) return;
+  std::fill(outward_known_.begin(), outward_known_.end(), char(0));
+  double moved2 = 0, free2 = 0;
+  for (int v = 0; v < mesh.vertex_count(); ++v) {
+    const Vec3 x = mesh.vertex(v);
+    moved2 = std::max(moved2, (x - last_[std::size_t(v)]).squaredNorm());
+    free2 = std::max(free2, mesh.free(v).squaredNorm());
+    last_[std::size_t(v)] = x;
+  }
+  moved_ = std::sqrt(moved2);
+  free_ = 2 * std::sqrt(free2);
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    if (settings.inner && reach_[i] > 0) near(mesh, settings, i, inner, out);
+    if (settings.outer) near(mesh, settings, i, outer, out);
+  }
+}
+
+}  // namespace insula

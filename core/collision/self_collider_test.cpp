@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A wall against itself: exact gaps across the lumen and outside, crossings, the look-ahead of a push.
+#include "core/collision/self_collider.h"
+
+#include <gtest/gtest.h>
+
+#include "core/collision/contact_selection.h"
+#include "core/collision/shapes_for_test.h"
+
+namespace insula {
+namespace {
+
+constexpr double thickness = 0.3e-3;
+
+/// A flat box, 2 mm high at rest; height() presses it.
+struct Flat {
+  TriMesh rest = shapes::box(Vec3(-5e-3, -5e-3, -1e-3), Vec3(5e-3, 5e-3, 1e-3), 8);
+  std::vector<Vec3> now = rest.vertices, free = std::vector<Vec3>(rest.vertices.size(), Vec3::Zero());
+  CollisionMesh mesh;
+  SelfCollider collider{rest.vertices, rest.triangles, 0.9e-3, thickness};
+  Flat() { mesh.build(rest.vertices, rest.triangles); }
+  void height(double h) {
+    for (std::size_t i = 0; i < now.size(); ++i) now[i].z() = rest.vertices[i].z() * h / 2e-3;
+  }
+  std::vector<Proximity> detect(const SelfContactSettings& settings = {}) {
+    std::vector<Proximity> out;
+    mesh.update(now, free);
+    collider.detect(mesh, settings, out);
+    return out;
+  }
+  bool top(const Proximity& x) const { return rest.vertices[std::size_t(x.vertex)].z() > 0.99e-3; }
+};
+
+TEST(SelfCollider, WallsPressedTogetherHaveTheExactGapAlsoWhenTheyHaveCrossed) {
+  Flat f;
+  for (double h : {0.75e-3, 0.4e-3, 0.3e-3, 0.1e-3, 0.0, -0.2e-3, -1e-3}) {
+    f.height(h);
+    const auto found = f.detect();
+    int both[2] = {0, 0};
+    for (const Proximity& x : found) {
+      const bool top = f.top(x);
+      if (std::abs(f.rest.vertices[std::size_t(x.vertex)].z()) < 0.99e-3) continue;
+      ++both[top];
+      EXPECT_NEAR(x.gap, h - thickness, 1e-12) << h;
+      EXPECT_NEAR((x.normal - (top ? 1.0 : -1.0) * Vec3::UnitZ()).norm(), 0, 1e-9) << h;
+      EXPECT_GE(x.start_gap, -0.3e-3 - 1e-15);
+      EXPECT_EQ(x.side, SelfCollider::inner);
+    }
+    EXPECT_GE(both[0], 30) << h;
+    EXPECT_GE(both[1], 30) << h;
+  }
+}
+
+TEST(SelfCollider, NothingAtRestAndNothingFarOff) {
+  for (const TriMesh& m : {shapes::sphere(Vec3::Zero(), 2e-3, 3), shapes::sphere(Vec3::Zero(), 0.6e-3, 2), shapes::box(Vec3::Zero(), Vec3(4e-3, 4e-3, 4e-3), 6)}) {
+    CollisionMesh mesh;
+    mesh.build(m.vertices, m.triangles);
+    mesh.update(m.vertices, {});
+    SelfCollider c(m.vertices, m.triangles, 0.2e-3, thickness);
+    std::vector<Proximity> out;
+    SelfContactSettings settings;
+    settings.outer = true;
+    settings.alarm = 0.1e-3;
+    c.detect(mesh, settings, out);
+    EXPECT_TRUE(out.empty());
+  }
+  Flat f;
+  f.height(0.85e-3);
+  EXPECT_TRUE(f.detect().empty());
+  // ... but what comes is seen.
+  for (std::size_t i = 0; i < f.free.size(); ++i) f.free[i] = Vec3(0, 0, f.now[i].z() > 0 ? -0.2e-3 : 0.0);
+  EXPECT_FALSE(f.detect().empty());
+}
+
+TEST(SelfCollider, TwoBranchesSideBySideAreOutsideOfEachOther) {
+  TriMesh m = shapes::box(Vec3(-5e-3, -5e-3, 0), Vec3(5e-3, 5e-3, 2e-3), 8);
+  const TriMesh below = shapes::box(Vec3(-6e-3, -6e-3, -4e-3), Vec3(6e-3, 6e-3, -2e-3), 8);
+  const int upper = int(m.vertices.size());
+  m.vertices.insert(m.vertices.end(), below.vertices.begin(), below.vertices.end());
+  for (auto t : below.triangles) m.triangles.push_back({t[0] + upper, t[1] + upper, t[2] + upper});
+  SelfCollider c(m.vertices, m.triangles, 0.9e-3, thickness);
+  CollisionMesh mesh;
+  mesh.build(m.vertices, m.triangles);
+  SelfContactSettings settings;
+  settings.outer = true;
+  // Down to contact and through: once touching, a crossing is known for what it is.
+  for (double distance : {0.6e-3, 0.4e-3, 0.2e-3, -0.3e-3}) {
+    std::vector<Vec3> now = m.vertices;
+    for (int i = 0; i < upper; ++i) now[std::size_t(i)].z() += distance - 2e-3;
+    mesh.update(now, {});
+    std::vector<Proximity> out;
+    c.detect(mesh, settings, out);
+    int count = 0;
+    for (const Proximity& x : out) {
+      EXPECT_EQ(x.side, SelfCollider::outer);
+      if (x.vertex >= upper) continue;
+      ++count;
+      EXPECT_NEAR(x.gap, distance - thickness, 1e-12);
+      EXPECT_NEAR((x.normal - Vec3::UnitZ()).norm(), 0, 1e-9);
+    }
+    EXPECT_GE(count, 30) << distance;
+  }
+}
+
+TEST(SelfCollider, BehindAPressedPlaceIsTheOppositeWall) {
+  Flat f;
+  f.height(1.2e-3);
+  f.mesh.update(f.now, {});
+  int checked = 0;
+  for (int tri = 0; tri < f.mesh.triangle_count(); ++tri) {
+    const Vec3 bary(0.2, 0.3, 0.5), from = f.mesh.point(tri, bary);
+    if (from.z() < 0.599e-3 || from.head<2>().cwiseAbs().maxCoeff() > 4e-3) continue;
+    const Vec3 along = Vec3(0.1, 0.05, -1).normalized();
+    const Opposite o = f.collider.opposite(f.mesh, tri, bary, along, 3e-3);
+    ASSERT_GE(o.triangle, 0);
+    EXPECT_NEAR(o.distance, 1.2e-3 / -along.z(), 1e-12);
+    EXPECT_NEAR((f.mesh.point(o.triangle, o.bary) - from - o.distance * along).norm(), 0, 1e-12);
+    EXPECT_LT(f.collider.opposite(f.mesh, tri, bary, along, 1.1e-3).triangle, 0);  // farther than asked for
+    EXPECT_LT(f.collider.opposite(f.mesh, tri, bary, -along, 3e-3).triangle, 0);   // outside
+    ++checked;
+  }
+  EXPECT_GT(checked, 50);
+}
+
+TEST(SelfCollider, SelectionTakesAPairOnceWhicheverSideFoundIt) {
+  Flat f;
+  f.height(0.3e-3);
+  auto found = f.detect();
+  ContactSelection selection;
+  std::uint64_t key = 0;
+  selection.select(found, {.spacing = 1.3e-3, .advantage = 0, .max_contacts = 100, .max_per_piece = 4, .both_ends = true}, key);
+  EXPECT_GE(found.size(), 20u);
+  for (std::size_t i = 0; i < found.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) EXPECT_GE((found[i].point - found[j].point).norm(), 1.25e-3);
+}
+
+}  // namespace
+}  // namespace insula

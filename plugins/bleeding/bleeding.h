@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A tear of the wall that bleeds into the field (the equations stand in bleeding.cpp).
+#pragma once
+#include <string>
+#include <vector>
+
+#include "core/mechanics/instrument.h"
+#include "plugins/blood_flow/blood_flow.h"
+
+namespace insula {
+
+/// The field as a bowl, a paraboloid of `radius` at the height `depth`: its area grows with height as blood fills it.
+struct Bowl {
+  double radius = 0.015, depth = 0.02;  ///< m
+  double capacity() const;              ///< m3, to the rim
+  double height(double volume) const;   ///< of the blood's surface over the bottom, m
+  double volume(double height) const;
+};
+
+class Bleeding final : public Constraint {
+ public:
+  static constexpr std::string_view kind_name = "bleeding";
+
+  Ref<ShellBody> on{this, {.name = "on", .doc = "vessel whose wall may tear"}};
+  Ref<BloodFlow> flow{this, {.name = "flow", .doc = "network that feeds the tear"}};
+  Param<std::string> region{this, {.name = "region", .fallback = "bleb", .doc = "region of the wall that tears"}};
+  Param<Force> force{this, {.name = "force", .fallback = "0.6 N", .min = "0.001 N", .max = "100 N", .doc = "on the region by instruments and clips, that tears it"}};
+  Param<Force> sharp_force{this, {.name = "sharp_force", .fallback = "0.15 N", .min = "0.001 N", .max = "100 N", .doc = "the same by instruments with a cutting edge"}};
+  Param<Pressure> burst{this, {.name = "burst", .fallback = "280 mmHg", .min = "50 mmHg", .max = "1000 mmHg", .doc = "pressure inside that tears it"}};
+  Param<Area> tear_area{this, {.name = "tear_area", .fallback = "0.3 mm2", .min = "0.001 mm2", .max = "20 mm2", .doc = "of the opening"}};
+  Param<Vec<Length>> origin{this, {.name = "origin", .doc = "bottom of the field"}};
+  Param<Vec<Scalar>> up{this, {.name = "up", .fallback = "0 0 1", .doc = "out of the field, against gravity"}};
+  Param<Length> radius{this, {.name = "radius", .fallback = "15 mm", .min = "1 mm", .max = "200 mm", .doc = "of the field at its rim"}};
+  Param<Length> depth{this, {.name = "depth", .fallback = "20 mm", .min = "1 mm", .max = "200 mm", .doc = "of the field from bottom to rim; what is above runs off"}};
+  Param<FlowRate> suction_rate{this, {.name = "suction_rate", .fallback = "45 ml/min", .min = "0 ml/min", .max = "2000 ml/min", .doc = "that a suction tube takes while its tip is in the blood"}};
+  Param<Scalar> idle_suction{this, {.name = "idle_suction", .fallback = "0.1", .min = "0", .max = "1", .doc = "share of that which it takes with its vent open"}};
+  Param<Scalar> stopped_below{this, {.name = "stopped_below", .fallback = "0.05", .min = "0.001", .max = "0.5", .doc = "rate, over that of the rupture, below which bleeding counts as stopped"}};
+  Param<Duration> stopped_after{this, {.name = "stopped_after", .fallback = "2 s", .min = "0 s", .max = "60 s", .doc = "time that it must stay below"}};
+
+  void prepare(PrepareContext& context) override;
+  void connect(PrepareContext& context, Simulation& simulation) override;
+  void build(const StepContext&, ConstraintBuilder&) override {}
+  bool adds_rows() const { return false; }
+  void finish(const StepContext& context, const ConstraintSolution& solution) override;
+  void report(StepReport& report) const override;
+  void reset() override;
+  void append_state(std::vector<double>& out) const override;
+  std::vector<CommandInfo> commands() const override;
+  std::string run_command(std::string_view name, std::string_view argument) override;
+
+  bool open() const { return open_; }
+  double rate() const { return rate_; }                       ///< m3/s
+  double volume() const { return volume_; }                   ///< in the field, m3
+  double height() const { return bowl_.height(volume_); }     ///< m
+  /// Forces on the region in the last step, N: the sum over contacts and ties, and the part of edged instruments.
+  double force_on_region() const { return force_; }
+  double sharp_force_on_region() const { return sharp_; }
+
+ private:
+  void measure_forces(const ConstraintSolution& solution);
+  void tear(const StepContext& context, const char* why, double value);
+  void fill(double h);
+  void tell(const StepContext& context);
+  void emit(const StepContext& context, const char* what, const char* text, double value) const;
+
+  Bowl bowl_;
+  Vec3 up_ = Vec3::UnitZ();
+  int chamber_ = -1;
+  std::vector<char> zone_;                  ///< one a node
+  std::vector<Instrument*> instruments_;
+  std::vector<Instrument*> suctions_;
+  std::vector<double> row_force_;           ///< three a row: force on the region
+  // State.
+  bool open_ = false, asked_ = false, stopped_ = false;
+  double rate_ = 0, lost_ = 0, volume_ = 0, since_ = -1, first_rate_ = 0, low_for_ = 0, force_ = 0, sharp_ = 0;
+};
+
+}  // namespace insula

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The field's shape, the balance of blood, what tears the wall and what stops it.
+#include "plugins/bleeding/bleeding.h"
+
+#include <gtest/gtest.h>
+
+#include "core/sim/report.h"
+#include "plugins/pressure/shell_for_test.h"
+
+namespace insula {
+namespace {
+
+constexpr double mmHg = 133.322387415, ml = 1e-6, h = 0.01;
+
+TEST(Bowl, HoldsAParaboloid) {
+  const Bowl bowl{0.012, 0.02};
+  EXPECT_NEAR(bowl.capacity(), std::numbers::pi * 0.012 * 0.012 * 0.02 / 2, 1e-18);
+  EXPECT_EQ(bowl.height(0), 0);
+  EXPECT_NEAR(bowl.height(bowl.volume(0.007)), 0.007, 1e-15);
+  EXPECT_NEAR(bowl.height(10 * bowl.capacity()), 0.02, 1e-15);
+  // dV/dh is the area of the blood's surface.
+  const double r2 = 0.012 * 0.012 * 0.007 / 0.02, e = 1e-6;
+  EXPECT_NEAR((bowl.volume(0.007 + e) - bowl.volume(0.007 - e)) / (2 * e), std::numbers::pi * r2, 1e-12);
+}
+
+struct Field : test::TestScene {
+  BloodFlow* flow = nullptr;
+  Bleeding* bleeding = nullptr;
+  Instrument* tool = nullptr;
+  /// A vessel with a sac; its upper part is the bleb. `extra` adds elements, `attributes` go to the bleeding.
+  explicit Field(const std::string& attributes = "", const std::string& extra = "", const std::string& pressure = R"(systolic="93 mmHg" diastolic="93 mmHg")") {
+    test::TestVessel v;
+    v.add_tube("parent", "inlet", "bifurcation", Vec3(0, 0, 0), 0.0014, 0.014, 12, 14);
+    v.add_tube("superior", "bifurcation", "superior_outlet", Vec3(0.01, 0, 0), 0.0011, 0.012, 12, 12);
+    v.add_tube("sac", "bifurcation", "dome", Vec3(0.03, 0, 0), 0.002, 0.006, 12, 6);
+    v.json["regions"].push_back("bleb");
+    for (std::size_t i = 0; i < v.wall.vertices.size(); ++i)
+      if (v.wall.vertices[i].x() > 0.025 && v.wall.vertices[i].z() > 0.0045) v.json["vertex_region"][i] = 3;
+    v.write(folder);
+    folder.write("meshes/tube/tube.urdf", test::test_tool_urdf(0.0008));
+    folder.write("meshes/tube/tool.json", test::test_tool_json(0, 0.0005));
+    folder.write("meshes/knife/tube.urdf", test::test_tool_urdf(0.0008));
+    folder.write("meshes/knife/tool.json", test::test_tool_json(0.0005, 0));
+    load(fmt::format(R"(<scene time_step="10 ms"><solver tolerance="1e-12 m" max_sweeps="1000"/>
+  <bleeding id="b" on="artery" flow="flow" origin="0 0 -20 mm" {}/>
+  <shell_body id="artery" vessel="meshes/vessel.json"><test_wall stiffness="200 N/m"/><surface id="wall"/></shell_body>
+  <blood_flow id="flow" pressure="p"/><pressure id="p" on="artery" {} chambers="parent; superior; sac bleb"/>{}</scene>)", attributes, pressure, extra));
+    if (!s) return;
+    flow = &get<BloodFlow>("flow");
+    bleeding = &get<Bleeding>("b");
+    if (!s->instruments().empty()) tool = s->instruments().front();
+  }
+  void move(const Vec3& tip, bool button, int n = 1) const {
+    for (int i = 0; i < n; ++i) {
+      HandState hand;
+      hand.present = true;
+      hand.device = tool->home_pose();
+      hand.device.p = tip;
+      hand.button1 = button;
+      s->set_hand(0, hand);
+      s->step();
+    }
+  }
+  int events(const std::string& what, int n) const {
+    int count = 0;
+    for (int i = 0; i < n; ++i) {
+      s->step();
+      for (const Event& e : s->events()) count += e.kind == what;
+    }
+    return count;
+  }
+  const BleedingState& state() const { return s->report().bleeding.front(); }
+};
+const std::string suction = R"(<suction id="tube" model="meshes/tube/tube.urdf" hand="left" home="0 30 0 mm" shaft="0 0 1" flat="1 0 0"/>)";
+
+TEST(Bleeding, FillsTheFieldAtTheTearsRateAndRunsOffAtTheRim) {
+  Field t;
+  ASSERT_TRUE(t.bleeding) << t.messages;
+  t.run(5);
+  EXPECT_FALSE(t.state().open);
+  EXPECT_EQ(t.state().since, -1);
+  ASSERT_EQ(t.s->command("ask", "b rupture"), "");
+  EXPECT_EQ(t.events("rupture", 1), 1);
+  EXPECT_NE(t.s->command("ask", "b rupture"), "");
+  EXPECT_NEAR(t.state().since, 0.06, 1e-12);
+  double out = 0;
+  for (int i = 0; i < 500; ++i) {
+    t.run(1);
+    out += h * t.state().rate;
+  }
+  EXPECT_NEAR(t.state().lost, out, 1e-12 * out);
+  EXPECT_NEAR(t.bleeding->volume(), out, 1e-12 * out);
+  EXPECT_NEAR(t.state().height, 0.02 * std::sqrt(out / (std::numbers::pi * 0.015 * 0.015 * 0.02 / 2)), 1e-12);
+  EXPECT_GT(t.state().rate * 60 / ml, 20);
+  // Unattended, the field is full in about ten seconds and no fuller later.
+  t.run(700);
+  EXPECT_NEAR(t.state().height, 0.02, 1e-12);
+  EXPECT_GT(t.state().lost, 8 * ml);
+  t.s->reset();
+  EXPECT_FALSE(t.bleeding->open());
+  EXPECT_EQ(t.flow->tear_flow(2), 0);
+  t.run(5);
+  EXPECT_EQ(t.state().height, 0);
+}
+
+TEST(Bleeding, SuctionTakesWhatItsTipReaches) {
+  Field t("", suction);
+  ASSERT_TRUE(t.tool) << t.messages;
+  ASSERT_EQ(t.s->command("ask", "b rupture"), "");
+  t.move(Vec3(0, 0.03, 0), true, 200);  // outside of the field: takes nothing
+  EXPECT_NEAR(t.bleeding->volume(), t.state().lost, 1e-12 * t.state().lost);
+  double before = t.bleeding->volume();
+  t.move(Vec3(0.005, 0.005, -0.019), true, 100);
+  const double rate = 45 * ml / 60;
+  EXPECT_NEAR(t.bleeding->volume(), before + 1.0 * (t.state().rate - rate), 1e-3 * before);
+  before = t.bleeding->volume();
+  t.move(Vec3(0.005, 0.005, -0.019), false, 100);
+  EXPECT_NEAR(t.bleeding->volume(), before + 1.0 * (t.state().rate - 0.1 * rate), 1e-3 * before);
+  // Without a bleed it sucks the field down to its tip and stays there.
+  ASSERT_EQ(t.s->command("ask", "b seal"), "");
+  t.move(Vec3(0.001, 0, -0.0165), true, 600);
+  EXPECT_LE(t.state().height, 0.0035);
+  EXPECT_GT(t.state().height, 0.0030);
+}
+
+TEST(Bleeding, StopsUnderATemporaryClipAndBeginsAgain) {
+  Field t;
+  ASSERT_TRUE(t.bleeding) << t.messages;
+  ASSERT_EQ(t.s->command("ask", "b rupture"), "");
+  EXPECT_EQ(t.events("bleeding_stopped", 100), 0);
+  auto& place = t.wall().place;
+  for (std::size_t i = 0; i < place.size(); ++i)
+    if (const Vec3 x = t.shell().rest_nodes()[i]; t.shell().model().vertex_region[i] == 0 && x.z() > 0.008 && x.z() < 0.0102 && std::abs(x.x()) > 1e-9) place[i].x() = std::copysign(0.00015, x.x());
+  EXPECT_EQ(t.events("bleeding_stopped", 190), 0) << "not before two seconds";
+  EXPECT_EQ(t.events("bleeding_stopped", 400), 1);
+  EXPECT_TRUE(t.state().open);
+  place = t.shell().rest_nodes();
+  EXPECT_EQ(t.events("bleeding_again", 50), 1);
+}
+
+TEST(Bleeding, TearsWhenPressedTooHardAndSoonerByAnEdge) {
+  const auto pressed_at = [](const std::string& folder, double step) {
+    Field t(R"(force="0.3 N" sharp_force="0.1 N")", R"(<dissector id="tool" model="meshes/)" + folder + R"(/tube.urdf" hand="left" home="30 0 12 mm" shaft="0 0 1" flat="1 0 0")" + (folder == "tube" ? " sharp=\"never\"" : "") + R"(/>
+      <contact between="tool artery"/>)");
+    EXPECT_TRUE(t.tool) << t.messages;
+    if (!t.tool) return -1.0;
+    double last = 0;
+    for (int i = 0; i < 400; ++i) {
+      t.move(Vec3(0.03, 0, 0.0085 - i * step), false);
+      if (t.bleeding->open()) {
+        EXPECT_EQ(t.s->events().front().kind, "rupture");
+        EXPECT_GT(t.bleeding->force_on_region(), last);
+        return t.bleeding->force_on_region();
+      }
+      // What the contact says is what the region feels.
+      double contact = 0;
+      for (const ContactPoint& c : t.s->report().contacts) contact += (c.normal_force * c.normal + c.tangent_force).norm();
+      EXPECT_NEAR(t.bleeding->force_on_region(), contact, 1e-9 + 1e-6 * contact);
+      last = t.bleeding->force_on_region();
+    }
+    return -2.0;
+  };
+  const double blunt = pressed_at("tube", 2e-5), sharp = pressed_at("knife", 2e-5);
+  EXPECT_GT(blunt, 0.3);
+  EXPECT_LT(blunt, 0.35);
+  EXPECT_GT(sharp, 0.1);
+  EXPECT_LT(sharp, 0.15);
+}
+
+TEST(Bleeding, BurstsUnderPressure) {
+  Field t(R"(burst="140 mmHg")", "", R"(response="0 s")");
+  ASSERT_TRUE(t.bleeding) << t.messages;
+  EXPECT_EQ(t.events("rupture", 100), 0);
+  ASSERT_EQ(t.s->command("ask", "p set_systolic 180"), "");
+  EXPECT_EQ(t.events("rupture", 100), 1);
+}
+
+TEST(Bleeding, SaysWhatIsWrong) {
+  EXPECT_NE(Field(R"(region="blob")").messages.find("no region \"blob\"; did you mean \"bleb\"?"), std::string::npos);
+  EXPECT_NE(Field(R"(up="0 0 0")").messages.find("up: must be a direction"), std::string::npos);
+  EXPECT_NE(Field(R"(force="0.1 N" sharp_force="0.2 N")").messages.find("sharp_force: is above force"), std::string::npos);
+  test::TestScene two;
+  test::TestVessel v;
+  v.add_tube("parent", "inlet", "outlet", Vec3::Zero(), 0.0014, 0.014);
+  v.write(two.folder);
+  two.load(R"(<scene><shell_body id="a" vessel="meshes/vessel.json"><test_wall/></shell_body><shell_body id="c" vessel="meshes/vessel.json"><test_wall/></shell_body>
+  <pressure id="p" on="a"/><blood_flow id="f" pressure="p"/><bleeding on="c" flow="f" region="parent" origin="0 0 0 mm"/></scene>)");
+  EXPECT_NE(two.messages.find("is the blood of \"a\", not of \"c\""), std::string::npos) << two.messages;
+}
+
+}  // namespace
+}  // namespace insula

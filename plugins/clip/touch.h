@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Whether rows of other components push a body: tissue in the jaws, bone at the shaft.
+#pragma once
+#include "core/constraint/constraint.h"
+
+namespace insula {
+
+/// Any force in this step on `body` by a row that belongs to neither of the components at these document positions.
+inline bool touched_by_others(const Body& body, const ConstraintSolution& solution, int own, int other) {
+  std::size_t block = 0;
+  const auto& blocks = solution.problem.blocks;
+  for (int row : body.rows.row) {
+    while (block < blocks.size() && blocks[block].row + blocks[block].rows() <= row) ++block;
+    if (block == blocks.size()) return false;
+    const int by = int(blocks[block].id >> 44);
+    if (by != own && by != other && solution.lambda[row] != 0) return true;
+  }
+  return false;
+}
+
+}  // namespace insula

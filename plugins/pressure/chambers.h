@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The inside of a closed shell parted into chambers, each with its exact volume and the volume's gradient.
+//
+// A chamber is bounded by the triangles that belong to it and, where it borders on others, by a cone over the border whose
+// apex is the mean of the border's nodes. Each is then a closed polyhedron, so uniform pressure in one chamber has neither a
+// resultant force nor a moment; the cones of neighbours cancel, and the chambers' volumes add up to that of the shell.
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/mechanics/shell_body.h"
+
+namespace insula {
+
+class Chambers {
+ public:
+  /// groups: names of the regions of each chamber; triangles of regions in no group go to the chamber next to them.
+  void build(const ShellBody& body, const std::vector<std::vector<std::string>>& groups);
+
+  int count() const { return int(chambers_.size()); }
+  const std::string& name(int c) const { return chambers_[std::size_t(c)].name; }
+  int find(std::string_view name) const;         ///< -1 when there is none
+  int of_region(int region) const { return of_region_[std::size_t(region)]; }  ///< the chamber of most of its triangles
+  double area(int c) const { return chambers_[std::size_t(c)].area; }          ///< of its wall and caps at rest, m2
+  const std::vector<int>& nodes(int c) const { return chambers_[std::size_t(c)].nodes; }
+
+  double volume(int c, const VecX& q) const;                              ///< m3
+  /// d volume / d node, m2, one a node of nodes(c). `out` is resized.
+  void gradient(int c, const VecX& q, std::vector<Vec3>& out) const;
+
+ private:
+  struct Chamber {
+    std::string name;
+    double area = 0;
+    std::vector<int> nodes;                      ///< ascending
+    std::vector<std::array<int, 3>> triangles;   ///< places in `nodes`
+    struct Cone {
+      int a, b, border;                          ///< edge as the cone's outward triangle (apex, a, b) has it
+    };
+    std::vector<Cone> cones;
+    std::vector<std::vector<int>> border;        ///< of each border: its nodes, places in `nodes`
+  };
+  void assign(const ShellBody& body, const std::vector<std::vector<std::string>>& groups, std::vector<int>& of);
+  void add_borders(const std::vector<std::array<int, 3>>& triangles, const std::vector<int>& of, std::size_t node_count);
+
+  std::vector<Chamber> chambers_;
+  std::vector<int> of_region_;
+  Vec3 origin_ = Vec3::Zero();  ///< near the vessel: keeps the digits of the volumes
+};
+
+}  // namespace insula

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Blood pressure on the wall of a closed shell, chamber by chamber (the equations stand in pressure.cpp).
+#pragma once
+#include <string>
+#include <vector>
+
+#include "core/constraint/constraint.h"
+#include "core/mechanics/shell_body.h"
+#include "plugins/pressure/chambers.h"
+#include "plugins/pressure/star_mesh.h"
+#include "plugins/pressure/waveform.h"
+
+namespace insula {
+
+/// What feeds the chambers, when the pressure is not simply prescribed: a network of vessels.
+class ChamberFeed {
+ public:
+  virtual ~ChamberFeed() = default;
+  /// Pressure of a chamber at which the shape was imaged, Pa.
+  virtual double reference(int chamber) const = 0;
+  /// The network of this step as the chambers see it: one node each, everything else eliminated. May be asked more than once.
+  virtual void reduce(const StepContext& context, StarMesh& chambers) = 0;
+  /// After the step: pressure at each chamber's place in the network (Pa), and how much the chamber yields (m3/Pa).
+  virtual void settle(const StepContext& context, const double* pressure, const double* yielding) = 0;
+};
+
+class BloodPressure final : public Constraint {
+ public:
+  static constexpr std::string_view kind_name = "pressure";
+  static constexpr int most_chambers = 8;
+
+  Ref<ShellBody> on{this, {.name = "on", .doc = "closed shell whose wall the blood loads"}};
+  Param<Pressure> systolic{this, {.name = "systolic", .fallback = "120 mmHg", .min = "20 mmHg", .max = "300 mmHg", .doc = "greatest pressure of a beat"}};
+  Param<Pressure> diastolic{this, {.name = "diastolic", .fallback = "80 mmHg", .min = "10 mmHg", .max = "200 mmHg", .doc = "least pressure of a beat"}};
+  Param<Frequency> heart_rate{this, {.name = "heart_rate", .fallback = "70 1/min", .min = "20 1/min", .max = "220 1/min", .doc = "beats"}};
+  Param<Pressure> imaged_at{this, {.name = "imaged_at", .fallback = "0 mmHg", .min = "0 mmHg", .max = "300 mmHg", .doc = "pressure at which the shape was imaged; 0: the mean of a beat"}};
+  Param<Duration> response{this, {.name = "response", .fallback = "1 s", .min = "0 s", .max = "60 s", .doc = "time in which pressure and rate follow a command"}};
+  Param<std::string> regions{this, {.name = "chambers", .fallback = "", .doc = "regions of each chamber, chambers parted by semicolons: \"parent; superior; sac bleb\"; none: one a region with a centreline"}};
+
+  /// Makes the chambers, if they are not made yet; false when something is wrong with them.
+  bool ready(PrepareContext& context);
+  /// Before the first step: the network that feeds the chambers.
+  void set_feed(ChamberFeed* feed);
+  bool fed() const { return feed_ != nullptr; }
+
+  const Chambers& chambers() const { return chambers_; }
+  double wave_mean() const { return diastolic() + (systolic() - diastolic()) * wave_.mean(); }  ///< of a beat as declared, Pa
+  double imaged_pressure() const { return imaged_at() > 0 ? imaged_at() : wave_mean(); }        ///< of the arteries, Pa
+  double arterial(double h) const;           ///< pressure of the arteries at the end of the coming step, Pa
+  double phase() const { return phase_; }    ///< of the heart, 0..1, 0 the start of systole
+  double beat_share(double h) const { return h * rate_; }  ///< share of a beat that a step lasts
+  double area_scale() const { return area_; }  ///< A_ref, m2
+  double pressure(int chamber) const { return pressure_[std::size_t(chamber)]; }  ///< on its wall in the last step, Pa
+  double volume(int chamber) const { return chambers_.volume(chamber, on->q()); } ///< now, m3
+  double rest_volume(int chamber) const { return rest_volume_[std::size_t(chamber)]; }
+  double fluid(int chamber) const { return fluid_[std::size_t(chamber)]; }        ///< volume of blood by the network's account, m3
+
+  void prepare(PrepareContext& context) override;
+  void connect(PrepareContext& context, Simulation& simulation) override;
+  void detect(const StepContext& context) override;
+  void build(const StepContext& context, ConstraintBuilder& builder) override;
+  void finish(const StepContext& context, const ConstraintSolution& solution) override;
+  void report(StepReport& report) const override;
+  void reset() override;
+  void append_state(std::vector<double>& out) const override;
+  std::vector<CommandInfo> commands() const override;
+  std::string run_command(std::string_view name, std::string_view argument) override;
+
+ private:
+  bool make_chambers(PrepareContext& context);
+  bool read_groups(PrepareContext& context, std::vector<std::vector<std::string>>& groups) const;
+  void add_row(ConstraintBuilder& builder, int k, Block block, double violation);
+  double reference(int chamber) const { return feed_ ? feed_->reference(chamber) : imaged_pressure(); }
+  void prepare_feed(double h);
+  void finish_feed(const StepContext& context, const ConstraintSolution& solution);
+
+  Chambers chambers_;
+  PulseWave wave_;
+  ChamberFeed* feed_ = nullptr;
+  bool connected_ = false, good_ = false;
+  double area_ = 1;
+  std::vector<double> rest_volume_;
+  std::vector<char> yields_;            ///< has a node that is not held
+
+  // State.
+  double phase_ = 0, systolic_now_ = 0, diastolic_now_ = 0, rate_ = 0;
+  double systolic_wanted_ = 0, diastolic_wanted_ = 0, rate_wanted_ = 0;
+  std::vector<double> pressure_, fluid_;
+
+  // Of this step.
+  struct Row {
+    int row = -1;
+    double conductance = 0;   ///< that its law uses, m3/(s Pa)
+    double feed = 0;          ///< pressure over the reference that would let nothing flow, Pa
+  };
+  std::vector<Row> rows_;
+  StarMesh mesh_;
+  std::vector<double> mix_;               ///< mix_[k n + j]: part of chamber j in row k
+  std::vector<std::vector<Vec3>> gradient_;
+  std::vector<Vec3> row_gradient_;
+  std::vector<int> row_nodes_;
+  std::vector<double> volume_, flow_, yielding_, at_node_;
+};
+
+}  // namespace insula
