@@ -31,8 +31,9 @@ double exit_through(const Vec3& from, const Vec3& along, const Vec3& p, const Ve
   const double t = n.dot(p - from) / rate;
   const Vec3 x = from + t * along;
   const Vec3 w(n.dot((r - q).cross(x - q)), n.dot((p - r).cross(x - r)), n.dot((q - p).cross(x - p)));
-  if (w.minCoeff() < 0) return -1;
-  bary = w / w.sum();
+  // A ray through an edge or a vertex must not slip between the triangles there.
+  if (w.minCoeff() < -1e-9 * n.squaredNorm()) return -1;
+  bary = w.cwiseMax(0.0) / w.cwiseMax(0.0).sum();
   return t;
 }
 

@@ -144,7 +144,9 @@ void ToolCollider::evaluate(const CollisionMesh& mesh, const Placed& at, const T
     }
     const Vec3 d = (n.p - n.c) / n.distance;
     const TriangleFeature f = feature_of(n.bary);
-    if (mesh.locally_closest(k.triangle, f, d, t, 1e-6)) {
+    // A thin wall is wavy under a flat tool: all that lies under it counts, not only its crests.
+    const bool under = settings.offset > 0 && d.dot(face) > 0.8;
+    if (under || mesh.locally_closest(k.triangle, f, d, t, 1e-6)) {
       const bool outside = d.dot(mesh.pseudo_normal(k.triangle, f, t)) >= 0;
       if (outside && clear <= settings.alarm) emit(n.bary, n.c, d, clear);
       // Behind this triangle, but perhaps before another one: only the nearest of all tells, and it is the way out.

@@ -25,6 +25,7 @@ struct SolveStats {
 struct SolveWorkspace {
   std::vector<double> lambda;  ///< in: warm start, out: solution; N
   std::vector<double> delta;   ///< out: W lambda + delta_free, m
+  std::vector<double> before, before_delta, along, along_delta;  ///< of the conjugate directions
   void reserve(int rows);
   struct LocalBlock {
     double inverse[9];  ///< inverse of the block's W (friction) or 1 / (W_ii + c)

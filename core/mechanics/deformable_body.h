@@ -38,6 +38,11 @@ class DeformableBody : public Body {
   int factorisations() const { return factorisations_; }
   /// External force for the next steps, 3 values a node, N (tests, loads).
   VecX external;
+  /// Force of what fills the body, renewed by a constraint between the steps, 3 values a node, N.
+  VecX filling;
+  /// Prestrains the force models so that they balance `load` (3 values a node, N) in the rest configuration. Returns what is
+  /// left, over |load|, on the free nodes: 1 when no force model takes a prestrain. After connect(), before the first step.
+  double prestress(const VecX& load);
 
   int blocks() const override { return nodes(); }
   Vec3 position(const MaterialPoint& p) const override;

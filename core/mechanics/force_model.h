@@ -34,6 +34,10 @@ class ForceModel : public Component {
   virtual void linearise(const double* x, double* force, BlockMatrix* stiffness, double h, Tangent tangent) = 0;
   /// J
   virtual double energy(const double* x) = 0;
+  /// Moves the natural shape by u (3 values a node, m) while the rest configuration stays: the linear strain of u at rest is
+  /// taken from the strain, in force, tangent and energy alike. Adds up over calls; reset() keeps it. Between connect and the
+  /// first step. False when the model has no natural shape of its own to move (springs to the surroundings) and does nothing.
+  virtual bool prestrain(const double*) { return false; }
   /// Rayleigh stiffness damping, s.
   virtual double stiffness_damping() const { return 0; }
   /// Whether the body acts on itself alone: no force in rigid motion, forces and moments add up to nothing.

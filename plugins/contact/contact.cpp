@@ -103,7 +103,10 @@ void Contact::add_pairs(Simulation& simulation, Body* a, Body* b) {
         p.tool_a = tool_a;
         p.link_a = i;
         p.b = shared_surface(simulation, sb);
-        p.tool_collider = std::make_unique<ToolCollider>(tool_a->link_pieces(i), p.b->mesh.triangle_count());
+        if (by.is("vertices") && sb->thickness() > 0)
+          p.vertex_collider = std::make_unique<VertexCollider>(tool_a->link_pieces(i), sb->triangles(), p.b->mesh.vertex_count());
+        else
+          p.tool_collider = std::make_unique<ToolCollider>(tool_a->link_pieces(i), p.b->mesh.triangle_count());
         p.contacts.reserve(room);
         pairs_.push_back(std::move(p));
       }
@@ -166,12 +169,17 @@ void Contact::search(const Search& what) {
     ToolContactSettings settings;
     settings.alarm = alarm();
     settings.max_recovery = recovery();
-    if (p.b) settings.offset = 0.5 * p.b->surface->thickness();
+    if (p.b && p.b->surface->thickness() > 0) {
+      settings.offset = 0.5 * p.b->surface->thickness();
+      settings.max_recovery = std::min(recovery(), max_push());
+    }
     p.contacts.clear();
     if (!p.active()) return;
     const Pose start = p.tool_a->link_pose(p.link_a), free = p.tool_a->link_free_pose(p.link_a);
     if (p.tool_b)
       detect_tools(p.pieces_a, start, free, p.pieces_b, p.tool_b->link_pose(p.link_b), p.tool_b->link_free_pose(p.link_b), settings, p.contacts);
+    else if (p.vertex_collider)
+      p.vertex_collider->detect(p.b->mesh, start, free, settings, p.contacts);
     else
       p.tool_collider->detect(p.b->mesh, start, free, settings, p.contacts);
     return;
@@ -192,11 +200,11 @@ void Contact::detect(const StepContext& context) {
   for (Pair& p : pairs_) {
     SelectionSettings choice;
     if (p.tool_a) {
-      choice.spacing = spacing();
+      choice.spacing = p.vertex_collider ? 0.0 : spacing();  // a wall's vertices are all kept out
       choice.advantage = 0.2 * alarm();
       choice.max_contacts = max_contacts();
       // A jaw is one piece and may use all; of several pieces none takes more than half.
-      choice.max_per_piece = p.single_piece() ? max_contacts() : std::max(2, (max_contacts() + 1) / 2);
+      choice.max_per_piece = p.single_piece() || p.vertex_collider ? max_contacts() : std::max(2, (max_contacts() + 1) / 2);
     } else {
       choice.spacing = tissue_spacing();
       choice.advantage = 0.5 * tissue_alarm();
@@ -315,6 +323,7 @@ void Contact::reset() {
   for (Pair& p : pairs_) {
     p.selection.reset();
     if (p.tool_collider) p.tool_collider->reset();
+    if (p.vertex_collider) p.vertex_collider->reset();
     if (p.a_on_b) p.a_on_b->reset();
     if (p.b_on_a) p.b_on_a->reset();
     p.contacts.clear();

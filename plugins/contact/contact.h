@@ -8,6 +8,7 @@
 #include "core/collision/contact_selection.h"
 #include "core/collision/tissue_collider.h"
 #include "core/collision/tool_collider.h"
+#include "core/collision/vertex_collider.h"
 #include "core/constraint/constraint.h"
 #include "core/mechanics/rigid_body.h"
 #include "core/mechanics/surface.h"
@@ -30,7 +31,8 @@ class Contact final : public Constraint {
   Param<Length> alarm{this, {.name = "alarm", .fallback = "1 mm", .min = "0.01 mm", .max = "10 mm", .doc = "a tool closer than this is in contact's care"}};
   Param<Length> spacing{this, {.name = "spacing", .fallback = "2 mm", .min = "0.01 mm", .max = "100 mm", .doc = "contacts of a tool are no closer than this unless the surface turns"}};
   Param<int> max_contacts{this, {.name = "max_contacts", .fallback = "8", .min = "1", .max = "100", .doc = "most contacts of a tool with one surface"}};
-  Param<Length> max_push{this, {.name = "max_push", .fallback = "0.5 mm", .min = "0.05 mm", .max = "100 mm", .doc = "a tool that touches a wall (a surface with a thickness) goes on by no more than this in a step; the rest of the hand's motion follows in the next ones"}};
+  Param<Length> max_push{this, {.name = "max_push", .fallback = "0.3 mm", .min = "0.05 mm", .max = "100 mm", .doc = "a tool that touches a wall (a surface with a thickness) goes on by no more than this in a step; the rest of the hand's motion follows in the next ones"}};
+  Param<Choice> by{this, {.name = "by", .fallback = "triangles", .choices = {"triangles", "vertices"}, .doc = "how tools meet walls (surfaces with a thickness): every triangle, for sharp tools; or every vertex, for blades rounder than the wall's triangles are wide that close on it from both sides"}};
   Param<Length> recovery{this, {.name = "recovery", .fallback = "1 mm", .min = "0.001 mm", .max = "10 mm", .doc = "an overlap of a tool is undone by no more than this in a step: less is gentler on thin walls"}};
   Param<Length> tissue_alarm{this, {.name = "tissue_alarm", .fallback = "0.5 mm", .min = "0.01 mm", .max = "10 mm", .doc = "the same distance between two surfaces"}};
   Param<Length> tissue_spacing{this, {.name = "tissue_spacing", .fallback = "4 mm", .min = "0.05 mm", .max = "100 mm", .doc = "contacts of two surfaces are no closer than this; their vertices are sampled at three quarters of it"}};
@@ -51,7 +53,8 @@ class Contact final : public Constraint {
     int link_a = 0, link_b = 0;
     std::shared_ptr<ContactSurface> a, b;  ///< ... or a surface
     std::vector<RoundedPiece> pieces_a, pieces_b;  ///< tool against tool
-    std::unique_ptr<ToolCollider> tool_collider;
+    std::unique_ptr<ToolCollider> tool_collider;      ///< tool against surface, by triangles ...
+    std::unique_ptr<VertexCollider> vertex_collider;  ///< ... or by the wall's vertices
     std::unique_ptr<TissueCollider> a_on_b, b_on_a;
     ContactSelection selection;
     std::vector<Proximity> contacts;

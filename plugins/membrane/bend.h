@@ -33,6 +33,8 @@ class BendPatches {
   void bind(const BlockMatrix& a, const std::vector<int>& free_of_node);
   void linearise(const double* x, double* force, BlockMatrix* stiffness, double scale, Tangent which, bool patches);
   double energy(const double* x);
+  /// Turns the rest angles as displacement u from rest would. Both 3 values a node, m.
+  void prestrain(const double* rest, const double* u);
   /// Forgets how often a hinge has turned.
   void reset() { angle_ = rest_angle_; }
 

@@ -97,6 +97,15 @@ void BendPatches::add_curvature_of_hinges(const double* x, BlockMatrix& stiffnes
   }
 }
 
+void BendPatches::prestrain(const double* rest, const double* u) {
+  for (std::size_t h = 0; h < hinges_.size(); ++h) {
+    double g[12];
+    hinge_angle(rest, hinges_[h], g);
+    for (int k = 0; k < 4; ++k)
+      for (int c = 0; c < 3; ++c) rest_angle_[h] += g[3 * k + c] * u[3 * hinges_[h].node[k] + c];
+  }
+}
+
 double BendPatches::energy(const double* x) {
   std::vector<double>& angle = energy_angle_;
   for (std::size_t h = 0; h < hinges_.size(); ++h) angle[h] = unwrapped(hinge_angle(x, hinges_[h], nullptr), angle_[h]);

@@ -18,6 +18,9 @@ Several membranes share a shell by `regions`; every triangle has exactly one. Wh
 against the common slope, so the border is no hinge. A free rim carries no moment; nodes that are held keep their place,
 not their slope: hold two rows of them to clamp a rim. Caps carry no wall.
 
+A prestrain (the wall is under tension in the shape that was imaged) is a strain of each triangle and a turn of each rest
+angle, both linear in the displacement that leads to the natural shape.
+
 A triangle crushed below a tenth of its area at rest bends more softly than the law says (its angle's gradient is bounded).
 
 Sources: Comas, Duriez, Cotin 2010 (co-rotational membrane); Morley 1968; Onate, Cervera 1993 (rotation-free bending);
@@ -51,6 +54,7 @@ class Membrane final : public ForceModel {
   void add_mass(std::vector<double>& mass, std::vector<double>& damping) const override;
   void linearise(const double* x, double* force, BlockMatrix* stiffness, double h, Tangent which) override;
   double energy(const double* x) override { return stretch_.energy(x) + bend_.energy(x); }
+  bool prestrain(const double* u) override;
   double stiffness_damping() const override { return stiffness_time(); }
   void reset() override { bend_.reset(); }
 
@@ -59,6 +63,7 @@ class Membrane final : public ForceModel {
   void check_cover(PrepareContext& context, const ShellBody& shell) const;
   bool owns(int region) const { return own_[std::size_t(region)] != 0; }
 
+  const ShellBody* shell_ = nullptr;
   std::vector<char> own_;  // one a region of the shell
   StretchTriangles stretch_;
   BendPatches bend_;
@@ -117,6 +122,7 @@ void Membrane::attach(PrepareContext& context, DeformableBody& body) {
   }
   check_cover(context, *shell);
   const std::vector<Vec3>& rest = shell->rest_nodes();
+  shell_ = shell;
   WallTopology wall;
   if (const std::string wrong = wall.build(rest, shell->wall_triangles()); !wrong.empty()) return error(context, wrong);
   const StretchTriangles::Material material{thickness(), young(), poisson()};
@@ -158,6 +164,14 @@ void Membrane::linearise(const double* x, double* force, BlockMatrix* stiffness,
   const double scale = 1 + (h > 0 ? stiffness_time() / h : 0);
   stretch_.linearise(x, force, stiffness, scale, which);
   bend_.linearise(x, force, stiffness, scale, which, tangent.is("patches"));
+}
+
+bool Membrane::prestrain(const double* u) {
+  if (triangles_.empty()) return false;
+  const double* rest = shell_->rest_nodes().front().data();
+  stretch_.prestrain(rest, u);
+  bend_.prestrain(rest, u);
+  return true;
 }
 
 }  // namespace

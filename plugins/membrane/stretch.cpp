@@ -75,6 +75,7 @@ void StretchTriangles::add(const std::vector<Vec3>& rest, const std::array<int, 
   t.mu = weight * m.young / (2 * (1 + m.poisson));
   t.lambda = weight * m.young * m.poisson / (1 - m.poisson * m.poisson);
   std::fill(std::begin(t.slot), std::end(t.slot), -1);
+  std::fill(std::begin(t.pre), std::end(t.pre), 0.0);
   triangles_.push_back(t);
 }
 
@@ -106,11 +107,31 @@ void StretchTriangles::bind(const BlockMatrix& a, const std::vector<int>& free_o
   }
 }
 
+void StretchTriangles::prestrain(const double* rest, const double* u) {
+  for (Triangle& t : triangles_) {
+    double h[2][2] = {};  // gradient of u in the rest frame, whose axes are F at rest
+    const Stretch s = stretch_of(rest, t.node, t.b);
+    for (int i = 0; i < 3; ++i) {
+      const Eigen::Map<const Vec3> ui(u + 3 * t.node[i]);
+      for (int c = 0; c < 2; ++c) {
+        h[0][c] += s.f0.dot(ui) * t.b[i][c];
+        h[1][c] += s.f1.dot(ui) * t.b[i][c];
+      }
+    }
+    t.pre[0] -= h[0][0];
+    t.pre[1] -= 0.5 * (h[0][1] + h[1][0]);
+    t.pre[2] -= h[1][1];
+  }
+}
+
 void StretchTriangles::linearise(const double* x, double* force, BlockMatrix* stiffness, double scale, Tangent which) const {
   for (const Triangle& t : triangles_) {
     const Stretch s = stretch_of(x, t.node, t.b);
-    const double strain = s.trace - 2, k = t.lambda * strain - 2 * t.mu;
-    double g00 = 2 * t.mu + k * s.i00, g01 = k * s.i01, g11 = 2 * t.mu + k * s.i11;
+    const double strain = s.trace - 2, trace = std::max(s.trace, 1e-9);
+    const double z = (t.mu + t.lambda) * (t.pre[0] + t.pre[2]), d = t.mu * (t.pre[0] - t.pre[2]), o = 2 * t.mu * t.pre[1];
+    const double h = (d * (s.c00 - s.c11) + 2 * o * s.c01) / trace;
+    const double k = t.lambda * strain + z - 2 * t.mu - h / trace;
+    double g00 = 2 * (t.mu + d / trace) + k * s.i00, g01 = 2 * o / trace + k * s.i01, g11 = 2 * (t.mu - d / trace) + k * s.i11;
     const Vec3 p0 = s.f0 * g00 + s.f1 * g01, p1 = s.f0 * g01 + s.f1 * g11;
     for (int i = 0; i < 3; ++i) {
       double* f = force + 3 * t.node[i];
@@ -119,13 +140,16 @@ void StretchTriangles::linearise(const double* x, double* force, BlockMatrix* st
     if (!stiffness) continue;
     const Vec3 r0 = s.f0 * s.i00 + s.f1 * s.i01, r1 = s.f0 * s.i01 + s.f1 * s.i11;
     const Vec3 n = s.f0.cross(s.f1) / std::max(s.det, 1e-30);
-    double spin = (t.mu + t.lambda) * strain / std::max(s.trace, 1e-9);
+    double spin = ((t.mu + t.lambda) * strain + z - h / trace) / trace;
     if (which == Tangent::system) {
       spin = std::max(spin, 0.0);
       keep_positive(g00, g01, g11);
     }
-    Vec3 g[3], p[3];
+    const bool deviator = which == Tangent::exact && (d != 0 || o != 0);
+    const Vec3 y0 = s.f0 * d + s.f1 * o, y1 = s.f0 * o - s.f1 * d;
+    Vec3 g[3], p[3], y[3];
     for (int i = 0; i < 3; ++i) {
+      y[i] = y0 * t.b[i][0] + y1 * t.b[i][1];
       g[i] = r0 * t.b[i][0] + r1 * t.b[i][1];
       p[i] = n.cross(g[i]);
     }
@@ -134,14 +158,17 @@ void StretchTriangles::linearise(const double* x, double* force, BlockMatrix* st
       for (int j = 0; j <= i; ++j, ++slot) {
         if (t.slot[slot] < 0) continue;
         double* out = stiffness->block(t.slot[slot]);
-        const double d = mu * g[i].dot(g[j]);
+        const double hooke = mu * g[i].dot(g[j]);
         const double tension = scale * (t.b[i][0] * (g00 * t.b[j][0] + g01 * t.b[j][1]) + t.b[i][1] * (g01 * t.b[j][0] + g11 * t.b[j][1]));
-        const double across = tension - d;
+        const double across = tension - hooke;
         for (int c = 0; c < 3; ++c) {
           const double gi = mu * g[i][c], gj = lambda * g[j][c], pj = scale * spin * p[j][c], nc = across * n[c];
           for (int r = 0; r < 3; ++r) out[3 * c + r] += gi * g[j][r] + gj * g[i][r] + pj * p[i][r] + nc * n[r];
-          out[4 * c] += d;
+          out[4 * c] += hooke;
         }
+        if (!deviator) continue;
+        const double both = t.b[i][0] * (d * t.b[j][0] + o * t.b[j][1]) + t.b[i][1] * (o * t.b[j][0] - d * t.b[j][1]);
+        Eigen::Map<Mat3>(out, 3, 3) += 2 * scale / trace * (both * (Mat3::Identity() - n * n.transpose()) - (y[i] * g[j].transpose() + g[i] * y[j].transpose() - h * g[i] * g[j].transpose()) / trace);
       }
   }
 }
@@ -150,9 +177,9 @@ double StretchTriangles::energy(const double* x) const {
   double sum = 0;
   for (const Triangle& t : triangles_) {
     const Stretch s = stretch_of(x, t.node, t.b);
-    const double strain = s.trace - 2;
+    const double strain = s.trace - 2 + t.pre[0] + t.pre[2];
     // |e|^2 = tr C - 2 tr S + 2, written without its cancellation: |S - I|^2 with S = (C + det I) / tr S.
-    const double e00 = (s.c00 + s.det) / s.trace - 1, e01 = s.c01 / s.trace, e11 = (s.c11 + s.det) / s.trace - 1;
+    const double e00 = (s.c00 + s.det) / s.trace - 1 + t.pre[0], e01 = s.c01 / s.trace + t.pre[1], e11 = (s.c11 + s.det) / s.trace - 1 + t.pre[2];
     sum += t.mu * (e00 * e00 + 2 * e01 * e01 + e11 * e11) + 0.5 * t.lambda * strain * strain;
   }
   return sum;

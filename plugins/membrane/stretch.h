@@ -11,6 +11,13 @@
 //   + (b_i^T G b_j) n n^T                                            tension against deflection
 // The last two are the geometric stiffness: the step's tangent keeps their part under tension (negative eigenvalues, which
 // pressure in the plane brings, are set to zero), so it is positive semidefinite and still stiff across a tensed wall.
+//
+// Prestrain e0, symmetric, in the triangle's rest frame: e + e0 in place of e. With Z = 2 mu e0 + lambda tr(e0) I = z I + D,
+// D without trace, that adds Z : S to the energy. z adds to lambda tr e in G and to (mu + lambda) tr e in the spin. D : S is
+// h = D : C / tr S in the plane, C = F^T F, so with y_i = F D b_i
+//   G += (2 D - h S^-1) / tr S
+//   second derivative += 2/tr S (b_i^T D b_j) I - 2/(tr S)^2 (y_i g_j^T + g_i y_j^T - h g_i g_j^T + h/2 p_i p_j^T), and n n^T as above.
+// Its part in the plane couples spin and shear, has no definite sign and is small against Hooke's law: the step leaves it out.
 #pragma once
 #include <utility>
 #include <vector>
@@ -30,6 +37,8 @@ class StretchTriangles {
   void bind(const BlockMatrix& a, const std::vector<int>& free_of_node);
   void linearise(const double* x, double* force, BlockMatrix* stiffness, double scale, Tangent which) const;
   double energy(const double* x) const;
+  /// Takes the linear strain of displacement u from the strain. Both 3 values a node, m.
+  void prestrain(const double* rest, const double* u);
 
  private:
   struct Triangle {
@@ -37,6 +46,7 @@ class StretchTriangles {
     int slot[6];      // (0,0) (1,0) (1,1) (2,0) (2,1) (2,2); -1 where a node is held
     double b[3][2];   // rest gradients of the shape functions, 1/m
     double mu, lambda;  // times area and thickness, N m
+    double pre[3];      // e0: 00, 01, 11
   };
   std::vector<Triangle> triangles_;
 };

@@ -3,21 +3,26 @@
 # pressure
 
 Blood pressure inside a closed shell as a constraint on the volumes of its chambers. With V_j the volume of chamber j,
-g_j = dV_j/dq (area-weighted normals, exact for the polyhedron) and p_j its pressure over that of imaging,
+g_j = dV_j/dq (area-weighted normals, exact for the polyhedron),
 
-    force on the wall   sum_j g_j p_j          row   delta = (V - V_rest) / A,   lambda = p A
+    force on the wall   sum_j g_j P_j          row   delta = (V - V_rest) / A,   lambda = p A,   p = P(t + h) - P(t)
 
-A is the mean area of a chamber: a row is then in metres of mean wall displacement, its lambda in newtons. The imaged shape is the
-one at mean pressure, so only the excess over the mean (or over `imaged_at`) loads the wall.
+A is the mean area of a chamber: a row is then in metres of mean wall displacement, its lambda in newtons. The pressure of the last
+step is part of the free motion (DeformableBody::filling), so that collision looks where the wall will be, not where it would
+be without blood; the rows add what changes.
 
-Alone, the pressure follows the pulse: bounds of the row lower = upper = (p(t + h) - p_imaged) A.
+The imaged shape is the one at mean pressure (or at `imaged_at`). The wall is prestressed so that its tension balances
+that pressure there (DeformableBody::prestress, the linear inverse problem), and then bears the whole pressure: without any it
+is slack and somewhat smaller. With prestress="false" the imaged shape is free of stress and P is the excess.
+
+Alone, the pressure follows the pulse: bounds of the row lower = upper = (P(t + h) - P(t)) A.
 
 Fed by a network of vessels, the pressures are unknowns. The network, everything but the chambers eliminated, is Y p = s - Q
 with Q the chambers' dV/dt. Implicit in time, with the volume of blood F of each chamber as state:
 
     V(t + h) - F(t) + h (Y p - s) = 0,         F(t + h) = F(t) - h (Y p - s)
 
-Y = L D L^T (L from the star-mesh shares, unit lower triangular, no cancellation) makes the rows' law diagonal: with B = L^-1
+with s that of pressures counted from P(t). Y = L D L^T (L from the star-mesh shares, unit lower triangular, no cancellation) makes the rows' law diagonal: with B = L^-1
 
     row k   delta = B_k (V - F) / A - c_k lambda_k^feed,   c_k = h D_k / A^2,   p = B^T lambda / A
 
@@ -61,6 +66,8 @@ bool BloodPressure::ready(PrepareContext& context) {
 void BloodPressure::set_feed(ChamberFeed* feed) {
   feed_ = feed;
   for (int c = 0; c < chambers_.count(); ++c) pressure_[std::size_t(c)] = reference(c);
+  prestress_wall(nullptr);
+  fill();
 }
 
 void BloodPressure::reset() {
@@ -71,6 +78,18 @@ void BloodPressure::reset() {
   fluid_ = rest_volume_;
   pressure_.resize(rest_volume_.size());
   for (int c = 0; c < int(pressure_.size()); ++c) pressure_[std::size_t(c)] = reference(c);
+  fill();
+}
+
+/// Puts the pressure of the last step into the coming free motion.
+void BloodPressure::fill() {
+  on->filling.setZero();
+  for (int c = 0; c < chambers_.count(); ++c) {
+    auto& g = gradient_[std::size_t(c)];
+    chambers_.gradient(c, on->q(), g);
+    const double p = pressure(c) - (prestressed_ ? 0 : reference(c));
+    for (std::size_t i = 0; i < g.size(); ++i) on->filling.segment<3>(3 * chambers_.nodes(c)[i]) += p * g[i];
+  }
 }
 
 double BloodPressure::arterial(double h) const {
@@ -81,10 +100,10 @@ double BloodPressure::arterial(double h) const {
 void BloodPressure::prepare_feed(double h) {
   const int n = chambers_.count();
   const double most_compliance = 1e-5 / area_;
-  for (int k = 0; k < n; ++k) {  // pressures count from the reference
-    double s = -mesh_.ground(k) * reference(k);
+  for (int k = 0; k < n; ++k) {  // pressures count from those of the last step
+    double s = -mesh_.ground(k) * pressure(k);
     for (int j = 0; j < n; ++j)
-      if (j != k) s -= mesh_.link(k, j) * (reference(k) - reference(j));
+      if (j != k) s -= mesh_.link(k, j) * (pressure(k) - pressure(j));
     flow_[std::size_t(k)] = s;
   }
   for (int k = 0; k < n; ++k) mesh_.source(k, flow_[std::size_t(k)]);
@@ -113,7 +132,6 @@ void BloodPressure::build(const StepContext& context, ConstraintBuilder& builder
     chambers_.gradient(c, on->q(), gradient_[std::size_t(c)]);
     volume_[std::size_t(c)] = volume(c) - (feed_ ? fluid_[std::size_t(c)] : rest_volume_[std::size_t(c)]);
   }
-  const double load = feed_ ? 0 : (arterial(context.h) - imaged_pressure()) * area_;
   for (int k = 0; k < n; ++k) {
     Row& r = rows_[std::size_t(k)];
     r.row = -1;
@@ -127,7 +145,7 @@ void BloodPressure::build(const StepContext& context, ConstraintBuilder& builder
     } else {
       if (!yields_[std::size_t(k)]) continue;  // pushes on nothing that could move
       violation = volume_[std::size_t(k)] / area_;
-      block.lower = block.upper = load;
+      block.lower = block.upper = (arterial(context.h) - pressure(k)) * area_;
     }
     add_row(builder, k, block, violation);
   }
@@ -163,7 +181,8 @@ void BloodPressure::add_row(ConstraintBuilder& builder, int k, Block block, doub
 void BloodPressure::finish(const StepContext& context, const ConstraintSolution& solution) {
   if (feed_) finish_feed(context, solution);
   else
-    for (double& p : pressure_) p = arterial(context.h);
+    std::fill(pressure_.begin(), pressure_.end(), arterial(context.h));
+  fill();
   const double next = phase_ + context.h * rate_;
   phase_ = next - std::floor(next);
   const double follow = response() > 0 ? 1 - std::exp(-context.h / response()) : 1;
@@ -202,8 +221,8 @@ void BloodPressure::finish_feed(const StepContext& context, const ConstraintSolu
       for (int i = 0; i < n; ++i) w(i, j) -= mesh_.share(k, j) * w(i, k);
   for (int c = 0; c < n; ++c) {
     at(fluid_, c) += context.h * at(flow_, c);
-    at(pressure_, c) = reference(c) + at(volume_, c);
-    at(at_node_, c) += reference(c);
+    at(at_node_, c) += pressure(c);
+    at(pressure_, c) += at(volume_, c);
     at(yielding_, c) = std::max(0.0, w(c, c));
   }
   feed_->settle(context, at_node_.data(), yielding_.data());

@@ -34,6 +34,7 @@ class BloodPressure final : public Constraint {
   Param<Pressure> diastolic{this, {.name = "diastolic", .fallback = "80 mmHg", .min = "10 mmHg", .max = "200 mmHg", .doc = "least pressure of a beat"}};
   Param<Frequency> heart_rate{this, {.name = "heart_rate", .fallback = "70 1/min", .min = "20 1/min", .max = "220 1/min", .doc = "beats"}};
   Param<Pressure> imaged_at{this, {.name = "imaged_at", .fallback = "0 mmHg", .min = "0 mmHg", .max = "300 mmHg", .doc = "pressure at which the shape was imaged; 0: the mean of a beat"}};
+  Param<bool> prestress{this, {.name = "prestress", .fallback = "true", .doc = "the wall balances the pressure of imaging in the imaged shape by a tension of its own, and is slack without pressure; false: its imaged shape is free of stress, and only what exceeds that pressure loads it"}};
   Param<Duration> response{this, {.name = "response", .fallback = "1 s", .min = "0 s", .max = "60 s", .doc = "time in which pressure and rate follow a command"}};
   Param<std::string> regions{this, {.name = "chambers", .fallback = "", .doc = "regions of each chamber, chambers parted by semicolons: \"parent; superior; sac bleb\"; none: one a region with a centreline"}};
 
@@ -70,6 +71,8 @@ class BloodPressure final : public Constraint {
   bool make_chambers(PrepareContext& context);
   bool read_groups(PrepareContext& context, std::vector<std::vector<std::string>>& groups) const;
   void add_row(ConstraintBuilder& builder, int k, Block block, double violation);
+  void prestress_wall(PrepareContext* context);
+  void fill();
   double reference(int chamber) const { return feed_ ? feed_->reference(chamber) : imaged_pressure(); }
   void prepare_feed(double h);
   void finish_feed(const StepContext& context, const ConstraintSolution& solution);
@@ -77,7 +80,7 @@ class BloodPressure final : public Constraint {
   Chambers chambers_;
   PulseWave wave_;
   ChamberFeed* feed_ = nullptr;
-  bool connected_ = false, good_ = false;
+  bool connected_ = false, good_ = false, prestressed_ = false;
   double area_ = 1;
   std::vector<double> rest_volume_;
   std::vector<char> yields_;            ///< has a node that is not held
@@ -91,7 +94,7 @@ class BloodPressure final : public Constraint {
   struct Row {
     int row = -1;
     double conductance = 0;   ///< that its law uses, m3/(s Pa)
-    double feed = 0;          ///< pressure over the reference that would let nothing flow, Pa
+    double feed = 0;          ///< pressure over that of the last step that would let nothing flow, Pa
   };
   std::vector<Row> rows_;
   StarMesh mesh_;

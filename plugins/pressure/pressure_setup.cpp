@@ -104,8 +104,27 @@ bool BloodPressure::make_chambers(PrepareContext& context) {
   yielding_.assign(n * n, 0.0);
   at_node_.assign(n, 0.0);
   mesh_.clear(int(n));
+  prestress_wall(&context);
   reset();
   return true;
+}
+
+/// Where a network feeds the chambers, each has a reference of its own: what a second call adds is the difference alone.
+void BloodPressure::prestress_wall(PrepareContext* context) {
+  if (!prestress()) return;
+  constexpr double good = 1e-8;
+  VecX load = VecX::Zero(3 * on->nodes()), q = load;
+  for (int i = 0; i < on->nodes(); ++i) q.segment<3>(3 * i) = on->rest_nodes()[std::size_t(i)];
+  for (int c = 0; c < chambers_.count(); ++c) {
+    chambers_.gradient(c, q, gradient_[std::size_t(c)]);
+    for (std::size_t i = 0; i < gradient_[std::size_t(c)].size(); ++i)
+      load.segment<3>(3 * chambers_.nodes(c)[i]) += reference(c) * gradient_[std::size_t(c)][i];
+  }
+  const double left = on->prestress(load);
+  prestressed_ = left < good;
+  if (!prestressed_ && context)
+    error(*context, prestress, in_quotes(on->id) + (left == 1 ? " has no wall that could bear the pressure of its image" : " finds no tension that bears the pressure of its image") +
+                                   "; with prestress=\"false\" only the excess over that pressure loads it");
 }
 
 std::vector<CommandInfo> BloodPressure::commands() const {

@@ -141,6 +141,23 @@ TEST(Pressure, BalancesTheWallsSprings) {
   EXPECT_GT(t.pressure->volume(0), 1.005 * t.pressure->rest_volume(0));
 }
 
+TEST(Pressure, SphereOfMembraneSwellsAsLaplaceSays) {
+  // p = 2 sigma t / r, sigma = E / (1 - nu) dr / r: dV / V = 3 p r (1 - nu) / (2 E t) for small p; and over a beat the
+  // amplitude is that of p.
+  constexpr double radius = 0.004, young = 1e6, poisson = 0.45, thickness = 3e-4;
+  test::TestScene t;
+  t.folder.write("meshes/ball.obj", test::obj_text(test::ball(Vec3(0.04, -0.01, 0.02), radius, 3)));
+  t.load(R"(<scene time_step="10 ms"><shell_body id="artery" mesh="meshes/ball.obj" mesh_unit="m">
+    <membrane thickness="0.3 mm" young="1 MPa" poisson="0.45" density="1.1 g/cm3"/></shell_body>
+  <pressure id="p" on="artery" systolic="95 mmHg" diastolic="95 mmHg" imaged_at="93 mmHg"/></scene>)");
+  ASSERT_TRUE(t.s) << t.messages;
+  const auto& p = t.get<BloodPressure>("p");
+  t.run(300);
+  const double swelling = p.volume(0) / p.rest_volume(0) - 1;
+  const double laplace = 3 * 2 * mmHg * radius * (1 - poisson) / (2 * young * thickness);
+  EXPECT_NEAR(swelling, laplace, 0.02 * laplace);
+}
+
 /// Feeds every chamber from one pressure, and joins chambers to each other.
 struct Feed final : ChamberFeed {
   double conductance = 1e-6, joint = 0, pressure = 100 * mmHg, at = 90 * mmHg;
