@@ -31,8 +31,10 @@ matters is that the force of inertia stays small beside the closing force; weigh
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/base/input_error.h"
+#include "core/mechanics/force_model.h"
 #include "core/registry/registry.h"
 #include "core/sim/report.h"
 #include "plugins/clip/clip_applier.h"
@@ -42,6 +44,8 @@ matters is that the force of inertia stays small beside the closing force; weigh
 namespace insula {
 
 void Clip::prepare(PrepareContext& context) {
+  for (const ForceModel* f : children_of<ForceModel>()) f->error(context, "has no effect on a clip, which is rigid");
+  for (const Support* f : children_of<Support>()) f->error(context, "has no effect on a clip, which is rigid");
   try {
     tool_ = read_tool(model());
   } catch (const InputError& e) {
@@ -50,7 +54,7 @@ void Clip::prepare(PrepareContext& context) {
   if (!tool_.clip) return error(context, model, "this tool is no clip: its tool.json has no \"clip\"");
   if (shaft().norm() < 1e-9) return error(context, shaft, "a direction must not be zero");
   if (shaft().cross(flat()).norm() < 1e-6 * shaft().norm()) return error(context, flat, "must not be parallel to the shaft");
-  if (start_opening() > tool_.opening_max) return error(context, start_opening, "the jaws open by no more than " + std::to_string(tool_.opening_max) + " rad");
+  if (start_opening() > tool_.opening_max) return error(context, start_opening, "the jaws open by no more than " + std::to_string(int(tool_.opening_max * 180 / std::numbers::pi)) + " deg");
   pieces_.assign(3, {});
   for (const ConvexPiece& p : tool_.pieces) add_slices(p, pieces_[std::size_t(p.link)]);
   turned_.resize(3);
@@ -160,6 +164,10 @@ void Clip::report(StepReport& out) const {
   s.temporary = tool_.clip->kind.find("temporary") != std::string::npos;
   s.opening = opening_;
   s.force = force_;
+  s.gap = tool_.clip->gap(opening_);
+  s.blade_root = pose_.apply(tool_.clip->blade_line.front());
+  s.blade_tip = pose_.apply(tool_.clip->blade_line.back());
+  s.blade_width = tool_.clip->blade_width;
   s.applications = applications_;
   out.clips.push_back(s);
 }

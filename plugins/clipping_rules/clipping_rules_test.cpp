@@ -90,7 +90,7 @@ TEST_F(ClippingRules, GradesOfSindou) {
   EXPECT_LT(half.neck_open, 0.5);
   EXPECT_EQ(judge(clip(0, -1.1 * artery->model().neck_diameter)).grade, 2);
   EXPECT_EQ(judge(clip(2.4e-3)).grade, 4);
-  EXPECT_EQ(judge(clip(4.0e-3)).grade, 5);
+  EXPECT_EQ(judge(clip(4.8e-3)).grade, 5);
 }
 
 TEST_F(ClippingRules, MoreOfTheSacIsLeftTheHigherTheClip) {

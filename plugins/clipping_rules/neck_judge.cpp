@@ -22,7 +22,7 @@ double distance_to_segment(const Vec3& x, const Vec3& a, const Vec3& b) {
 bool NeckJudge::attach(const ShellBody& vessel) {
   vessel_ = &vessel;
   const VesselModel& m = vessel.model();
-  const int sac = vessel.region("sac"), bleb = vessel.region("bleb");
+  const int sac = vessel.region("sac"), bleb = vessel.region("bleb"), neck = vessel.region("neck");
   if (!(m.neck_diameter > 0) || sac < 0) return false;
   up_ = m.neck_normal;
   std::vector<double> area(m.wall.vertices.size(), 0.0);
@@ -33,20 +33,22 @@ bool NeckJudge::attach(const ShellBody& vessel) {
   ring_.clear();
   sac_.clear();
   bleb_.clear();
+  held_.clear();
   ring_area_ = sac_area_ = 0;
   for (int i = 0; i < int(area.size()); ++i) {
     const Vec3 d = m.wall.vertices[std::size_t(i)] - m.neck_centre;
     const double height = d.dot(up_), beside = (d - height * up_).norm();
     if (std::abs(height) < ring_half_width && beside < m.neck_diameter) {
-      ring_.push_back({i, area[std::size_t(i)]});
+      ring_.push_back({i, area[std::size_t(i)], height});
       ring_area_ += area[std::size_t(i)];
     }
     const int r = m.vertex_region[std::size_t(i)];
     if (r == sac || r == bleb) {
-      sac_.push_back({i, area[std::size_t(i)]});
+      sac_.push_back({i, area[std::size_t(i)], height});
       sac_area_ += area[std::size_t(i)];
     }
-    if (r == bleb) bleb_.push_back(i);
+    if (r == bleb) bleb_.push_back({i, area[std::size_t(i)], height});
+    if (r == sac || r == bleb || r == neck) held_.push_back({i, area[std::size_t(i)], height});
   }
   return ring_area_ > 0 && sac_area_ > 0;
 }
@@ -66,8 +68,14 @@ NeckJudgement NeckJudge::judge(const std::vector<ClipState>& clips, bool sealed)
     ++out.clips;
     out.gap = std::min(out.gap, c.gap);
     const Vec3 along = (c.blade_tip - c.blade_root).normalized();
-    // The blades nearest to the sac's base decide how much of it is left.
-    const double h = (0.5 * (c.blade_root + c.blade_tip) - centre).dot(up_) - 0.5 * c.blade_width;
+    // Where the wall between the blades was at rest; the blades nearest to the sac's base decide how much of it is left.
+    double sum = 0, share = 0;
+    for (const Patch& p : held_)
+      if (distance_to_segment(at(p.node), c.blade_root, c.blade_tip) < 0.5 * c.blade_width + 0.3e-3) {
+        sum += p.area * p.height;
+        share += p.area;
+      }
+    const double h = share > 0 ? sum / share - 0.5 * c.blade_width : 1e9;
     height = out.clips == 1 ? h : std::min(height, h);
     double reach = -1e9;
     for (const Patch& p : ring_) reach = std::max(reach, along.dot(at(p.node)));
@@ -86,19 +94,17 @@ NeckJudgement NeckJudge::judge(const std::vector<ClipState>& clips, bool sealed)
     if (!closed) out.neck_open += p.area / ring_area_;
   }
   for (const Patch& p : sac_)
-    if ((at(p.node) - centre).dot(up_) < height) out.sac_open += p.area / sac_area_;
+    if (p.height > 0 && p.height < height) out.sac_open += p.area / sac_area_;
   std::size_t lobe = 0;
-  for (int v : bleb_) lobe += (at(v) - centre).dot(up_) < height;
+  for (const Patch& p : bleb_) lobe += p.height < height;
   constexpr double trace = 0.1;  // of ring or sac: below it nothing is left
   if (!sealed) {
     out.sac_open = 1;
     out.grade = 5;
   } else if (out.sac_open >= 0.75) {
     out.grade = 5;
-  } else if (!bleb_.empty() && 2 * lobe > bleb_.size() && out.sac_open < 0.5) {
-    out.grade = 3;
   } else if (out.sac_open > trace) {
-    out.grade = 4;
+    out.grade = !bleb_.empty() && 2 * lobe > bleb_.size() && out.sac_open < 0.5 ? 3 : 4;
   } else {
     out.grade = out.neck_open > 0.5 ? 2 : out.neck_open > trace ? 1 : 0;
   }

@@ -5,7 +5,8 @@
 // of the sac, IV less than three quarters of the sac, V more. Here 0 stands for nothing left.
 //   neck      the ring of wall vertices at the neck plane; a vertex is left open when it is farther from the blades than
 //             half their width and `margin`
-//   sac       the share of the sac's wall that lies between the neck and the blades
+//   sac       the share of the sac's wall that lies between the neck and the blades; as a clipped dome leans to any side, this
+//             is told by where the wall that the blades hold was at rest
 //   lobe      the bleb lies on the near side of the blades while most of the sac does not
 #pragma once
 #include <vector>
@@ -37,11 +38,12 @@ class NeckJudge {
  private:
   struct Patch {
     int node;
-    double area;  ///< at rest, m2
+    double area;    ///< at rest, m2
+    double height;  ///< at rest, above the neck plane, m
   };
   const ShellBody* vessel_ = nullptr;
   std::vector<Patch> ring_, sac_;
-  std::vector<int> bleb_;
+  std::vector<Patch> bleb_, held_;  ///< held_: all that blades may hold, neck included
   double ring_area_ = 0, sac_area_ = 0;
   Vec3 up_ = Vec3::UnitZ();  ///< towards the dome
 };

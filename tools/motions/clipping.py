@@ -1,0 +1,253 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Writes the scripted motions of exercises 3 and 4 from the artery's own neck and centrelines.
+
+    python3 tools/motions/clipping.py [OUTPUT_FOLDER]
+
+3_clipping_steady       an angled clip across the neck, released, the field left
+3_clipping_careless     a straight clip across the inferior branch: the branch closes
+4_rupture_steady        the dome ruptures; suction; temporary clip on the parent artery; neck clipped; temporary clip removed
+4_rupture_late          the same rupture, but nobody clips
+A clip's place is given by where its blades' middle is, where they point to and in which direction they close; the applier's
+pose follows from the clip's own grip. The same input gives the same bytes.
+"""
+import json
+import math
+import pathlib
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+CASE = "anterior_superior"
+OUT_OF_FIELD = 32.0   # mm along the applier's shaft
+VIEW = (0.93, 0.25, 0.27)  # towards the surgeon
+
+
+def add(a, b, f=1.0):
+    return [x + f * y for x, y in zip(a, b)]
+
+
+def dot(a, b):
+    return sum(x * y for x, y in zip(a, b))
+
+
+def cross(a, b):
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+
+def unit(a):
+    n = math.sqrt(dot(a, a))
+    return [x / n for x in a]
+
+
+def across(a, n):
+    """The part of a perpendicular to n, unit."""
+    return unit(add(a, n, -dot(a, n)))
+
+
+def quaternion(x, y, z):
+    """w x y z of the rotation whose columns are x, y, z."""
+    m = [[x[i], y[i], z[i]] for i in range(3)]
+    t = m[0][0] + m[1][1] + m[2][2]
+    q = [math.sqrt(max(0.0, 1 + t)), math.sqrt(max(0.0, 1 + 2 * m[0][0] - t)),
+         math.sqrt(max(0.0, 1 + 2 * m[1][1] - t)), math.sqrt(max(0.0, 1 + 2 * m[2][2] - t))]
+    q[1] = math.copysign(q[1], m[2][1] - m[1][2])
+    q[2] = math.copysign(q[2], m[0][2] - m[2][0])
+    q[3] = math.copysign(q[3], m[1][0] - m[0][1])
+    n = math.sqrt(dot(q, q))
+    return [v / n for v in q]
+
+
+class Clip:
+    """A clip of the library: its grip, the middle of its blades and the blades' direction, in its own frame (mm)."""
+
+    def __init__(self, name):
+        data = json.loads((ROOT / "meshes/clips" / name / "tool.json").read_text())["clip"]
+        self.name = name
+        self.grip = data["grip"]["position"]
+        line = data["blade_line"]
+        self.middle = [0.5 * (a + b) for a, b in zip(line[0], line[-1])]
+        self.inward = unit(add(line[-1], line[0], -1))  # from the root to the tip
+
+    def applier_pose(self, middle, inward, closing):
+        """Pose of the applier (mm, quaternion, shaft direction) that brings the blades' middle there."""
+        inward = across(inward, closing)
+        # The clip's frame: x closes, the blades' direction is `self.inward` in its y-z plane.
+        side = cross(closing, inward)
+        c, s = -self.inward[2], self.inward[1]  # inward = (0, s, -c)
+        y = add([s * v for v in inward], side, c)
+        z = add([-c * v for v in inward], side, s)
+        rotate = lambda v: add(add([v[0] * k for k in closing], y, v[1]), z, v[2])
+        tip = add(middle, rotate(self.middle), -1)
+        return add(tip, rotate(self.grip)), quaternion(closing, y, z), z
+
+
+class Hand:
+    def __init__(self, side):
+        self.side, self.rows, self.t = side, [], 0.0
+
+    def key(self, seconds, position, q, button1=0, button2=0):
+        self.t = round(self.t + seconds, 4)
+        self.rows.append((self.t, f"{self.t:g},{self.side}," + ",".join(f"{v / 1000:.6f}" for v in position) + "," +
+                          ",".join(f"{v:.6f}" for v in q) + f",{button1},{button2}"))
+
+
+class Script:
+    def __init__(self):
+        self.left, self.right, self.commands = Hand("left"), Hand("right"), []
+
+    def command(self, time, verb, argument):
+        self.commands.append((time, f"{time:g},command,{verb},{argument}"))
+
+    def write(self, path):
+        rows = sorted(self.left.rows + self.right.rows + self.commands, key=lambda r: r[0])
+        path.write_text("time_s,hand,px_m,py_m,pz_m,qw,qx,qy,qz,button1,button2\n" + "\n".join(r[1] for r in rows) + "\n")
+
+
+def place_clip(hand, pose, approach=2.5, close=1.6, wait=0.6, open_at=OUT_OF_FIELD):
+    """From outside the field: go in, open the blades `open_at` mm before the place, let the spring close, let go, draw back."""
+    position, q, shaft = pose
+    outside = add(position, shaft, OUT_OF_FIELD)
+    opened = add(position, shaft, open_at)
+    near = add(position, shaft, 3)
+    hand.key(0.3, outside, q)
+    if open_at < OUT_OF_FIELD:
+        hand.key(approach, opened, q)
+    hand.key(0.05, opened, q, 1)
+    hand.key(0.5, opened, q, 1)
+    hand.key(approach if open_at == OUT_OF_FIELD else 0.6, near, q, 1)
+    hand.key(0.8, position, q, 1)
+    hand.key(0.3, position, q, 1)
+    hand.key(0.02, position, q)
+    hand.key(close, position, q)
+    hand.key(0.02, position, q, 0, 1)
+    hand.key(0.2, position, q, 0, 1)
+    hand.key(0.02, position, q)
+    hand.key(wait, position, q)
+    hand.key(0.8, add(position, shaft, 4), q)
+    hand.key(1.5, outside, q)
+
+
+def take_clip(hand, pose, approach=2.5):
+    """Back onto a clip in the field: grip it, open, draw out."""
+    position, q, shaft = pose
+    outside = add(position, shaft, OUT_OF_FIELD)
+    hand.key(0.3, outside, q)
+    hand.key(approach, add(position, shaft, 2), q)
+    hand.key(0.6, position, q)
+    hand.key(0.3, position, q)
+    hand.key(0.02, position, q, 0, 1)
+    hand.key(0.2, position, q, 0, 1)
+    hand.key(0.02, position, q)
+    hand.key(0.4, position, q)
+    hand.key(0.02, position, q, 1)
+    hand.key(0.5, position, q, 1)
+    hand.key(0.8, add(position, shaft, 6), q, 1)
+    hand.key(1.2, outside, q, 1)
+    hand.key(0.02, outside, q)
+
+
+class Field:
+    def __init__(self, case):
+        self.vessel = json.loads((ROOT / "meshes/arteries" / case / "vessel.json").read_text())
+        self.view = unit(VIEW)
+
+    def line(self, name):
+        return next(c for c in self.vessel["centrelines"] if c["name"] == name)["points"]
+
+    def on_line(self, name, share):
+        """Point and direction of a centreline at a share of its length."""
+        points = self.line(name)
+        k = min(len(points) - 2, max(1, int(share * (len(points) - 1))))
+        return points[k], unit(add(points[k + 1], points[k - 1], -1))
+
+    def neck(self, clip, lift, slide):
+        """Blades across the neck: they come from the surgeon's side, perpendicular to the dome's axis."""
+        up = unit(self.vessel["neck"]["normal"])
+        outward = across(self.view, up)
+        middle = add(add(self.vessel["neck"]["centre"], up, lift), outward, -slide)
+        return clip.applier_pose(middle, [-v for v in outward], cross(up, outward))
+
+    def branch(self, clip, name, share, past, square=1.0):
+        """Blades across a branch, tips `past` beyond its axis; square 1: at right angles, 0: along the line of sight."""
+        point, along = self.on_line(name, share)
+        outward = unit(add([square * v for v in across(self.view, along)], self.view, 1 - square))
+        middle = add(point, outward, -past)
+        return clip.applier_pose(middle, [-v for v in outward], unit(cross(along, outward)))
+
+
+def suction_poses(field):
+    """The suction tube beside the field, and dipped into it below the dome."""
+    shaft = unit([0.85, -0.35, 0.39])
+    x = across([0, -0.5, 0.87], shaft)
+    q = quaternion(x, cross(shaft, x), shaft)
+    bottom, _ = field.on_line("inferior", 0.25)
+    low = add(bottom, shaft, 5.0)
+    return add(low, shaft, 28), low, q
+
+
+def exercise_3(folder):
+    field = Field(CASE)
+    steady = Script()
+    steady.command(0.1, "ask", "applier load angled")
+    place_clip(steady.right, field.neck(Clip("angled"), -1.9, 1.7))
+    steady.right.key(8, steady_outside(steady), last_q(steady))
+    steady.write(folder / "3_clipping_steady.csv")
+
+    careless = Script()
+    careless.command(0.1, "ask", "applier load straight")
+    place_clip(careless.right, field.branch(Clip("straight"), "inferior", 0.45, 1.0))
+    careless.right.key(12, steady_outside(careless), last_q(careless))
+    careless.write(folder / "3_clipping_careless.csv")
+
+
+def steady_outside(script):
+    return [1000 * float(v) for v in script.right.rows[-1][1].split(",")[2:5]]
+
+
+def last_q(script):
+    return [float(v) for v in script.right.rows[-1][1].split(",")[5:9]]
+
+
+def exercise_4(folder):
+    field = Field(CASE)
+    outside, low, q = suction_poses(field)
+
+    def suction(script, seconds):
+        script.left.key(0, outside, q)
+        script.left.key(1.5, outside, q)
+        script.left.key(2.0, low, q, 1)
+        script.left.key(seconds, low, q, 1)
+        script.left.key(2.0, outside, q, 0)
+
+    script = Script()
+    script.command(1, "ask", "bleeding rupture")
+    script.command(0.1, "ask", "applier load temporary_straight")
+    temporary = field.branch(Clip("temporary_straight"), "parent", 0.78, 2.4, 0.25)
+    place_clip(script.right, temporary, approach=2.0, open_at=9)
+    away = add(steady_outside(script), field.view, 30)
+    script.right.key(0.8, away, last_q(script))
+    script.command(round(script.right.t + 0.2, 3), "ask", "applier load angled")
+    script.right.key(0.5, away, last_q(script))
+    place_clip(script.right, field.neck(Clip("angled"), -1.9, 1.7))
+    take_clip(script.right, temporary)
+    script.right.key(8, steady_outside(script), last_q(script))
+    suction(script, script.right.t - 10)
+    script.write(folder / "4_rupture_steady.csv")
+
+    late = Script()
+    late.command(1, "ask", "bleeding rupture")
+    suction(late, 12)
+    pose = field.neck(Clip("angled"), -1.9, 1.7)
+    late.right.key(0, add(pose[0], pose[2], OUT_OF_FIELD), pose[1])
+    late.right.key(310, add(pose[0], pose[2], OUT_OF_FIELD), pose[1])
+    late.write(folder / "4_rupture_late.csv")
+
+
+def main():
+    folder = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "scenes" / "training"
+    folder.mkdir(parents=True, exist_ok=True)
+    exercise_3(folder)
+    exercise_4(folder)
+
+
+main()

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Chooses how a blade is swept through a strand: from which side, how deep, and with how much room around the tool.
+#pragma once
+#include <array>
+#include <vector>
+
+#include "core/sim/report.h"
+#include "tools/motions/clearance.h"
+#include "tools/motions/hands.h"
+
+namespace insula {
+
+/// A ball of the tool's shape for clearance, tool frame.
+struct Ball {
+  Vec3 at;
+  double radius;
+};
+
+struct Field {
+  Vec3 centre, outward;        ///< the sac's middle, and the way to the surgeon
+  Vec3 lean;                   ///< usual direction of the shaft
+  const Clearance *vessel, *others;
+};
+
+struct Sweep {
+  int strand = -1;
+  Vec3 shaft, across, middle;  ///< the tip passes `middle` along `across`
+  double half = 0;             ///< to both sides, m
+  double vessel = 0, others = 0;  ///< least room on the way, m
+  double score = -1e9;
+  Pose pose(double offset) const { return tool_pose(middle + offset * across, shaft, across); }
+};
+
+class SweepPlanner {
+ public:
+  SweepPlanner(const ToolModel& tool, const Field& field, double reach, double cut_length);
+  /// The best sweep through one of the strands that stand; tries: how often each was swept in vain.
+  Sweep best(const std::vector<StrandState>& strands, const std::vector<int>& tries, const Vec3& tip) const;
+  /// Least room of the whole tool at a pose, m.
+  double room(const Pose& pose, double* vessel = nullptr, double* others = nullptr) const;
+  /// Least room on the straight way between two poses, m.
+  double room(const Pose& from, const Pose& to) const;
+
+ private:
+  /// How far the blade travels through a strand in a sweep, over what parts it.
+  double cutting(const Sweep& sweep, const StrandState& strand) const;
+  std::vector<Ball> balls_;
+  std::vector<std::array<Vec3, 2>> edges_;
+  Field field_;
+  double reach_, cut_length_;
+};
+
+}  // namespace insula
