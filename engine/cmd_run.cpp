@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "core/mechanics/shell_body.h"
 #include "core/mechanics/soft_body.h"
 #include "engine/headless.h"
 #include "engine/report_writer.h"
@@ -16,14 +17,16 @@ namespace {
 void export_bodies(const Simulation& simulation, const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder);
   for (const Body* b : simulation.bodies()) {
-    const auto* soft = dynamic_cast<const SoftBody*>(b);
-    if (!soft) continue;
+    const auto* body = dynamic_cast<const DeformableBody*>(b);
+    if (!body) continue;
     std::vector<Vec3> nodes, moved;
-    for (int i = 0; i < soft->nodes(); ++i) {
-      nodes.push_back(soft->q().segment<3>(3 * i));
-      moved.push_back(nodes.back() - soft->rest().nodes[std::size_t(i)]);
+    for (int i = 0; i < body->nodes(); ++i) {
+      nodes.push_back(body->q().segment<3>(3 * i));
+      moved.push_back(nodes.back() - body->rest_nodes()[std::size_t(i)]);
     }
-    write_vtu(folder / (soft->id + ".vtu"), nodes, soft->rest().tets, moved);
+    const auto file = folder / (body->id + ".vtu");
+    if (const auto* soft = dynamic_cast<const SoftBody*>(body)) write_vtu(file, nodes, soft->rest().tets, moved);
+    else if (const auto* shell = dynamic_cast<const ShellBody*>(body)) write_vtu(file, nodes, shell->rest().triangles, moved);
   }
 }
 

@@ -42,12 +42,14 @@ void ContactSelection::select(std::vector<Proximity>& all, const SelectionSettin
   for (int i = 0; i < int(all.size()); ++i) {
     const Proximity& x = all[std::size_t(i)];
     double rank = x.gap;
+    bool known = false;
     for (const Known& k : last_)
       if (same(k, x)) {
+        known = true;
         rank -= settings.advantage * (x.vertex >= 0 ? 1 : 1 - std::sqrt((k.local - x.local).squaredNorm() / spacing2));
         break;
       }
-    order_.push_back({rank, i});
+    order_.push_back({rank, i, known});
   }
   std::sort(order_.begin(), order_.end(), [](const Order& a, const Order& b) { return a.rank != b.rank ? a.rank < b.rank : a.index < b.index; });
 
@@ -56,6 +58,8 @@ void ContactSelection::select(std::vector<Proximity>& all, const SelectionSettin
     if (int(kept_.size()) >= settings.max_contacts) break;
     const Proximity& x = all[std::size_t(o.index)];
     bool keep = true;
+    // A wall's contacts stand still; those at the limit of the spacing must not flicker.
+    const double apart2 = settings.both_ends && o.known ? 0.81 * spacing2 : spacing2;
     int of_piece = 0;
     for (const Proximity& k : kept_) {
       if (k.piece == x.piece && x.piece >= 0) ++of_piece;
@@ -64,14 +68,14 @@ void ContactSelection::select(std::vector<Proximity>& all, const SelectionSettin
       // Tissue finds the same place from both sides, with opposite normals.
       bool alike = x.vertex >= 0 && k.side != x.side ? cosine < -cos40 : cosine > cos40;
       if (settings.both_ends && alike) {
-        alike = k.side == x.side && (other_end(k) - other_end(x)).squaredNorm() < spacing2;
+        alike = k.side == x.side && (other_end(k) - other_end(x)).squaredNorm() < apart2;
       } else if (settings.both_ends && cosine < -cos40 && k.side == x.side) {
-        if ((k.point - other_end(x)).squaredNorm() < spacing2 && (other_end(k) - x.point).squaredNorm() < spacing2) {
+        if ((k.point - other_end(x)).squaredNorm() < apart2 && (other_end(k) - x.point).squaredNorm() < apart2) {
           keep = false;
           break;
         }
       }
-      if (alike && (k.point - x.point).squaredNorm() < spacing2) {
+      if (alike && (k.point - x.point).squaredNorm() < apart2) {
         keep = false;
         break;
       }

@@ -40,6 +40,7 @@ class ContactSelection {
   struct Order {
     double rank;
     int index;
+    bool known;
   };
   std::vector<Known> last_, next_;
   std::vector<Order> order_;

@@ -97,7 +97,7 @@ void SelfCollider::near(const CollisionMesh& mesh, const SelfContactSettings& se
                         std::vector<Proximity>& out) {
   const int v = samples_[sample];
   const bool was = close_[side][sample] != 0;
-  const double range = was ? std::max(settings.alarm + settings.thickness, settings.max_depth) : settings.alarm + settings.thickness;
+  const double range = was ? std::max(1.2 * settings.alarm + settings.thickness, settings.max_depth) : settings.alarm + settings.thickness;
   double& clear = clear_[side][sample];
   clear -= 2 * moved_;
   if (!was && clear > range + free_) return;
@@ -126,7 +126,7 @@ void SelfCollider::near(const CollisionMesh& mesh, const SelfContactSettings& se
     const Vec3 c = w[0] * p + w[1] * q + w[2] * r;
     const double d2 = (x - c).squaredNorm();
     any2 = std::min(any2, d2);
-    if (agree > -facing || d2 > limit2 || (d2 == limit2 && best >= 0 && tri > best)) return;
+    if (agree > (was ? 0.0 : -facing) || d2 > limit2 || (d2 == limit2 && best >= 0 && tri > best)) return;
     limit2 = d2;
     best = tri;
     bary = w;
@@ -147,7 +147,7 @@ void SelfCollider::near(const CollisionMesh& mesh, const SelfContactSettings& se
   c.point = point;
   if (distance > 1e-6) {
     // Beside it rather than over it: something nearer was no partner.
-    if (std::abs(d.dot(mesh.face_normal(best))) < 0.6 * distance) return;
+    if (std::abs(d.dot(mesh.face_normal(best))) < (was ? 0.5 : 0.6) * distance) return;
     c.normal = (crossed ? Vec3(-d) : d) / distance;
   } else {
     c.normal = free_side;
@@ -156,7 +156,9 @@ void SelfCollider::near(const CollisionMesh& mesh, const SelfContactSettings& se
   if (crossed && (distance > settings.max_depth || (side == outer && !was))) return;
   c.gap = (crossed ? -distance : distance) - settings.thickness;
   const double approach = c.normal.dot(mesh.free(v) - mesh.free_at(best, bary));
-  if (c.gap > settings.alarm && c.gap + approach > settings.alarm) return;
+  // What had a contact keeps it a little longer, lest rows come and go while nothing moves.
+  const double alarm = was ? 1.2 * settings.alarm : settings.alarm;
+  if (c.gap > alarm && c.gap + approach > alarm) return;
   close_[side][sample] = 1;
   c.start_gap = std::max(c.gap, -settings.max_recovery);
   out.push_back(c);

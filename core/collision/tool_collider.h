@@ -56,7 +56,6 @@ class ToolCollider {
   void reset();
   /// When in the last detect's step a piece first touched on its free way, moving inward; 1: none did.
   double touch_time() const { return touch_time_; }
-  const RoundedPiece& piece(int i) const { return pieces_[std::size_t(i)]; }
   int touching_piece() const { return touching_piece_; }  ///< the first to touch, -1: none
 
  private:

@@ -66,6 +66,8 @@ class Constraint : public Component {
   virtual void detect(const StepContext&) {}
   /// Stage 3: add rows.
   virtual void build(const StepContext& context, ConstraintBuilder& builder) = 0;
+  /// Whether build ever adds a row; false: it acts between the steps alone (a flow network, a bleeding).
+  virtual bool adds_rows() const { return true; }
   /// After stage 5: read own lambda, wear, break, emit events.
   virtual void finish(const StepContext&, const ConstraintSolution&) {}
   /// Stage 6: add own numbers to the report.

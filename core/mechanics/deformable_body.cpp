@@ -24,6 +24,7 @@ void DeformableBody::connect(PrepareContext& context) {
   for (std::size_t i = 0; i < n; ++i)
     if (!held_[i]) free_[i] = free_count_++;
 
+  const int errors_before = context.diagnostics.errors();
   for (ForceModel* f : forces_) f->attach(context, *this);
   std::vector<std::pair<int, int>> all, pairs;
   for (ForceModel* f : forces_) f->couplings(all, Tangent::system);
@@ -48,7 +49,9 @@ void DeformableBody::connect(PrepareContext& context) {
   }
   for (std::size_t i = 0; i < n; ++i)
     if (!held_[i] && !(mass_[i] > 0)) {
-      error(context, "node " + std::to_string(i) + " has no mass; a force model with a density is needed");
+      // A force model that said what is wrong with it has given no mass; once is enough.
+      if (context.diagnostics.errors() == errors_before)
+        error(context, "node " + std::to_string(i) + " has no mass; a force model with a density is needed");
       return;
     }
   solver_ = std::make_unique<BlockCholesky>();

@@ -14,6 +14,8 @@ namespace insula {
 
 class ShellBody final : public DeformableBody {
  public:
+  static constexpr std::string_view kind_name = "shell_body";  ///< in messages about references to one
+
   Param<File> vessel{this, {.name = "vessel", .fallback = "", .doc = "vessel.json: wall surface with its regions, caps and centrelines"}};
   Param<File> mesh{this, {.name = "mesh", .fallback = "", .doc = "plain surface file instead of a vessel"}};
   Param<LengthUnit> mesh_unit{this, {.name = "mesh_unit", .fallback = "mm", .doc = "unit of length of the surface file"}};

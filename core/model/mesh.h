@@ -31,6 +31,9 @@ TriMesh read_surface(const std::filesystem::path& file, double metres_per_unit);
 /// Writes .vtu (ASCII or appended binary) with optional point vectors; throws InputError when it cannot be written.
 void write_vtu(const std::filesystem::path& file, const std::vector<Vec3>& nodes,
                const std::vector<std::array<int, 4>>& tets, const std::vector<Vec3>& displacement);
+/// The same for a surface: triangles instead of tetrahedra.
+void write_vtu(const std::filesystem::path& file, const std::vector<Vec3>& nodes,
+               const std::vector<std::array<int, 3>>& triangles, const std::vector<Vec3>& displacement);
 
 /// Boundary triangles of a tetrahedral mesh, outward, in order of tetrahedra.
 std::vector<std::array<int, 3>> boundary_triangles(const TetMesh& mesh);

@@ -2,6 +2,10 @@
 // Tetrahedral meshes: the same mesh from every format, and what is refused.
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <random>
 
@@ -174,6 +178,45 @@ TEST(WriteVtu, IsReadBackBitForBit) {
   const TetMesh read = read_tet_mesh(file, 1);
   EXPECT_EQ(read.nodes, mesh.nodes);
   EXPECT_EQ(read.tets, mesh.tets);
+}
+
+TEST(WriteVtu, OfASurfaceHasTrianglesAndKeepsEveryBit) {
+  const test_files::TempFolder folder;
+  const std::vector<Vec3> nodes{{0.1, 0, 0}, {1.0 / 3, 0, 0}, {0, 1, 0}, {0, 0, 1e-9}};
+  const std::vector<std::array<int, 3>> triangles{{0, 1, 2}, {0, 2, 3}};
+  const auto file = folder.path() / "shell.vtu";
+  write_vtu(file, nodes, triangles, std::vector<Vec3>(4, Vec3(1, 2, 3)));
+  std::ifstream in(file, std::ios::binary);
+  const std::string text((std::istreambuf_iterator<char>(in)), {});
+  EXPECT_NE(text.find("NumberOfPoints=\"4\" NumberOfCells=\"2\""), std::string::npos);
+  // Appended arrays in order, each after its length: displacement, points, connectivity, offsets, types.
+  std::size_t at = text.find("encoding=\"raw\">");
+  ASSERT_NE(at, std::string::npos);
+  at = text.find('_', at) + 1;
+  const auto next = [&] {
+    std::uint64_t n = 0;
+    std::memcpy(&n, text.data() + at, sizeof n);
+    const std::string bytes = text.substr(at + sizeof n, std::size_t(n));
+    at += sizeof n + std::size_t(n);
+    return bytes;
+  };
+  EXPECT_EQ(next().size(), 12 * sizeof(double));
+  const std::string points = next();
+  ASSERT_EQ(points.size(), 12 * sizeof(double));
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(std::memcmp(points.data() + 24 * i, nodes[i].data(), 24), 0);
+  const std::string corners = next(), ends = next();
+  ASSERT_EQ(corners.size(), 6 * sizeof(std::int64_t));
+  for (std::size_t i = 0; i < 6; ++i) {
+    std::int64_t v = 0;
+    std::memcpy(&v, corners.data() + 8 * i, 8);
+    EXPECT_EQ(v, triangles[i / 3][i % 3]);
+  }
+  std::int64_t end = 0;
+  ASSERT_EQ(ends.size(), 16u);
+  std::memcpy(&end, ends.data() + 8, 8);
+  EXPECT_EQ(end, 6);
+  EXPECT_EQ(next(), std::string(2, '\5'));  // VTK_TRIANGLE
+  EXPECT_THROW(read_tet_mesh(file, 1), InputError);
 }
 
 TEST(WriteVtu, SaysWhenItCannot) {

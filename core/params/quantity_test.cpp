@@ -41,8 +41,10 @@ TEST(Quantity, EveryUnit) {
       {Speed::units(), "2 m/s", 2}, {Speed::units(), "2 cm/s", 2e-2}, {Speed::units(), "2 mm/s", 2e-3},
       {Acceleration::units(), "9.81 m/s2", 9.81}, {Acceleration::units(), "2 mm/s2", 2e-3},
       {AreaDensity::units(), "2 1/m2", 2}, {AreaDensity::units(), "2 1/cm2", 2e4}, {AreaDensity::units(), "2 1/mm2", 2e6},
+      {SurfaceMass::units(), "2 kg/m2", 2}, {SurfaceMass::units(), "2 g/cm2", 20},
+      {FoundationModulus::units(), "2 N/m3", 2}, {FoundationModulus::units(), "2 kPa/mm", 2e6}, {FoundationModulus::units(), "2 N/mm3", 2e9},
       {FlowRate::units(), "2 m3/s", 2}, {FlowRate::units(), "2 ml/s", 2e-6}, {FlowRate::units(), "60 ml/min", 1e-6},
-      {Viscosity::units(), "2 Pa s", 2}, {Viscosity::units(), "3.5 mPa s", 3.5e-3},
+      {Viscosity::units(), "2 Pa s", 2}, {Viscosity::units(), "3.5 mPa s", 3.5e-3}, {Viscosity::units(), "2 Pas", 2}, {Viscosity::units(), "2 mPas", 2e-3},
       {Scalar::units(), "0.45", 0.45},
   };
   for (const auto& c : cases) {
@@ -56,7 +58,8 @@ TEST(Quantity, EveryUnit) {
 TEST(Quantity, EveryListedUnitIsCoveredAndPositive) {
   for (const auto units : {Length::units(), Area::units(), Duration::units(), Frequency::units(), Rate::units(), Mass::units(), Density::units(),
                            Force::units(), Torque::units(), Pressure::units(), Stiffness::units(), AngularStiffness::units(), Damping::units(),
-                           Angle::units(), Speed::units(), Acceleration::units(), AreaDensity::units(), FlowRate::units(), Viscosity::units()}) {
+                           Angle::units(), Speed::units(), Acceleration::units(), AreaDensity::units(), SurfaceMass::units(),
+                           FoundationModulus::units(), FlowRate::units(), Viscosity::units()}) {
     ASSERT_FALSE(units.empty());
     EXPECT_EQ(units.front().to_si, 1.0) << units.front().symbol;
     for (const auto& u : units) {

@@ -140,6 +140,20 @@ void check_force_model(const std::filesystem::path& scene, const std::string& el
       EXPECT_GE(m->energy(x.data()), 0);
     }
     EXPECT_GE(m->stiffness_damping(), 0);
+    // The same laws about another natural shape.
+    const VecX moved = 0.5 * (deformed(*body, 0.1, 4) - rest);
+    const VecX before = bench.force(rest);
+    if (!m->prestrain(moved.data())) continue;
+    EXPECT_GT((bench.force(rest) - before).lpNorm<Eigen::Infinity>(), 1e-3 * reference) << "a prestrain gives no force at rest";
+    for (std::uint64_t seed = 5; seed <= 6; ++seed) {
+      SCOPED_TRACE("prestrained, deformed state " + std::to_string(seed));
+      m->reset();
+      check_state(bench, deformed(*body, 0.1, seed), seed);
+    }
+    const VecX back = -moved;
+    m->prestrain(back.data());
+    m->reset();
+    EXPECT_LT((bench.force(rest) - before).lpNorm<Eigen::Infinity>(), 1e-10 * reference) << "prestrains do not add up";
   }
   EXPECT_GT(found, 0) << "its example holds no <" << element << ">";
 }

@@ -76,7 +76,7 @@ class RowBench {
  private:
   static VecX free_motion(Body& body) {
     VecX dq = VecX::Zero(3 * body.blocks());
-    if (auto* soft = dynamic_cast<SoftBody*>(&body)) {
+    if (auto* soft = dynamic_cast<DeformableBody*>(&body)) {
       for (int i = 0; i < soft->nodes(); ++i) {
         MaterialPoint p;
         p.body = soft;
@@ -120,7 +120,7 @@ class RowBench {
 /// Moves every body along dq, once.
 void move(Simulation& s, const std::vector<VecX>& dq, double scale) {
   for (std::size_t b = 0; b < s.bodies().size(); ++b) {
-    if (auto* soft = dynamic_cast<SoftBody*>(s.bodies()[b])) soft->q() += scale * dq[b];
+    if (auto* soft = dynamic_cast<DeformableBody*>(s.bodies()[b])) soft->q() += scale * dq[b];
     else if (auto* tool = dynamic_cast<RigidBody*>(s.bodies()[b]))
       tool->place(displaced(tool->link_pose(0), scale * Vec6(dq[b].head<6>())), tool->opening() + (dq[b].size() > 6 ? scale * dq[b][6] : 0));
   }
@@ -132,7 +132,7 @@ struct Restore {
   std::vector<std::pair<Pose, double>> pose;  // with the opening
   explicit Restore(Simulation& sim) : s(sim) {
     for (Body* b : s.bodies()) {
-      if (auto* soft = dynamic_cast<SoftBody*>(b)) q.push_back(soft->q());
+      if (auto* soft = dynamic_cast<DeformableBody*>(b)) q.push_back(soft->q());
       else q.emplace_back();
       if (auto* tool = dynamic_cast<RigidBody*>(b)) pose.emplace_back(tool->link_pose(0), tool->opening());
       else pose.emplace_back();
@@ -140,7 +140,7 @@ struct Restore {
   }
   void operator()() const {
     for (std::size_t b = 0; b < s.bodies().size(); ++b) {
-      if (auto* soft = dynamic_cast<SoftBody*>(s.bodies()[b])) soft->q() = q[b];
+      if (auto* soft = dynamic_cast<DeformableBody*>(s.bodies()[b])) soft->q() = q[b];
       if (auto* tool = dynamic_cast<RigidBody*>(s.bodies()[b])) tool->place(pose[b].first, pose[b].second);
     }
   }
@@ -202,7 +202,7 @@ void check_balance(Simulation& s, Component& c) {
     for (std::size_t b = 0; b < s.bodies().size(); ++b) {
       if (row.h[b].size() == 0 || row.h[b].isZero(0)) continue;
       ++bodies;
-      if (auto* soft = dynamic_cast<SoftBody*>(s.bodies()[b])) {
+      if (auto* soft = dynamic_cast<DeformableBody*>(s.bodies()[b])) {
         for (int i = 0; i < soft->nodes(); ++i) {
           const Vec3 f = row.h[b].segment<3>(3 * i), x = soft->q().segment<3>(3 * i);
           force += f;
@@ -288,7 +288,17 @@ void check_rows(const std::filesystem::path& scene, const std::string& element, 
     for (std::uint64_t id : before) kept += int(after.count(id));
     EXPECT_GE(kept, int(0.9 * double(before.size()))) << c->id << ": row ids change although nothing moves";
   }
-  if (rows_expected) {
+  // A constraint that says it adds none keeps to that.
+  bool any = false;
+  for (Component* c : mine) {
+    const auto* constraint = dynamic_cast<const Constraint*>(c);
+    any = any || !constraint || constraint->adds_rows();
+    if (constraint && !constraint->adds_rows()) {
+      EXPECT_TRUE(ids_of(*s, *c).empty()) << c->id << " adds rows, but says it does not";
+    }
+  }
+  if (!any) { EXPECT_EQ(seen, 0) << "rows of a constraint that says it adds none"; }
+  if (rows_expected && any) {
     EXPECT_GT(seen, 0) << "the example never shows a row of it, so it shows nothing";
     EXPECT_GT(compared, 0) << "no row had a violation to compare with its derivative";
   }

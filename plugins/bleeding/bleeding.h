@@ -40,7 +40,7 @@ class Bleeding final : public Constraint {
   void prepare(PrepareContext& context) override;
   void connect(PrepareContext& context, Simulation& simulation) override;
   void build(const StepContext&, ConstraintBuilder&) override {}
-  bool adds_rows() const { return false; }
+  bool adds_rows() const override { return false; }
   void finish(const StepContext& context, const ConstraintSolution& solution) override;
   void report(StepReport& report) const override;
   void reset() override;

@@ -33,7 +33,7 @@ class BloodFlow final : public Constraint, public ChamberFeed {
 
   void connect(PrepareContext& context, Simulation& simulation) override;
   void build(const StepContext&, ConstraintBuilder&) override {}
-  bool adds_rows() const { return false; }  ///< its chambers' rows are those of the pressure
+  bool adds_rows() const override { return false; }  ///< its chambers' rows are those of the pressure
   void report(StepReport& report) const override;
   void reset() override;
   void append_state(std::vector<double>& out) const override;

@@ -103,6 +103,7 @@ void Contact::add_pairs(Simulation& simulation, Body* a, Body* b) {
         p.tool_a = tool_a;
         p.link_a = i;
         p.b = shared_surface(simulation, sb);
+        for (const ConvexPiece& piece : tool_a->link_pieces(i)) p.pieces_a.push_back(rounded(piece));
         if (by.is("vertices") && sb->thickness() > 0)
           p.vertex_collider = std::make_unique<VertexCollider>(tool_a->link_pieces(i), sb->triangles(), p.b->mesh.vertex_count());
         else
@@ -236,10 +237,28 @@ void Contact::add_row(ConstraintBuilder& builder, int row, const Pair& p, const 
 // would leave the places that contact looked at. So a tool that touches goes on by no more than max_push: three rows along
 // the free motion of three places of the touching piece.
 void Contact::limit_motion(ConstraintBuilder& builder, const Pair& p) const {
-  if (!p.tool_collider || p.b->surface->thickness() == 0 || p.b->surface->body().blocks() == 0 || !p.active()) return;
-  const int piece = p.tool_collider->touching_piece();
+  if (!p.tool_a || !p.b || !p.active() || p.b->surface->thickness() == 0 || p.b->surface->body().blocks() == 0) return;
+  int piece = -1;
+  double touch = 1;
+  if (p.tool_collider) {
+    piece = p.tool_collider->touching_piece();
+    touch = p.tool_collider->touch_time();
+  } else {
+    // A contact found on the free way, or one that is closed and goes on closing.
+    for (const Proximity& x : p.contacts) {
+      if (x.time == 0) {
+        if (x.gap > 0.1 * alarm()) continue;
+        const Vec3 u = p.tool_a->free_displacement(p.tool_a->link_point(p.link_a, x.local));
+        if (x.normal.dot(u - p.b->mesh.free_at(x.triangle, x.bary)) >= 0) continue;
+      }
+      if (x.time < touch) {
+        touch = x.time;
+        piece = x.piece;
+      }
+    }
+  }
   if (piece < 0) return;
-  const RoundedPiece& r = p.tool_collider->piece(piece);
+  const RoundedPiece& r = p.pieces_a[std::size_t(piece)];
   Vec3 third = r.core.front();
   double farthest = -1;
   for (const Vec3& q : r.core) {
@@ -253,7 +272,7 @@ void Contact::limit_motion(ConstraintBuilder& builder, const Pair& p) const {
   for (const Vec3& place : {r.axis0, r.axis1, third}) {
     const MaterialPoint point = p.tool_a->link_point(p.link_a, place);
     const Vec3 u = p.tool_a->free_displacement(point);
-    const double way = u.norm(), allowed = p.tool_collider->touch_time() * way + max_push();
+    const double way = u.norm(), allowed = touch * way + max_push();
     ++count;
     if (way <= allowed) continue;
     Block block;

@@ -52,7 +52,7 @@ class Contact final : public Constraint {
     RigidBody* tool_b = nullptr;
     int link_a = 0, link_b = 0;
     std::shared_ptr<ContactSurface> a, b;  ///< ... or a surface
-    std::vector<RoundedPiece> pieces_a, pieces_b;  ///< tool against tool
+    std::vector<RoundedPiece> pieces_a, pieces_b;  ///< of the tools
     std::unique_ptr<ToolCollider> tool_collider;      ///< tool against surface, by triangles ...
     std::unique_ptr<VertexCollider> vertex_collider;  ///< ... or by the wall's vertices
     std::unique_ptr<TissueCollider> a_on_b, b_on_a;

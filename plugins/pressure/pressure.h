@@ -34,7 +34,7 @@ class BloodPressure final : public Constraint {
   Param<Pressure> diastolic{this, {.name = "diastolic", .fallback = "80 mmHg", .min = "10 mmHg", .max = "200 mmHg", .doc = "least pressure of a beat"}};
   Param<Frequency> heart_rate{this, {.name = "heart_rate", .fallback = "70 1/min", .min = "20 1/min", .max = "220 1/min", .doc = "beats"}};
   Param<Pressure> imaged_at{this, {.name = "imaged_at", .fallback = "0 mmHg", .min = "0 mmHg", .max = "300 mmHg", .doc = "pressure at which the shape was imaged; 0: the mean of a beat"}};
-  Param<bool> prestress{this, {.name = "prestress", .fallback = "true", .doc = "the wall balances the pressure of imaging in the imaged shape by a tension of its own, and is slack without pressure; false: its imaged shape is free of stress, and only what exceeds that pressure loads it"}};
+  Param<bool> prestress{this, {.name = "prestress", .fallback = "true", .doc = "the wall balances the pressure of imaging in the imaged shape by a tension of its own, and is slack without pressure; false: its imaged shape is free of stress, and only what exceeds that pressure loads it (so it is, too, for a shell without a membrane)"}};
   Param<Duration> response{this, {.name = "response", .fallback = "1 s", .min = "0 s", .max = "60 s", .doc = "time in which pressure and rate follow a command"}};
   Param<std::string> regions{this, {.name = "chambers", .fallback = "", .doc = "regions of each chamber, chambers parted by semicolons: \"parent; superior; sac bleb\"; none: one a region with a centreline"}};
 

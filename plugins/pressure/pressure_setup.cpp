@@ -109,7 +109,7 @@ bool BloodPressure::make_chambers(PrepareContext& context) {
   return true;
 }
 
-/// Where a network feeds the chambers, each has a reference of its own: what a second call adds is the difference alone.
+/// A shell without a wall that could be tensed, on springs alone, keeps the image's pressure out of its account. Where a network feeds the chambers, each has a reference of its own: what a second call adds is the difference alone.
 void BloodPressure::prestress_wall(PrepareContext* context) {
   if (!prestress()) return;
   constexpr double good = 1e-8;
@@ -122,9 +122,8 @@ void BloodPressure::prestress_wall(PrepareContext* context) {
   }
   const double left = on->prestress(load);
   prestressed_ = left < good;
-  if (!prestressed_ && context)
-    error(*context, prestress, in_quotes(on->id) + (left == 1 ? " has no wall that could bear the pressure of its image" : " finds no tension that bears the pressure of its image") +
-                                   "; with prestress=\"false\" only the excess over that pressure loads it");
+  if (left >= good && left < 1 && context)
+    error(*context, prestress, "no tension of " + in_quotes(on->id) + " bears the pressure of its image; with prestress=\"false\" only the excess over that pressure loads it");
 }
 
 std::vector<CommandInfo> BloodPressure::commands() const {

@@ -22,12 +22,9 @@ namespace insula::test {
 class TestWall final : public ForceModel {
  public:
   Param<Stiffness> stiffness{this, {.name = "stiffness", .fallback = "50 N/m", .min = "0 N/m", .max = "1e9 N/m", .doc = "of a node's spring"}};
-  std::vector<Vec3> place, tension;  // where a node stands, and how far its spring is stretched there
+  std::vector<Vec3> place;
 
-  void attach(PrepareContext&, DeformableBody& body) override {
-    place = body.rest_nodes();
-    tension.assign(place.size(), Vec3::Zero());
-  }
+  void attach(PrepareContext&, DeformableBody& body) override { place = body.rest_nodes(); }
   void couplings(std::vector<std::pair<int, int>>&, Tangent) const override {}
   void bind(const BlockMatrix& a, const std::vector<int>& free_of_node) override {
     for (int b : free_of_node) slot_.push_back(b < 0 ? -1 : a.diagonal(b));
@@ -37,18 +34,14 @@ class TestWall final : public ForceModel {
   }
   void linearise(const double* x, double* force, BlockMatrix* k, double, Tangent) override {
     for (std::size_t i = 0; i < place.size(); ++i) {
-      for (std::size_t c = 0; c < 3; ++c) force[3 * i + c] -= stiffness() * (x[3 * i + c] - place[i][Eigen::Index(c)] + tension[i][Eigen::Index(c)]);
+      for (std::size_t c = 0; c < 3; ++c) force[3 * i + c] -= stiffness() * (x[3 * i + c] - place[i][Eigen::Index(c)]);
       if (k && slot_[i] >= 0)
         for (int c = 0; c < 3; ++c) k->block(slot_[i])[4 * c] += stiffness();
     }
   }
-  bool prestrain(const double* u) override {
-    for (std::size_t i = 0; i < place.size(); ++i) tension[i] -= Eigen::Map<const Vec3>(u + 3 * i);
-    return true;
-  }
   double energy(const double* x) override {
     double e = 0;
-    for (std::size_t i = 0; i < place.size(); ++i) e += 0.5 * stiffness() * (Eigen::Map<const Vec3>(x + 3 * i) - place[i] + tension[i]).squaredNorm();
+    for (std::size_t i = 0; i < place.size(); ++i) e += 0.5 * stiffness() * (Eigen::Map<const Vec3>(x + 3 * i) - place[i]).squaredNorm();
     return e;
   }
 

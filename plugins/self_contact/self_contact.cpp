@@ -41,6 +41,7 @@ void SelfContact::connect(PrepareContext& context, Simulation& simulation) {
   const std::size_t room = 2 * collider_->samples().size();
   contacts_.reserve(room);
   supports_.reserve(std::size_t(max_supports()));
+  pressed_.reserve(256);
   selection_.reserve(room, std::size_t(max_contacts()));
   rows_.reserve(std::size_t(max_contacts()));
   forces_.reserve(std::size_t(max_contacts()));
@@ -73,7 +74,12 @@ void SelfContact::find_supports() {
     for (const Contact::Pair& p : c->pairs()) {
       if (!p.tool_a || !p.b || p.b->surface != &*on) continue;
       const double far = thickness() + alarm() + 2 * c->max_push();
-      for (const Proximity& x : p.contacts) {
+      // By key, not by gap: what supports whom must not change while nothing moves.
+      pressed_.clear();
+      for (const Proximity& x : p.contacts) pressed_.emplace_back(x.key, &x);
+      std::sort(pressed_.begin(), pressed_.end());
+      for (const auto& [contact, at] : pressed_) {
+        const Proximity& x = *at;
         if (int(supports_.size()) >= max_supports()) return;
         const Opposite o = collider_->opposite(mesh_, x.triangle, x.bary, -x.normal, far);
         if (o.triangle < 0) continue;
@@ -86,7 +92,7 @@ void SelfContact::find_supports() {
                   ((a - there).squaredNorm() < near2 && (b - here).squaredNorm() < near2);
         }
         if (known) continue;
-        const std::uint64_t key = std::uint64_t(1) << 43 | std::uint64_t(c->order & 0xffff) << 26 | (x.key & 0x3ffffff);
+        const std::uint64_t key = std::uint64_t(1) << 43 | std::uint64_t(c->order & 0xffff) << 26 | (contact & 0x3ffffff);
         supports_.push_back({x.triangle, o.triangle, x.bary, o.bary, x.normal, o.distance - thickness(), row_id(*this, key), -1, 0});
       }
     }

@@ -33,6 +33,7 @@ class SelfContact final : public Constraint {
   void append_state(std::vector<double>& out) const override;
 
   const std::vector<Proximity>& contacts() const { return contacts_; }
+  int rows() const { return int(supports_.size() + rows_.size() * (friction() > 0 ? 3 : 1)); }
   const std::vector<Vec3>& forces() const { return forces_; }  ///< along (normal, tangent, other tangent), N
 
  private:
@@ -51,6 +52,7 @@ class SelfContact final : public Constraint {
 
   std::vector<const Contact*> touches_;
   std::vector<Support> supports_;
+  std::vector<std::pair<std::uint64_t, const Proximity*>> pressed_;  ///< a tool's contacts by key
   CollisionMesh mesh_;
   std::unique_ptr<SelfCollider> collider_;
   ContactSelection selection_;

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Neighbour grid and normals.
+// Neighbour grid, shortest paths (Dijkstra) and normals.
 #include "plugins/strand_springs/nearest.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <queue>
 
 namespace insula {
 
@@ -47,6 +49,47 @@ void NearestVertices::within(const Vec3& p, double r, std::vector<int>& out) con
           if ((vertices_[std::size_t(index_[std::size_t(i)])] - p).squaredNorm() <= r * r) out.push_back(index_[std::size_t(i)]);
       }
   std::sort(out.begin(), out.end());
+}
+
+SurfacePaths::SurfacePaths(const TriMesh& mesh) : mesh_(mesh), length_(mesh.vertices.size(), std::numeric_limits<double>::infinity()) {
+  start_.assign(mesh.vertices.size() + 1, 0);
+  for (const auto& t : mesh.triangles)
+    for (int v : t) start_[std::size_t(v) + 1] += 2;
+  for (std::size_t i = 1; i < start_.size(); ++i) start_[i] += start_[i - 1];
+  neighbour_.resize(std::size_t(start_.back()));
+  std::vector<int> at(start_.begin(), start_.end() - 1);
+  for (const auto& t : mesh.triangles)
+    for (std::size_t k = 0; k < 3; ++k)
+      for (std::size_t j = 1; j < 3; ++j) neighbour_[std::size_t(at[std::size_t(t[k])]++)] = t[(k + j) % 3];
+}
+
+void SurfacePaths::walk(int a, double limit) {
+  for (int v : touched_) length_[std::size_t(v)] = std::numeric_limits<double>::infinity();
+  touched_.assign(1, a);
+  length_[std::size_t(a)] = 0;
+  using Entry = std::pair<double, int>;  // ties go to the lower index
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<Entry>> open;
+  open.push({0, a});
+  while (!open.empty()) {
+    const auto [length, v] = open.top();
+    open.pop();
+    if (length > length_[std::size_t(v)]) continue;
+    for (int e = start_[std::size_t(v)]; e < start_[std::size_t(v) + 1]; ++e) {
+      const int n = neighbour_[std::size_t(e)];
+      const double next = length + (mesh_.vertices[std::size_t(n)] - mesh_.vertices[std::size_t(v)]).norm();
+      if (next > limit || next >= length_[std::size_t(n)]) continue;
+      if (std::isinf(length_[std::size_t(n)])) touched_.push_back(n);
+      length_[std::size_t(n)] = next;
+      open.push({next, n});
+    }
+  }
+  at_ = a;
+  limit_ = limit;
+}
+
+bool SurfacePaths::connected(int a, int b, double limit) {
+  if (a != at_ || limit > limit_) walk(a, limit);
+  return length_[std::size_t(b)] <= limit;
 }
 
 std::vector<Vec3> vertex_normals(const TriMesh& mesh) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Small geometry for strands: vertices in reach and normals.
+// Small geometry for strands: vertices in reach, paths along a surface and normals.
 #pragma once
 #include <vector>
 
@@ -20,6 +20,23 @@ class NearestVertices {
   Vec3 low_ = Vec3::Zero();
   int n_[3] = {0, 0, 0};
   std::vector<int> start_, index_;
+};
+
+/// Lengths of paths along the edges of a triangle mesh.
+class SurfacePaths {
+ public:
+  explicit SurfacePaths(const TriMesh& mesh);
+  /// Whether b can be reached from a by a path of at most `limit`, m; the paths of the last a are kept.
+  bool connected(int a, int b, double limit);
+
+ private:
+  void walk(int a, double limit);
+  const TriMesh& mesh_;
+  std::vector<int> start_, neighbour_;
+  std::vector<double> length_;  ///< from `at_`, infinite where farther than `limit_`
+  std::vector<int> touched_;
+  int at_ = -1;
+  double limit_ = 0;
 };
 
 /// Area-weighted unit normals.

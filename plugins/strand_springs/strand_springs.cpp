@@ -7,7 +7,9 @@ Arachnoid strands between two bodies. Each is one compliant row on the distance 
     delta = |qi - qj| - l0,   delta + lambda / k = 0,   lambda <= 0  (tension only)
 
 solved with the contacts, so a strand is never stiffer or later than the tissue it pulls. They are generated across the
-gap between two surfaces from a density and a maximal length; the same seed gives the same strands.
+gap between two surfaces from a density and a maximal length; the same seed gives the same strands. Both surfaces may be the
+same one (an aneurysm's sac and the branches at its neck): then a strand joins two places that face each other and are not
+near along the surface, that is, the way along its edges is more than three times the strand.
 
 A blade that touches a strand meets a rigid-plastic resistance: one row on their relative motion whose force is at most
 cut_force. Where the strand gives way, the blade's travel through it wears it: k falls in proportion, and after
@@ -39,7 +41,8 @@ void StrandSprings::connect(PrepareContext& context, Simulation& simulation) {
   instruments_ = simulation.instruments();
   if (bool(from) != bool(to)) return error(context, "from and to belong together");
   if (from) {
-    if (&from->body() == &to->body()) return error(context, to, "to: the strands would tie a body to itself");
+    if (&from->body() == &to->body() && from.get() != to.get())
+      return error(context, to, "to: strands within one body begin and end on the same surface");
     if (made.is("at_rest")) generate(context);
   }
 }
@@ -54,6 +57,9 @@ void StrandSprings::generate(PrepareContext& context) {
   const TriMesh mesh{from->positions(), from->triangles()}, other{to->positions(), to->triangles()};
   const std::vector<Vec3> normals = vertex_normals(mesh), other_normals = vertex_normals(other);
   const NearestVertices nearest(other.vertices, max_length());
+  const bool within = from.get() == to.get();
+  constexpr double detour = 3;
+  SurfacePaths paths(mesh);
   std::vector<int> found;
   // Partners a strand from vertex v may have: facing, in reach, not much farther than the nearest.
   auto partners = [&](int v) {
@@ -66,6 +72,7 @@ void StrandSprings::generate(PrepareContext& context) {
         const Vec3 d = other.vertices[std::size_t(o)] - p;
         const double length = d.norm();
         if (length < 1e-6 || d.dot(normals[std::size_t(v)]) < 0.2 * length || d.dot(other_normals[std::size_t(o)]) > -0.2 * length) continue;
+        if (within && paths.connected(v, o, detour * max_length()) && paths.connected(v, o, detour * length)) continue;
         if (pass == 0) least = std::min(least, length);
         else if (length <= std::min(max_length(), 1.7 * least)) out.push_back(o);
       }
@@ -99,7 +106,10 @@ void StrandSprings::generate(PrepareContext& context) {
     const int v = mesh.triangles[std::size_t(triangle[std::min(t, triangle.size() - 1)])][random.below(3)];
     const std::vector<int> choice = partners(v);
     const std::pair<int, int> pair{v, choice[random.below(std::uint32_t(choice.size()))]};
-    if (std::find(pairs.begin(), pairs.end(), pair) == pairs.end()) pairs.push_back(pair);
+    const bool known = std::any_of(pairs.begin(), pairs.end(), [&](const auto& p) {
+      return p == pair || (within && p.first == pair.second && p.second == pair.first);
+    });
+    if (!known) pairs.push_back(pair);
   }
   for (auto [v, o] : pairs) add_strand(from->points()[std::size_t(v)], to->points()[std::size_t(o)]);
   if (strands_.empty() && density() > 0)

@@ -3,8 +3,12 @@
 // program counts.
 #include <gtest/gtest.h>
 
-#include "core/testing/example.h"
+#include "core/collision/contact_selection.h"
+#include "core/collision/shapes_for_test.h"
+#include "core/collision/vertex_collider.h"
+#include "core/linalg/kernels.h"
 #include "core/testing/count_allocations.h"
+#include "core/testing/example.h"
 
 namespace insula {
 namespace {
@@ -40,7 +44,8 @@ TEST(Allocation, SolveAllocatesNothing) {
 // The script once to see the largest problem, then again from the start: no step may allocate, but for the events it
 // reports and the contacts that a test of its own watches.
 TEST(Allocation, AWarmStepAllocatesNothing) {
-  for (const char* plugin : {"corotational_fem", "strand_springs", "dissector", "suction", "retractor", "fixed"}) {
+  for (const char* plugin : {"corotational_fem", "strand_springs", "dissector", "suction", "retractor", "fixed", "membrane", "anchor_springs", "pressure",
+                             "blood_flow", "bleeding", "self_contact", "clip"}) {
     auto s = test::load(plugins / plugin / "example.xml", 2);
     ASSERT_TRUE(s);
     test::run_script(*s, 70);
@@ -59,6 +64,63 @@ TEST(Allocation, AWarmStepAllocatesNothing) {
     }
     EXPECT_EQ(worst, 0) << plugin << " at step " << worst_step;
   }
+}
+
+// A problem of jaws, contacts with friction among them, however many sweeps and directions it takes.
+TEST(Allocation, SolveOfAHardProblemAllocatesNothing) {
+  ConstraintProblem p;
+  const int contacts = 13;
+  p.resize(3 * contacts);
+  for (int k = 0; k < contacts; ++k) {
+    Block b;
+    b.id = std::uint64_t(k);
+    b.row = 3 * k;
+    b.law = LawKind::friction;
+    b.friction = 0.4;
+    p.blocks.push_back(b);
+    for (int r = 3 * k; r < 3 * k + 3; ++r) {
+      p.w[std::size_t(r * p.stride + r)] = k == 0 || k == contacts - 1 ? 1.01 : 2;
+      if (k > 0) p.w[std::size_t(r * p.stride + r - 3)] = -1;
+      if (k + 1 < contacts) p.w[std::size_t(r * p.stride + r + 3)] = -1;
+    }
+    p.delta_free[std::size_t(3 * k)] = k == 0 || k == contacts - 1 ? -0.02 : 0;
+    p.delta_free[std::size_t(3 * k + 1)] = k == 0 || k == contacts - 1 ? 0.004 : 0;
+  }
+  SolveWorkspace ws;
+  ws.reserve(p.rows);
+  ws.lambda.assign(std::size_t(p.rows), 0.0);
+  kernels();
+  const long before = allocations;
+  const SolveStats stats = solve(p, p.delta_free, {3000, 1e-11}, ws);
+  EXPECT_EQ(allocations - before, 0);
+  EXPECT_GT(stats.sweeps, 10);
+}
+
+TEST(Allocation, DetectionByVerticesAllocatesNothing) {
+  const TriMesh rest = shapes::sphere(Vec3::Zero(), 3e-3, 4);
+  std::vector<Vec3> now = rest.vertices, free(now.size(), Vec3(0, 0, 2e-4));
+  CollisionMesh mesh;
+  mesh.build(rest.vertices, rest.triangles);
+  ConvexPiece jaw{"jaw", {}, 0};
+  for (int i = 0; i < 8; ++i) jaw.points.push_back({i & 1 ? 3e-3 : -3e-3, i & 2 ? 1e-3 : -1e-3, i & 4 ? 5e-4 : -5e-4});
+  VertexCollider collider({jaw, {"rod", {Vec3(0, 0, 5e-4), Vec3(0, 0, 0.02)}, 1e-3}}, rest.triangles, int(now.size()));
+  std::vector<Proximity> found;
+  found.reserve(2 * now.size());
+  ContactSelection selection;
+  selection.reserve(found.capacity(), 100);
+  std::uint64_t key = 0;
+  long seen = 0;
+  const long before = allocations;
+  for (int i = 0; i < 60; ++i) {
+    mesh.update(now, free);
+    found.clear();
+    const Pose start{Vec3(1e-4 * (i % 10), 0, 5e-3 - 5e-5 * i), from_rotation_vector(Vec3(0.01 * i, 0, 0))};
+    collider.detect(mesh, start, displaced(start, (Vec6() << 0, 0, -1e-3, 0.05, 0, 0).finished()), {.alarm = 3e-4, .offset = 1.5e-4}, found);
+    selection.select(found, {.spacing = 0, .advantage = 1e-4, .max_contacts = 100, .max_per_piece = 100}, key);
+    seen += long(found.size());
+  }
+  EXPECT_EQ(allocations - before, 0);
+  EXPECT_GT(seen, 400);
 }
 
 }  // namespace

@@ -62,6 +62,7 @@ TEST_P(EveryElement, HoldsTheContractOfItsKind) {
   ASSERT_TRUE(fs::exists(example));
   switch (info->kind) {
     case Kind::force_model: return test::check_force_model(example, info->element);
+    case Kind::body: return test::check_rigid_body(example, info->element);
     case Kind::support: return test::check_support(example, info->element);
     case Kind::constraint: return test::check_rows(example, info->element, true);
     case Kind::instrument:

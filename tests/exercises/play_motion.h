@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Plays a scripted motion of an exercise headless, as `insula run` does, and sums up what came of it.
+#pragma once
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+
+#include "core/registry/registry.h"
+#include "engine/headless.h"
+
+namespace insula::test {
+
+struct Played {
+  bool ran = false, finite = true;
+  std::map<std::string, int> faults, events;  ///< events: how many of each kind
+  std::map<std::string, double> goals;        ///< time, -1 when open
+  ExerciseState state = ExerciseState::running;
+  double end = -1;                            ///< of the exercise, s
+  double duration = 0;                        ///< of the motion, s
+  int strands = 0, left = 0;
+  double most_force[2] = {0, 0};              ///< of each hand's tool on what it touches, N
+};
+
+/// The motion with this id in the scene's exercise.
+inline Played play_motion(const std::filesystem::path& scene, const std::string& id) {
+  Played out;
+  Registry registry;
+  register_builtin(registry);
+  SimulationResult loaded = load_simulation(scene, registry);
+  EXPECT_EQ(loaded.diagnostics.format(), "");
+  if (!loaded.simulation || !loaded.simulation->exercise()) return out;
+  Simulation& s = *loaded.simulation;
+  Motion motion;
+  for (const MotionEntry* m : s.exercise()->motions())
+    if (m->id == id) motion = load_motion(m->file());
+  EXPECT_TRUE(motion.has(0) && motion.has(1)) << "motion " << id;
+  HeadlessRun run(s, motion);
+  out.duration = motion.duration();
+  while (s.time() < out.duration + 0.5) {
+    run.step();
+    out.finite = out.finite && s.report().finite;
+    for (const ToolReport& t : s.report().tools)
+      if (t.hand >= 0) out.most_force[t.hand] = std::max(out.most_force[t.hand], t.contact_force);
+    for (const Event& e : s.events()) ++out.events[e.kind];
+  }
+  for (int h = 0; h < 2; ++h)
+    EXPECT_LT((run.haptics().hand(h).device.p - motion.at(h, 1e9).pose.p).norm(), 0.001) << "hand " << h << " did not follow its motion to the end";
+  out.ran = true;
+  out.strands = s.report().strands_total;
+  out.left = s.report().strands_left;
+  const ExerciseLog& log = s.exercise()->log();
+  out.state = log.state();
+  out.end = log.end_time();
+  for (const FaultState& f : log.faults()) out.faults[f.id] = f.count;
+  for (const GoalState& g : log.goals()) out.goals[g.id] = g.done ? g.time : -1;
+  return out;
+}
+
+}  // namespace insula::test
