@@ -15,6 +15,8 @@ struct Played {
   bool ran = false, finite = true;
   std::map<std::string, int> faults, events;  ///< events: how many of each kind
   std::map<std::string, double> goals;        ///< time, -1 when open
+  std::map<std::string, double> measures;     ///< at the end, in their units
+  std::map<std::string, double> longest;      ///< of each timer, s
   ExerciseState state = ExerciseState::running;
   double end = -1;                            ///< of the exercise, s
   double duration = 0;                        ///< of the motion, s
@@ -34,7 +36,7 @@ inline Played play_motion(const std::filesystem::path& scene, const std::string&
   Motion motion;
   for (const MotionEntry* m : s.exercise()->motions())
     if (m->id == id) motion = load_motion(m->file());
-  EXPECT_TRUE(motion.has(0) && motion.has(1)) << "motion " << id;
+  EXPECT_FALSE(motion.empty()) << "motion " << id;
   HeadlessRun run(s, motion);
   out.duration = motion.duration();
   while (s.time() < out.duration + 0.5) {
@@ -45,7 +47,7 @@ inline Played play_motion(const std::filesystem::path& scene, const std::string&
     for (const Event& e : s.events()) ++out.events[e.kind];
   }
   for (int h = 0; h < 2; ++h)
-    EXPECT_LT((run.haptics().hand(h).device.p - motion.at(h, 1e9).pose.p).norm(), 0.001) << "hand " << h << " did not follow its motion to the end";
+    if (motion.has(h)) EXPECT_LT((run.haptics().hand(h).device.p - motion.at(h, 1e9).pose.p).norm(), 0.001) << "hand " << h << " did not follow its motion to the end";
   out.ran = true;
   out.strands = s.report().strands_total;
   out.left = s.report().strands_left;
@@ -53,6 +55,8 @@ inline Played play_motion(const std::filesystem::path& scene, const std::string&
   out.state = log.state();
   out.end = log.end_time();
   for (const FaultState& f : log.faults()) out.faults[f.id] = f.count;
+  for (const MeasureState& m : log.measures()) out.measures[m.id] = m.value;
+  for (const TimerState& t : log.timers()) out.longest[t.id] = t.longest;
   for (const GoalState& g : log.goals()) out.goals[g.id] = g.done ? g.time : -1;
   return out;
 }

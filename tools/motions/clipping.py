@@ -239,7 +239,7 @@ def exercise_4(folder):
     suction(late, 12)
     pose = field.neck(Clip("angled"), -1.9, 1.7)
     late.right.key(0, add(pose[0], pose[2], OUT_OF_FIELD), pose[1])
-    late.right.key(310, add(pose[0], pose[2], OUT_OF_FIELD), pose[1])
+    late.right.key(301, add(pose[0], pose[2], OUT_OF_FIELD), pose[1])
     late.write(folder / "4_rupture_late.csv")
 
 

@@ -33,7 +33,7 @@ constexpr double mm = 1e-3;
 std::unique_ptr<Simulation> load(const fs::path& scene) {
   Registry registry;
   register_builtin(registry);
-  SimulationResult loaded = load_simulation(scene, registry);
+  SimulationResult loaded = load_simulation(scene, registry, 1);
   if (!loaded.simulation) throw InputError(loaded.diagnostics.format());
   return std::move(loaded.simulation);
 }

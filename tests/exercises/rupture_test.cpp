@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Exercise 4 with both scripted motions.
+#include "tests/exercises/play_motion.h"
+
+namespace insula {
+namespace {
+
+const std::filesystem::path scene = std::filesystem::path(INSULA_SOURCE_DIR) / "scenes/training/4_rupture.xml";
+
+TEST(Rupture, MasteredWithTemporaryAndFinalClip) {
+  test::Played o = test::play_motion(scene, "steady");
+  ASSERT_TRUE(o.ran);
+  EXPECT_TRUE(o.finite);
+  EXPECT_EQ(o.state, ExerciseState::done);
+  EXPECT_EQ(o.events["rupture"], 1);
+  EXPECT_EQ(o.events["clip_released"], 2);
+  EXPECT_EQ(o.events["clip_taken"], 1);
+  EXPECT_GT(o.goals["stop"], 0);
+  EXPECT_GT(o.goals["removed"], o.goals["stop"] - 1e-9);
+  EXPECT_GT(o.longest["occlusion"], 5);
+  EXPECT_LT(o.longest["occlusion"], 180);
+  EXPECT_LT(o.longest["since_rupture"], 300);
+  EXPECT_EQ(o.faults["occlusion_over"], 0);
+  EXPECT_EQ(o.faults["stenosis"], 0);
+  EXPECT_GT(o.measures["clip_flow_superior"], 75);
+  EXPECT_GT(o.measures["clip_flow_inferior"], 75);
+}
+
+TEST(Rupture, TimeRunsOutWhenNobodyClips) {
+  test::Played o = test::play_motion(scene, "late");
+  ASSERT_TRUE(o.ran);
+  EXPECT_TRUE(o.finite);
+  EXPECT_EQ(o.state, ExerciseState::failed);
+  EXPECT_NEAR(o.end, 301, 0.1);
+  EXPECT_LT(o.goals["stop"], 0);
+  EXPECT_NEAR(o.longest["since_rupture"], 300, 0.1);
+}
+
+}  // namespace
+}  // namespace insula
