@@ -102,7 +102,8 @@ class GatewayTest : public ::testing::Test {
     fs::create_directories(root_ / "bundle");
     write("page/index.html", "<p>page");
     write("page/assets/app-1a2b.js", "let a");
-    write("bundle/scene.json", R"({"bodies":[{"rest":"body0_rest.bin"}]})");
+    write("bundle/scene.json", R"({"bodies":[{"rest":"body0_rest.bin"}],"tools":[{"picture":"clip_picture.svg"}]})");
+    write("bundle/clip_picture.svg", "<svg xmlns=\"http://www.w3.org/2000/svg\"/>");
     write("bundle/body0_rest.bin", "0123");
     write("bundle/other.bin", "x");
     write("secret", "secret");
@@ -199,6 +200,9 @@ TEST_F(GatewayTest, ServesTheBundleOfTheSession) {
   EXPECT_EQ(json[http::field::content_type], "application/json");
   EXPECT_EQ(json[http::field::cache_control], "no-store");
   EXPECT_EQ(get("/bundle/7/body0_rest.bin").body(), "0123");
+  const auto picture = get("/bundle/7/clip_picture.svg");
+  EXPECT_EQ(picture.result(), http::status::ok);
+  EXPECT_EQ(picture[http::field::content_type], "image/svg+xml");
   put(channel::scene_info, scene_info(8, (root_ / "bundle").string()));
   ASSERT_TRUE(eventually([](const auto& h) { return h["session"] == 8; }));
   EXPECT_EQ(get("/bundle/7/scene.json").result_int(), 404u);
