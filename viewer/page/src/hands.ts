@@ -15,6 +15,7 @@ export interface HandActions {
   focus_at(x: number, y: number): void;
   toggle_pause(): void;
   toggle_help(): void;
+  next_tool(hand: number, step: 1 | -1): void;
   changed(): void;
 }
 
@@ -164,7 +165,7 @@ export class Hands {
   }
 
   private key(e: KeyboardEvent, down: boolean): void {
-    if (e.target instanceof HTMLSelectElement || e.ctrlKey || e.metaKey || e.altKey) return;
+    if (e.target instanceof HTMLSelectElement || e.target instanceof HTMLInputElement || e.ctrlKey || e.metaKey || e.altKey) return;
     if (moving.has(e.code) || e.code.startsWith('Shift')) {
       if (down) this.keys.add(e.code);
       else this.keys.delete(e.code);
@@ -185,6 +186,7 @@ export class Hands {
       case 'KeyV': this.scope.reset(); break;
       case 'KeyC': { const t = this.tools.tool_pose(this.active); if (t) this.scope.focus(t.p); break; }
       case 'KeyP': this.actions.toggle_pause(); break;
+      case 'KeyT': this.actions.next_tool(this.active, e.shiftKey ? -1 : 1); break;
       case 'KeyH': case 'Slash': this.actions.toggle_help(); break;
     }
   }

@@ -1,132 +1,33 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the microscope's optics add to the rendered picture: shallow depth of field, a little veiling glare, darkness in narrow
-// gaps (screen-space occlusion), the round field of view, tone mapping.
+// Draws the scene through the microscope: one eye or two, each into its own picture, then through the lens onto the screen.
 import * as THREE from 'three';
+import { make_lens_material, type LensSettings } from './lens_material';
+import { anaglyph_left, anaglyph_right, place_eye, type StereoMode } from './stereo';
 
-export interface LensSettings {
-  occlusion: boolean;
-  depth_of_field: boolean;
-  samples: number;
-}
+export type { LensSettings } from './lens_material';
 
-const fragment = /* glsl */ `
-#include <common>
-uniform sampler2D picture;
-uniform highp sampler2D depth_map;
-uniform vec2 size;
-uniform vec2 near_far;
-uniform float focus, tan_half, round_field;
-varying vec2 v_uv;
-
-float distance_at(vec2 uv) {
-  float d = texture2D(depth_map, uv).x;
-  return near_far.x * near_far.y / (near_far.y - d * (near_far.y - near_far.x));
-}
-float hash(vec2 p) { return fract(52.9829189 * fract(dot(p, vec2(0.06711056, 0.00583715)))); }
-
-#ifdef OCCLUSION
-float gap_shade(vec2 uv, float z) {
-  uv = (floor(uv * size) + 0.5) / size;
-  float aspect = size.x / size.y;
-  float shut = 0.0;
-  for (int ring = 0; ring < 2; ring++) {
-    float radius = ring == 0 ? 0.0011 : 0.0034;
-    vec2 r = radius / (2.0 * z * tan_half) * vec2(1.0 / aspect, 1.0);
-    for (int i = 0; i < 5; i++) {
-      float a = (float(i) + 0.5 * float(ring)) * 0.62832;
-      // Whole pixels: both samples then lie equally far from the middle, and a plane stays a plane.
-      vec2 o = round(vec2(cos(a), sin(a)) * r * size) / size;
-      float za = distance_at(uv + o), zb = distance_at(uv - o);
-      // Opposite neighbours both nearer: a groove. Slopes and single edges cancel or are cut off.
-      float da = clamp((z - za) / radius, -1.0, 1.4), db = clamp((z - zb) / radius, -1.0, 1.4);
-      // Gentle curvature is no gap.
-      shut += clamp(da + db - 0.3, 0.0, 1.2);
-    }
-  }
-  return 1.0 / (1.0 + 0.13 * shut);
-}
-#endif
-
-void main() {
-  vec2 pixel = 1.0 / size;
-  float z = distance_at(v_uv);
-  vec3 c = texture2D(picture, v_uv).rgb;
-#ifdef DEPTH_OF_FIELD
-  float blur = clamp(abs(z - focus) / focus * 46.0 - 1.2, 0.0, 7.0) * size.y / 1080.0;
-  if (blur > 0.35) {
-    vec3 sum = c; float n = 1.0;
-    float spin = hash(gl_FragCoord.xy) * 6.2832;
-    for (int i = 0; i < 12; i++) {
-      float a = spin + float(i) * 2.39996;
-      float r = sqrt((float(i) + 0.5) / 12.0) * blur;
-      vec2 uv = v_uv + vec2(cos(a), sin(a)) * r * pixel;
-      float zi = distance_at(uv);
-      // A sharp nearer thing must not bleed into what lies behind it.
-      float w = zi < z - 0.002 ? clamp(abs(zi - focus) / focus * 46.0 - 1.2, 0.0, 7.0) / 7.0 : 1.0;
-      sum += w * min(textureLod(picture, uv, max(0.0, log2(blur * 0.45))).rgb, vec3(6.0)); n += w;
-    }
-    c = sum / n;
-  }
-#endif
-#ifdef OCCLUSION
-  float shade = gap_shade(v_uv, z);
-  c *= mix(vec3(0.35, 0.10, 0.08), vec3(1.0), smoothstep(0.0, 1.0, shade)) * mix(0.75, 1.0, shade);
-#endif
-  vec3 glare = textureLod(picture, v_uv, 4.0).rgb + textureLod(picture, v_uv, 5.0).rgb + textureLod(picture, v_uv, 6.0).rgb;
-  c += min(glare, vec3(9.0)) * 0.016;
-  vec2 from_middle = (v_uv - 0.5) * vec2(size.x / size.y, 1.0);
-  float r = length(from_middle);
-  c *= 1.0 - 0.45 * smoothstep(0.18, 0.62, r);
-  c *= mix(1.0, 1.0 - smoothstep(0.560, 0.600, r), round_field);
-  gl_FragColor = vec4(c, 1.0);
-  #include <tonemapping_fragment>
-  #include <colorspace_fragment>
-  gl_FragColor.rgb += (hash(gl_FragCoord.xy + 17.0) - 0.5) / 255.0;
-}
-`;
-
-export class Lens {
-  /** Of the last picture, shadows included. */
-  triangles = 0;
+/** A rendered picture with its depth, and the lens it is seen through. */
+export class Eyepiece {
+  readonly camera = new THREE.PerspectiveCamera();
+  readonly material: THREE.ShaderMaterial;
   private target: THREE.WebGLRenderTarget | null = null;
-  private readonly scene = new THREE.Scene();
-  private readonly eye = new THREE.OrthographicCamera(-1, 1, 1, -1, 0, 1);
-  private readonly material: THREE.ShaderMaterial;
-  private settings: LensSettings = { occlusion: false, depth_of_field: false, samples: 0 };
 
-  constructor(private readonly renderer: THREE.WebGLRenderer) {
-    this.material = new THREE.ShaderMaterial({
-      uniforms: {
-        picture: { value: null }, depth_map: { value: null }, size: { value: new THREE.Vector2(1, 1) }, near_far: { value: new THREE.Vector2(0.01, 1) },
-        focus: { value: 0.25 }, tan_half: { value: 0.26 }, round_field: { value: 1 },
-      },
-      vertexShader: 'varying vec2 v_uv; void main() { v_uv = uv; gl_Position = vec4(position.xy, 0.0, 1.0); }',
-      fragmentShader: fragment,
-      depthTest: false,
-      depthWrite: false,
-    });
-    const quad = new THREE.Mesh(new THREE.PlaneGeometry(2, 2), this.material);
-    quad.frustumCulled = false;
-    this.scene.add(quad);
-  }
+  constructor(in_space: boolean) { this.material = make_lens_material(in_space); }
+
+  get depth(): THREE.DepthTexture | null { return this.target?.depthTexture ?? null; }
 
   configure(settings: LensSettings): void {
-    this.settings = settings;
     this.material.defines = { ...(settings.occlusion ? { OCCLUSION: '' } : {}), ...(settings.depth_of_field ? { DEPTH_OF_FIELD: '' } : {}) };
     this.material.needsUpdate = true;
-    this.target?.dispose();
-    this.target?.depthTexture?.dispose();
-    this.target = null;
+    this.drop();
   }
 
-  render(scene: THREE.Scene, camera: THREE.PerspectiveCamera, focus: number): void {
-    const size = this.renderer.getDrawingBufferSize(new THREE.Vector2());
-    if (!this.target || this.target.width !== size.x || this.target.height !== size.y) this.make_target(size);
+  /** Renders the scene into the picture; the camera's field of view and range are those of the lens. */
+  take(renderer: THREE.WebGLRenderer, scene: THREE.Scene, camera: THREE.PerspectiveCamera, focus: number, size: THREE.Vector2, samples: number): void {
+    if (!this.target || this.target.width !== size.x || this.target.height !== size.y) this.make_target(size, samples);
     const target = this.target!;
-    this.renderer.setRenderTarget(target);
-    this.renderer.render(scene, camera);
-    this.triangles = this.renderer.info.render.triangles;
-    this.renderer.setRenderTarget(null);
+    renderer.setRenderTarget(target);
+    renderer.render(scene, camera);
     const u = this.material.uniforms;
     u.picture!.value = target.texture;
     u.depth_map!.value = target.depthTexture;
@@ -134,41 +35,120 @@ export class Lens {
     (u.near_far!.value as THREE.Vector2).set(camera.near, camera.far);
     u.focus!.value = focus;
     u.tan_half!.value = Math.tan(THREE.MathUtils.degToRad(camera.fov) / 2);
-    this.renderer.render(this.scene, this.eye);
+  }
+
+  drop(): void {
+    this.target?.dispose();
+    this.target?.depthTexture?.dispose();
+    this.target = null;
+  }
+
+  private make_target(size: THREE.Vector2, samples: number): void {
+    this.drop();
+    this.target = new THREE.WebGLRenderTarget(size.x, size.y, {
+      type: THREE.HalfFloatType, samples, generateMipmaps: true, minFilter: THREE.LinearMipmapLinearFilter, magFilter: THREE.LinearFilter,
+      depthTexture: new THREE.DepthTexture(size.x, size.y, THREE.UnsignedIntType),
+    });
+  }
+}
+
+export class Lens {
+  /** Of the last picture, shadows included. */
+  triangles = 0;
+  private readonly eyes = [new Eyepiece(false), new Eyepiece(false)];
+  private readonly scene = new THREE.Scene();
+  private readonly flat = new THREE.OrthographicCamera(-1, 1, 1, -1, 0, 1);
+  private readonly quad: THREE.Mesh;
+  private settings: LensSettings = { occlusion: false, depth_of_field: false, samples: 0 };
+  private seen_by: THREE.PerspectiveCamera | null = null;
+  private mode: StereoMode = 'off';
+
+  constructor(private readonly renderer: THREE.WebGLRenderer) {
+    this.quad = new THREE.Mesh(new THREE.PlaneGeometry(2, 2), this.eyes[0]!.material);
+    this.quad.frustumCulled = false;
+    this.scene.add(this.quad);
+  }
+
+  configure(settings: LensSettings): void {
+    this.settings = settings;
+    for (const e of this.eyes) e.configure(settings);
+  }
+
+  render(scene: THREE.Scene, camera: THREE.PerspectiveCamera, focus: number, mode: StereoMode, angle_rad: number): void {
+    const size = this.renderer.getDrawingBufferSize(new THREE.Vector2());
+    if (mode !== this.mode) { this.eyes[1]!.drop(); this.mode = mode; }
+    if (mode !== 'sbs' && mode !== 'anaglyph') {
+      this.seen_by = camera;
+      this.eyes[0]!.take(this.renderer, scene, camera, focus, size, this.settings.samples);
+      this.triangles = this.renderer.info.render.triangles;
+      this.show(0, new THREE.Matrix3(), 0);
+      return;
+    }
+    const each = mode === 'sbs' ? new THREE.Vector2(Math.max(1, Math.floor(size.x / 2)), size.y) : size;
+    take_both(this.renderer, scene, camera, focus, angle_rad, each, this.settings.samples, this.eyes);
+    this.triangles = 2 * this.renderer.info.render.triangles;
+    this.seen_by = this.eyes[1]!.camera;
+    const wide = size.x / this.renderer.getPixelRatio(), high = size.y / this.renderer.getPixelRatio();
+    if (mode === 'sbs') {
+      for (const k of [0, 1]) {
+        this.renderer.setViewport((k * wide) / 2, 0, wide / 2, high);
+        this.renderer.autoClear = k === 0;
+        this.show(k, new THREE.Matrix3(), 0);
+      }
+      this.renderer.setViewport(0, 0, wide, high);
+    } else {
+      this.show(0, new THREE.Matrix3().set(...anaglyph_left), 0.25);
+      this.renderer.autoClear = false;
+      this.show(1, new THREE.Matrix3().set(...anaglyph_right), 0.25, true);
+    }
+    this.renderer.autoClear = true;
   }
 
   /** Scene point under a pixel, read back from the last picture's depth; null where nothing was drawn. */
-  pick(x: number, y: number, wide: number, high: number, camera: THREE.PerspectiveCamera): THREE.Vector3 | null {
-    if (!this.target) return null;
-    const uv = new THREE.Vector2(x / wide, 1 - y / high);
+  pick(x: number, y: number, wide: number, high: number): THREE.Vector3 | null {
+    // Side by side, each half is a whole picture.
+    const across = this.mode === 'sbs' ? ((x / wide) * 2) % 1 : x / wide;
+    const uv = new THREE.Vector2(across, 1 - y / high);
+    const depth = this.eyes[this.mode === 'sbs' || this.mode === 'anaglyph' ? 1 : 0]!.depth;
+    if (!depth || !this.seen_by) return null;
     const one = new THREE.WebGLRenderTarget(1, 1, { type: THREE.FloatType });
     const probe = new THREE.ShaderMaterial({
-      uniforms: { depth_map: { value: this.target.depthTexture }, at: { value: uv } },
+      uniforms: { depth_map: { value: depth }, at: { value: uv } },
       vertexShader: 'void main() { gl_Position = vec4(position.xy, 0.0, 1.0); }',
       fragmentShader: 'uniform highp sampler2D depth_map; uniform vec2 at; void main() { gl_FragColor = vec4(texture2D(depth_map, at).x, 0.0, 0.0, 1.0); }',
       depthTest: false,
     });
-    const quad = this.scene.children[0] as THREE.Mesh;
-    quad.material = probe;
+    this.quad.material = probe;
     this.renderer.setRenderTarget(one);
-    this.renderer.render(this.scene, this.eye);
+    this.renderer.render(this.scene, this.flat);
     const texel = new Float32Array(4);
     this.renderer.readRenderTargetPixels(one, 0, 0, 1, 1, texel);
     this.renderer.setRenderTarget(null);
-    quad.material = this.material;
     probe.dispose();
     one.dispose();
     if (!(texel[0]! > 0 && texel[0]! < 0.99999)) return null;
-    return new THREE.Vector3(uv.x * 2 - 1, uv.y * 2 - 1, texel[0]! * 2 - 1).unproject(camera);
+    return new THREE.Vector3(uv.x * 2 - 1, uv.y * 2 - 1, texel[0]! * 2 - 1).unproject(this.seen_by);
   }
 
-  private make_target(size: THREE.Vector2): void {
-    this.target?.dispose();
-    this.target?.depthTexture?.dispose();
-    this.target = new THREE.WebGLRenderTarget(size.x, size.y, {
-      type: THREE.HalfFloatType, samples: this.settings.samples, generateMipmaps: true,
-      minFilter: THREE.LinearMipmapLinearFilter, magFilter: THREE.LinearFilter,
-      depthTexture: new THREE.DepthTexture(size.x, size.y, THREE.UnsignedIntType),
-    });
+  private show(eye: number, colours: THREE.Matrix3, grey_share: number, add = false): void {
+    const material = this.eyes[eye]!.material;
+    (material.uniforms.eye_colours!.value as THREE.Matrix3).copy(colours);
+    material.uniforms.grey_share!.value = grey_share;
+    material.blending = add ? THREE.CustomBlending : THREE.NoBlending;
+    material.blendSrc = material.blendDst = THREE.OneFactor;
+    this.quad.material = material;
+    this.renderer.setRenderTarget(null);
+    this.renderer.render(this.scene, this.flat);
   }
+}
+
+/** Renders both eyes; shadows, which both share, once. */
+export function take_both(renderer: THREE.WebGLRenderer, scene: THREE.Scene, middle: THREE.PerspectiveCamera, focus: number, angle_rad: number,
+  size: THREE.Vector2, samples: number, eyes: readonly Eyepiece[]): void {
+  eyes.forEach((eye, k) => {
+    place_eye(middle, k === 0 ? -1 : 1, focus, angle_rad, size.x / size.y, eye.camera);
+    renderer.shadowMap.autoUpdate = k === 0;
+    eye.take(renderer, scene, eye.camera, focus, size, samples);
+  });
+  renderer.shadowMap.autoUpdate = true;
 }

@@ -4,21 +4,36 @@ import * as THREE from 'three';
 import { load_bundle } from './bundle';
 import { Microscope } from './camera';
 import { Connection } from './connection';
+import { tool_in_hand } from './hand_tool';
 import { Hands } from './hands';
+import { Headset } from './headset';
+import { ask, find_command, type UserCommand } from './hud/commands';
 import { Hud } from './hud/hud';
 import './hud/hud.css';
+import { type HudState, parse_hud } from './hud/state';
+import { time_left_text } from './hud/timers';
 import type { HapticStatus, SceneInfo } from './lcm';
 import { Lens } from './lens';
 import { make_environment } from './materials/environment';
 import { parse_options } from './options';
 import { Playback } from './playback';
 import { levels, QualityWatch } from './quality';
+import { ViewModes } from './view_modes';
 import { quaternion, vector, World } from './world';
 
 const options = parse_options(location.search);
 const canvas = document.getElementById('view') as HTMLCanvasElement;
 const may_drive = options.role === 'trainee';
 const may_command = options.role !== 'observer';
+const shortcuts: Record<string, () => void> = {
+  KeyL: () => hud.clips.toggle(),
+  KeyI: () => modes.set_infrared(!modes.infrared),
+  KeyJ: () => inject_dye(),
+  KeyO: () => modes.next_stereo(),
+  KeyM: () => hud.vitals.toggle_sound(),
+  BracketLeft: () => modes.set_angle(modes.angle_deg - 0.5),
+  BracketRight: () => modes.set_angle(modes.angle_deg + 0.5),
+};
 
 const renderer = make_renderer();
 renderer.toneMapping = THREE.ACESFilmicToneMapping;
@@ -43,10 +58,14 @@ let frame_ms = -1e9;
 let watch = new QualityWatch(options.quality);
 let load_error = '';
 let frozen = false;
+/** What the newest frame's hud_json says. */
+let state: HudState | null = null;
+let state_text = '';
+let spoken_to = '';
 
 const status = {
   ready: false, frames: 0, pictures: 0, fps: 0, session: '', quality: '', connected: false, frozen: false, refused: 0, error: '',
-  build_ms: 0, taken: [false, false], active: 1, triangles: 0,
+  build_ms: 0, taken: [false, false], active: 1, triangles: 0, stereo: 'off', infrared: false, presenting: false,
 };
 (window as unknown as { __insula: typeof status }).__insula = status;
 
@@ -65,29 +84,44 @@ const link = new Connection(ws_url.href, {
     if (options.freeze_at_s !== null && m.sim_time_s >= options.freeze_at_s) frozen = status.frozen = true;
   },
   scene: (m) => { info = m; info_ms = performance.now(); void follow(m); },
-  event: (m) => { if (m.text) hud.say(m.text, m.kind, performance.now()); },
+  event: (m) => {
+    if (m.kind === 'message') spoken_to = m.text;
+    hud.show_event(m, performance.now());
+  },
   haptic: (m) => { haptic = m; haptic_ms = performance.now(); },
   devices: () => undefined,
   state: (open) => { status.connected = open; if (!open) { info = null; hands.release_all(); } },
 });
 
+const run = (c: UserCommand) => { if (may_command) link.send_command(c.command, c.argument); };
 const hud = new Hud(hud_root, {
-  command: (name) => link.send_command(name),
+  run,
+  stereo: (mode) => modes.set_stereo(mode, true),
+  angle: (deg) => modes.set_angle(deg),
+  infrared: (on) => modes.set_infrared(on),
+  inject_dye,
   quality: (name) => { watch = new QualityWatch(name === '' ? null : (name as 'low')); apply_quality(); },
   choose_hand: (h) => hands.set_active(h),
   release_hand: (h) => hands.release(h),
   button: (b, on) => hands.press(b, on),
-}, may_command, may_drive, options.quality ?? '');
+}, options.role, options.quality ?? '');
+const headset: Headset = new Headset(renderer, () => modes.set_stereo('off'));
+const modes: ViewModes = new ViewModes(options, headset, {
+  infrared: (on) => { status.infrared = on; world?.set_infrared(on); hud.view.show_infrared(on); },
+  stereo: (mode, angle, found, presenting) => { hud_root.dataset.stereo = status.stereo = mode; hud.view.show_stereo(mode, angle, found, presenting); },
+  refuse: (why) => hud.refuse(why, performance.now()),
+});
 
 const hands: Hands = new Hands(canvas, scope, link, {
   tool_pose: (hand) => {
-    const t = playback.latest?.tool.find((x) => x.hand === hand);
+    const t = playback.latest && world ? tool_in_hand(playback.latest, world.bundle, hand) : null;
     return t ? { p: vector(t.p_m), q: quaternion(t.q) } : null;
   },
 }, {
   focus_at,
   toggle_pause: () => { if (may_command) link.send_command(playback.latest?.paused ? 'resume' : 'pause'); },
   toggle_help: () => hud.toggle_help(),
+  next_tool: (hand, step) => hud.next_tool(hand, step),
   changed: () => {
     status.taken = hands.hands.map((h) => h.taken);
     status.active = hands.active;
@@ -114,6 +148,9 @@ async function follow(m: SceneInfo): Promise<void> {
     world = new World(bundle, scope.field_axis, scene.environment);
     status.build_ms = Math.round(performance.now() - from);
     scene.add(world.root);
+    world.set_infrared(modes.infrared);
+    state = null;
+    state_text = '';
     apply_quality();
     hud.show_scene(bundle);
     status.session = session;
@@ -130,6 +167,8 @@ function apply_quality(): void {
   status.quality = level.name;
   renderer.setPixelRatio(Math.min(window.devicePixelRatio * Math.min(1, level.pixel_ratio), level.pixel_ratio));
   lens.configure(level.lens);
+  headset.configure(level.lens, 0.75 * level.pixel_ratio);
+  world?.set_cheap(level.name === 'low');
   const shadow = scope.lamp.shadow;
   const shadows = level.shadow_size > 0;
   if (renderer.shadowMap.enabled !== shadows) {
@@ -147,8 +186,31 @@ function apply_quality(): void {
 /** The point under the pointer becomes the focus. */
 function focus_at(x: number, y: number): void {
   if (!world) return;
-  const point = lens.pick(x, y, canvas.clientWidth, canvas.clientHeight, scope.camera);
+  const point = lens.pick(x, y, canvas.clientWidth, canvas.clientHeight);
   if (point) scope.focus(point);
+}
+
+function inject_dye(): void {
+  const found = world && find_command(world.bundle.commands, 'inject_dye');
+  if (found) run(ask(found.id, 'inject_dye'));
+}
+
+window.addEventListener('keydown', (e) => {
+  if (e.repeat || e.ctrlKey || e.metaKey || e.altKey || e.target instanceof HTMLInputElement || e.target instanceof HTMLSelectElement) return;
+  shortcuts[e.code]?.();
+});
+
+/** Reads hud_json again when it has changed. */
+function read_state(): void {
+  const f = playback.latest;
+  if (!f || f.hud_json === state_text) return;
+  state_text = f.hud_json;
+  state = parse_hud(f.hud_json) ?? state;
+}
+
+function headset_lines(): string[] {
+  const timers = (state?.timers ?? []).filter((t) => t.running).map((t) => `${t.text} ${time_left_text(t)}`);
+  return ['For training only. Not for patient care.', timers.join('     '), spoken_to];
 }
 
 function banner(now: number): string {
@@ -175,15 +237,20 @@ let counted = 0;
 let counted_from = last;
 
 function draw(now: number): void {
-  requestAnimationFrame(draw);
   const dt = Math.min(0.1, Math.max(0, (now - last) / 1000));
   last = now;
+  const presenting = headset.presenting;
   const wide = canvas.clientWidth, high = canvas.clientHeight;
   const size = renderer.getSize(new THREE.Vector2());
-  if (size.x !== wide || size.y !== high) renderer.setSize(wide, high, false);
-  scope.update(dt, wide / Math.max(1, high));
-  world?.update(playback, now);
-  lens.render(scene, scope.camera, scope.distance);
+  if (!presenting && (size.x !== wide || size.y !== high)) renderer.setSize(wide, high, false);
+  const halves = modes.stereo === 'sbs' && !presenting ? 2 : 1;
+  scope.update(dt, presenting ? 1 : wide / halves / Math.max(1, high));
+  read_state();
+  world?.update(playback, now, state);
+  const angle = THREE.MathUtils.degToRad(modes.angle_deg);
+  if (presenting) headset.render(scene, scope.camera, scope.distance, angle, headset_lines());
+  else lens.render(scene, scope.camera, scope.distance, modes.stereo, angle);
+  status.presenting = presenting;
   status.triangles = lens.triangles;
   counted++;
   status.pictures++;
@@ -201,8 +268,7 @@ function draw(now: number): void {
   if (!options.hud) return;
   const fresh_haptic = now - haptic_ms < 3000 ? haptic : null;
   if (playback.latest && world) {
-    const kinds = [0, 1].map((h) => world!.bundle.tools.find((t) => t.hand === (h === 0 ? 'left' : 'right'))?.kind ?? '');
-    hud.show_frame(playback.latest, kinds, may_drive ? hands.active : -1, hands.hands.map((h) => h.taken));
+    hud.show_frame(playback.latest, state, may_drive ? hands.active : -1, hands.hands.map((h) => h.taken));
   }
   hud.show_machine(now - frame_ms < 2500 ? playback.latest : null, fresh_haptic, status.fps, status.quality);
   const alive = now - frame_ms < Math.max(1000, 3000 * dt);
@@ -220,4 +286,6 @@ setInterval(() => {
 }, 1000 / 60);
 
 apply_quality();
-requestAnimationFrame(draw);
+modes.tell();
+// three's own loop: it goes on in a headset, where the window's stands still.
+renderer.setAnimationLoop(draw);

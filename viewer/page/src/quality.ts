@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Picture quality levels, and the watch that steps down when the page falls below 40 frames/s and up again when it is idle.
-import type { LensSettings } from './lens';
+import type { LensSettings } from './lens_material';
 import type { QualityName } from './options';
 
 export interface Level {

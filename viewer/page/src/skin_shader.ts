@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Puts the skinning law of skinning.ts into three's materials: the lit pass and the shadow pass use the same code.
 import * as THREE from 'three';
-import { NodeField, texels_per_node, texture_width } from './skinning';
+import { type NodeField, skin_offsets, texels_per_node, texture_width } from './skinning';
 
 const declarations = /* glsl */ `
 uniform highp sampler2D node_field;
 attribute vec4 skin_nodes;
 attribute vec4 skin_weights;
+attribute vec3 skin_offset;
 void skin(in vec3 n, out vec3 x, out vec3 m) {
   vec3 c0 = vec3(0.0), c1 = vec3(0.0), c2 = vec3(0.0);
-  x = vec3(0.0);
+  x = skin_offset;
   for (int k = 0; k < 4; k++) {
     int t = int(skin_nodes[k] + 0.5) * ${texels_per_node};
     ivec2 at = ivec2(t % ${texture_width}, t / ${texture_width});
@@ -63,8 +64,9 @@ export function skinned_depth_material(skin: SkinTexture): THREE.MeshDepthMateri
   return m;
 }
 
-/** Adds the skinning attributes to a geometry. */
-export function set_skin_attributes(geometry: THREE.BufferGeometry, nodes: Uint32Array, weights: Float32Array): void {
+/** Adds the skinning attributes to a geometry whose rest positions are set; `rest`: of the nodes. */
+export function set_skin_attributes(geometry: THREE.BufferGeometry, nodes: Uint32Array, weights: Float32Array, rest: Float32Array): void {
+  geometry.setAttribute('skin_offset', new THREE.BufferAttribute(skin_offsets(rest, geometry.attributes.position!.array, nodes, weights), 3));
   geometry.setAttribute('skin_nodes', new THREE.BufferAttribute(Float32Array.from(nodes), 4));
   geometry.setAttribute('skin_weights', new THREE.BufferAttribute(weights, 4));
 }

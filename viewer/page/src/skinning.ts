@@ -2,7 +2,9 @@
 // Fine surfaces that follow the nodes of a body. Positions: x = sum_i w_i x_i over four nodes. Normals: the cofactor matrix of
 // the deformation gradient F of each tetrahedron, averaged to the nodes and interpolated like the positions, so that the
 // shading stays smooth across tetrahedra: n' ~ sum_i w_i C_i n, with C = cof(F) = sum_k c_k (x) e_k / det(E),
-// e_k the rest edges, c_k the cross products of the deformed edges (cof(D) columns).
+// e_k the rest edges, c_k the cross products of the deformed edges (cof(D) columns). A triangle of a shell counts as a
+// tetrahedron whose third edge is its normal. A vertex that rides beside its nodes keeps its offset:
+// x = sum_i w_i x_i + (X - sum_i w_i X_i).
 
 /** Texels per node in the node texture: position and the three columns of C. */
 export const texels_per_node = 4;
@@ -12,15 +14,16 @@ export const texture_width = 256;
 export class NodeField {
   readonly rows: number;
   readonly texels: Float32Array<ArrayBuffer>;
-  private readonly tets: Uint32Array;
+  /** Four nodes each; the last is -1 in a triangle. */
+  private readonly tets: Int32Array;
   private readonly rest_edges: Float32Array;
 
-  /** `quads`: node quadruples of the tetrahedra that carry surface vertices, repeats allowed. */
-  constructor(readonly rest: Float32Array, quads: Uint32Array[]) {
+  /** `quads`: node quadruples of the tetrahedra that carry surface vertices, repeats allowed; `triangles`: of a shell, by nodes. */
+  constructor(readonly rest: Float32Array, quads: Uint32Array[], triangles: Uint32Array = new Uint32Array(0)) {
     const nodes = rest.length / 3;
     this.rows = Math.max(1, Math.ceil((nodes * texels_per_node) / texture_width));
     this.texels = new Float32Array(this.rows * texture_width * 4);
-    this.tets = unique_tets(rest, quads);
+    this.tets = unique_elements(rest, quads, triangles);
     this.rest_edges = new Float32Array((this.tets.length / 4) * 9);
     const e = new Float64Array(9);
     for (let t = 0; t < this.tets.length / 4; t++) {
@@ -56,6 +59,7 @@ export class NodeField {
         const cy = c[1]! * ex + c[4]! * ey + c[7]! * ez;
         const cz = c[2]! * ex + c[5]! * ey + c[8]! * ez;
         for (let k = 0; k < 4; k++) {
+          if (this.tets[t * 4 + k]! < 0) continue;
           const o = this.tets[t * 4 + k]! * 16 + 4 + j * 4;
           out[o] = out[o]! + cx; out[o + 1] = out[o + 1]! + cy; out[o + 2] = out[o + 2]! + cz;
         }
@@ -78,7 +82,7 @@ export class NodeField {
 
 /** The same law as the vertex shader, on the CPU; writes position and unit normal. */
 export function skin_vertex(field: NodeField, nodes: ArrayLike<number>, weights: ArrayLike<number>, v: number, normal: ArrayLike<number>,
-  out_position: number[], out_normal: number[]): void {
+  out_position: number[], out_normal: number[], offsets: ArrayLike<number> | null = null): void {
   const m = new Float64Array(12);
   let p0 = 0, p1 = 0, p2 = 0;
   for (let k = 0; k < 4; k++) {
@@ -87,6 +91,7 @@ export function skin_vertex(field: NodeField, nodes: ArrayLike<number>, weights:
     p0 += w * field.texels[o]!; p1 += w * field.texels[o + 1]!; p2 += w * field.texels[o + 2]!;
     for (let j = 0; j < 12; j++) m[j] = m[j]! + w * field.texels[o + 4 + j]!;
   }
+  if (offsets) { p0 += offsets[v * 3]!; p1 += offsets[v * 3 + 1]!; p2 += offsets[v * 3 + 2]!; }
   out_position[0] = p0; out_position[1] = p1; out_position[2] = p2;
   const a = normal[0]!, b = normal[1]!, c = normal[2]!;
   const nx = m[0]! * a + m[4]! * b + m[8]! * c, ny = m[1]! * a + m[5]! * b + m[9]! * c, nz = m[2]! * a + m[6]! * b + m[10]! * c;
@@ -111,12 +116,18 @@ export function barycentric(rest: Float32Array, quad: ArrayLike<number>, at: num
   return [1 - w[0] - w[1] - w[2], w[0], w[1], w[2]];
 }
 
-function edges(x: Float32Array, tets: Uint32Array, t: number, out: Float64Array): void {
+function edges(x: Float32Array, tets: ArrayLike<number>, t: number, out: Float64Array): void {
   const a = tets[t * 4]! * 3;
   for (let k = 0; k < 3; k++) {
     const b = tets[t * 4 + 1 + k]! * 3;
+    if (b < 0) continue;
     for (let j = 0; j < 3; j++) out[k * 3 + j] = x[b + j]! - x[a + j]!;
   }
+  if (tets[t * 4 + 3]! >= 0) return;
+  // The normal, as long as the triangle is wide.
+  cross(out, 0, 3, out, 6);
+  const s = 1 / Math.sqrt(Math.hypot(out[6]!, out[7]!, out[8]!) || 1);
+  for (let j = 6; j < 9; j++) out[j] = out[j]! * s;
 }
 
 function determinant(e: Float64Array): number {
@@ -129,17 +140,53 @@ function cross(a: Float64Array, i: number, j: number, out: Float64Array, o: numb
   out[o + 2] = a[i]! * a[j + 1]! - a[i + 1]! * a[j]!;
 }
 
-function unique_tets(rest: Float32Array, quads: Uint32Array[]): Uint32Array {
+function unique_elements(rest: Float32Array, quads: Uint32Array[], triangles: Uint32Array): Int32Array {
   const seen = new Map<string, number[]>();
   const e = new Float64Array(9);
-  for (const q of quads) {
-    for (let i = 0; i + 3 < q.length; i += 4) {
-      const key = `${q[i]},${q[i + 1]},${q[i + 2]},${q[i + 3]}`;
-      if (seen.has(key)) continue;
-      const quad = [q[i]!, q[i + 1]!, q[i + 2]!, q[i + 3]!];
-      edges(rest, Uint32Array.from(quad), 0, e);
-      const size = Math.hypot(e[0]!, e[1]!, e[2]!) * Math.hypot(e[3]!, e[4]!, e[5]!) * Math.hypot(e[6]!, e[7]!, e[8]!);
-      if (Math.abs(determinant(e)) > 1e-6 * size) seen.set(key, quad);
+  const take = (nodes: number[]) => {
+    const key = nodes.join();
+    if (seen.has(key)) return;
+    edges(rest, nodes, 0, e);
+    const size = Math.hypot(e[0]!, e[1]!, e[2]!) * Math.hypot(e[3]!, e[4]!, e[5]!) * Math.hypot(e[6]!, e[7]!, e[8]!);
+    if (Math.abs(determinant(e)) > 1e-6 * size) seen.set(key, nodes);
+  };
+  for (const q of quads) for (let i = 0; i + 3 < q.length; i += 4) take([q[i]!, q[i + 1]!, q[i + 2]!, q[i + 3]!]);
+  for (let i = 0; i + 2 < triangles.length; i += 3) take([triangles[i]!, triangles[i + 1]!, triangles[i + 2]!, -1]);
+  return Int32Array.from([...seen.values()].flat());
+}
+
+/** What is left of a vertex' rest place when its nodes' share is taken off; it stays constant as the nodes move. */
+export function skin_offsets(rest: Float32Array, positions: ArrayLike<number>, nodes: ArrayLike<number>, weights: ArrayLike<number>): Float32Array {
+  const out = new Float32Array(positions.length);
+  for (let v = 0; v < positions.length / 3; v++)
+    for (let j = 0; j < 3; j++) {
+      let x = positions[v * 3 + j]!;
+      for (let k = 0; k < 4; k++) x -= weights[v * 4 + k]! * rest[nodes[v * 4 + k]! * 3 + j]!;
+      out[v * 3 + j] = x;
+    }
+  return out;
+}
+
+/**
+ * The triangles of a shell as its surfaces show them: those that carry picture vertices (three weighted nodes), and the
+ * surface's own where each vertex is a node. Empty for a body of tetrahedra.
+ */
+export function shell_triangles(surfaces: { indices: Uint32Array; skin_nodes: Uint32Array; skin_weights: Float32Array }[]): Uint32Array {
+  const seen = new Map<string, number[]>();
+  const take = (a: number[]) => { if (new Set(a).size === 3) seen.set([...a].sort((x, y) => x - y).join(), a); };
+  for (const s of surfaces) {
+    const heavy = (v: number) => {
+      const used = new Set<number>();
+      for (let k = 0; k < 4; k++) if (Math.abs(s.skin_weights[v * 4 + k]!) > 1e-6) used.add(s.skin_nodes[v * 4 + k]!);
+      return [...used];
+    };
+    const of = Array.from({ length: s.skin_nodes.length / 4 }, (_, v) => heavy(v));
+    // A vertex in a tetrahedron has four: this is no shell.
+    if (of.some((n) => n.length > 3)) return new Uint32Array(0);
+    for (const n of of) if (n.length === 3) take(n);
+    for (let t = 0; t + 2 < s.indices.length; t += 3) {
+      const n = [0, 1, 2].map((k) => of[s.indices[t + k]!]!);
+      if (n.every((x) => x.length === 1)) take(n.map((x) => x[0]!));
     }
   }
   return Uint32Array.from([...seen.values()].flat());

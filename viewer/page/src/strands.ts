@@ -3,6 +3,7 @@
 // slack, straightens and reddens under tension, thins as it wears, and recoils to both sides when it parts. Fine cross
 // filaments tie neighbours into a web.
 import * as THREE from 'three';
+import { type FieldUniforms, inject_veil } from './materials/field';
 import { make_random } from './random';
 
 const fibres_per_strand = 3;
@@ -36,7 +37,7 @@ export class Strands {
   private readonly parted_at: Float64Array;
   private webbed = false;
 
-  constructor(private readonly count: number, private readonly radius_m: number) {
+  constructor(private readonly count: number, private readonly radius_m: number, field: FieldUniforms) {
     const capacity = count * (fibres_per_strand + 2);
     this.ends = new Float32Array(count * 6);
     this.health = new Float32Array(count);
@@ -61,7 +62,7 @@ export class Strands {
     this.geometry.setAttribute('state', this.state);
     this.geometry.setAttribute('slack', this.slack);
     this.geometry.instanceCount = 0;
-    this.mesh = new THREE.Mesh(this.geometry, strand_material());
+    this.mesh = new THREE.Mesh(this.geometry, strand_material(field));
     this.mesh.frustumCulled = false;
     this.mesh.receiveShadow = true;
     this.mesh.renderOrder = 2;
@@ -197,11 +198,12 @@ vec3 strand_centre(float t, bool second, vec3 n1, vec3 n2) {
 }
 `;
 
-function strand_material(): THREE.MeshPhysicalMaterial {
+function strand_material(field: FieldUniforms): THREE.MeshPhysicalMaterial {
   const m = new THREE.MeshPhysicalMaterial({
     color: 0xffffff, roughness: 0.35, clearcoat: 0.8, clearcoatRoughness: 0.2, transparent: true, depthWrite: false, side: THREE.DoubleSide,
   });
   m.onBeforeCompile = (shader) => {
+    inject_veil(shader, field);
     shader.vertexShader = shader.vertexShader
       .replace('#include <common>', `#include <common>\n${shape}`)
       .replace('#include <beginnormal_vertex>', `

@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Everything drawn of one session: built from a bundle, moved by frames, thrown away when the session changes.
 import * as THREE from 'three';
-import type { Bundle, SkinnedSurface, SurfaceData } from './bundle';
+import { Artery } from './artery';
+import { Blood } from './blood';
+import type { BodyData, Bundle, SkinnedSurface, SurfaceData } from './bundle';
 import { creased, smooth_normals } from './geometry';
+import type { HudState } from './hud/state';
+import { FieldUniforms } from './materials/field';
 import { looks, pressed_count, tissue_material, vessel_material } from './materials/tissue';
 import { solid_material } from './materials/solid';
 import { bake_shading, type Shading, type Tissue } from './occlusion';
 import type { RenderFrame } from './lcm';
 import { Playback } from './playback';
 import { hash_text } from './random';
-import { barycentric, NodeField } from './skinning';
+import { region_dye } from './regions';
+import { barycentric, NodeField, shell_triangles } from './skinning';
 import { set_skin_attributes, SkinTexture, skinned_depth_material } from './skin_shader';
 import { PointGrid } from './spatial';
 import { Strands } from './strands';
@@ -23,6 +28,14 @@ const vessel_styles: Record<string, VesselStyle> = {
 
 const tissue_kinds = new Set(['cortex', 'pia', 'insula']);
 
+interface Plan {
+  surface: SurfaceData;
+  skinned: SkinnedSurface | null;
+  skin: SkinTexture | null;
+  body: BodyData | null;
+  tissue: Tissue;
+}
+
 interface Moving {
   index: number;
   skin: SkinTexture;
@@ -32,45 +45,75 @@ export class World {
   readonly root = new THREE.Group();
   readonly tools = new Map<number, Tool>();
   readonly strands: Strands | null;
+  readonly field = new FieldUniforms();
+  private readonly blood: Blood;
+  private readonly arteries: Artery[] = [];
+  private readonly dye_now: number[] = [];
+  private infrared = false;
+  private last_ms = -1;
   private readonly pressed = Array.from({ length: pressed_count }, () => new THREE.Vector4());
   private readonly moving: Moving[] = [];
   private readonly owned: { dispose(): void }[] = [];
 
   constructor(readonly bundle: Bundle, field_axis: THREE.Vector3, environment: THREE.Texture | null) {
-    const plan: { surface: SurfaceData; skinned: SkinnedSurface | null; skin: SkinTexture | null; rest: Float32Array | null; tissue: Tissue }[] = [];
+    const plan: Plan[] = [];
     for (const body of bundle.bodies) {
       if (body.surfaces.length === 0) continue;
-      const skin = new SkinTexture(new NodeField(body.rest, body.surfaces.map((s) => s.skin_nodes)));
+      const triangles = shell_triangles(body.surfaces);
+      const skin = new SkinTexture(new NodeField(body.rest, triangles.length > 0 ? [] : body.surfaces.map((s) => s.skin_nodes), triangles));
       this.moving.push({ index: body.index, skin });
       this.owned.push(skin);
-      for (const s of body.surfaces) plan.push({ surface: s, skinned: s, skin, rest: body.rest, tissue: as_tissue(s) });
+      for (const s of body.surfaces) plan.push({ surface: s, skinned: s, skin, body, tissue: as_tissue(s) });
     }
     for (const s of bundle.static) {
-      if (tissue_kinds.has(s.material)) plan.push({ surface: s, skinned: null, skin: null, rest: null, tissue: as_tissue(s) });
+      if (tissue_kinds.has(s.material)) plan.push({ surface: s, skinned: null, skin: null, body: null, tissue: as_tissue(s) });
       else if (s.material === 'vessel') this.add_artery(s);
       else this.add_solid(s, field_axis);
     }
     const shading = bake_shading(plan.map((p) => p.tissue));
     plan.forEach((p, i) => {
-      if (tissue_kinds.has(p.surface.material)) this.add_tissue(p.surface, p.tissue, shading[i]!, p.skinned, p.skin, p.rest);
-      else this.add_tissue({ ...p.surface, material: p.surface.material === 'vessel' ? 'vessel' : 'pia' }, p.tissue, shading[i]!, p.skinned, p.skin, p.rest);
+      if (p.surface.material === 'vessel' && p.skinned && p.body && p.skin) this.add_moving_artery(p.skinned, p.body, p.skin, shading[i]!);
+      else this.add_tissue(tissue_kinds.has(p.surface.material) ? p.surface : { ...p.surface, material: 'pia' }, p, shading[i]!);
     });
     for (const t of bundle.tools) {
-      const tool = new Tool(t, environment);
+      const tool = new Tool(t, environment, this.field);
       tool.add_to(this.root);
       this.tools.set(t.index, tool);
       this.owned.push(tool);
     }
-    this.strands = bundle.strands.count > 0 ? new Strands(bundle.strands.count, bundle.strands.radius_m) : null;
+    this.strands = bundle.strands.count > 0 ? new Strands(bundle.strands.count, bundle.strands.radius_m, this.field) : null;
     if (this.strands) {
       this.root.add(this.strands.mesh);
       this.owned.push(this.strands);
     }
+    this.blood = new Blood(this.field, environment);
+    this.root.add(this.blood.surface, this.blood.jet.mesh);
+    this.owned.push(this.blood);
   }
 
-  update(playback: Playback, now_ms: number): void {
+  /** The infrared camera's picture instead of the eye's. */
+  set_infrared(on: boolean): void { this.infrared = on; }
+  get is_infrared(): boolean { return this.infrared; }
+
+  /** Simpler shaders and fewer drops for slow machines. */
+  set_cheap(cheap: boolean): void {
+    this.root.traverse((o) => {
+      if (!(o instanceof THREE.Mesh) || !(o.material as THREE.Material).userData.has_cheap) return;
+      const m = o.material as THREE.Material & { defines?: Record<string, unknown> };
+      const defines = (m.defines ??= {});
+      if (('CHEAP' in defines) === cheap) return;
+      if (cheap) defines.CHEAP = '';
+      else delete defines.CHEAP;
+      m.needsUpdate = true;
+    });
+    this.blood.jet.set_cheap(cheap);
+  }
+
+  update(playback: Playback, now_ms: number, state: HudState | null): void {
     const frame = playback.latest;
     if (!frame) return;
+    const dt = this.last_ms < 0 ? 0 : Math.min(1, (now_ms - this.last_ms) / 1000);
+    this.last_ms = now_ms;
     const t = playback.blend(now_ms);
     for (const m of this.moving) {
       const x = playback.nodes(m.index, t);
@@ -78,14 +121,39 @@ export class World {
     }
     this.strands?.update(playback.strand_ends(t), frame.strand_health, frame.strand_tension_N, now_ms / 1000);
     this.update_pressed(frame);
+    this.update_flow(state, frame.sim_time_s, dt);
     for (const [index, tool] of this.tools) {
       const pair = playback.tool(index);
-      if (!pair) { tool.hide(); continue; }
-      const { a, b } = pair;
+      // On the tray it is not in the picture.
+      if (!pair || pair.b.state === 0) { tool.hide(); continue; }
+      const { b } = pair;
+      // What just came from the tray was elsewhere a frame ago.
+      const a = pair.a.state === 0 ? b : pair.a;
       const p = vector(a.p_m).lerp(vector(b.p_m), t);
       const q = quaternion(a.q).slerp(quaternion(b.q), t);
-      tool.set_pose(p, q, vector(a.device_p_m).lerp(vector(b.device_p_m), t));
+      const device = b.state === 2 || b.hand < 0 || tool.data.clip ? null : vector(a.device_p_m).lerp(vector(b.device_p_m), t);
+      tool.set_pose(p, q, a.opening_rad + (b.opening_rad - a.opening_rad) * t, device);
     }
+  }
+
+  /** Blood, pulse, dye and the change between the two pictures. */
+  private update_flow(state: HudState | null, time_s: number, dt: number): void {
+    const f = this.field;
+    f.seconds.value = time_s;
+    const phase = state?.heart_phase ?? null;
+    f.pulse.value = phase === null ? 0.5 : pulse_shape(phase);
+    f.infrared.value += ((this.infrared ? 1 : 0) - f.infrared.value) * (1 - Math.exp(-dt * 6));
+    const vessels = state?.vessels ?? [];
+    const artery = this.arteries[0];
+    if (artery) region_dye(artery.regions, vessels).forEach((d, i) => {
+      // The engine's dye moves from station to station; the picture follows within a fifth of a second.
+      this.dye_now[i] = (this.dye_now[i] ?? 0) + (d - (this.dye_now[i] ?? 0)) * (1 - Math.exp(-dt * 5));
+      f.dye.value[i] = this.dye_now[i]!;
+    });
+    const far = vessels.filter((v) => !['parent', 'sac', 'bleb', 'neck'].includes(v.id)).map((v) => v.dye);
+    const mean = far.length > 0 ? far.reduce((a, b) => a + b, 0) / far.length : 0;
+    f.dye_far.value += (mean - f.dye_far.value) * (1 - Math.exp(-dt * 0.9));
+    this.blood.update(state?.blood ?? null, artery?.bleeding_place() ?? null, dt);
   }
 
   /** The strongest contacts; they fade in and out, since contacts flicker from step to step. */
@@ -123,7 +191,7 @@ export class World {
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute('position', new THREE.BufferAttribute(shape.positions, 3));
     geometry.setAttribute('normal', new THREE.BufferAttribute(shape.normals, 3));
-    this.add(geometry, solid_material(s.material, field_axis.clone()), true, null);
+    this.add(geometry, solid_material(s.material, this.field, field_axis.clone()), true, null);
   }
 
   private add_artery(s: SurfaceData): void {
@@ -133,27 +201,28 @@ export class World {
     geometry.setAttribute('normal', new THREE.BufferAttribute(tissue.normals, 3));
     geometry.setIndex(new THREE.BufferAttribute(s.indices, 1));
     geometry.setAttribute('vessel', new THREE.BufferAttribute(new Float32Array((s.positions.length / 3) * 2).map((_, i) => i % 2), 2));
-    this.add(geometry, vessel_material(null), true, null);
+    this.add(geometry, vessel_material(null, this.field), true, null);
   }
 
-  private add_tissue(s: SurfaceData, tissue: Tissue, shading: Shading, skinned: SkinnedSurface | null, skin: SkinTexture | null, rest: Float32Array | null): void {
+  private add_moving_artery(s: SkinnedSurface, body: BodyData, skin: SkinTexture, shading: Shading): void {
+    const artery = new Artery(s, body, skin, shading.openness, this.field);
+    this.arteries.push(artery);
+    this.add(artery.geometry, artery.material, true, skin);
+  }
+
+  private add_tissue(s: SurfaceData, plan: Plan, shading: Shading): void {
     const n = s.positions.length / 3;
+    const { tissue, skinned, skin, body } = plan;
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute('position', new THREE.BufferAttribute(s.positions, 3));
     geometry.setAttribute('normal', new THREE.BufferAttribute(tissue.normals, 3));
     geometry.setIndex(new THREE.BufferAttribute(s.indices, 1));
-    if (skinned) set_skin_attributes(geometry, skinned.skin_nodes, skinned.skin_weights);
+    if (skinned && body) set_skin_attributes(geometry, skinned.skin_nodes, skinned.skin_weights, body.rest);
     const pairs = new Float32Array(n * 2);
-    if (s.material === 'vessel') {
-      for (let i = 0; i < n; i++) pairs[i * 2 + 1] = shading.openness[i]!;
-      geometry.setAttribute('vessel', new THREE.BufferAttribute(pairs, 2));
-      this.add(geometry, vessel_material(skin), true, skin);
-      return;
-    }
     for (let i = 0; i < n; i++) { pairs[i * 2] = shading.openness[i]!; pairs[i * 2 + 1] = shading.convexity[i]!; }
     geometry.setAttribute('shading', new THREE.BufferAttribute(pairs, 2));
-    this.add(geometry, tissue_material(looks[s.material] ?? looks.cortex!, skin, this.pressed), true, skin);
-    this.add_vessels(s, tissue, shading, skinned, skin, rest);
+    this.add(geometry, tissue_material(looks[s.material] ?? looks.cortex!, skin, this.pressed, this.field), true, skin);
+    this.add_vessels(s, tissue, shading, skinned, skin, body?.rest ?? null);
   }
 
   private add_vessels(s: SurfaceData, tissue: Tissue, shading: Shading, skinned: SkinnedSurface | null, skin: SkinTexture | null, rest: Float32Array | null): void {
@@ -183,9 +252,15 @@ export class World {
       }
     }
     geometry.setAttribute('vessel', new THREE.BufferAttribute(pairs, 2));
-    if (skinned) set_skin_attributes(geometry, nodes, weights);
-    this.add(geometry, vessel_material(skin), false, skin);
+    if (skinned && rest) set_skin_attributes(geometry, nodes, weights, rest);
+    this.add(geometry, vessel_material(skin, this.field), false, skin);
   }
+}
+
+/** Rises fast in systole, falls off slowly; 0..1. */
+function pulse_shape(phase: number): number {
+  const p = phase - Math.floor(phase);
+  return p < 0.15 ? Math.sin((p / 0.15) * Math.PI * 0.5) : Math.exp(-(p - 0.15) * 3.2);
 }
 
 function as_tissue(s: SurfaceData): Tissue {

@@ -3,22 +3,14 @@
 // canvas shows something, pause and reset reach the server, a hand is taken without a jump, and it comes back by itself after
 // the server was away. CHROMIUM names the browser when it is not /usr/bin/chromium. Exit status 77: no browser, skipped.
 import assert from 'node:assert/strict';
-import { existsSync } from 'node:fs';
-import { chromium } from 'playwright-core';
 import { start_mock } from '../scripts/mock-server.mjs';
+import { check, launch, look, patience, wait_for } from './browser.mjs';
 
-const executablePath = process.env.CHROMIUM ?? '/usr/bin/chromium';
-if (!existsSync(executablePath)) {
-  console.log(`skipped: no browser at ${executablePath}`);
-  process.exit(77);
-}
-const patience = { timeout: 180_000, polling: 250 };
 let mock = await start_mock({ port: 0, start_s: 3 });
 const port = Number(new URL(mock.url).port);
-const browser = await chromium.launch({ executablePath, args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist'] });
+const browser = await launch();
 const errors = [];
 let away = false;
-const check = (text) => console.log(`ok  ${text}`);
 try {
   const page = await browser.newPage({ viewport: { width: 480, height: 320 } });
   page.on('console', (m) => { if (m.type() === 'error' && !away) errors.push(m.text()); });
@@ -33,27 +25,12 @@ try {
   assert.equal((await status()).refused, 0);
   check('frames and pictures go on');
 
-  const shot = await page.screenshot({ clip: { x: 140, y: 60, width: 200, height: 200 }, timeout: 120_000 });
-  const seen = await page.evaluate(async (base64) => {
-    const image = await createImageBitmap(await (await fetch(`data:image/png;base64,${base64}`)).blob());
-    const canvas = new OffscreenCanvas(image.width, image.height);
-    const context = canvas.getContext('2d');
-    context.drawImage(image, 0, 0);
-    const d = context.getImageData(0, 0, image.width, image.height).data;
-    let mean = 0, square = 0, red = 0;
-    for (let i = 0; i < d.length; i += 4) { const y = (d[i] + d[i + 1] + d[i + 2]) / 3; mean += y; square += y * y; if (d[i] > d[i + 2] + 15) red++; }
-    const n = d.length / 4;
-    return { mean: mean / n, deviation: Math.sqrt(square / n - (mean / n) ** 2), red: red / n };
-  }, shot.toString('base64'));
+  const seen = await look(page, { x: 140, y: 60, width: 200, height: 200 });
   assert.ok(seen.mean > 25 && seen.mean < 230, `mean brightness ${seen.mean}`);
   assert.ok(seen.deviation > 15, `contrast ${seen.deviation}`);
   assert.ok(seen.red > 0.2, `share of reddish pixels ${seen.red}`);
   check(`canvas shows tissue (brightness ${seen.mean.toFixed(0)}, contrast ${seen.deviation.toFixed(0)}, reddish ${(100 * seen.red).toFixed(0)} %)`);
 
-  const wait_for = async (what, test) => {
-    for (let k = 0; k < 400; k++) { if (test()) return; await new Promise((r) => setTimeout(r, 100)); }
-    assert.fail(`no ${what} within 40 s`);
-  };
   await page.keyboard.press('p');
   await wait_for('pause', () => mock.state.commands.includes('pause'));
   await page.waitForFunction(() => document.querySelector('.banner')?.textContent === 'Paused', null, patience);

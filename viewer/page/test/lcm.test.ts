@@ -25,6 +25,7 @@ describe('lcm codec', () => {
     expect([...f.body[0]!.x_m]).toEqual([0.5, 0.25, -1, 2, 4, 8]);
     expect([...f.strand_health]).toEqual([-1]);
     expect(f.tool[0]!.hand).toBe(-1);
+    expect([f.tool[0]!.state, f.tool[0]!.opening_rad]).toEqual([2, 0.25]);
     expect([...f.tool[0]!.q]).toEqual([0.5, 0.5, 0.5, 0.5]);
     expect(f.hud_json).toBe('{"goals":[]}');
     expect(lcm.user_command_t.decode(bytes(known.bytes.user_command_t))).toEqual({ time_us: -5n, sender: 'viewer-1', command: 'pause', argument: 'ä€' });

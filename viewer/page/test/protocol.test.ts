@@ -29,9 +29,12 @@ describe('protocol', () => {
 
 describe('options', () => {
   it('reads the address line', () => {
-    expect(parse_options('?role=instructor&quality=ultra&nohud&t=4.5')).toEqual({ role: 'instructor', quality: 'ultra', hud: false, freeze_at_s: 4.5 });
-    expect(parse_options('')).toEqual({ role: 'trainee', quality: null, hud: true, freeze_at_s: null });
-    expect(parse_options('?role=king&quality=best&t=soon')).toEqual({ role: 'trainee', quality: null, hud: true, freeze_at_s: null });
+    const plain = { stereo: 'off', angle_deg: 5, infrared: false };
+    expect(parse_options('?role=instructor&quality=ultra&nohud&t=4.5')).toEqual({ role: 'instructor', quality: 'ultra', hud: false, freeze_at_s: 4.5, ...plain });
+    expect(parse_options('')).toEqual({ role: 'trainee', quality: null, hud: true, freeze_at_s: null, ...plain });
+    expect(parse_options('?role=king&quality=best&t=soon')).toEqual({ role: 'trainee', quality: null, hud: true, freeze_at_s: null, ...plain });
+    expect(parse_options('?stereo=anaglyph&angle=3&icg')).toMatchObject({ stereo: 'anaglyph', angle_deg: 3, infrared: true });
+    expect(parse_options('?stereo=hologram&angle=900')).toMatchObject({ stereo: 'off', angle_deg: 9 });
   });
 });
 

@@ -3,7 +3,10 @@
 // them that tighten and part in turn. It lets the page be worked on and tested without the engine.
 import { existsSync, readFileSync, readdirSync } from 'node:fs';
 import { join } from 'node:path';
+import { make_artery, move_artery, neck, regions, sac } from './artery.mjs';
+import { make_clips } from './clips.mjs';
 import { embed, read_msh, read_obj, read_ply } from './meshes.mjs';
+import { commands, hand_tools } from './theatre.mjs';
 
 const scale = (a) => a.map((x) => x / 1000);
 const sub = (a, b) => a.map((x, i) => x - b[i]);
@@ -46,28 +49,42 @@ export function make_scene(meshes) {
   add_static('insula', 'insula', read_ply(join(meshes, 'lobes/insula_surface.ply')));
   for (const id of ['bone', 'dura', 'skin', 'drape']) if (existsSync(join(meshes, `window/${id}.obj`))) add_static(id, id, read_obj(join(meshes, `window/${id}.obj`)));
 
-  const tools = [['left', 'suction'], ['right', 'dissector']].map(([hand, kind], index) => {
+  const vessel = make_artery();
+  const surface = (name, positions, indices, nodes, weights, region) => ({ id: name, material: 'vessel', vertices: positions.length / 3, triangles: indices.length / 3,
+    positions: put(`${name}_positions.bin`, positions), indices: put(`${name}_indices.bin`, indices), skin_nodes: put(`${name}_nodes.bin`, nodes), skin_weights: put(`${name}_weights.bin`, weights),
+    regions, vertex_region: put(`${name}_regions.bin`, region) });
+  const artery = { ...vessel, index: bodies.length, json: { index: bodies.length, id: 'artery', nodes: vessel.rest.length / 3, rest: put('artery_rest.bin', vessel.rest), regions,
+    surfaces: [surface('artery_picture', vessel.picture, vessel.picture_indices, vessel.nodes, vessel.weights, vessel.picture_region)] } };
+
+  const part_json = (name, p) => ({ name: p.name, link: p.link ?? 0, rgba: p.rgba ?? [0.8, 0.8, 0.82, 1], material: p.material ?? 'titanium', vertices: p.mesh.positions.length / 3, triangles: p.mesh.indices.length / 3,
+    positions: put(`${name}_p.bin`, p.mesh.positions.map((x) => x / 1000)), indices: put(`${name}_i.bin`, p.mesh.indices) });
+  const tools = [...hand_tools.left, ...hand_tools.right].map((id, index) => {
+    const kind = id.slice(id.indexOf('_') + 1), hand = id.slice(0, id.indexOf('_'));
     const dir = join(meshes, 'instruments', kind);
-    const parts = readdirSync(dir).filter((f) => /_(steel|steel_dark|gold|polymer)\.obj$/.test(f)).sort().map((f, k) => {
-      const mesh = read_obj(join(dir, f));
-      return { name: f.replace('.obj', ''), rgba: [0.8, 0.8, 0.82, 1], material: /_(steel_dark|steel|gold|polymer)\.obj$/.exec(f)[1], vertices: mesh.positions.length / 3, triangles: mesh.indices.length / 3,
-        positions: put(`tool${index}_${k}_p.bin`, mesh.positions.map((x) => x / 1000)), indices: put(`tool${index}_${k}_i.bin`, mesh.indices) };
-    });
-    return { index, id: `${hand}_${kind}`, hand, kind, parts };
+    const obj = existsSync(dir) ? readdirSync(dir).filter((f) => /_(steel|steel_dark|gold|polymer)\.obj$/.test(f)).sort() : [];
+    const parts = obj.map((f, k) => part_json(`tool${index}_${k}`, { name: f.replace('.obj', ''), material: /_(steel_dark|steel|gold|polymer)\.obj$/.exec(f)[1], mesh: read_obj(join(dir, f)) }));
+    return { index, id, hand, kind, title: id.replace(/_/g, ' '), hinges: [], parts };
   });
+  const clips = make_clips(meshes);
+  for (const c of clips) {
+    const index = tools.length;
+    files.set(`t${index}_picture.svg`, Buffer.from(c.picture));
+    tools.push({ index, id: c.id, hand: 'none', kind: 'clip', title: c.title, picture: `t${index}_picture.svg`, clip: c.clip, hinges: c.hinges, parts: c.parts.map((p, k) => part_json(`t${index}_${k}`, p)) });
+  }
 
   const strands = make_strands(bodies, stations, out);
-  const eye = add(add(centre, out, 0.21), open, -0.02);
+  const eye = add(add(scale(sac), out, 0.13), open, -0.015);
   const goals = [{ id: 'superficial', text: 'Open the superficial arachnoid' }, { id: 'deep', text: 'Reach the insula' }, { id: 'all', text: 'Cut nine strands in ten' }];
   const faults = [{ id: 'frontal_force', text: 'Frontal lobe pressed too hard' }, { id: 'temporal_force', text: 'Temporal lobe pressed too hard' }];
   const json = {
-    version: 1, session: 0, title: 'Mock session', description: 'Made-up motion, no physics.',
-    view: { eye, target: add(centre, out, -0.004), up: open, fov_deg: 17 },
-    bodies: bodies.map((b) => b.json), static: fixed, tools, strands: { count: strands.length, radius_m: 0.00015 },
-    hands: tools.map((t) => ({ hand: t.hand, tool: t.index, home_p_m: add(centre, out, 0.02), home_q: [1, 0, 0, 0] })),
+    version: 2, session: 0, title: 'Mock session', description: 'Made-up motion, no physics.',
+    view: { eye, target: add(scale(sac), out, -0.002), up: open, fov_deg: 17 },
+    bodies: [...bodies.map((b) => b.json), artery.json], static: fixed, tools, strands: { count: strands.length, radius_m: 0.00015 },
+    hands: Object.entries(hand_tools).map(([hand, ids]) => { const of = ids.map((id) => tools.findIndex((t) => t.id === id)); return { hand, tool: of[0], tools: of, home_p_m: add(centre, out, 0.02), home_q: [1, 0, 0, 0] }; }),
+    commands,
     exercise: { id: 'sylvian_fissure', title: 'Sylvian fissure', text: 'Retract with the suction in the left hand; cut the strands from the surface to the depth with the right.', goals, faults },
   };
-  return { json, files, bodies, strands, centre, out, open, along, stations, goals, faults };
+  return { json, files, bodies, artery, tools, clips, strands, centre, out, open, along, stations, goals, faults };
 }
 
 /** Pairs of facing surface points across the fissure, from its surface to its depth. */
@@ -101,9 +118,9 @@ function nearest(points, q) {
   return best;
 }
 
-/** Node positions, strands and tools at a time; `held` are poses asked for by a page. */
-export function make_frame(scene, lcm, time, held) {
-  const { centre, out, open, along, bodies } = scene;
+/** Node positions, strands and tools at a time; `held` are poses asked for by a page, `theatre` knows the rest. */
+export function make_frame(scene, lcm, time, held, theatre) {
+  const { centre, out, open, along, bodies, artery } = scene;
   const spread = 0.0085 * ramp(time, 1.5, 14) + 0.0004 * Math.sin(time * 6.3);
   const moved = bodies.map((b) => {
     const x = new Float32Array(b.rest.length);
@@ -115,8 +132,19 @@ export function make_frame(scene, lcm, time, held) {
       const way = b.id === 'frontal' ? 1 : -0.75;
       for (let k = 0; k < 3; k++) x[i + k] = p[k] + open[k] * way * spread * fall - out[k] * 0.25 * spread * fall;
     }
+    // The wound is drawn apart over the aneurysm too.
+    const wide = 0.013 * ramp(time, 1.5, 14), over = scale(sac);
+    for (let i = 0; i < x.length; i += 3) {
+      const d = sub([b.rest[i], b.rest[i + 1], b.rest[i + 2]], over);
+      const s = dot(d, open), u = dot(d, along), fall = Math.exp(-(u * u) / (2 * 0.011 ** 2)) * Math.exp(-(s * s) / (2 * 0.012 ** 2)) * ramp(dot(d, out), -0.016, -0.004);
+      const way = b.id === 'frontal' ? 1 : -1;
+      for (let k = 0; k < 3; k++) x[i + k] += open[k] * way * wide * fall;
+    }
     return x;
   });
+  const squeeze = theatre.placed_at === null ? 0 : ramp(time, theatre.placed_at - 0.3, theatre.placed_at + 0.1);
+  const seat = clip_seat(scene, scale(neck));
+  moved.push(move_artery(artery, theatre.pulse, theatre.tension, squeeze, seat.across));
   const at = (b, v) => [0, 1, 2].map((j) => [0, 1, 2, 3].reduce((sum, k) => sum + bodies[b].skin.weights[v * 4 + k] * moved[b][bodies[b].skin.nodes[v * 4 + k] * 3 + j], 0));
   const n = scene.strands.length;
   const strand_x_m = new Float32Array(n * 6), health = new Float32Array(n), tension = new Float32Array(n);
@@ -131,26 +159,70 @@ export function make_frame(scene, lcm, time, held) {
   });
   const f = lcm.render_frame_t.make();
   f.sim_time_s = time;
-  f.bodies = bodies.length;
-  f.body = bodies.map((b, k) => ({ index: b.index, nodes: moved[k].length / 3, x_m: moved[k] }));
+  f.bodies = bodies.length + 1;
+  f.body = [...bodies, artery].map((b, k) => ({ index: b.index, nodes: moved[k].length / 3, x_m: moved[k] }));
   f.strands = n;
   f.strand_points = 2 * n;
   f.strand_x_m = strand_x_m;
   f.strand_health = health;
   f.strand_tension_N = tension;
-  f.tools = 2;
-  f.tool = [0, 1].map((hand) => tool_pose(scene, lcm, hand, time, spread, held?.[hand], left));
+  f.tool = scene.tools.map((tool) => tool_frame(scene, lcm, tool, time, spread, held, left, theatre, seat));
+  f.tools = f.tool.length;
   f.step_ms = 4.2 + Math.sin(time);
   f.step_period_ms = 1000 / 60;
   f.rows = 120;
   f.sweeps = 12;
-  f.body_force_N = Float64Array.from([0.1, 0.08]);
+  f.body_force_N = Float64Array.from([0.1, 0.08, 0]);
   f.hud_json = JSON.stringify({
     goals: scene.goals.map((g, k) => ({ ...g, done: [left < n * 0.7, left < n * 0.3, left < n * 0.1][k] })),
     faults: scene.faults.map((x, k) => ({ ...x, count: k === 0 && time > 10 ? 1 : 0 })),
-    strands_left: left, strands_total: n, message: '', state: left < n * 0.1 ? 'done' : 'running', elapsed_s: time,
+    strands_left: left, strands_total: n, message: '', state: left < n * 0.1 && theatre.placed_at !== null ? 'done' : 'running', elapsed_s: time,
+    ...theatre.hud(add(scale(sac), out, -0.004), out),
   });
   return f;
+}
+
+/** A clip across the neck: blades along the neck plane, opening across. */
+function clip_seat(scene, at) {
+  const axis = unit(sub(scale(sac), at));
+  // The shaft comes out of the wound.
+  const z = unit(add(scene.out, axis, -dot(scene.out, axis) * 0.85));
+  const x = unit(add(axis, z, -dot(axis, z)));
+  return { across: x, p: add(at, z, -0.0042), q: frame_quaternion(z, x) };
+}
+
+function tool_frame(scene, lcm, tool, time, spread, held, left, theatre, seat) {
+  if (tool.kind !== 'clip') {
+    const hand = tool.hand === 'left' ? 0 : 1;
+    const t = tool_pose(scene, lcm, hand, time, spread, held?.[hand], left);
+    t.index = tool.index;
+    t.state = theatre.in_hand[tool.hand] === tool.id ? 1 : 0;
+    return t;
+  }
+  const t = lcm.render_tool_t.make();
+  Object.assign(t, { index: tool.index, hand: -1, state: 0 });
+  t.q = Float64Array.from([1, 0, 0, 0]);
+  if (theatre.free.includes(tool.id)) {
+    t.state = 2;
+    const parent = tool.id.includes('temporary');
+    t.p_m = Float64Array.from(parent ? add(scale([43.4, 14.6, -14.4]), scene.out, -0.003) : seat.p);
+    t.q = Float64Array.from(parent ? frame_quaternion(scene.out, scene.along) : seat.q);
+    t.opening_rad = 0.06;
+  } else if (theatre.loaded === tool.id && theatre.in_hand.right === 'right_clip_applier') {
+    const holder = tool_pose(scene, lcm, 1, time, spread, held?.[1], left);
+    Object.assign(t, { state: 1, hand: 1 });
+    const z = rotate([...holder.q], [0, 0, 1]);
+    t.p_m = Float64Array.from(add([...holder.p_m], z, -(tool.hinges[0].origin[2] + 0.002)));
+    t.q = holder.q;
+    t.opening_rad = holder.button1 ? 0.24 : 0.1 + 0.1 * Math.sin(time);
+  }
+  t.device_p_m = t.p_m;
+  return t;
+}
+
+function rotate([w, x, y, z], v) {
+  const u = [x, y, z], c = cross(u, v).map((a, k) => a + w * v[k]), d = cross(u, c);
+  return v.map((a, k) => a + 2 * d[k]);
 }
 
 function tool_pose(scene, lcm, hand, time, spread, held, left) {
@@ -162,7 +234,7 @@ function tool_pose(scene, lcm, hand, time, spread, held, left) {
   if (held) { p = [...held.p_m]; q = [...held.q]; } else {
     const side = hand === 0 ? -1 : 1;
     const deep = hand === 0 ? -0.004 : -0.002 - 0.010 * ramp(time, 5, 22);
-    p = add(add(add(centre, out, deep + 0.002), along, side * 0.004 + (hand ? 0.006 * Math.sin(time * 0.9) : -0.002)), open, hand === 0 ? spread * 0.8 - 0.001 : 0.0006 * Math.sin(time * 7));
+    p = add(add(add(scale(sac), out, deep + 0.008), along, side * 0.009 + (hand ? 0.006 * Math.sin(time * 0.9) : -0.002)), open, hand === 0 ? spread * 0.8 - 0.001 : 0.0006 * Math.sin(time * 7));
     // Shaft: out of the wound, leaning to its own side and towards the surgeon.
     const z = unit(add(add(out.map((x) => x * 0.9), along, -along[0] * 0 + side * -0.42 * Math.sign(dot(along, [0, 1, 0])) * (hand === 0 ? 1 : 1)), open, -0.35));
     q = frame_quaternion(z, open);

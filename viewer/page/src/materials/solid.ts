@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Everything that is not brain: bone, dura, drape, instrument metals and plastics.
 import * as THREE from 'three';
+import { type FieldUniforms, inject_veil } from './field';
 import { noise_glsl, noise_texture } from './noise';
 
 interface Recipe {
@@ -80,11 +81,12 @@ const recipes: Record<string, Recipe> = {
 export const solid_names = Object.keys(recipes);
 
 /** `field_axis`: direction out of the operating field, to tell tables of bone from cut edges. */
-export function solid_material(name: string, field_axis = new THREE.Vector3(0, 0, 1), rgba?: readonly number[]): THREE.MeshPhysicalMaterial {
+export function solid_material(name: string, field: FieldUniforms, field_axis = new THREE.Vector3(0, 0, 1), rgba?: readonly number[]): THREE.MeshPhysicalMaterial {
   const recipe = recipes[name] ?? recipes.steel!;
   const m = new THREE.MeshPhysicalMaterial(recipe.base);
-  if (name === 'polymer' && rgba) m.color.setRGB(rgba[0]!, rgba[1]!, rgba[2]!, THREE.SRGBColorSpace);
+  if ((name === 'polymer' || !recipes[name]) && rgba) m.color.setRGB(rgba[0]!, rgba[1]!, rgba[2]!, THREE.SRGBColorSpace);
   m.onBeforeCompile = (shader) => {
+    inject_veil(shader, field);
     shader.uniforms.noise_map = { value: noise_texture() };
     shader.uniforms.field_axis = { value: field_axis };
     shader.vertexShader = shader.vertexShader

@@ -3,6 +3,7 @@
 // (clearcoat) broken up by small bumps, red light bleeding at grazing angles, fissure and sulci dark.
 import * as THREE from 'three';
 import { inject_skinning, type SkinTexture } from '../skin_shader';
+import { fluorescence_glsl, type FieldUniforms, inject_veil } from './field';
 import { noise_glsl, noise_texture } from './noise';
 
 export interface TissueLook {
@@ -26,13 +27,14 @@ export const looks: Record<string, TissueLook> = {
 export type Pressed = THREE.Vector4[];
 export const pressed_count = 8;
 
-export function tissue_material(look: TissueLook, skin: SkinTexture | null, pressed: Pressed): THREE.MeshPhysicalMaterial {
+export function tissue_material(look: TissueLook, skin: SkinTexture | null, pressed: Pressed, field: FieldUniforms): THREE.MeshPhysicalMaterial {
   const m = new THREE.MeshPhysicalMaterial({
     color: 0xffffff, roughness: 0.62, metalness: 0, ior: 1.38, specularIntensity: 0.6,
     clearcoat: 1, clearcoatRoughness: 0.2,
   });
   m.onBeforeCompile = (shader) => {
     if (skin) inject_skinning(shader, skin);
+    inject_veil(shader, field);
     shader.uniforms.noise_map = { value: noise_texture() };
     shader.uniforms.crown = { value: new THREE.Color(look.crown) };
     shader.uniforms.sulcus = { value: new THREE.Color(look.sulcus) };
@@ -114,17 +116,20 @@ export function tissue_material(look: TissueLook, skin: SkinTexture | null, pres
   return m;
 }
 
-/** Vessel walls: wet, dark at the edges as blood absorbs more along the longer path. */
-export function vessel_material(skin: SkinTexture | null): THREE.MeshPhysicalMaterial {
+/** Small vessels on the brain: wet, dark at the edges as blood absorbs more along the longer path. */
+export function vessel_material(skin: SkinTexture | null, field: FieldUniforms): THREE.MeshPhysicalMaterial {
   const m = new THREE.MeshPhysicalMaterial({ color: 0xffffff, roughness: 0.42, clearcoat: 1, clearcoatRoughness: 0.14, ior: 1.4 });
   m.onBeforeCompile = (shader) => {
     if (skin) inject_skinning(shader, skin);
+    // They fill from the large arteries: thinner, later, and the veins hardly.
+    inject_veil(shader, field, '0.45 * fluorescence(dye_far * mix(0.7, 0.12, v_vessel.x), edge) * v_vessel.y');
     shader.uniforms.noise_map = { value: noise_texture() };
+    shader.uniforms.dye_far = field.dye_far;
     shader.vertexShader = shader.vertexShader
       .replace('#include <common>', '#include <common>\nattribute vec2 vessel; varying vec2 v_vessel; varying vec3 v_rest;')
       .replace('#include <project_vertex>', '#include <project_vertex>\nv_vessel = vessel; v_rest = position * 1000.0;');
     shader.fragmentShader = shader.fragmentShader
-      .replace('#include <common>', `#include <common>\n${noise_glsl}\nvarying vec2 v_vessel; varying vec3 v_rest; uniform mat3 normalMatrix;`)
+      .replace('#include <common>', `#include <common>\n${noise_glsl}\n${fluorescence_glsl}\nuniform float dye_far; varying vec2 v_vessel; varying vec3 v_rest; uniform mat3 normalMatrix;`)
       .replace('#include <color_fragment>', `#include <color_fragment>
         vec4 blood = noise(v_rest * 0.8);
         vec3 artery = vec3(0.30, 0.020, 0.017), vein = vec3(0.105, 0.014, 0.030);

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Timers that count down, and what is measured of the result.
+import { el, set_text } from './dom';
+import type { MeasureView, TimerView } from './state';
+import { time_left_text, urgency, used_share } from './timers';
+
+/** A few digits, no noise: 3.2, 12, 0.05. */
+export function value_text(value: number, unit: string): string {
+  if (!Number.isFinite(value)) return '–';
+  const a = Math.abs(value);
+  const digits = unit === '' && Number.isInteger(value) ? 0 : a >= 10 ? 0 : a >= 1 ? 1 : 2;
+  return `${value.toFixed(digits)}${unit ? ` ${unit}` : ''}`;
+}
+
+export class Progress {
+  readonly root = el('div', { class: 'progress' });
+  private readonly timers = new Map<string, { row: HTMLElement; time: HTMLElement; bar: HTMLElement }>();
+  private readonly measures = new Map<string, { row: HTMLElement; value: HTMLElement }>();
+
+  clear(): void {
+    this.timers.clear();
+    this.measures.clear();
+    this.root.replaceChildren();
+  }
+
+  show(timers: readonly TimerView[], measures: readonly MeasureView[]): void {
+    for (const t of timers) {
+      let w = this.timers.get(t.id);
+      if (!w) {
+        const time = el('span', { class: 'time' }), bar = el('i');
+        w = { time, bar, row: el('div', { class: 'timer', 'data-timer': t.id }, el('span', {}, t.text), time, el('span', { class: 'line' }, bar)) };
+        this.timers.set(t.id, w);
+        this.root.append(w.row);
+      }
+      set_text(w.time, time_left_text(t));
+      w.bar.style.width = `${used_share(t) * 100}%`;
+      w.row.dataset.urgency = urgency(t);
+      w.row.classList.toggle('idle', !t.running);
+      // A timer that never ran says nothing yet.
+      w.row.hidden = !t.running && t.elapsed_s === 0;
+    }
+    for (const m of measures) {
+      let w = this.measures.get(m.id);
+      if (!w) {
+        const value = el('span', { class: 'value' });
+        w = { value, row: el('div', { class: 'measure', 'data-measure': m.id }, el('span', {}, m.text), value) };
+        this.measures.set(m.id, w);
+        this.root.append(w.row);
+      }
+      set_text(w.value, value_text(m.value, m.unit));
+      w.row.dataset.good = String(m.good);
+      w.row.hidden = !Number.isFinite(m.value);
+    }
+  }
+}

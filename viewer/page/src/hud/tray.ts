@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The tools of one hand: a button each; the one in hand is marked, the others lie on the tray.
+import type { HandData, ToolData } from '../bundle';
+import { el } from './dom';
+import { exchange, type UserCommand } from './commands';
+
+export class Tray {
+  readonly root = el('div', { class: 'tray', role: 'group' });
+  private buttons: { tool: ToolData; button: HTMLButtonElement }[] = [];
+  private hand: HandData | null = null;
+  private held = '';
+
+  constructor(private readonly run: (c: UserCommand) => void, private readonly may_drive: boolean) {}
+
+  show_scene(hand: HandData | null): void {
+    this.hand = hand;
+    this.held = '';
+    this.root.setAttribute('aria-label', `tools of the ${hand?.hand ?? ''} hand`);
+    this.buttons = (hand && hand.tools.length > 1 ? hand.tools : []).map((tool) => {
+      const button = el('button', { title: tool.title, 'data-tool': tool.id }, ...(tool.picture ? [el('img', { src: tool.picture, alt: '' })] : []), el('span', {}, short(tool, hand!.hand)));
+      button.onclick = () => { this.run(exchange(hand!.hand, tool.id)); button.blur(); };
+      return { tool, button };
+    });
+    this.root.replaceChildren(...this.buttons.map((b) => b.button));
+    this.root.hidden = this.buttons.length === 0;
+    this.show('');
+  }
+
+  /** id of the tool in hand. */
+  show(held: string): void {
+    this.held = held;
+    for (const { tool, button } of this.buttons) {
+      button.setAttribute('aria-pressed', String(tool.id === held));
+      button.disabled = !this.may_drive || tool.id === held;
+    }
+  }
+
+  /** Asks for the next (or previous) tool of the hand. */
+  next(step: 1 | -1): void {
+    const tools = this.hand?.tools ?? [];
+    if (!this.may_drive || !this.hand || tools.length < 2) return;
+    const at = tools.findIndex((t) => t.id === this.held);
+    this.run(exchange(this.hand.hand, tools[(Math.max(0, at) + step + tools.length) % tools.length]!.id));
+  }
+}
+
+/** The hand need not be said again in its own list. */
+export function short(tool: ToolData, hand: string): string {
+  const name = tool.title.startsWith(`${hand} `) ? tool.title.slice(hand.length + 1) : tool.title;
+  return name || tool.kind;
+}
+
+export function tool_label(tool: ToolData | undefined, hand: number): string {
+  return tool ? short(tool, hand === 0 ? 'left' : 'right') : '';
+}

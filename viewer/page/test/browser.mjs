@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The browser of the end-to-end tests: headless Chromium with software rendering. Exit status 77: none here, skipped.
+import assert from 'node:assert/strict';
+import { existsSync } from 'node:fs';
+import { chromium } from 'playwright-core';
+
+export const patience = { timeout: 300_000, polling: 250 };
+
+export function launch() {
+  const executablePath = process.env.CHROMIUM ?? '/usr/bin/chromium';
+  if (!existsSync(executablePath)) {
+    console.log(`skipped: no browser at ${executablePath}`);
+    process.exit(77);
+  }
+  return chromium.launch({ executablePath, args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist'] });
+}
+
+export const check = (text) => console.log(`ok  ${text}`);
+
+export async function wait_for(what, test) {
+  for (let k = 0; k < 400; k++) { if (await test()) return; await new Promise((r) => setTimeout(r, 100)); }
+  assert.fail(`no ${what} within 40 s`);
+}
+
+/** Mean brightness, its deviation, and shares of reddish, greenish and dark red pixels of the picture, without the panels over it. */
+export async function look(page, clip) {
+  const panels = (shown) => page.evaluate((o) => { document.getElementById('hud').style.opacity = o; }, shown ? '1' : '0');
+  await panels(false);
+  const shot = await page.screenshot({ ...(clip ? { clip } : {}), timeout: patience.timeout });
+  await panels(true);
+  return page.evaluate(async (base64) => {
+    const image = await createImageBitmap(await (await fetch(`data:image/png;base64,${base64}`)).blob());
+    const context = new OffscreenCanvas(image.width, image.height).getContext('2d');
+    context.drawImage(image, 0, 0);
+    const d = context.getImageData(0, 0, image.width, image.height).data;
+    let mean = 0, square = 0, red = 0, green = 0, dark_red = 0;
+    for (let i = 0; i < d.length; i += 4) {
+      const y = (d[i] + d[i + 1] + d[i + 2]) / 3;
+      mean += y;
+      square += y * y;
+      if (d[i] > d[i + 2] + 15) red++;
+      if (d[i + 1] > 60 && d[i + 1] > d[i] + 15) green++;
+      if (d[i] > 25 && d[i] > 3 * Math.max(d[i + 1], d[i + 2])) dark_red++;
+    }
+    const n = d.length / 4;
+    return { mean: mean / n, deviation: Math.sqrt(square / n - (mean / n) ** 2), red: red / n, green: green / n, dark_red: dark_red / n };
+  }, shot.toString('base64'));
+}

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The aneurysm's side of the page against the mock: tool exchange, choosing a clip, refusals, blood in the picture,
+// indocyanine green, stereo, a headset (a made-up one), and the instructor's page beside the trainee's.
+import assert from 'node:assert/strict';
+import { start_mock } from '../scripts/mock-server.mjs';
+import { check, launch, look, patience, wait_for } from './browser.mjs';
+import { fake_headset } from './fake_headset.mjs';
+
+const mock = await start_mock({ port: 0, start_s: 14 });
+const theatre = mock.state.theatre;
+const sent = (text) => wait_for(text, () => mock.state.commands.includes(text));
+const errors = [];
+const browser = await launch();
+try {
+  const page = await browser.newPage({ viewport: { width: 480, height: 320 } });
+  page.setDefaultTimeout(patience.timeout);
+  page.on('console', (m) => { if (m.type() === 'error') errors.push(m.text()); });
+  page.on('pageerror', (e) => errors.push(e.message));
+  await page.addInitScript(fake_headset);
+  await page.goto(`${mock.url}?quality=low`);
+  await page.waitForFunction(() => window.__insula?.ready, null, patience);
+  const pictures = async (n) => {
+    const from = await page.evaluate(() => window.__insula.pictures);
+    await page.waitForFunction((k) => window.__insula.pictures >= k, from + n, patience);
+  };
+  // Clicks by the page itself: on a slow machine a pointer click waits for pictures.
+  const press = (selector) => page.evaluate((s) => document.querySelector(s).click(), selector);
+  const text_of = (selector) => page.evaluate((s) => document.querySelector(s)?.textContent ?? '', selector);
+
+  assert.equal(await page.locator('[data-tool=right_dissector]').getAttribute('aria-pressed'), 'true');
+  assert.ok(await page.locator('[data-tool=right_dissector]').isDisabled());
+  await press('[data-tool=right_clip_applier]');
+  await sent('exchange right right_clip_applier');
+  await page.waitForFunction(() => document.querySelector('[data-tool=right_clip_applier]')?.getAttribute('aria-pressed') === 'true', null, patience);
+  await page.keyboard.press('t');
+  await sent('exchange right right_dissector');
+  check('tools are exchanged by button and by key, and the one in hand is marked');
+
+  const clip = theatre.clips[0];
+  await page.keyboard.press('l');
+  await page.waitForFunction(() => !document.querySelector('.clip-list').hidden, null, patience);
+  assert.equal(await page.evaluate(() => document.activeElement.dataset.clip), clip);
+  assert.equal(await page.evaluate(() => [...document.querySelectorAll('.clip-list img')].every((i) => i.complete && i.naturalWidth > 0)), true, 'every clip has its picture');
+  await page.keyboard.press('Enter');
+  await sent(`ask right_clip_applier load ${clip}`);
+  await page.waitForFunction((c) => document.querySelector(`[data-clip=${c}] .badge`)?.textContent === 'loaded' && document.querySelector(`[data-clip=${c}]`).disabled, clip, patience);
+  assert.notEqual(await text_of('.clip-head b'), 'No clip loaded');
+  assert.equal(mock.state.inputs, 0, 'keys in the list move no hand');
+  check('a clip is chosen from the drop-down by key; it shows what is loaded');
+
+  theatre.run('exchange', 'right hammer');
+  await page.waitForFunction(() => document.querySelector('.toast.refused')?.textContent.includes('hammer'), null, patience);
+  check('a refusal is shown');
+
+  theatre.run('message', 'Mind the perforators');
+  await page.waitForFunction(() => document.querySelector('.toast.instruction')?.textContent.includes('Mind the perforators'), null, patience);
+  check("the instructor's words are shown");
+
+  const field = { x: 205, y: 125, width: 70, height: 70 };
+  const before = await look(page, field);
+  theatre.run('ask', 'artery_bleeding rupture');
+  await page.waitForFunction(() => document.querySelector('[data-timer=rupture]')?.hidden === false && /^4:\d\d$/.test(document.querySelector('[data-timer=rupture] .time').textContent), null, patience);
+  assert.match(await text_of('.blood'), /bleeding \d+ mL\/min/);
+  assert.ok(Number(await text_of('[data-vessel=parent] td')) > 20);
+  theatre.height = 0.009;
+  await pictures(6);
+  const flooded = await look(page, field);
+  assert.ok(flooded.dark_red > 0.5 && flooded.dark_red > before.dark_red + 0.15, `dark red ${before.dark_red} -> ${flooded.dark_red}`);
+  assert.ok(flooded.deviation < before.deviation, 'the field is hidden');
+  check(`timers, flow and blood are told, and blood hides the field (dark red ${(100 * before.dark_red).toFixed(0)} -> ${(100 * flooded.dark_red).toFixed(0)} %)`);
+
+  theatre.reset();
+  await page.keyboard.press('j');
+  await sent('ask artery_flow inject_dye');
+  await page.keyboard.press('i');
+  theatre.dye_at = theatre.time - 4;
+  await pictures(12);
+  const shining = await look(page, { x: 140, y: 60, width: 200, height: 200 });
+  assert.ok(shining.green > 0.01, `greenish ${shining.green}`);
+  assert.ok(shining.mean < 70, `dark around: ${shining.mean}`);
+  theatre.dye_at = null;
+  await pictures(16);
+  const faded = await look(page, { x: 140, y: 60, width: 200, height: 200 });
+  assert.ok(faded.green < 0.2 * shining.green, `greenish ${shining.green} -> ${faded.green}`);
+  await page.keyboard.press('i');
+  check(`the dye is injected and shines (greenish ${(100 * shining.green).toFixed(1)} %), without dye it is dark`);
+
+  await page.keyboard.press('o');
+  await page.waitForFunction(() => window.__insula.stereo === 'sbs', null, patience);
+  await pictures(8);
+  const halves = [];
+  for (const x of [85, 325]) halves.push(await look(page, { x, y: 125, width: 70, height: 70 }));
+  assert.ok(halves.every((h) => h.mean > 15), 'a picture in each half');
+  assert.ok(Math.abs(halves[0].mean - halves[1].mean) < 0.3 * halves[0].mean, 'of the same place');
+  await page.keyboard.press('o');
+  await pictures(6);
+  const cyan = await look(page, field);
+  assert.ok(cyan.mean > 10 && cyan.deviation > 5);
+  await page.keyboard.press('o');
+  check('side by side and red-cyan stereo');
+
+  await page.selectOption('select[aria-label=stereo]', 'xr');
+  await page.waitForFunction(() => window.__insula.presenting && window.__headset.pictures > 2, null, patience);
+  const eyes = await page.evaluate(() => window.__headset.eyes);
+  assert.ok(eyes.every((e) => e > 8), `brightness in the eyes ${eyes}`);
+  await page.evaluate(() => window.__headset.end());
+  await page.waitForFunction(() => !window.__insula.presenting && window.__insula.stereo === 'off', null, patience);
+  await pictures(3);
+  check('a headset gets a picture in each eye, and the page goes on when it is taken off');
+
+  theatre.reset();
+  await page.goto(`${mock.url}?quality=low&role=instructor`);
+  await page.waitForFunction(() => window.__insula?.ready && document.querySelector('[data-ask="artery_bleeding rupture"]'), null, patience);
+  assert.ok(await page.locator('[data-tool=right_clip_applier]').isDisabled(), 'the instructor exchanges no tools');
+  assert.equal(await page.locator('.touch').count(), 0);
+  await page.evaluate(() => {
+    const slider = document.querySelector('[aria-label^="set_systolic"]');
+    slider.value = '180';
+    slider.dispatchEvent(new Event('input'));
+  });
+  await press('[data-ask="artery_pressure set_systolic"]');
+  await sent('ask artery_pressure set_systolic 180');
+  await wait_for('systolic pressure', () => theatre.systolic === 180);
+  await page.evaluate(() => {
+    document.querySelector('.instructor form input').value = 'Temporary clip first';
+    document.querySelector('.instructor form').requestSubmit();
+  });
+  await sent('message Temporary clip first');
+  await press('[data-ask=placement]');
+  await sent('message Please take the clip off and place it again.');
+  await press('[data-ask="artery_bleeding rupture"]');
+  await sent('ask artery_bleeding rupture');
+  await page.waitForFunction(() => document.querySelector('.log [data-kind=rupture]') !== null, null, patience);
+  const inputs = mock.state.inputs;
+  await page.keyboard.press('w');
+  await pictures(2);
+  assert.equal(mock.state.inputs, inputs, 'the instructor drives no hand');
+  check('the instructor sets the pressure, speaks, makes the aneurysm rupture, sees it in the log, and drives no hand');
+
+  assert.deepEqual(errors, []);
+  check('no errors in the console');
+} finally {
+  await browser.close();
+  await mock.stop();
+}
