@@ -97,7 +97,9 @@ void SelfCollider::near(const CollisionMesh& mesh, const SelfContactSettings& se
                         std::vector<Proximity>& out) {
   const int v = samples_[sample];
   const bool was = close_[side][sample] != 0;
-  const double range = was ? std::max(1.2 * settings.alarm + settings.thickness, settings.max_depth) : settings.alarm + settings.thickness;
+  // What touched is looked for farther, what has crossed as deep as crossings are undone.
+  const double range = (was ? 1.2 * settings.alarm + horizon : settings.alarm) + settings.thickness;
+  const double reach = close_[side][sample] == 2 ? std::max(range, settings.max_depth) : range;
   double& clear = clear_[side][sample];
   clear -= 2 * moved_;
   if (!was && clear > range + free_) return;
@@ -105,7 +107,7 @@ void SelfCollider::near(const CollisionMesh& mesh, const SelfContactSettings& se
   const Vec3 x = mesh.vertex(v);
   // Boxes are swept by the free motion, so whatever may come within range is seen.
   Aabb box = swept(mesh, v);
-  box.inflate(was ? range : range + horizon);
+  box.inflate(was ? reach : range + horizon);
   double least2 = 1e300, any2 = (range + horizon) * (range + horizon);
   int best = -1;
   Vec3 bary = Vec3::Zero(), point = Vec3::Zero();
@@ -126,7 +128,10 @@ void SelfCollider::near(const CollisionMesh& mesh, const SelfContactSettings& se
     const Vec3 c = w[0] * p + w[1] * q + w[2] * r;
     const double d2 = (x - c).squaredNorm();
     any2 = std::min(any2, d2);
-    if (agree > (was ? 0.0 : -facing) || d2 > limit2 || (d2 == limit2 && best >= 0 && tri > best)) return;
+    if (agree > -facing || d2 > limit2 || (d2 == limit2 && best >= 0 && tri > best)) return;
+    // Beside it rather than over it: something nearer was no partner.
+    const double over = n.dot(x - c);
+    if (d2 > 1e-12 && over * over < 0.36 * d2 * nn) return;
     limit2 = d2;
     best = tri;
     bary = w;
@@ -146,8 +151,6 @@ void SelfCollider::near(const CollisionMesh& mesh, const SelfContactSettings& se
   c.bary = bary;
   c.point = point;
   if (distance > 1e-6) {
-    // Beside it rather than over it: something nearer was no partner.
-    if (std::abs(d.dot(mesh.face_normal(best))) < (was ? 0.5 : 0.6) * distance) return;
     c.normal = (crossed ? Vec3(-d) : d) / distance;
   } else {
     c.normal = free_side;
@@ -159,7 +162,7 @@ void SelfCollider::near(const CollisionMesh& mesh, const SelfContactSettings& se
   // What had a contact keeps it a little longer, lest rows come and go while nothing moves.
   const double alarm = was ? 1.2 * settings.alarm : settings.alarm;
   if (c.gap > alarm && c.gap + approach > alarm) return;
-  close_[side][sample] = 1;
+  close_[side][sample] = crossed ? 2 : 1;
   c.start_gap = std::max(c.gap, -settings.max_recovery);
   out.push_back(c);
 }

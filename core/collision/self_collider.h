@@ -60,7 +60,7 @@ class SelfCollider {
   std::vector<Vec3> face_place_, face_normal_;   ///< of the triangles at rest
   std::vector<Vec3> outward_;                    ///< of the samples now; computed when first wanted
   std::vector<char> outward_known_;
-  std::vector<char> close_[2];                   ///< had a contact of this side in the last step: looked for deeper
+  std::vector<char> close_[2];                   ///< 1: had a contact of this side in the last step, 2: had crossed; looked for farther
   std::vector<double> clear_[2];                 ///< of the samples: no partner of this side is nearer than this, m
   std::vector<Vec3> last_;                       ///< vertices in the last step
   double moved_ = 0, free_ = 0;                  ///< farthest that a vertex went since then, and twice what one may in this step, m

@@ -126,7 +126,7 @@ TEST(VertexCollider, AFastBladeMeetsTheSheetItWouldHavePassed) {
       EXPECT_LT(c.time, 1);
       EXPECT_GE(c.gap, -1e-6);
       EXPECT_LE(c.gap, 0.2 * 0.3e-3 + 1e-12);
-      EXPECT_GT(c.normal.z(), 0.3);
+      EXPECT_GT(c.normal.z(), 0) << "of the side it came from";
       EXPECT_LT(end_gap(c, sheet, motion), 0) << "the row lets the blade through";
       // With the motion cut where the row says so, the jaw stands before the wall.
       const double cut = c.start_gap / -c.normal.dot(motion);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Block Gauss-Seidel with residual updates: delta is kept current, so a block that does not move costs nothing.
 //
-// Between sweeps lambda is carried on along a conjugate direction (nonsmooth nonlinear conjugate gradients; Silcowitz, Niebe,
+// On request lambda is carried on between sweeps along a conjugate direction (nonsmooth nonlinear conjugate gradients; Silcowitz, Niebe,
 // Erleben 2010): with g what a sweep moves lambda by, beta = |g_k|^2 / |g_k-1|^2, p_k = beta p_k-1 + g_k, lambda += beta p_k-1;
 // beta > 1 starts anew. A stiff clip on a thin wall takes a tenth of the sweeps. W p follows from the deltas before and
 // after a sweep, so it costs no product with W. The last thing done to lambda is always a sweep, which keeps every law.
@@ -130,7 +130,7 @@ SolveStats solve(const ConstraintProblem& p, std::span<const double> free, const
     }
     ++stats.sweeps;
     if (moved <= settings.tolerance_m || stats.sweeps >= settings.max_sweeps) break;
-    last_norm = carry_on(p, ws, last_norm);
+    if (settings.conjugate) last_norm = carry_on(p, ws, last_norm);
   }
 
   // Residual on a delta computed afresh: what each law would still move.

@@ -56,7 +56,8 @@ void write(const std::filesystem::path& file, const std::vector<Vec3>& nodes, co
   if (!displacement.empty())
     xml += "      <PointData Vectors=\"displacement\">\n" + array("Float64", "displacement", 3, data.add(flat(displacement))) + "      </PointData>\n";
   xml += "      <Points>\n" + array("Float64", "Points", 3, data.add(flat(nodes))) + "      </Points>\n      <Cells>\n";
-  xml += array("Int64", "connectivity", 1, data.add(connectivity)) + array("Int64", "offsets", 1, data.add(ends));
+  xml += array("Int64", "connectivity", 1, data.add(connectivity));
+  xml += array("Int64", "offsets", 1, data.add(ends));
   xml += array("UInt8", "types", 1, data.add(std::vector<std::uint8_t>(cells.size(), vtk_type)));
   xml += "      </Cells>\n    </Piece>\n  </UnstructuredGrid>\n  <AppendedData encoding=\"raw\">\n_";
   std::ofstream out(file, std::ios::binary | std::ios::trunc);

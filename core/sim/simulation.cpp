@@ -61,6 +61,7 @@ Simulation::Simulation(std::unique_ptr<Scene> scene, Diagnostics& diagnostics, i
   if (auto s = scene_->all<SolverSettings>(); !s.empty()) {
     solve_settings_.max_sweeps = s.front()->max_sweeps();
     solve_settings_.tolerance_m = s.front()->tolerance();
+    solve_settings_.conjugate = s.front()->conjugate();
   }
   if (auto v = scene_->all<ViewSettings>(); !v.empty()) view_ = v.front();
   // A hand begins with its first tool; the others lie on the tray.

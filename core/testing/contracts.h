@@ -8,7 +8,7 @@
 namespace insula::test {
 
 /// The scene loads without a message, runs its script and 40 steps more, stays finite, and once the hands are still its
-/// energy (weight included) rises by no more than 1 % of what it had.
+/// energy (weight included) never exceeds what it then was by more than 1 % of the most it had.
 void check_example(const std::filesystem::path& scene);
 /// Same bits: twice, with one and two threads, and after reset.
 void check_deterministic(const std::filesystem::path& scene);

@@ -93,7 +93,7 @@ void BendPatches::build(const WallTopology& wall, const std::vector<Vec3>& rest,
     }
     rest_angle_[h] = hinge_angle(x, hinge, nullptr);
   }
-  energy_angle_ = rest_angle_;
+  start_angle_ = energy_angle_ = rest_angle_;
   moment_.assign(hinges_.size(), 0.0);
   gradient_.assign(16 * hinges_.size(), 0.0);  // each node's three padded to four
   reset();

@@ -36,7 +36,7 @@ class BendPatches {
   /// Turns the rest angles as displacement u from rest would. Both 3 values a node, m.
   void prestrain(const double* rest, const double* u);
   /// Forgets how often a hinge has turned.
-  void reset() { angle_ = rest_angle_; }
+  void reset() { angle_ = start_angle_; }
 
  private:
   static constexpr int max_nodes = patch_nodes, max_hinges = 9;
@@ -56,7 +56,9 @@ class BendPatches {
 
   std::vector<WallHinge> hinges_;
   std::vector<double> step_stiffness_;  // of each hinge, N m
-  std::vector<double> rest_angle_, angle_, energy_angle_, moment_, gradient_;
+  std::vector<double> start_angle_;  // in the rest configuration
+  std::vector<double> rest_angle_;   // of the natural shape: another one where there is a prestrain
+  std::vector<double> angle_, energy_angle_, moment_, gradient_;
   std::vector<std::array<int, 10>> hinge_slot_;  // lower triangle of the hinge's blocks; ~slot where stored the other way round
   std::vector<Patch> patches_;
   std::vector<int> slots_;

@@ -281,8 +281,8 @@ TEST(StrandSprings, OneSurfaceIsTiedToItselfAcrossAGap) {
   for (const StrandState& t : s->report().strands) {
     EXPECT_NEAR(std::abs(t.a.x() - t.b.x()), 0.002, 1e-4) << "not across the gap";
     EXPECT_GT(t.a.z() + t.b.z(), 0.006 - 1e-4) << "2 (z - 1 mm) + 2 mm must be more than three times 2 mm";
-    const Place a{t.a.x(), t.a.y(), t.a.z()}, b{t.b.x(), t.b.y(), t.b.z()};
-    pairs.insert({std::min(a, b), std::max(a, b)});
+    const Place here{t.a.x(), t.a.y(), t.a.z()}, there{t.b.x(), t.b.y(), t.b.z()};
+    pairs.insert({std::min(here, there), std::max(here, there)});
   }
   EXPECT_EQ(pairs.size(), s->report().strands.size()) << "a strand and its reverse are one";
   EXPECT_FALSE(trough(folder, false, "")) << "nothing faces anything across a gap";

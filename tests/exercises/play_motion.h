@@ -47,7 +47,9 @@ inline Played play_motion(const std::filesystem::path& scene, const std::string&
     for (const Event& e : s.events()) ++out.events[e.kind];
   }
   for (int h = 0; h < 2; ++h)
-    if (motion.has(h)) EXPECT_LT((run.haptics().hand(h).device.p - motion.at(h, 1e9).pose.p).norm(), 0.001) << "hand " << h << " did not follow its motion to the end";
+    if (motion.has(h)) {
+      EXPECT_LT((run.haptics().hand(h).device.p - motion.at(h, 1e9).pose.p).norm(), 0.001) << "hand " << h << " did not follow its motion to the end";
+    }
   out.ran = true;
   out.strands = s.report().strands_total;
   out.left = s.report().strands_left;

@@ -7,7 +7,7 @@ Writes the two scripted motions of exercise 2 by operating in its scene:
 
 steady  steers the dissector to the nearest and outermost strand, turns the blade across it and sweeps it through, with room
         to the vessel and the lobes measured on grids of distances, until no strand stands;
-rough   pushes the lobe aside until strands tear, leans on the sac and stabs the bleb.
+rough   shoves the sac aside until strands tear, leans on the frontal lobe and presses the bleb until it bursts.
 
 Then each motion is played once more through both simulated arms, as `insula run` does it, and its outcome printed. The same
 scene gives the same files on the same processor (see docs/one-step.md on bits).
@@ -23,6 +23,7 @@ scene gives the same files on the same processor (see docs/one-step.md on bits).
 #include "core/registry/registry.h"
 #include "engine/headless.h"
 #include "tools/motions/sweeps.h"
+#include "plugins/bleeding/bleeding.h"
 
 namespace insula {
 namespace {
@@ -62,7 +63,7 @@ class Surgeon {
       const Vec3 tip = hands_.right().pose.p;
       const double way = (sweep.pose(-sweep.half).p - tip).norm() <= (sweep.pose(sweep.half).p - tip).norm() ? 1 : -1;
       go({sweep.pose(-way * sweep.half)});
-      hands_.move(0.32, {sweep.pose(way * sweep.half)});
+      hands_.move(0.55, {sweep.pose(way * sweep.half)});
       ++tries[std::size_t(sweep.strand)];
       std::printf("%6.2f s strand %2d  room vessel %5.2f others %5.2f mm  %d stand, tries %d\n", hands_.time(), sweep.strand, sweep.vessel / mm,
                   sweep.others / mm, simulation_->report().strands_left, tries[std::size_t(sweep.strand)]);
@@ -73,46 +74,114 @@ class Surgeon {
     hands_.write(file);
   }
 
+  /// Says of each strand whether a sweep reaches it as it stands at the start.
+  void reach() {
+    std::vector<StrandState> one;
+    for (std::size_t i = 0; i < strands().size(); ++i) {
+      one.assign(1, strands()[i]);
+      const Sweep w = planner_.best(one, {0}, centre_ + 8 * mm * outward_);
+      const Vec3 m = ((one[0].a + one[0].b) / 2 - centre_) / mm;
+      std::printf("strand %2zu  length %.1f  at %5.1f %5.1f %5.1f mm from the sac, depth %4.1f: %s  room vessel %5.2f others %5.2f mm\n", i,
+                  (one[0].a - one[0].b).norm() / mm, m.x(), m.y(), m.z(), -m.dot(outward_), w.strand < 0 ? "OUT OF REACH" : "reached", w.vessel / mm, w.others / mm);
+    }
+  }
+
   void rough(const fs::path& file) {
-    const Vec3 bleb = bleb_now();
-    const Vec3 out = (bleb - centre_).normalized();
     Wish left = left_rest(), right{tool_pose(centre_ + 12 * mm * outward_ + Vec3(0, 4, 0) * mm, lean_, Vec3::UnitZ())};
     hands_.move(1.2, left, right);
-    // The suction tube shoves the frontal lobe away: strands tear.
-    const Vec3 lobe = centre_ + Vec3(1, 5, 3) * mm;
-    hands_.move(0.6, {tool_pose(lobe, left_shaft_, Vec3::UnitZ())}, right);
-    hands_.move(1.0, {tool_pose(lobe + Vec3(2, 9, 7) * mm, left_shaft_, Vec3::UnitZ())}, right);
-    hands_.wait(0.6);
-    hands_.move(0.8, left, right);
-    // The dissector leans on the side of the sac ...
-    const Vec3 side = centre_ - out.cross(outward_).normalized() * 3.2 * mm + 2 * mm * outward_;
-    hands_.move(0.7, {tool_pose(side + 4 * mm * outward_, lean_, Vec3::UnitZ())});
-    hands_.move(0.6, {tool_pose(centre_ + 0.5 * mm * outward_, lean_, Vec3::UnitZ())});
-    hands_.wait(0.5);
-    hands_.move(0.5, {tool_pose(side + 5 * mm * outward_, lean_, Vec3::UnitZ())});
-    // ... and stabs the bleb.
-    const Vec3 target = bleb_now();
-    hands_.move(0.5, {tool_pose(target + 3 * mm * out, lean_, Vec3::UnitZ())});
-    hands_.move(0.5, {tool_pose(target - 3 * mm * out, lean_, Vec3::UnitZ())});
-    hands_.wait(0.5);
-    hands_.move(0.6, {tool_pose(target + 12 * mm * outward_, lean_, Vec3::UnitZ())});
-    hands_.wait(0.5);
+    // The suction tube shoves the sac aside: strands tear.
+    const Vec3 aside = (Vec3(0, 0.6, -1) - 0.3 * outward_).normalized();
+    const int before = simulation_->report().strands_left;
+    press(0, left_shaft_, aside, [&] { return middle_of("sac"); }, 7 * mm, [&] { return simulation_->report().strands_left <= before - 3; });
+    hands_.wait(0.3);
+    hands_.move(0.7, left, right);
+    // The dissector leans on the frontal lobe.
+    const Body* frontal = simulation_->scene().find_as<Body>("frontal");
+    if (!frontal) throw InputError("the scene has no frontal lobe");
+    const MaterialPoint at = nearest(*frontal, centre_ + Vec3(4, 5, 0) * mm);
+    double over = 0;
+    press(1, lean_, Vec3(-0.2, 1, 0.1).normalized(), [&] { return frontal->position(at); }, 10 * mm, [&] {
+      over = force(1, *frontal) > 0.24 ? over + 0.05 : 0;
+      return over > 0.2;
+    });
+    hands_.wait(0.2);
+    hands_.move(0.6, right);
+    // And presses the bleb with the flat of the blade.
+    const Vec3 out = (middle_of("bleb") - middle_of("sac")).normalized(), shaft = (outward_ - 0.35 * Vec3::UnitY()).normalized();
+    press(1, shaft, -out, [&] { return middle_of("bleb"); }, 9 * mm, [&] {
+      const auto& b = simulation_->report().bleeding;
+      return std::any_of(b.begin(), b.end(), [](const BleedingState& x) { return x.open; });
+    }, shaft.cross(out));
+    hands_.move(0.7, right);
+    hands_.wait(1);
     hands_.write(file);
   }
 
  private:
   const std::vector<StrandState>& strands() const { return simulation_->report().strands; }
 
+  /// Force of a hand's tool on a body, N.
+  double force(int hand, const Body& body) const {
+    const Body* tool = simulation_->instrument_of(hand);
+    Vec3 sum = Vec3::Zero();
+    for (const ContactPoint& c : simulation_->report().contacts) {
+      const double sign = c.a == tool && c.b == &body ? 1 : c.b == tool && c.a == &body ? -1 : 0;
+      sum += sign * (c.normal_force * c.normal + c.tangent_force);
+    }
+    return sum.norm();
+  }
+  /// Leans with a tool on a place that gives way: the hand goes from 5 mm before it to `most` behind it, wherever it is by
+  /// then, until `enough`.
+  template <class Place, class Enough>
+  void press(int hand, const Vec3& shaft, const Vec3& way, Place place, double most, Enough enough, const Vec3& across = Vec3::UnitZ()) {
+    const auto go_to = [&](double seconds, double depth) {
+      Wish w[2] = {hands_.left(), hands_.right()};
+      w[hand].pose = tool_pose(place() + depth * way, shaft, across);
+      hands_.move(seconds, w[0], w[1]);
+    };
+    double depth = -5 * mm, vessel = 0, lobe = 0;
+    go_to(0.8, depth);
+    bool done = false;
+    for (; depth < most && !done; depth += 0.6 * mm) {
+      go_to(3 * simulation_->h(), depth);
+      vessel = std::max(vessel, force(hand, *artery_));
+      if (const Body* b = simulation_->scene().find_as<Body>("frontal")) lobe = std::max(lobe, force(hand, *b));
+      done = enough();
+      if (std::getenv("DEBUG")) {
+        std::printf("   depth %.1f vessel %.3f tip lag %.2f", depth / mm, force(hand, *artery_), (simulation_->instrument_of(hand)->pose().p - place() - depth * way).norm() / mm);
+        for (const Constraint* c : simulation_->constraints())
+          if (const auto* b = dynamic_cast<const Bleeding*>(c)) std::printf(" sharp %.3f", b->sharp_force_on_region());
+        std::printf("\n");
+      }
+    }
+    std::printf("%6.2f s pressed to %.1f mm: %s; up to %.3f N on the vessel, %.3f N on the frontal lobe, %d strands stand\n", hands_.time(), depth / mm,
+                done ? "done" : "IN VAIN", vessel, lobe, simulation_->report().strands_left);
+  }
+  /// Mean of a region's vertices as they lie now.
+  Vec3 middle_of(const std::string& region) const {
+    const VesselModel& m = artery_->model();
+    Vec3 sum = Vec3::Zero();
+    int n = 0;
+    for (int v = 0; v < artery_->nodes(); ++v)
+      if (m.regions[std::size_t(m.vertex_region[std::size_t(v)])] == region) sum += artery_->q().segment<3>(3 * v), ++n;
+    if (n == 0) throw InputError("the vessel has no " + region);
+    return sum / n;
+  }
+  MaterialPoint nearest(const Body& body, const Vec3& at) const {
+    MaterialPoint out;
+    double least = 1;
+    for (Surface* s : simulation_->surfaces())
+      if (&s->body() == &body)
+        for (const MaterialPoint& p : s->points())
+          if (const double d = (body.position(p) - at).norm(); d < least) least = d, out = p;
+    return out;
+  }
+
   const ShellBody* find() {
     for (const Body* b : simulation_->bodies())
       if (const auto* shell = dynamic_cast<const ShellBody*>(b)) {
-        const VesselModel& m = shell->model();
-        Vec3 sum = Vec3::Zero();
-        int n = 0;
-        for (int v = 0; v < shell->nodes(); ++v)
-          if (m.regions[std::size_t(m.vertex_region[std::size_t(v)])] == "sac") sum += shell->q().segment<3>(3 * v), ++n;
-        if (n == 0) throw InputError("the vessel has no sac");
-        centre_ = sum / n;
+        artery_ = shell;
+        centre_ = middle_of("sac");
         const Vec3 eye = simulation_->view()->eye();
         outward_ = (eye - centre_).normalized();
         lean_ = (outward_ + 0.2 * Vec3::UnitY()).normalized();
@@ -120,15 +189,6 @@ class Surgeon {
         return shell;
       }
     throw InputError("the scene has no vessel");
-  }
-  Vec3 bleb_now() const {
-    const VesselModel& m = artery_->model();
-    Vec3 far = centre_;
-    for (int v = 0; v < artery_->nodes(); ++v)
-      if (m.regions[std::size_t(m.vertex_region[std::size_t(v)])] == "bleb" &&
-          (artery_->q().segment<3>(3 * v) - centre_).norm() > (far - centre_).norm())
-        far = artery_->q().segment<3>(3 * v);
-    return far;
   }
   /// The suction tube waits beside the sac, on the left.
   Wish left_rest() const { return {tool_pose(centre_ + 9 * mm * outward_ + Vec3(0, -7, 2) * mm, left_shaft_, Vec3::UnitZ())}; }
@@ -169,7 +229,7 @@ class Surgeon {
     }
     const auto travel = [&](const Pose& p) {
       const double length = (p.p - hands_.right().pose.p).norm(), turn = p.q.angularDistance(hands_.right().pose.q);
-      hands_.move(std::max({0.15, length / 0.022, turn / 3.0}), {p});
+      hands_.move(std::max({0.3, length / 0.016, turn / 2.2}), {p});
     };
     if (best > 0) travel(back(from, best));
     if (best > 0) travel(back(to.pose, best));
@@ -179,7 +239,7 @@ class Surgeon {
   std::unique_ptr<Simulation> simulation_;
   Hands hands_;
   Vec3 centre_, outward_, lean_, left_shaft_;  ///< set by find()
-  const ShellBody* artery_;
+  const ShellBody* artery_ = nullptr;
   Clearance vessel_, others_;
   SweepPlanner planner_;
 };
@@ -208,12 +268,16 @@ void play(const fs::path& scene, const fs::path& file) {
 int main(int count, char** arguments) {
   using namespace insula;
   if (count < 3) {
-    std::fprintf(stderr, "usage: dissection_motions SCENE FOLDER [steady|rough]\n");
+    std::fprintf(stderr, "usage: dissection_motions SCENE FOLDER [steady|rough|reach]\n");
     return 2;
   }
   std::setvbuf(stdout, nullptr, _IOLBF, 0);
   try {
     const fs::path scene = arguments[1], stem = fs::path(arguments[2]) / scene.stem();
+    if (count > 3 && arguments[3] == std::string("reach")) {
+      Surgeon(scene).reach();
+      return 0;
+    }
     for (const std::string id : {"steady", "rough"}) {
       if (count > 3 && id != arguments[3]) continue;
       const fs::path file = stem.string() + "_" + id + ".csv";
