@@ -183,7 +183,7 @@ double law_error(const ConstraintProblem& p, const std::vector<double>& lambda) 
 
 SolveStats solve_to(const ConstraintProblem& p, SolveWorkspace& ws, int sweeps, double tolerance) {
   ws.reserve(p.rows);
-  return solve(p, p.delta_free, {sweeps, tolerance}, ws);
+  return solve(p, p.delta_free, {sweeps, tolerance, true}, ws);
 }
 
 TEST(Solver, RandomProblemsObeyTheirLaws) {

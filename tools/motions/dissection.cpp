@@ -23,7 +23,6 @@ scene gives the same files on the same processor (see docs/one-step.md on bits).
 #include "core/registry/registry.h"
 #include "engine/headless.h"
 #include "tools/motions/sweeps.h"
-#include "plugins/bleeding/bleeding.h"
 
 namespace insula {
 namespace {
@@ -147,13 +146,8 @@ class Surgeon {
       vessel = std::max(vessel, force(hand, *artery_));
       if (const Body* b = simulation_->scene().find_as<Body>("frontal")) lobe = std::max(lobe, force(hand, *b));
       done = enough();
-      if (std::getenv("DEBUG")) {
-        std::printf("   depth %.1f vessel %.3f tip lag %.2f", depth / mm, force(hand, *artery_), (simulation_->instrument_of(hand)->pose().p - place() - depth * way).norm() / mm);
-        for (const Constraint* c : simulation_->constraints())
-          if (const auto* b = dynamic_cast<const Bleeding*>(c)) std::printf(" sharp %.3f", b->sharp_force_on_region());
-        std::printf("\n");
-      }
     }
+    if (done) go_to(0.25, depth + 1.5 * mm);  // enough also where the arms follow a little differently
     std::printf("%6.2f s pressed to %.1f mm: %s; up to %.3f N on the vessel, %.3f N on the frontal lobe, %d strands stand\n", hands_.time(), depth / mm,
                 done ? "done" : "IN VAIN", vessel, lobe, simulation_->report().strands_left);
   }
