@@ -91,7 +91,7 @@ TEST(Allocation, SolveOfAHardProblemAllocatesNothing) {
   ws.lambda.assign(std::size_t(p.rows), 0.0);
   kernels();
   const long before = allocations;
-  const SolveStats stats = solve(p, p.delta_free, {3000, 1e-11}, ws);
+  const SolveStats stats = solve(p, p.delta_free, {3000, 1e-11, true}, ws);
   EXPECT_EQ(allocations - before, 0);
   EXPECT_GT(stats.sweeps, 10);
 }

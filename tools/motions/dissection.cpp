@@ -149,7 +149,7 @@ class Surgeon {
     }
     if (done) go_to(0.25, depth + 1.5 * mm);  // enough also where the arms follow a little differently
     std::printf("%6.2f s pressed to %.1f mm: %s; up to %.3f N on the vessel, %.3f N on the frontal lobe, %d strands stand\n", hands_.time(), depth / mm,
-                done ? "done" : "IN VAIN", vessel, lobe, simulation_->report().strands_left);
+                done ? "done" : "as far as it goes", vessel, lobe, simulation_->report().strands_left);
   }
   /// Mean of a region's vertices as they lie now.
   Vec3 middle_of(const std::string& region) const {
