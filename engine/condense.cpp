@@ -18,14 +18,24 @@ void condense(const ConstraintProblem& full, int most_rows, ConstraintProblem& s
     for (std::size_t r = 0; r < n; ++r)
       if (!t.jacobian.row(long(r)).isZero(0)) felt[r] = 1;
   struct Rank {
-    int block;
+    int first, last;  ///< blocks: a patch goes with the contacts it is of
+    int rows;
     bool felt;
     double coupling;
   };
   std::vector<Rank> ranks;
   for (std::size_t b = 0; b < full.blocks.size(); ++b) {
     const Block& block = full.blocks[b];
-    Rank rank{int(b), false, 0};
+    Rank rank{int(b), int(b), block.rows(), false, 0};
+    if (block.law == LawKind::patch) {
+      for (int i = 0; i < block.normals; ++i) {
+        rank.felt = rank.felt || ranks.back().felt;
+        rank.coupling = std::max(rank.coupling, ranks.back().coupling);
+        ranks.pop_back();
+      }
+      rank.first -= block.normals;
+      rank.rows += block.normals;
+    }
     for (int k = 0; k < block.rows(); ++k) {
       const int r = block.row + k;
       rank.felt = rank.felt || felt[std::size_t(r)];
@@ -42,10 +52,9 @@ void condense(const ConstraintProblem& full, int most_rows, ConstraintProblem& s
   std::vector<int> chosen;
   int rows = 0;
   for (const Rank& r : ranks) {
-    const int more = full.blocks[std::size_t(r.block)].rows();
-    if (rows + more > most_rows) break;
-    rows += more;
-    chosen.push_back(r.block);
+    if (rows + r.rows > most_rows) break;
+    rows += r.rows;
+    for (int b = r.first; b <= r.last; ++b) chosen.push_back(b);
   }
   std::sort(chosen.begin(), chosen.end());
   small.resize(rows);

@@ -49,7 +49,7 @@ struct Layout {
   std::int64_t session, sequence, time_us;
   double step_s, sim_time_s;
   int rows, blocks, tools;
-  const std::uint8_t *w, *delta, *lambda, *id, *row, *law, *compliance, *lower, *upper, *friction, *tool, *jacobian;
+  const std::uint8_t *w, *delta, *lambda, *id, *row, *law, *compliance, *lower, *upper, *friction, *normals, *tool, *jacobian;
 
   double w_at(std::size_t k) const { return double(wire::load_float(w + 4 * k)); }
   double delta_at(int i) const { return wire::load_double(delta + 8 * i); }
@@ -61,6 +61,7 @@ struct Layout {
   double lower_at(int b) const { return wire::load_double(lower + 8 * b); }
   double upper_at(int b) const { return wire::load_double(upper + 8 * b); }
   double friction_at(int b) const { return double(wire::load_float(friction + 4 * b)); }
+  int normals_at(int b) const { return std::int16_t(wire::load16(normals + 2 * b)); }
   const std::uint8_t* tool_at(int t) const { return tool + tool_bytes * std::size_t(t); }
   double jacobian_at(std::size_t k) const { return double(wire::load_float(jacobian + 4 * k)); }
 };
@@ -97,6 +98,7 @@ bool find_parts(Bytes bytes, Layout& l, const char*& why) {
   l.lower = in.take_array(l.blocks, 8);
   l.upper = in.take_array(l.blocks, 8);
   l.friction = in.take_array(l.blocks, 4);
+  l.normals = in.take_array(l.blocks, 2);
   l.tools = in.i8();
   if (!in.ok()) return false;
   if (l.tools < 0 || l.tools > max_problem_tools) {
@@ -143,8 +145,24 @@ bool lambda_in_law(const Layout& l, int block, int row) {
     const double lower = l.lower_at(block), upper = l.upper_at(block);
     return (lower == -infinite || first >= lower - slack(lower)) && (upper == infinite || first <= upper + slack(upper));
   }
+  if (l.law_at(block) == 2) {
+    double pressed = 0;
+    for (int i = row - l.normals_at(block); i < row; ++i) pressed += std::max(0.0, l.lambda_at(i));
+    const double disc = l.friction_at(block) * pressed;
+    return std::hypot(first, l.lambda_at(row + 1)) <= disc + slack(disc);
+  }
   const double cone = l.friction_at(block) * std::max(first, 0.0);
   return first >= -slack(0) && std::hypot(l.lambda_at(row + 1), l.lambda_at(row + 2)) <= cone + slack(cone);
+}
+
+/// A patch shares the forces of one-row blocks just before it.
+bool patch_ok(const Layout& l, int block) {
+  const int n = l.normals_at(block);
+  if (l.law_at(block) != 2) return n == 0;
+  if (n < 1 || n > block) return false;
+  for (int b = block - n; b < block; ++b)
+    if (l.law_at(b) != 0) return false;
+  return true;
 }
 
 bool blocks_ok(const Layout& l, const char*& why) {
@@ -152,9 +170,11 @@ bool blocks_ok(const Layout& l, const char*& why) {
   for (int b = 0; b < l.blocks; ++b) {
     const int law = l.law_at(b);
     why = "unknown law";
-    if (law != 0 && law != 1) return false;
+    if (law < 0 || law > 2) return false;
+    why = "a patch without the contacts it is of";
+    if (!patch_ok(l, b)) return false;
     why = "blocks do not cover the rows once, in order";
-    const int end = row + (law == 1 ? 3 : 1);
+    const int end = row + (law == 1 ? 3 : law == 2 ? 2 : 1);
     if (l.row_at(b) != row || end > l.rows) return false;
     why = "block compliance out of range";
     if (!(l.compliance_at(b) >= 0 && l.compliance_at(b) <= most_block_compliance)) return false;
@@ -275,11 +295,12 @@ void read_all(const Layout& l, HapticUpdate& into) {
     Block& block = p.blocks[std::size_t(b)];
     block.id = l.id_at(b);
     block.row = l.row_at(b);
-    block.law = l.law_at(b) == 1 ? LawKind::friction : LawKind::box;
+    block.law = LawKind(l.law_at(b));
     block.compliance = l.compliance_at(b);
     block.lower = l.lower_at(b);
     block.upper = l.upper_at(b);
     block.friction = l.friction_at(b);
+    block.normals = l.normals_at(b);
   }
   p.tools.resize(std::size_t(l.tools));
   for (int t = 0; t < l.tools; ++t) read_tool(l, t, p.tools[std::size_t(t)], into.offset[std::size_t(t)]);
@@ -306,11 +327,12 @@ bool encode_problem(const HapticUpdate& update, std::vector<std::uint8_t>& out) 
   w.i32(int(p.blocks.size()));
   for (const Block& b : p.blocks) w.i64(std::int64_t(b.id));
   for (const Block& b : p.blocks) w.i16(std::int16_t(b.row));
-  for (const Block& b : p.blocks) w.i8(b.law == LawKind::friction ? 1 : 0);
+  for (const Block& b : p.blocks) w.i8(std::int8_t(b.law));
   for (const Block& b : p.blocks) w.f32(float(b.compliance));
   for (const Block& b : p.blocks) w.f64(b.lower);
   for (const Block& b : p.blocks) w.f64(b.upper);
   for (const Block& b : p.blocks) w.f32(float(b.friction));
+  for (const Block& b : p.blocks) w.i16(std::int16_t(b.normals));
   w.i8(std::int8_t(p.tools.size()));
   for (std::size_t t = 0; t < p.tools.size(); ++t) {
     const ToolTerms& tool = p.tools[t];

@@ -21,7 +21,7 @@ TEST(Detection, AllocatesNothing) {
   ConvexPiece blade{"blade", {}, 0};
   for (int i = 0; i < 8; ++i) blade.points.push_back({i & 1 ? 2e-4 : -2e-4, i & 2 ? 2e-3 : -2e-3, i & 4 ? 0.01 : 0.0});
   ToolCollider tool({blade, {"rod", {Vec3(0, 0, 0.01), Vec3(0, 0, 0.05)}, 1e-3}}, a.triangle_count());
-  TissueCollider tissue(sample_vertices(upper.vertices, upper.triangles, 2e-3), upper.vertices);
+  TissueCollider tissue(sample_vertices(upper.vertices, upper.triangles, 2e-3), upper.vertices, lower.vertices.size());
   std::vector<Proximity> found, faces;
   found.reserve(2048);
   faces.reserve(2048);
@@ -62,12 +62,13 @@ TEST(Detection, OfAWallAgainstItselfAllocatesNothing) {
   long seen = 0;
   SelfContactSettings settings;
   settings.outer = true;
+  Workers workers(2);
   const long before = allocations;
   for (int i = 0; i < 100; ++i) {
     for (std::size_t v = 0; v < now.size(); ++v) now[v].z() = rest.vertices[v].z() * (1 - 0.01 * i);
     mesh.update(now, free);
     found.clear();
-    collider.detect(mesh, settings, found);
+    collider.detect(mesh, settings, found, workers);
     seen += collider.opposite(mesh, 5, Vec3(0.3, 0.3, 0.4), -mesh.face_normal(5), 3e-3).triangle >= 0;
     selection.select(found, {.spacing = 1.2e-3, .advantage = 1e-4, .max_contacts = 20, .max_per_piece = 4, .both_ends = true}, key);
     seen += long(found.size());

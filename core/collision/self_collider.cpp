@@ -3,9 +3,11 @@
 #include "core/collision/self_collider.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "core/collision/tissue_collider.h"
+#include "core/collision/vertex_groups.h"
 
 namespace insula {
 namespace {
@@ -13,15 +15,9 @@ namespace {
 constexpr double facing = 0.1;      ///< cosine by which two normals must oppose one another
 constexpr double along_wall = 0.92; ///< normals that agree by this at rest belong to one stretch of wall ...
 constexpr double bent = 0.8;        ///< ... those that agree by this need looking at only once the wall between them is bent
-constexpr double horizon = 1e-3;    ///< farther than needed, to know for how long nothing will come, m
-
-Aabb swept(const CollisionMesh& mesh, int v) {
-  Aabb box;
-  const Vec3 x = mesh.vertex(v);
-  box.add(x);
-  box.add(Vec3(x + mesh.free(v)));
-  return box;
-}
+constexpr double horizon = 0.5e-3;    ///< farther than needed, to know for how long nothing will come, m
+constexpr double skin = 0.4e-3;     ///< motion after which a list of partners is made anew, m
+constexpr std::size_t longest_list = 192;  ///< partners of a sample; with more, the tree is asked in every step
 
 /// Where the ray from `from` along the unit vector `along` goes out through triangle pqr; -1 if it does not.
 double exit_through(const Vec3& from, const Vec3& along, const Vec3& p, const Vec3& q, const Vec3& r, Vec3& bary) {
@@ -55,7 +51,25 @@ SelfCollider::SelfCollider(std::span<const Vec3> rest, std::span<const std::arra
     // A few lumens: across an ellipse, a neck or a bifurcation, but not through one vessel into the next.
     reach_.push_back(2.5 * lumen(mesh, v));
   }
+  group_of_ = group_by_place(rest, groups);
+  std::vector<std::uint64_t> of_triangle;
+  for (const auto& t : triangles) {
+    std::uint64_t bits = 0;
+    for (int v : t) bits |= std::uint64_t(1) << group_of_[std::size_t(v)];
+    of_triangle.push_back(bits);
+  }
+  for (auto& p : partners_) p.assign(samples_.size(), 0);
+  for (std::size_t i = 0; i < samples_.size(); ++i)
+    for (std::size_t t = 0; t < triangles.size(); ++t)
+      if (const int side = kind(i, int(t)); side >= 0) partners_[side][i] |= of_triangle[t];
+  found_.resize((samples_.size() + piece - 1) / piece);
+  for (auto& f : found_) f.reserve(2 * piece);
+  for (auto& side : lists_) {
+    side.resize(samples_.size());
+    for (auto& list : side) list.reserve(longest_list + 1);
+  }
   last_.resize(rest.size());
+  went_.resize(rest.size());
   outward_.resize(samples_.size());
   outward_known_.resize(samples_.size());
   reset();
@@ -64,6 +78,7 @@ SelfCollider::SelfCollider(std::span<const Vec3> rest, std::span<const std::arra
 void SelfCollider::reset() {
   for (auto& c : close_) c.assign(samples_.size(), 0);
   for (auto& c : clear_) c.assign(samples_.size(), 0.0);
+  for (auto& c : covered_) c.assign(samples_.size(), -1.0);
   std::fill(last_.begin(), last_.end(), Vec3(Vec3::Constant(1e3)));
 }
 
@@ -93,6 +108,41 @@ int SelfCollider::kind(std::size_t sample, int triangle) const {
   return leaves > 0 && ends < 0 ? outer : -1;
 }
 
+// Whether what has moved since the sample was last looked at may have brought a partner within range of it.
+bool SelfCollider::may_be_near(const CollisionMesh& mesh, std::size_t sample, int side, double range) {
+  double moved = 0, free = 0;
+  for (std::uint64_t left = partners_[side][sample]; left != 0; left &= left - 1) {
+    const std::size_t g = std::size_t(std::countr_zero(left));
+    moved = std::max(moved, moved_[g]);
+    free = std::max(free, free_[g]);
+  }
+  const int v = samples_[sample];
+  const double went = went_[std::size_t(v)] + moved;
+  clear_[side][sample] -= went;
+  covered_[side][sample] -= went;
+  return clear_[side][sample] <= range + std::min(mesh.free(v).norm() + free, horizon);
+}
+
+// All possible partners within `far`, and what may come there before the list is made anew.
+void SelfCollider::list_partners(const CollisionMesh& mesh, std::size_t sample, int side, double far) {
+  auto& list = lists_[side][sample];
+  list.clear();
+  const Vec3 x = mesh.vertex(samples_[sample]);
+  Aabb box;
+  box.add(x);
+  box.inflate(far + skin);
+  mesh.tree().overlapping(box, [&](int tri) {
+    if (list.size() > longest_list || kind(sample, tri) != side) return;
+    const auto& t = mesh.triangle(tri);
+    const Vec3 p = mesh.vertex(t[0]), q = mesh.vertex(t[1]), r = mesh.vertex(t[2]);
+    const Vec3 w = closest_on_triangle(x, p, q, r);
+    const double d = (w[0] * p + w[1] * q + w[2] * r - x).norm();
+    if (d <= far + skin) list.push_back({d, tri});
+  });
+  std::sort(list.begin(), list.end(), [](const Partner& a, const Partner& b) { return a.was != b.was ? a.was < b.was : a.triangle < b.triangle; });
+  covered_[side][sample] = list.size() > longest_list ? -1.0 : skin;
+}
+
 void SelfCollider::near(const CollisionMesh& mesh, const SelfContactSettings& settings, std::size_t sample, int side,
                         std::vector<Proximity>& out) {
   const int v = samples_[sample];
@@ -100,14 +150,9 @@ void SelfCollider::near(const CollisionMesh& mesh, const SelfContactSettings& se
   // What touched is looked for farther, what has crossed as deep as crossings are undone.
   const double range = (was ? 1.2 * settings.alarm + horizon : settings.alarm) + settings.thickness;
   const double reach = close_[side][sample] == 2 ? std::max(range, settings.max_depth) : range;
-  double& clear = clear_[side][sample];
-  clear -= 2 * moved_;
-  if (!was && clear > range + free_) return;
+  if (!may_be_near(mesh, sample, side, range) && !was) return;
   close_[side][sample] = 0;
   const Vec3 x = mesh.vertex(v);
-  // Boxes are swept by the free motion, so whatever may come within range is seen.
-  Aabb box = swept(mesh, v);
-  box.inflate(was ? reach : range + horizon);
   double least2 = 1e300, any2 = (range + horizon) * (range + horizon);
   int best = -1;
   Vec3 bary = Vec3::Zero(), point = Vec3::Zero();
@@ -115,8 +160,7 @@ void SelfCollider::near(const CollisionMesh& mesh, const SelfContactSettings& se
     outward_[sample] = mesh.rough_normal(v);
     outward_known_[sample] = 1;
   }
-  mesh.tree().nearest(x, &box, least2, [&](int tri, double& limit2) {
-    if (kind(sample, tri) != side) return;
+  const auto look = [&](int tri, double& limit2) {
     const auto& t = mesh.triangle(tri);
     const Vec3 p = mesh.vertex(t[0]), q = mesh.vertex(t[1]), r = mesh.vertex(t[2]);
     const Vec3 n = (q - p).cross(r - p);
@@ -136,8 +180,29 @@ void SelfCollider::near(const CollisionMesh& mesh, const SelfContactSettings& se
     best = tri;
     bary = w;
     point = c;
-  });
-  clear = was ? 0.0 : std::sqrt(any2);
+  };
+  // What the free motion may bring is within the horizon.
+  const double far = settings.thickness + 1.2 * settings.alarm + horizon;
+  if (reach <= far && covered_[side][sample] < 0) list_partners(mesh, sample, side, far);
+  if (reach <= far && covered_[side][sample] >= 0) {
+    const double went = skin - covered_[side][sample];
+    for (const Partner& p : lists_[side][sample]) {
+      const double at_least = std::max(0.0, p.was - went);
+      if (at_least * at_least > least2) {  // nor does any after it
+        any2 = std::min(any2, at_least * at_least);
+        break;
+      }
+      look(p.triangle, least2);
+    }
+  } else {
+    Aabb box;
+    box.add(x);
+    box.inflate(std::max(reach, far));
+    mesh.tree().nearest(x, &box, least2, [&](int tri, double& limit2) {
+      if (kind(sample, tri) == side) look(tri, limit2);
+    });
+  }
+  clear_[side][sample] = was ? 0.0 : std::sqrt(any2);
   if (best < 0) return;
   const TriangleFeature f = feature_of(bary);
   const Vec3 free_side = (side == inner ? -1.0 : 1.0) * mesh.pseudo_normal(best, f);
@@ -190,22 +255,29 @@ Opposite SelfCollider::opposite(const CollisionMesh& mesh, int triangle, const V
   return best;
 }
 
-void SelfCollider::detect(const CollisionMesh& mesh, const SelfContactSettings& settings, std::vector<Proximity>& out) {
+void SelfCollider::detect(const CollisionMesh& mesh, const SelfContactSettings& settings, std::vector<Proximity>& out, Workers& workers) {
   if (mesh.tree().empty()) return;
   std::fill(outward_known_.begin(), outward_known_.end(), char(0));
-  double moved2 = 0, free2 = 0;
+  moved_.fill(0);
+  free_.fill(0);
   for (int v = 0; v < mesh.vertex_count(); ++v) {
     const Vec3 x = mesh.vertex(v);
-    moved2 = std::max(moved2, (x - last_[std::size_t(v)]).squaredNorm());
-    free2 = std::max(free2, mesh.free(v).squaredNorm());
-    last_[std::size_t(v)] = x;
+    const std::size_t i = std::size_t(v), g = std::size_t(group_of_[i]);
+    went_[i] = (x - last_[i]).norm();
+    last_[i] = x;
+    moved_[g] = std::max(moved_[g], went_[i]);
+    free_[g] = std::max(free_[g], mesh.free(v).norm());
   }
-  moved_ = std::sqrt(moved2);
-  free_ = 2 * std::sqrt(free2);
-  for (std::size_t i = 0; i < samples_.size(); ++i) {
-    if (settings.inner && reach_[i] > 0) near(mesh, settings, i, inner, out);
-    if (settings.outer) near(mesh, settings, i, outer, out);
-  }
+  workers.run(int(found_.size()), [&](int task) {
+    auto& found = found_[std::size_t(task)];
+    found.clear();
+    const std::size_t first = std::size_t(task) * piece, last = std::min(first + piece, samples_.size());
+    for (std::size_t i = first; i < last; ++i) {
+      if (settings.inner && reach_[i] > 0) near(mesh, settings, i, inner, found);
+      if (settings.outer) near(mesh, settings, i, outer, found);
+    }
+  });
+  for (const auto& found : found_) out.insert(out.end(), found.begin(), found.end());
 }
 
 }  // namespace insula

@@ -7,14 +7,19 @@
 // outside at both ends. So a vertex found on the wrong side of its partner is known to have crossed (negative gap) and is
 // brought back, and no history is needed for the inner side. Pairs that are near at rest are neighbours and never touch.
 //
-// A sample with nothing near is not looked at again before motion can have brought something near.
+// A sample with nothing near is not looked at again before motion can have brought something near: vertices are in groups, and
+// what the groups of its possible partners have moved tells. One with something near keeps a list of its possible partners until
+// motion may have added to them.
 //
 // Geometry is that of the start of the step. Where a tool presses on the wall, opposite() finds what lies behind that very
 // place: a thin wall gives way between its supports, so each push needs a support of its own.
 #pragma once
+#include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
+#include "core/base/workers.h"
 #include "core/collision/collision_mesh.h"
 #include "core/collision/contact_set.h"
 
@@ -41,29 +46,45 @@ class SelfCollider {
 
   /// `thickness`: pairs nearer than twice this at rest are neighbours. Samples are `spacing` apart.
   SelfCollider(std::span<const Vec3> rest, std::span<const std::array<int, 3>> triangles, double spacing, double thickness);
-  /// Appends at most one contact a sample and side, in an order that depends on the arguments alone. Does not allocate while
-  /// `out` has capacity.
-  void detect(const CollisionMesh& mesh, const SelfContactSettings& settings, std::vector<Proximity>& out);
+  /// Appends at most one contact a sample and side, in an order that depends on the arguments alone, for any number of
+  /// threads. Does not allocate while `out` has capacity.
+  void detect(const CollisionMesh& mesh, const SelfContactSettings& settings, std::vector<Proximity>& out, Workers& workers);
   /// From a place of the wall along a unit vector into the lumen, no farther than `far`.
   Opposite opposite(const CollisionMesh& mesh, int triangle, const Vec3& bary, const Vec3& along, double far) const;
   const std::vector<int>& samples() const { return samples_; }
   void reset();
 
  private:
+  static constexpr int groups = 64;        ///< of vertices: the bits of a mask
+  static constexpr std::size_t piece = 64; ///< samples that one task looks at
+
+  struct Partner {
+    double was;  ///< distance when the list was made, m
+    int triangle;
+  };
+
   int kind(std::size_t sample, int triangle) const;  ///< inner, outer or -1
   double lumen(const CollisionMesh& rest, int vertex) const;
+  bool may_be_near(const CollisionMesh& mesh, std::size_t sample, int side, double range);
+  void list_partners(const CollisionMesh& mesh, std::size_t sample, int side, double far);
   void near(const CollisionMesh& mesh, const SelfContactSettings& settings, std::size_t sample, int side, std::vector<Proximity>& out);
 
   std::vector<int> samples_;
   std::vector<Vec3> place_, normal_;             ///< of the samples at rest
   std::vector<double> reach_;                    ///< of the samples: longest way to an inner partner at rest, m
   std::vector<Vec3> face_place_, face_normal_;   ///< of the triangles at rest
+  std::vector<int> group_of_;                    ///< of the vertices
+  std::vector<std::uint64_t> partners_[2];       ///< of the samples: groups of vertices that have possible partners of a side
   std::vector<Vec3> outward_;                    ///< of the samples now; computed when first wanted
   std::vector<char> outward_known_;
   std::vector<char> close_[2];                   ///< 1: had a contact of this side in the last step, 2: had crossed; looked for farther
   std::vector<double> clear_[2];                 ///< of the samples: no partner of this side is nearer than this, m
+  std::vector<std::vector<Partner>> lists_[2];   ///< of the samples: what may be a partner soon, nearest first ...
+  std::vector<double> covered_[2];               ///< ... as long as no more than this has moved; negative: to be made, m
   std::vector<Vec3> last_;                       ///< vertices in the last step
-  double moved_ = 0, free_ = 0;                  ///< farthest that a vertex went since then, and twice what one may in this step, m
+  std::vector<double> went_;                     ///< of the vertices since the last step, m
+  std::array<double, groups> moved_{}, free_{};  ///< of the groups: farthest that a vertex went since then, and may go in this step, m
+  std::vector<std::vector<Proximity>> found_;    ///< of the tasks
   double neighbour_ = 0;                         ///< m
 };
 

@@ -11,6 +11,7 @@ namespace insula {
 namespace {
 
 constexpr double thickness = 0.3e-3;
+Workers workers(2);
 
 /// A flat box, 2 mm high at rest; height() presses it.
 struct Flat {
@@ -25,7 +26,7 @@ struct Flat {
   std::vector<Proximity> detect(const SelfContactSettings& settings = {}) {
     std::vector<Proximity> out;
     mesh.update(now, free);
-    collider.detect(mesh, settings, out);
+    collider.detect(mesh, settings, out, workers);
     return out;
   }
   bool top(const Proximity& x) const { return rest.vertices[std::size_t(x.vertex)].z() > 0.99e-3; }
@@ -61,7 +62,7 @@ TEST(SelfCollider, NothingAtRestAndNothingFarOff) {
     SelfContactSettings settings;
     settings.outer = true;
     settings.alarm = 0.1e-3;
-    c.detect(mesh, settings, out);
+    c.detect(mesh, settings, out, workers);
     EXPECT_TRUE(out.empty());
   }
   Flat f;
@@ -89,7 +90,7 @@ TEST(SelfCollider, TwoBranchesSideBySideAreOutsideOfEachOther) {
     for (int i = 0; i < upper; ++i) now[std::size_t(i)].z() += distance - 2e-3;
     mesh.update(now, {});
     std::vector<Proximity> out;
-    c.detect(mesh, settings, out);
+    c.detect(mesh, settings, out, workers);
     int count = 0;
     for (const Proximity& x : out) {
       EXPECT_EQ(x.side, SelfCollider::outer);

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <map>
 
+#include "core/collision/vertex_groups.h"
+
 namespace insula {
 
 std::vector<int> sample_vertices(std::span<const Vec3> rest, std::span<const std::array<int, 3>> triangles, double distance) {
@@ -36,22 +38,8 @@ std::vector<int> sample_vertices(std::span<const Vec3> rest, std::span<const std
 
 namespace {
 
-// Halves by the longest side until a group is left.
-void order_by_place(int* first, int* last, std::span<const Vec3> rest, std::ptrdiff_t group) {
-  if (last - first <= group) return;
-  Aabb box;
-  for (const int* v = first; v != last; ++v) box.add(rest[std::size_t(*v)]);
-  int axis = 0;
-  (box.high - box.low).maxCoeff(&axis);
-  std::sort(first, last, [&](int a, int b) {
-    const double x = rest[std::size_t(a)][axis], y = rest[std::size_t(b)][axis];
-    return x != y ? x < y : a < b;
-  });
-  const std::ptrdiff_t groups = (last - first + group - 1) / group;
-  int* middle = first + groups / 2 * group;  // whole groups to the left
-  order_by_place(first, middle, rest, group);
-  order_by_place(middle, last, rest, group);
-}
+constexpr double horizon = 2e-3;       ///< groups are looked at farther than needed, to know for how long nothing will come, m
+constexpr double near_horizon = 5e-4;  ///< and samples
 
 Aabb swept(const CollisionMesh& mesh, int v) {
   Aabb box;
@@ -63,7 +51,8 @@ Aabb swept(const CollisionMesh& mesh, int v) {
 
 }  // namespace
 
-TissueCollider::TissueCollider(std::vector<int> samples, std::span<const Vec3> rest) : samples_(std::move(samples)) {
+TissueCollider::TissueCollider(std::vector<int> samples, std::span<const Vec3> rest, std::size_t vertices)
+    : samples_(std::move(samples)), was_b_(vertices, Vec3::Zero()) {
   order_by_place(samples_.data(), samples_.data() + samples_.size(), rest, std::ptrdiff_t(group));
   reset();
 }
@@ -71,13 +60,46 @@ TissueCollider::TissueCollider(std::vector<int> samples, std::span<const Vec3> r
 void TissueCollider::reset() {
   behind_.assign(samples_.size(), 1);
   last_.assign(samples_.size(), -1);
+  clear_.assign(samples_.size(), 0.0);
+  was_.assign(samples_.size(), Vec3::Zero());
+  std::fill(was_b_.begin(), was_b_.end(), Vec3(Vec3::Zero()));
 }
 
 void TissueCollider::detect(const CollisionMesh& a, const CollisionMesh& b, const TissueContactSettings& settings,
                             std::vector<Proximity>& out) {
   if (b.tree().empty()) return;
+  was_b_.resize(std::size_t(b.vertex_count()), Vec3::Zero());
+  double moved_b2 = 0, free_b2 = 0;
+  for (int v = 0; v < b.vertex_count(); ++v) {
+    const Vec3 x = b.vertex(v);
+    moved_b2 = std::max(moved_b2, (x - was_b_[std::size_t(v)]).squaredNorm());
+    free_b2 = std::max(free_b2, b.free(v).squaredNorm());
+    was_b_[std::size_t(v)] = x;
+  }
+  const double moved_b = std::sqrt(moved_b2), free_b = std::sqrt(free_b2);
   for (std::size_t first = 0; first < samples_.size(); first += group) {
     const std::size_t last = std::min(first + group, samples_.size());
+    // What cannot have come near since it was last looked at needs no look.
+    double least = 1e300, may_come = 0;
+    Aabb here;
+    bool open = true;
+    for (std::size_t i = first; i < last; ++i) {
+      const Vec3 x = a.vertex(samples_[i]);
+      clear_[i] -= (x - was_[i]).norm() + moved_b;
+      was_[i] = x;
+      here.add(x);
+      least = std::min(least, clear_[i]);
+      may_come = std::max(may_come, settings.alarm + settings.offset + a.free(samples_[i]).norm() + free_b);
+      open = open && behind_[i] == 0;
+    }
+    if (open) {
+      if (least > may_come) continue;
+      here.inflate(may_come + horizon);
+      if (!b.tree().any_overlapping(here)) {
+        std::fill(clear_.begin() + std::ptrdiff_t(first), clear_.begin() + std::ptrdiff_t(last), may_come + horizon);
+        continue;
+      }
+    }
     Aabb all;
     bool deep = false;
     for (std::size_t i = first; i < last; ++i) {
@@ -92,10 +114,12 @@ void TissueCollider::detect(const CollisionMesh& a, const CollisionMesh& b, cons
     }
     for (std::size_t i = first; i < last; ++i) {
       const int v = samples_[i];
+      if (!behind_[i] && clear_[i] > may_come) continue;
       const double range = behind_[i] ? std::max(open_range, settings.max_depth) : open_range;
       behind_[i] = 0;
       Aabb box = swept(a, v);
-      box.inflate(range);
+      box.inflate(range + near_horizon);
+      double any2 = (range + near_horizon) * (range + near_horizon);
       const Vec3 x = a.vertex(v), u = a.free(v);
       Vec3 normal = Vec3::Zero();
       double least2 = 1e300;
@@ -108,10 +132,11 @@ void TissueCollider::detect(const CollisionMesh& a, const CollisionMesh& b, cons
         const double h = n.dot(x - p), nn = n.squaredNorm();
         if (h * h > limit2 * nn) return;  // its plane is farther than the best
         if (normal.isZero(0)) normal = a.rough_normal(v);
-        if (normal.dot(n) > -0.25 * std::sqrt(nn)) return;  // faces away
         const Vec3 bary = closest_on_triangle(x, p, q, r);
         const Vec3 c = bary[0] * p + bary[1] * q + bary[2] * r;
         const double d2 = (x - c).squaredNorm();
+        any2 = std::min(any2, d2);
+        if (normal.dot(n) > -0.25 * std::sqrt(nn)) return;  // faces away
         if (d2 > limit2 || (d2 == limit2 && best >= 0 && tri > best)) return;
         limit2 = d2;
         best = tri;
@@ -126,6 +151,7 @@ void TissueCollider::detect(const CollisionMesh& a, const CollisionMesh& b, cons
       }
       b.tree().nearest(x, &box, least2, look);
       last_[i] = best;
+      clear_[i] = std::sqrt(any2);
       if (best < 0) continue;
       const TriangleFeature f = feature_of(best_bary);
       const Vec3 outward = b.pseudo_normal(best, f);

@@ -11,7 +11,11 @@
 namespace insula {
 
 VertexCollider::VertexCollider(const std::vector<ConvexPiece>& pieces, const std::vector<std::array<int, 3>>& triangles, int vertices) {
-  for (const ConvexPiece& p : pieces) pieces_.push_back(rounded(p));
+  for (const ConvexPiece& p : pieces) {
+    pieces_.push_back(rounded(p));
+    boxes_.emplace_back();
+    for (const Vec3& c : pieces_.back().core) boxes_.back().add(c);
+  }
   const std::size_t n = std::size_t(vertices);
   triangle_of_.assign(n, {-1, 0});
   for (int t = 0; t < int(triangles.size()); ++t)
@@ -24,6 +28,11 @@ VertexCollider::VertexCollider(const std::vector<ConvexPiece>& pieces, const std
 void VertexCollider::reset() {
   kept_out_.assign(triangle_of_.size(), Vec3::Zero());
   marked_.assign(triangle_of_.size(), 0);
+}
+
+// No more than what nearest() gives: from the box of the core.
+double VertexCollider::at_least(std::size_t piece, const Vec3& local, double offset) const {
+  return std::sqrt(boxes_[piece].distance2(local)) - pieces_[piece].radius - offset;
 }
 
 VertexCollider::Near VertexCollider::nearest(const RoundedPiece& piece, const Pose& pose, const Vec3& x, double offset) const {
@@ -71,11 +80,12 @@ void VertexCollider::detect(const CollisionMesh& mesh, const Pose& start, const 
     marked_[std::size_t(v)] = 0;
     const Vec3 x0 = mesh.vertex(v), u = mesh.free(v);
     Vec3& memory = kept_out_[std::size_t(v)];
-    const Vec3 before = start.q * memory;
+    const Vec3 before = start.q * memory, local = start.q.conjugate() * (x0 - start.p);
     int best = -1;
     Near near{1e300, Vec3::Zero()};
     double when = 0;
     for (int i = 0; i < int(pieces_.size()); ++i) {
+      if (at_least(std::size_t(i), local, settings.offset) > std::min(alarm, near.clear)) continue;
       const Near n = nearest(pieces_[std::size_t(i)], start, x0, settings.offset);
       if (n.clear < near.clear) {
         near = n;
@@ -91,6 +101,7 @@ void VertexCollider::detect(const CollisionMesh& mesh, const Pose& start, const 
       for (int i = 0; i < int(pieces_.size()); ++i) {
         const RoundedPiece& p = pieces_[std::size_t(i)];
         const double speed = (motion.head<3>() - u).norm() + turn * (x0 - start.p).norm() + turn * u.norm();
+        if (at_least(std::size_t(i), local, settings.offset) > 0.2 * alarm + speed) continue;
         double t = 0;
         for (int k = 0; k < 32 && t < first; ++k) {
           const Pose pose = t > 0 ? displaced(start, t * motion) : start;

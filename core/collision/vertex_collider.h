@@ -34,7 +34,10 @@ class VertexCollider {
   };
   Near nearest(const RoundedPiece& piece, const Pose& pose, const Vec3& x, double offset) const;
 
+  double at_least(std::size_t piece, const Vec3& local, double offset) const;
+
   std::vector<RoundedPiece> pieces_;
+  std::vector<Aabb> boxes_;                      ///< of the pieces' cores
   std::vector<std::array<int, 2>> triangle_of_;  ///< one triangle of each vertex, and the vertex's corner in it; -1: none
   std::vector<Vec3> kept_out_;                   ///< per vertex: last normal, frame of the pieces; zero: none
   std::vector<int> seen_;                        ///< vertices near the pieces in this step

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Friction of one contact, and of a patch of contacts.
+//
 // One contact with Coulomb friction, solved exactly: Signorini on the normal, |lambda_t| <= mu lambda_n with the tangential
 // force opposite to the slip.
 //   sticking   lambda = -W^-1 q, if inside the cone
 //   sliding    delta_n = 0, delta_t = -s lambda_t with s > 0 and |lambda_t| = mu lambda_n: with the normal eliminated
 //              (S + s I) lambda_t = b, S the 2x2 Schur complement; one scalar equation for s, bracketed Newton.
 #pragma once
+#include <algorithm>
 #include <cmath>
 
 namespace insula {
@@ -90,6 +93,42 @@ inline void solve_contact(const LocalContact& c, double mu, double* out) {
   out[0] = n;
   out[1] = vx * t1 - vy * t2;
   out[2] = vy * t1 + vx * t2;
+}
+
+/// Coulomb friction of given strength: |lambda| <= bound opposing the slip w lambda + q, w symmetric 2x2. Writes two newtons.
+inline void solve_disc(double w11, double w12, double w22, double q1, double q2, double bound, double* out) {
+  out[0] = out[1] = 0;
+  if (!(bound > 0) || !(w11 + w22 > 0)) return;
+  const double mean = 0.5 * (w11 + w22), half = 0.5 * (w11 - w22), radius = std::sqrt(half * half + w12 * w12);
+  const double least = 1e-12 * (mean + radius);
+  const double e1 = mean + radius, e2 = std::max(mean - radius, least);
+  double vx = 1, vy = 0;
+  if (radius > 0) {
+    vx = half >= 0 ? half + radius : w12;
+    vy = half >= 0 ? w12 : radius - half;
+    const double norm = std::sqrt(vx * vx + vy * vy);
+    vx /= norm;
+    vy /= norm;
+  }
+  const double g1 = -(vx * q1 + vy * q2), g2 = -(-vy * q1 + vx * q2);  // in the eigenbasis
+  double t1 = g1 / e1, t2 = g2 / e2, size = std::sqrt(t1 * t1 + t2 * t2);
+  // (w + s) lambda = -q with |lambda| = bound: 1/|lambda| is nearly straight in s, so Newton comes from below in a few steps.
+  double s = 0;
+  for (int k = 0; k < 60 && size > bound * (1 + 1e-15); ++k) {
+    const double slope = -(t1 * t1 / (e1 + s) + t2 * t2 / (e2 + s)) / size;  // d|lambda|/ds
+    const double step = (size - bound) * size / (-slope * bound);
+    if (!(step > 1e-15 * (s + e2))) break;
+    s += step;
+    t1 = g1 / (e1 + s);
+    t2 = g2 / (e2 + s);
+    size = std::sqrt(t1 * t1 + t2 * t2);
+  }
+  if (size > bound) {
+    t1 *= bound / size;
+    t2 *= bound / size;
+  }
+  out[0] = vx * t1 - vy * t2;
+  out[1] = vy * t1 + vx * t2;
 }
 
 }  // namespace insula

@@ -21,6 +21,8 @@ enum class LawKind : std::uint8_t {
              ///< bilateral: c = 0, no bounds; compliant: c > 0; contact without friction: c = 0, [0, inf);
              ///< a fibre that carries tension only: c = 1/k, (-inf, 0]
   friction,  ///< three rows (normal, tangent, tangent): Signorini on the normal, Coulomb on the tangents
+  patch,     ///< two rows (tangent, tangent) that the `normals` one-row blocks before it share: |lambda_t| <= friction * the
+             ///< sum of their lambda, opposing slip (many contacts close together, one friction force)
 };
 
 struct Block {
@@ -30,8 +32,9 @@ struct Block {
   double compliance = 0;      ///< m/N, >= 0; for friction blocks on the normal row
   double lower = -infinite;   ///< N, box only
   double upper = infinite;    ///< N, box only
-  double friction = 0;        ///< Coulomb coefficient, friction blocks only
-  int rows() const { return law == LawKind::friction ? 3 : 1; }
+  double friction = 0;        ///< Coulomb coefficient, friction and patch blocks only
+  int normals = 0;            ///< of the blocks before this one, patch only
+  int rows() const { return law == LawKind::friction ? 3 : law == LawKind::patch ? 2 : 1; }
 };
 
 /// A hand-held tool in the problem: how its free pose follows the device and how it yields to lambda.

@@ -39,6 +39,12 @@ void local_solution(const ConstraintProblem& p, const Block& b, const double* la
     return;
   }
   const int s = p.stride;
+  if (b.law == LawKind::patch) {
+    double pressed = 0;
+    for (int i = r - b.normals; i < r; ++i) pressed += std::max(0.0, lambda[i]);
+    const double q1 = delta[r] - (w[0] * lambda[r] + w[1] * lambda[r + 1]), q2 = delta[r + 1] - (w[1] * lambda[r] + w[s + 1] * lambda[r + 1]);
+    return solve_disc(w[0], w[1], w[s + 1], q1, q2, b.friction * pressed, out);
+  }
   LocalContact c;
   c.wnn = w[0] + b.compliance;
   c.wn1 = w[1];
@@ -118,6 +124,14 @@ SolveStats solve(const ConstraintProblem& p, std::span<const double> free, const
         k.axpy(delta, w, d, n);
         lambda[r] = next[0];
         moved = std::max(moved, std::abs(d) * (w[r] + b.compliance));
+      } else if (b.law == LawKind::patch) {
+        for (int i = 0; i < 2; ++i) {
+          const double d = next[i] - lambda[r + i];
+          const double* row = w + i * p.stride;
+          if (d != 0) k.axpy(delta, row, d, n);
+          lambda[r + i] = next[i];
+          moved = std::max(moved, std::abs(d) * row[r + i]);
+        }
       } else {
         const double d0 = next[0] - lambda[r], d1 = next[1] - lambda[r + 1], d2 = next[2] - lambda[r + 2];
         if (d0 == 0 && d1 == 0 && d2 == 0) continue;

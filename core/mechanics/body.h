@@ -44,6 +44,9 @@ class Body : public Component {
   virtual Vec3 position(const MaterialPoint& p) const = 0;
   /// Displacement that the free motion gives the point over the step, linearised, scene frame. Valid after free_motion.
   virtual Vec3 free_displacement(const MaterialPoint& p) const = 0;
+  /// What collision looks ahead along. For tissue it is the last step's displacement: what is held springs back in its free
+  /// motion, step after step, and goes nowhere.
+  virtual Vec3 expected_displacement(const MaterialPoint& p) const { return free_displacement(p); }
   /// The point's row entries for a direction d: adds d . d(point)/d(q) to the open row.
   virtual void add_row(BodyRows& rows, const MaterialPoint& p, const Vec3& d) const = 0;
 

@@ -56,7 +56,7 @@ void DeformableBody::connect(PrepareContext& context) {
     }
   solver_ = std::make_unique<BlockCholesky>();
   solver_->analyse(a_);
-  force_ = dq_ = correction_ = VecX::Zero(3 * nodes());
+  force_ = dq_ = VecX::Zero(3 * nodes());
   packed_ = VecX::Zero(3 * free_count_);
 }
 
@@ -70,6 +70,12 @@ Vec3 DeformableBody::free_displacement(const MaterialPoint& p) const {
   Vec3 x = Vec3::Zero();
   for (int k = 0; k < p.count; ++k) x += p.weight[std::size_t(k)] * dq_.segment<3>(3 * p.node[std::size_t(k)]);
   return x;
+}
+
+Vec3 DeformableBody::expected_displacement(const MaterialPoint& p) const {
+  Vec3 x = Vec3::Zero();
+  for (int k = 0; k < p.count; ++k) x += p.weight[std::size_t(k)] * v_.segment<3>(3 * p.node[std::size_t(k)]);
+  return x * step_;
 }
 
 void DeformableBody::add_row(BodyRows& out, const MaterialPoint& p, const Vec3& d) const {
@@ -116,7 +122,7 @@ void DeformableBody::make_tangent(double h) {
 }
 
 void DeformableBody::free_motion(const StepContext& context) {
-  const double h = context.h;
+  const double h = step_ = context.h;
   force_ = external + filling;
   if (tangent_is_good(h))
     for (ForceModel* f : forces_) f->linearise(q_.data(), force_.data(), nullptr, h, Tangent::system);

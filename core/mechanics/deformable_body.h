@@ -47,6 +47,7 @@ class DeformableBody : public Body {
   int blocks() const override { return nodes(); }
   Vec3 position(const MaterialPoint& p) const override;
   Vec3 free_displacement(const MaterialPoint& p) const override;
+  Vec3 expected_displacement(const MaterialPoint& p) const override;
   void add_row(BodyRows& rows, const MaterialPoint& p, const Vec3& d) const override;
   void free_motion(const StepContext& context) override;
   void compute_compliance(const BodyRows& rows) override;
@@ -66,10 +67,11 @@ class DeformableBody : public Body {
   std::vector<int> free_;
   int free_count_ = 0;
   std::vector<double> mass_, damping_;
-  VecX q_, v_, force_, dq_, correction_, packed_;
+  VecX q_, v_, force_, dq_, packed_;
   BlockMatrix a_;
   std::unique_ptr<BlockCholesky> solver_;
   int indefinite_ = 0;
+  double step_ = 0;  ///< of the step that is on, s
 
   bool tangent_is_good(double h) const;
   void make_tangent(double h);

@@ -54,6 +54,7 @@ void Surface::prepare(PrepareContext& context) {
   }
   positions_ = rest_.vertices;
   free_.assign(positions_.size(), Vec3::Zero());
+  expected_ = free_;
 }
 
 // A vertex follows the nearest triangle of the wall and keeps its distance to it; a surface of the body's own is its nodes.
@@ -97,7 +98,10 @@ void Surface::update() {
 
 void Surface::update_free() {
   if (body_->blocks() == 0) return;
-  for (std::size_t i = 0; i < points_.size(); ++i) free_[i] = body_->free_displacement(points_[i]);
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    free_[i] = body_->free_displacement(points_[i]);
+    expected_[i] = body_->expected_displacement(points_[i]);
+  }
 }
 
 void Surface::add_row(BodyRows& rows, int triangle, const Vec3& bary, const Vec3& d) const {

@@ -32,11 +32,12 @@ class Surface : public Component {
   const std::vector<MaterialPoint>& points() const { return points_; }      ///< one a vertex
   const std::vector<Vec3>& positions() const { return positions_; }         ///< at the start of the step; update() refreshes
   const std::vector<Vec3>& free_displacements() const { return free_; }     ///< of the vertices in this step's free motion
+  const std::vector<Vec3>& expected_displacements() const { return expected_; }  ///< what collision looks ahead along
   const std::vector<std::array<int, 3>>& triangles() const { return rest_.triangles; }
 
   /// Recomputes positions() from the body's q.
   void update();
-  /// Recomputes free_displacements() after free motion.
+  /// Recomputes free_displacements() and expected_displacements() after free motion.
   void update_free();
   /// The material point of a triangle at barycentric coordinates; up to twelve nodes, merged and sorted.
   /// Adds direction d of it to the open row of the body.
@@ -47,7 +48,7 @@ class Surface : public Component {
   Body* body_ = nullptr;
   TriMesh rest_;
   std::vector<MaterialPoint> points_;
-  std::vector<Vec3> positions_, free_;
+  std::vector<Vec3> positions_, free_, expected_;
 };
 
 }  // namespace insula

@@ -3,7 +3,7 @@
 #pragma once
 #include <Eigen/Core>
 
-#define INSULA_ABI_VERSION 2
+#define INSULA_ABI_VERSION 3
 #define INSULA_STR2(x) #x
 #define INSULA_STR(x) INSULA_STR2(x)
 #define INSULA_ABI_STRING                                                                              \

@@ -249,6 +249,10 @@ void check_laws(const Simulation& s) {
       EXPECT_LE(l[0], b.upper);
       EXPECT_GE(b.compliance, 0);
       EXPECT_LE(b.lower, b.upper);
+    } else if (b.law == LawKind::patch) {
+      double pressed = 0;
+      for (int i = 1; i <= b.normals; ++i) pressed += l[-i];
+      EXPECT_LE(std::hypot(l[0], l[1]), b.friction * pressed * (1 + 1e-9) + 1e-15);
     } else {
       EXPECT_GE(l[0], 0);
       EXPECT_LE(std::hypot(l[1], l[2]), b.friction * l[0] * (1 + 1e-9) + 1e-15);

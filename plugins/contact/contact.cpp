@@ -25,6 +25,10 @@ distance at which a contact enters the problem; the haptic loop needs it too, si
 forces act on both sides at the same place of the triangle's side of the gap, so a tool's contact adds neither force nor
 moment to the whole; between two surfaces the moment is exact once the gap is closed.
 
+A blade that meets a wall `by="vertices"` has many contacts side by side. With a `patch` those within that length share one
+friction force: |f_t| <= mu sum of their f_n, opposing the mean slip, weighted by what each bore in the last step
+(`friction_patches.h`): one row a contact and two a patch instead of three a contact.
+
 Sources: Dequidt et al. 2015, sections 3.3 and 3.4; Duriez, Dubois, Kheddar, Andriot 2006 (friction in the block solve).
 */
 #include "plugins/contact/contact.h"
@@ -43,7 +47,7 @@ void ContactSurface::update(std::int64_t step) {
   if (fixed && refitted_at >= 0) return;
   refitted_at = step;
   if (fixed) mesh.update(surface->positions(), {});
-  else mesh.update(surface->positions(), surface->free_displacements());
+  else mesh.update(surface->positions(), surface->expected_displacements());
 }
 
 // Whether this element looks after the pair that several may name.
@@ -119,8 +123,8 @@ void Contact::add_pairs(Simulation& simulation, Body* a, Body* b) {
       p.a = shared_surface(simulation, sa);
       p.b = shared_surface(simulation, sb);
       const double distance = 0.75 * tissue_spacing();
-      p.a_on_b = std::make_unique<TissueCollider>(sample_vertices(sa->rest().vertices, sa->triangles(), distance), sa->rest().vertices);
-      p.b_on_a = std::make_unique<TissueCollider>(sample_vertices(sb->rest().vertices, sb->triangles(), distance), sb->rest().vertices);
+      p.a_on_b = std::make_unique<TissueCollider>(sample_vertices(sa->rest().vertices, sa->triangles(), distance), sa->rest().vertices, sb->rest().vertices.size());
+      p.b_on_a = std::make_unique<TissueCollider>(sample_vertices(sb->rest().vertices, sb->triangles(), distance), sb->rest().vertices, sa->rest().vertices.size());
       p.contacts.reserve(p.a_on_b->samples().size() + p.b_on_a->samples().size());
       p.other_way.reserve(p.b_on_a->samples().size());
       pairs_.push_back(std::move(p));
@@ -151,6 +155,7 @@ void Contact::connect(PrepareContext& context, Simulation& simulation) {
     p.selection.reserve(p.contacts.capacity() + p.other_way.capacity(), most);
     p.contacts.reserve(p.contacts.capacity() + p.other_way.capacity());
     p.rows.reserve(most);
+    if (p.vertex_collider && patch() > 0 && friction() > 0) p.patches = std::make_unique<FrictionPatches>(patch(), most);
     p.forces.reserve(most);
   }
   // Surfaces against surfaces take longest: first, so that threads end together.
@@ -233,60 +238,13 @@ void Contact::add_row(ConstraintBuilder& builder, int row, const Pair& p, const 
   builder.surface_point(row, face, x.triangle, x.bary, -d);
 }
 
-// A thin wall answers linearly over a step, while its true motion is not: a far push would turn it inside out, a far slide
-// would leave the places that contact looked at. So a tool that touches goes on by no more than max_push: three rows along
-// the free motion of three places of the touching piece.
-void Contact::limit_motion(ConstraintBuilder& builder, const Pair& p) const {
-  if (!p.tool_a || !p.b || !p.active() || p.b->surface->thickness() == 0 || p.b->surface->body().blocks() == 0) return;
-  int piece = -1;
-  double touch = 1;
-  if (p.tool_collider) {
-    piece = p.tool_collider->touching_piece();
-    touch = p.tool_collider->touch_time();
-  } else {
-    // A contact found on the free way, or one that is closed and goes on closing.
-    for (const Proximity& x : p.contacts) {
-      if (x.time == 0) {
-        if (x.gap > 0.1 * alarm()) continue;
-        const Vec3 u = p.tool_a->free_displacement(p.tool_a->link_point(p.link_a, x.local));
-        if (x.normal.dot(u - p.b->mesh.free_at(x.triangle, x.bary)) >= 0) continue;
-      }
-      if (x.time < touch) {
-        touch = x.time;
-        piece = x.piece;
-      }
-    }
-  }
-  if (piece < 0) return;
-  const RoundedPiece& r = p.pieces_a[std::size_t(piece)];
-  Vec3 third = r.core.front();
-  double farthest = -1;
-  for (const Vec3& q : r.core) {
-    const double s = closest_on_segment(q, r.axis0, r.axis1), d = (r.axis0 + s * (r.axis1 - r.axis0) - q).norm();
-    if (d > farthest) {
-      farthest = d;
-      third = q;
-    }
-  }
-  int count = 0;
-  for (const Vec3& place : {r.axis0, r.axis1, third}) {
-    const MaterialPoint point = p.tool_a->link_point(p.link_a, place);
-    const Vec3 u = p.tool_a->free_displacement(point);
-    const double way = u.norm(), allowed = touch * way + max_push();
-    ++count;
-    if (way <= allowed) continue;
-    Block block;
-    block.id = row_id(*this, std::uint64_t(1) << 43 | std::uint64_t(&p - pairs_.data()) << 16 | std::uint64_t(piece) << 2 | std::uint64_t(count));
-    block.lower = 0;
-    const int row = builder.add(block);
-    builder.violation(row, allowed);
-    builder.point(row, point, -u / way);
-  }
-}
-
 void Contact::build(const StepContext&, ConstraintBuilder& builder) {
   for (Pair& p : pairs_) {
     limit_motion(builder, p);
+    if (p.patches) {
+      build_patches(builder, p);
+      continue;
+    }
     p.rows.clear();
     for (const Proximity& x : p.contacts) {
       Block block;
@@ -312,6 +270,10 @@ void Contact::build(const StepContext&, ConstraintBuilder& builder) {
 void Contact::finish(const StepContext&, const ConstraintSolution& solution) {
   for (Pair& p : pairs_) {
     p.forces.clear();
+    if (p.patches) {
+      p.patches->finish(p.contacts, solution, p.forces);
+      continue;
+    }
     for (int row : p.rows) {
       Vec3 f(solution.lambda[row], 0, 0);
       if (friction() > 0) f = Vec3(f[0], solution.lambda[row + 1], solution.lambda[row + 2]);
@@ -345,6 +307,7 @@ void Contact::reset() {
     if (p.vertex_collider) p.vertex_collider->reset();
     if (p.a_on_b) p.a_on_b->reset();
     if (p.b_on_a) p.b_on_a->reset();
+    if (p.patches) p.patches->reset();
     p.contacts.clear();
     p.rows.clear();
     p.forces.clear();

@@ -13,6 +13,7 @@
 #include "core/mechanics/rigid_body.h"
 #include "core/mechanics/surface.h"
 #include "core/sim/report.h"
+#include "plugins/contact/friction_patches.h"
 
 namespace insula {
 
@@ -33,6 +34,7 @@ class Contact final : public Constraint {
   Param<int> max_contacts{this, {.name = "max_contacts", .fallback = "8", .min = "1", .max = "100", .doc = "most contacts of a tool with one surface"}};
   Param<Length> max_push{this, {.name = "max_push", .fallback = "0.3 mm", .min = "0.05 mm", .max = "100 mm", .doc = "a tool that touches a wall (a surface with a thickness) goes on by no more than this in a step; the rest of the hand's motion follows in the next ones"}};
   Param<Choice> by{this, {.name = "by", .fallback = "triangles", .choices = {"triangles", "vertices"}, .doc = "how tools meet walls (surfaces with a thickness): every triangle, for sharp tools; or every vertex, for blades rounder than the wall's triangles are wide that close on it from both sides"}};
+  Param<Length> patch{this, {.name = "patch", .fallback = "0 mm", .min = "0 mm", .max = "20 mm", .doc = "by vertices: contacts within this length of a blade share one friction force; 0: each has its own"}};
   Param<Length> recovery{this, {.name = "recovery", .fallback = "1 mm", .min = "0.001 mm", .max = "10 mm", .doc = "an overlap of a tool is undone by no more than this in a step: less is gentler on thin walls"}};
   Param<Length> tissue_alarm{this, {.name = "tissue_alarm", .fallback = "0.5 mm", .min = "0.01 mm", .max = "10 mm", .doc = "the same distance between two surfaces"}};
   Param<Length> tissue_spacing{this, {.name = "tissue_spacing", .fallback = "4 mm", .min = "0.05 mm", .max = "100 mm", .doc = "contacts of two surfaces are no closer than this; their vertices are sampled at three quarters of it"}};
@@ -59,6 +61,7 @@ class Contact final : public Constraint {
     ContactSelection selection;
     std::vector<Proximity> contacts;
     std::vector<Proximity> other_way;  ///< of b's vertices on a, before selection
+    std::unique_ptr<FrictionPatches> patches;  ///< one friction force for contacts close together, if wanted
     std::vector<int> rows;      ///< first row of each contact
     std::vector<Vec3> forces;   ///< along (normal, tangent, other tangent), N
     bool active() const { return (!tool_a || tool_a->active()) && (!tool_b || tool_b->active()); }
@@ -79,6 +82,7 @@ class Contact final : public Constraint {
   void search(const Search& what);
   void add_pairs(Simulation& simulation, Body* a, Body* b);
   void limit_motion(ConstraintBuilder& builder, const Pair& pair) const;
+  void build_patches(ConstraintBuilder& builder, Pair& pair);
   void add_row(ConstraintBuilder& builder, int row, const Pair& pair, const Proximity& x, const Vec3& direction) const;
 
   std::vector<std::shared_ptr<ContactSurface>> surfaces_;

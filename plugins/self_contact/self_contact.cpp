@@ -36,6 +36,7 @@ void SelfContact::connect(PrepareContext& context, Simulation& simulation) {
   const auto& rest = on->rest();
   mesh_.build(rest.vertices, rest.triangles);
   collider_ = std::make_unique<SelfCollider>(rest.vertices, rest.triangles, 0.75 * spacing(), thickness());
+  workers_ = &simulation.workers();
   for (Constraint* c : simulation.constraints())
     if (const auto* touch = dynamic_cast<const Contact*>(c)) touches_.push_back(touch);
   const std::size_t room = 2 * collider_->samples().size();
@@ -48,7 +49,7 @@ void SelfContact::connect(PrepareContext& context, Simulation& simulation) {
 }
 
 void SelfContact::detect(const StepContext&) {
-  mesh_.update(on->positions(), on->free_displacements());
+  mesh_.update(on->positions(), on->expected_displacements());
   SelfContactSettings settings;
   settings.thickness = thickness();
   settings.alarm = alarm();
@@ -56,7 +57,7 @@ void SelfContact::detect(const StepContext&) {
   settings.inner = !sides.is("outer");
   settings.outer = !sides.is("inner");
   contacts_.clear();
-  collider_->detect(mesh_, settings, contacts_);
+  collider_->detect(mesh_, settings, contacts_, *workers_);
   SelectionSettings choice;
   choice.spacing = spacing();
   choice.advantage = 0.5 * alarm();

@@ -43,7 +43,9 @@ renderer.debug.onShaderError = (gl, program, vs, fs) => {
   console.error('shader:', gl.getProgramInfoLog(program), gl.getShaderInfoLog(vs), gl.getShaderInfoLog(fs));
 };
 const scene = new THREE.Scene();
-scene.background = new THREE.Color(0x040303);
+/** What is seen through a gap between the tissues: the depth of the field, not a hole. */
+const depths = { eye: new THREE.Color(0x38100c), infrared: new THREE.Color(0x020303) };
+scene.background = depths.eye;
 scene.environmentIntensity = 0.42;
 const scope = new Microscope();
 scope.add_to(scene);
@@ -107,7 +109,7 @@ const hud = new Hud(hud_root, {
 }, options.role, options.quality ?? '');
 const headset: Headset = new Headset(renderer, () => modes.set_stereo('off'));
 const modes: ViewModes = new ViewModes(options, headset, {
-  infrared: (on) => { status.infrared = on; world?.set_infrared(on); hud.view.show_infrared(on); },
+  infrared: (on) => { status.infrared = on; scene.background = on ? depths.infrared : depths.eye; world?.set_infrared(on); hud.view.show_infrared(on); },
   stereo: (mode, angle, found, presenting) => { hud_root.dataset.stereo = status.stereo = mode; hud.view.show_stereo(mode, angle, found, presenting); },
   refuse: (why) => hud.refuse(why, performance.now()),
 });

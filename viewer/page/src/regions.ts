@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Regions of a vessel wall: which measured vessel tells the dye of each, and how thin the wall looks.
+// Regions of a vessel wall: which measured vessel tells the dye of each, how thin the wall looks, and which
+// of its surfaces is drawn.
 
 /** Where a region has no vessel of its own in the engine's list, the first of these that has. */
 const stand_in: Record<string, string[]> = {
@@ -58,4 +59,14 @@ export function wall_thinness(region: Uint32Array, regions: readonly string[], i
     for (let v = 0; v < out.length; v++) out[v] = sum[v]! / count[v]!;
   }
   return out;
+}
+
+/**
+ * Of the surfaces that show the same wall (same material and regions), the finest alone is drawn: the coarse one, which contact
+ * needs, lies in the same place and would show through wherever the fine one is hollow.
+ */
+export function drawn_surfaces<S extends { material: string; regions: readonly string[]; positions: { length: number } }>(surfaces: readonly S[]): S[] {
+  const wall = (s: S) => (s.regions.length > 0 ? `${s.material} ${s.regions.join(' ')}` : null);
+  return surfaces.filter((s, i) => wall(s) === null || surfaces.every((o, k) => k === i || wall(o) !== wall(s)
+    || o.positions.length < s.positions.length || (o.positions.length === s.positions.length && k > i)));
 }

@@ -13,7 +13,7 @@ import { bake_shading, type Shading, type Tissue } from './occlusion';
 import type { RenderFrame } from './lcm';
 import { Playback } from './playback';
 import { hash_text } from './random';
-import { region_dye } from './regions';
+import { drawn_surfaces, region_dye } from './regions';
 import { barycentric, NodeField, shell_triangles } from './skinning';
 import { set_skin_attributes, SkinTexture, skinned_depth_material } from './skin_shader';
 import { PointGrid } from './spatial';
@@ -63,7 +63,7 @@ export class World {
       const skin = new SkinTexture(new NodeField(body.rest, triangles.length > 0 ? [] : body.surfaces.map((s) => s.skin_nodes), triangles));
       this.moving.push({ index: body.index, skin });
       this.owned.push(skin);
-      for (const s of body.surfaces) plan.push({ surface: s, skinned: s, skin, body, tissue: as_tissue(s) });
+      for (const s of drawn_surfaces(body.surfaces)) plan.push({ surface: s, skinned: s, skin, body, tissue: as_tissue(s) });
     }
     for (const s of bundle.static) {
       if (tissue_kinds.has(s.material)) plan.push({ surface: s, skinned: null, skin: null, body: null, tissue: as_tissue(s) });

@@ -10,7 +10,7 @@ import { clock_text, parse_hud } from '../src/hud/state';
 import { time_left_text, urgency, used_share } from '../src/hud/timers';
 import { flow_level } from '../src/hud/vitals';
 import { tool_in_hand } from '../src/hand_tool';
-import { absorb_region, region_dye, region_vessels, wall_thinness } from '../src/regions';
+import { absorb_region, drawn_surfaces, region_dye, region_vessels, wall_thinness } from '../src/regions';
 import type { Bundle, ToolData } from '../src/bundle';
 import * as lcm from '../src/lcm';
 
@@ -44,6 +44,24 @@ describe('regions', () => {
     const t = wall_thinness(Uint32Array.from([0, 0, 2, 3, 4]), regions, strip);
     for (let i = 1; i < 5; i++) expect(t[i]!).toBeGreaterThan(t[i - 1]!);
     expect(wall_thinness(Uint32Array.from([0, 0, 0]), regions, Uint32Array.from([0, 1, 2]))).toEqual(Float32Array.from([0, 0, 0]));
+  });
+});
+
+describe('surfaces of a wall', () => {
+  const surface = (id: string, material: string, wall: string[], vertices: number) => ({ id, material, regions: wall, positions: new Float32Array(3 * vertices) });
+  const ids = (list: { id: string }[]) => list.map((s) => s.id);
+
+  it('draws the finest of those that show the same wall', () => {
+    const coarse = surface('wall', 'vessel', ['parent', 'sac'], 100), fine = surface('picture', 'vessel', ['parent', 'sac'], 400);
+    expect(ids(drawn_surfaces([coarse, fine]))).toEqual(['picture']);
+    expect(ids(drawn_surfaces([fine, coarse]))).toEqual(['picture']);
+    expect(ids(drawn_surfaces([coarse]))).toEqual(['wall']);
+    expect(ids(drawn_surfaces([coarse, { ...coarse, id: 'again' }]))).toEqual(['wall']);
+  });
+
+  it('keeps what shows something else', () => {
+    const a = surface('a', 'cortex', [], 10), b = surface('b', 'cortex', [], 20), c = surface('c', 'vessel', ['parent'], 5), d = surface('d', 'vessel', ['parent', 'sac'], 6);
+    expect(ids(drawn_surfaces([a, b, c, d]))).toEqual(['a', 'b', 'c', 'd']);
   });
 });
 

@@ -32,7 +32,7 @@ export function artery_material(skin: SkinTexture | null, field: FieldUniforms):
         vec4 middle = noise(v_rest * 1.05);
         float thin = v_wall.y;
         // Coat: muscle under whitish fibres.
-        vec3 coat = mix(vec3(0.40, 0.062, 0.050), vec3(0.56, 0.165, 0.125), smoothstep(-0.5, 0.6, broad.x + 0.35 * middle.x));
+        vec3 coat = mix(vec3(0.36, 0.034, 0.030), vec3(0.50, 0.098, 0.078), smoothstep(-0.5, 0.6, broad.x + 0.35 * middle.x));
         #ifndef CHEAP
         vec4 fine = noise(v_rest * 3.1);
         float vasa = 1.0 - smoothstep(0.0, 0.075, abs(noise(v_rest * 0.62 + middle.yzw * 0.55).x));

@@ -49,7 +49,7 @@ vec3 veil(vec3 light, vec3 place, vec3 glow) {
   vec3 through = exp(-under * vec3(850.0, 5200.0, 4600.0));
   light = light * through + vec3(0.094, 0.0022, 0.0020) * (1.0 - through);
   float grey = dot(light, vec3(0.4, 0.4, 0.2));
-  vec3 dark = vec3(0.030, 0.040, 0.036) * grey / (1.0 + grey);
+  vec3 dark = vec3(0.075, 0.098, 0.090) * grey / (1.0 + grey);
   return mix(light, dark + glow * exp(-under * 220.0), infrared);
 }
 `;
@@ -66,6 +66,6 @@ export function inject_veil(shader: THREE.WebGLProgramParametersWithUniforms, fi
 export const fluorescence_glsl = /* glsl */ `
 vec3 fluorescence(float dye, float facing) {
   float d = clamp(dye, 0.0, 1.0);
-  return (vec3(0.16, 0.86, 0.42) * d + vec3(0.62, 0.55, 0.52) * d * d) * mix(0.38, 1.0, facing);
+  return (vec3(0.16, 0.86, 0.42) * d + vec3(0.42, 0.48, 0.40) * d * d) * mix(0.38, 1.0, facing);
 }
 `;

@@ -10,7 +10,15 @@ interface Recipe {
   colour: string;
   /** GLSL expression of the normal's tilt (object space). */
   relief: string;
+  /** Metal: how much it mirrors; lamps are rolled off, or a blade that faces them would be a white card. */
+  metal?: number;
 }
+
+/** Lamps in metal end below white, and differences between dim parts of the reflection are kept. */
+const roll_off = (share: number) => `
+  vec3 shine = ${share.toFixed(2)} * (0.04 * reflectedLight.directSpecular + reflectedLight.indirectSpecular);
+  reflectedLight.directSpecular = vec3(0.0);
+  reflectedLight.indirectSpecular = shine / (1.0 + 1.2 * max(shine.r, max(shine.g, shine.b)));`;
 
 const recipes: Record<string, Recipe> = {
   bone: {
@@ -59,12 +67,21 @@ const recipes: Record<string, Recipe> = {
   steel: {
     base: { color: '#d3d6da', metalness: 1, roughness: 0.22, envMapIntensity: 1.25 },
     colour: 'diffuseColor.rgb *= 0.97 + 0.05 * noise(p * 0.6).x;',
-    relief: '0.012 * noise(p * vec3(6.0, 6.0, 0.4)).yzw',
+    relief: '0.06 * noise(p * 0.11).yzw + 0.012 * noise(p * vec3(6.0, 6.0, 0.4)).yzw',
+    metal: 0.4,
   },
   steel_dark: {
     base: { color: '#85888e', metalness: 1, roughness: 0.36, envMapIntensity: 1.2 },
     colour: 'diffuseColor.rgb *= 0.95 + 0.08 * noise(p * 0.6).x;',
     relief: '0.03 * noise(p * vec3(5.0, 5.0, 0.5)).yzw',
+    metal: 0.6,
+  },
+  // Clips: satin, a little warmer and darker than steel.
+  titanium: {
+    base: { color: '#a5a6ab', metalness: 1, roughness: 0.28, envMapIntensity: 1.35 },
+    colour: 'diffuseColor.rgb *= 0.96 + 0.07 * noise(p * 1.2).x;',
+    relief: '0.025 * noise(p * vec3(6.0, 6.0, 1.5)).yzw',
+    metal: 0.8,
   },
   polymer: {
     base: { color: '#20242b', roughness: 0.5, clearcoat: 0.25, clearcoatRoughness: 0.4 },
@@ -75,6 +92,7 @@ const recipes: Record<string, Recipe> = {
     base: { color: '#e0b45c', metalness: 1, roughness: 0.2, envMapIntensity: 1.6 },
     colour: '',
     relief: '0.012 * noise(p * vec3(5.0, 5.0, 0.5)).yzw',
+    metal: 1,
   },
 };
 
@@ -96,6 +114,7 @@ export function solid_material(name: string, field: FieldUniforms, field_axis = 
       .replace('#include <common>', `#include <common>\n${noise_glsl}\nvarying vec3 v_object; varying vec3 v_object_normal; uniform vec3 field_axis; uniform mat3 normalMatrix;`)
       .replace('#include <color_fragment>', `#include <color_fragment>\nvec3 p = v_object;\n{${recipe.colour}}`)
       .replace('#include <normal_fragment_maps>', `#include <normal_fragment_maps>\nnormal = bump(normal, normalMatrix * (${recipe.relief}));`);
+    if (recipe.metal) shader.fragmentShader = shader.fragmentShader.replace('#include <lights_fragment_end>', `#include <lights_fragment_end>${roll_off(recipe.metal)}`);
   };
   m.customProgramCacheKey = () => `solid_${name}`;
   return m;

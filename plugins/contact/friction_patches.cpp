@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Patches of contacts and their rows.
+#include "plugins/contact/friction_patches.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/collision/contact_selection.h"
+#include "plugins/contact/contact.h"
+
+namespace insula {
+namespace {
+
+// Cell of the grid and the direction, of six, that the normal is nearest to, both in the tool's frame.
+std::uint32_t name_of(const Vec3& place, const Vec3& normal, double size) {
+  std::uint32_t name = 0;
+  for (int k = 0; k < 3; ++k) name = name << 8 | (std::uint32_t(int(std::floor(place[k] / size)) + 128) & 0xff);
+  int axis = 0;
+  normal.cwiseAbs().maxCoeff(&axis);
+  return name << 3 | std::uint32_t(2 * axis + (normal[axis] < 0));
+}
+
+}  // namespace
+
+FrictionPatches::FrictionPatches(double size, std::size_t room) : size_(size) {
+  members_.reserve(room);
+  patches_.reserve(room);
+  bore_.reserve(room);
+}
+
+double FrictionPatches::bore(std::uint64_t key) const {
+  const auto at = std::lower_bound(bore_.begin(), bore_.end(), std::make_pair(key, -1.0));
+  return at != bore_.end() && at->first == key ? at->second : 0.0;
+}
+
+void FrictionPatches::sort(std::span<const Proximity> contacts, const Pose& tool) {
+  members_.clear();
+  patches_.clear();
+  for (std::size_t i = 0; i < contacts.size(); ++i)
+    members_.push_back({name_of(contacts[i].local, tool.q.conjugate() * contacts[i].normal, size_), int(i), bore(contacts[i].key), -1});
+  std::sort(members_.begin(), members_.end(), [](const Member& a, const Member& b) { return a.patch != b.patch ? a.patch < b.patch : a.contact < b.contact; });
+  for (std::size_t first = 0; first < members_.size();) {
+    std::size_t last = first;
+    double sum = 0;
+    Vec3 normal = Vec3::Zero();
+    for (; last < members_.size() && members_[last].patch == members_[first].patch; ++last) {
+      sum += members_[last].weight;
+      normal += contacts[std::size_t(members_[last].contact)].normal;
+    }
+    // What bore nothing has a small share, so that a new patch has a slip.
+    const double n = double(last - first), least = 0.1 * sum / n + 1e-9;
+    for (std::size_t i = first; i < last; ++i) members_[i].weight = (members_[i].weight + least) / (sum + n * least);
+    Patch p{members_[first].patch, int(first), int(last - first), {}, -1};
+    p.tangent[0] = tangent_to(normal.normalized(), tool.q * Vec3::UnitZ());
+    p.tangent[1] = normal.normalized().cross(p.tangent[0]);
+    patches_.push_back(p);
+    first = last;
+  }
+}
+
+void FrictionPatches::finish(std::span<const Proximity> contacts, const ConstraintSolution& solution, std::vector<Vec3>& forces) {
+  forces.resize(contacts.size());
+  bore_.clear();
+  for (const Patch& p : patches_) {
+    const Vec3 friction = solution.lambda[p.row] * p.tangent[0] + solution.lambda[p.row + 1] * p.tangent[1];
+    for (int i = p.first; i < p.first + p.count; ++i) {
+      const Member& m = members_[std::size_t(i)];
+      const Proximity& x = contacts[std::size_t(m.contact)];
+      const Vec3 share = m.weight * friction, other = x.normal.cross(x.tangent);
+      const double pressed = solution.lambda[m.row];
+      forces[std::size_t(m.contact)] = Vec3(pressed + share.dot(x.normal), share.dot(x.tangent), share.dot(other));
+      bore_.emplace_back(x.key, pressed);
+    }
+  }
+  std::sort(bore_.begin(), bore_.end());
+}
+
+void FrictionPatches::reset() {
+  members_.clear();
+  patches_.clear();
+  bore_.clear();
+}
+
+void Contact::build_patches(ConstraintBuilder& builder, Pair& p) {
+  p.patches->sort(p.contacts, p.tool_a->link_pose(p.link_a));
+  auto& members = p.patches->members();
+  for (auto& one : p.patches->patches()) {
+    for (int i = one.first; i < one.first + one.count; ++i) {
+      auto& m = members[std::size_t(i)];
+      const Proximity& x = p.contacts[std::size_t(m.contact)];
+      Block block;
+      block.id = row_id(*this, x.key);
+      block.lower = 0;
+      m.row = builder.add(block);
+      builder.violation(m.row, x.start_gap);
+      add_row(builder, m.row, p, x, x.normal);
+    }
+    Block block;
+    block.id = row_id(*this, std::uint64_t(1) << 42 | std::uint64_t(&p - pairs_.data()) << 28 | one.name);
+    block.law = LawKind::patch;
+    block.friction = friction();
+    block.normals = one.count;
+    one.row = builder.add(block);
+    for (int k = 0; k < 2; ++k)
+      for (int i = one.first; i < one.first + one.count; ++i) {
+        const auto& m = members[std::size_t(i)];
+        add_row(builder, one.row + k, p, p.contacts[std::size_t(m.contact)], m.weight * one.tangent[k]);
+      }
+  }
+}
+
+}  // namespace insula

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How far a tool may go on a thin wall in one step.
+#include "core/collision/closest.h"
+#include "plugins/contact/contact.h"
+
+namespace insula {
+
+// A thin wall answers linearly over a step, while its true motion is not: a far push would turn it inside out, a far slide
+// would leave the places that contact looked at. So a tool that touches goes on by no more than max_push: three rows along
+// the free motion of three places of the touching piece.
+void Contact::limit_motion(ConstraintBuilder& builder, const Pair& p) const {
+  if (!p.tool_a || !p.b || !p.active() || p.b->surface->thickness() == 0 || p.b->surface->body().blocks() == 0) return;
+  int piece = -1;
+  double touch = 1;
+  if (p.tool_collider) {
+    piece = p.tool_collider->touching_piece();
+    touch = p.tool_collider->touch_time();
+  } else {
+    // A contact found on the free way, or one that is closed and goes on closing.
+    for (const Proximity& x : p.contacts) {
+      if (x.time == 0) {
+        if (x.gap > 0.1 * alarm()) continue;
+        const Vec3 u = p.tool_a->free_displacement(p.tool_a->link_point(p.link_a, x.local));
+        if (x.normal.dot(u - p.b->mesh.free_at(x.triangle, x.bary)) >= 0) continue;
+      }
+      if (x.time < touch) {
+        touch = x.time;
+        piece = x.piece;
+      }
+    }
+  }
+  if (piece < 0) return;
+  const RoundedPiece& r = p.pieces_a[std::size_t(piece)];
+  Vec3 third = r.core.front();
+  double farthest = -1;
+  for (const Vec3& q : r.core) {
+    const double s = closest_on_segment(q, r.axis0, r.axis1), d = (r.axis0 + s * (r.axis1 - r.axis0) - q).norm();
+    if (d > farthest) {
+      farthest = d;
+      third = q;
+    }
+  }
+  int count = 0;
+  for (const Vec3& place : {r.axis0, r.axis1, third}) {
+    const MaterialPoint point = p.tool_a->link_point(p.link_a, place);
+    const Vec3 u = p.tool_a->free_displacement(point);
+    const double way = u.norm(), allowed = touch * way + max_push();
+    ++count;
+    if (way <= allowed) continue;
+    Block block;
+    block.id = row_id(*this, std::uint64_t(1) << 43 | std::uint64_t(&p - pairs_.data()) << 16 | std::uint64_t(piece) << 2 | std::uint64_t(count));
+    block.lower = 0;
+    const int row = builder.add(block);
+    builder.violation(row, allowed);
+    builder.point(row, point, -u / way);
+  }
+}
+
+}  // namespace insula
