@@ -39,7 +39,10 @@ SelfCollider::SelfCollider(std::span<const Vec3> rest, std::span<const std::arra
     : samples_(sample_vertices(rest, triangles, spacing)), neighbour_(2 * thickness) {
   for (const auto& t : triangles) {
     const Vec3 &a = rest[std::size_t(t[0])], &b = rest[std::size_t(t[1])], &c = rest[std::size_t(t[2])];
-    face_place_.push_back((a + b + c) / 3);
+    const Vec3 middle = (a + b + c) / 3;
+    face_place_.push_back(middle);
+    corners_.push_back({a, b, c});
+    extent2_.push_back(std::max({(a - middle).squaredNorm(), (b - middle).squaredNorm(), (c - middle).squaredNorm()}));
     face_normal_.push_back((b - a).cross(c - a).normalized());
   }
   CollisionMesh mesh;
@@ -104,8 +107,12 @@ int SelfCollider::kind(std::size_t sample, int triangle) const {
   const double d2 = d.squaredNorm();
   if (d2 < neighbour_ * neighbour_ || normal_[sample].dot(face_normal_[std::size_t(triangle)]) > along_wall) return -1;
   const double leaves = normal_[sample].dot(d), ends = face_normal_[std::size_t(triangle)].dot(d);
-  if (leaves < 0 && ends > 0 && d2 < reach_[sample] * reach_[sample]) return inner;
-  return leaves > 0 && ends < 0 ? outer : -1;
+  const int side = leaves < 0 && ends > 0 && d2 < reach_[sample] * reach_[sample] ? inner : leaves > 0 && ends < 0 ? outer : -1;
+  if (side < 0 || d2 > neighbour_ * neighbour_ + extent2_[std::size_t(triangle)] + 2 * neighbour_ * std::sqrt(extent2_[std::size_t(triangle)])) return side;
+  // A large triangle may be near although its middle is not.
+  const auto& c = corners_[std::size_t(triangle)];
+  const Vec3 w = closest_on_triangle(place_[sample], c[0], c[1], c[2]);
+  return (w[0] * c[0] + w[1] * c[1] + w[2] * c[2] - place_[sample]).squaredNorm() < neighbour_ * neighbour_ ? -1 : side;
 }
 
 // Whether what has moved since the sample was last looked at may have brought a partner within range of it.
@@ -146,10 +153,11 @@ void SelfCollider::list_partners(const CollisionMesh& mesh, std::size_t sample, 
 void SelfCollider::near(const CollisionMesh& mesh, const SelfContactSettings& settings, std::size_t sample, int side,
                         std::vector<Proximity>& out) {
   const int v = samples_[sample];
-  const bool was = close_[side][sample] != 0;
+  const int before = close_[side][sample];
+  const bool was = before != 0;
   // What touched is looked for farther, what has crossed as deep as crossings are undone.
   const double range = (was ? 1.2 * settings.alarm + horizon : settings.alarm) + settings.thickness;
-  const double reach = close_[side][sample] == 2 ? std::max(range, settings.max_depth) : range;
+  const double reach = before == 2 ? std::max(range, settings.max_depth) : range;
   if (!may_be_near(mesh, sample, side, range) && !was) return;
   close_[side][sample] = 0;
   const Vec3 x = mesh.vertex(v);
@@ -220,8 +228,10 @@ void SelfCollider::near(const CollisionMesh& mesh, const SelfContactSettings& se
   } else {
     c.normal = free_side;
   }
-  // Outside, two vessels side by side and two that have crossed look alike: only what touched before can have crossed.
+  // Outside, two vessels side by side and two that have crossed look alike: only what touched before can have crossed. And a
+  // crossing begins shallow: a fold of the wall that faces the wrong way is none.
   if (crossed && (distance > settings.max_depth || (side == outer && !was))) return;
+  if (crossed && before != 2 && distance > settings.thickness + settings.alarm) return;
   c.gap = (crossed ? -distance : distance) - settings.thickness;
   const double approach = c.normal.dot(mesh.free(v) - mesh.free_at(best, bary));
   // What had a contact keeps it a little longer, lest rows come and go while nothing moves.

@@ -73,6 +73,8 @@ class SelfCollider {
   std::vector<Vec3> place_, normal_;             ///< of the samples at rest
   std::vector<double> reach_;                    ///< of the samples: longest way to an inner partner at rest, m
   std::vector<Vec3> face_place_, face_normal_;   ///< of the triangles at rest
+  std::vector<std::array<Vec3, 3>> corners_;     ///< of the triangles at rest
+  std::vector<double> extent2_;                  ///< of the triangles at rest: farthest corner from the middle, m2
   std::vector<int> group_of_;                    ///< of the vertices
   std::vector<std::uint64_t> partners_[2];       ///< of the samples: groups of vertices that have possible partners of a side
   std::vector<Vec3> outward_;                    ///< of the samples now; computed when first wanted

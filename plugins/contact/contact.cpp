@@ -108,7 +108,7 @@ void Contact::add_pairs(Simulation& simulation, Body* a, Body* b) {
         p.link_a = i;
         p.b = shared_surface(simulation, sb);
         for (const ConvexPiece& piece : tool_a->link_pieces(i)) p.pieces_a.push_back(rounded(piece));
-        if (by.is("vertices") && sb->thickness() > 0)
+        if (by.is("vertices"))
           p.vertex_collider = std::make_unique<VertexCollider>(tool_a->link_pieces(i), sb->triangles(), p.b->mesh.vertex_count());
         else
           p.tool_collider = std::make_unique<ToolCollider>(tool_a->link_pieces(i), p.b->mesh.triangle_count());
@@ -206,7 +206,7 @@ void Contact::detect(const StepContext& context) {
   for (Pair& p : pairs_) {
     SelectionSettings choice;
     if (p.tool_a) {
-      choice.spacing = p.vertex_collider ? 0.0 : spacing();  // a wall's vertices are all kept out
+      choice.spacing = p.vertex_collider && p.b->surface->thickness() > 0 ? 0.0 : spacing();  // a wall's vertices are all kept out
       choice.advantage = 0.2 * alarm();
       choice.max_contacts = max_contacts();
       // A jaw is one piece and may use all; of several pieces none takes more than half.
@@ -255,6 +255,7 @@ void Contact::build(const StepContext&, ConstraintBuilder& builder) {
       } else {
         block.lower = 0;
       }
+      block.compliance = compliance(p);
       const int row = builder.add(block);
       p.rows.push_back(row);
       builder.violation(row, x.start_gap);

@@ -91,6 +91,7 @@ void Contact::build_patches(ConstraintBuilder& builder, Pair& p) {
       Block block;
       block.id = row_id(*this, x.key);
       block.lower = 0;
+      block.compliance = compliance(p);
       m.row = builder.add(block);
       builder.violation(m.row, x.start_gap);
       add_row(builder, m.row, p, x, x.normal);

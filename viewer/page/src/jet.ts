@@ -37,7 +37,7 @@ export class Jet {
     if (!this.mesh.visible) return;
     const up = this.field.blood_plane.value;
     this.from.value.copy(from);
-    this.velocity.value.copy(out).addScaledVector(new THREE.Vector3(up.x, up.y, up.z), 0.35).normalize().multiplyScalar(0.10 + 0.30 * Math.sqrt(strength));
+    this.velocity.value.copy(out).addScaledVector(new THREE.Vector3(up.x, up.y, up.z), 0.35).normalize().multiplyScalar(0.04 + 0.36 * Math.sqrt(strength));
     this.gravity.value.set(up.x, up.y, up.z).multiplyScalar(-9.81 * 0.4);
   }
 
@@ -47,7 +47,7 @@ export class Jet {
   }
 
   private make_material(): THREE.MeshPhysicalMaterial {
-    const m = new THREE.MeshPhysicalMaterial({ color: 0x5c0404, roughness: 0.25, clearcoat: 1, clearcoatRoughness: 0.08 });
+    const m = new THREE.MeshPhysicalMaterial({ color: 0x6a0505, roughness: 0.4, clearcoat: 0.6, clearcoatRoughness: 0.25, envMapIntensity: 0.4 });
     m.onBeforeCompile = (shader) => {
       inject_veil(shader, this.field);
       Object.assign(shader.uniforms, { seconds: this.field.seconds, pulse: this.field.pulse, from: this.from, velocity: this.velocity, gravity: this.gravity, drops: this.drops });
@@ -63,11 +63,11 @@ export class Jet {
           // The pressure when the drop left.
           float push = 0.55 + 0.55 * pulse * exp(-age * 6.0);
           vec3 side = vec3(chance(lot), chance(lot + 3.3), chance(lot + 7.7)) - 0.5;
-          vec3 v = velocity * push * (0.9 + 0.2 * chance(lot + 1.7)) + side * length(velocity) * 0.30 * chance(lot + 5.0);
+          vec3 v = velocity * push * (0.9 + 0.2 * chance(lot + 1.7)) + side * length(velocity) * 0.14 * chance(lot + 5.0);
           vec3 now = v + gravity * age;
           vec3 run = normalize(now);
-          float size = 0.00040 * (1.0 - 0.45 * age / ${life_s.toFixed(2)}) * (0.65 + 0.7 * chance(lot + 9.1));
-          float stretch = 1.0 + 2.2 * exp(-age * 26.0);
+          float size = 0.00026 * (0.35 + 0.65 * clamp((length(velocity) - 0.04) / 0.36, 0.0, 1.0)) * (1.0 - 0.45 * age / ${life_s.toFixed(2)}) * (0.65 + 0.7 * chance(lot + 9.1));
+          float stretch = 1.0 + 7.0 * exp(-age * 18.0);
           vec3 objectNormal = normalize(normal - run * dot(normal, run) * (1.0 - 1.0 / stretch));`)
         .replace('#include <begin_vertex>', `
           vec3 body = position + run * dot(position, run) * (stretch - 1.0);

@@ -9,6 +9,8 @@ import type { FieldUniforms } from './materials/field';
 import { solid_material } from './materials/solid';
 
 const ghost_from_m = 0.004;
+/** A retractor's blade presses into tissue between the points where contact is sought: what little pokes through is not shown. */
+const blade_forward_m = 0.002;
 
 export class Tool {
   readonly group = new THREE.Group();
@@ -25,7 +27,7 @@ export class Tool {
       const geometry = new THREE.BufferGeometry();
       geometry.setAttribute('position', new THREE.BufferAttribute(shape.positions, 3));
       geometry.setAttribute('normal', new THREE.BufferAttribute(shape.normals, 3));
-      const material = solid_material(part.material, field, undefined, part.rgba);
+      const material = solid_material(part.material, field, undefined, part.rgba, data.hand === 'none' && data.clip === null ? blade_forward_m : 0);
       // Metal lives from its reflections: it gets the room brighter than tissue does.
       material.envMap = environment;
       const mesh = new THREE.Mesh(geometry, material);

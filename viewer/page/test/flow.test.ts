@@ -8,7 +8,7 @@ import { label, step_of } from '../src/hud/instructor';
 import { value_text } from '../src/hud/progress';
 import { clock_text, parse_hud } from '../src/hud/state';
 import { time_left_text, urgency, used_share } from '../src/hud/timers';
-import { flow_level } from '../src/hud/vitals';
+import { flow_level, whole } from '../src/hud/vitals';
 import { tool_in_hand } from '../src/hand_tool';
 import { absorb_region, drawn_surfaces, region_dye, region_vessels, wall_thinness } from '../src/regions';
 import type { Bundle, ToolData } from '../src/bundle';
@@ -139,6 +139,12 @@ describe('panels', () => {
     f.tool = [2, 0, 1].map((index) => Object.assign(lcm.render_tool_t.make(), { index, hand: 1, state: index === 0 ? 0 : 1 }));
     expect(tool_in_hand(f, bundle, 1)!.index).toBe(1);
     expect(tool_in_hand(f, bundle, 0)).toBeNull();
+  });
+});
+
+describe('monitor', () => {
+  it('shows whole numbers and no minus before zero', () => {
+    expect([whole(103.6), whole(-0.3), whole(-1.6), whole(0)]).toEqual(['104', '0', '-2', '0']);
   });
 });
 

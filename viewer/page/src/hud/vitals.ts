@@ -9,6 +9,9 @@ export function flow_level(v: Pick<VesselView, 'id' | 'flow_percent'>): 'good' |
   return v.flow_percent >= 80 ? 'good' : v.flow_percent >= 50 ? 'high' : 'too_much';
 }
 
+/** Rounded, and a trickle backwards is 0, not -0. */
+export const whole = (value: number): string => String(Math.round(value) || 0);
+
 export class Vitals {
   readonly root = el('section', { class: 'panel vitals' });
   private readonly beat = el('span', { class: 'beat', title: 'heartbeat' }, '♥');
@@ -74,9 +77,9 @@ export class Vitals {
       this.rows.set(v.id, w);
       this.table.append(w.row);
     }
-    set_text(w.pressure, v.pressure_mmHg.toFixed(0));
-    set_text(w.flow, v.flow_mL_min.toFixed(0));
-    set_text(w.percent, v.flow_percent === null ? '–' : v.flow_percent.toFixed(0));
+    set_text(w.pressure, whole(v.pressure_mmHg));
+    set_text(w.flow, whole(v.flow_mL_min));
+    set_text(w.percent, v.flow_percent === null ? '–' : whole(v.flow_percent));
     w.bar.style.width = `${Math.max(0, Math.min(100, v.flow_percent ?? 0))}%`;
     w.row.dataset.level = flow_level(v);
   }

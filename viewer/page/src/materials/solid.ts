@@ -68,7 +68,7 @@ const recipes: Record<string, Recipe> = {
     base: { color: '#d3d6da', metalness: 1, roughness: 0.22, envMapIntensity: 1.25 },
     colour: 'diffuseColor.rgb *= 0.97 + 0.05 * noise(p * 0.6).x;',
     relief: '0.06 * noise(p * 0.11).yzw + 0.012 * noise(p * vec3(6.0, 6.0, 0.4)).yzw',
-    metal: 0.4,
+    metal: 0.5,
   },
   steel_dark: {
     base: { color: '#85888e', metalness: 1, roughness: 0.36, envMapIntensity: 1.2 },
@@ -98,8 +98,11 @@ const recipes: Record<string, Recipe> = {
 
 export const solid_names = Object.keys(recipes);
 
-/** `field_axis`: direction out of the operating field, to tell tables of bone from cut edges. */
-export function solid_material(name: string, field: FieldUniforms, field_axis = new THREE.Vector3(0, 0, 1), rgba?: readonly number[]): THREE.MeshPhysicalMaterial {
+/**
+ * `field_axis`: direction out of the operating field, to tell tables of bone from cut edges. `forward_m`: so much nearer to the eye
+ * than it is when it is decided what hides what.
+ */
+export function solid_material(name: string, field: FieldUniforms, field_axis = new THREE.Vector3(0, 0, 1), rgba?: readonly number[], forward_m = 0): THREE.MeshPhysicalMaterial {
   const recipe = recipes[name] ?? recipes.steel!;
   const m = new THREE.MeshPhysicalMaterial(recipe.base);
   if ((name === 'polymer' || !recipes[name]) && rgba) m.color.setRGB(rgba[0]!, rgba[1]!, rgba[2]!, THREE.SRGBColorSpace);
@@ -109,13 +112,14 @@ export function solid_material(name: string, field: FieldUniforms, field_axis = 
     shader.uniforms.field_axis = { value: field_axis };
     shader.vertexShader = shader.vertexShader
       .replace('#include <common>', '#include <common>\nvarying vec3 v_object; varying vec3 v_object_normal;')
-      .replace('#include <project_vertex>', '#include <project_vertex>\nv_object = position * 1000.0; v_object_normal = normal;');
+      .replace('#include <project_vertex>', '#include <project_vertex>\nv_object = position * 1000.0; v_object_normal = normal;'
+        + (forward_m > 0 ? `\nvec4 nearer = projectionMatrix * (mvPosition + vec4(0.0, 0.0, ${forward_m.toFixed(5)}, 0.0));\ngl_Position.z = nearer.z / nearer.w * gl_Position.w;` : ''));
     shader.fragmentShader = shader.fragmentShader
       .replace('#include <common>', `#include <common>\n${noise_glsl}\nvarying vec3 v_object; varying vec3 v_object_normal; uniform vec3 field_axis; uniform mat3 normalMatrix;`)
       .replace('#include <color_fragment>', `#include <color_fragment>\nvec3 p = v_object;\n{${recipe.colour}}`)
       .replace('#include <normal_fragment_maps>', `#include <normal_fragment_maps>\nnormal = bump(normal, normalMatrix * (${recipe.relief}));`);
     if (recipe.metal) shader.fragmentShader = shader.fragmentShader.replace('#include <lights_fragment_end>', `#include <lights_fragment_end>${roll_off(recipe.metal)}`);
   };
-  m.customProgramCacheKey = () => `solid_${name}`;
+  m.customProgramCacheKey = () => `solid_${name}_${forward_m}`;
   return m;
 }
