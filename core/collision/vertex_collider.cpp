@@ -28,6 +28,7 @@ VertexCollider::VertexCollider(const std::vector<ConvexPiece>& pieces, const std
 void VertexCollider::reset() {
   kept_out_.assign(triangle_of_.size(), Vec3::Zero());
   marked_.assign(triangle_of_.size(), 0);
+  side_.setZero();
 }
 
 // No more than what nearest() gives: from the box of the core.
@@ -75,11 +76,13 @@ void VertexCollider::detect(const CollisionMesh& mesh, const Pose& start, const 
     });
   }
   std::sort(seen_.begin(), seen_.end());
+  Vec3 pressed = Vec3::Zero();
 
   for (const int v : seen_) {
     marked_[std::size_t(v)] = 0;
     const Vec3 x0 = mesh.vertex(v), u = mesh.free(v);
     Vec3& memory = kept_out_[std::size_t(v)];
+    if (settings.one_sided && !side_.isZero(0) && memory.dot(side_) < -0.7) memory = side_;
     const Vec3 before = start.q * memory, local = start.q.conjugate() * (x0 - start.p);
     int best = -1;
     Near near{1e300, Vec3::Zero()};
@@ -127,7 +130,14 @@ void VertexCollider::detect(const CollisionMesh& mesh, const Pose& start, const 
       near.normal = before;
     } else {
       memory = start.q.conjugate() * near.normal;
+      // Come from behind: the body wraps about the blade's edge.
+      if (settings.one_sided && !side_.isZero(0) && memory.dot(side_) < -0.7) {
+        memory = side_;
+        near.clear = -(near.clear + 2 * (pieces_[std::size_t(best)].radius + settings.offset));
+        near.normal = start.q * side_;
+      }
     }
+    if (near.clear < 0.1 * alarm) pressed += memory;
     const auto& own = triangle_of_[std::size_t(v)];
     if (own[0] < 0) continue;
     Proximity c;
@@ -148,6 +158,8 @@ void VertexCollider::detect(const CollisionMesh& mesh, const Pose& start, const 
     out.push_back(c);
   }
   seen_.clear();
+  // The side that most press from; it changes slowly and is kept while nothing does.
+  if (!pressed.isZero(0)) side_ = (0.9 * side_ + 0.1 * pressed.normalized()).eval();
 }
 
 }  // namespace insula

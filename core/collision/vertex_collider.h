@@ -40,6 +40,7 @@ class VertexCollider {
   std::vector<Aabb> boxes_;                      ///< of the pieces' cores
   std::vector<std::array<int, 2>> triangle_of_;  ///< one triangle of each vertex, and the vertex's corner in it; -1: none
   std::vector<Vec3> kept_out_;                   ///< per vertex: last normal, frame of the pieces; zero: none
+  Vec3 side_ = Vec3::Zero();                     ///< from most vertices that press to the core, frame of the pieces; up to unit length
   std::vector<int> seen_;                        ///< vertices near the pieces in this step
   std::vector<char> marked_;
 };

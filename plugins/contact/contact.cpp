@@ -178,6 +178,8 @@ void Contact::search(const Search& what) {
     if (p.b && p.b->surface->thickness() > 0) {
       settings.offset = 0.5 * p.b->surface->thickness();
       settings.max_recovery = std::min(recovery(), max_push());
+    } else {
+      settings.one_sided = true;
     }
     p.contacts.clear();
     if (!p.active()) return;
