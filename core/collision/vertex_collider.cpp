@@ -158,8 +158,8 @@ void VertexCollider::detect(const CollisionMesh& mesh, const Pose& start, const 
     out.push_back(c);
   }
   seen_.clear();
-  // The side that most press from; it changes slowly and is kept while nothing does.
-  if (!pressed.isZero(0)) side_ = (0.9 * side_ + 0.1 * pressed.normalized()).eval();
+  // The side that most press from, learned as the blade comes to the body; what happens later does not change it.
+  if (side_.norm() < 0.95 && !pressed.isZero(0)) side_ = (0.9 * side_ + 0.1 * pressed.normalized()).eval();
 }
 
 }  // namespace insula

@@ -256,6 +256,7 @@ void Contact::build(const StepContext&, ConstraintBuilder& builder) {
         block.friction = friction();
       } else {
         block.lower = 0;
+        if (!p.tool_a && tissue_max_force() > 0) block.upper = tissue_max_force();
       }
       block.compliance = compliance(p);
       const int row = builder.add(block);
@@ -274,7 +275,7 @@ void Contact::finish(const StepContext&, const ConstraintSolution& solution) {
   for (Pair& p : pairs_) {
     p.forces.clear();
     if (p.patches) {
-      p.patches->finish(p.contacts, solution, p.forces);
+      p.patches->finish(p.contacts, solution, friction(), p.forces);
       continue;
     }
     for (int row : p.rows) {

@@ -33,12 +33,14 @@ class Contact final : public Constraint {
   Param<Length> spacing{this, {.name = "spacing", .fallback = "2 mm", .min = "0.01 mm", .max = "100 mm", .doc = "contacts of a tool are no closer than this unless the surface turns"}};
   Param<int> max_contacts{this, {.name = "max_contacts", .fallback = "8", .min = "1", .max = "100", .doc = "most contacts of a tool with one surface"}};
   Param<Length> max_push{this, {.name = "max_push", .fallback = "0.3 mm", .min = "0.05 mm", .max = "100 mm", .doc = "a tool that touches a wall (a surface with a thickness) goes on by no more than this in a step; the rest of the hand's motion follows in the next ones"}};
+  Param<Length> tissue_push{this, {.name = "tissue_push", .fallback = "1.5 mm", .min = "0.05 mm", .max = "100 mm", .doc = "the same for a soft body"}};
   Param<Choice> by{this, {.name = "by", .fallback = "triangles", .choices = {"triangles", "vertices"}, .doc = "how tools meet surfaces: by every triangle, for sharp tools; or by vertices, for blades much wider than the triangles (contacts then stay with their vertices; of a wall, a surface with a thickness, all are kept out, else one per spacing)"}};
   Param<Length> patch{this, {.name = "patch", .fallback = "0 mm", .min = "0 mm", .max = "20 mm", .doc = "by vertices: contacts within this length of a blade share one friction force; 0: each has its own"}};
   Param<Length> recovery{this, {.name = "recovery", .fallback = "1 mm", .min = "0.001 mm", .max = "10 mm", .doc = "an overlap of a tool is undone by no more than this in a step: less is gentler on thin walls"}};
   Param<Stiffness> layer{this, {.name = "layer", .fallback = "0 N/m", .min = "0 N/m", .max = "1000 kN/m", .doc = "stiffness of what lies between a tool and the body at one contact, finer than the body's elements (the pia, a pad); 0: nothing, contact is hard"}};
   Param<Length> tissue_alarm{this, {.name = "tissue_alarm", .fallback = "0.5 mm", .min = "0.01 mm", .max = "10 mm", .doc = "the same distance between two surfaces"}};
   Param<Length> tissue_spacing{this, {.name = "tissue_spacing", .fallback = "4 mm", .min = "0.05 mm", .max = "100 mm", .doc = "contacts of two surfaces are no closer than this; their vertices are sampled at three quarters of it"}};
+  Param<Force> tissue_max_force{this, {.name = "tissue_max_force", .fallback = "0 N", .min = "0 N", .max = "100 N", .doc = "most force of one contact of two surfaces without friction: with more they go through one another, so that what has become entangled comes apart; 0: any"}};
   Param<int> tissue_max_contacts{this, {.name = "tissue_max_contacts", .fallback = "16", .min = "1", .max = "200", .doc = "most contacts of one surface with another"}};
 
   void connect(PrepareContext& context, Simulation& simulation) override;

@@ -11,6 +11,8 @@
 namespace insula {
 namespace {
 
+constexpr double most_creep = 0.1e-3;  ///< a hold that is farther off than this is given up, m
+
 // Cell of the grid and the direction, of six, that the normal is nearest to, both in the tool's frame.
 std::uint32_t name_of(const Vec3& place, const Vec3& normal, double size) {
   std::uint32_t name = 0;
@@ -25,19 +27,22 @@ std::uint32_t name_of(const Vec3& place, const Vec3& normal, double size) {
 FrictionPatches::FrictionPatches(double size, std::size_t room) : size_(size) {
   members_.reserve(room);
   patches_.reserve(room);
-  bore_.reserve(room);
+  known_.reserve(room);
 }
 
-double FrictionPatches::bore(std::uint64_t key) const {
-  const auto at = std::lower_bound(bore_.begin(), bore_.end(), std::make_pair(key, -1.0));
-  return at != bore_.end() && at->first == key ? at->second : 0.0;
+const FrictionPatches::Known* FrictionPatches::known(std::uint64_t key) const {
+  const auto at = std::lower_bound(known_.begin(), known_.end(), key, [](const Known& k, std::uint64_t wanted) { return k.key < wanted; });
+  return at != known_.end() && at->key == key ? &*at : nullptr;
 }
 
 void FrictionPatches::sort(std::span<const Proximity> contacts, const Pose& tool) {
   members_.clear();
   patches_.clear();
-  for (std::size_t i = 0; i < contacts.size(); ++i)
-    members_.push_back({name_of(contacts[i].local, tool.q.conjugate() * contacts[i].normal, size_), int(i), bore(contacts[i].key), -1});
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const Proximity& x = contacts[i];
+    const Known* k = known(x.key);
+    members_.push_back({name_of(x.local, tool.q.conjugate() * x.normal, size_), int(i), k ? k->bore : 0.0, -1, k && k->holds ? k->hold : x.local});
+  }
   std::sort(members_.begin(), members_.end(), [](const Member& a, const Member& b) { return a.patch != b.patch ? a.patch < b.patch : a.contact < b.contact; });
   for (std::size_t first = 0; first < members_.size();) {
     std::size_t last = first;
@@ -50,7 +55,9 @@ void FrictionPatches::sort(std::span<const Proximity> contacts, const Pose& tool
     // What bore nothing has a small share, so that a new patch has a slip.
     const double n = double(last - first), least = 0.1 * sum / n + 1e-9;
     for (std::size_t i = first; i < last; ++i) members_[i].weight = (members_[i].weight + least) / (sum + n * least);
-    Patch p{members_[first].patch, int(first), int(last - first), {}, -1};
+    Patch p{members_[first].patch, int(first), int(last - first), {}, Vec3::Zero(), -1};
+    for (std::size_t i = first; i < last; ++i)
+      p.crept += members_[i].weight * (tool.q * (members_[i].hold - contacts[std::size_t(members_[i].contact)].local));
     p.tangent[0] = tangent_to(normal.normalized(), tool.q * Vec3::UnitZ());
     p.tangent[1] = normal.normalized().cross(p.tangent[0]);
     patches_.push_back(p);
@@ -58,27 +65,30 @@ void FrictionPatches::sort(std::span<const Proximity> contacts, const Pose& tool
   }
 }
 
-void FrictionPatches::finish(std::span<const Proximity> contacts, const ConstraintSolution& solution, std::vector<Vec3>& forces) {
+void FrictionPatches::finish(std::span<const Proximity> contacts, const ConstraintSolution& solution, double mu, std::vector<Vec3>& forces) {
   forces.resize(contacts.size());
-  bore_.clear();
+  known_.clear();
   for (const Patch& p : patches_) {
     const Vec3 friction = solution.lambda[p.row] * p.tangent[0] + solution.lambda[p.row + 1] * p.tangent[1];
+    double pressed_in_all = 0;
+    for (int i = p.first; i < p.first + p.count; ++i) pressed_in_all += solution.lambda[members_[std::size_t(i)].row];
+    const bool holds = friction.norm() < (1 - 1e-6) * mu * pressed_in_all && p.crept.norm() < most_creep;
     for (int i = p.first; i < p.first + p.count; ++i) {
       const Member& m = members_[std::size_t(i)];
       const Proximity& x = contacts[std::size_t(m.contact)];
       const Vec3 share = m.weight * friction, other = x.normal.cross(x.tangent);
       const double pressed = solution.lambda[m.row];
       forces[std::size_t(m.contact)] = Vec3(pressed + share.dot(x.normal), share.dot(x.tangent), share.dot(other));
-      bore_.emplace_back(x.key, pressed);
+      known_.push_back({x.key, pressed, holds, m.hold});
     }
   }
-  std::sort(bore_.begin(), bore_.end());
+  std::sort(known_.begin(), known_.end(), [](const Known& a, const Known& b) { return a.key < b.key; });
 }
 
 void FrictionPatches::reset() {
   members_.clear();
   patches_.clear();
-  bore_.clear();
+  known_.clear();
 }
 
 void Contact::build_patches(ConstraintBuilder& builder, Pair& p) {
@@ -102,11 +112,13 @@ void Contact::build_patches(ConstraintBuilder& builder, Pair& p) {
     block.friction = friction();
     block.normals = one.count;
     one.row = builder.add(block);
-    for (int k = 0; k < 2; ++k)
+    for (int k = 0; k < 2; ++k) {
+      builder.violation(one.row + k, one.tangent[k].dot(one.crept));
       for (int i = one.first; i < one.first + one.count; ++i) {
         const auto& m = members[std::size_t(i)];
         add_row(builder, one.row + k, p, p.contacts[std::size_t(m.contact)], m.weight * one.tangent[k]);
       }
+    }
   }
 }
 

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How far a tool may go on a thin wall in one step.
+// How far a tool may go on a wall or in tissue in one step.
 #include "core/collision/closest.h"
 #include "plugins/contact/contact.h"
 
 namespace insula {
 
-// A thin wall answers linearly over a step, while its true motion is not: a far push would turn it inside out, a far slide
-// would leave the places that contact looked at. So a tool that touches goes on by no more than max_push: three rows along
-// the free motion of three places of the touching piece.
+// Tissue answers linearly over a step, while its true motion is not: a far push would turn a thin wall or the elements of a lobe
+// inside out, a far slide would leave the places that contact looked at. So a tool that touches goes on by no more than
+// max_push (a wall) or tissue_push: three rows along the free motion of three places of the touching piece.
 void Contact::limit_motion(ConstraintBuilder& builder, const Pair& p) const {
-  if (!p.tool_a || !p.b || !p.active() || p.b->surface->thickness() == 0 || p.b->surface->body().blocks() == 0) return;
+  if (!p.tool_a || !p.b || !p.active() || p.b->surface->body().blocks() == 0) return;
+  const double most = p.b->surface->thickness() > 0 ? max_push() : tissue_push();
   int piece = -1;
   double touch = 1;
   if (p.tool_collider) {
@@ -44,7 +45,7 @@ void Contact::limit_motion(ConstraintBuilder& builder, const Pair& p) const {
   for (const Vec3& place : {r.axis0, r.axis1, third}) {
     const MaterialPoint point = p.tool_a->link_point(p.link_a, place);
     const Vec3 u = p.tool_a->free_displacement(point);
-    const double way = u.norm(), allowed = touch * way + max_push();
+    const double way = u.norm(), allowed = touch * way + most;
     ++count;
     if (way <= allowed) continue;
     Block block;

@@ -239,8 +239,17 @@ class RandomCampaign {
     const Simulation& s = *loaded_.simulation;
     const ElementState e = look_at_elements(s);
     const Worst deep = gauge_->deepest(false);
+    std::map<std::string, std::array<double, 3>> by_pair;
+    for (const ContactPoint& c : s.report().contacts) {
+      auto& sum = by_pair[c.a->id + " on " + c.b->id];
+      sum[0] += 1;
+      sum[1] += c.normal_force;
+      sum[2] = std::min(sum[2], c.gap);
+    }
     std::printf("    %6.2f s: inverted %d, volume %.3f (%s), area %.3f (%s), inside %.3f, core %.2f mm (%s), rows %d, sweeps %d, energy %.3e\n", s.time(), e.inverted,
                 e.volume.value, e.volume.whose.c_str(), e.area.value, e.area.whose.c_str(), e.inside.value, 1e3 * deep.value, deep.whose.c_str(), s.report().rows, s.report().solve.sweeps, s.report().energy);
+    for (const auto& [names, sum] : by_pair)
+      if (sum[1] > 0.02) std::printf("        %s: %d contacts, %.2f N, gap down to %.2f mm\n", names.c_str(), int(sum[0]), sum[1], 1e3 * sum[2]);
     for (int hand = 0; hand < 2; ++hand)
       if (const Instrument* i = s.instrument_of(hand)) {
         const HandSample at = motion.at(hand, s.time());
