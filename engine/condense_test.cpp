@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 
 #include "core/constraint/solve.h"
@@ -85,6 +86,63 @@ TEST(Condense, NeverSplitsAContact) {
   condense(full, 20, small);
   EXPECT_EQ(small.rows, 18);
   EXPECT_EQ(small.blocks.size(), 6u);
+}
+
+// Twelve patches of three contacts; what is felt of each is one row: a contact, a tangent, or nothing.
+ConstraintProblem patches(bool felt_tangents) {
+  ConstraintProblem full = make(60, 0);
+  full.blocks.clear();
+  for (int patch = 0; patch < 12; ++patch)
+    for (int k = 0; k < 4; ++k) {
+      Block b;
+      b.id = std::uint64_t(10 * patch + k);
+      b.row = 5 * patch + k;
+      if (k < 3) {
+        b.lower = 0;
+      } else {
+        b.law = LawKind::patch;
+        b.friction = 0.3;
+        b.normals = 3;
+      }
+      full.blocks.push_back(b);
+    }
+  for (const int patch : {2, 7, 11}) full.tools[0].jacobian.row(5 * patch + (felt_tangents ? 4 : 1)).setConstant(1.0);
+  SolveWorkspace ws;
+  ws.lambda.assign(60, 0.0);
+  solve(full, full.delta_free, {5000, 1e-15}, ws);
+  full.lambda = ws.lambda;
+  return full;
+}
+
+TEST(Condense, APatchIsKeptOrLeftOutTogetherWithItsContacts) {
+  for (const bool felt_tangents : {false, true})
+    for (int most = 4; most < 60; ++most) {
+      const ConstraintProblem full = patches(felt_tangents);
+      ConstraintProblem small;
+      condense(full, most, small);
+      ASSERT_EQ(small.rows, 5 * (most / 5));
+      ASSERT_EQ(small.blocks.size(), std::size_t(4 * (most / 5)));
+      for (std::size_t i = 0; i < small.blocks.size(); ++i) {
+        const Block& b = small.blocks[i];
+        EXPECT_EQ(b.id % 10, i % 4) << "contacts and patches out of order";
+        EXPECT_EQ(b.id / 10, small.blocks[i / 4 * 4].id / 10) << "a patch with another's contacts";
+        EXPECT_EQ(b.normals, i % 4 == 3 ? 3 : 0);
+        EXPECT_EQ(b.row, int(5 * (i / 4) + i % 4));
+      }
+      // Felt through one of its rows, a patch comes before those that are not.
+      if (most < 15) continue;
+      for (const std::uint64_t patch : {20u, 70u, 110u})
+        EXPECT_TRUE(std::any_of(small.blocks.begin(), small.blocks.end(), [&](const Block& b) { return b.id == patch; })) << patch;
+      // Solved from nothing, the small problem gives the forces of the full one.
+      SolveWorkspace ws;
+      ws.lambda.assign(std::size_t(small.rows), 0.0);
+      solve(small, small.delta_free, {5000, 1e-15}, ws);
+      for (const Block& b : small.blocks)
+        for (int k = 0; k < b.rows(); ++k) {
+          const std::size_t row = std::size_t(5 * (b.id / 10) + b.id % 10) + std::size_t(k);
+          EXPECT_NEAR(ws.lambda[std::size_t(b.row + k)], full.lambda[row], 1e-12);
+        }
+    }
 }
 
 }  // namespace

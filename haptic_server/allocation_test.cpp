@@ -26,7 +26,7 @@ TEST(Allocation, TheCounterCounts) {
 
 TEST(Allocation, TheServoDoesNone) {
   const std::array<ConstraintProblem, 3> problems{testing::two_tool_problem(10, 20, 1), testing::two_tool_problem(60, 60, 2),
-                                                  testing::two_tool_problem(30, 40, 3)};
+                                                  testing::two_tool_problem(30, 40, 3, 5)};
   Servo servo;
   ServoInput in;
   for (std::size_t i = 0; i < 2; ++i) {

@@ -51,7 +51,7 @@ ServoSettings tight() {
 }
 
 TEST(Servo, ForceEqualsTheEnginesWhenTheDeviceStandsStill) {
-  ConstraintProblem p = testing::two_tool_problem(20, 60);
+  ConstraintProblem p = testing::two_tool_problem(20, 60, 1, 4);
   testing::solve_as_engine(p);
   Servo servo;  // the settings of the real server
   servo.set_problem(&p);
@@ -74,7 +74,7 @@ TEST(Servo, ForceEqualsTheEnginesWhenTheDeviceStandsStill) {
 TEST(Servo, EquationSevenAgainstAFreshSolve) {
   testing::Random random(7);
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    ConstraintProblem p = testing::two_tool_problem(12, 20, seed);
+    ConstraintProblem p = testing::two_tool_problem(12, 20, seed, int(seed % 4));
     testing::solve_as_engine(p);
     Servo servo(tight());
     servo.set_problem(&p);

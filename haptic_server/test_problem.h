@@ -30,12 +30,12 @@ class Random {
 };
 
 /// Two tools, each with a virtual coupling of 300 N/m and 0.3 N m/rad and a rigid-body compliance, in `contacts` frictional
-/// contacts and `strands` compliant rows with soft bodies behind. W = H C H^T (tools) + a soft part, so it is what an
+/// contacts, `strands` compliant rows and `patches` of three contacts that share a friction force, with soft bodies behind. W = H C H^T (tools) + a soft part, so it is what an
 /// engine would build.
-inline ConstraintProblem two_tool_problem(int contacts, int strands, std::uint64_t seed = 1) {
+inline ConstraintProblem two_tool_problem(int contacts, int strands, std::uint64_t seed = 1, int patches = 0) {
   Random random(seed);
   ConstraintProblem p;
-  const int n = 3 * contacts + strands;
+  const int n = 3 * contacts + strands + 5 * patches;
   p.resize(n);
   for (int hand = 0; hand < 2; ++hand) {
     ToolTerms t;
@@ -75,6 +75,21 @@ inline ConstraintProblem two_tool_problem(int contacts, int strands, std::uint64
       h.row(3 * c + k) << axes[k].transpose(), arm.cross(axes[k]).transpose();
     }
   }
+  for (int c = 0; c < patches; ++c) {
+    const int hand = c % 2, row = 3 * contacts + strands + 5 * c;
+    const Vec3 normal = random.vector(1).normalized(), t1 = normal.unitOrthogonal(), t2 = normal.cross(t1);
+    auto& h = p.tools[std::size_t(hand)].jacobian;
+    h.middleRows(row, 5).setZero();
+    p.tools[std::size_t(1 - hand)].jacobian.middleRows(row, 5).setZero();
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 arm = random.vector(0.01);
+      h.row(row + k) << normal.transpose(), arm.cross(normal).transpose();
+      for (int j = 0; j < 2; ++j) {
+        const Vec3& t = j == 0 ? t1 : t2;
+        h.row(row + 3 + j) += (Vec6() << t, arm.cross(t)).finished().transpose() / 3;
+      }
+    }
+  }
   for (const ToolTerms& t : p.tools) w += t.jacobian * t.compliance * t.jacobian.transpose();
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j) p.w[std::size_t(i) * p.stride + j] = w(i, j);
@@ -95,6 +110,22 @@ inline ConstraintProblem two_tool_problem(int contacts, int strands, std::uint64
     b.compliance = 1 / 150.0;
     b.upper = 0;
     p.blocks.push_back(b);
+  }
+  for (int c = 0; c < patches; ++c) {
+    for (int k = 0; k < 4; ++k) {
+      Block b;
+      b.id = 9000 + std::uint64_t(4 * c + k);
+      b.row = 3 * contacts + strands + 5 * c + k;
+      if (k < 3) {
+        b.lower = 0;
+        p.delta_free[std::size_t(b.row)] -= 5e-4;
+      } else {
+        b.law = LawKind::patch;
+        b.friction = 0.3;
+        b.normals = 3;
+      }
+      p.blocks.push_back(b);
+    }
   }
   return p;
 }

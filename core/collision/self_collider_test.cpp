@@ -103,6 +103,66 @@ TEST(SelfCollider, TwoBranchesSideBySideAreOutsideOfEachOther) {
   }
 }
 
+/// Two boxes of coarse triangles one above the other, `apart` at rest; contacts once they are `now` apart, after `history`.
+std::vector<Proximity> coarse_boxes(double apart, std::initializer_list<double> history, double now) {
+  TriMesh m = shapes::box(Vec3(-5e-3, -5e-3, 0), Vec3(5e-3, 5e-3, 2e-3), 2);
+  const TriMesh below = shapes::box(Vec3(-6e-3, -6e-3, -2e-3 - apart), Vec3(6e-3, 6e-3, -apart), 2);
+  const int upper = int(m.vertices.size());
+  m.vertices.insert(m.vertices.end(), below.vertices.begin(), below.vertices.end());
+  for (auto t : below.triangles) m.triangles.push_back({t[0] + upper, t[1] + upper, t[2] + upper});
+  SelfCollider c(m.vertices, m.triangles, 0.9e-3, thickness);
+  CollisionMesh mesh;
+  mesh.build(m.vertices, m.triangles);
+  SelfContactSettings settings;
+  settings.inner = false;
+  settings.outer = true;
+  std::vector<Proximity> out;
+  std::vector<Vec3> places;
+  std::vector<double> ways(history);
+  ways.push_back(now);
+  for (const double at : ways) {
+    places = m.vertices;
+    for (int i = 0; i < upper; ++i) places[std::size_t(i)].z() += at - apart;
+    mesh.update(places, {});
+    out.clear();
+    c.detect(mesh, settings, out, workers);
+  }
+  return out;
+}
+
+// Their middles are millimetres apart; the triangles are not.
+TEST(SelfCollider, LargeTrianglesThatAreNearAtRestAreNeighbours) {
+  for (const double now : {0.59e-3, 0.4e-3, 0.2e-3}) EXPECT_TRUE(coarse_boxes(0.59e-3, {}, now).empty()) << now;
+  const auto found = coarse_boxes(0.61e-3, {}, 0.2e-3);
+  EXPECT_GE(found.size(), 9u);
+  for (const Proximity& x : found) EXPECT_NEAR(x.gap, 0.2e-3 - thickness, 1e-12);
+}
+
+TEST(SelfCollider, ACrossingBeginsShallow) {
+  const SelfContactSettings settings;
+  const double most = settings.thickness + settings.alarm;
+  const auto crossed = [](const std::vector<Proximity>& found) {
+    int n = 0;
+    for (const Proximity& x : found) n += x.gap < -thickness;
+    return n;
+  };
+  for (const double depth : {0.1e-3, 0.99 * most, 1.01 * most, 2e-3}) {
+    Flat fresh, known;
+    fresh.height(-depth);
+    known.height(0.4e-3);
+    known.detect();
+    known.height(-0.3e-3);  // seen to cross ...
+    known.detect();
+    known.height(-depth);   // ... it may be deeper
+    EXPECT_EQ(crossed(fresh.detect()) > 30, depth < most) << depth;
+    if (depth > most) { EXPECT_EQ(crossed(fresh.detect()), 0) << depth; }
+    const auto found = known.detect();
+    EXPECT_GT(crossed(found), 60) << depth;
+    for (const Proximity& x : found)
+      if (std::abs(known.rest.vertices[std::size_t(x.vertex)].z()) > 0.99e-3) { EXPECT_NEAR(x.gap, -depth - thickness, 1e-12); }
+  }
+}
+
 TEST(SelfCollider, BehindAPressedPlaceIsTheOppositeWall) {
   Flat f;
   f.height(1.2e-3);

@@ -9,6 +9,7 @@
 #include "core/linalg/kernels.h"
 #include "core/testing/count_allocations.h"
 #include "core/testing/example.h"
+#include "tests/physics/random_problem.h"
 
 namespace insula {
 namespace {
@@ -94,6 +95,23 @@ TEST(Allocation, SolveOfAHardProblemAllocatesNothing) {
   const SolveStats stats = solve(p, p.delta_free, {3000, 1e-11, true}, ws);
   EXPECT_EQ(allocations - before, 0);
   EXPECT_GT(stats.sweeps, 10);
+}
+
+// Contacts that share friction forces, with and without conjugate directions; a step of a scene with them.
+TEST(Allocation, SolveOfPatchesAllocatesNothing) {
+  Random random(17);
+  int patches = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    const ConstraintProblem p = test::random_problem(random, 0.5);
+    SolveWorkspace ws;
+    ws.reserve(p.rows);
+    ws.lambda.assign(std::size_t(p.rows), 0.0);
+    const long before = allocations;
+    solve(p, p.delta_free, {50, 1e-11, trial % 2 == 0}, ws);
+    EXPECT_EQ(allocations - before, 0);
+    for (const Block& b : p.blocks) patches += b.law == LawKind::patch;
+  }
+  EXPECT_GT(patches, 100);
 }
 
 TEST(Allocation, DetectionByVerticesAllocatesNothing) {

@@ -1,194 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The constraint solver: the exact local contact against a search over directions, thousands of random problems against
-// the laws themselves, convergence against an accurate solution, and independence of the warm start.
-#include <gtest/gtest.h>
-
-#include <Eigen/Dense>
-#include <cmath>
-
-#include "core/base/random.h"
-#include "core/constraint/friction.h"
-#include "core/constraint/solve.h"
+// The constraint solver: thousands of random problems against the laws themselves, convergence against an accurate solution,
+// and independence of the warm start.
+#include "tests/physics/random_problem.h"
 
 namespace insula {
 namespace {
 
-MatX random_matrix(Random& random, int rows, int columns) {
-  MatX m(rows, columns);
-  for (int i = 0; i < rows; ++i)
-    for (int j = 0; j < columns; ++j) m(i, j) = random.uniform(-1, 1);
-  return m;
-}
-
-LocalContact local(const Mat3& w, const Vec3& q) { return {w(0, 0), w(0, 1), w(0, 2), w(1, 1), w(1, 2), w(2, 2), q[0], q[1], q[2]}; }
-
-/// Largest violation of the contact laws, relative to the sizes at hand.
-double contact_error(const Vec3& delta, const Vec3& lambda, double mu, double length, double force) {
-  double error = std::max(-delta[0] / length, -lambda[0] / force);
-  error = std::max(error, std::min(std::abs(delta[0]) / length, std::abs(lambda[0]) / force));
-  const Eigen::Vector2d slip = delta.tail<2>(), f = lambda.tail<2>();
-  error = std::max(error, (f.norm() - mu * lambda[0]) / force);  // cone
-  if (lambda[0] > 1e-12 * force && slip.norm() > 1e-9 * length && mu > 0)  // slips: on the cone, opposing
-    error = std::max({error, std::abs(f.norm() - mu * lambda[0]) / force, (f + mu * lambda[0] * slip / slip.norm()).norm() / force * std::min(1.0, slip.norm() / length)});
-  return error;
-}
-
-// All sliding solutions by search over the direction of friction: gap closed and slip against it.
-std::vector<Vec3> search(const Mat3& w, const Vec3& q, double mu) {
-  std::vector<Vec3> found;
-  if (q[0] >= 0) return {Vec3::Zero()};
-  const Vec3 stick = -w.ldlt().solve(q);
-  if (stick[0] >= 0 && stick.tail<2>().norm() <= mu * stick[0]) found.push_back(stick);
-  struct Slide {
-    Vec3 lambda, delta;
-    double across, along;
-  };
-  const auto at = [&](double angle) {
-    const Eigen::Vector2d d(std::cos(angle), std::sin(angle));
-    const double reduced = w(0, 0) + mu * (w(0, 1) * d[0] + w(0, 2) * d[1]);
-    Slide s;
-    const double n = -q[0] / reduced;
-    s.lambda = Vec3(n, mu * n * d[0], mu * n * d[1]);
-    s.delta = w * s.lambda + q;
-    s.across = s.delta[1] * d[1] - s.delta[2] * d[0];
-    s.along = s.delta[1] * d[0] + s.delta[2] * d[1];
-    return s;
-  };
-  const int n = 4000;
-  const double step = 2 * 3.14159265358979323846 / n;
-  Slide before = at(0);
-  for (int i = 1; i <= n; ++i) {
-    const Slide now = at(i * step);
-    if ((before.across > 0) != (now.across > 0) && before.lambda[0] > 0 && now.lambda[0] > 0) {
-      double low = (i - 1) * step, high = i * step;
-      for (int k = 0; k < 60; ++k) {
-        const double middle = 0.5 * (low + high);
-        ((at(middle).across > 0) == (before.across > 0) ? low : high) = middle;
-      }
-      const Slide s = at(0.5 * (low + high));
-      if (s.along < 0 && std::abs(s.across) < 1e-9 * (s.delta.norm() + q.norm())) found.push_back(s.lambda);
-    }
-    before = now;
-  }
-  return found;
-}
-
-TEST(LocalContact, IsTheSolutionThatASearchFinds) {
-  Random random(1);
-  int stick = 0, slide = 0, open = 0, several = 0;
-  for (int trial = 0; trial < 5000; ++trial) {
-    const MatX a = random_matrix(random, 3, 5);
-    const Mat3 w = a * a.transpose() + 0.02 * Mat3::Identity();
-    const Vec3 q(random.uniform(-1, 0.3), random.uniform(-1, 1), random.uniform(-1, 1));
-    const double mu = trial % 10 == 0 ? 0.0 : random.uniform(0.02, 1.0);
-    Vec3 lambda;
-    solve_contact(local(w, q), mu, lambda.data());
-    const Vec3 delta = w * lambda + q;
-    const double force = q.norm() / w.trace(), length = q.norm();
-    ASSERT_LT(contact_error(delta, lambda, mu, length, std::max(force, lambda.norm())), 1e-8) << "trial " << trial << " mu " << mu << " lambda " << lambda.transpose() << " delta " << delta.transpose();
-    if (mu == 0) continue;
-    const auto all = search(w, q, mu);
-    ASSERT_FALSE(all.empty()) << trial;
-    double nearest = 1e300;
-    for (const Vec3& s : all) nearest = std::min(nearest, (s - lambda).norm());
-    EXPECT_LT(nearest, 1e-7 * std::max(force, lambda.norm())) << "trial " << trial << ": " << all.size() << " found by search";
-    several += all.size() > 1;
-    if (q[0] >= 0) ++open;
-    else if (delta.tail<2>().norm() < 1e-9) ++stick;
-    else ++slide;
-  }
-  EXPECT_GT(stick, 200);
-  EXPECT_GT(slide, 1000);
-  EXPECT_GT(open, 200);
-}
-
-TEST(LocalContact, DegenerateInputsGiveFiniteForces) {
-  const Vec3 q(-1, 0.5, 0.2);
-  for (const double mu : {0.0, 0.3, 5.0})
-    for (const Mat3& w : {Mat3(Mat3::Zero()), Mat3(Vec3(1, 0, 0).asDiagonal()), Mat3(Mat3::Ones()), Mat3(1e-12 * Mat3::Identity()), Mat3(Vec3(1, 1e-14, 1).asDiagonal())}) {
-      Vec3 lambda;
-      solve_contact(local(w, q), mu, lambda.data());
-      EXPECT_TRUE(lambda.allFinite());
-      EXPECT_GE(lambda[0], 0);
-      EXPECT_LE(lambda.tail<2>().norm(), mu * lambda[0] * (1 + 1e-12));
-    }
-}
-
-/// Contacts, fibres, holds and links among a few bodies of several degrees of freedom: W = H A^-1 H^T plus a little on
-/// the diagonal, so that the solution is one.
-ConstraintProblem random_problem(Random& random, double friction) {
-  ConstraintProblem p;
-  int rows = 0;
-  const int blocks = 2 + int(random.below(9));
-  std::vector<Block> made;
-  for (int i = 0; i < blocks; ++i) {
-    Block b;
-    b.id = std::uint64_t(100 + i);
-    b.row = rows;
-    switch (random.below(6)) {
-      case 0: break;                                                                     // bilateral
-      case 1: b.compliance = random.uniform(0.1, 2); break;                              // two-sided spring
-      case 2: b.compliance = random.uniform(0.1, 2); b.upper = 0; break;                 // fibre
-      case 3: b.lower = 0; break;                                                        // contact without friction
-      case 4: b.upper = random.uniform(0.1, 1); b.lower = -b.upper; break;               // plastic hold
-      default: b.law = LawKind::friction; b.friction = friction * random.uniform(0.1, 1);
-    }
-    rows += b.rows();
-    made.push_back(b);
-  }
-  p.resize(rows);
-  p.blocks = made;
-  // Each row acts on two of the bodies: sparse coupling as in a scene.
-  const int bodies = 3 + int(random.below(4)), dof = 6;
-  MatX h = MatX::Zero(rows, bodies * dof);
-  for (const Block& b : made) {
-    const int one = int(random.below(std::uint32_t(bodies))), two = int(random.below(std::uint32_t(bodies)));
-    for (int k = 0; k < b.rows(); ++k) {
-      h.row(b.row + k).segment(one * dof, dof) += random_matrix(random, 1, dof);
-      if (two != one) h.row(b.row + k).segment(two * dof, dof) -= random_matrix(random, 1, dof);
-    }
-  }
-  const MatX w = h * h.transpose() + 0.05 * MatX::Identity(rows, rows);
-  for (int i = 0; i < rows; ++i) {
-    for (int j = 0; j < rows; ++j) p.w[std::size_t(i * p.stride + j)] = 0.5 * (w(i, j) + w(j, i));
-    p.delta_free[std::size_t(i)] = random.uniform(-1, 1);
-  }
-  return p;
-}
-
-double law_error(const ConstraintProblem& p, const std::vector<double>& lambda) {
-  VecX delta(p.rows);
-  double length = 1e-300, force = 1e-300;
-  for (int i = 0; i < p.rows; ++i) {
-    delta[i] = p.delta_free[std::size_t(i)];
-    for (int j = 0; j < p.rows; ++j) delta[i] += p.w_at(i, j) * lambda[std::size_t(j)];
-    length = std::max(length, std::abs(p.delta_free[std::size_t(i)]));
-    force = std::max(force, std::abs(lambda[std::size_t(i)]));
-  }
-  double error = 0;
-  for (const Block& b : p.blocks) {
-    const double* l = lambda.data() + b.row;
-    if (b.law == LawKind::friction) {
-      error = std::max(error, contact_error(delta.segment<3>(b.row), Vec3(l[0], l[1], l[2]), b.friction, length, force));
-      continue;
-    }
-    const double d = (delta[b.row] + b.compliance * l[0]) / length;
-    error = std::max({error, (b.lower - l[0]) / force, (l[0] - b.upper) / force});
-    if (l[0] <= b.lower) error = std::max(error, -d);       // pushed against its lower bound: may open
-    else if (l[0] >= b.upper) error = std::max(error, d);
-    else error = std::max(error, std::abs(d));
-  }
-  return error;
-}
-
-SolveStats solve_to(const ConstraintProblem& p, SolveWorkspace& ws, int sweeps, double tolerance, bool conjugate) {
-  ws.reserve(p.rows);
-  return solve(p, p.delta_free, {sweeps, tolerance, conjugate}, ws);
-}
+using namespace test;
 
 TEST(Solver, RandomProblemsObeyTheirLaws) {
   Random random(11);
-  int solved = 0, friction_blocks = 0;
+  int solved = 0, friction_blocks = 0, stuck = 0, slipping = 0, open = 0;
   for (int trial = 0; trial < 3000; ++trial) {
     const ConstraintProblem p = random_problem(random, 0.6);
     for (const Block& b : p.blocks) friction_blocks += b.law == LawKind::friction;
@@ -204,10 +26,20 @@ TEST(Solver, RandomProblemsObeyTheirLaws) {
       for (int j = 0; j < p.rows; ++j) d += p.w_at(i, j) * ws.lambda[std::size_t(j)];
       ASSERT_NEAR(ws.delta[std::size_t(i)], d, 1e-11 * (1 + std::abs(d)));
     }
+    for (const Block& b : p.blocks) {
+      if (b.law != LawKind::patch) continue;
+      double pressed = 0;
+      for (int i = b.row - b.normals; i < b.row; ++i) pressed += ws.lambda[std::size_t(i)];
+      const double force = std::hypot(ws.lambda[std::size_t(b.row)], ws.lambda[std::size_t(b.row + 1)]);
+      (pressed <= 0 ? open : force < (1 - 1e-6) * b.friction * pressed ? stuck : slipping) += 1;
+    }
     ++solved;
   }
   EXPECT_EQ(solved, 3000);
   EXPECT_GT(friction_blocks, 2000);
+  EXPECT_GT(stuck, 100);
+  EXPECT_GT(slipping, 1000);
+  EXPECT_GT(open, 100);
 }
 
 TEST(Solver, ConvergesToTheAccurateSolution) {
@@ -239,11 +71,7 @@ TEST(Solver, ConvergesToTheAccurateSolution) {
     few.lambda.assign(std::size_t(p.rows), 0.0);
     const SolveStats stats = solve_to(p, few, 3, 0, conjugate);
     EXPECT_LE(stats.sweeps, 3);
-    for (const Block& b : p.blocks) {
-      const double* l = few.lambda.data() + b.row;
-      if (b.law == LawKind::box) { EXPECT_TRUE(l[0] >= b.lower && l[0] <= b.upper); }
-      else { EXPECT_LE(std::hypot(l[1], l[2]), b.friction * l[0] * (1 + 1e-12)); }
-    }
+    expect_bounds(p, few.lambda);
   }
 }
 
@@ -342,19 +170,6 @@ ConstraintProblem squeezed_stack(int nodes, double friction, double close, doubl
     }
   }
   return p;
-}
-
-void expect_bounds(const ConstraintProblem& p, const std::vector<double>& lambda) {
-  for (const Block& b : p.blocks) {
-    const double* l = lambda.data() + b.row;
-    if (b.law == LawKind::box) {
-      EXPECT_GE(l[0], b.lower);
-      EXPECT_LE(l[0], b.upper);
-    } else {
-      EXPECT_GE(l[0], 0);
-      EXPECT_LE(std::hypot(l[1], l[2]), b.friction * l[0] * (1 + 1e-12));
-    }
-  }
 }
 
 TEST(Solver, ConjugateDirectionsSolveAHardStackInFarFewerSweeps) {

@@ -5,9 +5,9 @@ Writes the two scripted motions of exercise 2 by operating in its scene:
     cmake -B build -DINSULA_BUILD_TOOLS=ON && ninja -C build dissection_motions
     build/bin/dissection_motions scenes/training/2_aneurysm_dissection.xml scenes/training
 
-steady  steers the dissector to the nearest and outermost strand, turns the blade across it and sweeps it through, with room
-        to the vessel and the lobes measured on grids of distances, until no strand stands;
-rough   shoves the sac aside until strands tear, leans on the frontal lobe and presses the bleb until it bursts.
+steady  steers the dissector to the nearest and outermost strand, turns the blade across it and sweeps it forth and
+        back, with room to the vessel and the lobes measured on grids of distances, until no strand stands;
+rough   shoves the sac aside until strands tear, leans on the frontal lobe and presses the blade into the bleb until it bursts.
 
 Then each motion is played once more through both simulated arms, as `insula run` does it, and its outcome printed. The same
 scene gives the same files on the same processor (see docs/one-step.md on bits).
@@ -20,23 +20,14 @@ scene gives the same files on the same processor (see docs/one-step.md on bits).
 
 #include "core/base/input_error.h"
 #include "core/mechanics/shell_body.h"
-#include "core/registry/registry.h"
-#include "engine/headless.h"
+#include "plugins/strand_springs/strand_springs.h"
+#include "tools/motions/dissection_play.h"
 #include "tools/motions/sweeps.h"
 
 namespace insula {
 namespace {
 
-namespace fs = std::filesystem;
 constexpr double mm = 1e-3;
-
-std::unique_ptr<Simulation> load(const fs::path& scene) {
-  Registry registry;
-  register_builtin(registry);
-  SimulationResult loaded = load_simulation(scene, registry, 1);
-  if (!loaded.simulation) throw InputError(loaded.diagnostics.format());
-  return std::move(loaded.simulation);
-}
 
 class Surgeon {
  public:
@@ -49,6 +40,12 @@ class Surgeon {
   }
 
   void steady(const fs::path& file) {
+    // Rehearsed on tougher strands than the scene's, so that each is divided with room to spare.
+    for (const char* id : {"to_frontal", "to_temporal", "to_branches"})
+      if (auto* s = simulation_->scene().find_as<StrandSprings>(id)) {
+        s->cut_length.set(1.5 * s->cut_length());
+        s->reach.set(0.8 * s->reach());
+      }
     const Pose left_home = hands_.left().pose, right_home = hands_.right().pose;
     Wish left = left_rest(), right{tool_pose(centre_ + 16 * mm * outward_ + Vec3(0, 6, 0) * mm, lean_, Vec3::UnitZ())};
     hands_.move(2.2, left, right);
@@ -57,12 +54,19 @@ class Surgeon {
     for (int n = 0; n < 150 && simulation_->report().strands_left > 0; ++n) {
       vessel_.clear();
       see(*artery_, vessel_);
-      const Sweep sweep = planner_.best(strands(), tries, hands_.right().pose.p);
+      Sweep sweep = planner_.best(strands(), tries, hands_.right().pose.p);
+      if (sweep.strand < 0 || tries[std::size_t(sweep.strand)] > 1) {  // look again, and closer
+        others_.clear();
+        look();
+        add_tool(0);
+        sweep = planner_.best(strands(), tries, hands_.right().pose.p, true);
+      }
+      if (sweep.strand < 0) say_left();
       if (sweep.strand < 0) throw InputError(fmt::format("{} strands are out of reach", simulation_->report().strands_left));
       const Vec3 tip = hands_.right().pose.p;
       const double way = (sweep.pose(-sweep.half).p - tip).norm() <= (sweep.pose(sweep.half).p - tip).norm() ? 1 : -1;
       go({sweep.pose(-way * sweep.half)});
-      hands_.move(0.55, {sweep.pose(way * sweep.half)});
+      for (const int stroke : {1, -1, 1}) hands_.move(0.25 + 110 * sweep.half, {sweep.pose(stroke * way * sweep.half)});  // more than parts it, should the arms lag
       ++tries[std::size_t(sweep.strand)];
       std::printf("%6.2f s strand %2d  room vessel %5.2f others %5.2f mm  %d stand, tries %d\n", hands_.time(), sweep.strand, sweep.vessel / mm,
                   sweep.others / mm, simulation_->report().strands_left, tries[std::size_t(sweep.strand)]);
@@ -88,10 +92,10 @@ class Surgeon {
   void rough(const fs::path& file) {
     Wish left = left_rest(), right{tool_pose(centre_ + 12 * mm * outward_ + Vec3(0, 4, 0) * mm, lean_, Vec3::UnitZ())};
     hands_.move(1.2, left, right);
-    // The suction tube shoves the sac aside: strands tear.
-    const Vec3 aside = (Vec3(0, 0.6, -1) - 0.3 * outward_).normalized();
+    // The suction tube shoves the sac away from the frontal lobe: strands between them tear.
+    const Vec3 aside = Vec3(0, -1, -0.6).normalized();
     const int before = simulation_->report().strands_left;
-    press(0, left_shaft_, aside, [&] { return middle_of("sac"); }, 7 * mm, [&] { return simulation_->report().strands_left <= before - 3; });
+    press(0, left_shaft_, aside, [&] { return middle_of("sac"); }, 5 * mm, [&] { return simulation_->report().strands_left <= before - 4; });
     hands_.wait(0.3);
     hands_.move(0.7, left, right);
     // The dissector leans on the frontal lobe.
@@ -119,6 +123,13 @@ class Surgeon {
  private:
   const std::vector<StrandState>& strands() const { return simulation_->report().strands; }
 
+  void say_left() const {
+    for (std::size_t i = 0; i < strands().size(); ++i)
+      if (const StrandState& s = strands()[i]; s.health >= 0) {
+        const Vec3 a = (s.a - centre_) / mm, b = (s.b - centre_) / mm;
+        std::printf("strand %2zu stands: %.1f mm from (%.1f %.1f %.1f) to (%.1f %.1f %.1f) mm from the sac\n", i, (a - b).norm(), a.x(), a.y(), a.z(), b.x(), b.y(), b.z());
+      }
+  }
   /// Force of a hand's tool on a body, N.
   double force(int hand, const Body& body) const {
     const Body* tool = simulation_->instrument_of(hand);
@@ -237,24 +248,6 @@ class Surgeon {
   Clearance vessel_, others_;
   SweepPlanner planner_;
 };
-
-/// Plays a motion as `insula run` does and says what came of it.
-void play(const fs::path& scene, const fs::path& file) {
-  const auto s = load(scene);
-  const Motion motion = load_motion(file);
-  HeadlessRun run(*s, motion);
-  double press = 0;
-  while (s->time() < motion.duration() + 0.5) {
-    run.step();
-    for (const ToolReport& t : s->report().tools)
-      if (t.hand >= 0) press = std::max(press, t.contact_force);
-  }
-  std::printf("%s: %.1f s, %d of %d strands stand, largest contact force %.3f N\n", file.c_str(), motion.duration(), s->report().strands_left,
-              s->report().strands_total, press);
-  if (!s->exercise()) return;
-  for (const GoalState& g : s->exercise()->log().goals()) std::printf("  goal %s %s %.1f s\n", g.id.c_str(), g.done ? "reached at" : "open", g.time);
-  for (const FaultState& f : s->exercise()->log().faults()) std::printf("  fault %s %d\n", f.id.c_str(), f.count);
-}
 
 }  // namespace
 }  // namespace insula

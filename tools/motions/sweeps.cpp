@@ -65,11 +65,11 @@ double SweepPlanner::cutting(const Sweep& sweep, const StrandState& strand) cons
   return travel / cut_length_;
 }
 
-Sweep SweepPlanner::best(const std::vector<StrandState>& strands, const std::vector<int>& tries, const Vec3& tip) const {
-  // Shafts: the usual lean and two rings around it.
+Sweep SweepPlanner::best(const std::vector<StrandState>& strands, const std::vector<int>& tries, const Vec3& tip, bool thorough) const {
+  // Shafts: the usual lean and rings around it.
   std::vector<Vec3> shafts{field_.lean};
   const Vec3 side = field_.lean.unitOrthogonal(), up = field_.lean.cross(side);
-  for (const double tilt : {12.0, 24.0})
+  for (const double tilt : thorough ? std::vector<double>{12, 24, 36, 48} : std::vector<double>{12, 24})
     for (int k = 0; k < 6; ++k) {
       const double t = tilt * std::numbers::pi / 180, a = (k + tilt / 24) * std::numbers::pi / 3;
       shafts.push_back(std::cos(t) * field_.lean + std::sin(t) * (std::cos(a) * side + std::sin(a) * up));
@@ -83,6 +83,9 @@ Sweep SweepPlanner::best(const std::vector<StrandState>& strands, const std::vec
   for (std::size_t i = 0; i < strands.size(); ++i)
     if (strands[i].health >= 0) order.push_back(i);
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return ease(a) != ease(b) ? ease(a) > ease(b) : a < b; });
+  const std::vector<double> places = thorough ? std::vector<double>{0.5, 0.3, 0.7, 0.15, 0.85, 0.05, 0.95} : std::vector<double>{0.5, 0.35, 0.65, 0.2, 0.8};
+  const std::vector<double> depths = thorough ? std::vector<double>{0.2e-3, -0.15e-3, -0.35e-3, 0.7e-3, 1.4e-3} : std::vector<double>{0.2e-3, -0.15e-3, 0.7e-3, 1.4e-3};
+  const double press = thorough ? 1.0e-3 : 0.5e-3;  // how far a lobe, which gives way, may be pushed in
   Sweep best;
   for (std::size_t n = 0; n < order.size() && (n < 8 || best.strand < 0); ++n) {
     const std::size_t i = order[n];
@@ -91,25 +94,27 @@ Sweep SweepPlanner::best(const std::vector<StrandState>& strands, const std::vec
     for (const Vec3& shaft : shafts) {
       const Vec3 across = axis.cross(shaft);
       const bool end_on = across.norm() < 0.35;
-      for (int turn = 0; turn < (end_on ? 4 : 1); ++turn)
-        for (const double along : {0.5, 0.35, 0.65, 0.2, 0.8})
-          for (const double depth : {0.2e-3, -0.15e-3, 0.7e-3, 1.4e-3})
-            for (const int sense : {1, -1}) {
+      for (int turn = 0; turn < (end_on ? 4 : thorough ? 3 : 1); ++turn)
+        for (const double along : places)
+          for (const double depth : depths)
+            for (const double signed_half : {2.2e-3, -2.2e-3, 1.6e-3, -1.6e-3}) {
+              const int sense = signed_half > 0 ? 1 : -1;
               Sweep w;
               w.strand = int(i);
               w.shaft = shaft;
-              w.across = end_on ? Eigen::AngleAxisd(turn * std::numbers::pi / 4, shaft) * shaft.unitOrthogonal() : across.normalized();
+              const double askew = end_on ? turn * std::numbers::pi / 4 : (turn == 2 ? -1 : turn) * std::numbers::pi / 6;
+              w.across = Eigen::AngleAxisd(askew, shaft) * (end_on ? shaft.unitOrthogonal() : Vec3(across.normalized()));
               w.across *= sense;
               // The blade is curved: at this height its edge lies a little off the tool's axis.
               const Vec3 flat = w.across.cross(shaft);
               w.middle = s.a + along * (s.b - s.a) - depth * shaft + 0.15e-3 * flat;
-              w.half = 1.6e-3;
+              w.half = std::abs(signed_half);
               w.vessel = w.others = Clearance::band;
-              for (int k = -2; k <= 2; ++k) room(w.pose(k * 0.5 * w.half), &w.vessel, &w.others);
-              if (w.vessel < -0.1e-3 || w.others < -0.5e-3) continue;
+              for (int k = -3; k <= 3; ++k) room(w.pose(k * w.half / 3), &w.vessel, &w.others);
+              if (w.vessel < -0.1e-3 || w.others < -press) continue;
               // Room counts up to what is comfortable.
               double score = 2.5 * std::min(w.vessel, 0.5e-3) / 0.5e-3 + std::min(w.others, 0.3e-3) / 0.3e-3;
-              score += ease(i) - 4 * (1 - shaft.dot(field_.lean));
+              score += ease(i) - 4 * (1 - shaft.dot(field_.lean)) + (w.half > 2e-3 ? 0.5 : 0);  // a long stroke parts it for sure
               if (score + 1.5 < best.score || cutting(w, s) < 1.5) continue;
               int more = 0;
               for (std::size_t k = 0; k < strands.size(); ++k)

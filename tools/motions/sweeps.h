@@ -34,8 +34,9 @@ struct Sweep {
 class SweepPlanner {
  public:
   SweepPlanner(const ToolModel& tool, const Field& field, double reach, double cut_length);
-  /// The best sweep through one of the strands that stand; tries: how often each was swept in vain.
-  Sweep best(const std::vector<StrandState>& strands, const std::vector<int>& tries, const Vec3& tip) const;
+  /// The best sweep through one of the strands that stand; tries: how often each was swept in vain. thorough: also steep
+  /// shafts, places near a strand's ends, blades turned askew and lobes pressed in a little more.
+  Sweep best(const std::vector<StrandState>& strands, const std::vector<int>& tries, const Vec3& tip, bool thorough = false) const;
   /// Least room of the whole tool at a pose, m.
   double room(const Pose& pose, double* vessel = nullptr, double* others = nullptr) const;
   /// Least room on the straight way between two poses, m.

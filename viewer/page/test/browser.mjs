@@ -22,27 +22,37 @@ export async function wait_for(what, test) {
   assert.fail(`no ${what} within 40 s`);
 }
 
-/** Mean brightness, its deviation, and shares of reddish, greenish and dark red pixels of the picture, without the panels over it. */
-export async function look(page, clip) {
+/**
+ * Mean brightness, its deviation, and shares of reddish, greenish and dark red pixels of the picture, without the panels over
+ * it; disc: only of the disc in the clip. spread: the median distance from the median brightness: contrast of what is seen,
+ * whatever the lamp's small reflections on it add.
+ */
+export async function look(page, clip, { disc = false } = {}) {
   const panels = (shown) => page.evaluate((o) => { document.getElementById('hud').style.opacity = o; }, shown ? '1' : '0');
   await panels(false);
   const shot = await page.screenshot({ ...(clip ? { clip } : {}), timeout: patience.timeout });
   await panels(true);
-  return page.evaluate(async (base64) => {
+  return page.evaluate(async ([base64, disc]) => {
     const image = await createImageBitmap(await (await fetch(`data:image/png;base64,${base64}`)).blob());
     const context = new OffscreenCanvas(image.width, image.height).getContext('2d');
     context.drawImage(image, 0, 0);
     const d = context.getImageData(0, 0, image.width, image.height).data;
+    const w = image.width, h = image.height, brightness = [];
     let mean = 0, square = 0, red = 0, green = 0, dark_red = 0;
     for (let i = 0; i < d.length; i += 4) {
+      const k = i / 4;
+      if (disc && Math.hypot((k % w + 0.5) / w - 0.5, (Math.floor(k / w) + 0.5) / h - 0.5) > 0.5) continue;
       const y = (d[i] + d[i + 1] + d[i + 2]) / 3;
+      brightness.push(y);
       mean += y;
       square += y * y;
       if (d[i] > d[i + 2] + 15) red++;
       if (d[i + 1] > 60 && d[i + 1] > d[i] + 15) green++;
       if (d[i] > 25 && d[i] > 3 * Math.max(d[i + 1], d[i + 2])) dark_red++;
     }
-    const n = d.length / 4;
-    return { mean: mean / n, deviation: Math.sqrt(square / n - (mean / n) ** 2), red: red / n, green: green / n, dark_red: dark_red / n };
-  }, shot.toString('base64'));
+    const n = brightness.length;
+    const median = (values) => values.sort((a, b) => a - b)[Math.floor(values.length / 2)];
+    const middle = median(brightness);
+    return { spread: median(brightness.map((y) => Math.abs(y - middle))), mean: mean / n, deviation: Math.sqrt(square / n - (mean / n) ** 2), red: red / n, green: green / n, dark_red: dark_red / n };
+  }, [shot.toString('base64'), disc]);
 }

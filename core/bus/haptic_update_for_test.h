@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Haptic problems for tests of their wire format, and what must hold of any that is accepted.
+#pragma once
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "core/bus/haptic_update.h"
+
+namespace insula::testing {
+
+using Buffer = std::vector<std::uint8_t>;
+
+inline Pose random_pose(std::mt19937& random) {
+  std::normal_distribution<double> normal;
+  Pose pose;
+  pose.p = Vec3(normal(random), normal(random), normal(random)) * 0.1;
+  pose.q = Quat(normal(random), normal(random), normal(random), normal(random)).normalized();
+  return pose;
+}
+
+inline Mat6 random_symmetric(std::mt19937& random, double scale) {
+  std::normal_distribution<double> normal;
+  Mat6 a;
+  for (int i = 0; i < 36; ++i) a.data()[i] = normal(random);
+  return scale * (a * a.transpose());
+}
+
+/// A valid problem with friction and box blocks, float32 values where the wire has float32.
+inline HapticUpdate make_update(unsigned seed, int boxes = 4, int contacts = 3, int tools = 2) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  HapticUpdate u;
+  u.session = 1234567890123;
+  u.sequence = 77;
+  u.time_us = 987654321;
+  u.step_s = 1.0 / 60;
+  u.sim_time_s = 3.25;
+  ConstraintProblem& p = u.problem;
+  const int n = boxes + 3 * contacts;
+  p.resize(n);
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j <= i; ++j) {
+      const double w = double(float(i == j ? 1e-3 + std::abs(normal(random)) * 1e-3 : normal(random) * 1e-5));
+      p.w[std::size_t(i * p.stride + j)] = p.w[std::size_t(j * p.stride + i)] = w;
+    }
+  for (int i = 0; i < n; ++i) p.delta_free[std::size_t(i)] = normal(random) * 1e-3;
+  int row = 0;
+  for (int k = 0; k < boxes + contacts; ++k) {
+    Block b;
+    b.id = 0xfedc000000000000u + std::uint64_t(1000 + k * 7);
+    b.row = row;
+    if (k % 2 == 1 && contacts > 0) {
+      --contacts;
+      ++boxes;  // keeps k's bound
+      b.law = LawKind::friction;
+      b.friction = double(0.3f);
+      p.lambda[std::size_t(row)] = 0.5;
+      p.lambda[std::size_t(row + 1)] = 0.1;
+      p.lambda[std::size_t(row + 2)] = -0.1;
+    } else {
+      b.compliance = double(0.02f);
+      if (k % 4 == 0) b.upper = 0;
+      p.lambda[std::size_t(row)] = -std::abs(normal(random));
+    }
+    p.blocks.push_back(b);
+    row += b.rows();
+    if (row >= n) break;
+  }
+  for (int t = 0; t < tools; ++t) {
+    ToolTerms tool;
+    tool.hand = 1 - t;
+    tool.device = random_pose(random);
+    tool.free = random_pose(random);
+    tool.gain = random_symmetric(random, 0.01);
+    tool.gain(0, 5) += 0.5;  // a gain need not be symmetric
+    tool.compliance = random_symmetric(random, 1e-3);
+    tool.stiffness = random_symmetric(random, 100);
+    tool.jacobian.resize(n, 6);
+    for (int i = 0; i < n * 6; ++i) tool.jacobian.data()[i] = double(float(normal(random)));
+    p.tools.push_back(tool);
+    u.offset[std::size_t(t)] = random_pose(random);
+  }
+  return u;
+}
+
+inline Buffer encoded(const HapticUpdate& u) {
+  Buffer out;
+  EXPECT_TRUE(encode_problem(u, out));
+  return out;
+}
+
+inline void expect_equal(const HapticUpdate& a, const HapticUpdate& b) {
+  EXPECT_EQ(a.session, b.session);
+  EXPECT_EQ(a.sequence, b.sequence);
+  EXPECT_EQ(a.time_us, b.time_us);
+  EXPECT_EQ(a.step_s, b.step_s);
+  EXPECT_EQ(a.sim_time_s, b.sim_time_s);
+  const ConstraintProblem &p = a.problem, &r = b.problem;
+  ASSERT_EQ(p.rows, r.rows);
+  for (int i = 0; i < p.rows; ++i)
+    for (int j = 0; j < p.rows; ++j) EXPECT_EQ(p.w_at(i, j), r.w_at(i, j));
+  EXPECT_EQ(p.delta_free, r.delta_free);
+  EXPECT_EQ(p.lambda, r.lambda);
+  ASSERT_EQ(p.blocks.size(), r.blocks.size());
+  for (std::size_t i = 0; i < p.blocks.size(); ++i) {
+    const Block &x = p.blocks[i], &y = r.blocks[i];
+    EXPECT_EQ(x.id, y.id);
+    EXPECT_EQ(x.row, y.row);
+    EXPECT_EQ(x.law, y.law);
+    EXPECT_EQ(x.compliance, y.compliance);
+    EXPECT_EQ(x.lower, y.lower);
+    EXPECT_EQ(x.upper, y.upper);
+    EXPECT_EQ(x.friction, y.friction);
+    EXPECT_EQ(x.normals, y.normals);
+  }
+  ASSERT_EQ(p.tools.size(), r.tools.size());
+  for (std::size_t i = 0; i < p.tools.size(); ++i) {
+    const ToolTerms &x = p.tools[i], &y = r.tools[i];
+    EXPECT_EQ(x.hand, y.hand);
+    EXPECT_EQ(x.device.p, y.device.p);
+    EXPECT_EQ(x.device.q.coeffs(), y.device.q.coeffs());
+    EXPECT_EQ(x.free.p, y.free.p);
+    EXPECT_EQ(x.free.q.coeffs(), y.free.q.coeffs());
+    EXPECT_EQ(x.gain, y.gain);
+    EXPECT_EQ(x.compliance, y.compliance);
+    EXPECT_EQ(x.stiffness, y.stiffness);
+    EXPECT_EQ(x.jacobian, y.jacobian);
+    EXPECT_EQ(a.offset[i].p, b.offset[i].p);
+    EXPECT_EQ(a.offset[i].q.coeffs(), b.offset[i].q.coeffs());
+  }
+}
+
+inline void expect_sane(const HapticUpdate& u) {
+  const ConstraintProblem& p = u.problem;
+  ASSERT_LE(p.rows, max_problem_rows);
+  int rows = 0;
+  for (const Block& b : p.blocks) {
+    ASSERT_EQ(b.row, rows);
+    ASSERT_LE(b.lower, b.upper);
+    ASSERT_TRUE(b.friction >= 0 && b.friction <= 10);
+    const std::ptrdiff_t at = &b - p.blocks.data();
+    ASSERT_TRUE(b.law == LawKind::patch ? b.normals >= 1 && b.normals <= at : b.normals == 0);
+    for (std::ptrdiff_t i = at - b.normals; i < at; ++i) ASSERT_EQ(p.blocks[std::size_t(i)].law, LawKind::box);
+    rows += b.rows();
+  }
+  ASSERT_EQ(rows, p.rows);
+  for (int i = 0; i < p.rows; ++i) {
+    ASSERT_GE(p.w_at(i, i), 0);
+    ASSERT_LT(std::abs(p.delta_free[std::size_t(i)]), 1);
+    for (int j = 0; j < p.rows; ++j) ASSERT_LT(std::abs(p.w_at(i, j)), 1e4);
+  }
+  ASSERT_LE(p.tools.size(), 2u);
+  for (const ToolTerms& t : p.tools) {
+    ASSERT_TRUE(t.hand == 0 || t.hand == 1);
+    ASSERT_NEAR(t.device.q.norm(), 1, 1e-3);
+    ASSERT_TRUE(t.gain.allFinite() && t.compliance.allFinite() && t.stiffness.allFinite() && t.jacobian.allFinite());
+  }
+}
+
+}  // namespace insula::testing
