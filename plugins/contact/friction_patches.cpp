@@ -28,11 +28,17 @@ FrictionPatches::FrictionPatches(double size, std::size_t room) : size_(size) {
   members_.reserve(room);
   patches_.reserve(room);
   known_.reserve(room);
+  held_.reserve(room);
 }
 
 const FrictionPatches::Known* FrictionPatches::known(std::uint64_t key) const {
   const auto at = std::lower_bound(known_.begin(), known_.end(), key, [](const Known& k, std::uint64_t wanted) { return k.key < wanted; });
   return at != known_.end() && at->key == key ? &*at : nullptr;
+}
+
+FrictionPatches::Held* FrictionPatches::held(std::uint32_t name) {
+  const auto at = std::lower_bound(held_.begin(), held_.end(), name, [](const Held& h, std::uint32_t wanted) { return h.name < wanted; });
+  return at != held_.end() && at->name == name ? &*at : nullptr;
 }
 
 void FrictionPatches::sort(std::span<const Proximity> contacts, const Pose& tool) {
@@ -41,7 +47,12 @@ void FrictionPatches::sort(std::span<const Proximity> contacts, const Pose& tool
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const Proximity& x = contacts[i];
     const Known* k = known(x.key);
-    members_.push_back({name_of(x.local, tool.q.conjugate() * x.normal, size_), int(i), k ? k->bore : 0.0, -1, k && k->holds ? k->hold : x.local});
+    members_.push_back({name_of(x.local, tool.q.conjugate() * x.normal, size_), int(i), k ? k->bore : 0.0, -1});
+    if (!k) continue;
+    if (Held* h = held(k->patch)) {
+      h->slip += k->weight * (k->local - x.local);
+      h->weight += k->weight;
+    }
   }
   std::sort(members_.begin(), members_.end(), [](const Member& a, const Member& b) { return a.patch != b.patch ? a.patch < b.patch : a.contact < b.contact; });
   for (std::size_t first = 0; first < members_.size();) {
@@ -56,8 +67,7 @@ void FrictionPatches::sort(std::span<const Proximity> contacts, const Pose& tool
     const double n = double(last - first), least = 0.1 * sum / n + 1e-9;
     for (std::size_t i = first; i < last; ++i) members_[i].weight = (members_[i].weight + least) / (sum + n * least);
     Patch p{members_[first].patch, int(first), int(last - first), {}, Vec3::Zero(), -1};
-    for (std::size_t i = first; i < last; ++i)
-      p.crept += members_[i].weight * (tool.q * (members_[i].hold - contacts[std::size_t(members_[i].contact)].local));
+    if (const Held* h = held(p.name); h && h->holds && h->weight > 0) p.crept = h->crept + h->slip / h->weight;
     p.tangent[0] = tangent_to(normal.normalized(), tool.q * Vec3::UnitZ());
     p.tangent[1] = normal.normalized().cross(p.tangent[0]);
     patches_.push_back(p);
@@ -68,18 +78,21 @@ void FrictionPatches::sort(std::span<const Proximity> contacts, const Pose& tool
 void FrictionPatches::finish(std::span<const Proximity> contacts, const ConstraintSolution& solution, double mu, std::vector<Vec3>& forces) {
   forces.resize(contacts.size());
   known_.clear();
+  held_.clear();
   for (const Patch& p : patches_) {
     const Vec3 friction = solution.lambda[p.row] * p.tangent[0] + solution.lambda[p.row + 1] * p.tangent[1];
     double pressed_in_all = 0;
     for (int i = p.first; i < p.first + p.count; ++i) pressed_in_all += solution.lambda[members_[std::size_t(i)].row];
+    // Slipping gives the hold up; members_ is in order of names.
     const bool holds = friction.norm() < (1 - 1e-6) * mu * pressed_in_all && p.crept.norm() < most_creep;
+    held_.push_back({p.name, holds, p.crept, Vec3::Zero(), 0});
     for (int i = p.first; i < p.first + p.count; ++i) {
       const Member& m = members_[std::size_t(i)];
       const Proximity& x = contacts[std::size_t(m.contact)];
       const Vec3 share = m.weight * friction, other = x.normal.cross(x.tangent);
       const double pressed = solution.lambda[m.row];
       forces[std::size_t(m.contact)] = Vec3(pressed + share.dot(x.normal), share.dot(x.tangent), share.dot(other));
-      known_.push_back({x.key, pressed, holds, m.hold});
+      known_.push_back({x.key, pressed, m.weight, x.local, p.name});
     }
   }
   std::sort(known_.begin(), known_.end(), [](const Known& a, const Known& b) { return a.key < b.key; });
@@ -89,10 +102,12 @@ void FrictionPatches::reset() {
   members_.clear();
   patches_.clear();
   known_.clear();
+  held_.clear();
 }
 
 void Contact::build_patches(ConstraintBuilder& builder, Pair& p) {
-  p.patches->sort(p.contacts, p.tool_a->link_pose(p.link_a));
+  const Pose tool = p.tool_a->link_pose(p.link_a);
+  p.patches->sort(p.contacts, tool);
   auto& members = p.patches->members();
   for (auto& one : p.patches->patches()) {
     for (int i = one.first; i < one.first + one.count; ++i) {
@@ -113,7 +128,7 @@ void Contact::build_patches(ConstraintBuilder& builder, Pair& p) {
     block.normals = one.count;
     one.row = builder.add(block);
     for (int k = 0; k < 2; ++k) {
-      builder.violation(one.row + k, one.tangent[k].dot(one.crept));
+      builder.violation(one.row + k, one.tangent[k].dot(tool.q * one.crept));
       for (int i = one.first; i < one.first + one.count; ++i) {
         const auto& m = members[std::size_t(i)];
         add_row(builder, one.row + k, p, p.contacts[std::size_t(m.contact)], m.weight * one.tangent[k]);

@@ -5,8 +5,8 @@
 // Its slip is the mean slip of its contacts, weighted by the force that each bore in the last step; its friction is spread
 // over them by the same weights, so that it does work on its slip alone, and is bounded by mu times all they bear.
 //
-// A patch that sticks remembers where its contacts took hold: what the steps' linearisation lets it creep is taken back. Without
-// that, a clip on a pulsing neck walks off by a micrometre a beat.
+// A patch that sticks adds up the mean slip that the steps' linearisation lets pass, and takes it back. Without that, a clip on a
+// pulsing neck walks off by a micrometre a beat.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -27,36 +27,47 @@ class FrictionPatches {
     int contact;          ///< index
     double weight;        ///< of its slip in that of the patch; those of a patch sum to one
     int row;              ///< of its normal
-    Vec3 hold;            ///< where on the tool it took hold, frame of Proximity::local
   };
   struct Patch {
     std::uint32_t name;
     int first, count;  ///< of members()
     Vec3 tangent[2];   ///< scene frame, unit
-    Vec3 crept;        ///< mean slip of the tool on the surface since its contacts took hold, scene frame, m
+    Vec3 crept;        ///< mean slip of the tool on the surface since it took hold, the tool's frame, m
     int row = -1;      ///< of its first tangent
   };
   /// Sorts contacts into patches. `tool`: pose of the frame of Proximity::local. Does not allocate.
   void sort(std::span<const Proximity> contacts, const Pose& tool);
   std::vector<Member>& members() { return members_; }
   std::vector<Patch>& patches() { return patches_; }
-  /// Force of each contact along (normal, tangent, other tangent) of its own, N; remembers what each bore and where it holds.
+  /// Force of each contact along (normal, tangent, other tangent) of its own, N; remembers what each bore and how far its patch has crept.
   void finish(std::span<const Proximity> contacts, const ConstraintSolution& solution, double friction, std::vector<Vec3>& forces);
   void reset();
 
  private:
+  /// A contact of the last step.
   struct Known {
     std::uint64_t key;
-    double bore;  ///< normal force in the last step, N
+    double bore;    ///< normal force, N
+    double weight;  ///< in its patch
+    Vec3 local;
+    std::uint32_t patch;
+  };
+  /// A patch of the last step.
+  struct Held {
+    std::uint32_t name;
     bool holds;
-    Vec3 hold;
+    Vec3 crept;         ///< the tool's frame, m
+    Vec3 slip;          ///< of its contacts since then, by weight
+    double weight = 0;  ///< of those that are still there
   };
   const Known* known(std::uint64_t key) const;
+  Held* held(std::uint32_t name);
 
   double size_;
   std::vector<Member> members_;
   std::vector<Patch> patches_;
-  std::vector<Known> known_;  ///< contacts of the last step by key
+  std::vector<Known> known_;  ///< by key
+  std::vector<Held> held_;    ///< by name
 };
 
 }  // namespace insula

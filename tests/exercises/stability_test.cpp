@@ -28,7 +28,7 @@ const Exercise exercises[] = {
 void PrintTo(const Exercise& e, std::ostream* out) { *out << e.file; }
 
 constexpr double most_drift = 1e-4;  // m
-constexpr double most_depth = 2e-4;  // m: the corner of a blade between two vertices of tissue that it presses
+constexpr double most_depth = 4e-4;  // m: the corner of a retractor between two vertices (1 mm apart) of the tissue that it presses
 constexpr double collapsed = 0.01;   // of the size at rest
 
 const char* environment(const char* name) {
