@@ -68,7 +68,7 @@ class GoalClipped final : public ExerciseRule {
     vessel_names(context, *this, sac, *vessel);
     branch_names_ = vessel_names(context, *this, branches, *vessel);
     remnant_ = log.add_measure(id + "_remnant", "Remnant (Sindou grade)", "");
-    neck_ = log.add_measure(id + "_neck", "Neck left open", "%");
+    neck_ = log.add_measure(id + "_neck", "Neck remnant", "%");
     past_ = log.add_measure(id + "_tip", "Blade tip past the neck", "mm");
     slit_ = log.add_measure(id + "_slit", "Slit between the blades", "mm");
     count_ = log.add_measure(id + "_applications", "Clip applications", "");

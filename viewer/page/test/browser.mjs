@@ -24,8 +24,8 @@ export async function wait_for(what, test) {
 
 /**
  * Mean brightness, its deviation, and shares of reddish, greenish and dark red pixels of the picture, without the panels over
- * it; disc: only of the disc in the clip. spread: the median distance from the median brightness: contrast of what is seen,
- * whatever the lamp's small reflections on it add.
+ * it; disc: only of the disc in the clip. spread: contrast of its dimmer third. A mirror only adds light, so that is the
+ * contrast of what lies below a reflecting surface.
  */
 export async function look(page, clip, { disc = false } = {}) {
   const panels = (shown) => page.evaluate((o) => { document.getElementById('hud').style.opacity = o; }, shown ? '1' : '0');
@@ -51,8 +51,8 @@ export async function look(page, clip, { disc = false } = {}) {
       if (d[i] > 25 && d[i] > 3 * Math.max(d[i + 1], d[i + 2])) dark_red++;
     }
     const n = brightness.length;
-    const median = (values) => values.sort((a, b) => a - b)[Math.floor(values.length / 2)];
-    const middle = median(brightness);
-    return { spread: median(brightness.map((y) => Math.abs(y - middle))), mean: mean / n, deviation: Math.sqrt(square / n - (mean / n) ** 2), red: red / n, green: green / n, dark_red: dark_red / n };
+    brightness.sort((a, b) => a - b);
+    const quantile = (q) => brightness[Math.floor(q * n)];
+    return { spread: quantile(0.35) - quantile(0.05), mean: mean / n, deviation: Math.sqrt(square / n - (mean / n) ** 2), red: red / n, green: green / n, dark_red: dark_red / n };
   }, [shot.toString('base64'), disc]);
 }
