@@ -13,6 +13,8 @@ void CollisionMesh::build(std::span<const Vec3> rest, std::span<const std::array
   positions_ = rest;
   free_ = {};
   tree_.build(rest, triangles_);
+  last_.assign(rest.begin(), rest.end());
+  travelled_ = farthest_free_ = 0;
 
   ring_start_.assign(rest.size() + 1, 0);
   for (const auto& t : triangles_)
@@ -41,6 +43,14 @@ void CollisionMesh::update(std::span<const Vec3> positions, std::span<const Vec3
   positions_ = positions;
   free_ = free;
   tree_.refit(positions, free);
+  double went2 = 0, free2 = 0;
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    went2 = std::max(went2, (positions[v] - last_[v]).squaredNorm());
+    if (!free.empty()) free2 = std::max(free2, free[v].squaredNorm());
+    last_[v] = positions[v];
+  }
+  travelled_ += std::sqrt(went2);
+  farthest_free_ = std::sqrt(free2);
 }
 
 Vec3 CollisionMesh::face_normal(int tri, double t) const {

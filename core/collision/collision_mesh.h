@@ -28,6 +28,10 @@ class CollisionMesh {
   /// arrays must live until the next update.
   void update(std::span<const Vec3> positions, std::span<const Vec3> free);
 
+  /// Sum over all updates of the farthest way that a vertex went, m: between two updates no vertex went farther than the difference.
+  double travelled() const { return travelled_; }
+  double farthest_free() const { return farthest_free_; }  ///< of all vertices in this step, m
+
   const AabbTree& tree() const { return tree_; }
   int vertex_count() const { return int(positions_.size()); }
   int triangle_count() const { return int(triangles_.size()); }
@@ -63,6 +67,8 @@ class CollisionMesh {
   std::vector<std::array<int, 3>> triangles_;
   std::vector<std::array<int, 3>> across_;  ///< neighbour across the edge that starts at each corner, -1 at a border
   std::vector<int> ring_start_, ring_;      ///< triangles around each vertex
+  std::vector<Vec3> last_;  ///< positions of the update before
+  double travelled_ = 0, farthest_free_ = 0;
   std::span<const Vec3> positions_, free_;
 };
 

@@ -51,8 +51,7 @@ Aabb swept(const CollisionMesh& mesh, int v) {
 
 }  // namespace
 
-TissueCollider::TissueCollider(std::vector<int> samples, std::span<const Vec3> rest, std::size_t vertices)
-    : samples_(std::move(samples)), was_b_(vertices, Vec3::Zero()) {
+TissueCollider::TissueCollider(std::vector<int> samples, std::span<const Vec3> rest) : samples_(std::move(samples)) {
   order_by_place(samples_.data(), samples_.data() + samples_.size(), rest, std::ptrdiff_t(group));
   reset();
 }
@@ -61,55 +60,43 @@ void TissueCollider::reset() {
   behind_.assign(samples_.size(), 1);
   last_.assign(samples_.size(), -1);
   clear_.assign(samples_.size(), 0.0);
-  was_.assign(samples_.size(), Vec3::Zero());
-  std::fill(was_b_.begin(), was_b_.end(), Vec3(Vec3::Zero()));
+  groups_.assign((samples_.size() + group - 1) / group, {});
 }
 
 void TissueCollider::detect(const CollisionMesh& a, const CollisionMesh& b, const TissueContactSettings& settings,
                             std::vector<Proximity>& out) {
   if (b.tree().empty()) return;
-  was_b_.resize(std::size_t(b.vertex_count()), Vec3::Zero());
-  double moved_b2 = 0, free_b2 = 0;
-  for (int v = 0; v < b.vertex_count(); ++v) {
-    const Vec3 x = b.vertex(v);
-    moved_b2 = std::max(moved_b2, (x - was_b_[std::size_t(v)]).squaredNorm());
-    free_b2 = std::max(free_b2, b.free(v).squaredNorm());
-    was_b_[std::size_t(v)] = x;
-  }
-  const double moved_b = std::sqrt(moved_b2), free_b = std::sqrt(free_b2);
+  const double travelled = a.travelled() + b.travelled(), open_range = settings.alarm + settings.offset;
+  const double may_come = open_range + a.farthest_free() + b.farthest_free();
   for (std::size_t first = 0; first < samples_.size(); first += group) {
     const std::size_t last = std::min(first + group, samples_.size());
     // What cannot have come near since it was last looked at needs no look.
-    double least = 1e300, may_come = 0;
-    Aabb here;
-    bool open = true;
-    for (std::size_t i = first; i < last; ++i) {
-      const Vec3 x = a.vertex(samples_[i]);
-      clear_[i] -= (x - was_[i]).norm() + moved_b;
-      was_[i] = x;
-      here.add(x);
-      least = std::min(least, clear_[i]);
-      may_come = std::max(may_come, settings.alarm + settings.offset + a.free(samples_[i]).norm() + free_b);
-      open = open && behind_[i] == 0;
-    }
-    if (open) {
-      if (least > may_come) continue;
+    Group& g = groups_[first / group];
+    if (!g.deep && g.clear - (travelled - g.travelled) > may_come) continue;
+    const double went = travelled - g.travelled;
+    g.travelled = travelled;
+    if (!g.deep) {
+      Aabb here;
+      for (std::size_t i = first; i < last; ++i) here.add(a.vertex(samples_[i]));
       here.inflate(may_come + horizon);
       if (!b.tree().any_overlapping(here)) {
         std::fill(clear_.begin() + std::ptrdiff_t(first), clear_.begin() + std::ptrdiff_t(last), may_come + horizon);
+        g.clear = may_come + horizon;
         continue;
       }
     }
+    for (std::size_t i = first; i < last; ++i) clear_[i] -= went;
     Aabb all;
     bool deep = false;
     for (std::size_t i = first; i < last; ++i) {
       all.add(swept(a, samples_[i]));
       deep = deep || behind_[i] != 0;
     }
-    const double open_range = settings.alarm + settings.offset;
     all.inflate(deep ? std::max(open_range, settings.max_depth) : open_range);
     if (!b.tree().any_overlapping(all)) {
       std::fill(behind_.begin() + std::ptrdiff_t(first), behind_.begin() + std::ptrdiff_t(last), char(0));
+      g.deep = false;
+      g.clear = *std::min_element(clear_.begin() + std::ptrdiff_t(first), clear_.begin() + std::ptrdiff_t(last));
       continue;
     }
     for (std::size_t i = first; i < last; ++i) {
@@ -178,6 +165,8 @@ void TissueCollider::detect(const CollisionMesh& a, const CollisionMesh& b, cons
       c.start_gap = std::max(c.gap, -settings.max_recovery);
       out.push_back(c);
     }
+    g.deep = std::any_of(behind_.begin() + std::ptrdiff_t(first), behind_.begin() + std::ptrdiff_t(last), [](char x) { return x != 0; });
+    g.clear = *std::min_element(clear_.begin() + std::ptrdiff_t(first), clear_.begin() + std::ptrdiff_t(last));
   }
 }
 

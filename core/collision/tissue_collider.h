@@ -27,8 +27,8 @@ std::vector<int> sample_vertices(std::span<const Vec3> rest, std::span<const std
 
 class TissueCollider {
  public:
-  /// Samples in an order of neighbourhoods, by the rest shape; `vertices` of b, so that detect() need not make room.
-  TissueCollider(std::vector<int> samples, std::span<const Vec3> rest, std::size_t vertices = 0);
+  /// Samples in an order of neighbourhoods, by the rest shape.
+  TissueCollider(std::vector<int> samples, std::span<const Vec3> rest);
   /// Appends one contact a sample that has one, in the order of samples(). Keeps which samples were behind the surface
   /// (they are looked for deeper). Does not allocate while `out` has capacity.
   void detect(const CollisionMesh& a, const CollisionMesh& b, const TissueContactSettings& settings, std::vector<Proximity>& out);
@@ -40,7 +40,12 @@ class TissueCollider {
   std::vector<int> samples_;
   std::vector<char> behind_;
   std::vector<double> clear_;     ///< of the samples: nothing of b is nearer than this, m
-  std::vector<Vec3> was_, was_b_; ///< samples, and b's vertices, in the last step
+  struct Group {
+    double clear = 0;      ///< least of its samples', m
+    double travelled = 0;  ///< of both meshes when it was last looked at
+    bool deep = true;      ///< has a sample behind the surface
+  };
+  std::vector<Group> groups_;
   std::vector<int> last_;  ///< triangle of the last step: where to look first; does not change what is found
 };
 

@@ -82,7 +82,7 @@ void VertexCollider::detect(const CollisionMesh& mesh, const Pose& start, const 
     marked_[std::size_t(v)] = 0;
     const Vec3 x0 = mesh.vertex(v), u = mesh.free(v);
     Vec3& memory = kept_out_[std::size_t(v)];
-    if (settings.one_sided && !side_.isZero(0) && memory.dot(side_) < -0.7) memory = side_;
+    if (settings.one_sided && !side_.isZero(0) && memory.dot(side_) < -0.7) memory = side_.normalized();
     const Vec3 before = start.q * memory, local = start.q.conjugate() * (x0 - start.p);
     int best = -1;
     Near near{1e300, Vec3::Zero()};
@@ -132,9 +132,9 @@ void VertexCollider::detect(const CollisionMesh& mesh, const Pose& start, const 
       memory = start.q.conjugate() * near.normal;
       // Come from behind: the body wraps about the blade's edge.
       if (settings.one_sided && !side_.isZero(0) && memory.dot(side_) < -0.7) {
-        memory = side_;
+        memory = side_.normalized();
         near.clear = -(near.clear + 2 * (pieces_[std::size_t(best)].radius + settings.offset));
-        near.normal = start.q * side_;
+        near.normal = start.q * memory;
       }
     }
     if (near.clear < 0.1 * alarm) pressed += memory;

@@ -147,6 +147,7 @@ void BlockCholesky::analyse(const BlockMatrix& a) {
   panel_.assign(std::size_t(panel) + 64, 0.0);
   update_.assign(std::size_t(arena) + 64, 0.0);
   x_.assign(3 * std::size_t(nodes_) + 64, 0.0);
+  below_.assign(3 * std::size_t(nodes_) + 64, 0.0);
   s_.assign(3 * std::size_t(nodes_) + 64, 0.0);
 
   // Where each block of A goes.
@@ -219,34 +220,52 @@ bool BlockCholesky::factorise(const BlockMatrix& a) {
   return true;
 }
 
-void BlockCholesky::forward(double* x) const {
+namespace {
+// Eight sums side by side: one alone would wait for each addition.
+double dot(const double* a, const double* b, int n) {
+  double sum[8] = {};
+  int i = 0;
+  for (; i + 8 <= n; i += 8)
+    for (int q = 0; q < 8; ++q) sum[q] += a[i + q] * b[i + q];
+  double rest = 0;
+  for (; i < n; ++i) rest += a[i] * b[i];
+  return (((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]))) + rest;
+}
+}  // namespace
+
+// Both gather what lies below a front once, so that its columns run over memory in order.
+void BlockCholesky::forward(double* x) {
+  const Kernels& k = kernels();
+  double* t = below_.data();
   for (const Front& f : front_) {
     const double* l = panel_.data() + f.panel;
-    const int own = 3 * f.own, rows = 3 * f.rows;
+    const int own = 3 * f.own, below = 3 * f.rows - own;
     double* xo = x + 3 * f.first;
-    const int* index = row_scalar_.data() + 3 * f.row_begin;
+    const int* index = row_scalar_.data() + 3 * f.row_begin + own;
+    for (int r = 0; r < below; ++r) t[r] = x[index[r]];
     for (int c = 0; c < own; ++c) {
       const double* col = l + long(c) * f.lda;
       const double v = xo[c] / col[c];
       xo[c] = v;
       for (int r = c + 1; r < own; ++r) xo[r] -= col[r] * v;
-      for (int r = own; r < rows; ++r) x[index[r]] -= col[r] * v;
+      k.axpy(t, col + own, -v, below);
     }
+    for (int r = 0; r < below; ++r) x[index[r]] = t[r];
   }
 }
 
-void BlockCholesky::backward(double* x) const {
+void BlockCholesky::backward(double* x) {
+  double* t = below_.data();
   for (auto it = front_.rbegin(); it != front_.rend(); ++it) {
     const Front& f = *it;
     const double* l = panel_.data() + f.panel;
-    const int own = 3 * f.own, rows = 3 * f.rows;
+    const int own = 3 * f.own, below = 3 * f.rows - own;
     double* xo = x + 3 * f.first;
-    const int* index = row_scalar_.data() + 3 * f.row_begin;
+    const int* index = row_scalar_.data() + 3 * f.row_begin + own;
+    for (int r = 0; r < below; ++r) t[r] = x[index[r]];
     for (int c = own - 1; c >= 0; --c) {
       const double* col = l + long(c) * f.lda;
-      double v = xo[c];
-      for (int r = c + 1; r < own; ++r) v -= col[r] * xo[r];
-      for (int r = own; r < rows; ++r) v -= col[r] * x[index[r]];
+      const double v = xo[c] - dot(col + own, t, below) - dot(col + c + 1, xo + c + 1, own - c - 1);
       xo[c] = v / col[c];
     }
   }

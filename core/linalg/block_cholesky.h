@@ -23,6 +23,11 @@ class BlockCholesky {
   /// Computes H A^-1 H^T in memory of its own; keeps Y = L^-1 P H^T for correct(). `node_of_block` maps a row's block to a
   /// node of the matrix, -1 for a held one.
   void compute_compliance(const BodyRows& rows, const std::vector<int>& node_of_block);
+  /// The same in three acts: the middle one in parts that do not touch one another, for threads. The bits are the same.
+  void begin_compliance(const BodyRows& rows, const std::vector<int>& node_of_block);
+  int compliance_parts() const { return columns_ >= 2 * least_part ? most_parts : columns_ > 0 && nodes_ > 0 ? 1 : 0; }
+  void compliance_part(int part);
+  void end_compliance();
   /// Adds what compute_compliance found into w at the rows' numbers, both triangles.
   void add_compliance(const BodyRows& rows, double* w, int stride) const;
   /// x := A^-1 H^T lambda with the rows of the last compute_compliance; lambda is indexed by row number.
@@ -33,6 +38,8 @@ class BlockCholesky {
   int supernodes() const { return int(front_.size()); }
 
  private:
+  static constexpr int most_parts = 4, least_part = 32;  ///< parts; columns that are worth one
+
   struct Front {
     int first = 0;        ///< first own node, permuted order
     int own = 0;          ///< own nodes (columns)
@@ -53,8 +60,8 @@ class BlockCholesky {
     long offset;   ///< of the block's first entry in the panel
     bool transpose;
   };
-  void forward(double* x) const;
-  void backward(double* x) const;
+  void forward(double* x);
+  void backward(double* x);
 
   int nodes_ = 0;
   std::vector<Front> front_;
@@ -63,7 +70,7 @@ class BlockCholesky {
   std::vector<int> natural_;
   std::vector<int> front_of_;   ///< permuted node -> front
   std::vector<Scatter> scatter_;
-  std::vector<double> panel_, update_, x_;
+  std::vector<double> panel_, update_, x_, below_;  ///< below_: of one front, gathered
   std::int64_t entries_ = 0;
   double flops_ = 0;
 

@@ -11,10 +11,16 @@
 namespace insula {
 
 void BlockCholesky::compute_compliance(const BodyRows& rows, const std::vector<int>& node_of_block) {
+  begin_compliance(rows, node_of_block);
+  for (int p = 0; p < compliance_parts(); ++p) compliance_part(p);
+  end_compliance();
+}
+
+// Y = P H^T.
+void BlockCholesky::begin_compliance(const BodyRows& rows, const std::vector<int>& node_of_block) {
   const int m = rows.count();
   columns_ = m;
   if (m == 0 || nodes_ == 0) return;
-  const Kernels& k = kernels();
   // First and last touched column of each row.
   begin_.resize(std::size_t(m));
   order_.resize(std::size_t(m));
@@ -72,12 +78,17 @@ void BlockCholesky::compute_compliance(const BodyRows& rows, const std::vector<i
       to[2 * ldy_] += h.z();
     }
   }
-  // Forward substitution and W, front by front.
   s_.resize(std::max(s_.size(), std::size_t(ldy_) * std::size_t(ldy_ + 8) + 64));
-  std::memset(s_.data(), 0, sizeof(double) * std::size_t(ldy_) * std::size_t(ldy_));
+}
+
+// Forward substitution of some columns, front by front: columns know nothing of each other.
+void BlockCholesky::compliance_part(int part) {
+  const Kernels& k = kernels();
+  const long whole = ldy_ / 8, parts = compliance_parts();  // vectors of eight columns
+  const int from = int(8 * (whole * part / parts)), to = int(8 * (whole * (part + 1) / parts));
   for (std::size_t i = 0; i < front_.size(); ++i) {
     const Front& f = front_[i];
-    const int lo = active_lo_[i], hi = active_hi_[i];
+    const int lo = std::max(active_lo_[i], from), hi = std::min(active_hi_[i], to);
     if (lo >= hi) continue;
     const double* l = panel_.data() + f.panel;
     const int own = 3 * f.own, below = 3 * f.rows - own;
@@ -85,7 +96,18 @@ void BlockCholesky::compute_compliance(const BodyRows& rows, const std::vector<i
     k.lower_solve_rows(l, f.lda, own, x, ldy_, hi - lo);
     if (below > 0)
       k.rows_sub(y_.data() + lo, ldy_, row_scalar_.data() + 3 * f.row_begin + own, below, l + own, f.lda, x, ldy_, own, hi - lo);
-    k.syrk_add(s_.data() + long(lo) * ldy_ + lo, int(ldy_), x, int(ldy_), hi - lo, own);
+  }
+}
+
+// W = Y^T Y.
+void BlockCholesky::end_compliance() {
+  if (columns_ == 0 || nodes_ == 0) return;
+  const Kernels& k = kernels();
+  std::memset(s_.data(), 0, sizeof(double) * std::size_t(ldy_) * std::size_t(ldy_));
+  for (std::size_t i = 0; i < front_.size(); ++i) {
+    const Front& f = front_[i];
+    const int lo = active_lo_[i], hi = active_hi_[i];
+    if (lo < hi) k.syrk_add(s_.data() + long(lo) * ldy_ + lo, int(ldy_), y_.data() + 3L * f.first * ldy_ + lo, int(ldy_), hi - lo, 3 * f.own);
   }
 }
 
@@ -114,9 +136,12 @@ void BlockCholesky::correct(const BodyRows& rows, const double* lambda, double* 
       if (lo >= hi) continue;
       for (int r = 0; r < 3 * front_[i].own; ++r) {
         const double* y = y_.data() + (3L * front_[i].first + r) * ldy_;
-        double sum = 0;
-        for (int c = lo; c < hi; ++c) sum += y[c] * lambda_[std::size_t(c)];
-        x_[std::size_t(3 * front_[i].first + r)] = sum;
+        // Eight sums side by side, whole vectors as the ranges are.
+        const double* l = lambda_.data();
+        double sum[8] = {};
+        for (int c = lo; c < hi; c += 8)
+          for (int q = 0; q < 8; ++q) sum[q] += y[c + q] * l[c + q];
+        x_[std::size_t(3 * front_[i].first + r)] = ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]));
       }
     }
     backward(x_.data());

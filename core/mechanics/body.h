@@ -54,6 +54,11 @@ class Body : public Component {
   virtual void free_motion(const StepContext& context) = 0;
   /// Computes H A^-1 H^T of these rows into the body's own memory; bodies do this in parallel.
   virtual void compute_compliance(const BodyRows&) {}
+  /// The same in three acts, of which threads share the middle one: part 0 to compliance_parts() - 1, in any order.
+  virtual void begin_compliance(const BodyRows& r) { compute_compliance(r); }
+  virtual int compliance_parts() const { return 0; }
+  virtual void compliance_part(int) {}
+  virtual void end_compliance() {}
   /// Adds it into `w` (row-major, leading dimension `stride`), at the rows' numbers; one body after the other.
   virtual void add_compliance(const BodyRows& rows, double* w, int stride) = 0;
   /// q += free displacement + A^-1 H^T lambda; v = dq / h.

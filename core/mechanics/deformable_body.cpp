@@ -138,6 +138,10 @@ void DeformableBody::free_motion(const StepContext& context) {
 }
 
 void DeformableBody::compute_compliance(const BodyRows& r) { solver_->compute_compliance(r, free_); }
+void DeformableBody::begin_compliance(const BodyRows& r) { solver_->begin_compliance(r, free_); }
+int DeformableBody::compliance_parts() const { return solver_->compliance_parts(); }
+void DeformableBody::compliance_part(int part) { solver_->compliance_part(part); }
+void DeformableBody::end_compliance() { solver_->end_compliance(); }
 void DeformableBody::add_compliance(const BodyRows& r, double* w, int stride) { solver_->add_compliance(r, w, stride); }
 
 void DeformableBody::apply(const StepContext& context, const BodyRows& r, const double* lambda) {

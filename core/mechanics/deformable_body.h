@@ -51,6 +51,10 @@ class DeformableBody : public Body {
   void add_row(BodyRows& rows, const MaterialPoint& p, const Vec3& d) const override;
   void free_motion(const StepContext& context) override;
   void compute_compliance(const BodyRows& rows) override;
+  void begin_compliance(const BodyRows& rows) override;
+  int compliance_parts() const override;
+  void compliance_part(int part) override;
+  void end_compliance() override;
   void add_compliance(const BodyRows& rows, double* w, int stride) override;
   void apply(const StepContext& context, const BodyRows& rows, const double* lambda) override;
   void reset() override;

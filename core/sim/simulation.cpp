@@ -90,6 +90,7 @@ Simulation::Simulation(std::unique_ptr<Scene> scene, Diagnostics& diagnostics, i
   heavy_first_ = bodies_;
   std::stable_sort(heavy_first_.begin(), heavy_first_.end(), [](Body* a, Body* b) { return a->blocks() > b->blocks(); });
   energy_.assign(bodies_.size(), 0.0);
+  parts_.reserve(8 * bodies_.size());
   builder_ = std::make_unique<ConstraintBuilder>(problem_, bodies_);
   context_.h = scene_->time_step();
   context_.gravity = scene_->gravity();
@@ -137,8 +138,13 @@ void Simulation::step() {
   builder_->finish();
   workers_.run(int(heavy_first_.size()), [this](int i) {
     Body* b = heavy_first_[std::size_t(i)];
-    b->compute_compliance(b->rows);
+    b->begin_compliance(b->rows);
   });
+  parts_.clear();
+  for (Body* b : heavy_first_)
+    for (int p = 0; p < b->compliance_parts(); ++p) parts_.emplace_back(b, p);
+  workers_.run(int(parts_.size()), [this](int i) { parts_[std::size_t(i)].first->compliance_part(parts_[std::size_t(i)].second); });
+  workers_.run(int(heavy_first_.size()), [this](int i) { heavy_first_[std::size_t(i)]->end_compliance(); });
   for (Body* b : bodies_) b->add_compliance(b->rows, problem_.w.data(), problem_.stride);
   clock.done(stage_build);
 

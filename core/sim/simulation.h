@@ -105,6 +105,7 @@ class Simulation {
   std::vector<Remembered> remembered_;
   std::vector<Event> commanded_;  ///< between the last step and the next
   double settle_time_ = 0;
+  std::vector<std::pair<Body*, int>> parts_;  ///< of the bodies' compliance, in this step
   std::vector<double> energy_;  ///< of each body, J
   StepReport report_;
 };

@@ -42,11 +42,9 @@ Sources: Dequidt et al. 2015, sections 3.3 and 3.4; Duriez, Dubois, Kheddar, And
 namespace insula {
 
 void ContactSurface::update(std::int64_t step) {
-  if (refitted_at == step) return;
-  const bool fixed = surface->body().blocks() == 0;
-  if (fixed && refitted_at >= 0) return;
+  if (!stale(step)) return;
   refitted_at = step;
-  if (fixed) mesh.update(surface->positions(), {});
+  if (surface->body().blocks() == 0) mesh.update(surface->positions(), {});
   else mesh.update(surface->positions(), surface->expected_displacements());
 }
 
@@ -123,8 +121,8 @@ void Contact::add_pairs(Simulation& simulation, Body* a, Body* b) {
       p.a = shared_surface(simulation, sa);
       p.b = shared_surface(simulation, sb);
       const double distance = 0.75 * tissue_spacing();
-      p.a_on_b = std::make_unique<TissueCollider>(sample_vertices(sa->rest().vertices, sa->triangles(), distance), sa->rest().vertices, sb->rest().vertices.size());
-      p.b_on_a = std::make_unique<TissueCollider>(sample_vertices(sb->rest().vertices, sb->triangles(), distance), sb->rest().vertices, sa->rest().vertices.size());
+      p.a_on_b = std::make_unique<TissueCollider>(sample_vertices(sa->rest().vertices, sa->triangles(), distance), sa->rest().vertices);
+      p.b_on_a = std::make_unique<TissueCollider>(sample_vertices(sb->rest().vertices, sb->triangles(), distance), sb->rest().vertices);
       p.contacts.reserve(p.a_on_b->samples().size() + p.b_on_a->samples().size());
       p.other_way.reserve(p.b_on_a->samples().size());
       pairs_.push_back(std::move(p));
@@ -202,7 +200,8 @@ void Contact::search(const Search& what) {
 }
 
 void Contact::detect(const StepContext& context) {
-  workers_->run(int(surfaces_.size()), [&](int i) { surfaces_[std::size_t(i)]->update(context.step); });
+  if (std::any_of(surfaces_.begin(), surfaces_.end(), [&](const auto& s) { return s->stale(context.step); }))
+    workers_->run(int(surfaces_.size()), [&](int i) { surfaces_[std::size_t(i)]->update(context.step); });
   workers_->run(int(searches_.size()), [this](int i) { search(searches_[std::size_t(i)]); });
   // Names are given in the order of the pairs, for any number of threads.
   for (Pair& p : pairs_) {
@@ -304,7 +303,7 @@ void Contact::report(StepReport& out) const {
 
 void Contact::reset() {
   next_key_ = 0;
-  for (const auto& s : surfaces_) s->refitted_at = -1;
+  for (const auto& s : surfaces_) s->refitted_at = ContactSurface::never;
   for (Pair& p : pairs_) {
     p.selection.reset();
     if (p.tool_collider) p.tool_collider->reset();

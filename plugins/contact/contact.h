@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Contact among bodies and tools; what it does and its scene element are described in contact.cpp.
 #pragma once
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -21,7 +22,9 @@ namespace insula {
 struct ContactSurface {
   Surface* surface = nullptr;
   CollisionMesh mesh;
-  std::int64_t refitted_at = -1;  ///< step
+  static constexpr std::int64_t never = std::numeric_limits<std::int64_t>::min();
+  std::int64_t refitted_at = never;  ///< step
+  bool stale(std::int64_t step) const { return refitted_at == never || (refitted_at != step && surface->body().blocks() > 0); }
   void update(std::int64_t step);
 };
 

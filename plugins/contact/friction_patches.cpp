@@ -13,10 +13,10 @@ namespace {
 
 constexpr double most_creep = 0.1e-3;  ///< a hold that is farther off than this is given up, m
 
-// Cell of the grid and the direction, of six, that the normal is nearest to, both in the tool's frame.
+// Cell of the grid (its planes half a cell off the tool's own, where faces may lie) and the direction, of six, that the normal is nearest to, both in the tool's frame.
 std::uint32_t name_of(const Vec3& place, const Vec3& normal, double size) {
   std::uint32_t name = 0;
-  for (int k = 0; k < 3; ++k) name = name << 8 | (std::uint32_t(int(std::floor(place[k] / size)) + 128) & 0xff);
+  for (int k = 0; k < 3; ++k) name = name << 8 | (std::uint32_t(int(std::floor(place[k] / size + 0.5)) + 128) & 0xff);
   int axis = 0;
   normal.cwiseAbs().maxCoeff(&axis);
   return name << 3 | std::uint32_t(2 * axis + (normal[axis] < 0));
@@ -44,6 +44,10 @@ FrictionPatches::Held* FrictionPatches::held(std::uint32_t name) {
 void FrictionPatches::sort(std::span<const Proximity> contacts, const Pose& tool) {
   members_.clear();
   patches_.clear();
+  for (Held& h : held_) {
+    h.slip.setZero();
+    h.weight = 0;
+  }
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const Proximity& x = contacts[i];
     const Known* k = known(x.key);

@@ -70,7 +70,7 @@ TEST(SelfContact, FastBladesPressNoWallThroughTheOtherAndStayOutside) {
   auto* tool = b.s->scene().find_as<Instrument>("blade");
   shapes::Random r(7);
   const double step = 0.5 * b.s->h();
-  constexpr int poses = 240;
+  constexpr int poses = 1000;
   int touched = 0;
   double deepest = 0;
   for (int k = 0; k < poses; ++k) {

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What bounds a contact: a compliant layer, the most that two tissues bear, how far a tool goes on in tissue.
+#include "plugins/contact/contact_for_test.h"
+
+namespace insula {
+namespace {
+
+using test::Bench;
+using test::SceneFolder;
+
+// Four feet on layers, and the coupling over them: springs in series.
+TEST(ContactLimits, ForceOfALayerIsItsStiffnessTimesTheOverlap) {
+  constexpr double coupling = 400, dz = 1e-3;
+  for (const double layer : {200.0, 2000.0, 50000.0})
+    for (const double friction : {0.0, 0.3}) {
+      SCOPED_TRACE(fmt::format("layer {} N/m, friction {}", layer, friction));
+      Bench b(test::feet_urdf(5e-3, test::radius), test::ground(), test::upright, fmt::format(R"(friction="{}" layer="{} N/m")", friction, layer));
+      ASSERT_TRUE(b.tool);
+      Pose down = b.tool->home_pose();
+      down.p.z() = test::radius - dz;
+      for (int i = 0; i < 200; ++i) b.move_to(down);
+      const double overlap = coupling * dz / (4 * layer + coupling);
+      EXPECT_NEAR(test::radius - b.tool->pose().p.z(), overlap, 1e-6 * overlap);
+      const auto& contacts = b.s->report().contacts;
+      ASSERT_EQ(contacts.size(), 4u);
+      for (const ContactPoint& c : contacts) {
+        EXPECT_NEAR(c.normal_force, layer * -c.gap, 1e-6 * layer * overlap);
+        EXPECT_NEAR(c.normal_force, layer * overlap, 1e-6 * layer * overlap);
+      }
+    }
+}
+
+// The same by vertices, with contacts of a blade that share friction forces.
+TEST(ContactLimits, ForceOfALayerUnderABladeWithPatches) {
+  constexpr double coupling = 400, dz = 1e-3, layer = 500;
+  const std::string blade = R"(<robot name="blade"><link name="tool"><inertial><mass value="0.02"/>
+<inertia ixx="1e-6" iyy="1e-6" izz="1e-6" ixy="0" ixz="0" iyz="0"/></inertial>
+<collision name="blade"><origin xyz="0 0 0.001"/><geometry><box size="0.0065 0.0065 0.002"/></geometry></collision></link></robot>)";
+  Bench b(blade, shapes::box(Vec3(-0.01, -0.01, -0.01), Vec3(0.01, 0.01, 0), 20), test::upright,
+          fmt::format(R"(friction="0.3" by="vertices" patch="2 mm" spacing="0.5 mm" max_contacts="100" layer="{} N/m")", layer));
+  ASSERT_TRUE(b.tool);
+  Pose down = b.tool->home_pose();
+  down.p.z() = -dz;
+  for (int i = 0; i < 200; ++i) b.move_to(down);
+  double sum = 0;
+  int bearing = 0;
+  for (const ContactPoint& c : b.s->report().contacts) {
+    EXPECT_NEAR(c.normal_force, layer * std::max(0.0, -c.gap), 1e-6 * layer * 1e-4);
+    if (c.normal_force <= 0) continue;
+    ++bearing;
+    sum += c.normal_force * c.normal.z();
+  }
+  EXPECT_GE(bearing, 36);
+  EXPECT_NEAR(sum, coupling * (b.tool->pose().p.z() + dz), 1e-6 * coupling * dz);
+}
+
+double most_force(const std::string& contact, double* overlap = nullptr) {
+  SceneFolder folder;
+  auto s = test::soft_bench(folder, R"(<contact between="pad top" friction="0" tissue_spacing="3 mm" tissue_max_contacts="60" )" + contact + R"(/>
+<contact between="right top" friction="0.1"/>)");
+  EXPECT_TRUE(s);
+  double most = 0;
+  for (int i = 0; i < 150; ++i) {
+    test::press(*s, i);
+    s->step();
+    EXPECT_TRUE(s->report().finite);
+    for (const ContactPoint& c : s->report().contacts) {
+      if (c.a->id == "right" || c.b->id == "right") continue;
+      most = std::max(most, c.normal_force);
+      if (overlap) *overlap = std::max(*overlap, -c.gap);
+    }
+  }
+  return most;
+}
+
+// A blunt tool presses one soft block on the other.
+TEST(ContactLimits, AContactOfTwoTissuesBearsSoMuchAndNoMore) {
+  double overlap = 0, overlap_freely = 0;
+  const double freely = most_force("", &overlap_freely);
+  ASSERT_GT(freely, 0);
+  const double bound = 0.03 * freely;
+  EXPECT_NEAR(most_force(fmt::format(R"(tissue_max_force="{} N")", bound), &overlap), bound, 1e-6 * bound);
+  EXPECT_GT(overlap, overlap_freely + 0.1e-3) << "with more they go through one another";
+  const double loose = 2 * freely;
+  EXPECT_NEAR(most_force(fmt::format(R"(tissue_max_force="{} N")", loose)), freely, 1e-6 * freely) << "a bound that is not reached changes nothing";
+}
+
+// The hand leaps 20 mm into the pad and across it, from rest on it: the tool follows by tissue_push a step as long as it touches.
+TEST(ContactLimits, AFastToolGoesOnInTissueByNoMoreThanTissuePush) {
+  for (const Vec3& leap : {Vec3(0, 0, -0.02), Vec3(0.014, 0, -0.014)})
+    for (const double push : {0.5e-3, 1.5e-3, 100e-3}) {
+      SCOPED_TRACE(fmt::format("{} mm down, push {} mm", -1e3 * leap.z(), 1e3 * push));
+      SceneFolder folder;
+      folder.write("meshes/pad.msh", test::gmsh_text(test::block_mesh({6, 6, 4}, Vec3(-0.015, -0.015, -0.02), Vec3(0.015, 0.015, 0))));
+      folder.write("meshes/tool/tool.urdf", test::test_tool_urdf(test::radius));
+      auto s = test::load_text(fmt::format(R"(<scene>{}<retractor id="tool" model="meshes/tool/tool.urdf" hand="right" home="0 0 1 mm" shaft="0 0 1" flat="1 0 0" coupling="2000 N/m"/>
+<solver max_sweeps="2000" tolerance="1e-12 m"/><contact between="tool pad" friction="0.2" tissue_push="{} m"/></scene>)", test::pad, push),
+                               folder.path() / "scene.xml");
+      ASSERT_TRUE(s);
+      const Instrument* tool = s->instrument_of(1);
+      HandState state;
+      state.present = true;
+      state.device = tool->home_pose();
+      state.device.p.z() -= 0.2e-3;
+      for (int i = 0; i < 60; ++i) {
+        s->set_hand(1, state);
+        s->step();
+      }
+      ASSERT_FALSE(s->report().contacts.empty());
+      const Vec3 from = state.device.p;
+      state.device.p += leap;
+      double farthest = 0;
+      for (int i = 0; i < 8; ++i) {
+        const Vec3 before = tool->pose().p, way = (state.device.p - before).normalized();  // without mass the free tool is with the hand
+        const bool touches = !s->report().contacts.empty() && s->report().contacts[0].normal_force > 0;
+        s->set_hand(1, state);
+        s->step();
+        ASSERT_TRUE(s->report().finite);
+        if (touches) farthest = std::max(farthest, (tool->pose().p - before).dot(way));
+      }
+      EXPECT_GT((tool->pose().p - from).norm(), std::min(3 * push, 2e-3)) << "it goes on in the steps that follow";
+      if (push < 0.01) {
+        EXPECT_LT(farthest, push * (1 + 1e-6) + 1e-9);
+        EXPECT_GT(farthest, 0.5 * push);
+      } else {
+        EXPECT_GT(farthest, 2e-3) << "nothing to hold back, so the rest of this test says nothing";
+      }
+    }
+}
+
+}  // namespace
+}  // namespace insula
