@@ -195,7 +195,7 @@ def exercise_3(folder):
 
     careless = Script()
     careless.command(0.1, "ask", "applier load straight")
-    place_clip(careless.right, field.branch(Clip("straight"), "inferior", 0.45, 1.0))
+    place_clip(careless.right, field.branch(Clip("straight"), "inferior", 0.45, 1.8))
     careless.right.key(12, steady_outside(careless), last_q(careless))
     careless.write(folder / "3_clipping_careless.csv")
 
