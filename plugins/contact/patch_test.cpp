@@ -64,7 +64,7 @@ TEST(Patch, ThereIsOneRowAContactAndTwoAPatch) {
       int axis = 0;
       n.cwiseAbs().maxCoeff(&axis);
       std::array<int, 4> cell{0, 0, 0, 2 * axis + (n[axis] < 0)};
-      for (int k = 0; k < 3; ++k) cell[std::size_t(k)] = int(std::floor(x.local[k] / (1e-3 * size)));
+      for (int k = 0; k < 3; ++k) cell[std::size_t(k)] = int(std::floor(x.local[k] / (1e-3 * size) + 0.5));
       cells.insert(cell);
     }
     EXPECT_EQ(patches, int(cells.size())) << size;
