@@ -174,7 +174,7 @@ bool blocks_ok(const Layout& l, const char*& why) {
     why = "a patch without the contacts it is of";
     if (!patch_ok(l, b)) return false;
     why = "blocks do not cover the rows once, in order";
-    const int end = row + (law == 1 ? 3 : law == 2 ? 2 : 1);
+    const int end = row + Block{.law = LawKind(law)}.rows();
     if (l.row_at(b) != row || end > l.rows) return false;
     why = "block compliance out of range";
     if (!(l.compliance_at(b) >= 0 && l.compliance_at(b) <= most_block_compliance)) return false;

@@ -145,12 +145,8 @@ TEST(ToolCollider, AFreeFlightPastACornerIsNotHindered) {
 
 TEST(ToolCollider, SlidingFastIntoAWallFindsTheWall) {
   // Rests on the floor of a step and moves 6 mm towards its wall, pressed down by 3 mm.
-  TriMesh l = shapes::box(Vec3(-0.02, -0.02, -0.01), Vec3(0.02, 0.02, 0), 16);
-  const TriMesh wall = shapes::box(Vec3(0.004, -0.02, 0.0005), Vec3(0.02, 0.02, 0.01), 16);
-  const int offset = int(l.vertices.size());
-  l.vertices.insert(l.vertices.end(), wall.vertices.begin(), wall.vertices.end());
-  for (auto t : wall.triangles) l.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
-  const Scene s(l);
+  const Scene s(shapes::joined(shapes::box(Vec3(-0.02, -0.02, -0.01), Vec3(0.02, 0.02, 0), 16),
+                               shapes::box(Vec3(0.004, -0.02, 0.0005), Vec3(0.02, 0.02, 0.01), 16)));
   const Pose start{Vec3(0, 0, 1e-3), Quat::Identity()}, free{Vec3(0.006, 0, -0.002), Quat::Identity()};
   bool floor = false, side = false;
   for (const auto& x : detect(s, ball(1e-3), start, free)) {

@@ -74,11 +74,9 @@ TEST(SelfCollider, NothingAtRestAndNothingFarOff) {
 }
 
 TEST(SelfCollider, TwoBranchesSideBySideAreOutsideOfEachOther) {
-  TriMesh m = shapes::box(Vec3(-5e-3, -5e-3, 0), Vec3(5e-3, 5e-3, 2e-3), 8);
-  const TriMesh below = shapes::box(Vec3(-6e-3, -6e-3, -4e-3), Vec3(6e-3, 6e-3, -2e-3), 8);
-  const int upper = int(m.vertices.size());
-  m.vertices.insert(m.vertices.end(), below.vertices.begin(), below.vertices.end());
-  for (auto t : below.triangles) m.triangles.push_back({t[0] + upper, t[1] + upper, t[2] + upper});
+  const TriMesh upper = shapes::box(Vec3(-5e-3, -5e-3, 0), Vec3(5e-3, 5e-3, 2e-3), 8);
+  const int above = int(upper.vertices.size());
+  const TriMesh m = shapes::joined(upper, shapes::box(Vec3(-6e-3, -6e-3, -4e-3), Vec3(6e-3, 6e-3, -2e-3), 8));
   SelfCollider c(m.vertices, m.triangles, 0.9e-3, thickness);
   CollisionMesh mesh;
   mesh.build(m.vertices, m.triangles);
@@ -87,14 +85,14 @@ TEST(SelfCollider, TwoBranchesSideBySideAreOutsideOfEachOther) {
   // Down to contact and through: once touching, a crossing is known for what it is.
   for (double distance : {0.6e-3, 0.4e-3, 0.2e-3, -0.3e-3}) {
     std::vector<Vec3> now = m.vertices;
-    for (int i = 0; i < upper; ++i) now[std::size_t(i)].z() += distance - 2e-3;
+    for (int i = 0; i < above; ++i) now[std::size_t(i)].z() += distance - 2e-3;
     mesh.update(now, {});
     std::vector<Proximity> out;
     c.detect(mesh, settings, out, workers);
     int count = 0;
     for (const Proximity& x : out) {
       EXPECT_EQ(x.side, SelfCollider::outer);
-      if (x.vertex >= upper) continue;
+      if (x.vertex >= above) continue;
       ++count;
       EXPECT_NEAR(x.gap, distance - thickness, 1e-12);
       EXPECT_NEAR((x.normal - Vec3::UnitZ()).norm(), 0, 1e-9);
@@ -105,11 +103,9 @@ TEST(SelfCollider, TwoBranchesSideBySideAreOutsideOfEachOther) {
 
 /// A box over one of large triangles, `apart` at rest; contacts of its vertices once they are `now` apart.
 std::vector<Proximity> over_large_triangles(double apart, double now) {
-  TriMesh m = shapes::box(Vec3(-5e-3, -5e-3, 0), Vec3(5e-3, 5e-3, 2e-3), 10);
-  const TriMesh below = shapes::box(Vec3(-6e-3, -6e-3, -2e-3 - apart), Vec3(6e-3, 6e-3, -apart), 2);
-  const int upper = int(m.vertices.size());
-  m.vertices.insert(m.vertices.end(), below.vertices.begin(), below.vertices.end());
-  for (auto t : below.triangles) m.triangles.push_back({t[0] + upper, t[1] + upper, t[2] + upper});
+  const TriMesh upper = shapes::box(Vec3(-5e-3, -5e-3, 0), Vec3(5e-3, 5e-3, 2e-3), 10);
+  const int above = int(upper.vertices.size());
+  const TriMesh m = shapes::joined(upper, shapes::box(Vec3(-6e-3, -6e-3, -2e-3 - apart), Vec3(6e-3, 6e-3, -apart), 2));
   SelfCollider c(m.vertices, m.triangles, 0.9e-3, thickness);
   CollisionMesh mesh;
   mesh.build(m.vertices, m.triangles);
@@ -118,10 +114,10 @@ std::vector<Proximity> over_large_triangles(double apart, double now) {
   settings.outer = true;
   std::vector<Proximity> out;
   std::vector<Vec3> places = m.vertices;
-  for (int i = 0; i < upper; ++i) places[std::size_t(i)].z() += now - apart;
+  for (int i = 0; i < above; ++i) places[std::size_t(i)].z() += now - apart;
   mesh.update(places, {});
   c.detect(mesh, settings, out, workers);
-  std::erase_if(out, [&](const Proximity& x) { return x.vertex >= upper; });
+  std::erase_if(out, [&](const Proximity& x) { return x.vertex >= above; });
   return out;
 }
 

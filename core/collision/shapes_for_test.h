@@ -46,6 +46,14 @@ inline TriMesh box(const Vec3& low, const Vec3& high, int n) {
   return m;
 }
 
+/// Two shapes as one surface.
+inline TriMesh joined(TriMesh a, const TriMesh& b) {
+  const int offset = int(a.vertices.size());
+  a.vertices.insert(a.vertices.end(), b.vertices.begin(), b.vertices.end());
+  for (auto t : b.triangles) a.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
+  return a;
+}
+
 /// Sphere from a subdivided octahedron: 8 * 4^level triangles.
 inline TriMesh sphere(const Vec3& centre, double radius, int level) {
   TriMesh m;

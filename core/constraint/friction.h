@@ -17,6 +17,22 @@ struct LocalContact {
   double qn, q1, q2;                    ///< delta with lambda of this contact at zero, m
 };
 
+/// Eigenvalues, and the unit eigenvector of the larger, of a symmetric 2x2.
+struct Eigen2 {
+  double high, low, vx = 1, vy = 0;
+  Eigen2(double a11, double a12, double a22) {
+    const double mean = 0.5 * (a11 + a22), half = 0.5 * (a11 - a22), radius = std::sqrt(half * half + a12 * a12);
+    high = mean + radius;
+    low = mean - radius;
+    if (!(radius > 0)) return;
+    vx = half >= 0 ? half + radius : a12;
+    vy = half >= 0 ? a12 : radius - half;
+    const double norm = std::sqrt(vx * vx + vy * vy);
+    vx /= norm;
+    vy /= norm;
+  }
+};
+
 /// Writes (normal, tangent, tangent) in newtons.
 inline void solve_contact(const LocalContact& c, double mu, double* out) {
   out[0] = out[1] = out[2] = 0;
@@ -30,25 +46,10 @@ inline void solve_contact(const LocalContact& c, double mu, double* out) {
   const double s11 = c.w11 - c.wn1 * c.wn1 * i, s12 = c.w12 - c.wn1 * c.wn2 * i, s22 = c.w22 - c.wn2 * c.wn2 * i;
   const double b1 = -c.q1 + c.wn1 * c.qn * i, b2 = -c.q2 + c.wn2 * c.qn * i;
   // Eigenvalues and -vectors of S: every lambda_t(s) is then two divisions.
-  const double mean = 0.5 * (s11 + s22), half = 0.5 * (s11 - s22);
-  const double radius = std::sqrt(half * half + s12 * s12);
-  double e1 = mean + radius, e2 = mean - radius;
-  const double least = 1e-12 * (std::abs(e1) + c.wnn);
-  if (e1 < least) e1 = least;
-  if (e2 < least) e2 = least;
-  double vx = 1, vy = 0;
-  if (radius > 0) {
-    if (half >= 0) {
-      vx = half + radius;
-      vy = s12;
-    } else {
-      vx = s12;
-      vy = radius - half;
-    }
-    const double norm = std::sqrt(vx * vx + vy * vy);
-    vx /= norm;
-    vy /= norm;
-  }
+  const Eigen2 eigen(s11, s12, s22);
+  const double vx = eigen.vx, vy = eigen.vy;
+  const double least = 1e-12 * (std::abs(eigen.high) + c.wnn);
+  const double e1 = std::max(eigen.high, least), e2 = std::max(eigen.low, least);
   const double g1 = vx * b1 + vy * b2, g2 = -vy * b1 + vx * b2;          // b in the eigenbasis
   const double m1 = vx * c.wn1 + vy * c.wn2, m2 = -vy * c.wn1 + vx * c.wn2;  // normal coupling in the eigenbasis
   double s = 0, t1 = g1 / e1, t2 = g2 / e2;
@@ -99,17 +100,9 @@ inline void solve_contact(const LocalContact& c, double mu, double* out) {
 inline void solve_disc(double w11, double w12, double w22, double q1, double q2, double bound, double* out) {
   out[0] = out[1] = 0;
   if (!(bound > 0) || !(w11 + w22 > 0)) return;
-  const double mean = 0.5 * (w11 + w22), half = 0.5 * (w11 - w22), radius = std::sqrt(half * half + w12 * w12);
-  const double least = 1e-12 * (mean + radius);
-  const double e1 = mean + radius, e2 = std::max(mean - radius, least);
-  double vx = 1, vy = 0;
-  if (radius > 0) {
-    vx = half >= 0 ? half + radius : w12;
-    vy = half >= 0 ? w12 : radius - half;
-    const double norm = std::sqrt(vx * vx + vy * vy);
-    vx /= norm;
-    vy /= norm;
-  }
+  const Eigen2 eigen(w11, w12, w22);
+  const double vx = eigen.vx, vy = eigen.vy;
+  const double e1 = eigen.high, e2 = std::max(eigen.low, 1e-12 * eigen.high);
   const double g1 = -(vx * q1 + vy * q2), g2 = -(-vy * q1 + vx * q2);  // in the eigenbasis
   double t1 = g1 / e1, t2 = g2 / e2, size = std::sqrt(t1 * t1 + t2 * t2);
   // (w + s) lambda = -q with |lambda| = bound: 1/|lambda| is nearly straight in s, so Newton comes from below in a few steps.

@@ -9,6 +9,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "core/linalg/dot.h"
 #include "core/linalg/kernels.h"
 
 namespace insula {
@@ -219,19 +220,6 @@ bool BlockCholesky::factorise(const BlockMatrix& a) {
   }
   return true;
 }
-
-namespace {
-// Eight sums side by side: one alone would wait for each addition.
-double dot(const double* a, const double* b, int n) {
-  double sum[8] = {};
-  int i = 0;
-  for (; i + 8 <= n; i += 8)
-    for (int q = 0; q < 8; ++q) sum[q] += a[i + q] * b[i + q];
-  double rest = 0;
-  for (; i < n; ++i) rest += a[i] * b[i];
-  return (((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]))) + rest;
-}
-}  // namespace
 
 // Both gather what lies below a front once, so that its columns run over memory in order.
 void BlockCholesky::forward(double* x) {

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "core/linalg/block_cholesky.h"
+#include "core/linalg/dot.h"
 #include "core/linalg/kernels.h"
 
 namespace insula {
@@ -135,13 +136,7 @@ void BlockCholesky::correct(const BodyRows& rows, const double* lambda, double* 
       const int lo = active_lo_[i], hi = active_hi_[i];
       if (lo >= hi) continue;
       for (int r = 0; r < 3 * front_[i].own; ++r) {
-        const double* y = y_.data() + (3L * front_[i].first + r) * ldy_;
-        // Eight sums side by side, whole vectors as the ranges are.
-        const double* l = lambda_.data();
-        double sum[8] = {};
-        for (int c = lo; c < hi; c += 8)
-          for (int q = 0; q < 8; ++q) sum[q] += y[c + q] * l[c + q];
-        x_[std::size_t(3 * front_[i].first + r)] = ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]));
+        x_[std::size_t(3 * front_[i].first + r)] = dot(y_.data() + (3L * front_[i].first + r) * ldy_ + lo, lambda_.data() + lo, hi - lo);
       }
     }
     backward(x_.data());
