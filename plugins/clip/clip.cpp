@@ -17,7 +17,9 @@ The spring turns each jaw with the moment (F0 closing force, s its slope, r the 
     T(o) = strength * r * (F0 + s * 2 r sin(o)),      so a blade presses with T / x at the distance x from the hinge,
 
 implicitly: A of the opening is I/h^2 + (1 + hinge_time/h) 2 dT/do. Closed jaws rest on one another: a unilateral row, gap at the middle of the blades
-2 r (o - least) >= 0; an applier that holds the jaws open moves `least`. A spring held open gives way slowly (Papadopoulos et al.
+2 r (o - least) >= 0; an applier that holds the jaws open moves `least`. So does `closing_time`, in which the jaws may at the
+fastest go from fully open to shut: contact normals and levers are those of the start of a step, and jaws that shut
+on a vessel in one step grip nothing. A spring held open gives way slowly (Papadopoulos et al.
 2004: 19 to 26 % of the force in ten minutes fully open):
 
     d strength / dt = ln(1 - weakening) / 600 s * (o / widest) * strength    while an applier holds it open.
@@ -79,7 +81,7 @@ void Clip::settle(const Pose& pose, double opening) {
   free_pose_ = pose;
   velocity_.setZero();
   spin_.setZero();
-  turn_rate_ = last_change_ = free_opening_ = 0;
+  turn_rate_ = last_change_ = free_opening_ = soonest_ = 0;
   free_shift_.setZero();
   free_turn_.setZero();
   force_ = stop_force_ = pushed_ = 0;
@@ -127,7 +129,7 @@ void Clip::to_tray() {
 
 bool Clip::active() const { return holder_ ? holder_->active() : in_field_; }
 
-double Clip::least_opening() const { return holder_ ? std::max(0.0, holder_->held_opening()) : 0.0; }
+double Clip::held_opening() const { return holder_ ? std::max(0.0, holder_->held_opening()) : 0.0; }
 
 void Clip::build(const StepContext&, ConstraintBuilder& builder) {
   const auto stop = [&](std::uint64_t key, double sign, double at) {
@@ -140,9 +142,8 @@ void Clip::build(const StepContext&, ConstraintBuilder& builder) {
     builder.violation(row, sign * lever() * (opening_ + free_opening_ - at));
     return row;
   };
-  const double least = least_opening();
-  held_open_ = least > 0;
-  stop_row_ = stop(0, 1, least);
+  held_open_ = held_opening() > 0;
+  stop_row_ = stop(0, 1, least_opening());
   // Only what pulls the jaws apart can bring them here.
   limit_row_ = opening_ + std::max(0.0, free_opening_) > 0.8 * tool_.opening_max ? stop(1, -1, tool_.opening_max) : -1;
 }

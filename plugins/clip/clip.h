@@ -2,6 +2,7 @@
 // An aneurysm clip: a rigid body of three links, two jaws that a spring closes about one hinge. What it does and its scene
 // element are described in clip.cpp.
 #pragma once
+#include <algorithm>
 #include <vector>
 
 #include "core/constraint/constraint.h"
@@ -26,7 +27,8 @@ class Clip final : public RigidBody {
   Param<Scalar> weakening{this, {.name = "weakening", .fallback = "0.22", .min = "0", .max = "0.9", .doc = "part of the force lost in ten minutes of being held fully open"}};
   Param<Mass> inertia{this, {.name = "inertia", .fallback = "30 g", .min = "0.01 g", .max = "1 kg", .doc = "mass that resists acceleration, larger than the true one for the solver's sake; weight is that of the model"}};
   Param<Length> gyration{this, {.name = "gyration", .fallback = "20 mm", .min = "0 mm", .max = "100 mm", .doc = "radius at which that mass stands against being turned, in addition to the clip's own shape"}};
-  Param<Duration> hinge_time{this, {.name = "hinge_time", .fallback = "30 ms", .min = "0 ms", .max = "1 s", .doc = "damping of the hinge over the spring's stiffness: a clip that snaps shut takes about this long"}};
+  Param<Duration> hinge_time{this, {.name = "hinge_time", .fallback = "30 ms", .min = "0 ms", .max = "1 s", .doc = "damping of the hinge over the spring's stiffness"}};
+  Param<Duration> closing_time{this, {.name = "closing_time", .fallback = "0.3 s", .min = "0 s", .max = "5 s", .doc = "from fully open to shut at the fastest"}};
   Param<Rate> drag{this, {.name = "drag", .fallback = "2 1/s", .min = "0 1/s", .max = "1000 1/s", .doc = "rate at which the fluid takes a loose clip's motion"}};
 
   void prepare(PrepareContext& context) override;
@@ -88,7 +90,8 @@ class Clip final : public RigidBody {
   double closing() const { return closing_force() > 0 ? closing_force() : tool_.clip->closing_force; }
   double slope() const { return force_slope() > 0 ? force_slope() : tool_.clip->force_slope; }
   double lever() const { return 2 * tool_.clip->reference; }  ///< d(gap at the middle of the blades)/d(opening) when closed, m
-  double least_opening() const;  ///< below which the other jaw, or the applier, does not let the jaws go
+  double held_opening() const;   ///< below which an applier does not let the jaws go, 0: none does
+  double least_opening() const { return std::max(held_opening(), soonest_); }  ///< below which nothing closes them in this step
 
   ToolModel tool_;
   std::vector<std::vector<ConvexPiece>> pieces_;  ///< per link
@@ -104,6 +107,7 @@ class Clip final : public RigidBody {
   Vec3 to_centre_ = Vec3::Zero();                 ///< from the tip to the centre of mass
   Vec3 free_shift_ = Vec3::Zero(), free_turn_ = Vec3::Zero();  ///< of the centre of mass
   double free_opening_ = 0;                       ///< displacement, rad
+  double soonest_ = 0;                            ///< opening that the fastest jaws would reach, rad
   Mat3 moments_ = Mat3::Zero(), give_ = Mat3::Zero();  ///< inertia; rotation per moment
   double give_shift_ = 0, give_opening_ = 0;
   Mat7 compliance_ = Mat7::Zero();

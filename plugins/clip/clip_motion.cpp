@@ -26,6 +26,7 @@ void Clip::free_motion(const StepContext& context) {
   const double rise = strength_ * 4 * reach * reach * slope() * std::cos(opening_);
   give_opening_ = 1 / (turning_inertia * factor + std::max(0.0, rise) * (1 + hinge_time() / h));
   free_opening_ = give_opening_ * (-2 * torque(opening_) + turning_inertia * turn_rate_ / h);
+  soonest_ = closing_time() > 0 ? opening_ - tool_.opening_max * h / closing_time() : 0;
 
   const Mat3 s = skew(to_centre_);
   compliance_.setZero();
