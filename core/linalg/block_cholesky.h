@@ -7,34 +7,23 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/linalg/block_matrix.h"
-#include "core/mechanics/rows.h"
+#include "core/linalg/body_solver.h"
 
 namespace insula {
 
-class BlockCholesky {
+class BlockCholesky final : public BodySolver {
  public:
-  /// Symbolic work. Throws std::runtime_error when CHOLMOD refuses (out of memory).
-  void analyse(const BlockMatrix& a);
-  /// Numeric factor. False when a pivot is not positive (the matrix is not positive definite): the factor is then unusable.
-  bool factorise(const BlockMatrix& a);
-  /// x := A^-1 x, 3 * nodes values in natural order.
-  void solve(double* x);
-  /// Computes H A^-1 H^T in memory of its own; keeps Y = L^-1 P H^T for correct(). `node_of_block` maps a row's block to a
-  /// node of the matrix, -1 for a held one.
-  void compute_compliance(const BodyRows& rows, const std::vector<int>& node_of_block);
-  /// The same in three acts: the middle one in parts that do not touch one another, for threads. The bits are the same.
-  void begin_compliance(const BodyRows& rows, const std::vector<int>& node_of_block);
-  int compliance_parts() const { return columns_ >= 2 * least_part ? most_parts : columns_ > 0 && nodes_ > 0 ? 1 : 0; }
-  void compliance_part(int part);
-  void end_compliance();
-  /// Adds what compute_compliance found into w at the rows' numbers, both triangles.
-  void add_compliance(const BodyRows& rows, double* w, int stride) const;
-  /// x := A^-1 H^T lambda with the rows of the last compute_compliance; lambda is indexed by row number.
-  void correct(const BodyRows& rows, const double* lambda, double* x);
-
-  std::int64_t factor_entries() const { return entries_; }  ///< doubles in L, padding not counted
-  double factor_flops() const { return flops_; }
+  std::string name() const override { return "direct"; }
+  void analyse(const BlockMatrix& a) override;
+  bool factorise(const BlockMatrix& a) override;
+  void solve(double* x) override;
+  void begin_compliance(const BodyRows& rows, const std::vector<int>& node_of_block) override;
+  int compliance_parts() const override { return columns_ >= 2 * least_part ? most_parts : columns_ > 0 && nodes_ > 0 ? 1 : 0; }
+  void compliance_part(int part) override;
+  void end_compliance() override;
+  void add_compliance(const BodyRows& rows, double* w, int stride) const override;
+  void correct(const BodyRows& rows, const double* lambda, double* x) override;
+  SolverCost cost() const override { return {entries_, flops_, 16.0 * double(entries_)}; }
   int supernodes() const { return int(front_.size()); }
 
  private:

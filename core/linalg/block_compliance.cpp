@@ -11,12 +11,6 @@
 
 namespace insula {
 
-void BlockCholesky::compute_compliance(const BodyRows& rows, const std::vector<int>& node_of_block) {
-  begin_compliance(rows, node_of_block);
-  for (int p = 0; p < compliance_parts(); ++p) compliance_part(p);
-  end_compliance();
-}
-
 // Y = P H^T.
 void BlockCholesky::begin_compliance(const BodyRows& rows, const std::vector<int>& node_of_block) {
   const int m = rows.count();

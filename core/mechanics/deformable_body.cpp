@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "core/linalg/block_cholesky.h"
+
 namespace insula {
 
 void DeformableBody::start_at_rest() {

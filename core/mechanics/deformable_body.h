@@ -5,7 +5,7 @@
 #pragma once
 #include <memory>
 
-#include "core/linalg/block_cholesky.h"
+#include "core/linalg/body_solver.h"
 #include "core/mechanics/body.h"
 #include "core/mechanics/force_model.h"
 
@@ -31,7 +31,7 @@ class DeformableBody : public Body {
   const std::vector<char>& held() const { return held_; }
   const std::vector<int>& free_of_node() const { return free_; }  ///< node -> block of the system matrix, -1 when held
   const std::vector<ForceModel*>& forces() const { return forces_; }
-  const BlockCholesky& solver() const { return *solver_; }
+  const BodySolver& solver() const { return *solver_; }
   /// Steps whose matrix was not positive definite; they were solved with more mass (see step()).
   int indefinite_steps() const { return indefinite_; }
   /// Steps that made and factorised the system matrix anew.
@@ -73,7 +73,7 @@ class DeformableBody : public Body {
   std::vector<double> mass_, damping_;
   VecX q_, v_, force_, dq_, packed_;
   BlockMatrix a_;
-  std::unique_ptr<BlockCholesky> solver_;
+  std::unique_ptr<BodySolver> solver_;
   int indefinite_ = 0;
   double step_ = 0;  ///< of the step that is on, s
 

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What solves one body's system A dq = f and gives the compliance of its rows: the seam at which a solver of another kind, or for
+// another processor, is put in. A body owns one and knows only this; constraints and collision know nothing of it.
+//
+// A solver is given a matrix by factorise() and serves it until the next. The rows of begin_compliance() stay those of
+// add_compliance() and correct() until the next begin_compliance(). Nothing is allocated unless more rows come than ever before.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/linalg/block_matrix.h"
+#include "core/mechanics/rows.h"
+
+namespace insula {
+
+/// What a solver's work costs; for reports, budgets and benchmarks.
+struct SolverCost {
+  std::int64_t factor_entries = 0;  ///< numbers in L, padding not counted
+  double factor_flops = 0;          ///< of one factorisation
+  double factor_bytes = 0;          ///< read by one solve
+};
+
+class BodySolver {
+ public:
+  virtual ~BodySolver() = default;
+  virtual std::string name() const = 0;
+  /// Symbolic work, once per pattern. Throws std::runtime_error (out of memory).
+  virtual void analyse(const BlockMatrix& a) = 0;
+  /// False when the matrix is not positive definite: the solver is then unusable until a factorise() that succeeds.
+  virtual bool factorise(const BlockMatrix& a) = 0;
+  /// x := A^-1 x, 3 * nodes values in natural order.
+  virtual void solve(double* x) = 0;
+
+  /// H A^-1 H^T of the rows, in three acts, the middle one in parts that threads may share: the bits do not depend on who does
+  /// which. `node_of_block` maps a row's block to a node of the matrix, -1 for a held one.
+  virtual void begin_compliance(const BodyRows& rows, const std::vector<int>& node_of_block) = 0;
+  virtual int compliance_parts() const = 0;
+  virtual void compliance_part(int part) = 0;
+  virtual void end_compliance() = 0;
+  void compute_compliance(const BodyRows& rows, const std::vector<int>& node_of_block) {
+    begin_compliance(rows, node_of_block);
+    for (int p = 0; p < compliance_parts(); ++p) compliance_part(p);
+    end_compliance();
+  }
+  /// Adds it into w (row-major, `stride` numbers a row) at the rows' numbers, both triangles.
+  virtual void add_compliance(const BodyRows& rows, double* w, int stride) const = 0;
+  /// x := A^-1 H^T lambda, natural order; lambda is indexed by row number.
+  virtual void correct(const BodyRows& rows, const double* lambda, double* x) = 0;
+
+  virtual SolverCost cost() const = 0;
+};
+
+}  // namespace insula
