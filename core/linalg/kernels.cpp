@@ -6,14 +6,14 @@
 #include <string_view>
 
 namespace insula {
-namespace sse2 { extern const Kernels table; }
+namespace sse2 { extern const KernelSet table; }
 #if defined(__x86_64__)
-namespace avx2 { extern const Kernels table; }
-namespace avx512 { extern const Kernels table; }
+namespace avx2 { extern const KernelSet table; }
+namespace avx512 { extern const KernelSet table; }
 #endif
 
 namespace {
-const Kernels& choose() {
+const KernelSet& choose() {
 #if defined(__x86_64__)
   const char* wanted = std::getenv("INSULA_KERNELS");
   const std::string_view most = wanted ? wanted : "avx512";
@@ -25,11 +25,15 @@ const Kernels& choose() {
 #endif
   return sse2::table;
 }
+const KernelSet& chosen() {
+  static const KernelSet& set = choose();
+  return set;
+}
 }  // namespace
 
-const Kernels& kernels() {
-  static const Kernels& chosen = choose();
-  return chosen;
-}
+template <>
+const KernelsOf<double>& kernels_of<double>() { return chosen().f64; }
+template <>
+const KernelsOf<float>& kernels_of<float>() { return chosen().f32; }
 
 }  // namespace insula

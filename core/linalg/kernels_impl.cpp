@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Compiled once per instruction set: KERNEL_NAME, KERNEL_WIDTH (doubles a vector), KERNEL_NV x KERNEL_NR the register tile.
+// Compiled once per instruction set: KERNEL_NAME, KERNEL_BYTES (of a vector), KERNEL_NV x KERNEL_NR the register tile.
+// Every kernel for double and float: only the number of lanes differs.
 #include <cmath>
 #include <cstring>
 
@@ -8,26 +9,41 @@
 namespace insula::KERNEL_NAME {
 namespace {
 
-constexpr int W = KERNEL_WIDTH;
+template <class T>
+constexpr int W = KERNEL_BYTES / int(sizeof(T));  // numbers a vector
 constexpr int NV = KERNEL_NV;  // vectors of rows in a tile
 constexpr int NR = KERNEL_NR;  // columns in a tile
-typedef double V __attribute__((vector_size(W * 8), aligned(8)));
 
-inline V load(const double* p) { return *reinterpret_cast<const V*>(p); }
-inline void store(double* p, V v) { *reinterpret_cast<V*>(p) = v; }
+template <class T>
+struct Vector;
+template <>
+struct Vector<double> {
+  typedef double type __attribute__((vector_size(KERNEL_BYTES), aligned(8)));
+};
+template <>
+struct Vector<float> {
+  typedef float type __attribute__((vector_size(KERNEL_BYTES), aligned(4)));
+};
+template <class T>
+using V = typename Vector<T>::type;
+
+template <class T>
+inline V<T> load(const T* p) { return *reinterpret_cast<const V<T>*>(p); }
+template <class T>
+inline void store(T* p, V<T> v) { *reinterpret_cast<V<T>*>(p) = v; }
 
 // One register tile: nv vectors of rows times NR columns; `cols` of them are stored. B may be read NR wide.
-template <int nv, bool add>
-inline __attribute__((always_inline)) void tile(double* c, int ldc, const double* a, int lda, const double* b, int ldb, int cols, int k) {
-  V acc[nv][NR];
+template <int nv, bool add, class T>
+inline __attribute__((always_inline)) void tile(T* c, int ldc, const T* a, int lda, const T* b, int ldb, int cols, int k) {
+  V<T> acc[nv][NR];
   for (int v = 0; v < nv; ++v)
-    for (int j = 0; j < NR; ++j) acc[v][j] = V{};
+    for (int j = 0; j < NR; ++j) acc[v][j] = V<T>{};
   for (int p = 0; p < k; ++p) {
-    const double* ap = a + long(p) * lda;
-    const double* bp = b + long(p) * ldb;
-    V av[nv];
+    const T* ap = a + long(p) * lda;
+    const T* bp = b + long(p) * ldb;
+    V<T> av[nv];
 #pragma GCC unroll 8
-    for (int v = 0; v < nv; ++v) av[v] = load(ap + v * W);
+    for (int v = 0; v < nv; ++v) av[v] = load(ap + v * W<T>);
 #pragma GCC unroll 8
     for (int j = 0; j < NR; ++j)
 #pragma GCC unroll 8
@@ -38,49 +54,52 @@ inline __attribute__((always_inline)) void tile(double* c, int ldc, const double
     for (int j = 0; j < NR; ++j)
 #pragma GCC unroll 8
       for (int v = 0; v < nv; ++v) {
-        double* p = c + long(j) * ldc + v * W;
+        T* p = c + long(j) * ldc + v * W<T>;
         store(p, add ? load(p) + acc[v][j] : load(p) - acc[v][j]);
       }
   } else {
     for (int j = 0; j < cols; ++j)
       for (int v = 0; v < nv; ++v) {
-        double* p = c + long(j) * ldc + v * W;
+        T* p = c + long(j) * ldc + v * W<T>;
         store(p, add ? load(p) + acc[v][j] : load(p) - acc[v][j]);
       }
   }
 }
 
-template <bool add>
-void gemm(double* c, int ldc, const double* a, int lda, const double* b, int ldb, int m, int n, int k, bool lower) {
+template <bool add, class T>
+void gemm(T* c, int ldc, const T* a, int lda, const T* b, int ldb, int m, int n, int k, bool lower) {
   for (int j = 0; j < n; j += NR) {
     const int cols = n - j < NR ? n - j : NR;
-    int i = lower ? j / W * W : 0;
-    double* cj = c + long(j) * ldc;
-    for (; i + (NV - 1) * W < m; i += NV * W) tile<NV, add>(cj + i, ldc, a + i, lda, b + j, ldb, cols, k);
-    const int left = m > i ? (m - i + W - 1) / W : 0;
+    int i = lower ? j / W<T> * W<T> : 0;
+    T* cj = c + long(j) * ldc;
+    for (; i + (NV - 1) * W<T> < m; i += NV * W<T>) tile<NV, add>(cj + i, ldc, a + i, lda, b + j, ldb, cols, k);
+    const int left = m > i ? (m - i + W<T> - 1) / W<T> : 0;
     if constexpr (NV > 2)
       if (left == 2) tile<2, add>(cj + i, ldc, a + i, lda, b + j, ldb, cols, k);
     if (left == 1) tile<1, add>(cj + i, ldc, a + i, lda, b + j, ldb, cols, k);
   }
 }
 
-void gemm_sub(double* c, int ldc, const double* a, int lda, const double* b, int ldb, int m, int n, int k) {
+template <class T>
+void gemm_sub(T* c, int ldc, const T* a, int lda, const T* b, int ldb, int m, int n, int k) {
   gemm<false>(c, ldc, a, lda, b, ldb, m, n, k, false);
 }
-void syrk_add(double* c, int ldc, const double* a, int lda, int m, int k) { gemm<true>(c, ldc, a, lda, a, lda, m, m, k, true); }
-void syrk_sub(double* c, int ldc, const double* a, int lda, int m, int k) { gemm<false>(c, ldc, a, lda, a, lda, m, m, k, true); }
+template <class T>
+void syrk_add(T* c, int ldc, const T* a, int lda, int m, int k) { gemm<true>(c, ldc, a, lda, a, lda, m, m, k, true); }
+template <class T>
+void syrk_sub(T* c, int ldc, const T* a, int lda, int m, int k) { gemm<false>(c, ldc, a, lda, a, lda, m, m, k, true); }
 
-template <int nv>
-inline __attribute__((always_inline)) void row_tile(double* y, long ldy, const int* index, int rows, const double* l, int ldl, const double* x, long ldx, int k) {
-  V acc[NR][nv];
+template <int nv, class T>
+inline __attribute__((always_inline)) void row_tile(T* y, long ldy, const int* index, int rows, const T* l, int ldl, const T* x, long ldx, int k) {
+  V<T> acc[NR][nv];
   for (int r = 0; r < NR; ++r)
-    for (int v = 0; v < nv; ++v) acc[r][v] = V{};
+    for (int v = 0; v < nv; ++v) acc[r][v] = V<T>{};
   for (int p = 0; p < k; ++p) {
-    const double* lp = l + long(p) * ldl;
-    const double* xp = x + p * ldx;
-    V xv[nv];
+    const T* lp = l + long(p) * ldl;
+    const T* xp = x + p * ldx;
+    V<T> xv[nv];
 #pragma GCC unroll 8
-    for (int v = 0; v < nv; ++v) xv[v] = load(xp + v * W);
+    for (int v = 0; v < nv; ++v) xv[v] = load(xp + v * W<T>);
 #pragma GCC unroll 8
     for (int r = 0; r < NR; ++r)
 #pragma GCC unroll 8
@@ -89,53 +108,55 @@ inline __attribute__((always_inline)) void row_tile(double* y, long ldy, const i
   if (rows == NR) {
 #pragma GCC unroll 8
     for (int r = 0; r < NR; ++r) {
-      double* yr = y + index[r] * ldy;
+      T* yr = y + index[r] * ldy;
 #pragma GCC unroll 8
-      for (int v = 0; v < nv; ++v) store(yr + v * W, load(yr + v * W) - acc[r][v]);
+      for (int v = 0; v < nv; ++v) store(yr + v * W<T>, load(yr + v * W<T>) - acc[r][v]);
     }
   } else {
     for (int r = 0; r < rows; ++r) {
-      double* yr = y + index[r] * ldy;
-      for (int v = 0; v < nv; ++v) store(yr + v * W, load(yr + v * W) - acc[r][v]);
+      T* yr = y + index[r] * ldy;
+      for (int v = 0; v < nv; ++v) store(yr + v * W<T>, load(yr + v * W<T>) - acc[r][v]);
     }
   }
 }
 
-void rows_sub(double* y, long ldy, const int* index, int rows, const double* l, int ldl, const double* x, long ldx, int k, int m) {
+template <class T>
+void rows_sub(T* y, long ldy, const int* index, int rows, const T* l, int ldl, const T* x, long ldx, int k, int m) {
   for (int r = 0; r < rows; r += NR) {
     const int left = rows - r < NR ? rows - r : NR;
     int c = 0;
-    for (; c + NV * W <= m; c += NV * W) row_tile<NV>(y + c, ldy, index + r, left, l + r, ldl, x + c, ldx, k);
-    for (; c < m; c += W) row_tile<1>(y + c, ldy, index + r, left, l + r, ldl, x + c, ldx, k);
+    for (; c + NV * W<T> <= m; c += NV * W<T>) row_tile<NV>(y + c, ldy, index + r, left, l + r, ldl, x + c, ldx, k);
+    for (; c < m; c += W<T>) row_tile<1>(y + c, ldy, index + r, left, l + r, ldl, x + c, ldx, k);
   }
 }
 
-int cholesky_panel(double* a, int lda, int rows, int cols, double floor) {
+template <class T>
+int cholesky_panel(T* a, int lda, int rows, int cols) {
   for (int j = 0; j < cols; j += NR) {
     const int w = cols - j < NR ? cols - j : NR;
-    double* d = a + j + long(j) * lda;  // diagonal block
+    T* d = a + j + long(j) * lda;  // diagonal block
     if (j > 0) gemm<false>(d, lda, a + j, lda, a + j, lda, rows - j, w, j, false);
-    double inv[NR];
+    T inv[NR];
     for (int c = 0; c < w; ++c) {  // diagonal block, small: column by column
-      double p = d[c + long(c) * lda];
+      T p = d[c + long(c) * lda];
       for (int k = 0; k < c; ++k) p -= d[c + long(k) * lda] * d[c + long(k) * lda];
-      if (!(p > floor)) return j + c;
+      if (!(p > 0)) return j + c;
       p = std::sqrt(p);
-      inv[c] = 1.0 / p;
+      inv[c] = 1 / p;
       d[c + long(c) * lda] = p;
       for (int r = c + 1; r < w; ++r) {
-        double s = d[r + long(c) * lda];
+        T s = d[r + long(c) * lda];
         for (int k = 0; k < c; ++k) s -= d[r + long(k) * lda] * d[c + long(k) * lda];
         d[r + long(c) * lda] = s * inv[c];
       }
     }
-    // Rows below the diagonal block, W at a time.
+    // Rows below the diagonal block, a vector at a time.
     int i = w;
     const int n = rows - j;
-    for (; i + W <= n; i += W) {
-      V x[NR];
+    for (; i + W<T> <= n; i += W<T>) {
+      V<T> x[NR];
       for (int c = 0; c < w; ++c) {
-        V s = load(d + i + long(c) * lda);
+        V<T> s = load(d + i + long(c) * lda);
         for (int k = 0; k < c; ++k) s -= x[k] * d[c + long(k) * lda];
         x[c] = s * inv[c];
         store(d + i + long(c) * lda, x[c]);
@@ -143,7 +164,7 @@ int cholesky_panel(double* a, int lda, int rows, int cols, double floor) {
     }
     for (; i < n; ++i)
       for (int c = 0; c < w; ++c) {
-        double s = d[i + long(c) * lda];
+        T s = d[i + long(c) * lda];
         for (int k = 0; k < c; ++k) s -= d[i + long(k) * lda] * d[c + long(k) * lda];
         d[i + long(c) * lda] = s * inv[c];
       }
@@ -151,20 +172,21 @@ int cholesky_panel(double* a, int lda, int rows, int cols, double floor) {
   return -1;
 }
 
-void lower_solve_rows(const double* l, int ldl, int cols, double* x, long ldx, int m) {
+template <class T>
+void lower_solve_rows(const T* l, int ldl, int cols, T* x, long ldx, int m) {
   static const int identity[64] = {0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21,
                                    22, 23, 24, 25, 26, 27, 28, 29, 30, 31, 32, 33, 34, 35, 36, 37, 38, 39, 40, 41, 42, 43,
                                    44, 45, 46, 47, 48, 49, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 63};
   for (int j = 0; j < cols; j += NR) {
     const int w = cols - j < NR ? cols - j : NR;
-    const double* d = l + j + long(j) * ldl;
+    const T* d = l + j + long(j) * ldl;
     if (j > 0) rows_sub(x + j * ldx, ldx, identity, w, l + j, ldl, x, ldx, j, m);
-    double inv[NR];
-    for (int c = 0; c < w; ++c) inv[c] = 1.0 / d[c + long(c) * ldl];
-    for (int i = 0; i < m; i += W) {
-      V xv[NR];
+    T inv[NR];
+    for (int c = 0; c < w; ++c) inv[c] = 1 / d[c + long(c) * ldl];
+    for (int i = 0; i < m; i += W<T>) {
+      V<T> xv[NR];
       for (int c = 0; c < w; ++c) {
-        V s = load(x + (j + c) * ldx + i);
+        V<T> s = load(x + (j + c) * ldx + i);
         for (int k = 0; k < c; ++k) s -= xv[k] * d[c + long(k) * ldl];
         xv[c] = s * inv[c];
         store(x + (j + c) * ldx + i, xv[c]);
@@ -173,15 +195,17 @@ void lower_solve_rows(const double* l, int ldl, int cols, double* x, long ldx, i
   }
 }
 
-void axpy3(double* d, const double* w0, const double* w1, const double* w2, double c0, double c1, double c2, int n) {
+template <class T>
+void axpy3(T* d, const T* w0, const T* w1, const T* w2, T c0, T c1, T c2, int n) {
   int i = 0;
-  for (; i + W <= n; i += W) store(d + i, load(d + i) + load(w0 + i) * c0 + load(w1 + i) * c1 + load(w2 + i) * c2);
+  for (; i + W<T> <= n; i += W<T>) store(d + i, load(d + i) + load(w0 + i) * c0 + load(w1 + i) * c1 + load(w2 + i) * c2);
   for (; i < n; ++i) d[i] += c0 * w0[i] + c1 * w1[i] + c2 * w2[i];
 }
 
-void axpy(double* d, const double* w, double c, int n) {
+template <class T>
+void axpy(T* d, const T* w, T c, int n) {
   int i = 0;
-  for (; i + W <= n; i += W) store(d + i, load(d + i) + load(w + i) * c);
+  for (; i + W<T> <= n; i += W<T>) store(d + i, load(d + i) + load(w + i) * c);
   for (; i < n; ++i) d[i] += c * w[i];
 }
 
@@ -189,7 +213,9 @@ void axpy(double* d, const double* w, double c, int n) {
 
 #define KERNEL_STRING2(x) #x
 #define KERNEL_STRING(x) KERNEL_STRING2(x)
-extern const Kernels table;
-const Kernels table = {KERNEL_STRING(KERNEL_NAME), W, gemm_sub, syrk_add, syrk_sub, rows_sub, cholesky_panel, lower_solve_rows, axpy3, axpy};
+template <class T>
+constexpr KernelsOf<T> table_of = {KERNEL_STRING(KERNEL_NAME), W<T>, gemm_sub<T>, syrk_add<T>, syrk_sub<T>, rows_sub<T>, cholesky_panel<T>, lower_solve_rows<T>, axpy3<T>, axpy<T>};
+extern const KernelSet table;
+const KernelSet table = {table_of<double>, table_of<float>};
 
 }  // namespace insula::KERNEL_NAME

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The symbolic half of the direct solver, once per pattern: fill-reducing ordering and supernodes from CHOLMOD, from them the fronts
+// of the elimination tree, where their numbers lie in memory and where each block of A goes. It knows no number of A.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "core/linalg/block_matrix.h"
+
+namespace insula {
+
+/// One supernode: a dense trapezoid of L (`panel`) and what its elimination takes off its ancestors (`update`).
+struct Front {
+  int first = 0;        ///< first own node, permuted order
+  int own = 0;          ///< own nodes (columns)
+  int rows = 0;         ///< nodes in all (own + below)
+  int row_begin = 0;    ///< into Elimination::row_node
+  int lda = 0;          ///< of the panel, scalars
+  long panel = 0;       ///< offset among all panels, scalars
+  long update = -1;     ///< offset in the arena of update matrices, of the below x below matrix
+  int ldu = 0;
+  int parent = -1;
+  int map_begin = 0;    ///< into Elimination::map: below nodes as positions in the parent's rows
+  int scatter_begin = 0, scatter_end = 0;
+  std::vector<int> children;
+};
+
+struct Elimination {
+  struct Scatter {
+    int slot;        ///< block of A
+    long offset;     ///< of the block's first entry in the panels
+    bool transpose;
+  };
+  int nodes = 0;
+  std::vector<Front> front;             ///< in postorder
+  std::vector<int> row_node, map;
+  std::vector<int> row_scalar;          ///< row_node, three scalars each
+  std::vector<int> permuted, natural;   ///< natural node -> permuted node, and back
+  std::vector<int> front_of;            ///< permuted node -> front
+  std::vector<Scatter> scatter;         ///< front by front
+  long panel_size = 0, arena_size = 0;  ///< scalars
+  std::int64_t entries = 0;             ///< of L, padding not counted
+  double flops = 0;                     ///< of one factorisation
+
+  /// Leading dimensions become multiples of `lanes` scalars, a power of two.
+  void analyse(const BlockMatrix& a, int lanes);
+};
+
+}  // namespace insula
