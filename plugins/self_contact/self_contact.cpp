@@ -11,6 +11,10 @@ one block, as in <contact>:
 
     gap = distance - thickness,   0 <= gap(end) _|_ force >= 0,   |f_t| <= mu f_n
 
+`layer` lets the wall itself be pressed thinner there: delta + lambda / layer = gap. Rigid jaws on a wall that is never thinner rest on its
+thickest fold alone, near the hinge, and hold the rest loosely, which the pulse then drags out, beat by beat; a wall
+that gives way a little is gripped all along the blade. E A / t: 3 kN/m is 1 MPa under 0.7 mm2 of 0.22 mm.
+
 `sides="outer"` or `"both"` looks after the outer sides too, a sac against its branch. Which side a pair belongs to is told by
 the rest shape (`core/collision/self_collider.h`), so walls that have crossed are recognised and come apart again.
 
@@ -53,7 +57,7 @@ void SelfContact::detect(const StepContext&) {
   SelfContactSettings settings;
   settings.thickness = thickness();
   settings.alarm = alarm();
-  settings.max_recovery = 0.3 * thickness();
+  settings.max_recovery = most_recovery();
   settings.inner = !sides.is("outer");
   settings.outer = !sides.is("inner");
   contacts_.clear();
@@ -106,12 +110,14 @@ void SelfContact::add_row(ConstraintBuilder& builder, int row, const Proximity& 
 
 void SelfContact::build(const StepContext&, ConstraintBuilder& builder) {
   find_supports();
+  const double compliance = layer() > 0 ? 1 / layer() : 0;
   for (Support& s : supports_) {
     Block block;
     block.id = s.id;
     block.lower = 0;
+    block.compliance = compliance;
     s.row = builder.add(block);
-    builder.violation(s.row, std::max(s.gap, -0.3 * thickness()));
+    builder.violation(s.row, std::max(s.gap, -most_recovery()));
     builder.surface_point(s.row, *on, s.triangle, s.bary, s.normal);
     builder.surface_point(s.row, *on, s.behind, s.behind_bary, -s.normal);
   }
@@ -119,6 +125,7 @@ void SelfContact::build(const StepContext&, ConstraintBuilder& builder) {
   for (const Proximity& x : contacts_) {
     Block block;
     block.id = row_id(*this, x.key);
+    block.compliance = compliance;
     if (friction() > 0) {
       block.law = LawKind::friction;
       block.friction = friction();

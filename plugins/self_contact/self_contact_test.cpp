@@ -62,6 +62,38 @@ TEST(SelfContact, JawsPressAVesselFlatAndItsWallsStayApart) {
 }
 
 // 0.5 m/s, tip first, edge first and flat: in a step the hand moves twice as far as the vessel is wide.
+// The walls' own force on one another is the layer's law; what they bear together is what the jaws press with.
+TEST(SelfContact, AWallThatGivesWayBearsItsStiffnessTimesTheOverlap) {
+  const std::string jaws = R"(<retractor id="up" model="meshes/jaw/tool.urdf" hand="right" home="0 -4.5 5 mm" shaft="0 1 0" flat="0 0 1" coupling="250 N/m"/>
+<retractor id="down" model="meshes/jaw/tool.urdf" hand="left" home="0 -4.5 -5 mm" shaft="0 1 0" flat="0 0 1" coupling="250 N/m"/>)";
+  constexpr double layer = 3000;
+  VesselBench b(test::tube(2e-3, 16e-3, 17), 7.6e-3, jaws, "up down", R"(friction="0.2" by="vertices" max_contacts="40" alarm="0.3 mm")",
+                R"(thickness="0.3 mm" layer="3 kN/m")", 400);
+  ASSERT_TRUE(b.s);
+  for (int i = 0; i < 330; ++i) {
+    for (int hand = 0; hand < 2; ++hand) {
+      Pose at = b.s->instrument_of(hand)->home_pose();
+      at.p.z() = (hand == 1 ? 1 : -1) * (5e-3 - 13e-3 * std::min(1.0, i / 90.0));
+      b.hand(hand, at);
+    }
+    b.s->step();
+    ASSERT_EQ(b.crossings(), 0) << i;
+  }
+  double sum = 0;
+  int bearing = 0;
+  for (const ContactPoint& c : b.s->report().contacts) {
+    if (c.a != b.shell || c.b != b.shell) continue;
+    EXPECT_NEAR(c.normal_force, layer * std::max(0.0, -c.gap), 1e-5) << c.gap;
+    sum += c.normal_force * std::abs(c.normal.z());
+    bearing += c.normal_force > 0.05;
+  }
+  EXPECT_GT(bearing, 4);
+  const double apart = b.s->instrument_of(1)->pose().p.z() - b.s->instrument_of(0)->pose().p.z();
+  EXPECT_LT(apart, 1.55e-3);
+  EXPECT_GT(apart, 1.1e-3);
+  EXPECT_GT(sum, 1.0);
+}
+
 TEST(SelfContact, FastBladesPressNoWallThroughTheOtherAndStayOutside) {
   const std::string blade = R"(<retractor id="blade" model="meshes/blade/tool.urdf" hand="right" home="0 0 30 mm" shaft="0 0 1" flat="1 0 0" coupling="250 N/m"/>)";
   VesselBench b(test::tube(2e-3, 12e-3, 15), 5.8e-3, blade, "blade", R"(friction="0.2" spacing="0.7 mm" max_contacts="24")",
