@@ -1,51 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rotations of elements, and what the two tangents are worth in a Newton iteration. Bars, beams and patches: tests/physics.
+// What the two tangents are worth in a Newton iteration. Elements by themselves: element_batch_test.cpp; bars, beams and
+// patches: tests/physics.
 #include <gtest/gtest.h>
 
-#include "core/base/random.h"
 #include "core/mechanics/soft_body.h"
 #include "core/testing/block_mesh.h"
 #include "core/testing/example.h"
-#include "plugins/corotational_fem/polar.h"
 
 namespace insula {
 namespace {
-
-Vec3 any(Random& r) { return Vec3(r.uniform(-1, 1), r.uniform(-1, 1), r.uniform(-1, 1)); }
-
-TEST(Polar, TurnsAnyStretchIntoItsRotation) {
-  Random random(1);
-  for (int trial = 0; trial < 2000; ++trial) {
-    const Quat turn = from_rotation_vector(3 * any(random));
-    // A symmetric positive stretch between 0.2 and 2.2.
-    const Mat3 axes = from_rotation_vector(any(random)).toRotationMatrix();
-    const Mat3 s = axes * Vec3(Vec3::Constant(1.2) + any(random)).asDiagonal() * axes.transpose();
-    const Mat3 expected = turn.toRotationMatrix();
-    Quat guess = trial % 3 == 0 ? Quat::Identity() : (from_rotation_vector(0.3 * any(random)) * turn).normalized();
-    const Mat3 r = polar_rotation(expected * s, guess);
-    EXPECT_LT((r - expected).norm(), 1e-11) << trial;
-    EXPECT_LT((guess.toRotationMatrix() - r).norm(), 1e-12);
-  }
-}
-
-TEST(Polar, InvertedAndFlatElementsGetAProperRotation) {
-  Random random(2);
-  for (int trial = 0; trial < 500; ++trial) {
-    Mat3 f;
-    f << any(random), any(random), any(random);
-    if (trial % 5 == 0) f.col(1) = f.col(0);
-    if (trial % 50 == 0) f.setZero();
-    Quat guess = Quat::Identity();
-    const Mat3 r = polar_rotation(f, guess);
-    EXPECT_TRUE(r.allFinite());
-    EXPECT_NEAR(r.determinant(), 1, 1e-12);
-    EXPECT_LT((r.transpose() * r - Mat3::Identity()).norm(), 1e-12);
-    if (std::abs(f.determinant()) > 1e-2) {
-      const Mat3 s = r.transpose() * f;
-      EXPECT_LT((s - s.transpose()).norm(), 1e-10) << trial;
-    }
-  }
-}
 
 std::unique_ptr<Simulation> bar(const std::string& fem, const test::SceneFolder& folder) {
   folder.write("meshes/bar.msh", test::gmsh_text(test::block_mesh({6, 2, 2}, Vec3(0, 0, 0), Vec3(0.06, 0.02, 0.02))));
