@@ -51,25 +51,32 @@ void FrictionPatches::sort(std::span<const Proximity> contacts, const Pose& tool
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const Proximity& x = contacts[i];
     const Known* k = known(x.key);
-    members_.push_back({name_of(x.local, tool.q.conjugate() * x.normal, size_), int(i), k ? k->bore : 0.0, -1});
-    if (!k) continue;
-    if (Held* h = held(k->patch)) {
-      h->slip += k->weight * (k->local - x.local);
-      h->weight += k->weight;
-    }
+    Held* h = k ? held(k->patch) : nullptr;
+    const bool stays = h && h->holds;
+    members_.push_back({stays ? k->patch : name_of(x.local, tool.q.conjugate() * x.normal, size_), int(i), stays ? k->weight : k ? k->bore : 0.0, -1, stays});
+    if (!h) continue;
+    h->slip += k->weight * (k->local - x.local);
+    h->weight += k->weight;
   }
   std::sort(members_.begin(), members_.end(), [](const Member& a, const Member& b) { return a.patch != b.patch ? a.patch < b.patch : a.contact < b.contact; });
   for (std::size_t first = 0; first < members_.size();) {
     std::size_t last = first;
-    double sum = 0;
+    double sum = 0, kept = 0;
+    int fresh = 0;
     Vec3 normal = Vec3::Zero();
     for (; last < members_.size() && members_[last].patch == members_[first].patch; ++last) {
-      sum += members_[last].weight;
-      normal += contacts[std::size_t(members_[last].contact)].normal;
+      const Member& m = members_[last];
+      if (m.stays) kept += m.weight;
+      else sum += m.weight, ++fresh;
+      normal += contacts[std::size_t(m.contact)].normal;
     }
-    // What bore nothing has a small share, so that a new patch has a slip.
-    const double n = double(last - first), least = 0.1 * sum / n + 1e-9;
-    for (std::size_t i = first; i < last; ++i) members_[i].weight = (members_[i].weight + least) / (sum + n * least);
+    // What bore nothing has a small share, so that a new patch has a slip. Those that hold keep their shares, and newcomers get small ones.
+    const double n = double(last - first), least = 0.1 * sum / n + 1e-9, new_share = kept > 0 ? 0.1 / n : 0;
+    const double scale = kept > 0 && fresh == 0 && kept > 1 - 1e-12 ? 1 : 1 / (kept > 0 ? kept + fresh * new_share : sum + n * least);
+    for (std::size_t i = first; i < last; ++i) {
+      Member& m = members_[i];
+      m.weight = scale * (m.stays ? m.weight : kept > 0 ? new_share : m.weight + least);
+    }
     Patch p{members_[first].patch, int(first), int(last - first), {}, Vec3::Zero(), -1};
     if (const Held* h = held(p.name); h && h->holds && h->weight > 0) p.crept = h->crept + h->slip / h->weight;
     p.tangent[0] = tangent_to(normal.normalized(), tool.q * Vec3::UnitZ());

@@ -2,11 +2,12 @@
 // One friction force for contacts that lie close together on a blade.
 //
 // A patch is what falls into one cell of a grid on the tool and faces one way: it does not depend on how contacts come and go.
-// Its slip is the mean slip of its contacts, weighted by the force that each bore in the last step; its friction is spread
+// Its slip is the mean slip of its contacts, weighted by the force that each bore in the step before it took hold; its friction is spread
 // over them by the same weights, so that it does work on its slip alone, and is bounded by mu times all they bear.
 //
-// A patch that sticks adds up the mean slip that the steps' linearisation lets pass, and takes it back. Without that, a clip on a
-// pulsing neck walks off by a micrometre a beat.
+// A patch that sticks adds up the mean slip that the steps' linearisation lets pass, and takes it back; and it keeps its contacts and
+// their weights, whatever they bear meanwhile: a mean whose weights follow the pulse would let each contact go a little further in every beat.
+// Without either, a clip on a pulsing neck walks off by a micrometre a beat.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -27,6 +28,7 @@ class FrictionPatches {
     int contact;          ///< index
     double weight;        ///< of its slip in that of the patch; those of a patch sum to one
     int row;              ///< of its normal
+    bool stays;           ///< its patch held in the last step, and it with it
   };
   struct Patch {
     std::uint32_t name;
