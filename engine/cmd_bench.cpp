@@ -22,7 +22,7 @@ int cmd_bench(const CommandContext& context, const BenchOptions& options) {
   for (std::int64_t k = 0; k < warm_up; ++k) run.step();
 
   std::array<std::vector<double>, stage_count> stage;
-  std::vector<double> step, haptic, rows, sweeps, residual;
+  std::vector<double> step, haptic, rows, sweeps, residual, iterations, age, defect;
   for (int k = 0; k < options.steps; ++k) {
     run.step();
     const StepReport& r = simulation.report();
@@ -32,6 +32,9 @@ int cmd_bench(const CommandContext& context, const BenchOptions& options) {
     rows.push_back(r.rows);
     sweeps.push_back(r.solve.sweeps);
     residual.push_back(r.solve.residual_m);
+    iterations.push_back(r.solver.iterations);
+    age.push_back(r.solver.age);
+    defect.push_back(r.defect_m);
   }
   auto mean = [](const std::vector<double>& v) {
     double sum = 0;
@@ -52,6 +55,10 @@ int cmd_bench(const CommandContext& context, const BenchOptions& options) {
     j["rows"] = {{"mean", mean(rows)}, {"max", percentile(rows, 1.0)}};
     j["sweeps"] = {{"mean", mean(sweeps)}, {"max", percentile(sweeps, 1.0)}};
     j["residual_m"] = {{"p50", percentile(residual, 0.5)}, {"max", percentile(residual, 1.0)}};
+    j["iterations"] = {{"mean", mean(iterations)}, {"max", percentile(iterations, 1.0)}};
+    j["factor_age"] = {{"mean", mean(age)}, {"max", percentile(age, 1.0)}};
+    j["factors"] = simulation.report().solver.factors;
+    j["defect_m"] = {{"p50", percentile(defect, 0.5)}, {"max", percentile(defect, 1.0)}};
     j["real_time_factor"] = factor;
     context.out << j.dump(2) << '\n';
     return 0;
@@ -69,6 +76,9 @@ int cmd_bench(const CommandContext& context, const BenchOptions& options) {
   fmt::print(context.out, "  {:<14}{:>9.3f}{:>9.3f}\n\n", "step", percentile(step, 0.5), percentile(step, 0.95));
   fmt::print(context.out, "  rows {:.0f} mean, {:.0f} max; sweeps {:.1f} mean; residual {:.1e} m at most\n", mean(rows), percentile(rows, 1.0),
              mean(sweeps), percentile(residual, 1.0));
+  if (mean(iterations) > 0)
+    fmt::print(context.out, "  conjugate gradients: {:.1f} iterations mean, {:.0f} max; factor {:.1f} steps old, {:.0f} at most, {} in all; last defect {:.1e} m at most\n", mean(iterations),
+               percentile(iterations, 1.0), mean(age), percentile(age, 1.0), simulation.report().solver.factors, percentile(defect, 1.0));
   fmt::print(context.out, "  servo of both hands: {:.3f} ms a step; real_time_factor of the engine alone {:.2f}\n", mean(haptic), factor);
   return 0;
 }

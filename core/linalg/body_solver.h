@@ -21,6 +21,14 @@ struct SolverCost {
   double factor_bytes = 0;          ///< read by one solve
 };
 
+/// How its last solves went.
+struct SolverStatus {
+  int age = 0;            ///< steps since the matrix was taken that the factor is of
+  int iterations = 0;     ///< most of a solve of the step; 0: direct
+  double residual_m = 0;  ///< what was left: most that the preconditioned residual moves a node by, m
+  int factors = 0;        ///< taken into use since the start
+};
+
 class BodySolver {
  public:
   virtual ~BodySolver() = default;
@@ -31,6 +39,11 @@ class BodySolver {
   virtual bool factorise(const BlockMatrix& a) = 0;
   /// x := A^-1 x, 3 * nodes values in natural order.
   virtual void solve(double* x) = 0;
+  /// The same from a guess, which solvers that iterate begin at.
+  virtual void solve_from(double* x, const double* /*guess*/) { solve(x); }
+  /// Whether turn() does anything. Rotation of each node from rest, before factorise() of the same step.
+  virtual bool wants_rotations() const { return false; }
+  virtual void turn(const std::vector<Mat3>& /*rotation*/) {}
 
   /// H A^-1 H^T of the rows, in three acts, the middle one in parts that threads may share: the bits do not depend on who does
   /// which. `node_of_block` maps a row's block to a node of the matrix, -1 for a held one.
@@ -48,6 +61,14 @@ class BodySolver {
   /// x := A^-1 H^T lambda, natural order; lambda is indexed by row number.
   virtual void correct(const BodyRows& rows, const double* lambda, double* x) = 0;
 
+  /// Whether compliance and correct() are of the same matrix. If not, correct() is the truth, and may be called again with
+  /// another lambda of the same rows.
+  virtual bool exact() const { return true; }
+  /// The next factorise() is the first.
+  virtual void forget() {}
+  /// Whether a solver that works in the background may be waited for, so that the same input gives the same bits.
+  virtual void may_wait(bool) {}
+  virtual SolverStatus status() const { return {}; }
   virtual SolverCost cost() const = 0;
 };
 

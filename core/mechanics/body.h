@@ -6,6 +6,7 @@
 #include <array>
 #include <vector>
 
+#include "core/linalg/body_solver.h"
 #include "core/mechanics/rows.h"
 #include "core/mechanics/step_context.h"
 #include "core/registry/component.h"
@@ -61,6 +62,15 @@ class Body : public Component {
   virtual void end_compliance() {}
   /// Adds it into `w` (row-major, leading dimension `stride`), at the rows' numbers; one body after the other.
   virtual void add_compliance(const BodyRows& rows, double* w, int stride) = 0;
+  /// Whether add_compliance() and apply() are of the same A. If not, respond() tells what lambda truly does, for defect correction.
+  virtual bool exact() const { return true; }
+  /// Computes H A^-1 H^T lambda as apply() would; bodies do this in parallel.
+  virtual void respond(const BodyRows&, const double* /*lambda*/) {}
+  /// Adds it at the rows' numbers.
+  virtual void add_response(const BodyRows&, double* /*delta*/) const {}
+  /// What works in the background may be waited for (same input, same bits) or not (a step is never late). Default: it may.
+  virtual void may_wait(bool) {}
+  virtual SolverStatus solver_status() const { return {}; }
   /// q += free displacement + A^-1 H^T lambda; v = dq / h.
   virtual void apply(const StepContext& context, const BodyRows& rows, const double* lambda) = 0;
   /// Rows of its own (stops of a hinge, a tool's pull), after those of the constraints; bodies in document order.

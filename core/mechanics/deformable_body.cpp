@@ -4,7 +4,9 @@
 
 #include <algorithm>
 
-#include "core/linalg/block_cholesky.h"
+#include "core/base/nearest_rotation.h"
+#include "core/linalg/asynchronous_solver.h"
+#include "core/linalg/direct_solver.h"
 
 namespace insula {
 
@@ -34,7 +36,7 @@ void DeformableBody::connect(PrepareContext& context) {
     if (free_[std::size_t(i)] >= 0 && free_[std::size_t(j)] >= 0)
       pairs.emplace_back(free_[std::size_t(i)], free_[std::size_t(j)]);
   neighbours_.clear();
-  if (tangent_tolerance() > 0) {
+  if (tangent_tolerance() > 0 || solver_kind.is("asynchronous")) {
     for (auto& [i, j] : all)
       if (i > j) std::swap(i, j);
     std::sort(all.begin(), all.end());
@@ -56,10 +58,14 @@ void DeformableBody::connect(PrepareContext& context) {
         error(context, "node " + std::to_string(i) + " has no mass; a force model with a density is needed");
       return;
     }
-  solver_ = std::make_unique<BlockCholesky>();
+  if (solver_kind.is("asynchronous")) solver_ = std::make_unique<AsynchronousSolver>(solver_tolerance());
+  else solver_ = make_direct_solver(solver_kind.is("single"));
   solver_->analyse(a_);
   force_ = dq_ = VecX::Zero(3 * nodes());
-  packed_ = VecX::Zero(3 * free_count_);
+  packed_ = packed_free_ = response_ = VecX::Zero(3 * free_count_);
+  turn_.assign(std::size_t(free_count_), Quat::Identity());
+  turned_.assign(std::size_t(free_count_), Mat3::Identity());
+  around_ = turned_;
 }
 
 Vec3 DeformableBody::position(const MaterialPoint& p) const {
@@ -87,7 +93,7 @@ void DeformableBody::add_row(BodyRows& out, const MaterialPoint& p, const Vec3& 
 
 // Whether the factor at hand still serves: no pair of neighbours has turned or stretched much since it was made.
 bool DeformableBody::tangent_is_good(double h) const {
-  if (factor_h_ != h || tangent_tolerance() <= 0) return false;
+  if (factor_h_ != h || tangent_tolerance() <= 0 || !solver_->exact()) return false;
   const double limit = tangent_tolerance() * tangent_tolerance();
   for (const Neighbours& n : neighbours_) {
     const Vec3 now = q_.segment<3>(3 * n.i) - q_.segment<3>(3 * n.j);
@@ -97,8 +103,25 @@ bool DeformableBody::tangent_is_good(double h) const {
   return true;
 }
 
+// Of each free node: that which turns its neighbours at rest into its neighbours now, best in the least squares.
+void DeformableBody::find_rotations() {
+  for (int j = 0; j < free_count_; ++j) around_[std::size_t(j)].setZero();
+  const auto add = [&](int i, int j) {
+    const Vec3 rest = rest_nodes()[std::size_t(i)] - rest_nodes()[std::size_t(j)];
+    const Mat3 m = (q_.segment<3>(3 * i) - q_.segment<3>(3 * j)) * rest.transpose();
+    if (const int b = free_[std::size_t(i)]; b >= 0) around_[std::size_t(b)] += m;
+    if (const int b = free_[std::size_t(j)]; b >= 0) around_[std::size_t(b)] += m;
+  };
+  for (const Neighbours& n : neighbours_) add(n.i, n.j);
+  for (int j = 0; j < free_count_; ++j) turned_[std::size_t(j)] = nearest_rotation(around_[std::size_t(j)], turn_[std::size_t(j)]);
+}
+
 // Assembles force and A, factorises A.
 void DeformableBody::make_tangent(double h) {
+  if (solver_->wants_rotations()) {
+    find_rotations();
+    solver_->turn(turned_);
+  }
   a_.set_zero();
   for (ForceModel* f : forces_) f->linearise(q_.data(), force_.data(), &a_, h, Tangent::system);
   double extra = 1;
@@ -133,7 +156,8 @@ void DeformableBody::free_motion(const StepContext& context) {
   for (int i = 0; i < nodes(); ++i)
     if (const int b = free_[std::size_t(i)]; b >= 0)
       packed_.segment<3>(3 * b) = force_.segment<3>(3 * i) + mass_[std::size_t(i)] * (context.gravity + v_.segment<3>(3 * i) / h);
-  solver_->solve(packed_.data());
+  solver_->solve_from(packed_.data(), packed_free_.data());
+  packed_free_ = packed_;
   dq_.setZero();
   for (int i = 0; i < nodes(); ++i)
     if (free_[std::size_t(i)] >= 0) dq_.segment<3>(3 * i) = packed_.segment<3>(3 * free_[std::size_t(i)]);
@@ -145,6 +169,15 @@ int DeformableBody::compliance_parts() const { return solver_->compliance_parts(
 void DeformableBody::compliance_part(int part) { solver_->compliance_part(part); }
 void DeformableBody::end_compliance() { solver_->end_compliance(); }
 void DeformableBody::add_compliance(const BodyRows& r, double* w, int stride) { solver_->add_compliance(r, w, stride); }
+
+void DeformableBody::respond(const BodyRows& r, const double* lambda) { solver_->correct(r, lambda, response_.data()); }
+
+void DeformableBody::add_response(const BodyRows& r, double* delta) const {
+  for (int i = 0; i < r.count(); ++i)
+    for (int e = r.start[std::size_t(i)]; e < r.start[std::size_t(i) + 1]; ++e)
+      if (const int b = free_[std::size_t(r.block[std::size_t(e)])]; b >= 0)
+        delta[r.row[std::size_t(i)]] += r.coeff[std::size_t(e)].dot(response_.segment<3>(3 * b));
+}
 
 void DeformableBody::apply(const StepContext& context, const BodyRows& r, const double* lambda) {
   if (r.count() > 0) {
@@ -165,6 +198,9 @@ void DeformableBody::reset() {
   indefinite_ = 0;
   factorisations_ = 0;
   factor_h_ = 0;
+  packed_free_.setZero();
+  for (Quat& t : turn_) t.setIdentity();
+  solver_->forget();
   for (ForceModel* f : forces_) f->reset();
 }
 
@@ -230,6 +266,7 @@ double DeformableBody::prestress(const VecX& load) {
     r = -f;
     left = r.norm();
   }
+  solver_->forget();
   return left / size;
 }
 

@@ -16,6 +16,9 @@ class DeformableBody : public Body {
   /// The tangent may be older than the force: the equilibrium is the same, and so is the order of the time integration.
   Param<Scalar> tangent_tolerance{this, {.name = "tangent_tolerance", .fallback = "0", .min = "0", .max = "0.5", .doc = "change of shape (of the distance vector of neighbouring nodes, over their distance) up to which the system matrix and its factor are used again; 0: made anew every step"}};
 
+  Param<Choice> solver_kind{this, {.name = "solver", .fallback = "direct", .choices = {"direct", "single", "asynchronous"}, .doc = "how the body's system is solved: a factor made anew when the tissue has changed shape, in double or single precision, or for large bodies conjugate gradients with a factor that is made in the background"}};
+  Param<Length> solver_tolerance{this, {.name = "solver_tolerance", .fallback = "0.001 mm", .min = "1e-9 mm", .max = "1 mm", .doc = "asynchronous solver: a solve ends when what is left would move no node by more than this"}};
+
   /// Rest positions of the nodes, scene frame, m. Known after prepare().
   virtual const std::vector<Vec3>& rest_nodes() const = 0;
   /// Nodes that the topology itself holds (a shell's caps); supports hold more. Default: none.
@@ -56,6 +59,11 @@ class DeformableBody : public Body {
   void compliance_part(int part) override;
   void end_compliance() override;
   void add_compliance(const BodyRows& rows, double* w, int stride) override;
+  bool exact() const override { return solver_->exact(); }
+  void respond(const BodyRows& rows, const double* lambda) override;
+  void add_response(const BodyRows& rows, double* delta) const override;
+  void may_wait(bool yes) override { solver_->may_wait(yes); }
+  SolverStatus solver_status() const override { return solver_->status(); }
   void apply(const StepContext& context, const BodyRows& rows, const double* lambda) override;
   void reset() override;
   double energy() const override;
@@ -72,6 +80,9 @@ class DeformableBody : public Body {
   int free_count_ = 0;
   std::vector<double> mass_, damping_;
   VecX q_, v_, force_, dq_, packed_;
+  VecX packed_free_, response_;         ///< of solvers that iterate: the last free motion, what lambda does
+  std::vector<Quat> turn_;              ///< rotation of each free node's neighbourhood from rest
+  std::vector<Mat3> turned_, around_;
   BlockMatrix a_;
   std::unique_ptr<BodySolver> solver_;
   int indefinite_ = 0;
@@ -79,6 +90,7 @@ class DeformableBody : public Body {
 
   bool tangent_is_good(double h) const;
   void make_tangent(double h);
+  void find_rotations();
   struct Neighbours {
     int i, j;
     double distance2;  ///< at rest, m2

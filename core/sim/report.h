@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/constraint/solve.h"
+#include "core/linalg/body_solver.h"
 #include "core/sim/events.h"
 
 namespace insula {
@@ -80,6 +81,8 @@ struct StepReport {
   std::int64_t step = 0;
   int rows = 0;
   SolveStats solve;
+  SolverStatus solver;   ///< of the bodies' solvers: the worst, and all factors taken into use
+  double defect_m = 0;   ///< largest change of a row that the last pass of defect correction made, m; 0: every body is exact
   double energy = 0; ///< J
   std::vector<ContactPoint> contacts;
   std::vector<StrandState> strands;  ///< all sets in document order

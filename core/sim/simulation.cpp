@@ -30,6 +30,8 @@ class StageClock {
   Time start_, last_;
 };
 
+constexpr int most_passes = 3;  ///< of defect correction
+
 }  // namespace
 
 void StepReport::clear() {
@@ -44,6 +46,8 @@ void StepReport::clear() {
   strands_total = strands_left = 0;
   rows = 0;
   solve = {};
+  solver = {};
+  defect_m = 0;
   energy = 0;
   stage_ms.fill(0);
   step_ms = 0;
@@ -152,6 +156,14 @@ void Simulation::step() {
   workspace_.reserve(problem_.rows);
   workspace_.lambda.assign(problem_.lambda.begin(), problem_.lambda.end());
   report_.solve = solve(problem_, problem_.delta_free, solve_settings_, workspace_);
+  defect_.begin(problem_, bodies_);
+  for (int pass = 0; defect_.needed() && pass < most_passes; ++pass) {
+    report_.defect_m = defect_.pass(problem_, workspace_.lambda.data(), workers_);
+    if (report_.defect_m <= solve_settings_.tolerance_m) break;
+    const int sweeps = report_.solve.sweeps;
+    report_.solve = solve(problem_, problem_.delta_free, solve_settings_, workspace_);
+    report_.solve.sweeps += sweeps;
+  }
   problem_.lambda.assign(workspace_.lambda.begin(), workspace_.lambda.end());
   clock.done(stage_solve);
 
@@ -211,6 +223,13 @@ void Simulation::make_report() {
     energy_[std::size_t(b->index)] = b->energy();
   });
   for (double e : energy_) r.energy += e;
+  for (const Body* b : bodies_) {
+    const SolverStatus s = b->solver_status();
+    r.solver.age = std::max(r.solver.age, s.age);
+    r.solver.iterations = std::max(r.solver.iterations, s.iterations);
+    r.solver.residual_m = std::max(r.solver.residual_m, s.residual_m);
+    r.solver.factors += s.factors;
+  }
   for (Constraint* c : constraints_) c->report(r);
   for (const Body* b : bodies_) b->report(r);
   for (Instrument* i : instruments_) {
@@ -260,6 +279,10 @@ void Simulation::reset() {
     Diagnostics none;  // the same as at the start, where they were reported
     settle(none);
   }
+}
+
+void Simulation::may_wait(bool yes) {
+  for (Body* b : bodies_) b->may_wait(yes);
 }
 
 void Simulation::draw_complications(std::uint64_t seed) {

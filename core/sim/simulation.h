@@ -18,6 +18,7 @@
 #include "core/mechanics/surface.h"
 #include "core/scene/scene.h"
 #include "core/sim/complications.h"
+#include "core/sim/defect_correction.h"
 #include "core/sim/exercise.h"
 #include "core/sim/report.h"
 #include "core/sim/settings.h"
@@ -47,6 +48,8 @@ class Simulation {
   std::vector<Event> take_announced() { return std::exchange(commanded_, {}); }
   /// Draws the scene's complications anew from that seed, now and after every reset; 0: from the scene's own.
   void draw_complications(std::uint64_t seed);
+  /// Whether a step may wait for what works in the background (default: the same input gives the same bits) or is never late.
+  void may_wait(bool yes);
   /// Back to the start, to the same bits.
   void reset();
 
@@ -97,6 +100,7 @@ class Simulation {
   ConstraintProblem problem_;
   std::unique_ptr<ConstraintBuilder> builder_;
   SolveWorkspace workspace_;
+  DefectCorrection defect_;
   struct Remembered {
     std::uint64_t id;
     int rows;

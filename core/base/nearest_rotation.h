@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The rotation nearest to a matrix, followed from step to step (Mueller, Bender, Chentanez, Macklin 2016, "A robust method to extract the
+// rotational part of deformations"): R turns by sum r_i x a_i / |sum r_i . a_i| until its columns r_i lie along those of the matrix, a_i.
+#pragma once
+#include <cmath>
+
+#include "core/base/math.h"
+
+namespace insula {
+
+/// Turns q, a guess, to it and returns it as a matrix. Never fails; what little is left after a few turns comes in the next step.
+inline Mat3 nearest_rotation(const Mat3& a, Quat& q) {
+  Mat3 r = q.toRotationMatrix();
+  for (int k = 0; k < 8; ++k) {
+    Vec3 moment = Vec3::Zero();
+    double along = 0;
+    for (int c = 0; c < 3; ++c) {
+      moment += r.col(c).cross(a.col(c));
+      along += r.col(c).dot(a.col(c));
+    }
+    const double size = std::abs(along);
+    if (!(size > 0)) break;
+    const Vec3 turn = moment / size;
+    q = (from_rotation_vector(turn) * q).normalized();
+    r = q.toRotationMatrix();
+    if (turn.squaredNorm() < 1e-12) break;
+  }
+  return r;
+}
+
+}  // namespace insula

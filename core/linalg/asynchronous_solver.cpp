@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The step's side, then the thread's.
+#include "core/linalg/asynchronous_solver.h"
+
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace insula {
+namespace {
+
+constexpr double poor = 0.05;  ///< a factor that leaves more than this of an error in each iteration is replaced
+
+double largest(const std::vector<double>& x) {
+  double out = 0;
+  for (std::size_t i = 0; i + 2 < x.size(); i += 3) out = std::max(out, x[i] * x[i] + x[i + 1] * x[i + 1] + x[i + 2] * x[i + 2]);
+  return std::sqrt(out);
+}
+
+double product(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum[4] = {};
+  std::size_t i = 0;
+  for (; i + 4 <= a.size(); i += 4)
+    for (std::size_t k = 0; k < 4; ++k) sum[k] += a[i + k] * b[i + k];
+  for (; i < a.size(); ++i) sum[0] += a[i] * b[i];
+  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+}
+
+}  // namespace
+
+AsynchronousSolver::AsynchronousSolver(double tolerance) : tolerance_(tolerance) {}
+
+void AsynchronousSolver::analyse(const BlockMatrix& a) {
+  front_ = std::make_unique<Factor>();
+  front_->analyse(a);
+  back_ = std::make_unique<Factor>(*front_);
+  const std::size_t n = 3 * std::size_t(a.nodes());
+  for (std::vector<double>* v : {&b_, &r_, &z_, &p_, &ap_, &last_x_, &difference_}) v->assign(n, 0.0);
+  turned_.assign(std::size_t(a.nodes()), Mat3::Identity());
+  since_ = factor_turned_ = asked_turned_ = turned_;
+  matrix_ = a;
+  if (!thread_.joinable()) thread_ = std::thread([this] { work(); });
+}
+
+void AsynchronousSolver::turn(const std::vector<Mat3>& rotation) { turned_ = rotation; }
+
+bool AsynchronousSolver::factorise(const BlockMatrix& a) {
+  a_ = &a;
+  if (!usable_) {
+    status_ = {};
+    if (!front_->factorise(a)) return false;
+    usable_ = true;
+    factor_turned_ = turned_;
+    ++status_.factors;
+  } else {
+    ++status_.age;
+    take();
+    if (status_.iterations > enough_iterations || seen_ > poor) ask();
+    quality_ = std::min(1.0, 2 * quality_);  // what was true a step ago is less so now
+  }
+  status_.iterations = 0;
+  status_.residual_m = 0;
+  for (std::size_t i = 0; i < since_.size(); ++i) since_[i].noalias() = turned_[i] * factor_turned_[i].transpose();
+  return true;
+}
+
+void AsynchronousSolver::precondition(const double* r, double* z) {
+  for (std::size_t i = 0; i < since_.size(); ++i) Eigen::Map<Vec3>(z + 3 * i) = since_[i].transpose() * Eigen::Map<const Vec3>(r + 3 * i);
+  front_->solve(z);
+  for (std::size_t i = 0; i < since_.size(); ++i) Eigen::Map<Vec3>(z + 3 * i) = (since_[i] * Eigen::Map<Vec3>(z + 3 * i)).eval();
+}
+
+// Preconditioned conjugate gradients from x. What an iteration leaves is told from how much the last ones left: to look would cost as
+// much as another.
+void AsynchronousSolver::refine(const double* b, double* x) {
+  const std::size_t n = r_.size();
+  std::fill(ap_.begin(), ap_.end(), 0.0);
+  a_->add_product(x, ap_.data());
+  for (std::size_t i = 0; i < n; ++i) r_[i] = b[i] - ap_[i];
+  double before = 0, size = 0, left = 0;
+  int k = 0;
+  while (k < most_iterations) {
+    precondition(r_.data(), z_.data());
+    const double last = size;
+    size = largest(z_);
+    if (k > 0 && last > 0) quality_ = seen_ = size / last;
+    const double rz = product(r_, z_), beta = k > 0 ? rz / before : 0;
+    before = rz;
+    for (std::size_t i = 0; i < n; ++i) p_[i] = z_[i] + beta * p_[i];
+    std::fill(ap_.begin(), ap_.end(), 0.0);
+    a_->add_product(p_.data(), ap_.data());
+    const double curvature = product(p_, ap_);
+    ++k;
+    if (!(curvature > 0)) break;
+    const double alpha = rz / curvature;
+    for (std::size_t i = 0; i < n; ++i) {
+      x[i] += alpha * p_[i];
+      r_[i] -= alpha * ap_[i];
+    }
+    left = size * std::min(1.0, quality_);
+    if (left <= tolerance_) break;
+  }
+  status_.iterations = std::max(status_.iterations, k);
+  status_.residual_m = std::max(status_.residual_m, left);
+}
+
+void AsynchronousSolver::solve_from(double* x, const double* guess) {
+  std::copy_n(x, b_.size(), b_.data());
+  if (guess) std::copy_n(guess, b_.size(), x);
+  else std::fill_n(x, b_.size(), 0.0);
+  refine(b_.data(), x);
+}
+
+void AsynchronousSolver::begin_compliance(const BodyRows& rows, const std::vector<int>& node_of_block) {
+  turned_rows_.row = rows.row;
+  turned_rows_.start = rows.start;
+  turned_rows_.block = rows.block;
+  turned_rows_.coeff.resize(rows.coeff.size());
+  for (std::size_t e = 0; e < rows.coeff.size(); ++e)
+    if (const int node = node_of_block[std::size_t(rows.block[e])]; node >= 0) turned_rows_.coeff[e].noalias() = since_[std::size_t(node)].transpose() * rows.coeff[e];
+    else turned_rows_.coeff[e].setZero();
+  nodes_of_block_ = &node_of_block;
+  front_->begin_compliance(turned_rows_, node_of_block);
+  last_lambda_.clear();
+}
+
+// From what the last lambda gave, if there was one, by the compliance of what changed; then with the step's own matrix.
+void AsynchronousSolver::correct(const BodyRows& rows, const double* lambda, double* x) {
+  const std::size_t m = std::size_t(rows.count()), n = b_.size();
+  const bool again = last_lambda_.size() == m;
+  if (!again) {
+    last_lambda_.assign(m, 0.0);
+    std::fill(last_x_.begin(), last_x_.end(), 0.0);
+  }
+  double moved = 0;
+  if (m > 0 && change_.size() < std::size_t(rows.row[m - 1]) + 1) change_.resize(std::size_t(rows.row[m - 1]) + 1);
+  for (std::size_t i = 0; i < m; ++i) {
+    change_[std::size_t(rows.row[i])] = lambda[rows.row[i]] - last_lambda_[i];
+    last_lambda_[i] = lambda[rows.row[i]];
+    moved = std::max(moved, std::abs(change_[std::size_t(rows.row[i])]));
+  }
+  if (moved == 0) {
+    std::copy(last_x_.begin(), last_x_.end(), x);
+    return;
+  }
+  front_->correct(turned_rows_, change_.data(), difference_.data());
+  for (std::size_t i = 0; i < since_.size(); ++i) Eigen::Map<Vec3>(difference_.data() + 3 * i) = (since_[i] * Eigen::Map<Vec3>(difference_.data() + 3 * i)).eval();
+  for (std::size_t i = 0; i < n; ++i) last_x_[i] += difference_[i];
+  // A small change is good enough as the factor knows it.
+  if (!again || largest(difference_) * std::max(quality_, 0.05) > tolerance_) {
+    std::fill(b_.begin(), b_.end(), 0.0);
+    for (std::size_t i = 0; i < m; ++i)
+      for (int e = rows.start[i]; e < rows.start[i + 1]; ++e)
+        if (const int node = (*nodes_of_block_)[std::size_t(rows.block[std::size_t(e)])]; node >= 0)
+          Eigen::Map<Vec3>(b_.data() + 3 * node) += lambda[rows.row[i]] * rows.coeff[std::size_t(e)];
+    refine(b_.data(), last_x_.data());
+  }
+  std::copy(last_x_.begin(), last_x_.end(), x);
+}
+
+void AsynchronousSolver::forget() {
+  std::unique_lock lock(mutex_);
+  done_.wait(lock, [this] { return state_ != State::asked; });
+  state_ = State::idle;
+  usable_ = false;
+  quality_ = 1;
+    seen_ = 0;
+  status_ = {};
+}
+
+void AsynchronousSolver::ask() {
+  std::unique_lock lock(mutex_, std::try_to_lock);
+  if (!lock || state_ != State::idle) return;
+  matrix_ = *a_;  // same pattern: nothing is allocated
+  asked_turned_ = turned_;
+  asked_steps_ = 0;
+  state_ = State::asked;
+  lock.unlock();
+  wake_.notify_one();
+}
+
+void AsynchronousSolver::take() {
+  std::unique_lock lock(mutex_);
+  if (state_ == State::idle) return;
+  ++asked_steps_;
+  if (may_wait_) {
+    if (asked_steps_ < delay()) return;
+    done_.wait(lock, [this] { return state_ != State::asked; });
+  }
+  if (state_ == State::asked) return;
+  if (state_ == State::ready) {
+    std::swap(front_, back_);
+    std::swap(factor_turned_, asked_turned_);
+    status_.age = asked_steps_;
+    quality_ = 1;
+    seen_ = 0;
+    ++status_.factors;
+  }
+  state_ = State::idle;
+}
+
+void AsynchronousSolver::work() {
+  // Beside the step and the servo, not before them.
+  setpriority(PRIO_PROCESS, id_t(syscall(SYS_gettid)), 10);
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    wake_.wait(lock, [this] { return state_ == State::asked || stop_; });
+    if (stop_) return;
+    lock.unlock();
+    const bool good = back_->factorise(matrix_);
+    lock.lock();
+    state_ = good ? State::ready : State::failed;
+    done_.notify_all();
+  }
+}
+
+AsynchronousSolver::~AsynchronousSolver() {
+  {
+    std::lock_guard lock(mutex_);
+    stop_ = true;
+  }
+  wake_.notify_one();
+  if (thread_.joinable()) thread_.join();
+}
+
+}  // namespace insula

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Solver of large bodies: conjugate gradients on the step's own matrix A, preconditioned by a factor that a thread of its own made
+// of the matrix of some steps ago (Courtecuisse, Allard, Kerfriden, Bordas, Cotin, Duriez 2010 and 2014). With R the nodes'
+// rotations since then,
+//     P^-1 = R A0^-1 R^T,
+// for a co-rotational matrix turns with its nodes. A step never waits for a factor: it goes on with the old one, and pays with iterations.
+//
+// Compliance of rows is H P^-1 H^T; what it lacks is told by correct(), which solves with A, and is put right by defect correction
+// (Simulation::step). Every solve ends when P^-1 of what is left moves no node by more than `tolerance`, and then is moved by just that.
+#pragma once
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+
+#include "core/linalg/block_cholesky.h"
+
+namespace insula {
+
+class AsynchronousSolver final : public BodySolver {
+ public:
+  explicit AsynchronousSolver(double tolerance);  ///< m
+  ~AsynchronousSolver() override;
+
+  std::string name() const override { return "asynchronous"; }
+  void analyse(const BlockMatrix& a) override;
+  /// Takes the step's matrix, which must stay as it is until the next call. The first is factorised at once; later ones in the
+  /// background, when iterations have become many. False: the first was not positive definite.
+  bool factorise(const BlockMatrix& a) override;
+  bool wants_rotations() const override { return true; }
+  void turn(const std::vector<Mat3>& rotation) override;
+  void solve(double* x) override { solve_from(x, nullptr); }
+  void solve_from(double* x, const double* guess) override;
+  void begin_compliance(const BodyRows& rows, const std::vector<int>& node_of_block) override;
+  int compliance_parts() const override { return front_->compliance_parts(); }
+  void compliance_part(int part) override { front_->compliance_part(part); }
+  void end_compliance() override { front_->end_compliance(); }
+  void add_compliance(const BodyRows& rows, double* w, int stride) const override { front_->add_compliance(rows, w, stride); }
+  void correct(const BodyRows& rows, const double* lambda, double* x) override;
+  bool exact() const override { return false; }
+  void forget() override;
+  void may_wait(bool yes) override { may_wait_ = yes; }
+  SolverStatus status() const override { return status_; }
+  SolverCost cost() const override { return front_->cost(); }
+
+  /// A factor asked for is put in place so many steps later when waiting is allowed: about what a busy core needs for it, but by its flops, not
+  /// by a clock, so that the same input gives the same bits.
+  int delay() const { return 1 + int(front_->cost().factor_flops / 5e8); }
+  static constexpr int enough_iterations = 2;  ///< of a solve: more of them and a new factor is asked for
+  static constexpr int most_iterations = 12;
+
+ private:
+  using Factor = MultifrontalCholesky<float>;
+  void precondition(const double* r, double* z);
+  void refine(const double* b, double* x);
+  void ask();
+  void take();
+  void work();
+
+  double tolerance_;
+  const BlockMatrix* a_ = nullptr;
+  std::unique_ptr<Factor> front_, back_;
+  std::vector<Mat3> turned_, factor_turned_, asked_turned_;  ///< of each node: now, as the front's factor knows it, the back's
+  std::vector<Mat3> since_;                                 ///< now from then
+  BodyRows turned_rows_;
+  std::vector<double> b_, r_, z_, p_, ap_, last_lambda_, last_x_, difference_, change_;
+  const std::vector<int>* nodes_of_block_ = nullptr;
+  double seen_ = 0;     ///< what an iteration left of an error, when last seen
+  double quality_ = 1;  ///< the same, doubled in every step until seen again
+  SolverStatus status_;
+  bool may_wait_ = true, usable_ = false;
+
+  // The thread and what it shares; `state_` says whose the back factor and the matrix are.
+  enum class State { idle, asked, ready, failed };
+  std::thread thread_;
+  std::mutex mutex_;
+  std::condition_variable wake_, done_;
+  State state_ = State::idle;
+  bool stop_ = false;
+  BlockMatrix matrix_;
+  int asked_steps_ = 0;
+};
+
+}  // namespace insula

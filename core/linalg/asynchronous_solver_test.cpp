@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The solver with a factor of another step: against dense algebra, with matrices that turn and change while it works.
+#include "core/linalg/asynchronous_solver.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <random>
+
+namespace insula {
+namespace {
+
+constexpr double tolerance = 1e-7;
+
+// A chain of boxes of nodes: positive definite, and badly enough conditioned that a diagonal would not do as a preconditioner.
+struct System {
+  static constexpr int nx = 7, ny = 4, nz = 4, nodes = nx * ny * nz;
+  BlockMatrix a;
+  MatX dense = MatX::Zero(3 * nodes, 3 * nodes);
+  std::vector<std::pair<int, int>> pairs;
+  std::vector<Mat3> block;  // of each pair, and of the diagonal
+
+  explicit System(unsigned seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> u(0.2, 1);
+    const auto at = [](int x, int y, int z) { return (z * ny + y) * nx + x; };
+    for (int z = 0; z < nz; ++z)
+      for (int y = 0; y < ny; ++y)
+        for (int x = 0; x < nx; ++x)
+          for (int d = 0; d < 3; ++d) {
+            const int to[3] = {x + (d == 0), y + (d == 1), z + (d == 2)};
+            if (to[0] < nx && to[1] < ny && to[2] < nz) pairs.emplace_back(at(x, y, z), at(to[0], to[1], to[2]));
+          }
+    a.set_pattern(nodes, pairs);
+    for (std::size_t k = 0; k < pairs.size(); ++k) block.push_back(Vec3(u(random), u(random), u(random)).asDiagonal());
+    fill(std::vector<Mat3>(nodes, Mat3::Identity()), 0);
+  }
+  // Springs R_i B R_j^T between neighbours: the energy of differences in each node's own turned frame. `stiffer` changes some.
+  void fill(const std::vector<Mat3>& r, double stiffer) {
+    dense.setZero();
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+      const auto [i, j] = pairs[k];
+      const Mat3 b = block[k] * (k % 5 == 0 ? 1 + stiffer : 1.0);
+      const Mat3 &ri = r[std::size_t(i)], &rj = r[std::size_t(j)];
+      dense.block<3, 3>(3 * i, 3 * i) += ri * b * ri.transpose();
+      dense.block<3, 3>(3 * j, 3 * j) += rj * b * rj.transpose();
+      dense.block<3, 3>(3 * i, 3 * j) -= ri * b * rj.transpose();
+      dense.block<3, 3>(3 * j, 3 * i) -= rj * b * ri.transpose();
+    }
+    dense.diagonal().array() += 1e-2;
+    a.set_zero();
+    for (int j = 0; j < nodes; ++j)
+      for (int s = a.column_start(j); s < a.column_start(j + 1); ++s) Eigen::Map<Mat3>(a.block(s)) = dense.block<3, 3>(3 * a.row(s), 3 * j);
+  }
+};
+
+std::vector<Mat3> turned(double angle) {
+  std::vector<Mat3> r(System::nodes);
+  for (int i = 0; i < System::nodes; ++i) r[std::size_t(i)] = from_rotation_vector(Vec3(angle, 0.3 * angle * i / System::nodes, -0.5 * angle)).toRotationMatrix();
+  return r;
+}
+
+VecX any(unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> u(-1, 1);
+  VecX b(3 * System::nodes);
+  for (double& x : b) x = u(random);
+  return b;
+}
+
+double worst_node(const VecX& x) {
+  double w = 0;
+  for (int i = 0; i < int(x.size()) / 3; ++i) w = std::max(w, x.segment<3>(3 * i).norm());
+  return w;
+}
+
+int iterations(AsynchronousSolver& solver, const System& s) {
+  const VecX b = any(9);
+  VecX x = b;
+  solver.solve(x.data());
+  EXPECT_LT(worst_node(x - s.dense.ldlt().solve(b)), 5 * tolerance) << "what is left is judged with the old factor";
+  return solver.status().iterations;
+}
+
+TEST(AsynchronousSolver, SolvesToItsToleranceWithAnOldFactor) {
+  System s(1);
+  AsynchronousSolver solver(tolerance);
+  solver.analyse(s.a);
+  ASSERT_TRUE(solver.factorise(s.a));
+  EXPECT_LE(iterations(solver, s), 3) << "single precision alone";
+  s.fill(turned(0), 0.5);
+  ASSERT_TRUE(solver.factorise(s.a));
+  const int changed = iterations(solver, s);
+  EXPECT_GT(changed, 3);
+  EXPECT_EQ(solver.status().age, 1);
+}
+
+TEST(AsynchronousSolver, AMatrixThatTurnsWithItsNodesCostsNothing) {
+  System s(2);
+  for (const bool told : {false, true}) {
+    s.fill(turned(0), 0);
+    AsynchronousSolver solver(tolerance);
+    solver.analyse(s.a);
+    ASSERT_TRUE(solver.factorise(s.a));
+    const auto r = turned(0.7);
+    s.fill(r, 0);
+    if (told) solver.turn(r);
+    ASSERT_TRUE(solver.factorise(s.a));
+    if (told) {
+      EXPECT_LE(iterations(solver, s), 3);
+    } else {
+      VecX x = any(9);
+      solver.solve(x.data());
+      EXPECT_GT(solver.status().iterations, 8);
+    }
+  }
+}
+
+TEST(AsynchronousSolver, AFactorComesSoManyStepsAfterItWasAskedFor) {
+  System s(3);
+  AsynchronousSolver solver(tolerance);
+  solver.analyse(s.a);
+  ASSERT_TRUE(solver.factorise(s.a));
+  s.fill(turned(0), 3);
+  ASSERT_TRUE(solver.factorise(s.a));
+  ASSERT_GT(iterations(solver, s), AsynchronousSolver::enough_iterations);
+  for (int k = 0; k < solver.delay(); ++k) {
+    ASSERT_EQ(solver.status().factors, 1) << k;
+    ASSERT_TRUE(solver.factorise(s.a));
+    iterations(solver, s);
+  }
+  ASSERT_TRUE(solver.factorise(s.a));
+  EXPECT_EQ(solver.status().factors, 2);
+  EXPECT_EQ(solver.status().age, solver.delay());
+  EXPECT_LE(iterations(solver, s), 3);
+}
+
+TEST(AsynchronousSolver, WithoutLeaveToWaitAStepGoesOnWithTheOldFactor) {
+  System s(4);
+  AsynchronousSolver solver(tolerance);
+  solver.may_wait(false);
+  solver.analyse(s.a);
+  ASSERT_TRUE(solver.factorise(s.a));
+  s.fill(turned(0), 3);
+  // However long the thread takes, every step has a solution; and at last the factor comes.
+  int steps = 0;
+  for (; solver.status().factors < 2 && steps < 100000; ++steps) {
+    ASSERT_TRUE(solver.factorise(s.a));
+    VecX x = any(unsigned(steps));
+    solver.solve(x.data());
+    ASSERT_TRUE(x.allFinite());
+  }
+  EXPECT_EQ(solver.status().factors, 2);
+}
+
+TEST(AsynchronousSolver, CorrectionKnowsTheStepsOwnMatrix) {
+  System s(5);
+  AsynchronousSolver solver(tolerance);
+  solver.analyse(s.a);
+  ASSERT_TRUE(solver.factorise(s.a));
+  const auto r = turned(0.3);
+  s.fill(r, 0.3);
+  solver.turn(r);
+  ASSERT_TRUE(solver.factorise(s.a));
+
+  constexpr int m = 12;
+  BodyRows rows;
+  rows.clear();
+  MatX h = MatX::Zero(m, 3 * System::nodes);
+  std::vector<int> identity(System::nodes);
+  for (int i = 0; i < System::nodes; ++i) identity[std::size_t(i)] = i;
+  const VecX c = any(7);
+  for (int i = 0; i < m; ++i) {
+    rows.open(2 * i);  // rows of another body lie between
+    for (int k = 0; k < 3; ++k) {
+      const int node = (17 * i + 5 * k) % System::nodes;
+      rows.add(node, c.segment<3>(3 * (i + k)));
+      h.block<1, 3>(i, 3 * node) += c.segment<3>(3 * (i + k)).transpose();
+    }
+  }
+  solver.compute_compliance(rows, identity);
+  MatX w = MatX::Zero(2 * m, 2 * m), near(m, m);
+  solver.add_compliance(rows, w.data(), 2 * m);
+  for (int i = 0; i < m; ++i)
+    for (int j = 0; j < m; ++j) near(i, j) = w(2 * i, 2 * j);
+  const MatX truth = h * s.dense.ldlt().solve(h.transpose());
+  const double apart = (near - truth).norm() / truth.norm();
+  EXPECT_LT(apart, 0.3);
+  EXPECT_GT(apart, 1e-4) << "there is something to correct";
+
+  VecX lambda = VecX::Zero(2 * m), x(3 * System::nodes);
+  for (const double scale : {1.0, 1.001, 0.2}) {
+    VecX own = VecX::Zero(m);
+    for (int i = 0; i < m; ++i) own[i] = lambda[2 * i] = 1e-3 * scale * std::cos(i + scale);
+    solver.correct(rows, lambda.data(), x.data());
+    EXPECT_LT(worst_node(x - s.dense.ldlt().solve(h.transpose() * own)), 3 * tolerance) << scale;
+  }
+}
+
+TEST(AsynchronousSolver, ForgetsAndBeginsAnewWithTheSameBits) {
+  System s(6);
+  AsynchronousSolver solver(tolerance);
+  solver.analyse(s.a);
+  std::vector<double> bits[2];
+  for (auto& out : bits) {
+    solver.forget();
+    s.fill(turned(0), 0);
+    ASSERT_TRUE(solver.factorise(s.a));
+    for (int k = 0; k < 30; ++k) {
+      const auto r = turned(0.01 * k);
+      s.fill(r, 0.05 * k);
+      solver.turn(r);
+      ASSERT_TRUE(solver.factorise(s.a));
+      VecX x = any(unsigned(k));
+      solver.solve(x.data());
+      out.insert(out.end(), x.data(), x.data() + x.size());
+    }
+    solver.turn(turned(0));
+  }
+  EXPECT_EQ(bits[0], bits[1]);
+  EXPECT_GT(solver.status().factors, 1);
+}
+
+}  // namespace
+}  // namespace insula
