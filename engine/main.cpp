@@ -92,7 +92,11 @@ int main(int argc, char** argv) {
   bench->add_option("--motion", bench_options.motion, "what the hands do: a motion of the exercise, a CSV file, or none")->capture_default_str();
   bench->add_option("--threads", bench_options.threads, "threads; 0 takes the machine's");
   bench->add_flag("--json", bench_options.json, "print JSON");
-  bench->callback([&] { run = [&](const auto& c) { return insula::cmd_bench(c, bench_options); }; });
+  bench->add_flag("--solvers", bench_options.solvers, "compare the solvers on the matrices and rows of the step at --from");
+  bench->add_option("--rows", bench_options.rows, "with --solvers: so many rows of each body at most; 0 takes all")->check(CLI::NonNegativeNumber);
+  bench->callback([&] {
+    run = [&](const auto& c) { return bench_options.solvers ? insula::cmd_bench_solvers(c, bench_options) : insula::cmd_bench(c, bench_options); };
+  });
 
   insula::EngineOptions engine_options;
   auto* engine = app.add_subcommand("engine", "the engine process of a session, over the bus");

@@ -30,9 +30,13 @@ struct BenchOptions {
   double from = 0;   ///< simulated time at which measuring begins, s
   int threads = 0;
   bool json = false;
+  bool solvers = false;  ///< compare solvers instead
+  int rows = 0;          ///< of each body, for the comparison of solvers; 0: all of them
 };
 /// Steps a scene as fast as it goes and prints where each millisecond went.
 int cmd_bench(const CommandContext& context, const BenchOptions& options);
+/// Takes every deformable body's matrix and rows of one step and compares solvers on them: time, error, share of the machine.
+int cmd_bench_solvers(const CommandContext& context, const BenchOptions& options);
 
 struct EngineOptions {
   std::filesystem::path scene;

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/linalg/dot.h"
+#include "core/linalg/flush_subnormals.h"
 #include "core/linalg/kernels.h"
 
 namespace insula {
@@ -18,10 +19,13 @@ void MultifrontalCholesky<Real>::analyse(const BlockMatrix& a) {
   x_.assign(3 * std::size_t(e_.nodes) + slack, Real(0));
   below_.assign(3 * std::size_t(e_.nodes) + slack, Real(0));
   columns_ = 0;
+  rows_factor_ = -1;
 }
 
 template <class Real>
 bool MultifrontalCholesky<Real>::factorise(const BlockMatrix& a) {
+  [[maybe_unused]] const FlushSubnormals<Real> flush;
+  ++factor_number_;
   for (const Front& f : e_.front)
     if (!factorise(a, f)) return false;
   return true;
@@ -41,7 +45,10 @@ bool MultifrontalCholesky<Real>::factorise(const BlockMatrix& a, const Front& f)
       for (int r = 0; r < 3; ++r) to[long(c) * f.lda + r] = Real(sc.transpose ? b[3 * r + c] : b[3 * c + r]);
   }
   Real* update = below > 0 ? update_.data() + f.update : nullptr;
-  if (update) std::memset(update, 0, sizeof(Real) * std::size_t(f.ldu) * std::size_t((below + lanes - 1) & -lanes));
+  for (int j = 0; j < below; ++j) {  // its lower triangle
+    const int top = j & -lanes;
+    std::memset(update + long(j) * f.ldu + top, 0, sizeof(Real) * std::size_t(f.ldu - top));
+  }
   for (int c : f.children) add_child(f, e_.front[std::size_t(c)]);
   if (k.cholesky_panel(panel, f.lda, rows, own) >= 0 || !pivots_are_good(a, f)) return false;
   if (below > 0) k.syrk_sub(update, f.ldu, panel + own, f.lda, below, own);
@@ -130,6 +137,7 @@ void MultifrontalCholesky<Real>::backward(Real* x) {
 
 template <class Real>
 void MultifrontalCholesky<Real>::solve(double* x) {
+  [[maybe_unused]] const FlushSubnormals<Real> flush;
   for (int p = 0; p < e_.nodes; ++p)
     for (int k = 0; k < 3; ++k) x_[std::size_t(3 * p + k)] = Real(x[3 * e_.natural[std::size_t(p)] + k]);
   forward(x_.data());

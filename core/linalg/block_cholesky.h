@@ -4,10 +4,12 @@
 // The factor and all that is made with it is in Real; matrix, vectors and compliance outside are in double.
 // Everything after analyse() allocates nothing unless the number of rows grows past what was seen.
 #pragma once
+#include <array>
 #include <vector>
 
 #include "core/linalg/body_solver.h"
 #include "core/linalg/elimination.h"
+#include "core/linalg/row_entries.h"
 
 namespace insula {
 
@@ -19,16 +21,17 @@ class MultifrontalCholesky final : public BodySolver {
   bool factorise(const BlockMatrix& a) override;
   void solve(double* x) override;
   void begin_compliance(const BodyRows& rows, const std::vector<int>& node_of_block) override;
-  int compliance_parts() const override { return columns_ >= 2 * least_part ? most_parts : columns_ > 0 && e_.nodes > 0 ? 1 : 0; }
+  int compliance_parts() const override;
   void compliance_part(int part) override;
   void end_compliance() override;
   void add_compliance(const BodyRows& rows, double* w, int stride) const override;
   void correct(const BodyRows& rows, const double* lambda, double* x) override;
-  SolverCost cost() const override { return {e_.entries, e_.flops, 2.0 * sizeof(Real) * double(e_.entries)}; }
+  int rows_reused() const override { return reused_; }
+  SolverCost cost() const override;
   int supernodes() const { return int(e_.front.size()); }
 
  private:
-  static constexpr int most_parts = 4, least_part = 32;   ///< parts; columns that are worth one
+  static constexpr int least_part = 32;                   ///< columns that are worth a part
   static constexpr int lanes = 64 / int(sizeof(Real));    ///< of the widest vector; what leading dimensions are multiples of
   static constexpr int slack = 64;                        ///< kernels read whole vectors
 
@@ -42,11 +45,29 @@ class MultifrontalCholesky final : public BodySolver {
   Elimination e_;
   std::vector<Real> panel_, update_, x_, below_;  ///< below_: of one front, gathered
 
-  // Rows in flight.
+  // Rows in flight. Columns of Y are theirs in `order_` (-1: a column of zeros), fresh ones up to fresh_, then known ones.
+  struct Columns {
+    int begin, end;
+  };
+  void arrange();
+  void clear_fresh();
+  void copy_known();
   std::vector<Real> y_, s_, lambda_;
-  std::vector<int> order_, begin_, active_lo_, active_hi_;
-  long ldy_ = 0;
+  std::vector<int> order_, begin_;
+  std::array<std::vector<Columns>, 2> active_;  ///< fresh, known; of each front
+  RowEntries entries_;
+  long ldy_ = 0, fresh_ = 0;
   int columns_ = 0;
+
+  // The rows before, as long as the factor is theirs.
+  std::int64_t factor_number_ = 0, rows_factor_ = -1;
+  RowEntries before_;
+  std::vector<Real> old_y_, old_s_;
+  std::vector<int> old_order_, old_column_, known_;  ///< known_: the row's number among the rows before, -1
+  std::array<std::vector<Columns>, 2> old_active_;
+  long old_ldy_ = 0;
+  int reused_ = 0;
+  bool unchanged_ = false;  ///< all rows are those before
 };
 
 extern template class MultifrontalCholesky<double>;

@@ -148,6 +148,85 @@ TYPED_TEST(Direct, SaysWhenAPivotIsLost) {
   EXPECT_TRUE(c.factorise(a));
 }
 
+// Rows come, stay, change their place, change their entries and go while the factor stays, then the factor is made anew: W is to
+// the bit what a solver gives that sees these rows for the first time.
+TYPED_TEST(Direct, RowsThatStayAreNotSolvedAgain) {
+  Problem p = make(6, 6, 5, 70, 11), other = make(6, 6, 5, 70, 12);
+  const auto choose = [](const BodyRows& from, const std::vector<int>& rows, BodyRows& to) {
+    for (int r : rows) {
+      to.open(to.count());
+      for (int e = from.start[std::size_t(r)]; e < from.start[std::size_t(r) + 1]; ++e) to.add(from.block[std::size_t(e)], from.coeff[std::size_t(e)]);
+    }
+  };
+  std::vector<int> none, all, odd, turned, most;
+  for (int r = 0; r < 70; ++r) {
+    all.push_back(r);
+    turned.push_back(69 - r);
+    if (r % 2) odd.push_back(r);
+    if (r % 9) most.push_back(r);
+  }
+  struct Act {
+    std::vector<int> kept, fresh;  ///< of p, of other
+    int reused;
+  };
+  const std::vector<Act> acts = {{all, none, 0}, {all, none, 70}, {turned, none, 70}, {odd, {}, 35}, {odd, {5}, 35}, {odd, odd, 36}, {most, {3, 9}, 33}, {none, {4}, 0},
+                                 {none, {4, 4}, 2}, {none, none, 0}, {odd, {3}, 0}, {odd, {3}, 36}};
+  MultifrontalCholesky<TypeParam> c;
+  c.analyse(p.a);
+  for (int factor = 0; factor < 2; ++factor) {
+    p.a.block(p.a.diagonal(17))[0] += factor;
+    ASSERT_TRUE(c.factorise(p.a));
+    for (const Act& act : acts) {
+      BodyRows rows;
+      rows.clear();
+      choose(p.rows, act.kept, rows);
+      choose(other.rows, act.fresh, rows);
+      const int m = rows.count(), stride = 80;
+      std::vector<double> w(80 * 80, 0.0), expected(w);
+      c.compute_compliance(rows, p.identity);
+      c.add_compliance(rows, w.data(), stride);
+      EXPECT_EQ(c.rows_reused(), act.reused);
+      MultifrontalCholesky<TypeParam> fresh;
+      fresh.analyse(p.a);
+      ASSERT_TRUE(fresh.factorise(p.a));
+      fresh.compute_compliance(rows, p.identity);
+      fresh.add_compliance(rows, expected.data(), stride);
+      EXPECT_EQ(fresh.rows_reused(), 0);
+      EXPECT_EQ(w, expected) << m << " rows";
+      VecX lambda = VecX::LinSpaced(std::max(m, 1), 1, 2), x(p.dense.rows()), y(x);
+      c.correct(rows, lambda.data(), x.data());
+      fresh.correct(rows, lambda.data(), y.data());
+      EXPECT_LT((x - y).template lpNorm<Eigen::Infinity>(), this->tolerance);
+    }
+  }
+}
+
+// A chain so long that what its ends know of each other is below the smallest normal number in single precision. That is no reason
+// to be slow (see FlushSubnormals), nor to be wrong, and the caller's rounding mode stays as it was.
+TYPED_TEST(Direct, WhatIsFarApartMayVanish) {
+  const int n = 60;
+  std::vector<std::pair<int, int>> pairs;
+  for (int i = 0; i + 1 < n; ++i) pairs.emplace_back(i, i + 1);
+  BlockMatrix a;
+  a.set_pattern(n, pairs);
+  for (int i = 0; i < n; ++i)
+    for (int k = 0; k < 3; ++k) {
+      a.block(a.diagonal(i))[4 * k] = 10;
+      if (i + 1 < n) a.block(a.slot(i + 1, i))[4 * k] = -1;
+    }
+  MultifrontalCholesky<TypeParam> c;
+  c.analyse(a);
+  ASSERT_TRUE(c.factorise(a));
+  VecX x = VecX::Zero(3 * n);
+  x[0] = 1;
+  c.solve(x.data());
+  const double ratio = 5 - std::sqrt(24.0);  // of an endless chain, node to node
+  EXPECT_NEAR(x[0], ratio, 4 * double(std::numeric_limits<TypeParam>::epsilon()));
+  EXPECT_NEAR(x[3 * (n - 1)] / std::pow(ratio, n), sizeof(TypeParam) == 8 ? 1 : 0, 0.02);
+  volatile double smallest = std::numeric_limits<double>::min();
+  EXPECT_GT(smallest / 2, 0);
+}
+
 // The lesser precision costs what its rounding says, not more: W in float against W in double.
 TEST(DirectSolver, SinglePrecisionIsAsGoodAsItsRounding) {
   Problem p = make(8, 8, 6, 60, 3);

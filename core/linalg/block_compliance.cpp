@@ -2,90 +2,155 @@
 // The Delassus operator of one body: Y = L^-1 P H^T on the reach of the rows, W = Y^T Y.
 // Rows are sorted by the first column they touch. In a postordered tree the descendants of a supernode are one range
 // of columns, so the rows active there are (nearly) one range too: only that range is solved and multiplied.
+// While the factor stays, rows that stay keep their column of Y, and W among themselves; they stand in a range of their own
+// behind the fresh ones.
 #include <algorithm>
 #include <cstring>
 
 #include "core/linalg/block_cholesky.h"
 #include "core/linalg/dot.h"
+#include "core/linalg/flush_subnormals.h"
 #include "core/linalg/kernels.h"
 
 namespace insula {
 
-// Y = P H^T.
+// Which rows are known, which fresh; Y = P H^T of the fresh ones.
 template <class Real>
 void MultifrontalCholesky<Real>::begin_compliance(const BodyRows& rows, const std::vector<int>& node_of_block) {
   const int m = rows.count();
+  const bool kept = rows_factor_ == factor_number_ && columns_ > 0;
+  rows_factor_ = -1;
   columns_ = m;
+  reused_ = 0;
+  unchanged_ = false;
   if (m == 0 || e_.nodes == 0) return;
-  // First and last touched column of each row.
-  begin_.resize(std::size_t(m));
-  order_.resize(std::size_t(m));
-  for (int r = 0; r < m; ++r) {
-    int first = e_.nodes;
-    for (int e = rows.start[std::size_t(r)]; e < rows.start[std::size_t(r) + 1]; ++e) {
-      const int node = node_of_block[std::size_t(rows.block[std::size_t(e)])];
-      if (node >= 0) first = std::min(first, e_.permuted[std::size_t(node)]);
-    }
-    begin_[std::size_t(r)] = first;
-    order_[std::size_t(r)] = r;
+  std::swap(entries_, before_);
+  entries_.take(rows, node_of_block, e_.permuted);
+  known_.assign(std::size_t(m), -1);
+  bool same = kept && before_.count() == m;
+  for (int r = 0; kept && r < m; ++r) {
+    known_[std::size_t(r)] = before_.find(entries_, r);
+    reused_ += known_[std::size_t(r)] >= 0;
+    same = same && known_[std::size_t(r)] == r;
   }
-  std::sort(order_.begin(), order_.end(), [this](int x, int y) {
-    const int bx = begin_[std::size_t(x)], by = begin_[std::size_t(y)];
-    return bx != by ? bx < by : x < y;
-  });
-  ldy_ = (m + lanes - 1) & -lanes;
-  y_.resize(3 * std::size_t(e_.nodes) * std::size_t(ldy_) + slack);
-
-  // Which columns are active at each front: from its own entries and its children's ranges.
-  active_lo_.assign(e_.front.size(), m);
-  active_hi_.assign(e_.front.size(), 0);
-  for (int c = 0; c < m; ++c) {
+  unchanged_ = same;
+  if (same) return;
+  if (reused_ > 0) {
+    std::swap(y_, old_y_);
+    std::swap(s_, old_s_);
+    std::swap(order_, old_order_);
+    for (int g = 0; g < 2; ++g) std::swap(active_[g], old_active_[g]);
+    old_column_.assign(std::size_t(before_.count()), -1);
+    for (std::size_t c = 0; c < old_order_.size(); ++c)
+      if (old_order_[c] >= 0) old_column_[std::size_t(old_order_[c])] = int(c);
+  }
+  old_ldy_ = ldy_;
+  arrange();
+  y_.resize(std::max(y_.size(), 3 * std::size_t(e_.nodes) * std::size_t(ldy_) + slack));
+  s_.resize(std::max(s_.size(), std::size_t(ldy_) * std::size_t(ldy_ + lanes) + slack));
+  clear_fresh();
+  if (reused_ > 0) copy_known();
+  for (long c = 0; c < fresh_; ++c) {
     const int r = order_[std::size_t(c)];
-    for (int e = rows.start[std::size_t(r)]; e < rows.start[std::size_t(r) + 1]; ++e) {
-      const int node = node_of_block[std::size_t(rows.block[std::size_t(e)])];
-      if (node < 0) continue;
-      const std::size_t f = std::size_t(e_.front_of[std::size_t(e_.permuted[std::size_t(node)])]);
-      active_lo_[f] = std::min(active_lo_[f], c);
-      active_hi_[f] = std::max(active_hi_[f], c + 1);
-    }
-  }
-  for (std::size_t f = 0; f < e_.front.size(); ++f) {
-    if (active_lo_[f] >= active_hi_[f]) continue;
-    active_lo_[f] &= -lanes;  // whole vectors
-    active_hi_[f] = std::min(int(ldy_), (active_hi_[f] + lanes - 1) & -lanes);
-    if (e_.front[f].parent >= 0) {
-      const std::size_t p = std::size_t(e_.front[f].parent);
-      active_lo_[p] = std::min(active_lo_[p], active_lo_[f]);
-      active_hi_[p] = std::max(active_hi_[p], active_hi_[f]);
-    }
-    const int width = active_hi_[f] - active_lo_[f];
-    for (int i = 0; i < 3 * e_.front[f].own; ++i)
-      std::memset(y_.data() + (3L * e_.front[f].first + i) * ldy_ + active_lo_[f], 0, sizeof(Real) * std::size_t(width));
-  }
-  for (int c = 0; c < m; ++c) {
-    const int r = order_[std::size_t(c)];
-    for (int e = rows.start[std::size_t(r)]; e < rows.start[std::size_t(r) + 1]; ++e) {
-      const int node = node_of_block[std::size_t(rows.block[std::size_t(e)])];
-      if (node < 0) continue;
-      const Vec3& h = rows.coeff[std::size_t(e)];
-      Real* to = y_.data() + 3L * e_.permuted[std::size_t(node)] * ldy_ + c;
+    if (r < 0) continue;
+    for (int e = entries_.start[std::size_t(r)]; e < entries_.start[std::size_t(r) + 1]; ++e) {
+      const Vec3& h = entries_.coeff[std::size_t(e)];
+      Real* to = y_.data() + 3L * entries_.node[std::size_t(e)] * ldy_ + c;
       to[0] += Real(h.x());
       to[ldy_] += Real(h.y());
       to[2 * ldy_] += Real(h.z());
     }
   }
-  s_.resize(std::max(s_.size(), std::size_t(ldy_) * std::size_t(ldy_ + lanes) + slack));
+}
+
+// Gives every row its column, fresh ones first, and every front its active columns: those of its own entries and of its children.
+template <class Real>
+void MultifrontalCholesky<Real>::arrange() {
+  const int m = columns_;
+  begin_.resize(std::size_t(m));
+  order_.resize(std::size_t(m));
+  for (int r = 0; r < m; ++r) {
+    int first = e_.nodes;
+    for (int e = entries_.start[std::size_t(r)]; e < entries_.start[std::size_t(r) + 1]; ++e) first = std::min(first, entries_.node[std::size_t(e)]);
+    begin_[std::size_t(r)] = first;
+    order_[std::size_t(r)] = r;
+  }
+  std::sort(order_.begin(), order_.end(), [this](int x, int y) {
+    const bool kx = known_[std::size_t(x)] >= 0, ky = known_[std::size_t(y)] >= 0;
+    if (kx != ky) return ky;
+    const int bx = begin_[std::size_t(x)], by = begin_[std::size_t(y)];
+    return bx != by ? bx < by : x < y;
+  });
+  const auto pad = [](int n) { return (n + lanes - 1) & -lanes; };
+  const int fresh = m - reused_;
+  fresh_ = pad(fresh);
+  ldy_ = fresh_ + pad(reused_);
+  order_.insert(order_.begin() + fresh, std::size_t(fresh_ - fresh), -1);
+  order_.resize(std::size_t(ldy_), -1);
+
+  for (auto& group : active_) group.assign(e_.front.size(), {int(ldy_), 0});
+  for (int c = 0; c < ldy_; ++c) {
+    const int r = order_[std::size_t(c)];
+    if (r < 0) continue;
+    for (int e = entries_.start[std::size_t(r)]; e < entries_.start[std::size_t(r) + 1]; ++e) {
+      Columns& a = active_[c < fresh_ ? 0 : 1][std::size_t(e_.front_of[std::size_t(entries_.node[std::size_t(e)])])];
+      a.begin = std::min(a.begin, c);
+      a.end = std::max(a.end, c + 1);
+    }
+  }
+  for (auto& group : active_)
+    for (std::size_t f = 0; f < e_.front.size(); ++f) {
+      Columns& a = group[f];
+      if (a.begin >= a.end) continue;
+      a.begin &= -lanes;  // whole vectors
+      a.end = pad(a.end);
+      if (e_.front[f].parent < 0) continue;
+      Columns& p = group[std::size_t(e_.front[f].parent)];
+      p.begin = std::min(p.begin, a.begin);
+      p.end = std::max(p.end, a.end);
+    }
+}
+
+template <class Real>
+void MultifrontalCholesky<Real>::clear_fresh() {
+  for (std::size_t f = 0; f < e_.front.size(); ++f)
+    if (const Columns& a = active_[0][f]; a.begin < a.end)
+      for (int i = 0; i < 3 * e_.front[f].own; ++i)
+        std::memset(y_.data() + (3L * e_.front[f].first + i) * ldy_ + a.begin, 0, sizeof(Real) * std::size_t(a.end - a.begin));
+}
+
+// Columns of Y that are known, out of the last Y. What was not active in it is zero.
+template <class Real>
+void MultifrontalCholesky<Real>::copy_known() {
+  for (std::size_t f = 0; f < e_.front.size(); ++f) {
+    const Columns& a = active_[1][f];
+    for (int c = a.begin; c < a.end; ++c) {
+      const int r = order_[std::size_t(c)], old = r < 0 ? -1 : old_column_[std::size_t(known_[std::size_t(r)])];
+      const bool there = old >= 0 && ((old >= old_active_[0][f].begin && old < old_active_[0][f].end) || (old >= old_active_[1][f].begin && old < old_active_[1][f].end));
+      const long row = 3L * e_.front[f].first;
+      for (int i = 0; i < 3 * e_.front[f].own; ++i) y_[std::size_t((row + i) * ldy_ + c)] = there ? old_y_[std::size_t((row + i) * old_ldy_ + old)] : Real(0);
+    }
+  }
+}
+
+// Every part reads the whole factor: one that does not fit the caches is read no more often than needed.
+template <class Real>
+int MultifrontalCholesky<Real>::compliance_parts() const {
+  constexpr std::size_t cached = std::size_t(2) << 20;
+  if (columns_ == 0 || e_.nodes == 0 || unchanged_ || fresh_ == 0) return 0;
+  return fresh_ < 2 * least_part ? 1 : panel_.size() * sizeof(Real) > cached ? 2 : 4;
 }
 
 // Forward substitution of some columns, front by front: columns know nothing of each other.
 template <class Real>
 void MultifrontalCholesky<Real>::compliance_part(int part) {
+  [[maybe_unused]] const FlushSubnormals<Real> flush;
   const KernelsOf<Real>& k = kernels_of<Real>();
-  const long whole = ldy_ / lanes, parts = compliance_parts();  // whole vectors of columns
+  const long whole = fresh_ / lanes, parts = compliance_parts();  // whole vectors of columns
   const int from = int(lanes * (whole * part / parts)), to = int(lanes * (whole * (part + 1) / parts));
   for (std::size_t i = 0; i < e_.front.size(); ++i) {
     const Front& f = e_.front[i];
-    const int lo = std::max(active_lo_[i], from), hi = std::min(active_hi_[i], to);
+    const int lo = std::max(active_[0][i].begin, from), hi = std::min(active_[0][i].end, to);
     if (lo >= hi) continue;
     const Real* l = panel_.data() + f.panel;
     const int own = 3 * f.own, below = 3 * f.rows - own;
@@ -96,59 +161,94 @@ void MultifrontalCholesky<Real>::compliance_part(int part) {
   }
 }
 
-// W = Y^T Y.
+// W = Y^T Y: fresh columns with each other and with the known ones; what is left is known.
 template <class Real>
 void MultifrontalCholesky<Real>::end_compliance() {
   if (columns_ == 0 || e_.nodes == 0) return;
+  rows_factor_ = factor_number_;
+  if (unchanged_) return;
+  [[maybe_unused]] const FlushSubnormals<Real> flush;
   const KernelsOf<Real>& k = kernels_of<Real>();
   std::memset(s_.data(), 0, sizeof(Real) * std::size_t(ldy_) * std::size_t(ldy_));
   for (std::size_t i = 0; i < e_.front.size(); ++i) {
     const Front& f = e_.front[i];
-    const int lo = active_lo_[i], hi = active_hi_[i];
-    if (lo < hi) k.syrk_add(s_.data() + long(lo) * ldy_ + lo, int(ldy_), y_.data() + 3L * f.first * ldy_ + lo, int(ldy_), hi - lo, 3 * f.own);
+    const Columns &a = active_[0][i], &b = active_[1][i];
+    if (a.begin >= a.end) continue;
+    const Real* y = y_.data() + 3L * f.first * ldy_;
+    const int ld = int(ldy_), own = 3 * f.own;
+    k.syrk_add(s_.data() + long(a.begin) * ldy_ + a.begin, ld, y + a.begin, ld, a.end - a.begin, own);
+    if (b.begin < b.end) k.gemm_add(s_.data() + long(a.begin) * ldy_ + b.begin, ld, y + b.begin, ld, y + a.begin, ld, b.end - b.begin, a.end - a.begin, own);
   }
+  for (long c = fresh_; c < fresh_ + reused_; ++c)
+    for (long r = c; r < fresh_ + reused_; ++r) {
+      const int oc = old_column_[std::size_t(known_[std::size_t(order_[std::size_t(c)])])], o = old_column_[std::size_t(known_[std::size_t(order_[std::size_t(r)])])];
+      s_[std::size_t(c * ldy_ + r)] = old_s_[std::size_t(std::min(oc, o)) * std::size_t(old_ldy_) + std::size_t(std::max(oc, o))];
+    }
 }
 
 template <class Real>
 void MultifrontalCholesky<Real>::add_compliance(const BodyRows& rows, double* w, int stride) const {
-  const int m = e_.nodes > 0 ? columns_ : 0;
-  for (int c = 0; c < m; ++c) {
-    const int rc = rows.row[std::size_t(order_[std::size_t(c)])];
-    const Real* from = s_.data() + long(c) * ldy_;
-    w[std::size_t(rc) * std::size_t(stride) + std::size_t(rc)] += double(from[c]);
-    for (int r = c + 1; r < m; ++r) {
-      const int rr = rows.row[std::size_t(order_[std::size_t(r)])];
-      w[std::size_t(rc) * std::size_t(stride) + std::size_t(rr)] += double(from[r]);
-      w[std::size_t(rr) * std::size_t(stride) + std::size_t(rc)] += double(from[r]);
+  if (columns_ == 0 || e_.nodes == 0) return;
+  const std::size_t ld = std::size_t(ldy_), step = std::size_t(stride);
+  for (std::size_t c = 0; c < ld; ++c) {
+    if (order_[c] < 0) continue;
+    const std::size_t rc = std::size_t(rows.row[std::size_t(order_[c])]);
+    const Real* from = s_.data() + c * ld;
+    w[rc * step + rc] += double(from[c]);
+    for (std::size_t r = c + 1; r < ld; ++r) {
+      if (order_[r] < 0) continue;
+      const std::size_t rr = std::size_t(rows.row[std::size_t(order_[r])]);
+      w[rc * step + rr] += double(from[r]);
+      w[rr * step + rc] += double(from[r]);
     }
   }
 }
 
 template <class Real>
 void MultifrontalCholesky<Real>::correct(const BodyRows& rows, const double* lambda, double* x) {
+  [[maybe_unused]] const FlushSubnormals<Real> flush;
   std::fill(x_.begin(), x_.end(), Real(0));
   if (columns_ > 0 && e_.nodes > 0) {
     lambda_.resize(std::size_t(ldy_));
-    for (long c = 0; c < ldy_; ++c)
-      lambda_[std::size_t(c)] = c < columns_ ? Real(lambda[rows.row[std::size_t(order_[std::size_t(c)])]]) : Real(0);
-    for (std::size_t i = 0; i < e_.front.size(); ++i) {
-      const int lo = active_lo_[i], hi = active_hi_[i];
-      if (lo >= hi) continue;
-      for (int r = 0; r < 3 * e_.front[i].own; ++r) {
-        x_[std::size_t(3 * e_.front[i].first + r)] = dot(y_.data() + (3L * e_.front[i].first + r) * ldy_ + lo, lambda_.data() + lo, hi - lo);
+    for (std::size_t c = 0; c < lambda_.size(); ++c) lambda_[c] = order_[c] >= 0 ? Real(lambda[rows.row[std::size_t(order_[c])]]) : Real(0);
+    for (const auto& group : active_)
+      for (std::size_t i = 0; i < e_.front.size(); ++i) {
+        const Columns& a = group[i];
+        if (a.begin >= a.end) continue;
+        for (int r = 0; r < 3 * e_.front[i].own; ++r)
+          x_[std::size_t(3 * e_.front[i].first + r)] += dot(y_.data() + (3L * e_.front[i].first + r) * ldy_ + a.begin, lambda_.data() + a.begin, a.end - a.begin);
       }
-    }
     backward(x_.data());
   }
   store(x);
 }
 
+// Each front solves its own rows of Y, takes them off those below, multiplies them with themselves.
+template <class Real>
+SolverCost MultifrontalCholesky<Real>::cost() const {
+  SolverCost c;
+  c.factor_entries = e_.entries;
+  c.factor_flops = e_.flops;
+  c.factor_bytes = 2.0 * sizeof(Real) * double(e_.entries);
+  for (std::size_t i = 0; compliance_parts() > 0 && i < e_.front.size(); ++i) {
+    const double fresh = std::max(0, active_[0][i].end - active_[0][i].begin), known = std::max(0, active_[1][i].end - active_[1][i].begin);
+    const double own = 3 * e_.front[i].own, below = 3 * e_.front[i].rows - own;
+    c.compliance_flops += fresh * own * (own + 2 * below + fresh + 2 * known);
+  }
+  return c;
+}
+
 #define INSULA_COMPLIANCE_OF(Real)                                                                            \
   template void MultifrontalCholesky<Real>::begin_compliance(const BodyRows&, const std::vector<int>&);       \
+  template void MultifrontalCholesky<Real>::arrange();                                                        \
+  template void MultifrontalCholesky<Real>::clear_fresh();                                                    \
+  template void MultifrontalCholesky<Real>::copy_known();                                                     \
+  template int MultifrontalCholesky<Real>::compliance_parts() const;                                          \
   template void MultifrontalCholesky<Real>::compliance_part(int);                                             \
   template void MultifrontalCholesky<Real>::end_compliance();                                                 \
   template void MultifrontalCholesky<Real>::add_compliance(const BodyRows&, double*, int) const;              \
-  template void MultifrontalCholesky<Real>::correct(const BodyRows&, const double*, double*)
+  template void MultifrontalCholesky<Real>::correct(const BodyRows&, const double*, double*);      \
+  template SolverCost MultifrontalCholesky<Real>::cost() const
 INSULA_COMPLIANCE_OF(double);
 INSULA_COMPLIANCE_OF(float);
 #undef INSULA_COMPLIANCE_OF

@@ -19,6 +19,7 @@ struct SolverCost {
   std::int64_t factor_entries = 0;  ///< numbers in L, padding not counted
   double factor_flops = 0;          ///< of one factorisation
   double factor_bytes = 0;          ///< read by one solve
+  double compliance_flops = 0;      ///< of the last rows' compliance; 0: not counted
 };
 
 /// How its last solves went.
@@ -61,6 +62,8 @@ class BodySolver {
   /// x := A^-1 H^T lambda, natural order; lambda is indexed by row number.
   virtual void correct(const BodyRows& rows, const double* lambda, double* x) = 0;
 
+  /// Rows of the last begin_compliance() whose share was known, entries and factor being those of the time before.
+  virtual int rows_reused() const { return 0; }
   /// Whether compliance and correct() are of the same matrix. If not, correct() is the truth, and may be called again with
   /// another lambda of the same rows.
   virtual bool exact() const { return true; }

@@ -14,7 +14,8 @@ struct KernelsOf {
   /// C[i + j ldc] -= sum_k A[i + k lda] B[j + k ldb], i < m, j < n. Rows of C up to the next multiple of `width` may be
   /// overwritten with garbage; so C's leading dimension is padded.
   void (*gemm_sub)(Real* c, int ldc, const Real* a, int lda, const Real* b, int ldb, int m, int n, int k);
-  /// As gemm_sub with +=, and only blocks that touch j <= i.
+  void (*gemm_add)(Real* c, int ldc, const Real* a, int lda, const Real* b, int ldb, int m, int n, int k);
+  /// As gemm_add with A = B, and only blocks that touch j <= i.
   void (*syrk_add)(Real* c, int ldc, const Real* a, int lda, int m, int k);
   /// As gemm_sub with A = B, only blocks that touch j <= i.
   void (*syrk_sub)(Real* c, int ldc, const Real* a, int lda, int m, int k);
@@ -29,6 +30,8 @@ struct KernelsOf {
   void (*axpy3)(Real* d, const Real* w0, const Real* w1, const Real* w2, Real c0, Real c1, Real c2, int n);
   /// d[0..n) += c w.
   void (*axpy)(Real* d, const Real* w, Real c, int n);
+  /// 24 `width` n multiplications with additions in registers alone: what a core can do at most. Returns a sum of them.
+  Real (*multiply_add)(long n);
 };
 using Kernels = KernelsOf<double>;
 /// What is compiled for one instruction set.

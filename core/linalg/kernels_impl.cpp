@@ -85,6 +85,10 @@ void gemm_sub(T* c, int ldc, const T* a, int lda, const T* b, int ldb, int m, in
   gemm<false>(c, ldc, a, lda, b, ldb, m, n, k, false);
 }
 template <class T>
+void gemm_add(T* c, int ldc, const T* a, int lda, const T* b, int ldb, int m, int n, int k) {
+  gemm<true>(c, ldc, a, lda, b, ldb, m, n, k, false);
+}
+template <class T>
 void syrk_add(T* c, int ldc, const T* a, int lda, int m, int k) { gemm<true>(c, ldc, a, lda, a, lda, m, m, k, true); }
 template <class T>
 void syrk_sub(T* c, int ldc, const T* a, int lda, int m, int k) { gemm<false>(c, ldc, a, lda, a, lda, m, m, k, true); }
@@ -130,6 +134,25 @@ void rows_sub(T* y, long ldy, const int* index, int rows, const T* l, int ldl, c
   }
 }
 
+// The rows of a panel below its diagonal block d of w columns, a vector at a time; of the last vector only what belongs to the
+// panel is stored, since the next column begins behind it.
+template <int fixed, class T>
+inline __attribute__((always_inline)) void solve_below(T* d, int lda, int n, const T* inv, int width = 0) {
+  const int w = fixed > 0 ? fixed : width;
+  for (int i = w; i < n; i += W<T>) {
+    V<T> x[NR];
+#pragma GCC unroll 8
+    for (int c = 0; c < w; ++c) {
+      V<T> s = load(d + i + long(c) * lda);
+#pragma GCC unroll 8
+      for (int k = 0; k < c; ++k) s -= x[k] * d[c + long(k) * lda];
+      x[c] = s * inv[c];
+      if (i + W<T> <= n) store(d + i + long(c) * lda, x[c]);
+      else __builtin_memcpy(d + i + long(c) * lda, &x[c], sizeof(T) * std::size_t(n - i));
+    }
+  }
+}
+
 template <class T>
 int cholesky_panel(T* a, int lda, int rows, int cols) {
   for (int j = 0; j < cols; j += NR) {
@@ -150,24 +173,11 @@ int cholesky_panel(T* a, int lda, int rows, int cols) {
         d[r + long(c) * lda] = s * inv[c];
       }
     }
-    // Rows below the diagonal block, a vector at a time.
-    int i = w;
-    const int n = rows - j;
-    for (; i + W<T> <= n; i += W<T>) {
-      V<T> x[NR];
-      for (int c = 0; c < w; ++c) {
-        V<T> s = load(d + i + long(c) * lda);
-        for (int k = 0; k < c; ++k) s -= x[k] * d[c + long(k) * lda];
-        x[c] = s * inv[c];
-        store(d + i + long(c) * lda, x[c]);
-      }
-    }
-    for (; i < n; ++i)
-      for (int c = 0; c < w; ++c) {
-        T s = d[i + long(c) * lda];
-        for (int k = 0; k < c; ++k) s -= d[i + long(k) * lda] * d[c + long(k) * lda];
-        d[i + long(c) * lda] = s * inv[c];
-      }
+    if (w == NR) solve_below<NR>(d, lda, rows - j, inv);
+    else if (w == 3) solve_below<3>(d, lda, rows - j, inv);
+    else if (w == 1) solve_below<1>(d, lda, rows - j, inv);
+    else if (w == 2) solve_below<2>(d, lda, rows - j, inv);
+    else solve_below<0>(d, lda, rows - j, inv, w);
   }
   return -1;
 }
@@ -209,12 +219,25 @@ void axpy(T* d, const T* w, T c, int n) {
   for (; i < n; ++i) d[i] += c * w[i];
 }
 
+template <class T>
+T multiply_add(long n) {
+  constexpr int chains = NV * NR;  // what the registers of every set hold
+  V<T> acc[chains], a = V<T>{} + T(0.999), b = V<T>{} + T(1e-3);
+  for (int q = 0; q < chains; ++q) acc[q] = V<T>{} + T(q);
+  for (long i = 0; i < n * 24 / chains; ++i)
+#pragma GCC unroll 24
+    for (int q = 0; q < chains; ++q) acc[q] = acc[q] * a + b;
+  T sum = 0;
+  for (int q = 0; q < chains; ++q) sum += acc[q][0];
+  return sum;
+}
+
 }  // namespace
 
 #define KERNEL_STRING2(x) #x
 #define KERNEL_STRING(x) KERNEL_STRING2(x)
 template <class T>
-constexpr KernelsOf<T> table_of = {KERNEL_STRING(KERNEL_NAME), W<T>, gemm_sub<T>, syrk_add<T>, syrk_sub<T>, rows_sub<T>, cholesky_panel<T>, lower_solve_rows<T>, axpy3<T>, axpy<T>};
+constexpr KernelsOf<T> table_of = {KERNEL_STRING(KERNEL_NAME), W<T>, gemm_sub<T>, gemm_add<T>, syrk_add<T>, syrk_sub<T>, rows_sub<T>, cholesky_panel<T>, lower_solve_rows<T>, axpy3<T>, axpy<T>, multiply_add<T>};
 extern const KernelSet table;
 const KernelSet table = {table_of<double>, table_of<float>};
 

@@ -35,6 +35,7 @@ class DeformableBody : public Body {
   const std::vector<int>& free_of_node() const { return free_; }  ///< node -> block of the system matrix, -1 when held
   const std::vector<ForceModel*>& forces() const { return forces_; }
   const BodySolver& solver() const { return *solver_; }
+  const BlockMatrix& system() const { return a_; }  ///< as it was last assembled
   /// Steps whose matrix was not positive definite; they were solved with more mass (see step()).
   int indefinite_steps() const { return indefinite_; }
   /// Steps that made and factorised the system matrix anew.

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// In single precision what couples distant nodes sinks below the smallest normal number, where processors are a hundred times
+// slower. While one of these lives such numbers are zero on this thread; they are far below the rounding of all that is kept.
+#pragma once
+#if defined(__x86_64__)
+#include <xmmintrin.h>
+#endif
+
+namespace insula {
+
+template <class Real>
+struct FlushSubnormals {};  // double precision has room enough
+
+#if defined(__x86_64__)
+template <>
+struct FlushSubnormals<float> {
+  FlushSubnormals() : before(_mm_getcsr()) { _mm_setcsr(before | 0x8040u); }  // results and operands
+  ~FlushSubnormals() { _mm_setcsr(before); }
+  FlushSubnormals(const FlushSubnormals&) = delete;
+  FlushSubnormals& operator=(const FlushSubnormals&) = delete;
+  unsigned before;
+};
+#endif
+
+}  // namespace insula
