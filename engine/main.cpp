@@ -86,7 +86,12 @@ int main(int argc, char** argv) {
 
   insula::BenchOptions bench_options;
   auto* bench = app.add_subcommand("bench", "where the time of a step goes");
-  bench->add_option("scene", bench_options.scene, "scene file")->required();
+  insula::ScalingOptions scaling;
+  bool scale = false;
+  auto* bench_scene = bench->add_option("scene", bench_options.scene, "scene file");
+  auto* scaling_flag = bench->add_flag("--scaling", scale, "without a scene: the stages against nodes, rows and strands, with their slopes; one thread unless --threads says otherwise")->excludes(bench_scene);
+  bench->add_flag("--quick", scaling.quick, "with --scaling: small sizes only")->needs(scaling_flag);
+  bench->add_option("--output", scaling.output, "with --scaling: folder for scaling.json and scaling.svg")->needs(scaling_flag);
   bench->add_option("--steps", bench_options.steps, "steps to measure")->check(CLI::PositiveNumber)->capture_default_str();
   bench->add_option("--from", bench_options.from, "simulated second at which measuring begins")->check(CLI::NonNegativeNumber);
   bench->add_option("--motion", bench_options.motion, "what the hands do: a motion of the exercise, a CSV file, or none")->capture_default_str();
@@ -94,7 +99,25 @@ int main(int argc, char** argv) {
   bench->add_flag("--json", bench_options.json, "print JSON");
   bench->add_flag("--solvers", bench_options.solvers, "compare the solvers on the matrices and rows of the step at --from");
   bench->add_option("--rows", bench_options.rows, "with --solvers: so many rows of each body at most; 0 takes all")->check(CLI::NonNegativeNumber);
+  auto* record = bench->add_option("--record", bench_options.record, "write the steps' constraint problems to this folder instead");
+  bench->add_option("--every", bench_options.every, "with --record: a problem of so many is written")->check(CLI::PositiveNumber)->needs(record);
+  bench->add_option("--problems", bench_options.problems, "solve this folder's constraint problems instead of stepping a scene")->excludes(bench_scene);
   bench->callback([&] {
+    if (scale) {
+      scaling.threads = bench_options.threads > 0 ? bench_options.threads : 1;
+      scaling.json = bench_options.json;
+      run = [&](const auto& c) { return insula::cmd_bench_scaling(c, scaling); };
+      return;
+    }
+    if (!bench_options.problems.empty()) {
+      run = [&](const auto& c) { return insula::cmd_bench_problems(c, bench_options); };
+      return;
+    }
+    if (bench_options.scene.empty()) throw CLI::RequiredError("scene (or --scaling)");
+    if (!bench_options.record.empty()) {
+      run = [&](const auto& c) { return insula::cmd_record_problems(c, bench_options); };
+      return;
+    }
     run = [&](const auto& c) { return bench_options.solvers ? insula::cmd_bench_solvers(c, bench_options) : insula::cmd_bench(c, bench_options); };
   });
 

@@ -32,9 +32,16 @@ struct BenchOptions {
   bool json = false;
   bool solvers = false;  ///< compare solvers instead
   int rows = 0;          ///< of each body, for the comparison of solvers; 0: all of them
+  std::filesystem::path record;    ///< folder for the steps' constraint problems, in place of measuring
+  int every = 10;                  ///< a problem of so many is written
+  std::filesystem::path problems;  ///< folder of such problems, to be solved in place of a scene
 };
 /// Steps a scene as fast as it goes and prints where each millisecond went.
 int cmd_bench(const CommandContext& context, const BenchOptions& options);
+/// Steps a scene as above and writes every so manieth constraint problem to a folder. Status 0, 1 or 2.
+int cmd_record_problems(const CommandContext& context, const BenchOptions& options);
+/// Solves the problems of a folder by each method, and measures the rate of sweeps. Status 0 or 2.
+int cmd_bench_problems(const CommandContext& context, const BenchOptions& options);
 /// Takes every deformable body's matrix and rows of one step and compares solvers on them: time, error, share of the machine.
 int cmd_bench_solvers(const CommandContext& context, const BenchOptions& options);
 

@@ -60,6 +60,14 @@ std::vector<double> ticks_of(const Axis& axis, int count) {
   return out;
 }
 
+/// 1, 2 and 5 times powers of ten.
+std::vector<double> log_ticks(double low, double high) {
+  std::vector<double> out;
+  for (double power = std::pow(10, std::floor(std::log10(low))); power <= high; power *= 10)
+    for (double k : {1.0, 2.0, 5.0}) out.push_back(k * power);
+  return out;
+}
+
 std::string number(double v) { return fmt::format("{:.4g}", v == 0 ? 0.0 : v); }
 
 void text(std::string& to, double x, double y, const char* anchor, const char* style, const std::string& content) {
@@ -101,11 +109,12 @@ std::vector<double> nice_ticks(double low, double high, int count) {
 }
 
 std::string svg(const Plot& plot) {
-  Axis x{0, 1, left, width - right, false};
+  Axis x{0, 1, left, width - right, plot.log_x};
+  if (plot.log_x) x.low = 1, x.high = 10;
   if (!plot.x.empty()) {
     x.low = *std::min_element(plot.x.begin(), plot.x.end());
     x.high = *std::max_element(plot.x.begin(), plot.x.end());
-    if (!(x.high > x.low)) x.high = x.low + 1;
+    if (!(x.high > x.low)) x.high = plot.log_x ? 10 * x.low : x.low + 1;
   }
   const Axis y = y_axis(plot);
   std::string out = fmt::format(
@@ -117,7 +126,7 @@ std::string svg(const Plot& plot) {
     line(out, left, y.map(v), width - right, y.map(v), "stroke=\"#e3e3e3\"");
     text(out, left - 6, y.map(v) + 4, "end", "", number(v));
   }
-  for (double v : nice_ticks(x.low, x.high, 8)) {
+  for (double v : plot.log_x ? log_ticks(x.low, x.high) : nice_ticks(x.low, x.high, 8)) {
     if (v < x.low - 1e-9 || v > x.high + 1e-9) continue;
     line(out, x.map(v), height - bottom, x.map(v), height - bottom + 4, "stroke=\"#222\"");
     text(out, x.map(v), height - bottom + 17, "middle", "", number(v));

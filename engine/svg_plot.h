@@ -29,6 +29,7 @@ struct Plot {
   std::vector<PlotCurve> curves;
   std::vector<PlotMark> marks;
   bool log_y = false;          ///< decades; values that are not positive break the line
+  bool log_x = false;          ///< x is positive throughout
 };
 
 /// Dark on white, 760 wide; well-formed XML.

@@ -4,38 +4,13 @@
 // The same value is solved by the engine once a step and by the haptic server every millisecond
 // (Dequidt, Coevoet, Thines, Duriez 2015, equations 5 to 7).
 #pragma once
-#include <array>
-#include <cstdint>
-#include <limits>
 #include <vector>
 
 #include "core/base/math.h"
+#include "core/constraint/aligned.h"
+#include "core/constraint/block.h"
 
 namespace insula {
-
-inline constexpr double infinite = std::numeric_limits<double>::infinity();
-
-/// What relates delta and lambda on a block of rows.
-enum class LawKind : std::uint8_t {
-  box,       ///< one row: lambda in [lower, upper]; inside the bounds delta + compliance * lambda = 0.
-             ///< bilateral: c = 0, no bounds; compliant: c > 0; contact without friction: c = 0, [0, inf);
-             ///< a fibre that carries tension only: c = 1/k, (-inf, 0]
-  friction,  ///< three rows (normal, tangent, tangent): Signorini on the normal, Coulomb on the tangents
-  patch,     ///< two rows (tangent, tangent) that the `normals` one-row blocks before it share: |lambda_t| <= friction * the
-             ///< sum of their lambda, opposing slip (many contacts close together, one friction force)
-};
-
-struct Block {
-  std::uint64_t id = 0;  ///< stable from step to step, unique in a problem: the warm start's key
-  int row = 0;           ///< first row
-  LawKind law = LawKind::box;
-  double compliance = 0;      ///< m/N, >= 0; for friction blocks on the normal row
-  double lower = -infinite;   ///< N, box only
-  double upper = infinite;    ///< N, box only
-  double friction = 0;        ///< Coulomb coefficient, friction and patch blocks only
-  int normals = 0;            ///< of the blocks before this one, patch only
-  int rows() const { return law == LawKind::friction ? 3 : law == LawKind::patch ? 2 : 1; }
-};
 
 /// A hand-held tool in the problem: how its free pose follows the device and how it yields to lambda.
 struct ToolTerms {
@@ -51,7 +26,7 @@ struct ToolTerms {
 struct ConstraintProblem {
   int rows = 0;
   int stride = 0;                  ///< leading dimension of w, >= rows, a multiple of 8
-  std::vector<double> w;           ///< W, symmetric, rows x stride, row-major; padding is zero
+  AlignedVector<double> w;         ///< W, symmetric, rows x stride, row-major; padding is zero
   std::vector<double> delta_free;  ///< rows
   std::vector<double> lambda;      ///< warm start, rows
   std::vector<Block> blocks;       ///< in row order, covering every row once

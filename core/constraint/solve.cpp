@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Block Gauss-Seidel with residual updates: delta is kept current, so a block that does not move costs nothing.
+// Block Gauss-Seidel with residual updates (core/constraint/sweep_kernels.h), then, where it stalls, Newton (core/constraint/newton.h).
 //
 // On request lambda is carried on between sweeps along a conjugate direction (nonsmooth nonlinear conjugate gradients; Silcowitz, Niebe,
 // Erleben 2010): with g what a sweep moves lambda by, beta = |g_k|^2 / |g_k-1|^2, p_k = beta p_k-1 + g_k, lambda += beta p_k-1;
@@ -10,60 +10,25 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/constraint/friction.h"
-#include "core/linalg/kernels.h"
+#include "core/constraint/sweep.h"
 
 namespace insula {
 
-void SolveWorkspace::reserve(int rows) {
+void SolveWorkspace::reserve(int rows, bool with_newton) {
   const std::size_t n = std::size_t(rows) + 8;
-  if (lambda.capacity() < n) lambda.reserve(n);
-  if (delta.capacity() < n) delta.reserve(n);
-  for (std::vector<double>* v : {&before, &before_delta, &along, &along_delta})
+  for (std::vector<double>* v : {&lambda, &delta, &before, &before_delta, &along, &along_delta})
     if (v->capacity() < n) v->reserve(n);
+  if (current.capacity() < n) current.reserve(n);
+  sweep.reserve(rows);
+  if (with_newton) newton.reserve(rows);
 }
 
 namespace {
 
-// The block's lambda that satisfies its law while the other blocks keep theirs.
-void local_solution(const ConstraintProblem& p, const Block& b, const double* lambda, const double* delta, double* out) {
-  const int r = b.row;
-  const double* w = p.w.data() + std::size_t(r) * p.stride + r;
-  if (b.law == LawKind::box) {
-    const double a = w[0] + b.compliance;
-    if (!(a > 0)) {
-      out[0] = lambda[r];
-      return;
-    }
-    out[0] = std::clamp(lambda[r] - (delta[r] + b.compliance * lambda[r]) / a, b.lower, b.upper);
-    return;
-  }
-  const int s = p.stride;
-  if (b.law == LawKind::patch) {
-    double pressed = 0;
-    for (int i = r - b.normals; i < r; ++i) pressed += std::max(0.0, lambda[i]);
-    const double q1 = delta[r] - (w[0] * lambda[r] + w[1] * lambda[r + 1]), q2 = delta[r + 1] - (w[1] * lambda[r] + w[s + 1] * lambda[r + 1]);
-    return solve_disc(w[0], w[1], w[s + 1], q1, q2, b.friction * pressed, out);
-  }
-  LocalContact c;
-  c.wnn = w[0] + b.compliance;
-  c.wn1 = w[1];
-  c.wn2 = w[2];
-  c.w11 = w[s + 1];
-  c.w12 = w[s + 2];
-  c.w22 = w[2 * s + 2];
-  // Violation with this block's own lambda taken out.
-  const double l0 = lambda[r], l1 = lambda[r + 1], l2 = lambda[r + 2];
-  c.qn = delta[r] - (w[0] * l0 + w[1] * l1 + w[2] * l2);
-  c.q1 = delta[r + 1] - (w[s] * l0 + w[s + 1] * l1 + w[s + 2] * l2);
-  c.q2 = delta[r + 2] - (w[2 * s] * l0 + w[2 * s + 1] * l1 + w[2 * s + 2] * l2);
-  solve_contact(c, b.friction, out);
-}
-
-void full_delta(const Kernels& k, const ConstraintProblem& p, std::span<const double> free, const double* lambda, double* delta) {
-  std::copy(free.begin(), free.end(), delta);
-  for (int i = 0; i < p.rows; ++i)
-    if (lambda[i] != 0) k.axpy(delta, p.w.data() + std::size_t(i) * p.stride, lambda[i], p.rows);
+void full_delta(const ConstraintProblem& p, std::span<const double> free, const double* lambda, AlignedVector<double>& delta) {
+  delta.assign(std::size_t(p.stride), 0.0);
+  std::copy(free.begin(), free.end(), delta.begin());
+  sweep_kernels().combine(delta.data(), p.w.data(), p.stride, lambda, p.rows, p.stride);
 }
 
 // Moves lambda and delta along the conjugate direction after a sweep; returns the sweep's size.
@@ -77,7 +42,7 @@ double carry_on(const ConstraintProblem& p, SolveWorkspace& ws, double last_norm
   const double beta = last_norm > 0 ? norm / last_norm : 2;
   const bool anew = !(beta <= 1);
   for (std::size_t i = 0; i < n; ++i) {
-    const double g = ws.lambda[i] - ws.before[i], wg = ws.delta[i] - ws.before_delta[i];
+    const double g = ws.lambda[i] - ws.before[i], wg = ws.current[i] - ws.before_delta[i];
     if (anew) {
       ws.along[i] = g;
       ws.along_delta[i] = wg;
@@ -86,69 +51,16 @@ double carry_on(const ConstraintProblem& p, SolveWorkspace& ws, double last_norm
     ws.along[i] *= beta;
     ws.along_delta[i] *= beta;
     ws.lambda[i] += ws.along[i];
-    ws.delta[i] += ws.along_delta[i];
+    ws.current[i] += ws.along_delta[i];
     ws.along[i] += g;
     ws.along_delta[i] += wg;
   }
   return norm;
 }
 
-}  // namespace
-
-SolveStats solve(const ConstraintProblem& p, std::span<const double> free, const SolveSettings& settings, SolveWorkspace& ws) {
-  const Kernels& k = kernels();
-  const int n = p.rows;
-  ws.lambda.resize(std::size_t(n));
-  ws.delta.resize(std::size_t(n));
-  double* lambda = ws.lambda.data();
-  double* delta = ws.delta.data();
-  SolveStats stats;
-  if (n == 0) return stats;
-  full_delta(k, p, free.first(std::size_t(n)), lambda, delta);
-
-  for (std::vector<double>* v : {&ws.before, &ws.before_delta, &ws.along, &ws.along_delta}) v->assign(std::size_t(n), 0.0);
-  double last_norm = 0;  // of the sweep before, 0: no direction yet
-
+void measure_residual(const ConstraintProblem& p, const double* lambda, const double* delta, SolveStats& stats) {
+  stats.residual_m = stats.residual_N = 0;
   double next[3];
-  for (stats.sweeps = 0; stats.sweeps < settings.max_sweeps;) {
-    double moved = 0;
-    std::copy_n(lambda, n, ws.before.data());
-    std::copy_n(delta, n, ws.before_delta.data());
-    for (const Block& b : p.blocks) {
-      local_solution(p, b, lambda, delta, next);
-      const int r = b.row;
-      const double* w = p.w.data() + std::size_t(r) * p.stride;
-      if (b.law == LawKind::box) {
-        const double d = next[0] - lambda[r];
-        if (d == 0) continue;
-        k.axpy(delta, w, d, n);
-        lambda[r] = next[0];
-        moved = std::max(moved, std::abs(d) * (w[r] + b.compliance));
-      } else if (b.law == LawKind::patch) {
-        for (int i = 0; i < 2; ++i) {
-          const double d = next[i] - lambda[r + i];
-          const double* row = w + i * p.stride;
-          if (d != 0) k.axpy(delta, row, d, n);
-          lambda[r + i] = next[i];
-          moved = std::max(moved, std::abs(d) * row[r + i]);
-        }
-      } else {
-        const double d0 = next[0] - lambda[r], d1 = next[1] - lambda[r + 1], d2 = next[2] - lambda[r + 2];
-        if (d0 == 0 && d1 == 0 && d2 == 0) continue;
-        k.axpy3(delta, w, w + p.stride, w + 2 * p.stride, d0, d1, d2, n);
-        lambda[r] = next[0];
-        lambda[r + 1] = next[1];
-        lambda[r + 2] = next[2];
-        moved = std::max({moved, std::abs(d0) * w[r], std::abs(d1) * w[p.stride + r + 1], std::abs(d2) * w[2 * p.stride + r + 2]});
-      }
-    }
-    ++stats.sweeps;
-    if (moved <= settings.tolerance_m || stats.sweeps >= settings.max_sweeps) break;
-    if (settings.conjugate) last_norm = carry_on(p, ws, last_norm);
-  }
-
-  // Residual on a delta computed afresh: what each law would still move.
-  full_delta(k, p, free.first(std::size_t(n)), lambda, delta);
   for (const Block& b : p.blocks) {
     local_solution(p, b, lambda, delta, next);
     for (int i = 0; i < b.rows(); ++i) {
@@ -157,6 +69,136 @@ SolveStats solve(const ConstraintProblem& p, std::span<const double> free, const
       stats.residual_m = std::max(stats.residual_m, d * p.w_at(b.row + i, b.row + i));
     }
   }
+}
+
+// Whether sweeps will not reach the tolerance: what they move shrinks too slowly, from one window of them to the next.
+class Forecast {
+ public:
+  Forecast(const SolveSettings& s) : settings_(s) {}
+  bool stalls(int sweeps, double moved) {
+    most_ = std::max(most_, moved);
+    if (settings_.max_newton <= 0 || sweeps % window != 0) return false;
+    const double share = last_ > 0 ? most_ / last_ : 0;
+    last_ = most_;
+    most_ = 0;
+    if (share <= 0) return false;
+    if (share >= 1) return sweeps >= 4 * window;  // at first a warm start may have far to go
+    return sweeps + window * std::log(settings_.tolerance_m / last_) / std::log(share) > 2.0 * settings_.max_sweeps;
+  }
+
+ private:
+  static constexpr int window = 16;
+  const SolveSettings& settings_;
+  double most_ = 0, last_ = 0;
+};
+
+// Sweeps until one moves less than the tolerance, or there have been enough of them, or they are forecast to stall.
+void sweep_on(const ConstraintProblem& p, const SolveSettings& settings, const SweepData& data, SolveWorkspace& ws, SolveStats& stats) {
+  const int n = p.rows;
+  double* lambda = ws.lambda.data();
+  const auto sweep = sweep_kernels().sweep;
+  Forecast forecast(settings);
+  for (std::vector<double>* v : {&ws.before, &ws.before_delta, &ws.along, &ws.along_delta}) v->assign(std::size_t(n), 0.0);
+  double last_norm = 0;  // of the sweep before, 0: no direction yet
+  while (stats.sweeps < settings.max_sweeps) {
+    if (settings.conjugate) {
+      std::copy_n(lambda, n, ws.before.data());
+      std::copy_n(ws.current.data(), n, ws.before_delta.data());
+    }
+    const double moved = sweep(data, lambda, ws.current.data());
+    ++stats.sweeps;
+    if (moved <= settings.tolerance_m || stats.sweeps >= settings.max_sweeps || forecast.stalls(stats.sweeps, moved)) break;
+    if (settings.conjugate) last_norm = carry_on(p, ws, last_norm);
+  }
+}
+
+// Some sweeps more; lambda stays what it was if its residual was smaller.
+void sweep_more(const ConstraintProblem& p, std::span<const double> free, SolveSettings settings, int count, bool conjugate, const SweepData& data,
+                SolveWorkspace& ws, SolveStats& stats) {
+  NewtonMemory& m = ws.newton;
+  m.trial.assign(ws.lambda.begin(), ws.lambda.end());
+  full_delta(p, free, ws.lambda.data(), ws.current);
+  settings.max_sweeps = stats.sweeps + count;
+  settings.conjugate = conjugate;
+  settings.max_newton = 0;
+  sweep_on(p, settings, data, ws, stats);
+  SolveStats reached;
+  full_delta(p, free, ws.lambda.data(), ws.current);
+  measure_residual(p, ws.lambda.data(), ws.current.data(), reached);
+  if (reached.residual_m <= stats.residual_m) stats.residual_m = reached.residual_m;
+  else ws.lambda.assign(m.trial.begin(), m.trial.end());
+}
+
+constexpr double shortest_step = 0.1;             // of a Newton step that is tried
+constexpr int smoothing = 3;                      // sweeps after it
+constexpr int sweeps_between = 32;                // after a step that led nowhere; conjugate ones, to come to another place
+constexpr double least_proximal = 1e-11, most_proximal = 1;
+
+// Newton from the sweeps' result, which stays what it is unless something better is found.
+void newton_on(const ConstraintProblem& p, std::span<const double> free, const SolveSettings& settings, const SweepData& data, SolveWorkspace& ws,
+               SolveStats& stats) {
+  const auto sweep = sweep_kernels().sweep;
+  const std::size_t n = std::size_t(p.rows);
+  NewtonMemory& m = ws.newton;
+  double proximal = least_proximal;
+  while (stats.residual_m > settings.tolerance_m && stats.newton_steps < settings.max_newton) {
+    ++stats.newton_steps;
+    bool better = false;
+    full_delta(p, free, ws.lambda.data(), ws.current);
+    if (newton_target(p, free, ws.lambda.data(), ws.current.data(), proximal, m)) {
+      m.base.assign(m.trial.begin(), m.trial.end());  // where a whole step leads
+      for (double step = 1; step > shortest_step && !better; step *= 0.4) {
+        for (std::size_t i = 0; i < n; ++i) m.trial[i] = ws.lambda[i] + step * (m.base[i] - ws.lambda[i]);
+        put_into_bounds(p, m.trial.data());
+        full_delta(p, free, m.trial.data(), ws.current);
+        for (int k = 0; k < smoothing; ++k) sweep(data, m.trial.data(), ws.current.data());
+        stats.sweeps += smoothing;
+        SolveStats reached;
+        full_delta(p, free, m.trial.data(), ws.current);
+        measure_residual(p, m.trial.data(), ws.current.data(), reached);
+        if (!(reached.residual_m < 0.9 * stats.residual_m)) continue;
+        better = true;
+        stats.residual_m = reached.residual_m;
+        stats.method = SolveMethod::newton;
+        ws.lambda.assign(m.trial.begin(), m.trial.end());
+      }
+    }
+    proximal = better ? std::max(least_proximal, 0.1 * proximal) : 100 * proximal;
+    if (better) continue;
+    if (proximal > most_proximal) proximal = least_proximal;  // sweeps have moved on meanwhile
+    sweep_more(p, free, settings, sweeps_between, true, data, ws, stats);
+  }
+}
+
+}  // namespace
+
+SolveStats solve(const ConstraintProblem& p, std::span<const double> free, const SolveSettings& settings, SolveWorkspace& ws) {
+  const std::size_t n = std::size_t(p.rows);
+  ws.lambda.resize(n);
+  ws.delta.resize(n);
+  SolveStats stats;
+  if (n == 0) return stats;
+  free = free.first(n);
+  full_delta(p, free, ws.lambda.data(), ws.current);
+  const SweepData data = ws.sweep.set_up(p);
+  sweep_on(p, settings, data, ws, stats);
+
+  // Residual on a delta computed afresh: what each law would still move.
+  const auto finish = [&] {
+    full_delta(p, free, ws.lambda.data(), ws.current);
+    measure_residual(p, ws.lambda.data(), ws.current.data(), stats);
+  };
+  finish();
+  if (settings.max_newton > 0 && stats.residual_m > settings.tolerance_m) {
+    const int sweeps = stats.sweeps;
+    newton_on(p, free, settings, data, ws, stats);
+    finish();
+    if (stats.residual_m > settings.tolerance_m && sweeps < settings.max_sweeps) {  // the forecast was wrong: the sweeps that are left
+      sweep_more(p, free, settings, settings.max_sweeps - sweeps, settings.conjugate, data, ws, stats);
+      finish();
+    }
+  }
+  std::copy_n(ws.current.begin(), n, ws.delta.begin());
   return stats;
 }
 

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Block Gauss-Seidel on the mixed nonlinear complementarity problem. Pure and bounded: the result depends on the
-// arguments alone, time is at most max_sweeps sweeps, and nothing is allocated once the workspace has its size.
+// The mixed nonlinear complementarity problem: block Gauss-Seidel, and nonsmooth Newton where that stalls. Pure and bounded: the result
+// depends on the arguments alone, work is at most max_sweeps sweeps and max_newton Newton steps, and nothing is allocated once the
+// workspace has its size.
 #pragma once
 #include <span>
 #include <vector>
 
+#include "core/constraint/newton.h"
 #include "core/constraint/problem.h"
+#include "core/constraint/sweep.h"
 
 namespace insula {
 
@@ -15,12 +18,18 @@ struct SolveSettings {
   double tolerance_m = 1e-9;
   /// Carry lambda on along conjugate directions between sweeps: for stiff stacks, such as a clip on a thin wall.
   bool conjugate = false;
+  /// Most Newton steps, made when sweeps would end above the tolerance; 0: sweeps alone. One step costs as much as rows / 3 sweeps.
+  int max_newton = 0;
 };
+
+enum class SolveMethod : std::uint8_t { sweeps, newton };
 
 struct SolveStats {
   int sweeps = 0;
   double residual_m = 0;  ///< largest violation of a law over all rows, metres (natural map scaled by 1/W_ii)
   double residual_N = 0;  ///< the same in newtons
+  int newton_steps = 0;   ///< tried, beside the sweeps
+  SolveMethod method = SolveMethod::sweeps;  ///< newton: the result is better than what sweeps alone had come to
 };
 
 /// Everything solve writes. One per caller; grows in reserve() only.
@@ -28,11 +37,10 @@ struct SolveWorkspace {
   std::vector<double> lambda;  ///< in: warm start, out: solution; N
   std::vector<double> delta;   ///< out: W lambda + delta_free, m
   std::vector<double> before, before_delta, along, along_delta;  ///< of the conjugate directions
-  void reserve(int rows);
-  struct LocalBlock {
-    double inverse[9];  ///< inverse of the block's W (friction) or 1 / (W_ii + c)
-  };
-  std::vector<LocalBlock> local;
+  AlignedVector<double> current;                                 ///< delta while it is being solved for, padded
+  SweepMemory sweep;
+  NewtonMemory newton;
+  void reserve(int rows, bool with_newton = true);
 };
 
 /// Solves with the given delta_free (problem.rows values; the problem's own or the servo's). workspace.lambda must hold

@@ -66,6 +66,7 @@ Simulation::Simulation(std::unique_ptr<Scene> scene, Diagnostics& diagnostics, i
     solve_settings_.max_sweeps = s.front()->max_sweeps();
     solve_settings_.tolerance_m = s.front()->tolerance();
     solve_settings_.conjugate = s.front()->conjugate();
+    solve_settings_.max_newton = s.front()->newton();
   }
   if (auto v = scene_->all<ViewSettings>(); !v.empty()) view_ = v.front();
   // A hand begins with its first tool; the others lie on the tray.

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A block of rows and its law. Without Eigen: the sweep's kernels are compiled once per instruction set.
+#pragma once
+#include <cstdint>
+#include <limits>
+
+namespace insula {
+
+inline constexpr double infinite = std::numeric_limits<double>::infinity();
+
+/// What relates delta and lambda on a block of rows.
+enum class LawKind : std::uint8_t {
+  box,       ///< one row: lambda in [lower, upper]; inside the bounds delta + compliance * lambda = 0.
+             ///< bilateral: c = 0, no bounds; compliant: c > 0; contact without friction: c = 0, [0, inf);
+             ///< a fibre that carries tension only: c = 1/k, (-inf, 0]
+  friction,  ///< three rows (normal, tangent, tangent): Signorini on the normal, Coulomb on the tangents
+  patch,     ///< two rows (tangent, tangent) that the `normals` one-row blocks before it share: |lambda_t| <= friction * the
+             ///< sum of their lambda, opposing slip (many contacts close together, one friction force)
+};
+
+struct Block {
+  std::uint64_t id = 0;  ///< stable from step to step, unique in a problem: the warm start's key
+  int row = 0;           ///< first row
+  LawKind law = LawKind::box;
+  double compliance = 0;      ///< m/N, >= 0; for friction blocks on the normal row
+  double lower = -infinite;   ///< N, box only
+  double upper = infinite;    ///< N, box only
+  double friction = 0;        ///< Coulomb coefficient, friction and patch blocks only
+  int normals = 0;            ///< of the blocks before this one, patch only
+  int rows() const { return law == LawKind::friction ? 3 : law == LawKind::patch ? 2 : 1; }
+};
+
+}  // namespace insula

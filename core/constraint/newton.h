@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Nonsmooth Newton on the laws themselves, for problems on which Gauss-Seidel stalls: stiff bodies on soft ones, mass ratios of thousands,
+// long chains of contacts.
+//
+// Each block is in one of the pieces of its law, the one that its local solution falls into (Alart and Curnier 1991, who linearise the
+// projection of lambda - rho delta; the pieces are theirs):
+//   box       at a bound: lambda given         inside: delta + c lambda = 0
+//   friction  open: lambda = 0                 sticks: delta + c lambda_n = 0, delta_t = 0
+//             slips along u: delta_n + c lambda_n = 0, lambda_t = mu lambda_n u + y v, v . delta_t + s y = 0, s = |delta_t| / |lambda_t|
+//   patch     as the tangential part of friction, with the sum of its contacts' lambda
+// In the unknowns that are left, lambda = lambda0 + T x, that is R (W T x + delta0) + C x = 0: solved by LU. The result is put back into
+// the laws' bounds, smoothed by a few sweeps and taken if its residual is smaller; otherwise half the way, or less, is tried, and at last
+// a stronger proximal term eps W_ii x_i, which also makes a semidefinite W (redundant contacts) harmless.
+#pragma once
+#include <span>
+#include <vector>
+
+#include "core/constraint/sweep.h"
+
+namespace insula {
+
+/// One unknown: lambda changes by `weight` times x in each of `count` rows; its equation is the same rows' delta with `test`.
+struct NewtonUnknown {
+  int count = 0;
+  int rows[3] = {};
+  double weight[3] = {};
+  int tests = 0;
+  int test_rows[2] = {};
+  double test[2] = {};
+  double compliance = 0;  ///< times x, added to its equation
+  double offset = 0;      ///< c lambda0 of a compliant row
+};
+
+struct NewtonMemory {
+  std::vector<NewtonUnknown> unknowns;
+  std::vector<int> unknown_of_row, pivots;
+  std::vector<double> base, x, trial;
+  AlignedVector<double> matrix, row, delta;
+  void reserve(int rows);
+};
+
+/// The lambda that a full Newton step from lambda (with its delta, padded to the stride) leads to, written to memory.trial, not yet put
+/// into the bounds. `proximal` is eps above. False when the matrix is singular.
+bool newton_target(const ConstraintProblem& problem, std::span<const double> delta_free, const double* lambda, const double* delta, double proximal,
+                   NewtonMemory& memory);
+
+/// The nearest lambda within the bounds of every law.
+void put_into_bounds(const ConstraintProblem& problem, double* lambda);
+
+}  // namespace insula

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One sweep of block Gauss-Seidel, the solver's inner loop, compiled once per instruction set.
+//
+// Rows are taken in panels of at most 16. A row that moves by d changes delta = W lambda + delta_free by its column of W:
+//   near    its own panel's and the next one's delta at once, on which the next local solutions wait
+//   ahead   a later panel gathers all older changes just before its turn: its rows of W times the changes, left of the diagonal
+//   behind  earlier panels get theirs afterwards, from the same rows of W, which the cache still holds
+// So each sweep fetches one half of W, and ahead and behind are done in the shadow of the local solutions, each of which has to wait
+// for the one before it.
+#pragma once
+#include "core/constraint/block.h"
+
+namespace insula {
+
+struct ConstraintProblem;
+
+inline constexpr int panel_rows = 16;
+
+/// What a local solution needs of its block, computed once a solve.
+struct LocalBlock {
+  int row = 0;
+  LawKind law = LawKind::box;
+  bool regular = false;  ///< the block of W is well enough conditioned for its inverse and the slip equation below
+  int normals = 0;
+  double compliance = 0, lower = 0, upper = 0, friction = 0;
+  double inverse[6] = {};          ///< of W + compliance: box one number; friction nn n1 n2 11 12 22; patch 11 12 22
+  double vx = 1, vy = 0;           ///< eigenvector of the larger eigenvalue of the tangential part with the normal eliminated
+  double high = 0, low = 0;        ///< its eigenvalues
+  double m1 = 0, m2 = 0;           ///< coupling of normal and tangents in the eigenbasis
+  double inverse_normal = 0;       ///< 1 / (W_nn + compliance)
+  double slip = -1;                ///< |delta_t| / |lambda_t| of the last local solution that slipped, m/N: where the next search begins; -1: none
+};
+
+struct SweepData {
+  const ConstraintProblem* problem;
+  const double* w;
+  long stride;
+  int rows;
+  LocalBlock* blocks;
+  int block_count;
+  const int* panels;  ///< first block of each panel, then block_count
+  int panel_count;
+  double* moved;      ///< scratch: what each row moved by, padded as W's rows
+  int* columns;       ///< scratch: stride entries
+  /// Exact solution of one block, for what the fast ways do not cover. Writes rows() newtons.
+  void (*exact)(const ConstraintProblem& problem, int block, const double* lambda, const double* delta, double* out);
+};
+
+struct SweepKernels {
+  /// Gives each block in turn the lambda of its law; lambda and delta (both padded to the stride) are kept current. Returns the
+  /// largest |change of lambda| times W_ii, m.
+  double (*sweep)(const SweepData& data, double* lambda, double* delta);
+  /// y[0..n) += sum over k of c[k] a[k stride + 0..n), n a multiple of 8; rows whose c is 0 are not read.
+  void (*combine)(double* y, const double* a, long stride, const double* c, int rows, int n);
+};
+
+}  // namespace insula
