@@ -98,7 +98,7 @@ void add(Series& to, double size, std::initializer_list<double> values) {
 constexpr double none = NAN;
 
 Series against_nodes(const CommandContext& context, const ScalingOptions& options) {
-  Series out{"Step against nodes of one body, 60 strands", "nodes", {}, {
+  Series out{"Against nodes", "nodes", {}, {
       {"elements", "ms", 1, "six tetrahedra a node", "#2e9e6b", {}},
       {"factor flops", "Mflop", 2, "nested dissection in three dimensions", "", {}},
       {"factor entries", "10^6", 4.0 / 3, "nested dissection in three dimensions", "", {}},
@@ -119,7 +119,7 @@ Series against_nodes(const CommandContext& context, const ScalingOptions& option
 }
 
 Series against_rows(const CommandContext& context, const ScalingOptions& options) {
-  Series out{"Step against rows: frictional contacts of two bodies of 1,728 and 1,331 nodes", "rows", {}, {
+  Series out{"Against rows", "rows", {}, {
       {"collision", "ms", none, "the same surfaces", "#b0862a", {}},
       {"build", "ms", 1, "what each row reaches of the factor; rows^2 from some 600 on", "#a03c78", {}},
       {"sweeps", "", none, "", "", {}},
@@ -139,7 +139,7 @@ Series against_rows(const CommandContext& context, const ScalingOptions& options
 }
 
 Series against_strands(const CommandContext& context, const ScalingOptions& options) {
-  Series out{"Step against strands between two bodies of 1,331 nodes", "strands", {}, {
+  Series out{"Against strands", "strands", {}, {
       {"collision", "ms", none, "blades near a strand: there is none here", "#b0862a", {}},
       {"build", "ms", 1, "as rows", "#a03c78", {}},
       {"solve", "ms", 2, "sweeps by rows^2", "#1f6fb2", {}},

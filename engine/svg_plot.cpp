@@ -68,7 +68,7 @@ std::vector<double> log_ticks(double low, double high) {
   return out;
 }
 
-std::string number(double v) { return fmt::format("{:.4g}", v == 0 ? 0.0 : v); }
+std::string number(double v) { return fmt::format("{:.6g}", v == 0 ? 0.0 : v); }
 
 void text(std::string& to, double x, double y, const char* anchor, const char* style, const std::string& content) {
   to += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\" {}>{}</text>\n", x, y, anchor, style, escaped(content));
