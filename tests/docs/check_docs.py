@@ -19,7 +19,7 @@ LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)")
 CODE = re.compile(r"`([^`]+)`")
 PATH = re.compile(r"[A-Za-z0-9_.\-]+(/[A-Za-z0-9_.\-*]+)+/?")
 TEST = re.compile(r"([A-Z]\w+)\.([A-Z]\w+)")
-DECLARED = re.compile(r"\bTEST(?:_F|_P)?\(\s*(\w+)\s*,\s*(\w+)\s*\)")
+DECLARED = re.compile(r"\b(?:TYPED_)?TEST(?:_F|_P)?\(\s*(\w+)\s*,\s*(\w+)\s*\)")
 LONGEST_PAGE = 220
 
 
