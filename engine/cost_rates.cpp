@@ -1,31 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What this machine needs for one of each: the code that steps run, timed on two bricks.
 #include <algorithm>
-#include <chrono>
 
 #include "core/linalg/direct_solver.h"
 #include "core/mechanics/soft_body.h"
 #include "engine/cost_model.h"
 #include "engine/scaling_scene.h"
+#include "engine/shortest.h"
 
 namespace insula {
-namespace {
-
-/// The shortest of some runs, s: other work on the machine makes a run longer, never shorter.
-template <class F>
-double shortest(int runs, F&& f) {
-  using Clock = std::chrono::steady_clock;
-  double best = 1e9;
-  for (int i = 0; i < runs; ++i) {
-    const auto begin = Clock::now();
-    f();
-    best = std::min(best, std::chrono::duration<double>(Clock::now() - begin).count());
-  }
-  return best;
-}
-
-}  // namespace
-
 CostRates measure_rates(const Registry& registry) {
   CostRates r;
   // A small body and a middle one: their factors tell flops from entries.

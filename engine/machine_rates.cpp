@@ -2,27 +2,14 @@
 // Peak, product and stream of one core.
 #include "engine/machine_rates.h"
 
-#include <algorithm>
-#include <chrono>
 #include <cstdint>
 #include <vector>
 
 #include "core/linalg/kernels.h"
+#include "engine/shortest.h"
 
 namespace insula {
 namespace {
-
-/// The shortest of several runs, s.
-template <class F>
-double shortest(int runs, F&& f) {
-  double best = 1e9;
-  for (int i = 0; i < runs; ++i) {
-    const auto begin = std::chrono::steady_clock::now();
-    f();
-    best = std::min(best, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
-  }
-  return best;
-}
 
 template <class Real>
 double peak() {

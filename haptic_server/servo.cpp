@@ -37,7 +37,7 @@ bool finite(const Vec6& v) {
 }  // namespace
 
 Servo::Servo(const ServoSettings& settings) : settings_(settings) {
-  workspace_.reserve(servo_max_rows);
+  workspace_.reserve(servo_max_rows, false);  // sweeps alone
   kernels();  // chosen here once and not at the first tick
   delta_free_.assign(servo_max_rows, 0.0);
   last_lambda_.assign(servo_max_rows, 0.0);

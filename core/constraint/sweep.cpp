@@ -4,28 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string_view>
 
 #include "core/constraint/friction.h"
-#include "core/linalg/kernels.h"
+#include "core/linalg/instruction_set.h"
 
 namespace insula {
-namespace sse2 { extern const SweepKernels sweep_table; }
-#if defined(__x86_64__)
-namespace avx2 { extern const SweepKernels sweep_table; }
-namespace avx512 { extern const SweepKernels sweep_table; }
-#endif
+INSULA_TABLES(SweepKernels, sweep_table)
 
-const SweepKernels& sweep_kernels() {
-#if defined(__x86_64__)
-  static const SweepKernels& chosen = [](std::string_view name) -> const SweepKernels& {
-    return name == "avx512" ? avx512::sweep_table : name == "avx2" ? avx2::sweep_table : sse2::sweep_table;
-  }(kernels().name);
-  return chosen;
-#else
-  return sse2::sweep_table;
-#endif
-}
+const SweepKernels& sweep_kernels() { return every_sweep_table().chosen(); }
 
 void local_solution(const ConstraintProblem& p, const Block& b, const double* lambda, const double* delta, double* out) {
   const int r = b.row;

@@ -82,11 +82,19 @@ int iterations(AsynchronousSolver& solver, const System& s) {
   return solver.status().iterations;
 }
 
+/// A solver that has the factor of a system.
+struct Ready {
+  System s;
+  AsynchronousSolver solver{tolerance};
+  explicit Ready(unsigned seed) : s(seed) {
+    solver.analyse(s.a);
+    EXPECT_TRUE(solver.factorise(s.a));
+  }
+};
+
 TEST(AsynchronousSolver, SolvesToItsToleranceWithAnOldFactor) {
-  System s(1);
-  AsynchronousSolver solver(tolerance);
-  solver.analyse(s.a);
-  ASSERT_TRUE(solver.factorise(s.a));
+  Ready ready(1);
+  auto& [s, solver] = ready;
   EXPECT_LE(iterations(solver, s), 3) << "single precision alone";
   s.fill(turned(0), 0.5);
   ASSERT_TRUE(solver.factorise(s.a));
@@ -96,12 +104,9 @@ TEST(AsynchronousSolver, SolvesToItsToleranceWithAnOldFactor) {
 }
 
 TEST(AsynchronousSolver, AMatrixThatTurnsWithItsNodesCostsNothing) {
-  System s(2);
   for (const bool told : {false, true}) {
-    s.fill(turned(0), 0);
-    AsynchronousSolver solver(tolerance);
-    solver.analyse(s.a);
-    ASSERT_TRUE(solver.factorise(s.a));
+    Ready ready(2);
+    auto& [s, solver] = ready;
     const auto r = turned(0.7);
     s.fill(r, 0);
     if (told) solver.turn(r);
@@ -117,10 +122,8 @@ TEST(AsynchronousSolver, AMatrixThatTurnsWithItsNodesCostsNothing) {
 }
 
 TEST(AsynchronousSolver, AFactorComesSoManyStepsAfterItWasAskedFor) {
-  System s(3);
-  AsynchronousSolver solver(tolerance);
-  solver.analyse(s.a);
-  ASSERT_TRUE(solver.factorise(s.a));
+  Ready ready(3);
+  auto& [s, solver] = ready;
   s.fill(turned(0), 3);
   ASSERT_TRUE(solver.factorise(s.a));
   ASSERT_GT(iterations(solver, s), AsynchronousSolver::enough_iterations);
@@ -136,11 +139,9 @@ TEST(AsynchronousSolver, AFactorComesSoManyStepsAfterItWasAskedFor) {
 }
 
 TEST(AsynchronousSolver, WithoutLeaveToWaitAStepGoesOnWithTheOldFactor) {
-  System s(4);
-  AsynchronousSolver solver(tolerance);
+  Ready ready(4);
+  auto& [s, solver] = ready;
   solver.may_wait(false);
-  solver.analyse(s.a);
-  ASSERT_TRUE(solver.factorise(s.a));
   s.fill(turned(0), 3);
   // However long the thread takes, every step has a solution; and at last the factor comes.
   int steps = 0;
@@ -154,10 +155,8 @@ TEST(AsynchronousSolver, WithoutLeaveToWaitAStepGoesOnWithTheOldFactor) {
 }
 
 TEST(AsynchronousSolver, CorrectionKnowsTheStepsOwnMatrix) {
-  System s(5);
-  AsynchronousSolver solver(tolerance);
-  solver.analyse(s.a);
-  ASSERT_TRUE(solver.factorise(s.a));
+  Ready ready(5);
+  auto& [s, solver] = ready;
   const auto r = turned(0.3);
   s.fill(r, 0.3);
   solver.turn(r);

@@ -26,8 +26,6 @@ struct KernelsOf {
   int (*cholesky_panel)(Real* a, int lda, int rows, int cols);
   /// Forward substitution with many right-hand sides: x (cols x m, row-major) = L11^-1 x.
   void (*lower_solve_rows)(const Real* l, int ldl, int cols, Real* x, long ldx, int m);
-  /// d[0..n) += c0 w0 + c1 w1 + c2 w2.
-  void (*axpy3)(Real* d, const Real* w0, const Real* w1, const Real* w2, Real c0, Real c1, Real c2, int n);
   /// d[0..n) += c w.
   void (*axpy)(Real* d, const Real* w, Real c, int n);
   /// 24 `width` n multiplications with additions in registers alone: what a core can do at most. Returns a sum of them.
@@ -40,7 +38,7 @@ struct KernelSet {
   KernelsOf<float> f32;
 };
 
-/// The best set this processor has (INSULA_KERNELS=sse2|avx2|avx512 in the environment asks for a lesser one).
+/// Those of the chosen instruction set (core/linalg/instruction_set.h).
 template <class Real>
 const KernelsOf<Real>& kernels_of();
 template <>

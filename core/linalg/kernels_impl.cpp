@@ -206,13 +206,6 @@ void lower_solve_rows(const T* l, int ldl, int cols, T* x, long ldx, int m) {
 }
 
 template <class T>
-void axpy3(T* d, const T* w0, const T* w1, const T* w2, T c0, T c1, T c2, int n) {
-  int i = 0;
-  for (; i + W<T> <= n; i += W<T>) store(d + i, load(d + i) + load(w0 + i) * c0 + load(w1 + i) * c1 + load(w2 + i) * c2);
-  for (; i < n; ++i) d[i] += c0 * w0[i] + c1 * w1[i] + c2 * w2[i];
-}
-
-template <class T>
 void axpy(T* d, const T* w, T c, int n) {
   int i = 0;
   for (; i + W<T> <= n; i += W<T>) store(d + i, load(d + i) + load(w + i) * c);
@@ -237,7 +230,7 @@ T multiply_add(long n) {
 #define KERNEL_STRING2(x) #x
 #define KERNEL_STRING(x) KERNEL_STRING2(x)
 template <class T>
-constexpr KernelsOf<T> table_of = {KERNEL_STRING(KERNEL_NAME), W<T>, gemm_sub<T>, gemm_add<T>, syrk_add<T>, syrk_sub<T>, rows_sub<T>, cholesky_panel<T>, lower_solve_rows<T>, axpy3<T>, axpy<T>, multiply_add<T>};
+constexpr KernelsOf<T> table_of = {KERNEL_STRING(KERNEL_NAME), W<T>, gemm_sub<T>, gemm_add<T>, syrk_add<T>, syrk_sub<T>, rows_sub<T>, cholesky_panel<T>, lower_solve_rows<T>, axpy<T>, multiply_add<T>};
 extern const KernelSet table;
 const KernelSet table = {table_of<double>, table_of<float>};
 

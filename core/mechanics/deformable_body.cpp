@@ -157,7 +157,7 @@ void DeformableBody::free_motion(const StepContext& context) {
     if (const int b = free_[std::size_t(i)]; b >= 0)
       packed_.segment<3>(3 * b) = force_.segment<3>(3 * i) + mass_[std::size_t(i)] * (context.gravity + v_.segment<3>(3 * i) / h);
   solver_->solve_from(packed_.data(), packed_free_.data());
-  packed_free_ = packed_;
+  if (!solver_->exact()) packed_free_ = packed_;
   dq_.setZero();
   for (int i = 0; i < nodes(); ++i)
     if (free_[std::size_t(i)] >= 0) dq_.segment<3>(3 * i) = packed_.segment<3>(3 * free_[std::size_t(i)]);

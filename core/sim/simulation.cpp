@@ -154,7 +154,7 @@ void Simulation::step() {
   clock.done(stage_build);
 
   warm_start();
-  workspace_.reserve(problem_.rows);
+  workspace_.reserve(problem_.rows, solve_settings_.max_newton > 0);
   workspace_.lambda.assign(problem_.lambda.begin(), problem_.lambda.end());
   report_.solve = solve(problem_, problem_.delta_free, solve_settings_, workspace_);
   defect_.begin(problem_, bodies_);

@@ -7,24 +7,18 @@
 #include <limits>
 
 #include "core/base/random.h"
+#include "core/linalg/instruction_set.h"
 #include "plugins/corotational_fem/crushed.h"
 #include "plugins/corotational_fem/polar.h"
 
 namespace insula {
-namespace sse2 { extern const ElementKernels element_table; }
-#if defined(__x86_64__)
-namespace avx2 { extern const ElementKernels element_table; }
-namespace avx512 { extern const ElementKernels element_table; }
-#endif
+INSULA_TABLES(ElementKernels, element_table)
 namespace {
 
 std::vector<const ElementKernels*> every_set() {
-  std::vector<const ElementKernels*> out{&sse2::element_table};
-#if defined(__x86_64__)
-  __builtin_cpu_init();
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) out.push_back(&avx2::element_table);
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl")) out.push_back(&avx512::element_table);
-#endif
+  std::vector<const ElementKernels*> out;
+  for (const auto set : {InstructionSet::sse2, InstructionSet::avx2, InstructionSet::avx512})
+    if (processor_has(set)) out.push_back(every_element_table().table[std::size_t(set)]);
   return out;
 }
 

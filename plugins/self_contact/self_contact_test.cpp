@@ -16,23 +16,29 @@ std::vector<std::uint64_t> ids(const Simulation& s) {
   return out;
 }
 
-// Both jaws end 8 mm beyond the middle: about 2 N on either side.
-TEST(SelfContact, JawsPressAVesselFlatAndItsWallsStayApart) {
-  const std::string jaws = R"(<retractor id="up" model="meshes/jaw/tool.urdf" hand="right" home="0 -4.5 5 mm" shaft="0 1 0" flat="0 0 1" coupling="250 N/m"/>
-<retractor id="down" model="meshes/jaw/tool.urdf" hand="left" home="0 -4.5 -5 mm" shaft="0 1 0" flat="0 0 1" coupling="250 N/m"/>)";
-  VesselBench b(test::tube(2e-3, 16e-3, 17), 7.6e-3, jaws, "up down", R"(friction="0.2" by="vertices" max_contacts="40" alarm="0.3 mm")",
-                R"(thickness="0.3 mm")", 400);
-  ASSERT_TRUE(b.s);
-  const auto close = [&](int i) {
-    for (int hand = 0; hand < 2; ++hand) {
-      Pose at = b.s->instrument_of(hand)->home_pose();
-      at.p.z() = (hand == 1 ? 1 : -1) * (5e-3 - 13e-3 * std::min(1.0, i / 90.0));
-      b.hand(hand, at);
+// A tube between two jaws that end 8 mm beyond the middle: about 2 N on either side.
+struct Jaws : VesselBench {
+  explicit Jaws(const std::string& self_contact)
+      : VesselBench(test::tube(2e-3, 16e-3, 17), 7.6e-3, R"(<retractor id="up" model="meshes/jaw/tool.urdf" hand="right" home="0 -4.5 5 mm" shaft="0 1 0" flat="0 0 1" coupling="250 N/m"/>
+<retractor id="down" model="meshes/jaw/tool.urdf" hand="left" home="0 -4.5 -5 mm" shaft="0 1 0" flat="0 0 1" coupling="250 N/m"/>)",
+                    "up down", R"(friction="0.2" by="vertices" max_contacts="40" alarm="0.3 mm")", self_contact, 400) {}
+  /// Step i of closing in 90 steps, then staying.
+  void close(int i) {
+    for (int which = 0; which < 2; ++which) {
+      Pose at = s->instrument_of(which)->home_pose();
+      at.p.z() = (which == 1 ? 1 : -1) * (5e-3 - 13e-3 * std::min(1.0, i / 90.0));
+      hand(which, at);
     }
-    b.s->step();
-  };
+    s->step();
+  }
+  double apart() const { return s->instrument_of(1)->pose().p.z() - s->instrument_of(0)->pose().p.z(); }
+};
+
+TEST(SelfContact, JawsPressAVesselFlatAndItsWallsStayApart) {
+  Jaws b(R"(thickness="0.3 mm")");
+  ASSERT_TRUE(b.s);
   for (int i = 0; i < 210; ++i) {
-    close(i);
+    b.close(i);
     ASSERT_EQ(b.crossings(), 0) << i;
     for (int hand : {0, 1}) ASSERT_LT(b.depth(*b.s->instrument_of(hand)), 0.1e-3) << i;
     ASSERT_LE(b.self->rows(), 60);
@@ -40,13 +46,13 @@ TEST(SelfContact, JawsPressAVesselFlatAndItsWallsStayApart) {
   }
   for (const Proximity& x : b.self->contacts()) EXPECT_GT(x.gap, -0.1e-3);
   // Jaws of 1 mm with two walls of 0.3 mm between them.
-  const double apart = b.s->instrument_of(1)->pose().p.z() - b.s->instrument_of(0)->pose().p.z();
+  const double apart = b.apart();
   EXPECT_NEAR(apart, 1.6e-3, 0.1e-3);
 
   const auto before = ids(*b.s);
   int changed = 0;
   for (int i = 0; i < 120; ++i) {
-    close(300);
+    b.close(300);
     changed += ids(*b.s) != before;
   }
   EXPECT_EQ(changed, 0);
@@ -64,19 +70,11 @@ TEST(SelfContact, JawsPressAVesselFlatAndItsWallsStayApart) {
 // 0.5 m/s, tip first, edge first and flat: in a step the hand moves twice as far as the vessel is wide.
 // The walls' own force on one another is the layer's law; what they bear together is what the jaws press with.
 TEST(SelfContact, AWallThatGivesWayBearsItsStiffnessTimesTheOverlap) {
-  const std::string jaws = R"(<retractor id="up" model="meshes/jaw/tool.urdf" hand="right" home="0 -4.5 5 mm" shaft="0 1 0" flat="0 0 1" coupling="250 N/m"/>
-<retractor id="down" model="meshes/jaw/tool.urdf" hand="left" home="0 -4.5 -5 mm" shaft="0 1 0" flat="0 0 1" coupling="250 N/m"/>)";
   constexpr double layer = 3000;
-  VesselBench b(test::tube(2e-3, 16e-3, 17), 7.6e-3, jaws, "up down", R"(friction="0.2" by="vertices" max_contacts="40" alarm="0.3 mm")",
-                R"(thickness="0.3 mm" layer="3 kN/m")", 400);
+  Jaws b(R"(thickness="0.3 mm" layer="3 kN/m")");
   ASSERT_TRUE(b.s);
   for (int i = 0; i < 330; ++i) {
-    for (int hand = 0; hand < 2; ++hand) {
-      Pose at = b.s->instrument_of(hand)->home_pose();
-      at.p.z() = (hand == 1 ? 1 : -1) * (5e-3 - 13e-3 * std::min(1.0, i / 90.0));
-      b.hand(hand, at);
-    }
-    b.s->step();
+    b.close(i);
     ASSERT_EQ(b.crossings(), 0) << i;
   }
   double sum = 0;
@@ -88,7 +86,7 @@ TEST(SelfContact, AWallThatGivesWayBearsItsStiffnessTimesTheOverlap) {
     bearing += c.normal_force > 0.05;
   }
   EXPECT_GT(bearing, 4);
-  const double apart = b.s->instrument_of(1)->pose().p.z() - b.s->instrument_of(0)->pose().p.z();
+  const double apart = b.apart();
   EXPECT_LT(apart, 1.55e-3);
   EXPECT_GT(apart, 1.1e-3);
   EXPECT_GT(sum, 1.0);
