@@ -48,7 +48,7 @@ int cmd_run(const CommandContext& context, const RunOptions& options) {
   for (std::int64_t k = 0; k < steps; ++k) {
     run.step();
     const auto& haptics = run.haptics();
-    recorder.record(simulation.report(), simulation.events(), {haptics.hand(0).force.norm(), haptics.hand(1).force.norm()});
+    recorder.record(simulation.report(), simulation.events(), {haptics.hand(0).force.norm(), haptics.hand(1).force.norm()}, simulation.energy());
     summary.wall_seconds += simulation.report().step_ms / 1000;
     if (!options.quiet) {
       for (const Event& e : simulation.events())

@@ -114,8 +114,8 @@ SceneWork count_work(const Simulation& s) {
     if (!contact) continue;
     for (const Contact::Pair& p : contact->pairs()) {
       for (const auto& f : {p.a, p.b})
-        if (f && moves(f->surface)) touched.insert(f->surface);
-      if (!p.tool_a && p.a && p.b) w.tissue_vertices += int(p.a->surface->rest().vertices.size() + p.b->surface->rest().vertices.size());
+        if (f && moves(f)) touched.insert(f);
+      if (!p.tool_a && p.a && p.b) w.tissue_vertices += int(p.a->rest().vertices.size() + p.b->rest().vertices.size());
       if (p.tool_a && !p.tool_b && p.tool_a->active()) w.tool_pieces += int(p.pieces_a.size());
     }
   }
@@ -143,9 +143,9 @@ struct Share {
 CostEstimate estimate(const SceneWork& w, const CostRates& r, int threads) {
   // A triangle of a wall with its hinges, over a tetrahedron; how often a kept factor is made anew; a step over the best of
   // several runs in a row, whose data lie in the caches; entries of a factor that a cache holds.
-  constexpr double wall_tangent = 3.2, wall_force = 5.5, wall_energy = 8, anew = 0.05, in_a_step = 1.25, cached = 1e6;
+  constexpr double wall_tangent = 3.2, wall_force = 5.5, anew = 0.05, in_a_step = 1.25, cached = 1e6;
   CostEstimate out;
-  std::vector<double> free, energy, correct, compliance;
+  std::vector<double> free, correct, compliance;
   std::vector<Share> shares;
   double add = 0;
   for (const BodyWork& b : w.bodies) {
@@ -154,7 +154,6 @@ CostEstimate estimate(const SceneWork& w, const CostRates& r, int threads) {
     const double solve = double(b.solver.factor_entries) * r.solve_entry;
     const double often = b.keeps_tangent ? anew : 1;
     free.push_back(in_a_step * (often * (tangent + factor) + (1 - often) * force + solve) + 5 * b.nodes * r.vertex);
-    energy.push_back(in_a_step * b.elements * r.tetrahedron_force * (b.wall ? wall_energy : 1));
     correct.push_back(b.rows > 0 ? in_a_step * solve : 0);
     compliance.push_back(b.rows > 0 ? b.compliance_flops * r.compliance_flop + 1.5 * std::max(0.0, double(b.solver.factor_entries) - cached) * r.solve_entry : 0);
     add += double(b.rows) * b.rows * r.compliance_row2;
@@ -162,7 +161,7 @@ CostEstimate estimate(const SceneWork& w, const CostRates& r, int threads) {
     shares.push_back({1000 * often * factor, fmt::format("the factor of \"{}\" ({} nodes, {:.0f} Mflop)", b.id, b.nodes, b.solver.factor_flops * 1e-6),
                       fmt::format("fewer nodes in \"{}\": half of them make its factor about four times cheaper; hold what lies far with <fixed>{}", b.id,
                                   b.keeps_tangent ? "" : ", or keep the factor with tangent_tolerance=\"0.02\"")});
-    shares.push_back({1000 * (tangent * often + force * (2 - often)), fmt::format("the {} elements of \"{}\"", b.elements, b.id), fmt::format("fewer elements in \"{}\"", b.id)});
+    shares.push_back({1000 * (tangent * often + force * (1 - often)), fmt::format("the {} elements of \"{}\"", b.elements, b.id), fmt::format("fewer elements in \"{}\"", b.id)});
     shares.push_back({1000 * compliance.back(), fmt::format("the compliance of {} rows on \"{}\"", b.rows, b.id),
                       "fewer rows: larger spacing, smaller max_contacts, patch, fewer strands"});
   }
@@ -177,7 +176,7 @@ CostEstimate estimate(const SceneWork& w, const CostRates& r, int threads) {
   out.stage_ms[stage_build] = 1000 * (all / std::max(1, threads) + add + row * w.expected_rows);
   out.stage_ms[stage_solve] = 1000 * sweeps;
   out.stage_ms[stage_correct] = 1000 * (on_threads(correct, threads) + row * w.expected_rows);
-  out.stage_ms[stage_publish] = 1000 * (on_threads(energy, threads) + row * w.expected_rows);
+  out.stage_ms[stage_publish] = 1000 * row * w.expected_rows;
   for (double ms : out.stage_ms) out.step_ms += ms;
 
   shares.push_back({out.stage_ms[stage_collision], fmt::format("collision of surfaces with {} triangles", w.surface_triangles),

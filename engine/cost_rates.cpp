@@ -23,7 +23,7 @@ CostRates measure_rates(const Registry& registry) {
   }
   const SceneWork work = count_work(*s);
   r.vertex = shortest(6, [&] {
-               for (Surface* f : s->surfaces()) f->update(), f->update_free();
+               for (Surface* f : s->surfaces()) f->update(), f->look_ahead();
              }) / std::max(1, work.surface_vertices);
   r.sweep_row2 = solve < 1e9 ? solve : 1e-9;
 

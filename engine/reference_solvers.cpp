@@ -60,13 +60,14 @@ class ReferenceSolver : public BodySolver {
     columns_ = m;
     w_.setZero(m, m);
   }
-  int compliance_parts() const override { return columns_ > 0 && size_ > 0 ? 1 : 0; }
-  void compliance_part(int) override {
+  int compliance_parts(ComplianceAct) const override { return columns_ > 0 && size_ > 0 ? 1 : 0; }
+  void compliance_part(ComplianceAct act, int) override {
+    if (act == ComplianceAct::product) {
+      w_.noalias() = h_.transpose() * solved_;
+      return;
+    }
     solve_columns(h_);
     solved_ = x_;
-  }
-  void end_compliance() override {
-    if (columns_ > 0) w_.noalias() = h_.transpose() * solved_;
   }
   void add_compliance(const BodyRows& rows, double* w, int stride) const override {
     for (int i = 0; i < columns_; ++i)

@@ -79,7 +79,7 @@ void write(const std::filesystem::path& file, const std::string& text) {
 
 }  // namespace
 
-void RunRecorder::record(const StepReport& r, const std::vector<Event>& events, const std::array<double, 2>& hand_force_N) {
+void RunRecorder::record(const StepReport& r, const std::vector<Event>& events, const std::array<double, 2>& hand_force_N, double energy_J) {
   Sample s;
   s.time_s = float(r.time);
   for (std::size_t k = 0; k < stage_count; ++k) s.stage_ms[k] = float(r.stage_ms[k]);
@@ -89,7 +89,7 @@ void RunRecorder::record(const StepReport& r, const std::vector<Event>& events, 
     if (t.hand == 0 || t.hand == 1) s.tool_force_N[std::size_t(t.hand)] += float(t.contact_force);
   s.residual_N = float(r.solve.residual_N);
   s.residual_m = float(r.solve.residual_m);
-  s.energy_J = float(r.energy);
+  s.energy_J = float(energy_J);
   s.rows = r.rows;
   s.contacts = int(r.contacts.size());
   s.sweeps = r.solve.sweeps;

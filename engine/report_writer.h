@@ -41,8 +41,8 @@ class RunRecorder {
     std::int32_t rows = 0, contacts = 0, sweeps = 0, strands_left = 0;
   };
 
-  /// After a step: its report, its events (the exercise's included) and the force on each hand (N; left, right).
-  void record(const StepReport& report, const std::vector<Event>& events, const std::array<double, 2>& hand_force_N);
+  /// After a step: its report, its events (the exercise's included), the force on each hand (N; left, right) and the energy of all bodies.
+  void record(const StepReport& report, const std::vector<Event>& events, const std::array<double, 2>& hand_force_N, double energy_J);
   void clear();
 
   const std::deque<Sample>& samples() const { return samples_; }

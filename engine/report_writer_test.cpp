@@ -53,7 +53,7 @@ RunRecorder hundred_steps() {
     std::vector<Event> events;
     if (k % 10 == 0) events.push_back({"strand_cut", "s", "", 1, r.time});
     if (k == 70) events.push_back({"fault", "force", "Too much <force> & \"more\"", 2.5, r.time});
-    recorder.record(r, events, {0.1, k == 30 ? 1.5 : 0.2});
+    recorder.record(r, events, {0.1, k == 30 ? 1.5 : 0.2}, 1e-3);
   }
   return recorder;
 }
@@ -143,7 +143,7 @@ TEST(ReportJson, TellsOfBleedingVesselsClipsAndCommands) {
     r.vessels.push_back({vessel, 10665.790993, 1e-6, 2e-6, 0.5, 0});
     std::vector<Event> events;
     if (k == 4) events = {{"command", "ask", "applier load a", 0, 0.4}, {"refused", "exchange", "draw the <instrument> out", 0, 0.4}, {"message", "message", "well done", 0, 0.4}};
-    recorder.record(r, events, {0, 0});
+    recorder.record(r, events, {0, 0}, 1e-3);
   }
   const Json j = Json::parse(report_json(recorder, summary(&exercise)));
   EXPECT_NEAR(j.at("bleeding").at("lost_mL").get<double>(), 2.5, 1e-12);
@@ -192,7 +192,7 @@ TEST(ReportJson, StatesTheSeedAndWhatWasDrawn) {
   RunRecorder recorder;
   for (int k = 0; k < 20; ++k) {
     loaded.simulation->step();
-    recorder.record(loaded.simulation->report(), loaded.simulation->events(), {0, 0});
+    recorder.record(loaded.simulation->report(), loaded.simulation->events(), {0, 0}, loaded.simulation->energy());
   }
   RunSummary s = summary(nullptr);
   s.complications = loaded.simulation->complications();
@@ -228,10 +228,9 @@ TEST(ReportJson, IsJsonEvenWhenTheSimulationIsNot) {
   RunRecorder recorder;
   StepReport r;
   r.finite = false;
-  r.energy = std::numeric_limits<double>::quiet_NaN();
   r.solve.residual_N = std::numeric_limits<double>::infinity();
   r.time = 0.1;
-  recorder.record(r, {{"message", "\xff", "bad \xc3 bytes \x01", 0, 0.1}}, {0, std::numeric_limits<double>::quiet_NaN()});
+  recorder.record(r, {{"message", "\xff", "bad \xc3 bytes \x01", 0, 0.1}}, {0, std::numeric_limits<double>::quiet_NaN()}, std::numeric_limits<double>::quiet_NaN());
   const Json j = Json::parse(report_json(recorder, summary(nullptr)));
   EXPECT_EQ(j.at("finite"), false);
   EXPECT_EQ(xml_error(report_html(recorder, summary(nullptr))), "");
@@ -256,7 +255,7 @@ TEST(RunSeries, KeepsPeaksWhenItGathers) {
     r.time = 0.001 * k;
     r.rows = k == 5003 ? 999 : 1;
     r.strands_left = 10007 - k;
-    recorder.record(r, {}, {k == 77 ? 3.0 : 0.0, 0});
+    recorder.record(r, {}, {k == 77 ? 3.0 : 0.0, 0}, 0);
   }
   const RunSeries s = series_of(recorder, 500);
   EXPECT_LE(s.time_s.size(), 500u);
@@ -269,7 +268,7 @@ TEST(RunSeries, KeepsPeaksWhenItGathers) {
 TEST(RunRecorder, LimitsItsEvents) {
   RunRecorder recorder;
   StepReport r;
-  for (int k = 0; k < 5100; ++k) recorder.record(r, {{"message", "a", "b", 0, 0}}, {0, 0});
+  for (int k = 0; k < 5100; ++k) recorder.record(r, {{"message", "a", "b", 0, 0}}, {0, 0}, 0);
   EXPECT_EQ(recorder.events().size(), 5000u);
   EXPECT_EQ(recorder.events_left_out(), 100);
   recorder.clear();

@@ -80,6 +80,7 @@ class SelfCollider {
   std::vector<Vec3> outward_;                    ///< of the samples now; computed when first wanted
   std::vector<char> outward_known_;
   std::vector<char> close_[2];                   ///< 1: had a contact of this side in the last step, 2: had crossed; looked for farther
+  std::vector<Vec3> direction_[2];               ///< of the samples: normal of the last contact of this side
   std::vector<double> clear_[2];                 ///< of the samples: no partner of this side is nearer than this, m
   std::vector<std::vector<Partner>> lists_[2];   ///< of the samples: what may be a partner soon, nearest first ...
   std::vector<double> covered_[2];               ///< ... as long as no more than this has moved; negative: to be made, m

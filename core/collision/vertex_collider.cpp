@@ -22,6 +22,7 @@ VertexCollider::VertexCollider(const std::vector<ConvexPiece>& pieces, const std
     for (int k = 0; k < 3; ++k)
       if (auto& own = triangle_of_[std::size_t(triangles[std::size_t(t)][std::size_t(k)])]; own[0] < 0) own = {t, k};
   seen_.reserve(n);
+  near_pieces_.reserve(pieces.size());
   reset();
 }
 
@@ -29,11 +30,6 @@ void VertexCollider::reset() {
   kept_out_.assign(triangle_of_.size(), Vec3::Zero());
   marked_.assign(triangle_of_.size(), 0);
   side_.setZero();
-}
-
-// No more than what nearest() gives: from the box of the core.
-double VertexCollider::at_least(std::size_t piece, const Vec3& local, double offset) const {
-  return std::sqrt(boxes_[piece].distance2(local)) - pieces_[piece].radius - offset;
 }
 
 VertexCollider::Near VertexCollider::nearest(const RoundedPiece& piece, const Pose& pose, const Vec3& x, double offset) const {
@@ -77,18 +73,31 @@ void VertexCollider::detect(const CollisionMesh& mesh, const Pose& start, const 
   }
   std::sort(seen_.begin(), seen_.end());
   Vec3 pressed = Vec3::Zero();
+  const Mat3 to_local = start.q.toRotationMatrix().transpose();
 
   for (const int v : seen_) {
     marked_[std::size_t(v)] = 0;
-    const Vec3 x0 = mesh.vertex(v), u = mesh.free(v);
     Vec3& memory = kept_out_[std::size_t(v)];
+    const Vec3 x0 = mesh.vertex(v), u = mesh.free(v), local = to_local * (x0 - start.p);
+    // What no piece is near to, nor comes near to, is passed by.
+    const double speed = (motion.head<3>() - u).norm() + turn * (local.norm() + u.norm());
+    const double reach = std::max(alarm, 0.2 * alarm + speed);
+    near_pieces_.clear();
+    for (int i = 0; i < int(pieces_.size()); ++i) {
+      const double d = std::sqrt(boxes_[std::size_t(i)].distance2(local)) - pieces_[std::size_t(i)].radius - settings.offset;
+      if (d <= reach) near_pieces_.push_back({i, d});
+    }
+    if (near_pieces_.empty()) {
+      memory.setZero();
+      continue;
+    }
     if (settings.one_sided && !side_.isZero(0) && memory.dot(side_) < -0.7) memory = side_.normalized();
-    const Vec3 before = start.q * memory, local = start.q.conjugate() * (x0 - start.p);
+    const Vec3 before = start.q * memory;
     int best = -1;
     Near near{1e300, Vec3::Zero()};
     double when = 0;
-    for (int i = 0; i < int(pieces_.size()); ++i) {
-      if (at_least(std::size_t(i), local, settings.offset) > std::min(alarm, near.clear)) continue;
+    for (const auto& [i, at_least] : near_pieces_) {
+      if (at_least > std::min(alarm, near.clear)) continue;
       const Near n = nearest(pieces_[std::size_t(i)], start, x0, settings.offset);
       if (n.clear < near.clear) {
         near = n;
@@ -101,14 +110,12 @@ void VertexCollider::detect(const CollisionMesh& mesh, const Pose& start, const 
       double first = 1;
       int met = -1;
       Near at_touch{};
-      for (int i = 0; i < int(pieces_.size()); ++i) {
-        const RoundedPiece& p = pieces_[std::size_t(i)];
-        const double speed = (motion.head<3>() - u).norm() + turn * (x0 - start.p).norm() + turn * u.norm();
-        if (at_least(std::size_t(i), local, settings.offset) > 0.2 * alarm + speed) continue;
+      for (const auto& [i, at_least] : near_pieces_) {
+        if (at_least > 0.2 * alarm + speed) continue;
         double t = 0;
         for (int k = 0; k < 32 && t < first; ++k) {
           const Pose pose = t > 0 ? displaced(start, t * motion) : start;
-          const Near n = nearest(p, pose, x0 + t * u, settings.offset);
+          const Near n = nearest(pieces_[std::size_t(i)], pose, x0 + t * u, settings.offset);
           if (n.clear <= 0.2 * alarm) {
             first = t;
             met = i;

@@ -34,7 +34,10 @@ class VertexCollider {
   };
   Near nearest(const RoundedPiece& piece, const Pose& pose, const Vec3& x, double offset) const;
 
-  double at_least(std::size_t piece, const Vec3& local, double offset) const;
+  struct Candidate {
+    int piece;
+    double at_least;  ///< no more than what nearest() gives, m
+  };
 
   std::vector<RoundedPiece> pieces_;
   std::vector<Aabb> boxes_;                      ///< of the pieces' cores
@@ -43,6 +46,7 @@ class VertexCollider {
   Vec3 side_ = Vec3::Zero();                     ///< from most vertices that press to the core, frame of the pieces; up to unit length
   std::vector<int> seen_;                        ///< vertices near the pieces in this step
   std::vector<char> marked_;
+  std::vector<Candidate> near_pieces_;           ///< of one vertex
 };
 
 }  // namespace insula

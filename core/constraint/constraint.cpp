@@ -31,7 +31,7 @@ void ConstraintBuilder::surface_point(int row, const Surface& s, int triangle, c
   body.rows.open(row);
   s.add_row(body.rows, triangle, bary, d);
   const auto& t = s.triangles()[std::size_t(triangle)];
-  for (int k = 0; k < 3; ++k) delta_[std::size_t(row)] += bary[k] * d.dot(s.free_displacements()[std::size_t(t[std::size_t(k)])]);
+  for (int k = 0; k < 3; ++k) delta_[std::size_t(row)] += bary[k] * d.dot(s.body().free_displacement(s.points()[std::size_t(t[std::size_t(k)])]));
 }
 
 void ConstraintBuilder::finish() {

@@ -31,9 +31,8 @@ class AsynchronousSolver final : public BodySolver {
   void solve(double* x) override { solve_from(x, nullptr); }
   void solve_from(double* x, const double* guess) override;
   void begin_compliance(const BodyRows& rows, const std::vector<int>& node_of_block) override;
-  int compliance_parts() const override { return front_->compliance_parts(); }
-  void compliance_part(int part) override { front_->compliance_part(part); }
-  void end_compliance() override { front_->end_compliance(); }
+  int compliance_parts(ComplianceAct act) const override { return front_->compliance_parts(act); }
+  void compliance_part(ComplianceAct act, int part) override { front_->compliance_part(act, part); }
   void add_compliance(const BodyRows& rows, double* w, int stride) const override { front_->add_compliance(rows, w, stride); }
   void correct(const BodyRows& rows, const double* lambda, double* x) override;
   bool exact() const override { return false; }

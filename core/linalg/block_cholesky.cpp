@@ -2,10 +2,10 @@
 // Numeric factor and single right-hand sides. Many right-hand sides: block_compliance.cpp.
 #include "core/linalg/block_cholesky.h"
 
+#include <algorithm>
 #include <cstring>
 #include <limits>
 
-#include "core/linalg/dot.h"
 #include "core/linalg/flush_subnormals.h"
 #include "core/linalg/kernels.h"
 
@@ -17,7 +17,7 @@ void MultifrontalCholesky<Real>::analyse(const BlockMatrix& a) {
   panel_.assign(std::size_t(e_.panel_size) + slack, Real(0));
   update_.assign(std::size_t(e_.arena_size) + slack, Real(0));
   x_.assign(3 * std::size_t(e_.nodes) + slack, Real(0));
-  below_.assign(3 * std::size_t(e_.nodes) + slack, Real(0));
+  gathered_.assign(3 * std::size_t(e_.nodes) + slack, Real(0));
   columns_ = 0;
   rows_factor_ = -1;
 }
@@ -95,43 +95,57 @@ bool MultifrontalCholesky<Real>::pivots_are_good(const BlockMatrix& a, const Fro
   return true;
 }
 
-// Both gather what lies below a front once, so that its columns run over memory in order.
+// Both gather a front's part of x once, so that its columns run over memory in order, a few of them at a time.
+namespace {
+constexpr int columns_at_once = 6;
+}
+
 template <class Real>
 void MultifrontalCholesky<Real>::forward(Real* x) {
   const KernelsOf<Real>& k = kernels_of<Real>();
-  Real* t = below_.data();
+  Real* t = gathered_.data();
   for (const Front& f : e_.front) {
     const Real* l = panel_.data() + f.panel;
-    const int own = 3 * f.own, below = 3 * f.rows - own;
-    Real* xo = x + 3 * f.first;
-    const int* index = e_.row_scalar.data() + 3 * f.row_begin + own;
-    for (int r = 0; r < below; ++r) t[r] = x[index[r]];
-    for (int c = 0; c < own; ++c) {
-      const Real* col = l + long(c) * f.lda;
-      const Real v = xo[c] / col[c];
-      xo[c] = v;
-      for (int r = c + 1; r < own; ++r) xo[r] -= col[r] * v;
-      k.axpy(t, col + own, -v, below);
+    const int own = 3 * f.own, rows = 3 * f.rows;
+    const int* index = e_.row_scalar.data() + 3 * f.row_begin;
+    for (int r = 0; r < rows; ++r) t[r] = x[index[r]];
+    for (int first = 0; first < own; first += columns_at_once) {
+      const int last = std::min(first + columns_at_once, own);
+      for (int c = first; c < last; ++c) {
+        const Real* col = l + long(c) * f.lda;
+        t[c] /= col[c];
+        for (int r = c + 1; r < last; ++r) t[r] -= col[r] * t[c];
+      }
+      k.columns_sub(t + last, l + last + long(first) * f.lda, f.lda, t + first, rows - last, last - first);
     }
-    for (int r = 0; r < below; ++r) x[index[r]] = t[r];
+    for (int r = 0; r < rows; ++r) x[index[r]] = t[r];
   }
 }
 
 template <class Real>
 void MultifrontalCholesky<Real>::backward(Real* x) {
-  Real* t = below_.data();
+  const KernelsOf<Real>& k = kernels_of<Real>();
+  Real* t = gathered_.data();
   for (auto it = e_.front.rbegin(); it != e_.front.rend(); ++it) {
     const Front& f = *it;
     const Real* l = panel_.data() + f.panel;
-    const int own = 3 * f.own, below = 3 * f.rows - own;
-    Real* xo = x + 3 * f.first;
-    const int* index = e_.row_scalar.data() + 3 * f.row_begin + own;
-    for (int r = 0; r < below; ++r) t[r] = x[index[r]];
-    for (int c = own - 1; c >= 0; --c) {
-      const Real* col = l + long(c) * f.lda;
-      const Real v = xo[c] - dot(col + own, t, below) - dot(col + c + 1, xo + c + 1, own - c - 1);
-      xo[c] = v / col[c];
+    const int own = 3 * f.own, rows = 3 * f.rows;
+    const int* index = e_.row_scalar.data() + 3 * f.row_begin;
+    for (int r = 0; r < rows; ++r) t[r] = x[index[r]];
+    std::fill(t + rows, t + rows + lanes, Real(0));
+    for (int last = own; last > 0;) {
+      const int first = (last - 1) / columns_at_once * columns_at_once;
+      Real below[columns_at_once];
+      k.columns_dot(below, l + last + long(first) * f.lda, f.lda, t + last, rows - last, last - first);
+      for (int c = last - 1; c >= first; --c) {
+        const Real* col = l + long(c) * f.lda;
+        Real v = t[c] - below[c - first];
+        for (int r = c + 1; r < last; ++r) v -= col[r] * t[r];
+        t[c] = v / col[c];
+      }
+      last = first;
     }
+    std::copy(t, t + own, x + 3 * f.first);
   }
 }
 

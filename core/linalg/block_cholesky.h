@@ -21,9 +21,8 @@ class MultifrontalCholesky final : public BodySolver {
   bool factorise(const BlockMatrix& a) override;
   void solve(double* x) override;
   void begin_compliance(const BodyRows& rows, const std::vector<int>& node_of_block) override;
-  int compliance_parts() const override;
-  void compliance_part(int part) override;
-  void end_compliance() override;
+  int compliance_parts(ComplianceAct act) const override;
+  void compliance_part(ComplianceAct act, int part) override;
   void add_compliance(const BodyRows& rows, double* w, int stride) const override;
   void correct(const BodyRows& rows, const double* lambda, double* x) override;
   int rows_reused() const override { return reused_; }
@@ -43,7 +42,7 @@ class MultifrontalCholesky final : public BodySolver {
   void store(double* x) const;  ///< x_, in natural order
 
   Elimination e_;
-  std::vector<Real> panel_, update_, x_, below_;  ///< below_: of one front, gathered
+  std::vector<Real> panel_, update_, x_, gathered_;  ///< gathered_: what one front needs of a vector
 
   // Rows in flight. Columns of Y are theirs in `order_` (-1: a column of zeros), fresh ones up to fresh_, then known ones.
   struct Columns {
@@ -52,12 +51,18 @@ class MultifrontalCholesky final : public BodySolver {
   void arrange();
   void clear_fresh();
   void copy_known();
+  void share_out();
+  void forward_columns(int from, int to);
+  void product_columns(int from, int to);
+  void copy_known_products();
   std::vector<Real> y_, s_, lambda_;
   std::vector<int> order_, begin_;
   std::array<std::vector<Columns>, 2> active_;  ///< fresh, known; of each front
   RowEntries entries_;
   long ldy_ = 0, fresh_ = 0;
   int columns_ = 0;
+  std::array<std::vector<int>, 2> part_begin_;  ///< of each act: the fresh columns of a part, then the end of the last
+  std::array<std::vector<double>, 2> work_;     ///< of each act: flops of each vector of columns
 
   // The rows before, as long as the factor is theirs.
   std::int64_t factor_number_ = 0, rows_factor_ = -1;

@@ -8,7 +8,6 @@
 #include <cstring>
 
 #include "core/linalg/block_cholesky.h"
-#include "core/linalg/dot.h"
 #include "core/linalg/flush_subnormals.h"
 #include "core/linalg/kernels.h"
 
@@ -18,9 +17,9 @@ namespace insula {
 template <class Real>
 void MultifrontalCholesky<Real>::begin_compliance(const BodyRows& rows, const std::vector<int>& node_of_block) {
   const int m = rows.count();
-  const bool kept = rows_factor_ == factor_number_ && columns_ > 0;
-  rows_factor_ = -1;
+  const bool kept = rows_factor_ == factor_number_;
   columns_ = m;
+  rows_factor_ = m > 0 && e_.nodes > 0 ? factor_number_ : -1;
   reused_ = 0;
   unchanged_ = false;
   if (m == 0 || e_.nodes == 0) return;
@@ -61,6 +60,7 @@ void MultifrontalCholesky<Real>::begin_compliance(const BodyRows& rows, const st
       to[2 * ldy_] += Real(h.z());
     }
   }
+  share_out();
 }
 
 // Gives every row its column, fresh ones first, and every front its active columns: those of its own entries and of its children.
@@ -133,21 +133,62 @@ void MultifrontalCholesky<Real>::copy_known() {
   }
 }
 
-// Every part reads the whole factor: one that does not fit the caches is read no more often than needed.
+// Parts of equal work. Every part of the forward act reads the whole factor: one that does not fit the caches is read no more
+// often than needed.
 template <class Real>
-int MultifrontalCholesky<Real>::compliance_parts() const {
+void MultifrontalCholesky<Real>::share_out() {
   constexpr std::size_t cached = std::size_t(2) << 20;
-  if (columns_ == 0 || e_.nodes == 0 || unchanged_ || fresh_ == 0) return 0;
-  return fresh_ < 2 * least_part ? 1 : panel_.size() * sizeof(Real) > cached ? 2 : 4;
+  const int whole = int(fresh_) / lanes;  // vectors of columns
+  for (const ComplianceAct act : compliance_acts) {
+    auto& begin = part_begin_[std::size_t(act)];
+    begin.clear();
+    if (whole > 0) begin.push_back(0);
+    if (fresh_ >= 2 * least_part) {
+      auto& work = work_[std::size_t(act)];
+      work.assign(std::size_t(whole), 0.0);
+      double all = 0;
+      for (std::size_t i = 0; i < e_.front.size(); ++i) {
+        const Columns &a = active_[0][i], &b = active_[1][i];
+        const double own = 3 * e_.front[i].own, below = 3 * e_.front[i].rows - own, known = std::max(0, b.end - b.begin);
+        for (int c = a.begin; c < a.end; c += lanes) {
+          const double flops = own * (act == ComplianceAct::forward ? own + 2 * below : a.end - c + 2 * known);
+          work[std::size_t(c / lanes)] += flops;
+          all += flops;
+        }
+      }
+      const int parts = act == ComplianceAct::forward && panel_.size() * sizeof(Real) > cached ? 2 : 4;
+      double done = 0;
+      for (int v = 0; v < whole; ++v) {
+        if (int(begin.size()) < parts && v > 0 && done >= all * double(begin.size()) / parts) begin.push_back(lanes * v);
+        done += work[std::size_t(v)];
+      }
+    }
+    if (whole > 0) begin.push_back(int(fresh_));
+  }
 }
 
-// Forward substitution of some columns, front by front: columns know nothing of each other.
 template <class Real>
-void MultifrontalCholesky<Real>::compliance_part(int part) {
+int MultifrontalCholesky<Real>::compliance_parts(ComplianceAct act) const {
+  if (columns_ == 0 || e_.nodes == 0 || unchanged_) return 0;
+  const int parts = std::max(0, int(part_begin_[std::size_t(act)].size()) - 1);
+  return act == ComplianceAct::product ? std::max(1, parts) : parts;  // what is known is copied by the first
+}
+
+template <class Real>
+void MultifrontalCholesky<Real>::compliance_part(ComplianceAct act, int part) {
   [[maybe_unused]] const FlushSubnormals<Real> flush;
+  const auto& begin = part_begin_[std::size_t(act)];
+  if (act == ComplianceAct::product && part == 0) copy_known_products();
+  if (part + 1 >= int(begin.size())) return;
+  const int from = begin[std::size_t(part)], to = begin[std::size_t(part) + 1];
+  if (act == ComplianceAct::forward) forward_columns(from, to);
+  else product_columns(from, to);
+}
+
+// Forward substitution, front by front: columns know nothing of each other.
+template <class Real>
+void MultifrontalCholesky<Real>::forward_columns(int from, int to) {
   const KernelsOf<Real>& k = kernels_of<Real>();
-  const long whole = fresh_ / lanes, parts = compliance_parts();  // whole vectors of columns
-  const int from = int(lanes * (whole * part / parts)), to = int(lanes * (whole * (part + 1) / parts));
   for (std::size_t i = 0; i < e_.front.size(); ++i) {
     const Front& f = e_.front[i];
     const int lo = std::max(active_[0][i].begin, from), hi = std::min(active_[0][i].end, to);
@@ -161,24 +202,28 @@ void MultifrontalCholesky<Real>::compliance_part(int part) {
   }
 }
 
-// W = Y^T Y: fresh columns with each other and with the known ones; what is left is known.
+// W = Y^T Y: fresh columns with those from them on, and with the known ones.
 template <class Real>
-void MultifrontalCholesky<Real>::end_compliance() {
-  if (columns_ == 0 || e_.nodes == 0) return;
-  rows_factor_ = factor_number_;
-  if (unchanged_) return;
-  [[maybe_unused]] const FlushSubnormals<Real> flush;
+void MultifrontalCholesky<Real>::product_columns(int from, int to) {
   const KernelsOf<Real>& k = kernels_of<Real>();
-  std::memset(s_.data(), 0, sizeof(Real) * std::size_t(ldy_) * std::size_t(ldy_));
+  const int ld = int(ldy_);
+  std::memset(s_.data() + long(from) * ldy_, 0, sizeof(Real) * std::size_t(to - from) * std::size_t(ldy_));
   for (std::size_t i = 0; i < e_.front.size(); ++i) {
     const Front& f = e_.front[i];
     const Columns &a = active_[0][i], &b = active_[1][i];
-    if (a.begin >= a.end) continue;
+    const int lo = std::max(a.begin, from), hi = std::min(a.end, to);
+    if (lo >= hi) continue;
     const Real* y = y_.data() + 3L * f.first * ldy_;
-    const int ld = int(ldy_), own = 3 * f.own;
-    k.syrk_add(s_.data() + long(a.begin) * ldy_ + a.begin, ld, y + a.begin, ld, a.end - a.begin, own);
-    if (b.begin < b.end) k.gemm_add(s_.data() + long(a.begin) * ldy_ + b.begin, ld, y + b.begin, ld, y + a.begin, ld, b.end - b.begin, a.end - a.begin, own);
+    Real* s = s_.data() + long(lo) * ldy_;
+    const int own = 3 * f.own;
+    k.syrk_add(s + lo, ld, y + lo, ld, hi - lo, own);
+    if (hi < a.end) k.gemm_add(s + hi, ld, y + hi, ld, y + lo, ld, a.end - hi, hi - lo, own);
+    if (b.begin < b.end) k.gemm_add(s + b.begin, ld, y + b.begin, ld, y + lo, ld, b.end - b.begin, hi - lo, own);
   }
+}
+
+template <class Real>
+void MultifrontalCholesky<Real>::copy_known_products() {
   for (long c = fresh_; c < fresh_ + reused_; ++c)
     for (long r = c; r < fresh_ + reused_; ++r) {
       const int oc = old_column_[std::size_t(known_[std::size_t(order_[std::size_t(c)])])], o = old_column_[std::size_t(known_[std::size_t(order_[std::size_t(r)])])];
@@ -207,6 +252,7 @@ void MultifrontalCholesky<Real>::add_compliance(const BodyRows& rows, double* w,
 template <class Real>
 void MultifrontalCholesky<Real>::correct(const BodyRows& rows, const double* lambda, double* x) {
   [[maybe_unused]] const FlushSubnormals<Real> flush;
+  const KernelsOf<Real>& k = kernels_of<Real>();
   std::fill(x_.begin(), x_.end(), Real(0));
   if (columns_ > 0 && e_.nodes > 0) {
     lambda_.resize(std::size_t(ldy_));
@@ -215,8 +261,9 @@ void MultifrontalCholesky<Real>::correct(const BodyRows& rows, const double* lam
       for (std::size_t i = 0; i < e_.front.size(); ++i) {
         const Columns& a = group[i];
         if (a.begin >= a.end) continue;
-        for (int r = 0; r < 3 * e_.front[i].own; ++r)
-          x_[std::size_t(3 * e_.front[i].first + r)] += dot(y_.data() + (3L * e_.front[i].first + r) * ldy_ + a.begin, lambda_.data() + a.begin, a.end - a.begin);
+        const int first = 3 * e_.front[i].first, own = 3 * e_.front[i].own;
+        k.columns_dot(gathered_.data(), y_.data() + long(first) * ldy_ + a.begin, ldy_, lambda_.data() + a.begin, a.end - a.begin, own);
+        for (int r = 0; r < own; ++r) x_[std::size_t(first + r)] += gathered_[std::size_t(r)];
       }
     backward(x_.data());
   }
@@ -230,7 +277,7 @@ SolverCost MultifrontalCholesky<Real>::cost() const {
   c.factor_entries = e_.entries;
   c.factor_flops = e_.flops;
   c.factor_bytes = 2.0 * sizeof(Real) * double(e_.entries);
-  for (std::size_t i = 0; compliance_parts() > 0 && i < e_.front.size(); ++i) {
+  for (std::size_t i = 0; compliance_parts(ComplianceAct::forward) > 0 && i < e_.front.size(); ++i) {
     const double fresh = std::max(0, active_[0][i].end - active_[0][i].begin), known = std::max(0, active_[1][i].end - active_[1][i].begin);
     const double own = 3 * e_.front[i].own, below = 3 * e_.front[i].rows - own;
     c.compliance_flops += fresh * own * (own + 2 * below + fresh + 2 * known);
@@ -238,16 +285,19 @@ SolverCost MultifrontalCholesky<Real>::cost() const {
   return c;
 }
 
-#define INSULA_COMPLIANCE_OF(Real)                                                                            \
-  template void MultifrontalCholesky<Real>::begin_compliance(const BodyRows&, const std::vector<int>&);       \
-  template void MultifrontalCholesky<Real>::arrange();                                                        \
-  template void MultifrontalCholesky<Real>::clear_fresh();                                                    \
-  template void MultifrontalCholesky<Real>::copy_known();                                                     \
-  template int MultifrontalCholesky<Real>::compliance_parts() const;                                          \
-  template void MultifrontalCholesky<Real>::compliance_part(int);                                             \
-  template void MultifrontalCholesky<Real>::end_compliance();                                                 \
-  template void MultifrontalCholesky<Real>::add_compliance(const BodyRows&, double*, int) const;              \
-  template void MultifrontalCholesky<Real>::correct(const BodyRows&, const double*, double*);      \
+#define INSULA_COMPLIANCE_OF(Real)                                                                      \
+  template void MultifrontalCholesky<Real>::begin_compliance(const BodyRows&, const std::vector<int>&); \
+  template void MultifrontalCholesky<Real>::arrange();                                                  \
+  template void MultifrontalCholesky<Real>::clear_fresh();                                              \
+  template void MultifrontalCholesky<Real>::copy_known();                                               \
+  template void MultifrontalCholesky<Real>::share_out();                                                \
+  template int MultifrontalCholesky<Real>::compliance_parts(ComplianceAct) const;                       \
+  template void MultifrontalCholesky<Real>::compliance_part(ComplianceAct, int);                        \
+  template void MultifrontalCholesky<Real>::forward_columns(int, int);                                  \
+  template void MultifrontalCholesky<Real>::product_columns(int, int);                                  \
+  template void MultifrontalCholesky<Real>::copy_known_products();                                      \
+  template void MultifrontalCholesky<Real>::add_compliance(const BodyRows&, double*, int) const;        \
+  template void MultifrontalCholesky<Real>::correct(const BodyRows&, const double*, double*);           \
   template SolverCost MultifrontalCholesky<Real>::cost() const
 INSULA_COMPLIANCE_OF(double);
 INSULA_COMPLIANCE_OF(float);

@@ -5,6 +5,7 @@
 // A solver is given a matrix by factorise() and serves it until the next. The rows of begin_compliance() stay those of
 // add_compliance() and correct() until the next begin_compliance(). Nothing is allocated unless more rows come than ever before.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -30,6 +31,9 @@ struct SolverStatus {
   int factors = 0;        ///< taken into use since the start
 };
 
+enum class ComplianceAct { forward, product };
+constexpr std::array compliance_acts{ComplianceAct::forward, ComplianceAct::product};
+
 class BodySolver {
  public:
   virtual ~BodySolver() = default;
@@ -46,16 +50,15 @@ class BodySolver {
   virtual bool wants_rotations() const { return false; }
   virtual void turn(const std::vector<Mat3>& /*rotation*/) {}
 
-  /// H A^-1 H^T of the rows, in three acts, the middle one in parts that threads may share: the bits do not depend on who does
-  /// which. `node_of_block` maps a row's block to a node of the matrix, -1 for a held one.
+  /// H A^-1 H^T of the rows in three acts: set-up, Y = L^-1 H^T, then Y^T Y. The last two come in parts that threads may share; the
+  /// bits do not depend on who does which. `node_of_block` maps a row's block to a node of the matrix, -1 for a held one.
   virtual void begin_compliance(const BodyRows& rows, const std::vector<int>& node_of_block) = 0;
-  virtual int compliance_parts() const = 0;
-  virtual void compliance_part(int part) = 0;
-  virtual void end_compliance() = 0;
+  virtual int compliance_parts(ComplianceAct act) const = 0;
+  virtual void compliance_part(ComplianceAct act, int part) = 0;
   void compute_compliance(const BodyRows& rows, const std::vector<int>& node_of_block) {
     begin_compliance(rows, node_of_block);
-    for (int p = 0; p < compliance_parts(); ++p) compliance_part(p);
-    end_compliance();
+    for (ComplianceAct act : compliance_acts)
+      for (int p = 0; p < compliance_parts(act); ++p) compliance_part(act, p);
   }
   /// Adds it into w (row-major, `stride` numbers a row) at the rows' numbers, both triangles.
   virtual void add_compliance(const BodyRows& rows, double* w, int stride) const = 0;

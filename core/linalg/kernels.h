@@ -26,8 +26,10 @@ struct KernelsOf {
   int (*cholesky_panel)(Real* a, int lda, int rows, int cols);
   /// Forward substitution with many right-hand sides: x (cols x m, row-major) = L11^-1 x.
   void (*lower_solve_rows)(const Real* l, int ldl, int cols, Real* x, long ldx, int m);
-  /// d[0..n) += c w.
-  void (*axpy)(Real* d, const Real* w, Real c, int n);
+  /// y[r] -= sum_c A[r + c lda] x[c], r < m, c < n. Up to `width` numbers of y past its end become garbage.
+  void (*columns_sub)(Real* y, const Real* a, long lda, const Real* x, int m, int n);
+  /// out[c] = sum_r A[r + c lda] x[r], r < m, c < n. Up to `width` numbers of x past its end must be zero, of A finite.
+  void (*columns_dot)(Real* out, const Real* a, long lda, const Real* x, int m, int n);
   /// 24 `width` n multiplications with additions in registers alone: what a core can do at most. Returns a sum of them.
   Real (*multiply_add)(long n);
 };

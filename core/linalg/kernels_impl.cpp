@@ -18,11 +18,11 @@ template <class T>
 struct Vector;
 template <>
 struct Vector<double> {
-  typedef double type __attribute__((vector_size(KERNEL_BYTES), aligned(8)));
+  typedef double type __attribute__((vector_size(KERNEL_BYTES), aligned(8), may_alias));
 };
 template <>
 struct Vector<float> {
-  typedef float type __attribute__((vector_size(KERNEL_BYTES), aligned(4)));
+  typedef float type __attribute__((vector_size(KERNEL_BYTES), aligned(4), may_alias));
 };
 template <class T>
 using V = typename Vector<T>::type;
@@ -205,11 +205,50 @@ void lower_solve_rows(const T* l, int ldl, int cols, T* x, long ldx, int m) {
   }
 }
 
+template <int n, class T>
+inline __attribute__((always_inline)) void take_columns(T* y, const T* a, long lda, const T* x, int m) {
+  T factor[n];
+  for (int c = 0; c < n; ++c) factor[c] = x[c];
+  for (int r = 0; r < m; r += W<T>) {
+    V<T> s = load(a + r) * factor[0];
+#pragma GCC unroll 8
+    for (int c = 1; c < n; ++c) s += load(a + c * lda + r) * factor[c];
+    store(y + r, load(y + r) - s);
+  }
+}
+
+template <int n, class T>
+inline __attribute__((always_inline)) void dot_columns(T* out, const T* a, long lda, const T* x, int m) {
+  V<T> s[n];
+  for (int c = 0; c < n; ++c) s[c] = V<T>{};
+  for (int r = 0; r < m; r += W<T>) {
+    const V<T> xr = load(x + r);
+#pragma GCC unroll 8
+    for (int c = 0; c < n; ++c) s[c] += load(a + c * lda + r) * xr;
+  }
+  for (int c = 0; c < n; ++c) {
+    T part[W<T>];
+    for (int i = 0; i < W<T>; ++i) part[i] = s[c][i];
+    for (int half = W<T> / 2; half > 0; half /= 2)
+      for (int i = 0; i < half; ++i) part[i] += part[i + half];
+    out[c] = part[0];
+  }
+}
+
+// Columns come in threes: the scalars of a node.
 template <class T>
-void axpy(T* d, const T* w, T c, int n) {
-  int i = 0;
-  for (; i + W<T> <= n; i += W<T>) store(d + i, load(d + i) + load(w + i) * c);
-  for (; i < n; ++i) d[i] += c * w[i];
+void columns_sub(T* y, const T* a, long lda, const T* x, int m, int n) {
+  int c = 0;
+  for (; c + 6 <= n; c += 6) take_columns<6>(y, a + c * lda, lda, x + c, m);
+  for (; c + 3 <= n; c += 3) take_columns<3>(y, a + c * lda, lda, x + c, m);
+  for (; c < n; ++c) take_columns<1>(y, a + c * lda, lda, x + c, m);
+}
+template <class T>
+void columns_dot(T* out, const T* a, long lda, const T* x, int m, int n) {
+  int c = 0;
+  for (; c + 6 <= n; c += 6) dot_columns<6>(out + c, a + c * lda, lda, x, m);
+  for (; c + 3 <= n; c += 3) dot_columns<3>(out + c, a + c * lda, lda, x, m);
+  for (; c < n; ++c) dot_columns<1>(out + c, a + c * lda, lda, x, m);
 }
 
 template <class T>
@@ -230,7 +269,7 @@ T multiply_add(long n) {
 #define KERNEL_STRING2(x) #x
 #define KERNEL_STRING(x) KERNEL_STRING2(x)
 template <class T>
-constexpr KernelsOf<T> table_of = {KERNEL_STRING(KERNEL_NAME), W<T>, gemm_sub<T>, gemm_add<T>, syrk_add<T>, syrk_sub<T>, rows_sub<T>, cholesky_panel<T>, lower_solve_rows<T>, axpy<T>, multiply_add<T>};
+constexpr KernelsOf<T> table_of = {KERNEL_STRING(KERNEL_NAME), W<T>, gemm_sub<T>, gemm_add<T>, syrk_add<T>, syrk_sub<T>, rows_sub<T>, cholesky_panel<T>, lower_solve_rows<T>, columns_sub<T>, columns_dot<T>, multiply_add<T>};
 extern const KernelSet table;
 const KernelSet table = {table_of<double>, table_of<float>};
 

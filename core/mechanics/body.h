@@ -4,6 +4,7 @@
 // (translation, rotation vector); a fixed obstacle has none.
 #pragma once
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "core/linalg/body_solver.h"
@@ -55,11 +56,10 @@ class Body : public Component {
   virtual void free_motion(const StepContext& context) = 0;
   /// Computes H A^-1 H^T of these rows into the body's own memory; bodies do this in parallel.
   virtual void compute_compliance(const BodyRows&) {}
-  /// The same in three acts, of which threads share the middle one: part 0 to compliance_parts() - 1, in any order.
+  /// The same as set-up and two acts in parts, 0 to compliance_parts(act) - 1, in any order and by any thread.
   virtual void begin_compliance(const BodyRows& r) { compute_compliance(r); }
-  virtual int compliance_parts() const { return 0; }
-  virtual void compliance_part(int) {}
-  virtual void end_compliance() {}
+  virtual int compliance_parts(ComplianceAct) const { return 0; }
+  virtual void compliance_part(ComplianceAct, int) {}
   /// Adds it into `w` (row-major, leading dimension `stride`), at the rows' numbers; one body after the other.
   virtual void add_compliance(const BodyRows& rows, double* w, int stride) = 0;
   /// Whether add_compliance() and apply() are of the same A. If not, respond() tells what lambda truly does, for defect correction.
@@ -82,6 +82,8 @@ class Body : public Component {
   virtual void reset() = 0;
   /// Kinetic plus elastic energy, J.
   virtual double energy() const = 0;
+  /// Whether its state is made of numbers.
+  virtual bool finite() const { return std::isfinite(energy()); }
   /// Appends the state that a hash or a recorder needs.
   virtual void append_state(std::vector<double>& out) const = 0;
 

@@ -165,9 +165,8 @@ void DeformableBody::free_motion(const StepContext& context) {
 
 void DeformableBody::compute_compliance(const BodyRows& r) { solver_->compute_compliance(r, free_); }
 void DeformableBody::begin_compliance(const BodyRows& r) { solver_->begin_compliance(r, free_); }
-int DeformableBody::compliance_parts() const { return solver_->compliance_parts(); }
-void DeformableBody::compliance_part(int part) { solver_->compliance_part(part); }
-void DeformableBody::end_compliance() { solver_->end_compliance(); }
+int DeformableBody::compliance_parts(ComplianceAct act) const { return solver_->compliance_parts(act); }
+void DeformableBody::compliance_part(ComplianceAct act, int part) { solver_->compliance_part(act, part); }
 void DeformableBody::add_compliance(const BodyRows& r, double* w, int stride) { solver_->add_compliance(r, w, stride); }
 
 void DeformableBody::respond(const BodyRows& r, const double* lambda) { solver_->correct(r, lambda, response_.data()); }

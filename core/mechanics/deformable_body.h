@@ -56,9 +56,8 @@ class DeformableBody : public Body {
   void free_motion(const StepContext& context) override;
   void compute_compliance(const BodyRows& rows) override;
   void begin_compliance(const BodyRows& rows) override;
-  int compliance_parts() const override;
-  void compliance_part(int part) override;
-  void end_compliance() override;
+  int compliance_parts(ComplianceAct act) const override;
+  void compliance_part(ComplianceAct act, int part) override;
   void add_compliance(const BodyRows& rows, double* w, int stride) override;
   bool exact() const override { return solver_->exact(); }
   void respond(const BodyRows& rows, const double* lambda) override;
@@ -68,6 +67,7 @@ class DeformableBody : public Body {
   void apply(const StepContext& context, const BodyRows& rows, const double* lambda) override;
   void reset() override;
   double energy() const override;
+  bool finite() const override { return v_.allFinite(); }  // and so is q, the sum of all h v
   void append_state(std::vector<double>& out) const override;
 
  protected:

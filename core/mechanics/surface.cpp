@@ -53,8 +53,7 @@ void Surface::prepare(PrepareContext& context) {
     for (std::size_t i = 0; i < points_.size(); ++i) points_[i] = {body_, 0, 0, {}, {}, rest_.vertices[i]};
   }
   positions_ = rest_.vertices;
-  free_.assign(positions_.size(), Vec3::Zero());
-  expected_ = free_;
+  expected_.assign(positions_.size(), Vec3::Zero());
 }
 
 // A vertex follows the nearest triangle of the wall and keeps its distance to it; a surface of the body's own is its nodes.
@@ -96,12 +95,16 @@ void Surface::update() {
   for (std::size_t i = 0; i < points_.size(); ++i) positions_[i] = body_->position(points_[i]);
 }
 
-void Surface::update_free() {
-  if (body_->blocks() == 0) return;
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    free_[i] = body_->free_displacement(points_[i]);
-    expected_[i] = body_->expected_displacement(points_[i]);
-  }
+void Surface::look_ahead() {
+  if (body_->blocks() == 0 || !collision_) return;
+  for (std::size_t i = 0; i < points_.size(); ++i) expected_[i] = body_->expected_displacement(points_[i]);
+  collision_->update(positions_, expected_);
+}
+
+void Surface::will_collide() {
+  if (collision_) return;
+  collision_ = std::make_unique<CollisionMesh>();
+  collision_->build(rest_.vertices, rest_.triangles);
 }
 
 void Surface::add_row(BodyRows& rows, int triangle, const Vec3& bary, const Vec3& d) const {

@@ -2,9 +2,11 @@
 // A surface that moves with its body, for contact and for the picture: a fine triangle mesh embedded in tetrahedra, riding
 // on a shell's wall, or rigid on an obstacle.
 #pragma once
+#include <memory>
 #include <array>
 #include <vector>
 
+#include "core/collision/collision_mesh.h"
 #include "core/mechanics/body.h"
 #include "core/model/mesh.h"
 
@@ -31,14 +33,16 @@ class Surface : public Component {
   const TriMesh& rest() const { return rest_; }                             ///< rest shape, scene frame
   const std::vector<MaterialPoint>& points() const { return points_; }      ///< one a vertex
   const std::vector<Vec3>& positions() const { return positions_; }         ///< at the start of the step; update() refreshes
-  const std::vector<Vec3>& free_displacements() const { return free_; }     ///< of the vertices in this step's free motion
   const std::vector<Vec3>& expected_displacements() const { return expected_; }  ///< what collision looks ahead along
   const std::vector<std::array<int, 3>>& triangles() const { return rest_.triangles; }
 
   /// Recomputes positions() from the body's q.
   void update();
-  /// Recomputes free_displacements() and expected_displacements() after free motion.
-  void update_free();
+  /// After free motion: expected_displacements() and collision(), if anything looks for contacts.
+  void look_ahead();
+  /// Called in connect() of what looks for contacts: from then on the step keeps collision() up to date.
+  void will_collide();
+  const CollisionMesh& collision() const { return *collision_; }
   /// The material point of a triangle at barycentric coordinates; up to twelve nodes, merged and sorted.
   /// Adds direction d of it to the open row of the body.
   void add_row(BodyRows& rows, int triangle, const Vec3& bary, const Vec3& d) const;
@@ -46,9 +50,10 @@ class Surface : public Component {
  private:
   bool attach_to_shell(const ShellBody& shell);
   Body* body_ = nullptr;
+  std::unique_ptr<CollisionMesh> collision_;  ///< one for all that touches the surface
   TriMesh rest_;
   std::vector<MaterialPoint> points_;
-  std::vector<Vec3> positions_, free_, expected_;
+  std::vector<Vec3> positions_, expected_;
 };
 
 }  // namespace insula

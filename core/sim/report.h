@@ -83,7 +83,6 @@ struct StepReport {
   SolveStats solve;
   SolverStatus solver;   ///< of the bodies' solvers: the worst, and all factors taken into use
   double defect_m = 0;   ///< largest change of a row that the last pass of defect correction made, m; 0: every body is exact
-  double energy = 0; ///< J
   std::vector<ContactPoint> contacts;
   std::vector<StrandState> strands;  ///< all sets in document order
   int strands_total = 0, strands_left = 0;

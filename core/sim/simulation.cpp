@@ -48,7 +48,6 @@ void StepReport::clear() {
   solve = {};
   solver = {};
   defect_m = 0;
-  energy = 0;
   stage_ms.fill(0);
   step_ms = 0;
   finite = true;
@@ -94,7 +93,6 @@ Simulation::Simulation(std::unique_ptr<Scene> scene, Diagnostics& diagnostics, i
   }
   heavy_first_ = bodies_;
   std::stable_sort(heavy_first_.begin(), heavy_first_.end(), [](Body* a, Body* b) { return a->blocks() > b->blocks(); });
-  energy_.assign(bodies_.size(), 0.0);
   parts_.reserve(8 * bodies_.size());
   builder_ = std::make_unique<ConstraintBuilder>(problem_, bodies_);
   context_.h = scene_->time_step();
@@ -131,7 +129,7 @@ void Simulation::step() {
 
   workers_.run(int(surfaces_.size()), [this](int i) {
     surfaces_[std::size_t(i)]->update();
-    surfaces_[std::size_t(i)]->update_free();
+    surfaces_[std::size_t(i)]->look_ahead();
   });
   for (Constraint* c : constraints_) c->detect(context_);
   clock.done(stage_collision);
@@ -145,11 +143,12 @@ void Simulation::step() {
     Body* b = heavy_first_[std::size_t(i)];
     b->begin_compliance(b->rows);
   });
-  parts_.clear();
-  for (Body* b : heavy_first_)
-    for (int p = 0; p < b->compliance_parts(); ++p) parts_.emplace_back(b, p);
-  workers_.run(int(parts_.size()), [this](int i) { parts_[std::size_t(i)].first->compliance_part(parts_[std::size_t(i)].second); });
-  workers_.run(int(heavy_first_.size()), [this](int i) { heavy_first_[std::size_t(i)]->end_compliance(); });
+  for (const ComplianceAct act : compliance_acts) {
+    parts_.clear();
+    for (Body* b : heavy_first_)
+      for (int p = 0; p < b->compliance_parts(act); ++p) parts_.emplace_back(b, p);
+    workers_.run(int(parts_.size()), [&](int i) { parts_[std::size_t(i)].first->compliance_part(act, parts_[std::size_t(i)].second); });
+  }
   for (Body* b : bodies_) b->add_compliance(b->rows, problem_.w.data(), problem_.stride);
   clock.done(stage_build);
 
@@ -219,12 +218,9 @@ void Simulation::make_report() {
   r.h = context_.h;
   r.step = context_.step;
   r.rows = problem_.rows;
-  workers_.run(int(heavy_first_.size()), [this](int i) {
-    const Body* b = heavy_first_[std::size_t(i)];
-    energy_[std::size_t(b->index)] = b->energy();
-  });
-  for (double e : energy_) r.energy += e;
+  r.finite = std::isfinite(r.solve.residual_N);
   for (const Body* b : bodies_) {
+    r.finite = r.finite && b->finite();
     const SolverStatus s = b->solver_status();
     r.solver.age = std::max(r.solver.age, s.age);
     r.solver.iterations = std::max(r.solver.iterations, s.iterations);
@@ -247,7 +243,6 @@ void Simulation::make_report() {
     t.contact_force = sum.norm();
     r.tools.push_back(t);
   }
-  r.finite = std::isfinite(r.energy) && std::isfinite(r.solve.residual_N);
   r.events = sink_.events();
   events_ = sink_.events();
   if (exercise_) {
@@ -280,6 +275,12 @@ void Simulation::reset() {
     Diagnostics none;  // the same as at the start, where they were reported
     settle(none);
   }
+}
+
+double Simulation::energy() const {
+  double sum = 0;
+  for (const Body* b : bodies_) sum += b->energy();
+  return sum;
 }
 
 void Simulation::may_wait(bool yes) {

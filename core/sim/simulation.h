@@ -73,6 +73,8 @@ class Simulation {
   const std::vector<Event>& events() const { return events_; }
   /// FNV-1a over the bits of every body's and constraint's state.
   std::uint64_t state_hash() const;
+  /// Kinetic and elastic energy of all bodies, J. No step needs it, so it is computed when asked for.
+  double energy() const;
 
  private:
   std::string exchange(std::string_view argument);
@@ -110,7 +112,6 @@ class Simulation {
   std::vector<Event> commanded_;  ///< between the last step and the next
   double settle_time_ = 0;
   std::vector<std::pair<Body*, int>> parts_;  ///< of the bodies' compliance, in this step
-  std::vector<double> energy_;  ///< of each body, J
   StepReport report_;
 };
 

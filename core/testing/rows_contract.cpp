@@ -35,7 +35,7 @@ class RowBench {
   RowMap rows() {
     for (Surface* f : simulation_.surfaces()) {
       f->update();
-      f->update_free();
+      f->look_ahead();
     }
     ++context_.step;  // what is refreshed once a step is refreshed now
     builder_.clear();

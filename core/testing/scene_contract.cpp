@@ -15,7 +15,7 @@ namespace {
 
 /// Kinetic, elastic, coupling energy and weight.
 double total_energy(const Simulation& s) {
-  double e = s.report().energy;
+  double e = s.energy();
   for (const Body* b : s.bodies())
     if (auto* soft = dynamic_cast<const DeformableBody*>(b))
       for (int i = 0; i < soft->nodes(); ++i)

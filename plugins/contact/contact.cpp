@@ -41,13 +41,6 @@ Sources: Dequidt et al. 2015, sections 3.3 and 3.4; Duriez, Dubois, Kheddar, And
 
 namespace insula {
 
-void ContactSurface::update(std::int64_t step) {
-  if (!stale(step)) return;
-  refitted_at = step;
-  if (surface->body().blocks() == 0) mesh.update(surface->positions(), {});
-  else mesh.update(surface->positions(), surface->expected_displacements());
-}
-
 // Whether this element looks after the pair that several may name.
 bool Contact::owns(Simulation& simulation, const Body* a, const Body* b) const {
   const auto names = [](const Contact& c, const Body* body) {
@@ -60,21 +53,6 @@ bool Contact::owns(Simulation& simulation, const Body* a, const Body* b) const {
     if (c->between().size() == between().size() && c->order > order) return false;
   }
   return true;
-}
-
-std::shared_ptr<ContactSurface> Contact::shared_surface(Simulation& simulation, Surface* surface) {
-  for (Constraint* other : simulation.constraints())
-    if (auto* c = dynamic_cast<Contact*>(other))
-      for (const auto& s : c->surfaces_)
-        if (s->surface == surface) {
-          if (c != this) surfaces_.push_back(s);
-          return s;
-        }
-  auto s = std::make_shared<ContactSurface>();
-  s->surface = surface;
-  s->mesh.build(surface->rest().vertices, surface->triangles());
-  surfaces_.push_back(s);
-  return s;
 }
 
 void Contact::add_pairs(Simulation& simulation, Body* a, Body* b) {
@@ -99,17 +77,18 @@ void Contact::add_pairs(Simulation& simulation, Body* a, Body* b) {
   }
   for (Surface* sb : b->children_of<Surface>()) {
     if (!sb->contact()) continue;
+    sb->will_collide();
     if (tool_a) {
       for (int i = 0; i < tool_a->links(); ++i) {
         Pair p;
         p.tool_a = tool_a;
         p.link_a = i;
-        p.b = shared_surface(simulation, sb);
+        p.b = sb;
         for (const ConvexPiece& piece : tool_a->link_pieces(i)) p.pieces_a.push_back(rounded(piece));
         if (by.is("vertices"))
-          p.vertex_collider = std::make_unique<VertexCollider>(tool_a->link_pieces(i), sb->triangles(), p.b->mesh.vertex_count());
+          p.vertex_collider = std::make_unique<VertexCollider>(tool_a->link_pieces(i), sb->triangles(), p.b->collision().vertex_count());
         else
-          p.tool_collider = std::make_unique<ToolCollider>(tool_a->link_pieces(i), p.b->mesh.triangle_count());
+          p.tool_collider = std::make_unique<ToolCollider>(tool_a->link_pieces(i), p.b->collision().triangle_count());
         p.contacts.reserve(room);
         pairs_.push_back(std::move(p));
       }
@@ -118,8 +97,9 @@ void Contact::add_pairs(Simulation& simulation, Body* a, Body* b) {
     for (Surface* sa : a->children_of<Surface>()) {
       if (!sa->contact()) continue;
       Pair p;
-      p.a = shared_surface(simulation, sa);
-      p.b = shared_surface(simulation, sb);
+      sa->will_collide();
+      p.a = sa;
+      p.b = sb;
       const double distance = 0.75 * tissue_spacing();
       p.a_on_b = std::make_unique<TissueCollider>(sample_vertices(sa->rest().vertices, sa->triangles(), distance), sa->rest().vertices);
       p.b_on_a = std::make_unique<TissueCollider>(sample_vertices(sb->rest().vertices, sb->triangles(), distance), sb->rest().vertices);
@@ -132,6 +112,8 @@ void Contact::add_pairs(Simulation& simulation, Body* a, Body* b) {
 
 void Contact::connect(PrepareContext& context, Simulation& simulation) {
   const auto& all = between();
+  if (max_force() > 0 && friction() > 0 && !(by.is("vertices") && patch() > 0))
+    return error(context, max_force, "max_force: a contact with friction has a bound only in a patch (by=\"vertices\" and patch); or set friction=\"0\"");
   if (all.size() < 2) return error(context, between, "between: contact needs two names or more");
   for (std::size_t i = 0; i < all.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j)
@@ -173,8 +155,8 @@ void Contact::search(const Search& what) {
     ToolContactSettings settings;
     settings.alarm = alarm();
     settings.max_recovery = recovery();
-    if (p.b && p.b->surface->thickness() > 0) {
-      settings.offset = 0.5 * p.b->surface->thickness();
+    if (p.b && p.b->thickness() > 0) {
+      settings.offset = 0.5 * p.b->thickness();
       settings.max_recovery = std::min(recovery(), max_push());
     } else {
       settings.one_sided = true;
@@ -185,29 +167,27 @@ void Contact::search(const Search& what) {
     if (p.tool_b)
       detect_tools(p.pieces_a, start, free, p.pieces_b, p.tool_b->link_pose(p.link_b), p.tool_b->link_free_pose(p.link_b), settings, p.contacts);
     else if (p.vertex_collider)
-      p.vertex_collider->detect(p.b->mesh, start, free, settings, p.contacts);
+      p.vertex_collider->detect(p.b->collision(), start, free, settings, p.contacts);
     else
-      p.tool_collider->detect(p.b->mesh, start, free, settings, p.contacts);
+      p.tool_collider->detect(p.b->collision(), start, free, settings, p.contacts);
     return;
   }
   TissueContactSettings settings;
   settings.alarm = tissue_alarm();
-  settings.offset = 0.5 * (p.a->surface->thickness() + p.b->surface->thickness());
+  settings.offset = 0.5 * (p.a->thickness() + p.b->thickness());
   auto& out = what.other_way ? p.other_way : p.contacts;
   out.clear();
-  if (what.other_way) p.b_on_a->detect(p.b->mesh, p.a->mesh, settings, out);
-  else p.a_on_b->detect(p.a->mesh, p.b->mesh, settings, out);
+  if (what.other_way) p.b_on_a->detect(p.b->collision(), p.a->collision(), settings, out);
+  else p.a_on_b->detect(p.a->collision(), p.b->collision(), settings, out);
 }
 
-void Contact::detect(const StepContext& context) {
-  if (std::any_of(surfaces_.begin(), surfaces_.end(), [&](const auto& s) { return s->stale(context.step); }))
-    workers_->run(int(surfaces_.size()), [&](int i) { surfaces_[std::size_t(i)]->update(context.step); });
+void Contact::detect(const StepContext&) {
   workers_->run(int(searches_.size()), [this](int i) { search(searches_[std::size_t(i)]); });
   // Names are given in the order of the pairs, for any number of threads.
   for (Pair& p : pairs_) {
     SelectionSettings choice;
     if (p.tool_a) {
-      choice.spacing = p.vertex_collider && p.b->surface->thickness() > 0 ? 0.0 : spacing();  // a wall's vertices are all kept out
+      choice.spacing = p.vertex_collider && p.b->thickness() > 0 ? 0.0 : spacing();  // a wall's vertices are all kept out
       choice.advantage = 0.2 * alarm();
       choice.max_contacts = max_contacts();
       // A jaw is one piece and may use all; of several pieces none takes more than half.
@@ -225,16 +205,21 @@ void Contact::detect(const StepContext& context) {
   }
 }
 
+double Contact::most_force(const Pair& p) const {
+  const double most = p.tool_a ? max_force() : tissue_max_force();
+  return most > 0 ? most : Block{}.upper;
+}
+
 // d of the relative displacement a - b at the contact.
 void Contact::add_row(ConstraintBuilder& builder, int row, const Pair& p, const Proximity& x, const Vec3& d) const {
   if (p.tool_a) {
     builder.point(row, p.tool_a->link_point(p.link_a, x.local), d);
     if (p.tool_b) return builder.point(row, p.tool_b->link_point(p.link_b, x.other_local), -d);
-    builder.surface_point(row, *p.b->surface, x.triangle, x.bary, -d);
+    builder.surface_point(row, *p.b, x.triangle, x.bary, -d);
     return;
   }
-  const Surface& vertex = x.side == 0 ? *p.a->surface : *p.b->surface;
-  const Surface& face = x.side == 0 ? *p.b->surface : *p.a->surface;
+  const Surface& vertex = x.side == 0 ? *p.a : *p.b;
+  const Surface& face = x.side == 0 ? *p.b : *p.a;
   if (vertex.body().blocks() > 0) builder.point(row, vertex.points()[std::size_t(x.vertex)], d);
   builder.surface_point(row, face, x.triangle, x.bary, -d);
 }
@@ -255,7 +240,7 @@ void Contact::build(const StepContext&, ConstraintBuilder& builder) {
         block.friction = friction();
       } else {
         block.lower = 0;
-        if (!p.tool_a && tissue_max_force() > 0) block.upper = tissue_max_force();
+        block.upper = most_force(p);
       }
       block.compliance = compliance(p);
       const int row = builder.add(block);
@@ -303,7 +288,6 @@ void Contact::report(StepReport& out) const {
 
 void Contact::reset() {
   next_key_ = 0;
-  for (const auto& s : surfaces_) s->refitted_at = ContactSurface::never;
   for (Pair& p : pairs_) {
     p.selection.reset();
     if (p.tool_collider) p.tool_collider->reset();

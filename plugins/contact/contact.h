@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Contact among bodies and tools; what it does and its scene element are described in contact.cpp.
 #pragma once
-#include <limits>
 #include <memory>
 #include <vector>
 
@@ -18,16 +17,6 @@
 
 namespace insula {
 
-/// A surface's collision data; every <contact> of a scene that touches the surface shares one.
-struct ContactSurface {
-  Surface* surface = nullptr;
-  CollisionMesh mesh;
-  static constexpr std::int64_t never = std::numeric_limits<std::int64_t>::min();
-  std::int64_t refitted_at = never;  ///< step
-  bool stale(std::int64_t step) const { return refitted_at == never || (refitted_at != step && surface->body().blocks() > 0); }
-  void update(std::int64_t step);
-};
-
 class Contact final : public Constraint {
  public:
   RefList<Body> between{this, {.name = "between", .doc = "bodies and tools that may touch one another, two or more"}};
@@ -41,6 +30,7 @@ class Contact final : public Constraint {
   Param<Length> patch{this, {.name = "patch", .fallback = "0 mm", .min = "0 mm", .max = "20 mm", .doc = "by vertices: contacts within this length of a blade share one friction force; 0: each has its own"}};
   Param<Length> recovery{this, {.name = "recovery", .fallback = "1 mm", .min = "0.001 mm", .max = "10 mm", .doc = "an overlap of a tool is undone by no more than this in a step: less is gentler on thin walls"}};
   Param<Stiffness> layer{this, {.name = "layer", .fallback = "0 N/m", .min = "0 N/m", .max = "1000 kN/m", .doc = "stiffness of what lies between a tool and the body at one contact, finer than the body's elements (the pia, a pad); 0: nothing, contact is hard"}};
+  Param<Force> max_force{this, {.name = "max_force", .fallback = "0 N", .min = "0 N", .max = "100 N", .doc = "most normal force of one contact of a tool: what is pressed harder goes in, and out again, instead of dragging the tissue along; with friction only by patches; 0: any"}};
   Param<Length> tissue_alarm{this, {.name = "tissue_alarm", .fallback = "0.5 mm", .min = "0.01 mm", .max = "10 mm", .doc = "the same distance between two surfaces"}};
   Param<Length> tissue_spacing{this, {.name = "tissue_spacing", .fallback = "4 mm", .min = "0.05 mm", .max = "100 mm", .doc = "contacts of two surfaces are no closer than this; their vertices are sampled at three quarters of it"}};
   Param<Force> tissue_max_force{this, {.name = "tissue_max_force", .fallback = "0 N", .min = "0 N", .max = "100 N", .doc = "most force of one contact of two surfaces without friction: with more they go through one another, so that what has become entangled comes apart; 0: any"}};
@@ -59,7 +49,7 @@ class Contact final : public Constraint {
     RigidBody* tool_a = nullptr;  ///< a is a link of a tool or clip ...
     RigidBody* tool_b = nullptr;
     int link_a = 0, link_b = 0;
-    std::shared_ptr<ContactSurface> a, b;  ///< ... or a surface
+    Surface *a = nullptr, *b = nullptr;  ///< ... or a surface
     std::vector<RoundedPiece> pieces_a, pieces_b;  ///< of the tools
     std::unique_ptr<ToolCollider> tool_collider;      ///< tool against surface, by triangles ...
     std::unique_ptr<VertexCollider> vertex_collider;  ///< ... or by the wall's vertices
@@ -72,8 +62,8 @@ class Contact final : public Constraint {
     std::vector<Vec3> forces;   ///< along (normal, tangent, other tangent), N
     bool active() const { return (!tool_a || tool_a->active()) && (!tool_b || tool_b->active()); }
     bool single_piece() const { return tool_a && tool_a->link_pieces(link_a).size() == 1 && (!tool_b || tool_b->link_pieces(link_b).size() == 1); }
-    const Body* body_a() const { return tool_a ? static_cast<const Body*>(tool_a) : &a->surface->body(); }
-    const Body* body_b() const { return tool_b ? static_cast<const Body*>(tool_b) : &b->surface->body(); }
+    const Body* body_a() const { return tool_a ? static_cast<const Body*>(tool_a) : &a->body(); }
+    const Body* body_b() const { return tool_b ? static_cast<const Body*>(tool_b) : &b->body(); }
   };
   const std::vector<Pair>& pairs() const { return pairs_; }
 
@@ -84,15 +74,14 @@ class Contact final : public Constraint {
     bool other_way;
   };
   bool owns(Simulation& simulation, const Body* a, const Body* b) const;
-  std::shared_ptr<ContactSurface> shared_surface(Simulation& simulation, Surface* surface);
   void search(const Search& what);
   void add_pairs(Simulation& simulation, Body* a, Body* b);
   void limit_motion(ConstraintBuilder& builder, const Pair& pair) const;
+  double most_force(const Pair& pair) const;  ///< of one contact, N
   double compliance(const Pair& pair) const { return pair.tool_a && layer() > 0 ? 1 / layer() : 0.0; }  ///< m/N
   void build_patches(ConstraintBuilder& builder, Pair& pair);
   void add_row(ConstraintBuilder& builder, int row, const Pair& pair, const Proximity& x, const Vec3& direction) const;
 
-  std::vector<std::shared_ptr<ContactSurface>> surfaces_;
   std::vector<Pair> pairs_;
   std::vector<Search> searches_;
   Workers* workers_ = nullptr;

@@ -127,6 +127,7 @@ void Contact::build_patches(ConstraintBuilder& builder, Pair& p) {
       Block block;
       block.id = row_id(*this, x.key);
       block.lower = 0;
+      block.upper = most_force(p);
       block.compliance = compliance(p);
       m.row = builder.add(block);
       builder.violation(m.row, x.start_gap);

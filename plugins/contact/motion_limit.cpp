@@ -9,8 +9,8 @@ namespace insula {
 // inside out, a far slide would leave the places that contact looked at. So a tool that touches goes on by no more than
 // max_push (a wall) or tissue_push: three rows along the free motion of three places of the touching piece.
 void Contact::limit_motion(ConstraintBuilder& builder, const Pair& p) const {
-  if (!p.tool_a || !p.b || !p.active() || p.b->surface->body().blocks() == 0) return;
-  const double most = p.b->surface->thickness() > 0 ? max_push() : tissue_push();
+  if (!p.tool_a || !p.b || !p.active() || p.b->body().blocks() == 0) return;
+  const double most = p.b->thickness() > 0 ? max_push() : tissue_push();
   int piece = -1;
   double touch = 1;
   if (p.tool_collider) {
@@ -22,7 +22,7 @@ void Contact::limit_motion(ConstraintBuilder& builder, const Pair& p) const {
       if (x.time == 0) {
         if (x.gap > 0.1 * alarm()) continue;
         const Vec3 u = p.tool_a->free_displacement(p.tool_a->link_point(p.link_a, x.local));
-        if (x.normal.dot(u - p.b->mesh.free_at(x.triangle, x.bary)) >= 0) continue;
+        if (x.normal.dot(u - p.b->collision().free_at(x.triangle, x.bary)) >= 0) continue;
       }
       if (x.time < touch) {
         touch = x.time;

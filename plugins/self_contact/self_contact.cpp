@@ -38,7 +38,7 @@ void SelfContact::connect(PrepareContext& context, Simulation& simulation) {
   if (on->body().blocks() == 0) return error(context, on, "on: \"" + on->id + "\" never moves, so it cannot touch itself");
   if (!on->contact()) return error(context, on, "on: \"" + on->id + "\" is for the picture alone (contact=\"false\")");
   const auto& rest = on->rest();
-  mesh_.build(rest.vertices, rest.triangles);
+  on->will_collide();
   collider_ = std::make_unique<SelfCollider>(rest.vertices, rest.triangles, 0.75 * spacing(), thickness());
   workers_ = &simulation.workers();
   for (Constraint* c : simulation.constraints())
@@ -53,7 +53,6 @@ void SelfContact::connect(PrepareContext& context, Simulation& simulation) {
 }
 
 void SelfContact::detect(const StepContext&) {
-  mesh_.update(on->positions(), on->expected_displacements());
   SelfContactSettings settings;
   settings.thickness = thickness();
   settings.alarm = alarm();
@@ -61,7 +60,7 @@ void SelfContact::detect(const StepContext&) {
   settings.inner = !sides.is("outer");
   settings.outer = !sides.is("inner");
   contacts_.clear();
-  collider_->detect(mesh_, settings, contacts_, *workers_);
+  collider_->detect(on->collision(), settings, contacts_, *workers_);
   SelectionSettings choice;
   choice.spacing = spacing();
   choice.advantage = 0.5 * alarm();
@@ -77,7 +76,7 @@ void SelfContact::find_supports() {
   const double near2 = 0.25 * spacing() * spacing();
   for (const Contact* c : touches_)
     for (const Contact::Pair& p : c->pairs()) {
-      if (!p.tool_a || !p.b || p.b->surface != &*on) continue;
+      if (!p.tool_a || !p.b || p.b != &*on) continue;
       const double far = thickness() + alarm() + 2 * c->max_push();
       // By key, not by gap: what supports whom must not change while nothing moves.
       pressed_.clear();
@@ -86,13 +85,13 @@ void SelfContact::find_supports() {
       for (const auto& [contact, at] : pressed_) {
         const Proximity& x = *at;
         if (int(supports_.size()) >= max_supports()) return;
-        const Opposite o = collider_->opposite(mesh_, x.triangle, x.bary, -x.normal, far);
+        const Opposite o = collider_->opposite(on->collision(), x.triangle, x.bary, -x.normal, far);
         if (o.triangle < 0) continue;
         // Two jaws name the same pair from both sides.
-        const Vec3 here = mesh_.point(x.triangle, x.bary), there = mesh_.point(o.triangle, o.bary);
+        const Vec3 here = on->collision().point(x.triangle, x.bary), there = on->collision().point(o.triangle, o.bary);
         bool known = false;
         for (const Support& s : supports_) {
-          const Vec3 a = mesh_.point(s.triangle, s.bary), b = mesh_.point(s.behind, s.behind_bary);
+          const Vec3 a = on->collision().point(s.triangle, s.bary), b = on->collision().point(s.behind, s.behind_bary);
           known = known || ((a - here).squaredNorm() < near2 && (b - there).squaredNorm() < near2) ||
                   ((a - there).squaredNorm() < near2 && (b - here).squaredNorm() < near2);
         }
@@ -156,7 +155,7 @@ void SelfContact::report(StepReport& out) const {
   for (const Support& s : supports_) {
     ContactPoint c;
     c.a = c.b = &on->body();
-    c.position = mesh_.point(s.behind, s.behind_bary);
+    c.position = on->collision().point(s.behind, s.behind_bary);
     c.normal = s.normal;
     c.gap = s.gap;
     c.normal_force = s.force;

@@ -57,7 +57,6 @@ class SelfContact final : public Constraint {
   std::vector<Support> supports_;
   std::vector<std::pair<std::uint64_t, const Proximity*>> pressed_;  ///< a tool's contacts by key
   Workers* workers_ = nullptr;
-  CollisionMesh mesh_;
   std::unique_ptr<SelfCollider> collider_;
   ContactSelection selection_;
   std::vector<Proximity> contacts_;

@@ -147,7 +147,7 @@ inline Soak leave_alone(const std::filesystem::path& scene, const IdleSettings& 
   double last = 0;
   const auto phase_of = [&] { return s.report().vessels.empty() ? std::fmod(s.time(), 1.0) : s.report().heart_phase; };
   while (s.time() < to) {
-    const double energy = s.report().energy;
+    const double energy = s.energy();
     const double at = last, coming = s.time() < from ? 0 : last + s.h() * 3;
     const bool near = at < phase && coming >= phase;
     if (near) before.take(s);
@@ -160,7 +160,7 @@ inline Soak leave_alone(const std::filesystem::path& scene, const IdleSettings& 
     now.take(s);
     now.blend(before, part);
     if (out.energy.empty()) first = now;
-    out.energy.push_back(energy + part * (s.report().energy - energy));
+    out.energy.push_back(energy + part * (s.energy() - energy));
     const Worst d = now.farthest_from(first);
     if (d.value > out.drift.value) out.drift = d;
     if (speak && (out.energy.size() < 20 || out.energy.size() % 20 == 1))
@@ -247,7 +247,7 @@ class RandomCampaign {
       sum[2] = std::min(sum[2], c.gap);
     }
     std::printf("    %6.2f s: inverted %d, volume %.3f (%s), area %.3f (%s), inside %.3f, core %.2f mm (%s), rows %d, sweeps %d, energy %.3e\n", s.time(), e.inverted,
-                e.volume.value, e.volume.whose.c_str(), e.area.value, e.area.whose.c_str(), e.inside.value, 1e3 * deep.value, deep.whose.c_str(), s.report().rows, s.report().solve.sweeps, s.report().energy);
+                e.volume.value, e.volume.whose.c_str(), e.area.value, e.area.whose.c_str(), e.inside.value, 1e3 * deep.value, deep.whose.c_str(), s.report().rows, s.report().solve.sweeps, s.energy());
     for (const auto& [names, sum] : by_pair)
       if (sum[1] > 0.02) std::printf("        %s: %d contacts, %.2f N, gap down to %.2f mm\n", names.c_str(), int(sum[0]), sum[1], 1e3 * sum[2]);
     for (int hand = 0; hand < 2; ++hand)

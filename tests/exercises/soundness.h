@@ -96,7 +96,7 @@ class DepthGauge {
       for (const Contact::Pair& p : contact->pairs())
         if (p.tool_a && p.b) {
           pairs_.push_back(&p);
-          if (!meshes_.count(p.b->surface)) add(p.b->surface);
+          if (!meshes_.count(p.b)) add(p.b);
         }
     }
   }
@@ -109,12 +109,12 @@ class DepthGauge {
     Worst out;
     for (const Contact::Pair* p : pairs_) {
       if (!p->active() || (dynamic_cast<const Clip*>(p->tool_a) != nullptr) != clips) continue;
-      const Closed& m = *meshes_.at(p->b->surface);
+      const Closed& m = *meshes_.at(p->b);
       const Pose pose = p->tool_a->link_pose(p->link_a);
       for (const RoundedPiece& piece : p->pieces_a) {
         const auto look = [&](const Vec3& local) {
           const double depth = m.depth(pose.apply(local));
-          if (depth > out.value) out.most(depth, p->tool_a->id + " in " + p->b->surface->id);
+          if (depth > out.value) out.most(depth, p->tool_a->id + " in " + p->b->id);
         };
         // A flat blade may be pierced between its corners: all lines between them are looked at.
         for (std::size_t a = 0; a < piece.core.size(); ++a) {

@@ -10,7 +10,7 @@
 namespace insula {
 namespace {
 
-/// A block of tissue that a probe presses, drags on and leaves.
+/// A block of tissue that a probe presses, drags on and leaves; off its middle, where friction would be as good one way as the other.
 struct Pressed {
   test::SceneFolder folder;
   std::unique_ptr<Simulation> s;
@@ -22,7 +22,7 @@ struct Pressed {
     s = test::load_text(fmt::format(R"(<scene time_step="10 ms"><solver max_sweeps="200" tolerance="1e-9 m"/>
 <soft_body id="tissue" mesh="meshes/block.msh" mesh_unit="m" {}><corotational_fem young="3 kPa" poisson="0.45" density="1 g/cm3"/>
 <fixed region="beyond" centre="0 0 -9.9 mm" normal="0 0 -1"/><surface id="skin"/></soft_body>
-<dissector id="probe" hand="right" sharp="never" model="meshes/probe/tool.urdf" home="0 0 2.5 mm" shaft="0 0 1" flat="1 0 0" coupling="400 N/m"/>
+<dissector id="probe" hand="right" sharp="never" model="meshes/probe/tool.urdf" home="0.7 0.4 2.5 mm" shaft="0 0 1" flat="1 0 0" coupling="400 N/m"/>
 <contact id="touch" between="tissue probe" friction="0.3" spacing="0.5 mm" max_contacts="12"/></scene>)", solver),
                                               folder.path() / "scene.xml", threads);
   }
