@@ -17,7 +17,7 @@ constexpr double along_wall = 0.92; ///< normals that agree by this at rest belo
 constexpr double bent = 0.8;        ///< ... those that agree by this need looking at only once the wall between them is bent
 constexpr double horizon = 0.5e-3;    ///< farther than needed, to know for how long nothing will come, m
 constexpr double skin = 0.4e-3;     ///< motion after which a list of partners is made anew, m
-constexpr double yields = 0.3;        ///< part of its turn that the normal of a lasting contact takes in a step
+constexpr double yields = 0.3;        ///< part of its turn that the normal of a pressing contact takes in a step
 constexpr std::size_t longest_list = 192;  ///< partners of a sample; with more, the tree is asked in every step
 
 /// Where the ray from `from` along the unit vector `along` goes out through triangle pqr; -1 if it does not.
@@ -240,9 +240,9 @@ void SelfCollider::near(const CollisionMesh& mesh, const SelfContactSettings& se
   const double alarm = was ? 1.2 * settings.alarm : settings.alarm;
   if (c.gap > alarm && c.gap + approach > alarm) return;
   // On a fold the nearest place turns about with the slightest motion of the wall, which is so light there that its own
-  // answer would throw it to and fro, step by step. So the normal of what lasts turns slowly.
+  // answer would throw it to and fro, step by step. So the normal of what presses turns slowly.
   Vec3& direction = direction_[side][sample];
-  if (was && direction.dot(c.normal) > 0.5) c.normal = (direction + yields * (c.normal - direction)).normalized();
+  if (was && c.gap < 0 && direction.dot(c.normal) > 0.5) c.normal = (direction + yields * (c.normal - direction)).normalized();
   direction = c.normal;
   close_[side][sample] = crossed ? 2 : 1;
   c.start_gap = std::max(c.gap, -settings.max_recovery);

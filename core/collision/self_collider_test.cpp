@@ -52,6 +52,32 @@ TEST(SelfCollider, WallsPressedTogetherHaveTheExactGapAlsoWhenTheyHaveCrossed) {
   }
 }
 
+// The upper wall, pressed on the lower one, tilts at once: the normals of what presses follow by three tenths a look, those of
+// what only comes near are where the walls are.
+TEST(SelfCollider, NormalsOfWhatPressesTurnSlowly) {
+  for (const double h : {0.2e-3, 0.5e-3}) {
+    Flat f;
+    f.height(h);
+    f.detect();
+    const double slope = 0.05;
+    for (std::size_t i = 0; i < f.now.size(); ++i) f.now[i].z() += slope * f.now[i].x();
+    Vec3 flat = Vec3::UnitZ();
+    const Vec3 tilted = Vec3(-slope, 0, 1).normalized();
+    for (int look = 0; look < 4; ++look) {
+      flat = (flat + 0.3 * (tilted - flat)).normalized();
+      int seen = 0;
+      for (const Proximity& x : f.detect()) {
+        const Vec3& rest = f.rest.vertices[std::size_t(x.vertex)];
+        if (std::abs(rest.x()) > 3e-3 || std::abs(rest.y()) > 3e-3) continue;
+        ++seen;
+        const Vec3 up = f.top(x) ? x.normal : Vec3(-x.normal);
+        EXPECT_NEAR((up - (h < thickness ? flat : tilted)).norm(), 0, 1e-9) << "look " << look << ", height " << h;
+      }
+      EXPECT_GE(seen, 30);
+    }
+  }
+}
+
 TEST(SelfCollider, NothingAtRestAndNothingFarOff) {
   for (const TriMesh& m : {shapes::sphere(Vec3::Zero(), 2e-3, 3), shapes::sphere(Vec3::Zero(), 0.6e-3, 2), shapes::box(Vec3::Zero(), Vec3(4e-3, 4e-3, 4e-3), 6)}) {
     CollisionMesh mesh;

@@ -20,6 +20,7 @@ struct SolveSettings {
   bool conjugate = false;
   /// Most Newton steps, made when sweeps would end above the tolerance; 0: sweeps alone. One step costs as much as rows / 3 sweeps.
   int max_newton = 0;
+  bool newton_soon = false;  ///< after a few sweeps already, for one who knows that they stall
 };
 
 enum class SolveMethod : std::uint8_t { sweeps, newton };
@@ -28,6 +29,7 @@ struct SolveStats {
   int sweeps = 0;
   double residual_m = 0;  ///< largest violation of a law over all rows, metres (natural map scaled by 1/W_ii)
   double residual_N = 0;  ///< the same in newtons
+  bool stalled = false;   ///< sweeps did not reach the tolerance, and Newton was asked for
   int newton_steps = 0;   ///< tried, beside the sweeps
   SolveMethod method = SolveMethod::sweeps;  ///< newton: the result is better than what sweeps alone had come to
 };

@@ -30,6 +30,7 @@ class StageClock {
   Time start_, last_;
 };
 
+constexpr int steps_with_newton_soon = 15;  ///< after one whose sweeps stalled; then they are tried again
 constexpr int most_passes = 3;  ///< of defect correction
 
 }  // namespace
@@ -155,6 +156,7 @@ void Simulation::step() {
   warm_start();
   workspace_.reserve(problem_.rows, solve_settings_.max_newton > 0);
   workspace_.lambda.assign(problem_.lambda.begin(), problem_.lambda.end());
+  solve_settings_.newton_soon = newton_soon_ > 0;
   report_.solve = solve(problem_, problem_.delta_free, solve_settings_, workspace_);
   defect_.begin(problem_, bodies_);
   for (int pass = 0; defect_.needed() && pass < most_passes; ++pass) {
@@ -165,6 +167,8 @@ void Simulation::step() {
     report_.solve.sweeps += sweeps;
   }
   problem_.lambda.assign(workspace_.lambda.begin(), workspace_.lambda.end());
+  if (newton_soon_ > 0) --newton_soon_;
+  else if (report_.solve.stalled) newton_soon_ = steps_with_newton_soon;
   clock.done(stage_solve);
 
   // The haptic problem wants the tools' terms of this step, before they move.
@@ -260,6 +264,7 @@ void Simulation::reset() {
   if (exercise_) exercise_->reset();
   if (complications_) complications_->draw(complication_seed_, *this);
   remembered_.clear();
+  newton_soon_ = 0;
   commanded_.clear();
   context_.time = 0;
   context_.step = 0;

@@ -101,6 +101,7 @@ class Simulation {
   std::vector<Event> events_;
   ConstraintProblem problem_;
   std::unique_ptr<ConstraintBuilder> builder_;
+  int newton_soon_ = 0;  ///< steps for which it is
   SolveWorkspace workspace_;
   DefectCorrection defect_;
   struct Remembered {

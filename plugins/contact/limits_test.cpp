@@ -54,6 +54,53 @@ TEST(ContactLimits, ForceOfALayerUnderABladeWithPatches) {
   EXPECT_NEAR(sum, coupling * (b.tool->pose().p.z() + dz), 1e-6 * coupling * dz);
 }
 
+// Four feet that the hand presses on with more than they bear: the coupling gives what they do bear, and they go in.
+TEST(ContactLimits, AFootBearsSoMuchAndGoesIn) {
+  constexpr double coupling = 400, dz = 1e-3;
+  for (const double bound : {0.02, 0.07, 0.3}) {
+    SCOPED_TRACE(fmt::format("{} N", bound));
+    Bench b(test::feet_urdf(5e-3, test::radius), test::ground(), test::upright, fmt::format(R"(friction="0" max_force="{} N")", bound));
+    ASSERT_TRUE(b.tool);
+    Pose down = b.tool->home_pose();
+    down.p.z() = test::radius - dz;
+    for (int i = 0; i < 200; ++i) b.move_to(down);
+    const double force = std::min(bound, coupling * dz / 4), overlap = dz - 4 * force / coupling;
+    EXPECT_NEAR(test::radius - b.tool->pose().p.z(), overlap, 1e-6 * dz);
+    ASSERT_EQ(b.s->report().contacts.size(), 4u);
+    double sum = 0;
+    for (const ContactPoint& c : b.s->report().contacts) {
+      EXPECT_LE(c.normal_force, bound * (1 + 1e-9));
+      sum += c.normal_force;
+    }
+    EXPECT_NEAR(sum, 4 * force, 4e-6 * force);
+    down.p.z() = test::radius + 3e-3;
+    for (int i = 0; i < 200; ++i) b.move_to(down);
+    EXPECT_NEAR(b.tool->pose().p.z(), down.p.z(), 1e-9) << "and out again";
+  }
+}
+
+// By vertices, with friction that contacts share.
+TEST(ContactLimits, AVertexUnderABladeBearsSoMuch) {
+  constexpr double coupling = 400, dz = 1e-3, bound = 1e-3;
+  const std::string blade = R"(<robot name="blade"><link name="tool"><inertial><mass value="0.02"/>
+<inertia ixx="1e-6" iyy="1e-6" izz="1e-6" ixy="0" ixz="0" iyz="0"/></inertial>
+<collision name="blade"><origin xyz="0 0 0.001"/><geometry><box size="0.0065 0.0065 0.002"/></geometry></collision></link></robot>)";
+  Bench b(blade, shapes::box(Vec3(-0.01, -0.01, -0.01), Vec3(0.01, 0.01, 0), 20), test::upright,
+          fmt::format(R"(friction="0.3" by="vertices" patch="2 mm" spacing="0.5 mm" max_contacts="100" max_force="{} N")", bound));
+  ASSERT_TRUE(b.tool);
+  Pose down = b.tool->home_pose();
+  down.p.z() = -dz;
+  for (int i = 0; i < 200; ++i) b.move_to(down);
+  double sum = 0;
+  for (const ContactPoint& c : b.s->report().contacts) {
+    EXPECT_LE(c.normal_force, 1.1 * bound);  // its share of the friction may lie along its own normal
+    sum += c.normal_force * c.normal.z() + c.tangent_force.z();
+  }
+  EXPECT_GT(sum, 25 * bound);
+  EXPECT_NEAR(sum, coupling * (b.tool->pose().p.z() + dz), 1e-6 * coupling * dz);
+  EXPECT_LT(b.tool->pose().p.z(), -0.1e-3);
+}
+
 double most_force(const std::string& contact, double* overlap = nullptr) {
   SceneFolder folder;
   auto s = test::soft_bench(folder, R"(<contact between="pad top" friction="0" tissue_spacing="3 mm" tissue_max_contacts="60" )" + contact + R"(/>

@@ -46,6 +46,22 @@ TEST(HardProblems, JawsOnAStack) {
     }
 }
 
+// Who knows that sweeps stall has Newton after eight of them, and the same result.
+TEST(HardProblems, NewtonSoonSparesSweeps) {
+  const Jaws jaws{24, 1e-4, 1e-4, 1e-5, 0.4};
+  const ConstraintProblem p = jaws.problem();
+  SolveSettings settings{150, 1e-13, true, 30};
+  SolveWorkspace late, soon;
+  const SolveStats a = solve_cold(p, settings, late);
+  settings.newton_soon = true;
+  const SolveStats b = solve_cold(p, settings, soon);
+  EXPECT_TRUE(a.stalled && b.stalled);
+  EXPECT_GE(a.sweeps, 16);
+  EXPECT_LE(b.sweeps, 8 + 4 * b.newton_steps);
+  EXPECT_LE(b.residual_m, settings.tolerance_m);
+  for (std::size_t i = 0; i < late.lambda.size(); ++i) EXPECT_NEAR(soon.lambda[i], late.lambda[i], 1e-6 * jaws.normal());
+}
+
 TEST(HardProblems, MassRatiosOfTenThousandAndAMillion) {
   for (const double ratio : {1e4, 1e6})
     for (const int light : {1, 5, 20}) {
