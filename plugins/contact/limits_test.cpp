@@ -8,6 +8,16 @@ namespace {
 using test::Bench;
 using test::SceneFolder;
 
+/// A square blade over vertices half a millimetre apart, contacts sharing friction.
+struct BladeBench : Bench {
+  explicit BladeBench(const std::string& limit)
+      : Bench(R"(<robot name="blade"><link name="tool"><inertial><mass value="0.02"/>
+<inertia ixx="1e-6" iyy="1e-6" izz="1e-6" ixy="0" ixz="0" iyz="0"/></inertial>
+<collision name="blade"><origin xyz="0 0 0.001"/><geometry><box size="0.0065 0.0065 0.002"/></geometry></collision></link></robot>)",
+              shapes::box(Vec3(-0.01, -0.01, -0.01), Vec3(0.01, 0.01, 0), 20), test::upright,
+              R"(friction="0.3" by="vertices" patch="2 mm" spacing="0.5 mm" max_contacts="100" )" + limit) {}
+};
+
 // Four feet on layers, and the coupling over them: springs in series.
 TEST(ContactLimits, ForceOfALayerIsItsStiffnessTimesTheOverlap) {
   constexpr double coupling = 400, dz = 1e-3;
@@ -33,11 +43,7 @@ TEST(ContactLimits, ForceOfALayerIsItsStiffnessTimesTheOverlap) {
 // The same by vertices, with contacts of a blade that share friction forces.
 TEST(ContactLimits, ForceOfALayerUnderABladeWithPatches) {
   constexpr double coupling = 400, dz = 1e-3, layer = 500;
-  const std::string blade = R"(<robot name="blade"><link name="tool"><inertial><mass value="0.02"/>
-<inertia ixx="1e-6" iyy="1e-6" izz="1e-6" ixy="0" ixz="0" iyz="0"/></inertial>
-<collision name="blade"><origin xyz="0 0 0.001"/><geometry><box size="0.0065 0.0065 0.002"/></geometry></collision></link></robot>)";
-  Bench b(blade, shapes::box(Vec3(-0.01, -0.01, -0.01), Vec3(0.01, 0.01, 0), 20), test::upright,
-          fmt::format(R"(friction="0.3" by="vertices" patch="2 mm" spacing="0.5 mm" max_contacts="100" layer="{} N/m")", layer));
+  BladeBench b(fmt::format(R"(layer="{} N/m")", layer));
   ASSERT_TRUE(b.tool);
   Pose down = b.tool->home_pose();
   down.p.z() = -dz;
@@ -82,11 +88,7 @@ TEST(ContactLimits, AFootBearsSoMuchAndGoesIn) {
 // By vertices, with friction that contacts share.
 TEST(ContactLimits, AVertexUnderABladeBearsSoMuch) {
   constexpr double coupling = 400, dz = 1e-3, bound = 1e-3;
-  const std::string blade = R"(<robot name="blade"><link name="tool"><inertial><mass value="0.02"/>
-<inertia ixx="1e-6" iyy="1e-6" izz="1e-6" ixy="0" ixz="0" iyz="0"/></inertial>
-<collision name="blade"><origin xyz="0 0 0.001"/><geometry><box size="0.0065 0.0065 0.002"/></geometry></collision></link></robot>)";
-  Bench b(blade, shapes::box(Vec3(-0.01, -0.01, -0.01), Vec3(0.01, 0.01, 0), 20), test::upright,
-          fmt::format(R"(friction="0.3" by="vertices" patch="2 mm" spacing="0.5 mm" max_contacts="100" max_force="{} N")", bound));
+  BladeBench b(fmt::format(R"(max_force="{} N")", bound));
   ASSERT_TRUE(b.tool);
   Pose down = b.tool->home_pose();
   down.p.z() = -dz;
