@@ -89,7 +89,8 @@ SceneWork count_work(const Simulation& s) {
     k.h = s.h();
     if (const auto* soft = dynamic_cast<const SoftBody*>(body)) k.elements = int(soft->rest().tets.size());
     if (const auto* shell = dynamic_cast<const ShellBody*>(body)) k.elements = int(shell->wall_triangles().size()), k.wall = true;
-    k.keeps_tangent = body->tangent_tolerance() > 0;
+    k.background = body->solver_kind.is("asynchronous");
+    k.keeps_tangent = !k.background && body->tangent_tolerance() > 0;
     k.solver = body->solver().cost();
     const int now = body->rows.count();
     double rows = now;
@@ -141,17 +142,18 @@ struct Share {
 }  // namespace
 
 CostEstimate estimate(const SceneWork& w, const CostRates& r, int threads) {
-  // A triangle of a wall with its hinges, over a tetrahedron; how often a kept factor is made anew; a step over the best of
-  // several runs in a row, whose data lie in the caches; entries of a factor that a cache holds.
-  constexpr double wall_tangent = 3.2, wall_force = 5.5, anew = 0.05, in_a_step = 1.25, cached = 1e6;
+  // A triangle of a wall with its hinges, over a tetrahedron; how often a kept factor is made anew; iterations of a solve with one
+  // made in the background; a step over the best of several runs in a row, whose data lie in the caches; entries of a factor that a
+  // cache holds.
+  constexpr double wall_tangent = 3.2, wall_force = 5.5, anew = 0.05, iterations = 3, in_a_step = 1.25, cached = 1e6;
   CostEstimate out;
   std::vector<double> free, correct, compliance;
   std::vector<Share> shares;
   double add = 0;
   for (const BodyWork& b : w.bodies) {
     const double tangent = b.elements * r.tetrahedron * (b.wall ? wall_tangent : 1), force = b.elements * r.tetrahedron_force * (b.wall ? wall_force : 1);
-    const double factor = b.solver.factor_flops * r.factor_flop + double(b.solver.factor_entries) * r.factor_entry;
-    const double solve = double(b.solver.factor_entries) * r.solve_entry;
+    const double factor = b.background ? 0 : b.solver.factor_flops * r.factor_flop + double(b.solver.factor_entries) * r.factor_entry;
+    const double solve = double(b.solver.factor_entries) * r.solve_entry * (b.background ? 0.5 * iterations : 1);
     const double often = b.keeps_tangent ? anew : 1;
     free.push_back(in_a_step * (often * (tangent + factor) + (1 - often) * force + solve) + 5 * b.nodes * r.vertex);
     correct.push_back(b.rows > 0 ? in_a_step * solve : 0);
@@ -160,7 +162,7 @@ CostEstimate estimate(const SceneWork& w, const CostRates& r, int threads) {
     if (b.keeps_tangent) out.refactor_ms = std::max(out.refactor_ms, 1000 * (tangent + factor));
     shares.push_back({1000 * often * factor, fmt::format("the factor of \"{}\" ({} nodes, {:.0f} Mflop)", b.id, b.nodes, b.solver.factor_flops * 1e-6),
                       fmt::format("fewer nodes in \"{}\": half of them make its factor about four times cheaper; hold what lies far with <fixed>{}", b.id,
-                                  b.keeps_tangent ? "" : ", or keep the factor with tangent_tolerance=\"0.02\"")});
+                                  b.keeps_tangent ? "" : b.solver.factor_flops > 1e9 ? ", or have it made in the background with solver=\"asynchronous\"" : ", or keep the factor with tangent_tolerance=\"0.02\"")});
     shares.push_back({1000 * (tangent * often + force * (1 - often)), fmt::format("the {} elements of \"{}\"", b.elements, b.id), fmt::format("fewer elements in \"{}\"", b.id)});
     shares.push_back({1000 * compliance.back(), fmt::format("the compliance of {} rows on \"{}\"", b.rows, b.id),
                       "fewer rows: larger spacing, smaller max_contacts, patch, fewer strands"});

@@ -19,6 +19,7 @@ struct BodyWork {
   int elements = 0;            ///< tetrahedra, or triangles of a wall
   bool wall = false;
   bool keeps_tangent = false;  ///< its factor is made anew only now and then
+  bool background = false;     ///< ... or beside the steps, in single precision, which then iterate
   double h = 0;
   int rows = 0;                ///< expected
   SolverCost solver;

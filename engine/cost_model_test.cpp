@@ -66,13 +66,17 @@ CostRates flat() {
 TEST(CostModel, TellsWhatTakesMostAndWhatToDo) {
   SceneWork w;
   w.h = 1.0 / 60;
-  w.bodies.push_back({"lobe", 20000, 100000, false, false, w.h, 60, {30000000, 3e10, 5e8, 0}, 1e9});
+  w.bodies.push_back({"lobe", 20000, 100000, false, false, false, w.h, 60, {30000000, 3e10, 5e8, 0}, 1e9});
   const CostEstimate slow = estimate(w, flat(), 1);
   EXPECT_GT(slow.step_ms, 600);  // the factor alone
   EXPECT_NE(slow.most.find("the factor of \"lobe\""), std::string::npos) << slow.most;
   ASSERT_FALSE(slow.advice.empty());
   EXPECT_NE(slow.advice.front().find("fewer nodes in \"lobe\""), std::string::npos);
-  w.bodies[0] = {"lobe", 500, 2000, false, false, w.h, 60, {100000, 1e7, 1.6e6, 0}, 1e7};
+  EXPECT_NE(slow.advice.front().find("asynchronous"), std::string::npos);
+  // Made beside the steps, the same factor costs some solves.
+  w.bodies[0].background = true;
+  EXPECT_LT(estimate(w, flat(), 1).step_ms, 0.2 * slow.step_ms);
+  w.bodies[0] = {"lobe", 500, 2000, false, false, false, w.h, 60, {100000, 1e7, 1.6e6, 0}, 1e7};
   const CostEstimate quick = estimate(w, flat(), 1);
   EXPECT_LT(quick.step_ms, 1000 * w.h);
   EXPECT_TRUE(quick.advice.empty());
