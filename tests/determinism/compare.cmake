@@ -4,7 +4,7 @@ file(GLOB examples ${SOURCE}/plugins/*/example.xml)
 # An unoptimised build takes minutes to settle a vessel: the plugins' examples stand for the other exercises.
 file(GLOB training ${SOURCE}/scenes/training/1_*.xml)
 function(hashes out program)
-  execute_process(COMMAND ${program} 80 ${examples} RESULT_VARIABLE rc OUTPUT_VARIABLE text ERROR_VARIABLE error)
+  execute_process(COMMAND ${program} 40 ${examples} RESULT_VARIABLE rc OUTPUT_VARIABLE text ERROR_VARIABLE error)
   if(rc)
     message(FATAL_ERROR "${program} failed (${rc}): ${error}")
   endif()
