@@ -12,6 +12,7 @@
 namespace insula {
 namespace {
 
+constexpr double hardly = 0.02;  ///< a row whose entries have changed by less than this part of the largest is kept as it was
 constexpr double poor = 0.05;  ///< a factor that leaves more than this of an error in each iteration is replaced
 
 double largest(const std::vector<double>& x) {
@@ -54,6 +55,7 @@ bool AsynchronousSolver::factorise(const BlockMatrix& a) {
     if (!front_->factorise(a)) return false;
     usable_ = true;
     factor_turned_ = turned_;
+    factor_is_new_ = true;
     ++status_.factors;
   } else {
     ++status_.age;
@@ -115,6 +117,7 @@ void AsynchronousSolver::solve_from(double* x, const double* guess) {
 }
 
 void AsynchronousSolver::begin_compliance(const BodyRows& rows, const std::vector<int>& node_of_block) {
+  std::swap(turned_rows_, rows_before_);
   turned_rows_.row = rows.row;
   turned_rows_.start = rows.start;
   turned_rows_.block = rows.block;
@@ -122,9 +125,31 @@ void AsynchronousSolver::begin_compliance(const BodyRows& rows, const std::vecto
   for (std::size_t e = 0; e < rows.coeff.size(); ++e)
     if (const int node = node_of_block[std::size_t(rows.block[e])]; node >= 0) turned_rows_.coeff[e].noalias() = since_[std::size_t(node)].transpose() * rows.coeff[e];
     else turned_rows_.coeff[e].setZero();
+  if (!factor_is_new_) keep_rows();
+  factor_is_new_ = false;
   nodes_of_block_ = &node_of_block;
   front_->begin_compliance(turned_rows_, node_of_block);
   last_lambda_.clear();
+}
+
+// Rows turn a little in every step, and one that is the same to the bit costs nothing. Compliance is not exact here anyway.
+void AsynchronousSolver::keep_rows() {
+  const BodyRows& old = rows_before_;
+  for (int i = 0; i < turned_rows_.count(); ++i) {
+    const int begin = turned_rows_.start[std::size_t(i)], size = turned_rows_.start[std::size_t(i) + 1] - begin;
+    for (int j = 0; j < old.count(); ++j) {
+      const int from = old.start[std::size_t(j)];
+      if (old.start[std::size_t(j) + 1] - from != size || !std::equal(old.block.begin() + from, old.block.begin() + from + size, turned_rows_.block.begin() + begin)) continue;
+      double most = 0, change = 0;
+      for (int e = 0; e < size; ++e) {
+        most = std::max(most, old.coeff[std::size_t(from + e)].squaredNorm());
+        change = std::max(change, (old.coeff[std::size_t(from + e)] - turned_rows_.coeff[std::size_t(begin + e)]).squaredNorm());
+      }
+      if (change > hardly * hardly * most) continue;
+      std::copy_n(old.coeff.begin() + from, size, turned_rows_.coeff.begin() + begin);
+      break;
+    }
+  }
 }
 
 // From what the last lambda gave, if there was one, by the compliance of what changed; then with the step's own matrix.
@@ -150,7 +175,7 @@ void AsynchronousSolver::correct(const BodyRows& rows, const double* lambda, dou
   for (std::size_t i = 0; i < since_.size(); ++i) Eigen::Map<Vec3>(difference_.data() + 3 * i) = (since_[i] * Eigen::Map<Vec3>(difference_.data() + 3 * i)).eval();
   for (std::size_t i = 0; i < n; ++i) last_x_[i] += difference_[i];
   // A small change is good enough as the factor knows it.
-  if (!again || largest(difference_) * std::max(quality_, 0.05) > tolerance_) {
+  if (!again || largest(difference_) * std::max(quality_, hardly) > tolerance_) {
     std::fill(b_.begin(), b_.end(), 0.0);
     for (std::size_t i = 0; i < m; ++i)
       for (int e = rows.start[i]; e < rows.start[i + 1]; ++e)
@@ -166,8 +191,9 @@ void AsynchronousSolver::forget() {
   done_.wait(lock, [this] { return state_ != State::asked; });
   state_ = State::idle;
   usable_ = false;
+  factor_is_new_ = true;
   quality_ = 1;
-    seen_ = 0;
+  seen_ = 0;
   status_ = {};
 }
 
@@ -193,6 +219,7 @@ void AsynchronousSolver::take() {
   if (state_ == State::asked) return;
   if (state_ == State::ready) {
     std::swap(front_, back_);
+    factor_is_new_ = true;
     std::swap(factor_turned_, asked_turned_);
     status_.age = asked_steps_;
     quality_ = 1;

@@ -5,7 +5,7 @@
 //     P^-1 = R A0^-1 R^T,
 // for a co-rotational matrix turns with its nodes. A step never waits for a factor: it goes on with the old one, and pays with iterations.
 //
-// Compliance of rows is H P^-1 H^T; what it lacks is told by correct(), which solves with A, and is put right by defect correction
+// Compliance of rows is H P^-1 H^T, of rows that have hardly changed that of the steps before. What it lacks is told by correct(), which solves with A, and is put right by defect correction
 // (Simulation::step). Every solve ends when P^-1 of what is left moves no node by more than `tolerance`, and then is moved by just that.
 #pragma once
 #include <condition_variable>
@@ -39,6 +39,7 @@ class AsynchronousSolver final : public BodySolver {
   void forget() override;
   void may_wait(bool yes) override { may_wait_ = yes; }
   SolverStatus status() const override { return status_; }
+  int rows_reused() const override { return front_->rows_reused(); }
   SolverCost cost() const override { return front_->cost(); }
 
   /// A factor asked for is put in place so many steps later when waiting is allowed: about what a busy core needs for it, but by its flops, not
@@ -49,6 +50,7 @@ class AsynchronousSolver final : public BodySolver {
 
  private:
   using Factor = MultifrontalCholesky<float>;
+  void keep_rows();
   void precondition(const double* r, double* z);
   void refine(const double* b, double* x);
   void ask();
@@ -60,7 +62,8 @@ class AsynchronousSolver final : public BodySolver {
   std::unique_ptr<Factor> front_, back_;
   std::vector<Mat3> turned_, factor_turned_, asked_turned_;  ///< of each node: now, as the front's factor knows it, the back's
   std::vector<Mat3> since_;                                 ///< now from then
-  BodyRows turned_rows_;
+  BodyRows turned_rows_, rows_before_;                      ///< as the factor is given them
+  bool factor_is_new_ = true;
   std::vector<double> b_, r_, z_, p_, ap_, last_lambda_, last_x_, difference_, change_;
   const std::vector<int>* nodes_of_block_ = nullptr;
   double seen_ = 0;     ///< what an iteration left of an error, when last seen

@@ -154,6 +154,47 @@ TEST(AsynchronousSolver, WithoutLeaveToWaitAStepGoesOnWithTheOldFactor) {
   EXPECT_EQ(solver.status().factors, 2);
 }
 
+/// Rows of three nodes each, rows of another body between them.
+struct ThreeNodeRows {
+  static constexpr int m = 12;
+  BodyRows rows;
+  MatX h = MatX::Zero(m, 3 * System::nodes);
+  std::vector<int> identity = std::vector<int>(System::nodes);
+  /// Every third row is changed by this part of itself.
+  explicit ThreeNodeRows(double change = 0) {
+    for (int i = 0; i < System::nodes; ++i) identity[std::size_t(i)] = i;
+    rows.clear();
+    const VecX c = any(7);
+    for (int i = 0; i < m; ++i) {
+      rows.open(2 * i);
+      for (int k = 0; k < 3; ++k) {
+        const int node = (17 * i + 5 * k) % System::nodes;
+        const Vec3 entry = (i % 3 == 0 ? 1 + change : 1.0) * c.segment<3>(3 * (i + k));
+        rows.add(node, entry);
+        h.block<1, 3>(i, 3 * node) += entry.transpose();
+      }
+    }
+  }
+};
+
+TEST(AsynchronousSolver, RowsThatHardlyChangeAreKept) {
+  for (const double change : {0.0, 0.015, 0.1}) {
+    Ready ready(5);
+    auto& [s, solver] = ready;
+    const ThreeNodeRows first, then(change);
+    solver.compute_compliance(first.rows, first.identity);
+    EXPECT_EQ(solver.rows_reused(), 0);
+    ASSERT_TRUE(solver.factorise(s.a));
+    solver.compute_compliance(then.rows, then.identity);
+    EXPECT_EQ(solver.rows_reused(), change < 0.02 ? then.m : then.m - 4);
+    // Whatever is kept, lambda does what the rows of now say.
+    VecX lambda(2 * then.m), x(3 * System::nodes), own(then.m);
+    for (int i = 0; i < then.m; ++i) own[i] = lambda[2 * i] = 1e-3 * std::cos(i);
+    solver.correct(then.rows, lambda.data(), x.data());
+    EXPECT_LT(worst_node(x - s.dense.ldlt().solve(then.h.transpose() * own)), 3 * tolerance) << change;
+  }
+}
+
 TEST(AsynchronousSolver, CorrectionKnowsTheStepsOwnMatrix) {
   Ready ready(5);
   auto& [s, solver] = ready;
@@ -162,21 +203,9 @@ TEST(AsynchronousSolver, CorrectionKnowsTheStepsOwnMatrix) {
   solver.turn(r);
   ASSERT_TRUE(solver.factorise(s.a));
 
-  constexpr int m = 12;
-  BodyRows rows;
-  rows.clear();
-  MatX h = MatX::Zero(m, 3 * System::nodes);
-  std::vector<int> identity(System::nodes);
-  for (int i = 0; i < System::nodes; ++i) identity[std::size_t(i)] = i;
-  const VecX c = any(7);
-  for (int i = 0; i < m; ++i) {
-    rows.open(2 * i);  // rows of another body lie between
-    for (int k = 0; k < 3; ++k) {
-      const int node = (17 * i + 5 * k) % System::nodes;
-      rows.add(node, c.segment<3>(3 * (i + k)));
-      h.block<1, 3>(i, 3 * node) += c.segment<3>(3 * (i + k)).transpose();
-    }
-  }
+  constexpr int m = ThreeNodeRows::m;
+  const ThreeNodeRows all;
+  const auto& [rows, h, identity] = all;
   solver.compute_compliance(rows, identity);
   MatX w = MatX::Zero(2 * m, 2 * m), near(m, m);
   solver.add_compliance(rows, w.data(), 2 * m);

@@ -205,6 +205,22 @@ void lower_solve_rows(const T* l, int ldl, int cols, T* x, long ldx, int m) {
   }
 }
 
+// The sum of a vector's n numbers: the upper half on the lower one, again and again.
+template <class T, int n, class Vec>
+inline __attribute__((always_inline)) T total(Vec v) {
+  if constexpr (n == 1) {
+    return v[0];
+  } else if constexpr (n == 2) {
+    return v[0] + v[1];
+  } else {
+    typedef T Half __attribute__((vector_size(n / 2 * sizeof(T))));
+    Half lower, upper;
+    __builtin_memcpy(&lower, &v, sizeof lower);
+    __builtin_memcpy(&upper, reinterpret_cast<const char*>(&v) + sizeof lower, sizeof upper);
+    return total<T, n / 2>(Half(lower + upper));
+  }
+}
+
 template <int n, class T>
 inline __attribute__((always_inline)) void take_columns(T* y, const T* a, long lda, const T* x, int m) {
   T factor[n];
@@ -227,11 +243,7 @@ inline __attribute__((always_inline)) void dot_columns(T* out, const T* a, long 
     for (int c = 0; c < n; ++c) s[c] += load(a + c * lda + r) * xr;
   }
   for (int c = 0; c < n; ++c) {
-    T part[W<T>];
-    for (int i = 0; i < W<T>; ++i) part[i] = s[c][i];
-    for (int half = W<T> / 2; half > 0; half /= 2)
-      for (int i = 0; i < half; ++i) part[i] += part[i + half];
-    out[c] = part[0];
+    out[c] = total<T, W<T>>(s[c]);
   }
 }
 
