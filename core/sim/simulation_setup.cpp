@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A simulation is put together, settled, asked, and put back to its start.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "core/scene/loader.h"
+#include "core/sim/simulation.h"
+
+namespace insula {
+
+Simulation::Simulation(std::unique_ptr<Scene> scene, Diagnostics& diagnostics, int threads)
+    : scene_(std::move(scene)), workers_(threads) {
+  PrepareContext prepare{diagnostics, scene_->time_step()};
+  bodies_ = scene_->all<Body>();
+  instruments_ = scene_->all<Instrument>();
+  surfaces_ = scene_->all<Surface>();
+  constraints_ = scene_->all<Constraint>();
+  for (std::size_t i = 0; i < bodies_.size(); ++i) bodies_[i]->index = int(i);
+  if (auto s = scene_->all<SolverSettings>(); !s.empty()) {
+    solve_settings_.max_sweeps = s.front()->max_sweeps();
+    solve_settings_.tolerance_m = s.front()->tolerance();
+    solve_settings_.conjugate = s.front()->conjugate();
+    solve_settings_.max_newton = s.front()->newton();
+  }
+  if (auto v = scene_->all<ViewSettings>(); !v.empty()) view_ = v.front();
+  // A hand begins with its first tool; the others lie on the tray.
+  std::array<bool, 2> full{};
+  for (Instrument* i : instruments_) {
+    const int hand = i->hand_index();
+    if (hand < 0) continue;
+    i->start_in_hand(!full[std::size_t(hand)]);
+    full[std::size_t(hand)] = true;
+  }
+  if (auto s = scene_->all<SettleSettings>(); !s.empty()) settle_time_ = s.front()->time();
+  for (Body* b : bodies_) b->connect(prepare);
+  if (diagnostics.ok()) {
+    for (Constraint* c : constraints_) c->connect(prepare, *this);
+    for (Instrument* i : instruments_) i->join(prepare, *this);
+    if (auto e = scene_->all<Exercise>(); !e.empty()) {
+      exercise_ = e.front();
+      exercise_->connect(prepare, *this);
+    }
+    if (auto c = scene_->all<Complications>(); !c.empty()) {
+      complications_ = c.front();
+      complications_->connect(prepare, *this);
+      complications_->draw(0, *this);
+    }
+  }
+  heavy_first_ = bodies_;
+  std::stable_sort(heavy_first_.begin(), heavy_first_.end(), [](Body* a, Body* b) { return a->blocks() > b->blocks(); });
+  parts_.reserve(8 * bodies_.size());
+  builder_ = std::make_unique<ConstraintBuilder>(problem_, bodies_);
+  context_.h = scene_->time_step();
+  context_.gravity = scene_->gravity();
+  context_.events = &sink_;
+  if (diagnostics.ok() && settle_time_ > 0) settle(diagnostics);
+}
+
+Simulation::~Simulation() = default;
+
+Instrument* Simulation::instrument_of(int hand) const {
+  for (Instrument* i : instruments_)
+    if (i->hand_index() == hand && i->active()) return i;
+  return nullptr;
+}
+
+void Simulation::set_hand(int hand, const HandState& state) {
+  if (Instrument* i = instrument_of(hand)) i->set_hand(state);
+}
+
+void Simulation::reset() {
+  for (Body* b : bodies_) b->reset();
+  for (Surface* s : surfaces_) s->update();
+  for (Constraint* c : constraints_) c->reset();
+  if (exercise_) exercise_->reset();
+  if (complications_) complications_->draw(complication_seed_, *this);
+  remembered_.clear();
+  newton_soon_ = 0;
+  commanded_.clear();
+  context_.time = 0;
+  context_.step = 0;
+  problem_.resize(0);
+  problem_.blocks.clear();
+  problem_.tools.clear();
+  report_.clear();
+  report_.time = 0;
+  report_.step = 0;
+  events_.clear();
+  sink_.clear();
+  if (settle_time_ > 0) {
+    Diagnostics none;  // the same as at the start, where they were reported
+    settle(none);
+  }
+}
+
+double Simulation::energy() const {
+  double sum = 0;
+  for (const Body* b : bodies_) sum += b->energy();
+  return sum;
+}
+
+void Simulation::may_wait(bool yes) {
+  for (Body* b : bodies_) b->may_wait(yes);
+}
+
+void Simulation::draw_complications(std::uint64_t seed) {
+  complication_seed_ = seed;
+  if (complications_) complications_->draw(seed, *this);
+}
+
+// The exercise sees nothing of it, and time is negative until it begins.
+void Simulation::settle(Diagnostics& diagnostics) {
+  const int n = int(std::ceil(settle_time_ / context_.h - 1e-9));
+  Exercise* const exercise = exercise_;
+  exercise_ = nullptr;
+  context_.step = -n;
+  for (int i = 0; i < n; ++i) {
+    context_.time = double(i - n) * context_.h;
+    step();
+  }
+  exercise_ = exercise;
+  for (Surface* s : surfaces_) s->update();
+  PrepareContext prepare{diagnostics, context_.h};
+  for (Constraint* c : constraints_) c->settled(prepare);
+  context_.time = 0;
+  context_.step = 0;
+  events_.clear();
+  sink_.clear();
+  report_.events.clear();
+}
+
+std::uint64_t Simulation::state_hash() const {
+  std::vector<double> state;
+  for (Body* b : bodies_) b->append_state(state);
+  for (Constraint* c : constraints_) c->append_state(state);
+  std::uint64_t hash = 14695981039346656037ull;
+  for (double d : state) {
+    std::uint64_t bits;
+    std::memcpy(&bits, &d, 8);
+    for (int k = 0; k < 8; ++k) {
+      hash ^= (bits >> (8 * k)) & 0xff;
+      hash *= 1099511628211ull;
+    }
+  }
+  return hash;
+}
+
+namespace {
+SimulationResult connect(LoadResult loaded, int threads) {
+  SimulationResult out;
+  out.diagnostics = std::move(loaded.diagnostics);
+  if (!loaded.scene) return out;
+  auto simulation = std::make_unique<Simulation>(std::move(loaded.scene), out.diagnostics, threads);
+  if (out.diagnostics.ok()) out.simulation = std::move(simulation);
+  return out;
+}
+}  // namespace
+
+SimulationResult load_simulation(const std::filesystem::path& file, const Registry& registry, int threads) {
+  return connect(load_scene(file, registry), threads);
+}
+
+SimulationResult load_simulation_text(std::string_view text, const std::filesystem::path& virtual_path, const Registry& registry, int threads) {
+  return connect(load_scene_text(text, virtual_path, registry), threads);
+}
+
+}  // namespace insula
