@@ -240,9 +240,10 @@ void SelfCollider::near(const CollisionMesh& mesh, const SelfContactSettings& se
   const double alarm = was ? 1.2 * settings.alarm : settings.alarm;
   if (c.gap > alarm && c.gap + approach > alarm) return;
   // On a fold the nearest place turns about with the slightest motion of the wall, which is so light there that its own
-  // answer would throw it to and fro, step by step. So the normal of what presses turns slowly.
+  // answer would throw it to and fro, step by step. So the normal of what presses turns slowly; but not where walls are hard,
+  // whose gap is now a little above, now a little below zero.
   Vec3& direction = direction_[side][sample];
-  if (was && c.gap < 0 && direction.dot(c.normal) > 0.5) c.normal = (direction + yields * (c.normal - direction)).normalized();
+  if (settings.slow_normals && was && c.gap < 0 && direction.dot(c.normal) > 0.5) c.normal = (direction + yields * (c.normal - direction)).normalized();
   direction = c.normal;
   close_[side][sample] = crossed ? 2 : 1;
   c.start_gap = std::max(c.gap, -settings.max_recovery);

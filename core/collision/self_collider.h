@@ -31,6 +31,7 @@ struct SelfContactSettings {
   double max_recovery = 0.3e-3;  ///< an overlap is undone by no more than this in a step, m
   double max_depth = 4e-3;       ///< a crossing deeper than this is given up, m
   bool inner = true, outer = false;
+  bool slow_normals = false;     ///< the normal of what presses turns slowly: for walls that give way where they are pressed
 };
 
 /// The place across the lumen behind a place of the wall.

@@ -58,7 +58,9 @@ TEST(SelfCollider, NormalsOfWhatPressesTurnSlowly) {
   for (const double h : {0.2e-3, 0.5e-3}) {
     Flat f;
     f.height(h);
-    f.detect();
+    SelfContactSettings settings;
+    settings.slow_normals = true;
+    f.detect(settings);
     const double slope = 0.05;
     for (std::size_t i = 0; i < f.now.size(); ++i) f.now[i].z() += slope * f.now[i].x();
     Vec3 flat = Vec3::UnitZ();
@@ -66,7 +68,7 @@ TEST(SelfCollider, NormalsOfWhatPressesTurnSlowly) {
     for (int look = 0; look < 4; ++look) {
       flat = (flat + 0.3 * (tilted - flat)).normalized();
       int seen = 0;
-      for (const Proximity& x : f.detect()) {
+      for (const Proximity& x : f.detect(settings)) {
         const Vec3& rest = f.rest.vertices[std::size_t(x.vertex)];
         if (std::abs(rest.x()) > 3e-3 || std::abs(rest.y()) > 3e-3) continue;
         ++seen;

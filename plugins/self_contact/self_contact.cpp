@@ -57,6 +57,7 @@ void SelfContact::detect(const StepContext&) {
   settings.thickness = thickness();
   settings.alarm = alarm();
   settings.max_recovery = most_recovery();
+  settings.slow_normals = layer() > 0;
   settings.inner = !sides.is("outer");
   settings.outer = !sides.is("inner");
   contacts_.clear();
