@@ -27,6 +27,7 @@ struct Block {
   double upper = infinite;    ///< N, box only
   double friction = 0;        ///< Coulomb coefficient, friction and patch blocks only
   int normals = 0;            ///< of the blocks before this one, patch only
+  bool operator==(const Block&) const = default;
   int rows() const { return law == LawKind::friction ? 3 : law == LawKind::patch ? 2 : 1; }
 };
 

@@ -74,12 +74,12 @@ void measure_residual(const ConstraintProblem& p, const double* lambda, const do
 // Whether sweeps will not reach the tolerance: what they move shrinks too slowly, from one window of them to the next.
 class Forecast {
  public:
-  /// `soon`: the solves just before stalled, so this one will.
-  Forecast(const SolveSettings& s, bool soon) : settings_(s), soon_(soon) {}
+  Forecast(const SolveSettings& s) : settings_(s) {}
   bool stalls(int sweeps, double moved) {
     most_ = std::max(most_, moved);
-    if (soon_ && sweeps >= window / 2) return true;
-    if (settings_.max_newton <= 0 || sweeps % window != 0) return false;
+    if (settings_.max_newton <= 0) return false;
+    if (settings_.newton_soon && sweeps >= window / 2) return true;
+    if (sweeps % window != 0) return false;
     const double share = last_ > 0 ? most_ / last_ : 0;
     last_ = most_;
     most_ = 0;
@@ -91,7 +91,6 @@ class Forecast {
  private:
   static constexpr int window = 16;
   const SolveSettings& settings_;
-  const bool soon_;
   double most_ = 0, last_ = 0;
 };
 
@@ -100,7 +99,7 @@ void sweep_on(const ConstraintProblem& p, const SolveSettings& settings, const S
   const int n = p.rows;
   double* lambda = ws.lambda.data();
   const auto sweep = sweep_kernels().sweep;
-  Forecast forecast(settings, settings.max_newton > 0 && settings.newton_soon);
+  Forecast forecast(settings);
   for (std::vector<double>* v : {&ws.before, &ws.before_delta, &ws.along, &ws.along_delta}) v->assign(std::size_t(n), 0.0);
   double last_norm = 0;  // of the sweep before, 0: no direction yet
   while (stats.sweeps < settings.max_sweeps) {

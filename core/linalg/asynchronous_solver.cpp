@@ -174,7 +174,7 @@ void AsynchronousSolver::correct(const BodyRows& rows, const double* lambda, dou
   front_->correct(turned_rows_, change_.data(), difference_.data());
   for (std::size_t i = 0; i < since_.size(); ++i) Eigen::Map<Vec3>(difference_.data() + 3 * i) = (since_[i] * Eigen::Map<Vec3>(difference_.data() + 3 * i)).eval();
   for (std::size_t i = 0; i < n; ++i) last_x_[i] += difference_[i];
-  // A small change is good enough as the factor knows it.
+  // A small change is good enough as the factor knows it, and its rows, which may be off by `hardly`.
   if (!again || largest(difference_) * std::max(quality_, hardly) > tolerance_) {
     std::fill(b_.begin(), b_.end(), 0.0);
     for (std::size_t i = 0; i < m; ++i)
@@ -191,7 +191,6 @@ void AsynchronousSolver::forget() {
   done_.wait(lock, [this] { return state_ != State::asked; });
   state_ = State::idle;
   usable_ = false;
-  factor_is_new_ = true;
   quality_ = 1;
   seen_ = 0;
   status_ = {};

@@ -62,7 +62,7 @@ class MultifrontalCholesky final : public BodySolver {
   long ldy_ = 0, fresh_ = 0;
   int columns_ = 0;
   std::array<std::vector<int>, 2> part_begin_;  ///< of each act: the fresh columns of a part, then the end of the last
-  std::array<std::vector<double>, 2> work_;     ///< of each act: flops of each vector of columns
+  std::vector<double> work_;                    ///< of an act: flops of each vector of columns
 
   // The rows before, as long as the factor is theirs.
   std::int64_t factor_number_ = 0, rows_factor_ = -1;

@@ -144,15 +144,14 @@ void MultifrontalCholesky<Real>::share_out() {
     begin.clear();
     if (whole > 0) begin.push_back(0);
     if (fresh_ >= 2 * least_part) {
-      auto& work = work_[std::size_t(act)];
-      work.assign(std::size_t(whole), 0.0);
+      work_.assign(std::size_t(whole), 0.0);
       double all = 0;
       for (std::size_t i = 0; i < e_.front.size(); ++i) {
         const Columns &a = active_[0][i], &b = active_[1][i];
         const double own = 3 * e_.front[i].own, below = 3 * e_.front[i].rows - own, known = std::max(0, b.end - b.begin);
         for (int c = a.begin; c < a.end; c += lanes) {
           const double flops = own * (act == ComplianceAct::forward ? own + 2 * below : a.end - c + 2 * known);
-          work[std::size_t(c / lanes)] += flops;
+          work_[std::size_t(c / lanes)] += flops;
           all += flops;
         }
       }
@@ -160,7 +159,7 @@ void MultifrontalCholesky<Real>::share_out() {
       double done = 0;
       for (int v = 0; v < whole; ++v) {
         if (int(begin.size()) < parts && v > 0 && done >= all * double(begin.size()) / parts) begin.push_back(lanes * v);
-        done += work[std::size_t(v)];
+        done += work_[std::size_t(v)];
       }
     }
     if (whole > 0) begin.push_back(int(fresh_));

@@ -207,7 +207,7 @@ void Contact::detect(const StepContext&) {
 
 double Contact::most_force(const Pair& p) const {
   const double most = p.tool_a ? max_force() : tissue_max_force();
-  return most > 0 ? most : Block{}.upper;
+  return most > 0 ? most : infinite;
 }
 
 // d of the relative displacement a - b at the contact.

@@ -54,11 +54,7 @@ TEST_F(ProblemFile, ComesBackToTheBit) {
     EXPECT_EQ(q.delta_free, p.delta_free);
     EXPECT_EQ(q.lambda, p.lambda);
     ASSERT_EQ(q.blocks.size(), p.blocks.size());
-    for (std::size_t k = 0; k < p.blocks.size(); ++k) {
-      const Block &a = p.blocks[k], &b = q.blocks[k];
-      EXPECT_TRUE(a.id == b.id && a.row == b.row && a.law == b.law && a.compliance == b.compliance && a.lower == b.lower && a.upper == b.upper &&
-                  a.friction == b.friction && a.normals == b.normals);
-    }
+    for (std::size_t k = 0; k < p.blocks.size(); ++k) EXPECT_TRUE(q.blocks[k] == p.blocks[k]) << "block " << k;
   }
   EXPECT_EQ(problem_files(folder_), std::vector<fs::path>{file_});
 }
