@@ -10,6 +10,9 @@ namespace insula {
 void AabbTree::build(std::span<const Vec3> rest, std::span<const std::array<int, 3>> triangles) {
   nodes_.clear();
   leaf_vertices_.clear();
+  ways_.clear();
+  stale_.clear();
+  first_leaf_.clear();
   order_.resize(triangles.size());
   std::iota(order_.begin(), order_.end(), 0);
   if (triangles.empty()) return;
@@ -19,6 +22,9 @@ void AabbTree::build(std::span<const Vec3> rest, std::span<const std::array<int,
     centres.push_back((rest[std::size_t(t[0])] + rest[std::size_t(t[1])] + rest[std::size_t(t[2])]) / 3);
   nodes_.reserve(triangles.size());
   build_node(0, int(triangles.size()), centres, triangles);
+  list_leaves_of_vertices(rest.size());
+  ways_.resize(rest.size());
+  stale_.assign(nodes_.size(), 0);
   refit(rest, {});
 }
 
@@ -62,27 +68,63 @@ int AabbTree::build_node(int first, int count, std::span<const Vec3> centres,
   return me;
 }
 
+void AabbTree::list_leaves_of_vertices(std::size_t vertices) {
+  first_leaf_.assign(vertices + 1, 0);
+  for (int v : leaf_vertices_) ++first_leaf_[std::size_t(v) + 1];
+  std::partial_sum(first_leaf_.begin(), first_leaf_.end(), first_leaf_.begin());
+  leaf_of_.resize(leaf_vertices_.size());
+  std::vector<int> at(first_leaf_.begin(), first_leaf_.end() - 1);
+  for (std::size_t i = 0; i < nodes_.size(); ++i)
+    for (int v : vertices_of(nodes_[i])) leaf_of_[std::size_t(at[std::size_t(v)]++)] = int(i);
+}
+
+Aabb AabbTree::tight(const Node& leaf) const {
+  Aabb box;
+  for (int v : vertices_of(leaf)) {
+    const Vec3& p = positions_[std::size_t(v)];
+    box.add(p);
+    if (!displacements_.empty()) box.add(Vec3(p + displacements_[std::size_t(v)]));
+  }
+  return box;
+}
+
 void AabbTree::refit(std::span<const Vec3> positions, std::span<const Vec3> displacements) {
+  positions_ = positions;
+  displacements_ = displacements;
+  bool any = false;
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    const Vec3& p = positions[v];
+    OuterBox way;
+    way.low = way.high = Float4{float(p[0]), float(p[1]), float(p[2]), 0};
+    if (!displacements.empty()) {
+      const Vec3 q = p + displacements[v];
+      const Float4 end{float(q[0]), float(q[1]), float(q[2]), 0};
+      way.add({end, end});
+    }
+    way.widen();
+    if (ways_[v].holds(way)) continue;
+    way.inflate(slack);
+    ways_[v] = way;
+    any = true;
+    for (int k = first_leaf_[v]; k < first_leaf_[v + 1]; ++k) stale_[std::size_t(leaf_of_[std::size_t(k)])] = 1;
+  }
+  if (!any) return;
   for (int i = int(nodes_.size()) - 1; i >= 0; --i) {
     Node& n = nodes_[std::size_t(i)];
     if (n.count == 0) {
+      // The children stay marked until their parent has looked.
+      char &left = stale_[std::size_t(i) + 1], &right = stale_[std::size_t(n.first)];
+      if (!(left | right)) continue;
+      left = right = 0;
+      stale_[std::size_t(i)] = 1;
       n.box = nodes_[std::size_t(i) + 1].box;
       n.box.add(nodes_[std::size_t(n.first)].box);
-      continue;
+    } else if (stale_[std::size_t(i)]) {
+      n.box = {};
+      for (int v : vertices_of(n)) n.box.add(ways_[std::size_t(v)]);
     }
-    Aabb box;
-    const int* v = leaf_vertices_.data() + n.vertices;
-    if (displacements.empty()) {
-      for (int k = 0; k < n.vertex_count; ++k) box.add(positions[std::size_t(v[k])]);
-    } else {
-      for (int k = 0; k < n.vertex_count; ++k) {
-        const Vec3& p = positions[std::size_t(v[k])];
-        box.add(p);
-        box.add(Vec3(p + displacements[std::size_t(v[k])]));
-      }
-    }
-    n.box = box;
   }
+  stale_[0] = 0;
 }
 
 }  // namespace insula

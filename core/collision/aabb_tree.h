@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Bounding box tree over the triangles of a deforming mesh: built once from the rest shape, refitted every step.
-// Nodes lie in depth-first order in one array, so that a refit is one pass from the back. Queries allocate nothing.
+// Nodes lie in depth-first order in one array, so that a refit is one pass from the back. Their boxes are kept in single
+// precision, a cache line a node, four numbers at a time. They are loose: a vertex that stays within `slack` of where its
+// boxes were made leaves them alone, so that a refit costs what moves. What a query finds does not depend on that history:
+// overlapping() tests the leaves it comes to against their vertices. Queries allocate nothing.
 #pragma once
+#include <algorithm>
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -40,40 +45,93 @@ struct Aabb {
   }
 };
 
+/// Four numbers that are computed with at once.
+using Float4 = float __attribute__((vector_size(16)));
+
+/// A box in single precision that holds the one it is made of. Finite coordinates below 1e30 m.
+struct OuterBox {
+  Float4 low{1e30f, 1e30f, 1e30f, 0};
+  Float4 high{-1e30f, -1e30f, -1e30f, 0};
+
+  static OuterBox around(const Aabb& box) {
+    OuterBox r;
+    for (int k = 0; k < 3; ++k) {
+      r.low[k] = float(box.low[k]);
+      r.high[k] = float(box.high[k]);
+    }
+    r.widen();
+    return r;
+  }
+  /// By more than the conversion may have rounded.
+  void widen() {
+    const auto size = [](Float4 x) { return x < 0 ? -x : x; };
+    low -= size(low) * 1.2e-7f + 1e-30f;
+    high += size(high) * 1.2e-7f + 1e-30f;
+  }
+  void inflate(float r) {
+    low -= r;
+    high += r;
+  }
+  void add(const OuterBox& o) {
+    low = low < o.low ? low : o.low;
+    high = high > o.high ? high : o.high;
+  }
+  bool holds(const OuterBox& o) const {
+    const Halves out = (Halves)((low > o.low) | (o.high > high));
+    return (out[0] | out[1]) == 0;
+  }
+  bool overlaps(const OuterBox& o) const {
+    const Halves apart = (Halves)((low > o.high) | (o.low > high));
+    return (apart[0] | apart[1]) == 0;
+  }
+  double distance2(const Vec3& p) const {
+    double d = 0;
+    for (int k = 0; k < 3; ++k) {
+      const double x = std::max({double(low[k]) - p[k], p[k] - double(high[k]), 0.0});
+      d += x * x;
+    }
+    return d;
+  }
+  using Halves = std::int64_t __attribute__((vector_size(16)));
+  Aabb box() const { return {Vec3(low[0], low[1], low[2]), Vec3(high[0], high[1], high[2])}; }
+};
+
 class AabbTree {
  public:
+  static constexpr float slack = 1e-4f;  ///< m
   static constexpr int leaf_size = 4;  ///< triangles at most in a leaf
 
   /// Median splits along the longest side; the same input gives the same tree.
   void build(std::span<const Vec3> rest, std::span<const std::array<int, 3>> triangles);
-  /// Boxes of the triangles at `positions` joined with those at positions + displacements (may be empty).
+  /// Boxes of the triangles at `positions` joined with those at positions + displacements (may be empty). The arrays must live
+  /// until the next refit.
   void refit(std::span<const Vec3> positions, std::span<const Vec3> displacements);
 
   bool empty() const { return nodes_.empty(); }
-  const Aabb& bounds() const { return nodes_.front().box; }
+  Aabb bounds() const { return nodes_.front().box.box(); }
   int triangle_count() const { return int(order_.size()); }
 
-  /// visit(triangle) for every triangle of every leaf whose box overlaps `box`.
+  /// visit(loose box, triangles) for every leaf whose loose box overlaps `box`.
+  template <class Visit>
+  void leaves(const Aabb& box, Visit&& visit) const {
+    each_leaf(box, [&](const Node& n) { visit(n.box, triangles_of(n)); });
+  }
+  /// visit(triangle) for every triangle of every leaf whose vertices' box overlaps `box`.
   template <class Visit>
   void overlapping(const Aabb& box, Visit&& visit) const {
-    const int end = int(nodes_.size());
-    for (int i = 0; i < end;) {
-      const Node& n = nodes_[std::size_t(i)];
-      if (!n.box.overlaps(box)) {
-        i = n.skip;
-        continue;
-      }
-      for (int k = 0; k < n.count; ++k) visit(order_[std::size_t(n.first + k)]);
-      ++i;
-    }
+    each_leaf(box, [&](const Node& n) {
+      if (tight(n).overlaps(box))
+        for (int t : triangles_of(n)) visit(t);
+    });
   }
 
-  /// Whether any leaf's box overlaps `box`.
+  /// Whether any leaf's loose box overlaps `box`.
   bool any_overlapping(const Aabb& box) const {
+    const OuterBox outer = OuterBox::around(box);
     const int end = int(nodes_.size());
     for (int i = 0; i < end;) {
       const Node& n = nodes_[std::size_t(i)];
-      if (!n.box.overlaps(box)) i = n.skip;
+      if (!n.box.overlaps(outer)) i = n.skip;
       else if (n.count > 0) return true;
       else ++i;
     }
@@ -86,10 +144,11 @@ class AabbTree {
   void nearest(const Vec3& p, double& bound2, Visit&& visit) const {
     nearest(p, nullptr, bound2, visit);
   }
-  /// The same among the leaves whose boxes overlap `within` (null: all).
+  /// The same, but leaves whose loose boxes do not overlap `within` may be left out (null: none).
   template <class Visit>
   void nearest(const Vec3& p, const Aabb* within, double& bound2, Visit&& visit) const {
     if (nodes_.empty()) return;
+    const OuterBox outer = within ? OuterBox::around(*within) : OuterBox{};
     struct Open {
       int node;
       double d2;
@@ -101,7 +160,7 @@ class AabbTree {
       const Open o = stack[--size];
       if (o.d2 > bound2) continue;
       const Node& n = nodes_[std::size_t(o.node)];
-      if (within && !n.box.overlaps(*within)) continue;
+      if (within && !n.box.overlaps(outer)) continue;
       if (n.count > 0) {
         for (int k = 0; k < n.count; ++k) visit(order_[std::size_t(n.first + k)], bound2);
         continue;
@@ -120,17 +179,39 @@ class AabbTree {
 
  private:
   struct Node {
-    Aabb box;
+    OuterBox box;
     int first = 0;  ///< leaf: first place in order_; inner node: right child (the left one is the next node)
     int count = 0;  ///< triangles, 0 for an inner node
     int skip = 0;   ///< the node after this subtree
     int vertices = 0, vertex_count = 0;  ///< leaf: its vertices in leaf_vertices_
   };
   int build_node(int first, int count, std::span<const Vec3> centres, std::span<const std::array<int, 3>> triangles);
+  void list_leaves_of_vertices(std::size_t vertices);
+  std::span<const int> triangles_of(const Node& leaf) const { return {order_.data() + leaf.first, std::size_t(leaf.count)}; }
+  std::span<const int> vertices_of(const Node& leaf) const { return {leaf_vertices_.data() + leaf.vertices, std::size_t(leaf.vertex_count)}; }
+  Aabb tight(const Node& leaf) const;
+  template <class Visit>
+  void each_leaf(const Aabb& box, Visit&& visit) const {
+    const OuterBox outer = OuterBox::around(box);
+    const int end = int(nodes_.size());
+    for (int i = 0; i < end;) {
+      const Node& n = nodes_[std::size_t(i)];
+      if (!n.box.overlaps(outer)) {
+        i = n.skip;
+        continue;
+      }
+      if (n.count > 0) visit(n);
+      ++i;
+    }
+  }
 
   std::vector<Node> nodes_;
   std::vector<int> order_;          ///< triangles in leaf order
   std::vector<int> leaf_vertices_;  ///< each leaf's vertices, every one once
+  std::vector<int> first_leaf_, leaf_of_;  ///< each vertex's leaves: nodes
+  std::vector<OuterBox> ways_;      ///< each vertex's, loosely about its way from its position to the displaced one
+  std::vector<char> stale_;         ///< nodes whose boxes are to be made anew
+  std::span<const Vec3> positions_, displacements_;
 };
 
 }  // namespace insula

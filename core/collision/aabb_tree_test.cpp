@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <set>
 
 #include "core/collision/collision_mesh.h"
@@ -57,14 +58,76 @@ TEST(AabbTree, QueriesEqualBruteForceAlsoAfterDeformation) {
   }
 }
 
+// Boxes are loose and made in passing; what is found is as if the tree were new.
+TEST(AabbTree, WhatIsFoundDoesNotDependOnWhatWasBefore) {
+  TriMesh m = shapes::sphere(Vec3(0.1, 0, 0), 0.03, 3);
+  AabbTree tree, fresh;
+  tree.build(m.vertices, m.triangles);
+  fresh.build(m.vertices, m.triangles);
+  Random r(3);
+  const std::vector<Vec3> none(m.vertices.size(), Vec3(Vec3::Zero()));
+  int found = 0;
+  for (int round = 0; round < 300; ++round) {
+    // Half of it stands still; here and there something goes far.
+    for (Vec3& v : m.vertices)
+      if (v.z() > 0) v += r.in_box(r.between(0, 1) < 0.01 ? 2e-3 : 3e-5);
+    tree.refit(m.vertices, none);
+    // Everything goes far and comes back: nothing of the old boxes is left.
+    std::vector<Vec3> off = m.vertices;
+    for (Vec3& v : off) v += Vec3(1, 1, 1);
+    fresh.refit(off, none);
+    fresh.refit(m.vertices, none);
+    for (int k = 0; k < 20; ++k) {
+      Aabb box;
+      box.add(Vec3(Vec3(0.1, 0, 0) + r.in_box(0.04)));
+      box.inflate(r.between(0, 0.01));
+      std::vector<int> a, b;
+      tree.overlapping(box, [&](int t) { a.push_back(t); });
+      fresh.overlapping(box, [&](int t) { b.push_back(t); });
+      ASSERT_EQ(a, b);
+      found += int(a.size());
+      for (int t : a) ASSERT_TRUE(tree.any_overlapping(box)) << t;
+    }
+  }
+  EXPECT_GT(found, 10000);
+}
+
 TEST(AabbTree, SweptBoxesHoldBothEnds) {
   const TriMesh m = shapes::box(Vec3(0, 0, 0), Vec3(0.01, 0.01, 0.01), 3);
   std::vector<Vec3> move(m.vertices.size(), Vec3(0.1, 0, 0));
   AabbTree tree;
   tree.build(m.vertices, m.triangles);
   tree.refit(m.vertices, move);
-  EXPECT_NEAR(tree.bounds().low[0], 0, 1e-15);
-  EXPECT_NEAR(tree.bounds().high[0], 0.11, 1e-15);
+  const Aabb all = tree.bounds();
+  EXPECT_LE(all.low[0], 0);
+  EXPECT_GE(all.high[0], 0.11);
+  EXPECT_NEAR(all.low[0], 0, 1.01 * AabbTree::slack);
+  EXPECT_NEAR(all.high[0], 0.11, 1.01 * AabbTree::slack);
+}
+
+TEST(AabbTree, BoxesInSinglePrecisionHoldWhatTheyAreMadeOf) {
+  Random r(5);
+  for (int k = 0; k < 20000; ++k) {
+    Aabb box;
+    const double size = std::pow(10.0, r.between(-6, 1));
+    box.add(r.in_box(size));
+    box.add(r.in_box(size));
+    const OuterBox outer = OuterBox::around(box);
+    for (int i = 0; i < 3; ++i) {
+      EXPECT_LE(double(outer.low[i]), box.low[i]);
+      EXPECT_GE(double(outer.high[i]), box.high[i]);
+      EXPECT_LE(box.low[i] - double(outer.low[i]), 2.5e-7 * size);
+    }
+    Vec3 p = r.in_box(2 * size);
+    EXPECT_LE(outer.distance2(p), box.distance2(p));
+    // Boxes that share no more than a face still overlap.
+    Aabb next = box;
+    next.low[0] = box.high[0];
+    next.high[0] = box.high[0] + size;
+    EXPECT_TRUE(outer.overlaps(OuterBox::around(next)));
+    next.low[0] += 1e-5 * size;
+    EXPECT_FALSE(outer.overlaps(OuterBox::around(next)));
+  }
 }
 
 TEST(AabbTree, EmptyMesh) {

@@ -21,7 +21,7 @@ TEST(Detection, AllocatesNothing) {
   ConvexPiece blade{"blade", {}, 0};
   for (int i = 0; i < 8; ++i) blade.points.push_back({i & 1 ? 2e-4 : -2e-4, i & 2 ? 2e-3 : -2e-3, i & 4 ? 0.01 : 0.0});
   ToolCollider tool({blade, {"rod", {Vec3(0, 0, 0.01), Vec3(0, 0, 0.05)}, 1e-3}}, a.triangle_count());
-  TissueCollider tissue(sample_vertices(upper.vertices, upper.triangles, 2e-3), upper.vertices);
+  TissueCollider tissue(sample_vertices(upper.vertices, upper.triangles, 2e-3), upper.vertices, a.triangle_count());
   std::vector<Proximity> found, faces;
   found.reserve(2048);
   faces.reserve(2048);

@@ -127,7 +127,7 @@ TEST(ColliderCache, OfTwoTissuesNeverShows) {
   for (const unsigned seed : {1u, 2u, 3u, 4u}) {
     Twin ball(shapes::sphere(Vec3(0, 0, 4e-3), 4e-3, 3)), slab(shapes::box(Vec3(-0.012, -0.012, -6e-3), Vec3(0.012, 0.012, 0), 12));
     const auto samples = sample_vertices(ball.rest.vertices, ball.rest.triangles, 0.5e-3);
-    TissueCollider cached(samples, ball.rest.vertices), reference(samples, ball.rest.vertices);
+    TissueCollider cached(samples, ball.rest.vertices, slab.mesh.triangle_count()), reference(samples, ball.rest.vertices, slab.mesh.triangle_count());
     const Waves waves(seed, 0.1e-3, 12e-3), path(seed + 10, 1e-3, 1e3);
     int with = 0, without = 0, deep = 0;
     std::vector<Proximity> a, b;

@@ -202,7 +202,7 @@ TEST(TissueCollider, FacingBoxesHaveTheirGapAndOverlapsTheirDepth) {
   for (double gap : {0.3e-3, 0.0, -0.4e-3}) {
     const Scene a(shapes::box(Vec3(-0.01, -0.01, gap), Vec3(0.01, 0.01, 0.02), 10));
     const Scene b(shapes::box(Vec3(-0.02, -0.02, -0.02), Vec3(0.02, 0.02, 0), 13));
-    TissueCollider c(sample_vertices(a.shape.vertices, a.shape.triangles, 2e-3), a.shape.vertices);
+    TissueCollider c(sample_vertices(a.shape.vertices, a.shape.triangles, 2e-3), a.shape.vertices, b.mesh.triangle_count());
     std::vector<Proximity> out;
     c.detect(a.mesh, b.mesh, {}, out);
     int faces = 0;

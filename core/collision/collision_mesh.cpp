@@ -6,6 +6,8 @@
 #include <cmath>
 #include <tuple>
 
+#include "core/collision/vertex_groups.h"
+
 namespace insula {
 
 void CollisionMesh::build(std::span<const Vec3> rest, std::span<const std::array<int, 3>> triangles) {
@@ -15,6 +17,7 @@ void CollisionMesh::build(std::span<const Vec3> rest, std::span<const std::array
   tree_.build(rest, triangles_);
   last_.assign(rest.begin(), rest.end());
   travelled_ = farthest_free_ = 0;
+  region_of_ = group_by_place(rest, regions);
 
   ring_start_.assign(rest.size() + 1, 0);
   for (const auto& t : triangles_)
@@ -43,14 +46,19 @@ void CollisionMesh::update(std::span<const Vec3> positions, std::span<const Vec3
   positions_ = positions;
   free_ = free;
   tree_.refit(positions, free);
-  double went2 = 0, free2 = 0;
+  ++updates_;
+  moved_.fill(0);
+  may_move_.fill(0);
   for (std::size_t v = 0; v < positions.size(); ++v) {
-    went2 = std::max(went2, (positions[v] - last_[v]).squaredNorm());
-    if (!free.empty()) free2 = std::max(free2, free[v].squaredNorm());
+    const std::size_t r = std::size_t(region_of_[v]);
+    moved_[r] = std::max(moved_[r], (positions[v] - last_[v]).squaredNorm());
+    if (!free.empty()) may_move_[r] = std::max(may_move_[r], free[v].squaredNorm());
     last_[v] = positions[v];
   }
-  travelled_ += std::sqrt(went2);
-  farthest_free_ = std::sqrt(free2);
+  for (PerRegion* of : {&moved_, &may_move_})
+    for (double& x : *of) x = std::sqrt(x);
+  travelled_ += *std::max_element(moved_.begin(), moved_.end());
+  farthest_free_ = *std::max_element(may_move_.begin(), may_move_.end());
 }
 
 Vec3 CollisionMesh::face_normal(int tri, double t) const {

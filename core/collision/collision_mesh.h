@@ -2,7 +2,10 @@
 // A deforming triangle surface as collision sees it: its box tree, its neighbourhoods, and where each point is during
 // the step: x(t) = x + t u, t in [0, 1], u the displacement of the free motion. Scene frame, m.
 #pragma once
+#include <algorithm>
 #include <array>
+#include <bit>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -31,6 +34,17 @@ class CollisionMesh {
   /// Sum over all updates of the farthest way that a vertex went, m: between two updates no vertex went farther than the difference.
   double travelled() const { return travelled_; }
   double farthest_free() const { return farthest_free_; }  ///< of all vertices in this step, m
+
+  /// Vertices in regions of neighbours, the bits of a mask, so that what moves in one place is no news for what is elsewhere.
+  static constexpr int regions = 64;
+  std::uint64_t region_of(int v) const { return std::uint64_t(1) << region_of_[std::size_t(v)]; }
+  std::uint64_t regions_of(int tri) const {
+    const auto& t = triangle(tri);
+    return region_of(t[0]) | region_of(t[1]) | region_of(t[2]);
+  }
+  double moved(std::uint64_t mask) const { return most(moved_, mask); }       ///< farthest that a vertex of these went in the last update, m
+  double may_move(std::uint64_t mask) const { return most(may_move_, mask); } ///< and its free displacement, m
+  long updates() const { return updates_; }
 
   const AabbTree& tree() const { return tree_; }
   int vertex_count() const { return int(positions_.size()); }
@@ -69,6 +83,15 @@ class CollisionMesh {
   std::vector<int> ring_start_, ring_;      ///< triangles around each vertex
   std::vector<Vec3> last_;  ///< positions of the update before
   double travelled_ = 0, farthest_free_ = 0;
+  using PerRegion = std::array<double, regions>;
+  static double most(const PerRegion& of, std::uint64_t mask) {
+    double m = 0;
+    for (; mask != 0; mask &= mask - 1) m = std::max(m, of[std::size_t(std::countr_zero(mask))]);
+    return m;
+  }
+  std::vector<int> region_of_;  ///< of the vertices
+  PerRegion moved_{}, may_move_{};
+  long updates_ = 0;
   std::span<const Vec3> positions_, free_;
 };
 

@@ -38,20 +38,15 @@ std::vector<int> sample_vertices(std::span<const Vec3> rest, std::span<const std
 
 namespace {
 
+constexpr double surroundings = 6e-3;  ///< what is farther than this from a group need not be followed for a while, m
 constexpr double horizon = 2e-3;       ///< groups are looked at farther than needed, to know for how long nothing will come, m
 constexpr double near_horizon = 5e-4;  ///< and samples
 
-Aabb swept(const CollisionMesh& mesh, int v) {
-  Aabb box;
-  const Vec3 x = mesh.vertex(v);
-  box.add(x);
-  box.add(Vec3(x + mesh.free(v)));
-  return box;
-}
-
 }  // namespace
 
-TissueCollider::TissueCollider(std::vector<int> samples, std::span<const Vec3> rest) : samples_(std::move(samples)) {
+TissueCollider::TissueCollider(std::vector<int> samples, std::span<const Vec3> rest, int triangles) : samples_(std::move(samples)) {
+  leaves_.reserve(std::size_t(triangles));
+  packs_.reserve(std::size_t(triangles) / 4 + 1);
   order_by_place(samples_.data(), samples_.data() + samples_.size(), rest, std::ptrdiff_t(group));
   reset();
 }
@@ -63,18 +58,81 @@ void TissueCollider::reset() {
   groups_.assign((samples_.size() + group - 1) / group, {});
 }
 
+// The leaves that any sample of a group may want, four boxes beside each other, about `centre_`: a few mm in single precision.
+void TissueCollider::gather_leaves(const AabbTree& tree, const Aabb& all) {
+  leaves_.clear();
+  packs_.clear();
+  centre_ = 0.5 * (all.low + all.high);
+  tree.leaves(all, [&](const OuterBox& box, std::span<const int> triangles) {
+    const std::size_t lane = leaves_.size() % 4;
+    if (lane == 0) packs_.emplace_back();
+    for (int k = 0; k < 3; ++k) {
+      packs_.back().low[k][lane] = float(double(box.low[k]) - centre_[k]);
+      packs_.back().high[k][lane] = float(double(box.high[k]) - centre_[k]);
+    }
+    leaves_.push_back(triangles);
+  });
+}
+
+// look(triangle) for the triangles of every leaf that may be nearer to x than sqrt(limit2), which `look` lowers.
+template <class Look>
+void TissueCollider::look_at_leaves(const Vec3& x, const double& limit2, Look&& look) const {
+  const Vec3 at = x - centre_;
+  const float px = float(at[0]), py = float(at[1]), pz = float(at[2]);
+  const auto beyond = [](Float4 low, Float4 high, float p) {
+    const Float4 below = low - p, above = p - high, most = below > above ? below : above;
+    const Float4 sure = most - 1e-8f;  // m, more than rounding has done at some cm
+    return sure > 0 ? sure : Float4{};
+  };
+  for (std::size_t k = 0; k < packs_.size(); ++k) {
+    const Pack& pack = packs_[k];
+    const Float4 dx = beyond(pack.low[0], pack.high[0], px), dy = beyond(pack.low[1], pack.high[1], py), dz = beyond(pack.low[2], pack.high[2], pz);
+    const Float4 d2 = (dx * dx + dy * dy + dz * dz) * 0.999999f;
+    for (std::size_t lane = 0; lane < 4; ++lane)
+      if (double(d2[lane]) <= limit2 && 4 * k + lane < leaves_.size())
+        for (int t : leaves_[4 * k + lane]) look(t);
+  }
+}
+
+// Which regions of b are near the group; all that is known of its samples was about the regions before.
+void TissueCollider::look_around(Group& g, const CollisionMesh& a, const CollisionMesh& b, std::size_t first, std::size_t last, double may_come) {
+  Aabb here;
+  g.own = g.near = 0;
+  for (std::size_t i = first; i < last; ++i) {
+    here.add(a.vertex(samples_[i]));
+    g.own |= a.region_of(samples_[i]);
+    clear_[i] = 0;
+  }
+  g.clear = g.went = 0;
+  g.around = may_come + surroundings;
+  here.inflate(g.around);
+  b.tree().leaves(here, [&](const OuterBox&, std::span<const int> triangles) {
+    for (int t : triangles) g.near |= b.regions_of(t);
+  });
+  g.travelled = a.travelled() + b.travelled();
+}
+
 void TissueCollider::detect(const CollisionMesh& a, const CollisionMesh& b, const TissueContactSettings& settings,
                             std::vector<Proximity>& out) {
   if (b.tree().empty()) return;
+  // Motion in between that was not seen may have brought anything.
+  const bool followed = a.updates() - updates_[0] <= 1 && b.updates() - updates_[1] <= 1;
+  updates_ = {a.updates(), b.updates()};
   const double travelled = a.travelled() + b.travelled(), open_range = settings.alarm + settings.offset;
-  const double may_come = open_range + a.farthest_free() + b.farthest_free();
+  const double farthest = open_range + a.farthest_free() + b.farthest_free();
   for (std::size_t first = 0; first < samples_.size(); first += group) {
     const std::size_t last = std::min(first + group, samples_.size());
-    // What cannot have come near since it was last looked at needs no look.
     Group& g = groups_[first / group];
-    if (!g.deep && g.clear - (travelled - g.travelled) > may_come) continue;
-    const double went = travelled - g.travelled;
-    g.travelled = travelled;
+    if (!followed || g.around - (travelled - g.travelled) <= farthest) look_around(g, a, b, first, last, farthest);
+    if (g.near == 0 && !g.deep) continue;
+    // What cannot have come near since it was last looked at needs no look.
+    const double went = a.moved(g.own) + b.moved(g.near);
+    g.clear -= went;
+    g.went += went;
+    const double may_come = open_range + a.may_move(g.own) + b.may_move(g.near);
+    if (!g.deep && g.clear > may_come) continue;
+    for (std::size_t i = first; i < last; ++i) clear_[i] -= g.went;
+    g.went = 0;
     if (!g.deep) {
       Aabb here;
       for (std::size_t i = first; i < last; ++i) here.add(a.vertex(samples_[i]));
@@ -85,58 +143,48 @@ void TissueCollider::detect(const CollisionMesh& a, const CollisionMesh& b, cons
         continue;
       }
     }
-    for (std::size_t i = first; i < last; ++i) clear_[i] -= went;
+    // Deep samples are looked for as far as they are pushed out.
     Aabb all;
     bool deep = false;
     for (std::size_t i = first; i < last; ++i) {
-      all.add(swept(a, samples_[i]));
+      all.add(a.vertex(samples_[i]));
       deep = deep || behind_[i] != 0;
     }
-    all.inflate(deep ? std::max(open_range, settings.max_depth) : open_range);
-    if (!b.tree().any_overlapping(all)) {
-      std::fill(behind_.begin() + std::ptrdiff_t(first), behind_.begin() + std::ptrdiff_t(last), char(0));
-      g.deep = false;
-      g.clear = *std::min_element(clear_.begin() + std::ptrdiff_t(first), clear_.begin() + std::ptrdiff_t(last));
-      continue;
-    }
+    const double open_reach = may_come + near_horizon, deep_reach = std::max(may_come, settings.max_depth) + near_horizon;
+    all.inflate(deep ? deep_reach : open_reach);
+    gather_leaves(b.tree(), all);
     for (std::size_t i = first; i < last; ++i) {
       const int v = samples_[i];
       if (!behind_[i] && clear_[i] > may_come) continue;
-      const double range = behind_[i] ? std::max(open_range, settings.max_depth) : open_range;
+      const double reach = behind_[i] ? deep_reach : open_reach;
       behind_[i] = 0;
-      Aabb box = swept(a, v);
-      box.inflate(range + near_horizon);
-      double any2 = (range + near_horizon) * (range + near_horizon);
+      double any2 = reach * reach;
       const Vec3 x = a.vertex(v), u = a.free(v);
       Vec3 normal = Vec3::Zero();
-      double least2 = 1e300;
+      double least2 = any2;
       int best = -1;
       Vec3 best_bary = Vec3::Zero(), best_point = Vec3::Zero();
-      const auto look = [&](int tri, double& limit2) {
+      const auto look = [&](int tri) {
         const auto& t = b.triangle(tri);
         const Vec3 p = b.vertex(t[0]), q = b.vertex(t[1]), r = b.vertex(t[2]);
         const Vec3 n = (q - p).cross(r - p);
         const double h = n.dot(x - p), nn = n.squaredNorm();
-        if (h * h > limit2 * nn) return;  // its plane is farther than the best
+        if (h * h > least2 * nn) return;  // its plane is farther than the best
         if (normal.isZero(0)) normal = a.rough_normal(v);
         const Vec3 bary = closest_on_triangle(x, p, q, r);
         const Vec3 c = bary[0] * p + bary[1] * q + bary[2] * r;
         const double d2 = (x - c).squaredNorm();
         any2 = std::min(any2, d2);
         if (normal.dot(n) > -0.25 * std::sqrt(nn)) return;  // faces away
-        if (d2 > limit2 || (d2 == limit2 && best >= 0 && tri > best)) return;
-        limit2 = d2;
+        if (d2 > least2 || (d2 == least2 && best >= 0 && tri > best)) return;
+        least2 = d2;
         best = tri;
         best_bary = bary;
         best_point = c;
       };
-      // The last step's triangle first: a good bound for the search. It must pass the search's own test of nearness.
-      if (const int guess = last_[i]; guess >= 0) {
-        Aabb near;
-        for (int w : b.triangle(guess)) near.add(swept(b, w));
-        if (near.overlaps(box)) look(guess, least2);
-      }
-      b.tree().nearest(x, &box, least2, look);
+      // The last step's triangle first: a good bound for the others.
+      if (last_[i] >= 0) look(last_[i]);
+      look_at_leaves(x, least2, look);
       last_[i] = best;
       clear_[i] = std::sqrt(any2);
       if (best < 0) continue;

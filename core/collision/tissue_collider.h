@@ -7,6 +7,9 @@
 // Geometry is that of the start of the step: tissue moves by less than its own details in a step. A bump narrower than
 // the samples' distance s can reach into the other surface by about s^2 / (8 R), R its radius of curvature.
 #pragma once
+#include <array>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/collision/collision_mesh.h"
@@ -27,8 +30,8 @@ std::vector<int> sample_vertices(std::span<const Vec3> rest, std::span<const std
 
 class TissueCollider {
  public:
-  /// Samples in an order of neighbourhoods, by the rest shape.
-  TissueCollider(std::vector<int> samples, std::span<const Vec3> rest);
+  /// Samples in an order of neighbourhoods, by the rest shape; `triangles`: how many b has.
+  TissueCollider(std::vector<int> samples, std::span<const Vec3> rest, int triangles);
   /// Appends one contact a sample that has one, in the order of samples(). Keeps which samples were behind the surface
   /// (they are looked for deeper). Does not allocate while `out` has capacity.
   void detect(const CollisionMesh& a, const CollisionMesh& b, const TissueContactSettings& settings, std::vector<Proximity>& out);
@@ -41,11 +44,26 @@ class TissueCollider {
   std::vector<char> behind_;
   std::vector<double> clear_;     ///< of the samples: nothing of b is nearer than this, m
   struct Group {
-    double clear = 0;      ///< least of its samples', m
-    double travelled = 0;  ///< of both meshes when it was last looked at
-    bool deep = true;      ///< has a sample behind the surface
+    double clear = 0;    ///< least of its samples', m
+    double went = 0;     ///< what the samples' clear_ is yet to be lessened by, m
+    std::uint64_t own = 0, near = 0;  ///< regions of its samples, and of all of b that is not farther away than `around`
+    double around = 0;   ///< m, when travelled was ...
+    double travelled = 0;  ///< ... by both meshes
+    bool deep = true;    ///< has a sample behind the surface
   };
+  void look_around(Group& g, const CollisionMesh& a, const CollisionMesh& b, std::size_t first, std::size_t last, double may_come);
   std::vector<Group> groups_;
+  std::array<long, 2> updates_{};  ///< of the meshes when last looked at
+  /// Bounding boxes of four leaves of b's tree.
+  struct Pack {
+    std::array<Float4, 3> low{}, high{};
+  };
+  void gather_leaves(const AabbTree& tree, const Aabb& all);
+  template <class Look>
+  void look_at_leaves(const Vec3& x, const double& limit2, Look&& look) const;
+  std::vector<std::span<const int>> leaves_;  ///< triangles of the leaves near a group ...
+  std::vector<Pack> packs_;                   ///< ... and their boxes, about centre_
+  Vec3 centre_ = Vec3::Zero();
   std::vector<int> last_;  ///< triangle of the last step: where to look first; does not change what is found
 };
 

@@ -5,6 +5,7 @@
 #pragma once
 #include <array>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "core/linalg/body_solver.h"
@@ -49,6 +50,15 @@ class Body : public Component {
   /// What collision looks ahead along. For tissue it is the last step's displacement: what is held springs back in its free
   /// motion, step after step, and goes nowhere.
   virtual Vec3 expected_displacement(const MaterialPoint& p) const { return free_displacement(p); }
+  /// Whether the point ever moves; what is held does not.
+  virtual bool can_move(const MaterialPoint&) const { return true; }
+  /// Of many points at once, position() and expected_displacement() of those that `which` numbers.
+  virtual void place(std::span<const MaterialPoint> points, std::span<const int> which, Vec3* positions, Vec3* expected) const {
+    for (int i : which) {
+      positions[i] = position(points[std::size_t(i)]);
+      expected[i] = expected_displacement(points[std::size_t(i)]);
+    }
+  }
   /// The point's row entries for a direction d: adds d . d(point)/d(q) to the open row.
   virtual void add_row(BodyRows& rows, const MaterialPoint& p, const Vec3& d) const = 0;
 
@@ -64,14 +74,17 @@ class Body : public Component {
   virtual void add_compliance(const BodyRows& rows, double* w, int stride) = 0;
   /// Whether add_compliance() and apply() are of the same A. If not, respond() tells what lambda truly does, for defect correction.
   virtual bool exact() const { return true; }
-  /// Computes H A^-1 H^T lambda as apply() would; bodies do this in parallel.
+  /// Then the free motion may be that under the last step's forces of rows (BodySolver::free_motion). Takes off delta, by row
+  /// number, what these do in it.
+  virtual void take_off_held(const BodyRows&, double* /*delta*/) const {}
+  /// Computes what apply() would add to the free motion; bodies do this in parallel.
   virtual void respond(const BodyRows&, const double* /*lambda*/) {}
   /// Adds it at the rows' numbers.
   virtual void add_response(const BodyRows&, double* /*delta*/) const {}
   /// What works in the background may be waited for (same input, same bits) or not (a step is never late). Default: it may.
   virtual void may_wait(bool) {}
   virtual SolverStatus solver_status() const { return {}; }
-  /// q += free displacement + A^-1 H^T lambda; v = dq / h.
+  /// q += free displacement + A^-1 H^T lambda (less the forces that the free motion is under); v = dq / h.
   virtual void apply(const StepContext& context, const BodyRows& rows, const double* lambda) = 0;
   /// Rows of its own (stops of a hinge, a tool's pull), after those of the constraints; bodies in document order.
   virtual void build(const StepContext&, ConstraintBuilder&) {}

@@ -96,8 +96,12 @@ void Surface::update() {
 }
 
 void Surface::look_ahead() {
-  if (body_->blocks() == 0 || !collision_) return;
-  for (std::size_t i = 0; i < points_.size(); ++i) expected_[i] = body_->expected_displacement(points_[i]);
+  if (body_->blocks() == 0) return;
+  if (!collision_) {
+    if (contact()) update();
+    return;
+  }
+  body_->place(points_, moving_, positions_.data(), expected_.data());
   collision_->update(positions_, expected_);
 }
 
@@ -105,6 +109,8 @@ void Surface::will_collide() {
   if (collision_) return;
   collision_ = std::make_unique<CollisionMesh>();
   collision_->build(rest_.vertices, rest_.triangles);
+  for (std::size_t i = 0; i < points_.size(); ++i)
+    if (body_->can_move(points_[i])) moving_.push_back(int(i));
 }
 
 void Surface::add_row(BodyRows& rows, int triangle, const Vec3& bary, const Vec3& d) const {

@@ -32,13 +32,14 @@ class Surface : public Component {
   Body& body() const { return *body_; }
   const TriMesh& rest() const { return rest_; }                             ///< rest shape, scene frame
   const std::vector<MaterialPoint>& points() const { return points_; }      ///< one a vertex
-  const std::vector<Vec3>& positions() const { return positions_; }         ///< at the start of the step; update() refreshes
+  const std::vector<Vec3>& positions() const { return positions_; }         ///< at the start of the step; look_ahead() and update() refresh
   const std::vector<Vec3>& expected_displacements() const { return expected_; }  ///< what collision looks ahead along
   const std::vector<std::array<int, 3>>& triangles() const { return rest_.triangles; }
 
   /// Recomputes positions() from the body's q.
   void update();
-  /// After free motion: expected_displacements() and collision(), if anything looks for contacts.
+  /// After free motion: positions(), but of what is for the picture alone, and expected_displacements() and collision(), if
+  /// anything looks for contacts.
   void look_ahead();
   /// Called in connect() of what looks for contacts: from then on the step keeps collision() up to date.
   void will_collide();
@@ -53,6 +54,7 @@ class Surface : public Component {
   std::unique_ptr<CollisionMesh> collision_;  ///< one for all that touches the surface
   TriMesh rest_;
   std::vector<MaterialPoint> points_;
+  std::vector<int> moving_;  ///< the vertices that the step places
   std::vector<Vec3> positions_, expected_;
 };
 

@@ -101,8 +101,8 @@ void Contact::add_pairs(Simulation& simulation, Body* a, Body* b) {
       p.a = sa;
       p.b = sb;
       const double distance = 0.75 * tissue_spacing();
-      p.a_on_b = std::make_unique<TissueCollider>(sample_vertices(sa->rest().vertices, sa->triangles(), distance), sa->rest().vertices);
-      p.b_on_a = std::make_unique<TissueCollider>(sample_vertices(sb->rest().vertices, sb->triangles(), distance), sb->rest().vertices);
+      p.a_on_b = std::make_unique<TissueCollider>(sample_vertices(sa->rest().vertices, sa->triangles(), distance), sa->rest().vertices, p.b->collision().triangle_count());
+      p.b_on_a = std::make_unique<TissueCollider>(sample_vertices(sb->rest().vertices, sb->triangles(), distance), sb->rest().vertices, p.a->collision().triangle_count());
       p.contacts.reserve(p.a_on_b->samples().size() + p.b_on_a->samples().size());
       p.other_way.reserve(p.b_on_a->samples().size());
       pairs_.push_back(std::move(p));

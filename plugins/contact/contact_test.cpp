@@ -203,7 +203,7 @@ TEST(Contact, SurfacesDoNotPassThroughOneAnother) {
     for (std::size_t v = 0; v < surfaces[1]->positions().size(); ++v) {
       if (surfaces[1]->rest().vertices[v].z() > 0.001) continue;
       std::vector<Proximity> found;
-      TissueCollider one(std::vector<int>{int(v)}, surfaces[1]->positions());
+      TissueCollider one(std::vector<int>{int(v)}, surfaces[1]->positions(), int(surfaces[0]->triangles().size()));
       CollisionMesh other;
       other.build(surfaces[1]->rest().vertices, surfaces[1]->triangles());
       other.update(surfaces[1]->positions(), {});
