@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace insula {
 namespace {
@@ -39,7 +40,7 @@ void AsynchronousSolver::analyse(const BlockMatrix& a) {
   front_->analyse(a);
   back_ = std::make_unique<Factor>(*front_);
   const std::size_t n = 3 * std::size_t(a.nodes());
-  for (std::vector<double>* v : {&b_, &r_, &z_, &p_, &ap_, &last_x_, &difference_}) v->assign(n, 0.0);
+  for (std::vector<double>* v : {&b_, &r_, &z_, &p_, &ap_, &last_x_, &difference_, &held_, &given_, &left_}) v->assign(n, 0.0);
   turned_.assign(std::size_t(a.nodes()), Mat3::Identity());
   since_ = factor_turned_ = asked_turned_ = turned_;
   matrix_ = a;
@@ -65,6 +66,9 @@ bool AsynchronousSolver::factorise(const BlockMatrix& a) {
   }
   status_.iterations = 0;
   status_.residual_m = 0;
+  held_.swap(given_);
+  std::fill(given_.begin(), given_.end(), 0.0);
+  std::fill(left_.begin(), left_.end(), 0.0);
   for (std::size_t i = 0; i < since_.size(); ++i) since_[i].noalias() = turned_[i] * factor_turned_[i].transpose();
   return true;
 }
@@ -77,7 +81,7 @@ void AsynchronousSolver::precondition(const double* r, double* z) {
 
 // Preconditioned conjugate gradients from x. What an iteration leaves is told from how much the last ones left: to look would cost as
 // much as another.
-void AsynchronousSolver::refine(const double* b, double* x) {
+double AsynchronousSolver::refine(const double* b, double* x, double tolerance) {
   const std::size_t n = r_.size();
   std::fill(ap_.begin(), ap_.end(), 0.0);
   a_->add_product(x, ap_.data());
@@ -88,7 +92,10 @@ void AsynchronousSolver::refine(const double* b, double* x) {
     precondition(r_.data(), z_.data());
     const double last = size;
     size = largest(z_);
-    if (k > 0 && last > 0) quality_ = seen_ = size / last;
+    if (k > 0 && last > 0) {
+      seen_ = size / last;
+      quality_ = std::max(seen_, 0.25 * quality_);  // one lucky iteration is no promise
+    }
     const double rz = product(r_, z_), beta = k > 0 ? rz / before : 0;
     before = rz;
     for (std::size_t i = 0; i < n; ++i) p_[i] = z_[i] + beta * p_[i];
@@ -103,33 +110,71 @@ void AsynchronousSolver::refine(const double* b, double* x) {
       r_[i] -= alpha * ap_[i];
     }
     left = size * std::min(1.0, quality_);
-    if (left <= tolerance_) break;
+    if (left <= tolerance) break;
   }
   status_.iterations = std::max(status_.iterations, k);
-  status_.residual_m = std::max(status_.residual_m, left);
+  return left;
 }
 
-void AsynchronousSolver::solve_from(double* x, const double* guess) {
+void AsynchronousSolver::solve(double* x) {
   std::copy_n(x, b_.size(), b_.data());
-  if (guess) std::copy_n(guess, b_.size(), x);
-  else std::fill_n(x, b_.size(), 0.0);
-  refine(b_.data(), x);
+  std::fill_n(x, b_.size(), 0.0);
+  status_.residual_m = refine(b_.data(), x, tolerance_);
+}
+
+void AsynchronousSolver::free_motion(double* x, const double* guess) {
+  for (std::size_t i = 0; i < b_.size(); ++i) b_[i] = x[i] + held_[i];
+  std::copy_n(guess, b_.size(), x);
+  status_.residual_m = refine(b_.data(), x, early * tolerance_);
+  left_ = r_;
 }
 
 void AsynchronousSolver::begin_compliance(const BodyRows& rows, const std::vector<int>& node_of_block) {
   std::swap(turned_rows_, rows_before_);
-  turned_rows_.row = rows.row;
+  turned_rows_.row.resize(rows.row.size());
+  std::iota(turned_rows_.row.begin(), turned_rows_.row.end(), 0);
   turned_rows_.start = rows.start;
   turned_rows_.block = rows.block;
   turned_rows_.coeff.resize(rows.coeff.size());
   for (std::size_t e = 0; e < rows.coeff.size(); ++e)
     if (const int node = node_of_block[std::size_t(rows.block[e])]; node >= 0) turned_rows_.coeff[e].noalias() = since_[std::size_t(node)].transpose() * rows.coeff[e];
     else turned_rows_.coeff[e].setZero();
+  nodes_of_block_ = &node_of_block;
+  add_held_row(node_of_block);
   if (!factor_is_new_) keep_rows();
   factor_is_new_ = false;
-  nodes_of_block_ = &node_of_block;
   front_->begin_compliance(turned_rows_, node_of_block);
   last_lambda_.clear();
+}
+
+// The held forces as a row whose lambda is -1: what they do is taken off with the same compliance that lambda adds it with.
+void AsynchronousSolver::add_held_row(const std::vector<int>& node_of_block) {
+  if (block_of_node_.empty()) {
+    block_of_node_.resize(held_.size() / 3);
+    for (std::size_t k = 0; k < node_of_block.size(); ++k)
+      if (node_of_block[k] >= 0) block_of_node_[std::size_t(node_of_block[k])] = int(k);
+  }
+  if (std::all_of(held_.begin(), held_.end(), [](double f) { return f == 0; })) return;
+  turned_rows_.open(turned_rows_.count());
+  for (std::size_t i = 0; i < since_.size(); ++i) {
+    const Eigen::Map<const Vec3> force(held_.data() + 3 * i);
+    if (!force.isZero(0)) turned_rows_.add(block_of_node_[i], since_[i].transpose() * force);
+  }
+}
+
+void AsynchronousSolver::add_compliance(const BodyRows& rows, double* w, int stride) const {
+  const std::size_t m = std::size_t(rows.count()), all = std::size_t(turned_rows_.count());
+  if (m == 0) return;
+  s_.assign(all * all, 0.0);
+  front_->add_compliance(turned_rows_, s_.data(), int(all));
+  for (std::size_t i = 0; i < m; ++i)
+    for (std::size_t j = 0; j < m; ++j) w[std::size_t(rows.row[i]) * std::size_t(stride) + std::size_t(rows.row[j])] += s_[i * all + j];
+}
+
+void AsynchronousSolver::take_off_held(const BodyRows& rows, double* delta) const {
+  const std::size_t m = std::size_t(rows.count()), all = std::size_t(turned_rows_.count());
+  if (all == m) return;
+  for (std::size_t i = 0; i < m; ++i) delta[rows.row[i]] -= s_[i * all + m];
 }
 
 // Rows turn a little in every step, and one that is the same to the bit costs nothing. Compliance is not exact here anyway.
@@ -155,34 +200,37 @@ void AsynchronousSolver::keep_rows() {
 // From what the last lambda gave, if there was one, by the compliance of what changed; then with the step's own matrix.
 void AsynchronousSolver::correct(const BodyRows& rows, const double* lambda, double* x) {
   const std::size_t m = std::size_t(rows.count()), n = b_.size();
-  const bool again = last_lambda_.size() == m;
+  const bool again = last_lambda_.size() == m + 1;
+  change_.assign(m + 1, 0.0);
   if (!again) {
-    last_lambda_.assign(m, 0.0);
+    last_lambda_.assign(m + 1, 0.0);
     std::fill(last_x_.begin(), last_x_.end(), 0.0);
+    change_[m] = -1;
+    lacks_ = 1;
   }
-  double moved = 0;
-  if (m > 0 && change_.size() < std::size_t(rows.row[m - 1]) + 1) change_.resize(std::size_t(rows.row[m - 1]) + 1);
+  bool moved = !again;
   for (std::size_t i = 0; i < m; ++i) {
-    change_[std::size_t(rows.row[i])] = lambda[rows.row[i]] - last_lambda_[i];
+    change_[i] = lambda[rows.row[i]] - last_lambda_[i];
     last_lambda_[i] = lambda[rows.row[i]];
-    moved = std::max(moved, std::abs(change_[std::size_t(rows.row[i])]));
+    moved = moved || change_[i] != 0;
   }
-  if (moved == 0) {
-    std::copy(last_x_.begin(), last_x_.end(), x);
-    return;
-  }
-  front_->correct(turned_rows_, change_.data(), difference_.data());
-  for (std::size_t i = 0; i < since_.size(); ++i) Eigen::Map<Vec3>(difference_.data() + 3 * i) = (since_[i] * Eigen::Map<Vec3>(difference_.data() + 3 * i)).eval();
-  for (std::size_t i = 0; i < n; ++i) last_x_[i] += difference_[i];
-  // A small change is good enough as the factor knows it, and its rows, which may be off by `hardly`.
-  if (!again || largest(difference_) * std::max(quality_, hardly) > tolerance_) {
-    std::fill(b_.begin(), b_.end(), 0.0);
+  if (moved) {
+    front_->correct(turned_rows_, change_.data(), difference_.data());
+    for (std::size_t i = 0; i < since_.size(); ++i) Eigen::Map<Vec3>(difference_.data() + 3 * i) = (since_[i] * Eigen::Map<Vec3>(difference_.data() + 3 * i)).eval();
+    for (std::size_t i = 0; i < n; ++i) last_x_[i] += difference_[i];
+    // A change is as good as the factor knows it, and its rows, which may be off by `hardly`.
+    lacks_ += largest(difference_) * std::max(quality_, hardly);
+    std::fill(given_.begin(), given_.end(), 0.0);
     for (std::size_t i = 0; i < m; ++i)
       for (int e = rows.start[i]; e < rows.start[i + 1]; ++e)
         if (const int node = (*nodes_of_block_)[std::size_t(rows.block[std::size_t(e)])]; node >= 0)
-          Eigen::Map<Vec3>(b_.data() + 3 * node) += lambda[rows.row[i]] * rows.coeff[std::size_t(e)];
-    refine(b_.data(), last_x_.data());
+          Eigen::Map<Vec3>(given_.data() + 3 * node) += lambda[rows.row[i]] * rows.coeff[std::size_t(e)];
   }
+  if (lacks_ > tolerance_) {
+    for (std::size_t i = 0; i < n; ++i) b_[i] = given_[i] - held_[i] + left_[i];
+    lacks_ = refine(b_.data(), last_x_.data(), tolerance_);
+  }
+  status_.residual_m = lacks_;
   std::copy(last_x_.begin(), last_x_.end(), x);
 }
 
@@ -193,6 +241,7 @@ void AsynchronousSolver::forget() {
   usable_ = false;
   quality_ = 1;
   seen_ = 0;
+  std::fill(given_.begin(), given_.end(), 0.0);
   status_ = {};
 }
 

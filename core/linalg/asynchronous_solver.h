@@ -5,8 +5,10 @@
 //     P^-1 = R A0^-1 R^T,
 // for a co-rotational matrix turns with its nodes. A step never waits for a factor: it goes on with the old one, and pays with iterations.
 //
-// Compliance of rows is H P^-1 H^T, of rows that have hardly changed that of the steps before. What it lacks is told by correct(), which solves with A, and is put right by defect correction
-// (Simulation::step). Every solve ends when P^-1 of what is left moves no node by more than `tolerance`, and then is moved by just that.
+// Free motion is that under the forces that rows had in the step before: what a step then changes is small, and so is what an old
+// factor gets wrong of it. Compliance of rows is H P^-1 H^T, of rows that have hardly changed that of the steps before. What it lacks
+// is told by correct(), which solves with A, and is put right by defect correction (core/sim/defect_correction.h). Every solve ends
+// when P^-1 of what is left moves no node by more than `tolerance`, and then is moved by just that.
 #pragma once
 #include <condition_variable>
 #include <mutex>
@@ -28,12 +30,14 @@ class AsynchronousSolver final : public BodySolver {
   bool factorise(const BlockMatrix& a) override;
   bool wants_rotations() const override { return true; }
   void turn(const std::vector<Mat3>& rotation) override;
-  void solve(double* x) override { solve_from(x, nullptr); }
-  void solve_from(double* x, const double* guess) override;
+  void solve(double* x) override;
+  void free_motion(double* x, const double* guess) override;
+  void unforced_motion(const double* load, double* x) override { refine(load, x, early * tolerance_); }
   void begin_compliance(const BodyRows& rows, const std::vector<int>& node_of_block) override;
   int compliance_parts(ComplianceAct act) const override { return front_->compliance_parts(act); }
   void compliance_part(ComplianceAct act, int part) override { front_->compliance_part(act, part); }
-  void add_compliance(const BodyRows& rows, double* w, int stride) const override { front_->add_compliance(rows, w, stride); }
+  void add_compliance(const BodyRows& rows, double* w, int stride) const override;
+  void take_off_held(const BodyRows& rows, double* delta) const override;
   void correct(const BodyRows& rows, const double* lambda, double* x) override;
   bool exact() const override { return false; }
   void forget() override;
@@ -45,6 +49,7 @@ class AsynchronousSolver final : public BodySolver {
   /// A factor asked for is put in place so many steps later when waiting is allowed: about what a busy core needs for it, but by its flops, not
   /// by a clock, so that the same input gives the same bits.
   int delay() const { return 1 + int(front_->cost().factor_flops / 5e8); }
+  static constexpr double early = 30;  ///< free motion may lack so many tolerances
   static constexpr int enough_iterations = 2;  ///< of a solve: more of them and a new factor is asked for
   static constexpr int most_iterations = 12;
 
@@ -52,7 +57,8 @@ class AsynchronousSolver final : public BodySolver {
   using Factor = MultifrontalCholesky<float>;
   void keep_rows();
   void precondition(const double* r, double* z);
-  void refine(const double* b, double* x);
+  double refine(const double* b, double* x, double tolerance);  ///< what is left, m
+  void add_held_row(const std::vector<int>& node_of_block);
   void ask();
   void take();
   void work();
@@ -62,10 +68,14 @@ class AsynchronousSolver final : public BodySolver {
   std::unique_ptr<Factor> front_, back_;
   std::vector<Mat3> turned_, factor_turned_, asked_turned_;  ///< of each node: now, as the front's factor knows it, the back's
   std::vector<Mat3> since_;                                 ///< now from then
-  BodyRows turned_rows_, rows_before_;                      ///< as the factor is given them
+  BodyRows turned_rows_, rows_before_;  ///< as the factor is given them, numbered from 0; after them that of the held forces, if there are any
+  std::vector<double> held_, given_, left_;  ///< forces on nodes: rows' of the last step, of this one, and what free_motion() has not balanced
+  std::vector<int> block_of_node_;
+  mutable std::vector<double> s_;  ///< compliance of turned_rows_, as last added
   bool factor_is_new_ = true;
   std::vector<double> b_, r_, z_, p_, ap_, last_lambda_, last_x_, difference_, change_;
   const std::vector<int>* nodes_of_block_ = nullptr;
+  double lacks_ = 0;    ///< about what a node of last_x_ is off by, m
   double seen_ = 0;     ///< what an iteration left of an error, when last seen
   double quality_ = 1;  ///< the same, doubled in every step until seen again
   SolverStatus status_;

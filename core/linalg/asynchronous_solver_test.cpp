@@ -225,6 +225,51 @@ TEST(AsynchronousSolver, CorrectionKnowsTheStepsOwnMatrix) {
   }
 }
 
+// Steps of a body under rows whose forces change: free motion under the last forces, then what is new. Together they are the step's
+// motion, and what the compliance takes off for the held forces leaves nearly the motion without any.
+TEST(AsynchronousSolver, FreeMotionUnderHeldForcesAndTheCorrectionAreTheWholeMotion) {
+  Ready ready(7);
+  auto& [s, solver] = ready;
+  constexpr int m = ThreeNodeRows::m;
+  const ThreeNodeRows all;
+  const auto& [rows, h, identity] = all;
+  const BodyRows none = [] { BodyRows r; r.clear(); return r; }();
+  VecX last = VecX::Zero(3 * System::nodes);
+  for (int step = 0; step < 12; ++step) {
+    const auto r = turned(0.02 * step);
+    s.fill(r, 0.02 * step);
+    solver.turn(r);
+    ASSERT_TRUE(solver.factorise(s.a));
+    const VecX force = 1e-3 * any(20) * (1 + 0.05 * step);
+    const auto truth = s.dense.ldlt();
+    VecX free = force, more(3 * System::nodes);
+    solver.free_motion(free.data(), last.data());
+    VecX unforced = last;
+    solver.unforced_motion(force.data(), unforced.data());
+    EXPECT_LT(worst_node(unforced - truth.solve(force)), 5 * solver.early * tolerance) << step;
+    // Rows vanish for two steps: their last forces must go too.
+    const bool touched = step % 6 < 4;
+    VecX lambda = VecX::Zero(2 * m), own = VecX::Zero(m);
+    if (touched)
+      for (int i = 0; i < m; ++i) own[i] = lambda[2 * i] = 1e-3 * std::cos(i + 0.1 * step);
+    solver.compute_compliance(touched ? rows : none, identity);
+    if (touched) {
+      MatX w = MatX::Zero(2 * m, 2 * m);
+      solver.add_compliance(rows, w.data(), 2 * m);
+      VecX delta = VecX::Zero(2 * m), at(m);
+      for (int i = 0; i < m; ++i) delta[2 * i] = h.row(i).dot(free);
+      solver.take_off_held(rows, delta.data());
+      for (int i = 0; i < m; ++i) at[i] = delta[2 * i];
+      const VecX without = h * truth.solve(force), held = h * free - without;
+      EXPECT_LT((at - without).norm(), 0.1 * (without.norm() + held.norm()) + 50 * tolerance) << step;
+      if (step == 2) { EXPECT_GT(held.norm(), 100 * (at - without).norm() / 10) << "there is something to take off"; }
+    }
+    solver.correct(touched ? rows : none, lambda.data(), more.data());
+    last = free + more;
+    EXPECT_LT(worst_node(last - truth.solve(force + h.transpose() * own)), 5 * tolerance) << step;
+  }
+}
+
 TEST(AsynchronousSolver, ForgetsAndBeginsAnewWithTheSameBits) {
   System s(6);
   AsynchronousSolver solver(tolerance);

@@ -44,8 +44,9 @@ class BodySolver {
   virtual bool factorise(const BlockMatrix& a) = 0;
   /// x := A^-1 x, 3 * nodes values in natural order.
   virtual void solve(double* x) = 0;
-  /// The same from a guess, which solvers that iterate begin at.
-  virtual void solve_from(double* x, const double* /*guess*/) { solve(x); }
+  /// The step's free motion: the same, but a solver that is not exact begins at `guess`, adds the forces that rows had in the last
+  /// step (held forces, which motion under them changes less than motion without), and may stop early. What that leaves, correct() makes up for.
+  virtual void free_motion(double* x, const double* /*guess*/) { solve(x); }
   /// Whether turn() does anything. Rotation of each node from rest, before factorise() of the same step.
   virtual bool wants_rotations() const { return false; }
   virtual void turn(const std::vector<Mat3>& /*rotation*/) {}
@@ -62,7 +63,11 @@ class BodySolver {
   }
   /// Adds it into w (row-major, `stride` numbers a row) at the rows' numbers, both triangles.
   virtual void add_compliance(const BodyRows& rows, double* w, int stride) const = 0;
-  /// x := A^-1 H^T lambda, natural order; lambda is indexed by row number.
+  /// x := A^-1 load about as well, from x, without held forces. After free_motion().
+  virtual void unforced_motion(const double* /*load*/, double* /*x*/) {}
+  /// Takes off delta (by row number) what held forces make of it in the free motion, as far as the compliance knows.
+  virtual void take_off_held(const BodyRows& /*rows*/, double* /*delta*/) const {}
+  /// x := A^-1 H^T lambda, natural order, less what free_motion() has of it; lambda is indexed by row number.
   virtual void correct(const BodyRows& rows, const double* lambda, double* x) = 0;
 
   /// Rows of the last begin_compliance() whose share was known, entries and factor being those of the time before.

@@ -47,6 +47,8 @@ class Body : public Component {
   virtual Vec3 position(const MaterialPoint& p) const = 0;
   /// Displacement that the free motion gives the point over the step, linearised, scene frame. Valid after free_motion.
   virtual Vec3 free_displacement(const MaterialPoint& p) const = 0;
+  /// The same without the last step's forces of rows, which the free motion of a body that is not exact() is under.
+  virtual Vec3 unforced_displacement(const MaterialPoint& p) const { return free_displacement(p); }
   /// What collision looks ahead along. For tissue it is the last step's displacement: what is held springs back in its free
   /// motion, step after step, and goes nowhere.
   virtual Vec3 expected_displacement(const MaterialPoint& p) const { return free_displacement(p); }

@@ -62,7 +62,7 @@ void DeformableBody::connect(PrepareContext& context) {
   else solver_ = make_direct_solver(solver_kind.is("single"));
   solver_->analyse(a_);
   force_ = dq_ = VecX::Zero(3 * nodes());
-  packed_ = packed_free_ = response_ = VecX::Zero(3 * free_count_);
+  packed_ = guess_ = response_ = load_ = unforced_ = VecX::Zero(3 * free_count_);
   turn_.assign(std::size_t(free_count_), Quat::Identity());
   turned_.assign(std::size_t(free_count_), Mat3::Identity());
   around_ = turned_;
@@ -80,10 +80,48 @@ Vec3 DeformableBody::free_displacement(const MaterialPoint& p) const {
   return x;
 }
 
+void DeformableBody::find_unforced() const {
+  solver_->unforced_motion(load_.data(), unforced_.data());
+  unforced_is_ = Unforced::known;
+}
+
+Vec3 DeformableBody::unforced_displacement(const MaterialPoint& p) const {
+  if (solver_->exact()) return free_displacement(p);
+  if (unforced_is_ == Unforced::unknown) find_unforced();
+  unforced_is_ = Unforced::asked;
+  Vec3 x = Vec3::Zero();
+  for (int k = 0; k < p.count; ++k)
+    if (const int b = free_[std::size_t(p.node[std::size_t(k)])]; b >= 0) x += p.weight[std::size_t(k)] * unforced_.segment<3>(3 * b);
+  return x;
+}
+
 Vec3 DeformableBody::expected_displacement(const MaterialPoint& p) const {
   Vec3 x = Vec3::Zero();
   for (int k = 0; k < p.count; ++k) x += p.weight[std::size_t(k)] * v_.segment<3>(3 * p.node[std::size_t(k)]);
   return x * step_;
+}
+
+bool DeformableBody::can_move(const MaterialPoint& p) const {
+  for (int k = 0; k < p.count; ++k)
+    if (p.weight[std::size_t(k)] != 0 && !held_[std::size_t(p.node[std::size_t(k)])]) return true;
+  return false;
+}
+
+void DeformableBody::place(std::span<const MaterialPoint> points, std::span<const int> which, Vec3* positions, Vec3* expected) const {
+  const double* q = q_.data();
+  const double* v = v_.data();
+  for (int i : which) {
+    const MaterialPoint& p = points[std::size_t(i)];
+    Vec3 x = p.local, way = Vec3::Zero();
+    for (int k = 0; k < p.count; ++k) {
+      const double w = p.weight[std::size_t(k)];
+      const std::ptrdiff_t at = 3 * std::ptrdiff_t(p.node[std::size_t(k)]);
+      x += w * Eigen::Map<const Vec3>(q + at);
+      way += w * Eigen::Map<const Vec3>(v + at);
+    }
+    positions[i] = x;
+    expected[i] = way * step_;
+  }
 }
 
 void DeformableBody::add_row(BodyRows& out, const MaterialPoint& p, const Vec3& d) const {
@@ -156,8 +194,18 @@ void DeformableBody::free_motion(const StepContext& context) {
   for (int i = 0; i < nodes(); ++i)
     if (const int b = free_[std::size_t(i)]; b >= 0)
       packed_.segment<3>(3 * b) = force_.segment<3>(3 * i) + mass_[std::size_t(i)] * (context.gravity + v_.segment<3>(3 * i) / h);
-  solver_->solve_from(packed_.data(), packed_free_.data());
-  if (!solver_->exact()) packed_free_ = packed_;
+  if (!solver_->exact())
+    for (int i = 0; i < nodes(); ++i)
+      if (const int b = free_[std::size_t(i)]; b >= 0) guess_.segment<3>(3 * b) = h * v_.segment<3>(3 * i);
+  if (!solver_->exact()) load_ = packed_;
+  solver_->free_motion(packed_.data(), guess_.data());
+  // Who asked in the last step will ask again: now bodies work side by side.
+  const bool asked = unforced_is_ == Unforced::asked;
+  unforced_is_ = Unforced::unknown;
+  if (asked) {
+    unforced_ += packed_ - guess_;
+    find_unforced();
+  }
   dq_.setZero();
   for (int i = 0; i < nodes(); ++i)
     if (free_[std::size_t(i)] >= 0) dq_.segment<3>(3 * i) = packed_.segment<3>(3 * free_[std::size_t(i)]);
@@ -169,6 +217,7 @@ int DeformableBody::compliance_parts(ComplianceAct act) const { return solver_->
 void DeformableBody::compliance_part(ComplianceAct act, int part) { solver_->compliance_part(act, part); }
 void DeformableBody::add_compliance(const BodyRows& r, double* w, int stride) { solver_->add_compliance(r, w, stride); }
 
+void DeformableBody::take_off_held(const BodyRows& r, double* delta) const { solver_->take_off_held(r, delta); }
 void DeformableBody::respond(const BodyRows& r, const double* lambda) { solver_->correct(r, lambda, response_.data()); }
 
 void DeformableBody::add_response(const BodyRows& r, double* delta) const {
@@ -179,7 +228,7 @@ void DeformableBody::add_response(const BodyRows& r, double* delta) const {
 }
 
 void DeformableBody::apply(const StepContext& context, const BodyRows& r, const double* lambda) {
-  if (r.count() > 0) {
+  if (r.count() > 0 || !solver_->exact()) {
     solver_->correct(r, lambda, packed_.data());
     for (int i = 0; i < nodes(); ++i)
       if (free_[std::size_t(i)] >= 0) dq_.segment<3>(3 * i) += packed_.segment<3>(3 * free_[std::size_t(i)]);
@@ -197,7 +246,8 @@ void DeformableBody::reset() {
   indefinite_ = 0;
   factorisations_ = 0;
   factor_h_ = 0;
-  packed_free_.setZero();
+  unforced_.setZero();
+  unforced_is_ = Unforced::unknown;
   for (Quat& t : turn_) t.setIdentity();
   solver_->forget();
   for (ForceModel* f : forces_) f->reset();

@@ -51,7 +51,10 @@ class DeformableBody : public Body {
   int blocks() const override { return nodes(); }
   Vec3 position(const MaterialPoint& p) const override;
   Vec3 free_displacement(const MaterialPoint& p) const override;
+  Vec3 unforced_displacement(const MaterialPoint& p) const override;
   Vec3 expected_displacement(const MaterialPoint& p) const override;
+  bool can_move(const MaterialPoint& p) const override;
+  void place(std::span<const MaterialPoint> points, std::span<const int> which, Vec3* positions, Vec3* expected) const override;
   void add_row(BodyRows& rows, const MaterialPoint& p, const Vec3& d) const override;
   void free_motion(const StepContext& context) override;
   void compute_compliance(const BodyRows& rows) override;
@@ -60,6 +63,7 @@ class DeformableBody : public Body {
   void compliance_part(ComplianceAct act, int part) override;
   void add_compliance(const BodyRows& rows, double* w, int stride) override;
   bool exact() const override { return solver_->exact(); }
+  void take_off_held(const BodyRows& rows, double* delta) const override;
   void respond(const BodyRows& rows, const double* lambda) override;
   void add_response(const BodyRows& rows, double* delta) const override;
   void may_wait(bool yes) override { solver_->may_wait(yes); }
@@ -81,7 +85,12 @@ class DeformableBody : public Body {
   int free_count_ = 0;
   std::vector<double> mass_, damping_;
   VecX q_, v_, force_, dq_, packed_;
-  VecX packed_free_, response_;         ///< of solvers that iterate: the last free motion, what lambda does
+  void find_unforced() const;
+  mutable VecX unforced_;                       ///< of solvers that are not exact, as they are asked for it: motion without held forces
+  VecX load_;                                   ///< what that is the answer to
+  enum class Unforced { unknown, known, asked };
+  mutable Unforced unforced_is_ = Unforced::unknown;
+  VecX guess_, response_;               ///< of solvers that are not exact: the last step's displacement, what lambda does
   std::vector<Quat> turn_;              ///< rotation of each free node's neighbourhood from rest
   std::vector<Mat3> turned_, around_;
   BlockMatrix a_;

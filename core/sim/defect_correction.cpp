@@ -6,7 +6,7 @@
 
 namespace insula {
 
-void DefectCorrection::begin(const ConstraintProblem& problem, const std::vector<Body*>& bodies) {
+void DefectCorrection::begin(ConstraintProblem& problem, const std::vector<Body*>& bodies) {
   bodies_.clear();
   for (Body* b : bodies)
     if (b->active() && !b->exact() && b->rows.count() > 0) bodies_.push_back(b);
@@ -14,6 +14,7 @@ void DefectCorrection::begin(const ConstraintProblem& problem, const std::vector
   w_.assign(problem.w.size(), 0.0);
   for (Body* b : bodies_) b->add_compliance(b->rows, w_.data(), problem.stride);
   free_.assign(problem.delta_free.begin(), problem.delta_free.end());
+  for (const Body* b : bodies_) b->take_off_held(b->rows, problem.delta_free.data());
 }
 
 double DefectCorrection::pass(ConstraintProblem& problem, const double* lambda, Workers& workers) {

@@ -2,7 +2,8 @@
 // Puts right what W lacks where a body knows its compliance only nearly. With W the one in the problem and V the true one,
 //     V lambda + delta_free = W lambda + (delta_free + (V - W) lambda_k)   at lambda = lambda_k,
 // so the problem is solved again with the bracket in place of delta_free. Each pass makes the error smaller by |W^-1 (V - W)|; its fixed point
-// is the exact step. The problem that the hands get has the same bracket: the servo begins at the step's own solution.
+// is the exact step. Where free motion is that under the last step's forces (BodySolver::free_motion), the first bracket takes off what W
+// knows of them, and the true motion tells the rest. The problem that the hands get has the same bracket: the servo begins at the step's own solution.
 #pragma once
 #include <vector>
 
@@ -14,8 +15,8 @@ namespace insula {
 
 class DefectCorrection {
  public:
-  /// Bodies with rows, when the problem's W is complete.
-  void begin(const ConstraintProblem& problem, const std::vector<Body*>& bodies);
+  /// When the problem's W is complete: sets delta_free to the first bracket.
+  void begin(ConstraintProblem& problem, const std::vector<Body*>& bodies);
   /// Whether there is a body that knows its compliance only nearly.
   bool needed() const { return !bodies_.empty(); }
   /// Sets problem.delta_free to the bracket for lambda; returns the largest change of a row since the last pass, m.

@@ -65,10 +65,7 @@ void Simulation::step() {
   });
   clock.done(stage_free_motion);
 
-  workers_.run(int(surfaces_.size()), [this](int i) {
-    surfaces_[std::size_t(i)]->update();
-    surfaces_[std::size_t(i)]->look_ahead();
-  });
+  workers_.run(int(surfaces_.size()), [this](int i) { surfaces_[std::size_t(i)]->look_ahead(); });
   for (Constraint* c : constraints_) c->detect(context_);
   clock.done(stage_collision);
 
@@ -94,8 +91,8 @@ void Simulation::step() {
   workspace_.reserve(problem_.rows, solve_settings_.max_newton > 0);
   workspace_.lambda.assign(problem_.lambda.begin(), problem_.lambda.end());
   solve_settings_.newton_soon = newton_soon_ > 0;
-  report_.solve = solve(problem_, problem_.delta_free, solve_settings_, workspace_);
   defect_.begin(problem_, bodies_);
+  report_.solve = solve(problem_, problem_.delta_free, solve_settings_, workspace_);
   for (int pass = 0; defect_.needed() && pass < most_passes; ++pass) {
     report_.defect_m = defect_.pass(problem_, workspace_.lambda.data(), workers_);
     if (report_.defect_m <= solve_settings_.tolerance_m) break;

@@ -140,7 +140,7 @@ void StrandSprings::detect(const StepContext&) {
     if (!s.blade) continue;
     // The strand resists along the blade's motion across it.
     const Vec3 axis = (pb - pa).normalized();
-    Vec3 motion = s.blade->free_displacement(s.blade_point) - (1 - s.along) * s.a.body->free_displacement(s.a) - s.along * s.b.body->free_displacement(s.b);
+    Vec3 motion = s.blade->unforced_displacement(s.blade_point) - (1 - s.along) * s.a.body->unforced_displacement(s.a) - s.along * s.b.body->unforced_displacement(s.b);
     motion -= motion.dot(axis) * axis;
     if (motion.norm() > 1e-9) s.push = motion.normalized();
     else if (s.push.norm() < 0.5) s.blade = nullptr;  // never moved: nothing to resist
