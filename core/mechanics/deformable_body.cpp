@@ -3,6 +3,7 @@
 #include "core/mechanics/deformable_body.h"
 
 #include <algorithm>
+#include <chrono>
 
 #include "core/base/nearest_rotation.h"
 #include "core/linalg/asynchronous_solver.h"
@@ -175,7 +176,10 @@ void DeformableBody::make_tangent(double h) {
       d[8] += add;
     }
     // An indefinite matrix (force models promise not to make one) is met with ten times the inertia, as often as needed.
-    if (solver_->factorise(a_) || attempt == 12) break;
+    const auto begin = std::chrono::steady_clock::now();
+    const bool good = solver_->factorise(a_);
+    factor_ms_ += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+    if (good || attempt == 12) break;
     ++indefinite_;
     extra *= 10;
   }
@@ -187,6 +191,7 @@ void DeformableBody::make_tangent(double h) {
 void DeformableBody::free_motion(const StepContext& context) {
   const double h = step_ = context.h;
   force_ = external + filling;
+  factor_ms_ = 0;
   if (tangent_is_good(h))
     for (ForceModel* f : forces_) f->linearise(q_.data(), force_.data(), nullptr, h, Tangent::system);
   else

@@ -40,6 +40,7 @@ class DeformableBody : public Body {
   int indefinite_steps() const { return indefinite_; }
   /// Steps that made and factorised the system matrix anew.
   int factorisations() const { return factorisations_; }
+  double factor_ms() const { return factor_ms_; }  ///< of the last step; 0: the factor was kept, or is made in the background
   /// External force for the next steps, 3 values a node, N (tests, loads).
   VecX external;
   /// Force of what fills the body, renewed by a constraint between the steps, 3 values a node, N.
@@ -90,6 +91,7 @@ class DeformableBody : public Body {
   VecX load_;                                   ///< what that is the answer to
   enum class Unforced { unknown, known, asked };
   mutable Unforced unforced_is_ = Unforced::unknown;
+  double factor_ms_ = 0;
   VecX guess_, response_;               ///< of solvers that are not exact: the last step's displacement, what lambda does
   std::vector<Quat> turn_;              ///< rotation of each free node's neighbourhood from rest
   std::vector<Mat3> turned_, around_;
