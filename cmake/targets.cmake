@@ -5,7 +5,7 @@ include_directories(${PROJECT_SOURCE_DIR})
 
 function(insula_glob out)
   file(GLOB_RECURSE found CONFIGURE_DEPENDS ${ARGN})
-  list(FILTER found EXCLUDE REGEX "_test\\.cpp$|_fuzz\\.cpp$|/kernels_impl\\.cpp$")
+  list(FILTER found EXCLUDE REGEX "_test\\.cpp$|_fuzz\\.cpp$|kernels_impl\\.cpp$")
   set(${out} ${found} PARENT_SCOPE)
 endfunction()
 

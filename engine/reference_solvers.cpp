@@ -69,7 +69,7 @@ class ReferenceSolver : public BodySolver {
     solve_columns(h_);
     solved_ = x_;
   }
-  void add_compliance(const BodyRows& rows, double* w, int stride) const override {
+  void add_compliance(const BodyRows& rows, double* w, int stride) override {
     for (int i = 0; i < columns_; ++i)
       for (int j = 0; j < columns_; ++j) w[std::size_t(rows.row[std::size_t(i)]) * std::size_t(stride) + std::size_t(rows.row[std::size_t(j)])] += w_(i, j);
   }

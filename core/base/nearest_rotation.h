@@ -10,6 +10,7 @@ namespace insula {
 
 /// Turns q, a guess, to it and returns it as a matrix. Never fails; what little is left after a few turns comes in the next step.
 inline Mat3 nearest_rotation(const Mat3& a, Quat& q) {
+  constexpr double enough = 1e-5;  // rad
   Mat3 r = q.toRotationMatrix();
   for (int k = 0; k < 8; ++k) {
     Vec3 moment = Vec3::Zero();
@@ -21,9 +22,10 @@ inline Mat3 nearest_rotation(const Mat3& a, Quat& q) {
     const double size = std::abs(along);
     if (!(size > 0)) break;
     const Vec3 turn = moment / size;
-    q = (from_rotation_vector(turn) * q).normalized();
+    // Half the turn's tangent for its sine: the next turn makes up for what that lacks of a large one, and of a small one it is nothing.
+    q = (Quat(1, 0.5 * turn.x(), 0.5 * turn.y(), 0.5 * turn.z()) * q).normalized();
     r = q.toRotationMatrix();
-    if (turn.squaredNorm() < 1e-12) break;
+    if (turn.squaredNorm() < enough * enough) break;
   }
   return r;
 }

@@ -1,10 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The step's side, then the thread's.
 #include "core/linalg/asynchronous_solver.h"
-
-#include <sys/resource.h>
-#include <sys/syscall.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -36,15 +31,12 @@ double product(const std::vector<double>& a, const std::vector<double>& b) {
 AsynchronousSolver::AsynchronousSolver(double tolerance) : tolerance_(tolerance) {}
 
 void AsynchronousSolver::analyse(const BlockMatrix& a) {
-  front_ = std::make_unique<Factor>();
-  front_->analyse(a);
-  back_ = std::make_unique<Factor>(*front_);
+  front_ = std::make_unique<NearFactor>(a);
+  background_.analyse(a);
   const std::size_t n = 3 * std::size_t(a.nodes());
   for (std::vector<double>* v : {&b_, &r_, &z_, &p_, &ap_, &last_x_, &difference_, &held_, &given_, &left_}) v->assign(n, 0.0);
   turned_.assign(std::size_t(a.nodes()), Mat3::Identity());
   since_ = factor_turned_ = asked_turned_ = turned_;
-  matrix_ = a;
-  if (!thread_.joinable()) thread_ = std::thread([this] { work(); });
 }
 
 void AsynchronousSolver::turn(const std::vector<Mat3>& rotation) { turned_ = rotation; }
@@ -75,7 +67,7 @@ bool AsynchronousSolver::factorise(const BlockMatrix& a) {
 
 void AsynchronousSolver::precondition(const double* r, double* z) {
   for (std::size_t i = 0; i < since_.size(); ++i) Eigen::Map<Vec3>(z + 3 * i) = since_[i].transpose() * Eigen::Map<const Vec3>(r + 3 * i);
-  front_->solve(z);
+  front_->half.solve(z);
   for (std::size_t i = 0; i < since_.size(); ++i) Eigen::Map<Vec3>(z + 3 * i) = (since_[i] * Eigen::Map<Vec3>(z + 3 * i)).eval();
 }
 
@@ -143,8 +135,10 @@ void AsynchronousSolver::begin_compliance(const BodyRows& rows, const std::vecto
   add_held_row(node_of_block);
   if (!factor_is_new_) keep_rows();
   factor_is_new_ = false;
-  front_->begin_compliance(turned_rows_, node_of_block);
-  last_lambda_.clear();
+  front_->full.begin_compliance(turned_rows_, node_of_block);
+  corrected_ = false;
+  const std::size_t all = std::size_t(turned_rows_.count());
+  s_.resize(all * all);
 }
 
 // The held forces as a row whose lambda is -1: what they do is taken off with the same compliance that lambda adds it with.
@@ -162,11 +156,11 @@ void AsynchronousSolver::add_held_row(const std::vector<int>& node_of_block) {
   }
 }
 
-void AsynchronousSolver::add_compliance(const BodyRows& rows, double* w, int stride) const {
+void AsynchronousSolver::add_compliance(const BodyRows& rows, double* w, int stride) {
   const std::size_t m = std::size_t(rows.count()), all = std::size_t(turned_rows_.count());
   if (m == 0) return;
-  s_.assign(all * all, 0.0);
-  front_->add_compliance(turned_rows_, s_.data(), int(all));
+  std::fill(s_.begin(), s_.end(), 0.0);
+  front_->full.add_compliance(turned_rows_, s_.data(), int(all));
   for (std::size_t i = 0; i < m; ++i)
     for (std::size_t j = 0; j < m; ++j) w[std::size_t(rows.row[i]) * std::size_t(stride) + std::size_t(rows.row[j])] += s_[i * all + j];
 }
@@ -200,22 +194,22 @@ void AsynchronousSolver::keep_rows() {
 // From what the last lambda gave, if there was one, by the compliance of what changed; then with the step's own matrix.
 void AsynchronousSolver::correct(const BodyRows& rows, const double* lambda, double* x) {
   const std::size_t m = std::size_t(rows.count()), n = b_.size();
-  const bool again = last_lambda_.size() == m + 1;
-  change_.assign(m + 1, 0.0);
-  if (!again) {
-    last_lambda_.assign(m + 1, 0.0);
+  bool moved = !corrected_;
+  change_.assign(std::size_t(turned_rows_.count()), 0.0);
+  if (!corrected_) {
+    last_lambda_.assign(m, 0.0);
     std::fill(last_x_.begin(), last_x_.end(), 0.0);
-    change_[m] = -1;
+    if (change_.size() > m) change_[m] = -1;  // the held forces
     lacks_ = 1;
+    corrected_ = true;
   }
-  bool moved = !again;
   for (std::size_t i = 0; i < m; ++i) {
     change_[i] = lambda[rows.row[i]] - last_lambda_[i];
     last_lambda_[i] = lambda[rows.row[i]];
     moved = moved || change_[i] != 0;
   }
   if (moved) {
-    front_->correct(turned_rows_, change_.data(), difference_.data());
+    front_->half.correct(turned_rows_, change_.data(), difference_.data());
     for (std::size_t i = 0; i < since_.size(); ++i) Eigen::Map<Vec3>(difference_.data() + 3 * i) = (since_[i] * Eigen::Map<Vec3>(difference_.data() + 3 * i)).eval();
     for (std::size_t i = 0; i < n; ++i) last_x_[i] += difference_[i];
     // A change is as good as the factor knows it, and its rows, which may be off by `hardly`.
@@ -235,9 +229,7 @@ void AsynchronousSolver::correct(const BodyRows& rows, const double* lambda, dou
 }
 
 void AsynchronousSolver::forget() {
-  std::unique_lock lock(mutex_);
-  done_.wait(lock, [this] { return state_ != State::asked; });
-  state_ = State::idle;
+  background_.drop();
   usable_ = false;
   quality_ = 1;
   seen_ = 0;
@@ -246,59 +238,22 @@ void AsynchronousSolver::forget() {
 }
 
 void AsynchronousSolver::ask() {
-  std::unique_lock lock(mutex_, std::try_to_lock);
-  if (!lock || state_ != State::idle) return;
-  matrix_ = *a_;  // same pattern: nothing is allocated
+  if (!background_.idle()) return;
+  background_.ask(*a_);
   asked_turned_ = turned_;
   asked_steps_ = 0;
-  state_ = State::asked;
-  lock.unlock();
-  wake_.notify_one();
 }
 
 void AsynchronousSolver::take() {
-  std::unique_lock lock(mutex_);
-  if (state_ == State::idle) return;
   ++asked_steps_;
-  if (may_wait_) {
-    if (asked_steps_ < delay()) return;
-    done_.wait(lock, [this] { return state_ != State::asked; });
-  }
-  if (state_ == State::asked) return;
-  if (state_ == State::ready) {
-    std::swap(front_, back_);
-    factor_is_new_ = true;
-    std::swap(factor_turned_, asked_turned_);
-    status_.age = asked_steps_;
-    quality_ = 1;
-    seen_ = 0;
-    ++status_.factors;
-  }
-  state_ = State::idle;
-}
-
-void AsynchronousSolver::work() {
-  // Beside the step and the servo, not before them.
-  setpriority(PRIO_PROCESS, id_t(syscall(SYS_gettid)), 10);
-  std::unique_lock lock(mutex_);
-  for (;;) {
-    wake_.wait(lock, [this] { return state_ == State::asked || stop_; });
-    if (stop_) return;
-    lock.unlock();
-    const bool good = back_->factorise(matrix_);
-    lock.lock();
-    state_ = good ? State::ready : State::failed;
-    done_.notify_all();
-  }
-}
-
-AsynchronousSolver::~AsynchronousSolver() {
-  {
-    std::lock_guard lock(mutex_);
-    stop_ = true;
-  }
-  wake_.notify_one();
-  if (thread_.joinable()) thread_.join();
+  if (may_wait_ && asked_steps_ < delay()) return;
+  if (background_.take(front_, may_wait_) != BackgroundFactor::Answer::good) return;
+  factor_is_new_ = true;
+  std::swap(factor_turned_, asked_turned_);
+  status_.age = asked_steps_;
+  quality_ = 1;
+  seen_ = 0;
+  ++status_.factors;
 }
 
 }  // namespace insula

@@ -10,18 +10,14 @@
 // is told by correct(), which solves with A, and is put right by defect correction (core/sim/defect_correction.h). Every solve ends
 // when P^-1 of what is left moves no node by more than `tolerance`, and then is moved by just that.
 #pragma once
-#include <condition_variable>
-#include <mutex>
-#include <thread>
-
-#include "core/linalg/block_cholesky.h"
+#include "core/linalg/background_factor.h"
+#include "core/linalg/body_solver.h"
 
 namespace insula {
 
 class AsynchronousSolver final : public BodySolver {
  public:
   explicit AsynchronousSolver(double tolerance);  ///< m
-  ~AsynchronousSolver() override;
 
   std::string name() const override { return "asynchronous"; }
   void analyse(const BlockMatrix& a) override;
@@ -34,45 +30,46 @@ class AsynchronousSolver final : public BodySolver {
   void free_motion(double* x, const double* guess) override;
   void unforced_motion(const double* load, double* x) override { refine(load, x, early * tolerance_); }
   void begin_compliance(const BodyRows& rows, const std::vector<int>& node_of_block) override;
-  int compliance_parts(ComplianceAct act) const override { return front_->compliance_parts(act); }
-  void compliance_part(ComplianceAct act, int part) override { front_->compliance_part(act, part); }
-  void add_compliance(const BodyRows& rows, double* w, int stride) const override;
+  int compliance_parts(ComplianceAct act) const override { return front_->full.compliance_parts(act); }
+  void compliance_part(ComplianceAct act, int part) override { front_->full.compliance_part(act, part); }
+  void add_compliance(const BodyRows& rows, double* w, int stride) override;
   void take_off_held(const BodyRows& rows, double* delta) const override;
   void correct(const BodyRows& rows, const double* lambda, double* x) override;
   bool exact() const override { return false; }
   void forget() override;
   void may_wait(bool yes) override { may_wait_ = yes; }
   SolverStatus status() const override { return status_; }
-  int rows_reused() const override { return front_->rows_reused(); }
-  SolverCost cost() const override { return front_->cost(); }
+  int rows_reused() const override { return front_->full.rows_reused(); }
+  SolverCost cost() const override { return front_->full.cost(); }
 
   /// A factor asked for is put in place so many steps later when waiting is allowed: about what a busy core needs for it, but by its flops, not
   /// by a clock, so that the same input gives the same bits.
-  int delay() const { return 1 + int(front_->cost().factor_flops / 5e8); }
+  int delay() const { return 1 + int(front_->full.cost().factor_flops / 5e8); }
   static constexpr double early = 30;  ///< free motion may lack so many tolerances
   static constexpr int enough_iterations = 2;  ///< of a solve: more of them and a new factor is asked for
   static constexpr int most_iterations = 12;
 
  private:
-  using Factor = MultifrontalCholesky<float>;
   void keep_rows();
   void precondition(const double* r, double* z);
   double refine(const double* b, double* x, double tolerance);  ///< what is left, m
   void add_held_row(const std::vector<int>& node_of_block);
   void ask();
   void take();
-  void work();
 
   double tolerance_;
   const BlockMatrix* a_ = nullptr;
-  std::unique_ptr<Factor> front_, back_;
-  std::vector<Mat3> turned_, factor_turned_, asked_turned_;  ///< of each node: now, as the front's factor knows it, the back's
+  std::unique_ptr<NearFactor> front_;
+  BackgroundFactor background_;
+  int asked_steps_ = 0;                                      ///< since it was asked
+  std::vector<Mat3> turned_, factor_turned_, asked_turned_;  ///< of each node: now, as the factor knows it, as the one asked for will
   std::vector<Mat3> since_;                                 ///< now from then
   BodyRows turned_rows_, rows_before_;  ///< as the factor is given them, numbered from 0; after them that of the held forces, if there are any
   std::vector<double> held_, given_, left_;  ///< forces on nodes: rows' of the last step, of this one, and what free_motion() has not balanced
   std::vector<int> block_of_node_;
-  mutable std::vector<double> s_;  ///< compliance of turned_rows_, as last added
+  std::vector<double> s_;       ///< compliance of turned_rows_, as last added
   bool factor_is_new_ = true;
+  bool corrected_ = false;      ///< since begin_compliance(): last_lambda_ and last_x_ are of its rows
   std::vector<double> b_, r_, z_, p_, ap_, last_lambda_, last_x_, difference_, change_;
   const std::vector<int>* nodes_of_block_ = nullptr;
   double lacks_ = 0;    ///< about what a node of last_x_ is off by, m
@@ -80,16 +77,6 @@ class AsynchronousSolver final : public BodySolver {
   double quality_ = 1;  ///< the same, doubled in every step until seen again
   SolverStatus status_;
   bool may_wait_ = true, usable_ = false;
-
-  // The thread and what it shares; `state_` says whose the back factor and the matrix are.
-  enum class State { idle, asked, ready, failed };
-  std::thread thread_;
-  std::mutex mutex_;
-  std::condition_variable wake_, done_;
-  State state_ = State::idle;
-  bool stop_ = false;
-  BlockMatrix matrix_;
-  int asked_steps_ = 0;
 };
 
 }  // namespace insula

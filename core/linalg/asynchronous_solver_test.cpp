@@ -11,6 +11,7 @@ namespace insula {
 namespace {
 
 constexpr double tolerance = 1e-7;
+constexpr int few = 4;  ///< iterations with the factor of the matrix itself, as rounded as it is
 
 // A chain of boxes of nodes: positive definite, and badly enough conditioned that a diagonal would not do as a preconditioner.
 struct System {
@@ -78,7 +79,7 @@ int iterations(AsynchronousSolver& solver, const System& s) {
   const VecX b = any(9);
   VecX x = b;
   solver.solve(x.data());
-  EXPECT_LT(worst_node(x - s.dense.ldlt().solve(b)), 5 * tolerance) << "what is left is judged with the old factor";
+  EXPECT_LT(worst_node(x - s.dense.ldlt().solve(b)), 10 * tolerance) << "what is left is judged with the old factor";
   return solver.status().iterations;
 }
 
@@ -95,11 +96,11 @@ struct Ready {
 TEST(AsynchronousSolver, SolvesToItsToleranceWithAnOldFactor) {
   Ready ready(1);
   auto& [s, solver] = ready;
-  EXPECT_LE(iterations(solver, s), 3) << "single precision alone";
+  EXPECT_LE(iterations(solver, s), few) << "16 bits alone";
   s.fill(turned(0), 0.5);
   ASSERT_TRUE(solver.factorise(s.a));
   const int changed = iterations(solver, s);
-  EXPECT_GT(changed, 3);
+  EXPECT_GT(changed, few);
   EXPECT_EQ(solver.status().age, 1);
 }
 
@@ -112,7 +113,7 @@ TEST(AsynchronousSolver, AMatrixThatTurnsWithItsNodesCostsNothing) {
     if (told) solver.turn(r);
     ASSERT_TRUE(solver.factorise(s.a));
     if (told) {
-      EXPECT_LE(iterations(solver, s), 3);
+      EXPECT_LE(iterations(solver, s), few);
     } else {
       VecX x = any(9);
       solver.solve(x.data());
@@ -135,7 +136,7 @@ TEST(AsynchronousSolver, AFactorComesSoManyStepsAfterItWasAskedFor) {
   ASSERT_TRUE(solver.factorise(s.a));
   EXPECT_EQ(solver.status().factors, 2);
   EXPECT_EQ(solver.status().age, solver.delay());
-  EXPECT_LE(iterations(solver, s), 3);
+  EXPECT_LE(iterations(solver, s), few);
 }
 
 TEST(AsynchronousSolver, WithoutLeaveToWaitAStepGoesOnWithTheOldFactor) {

@@ -23,11 +23,16 @@ class MultifrontalCholesky final : public BodySolver {
   void begin_compliance(const BodyRows& rows, const std::vector<int>& node_of_block) override;
   int compliance_parts(ComplianceAct act) const override;
   void compliance_part(ComplianceAct act, int part) override;
-  void add_compliance(const BodyRows& rows, double* w, int stride) const override;
+  void add_compliance(const BodyRows& rows, double* w, int stride) override;
   void correct(const BodyRows& rows, const double* lambda, double* x) override;
   int rows_reused() const override { return reused_; }
   SolverCost cost() const override;
   int supernodes() const { return int(e_.front.size()); }
+
+  const Elimination& elimination() const { return e_; }
+  const Real* panels() const { return panel_.data(); }
+  /// x := Y lambda = L^-1 P H^T lambda, permuted order, of the rows in the last begin_compliance().
+  void combine(const BodyRows& rows, const double* lambda, Real* x) const;
 
  private:
   static constexpr int least_part = 32;                   ///< columns that are worth a part
@@ -55,7 +60,8 @@ class MultifrontalCholesky final : public BodySolver {
   void forward_columns(int from, int to);
   void product_columns(int from, int to);
   void copy_known_products();
-  std::vector<Real> y_, s_, lambda_;
+  std::vector<Real> y_, s_;
+  mutable std::vector<Real> lambda_, products_;  ///< scratch of combine()
   std::vector<int> order_, begin_;
   std::array<std::vector<Columns>, 2> active_;  ///< fresh, known; of each front
   RowEntries entries_;
@@ -68,7 +74,7 @@ class MultifrontalCholesky final : public BodySolver {
   std::int64_t factor_number_ = 0, rows_factor_ = -1;
   RowEntries before_;
   std::vector<Real> old_y_, old_s_;
-  std::vector<int> old_order_, old_column_, known_;  ///< known_: the row's number among the rows before, -1
+  std::vector<int> old_order_, old_column_, known_, from_;  ///< known_: the row's number among the rows before, -1; from_: scratch
   std::array<std::vector<Columns>, 2> old_active_;
   long old_ldy_ = 0;
   int reused_ = 0;

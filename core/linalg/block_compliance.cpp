@@ -124,11 +124,17 @@ template <class Real>
 void MultifrontalCholesky<Real>::copy_known() {
   for (std::size_t f = 0; f < e_.front.size(); ++f) {
     const Columns& a = active_[1][f];
+    if (a.begin >= a.end) continue;
+    from_.clear();
     for (int c = a.begin; c < a.end; ++c) {
       const int r = order_[std::size_t(c)], old = r < 0 ? -1 : old_column_[std::size_t(known_[std::size_t(r)])];
       const bool there = old >= 0 && ((old >= old_active_[0][f].begin && old < old_active_[0][f].end) || (old >= old_active_[1][f].begin && old < old_active_[1][f].end));
-      const long row = 3L * e_.front[f].first;
-      for (int i = 0; i < 3 * e_.front[f].own; ++i) y_[std::size_t((row + i) * ldy_ + c)] = there ? old_y_[std::size_t((row + i) * old_ldy_ + old)] : Real(0);
+      from_.push_back(there ? old : -1);
+    }
+    for (long row = 3L * e_.front[f].first; row < 3L * (e_.front[f].first + e_.front[f].own); ++row) {
+      Real* to = y_.data() + row * ldy_ + a.begin;
+      const Real* old = old_y_.data() + row * old_ldy_;
+      for (std::size_t c = 0; c < from_.size(); ++c) to[c] = from_[c] >= 0 ? old[from_[c]] : Real(0);
     }
   }
 }
@@ -231,7 +237,7 @@ void MultifrontalCholesky<Real>::copy_known_products() {
 }
 
 template <class Real>
-void MultifrontalCholesky<Real>::add_compliance(const BodyRows& rows, double* w, int stride) const {
+void MultifrontalCholesky<Real>::add_compliance(const BodyRows& rows, double* w, int stride) {
   if (columns_ == 0 || e_.nodes == 0) return;
   const std::size_t ld = std::size_t(ldy_), step = std::size_t(stride);
   for (std::size_t c = 0; c < ld; ++c) {
@@ -249,23 +255,28 @@ void MultifrontalCholesky<Real>::add_compliance(const BodyRows& rows, double* w,
 }
 
 template <class Real>
+void MultifrontalCholesky<Real>::combine(const BodyRows& rows, const double* lambda, Real* x) const {
+  const KernelsOf<Real>& k = kernels_of<Real>();
+  std::fill_n(x, 3 * e_.nodes, Real(0));
+  if (columns_ == 0) return;
+  lambda_.resize(std::size_t(ldy_));
+  for (std::size_t c = 0; c < lambda_.size(); ++c) lambda_[c] = order_[c] >= 0 ? Real(lambda[rows.row[std::size_t(order_[c])]]) : Real(0);
+  products_.resize(x_.size());
+  for (const auto& group : active_)
+    for (std::size_t i = 0; i < e_.front.size(); ++i) {
+      const Columns& a = group[i];
+      if (a.begin >= a.end) continue;
+      const int first = 3 * e_.front[i].first, own = 3 * e_.front[i].own;
+      k.columns_dot(products_.data(), y_.data() + long(first) * ldy_ + a.begin, ldy_, lambda_.data() + a.begin, a.end - a.begin, own);
+      for (int r = 0; r < own; ++r) x[first + r] += products_[std::size_t(r)];
+    }
+}
+
+template <class Real>
 void MultifrontalCholesky<Real>::correct(const BodyRows& rows, const double* lambda, double* x) {
   [[maybe_unused]] const FlushSubnormals<Real> flush;
-  const KernelsOf<Real>& k = kernels_of<Real>();
-  std::fill(x_.begin(), x_.end(), Real(0));
-  if (columns_ > 0 && e_.nodes > 0) {
-    lambda_.resize(std::size_t(ldy_));
-    for (std::size_t c = 0; c < lambda_.size(); ++c) lambda_[c] = order_[c] >= 0 ? Real(lambda[rows.row[std::size_t(order_[c])]]) : Real(0);
-    for (const auto& group : active_)
-      for (std::size_t i = 0; i < e_.front.size(); ++i) {
-        const Columns& a = group[i];
-        if (a.begin >= a.end) continue;
-        const int first = 3 * e_.front[i].first, own = 3 * e_.front[i].own;
-        k.columns_dot(gathered_.data(), y_.data() + long(first) * ldy_ + a.begin, ldy_, lambda_.data() + a.begin, a.end - a.begin, own);
-        for (int r = 0; r < own; ++r) x_[std::size_t(first + r)] += gathered_[std::size_t(r)];
-      }
-    backward(x_.data());
-  }
+  combine(rows, lambda, x_.data());
+  if (columns_ > 0) backward(x_.data());
   store(x);
 }
 
@@ -295,7 +306,8 @@ SolverCost MultifrontalCholesky<Real>::cost() const {
   template void MultifrontalCholesky<Real>::forward_columns(int, int);                                  \
   template void MultifrontalCholesky<Real>::product_columns(int, int);                                  \
   template void MultifrontalCholesky<Real>::copy_known_products();                                      \
-  template void MultifrontalCholesky<Real>::add_compliance(const BodyRows&, double*, int) const;        \
+  template void MultifrontalCholesky<Real>::add_compliance(const BodyRows&, double*, int);              \
+  template void MultifrontalCholesky<Real>::combine(const BodyRows&, const double*, Real*) const;       \
   template void MultifrontalCholesky<Real>::correct(const BodyRows&, const double*, double*);           \
   template SolverCost MultifrontalCholesky<Real>::cost() const
 INSULA_COMPLIANCE_OF(double);

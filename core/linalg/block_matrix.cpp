@@ -2,6 +2,8 @@
 // Pattern and product of the block matrix.
 #include "core/linalg/block_matrix.h"
 
+#include "core/linalg/kernels.h"
+
 namespace insula {
 
 void BlockMatrix::set_pattern(int nodes, std::vector<std::pair<int, int>> couplings) {
@@ -28,16 +30,7 @@ int BlockMatrix::slot(int i, int j) const {
 }
 
 void BlockMatrix::add_product(const double* x, double* y) const {
-  for (int j = 0; j < nodes_; ++j) {
-    Eigen::Map<const Vec3> xj(x + 3 * j);
-    Eigen::Map<Vec3> yj(y + 3 * j);
-    for (int s = column_start(j); s < column_start(j + 1); ++s) {
-      Eigen::Map<const Mat3> b(block(s));
-      const int i = row(s);
-      Eigen::Map<Vec3>(y + 3 * i) += b * xj;
-      if (i != j) yj += b.transpose() * Eigen::Map<const Vec3>(x + 3 * i);
-    }
-  }
+  block_product()(nodes_, start_.data(), row_.data(), value_.data(), x, y);
 }
 
 }  // namespace insula

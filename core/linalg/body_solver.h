@@ -62,7 +62,7 @@ class BodySolver {
       for (int p = 0; p < compliance_parts(act); ++p) compliance_part(act, p);
   }
   /// Adds it into w (row-major, `stride` numbers a row) at the rows' numbers, both triangles.
-  virtual void add_compliance(const BodyRows& rows, double* w, int stride) const = 0;
+  virtual void add_compliance(const BodyRows& rows, double* w, int stride) = 0;
   /// x := A^-1 load about as well, from x, without held forces. After free_motion().
   virtual void unforced_motion(const double* /*load*/, double* /*x*/) {}
   /// Takes off delta (by row number) what held forces make of it in the free motion, as far as the compliance knows.

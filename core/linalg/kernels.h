@@ -34,10 +34,13 @@ struct KernelsOf {
   Real (*multiply_add)(long n);
 };
 using Kernels = KernelsOf<double>;
+/// y += A x, A symmetric in 3x3 blocks column by column, the lower triangle of each, its diagonal first (BlockMatrix).
+using BlockProduct = void (*)(int nodes, const int* start, const int* row, const double* block, const double* x, double* y);
 /// What is compiled for one instruction set.
 struct KernelSet {
   KernelsOf<double> f64;
   KernelsOf<float> f32;
+  BlockProduct block_product;
 };
 
 /// Those of the chosen instruction set (core/linalg/instruction_set.h).
@@ -47,6 +50,7 @@ template <>
 const KernelsOf<double>& kernels_of<double>();
 template <>
 const KernelsOf<float>& kernels_of<float>();
+BlockProduct block_product();
 inline const Kernels& kernels() { return kernels_of<double>(); }
 
 }  // namespace insula

@@ -276,6 +276,29 @@ T multiply_add(long n) {
   return sum;
 }
 
+// One number at a time: three are no vector, and what bounds this is memory.
+void block_product(int nodes, const int* start, const int* row, const double* block, const double* x, double* y) {
+  for (int j = 0; j < nodes; ++j) {
+    const double x0 = x[3L * j], x1 = x[3L * j + 1], x2 = x[3L * j + 2];
+    const double* d = block + 9L * start[j];  // the diagonal's
+    double y0 = d[0] * x0 + d[3] * x1 + d[6] * x2, y1 = d[1] * x0 + d[4] * x1 + d[7] * x2, y2 = d[2] * x0 + d[5] * x1 + d[8] * x2;
+    for (int s = start[j] + 1; s < start[j + 1]; ++s) {
+      const double* b = block + 9L * s;
+      const double* xi = x + 3L * row[s];
+      double* yi = y + 3L * row[s];
+      yi[0] += b[0] * x0 + b[3] * x1 + b[6] * x2;
+      yi[1] += b[1] * x0 + b[4] * x1 + b[7] * x2;
+      yi[2] += b[2] * x0 + b[5] * x1 + b[8] * x2;
+      y0 += b[0] * xi[0] + b[1] * xi[1] + b[2] * xi[2];
+      y1 += b[3] * xi[0] + b[4] * xi[1] + b[5] * xi[2];
+      y2 += b[6] * xi[0] + b[7] * xi[1] + b[8] * xi[2];
+    }
+    y[3L * j] += y0;
+    y[3L * j + 1] += y1;
+    y[3L * j + 2] += y2;
+  }
+}
+
 }  // namespace
 
 #define KERNEL_STRING2(x) #x
@@ -283,6 +306,6 @@ T multiply_add(long n) {
 template <class T>
 constexpr KernelsOf<T> table_of = {KERNEL_STRING(KERNEL_NAME), W<T>, gemm_sub<T>, gemm_add<T>, syrk_add<T>, syrk_sub<T>, rows_sub<T>, cholesky_panel<T>, lower_solve_rows<T>, columns_sub<T>, columns_dot<T>, multiply_add<T>};
 extern const KernelSet table;
-const KernelSet table = {table_of<double>, table_of<float>};
+const KernelSet table = {table_of<double>, table_of<float>, block_product};
 
 }  // namespace insula::KERNEL_NAME

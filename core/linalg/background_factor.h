@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A thread that factorises one matrix at a time, and whoever asked does not wait for it.
+#pragma once
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include "core/linalg/half_factor.h"
+
+namespace insula {
+
+/// A factor for compliance, and its numbers in 16 bits for what need only be near.
+struct NearFactor {
+  explicit NearFactor(const BlockMatrix& a);
+  /// False when `a` is not positive definite in single precision.
+  bool factorise(const BlockMatrix& a);
+
+  MultifrontalCholesky<float> full;
+  HalfFactor half;
+};
+
+class BackgroundFactor {
+ public:
+  ~BackgroundFactor();
+  /// Symbolic work for matrices of this pattern, and the thread.
+  void analyse(const BlockMatrix& a);
+
+  enum class Answer { nothing_asked, not_yet, good, bad };
+  bool idle();
+  /// Copies `a` and has it factorised, when idle.
+  void ask(const BlockMatrix& a);
+  /// A good answer leaves the new factor in `factor` and takes the old one for the next; good and bad make this idle again.
+  Answer take(std::unique_ptr<NearFactor>& factor, bool wait);
+  /// Waits for what was asked, and drops it.
+  void drop();
+
+ private:
+  void work();
+
+  enum class State { idle, asked, ready, failed };  ///< while asked, factor and matrix are the thread's
+  std::unique_ptr<NearFactor> factor_;
+  BlockMatrix matrix_;
+  std::thread thread_;
+  std::mutex mutex_;
+  std::condition_variable wake_, done_;
+  State state_ = State::idle;
+  bool stop_ = false;
+};
+
+}  // namespace insula
