@@ -114,7 +114,10 @@ class AabbTree {
   /// visit(loose box, triangles) for every leaf whose loose box overlaps `box`.
   template <class Visit>
   void leaves(const Aabb& box, Visit&& visit) const {
-    each_leaf(box, [&](const Node& n) { visit(n.box, triangles_of(n)); });
+    each_leaf(box, [&](const Node& n) {
+      visit(n.box, triangles_of(n));
+      return false;
+    });
   }
   /// visit(triangle) for every triangle of every leaf whose vertices' box overlaps `box`.
   template <class Visit>
@@ -122,20 +125,13 @@ class AabbTree {
     each_leaf(box, [&](const Node& n) {
       if (tight(n).overlaps(box))
         for (int t : triangles_of(n)) visit(t);
+      return false;
     });
   }
 
   /// Whether any leaf's loose box overlaps `box`.
   bool any_overlapping(const Aabb& box) const {
-    const OuterBox outer = OuterBox::around(box);
-    const int end = int(nodes_.size());
-    for (int i = 0; i < end;) {
-      const Node& n = nodes_[std::size_t(i)];
-      if (!n.box.overlaps(outer)) i = n.skip;
-      else if (n.count > 0) return true;
-      else ++i;
-    }
-    return false;
+    return each_leaf(box, [](const Node&) { return true; });
   }
 
   /// Branch and bound: visit(triangle, bound2) for triangles of leaves closer to p than sqrt(bound2); the visitor lowers
@@ -190,8 +186,9 @@ class AabbTree {
   std::span<const int> triangles_of(const Node& leaf) const { return {order_.data() + leaf.first, std::size_t(leaf.count)}; }
   std::span<const int> vertices_of(const Node& leaf) const { return {leaf_vertices_.data() + leaf.vertices, std::size_t(leaf.vertex_count)}; }
   Aabb tight(const Node& leaf) const;
+  /// visit(leaf) for those whose loose box overlaps `box`, until it says true; whether it did.
   template <class Visit>
-  void each_leaf(const Aabb& box, Visit&& visit) const {
+  bool each_leaf(const Aabb& box, Visit&& visit) const {
     const OuterBox outer = OuterBox::around(box);
     const int end = int(nodes_.size());
     for (int i = 0; i < end;) {
@@ -200,9 +197,10 @@ class AabbTree {
         i = n.skip;
         continue;
       }
-      if (n.count > 0) visit(n);
+      if (n.count > 0 && visit(n)) return true;
       ++i;
     }
+    return false;
   }
 
   std::vector<Node> nodes_;

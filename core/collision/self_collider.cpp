@@ -3,11 +3,9 @@
 #include "core/collision/self_collider.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "core/collision/tissue_collider.h"
-#include "core/collision/vertex_groups.h"
 
 namespace insula {
 namespace {
@@ -55,25 +53,17 @@ SelfCollider::SelfCollider(std::span<const Vec3> rest, std::span<const std::arra
     // A few lumens: across an ellipse, a neck or a bifurcation, but not through one vessel into the next.
     reach_.push_back(2.5 * lumen(mesh, v));
   }
-  group_of_ = group_by_place(rest, groups);
-  std::vector<std::uint64_t> of_triangle;
-  for (const auto& t : triangles) {
-    std::uint64_t bits = 0;
-    for (int v : t) bits |= std::uint64_t(1) << group_of_[std::size_t(v)];
-    of_triangle.push_back(bits);
-  }
+  for (int v : samples_) own_.push_back(mesh.region_of(v));
   for (auto& p : partners_) p.assign(samples_.size(), 0);
   for (std::size_t i = 0; i < samples_.size(); ++i)
     for (std::size_t t = 0; t < triangles.size(); ++t)
-      if (const int side = kind(i, int(t)); side >= 0) partners_[side][i] |= of_triangle[t];
+      if (const int side = kind(i, int(t)); side >= 0) partners_[side][i] |= mesh.regions_of(int(t));
   found_.resize((samples_.size() + piece - 1) / piece);
   for (auto& f : found_) f.reserve(2 * piece);
   for (auto& side : lists_) {
     side.resize(samples_.size());
     for (auto& list : side) list.reserve(longest_list + 1);
   }
-  last_.resize(rest.size());
-  went_.resize(rest.size());
   outward_.resize(samples_.size());
   outward_known_.resize(samples_.size());
   reset();
@@ -84,7 +74,6 @@ void SelfCollider::reset() {
   for (auto& d : direction_) d.assign(samples_.size(), Vec3::Zero());
   for (auto& c : clear_) c.assign(samples_.size(), 0.0);
   for (auto& c : covered_) c.assign(samples_.size(), -1.0);
-  std::fill(last_.begin(), last_.end(), Vec3(Vec3::Constant(1e3)));
 }
 
 // From a vertex straight inward to the opposite wall; 0 if there is none.
@@ -119,17 +108,11 @@ int SelfCollider::kind(std::size_t sample, int triangle) const {
 
 // Whether what has moved since the sample was last looked at may have brought a partner within range of it.
 bool SelfCollider::may_be_near(const CollisionMesh& mesh, std::size_t sample, int side, double range) {
-  double moved = 0, free = 0;
-  for (std::uint64_t left = partners_[side][sample]; left != 0; left &= left - 1) {
-    const std::size_t g = std::size_t(std::countr_zero(left));
-    moved = std::max(moved, moved_[g]);
-    free = std::max(free, free_[g]);
-  }
-  const int v = samples_[sample];
-  const double went = went_[std::size_t(v)] + moved;
+  const std::uint64_t partners = partners_[side][sample];
+  const double went = mesh.moved(own_[sample]) + mesh.moved(partners);
   clear_[side][sample] -= went;
   covered_[side][sample] -= went;
-  return clear_[side][sample] <= range + std::min(mesh.free(v).norm() + free, horizon);
+  return clear_[side][sample] <= range + std::min(mesh.free(samples_[sample]).norm() + mesh.may_move(partners), horizon);
 }
 
 // All possible partners within `far`, and what may come there before the list is made anew.
@@ -276,16 +259,11 @@ Opposite SelfCollider::opposite(const CollisionMesh& mesh, int triangle, const V
 void SelfCollider::detect(const CollisionMesh& mesh, const SelfContactSettings& settings, std::vector<Proximity>& out, Workers& workers) {
   if (mesh.tree().empty()) return;
   std::fill(outward_known_.begin(), outward_known_.end(), char(0));
-  moved_.fill(0);
-  free_.fill(0);
-  for (int v = 0; v < mesh.vertex_count(); ++v) {
-    const Vec3 x = mesh.vertex(v);
-    const std::size_t i = std::size_t(v), g = std::size_t(group_of_[i]);
-    went_[i] = (x - last_[i]).norm();
-    last_[i] = x;
-    moved_[g] = std::max(moved_[g], went_[i]);
-    free_[g] = std::max(free_[g], mesh.free(v).norm());
+  if (mesh.updates() - updates_ > 1) {  // motion in between that was not seen may have brought anything
+    for (auto& c : clear_) std::fill(c.begin(), c.end(), 0.0);
+    for (auto& c : covered_) std::fill(c.begin(), c.end(), -1.0);
   }
+  updates_ = mesh.updates();
   workers.run(int(found_.size()), [&](int task) {
     auto& found = found_[std::size_t(task)];
     found.clear();

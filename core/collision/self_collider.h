@@ -7,8 +7,8 @@
 // outside at both ends. So a vertex found on the wrong side of its partner is known to have crossed (negative gap) and is
 // brought back, and no history is needed for the inner side. Pairs that are near at rest are neighbours and never touch.
 //
-// A sample with nothing near is not looked at again before motion can have brought something near: vertices are in groups, and
-// what the groups of its possible partners have moved tells. One with something near keeps a list of its possible partners until
+// A sample with nothing near is not looked at again before motion can have brought something near: what its region of the mesh and
+// those of its possible partners have moved tells. One with something near keeps a list of its possible partners until
 // motion may have added to them.
 //
 // Geometry is that of the start of the step. Where a tool presses on the wall, opposite() finds what lies behind that very
@@ -56,7 +56,6 @@ class SelfCollider {
   void reset();
 
  private:
-  static constexpr int groups = 64;        ///< of vertices: the bits of a mask
   static constexpr std::size_t piece = 64; ///< samples that one task looks at
 
   struct Partner {
@@ -76,8 +75,7 @@ class SelfCollider {
   std::vector<Vec3> face_place_, face_normal_;   ///< of the triangles at rest
   std::vector<std::array<Vec3, 3>> corners_;     ///< of the triangles at rest
   std::vector<double> extent2_;                  ///< of the triangles at rest: farthest corner from the middle, m2
-  std::vector<int> group_of_;                    ///< of the vertices
-  std::vector<std::uint64_t> partners_[2];       ///< of the samples: groups of vertices that have possible partners of a side
+  std::vector<std::uint64_t> own_, partners_[2]; ///< of the samples: the mesh's regions of itself, of its possible partners of a side
   std::vector<Vec3> outward_;                    ///< of the samples now; computed when first wanted
   std::vector<char> outward_known_;
   std::vector<char> close_[2];                   ///< 1: had a contact of this side in the last step, 2: had crossed; looked for farther
@@ -85,9 +83,7 @@ class SelfCollider {
   std::vector<double> clear_[2];                 ///< of the samples: no partner of this side is nearer than this, m
   std::vector<std::vector<Partner>> lists_[2];   ///< of the samples: what may be a partner soon, nearest first ...
   std::vector<double> covered_[2];               ///< ... as long as no more than this has moved; negative: to be made, m
-  std::vector<Vec3> last_;                       ///< vertices in the last step
-  std::vector<double> went_;                     ///< of the vertices since the last step, m
-  std::array<double, groups> moved_{}, free_{};  ///< of the groups: farthest that a vertex went since then, and may go in this step, m
+  long updates_ = 0;                             ///< of the mesh when last looked at
   std::vector<std::vector<Proximity>> found_;    ///< of the tasks
   double neighbour_ = 0;                         ///< m
 };

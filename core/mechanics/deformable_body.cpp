@@ -199,10 +199,11 @@ void DeformableBody::free_motion(const StepContext& context) {
   for (int i = 0; i < nodes(); ++i)
     if (const int b = free_[std::size_t(i)]; b >= 0)
       packed_.segment<3>(3 * b) = force_.segment<3>(3 * i) + mass_[std::size_t(i)] * (context.gravity + v_.segment<3>(3 * i) / h);
-  if (!solver_->exact())
+  if (!solver_->exact()) {
+    load_ = packed_;
     for (int i = 0; i < nodes(); ++i)
       if (const int b = free_[std::size_t(i)]; b >= 0) guess_.segment<3>(3 * b) = h * v_.segment<3>(3 * i);
-  if (!solver_->exact()) load_ = packed_;
+  }
   solver_->free_motion(packed_.data(), guess_.data());
   // Who asked in the last step will ask again: now bodies work side by side.
   const bool asked = unforced_is_ == Unforced::asked;
