@@ -156,7 +156,7 @@ insula_test(engine_tests SOURCES ${engine_tests} LIBS ${test_libs})
 file(GLOB_RECURSE gateway_tests CONFIGURE_DEPENDS viewer/*_test.cpp)
 list(FILTER gateway_tests EXCLUDE REGEX "node_modules")
 insula_test(gateway_tests SOURCES ${gateway_tests} LIBS insula_gateway)
-foreach(dir physics determinism process scenes_bad)
+foreach(dir physics determinism haptics process scenes_bad)
   file(GLOB src CONFIGURE_DEPENDS tests/${dir}/*_test.cpp)
   set(serial)
   if(dir STREQUAL process)  # real time: alone on the machine
