@@ -60,6 +60,7 @@ void Publisher::events(const std::vector<Event>& events) {
     m.id = e.id;
     m.text = e.text;
     m.value = e.value;
+    m.hand = std::int8_t(e.hand);
     if (!publish(bus_, channel::sim_event, m, scratch_)) ++failed_;
   }
 }

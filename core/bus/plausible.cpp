@@ -150,6 +150,7 @@ bool plausible(const insula_lcm::sim_event_t& m, std::string& why) {
   if (m.kind.empty() || !word_ok(m.kind, 64)) return fail(why, "kind is no short word");
   if (!text_ok(m.id, short_text) || !text_ok(m.text, path_text)) return fail(why, "text too long");
   if (!within(&m.value, 1, 1e12)) return fail(why, "value out of range");
+  if (m.hand < -1 || m.hand > 1) return fail(why, "there is no such hand");
   return true;
 }
 

@@ -12,6 +12,7 @@ struct Event {
   std::string text;   ///< for the trainee
   double value = 0;   ///< SI, as the kind says
   double time = 0;    ///< simulated time, s
+  int hand = -1;      ///< whose tool did it: 0 left, 1 right; -1: none's, or not known
 };
 
 class EventSink {

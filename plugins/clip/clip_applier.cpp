@@ -14,7 +14,7 @@ again with the grip of a clip in the field within `reach` and `alignment` it tak
 brought into the applier's jaws within `settle_time`, without a jump. A clip may be held by either side (half a turn about its shaft).
 
 Commands: `load <clip>` (from the tray; the clip in the applier goes back there), `release`, `take`.
-Events: clip_loaded, clip_released, clip_taken, with the clip's id.
+Events: clip_loaded, clip_shut (the jaws no longer hold it open), clip_released, clip_taken, with the clip's id.
 */
 #include "plugins/clip/clip_applier.h"
 
@@ -104,7 +104,10 @@ void ClipApplier::free_motion(const StepContext& context) {
   if (!clip_) return;
   const double widest = clip_->tool().opening_max, change = widest / open_time() * context.h;
   if (state().button1) held_opening_ = std::min(widest, std::max(held_opening_, clip_->opening()) + change);
-  else held_opening_ = std::max(0.0, held_opening_ - change);
+  else {
+    if (held_opening_ > 0 && held_opening_ <= change) say("clip_shut", clip_->id, "");
+    held_opening_ = std::max(0.0, held_opening_ - change);
+  }
   const double s = std::min(1.0, (held_for_ + context.h) / settle_time());
   target_ = displaced(taken_, s * s * (3 - 2 * s) * displacement(taken_, nominal_));
 }
@@ -161,7 +164,7 @@ void ClipApplier::finish(const StepContext& context, const ConstraintSolution& s
 }
 
 void ClipApplier::say(std::string event, const std::string& what, std::string text) {
-  said_.push_back({std::move(event), what, std::move(text), 0, 0});
+  said_.push_back({std::move(event), what, std::move(text), 0, 0, hand_index()});
 }
 
 std::string ClipApplier::release() {

@@ -187,7 +187,7 @@ void StrandSprings::part(const StepContext& context, Strand& s, const char* what
   s.parted = true;
   s.wear = 1;
   s.tension = 0;
-  if (context.events) context.events->emit({what, id, "", value, context.time + context.h});
+  if (context.events) context.events->emit({what, id, "", value, context.time + context.h, s.blade ? s.blade->hand_index() : -1});
 }
 
 void StrandSprings::finish(const StepContext& context, const ConstraintSolution& solution) {
