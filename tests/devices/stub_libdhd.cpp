@@ -19,7 +19,8 @@ extern "C" {
 
 int dhdGetDeviceCount() {
   int n = 0;
-  for (const StubArm& a : board().arm) n += a.plugged != 0 || a.serial != 0 ? 1 : 0;
+  for (int i = 0; i < 4; ++i)
+    if (board().arm[i].plugged != 0) n = i + 1;
   return n;
 }
 int dhdOpenID(char id) {
