@@ -13,7 +13,7 @@
 namespace insula {
 namespace {
 
-DeviceSearch always() { return {{}, {{"", "always there"}}}; }
+DeviceSearch always() { return {{}, {{"", "always there"}}, false}; }
 
 std::vector<DeviceKind> table() {
   using Calibration = const DeviceCalibration&;

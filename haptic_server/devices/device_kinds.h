@@ -20,6 +20,7 @@ struct FoundDevice {
 struct DeviceSearch {
   std::string missing;  ///< why the kind cannot be used at all (a library, a service); empty: it can
   std::vector<FoundDevice> devices;
+  bool may_come = false;  ///< what is missing is a service, which may be started later
 };
 
 struct DeviceKind {

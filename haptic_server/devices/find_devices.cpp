@@ -93,6 +93,7 @@ DeviceSearch find_haply() {
   HaplyState state;
   std::string why;
   if (!service.connect(HaplyDevice::url(), 1000ms) || !service.receive(text, 1000ms)) {
+    found.may_come = true;
     found.missing = "no Haply service at " + HaplyDevice::url() + ": " + service.error();
     return found;
   }
@@ -119,6 +120,7 @@ DeviceSearch find_spacemouse() {
     return found;
   }
   if (api->open() == -1) {
+    found.may_come = true;
     found.missing = "the daemon spacenavd does not answer";
     return found;
   }
