@@ -14,9 +14,15 @@ namespace {
 bool plugged_in(const DeviceWish& wish) {
   const DeviceSearch found = find_device_kind(wish.kind)->search();
   if (!found.missing.empty()) return false;
-  // A device is found under one of its names and may be wished for by another: any of the kind will do for those.
-  const bool by_listed_name = std::any_of(found.devices.begin(), found.devices.end(), [&](const FoundDevice& d) { return d.which == wish.which; });
-  return wish.which.empty() || wish.which.front() == '#' ? !found.devices.empty() : by_listed_name;
+  const std::size_t there = found.devices.size();
+  if (wish.which.empty()) return there > 0;
+  if (wish.which.front() == '#') {
+    for (std::size_t i = 0; i < there; ++i)
+      if (wish.which == "#" + std::to_string(i)) return true;
+    return false;
+  }
+  const std::string id = wish.which.substr(0, wish.which.find('+'));  // a Haply arm without its grip
+  return std::any_of(found.devices.begin(), found.devices.end(), [&](const FoundDevice& d) { return d.which == id || d.label == wish.which; });
 }
 
 }  // namespace

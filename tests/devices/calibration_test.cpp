@@ -8,6 +8,7 @@
 #include "core/base/input_error.h"
 #include "haptic_server/devices/device_kinds.h"
 #include "tests/devices/device_bench.h"
+#include "tests/devices/haply_stand_in.h"
 
 namespace insula {
 namespace {
@@ -82,6 +83,11 @@ TEST_F(Wishes, TheFirstThatIsPluggedInIsTaken) {
   EXPECT_EQ(chosen("touch:Third Device, mouse"), "mouse");
   EXPECT_EQ(chosen("forcedimension:1002, mouse"), "forcedimension:1002");
   EXPECT_EQ(chosen("forcedimension, touch"), "forcedimension");
+  EXPECT_EQ(chosen("forcedimension:#7, forcedimension:#1, touch"), "forcedimension:#1");
+  testing::HaplyStandIn service(testing::two_arms());
+  ::setenv("INSULA_HAPLY_URL", service.url().c_str(), 1);
+  EXPECT_EQ(chosen("haply:FFFF, haply:049D+61548, mouse"), "haply:049D+61548");
+  service.stop();
   arm(0).plugged = arm(1).plugged = 0;
   EXPECT_EQ(chosen("touch:Left Device, forcedimension, spacemouse, haply"), "haply");  // none: the last is waited for
   ::setenv("INSULA_LIBHD", "/nowhere/libHD.so", 1);
