@@ -12,6 +12,7 @@
 #include "core/sim/simulation.h"
 #include "engine/commands.h"
 #include "engine/cost_model.h"
+#include "engine/scene_devices.h"
 
 namespace insula {
 namespace {
@@ -37,6 +38,7 @@ std::string check_one(const std::filesystem::path& file, const Registry& registr
   auto loaded = load_scene(file, registry);
   diagnostics = std::move(loaded.diagnostics);
   if (!loaded.scene) return {};
+  check_scene_devices(*loaded.scene, diagnostics);
   const auto& components = loaded.scene->components();
   const auto bodies = std::count_if(components.begin(), components.end(), [](const Component* c) { return c->kind == Kind::body; });
   std::string lines = fmt::format("{}: ok, {} components, {} bodies, content {:016x}\n", file.generic_string(), components.size(), bodies,

@@ -14,6 +14,7 @@
 #include "core/scene/loader.h"
 #include "core/sim/exercise.h"
 #include "engine/play.h"
+#include "engine/scene_devices.h"
 #include "engine/supervisor.h"
 
 namespace fs = std::filesystem;
@@ -27,10 +28,22 @@ fs::path own_program() {
 }
 
 /// Loads the scene and lets it go again: the engine loads its own. Returns false when it has errors, which are printed.
-bool scene_ok(const CommandContext& context, const PlayOptions& options) {
-  const LoadResult result = load_scene(options.scene, context.registry);
+/// Fills in the devices that the scene names where the command line does not.
+bool scene_ok(const CommandContext& context, PlayOptions& options) {
+  LoadResult result = load_scene(options.scene, context.registry);
+  if (result.scene) check_scene_devices(*result.scene, result.diagnostics);
   context.err << result.diagnostics.format();
-  if (!result.ok()) return false;
+  if (!result.ok() || !result.diagnostics.ok()) return false;
+  int hand = 0;
+  for (std::string* device : {&options.left, &options.right}) {
+    if (device->empty()) *device = scene_device(*result.scene, hand);
+    const std::string obstacle = device->empty() ? std::string() : device_obstacle(*device);
+    if (!obstacle.empty()) {
+      context.err << "error: " << (hand == 0 ? "left" : "right") << " hand: " << obstacle << '\n';
+      return false;
+    }
+    ++hand;
+  }
   const std::string& motion = options.motion;
   if (!motion.empty() && motion != "none" && !fs::is_regular_file(motion)) {
     std::vector<std::string> ids;

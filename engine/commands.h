@@ -36,4 +36,13 @@ int cmd_schema(const CommandContext& context, const std::filesystem::path& file)
 /// A Markdown page per element and an index into a folder. With `plugin_folder`, a plugin's example.xml is shown.
 int cmd_docs(const CommandContext& context, const std::filesystem::path& folder, const std::filesystem::path& plugin_folder = {});
 
+struct DevicesOptions {
+  std::string show, calibrate, test_force;  ///< a device each; all empty: list
+  std::string hand = "right";
+  double seconds = 0, newtons = 1, scale = 1;
+  bool assume_yes = false;
+};
+/// Lists what is plugged in and what is missing; shows a device live, calibrates it, tries its force.
+int cmd_devices(const CommandContext& context, const DevicesOptions& options);
+
 }  // namespace insula

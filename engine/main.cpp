@@ -71,6 +71,18 @@ int main(int argc, char** argv) {
   docs->add_option("--plugins", plugin_folder, "folder of plugin sources, for their examples");
   docs->callback([&] { run = [&](const auto& c) { return insula::cmd_docs(c, folder, plugin_folder); }; });
 
+  insula::DevicesOptions devices_options;
+  auto* devices = app.add_subcommand("devices", "what there is for the hands, what is missing and how to get it");
+  auto* show_one = devices->add_option("--show", devices_options.show, "this device's live pose, buttons and force, until Ctrl-C");
+  auto* calibrate_one = devices->add_option("--calibrate", devices_options.calibrate, "ask for this device's rest pose and axes and keep them")->excludes(show_one);
+  devices->add_option("--test-force", devices_options.test_force, "let this device push gently along each axis")->excludes(show_one)->excludes(calibrate_one);
+  devices->add_option("--hand", devices_options.hand, "hand that it serves")->check(CLI::IsMember({"left", "right"}))->capture_default_str();
+  devices->add_option("--duration", devices_options.seconds, "with --show: end after so many seconds; 0: never")->check(CLI::NonNegativeNumber);
+  devices->add_option("--newtons", devices_options.newtons, "with --test-force: largest force")->check(CLI::Range(0.1, 3.0))->capture_default_str();
+  devices->add_option("--scale", devices_options.scale, "with --calibrate: movement of the tool over movement of the hand")->check(CLI::Range(0.05, 5.0))->capture_default_str();
+  devices->add_flag("--yes", devices_options.assume_yes, "with --test-force: begin without asking");
+  devices->callback([&] { run = [&](const auto& c) { return insula::cmd_devices(c, devices_options); }; });
+
   // --- commands that run a simulation ---
   insula::RunOptions run_options;
   auto* headless = app.add_subcommand("run", "a scene from start to end without devices or viewer, with a report");
@@ -137,7 +149,7 @@ int main(int argc, char** argv) {
   auto* play = app.add_subcommand("play", "engine, haptic server and viewer together, until Ctrl-C");
   play->add_option("scene", play_options.scene, "scene file (default: the first training exercise)");
   play->add_option("--motion", play_options.motion, "what simulated hands follow: a motion of the scene, a CSV file, or none");
-  play->add_option("--left", play_options.left, "device of the left hand (see haptic_server --help)");
+  play->add_option("--left", play_options.left, "device of the left hand, such as touch:\"Left Device\" (see insula devices); default: the scene's, else simulated");
   play->add_option("--right", play_options.right, "device of the right hand");
   play->add_option("--port", play_options.port, "port of the viewer; following ones are tried when it is busy")->capture_default_str();
   play->add_option("--listen", play_options.listen, "address of the viewer; 0.0.0.0 lets other machines watch")->capture_default_str();

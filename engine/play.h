@@ -14,7 +14,7 @@ namespace insula {
 struct PlayOptions {
   std::filesystem::path scene;        ///< empty: the first training exercise
   std::string motion;                 ///< id, CSV file or "none" for simulated hands; empty: the engine's default
-  std::string left, right;            ///< device kinds; empty: the haptic server's default
+  std::string left, right;            ///< devices; empty: the scene's, else the haptic server's default
   int port = 8080;                    ///< the viewer's; following ones are tried when it is busy
   std::string listen = "127.0.0.1";   ///< 0.0.0.0 lets other machines watch
   bool browser = true;                ///< open one when there is a display

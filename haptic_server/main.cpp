@@ -60,8 +60,9 @@ int serve(const Arguments& a) {
   if (!grant.advice.empty()) spdlog::warn("{}", grant.advice);
 
   const MonotonicClock clock;
-  HapticServer server(*bus, std::move(devices), clock, std::move(options));
+  // Started first: the gate in front of a device takes its limits from what the device says of itself.
   for (Device* d : device) d->start();
+  HapticServer server(*bus, std::move(devices), clock, std::move(options));
   spdlog::info("haptic server: left {}, right {}, {:.0f} Hz, {}", a.left, a.right, a.loop.rate_hz,
                grant.scheduler ? "real-time" : "without real-time scheduling");
 
@@ -122,8 +123,8 @@ int main(int argc, char** argv) {
   CLI::App app{"Insula's haptic server: one servo for both hands"};
   std::string kinds;
   for (const std::string& k : device_kinds()) kinds += (kinds.empty() ? "" : ", ") + k;
-  app.add_option("--left", a.left, "device of the left hand: " + kinds)->capture_default_str();
-  app.add_option("--right", a.right, "device of the right hand: " + kinds)->capture_default_str();
+  app.add_option("--left", a.left, "device of the left hand: KIND[:WHICH], several with commas between: the first that is plugged in. Kinds: " + kinds)->capture_default_str();
+  app.add_option("--right", a.right, "device of the right hand")->capture_default_str();
   app.add_option("--motion", a.motion, "motion of simulated hands instead of the scene's: a CSV file, or none");
   app.add_option("--rate", a.loop.rate_hz, "ticks per second")->check(CLI::Range(100, 4000))->capture_default_str();
   app.add_option("--duration", a.duration_s, "end after so many seconds, 0: never")->check(CLI::NonNegativeNumber);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reading the scene's motion and homes.
+// Reading the scene's motion, homes and view.
 #include "haptic_server/scene_setup.h"
 
 #include <cmath>
@@ -13,11 +13,26 @@ namespace {
 
 constexpr std::uintmax_t largest_scene_json = 16u << 20;
 
-void read_homes(const std::filesystem::path& file, SceneSetup& into) {
+void read_view(const nlohmann::json& view, SceneSetup& into) {
+  const auto vector = [&](const char* name) {
+    const auto v = view.at(name).get<std::array<double, 3>>();
+    return Vec3(v[0], v[1], v[2]);
+  };
+  const Vec3 away = vector("target") - vector("eye"), right = away.cross(vector("up"));
+  if (!away.allFinite() || !right.allFinite() || away.norm() < 1e-9 || right.norm() < 1e-9 * away.norm()) return;
+  Mat3 axes;
+  axes.col(0) = right.normalized();
+  axes.col(1) = away.normalized();
+  axes.col(2) = axes.col(0).cross(axes.col(1));
+  into.person_to_scene = Quat(axes);
+}
+
+void read_bundle(const std::filesystem::path& file, SceneSetup& into) {
   std::error_code none;
   if (!std::filesystem::is_regular_file(file, none) || std::filesystem::file_size(file, none) > largest_scene_json) return;
   std::ifstream in(file);
   const auto json = nlohmann::json::parse(in);
+  if (json.contains("view")) read_view(json.at("view"), into);
   if (!json.contains("hands")) return;
   for (const auto& hand : json.at("hands")) {
     const std::string name = hand.at("hand").get<std::string>();
@@ -45,7 +60,7 @@ SceneSetup read_scene_setup(std::int64_t session, const std::string& motion_file
     setup.problem = e.what();
   }
   try {
-    if (!bundle.empty()) read_homes(bundle / "scene.json", setup);
+    if (!bundle.empty()) read_bundle(bundle / "scene.json", setup);
   } catch (const std::exception& e) {
     if (setup.problem.empty()) setup.problem = "scene.json of the bundle: " + std::string(e.what());
   }

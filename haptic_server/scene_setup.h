@@ -18,10 +18,12 @@ struct SceneSetup {
   Motion motion;  ///< empty: none
   std::array<bool, 2> has_home{false, false};
   std::array<Pose, 2> home;
+  /// Axes of the person at the screen (x right, y away, z up) in the scene: those of the microscope's picture.
+  Quat person_to_scene = Quat::Identity();
   std::string problem;  ///< why motion or homes could not be read, empty when fine
 };
 
-/// Reads the motion (`motion_file`, empty: none) and the homes from `bundle`/scene.json. Never throws: what cannot be read
+/// Reads the motion (`motion_file`, empty: none), the homes and the view from `bundle`/scene.json. Never throws: what cannot be read
 /// is left out and said in `problem`.
 SceneSetup read_scene_setup(std::int64_t session, const std::string& motion_file, const std::filesystem::path& bundle);
 

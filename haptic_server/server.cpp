@@ -91,17 +91,19 @@ void HapticServer::place_hands(std::int64_t now) noexcept {
   if (!setup_known && double(now - session_start_ns_) * 1e-9 < setup_patience_s) return;
   for (std::size_t i = 0; i < 2; ++i) {
     Hand& hand = hands_[i];
-    if (hand.placed || !hand.device->simulated()) continue;
+    if (hand.placed) continue;
     Pose here;
     const bool in_problem = device_in_problem(update, int(i), here);
     const bool has_home = setup_known && setup_->has_home[i];
     if (!in_problem && !has_home) continue;  // the scene has no such hand
     hand.home.pose = has_home ? setup_->home[i] : here;
+    hand.device->face(setup_known ? setup_->person_to_scene : Quat::Identity());
     const Motion* script = hand.source == HandSource::motion_or_viewer ? motion() : nullptr;
     if (script && !script->has(int(i))) script = nullptr;
     Pose start = hand.home.pose;
     if (script) start = script->at(int(i), motion_clock_.time()).pose;
-    if (!fresh_start_ && in_problem) start = here;
+    // A real arm is where its person holds it: only its frame is laid, and that at the same place every time.
+    if (!fresh_start_ && in_problem && hand.device->simulated()) start = here;
     if (!finite(start)) continue;
     Vec3 centre, extent;
     lay_workspace(script, int(i), hand.home.pose.p, hand.device->profile().workspace_m, centre, extent);
@@ -146,7 +148,7 @@ void HapticServer::tick(std::int64_t due_ns, std::int64_t missed) noexcept {
     hand.reading = hand.device->read();
     if (!finite(hand.reading.pose)) hand.reading = DeviceReading{};
     // An arm that waits for its place is at no place at all.
-    if (hand.device->simulated() && !hand.placed) hand.reading.connected = false;
+    if (!hand.placed) hand.reading.connected = false;
     input.device[i] = hand.reading.pose;
     input.connected[i] = hand.reading.connected;
   }

@@ -116,6 +116,10 @@ std::string HapticServer::note(double age_ms) const {
   if (age_ms < 0) return "waiting for an engine";
   if (age_ms > SafetyGate::stale_after_s * 1e3) return "no new problem from the engine: forces are off";
   const Snapshot& s = snapshots_.front();
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::string remark = hands_[i].device->remark();
+    if (!remark.empty()) return (i == 0 ? "left: " : "right: ") + remark;
+  }
   for (std::size_t i = 0; i < 2; ++i)
     if (!s.in_range[i])
       return std::string(i == 0 ? "left" : "right") + " device too far from where the engine has it: its force is off";

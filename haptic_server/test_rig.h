@@ -45,8 +45,9 @@ struct Rig {
   explicit Rig(const std::string& left = "simulated", const std::string& right = "simulated", ServerOptions options = {}) {
     tool[0].p = Vec3(-0.02, 0, 0.002);
     tool[1].p = Vec3(0.02, 0, 0.002);
-    server = std::make_unique<HapticServer>(
-        server_bus, std::array<DeviceChoice, 2>{make_device(left, 0), make_device(right, 1)}, clock, std::move(options));
+    std::array<DeviceChoice, 2> devices{make_device(left, 0), make_device(right, 1)};
+    for (DeviceChoice& choice : devices) choice.device->start();
+    server = std::make_unique<HapticServer>(server_bus, std::move(devices), clock, std::move(options));
     engine_bus.subscribe(channel::device_state, [this](Bytes b) {
       std::string why;
       ASSERT_TRUE(decode(b, state, why)) << why;

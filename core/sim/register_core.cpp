@@ -20,6 +20,7 @@ void register_core(Registry& registry) {
   registry.add<Surface>("surface", Kind::surface, "a surface that follows its body, for contact and for the picture");
   registry.add<SolverSettings>("solver", Kind::settings, "limits of the constraint solver");
   registry.add<SettleSettings>("settle", Kind::settings, "lets the scene come to rest before the exercise begins");
+  registry.add<DeviceSettings>("devices", Kind::settings, "what the hands hold where the command line does not say; see insula devices");
   registry.add<ViewSettings>("view", Kind::settings, "where the microscope stands at the start");
   registry.add<Exercise>("exercise", Kind::exercise, "goals, faults and motions of a training exercise");
   registry.add<Complications>("complications", Kind::complications, "what may go wrong by chance, drawn from a seed that the report states");

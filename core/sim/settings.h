@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Scene-wide settings: the nonlinear solver and the first look at the field.
+// Scene-wide settings: the nonlinear solver, settling, devices, and the first look at the field.
 #pragma once
 #include "core/registry/component.h"
 
@@ -18,6 +18,14 @@ class SettleSettings final : public Component {
  public:
   static constexpr std::string_view kind_name = "settings";
   Param<Duration> time{this, {.name = "time", .min = "0 s", .max = "60 s", .doc = "simulated time before the exercise begins, in which arms take their places and tissue comes to rest"}};
+};
+
+/// Read by whoever starts the haptic server: the engine itself knows no devices.
+class DeviceSettings final : public Component {
+ public:
+  static constexpr std::string_view kind_name = "settings";
+  Param<std::string> left{this, {.name = "left", .fallback = "simulated", .doc = "device of the left hand, best first: KIND[:WHICH], with commas between; the first that is plugged in"}};
+  Param<std::string> right{this, {.name = "right", .fallback = "simulated", .doc = "device of the right hand"}};
 };
 
 class ViewSettings final : public Component {

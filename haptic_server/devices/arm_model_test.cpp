@@ -217,7 +217,7 @@ TEST(MakeDevice, KnowsItsKindsAndNamesThem) {
     make_device("omny", 0);
     FAIL();
   } catch (const InputError& e) {
-    EXPECT_STREQ(e.what(), "no device \"omny\"; there are: simulated mouse");
+    EXPECT_STREQ(e.what(), "no device \"omny\"; there are: simulated mouse touch forcedimension haply spacemouse gamepad");
   }
 }
 

@@ -18,6 +18,9 @@ struct DeviceProfile {
   double ramp_out_s = 0.05;         ///< and leave over this time
   double resolution_m = 0;          ///< of the position it reports, 0: continuous
   Vec3 workspace_m = Vec3::Zero();  ///< edge lengths of the box it reaches
+  double friction_N = 0;            ///< backdrive friction at the tip, 0: not known
+  double apparent_mass_kg = 0;      ///< of the arm at the tip, 0: not known
+  bool gravity_compensated = false; ///< the device or its software carries the arm's own weight
 };
 
 /// What a device reports at a tick.
@@ -53,8 +56,13 @@ class Device {
   /// True when this program also plays the hand (guide, place and advance do something).
   virtual bool simulated() const { return false; }
   virtual void guide(const HandGoal&) noexcept {}
-  /// Puts a simulated arm at rest at a pose, its reach centred at `centre` with edge lengths `extent` (scene axes, m).
+  /// Turns the axes of the person in front of the screen (x right, y away, z up) into the scene's.
+  virtual void face(const Quat& /*person_to_scene*/) noexcept {}
+  /// Puts a simulated arm at rest at a pose, its reach centred at `centre` with edge lengths `extent` (scene axes, m). A
+  /// real arm stays where it is: its calibrated rest pose becomes that pose.
   virtual void place(const Pose& /*pose*/, const Vec3& /*centre*/, const Vec3& /*extent*/) noexcept {}
+  /// Any thread but the servo's: what keeps it from working, for the person who holds it; empty when all is well.
+  virtual std::string remark() const { return {}; }
   /// Lets a simulated arm live on by dt (s) under the force written last.
   virtual void advance(double /*dt*/) noexcept {}
 };

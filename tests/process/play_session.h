@@ -2,9 +2,7 @@
 // A real `insula play` with its three processes, on a bus of its own, and somebody who watches that bus.
 #pragma once
 #include <gtest/gtest.h>
-#include <netinet/in.h>
 #include <signal.h>
-#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -25,6 +23,7 @@
 #include "core/bus/codec.h"
 #include "core/bus/lcm_bus.h"
 #include "engine/child_process.h"
+#include "tests/process/multicast.h"
 
 namespace insula::testing {
 
@@ -46,37 +45,6 @@ bool wait_for(Condition condition) {
 
 inline std::int64_t now_us() {
   return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-inline int free_udp_port() {
-  const int s = ::socket(AF_INET, SOCK_DGRAM, 0);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  socklen_t size = sizeof address;
-  const bool ok = ::bind(s, reinterpret_cast<sockaddr*>(&address), size) == 0 &&
-                  ::getsockname(s, reinterpret_cast<sockaddr*>(&address), &size) == 0;
-  ::close(s);
-  return ok ? ntohs(address.sin_port) : 7999;
-}
-
-/// Whether LCM messages come back on this machine; as root, a missing route is added.
-inline bool multicast_works() {
-  const auto probe = [] {
-    LcmBus bus("udpm://239.255.76.67:" + std::to_string(free_udp_port()) + "?ttl=0");
-    int seen = 0;
-    bus.subscribe("PROBE", [&](Bytes) { ++seen; });
-    for (int i = 0; i < 50 && bus.good() && seen == 0; ++i) {
-      const std::uint8_t byte = 1;
-      bus.publish("PROBE", Bytes(&byte, 1));
-      bus.poll(20);
-    }
-    return seen > 0;
-  };
-  if (probe()) return true;
-  if (::geteuid() != 0) return false;
-  [[maybe_unused]] const int status =
-      std::system("(ip link set lo up multicast on && ip route add 224.0.0.0/4 dev lo) > /dev/null 2>&1");
-  return probe();
 }
 
 /// One hand in one DEVICE_STATE.

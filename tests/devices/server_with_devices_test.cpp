@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Real drivers of two kinds, one in each hand, in the haptic server: forces through the gate, losses in mid-contact.
+#include <signal.h>
+#include <sys/wait.h>
+
+#include <fstream>
+#include <mutex>
+
+#include "core/bus/lcm_bus.h"
+#include "haptic_server/test_rig.h"
+#include "tests/devices/device_bench.h"
+#include "tests/devices/haply_stand_in.h"
+#include "tests/process/multicast.h"
+
+namespace insula {
+namespace {
+
+using testing::HaplyStandIn;
+
+class ServerWithDevices : public testing::DeviceBench {
+ protected:
+  ServerWithDevices() : service(testing::two_arms()) { ::setenv("INSULA_HAPLY_URL", service.url().c_str(), 1); }
+  /// Both hands 7 mm down: 5 mm into tissue that gives 150 N/m with the coupling.
+  void press() {
+    put(arm(0).p, 0, -7, 0);
+    service.change(0, [](auto& a) { a.p = Vec3(0, -0.12, 0.143); });
+  }
+  double left_force() { return arm(0).force[1]; }
+  double right_force() { return service.arm(0).force.z(); }
+  HaplyStandIn service;
+};
+
+/// The rig's milliseconds in real time, for drivers that have threads of their own.
+bool run_until(testing::Rig& rig, const std::function<bool()>& condition, int milliseconds = 20000) {
+  for (int k = 0; k < milliseconds && !::testing::Test::HasFatalFailure(); ++k) {
+    if (condition()) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    rig.run(1);
+  }
+  return condition();
+}
+
+TEST_F(ServerWithDevices, TwoKindsFeelTissueAndOneMayBeLostInContact) {
+  testing::Rig rig("touch:Left Device", "haply:04BA");
+  rig.send_scene();
+  ASSERT_TRUE(run_until(rig, [&] { return rig.server->reading(0).connected && rig.server->reading(1).connected; }));
+  EXPECT_NEAR((rig.server->reading(0).pose.p - Vec3(-0.02, 0, 0.002)).norm(), 0, 1e-6);  // the rest pose lies at the hand's home
+  EXPECT_EQ(rig.state.hand[0].device, "touch");
+  EXPECT_EQ(rig.state.hand[1].device, "haply");
+  press();
+  ASSERT_TRUE(run_until(rig, [&] { return left_force() > 0.7 && right_force() > 0.7; }));
+  EXPECT_NEAR(left_force(), 0.75, 0.05);
+  arm(0).plugged = 0;
+  ASSERT_TRUE(run_until(rig, [&] { return !rig.server->reading(0).connected; }));
+  ASSERT_TRUE(run_until(rig, [&] { return rig.server->force(0) == Vec3(0, 0, 0); }, 200));
+  EXPECT_GT(right_force(), 0.7);  // nothing to the other hand
+  run_until(rig, [] { return false; }, 100);
+  EXPECT_NE(rig.server->publish_status().note.find("left: touch:\"Left Device\""), std::string::npos) << rig.server->publish_status().note;
+  arm(0).plugged = 1;
+  ASSERT_TRUE(run_until(rig, [&] { return rig.server->reading(0).connected; }));
+  EXPECT_LT(rig.server->force(0).norm(), 0.2);  // comes back gently; the rig checks every tick's slew
+  ASSERT_TRUE(run_until(rig, [&] { return left_force() > 0.7; }));
+  rig.server->begin_stop();
+  EXPECT_TRUE(run_until(rig, [&] { return rig.server->quiet() && left_force() == 0 && right_force() == 0; }, 1000));
+}
+
+TEST_F(ServerWithDevices, TwoOfTheSameAndOneMissing) {
+  testing::Rig rig("touch:Left Device", "touch:Nobody");
+  rig.send_scene();
+  ASSERT_TRUE(run_until(rig, [&] { return rig.server->reading(0).connected; }));
+  EXPECT_FALSE(rig.server->reading(1).connected);
+  press();
+  ASSERT_TRUE(run_until(rig, [&] { return left_force() > 0.7; }));
+  EXPECT_NE(rig.server->publish_status().note.find("right: touch:\"Nobody\" is not there"), std::string::npos);
+  set(1, "Nobody", 5);
+  EXPECT_TRUE(run_until(rig, [&] { return rig.server->reading(1).connected; }));
+}
+
+TEST_F(ServerWithDevices, ADriverThatTellsNonsenseIsLostAlone) {
+  testing::Rig rig("touch:Left Device", "forcedimension:1002");
+  rig.send_scene();
+  ASSERT_TRUE(run_until(rig, [&] { return rig.server->reading(0).connected && rig.server->reading(1).connected; }));
+  arm(1).p[0] = std::nan("");
+  ASSERT_TRUE(run_until(rig, [&] { return !rig.server->reading(1).connected; }));
+  EXPECT_TRUE(rig.server->reading(0).connected);
+}
+
+TEST_F(ServerWithDevices, TheRealProgramOverTheBus) {
+  if (!testing::multicast_works()) GTEST_SKIP() << "this machine has no multicast route";
+  const std::string bus_url = "udpm://239.255.76.67:" + std::to_string(testing::free_udp_port()) + "?ttl=0";
+  ::setenv("LCM_DEFAULT_URL", bus_url.c_str(), 1);
+  service.change(1, [](auto& a) { a.plugged = false; });
+  std::filesystem::create_directories(folder + "/config");
+  std::ofstream(folder + "/config/Left Device.config") << "";
+  // The wished-for 049D is not plugged in: the left hand takes the Touch.
+  const pid_t server = ::fork();
+  if (server == 0) {
+    const std::string program = INSULA_BINARY_DIR "/bin/haptic_server";
+    ::execl(program.c_str(), "haptic_server", "--left", "haply:049D, touch:Left Device", "--right", "haply:04BA", static_cast<char*>(nullptr));
+    ::_exit(127);
+  }
+  testing::Rig engine;  // only its problems are used
+  LcmBus bus(bus_url);
+  std::mutex mutex;
+  bus.subscribe(channel::device_state, [&](Bytes b) {
+    std::string why;
+    std::lock_guard lock(mutex);
+    engine.state_seen = decode(b, engine.state, why) || engine.state_seen;
+  });
+  int step = 0;
+  const auto until = [&](const std::function<bool()>& condition) {
+    return testing::wait_for([&] {
+      engine.clock.advance_ns(MonotonicClock().now_ns() - engine.clock.now_ns());
+      engine.sim_time += 0.016;
+      if (step++ % 30 == 0) {
+        insula_lcm::scene_info_t info;
+        info.session = engine.session;
+        info.time_us = engine.clock.now_ns() / 1000;
+        info.scene = "test.xml";
+        info.state = "running";
+        bus.publish(channel::scene_info, engine.encoded(info));
+      }
+      EXPECT_TRUE(encode_problem(engine.update(), engine.bytes));
+      bus.publish(channel::haptic_problem, engine.bytes);
+      const auto next = std::chrono::steady_clock::now() + std::chrono::milliseconds(16);
+      while (std::chrono::steady_clock::now() < next) bus.poll(4);
+      return condition();
+    }, std::chrono::seconds(60));
+  };
+  EXPECT_TRUE(until([&] { return engine.state_seen && engine.state.hand[0].connected && engine.state.hand[1].connected; }));
+  EXPECT_EQ(engine.state.hand[0].device, "touch");
+  press();
+  EXPECT_TRUE(until([&] { return left_force() > 0.6 && right_force() > 0.6; }));
+  arm(0).plugged = 0;
+  EXPECT_TRUE(until([&] { return !engine.state.hand[0].connected && engine.state.hand[0].force_N[2] == 0; }));
+  EXPECT_GT(right_force(), 0.6);
+  arm(0).plugged = 1;
+  EXPECT_TRUE(until([&] { return engine.state.hand[0].connected && left_force() > 0.6; }));
+  ::kill(server, SIGTERM);
+  int status = -1;
+  EXPECT_EQ(::waitpid(server, &status, 0), server);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
+  EXPECT_EQ(left_force(), 0);
+  EXPECT_EQ(right_force(), 0);
+  EXPECT_EQ(arm(0).open, 0);
+}
+
+}  // namespace
+}  // namespace insula

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What all drivers share: nothing in the servo's calls allocates, forces keep to their limits, poses and forces belong together.
+#include "haptic_server/devices/streamed_device.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "core/testing/count_allocations.h"
+#include "haptic_server/test_problem.h"
+
+namespace insula {
+namespace {
+
+/// A driver whose thread is the test.
+struct Bare final : StreamedDevice {
+  explicit Bare(const DeviceCalibration& c) : StreamedDevice(c) {
+    profile_.max_torque_Nm = 0.1;
+    limit(3.3, 0.1);
+  }
+  using StreamedDevice::deliver;
+  using StreamedDevice::limit;
+  using StreamedDevice::lost;
+  using StreamedDevice::wanted;
+};
+
+TEST(StreamedDevice, TheServosCallsAllocateNothing) {
+  Bare device{DeviceCalibration{}};
+  DeviceSample s;
+  const long before = allocations.load();
+  double sum = 0;
+  for (int k = 0; k < 1000; ++k) {
+    s.pose.p.x() = 1e-4 * k;
+    device.deliver(s);
+    sum += device.read().pose.p.x();
+    device.write(Vec3(1, 0, 0), Vec3::Zero());
+    sum += device.wanted().force_N.x();
+    if (k % 100 == 0) device.place(Pose(), Vec3::Zero(), Vec3::Zero());
+  }
+  EXPECT_EQ(allocations.load() - before, 0);
+  EXPECT_GT(sum, 0);
+}
+
+TEST(StreamedDevice, PowerIsTheSameOnBothSides) {
+  // Whatever the calibration: force times velocity in the scene is force times velocity at the device, times the scale.
+  testing::Random random(8);
+  for (int k = 0; k < 200; ++k) {
+    DeviceCalibration c;
+    c.axes = from_rotation_vector(random.vector(2)).toRotationMatrix();
+    c.rest = {random.vector(0.1), from_rotation_vector(random.vector(1))};
+    c.scale = 1 + 0.5 * random.next();
+    Bare device(c);
+    device.face(from_rotation_vector(random.vector(2)));
+    device.place({random.vector(0.2), from_rotation_vector(random.vector(1))}, Vec3::Zero(), Vec3::Zero());
+    DeviceSample s;
+    s.pose = {random.vector(0.1), from_rotation_vector(random.vector(1))};
+    s.v = random.vector(0.3);
+    s.w = random.vector(3);
+    s.has_w = true;
+    device.deliver(s);
+    const DeviceReading r = device.read();
+    ASSERT_TRUE(r.connected);
+    const Vec3 force = random.vector(1), torque = random.vector(0.05);
+    device.write(force, torque);
+    const DeviceForce f = device.wanted();
+    ASSERT_NEAR(force.dot(r.v), c.scale * f.force_N.dot(s.v), 1e-12);
+    ASSERT_NEAR(torque.dot(r.w), f.torque_Nm.dot(s.w), 1e-12);
+    // A small turn of the device turns the tool about the axis that w says.
+    const Quat small = from_rotation_vector(1e-4 * s.w);
+    s.pose.q = small * s.pose.q;
+    device.deliver(s);
+    ASSERT_NEAR((rotation_vector(device.read().pose.q * r.pose.q.conjugate()) - 1e-4 * r.w).norm(), 0, 1e-9);
+  }
+}
+
+TEST(StreamedDevice, ForcesThatCannotBeAreNone) {
+  Bare device{DeviceCalibration{}};
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const Vec3& bad : {Vec3(nan, 0, 0), Vec3(0, std::numeric_limits<double>::infinity(), 0)}) {
+    device.write(bad, Vec3::Zero());
+    EXPECT_EQ(device.wanted().force_N, Vec3(0, 0, 0));
+    device.write(Vec3::Zero(), bad);
+    EXPECT_EQ(device.wanted().torque_Nm, Vec3(0, 0, 0));
+  }
+  device.write(Vec3(100, 0, 0), Vec3(0, 0, 9));
+  EXPECT_NEAR(device.wanted().force_N.x(), 3.3, 1e-12);
+  EXPECT_NEAR(device.wanted().torque_Nm.z(), 0.1, 1e-12);
+  device.limit(nan, nan);
+  device.write(Vec3(1, 0, 0), Vec3::Zero());
+  EXPECT_EQ(device.wanted().force_N, Vec3(0, 0, 0));
+}
+
+TEST(StreamedDevice, VelocityOfTurningComesFromThePosesWhereItIsNotMeasured) {
+  Bare device{DeviceCalibration{}};
+  MonotonicClock clock;
+  const std::int64_t start = clock.now_ns();
+  double t = 0;
+  while (t < 0.3) {
+    t = double(clock.now_ns() - start) * 1e-9;
+    DeviceSample s;
+    s.pose.q = from_rotation_vector(Vec3(0, 0, 2 * t));
+    device.deliver(s);
+  }
+  EXPECT_NEAR(device.read().w.z(), 2, 0.2);
+  device.lost();
+  EXPECT_FALSE(device.read().connected);
+}
+
+}  // namespace
+}  // namespace insula
