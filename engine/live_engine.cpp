@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "core/base/input_error.h"
+#include "core/bus/arrival_order.h"
 #include "core/bus/channels.h"
 #include "core/bus/codec.h"
 #include "core/base/text.h"
@@ -29,6 +30,7 @@ constexpr std::size_t most_asked = 100;
 
 struct Inputs {
   insula_lcm::device_state_t devices{};
+  ArrivalOrder order;
   std::int64_t received_us = 0;
   bool pause = false, reset = false, quit = false;
   bool driven = false;  ///< a person has moved a hand since the start
@@ -39,8 +41,10 @@ struct Inputs {
       std::string why;
       insula_lcm::device_state_t m;
       if (!decode(b, m, why)) return;
+      const std::int64_t now_us = monotonic_us();
+      if (!order.take(m.session, m.sequence, 1000 * now_us)) return;
       devices = std::move(m);
-      received_us = monotonic_us();
+      received_us = now_us;
     });
     bus.subscribe(channel::hand_input, [this](Bytes b) {
       std::string why;

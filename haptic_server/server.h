@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/bus/arrival_order.h"
 #include "core/bus/bus.h"
 #include "core/bus/codec.h"
 #include "haptic_server/clock.h"
@@ -120,7 +121,7 @@ class HapticServer {
   std::int64_t run_ = 0;
 
   // Receiving thread's own.
-  std::int64_t newest_session_ = 0, newest_sequence_ = 0, newest_ns_ = 0;
+  ArrivalOrder order_;
   std::string setup_key_;
   std::array<Wish, 2> wishes_{};
   insula_lcm::scene_info_t scene_info_;

@@ -10,8 +10,6 @@
 namespace insula {
 namespace {
 
-/// After this silence a session with an earlier start, or an earlier number, is believed.
-constexpr std::int64_t silence_ns = 1'000'000'000;
 /// A step that ended this far in the future was stamped by another clock.
 constexpr std::int64_t future_us = 20'000;
 
@@ -39,12 +37,8 @@ void HapticServer::on_problem(Bytes bytes) {
   const std::int64_t now = clock_.now_ns();
   if (u.problem.rows > servo_max_rows) return refuse("HAPTIC_PROBLEM", "too many rows");
   if (u.time_us > now / 1000 + future_us) return refuse("HAPTIC_PROBLEM", "stamped with a time to come");
-  const bool silence = newest_ns_ == 0 || now - newest_ns_ > silence_ns;
-  if (!silence && u.session < newest_session_) return;  // an engine that was replaced
-  if (!silence && u.session == newest_session_ && u.sequence <= newest_sequence_) return;  // out of order
-  newest_session_ = u.session;
-  newest_sequence_ = u.sequence;
-  newest_ns_ = slot.receive_ns = now;
+  if (!order_.take(u.session, u.sequence, now)) return;
+  slot.receive_ns = now;
   received_.fetch_add(1, std::memory_order_relaxed);
   problems_.publish();
 }
