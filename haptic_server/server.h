@@ -153,6 +153,7 @@ class HapticServer {
   StatusCollector collector_;
   insula_lcm::haptic_status_t status_{};
   insula_lcm::device_state_t state_{};
+  std::int64_t missed_now_ = 0;  ///< ticks, since the status before
   std::int64_t status_start_ns_ = 0, status_sequence_ = 0, state_sequence_ = 0;
   std::vector<std::uint8_t> scratch_;
 };

@@ -117,7 +117,8 @@ std::string HapticServer::note(double age_ms) const {
     std::lock_guard lock(remark_mutex_);
     if (!remark_.empty()) return remark_;
   }
-  return options_.advice;
+  const std::string late = budget_advice(status_, options_.period_s * 1e6, missed_now_);
+  return late.empty() ? options_.advice : late;
 }
 
 const insula_lcm::haptic_status_t& HapticServer::publish_status() {
@@ -128,7 +129,9 @@ const insula_lcm::haptic_status_t& HapticServer::publish_status() {
   status_.session = run_;
   status_.sequence = ++status_sequence_;
   status_.time_us = now / 1000;
-  status_.missed_ticks = missed_.load(std::memory_order_relaxed);
+  const std::int64_t missed = missed_.load(std::memory_order_relaxed);
+  missed_now_ = missed - status_.missed_ticks;
+  status_.missed_ticks = missed;
   const Snapshot& s = snapshots_.front();
   status_.problem_age_ms = s.receive_ns == 0 ? -1 : double(std::max<std::int64_t>(0, now - s.receive_ns)) * 1e-6;
   status_.problems_received = received_.load(std::memory_order_relaxed);
