@@ -99,7 +99,7 @@ fs::path bundle_folder(const fs::path& root, std::int64_t session) {
     base = runtime && *runtime ? fs::path(runtime) : fs::temp_directory_path();
     base /= "insula-" + std::to_string(getuid());
   }
-  return base / std::to_string(session);
+  return fs::absolute(base) / std::to_string(session);
 }
 
 }  // namespace
@@ -210,7 +210,7 @@ int run_live(const LiveOptions& options, const Registry& registry, Bus& bus, con
   spdlog::info("ended after {:.2f} s simulated in {:.2f} s (real_time_factor {:.2f}), {} steps dropped, {} messages not sent",
                simulation.time(), wall, wall > 0 ? simulation.time() / wall : 0, late, publisher.failed());
   std::error_code ignored;
-  fs::remove_all(bundle, ignored);
+  if (!options.keep_bundle) fs::remove_all(bundle, ignored);
   return 0;
 }
 

@@ -12,7 +12,7 @@
 namespace insula::testing {
 namespace {
 
-constexpr int seeds = 8, settled_ms = 1500, phase_ms = 7, longest_ms = 2000, back_ms = 1000;
+constexpr int seeds = 5, settled_ms = 1500, phase_ms = 7, longest_ms = 2000, back_ms = 1000;
 using Trace = std::vector<std::array<Vec3, 2>>;
 
 /// The forces without any fault, in which no seed plays a part.
