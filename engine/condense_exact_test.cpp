@@ -5,7 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/testing/count_allocations.h"
+#include "core/bus/haptic_update.h"
 #include "engine/condense.h"
+#include "engine/publisher.h"
+#include "haptic_server/servo.h"
 #include "haptic_server/test_problem.h"
 
 namespace insula {
@@ -120,7 +124,6 @@ TEST(CondenseExact, MixedStatesAreExactUntilOneChanges) {
   Random random(4);
   double far = 0, far_held = 0, change = 0;
   const Wrenches rest = felt(full, {Vec6::Zero(), Vec6::Zero()});
-  std::printf("%d rows\n", small.rows);
   EXPECT_LT(apart(rest, felt(small, {Vec6::Zero(), Vec6::Zero()})), 1e-9);
   for (int k = 0; k < 10; ++k) {
     const Wrenches near = moved(random, 2e-7);
@@ -156,6 +159,44 @@ TEST(CondenseExact, RowsThatHangOnOthersAreHeld) {
     const Wrenches d = moved(random, 1e-3);
     EXPECT_LT(apart(felt(full, d), felt(small, d)), 1e-7) << k;
   }
+}
+
+TEST(CondenseExact, ThreeHundredAndSixtyRowsAreServedOverTheBus) {
+  ConstraintProblem full = problem(60, 50, 11, 1.5);
+  solve_well(full, full.delta_free, full.lambda);
+  HapticUpdate sent, got;
+  sent.step_s = 0.016;
+  Condenser()(full, Publisher::most_rows, sent.problem);
+  std::vector<std::uint8_t> bytes;
+  std::string why;
+  ASSERT_TRUE(encode_problem(sent, bytes));
+  EXPECT_LT(bytes.size(), 120'000u);
+  ASSERT_TRUE(decode_problem(bytes, got, why)) << why;
+  Servo servo;
+  servo.set_problem(&got.problem);
+  Random random(6);
+  for (int k = 0; k < 5; ++k) {
+    const Wrenches d = moved(random, 2e-4), whole = felt(full, d);
+    ServoInput input;
+    input.connected = {true, true};
+    for (std::size_t t = 0; t < 2; ++t) input.device[t] = displaced(full.tools[t].device, d[t]);
+    ServoResult result;
+    for (int tick = 0; tick < 5; ++tick) result = servo.tick(input);  // a hand moves less in a tick than from one k to the next
+    for (std::size_t t = 0; t < 2; ++t) {
+      ASSERT_TRUE(result.hand[t].valid);
+      EXPECT_LT((result.hand[t].force - whole[t].head<3>()).norm(), 0.02 * whole[t].head<3>().norm()) << k;
+    }
+  }
+}
+
+TEST(CondenseExact, AllocatesNothingOnceItHasItsSize) {
+  ConstraintProblem full = problem(60, 50, 11), small;
+  solve_well(full, full.delta_free, full.lambda);
+  Condenser condense;
+  condense(full, most_rows, small);
+  const long before = allocations;
+  condense(full, most_rows, small);
+  EXPECT_EQ(allocations - before, 0);
 }
 
 }  // namespace
