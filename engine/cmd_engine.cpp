@@ -14,7 +14,7 @@
 namespace insula {
 
 int cmd_engine(const CommandContext& context, const EngineOptions& o) {
-  const LiveOptions options{o.scene, o.motion, o.bundle_root, o.duration, o.unthrottled, o.threads, o.seed};
+  const LiveOptions options{o.scene, o.motion, o.bundle_root, o.duration, o.unthrottled, o.threads, o.seed, o.keep_bundle};
   const SignalPipe ends{SIGINT, SIGTERM, SIGHUP};
   signal(SIGPIPE, SIG_IGN);
 

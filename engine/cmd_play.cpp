@@ -124,7 +124,8 @@ ChildSpec engine_child(const PlayOptions& options, const fs::path& program, cons
   engine.command.insert(engine.command.end(), {"engine", options.scene.string()});
   if (!options.motion.empty()) engine.command.insert(engine.command.end(), {"--motion", options.motion});
   if (options.seed != 0) engine.command.insert(engine.command.end(), {"--seed", std::to_string(options.seed)});
-  if (!bundles.empty()) engine.command.insert(engine.command.end(), {"--bundle-dir", bundles.string()});
+  if (!options.keep_bundle.empty()) engine.command.insert(engine.command.end(), {"--bundle-dir", options.keep_bundle.string(), "--keep-bundle"});
+  else if (!bundles.empty()) engine.command.insert(engine.command.end(), {"--bundle-dir", bundles.string()});
   return engine;
 }
 

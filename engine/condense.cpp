@@ -1,89 +1,220 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Selection of rows for the haptic problem.
+// Selection of rows for the haptic problem, and elimination of the others.
 #include "engine/condense.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace insula {
+#include "core/constraint/sweep.h"
 
-void condense(const ConstraintProblem& full, int most_rows, ConstraintProblem& small) {
+namespace insula {
+namespace {
+
+/// A force this close to a bound is at it.
+double near_bound_N(double bound) { return 1e-9 * (1 + std::abs(bound)); }
+
+long padded(std::size_t n) { return long((n + 7) / 8 * 8); }
+
+}  // namespace
+
+void Condenser::find_felt(const ConstraintProblem& full) {
+  felt_.assign(std::size_t(full.rows), 0);
+  for (const ToolTerms& t : full.tools)
+    for (int r = 0; r < full.rows; ++r)
+      if (!t.jacobian.row(r).isZero(0)) felt_[std::size_t(r)] = 1;
+}
+
+/// Marks the block's rows that are linear where they are; returns its margin.
+double Condenser::state(const ConstraintProblem& full, const Block& b) {
+  const double* lambda = full.lambda.data() + b.row;
+  const double* delta = delta_m_.data() + b.row;
+  Fate* fate = fate_.data() + b.row;
+  const auto w = [&](int k) { return full.w_at(b.row + k, b.row + k); };
+  if (b.law == LawKind::box) {
+    if (b.lower == -infinite && b.upper == infinite) {
+      fate[0] = Fate::linear;
+      return -1;
+    }
+    const double away_N = std::min(lambda[0] - b.lower, b.upper - lambda[0]);
+    const double bound = lambda[0] - b.lower < b.upper - lambda[0] ? b.lower : b.upper;
+    if (away_N <= near_bound_N(bound)) return std::abs(delta[0] + b.compliance * lambda[0]);
+    fate[0] = Fate::linear;
+    return away_N * w(0);
+  }
+  int tangent = 0;
+  double pressed_N = 0, margin_m = infinite;
+  if (b.law == LawKind::friction) {
+    tangent = 1;
+    pressed_N = lambda[0];
+    if (pressed_N <= near_bound_N(0)) return std::abs(delta[0]);
+    fate[0] = Fate::linear;
+    margin_m = pressed_N * w(0);
+  } else {
+    for (int i = 1; i <= b.normals; ++i) pressed_N += std::max(0.0, *(lambda - i));
+    if (pressed_N <= near_bound_N(0)) return infinite;  // its contacts say when
+  }
+  const double left_N = b.friction * pressed_N - std::hypot(lambda[tangent], lambda[tangent + 1]);
+  if (left_N <= 1e-6 * b.friction * pressed_N) return 0;  // slips, which is no linear equation
+  fate[tangent] = fate[tangent + 1] = Fate::linear;
+  return std::min(margin_m, left_N * std::max(w(tangent), w(tangent + 1)));
+}
+
+void Condenser::find_states(const ConstraintProblem& full) {
+  delta_m_.assign(std::size_t(full.stride), 0.0);
+  std::copy_n(full.delta_free.begin(), full.rows, delta_m_.begin());
+  sweep_kernels().combine(delta_m_.data(), full.w.data(), full.stride, full.lambda.data(), full.rows, full.stride);
+  fate_.assign(std::size_t(full.rows), Fate::held);
+  margin_m_.clear();
+  for (const Block& b : full.blocks) margin_m_.push_back(state(full, b));
+}
+
+void Condenser::make_groups(const ConstraintProblem& full) {
+  groups_.clear();
+  for (std::size_t b = 0; b < full.blocks.size(); ++b) {
+    const Block& block = full.blocks[b];
+    Group g{int(b), int(b), block.rows(), false, margin_m_[b] < 0, 0};
+    for (int k = 0; k < block.rows(); ++k) {
+      const int r = block.row + k;
+      g.felt = g.felt || felt_[std::size_t(r)];
+      double coupling = 0;
+      for (int c = 0; c < full.rows; ++c)
+        if (felt_[std::size_t(c)]) coupling = std::max(coupling, std::abs(full.w_at(r, c)));
+      // How far the tools' rows would move if this row's force went; for rows that nobody touches, if it changed by a newton, and the
+      // more so the sooner it may do what its linear equation does not say.
+      g.rank = std::max(g.rank, (std::abs(full.lambda[std::size_t(r)]) + 1e-6) * coupling);
+      if (!felt_[std::size_t(r)]) g.rank = std::max(g.rank, coupling / (std::abs(margin_m_[b]) + 1e-6));
+    }
+    if (block.law == LawKind::patch)
+      for (int i = 0; i < block.normals; ++i) {
+        const Group& contact = groups_.back();
+        g = {contact.first, g.last, g.rows + contact.rows, g.felt || contact.felt, false, std::max(g.rank, contact.rank)};
+        groups_.pop_back();
+      }
+    groups_.push_back(g);
+  }
+  std::sort(groups_.begin(), groups_.end(), [](const Group& a, const Group& b) {
+    if (a.felt != b.felt) return a.felt;
+    if (!a.felt && a.linear != b.linear) return b.linear;
+    return a.rank != b.rank ? a.rank > b.rank : a.first < b.first;
+  });
+}
+
+void Condenser::choose(const ConstraintProblem& full, int most_rows, ConstraintProblem& small) {
+  chosen_.clear();
+  std::size_t g = 0;
+  for (int rows = 0; g < groups_.size() && !(groups_[g].linear && !groups_[g].felt) && rows + groups_[g].rows <= most_rows; ++g) {
+    rows += groups_[g].rows;
+    for (int b = groups_[g].first; b <= groups_[g].last; ++b) chosen_.push_back(b);
+  }
+  // Laws without bounds come last in the order and first here: they are the exact ones.
+  eliminated_.clear();
+  for (std::size_t last = groups_.size(); last-- > g;)
+    for (int b = groups_[last].first; b <= groups_[last].last && !groups_[last].felt; ++b)
+      for (int r = full.blocks[std::size_t(b)].row, end = r + full.blocks[std::size_t(b)].rows(); r < end; ++r)
+        if (fate_[std::size_t(r)] == Fate::linear && int(eliminated_.size()) < most_eliminated) eliminated_.push_back(r);
+  std::sort(eliminated_.begin(), eliminated_.end());
+  std::sort(chosen_.begin(), chosen_.end());
+  kept_.clear();
+  small.blocks.clear();
+  for (int b : chosen_) {
+    Block block = full.blocks[std::size_t(b)];
+    const int first = int(kept_.size());
+    for (int k = 0; k < block.rows(); ++k) {
+      fate_[std::size_t(block.row + k)] = Fate::kept;
+      kept_.push_back(block.row + k);
+    }
+    block.row = first;
+    small.blocks.push_back(block);
+  }
+}
+
+/// As if all the others were held.
+void Condenser::copy_kept(const ConstraintProblem& full, ConstraintProblem& small) const {
+  const std::size_t rows = kept_.size();
+  small.resize(int(rows));
+  for (std::size_t i = 0; i < rows; ++i) {
+    const std::size_t s = std::size_t(kept_[i]);
+    double free = full.delta_free[s];
+    for (std::size_t c = 0; c < std::size_t(full.rows); ++c)
+      if (fate_[c] != Fate::kept) free += full.w_at(int(s), int(c)) * full.lambda[c];
+    small.delta_free[i] = free;
+    small.lambda[i] = full.lambda[s];
+    for (std::size_t j = 0; j < rows; ++j) small.w[i * std::size_t(small.stride) + j] = full.w_at(int(s), kept_[j]);
+  }
+  small.tools.resize(full.tools.size());
+  for (std::size_t t = 0; t < small.tools.size(); ++t) {
+    const ToolTerms& from = full.tools[t];
+    ToolTerms& to = small.tools[t];
+    to.hand = from.hand;
+    to.device = from.device;
+    to.free = from.free;
+    to.gain = from.gain;
+    to.compliance = from.compliance;
+    to.stiffness = from.stiffness;
+    to.jacobian.resize(long(rows), 6);
+    for (std::size_t i = 0; i < rows; ++i) to.jacobian.row(long(i)) = from.jacobian.row(kept_[i]);
+  }
+}
+
+/// lambda_E = lambda_E0 - M (r + W_EK (lambda_K - lambda_K0)), M = (W_EE + C)^-1, r = delta_E + C lambda_E of the full solution.
+/// With W_EE + C = U^T U, Y = U^-T W_EK and z = U^-T r:
+///   W' = W_KK - Y^T Y,   delta_free' = (all others held) - Y^T (z - Y lambda_K0)
+void Condenser::eliminate(const ConstraintProblem& full, ConstraintProblem& small) {
+  const auto combine = sweep_kernels().combine;
+  const std::size_t n = eliminated_.size(), k = kept_.size();
+  const long kept_at = padded(n), r_at = kept_at + small.stride, width = r_at + 8;
+  factor_.assign(n * std::size_t(width), 0.0);
+  weights_.assign(std::max(n, k) + 8, 0.0);
+  const auto row = [&](std::size_t j) { return factor_.data() + long(j) * width; };
+  for (const Block& b : full.blocks)  // the diagonal's C, on the way to its place
+    if (b.law != LawKind::patch) delta_m_[std::size_t(b.row)] += b.compliance * full.lambda[std::size_t(b.row)];
+  std::size_t block = 0;
+  for (std::size_t j = 0; j < n; ++j) {
+    const int s = eliminated_[j];
+    for (std::size_t i = j; i < n; ++i) row(j)[i] = full.w_at(s, eliminated_[i]);
+    for (std::size_t i = 0; i < k; ++i) row(j)[kept_at + long(i)] = full.w_at(s, kept_[i]);
+    row(j)[r_at] = delta_m_[std::size_t(s)];
+    while (full.blocks[block].row + full.blocks[block].rows() <= s) ++block;
+    if (full.blocks[block].row == s && full.blocks[block].law != LawKind::patch) row(j)[j] += full.blocks[block].compliance;
+  }
+  // Rows of U, one from those above it; W_EK and r go along and become Y and z.
+  for (std::size_t j = 0; j < n; ++j) {
+    const long from = long(j / 8 * 8);
+    const double whole = row(j)[j];
+    for (std::size_t i = 0; i < j; ++i) weights_[i] = -row(i)[j];
+    combine(row(j) + from, factor_.data() + from, width, weights_.data(), int(j), int(width - from));
+    const double pivot = row(j)[j];
+    const double scale = pivot > 1e-10 * whole ? 1 / std::sqrt(pivot) : 0;  // hangs on the others: held
+    for (long c = long(j); c < width; ++c) row(j)[c] *= scale;
+  }
+  for (std::size_t j = 0; j < n; ++j) {
+    double sum = -row(j)[r_at];
+    for (std::size_t i = 0; i < k; ++i) sum += row(j)[kept_at + long(i)] * small.lambda[i];
+    delta_m_[j] = sum;
+  }
+  for (std::size_t i = 0; i < k; ++i)
+    for (std::size_t j = 0; j < n; ++j) small.delta_free[i] += row(j)[kept_at + long(i)] * delta_m_[j];
+  for (std::size_t i = 0; i < k; ++i) {
+    const long from = long(i / 8 * 8);
+    double* w = small.w.data() + long(i) * small.stride;
+    for (std::size_t j = 0; j < n; ++j) weights_[j] = -row(j)[kept_at + long(i)];
+    combine(w + from, factor_.data() + kept_at + from, width, weights_.data(), int(n), int(small.stride - from));
+  }
+  for (std::size_t i = 0; i < k; ++i)
+    for (std::size_t c = i + 1; c < k; ++c) small.w[c * std::size_t(small.stride) + i] = small.w[i * std::size_t(small.stride) + c];
+}
+
+void Condenser::operator()(const ConstraintProblem& full, int most_rows, ConstraintProblem& small) {
   if (full.rows <= most_rows) {
     small = full;
     return;
   }
-  const std::size_t n = std::size_t(full.rows);
-  std::vector<char> felt(n, 0);
-  for (const ToolTerms& t : full.tools)
-    for (std::size_t r = 0; r < n; ++r)
-      if (!t.jacobian.row(long(r)).isZero(0)) felt[r] = 1;
-  struct Rank {
-    int first, last;  ///< blocks: a patch goes with the contacts it is of
-    int rows;
-    bool felt;
-    double coupling;
-  };
-  std::vector<Rank> ranks;
-  for (std::size_t b = 0; b < full.blocks.size(); ++b) {
-    const Block& block = full.blocks[b];
-    Rank rank{int(b), int(b), block.rows(), false, 0};
-    if (block.law == LawKind::patch) {
-      for (int i = 0; i < block.normals; ++i) {
-        rank.felt = rank.felt || ranks.back().felt;
-        rank.coupling = std::max(rank.coupling, ranks.back().coupling);
-        ranks.pop_back();
-      }
-      rank.first -= block.normals;
-      rank.rows += block.normals;
-    }
-    for (int k = 0; k < block.rows(); ++k) {
-      const int r = block.row + k;
-      rank.felt = rank.felt || felt[std::size_t(r)];
-      // How far the tools' rows would move if this row's force went.
-      const double size = std::abs(full.lambda[std::size_t(r)]) + 1e-6;
-      for (std::size_t c = 0; c < n; ++c)
-        if (felt[c]) rank.coupling = std::max(rank.coupling, size * std::abs(full.w_at(r, int(c))));
-    }
-    ranks.push_back(rank);
-  }
-  std::stable_sort(ranks.begin(), ranks.end(), [](const Rank& a, const Rank& b) {
-    return a.felt != b.felt ? a.felt : a.coupling > b.coupling;
-  });
-  std::vector<int> chosen;
-  int rows = 0;
-  for (const Rank& r : ranks) {
-    if (rows + r.rows > most_rows) break;
-    rows += r.rows;
-    for (int b = r.first; b <= r.last; ++b) chosen.push_back(b);
-  }
-  std::sort(chosen.begin(), chosen.end());
-  small.resize(rows);
-  small.blocks.clear();
-  std::vector<int> source;
-  std::vector<char> kept(n, 0);
-  for (int b : chosen) {
-    Block block = full.blocks[std::size_t(b)];
-    for (int k = 0; k < block.rows(); ++k) {
-      kept[std::size_t(block.row + k)] = 1;
-      source.push_back(block.row + k);
-    }
-    block.row = int(source.size()) - block.rows();
-    small.blocks.push_back(block);
-  }
-  for (int i = 0; i < rows; ++i) {
-    const int s = source[std::size_t(i)];
-    double free = full.delta_free[std::size_t(s)];
-    for (std::size_t c = 0; c < n; ++c)
-      if (!kept[c]) free += full.w_at(s, int(c)) * full.lambda[c];
-    small.delta_free[std::size_t(i)] = free;
-    small.lambda[std::size_t(i)] = full.lambda[std::size_t(s)];
-    for (int j = 0; j < rows; ++j) small.w[std::size_t(i) * std::size_t(small.stride) + std::size_t(j)] = full.w_at(s, source[std::size_t(j)]);
-  }
-  small.tools = full.tools;
-  for (std::size_t t = 0; t < small.tools.size(); ++t) {
-    small.tools[t].jacobian.resize(rows, 6);
-    for (int i = 0; i < rows; ++i) small.tools[t].jacobian.row(i) = full.tools[t].jacobian.row(source[std::size_t(i)]);
-  }
+  find_felt(full);
+  find_states(full);
+  make_groups(full);
+  choose(full, most_rows, small);
+  copy_kept(full, small);
+  if (!eliminated_.empty() && !kept_.empty()) eliminate(full, small);
 }
 
 }  // namespace insula

@@ -1,13 +1,51 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A step's problem cut down to what one message carries and the tools feel.
+// A step's problem cut down to what one message carries, without changing what the tools feel.
 #pragma once
+#include <vector>
+
 #include "core/constraint/problem.h"
 
 namespace insula {
 
-/// Copies `full` into `small`; with more than most_rows rows, keeps the blocks that touch a tool, then those most coupled
-/// to them, in their order. The others hold their solved force: their effect moves into delta_free, so the kept rows have
-/// the same solution as long as the tools stand still.
-void condense(const ConstraintProblem& full, int most_rows, ConstraintProblem& small);
+/// Copies `full` into `small` where it has at most most_rows rows. Otherwise each block has one of three fates:
+///   kept        those that touch a tool, then those that are coupled to them and may soon change their state, in their order
+///   eliminated  rows E that no tool touches, in a state in which their law is a linear equation delta_E + C lambda_E = 0: pressure,
+///               springs, fibres in tension, contacts that press or stick. Exactly, by the Schur complement
+///                 W'          = W_KK - W_KE (W_EE + C)^-1 W_EK
+///                 delta_free' = what gives the kept rows the delta of the full problem at its lambda
+///   held        lambda stays what it is: rows at a bound (separated contacts, slack fibres, friction that slips), rows that hang on
+///               others (pivots near 0), and those that touch a tool and find no place
+/// Eliminating is exact for laws without bounds (bilateral, compliant) wherever the tools go, for the others as long as none changes its
+/// state. Laws without bounds are therefore eliminated first; as long as all the other rows fit, the condensed problem is the full one.
+/// lambda of `full` must be its solution. Allocates when sizes grow, and when the tools' Jacobians change theirs.
+class Condenser {
+ public:
+  void operator()(const ConstraintProblem& full, int most_rows, ConstraintProblem& small);
+
+  /// Beyond this, the least coupled are held: the cost grows with the cube.
+  static constexpr int most_eliminated = 400;
+
+ private:
+  enum class Fate : char { held, linear, kept };
+  struct Group {  ///< blocks first to last: a patch goes with the contacts it is of
+    int first, last, rows;
+    bool felt, linear;
+    double rank;
+  };
+  void find_felt(const ConstraintProblem& full);
+  void find_states(const ConstraintProblem& full);
+  double state(const ConstraintProblem& full, const Block& block);
+  void make_groups(const ConstraintProblem& full);
+  void choose(const ConstraintProblem& full, int most_rows, ConstraintProblem& small);
+  void copy_kept(const ConstraintProblem& full, ConstraintProblem& small) const;
+  void eliminate(const ConstraintProblem& full, ConstraintProblem& small);
+
+  std::vector<char> felt_;        ///< by row of the full problem
+  std::vector<Fate> fate_;        ///< linear: could be eliminated, until chosen
+  std::vector<double> margin_m_;  ///< by block: how far it is from another state; negative: it has no other
+  AlignedVector<double> delta_m_, factor_, weights_;
+  std::vector<Group> groups_;
+  std::vector<int> chosen_, kept_, eliminated_;
+};
 
 }  // namespace insula

@@ -43,7 +43,7 @@ ConstraintProblem make(int n, int felt) {
 TEST(Condense, SmallProblemsAreCopied) {
   const ConstraintProblem full = make(12, 3);
   ConstraintProblem small;
-  condense(full, 12, small);
+  Condenser()(full, 12, small);
   EXPECT_EQ(small.rows, 12);
   EXPECT_EQ(small.w, full.w);
   EXPECT_EQ(small.lambda, full.lambda);
@@ -52,7 +52,7 @@ TEST(Condense, SmallProblemsAreCopied) {
 TEST(Condense, KeepsTheFeltRowsAndTheirSolution) {
   const ConstraintProblem full = make(60, 7);
   ConstraintProblem small;
-  condense(full, 20, small);
+  Condenser()(full, 20, small);
   ASSERT_EQ(small.rows, 20);
   ASSERT_EQ(small.blocks.size(), 20u);
   for (int i = 0; i < 7; ++i) {  // felt rows come along, in their order
@@ -83,7 +83,7 @@ TEST(Condense, NeverSplitsAContact) {
     full.blocks.push_back(b);
   }
   ConstraintProblem small;
-  condense(full, 20, small);
+  Condenser()(full, 20, small);
   EXPECT_EQ(small.rows, 18);
   EXPECT_EQ(small.blocks.size(), 6u);
 }
@@ -119,7 +119,7 @@ TEST(Condense, APatchIsKeptOrLeftOutTogetherWithItsContacts) {
     for (int most = 4; most < 60; ++most) {
       const ConstraintProblem full = patches(felt_tangents);
       ConstraintProblem small;
-      condense(full, most, small);
+      Condenser()(full, most, small);
       ASSERT_EQ(small.rows, 5 * (most / 5));
       ASSERT_EQ(small.blocks.size(), std::size_t(4 * (most / 5)));
       for (std::size_t i = 0; i < small.blocks.size(); ++i) {

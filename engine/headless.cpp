@@ -7,7 +7,6 @@
 #include <ostream>
 
 #include "core/base/input_error.h"
-#include "engine/condense.h"
 #include "engine/live_engine.h"
 
 namespace insula {
@@ -35,7 +34,7 @@ void HeadlessRun::step() {
   haptic_ms_ = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
   script_.advance(simulation_);
   simulation_.step();
-  condense(simulation_.problem(), 240, condensed_);
+  condense_(simulation_.problem(), 240, condensed_);
   pause_.apply(simulation_, condensed_);
   haptics_.set_problem(condensed_);
 }

@@ -6,6 +6,7 @@
 #include "core/sim/simulation.h"
 #include "engine/command_script.h"
 #include "engine/commands.h"
+#include "engine/condense.h"
 #include "engine/exchange_pause.h"
 #include "haptic_server/in_process.h"
 
@@ -29,6 +30,7 @@ class HeadlessRun {
   InProcessHaptics haptics_;
   CommandScript script_;
   double haptic_ms_ = 0;
+  Condenser condense_;
   ConstraintProblem condensed_;
   ExchangePause pause_;
 };

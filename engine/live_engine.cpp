@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "core/base/input_error.h"
+#include "core/bus/arrival_order.h"
 #include "core/bus/channels.h"
 #include "core/bus/codec.h"
 #include "core/base/text.h"
@@ -29,6 +30,7 @@ constexpr std::size_t most_asked = 100;
 
 struct Inputs {
   insula_lcm::device_state_t devices{};
+  ArrivalOrder order;
   std::int64_t received_us = 0;
   bool pause = false, reset = false, quit = false;
   bool driven = false;  ///< a person has moved a hand since the start
@@ -39,8 +41,10 @@ struct Inputs {
       std::string why;
       insula_lcm::device_state_t m;
       if (!decode(b, m, why)) return;
+      const std::int64_t now_us = monotonic_us();
+      if (!order.take(m.session, m.sequence, 1000 * now_us)) return;
       devices = std::move(m);
-      received_us = monotonic_us();
+      received_us = now_us;
     });
     bus.subscribe(channel::hand_input, [this](Bytes b) {
       std::string why;
@@ -95,7 +99,7 @@ fs::path bundle_folder(const fs::path& root, std::int64_t session) {
     base = runtime && *runtime ? fs::path(runtime) : fs::temp_directory_path();
     base /= "insula-" + std::to_string(getuid());
   }
-  return base / std::to_string(session);
+  return fs::absolute(base) / std::to_string(session);
 }
 
 }  // namespace
@@ -206,7 +210,7 @@ int run_live(const LiveOptions& options, const Registry& registry, Bus& bus, con
   spdlog::info("ended after {:.2f} s simulated in {:.2f} s (real_time_factor {:.2f}), {} steps dropped, {} messages not sent",
                simulation.time(), wall, wall > 0 ? simulation.time() / wall : 0, late, publisher.failed());
   std::error_code ignored;
-  fs::remove_all(bundle, ignored);
+  if (!options.keep_bundle) fs::remove_all(bundle, ignored);
   return 0;
 }
 

@@ -19,6 +19,7 @@ struct LiveOptions {
   bool unthrottled = false;       ///< as fast as the machine can, for measurements
   int threads = 0;
   std::uint64_t seed = 0;         ///< of the complications; 0: the scene's
+  bool keep_bundle = false;       ///< leave the viewer's bundle where it is at the end, for a replay
 };
 
 /// Runs until `stop` is set, the duration is over or a viewer says quit. Exit status: 0, or 2 when the scene has errors.

@@ -142,7 +142,15 @@ int main(int argc, char** argv) {
   engine->add_flag("--unthrottled", engine_options.unthrottled, "as fast as the machine can, for measurements");
   engine->add_option("--threads", engine_options.threads, "threads; 0 takes the machine's");
   engine->add_option("--seed", engine_options.seed, "what complications are drawn from; 0: the scene's own seed");
+  engine->add_flag("--keep-bundle", engine_options.keep_bundle, "leave the bundle where it is at the end, for a replay");
   engine->callback([&] { run = [&](const auto& c) { return insula::cmd_engine(c, engine_options); }; });
+
+  insula::ReplayOptions replay_options;
+  auto* replay = app.add_subcommand("replay", "a log of lcm-logger onto the bus, for viewers");
+  replay->add_option("log", replay_options.log, "log of a session")->required();
+  replay->add_option("--speed", replay_options.speed, "times as fast as it was")->check(CLI::Range(0.01, 1000.0))->capture_default_str();
+  replay->add_flag("--loop", replay_options.loop, "again and again, until Ctrl-C");
+  replay->callback([&] { run = [&](const auto& c) { return insula::cmd_replay(c, replay_options); }; });
 
   insula::PlayOptions play_options;
   bool no_browser = false;
@@ -155,6 +163,7 @@ int main(int argc, char** argv) {
   play->add_option("--listen", play_options.listen, "address of the viewer; 0.0.0.0 lets other machines watch")->capture_default_str();
   play->add_option("--duration", play_options.duration_s, "end after so many seconds; 0: never")->check(CLI::NonNegativeNumber);
   play->add_option("--seed", play_options.seed, "what complications are drawn from; 0: the scene's own seed");
+  play->add_option("--keep-bundle", play_options.keep_bundle, "folder in which the viewer's scene bundles stay, for a replay of a log");
   play->add_flag("--no-browser", no_browser, "open no browser");
   play->callback([&] {
     play_options.browser = !no_browser;

@@ -20,6 +20,7 @@ struct PlayOptions {
   bool browser = true;                ///< open one when there is a display
   double duration_s = 0;              ///< 0: until Ctrl-C
   std::uint64_t seed = 0;             ///< of the complications; 0: the scene's
+  std::filesystem::path keep_bundle;          ///< the viewer's bundles go into this folder and stay; empty: they go with the session
   std::vector<std::string> engine_arguments;  ///< passed on before the subcommand, such as --plugin-path
 };
 

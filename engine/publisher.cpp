@@ -7,7 +7,6 @@
 
 #include "core/bus/channels.h"
 #include "core/bus/codec.h"
-#include "engine/condense.h"
 #include "engine/frame.h"
 
 namespace insula {
@@ -42,7 +41,7 @@ void Publisher::step(const Simulation& simulation) {
   update_.time_us = monotonic_us();
   update_.step_s = simulation.h();
   update_.sim_time_s = simulation.time();
-  condense(simulation.problem(), most_rows, update_.problem);
+  condense_(simulation.problem(), most_rows, update_.problem);
   pause_.apply(simulation, update_.problem);
   if (!encode_problem(update_, scratch_) || !bus_.publish(channel::haptic_problem, scratch_)) ++failed_;
   frame(simulation, false);

@@ -9,6 +9,7 @@
 #include "core/bus/bus.h"
 #include "core/bus/haptic_update.h"
 #include "core/sim/simulation.h"
+#include "engine/condense.h"
 #include "engine/exchange_pause.h"
 
 namespace insula {
@@ -42,6 +43,7 @@ class Publisher {
   insula_lcm::scene_info_t info_;
   insula_lcm::render_frame_t frame_;
   HapticUpdate update_;
+  Condenser condense_;
   ExchangePause pause_;
   std::vector<std::uint8_t> scratch_;
 };

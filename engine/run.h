@@ -53,8 +53,17 @@ struct EngineOptions {
   bool unthrottled = false;
   int threads = 0;
   std::uint64_t seed = 0;
+  bool keep_bundle = false;       ///< for a replay
 };
 /// The engine process of a session; talks over the bus of LCM_DEFAULT_URL until SIGINT or SIGTERM.
 int cmd_engine(const CommandContext& context, const EngineOptions& options);
+
+struct ReplayOptions {
+  std::filesystem::path log;  ///< of lcm-logger
+  double speed = 1;
+  bool loop = false;
+};
+/// Plays what viewers show of a recorded session onto the bus.
+int cmd_replay(const CommandContext& context, const ReplayOptions& options);
 
 }  // namespace insula

@@ -16,6 +16,14 @@ bool finite(const Pose& pose) {
   return pose.p.allFinite() && pose.q.coeffs().allFinite() && std::abs(pose.q.squaredNorm() - 1) < 1e-3;
 }
 
+/// What DEVICE_STATE may say. Anything else counts as a device that is gone: one hand's broken reading must not make the
+/// engine refuse the message that carries the other hand's.
+bool sound(const DeviceReading& r) {
+  const double q[4] = {r.pose.q.w(), r.pose.q.x(), r.pose.q.y(), r.pose.q.z()};
+  return within(r.pose.p.data(), 3, limits::position_m) && unit_quaternion(q) && within(r.v.data(), 3, limits::speed_m_s) &&
+         within(r.w.data(), 3, limits::spin_rad_s);
+}
+
 /// The device pose that the problem was built with; false when it has no tool of this hand.
 bool device_in_problem(const HapticUpdate& update, int hand, Pose& pose) {
   for (std::size_t t = 0; t < update.problem.tools.size() && t < 2; ++t) {
@@ -117,8 +125,10 @@ bool HapticServer::live(const ServoHand& hand, std::int64_t now) const noexcept 
   if (stopping_.load(std::memory_order_relaxed) || !last_.solved || !hand.valid) return false;
   const Received& r = problems_.front();
   const std::int64_t stale_ns = std::int64_t(SafetyGate::stale_after_s * 1e9);
-  // By arrival and by the engine's own stamp: a queue that drains late must not pass for a living engine.
-  return now - r.receive_ns <= stale_ns && now - r.update.time_us * 1000 <= stale_ns;
+  // By arrival and by the engine's own stamp: a queue that drains late must not pass for a living engine. What arrived in the
+  // future says that the clock went back, and nothing of how old it is.
+  const std::int64_t age = now - r.receive_ns;
+  return age >= 0 && age <= stale_ns && now - r.update.time_us * 1000 <= stale_ns;
 }
 
 void HapticServer::tick(std::int64_t due_ns, std::int64_t missed) noexcept {
@@ -146,7 +156,7 @@ void HapticServer::tick(std::int64_t due_ns, std::int64_t missed) noexcept {
       hand.device->advance(arm_dt);
     }
     hand.reading = hand.device->read();
-    if (!finite(hand.reading.pose)) hand.reading = DeviceReading{};
+    if (!sound(hand.reading)) hand.reading = DeviceReading{};
     // An arm that waits for its place is at no place at all.
     if (!hand.placed) hand.reading.connected = false;
     input.device[i] = hand.reading.pose;

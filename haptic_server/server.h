@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/bus/arrival_order.h"
 #include "core/bus/bus.h"
 #include "core/bus/codec.h"
 #include "haptic_server/clock.h"
@@ -120,7 +121,7 @@ class HapticServer {
   std::int64_t run_ = 0;
 
   // Receiving thread's own.
-  std::int64_t newest_session_ = 0, newest_sequence_ = 0, newest_ns_ = 0;
+  ArrivalOrder order_;
   std::string setup_key_;
   std::array<Wish, 2> wishes_{};
   insula_lcm::scene_info_t scene_info_;
@@ -152,6 +153,7 @@ class HapticServer {
   StatusCollector collector_;
   insula_lcm::haptic_status_t status_{};
   insula_lcm::device_state_t state_{};
+  std::int64_t missed_now_ = 0;  ///< ticks, since the status before
   std::int64_t status_start_ns_ = 0, status_sequence_ = 0, state_sequence_ = 0;
   std::vector<std::uint8_t> scratch_;
 };

@@ -10,8 +10,6 @@
 namespace insula {
 namespace {
 
-/// After this silence a session with an earlier start, or an earlier number, is believed.
-constexpr std::int64_t silence_ns = 1'000'000'000;
 /// A step that ended this far in the future was stamped by another clock.
 constexpr std::int64_t future_us = 20'000;
 
@@ -39,12 +37,8 @@ void HapticServer::on_problem(Bytes bytes) {
   const std::int64_t now = clock_.now_ns();
   if (u.problem.rows > servo_max_rows) return refuse("HAPTIC_PROBLEM", "too many rows");
   if (u.time_us > now / 1000 + future_us) return refuse("HAPTIC_PROBLEM", "stamped with a time to come");
-  const bool silence = newest_ns_ == 0 || now - newest_ns_ > silence_ns;
-  if (!silence && u.session < newest_session_) return;  // an engine that was replaced
-  if (!silence && u.session == newest_session_ && u.sequence <= newest_sequence_) return;  // out of order
-  newest_session_ = u.session;
-  newest_sequence_ = u.sequence;
-  newest_ns_ = slot.receive_ns = now;
+  if (!order_.take(u.session, u.sequence, now)) return;
+  slot.receive_ns = now;
   received_.fetch_add(1, std::memory_order_relaxed);
   problems_.publish();
 }
@@ -127,7 +121,8 @@ std::string HapticServer::note(double age_ms) const {
     std::lock_guard lock(remark_mutex_);
     if (!remark_.empty()) return remark_;
   }
-  return options_.advice;
+  const std::string late = budget_advice(status_, options_.period_s * 1e6, missed_now_);
+  return late.empty() ? options_.advice : late;
 }
 
 const insula_lcm::haptic_status_t& HapticServer::publish_status() {
@@ -138,7 +133,9 @@ const insula_lcm::haptic_status_t& HapticServer::publish_status() {
   status_.session = run_;
   status_.sequence = ++status_sequence_;
   status_.time_us = now / 1000;
-  status_.missed_ticks = missed_.load(std::memory_order_relaxed);
+  const std::int64_t missed = missed_.load(std::memory_order_relaxed);
+  missed_now_ = missed - status_.missed_ticks;
+  status_.missed_ticks = missed;
   const Snapshot& s = snapshots_.front();
   status_.problem_age_ms = s.receive_ns == 0 ? -1 : double(std::max<std::int64_t>(0, now - s.receive_ns)) * 1e-6;
   status_.problems_received = received_.load(std::memory_order_relaxed);

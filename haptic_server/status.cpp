@@ -2,7 +2,10 @@
 // Percentiles and rates of the servo.
 #include "haptic_server/status.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <iterator>
 
 namespace insula {
 namespace {
@@ -34,6 +37,9 @@ void StatusCollector::finish(double elapsed_s, insula_lcm::haptic_status_t& stat
   status.lateness_us_p50 = percentile(lateness_, 0.50);
   status.lateness_us_p99 = percentile(lateness_, 0.99);
   status.lateness_us_max = lateness_.empty() ? 0 : *std::max_element(lateness_.begin(), lateness_.end());
+  std::fill(std::begin(status.lateness_count), std::end(status.lateness_count), 0);
+  for (const float late : lateness_)
+    ++status.lateness_count[std::lower_bound(lateness_bounds_us.begin(), lateness_bounds_us.end(), late) - lateness_bounds_us.begin()];
   status.solve_us_p50 = percentile(solve_, 0.50);
   status.solve_us_p99 = percentile(solve_, 0.99);
   status.sweeps_mean = solve_.empty() ? 0 : sweeps_ / double(solve_.size());
@@ -43,6 +49,21 @@ void StatusCollector::finish(double elapsed_s, insula_lcm::haptic_status_t& stat
   solve_.clear();
   fresh_ = {0, 0};
   sweeps_ = residual_ = 0;
+}
+
+std::string budget_advice(const insula_lcm::haptic_status_t& s, double period_us, std::int64_t missed) {
+  if (!(s.ticks_per_s > 0)) return {};
+  if (s.solve_us_p99 > 0.7 * period_us)
+    return fmt::format("solving takes {:.0f} us of a tick's {:.0f}: forces come late; less in contact at once ({} rows), or a faster processor",
+                       s.solve_us_p99, period_us, s.rows);
+  const char* cure = s.realtime ? "end what else runs on this machine, or try --spin 100" : "allow real-time scheduling (manual: Haptics and safety)";
+  const double share = double(missed) / (double(missed) + s.ticks_per_s);
+  if (share > 0.01) return fmt::format("{:.0f} % of the servo's ticks were missed: {}", 100 * share, cure);
+  if (s.lateness_us_p99 > 0.5 * period_us) return fmt::format("ticks begin up to {:.0f} us late: {}", s.lateness_us_p99, cure);
+  if (s.residual_m_max > 1e-4)
+    return fmt::format("forces are {:.2f} mm from their solution after {:.0f} sweeps of {} rows: less in contact at once", 1e3 * s.residual_m_max,
+                       s.sweeps_mean, s.rows);
+  return {};
 }
 
 }  // namespace insula

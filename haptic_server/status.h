@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <insula_lcm/haptic_status_t.hpp>
+#include <string>
 #include <vector>
 
 namespace insula {
@@ -20,6 +21,13 @@ struct TickSample {
   /// touched the force itself is next to nothing and so is the difference.
   std::array<bool, 2> fresh{false, false};
 };
+
+/// Upper bounds of HAPTIC_STATUS.lateness_count's entries, us; the last entry has none.
+inline constexpr std::array<float, 11> lateness_bounds_us{10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000};
+
+/// What to do about a servo that does not keep to its time, in one line; empty when it does. period_us: of its ticks;
+/// missed: since the status before.
+std::string budget_advice(const insula_lcm::haptic_status_t& status, double period_us, std::int64_t missed);
 
 /// Collects a period (a second) of samples. One thread.
 class StatusCollector {

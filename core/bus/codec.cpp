@@ -55,7 +55,7 @@ bool well_formed(const insula_lcm::haptic_status_t* type, Bytes bytes) {
   in.take(3 * size_i64);  // session, sequence, time
   in.take(3 * size_f64);  // ticks, fresh forces
   in.take(size_i64);      // missed ticks
-  in.take(7 * size_f64);  // lateness, solve, sweeps, residual
+  in.take(7 * size_f64 + 12 * size_i32);  // lateness and its histogram, solve, sweeps, residual
   in.take(size_i32 + size_f64 + 2 * size_i64 + size_i8);
   in.skip_string();
   return in.at_end();

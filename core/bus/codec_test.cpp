@@ -176,7 +176,7 @@ TYPED_TEST(Codec, RandomDamage) {
   TypeParam got = sample<TypeParam>();
   std::string why;
   int refused = 0;
-  for (int i = 0; i < 200'000; ++i) {
+  for (int i = 0; i < 1'000'000; ++i) {
     const Buffer damaged = mutate(whole);
     if (decode(Bytes(damaged), got, why)) {
       ASSERT_TRUE(plausible(got, why));
@@ -186,7 +186,7 @@ TYPED_TEST(Codec, RandomDamage) {
       ++refused;
     }
   }
-  EXPECT_GT(refused, 50'000);
+  EXPECT_GT(refused, 250'000);
 }
 
 TYPED_TEST(Codec, OtherTypesAreRefused) {

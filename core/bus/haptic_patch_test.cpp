@@ -130,7 +130,8 @@ TEST(HapticPatch, RandomDamageNeverGetsThroughUnseen) {
   int accepted = 0;
   std::string why;
   for (int i = 0; i < 50'000; ++i) {
-    const Buffer damaged = mutate(whole);
+    Buffer damaged = mutate(whole);
+    seal_problem(damaged);
     const bool ok = decode_problem(damaged, into, why);
     ASSERT_TRUE(encode_problem(into, now));
     ASSERT_EQ(now, ok ? damaged : before);

@@ -2,6 +2,8 @@
 // Flat encoder and decoder of haptic_problem_t. The decoder validates the bytes in place first and writes only then.
 #include "core/bus/haptic_update.h"
 
+#include <zlib.h>
+
 #include <algorithm>
 #include <cmath>
 #include <insula_lcm/haptic_problem_t.hpp>
@@ -38,6 +40,8 @@ void write_matrix(ByteWriter& w, const Mat6& m) {
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < 6; ++j) w.f64(m(i, j));
 }
+
+std::uint32_t checksum(Bytes bytes) { return std::uint32_t(::crc32(0, bytes.data(), unsigned(bytes.size()))); }
 
 // --- reading --------------------------------------------------------------------------------------------------------------
 
@@ -113,7 +117,10 @@ bool find_parts(Bytes bytes, Layout& l, const char*& why) {
     return false;
   }
   l.jacobian = in.take_array(jacobian_size, 4);
-  return in.at_end();
+  const auto said = std::uint32_t(in.i32());
+  if (!in.at_end()) return false;
+  why = "damaged on its way: the checksum is wrong";
+  return said == checksum(bytes.first(bytes.size() - 4));
 }
 
 bool header_ok(const Layout& l, const char*& why) {
@@ -348,7 +355,16 @@ bool encode_problem(const HapticUpdate& update, std::vector<std::uint8_t>& out) 
   for (const ToolTerms& tool : p.tools)
     for (int i = 0; i < p.rows; ++i)
       for (int c = 0; c < 6; ++c) w.f32(float(tool.jacobian(i, c)));
+  w.i32(0);
+  seal_problem(out);
   return true;
+}
+
+void seal_problem(std::vector<std::uint8_t>& message) {
+  if (message.size() < 4) return;
+  const std::size_t end = message.size() - 4;
+  const std::uint32_t sum = __builtin_bswap32(checksum(Bytes(message.data(), end)));
+  std::memcpy(message.data() + end, &sum, 4);
 }
 
 bool decode_problem(Bytes bytes, HapticUpdate& into, std::string& why) {

@@ -29,9 +29,14 @@ struct HapticUpdate {
 /// Writes the message into `out`, which keeps its capacity. W, Jacobians, friction and compliance travel as float32, W as
 /// its lower triangle. False, with `out` empty, when the problem has no wire form: more than 240 rows or 2 tools, or vectors
 /// that do not match `rows`.
+/// The last four bytes are a checksum: UDP checks nothing on a loopback interface, and a bit that flips in the mantissa of a
+/// number leaves it plausible.
 bool encode_problem(const HapticUpdate& update, std::vector<std::uint8_t>& out);
 
-/// Reads and validates: sizes agree with each other and with the message's length; every number finite and of plausible
+/// Gives changed bytes of a message the checksum that belongs to them (tests of what is behind it).
+void seal_problem(std::vector<std::uint8_t>& message);
+
+/// Reads and validates: sizes agree with each other and with the message's length; the checksum is right; every number finite and of plausible
 /// magnitude (|delta| < 1 m, |W| < 1e4 m/N, |lambda| < 1e4 N); W's diagonal >= 0; blocks cover all rows once, in order, with
 /// unique ids, known laws, lower <= upper, friction in [0, 10], compliance >= 0; lambda within its law; at most two tools with
 /// distinct hands, unit quaternions, symmetric compliance and stiffness with a non-negative diagonal.

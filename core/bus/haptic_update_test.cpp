@@ -88,8 +88,9 @@ TEST(HapticUpdate, RandomDamageNeverGetsThroughUnseen) {
   int accepted = 0;
   std::string why;
   Buffer now;
-  for (int i = 0; i < 200'000; ++i) {
-    const Buffer damaged = mutate(whole);
+  for (int i = 0; i < 1'000'000; ++i) {
+    Buffer damaged = mutate(whole);
+    seal_problem(damaged);  // the checksum alone would refuse all of them
     const bool ok = decode_problem(damaged, into, why);
     ASSERT_TRUE(encode_problem(into, now));
     if (ok) {
@@ -102,7 +103,7 @@ TEST(HapticUpdate, RandomDamageNeverGetsThroughUnseen) {
     }
   }
   EXPECT_GT(accepted, 0);  // some damage is harmless: another plausible number
-  EXPECT_LT(accepted, 150'000);
+  EXPECT_LT(accepted, 750'000);
 }
 
 struct Fault {

@@ -62,7 +62,7 @@ bool plausible(const insula_lcm::device_state_t& m, std::string& why) {
     if (!flag_ok(h.connected) || !flag_ok(h.button1) || !flag_ok(h.button2)) return fail(why, "flag is neither 0 nor 1");
     if (!within(h.p_m, 3, limits::position_m)) return fail(why, "device position out of range");
     if (!unit_quaternion(h.q)) return fail(why, "device orientation is no unit quaternion");
-    if (!within(h.v_m_s, 3, 1e3) || !within(h.w_rad_s, 3, 1e5)) return fail(why, "device velocity out of range");
+    if (!within(h.v_m_s, 3, limits::speed_m_s) || !within(h.w_rad_s, 3, limits::spin_rad_s)) return fail(why, "device velocity out of range");
     if (!within(h.force_N, 3, 100) || !within(h.torque_Nm, 3, 100)) return fail(why, "device force out of range");
   }
   return true;
@@ -86,6 +86,7 @@ bool plausible(const insula_lcm::haptic_status_t& m, std::string& why) {
     if (!non_negative(v, 1e6)) return fail(why, "rate out of range");
   for (double v : {m.lateness_us_p50, m.lateness_us_p99, m.lateness_us_max, m.solve_us_p50, m.solve_us_p99})
     if (!non_negative(v, most_us)) return fail(why, "time out of range");
+  if (std::any_of(std::begin(m.lateness_count), std::end(m.lateness_count), [](int n) { return n < 0; })) return fail(why, "negative count");
   if (!non_negative(m.sweeps_mean, 1e6) || !non_negative(m.residual_m_max, 1e6))
     return fail(why, "solver figures out of range");
   if (!(std::abs(m.problem_age_ms) <= most_us)) return fail(why, "age out of range");  // -1: no problem yet

@@ -35,6 +35,8 @@ namespace limits {
 inline constexpr double position_m = 10;      ///< of any coordinate in the scene frame
 inline constexpr double unit_tolerance = 1e-4;  ///< of a quaternion's norm
 inline constexpr double force_N = 1e4;
+inline constexpr double speed_m_s = 1e3;       ///< of a device
+inline constexpr double spin_rad_s = 1e5;
 inline constexpr double opening_rad = 3.2;     ///< of an articulated tool, either way
 }  // namespace limits
 

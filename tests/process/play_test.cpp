@@ -2,83 +2,18 @@
 // A session with real processes: kills, garbage on the bus, pages that watch.
 #include <gtest/gtest.h>
 
-#include <boost/asio/connect.hpp>
-#include <boost/asio/ip/tcp.hpp>
-#include <boost/beast/core.hpp>
-#include <boost/beast/websocket.hpp>
 #include <random>
 
 #include "core/bus/mutate_for_test.h"
+#include "tests/process/forces.h"
+#include "tests/process/page.h"
 #include "tests/process/play_session.h"
-#include "viewer/gateway/framing.h"
 
 namespace insula {
 namespace {
 
 using namespace testing;
-namespace beast = boost::beast;
-using tcp = boost::asio::ip::tcp;
 using Buffer = std::vector<std::uint8_t>;
-
-// The simulated arm's largest change of force (haptic_server's profile of a Phantom Omni): all of it within 50 ms.
-constexpr double slew_N_s = 66;
-
-/// A page: counts the frames it gets, on a thread of its own; comes back when the connection ends.
-class Page {
- public:
-  explicit Page(const PlaySession& session) : session_(session), thread_([this] { run(); }) {}
-  ~Page() {
-    stop_ = true;
-    thread_.join();
-  }
-  Page(const Page&) = delete;
-  Page& operator=(const Page&) = delete;
-
-  std::set<std::int64_t> frames(std::int64_t session) const {
-    std::lock_guard lock(mutex_);
-    const auto found = frames_.find(session);
-    return found == frames_.end() ? std::set<std::int64_t>{} : found->second;
-  }
-  int connections() const { return connections_; }
-
- private:
-  void run() {
-    while (!stop_) {
-      try {
-        connect_and_read();
-      } catch (const std::exception&) {
-        std::this_thread::sleep_for(50ms);
-      }
-    }
-  }
-  void connect_and_read() {
-    boost::asio::io_context io;
-    beast::websocket::stream<tcp::socket> ws(io);
-    ws.next_layer().connect({boost::asio::ip::make_address("127.0.0.1"), std::uint16_t(session_.port())});
-    timeval limit{1, 0};
-    ::setsockopt(ws.next_layer().native_handle(), SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
-    ws.handshake("127.0.0.1", "/ws");
-    ++connections_;
-    beast::flat_buffer in;
-    while (!stop_) {
-      ws.read(in);
-      const auto parts = gateway::unframe(Bytes(static_cast<const std::uint8_t*>(in.cdata().data()), in.size()));
-      if (parts && parts->channel == channel::render_frame)
-        if (const auto m = decode<insula_lcm::render_frame_t>(parts->payload)) {
-          std::lock_guard lock(mutex_);
-          frames_[m->session].insert(m->sequence);
-        }
-      in.consume(in.size());
-    }
-  }
-
-  const PlaySession& session_;
-  std::atomic<bool> stop_{false};
-  std::atomic<int> connections_{0};
-  mutable std::mutex mutex_;
-  std::map<std::int64_t, std::set<std::int64_t>> frames_;
-  std::thread thread_;
-};
 
 class Play : public ::testing::Test {
  protected:
@@ -91,35 +26,11 @@ class Play : public ::testing::Test {
   }
   void TearDown() override {
     if (!watcher_) return;
-    expect_slew_limit();
+    expect_slew_limit(watcher_->samples());
     if (HasFailure()) std::fputs(session_->log().c_str(), stderr);
   }
   bool runs() const {
     return wait_for([&] { return session_->port() > 0 && watcher_->frames_now() > 20 && watcher_->last() && watcher_->status().rows >= 0; });
-  }
-  /// Over everything seen: within one life of the server no two samples differ by more than the limit allows in the time
-  /// between them, and each life starts from nothing.
-  void expect_slew_limit() const {
-    const auto samples = watcher_->samples();
-    int steps = 0;
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      const Sample& b = samples[i];
-      if (i == 0 || samples[i - 1].session != b.session) {
-        // The first sample of a life may be some ticks old.
-        for (const Vec3& f : b.force) EXPECT_LE(i == 0 ? 0.0 : f.norm(), slew_N_s * 0.1);
-        continue;
-      }
-      const Sample& a = samples[i - 1];
-      ASSERT_GE(b.time_us, a.time_us);
-      const double limit = slew_N_s * double(b.time_us - a.time_us) * 1e-6 + slew_N_s * 1e-3;  // and one tick
-      for (int hand = 0; hand < 2; ++hand) {
-        ASSERT_TRUE(b.force[hand].allFinite());
-        EXPECT_LE((b.force[hand] - a.force[hand]).norm(), limit) << "sample " << i;
-        EXPECT_LE(b.force[hand].norm(), 3.3 + 1e-9);
-      }
-      ++steps;
-    }
-    EXPECT_GT(steps, 20);
   }
   /// Forces of one life of the server are exactly zero at some time at most `longest_us` after `since_us`.
   void expect_silence(std::int64_t server, std::int64_t since_us, std::int64_t longest_us) const {

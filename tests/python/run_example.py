@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs examples/python/exchange_and_forces.py in a virtual environment of its own against a real engine and haptic server
+"""Runs examples/python/*.py in a virtual environment of its own against a real engine and haptic server
 on a bus of their own, and checks what it prints.
 
     run_example.py SOURCE_FOLDER BUILD_FOLDER LCM_GEN
@@ -96,6 +96,8 @@ def main():
         try:
             run = subprocess.run([python, str(source / "examples/python/exchange_and_forces.py"), "--types", str(types), "--seconds", "2", "--wait", "90"],
                                  env=env, capture_output=True, text=True, timeout=240)
+            spied = [subprocess.run([python, str(source / "examples/python/spy.py"), "--types", str(types), "--seconds", "2.5"] + more,
+                                    env=env, capture_output=True, text=True, timeout=60) for more in ([], ["--show", "HAPTIC_STATUS"])]
             alive = [p.poll() is None for p in processes]
         finally:
             for p in processes:
@@ -109,6 +111,10 @@ def main():
     for side in ("left", "right"):
         expected.append(r"^%s hand: [1-9]\d+ forces, mean \d+\.\d+ N, largest \d+\.\d+ N$" % side)
     missing = [e for e in expected if not re.search(e, run.stdout, re.M)]
+    for spy, lines in zip(spied, ([r"^%s +[1-9]\d* +\d+\.\d$" % c for c in ("DEVICE_STATE", "HAPTIC_PROBLEM", "RENDER_FRAME")],
+                                  [r"^HAPTIC_STATUS$", r"^  fresh_forces_per_s +\[", r"^  lateness_count +\[\d+, .*\]$"])):
+        assert spy.returncode == 0, spy.stderr
+        missing += [e for e in lines if not re.search(e, spy.stdout, re.M)]
     assert run.returncode == 0, run.returncode
     assert not missing, missing
     assert "refused" not in run.stdout

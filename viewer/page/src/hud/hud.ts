@@ -7,6 +7,7 @@ import type { Role } from '../options';
 import { ClipChooser } from './clips';
 import { find_command, type UserCommand } from './commands';
 import { el, set_text } from './dom';
+import { HapticPanel } from './haptic';
 import { make_help } from './help';
 import { InstructorPanel } from './instructor';
 import { Progress } from './progress';
@@ -69,6 +70,7 @@ export class Hud {
   private readonly banner = el('div', { class: 'banner', role: 'status' });
   private readonly link = el('span', { class: 'link' });
   private readonly machine = el('span', { class: 'machine' });
+  private readonly haptic = new HapticPanel();
   private readonly pause = el('button', {}, 'Pause');
   private readonly hands: HandPanel[];
   private bundle: Bundle | null = null;
@@ -103,7 +105,7 @@ export class Hud {
       el('div', { class: 'column right' },
         el('section', { class: 'panel' }, ...this.hands.map((h) => h.root), this.clips.root, controls, this.view.root, ...(may_drive ? [touch] : [])),
         ...(this.instructor ? [this.instructor.root] : [])),
-      el('footer', {}, el('span', { class: 'warn' }, 'For training only. Not for patient care.'), this.machine, this.link),
+      el('footer', {}, el('span', { class: 'warn' }, 'For training only. Not for patient care.'), this.haptic.root, this.machine, this.link),
       this.message, this.banner, this.toasts.root, this.help);
   }
 
@@ -163,8 +165,7 @@ export class Hud {
   show_machine(f: RenderFrame | null, haptic: HapticStatus | null, fps: number, quality: string): void {
     const parts: string[] = [];
     if (f) parts.push(`step ${f.step_ms.toFixed(1)} / ${f.step_period_ms.toFixed(1)} ms`, `${f.rows} rows`);
-    if (haptic) parts.push(`haptics ${haptic.ticks_per_s.toFixed(0)} /s, fresh ${haptic.fresh_forces_per_s[0]!.toFixed(0)} · ${haptic.fresh_forces_per_s[1]!.toFixed(0)}`);
-    else parts.push('haptics –');
+    this.haptic.show(haptic);
     parts.push(`${fps.toFixed(0)} fps ${quality}`);
     set_text(this.machine, parts.join('   '));
     this.machine.classList.toggle('slow', !!f && f.step_ms > f.step_period_ms);

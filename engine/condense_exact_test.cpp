@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the tools feel of a condensed problem against the whole one, with the devices away from where it was built.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/testing/count_allocations.h"
+#include "core/bus/haptic_update.h"
+#include "engine/condense.h"
+#include "engine/publisher.h"
+#include "haptic_server/servo.h"
+#include "haptic_server/test_problem.h"
+
+namespace insula {
+namespace {
+
+using testing::Random;
+using Wrenches = std::array<Vec6, 2>;
+constexpr int all_rows = 360, most_rows = 206;
+
+/// 360 rows: `contacts` of three rows, 16 patches of five, the rest fibres. A tool touches the first twenty contacts, four patches and
+/// six fibres. Where none does, friction is `sticky`; of the other fibres `unbounded` have laws without bounds, every second of them bilateral.
+ConstraintProblem problem(int contacts, int unbounded, std::uint64_t seed, double sticky = 0.3) {
+  const int patches = 16, fibres = all_rows - 3 * contacts - 5 * patches;
+  ConstraintProblem p = testing::two_tool_problem(contacts, fibres, seed, patches);
+  int fibre = 0, patch_row = 0;
+  for (Block& b : p.blocks) {
+    bool felt = b.row < 60;
+    if (b.id >= 5000 && b.id < 9000) {
+      felt = fibre++ < 6;
+      if (!felt && fibre - 6 <= unbounded) {
+        b.upper = infinite;
+        if (fibre % 2) b.compliance = 0;
+      }
+    } else if (b.id >= 9000) {
+      felt = patch_row++ < 16;  // four blocks a patch
+    }
+    if (!felt && b.law != LawKind::box) b.friction = sticky;
+    for (int k = 0; k < b.rows() && !felt; ++k)
+      for (ToolTerms& t : p.tools) t.jacobian.row(b.row + k).setZero();
+  }
+  return p;
+}
+
+void solve_well(const ConstraintProblem& p, const std::vector<double>& delta_free, std::vector<double>& lambda) {
+  SolveWorkspace ws;
+  ws.reserve(p.rows);
+  ws.lambda = lambda;
+  solve(p, delta_free, {.max_sweeps = 3000, .tolerance_m = 1e-17, .max_newton = 40}, ws);
+  lambda = ws.lambda;
+}
+
+/// Equation 7 with the devices moved by d.
+Wrenches felt(const ConstraintProblem& p, const Wrenches& d) {
+  std::vector<double> delta_free = p.delta_free, lambda = p.lambda;
+  for (std::size_t t = 0; t < 2; ++t) {
+    const VecX more = p.tools[t].jacobian * (p.tools[t].gain * d[t]);
+    for (int i = 0; i < p.rows; ++i) delta_free[std::size_t(i)] += more[i];
+  }
+  solve_well(p, delta_free, lambda);
+  Wrenches out;
+  for (std::size_t t = 0; t < 2; ++t) {
+    const ToolTerms& tool = p.tools[t];
+    const Vec6 push = tool.jacobian.transpose() * Eigen::Map<const VecX>(lambda.data(), p.rows);
+    out[t] = tool.stiffness * displacement(displaced(tool.device, d[t]), displaced(tool.free, tool.gain * d[t] + tool.compliance * push));
+  }
+  return out;
+}
+
+Wrenches moved(Random& random, double size_m) {
+  Wrenches d;
+  for (Vec6& v : d) v << random.vector(size_m), random.vector(size_m / 0.02);
+  return d;
+}
+
+/// Newtons, moments counted at a lever of 2 cm.
+double apart(const Wrenches& a, const Wrenches& b) {
+  double most = 0;
+  for (std::size_t t = 0; t < 2; ++t) most = std::max({most, (a[t] - b[t]).head<3>().norm(), (a[t] - b[t]).tail<3>().norm() / 0.02});
+  return most;
+}
+
+TEST(CondenseExact, RowsWithoutBoundsAreEliminatedExactlyWhereverTheToolsGo) {
+  // 40 contacts, 16 patches and the 6 fibres that are felt fit; everything else is linear.
+  ConstraintProblem full = problem(40, 154, 7);
+  solve_well(full, full.delta_free, full.lambda);
+  ConstraintProblem small;
+  Condenser()(full, most_rows, small);
+  ASSERT_EQ(small.rows, most_rows);
+  Random random(3);
+  for (int k = 0; k < 12; ++k) {
+    const Wrenches d = moved(random, k < 8 ? 1e-3 : 1e-2);
+    const Wrenches whole = felt(full, d);
+    EXPECT_GT(whole[0].norm(), 0.01);
+    EXPECT_LT(apart(whole, felt(small, d)), 1e-9) << k;
+  }
+}
+
+TEST(CondenseExact, MixedStatesAreExactUntilOneChanges) {
+  ConstraintProblem full = problem(60, 50, 11, 1.5);
+  solve_well(full, full.delta_free, full.lambda);
+  ConstraintProblem small;
+  Condenser()(full, most_rows, small);
+  ASSERT_LE(small.rows, most_rows);
+  ASSERT_GT(small.rows, most_rows - 5);
+  // All others held, which is what was done before there was an elimination.
+  ConstraintProblem held = small;
+  for (int i = 0; i < small.rows; ++i) {
+    const auto original = [&](int row) {
+      for (const Block& s : small.blocks)
+        if (row >= s.row && row < s.row + s.rows())
+          for (const Block& b : full.blocks)
+            if (b.id == s.id) return b.row + row - s.row;
+      return -1;
+    };
+    held.delta_free[std::size_t(i)] = full.delta_free[std::size_t(original(i))];
+    for (int c = 0; c < full.rows; ++c) held.delta_free[std::size_t(i)] += full.w_at(original(i), c) * full.lambda[std::size_t(c)];
+    for (int j = 0; j < small.rows; ++j) {
+      held.w[std::size_t(i) * std::size_t(held.stride) + std::size_t(j)] = full.w_at(original(i), original(j));
+      held.delta_free[std::size_t(i)] -= full.w_at(original(i), original(j)) * small.lambda[std::size_t(j)];
+    }
+  }
+  Random random(4);
+  double far = 0, far_held = 0, change = 0;
+  const Wrenches rest = felt(full, {Vec6::Zero(), Vec6::Zero()});
+  EXPECT_LT(apart(rest, felt(small, {Vec6::Zero(), Vec6::Zero()})), 1e-9);
+  for (int k = 0; k < 10; ++k) {
+    const Wrenches near = moved(random, 2e-7);
+    EXPECT_LT(apart(felt(full, near), felt(small, near)), 1e-9) << k;
+    const Wrenches d = moved(random, 1e-3), whole = felt(full, d);
+    far = std::max(far, apart(whole, felt(small, d)));
+    far_held = std::max(far_held, apart(whole, felt(held, d)));
+    change = std::max(change, apart(whole, rest));
+  }
+  std::printf("a millimetre away: %.2e N of a change of %.2e N, held %.2e N\n", far, change, far_held);
+  EXPECT_LT(far, 0.02 * change);
+  EXPECT_LT(far, 0.5 * far_held);
+}
+
+TEST(CondenseExact, RowsThatHangOnOthersAreHeld) {
+  // The same bilateral row three times: W_EE is singular.
+  ConstraintProblem full = problem(40, 154, 9);
+  std::vector<int> twins;
+  for (const Block& b : full.blocks)
+    if (b.upper == infinite && b.law == LawKind::box && b.compliance == 0 && twins.size() < 3 && b.lower == -infinite) twins.push_back(b.row);
+  ASSERT_EQ(twins.size(), 3u);
+  const auto w = [&](int i, int j) -> double& { return full.w[std::size_t(i) * std::size_t(full.stride) + std::size_t(j)]; };
+  for (std::size_t k = 1; k < 3; ++k) {
+    for (int j = 0; j < full.rows; ++j) w(twins[k], j) = w(twins[0], j);
+    for (int j = 0; j < full.rows; ++j) w(j, twins[k]) = w(j, twins[0]);
+    full.delta_free[std::size_t(twins[k])] = full.delta_free[std::size_t(twins[0])];
+  }
+  solve_well(full, full.delta_free, full.lambda);
+  ConstraintProblem small;
+  Condenser()(full, most_rows, small);
+  Random random(5);
+  for (int k = 0; k < 4; ++k) {
+    const Wrenches d = moved(random, 1e-3);
+    EXPECT_LT(apart(felt(full, d), felt(small, d)), 1e-7) << k;
+  }
+}
+
+TEST(CondenseExact, ThreeHundredAndSixtyRowsAreServedOverTheBus) {
+  ConstraintProblem full = problem(60, 50, 11, 1.5);
+  solve_well(full, full.delta_free, full.lambda);
+  HapticUpdate sent, got;
+  sent.step_s = 0.016;
+  Condenser()(full, Publisher::most_rows, sent.problem);
+  std::vector<std::uint8_t> bytes;
+  std::string why;
+  ASSERT_TRUE(encode_problem(sent, bytes));
+  EXPECT_LT(bytes.size(), 120'000u);
+  ASSERT_TRUE(decode_problem(bytes, got, why)) << why;
+  Servo servo;
+  servo.set_problem(&got.problem);
+  Random random(6);
+  for (int k = 0; k < 5; ++k) {
+    const Wrenches d = moved(random, 2e-4), whole = felt(full, d);
+    ServoInput input;
+    input.connected = {true, true};
+    for (std::size_t t = 0; t < 2; ++t) input.device[t] = displaced(full.tools[t].device, d[t]);
+    ServoResult result;
+    for (int tick = 0; tick < 5; ++tick) result = servo.tick(input);  // a hand moves less in a tick than from one k to the next
+    for (std::size_t t = 0; t < 2; ++t) {
+      ASSERT_TRUE(result.hand[t].valid);
+      EXPECT_LT((result.hand[t].force - whole[t].head<3>()).norm(), 0.02 * whole[t].head<3>().norm()) << k;
+    }
+  }
+}
+
+TEST(CondenseExact, AllocatesNothingOnceItHasItsSize) {
+  ConstraintProblem full = problem(60, 50, 11), small;
+  solve_well(full, full.delta_free, full.lambda);
+  Condenser condense;
+  condense(full, most_rows, small);
+  const long before = allocations;
+  condense(full, most_rows, small);
+  EXPECT_EQ(allocations - before, 0);
+}
+
+}  // namespace
+}  // namespace insula
