@@ -58,6 +58,7 @@ void condense(const ConstraintProblem& full, int most_rows, ConstraintProblem& s
   }
   std::sort(chosen.begin(), chosen.end());
   small.resize(rows);
+  small.step_s = full.step_s;
   small.blocks.clear();
   std::vector<int> source;
   std::vector<char> kept(n, 0);
@@ -77,6 +78,8 @@ void condense(const ConstraintProblem& full, int most_rows, ConstraintProblem& s
       if (!kept[c]) free += full.w_at(s, int(c)) * full.lambda[c];
     small.delta_free[std::size_t(i)] = free;
     small.lambda[std::size_t(i)] = full.lambda[std::size_t(s)];
+    small.rate[std::size_t(i)] = full.rate[std::size_t(s)];
+    small.relaxation[std::size_t(i)] = full.relaxation[std::size_t(s)];
     for (int j = 0; j < rows; ++j) small.w[std::size_t(i) * std::size_t(small.stride) + std::size_t(j)] = full.w_at(s, source[std::size_t(j)]);
   }
   small.tools = full.tools;

@@ -36,7 +36,7 @@ bool finite(const Vec6& v) {
 
 }  // namespace
 
-Servo::Servo(const ServoSettings& settings) : settings_(settings) {
+Servo::Servo(const ServoSettings& settings) : settings_(settings), response_(settings.response, servo_max_rows) {
   workspace_.reserve(servo_max_rows, false);  // sweeps alone
   kernels();  // chosen here once and not at the first tick
   delta_free_.assign(servo_max_rows, 0.0);
@@ -55,13 +55,14 @@ void Servo::remember_solution() noexcept {
   std::copy_n(workspace_.lambda.begin(), problem_->rows, last_lambda_.begin());
 }
 
-void Servo::set_problem(const ConstraintProblem* problem, const std::array<Pose, 2>& offset) noexcept {
+void Servo::set_problem(const ConstraintProblem* problem, const std::array<Pose, 2>& offset, double age_s) noexcept {
   // The old problem's memory may be rewritten after this call, so all that is needed of it is copied now.
   remember_solution();
   const bool fits = problem && problem->rows <= servo_max_rows && problem->blocks.size() <= std::size_t(servo_max_rows);
   problem_ = fits ? problem : nullptr;
   if (!problem_) return;
   offset_ = offset;
+  if (settings_.response.any()) response_.begin(*problem, age_s);
   workspace_.lambda.resize(std::size_t(problem_->rows));  // within its capacity
   const auto known_end = known_.begin() + std::ptrdiff_t(known_count_);
   for (const Block& b : problem_->blocks) {
@@ -81,6 +82,7 @@ ServoResult Servo::tick(const ServoInput& input) noexcept {
   if (!problem_) return result;
   const ConstraintProblem& p = *problem_;
   const int n = p.rows;
+  const bool in_ticks = settings_.response.any();
   result.rows = n;
 
   std::array<Vec6, 2> moved{Vec6::Zero(), Vec6::Zero()};
@@ -103,14 +105,20 @@ ServoResult Servo::tick(const ServoInput& input) noexcept {
       continue;
     }
     moved[t] = tool.gain * d;
-    add_product(tool.jacobian, moved[t], delta_free_, n);
+    if (!in_ticks) add_product(tool.jacobian, moved[t], delta_free_, n);
   }
 
   if (n > 0) {
     SolveSettings s;
     s.tolerance_m = settings_.tolerance_m;
     s.max_sweeps = std::clamp(int(settings_.max_operations / (double(n) * n)), 1, settings_.max_sweeps);
-    result.stats = solve(p, std::span<const double>(delta_free_.data(), std::size_t(n)), s, workspace_);
+    if (in_ticks) {
+      const ConstraintProblem& tick = response_.next(input.dt_s, moved);
+      result.stats = solve(tick, tick.delta_free, s, workspace_);
+      response_.solved(workspace_.lambda, workspace_.delta);
+    } else {
+      result.stats = solve(p, std::span<const double>(delta_free_.data(), std::size_t(n)), s, workspace_);
+    }
   }
   result.solved = true;
 

@@ -120,8 +120,8 @@ struct SimulationResult {
   std::unique_ptr<Simulation> simulation;  ///< null when diagnostics has an error
   Diagnostics diagnostics;
 };
-/// Loads, prepares and connects a scene.
-SimulationResult load_simulation(const std::filesystem::path& file, const Registry& registry, int threads = 0);
+/// Loads, prepares and connects a scene. time_step_s: in place of its own, 0: as written.
+SimulationResult load_simulation(const std::filesystem::path& file, const Registry& registry, int threads = 0, double time_step_s = 0);
 SimulationResult load_simulation_text(std::string_view text, const std::filesystem::path& virtual_path, const Registry& registry, int threads = 0);
 
 }  // namespace insula

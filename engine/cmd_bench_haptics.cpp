@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// insula bench --haptics: the servo's force against the engine stepped at 1 kHz.
+#include <fmt/ostream.h>
+
+#include <algorithm>
+
+#include "core/base/input_error.h"
+#include "engine/haptic_truth.h"
+#include "engine/live_engine.h"
+#include "engine/run.h"
+
+namespace insula {
+namespace {
+
+struct Variant {
+  const char* name;
+  ReplaySettings settings;
+};
+
+std::vector<Variant> variants(bool ablation) {
+  std::vector<Variant> out{{"held", {}}, {"diagonal of W", {}}, {"equation 7", {}}};
+  out[0].settings.rendering = Rendering::held;
+  out[1].settings.rendering = Rendering::diagonal;
+  ReplaySettings s;
+  if (ablation) {
+    s.servo.response.slip_by_tick = true;
+    out.push_back({"+ slip by tick", s});
+    s.servo.response.tissue_moves = true;
+    out.push_back({"+ tissue moves", s});
+    s.servo.response.tissue_moves = false;
+    s.servo.response.tissue_in_time = true;
+    out.push_back({"+ tissue in time", s});
+    s.servo.response.tissue_moves = true;
+    out.push_back({"+ both", s});
+  }
+  return out;
+}
+
+std::unique_ptr<Simulation> open(const CommandContext& context, const HapticBenchOptions& options, double step_s) {
+  SimulationResult loaded = load_simulation(options.scene, context.registry, options.threads, step_s);
+  context.err << loaded.diagnostics.format();
+  return std::move(loaded.simulation);
+}
+
+}  // namespace
+
+int cmd_bench_haptics(const CommandContext& context, const HapticBenchOptions& options) {
+  auto simulation = open(context, options, 1e-3);
+  if (!simulation) return 2;
+  Motion motion;
+  try {
+    motion = load_motion(find_motion(*simulation, options.motion));
+  } catch (const InputError& e) {
+    context.err << options.scene.string() << ": error: " << e.what() << '\n';
+    return 2;
+  }
+  const double duration = options.duration > 0 ? options.duration : motion.duration();
+  fmt::print(context.out, "{}, {}: {:.2f} s\n", options.scene.string(), options.motion, duration);
+  const ForceTrace reference = reference_forces(*simulation, motion, duration);
+  simulation.reset();
+  fmt::print(context.out, "  {:<6}{:<18}{:<7}{:>9}{:>9}{:>9}{:>11}\n", "Hz", "rendering", "hand", "peak mN", "rms %", "worst %", "onset ms");
+  for (const double rate : options.rates) {
+    auto engine = open(context, options, 1 / rate);
+    if (!engine) return 2;
+    const auto steps = record_steps(*engine, motion, duration);
+    engine.reset();
+    for (Variant& v : variants(options.ablation)) {
+      v.settings.latency_s = options.latency * steps.front().update.step_s;
+      v.settings.jitter = options.jitter;
+      const ForceTrace rendered = replay(steps, motion, duration, v.settings);
+      if (!options.traces.empty()) write_traces(options.traces / fmt::format("{:.0f}_{}.csv", rate, v.name), reference, rendered);
+      for (std::size_t hand = 0; hand < 2; ++hand) {
+        const TruthOfHand t = compare(reference.force[hand], rendered.force[hand]);
+        if (!t.counts()) continue;
+        fmt::print(context.out, "  {:<6.0f}{:<18}{:<7}{:>9.1f}{:>9.2f}{:>9.1f}{:>11.0f}\n", rate, v.name, hand ? "right" : "left", 1e3 * t.peak_N,
+                   100 * t.rms, 100 * t.worst, 1e3 * t.onset_s);
+      }
+    }
+    context.out.flush();
+  }
+  return 0;
+}
+
+}  // namespace insula
