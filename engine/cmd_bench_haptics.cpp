@@ -12,6 +12,8 @@
 namespace insula {
 namespace {
 
+constexpr double most_speeding_up = 1.5;  // a hand may be so much faster than in the step when it meets something
+
 struct Variant {
   const char* name;
   ReplaySettings settings;
@@ -23,6 +25,9 @@ std::vector<Variant> variants(bool ablation) {
   out[1].settings.rendering = Rendering::diagonal;
   ReplaySettings s;
   if (ablation) {
+    s.rendering = Rendering::hindsight;
+    out.push_back({"hindsight", s});
+    s.rendering = Rendering::servo;
     s.servo.response.slip_by_tick = true;
     out.push_back({"+ slip by tick", s});
     s.servo.response.tissue_moves = true;
@@ -62,6 +67,7 @@ int cmd_bench_haptics(const CommandContext& context, const HapticBenchOptions& o
   for (const double rate : options.rates) {
     auto engine = open(context, options, 1 / rate);
     if (!engine) return 2;
+    engine->look_ahead((options.latency + options.jitter + 1) / rate * most_speeding_up);
     const auto steps = record_steps(*engine, motion, duration);
     engine.reset();
     for (Variant& v : variants(options.ablation)) {

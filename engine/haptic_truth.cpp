@@ -118,6 +118,18 @@ ForceTrace replay(const std::vector<RecordedStep>& steps, const Motion& motion, 
       }
       servo.set_problem(settings.rendering == Rendering::diagonal ? &bare : &step.update.problem, step.update.offset, t - step.pose_s);
     }
+    if (settings.rendering == Rendering::hindsight) {
+      std::size_t after = 0;
+      while (after < steps.size() && steps[after].pose_s < t) ++after;
+      if (after == 0 || after == steps.size()) {
+        out.add(held[0], held[1]);
+        continue;
+      }
+      const RecordedStep &a = steps[after - 1], &b = steps[after];
+      const double s = (t - a.pose_s) / (b.pose_s - a.pose_s);
+      out.add((1 - s) * a.force[0] + s * b.force[0], (1 - s) * a.force[1] + s * b.force[1]);
+      continue;
+    }
     if (settings.rendering == Rendering::held) {
       out.add(held[0], held[1]);
       continue;

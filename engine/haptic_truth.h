@@ -37,7 +37,7 @@ ForceTrace reference_forces(Simulation& simulation, const Motion& motion, double
 /// Its problems at the rate of the simulation's own step, condensed, encoded and decoded as on the bus.
 std::vector<RecordedStep> record_steps(Simulation& simulation, const Motion& motion, double duration_s);
 
-enum class Rendering { servo, held, diagonal };
+enum class Rendering { servo, held, diagonal, hindsight };
 
 struct ReplaySettings {
   Rendering rendering = Rendering::servo;
@@ -48,7 +48,7 @@ struct ReplaySettings {
 };
 
 /// What the hands are given every millisecond. `held`: the engine's force until the next; `diagonal`: the servo with the diagonal of
-/// W alone, each row for itself.
+/// W alone, each row for itself; `hindsight`: the engine's forces joined by straight lines, as one who knows the next could.
 ForceTrace replay(const std::vector<RecordedStep>& steps, const Motion& motion, double duration_s, const ReplaySettings& settings);
 
 struct TruthOfHand {

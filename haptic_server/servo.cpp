@@ -44,7 +44,33 @@ Servo::Servo(const ServoSettings& settings) : settings_(settings), response_(set
   known_.resize(servo_max_rows);
 }
 
-void Servo::reset() noexcept { known_count_ = 0; }
+void Servo::reset() noexcept {
+  known_count_ = 0;
+  handover_ = {};
+}
+
+// What the old problem said last stays, and fades while the new one takes over: a step's news come as a slope and not as a jump.
+void Servo::hand_over(ServoResult& result, double dt) noexcept {
+  since_problem_ = fresh_problem_ ? 0 : since_problem_ + dt;
+  const double old = since_problem_ < settings_.handover_s ? 1 - since_problem_ / settings_.handover_s : 0;
+  for (std::size_t i = 0; i < 2; ++i) {
+    ServoHand& hand = result.hand[i];
+    Handover& h = handover_[i];
+    if (!hand.valid) {
+      h = {};
+      continue;
+    }
+    Vec6 now;
+    now << hand.force, hand.torque;
+    if (fresh_problem_ && h.felt) h.gap = h.last - now;
+    now += old * h.gap;
+    hand.force = now.head<3>();
+    hand.torque = now.tail<3>();
+    h.last = now;
+    h.felt = true;
+  }
+  fresh_problem_ = false;
+}
 
 void Servo::remember_solution() noexcept {
   if (!problem_) return;  // keeps the solution of the problem before
@@ -62,6 +88,7 @@ void Servo::set_problem(const ConstraintProblem* problem, const std::array<Pose,
   problem_ = fits ? problem : nullptr;
   if (!problem_) return;
   offset_ = offset;
+  fresh_problem_ = true;
   if (settings_.response.any()) response_.begin(*problem, age_s);
   workspace_.lambda.resize(std::size_t(problem_->rows));  // within its capacity
   const auto known_end = known_.begin() + std::ptrdiff_t(known_count_);
@@ -143,6 +170,7 @@ ServoResult Servo::tick(const ServoInput& input) noexcept {
     std::fill_n(workspace_.lambda.begin(), n, 0.0);
     for (ServoHand& hand : result.hand) hand.valid = false;
   }
+  if (settings_.handover_s > 0) hand_over(result, input.dt_s);
   return result;
 }
 

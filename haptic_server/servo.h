@@ -23,6 +23,8 @@ struct ServoSettings {
   double max_rotation_rad = 0.8;
   /// What goes beyond equation 7; nothing of it is on by default.
   TickResponseSettings response;
+  /// A new problem takes over from the force of the old one within this time, s; 0: at once.
+  double handover_s = 0;
 };
 
 /// Device poses at the tick; a hand that is not connected is taken to rest where the problem has it.
@@ -85,6 +87,15 @@ class Servo {
   const ConstraintProblem* problem_ = nullptr;
   std::array<Pose, 2> offset_;
   TickResponse response_;
+  void hand_over(ServoResult& result, double dt) noexcept;
+  struct Handover {
+    bool felt = false;           ///< the last tick's force was valid
+    Vec6 last = Vec6::Zero();    ///< force and torque of the last tick
+    Vec6 gap = Vec6::Zero();     ///< of the old problem's force over the new one's, when that came
+  };
+  std::array<Handover, 2> handover_;
+  double since_problem_ = 0;     ///< s
+  bool fresh_problem_ = false;
   SolveWorkspace workspace_;
   std::vector<double> delta_free_;
   std::vector<double> last_lambda_;

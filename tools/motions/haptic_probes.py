@@ -7,8 +7,8 @@
 tap      right hand, exercise 1: three taps on the frontal cortex, each faster
 drag     right hand, exercise 1: pressed on, drawn along and back with friction
 squeeze  both hands, exercise 1: the frontal lobe between them
-strand   right hand, exercise 1: into the strands at the surface, pulled until they part
-artery   right hand, exercise 2: along the parent artery while it beats
+strand   both hands, exercise 1: strands stretched by the left hand, divided by the right
+artery   right hand, exercise 3: a dissector along the inferior branch while it beats
 clip     right hand, exercise 3: over the dome, and the blades close on the neck
 Moves start and end at rest (minimum jerk). The same input gives the same bytes.
 """
@@ -23,14 +23,16 @@ import sylvian_fissure as course  # noqa: E402
 from sylvian_fissure import add, cross, dot, orientation, unit  # noqa: E402
 
 OUTPUT = course.ROOT / "scenes" / "haptics"
-KEY_INTERVAL = 0.02  # s
+KEY_INTERVAL = 0.005  # s
 
 # seconds, along, depth, lift (mm, see sylvian_fissure.py)
-TAP = [(0.0, 8, -7, 9), (0.25, 8, 2.5, 9), (0.25, 8, -3, 9), (0.15, 8, 2.5, 9), (0.15, 8, -3, 9), (0.1, 8, 2.5, 9), (0.3, 8, -7, 9)]
-DRAG = [(0.0, 8, -7, 9), (0.4, 8, 1.5, 9), (0.2, 8, 1.5, 9), (0.5, -2, 1.5, 9), (0.15, -2, 1.5, 9), (0.35, 8, 1.5, 9), (0.3, 8, -7, 9)]
-SQUEEZE_LEFT = [(0.0, -6, -7, 8), (0.4, -6, 1.5, 8), (0.35, -3, 2.5, 8), (0.2, -3, 2.5, 8), (0.3, -6, 1.5, 8), (0.4, -6, -7, 8)]
-SQUEEZE_RIGHT = [(0.0, 10, -7, 10), (0.5, 10, 1.5, 10), (0.3, 6, 2.5, 10), (0.2, 6, 2.5, 10), (0.3, 10, 1.5, 10), (0.3, 10, -7, 10)]
-STRAND = [(0.0, 13, -5, 0.5), (0.5, 11, 2.6, -0.6), (0.9, -3, 2.6, -0.8), (0.1, -3, 2.6, -0.8), (0.5, 5, 3.2, -1.2), (0.4, 11, -5, 0.5)]
+TAP = [(0.0, -8, -5, 10), (0.3, -8, 0.6, 10), (0.1, -8, 0.6, 10), (0.2, -8, -3, 10), (0.25, -8, 1.0, 10), (0.1, -8, 1.0, 10), (0.2, -8, -3, 10), (0.2, -8, 0.6, 10), (0.2, -8, -5, 10)]
+DRAG = [(0.0, -8, -5, 8), (0.35, -8, 0.5, 8), (0.1, -8, 0.5, 8), (0.3, -8, 0.5, 10), (0.1, -8, 0.5, 10), (0.25, -8, 0.5, 8), (0.25, -7, 0.5, 9.5), (0.25, -8, 0.5, 8), (0.3, -8, -5, 8)]
+SQUEEZE_LEFT = [(0.0, -8, -5, 10), (0.4, -8, 0.5, 10), (0.35, -6.5, 1.2, 10), (0.3, -6.5, 1.2, 10), (0.3, -8, 0.5, 10), (0.3, -8, -5, 10)]
+SQUEEZE_RIGHT = [(0.0, 9, -5, 10), (0.5, 9, 0.5, 10), (0.3, 7.5, 1.2, 10), (0.25, 7.5, 1.2, 10), (0.3, 9, 0.5, 10), (0.3, 9, -5, 10)]
+# The left hand takes hold of the temporal lobe (button 1) and draws it down, the right one divides what is stretched.
+STRAND_LEFT = [(0.0, 4, -4, -6, 0), (0.5, 4, 2.8, -6, 0), (0.2, 4, 3.0, -6, 1), (0.6, 4, 2.4, -8, 1), (0.8, 4, 2.4, -8, 1), (0.4, 4, 2.6, -7, 1)]
+STRAND_RIGHT = [(0.0, 13, -5, 0.5, 0), (0.5, 13, -5, 0.5, 0), (0.5, 11, 1.5, -0.7, 0), (0.8, -3, 1.5, -0.9, 0), (0.1, -3, 1.5, -0.9, 0), (0.3, -3, -6, -0.7, 0)]
 
 
 def ease(s):
@@ -78,8 +80,17 @@ def lobes(folder):
     def go(rows):
         return moves(rows, lambda at: fissure.place(*at))
 
-    for name, rows in (("tap", TAP), ("drag", DRAG), ("strand", STRAND)):
+    def held(rows):
+        ends, t = [], 0.0
+        for row in rows:
+            ends.append((t, row[4]))
+            t += row[0]
+        return lambda at: (next((b for s, b in reversed(ends) if at >= s), 0), 0)
+
+    for name, rows in (("tap", TAP), ("drag", DRAG)):
         write(folder / (name + ".csv"), {"right": (right_q, go(rows), never)})
+    write(folder / "strand.csv", {"left": (left_q, go([r[:4] for r in STRAND_LEFT]), held(STRAND_LEFT)),
+                                  "right": (right_q, go([r[:4] for r in STRAND_RIGHT]), never)})
     write(folder / "squeeze.csv", {"left": (left_q, go(SQUEEZE_LEFT), never), "right": (right_q, go(SQUEEZE_RIGHT), never)})
 
 
@@ -95,8 +106,8 @@ def artery(folder):
         s, off = at
         return add(add(start, add(end, start, -1.0), s), unit(TOWARDS), off)
 
-    rows = [(0.0, 0, 8), (0.4, 0, -PRESS), (0.2, 0, -PRESS), (0.8, 1, -PRESS), (0.6, 1, -PRESS), (0.6, 0.2, -PRESS), (0.4, 0.2, 8)]
-    write(folder / "artery.csv", {"right": (orientation(shaft, flat), moves(rows, place), never)})
+    rows = [(0.0, 0, 8), (0.2, 0, 8), (0.8, 0, -PRESS), (0.3, 0, -PRESS), (0.8, 1, -PRESS), (0.7, 1, -PRESS), (0.3, 1, 8)]
+    write(folder / "artery.csv", {"right": (orientation(shaft, flat), moves(rows, place), never)}, [(0.02, "exchange,right stylus")])
 
 
 STRETCH = (8, 15)         # points of the branch's centreline
