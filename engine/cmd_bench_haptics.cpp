@@ -20,24 +20,23 @@ struct Variant {
 };
 
 std::vector<Variant> variants(bool ablation) {
-  std::vector<Variant> out{{"held", {}}, {"diagonal of W", {}}, {"equation 7", {}}};
-  out[0].settings.rendering = Rendering::held;
-  out[1].settings.rendering = Rendering::diagonal;
-  ReplaySettings s;
+  ReplaySettings held, diagonal, servo, hindsight;
+  held.rendering = Rendering::held;
+  diagonal.rendering = Rendering::diagonal;
+  hindsight.rendering = Rendering::hindsight;
+  std::vector<Variant> out{{"held", held}, {"diagonal of W", diagonal}, {"equation 7", servo}};
+  const ServoSettings full = ServoSettings::beyond_equation_7();
   if (ablation) {
-    s.rendering = Rendering::hindsight;
-    out.push_back({"hindsight", s});
-    s.rendering = Rendering::servo;
-    s.servo.response.slip_by_tick = true;
-    out.push_back({"+ slip by tick", s});
-    s.servo.response.tissue_moves = true;
-    out.push_back({"+ tissue moves", s});
-    s.servo.response.tissue_moves = false;
-    s.servo.response.tissue_in_time = true;
-    out.push_back({"+ tissue in time", s});
-    s.servo.response.tissue_moves = true;
-    out.push_back({"+ both", s});
+    servo.servo.response.slip_by_tick = full.response.slip_by_tick;
+    out.push_back({"+ slip by tick", servo});
+    servo.servo.response.tissue_moves = full.response.tissue_moves;
+    out.push_back({"+ tissue moves", servo});
+    servo.servo.response.tissue_in_time = full.response.tissue_in_time;
+    out.push_back({"+ tissue in time", servo});
   }
+  servo.servo = full;
+  out.push_back({ablation ? "+ hand-over" : "servo", servo});
+  if (ablation) out.push_back({"hindsight", hindsight});
   return out;
 }
 
@@ -63,7 +62,7 @@ int cmd_bench_haptics(const CommandContext& context, const HapticBenchOptions& o
   fmt::print(context.out, "{}, {}: {:.2f} s\n", options.scene.string(), options.motion, duration);
   const ForceTrace reference = reference_forces(*simulation, motion, duration);
   simulation.reset();
-  fmt::print(context.out, "  {:<6}{:<18}{:<7}{:>9}{:>9}{:>9}{:>11}\n", "Hz", "rendering", "hand", "peak mN", "rms %", "worst %", "onset ms");
+  fmt::print(context.out, "  {:<6}{:<18}{:<7}{:>9}{:>9}{:>9}{:>11}{:>9}\n", "Hz", "rendering", "hand", "peak mN", "rms %", "worst %", "onset ms", "jump %");
   for (const double rate : options.rates) {
     auto engine = open(context, options, 1 / rate);
     if (!engine) return 2;
@@ -78,8 +77,8 @@ int cmd_bench_haptics(const CommandContext& context, const HapticBenchOptions& o
       for (std::size_t hand = 0; hand < 2; ++hand) {
         const TruthOfHand t = compare(reference.force[hand], rendered.force[hand]);
         if (!t.counts()) continue;
-        fmt::print(context.out, "  {:<6.0f}{:<18}{:<7}{:>9.1f}{:>9.2f}{:>9.1f}{:>11.0f}\n", rate, v.name, hand ? "right" : "left", 1e3 * t.peak_N,
-                   100 * t.rms, 100 * t.worst, 1e3 * t.onset_s);
+        fmt::print(context.out, "  {:<6.0f}{:<18}{:<7}{:>9.1f}{:>9.2f}{:>9.1f}{:>11.0f}{:>9.1f}\n", rate, v.name, hand ? "right" : "left", 1e3 * t.peak_N,
+                   100 * t.rms, 100 * t.worst, 1e3 * t.onset_s, 100 * rendered.jump[hand] / t.peak_N);
       }
     }
     context.out.flush();

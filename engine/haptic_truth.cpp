@@ -53,6 +53,34 @@ void keep_diagonal(ConstraintProblem& p) {
       if (i != j) p.w[std::size_t(i) * std::size_t(p.stride) + std::size_t(j)] = 0;
 }
 
+/// What new problems change, told from what the servo changes by itself: another servo beside it, which takes each problem over at once,
+/// and for its last tick before that the old problem instead.
+class JumpMeter {
+ public:
+  explicit JumpMeter(ServoSettings settings) : own_((settings.handover_s = 0, settings)) {}
+  void set_problem(const RecordedStep& step, double age_s) {
+    old_ = own_;
+    own_.set_problem(&step.update.problem, step.update.offset, age_s);
+    fresh_ = true;
+  }
+  void tick(const ServoInput& input, const ServoResult& rendered, ForceTrace& out) {
+    const ServoResult now = own_.tick(input), went_on = fresh_ ? old_.tick(input) : now;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const Vec3 &own = now.hand[i].force, &force = rendered.hand[i].force;
+      if (!own.isZero(0) && !last_own_[i].isZero(0) && !force.isZero(0) && !last_[i].isZero(0))
+        out.jump[i] = std::max(out.jump[i], (force - last_[i]).norm() - (went_on.hand[i].force - last_own_[i]).norm());
+      last_own_[i] = own;
+      last_[i] = force;
+    }
+    fresh_ = false;
+  }
+
+ private:
+  Servo own_, old_{ServoSettings{}};
+  bool fresh_ = false;
+  std::array<Vec3, 2> last_{Vec3::Zero(), Vec3::Zero()}, last_own_{Vec3::Zero(), Vec3::Zero()};
+};
+
 /// 0 to 1, of a step's number alone.
 double drawn(std::size_t step) {
   std::uint64_t z = (step + 1) * 0x9e3779b97f4a7c15ull;
@@ -97,6 +125,7 @@ std::vector<RecordedStep> record_steps(Simulation& simulation, const Motion& mot
 ForceTrace replay(const std::vector<RecordedStep>& steps, const Motion& motion, double duration_s, const ReplaySettings& settings) {
   ForceTrace out;
   Servo servo(settings.servo);
+  JumpMeter jumps(settings.servo);
   ConstraintProblem bare;
   std::size_t next = 0;
   const auto arrives = [&](std::size_t k) {
@@ -117,6 +146,7 @@ ForceTrace replay(const std::vector<RecordedStep>& steps, const Motion& motion, 
         keep_diagonal(bare);
       }
       servo.set_problem(settings.rendering == Rendering::diagonal ? &bare : &step.update.problem, step.update.offset, t - step.pose_s);
+      jumps.set_problem(step, t - step.pose_s);
     }
     if (settings.rendering == Rendering::hindsight) {
       std::size_t after = 0;
@@ -141,6 +171,7 @@ ForceTrace replay(const std::vector<RecordedStep>& steps, const Motion& motion, 
       input.connected[std::size_t(hand)] = true;
     }
     const ServoResult r = servo.tick(input);
+    if (settings.rendering == Rendering::servo) jumps.tick(input, r, out);
     out.add(r.hand[0].force, r.hand[1].force);
   }
   return out;

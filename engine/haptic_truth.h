@@ -19,6 +19,8 @@ namespace insula {
 /// Force on each hand at the end of every millisecond, N, scene frame.
 struct ForceTrace {
   std::array<std::vector<Vec3>, 2> force;
+  /// Largest change in a tick beyond what the servo's own problem would have changed in it, mid-contact, N: what new problems jump by.
+  std::array<double, 2> jump{0, 0};
   void add(const Vec3& left, const Vec3& right) {
     force[0].push_back(left);
     force[1].push_back(right);

@@ -25,6 +25,13 @@ struct ServoSettings {
   TickResponseSettings response;
   /// A new problem takes over from the force of the old one within this time, s; 0: at once.
   double handover_s = 0;
+  /// All of it, as measured in docs/haptic-truth.md.
+  static ServoSettings beyond_equation_7() {
+    ServoSettings s;
+    s.response = {.tissue_in_time = true, .tissue_moves = true, .slip_by_tick = true};
+    s.handover_s = 0.01;
+    return s;
+  }
 };
 
 /// Device poses at the tick; a hand that is not connected is taken to rest where the problem has it.

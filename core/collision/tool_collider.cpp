@@ -286,7 +286,7 @@ void ToolCollider::detect(const CollisionMesh& mesh, const Pose& start, const Po
     const Proximity* touched = &found_[0];
     for (const Proximity& x : found_)
       if (x.gap < touched->gap) touched = &x;
-    Vec3 slide = (horizon - t) * (velocity - mesh.free_at(touched->triangle, touched->bary));
+    Vec3 slide = (1 - t) * (velocity - mesh.free_at(touched->triangle, touched->bary));
     for (int pass = 0; pass < 3; ++pass)
       for (const Proximity& x : found_) {
         const double c = x.normal.dot(slide) + std::max(-settings.max_recovery, x.gap);
