@@ -132,6 +132,7 @@ void Condenser::choose(const ConstraintProblem& full, int most_rows, ConstraintP
 void Condenser::copy_kept(const ConstraintProblem& full, ConstraintProblem& small) const {
   const std::size_t rows = kept_.size();
   small.resize(int(rows));
+  small.step_s = full.step_s;
   for (std::size_t i = 0; i < rows; ++i) {
     const std::size_t s = std::size_t(kept_[i]);
     double free = full.delta_free[s];
@@ -139,6 +140,8 @@ void Condenser::copy_kept(const ConstraintProblem& full, ConstraintProblem& smal
       if (fate_[c] != Fate::kept) free += full.w_at(int(s), int(c)) * full.lambda[c];
     small.delta_free[i] = free;
     small.lambda[i] = full.lambda[s];
+    small.rate[i] = full.rate[s];
+    small.relaxation[i] = full.relaxation[s];
     for (std::size_t j = 0; j < rows; ++j) small.w[i * std::size_t(small.stride) + j] = full.w_at(int(s), kept_[j]);
   }
   small.tools.resize(full.tools.size());

@@ -5,6 +5,7 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <thread>
@@ -75,10 +76,11 @@ struct Inputs {
     return true;
   }
 
-  void apply(Simulation& simulation) const {
-    if (monotonic_us() - received_us > stale_us) return;
+  /// Stamp of the poses that the step is made with, CLOCK_MONOTONIC; 0: none.
+  std::int64_t apply(Simulation& simulation) const {
+    if (monotonic_us() - received_us > stale_us) return 0;
     // Until the haptic server has seen this session its hands are still where the last one left them.
-    if (simulation.time() < settle_s) return;
+    if (simulation.time() < settle_s) return 0;
     for (const auto& h : devices.hand) {
       if (!h.connected || h.hand < 0 || h.hand > 1) continue;
       HandState s;
@@ -89,6 +91,7 @@ struct Inputs {
       s.button2 = h.button2;
       simulation.set_hand(h.hand, s);
     }
+    return std::max<std::int64_t>(0, devices.time_us);
   }
 };
 
@@ -180,7 +183,7 @@ int run_live(const LiveOptions& options, const Registry& registry, Bus& bus, con
       publisher.paused_frame(simulation);
       publisher.info("paused");
     } else {
-      inputs.apply(simulation);
+      const std::int64_t posed = inputs.apply(simulation);
       commands.advance(simulation, inputs.follows(script));
       simulation.step();
       if (!simulation.report().finite) {
@@ -189,7 +192,7 @@ int run_live(const LiveOptions& options, const Registry& registry, Bus& bus, con
         commands.reset();
         continue;
       }
-      publisher.step(simulation);
+      publisher.step(simulation, posed);
       publisher.info("running");
     }
     if (options.unthrottled && !inputs.pause) continue;

@@ -114,6 +114,15 @@ int main(int argc, char** argv) {
   auto* record = bench->add_option("--record", bench_options.record, "write the steps' constraint problems to this folder instead");
   bench->add_option("--every", bench_options.every, "with --record: a problem of so many is written")->check(CLI::PositiveNumber)->needs(record);
   bench->add_option("--problems", bench_options.problems, "solve this folder's constraint problems instead of stepping a scene")->excludes(bench_scene);
+  insula::HapticBenchOptions haptics;
+  bool measure_haptics = false;
+  auto* haptics_flag = bench->add_flag("--haptics", measure_haptics, "how far the servo's force is from that of the engine stepped at 1 kHz, devices on the motion's path");
+  bench->add_option("--rates", haptics.rates, "with --haptics: the engine's rates, Hz")->delimiter(',')->check(CLI::Range(20.0, 1000.0))->needs(haptics_flag);
+  bench->add_option("--duration", haptics.duration, "with --haptics: simulated seconds; 0: the whole motion")->check(CLI::NonNegativeNumber)->needs(haptics_flag);
+  bench->add_option("--latency", haptics.latency, "with --haptics: from poses to the problem's arrival, in steps")->check(CLI::Range(0.0, 3.0))->capture_default_str()->needs(haptics_flag);
+  bench->add_option("--jitter", haptics.jitter, "with --haptics: and so much later still at most, in steps")->check(CLI::Range(0.0, 3.0))->needs(haptics_flag);
+  bench->add_flag("--ablation", haptics.ablation, "with --haptics: what goes beyond equation 7, one after the other")->needs(haptics_flag);
+  bench->add_option("--traces", haptics.traces, "with --haptics: folder for the forces as CSV")->needs(haptics_flag);
   bench->callback([&] {
     if (scale) {
       scaling.threads = bench_options.threads > 0 ? bench_options.threads : 1;
@@ -126,6 +135,13 @@ int main(int argc, char** argv) {
       return;
     }
     if (bench_options.scene.empty()) throw CLI::RequiredError("scene (or --scaling)");
+    if (measure_haptics) {
+      haptics.scene = bench_options.scene;
+      haptics.motion = bench_options.motion;
+      haptics.threads = bench_options.threads;
+      run = [&](const auto& c) { return insula::cmd_bench_haptics(c, haptics); };
+      return;
+    }
     if (!bench_options.record.empty()) {
       run = [&](const auto& c) { return insula::cmd_record_problems(c, bench_options); };
       return;

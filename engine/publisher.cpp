@@ -35,10 +35,11 @@ void Publisher::info(const std::string& state, const std::string& message) {
   if (!publish(bus_, channel::scene_info, info_, scratch_)) ++failed_;
 }
 
-void Publisher::step(const Simulation& simulation) {
+void Publisher::step(const Simulation& simulation, std::int64_t pose_time_us) {
   update_.session = session_;
   update_.sequence = ++sequence_;
   update_.time_us = monotonic_us();
+  update_.pose_time_us = pose_time_us;
   update_.step_s = simulation.h();
   update_.sim_time_s = simulation.time();
   condense_(simulation.problem(), most_rows, update_.problem);

@@ -25,8 +25,8 @@ class Publisher {
   Publisher(Bus& bus, std::int64_t session, const std::filesystem::path& scene, const std::filesystem::path& bundle,
             const std::filesystem::path& motion, const std::string& title);
 
-  /// After a step: problem, frame, events.
-  void step(const Simulation& simulation);
+  /// After a step: problem, frame, events. pose_time_us: stamp of the devices' poses that the step was made with, 0: none.
+  void step(const Simulation& simulation, std::int64_t pose_time_us = 0);
   /// Events that belong to no step.
   void events(const std::vector<Event>& events);
   /// The frame alone, while paused.

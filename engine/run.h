@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "engine/commands.h"
 
@@ -44,6 +45,20 @@ int cmd_record_problems(const CommandContext& context, const BenchOptions& optio
 int cmd_bench_problems(const CommandContext& context, const BenchOptions& options);
 /// Takes every deformable body's matrix and rows of one step and compares solvers on them: time, error, share of the machine.
 int cmd_bench_solvers(const CommandContext& context, const BenchOptions& options);
+
+struct HapticBenchOptions {
+  std::filesystem::path scene;
+  std::string motion = "steady";   ///< id of a motion of the exercise, or a CSV file: where the devices go
+  std::vector<double> rates{30, 60, 100};  ///< of the engine, Hz
+  double duration = 0;   ///< simulated seconds; 0: the whole motion
+  double latency = 1;    ///< from the devices' poses to the arrival of the step's problem, in steps
+  double jitter = 0;     ///< and so much later still at most, in steps
+  bool ablation = false; ///< what goes beyond equation 7, one after the other
+  std::filesystem::path traces;  ///< folder for the forces as CSV; empty: none
+  int threads = 0;
+};
+/// Compares the servo's force with the engine's at 1 kHz on the same path of the devices. Status 0, or 2 for bad input.
+int cmd_bench_haptics(const CommandContext& context, const HapticBenchOptions& options);
 
 struct EngineOptions {
   std::filesystem::path scene;

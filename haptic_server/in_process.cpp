@@ -61,6 +61,7 @@ void InProcessHaptics::tick(double t) {
   ++ticks_;
 
   ServoInput input;
+  input.dt_s = dt;
   std::array<DeviceReading, 2> reading;
   for (std::size_t i = 0; i < 2; ++i) {
     if (!hands_[i].present) continue;

@@ -9,6 +9,7 @@ namespace insula {
 namespace {
 
 constexpr double longest_arm_step_s = 0.02;
+constexpr double longest_age_s = 0.2;  // of a problem, for how its tissue goes on
 /// Simulated time up to which a scene counts as just begun.
 constexpr double beginning_s = 0.25;
 
@@ -75,7 +76,8 @@ void HapticServer::take_problem(std::int64_t now) noexcept {
     motion_clock_.reset(u.sim_time_s);
     for (Hand& hand : hands_) hand.placed = false;
   }
-  servo_.set_problem(&u.problem, u.offset);
+  const std::int64_t posed = u.pose_time_us > 0 ? u.pose_time_us : u.time_us;
+  servo_.set_problem(&u.problem, u.offset, std::clamp(double(now / 1000 - posed) * 1e-6, 0.0, longest_age_s));
   if (u.sim_time_s > last_sim_time_ || new_session || back_in_time) motion_clock_.step_arrived(u.sim_time_s, u.step_s);
   last_sim_time_ = u.sim_time_s;
   has_problem_ = true;
@@ -147,6 +149,7 @@ void HapticServer::tick(std::int64_t due_ns, std::int64_t missed) noexcept {
   const double arm_dt = std::clamp(dt, 0.0, longest_arm_step_s);
   const double script_time = motion_clock_.advance(arm_dt);
   ServoInput input;
+  input.dt_s = arm_dt;
   for (std::size_t i = 0; i < 2; ++i) {
     Hand& hand = hands_[i];
     if (hand.placed) {

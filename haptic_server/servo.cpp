@@ -36,7 +36,7 @@ bool finite(const Vec6& v) {
 
 }  // namespace
 
-Servo::Servo(const ServoSettings& settings) : settings_(settings) {
+Servo::Servo(const ServoSettings& settings) : settings_(settings), response_(settings.response, servo_max_rows) {
   workspace_.reserve(servo_max_rows, false);  // sweeps alone
   kernels();  // chosen here once and not at the first tick
   delta_free_.assign(servo_max_rows, 0.0);
@@ -44,7 +44,33 @@ Servo::Servo(const ServoSettings& settings) : settings_(settings) {
   known_.resize(servo_max_rows);
 }
 
-void Servo::reset() noexcept { known_count_ = 0; }
+void Servo::reset() noexcept {
+  known_count_ = 0;
+  handover_ = {};
+}
+
+// What the old problem said last stays, and fades while the new one takes over: a step's news come as a slope and not as a jump.
+void Servo::hand_over(ServoResult& result, double dt) noexcept {
+  since_problem_ = fresh_problem_ ? 0 : since_problem_ + dt;
+  const double old = since_problem_ < settings_.handover_s ? 1 - since_problem_ / settings_.handover_s : 0;
+  for (std::size_t i = 0; i < 2; ++i) {
+    ServoHand& hand = result.hand[i];
+    Handover& h = handover_[i];
+    if (!hand.valid) {
+      h = {};
+      continue;
+    }
+    Vec6 now;
+    now << hand.force, hand.torque;
+    if (fresh_problem_ && h.felt) h.gap = h.last - now;
+    now += old * h.gap;
+    hand.force = now.head<3>();
+    hand.torque = now.tail<3>();
+    h.last = now;
+    h.felt = true;
+  }
+  fresh_problem_ = false;
+}
 
 void Servo::remember_solution() noexcept {
   if (!problem_) return;  // keeps the solution of the problem before
@@ -55,13 +81,15 @@ void Servo::remember_solution() noexcept {
   std::copy_n(workspace_.lambda.begin(), problem_->rows, last_lambda_.begin());
 }
 
-void Servo::set_problem(const ConstraintProblem* problem, const std::array<Pose, 2>& offset) noexcept {
+void Servo::set_problem(const ConstraintProblem* problem, const std::array<Pose, 2>& offset, double age_s) noexcept {
   // The old problem's memory may be rewritten after this call, so all that is needed of it is copied now.
   remember_solution();
   const bool fits = problem && problem->rows <= servo_max_rows && problem->blocks.size() <= std::size_t(servo_max_rows);
   problem_ = fits ? problem : nullptr;
   if (!problem_) return;
   offset_ = offset;
+  fresh_problem_ = true;
+  if (settings_.response.any()) response_.begin(*problem, age_s);
   workspace_.lambda.resize(std::size_t(problem_->rows));  // within its capacity
   const auto known_end = known_.begin() + std::ptrdiff_t(known_count_);
   for (const Block& b : problem_->blocks) {
@@ -81,6 +109,7 @@ ServoResult Servo::tick(const ServoInput& input) noexcept {
   if (!problem_) return result;
   const ConstraintProblem& p = *problem_;
   const int n = p.rows;
+  const bool in_ticks = settings_.response.any();
   result.rows = n;
 
   std::array<Vec6, 2> moved{Vec6::Zero(), Vec6::Zero()};
@@ -103,14 +132,20 @@ ServoResult Servo::tick(const ServoInput& input) noexcept {
       continue;
     }
     moved[t] = tool.gain * d;
-    add_product(tool.jacobian, moved[t], delta_free_, n);
+    if (!in_ticks) add_product(tool.jacobian, moved[t], delta_free_, n);
   }
 
   if (n > 0) {
     SolveSettings s;
     s.tolerance_m = settings_.tolerance_m;
     s.max_sweeps = std::clamp(int(settings_.max_operations / (double(n) * n)), 1, settings_.max_sweeps);
-    result.stats = solve(p, std::span<const double>(delta_free_.data(), std::size_t(n)), s, workspace_);
+    if (in_ticks) {
+      const ConstraintProblem& tick = response_.next(input.dt_s, moved);
+      result.stats = solve(tick, tick.delta_free, s, workspace_);
+      response_.solved(workspace_.lambda, workspace_.delta);
+    } else {
+      result.stats = solve(p, std::span<const double>(delta_free_.data(), std::size_t(n)), s, workspace_);
+    }
   }
   result.solved = true;
 
@@ -135,6 +170,7 @@ ServoResult Servo::tick(const ServoInput& input) noexcept {
     std::fill_n(workspace_.lambda.begin(), n, 0.0);
     for (ServoHand& hand : result.hand) hand.valid = false;
   }
+  if (settings_.handover_s > 0) hand_over(result, input.dt_s);
   return result;
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/constraint/problem.h"
 #include "core/constraint/solve.h"
+#include "haptic_server/tick_response.h"
 
 namespace insula {
 
@@ -20,12 +21,24 @@ struct ServoSettings {
   /// A device further than this from the pose the problem was built with is outside the linearisation: no force.
   double max_displacement_m = 0.03;
   double max_rotation_rad = 0.8;
+  /// What goes beyond equation 7; nothing of it is on by default.
+  TickResponseSettings response;
+  /// A new problem takes over from the force of the old one within this time, s; 0: at once.
+  double handover_s = 0;
+  /// All of it, as measured in docs/haptic-truth.md.
+  static ServoSettings beyond_equation_7() {
+    ServoSettings s;
+    s.response = {.tissue_in_time = true, .tissue_moves = true, .slip_by_tick = true};
+    s.handover_s = 0.01;
+    return s;
+  }
 };
 
 /// Device poses at the tick; a hand that is not connected is taken to rest where the problem has it.
 struct ServoInput {
   std::array<Pose, 2> device;
   std::array<bool, 2> connected{false, false};
+  double dt_s = 1e-3;  ///< since the last tick
 };
 
 /// One hand's outcome. Force and torque (about the device's origin) act on the hand, scene frame.
@@ -58,7 +71,8 @@ class Servo {
   /// offset: tool frame relative to the device's pose, tool by tool in the problem's order (tool = device * offset).
   /// The warm start comes from the last solution by block id; a block that is new starts from the problem's lambda.
   /// A problem of more than servo_max_rows rows counts as none.
-  void set_problem(const ConstraintProblem* problem, const std::array<Pose, 2>& offset = {}) noexcept;
+  /// age_s: time since its device poses; what goes beyond equation 7 needs it.
+  void set_problem(const ConstraintProblem* problem, const std::array<Pose, 2>& offset = {}, double age_s = 0) noexcept;
   const ConstraintProblem* problem() const { return problem_; }
 
   ServoResult tick(const ServoInput& input) noexcept;
@@ -79,6 +93,16 @@ class Servo {
   ServoSettings settings_;
   const ConstraintProblem* problem_ = nullptr;
   std::array<Pose, 2> offset_;
+  TickResponse response_;
+  void hand_over(ServoResult& result, double dt) noexcept;
+  struct Handover {
+    bool felt = false;           ///< the last tick's force was valid
+    Vec6 last = Vec6::Zero();    ///< force and torque of the last tick
+    Vec6 gap = Vec6::Zero();     ///< of the old problem's force over the new one's, when that came
+  };
+  std::array<Handover, 2> handover_;
+  double since_problem_ = 0;     ///< s
+  bool fresh_problem_ = false;
   SolveWorkspace workspace_;
   std::vector<double> delta_free_;
   std::vector<double> last_lambda_;

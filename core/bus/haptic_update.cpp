@@ -16,6 +16,7 @@ namespace insula {
 namespace {
 
 constexpr double most_delta_m = 1, most_w = 1e4, most_jacobian = 1e3;
+constexpr double most_rate = 1e3, most_relaxation_s = 100;
 constexpr double most_gain = 1e4, most_compliance = 1e8, most_stiffness = 1e8, most_block_compliance = 1e6;
 
 // --- writing --------------------------------------------------------------------------------------------------------------
@@ -23,7 +24,7 @@ constexpr double most_gain = 1e4, most_compliance = 1e8, most_stiffness = 1e8, m
 bool has_wire_form(const ConstraintProblem& p) {
   const auto rows = std::size_t(p.rows);
   if (p.rows < 0 || p.rows > max_problem_rows || p.tools.size() > max_problem_tools || p.blocks.size() > rows) return false;
-  if (p.delta_free.size() < rows || p.lambda.size() < rows) return false;
+  if (p.delta_free.size() < rows || p.lambda.size() < rows || p.rate.size() < rows || p.relaxation.size() < rows) return false;
   if (p.rows > 0 && (p.stride < p.rows || p.w.size() < rows * std::size_t(p.stride))) return false;
   return std::all_of(p.tools.begin(), p.tools.end(), [&](const ToolTerms& t) { return t.jacobian.rows() == p.rows; });
 }
@@ -50,14 +51,16 @@ constexpr std::size_t tool_bytes = 1 + 2 * pose_bytes + 3 * matrix_bytes + pose_
 
 /// Where each part of a message lies; null for empty arrays is never read.
 struct Layout {
-  std::int64_t session, sequence, time_us;
+  std::int64_t session, sequence, time_us, pose_time_us;
   double step_s, sim_time_s;
   int rows, blocks, tools;
-  const std::uint8_t *w, *delta, *lambda, *id, *row, *law, *compliance, *lower, *upper, *friction, *normals, *tool, *jacobian;
+  const std::uint8_t *w, *delta, *lambda, *rate, *relaxation, *id, *row, *law, *compliance, *lower, *upper, *friction, *normals, *tool, *jacobian;
 
   double w_at(std::size_t k) const { return double(wire::load_float(w + 4 * k)); }
   double delta_at(int i) const { return wire::load_double(delta + 8 * i); }
   double lambda_at(int i) const { return wire::load_double(lambda + 8 * i); }
+  double rate_at(int i) const { return double(wire::load_float(rate + 4 * i)); }
+  double relaxation_at(int i) const { return double(wire::load_float(relaxation + 4 * i)); }
   std::uint64_t id_at(int b) const { return wire::load64(id + 8 * b); }
   int row_at(int b) const { return std::int16_t(wire::load16(row + 2 * b)); }
   int law_at(int b) const { return std::int8_t(law[b]); }
@@ -77,6 +80,7 @@ bool find_parts(Bytes bytes, Layout& l, const char*& why) {
   l.session = in.i64();
   l.sequence = in.i64();
   l.time_us = in.i64();
+  l.pose_time_us = in.i64();
   l.step_s = in.f64();
   l.sim_time_s = in.f64();
   l.rows = in.i32();
@@ -89,6 +93,8 @@ bool find_parts(Bytes bytes, Layout& l, const char*& why) {
   l.w = in.take_array(packed, 4);
   l.delta = in.take_array(l.rows, 8);
   l.lambda = in.take_array(l.rows, 8);
+  l.rate = in.take_array(l.rows, 4);
+  l.relaxation = in.take_array(l.rows, 4);
   l.blocks = in.i32();
   if (!in.ok()) return false;
   if (l.blocks < 0 || l.blocks > l.rows) {
@@ -125,7 +131,7 @@ bool find_parts(Bytes bytes, Layout& l, const char*& why) {
 
 bool header_ok(const Layout& l, const char*& why) {
   why = "time, step or sequence out of range";
-  return l.session >= 0 && l.sequence >= 0 && l.time_us >= 0 && l.step_s > 0 && l.step_s <= 1 && l.sim_time_s >= 0 &&
+  return l.session >= 0 && l.sequence >= 0 && l.time_us >= 0 && l.pose_time_us >= 0 && l.step_s > 0 && l.step_s <= 1 && l.sim_time_s >= 0 &&
          l.sim_time_s <= 1e9;
 }
 
@@ -140,6 +146,9 @@ bool matrix_ok(const Layout& l, const char*& why) {
   why = "delta_free or lambda not finite or too large";
   for (int i = 0; i < l.rows; ++i)
     if (!(std::abs(l.delta_at(i)) < most_delta_m) || !(std::abs(l.lambda_at(i)) < limits::force_N)) return false;
+  why = "rate or relaxation not finite or out of range";
+  for (int i = 0; i < l.rows; ++i)
+    if (!(std::abs(l.rate_at(i)) < most_rate) || !(l.relaxation_at(i) >= 0 && l.relaxation_at(i) <= most_relaxation_s)) return false;
   return true;
 }
 
@@ -285,10 +294,12 @@ void read_all(const Layout& l, HapticUpdate& into) {
   into.session = l.session;
   into.sequence = l.sequence;
   into.time_us = l.time_us;
+  into.pose_time_us = l.pose_time_us;
   into.step_s = l.step_s;
   into.sim_time_s = l.sim_time_s;
   ConstraintProblem& p = into.problem;
   p.resize(l.rows);
+  p.step_s = l.step_s;
   std::size_t k = 0;
   const auto stride = std::size_t(p.stride);
   for (std::size_t i = 0; i < std::size_t(l.rows); ++i)
@@ -296,6 +307,8 @@ void read_all(const Layout& l, HapticUpdate& into) {
   for (int i = 0; i < l.rows; ++i) {
     p.delta_free[std::size_t(i)] = l.delta_at(i);
     p.lambda[std::size_t(i)] = l.lambda_at(i);
+    p.rate[std::size_t(i)] = l.rate_at(i);
+    p.relaxation[std::size_t(i)] = l.relaxation_at(i);
   }
   p.blocks.resize(std::size_t(l.blocks));
   for (int b = 0; b < l.blocks; ++b) {
@@ -323,6 +336,7 @@ bool encode_problem(const HapticUpdate& update, std::vector<std::uint8_t>& out) 
   w.i64(update.session);
   w.i64(update.sequence);
   w.i64(update.time_us);
+  w.i64(update.pose_time_us);
   w.f64(update.step_s);
   w.f64(update.sim_time_s);
   w.i32(p.rows);
@@ -331,6 +345,8 @@ bool encode_problem(const HapticUpdate& update, std::vector<std::uint8_t>& out) 
     for (int j = 0; j <= i; ++j) w.f32(float(p.w_at(i, j)));
   for (int i = 0; i < p.rows; ++i) w.f64(p.delta_free[std::size_t(i)]);
   for (int i = 0; i < p.rows; ++i) w.f64(p.lambda[std::size_t(i)]);
+  for (int i = 0; i < p.rows; ++i) w.f32(float(p.rate[std::size_t(i)]));
+  for (int i = 0; i < p.rows; ++i) w.f32(float(p.relaxation[std::size_t(i)]));
   w.i32(int(p.blocks.size()));
   for (const Block& b : p.blocks) w.i64(std::int64_t(b.id));
   for (const Block& b : p.blocks) w.i16(std::int16_t(b.row));

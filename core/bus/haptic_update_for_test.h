@@ -35,6 +35,7 @@ inline HapticUpdate make_update(unsigned seed, int boxes = 4, int contacts = 3, 
   u.session = 1234567890123;
   u.sequence = 77;
   u.time_us = 987654321;
+  u.pose_time_us = 987650000;
   u.step_s = 1.0 / 60;
   u.sim_time_s = 3.25;
   ConstraintProblem& p = u.problem;
@@ -46,6 +47,11 @@ inline HapticUpdate make_update(unsigned seed, int boxes = 4, int contacts = 3, 
       p.w[std::size_t(i * p.stride + j)] = p.w[std::size_t(j * p.stride + i)] = w;
     }
   for (int i = 0; i < n; ++i) p.delta_free[std::size_t(i)] = normal(random) * 1e-3;
+  p.step_s = u.step_s;
+  for (int i = 0; i < n; ++i) {
+    p.rate[std::size_t(i)] = double(float(normal(random) * 1e-2));
+    p.relaxation[std::size_t(i)] = double(float(0.01 * (i % 3)));
+  }
   int row = 0;
   for (int k = 0; k < boxes + contacts; ++k) {
     Block b;
@@ -95,6 +101,7 @@ inline void expect_equal(const HapticUpdate& a, const HapticUpdate& b) {
   EXPECT_EQ(a.session, b.session);
   EXPECT_EQ(a.sequence, b.sequence);
   EXPECT_EQ(a.time_us, b.time_us);
+  EXPECT_EQ(a.pose_time_us, b.pose_time_us);
   EXPECT_EQ(a.step_s, b.step_s);
   EXPECT_EQ(a.sim_time_s, b.sim_time_s);
   const ConstraintProblem &p = a.problem, &r = b.problem;
@@ -103,6 +110,9 @@ inline void expect_equal(const HapticUpdate& a, const HapticUpdate& b) {
     for (int j = 0; j < p.rows; ++j) EXPECT_EQ(p.w_at(i, j), r.w_at(i, j));
   EXPECT_EQ(p.delta_free, r.delta_free);
   EXPECT_EQ(p.lambda, r.lambda);
+  EXPECT_EQ(p.step_s, r.step_s);
+  EXPECT_EQ(p.rate, r.rate);
+  EXPECT_EQ(p.relaxation, r.relaxation);
   ASSERT_EQ(p.blocks.size(), r.blocks.size());
   for (std::size_t i = 0; i < p.blocks.size(); ++i) EXPECT_TRUE(p.blocks[i] == r.blocks[i]) << "block " << i;
   ASSERT_EQ(p.tools.size(), r.tools.size());

@@ -196,12 +196,12 @@ void ToolCollider::detect(const CollisionMesh& mesh, const Pose& start, const Po
   if (mesh.tree().empty()) return;
   const Vec6 motion = displacement(start, free);
   const double turn = motion.tail<3>().norm();
-  const double alarm = settings.alarm;
+  const double alarm = settings.alarm, horizon = 1 + settings.look_ahead;
   for (int index = 0; index < int(pieces_.size()); ++index) {
     const RoundedPiece& piece = pieces_[std::size_t(index)];
     const double radius = piece.radius + settings.offset;
     const Placed first(piece, index, start, motion, 0, Vec3::Zero(), settings.offset),
-        last(piece, index, start, motion, 1, Vec3::Zero(), settings.offset);
+        last(piece, index, start, motion, horizon, Vec3::Zero(), settings.offset);
     const bool deep = deep_[std::size_t(index)] != 0;
     deep_[std::size_t(index)] = 0;
     const double range = deep ? std::max(alarm, settings.max_depth - radius) : alarm;
@@ -261,18 +261,18 @@ void ToolCollider::detect(const CollisionMesh& mesh, const Pose& start, const Po
         const Vec3 v = motion.head<3>() + motion.tail<3>().cross(at.pose.q * x.local) - mesh.free_at(x.triangle, x.bary);
         reached = reached || (x.gap <= 0.1 * alarm && x.normal.dot(v) < 0);
       }
-      if (reached || t >= 1) break;
+      if (reached || t >= horizon) break;
       // How long nothing can be met.
-      double next = 1, fastest = 0;
+      double next = horizon, fastest = 0;
       for (const Candidate& k : candidates_) {
         if (!(k.speed > 0)) continue;
         fastest = std::max(fastest, k.speed);
         next = std::min(next, k.time + std::max(0.0, k.clear) / k.speed);
       }
       if (fastest > 0) next = std::max(next, t + 0.5 * alarm / fastest);
-      t = std::min(1.0, next);
+      t = std::min(horizon, next);
     }
-    if (reached && (touching_piece_ < 0 || t < touch_time_)) {
+    if (reached && t <= 1 && (touching_piece_ < 0 || t < touch_time_)) {
       touch_time_ = t;
       touching_piece_ = index;
     }

@@ -30,6 +30,7 @@ namespace insula {
 struct ToolContactSettings {
   double alarm = 1e-3;         ///< m
   double max_recovery = 1e-3;  ///< an overlap is undone by no more than this in a step, m
+  double look_ahead = 0;       ///< in steps: the tool's motion is followed so far beyond the step
   double max_depth = 5e-3;     ///< a core this far behind the surface is no longer pushed out, m
   bool one_sided = false;        ///< vertices: those behind a blade that presses a body from the front go back to its front
   double offset = 0;           ///< the surface is the middle of a wall of twice this thickness, m

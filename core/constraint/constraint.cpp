@@ -2,12 +2,16 @@
 // Collects the rows that constraints add.
 #include "core/constraint/constraint.h"
 
+#include <algorithm>
+
 #include "core/mechanics/surface.h"
 
 namespace insula {
 
 void ConstraintBuilder::clear() {
   delta_.clear();
+  rate_.clear();
+  relaxation_.clear();
   blocks_.clear();
   for (Body* b : bodies_) b->rows.clear();
 }
@@ -15,6 +19,8 @@ void ConstraintBuilder::clear() {
 int ConstraintBuilder::add(Block block) {
   block.row = rows();
   delta_.resize(delta_.size() + std::size_t(block.rows()), 0.0);
+  rate_.resize(delta_.size(), 0.0);
+  relaxation_.resize(delta_.size(), 0.0);
   blocks_.push_back(block);
   return block.row;
 }
@@ -22,6 +28,7 @@ int ConstraintBuilder::add(Block block) {
 void ConstraintBuilder::point(int row, const MaterialPoint& p, const Vec3& d) {
   p.body->rows.open(row);
   p.body->add_row(p.body->rows, p, d);
+  relaxation_[std::size_t(row)] = std::max(relaxation_[std::size_t(row)], p.body->relaxation());
   delta_[std::size_t(row)] += d.dot(p.body->free_displacement(p));
 }
 
@@ -30,6 +37,7 @@ void ConstraintBuilder::surface_point(int row, const Surface& s, int triangle, c
   if (body.blocks() == 0) return;
   body.rows.open(row);
   s.add_row(body.rows, triangle, bary, d);
+  relaxation_[std::size_t(row)] = std::max(relaxation_[std::size_t(row)], body.relaxation());
   const auto& t = s.triangles()[std::size_t(triangle)];
   for (int k = 0; k < 3; ++k) delta_[std::size_t(row)] += bary[k] * d.dot(s.body().free_displacement(s.points()[std::size_t(t[std::size_t(k)])]));
 }
@@ -37,6 +45,8 @@ void ConstraintBuilder::surface_point(int row, const Surface& s, int triangle, c
 void ConstraintBuilder::finish() {
   problem_.resize(rows());
   std::copy(delta_.begin(), delta_.end(), problem_.delta_free.begin());
+  std::copy(rate_.begin(), rate_.end(), problem_.rate.begin());
+  std::copy(relaxation_.begin(), relaxation_.end(), problem_.relaxation.begin());
   problem_.blocks.assign(blocks_.begin(), blocks_.end());
 }
 

@@ -26,6 +26,11 @@ class ConstraintBuilder {
   void point(int row, const MaterialPoint& p, const Vec3& d);
   /// The same for a point of a surface's triangle; its free displacement is that of the surface's vertices.
   void surface_point(int row, const Surface& s, int triangle, const Vec3& bary, const Vec3& d);
+  /// A row that moves by itself between the steps, at this rate (m/s): what a plugin allows a step is more for a longer one.
+  void moves(int row, double rate) {
+    rate_[std::size_t(row)] += rate;
+    relaxation_[std::size_t(row)] = lasting;
+  }
   int rows() const { return int(delta_.size()); }
 
   void clear();
@@ -35,7 +40,8 @@ class ConstraintBuilder {
  private:
   ConstraintProblem& problem_;
   const std::vector<Body*>& bodies_;
-  std::vector<double> delta_;
+  static constexpr double lasting = 10;  ///< s: a rate that does not die away
+  std::vector<double> delta_, rate_, relaxation_;
   std::vector<Block> blocks_;
 };
 

@@ -10,6 +10,8 @@ void ConstraintProblem::resize(int n) {
   w.assign(std::size_t(n) * stride, 0.0);
   delta_free.assign(std::size_t(n), 0.0);
   lambda.assign(std::size_t(n), 0.0);
+  rate.assign(std::size_t(n), 0.0);
+  relaxation.assign(std::size_t(n), 0.0);
 }
 
 }  // namespace insula

@@ -29,11 +29,15 @@ struct ConstraintProblem {
   AlignedVector<double> w;         ///< W, symmetric, rows x stride, row-major; padding is zero
   std::vector<double> delta_free;  ///< rows
   std::vector<double> lambda;      ///< warm start, rows
+  // How the answer goes on after the step, for who asks between steps (the servo).
+  double step_s = 0;               ///< length h of the step that W is of; 0: unknown
+  std::vector<double> rate;        ///< rows: of delta at the end of the step, from all that is no hand's tool, m/s
+  std::vector<double> relaxation;  ///< rows: time constant of what the row lies on, viscous over elastic, s; 0: none
   std::vector<Block> blocks;       ///< in row order, covering every row once
   std::vector<ToolTerms> tools;    ///< at most two
 
   double w_at(int i, int j) const { return w[std::size_t(i) * stride + j]; }
-  /// Sets the size and zeroes W, delta_free and lambda; keeps capacity.
+  /// Sets the size and zeroes W and what each row has; keeps capacity.
   void resize(int n);
 };
 

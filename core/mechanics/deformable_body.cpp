@@ -30,7 +30,11 @@ void DeformableBody::connect(PrepareContext& context) {
     if (!held_[i]) free_[i] = free_count_++;
 
   const int errors_before = context.diagnostics.errors();
-  for (ForceModel* f : forces_) f->attach(context, *this);
+  relaxation_ = 0;
+  for (ForceModel* f : forces_) {
+    f->attach(context, *this);
+    relaxation_ = std::max(relaxation_, f->stiffness_damping());
+  }
   std::vector<std::pair<int, int>> all, pairs;
   for (ForceModel* f : forces_) f->couplings(all, Tangent::system);
   for (auto [i, j] : all)
@@ -241,6 +245,12 @@ void DeformableBody::apply(const StepContext& context, const BodyRows& r, const 
   }
   q_ += dq_;
   v_ = dq_ / context.h;
+}
+
+void DeformableBody::add_rate(const BodyRows& r, double* rate) const {
+  for (int i = 0; i < r.count(); ++i)
+    for (int e = r.start[std::size_t(i)]; e < r.start[std::size_t(i) + 1]; ++e)
+      rate[r.row[std::size_t(i)]] += r.coeff[std::size_t(e)].dot(v_.segment<3>(3 * r.block[std::size_t(e)]));
 }
 
 void DeformableBody::reset() {

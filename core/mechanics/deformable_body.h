@@ -70,6 +70,8 @@ class DeformableBody : public Body {
   void may_wait(bool yes) override { solver_->may_wait(yes); }
   SolverStatus solver_status() const override { return solver_->status(); }
   void apply(const StepContext& context, const BodyRows& rows, const double* lambda) override;
+  void add_rate(const BodyRows& rows, double* rate) const override;
+  double relaxation() const override { return relaxation_; }
   void reset() override;
   double energy() const override;
   bool finite() const override { return v_.allFinite(); }  // and so is q, the sum of all h v
@@ -99,6 +101,7 @@ class DeformableBody : public Body {
   std::unique_ptr<BodySolver> solver_;
   int indefinite_ = 0;
   double step_ = 0;  ///< of the step that is on, s
+  double relaxation_ = 0;
 
   bool tangent_is_good(double h) const;
   void make_tangent(double h);

@@ -2,6 +2,8 @@
 // From a scene file to checked components: the order of the steps, and the last line of defence.
 #include "core/scene/loader.h"
 
+#include <fmt/format.h>
+
 #include <exception>
 
 #include "core/scene/builder.h"
@@ -30,13 +32,19 @@ Diagnostics tidy(Diagnostics all) {
   return out;
 }
 
+void set_time_step(Element& root, double step_s) {
+  std::erase_if(root.attributes, [](const Attribute& a) { return a.name == "time_step"; });
+  root.attributes.push_back({"time_step", fmt::format("{:.9g} s", step_s), root.pos, root.pos});
+}
+
 }  // namespace
 
-LoadResult load_scene_text(std::string_view text, const std::filesystem::path& virtual_path, const Registry& registry) {
+LoadResult load_scene_text(std::string_view text, const std::filesystem::path& virtual_path, const Registry& registry, double time_step_s) {
   LoadResult result;
   Diagnostics found;
   try {
     auto tree = expand_scene(text, virtual_path, found);
+    if (tree.root && time_step_s > 0) set_time_step(*tree.root, time_step_s);
     if (tree.root) result.scene = SceneBuilder(registry, tree, found).build(virtual_path);
   } catch (const std::exception& e) {
     found.error({virtual_path.generic_string(), 0, 0}, std::string("cannot be loaded: ") + e.what());
@@ -48,7 +56,7 @@ LoadResult load_scene_text(std::string_view text, const std::filesystem::path& v
   return result;
 }
 
-LoadResult load_scene(const std::filesystem::path& file, const Registry& registry) {
+LoadResult load_scene(const std::filesystem::path& file, const Registry& registry, double time_step_s) {
   LoadResult result;
   try {
     std::string text;
@@ -56,7 +64,7 @@ LoadResult load_scene(const std::filesystem::path& file, const Registry& registr
       result.diagnostics.error({file.generic_string(), 0, 0}, error);
       return result;
     }
-    return load_scene_text(text, file, registry);
+    return load_scene_text(text, file, registry, time_step_s);
   } catch (const std::exception& e) {
     result.diagnostics.error({file.generic_string(), 0, 0}, std::string("cannot be read: ") + e.what());
     return result;

@@ -21,9 +21,10 @@ struct LoadResult {
   bool ok() const { return scene != nullptr; }
 };
 
-LoadResult load_scene(const std::filesystem::path& file, const Registry& registry);
+/// time_step_s: in place of the scene's own, for comparisons; 0: as written.
+LoadResult load_scene(const std::filesystem::path& file, const Registry& registry, double time_step_s = 0);
 
 /// The same for a text; relative paths in it are read from the folder of `virtual_path`, which need not exist.
-LoadResult load_scene_text(std::string_view text, const std::filesystem::path& virtual_path, const Registry& registry);
+LoadResult load_scene_text(std::string_view text, const std::filesystem::path& virtual_path, const Registry& registry, double time_step_s = 0);
 
 }  // namespace insula

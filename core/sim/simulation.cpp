@@ -117,6 +117,9 @@ void Simulation::step() {
     Body* b = heavy_first_[std::size_t(i)];
     if (b->active()) b->apply(context_, b->rows, workspace_.lambda.data());
   });
+  problem_.step_s = context_.h;
+  for (const Body* b : bodies_)
+    if (b->active()) b->add_rate(b->rows, problem_.rate.data());
   const ConstraintSolution solution{problem_, workspace_.lambda.data(), workspace_.delta.data()};
   for (Constraint* c : constraints_) c->finish(context_, solution);
   for (Body* b : bodies_)

@@ -50,6 +50,9 @@ class Simulation {
   void draw_complications(std::uint64_t seed);
   /// Whether a step may wait for what works in the background (default: the same input gives the same bits) or is never late.
   void may_wait(bool yes);
+  /// Tools' contacts of so long after a step are in its problem already, as the servo needs them before the next one arrives; 0, the
+  /// default: those of the step and within the alarm distance alone.
+  void look_ahead(double seconds) { context_.look_ahead_s = seconds; }
   /// Back to the start, to the same bits.
   void reset();
 
@@ -120,8 +123,8 @@ struct SimulationResult {
   std::unique_ptr<Simulation> simulation;  ///< null when diagnostics has an error
   Diagnostics diagnostics;
 };
-/// Loads, prepares and connects a scene.
-SimulationResult load_simulation(const std::filesystem::path& file, const Registry& registry, int threads = 0);
+/// Loads, prepares and connects a scene. time_step_s: in place of its own, 0: as written.
+SimulationResult load_simulation(const std::filesystem::path& file, const Registry& registry, int threads = 0, double time_step_s = 0);
 SimulationResult load_simulation_text(std::string_view text, const std::filesystem::path& virtual_path, const Registry& registry, int threads = 0);
 
 }  // namespace insula

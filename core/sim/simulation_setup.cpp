@@ -157,8 +157,8 @@ SimulationResult connect(LoadResult loaded, int threads) {
 }
 }  // namespace
 
-SimulationResult load_simulation(const std::filesystem::path& file, const Registry& registry, int threads) {
-  return connect(load_scene(file, registry), threads);
+SimulationResult load_simulation(const std::filesystem::path& file, const Registry& registry, int threads, double time_step_s) {
+  return connect(load_scene(file, registry, time_step_s), threads);
 }
 
 SimulationResult load_simulation_text(std::string_view text, const std::filesystem::path& virtual_path, const Registry& registry, int threads) {

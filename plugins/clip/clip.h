@@ -73,6 +73,7 @@ class Clip final : public RigidBody {
   void compute_compliance(const BodyRows& rows) override;
   void add_compliance(const BodyRows& rows, double* w, int stride) override;
   void apply(const StepContext& context, const BodyRows& rows, const double* lambda) override;
+  void add_rate(const BodyRows& rows, double* rate) const override;
   void build(const StepContext& context, ConstraintBuilder& builder) override;
   void finish(const StepContext& context, const ConstraintSolution& solution) override;
   void report(StepReport& report) const override;
@@ -112,6 +113,7 @@ class Clip final : public RigidBody {
   double give_shift_ = 0, give_opening_ = 0;
   Mat7 compliance_ = Mat7::Zero();
   std::vector<Vec7> jacobian_, answer_;
+  Vec7 moving_ = Vec7::Zero();  ///< rate of the degrees of freedom
   int stop_row_ = -1, limit_row_ = -1;
 };
 

@@ -122,6 +122,12 @@ void Clip::apply(const StepContext& context, const BodyRows& r, const double* la
   spin_ = moments_ * (free_turn_ + turn) / context.h;
   last_change_ = open;
   turn_rate_ = open / context.h;
+  const Vec3 turned = free_turn_ + turn;
+  moving_ << (shift - turned.cross(to_centre_)) / context.h, turned / context.h, turn_rate_;
+}
+
+void Clip::add_rate(const BodyRows& r, double* rate) const {
+  for (std::size_t i = 0; i < jacobian_.size(); ++i) rate[r.row[i]] += jacobian_[i].dot(moving_);
 }
 
 }  // namespace insula

@@ -154,6 +154,7 @@ void Contact::search(const Search& what) {
   if (p.tool_a) {
     ToolContactSettings settings;
     settings.alarm = alarm();
+    settings.look_ahead = look_ahead_;
     settings.max_recovery = recovery();
     if (p.b && p.b->thickness() > 0) {
       settings.offset = 0.5 * p.b->thickness();
@@ -181,7 +182,8 @@ void Contact::search(const Search& what) {
   else p.a_on_b->detect(p.a->collision(), p.b->collision(), settings, out);
 }
 
-void Contact::detect(const StepContext&) {
+void Contact::detect(const StepContext& context) {
+  look_ahead_ = context.look_ahead_s / context.h;
   workers_->run(int(searches_.size()), [this](int i) { search(searches_[std::size_t(i)]); });
   // Names are given in the order of the pairs, for any number of threads.
   for (Pair& p : pairs_) {

@@ -86,6 +86,7 @@ class Contact final : public Constraint {
   std::vector<Search> searches_;
   Workers* workers_ = nullptr;
   std::uint64_t next_key_ = 0;
+  double look_ahead_ = 0;  ///< of this step, in steps
 };
 
 }  // namespace insula

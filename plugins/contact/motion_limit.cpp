@@ -4,6 +4,9 @@
 #include "plugins/contact/contact.h"
 
 namespace insula {
+namespace {
+constexpr double servo_step_s = 1e-3;  // who goes on in such steps is allowed as much in each
+}
 
 // Tissue answers linearly over a step, while its true motion is not: a far push would turn a thin wall or the elements of a lobe
 // inside out, a far slide would leave the places that contact looked at. So a tool that touches goes on by no more than
@@ -53,6 +56,7 @@ void Contact::limit_motion(ConstraintBuilder& builder, const Pair& p) const {
     block.lower = 0;
     const int row = builder.add(block);
     builder.violation(row, allowed);
+    builder.moves(row, most / servo_step_s);
     builder.point(row, point, -u / way);
   }
 }

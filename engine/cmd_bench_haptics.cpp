@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// insula bench --haptics: the servo's force against the engine stepped at 1 kHz.
+#include <fmt/ostream.h>
+
+#include <algorithm>
+
+#include "core/base/input_error.h"
+#include "engine/haptic_truth.h"
+#include "engine/live_engine.h"
+#include "engine/run.h"
+
+namespace insula {
+namespace {
+
+constexpr double most_speeding_up = 1.5;  // a hand may be so much faster than in the step when it meets something
+
+struct Variant {
+  const char* name;
+  ReplaySettings settings;
+};
+
+std::vector<Variant> variants(bool ablation) {
+  ReplaySettings held, diagonal, servo, hindsight;
+  held.rendering = Rendering::held;
+  diagonal.rendering = Rendering::diagonal;
+  hindsight.rendering = Rendering::hindsight;
+  std::vector<Variant> out{{"held", held}, {"diagonal of W", diagonal}, {"equation 7", servo}};
+  const ServoSettings full = ServoSettings::beyond_equation_7();
+  if (ablation) {
+    servo.servo.response.slip_by_tick = full.response.slip_by_tick;
+    out.push_back({"+ slip by tick", servo});
+    servo.servo.response.tissue_moves = full.response.tissue_moves;
+    out.push_back({"+ tissue moves", servo});
+    servo.servo.response.tissue_in_time = full.response.tissue_in_time;
+    out.push_back({"+ tissue in time", servo});
+  }
+  servo.servo = full;
+  out.push_back({ablation ? "+ hand-over" : "servo", servo});
+  if (ablation) out.push_back({"hindsight", hindsight});
+  return out;
+}
+
+std::unique_ptr<Simulation> open(const CommandContext& context, const HapticBenchOptions& options, double step_s) {
+  SimulationResult loaded = load_simulation(options.scene, context.registry, options.threads, step_s);
+  context.err << loaded.diagnostics.format();
+  return std::move(loaded.simulation);
+}
+
+}  // namespace
+
+int cmd_bench_haptics(const CommandContext& context, const HapticBenchOptions& options) {
+  auto simulation = open(context, options, 1e-3);
+  if (!simulation) return 2;
+  Motion motion;
+  try {
+    motion = load_motion(find_motion(*simulation, options.motion));
+  } catch (const InputError& e) {
+    context.err << options.scene.string() << ": error: " << e.what() << '\n';
+    return 2;
+  }
+  const double duration = options.duration > 0 ? options.duration : motion.duration();
+  fmt::print(context.out, "{}, {}: {:.2f} s\n", options.scene.string(), options.motion, duration);
+  const ForceTrace reference = reference_forces(*simulation, motion, duration);
+  simulation.reset();
+  fmt::print(context.out, "  {:<6}{:<18}{:<7}{:>9}{:>9}{:>9}{:>11}{:>9}\n", "Hz", "rendering", "hand", "peak mN", "rms %", "worst %", "onset ms", "jump %");
+  for (const double rate : options.rates) {
+    auto engine = open(context, options, 1 / rate);
+    if (!engine) return 2;
+    engine->look_ahead((options.latency + options.jitter + 1) / rate * most_speeding_up);
+    const auto steps = record_steps(*engine, motion, duration);
+    engine.reset();
+    for (Variant& v : variants(options.ablation)) {
+      v.settings.latency_s = options.latency * steps.front().update.step_s;
+      v.settings.jitter = options.jitter;
+      const ForceTrace rendered = replay(steps, motion, duration, v.settings);
+      if (!options.traces.empty()) write_traces(options.traces / fmt::format("{:.0f}_{}.csv", rate, v.name), reference, rendered);
+      for (std::size_t hand = 0; hand < 2; ++hand) {
+        const TruthOfHand t = compare(reference.force[hand], rendered.force[hand]);
+        if (!t.counts()) continue;
+        fmt::print(context.out, "  {:<6.0f}{:<18}{:<7}{:>9.1f}{:>9.2f}{:>9.1f}{:>11.0f}{:>9.1f}\n", rate, v.name, hand ? "right" : "left", 1e3 * t.peak_N,
+                   100 * t.rms, 100 * t.worst, 1e3 * t.onset_s, 100 * rendered.jump[hand] / t.peak_N);
+      }
+    }
+    context.out.flush();
+  }
+  return 0;
+}
+
+}  // namespace insula

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The servo against the engine at 1 kHz, in short: a tap on the cortex of exercise 1; hand-over at 30 Hz with jitter; what is compared how.
+#include "engine/haptic_truth.h"
+
+#include <gtest/gtest.h>
+
+#include "core/testing/example.h"
+
+namespace insula {
+namespace {
+
+const std::filesystem::path source(INSULA_SOURCE_DIR);
+constexpr double tap_s = 0.6;  // the first of three
+
+std::unique_ptr<Simulation> fissure(double step_s) {
+  return load_simulation(source / "scenes/training/1_sylvian_fissure.xml", test::builtin(), 1, step_s).simulation;
+}
+
+/// The reference is made once: it is most of the work.
+class HapticTruth : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    motion_ = new Motion(load_motion(source / "scenes/haptics/tap.csv"));
+    auto simulation = fissure(1e-3);
+    ASSERT_TRUE(simulation);
+    ASSERT_EQ(simulation->h(), 1e-3);
+    reference_ = new ForceTrace(reference_forces(*simulation, *motion_, tap_s));
+  }
+  static void TearDownTestSuite() {
+    delete motion_;
+    delete reference_;
+  }
+  static std::vector<RecordedStep> steps(double rate) {
+    auto simulation = fissure(1 / rate);
+    simulation->look_ahead(3 / rate);
+    return record_steps(*simulation, *motion_, tap_s);
+  }
+  static TruthOfHand truth(const ForceTrace& rendered) { return compare(reference_->force[1], rendered.force[1]); }
+  static Motion* motion_;
+  static ForceTrace* reference_;
+};
+Motion* HapticTruth::motion_ = nullptr;
+ForceTrace* HapticTruth::reference_ = nullptr;
+
+TEST_F(HapticTruth, ATapAt60HzFeelsAsAt1kHz) {
+  const auto problems = steps(60);
+  ReplaySettings s;
+  s.latency_s = 1.0 / 60;
+  const TruthOfHand plain = truth(replay(problems, *motion_, tap_s, s));
+  s.servo = ServoSettings::beyond_equation_7();
+  const TruthOfHand full = truth(replay(problems, *motion_, tap_s, s));
+  s.rendering = Rendering::held;
+  const TruthOfHand held = truth(replay(problems, *motion_, tap_s, s));
+  EXPECT_GT(full.peak_N, 0.02);
+  EXPECT_EQ(full.onsets, 1);
+  EXPECT_LT(full.rms, 0.05);
+  EXPECT_LE(std::abs(full.onset_s), 2e-3);
+  EXPECT_GT(held.rms, 5 * full.rms);
+  EXPECT_GT(plain.rms, 3 * full.rms);
+  EXPECT_GT(held.onset_s, 10e-3);
+}
+
+TEST_F(HapticTruth, ANewProblemDoesNotJumpAt30HzWithJitter) {
+  const auto problems = steps(30);
+  ReplaySettings s;
+  s.latency_s = 1.0 / 30;
+  s.jitter = 0.3;
+  s.servo = ServoSettings::beyond_equation_7();
+  EXPECT_LT(replay(problems, *motion_, tap_s, s).jump[1], 0.02 * truth(*reference_).peak_N);
+  s.servo.handover_s = 0;
+  EXPECT_GT(replay(problems, *motion_, tap_s, s).jump[1], 0.03 * truth(*reference_).peak_N);  // there is something to hand over
+}
+
+TEST_F(HapticTruth, LookingAheadChangesNoForce) {
+  auto simulation = fissure(1.0 / 60);
+  const auto without = record_steps(*simulation, *motion_, 0.4);
+  const auto with = steps(60);
+  for (std::size_t n = 0; n < without.size(); ++n) EXPECT_NEAR((with[n].force[1] - without[n].force[1]).norm(), 0, 1e-4) << n;
+}
+
+TEST(HapticTruthCompare, ErrorsAndOnsets) {
+  std::vector<Vec3> reference(200, Vec3::Zero()), rendered = reference;
+  for (std::size_t i = 100; i < 200; ++i) reference[i] = Vec3(0, 0, 0.1);
+  for (std::size_t i = 103; i < 200; ++i) rendered[i] = Vec3(0, 0.01, 0.1);
+  TruthOfHand t = compare(reference, rendered);
+  EXPECT_NEAR(t.peak_N, 0.1, 1e-12);
+  EXPECT_NEAR(t.rms, std::sqrt((3 * 1.0 + 97 * 0.01) / 100), 1e-12);
+  EXPECT_NEAR(t.worst, 1, 1e-12);
+  EXPECT_NEAR(t.onset_s, 3e-3, 1e-12);
+  EXPECT_EQ(t.onsets, 1);
+  for (std::size_t i = 98; i < 103; ++i) rendered[i] = reference[100];
+  EXPECT_NEAR(compare(reference, rendered).onset_s, -2e-3, 1e-12);
+  EXPECT_FALSE(compare(rendered, reference).onsets == 0);
+  EXPECT_FALSE(compare(std::vector<Vec3>(5, Vec3::Zero()), rendered).counts());
+}
+
+}  // namespace
+}  // namespace insula

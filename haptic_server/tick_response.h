@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How tissue answers within a tick, when all that is known is how it answered over a whole step.
+//
+// A step of length h solves (M/h^2 + C/h + K) dq = ..., so its W is what tissue yields in that time. Tissue is viscous, C = beta K: in
+// a tick of dt it yields less, and it goes on moving as it did. Without inertia, implicit Euler over dt is exactly, row by row,
+//   du          = a dt u' + s W_tissue (lambda - lambda of the tick before),   a = beta / (beta + dt)
+//   s           = dt / (beta + dt) * (h + beta) / h                            1 for dt = h, or where nothing is viscous
+//   delta       = delta of the tick before + H_tool d(tool) + du + W_tool (lambda - ...)
+// with u' the rate of the row's gap by all that is no hand's tool. The first tick of a problem starts from the end of its step.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <span>
+#include <vector>
+
+#include "core/constraint/problem.h"
+
+namespace insula {
+
+struct TickResponseSettings {
+  bool tissue_in_time = false;  ///< W of the tick instead of that of the step
+  bool tissue_moves = false;    ///< tissue goes on at its rate
+  bool slip_by_tick = false;    ///< friction opposes the slip of the tick, not that since the step began
+  bool any() const { return tissue_in_time || tissue_moves || slip_by_tick; }
+};
+
+/// State of the rows between ticks. Allocates in its constructor only.
+class TickResponse {
+ public:
+  TickResponse(const TickResponseSettings& settings, int most_rows);
+
+  /// A problem that the servo's last solution has nothing to do with: from the end of its step, `age_s` ago.
+  void begin(const ConstraintProblem& problem, double age_s) noexcept;
+  /// The problem of the next tick, `dt_s` after the last one; the first one covers the problem's age instead. `moved`: of the
+  /// free tools since the problem's device poses, tool by tool.
+  const ConstraintProblem& next(double dt_s, const std::array<Vec6, 2>& moved) noexcept;
+  /// Its solution.
+  void solved(std::span<const double> lambda, std::span<const double> delta) noexcept;
+
+ private:
+  void scale_compliance(double dt) noexcept;
+  std::size_t tools() const { return std::min<std::size_t>(step_->tools.size(), 2); }
+  /// Of the row's gap, at the start of the tick.
+  double start(std::size_t i) const { return settings_.slip_by_tick && slips_[i] ? 0.0 : gap_[i]; }
+
+  TickResponseSettings settings_;
+  const ConstraintProblem* step_ = nullptr;
+  ConstraintProblem tick_;        ///< W and delta_free of the tick
+  std::vector<double> gap_, rate_, known_, tool_answer_, share_;
+  std::vector<char> slips_;       ///< tangent rows
+  std::vector<int> felt_;         ///< rows that a tool has a part in
+  std::array<Vec6, 2> moved_, went_;  ///< since the problem, in the tick
+  double age_ = 0, dt_ = 0, compliance_dt_ = 0;
+  bool first_ = true;
+};
+
+}  // namespace insula
