@@ -10,6 +10,7 @@
 
 #include "core/base/input_error.h"
 #include "core/mechanics/shell_body.h"
+#include "core/sim/settings.h"
 #include "engine/frame.h"
 
 namespace insula {
@@ -233,6 +234,7 @@ void write_bundle(const Simulation& simulation, const fs::path& dir, std::int64_
   json["title"] = !simulation.scene().title().empty() ? simulation.scene().title() : exercise ? exercise->title() : simulation.scene().file().stem().string();
   json["description"] = exercise ? exercise->text() : "";
   json["view"] = view_of(simulation);
+  if (const auto devices = simulation.scene().all<DeviceSettings>(); !devices.empty()) json["force_scale"] = devices.front()->force_scale();
 
   const auto bodies = picture_bodies(simulation);
   json["bodies"] = Json::array();

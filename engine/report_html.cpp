@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "engine/felt_forces.h"
 #include "engine/report_writer.h"
 #include "engine/svg_plot.h"
 
@@ -170,6 +171,10 @@ std::string report_html(const RunRecorder& recorder, const RunSummary& summary) 
   out += row("fresh forces", fmt::format("{:.0f} per second of touch", summary.fresh_forces_per_s));
   out += row("largest force on the left hand", fmt::format("{:.3f} N", summary.max_force_N[0]));
   out += row("largest force on the right hand", fmt::format("{:.3f} N", summary.max_force_N[1]));
+  const FeltForces left = felt_forces(recorder, 0), right = felt_forces(recorder, 1);
+  for (std::size_t d = 0; d < known_frictions.size(); ++d)
+    out += row(fmt::format("time in touch above the friction of {} ({:.2f} N)", known_frictions[d].devices, known_frictions[d].friction_N),
+               fmt::format("left {:.0f} %, right {:.0f} %", 100 * left.above[d].time_share, 100 * right.above[d].time_share));
   if (recorder.strands_total() > 0) out += row("strands divided", fmt::format("{} of {}", recorder.strands_cut(), recorder.strands_total()));
   out += row("constraint rows, mean and largest", fmt::format("{:.0f}, {:.0f}", mean(rows), largest(rows)));
   out += row("residual, median and largest", fmt::format("{:.2g} N, {:.2g} N", percentile(residual, 0.5), largest(residual)));

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/input_error.h"
+#include "engine/felt_forces.h"
 
 namespace insula {
 namespace {
@@ -57,6 +58,14 @@ Json exercise_json(const RunRecorder& recorder, const Exercise* exercise) {
   out["measures"] = measures;
   out["strands_cut"] = recorder.strands_cut();
   out["strands_total"] = recorder.strands_total();
+  return out;
+}
+
+Json felt_json(const FeltForces& felt) {
+  Json out = {{"touching_s", felt.touching_s}, {"median_N", felt.median_N}, {"max_N", felt.largest_N}, {"above_friction", Json::array()}};
+  for (std::size_t d = 0; d < known_frictions.size(); ++d)
+    out["above_friction"].push_back({{"devices", known_frictions[d].devices}, {"friction_N", known_frictions[d].friction_N}, {"time_share", felt.above[d].time_share},
+                                     {"range_share", felt.above[d].range_share}, {"scale_for_half", felt.above[d].scale}});
   return out;
 }
 
@@ -175,7 +184,8 @@ std::string report_json(const RunRecorder& recorder, const RunSummary& summary) 
   const auto metres = column(recorder, [](const S& s) { return s.residual_m; });
   json["residual_m"] = {{"p50", percentile(metres, 0.5)}, {"max", largest(metres)}};
   json["haptic"] = {{"fresh_forces_per_s", summary.fresh_forces_per_s},
-                    {"max_force_N", {{"left", summary.max_force_N[0]}, {"right", summary.max_force_N[1]}}}};
+                    {"max_force_N", {{"left", summary.max_force_N[0]}, {"right", summary.max_force_N[1]}}},
+                    {"felt", {{"left", felt_json(felt_forces(recorder, 0))}, {"right", felt_json(felt_forces(recorder, 1))}}}};
   json["exercise"] = exercise_json(recorder, summary.exercise);
   if (summary.complications) json["complications"] = complications_json(*summary.complications);
   recorder.outcome().add_to(json);

@@ -33,6 +33,8 @@ void read_bundle(const std::filesystem::path& file, SceneSetup& into) {
   std::ifstream in(file);
   const auto json = nlohmann::json::parse(in);
   if (json.contains("view")) read_view(json.at("view"), into);
+  if (json.contains("force_scale"))
+    if (const double scale = json.at("force_scale").get<double>(); scale >= 0.1 && scale <= 10) into.force_scale = scale;
   if (!json.contains("hands")) return;
   for (const auto& hand : json.at("hands")) {
     const std::string name = hand.at("hand").get<std::string>();

@@ -20,6 +20,7 @@ struct SceneSetup {
   std::array<Pose, 2> home;
   /// Axes of the person at the screen (x right, y away, z up) in the scene: those of the microscope's picture.
   Quat person_to_scene = Quat::Identity();
+  double force_scale = 1;
   std::string problem;  ///< why motion or homes could not be read, empty when fine
 };
 

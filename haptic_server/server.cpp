@@ -53,6 +53,7 @@ HapticServer::HapticServer(Bus& bus, std::array<DeviceChoice, 2> devices, const 
   bus_.subscribe(channel::haptic_problem, [this](Bytes b) { on_problem(b); });
   bus_.subscribe(channel::scene_info, [this](Bytes b) { on_scene(b); });
   bus_.subscribe(channel::hand_input, [this](Bytes b) { on_input(b); });
+  bus_.subscribe(channel::sim_event, [this](Bytes b) { on_event(b); });
 }
 
 const Motion* HapticServer::motion() const noexcept {
@@ -133,6 +134,29 @@ bool HapticServer::live(const ServoHand& hand, std::int64_t now) const noexcept 
   return age >= 0 && age <= stale_ns && now - r.update.time_us * 1000 <= stale_ns;
 }
 
+// What becomes of the servo's force on the way to the gate, and what knocks.
+Vec3 HapticServer::feel(std::size_t i, double dt, bool alive) noexcept {
+  Hand& hand = hands_[i];
+  const Vec3& force = last_.hand[i].force;
+  const int parted = parted_[i].load(std::memory_order_relaxed), shut = shut_[i].load(std::memory_order_relaxed);
+  if (alive) {
+    const Vec3 along = force.isZero(0) ? hand.reading.v : force;
+    if (hand.onset.met(dt, force.norm()))
+      hand.feel.knock(force, wall_met(-hand.reading.v.dot(force.normalized()), hardness(problems_.front().update.problem, int(i), servo_.lambda())));
+    if (parted != hand.parted_seen) hand.feel.knock(along, strand_parts);
+    if (shut != hand.shut_seen) hand.feel.knock(along, clip_clicks);
+  }
+  hand.parted_seen = parted;
+  hand.shut_seen = shut;
+  if (setup_ && setup_->session == session_) {
+    FeelSettings settings = hand.feel.settings();
+    settings.force_scale = setup_->force_scale;
+    hand.feel.set(settings);
+  }
+  const Vec3 up = (setup_ ? setup_->person_to_scene : Quat::Identity()) * Vec3(Vec3::UnitZ());
+  return hand.feel.apply(hand.device->profile(), dt, force, hand.reading.v, up, alive);
+}
+
 void HapticServer::tick(std::int64_t due_ns, std::int64_t missed) noexcept {
   const std::int64_t now = clock_.now_ns();
   const double dt = last_tick_ns_ == 0 ? options_.period_s : double(now - last_tick_ns_) * 1e-9;
@@ -179,7 +203,9 @@ void HapticServer::tick(std::int64_t due_ns, std::int64_t missed) noexcept {
     Hand& hand = hands_[i];
     const ServoHand& wanted = last_.hand[i];
     const bool alive = live(wanted, now);
-    hand.gate.apply(dt, alive, wanted.force, wanted.torque);
+    hand.energy.observe(hand.gate.force(), hand.reading.pose.p);
+    hand.gate.apply(dt, alive, feel(i, dt, alive), hand.feel.settings().force_scale * wanted.torque);
+    sample.given_J[i] = float(hand.energy.given());
     hand.device->write(hand.gate.force(), hand.gate.torque());
     sample.fresh[i] = alive && wanted.force != hand.last_force;
     hand.last_force = wanted.force;
@@ -194,6 +220,7 @@ void HapticServer::leave_snapshot(std::int64_t now) noexcept {
   Snapshot& s = snapshots_.back();
   s.time_ns = now;
   s.receive_ns = has_problem_ ? problems_.front().receive_ns : 0;
+  s.force_scale = hands_[0].feel.settings().force_scale;
   for (std::size_t i = 0; i < 2; ++i) {
     s.reading[i] = hands_[i].reading;
     s.force[i] = hands_[i].gate.force();

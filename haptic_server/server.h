@@ -14,7 +14,9 @@
 #include "core/bus/codec.h"
 #include "haptic_server/clock.h"
 #include "haptic_server/devices/make_device.h"
+#include "haptic_server/feel.h"
 #include "haptic_server/hand_guide.h"
+#include "haptic_server/passivity.h"
 #include "haptic_server/safety_gate.h"
 #include "haptic_server/sample_ring.h"
 #include "haptic_server/scene_setup.h"
@@ -34,7 +36,7 @@ struct ServerOptions {
 };
 
 /// Three threads meet here without locks: `receive` in one, `tick` in the servo thread, `publish_*` in a third.
-/// Messages: in HAPTIC_PROBLEM, SCENE_INFO, HAND_INPUT; out DEVICE_STATE, HAPTIC_STATUS.
+/// Messages: in HAPTIC_PROBLEM, SCENE_INFO, SIM_EVENT, HAND_INPUT; out DEVICE_STATE, HAPTIC_STATUS.
 ///
 /// A new engine (session) or a simulated time that goes back puts simulated arms at the start of the motion (or at home)
 /// and hands them back to the script. A server that comes into a running scene starts its arms where the engine has the
@@ -84,6 +86,10 @@ class HapticServer {
     std::unique_ptr<Device> device;
     HandSource source;
     SafetyGate gate;
+    Feel feel;
+    Onset onset;
+    PassivityObserver energy;
+    int parted_seen = 0, shut_seen = 0;  ///< of this hand's knocks
     HandGuide guide;
     DeviceReading reading;
     HandSample home;
@@ -97,12 +103,14 @@ class HapticServer {
     std::array<DeviceReading, 2> reading;
     std::array<Vec3, 2> force{Vec3::Zero(), Vec3::Zero()}, torque{Vec3::Zero(), Vec3::Zero()};
     std::array<bool, 2> in_range{true, true};
+    double force_scale = 1;
   };
 
   // Receiving thread.
   void on_problem(Bytes bytes);
   void on_scene(Bytes bytes);
   void on_input(Bytes bytes);
+  void on_event(Bytes bytes);
   void refuse(const std::string& channel, const std::string& why);
   void set_remark(const std::string& text);
   // Servo thread.
@@ -111,6 +119,7 @@ class HapticServer {
   void place_hands(std::int64_t now) noexcept;
   const Motion* motion() const noexcept;
   bool live(const ServoHand& hand, std::int64_t now) const noexcept;
+  Vec3 feel(std::size_t hand, double dt, bool alive) noexcept;
   void leave_snapshot(std::int64_t now) noexcept;
   // Publishing thread.
   std::string note(double age_ms) const;
@@ -126,6 +135,7 @@ class HapticServer {
   std::array<Wish, 2> wishes_{};
   insula_lcm::scene_info_t scene_info_;
   insula_lcm::hand_input_t hand_input_;
+  insula_lcm::sim_event_t event_;
   std::string why_;
 
   // Across threads.
@@ -136,6 +146,8 @@ class HapticServer {
   SetupExchange setups_;
   std::atomic<std::int64_t> received_{0}, refused_{0}, missed_{0};
   std::atomic<bool> stopping_{false}, quiet_{true};
+  /// Events that a hand's tool made, counted: strands parted, clips shut.
+  std::array<std::atomic<int>, 2> parted_{}, shut_{};
   mutable std::mutex remark_mutex_;  // never taken by the servo thread
   std::string remark_;
 

@@ -73,6 +73,16 @@ void HapticServer::on_input(Bytes bytes) {
   inputs_.publish();
 }
 
+void HapticServer::on_event(Bytes bytes) {
+  if (!decode(bytes, event_, why_)) return refuse("SIM_EVENT", why_);
+  if (event_.session != order_.session()) return;
+  const bool parted = event_.kind == "strand_cut" || event_.kind == "strand_torn";
+  if (!parted && event_.kind != "clip_shut") return;
+  // A strand that tears under no blade is felt by whoever pulls.
+  for (std::size_t i = 0; i < 2; ++i)
+    if (event_.hand < 0 || std::size_t(event_.hand) == i) (parted ? parted_ : shut_)[i].fetch_add(1, std::memory_order_relaxed);
+}
+
 bool HapticServer::publish_state() {
   if (!snapshots_.update()) return false;
   const Snapshot& s = snapshots_.front();
@@ -140,6 +150,7 @@ const insula_lcm::haptic_status_t& HapticServer::publish_status() {
   status_.problem_age_ms = s.receive_ns == 0 ? -1 : double(std::max<std::int64_t>(0, now - s.receive_ns)) * 1e-6;
   status_.problems_received = received_.load(std::memory_order_relaxed);
   status_.messages_refused = refused_.load(std::memory_order_relaxed);
+  status_.force_scale = s.force_scale;
   status_.realtime = options_.realtime;
   status_.note = note(status_.problem_age_ms).substr(0, 500);
   publish(bus_, channel::haptic_status, status_, scratch_);

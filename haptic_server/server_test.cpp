@@ -39,6 +39,35 @@ TEST(Server, FollowsTheScenesMotionAndFeelsTheTissue) {
   EXPECT_NEAR(rig.state.hand[0].force_N[2], rig.server->force(0).z(), 0.3);
 }
 
+// Of the hand that cut it, for a moment, along the force that is there; within the gate's limits, as Rig::run checks.
+TEST(Server, AStrandThatPartsIsFeltByTheHandThatCutIt) {
+  std::array<double, 2> most{};
+  for (const bool told : {false, true}) {
+    Rig rig;
+    rig.write_motion();
+    rig.send_scene();
+    rig.run(1500);
+    const Vec3 before[2] = {rig.server->force(0), rig.server->force(1)};
+    insula_lcm::sim_event_t event{};
+    event.session = rig.session;
+    event.kind = "strand_cut";
+    event.hand = 0;
+    if (told) rig.engine_bus.publish(channel::sim_event, rig.encoded(event));
+    event.session = rig.session - 1;  // an engine that is gone
+    event.hand = 1;
+    rig.engine_bus.publish(channel::sim_event, rig.encoded(event));
+    double other = 0;
+    for (int k = 0; k < 40; ++k) {
+      rig.run(1);
+      most[told] = std::max(most[told], (rig.server->force(0) - before[0]).norm());
+      other = std::max(other, (rig.server->force(1) - before[1]).norm());
+    }
+    EXPECT_LT(other, 0.02);
+  }
+  EXPECT_GT(most[1], most[0] + 0.4 * strand_parts.amplitude_N);
+  EXPECT_LT(most[1], most[0] + 1.5 * strand_parts.amplitude_N);
+}
+
 TEST(Server, ForcesEndWithin100msOfTheLastProblemAndComeBackGently) {
   Rig rig;
   rig.write_motion();
@@ -152,6 +181,22 @@ TEST(Server, HomesComeFromTheScenesBundle) {
   std::ofstream(directory.path / "scene.json") << "{\"hands\": [{\"hand\": 3}";
   EXPECT_NE(read_scene_setup(7, "", directory.path).problem, "");
   EXPECT_NE(read_scene_setup(7, "/nowhere.csv", "").problem, "");
+}
+
+TEST(Server, TheScenesForceScaleReachesTheHandAndIsSaid) {
+  double force[2];
+  for (const bool scaled : {false, true}) {
+    Rig rig;
+    rig.write_motion();
+    std::ofstream(rig.directory.path / "scene.json") << (scaled ? "{\"force_scale\": 2}" : "{}");
+    rig.send_scene(rig.directory.path.string());
+    rig.run(2000);
+    force[scaled] = rig.server->force(0).z();
+    EXPECT_EQ(rig.server->publish_status().force_scale, scaled ? 2 : 1);
+  }
+  // Goal at -6 mm: twice the force of 150 N/m is that of 300.
+  EXPECT_NEAR(force[0], 0.006 / (1 / 400.0 + 1 / 150.0), 0.05);
+  EXPECT_NEAR(force[1], 0.006 / (1 / 400.0 + 1 / 300.0), 0.05);
 }
 
 TEST(Server, AMouseFollowsTheViewerAndNotTheScript) {

@@ -23,6 +23,7 @@ double percentile(std::vector<float>& values, double share) {
 void StatusCollector::add(const TickSample& s) {
   lateness_.push_back(s.lateness_us);
   rows_ = s.rows;
+  for (std::size_t i = 0; i < 2; ++i) given_J_[i] = std::max(given_J_[i], s.given_J[i]);
   if (!s.solved) return;
   solve_.push_back(s.solve_us);
   sweeps_ += s.sweeps;
@@ -33,7 +34,10 @@ void StatusCollector::add(const TickSample& s) {
 void StatusCollector::finish(double elapsed_s, insula_lcm::haptic_status_t& status) {
   const double per_s = elapsed_s > 0 ? 1 / elapsed_s : 0;
   status.ticks_per_s = double(lateness_.size()) * per_s;
-  for (std::size_t i = 0; i < 2; ++i) status.fresh_forces_per_s[i] = fresh_[i] * per_s;
+  for (std::size_t i = 0; i < 2; ++i) {
+    status.fresh_forces_per_s[i] = fresh_[i] * per_s;
+    status.given_mJ[i] = 1e3 * double(given_J_[i]);
+  }
   status.lateness_us_p50 = percentile(lateness_, 0.50);
   status.lateness_us_p99 = percentile(lateness_, 0.99);
   status.lateness_us_max = lateness_.empty() ? 0 : *std::max_element(lateness_.begin(), lateness_.end());
@@ -48,6 +52,7 @@ void StatusCollector::finish(double elapsed_s, insula_lcm::haptic_status_t& stat
   lateness_.clear();
   solve_.clear();
   fresh_ = {0, 0};
+  given_J_ = {};
   sweeps_ = residual_ = 0;
 }
 
@@ -60,6 +65,11 @@ std::string budget_advice(const insula_lcm::haptic_status_t& s, double period_us
   const double share = double(missed) / (double(missed) + s.ticks_per_s);
   if (share > 0.01) return fmt::format("{:.0f} % of the servo's ticks were missed: {}", 100 * share, cure);
   if (s.lateness_us_p99 > 0.5 * period_us) return fmt::format("ticks begin up to {:.0f} us late: {}", s.lateness_us_p99, cure);
+  constexpr double much_mJ = 1;  // what an encoder's steps give a loose hand stays below
+  for (std::size_t i = 0; i < 2; ++i)
+    if (s.given_mJ[i] > much_mJ)
+      return fmt::format("the {} hand gets energy out of what it touches ({:.1f} mJ), and may feel it buzz: a tool with a softer coupling, or a firmer grip",
+                         i == 0 ? "left" : "right", s.given_mJ[i]);
   if (s.residual_m_max > 1e-4)
     return fmt::format("forces are {:.2f} mm from their solution after {:.0f} sweeps of {} rows: less in contact at once", 1e3 * s.residual_m_max,
                        s.sweeps_mean, s.rows);

@@ -20,6 +20,7 @@ struct TickSample {
   /// Per hand: came from a new solve of a recent problem and differs, in any bit, from the tick before. Where nothing is
   /// touched the force itself is next to nothing and so is the difference.
   std::array<bool, 2> fresh{false, false};
+  std::array<float, 2> given_J{};  ///< PassivityObserver::given()
 };
 
 /// Upper bounds of HAPTIC_STATUS.lateness_count's entries, us; the last entry has none.
@@ -40,6 +41,7 @@ class StatusCollector {
  private:
   std::vector<float> lateness_, solve_;
   std::array<int, 2> fresh_{0, 0};
+  std::array<float, 2> given_J_{};
   double sweeps_ = 0, residual_ = 0;
   int rows_ = 0;
 };

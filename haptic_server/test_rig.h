@@ -63,13 +63,14 @@ struct Rig {
                                   "3,left,-0.01,0,-0.006,1,0,0,0,1,0\n";
   }
 
-  void send_scene() {
+  void send_scene(const std::string& bundle = {}) {
     insula_lcm::scene_info_t info;
     info.session = session;
     info.time_us = clock.now_ns() / 1000;
     info.scene = "test.xml";
     info.state = "running";
     info.motion = motion_file;
+    info.bundle = bundle;
     engine_bus.publish(channel::scene_info, encoded(info));
   }
 

@@ -31,6 +31,8 @@ class ArrivalOrder {
     return true;
   }
 
+  std::int64_t session() const { return newest_.session; }  ///< of the sender that counts; -1: none yet
+
  private:
   struct Place {
     std::int64_t session = -1, sequence = 0;

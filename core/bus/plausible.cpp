@@ -89,6 +89,8 @@ bool plausible(const insula_lcm::haptic_status_t& m, std::string& why) {
   if (std::any_of(std::begin(m.lateness_count), std::end(m.lateness_count), [](int n) { return n < 0; })) return fail(why, "negative count");
   if (!non_negative(m.sweeps_mean, 1e6) || !non_negative(m.residual_m_max, 1e6))
     return fail(why, "solver figures out of range");
+  if (!non_negative(m.given_mJ[0], 1e6) || !non_negative(m.given_mJ[1], 1e6)) return fail(why, "energy out of range");
+  if (!non_negative(m.force_scale, 100)) return fail(why, "force scale out of range");
   if (!(std::abs(m.problem_age_ms) <= most_us)) return fail(why, "age out of range");  // -1: no problem yet
   if (!text_ok(m.note, path_text)) return fail(why, "note too long");
   return true;

@@ -26,6 +26,7 @@ class DeviceSettings final : public Component {
   static constexpr std::string_view kind_name = "settings";
   Param<std::string> left{this, {.name = "left", .fallback = "simulated", .doc = "device of the left hand, best first: KIND[:WHICH], with commas between; the first that is plugged in"}};
   Param<std::string> right{this, {.name = "right", .fallback = "simulated", .doc = "device of the right hand"}};
+  Param<Scalar> force_scale{this, {.name = "force_scale", .fallback = "1", .min = "0.1", .max = "10", .doc = "force on the hand over force in the scene: forces of this surgery lie below the friction of many arms"}};
 };
 
 class ViewSettings final : public Component {

@@ -21,6 +21,7 @@ struct DeviceProfile {
   double friction_N = 0;            ///< backdrive friction at the tip, 0: not known
   double apparent_mass_kg = 0;      ///< of the arm at the tip, 0: not known
   bool gravity_compensated = false; ///< the device or its software carries the arm's own weight
+  double weight_N = 0;              ///< of the arm at the tip, where neither does and it is known: Feel carries it
 };
 
 /// What a device reports at a tick.

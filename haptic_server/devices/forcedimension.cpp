@@ -110,6 +110,7 @@ bool ForceDimensionDevice::open() {
     profile_.workspace_m = (calibration().axes * sheet.workspace_m).cwiseAbs();
     double mass = 0;
     if (api_->effector_mass != nullptr && !dhd::failed(api_->effector_mass(&mass, nr)) && mass > 0 && mass < 5) profile_.apparent_mass_kg = mass;
+    if (!weightless) profile_.weight_N = 9.81 * profile_.apparent_mass_kg;
   }
   limit(sheet.force_N, torques_ ? sheet.torque_Nm : 0);
   api_->set_force(0, 0, 0, 0, 0, 0, 0, nr);

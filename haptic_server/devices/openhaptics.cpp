@@ -11,6 +11,7 @@
 #include <cstring>
 
 #include "core/base/input_error.h"
+#include "haptic_server/devices/known_friction.h"
 
 namespace insula {
 namespace {
@@ -26,11 +27,11 @@ constexpr double most_force_N = 10;
 void add_data_sheet(const std::string& model, DeviceProfile& profile) {
   profile.resolution_m = 55e-6;
   profile.workspace_m = Vec3(0.160, 0.120, 0.070);
-  profile.friction_N = 0.26;
+  profile.friction_N = touch_friction.friction_N;
   profile.apparent_mass_kg = 0.045;
   if (model.find("Premium") == std::string::npos && model.find("Touch X") == std::string::npos && model.find("Desktop") == std::string::npos) return;
   profile.resolution_m = 23e-6;
-  profile.friction_N = 0.06;
+  profile.friction_N = touch_x_friction.friction_N;
 }
 
 }  // namespace
