@@ -83,13 +83,17 @@ void StreamedDevice::lost() noexcept {
 DeviceForce StreamedDevice::wanted() noexcept {
   forces_.update();
   DeviceForce f = forces_.front();
-  const double age = double(clock_.now_ns() - f.time_ns) * 1e-9;
+  const std::int64_t now = clock_.now_ns();
+  const double age = double(now - f.time_ns) * 1e-9;
   const double left = std::clamp((stale_after_s - age) / (stale_after_s - silent_after_s), 0.0, 1.0);
+  const double dt = std::min(double(now - wanted_ns_) * 1e-9, 0.005);
+  wanted_ns_ = now;
+  fade_ = std::min(left, fade_ + dt / stale_after_s);
   if (!f.force_N.allFinite() || !f.torque_Nm.allFinite()) f = DeviceForce{};
   shorten(f.force_N, limit_N_.load(std::memory_order_relaxed));
   shorten(f.torque_Nm, limit_Nm_.load(std::memory_order_relaxed));
-  f.force_N *= left;
-  f.torque_Nm *= left;
+  f.force_N *= fade_;
+  f.torque_Nm *= fade_;
   return f;
 }
 

@@ -34,7 +34,8 @@ class StreamedDevice : public Device {
 
   /// Without a sample for this long the device counts as gone.
   static constexpr double stale_after_s = 0.05;
-  /// A servo that has been silent for longer fades the force out; at stale_after_s it is zero.
+  /// A servo that has been silent for longer fades the force out; at stale_after_s it is zero. When the servo is back, so is
+  /// the force, within another stale_after_s: a stall must not end in a step.
   static constexpr double silent_after_s = 0.02;
 
  protected:
@@ -61,6 +62,8 @@ class StreamedDevice : public Device {
   Quat person_to_scene_ = Quat::Identity();
   Pose home_;
   DeviceSample last_;
+  double fade_ = 1;  ///< what a servo that falls silent leaves of the force
+  std::int64_t wanted_ns_ = 0;
   MonotonicClock clock_;
   mutable std::mutex remark_mutex_;  // never taken by the servo thread
   std::string remark_;

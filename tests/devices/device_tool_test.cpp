@@ -134,9 +134,10 @@ TEST_F(DeviceTool, TheForceTestStartsGentlyAndStaysWithinItsForce) {
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();
   std::thread watcher([&] {
     Vec3 last = Vec3::Zero();
-    auto then = std::chrono::steady_clock::now();
+    auto then = std::chrono::steady_clock::now();  // before the last look: a slope is never taken for steeper than it was
     while (!done) {
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      const auto before = std::chrono::steady_clock::now();
       const Vec3 now = force(0);
       const auto t = std::chrono::steady_clock::now();
       strongest = std::max(strongest, now.norm());
@@ -144,7 +145,7 @@ TEST_F(DeviceTool, TheForceTestStartsGentlyAndStaysWithinItsForce) {
       low = low.cwiseMin(now);
       high = high.cwiseMax(now);
       last = now;
-      then = t;
+      then = before;
     }
   });
   EXPECT_EQ(test_device_force(options), 0) << out.str();

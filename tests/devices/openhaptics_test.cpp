@@ -38,9 +38,8 @@ TEST_F(OpenHaptics, LaysItsRestPoseAtTheHandsHomeAsTheMicroscopeSees) {
   const Pose home{Vec3(0.1, 0.2, 0.3), from_rotation_vector(Vec3(0.3, 0, 0))};
   device.face(from_rotation_vector(Vec3(0, 0, std::acos(0.0))));  // looks along -x: the person's right is the scene's y
   device.place(home, Vec3::Zero(), Vec3::Zero());
-  ASSERT_TRUE(serve(device, Vec3(0, 1, 0), [&](const DeviceReading& r) { return r.connected && (r.pose.p - home.p - Vec3(0, 0.01, 0)).norm() < 1e-9 && force(0).x() > 0.99; }));
+  ASSERT_TRUE(serve(device, Vec3(0, 1, 0), [&](const DeviceReading& r) { return r.connected && (r.pose.p - home.p - Vec3(0, 0.01, 0)).norm() < 1e-9 && (force(0) - Vec3(1, 0, 0)).norm() < 1e-9; }));  // a push along the scene's y goes to the hand's right
   EXPECT_NEAR(rotation_vector(device.read().pose.q * home.q.conjugate()).norm(), 0, 1e-9);
-  EXPECT_NEAR((force(0) - Vec3(1, 0, 0)).norm(), 0, 1e-9);  // a push along the scene's y goes to the hand's right
 }
 
 TEST_F(OpenHaptics, TakesItsLimitsFromTheDevice) {
@@ -57,8 +56,9 @@ TEST_F(OpenHaptics, TakesItsLimitsFromTheDevice) {
   ASSERT_TRUE(connected(device, false));
   arm(0).max_force = 3.3;
   arm(0).plugged = 1;
-  ASSERT_TRUE(serve(device, Vec3(7, 0, 0), [&](const DeviceReading&) { return force(0).norm() > 3; }));
-  EXPECT_NEAR(force(0).norm(), 3.3, 1e-9);
+  double strongest = 0;
+  ASSERT_TRUE(serve(device, Vec3(7, 0, 0), [&](const DeviceReading&) { return (strongest = std::max(strongest, force(0).norm())) > 3.3 - 1e-9; }));
+  EXPECT_LE(strongest, 3.3 + 1e-9);
   EXPECT_DOUBLE_EQ(device.profile().max_force_N, 7.9);
 }
 

@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <limits>
+#include <thread>
 
 #include "core/testing/count_allocations.h"
 #include "haptic_server/test_problem.h"
@@ -88,6 +90,27 @@ TEST(StreamedDevice, ForcesThatCannotBeAreNone) {
   device.limit(nan, nan);
   device.write(Vec3(1, 0, 0), Vec3::Zero());
   EXPECT_EQ(device.wanted().force_N, Vec3(0, 0, 0));
+}
+
+TEST(StreamedDevice, AStallOfTheServoDoesNotEndInAStep) {
+  Bare device{DeviceCalibration{}};
+  const auto sleep_ms = [](int n) { std::this_thread::sleep_for(std::chrono::milliseconds(n)); };
+  device.write(Vec3(1, 0, 0), Vec3::Zero());
+  EXPECT_EQ(device.wanted().force_N.x(), 1);
+  sleep_ms(60);
+  EXPECT_EQ(device.wanted().force_N.x(), 0);
+  double last = 0, steepest = 0;
+  int calls = 0;
+  for (; last < 1 && calls < 10000; ++calls) {
+    device.write(Vec3(1, 0, 0), Vec3::Zero());
+    const double f = device.wanted().force_N.x();
+    steepest = std::max(steepest, f - last);
+    last = f;
+    sleep_ms(1);
+  }
+  EXPECT_EQ(last, 1);
+  EXPECT_LE(steepest, 0.1 + 1e-9);  // 5 ms of 50 count at most
+  EXPECT_GE(calls, 10);
 }
 
 TEST(StreamedDevice, VelocityOfTurningComesFromThePosesWhereItIsNotMeasured) {
