@@ -56,13 +56,13 @@ std::int64_t TickSchedule::wake(std::int64_t now_ns, std::int64_t& missed) {
 
 void run_servo(HapticServer& server, const LoopSettings& settings, const std::atomic<bool>& run) {
   prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);  // 50 us by default, for threads without a real-time class
-  make_realtime(settings.priority);
+  const int spin_us = chosen_spin_us(settings, make_realtime(settings.priority));
   const MonotonicClock clock;
   const auto period = std::int64_t(1e9 / settings.rate_hz);
   TickSchedule schedule(clock.now_ns() + period, period);
   while (run.load(std::memory_order_relaxed)) {
     const std::int64_t due = schedule.due_ns();
-    const std::int64_t sleep_until = due - std::int64_t(settings.spin_us) * 1000;
+    const std::int64_t sleep_until = due - std::int64_t(spin_us) * 1000;
     const timespec at{time_t(sleep_until / 1'000'000'000), long(sleep_until % 1'000'000'000)};
     while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &at, nullptr) == EINTR) {
     }

@@ -3,6 +3,9 @@
 #include "haptic_server/servo_loop.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "haptic_server/status.h"
 
@@ -50,6 +53,30 @@ TEST(Status, PercentilesRatesAndANewPeriod) {
   c.finish(0.1, m);
   EXPECT_EQ(m.ticks_per_s, 0);
   EXPECT_EQ(m.residual_m_max, 0);
+}
+
+TEST(ServoLoop, SpinsShortlyWhereRealTimeIsGrantedAndAsAskedForElsewhere) {
+  LoopSettings s;
+  EXPECT_EQ(chosen_spin_us(s, true), short_spin_us);
+  EXPECT_EQ(chosen_spin_us(s, false), 0);
+  s.spin_us = 100;
+  EXPECT_EQ(chosen_spin_us(s, false), 100);
+  s.spin_us = 0;
+  EXPECT_EQ(chosen_spin_us(s, true), 0);
+}
+
+TEST(ServoLoop, SaysHowToAllowRealTimeWhereItIsRefused) {
+  // In a process of its own that gives up its rights.
+  const pid_t child = fork();
+  if (child == 0) {
+    const rlimit none{0, 0};
+    if (setrlimit(RLIMIT_RTPRIO, &none) != 0 || (geteuid() == 0 && setuid(65534) != 0)) _exit(2);
+    const RealtimeGrant grant = probe_realtime(80);
+    _exit(!grant.scheduler && grant.advice.find("real-time scheduling was refused") == 0 && grant.advice.find("setcap") != std::string::npos ? 0 : 1);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_EQ(WIFEXITED(status) ? WEXITSTATUS(status) : -1, 0);
 }
 
 }  // namespace

@@ -36,18 +36,6 @@ TEST(Status, TheMessageTypeAndThePageHaveTheSameBounds) {
   }
 }
 
-TEST(Status, FreshForcesAreCountedForEachHand) {
-  StatusCollector collector;
-  for (int k = 0; k < 100; ++k) collector.add({.sweeps = 4, .rows = 30, .solved = true, .fresh = {true, k % 4 == 0}});
-  insula_lcm::haptic_status_t s{};
-  collector.finish(0.1, s);
-  EXPECT_NEAR(s.ticks_per_s, 1000, 1e-9);
-  EXPECT_NEAR(s.fresh_forces_per_s[0], 1000, 1e-9);
-  EXPECT_NEAR(s.fresh_forces_per_s[1], 250, 1e-9);
-  EXPECT_EQ(s.sweeps_mean, 4);
-  EXPECT_EQ(s.rows, 30);
-}
-
 TEST(Status, AdviceIsGivenWhenABudgetIsMissedAndOnlyThen) {
   insula_lcm::haptic_status_t good{};
   good.ticks_per_s = 1000;

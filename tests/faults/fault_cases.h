@@ -55,6 +55,10 @@ template <int by_s>
 void clock_jump(FaultRig& rig, bool on) {
   if (on) rig.clock.advance_ns(by_s * 1'000'000'000LL);
 }
+inline void clock_back(FaultRig& rig, bool on) {
+  clock_jump<-10>(rig, on);
+  engine_stall(rig, on);
+}
 inline void sequence_back(FaultRig& rig, bool on) { rig.engine().sequence += on ? -1000 : 1000; }
 inline void sequence_ahead(FaultRig& rig, bool on) {
   // One message alone; the engine then counts on as before.
@@ -177,8 +181,8 @@ inline constexpr FaultCase fault_cases[] = {
     {.name = "stamps_behind", .cause = "the engine's clock an hour behind", .promise = to_zero, .set = fault::stamps<-3600>, .zero_after_s = untrusted_s},
     {.name = "clock_forward", .cause = "the machine's clock jumps 10 s ahead", .promise = "one tick of 5 ms; felt on within a second",
      .set = fault::clock_jump<10>, .lasts_s = 0.02},
-    {.name = "clock_back", .cause = "the machine's clock jumps 10 s back", .promise = "no problem from before the jump counts as fresh",
-     .set = fault::clock_jump<-10>, .lasts_s = 0.02},
+    {.name = "clock_back", .cause = "the machine's clock jumps 10 s back and the engine stands still for 300 ms",
+     .promise = "no problem from before the jump counts as fresh: 0 within 52 ms", .set = fault::clock_back, .lasts_s = 0.3, .zero_after_s = ramp_s},
     {.name = "device_gone", .cause = "a device unplugged in mid-contact", .promise = "its force 0 within 52 ms, the other hand goes on",
      .set = fault::device<DeviceError::gone>, .zero_after_s = ramp_s, .one_hand = true},
     {.name = "device_nan", .cause = "a device reports NaN", .promise = "the same", .set = fault::device<DeviceError::nan_pose>,

@@ -26,6 +26,8 @@ class Page {
   explicit Page(const PlaySession& session) : Page([&session] { return session.port(); }) {}
   ~Page() {
     stop_ = true;
+    // Where nothing is sent any more, a read would wait for ever.
+    if (const int s = socket_; s >= 0) ::shutdown(s, SHUT_RDWR);
     thread_.join();
   }
   Page(const Page&) = delete;
@@ -55,6 +57,11 @@ class Page {
     timeval limit{1, 0};
     ::setsockopt(ws.next_layer().native_handle(), SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
     ws.handshake("127.0.0.1", "/ws");
+    struct Open {
+      std::atomic<int>& socket;
+      ~Open() { socket = -1; }
+    } open{socket_};
+    socket_ = ws.next_layer().native_handle();
     ++connections_;
     boost::beast::flat_buffer in;
     while (!stop_) {
@@ -72,6 +79,7 @@ class Page {
   std::function<int()> port_;
   std::atomic<bool> stop_{false};
   std::atomic<int> connections_{0};
+  std::atomic<int> socket_{-1};  ///< of the connection, while there is one
   mutable std::mutex mutex_;
   std::map<std::int64_t, std::set<std::int64_t>> frames_;
   std::thread thread_;

@@ -82,7 +82,7 @@ class Replay : public ::testing::Test {
     gateway_ = std::make_unique<Tool>(std::vector<std::string>{std::string(INSULA_BINARY_DIR) + "/bin/gateway", "--port", "0"});
     ASSERT_TRUE(wait_for([&] {
       gateway_->read();
-      const std::size_t at = gateway_->said.find("serving "), end = gateway_->said.find('\n', at == std::string::npos ? 0 : at);
+      const std::size_t at = gateway_->said.find("serving http"), end = gateway_->said.find('\n', at == std::string::npos ? 0 : at);
       if (at == std::string::npos || end == std::string::npos) return false;
       port_ = std::atoi(gateway_->said.c_str() + gateway_->said.rfind(':', end) + 1);
       return true;
