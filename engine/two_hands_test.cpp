@@ -2,6 +2,8 @@
 // Two hands in one problem: each feels what the other does within a tick, through tissue, tool on tool, and with a clip in the applier.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "core/testing/block_mesh.h"
 #include "core/testing/example.h"
 #include "haptic_server/servo.h"
@@ -71,7 +73,8 @@ TEST_P(TwoHands, AHandAtRestFeelsTheOthersPressThroughTheLobe) {
   // The lobe goes down under the other hand as well: less to lean on, in the very tick.
   EXPECT_GT(after.hand[1].force.z(), before.hand[1].force.z() + 1e-3);
   EXPECT_LT(after.hand[0].force.z(), before.hand[0].force.z() - 1e-5);
-  // And as much in the end as the engine says.
+  if (!GetParam()) return;
+  // And as much in the end as the engine says: in ticks tissue creeps on.
   const Vec3 at_once = before.hand[0].force;
   ServoResult late = after;
   for (int k = 0; k < 200; ++k) late = tick();
@@ -97,34 +100,35 @@ TEST_P(TwoHands, ToolsThatTouchFeelEachOther) {
 TEST_P(TwoHands, AnApplierWithItsClipAndARetractorStayCoherent) {
   load(R"(<soft_body id="lobe" mesh="../meshes/examples/block.msh" mesh_unit="mm"><corotational_fem/><fixed region="beyond" centre="0 0 -19 mm" normal="0 0 -1"/>
       <surface/></soft_body>
-    <solver max_sweeps="500" tolerance="1e-10 m"/>
+    <solver max_sweeps="100" tolerance="1e-9 m" conjugate="true" newton="8"/>
     <clip id="straight" model="../meshes/clips/straight/straight.urdf"/>
-    <clip_applier id="applier" model="../meshes/instruments/clip_applier/clip_applier.urdf" hand="right" clips="straight" load="straight" home="4 0 8 mm" shaft="0 0 1" flat="1 0 0"/>
+    <clip_applier id="applier" model="../meshes/instruments/clip_applier/clip_applier.urdf" hand="right" clips="straight" load="straight" home="6 0 40 mm" shaft="0 0 1" flat="1 0 0"/>
     <retractor id="spatula" model="../meshes/instruments/retractor/retractor.urdf" hand="left" home="-8 0 3 mm" shaft="0 0 1" flat="1 0 0"/>
     <contact between="spatula applier straight lobe" friction="0.2"/>)", std::filesystem::path(INSULA_SOURCE_DIR) / "scenes/two_hands.xml");
   for (int k = 0; k < 40; ++k) {
     hand_[0].p.z() -= 0.12e-3;
-    hand_[1].p.z() -= 0.12e-3;
     step(1);
   }
   step(30);
   ASSERT_GT(engine_force(0).norm(), 5e-3);
   ASSERT_EQ(problem_.tools.size(), 2u);
-  // At rest both hands feel what the engine computed, clip and all; then one moves, and no force leaves its way.
+  EXPECT_TRUE(std::any_of(problem_.blocks.begin(), problem_.blocks.end(), [](const Block& b) { return b.lower == -infinite && b.upper == infinite; }));
+  // At rest both hands feel what the engine computed; then both move, each with its own: the clip goes with its applier and
+  // the other hand feels nothing of it.
   ServoResult r;
   for (int k = 0; k < 50; ++k) r = tick();
   for (int h = 0; h < 2; ++h) EXPECT_NEAR((r.hand[std::size_t(h)].force - engine_force(h)).norm(), 0, 0.02 * engine_force(0).norm()) << h;
   for (int k = 0; k < 17; ++k) {
     hand_[0].p.z() -= 5e-6;
+    hand_[1].p.z() -= 5e-5;
     const ServoResult next = tick();
-    for (std::size_t h = 0; h < 2; ++h) {
-      ASSERT_TRUE(next.hand[h].valid);
-      EXPECT_LT((next.hand[h].force - r.hand[h].force).norm(), 300 * 2e-5) << h << " " << k;
-    }
+    ASSERT_TRUE(next.hand[0].valid && next.hand[1].valid);
+    EXPECT_LT((next.hand[0].force - r.hand[0].force).norm(), 300 * 5e-6) << k;
+    EXPECT_LT(next.hand[1].force.norm(), 0.5 * 300 * 5e-5 * (k + 1)) << k;  // its inertia, not an anchor: less than half of the coupling
     r = next;
   }
   step(1);
-  for (int h = 0; h < 2; ++h) EXPECT_NEAR((r.hand[std::size_t(h)].force - engine_force(h)).norm(), 0, 0.1 * engine_force(0).norm()) << h;
+  EXPECT_NEAR((r.hand[0].force - engine_force(0)).norm(), 0, 0.1 * engine_force(0).norm());
 }
 
 INSTANTIATE_TEST_SUITE_P(Servo, TwoHands, testing::Bool(), [](const auto& about) { return about.param ? "in_ticks" : "equation_7"; });

@@ -27,24 +27,26 @@ TEST(Allocation, TheCounterCounts) {
 TEST(Allocation, TheServoDoesNone) {
   const std::array<ConstraintProblem, 3> problems{testing::two_tool_problem(10, 20, 1), testing::two_tool_problem(60, 60, 2),
                                                   testing::two_tool_problem(30, 40, 3, 5)};
-  Servo servo;
-  ServoInput in;
-  for (std::size_t i = 0; i < 2; ++i) {
-    in.device[i] = problems[0].tools[i].device;
-    in.connected[i] = true;
-  }
-  double sum = 0;
-  const long before = allocations.load();
-  for (std::size_t k = 0; k < 30; ++k) {  // problems of changing size, from the very first tick on
-    servo.set_problem(&problems[k % 3]);
-    for (int tick = 0; tick < 4; ++tick) {
-      in.device[0].p.z() -= 1e-5;
-      sum += servo.tick(in).hand[0].force.norm();
+  for (const ServoSettings& settings : {ServoSettings(), ServoSettings::beyond_equation_7()}) {
+    Servo servo(settings);
+    ServoInput in;
+    for (std::size_t i = 0; i < 2; ++i) {
+      in.device[i] = problems[0].tools[i].device;
+      in.connected[i] = true;
     }
-    if (k % 7 == 6) servo.set_problem(nullptr);
+    double sum = 0;
+    const long before = allocations.load();
+    for (std::size_t k = 0; k < 30; ++k) {  // problems of changing size, from the very first tick on
+      servo.set_problem(&problems[k % 3]);
+      for (int tick = 0; tick < 4; ++tick) {
+        in.device[0].p.z() -= 1e-5;
+        sum += servo.tick(in).hand[0].force.norm();
+      }
+      if (k % 7 == 6) servo.set_problem(nullptr);
+    }
+    EXPECT_EQ(allocations.load() - before, 0);
+    EXPECT_GT(sum, 0);
   }
-  EXPECT_EQ(allocations.load() - before, 0);
-  EXPECT_GT(sum, 0);
 }
 
 TEST(Allocation, DevicesGatesAndGuidesDoNone) {

@@ -29,7 +29,7 @@ struct ServoSettings {
   static ServoSettings beyond_equation_7() {
     ServoSettings s;
     s.response = {.tissue_in_time = true, .tissue_moves = true, .slip_by_tick = true};
-    s.handover_s = 0.01;
+    s.handover_s = 0.015;
     return s;
   }
 };

@@ -74,7 +74,7 @@ double press(double t) { return 1e-3 - 0.03 * t + 2e-3 * std::sin(40 * t); }
 
 TEST(TickResponse, ALayerAnswersAsInStepsOfItsOwnLength) {
   for (const double h : {0.01, 1.0 / 60, 1.0 / 30}) {
-    for (const double start : {0.02, 0.08}) {  // in free air, pressed
+    for (const double start : {0.05, 0.09}) {  // in free air, pressed
       Layer engine;
       const int steps = int(start / h);
       for (int n = 0; n < steps; ++n) engine.step(h, press(n * h));
@@ -84,7 +84,7 @@ TEST(TickResponse, ALayerAnswersAsInStepsOfItsOwnLength) {
       Servo servo(in_time());
       servo.set_problem(&p, {}, tick_s);
       double largest = 0;
-      for (int k = 1; k <= 30; ++k) {
+      for (int k = 1; k <= 45; ++k) {
         const double x = press(now + k * tick_s);
         engine.step(tick_s, x);
         const ServoResult r = servo.tick(at(x));
@@ -131,7 +131,7 @@ TEST(TickResponse, WithoutViscosityEquationSevenIsLeft) {
 }
 
 TEST(TickResponse, FrictionTurnsRoundWithTheHand) {
-  // A contact that slid 2 mm in its step and is drawn back by 0.2 mm: since the step began it has still gone forward.
+  // A contact that slid 2 mm in its step and is drawn back by 0.5 mm: since the step began it has still gone forward.
   ConstraintProblem p;
   p.resize(3);
   p.step_s = 1.0 / 60;
@@ -151,7 +151,7 @@ TEST(TickResponse, FrictionTurnsRoundWithTheHand) {
   since_step.set_problem(&p);
   by_tick.set_problem(&p);
   Vec3 old, turned;
-  for (int k = 1; k <= 10; ++k) {
+  for (int k = 1; k <= 25; ++k) {
     ServoInput in = at(0);
     in.device[1].p.x() = -2e-5 * k;
     old = since_step.tick(in).hand[1].force;
@@ -185,28 +185,27 @@ TEST(TickResponse, ARateThatLastsGoesOn) {
 TEST(TickResponse, ANewProblemTakesOverWithoutAJump) {
   Layer engine;
   const double h = 1.0 / 30;
-  for (int n = 0; n < 5; ++n) engine.step(h, press(n * h));
-  const ConstraintProblem before = problem_of(engine, h, press(5 * h));
-  engine.u *= 0.6;  // the step after has found something else
-  const ConstraintProblem after = problem_of(engine, h, press(6 * h));
+  for (int n = 0; n < 20; ++n) engine.step(h, -1e-3);
+  const ConstraintProblem before = problem_of(engine, h, -1e-3);
+  engine.stiffness *= 2;  // the step after has found something else
+  const ConstraintProblem after = problem_of(engine, h, -1e-3);
   ServoSettings s = in_time();
   s.handover_s = 0.01;
   Servo smooth(s), abrupt(in_time());
   double last[2] = {0, 0}, jump[2] = {0, 0}, end[2] = {0, 0};
   for (int k = 0; k < 60; ++k) {
-    const double x = press(5 * h + k * tick_s);
     int i = 0;
     for (Servo* servo : {&smooth, &abrupt}) {
       if (k == 0) servo->set_problem(&before, {}, tick_s);
       if (k == 33) servo->set_problem(&after, {}, tick_s);
-      const double f = servo->tick(at(x)).hand[1].force.z();
+      const double f = servo->tick(at(-1e-3)).hand[1].force.z();
       if (k > 0) jump[i] = std::max(jump[i], std::abs(f - last[i]));
       last[i] = end[i] = f;
       ++i;
     }
   }
   EXPECT_GT(jump[1], 4e-3);
-  EXPECT_LT(jump[0], 0.35 * jump[1]);
+  EXPECT_LT(jump[0], 0.2 * jump[1]);
   EXPECT_NEAR(end[0], end[1], 1e-12);  // and is forgotten
 }
 
