@@ -105,6 +105,7 @@ std::vector<RecordedStep> record_steps(Simulation& simulation, const Motion& mot
   std::vector<RecordedStep> out;
   Driven driven(simulation, motion);
   ExchangePause pause;
+  Condenser condense;
   HapticUpdate sent;
   std::vector<std::uint8_t> bytes;
   std::string why;

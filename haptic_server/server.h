@@ -27,7 +27,7 @@
 namespace insula {
 
 struct ServerOptions {
-  ServoSettings servo;
+  ServoSettings servo = ServoSettings::beyond_equation_7();
   double period_s = 1e-3;
   /// Instead of the scene's motion: this one (may be empty: none).
   std::optional<Motion> motion;
