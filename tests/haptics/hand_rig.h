@@ -30,7 +30,8 @@ struct Press {
   double slide_m_s = 0;   ///< and goes along it
   double seconds = 5;
   bool held = false;      ///< the force of a tick in which a problem came stays until the next one
-  ServoSettings servo;
+  bool late = true;       ///< a problem reaches the servo a step after the poses it was made with, as from an engine that only just keeps up
+  ServoSettings servo = ServoSettings::beyond_equation_7();
 };
 
 struct Pressed {
@@ -53,6 +54,7 @@ inline Pressed press(const Press& press, const Person& person) {
   Pressed out;
   const auto s = load_text(text, std::filesystem::path(INSULA_SOURCE_DIR) / "plugins/contact/plate.xml");
   if (!s) return out;
+  s->look_ahead(2 * s->h());
   ArmParameters p = simulated_arm(1);
   p.tremor_m = p.tremor_rad = 0;
   p.arm_friction_N = person.friction_N;
@@ -65,8 +67,8 @@ inline Pressed press(const Press& press, const Person& person) {
   PassivityObserver observer;
   const Pose home = s->instrument_of(1)->home_pose();
   device.place(home, home.p, Vec3::Constant(1));
-  std::array<ConstraintProblem, 2> problem;
-  std::size_t current = 0;
+  std::array<ConstraintProblem, 3> problem;
+  std::size_t newest = 0;
   Vec3 held = Vec3::Zero();
   const int ticks = int(std::lround(press.seconds * 1000));
   const double dt = 1e-3, h = 1 / press.engine_Hz;
@@ -99,9 +101,11 @@ inline Pressed press(const Press& press, const Person& person) {
       next_step += h;
       s->set_hand(1, {true, reading.pose, false, false});
       s->step();
-      current = 1 - current;
-      problem[current] = s->problem();
-      servo.set_problem(&problem[current]);
+      const std::size_t made = (newest + 1) % problem.size(), older = newest;
+      problem[made] = s->problem();
+      newest = made;
+      if (!press.late) servo.set_problem(&problem[made]);
+      else if (s->steps() > 1) servo.set_problem(&problem[older], {}, h);
       fresh = true;
     }
     const ServoResult r = servo.tick(input);

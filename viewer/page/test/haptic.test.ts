@@ -31,4 +31,12 @@ describe('haptic panel', () => {
     expect(haptic_text(s)).toBe('haptics 1000 /s, fresh 998 · 0, solve 123 µs, 7 sweeps');
     expect(haptic_text(null)).toBe('haptics –');
   });
+
+  it('says that forces are scaled', () => {
+    const s = lcm.haptic_status_t.make();
+    s.force_scale = 3;
+    expect(haptic_text(s)).toMatch(/^forces × 3, haptics /);
+    s.force_scale = 1;
+    expect(haptic_text(s)).toMatch(/^haptics /);
+  });
 });

@@ -8,7 +8,8 @@ export const lateness_bounds_us = [10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 
 
 export function haptic_text(s: HapticStatus | null): string {
   if (!s) return 'haptics –';
-  return `haptics ${s.ticks_per_s.toFixed(0)} /s, fresh ${s.fresh_forces_per_s[0]!.toFixed(0)} · ${s.fresh_forces_per_s[1]!.toFixed(0)}, solve ${s.solve_us_p99.toFixed(0)} µs, ${s.sweeps_mean.toFixed(0)} sweeps`;
+  const scaled = s.force_scale > 0 && s.force_scale !== 1 ? `forces × ${s.force_scale.toLocaleString('en', { maximumFractionDigits: 2 })}, ` : '';
+  return `${scaled}haptics ${s.ticks_per_s.toFixed(0)} /s, fresh ${s.fresh_forces_per_s[0]!.toFixed(0)} · ${s.fresh_forces_per_s[1]!.toFixed(0)}, solve ${s.solve_us_p99.toFixed(0)} µs, ${s.sweeps_mean.toFixed(0)} sweeps`;
 }
 
 /** Heights of the bars, 0 to 1. One tick among a thousand still shows: the root of the share. */
