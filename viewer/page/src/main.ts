@@ -217,7 +217,8 @@ function headset_lines(): string[] {
 
 function banner(now: number): string {
   if (!link.open) return 'Viewer gateway not reached\ntrying again …';
-  if (!info || now - info_ms > 4000) return 'Waiting for the engine …';
+  // Pictures are a sign of life too: on a slow machine they crowd out the second's word of the scene.
+  if (!info || (now - info_ms > 4000 && now - frame_ms > 2500)) return 'Waiting for the engine …';
   if (info.state === 'error') return `The scene has errors\n${info.message}`;
   if (load_error) return `Scene data cannot be read\n${load_error}`;
   if (!world || info.state === 'loading') return 'Loading the scene …';
