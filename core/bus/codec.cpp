@@ -56,7 +56,8 @@ bool well_formed(const insula_lcm::haptic_status_t* type, Bytes bytes) {
   in.take(3 * size_f64);  // ticks, fresh forces
   in.take(size_i64);      // missed ticks
   in.take(7 * size_f64 + 12 * size_i32);  // lateness and its histogram, solve, sweeps, residual
-  in.take(size_i32 + size_f64 + 2 * size_i64 + size_i8);
+  in.take(size_i32 + size_f64 + 2 * size_i64);  // rows, age, counts
+  in.take(3 * size_f64 + size_i8);              // energies, force scale, real time
   in.skip_string();
   return in.at_end();
 }
@@ -94,7 +95,7 @@ bool well_formed(const insula_lcm::sim_event_t* type, Bytes bytes) {
   if (!starts_as(in, type)) return false;
   in.take(3 * size_i64 + size_f64);
   for (int i = 0; i < 3; ++i) in.skip_string();
-  in.take(size_f64);
+  in.take(size_f64 + size_i8);
   return in.at_end();
 }
 

@@ -64,6 +64,8 @@ insula_lcm::haptic_status_t sample() {
   m.lateness_us_max = 120;
   m.rows = 130;
   m.problem_age_ms = -1;
+  m.given_mJ[1] = 0.2;
+  m.force_scale = 2;
   m.note = "no real-time priority";
   return m;
 }
@@ -121,6 +123,7 @@ insula_lcm::sim_event_t sample() {
   m.id = "open";
   m.text = "Fissure open";
   m.value = 3;
+  m.hand = -1;
   return m;
 }
 template <>
@@ -254,11 +257,14 @@ TEST(Plausible, RenderFrame) {
 
 TEST(Plausible, Others) {
   expect_refused<insula_lcm::haptic_status_t>("nan", [](auto& m) { m.sweeps_mean = NAN; });
+  expect_refused<insula_lcm::haptic_status_t>("energy", [](auto& m) { m.given_mJ[0] = NAN; });
+  expect_refused<insula_lcm::haptic_status_t>("scale", [](auto& m) { m.force_scale = -1; });
   expect_refused<insula_lcm::haptic_status_t>("negative", [](auto& m) { m.missed_ticks = -1; });
   expect_refused<insula_lcm::scene_info_t>("state", [](auto& m) { m.state = "lost"; });
   expect_refused<insula_lcm::scene_info_t>("NUL", [](auto& m) { m.bundle = std::string("a\0b", 3); });
   expect_refused<insula_lcm::sim_event_t>("kind", [](auto& m) { m.kind = ""; });
   expect_refused<insula_lcm::sim_event_t>("value", [](auto& m) { m.value = NAN; });
+  expect_refused<insula_lcm::sim_event_t>("hand", [](auto& m) { m.hand = 2; });
   expect_refused<insula_lcm::user_command_t>("command", [](auto& m) { m.command = "rm -rf"; });
   expect_refused<insula_lcm::user_command_t>("argument", [](auto& m) { m.argument = "two\nlines"; });
   expect_refused<insula_lcm::user_command_t>("argument", [](auto& m) { m.argument = "a\x7f"; });
