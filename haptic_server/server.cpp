@@ -75,7 +75,10 @@ void HapticServer::take_problem(std::int64_t now) noexcept {
     session_start_ns_ = now;
     fresh_start_ = u.sim_time_s < beginning_s;
     motion_clock_.reset(u.sim_time_s);
-    for (Hand& hand : hands_) hand.placed = false;
+    for (Hand& hand : hands_) {
+      hand.to_be_laid = true;
+      hand.placed = hand.placed && !hand.device->simulated();
+    }
   }
   const std::int64_t posed = u.pose_time_us > 0 ? u.pose_time_us : u.time_us;
   servo_.set_problem(&u.problem, u.offset, std::clamp(double(now / 1000 - posed) * 1e-6, 0.0, longest_age_s));
@@ -102,7 +105,7 @@ void HapticServer::place_hands(std::int64_t now) noexcept {
   if (!setup_known && double(now - session_start_ns_) * 1e-9 < setup_patience_s) return;
   for (std::size_t i = 0; i < 2; ++i) {
     Hand& hand = hands_[i];
-    if (hand.placed) continue;
+    if (hand.placed && !(hand.to_be_laid && setup_known)) continue;
     Pose here;
     const bool in_problem = device_in_problem(update, int(i), here);
     const bool has_home = setup_known && setup_->has_home[i];
@@ -121,6 +124,7 @@ void HapticServer::place_hands(std::int64_t now) noexcept {
     hand.device->place(start, centre, extent);
     hand.guide.place(start);
     hand.placed = true;
+    hand.to_be_laid = false;
   }
 }
 

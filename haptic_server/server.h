@@ -94,6 +94,7 @@ class HapticServer {
     DeviceReading reading;
     HandSample home;
     bool placed = false;
+    bool to_be_laid = true;  ///< since the session began anew; a real arm keeps the frame it has until the new one is known
     std::int64_t wishes_seen = 0;
     Vec3 last_force = Vec3::Zero();
   };

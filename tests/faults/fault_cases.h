@@ -122,7 +122,7 @@ inline void wrong_size(Buffer& b) {
   switch (turn++ % 4) {
     case 0: b.resize(b.size() / 2); break;
     case 1: b.insert(b.end(), 8, 0); break;
-    case 2: b[51] += 1; break;  // rows
+    case 2: b[59] += 1; break;  // rows
     default: b.clear(); break;
   }
   seal_problem(b);
