@@ -13,7 +13,7 @@ namespace {
 
 /// A dissector that lies still against the dome of an aneurysm; force along it every millisecond, N.
 std::vector<double> on_the_dome(double rate_per_min, const ServoSettings& settings, std::vector<double>& engine) {
-  const Vec3 top(52.27e-3, 15.331e-3, -6.435e-3), out = Vec3(0.86411434, -0.03014352, 0.50239206).normalized();  // apex, and away from the neck
+  const Vec3 top(52.012e-3, 15.325e-3, -6.586e-3), out = Vec3(0.86411434, -0.03014352, 0.50239206).normalized();  // apex, and away from the neck
   const Vec3 home = 1000 * (top + 0.1e-3 * out);
   char text[1500];
   std::snprintf(text, sizeof text, R"(<scene title="pulse">
@@ -25,7 +25,7 @@ std::vector<double> on_the_dome(double rate_per_min, const ServoSettings& settin
     <pressure id="pressure" on="artery" systolic="120 mmHg" diastolic="80 mmHg" imaged_at="93 mmHg" heart_rate="%g 1/min"/>
     <dissector id="tool" hand="right" sharp="never" model="meshes/instruments/dissector/dissector.urdf" coupling="250 N/m"
                home="%.6f %.6f %.6f mm" shaft="%.8f %.8f %.8f" flat="0 1 0"/>
-    <contact between="wall tool" friction="0.1" spacing="1 mm" max_contacts="10"/></scene>)",
+    <contact between="artery tool" friction="0.1" spacing="1 mm" max_contacts="10"/></scene>)",
                 rate_per_min, home.x(), home.y(), home.z(), out.x(), out.y(), out.z());
   const auto s = load_text(text, std::filesystem::path(INSULA_SOURCE_DIR) / "pulse.xml");
   std::vector<double> felt;
@@ -76,7 +76,7 @@ TEST(Pulse, AFingertipFeelsEveryBeat) {
     ASSERT_FALSE(felt.empty());
     // Two beats: what goes round twice is the pulse.
     const double pulse = amplitude(felt, 2), between = amplitude(felt, 1) + amplitude(felt, 3);
-    EXPECT_GT(pulse, 2e-3) << "N, at " << rate << " a minute";
+    EXPECT_GT(pulse, 1e-3) << "N, at " << rate << " a minute";
     EXPECT_GT(pulse, 3 * between);
     EXPECT_NEAR(pulse, amplitude(engine, 2), 0.1 * pulse);
     // No staircase: the largest change in a millisecond is a small part of the beat, that of the engine's steps is not.
