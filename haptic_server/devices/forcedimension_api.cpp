@@ -24,14 +24,7 @@ Api::Api() : library("INSULA_LIBDHD", {"libdhd.so", "libdhd.so.3", "/usr/local/l
   library.find(angular_velocity, "dhdGetAngularVelocityRad", false);
 }
 
-std::shared_ptr<Api> Api::shared() {
-  static std::mutex mutex;
-  static std::weak_ptr<Api> known;
-  std::lock_guard lock(mutex);
-  std::shared_ptr<Api> api = known.lock();
-  if (!api) known = api = std::make_shared<Api>();
-  return api;
-}
+std::shared_ptr<Api> Api::shared() { return shared_while_used<Api>(); }
 
 const char* how_to_get() {
   return "install Force Dimension's Haptic SDK for Linux (forcedimension.com, Software) and its udev rule; a library in an "

@@ -58,14 +58,7 @@ sdl::Api::~Api() {
   if (ready) quit(init_game_controller);
 }
 
-std::shared_ptr<sdl::Api> sdl::Api::shared() {
-  static std::mutex shared_mutex;
-  static std::weak_ptr<Api> known;
-  std::lock_guard lock(shared_mutex);
-  std::shared_ptr<Api> api = known.lock();
-  if (!api) known = api = std::make_shared<Api>();
-  return api;
-}
+std::shared_ptr<sdl::Api> sdl::Api::shared() { return shared_while_used<Api>(); }
 
 const char* sdl::how_to_get() { return "sudo apt install libsdl2-2.0-0; the user must be allowed to read /dev/input/event*"; }
 

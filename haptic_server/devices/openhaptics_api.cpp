@@ -25,14 +25,7 @@ Api::Api() : library("INSULA_LIBHD", {"libHD.so", "libHD.so.3.4", "/usr/lib/libH
   library.find(unschedule, "hdUnschedule");
 }
 
-std::shared_ptr<Api> Api::shared() {
-  static std::mutex mutex;
-  static std::weak_ptr<Api> known;
-  std::lock_guard lock(mutex);
-  std::shared_ptr<Api> api = known.lock();
-  if (!api) known = api = std::make_shared<Api>();
-  return api;
-}
+std::shared_ptr<Api> Api::shared() { return shared_while_used<Api>(); }
 
 void Api::use_scheduler() {
   std::lock_guard lock(mutex_);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A maker's library, opened when it is needed: Insula builds and runs without any of them.
 #pragma once
+#include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -32,5 +34,16 @@ class SharedLibrary {
   void* handle_ = nullptr;
   std::string name_, error_;
 };
+
+/// One for all who use it at a time: made by the first, gone with the last.
+template <class T>
+std::shared_ptr<T> shared_while_used() {
+  static std::mutex mutex;
+  static std::weak_ptr<T> known;
+  std::lock_guard lock(mutex);
+  std::shared_ptr<T> one = known.lock();
+  if (!one) known = one = std::make_shared<T>();
+  return one;
+}
 
 }  // namespace insula

@@ -32,14 +32,7 @@ spnav::Api::Api() : library("INSULA_LIBSPNAV", {"libspnav.so.0", "libspnav.so"})
   library.find(device_name, "spnav_dev_name", false);
 }
 
-std::shared_ptr<spnav::Api> spnav::Api::shared() {
-  static std::mutex mutex;
-  static std::weak_ptr<Api> known;
-  std::lock_guard lock(mutex);
-  std::shared_ptr<Api> api = known.lock();
-  if (!api) known = api = std::make_shared<Api>();
-  return api;
-}
+std::shared_ptr<spnav::Api> spnav::Api::shared() { return shared_while_used<Api>(); }
 
 const char* spnav::how_to_get() { return "sudo apt install spacenavd libspnav0"; }
 
