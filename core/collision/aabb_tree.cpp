@@ -25,6 +25,9 @@ void AabbTree::build(std::span<const Vec3> rest, std::span<const std::array<int,
   list_leaves_of_vertices(rest.size());
   ways_.resize(rest.size());
   stale_.assign(nodes_.size(), 0);
+  parent_.assign(nodes_.size(), -1);
+  for (std::size_t i = 0; i < nodes_.size(); ++i)
+    if (nodes_[i].count == 0) parent_[i + 1] = parent_[std::size_t(nodes_[i].first)] = int(i);
   refit(rest, {});
 }
 
@@ -88,43 +91,60 @@ Aabb AabbTree::tight(const Node& leaf) const {
   return box;
 }
 
-void AabbTree::refit(std::span<const Vec3> positions, std::span<const Vec3> displacements) {
+void AabbTree::look_at(std::span<const Vec3> positions, std::span<const Vec3> displacements) {
   positions_ = positions;
   displacements_ = displacements;
-  bool any = false;
-  for (std::size_t v = 0; v < positions.size(); ++v) {
-    const Vec3& p = positions[v];
-    OuterBox way;
-    way.low = way.high = Float4{float(p[0]), float(p[1]), float(p[2]), 0};
-    if (!displacements.empty()) {
-      const Vec3 q = p + displacements[v];
-      const Float4 end{float(q[0]), float(q[1]), float(q[2]), 0};
-      way.add({end, end});
-    }
-    way.widen();
-    if (ways_[v].holds(way)) continue;
-    way.inflate(slack);
-    ways_[v] = way;
-    any = true;
-    for (int k = first_leaf_[v]; k < first_leaf_[v + 1]; ++k) stale_[std::size_t(leaf_of_[std::size_t(k)])] = 1;
+}
+
+// What has used up half of its slack gets all of it, as one that is out.
+double AabbTree::renew(std::size_t v) {
+  const Vec3& p = positions_[v];
+  const Float4 at{float(p[0]), float(p[1]), float(p[2]), 0};
+  OuterBox way{at, at};
+  if (!displacements_.empty()) {
+    const Vec3 q = p + displacements_[v];
+    const Float4 end{float(q[0]), float(q[1]), float(q[2]), 0};
+    way.add({end, end});
   }
-  if (!any) return;
-  for (int i = int(nodes_.size()) - 1; i >= 0; --i) {
-    Node& n = nodes_[std::size_t(i)];
+  way.widen();
+  OuterBox& box = ways_[v];
+  const double inside = box.inside(p);
+  if (inside > 0.5 * double(slack) && box.holds(way)) return inside;
+  way.inflate(slack);
+  box = way;
+  for (int k = first_leaf_[v]; k < first_leaf_[v + 1]; ++k)
+    for (int i = leaf_of_[std::size_t(k)]; i >= 0 && !stale_[std::size_t(i)]; i = parent_[std::size_t(i)]) stale_[std::size_t(i)] = 1;
+  return box.inside(p);
+}
+
+double AabbTree::renew(std::span<const int> vertices) {
+  double least = 1e30;
+  if (nodes_.empty()) return least;
+  for (int v : vertices) least = std::min(least, renew(std::size_t(v)));
+  return least;
+}
+
+void AabbTree::refit(std::span<const Vec3> positions, std::span<const Vec3> displacements) {
+  look_at(positions, displacements);
+  if (nodes_.empty()) return;
+  for (std::size_t v = 0; v < positions.size(); ++v) renew(v);
+  close();
+}
+
+void AabbTree::close() {
+  if (nodes_.empty() || !stale_[0]) return;
+  for (std::size_t i = nodes_.size(); i-- > 0;) {
+    if (!stale_[i]) continue;
+    stale_[i] = 0;
+    Node& n = nodes_[i];
     if (n.count == 0) {
-      // The children stay marked until their parent has looked.
-      char &left = stale_[std::size_t(i) + 1], &right = stale_[std::size_t(n.first)];
-      if (!(left | right)) continue;
-      left = right = 0;
-      stale_[std::size_t(i)] = 1;
-      n.box = nodes_[std::size_t(i) + 1].box;
+      n.box = nodes_[i + 1].box;
       n.box.add(nodes_[std::size_t(n.first)].box);
-    } else if (stale_[std::size_t(i)]) {
+    } else {
       n.box = {};
       for (int v : vertices_of(n)) n.box.add(ways_[std::size_t(v)]);
     }
   }
-  stale_[0] = 0;
 }
 
 }  // namespace insula

@@ -80,6 +80,12 @@ struct OuterBox {
     const Halves out = (Halves)((low > o.low) | (o.high > high));
     return (out[0] | out[1]) == 0;
   }
+  /// How far inside a point is, the least of its distances to the six sides; negative: it is outside.
+  double inside(const Vec3& p) const {
+    double least = 1e30;
+    for (int k = 0; k < 3; ++k) least = std::min({least, p[k] - double(low[k]), double(high[k]) - p[k]});
+    return least;
+  }
   bool overlaps(const OuterBox& o) const {
     const Halves apart = (Halves)((low > o.high) | (o.low > high));
     return (apart[0] | apart[1]) == 0;
@@ -106,6 +112,12 @@ class AabbTree {
   /// Boxes of the triangles at `positions` joined with those at positions + displacements (may be empty). The arrays must live
   /// until the next refit.
   void refit(std::span<const Vec3> positions, std::span<const Vec3> displacements);
+  /// The same in parts, for who knows what may have left its boxes: where vertices are from now on, then those to look after,
+  /// then close(). renew() returns how far their positions are inside of their boxes at least, m: what goes no farther, with its
+  /// displacement, needs no renewal.
+  void look_at(std::span<const Vec3> positions, std::span<const Vec3> displacements);
+  double renew(std::span<const int> vertices);
+  void close();
 
   bool empty() const { return nodes_.empty(); }
   Aabb bounds() const { return nodes_.front().box.box(); }
@@ -186,6 +198,7 @@ class AabbTree {
   std::span<const int> triangles_of(const Node& leaf) const { return {order_.data() + leaf.first, std::size_t(leaf.count)}; }
   std::span<const int> vertices_of(const Node& leaf) const { return {leaf_vertices_.data() + leaf.vertices, std::size_t(leaf.vertex_count)}; }
   Aabb tight(const Node& leaf) const;
+  double renew(std::size_t vertex);
   /// visit(leaf) for those whose loose box overlaps `box`, until it says true; whether it did.
   template <class Visit>
   bool each_leaf(const Aabb& box, Visit&& visit) const {
@@ -208,7 +221,8 @@ class AabbTree {
   std::vector<int> leaf_vertices_;  ///< each leaf's vertices, every one once
   std::vector<int> first_leaf_, leaf_of_;  ///< each vertex's leaves: nodes
   std::vector<OuterBox> ways_;      ///< each vertex's, loosely about its way from its position to the displaced one
-  std::vector<char> stale_;         ///< nodes whose boxes are to be made anew
+  std::vector<int> parent_;         ///< of the nodes, -1: the first
+  std::vector<char> stale_;         ///< nodes whose boxes are to be made anew, and all above them
   std::span<const Vec3> positions_, displacements_;
 };
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <tuple>
 
 #include "core/collision/vertex_groups.h"
@@ -17,7 +18,14 @@ void CollisionMesh::build(std::span<const Vec3> rest, std::span<const std::array
   tree_.build(rest, triangles_);
   last_.assign(rest.begin(), rest.end());
   travelled_ = farthest_free_ = 0;
+  room_.fill(0);
   region_of_ = group_by_place(rest, regions);
+  region_start_.assign(regions + 1, 0);
+  in_region_.resize(rest.size());
+  std::iota(in_region_.begin(), in_region_.end(), 0);
+  std::stable_sort(in_region_.begin(), in_region_.end(), [this](int a, int b) { return region_of_[std::size_t(a)] < region_of_[std::size_t(b)]; });
+  for (int r : region_of_) ++region_start_[std::size_t(r) + 1];
+  std::partial_sum(region_start_.begin(), region_start_.end(), region_start_.begin());
 
   ring_start_.assign(rest.size() + 1, 0);
   for (const auto& t : triangles_)
@@ -42,23 +50,51 @@ void CollisionMesh::build(std::span<const Vec3> rest, std::span<const std::array
   }
 }
 
+void CollisionMesh::keep_positions() {
+  if (last_.empty()) last_.assign(positions_.begin(), positions_.end());
+}
+
 void CollisionMesh::update(std::span<const Vec3> positions, std::span<const Vec3> free) {
-  positions_ = positions;
-  free_ = free;
-  tree_.refit(positions, free);
-  ++updates_;
-  moved_.fill(0);
-  may_move_.fill(0);
+  if (last_.size() != positions.size()) {
+    // Where it was is not known. As an update that no one has seen: who keeps what it knows of distances starts anew.
+    last_.assign(positions.begin(), positions.end());
+    room_.fill(0);
+    ++updates_;
+  }
+  RegionMotion m;
   for (std::size_t v = 0; v < positions.size(); ++v) {
     const std::size_t r = std::size_t(region_of_[v]);
-    moved_[r] = std::max(moved_[r], (positions[v] - last_[v]).squaredNorm());
-    if (!free.empty()) may_move_[r] = std::max(may_move_[r], free[v].squaredNorm());
+    m.moved[r] = std::max(m.moved[r], (positions[v] - last_[v]).squaredNorm());
+    if (!free.empty()) m.may_move[r] = std::max(m.may_move[r], free[v].squaredNorm());
     last_[v] = positions[v];
   }
-  for (PerRegion* of : {&moved_, &may_move_})
+  for (PerRegion* of : {&m.moved, &m.may_move})
     for (double& x : *of) x = std::sqrt(x);
-  travelled_ += *std::max_element(moved_.begin(), moved_.end());
-  farthest_free_ = *std::max_element(may_move_.begin(), may_move_.end());
+  take(positions, free, m);
+}
+
+void CollisionMesh::update(std::span<const Vec3> positions, std::span<const Vec3> free, const RegionMotion& motion) {
+  if (last_.empty()) return take(positions, free, motion);
+  update(positions, free);
+  last_.clear();
+}
+
+void CollisionMesh::take(std::span<const Vec3> positions, std::span<const Vec3> free, const RegionMotion& motion) {
+  constexpr double rounding = 1e-9;  // m, more than thousands of sums of motions have lost
+  positions_ = positions;
+  free_ = free;
+  motion_ = motion;
+  ++updates_;
+  travelled_ += *std::max_element(motion.moved.begin(), motion.moved.end());
+  farthest_free_ = *std::max_element(motion.may_move.begin(), motion.may_move.end());
+  tree_.look_at(positions, free);
+  for (std::size_t r = 0; r < room_.size(); ++r) {
+    room_[r] -= motion.moved[r];
+    if (room_[r] - motion.may_move[r] > rounding) continue;
+    const int first = region_start_[r];
+    room_[r] = tree_.renew({in_region_.data() + first, std::size_t(region_start_[r + 1] - first)});
+  }
+  tree_.close();
 }
 
 Vec3 CollisionMesh::face_normal(int tri, double t) const {

@@ -7,6 +7,7 @@
 #include <bit>
 #include <cstdint>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "core/collision/aabb_tree.h"
@@ -23,6 +24,11 @@ struct NearestPoint {
   Vec3 outward = Vec3::UnitZ();  ///< unit, along the line through p and the point, out of the surface
 };
 
+/// How far the vertices of each region of a mesh went since the update before, at most, and will in the free motion, m.
+struct RegionMotion {
+  std::array<double, 64> moved{}, may_move{};
+};
+
 class CollisionMesh {
  public:
   /// Counter-clockwise triangles seen from outside; closed surfaces and open sheets (one-sided, facing along their normals).
@@ -30,26 +36,34 @@ class CollisionMesh {
   /// Takes this step's positions and free displacements (empty: a surface that does not move) and refits the tree. The
   /// arrays must live until the next update.
   void update(std::span<const Vec3> positions, std::span<const Vec3> free);
+  /// The same, motion already measured since the last update.
+  void update(std::span<const Vec3> positions, std::span<const Vec3> free, const RegionMotion& motion);
+  /// Before positions are changed otherwise: the next update measures from where they are now.
+  void keep_positions();
 
   /// Sum over all updates of the farthest way that a vertex went, m: between two updates no vertex went farther than the difference.
   double travelled() const { return travelled_; }
   double farthest_free() const { return farthest_free_; }  ///< of all vertices in this step, m
 
   /// Vertices in regions of neighbours, the bits of a mask, so that what moves in one place is no news for what is elsewhere.
-  static constexpr int regions = 64;
+  static constexpr int regions = std::tuple_size_v<decltype(RegionMotion::moved)>;
   std::uint64_t region_of(int v) const { return std::uint64_t(1) << region_of_[std::size_t(v)]; }
   std::uint64_t regions_of(int tri) const {
     const auto& t = triangle(tri);
     return region_of(t[0]) | region_of(t[1]) | region_of(t[2]);
   }
-  double moved(std::uint64_t mask) const { return most(moved_, mask); }       ///< farthest that a vertex of these went in the last update, m
-  double may_move(std::uint64_t mask) const { return most(may_move_, mask); } ///< and its free displacement, m
+  double moved(std::uint64_t mask) const { return most(motion_.moved, mask); }       ///< farthest that a vertex of these went in the last update, m
+  double may_move(std::uint64_t mask) const { return most(motion_.may_move, mask); } ///< and its free displacement, m
   long updates() const { return updates_; }
 
   const AabbTree& tree() const { return tree_; }
   int vertex_count() const { return int(positions_.size()); }
   int triangle_count() const { return int(triangles_.size()); }
   const std::array<int, 3>& triangle(int i) const { return triangles_[std::size_t(i)]; }
+  std::span<const int> triangles_around(int v) const {
+    const int first = ring_start_[std::size_t(v)];
+    return {ring_.data() + first, std::size_t(ring_start_[std::size_t(v) + 1] - first)};
+  }
 
   Vec3 vertex(int v, double t = 0) const {
     const Vec3& x = positions_[std::size_t(v)];
@@ -81,8 +95,9 @@ class CollisionMesh {
   std::vector<std::array<int, 3>> triangles_;
   std::vector<std::array<int, 3>> across_;  ///< neighbour across the edge that starts at each corner, -1 at a border
   std::vector<int> ring_start_, ring_;      ///< triangles around each vertex
-  std::vector<Vec3> last_;  ///< positions of the update before
+  std::vector<Vec3> last_;  ///< positions of the update before; empty: motion is measured by the caller
   double travelled_ = 0, farthest_free_ = 0;
+  void take(std::span<const Vec3> positions, std::span<const Vec3> free, const RegionMotion& motion);
   using PerRegion = std::array<double, regions>;
   static double most(const PerRegion& of, std::uint64_t mask) {
     double m = 0;
@@ -90,7 +105,9 @@ class CollisionMesh {
     return m;
   }
   std::vector<int> region_of_;  ///< of the vertices
-  PerRegion moved_{}, may_move_{};
+  std::vector<int> region_start_, in_region_;  ///< vertices of the regions
+  RegionMotion motion_;
+  PerRegion room_{};  ///< each region's vertices may go so far before one leaves its boxes in the tree, m
   long updates_ = 0;
   std::span<const Vec3> positions_, free_;
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "core/collision/vertex_groups.h"
@@ -38,22 +39,25 @@ std::vector<int> sample_vertices(std::span<const Vec3> rest, std::span<const std
 
 namespace {
 
+constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double surroundings = 6e-3;  ///< what is farther than this from a group need not be followed for a while, m
 constexpr double horizon = 2e-3;       ///< groups are looked at farther than needed, to know for how long nothing will come, m
 constexpr double near_horizon = 5e-4;  ///< and samples
+constexpr double slow = 5e-5;          ///< what moves less in a step has the same nearest triangle for some steps, m
 
 }  // namespace
 
 TissueCollider::TissueCollider(std::vector<int> samples, std::span<const Vec3> rest, int triangles) : samples_(std::move(samples)) {
   leaves_.reserve(std::size_t(triangles));
   packs_.reserve(std::size_t(triangles) / 4 + 1);
+  seen_.reserve(3 * std::size_t(triangles) + 1);
   order_by_place(samples_.data(), samples_.data() + samples_.size(), rest, std::ptrdiff_t(group));
   reset();
 }
 
 void TissueCollider::reset() {
   behind_.assign(samples_.size(), 1);
-  last_.assign(samples_.size(), -1);
+  known_.assign(samples_.size(), {});
   clear_.assign(samples_.size(), 0.0);
   groups_.assign((samples_.size() + group - 1) / group, {});
 }
@@ -94,16 +98,22 @@ void TissueCollider::look_at_leaves(const Vec3& x, const double& limit2, Look&& 
   }
 }
 
-// Which regions of b are near the group; all that is known of its samples was about the regions before.
+// What is known of samples after motion, when what is not known of is no nearer than `at_least`.
+void TissueCollider::lessen(std::size_t first, std::size_t last, double way, double at_least) {
+  for (std::size_t i = first; i < last; ++i) {
+    clear_[i] = std::min(clear_[i] - way, at_least);
+    known_[i].lessen(way, at_least);
+  }
+}
+
+// Which regions of b are near the group.
 void TissueCollider::look_around(Group& g, const CollisionMesh& a, const CollisionMesh& b, std::size_t first, std::size_t last, double may_come) {
   Aabb here;
   g.own = g.near = 0;
   for (std::size_t i = first; i < last; ++i) {
     here.add(a.vertex(samples_[i]));
     g.own |= a.region_of(samples_[i]);
-    clear_[i] = 0;
   }
-  g.clear = g.went = 0;
   g.around = may_come + surroundings;
   here.inflate(g.around);
   b.tree().leaves(here, [&](const OuterBox&, std::span<const int> triangles) {
@@ -123,17 +133,24 @@ void TissueCollider::detect(const CollisionMesh& a, const CollisionMesh& b, cons
   for (std::size_t first = 0; first < samples_.size(); first += group) {
     const std::size_t last = std::min(first + group, samples_.size());
     Group& g = groups_[first / group];
-    if (!followed || g.around - (travelled - g.travelled) <= farthest) look_around(g, a, b, first, last, farthest);
-    if (g.near == 0 && !g.deep) continue;
     // What cannot have come near since it was last looked at needs no look.
-    const double went = a.moved(g.own) + b.moved(g.near);
+    const double went = a.moved(g.own) + b.moved(g.near), elsewhere = g.around - (travelled - g.travelled);
     g.clear -= went;
     g.went += went;
+    if (!followed || elsewhere <= farthest) {
+      const double at_least = followed ? elsewhere : 0.0;  // all that is known was about the regions before
+      lessen(first, last, g.went, at_least);
+      g.clear = std::min(g.clear, at_least);
+      g.went = 0;
+      look_around(g, a, b, first, last, farthest);
+    }
+    if (g.near == 0 && !g.deep) continue;
     const double may_come = open_range + a.may_move(g.own) + b.may_move(g.near);
     if (!g.deep && g.clear > may_come) continue;
-    for (std::size_t i = first; i < last; ++i) clear_[i] -= g.went;
+    lessen(first, last, g.went, infinite);
     g.went = 0;
-    if (!g.deep) {
+    const bool had_any = std::any_of(known_.begin() + std::ptrdiff_t(first), known_.begin() + std::ptrdiff_t(last), [](const KnownNearest& k) { return k.triangle >= 0; });
+    if (!g.deep && !had_any) {
       Aabb here;
       for (std::size_t i = first; i < last; ++i) here.add(a.vertex(samples_[i]));
       here.inflate(may_come + horizon);
@@ -143,51 +160,41 @@ void TissueCollider::detect(const CollisionMesh& a, const CollisionMesh& b, cons
         continue;
       }
     }
-    // Deep samples are looked for as far as they are pushed out.
-    Aabb all;
-    bool deep = false;
-    for (std::size_t i = first; i < last; ++i) {
-      all.add(a.vertex(samples_[i]));
-      deep = deep || behind_[i] != 0;
-    }
+    // Deep samples are looked for as far as they are pushed out. Those whose nearest triangle of the last step is that of this
+    // one are done; the leaves near all others are gathered once.
     const double open_reach = may_come + near_horizon, deep_reach = std::max(may_come, settings.max_depth) + near_horizon;
-    all.inflate(deep ? deep_reach : open_reach);
-    gather_leaves(b.tree(), all);
+    const double margin = went < slow ? 4 * slow : 0;
+    Aabb all;
+    bool any_open = false;
     for (std::size_t i = first; i < last; ++i) {
-      const int v = samples_[i];
-      if (!behind_[i] && clear_[i] > may_come) continue;
-      const double reach = behind_[i] ? deep_reach : open_reach;
+      const std::size_t k = i - first;
+      looked_[k] = behind_[i] || clear_[i] <= may_come;
+      if (!looked_[k]) continue;
+      FacingSearch& search = search_[k];
+      search.begin(a, samples_[i], b, behind_[i] ? deep_reach : open_reach, margin);
+      settled_[k] = search.follow(known_[i], behind_[i] ? -1.0 : farthest, seen_);
+      if (settled_[k]) continue;
+      Aabb here;
+      here.add(search.x());
+      here.inflate(std::sqrt(search.limit2()));
+      all.add(here);
+      any_open = true;
+    }
+    if (any_open) gather_leaves(b.tree(), all);
+    for (std::size_t i = first; i < last; ++i) {
+      const std::size_t k = i - first;
+      if (!looked_[k]) continue;
+      FacingSearch& search = search_[k];
+      if (!settled_[k]) {
+        seen_.clear();
+        look_at_leaves(search.x(), search.limit2(), [&](int t) { search.look(t, seen_); });
+        search.settle(known_[i], seen_);
+      }
       behind_[i] = 0;
-      double any2 = reach * reach;
-      const Vec3 x = a.vertex(v), u = a.free(v);
-      Vec3 normal = Vec3::Zero();
-      double least2 = any2;
-      int best = -1;
-      Vec3 best_bary = Vec3::Zero(), best_point = Vec3::Zero();
-      const auto look = [&](int tri) {
-        const auto& t = b.triangle(tri);
-        const Vec3 p = b.vertex(t[0]), q = b.vertex(t[1]), r = b.vertex(t[2]);
-        const Vec3 n = (q - p).cross(r - p);
-        const double h = n.dot(x - p), nn = n.squaredNorm();
-        if (h * h > least2 * nn) return;  // its plane is farther than the best
-        if (normal.isZero(0)) normal = a.rough_normal(v);
-        const Vec3 bary = closest_on_triangle(x, p, q, r);
-        const Vec3 c = bary[0] * p + bary[1] * q + bary[2] * r;
-        const double d2 = (x - c).squaredNorm();
-        any2 = std::min(any2, d2);
-        if (normal.dot(n) > -0.25 * std::sqrt(nn)) return;  // faces away
-        if (d2 > least2 || (d2 == least2 && best >= 0 && tri > best)) return;
-        least2 = d2;
-        best = tri;
-        best_bary = bary;
-        best_point = c;
-      };
-      // The last step's triangle first: a good bound for the others.
-      if (last_[i] >= 0) look(last_[i]);
-      look_at_leaves(x, least2, look);
-      last_[i] = best;
-      clear_[i] = std::sqrt(any2);
+      clear_[i] = search.clear();
+      const int best = search.nearest(), v = samples_[i];
       if (best < 0) continue;
+      const Vec3 x = search.x(), u = a.free(v), best_bary = search.bary(), best_point = search.point();
       const TriangleFeature f = feature_of(best_bary);
       const Vec3 outward = b.pseudo_normal(best, f);
       const Vec3 d = x - best_point;

@@ -14,6 +14,7 @@
 
 #include "core/collision/collision_mesh.h"
 #include "core/collision/contact_set.h"
+#include "core/collision/facing_search.h"
 
 namespace insula {
 
@@ -52,6 +53,7 @@ class TissueCollider {
     bool deep = true;    ///< has a sample behind the surface
   };
   void look_around(Group& g, const CollisionMesh& a, const CollisionMesh& b, std::size_t first, std::size_t last, double may_come);
+  void lessen(std::size_t first, std::size_t last, double way, double at_least);
   std::vector<Group> groups_;
   std::array<long, 2> updates_{};  ///< of the meshes when last looked at
   /// Bounding boxes of four leaves of b's tree.
@@ -64,7 +66,10 @@ class TissueCollider {
   std::vector<std::span<const int>> leaves_;  ///< triangles of the leaves near a group ...
   std::vector<Pack> packs_;                   ///< ... and their boxes, about centre_
   Vec3 centre_ = Vec3::Zero();
-  std::vector<int> last_;  ///< triangle of the last step: where to look first; does not change what is found
+  std::vector<KnownNearest> known_;  ///< of the samples: spares looks, does not change what is found
+  std::array<FacingSearch, group> search_;
+  std::array<bool, group> looked_{}, settled_{};  ///< of these
+  FacingSearch::Seen seen_;
 };
 
 }  // namespace insula

@@ -5,7 +5,6 @@
 #pragma once
 #include <array>
 #include <cmath>
-#include <span>
 #include <vector>
 
 #include "core/linalg/body_solver.h"
@@ -54,13 +53,6 @@ class Body : public Component {
   virtual Vec3 expected_displacement(const MaterialPoint& p) const { return free_displacement(p); }
   /// Whether the point ever moves; what is held does not.
   virtual bool can_move(const MaterialPoint&) const { return true; }
-  /// Of many points at once, position() and expected_displacement() of those that `which` numbers.
-  virtual void place(std::span<const MaterialPoint> points, std::span<const int> which, Vec3* positions, Vec3* expected) const {
-    for (int i : which) {
-      positions[i] = position(points[std::size_t(i)]);
-      expected[i] = expected_displacement(points[std::size_t(i)]);
-    }
-  }
   /// The point's row entries for a direction d: adds d . d(point)/d(q) to the open row.
   virtual void add_row(BodyRows& rows, const MaterialPoint& p, const Vec3& d) const = 0;
 

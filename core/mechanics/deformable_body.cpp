@@ -112,23 +112,6 @@ bool DeformableBody::can_move(const MaterialPoint& p) const {
   return false;
 }
 
-void DeformableBody::place(std::span<const MaterialPoint> points, std::span<const int> which, Vec3* positions, Vec3* expected) const {
-  const double* q = q_.data();
-  const double* v = v_.data();
-  for (int i : which) {
-    const MaterialPoint& p = points[std::size_t(i)];
-    Vec3 x = p.local, way = Vec3::Zero();
-    for (int k = 0; k < p.count; ++k) {
-      const double w = p.weight[std::size_t(k)];
-      const std::ptrdiff_t at = 3 * std::ptrdiff_t(p.node[std::size_t(k)]);
-      x += w * Eigen::Map<const Vec3>(q + at);
-      way += w * Eigen::Map<const Vec3>(v + at);
-    }
-    positions[i] = x;
-    expected[i] = way * step_;
-  }
-}
-
 void DeformableBody::add_row(BodyRows& out, const MaterialPoint& p, const Vec3& d) const {
   for (int k = 0; k < p.count; ++k)
     if (p.weight[std::size_t(k)] != 0) out.add(p.node[std::size_t(k)], p.weight[std::size_t(k)] * d);

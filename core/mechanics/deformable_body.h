@@ -30,6 +30,7 @@ class DeformableBody : public Body {
   const VecX& v() const { return v_; }    ///< m/s
   VecX& q() { return q_; }
   VecX& v() { return v_; }
+  double step_length() const { return step_; }  ///< of the step that is on, s
   const std::vector<double>& node_mass() const { return mass_; }
   const std::vector<char>& held() const { return held_; }
   const std::vector<int>& free_of_node() const { return free_; }  ///< node -> block of the system matrix, -1 when held
@@ -55,7 +56,6 @@ class DeformableBody : public Body {
   Vec3 unforced_displacement(const MaterialPoint& p) const override;
   Vec3 expected_displacement(const MaterialPoint& p) const override;
   bool can_move(const MaterialPoint& p) const override;
-  void place(std::span<const MaterialPoint> points, std::span<const int> which, Vec3* positions, Vec3* expected) const override;
   void add_row(BodyRows& rows, const MaterialPoint& p, const Vec3& d) const override;
   void free_motion(const StepContext& context) override;
   void compute_compliance(const BodyRows& rows) override;

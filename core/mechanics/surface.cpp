@@ -5,10 +5,14 @@
 #include "core/base/input_error.h"
 #include "core/collision/aabb_tree.h"
 #include "core/collision/closest.h"
+#include "core/mechanics/riders.h"
 #include "core/mechanics/shell_body.h"
 #include "core/mechanics/soft_body.h"
 
 namespace insula {
+
+Surface::Surface() = default;
+Surface::~Surface() = default;
 
 void Surface::prepare(PrepareContext& context) {
   body_ = dynamic_cast<Body*>(parent);
@@ -92,6 +96,7 @@ bool Surface::attach_to_shell(const ShellBody& shell) {
 
 void Surface::update() {
   if (body_->blocks() == 0) return;
+  if (collision_) collision_->keep_positions();
   for (std::size_t i = 0; i < points_.size(); ++i) positions_[i] = body_->position(points_[i]);
 }
 
@@ -101,7 +106,14 @@ void Surface::look_ahead() {
     if (contact()) update();
     return;
   }
-  body_->place(points_, moving_, positions_.data(), expected_.data());
+  if (riders_) {
+    riders_->place(static_cast<const DeformableBody&>(*body_), positions_.data(), expected_.data(), motion_);
+    return collision_->update(positions_, expected_, motion_);
+  }
+  for (int i : moving_) {
+    positions_[std::size_t(i)] = body_->position(points_[std::size_t(i)]);
+    expected_[std::size_t(i)] = body_->expected_displacement(points_[std::size_t(i)]);
+  }
   collision_->update(positions_, expected_);
 }
 
@@ -111,6 +123,9 @@ void Surface::will_collide() {
   collision_->build(rest_.vertices, rest_.triangles);
   for (std::size_t i = 0; i < points_.size(); ++i)
     if (body_->can_move(points_[i])) moving_.push_back(int(i));
+  if (!dynamic_cast<const DeformableBody*>(body_)) return;
+  riders_ = std::make_unique<Riders>();
+  riders_->build(points_, moving_, *collision_);
 }
 
 void Surface::add_row(BodyRows& rows, int triangle, const Vec3& bary, const Vec3& d) const {

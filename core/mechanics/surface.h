@@ -12,6 +12,7 @@
 
 namespace insula {
 
+class Riders;
 class ShellBody;
 
 class Surface : public Component {
@@ -27,6 +28,8 @@ class Surface : public Component {
   Param<Length> thickness{this, {.name = "thickness", .fallback = "0 mm", .min = "0 mm", .max = "10 mm", .doc = "of the wall whose middle this surface is; contact keeps half of it away; 0: the surface itself is touched"}};
   Param<bool> contact{this, {.name = "contact", .fallback = "true", .doc = "whether things touch it; false: for the picture alone"}};
 
+  Surface();
+  ~Surface() override;
   void prepare(PrepareContext& context) override;
 
   Body& body() const { return *body_; }
@@ -55,6 +58,8 @@ class Surface : public Component {
   TriMesh rest_;
   std::vector<MaterialPoint> points_;
   std::vector<int> moving_;  ///< the vertices that the step places
+  std::unique_ptr<Riders> riders_;  ///< those, on a deformable body
+  RegionMotion motion_;
   std::vector<Vec3> positions_, expected_;
 };
 

@@ -145,6 +145,26 @@ void check_surfaces(const std::filesystem::path& scene) {
         predicted += rows.coeff[e].dot(q.segment<3>(3 * rows.block[e]) - rest.segment<3>(3 * rows.block[e]));
       EXPECT_NEAR(moved - at_rest, predicted, 1e-13) << "triangle " << t;
     }
+    // The step places all in one go, to the bits of each point by itself, and sees how far they went.
+    body->q() = rest;
+    s->step();
+    surface->will_collide();
+    surface->look_ahead();
+    const std::vector<Vec3> before = surface->positions();
+    body->q() = q;
+    body->v() = 7 * (q - rest);
+    surface->look_ahead();
+    double farthest = 0, farthest_free = 0;
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      const MaterialPoint& p = surface->points()[i];
+      if (!body->can_move(p)) continue;
+      ASSERT_TRUE(surface->positions()[i] == body->position(p) && surface->expected_displacements()[i] == body->expected_displacement(p)) << "vertex " << i;
+      farthest = std::max(farthest, (surface->positions()[i] - before[i]).norm());
+      farthest_free = std::max(farthest_free, surface->expected_displacements()[i].norm());
+    }
+    EXPECT_NEAR(surface->collision().moved(~std::uint64_t(0)), farthest, 1e-12);
+    EXPECT_NEAR(surface->collision().farthest_free(), farthest_free, 1e-12);
+    EXPECT_GT(farthest_free, 0);
     body->q() = rest;
     surface->update();
   }

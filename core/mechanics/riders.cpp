@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/mechanics/riders.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace insula {
+
+void Riders::build(std::span<const MaterialPoint> points, std::span<const int> which, const CollisionMesh& mesh) {
+  riders_.clear();
+  offset_.clear();
+  most_ = 0;
+  bool any_offset = false;
+  for (int v : which) {
+    const MaterialPoint& p = points[std::size_t(v)];
+    Rider rider{p.weight, p.node, v, std::countr_zero(mesh.region_of(v))};
+    // What it does not ride on has no weight; any node will do.
+    for (int k = p.count; k < 4; ++k) rider.weight[std::size_t(k)] = 0, rider.node[std::size_t(k)] = p.node[0];
+    riders_.push_back(rider);
+    offset_.push_back(p.local);
+    most_ = std::max(most_, p.count);
+    any_offset = any_offset || !p.local.isZero(0);
+  }
+  if (!any_offset) offset_.clear();
+}
+
+void Riders::place(const DeformableBody& body, Vec3* positions, Vec3* expected, RegionMotion& motion) {
+  const double *q = body.q().data(), *v = body.v().data();
+  nodes_.resize(std::size_t(body.nodes()));
+  for (Node& n : nodes_) {
+    n.xy = Pair{q[0], q[1]};
+    n.zx = Pair{q[2], v[0]};
+    n.yz = Pair{v[1], v[2]};
+    q += 3;
+    v += 3;
+  }
+  if (most_ <= 1) place_on<1>(body.step_length(), positions, expected, motion);
+  else if (most_ == 2) place_on<2>(body.step_length(), positions, expected, motion);
+  else if (most_ == 3) place_on<3>(body.step_length(), positions, expected, motion);
+  else place_on<4>(body.step_length(), positions, expected, motion);
+}
+
+template <int nodes>
+void Riders::place_on(double step, Vec3* positions, Vec3* expected, RegionMotion& motion) const {
+  std::array<Pair, CollisionMesh::regions> farthest2{};  // moved, and way
+  const bool offset = !offset_.empty();
+  for (std::size_t i = 0; i < riders_.size(); ++i) {
+    const Rider& p = riders_[i];
+    Pair xy{}, zx{}, yz{};
+    if (offset) {
+      const Vec3& o = offset_[i];
+      xy = Pair{o[0], o[1]};
+      zx = Pair{o[2], 0};
+    }
+    for (std::size_t k = 0; k < nodes; ++k) {
+      const Node& n = nodes_[std::size_t(p.node[k])];
+      const Pair w{p.weight[k], p.weight[k]};
+      xy += w * n.xy;
+      zx += w * n.zx;
+      yz += w * n.yz;
+    }
+    zx *= Pair{1, step};
+    yz *= Pair{step, step};
+    double* x = positions[p.vertex].data();
+    double* way = expected[p.vertex].data();
+    const Pair a = xy - Pair{x[0], x[1]}, b = zx - Pair{x[2], 0}, a2 = a * a, b2 = b * b, c2 = yz * yz;
+    const Pair sum = __builtin_shufflevector(a2, b2, 0, 3) + (__builtin_shufflevector(a2, c2, 1, 2) + __builtin_shufflevector(b2, c2, 0, 3));
+    Pair& farthest = farthest2[std::size_t(p.region)];
+    farthest = farthest > sum ? farthest : sum;
+    x[0] = xy[0], x[1] = xy[1], x[2] = zx[0];
+    way[0] = zx[1], way[1] = yz[0], way[2] = yz[1];
+  }
+  for (std::size_t r = 0; r < farthest2.size(); ++r) {
+    motion.moved[r] = std::sqrt(farthest2[r][0]);
+    motion.may_move[r] = std::sqrt(farthest2[r][1]);
+  }
+}
+
+}  // namespace insula

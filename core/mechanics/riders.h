@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Vertices of a surface that ride on the nodes of a deformable body, laid out to be placed in every step: what one vertex needs
+// lies in one cache line, and one pass gives positions, expected displacements and how far each region went. The bits are those
+// of Body::position() and Body::expected_displacement().
+#pragma once
+#include <array>
+#include <span>
+#include <vector>
+
+#include "core/collision/collision_mesh.h"
+#include "core/mechanics/deformable_body.h"
+
+namespace insula {
+
+class Riders {
+ public:
+  /// Those that `which` numbers, all of one body; `mesh` knows their regions.
+  void build(std::span<const MaterialPoint> points, std::span<const int> which, const CollisionMesh& mesh);
+  /// `positions` holds those of the last call, from which motion.moved is measured. Writes the numbered vertices only.
+  void place(const DeformableBody& body, Vec3* positions, Vec3* expected, RegionMotion& motion);
+
+ private:
+  using Pair = double __attribute__((vector_size(16)));
+  struct alignas(64) Rider {
+    std::array<double, 4> weight;
+    std::array<int, 4> node;
+    int vertex, region;
+  };
+  /// Position x y z, velocity x y z.
+  struct Node {
+    Pair xy, zx, yz;
+  };
+  template <int nodes>
+  void place_on(double step, Vec3* positions, Vec3* expected, RegionMotion& motion) const;
+
+
+  int most_ = 0;  ///< nodes that a vertex rides on
+  std::vector<Rider> riders_;
+  std::vector<Vec3> offset_;  ///< from the weighted nodes; empty: none has any
+  std::vector<Node> nodes_;
+};
+
+}  // namespace insula
