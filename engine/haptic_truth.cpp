@@ -8,6 +8,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "core/base/random.h"
 #include "engine/command_script.h"
 #include "engine/condense.h"
 #include "engine/exchange_pause.h"
@@ -81,14 +82,6 @@ class JumpMeter {
   std::array<Vec3, 2> last_{Vec3::Zero(), Vec3::Zero()}, last_own_{Vec3::Zero(), Vec3::Zero()};
 };
 
-/// 0 to 1, of a step's number alone.
-double drawn(std::size_t step) {
-  std::uint64_t z = (step + 1) * 0x9e3779b97f4a7c15ull;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
-  return double(z >> 11) * 0x1p-53;
-}
-
 }  // namespace
 
 ForceTrace reference_forces(Simulation& simulation, const Motion& motion, double duration_s) {
@@ -130,7 +123,7 @@ ForceTrace replay(const std::vector<RecordedStep>& steps, const Motion& motion, 
   ConstraintProblem bare;
   std::size_t next = 0;
   const auto arrives = [&](std::size_t k) {
-    return steps[k].pose_s + settings.latency_s + settings.jitter * steps[k].update.step_s * drawn(k);
+    return steps[k].pose_s + settings.latency_s + settings.jitter * steps[k].update.step_s * Random(k).uniform();
   };
   std::array<Vec3, 2> held{Vec3::Zero(), Vec3::Zero()};
   const long ticks = std::lround(duration_s / tick_s);

@@ -16,14 +16,7 @@ namespace {
 ConstraintProblem wall_problem(const Pose& device, double surface, double compliance) {
   ConstraintProblem p;
   p.resize(1);
-  ToolTerms t;
-  t.hand = 0;
-  t.device = t.free = device;
-  t.stiffness.setZero();
-  t.stiffness.diagonal() << 300, 300, 300, 0.3, 0.3, 0.3;
-  t.gain = 0.9 * Mat6::Identity();  // the tool's inertia and damping keep it behind the device
-  t.compliance = t.stiffness.inverse();
-  t.jacobian.setZero(1, 6);
+  ToolTerms t = testing::held_tool(0, device, 1);
   t.jacobian(0, 2) = 1;
   p.w[0] = t.compliance(2, 2) + compliance;
   p.delta_free[0] = t.free.p.z() - surface;

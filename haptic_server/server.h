@@ -4,7 +4,6 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,6 +13,7 @@
 #include "core/bus/codec.h"
 #include "haptic_server/clock.h"
 #include "haptic_server/devices/make_device.h"
+#include "haptic_server/devices/remark.h"
 #include "haptic_server/feel.h"
 #include "haptic_server/hand_guide.h"
 #include "haptic_server/passivity.h"
@@ -113,7 +113,6 @@ class HapticServer {
   void on_input(Bytes bytes);
   void on_event(Bytes bytes);
   void refuse(const std::string& channel, const std::string& why);
-  void set_remark(const std::string& text);
   // Servo thread.
   void take_problem(std::int64_t now) noexcept;
   void take_wishes() noexcept;
@@ -149,8 +148,7 @@ class HapticServer {
   std::atomic<bool> stopping_{false}, quiet_{true};
   /// Events that a hand's tool made, counted: strands parted, clips shut.
   std::array<std::atomic<int>, 2> parted_{}, shut_{};
-  mutable std::mutex remark_mutex_;  // never taken by the servo thread
-  std::string remark_;
+  Remark remark_;
 
   // Servo thread's own.
   Servo servo_;

@@ -25,11 +25,6 @@ void HapticServer::refuse(const std::string& channel, const std::string& why) {
   if (n == 1 || n == 10 || n == 100 || n % 1000 == 0) spdlog::warn("{}: message refused ({} in all): {}", channel, n, why);
 }
 
-void HapticServer::set_remark(const std::string& text) {
-  std::lock_guard lock(remark_mutex_);
-  remark_ = text;
-}
-
 void HapticServer::on_problem(Bytes bytes) {
   Received& slot = problems_.back();
   if (!decode_problem(bytes, slot.update, why_)) return refuse("HAPTIC_PROBLEM", why_);
@@ -56,7 +51,7 @@ void HapticServer::on_scene(Bytes bytes) {
   if (!setup->problem.empty()) spdlog::warn("{}", setup->problem);
   spdlog::info("scene \"{}\": {}", info.title.empty() ? info.scene : info.title,
                setup->motion.empty() ? std::string("no scripted motion") : "hands follow " + info.motion);
-  set_remark(setup->problem);
+  remark_.set(setup->problem);
   setups_.give(std::move(setup));
 }
 
@@ -127,10 +122,7 @@ std::string HapticServer::note(double age_ms) const {
   for (std::size_t i = 0; i < 2; ++i)
     if (!s.in_range[i])
       return std::string(i == 0 ? "left" : "right") + " device too far from where the engine has it: its force is off";
-  {
-    std::lock_guard lock(remark_mutex_);
-    if (!remark_.empty()) return remark_;
-  }
+  if (std::string remark = remark_.text(); !remark.empty()) return remark;
   const std::string late = budget_advice(status_, options_.period_s * 1e6, missed_now_);
   return late.empty() ? options_.advice : late;
 }

@@ -29,6 +29,19 @@ class Random {
   std::uint64_t state_;
 };
 
+/// A massless tool held by a virtual coupling of 300 N/m and 0.3 N m/rad; inertia and damping keep it behind the device.
+inline ToolTerms held_tool(int hand, const Pose& device, int rows) {
+  ToolTerms t;
+  t.hand = hand;
+  t.device = t.free = device;
+  t.stiffness.setZero();
+  t.stiffness.diagonal() << 300, 300, 300, 0.3, 0.3, 0.3;
+  t.gain = 0.9 * Mat6::Identity();
+  t.compliance = t.stiffness.inverse();
+  t.jacobian.setZero(rows, 6);
+  return t;
+}
+
 /// Two tools, each with a virtual coupling of 300 N/m and 0.3 N m/rad and a rigid-body compliance, in `contacts` frictional
 /// contacts, `strands` compliant rows and `patches` of three contacts that share a friction force, with soft bodies behind. W = H C H^T (tools) + a soft part, so it is what an
 /// engine would build.

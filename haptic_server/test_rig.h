@@ -12,6 +12,7 @@
 
 #include "core/bus/mem_bus.h"
 #include "haptic_server/server.h"
+#include "haptic_server/test_problem.h"
 
 namespace insula::testing {
 
@@ -90,19 +91,12 @@ struct Rig {
     ConstraintProblem& p = u.problem;
     p.resize(2);
     for (int hand = 0; hand < 2; ++hand) {
-      ToolTerms t;
-      t.hand = hand;
       if (state_seen && state.hand[std::size_t(hand)].connected) {
         const auto& h = state.hand[std::size_t(hand)];
         tool[hand].p = Vec3(h.p_m[0], h.p_m[1], h.p_m[2]);
         tool[hand].q = Quat(h.q[0], h.q[1], h.q[2], h.q[3]);
       }
-      t.device = t.free = tool[hand];
-      t.stiffness.setZero();
-      t.stiffness.diagonal() << 300, 300, 300, 0.3, 0.3, 0.3;
-      t.gain = 0.9 * Mat6::Identity();  // the tool's inertia and damping keep it behind the device
-      t.compliance = t.stiffness.inverse();
-      t.jacobian.setZero(2, 6);
+      ToolTerms t = held_tool(hand, tool[hand], 2);
       t.jacobian(hand, 2) = 1;  // tissue of 300 N/m below z = 0
       p.w[std::size_t(hand) * p.stride + hand] = t.compliance(2, 2) + 1 / 300.0;
       p.delta_free[std::size_t(hand)] = t.free.p.z();

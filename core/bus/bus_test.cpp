@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Both buses: delivery, order, several endpoints; LCM only where the machine lets multicast through.
 #include <gtest/gtest.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <cstdlib>
@@ -14,6 +11,7 @@
 #include "core/bus/channels.h"
 #include "core/bus/lcm_bus.h"
 #include "core/bus/mem_bus.h"
+#include "core/testing/multicast.h"
 
 namespace insula {
 namespace {
@@ -94,21 +92,10 @@ TEST(LcmBus, MakeBusChoosesByUrl) {
   EXPECT_NE(dynamic_cast<LcmBus*>(make_bus("nonsense://").get()), nullptr);
 }
 
-int free_udp_port() {
-  const int s = ::socket(AF_INET, SOCK_DGRAM, 0);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  socklen_t size = sizeof address;
-  const bool ok = ::bind(s, reinterpret_cast<sockaddr*>(&address), size) == 0 &&
-                  ::getsockname(s, reinterpret_cast<sockaddr*>(&address), &size) == 0;
-  ::close(s);
-  return ok ? ntohs(address.sin_port) : 7999;
-}
-
 class LcmLoopback : public ::testing::Test {
  protected:
   void SetUp() override {
-    const std::string url = "udpm://239.255.76.67:" + std::to_string(free_udp_port()) + "?ttl=0";
+    const std::string url = testing::own_bus_url();
     sender_ = std::make_unique<LcmBus>(url);
     receiver_ = std::make_unique<LcmBus>(url);
     if (!sender_->good() || !receiver_->good()) GTEST_SKIP() << "no multicast here: " << sender_->error();

@@ -7,11 +7,9 @@
 namespace insula {
 namespace {
 
-bool share_corner(const std::array<int, 3>& a, const std::array<int, 3>& b) {
-  for (int v : a)
-    if (v == b[0] || v == b[1] || v == b[2]) return true;
-  return false;
-}
+bool has_corner(const std::array<int, 3>& triangle, int v) { return triangle[0] == v || triangle[1] == v || triangle[2] == v; }
+
+bool share_corner(const std::array<int, 3>& a, const std::array<int, 3>& b) { return has_corner(a, b[0]) || has_corner(a, b[1]) || has_corner(a, b[2]); }
 
 }  // namespace
 
@@ -62,8 +60,7 @@ bool FacingSearch::follow(KnownNearest& known, double sure, Seen& seen) {
   for (int c = 0; c < 3; ++c)
     for (int t : b_->triangles_around(home[std::size_t(c)])) {
       if (t == known.triangle) continue;  // looked at already
-      const auto has = [&](int v) { return b_->triangle(t)[0] == v || b_->triangle(t)[1] == v || b_->triangle(t)[2] == v; };
-      if ((c > 0 && has(home[0])) || (c > 1 && has(home[1]))) continue;
+      if ((c > 0 && has_corner(b_->triangle(t), home[0])) || (c > 1 && has_corner(b_->triangle(t), home[1]))) continue;
       look(t, seen);
     }
   known.triangle = best_;

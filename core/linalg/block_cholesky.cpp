@@ -152,17 +152,10 @@ void MultifrontalCholesky<Real>::backward(Real* x) {
 template <class Real>
 void MultifrontalCholesky<Real>::solve(double* x) {
   [[maybe_unused]] const FlushSubnormals<Real> flush;
-  for (int p = 0; p < e_.nodes; ++p)
-    for (int k = 0; k < 3; ++k) x_[std::size_t(3 * p + k)] = Real(x[3 * e_.natural[std::size_t(p)] + k]);
+  e_.permute(x, x_.data());
   forward(x_.data());
   backward(x_.data());
-  store(x);
-}
-
-template <class Real>
-void MultifrontalCholesky<Real>::store(double* x) const {
-  for (int p = 0; p < e_.nodes; ++p)
-    for (int k = 0; k < 3; ++k) x[3 * e_.natural[std::size_t(p)] + k] = double(x_[std::size_t(3 * p + k)]);
+  e_.restore(x_.data(), x);
 }
 
 template class MultifrontalCholesky<double>;

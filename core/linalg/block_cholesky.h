@@ -44,7 +44,6 @@ class MultifrontalCholesky final : public BodySolver {
   bool pivots_are_good(const BlockMatrix& a, const Front& f) const;
   void forward(Real* x);
   void backward(Real* x);
-  void store(double* x) const;  ///< x_, in natural order
 
   Elimination e_;
   std::vector<Real> panel_, update_, x_, gathered_;  ///< gathered_: what one front needs of a vector

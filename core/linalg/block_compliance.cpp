@@ -277,7 +277,7 @@ void MultifrontalCholesky<Real>::correct(const BodyRows& rows, const double* lam
   [[maybe_unused]] const FlushSubnormals<Real> flush;
   combine(rows, lambda, x_.data());
   if (columns_ > 0) backward(x_.data());
-  store(x);
+  e_.restore(x_.data(), x);
 }
 
 // Each front solves its own rows of Y, takes them off those below, multiplies them with themselves.

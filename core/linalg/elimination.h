@@ -44,6 +44,18 @@ struct Elimination {
 
   /// Leading dimensions become multiples of `lanes` scalars, a power of two.
   void analyse(const BlockMatrix& a, int lanes);
+
+  /// Of 3 nodes values each: natural order to permuted, and back.
+  template <class Real>
+  void permute(const double* natural_order, Real* permuted_order) const {
+    for (int p = 0; p < nodes; ++p)
+      for (int k = 0; k < 3; ++k) permuted_order[3 * p + k] = Real(natural_order[3 * natural[std::size_t(p)] + k]);
+  }
+  template <class Real>
+  void restore(const Real* permuted_order, double* natural_order) const {
+    for (int p = 0; p < nodes; ++p)
+      for (int k = 0; k < 3; ++k) natural_order[3 * natural[std::size_t(p)] + k] = double(permuted_order[3 * p + k]);
+  }
 };
 
 }  // namespace insula

@@ -11,20 +11,14 @@ namespace insula {
 INSULA_TABLES(HalfKernels, half_table)
 const HalfKernels& half_kernels() { return every_half_table().chosen(); }
 
-namespace {
-
-constexpr int columns_from(int c, int own) { return c + half_columns <= own ? half_columns : 3; }
-
-}  // namespace
-
 HalfFactor::HalfFactor(const MultifrontalCholesky<float>& factor) : factor_(&factor) {
   const Elimination& e = factor.elimination();
   long size = 0, largest = 0;
   int rows = 0;
   for (const Front& f : e.front) {
     rows = std::max(rows, 3 * f.rows);
-    for (int c = 0; c < 3 * f.own; c += columns_from(c, 3 * f.own)) {
-      const long block = half_block_size(3 * f.rows, c, columns_from(c, 3 * f.own));
+    for (int c = 0; c < 3 * f.own; c += half_columns_from(c, 3 * f.own)) {
+      const long block = half_block_size(3 * f.rows, c, half_columns_from(c, 3 * f.own));
       size += block;
       largest = std::max(largest, block);
     }
@@ -47,7 +41,7 @@ void HalfFactor::round() {
     float* inverse = inverse_root_.data() + 3 * f.first;
     for (int c = 0; c < own; ++c) inverse[c] = 1 / panel[c + long(c) * f.lda];
     for (int first = 0; first < own;) {
-      const int n = columns_from(first, own), last = first + n;
+      const int n = half_columns_from(first, own), last = first + n;
       const long size = half_block_size(rows, first, n);
       std::fill_n(block_.begin(), size, 0.f);
       float* triangle = block_.data();
@@ -98,13 +92,11 @@ void HalfFactor::backward() {
 
 void HalfFactor::solve(double* x) {
   const FlushSubnormals<float> flush;
-  const Elimination& e = factor_->elimination();
-  for (int p = 0; p < e.nodes; ++p)
-    for (int k = 0; k < 3; ++k) x_[std::size_t(3 * p + k)] = float(x[3 * e.natural[std::size_t(p)] + k]);
+  factor_->elimination().permute(x, x_.data());
   forward();
   for (std::size_t i = 0; i < x_.size(); ++i) x_[i] *= inverse_root_[i] * inverse_root_[i];
   backward();
-  store(x);
+  factor_->elimination().restore(x_.data(), x);
 }
 
 void HalfFactor::correct(const BodyRows& rows, const double* lambda, double* x) {
@@ -112,13 +104,7 @@ void HalfFactor::correct(const BodyRows& rows, const double* lambda, double* x) 
   factor_->combine(rows, lambda, x_.data());
   for (std::size_t i = 0; i < x_.size(); ++i) x_[i] *= inverse_root_[i];
   backward();
-  store(x);
-}
-
-void HalfFactor::store(double* x) const {
-  const Elimination& e = factor_->elimination();
-  for (int p = 0; p < e.nodes; ++p)
-    for (int k = 0; k < 3; ++k) x[3 * e.natural[std::size_t(p)] + k] = double(x_[std::size_t(3 * p + k)]);
+  factor_->elimination().restore(x_.data(), x);
 }
 
 }  // namespace insula

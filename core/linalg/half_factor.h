@@ -23,7 +23,6 @@ class HalfFactor {
  private:
   void forward();
   void backward();
-  void store(double* x) const;
 
   const MultifrontalCholesky<float>* factor_;
   std::vector<Half> stream_;

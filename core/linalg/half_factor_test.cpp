@@ -32,7 +32,7 @@ TEST(HalfKernels, RoundAndSolveAsPlainLoopsDo) {
         Eigen::MatrixXf l = Eigen::MatrixXf::Zero(rows, own);
         std::vector<float> numbers;
         for (int first = 0; first < own;) {
-          const int n = first + half_columns <= own ? half_columns : 3, last = first + n;
+          const int n = half_columns_from(first, own), last = first + n;
           std::vector<float> block(std::size_t(half_block_size(rows, first, n)), 0.f);
           std::size_t at = 0;
           for (int c = first; c < last; ++c)
@@ -99,19 +99,28 @@ struct Lattice {
   }
 };
 
-TEST(HalfFactor, SolvesAsItsFactorDoesButForRounding) {
-  const Lattice s;
+struct LatticeFactor : Lattice {
   MultifrontalCholesky<float> full;
-  full.analyse(s.a);
-  ASSERT_TRUE(full.factorise(s.a));
-  HalfFactor half(full);
-  half.round();
+  HalfFactor half{analysed(full, a)};
+  LatticeFactor() {
+    EXPECT_TRUE(full.factorise(a));
+    half.round();
+  }
+  static const MultifrontalCholesky<float>& analysed(MultifrontalCholesky<float>& factor, const BlockMatrix& a) {
+    factor.analyse(a);
+    return factor;
+  }
+};
+
+TEST(HalfFactor, SolvesAsItsFactorDoesButForRounding) {
+  LatticeFactor s;
+  HalfFactor& half = s.half;
   std::mt19937 dice(11);
   std::uniform_real_distribution<double> any(-1, 1);
   VecX b(3 * Lattice::nodes);
   for (double& x : b) x = any(dice);
   VecX exact = b, near = b;
-  full.solve(exact.data());
+  s.full.solve(exact.data());
   half.solve(near.data());
   const double error = (near - exact).norm() / exact.norm();
   EXPECT_LT(error, 0.02);
@@ -139,22 +148,18 @@ TEST(HalfFactor, SolvesAsItsFactorDoesButForRounding) {
       force.segment<3>(3 * node) += lambda[i] * d;
     }
   }
-  full.compute_compliance(rows, node_of_block);
+  s.full.compute_compliance(rows, node_of_block);
   VecX corrected(b.size());
   half.correct(rows, lambda.data(), corrected.data());
   exact = force;
-  full.solve(exact.data());
+  s.full.solve(exact.data());
   EXPECT_LT((corrected - exact).norm() / exact.norm(), 0.02);
 }
 
 // The product of what is stored is positive definite, however coarse: energy of any load is positive.
 TEST(HalfFactor, IsPositiveDefinite) {
-  const Lattice s;
-  MultifrontalCholesky<float> full;
-  full.analyse(s.a);
-  ASSERT_TRUE(full.factorise(s.a));
-  HalfFactor half(full);
-  half.round();
+  LatticeFactor s;
+  HalfFactor& half = s.half;
   std::mt19937 dice(17);
   std::normal_distribution<double> any;
   for (int k = 0; k < 50; ++k) {

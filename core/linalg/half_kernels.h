@@ -13,6 +13,9 @@ using Half = std::uint16_t;  ///< bits of an IEEE binary16
 inline constexpr int half_columns = 6;
 inline constexpr int half_lanes = 16;
 
+/// How many columns of `own` the stream takes together from column c on.
+constexpr int half_columns_from(int c, int own) { return c + half_columns <= own ? half_columns : 3; }
+
 /// Numbers in the stream of the columns first.. (`columns` of them) of a front with so many rows.
 constexpr long half_block_size(int rows, int first, int columns) {
   const int below = rows - first - columns;

@@ -103,19 +103,21 @@ inline __attribute__((always_inline)) void backward_columns(float* t, const Half
 }
 
 const Half* forward(float* t, const Half* s, int own, int rows) {
-  int c = 0;
-  for (; c + 6 <= own; c += 6) s = forward_columns<6>(t + c, s, rows - c);
-  for (; c < own; c += 3) s = forward_columns<3>(t + c, s, rows - c);
+  for (int c = 0; c < own;) {
+    const int n = half_columns_from(c, own);
+    s = n == 3 ? forward_columns<3>(t + c, s, rows - c) : forward_columns<half_columns>(t + c, s, rows - c);
+    c += n;
+  }
   return s;
 }
 
 const Half* backward(float* t, const Half* end, int own, int rows) {
   for (int c = own; c > 0;) {
-    const int n = c % 6 == 0 ? 6 : 3;
-    c -= n;
+    c = (c - 1) / half_columns * half_columns;
+    const int n = half_columns_from(c, own);
     end -= half_block_size(rows, c, n);
-    if (n == 6) backward_columns<6>(t + c, end, rows - c);
-    else backward_columns<3>(t + c, end, rows - c);
+    if (n == 3) backward_columns<3>(t + c, end, rows - c);
+    else backward_columns<half_columns>(t + c, end, rows - c);
   }
   return end;
 }

@@ -94,14 +94,4 @@ void RateDevice::lost() noexcept {
   samples_.publish();
 }
 
-void RateDevice::set_remark(const std::string& text) {
-  std::lock_guard lock(remark_mutex_);
-  remark_ = text;
-}
-
-std::string RateDevice::remark() const {
-  std::lock_guard lock(remark_mutex_);
-  return remark_;
-}
-
 }  // namespace insula

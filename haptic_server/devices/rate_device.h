@@ -3,11 +3,11 @@
 // simulated arm as the mouse does. Nothing is felt.
 #pragma once
 #include <atomic>
-#include <mutex>
 #include <string>
 
 #include "haptic_server/clock.h"
 #include "haptic_server/devices/calibration.h"
+#include "haptic_server/devices/remark.h"
 #include "haptic_server/devices/simulated.h"
 #include "haptic_server/triple_buffer.h"
 
@@ -40,7 +40,7 @@ class RateDevice : public Device {
   void face(const Quat& person_to_scene) noexcept override { person_to_scene_ = person_to_scene; }
   void place(const Pose& pose, const Vec3& centre, const Vec3& extent) noexcept override;
   void advance(double dt) noexcept override;
-  std::string remark() const override;
+  std::string remark() const override { return remark_.text(); }
   const DeviceCalibration& calibration() const { return calibration_; }
 
   static constexpr double stale_after_s = 0.05;
@@ -51,7 +51,7 @@ class RateDevice : public Device {
   /// The driver's thread, at least every 20 ms while the device is there. What cannot be true is dropped.
   void deliver(RateSample sample) noexcept;
   void lost() noexcept;
-  void set_remark(const std::string& text);
+  void set_remark(const std::string& text) { remark_.set(text); }
 
  private:
   bool fresh() noexcept;
@@ -64,8 +64,7 @@ class RateDevice : public Device {
   Quat person_to_scene_ = Quat::Identity();
   Pose placed_at_;
   HandGoal goal_;
-  mutable std::mutex remark_mutex_;  // never taken by the servo thread
-  std::string remark_;
+  Remark remark_;
 };
 
 }  // namespace insula

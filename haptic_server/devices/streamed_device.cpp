@@ -102,14 +102,4 @@ void StreamedDevice::limit(double force_N, double torque_Nm) {
   limit_Nm_ = std::isfinite(torque_Nm) ? std::clamp(torque_Nm, 0.0, profile_.max_torque_Nm) : 0;
 }
 
-void StreamedDevice::set_remark(const std::string& text) {
-  std::lock_guard lock(remark_mutex_);
-  remark_ = text;
-}
-
-std::string StreamedDevice::remark() const {
-  std::lock_guard lock(remark_mutex_);
-  return remark_;
-}
-
 }  // namespace insula

@@ -3,13 +3,13 @@
 // for neither.
 #pragma once
 #include <atomic>
-#include <mutex>
 #include <string>
 
 #include "haptic_server/clock.h"
 #include "haptic_server/devices/calibration.h"
 #include "haptic_server/devices/device.h"
 #include "haptic_server/devices/device_sample.h"
+#include "haptic_server/devices/remark.h"
 #include "haptic_server/triple_buffer.h"
 
 namespace insula {
@@ -22,7 +22,7 @@ class StreamedDevice : public Device {
   void write(const Vec3& force_N, const Vec3& torque_Nm) noexcept override;
   void face(const Quat& person_to_scene) noexcept override { person_to_scene_ = person_to_scene; }
   void place(const Pose& pose, const Vec3& centre, const Vec3& extent) noexcept override;
-  std::string remark() const override;
+  std::string remark() const override { return remark_.text(); }
 
   const DeviceCalibration& calibration() const { return calibration_; }
   /// Before start, or while nobody else uses the device.
@@ -49,7 +49,7 @@ class StreamedDevice : public Device {
   DeviceForce wanted() noexcept;
   /// Limits of the connected device, where they are below the profile's (another one may have been plugged in).
   void limit(double force_N, double torque_Nm);
-  void set_remark(const std::string& text);
+  void set_remark(const std::string& text) { remark_.set(text); }
 
   DeviceProfile profile_;  ///< complete when start() returns, the same from then on
 
@@ -65,8 +65,7 @@ class StreamedDevice : public Device {
   double fade_ = 1;  ///< what a servo that falls silent leaves of the force
   std::int64_t wanted_ns_ = 0;
   MonotonicClock clock_;
-  mutable std::mutex remark_mutex_;  // never taken by the servo thread
-  std::string remark_;
+  Remark remark_;
 };
 
 }  // namespace insula

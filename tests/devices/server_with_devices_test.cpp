@@ -10,7 +10,7 @@
 #include "haptic_server/test_rig.h"
 #include "tests/devices/device_bench.h"
 #include "tests/devices/haply_stand_in.h"
-#include "tests/process/multicast.h"
+#include "core/testing/multicast.h"
 
 namespace insula {
 namespace {
@@ -87,7 +87,7 @@ TEST_F(ServerWithDevices, ADriverThatTellsNonsenseIsLostAlone) {
 
 TEST_F(ServerWithDevices, TheRealProgramOverTheBus) {
   if (!testing::multicast_works()) GTEST_SKIP() << "this machine has no multicast route";
-  const std::string bus_url = "udpm://239.255.76.67:" + std::to_string(testing::free_udp_port()) + "?ttl=0";
+  const std::string bus_url = testing::own_bus_url();
   ::setenv("LCM_DEFAULT_URL", bus_url.c_str(), 1);
   service.change(1, [](auto& a) { a.plugged = false; });
   std::filesystem::create_directories(folder + "/config");

@@ -8,6 +8,7 @@
 #include "core/bus/arrival_order.h"
 #include "core/bus/codec.h"
 #include "core/bus/mem_bus.h"
+#include "haptic_server/test_problem.h"
 #include "tests/faults/faulty_bus.h"
 
 namespace insula::testing {
@@ -67,19 +68,12 @@ class EngineDouble {
   }
 
   void add_hand(int hand, ConstraintProblem& p) {
-    ToolTerms t;
-    t.hand = hand;
     for (const auto& h : state_.hand)
       if (h.hand == hand && h.connected) {
         tool_[hand].p = Vec3(h.p_m[0], h.p_m[1], h.p_m[2]);
         tool_[hand].q = Quat(h.q[0], h.q[1], h.q[2], h.q[3]);
       }
-    t.device = t.free = tool_[hand];
-    t.stiffness.setZero();
-    t.stiffness.diagonal() << 300, 300, 300, 0.3, 0.3, 0.3;
-    t.gain = 0.9 * Mat6::Identity();  // the tool's inertia and damping keep it behind the device
-    t.compliance = t.stiffness.inverse();
-    t.jacobian.setZero(p.rows, 6);
+    ToolTerms t = held_tool(hand, tool_[hand], p.rows);
     int row = hand * rows_a_hand;
     for (int c = 0; c < corners; ++c, row += 3) {
       const Vec3 arm = t.free.q * Vec3(c & 1 ? 0.006 : -0.002, c & 2 ? 0.003 : -0.003, 0);

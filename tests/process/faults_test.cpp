@@ -64,7 +64,7 @@ class LcmFaults : public ::testing::Test {
 };
 
 TEST_F(LcmFaults, BadLinks) {
-  const std::string engine_url = "udpm://239.255.76.67:" + std::to_string(free_udp_port()) + "?ttl=0";
+  const std::string engine_url = own_bus_url();
   start_engine(engine_, engine_url);
   start_server(session_.url());
   Relay relay(engine_url, session_.url());

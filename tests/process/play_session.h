@@ -23,7 +23,7 @@
 #include "core/bus/codec.h"
 #include "core/bus/lcm_bus.h"
 #include "engine/child_process.h"
-#include "tests/process/multicast.h"
+#include "core/testing/multicast.h"
 
 namespace insula::testing {
 
@@ -210,7 +210,7 @@ class PlaySession {
     fs::copy(meshes / "examples", folder_ / "meshes/examples", fs::copy_options::recursive);
     fs::copy(meshes / "instruments/retractor", folder_ / "meshes/instruments/retractor", fs::copy_options::recursive);
     std::ofstream(folder_ / "press.xml") << scene_text;
-    url_ = "udpm://239.255.76.67:" + std::to_string(free_udp_port()) + "?ttl=0";
+    url_ = own_bus_url();
     ::setenv("LCM_DEFAULT_URL", url_.c_str(), 1);
     // Also when the supervisor is killed and cannot clean up: what it leaves goes with the folder.
     ::setenv("XDG_RUNTIME_DIR", folder_.c_str(), 1);

@@ -15,7 +15,6 @@ using namespace testing;
 const char* const logger = "/usr/bin/lcm-logger";
 const char* const player = "/usr/bin/lcm-logplayer";
 
-std::string new_url() { return "udpm://239.255.76.67:" + std::to_string(free_udp_port()) + "?ttl=0"; }
 
 /// A child with its output.
 class Tool {
@@ -90,7 +89,7 @@ class Replay : public ::testing::Test {
   }
 
   PlaySession session_;
-  std::string insula_, url_ = new_url();
+  std::string insula_, url_ = own_bus_url();
   fs::path log_;
   std::int64_t recorded_ = 0;
   std::unique_ptr<Tool> gateway_;

@@ -23,10 +23,12 @@ inline int free_udp_port() {
   return ok ? ntohs(address.sin_port) : 7999;
 }
 
+inline std::string own_bus_url() { return "udpm://239.255.76.67:" + std::to_string(free_udp_port()) + "?ttl=0"; }
+
 /// Whether LCM messages come back on this machine; as root, a missing route is added.
 inline bool multicast_works() {
   const auto probe = [] {
-    LcmBus bus("udpm://239.255.76.67:" + std::to_string(free_udp_port()) + "?ttl=0");
+    LcmBus bus(own_bus_url());
     int seen = 0;
     bus.subscribe("PROBE", [&](Bytes) { ++seen; });
     for (int i = 0; i < 50 && bus.good() && seen == 0; ++i) {
