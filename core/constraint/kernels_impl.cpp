@@ -11,23 +11,6 @@ typedef double V __attribute__((vector_size(W * 8), aligned(8)));
 
 inline V load(const double* p) { return *reinterpret_cast<const V*>(p); }
 inline void store(double* p, V v) { *reinterpret_cast<V*>(p) = v; }
-inline V first(int n) {  // n ones, then zeros; n <= W
-  static const double ones[16] = {1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0};
-  return load(ones + 8 - n);
-}
-inline double sum(V v) {
-  double s = 0;
-#if KERNEL_BYTES == 64
-  typedef double V4 __attribute__((vector_size(32)));
-  typedef double V2 __attribute__((vector_size(16)));
-  const V4 a = __builtin_shufflevector(v, v, 0, 1, 2, 3) + __builtin_shufflevector(v, v, 4, 5, 6, 7);
-  const V2 b = __builtin_shufflevector(a, a, 0, 1) + __builtin_shufflevector(a, a, 2, 3);
-  s = b[0] + b[1];
-#else
-  for (int i = 0; i < W; ++i) s += v[i];
-#endif
-  return s;
-}
 inline double above(double least, double x) { return x < least ? least : x; }  // lets NaN through, as below
 inline double below(double most, double x) { return x > most ? most : x; }
 inline double size(double x) { return __builtin_fabs(x); }
@@ -37,14 +20,14 @@ inline double larger(double a, double b) { return a > b ? a : b; }
 
 struct Move {
   double d[3];
-  int rows;
+  int rows;  // 0: nothing moves
 };
 
 inline Move move_box(const LocalBlock& b, double* lambda, double delta) {
   const double l = *lambda, low = b.lower - l, high = b.upper - l;
   const double d = below(high, above(low, -b.compliance * l * b.inverse[0] - delta * b.inverse[0]));
   *lambda = d == low ? b.lower : d == high ? b.upper : l + d;  // the bounds to the last bit
-  return {{d, 0, 0}, 1};
+  return {{d, 0, 0}, d != 0 ? 1 : 0};
 }
 
 struct Three {
@@ -141,162 +124,81 @@ inline Three next_patch(const SweepData& data, int k, LocalBlock& b, const doubl
   return {(b.vx * p1 - b.vy * p2) * scale, (b.vy * p1 + b.vx * p2) * scale, 0};
 }
 
+inline Move move_block(const SweepData& data, int k, LocalBlock& b, double* lambda, const double* delta) {
+  double* l = lambda + b.row;
+  if (b.law == LawKind::box) return move_box(b, l, delta[b.row]);
+  const bool friction = b.law == LawKind::friction;
+  const Three next = friction ? next_friction(data, k, b, lambda, delta) : next_patch(data, k, b, lambda, delta);
+  const Move m = {{next.n - l[0], next.t1 - l[1], friction ? next.t2 - l[2] : 0}, friction ? 3 : 2};
+  if (m.d[0] == 0 && m.d[1] == 0 && m.d[2] == 0) return {{}, 0};
+  l[0] = next.n;
+  l[1] = next.t1;
+  if (friction) l[2] = next.t2;
+  return m;
+}
+
 // --- products with W -------------------------------------------------------------------------------------------------
 
-constexpr int group = W < 4 ? 4 : W;  // rows taken together: as many as registers allow
-
-struct Changes {  // of one panel: the rows that moved, padded to whole groups with changes of 0
-  int count = 0;
-  const double* w[panel_rows + group];
-  double d[panel_rows + group];
-};
-
-inline void near(double* delta, const double* w, double d, int from, int full, int end) {
-  for (int j = from; j < full; j += W) store(delta + j, load(delta + j) + load(w + j) * d);
-  if (full < end) store(delta + full, load(delta + full) + load(w + full) * (first(end - full) * d));
-}
-
-inline void near3(double* delta, const double* w, long s, long s2, const double* d, int from, int full, int end) {
-  const double d0 = d[0], d1 = d[1], d2 = d[2];
-  for (int j = from; j < full; j += W) store(delta + j, load(delta + j) + load(w + j) * d0 + load(w + s + j) * d1 + load(w + s2 + j) * d2);
-  if (full < end) {
-    const V x = load(w + full) * d0 + load(w + s + full) * d1 + load(w + s2 + full) * d2;
-    store(delta + full, load(delta + full) + x * first(end - full));
-  }
-}
-
-// A group of rows of a panel onto all columns before it.
-inline void behind(double* delta, const Changes& c, int at, int end) {
-  const double* w[group];
-  V d[group];
+// y[0..n) += sum of so many rows, each times its own d; n is a multiple of W.
+template <int rows>
+inline __attribute__((always_inline)) void add_rows(double* y, const double* const* w, const double* d, long n) {
+  const double* row[rows];
+  V by[rows];
 #pragma GCC unroll 8
-  for (int i = 0; i < group; ++i) {
-    w[i] = c.w[at + i];
-    d[i] = V{} + c.d[at + i];
+  for (int i = 0; i < rows; ++i) {
+    row[i] = w[i];
+    by[i] = V{} + d[i];
   }
-  for (int j = 0; j < end; j += W) {
-    V x = load(delta + j);
+  const auto vector = [&](long j) __attribute__((always_inline)) {
+    V x = load(y + j);
 #pragma GCC unroll 8
-    for (int i = 0; i < group; ++i) x += load(w[i] + j) * d[i];
-    store(delta + j, x);
+    for (int i = 0; i < rows; ++i) x += load(row[i] + j) * by[i];
+    store(y + j, x);
+  };
+  constexpr int together = rows < 4 ? 4 : 1;
+  long j = 0;
+  for (; j + together * W <= n; j += together * W) {
+#pragma GCC unroll 4
+    for (int u = 0; u < together; ++u) vector(j + u * W);
   }
-}
-
-// A group of rows (or fewer) times the changes in the listed columns.
-inline void ahead(double* out, const double* w, long s, int rows, const double* moved, const int* columns, int count) {
-  const double* row[group];
-  V a[group];
-#pragma GCC unroll 8
-  for (int i = 0; i < group; ++i) {
-    row[i] = i < rows ? w + i * s : w;
-    a[i] = V{};
-  }
-  for (int k = 0; k < count; ++k) {
-    const int j = columns[k];
-    const V m = load(moved + j);
-#pragma GCC unroll 8
-    for (int i = 0; i < group; ++i) a[i] += load(row[i] + j) * m;
-  }
-#pragma GCC unroll 8
-  for (int i = 0; i < group; ++i) {
-    const double x = sum(a[i]);
-    if (i < rows) out[i] = x;
-  }
+  for (; j < n; j += W) vector(j);
 }
 
 double sweep(const SweepData& data, double* lambda, double* delta) {
   const long s = data.stride;
-  const double* w = data.w;
   double most = 0;
-  double* moved = data.moved;
-  for (int i = 0; i < s; ++i) moved[i] = 0;
-  int column_count = 0;
-  Changes changes[2];
-  int last_from = 0;  // first column of the panel before this one
-  for (int q = 0; q < data.panel_count; ++q) {
-    Changes& now = changes[q & 1];
-    const Changes& before = changes[(q & 1) ^ 1];
-    now.count = 0;
-    const auto row_of = [&](int panel) { return panel < data.panel_count ? data.blocks[data.panels[panel]].row : data.rows; };
-    const int from = row_of(q) / W * W, begin_next = row_of(q + 1), end = row_of(q + 2), full = end / W * W, next_from = begin_next / W * W;
-    // Work that waits for nothing: changes of the panel before onto the columns left of it, and what the panel after gathers.
-    alignas(64) double gathered[panel_rows + 2 * W] = {};
-    const int behind_tasks = (before.count + group - 1) / group, ahead_tasks = column_count ? (end - begin_next + group - 1) / group : 0, tasks = behind_tasks + ahead_tasks;
-    int done = 0;
-    const int first_block = data.panels[q], blocks = data.panels[q + 1] - first_block;
-    for (int k = first_block; k < first_block + blocks; ++k) {
-      LocalBlock& b = data.blocks[k];
-      const int r = b.row;
-      const double* wr = w + r * s;
-      if (b.law == LawKind::box) {
-        const double d = move_box(b, lambda + r, delta[r]).d[0];
-        if (d != 0) {
-          near(delta, wr, d, from, full, end);
-          most = larger(most, size(d) * (wr[r] + b.compliance));
-          now.w[now.count] = wr;
-          now.d[now.count++] = d;
-        }
-      } else {
-        const bool friction = b.law == LawKind::friction;
-        const int rows = friction ? 3 : 2;
-        const Three next = friction ? next_friction(data, k, b, lambda, delta) : next_patch(data, k, b, lambda, delta);
-        const double d[3] = {next.n - lambda[r], next.t1 - lambda[r + 1], friction ? next.t2 - lambda[r + 2] : 0};
-        if (d[0] != 0 || d[1] != 0 || d[2] != 0) {
-          near3(delta, wr, s, friction ? 2 * s : s, d, from, full, end);
-          lambda[r] = next.n;
-          lambda[r + 1] = next.t1;
-          if (friction) lambda[r + 2] = next.t2;
-          for (int i = 0; i < rows; ++i) {
-            most = larger(most, size(d[i]) * wr[i * s + r + i]);
-            now.w[now.count] = wr + i * s;
-            now.d[now.count++] = d[i];
-          }
-        }
-      }
-      for (const int due = (k - first_block + 1) * tasks / blocks; done < due; ++done) {
-        if (done < behind_tasks) {
-          behind(delta, before, group * done, last_from);
-        } else {
-          const int at = begin_next + group * (done - behind_tasks), rows = end - at < group ? end - at : group;
-          ahead(gathered + (at - next_from), w + at * s, s, rows, moved, data.columns, column_count);
-        }
-      }
+  for (int k = 0; k < data.block_count; ++k) {
+    LocalBlock& b = data.blocks[k];
+    const Move m = move_block(data, k, b, lambda, delta);
+    if (m.rows == 0) continue;
+    const double* w = data.w + b.row * s;
+    const double* row[3] = {w, w + s, w + 2 * s};
+    if (m.rows == 1) {
+      add_rows<1>(delta, row, m.d, s);
+      most = larger(most, size(m.d[0]) * (w[b.row] + b.compliance));
+      continue;
     }
-    for (int i = 0; i < now.count; ++i) {
-      const int row = int((now.w[i] - w) / s), column = row / W * W;
-      moved[row] = now.d[i];
-      if (column_count == 0 || data.columns[column_count - 1] != column) data.columns[column_count++] = column;
-    }
-    for (int i = now.count; i % group; ++i) {
-      now.w[i] = now.w[0];
-      now.d[i] = 0;
-    }
-    if (ahead_tasks)
-      for (int j = 0; next_from + j < end; j += W) store(delta + next_from + j, load(delta + next_from + j) + load(gathered + j));
-    last_from = from;
+    if (m.rows == 3) add_rows<3>(delta, row, m.d, s);
+    else add_rows<2>(delta, row, m.d, s);
+    for (int i = 0; i < m.rows; ++i) most = larger(most, size(m.d[i]) * row[i][b.row + i]);
   }
-  const Changes& last = changes[(data.panel_count & 1) ^ 1];
-  for (int i = 0; i < last.count; i += group) behind(delta, last, i, last_from);
   return most;
 }
 
 void combine(double* y, const double* a, long stride, const double* c, int rows, int n) {
-  Changes some;
-  const auto add = [&] {
-    for (; some.count % group; ++some.count) {
-      some.w[some.count] = some.w[0];
-      some.d[some.count] = 0;
-    }
-    for (int i = 0; i < some.count; i += group) behind(y, some, i, n);
-    some.count = 0;
-  };
+  constexpr int group = W < 4 ? 4 : W;  // rows taken together: as many as registers allow
+  const double* row[group];
+  double d[group];
+  int count = 0;
   for (int k = 0; k < rows; ++k) {
     if (c[k] == 0) continue;
-    some.w[some.count] = a + k * stride;
-    some.d[some.count++] = c[k];
-    if (some.count == panel_rows) add();
+    row[count] = a + k * stride;
+    d[count++] = c[k];
+    if (count < group) continue;
+    add_rows<group>(y, row, d, n);
+    count = 0;
   }
-  add();
+  for (int k = 0; k < count; ++k) add_rows<1>(y, row + k, d + k, n);
 }
 
 }  // namespace

@@ -108,31 +108,10 @@ LocalBlock local_block(const ConstraintProblem& p, const Block& b) {
 
 }  // namespace
 
-void SweepMemory::reserve(int rows) {
-  const std::size_t n = std::size_t(rows) + 8;
-  blocks.reserve(n);
-  panels.reserve(n);
-  columns.reserve(n);
-  moved.reserve(n);
-}
-
 SweepData SweepMemory::set_up(const ConstraintProblem& p) {
   blocks.clear();
-  panels.clear();
-  int filled = panel_rows;
-  for (const Block& b : p.blocks) {
-    if (filled + b.rows() > panel_rows) {
-      panels.push_back(int(blocks.size()));
-      filled = 0;
-    }
-    filled += b.rows();
-    blocks.push_back(local_block(p, b));
-  }
-  const int count = int(panels.size());
-  panels.push_back(int(blocks.size()));
-  moved.assign(std::size_t(p.stride), 0.0);
-  columns.assign(std::size_t(p.stride), 0);
-  return {&p, p.w.data(), p.stride, p.rows, blocks.data(), int(blocks.size()), panels.data(), count, moved.data(), columns.data(), exact};
+  for (const Block& b : p.blocks) blocks.push_back(local_block(p, b));
+  return {&p, p.w.data(), p.stride, p.rows, blocks.data(), int(blocks.size()), exact};
 }
 
 }  // namespace insula

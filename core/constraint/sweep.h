@@ -14,9 +14,7 @@ const SweepKernels& sweep_kernels();
 /// What a sweep needs beside the problem; nothing is allocated in set_up() after reserve().
 struct SweepMemory {
   std::vector<LocalBlock> blocks;
-  std::vector<int> panels, columns;
-  AlignedVector<double> moved;
-  void reserve(int rows);
+  void reserve(int rows) { blocks.reserve(std::size_t(rows)); }
   SweepData set_up(const ConstraintProblem& problem);
 };
 

@@ -1,20 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One sweep of block Gauss-Seidel, the solver's inner loop, compiled once per instruction set.
-//
-// Rows are taken in panels of at most 16. A row that moves by d changes delta = W lambda + delta_free by its column of W:
-//   near    its own panel's and the next one's delta at once, on which the next local solutions wait
-//   ahead   a later panel gathers all older changes just before its turn: its rows of W times the changes, left of the diagonal
-//   behind  earlier panels get theirs afterwards, from the same rows of W, which the cache still holds
-// So each sweep fetches one half of W, and ahead and behind are done in the shadow of the local solutions, each of which has to wait
-// for the one before it.
+// A row that moves by d changes delta = W lambda + delta_free by its column of W, which is its row: one stream, at once. Panels that fetch only one
+// half of W were slower at every size up to 360 rows: fewer bytes, more to wait for.
 #pragma once
 #include "core/constraint/block.h"
 
 namespace insula {
 
 struct ConstraintProblem;
-
-inline constexpr int panel_rows = 16;
 
 /// What a local solution needs of its block, computed once a solve.
 struct LocalBlock {
@@ -38,10 +31,6 @@ struct SweepData {
   int rows;
   LocalBlock* blocks;
   int block_count;
-  const int* panels;  ///< first block of each panel, then block_count
-  int panel_count;
-  double* moved;      ///< scratch: what each row moved by, padded as W's rows
-  int* columns;       ///< scratch: stride entries
   /// Exact solution of one block, for what the fast ways do not cover. Writes rows() newtons.
   void (*exact)(const ConstraintProblem& problem, int block, const double* lambda, const double* delta, double* out);
 };
