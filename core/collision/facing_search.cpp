@@ -27,17 +27,19 @@ void FacingSearch::begin(const CollisionMesh& a, int vertex, const CollisionMesh
 void FacingSearch::look(int tri, Seen& seen) {
   const auto& t = b_->triangle(tri);
   const Vec3 p = b_->vertex(t[0]), q = b_->vertex(t[1]), r = b_->vertex(t[2]);
+  const Vec3 outside = (p.cwiseMin(q).cwiseMin(r) - x_).cwiseMax(x_ - p.cwiseMax(q).cwiseMax(r)).cwiseMax(0);
+  if (outside.squaredNorm() > limit2_) return;
   const Vec3 n = (q - p).cross(r - p);
   const double h = n.dot(x_ - p), nn = n.squaredNorm();
   if (h * h > limit2_ * nn) return;  // its plane is too far
-  if (normal_.isZero(0)) normal_ = a_->rough_normal(vertex_);
   const Vec3 bary = closest_on_triangle(x_, p, q, r);
   const Vec3 c = bary[0] * p + bary[1] * q + bary[2] * r;
   const double d2 = (x_ - c).squaredNorm();
   any2_ = std::min(any2_, d2);
   if (d2 <= limit2_) seen.emplace_back(tri, d2);
-  if (normal_.dot(n) > -0.25 * std::sqrt(nn)) return;  // faces away
   if (d2 > least2_ || (d2 == least2_ && best_ >= 0 && tri > best_)) return;
+  if (normal_.isZero(0)) normal_ = a_->rough_normal(vertex_);
+  if (normal_.dot(n) > -0.25 * std::sqrt(nn)) return;  // faces away
   least2_ = d2;
   best_ = tri;
   bary_ = bary;

@@ -92,6 +92,8 @@ void TissueCollider::look_at_leaves(const Vec3& x, const double& limit2, Look&& 
     const Pack& pack = packs_[k];
     const Float4 dx = beyond(pack.low[0], pack.high[0], px), dy = beyond(pack.low[1], pack.high[1], py), dz = beyond(pack.low[2], pack.high[2], pz);
     const Float4 d2 = (dx * dx + dy * dy + dz * dz) * 0.999999f;
+    const auto any = reinterpret_cast<OuterBox::Halves>(d2 <= float(limit2) * 1.000001f);
+    if ((any[0] | any[1]) == 0) continue;
     for (std::size_t lane = 0; lane < 4; ++lane)
       if (double(d2[lane]) <= limit2 && 4 * k + lane < leaves_.size())
         for (int t : leaves_[4 * k + lane]) look(t);
