@@ -11,6 +11,7 @@
 #include "core/mechanics/instrument.h"
 #include "core/mechanics/shell_body.h"
 #include "core/mechanics/soft_body.h"
+#include "core/sim/settings.h"
 #include "plugins/contact/contact.h"
 #include "plugins/self_contact/self_contact.h"
 
@@ -78,7 +79,8 @@ SceneWork count_work(const Simulation& s) {
   const MoreRows more = rows_of_hands(s);
   w.expected_rows = w.standing_rows + int(std::lround(more.expected));
   w.most_rows = w.standing_rows + int(std::lround(more.most));
-  w.expected_sweeps = 10 + 0.1 * w.expected_rows;
+  for (const SolverSettings* solver : s.scene().all<SolverSettings>()) w.newton = solver->newton() > 0;
+  w.expected_sweeps = 6 + 0.05 * w.expected_rows;
 
   for (const Body* b : s.bodies()) {
     const auto* body = dynamic_cast<const DeformableBody*>(b);
@@ -145,7 +147,7 @@ CostEstimate estimate(const SceneWork& w, const CostRates& r, int threads) {
   // A triangle of a wall with its hinges, over a tetrahedron; how often a kept factor is made anew; iterations of a solve with one
   // made in the background; a step over the best of several runs in a row, whose data lie in the caches; entries of a factor that a
   // cache holds.
-  constexpr double wall_tangent = 3.2, wall_force = 5.5, anew = 0.05, iterations = 3, in_a_step = 1.25, cached = 1e6;
+  constexpr double wall_tangent = 3.2, wall_force = 5.5, anew = 0.05, iterations = 3, in_a_step = 1.25, cached = 1e6, newton_step = 2;
   CostEstimate out;
   std::vector<double> free, correct, compliance;
   std::vector<Share> shares;
@@ -155,8 +157,8 @@ CostEstimate estimate(const SceneWork& w, const CostRates& r, int threads) {
     const double factor = b.background ? 0 : b.solver.factor_flops * r.factor_flop + double(b.solver.factor_entries) * r.factor_entry;
     const double solve = double(b.solver.factor_entries) * r.solve_entry * (b.background ? 0.5 * iterations : 1);
     const double often = b.keeps_tangent ? anew : 1;
-    free.push_back(in_a_step * (often * (tangent + factor) + (1 - often) * force + solve) + 5 * b.nodes * r.vertex);
-    correct.push_back(b.rows > 0 ? in_a_step * solve : 0);
+    free.push_back(in_a_step * (often * (tangent + factor) + (1 - often) * force + solve) + 12 * b.nodes * r.vertex);
+    correct.push_back(b.rows > 0 ? 0.8 * solve : 0);
     compliance.push_back(b.rows > 0 ? b.compliance_flops * r.compliance_flop + 1.5 * std::max(0.0, double(b.solver.factor_entries) - cached) * r.solve_entry : 0);
     add += double(b.rows) * b.rows * r.compliance_row2;
     if (b.keeps_tangent) out.refactor_ms = std::max(out.refactor_ms, 1000 * (tangent + factor));
@@ -167,9 +169,11 @@ CostEstimate estimate(const SceneWork& w, const CostRates& r, int threads) {
     shares.push_back({1000 * compliance.back(), fmt::format("the compliance of {} rows on \"{}\"", b.rows, b.id),
                       "fewer rows: larger spacing, smaller max_contacts, patch, fewer strands"});
   }
-  const double surfaces = r.vertex * (1.9 * w.surface_vertices + 0.5 * w.surface_triangles + 0.5 * w.tissue_vertices + 1150.0 * w.tool_pieces + 9.5 * w.wall_vertices);
-  const double sweeps = w.expected_sweeps * double(w.expected_rows) * w.expected_rows * r.sweep_row2;
-  const double row = 6 * r.vertex;  // what a row costs besides: built, read, told
+  const double surfaces = r.vertex * (0.8 * w.surface_vertices + 0.2 * w.surface_triangles + 0.25 * w.tissue_vertices + 500.0 * w.tool_pieces + 30.0 * w.wall_vertices + 350.0 * w.expected_rows);
+  // Where Newton is allowed sweeps stall: one step of it, m^3 / 1.5 in small pieces, at the dense rate of the factor.
+  const double rows2 = double(w.expected_rows) * w.expected_rows;
+  const double sweeps = w.expected_sweeps * rows2 * r.sweep_row2 + (w.newton ? newton_step * rows2 * w.expected_rows / 1.5 * r.compliance_flop : 0);
+  const double row = 10 * r.vertex;  // what a row costs besides: built, read, told
   double all = 0;
   for (double c : compliance) all += c;
   // Parts of a body's compliance are shared too: threads are even, but for what one thread adds up.

@@ -38,6 +38,7 @@ struct SceneWork {
   int expected_rows = 0;       ///< with the hands at work, and a clip closed where there are clips
   int most_rows = 0;           ///< with every tool's contacts at their limit
   double expected_sweeps = 0;
+  bool newton = false;         ///< allowed where sweeps stall
 };
 
 /// After the simulation has made a step: rows and the compliance's flops are those of the last one.

@@ -23,7 +23,7 @@ CostRates measure_rates(const Registry& registry) {
   }
   const SceneWork work = count_work(*s);
   r.vertex = shortest(6, [&] {
-               for (Surface* f : s->surfaces()) f->update(), f->look_ahead();
+               for (Surface* f : s->surfaces()) f->look_ahead();
              }) / std::max(1, work.surface_vertices);
   r.sweep_row2 = solve < 1e9 ? solve : 1e-9;
 
@@ -45,7 +45,11 @@ CostRates measure_rates(const Registry& registry) {
     if (k == 0) continue;
     std::vector<double> x(3 * std::size_t(body.nodes()), 1.0);
     r.solve_entry = shortest(6, [&] { solver->solve(x.data()); }) / factor[k].entries;
-    const double compliance = shortest(4, [&] { solver->compute_compliance(body.rows, body.free_of_node()); });
+    double compliance = 1e9;
+    for (int i = 0; i < 4; ++i) {
+      solver->factorise(body.system());  // else rows that are the same keep what they have
+      compliance = std::min(compliance, shortest(1, [&] { solver->compute_compliance(body.rows, body.free_of_node()); }));
+    }
     const BodyWork& b = work.bodies.front();
     r.compliance_flop = compliance / std::max(1.0, b.compliance_flops);
     std::vector<double> w(std::size_t(work.standing_rows + 8) * std::size_t(work.standing_rows + 8));
