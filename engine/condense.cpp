@@ -203,6 +203,13 @@ void Condenser::eliminate(const ConstraintProblem& full, ConstraintProblem& smal
     for (std::size_t j = 0; j < n; ++j) weights_[j] = -row(j)[kept_at + long(i)];
     combine(w + from, factor_.data() + kept_at + from, width, weights_.data(), int(n), int(small.stride - from));
   }
+  // What hangs on the eliminated rows alone moves with nothing else: rounding must not make it soft, or of negative stiffness.
+  for (std::size_t i = 0; i < k; ++i) {
+    double* w = small.w.data() + i * std::size_t(small.stride);
+    if (w[i] > 1e-10 * full.w_at(kept_[i], kept_[i])) continue;
+    std::fill(w + i, w + k, 0.0);
+    for (std::size_t r = 0; r < i; ++r) small.w[r * std::size_t(small.stride) + i] = 0;
+  }
   for (std::size_t i = 0; i < k; ++i)
     for (std::size_t c = i + 1; c < k; ++c) small.w[c * std::size_t(small.stride) + i] = small.w[i * std::size_t(small.stride) + c];
 }

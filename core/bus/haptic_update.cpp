@@ -136,11 +136,12 @@ bool header_ok(const Layout& l, const char*& why) {
 }
 
 bool matrix_ok(const Layout& l, const char*& why) {
-  why = "W not finite, too large, or with a negative diagonal";
+  why = "W not finite or too large";
   std::size_t k = 0;
   for (int i = 0; i < l.rows; ++i)
     for (int j = 0; j <= i; ++j, ++k)
       if (!(std::abs(l.w_at(k)) < most_w)) return false;
+  why = "W has a negative diagonal";
   for (int i = 0; i < l.rows; ++i)
     if (l.w_at(std::size_t(i) * std::size_t(i + 3) / 2) < 0) return false;
   why = "delta_free or lambda not finite or too large";

@@ -117,7 +117,7 @@ TEST(HapticUpdate, EachRuleHasItsReason) {
   const std::vector<Fault> faults = {
       {"nan W", [=](auto& u) { u.problem.w[0] = nan; }, "W not finite"},
       {"huge W", [](auto& u) { u.problem.w[0] = 2e4; }, "W not finite"},
-      {"negative diagonal", [](auto& u) { u.problem.w[0] = -1e-3; }, "W not finite"},
+      {"negative diagonal", [](auto& u) { u.problem.w[0] = -1e-3; }, "W has a negative diagonal"},
       {"nan delta", [=](auto& u) { u.problem.delta_free[2] = nan; }, "delta_free"},
       {"far delta", [](auto& u) { u.problem.delta_free[2] = -1.5; }, "delta_free"},
       {"infinite lambda", [](auto& u) { u.problem.lambda[0] = -infinite; }, "lambda"},
