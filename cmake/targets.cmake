@@ -30,13 +30,23 @@ target_include_directories(insula_lcm SYSTEM INTERFACE ${lcm_dir} ${LCM_INCLUDE}
 target_link_libraries(insula_lcm INTERFACE ${LCM_LIBRARY})
 add_dependencies(insula_lcm insula_lcm_headers)
 
+# --- hash of the headers that plugins include: part of the ABI string (core/registry/abi.h) ----------------------------
+set(abi_header ${CMAKE_BINARY_DIR}/generated/abi/insula_headers.h)
+file(GLOB_RECURSE abi_inputs CONFIGURE_DEPENDS core/*.h)
+add_custom_command(OUTPUT ${abi_header}
+  COMMAND ${CMAKE_COMMAND} -DFOLDER=${PROJECT_SOURCE_DIR}/core -DOUTPUT=${abi_header} -P ${PROJECT_SOURCE_DIR}/cmake/headers_hash.cmake
+  DEPENDS ${abi_inputs} cmake/headers_hash.cmake COMMENT "hash of the headers")
+add_custom_target(insula_headers_hash DEPENDS ${abi_header})
+include_directories(${CMAKE_BINARY_DIR}/generated/abi)
+
 # --- core ------------------------------------------------------------------------------------------------------------
 insula_glob(core_src core/*.cpp)
 list(FILTER core_src EXCLUDE REGEX "/core/testing/|/core/bus/")
 add_library(insula_core STATIC ${core_src})
+add_dependencies(insula_core insula_headers_hash)
 target_include_directories(insula_core SYSTEM PUBLIC ${CHOLMOD_INCLUDE})
 target_compile_definitions(insula_core PUBLIC EIGEN_DONT_PARALLELIZE)
-target_link_libraries(insula_core PUBLIC insula_warnings Eigen3::Eigen fmt::fmt spdlog::spdlog nlohmann_json::nlohmann_json
+target_link_libraries(insula_core PUBLIC $<BUILD_INTERFACE:insula_warnings> Eigen3::Eigen fmt::fmt spdlog::spdlog nlohmann_json::nlohmann_json
   EXPAT::EXPAT PkgConfig::ASSIMP PkgConfig::URDFDOM ${CHOLMOD_LIBRARY}
   Threads::Threads ZLIB::ZLIB ${CMAKE_DL_LIBS})
 include(cmake/kernels.cmake OPTIONAL)
@@ -92,7 +102,15 @@ if(servo_src)
   # Boost for the Haply service's WebSocket; makers' libraries are opened at run time.
   target_link_libraries(insula_servo PUBLIC insula_bus PRIVATE Boost::boost ${CMAKE_DL_LIBS})
 endif()
+include(cmake/embed.cmake)
+file(GLOB_RECURSE template_files CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/tools/new_plugin tools/new_plugin/*)
+set(embedded ${PROJECT_SOURCE_DIR}/meshes/examples/block.msh common/block.msh)
+foreach(f ${template_files})
+  list(APPEND embedded ${PROJECT_SOURCE_DIR}/tools/new_plugin/${f} ${f})
+endforeach()
+insula_embed(${CMAKE_BINARY_DIR}/generated/new_plugin_files.cpp new_plugin_files ${embedded})
 insula_glob(engine_src engine/*.cpp)
+list(APPEND engine_src ${CMAKE_BINARY_DIR}/generated/new_plugin_files.cpp)
 list(FILTER engine_src EXCLUDE REGEX "/engine/main\\.cpp$")
 if(engine_src)
   add_library(insula_engine STATIC ${engine_src})
@@ -126,8 +144,9 @@ include(GoogleTest)
 insula_glob(testing_src core/testing/*.cpp)
 if(testing_src)
   add_library(insula_testing STATIC ${testing_src})
-  target_link_libraries(insula_testing PUBLIC insula_plugins insula_bus GTest::gtest)
+  target_link_libraries(insula_testing PUBLIC insula_plugins GTest::gtest)
 endif()
+include(cmake/install.cmake)
 set(INSULA_TEST_DEFS INSULA_SOURCE_DIR="${PROJECT_SOURCE_DIR}" INSULA_BINARY_DIR="${CMAKE_BINARY_DIR}")
 function(insula_test target)  # insula_test(name SOURCES ... LIBS ... [SERIAL])
   cmake_parse_arguments(T "SERIAL" "" "SOURCES;LIBS" ${ARGN})

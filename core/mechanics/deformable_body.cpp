@@ -236,6 +236,11 @@ void DeformableBody::add_rate(const BodyRows& r, double* rate) const {
       rate[r.row[std::size_t(i)]] += r.coeff[std::size_t(e)].dot(v_.segment<3>(3 * r.block[std::size_t(e)]));
 }
 
+void DeformableBody::finish(const StepContext& context, const ConstraintSolution&) {
+  for (ForceModel* f : forces_)
+    if (f->finish(context, q_.data())) factor_h_ = 0;
+}
+
 void DeformableBody::reset() {
   for (int i = 0; i < nodes(); ++i) q_.segment<3>(3 * i) = rest_nodes()[std::size_t(i)];
   v_.setZero();
@@ -328,6 +333,7 @@ double DeformableBody::energy() const {
 void DeformableBody::append_state(std::vector<double>& out) const {
   out.insert(out.end(), q_.data(), q_.data() + q_.size());
   out.insert(out.end(), v_.data(), v_.data() + v_.size());
+  for (const ForceModel* f : forces_) f->append_state(out);
 }
 
 }  // namespace insula

@@ -71,6 +71,7 @@ class DeformableBody : public Body {
   SolverStatus solver_status() const override { return solver_->status(); }
   void apply(const StepContext& context, const BodyRows& rows, const double* lambda) override;
   void add_rate(const BodyRows& rows, double* rate) const override;
+  void finish(const StepContext& context, const ConstraintSolution& solution) override;
   double relaxation() const override { return relaxation_; }
   void reset() override;
   double energy() const override;

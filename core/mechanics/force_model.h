@@ -10,6 +10,7 @@
 namespace insula {
 
 class DeformableBody;
+struct StepContext;
 
 /// Which derivative of the force goes into the system matrix.
 enum class Tangent {
@@ -42,7 +43,13 @@ class ForceModel : public Component {
   virtual double stiffness_damping() const { return 0; }
   /// Whether the body acts on itself alone: no force in rigid motion, forces and moments add up to nothing.
   virtual bool internal() const { return true; }
+  /// After stage 5, once a step, at the body's new positions x (m): the only place where the law may change for good (tear,
+  /// yield, wear) and where events may be told. True when it has changed: the next step then makes a new tangent.
+  virtual bool finish(const StepContext&, const double* /*x*/) { return false; }
+  /// Back to what it was before the first step; undoes what finish() did.
   virtual void reset() {}
+  /// What finish() has changed, for the state's hash.
+  virtual void append_state(std::vector<double>&) const {}
 };
 
 /// Base of every support plugin: says which nodes of the body that owns it are held.

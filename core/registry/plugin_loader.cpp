@@ -51,7 +51,8 @@ std::string load_plugin(Registry& registry, const std::filesystem::path& so) {
   };
   if (!abi || !plugin_name || !add) return refuse("is not an Insula plugin (INSULA_PLUGIN is missing)");
   if (std::strcmp(abi(), abi_string()) != 0)
-    return refuse("was built for another Insula: plugin \"" + std::string(abi()) + "\", program \"" + abi_string() + "\"");
+    return refuse("was built for another Insula: plugin \"" + std::string(abi()) + "\", program \"" + abi_string() +
+                  "\"; build the plugin again with this program's headers and compiler");
   // Registered into a copy first, so that a plugin that fails half-way leaves nothing behind.
   Registry extended = registry;
   extended.set_current_plugin(plugin_name());

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "core/base/text.h"
+#include "core/registry/abi.h"
 
 namespace insula {
 namespace {

@@ -9,8 +9,10 @@
 #include <string_view>
 #include <vector>
 
-#include "core/registry/abi.h"
 #include "core/registry/component.h"
+#ifdef INSULA_PLUGIN_SHARED
+#include "core/registry/abi.h"
+#endif
 
 namespace insula {
 
@@ -51,7 +53,7 @@ void register_builtin(Registry& registry);
 /// Loads a shared plugin: checks its ABI string before anything else is called. Returns the error text, empty when loaded.
 std::string load_plugin(Registry& registry, const std::filesystem::path& so);
 
-/// ABI identity: version of the public headers, compiler, C++ library, Eigen alignment. Two equal strings may be mixed.
+/// ABI identity: the headers' text, compiler, C++ library, Eigen alignment. Two equal strings may be mixed.
 const char* abi_string();
 
 }  // namespace insula

@@ -34,4 +34,8 @@ void check_surfaces(const std::filesystem::path& scene);
 /// The state's hash is the same with and without the exercise; goals and faults have unique ids; reset clears them.
 void check_exercise_rule(const std::filesystem::path& scene, const std::string& element);
 
+
+/// Those of the above that the element's kind asks for, on its plugin's example.
+void check_element(const std::filesystem::path& scene, const std::string& element);
+
 }  // namespace insula::test

@@ -10,14 +10,19 @@
 
 namespace insula::test {
 
-const Registry& builtin() {
-  static const Registry registry = [] {
+namespace {
+Registry& registry() {
+  static Registry all = [] {
     Registry r;
     register_builtin(r);
     return r;
   }();
-  return registry;
+  return all;
 }
+}  // namespace
+
+const Registry& builtin() { return registry(); }
+std::string add_plugin(const std::filesystem::path& library) { return load_plugin(registry(), library); }
 
 namespace {
 std::unique_ptr<Simulation> take(SimulationResult result) {

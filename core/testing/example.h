@@ -12,8 +12,10 @@
 
 namespace insula::test {
 
-/// Every built-in element; one for the program.
+/// Every built-in element, and those of add_plugin(); one for the program.
 const Registry& builtin();
+/// Adds the elements of a shared plugin, before the first test. Returns why not, empty when done.
+std::string add_plugin(const std::filesystem::path& library);
 
 /// Loads a scene; what is wrong becomes a test failure and the result is null. Warnings are failures too.
 std::unique_ptr<Simulation> load(const std::filesystem::path& file, int threads = 1);

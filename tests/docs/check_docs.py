@@ -90,7 +90,7 @@ class Checker:
 
     def subcommands(self):
         listed = self.help_of(self.insula).split("Subcommands:")[-1]
-        return set(re.findall(r"^  ([a-z]+)\s", listed, re.M))
+        return set(re.findall(r"^  ([a-z-]+)\s", listed, re.M))
 
     def options(self, where, words, help_text):
         for word in words:
@@ -190,7 +190,8 @@ class Checker:
                     self.command_line((page, block.line + 1 + i), line)
         if any(b.language == "xml" or b.role == "output" for b in blocks):
             # A page that brings a plugin shows scenes for it; the build of that plugin checks them.
-            foreign = {p for p in promised if p.startswith("plugins/")}
+            brought = {p.rsplit("/", 1)[0] for p in promised if p.endswith(".cpp")}
+            foreign = {p for p in promised if p.rsplit("/", 1)[0] in brought}
             self.scenes(page, blocks, foreign)
 
 

@@ -58,19 +58,7 @@ TEST_P(EveryPlugin, ExampleSurfacesFollowTheirBodies) { test::check_surfaces(exa
 TEST_P(EveryElement, HoldsTheContractOfItsKind) {
   const ComponentInfo* info = test::builtin().find(GetParam());
   ASSERT_TRUE(info);
-  const fs::path example = example_of(info->plugin);
-  ASSERT_TRUE(fs::exists(example));
-  switch (info->kind) {
-    case Kind::force_model: return test::check_force_model(example, info->element);
-    case Kind::body: return test::check_rigid_body(example, info->element);
-    case Kind::support: return test::check_support(example, info->element);
-    case Kind::constraint: return test::check_rows(example, info->element, true);
-    case Kind::instrument:
-      test::check_instrument(example, info->element);
-      return test::check_rows(example, info->element, false);
-    case Kind::exercise_rule: return test::check_exercise_rule(example, info->element);
-    default: FAIL() << "no contract for a " << kind_name(info->kind) << "; write one in core/testing";
-  }
+  test::check_element(example_of(info->plugin), GetParam());
 }
 
 std::string plain(const ::testing::TestParamInfo<std::string>& info) { return info.param; }

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Texts of files that the program carries with it (cmake/embed.cmake).
+#pragma once
+#include <span>
+#include <string_view>
+
+namespace insula {
+
+struct EmbeddedFile {
+  std::string_view name;  ///< "constraint/NAME.cpp"
+  std::string_view text;
+};
+
+/// What `insula new-plugin` writes: files of each kind, and those of "common" that each kind gets or may get.
+std::span<const EmbeddedFile> new_plugin_files();
+
+}  // namespace insula
