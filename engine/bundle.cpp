@@ -12,6 +12,7 @@
 #include "core/mechanics/shell_body.h"
 #include "core/sim/settings.h"
 #include "engine/frame.h"
+#include "engine/inventory.h"
 
 namespace insula {
 namespace {
@@ -222,7 +223,7 @@ Json commands_json(const Scene& scene) {
 
 }  // namespace
 
-void write_bundle(const Simulation& simulation, const fs::path& dir, std::int64_t session) {
+void write_bundle(const Simulation& simulation, const fs::path& dir, std::int64_t session, bool with_inventory) {
   std::error_code error;
   fs::create_directories(dir, error);
   if (error) throw InputError(dir.string() + ": cannot be created: " + error.message());
@@ -275,7 +276,11 @@ void write_bundle(const Simulation& simulation, const fs::path& dir, std::int64_
     const BleedingState& b = start.bleeding.front();
     json["bleeding"] = {{"origin", list(b.origin)}, {"up", list(b.up)}, {"radius_m", b.radius}};
   }
-  if (exercise) json["exercise"] = exercise_of(*exercise);
+  if (exercise && !with_inventory) json["exercise"] = exercise_of(*exercise);
+  if (with_inventory) {
+    write_inventory(inventory(simulation), dir / "inventory.json");
+    json["inventory"] = "inventory.json";
+  }
 
   const fs::path whole = dir / "scene.json", part = dir / "scene.json.part";
   {

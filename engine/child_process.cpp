@@ -12,6 +12,7 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <utility>
 
 namespace insula {
 namespace {
@@ -49,6 +50,19 @@ ChildProcess::~ChildProcess() {
     waitpid(pid_, nullptr, 0);
   }
   close_output();
+}
+
+ChildProcess& ChildProcess::operator=(ChildProcess&& other) noexcept {
+  if (this == &other) return *this;
+  if (running()) {
+    send(SIGKILL);
+    waitpid(pid_, nullptr, 0);
+  }
+  close_output();
+  pid_ = std::exchange(other.pid_, -1);
+  output_ = std::exchange(other.output_, -1);
+  pending_ = std::move(other.pending_);
+  return *this;
 }
 
 std::string ChildProcess::start(const std::vector<std::string>& command) {

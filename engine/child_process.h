@@ -25,6 +25,7 @@ class ChildProcess {
   ~ChildProcess();  ///< kills what still runs
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
+  ChildProcess& operator=(ChildProcess&& other) noexcept;  ///< kills what still runs here
 
   /// Starts command[0] with its arguments, in a process group of its own (a terminal's Ctrl-C reaches the parent alone) and
   /// with SIGTERM on the parent's death. Returns the error text, empty when started; a program that cannot be executed

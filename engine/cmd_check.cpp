@@ -9,6 +9,7 @@
 
 #include "core/mechanics/deformable_body.h"
 #include "core/scene/loader.h"
+#include "core/sim/settings.h"
 #include "core/sim/simulation.h"
 #include "engine/commands.h"
 #include "engine/cost_model.h"
@@ -34,7 +35,7 @@ std::string cost_text(const std::string& file, Simulation& simulation, const Cos
 }
 
 /// One scene: loaded, and put together as for a run, since some mistakes show only there. Returns the lines to print.
-std::string check_one(const std::filesystem::path& file, const Registry& registry, Diagnostics& diagnostics, std::optional<CostRates>& rates) {
+std::string check_one(const std::filesystem::path& file, const Registry& registry, Diagnostics& diagnostics, std::optional<CostRates>& rates, bool settle) {
   auto loaded = load_scene(file, registry);
   diagnostics = std::move(loaded.diagnostics);
   if (!loaded.scene) return {};
@@ -44,9 +45,16 @@ std::string check_one(const std::filesystem::path& file, const Registry& registr
   std::string lines = fmt::format("{}: ok, {} components, {} bodies, content {:016x}\n", file.generic_string(), components.size(), bodies,
                                   loaded.scene->content_hash());
   const bool deforms = !loaded.scene->all<DeformableBody>().empty();
+  double settling = 0;
+  for (SettleSettings* s : loaded.scene->all<SettleSettings>()) {
+    settling = s->time();
+    if (!settle) s->time.set(0);
+  }
   try {
     Simulation simulation(std::move(loaded.scene), diagnostics);
-    if (deforms && diagnostics.ok()) {
+    if (settling > 0 && !settle) {
+      lines += fmt::format("  settles for {:.3g} s first; with --settle it does so, and the cost of a step is told\n", settling);
+    } else if (deforms && diagnostics.ok()) {
       if (!rates) rates = measure_rates(registry);
       lines += cost_text(file.generic_string(), simulation, *rates);
     }
@@ -59,12 +67,12 @@ std::string check_one(const std::filesystem::path& file, const Registry& registr
 
 }  // namespace
 
-int cmd_check(const CommandContext& context, const std::vector<std::filesystem::path>& files) {
+int cmd_check(const CommandContext& context, const std::vector<std::filesystem::path>& files, bool settle) {
   int status = 0;
   std::optional<CostRates> rates;
   for (const auto& file : files) {
     Diagnostics diagnostics;
-    const std::string lines = check_one(file, context.registry, diagnostics, rates);
+    const std::string lines = check_one(file, context.registry, diagnostics, rates, settle);
     context.err << diagnostics.format();
     if (lines.empty()) status = 2;
     context.out << lines;

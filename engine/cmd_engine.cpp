@@ -3,6 +3,7 @@
 #include <signal.h>
 
 #include <atomic>
+#include <chrono>
 #include <ostream>
 #include <thread>
 
@@ -14,8 +15,8 @@
 namespace insula {
 
 int cmd_engine(const CommandContext& context, const EngineOptions& o) {
-  const LiveOptions options{o.scene, o.motion, o.bundle_root, o.duration, o.unthrottled, o.threads, o.seed, o.keep_bundle};
-  const SignalPipe ends{SIGINT, SIGTERM, SIGHUP};
+  LiveOptions options{o.scene, o.motion, o.bundle_root, o.duration, o.unthrottled, o.threads, o.seed, o.keep_bundle, o.still, o.notice, {}};
+  const SignalPipe signals{SIGINT, SIGTERM, SIGHUP, SIGUSR1};
   signal(SIGPIPE, SIG_IGN);
 
   const auto bus = make_bus();
@@ -23,11 +24,18 @@ int cmd_engine(const CommandContext& context, const EngineOptions& o) {
     context.err << "error: " << bus->error() << '\n';
     return 1;
   }
-  std::atomic<bool> stop{false}, over{false};
+  std::atomic<bool> stop{false}, over{false}, go{false};
   std::thread waiter([&] {
     while (!over)
-      if (ends.wait(100) != 0) stop = true;
+      if (const int signal = signals.wait(20); signal == SIGUSR1) go = true;
+      else if (signal != 0) stop = true;
   });
+  if (o.standby)
+    options.take_over = [&] {
+      context.out << standby_line << std::endl;
+      while (!go && !stop) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      return !stop.load();
+    };
   int status = 1;
   try {
     status = run_live(options, context.registry, *bus, stop);

@@ -15,6 +15,7 @@
 #include "core/sim/exercise.h"
 #include "engine/play.h"
 #include "engine/scene_devices.h"
+#include "engine/scene_reload.h"
 #include "engine/supervisor.h"
 
 namespace fs = std::filesystem;
@@ -126,6 +127,9 @@ ChildSpec engine_child(const PlayOptions& options, const fs::path& program, cons
   if (options.seed != 0) engine.command.insert(engine.command.end(), {"--seed", std::to_string(options.seed)});
   if (!options.keep_bundle.empty()) engine.command.insert(engine.command.end(), {"--bundle-dir", options.keep_bundle.string(), "--keep-bundle"});
   else if (!bundles.empty()) engine.command.insert(engine.command.end(), {"--bundle-dir", bundles.string()});
+  if (options.view) engine.command.emplace_back("--still");
+  if (!bundles.empty()) engine.command.insert(engine.command.end(), {"--notice", (bundles / "notice.txt").string()});
+  engine.waits_for_offer = options.reload;
   return engine;
 }
 
@@ -188,13 +192,20 @@ int cmd_play(const CommandContext& context, const PlayOptions& given) {
   signal(SIGPIPE, SIG_IGN);
   const Supervisor::Print print = [&out = context.out](std::string_view line) { out << line << std::endl; };
   const BundleFolder bundles;
+  const ChildSpec engine = engine_child(options, program, bundles.path());
+  std::vector<std::string> standby = engine.command;
+  standby.emplace_back("--standby");
+  SceneReload reload(options.scene, std::move(standby), bundles.path().empty() ? fs::path() : bundles.path() / "notice.txt", print);
   SupervisorSettings settings;
   settings.duration_s = options.duration_s;
+  Supervisor* running = nullptr;
+  if (options.reload) settings.look = [&] { reload.look(*running); };
   Supervisor supervisor(settings, print);
+  running = &supervisor;
   // The viewer first: it is up while the engine still loads.
   supervisor.add(gateway_child(options, folder, print));
-  supervisor.add(haptic_child(options, folder));
-  supervisor.add(engine_child(options, program, bundles.path()));
+  if (!options.view) supervisor.add(haptic_child(options, folder));
+  supervisor.add(engine);
   return supervisor.run();
 }
 

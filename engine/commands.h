@@ -17,8 +17,9 @@ struct CommandContext {
   std::ostream& err;
 };
 
-/// Loads each scene; prints one line per good one to `out`, everything wrong to `err`.
-int cmd_check(const CommandContext& context, const std::vector<std::filesystem::path>& files);
+/// Loads each scene; prints one line per good one to `out`, everything wrong to `err`. Of a scene that settles first
+/// (<settle>) only with `settle` is that done: then strands are spun and contacts stand, and what a step costs is known.
+int cmd_check(const CommandContext& context, const std::vector<std::filesystem::path>& files, bool settle = false);
 struct ScalingOptions {
   int threads = 1;
   bool quick = false;            ///< small sizes only

@@ -17,6 +17,7 @@
 #include "core/base/text.h"
 #include "engine/bundle.h"
 #include "engine/command_script.h"
+#include "engine/notice.h"
 #include "engine/publisher.h"
 
 namespace insula {
@@ -147,14 +148,16 @@ int run_live(const LiveOptions& options, const Registry& registry, Bus& bus, con
       return 2;
     }
   }
+  if (options.take_over && !options.take_over()) return 0;
   const std::int64_t session = monotonic_us();
   const fs::path bundle = bundle_folder(options.bundle_root, session);
-  write_bundle(simulation, bundle, session);
+  write_bundle(simulation, bundle, session, options.still);
   const std::string title = simulation.scene().title().empty() ? options.scene.stem().string() : simulation.scene().title();
   Publisher publisher(bus, session, options.scene, bundle, motion, title);
   Inputs inputs;
   inputs.subscribe(bus);
   CommandScript commands(script.commands());
+  Notice notice(options.notice);
   spdlog::info("\"{}\" runs: {} bodies, {} constraints, step {:.2f} ms", title, simulation.bodies().size(),
                simulation.constraints().size(), simulation.h() * 1000);
   publisher.info("running");
@@ -179,10 +182,10 @@ int run_live(const LiveOptions& options, const Registry& registry, Bus& bus, con
       if (!why.empty()) spdlog::info("{} \"{}\" refused: {}", verb, shown(argument), why);
     }
     inputs.asked.clear();
-    if (inputs.pause) {
+    if (inputs.pause || options.still) {
       publisher.events(simulation.take_announced());  // no step will
       publisher.paused_frame(simulation);
-      publisher.info("paused");
+      publisher.info("paused", notice.text());
     } else {
       const std::int64_t posed = inputs.apply(simulation);
       commands.advance(simulation, inputs.follows(script));
@@ -194,7 +197,7 @@ int run_live(const LiveOptions& options, const Registry& registry, Bus& bus, con
         continue;
       }
       publisher.step(simulation, posed);
-      publisher.info("running");
+      publisher.info("running", notice.text());
     }
     if (options.unthrottled && !inputs.pause) continue;
     next += period;

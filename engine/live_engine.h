@@ -3,6 +3,7 @@
 #pragma once
 #include <atomic>
 #include <filesystem>
+#include <functional>
 #include <string>
 
 #include "core/bus/bus.h"
@@ -20,6 +21,10 @@ struct LiveOptions {
   int threads = 0;
   std::uint64_t seed = 0;         ///< of the complications; 0: the scene's
   bool keep_bundle = false;       ///< leave the viewer's bundle where it is at the end, for a replay
+  bool still = false;             ///< to be looked at: time never runs, the bundle holds the inventory
+  std::filesystem::path notice;   ///< file whose text viewers are shown over the picture while it is not empty; none: nothing
+  /// Called once when the scene is loaded and settled, before anything is sent; may wait. False: end without a word.
+  std::function<bool()> take_over;
 };
 
 /// Runs until `stop` is set, the duration is over or a viewer says quit. Exit status: 0, or 2 when the scene has errors.

@@ -8,6 +8,7 @@
 #include "core/registry/plugin_loader.h"
 #include "core/registry/registry.h"
 #include "engine/commands.h"
+#include "engine/new_plugin.h"
 #include "engine/play.h"
 #include "engine/run.h"
 
@@ -53,7 +54,9 @@ int main(int argc, char** argv) {
 
   auto* check = app.add_subcommand("check", "read scenes and report everything that is wrong with them");
   check->add_option("scene", files, "scene files")->required();
-  check->callback([&] { run = [&](const auto& c) { return insula::cmd_check(c, files); }; });
+  bool settle = false;
+  check->add_flag("--settle", settle, "let scenes settle that do so first: slower, and tells what a step of them costs");
+  check->callback([&] { run = [&](const auto& c) { return insula::cmd_check(c, files, settle); }; });
 
   auto* list = app.add_subcommand("list", "all elements a scene may hold");
   list->callback([&] { run = [](const auto& c) { return insula::cmd_list(c); }; });
@@ -70,6 +73,13 @@ int main(int argc, char** argv) {
   docs->add_option("-o,--output,folder", folder, "folder to write to")->required();
   docs->add_option("--plugins", plugin_folder, "folder of plugin sources, for their examples");
   docs->callback([&] { run = [&](const auto& c) { return insula::cmd_docs(c, folder, plugin_folder); }; });
+
+  insula::NewPluginOptions plugin_options;
+  auto* new_plugin = app.add_subcommand("new-plugin", "begin a plugin: a folder with source, test, example and build file");
+  new_plugin->add_option("name", plugin_options.name, "its name, and that of its element: small letters, digits, _")->required();
+  new_plugin->add_option("--kind", plugin_options.kind, "what it is: constraint, force, instrument or exercise")->required();
+  new_plugin->add_option("--folder", plugin_options.folder, "folder to be made (default: the name)");
+  new_plugin->callback([&] { run = [&](const auto& c) { return insula::cmd_new_plugin(c, plugin_options); }; });
 
   insula::DevicesOptions devices_options;
   auto* devices = app.add_subcommand("devices", "what there is for the hands, what is missing and how to get it");
@@ -158,6 +168,9 @@ int main(int argc, char** argv) {
   engine->add_flag("--unthrottled", engine_options.unthrottled, "as fast as the machine can, for measurements");
   engine->add_option("--threads", engine_options.threads, "threads; 0 takes the machine's");
   engine->add_option("--seed", engine_options.seed, "what complications are drawn from; 0: the scene's own seed");
+  engine->add_flag("--still", engine_options.still, "to be looked at: time never runs");
+  engine->add_flag("--standby", engine_options.standby, "load, say so, and wait for SIGUSR1 before speaking on the bus");
+  engine->add_option("--notice", engine_options.notice, "file whose text viewers are shown while it is not empty");
   engine->add_flag("--keep-bundle", engine_options.keep_bundle, "leave the bundle where it is at the end, for a replay");
   engine->callback([&] { run = [&](const auto& c) { return insula::cmd_engine(c, engine_options); }; });
 
@@ -181,10 +194,29 @@ int main(int argc, char** argv) {
   play->add_option("--seed", play_options.seed, "what complications are drawn from; 0: the scene's own seed");
   play->add_option("--keep-bundle", play_options.keep_bundle, "folder in which the viewer's scene bundles stay, for a replay of a log");
   play->add_flag("--no-browser", no_browser, "open no browser");
+  bool no_reload = false;
+  play->add_flag("--no-reload", no_reload, "do not load the scene again when one of its files is saved");
   play->callback([&] {
     play_options.browser = !no_browser;
+    play_options.reload = !no_reload;
     for (const auto& path : plugin_paths) play_options.engine_arguments.insert(play_options.engine_arguments.end(), {"--plugin-path", path.string()});
     run = [&](const auto& c) { return insula::cmd_play(c, play_options); };
+  });
+
+  bool list_only = false;
+  auto* view = app.add_subcommand("view", "a scene to be looked at: what is in it by name, with units and sizes; time stands still");
+  view->add_option("scene", play_options.scene, "scene file")->required();
+  view->add_flag("--list", list_only, "print what is in it and end");
+  view->add_option("--port", play_options.port, "port of the viewer; following ones are tried when it is busy")->capture_default_str();
+  view->add_option("--listen", play_options.listen, "address of the viewer; 0.0.0.0 lets other machines watch")->capture_default_str();
+  view->add_option("--duration", play_options.duration_s, "end after so many seconds; 0: never")->check(CLI::NonNegativeNumber);
+  view->add_flag("--no-browser", no_browser, "open no browser");
+  view->callback([&] {
+    play_options.browser = !no_browser;
+    play_options.view = true;
+    play_options.motion = "none";
+    for (const auto& path : plugin_paths) play_options.engine_arguments.insert(play_options.engine_arguments.end(), {"--plugin-path", path.string()});
+    run = [&](const auto& c) { return list_only ? insula::cmd_view_list(c, play_options.scene) : insula::cmd_play(c, play_options); };
   });
 
   try {

@@ -21,11 +21,16 @@ struct PlayOptions {
   double duration_s = 0;              ///< 0: until Ctrl-C
   std::uint64_t seed = 0;             ///< of the complications; 0: the scene's
   std::filesystem::path keep_bundle;          ///< the viewer's bundles go into this folder and stay; empty: they go with the session
+  bool reload = true;                         ///< load the scene again when one of its files is saved
+  bool view = false;                          ///< the scene to be looked at: time stands still, no hands (insula view)
   std::vector<std::string> engine_arguments;  ///< passed on before the subcommand, such as --plugin-path
 };
 
 /// Checks the scene first: nothing starts when it has errors (status 2).
 int cmd_play(const CommandContext& context, const PlayOptions& options);
+
+/// What is in a scene, by name, with units and sizes. Status 0, or 2 when the scene has errors.
+int cmd_view_list(const CommandContext& context, const std::filesystem::path& scene);
 
 /// The scene that is played when none is named: beside the program's installation or sources, or below the current folder.
 std::filesystem::path default_scene();

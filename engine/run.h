@@ -69,7 +69,11 @@ struct EngineOptions {
   int threads = 0;
   std::uint64_t seed = 0;
   bool keep_bundle = false;       ///< for a replay
+  bool still = false;             ///< to be looked at (insula view)
+  bool standby = false;           ///< loads, prints standby_line, and waits for SIGUSR1 before it speaks on the bus
+  std::filesystem::path notice;   ///< file whose text viewers are shown while it is not empty
 };
+inline constexpr const char* standby_line = "insula engine stands by";
 /// The engine process of a session; talks over the bus of LCM_DEFAULT_URL until SIGINT or SIGTERM.
 int cmd_engine(const CommandContext& context, const EngineOptions& options);
 

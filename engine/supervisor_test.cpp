@@ -170,5 +170,77 @@ TEST_F(SupervisorTest, InterruptEndsAllAndGivesStatusZero) {
   }
 }
 
+TEST_F(SupervisorTest, AnOfferTakesOverWhenItIsReady) {
+  Supervisor* running = nullptr;
+  bool offered = false, taken = false;
+  settings_.look = [&] {
+    if (offered || count("worker started") == 0) return;
+    offered = true;
+    Supervisor::Offer offer;
+    // The old one must be gone before the new one is told to go.
+    offer.command = {"/bin/sh", "-c", "trap 'cat " + file("old") + " > " + file("seen") + "; exit 0' USR1; echo ready; while :; do sleep 0.01; done"};
+    offer.ready_line = "ready";
+    offer.taken = [&] { taken = true; };
+    running->offer("worker", std::move(offer));
+  };
+  settings_.look_s = 0.01;
+  Supervisor s = make();
+  running = &s;
+  ChildSpec old = shell("worker", "trap 'sleep 0.1; echo gone > " + file("old") + "; exit 0' TERM; while :; do sleep 0.01; done");
+  old.ends_session = true;
+  s.add(std::move(old));
+  EXPECT_EQ(s.run(), 0);
+  EXPECT_TRUE(taken);
+  EXPECT_EQ(count("worker taken over"), 1);
+  EXPECT_EQ(content(file("seen")), "gone\n");
+}
+
+TEST_F(SupervisorTest, ARefusedOfferLeavesTheOldOneRunning) {
+  settings_.duration_s = 1;
+  settings_.look_s = 0.01;
+  Supervisor* running = nullptr;
+  bool offered = false;
+  std::vector<std::string> said;
+  ChildExit how;
+  settings_.look = [&] {
+    if (offered || count("[worker] up") == 0) return;
+    offered = true;
+    Supervisor::Offer offer;
+    offer.command = {"/bin/sh", "-c", "echo 'a.xml:1:2: error: wrong'; exit 2"};
+    offer.ready_line = "ready";
+    offer.refused = [&](const auto& lines, const ChildExit& exit) { said = lines; how = exit; };
+    running->offer("worker", std::move(offer));
+  };
+  Supervisor s = make();
+  running = &s;
+  s.add(shell("worker", "echo up; exec sleep 1000"));
+  EXPECT_EQ(s.run(), 0);
+  EXPECT_EQ(said, std::vector<std::string>{"a.xml:1:2: error: wrong"});
+  EXPECT_EQ(how.status, 2);
+  EXPECT_EQ(count("worker started"), 1);
+}
+
+TEST_F(SupervisorTest, OneThatWaitsForAnOfferDoesNotEndTheSession) {
+  settings_.look_s = 0.01;
+  Supervisor* running = nullptr;
+  bool offered = false;
+  settings_.look = [&] {
+    if (offered || count("it waits for the next save") == 0) return;
+    offered = true;
+    Supervisor::Offer offer;
+    offer.command = {"/bin/sh", "-c", "trap 'exit 0' USR1; echo ready; while :; do sleep 0.01; done"};
+    offer.ready_line = "ready";
+    running->offer("worker", std::move(offer));
+  };
+  Supervisor s = make();
+  running = &s;
+  ChildSpec child = shell("worker", "[ -e " + file("once") + " ] && exit 2; touch " + file("once") + "; exit 1");
+  child.waits_for_offer = child.ends_session = true;
+  s.add(std::move(child));
+  EXPECT_EQ(s.run(), 0);
+  EXPECT_TRUE(offered);
+  EXPECT_EQ(count("worker taken over"), 1);
+}
+
 }  // namespace
 }  // namespace insula

@@ -35,6 +35,7 @@ class Checker:
             for file in (source / folder).rglob("*.cpp"):
                 self.tests.update(DECLARED.findall(file.read_text(encoding="utf-8", errors="replace")))
         script = (source / "insula").read_text(encoding="utf-8")
+        self.script_usage = [l for l in script.split("\n") if l.startswith("  ./insula ")]
         self.script_words = set(re.findall(r"^  ([a-z|\-]+)\)", script, re.M))
         self.script_words = {w for words in self.script_words for w in words.split("|")}
 
@@ -129,7 +130,8 @@ class Checker:
             return
         self.that(command in self.subcommands(), where, "insula has no command %s" % command)
         if command in self.subcommands():
-            self.options(where, words, self.help_of(self.insula, command))
+            own = "\n".join(l for l in self.script_usage if program == "./insula" and l.startswith("  ./insula %s " % command))
+            self.options(where, words, self.help_of(self.insula, command) + own)
 
     # --- scenes -----------------------------------------------------------------------------------------------------
     def project(self, folder):

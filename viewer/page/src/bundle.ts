@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Reads the scene bundle (docs/scene-bundle.md): scene.json and its binary files, sizes and indices checked.
 
+import { parse_inventory, type InventoryItem } from './inventory';
+
 export interface SurfaceData {
   id: string;
   material: string;
@@ -109,6 +111,8 @@ export interface Bundle {
   commands: CommandGroup[];
   strands: { count: number; radius_m: number };
   exercise: ExerciseData | null;
+  /** What is in it by name, of a scene that is looked at; null of one that is played. */
+  inventory: InventoryItem[] | null;
 }
 
 type Json = Record<string, any>;
@@ -166,6 +170,7 @@ export async function load_bundle(base: string, session: string): Promise<Bundle
     static: await Promise.all(((json.static ?? []) as Json[]).map(surface)),
     strands: { count: json.strands?.count ?? 0, radius_m: json.strands?.radius_m ?? 0.00015 },
     exercise: json.exercise ?? null,
+    inventory: json.inventory ? parse_inventory(await (await get(base + plain(json.inventory))).json()) : null,
   };
 }
 

@@ -13,6 +13,7 @@ import './hud/hud.css';
 import { type HudState, parse_hud } from './hud/state';
 import { time_left_text } from './hud/timers';
 import type { HapticStatus, SceneInfo } from './lcm';
+import { Highlight, middle } from './inventory';
 import { Lens } from './lens';
 import { make_environment } from './materials/environment';
 import { parse_options } from './options';
@@ -47,6 +48,8 @@ const scene = new THREE.Scene();
 const depths = { eye: new THREE.Color(0x38100c), infrared: new THREE.Color(0x020303) };
 scene.background = depths.eye;
 scene.environmentIntensity = 0.42;
+const highlight = new Highlight();
+scene.add(highlight.root);
 const scope = new Microscope();
 scope.add_to(scene);
 const lens = new Lens(renderer);
@@ -106,6 +109,11 @@ const hud = new Hud(hud_root, {
   choose_hand: (h) => hands.set_active(h),
   release_hand: (h) => hands.release(h),
   button: (b, on) => hands.press(b, on),
+  choose_item: (item) => {
+    highlight.show(item);
+    const at = item && middle(item);
+    if (at) scope.focus(at);
+  },
 }, options.role, options.quality ?? '');
 const headset: Headset = new Headset(renderer, () => modes.set_stereo('off'));
 const modes: ViewModes = new ViewModes(options, headset, {
@@ -223,7 +231,7 @@ function banner(now: number): string {
   if (load_error) return `Scene data cannot be read\n${load_error}`;
   if (!world || info.state === 'loading') return 'Loading the scene …';
   if (playback.frames === 0 || now - frame_ms > 2500) return info.state === 'ended' ? 'The session has ended' : 'No pictures from the engine: waiting for it to come back …';
-  return playback.latest?.paused ? 'Paused' : '';
+  return playback.latest?.paused && !world.bundle.inventory ? 'Paused' : '';
 }
 
 function make_renderer(): THREE.WebGLRenderer {
@@ -277,6 +285,7 @@ function draw(now: number): void {
   const alive = now - frame_ms < Math.max(1000, 3000 * dt);
   hud.show_link(link.open ? (alive ? 'connected' : 'gateway only') : 'disconnected', link.open && alive);
   hud.show_banner(banner(now));
+  hud.show_notice(info && info.state !== 'error' ? info.message : '');
   hud.tick(now);
 }
 

@@ -2,6 +2,7 @@
 // The head-up display around the field: exercise on the left, hands on the right, machine room at the bottom.
 import type { Bundle } from '../bundle';
 import { tool_in_hand } from '../hand_tool';
+import type { InventoryItem } from '../inventory';
 import type { HapticStatus, RenderFrame, SimEvent } from '../lcm';
 import type { Role } from '../options';
 import { ClipChooser } from './clips';
@@ -10,6 +11,8 @@ import { el, set_text } from './dom';
 import { HapticPanel } from './haptic';
 import { make_help } from './help';
 import { InstructorPanel } from './instructor';
+import { InventoryPanel } from './inventory_panel';
+import { NoticePanel } from './notice';
 import { Progress } from './progress';
 import { clock_text, force_bar, force_level, type HudState } from './state';
 import { Toasts } from './toasts';
@@ -22,6 +25,8 @@ export interface HudActions extends ViewActions {
   choose_hand(hand: number): void;
   release_hand(hand: number): void;
   button(button: 1 | 2, on: boolean): void;
+  /** Of a scene that is looked at: highlights it; null: nothing. */
+  choose_item(item: InventoryItem | null): void;
 }
 
 class HandPanel {
@@ -66,25 +71,28 @@ export class Hud {
   private readonly progress = new Progress();
   private readonly toasts = new Toasts();
   private readonly instructor: InstructorPanel | null;
+  private readonly inventory: InventoryPanel;
+  private readonly notice = new NoticePanel();
   private readonly message = el('div', { class: 'message', role: 'status' });
   private readonly banner = el('div', { class: 'banner', role: 'status' });
   private readonly link = el('span', { class: 'link' });
   private readonly machine = el('span', { class: 'machine' });
   private readonly haptic = new HapticPanel();
-  private readonly pause = el('button', {}, 'Pause');
+  private readonly pause = el('button', { class: 'timed' }, 'Pause');
   private readonly hands: HandPanel[];
   private bundle: Bundle | null = null;
   private state: HudState | null = null;
   private message_until = 0;
 
-  constructor(root: HTMLElement, actions: HudActions, private readonly role: Role, quality: string) {
+  constructor(private readonly root: HTMLElement, actions: HudActions, private readonly role: Role, quality: string) {
     const may_drive = role === 'trainee', may_command = role !== 'observer';
     this.hands = [0, 1].map((h) => new HandPanel(h, () => actions.choose_hand(h), () => actions.release_hand(h), (c) => actions.run(c), may_drive));
     this.clips = new ClipChooser((c) => actions.run(c), may_drive);
     this.view = new ViewMenu(actions);
+    this.inventory = new InventoryPanel((item) => actions.choose_item(item));
     this.instructor = role === 'instructor' ? new InstructorPanel((c) => actions.run(c)) : null;
     this.pause.onclick = () => { actions.run({ command: this.pause.dataset.paused ? 'resume' : 'pause', argument: '' }); this.pause.blur(); };
-    const reset = el('button', {}, 'Reset');
+    const reset = el('button', { class: 'timed' }, 'Reset');
     reset.onclick = () => { actions.run({ command: 'reset', argument: '' }); reset.blur(); };
     const help = el('button', { title: 'H' }, 'Help');
     help.onclick = () => { this.toggle_help(); help.blur(); };
@@ -100,13 +108,14 @@ export class Hud {
     root.dataset.role = role;
     root.append(
       el('div', { class: 'column left' },
-        el('section', { class: 'panel' }, el('header', {}, this.title, this.clock), this.text, this.goals, this.strands, this.progress.root, this.faults),
+        this.inventory.root,
+        el('section', { class: 'panel exercise' }, el('header', {}, this.title, this.clock), this.text, this.goals, this.strands, this.progress.root, this.faults),
         this.vitals.root),
       el('div', { class: 'column right' },
         el('section', { class: 'panel' }, ...this.hands.map((h) => h.root), this.clips.root, controls, this.view.root, ...(may_drive ? [touch] : [])),
         ...(this.instructor ? [this.instructor.root] : [])),
       el('footer', {}, el('span', { class: 'warn' }, 'For training only. Not for patient care.'), this.haptic.root, this.machine, this.link),
-      this.message, this.banner, this.toasts.root, this.help);
+      this.message, this.banner, this.toasts.root, this.notice.root, this.help);
   }
 
   toggle_help(): void { this.help.hidden = !this.help.hidden; }
@@ -116,6 +125,8 @@ export class Hud {
 
   show_scene(bundle: Bundle): void {
     this.bundle = bundle;
+    this.root.dataset.look = bundle.inventory ? 'view' : 'play';
+    this.inventory.show_scene(bundle.title, bundle.inventory);
     set_text(this.title, bundle.exercise?.title || bundle.title || 'Insula');
     set_text(this.text, bundle.exercise?.text || bundle.description);
     this.state = null;
@@ -125,7 +136,7 @@ export class Hud {
     this.instructor?.show_scene(bundle);
     this.hands.forEach((h, k) => h.tray.show_scene(bundle.hands.find((x) => x.hand === (k === 0 ? 'left' : 'right')) ?? null));
     const vessels = bundle.bodies.some((b) => b.surfaces.some((s) => s.vertex_region !== null));
-    this.view.show_dye(vessels, this.role !== 'observer' && find_command(bundle.commands, 'inject_dye') !== null);
+    this.view.show_dye(vessels, !bundle.inventory && this.role !== 'observer' && find_command(bundle.commands, 'inject_dye') !== null);
     const e = bundle.exercise;
     this.show_exercise((e?.goals ?? []).map((g) => ({ ...g, done: false })), [], null, null);
   }
@@ -180,6 +191,9 @@ export class Hud {
     set_text(this.banner, text);
     this.banner.hidden = text === '';
   }
+
+  /** What the loader says of a saved scene; empty: nothing. */
+  show_notice(message: string): void { this.notice.show(message); }
 
   say(text: string, kind: string, now_ms: number): void {
     set_text(this.message, text);

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A session follows its scene's files: when one is saved, a second engine loads the scene beside the first and takes over when it
+// is ready. When it has errors the first goes on, and viewers are shown what is wrong.
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/file_watch.h"
+#include "engine/supervisor.h"
+
+namespace insula {
+
+class SceneReload {
+ public:
+  using Print = std::function<void(std::string_view)>;
+  /// command: the engine with --standby. notice: where the engines look for the text that viewers are shown; empty: nowhere.
+  SceneReload(std::filesystem::path scene, std::vector<std::string> command, std::filesystem::path notice, Print print);
+  /// To be called again and again.
+  void look(Supervisor& supervisor);
+
+ private:
+  void refused(const std::vector<std::string>& lines, const ChildExit& exit);
+  void tell_viewers(const std::string& text);
+
+  std::filesystem::path scene_, notice_;
+  std::vector<std::string> command_;
+  Print print_;
+  FileWatch watch_;
+  FileWatch::Clock::time_point next_{};
+};
+
+}  // namespace insula
