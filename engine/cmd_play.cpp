@@ -121,7 +121,7 @@ ChildSpec engine_child(const PlayOptions& options, const fs::path& program, cons
   engine.name = "engine";
   engine.ends_session = true;
   engine.command = {program.string()};
-  engine.command.insert(engine.command.end(), options.engine_arguments.begin(), options.engine_arguments.end());
+  for (const fs::path& path : options.plugin_paths) engine.command.insert(engine.command.end(), {"--plugin-path", path.string()});
   engine.command.insert(engine.command.end(), {"engine", options.scene.string()});
   if (!options.motion.empty()) engine.command.insert(engine.command.end(), {"--motion", options.motion});
   if (options.seed != 0) engine.command.insert(engine.command.end(), {"--seed", std::to_string(options.seed)});
@@ -195,7 +195,7 @@ int cmd_play(const CommandContext& context, const PlayOptions& given) {
   const ChildSpec engine = engine_child(options, program, bundles.path());
   std::vector<std::string> standby = engine.command;
   standby.emplace_back("--standby");
-  SceneReload reload(options.scene, std::move(standby), bundles.path().empty() ? fs::path() : bundles.path() / "notice.txt", print);
+  SceneReload reload(options.scene, options.plugin_paths, std::move(standby), bundles.path().empty() ? fs::path() : bundles.path() / "notice.txt", print);
   SupervisorSettings settings;
   settings.duration_s = options.duration_s;
   Supervisor* running = nullptr;

@@ -199,7 +199,7 @@ int main(int argc, char** argv) {
   play->callback([&] {
     play_options.browser = !no_browser;
     play_options.reload = !no_reload;
-    for (const auto& path : plugin_paths) play_options.engine_arguments.insert(play_options.engine_arguments.end(), {"--plugin-path", path.string()});
+    play_options.plugin_paths = plugin_paths;
     run = [&](const auto& c) { return insula::cmd_play(c, play_options); };
   });
 
@@ -215,7 +215,7 @@ int main(int argc, char** argv) {
     play_options.browser = !no_browser;
     play_options.view = true;
     play_options.motion = "none";
-    for (const auto& path : plugin_paths) play_options.engine_arguments.insert(play_options.engine_arguments.end(), {"--plugin-path", path.string()});
+    play_options.plugin_paths = plugin_paths;
     run = [&](const auto& c) { return list_only ? insula::cmd_view_list(c, play_options.scene) : insula::cmd_play(c, play_options); };
   });
 

@@ -23,7 +23,7 @@ struct PlayOptions {
   std::filesystem::path keep_bundle;          ///< the viewer's bundles go into this folder and stay; empty: they go with the session
   bool reload = true;                         ///< load the scene again when one of its files is saved
   bool view = false;                          ///< the scene to be looked at: time stands still, no hands (insula view)
-  std::vector<std::string> engine_arguments;  ///< passed on before the subcommand, such as --plugin-path
+  std::vector<std::filesystem::path> plugin_paths;  ///< of shared plugins, or folders of them, for the engine
 };
 
 /// Checks the scene first: nothing starts when it has errors (status 2).

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "core/registry/plugin_loader.h"
 #include "engine/notice.h"
 #include "engine/run.h"
 #include "engine/scene_files.h"
@@ -17,24 +18,38 @@ constexpr std::chrono::milliseconds quiet{300}, every{100};
 
 }  // namespace
 
-SceneReload::SceneReload(std::filesystem::path scene, std::vector<std::string> command, std::filesystem::path notice, Print print)
-    : scene_(std::move(scene)), notice_(std::move(notice)), command_(std::move(command)), print_(std::move(print)), watch_(quiet) {
-  watch_.set(scene_files(scene_));
+SceneReload::SceneReload(std::filesystem::path scene, std::vector<std::filesystem::path> plugins, std::vector<std::string> command,
+                         std::filesystem::path notice, Print print)
+    : scene_(std::move(scene)), notice_(std::move(notice)), plugins_(std::move(plugins)), command_(std::move(command)), print_(std::move(print)), watch_(quiet) {
+  watch_.set(files());
+}
+
+std::vector<std::filesystem::path> SceneReload::files() const {
+  std::vector<std::filesystem::path> out = scene_files(scene_);
+  std::error_code ec;
+  for (const auto& path : plugins_) {
+    const auto libraries = std::filesystem::is_directory(path, ec) ? plugin_files(path) : std::vector{path};
+    out.insert(out.end(), libraries.begin(), libraries.end());
+  }
+  return out;
 }
 
 void SceneReload::look(Supervisor& supervisor) {
   const auto now = FileWatch::Clock::now();
   if (now < next_) return;
   next_ = now + every;
-  if (!watch_.saved(now)) return;
-  watch_.set(scene_files(scene_));  // what it names may have changed
-  print_("insula: the scene was saved; loading it");
+  if (watch_.saved(now)) {
+    waiting_ = true;
+    watch_.set(files());  // what it names may have changed
+    print_("insula: the scene was saved; loading it");
+  }
+  if (!waiting_) return;
   Supervisor::Offer offer;
   offer.command = command_;
   offer.ready_line = standby_line;
   offer.refused = [this](const auto& lines, const ChildExit& exit) { refused(lines, exit); };
   offer.taken = [this] { tell_viewers(""); };
-  supervisor.offer("engine", std::move(offer));
+  waiting_ = !supervisor.offer("engine", std::move(offer));
 }
 
 void SceneReload::refused(const std::vector<std::string>& lines, const ChildExit& exit) {

@@ -16,20 +16,24 @@ namespace insula {
 class SceneReload {
  public:
   using Print = std::function<void(std::string_view)>;
-  /// command: the engine with --standby. notice: where the engines look for the text that viewers are shown; empty: nowhere.
-  SceneReload(std::filesystem::path scene, std::vector<std::string> command, std::filesystem::path notice, Print print);
+  /// command: the engine with --standby. plugins: libraries, or folders of them, that are watched too. notice: where the engines
+  /// look for the text that viewers are shown; empty: nowhere.
+  SceneReload(std::filesystem::path scene, std::vector<std::filesystem::path> plugins, std::vector<std::string> command, std::filesystem::path notice, Print print);
   /// To be called again and again.
   void look(Supervisor& supervisor);
 
  private:
+  std::vector<std::filesystem::path> files() const;
   void refused(const std::vector<std::string>& lines, const ChildExit& exit);
   void tell_viewers(const std::string& text);
 
   std::filesystem::path scene_, notice_;
+  std::vector<std::filesystem::path> plugins_;
   std::vector<std::string> command_;
   Print print_;
   FileWatch watch_;
   FileWatch::Clock::time_point next_{};
+  bool waiting_ = false;  ///< for an offer to be made
 };
 
 }  // namespace insula

@@ -45,17 +45,19 @@ void Supervisor::add(ChildSpec spec) {
   children_.push_back(std::move(child));
 }
 
-void Supervisor::offer(const std::string& name, Offer given) {
+bool Supervisor::offer(const std::string& name, Offer given) {
   for (auto& child : children_) {
     if (child->spec.name != name || ending_) continue;
-    if (child->next && child->next->asked) continue;  // on its way in: the caller offers again when it is there
+    if (child->next && child->next->asked) return false;
     child->next = std::make_unique<Child::Next>();
     child->next->offer = std::move(given);
     if (const std::string error = child->next->process.start(child->next->offer.command); !error.empty()) {
       print_(fmt::format("insula: cannot start {}: {}", name, error));
       child->next.reset();
     }
+    break;
   }
+  return true;
 }
 
 void Supervisor::collect_offer(Child& child) {

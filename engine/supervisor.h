@@ -48,7 +48,8 @@ class Supervisor {
     std::function<void(const std::vector<std::string>& lines, const ChildExit& exit)> refused;
     std::function<void()> taken;
   };
-  void offer(const std::string& name, Offer offer);
+  /// False while an earlier offer is just taking over: to be made again a moment later.
+  bool offer(const std::string& name, Offer offer);
   /// Until SIGINT, SIGTERM or SIGHUP, the duration, or a child that ends the session. Status 0; 2 when a child says that
   /// its input is bad (status 2); 1 when a program cannot be run or refuses its arguments (status 100 and more).
   /// Must be called on the main thread: children die with the thread that started them.
