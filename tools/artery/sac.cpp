@@ -162,9 +162,11 @@ void sac_beyond(Vessel& v, const NeckPlane& given) {
     v.region[std::size_t(i)] = near ? neck_region : sac_region;
     if (near) ring.push_back(i);
   }
+  double reach = 0;  // a branch that runs along in the plane is no neck
+  for (const int i : ring) reach = std::max(reach, (m.vertices[std::size_t(i)] - loop.centre).norm() + neck_half_width);
   for (std::size_t k = 0; k < ring.size(); ++k)
     for (const int n : next[std::size_t(ring[k])])
-      if (v.region[std::size_t(n)] < neck_region && height(m.vertices[std::size_t(n)], plane) > -neck_half_width)
+      if (v.region[std::size_t(n)] < neck_region && height(m.vertices[std::size_t(n)], plane) > -neck_half_width && (m.vertices[std::size_t(n)] - loop.centre).norm() < reach)
         v.region[std::size_t(n)] = neck_region, ring.push_back(n);
   v.neck = Neck{loop.centre, plane.normal, 2 * std::sqrt(loop.area / std::numbers::pi)};
   add_sac_line(v, dome);

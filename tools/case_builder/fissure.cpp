@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Reads the part through the loader of scenes, so that the builder sees what the exercises will see.
+#include "tools/case_builder/fissure.h"
+
+#include <fmt/format.h>
+
+#include "core/base/input_error.h"
+#include "core/mechanics/instrument.h"
+#include "core/mechanics/soft_body.h"
+#include "core/mechanics/surface.h"
+#include "core/registry/registry.h"
+#include "core/sim/simulation.h"
+
+namespace insula::case_builder {
+namespace {
+
+TriMesh in_mm(TriMesh m) {
+  for (Vec3& p : m.vertices) p *= 1000;
+  return m;
+}
+
+}  // namespace
+
+Fissure read_fissure(const std::filesystem::path& project, const std::filesystem::path& lobes) {
+  Registry registry;
+  register_builtin(registry);
+  std::string given;
+  if (!lobes.empty()) given = fmt::format(R"(<variable name="lobes" value="{}"/>)", lobes.lexically_relative(project / "scenes/parts").generic_string());
+  const auto loaded = load_simulation_text("<scene>" + given + R"(<include file="../parts/retracted_fissure.xml"/></scene>)", project / "scenes/cases/placing.xml", registry, 1);
+  if (!loaded.simulation) throw InputError("the fissure cannot be read:\n" + loaded.diagnostics.format());
+  Fissure out;
+  for (Surface* s : loaded.simulation->surfaces()) {
+    if (s->body().id == "insula") out.insula = in_mm(s->rest());
+    const auto* soft = dynamic_cast<const SoftBody*>(&s->body());
+    if (!soft) continue;
+    Lobe lobe;
+    lobe.name = soft->id;
+    lobe.tets = soft->rest();
+    for (Vec3& p : lobe.tets.nodes) p *= 1000;
+    lobe.held = soft->held();
+    lobe.surface = in_mm(s->rest());
+    for (const MaterialPoint& p : s->points()) lobe.riders.push_back({p.count, p.node, p.weight, 1000 * p.local});
+    out.lobes.push_back(std::move(lobe));
+  }
+  for (const Instrument* tool : loaded.simulation->instruments())
+    for (const ToolPart& part : tool->tool().parts) {
+      const int first = int(out.retractors.vertices.size());
+      for (const Vec3& p : part.mesh.vertices) out.retractors.vertices.push_back(1000 * tool->home_pose().apply(p));
+      for (const auto& t : part.mesh.triangles) out.retractors.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    }
+  if (out.lobes.size() != 2 || out.insula.triangles.empty() || out.retractors.triangles.empty()) throw InputError("the part of the fissure lacks a lobe, the insula or a retractor");
+  return out;
+}
+
+}  // namespace insula::case_builder
