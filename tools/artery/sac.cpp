@@ -83,21 +83,21 @@ bool holds_a_cap(const Surface& s, const std::vector<int>& set) {
   return false;
 }
 
-/// The line from the nearest vessel through the neck to the dome; its radius is that of equal sections.
+/// The line from just before the neck to the dome; its radius is that of equal sections. It does not begin in the vessel: sections there
+/// are wider than any of the sac, and flow is judged by those up to the widest.
 void add_sac_line(Vessel& v, const std::vector<int>& sac) {
   const TriMesh& m = v.wall.mesh;
   const Vec3 centre = v.neck->centre, normal = v.neck->normal;
-  Vec3 dome = centre, from = centre;
+  Vec3 dome = centre;
   double top = -1e300, least = 1e300;
   for (const int i : sac) {
     const double h = (m.vertices[std::size_t(i)] - centre).dot(normal);
     if (h > top) top = h, dome = m.vertices[std::size_t(i)];
   }
   std::string start = "neck";
-  for (const NamedCurve& c : v.centrelines)
-    for (const Vec3& p : c.curve.points)
-      if ((p - centre).norm() < least) least = (p - centre).norm(), from = p, start = c.name;
-  Curve line = resampled(Curve{{from, centre, dome}, {0, 0, 0}}, std::max(0.05 * top, 1e-6));
+  for (const NamedCurve& c : v.centrelines)  // the nearest fork; without one the network joins it to the nearest vessel
+    if (c.to.starts_with("bifurcation") && (c.curve.points.back() - centre).norm() < least) least = (c.curve.points.back() - centre).norm(), start = c.to;
+  Curve line = resampled(Curve{{centre - 0.25 * normal, centre, dome}, {0, 0, 0}}, std::max(0.05 * top, 1e-6));
   for (std::size_t k = 0; k < line.size(); ++k) {
     const bool below = (line.points[k] - centre).dot(normal) < 0;
     const double section = below ? v.neck->diameter : section_diameter(m, line.points[k], normal, 3 * v.neck->diameter);

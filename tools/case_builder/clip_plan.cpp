@@ -88,13 +88,13 @@ ClipPlan plan_clip(const artery::Vessel& v, const std::vector<ClipShape>& clips,
       const Vec3 outward = Eigen::AngleAxisd(angle * degree, neck.normal) * facing;
       const NeckSize size = neck_size(v, outward);
       // Closed, the neck's wall lies double: it is half its perimeter wide.
-      const double needed = 0.5 * size.perimeter + past, lift = o.lift.value_or(-0.25 * neck.diameter);
+      const double needed = 0.5 * size.perimeter + past, lift = o.lift.value_or(-0.5 - 0.08 * neck.diameter);
       const double slide = o.slide.value_or(std::max(0.0, needed - 0.5 * clip.blade - 0.25 * size.perimeter + 0.7));
       for (const double side : {1.0, -1.0}) {
         const Vec3 closing = side * neck.normal.cross(outward);
         const ApplierPose pose = applier_pose(clip, neck.centre + lift * neck.normal - slide * outward, -outward, closing);
         const double off = std::acos(std::clamp(pose.shaft.dot(to_surgeon), -1.0, 1.0)) / degree;
-        const double cost = std::pow(off / 25, 2) + std::pow(angle / 60, 2) + 1.2 * std::max(0.0, needed - clip.blade) + 0.35 * std::max(0.0, clip.blade - needed - 1) +
+        const double cost = std::pow(off / 12, 2) + std::pow(angle / 60, 2) + 1.2 * std::max(0.0, needed - clip.blade) + 0.35 * std::max(0.0, clip.blade - needed - 1) +
                             1.5 * std::max(0.0, 0.75 * size.across - 0.6 * clip.opening);
         if (cost < least) least = cost, best = {clip, pose, needed, off, lift, slide, angle};
       }
