@@ -4,9 +4,11 @@
 
 #include <functional>
 #include <iostream>
+#include <string_view>
 
 #include "core/registry/plugin_loader.h"
 #include "core/registry/registry.h"
+#include "engine/case_command.h"
 #include "engine/commands.h"
 #include "engine/play.h"
 #include "engine/run.h"
@@ -186,6 +188,10 @@ int main(int argc, char** argv) {
     for (const auto& path : plugin_paths) play_options.engine_arguments.insert(play_options.engine_arguments.end(), {"--plugin-path", path.string()});
     run = [&](const auto& c) { return insula::cmd_play(c, play_options); };
   });
+
+  // It reads what follows itself.
+  if (argc > 1 && std::string_view(argv[1]) == "case") return insula::cmd_case({argv + 2, argv + argc}, std::cerr);
+  app.add_subcommand("case", "training cases from surfaces and scans (see docs/making-a-case.md)");
 
   try {
     app.parse(argc, argv);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 
 #include "core/base/input_error.h"
@@ -58,7 +59,7 @@ TriMesh evened(const TriMesh& mesh) {
 /// The connected set that is the vessel: the largest, or the one nearest to the seed.
 Mask vessel_part(const Grid& grid, const Mask& mask, const Options& o, std::vector<Note>& notes) {
   Mask left = mask, best;
-  std::size_t whole = 0, largest = 0, parts = 0;
+  std::size_t whole = 0, parts = 0;
   double least = 1e300;
   for (const unsigned char c : mask) whole += c;
   std::size_t rest = whole, kept = 0;
@@ -76,16 +77,60 @@ Mask vessel_part(const Grid& grid, const Mask& mask, const Options& o, std::vect
       }
     }
     if (size == 0) break;
-    if (parts++ == 0) largest = size;
+    ++parts;
     rest -= size;
     if (best.empty() || (o.seed && near < least)) best = part, kept = size, least = near;
     if (!o.seed) break;
   }
-  (void)largest;
   if (kept < whole)
     notes.push_back({Note::Kind::repair, fmt::format("The vessel's voxels are in several pieces; the {} one was kept, {:.1f} % of them.", o.seed ? "wanted" : "largest", 100.0 * double(kept) / double(whole)),
                      kept * 2 < whole ? "If this is another one than meant, name a point in it with --seed." : ""});
   return best;
+}
+
+/// Where the vessel meets the faces of the volume: the middle of each patch there, drawn in by `inset`, and the way out.
+std::vector<Plane> border_ends(const mesh_tool::NiftiVolume& v, const std::function<bool(float)>& is_vessel, const TriMesh& surface, double inset) {
+  std::vector<Plane> out;
+  for (int face = 0; face < 6; ++face) {
+    const int axis = face / 2, u = (axis + 1) % 3, w = (axis + 2) % 3, layer = face % 2 ? v.size[std::size_t(axis)] - 1 : 0;
+    const int nu = v.size[std::size_t(u)], nw = v.size[std::size_t(w)];
+    std::vector<char> open(std::size_t(nu) * std::size_t(nw));
+    for (int j = 0; j < nw; ++j)
+      for (int i = 0; i < nu; ++i) {
+        int at[3];
+        at[axis] = layer, at[u] = i, at[w] = j;
+        open[std::size_t(j) * std::size_t(nu) + std::size_t(i)] = is_vessel(v.at(at[0], at[1], at[2]));
+      }
+    for (int start = 0; start < nu * nw; ++start) {
+      if (!open[std::size_t(start)]) continue;
+      std::vector<int> patch{start};
+      open[std::size_t(start)] = 0;
+      double si = 0, sj = 0;
+      for (std::size_t k = 0; k < patch.size(); ++k) {
+        const int i = patch[k] % nu, j = patch[k] / nu;
+        si += i, sj += j;
+        for (const auto& [a, b] : {std::pair(i - 1, j), std::pair(i + 1, j), std::pair(i, j - 1), std::pair(i, j + 1)})
+          if (a >= 0 && a < nu && b >= 0 && b < nw && open[std::size_t(b) * std::size_t(nu) + std::size_t(a)]) open[std::size_t(b) * std::size_t(nu) + std::size_t(a)] = 0, patch.push_back(b * nu + a);
+      }
+      if (patch.size() < 9) continue;
+      double at[3];
+      at[axis] = layer, at[u] = si / double(patch.size()), at[w] = sj / double(patch.size());
+      Vec3 p, way;
+      for (int r = 0; r < 3; ++r) {
+        p[r] = v.to_world[std::size_t(4 * r + 3)];
+        for (int a = 0; a < 3; ++a) p[r] += v.to_world[std::size_t(4 * r + a)] * at[a];
+        way[r] = (face % 2 ? 1 : -1) * v.to_world[std::size_t(4 * r + axis)];
+      }
+      way.normalize();
+      p -= inset * way;
+      // A speck that was left out also meets the border: only ends of the surface that was kept count.
+      double near = 1e300;
+      for (const Vec3& q : surface.vertices) near = std::min(near, (q - p).norm());
+      const double wide = std::sqrt(double(patch.size()) / 3.14159) * inset;
+      if (near < 1.5 * wide + inset) out.push_back({p.x(), p.y(), p.z(), way.x(), way.y(), way.z()});
+    }
+  }
+  return out;
 }
 
 std::string labels_there(const mesh_tool::NiftiVolume& v) {
@@ -101,7 +146,7 @@ std::string labels_there(const mesh_tool::NiftiVolume& v) {
 
 }  // namespace
 
-TriMesh surface_of_volume(const std::filesystem::path& file, const mesh_tool::NiftiVolume& v, const Options& o, std::vector<Note>& notes) {
+TriMesh surface_of_volume(const std::filesystem::path& file, const mesh_tool::NiftiVolume& v, const Options& o, std::vector<Note>& notes, std::vector<Plane>& ends) {
   double voxel[3];
   for (std::size_t a = 0; a < 3; ++a) voxel[a] = std::sqrt(v.to_world[a] * v.to_world[a] + v.to_world[4 + a] * v.to_world[4 + a] + v.to_world[8 + a] * v.to_world[8 + a]);
   const double fine = std::min({voxel[0], voxel[1], voxel[2]}), coarse = std::max({voxel[0], voxel[1], voxel[2]});
@@ -169,7 +214,10 @@ TriMesh surface_of_volume(const std::filesystem::path& file, const mesh_tool::Ni
   Field inside = mesh_tool::signed_distance(grid, solid);
   mesh_tool::smooth(grid, inside, std::max(0.01, o.smoothing * coarse));
   notes.push_back({Note::Kind::fact, fmt::format("The surface was taken from voxels of {:.3g} mm, its border smoothed over {:.2g} mm.", fine, o.smoothing * coarse), ""});
-  return evened(zero_set(grid, inside));
+  TriMesh out = evened(zero_set(grid, inside));
+  ends = border_ends(v, is_vessel, out, 1.2 * coarse);
+  if (!ends.empty()) notes.push_back({Note::Kind::repair, fmt::format("The vessel leaves the volume at {} place{}; it was cut straight there.", ends.size(), ends.size() == 1 ? "" : "s"), ""});
+  return out;
 }
 
 TriMesh rebuilt(const TriMesh& m, double spacing) {

@@ -194,16 +194,20 @@ Intake take_in(const fs::path& input, const Options& o, Progress& progress) {
   TriMesh m;
   progress.step("reading " + input.filename().string());
   const bool volume = is_volume_input(input);
+  Options with_ends = o;
+  with_ends.cuts.clear();
   if (volume) {
-    m = read_volume_surface(input, o, notes);
+    m = read_volume_surface(input, o, notes, with_ends.cuts);
+    with_ends.cuts.insert(with_ends.cuts.end(), o.cuts.begin(), o.cuts.end());
   } else {
+    with_ends.cuts = o.cuts;
     if (o.label || o.threshold) fail(input, "is a surface; --label and --threshold are for volumes");
     m = read_surface_mm(input, o, notes);
   }
   progress.step("mending the surface");
   Intake out;
   try {
-    out = mended(std::move(m), input.filename().string(), o, std::move(notes));
+    out = mended(std::move(m), input.filename().string(), with_ends, std::move(notes));
   } catch (const InputError&) {
     throw;
   } catch (const std::runtime_error& e) {

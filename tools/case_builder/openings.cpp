@@ -14,7 +14,7 @@
 namespace insula::case_builder {
 namespace {
 
-constexpr double round_enough = 0.35;  // 4 pi area / perimeter^2 of a border that is an end of a vessel
+constexpr double round_enough = 0.6;   // 4 pi area / perimeter^2 of a border that is an end of a vessel: an ellipse of 1 to 3
 constexpr double flat_enough = 0.35;   // farthest from its plane, in radii
 constexpr double small_hole = 0.3;     // of the widest border's radius: filled
 
@@ -24,6 +24,21 @@ struct Border {
   double radius = 0, perimeter = 0, deviation = 0, roundness = 0;
   bool end = false;
 };
+
+/// Of the border without its teeth: what was cut along triangles or voxels is longer than it is round.
+double roundness(const TriMesh& m, const std::vector<int>& loop) {
+  std::vector<Vec3> p;
+  for (const int v : loop) p.push_back(m.vertices[std::size_t(v)]);
+  const std::size_t n = p.size();
+  for (int round = 0; round < 12; ++round) {
+    const std::vector<Vec3> old = p;
+    for (std::size_t k = 0; k < n; ++k) p[k] = 0.25 * old[(k + n - 1) % n] + 0.5 * old[k] + 0.25 * old[(k + 1) % n];
+  }
+  Vec3 twice = Vec3::Zero();
+  double perimeter = 0;
+  for (std::size_t k = 0; k < n; ++k) twice += (p[k] - p[0]).cross(p[(k + 1) % n] - p[0]), perimeter += (p[(k + 1) % n] - p[k]).norm();
+  return 4 * std::numbers::pi * 0.5 * twice.norm() / std::max(perimeter * perimeter, 1e-300);
+}
 
 Border measured(const TriMesh& m, std::vector<int> loop) {
   Border b;
@@ -40,7 +55,7 @@ Border measured(const TriMesh& m, std::vector<int> loop) {
   if (size > 0) b.normal = twice.normalized();
   for (const int v : b.loop) b.deviation = std::max(b.deviation, std::abs((m.vertices[std::size_t(v)] - b.centre).dot(b.normal)));
   b.radius = std::sqrt(size / std::numbers::pi);
-  b.roundness = 4 * std::numbers::pi * size / std::max(b.perimeter * b.perimeter, 1e-300);
+  b.roundness = roundness(m, b.loop);
   return b;
 }
 

@@ -15,7 +15,7 @@ struct Unit {
 
 /// The usual unit that brings `size` nearest (in ratio) to `usual`, besides the one in use.
 std::string advice(double size, double mm_per_unit, double usual, double least, double most) {
-  static constexpr Unit units[] = {{1000, "m"}, {10, "cm"}, {1, "mm"}, {0.001, "um"}, {25.4, "inch"}};
+  static constexpr Unit units[] = {{1000, "m"}, {10, "cm"}, {1, "mm"}, {0.001, "um"}};
   const Unit* best = nullptr;
   double nearest = 1e300;
   for (const Unit& u : units) {
