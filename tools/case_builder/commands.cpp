@@ -62,6 +62,7 @@ void wall_options(CLI::App* app, Options& o) {
 
 void place_options(CLI::App* app, Options& o) {
   app->add_flag("--in-place", o.in_place, "the input lies in the frame of the lobes (MNI, mm) already");
+  app->add_option("--lobes", o.lobes, "folder with lobes of your own, named as in meshes/lobes, in its frame (MNI, mm)")->check(CLI::ExistingDirectory);
   app->add_option("--gap", o.gap, "room between wall and lobes, mm")->check(CLI::Range(0.1, 2.0));
   app->add_option_function<double>("--spin", [&o](double d) { o.spin = d, o.keep_spin = true; }, "turn about the sac's axis, degrees (default: the one with the most room)")->check(CLI::Range(-360.0, 360.0));
 }
@@ -96,7 +97,7 @@ int parse(const std::vector<std::string>& arguments, Line& line, Options& o, std
   try {
     app.parse(reversed);
   } catch (const CLI::CallForHelp&) {
-    std::fputs((app.get_subcommands().empty() ? app.help() : app.get_subcommands()[0]->help()).c_str(), out);
+    std::fputs((app.get_subcommands().empty() ? app.help("", CLI::AppFormatMode::All) : app.get_subcommands()[0]->help()).c_str(), out);
     return -1;
   } catch (const CLI::ParseError& e) {
     std::fprintf(err, "error: %s\nRun with --help for more.\n", e.what());

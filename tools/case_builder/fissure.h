@@ -30,7 +30,8 @@ struct Fissure {
   TriMesh retractors;              ///< as they stand at home
 };
 
-/// `lobes`: a folder as meshes/lobes; empty: that. Throws InputError.
+/// `lobes`: a folder with frontal.msh, frontal_surface.ply, temporal..., insula_surface.ply in the frame of meshes/lobes, mm; empty: those.
+/// Throws InputError.
 Fissure read_fissure(const std::filesystem::path& project, const std::filesystem::path& lobes);
 
 }  // namespace insula::case_builder

@@ -15,7 +15,7 @@ namespace insula::case_builder {
 namespace {
 
 constexpr double round_enough = 0.6;   // 4 pi area / perimeter^2 of a border that is an end of a vessel: an ellipse of 1 to 3
-constexpr double flat_enough = 0.35;   // farthest from its plane, in radii
+constexpr double flat_enough = 0.5;    // farthest from its plane, in radii
 constexpr double small_hole = 0.3;     // of the widest border's radius: filled
 
 struct Border {

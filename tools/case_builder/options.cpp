@@ -42,7 +42,7 @@ Json to_json(const Options& o) {
   j["gap"] = o.gap;
   j["spin"] = o.spin;
   j["keep_spin"] = o.keep_spin;
-  j["brain"] = o.brain;
+  j["lobes"] = o.lobes;
   j["clip"] = o.clip;
   put(j, "lift", o.lift);
   put(j, "slide", o.slide);
@@ -72,7 +72,7 @@ Options options_from_json(const Json& j) {
     take(j, "gap", o.gap);
     take(j, "spin", o.spin);
     take(j, "keep_spin", o.keep_spin);
-    take(j, "brain", o.brain);
+    take(j, "lobes", o.lobes);
     take(j, "clip", o.clip);
     take(j, "lift", o.lift);
     take(j, "slide", o.slide);

@@ -38,7 +38,7 @@ struct Options {
   double gap = 0.4;                  ///< between the wall and the lobes
   double spin = 0;                   ///< turns the vessel about the sac's axis, degrees, after which the place is looked for nearby
   bool keep_spin = false;            ///< no other spin is tried
-  std::vector<std::string> brain;    ///< frontal=FILE, temporal=FILE, insula=FILE; or labels=FILE with NAME=LABEL
+  std::string lobes;                 ///< folder with lobes as those of meshes/lobes; empty: those
   // scenes
   std::string clip;                  ///< of meshes/clips; empty: chosen for the neck
   std::optional<double> lift, slide, turn;  ///< of the clip's blades at the neck, mm, mm, degrees; none: chosen

@@ -6,10 +6,13 @@
 #include <itkGDCMSeriesFileNames.h>
 #include <itkMetaImageIO.h>
 #include <itkNiftiImageIO.h>
+#include <zlib.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 
 #include "core/base/text.h"
 #include "core/model/file_bytes.h"
@@ -149,6 +152,37 @@ mesh_tool::NiftiVolume read_series(const fs::path& folder) {
   return v;
 }
 
+/// ITK takes a NIfTI file that ends early for one that ends in zeros.
+void check_length(const fs::path& file) {
+  const gzFile in = gzopen(file.c_str(), "rb");  // plain files too
+  if (!in) fail(file, "cannot be opened");
+  std::vector<unsigned char> buffer(std::size_t(1) << 20);
+  unsigned char head[352] = {};
+  double length = 0;
+  bool sound = true;
+  for (int n; (n = gzread(in, buffer.data(), unsigned(buffer.size()))) != 0;) {
+    if (n < 0) {
+      sound = false;
+      break;
+    }
+    if (length == 0) std::memcpy(head, buffer.data(), std::min<std::size_t>(sizeof head, std::size_t(n)));
+    length += n;
+  }
+  sound = gzclose(in) == Z_OK && sound;
+  if (!sound) fail(file, "ends early, or its compression is damaged");
+  if (length < 352) fail(file, "ends early: it is shorter than a NIfTI header");
+  const bool swap = head[40] == 0 && head[41] != 0;  // the number of dimensions, 1 to 7
+  const auto whole = [&](std::size_t at) { return std::int16_t(swap ? head[at] << 8 | head[at + 1] : head[at + 1] << 8 | head[at]); };
+  std::uint32_t bits = 0;
+  for (std::size_t k = 0; k < 4; ++k) bits |= std::uint32_t(head[108 + (swap ? 3 - k : k)]) << (8 * k);
+  float offset;
+  std::memcpy(&offset, &bits, 4);
+  double wanted = whole(72) / 8.0;
+  for (int d = 1; d <= whole(40) && d < 8; ++d) wanted *= std::max<int>(1, whole(std::size_t(40 + 2 * d)));
+  if (std::memcmp(head + 344, "n+1", 3) == 0 && length < double(offset) + wanted)
+    fail(file, "ends early: its header announces " + std::to_string(std::int64_t(wanted)) + " bytes of voxels, and " + std::to_string(std::int64_t(length - double(offset))) + " are there");
+}
+
 }  // namespace
 
 mesh_tool::NiftiVolume read_volume(const fs::path& path) {
@@ -159,6 +193,7 @@ mesh_tool::NiftiVolume read_volume(const fs::path& path) {
     if (!fs::exists(path)) fail(path, "does not exist");
     if (ends_with(name, ".dcm")) return read_series(path.parent_path().empty() ? fs::path(".") : path.parent_path());
     if (ends_with(name, ".mha") || ends_with(name, ".mhd")) return read_file(path, *itk::MetaImageIO::New());
+    check_length(path);
     return read_file(path, *itk::NiftiImageIO::New());
   } catch (const InputError&) {
     throw;
