@@ -193,10 +193,11 @@ foreach(f ${test_lists})
   get_filename_component(d ${f} DIRECTORY)
   add_subdirectory(${d})
 endforeach()
-# The artery generator is quick to compile and is built wherever CGAL is; the slow tools only when asked for.
+# The artery generator and the case builder are quick to compile and are built wherever CGAL is; the slow tools only when asked for.
 find_package(CGAL QUIET)
 if(CGAL_FOUND)
   add_subdirectory(tools/artery)
+  add_subdirectory(tools/case_builder)
 endif()
 if(INSULA_BUILD_TOOLS)
   add_subdirectory(tools)

@@ -4,9 +4,11 @@
 
 #include <functional>
 #include <iostream>
+#include <string_view>
 
 #include "core/registry/plugin_loader.h"
 #include "core/registry/registry.h"
+#include "engine/case_command.h"
 #include "engine/commands.h"
 #include "engine/new_plugin.h"
 #include "engine/play.h"
@@ -218,6 +220,10 @@ int main(int argc, char** argv) {
     play_options.plugin_paths = plugin_paths;
     run = [&](const auto& c) { return list_only ? insula::cmd_view_list(c, play_options.scene) : insula::cmd_play(c, play_options); };
   });
+
+  // It reads what follows itself.
+  if (argc > 1 && std::string_view(argv[1]) == "case") return insula::cmd_case({argv + 2, argv + argc}, std::cerr);
+  app.add_subcommand("case", "training cases from surfaces and scans (see docs/making-a-case.md)");
 
   try {
     app.parse(argc, argv);

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which part of a real vessel is the sac: what bulges out of all centrelines, or what lies beyond a plane.
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "import_parts.h"
+
+namespace insula::artery {
+namespace {
+
+constexpr double least_sac_share = 0.03;  // of the surface's vertices
+constexpr double neck_half_width = 0.45;  // mm, to either side of the neck's plane
+constexpr double least_sac_vertices = 12;
+
+double height(const Vec3& p, const NeckPlane& plane) { return (p - plane.centre).dot(plane.normal); }
+
+/// The closed line in which a plane cuts the border of a connected set of vertices: its centre and area.
+struct Loop {
+  Vec3 centre = Vec3::Zero();
+  double area = 0;
+};
+
+/// The vertices beyond a plane, in connected pieces.
+std::vector<std::vector<int>> pieces_beyond(const TriMesh& m, const std::vector<std::vector<int>>& next, const NeckPlane& plane) {
+  std::vector<char> open(m.vertices.size());
+  for (std::size_t i = 0; i < open.size(); ++i) open[i] = height(m.vertices[i], plane) > 0;
+  std::vector<std::vector<int>> out;
+  for (std::size_t start = 0; start < open.size(); ++start) {
+    if (!open[start]) continue;
+    open[start] = 0;
+    auto& set = out.emplace_back(std::vector<int>{int(start)});
+    for (std::size_t i = 0; i < set.size(); ++i)
+      for (const int n : next[std::size_t(set[i])])
+        if (open[std::size_t(n)]) open[std::size_t(n)] = 0, set.push_back(n);
+  }
+  return out;
+}
+
+/// Where edges leave the set through the plane, in order of their angle about the middle: right for a loop that is star-shaped.
+Loop loop_of(const TriMesh& m, const std::vector<std::vector<int>>& next, const std::vector<int>& set, const NeckPlane& plane) {
+  std::vector<Vec3> points;
+  Loop out;
+  for (const int i : set)
+    for (const int n : next[std::size_t(i)]) {
+      const double a = height(m.vertices[std::size_t(i)], plane), b = height(m.vertices[std::size_t(n)], plane);
+      if (b > 0) continue;
+      points.push_back(m.vertices[std::size_t(i)] + a / (a - b) * (m.vertices[std::size_t(n)] - m.vertices[std::size_t(i)]));
+      out.centre += points.back();
+    }
+  if (points.size() < 3) return {};
+  out.centre /= double(points.size());
+  const Vec3 u = plane.normal.unitOrthogonal(), w = plane.normal.cross(u);
+  std::sort(points.begin(), points.end(), [&](const Vec3& a, const Vec3& b) {
+    const Vec3 x = a - out.centre, y = b - out.centre;
+    return std::atan2(x.dot(w), x.dot(u)) < std::atan2(y.dot(w), y.dot(u));
+  });
+  for (std::size_t k = 0; k < points.size(); ++k)
+    out.area += 0.5 * (points[k] - out.centre).cross(points[(k + 1) % points.size()] - out.centre).dot(plane.normal);
+  return out;
+}
+
+/// The piece beyond the plane that the loop nearest to its centre belongs to.
+std::vector<int> dome_beyond(const TriMesh& m, const std::vector<std::vector<int>>& next, const NeckPlane& plane, Loop& loop) {
+  std::vector<int> best;
+  double least = 1e300;
+  for (auto& set : pieces_beyond(m, next, plane)) {
+    const Loop l = loop_of(m, next, set, plane);
+    const double d = (l.centre - plane.centre).norm();
+    if (l.area > 0 && d < least) least = d, best = std::move(set), loop = l;
+  }
+  return best;
+}
+
+bool holds_a_cap(const Surface& s, const std::vector<int>& set) {
+  std::vector<char> in(s.mesh.vertices.size());
+  for (const int i : set) in[std::size_t(i)] = 1;
+  for (std::size_t t = 0; t < s.patch.size(); ++t)
+    if (s.patch[t] >= 0)
+      for (const int i : s.mesh.triangles[t])
+        if (in[std::size_t(i)]) return true;
+  return false;
+}
+
+/// The line from just before the neck to the dome; its radius is that of equal sections. It does not begin in the vessel: sections there
+/// are wider than any of the sac, and flow is judged by those up to the widest.
+void add_sac_line(Vessel& v, const std::vector<int>& sac) {
+  const TriMesh& m = v.wall.mesh;
+  const Vec3 centre = v.neck->centre, normal = v.neck->normal;
+  Vec3 dome = centre;
+  double top = -1e300, least = 1e300;
+  for (const int i : sac) {
+    const double h = (m.vertices[std::size_t(i)] - centre).dot(normal);
+    if (h > top) top = h, dome = m.vertices[std::size_t(i)];
+  }
+  std::string start = "neck";
+  for (const NamedCurve& c : v.centrelines)  // the nearest fork; without one the network joins it to the nearest vessel
+    if (c.to.starts_with("bifurcation") && (c.curve.points.back() - centre).norm() < least) least = (c.curve.points.back() - centre).norm(), start = c.to;
+  Curve line = resampled(Curve{{centre - 0.25 * normal, centre, dome}, {0, 0, 0}}, std::max(0.05 * top, 1e-6));
+  for (std::size_t k = 0; k < line.size(); ++k) {
+    const bool below = (line.points[k] - centre).dot(normal) < 0;
+    const double section = below ? v.neck->diameter : section_diameter(m, line.points[k], normal, 3 * v.neck->diameter);
+    line.radius[k] = 0.5 * std::max(section, 0.15 * v.neck->diameter);  // the line ends in the wall, where the section is none
+  }
+  v.centrelines.push_back({"sac", "sac", start, "dome", line});
+}
+
+}  // namespace
+
+void find_sac(Vessel& v, std::vector<char> bulging) {
+  const TriMesh& m = v.wall.mesh;
+  const auto next = neighbours(m);
+  std::vector<int> sac;
+  for (std::size_t start = 0; start < bulging.size(); ++start) {
+    if (!bulging[start]) continue;
+    std::vector<int> set{int(start)};
+    bulging[start] = 0;
+    for (std::size_t i = 0; i < set.size(); ++i)
+      for (const int n : next[std::size_t(set[i])])
+        if (bulging[std::size_t(n)]) bulging[std::size_t(n)] = 0, set.push_back(n);
+    if (set.size() > sac.size()) sac = set;
+  }
+  if (double(sac.size()) < least_sac_share * double(m.vertices.size())) return;
+  const int sac_region = int(v.regions.size()) + 1, neck_region = sac_region - 1;
+  v.regions.insert(v.regions.end(), {"neck", "sac"});
+  for (const int i : sac) v.region[std::size_t(i)] = sac_region;
+  std::vector<int> rim;
+  for (const int i : sac)
+    if (std::any_of(next[std::size_t(i)].begin(), next[std::size_t(i)].end(), [&](int n) { return v.region[std::size_t(n)] < neck_region; })) rim.push_back(i);
+  Vec3 centre = Vec3::Zero(), middle = Vec3::Zero();
+  for (const int i : rim) centre += m.vertices[std::size_t(i)] / double(rim.size());
+  for (const int i : sac) middle += m.vertices[std::size_t(i)] / double(sac.size());
+  Mat3 spread = Mat3::Zero();
+  for (const int i : rim) spread += (m.vertices[std::size_t(i)] - centre) * (m.vertices[std::size_t(i)] - centre).transpose();
+  Vec3 normal = Eigen::SelfAdjointEigenSolver<Mat3>(spread).eigenvectors().col(0);
+  if (normal.dot(middle - centre) < 0) normal = -normal;
+  for (const int i : rim) v.region[std::size_t(i)] = neck_region;
+  const double diameter = section_diameter(m, centre, normal, 1e300);
+  double mean = 0;
+  for (const int i : rim) mean += 2 * (m.vertices[std::size_t(i)] - centre).norm() / double(rim.size());
+  v.neck = Neck{centre, normal, diameter > 0 && diameter < 1.5 * mean ? diameter : mean};
+  add_sac_line(v, sac);
+}
+
+void sac_beyond(Vessel& v, const NeckPlane& given) {
+  const TriMesh& m = v.wall.mesh;
+  const auto next = neighbours(m);
+  NeckPlane plane{given.centre, given.normal.normalized()};
+  Loop loop;
+  const std::vector<int> dome = dome_beyond(m, next, plane, loop);
+  if (double(dome.size()) < least_sac_vertices) throw std::runtime_error("the neck's plane cuts off no dome: nothing of the wall lies beyond it");
+  if (holds_a_cap(v.wall, dome))
+    throw std::runtime_error("the neck's plane parts no dome from the vessel: an opening lies on its dome side; turn the plane, or move it towards the dome");
+  const int neck_region = int(v.regions.size()), sac_region = neck_region + 1;
+  v.regions.insert(v.regions.end(), {"neck", "sac"});
+  std::vector<int> ring;  // grows from the dome's side of the plane to the other
+  for (const int i : dome) {
+    const auto& around = next[std::size_t(i)];
+    const bool border = std::any_of(around.begin(), around.end(), [&](int n) { return height(m.vertices[std::size_t(n)], plane) <= 0; });
+    const bool near = border || height(m.vertices[std::size_t(i)], plane) <= neck_half_width;
+    v.region[std::size_t(i)] = near ? neck_region : sac_region;
+    if (near) ring.push_back(i);
+  }
+  double reach = 0;  // a branch that runs along in the plane is no neck
+  for (const int i : ring) reach = std::max(reach, (m.vertices[std::size_t(i)] - loop.centre).norm() + neck_half_width);
+  for (std::size_t k = 0; k < ring.size(); ++k)
+    for (const int n : next[std::size_t(ring[k])])
+      if (v.region[std::size_t(n)] < neck_region && height(m.vertices[std::size_t(n)], plane) > -neck_half_width && (m.vertices[std::size_t(n)] - loop.centre).norm() < reach)
+        v.region[std::size_t(n)] = neck_region, ring.push_back(n);
+  v.neck = Neck{loop.centre, plane.normal, 2 * std::sqrt(loop.area / std::numbers::pi)};
+  add_sac_line(v, dome);
+}
+
+NeckPlane narrowest_neck(const Vessel& v) {
+  const TriMesh& m = v.wall.mesh;
+  const auto next = neighbours(m);
+  const NeckPlane first{v.neck->centre, v.neck->normal};
+  double top = 0;
+  for (const Vec3& p : v.centrelines.back().curve.points) top = std::max(top, height(p, first));
+  const auto cost = [&](const NeckPlane& plane, double up) {
+    Loop loop;
+    const std::vector<int> dome = dome_beyond(m, next, plane, loop);
+    if (double(dome.size()) < least_sac_vertices || holds_a_cap(v.wall, dome)) return 1e300;
+    return loop.area * (1 + 0.5 * std::abs(up) / top);  // every dome is narrower at its top: going there costs
+  };
+  struct State {
+    double up, tilt_a, tilt_b;
+  } best{0, 0, 0};
+  const Vec3 u = first.normal.unitOrthogonal(), w = first.normal.cross(u);
+  const auto plane_of = [&](const State& s) {
+    const Vec3 n = (first.normal + std::tan(s.tilt_a) * u + std::tan(s.tilt_b) * w).normalized();
+    return NeckPlane{first.centre + s.up * first.normal, n};
+  };
+  double least = 1e300;
+  for (double up = -0.15; up < 0.5; up += 0.05)  // the plane of what bulges may still touch a branch
+    for (double a = -0.4; a < 0.5; a += 0.2)
+      for (double b = -0.4; b < 0.5; b += 0.2)
+        if (const double c = cost(plane_of({up * top, a, b}), up * top); c < least) least = c, best = {up * top, a, b};
+  if (least > 1e299) throw std::runtime_error("no plane near the border of what bulges parts a dome from the vessel; give the neck's plane");
+  for (const double step : {1.0, 0.5, 0.25})  // pattern search
+    for (bool moved = true; moved;) {
+      moved = false;
+      for (const State d : {State{0.1 * top * step, 0, 0}, {-0.1 * top * step, 0, 0}, {0, 0.12 * step, 0}, {0, -0.12 * step, 0}, {0, 0, 0.12 * step}, {0, 0, -0.12 * step}}) {
+        const State s{best.up + d.up, best.tilt_a + d.tilt_a, best.tilt_b + d.tilt_b};
+        if (s.up < -0.15 * top || s.up > 0.45 * top || std::hypot(s.tilt_a, s.tilt_b) > 0.6) continue;
+        const double c = cost(plane_of(s), s.up);
+        if (c < least) least = c, best = s, moved = true;
+      }
+    }
+  return plane_of(best);
+}
+
+void add_bleb(Vessel& v, double radius) {
+  const auto sac = std::find(v.regions.begin(), v.regions.end(), "sac");
+  if (sac == v.regions.end() || std::find(v.regions.begin(), v.regions.end(), "bleb") != v.regions.end()) return;
+  const int sac_region = int(sac - v.regions.begin()), ends = int(v.regions.size()) - 1;
+  const Vec3 dome = v.centrelines.back().curve.points.back();
+  v.regions.insert(v.regions.begin() + ends, "bleb");  // the ends stay last
+  for (std::size_t i = 0; i < v.region.size(); ++i) {
+    if (v.region[i] == ends) v.region[i] = ends + 1;
+    if (v.region[i] == sac_region && (v.wall.mesh.vertices[i] - dome).norm() < radius) v.region[i] = ends;
+  }
+  v.bleb = {dome, radius};
+  join_fragments(v);
+}
+
+}  // namespace insula::artery

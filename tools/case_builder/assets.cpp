@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/base/input_error.h"
+#include "tools/case_builder/scenes.h"
+
+namespace insula::case_builder {
+namespace {
+
+void copy_all(const fs::path& from, const fs::path& to) {
+  std::error_code error;
+  fs::create_directories(to.parent_path(), error);
+  fs::copy(from, to, fs::copy_options::recursive | fs::copy_options::overwrite_existing, error);
+  if (error) throw InputError(to.string() + ": cannot be written: " + error.message());
+}
+
+}  // namespace
+
+Assets link_assets(const CaseFolder& folder, const fs::path& project, const std::vector<std::string>& clips) {
+  const fs::path here = fs::weakly_canonical(folder.path), root = fs::weakly_canonical(project);
+  const fs::path inside = here.lexically_relative(root);
+  Assets out;
+  if (!inside.empty() && *inside.begin() != "..") {
+    out.meshes = (root / "meshes").lexically_relative(here).generic_string();
+    out.parts = (root / "scenes/parts").lexically_relative(here).generic_string();
+    out.lobes = (here / "lobes").lexically_relative(root / "scenes/parts").generic_string();
+    return out;
+  }
+  // A scene may name files below the folder that holds "meshes" alone: the case brings all it needs.
+  out = {"meshes", "scenes/parts", "../../lobes", true};
+  for (const char* part : {"fissure.xml", "retracted_fissure.xml"}) copy_all(root / "scenes/parts" / part, here / "scenes/parts" / part);
+  for (const char* tool : {"suction", "dissector", "clip_applier", "retractor"}) copy_all(root / "meshes/instruments" / tool, here / "meshes/instruments" / tool);
+  for (const std::string& clip : clips) copy_all(root / "meshes/clips" / clip, here / "meshes/clips" / clip);
+  copy_all(root / "meshes/window", here / "meshes/window");
+  return out;
+}
+
+}  // namespace insula::case_builder

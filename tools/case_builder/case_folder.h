@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A case as a folder: what each stage writes and the next one reads, with everything worth telling the author.
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/model/mesh.h"
+#include "tools/case_builder/options.h"
+
+namespace insula::case_builder {
+
+namespace fs = std::filesystem;
+
+/// Something found out on the way. A repair says what was changed; a problem says what to do.
+struct Note {
+  enum class Kind { fact, repair, problem };
+  Kind kind = Kind::fact;
+  std::string text, advice;
+};
+Json to_json(const std::vector<Note>& notes);
+std::vector<Note> notes_from_json(const Json& json);
+
+struct CaseFolder {
+  fs::path path;
+  std::string name;
+
+  fs::path intake() const { return path / "intake"; }
+  fs::path wall() const { return path / "wall"; }
+  fs::path artery() const { return path / "artery"; }
+  fs::path lobes() const { return path / "lobes"; }
+  fs::path options_file() const { return path / "case.json"; }
+};
+
+/// Reads case.json; throws InputError when the folder is no case.
+Options read_options(CaseFolder& folder);
+void write_options(const CaseFolder& folder, const Options& options);
+
+/// Whole files; throw InputError with the file's name. Writing makes the folder.
+Json read_json(const fs::path& file);
+void write_json(const fs::path& file, const Json& json);
+void write_text(const fs::path& file, const std::string& text);
+/// Binary PLY, float coordinates, in the mesh's unit.
+void write_ply(const fs::path& file, const TriMesh& mesh, const std::string& comment);
+/// Reads what write_ply has written, triangle for triangle. Throws InputError.
+TriMesh read_ply(const fs::path& file);
+
+/// Rounded so that the last bits of a sum do not show.
+double rounded(double value);
+Json to_json(const Vec3& p);
+Vec3 vec3_from(const Json& json);
+
+}  // namespace insula::case_builder

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Whole cases: a made vessel through all stages, stages done again alone, and both real aneurysms clipped with the motion made for them.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstring>
+
+#include "core/base/input_error.h"
+#include "core/model/file_bytes.h"
+#include "core/registry/registry.h"
+#include "engine/headless.h"
+#include "tools/case_builder/commands.h"
+#include "tools/case_builder/intake.h"
+#include "tools/case_builder/report.h"
+#include "tools/case_builder/scenes.h"
+#include "tools/case_builder/test_shapes.h"
+#include "tools/case_builder/wall.h"
+
+namespace insula::case_builder {
+namespace {
+
+/// The command line without its prints; what went wrong as text.
+int command(const std::vector<std::string>& words, std::string* said = nullptr) {
+  std::FILE *out = std::tmpfile(), *err = std::tmpfile();
+  const int status = run_command(words, out, err);
+  if (said) {
+    std::rewind(err);
+    char buffer[4096];
+    for (std::size_t n; (n = std::fread(buffer, 1, sizeof buffer, err)) > 0;) said->append(buffer, n);
+  }
+  std::fclose(out), std::fclose(err);
+  return status;
+}
+
+std::map<std::string, std::string> files_of(const fs::path& folder) {
+  std::map<std::string, std::string> out;
+  for (const auto& f : fs::recursive_directory_iterator(folder))
+    if (f.is_regular_file() && f.path().filename() != "report.html" && f.path().string().find("/meshes/") == std::string::npos) out[f.path().lexically_relative(folder).string()] = read_file_bytes(f.path());
+  return out;
+}
+
+/// Plays the clipping exercise as `insula run` does, until it is over.
+struct Clipped {
+  bool loaded = false, finite = true;
+  ExerciseState state = ExerciseState::running;
+  std::map<std::string, double> measures;
+  std::map<std::string, int> faults;
+};
+Clipped clip(const fs::path& scene, double longest) {
+  Clipped out;
+  Registry registry;
+  register_builtin(registry);
+  SimulationResult loaded = load_simulation(scene, registry);
+  EXPECT_EQ(loaded.diagnostics.format(), "");
+  if (!loaded.simulation) return out;
+  out.loaded = true;
+  Simulation& s = *loaded.simulation;
+  const Motion motion = load_motion(s.exercise()->motions().front()->file());
+  HeadlessRun run(s, motion);
+  while (s.time() < longest && s.exercise()->log().state() == ExerciseState::running) {
+    run.step();
+    out.finite = out.finite && s.report().finite;
+  }
+  out.state = s.exercise()->log().state();
+  for (const MeasureState& m : s.exercise()->log().measures()) out.measures[m.id] = m.value;
+  for (const FaultState& f : s.exercise()->log().faults()) out.faults[f.id] = f.count;
+  return out;
+}
+
+class RealCase : public testing::TestWithParam<const char*> {};
+
+TEST_P(RealCase, BecomesACaseWhoseNeckTheMotionMadeForItCloses) {
+  const fs::path input = fs::path(INSULA_SOURCE_DIR) / "../shared/anatomy" / GetParam();
+  if (!fs::exists(input)) GTEST_SKIP() << "no anatomy here";
+  const bool volume = input.extension() == ".gz";
+  insula::test::SceneFolder folder;
+  std::vector<std::string> words{"new", "real", input.string(), "--out", (folder.path() / "out").string()};
+  if (volume) words.insert(words.end(), {"--label", "1"});
+  std::string said;
+  ASSERT_EQ(command(words, &said), 0) << said;
+  const CaseFolder made{folder.path() / "out/real", "real"};
+  const Json place = read_json(made.path / "place.json");
+  for (const Json& r : place.at("rooms")) EXPECT_GT(r.at("after_mm").get<double>(), 0.3) << r.at("what");
+  const artery::Vessel v = read_wall(made.artery());
+  ASSERT_TRUE(v.neck);
+  // Sizes as the notes beside the anatomy have them, and sound triangles.
+  EXPECT_NEAR(v.neck->diameter, std::string(GetParam()).starts_with("aneumo") ? 3.1 : 6.6, 0.5);
+  EXPECT_NEAR(v.dome_height, std::string(GetParam()).starts_with("aneumo") ? 4.3 : 6.8, 0.6);
+  EXPECT_GT(artery::quality(v.wall.mesh).min_angle_deg, 20);
+
+  const Clipped c = clip(made.path / "3_clipping.xml", 15);
+  ASSERT_TRUE(c.loaded);
+  EXPECT_TRUE(c.finite);
+  EXPECT_EQ(c.state, ExerciseState::done);
+  EXPECT_LE(c.measures.at("clip_remnant"), 2);
+  EXPECT_LT(c.measures.at("clip_slit"), 1.2);
+  for (const auto& [id, count] : c.faults) EXPECT_EQ(count, 0) << id;
+  for (const auto& [id, value] : c.measures)
+    if (id.starts_with("clip_flow_")) {
+      EXPECT_GT(value, 75) << id;
+    }
+  EXPECT_TRUE(fs::exists(made.path / "report.html"));
+}
+
+#ifdef INSULA_WITH_ITK
+constexpr const char* second = "aneumo_aneux4_label.nii.gz";
+#else
+constexpr const char* second = "aneumo_aneux4_closed.stl";
+#endif
+INSTANTIATE_TEST_SUITE_P(Anatomy, RealCase, testing::Values("dolfin_aneurysm_closed.stl", second), [](const auto& p) { return std::string(p.param).substr(0, 6); });
+
+TEST(MadeCase, GivesTheSameFilesTwiceAndStagesCanBeDoneAgainAlone) {
+  insula::test::SceneFolder folder;
+  folder.write("vessel.stl", test::stl_text(test::open_tube()));
+  const std::string input = (folder.path() / "vessel.stl").string();
+  std::string said;
+  for (const char* out : {"a", "b"}) ASSERT_EQ(command({"new", "tube", input, "--out", (folder.path() / out).string(), "--vertices", "900"}, &said), 0) << said;
+  const CaseFolder made{folder.path() / "a/tube", "tube"};
+  const auto first = files_of(made.path);
+  EXPECT_GT(first.size(), 15u);
+  EXPECT_EQ(first, files_of(folder.path() / "b/tube"));
+
+  // The four exercises load without a warning and step.
+  for (const fs::path& file : exercise_files(made)) {
+    const MeasuredScene m = measure_scene(file, 5);
+    EXPECT_EQ(m.message, "") << file;
+    EXPECT_TRUE(m.finite);
+    EXPECT_GT(m.step_ms, 0);
+  }
+  const std::string report = read_file_bytes(made.path / "report.html");
+  for (const char* part : {"<svg", "worst angle", "dome to neck", "room to the frontal", "closed by flat caps", "a step takes", "3_clipping.xml"}) EXPECT_NE(report.find(part), std::string::npos) << part;
+
+  // A stage again with nothing new changes nothing; with a neck of one's own it moves the neck there and keeps the other choices.
+  ASSERT_EQ(command({"wall", made.path.string()}, &said), 0) << said;
+  ASSERT_EQ(command({"place", made.path.string()}, &said), 0) << said;
+  EXPECT_EQ(first, files_of(made.path));
+  ASSERT_EQ(command({"wall", made.path.string(), "--neck", "0", "0", "2.2", "0", "0", "1"}, &said), 0) << said;
+  const artery::Vessel v = read_wall(made.wall());
+  EXPECT_NEAR(v.neck->centre.z(), 2.2, 0.05);
+  EXPECT_NEAR(v.neck->normal.z(), 1, 1e-6);
+  EXPECT_NEAR(v.neck->diameter, 2 * std::sqrt(2.4 * 2.4 - 1.4 * 1.4), 0.5);  // a section of the ball
+  EXPECT_NEAR(double(v.wall.mesh.vertices.size()), 900, 200);
+  std::string why;
+  EXPECT_EQ(command({"wall", made.path.string(), "--neck", "0", "0", "0", "1", "0", "0"}, &why), 2);
+  EXPECT_NE(why.find("an opening lies on its dome side"), std::string::npos) << why;
+  EXPECT_EQ(command({"place", folder.path().string()}, &why), 2);
+  EXPECT_NE(why.find("is no case"), std::string::npos);
+  EXPECT_EQ(command({"new", "tube", input, "--out", (folder.path() / "a").string()}, &why), 2);
+  EXPECT_NE(why.find("exists already"), std::string::npos);
+  EXPECT_EQ(command({"new", "../tube", input}, &why), 2);
+  EXPECT_EQ(command({"wall"}, &why), 2);
+}
+
+TEST(MadeCase, NeckByTwoPoints) {
+  Progress quiet;
+  std::vector<Note> notes;
+  Options o;
+  o.vertices = 900;
+  const Intake in = mended(test::tube_with_sac(), "tube", o, {});
+  const double z = 2.0, r = std::sqrt(2.4 * 2.4 - 1.6 * 1.6);
+  o.neck_points = {-r, 0, z, r, 0, z};
+  const artery::Vessel v = make_wall(in.surface, o, notes, quiet);
+  ASSERT_TRUE(v.neck);
+  EXPECT_NEAR((v.neck->centre - Vec3(0, 0, z)).norm(), 0, 0.35);
+  EXPECT_GT(v.neck->normal.z(), 0.9);
+  // Openings in the order of their calibre, a sac over the neck, its weak tip on top.
+  EXPECT_GE(in.surface.caps[0].radius, in.surface.caps[1].radius);
+  EXPECT_GT(v.bleb->first.z(), 5);
+}
+
+TEST(MadeCase, VesselWithoutASacIsRefused) {
+  const TriMesh tube = [] {
+    artery::Surface s;
+    s.mesh = artery::extract([](const Vec3& p) { return std::hypot(p.y(), p.z()) - 1.4; }, Vec3(-9.03, -2.01, -2.02), Vec3(9.07, 2.05, 2.1), 0.4);
+    s.patch.assign(s.mesh.triangles.size(), -1);
+    artery::cut_and_close(s, {"a", Vec3(-8, 0, 0), Vec3(-1, 0, 0), 1.4}, 3.0);
+    artery::cut_and_close(s, {"b", Vec3(8, 0, 0), Vec3(1, 0, 0), 1.4}, 3.0);
+    return s.mesh;
+  }();
+  Progress quiet;
+  std::vector<Note> notes;
+  const Intake in = mended(tube, "tube", {}, {});
+  try {
+    make_wall(in.surface, {}, notes, quiet);
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("no sac was found"), std::string::npos) << e.what();
+  }
+}
+
+}  // namespace
+}  // namespace insula::case_builder

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/case_builder/clip_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/base/input_error.h"
+#include "core/model/tool_model.h"
+#include "tools/case_builder/place.h"
+
+namespace insula::case_builder {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180;
+constexpr double past = 1.5;       // mm that the tips go beyond the flattened neck
+
+Vec3 across(const Vec3& a, const Vec3& n) { return (a - a.dot(n) * n).normalized(); }
+
+}  // namespace
+
+std::vector<ClipShape> read_clips(const fs::path& project) {
+  const Json catalogue = read_json(project / "meshes/clips/catalogue.json");
+  std::vector<ClipShape> out;
+  for (const Json& entry : catalogue.contains("clips") ? catalogue["clips"] : catalogue) {
+    const std::string name = entry.at("name");
+    const ToolModel tool = read_tool(project / "meshes/clips" / name / (name + ".urdf"));
+    if (!tool.clip || tool.clip->fenestration) continue;
+    const ClipData& c = *tool.clip;
+    const Vec3 from = 1000 * c.blade_line.front(), to = 1000 * c.blade_line.back();
+    if (std::abs(from.x()) > 0.1 || (to - from).norm() < 0.97e3 * c.blade_length) continue;  // bent clamping lines
+    ClipShape s{name, c.kind, 1000 * c.blade_length, 1000 * c.gap(tool.opening_max), 0.5 * (from + to), (to - from).normalized(), 1000 * c.grip.p};
+    out.push_back(s);
+  }
+  if (out.empty()) throw InputError("meshes/clips holds no clip");
+  return out;
+}
+
+ApplierPose applier_pose(const ClipShape& clip, const Vec3& middle, const Vec3& towards, const Vec3& closing) {
+  const Vec3 inward = across(towards, closing), side = closing.cross(inward);
+  const double c = -clip.inward.z(), s = clip.inward.y();  // the clip's own direction is (0, s, -c)
+  const Vec3 y = s * inward + c * side, z = -c * inward + s * side;
+  const auto turned = [&](const Vec3& v) -> Vec3 { return v.x() * closing + v.y() * y + v.z() * z; };
+  const Vec3 tip = middle - turned(clip.middle);
+  return {tip + turned(clip.grip), closing, z};
+}
+
+NeckSize neck_size(const artery::Vessel& v, const Vec3& along) {
+  const artery::Neck& neck = *v.neck;
+  const Vec3 closing = neck.normal.cross(along);
+  const auto index = [&](const char* name) { return int(std::find(v.regions.begin(), v.regions.end(), name) - v.regions.begin()); };
+  const int n = index("neck"), s = index("sac");
+  const auto of_sac = [&](int i) { return v.region[std::size_t(i)] == n || v.region[std::size_t(i)] == s; };
+  NeckSize out;
+  double low[2] = {1e300, 1e300}, high[2] = {-1e300, -1e300};
+  for (const auto& t : v.wall.mesh.triangles) {
+    if (!of_sac(t[0]) && !of_sac(t[1]) && !of_sac(t[2])) continue;
+    std::vector<Vec3> ends;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 a = v.wall.mesh.vertices[std::size_t(t[k])] - neck.centre, b = v.wall.mesh.vertices[std::size_t(t[(k + 1) % 3])] - neck.centre;
+      const double ha = a.dot(neck.normal), hb = b.dot(neck.normal);
+      if ((ha > 0) != (hb > 0)) ends.push_back(a + ha / (ha - hb) * (b - a));
+    }
+    if (ends.size() != 2) continue;
+    out.perimeter += (ends[1] - ends[0]).norm();
+    for (const Vec3& p : ends) {
+      low[0] = std::min(low[0], p.dot(along)), high[0] = std::max(high[0], p.dot(along));
+      low[1] = std::min(low[1], p.dot(closing)), high[1] = std::max(high[1], p.dot(closing));
+    }
+  }
+  out.along = high[0] - low[0], out.across = high[1] - low[1];
+  return out;
+}
+
+ClipPlan plan_clip(const artery::Vessel& v, const std::vector<ClipShape>& clips, const Options& o, std::vector<Note>& notes) {
+  const artery::Neck& neck = *v.neck;
+  const Vec3 facing = across(to_surgeon, neck.normal);
+  ClipPlan best;
+  double least = 1e300;
+  bool known = false;
+  for (const ClipShape& clip : clips) {
+    if (!o.clip.empty() ? clip.name != o.clip : clip.kind == "temporary" || clip.kind == "mini_temporary") continue;
+    known = true;
+    for (double turn = -60; turn <= 60; turn += 15) {
+      const double angle = o.turn.value_or(turn);
+      const Vec3 outward = Eigen::AngleAxisd(angle * degree, neck.normal) * facing;
+      const NeckSize size = neck_size(v, outward);
+      // Closed, the neck's wall lies double: it is half its perimeter wide.
+      const double needed = 0.5 * size.perimeter + past, lift = o.lift.value_or(-0.5 - 0.08 * neck.diameter);
+      const double slide = o.slide.value_or(std::max(0.0, needed - 0.5 * clip.blade - 0.25 * size.perimeter + 0.7));
+      for (const double side : {1.0, -1.0}) {
+        const Vec3 closing = side * neck.normal.cross(outward);
+        const ApplierPose pose = applier_pose(clip, neck.centre + lift * neck.normal - slide * outward, -outward, closing);
+        const double off = std::acos(std::clamp(pose.shaft.dot(to_surgeon), -1.0, 1.0)) / degree;
+        const double cost = std::pow(off / 12, 2) + std::pow(angle / 60, 2) + 1.2 * std::max(0.0, needed - clip.blade) + 0.35 * std::max(0.0, clip.blade - needed - 1) +
+                            1.5 * std::max(0.0, 0.75 * size.across - 0.6 * clip.opening);
+        if (cost < least) least = cost, best = {clip, pose, needed, off, lift, slide, angle};
+      }
+      if (o.turn) break;
+    }
+  }
+  if (!known) throw InputError("--clip: the library has no clip \"" + o.clip + "\" with a straight clamping line; see meshes/clips/README.md");
+  if (best.clip.blade < best.needed - past)
+    notes.push_back({Note::Kind::problem, fmt::format("The flattened neck is {:.1f} mm wide; the blades of {} reach over {:.1f} mm of it.", best.needed - past, best.clip.name, best.clip.blade),
+                     "Expect a remnant, or a second clip; a longer clip can be chosen with --clip."});
+  if (best.off_view > 50)
+    notes.push_back({Note::Kind::problem, fmt::format("The applier comes {:.0f} degrees off the line of sight.", best.off_view), "Turn the vessel (--spin), or choose another clip (--clip)."});
+  return best;
+}
+
+ApplierPose plan_temporary(const artery::Vessel& v, const ClipShape& clip) {
+  const auto& c = v.centrelines.front().curve;
+  std::size_t near = 0;
+  for (std::size_t k = 0; k < c.size(); ++k)
+    if ((c.points[k] - v.neck->centre).norm() < (c.points[near] - v.neck->centre).norm()) near = k;
+  std::size_t at = near;
+  double way = 0;
+  while (at > 2 && way < 0.5 * v.neck->diameter + 2) way += (c.points[at] - c.points[at - 1]).norm(), --at;
+  const Vec3 along = c.tangent(at), square = across(to_surgeon, along);
+  const Vec3 outward = (0.4 * square + 0.6 * to_surgeon).normalized();
+  return applier_pose(clip, c.points[at] - 1.0 * outward, -outward, along.cross(outward).normalized());
+}
+
+}  // namespace insula::case_builder

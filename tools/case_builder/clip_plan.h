@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which clip fits a neck, where its blades go, and how a hand brings it there. Millimetres, seconds.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "tools/artery/vessel.h"
+#include "tools/case_builder/case_folder.h"
+
+namespace insula::case_builder {
+
+/// A clip of the library as far as planning needs it; its own frame: +x closes, +z to the hinge.
+struct ClipShape {
+  std::string name, kind;
+  double blade = 0, opening = 0;  ///< mm
+  Vec3 middle, inward;            ///< of the blades; unit, from root to tip
+  Vec3 grip;
+};
+/// All clips of meshes/clips with straight clamping lines that lie in the clip's own plane. Throws InputError.
+std::vector<ClipShape> read_clips(const fs::path& project);
+
+/// A pose of the applier that holds a clip.
+struct ApplierPose {
+  Vec3 tip, flat, shaft;          ///< flat: the way in which the blades close (+x); unit
+};
+ApplierPose applier_pose(const ClipShape& clip, const Vec3& middle, const Vec3& inward, const Vec3& closing);
+
+/// The neck in its own plane.
+struct NeckSize {
+  double perimeter = 0;           ///< mm
+  double along = 0, across = 0;   ///< extents along the blades and in the way they close, mm
+};
+NeckSize neck_size(const artery::Vessel& vessel, const Vec3& along);
+
+struct ClipPlan {
+  ClipShape clip;
+  ApplierPose pose;
+  double needed = 0;              ///< length that the flattened neck asks for, mm
+  double off_view = 0;            ///< of the shaft from the line of sight, degrees
+  double lift = 0, slide = 0, turn = 0;
+};
+/// A placed vessel's clip: the options' choices, and the best of the rest. Throws InputError when a wanted clip does not exist.
+ClipPlan plan_clip(const artery::Vessel& vessel, const std::vector<ClipShape>& clips, const Options& options, std::vector<Note>& notes);
+
+/// A temporary clip across the parent, before the neck.
+ApplierPose plan_temporary(const artery::Vessel& vessel, const ClipShape& clip);
+
+}  // namespace insula::case_builder

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/case_builder/commands.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <optional>
+
+#include "core/base/input_error.h"
+#include "tools/case_builder/intake.h"
+#include "tools/case_builder/place.h"
+#include "tools/case_builder/project.h"
+#include "tools/case_builder/report.h"
+#include "tools/case_builder/scenes.h"
+#include "tools/case_builder/wall.h"
+
+namespace insula::case_builder {
+namespace {
+
+constexpr const char* stages[] = {"intake", "wall", "place", "scenes", "report"};
+
+/// What the command line says besides the options of the case itself.
+struct Line {
+  std::string stage, name, input, folder, out;
+  bool on = false;
+};
+
+template <std::size_t N>
+void numbers(CLI::App* app, const std::string& name, std::optional<std::array<double, N>>& to, const std::string& text) {
+  app->add_option_function<std::vector<double>>(name, [&to](const std::vector<double>& v) {
+       std::array<double, N> a;
+       std::copy(v.begin(), v.end(), a.begin());
+       to = a;
+     }, text)->expected(int(N));
+}
+
+void intake_options(CLI::App* app, Options& o) {
+  app->add_option_function<std::string>("--unit", [&o](const std::string& u) { o.unit_mm = u == "m" ? 1000 : u == "cm" ? 10 : u == "um" ? 0.001 : u == "inch" ? 25.4 : 1; },
+                                        "unit of a surface file (default: mm; glTF: m)")->check(CLI::IsMember({"m", "cm", "mm", "um", "inch"}));
+  app->add_option("--unit-mm", o.unit_mm, "the same in millimetres a unit")->check(CLI::Range(1e-9, 1e9));
+  app->add_flag("--any-size", o.any_size, "take sizes that no cerebral artery has");
+  app->add_option("--label", o.label, "volumes: the vessel's label");
+  app->add_option("--threshold", o.threshold, "volumes: grey value from which on it is vessel");
+  app->add_option("--smooth", o.smoothing, "volumes: smoothing of the border, in voxels")->check(CLI::Range(0.0, 5.0));
+  numbers<3>(app, "--seed", o.seed, "a point, mm: the piece nearest to it is the vessel");
+  app->add_flag("--keep-largest", o.keep_largest, "of several pieces take the largest, however large the others are");
+  app->add_option("--rebuild", o.rebuild, "make the surface anew from a grid of this spacing, mm")->check(CLI::Range(0.03, 2.0));
+  app->add_option_function<std::vector<double>>("--cut", [&o](const std::vector<double>& v) {
+       if (v.size() % 6 != 0) throw CLI::ValidationError("--cut", "needs six numbers: a point and the direction of what goes");
+       o.cuts.clear();
+       for (std::size_t k = 0; k < v.size(); k += 6) o.cuts.push_back({v[k], v[k + 1], v[k + 2], v[k + 3], v[k + 4], v[k + 5]});
+     }, "X Y Z NX NY NZ: cut the vessel across at the point, what lies in the direction goes; may be given again")->expected(6, 6 * 32);
+}
+
+void wall_options(CLI::App* app, Options& o) {
+  numbers<6>(app, "--neck", o.neck, "X Y Z NX NY NZ: plane of the neck, the normal towards the dome");
+  numbers<6>(app, "--neck-points", o.neck_points, "two points on opposite sides of the neck, X Y Z X Y Z");
+  numbers<3>(app, "--inlet", o.inlet, "a point near the opening where blood comes in (default: the widest)");
+  app->add_option("--keep", o.keep, "mm of vessel kept along each centreline from the neck; 0: all")->check(CLI::Range(0.0, 200.0));
+  app->add_option("--vertices", o.vertices, "of the wall, about")->check(CLI::Range(400, 6000));
+  app->add_option("--bleb", o.bleb, "radius of the weak spot at the dome, mm; 0: none")->check(CLI::Range(0.0, 4.0));
+}
+
+void place_options(CLI::App* app, Options& o) {
+  app->add_flag("--in-place", o.in_place, "the input lies in the frame of the lobes (MNI, mm) already");
+  app->add_option("--lobes", o.lobes, "folder with lobes of your own, named as in meshes/lobes, in its frame (MNI, mm)")->check(CLI::ExistingDirectory);
+  app->add_option("--gap", o.gap, "room between wall and lobes, mm")->check(CLI::Range(0.1, 2.0));
+  app->add_option_function<double>("--spin", [&o](double d) { o.spin = d, o.keep_spin = true; }, "turn about the sac's axis, degrees (default: the one with the most room)")->check(CLI::Range(-360.0, 360.0));
+}
+
+void scene_options(CLI::App* app, Options& o) {
+  app->add_option("--clip", o.clip, "clip for the neck, of meshes/clips (default: chosen)");
+  app->add_option("--lift", o.lift, "of the blades over the neck's plane, mm")->check(CLI::Range(-10.0, 10.0));
+  app->add_option("--slide", o.slide, "of the blades' middle beyond the neck's, mm")->check(CLI::Range(-15.0, 15.0));
+  app->add_option("--turn", o.turn, "of the blades about the dome's axis from the surgeon's side, degrees")->check(CLI::Range(-180.0, 180.0));
+}
+
+/// 0: parsed; else the exit status, help or complaint already said.
+int parse(const std::vector<std::string>& arguments, Line& line, Options& o, std::FILE* out, std::FILE* err) {
+  CLI::App app{"Makes training cases from patients' vessels. For training only, never for the care of patients.", "insula case"};
+  app.require_subcommand(1);
+  auto* fresh = app.add_subcommand("new", "a case from a surface (STL, OBJ, PLY, glTF, VTP) or a volume (NIfTI, MetaImage, a folder of DICOM)");
+  fresh->add_option("name", line.name, "of the case: letters, digits, _ and -")->required();
+  fresh->add_option("input", line.input, "file, or folder of a DICOM series")->required();
+  fresh->add_option("--out", line.out, "folder that gets the case's folder (default: scenes/cases of the project)");
+  intake_options(fresh, o), wall_options(fresh, o), place_options(fresh, o), scene_options(fresh, o);
+  for (const char* stage : stages) {
+    auto* again = app.add_subcommand(stage, std::string("do the stage ") + stage + " of a case again, from what the one before wrote");
+    again->add_option("folder", line.folder, "of the case")->required();
+    if (stage == std::string("intake")) again->add_option("input", line.input, "file, or folder of a DICOM series")->required(), intake_options(again, o);
+    if (stage == std::string("wall")) wall_options(again, o);
+    if (stage == std::string("place")) place_options(again, o);
+    if (stage == std::string("scenes")) scene_options(again, o);
+    again->add_flag("--on", line.on, "and all stages after it");
+    again->callback([&line, stage] { line.stage = stage; });
+  }
+  std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());
+  try {
+    app.parse(reversed);
+  } catch (const CLI::CallForHelp&) {
+    std::fputs((app.get_subcommands().empty() ? app.help("", CLI::AppFormatMode::All) : app.get_subcommands()[0]->help()).c_str(), out);
+    return -1;
+  } catch (const CLI::ParseError& e) {
+    std::fprintf(err, "error: %s\nRun with --help for more.\n", e.what());
+    return 2;
+  }
+  return 0;
+}
+
+void do_stage(const std::string& stage, const CaseFolder& folder, const Line& line, const fs::path& project, const Options& o, Progress& progress) {
+  if (stage == "intake") run_intake(folder, line.input, o, progress);
+  if (stage == "wall") run_wall(folder, o, progress);
+  if (stage == "place") run_place(folder, project, o, progress);
+  if (stage == "scenes") run_scenes(folder, project, o, progress);
+  if (stage == "report") run_report(folder, progress);
+}
+
+}  // namespace
+
+int run_command(const std::vector<std::string>& arguments, std::FILE* out, std::FILE* err) {
+  Line line;
+  Options o;
+  try {
+    if (const int status = parse(arguments, line, o, out, err)) return status < 0 ? 0 : status;
+    Progress progress(err);
+    CaseFolder folder;
+    if (line.stage.empty()) {
+      if (line.name.empty() || line.name.size() > 64 || !std::all_of(line.name.begin(), line.name.end(), [](unsigned char c) { return c < 128 && (std::isalnum(c) || c == '_' || c == '-'); }))
+        throw InputError("the name of a case has letters, digits, _ and - only, 64 at most: \"" + line.name + "\" has not");
+      const fs::path into = line.out.empty() ? find_project(fs::current_path()) / "scenes/cases" : fs::path(line.out);
+      folder = {into / line.name, line.name};
+      if (fs::exists(folder.path)) throw InputError(folder.path.string() + " exists already; remove it, or do a stage of it again: insula case wall " + folder.path.string());
+    } else {
+      folder.path = line.folder;
+      o = read_options(folder);
+      // A second time over the options as they were: what is given now replaces them.
+      Line again;
+      parse(arguments, again, o, out, err);
+    }
+    const fs::path project = find_project(folder.path);
+    const auto first = line.stage.empty() ? std::begin(stages) : std::find(std::begin(stages), std::end(stages), line.stage);
+    // A new case's folder is there from the first stage that worked.
+    for (auto stage = first; stage != std::end(stages); ++stage) {
+      do_stage(*stage, folder, line, project, o, progress);
+      if (stage == first) write_options(folder, o);
+      if (!line.stage.empty() && !line.on) break;
+    }
+    const fs::path last = folder.path / "report.html";
+    std::fprintf(out, "%s: done; look at %s\n", folder.path.string().c_str(), fs::exists(last) ? last.string().c_str() : folder.path.string().c_str());
+    if (line.stage.empty()) std::fprintf(out, "next: insula check %s && insula play %s\n", (folder.path / "3_clipping.xml").string().c_str(), (folder.path / "3_clipping.xml").string().c_str());
+    return 0;
+  } catch (const InputError& e) {
+    std::fprintf(err, "\nerror: %s\n", e.what());
+    return 2;
+  } catch (const std::exception& e) {
+    std::fprintf(err, "\nerror: %s\n", e.what());
+    return 1;
+  }
+}
+
+}  // namespace insula::case_builder

@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/case_builder/intake.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+#include "core/base/input_error.h"
+#include "core/base/text.h"
+#include "core/model/file_bytes.h"
+#include "tools/artery/import_parts.h"
+#include "tools/case_builder/grid_surface.h"
+#include "tools/case_builder/openings.h"
+#include "tools/case_builder/size_check.h"
+#include "tools/case_builder/topology.h"
+#include "tools/case_builder/volume_input.h"
+#include "tools/case_builder/vtp_reader.h"
+
+namespace insula::case_builder {
+namespace {
+
+constexpr std::size_t most_triangles = 2'000'000;   // what is read at all
+constexpr std::size_t many_triangles = 150'000;     // more are made anew from a grid
+constexpr std::uintmax_t most_bytes = 220'000'000;  // of a surface file: beyond that it has more than those triangles
+
+double extent_of(const TriMesh& m) {
+  Box box;
+  for (const Vec3& p : m.vertices) box.extend(p);
+  return m.vertices.empty() ? 0 : box.diagonal().norm();
+}
+
+std::string place(const Vec3& p) { return fmt::format("({:.1f}, {:.1f}, {:.1f})", p.x(), p.y(), p.z()); }
+const char* ending(int n) { return n == 1 ? "" : "s"; }
+
+TriMesh read_surface_mm(const fs::path& input, const Options& o, std::vector<Note>& notes) {
+  const std::string kind = lower_extension(input);
+  std::error_code error;
+  const std::uintmax_t bytes = fs::file_size(input, error);
+  const auto too_many = [&](std::size_t n) {
+    fail(input, fmt::format("has {} triangles; more than {} are not taken. An artery needs some 20,000: decimate it in the program that made it, or cut out the region around the aneurysm",
+                            n > 0 ? std::to_string(n) : "far too many", most_triangles));
+  };
+  if (!error && bytes > most_bytes) too_many(kind == ".stl" ? std::size_t((bytes - 84) / 50) : 0);
+  if (!error && kind == ".stl" && bytes > 84 && (bytes - 84) / 50 > most_triangles) {
+    std::ifstream in(input, std::ios::binary);
+    char head[84] = {};
+    in.read(head, 84);
+    if (std::string_view(head, 5) != "solid") too_many(std::size_t((bytes - 84) / 50));
+  }
+  const double unit = o.unit_mm ? *o.unit_mm : kind == ".gltf" || kind == ".glb" ? 1000 : 1;
+  if (kind == ".gltf" || kind == ".glb")
+    if (!o.unit_mm) notes.push_back({Note::Kind::fact, "glTF is in metres by its standard; it was read so.", ""});
+  TriMesh m = kind == ".vtp" ? read_vtp(input) : read_surface(input, 1.0);
+  if (m.triangles.size() > most_triangles) too_many(m.triangles.size());
+  for (Vec3& p : m.vertices) p *= unit;
+  if (!o.any_size)
+    if (const std::string why = check_extent(extent_of(m), unit); !why.empty()) fail(input, why + "; --any-size takes it all the same");
+  return m;
+}
+
+/// Triangles that agree, in one piece, without doubles.
+void tidy(TriMesh& m, const std::string& what, const Options& o, std::vector<Note>& notes) {
+  const double size = extent_of(m);
+  if (const int n = weld(m, 1e-6 * size); n > 0) notes.push_back({Note::Kind::repair, fmt::format("{} vertices that lay on others to a millionth of the size were joined.", n), ""});
+  if (const int n = drop_doubles(m); n > 0) notes.push_back({Note::Kind::repair, fmt::format("{} triangle{} that {} there twice {} left out.", n, ending(n), n == 1 ? "was" : "were", n == 1 ? "was" : "were"), ""});
+  if (m.triangles.empty()) throw InputError(what + ": holds no triangle with an area");
+  if (const BadEdges bad = non_manifold_edges(m); bad.count > 0)
+    throw InputError(fmt::format("{}: {} edge{} to three or more triangles (the first at {}): walls meet there inside of the vessel. Mend it in the program that made it, or make the surface "
+                                 "anew from a grid with --rebuild 0.2", what, bad.count, bad.count == 1 ? " belongs" : "s belong", place(bad.first)));
+  Pieces pieces = pieces_of(m);
+  if (pieces.area.size() > 1) {
+    double whole = 0;
+    for (const double a : pieces.area) whole += a;
+    int keep = 0;
+    if (o.seed) {
+      const Vec3 seed((*o.seed)[0], (*o.seed)[1], (*o.seed)[2]);
+      double least = 1e300;
+      for (std::size_t t = 0; t < m.triangles.size(); ++t)
+        if (const double d = (m.vertices[std::size_t(m.triangles[t][0])] - seed).norm(); d < least) least = d, keep = pieces.of[t];
+    } else if (pieces.area[0] < 0.9 * whole && !o.keep_largest) {
+      throw InputError(fmt::format("{}: is in {} pieces; the largest has {:.0f} % of the area, the next {:.0f} %. Name a point on the wanted one with --seed X Y Z, or take the largest with --keep-largest",
+                                   what, pieces.area.size(), 100 * pieces.area[0] / whole, 100 * pieces.area[1] / whole));
+    }
+    notes.push_back({Note::Kind::repair, fmt::format("The surface was in {} pieces; the {} one was kept, {:.1f} % of the area.", pieces.area.size(), o.seed ? "wanted" : "largest", 100 * pieces.area[std::size_t(keep)] / whole), ""});
+    keep_piece(m, pieces, keep);
+  }
+  const int turned = agree(m);
+  if (turned < 0) throw InputError(what + ": its surface has only one side (a twisted band); mend it in the program that made it");
+  if (turned > 0) notes.push_back({Note::Kind::repair, fmt::format("{} triangle{} that faced the wrong way {} turned.", turned, ending(turned), turned == 1 ? "was" : "were"), ""});
+  if (const int n = part_fans(m); n > 0) notes.push_back({Note::Kind::repair, fmt::format("{} place{} where the surface touched itself in a point {} parted.", n, ending(n), n == 1 ? "was" : "were"), ""});
+}
+
+void check_inside(artery::Surface& s, const std::string& what, std::vector<Note>& notes) {
+  double volume = signed_volume(s.mesh);
+  if (volume < 0) {
+    turn_inside_out(s.mesh);
+    for (artery::CapPlane& cap : s.caps) cap.normal = -cap.normal;
+    volume = -volume;
+    notes.push_back({Note::Kind::repair, "The surface was inside out; it was turned.", ""});
+  }
+  const double thick = 2 * volume / area(s.mesh);  // the radius, of a tube
+  if (thick < 0.01 * extent_of(s.mesh))
+    throw InputError(fmt::format("{}: encloses next to nothing (it is {:.3g} mm thick for {:.3g} mm of length): a sheet without thickness, or an inner and an outer wall. A vessel is given by one surface", what, 2 * thick, extent_of(s.mesh)));
+}
+
+}  // namespace
+
+Intake mended(TriMesh m, const std::string& what, const Options& o, std::vector<Note> notes) {
+  Intake out;
+  out.facts["triangles_given"] = m.triangles.size();
+  if (m.triangles.empty()) throw InputError(what + ": holds no triangles");
+  const auto remake = [&](double spacing, const char* why) {
+    m = rebuilt(m, spacing);
+    notes.push_back({Note::Kind::repair, fmt::format("The surface was made anew from a grid of {:.3g} mm{}.", spacing, why), ""});
+  };
+  if (o.rebuild) remake(*o.rebuild, ", as asked for");
+  tidy(m, what, o, notes);
+  artery::Surface s = closed_surface(m, notes);
+  check_inside(s, what, notes);
+  if (s.mesh.triangles.size() > many_triangles) {
+    const std::vector<artery::CapPlane> caps = s.caps;
+    const double spacing = std::clamp(std::sqrt(area(s.mesh) / 20000), 0.08, 0.4);
+    const std::size_t before = s.mesh.triangles.size();
+    m = rebuilt(s.mesh, spacing);
+    tidy(m, what, o, notes);
+    s = artery::Surface{m, std::vector<int>(m.triangles.size(), -1), {}};
+    for (const artery::CapPlane& cap : caps) cut_off(s, cap.centre - spacing * cap.normal, cap.normal, cap.name);
+    notes.push_back({Note::Kind::repair, fmt::format("The surface had {} triangles, far more than its shape needs; it was made anew from a grid of {:.2g} mm: {} triangles.", before, spacing, s.mesh.triangles.size()), ""});
+  }
+  for (std::size_t c = 0; c < o.cuts.size(); ++c) {
+    const Plane& p = o.cuts[c];
+    if (std::hypot(p[3], p[4], p[5]) < 1e-9) throw InputError("--cut: the normal has no length");
+    cut_off(s, Vec3(p[0], p[1], p[2]), Vec3(p[3], p[4], p[5]), fmt::format("cut_{}", c + 1));
+  }
+  const artery::Surface found = artery::with_flat_caps(s.mesh);
+  if (s.caps.empty()) {
+    s = found;
+    out.facts["openings_found_by"] = "flat ends of a closed surface";
+  } else {
+    // Some ends may have been closed already.
+    for (std::size_t c = 0; c < found.caps.size(); ++c) {
+      std::vector<std::size_t> mine;
+      bool taken = false;
+      for (std::size_t t = 0; t < found.patch.size(); ++t)
+        if (found.patch[t] == int(c)) mine.push_back(t), taken = taken || s.patch[t] >= 0;
+      if (taken) continue;
+      for (const std::size_t t : mine) s.patch[t] = int(s.caps.size());
+      s.caps.push_back(found.caps[c]);
+    }
+    out.facts["openings_found_by"] = "borders and cuts";
+  }
+  if (s.caps.size() < 2)
+    throw InputError(fmt::format("{}: has {} opening{}; a vessel needs an inlet and an outlet. Ends must be open, or cut straight and closed flat; where they are rounded, cut them with --cut X Y Z NX NY NZ "
+                                 "(a point in the vessel and the direction of what is to go), once an end", what, s.caps.size(), ending(int(s.caps.size()))));
+  // By calibre, from the widest down.
+  std::vector<int> order(s.caps.size()), rank(s.caps.size());
+  for (std::size_t c = 0; c < order.size(); ++c) order[c] = int(c);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return s.caps[std::size_t(a)].radius > s.caps[std::size_t(b)].radius; });
+  std::vector<artery::CapPlane> sorted;
+  for (std::size_t r = 0; r < order.size(); ++r) rank[std::size_t(order[r])] = int(r), sorted.push_back(s.caps[std::size_t(order[r])]);
+  s.caps = sorted;
+  for (int& p : s.patch)
+    if (p >= 0) p = rank[std::size_t(p)];
+  Json openings = Json::array();
+  for (std::size_t c = 0; c < s.caps.size(); ++c) {
+    s.caps[c].name = fmt::format("opening_{}", c + 1);
+    openings.push_back({{"centre", to_json(s.caps[c].centre)}, {"normal", to_json(s.caps[c].normal)}, {"calibre_mm", rounded(2 * s.caps[c].radius)}});
+  }
+  if (!o.any_size)
+    if (const std::string why = check_calibre(2 * s.caps[0].radius, o.unit_mm.value_or(1)); !why.empty()) throw InputError(what + ": " + why + "; --any-size takes it all the same");
+  const artery::Quality q = artery::quality(s.mesh);
+  if (q.euler != 2)
+    throw InputError(fmt::format("{}: has {} handle{}: two branches touch and have grown together, or a hole runs through the wall. Part them in the program that made the surface; with a volume, a higher "
+                                 "--threshold or less --smooth may part them", what, (2 - q.euler) / 2, ending((2 - q.euler) / 2)));
+  if (q.self_intersecting)
+    notes.push_back({Note::Kind::problem, "The given surface runs through itself.", "The wall is made of new triangles, which are checked again; if they are found wanting, make the surface anew from a grid with --rebuild 0.2."});
+  out.facts["openings"] = openings;
+  out.facts["triangles"] = s.mesh.triangles.size();
+  out.facts["extent_mm"] = rounded(extent_of(s.mesh));
+  out.facts["area_mm2"] = rounded(area(s.mesh));
+  out.facts["volume_mm3"] = rounded(signed_volume(s.mesh));
+  out.facts["least_angle_deg"] = rounded(q.min_angle_deg);
+  out.facts["self_intersecting"] = q.self_intersecting;
+  out.surface = std::move(s);
+  out.notes = std::move(notes);
+  return out;
+}
+
+Intake take_in(const fs::path& input, const Options& o, Progress& progress) {
+  if (!fs::exists(input)) fail(input, "does not exist");
+  std::vector<Note> notes;
+  TriMesh m;
+  progress.step("reading " + input.filename().string());
+  const bool volume = is_volume_input(input);
+  Options with_ends = o;
+  with_ends.cuts.clear();
+  if (volume) {
+    m = read_volume_surface(input, o, notes, with_ends.cuts);
+    with_ends.cuts.insert(with_ends.cuts.end(), o.cuts.begin(), o.cuts.end());
+  } else {
+    with_ends.cuts = o.cuts;
+    if (o.label || o.threshold) fail(input, "is a surface; --label and --threshold are for volumes");
+    m = read_surface_mm(input, o, notes);
+  }
+  progress.step("mending the surface");
+  Intake out;
+  try {
+    out = mended(std::move(m), input.filename().string(), with_ends, std::move(notes));
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::runtime_error& e) {
+    throw InputError(input.filename().string() + ": " + e.what());
+  }
+  out.facts["kind"] = volume ? "volume" : "surface";
+  out.facts["file"] = input.filename().string();
+  return out;
+}
+
+void run_intake(const CaseFolder& folder, const fs::path& input, const Options& o, Progress& progress) {
+  progress.stage("intake", 3);
+  const Intake in = take_in(input, o, progress);
+  progress.step("writing");
+  write_ply(folder.intake() / "surface.ply", in.surface.mesh, "unit mm; a vessel as it was given, mended and closed");
+  Json json = in.facts;
+  json["caps"] = Json::array();
+  for (std::size_t c = 0; c < in.surface.caps.size(); ++c) {
+    const artery::CapPlane& cap = in.surface.caps[c];
+    Json triangles = Json::array();
+    for (std::size_t t = 0; t < in.surface.patch.size(); ++t)
+      if (in.surface.patch[t] == int(c)) triangles.push_back(t);
+    json["caps"].push_back({{"name", cap.name}, {"centre", to_json(cap.centre)}, {"normal", to_json(cap.normal)}, {"radius", rounded(cap.radius)}, {"triangles", triangles}});
+  }
+  json["notes"] = to_json(in.notes);
+  write_json(folder.intake() / "intake.json", json);
+  progress.finish();
+}
+
+Intake read_intake(const CaseFolder& folder) {
+  Intake out;
+  out.facts = read_json(folder.intake() / "intake.json");
+  out.surface.mesh = read_ply(folder.intake() / "surface.ply");
+  out.surface.patch.assign(out.surface.mesh.triangles.size(), -1);
+  try {
+    for (const Json& cap : out.facts.at("caps")) {
+      for (const Json& t : cap.at("triangles")) out.surface.patch.at(t.get<std::size_t>()) = int(out.surface.caps.size());
+      out.surface.caps.push_back({cap.at("name"), vec3_from(cap.at("centre")), vec3_from(cap.at("normal")).normalized(), cap.at("radius")});
+    }
+    out.notes = notes_from_json(out.facts.at("notes"));
+  } catch (const std::exception&) {
+    throw InputError((folder.intake() / "intake.json").string() + ": does not belong to surface.ply beside it; do the stage intake again");
+  }
+  return out;
+}
+
+}  // namespace insula::case_builder

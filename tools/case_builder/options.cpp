@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/case_builder/options.h"
+
+#include "core/base/input_error.h"
+
+namespace insula::case_builder {
+namespace {
+
+template <class T>
+void put(Json& json, const char* name, const std::optional<T>& value) {
+  if (value) json[name] = *value;
+}
+template <class T>
+void take(const Json& json, const char* name, std::optional<T>& value) {
+  if (json.contains(name)) value = json[name].get<T>();
+}
+template <class T>
+void take(const Json& json, const char* name, T& value) {
+  if (json.contains(name)) value = json[name].get<T>();
+}
+
+}  // namespace
+
+Json to_json(const Options& o) {
+  Json j = Json::object();
+  put(j, "unit_mm", o.unit_mm);
+  j["any_size"] = o.any_size;
+  put(j, "threshold", o.threshold);
+  put(j, "label", o.label);
+  put(j, "seed", o.seed);
+  j["keep_largest"] = o.keep_largest;
+  put(j, "rebuild", o.rebuild);
+  j["cuts"] = o.cuts;
+  j["smoothing"] = o.smoothing;
+  put(j, "neck", o.neck);
+  put(j, "neck_points", o.neck_points);
+  put(j, "inlet", o.inlet);
+  j["keep"] = o.keep;
+  j["vertices"] = o.vertices;
+  j["bleb"] = o.bleb;
+  j["in_place"] = o.in_place;
+  j["gap"] = o.gap;
+  j["spin"] = o.spin;
+  j["keep_spin"] = o.keep_spin;
+  j["lobes"] = o.lobes;
+  j["clip"] = o.clip;
+  put(j, "lift", o.lift);
+  put(j, "slide", o.slide);
+  put(j, "turn", o.turn);
+  return j;
+}
+
+Options options_from_json(const Json& j) {
+  Options o;
+  try {
+    take(j, "unit_mm", o.unit_mm);
+    take(j, "any_size", o.any_size);
+    take(j, "threshold", o.threshold);
+    take(j, "label", o.label);
+    take(j, "seed", o.seed);
+    take(j, "keep_largest", o.keep_largest);
+    take(j, "rebuild", o.rebuild);
+    take(j, "cuts", o.cuts);
+    take(j, "smoothing", o.smoothing);
+    take(j, "neck", o.neck);
+    take(j, "neck_points", o.neck_points);
+    take(j, "inlet", o.inlet);
+    take(j, "keep", o.keep);
+    take(j, "vertices", o.vertices);
+    take(j, "bleb", o.bleb);
+    take(j, "in_place", o.in_place);
+    take(j, "gap", o.gap);
+    take(j, "spin", o.spin);
+    take(j, "keep_spin", o.keep_spin);
+    take(j, "lobes", o.lobes);
+    take(j, "clip", o.clip);
+    take(j, "lift", o.lift);
+    take(j, "slide", o.slide);
+    take(j, "turn", o.turn);
+  } catch (const nlohmann::json::exception& e) {
+    throw InputError(std::string("case.json: an option has the wrong kind of value: ") + e.what());
+  }
+  return o;
+}
+
+}  // namespace insula::case_builder

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Stage 5: the quality report of a case, report.html, with pictures drawn here and a step time measured on this machine. It is the only file
+// of a case that differs from run to run.
+#pragma once
+#include "tools/case_builder/case_folder.h"
+#include "tools/case_builder/progress.h"
+
+namespace insula::case_builder {
+
+/// A scene of the case, loaded as `insula check` does and stepped.
+struct MeasuredScene {
+  std::string file;
+  std::string message;       ///< why it does not load; empty: it does
+  double step_ms = 0, most_ms = 0, budget_ms = 0;  ///< median, 95th percentile, of the scene's step
+  int nodes = 0, rows = 0;
+  bool finite = true;
+};
+MeasuredScene measure_scene(const fs::path& scene, int steps);
+
+/// Reads what all stages have written, runs the exercises, writes report.html.
+void run_report(const CaseFolder& folder, Progress& progress);
+
+}  // namespace insula::case_builder

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The text of a case's scene files.
+#pragma once
+#include "tools/case_builder/clip_plan.h"
+#include "tools/case_builder/scenes.h"
+
+namespace insula::case_builder {
+
+struct WallText {
+  std::string regions;
+  double thickness_mm = 0, young_mpa = 0;
+};
+/// What the texts are made of.
+struct SceneFacts {
+  std::string name;
+  Assets assets;
+  std::vector<WallText> walls;
+  std::string tethered;               ///< regions that the surroundings hold
+  std::string branches;               ///< centrelines that lead to outlets: their flow is to stay
+  Vec3 neck, dome;                    ///< mm
+  double dome_reach = 0;              ///< from the neck to the farthest of the sac, mm
+  std::vector<std::string> clips;     ///< on the tray; the first is the one for the neck
+  std::string temporary;
+  bool bleb = false;
+  std::vector<std::string> strand_sets;
+};
+
+std::string artery_part(const SceneFacts& facts);
+std::string field_part(const SceneFacts& facts);
+/// Strands of one kind about the aneurysm: "frontal", "temporal", "branches".
+std::string strands(const SceneFacts& facts, const std::string& kind);
+std::string exercise(const SceneFacts& facts, int number);
+
+}  // namespace insula::case_builder

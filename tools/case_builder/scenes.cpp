@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/case_builder/scenes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/base/input_error.h"
+#include "core/model/file_bytes.h"
+#include "core/registry/registry.h"
+#include "core/sim/simulation.h"
+#include "tools/case_builder/motion_script.h"
+#include "tools/case_builder/place.h"
+#include "tools/case_builder/scene_text.h"
+#include "tools/case_builder/wall.h"
+
+namespace insula::case_builder {
+namespace {
+
+constexpr const char* names[] = {"1_sylvian_fissure", "2_aneurysm_dissection", "3_clipping", "4_rupture"};
+
+std::string clipping_motion(const ClipPlan& plan) {
+  MotionScript m;
+  m.command(0.1, "applier load " + plan.clip.name);
+  m.place_clip(plan.pose, out_of_field, 2.5);
+  m.key(true, 8, drawn_back(plan.pose, out_of_field));
+  return m.csv();
+}
+
+std::string rupture_motion(const ClipPlan& plan, const ApplierPose& temporary, const std::string& clip, const Vec3& neck) {
+  MotionScript m;
+  m.command(1, "bleeding rupture");
+  m.command(0.1, "applier load " + clip);
+  m.place_clip(temporary, 9, 2.0);
+  ApplierPose away = drawn_back(temporary, out_of_field);
+  away.tip += 30 * to_surgeon;
+  m.key(true, 0.8, away);
+  m.command(std::round((m.time(true) + 0.2) * 1000) / 1000, "applier load " + plan.clip.name);
+  m.key(true, 0.5, away);
+  m.place_clip(plan.pose, out_of_field, 2.5);
+  m.take_clip(temporary);
+  m.key(true, 8, drawn_back(temporary, out_of_field));
+  // The suction tube, dipped into the field beside the neck.
+  const Vec3 shaft = Vec3(0.85, -0.35, 0.39).normalized(), flat = (Vec3(0, -0.5, 0.87) - Vec3(0, -0.5, 0.87).dot(shaft) * shaft).normalized();
+  const ApplierPose low{neck + Vec3(0, -7, 0) + 6 * shaft, flat, shaft}, outside = drawn_back(low, 26);
+  m.key(false, 0.01, outside);
+  m.key(false, 1.5, outside);
+  m.key(false, 2, low, true);
+  m.key(false, std::max(1.0, m.time(true) - 10), low, true);
+  m.key(false, 2, outside);
+  return m.csv();
+}
+
+}  // namespace
+
+std::vector<fs::path> exercise_files(const CaseFolder& folder) {
+  std::vector<fs::path> out;
+  for (const char* n : names) out.push_back(folder.path / (std::string(n) + ".xml"));
+  return out;
+}
+
+void run_scenes(const CaseFolder& folder, const fs::path& project, const Options& o, Progress& progress) {
+  progress.stage("scenes", 4);
+  progress.step("choosing a clip");
+  const artery::Vessel v = read_wall(folder.artery());
+  if (!v.neck) throw InputError("the vessel has no neck; do the stage wall again");
+  std::vector<Note> notes;
+  const std::vector<ClipShape> clips = read_clips(project);
+  const ClipPlan plan = plan_clip(v, clips, o, notes);
+
+  SceneFacts f;
+  f.name = folder.name;
+  f.temporary = "temporary_straight";
+  f.clips = {plan.clip.name};
+  for (const char* menu : {"straight", "curved", "angled", "bayonet", "fenestrated", "mini", "temporary_straight", "temporary_curved"})
+    if (menu != plan.clip.name) f.clips.push_back(menu);
+  f.assets = link_assets(folder, project, f.clips);
+  const Json wall = read_json(folder.wall() / "notes.json");
+  for (const Json& w : wall.at("walls")) f.walls.push_back({w.at("regions"), w.at("thickness_mm"), w.at("young_MPa")});
+  for (const artery::NamedCurve& c : v.centrelines) {
+    if (c.name == "sac") continue;
+    f.tethered += (f.tethered.empty() ? "" : " ") + c.region;
+    if (c.to.starts_with("outlet")) f.branches += (f.branches.empty() ? "" : " ") + c.name;
+  }
+  f.neck = v.neck->centre, f.dome = v.centrelines.back().curve.points.back();
+  f.dome_reach = std::max(v.dome_height, v.neck->diameter);
+  f.bleb = v.bleb.has_value();
+
+  progress.step("writing the exercises");
+  write_text(folder.path / "artery.xml", artery_part(f));
+  write_text(folder.path / "field.xml", field_part(f));
+  write_text(folder.path / "1_sylvian_fissure_steady.csv", read_file_bytes(project / "scenes/training/1_sylvian_fissure_steady.csv"));
+  write_text(folder.path / "3_clipping_steady.csv", clipping_motion(plan));
+  const auto temporary = std::find_if(clips.begin(), clips.end(), [&](const ClipShape& c) { return c.name == f.temporary; });
+  if (temporary == clips.end()) throw InputError("the library has no clip " + f.temporary);
+  write_text(folder.path / "4_rupture_steady.csv", rupture_motion(plan, plan_temporary(v, *temporary), f.temporary, f.neck));
+
+  // Strands are spun between surfaces as they lie once settled: a kind for which there is no place is left out.
+  progress.step("spinning strands");
+  Registry registry;
+  register_builtin(registry);
+  f.strand_sets = {"frontal", "temporal", "branches"};
+  for (bool again = true; again;) {
+    again = false;
+    for (int k = 1; k <= 4; ++k) write_text(exercise_files(folder)[std::size_t(k - 1)], exercise(f, k));
+    const auto loaded = load_simulation(exercise_files(folder)[1], registry, 1);
+    if (loaded.simulation) {
+      loaded.simulation->step();
+      notes.push_back({Note::Kind::fact, fmt::format("{} strands tie the aneurysm down.", loaded.simulation->report().strands_total), ""});
+      break;
+    }
+    const std::string text = loaded.diagnostics.format();
+    for (std::size_t i = 0; i < f.strand_sets.size() && !again; ++i) {
+      // Only messages about a strand element's own place concern a kind: its line is that of the element.
+      std::string before = exercise(f, 2);
+      before.resize(before.find("id=\"to_" + f.strand_sets[i]));
+      const auto line = 1 + std::count(before.begin(), before.end(), '\n');
+      if (text.find(fmt::format("2_aneurysm_dissection.xml:{}:", line)) == std::string::npos) continue;
+      notes.push_back({Note::Kind::problem, "There is no place for strands to the " + f.strand_sets[i] + ".", "They were left out; give another ball or max_length in 2_aneurysm_dissection.xml."});
+      f.strand_sets.erase(f.strand_sets.begin() + std::ptrdiff_t(i));
+      again = true;
+    }
+    if (!again || f.strand_sets.empty()) throw InputError("the exercise with strands does not load:\n" + text);
+  }
+  progress.step("writing");
+  Json json;
+  json["clip"] = {{"name", plan.clip.name}, {"blade_mm", rounded(plan.clip.blade)}, {"needed_mm", rounded(plan.needed)}, {"off_view_deg", rounded(plan.off_view)},
+                  {"lift_mm", rounded(plan.lift)}, {"slide_mm", rounded(plan.slide)}, {"turn_deg", rounded(plan.turn)}};
+  json["files_copied"] = f.assets.copied;
+  json["notes"] = to_json(notes);
+  write_json(folder.path / "scenes.json", json);
+  progress.finish();
+}
+
+}  // namespace insula::case_builder

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Stage 4: the placed vessel and its lobes become the four exercises, as scene files that an author can go on editing.
+#pragma once
+#include "tools/case_builder/case_folder.h"
+#include "tools/case_builder/progress.h"
+
+namespace insula::case_builder {
+
+/// How files of the case name those of the project. Outside of the project what they need is copied into the case.
+struct Assets {
+  std::string meshes;       ///< from a file in the case's folder
+  std::string parts;        ///< the same
+  std::string lobes;        ///< the case's lobes, from a file in the parts' folder
+  bool copied = false;
+};
+Assets link_assets(const CaseFolder& folder, const fs::path& project, const std::vector<std::string>& clips);
+
+/// The exercises' files, in order.
+std::vector<fs::path> exercise_files(const CaseFolder& folder);
+
+/// The stage: reads artery/, lobes/ and wall/notes.json, writes *.xml and *.csv. Throws InputError.
+void run_scenes(const CaseFolder& folder, const fs::path& project, const Options& options, Progress& progress);
+
+}  // namespace insula::case_builder

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Whether sizes are those of a cerebral artery, and which unit would make them so.
+#pragma once
+#include <string>
+
+namespace insula::case_builder {
+
+inline constexpr double least_extent = 4, most_extent = 200;     ///< mm, of the whole surface
+inline constexpr double least_calibre = 0.6, most_calibre = 8;   ///< mm, of the widest opening
+
+/// Empty when a surface so large (mm) may be one; else what is wrong and which unit to give. `mm_per_unit` is the one in use.
+std::string check_extent(double extent_mm, double mm_per_unit);
+/// The same for the calibre of the widest opening.
+std::string check_calibre(double calibre_mm, double mm_per_unit);
+
+}  // namespace insula::case_builder

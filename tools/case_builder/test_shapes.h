@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Vessels for tests, made from functions: a straight tube with a sac, and what can be wrong with such a surface. Millimetres.
+#pragma once
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <string>
+
+#include "core/testing/block_mesh.h"
+#include "tools/artery/surface.h"
+#include "tools/case_builder/topology.h"
+
+namespace insula::case_builder::test {
+
+/// A tube of radius 1.4 along x from -8 to 8, its ends flat, with a ball of radius 2.4 on a neck above its middle. Closed.
+inline TriMesh tube_with_sac(double step = 0.35) {
+  const auto value = [](const Vec3& p) {
+    const double tube = std::hypot(p.y(), p.z()) - 1.4, ball = (p - Vec3(0, 0, 3.6)).norm() - 2.4, k = 0.5;
+    const double w = std::max(k - std::abs(tube - ball), 0.0) / k;
+    return std::min(tube, ball) - 0.25 * w * w * k;
+  };
+  TriMesh long_one = artery::extract(value, Vec3(-9.03, -3.01, -2.02), Vec3(9.07, 3.05, 7.1), step);
+  artery::Surface s{long_one, std::vector<int>(long_one.triangles.size(), -1), {}};
+  // The box has cut it open: the ends are cut flat.
+  artery::cut_and_close(s, {"a", Vec3(-8, 0, 0), Vec3(-1, 0, 0), 1.4}, 3.0);
+  artery::cut_and_close(s, {"b", Vec3(8, 0, 0), Vec3(1, 0, 0), 1.4}, 3.0);
+  return s.mesh;
+}
+
+/// Without the flat ends.
+inline TriMesh open_tube() {
+  TriMesh m = tube_with_sac();
+  std::erase_if(m.triangles, [&](const auto& t) {
+    for (const int v : t)
+      if (std::abs(std::abs(m.vertices[std::size_t(v)].x()) - 8) > 1e-6) return false;
+    return true;
+  });
+  artery::number_by_use(m);
+  return m;
+}
+
+/// Triangles whose centres fulfil a condition go.
+inline TriMesh without(TriMesh m, const std::function<bool(const Vec3&)>& gone) {
+  std::erase_if(m.triangles, [&](const auto& t) {
+    return gone((m.vertices[std::size_t(t[0])] + m.vertices[std::size_t(t[1])] + m.vertices[std::size_t(t[2])]) / 3);
+  });
+  artery::number_by_use(m);
+  return m;
+}
+
+inline TriMesh joined(TriMesh a, const TriMesh& b, const Vec3& shift, double scale = 1) {
+  const int first = int(a.vertices.size());
+  for (const Vec3& p : b.vertices) a.vertices.push_back(scale * p + shift);
+  for (const auto& t : b.triangles) a.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  return a;
+}
+
+inline TriMesh scaled(TriMesh m, double factor) {
+  for (Vec3& p : m.vertices) p *= factor;
+  return m;
+}
+
+inline std::string stl_text(const TriMesh& m) {
+  std::string s(80, ' ');
+  const auto add = [&s](auto v) { s.append(reinterpret_cast<const char*>(&v), sizeof v); };
+  add(std::uint32_t(m.triangles.size()));
+  for (const auto& t : m.triangles) {
+    for (int k = 0; k < 3; ++k) add(0.0f);
+    for (const int v : t)
+      for (int k = 0; k < 3; ++k) add(float(m.vertices[std::size_t(v)][k]));
+    add(std::uint16_t(0));
+  }
+  return s;
+}
+
+inline std::string obj_text(const TriMesh& m) {
+  std::string s;
+  for (const Vec3& p : m.vertices) s += "v " + std::to_string(p.x()) + " " + std::to_string(p.y()) + " " + std::to_string(p.z()) + "\n";
+  for (const auto& t : m.triangles) s += "f " + std::to_string(t[0] + 1) + " " + std::to_string(t[1] + 1) + " " + std::to_string(t[2] + 1) + "\n";
+  return s;
+}
+
+inline std::string vtp_text(const TriMesh& m) {
+  std::string points, nodes, offsets;
+  for (const Vec3& p : m.vertices) points += std::to_string(p.x()) + " " + std::to_string(p.y()) + " " + std::to_string(p.z()) + "\n";
+  for (std::size_t t = 0; t < m.triangles.size(); ++t) {
+    for (const int v : m.triangles[t]) nodes += std::to_string(v) + " ";
+    offsets += std::to_string(3 * t + 3) + " ";
+  }
+  return "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"0.1\" byte_order=\"LittleEndian\"><PolyData><Piece NumberOfPoints=\"" + std::to_string(m.vertices.size()) + "\" NumberOfPolys=\"" +
+         std::to_string(m.triangles.size()) + "\"><Points><DataArray type=\"Float32\" NumberOfComponents=\"3\" format=\"ascii\">" + points +
+         "</DataArray></Points><Polys><DataArray type=\"Int32\" Name=\"connectivity\" format=\"ascii\">" + nodes + "</DataArray><DataArray type=\"Int32\" Name=\"offsets\" format=\"ascii\">" + offsets +
+         "</DataArray></Polys></Piece></PolyData></VTKFile>\n";
+}
+
+/// A NIfTI file of bytes; `value` at voxel indices.
+inline std::string nifti_text(std::array<int, 3> n, double spacing, const std::function<int(int, int, int)>& value, int times = 1) {
+  std::string h(352, '\0');
+  const auto put = [&h](std::size_t at, auto v) { std::memcpy(h.data() + at, &v, sizeof v); };
+  put(0, std::int32_t(348));
+  const std::int16_t dim[8] = {std::int16_t(times > 1 ? 4 : 3), std::int16_t(n[0]), std::int16_t(n[1]), std::int16_t(n[2]), std::int16_t(times), 1, 1, 1};
+  for (std::size_t k = 0; k < 8; ++k) put(40 + 2 * k, dim[k]);
+  put(70, std::int16_t(2)), put(72, std::int16_t(8));
+  for (std::size_t k = 0; k < 8; ++k) put(76 + 4 * k, k >= 1 && k <= 3 ? float(spacing) : 1.0f);
+  put(108, 352.0f), put(112, 1.0f);
+  h[123] = 2;  // millimetres
+  put(254, std::int16_t(1));
+  for (std::size_t r = 0; r < 3; ++r) put(280 + 16 * r + 4 * r, float(spacing));
+  std::memcpy(h.data() + 344, "n+1", 4);
+  for (int t = 0; t < times; ++t)
+    for (int k = 0; k < n[2]; ++k)
+      for (int j = 0; j < n[1]; ++j)
+        for (int i = 0; i < n[0]; ++i) h.push_back(char(value(i, j, k)));
+  return h;
+}
+
+/// The tube with its sac as labels: 1 inside, reaching through the whole volume along x.
+inline int tube_label(int i, int j, int k, double spacing = 0.3) {
+  const Vec3 p(spacing * i - 8, spacing * j - 3.6, spacing * k - 2.4);
+  return std::hypot(p.y(), p.z()) < 1.4 || (p - Vec3(0, 0, 3.4)).norm() < 2.4;
+}
+
+}  // namespace insula::case_builder::test

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/case_builder/trim.h"
+
+#include <fmt/format.h>
+
+#include <limits>
+#include <map>
+
+#include "core/base/input_error.h"
+#include "tools/case_builder/openings.h"
+
+namespace insula::case_builder {
+namespace {
+
+/// Way along the lines from the point nearest to `from` to each point of each line, mm.
+std::vector<std::vector<double>> ways(const std::vector<artery::NamedCurve>& lines, const Vec3& from) {
+  std::vector<std::vector<double>> out;
+  std::size_t line = 0, point = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t l = 0; l < lines.size(); ++l) {
+    out.emplace_back(lines[l].curve.size(), std::numeric_limits<double>::infinity());
+    for (std::size_t k = 0; k < lines[l].curve.size(); ++k)
+      if (const double d = (lines[l].curve.points[k] - from).norm(); d < least) least = d, line = l, point = k;
+  }
+  out[line][point] = 0;
+  std::map<std::string, double> joint;
+  for (std::size_t pass = 0; pass <= lines.size(); ++pass)
+    for (std::size_t l = 0; l < lines.size(); ++l) {
+      auto& way = out[l];
+      const auto& p = lines[l].curve.points;
+      const auto meet = [&](const std::string& name, double& end) {
+        const auto [at, fresh] = joint.emplace(name, end);
+        if (!fresh) at->second = end = std::min(at->second, end);
+      };
+      meet(lines[l].from, way.front()), meet(lines[l].to, way.back());
+      for (std::size_t k = 1; k < p.size(); ++k) way[k] = std::min(way[k], way[k - 1] + (p[k] - p[k - 1]).norm());
+      for (std::size_t k = p.size() - 1; k > 0; --k) way[k - 1] = std::min(way[k - 1], way[k] + (p[k] - p[k - 1]).norm());
+      meet(lines[l].from, way.front()), meet(lines[l].to, way.back());
+    }
+  return out;
+}
+
+}  // namespace
+
+artery::Surface trimmed(const artery::Surface& surface, const std::vector<artery::NamedCurve>& all, const Vec3& neck, double keep, std::vector<Note>& notes) {
+  artery::Surface s = surface;
+  std::vector<artery::NamedCurve> lines;
+  for (const auto& l : all)
+    if (l.name != "sac") lines.push_back(l);
+  const auto way = ways(lines, neck);
+  for (std::size_t l = 0; l < lines.size(); ++l) {
+    const auto& c = lines[l].curve;
+    for (std::size_t k = 0; k + 1 < c.size(); ++k) {
+      const bool out = way[l][k] < keep && way[l][k + 1] >= keep, in = way[l][k] >= keep && way[l][k + 1] < keep;
+      if (!out && !in) continue;
+      const double end = out ? way[l].back() : way[l].front();
+      if (end < keep + 2 * c.radius[k]) continue;  // its own end is hardly farther
+      bool done = false;
+      std::string why;
+      for (std::size_t farther = 0; farther < 8 && !done; ++farther) {
+        const std::size_t at = out ? std::min(k + 2 * farther, c.size() - 2) : k >= 2 * farther + 1 ? k - 2 * farther : 1;
+        try {
+          cut_off(s, c.points[at], out ? c.tangent(at) : Vec3(-c.tangent(at)), lines[l].name + "_end");
+          done = true;
+          notes.push_back({Note::Kind::repair, fmt::format("{} was cut off {:.1f} mm from the neck ({:.1f} mm of it left out).", lines[l].name, way[l][at], end - way[l][at]),
+                           "The fissure has room for short stretches only; --keep MM keeps more."});
+        } catch (const InputError& e) {
+          why = e.what();
+        }
+      }
+      if (!done) notes.push_back({Note::Kind::problem, lines[l].name + " could not be cut off: " + why, "Cut it in the program that made the surface, or with --cut."});
+    }
+  }
+  return s;
+}
+
+}  // namespace insula::case_builder

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The only file that includes ITK. Its readers are used one by one, without factories and image templates, which keeps this quick to compile.
+#include "tools/case_builder/volume_reader.h"
+
+#include <itkGDCMImageIO.h>
+#include <itkGDCMSeriesFileNames.h>
+#include <itkMetaImageIO.h>
+#include <itkNiftiImageIO.h>
+#include <zlib.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+#include "core/base/text.h"
+#include "core/model/file_bytes.h"
+
+namespace insula::case_builder {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr double most_voxels = 1e9;
+
+bool ends_with(const std::string& text, const std::string& end) { return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0; }
+
+std::string lower_name(const fs::path& path) {
+  std::string name = path.filename().string();
+  std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  return name;
+}
+
+template <class T>
+void widen(const std::vector<char>& bytes, std::vector<float>& out) {
+  const T* in = reinterpret_cast<const T*>(bytes.data());
+  out.assign(in, in + bytes.size() / sizeof(T));
+}
+
+/// All voxels of one file as floats.
+std::vector<float> voxels(const fs::path& file, itk::ImageIOBase& io) {
+  using C = itk::IOComponentEnum;
+  std::vector<char> bytes(std::size_t(io.GetImageSizeInBytes()));
+  io.Read(bytes.data());
+  std::vector<float> out;
+  switch (io.GetComponentType()) {
+    case C::UCHAR: widen<unsigned char>(bytes, out); break;
+    case C::CHAR: widen<signed char>(bytes, out); break;
+    case C::USHORT: widen<unsigned short>(bytes, out); break;
+    case C::SHORT: widen<short>(bytes, out); break;
+    case C::UINT: widen<unsigned>(bytes, out); break;
+    case C::INT: widen<int>(bytes, out); break;
+    case C::ULONG: widen<unsigned long>(bytes, out); break;
+    case C::LONG: widen<long>(bytes, out); break;
+    case C::FLOAT: widen<float>(bytes, out); break;
+    case C::DOUBLE: widen<double>(bytes, out); break;
+    default: fail(file, "has voxels of a kind that is not read; store whole numbers or floats");
+  }
+  return out;
+}
+
+/// Index to right-anterior-superior millimetres from what ITK gives, which is left-posterior-superior.
+void place(mesh_tool::NiftiVolume& v, const fs::path& file, const Eigen::Vector3d& origin, const Eigen::Matrix3d& axes) {
+  if (!(std::abs(axes.determinant()) > 1e-12) || !axes.allFinite() || !origin.allFinite()) fail(file, "its axes or spacing span no volume");
+  const Eigen::Vector3d flip(-1, -1, 1);
+  const Eigen::Matrix3d m = flip.asDiagonal() * axes, inverse = m.inverse();
+  const Eigen::Vector3d o = flip.cwiseProduct(origin), back = -inverse * o;
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c) v.to_world[std::size_t(4 * r + c)] = m(r, c), v.from_world[std::size_t(4 * r + c)] = inverse(r, c);
+    v.to_world[std::size_t(4 * r + 3)] = o[r], v.from_world[std::size_t(4 * r + 3)] = back[r];
+  }
+}
+
+void check_size(const fs::path& file, const std::array<int, 3>& n) {
+  for (const int k : n)
+    if (k < 2) fail(file, "is no volume: it has " + std::to_string(n[0]) + " x " + std::to_string(n[1]) + " x " + std::to_string(n[2]) + " voxels");
+  if (double(n[0]) * n[1] * n[2] > most_voxels) fail(file, "has more than 1,000 million voxels; cut out the region around the aneurysm first");
+}
+
+void read_header(const fs::path& file, itk::ImageIOBase& io) {
+  if (!io.CanReadFile(file.c_str())) fail(file, "is not what its name says, or is damaged");
+  io.SetFileName(file.string());
+  io.ReadImageInformation();
+  if (io.GetNumberOfComponents() != 1) fail(file, "has " + std::to_string(io.GetNumberOfComponents()) + " values a voxel; a volume of labels or of grey values has one");
+}
+
+mesh_tool::NiftiVolume read_file(const fs::path& file, itk::ImageIOBase& io) {
+  read_header(file, io);
+  unsigned dimensions = io.GetNumberOfDimensions();
+  while (dimensions > 3 && io.GetDimensions(dimensions - 1) == 1) --dimensions;
+  if (dimensions != 3) fail(file, "has " + std::to_string(dimensions) + " dimensions; a volume has three (cut one time or slice out of it)");
+  mesh_tool::NiftiVolume v;
+  itk::ImageIORegion region(io.GetNumberOfDimensions());
+  for (unsigned a = 0; a < io.GetNumberOfDimensions(); ++a) region.SetSize(a, io.GetDimensions(a)), region.SetIndex(a, 0);
+  for (unsigned a = 0; a < 3; ++a) v.size[a] = int(std::min<std::size_t>(io.GetDimensions(a), 1'000'000));
+  check_size(file, v.size);
+  io.SetIORegion(region);
+  v.value = voxels(file, io);
+  const std::size_t count = std::size_t(v.size[0]) * std::size_t(v.size[1]) * std::size_t(v.size[2]);
+  if (v.value.size() < count) fail(file, "ends early: it holds fewer voxels than its header says");
+  v.value.resize(count);
+  Eigen::Matrix3d axes;
+  Eigen::Vector3d origin;
+  for (unsigned a = 0; a < 3; ++a) {
+    const std::vector<double> d = io.GetDirection(a);
+    for (unsigned r = 0; r < 3; ++r) axes(r, a) = d[r] * io.GetSpacing(a);
+    origin[a] = io.GetOrigin(a);
+  }
+  place(v, file, origin, axes);
+  return v;
+}
+
+mesh_tool::NiftiVolume read_series(const fs::path& folder) {
+  auto names = itk::GDCMSeriesFileNames::New();
+  names->SetUseSeriesDetails(true);
+  names->SetDirectory(folder.string());
+  const std::vector<std::string> series = names->GetSeriesUIDs();
+  if (series.empty()) fail(folder, "holds no DICOM images");
+  if (series.size() > 1) {
+    std::string list;
+    for (const std::string& s : series) list += "\n  " + std::to_string(names->GetFileNames(s).size()) + " images in " + in_quotes(s);
+    fail(folder, "holds " + std::to_string(series.size()) + " DICOM series; put one into a folder of its own:" + list);
+  }
+  const std::vector<std::string> files = names->GetFileNames(series[0]);
+  mesh_tool::NiftiVolume v;
+  std::vector<Eigen::Vector3d> origins;
+  Eigen::Matrix3d axes;
+  for (std::size_t k = 0; k < files.size(); ++k) {
+    auto io = itk::GDCMImageIO::New();
+    read_header(files[k], *io);
+    const unsigned depth = io->GetNumberOfDimensions() > 2 ? unsigned(io->GetDimensions(2)) : 1;
+    if (depth > 1 && files.size() == 1) return read_file(files[0], *itk::GDCMImageIO::New());  // one file that holds all slices
+    if (depth > 1) fail(files[k], "holds several slices beside other files of its series");
+    const std::array<int, 3> size{int(io->GetDimensions(0)), int(io->GetDimensions(1)), int(files.size())};
+    if (k == 0) v.size = size, check_size(folder, size);
+    if (size != v.size) fail(files[k], "has another size than the images before it");
+    itk::ImageIORegion region(io->GetNumberOfDimensions());
+    for (unsigned a = 0; a < io->GetNumberOfDimensions(); ++a) region.SetSize(a, io->GetDimensions(a)), region.SetIndex(a, 0);
+    io->SetIORegion(region);
+    const std::vector<float> slice = voxels(files[k], *io);
+    v.value.insert(v.value.end(), slice.begin(), slice.begin() + std::ptrdiff_t(size[0]) * size[1]);
+    origins.emplace_back(io->GetOrigin(0), io->GetOrigin(1), io->GetOrigin(2));
+    for (unsigned a = 0; a < 2; ++a)
+      for (unsigned r = 0; r < 3; ++r) axes(r, a) = io->GetDirection(a)[r] * io->GetSpacing(a);
+  }
+  const Eigen::Vector3d between = (origins.back() - origins.front()) / double(origins.size() - 1);
+  for (std::size_t k = 1; k < origins.size(); ++k)
+    if ((origins[k] - origins[k - 1] - between).norm() > 0.1 * between.norm() + 1e-3)
+      fail(folder, "its slices do not stand at even distances (between " + fs::path(files[k - 1]).filename().string() + " and " + fs::path(files[k]).filename().string() + "): is one missing?");
+  axes.col(2) = between;
+  place(v, folder, origins.front(), axes);
+  return v;
+}
+
+/// ITK takes a NIfTI file that ends early for one that ends in zeros.
+void check_length(const fs::path& file) {
+  const gzFile in = gzopen(file.c_str(), "rb");  // plain files too
+  if (!in) fail(file, "cannot be opened");
+  std::vector<unsigned char> buffer(std::size_t(1) << 20);
+  unsigned char head[352] = {};
+  double length = 0;
+  bool sound = true;
+  for (int n; (n = gzread(in, buffer.data(), unsigned(buffer.size()))) != 0;) {
+    if (n < 0) {
+      sound = false;
+      break;
+    }
+    if (length == 0) std::memcpy(head, buffer.data(), std::min<std::size_t>(sizeof head, std::size_t(n)));
+    length += n;
+  }
+  sound = gzclose(in) == Z_OK && sound;
+  if (!sound) fail(file, "ends early, or its compression is damaged");
+  if (length < 352) fail(file, "ends early: it is shorter than a NIfTI header");
+  const bool swap = head[40] == 0 && head[41] != 0;  // the number of dimensions, 1 to 7
+  const auto whole = [&](std::size_t at) { return std::int16_t(swap ? head[at] << 8 | head[at + 1] : head[at + 1] << 8 | head[at]); };
+  std::uint32_t bits = 0;
+  for (std::size_t k = 0; k < 4; ++k) bits |= std::uint32_t(head[108 + (swap ? 3 - k : k)]) << (8 * k);
+  float offset;
+  std::memcpy(&offset, &bits, 4);
+  double wanted = whole(72) / 8.0;
+  for (int d = 1; d <= whole(40) && d < 8; ++d) wanted *= std::max<int>(1, whole(std::size_t(40 + 2 * d)));
+  if (std::memcmp(head + 344, "n+1", 3) == 0 && length < double(offset) + wanted)
+    fail(file, "ends early: its header announces " + std::to_string(std::int64_t(wanted)) + " bytes of voxels, and " + std::to_string(std::int64_t(length - double(offset))) + " are there");
+}
+
+}  // namespace
+
+mesh_tool::NiftiVolume read_volume(const fs::path& path) {
+  itk::Object::SetGlobalWarningDisplay(false);  // what matters comes as an exception
+  const std::string name = lower_name(path);
+  try {
+    if (fs::is_directory(path)) return read_series(path);
+    if (!fs::exists(path)) fail(path, "does not exist");
+    if (ends_with(name, ".dcm")) return read_series(path.parent_path().empty() ? fs::path(".") : path.parent_path());
+    if (ends_with(name, ".mha") || ends_with(name, ".mhd")) return read_file(path, *itk::MetaImageIO::New());
+    check_length(path);
+    return read_file(path, *itk::NiftiImageIO::New());
+  } catch (const InputError&) {
+    throw;
+  } catch (const itk::ExceptionObject& e) {
+    fail(path, "cannot be read, or ends early: " + shown(e.GetDescription()));
+  } catch (const std::exception& e) {
+    fail(path, "cannot be read: " + shown(e.what()));
+  }
+}
+
+}  // namespace insula::case_builder

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/case_builder/wall.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/input_error.h"
+#include "core/model/vessel_model.h"
+#include "tools/artery/import_parts.h"
+#include "tools/case_builder/intake.h"
+#include "tools/case_builder/trim.h"
+
+namespace insula::case_builder {
+namespace {
+
+using artery::Vessel;
+
+/// Names of caps as the network wants them; the inlet first.
+artery::Surface with_inlet_first(artery::Surface s, const Options& o) {
+  std::size_t inlet = 0;
+  for (std::size_t c = 0; c < s.caps.size(); ++c) {
+    if (s.caps[c].radius > s.caps[inlet].radius) inlet = c;
+  }
+  if (o.inlet) {
+    const Vec3 p((*o.inlet)[0], (*o.inlet)[1], (*o.inlet)[2]);
+    for (std::size_t c = 0; c < s.caps.size(); ++c)
+      if ((s.caps[c].centre - p).norm() < (s.caps[inlet].centre - p).norm()) inlet = c;
+  }
+  std::swap(s.caps[0], s.caps[inlet]);
+  for (int& p : s.patch) p = p == 0 ? int(inlet) : p == int(inlet) ? 0 : p;
+  return s;
+}
+
+std::optional<artery::NeckPlane> wanted_neck(const Options& o) {
+  if (!o.neck) return std::nullopt;
+  const Plane& p = *o.neck;
+  if (std::hypot(p[3], p[4], p[5]) < 1e-9) throw InputError("--neck: the normal has no length");
+  return artery::NeckPlane{Vec3(p[0], p[1], p[2]), Vec3(p[3], p[4], p[5]).normalized()};
+}
+
+/// The plane through two points on opposite sides of a neck, turned from the proposed one as little as that asks for.
+artery::NeckPlane through(const std::array<double, 6>& two, const Vec3& normal) {
+  const Vec3 a(two[0], two[1], two[2]), b(two[3], two[4], two[5]);
+  if ((b - a).norm() < 0.3) throw InputError("--neck-points: the two points are closer than 0.3 mm");
+  const Vec3 along = (b - a).normalized(), n = normal - normal.dot(along) * along;
+  if (n.norm() < 0.2) throw InputError("--neck-points: the two points lie above one another as seen from the dome; take two on opposite sides of the neck");
+  return {0.5 * (a + b), n.normalized()};
+}
+
+Vessel made(const artery::Surface& s, const artery::ImportOptions& options) {
+  try {
+    return artery::vessel_of(s, options);
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::runtime_error& e) {
+    throw InputError(e.what());
+  }
+}
+
+void check_sound(const Vessel& v) {
+  const artery::Quality q = artery::quality(v.wall.mesh);
+  if (!q.closed || q.components != 1) throw InputError("the wall that was made is not closed; make the surface anew from a grid with --rebuild 0.2");
+  if (q.euler != 2) throw InputError("the wall has a hole through it (branches that have grown together); part them in the program that made the surface");
+  if (q.self_intersecting)
+    throw InputError("the wall runs through itself: parts of the vessel are closer than its triangles are long. Give it more vertices (--vertices 2500), or make the surface anew from a grid with --rebuild 0.2");
+}
+
+}  // namespace
+
+Vessel make_wall(const artery::Surface& surface, const Options& o, std::vector<Note>& notes, Progress& progress) {
+  artery::Surface s = with_inlet_first(surface, o);
+  artery::ImportOptions options;
+  options.vertices = o.vertices;
+  options.narrow_neck = true;
+  options.neck = wanted_neck(o);
+  progress.step("centrelines and proposed neck");
+  Vessel v = made(s, options);
+  if (o.neck_points) {
+    if (!v.neck) throw InputError("--neck-points turns the proposed neck, and none was found; give the whole plane with --neck");
+    options.neck = through(*o.neck_points, v.neck->normal);
+    v = made(s, options);
+  }
+  if (!v.neck)
+    throw InputError("no sac was found: nothing of the wall bulges out of the vessels by half of their radius. If there is an aneurysm, give its neck: --neck X Y Z NX NY NZ (a point in the neck and the direction to the dome)");
+  const bool given = options.neck.has_value();
+  if (o.keep > 0) {
+    progress.step("cutting the ends");
+    const std::size_t before = notes.size();
+    const artery::NeckPlane neck{v.neck->centre, v.neck->normal};
+    const artery::Surface shorter = trimmed(s, v.centrelines, neck.centre, o.keep, notes);
+    if (notes.size() > before) {
+      s = shorter;
+      options.inlet = v.wall.caps[0].centre;  // the piece of the old inlet that is left is the nearest to it
+      progress.step("the wall's triangles");
+      if (!options.neck) options.neck = neck;  // the same place, now on finer triangles
+      v = made(s, options);
+    }
+  }
+  if (v.wall.caps.size() < 2) throw InputError("only one opening is left after cutting the ends; keep more of the vessel with --keep");
+  progress.step("checks");
+  if (o.bleb > 0) {
+    artery::add_bleb(v, o.bleb);
+    artery::measure(v);
+    notes.push_back({Note::Kind::fact, fmt::format("The weak spot is the tip of the dome, {:g} mm around: a proposal, change it with --bleb.", o.bleb), ""});
+  }
+  check_sound(v);
+  notes.push_back({Note::Kind::fact, given ? "The neck is where it was asked for." : "Neck and sac are a proposal: the narrowest section near the border of what bulges out of the vessels.",
+                   given ? "" : "Look at the pictures; move the neck with --neck X Y Z NX NY NZ or --neck-points."});
+  return v;
+}
+
+std::vector<WallOf> walls_of(const Vessel& v) {
+  std::vector<WallOf> out;
+  std::string vessels;
+  for (const std::string& r : v.regions)
+    if (r != "neck" && r != "sac" && r != "bleb") vessels += (vessels.empty() ? "" : " ") + r;
+  out.push_back({vessels, 0.3, 1.5});
+  // A thin sphere changes its volume by 3 (1 - nu) dP r / (2 E t): the same share for all sizes asks for E in proportion to r.
+  const auto at = v.dimensions.find("sac_width");
+  const double radius = at == v.dimensions.end() ? 2.8 : 0.5 * std::max(at->second, v.neck ? v.neck->diameter : 0.0);
+  const double young = std::clamp(std::round(100 * 1.05 * radius / 2.8) / 100, 0.6, 4.0);
+  for (const std::string& r : v.regions) {
+    if (r == "neck") out.push_back({r, 0.25, std::max(1.2, young)});
+    if (r == "sac") out.push_back({r, 0.2, young});
+    if (r == "bleb") out.push_back({r, 0.1, young});
+  }
+  return out;
+}
+
+void run_wall(const CaseFolder& folder, const Options& o, Progress& progress) {
+  progress.stage("wall", 5);
+  const Intake in = read_intake(folder);
+  std::vector<Note> notes;
+  const Vessel v = make_wall(in.surface, o, notes, progress);
+  progress.step("writing");
+  artery::write_vessel(v, folder.wall());
+  Json json;
+  Json openings = Json::array();
+  for (const auto& cap : v.wall.caps) openings.push_back({{"name", cap.name}, {"calibre_mm", rounded(2 * cap.radius)}});
+  json["openings"] = openings;
+  json["walls"] = Json::array();
+  for (const WallOf& w : walls_of(v)) json["walls"].push_back({{"regions", w.region}, {"thickness_mm", w.thickness_mm}, {"young_MPa", w.young_mpa}});
+  json["notes"] = to_json(notes);
+  write_json(folder.wall() / "notes.json", json);
+  progress.finish();
+}
+
+Vessel read_wall(const fs::path& folder) {
+  const VesselModel m = read_vessel(folder / "vessel.json");
+  Vessel v;
+  v.wall.mesh = m.wall;
+  for (Vec3& p : v.wall.mesh.vertices) p *= 1000;
+  v.wall.patch.assign(m.wall.triangles.size(), -1);
+  for (const auto& cap : m.caps) {
+    artery::CapPlane plane{cap.name, Vec3::Zero(), Vec3::UnitZ(), 0};
+    Vec3 twice = Vec3::Zero();
+    double whole = 0;
+    for (const int t : cap.triangles) {
+      v.wall.patch[std::size_t(t)] = int(v.wall.caps.size());
+      const auto& tri = v.wall.mesh.triangles[std::size_t(t)];
+      const Vec3 &a = v.wall.mesh.vertices[std::size_t(tri[0])], &b = v.wall.mesh.vertices[std::size_t(tri[1])], &c = v.wall.mesh.vertices[std::size_t(tri[2])];
+      const Vec3 n = (b - a).cross(c - a);
+      twice += n, whole += n.norm(), plane.centre += n.norm() * (a + b + c) / 3;
+    }
+    plane.centre /= whole, plane.normal = twice.normalized(), plane.radius = std::sqrt(0.5 * twice.norm() / 3.14159265358979);
+    v.wall.caps.push_back(plane);
+  }
+  v.picture = read_ply(folder / "picture.ply");
+  v.regions = m.regions, v.region = m.vertex_region;
+  for (const auto& l : m.centrelines) {
+    artery::NamedCurve c{l.name, l.region, l.from, l.to, {l.points, l.radius}};
+    for (Vec3& p : c.curve.points) p *= 1000;
+    for (double& r : c.curve.radius) r *= 1000;
+    v.centrelines.push_back(std::move(c));
+  }
+  if (m.has_neck) v.neck = artery::Neck{1000 * m.neck_centre, m.neck_normal, 1000 * m.neck_diameter};
+  if (m.bleb_radius > 0) v.bleb = {1000 * m.bleb_centre, 1000 * m.bleb_radius};
+  v.dome_height = 1000 * m.dome_height;
+  artery::measure(v);
+  return v;
+}
+
+}  // namespace insula::case_builder
