@@ -164,7 +164,9 @@ class Checker:
             for line, path in to_check:
                 self.count("scenes")
                 status, text = self.run(self.insula, "check", path, cwd=folder)
-                self.that(status == 0 and "warning" not in text, (page, line), "the scene is not right:\n" + text)
+                # That this machine is too slow for a scene just now says nothing of the page.
+                rest = re.sub(r".*: warning: too slow for this machine.*\n", "", text)
+                self.that(status == 0 and "warning" not in rest, (page, line), "the scene is not right:\n" + text)
             for block in blocks:
                 if block.role != "output":
                     continue
