@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/base/input_error.h"
+#include "core/params/param.h"
 #include "engine/haptic_truth.h"
 #include "engine/live_engine.h"
 #include "engine/run.h"
@@ -13,6 +14,21 @@ namespace insula {
 namespace {
 
 constexpr double most_speeding_up = 1.5;  // a hand may be so much faster than in the step when it meets something
+
+/// From the poses to the problem's arrival: in steps, or a time.
+struct Latency {
+  double steps = 0, seconds = 0;
+  double at(double step_s) const { return seconds + steps * step_s; }
+};
+Latency read_latency(std::string text) {
+  const bool bare = text.find_first_not_of("0123456789.") == std::string::npos;
+  if (bare) text += " s";  // read alike; what it counts is steps
+  else if (const auto unit = text.find_first_not_of("0123456789."); unit > 0 && text[unit] != ' ') text.insert(unit, " ");
+  std::string error;
+  const auto value = parse_quantity(text, Duration::units(), Duration::name, error);
+  if (!value || *value < 0 || *value > (bare ? 3 : 0.2)) throw InputError("--latency: " + (value ? std::string("0 to 3 steps, or 0 to 200 ms") : error));
+  return bare ? Latency{*value, 0} : Latency{0, *value};
+}
 
 struct Variant {
   const char* name;
@@ -33,6 +49,8 @@ std::vector<Variant> variants(bool ablation) {
     out.push_back({"+ tissue moves", servo});
     servo.servo.response.tissue_in_time = full.response.tissue_in_time;
     out.push_back({"+ tissue in time", servo});
+    servo.servo.response.carried_moves = full.response.carried_moves;
+    out.push_back({"+ carried moves", servo});
   }
   servo.servo = full;
   out.push_back({ablation ? "+ hand-over" : "servo", servo});
@@ -52,7 +70,9 @@ int cmd_bench_haptics(const CommandContext& context, const HapticBenchOptions& o
   auto simulation = open(context, options, 1e-3);
   if (!simulation) return 2;
   Motion motion;
+  Latency latency;
   try {
+    latency = read_latency(options.latency);
     motion = load_motion(find_motion(*simulation, options.motion));
   } catch (const InputError& e) {
     context.err << options.scene.string() << ": error: " << e.what() << '\n';
@@ -66,11 +86,11 @@ int cmd_bench_haptics(const CommandContext& context, const HapticBenchOptions& o
   for (const double rate : options.rates) {
     auto engine = open(context, options, 1 / rate);
     if (!engine) return 2;
-    engine->look_ahead((options.latency + options.jitter + 1) / rate * most_speeding_up);
+    engine->look_ahead((latency.at(1 / rate) + (options.jitter + 1) / rate) * most_speeding_up);
     const auto steps = record_steps(*engine, motion, duration);
     engine.reset();
     for (Variant& v : variants(options.ablation)) {
-      v.settings.latency_s = options.latency * steps.front().update.step_s;
+      v.settings.latency_s = latency.at(1 / rate);
       v.settings.jitter = options.jitter;
       const ForceTrace rendered = replay(steps, motion, duration, v.settings);
       if (!options.traces.empty()) write_traces(options.traces / fmt::format("{:.0f}_{}.csv", rate, v.name), reference, rendered);

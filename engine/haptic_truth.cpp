@@ -55,17 +55,17 @@ void keep_diagonal(ConstraintProblem& p) {
 }
 
 /// What new problems change, told from what the servo changes by itself: another servo beside it, which takes each problem over at once,
-/// and for its last tick before that the old problem instead.
+/// after a last tick with the old one.
 class JumpMeter {
  public:
-  explicit JumpMeter(ServoSettings settings) : own_((settings.handover_s = 0, settings)) {}
-  void set_problem(const RecordedStep& step, double age_s) {
-    old_ = own_;
-    own_.set_problem(&step.update.problem, step.update.offset, age_s);
-    fresh_ = true;
-  }
-  void tick(const ServoInput& input, const ServoResult& rendered, ForceTrace& out) {
-    const ServoResult now = own_.tick(input), went_on = fresh_ ? old_.tick(input) : now;
+  explicit JumpMeter(ServoSettings settings) : own_((settings.hand_over.within_s = 0, settings)) {}
+  void tick(const RecordedStep* fresh, double age_s, const ServoInput& input, const ServoResult& rendered, ForceTrace& out) {
+    ServoResult now = own_.tick(input);
+    const ServoResult went_on = now;
+    if (fresh) {
+      own_.set_problem(&fresh->update.problem, fresh->update.offset, age_s);
+      now = own_.tick(input);
+    }
     for (std::size_t i = 0; i < 2; ++i) {
       const Vec3 &own = now.hand[i].force, &force = rendered.hand[i].force;
       if (!own.isZero(0) && !last_own_[i].isZero(0) && !force.isZero(0) && !last_[i].isZero(0))
@@ -73,12 +73,10 @@ class JumpMeter {
       last_own_[i] = own;
       last_[i] = force;
     }
-    fresh_ = false;
   }
 
  private:
-  Servo own_, old_{ServoSettings{}};
-  bool fresh_ = false;
+  Servo own_;
   std::array<Vec3, 2> last_{Vec3::Zero(), Vec3::Zero()}, last_own_{Vec3::Zero(), Vec3::Zero()};
 };
 
@@ -140,7 +138,6 @@ ForceTrace replay(const std::vector<RecordedStep>& steps, const Motion& motion, 
         keep_diagonal(bare);
       }
       servo.set_problem(settings.rendering == Rendering::diagonal ? &bare : &step.update.problem, step.update.offset, t - step.pose_s);
-      jumps.set_problem(step, t - step.pose_s);
     }
     if (settings.rendering == Rendering::hindsight) {
       std::size_t after = 0;
@@ -165,7 +162,8 @@ ForceTrace replay(const std::vector<RecordedStep>& steps, const Motion& motion, 
       input.connected[std::size_t(hand)] = true;
     }
     const ServoResult r = servo.tick(input);
-    if (settings.rendering == Rendering::servo) jumps.tick(input, r, out);
+    if (settings.rendering == Rendering::servo)
+      jumps.tick(fresh ? &steps[next - 1] : nullptr, fresh ? t - steps[next - 1].pose_s : 0, input, r, out);
     out.add(r.hand[0].force, r.hand[1].force);
   }
   return out;

@@ -131,7 +131,7 @@ int main(int argc, char** argv) {
   auto* haptics_flag = bench->add_flag("--haptics", measure_haptics, "how far the servo's force is from that of the engine stepped at 1 kHz, devices on the motion's path");
   bench->add_option("--rates", haptics.rates, "with --haptics: the engine's rates, Hz")->delimiter(',')->check(CLI::Range(20.0, 1000.0))->needs(haptics_flag);
   bench->add_option("--duration", haptics.duration, "with --haptics: simulated seconds; 0: the whole motion")->check(CLI::NonNegativeNumber)->needs(haptics_flag);
-  bench->add_option("--latency", haptics.latency, "with --haptics: from poses to the problem's arrival, in steps")->check(CLI::Range(0.0, 3.0))->capture_default_str()->needs(haptics_flag);
+  bench->add_option("--latency", haptics.latency, "with --haptics: from poses to the problem's arrival, in steps (0.5) or as a time (3ms)")->capture_default_str()->needs(haptics_flag);
   bench->add_option("--jitter", haptics.jitter, "with --haptics: and so much later still at most, in steps")->check(CLI::Range(0.0, 3.0))->needs(haptics_flag);
   bench->add_flag("--ablation", haptics.ablation, "with --haptics: what goes beyond equation 7, one after the other")->needs(haptics_flag);
   bench->add_option("--traces", haptics.traces, "with --haptics: folder for the forces as CSV")->needs(haptics_flag);

@@ -51,7 +51,7 @@ struct HapticBenchOptions {
   std::string motion = "steady";   ///< id of a motion of the exercise, or a CSV file: where the devices go
   std::vector<double> rates{30, 60, 100};  ///< of the engine, Hz
   double duration = 0;   ///< simulated seconds; 0: the whole motion
-  double latency = 1;    ///< from the devices' poses to the arrival of the step's problem, in steps
+  std::string latency = "1";  ///< from the devices' poses to the arrival of the step's problem: "0.5" steps, or "3 ms"
   double jitter = 0;     ///< and so much later still at most, in steps
   bool ablation = false; ///< what goes beyond equation 7, one after the other
   std::filesystem::path traces;  ///< folder for the forces as CSV; empty: none

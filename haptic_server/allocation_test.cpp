@@ -5,6 +5,7 @@
 #include <array>
 #include <vector>
 
+#include "haptic_server/carried_problem.h"
 #include "haptic_server/devices/make_device.h"
 #include "haptic_server/hand_guide.h"
 #include "haptic_server/in_process.h"
@@ -25,8 +26,8 @@ TEST(Allocation, TheCounterCounts) {
 }
 
 TEST(Allocation, TheServoDoesNone) {
-  const std::array<ConstraintProblem, 3> problems{testing::two_tool_problem(10, 20, 1), testing::two_tool_problem(60, 60, 2),
-                                                  testing::two_tool_problem(30, 40, 3, 5)};
+  const std::array<ConstraintProblem, 5> problems{testing::two_tool_problem(10, 20, 1), testing::two_tool_problem(60, 60, 2),
+                                                  testing::two_tool_problem(30, 40, 3, 5), testing::with_clip(8, 4, 4), testing::with_clip(30, 0, 5)};
   for (const ServoSettings& settings : {ServoSettings(), ServoSettings::beyond_equation_7()}) {
     Servo servo(settings);
     ServoInput in;
@@ -37,7 +38,7 @@ TEST(Allocation, TheServoDoesNone) {
     double sum = 0;
     const long before = allocations.load();
     for (std::size_t k = 0; k < 30; ++k) {  // problems of changing size, from the very first tick on
-      servo.set_problem(&problems[k % 3]);
+      servo.set_problem(&problems[k % problems.size()]);
       for (int tick = 0; tick < 4; ++tick) {
         in.device[0].p.z() -= 1e-5;
         sum += servo.tick(in).hand[0].force.norm();

@@ -145,8 +145,8 @@ Vec3 HapticServer::feel(std::size_t i, double dt, bool alive) noexcept {
   const int parted = parted_[i].load(std::memory_order_relaxed), shut = shut_[i].load(std::memory_order_relaxed);
   if (alive) {
     const Vec3 along = force.isZero(0) ? hand.reading.v : force;
-    if (hand.onset.met(dt, force.norm()))
-      hand.feel.knock(force, wall_met(-hand.reading.v.dot(force.normalized()), hardness(problems_.front().update.problem, int(i), servo_.lambda())));
+    if (hand.onset.met(dt, force.norm()) && servo_.problem())
+      hand.feel.knock(force, wall_met(-hand.reading.v.dot(force.normalized()), hardness(*servo_.problem(), int(i), servo_.lambda())));
     if (parted != hand.parted_seen) hand.feel.knock(along, strand_parts);
     if (shut != hand.shut_seen) hand.feel.knock(along, clip_clicks);
   }

@@ -36,7 +36,7 @@ bool finite(const Vec6& v) {
 
 }  // namespace
 
-Servo::Servo(const ServoSettings& settings) : settings_(settings), response_(settings.response, servo_max_rows) {
+Servo::Servo(const ServoSettings& settings) : settings_(settings), carried_(settings.response.carried_moves ? servo_max_rows : 0), response_(settings.response, servo_max_rows) {
   workspace_.reserve(servo_max_rows, false);  // sweeps alone
   kernels();  // chosen here once and not at the first tick
   delta_free_.assign(servo_max_rows, 0.0);
@@ -46,28 +46,22 @@ Servo::Servo(const ServoSettings& settings) : settings_(settings), response_(set
 
 void Servo::reset() noexcept {
   known_count_ = 0;
-  handover_ = {};
+  hand_over_ = {};
+  response_.forget();
 }
 
-// What the old problem said last stays, and fades while the new one takes over: a step's news come as a slope and not as a jump.
 void Servo::hand_over(ServoResult& result, double dt) noexcept {
-  since_problem_ = fresh_problem_ ? 0 : since_problem_ + dt;
-  const double old = since_problem_ < settings_.handover_s ? 1 - since_problem_ / settings_.handover_s : 0;
   for (std::size_t i = 0; i < 2; ++i) {
     ServoHand& hand = result.hand[i];
-    Handover& h = handover_[i];
     if (!hand.valid) {
-      h = {};
+      hand_over_[i].lost();
       continue;
     }
     Vec6 now;
     now << hand.force, hand.torque;
-    if (fresh_problem_ && h.felt) h.gap = h.last - now;
-    now += old * h.gap;
+    now = hand_over_[i](settings_.hand_over, fresh_problem_, now, dt);
     hand.force = now.head<3>();
     hand.torque = now.tail<3>();
-    h.last = now;
-    h.felt = true;
   }
   fresh_problem_ = false;
 }
@@ -86,10 +80,11 @@ void Servo::set_problem(const ConstraintProblem* problem, const std::array<Pose,
   remember_solution();
   const bool fits = problem && problem->rows <= servo_max_rows && problem->blocks.size() <= std::size_t(servo_max_rows);
   problem_ = fits ? problem : nullptr;
-  if (!problem_) return;
+  if (!problem_) return response_.forget();
   offset_ = offset;
   fresh_problem_ = true;
-  if (settings_.response.any()) response_.begin(*problem, age_s);
+  if (settings_.response.carried_moves) problem_ = &carried_.take_in(*problem);
+  if (settings_.response.any()) response_.begin(*problem_, carried_.loads(), age_s);
   workspace_.lambda.resize(std::size_t(problem_->rows));  // within its capacity
   const auto known_end = known_.begin() + std::ptrdiff_t(known_count_);
   for (const Block& b : problem_->blocks) {
@@ -112,7 +107,7 @@ ServoResult Servo::tick(const ServoInput& input) noexcept {
   const bool in_ticks = settings_.response.any();
   result.rows = n;
 
-  std::array<Vec6, 2> moved{Vec6::Zero(), Vec6::Zero()};
+  std::array<Vec6, 2> moved{Vec6::Zero(), Vec6::Zero()};  // of the devices
   std::array<Pose, 2> device;  // with the tool's offset applied
   std::array<bool, 2> in_range{true, true};
   const std::size_t tools = std::min<std::size_t>(p.tools.size(), 2);
@@ -131,14 +126,14 @@ ServoResult Servo::tick(const ServoInput& input) noexcept {
       device[t] = tool.device;  // the other hand goes on
       continue;
     }
-    moved[t] = tool.gain * d;
-    if (!in_ticks) add_product(tool.jacobian, moved[t], delta_free_, n);
+    moved[t] = d;
+    if (!in_ticks) add_product(tool.jacobian, tool.gain * d, delta_free_, n);
   }
 
-  if (n > 0) {
+  if (n > 0 || in_ticks) {  // without rows a tool that carries something still moves
     SolveSettings s;
     s.tolerance_m = settings_.tolerance_m;
-    s.max_sweeps = std::clamp(int(settings_.max_operations / (double(n) * n)), 1, settings_.max_sweeps);
+    s.max_sweeps = int(std::clamp(settings_.max_operations / std::max(1.0, double(n) * n), 1.0, double(settings_.max_sweeps)));
     if (in_ticks) {
       const ConstraintProblem& tick = response_.next(input.dt_s, moved);
       result.stats = solve(tick, tick.delta_free, s, workspace_);
@@ -154,7 +149,8 @@ ServoResult Servo::tick(const ServoInput& input) noexcept {
     const std::size_t index = std::size_t(tool.hand & 1);
     ServoHand& hand = result.hand[index];
     const Vec6 push = transposed_product(tool.jacobian, workspace_.lambda, n);
-    hand.tool = displaced(tool.free, moved[t] + tool.compliance * push);
+    if (const LoadedTool* loaded = in_ticks ? response_.loaded(t) : nullptr) hand.tool = loaded->pose();
+    else hand.tool = displaced(tool.free, tool.gain * moved[t] + tool.compliance * push);
     const Vec6 wrench = tool.stiffness * displacement(device[t], hand.tool);
     hand.valid = in_range[t] && input.connected[index] && finite(wrench);
     if (!hand.valid) continue;
@@ -170,7 +166,7 @@ ServoResult Servo::tick(const ServoInput& input) noexcept {
     std::fill_n(workspace_.lambda.begin(), n, 0.0);
     for (ServoHand& hand : result.hand) hand.valid = false;
   }
-  if (settings_.handover_s > 0) hand_over(result, input.dt_s);
+  if (settings_.hand_over.within_s > 0) hand_over(result, input.dt_s);
   return result;
 }
 

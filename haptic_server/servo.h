@@ -7,6 +7,7 @@
 
 #include "core/constraint/problem.h"
 #include "core/constraint/solve.h"
+#include "haptic_server/hand_over.h"
 #include "haptic_server/tick_response.h"
 
 namespace insula {
@@ -23,13 +24,13 @@ struct ServoSettings {
   double max_rotation_rad = 0.8;
   /// What goes beyond equation 7; nothing of it is on by default.
   TickResponseSettings response;
-  /// A new problem takes over from the force of the old one within this time, s; 0: at once.
-  double handover_s = 0;
+  /// How a new problem takes over from the force of the old one; at once by default.
+  HandOverSettings hand_over;
   /// All of it, as measured in docs/haptic-truth.md.
   static ServoSettings beyond_equation_7() {
     ServoSettings s;
-    s.response = {.tissue_in_time = true, .tissue_moves = true, .slip_by_tick = true};
-    s.handover_s = 0.015;
+    s.response = {.tissue_in_time = true, .tissue_moves = true, .slip_by_tick = true, .carried_moves = true};
+    s.hand_over.within_s = 0.015;
     return s;
   }
 };
@@ -66,6 +67,8 @@ struct ServoResult {
 class Servo {
  public:
   explicit Servo(const ServoSettings& settings = {});
+  Servo(const Servo&) = delete;
+  Servo& operator=(const Servo&) = delete;
 
   /// The problem to solve from now on; must stay as it is until the next call. nullptr: none.
   /// offset: tool frame relative to the device's pose, tool by tool in the problem's order (tool = device * offset).
@@ -73,6 +76,7 @@ class Servo {
   /// A problem of more than servo_max_rows rows counts as none.
   /// age_s: time since its device poses; what goes beyond equation 7 needs it.
   void set_problem(const ConstraintProblem* problem, const std::array<Pose, 2>& offset = {}, double age_s = 0) noexcept;
+  /// The problem that is solved: the one that was set, or that without the rows of what a tool carries.
   const ConstraintProblem* problem() const { return problem_; }
 
   ServoResult tick(const ServoInput& input) noexcept;
@@ -93,15 +97,10 @@ class Servo {
   ServoSettings settings_;
   const ConstraintProblem* problem_ = nullptr;
   std::array<Pose, 2> offset_;
+  Carried carried_;
   TickResponse response_;
   void hand_over(ServoResult& result, double dt) noexcept;
-  struct Handover {
-    bool felt = false;           ///< the last tick's force was valid
-    Vec6 last = Vec6::Zero();    ///< force and torque of the last tick
-    Vec6 gap = Vec6::Zero();     ///< of the old problem's force over the new one's, when that came
-  };
-  std::array<Handover, 2> handover_;
-  double since_problem_ = 0;     ///< s
+  std::array<HandOver, 2> hand_over_;
   bool fresh_problem_ = false;
   SolveWorkspace workspace_;
   std::vector<double> delta_free_;

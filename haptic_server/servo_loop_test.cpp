@@ -7,10 +7,20 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <fstream>
+
 #include "haptic_server/status.h"
 
 namespace insula {
 namespace {
+
+/// Of this process, as the kernel says it.
+long locked_kB() {
+  std::ifstream file("/proc/self/status");
+  for (std::string word; file >> word;)
+    if (long kB = 0; word == "VmLck:" && file >> kB) return kB;
+  return -1;
+}
 
 constexpr std::int64_t ms = 1'000'000;
 
@@ -77,6 +87,26 @@ TEST(ServoLoop, SaysHowToAllowRealTimeWhereItIsRefused) {
   int status = 0;
   ASSERT_EQ(waitpid(child, &status, 0), child);
   EXPECT_EQ(WIFEXITED(status) ? WEXITSTATUS(status) : -1, 0);
+}
+
+TEST(ServoLoop, LocksItsMemoryWhereItMayAndSaysSoWhereNot) {
+  // In processes of their own: one as this one is, one without the right to lock anything.
+  for (const bool allowed : {true, false}) {
+    const pid_t child = fork();
+    if (child == 0) {
+      const rlimit none{0, 0};
+      if (locked_kB() != 0) _exit(3);
+      if (!allowed && (setrlimit(RLIMIT_MEMLOCK, &none) != 0 || (geteuid() == 0 && setuid(65534) != 0))) _exit(2);
+      const RealtimeGrant grant = probe_realtime(80);
+      if (!allowed && grant.memory) _exit(4);
+      // With rights of its own it locks all that it has: more than this program's code.
+      if (grant.memory) _exit(locked_kB() > 1000 ? 0 : 5);
+      _exit(locked_kB() == 0 && grant.advice.find("cap_ipc_lock") != std::string::npos ? 0 : 6);
+    }
+    int status = 0;
+    ASSERT_EQ(waitpid(child, &status, 0), child);
+    EXPECT_EQ(WIFEXITED(status) ? WEXITSTATUS(status) : -1, 0) << (allowed ? "as it is" : "without rights");
+  }
 }
 
 }  // namespace

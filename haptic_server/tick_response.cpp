@@ -17,13 +17,13 @@ TickResponse::TickResponse(const TickResponseSettings& settings, int most_rows) 
   tick_.resize(most_rows);
   tick_.blocks.reserve(std::size_t(most_rows));
   for (auto* v : {&gap_, &rate_, &known_, &share_}) v->assign(std::size_t(most_rows), 0.0);
-  tool_answer_.assign(std::size_t(most_rows) * 12, 0.0);
   slips_.assign(std::size_t(most_rows), 0);
   felt_.reserve(std::size_t(most_rows));
 }
 
-void TickResponse::begin(const ConstraintProblem& p, double age_s) noexcept {
+void TickResponse::begin(const ConstraintProblem& p, const std::array<Load, 2>& loads, double age_s) noexcept {
   step_ = &p;
+  loads_ = loads;
   const std::size_t n = std::size_t(p.rows);
   tick_.resize(p.rows);  // within its capacity, and so are the blocks
   tick_.blocks.assign(p.blocks.begin(), p.blocks.end());
@@ -38,28 +38,35 @@ void TickResponse::begin(const ConstraintProblem& p, double age_s) noexcept {
     gap_[i] = gap;
     rate_[i] = p.rate[i];
   }
-  felt_.clear();
-  std::fill_n(tool_answer_.begin(), 12 * n, 0.0);
-  for (std::size_t t = 0; t < tools(); ++t) moved_[t].setZero();
-  for (int i = 0; i < p.rows; ++i) {
-    bool felt = false;
-    for (std::size_t t = 0; t < tools(); ++t) {
-      const ToolTerms& tool = p.tools[t];
-      for (int c = 0; c < 6; ++c) {
-        double sum = 0;
-        for (int k = 0; k < 6; ++k) sum += tool.compliance(c, k) * tool.jacobian(i, k);
-        tool_answer_[12 * std::size_t(i) + 6 * t + std::size_t(c)] = sum;
-        felt = felt || sum != 0;
-      }
-    }
-    if (felt) felt_.push_back(i);
+  find_felt();
+  for (std::size_t t = 0; t < tools(); ++t) {
+    moved_[t].setZero();
+    if (loads_[t].any) loaded_[t].begin(p.tools[t], p.step_s, loads_[t].velocity, push(t, p.lambda));
+    else loaded_[t].lose();
   }
   age_ = std::isfinite(age_s) ? age_s : 0;
   compliance_dt_ = 0;
   first_ = true;
 }
 
-// W_tool as it is, the rest as much as tissue yields in dt.
+void TickResponse::find_felt() noexcept {
+  felt_.clear();
+  for (int i = 0; i < step_->rows; ++i) {
+    bool felt = false;
+    for (std::size_t t = 0; t < tools(); ++t)
+      for (int c = 0; c < 6; ++c) felt = felt || step_->tools[t].jacobian(i, c) != 0;
+    if (felt) felt_.push_back(i);
+  }
+}
+
+Vec6 TickResponse::push(std::size_t tool, std::span<const double> lambda) const noexcept {
+  Vec6 sum = Vec6::Zero();
+  for (const int i : felt_)
+    for (int c = 0; c < 6; ++c) sum[c] += step_->tools[tool].jacobian(i, c) * lambda[std::size_t(i)];
+  return sum;
+}
+
+// What the tools give in dt, and as much of the rest as tissue yields in it.
 void TickResponse::scale_compliance(double dt) noexcept {
   const ConstraintProblem& p = *step_;
   const std::size_t n = std::size_t(p.rows), stride = std::size_t(tick_.stride);
@@ -70,12 +77,20 @@ void TickResponse::scale_compliance(double dt) noexcept {
   }
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = 0; j < n; ++j) tick_.w[i * stride + j] = share_[i] * share_[j] * p.w_at(int(i), int(j));
-  for (const int a : felt_)
-    for (const int b : felt_) {
-      double sum = 0;
-      for (std::size_t t = 0; t < tools(); ++t)
-        for (int c = 0; c < 6; ++c) sum += p.tools[t].jacobian(b, c) * tool_answer_[12 * std::size_t(a) + 6 * t + std::size_t(c)];
-      tick_.w[std::size_t(a) * stride + std::size_t(b)] += (1 - share_[std::size_t(a)] * share_[std::size_t(b)]) * sum;
+  for (std::size_t t = 0; t < tools(); ++t)
+    for (const int a : felt_) {
+      Vec6 step = Vec6::Zero(), tick = Vec6::Zero();
+      for (int c = 0; c < 6; ++c)
+        for (int k = 0; k < 6; ++k) {
+          step[c] += p.tools[t].compliance(c, k) * p.tools[t].jacobian(a, k);
+          tick[c] += give(t)(c, k) * p.tools[t].jacobian(a, k);
+        }
+      for (const int b : felt_) {
+        const double share = share_[std::size_t(a)] * share_[std::size_t(b)];
+        double sum = 0;
+        for (int c = 0; c < 6; ++c) sum += p.tools[t].jacobian(b, c) * (tick[c] - share * step[c]);
+        tick_.w[std::size_t(a) * stride + std::size_t(b)] += sum;
+      }
     }
   compliance_dt_ = dt;
 }
@@ -83,10 +98,24 @@ void TickResponse::scale_compliance(double dt) noexcept {
 const ConstraintProblem& TickResponse::next(double dt, const std::array<Vec6, 2>& moved) noexcept {
   const ConstraintProblem& p = *step_;
   const std::size_t n = std::size_t(p.rows), stride = std::size_t(tick_.stride);
-  dt_ = std::max(first_ ? age_ : dt, shortest_s);
+  dt = std::max(dt, shortest_s);
+  dt_ = first_ ? std::max(age_, shortest_s) : dt;
+  if (first_ || std::abs(dt_ - compliance_dt_) > same_length * dt_ || second_) {
+    for (std::size_t t = 0; t < tools(); ++t)
+      if (loads_[t].any) loaded_[t].set_tick(dt, dt_);
+    scale_compliance(dt_);
+  }
+  second_ = first_;
   first_ = false;
-  if (std::abs(dt_ - compliance_dt_) > same_length * dt_) scale_compliance(dt_);
-  for (std::size_t t = 0; t < tools(); ++t) went_[t] = moved[t] - moved_[t];
+  for (std::size_t t = 0; t < tools(); ++t) {
+    if (loads_[t].any) {
+      went_[t] = loaded_[t].free_way(moved[t]) + give(t) * push(t, known_);
+      continue;
+    }
+    const Vec6 free = p.tools[t].gain * moved[t];
+    went_[t] = free - moved_[t];
+    moved_[t] = free;
+  }
   for (std::size_t i = 0; i < n; ++i) {
     double free = start(i);
     if (settings_.tissue_moves) {
@@ -99,7 +128,6 @@ const ConstraintProblem& TickResponse::next(double dt, const std::array<Vec6, 2>
       for (int c = 0; c < 6; ++c) free += p.tools[t].jacobian(int(i), c) * went_[t][c];
     tick_.delta_free[i] = free;
   }
-  moved_ = moved;
   return tick_;
 }
 
@@ -108,10 +136,8 @@ void TickResponse::solved(std::span<const double> lambda, std::span<const double
   // What the tools did: their free way and what the change of force makes them yield.
   std::array<Vec6, 2> way = went_;
   for (std::size_t t = 0; t < tools(); ++t) {
-    Vec6 push = Vec6::Zero();
-    for (const int i : felt_)
-      for (int c = 0; c < 6; ++c) push[c] += p.tools[t].jacobian(i, c) * (lambda[std::size_t(i)] - known_[std::size_t(i)]);
-    way[t] += p.tools[t].compliance * push;
+    way[t] += give(t) * (push(t, lambda) - push(t, known_));
+    if (loads_[t].any) loaded_[t].went(way[t]);
   }
   for (std::size_t i = 0; i < std::size_t(p.rows); ++i) {
     double tissue = delta[i] - start(i);

@@ -14,6 +14,8 @@
 #include <vector>
 
 #include "core/constraint/problem.h"
+#include "haptic_server/carried.h"
+#include "haptic_server/loaded_tool.h"
 
 namespace insula {
 
@@ -21,7 +23,8 @@ struct TickResponseSettings {
   bool tissue_in_time = false;  ///< W of the tick instead of that of the step
   bool tissue_moves = false;    ///< tissue goes on at its rate
   bool slip_by_tick = false;    ///< friction opposes the slip of the tick, not that since the step began
-  bool any() const { return tissue_in_time || tissue_moves || slip_by_tick; }
+  bool carried_moves = false;   ///< what a tool carries is one with it, and its inertia that of a tick
+  bool any() const { return tissue_in_time || tissue_moves || slip_by_tick || carried_moves; }
 };
 
 /// State of the rows between ticks. Allocates in its constructor only.
@@ -30,15 +33,25 @@ class TickResponse {
   TickResponse(const TickResponseSettings& settings, int most_rows);
 
   /// A problem that the servo's last solution has nothing to do with: from the end of its step, `age_s` ago.
-  void begin(const ConstraintProblem& problem, double age_s) noexcept;
+  void begin(const ConstraintProblem& problem, const std::array<Load, 2>& loads, double age_s) noexcept;
+  /// The next problem has nothing to do with the one before: what a tool carries begins where it is in that one.
+  void forget() noexcept {
+    for (LoadedTool& tool : loaded_) tool.lose();
+  }
   /// The problem of the next tick, `dt_s` after the last one; the first one covers the problem's age instead. `moved`: of the
-  /// free tools since the problem's device poses, tool by tool.
+  /// devices since the problem's poses, tool by tool.
   const ConstraintProblem& next(double dt_s, const std::array<Vec6, 2>& moved) noexcept;
   /// Its solution.
   void solved(std::span<const double> lambda, std::span<const double> delta) noexcept;
+  /// The tool if it carries something, as it is after the tick.
+  const LoadedTool* loaded(std::size_t tool) const { return loads_[tool].any ? &loaded_[tool] : nullptr; }
 
  private:
+  void find_felt() noexcept;
   void scale_compliance(double dt) noexcept;
+  Vec6 push(std::size_t tool, std::span<const double> lambda) const noexcept;
+  /// A tool's answer in the tick.
+  const Mat6& give(std::size_t tool) const { return loads_[tool].any ? loaded_[tool].give() : step_->tools[tool].compliance; }
   std::size_t tools() const { return std::min<std::size_t>(step_->tools.size(), 2); }
   /// Of the row's gap, at the start of the tick.
   double start(std::size_t i) const { return settings_.slip_by_tick && slips_[i] ? 0.0 : gap_[i]; }
@@ -46,12 +59,14 @@ class TickResponse {
   TickResponseSettings settings_;
   const ConstraintProblem* step_ = nullptr;
   ConstraintProblem tick_;        ///< W and delta_free of the tick
-  std::vector<double> gap_, rate_, known_, tool_answer_, share_;
+  std::vector<double> gap_, rate_, known_, share_;
   std::vector<char> slips_;       ///< tangent rows
   std::vector<int> felt_;         ///< rows that a tool has a part in
-  std::array<Vec6, 2> moved_, went_;  ///< since the problem, in the tick
+  std::array<Vec6, 2> moved_, went_;  ///< of the free tools, since the problem and in the tick
+  std::array<Load, 2> loads_;
+  std::array<LoadedTool, 2> loaded_;
   double age_ = 0, dt_ = 0, compliance_dt_ = 0;
-  bool first_ = true;
+  bool first_ = true, second_ = false;  ///< the next tick is, of its problem
 };
 
 }  // namespace insula

@@ -172,7 +172,7 @@ TEST(TickResponse, ARateThatLastsGoesOn) {
   p.relaxation[0] = 10;
   p.blocks.push_back({.id = 1, .lower = 0});
   TickResponse response({.tissue_in_time = true, .tissue_moves = true}, 8);
-  response.begin(p, tick_s);
+  response.begin(p, {}, tick_s);
   std::vector<double> none{0.0};
   double gap = 0;
   for (int k = 0; k < 10; ++k) {
@@ -190,10 +190,10 @@ TEST(TickResponse, ANewProblemTakesOverWithoutAJump) {
   engine.stiffness *= 2;  // the step after has found something else
   const ConstraintProblem after = problem_of(engine, h, -1e-3);
   ServoSettings s = in_time();
-  s.handover_s = 0.01;
+  s.hand_over.within_s = 0.01;
   Servo smooth(s), abrupt(in_time());
   double last[2] = {0, 0}, jump[2] = {0, 0}, end[2] = {0, 0};
-  for (int k = 0; k < 60; ++k) {
+  for (int k = 0; k < 150; ++k) {
     int i = 0;
     for (Servo* servo : {&smooth, &abrupt}) {
       if (k == 0) servo->set_problem(&before, {}, tick_s);
