@@ -155,7 +155,7 @@ const std::vector<Given> all = {
     {"picture_of_one_slice", "a.nii", [] { return test::nifti_text({54, 24, 1}, 0.3, [](int i, int j, int) { return test::tube_label(i, j, 8); }); }, "a.nii", false, label_1},
     {"volume_over_time", "a.nii", [] { return labels(0.3, 3); }, "4 dimensions", false, label_1},
     {"volume_truncated", "a.nii", [] { return labels().substr(0, 30000); }, "ends early", false, label_1},
-    {"meta_image_truncated", "a.mha", [] { return "ObjectType = Image\nNDims = 3\nBinaryData = True\nDimSize = 54 24 32\nElementType = MET_UCHAR\nElementSpacing = 0.3 0.3 0.3\nElementDataFile = LOCAL\n" + labels().substr(352, 30000); }, "a.mha", false, label_1},
+    {"meta_image_truncated", "a.mha", [] { return "ObjectType = Image\nNDims = 3\nBinaryData = True\nDimSize = 54 24 32\nElementType = MET_UCHAR\nElementSpacing = 0.3 0.3 0.3\nElementDataFile = LOCAL\n" + labels().substr(352, 30000); }, "ends early", false, label_1},
     {"volume_garbage", "a.nii", [] { return std::string(4000, 'q'); }, "a.nii", false, label_1},
     {"volume_in_metres", "a.nii", [] { return labels(3e-4); }, "unit in its header", false, label_1},
     {"meta_image_without_its_data", "a.mhd", [] { return std::string("ObjectType = Image\nNDims = 3\nDimSize = 9 9 9\nElementType = MET_UCHAR\nElementSpacing = 1 1 1\nElementDataFile = gone.raw\n"); }, "a.mhd", false, label_1},
@@ -221,6 +221,45 @@ TEST(BadInput, FiveMillionTrianglesAreRefusedBeforeTheyAreRead) {
     EXPECT_NE(std::string(e.what()).find("decimate"), std::string::npos);
   }
 }
+
+#ifdef INSULA_WITH_ITK
+/// A series of DICOM slices of the tube, but for the one that is left out.
+void write_series(const insula::test::SceneFolder& folder, int missing) {
+  for (int k = 0; k < 32; ++k)
+    if (k != missing) folder.write("series/" + std::to_string(k) + ".dcm", test::dicom_text({54, 24}, 0.3, k, [k](int i, int j) { return 900 * test::tube_label(i, j, k); }));
+}
+
+TEST(Volumes, ADicomSeriesIsReadByItsThreshold) {
+  insula::test::SceneFolder folder;
+  write_series(folder, -1);
+  Progress quiet;
+  Options o;
+  o.threshold = 450;
+  const Intake in = take_in(folder.path() / "series", o, quiet);
+  ASSERT_EQ(in.surface.caps.size(), 2u);
+  EXPECT_NEAR(in.surface.caps[0].radius, 1.4, 0.15);
+  // Left and posterior of the file are right and anterior of the builder with the other sign: the sac stays on top.
+  Vec3 top = Vec3::Zero();
+  for (const Vec3& p : in.surface.mesh.vertices) top = p.z() > top.z() ? p : top;
+  EXPECT_NEAR(top.x(), -8, 0.8);
+  EXPECT_NEAR(top.z(), 2.4 + 3.4 + 2.4, 0.3);
+  EXPECT_NEAR(signed_volume(in.surface.mesh), 15.6 * 3.14159 * 1.96 + 45, 15);
+}
+
+TEST(Volumes, AMissingSliceIsNamed) {
+  insula::test::SceneFolder folder;
+  write_series(folder, 12);
+  Progress quiet;
+  Options o;
+  o.threshold = 450;
+  try {
+    take_in(folder.path() / "series", o, quiet);
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("even distances (between 11.dcm and 13.dcm)"), std::string::npos) << e.what();
+  }
+}
+#endif
 
 TEST(BadInput, EmptyFolderIsNoSeries) {
   insula::test::SceneFolder folder;

@@ -69,12 +69,12 @@ std::string pictures(const artery::Vessel& v, const CaseFolder& folder) {
   const Drawn plane{disc(neck.centre, neck.normal, 0.8 * neck.diameter), {{250, 250, 250}}, 0.35, true};
   const Vec3 side = neck.normal.unitOrthogonal();
   std::string s = "<div class=\"row\">";
-  s += "<figure>" + svg_picture({drawn_regions(v), plane}, side, neck.normal, centre, radius, 340) + "<figcaption>regions and the neck's plane, from the side</figcaption></figure>";
-  s += "<figure>" + svg_picture({drawn_regions(v), plane}, neck.normal.cross(side), neck.normal, centre, radius, 340) + "<figcaption>turned by 90 degrees</figcaption></figure>";
+  s += "<figure>" + svg_picture({drawn_regions(v), plane}, side, neck.normal, centre, radius, 330) + "<figcaption>regions and the neck's plane, from the side</figcaption></figure>";
+  s += "<figure>" + svg_picture({drawn_regions(v), plane}, neck.normal.cross(side), neck.normal, centre, radius, 330) + "<figcaption>turned by 90 degrees</figcaption></figure>";
   std::vector<Drawn> field{drawn_regions(v)};
   for (const auto& [name, colour] : {std::pair("frontal", std::array<int, 3>{214, 160, 150}), std::pair("temporal", std::array<int, 3>{200, 140, 140}), std::pair("insula", std::array<int, 3>{170, 120, 120})})
     field.push_back({read_ply(folder.lobes() / (std::string(name) + "_surface.ply")), {colour}, 0.5, false});
-  s += "<figure>" + svg_picture(field, to_surgeon, Vec3(0, 0, 1), neck.centre, 18, 340) + "<figcaption>in the fissure, from the surgeon's side (lobes half transparent)</figcaption></figure></div>\n";
+  s += "<figure>" + svg_picture(field, to_surgeon, Vec3(0, 0, 1), neck.centre, 18, 330) + "<figcaption>in the fissure, from the surgeon's side (lobes half transparent)</figcaption></figure></div>\n";
   return s;
 }
 

@@ -2,6 +2,8 @@
 // Vessels for tests, made from functions: a straight tube with a sac, and what can be wrong with such a surface. Millimetres.
 #pragma once
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <fstream>
 #include <functional>
 #include <string>
@@ -112,6 +114,46 @@ inline std::string nifti_text(std::array<int, 3> n, double spacing, const std::f
       for (int j = 0; j < n[1]; ++j)
         for (int i = 0; i < n[0]; ++i) h.push_back(char(value(i, j, k)));
   return h;
+}
+
+/// One slice of a DICOM series, 16 bits, explicit little endian.
+inline std::string dicom_text(std::array<int, 2> n, double spacing, int slice, const std::function<int(int, int)>& value) {
+  std::string s(128, '\0');
+  s += "DICM";
+  const auto put = [](std::string& to, auto v) { to.append(reinterpret_cast<const char*>(&v), sizeof v); };
+  const auto element = [&put](std::string& to, unsigned group, unsigned number, const char* kind, std::string data) {
+    if (data.size() % 2) data += kind[0] == 'U' ? '\0' : ' ';
+    put(to, std::uint16_t(group)), put(to, std::uint16_t(number));
+    to += kind;
+    if (std::string(kind) == "OW" || std::string(kind) == "OB") put(to, std::uint16_t(0)), put(to, std::uint32_t(data.size()));
+    else put(to, std::uint16_t(data.size()));
+    to += data;
+  };
+  const auto number = [&put](int v) {
+    std::string t;
+    put(t, std::uint16_t(v));
+    return t;
+  };
+  const std::string place = std::to_string(spacing * slice), same = std::to_string(spacing), id = "1.2.3.4." + std::to_string(slice + 1), ct = "1.2.840.10008.5.1.4.1.1.2";
+  std::string meta;
+  element(meta, 2, 1, "OB", std::string("\0\1", 2));
+  element(meta, 2, 2, "UI", ct), element(meta, 2, 3, "UI", id), element(meta, 2, 0x10, "UI", "1.2.840.10008.1.2.1"), element(meta, 2, 0x12, "UI", "1.2.3.9");
+  std::string length;
+  put(length, std::uint32_t(meta.size()));
+  element(s, 2, 0, "UL", length);
+  s += meta;
+  element(s, 8, 0x16, "UI", ct), element(s, 8, 0x18, "UI", id), element(s, 8, 0x60, "CS", "CT");
+  element(s, 0x18, 0x50, "DS", same);
+  element(s, 0x20, 0xD, "UI", "1.2.3.5"), element(s, 0x20, 0xE, "UI", "1.2.3.6"), element(s, 0x20, 0x13, "IS", std::to_string(slice + 1));
+  element(s, 0x20, 0x32, "DS", "0\\0\\" + place), element(s, 0x20, 0x37, "DS", "1\\0\\0\\0\\1\\0");
+  element(s, 0x28, 2, "US", number(1)), element(s, 0x28, 4, "CS", "MONOCHROME2"), element(s, 0x28, 0x10, "US", number(n[1])), element(s, 0x28, 0x11, "US", number(n[0]));
+  element(s, 0x28, 0x30, "DS", same + "\\" + same);
+  element(s, 0x28, 0x100, "US", number(16)), element(s, 0x28, 0x101, "US", number(16)), element(s, 0x28, 0x102, "US", number(15)), element(s, 0x28, 0x103, "US", number(0));
+  std::string pixels;
+  for (int j = 0; j < n[1]; ++j)
+    for (int i = 0; i < n[0]; ++i) put(pixels, std::uint16_t(value(i, j)));
+  element(s, 0x7FE0, 0x10, "OW", pixels);
+  return s;
 }
 
 /// The tube with its sac as labels: 1 inside, reaching through the whole volume along x.

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <fstream>
 
 #include "core/base/text.h"
 #include "core/model/file_bytes.h"
@@ -183,6 +184,29 @@ void check_length(const fs::path& file) {
     fail(file, "ends early: its header announces " + std::to_string(std::int64_t(wanted)) + " bytes of voxels, and " + std::to_string(std::int64_t(length - double(offset))) + " are there");
 }
 
+/// And so it does with MetaImage. `bytes`: of the voxels, uncompressed.
+void check_meta_length(const fs::path& file, double bytes) {
+  std::ifstream in(file, std::ios::binary);
+  std::string line, data;
+  bool compressed = false;
+  double wanted = bytes, skipped = 0;
+  while (data.empty() && std::getline(in, line) && line.size() < 4096) {
+    const std::size_t sign = line.find('=');
+    if (sign == std::string::npos) continue;
+    const std::string key(trim(line.substr(0, sign))), value(trim(line.substr(sign + 1)));
+    if (key == "CompressedData") compressed = value == "True" || value == "true" || value == "1";
+    if (key == "CompressedDataSize") parse_double(value, wanted);
+    if (key == "HeaderSize") parse_double(value, skipped);
+    if (key == "ElementDataFile") data = value;
+  }
+  if (data.empty() || data == "LIST" || data.find('%') != std::string::npos || (compressed && wanted == bytes)) return;  // ITK reads those file by file
+  std::error_code error;
+  const fs::path holds = data == "LOCAL" || data == "Local" || data == "local" ? file : file.parent_path() / data;
+  const double there = double(fs::file_size(holds, error)) - (holds == file ? double(in.tellg()) : std::max(0.0, skipped));
+  if (error) fail(file, "its data file " + in_quotes(data) + " is not there");
+  if (there < wanted) fail(holds, "ends early: " + std::to_string(std::int64_t(wanted)) + " bytes of voxels are announced, and " + std::to_string(std::int64_t(there)) + " are there");
+}
+
 }  // namespace
 
 mesh_tool::NiftiVolume read_volume(const fs::path& path) {
@@ -192,7 +216,12 @@ mesh_tool::NiftiVolume read_volume(const fs::path& path) {
     if (fs::is_directory(path)) return read_series(path);
     if (!fs::exists(path)) fail(path, "does not exist");
     if (ends_with(name, ".dcm")) return read_series(path.parent_path().empty() ? fs::path(".") : path.parent_path());
-    if (ends_with(name, ".mha") || ends_with(name, ".mhd")) return read_file(path, *itk::MetaImageIO::New());
+    if (ends_with(name, ".mha") || ends_with(name, ".mhd")) {
+      auto io = itk::MetaImageIO::New();
+      read_header(path, *io);
+      check_meta_length(path, double(io->GetImageSizeInBytes()));
+      return read_file(path, *itk::MetaImageIO::New());
+    }
     check_length(path);
     return read_file(path, *itk::NiftiImageIO::New());
   } catch (const InputError&) {
