@@ -94,7 +94,10 @@ TEST(ArteryTool, ATubeIsCutFlatAndClosed) {
 }
 
 TEST(ArteryTool, ATubesCapsAndCentrelineAreFound) {
-  const Vessel v = import_surface(tube().mesh, {.edge_length = 0.25, .inlet = Vec3(0, 0, 10)});
+  ImportOptions options;
+  options.edge_length = 0.25;
+  options.inlet = Vec3(0, 0, 10);
+  const Vessel v = import_surface(tube().mesh, options);
   ASSERT_EQ(v.wall.caps.size(), 2u);
   EXPECT_EQ(v.wall.caps[0].name, "inlet");
   EXPECT_NEAR((v.wall.caps[0].centre - Vec3(0, 0, 10)).norm(), 0, 0.02);  // the cap nearest to the point given
