@@ -13,7 +13,7 @@ cp "$source_dir"/tests/fuzz/parts/*.xml "$build_dir/scene/"
 cache=
 command -v ccache >/dev/null && cache=ccache
 flags="-std=c++20 -O1 -g1 -fno-omit-frame-pointer -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined"
-flags="$flags -I$source_dir -isystem /usr/include/eigen3 -DFMT_HEADER_ONLY"
+flags="$flags -I$source_dir -I$2/generated/abi -isystem /usr/include/eigen3 -DFMT_HEADER_ONLY"
 sources=$(ls "$source_dir"/core/base/*.cpp "$source_dir"/core/params/*.cpp "$source_dir"/core/registry/*.cpp \
   "$source_dir"/core/scene/*.cpp "$source_dir"/tests/fuzz/loader_fuzz.cpp | grep -v '_test\.cpp$')
 target=$build_dir/loader_fuzz
