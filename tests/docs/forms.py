@@ -37,8 +37,8 @@ class UntilCtrlC:
     more: str = ""
     prints: str = ""
 
-    def command(self, text):
-        return re.sub(self.pattern, r"\g<0>" + self.more, text)
+    def command(self, text):  # the test's own bus and port: others may run beside it
+        return re.sub(r'^LCM_DEFAULT_URL="[^"]*" | --port \d+', "", text) + self.more
 
 
 @dataclasses.dataclass
@@ -88,7 +88,7 @@ FORMS = (
     UntilCtrlC(r"^/opt/insula/bin/insula play$", "RENDER_FRAME", PLAY),
 
     # A session: until the engine, or the servo where there is no engine, is at work. The viewer takes any free port.
-    UntilCtrlC(r"^\./insula play\b.*$", "RENDER_FRAME", PLAY, "viewer at http"),
+    UntilCtrlC(r"^(LCM_DEFAULT_URL=\S+ )?\./insula play\b.*$", "RENDER_FRAME", PLAY, "viewer at http"),
     UntilCtrlC(r"^\./insula view (?!--list).*$", "RENDER_FRAME", PLAY, "viewer at http"),
     UntilCtrlC(r"^\./insula engine .*$", "RENDER_FRAME"),
     UntilCtrlC(r"^build/release/bin/haptic_server .*$", "DEVICE_STATE"),

@@ -26,8 +26,8 @@ def main():
     for page in pages.all_pages(source):
         name = page.relative_to(source)
         blocks = pages.read(page)[0]
-        if any(b.language == "sh" or b.language in snippets.READERS for b in blocks) and "docs_run." + page.stem not in tests:
-            failures.append("%s has no test docs_run.%s" % (name, page.stem))
+        if any(b.language == "sh" or b.language in snippets.READERS for b in blocks) and "docs_run.%s" % name not in tests:
+            failures.append("%s has no test docs_run.%s" % (name, name))
         for block in blocks:
             if block.language in ("bash", "shell", "console", "c++", "py"):
                 failures.append("%s:%d: ```%s is read by nothing; say sh, cpp or python" % (name, block.line, block.language))
