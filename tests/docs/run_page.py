@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""run_page.py SOURCE BUILD PAGE: runs a page of the manual: its files are put where it says, its commands run from the first to
-the last in a copy of the project, each as it stands or as forms.py says, and its snippets go through what reads them.
+"""run_page.py SOURCE BUILD PAGE: runs a page of the manual from its first line to its last in a copy of the project: files are put
+where it says, commands run as they stand or as forms.py says. Then its snippets go through what reads them.
 """
 import os
 import pathlib
@@ -30,9 +30,10 @@ def seconds():
 
 
 def earlier(source, page):
-    """Commands of the pages before this one."""
+    """What the pages before this one have run for it."""
     order = pages.all_pages(source)
-    return {c for p in order[:order.index(page)] for b in pages.read(p)[0] if b.language == "sh" for _, c in pages.commands(b)}
+    said = {c for p in order[:order.index(page)] for b in pages.read(p)[0] if b.language == "sh" for _, c in pages.commands(b)}
+    return {c for c in said if re.fullmatch(forms.ONCE, c)}
 
 
 class Runner:
@@ -109,18 +110,17 @@ class Runner:
         project.make(self.source, self.build, self.folder)
         for name in forms.FIXTURES.get(self.name, ()):
             project.fixture(name, self.source, self.build, self.folder)
+        known = earlier(self.source, self.page)
         for block in blocks:
             if block.role in ("file", "bad"):
                 (self.folder / block.value).parent.mkdir(parents=True, exist_ok=True)
                 (self.folder / block.value).write_text(block.text, encoding="utf-8")
-        known = earlier(self.source, self.page)
-        for block in blocks:
-            if block.language == "sh":
+            elif block.language == "sh":
                 for line, text in pages.commands(block):
                     if text not in known:
-                        known.add(text)
                         self.command(line, text)
-            elif block.role != "bad":
+        for block in blocks:  # when all files of the page are there
+            if block.role != "bad":
                 snippets.check(self, block)
 
 
