@@ -73,13 +73,16 @@ TEST(Bar, OwnWeightConverges) {
   const double young = 1e5, g = 9.81;
   const double expected = 1000 * g * length * length / (2 * young);
   double last = 0;
+  test::Figure figure("own_weight", "A bar under its own weight, rho g L^2 / (2 E), under refinement", "cubes across", "lengthening over theory");
   for (const int n : {1, 2, 4}) {
     auto body = test::soft_body(bar(5 * n, n), {.young = young, .poisson = 0}, clamped);
     for (int k = 0; k < 20; ++k) {
       body->v().setZero();
       test::step(*body, 1e6, Vec3(g, 0, 0));
     }
-    const double error = std::abs(test::mean_displacement(*body, tip).x() / expected - 1);
+    const double ratio = test::mean_displacement(*body, tip).x() / expected, error = std::abs(ratio - 1);
+    figure.run("lengthening", n, ratio);
+    figure.law("theory", n, 1);
     if (n > 1) { EXPECT_LT(error, 0.35 * last) << n; }
     last = error;
   }

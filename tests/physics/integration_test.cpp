@@ -37,8 +37,11 @@ TEST(ImplicitEuler, FreeFall) {
   auto body = test::soft_body(cube(), {.young = 2100, .poisson = 0.45, .rayleigh_stiffness = 0.02});
   const Vec3 g(0.5, -1, -9.81);
   const double h = 1.0 / 60;
+  test::Figure figure("fall", "A body that falls: h^2 g n (n + 1) / 2 after n steps", "step of 1/60 s", "fallen, m");
   for (int n = 1; n <= 100; ++n) {
     test::step(*body, h, g);
+    figure.law("law", n, -0.5 * h * h * n * (n + 1) * g.z());
+    if (n % 4 == 0) figure.run("run", n, body->rest().nodes[0].z() - body->q()[2]);
     for (int i = 0; i < body->nodes(); ++i) {
       ASSERT_LT((body->v().segment<3>(3 * i) - n * h * g).norm(), 1e-9 * n * h * g.norm()) << "step " << n;
       ASSERT_LT((body->q().segment<3>(3 * i) - body->rest().nodes[std::size_t(i)] - 0.5 * h * h * n * (n + 1) * g).norm(), 1e-9 * h * h * n * (n + 1) * g.norm());
