@@ -46,12 +46,12 @@ SLACK = 0.3  # pixels by which another processor's last digits may move a point
 
 
 def ticks(low, high):
-    """Some five round numbers within a range."""
+    """Some five round numbers within a range, each with its text."""
     raw = (high - low) / 5
     size = 10.0 ** math.floor(math.log10(raw))
     step = next(size * m for m in (1, 2, 5, 10) if size * m >= raw * 0.999)
-    first = math.ceil(low / step - 1e-9)
-    return [k * step for k in range(first, int(math.floor(high / step + 1e-9)) + 1)]
+    first, digits = math.ceil(low / step - 1e-9), max(0, -math.floor(math.log10(step) + 1e-9))
+    return [(k * step, "%.*f" % (digits, k * step)) for k in range(first, int(math.floor(high / step + 1e-9)) + 1)]
 
 
 def text(x, y, what, anchor="middle", more=""):
@@ -68,10 +68,10 @@ def svg(figure):
     y = lambda v: HEIGHT - BOTTOM - (v - low[1]) / (high[1] - low[1]) * (HEIGHT - TOP - BOTTOM)  # noqa: E731
     out = ['<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 %d %d" width="%d" height="%d" role="img" font-family="sans-serif" font-size="11" fill="#222">' % (WIDTH, HEIGHT, WIDTH, HEIGHT),
            '<rect width="%d" height="%d" fill="#fff"/>' % (WIDTH, HEIGHT), text(WIDTH / 2, 16, figure["title"], more=' font-size="12"')]
-    for v in ticks(low[0], high[0]):
-        out += ['<path d="M%.1f %.1fV%.1f" stroke="#e5e7eb"/>' % (x(v), TOP, HEIGHT - BOTTOM), text(x(v), HEIGHT - BOTTOM + 14, "%.4g" % v)]
-    for v in ticks(low[1], high[1]):
-        out += ['<path d="M%.1f %.1fH%.1f" stroke="#e5e7eb"/>' % (LEFT, y(v), WIDTH - RIGHT), text(LEFT - 5, y(v) + 4, "%.4g" % v, "end")]
+    for v, shown in ticks(low[0], high[0]):
+        out += ['<path d="M%.1f %.1fV%.1f" stroke="#e5e7eb"/>' % (x(v), TOP, HEIGHT - BOTTOM), text(x(v), HEIGHT - BOTTOM + 14, shown)]
+    for v, shown in ticks(low[1], high[1]):
+        out += ['<path d="M%.1f %.1fH%.1f" stroke="#e5e7eb"/>' % (LEFT, y(v), WIDTH - RIGHT), text(LEFT - 5, y(v) + 4, shown, "end")]
     out += [text((LEFT + WIDTH - RIGHT) / 2, HEIGHT - 8, figure["x"]), text(13, (TOP + HEIGHT - BOTTOM) / 2, figure["y"], more=' transform="rotate(-90 13 %.1f)"' % ((TOP + HEIGHT - BOTTOM) / 2))]
     names = list(figure["law"]) + [n for n in figure["run"] if n not in figure["law"]]
     same = set(figure["law"]) == set(figure["run"])
