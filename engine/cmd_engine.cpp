@@ -15,7 +15,7 @@
 namespace insula {
 
 int cmd_engine(const CommandContext& context, const EngineOptions& o) {
-  LiveOptions options{o.scene, o.motion, o.bundle_root, o.duration, o.unthrottled, o.threads, o.seed, o.keep_bundle, o.still, o.notice, {}};
+  LiveOptions options{o.scene, o.motion, o.bundle_root, o.duration, o.unthrottled, o.threads, o.seed, o.keep_bundle, o.still, o.notice, o.report, {}};
   const SignalPipe signals{SIGINT, SIGTERM, SIGHUP, SIGUSR1};
   signal(SIGPIPE, SIG_IGN);
 

@@ -129,6 +129,7 @@ ChildSpec engine_child(const PlayOptions& options, const fs::path& program, cons
   else if (!bundles.empty()) engine.command.insert(engine.command.end(), {"--bundle-dir", bundles.string()});
   if (options.view) engine.command.emplace_back("--still");
   if (!bundles.empty()) engine.command.insert(engine.command.end(), {"--notice", (bundles / "notice.txt").string()});
+  if (!options.report.empty()) engine.command.insert(engine.command.end(), {"--report", options.report.string()});
   engine.waits_for_offer = options.reload;
   return engine;
 }

@@ -63,14 +63,11 @@ int cmd_run(const CommandContext& context, const RunOptions& options) {
     }
     if (!simulation.report().finite) break;
   }
-  summary.title = simulation.scene().title();
+  summary.take(simulation);
   summary.scene = options.scene.string();
   summary.motion = options.motion;
   summary.fresh_forces_per_s = run.haptics().fresh_forces_per_s();
   for (int h = 0; h < 2; ++h) summary.max_force_N[std::size_t(h)] = run.haptics().hand(h).max_force_N;
-  summary.state_hash = simulation.state_hash();
-  summary.exercise = simulation.exercise();
-  summary.complications = simulation.complications();
   try {
     if (!options.report.empty()) write_report(options.report, recorder, summary);
     if (!options.export_folder.empty()) export_bodies(simulation, options.export_folder);

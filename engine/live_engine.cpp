@@ -19,6 +19,7 @@
 #include "engine/command_script.h"
 #include "engine/notice.h"
 #include "engine/publisher.h"
+#include "engine/session_reports.h"
 
 namespace insula {
 namespace fs = std::filesystem;
@@ -38,8 +39,8 @@ struct Inputs {
   bool driven = false;  ///< a person has moved a hand since the start
   std::vector<std::pair<std::string, std::string>> asked;  ///< command and argument, in order of arrival
 
-  void subscribe(Bus& bus) {
-    bus.subscribe(channel::device_state, [this](Bytes b) {
+  void subscribe(Bus& bus, SessionReports& reports) {
+    bus.subscribe(channel::device_state, [this, &reports](Bytes b) {
       std::string why;
       insula_lcm::device_state_t m;
       if (!decode(b, m, why)) return;
@@ -47,6 +48,12 @@ struct Inputs {
       if (!order.take(m.session, m.sequence, 1000 * now_us)) return;
       devices = std::move(m);
       received_us = now_us;
+      reports.hear(devices);
+    });
+    bus.subscribe(channel::haptic_status, [&reports](Bytes b) {
+      std::string why;
+      insula_lcm::haptic_status_t m;
+      if (decode(b, m, why)) reports.hear(m);
     });
     bus.subscribe(channel::hand_input, [this](Bytes b) {
       std::string why;
@@ -154,8 +161,9 @@ int run_live(const LiveOptions& options, const Registry& registry, Bus& bus, con
   write_bundle(simulation, bundle, session, options.still);
   const std::string title = simulation.scene().title().empty() ? options.scene.stem().string() : simulation.scene().title();
   Publisher publisher(bus, session, options.scene, bundle, motion, title);
+  SessionReports reports(options.report, options.scene, motion.empty() ? "" : options.motion);
   Inputs inputs;
-  inputs.subscribe(bus);
+  inputs.subscribe(bus, reports);
   CommandScript commands(script.commands());
   Notice notice(options.notice);
   spdlog::info("\"{}\" runs: {} bodies, {} constraints, step {:.2f} ms", title, simulation.bodies().size(),
@@ -174,6 +182,7 @@ int run_live(const LiveOptions& options, const Registry& registry, Bus& bus, con
       inputs.reset = false;
       inputs.driven = false;  // the haptic server gives the hands back to the motion
       commands.reset();
+      reports.end_run(simulation);
       simulation.reset();
       spdlog::info("reset");
     }
@@ -183,14 +192,19 @@ int run_live(const LiveOptions& options, const Registry& registry, Bus& bus, con
     }
     inputs.asked.clear();
     if (inputs.pause || options.still) {
-      publisher.events(simulation.take_announced());  // no step will
+      const std::vector<Event> announced = simulation.take_announced();  // no step will
+      publisher.events(announced);
+      reports.note(announced);
       publisher.paused_frame(simulation);
       publisher.info("paused", notice.text());
     } else {
       const std::int64_t posed = inputs.apply(simulation);
-      commands.advance(simulation, inputs.follows(script));
+      const bool follows = inputs.follows(script);
+      commands.advance(simulation, follows);
       simulation.step();
       if (!simulation.report().finite) {
+        reports.step(simulation, posed > 0, follows);
+        reports.end_run(simulation);
         spdlog::error("the simulation left the range of numbers at {:.3f} s; it starts again", simulation.time());
         simulation.reset();
         commands.reset();
@@ -198,6 +212,7 @@ int run_live(const LiveOptions& options, const Registry& registry, Bus& bus, con
       }
       publisher.step(simulation, posed);
       publisher.info("running", notice.text());
+      reports.step(simulation, posed > 0, follows);
     }
     if (options.unthrottled && !inputs.pause) continue;
     next += period;
@@ -213,6 +228,7 @@ int run_live(const LiveOptions& options, const Registry& registry, Bus& bus, con
     }
   }
   publisher.info("ended");
+  reports.end_run(simulation);
   const double wall = std::chrono::duration<double>(Clock::now() - began).count();
   spdlog::info("ended after {:.2f} s simulated in {:.2f} s (real_time_factor {:.2f}), {} steps dropped, {} messages not sent",
                simulation.time(), wall, wall > 0 ? simulation.time() / wall : 0, late, publisher.failed());

@@ -23,6 +23,7 @@ struct LiveOptions {
   bool keep_bundle = false;       ///< leave the viewer's bundle where it is at the end, for a replay
   bool still = false;             ///< to be looked at: time never runs, the bundle holds the inventory
   std::filesystem::path notice;   ///< file whose text viewers are shown over the picture while it is not empty; none: nothing
+  std::filesystem::path report;   ///< folder for the session's reports (session_reports.h); empty: none
   /// Called once when the scene is loaded and settled, before anything is sent; may wait. False: end without a word.
   std::function<bool()> take_over;
 };

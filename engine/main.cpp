@@ -173,6 +173,7 @@ int main(int argc, char** argv) {
   engine->add_flag("--still", engine_options.still, "to be looked at: time never runs");
   engine->add_flag("--standby", engine_options.standby, "load, say so, and wait for SIGUSR1 before speaking on the bus");
   engine->add_option("--notice", engine_options.notice, "file whose text viewers are shown while it is not empty");
+  engine->add_option("--report", engine_options.report, "folder for reports of the session, each in a folder of its own named by date and time");
   engine->add_flag("--keep-bundle", engine_options.keep_bundle, "leave the bundle where it is at the end, for a replay");
   engine->callback([&] { run = [&](const auto& c) { return insula::cmd_engine(c, engine_options); }; });
 
@@ -195,6 +196,7 @@ int main(int argc, char** argv) {
   play->add_option("--duration", play_options.duration_s, "end after so many seconds; 0: never")->check(CLI::NonNegativeNumber);
   play->add_option("--seed", play_options.seed, "what complications are drawn from; 0: the scene's own seed");
   play->add_option("--keep-bundle", play_options.keep_bundle, "folder in which the viewer's scene bundles stay, for a replay of a log");
+  play->add_option("--report", play_options.report, "folder for reports of the session, each in a folder of its own named by date and time");
   play->add_flag("--no-browser", no_browser, "open no browser");
   bool no_reload = false;
   play->add_flag("--no-reload", no_reload, "do not load the scene again when one of its files is saved");

@@ -21,6 +21,7 @@ struct PlayOptions {
   double duration_s = 0;              ///< 0: until Ctrl-C
   std::uint64_t seed = 0;             ///< of the complications; 0: the scene's
   std::filesystem::path keep_bundle;          ///< the viewer's bundles go into this folder and stay; empty: they go with the session
+  std::filesystem::path report;               ///< folder for the session's reports; empty: none
   bool reload = true;                         ///< load the scene again when one of its files is saved
   bool view = false;                          ///< the scene to be looked at: time stands still, no hands (insula view)
   std::vector<std::filesystem::path> plugin_paths;  ///< of shared plugins, or folders of them, for the engine

@@ -44,10 +44,10 @@ std::string row(const std::string& name, const std::string& value) {
   return fmt::format("<tr><td>{}</td><td class=\"n\">{}</td></tr>\n", escaped(name), escaped(value));
 }
 
-std::string exercise_part(const Exercise& exercise) {
-  const ExerciseLog& log = exercise.log();
-  std::string out = fmt::format("<h2>Exercise: {}</h2>\n", escaped(exercise.title()));
-  if (!exercise.text().empty()) out += fmt::format("<p class=\"quiet\">{}</p>\n", escaped(exercise.text()));
+std::string exercise_part(const ExerciseOutcome& exercise) {
+  const ExerciseLog& log = exercise.log;
+  std::string out = fmt::format("<h2>Exercise: {}</h2>\n", escaped(exercise.title));
+  if (!exercise.text.empty()) out += fmt::format("<p class=\"quiet\">{}</p>\n", escaped(exercise.text));
   switch (log.state()) {
     case ExerciseState::running: out += "<p>The run ended before the exercise did.</p>\n"; break;
     case ExerciseState::done: out += fmt::format("<p class=\"good\">Completed after {:.1f} s.</p>\n", log.end_time()); break;
@@ -157,6 +157,7 @@ std::string report_html(const RunRecorder& recorder, const RunSummary& summary) 
                     "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n";
   out += fmt::format("<title>{0}: report</title>\n<style>{1}</style>\n</head>\n<body>\n<h1>{0}</h1>\n", escaped(summary.title.empty() ? "Run" : summary.title), style);
   out += "<p class=\"notice\">For training only. Not a medical device, and no measure of fitness to operate.</p>\n";
+  if (!summary.began.empty()) out += fmt::format("<p class=\"quiet\">Begun {}</p>\n", escaped(summary.began));
   if (!recorder.finite()) out += "<p class=\"bad\">The simulation lost its numbers (not finite): nothing below can be relied upon.</p>\n";
   if (summary.exercise) out += exercise_part(*summary.exercise);
   out += recorder.outcome().html();
@@ -164,7 +165,8 @@ std::string report_html(const RunRecorder& recorder, const RunSummary& summary) 
   out += "<h2>The run</h2>\n<table><tbody>\n";
   if (!summary.scene.empty()) out += row("scene", summary.scene);
   if (!summary.motion.empty()) out += row("motion", summary.motion);
-  out += row("steps", fmt::format("{}", samples.size()));
+  out += row("steps", fmt::format("{}", recorder.steps()));
+  if (recorder.steps_per_sample() > 1) out += row("gathered for what follows, each with its largest values", fmt::format("{} steps", recorder.steps_per_sample()));
   out += row("simulated time", fmt::format("{:.3f} s", sim));
   out += row("wall time of the steps", fmt::format("{:.3f} s", summary.wall_seconds));
   out += row("simulated over wall time", fmt::format("{:.2f}", summary.wall_seconds > 0 ? sim / summary.wall_seconds : 0));

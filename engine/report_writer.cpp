@@ -5,11 +5,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "core/base/input_error.h"
+#include "core/sim/simulation.h"
 #include "engine/felt_forces.h"
 
 namespace insula {
@@ -36,21 +39,21 @@ double largest(const std::vector<double>& v) { return v.empty() ? 0 : *std::max_
 
 Json mean_max(const std::vector<double>& v) { return {{"mean", mean(v)}, {"max", largest(v)}}; }
 
-Json exercise_json(const RunRecorder& recorder, const Exercise* exercise) {
+Json exercise_json(const RunRecorder& recorder, const std::optional<ExerciseOutcome>& exercise) {
   Json goals = Json::array(), faults = Json::array(), timers = Json::array(), measures = Json::array();
   Json out;
   if (exercise) {
-    for (const auto& g : exercise->log().goals())
+    for (const auto& g : exercise->log.goals())
       goals.push_back({{"id", g.id}, {"done", g.done}, {"time_s", g.done ? Json(g.time) : Json()}, {"required", g.required}, {"text", g.text}});
-    for (const auto& f : exercise->log().faults()) faults.push_back({{"id", f.id}, {"count", f.count}, {"text", f.text}});
-    for (const auto& t : exercise->log().timers())
+    for (const auto& f : exercise->log.faults()) faults.push_back({{"id", f.id}, {"count", f.count}, {"text", f.text}});
+    for (const auto& t : exercise->log.timers())
       timers.push_back({{"id", t.id}, {"elapsed_s", t.elapsed}, {"longest_s", t.longest}, {"limit_s", t.limit}, {"running", t.running}, {"text", t.text}});
-    for (const auto& m : exercise->log().measures())
+    for (const auto& m : exercise->log.measures())
       measures.push_back({{"id", m.id}, {"value", m.known ? Json(m.value) : Json()}, {"unit", m.unit}, {"good", m.good}, {"text", m.text}});
     static constexpr const char* states[] = {"running", "done", "failed"};
     out["id"] = exercise->id;
-    out["title"] = exercise->title();
-    out["state"] = states[int(exercise->log().state())];
+    out["title"] = exercise->title;
+    out["state"] = states[int(exercise->log.state())];
   }
   out["goals"] = goals;
   out["faults"] = faults;
@@ -80,13 +83,36 @@ Json series_json(const RunSeries& s) {
 }
 
 void write(const std::filesystem::path& file, const std::string& text) {
+  errno = 0;
   std::ofstream out(file, std::ios::binary | std::ios::trunc);
   out << text;
   out.close();
-  if (!out) throw InputError(file.string() + ": cannot be written");
+  if (!out) throw InputError(fmt::format("{}: cannot be written{}", file.string(), errno ? fmt::format(": {}", std::strerror(errno)) : ""));
+}
+
+/// `b` follows `a`.
+void join(RunRecorder::Sample& a, const RunRecorder::Sample& b) {
+  const auto larger = [](auto& x, auto y) { x = std::max(x, y); };
+  a.time_s = b.time_s;
+  a.steps += b.steps;
+  a.strands_left = b.strands_left;
+  for (std::size_t k = 0; k < stage_count; ++k) larger(a.stage_ms[k], b.stage_ms[k]);
+  larger(a.step_ms, b.step_ms);
+  for (std::size_t h = 0; h < 2; ++h) {
+    larger(a.hand_force_N[h], b.hand_force_N[h]);
+    larger(a.tool_force_N[h], b.tool_force_N[h]);
+  }
+  larger(a.residual_N, b.residual_N);
+  larger(a.residual_m, b.residual_m);
+  larger(a.energy_J, b.energy_J);
+  larger(a.rows, b.rows);
+  larger(a.contacts, b.contacts);
+  larger(a.sweeps, b.sweeps);
 }
 
 }  // namespace
+
+RunRecorder::RunRecorder(std::size_t most) : most_(most) { samples_.reserve(most); }
 
 void RunRecorder::record(const StepReport& r, const std::vector<Event>& events, const std::array<double, 2>& hand_force_N, double energy_J) {
   Sample s;
@@ -103,18 +129,46 @@ void RunRecorder::record(const StepReport& r, const std::vector<Event>& events, 
   s.contacts = int(r.contacts.size());
   s.sweeps = r.solve.sweeps;
   s.strands_left = r.strands_left;
-  samples_.push_back(s);
+  add(s);
+  note(events);
+  strands_total_ = r.strands_total;
+  strands_left_ = r.strands_left;
+  finite_ = finite_ && r.finite;
+  outcome_.observe(r);
+}
+
+void RunRecorder::note(const std::vector<Event>& events) {
   for (const auto& e : events) {
     if (events_.size() < most_events) events_.push_back(e);
     else ++events_left_out_;
   }
-  strands_total_ = r.strands_total;
-  strands_left_ = r.strands_left;
-  finite_ = finite_ && r.finite;
-  outcome_.observe(r, events);
+  outcome_.note(events);
 }
 
-void RunRecorder::clear() { *this = RunRecorder(); }
+void RunRecorder::add(const Sample& sample) {
+  ++steps_;
+  if (!samples_.empty() && samples_.back().steps < per_sample_) return join(samples_.back(), sample);
+  if (samples_.size() == most_) {
+    for (std::size_t i = 0; i < most_ / 2; ++i) {
+      samples_[i] = samples_[2 * i];
+      join(samples_[i], samples_[2 * i + 1]);
+    }
+    samples_.resize(most_ / 2);
+    per_sample_ *= 2;
+  }
+  samples_.push_back(sample);
+}
+
+void RunRecorder::clear() { *this = RunRecorder(most_); }
+
+void RunSummary::take(const Simulation& simulation) {
+  title = simulation.scene().title();
+  state_hash = simulation.state_hash();
+  exercise.reset();
+  complications.reset();
+  if (simulation.exercise()) exercise.emplace(*simulation.exercise());
+  if (simulation.complications()) complications.emplace(*simulation.complications());
+}
 
 const std::array<const char*, stage_count>& stage_names() {
   static constexpr std::array<const char*, stage_count> names{"free_motion", "collision", "build", "solve", "correct", "publish"};
@@ -166,7 +220,9 @@ std::string report_json(const RunRecorder& recorder, const RunSummary& summary) 
   json["title"] = summary.title;
   json["scene"] = summary.scene;
   json["motion"] = summary.motion;
-  json["steps"] = samples.size();
+  if (!summary.began.empty()) json["began"] = summary.began;
+  json["steps"] = recorder.steps();
+  json["steps_per_sample"] = recorder.steps_per_sample();
   json["sim_seconds"] = sim_seconds;
   json["wall_seconds"] = summary.wall_seconds;
   json["real_time_factor"] = summary.wall_seconds > 0 ? sim_seconds / summary.wall_seconds : 0;

@@ -3,8 +3,8 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <deque>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,23 +14,37 @@
 
 namespace insula {
 
-/// What is known of a run as a whole.
+class Simulation;
+
+/// An exercise as it stood when the report was made.
+struct ExerciseOutcome {
+  explicit ExerciseOutcome(const Exercise& exercise) : id(exercise.id), title(exercise.title()), text(exercise.text()), log(exercise.log()) {}
+  std::string id, title, text;
+  ExerciseLog log;
+};
+
+/// What is known of a run as a whole; holds copies, so that a report may be written while the simulation goes on.
 struct RunSummary {
+  /// Title, state hash, exercise and complications as they are now.
+  void take(const Simulation& simulation);
+
   std::string title;               ///< of the scene
   std::string scene, motion;       ///< as named on the command line
+  std::string began;               ///< local date and time of a session that people play; empty: not said
   double wall_seconds = 0;         ///< of all steps
   double fresh_forces_per_s = 0;   ///< distinct fresh forces a simulated second of touch
   std::array<double, 2> max_force_N{};  ///< on the hands: left, right
   std::uint64_t state_hash = 0;
-  const Exercise* exercise = nullptr;   ///< null when the scene has none
-  const Complications* complications = nullptr;  ///< the same
+  std::optional<ExerciseOutcome> exercise;            ///< none when the scene has none
+  std::optional<ComplicationsOutcome> complications;  ///< the same
 };
 
 class RunRecorder {
  public:
-  /// Of one step; single precision keeps an hour at 60 Hz in 25 MB.
+  /// Of one step, or of some that follow each other: the largest value of each, time and strands of the last.
   struct Sample {
     float time_s = 0;
+    std::int32_t steps = 1;
     std::array<float, stage_count> stage_ms{};
     float step_ms = 0;
     std::array<float, 2> hand_force_N{};     ///< sent to the hand
@@ -41,11 +55,22 @@ class RunRecorder {
     std::int32_t rows = 0, contacts = 0, sweeps = 0, strands_left = 0;
   };
 
+  /// Every step of half an hour at 60 Hz, in 11 MB that are taken at the start. A longer run takes no more: neighbours are joined
+  /// whenever it is full, and from then on a sample stands for twice as many steps.
+  static constexpr std::size_t most_samples = 120'000;
+  /// most: samples at most, even and at least 2.
+  explicit RunRecorder(std::size_t most = most_samples);
+
   /// After a step: its report, its events (the exercise's included), the force on each hand (N; left, right) and the energy of all bodies.
   void record(const StepReport& report, const std::vector<Event>& events, const std::array<double, 2>& hand_force_N, double energy_J);
+  /// Events that belong to no step, as while paused.
+  void note(const std::vector<Event>& events);
   void clear();
 
-  const std::deque<Sample>& samples() const { return samples_; }
+  std::int64_t steps() const { return steps_; }
+  /// Steps that a sample stands for (the last one for so many at most).
+  int steps_per_sample() const { return per_sample_; }
+  const std::vector<Sample>& samples() const { return samples_; }
   /// The first events of the run, 5,000 at most.
   const std::vector<Event>& events() const { return events_; }
   std::int64_t events_left_out() const { return events_left_out_; }
@@ -55,7 +80,12 @@ class RunRecorder {
   const RunOutcome& outcome() const { return outcome_; }
 
  private:
-  std::deque<Sample> samples_;  // grows by blocks: no step pays for the copy of all others
+  void add(const Sample& sample);
+
+  std::size_t most_;
+  int per_sample_ = 1;
+  std::int64_t steps_ = 0;
+  std::vector<Sample> samples_;
   std::vector<Event> events_;
   std::int64_t events_left_out_ = 0;
   int strands_total_ = 0, strands_left_ = 0;

@@ -67,7 +67,7 @@ RunSummary summary(const Exercise* exercise) {
   s.fresh_forces_per_s = 991.5;
   s.max_force_N = {0.25, 1.75};
   s.state_hash = 0xfedcba9876543210ull;
-  s.exercise = exercise;
+  if (exercise) s.exercise.emplace(*exercise);
   return s;
 }
 
@@ -195,7 +195,7 @@ TEST(ReportJson, StatesTheSeedAndWhatWasDrawn) {
     recorder.record(loaded.simulation->report(), loaded.simulation->events(), {0, 0}, loaded.simulation->energy());
   }
   RunSummary s = summary(nullptr);
-  s.complications = loaded.simulation->complications();
+  s.complications.emplace(*loaded.simulation->complications());
   const Json j = Json::parse(report_json(recorder, s));
   EXPECT_EQ(j.at("complications").at("seed"), 12);
   const Json& drawn = j.at("complications").at("drawn");
@@ -263,6 +263,37 @@ TEST(RunSeries, KeepsPeaksWhenItGathers) {
   EXPECT_EQ(*std::max_element(s.hand_force_N[0].begin(), s.hand_force_N[0].end()), 3);
   EXPECT_EQ(s.strands_left.back(), 1);
   EXPECT_NEAR(s.time_s.back(), 10.006, 1e-5);
+}
+
+TEST(RunRecorder, ALongRunTakesNoMoreSamplesAndLosesNoPeak) {
+  RunRecorder recorder(100);
+  const int steps = 1037;
+  for (int k = 1; k <= steps; ++k) {
+    StepReport r;
+    r.time = 0.01 * k;
+    r.rows = k == 511 ? 999 : 1;
+    r.strands_left = steps - k;
+    recorder.record(r, {}, {k == 3 ? 3.0 : 0.0, k == 1036 ? 2.0 : 0.0}, 0);
+    ASSERT_LE(recorder.samples().size(), 100u);
+    ASSERT_EQ(recorder.steps(), k);
+  }
+  EXPECT_EQ(recorder.steps_per_sample(), 16);
+  int held = 0, rows = 0;
+  float left = 0, right = 0;
+  for (const auto& s : recorder.samples()) {
+    held += s.steps;
+    EXPECT_NEAR(s.time_s, 0.01 * held, 1e-5) << "of the last of its steps";
+    EXPECT_EQ(s.strands_left, steps - held);
+    rows = std::max(rows, int(s.rows));
+    left = std::max(left, s.hand_force_N[0]);
+    right = std::max(right, s.hand_force_N[1]);
+  }
+  EXPECT_EQ(held, steps);
+  EXPECT_EQ(rows, 999);
+  EXPECT_EQ(left, 3);
+  EXPECT_EQ(right, 2);
+  EXPECT_EQ(Json::parse(report_json(recorder, summary(nullptr))).at("steps"), steps);
+  EXPECT_NE(report_html(recorder, summary(nullptr)).find("16 steps"), std::string::npos);
 }
 
 TEST(RunRecorder, LimitsItsEvents) {

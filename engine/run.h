@@ -72,6 +72,7 @@ struct EngineOptions {
   bool still = false;             ///< to be looked at (insula view)
   bool standby = false;           ///< loads, prints standby_line, and waits for SIGUSR1 before it speaks on the bus
   std::filesystem::path notice;   ///< file whose text viewers are shown while it is not empty
+  std::filesystem::path report;   ///< folder for the session's reports; empty: none
 };
 inline constexpr const char* standby_line = "insula engine stands by";
 /// The engine process of a session; talks over the bus of LCM_DEFAULT_URL until SIGINT or SIGTERM.

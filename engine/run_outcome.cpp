@@ -24,7 +24,7 @@ std::string table(const std::string& heading, const std::string& head, const std
 
 }  // namespace
 
-void RunOutcome::observe(const StepReport& r, const std::vector<Event>& events) {
+void RunOutcome::observe(const StepReport& r) {
   bleeds_ = bleeds_ || !r.bleeding.empty();
   double lost = 0, rate = 0;
   for (const BleedingState& b : r.bleeding) {
@@ -50,12 +50,16 @@ void RunOutcome::observe(const StepReport& r, const std::vector<Event>& events) 
   for (std::size_t i = 0; i < clips_.size(); ++i) {
     const ClipState& c = r.clips[i];
     if (c.clip && clips_[i].id != c.clip->id) clips_[i].id = c.clip->id;
-    clips_[i].holder = c.holder ? c.holder->id : "";
+    if (c.holder) clips_[i].holder = c.holder->id;
+    else clips_[i].holder.clear();
     clips_[i].on_tray = c.on_tray;
     clips_[i].temporary = c.temporary;
     clips_[i].force = c.force;
     clips_[i].applications = c.applications;
   }
+}
+
+void RunOutcome::note(const std::vector<Event>& events) {
   for (const Event& e : events)
     if ((e.kind == "command" || e.kind == "refused" || (e.kind == "message" && e.id == "message")) && asked_.size() < most_asked)
       asked_.push_back({e.time, e.id, e.text, e.kind != "refused"});
@@ -115,17 +119,17 @@ std::string RunOutcome::html() const {
   return out + table("Commands", "<th class=\"n\">Time (s)</th><th>Command</th><th>What</th>", rows);
 }
 
-Json complications_json(const Complications& complications) {
-  Json out = {{"seed", complications.drawn_from()}, {"drawn", Json::array()}};
-  for (const DrawnComplication& d : complications.drawn())
+Json complications_json(const ComplicationsOutcome& complications) {
+  Json out = {{"seed", complications.seed}, {"drawn", Json::array()}};
+  for (const DrawnComplication& d : complications.drawn)
     out["drawn"].push_back({{"id", d.id}, {"command", d.command}, {"probability", d.probability}, {"happens", d.happens},
                             {"time_s", d.happens ? Json(d.time) : Json()}, {"begun", d.begun}, {"refused", d.refused}});
   return out;
 }
 
-std::string complications_html(const Complications& complications) {
+std::string complications_html(const ComplicationsOutcome& complications) {
   std::string rows;
-  for (const DrawnComplication& d : complications.drawn())
+  for (const DrawnComplication& d : complications.drawn)
     rows += fmt::format("<tr><td>{}</td><td>{}</td><td class=\"n\">{:.0f} %</td><td>{}</td></tr>\n", escaped(d.id), escaped(d.command), 100 * d.probability,
                         escaped(!d.happens            ? "not in this run"
                                 : !d.begun            ? fmt::format("drawn for {:.1f} s, not reached", d.time)
@@ -133,7 +137,7 @@ std::string complications_html(const Complications& complications) {
                                                       : fmt::format("at {:.1f} s", d.time)));
   if (rows.empty()) return "";
   return table("Complications", "<th>Complication</th><th>What</th><th class=\"n\">Probability</th><th>Drawn</th>", rows) +
-         fmt::format("<p class=\"quiet\">Drawn from seed {}.</p>\n", complications.drawn_from());
+         fmt::format("<p class=\"quiet\">Drawn from seed {}.</p>\n", complications.seed);
 }
 
 }  // namespace insula

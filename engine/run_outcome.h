@@ -10,6 +10,13 @@
 
 namespace insula {
 
+/// The complications as they stood when the report was made.
+struct ComplicationsOutcome {
+  explicit ComplicationsOutcome(const Complications& c) : seed(c.drawn_from()), drawn(c.drawn()) {}
+  std::uint64_t seed;
+  std::vector<DrawnComplication> drawn;
+};
+
 class RunOutcome {
  public:
   struct Bleeding {
@@ -35,7 +42,9 @@ class RunOutcome {
     bool done = true;
   };
 
-  void observe(const StepReport& report, const std::vector<Event>& events);
+  void observe(const StepReport& report);
+  /// What was asked for, among the events of a step or between two.
+  void note(const std::vector<Event>& events);
 
   /// All bleedings of the scene together.
   const Bleeding& bleeding() const { return bleeding_; }
@@ -56,7 +65,7 @@ class RunOutcome {
   std::vector<Asked> asked_;
 };
 
-nlohmann::ordered_json complications_json(const Complications& complications);
-std::string complications_html(const Complications& complications);
+nlohmann::ordered_json complications_json(const ComplicationsOutcome& complications);
+std::string complications_html(const ComplicationsOutcome& complications);
 
 }  // namespace insula

@@ -9,6 +9,7 @@
 #include "core/linalg/kernels.h"
 #include "core/testing/count_allocations.h"
 #include "core/testing/example.h"
+#include "engine/report_writer.h"
 #include "tests/physics/random_problem.h"
 
 namespace insula {
@@ -65,6 +66,19 @@ TEST(Allocation, AWarmStepAllocatesNothing) {
     }
     EXPECT_EQ(worst, 0) << plugin << " at step " << worst_step;
   }
+}
+
+// What a session's report is made from is gathered between the steps of people who play for hours.
+TEST(Allocation, RecordingAStepAllocatesNothing) {
+  auto s = test::load(plugins / "clip" / "example.xml", 2);
+  ASSERT_TRUE(s);
+  RunRecorder recorder(1000);
+  test::run_script(*s, 70);
+  recorder.record(s->report(), {}, {0.1, 0.2}, s->energy());
+  const long before = allocations;
+  for (int i = 0; i < 5000; ++i) recorder.record(s->report(), {}, {0.1, 0.2}, s->energy());
+  EXPECT_EQ(allocations - before, 0);
+  EXPECT_EQ(recorder.steps(), 5001);
 }
 
 // A problem of jaws, contacts with friction among them, however many sweeps and directions it takes.

@@ -14,7 +14,7 @@ class LiveSession : public ::testing::Test {
   void SetUp() override {
     if (!multicast_works()) GTEST_SKIP() << "no multicast on this machine, and no rights to add a route";
     session_ = std::make_unique<PlaySession>();
-    ASSERT_EQ(session_->start(), "");
+    ASSERT_EQ(session_->start({"--report", reports().string()}), "");
     watcher_ = std::make_unique<Watcher>(session_->url());
     ASSERT_TRUE(wait_for([&] { return session_->port() > 0 && watcher_->frames_now() > 20 && watcher_->last() && watcher_->status().rows >= 0; })) << session_->log();
   }
@@ -22,6 +22,16 @@ class LiveSession : public ::testing::Test {
     if (!watcher_) return;
     expect_slew_limit(watcher_->samples());
     if (HasFailure()) std::fputs(session_->log().c_str(), stderr);
+  }
+
+  fs::path reports() const { return session_->folder() / "reports"; }
+  /// Folders of reports of this session, each whole.
+  int reports_written() const {
+    int n = 0;
+    std::error_code none;
+    for (const auto& entry : fs::directory_iterator(reports(), none))
+      n += fs::is_regular_file(entry.path() / "report.html") && fs::is_regular_file(entry.path() / "report.json");
+    return n;
   }
 
   std::unique_ptr<PlaySession> session_;

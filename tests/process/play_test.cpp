@@ -196,6 +196,7 @@ TEST_F(Play, InterruptEndsAllProcesses) {
   for (const char* name : {"engine", "haptic_server", "gateway"}) pids.push_back(session_->pid(name));
   const ChildExit exit = session_->end();
   EXPECT_EQ(exit.status, 0) << exit.text();
+  EXPECT_EQ(reports_written(), 1) << session_->log();
   for (const pid_t p : pids) EXPECT_NE(::kill(p, 0), 0) << p;
   // All ended when asked: nobody had to be killed, so each said its last word or none.
   EXPECT_TRUE(wait_for([&] { return session_->count("insula: ended") == 1; }));

@@ -64,6 +64,7 @@ TEST_F(Reload, GoodAndBadSaves) {
   EXPECT_EQ(watcher_->last()->session, server);
   EXPECT_TRUE(watcher_->press(0.1)) << "no force after the scene was loaded again: " << watcher_->force();
   EXPECT_EQ(session_->count("[engine] error"), 0);
+  EXPECT_EQ(reports_written(), 1) << "of the scene before; the new one's comes at its end";
 }
 
 }  // namespace
