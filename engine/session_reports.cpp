@@ -103,6 +103,7 @@ void SessionReports::write(const Simulation& simulation) {
   summary_.began = fmt::format("{:%Y-%m-%d %H:%M:%S}", began);
   std::string name = fmt::format("{:%Y-%m-%d_%H-%M-%S}_{}", began, scene_.stem().string());
   const auto failed = [](const std::exception& e) { spdlog::error("a report was not written: {}. The session goes on", e.what()); };
+  if (writing_.valid()) writing_.wait();  // folders come in the order of the runs
   try {
     writing_ = std::async(std::launch::async, [root = root_, name = std::move(name), recorder = std::move(recorder_), summary = summary_, failed] {
       try {

@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <random>
 #include <regex>
@@ -41,7 +43,8 @@ class SessionReportsTest : public testing::Test {
     fs::create_directories(folder_);
     register_builtin(registry_);
     registry_.add<ReachedAt>("reached_at", Kind::exercise_rule, "for tests");
-    // What the engine says in each step is where a test acts: in simulated time, whatever the machine does.
+    // What the engine says in each step is where a test acts: in simulated time, whatever the machine does. It is heard before the
+    // next step; that of the last one no more.
     bus_.subscribe(channel::haptic_problem, [this](Bytes) {
       ++steps_;
       if (on_step_) on_step_(steps_);
@@ -94,6 +97,7 @@ class SessionReportsTest : public testing::Test {
     std::vector<Json> out;
     for (const fs::path& f : folders) {
       EXPECT_TRUE(std::regex_match(f.filename().string(), std::regex(R"(\d{4}-\d\d-\d\d_\d\d-\d\d-\d\d_press(_\d+)?)"))) << f;
+      EXPECT_TRUE(fs::is_regular_file(f / "report.html"));
       EXPECT_GT(fs::file_size(f / "report.html"), 1000u);
       std::ifstream in(f / "report.json");
       out.push_back(Json::parse(in));
@@ -113,7 +117,7 @@ class SessionReportsTest : public testing::Test {
 
 TEST_F(SessionReportsTest, EndsWithTheExercise) {
   ASSERT_EQ(play(0.5, 0.2), 0);
-  EXPECT_EQ(steps_, 50) << "the session went on";
+  EXPECT_EQ(steps_, 49) << "the session went on";
   const auto all = reports();
   ASSERT_EQ(all.size(), 1u) << "and wrote no other at its end";
   EXPECT_EQ(all[0].at("steps"), 20);
@@ -126,7 +130,6 @@ TEST_F(SessionReportsTest, EndsWithTheExercise) {
 }
 
 TEST_F(SessionReportsTest, AResetBeginsAnotherAndTheEndOfTheSessionTheLast) {
-  // 10 steps, of which the handler hears while the tenth is done; a refused command is among what happened.
   on_step_ = [this](int step) {
     if (step == 5) ask("ask", "nobody listens");
     if (step == 10) ask("reset");
@@ -135,7 +138,7 @@ TEST_F(SessionReportsTest, AResetBeginsAnotherAndTheEndOfTheSessionTheLast) {
   ASSERT_EQ(play(0, 9), 0);
   const auto all = reports();
   ASSERT_EQ(all.size(), 2u);
-  EXPECT_EQ(all[0].at("steps").get<int>() + all[1].at("steps").get<int>(), steps_);
+  EXPECT_EQ(all[0].at("steps").get<int>() + all[1].at("steps").get<int>(), steps_ + 1);
   EXPECT_NEAR(all[0].at("steps").get<int>(), 10, 2);
   EXPECT_EQ(all[0].at("commands").size(), 1u);
   EXPECT_EQ(all[1].at("commands").size(), 0u);
