@@ -11,7 +11,6 @@
 #include "core/mechanics/instrument.h"
 #include "core/mechanics/shell_body.h"
 #include "core/mechanics/soft_body.h"
-#include "core/sim/settings.h"
 #include "plugins/contact/contact.h"
 #include "plugins/self_contact/self_contact.h"
 
@@ -79,7 +78,7 @@ SceneWork count_work(const Simulation& s) {
   const MoreRows more = rows_of_hands(s);
   w.expected_rows = w.standing_rows + int(std::lround(more.expected));
   w.most_rows = w.standing_rows + int(std::lround(more.most));
-  for (const SolverSettings* solver : s.scene().all<SolverSettings>()) w.newton = solver->newton() > 0;
+  w.newton = s.solve_settings().max_newton > 0;
   w.expected_sweeps = 6 + 0.05 * w.expected_rows;
 
   for (const Body* b : s.bodies()) {

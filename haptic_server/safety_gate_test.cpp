@@ -9,6 +9,7 @@
 
 #include "haptic_server/devices/arm_model.h"
 #include "haptic_server/test_problem.h"
+#include "tests/figures/figure.h"
 
 namespace insula {
 namespace {
@@ -79,12 +80,23 @@ TEST(SafetyGate, GarbageNeverGetsThrough) {
 TEST(SafetyGate, RampsInOverAQuarterSecond) {
   SafetyGate gate(omni_profile());
   const Vec3 wanted(0, 0, 1);
+  test::Figure figure("gate", "The safety gate: a source comes, and goes", "time, ms", "force on the hand, N");
   for (int k = 1; k <= 250; ++k) {
     gate.apply(dt, true, wanted, none);
     EXPECT_NEAR(gate.force().z(), k / 250.0, 1e-9);
+    if (k % 10 == 0) figure.run("gate", k, gate.force().z());
   }
-  gate.apply(dt, true, wanted, none);
-  EXPECT_EQ(gate.force().z(), 1);
+  for (const auto& [t, f] : {std::pair{0.0, 0.0}, std::pair{250.0, 1.0}, std::pair{400.0, 1.0}, std::pair{450.0, 0.0}, std::pair{500.0, 0.0}}) figure.law("250 ms in, 50 ms out", t, f);
+  for (int k = 251; k <= 400; ++k) {
+    gate.apply(dt, true, wanted, none);
+    EXPECT_EQ(gate.force().z(), 1);
+    if (k % 10 == 0) figure.run("gate", k, gate.force().z());
+  }
+  for (int k = 1; k <= 100; ++k) {
+    gate.apply(dt, false, wanted, none);
+    EXPECT_NEAR(gate.force().z(), std::max(0.0, 1 - k / 50.0), 1e-9);
+    if (k % 5 == 0) figure.run("gate", 400 + k, gate.force().z());
+  }
 }
 
 TEST(SafetyGate, ClampsTheVectorAndKeepsItsDirection) {

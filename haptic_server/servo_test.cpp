@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "haptic_server/test_problem.h"
+#include "tests/figures/figure.h"
 
 namespace insula {
 namespace {
@@ -73,6 +74,8 @@ TEST(Servo, ForceEqualsTheEnginesWhenTheDeviceStandsStill) {
 
 TEST(Servo, EquationSevenAgainstAFreshSolve) {
   testing::Random random(7);
+  test::Figure figure("equation7", "The servo's force against a fresh solve, random problems and hands", "force of a fresh solve, N", "force of the servo, N");
+  figure.law("the same", 0, 0);
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     ConstraintProblem p = testing::two_tool_problem(12, 20, seed, int(seed % 4));
     testing::solve_as_engine(p);
@@ -89,6 +92,8 @@ TEST(Servo, EquationSevenAgainstAFreshSolve) {
         const Vec6 expected = wrench_by_hand(p, in, hand);
         ASSERT_TRUE(r.hand[std::size_t(hand)].valid);
         EXPECT_NEAR((r.hand[std::size_t(hand)].force - expected.head<3>()).norm(), 0, 1e-8);
+        figure.law("the same", expected.head<3>().norm(), expected.head<3>().norm());
+        figure.run("servo", expected.head<3>().norm(), r.hand[std::size_t(hand)].force.norm());
         EXPECT_NEAR((r.hand[std::size_t(hand)].torque - expected.tail<3>()).norm(), 0, 1e-8);
       }
     }

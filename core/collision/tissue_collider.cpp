@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
+#include <unordered_map>
 
 #include "core/collision/vertex_groups.h"
 
@@ -16,16 +16,21 @@ std::vector<int> sample_vertices(std::span<const Vec3> rest, std::span<const std
   for (const auto& t : triangles)
     for (int v : t) used[std::size_t(v)] = 1;
   using Cell = std::array<long, 3>;
-  std::map<Cell, std::vector<int>> grid;
+  struct Hash {
+    std::size_t operator()(const Cell& c) const { return std::size_t(c[0]) * 73856093u ^ std::size_t(c[1]) * 19349663u ^ std::size_t(c[2]) * 83492791u; }
+  };
+  std::unordered_map<Cell, std::vector<int>, Hash> grid;  // asked, never walked through: its order shows nowhere
   std::vector<int> samples;
   for (int v = 0; v < int(rest.size()); ++v) {
     if (!used[std::size_t(v)]) continue;
     const Vec3& p = rest[std::size_t(v)];
     const Cell c{long(std::floor(p[0] / distance)), long(std::floor(p[1] / distance)), long(std::floor(p[2] / distance))};
     bool taken = false;
-    for (long i = -1; i <= 1 && !taken; ++i)
-      for (long j = -1; j <= 1 && !taken; ++j)
-        for (long k = -1; k <= 1 && !taken; ++k) {
+    constexpr long around[3] = {0, -1, 1};  // the likeliest cell first
+    for (long i : around)
+      for (long j : around)
+        for (long k : around) {
+          if (taken) break;
           const auto at = grid.find({c[0] + i, c[1] + j, c[2] + k});
           if (at == grid.end()) continue;
           for (int o : at->second) taken = taken || (rest[std::size_t(o)] - p).squaredNorm() < distance * distance;

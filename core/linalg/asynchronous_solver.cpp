@@ -32,7 +32,7 @@ AsynchronousSolver::AsynchronousSolver(double tolerance) : tolerance_(tolerance)
 
 void AsynchronousSolver::analyse(const BlockMatrix& a) {
   front_ = std::make_unique<NearFactor>(a);
-  background_.analyse(a);
+  background_.prepare(a, *front_);
   const std::size_t n = 3 * std::size_t(a.nodes());
   for (std::vector<double>* v : {&b_, &r_, &z_, &p_, &ap_, &last_x_, &difference_, &held_, &given_, &left_}) v->assign(n, 0.0);
   turned_.assign(std::size_t(a.nodes()), Mat3::Identity());

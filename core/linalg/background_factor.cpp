@@ -24,8 +24,8 @@ bool NearFactor::factorise(const BlockMatrix& a) {
   return true;
 }
 
-void BackgroundFactor::analyse(const BlockMatrix& a) {
-  factor_ = std::make_unique<NearFactor>(a);
+void BackgroundFactor::prepare(const BlockMatrix& a, const NearFactor& like) {
+  factor_ = std::make_unique<NearFactor>(like);
   matrix_ = a;
   if (!thread_.joinable()) thread_ = std::thread([this] { work(); });
 }

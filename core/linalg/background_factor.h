@@ -13,6 +13,8 @@ namespace insula {
 /// A factor for compliance, and its numbers in 16 bits for what need only be near.
 struct NearFactor {
   explicit NearFactor(const BlockMatrix& a);
+  /// Another one for matrices of the same pattern, without its symbolic work.
+  NearFactor(const NearFactor& like) : full(like.full), half(full) {}
   /// False when `a` is not positive definite in single precision.
   bool factorise(const BlockMatrix& a);
 
@@ -23,8 +25,8 @@ struct NearFactor {
 class BackgroundFactor {
  public:
   ~BackgroundFactor();
-  /// Symbolic work for matrices of this pattern, and the thread.
-  void analyse(const BlockMatrix& a);
+  /// For matrices of the pattern of `a`, which `like` was made for; starts the thread.
+  void prepare(const BlockMatrix& a, const NearFactor& like);
 
   enum class Answer { nothing_asked, not_yet, good, bad };
   bool idle();

@@ -2,17 +2,15 @@
 // Pattern and product of the block matrix.
 #include "core/linalg/block_matrix.h"
 
+#include "core/base/sorted_pairs.h"
 #include "core/linalg/kernels.h"
 
 namespace insula {
 
 void BlockMatrix::set_pattern(int nodes, std::vector<std::pair<int, int>> couplings) {
   nodes_ = nodes;
-  for (auto& [i, j] : couplings)
-    if (i > j) std::swap(i, j);  // (column, row)
   for (int i = 0; i < nodes; ++i) couplings.emplace_back(i, i);
-  std::sort(couplings.begin(), couplings.end());
-  couplings.erase(std::unique(couplings.begin(), couplings.end()), couplings.end());
+  sort_unique_pairs(couplings, nodes);  // (column, row)
   start_.assign(std::size_t(nodes) + 1, 0);
   row_.clear();
   for (auto [column, row] : couplings) {

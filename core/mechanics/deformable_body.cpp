@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "core/base/nearest_rotation.h"
+#include "core/base/sorted_pairs.h"
 #include "core/linalg/asynchronous_solver.h"
 #include "core/linalg/direct_solver.h"
 
@@ -42,10 +43,7 @@ void DeformableBody::connect(PrepareContext& context) {
       pairs.emplace_back(free_[std::size_t(i)], free_[std::size_t(j)]);
   neighbours_.clear();
   if (tangent_tolerance() > 0 || solver_kind.is("asynchronous")) {
-    for (auto& [i, j] : all)
-      if (i > j) std::swap(i, j);
-    std::sort(all.begin(), all.end());
-    all.erase(std::unique(all.begin(), all.end()), all.end());
+    sort_unique_pairs(all, int(n));
     for (auto [i, j] : all)
       if (i != j) neighbours_.push_back({i, j, (rest_nodes()[std::size_t(i)] - rest_nodes()[std::size_t(j)]).squaredNorm()});
   }

@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <assimp/Importer.hpp>
 #include <cmath>
-#include <map>
 #include <memory>
+#include <unordered_map>
 
 #include "core/base/text.h"
 #include "core/model/assimp_assert.h"
@@ -43,10 +43,9 @@ class FolderIO : public Assimp::DefaultIOSystem {
   std::filesystem::path folder_;
 };
 
-struct VertexLess {
-  bool operator()(const Vec3& a, const Vec3& b) const {
-    return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
-  }
+/// Of finite places without -0, so that equal ones have equal bits.
+struct VertexHash {
+  std::size_t operator()(const Vec3& p) const { return std::hash<std::string_view>{}({reinterpret_cast<const char*>(p.data()), 3 * sizeof(double)}); }
 };
 
 /// Joins the triangles of all parts; equal vertices become one, in the order they are first used.
@@ -85,7 +84,7 @@ class Joiner {
   std::filesystem::path file_;
   double scale_;
   TriMesh mesh_;
-  std::map<Vec3, int, VertexLess> places_;
+  std::unordered_map<Vec3, int, VertexHash> places_;  // asked, never walked through: its order shows nowhere
 };
 
 }  // namespace

@@ -70,6 +70,7 @@ class Simulation {
   Complications* complications() const { return complications_; }         ///< null when the scene has none
   Exercise* exercise() const { return exercise_; }                        ///< null when the scene has none
   const ViewSettings* view() const { return view_; }
+  const SolveSettings& solve_settings() const { return solve_settings_; } ///< as the scene's <solver> says, else the defaults
   Instrument* instrument_of(int hand) const;  ///< the one in that hand now; null when there is none
   Workers& workers() { return workers_; }
   /// Events of the last step: constraints' first, then the exercise's.

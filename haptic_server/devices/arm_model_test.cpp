@@ -10,6 +10,7 @@
 #include "haptic_server/devices/make_device.h"
 #include "haptic_server/devices/simulated.h"
 #include "haptic_server/test_problem.h"
+#include "tests/figures/figure.h"
 
 namespace insula {
 namespace {
@@ -46,8 +47,9 @@ TEST(ArmModel, StepIsImplicitEulerExactly) {
   goal.v = Vec3(0.1, 0, 0);
   arm.set_goal(goal);
   arm.set_load(Vec3(0.5, 0, 0), none);
-  double x = 0, v = 0;
+  double x = 0, v = 0, law_x = 0, law_v = 0;
   const double m = p.arm_mass_kg + p.hand_mass_kg;
+  test::Figure figure("arm", "The simulated arm under a load of 0.5 N", "time, ms", "place, mm");
   for (int k = 0; k < 200; ++k) {
     arm.step(dt);
     const double x_new = arm.pose().p.x(), v_new = arm.v().x();
@@ -57,6 +59,11 @@ TEST(ArmModel, StepIsImplicitEulerExactly) {
     EXPECT_NEAR(x_new, x + dt * v_new, 1e-15);
     x = x_new;
     v = v_new;
+    law_v = (m / dt * law_v + p.hand_stiffness_N_m * (0.004 - law_x) + p.hand_damping_Ns_m * 0.1 + 0.5) / (m / dt + p.hand_damping_Ns_m + p.hand_stiffness_N_m * dt);
+    law_x += dt * law_v;
+    EXPECT_NEAR(x, law_x, 1e-9);
+    figure.law("implicit Euler", k + 1, law_x * 1e3);
+    if (k % 5 == 4) figure.run("arm", k + 1, x * 1e3);
   }
 }
 

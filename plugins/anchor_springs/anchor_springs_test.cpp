@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "plugins/membrane/shell_fixture.h"
+#include "tests/figures/figure.h"
 
 namespace insula {
 namespace {
@@ -46,12 +47,15 @@ TEST(AnchorSprings, WholeFollowsTheDiscretisedOscillator) {
   const double k = 2e3, time = 0.03, m = 1, h = 0.005;  // 1000 kg/m3 of 1 mm: 1 kg/m2
   ASSERT_EQ(prepared(body, k, time, ""), "");
   double u = 1e-3, v = 0;
+  test::Figure figure("anchors", "A wall let go on its anchors: the damped oscillator in implicit Euler", "step of 5 ms", "displacement, mm");
   for (int i = 0; i < body.nodes(); ++i) body.q()[3 * i + 1] += u;
   for (int n = 0; n < 50; ++n) {
     test::step(body, h);
     const double d = (-k * u + m * v / h) / (m / (h * h) + (1 + time / h) * k);
     u += d;
     v = d / h;
+    figure.law("law", n + 1, u * 1e3);
+    figure.run("run", n + 1, (body.q()[1] - body.rest_nodes()[0].y()) * 1e3);
     for (int i = 0; i < body.nodes(); ++i) ASSERT_NEAR(body.q()[3 * i + 1] - body.rest_nodes()[std::size_t(i)].y(), u, 1e-12) << n;
   }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The clip by itself and on plates: closed forms of its spring, of friction, of a free rigid body.
 #include "plugins/clip/clip_for_test.h"
+#include "tests/figures/figure.h"
 
 namespace insula {
 namespace {
@@ -14,6 +15,8 @@ using test::slope;
 double torque(double opening) { return reference * (closing + slope * 2 * reference * std::sin(opening)); }
 
 TEST(Clip, JawsBalanceTheSpringAtEveryOpeningAndPlaceOfTheBlade) {
+  test::Figure figure("jaws", "A clip closed on a bar: the contacts balance the spring", "opening of a jaw, rad", "moment about the hinge, N mm");
+  for (double o = 0; o < 0.3; o += 0.01) figure.law("spring", o, torque(o) * 1e3);
   for (const double radius : {1e-3, 2e-3})
     for (const double z : {1.5e-3, 4.5e-3, 7e-3}) {
       SCOPED_TRACE(fmt::format("bar of {} mm at {} mm", radius * 1e3, z * 1e3));
@@ -26,6 +29,7 @@ TEST(Clip, JawsBalanceTheSpringAtEveryOpeningAndPlaceOfTheBlade) {
       double left, right;
       const double t = torque(o);
       EXPECT_NEAR(b.moment(-1, &left), t, 1e-6 * t);
+      figure.run("contacts", o, b.moment(-1) * 1e3);
       EXPECT_NEAR(b.moment(1, &right), t, 1e-6 * t);
       EXPECT_NEAR(left, t / x, 0.2 * left) << "the force falls off along the blade";
       EXPECT_NEAR(b.clip->force(), t / reference, 1e-6 * t / reference);

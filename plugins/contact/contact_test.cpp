@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Contact in whole steps: closed forms of the discretised law, no tunnelling, balance, determinism, no allocation.
 #include "plugins/contact/contact_for_test.h"
+#include "tests/figures/figure.h"
 
 namespace insula {
 namespace {
@@ -10,6 +11,8 @@ using namespace test;
 // The coupling stands in for a weight on a slope: pulled down by k dz and along by k dx, tan(angle) = dx / dz.
 TEST(Contact, ABlockOnASlopeSticksAndSlipsAtTheFrictionAngle) {
   constexpr double mu = 0.35, dz = 1e-3;
+  test::Figure figure("friction", "A block pulled along what it presses on: sticks, then slips at mu N", "pull over mu N", "friction, N");
+  for (const double pull : {0.0, 1.0, 1.5}) figure.law("law", pull, std::min(pull, 1.0) * mu * 400 * dz);
   for (const double angle_factor : {0.5, 1 - 1e-5, 1 + 1e-5, 1.5}) {
     for (const double heading : {0.0, 0.7, 2.1}) {
       Bench b(feet_urdf(5e-3, radius), ground(), upright, fmt::format(R"(friction="{}")", mu));
@@ -32,6 +35,7 @@ TEST(Contact, ABlockOnASlopeSticksAndSlipsAtTheFrictionAngle) {
         friction += c.tangent_force;
       }
       EXPECT_NEAR(normal, 400 * dz, 1e-7);
+      figure.run("run", angle_factor, friction.norm());
       if (angle_factor < 1) {
         EXPECT_LT(moved.norm(), 1e-9) << angle_factor;
         EXPECT_NEAR(friction.norm(), 400 * mu * angle_factor * dz, 1e-7);

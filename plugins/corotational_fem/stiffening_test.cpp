@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "core/testing/example.h"
+#include "tests/figures/figure.h"
 
 namespace insula {
 namespace {
@@ -75,12 +76,17 @@ TEST_F(Crushed, EnergyOfAUniformSqueeze) {
     for (int k = 0; k < 3; ++k) d.col(k) = body->rest().nodes[std::size_t(t[std::size_t(k + 1)])] - body->rest().nodes[std::size_t(t[0])];
     volume += d.determinant() / 6;
   }
+  const auto energy = [&](double z) {
+    const double e = z - 1, short_of = std::max(0.0, 0.4 - z);
+    return volume * (mu * e * e + 0.5 * lambda * e * e + 0.5 * 30 * young * short_of * short_of);
+  };
+  test::Figure figure("squeeze", "Tissue squeezed flat, which stiffens below 0.4 of its height", "height over that at rest", "energy, mJ");
+  for (double z = 1; z > 0.04; z -= 0.01) figure.law("law", z, energy(z) * 1e3);
   for (const double z : {0.7, 0.41, 0.39, 0.2, 0.05}) {
     VecX x = rest;
     for (int i = 0; i < body->nodes(); ++i) x[3 * i + 2] *= z;
-    const double e = z - 1, short_of = std::max(0.0, 0.4 - z);
-    const double expected = volume * (mu * e * e + 0.5 * lambda * e * e + 0.5 * 30 * young * short_of * short_of);
-    EXPECT_NEAR(model->energy(x.data()), expected, 1e-9 * expected) << z;
+    EXPECT_NEAR(model->energy(x.data()), energy(z), 1e-9 * energy(z)) << z;
+    figure.run("run", z, model->energy(x.data()) * 1e3);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "plugins/membrane/shell_fixture.h"
+#include "tests/figures/figure.h"
 
 namespace insula {
 namespace {
@@ -12,6 +13,13 @@ namespace {
 using test::Cut;
 using test::Wall;
 constexpr Cut every_cut[] = {Cut::one_way, Cut::criss_cross, Cut::shaken};
+
+void draw(test::Figure& figure, Cut cut, const std::vector<std::pair<double, double>>& ratios) {
+  for (const auto& [cells, ratio] : ratios) {
+    figure.law("theory", cells, 1);
+    figure.run(cut == Cut::one_way ? "one way" : cut == Cut::shaken ? "shaken" : "criss-cross", cells, ratio);
+  }
+}
 
 // A quadratic deflection has constant moments, so it is in equilibrium inside whatever the mesh; all nodes near the rim,
 // where slopes have fewer hinges to come from, are put there.
@@ -66,8 +74,10 @@ double strip_ratio(int along, int across, Cut cut) {
 }
 
 TEST(Bending, CantileverConvergesToEulerBernoulli) {
+  test::Figure figure("strip", "A strip of wall as a cantilever, P L^3 / (3 E I), under refinement", "cells along", "deflection over beam theory");
   for (const Cut cut : every_cut) {
     const double coarse = strip_ratio(10, 2, cut), middle = strip_ratio(20, 4, cut), fine = strip_ratio(40, 8, cut);
+    draw(figure, cut, {{10, coarse}, {20, middle}, {40, fine}});
     EXPECT_GT((1 - coarse) / (1 - middle), 3.5) << "not of second order, cut " << int(cut);
     EXPECT_GT((1 - middle) / (1 - fine), 3.5) << "not of second order, cut " << int(cut);
     EXPECT_NEAR(fine, 1, 3e-4) << "cut " << int(cut);
@@ -95,8 +105,10 @@ double plate_ratio(int n, Cut cut) {
 }
 
 TEST(Bending, PlateConvergesOnAnyMesh) {
+  test::Figure figure("plate", "A simply supported plate, Navier's series, under refinement", "cells along a side", "deflection over Navier's");
   for (const Cut cut : every_cut) {
     const double coarse = plate_ratio(8, cut), middle = plate_ratio(16, cut), fine = plate_ratio(32, cut);
+    draw(figure, cut, {{8, coarse}, {16, middle}, {32, fine}});
     EXPECT_LT(std::abs(middle - 1), 0.4 * std::abs(coarse - 1)) << "cut " << int(cut);
     EXPECT_LT(std::abs(fine - 1), 0.4 * std::abs(middle - 1)) << "cut " << int(cut);
     EXPECT_NEAR(fine, 1, 5e-4) << "cut " << int(cut);
@@ -135,6 +147,7 @@ TEST(Bending, ElasticaAtLargeRotation) {
 TEST(Bending, StripCurvedAtRest) {
   const double radius = 0.02, width = 0.005;
   const Wall w{.thickness = 1e-4, .young = 1e6, .poisson = 0};
+  test::Figure figure("curved_strip", "A quarter circle at rest, bent (Castigliano), under refinement", "cells along", "movement over Castigliano's");
   for (const Cut cut : every_cut) {
     double last = 1;
     for (const int n : {8, 16, 32}) {
@@ -157,6 +170,7 @@ TEST(Bending, StripCurvedAtRest) {
         if (tip(i)) moved += (body->q().segment<3>(3 * i) - body->rest_nodes()[std::size_t(i)]) / (across + 1);
       const double error = std::max(std::abs(moved.x() / unit / (std::numbers::pi / 4) - 1), std::abs(moved.z() / unit / -0.5 - 1));
       EXPECT_LT(error, 0.4 * last) << "cut " << int(cut) << ", " << n;
+      draw(figure, cut, {{double(n), moved.x() / unit / (std::numbers::pi / 4)}});
       last = error;
     }
     // Nodes off the rulings make the flat triangles stretch when they should only bend; that falls with their size too.

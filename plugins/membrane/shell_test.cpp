@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "plugins/membrane/shell_fixture.h"
+#include "tests/figures/figure.h"
 
 namespace insula {
 namespace {
@@ -64,8 +65,11 @@ TEST(Laplace, SphereConverges) {
   double r = radius;
   for (int i = 0; i < 100; ++i) r = radius + p * r * r / k;
   double last = 1;
+  test::Figure figure("sphere", "A sphere inflated, p = 2 t sigma / r, under refinement", "triangles", "growth of the radius over Laplace's");
   for (const int times : {1, 2, 3}) {
-    const double error = std::abs((inflated(test::icosphere(radius, times), w, p) - radius) / (r - radius) - 1);
+    const double growth = (inflated(test::icosphere(radius, times), w, p) - radius) / (r - radius), error = std::abs(growth - 1);
+    figure.run("growth", 20 * std::pow(4, times), growth);
+    figure.law("Laplace", 20 * std::pow(4, times), 1);
     if (times > 1) { EXPECT_LT(error, 0.3 * last) << times; }
     last = error;
   }

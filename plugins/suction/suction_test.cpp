@@ -6,6 +6,7 @@
 
 #include "core/testing/block_mesh.h"
 #include "core/testing/example.h"
+#include "tests/figures/figure.h"
 
 namespace insula {
 namespace {
@@ -54,10 +55,14 @@ TEST(Suction, HoldsUpToPressureTimesAreaAndLetsGo) {
   ASSERT_LT(t.tissue().norm(), 1e-12);
   double most = 0;
   bool held = false, lost = false, gave_way = false;
+  test::Figure figure("suction", "Tissue drawn up by suction: at most pressure x area, then it lets go", "tool drawn up, mm", "force along the tool, mN");
   for (int n = 0; n < 200; ++n) {
     t.hold(Vec3(0, 0, 0.0005 + 0.00005 * n), true);
     Vec3 f;
-    if (!t.forces(f)) {
+    const bool holds = t.forces(f);
+    figure.law("pressure x area", 0.5 + 0.05 * n, limit * 1e3);
+    if (n % 3 == 0) figure.run("force", 0.5 + 0.05 * n, holds ? std::abs(f[0]) * 1e3 : 0);
+    if (!holds) {
       EXPECT_TRUE(held) << "never took the tissue";
       lost = true;
       EXPECT_LT(t.tube->hand_force().norm(), 1e-12);

@@ -186,12 +186,8 @@ class Checker:
         self.test_names(page, outside)
         for block in blocks:
             if block.language == "sh":
-                lines = block.text.split("\n")
-                for i, line in enumerate(lines):
-                    while line.endswith("\\") and i + 1 < len(lines):  # goes on in the next line
-                        i += 1
-                        line, lines[i] = line[:-1] + lines[i], ""
-                    self.command_line((page, block.line + 1 + i), line)
+                for number, line in pages.commands(block):
+                    self.command_line((page, number), line)
         if any(b.language == "xml" or b.role == "output" for b in blocks):
             # A page that brings a plugin shows scenes for it; the build of that plugin checks them.
             brought = {p.rsplit("/", 1)[0] for p in promised if p.endswith(".cpp")}
@@ -205,7 +201,7 @@ def main():
     if not check.subcommands():
         print("FAILED: %s --help lists no commands" % check.insula)
         return 1
-    for page in sorted((source / "docs").glob("*.md")) + [source / "README.md"]:
+    for page in pages.all_pages(source):
         check.page(page)
     for what in ("links", "files", "scenes", "outputs", "commands", "tests"):
         if not check.counts.get(what):

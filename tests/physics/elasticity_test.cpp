@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/base/random.h"
+#include "tests/figures/figure.h"
 #include "tests/physics/soft_fixture.h"
 
 namespace insula {
@@ -51,7 +52,10 @@ bool tip(const Vec3& x) { return x.x() > length - 1e-9; }
 
 // Without Poisson's effect the clamped bar is homogeneous and the co-rotational law is linear in the stretch: exact.
 TEST(Bar, EndLoadIsExact) {
+  test::Figure figure("bar", "A bar pulled and pushed at its end: F x / (E A)", "place along the bar, mm", "displacement, mm");
   for (const double force : {0.01, 0.1, -0.002}) {  // up to 25 % strain; pushed less than it takes to buckle
+    const std::string pull = std::to_string(int(std::lround(force * 1000))) + " mN";
+    for (const double x : {0.0, length}) figure.law(pull, x * 1e3, force * x / (1000 * area) * 1e3);
     auto body = test::soft_body(bar(6, 2), {.young = 1000, .poisson = 0, .tangent = "exact"}, clamped);
     test::load_face(*body, Vec3(force, 0, 0), tip);
     test::settle(*body, 30);
@@ -59,6 +63,7 @@ TEST(Bar, EndLoadIsExact) {
       const Vec3& x = body->rest().nodes[std::size_t(i)];
       const Vec3 expected = x + Vec3(force * x.x() / (1000 * area), 0, 0);
       EXPECT_LT((body->q().segment<3>(3 * i) - expected).norm(), 1e-10 * length);
+      if (std::abs(x.y()) + std::abs(x.z()) < 1e-9) figure.run(pull, x.x() * 1e3, (body->q()[3 * i] - x.x()) * 1e3);
     }
   }
 }
@@ -68,13 +73,16 @@ TEST(Bar, OwnWeightConverges) {
   const double young = 1e5, g = 9.81;
   const double expected = 1000 * g * length * length / (2 * young);
   double last = 0;
+  test::Figure figure("own_weight", "A bar under its own weight, rho g L^2 / (2 E), under refinement", "cubes across", "lengthening over theory");
   for (const int n : {1, 2, 4}) {
     auto body = test::soft_body(bar(5 * n, n), {.young = young, .poisson = 0}, clamped);
     for (int k = 0; k < 20; ++k) {
       body->v().setZero();
       test::step(*body, 1e6, Vec3(g, 0, 0));
     }
-    const double error = std::abs(test::mean_displacement(*body, tip).x() / expected - 1);
+    const double ratio = test::mean_displacement(*body, tip).x() / expected, error = std::abs(ratio - 1);
+    figure.run("lengthening", n, ratio);
+    figure.law("theory", n, 1);
     if (n > 1) { EXPECT_LT(error, 0.35 * last) << n; }
     last = error;
   }
@@ -106,11 +114,14 @@ TEST(Cantilever, ConvergesToBeamTheory) {
   const double young = 1e6, load = 1e-4, inertia = width * width * width * width / 12;
   const double expected = load * length * length * length / (3 * young * inertia) + load * length / (5.0 / 6 * young / 2 * area);
   std::vector<double> ratio;
+  test::Figure figure("cantilever", "A cantilever under refinement: P L^3/(3 E I) + P L/(k G A)", "tetrahedra's cubes across the height", "deflection over beam theory");
   for (const int n : {2, 4, 8}) {
     auto body = test::soft_body(bar(5 * n, n), {.young = young, .poisson = 0}, clamped);
     test::load_face(*body, Vec3(0, 0, -load), tip);
     test::settle(*body, 2);
     ratio.push_back(-test::mean_displacement(*body, tip).z() / expected);
+    figure.run("deflection", n, ratio.back());
+    figure.law("beam theory", n, 1);
   }
   EXPECT_LT(ratio[0], ratio[1]);
   EXPECT_LT(ratio[1], ratio[2]);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/base/random.h"
+#include "tests/figures/figure.h"
 #include "tests/physics/soft_fixture.h"
 
 namespace insula {
@@ -36,8 +37,11 @@ TEST(ImplicitEuler, FreeFall) {
   auto body = test::soft_body(cube(), {.young = 2100, .poisson = 0.45, .rayleigh_stiffness = 0.02});
   const Vec3 g(0.5, -1, -9.81);
   const double h = 1.0 / 60;
+  test::Figure figure("fall", "A body that falls: h^2 g n (n + 1) / 2 after n steps", "step of 1/60 s", "fallen, m");
   for (int n = 1; n <= 100; ++n) {
     test::step(*body, h, g);
+    figure.law("law", n, -0.5 * h * h * n * (n + 1) * g.z());
+    if (n % 4 == 0) figure.run("run", n, body->rest().nodes[0].z() - body->q()[2]);
     for (int i = 0; i < body->nodes(); ++i) {
       ASSERT_LT((body->v().segment<3>(3 * i) - n * h * g).norm(), 1e-9 * n * h * g.norm()) << "step " << n;
       ASSERT_LT((body->q().segment<3>(3 * i) - body->rest().nodes[std::size_t(i)] - 0.5 * h * h * n * (n + 1) * g).norm(), 1e-9 * h * h * n * (n + 1) * g.norm());
@@ -98,9 +102,12 @@ TEST(RayleighDamping, MassPartSlowsRigidMotion) {
   const Vec3 v(0.1, 0.2, -0.4);
   for (int i = 0; i < body->nodes(); ++i) body->v().segment<3>(3 * i) = v;
   double factor = 1;
+  test::Figure figure("mass_damping", "A body slowed by the damping of its mass: 1 / (1 + alpha h)^n", "step", "speed over that at first");
   for (int n = 1; n <= 120; ++n) {
     test::step(*body, h);
     factor /= 1 + alpha * h;
+    figure.law("law", n, factor);
+    if (n % 4 == 0) figure.run("run", n, body->v()[2] / v.z());
     for (int i = 0; i < body->nodes(); ++i) ASSERT_LT((body->v().segment<3>(3 * i) - factor * v).norm(), 1e-10 * v.norm()) << n;
   }
 }
@@ -112,6 +119,7 @@ TEST(RayleighDamping, OscillatorFollowsTheDiscretisedLaw) {
   const double a = 0.01, young = 2100, nu = 0.45, density = 1000;
   const double mu = young / (2 * (1 + nu)), lambda = young * nu / ((1 + nu) * (1 - 2 * nu));
   const double volume = a * a * a / 6, k = volume * (2 * mu + lambda) / (a * a), m = density * volume / 4;
+  test::Figure figure("oscillator", "A mass on tissue in implicit Euler", "step", "displacement, mm");
   for (const auto& [alpha, beta, h] : {std::tuple{0.0, 0.0, 1e-4}, std::tuple{0.0, 0.0, 1.0 / 60}, std::tuple{1.0, 0.02, 1.0 / 60}, std::tuple{50.0, 0.0, 1e-3}}) {
     auto body = test::soft_body(test::single_tet(a), {young, nu, density, alpha, beta}, [](const Vec3& x) { return x.z() < 1e-9; });
     double u = 0.2 * a, v = -0.3;
@@ -126,6 +134,11 @@ TEST(RayleighDamping, OscillatorFollowsTheDiscretisedLaw) {
       v = dq / h;
       most = std::max(most, std::abs(u));
       ASSERT_NEAR(body->q()[11] - a, u, 1e-9 * most) << "step " << n;
+      if (h < 1e-3 || alpha > 10) {
+        const std::string curve = h < 1e-3 ? "undamped, h = 0.1 ms" : "damped, h = 1 ms";
+        figure.law(curve, n, u * 1e3);
+        if (n % 4 == 0) figure.run(curve, n, (body->q()[11] - a) * 1e3);
+      }
       ASSERT_LT(std::abs(body->q()[9]) + std::abs(body->q()[10]), 1e-12 * a);
       energy = 0.5 * m * v * v + 0.5 * k * u * u;
       ASSERT_NEAR(body->energy(), energy, 1e-9 * (0.5 * m * 0.09 + 0.5 * k * most * most));

@@ -8,6 +8,7 @@
 
 #include "tests/faults/fault_cases.h"
 #include "tests/process/forces.h"
+#include "tests/process/play_session.h"
 #include "tests/process/relay.h"
 
 namespace insula {

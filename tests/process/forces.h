@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What holds of all forces that a real haptic server sends.
 #pragma once
-#include "tests/process/play_session.h"
+#include "tests/process/watcher.h"
 
 namespace insula::testing {
 

@@ -5,9 +5,8 @@
 #include <random>
 
 #include "core/bus/mutate_for_test.h"
-#include "tests/process/forces.h"
+#include "tests/process/live_session.h"
 #include "tests/process/page.h"
-#include "tests/process/play_session.h"
 
 namespace insula {
 namespace {
@@ -15,23 +14,8 @@ namespace {
 using namespace testing;
 using Buffer = std::vector<std::uint8_t>;
 
-class Play : public ::testing::Test {
+class Play : public LiveSession {
  protected:
-  void SetUp() override {
-    if (!multicast_works()) GTEST_SKIP() << "no multicast on this machine, and no rights to add a route";
-    session_ = std::make_unique<PlaySession>();
-    ASSERT_EQ(session_->start(), "");
-    watcher_ = std::make_unique<Watcher>(session_->url());
-    ASSERT_TRUE(runs()) << session_->log();
-  }
-  void TearDown() override {
-    if (!watcher_) return;
-    expect_slew_limit(watcher_->samples());
-    if (HasFailure()) std::fputs(session_->log().c_str(), stderr);
-  }
-  bool runs() const {
-    return wait_for([&] { return session_->port() > 0 && watcher_->frames_now() > 20 && watcher_->last() && watcher_->status().rows >= 0; });
-  }
   /// Forces of one life of the server are exactly zero at some time at most `longest_us` after `since_us`.
   void expect_silence(std::int64_t server, std::int64_t since_us, std::int64_t longest_us) const {
     const auto silent = [&]() -> std::optional<Sample> {
@@ -42,9 +26,6 @@ class Play : public ::testing::Test {
     ASSERT_TRUE(wait_for([&] { return silent().has_value(); }));
     EXPECT_LE(silent()->time_us - since_us, longest_us);
   }
-
-  std::unique_ptr<PlaySession> session_;
-  std::unique_ptr<Watcher> watcher_;
 };
 
 // 50 ms until a problem is too old, 50 ms to ramp out, the rest for a machine with other things to do. These are stamps of

@@ -1,31 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A session whose scene is saved while hands press: a good scene takes over without a jump of force, a bad one is told to the
 // viewers and changes nothing.
-#include "tests/process/forces.h"
-#include "tests/process/play_session.h"
+#include "tests/process/live_session.h"
 
 namespace insula {
 namespace {
 
 using namespace testing;
 
-class Reload : public ::testing::Test {
+class Reload : public LiveSession {
  protected:
   void SetUp() override {
-    if (!multicast_works()) GTEST_SKIP() << "no multicast on this machine, and no rights to add a route";
-    session_ = std::make_unique<PlaySession>();
-    ASSERT_EQ(session_->start(), "");
-    watcher_ = std::make_unique<Watcher>(session_->url());
+    LiveSession::SetUp();
+    if (IsSkipped() || HasFatalFailure()) return;
     bus_ = std::make_unique<LcmBus>(session_->url());
     bus_->subscribe(channel::scene_info, [this](Bytes b) {
       if (const auto m = decode<insula_lcm::scene_info_t>(b)) info_ = *m;
     });
-    ASSERT_TRUE(wait_for([&] { return watcher_->frames_now() > 20 && watcher_->last(); })) << session_->log();
-  }
-  void TearDown() override {
-    if (!watcher_) return;
-    expect_slew_limit(watcher_->samples());
-    if (HasFailure()) std::fputs(session_->log().c_str(), stderr);
   }
   std::string text() const {
     std::ifstream in(scene());
@@ -48,8 +39,6 @@ class Reload : public ::testing::Test {
     });
   }
 
-  std::unique_ptr<PlaySession> session_;
-  std::unique_ptr<Watcher> watcher_;
   std::unique_ptr<LcmBus> bus_;
   insula_lcm::scene_info_t info_{};
 };

@@ -104,6 +104,15 @@ class Site:
         return "\n".join(out) + "\n"
 
 
+def search(source, out):
+    """The search of MkDocs needs a web server; ours works from a folder, with the same index as a script."""
+    index = (out / "search/search_index.json").read_text(encoding="utf-8")
+    (out / "search/index.js").write_text("window.manual_index = " + index.replace("\u2028", "\\u2028").replace("\u2029", "\\u2029") + ";\n", encoding="utf-8")
+    shutil.copyfile(source / "tools/manual/search.js", out / "search/main.js")
+    (out / "search/worker.js").unlink()
+    (out / "search/search_index.json").unlink()
+
+
 def main():
     source, reference, out = (pathlib.Path(a).resolve() for a in sys.argv[1:4])
     if not shutil.which("mkdocs"):
@@ -123,7 +132,8 @@ def main():
         done = subprocess.run(["mkdocs", "build", "--strict", "--clean", "-f", root / "mkdocs.yml"], capture_output=True, text=True)
         if done.returncode != 0:
             sys.exit("error: the manual cannot be built:\n" + "\n".join(l for l in (done.stdout + done.stderr).replace(str(root / "pages") + "/", "").split("\n") if not l.startswith("INFO")))
-    print("%s: %d pages; to look at it: python3 -m http.server --directory %s" % (out, len(list(out.rglob("*.html"))), out))
+    search(source, out)
+    print("%s: %d pages; open %s" % (out, len(list(out.rglob("*.html"))), out / "index.html"))
     return 0
 
 
