@@ -66,7 +66,8 @@ void run_scenes(const CaseFolder& folder, const fs::path& project, const Options
   if (!v.neck) throw InputError("the vessel has no neck; do the stage wall again");
   std::vector<Note> notes;
   const std::vector<ClipShape> clips = read_clips(project);
-  const ClipPlan plan = plan_clip(v, clips, o, notes);
+  const Solid floor(read_ply(folder.lobes() / "insula_surface.ply"));
+  const ClipPlan plan = plan_clip(v, floor, clips, o, notes);
 
   SceneFacts f;
   f.name = folder.name;
@@ -93,7 +94,7 @@ void run_scenes(const CaseFolder& folder, const fs::path& project, const Options
   write_text(folder.path / "3_clipping_steady.csv", clipping_motion(plan));
   const auto temporary = std::find_if(clips.begin(), clips.end(), [&](const ClipShape& c) { return c.name == f.temporary; });
   if (temporary == clips.end()) throw InputError("the library has no clip " + f.temporary);
-  write_text(folder.path / "4_rupture_steady.csv", rupture_motion(plan, plan_temporary(v, *temporary), f.temporary, f.neck));
+  write_text(folder.path / "4_rupture_steady.csv", rupture_motion(plan, plan_temporary(v, floor, *temporary), f.temporary, f.neck));
 
   // Strands are spun between surfaces as they lie once settled: a kind for which there is no place is left out.
   progress.step("spinning strands");
