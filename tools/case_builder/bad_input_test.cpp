@@ -128,6 +128,9 @@ const std::vector<Given> all = {
     {"gltf_garbage", "a.gltf", [] { return std::string("{\"asset\":"); }, "a.gltf"},
     {"ply_truncated", "a.ply", [] { return std::string("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n"); }, "a.ply"},
     {"vtp_of_another_type", "a.vtp", [] { return std::string("<VTKFile type=\"UnstructuredGrid\"></VTKFile>"); }, "not PolyData"},
+    {"vtp_of_an_unknown_byte_order", "a.vtp", [] { return std::string("<VTKFile type=\"PolyData\" byte_order=\"MiddleEndian\"></VTKFile>"); }, "byte_order \"MiddleEndian\" is unknown"},
+    {"vtp_of_an_unknown_header", "a.vtp", [] { return std::string("<VTKFile type=\"PolyData\" header_type=\"UInt16\"></VTKFile>"); }, "header_type \"UInt16\" is unknown"},
+    {"vtp_with_points_twice", "a.vtp", [] { std::string s = test::vtp_text(tube_with_sac()); return s.insert(s.find("<Points>") + 8, "<DataArray type=\"Float32\" NumberOfComponents=\"3\">0 0 0</DataArray>"); }, "has the array \"Points\" twice"},
     {"vtp_truncated", "a.vtp", [] { return test::vtp_text(tube_with_sac()).substr(0, 4000); }, "ends early"},
     {"vtp_index_out_of_range", "a.vtp", [] { TriMesh m = tube_with_sac(); m.triangles[3][1] = 999999; return test::vtp_text(m); }, "names point 999999"},
     {"in_metres", "a.stl", [] { return stl(test::scaled(tube_with_sac(), 1e-3)); }, "--unit m"},
@@ -246,18 +249,73 @@ TEST(Volumes, ADicomSeriesIsReadByItsThreshold) {
   EXPECT_NEAR(signed_volume(in.surface.mesh), 15.6 * 3.14159 * 1.96 + 45, 15);
 }
 
-TEST(Volumes, AMissingSliceIsNamed) {
-  insula::test::SceneFolder folder;
-  write_series(folder, 12);
+/// What is said of a series that is refused; empty: it is taken.
+std::string refusal(const insula::test::SceneFolder& folder) {
   Progress quiet;
   Options o;
   o.threshold = 450;
   try {
     take_in(folder.path() / "series", o, quiet);
-    FAIL();
   } catch (const InputError& e) {
-    EXPECT_NE(std::string(e.what()).find("even distances (between 11.dcm and 13.dcm)"), std::string::npos) << e.what();
+    return e.what();
   }
+  return "";
+}
+std::string slice(int k, std::array<int, 2> size, const std::string& series) {
+  return test::dicom_text(size, 0.3, k, [k](int i, int j) { return 900 * test::tube_label(i, j, k); }, series);
+}
+
+TEST(Volumes, AMissingSliceIsNamed) {
+  insula::test::SceneFolder folder;
+  write_series(folder, 12);
+  const std::string said = refusal(folder);
+  EXPECT_NE(said.find("even distances (between 11.dcm and 13.dcm)"), std::string::npos) << said;
+}
+
+TEST(Volumes, ASliceThatEndsEarlyIsNamed) {
+  for (const std::size_t bytes : {std::size_t(2000), std::size_t(1000)}) {  // of 3,100: within the picture, before most of it
+    insula::test::SceneFolder folder;
+    write_series(folder, -1);
+    fs::resize_file(folder.path() / "series/7.dcm", bytes);
+    const std::string said = refusal(folder);
+    EXPECT_NE(said.find("7.dcm"), std::string::npos) << said;
+    EXPECT_NE(said.find("ends early"), std::string::npos) << said;
+  }
+}
+
+TEST(Volumes, ASliceWithoutItsPictureLeavesAGap) {
+  insula::test::SceneFolder folder;
+  write_series(folder, -1);
+  fs::resize_file(folder.path() / "series/7.dcm", 300);  // ends within the header
+  const std::string said = refusal(folder);
+  EXPECT_NE(said.find("7.dcm"), std::string::npos) << said;
+}
+
+TEST(Volumes, MixedSeriesAreListed) {
+  insula::test::SceneFolder folder;
+  write_series(folder, -1);
+  for (int k = 0; k < 5; ++k) folder.write("series/other_" + std::to_string(k) + ".dcm", slice(k, {54, 24}, "1.2.3.7"));
+  const std::string said = refusal(folder);
+  EXPECT_NE(said.find("holds 2 DICOM series; put one into a folder of its own"), std::string::npos) << said;
+  EXPECT_NE(said.find("32 images in"), std::string::npos) << said;
+  EXPECT_NE(said.find("5 images in"), std::string::npos) << said;
+}
+
+TEST(Volumes, SlicesOfAnotherSizeAreNoPartOfASeries) {
+  insula::test::SceneFolder folder;
+  write_series(folder, 12);
+  folder.write("series/12.dcm", slice(12, {40, 24}, "1.2.3.6"));
+  const std::string said = refusal(folder);
+  EXPECT_TRUE(said.find("holds 2 DICOM series") != std::string::npos || said.find("another size") != std::string::npos) << said;
+}
+
+TEST(Volumes, ASliceThatIsThereTwiceIsNamed) {
+  insula::test::SceneFolder folder;
+  write_series(folder, -1);
+  folder.write("series/again.dcm", slice(5, {54, 24}, "1.2.3.6"));
+  const std::string said = refusal(folder);
+  EXPECT_NE(said.find("at the same place"), std::string::npos) << said;
+  EXPECT_NE(said.find("again.dcm"), std::string::npos) << said;
 }
 #endif
 

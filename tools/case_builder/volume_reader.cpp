@@ -144,6 +144,9 @@ mesh_tool::NiftiVolume read_series(const fs::path& folder) {
     for (unsigned a = 0; a < 2; ++a)
       for (unsigned r = 0; r < 3; ++r) axes(r, a) = io->GetDirection(a)[r] * io->GetSpacing(a);
   }
+  for (std::size_t k = 1; k < origins.size(); ++k)
+    if ((origins[k] - origins[k - 1]).norm() < 1e-4)
+      fail(folder, "two of its slices lie at the same place (" + fs::path(files[k - 1]).filename().string() + " and " + fs::path(files[k]).filename().string() + "): leave one out");
   const Eigen::Vector3d between = (origins.back() - origins.front()) / double(origins.size() - 1);
   for (std::size_t k = 1; k < origins.size(); ++k)
     if ((origins[k] - origins[k - 1] - between).norm() > 0.1 * between.norm() + 1e-3)
