@@ -41,7 +41,8 @@ void TickResponse::begin(const ConstraintProblem& p, const std::array<Load, 2>& 
   find_felt();
   for (std::size_t t = 0; t < tools(); ++t) {
     moved_[t].setZero();
-    if (loads_[t].any) loaded_[t].begin(p.tools[t], p.step_s, loads_[t].velocity, push(t, p.lambda));
+    push_[t] = push(t, p.lambda);
+    if (loads_[t].any) loaded_[t].begin(p.tools[t], p.step_s, loads_[t].velocity, push_[t]);
     else loaded_[t].lose();
   }
   age_ = std::isfinite(age_s) ? age_s : 0;
@@ -109,7 +110,7 @@ const ConstraintProblem& TickResponse::next(double dt, const std::array<Vec6, 2>
   first_ = false;
   for (std::size_t t = 0; t < tools(); ++t) {
     if (loads_[t].any) {
-      went_[t] = loaded_[t].free_way(moved[t]) + give(t) * push(t, known_);
+      went_[t] = loaded_[t].free_way(moved[t]) + give(t) * push_[t];
       continue;
     }
     const Vec6 free = p.tools[t].gain * moved[t];
@@ -136,7 +137,9 @@ void TickResponse::solved(std::span<const double> lambda, std::span<const double
   // What the tools did: their free way and what the change of force makes them yield.
   std::array<Vec6, 2> way = went_;
   for (std::size_t t = 0; t < tools(); ++t) {
-    way[t] += give(t) * (push(t, lambda) - push(t, known_));
+    const Vec6 now = push(t, lambda);
+    way[t] += give(t) * (now - push_[t]);
+    push_[t] = now;
     if (loads_[t].any) loaded_[t].went(way[t]);
   }
   for (std::size_t i = 0; i < std::size_t(p.rows); ++i) {

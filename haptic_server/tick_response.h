@@ -63,6 +63,7 @@ class TickResponse {
   std::vector<char> slips_;       ///< tangent rows
   std::vector<int> felt_;         ///< rows that a tool has a part in
   std::array<Vec6, 2> moved_, went_;  ///< of the free tools, since the problem and in the tick
+  std::array<Vec6, 2> push_;      ///< H_tool^T known
   std::array<Load, 2> loads_;
   std::array<LoadedTool, 2> loaded_;
   double age_ = 0, dt_ = 0, compliance_dt_ = 0;
