@@ -51,6 +51,8 @@ std::vector<Variant> variants(bool ablation) {
     out.push_back({"+ tissue in time", servo});
     servo.servo.response.carried_moves = full.response.carried_moves;
     out.push_back({"+ carried moves", servo});
+    servo.servo.response.rows_turn = full.response.rows_turn;
+    out.push_back({"+ rows turn", servo});
   }
   servo.servo = full;
   out.push_back({ablation ? "+ hand-over" : "servo", servo});
