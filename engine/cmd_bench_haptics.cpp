@@ -51,6 +51,8 @@ std::vector<Variant> variants(bool ablation) {
     out.push_back({"+ tissue in time", servo});
     servo.servo.response.carried_moves = full.response.carried_moves;
     out.push_back({"+ carried moves", servo});
+    servo.servo.response.rows_turn = full.response.rows_turn;
+    out.push_back({"+ rows turn", servo});
   }
   servo.servo = full;
   out.push_back({ablation ? "+ hand-over" : "servo", servo});
@@ -64,28 +66,17 @@ std::unique_ptr<Simulation> open(const CommandContext& context, const HapticBenc
   return std::move(loaded.simulation);
 }
 
-}  // namespace
-
-int cmd_bench_haptics(const CommandContext& context, const HapticBenchOptions& options) {
-  auto simulation = open(context, options, 1e-3);
-  if (!simulation) return 2;
-  Motion motion;
-  Latency latency;
-  try {
-    latency = read_latency(options.latency);
-    motion = load_motion(find_motion(*simulation, options.motion));
-  } catch (const InputError& e) {
-    context.err << options.scene.string() << ": error: " << e.what() << '\n';
-    return 2;
-  }
+void measure(const CommandContext& context, const HapticBenchOptions& options, Simulation& simulation) {
+  const Latency latency = read_latency(options.latency);
+  const Motion motion = load_motion(find_motion(simulation, options.motion));
   const double duration = options.duration > 0 ? options.duration : motion.duration();
   fmt::print(context.out, "{}, {}: {:.2f} s\n", options.scene.string(), options.motion, duration);
-  const ForceTrace reference = reference_forces(*simulation, motion, duration);
+  const ForceTrace reference = reference_forces(simulation, motion, duration);
   simulation.reset();
   fmt::print(context.out, "  {:<6}{:<18}{:<7}{:>9}{:>9}{:>9}{:>11}{:>9}\n", "Hz", "rendering", "hand", "peak mN", "rms %", "worst %", "onset ms", "jump %");
   for (const double rate : options.rates) {
     auto engine = open(context, options, 1 / rate);
-    if (!engine) return 2;
+    if (!engine) throw InputError("it does not open with a step of " + std::to_string(1e3 / rate) + " ms");
     engine->look_ahead((latency.at(1 / rate) + (options.jitter + 1) / rate) * most_speeding_up);
     const auto steps = record_steps(*engine, motion, duration);
     engine.reset();
@@ -102,6 +93,19 @@ int cmd_bench_haptics(const CommandContext& context, const HapticBenchOptions& o
       }
     }
     context.out.flush();
+  }
+}
+
+}  // namespace
+
+int cmd_bench_haptics(const CommandContext& context, const HapticBenchOptions& options) {
+  const auto simulation = open(context, options, 1e-3);
+  if (!simulation) return 2;
+  try {
+    measure(context, options, *simulation);
+  } catch (const InputError& e) {
+    context.err << options.scene.string() << ": error: " << e.what() << '\n';
+    return 2;
   }
   return 0;
 }

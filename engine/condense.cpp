@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/constraint/sweep.h"
+#include "haptic_server/carried.h"
 
 namespace insula {
 namespace {
@@ -19,9 +20,17 @@ long padded(std::size_t n) { return long((n + 7) / 8 * 8); }
 
 void Condenser::find_felt(const ConstraintProblem& full) {
   felt_.assign(std::size_t(full.rows), 0);
-  for (const ToolTerms& t : full.tools)
+  tied_.assign(std::size_t(full.rows), 0);
+  for (std::size_t t = 0; t < std::min<std::size_t>(full.tools.size(), 2); ++t) {
     for (int r = 0; r < full.rows; ++r)
-      if (!t.jacobian.row(r).isZero(0)) felt_[std::size_t(r)] = 1;
+      if (!full.tools[t].jacobian.row(r).isZero(0)) felt_[std::size_t(r)] = 1;
+    // What a carried clip touches is touched by the tool: the servo makes the two one (haptic_server/carried.h).
+    const int tied = carrying_rows(full, t);
+    for (int r = 0; tied >= 0 && r < full.rows; ++r)
+      for (int k = 0; k < tying_rows; ++k)
+        if (full.w_at(r, tied + k) != 0) felt_[std::size_t(r)] = 1;
+    if (tied >= 0) std::fill_n(tied_.begin() + tied, tying_rows, char(1));
+  }
 }
 
 /// Marks the block's rows that are linear where they are; returns its margin.
@@ -81,7 +90,7 @@ void Condenser::make_groups(const ConstraintProblem& full) {
         if (felt_[std::size_t(c)]) coupling = std::max(coupling, std::abs(full.w_at(r, c)));
       // How far the tools' rows would move if this row's force went; for rows that nobody touches, if it changed by a newton, and the
       // more so the sooner it may do what its linear equation does not say.
-      g.rank = std::max(g.rank, (std::abs(full.lambda[std::size_t(r)]) + 1e-6) * coupling);
+      g.rank = std::max(g.rank, tied_[std::size_t(r)] ? infinite : (std::abs(full.lambda[std::size_t(r)]) + 1e-6) * coupling);
       if (!felt_[std::size_t(r)]) g.rank = std::max(g.rank, coupling / (std::abs(margin_m_[b]) + 1e-6));
     }
     if (block.law == LawKind::patch)
@@ -148,12 +157,7 @@ void Condenser::copy_kept(const ConstraintProblem& full, ConstraintProblem& smal
   for (std::size_t t = 0; t < small.tools.size(); ++t) {
     const ToolTerms& from = full.tools[t];
     ToolTerms& to = small.tools[t];
-    to.hand = from.hand;
-    to.device = from.device;
-    to.free = from.free;
-    to.gain = from.gain;
-    to.compliance = from.compliance;
-    to.stiffness = from.stiffness;
+    to.coupling() = from;
     to.jacobian.resize(long(rows), 6);
     for (std::size_t i = 0; i < rows; ++i) to.jacobian.row(long(i)) = from.jacobian.row(kept_[i]);
   }

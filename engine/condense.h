@@ -8,7 +8,7 @@
 namespace insula {
 
 /// Copies `full` into `small` where it has at most most_rows rows. Otherwise each block has one of three fates:
-///   kept        those that touch a tool, then those that are coupled to them and may soon change their state, in their order
+///   kept        those that touch a tool or what it carries, then those that are coupled to them and may soon change their state, in their order
 ///   eliminated  rows E that no tool touches, in a state in which their law is a linear equation delta_E + C lambda_E = 0: pressure,
 ///               springs, fibres in tension, contacts that press or stick. Exactly, by the Schur complement
 ///                 W'          = W_KK - W_KE (W_EE + C)^-1 W_EK
@@ -41,6 +41,7 @@ class Condenser {
   void eliminate(const ConstraintProblem& full, ConstraintProblem& small);
 
   std::vector<char> felt_;        ///< by row of the full problem
+  std::vector<char> tied_;        ///< by row: between a tool and what it carries
   std::vector<Fate> fate_;        ///< linear: could be eliminated, until chosen
   std::vector<double> margin_m_;  ///< by block: how far it is from another state; negative: it has no other
   AlignedVector<double> delta_m_, factor_, weights_;

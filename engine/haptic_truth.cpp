@@ -8,6 +8,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "core/base/input_error.h"
 #include "core/base/random.h"
 #include "engine/command_script.h"
 #include "engine/condense.h"
@@ -36,6 +37,10 @@ class Driven {
     }
     script_.advance(simulation_);
     simulation_.step();
+    for (const Event& e : simulation_.events())  // or another tool than the motion's would be measured, unnoticed
+      if (e.kind == "refused")
+        throw InputError(fmt::format("at {:.3f} s of the motion, with a step of {:.3g} ms, its command \"{}\" is refused: {}; give it at 0 s, before the hand has gone anywhere",
+                                     end - simulation_.h(), 1e3 * simulation_.h(), e.id, e.text));
   }
   Vec3 force(int hand) const {
     const Instrument* tool = simulation_.instrument_of(hand);

@@ -34,7 +34,8 @@ struct RecordedStep {
   std::array<Vec3, 2> force{Vec3::Zero(), Vec3::Zero()};
 };
 
-/// The engine stepped at 1 kHz over `duration_s` of the motion.
+/// The engine stepped at 1 kHz over `duration_s` of the motion. Throws InputError, as record_steps does, when the engine refuses a command of
+/// the motion: what is measured would be something else.
 ForceTrace reference_forces(Simulation& simulation, const Motion& motion, double duration_s);
 /// Its problems at the rate of the simulation's own step, condensed, encoded and decoded as on the bus.
 std::vector<RecordedStep> record_steps(Simulation& simulation, const Motion& motion, double duration_s);

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "core/base/input_error.h"
+#include "core/testing/block_mesh.h"
 #include "core/testing/example.h"
 
 namespace insula {
@@ -120,6 +122,22 @@ TEST(HapticTruthCompare, ErrorsAndOnsets) {
   EXPECT_NEAR(compare(reference, rendered).onset_s, -2e-3, 1e-12);
   EXPECT_FALSE(compare(rendered, reference).onsets == 0);
   EXPECT_FALSE(compare(std::vector<Vec3>(5, Vec3::Zero()), rendered).counts());
+}
+
+// A motion whose exchange is refused would be flown with another tool, unnoticed.
+TEST(HapticTruthCommands, ARefusedOneIsAnErrorThatSaysWhatAndWhen) {
+  test::SceneFolder folder;
+  folder.write("motion.csv",
+               "time_s,hand,px_m,py_m,pz_m,qw,qx,qy,qz,button1,button2\n0,command,exchange,right nothing\n0,right,0,0,0,1,0,0,0,0,0\n1,right,0,0,0,1,0,0,0,0,0\n");
+  const Motion motion = load_motion(folder.path() / "motion.csv");
+  auto simulation = fissure(1.0 / 30);
+  ASSERT_TRUE(simulation);
+  try {
+    record_steps(*simulation, motion, 0.1);
+    FAIL() << "nothing was said";
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("at 0.000 s of the motion, with a step of 33.3 ms, its command \"exchange\" is refused: no tool \"nothing\""), std::string::npos) << e.what();
+  }
 }
 
 }  // namespace

@@ -10,7 +10,6 @@
 namespace insula {
 namespace {
 
-constexpr int joint_rows = 6;
 constexpr int component_bits = 44;  // of a row's id, see row_id
 constexpr double nothing = 1e-6;    // of a row's compliance; W comes in single precision
 
@@ -65,7 +64,7 @@ int carrying_rows(const ConstraintProblem& p, std::size_t tool) {
   for (std::size_t b = 0; b < p.blocks.size(); ++b) {
     if (!ties(p, tool, p.blocks[b])) count = 0;
     else count = count > 0 && p.blocks[b].id >> component_bits != p.blocks[b - 1].id >> component_bits ? 1 : count + 1;
-    if (count == joint_rows) return p.blocks[b].row - joint_rows + 1;
+    if (count == tying_rows) return p.blocks[b].row - tying_rows + 1;
   }
   return -1;
 }
@@ -92,12 +91,12 @@ const ConstraintProblem& Carried::take_in(const ConstraintProblem& problem) noex
 
 // Everything but the six rows as it is. Jacobians have room for all rows there may be, whatever the problem's.
 void Carried::copy_rest(const ConstraintProblem& from, int first, ConstraintProblem& to) noexcept {
-  to.resize(from.rows - joint_rows);  // within its capacity
+  to.resize(from.rows - tying_rows);  // within its capacity
   to.step_s = from.step_s;
   to.blocks.clear();
   for (Block b : from.blocks) {
-    if (b.row >= first && b.row < first + joint_rows) continue;
-    if (b.row > first) b.row -= joint_rows;
+    if (b.row >= first && b.row < first + tying_rows) continue;
+    if (b.row > first) b.row -= tying_rows;
     to.blocks.push_back(b);
   }
   const std::size_t had = to.tools.size(), now = tools_of(from);
@@ -107,16 +106,11 @@ void Carried::copy_rest(const ConstraintProblem& from, int first, ConstraintProb
   for (std::size_t t = 0; t < now; ++t) {
     const ToolTerms& a = from.tools[t];
     ToolTerms& b = to.tools[t];
-    b.hand = a.hand;
-    b.device = a.device;
-    b.free = a.free;
-    b.gain = a.gain;
-    b.compliance = a.compliance;
-    b.stiffness = a.stiffness;
-    for (int i = 0; i < to.rows; ++i) b.jacobian.row(i) = a.jacobian.row(i < first ? i : i + joint_rows);
+    b.coupling() = a;
+    for (int i = 0; i < to.rows; ++i) b.jacobian.row(i) = a.jacobian.row(i < first ? i : i + tying_rows);
   }
   for (int i = 0; i < to.rows; ++i) {
-    const std::size_t s = std::size_t(i < first ? i : i + joint_rows), d = std::size_t(i);
+    const std::size_t s = std::size_t(i < first ? i : i + tying_rows), d = std::size_t(i);
     to.lambda[d] = from.lambda[s];
     to.rate[d] = from.rate[s];
     to.relaxation[d] = from.relaxation[s];
@@ -145,7 +139,7 @@ bool Carried::reduce(const ConstraintProblem& from, std::size_t tool, int first,
   for (int i = 0; i < from.rows; ++i) push += from.lambda[std::size_t(i)] * t.jacobian.row(i).transpose();
   ToolTerms& now = to.tools[tool];
   for (int i = 0; i < n; ++i) {
-    const int s = i < first ? i : i + joint_rows;
+    const int s = i < first ? i : i + tying_rows;
     const std::size_t d = std::size_t(i);
     for (int k = 0; k < 6; ++k) clip_[d][k] = from.w_at(s, first + k) - w_tools(from, s, first + k);
     tool_[d] = t.jacobian.row(s).transpose();
@@ -156,13 +150,13 @@ bool Carried::reduce(const ConstraintProblem& from, std::size_t tool, int first,
     push_now += to.lambda[d] * both_[d];
   }
   for (int i = 0; i < n; ++i) {
-    const int s = i < first ? i : i + joint_rows;
+    const int s = i < first ? i : i + tying_rows;
     const Vec6 by_tool = t.compliance * tool_[std::size_t(i)], by_clip = p * clip_[std::size_t(i)], by_both = give * both_[std::size_t(i)];
     double delta = from.delta_free[std::size_t(s)], delta_now = 0;
     for (int j = 0; j < from.rows; ++j) delta += from.w_at(s, j) * from.lambda[std::size_t(j)];
     for (int j = 0; j < n; ++j) {
       const std::size_t c = std::size_t(j);
-      double w = from.w_at(s, j < first ? j : j + joint_rows) - by_tool.dot(tool_[c]) - by_clip.dot(clip_[c]);
+      double w = from.w_at(s, j < first ? j : j + tying_rows) - by_tool.dot(tool_[c]) - by_clip.dot(clip_[c]);
       w += by_both.dot(both_[c]);
       to.w[std::size_t(i) * std::size_t(to.stride) + c] = w;
       delta_now += w * to.lambda[c];
@@ -170,7 +164,7 @@ bool Carried::reduce(const ConstraintProblem& from, std::size_t tool, int first,
     to.delta_free[std::size_t(i)] = delta - delta_now;
   }
   for (int i = 0; i < n; ++i)
-    if (to.w_at(i, i) < nothing * from.w_at(i < first ? i : i + joint_rows, i < first ? i : i + joint_rows)) silence(to, tool, i);
+    if (to.w_at(i, i) < nothing * from.w_at(i < first ? i : i + tying_rows, i < first ? i : i + tying_rows)) silence(to, tool, i);
   now.gain = give * (a * t.gain);
   now.compliance = 0.5 * (give + give.transpose());
   now.free = displaced(t.free, t.compliance * push - now.compliance * push_now);

@@ -24,6 +24,7 @@ struct Load {
   Vec6 velocity = Vec6::Zero();  ///< of the tool's frame at the end of the step, m/s and rad/s
 };
 
+inline constexpr int tying_rows = 6;
 /// First of the six rows by which the tool carries a rigid body that nothing else holds; -1: it carries none.
 int carrying_rows(const ConstraintProblem& problem, std::size_t tool);
 

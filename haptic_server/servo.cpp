@@ -133,6 +133,7 @@ ServoResult Servo::tick(const ServoInput& input) noexcept {
   if (n > 0 || in_ticks) {  // without rows a tool that carries something still moves
     SolveSettings s;
     s.tolerance_m = settings_.tolerance_m;
+    s.conjugate = settings_.conjugate;
     s.max_sweeps = int(std::clamp(settings_.max_operations / std::max(1.0, double(n) * n), 1.0, double(settings_.max_sweeps)));
     if (in_ticks) {
       const ConstraintProblem& tick = response_.next(input.dt_s, moved);
@@ -148,7 +149,7 @@ ServoResult Servo::tick(const ServoInput& input) noexcept {
     const ToolTerms& tool = p.tools[t];
     const std::size_t index = std::size_t(tool.hand & 1);
     ServoHand& hand = result.hand[index];
-    const Vec6 push = transposed_product(tool.jacobian, workspace_.lambda, n);
+    const Vec6 push = transposed_product(in_ticks ? response_.jacobian(t) : tool.jacobian, workspace_.lambda, n);
     if (const LoadedTool* loaded = in_ticks ? response_.loaded(t) : nullptr) hand.tool = loaded->pose();
     else hand.tool = displaced(tool.free, tool.gain * moved[t] + tool.compliance * push);
     const Vec6 wrench = tool.stiffness * displacement(device[t], hand.tool);

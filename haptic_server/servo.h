@@ -19,6 +19,7 @@ struct ServoSettings {
   /// Sweeps times rows squared stays below this, so that a tick keeps to its millisecond whatever the rows.
   double max_operations = 1.2e6;
   double tolerance_m = 1e-9;
+  bool conjugate = false;  ///< sweeps go on along conjugate directions (core/constraint/solve.h)
   /// A device further than this from the pose the problem was built with is outside the linearisation: no force.
   double max_displacement_m = 0.03;
   double max_rotation_rad = 0.8;
@@ -29,8 +30,9 @@ struct ServoSettings {
   /// All of it, as measured in docs/haptic-truth.md.
   static ServoSettings beyond_equation_7() {
     ServoSettings s;
-    s.response = {.tissue_in_time = true, .tissue_moves = true, .slip_by_tick = true, .carried_moves = true};
-    s.hand_over.within_s = 0.015;
+    s.response = {.tissue_in_time = true, .tissue_moves = true, .slip_by_tick = true, .carried_moves = true, .rows_turn = true};
+    s.hand_over.within_s = 0.01;
+    s.conjugate = true;
     return s;
   }
 };

@@ -13,7 +13,7 @@ constexpr double same_length = 0.1;  // ticks that differ by less share a W
 
 }  // namespace
 
-TickResponse::TickResponse(const TickResponseSettings& settings, int most_rows) : settings_(settings) {
+TickResponse::TickResponse(const TickResponseSettings& settings, int most_rows) : settings_(settings), turning_(most_rows) {
   tick_.resize(most_rows);
   tick_.blocks.reserve(std::size_t(most_rows));
   for (auto* v : {&gap_, &rate_, &known_, &share_}) v->assign(std::size_t(most_rows), 0.0);
@@ -39,9 +39,11 @@ void TickResponse::begin(const ConstraintProblem& p, const std::array<Load, 2>& 
     rate_[i] = p.rate[i];
   }
   find_felt();
+  turning_.begin(p, loads);
   for (std::size_t t = 0; t < tools(); ++t) {
     moved_[t].setZero();
-    if (loads_[t].any) loaded_[t].begin(p.tools[t], p.step_s, loads_[t].velocity, push(t, p.lambda));
+    push_[t] = push(t, p.lambda);
+    if (loads_[t].any) loaded_[t].begin(p.tools[t], p.step_s, loads_[t].velocity, push_[t]);
     else loaded_[t].lose();
   }
   age_ = std::isfinite(age_s) ? age_s : 0;
@@ -62,7 +64,7 @@ void TickResponse::find_felt() noexcept {
 Vec6 TickResponse::push(std::size_t tool, std::span<const double> lambda) const noexcept {
   Vec6 sum = Vec6::Zero();
   for (const int i : felt_)
-    for (int c = 0; c < 6; ++c) sum[c] += step_->tools[tool].jacobian(i, c) * lambda[std::size_t(i)];
+    for (int c = 0; c < 6; ++c) sum[c] += turning_.jacobian(tool)(i, c) * lambda[std::size_t(i)];
   return sum;
 }
 
@@ -107,13 +109,16 @@ const ConstraintProblem& TickResponse::next(double dt, const std::array<Vec6, 2>
   }
   second_ = first_;
   first_ = false;
+  if (settings_.rows_turn) turning_.turn(moved);
   for (std::size_t t = 0; t < tools(); ++t) {
+    const Vec6 turned = settings_.rows_turn ? Vec6(push(t, known_) - push_[t]) : Vec6(Vec6::Zero());
+    push_[t] += turned;
     if (loads_[t].any) {
-      went_[t] = loaded_[t].free_way(moved[t]) + give(t) * push(t, known_);
+      went_[t] = loaded_[t].free_way(moved[t]) + give(t) * push_[t];
       continue;
     }
     const Vec6 free = p.tools[t].gain * moved[t];
-    went_[t] = free - moved_[t];
+    went_[t] = free - moved_[t] + give(t) * turned;
     moved_[t] = free;
   }
   for (std::size_t i = 0; i < n; ++i) {
@@ -125,7 +130,7 @@ const ConstraintProblem& TickResponse::next(double dt, const std::array<Vec6, 2>
     const double* w = tick_.w.data() + i * stride;
     for (std::size_t j = 0; j < n; ++j) free -= w[j] * known_[j];
     for (std::size_t t = 0; t < tools(); ++t)
-      for (int c = 0; c < 6; ++c) free += p.tools[t].jacobian(int(i), c) * went_[t][c];
+      for (int c = 0; c < 6; ++c) free += turning_.jacobian(t)(int(i), c) * went_[t][c];
     tick_.delta_free[i] = free;
   }
   return tick_;
@@ -136,13 +141,15 @@ void TickResponse::solved(std::span<const double> lambda, std::span<const double
   // What the tools did: their free way and what the change of force makes them yield.
   std::array<Vec6, 2> way = went_;
   for (std::size_t t = 0; t < tools(); ++t) {
-    way[t] += give(t) * (push(t, lambda) - push(t, known_));
+    const Vec6 now = push(t, lambda);
+    way[t] += give(t) * (now - push_[t]);
+    push_[t] = now;
     if (loads_[t].any) loaded_[t].went(way[t]);
   }
   for (std::size_t i = 0; i < std::size_t(p.rows); ++i) {
     double tissue = delta[i] - start(i);
     for (std::size_t t = 0; t < tools(); ++t)
-      for (int c = 0; c < 6; ++c) tissue -= p.tools[t].jacobian(int(i), c) * way[t][c];
+      for (int c = 0; c < 6; ++c) tissue -= turning_.jacobian(t)(int(i), c) * way[t][c];
     if (settings_.tissue_in_time) rate_[i] = tissue / dt_;
     gap_[i] = delta[i];
     known_[i] = lambda[i];

@@ -16,6 +16,7 @@
 #include "core/constraint/problem.h"
 #include "haptic_server/carried.h"
 #include "haptic_server/loaded_tool.h"
+#include "haptic_server/turning_rows.h"
 
 namespace insula {
 
@@ -24,7 +25,8 @@ struct TickResponseSettings {
   bool tissue_moves = false;    ///< tissue goes on at its rate
   bool slip_by_tick = false;    ///< friction opposes the slip of the tick, not that since the step began
   bool carried_moves = false;   ///< what a tool carries is one with it, and its inertia that of a tick
-  bool any() const { return tissue_in_time || tissue_moves || slip_by_tick || carried_moves; }
+  bool rows_turn = false;       ///< directions of contact go on turning with the tool
+  bool any() const { return tissue_in_time || tissue_moves || slip_by_tick || carried_moves || rows_turn; }
 };
 
 /// State of the rows between ticks. Allocates in its constructor only.
@@ -37,6 +39,7 @@ class TickResponse {
   /// The next problem has nothing to do with the one before: what a tool carries begins where it is in that one.
   void forget() noexcept {
     for (LoadedTool& tool : loaded_) tool.lose();
+    turning_.forget();
   }
   /// The problem of the next tick, `dt_s` after the last one; the first one covers the problem's age instead. `moved`: of the
   /// devices since the problem's poses, tool by tool.
@@ -45,6 +48,8 @@ class TickResponse {
   void solved(std::span<const double> lambda, std::span<const double> delta) noexcept;
   /// The tool if it carries something, as it is after the tick.
   const LoadedTool* loaded(std::size_t tool) const { return loads_[tool].any ? &loaded_[tool] : nullptr; }
+  /// The tool's rows as they are in this tick.
+  const TurningRows::Jacobian& jacobian(std::size_t tool) const { return turning_.jacobian(tool); }
 
  private:
   void find_felt() noexcept;
@@ -57,12 +62,14 @@ class TickResponse {
   double start(std::size_t i) const { return settings_.slip_by_tick && slips_[i] ? 0.0 : gap_[i]; }
 
   TickResponseSettings settings_;
+  TurningRows turning_;
   const ConstraintProblem* step_ = nullptr;
   ConstraintProblem tick_;        ///< W and delta_free of the tick
   std::vector<double> gap_, rate_, known_, share_;
   std::vector<char> slips_;       ///< tangent rows
   std::vector<int> felt_;         ///< rows that a tool has a part in
   std::array<Vec6, 2> moved_, went_;  ///< of the free tools, since the problem and in the tick
+  std::array<Vec6, 2> push_;      ///< H_tool^T known
   std::array<Load, 2> loads_;
   std::array<LoadedTool, 2> loaded_;
   double age_ = 0, dt_ = 0, compliance_dt_ = 0;

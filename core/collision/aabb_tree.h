@@ -104,7 +104,7 @@ struct OuterBox {
 
 class AabbTree {
  public:
-  static constexpr float slack = 1e-4f;  ///< m
+  static constexpr float slack = 2e-4f;  ///< m
   static constexpr int leaf_size = 4;  ///< triangles at most in a leaf
 
   /// Median splits along the longest side; the same input gives the same tree.

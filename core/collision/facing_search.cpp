@@ -27,8 +27,6 @@ void FacingSearch::begin(const CollisionMesh& a, int vertex, const CollisionMesh
 void FacingSearch::look(int tri, Seen& seen) {
   const auto& t = b_->triangle(tri);
   const Vec3 p = b_->vertex(t[0]), q = b_->vertex(t[1]), r = b_->vertex(t[2]);
-  const Vec3 outside = (p.cwiseMin(q).cwiseMin(r) - x_).cwiseMax(x_ - p.cwiseMax(q).cwiseMax(r)).cwiseMax(0);
-  if (outside.squaredNorm() > limit2_) return;
   const Vec3 n = (q - p).cross(r - p);
   const double h = n.dot(x_ - p), nn = n.squaredNorm();
   if (h * h > limit2_ * nn) return;  // its plane is too far

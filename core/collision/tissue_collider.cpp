@@ -45,7 +45,7 @@ std::vector<int> sample_vertices(std::span<const Vec3> rest, std::span<const std
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-constexpr double surroundings = 6e-3;  ///< what is farther than this from a group need not be followed for a while, m
+constexpr double surroundings = 2e-3;  ///< what is farther than this from a group need not be followed for a while, m
 constexpr double horizon = 2e-3;       ///< groups are looked at farther than needed, to know for how long nothing will come, m
 constexpr double near_horizon = 5e-4;  ///< and samples
 constexpr double slow = 5e-5;          ///< what moves less in a step has the same nearest triangle for some steps, m
@@ -55,6 +55,8 @@ constexpr double slow = 5e-5;          ///< what moves less in a step has the sa
 TissueCollider::TissueCollider(std::vector<int> samples, std::span<const Vec3> rest, int triangles) : samples_(std::move(samples)) {
   leaves_.reserve(std::size_t(triangles));
   packs_.reserve(std::size_t(triangles) / 4 + 1);
+  corners_.reserve(std::size_t(triangles));
+  corners_at_.reserve(std::size_t(triangles));
   seen_.reserve(3 * std::size_t(triangles) + 1);
   order_by_place(samples_.data(), samples_.data() + samples_.size(), rest, std::ptrdiff_t(group));
   reset();
@@ -71,6 +73,7 @@ void TissueCollider::reset() {
 void TissueCollider::gather_leaves(const AabbTree& tree, const Aabb& all) {
   leaves_.clear();
   packs_.clear();
+  corners_.clear();
   centre_ = 0.5 * (all.low + all.high);
   tree.leaves(all, [&](const OuterBox& box, std::span<const int> triangles) {
     const std::size_t lane = leaves_.size() % 4;
@@ -81,11 +84,30 @@ void TissueCollider::gather_leaves(const AabbTree& tree, const Aabb& all) {
     }
     leaves_.push_back(triangles);
   });
+  corners_at_.assign(leaves_.size(), -1);
 }
 
-// look(triangle) for the triangles of every leaf that may be nearer to x than sqrt(limit2), which `look` lowers.
+const FourTriangles& TissueCollider::corners_of(const CollisionMesh& b, std::size_t leaf) {
+  int& at = corners_at_[leaf];
+  if (at >= 0) return corners_[std::size_t(at)];
+  at = int(corners_.size());
+  FourTriangles& c = corners_.emplace_back();
+  const std::span<const int> triangles = leaves_[leaf];
+  for (std::size_t lane = 0; lane < 4; ++lane) {
+    const auto& t = b.triangle(triangles[std::min(lane, triangles.size() - 1)]);
+    const Vec3 p = b.vertex(t[0]) - centre_, q = b.vertex(t[1]) - centre_, r = b.vertex(t[2]) - centre_;
+    for (std::size_t k = 0; k < 3; ++k) {
+      c.a[k][lane] = float(p[int(k)]);
+      c.b[k][lane] = float(q[int(k)]);
+      c.c[k][lane] = float(r[int(k)]);
+    }
+  }
+  return c;
+}
+
+// look(triangle) for every triangle that may be nearer to x than sqrt(limit2), which `look` lowers.
 template <class Look>
-void TissueCollider::look_at_leaves(const Vec3& x, const double& limit2, Look&& look) const {
+void TissueCollider::look_at_leaves(const CollisionMesh& b, const Vec3& x, const double& limit2, Look&& look) {
   const Vec3 at = x - centre_;
   const float px = float(at[0]), py = float(at[1]), pz = float(at[2]);
   const auto beyond = [](Float4 low, Float4 high, float p) {
@@ -99,9 +121,13 @@ void TissueCollider::look_at_leaves(const Vec3& x, const double& limit2, Look&& 
     const Float4 d2 = (dx * dx + dy * dy + dz * dz) * 0.999999f;
     const auto any = reinterpret_cast<OuterBox::Halves>(d2 <= float(limit2) * 1.000001f);
     if ((any[0] | any[1]) == 0) continue;
-    for (std::size_t lane = 0; lane < 4; ++lane)
-      if (double(d2[lane]) <= limit2 && 4 * k + lane < leaves_.size())
-        for (int t : leaves_[4 * k + lane]) look(t);
+    for (std::size_t lane = 0; lane < 4; ++lane) {
+      const std::size_t leaf = 4 * k + lane;
+      if (double(d2[lane]) > limit2 || leaf >= leaves_.size()) continue;
+      const Float4 distance2 = corners_of(b, leaf).distance2(px, py, pz);
+      for (std::size_t i = 0; i < leaves_[leaf].size(); ++i)
+        if (FourTriangles::may_be_within(distance2[i], limit2)) look(leaves_[leaf][i]);
+    }
   }
 }
 
@@ -194,7 +220,7 @@ void TissueCollider::detect(const CollisionMesh& a, const CollisionMesh& b, cons
       FacingSearch& search = search_[k];
       if (!settled_[k]) {
         seen_.clear();
-        look_at_leaves(search.x(), search.limit2(), [&](int t) { search.look(t, seen_); });
+        look_at_leaves(b, search.x(), search.limit2(), [&](int t) { search.look(t, seen_); });
         search.settle(known_[i], seen_);
       }
       behind_[i] = 0;

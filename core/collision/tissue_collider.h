@@ -15,6 +15,7 @@
 #include "core/collision/collision_mesh.h"
 #include "core/collision/contact_set.h"
 #include "core/collision/facing_search.h"
+#include "core/collision/four_triangles.h"
 
 namespace insula {
 
@@ -62,9 +63,12 @@ class TissueCollider {
   };
   void gather_leaves(const AabbTree& tree, const Aabb& all);
   template <class Look>
-  void look_at_leaves(const Vec3& x, const double& limit2, Look&& look) const;
+  void look_at_leaves(const CollisionMesh& b, const Vec3& x, const double& limit2, Look&& look);
+  const FourTriangles& corners_of(const CollisionMesh& b, std::size_t leaf);
   std::vector<std::span<const int>> leaves_;  ///< triangles of the leaves near a group ...
-  std::vector<Pack> packs_;                   ///< ... and their boxes, about centre_
+  std::vector<Pack> packs_;                   ///< ... their boxes ...
+  std::vector<FourTriangles> corners_;        ///< ... and corners, of those that a sample wanted, about centre_
+  std::vector<int> corners_at_;               ///< of the leaves: place in corners_, -1: not wanted yet
   Vec3 centre_ = Vec3::Zero();
   std::vector<KnownNearest> known_;  ///< of the samples: spares looks, does not change what is found
   std::array<FacingSearch, group> search_;

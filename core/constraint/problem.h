@@ -12,15 +12,20 @@
 
 namespace insula {
 
-/// A hand-held tool in the problem: how its free pose follows the device and how it yields to lambda.
-struct ToolTerms {
+/// How a hand-held tool's free pose follows the device and how the tool yields.
+struct ToolCoupling {
   int hand = 0;                      ///< 0 left, 1 right
   Pose device;                       ///< device pose (with the tool's offset applied) the problem was built with
   Pose free;                         ///< the tool's free pose at the end of the step
   Mat6 gain = Mat6::Identity();      ///< d(free displacement)/d(device displacement)
   Mat6 compliance = Mat6::Zero();    ///< A_tool^-1, (m, rad) per (N, N m)
   Mat6 stiffness = Mat6::Zero();     ///< coupling spring; force on the hand = stiffness * displacement(device, tool)
+};
+
+/// A hand-held tool in the problem, and the rows that it has a part in.
+struct ToolTerms : ToolCoupling {
   Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor> jacobian;  ///< H_tool, rows x 6
+  ToolCoupling& coupling() { return *this; }  ///< all but the Jacobian
 };
 
 struct ConstraintProblem {

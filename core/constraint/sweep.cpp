@@ -111,7 +111,7 @@ LocalBlock local_block(const ConstraintProblem& p, const Block& b) {
 SweepData SweepMemory::set_up(const ConstraintProblem& p) {
   blocks.clear();
   for (const Block& b : p.blocks) blocks.push_back(local_block(p, b));
-  return {&p, p.w.data(), p.stride, p.rows, blocks.data(), int(blocks.size()), exact};
+  return {&p, p.w.data(), p.stride, blocks.data(), int(blocks.size()), exact};
 }
 
 }  // namespace insula

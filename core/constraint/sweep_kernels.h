@@ -28,7 +28,6 @@ struct SweepData {
   const ConstraintProblem* problem;
   const double* w;
   long stride;
-  int rows;
   LocalBlock* blocks;
   int block_count;
   /// Exact solution of one block, for what the fast ways do not cover. Writes rows() newtons.

@@ -53,6 +53,7 @@ void Riders::place_on(double step, Vec3* positions, Vec3* expected, RegionMotion
       xy = Pair{o[0], o[1]};
       zx = Pair{o[2], 0};
     }
+#pragma GCC unroll 4
     for (std::size_t k = 0; k < nodes; ++k) {
       const Node& n = nodes_[std::size_t(p.node[k])];
       const Pair w{p.weight[k], p.weight[k]};

@@ -168,6 +168,11 @@ TEST(TetMeshFile, RefusesOldGmshAndHostileXml) {
   for (int i = 0; i < 100000; ++i) deep += "<a>";
   EXPECT_NE(error_of(folder.write("a.vtu", deep)).find("nested too deeply"), std::string::npos);
   EXPECT_NE(error_of(folder.write("a.vtu", "<VTKFile type=\"UnstructuredGrid\" compressor=\"vtkLZ4DataCompressor\"/>")).find("compressor"), std::string::npos);
+  EXPECT_NE(error_of(folder.write("a.vtu", "<VTKFile type=\"UnstructuredGrid\" byte_order=\"MiddleEndian\"/>")).find("byte_order \"MiddleEndian\" is unknown"), std::string::npos);
+  EXPECT_NE(error_of(folder.write("a.vtu", "<VTKFile type=\"UnstructuredGrid\" header_type=\"Float32\"/>")).find("header_type \"Float32\" is unknown"), std::string::npos);
+  std::string within = "<VTKFile type=\"UnstructuredGrid\"><Piece NumberOfPoints=\"1\" NumberOfCells=\"0\"><Points><DataArray NumberOfComponents=\"3\" type=\"Float64\">0 0 0";
+  for (int i = 0; i < 9; ++i) within += "<Piece NumberOfPoints=\"1\" NumberOfCells=\"0\"/> 1 2 3";
+  EXPECT_NE(error_of(folder.write("a.vtu", within + "</DataArray></Points></Piece></VTKFile>")).find("a.vtu"), std::string::npos);
 }
 
 TEST(WriteVtu, IsReadBackBitForBit) {

@@ -10,6 +10,14 @@ Goals and clocks of an intraoperative rupture.
 - `timer_temporary_clip` runs while a temporary clip is on; beyond `limit` (three minutes: longer occlusion risks a stroke) it
   counts a fault.
 - `goal_temporary_removed` is reached when a temporary clip that was on is off again, with a permanent clip on and no bleeding.
+
+Blood comes with the pulse, and a tear that is all but shut spurts now and then. What is reached is therefore not taken back by one
+step's rate but by blood that runs: with r the rate of bleeding, the surplus
+
+    S <- min(R, max(0, S + (r - rate) h)),   R = rate . 1 s
+
+fills up to R while it bleeds and empties while it does not; it bleeds from S = R until S = 0 (a cumulative sum with hysteresis:
+E. Page, Continuous inspection schemes, Biometrika 1954).
 */
 #include <algorithm>
 
@@ -36,6 +44,22 @@ double ruptured_at(const StepReport& r) {
   return at;
 }
 
+/// Whether blood runs, over the beats.
+class Running {
+ public:
+  bool observe(const StepReport& r, double rate) {
+    const double full = rate * 1.0;  // of a second
+    surplus_ = std::clamp(surplus_ + (bleeding_rate(r) - rate) * r.h, 0.0, full);
+    const bool over = bleeding_rate(r) > rate && surplus_ >= full, none = surplus_ <= 0 && bleeding_rate(r) <= rate;
+    runs_ = over || (runs_ && !none);
+    return runs_;
+  }
+
+ private:
+  double surplus_ = 0;  ///< m3
+  bool runs_ = false;
+};
+
 class FaultRupture final : public ExerciseRule {
  public:
   Param<std::string> text{this, {.name = "text", .fallback = "The aneurysm has ruptured", .doc = "what the trainee is told"}};
@@ -60,16 +84,20 @@ class GoalBleedingStopped final : public ExerciseRule {
   Param<Duration> hold{this, {.name = "hold", .fallback = "2 s", .min = "0 s", .max = "600 s", .doc = "how long it must stand"}};
   void declare(PrepareContext&, const Simulation&, ExerciseLog& log) override { goal_ = log.add_goal(id, text()); }
   void observe(const StepReport& r, ExerciseLog& log) override {
-    const bool dry = ruptured_at(r) >= 0 && bleeding_rate(r) <= rate();
+    const bool runs = running_.observe(r, rate()), dry = ruptured_at(r) >= 0 && bleeding_rate(r) <= rate();
     held_ = dry ? held_ + r.h : 0;
     if (dry && held_ >= hold()) log.goal(goal_, r.time);
-    if (!dry && log.goals()[std::size_t(goal_)].done) log.goal_lost(goal_, r.time);
+    if (!dry && runs && log.goals()[std::size_t(goal_)].done) log.goal_lost(goal_, r.time);
   }
-  void reset() override { held_ = 0; }
+  void reset() override {
+    held_ = 0;
+    running_ = {};
+  }
 
  private:
   int goal_ = 0;
   double held_ = 0;
+  Running running_;
 };
 
 class TimerRupture final : public ExerciseRule {
@@ -81,17 +109,22 @@ class TimerRupture final : public ExerciseRule {
   void declare(PrepareContext&, const Simulation&, ExerciseLog& log) override { timer_ = log.add_timer(id, text(), limit()); }
   void observe(const StepReport& r, ExerciseLog& log) override {
     const double since = ruptured_at(r);
+    const bool runs = running_.observe(r, rate());
     if (since < 0) return;
-    const bool mastered = any_clip(r, false) && !any_clip(r, true) && bleeding_rate(r) <= rate();
+    const bool mastered = any_clip(r, false) && !any_clip(r, true) && !runs;
     if (!mastered) elapsed_ = r.time - since;
     log.timer(timer_, elapsed_, !mastered);
     if (elapsed_ > limit()) log.fail(over(), r.time);
   }
-  void reset() override { elapsed_ = 0; }
+  void reset() override {
+    elapsed_ = 0;
+    running_ = {};
+  }
 
  private:
   int timer_ = 0;
   double elapsed_ = 0;
+  Running running_;
 };
 
 class TimerTemporaryClip final : public ExerciseRule {
@@ -132,15 +165,20 @@ class GoalTemporaryRemoved final : public ExerciseRule {
   void observe(const StepReport& r, ExerciseLog& log) override {
     const bool on = any_clip(r, true);
     was_on_ = was_on_ || on;
-    const bool good = was_on_ && !on && any_clip(r, false) && bleeding_rate(r) <= rate();
+    const bool runs = running_.observe(r, rate());
+    const bool good = was_on_ && !on && any_clip(r, false) && !runs;
     if (good) log.goal(goal_, r.time);
     if (!good && log.goals()[std::size_t(goal_)].done) log.goal_lost(goal_, r.time);
   }
-  void reset() override { was_on_ = false; }
+  void reset() override {
+    was_on_ = false;
+    running_ = {};
+  }
 
  private:
   int goal_ = 0;
   bool was_on_ = false;
+  Running running_;
 };
 
 }  // namespace

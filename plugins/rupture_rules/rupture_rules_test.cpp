@@ -69,7 +69,7 @@ TEST_F(RuptureRules, MasteredInOrder) {
   EXPECT_NEAR(timer("clock").elapsed, 1, 1e-9);
   EXPECT_TRUE(timer("clock").running);
   put(1, true);
-  report.bleeding[0].rate = 0.5 * ml_per_min;
+  report.bleeding[0].rate = 0.1 * ml_per_min;
   show(0.15);
   EXPECT_FALSE(done("stop")) << "too short";
   show(0.1);
@@ -94,8 +94,51 @@ TEST_F(RuptureRules, BleedingAgainTakesTheGoalBack) {
   show(0.5);
   EXPECT_TRUE(done("stop"));
   report.bleeding[0].rate = 10 * ml_per_min;
-  show(0.05);
+  show(0.15);
   EXPECT_FALSE(done("stop"));
+}
+
+TEST_F(RuptureRules, SpurtsTakeNothingBackButBloodThatRunsDoes) {
+  rupture();
+  put(0, true);
+  put(1, true);
+  report.bleeding[0].rate = 0;
+  show(0.05);
+  put(1, false);
+  show(0.05);
+  ASSERT_TRUE(done("removed"));
+  ASSERT_FALSE(done("stop")) << "so that the exercise goes on";
+  // One step above the limit of 1 ml/min, two below: how often the goal is lost over twenty seconds.
+  const auto spurts = [&](double rate) {
+    int lost = 0;
+    for (int beat = 0; beat < 133; ++beat)
+      for (const double now : {rate, 0.5, 0.5}) {
+        const bool had = done("removed");
+        report.bleeding[0].rate = now * ml_per_min;
+        show(0.05);
+        lost += had && !done("removed");
+      }
+    return lost;
+  };
+  EXPECT_EQ(spurts(1.8), 0) << "0.93 ml/min in the mean";
+  EXPECT_FALSE(timer("clock").running);
+  EXPECT_EQ(spurts(2.5), 1) << "1.17 ml/min in the mean: lost once, not with every beat";
+  EXPECT_FALSE(done("removed"));
+  EXPECT_TRUE(timer("clock").running);
+}
+
+TEST_F(RuptureRules, AStoppedBleedingMaySpurt) {
+  rupture();
+  report.bleeding[0].rate = 0;
+  show(0.3);
+  ASSERT_TRUE(done("stop"));
+  for (int beat = 0; beat < 8; ++beat) {
+    report.bleeding[0].rate = 10 * ml_per_min;
+    show(0.05);
+    EXPECT_TRUE(done("stop")) << beat;
+    report.bleeding[0].rate = 0;
+    show(0.95);
+  }
 }
 
 TEST_F(RuptureRules, TooLongOcclusionIsOneFault) {

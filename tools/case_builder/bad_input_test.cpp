@@ -128,6 +128,9 @@ const std::vector<Given> all = {
     {"gltf_garbage", "a.gltf", [] { return std::string("{\"asset\":"); }, "a.gltf"},
     {"ply_truncated", "a.ply", [] { return std::string("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n"); }, "a.ply"},
     {"vtp_of_another_type", "a.vtp", [] { return std::string("<VTKFile type=\"UnstructuredGrid\"></VTKFile>"); }, "not PolyData"},
+    {"vtp_of_an_unknown_byte_order", "a.vtp", [] { return std::string("<VTKFile type=\"PolyData\" byte_order=\"MiddleEndian\"></VTKFile>"); }, "byte_order \"MiddleEndian\" is unknown"},
+    {"vtp_of_an_unknown_header", "a.vtp", [] { return std::string("<VTKFile type=\"PolyData\" header_type=\"UInt16\"></VTKFile>"); }, "header_type \"UInt16\" is unknown"},
+    {"vtp_with_points_twice", "a.vtp", [] { std::string s = test::vtp_text(tube_with_sac()); return s.insert(s.find("<Points>") + 8, "<DataArray type=\"Float32\" NumberOfComponents=\"3\">0 0 0</DataArray>"); }, "has the array \"Points\" twice"},
     {"vtp_truncated", "a.vtp", [] { return test::vtp_text(tube_with_sac()).substr(0, 4000); }, "ends early"},
     {"vtp_index_out_of_range", "a.vtp", [] { TriMesh m = tube_with_sac(); m.triangles[3][1] = 999999; return test::vtp_text(m); }, "names point 999999"},
     {"in_metres", "a.stl", [] { return stl(test::scaled(tube_with_sac(), 1e-3)); }, "--unit m"},
@@ -221,45 +224,6 @@ TEST(BadInput, FiveMillionTrianglesAreRefusedBeforeTheyAreRead) {
     EXPECT_NE(std::string(e.what()).find("decimate"), std::string::npos);
   }
 }
-
-#ifdef INSULA_WITH_ITK
-/// A series of DICOM slices of the tube, but for the one that is left out.
-void write_series(const insula::test::SceneFolder& folder, int missing) {
-  for (int k = 0; k < 32; ++k)
-    if (k != missing) folder.write("series/" + std::to_string(k) + ".dcm", test::dicom_text({54, 24}, 0.3, k, [k](int i, int j) { return 900 * test::tube_label(i, j, k); }));
-}
-
-TEST(Volumes, ADicomSeriesIsReadByItsThreshold) {
-  insula::test::SceneFolder folder;
-  write_series(folder, -1);
-  Progress quiet;
-  Options o;
-  o.threshold = 450;
-  const Intake in = take_in(folder.path() / "series", o, quiet);
-  ASSERT_EQ(in.surface.caps.size(), 2u);
-  EXPECT_NEAR(in.surface.caps[0].radius, 1.4, 0.15);
-  // Left and posterior of the file are right and anterior of the builder with the other sign: the sac stays on top.
-  Vec3 top = Vec3::Zero();
-  for (const Vec3& p : in.surface.mesh.vertices) top = p.z() > top.z() ? p : top;
-  EXPECT_NEAR(top.x(), -8, 0.8);
-  EXPECT_NEAR(top.z(), 2.4 + 3.4 + 2.4, 0.3);
-  EXPECT_NEAR(signed_volume(in.surface.mesh), 15.6 * 3.14159 * 1.96 + 45, 15);
-}
-
-TEST(Volumes, AMissingSliceIsNamed) {
-  insula::test::SceneFolder folder;
-  write_series(folder, 12);
-  Progress quiet;
-  Options o;
-  o.threshold = 450;
-  try {
-    take_in(folder.path() / "series", o, quiet);
-    FAIL();
-  } catch (const InputError& e) {
-    EXPECT_NE(std::string(e.what()).find("even distances (between 11.dcm and 13.dcm)"), std::string::npos) << e.what();
-  }
-}
-#endif
 
 TEST(BadInput, EmptyFolderIsNoSeries) {
   insula::test::SceneFolder folder;

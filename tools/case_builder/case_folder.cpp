@@ -54,8 +54,11 @@ void write_ply(const fs::path& file, const TriMesh& m, const std::string& commen
                   "\nproperty float x\nproperty float y\nproperty float z\nelement face " + std::to_string(m.triangles.size()) +
                   "\nproperty list uchar int vertex_indices\nend_header\n";
   const auto append = [&s](auto value) { s.append(reinterpret_cast<const char*>(&value), sizeof value); };
+  const std::size_t data = s.size();
   for (const Vec3& p : m.vertices)
     for (int i = 0; i < 3; ++i) append(float(p[i]));
+  // assimp takes a first byte that is a line's end for a part of the header: the last bit of that coordinate is given up.
+  if (s.size() > data && (s[data] == '\n' || s[data] == '\r')) s[data] = char(s[data] ^ 1);
   for (const auto& t : m.triangles) {
     append(std::uint8_t(3));
     for (const int v : t) append(std::int32_t(v));

@@ -28,6 +28,7 @@ struct CaseFolder {
   fs::path intake() const { return path / "intake"; }
   fs::path wall() const { return path / "wall"; }
   fs::path artery() const { return path / "artery"; }
+  fs::path brain() const { return path / "brain"; }
   fs::path lobes() const { return path / "lobes"; }
   fs::path options_file() const { return path / "case.json"; }
 };

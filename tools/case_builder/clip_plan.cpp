@@ -16,8 +16,26 @@ namespace {
 
 constexpr double degree = std::numbers::pi / 180;
 constexpr double past = 1.5;       // mm that the tips go beyond the flattened neck
+constexpr double off_floor = 0.4;  // mm that they keep from the insula, half their own width included
 
 Vec3 across(const Vec3& a, const Vec3& n) { return (a - a.dot(n) * n).normalized(); }
+
+/// How far blades with their middle there have to be drawn back before their outer half is clear of the floor.
+double way_back(const Solid& floor, const ClipShape& clip, const Vec3& middle, const Vec3& inward) {
+  constexpr double farthest = 6, step = 0.1;
+  for (double back = 0; back < farthest; back += step) {
+    bool clear = true;
+    for (const double along : {0.0, 0.25, 0.5}) {
+      const Nearest n = floor.nearest(middle + (along * clip.blade - back) * inward, farthest);
+      clear = clear && !(n.found && n.distance < off_floor);
+    }
+    if (clear) return back;
+  }
+  return farthest;
+}
+
+/// Height of the blades over the neck's plane, mm: a little towards the parent, as the neck bulges when it is pressed flat.
+double default_lift(double neck_diameter) { return -0.5 - 0.08 * neck_diameter; }
 
 }  // namespace
 
@@ -74,7 +92,7 @@ NeckSize neck_size(const artery::Vessel& v, const Vec3& along) {
   return out;
 }
 
-ClipPlan plan_clip(const artery::Vessel& v, const std::vector<ClipShape>& clips, const Options& o, std::vector<Note>& notes) {
+ClipPlan plan_clip(const artery::Vessel& v, const Solid& floor, const std::vector<ClipShape>& clips, const Options& o, std::vector<Note>& notes) {
   const artery::Neck& neck = *v.neck;
   const Vec3 facing = across(to_surgeon, neck.normal);
   ClipPlan best;
@@ -88,15 +106,17 @@ ClipPlan plan_clip(const artery::Vessel& v, const std::vector<ClipShape>& clips,
       const Vec3 outward = Eigen::AngleAxisd(angle * degree, neck.normal) * facing;
       const NeckSize size = neck_size(v, outward);
       // Closed, the neck's wall lies double: it is half its perimeter wide.
-      const double needed = 0.5 * size.perimeter + past, lift = o.lift.value_or(-0.5 - 0.08 * neck.diameter);
+      const double needed = 0.5 * size.perimeter + past, lift = o.lift.value_or(default_lift(neck.diameter));
       const double slide = o.slide.value_or(std::max(0.0, needed - 0.5 * clip.blade - 0.25 * size.perimeter + 0.7));
       for (const double side : {1.0, -1.0}) {
         const Vec3 closing = side * neck.normal.cross(outward);
-        const ApplierPose pose = applier_pose(clip, neck.centre + lift * neck.normal - slide * outward, -outward, closing);
+        const Vec3 wanted = neck.centre + lift * neck.normal - slide * outward;
+        const double back = o.slide ? 0 : way_back(floor, clip, wanted, -outward);
+        const ApplierPose pose = applier_pose(clip, wanted + back * outward, -outward, closing);
         const double off = std::acos(std::clamp(pose.shaft.dot(to_surgeon), -1.0, 1.0)) / degree;
         const double cost = std::pow(off / 12, 2) + std::pow(angle / 60, 2) + 1.2 * std::max(0.0, needed - clip.blade) + 0.35 * std::max(0.0, clip.blade - needed - 1) +
-                            1.5 * std::max(0.0, 0.75 * size.across - 0.6 * clip.opening);
-        if (cost < least) least = cost, best = {clip, pose, needed, off, lift, slide, angle};
+                            1.5 * std::max(0.0, 0.75 * size.across - 0.6 * clip.opening) + 1.2 * back;
+        if (cost < least) least = cost, best = {clip, pose, needed, off, lift, slide - back, angle, back};
       }
       if (o.turn) break;
     }
@@ -105,12 +125,15 @@ ClipPlan plan_clip(const artery::Vessel& v, const std::vector<ClipShape>& clips,
   if (best.clip.blade < best.needed - past)
     notes.push_back({Note::Kind::problem, fmt::format("The flattened neck is {:.1f} mm wide; the blades of {} reach over {:.1f} mm of it.", best.needed - past, best.clip.name, best.clip.blade),
                      "Expect a remnant, or a second clip; a longer clip can be chosen with --clip."});
+  if (best.drawn_back > past)
+    notes.push_back({Note::Kind::problem, fmt::format("The insula lies {:.1f} mm nearer behind the neck than the blades' tips need.", best.drawn_back),
+                     "Expect a remnant behind; turn the vessel (--spin) or the blades (--turn), or choose a shorter clip (--clip)."});
   if (best.off_view > 50)
     notes.push_back({Note::Kind::problem, fmt::format("The applier comes {:.0f} degrees off the line of sight.", best.off_view), "Turn the vessel (--spin), or choose another clip (--clip)."});
   return best;
 }
 
-ApplierPose plan_temporary(const artery::Vessel& v, const ClipShape& clip) {
+ApplierPose plan_temporary(const artery::Vessel& v, const Solid& floor, const ClipShape& clip) {
   const auto& c = v.centrelines.front().curve;
   std::size_t near = 0;
   for (std::size_t k = 0; k < c.size(); ++k)
@@ -120,7 +143,10 @@ ApplierPose plan_temporary(const artery::Vessel& v, const ClipShape& clip) {
   while (at > 2 && way < 0.5 * v.neck->diameter + 2) way += (c.points[at] - c.points[at - 1]).norm(), --at;
   const Vec3 along = c.tangent(at), square = across(to_surgeon, along);
   const Vec3 outward = (0.4 * square + 0.6 * to_surgeon).normalized();
-  return applier_pose(clip, c.points[at] - 1.0 * outward, -outward, along.cross(outward).normalized());
+  // Pressed flat the parent is half its perimeter wide; the tips go past its far edge where the floor lets them.
+  const double tips = 0.5 * std::numbers::pi * c.radius[at] + past, slide = tips - 0.5 * clip.blade;
+  const Vec3 middle = c.points[at] - slide * outward;
+  return applier_pose(clip, middle + way_back(floor, clip, middle, -outward) * outward, -outward, along.cross(outward).normalized());
 }
 
 }  // namespace insula::case_builder

@@ -6,6 +6,7 @@
 
 #include "tools/artery/vessel.h"
 #include "tools/case_builder/case_folder.h"
+#include "tools/case_builder/solid.h"
 
 namespace insula::case_builder {
 
@@ -38,11 +39,13 @@ struct ClipPlan {
   double needed = 0;              ///< length that the flattened neck asks for, mm
   double off_view = 0;            ///< of the shaft from the line of sight, degrees
   double lift = 0, slide = 0, turn = 0;
+  double drawn_back = 0;          ///< how far the tips stay short of where they should be, so that they keep off the floor, mm
 };
-/// A placed vessel's clip: the options' choices, and the best of the rest. Throws InputError when a wanted clip does not exist.
-ClipPlan plan_clip(const artery::Vessel& vessel, const std::vector<ClipShape>& clips, const Options& options, std::vector<Note>& notes);
+/// A placed vessel's clip: the options' choices, and the best of the rest. The tips keep off `floor` (the insula, which does
+/// not give way: blades that run against it are lifted off the neck). Throws InputError when a wanted clip does not exist.
+ClipPlan plan_clip(const artery::Vessel& vessel, const Solid& floor, const std::vector<ClipShape>& clips, const Options& options, std::vector<Note>& notes);
 
-/// A temporary clip across the parent, before the neck.
-ApplierPose plan_temporary(const artery::Vessel& vessel, const ClipShape& clip);
+/// A temporary clip across the parent, before the neck; it keeps off the floor too.
+ApplierPose plan_temporary(const artery::Vessel& vessel, const Solid& floor, const ClipShape& clip);
 
 }  // namespace insula::case_builder

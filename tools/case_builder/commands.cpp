@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/base/input_error.h"
+#include "tools/case_builder/brain.h"
 #include "tools/case_builder/intake.h"
 #include "tools/case_builder/place.h"
 #include "tools/case_builder/project.h"
@@ -16,7 +17,7 @@
 namespace insula::case_builder {
 namespace {
 
-constexpr const char* stages[] = {"intake", "wall", "place", "scenes", "report"};
+constexpr const char* stages[] = {"intake", "wall", "brain", "place", "scenes", "report"};
 
 /// What the command line says besides the options of the case itself.
 struct Line {
@@ -33,8 +34,10 @@ void numbers(CLI::App* app, const std::string& name, std::optional<std::array<do
      }, text)->expected(int(N));
 }
 
+double mm_of(const std::string& unit) { return unit == "m" ? 1000 : unit == "cm" ? 10 : unit == "um" ? 0.001 : unit == "inch" ? 25.4 : 1; }
+
 void intake_options(CLI::App* app, Options& o) {
-  app->add_option_function<std::string>("--unit", [&o](const std::string& u) { o.unit_mm = u == "m" ? 1000 : u == "cm" ? 10 : u == "um" ? 0.001 : u == "inch" ? 25.4 : 1; },
+  app->add_option_function<std::string>("--unit", [&o](const std::string& u) { o.unit_mm = mm_of(u); },
                                         "unit of a surface file (default: mm; glTF: m)")->check(CLI::IsMember({"m", "cm", "mm", "um", "inch"}));
   app->add_option("--unit-mm", o.unit_mm, "the same in millimetres a unit")->check(CLI::Range(1e-9, 1e9));
   app->add_flag("--any-size", o.any_size, "take sizes that no cerebral artery has");
@@ -60,6 +63,14 @@ void wall_options(CLI::App* app, Options& o) {
   app->add_option("--bleb", o.bleb, "radius of the weak spot at the dome, mm; 0: none")->check(CLI::Range(0.0, 4.0));
 }
 
+void brain_options(CLI::App* app, Options& o) {
+  app->add_option_function<std::vector<std::string>>("--brain", [&o](const std::vector<std::string>& v) { o.brain = v; },
+                                                     "your own brain in the MNI frame: a volume of labels, NAME=FILE for frontal, temporal and insula each, or one closed surface")->take_all();
+  app->add_option_function<std::vector<std::string>>("--lobe", [&o](const std::vector<std::string>& v) { o.lobe_labels = v; }, "NAME=LABELS of that volume, such as frontal=2,4,10-16")->take_all();
+  app->add_option_function<std::string>("--brain-unit", [&o](const std::string& u) { o.brain_unit_mm = mm_of(u); }, "unit of the brain's surfaces (default: mm; glTF: m)")->check(CLI::IsMember({"m", "cm", "mm", "um", "inch"}));
+  app->add_option("--brain-nodes", o.brain_nodes, "of both lobes' tetrahedra, at most")->check(CLI::Range(200, 20000));
+}
+
 void place_options(CLI::App* app, Options& o) {
   app->add_flag("--in-place", o.in_place, "the input lies in the frame of the lobes (MNI, mm) already");
   app->add_option("--lobes", o.lobes, "folder with lobes of your own, named as in meshes/lobes, in its frame (MNI, mm)")->check(CLI::ExistingDirectory);
@@ -71,6 +82,7 @@ void scene_options(CLI::App* app, Options& o) {
   app->add_option("--clip", o.clip, "clip for the neck, of meshes/clips (default: chosen)");
   app->add_option("--lift", o.lift, "of the blades over the neck's plane, mm")->check(CLI::Range(-10.0, 10.0));
   app->add_option("--slide", o.slide, "of the blades' middle beyond the neck's, mm")->check(CLI::Range(-15.0, 15.0));
+  app->add_flag("--rehearse,!--no-rehearse", o.rehearse, "operate in exercise 2 once and keep the hands' motion (default); else it has none, which is quicker");
   app->add_option("--turn", o.turn, "of the blades about the dome's axis from the surgeon's side, degrees")->check(CLI::Range(-180.0, 180.0));
 }
 
@@ -82,12 +94,13 @@ int parse(const std::vector<std::string>& arguments, Line& line, Options& o, std
   fresh->add_option("name", line.name, "of the case: letters, digits, _ and -")->required();
   fresh->add_option("input", line.input, "file, or folder of a DICOM series")->required();
   fresh->add_option("--out", line.out, "folder that gets the case's folder (default: scenes/cases of the project)");
-  intake_options(fresh, o), wall_options(fresh, o), place_options(fresh, o), scene_options(fresh, o);
+  intake_options(fresh, o), wall_options(fresh, o), brain_options(fresh, o), place_options(fresh, o), scene_options(fresh, o);
   for (const char* stage : stages) {
     auto* again = app.add_subcommand(stage, std::string("do the stage ") + stage + " of a case again, from what the one before wrote");
     again->add_option("folder", line.folder, "of the case")->required();
     if (stage == std::string("intake")) again->add_option("input", line.input, "file, or folder of a DICOM series")->required(), intake_options(again, o);
     if (stage == std::string("wall")) wall_options(again, o);
+    if (stage == std::string("brain")) brain_options(again, o);
     if (stage == std::string("place")) place_options(again, o);
     if (stage == std::string("scenes")) scene_options(again, o);
     again->add_flag("--on", line.on, "and all stages after it");
@@ -109,6 +122,7 @@ int parse(const std::vector<std::string>& arguments, Line& line, Options& o, std
 void do_stage(const std::string& stage, const CaseFolder& folder, const Line& line, const fs::path& project, const Options& o, Progress& progress) {
   if (stage == "intake") run_intake(folder, line.input, o, progress);
   if (stage == "wall") run_wall(folder, o, progress);
+  if (stage == "brain") run_brain(folder, project, o, progress);
   if (stage == "place") run_place(folder, project, o, progress);
   if (stage == "scenes") run_scenes(folder, project, o, progress);
   if (stage == "report") run_report(folder, progress);

@@ -8,6 +8,7 @@
 #include "core/mechanics/surface.h"
 #include "core/registry/registry.h"
 #include "core/sim/simulation.h"
+#include "tools/case_builder/brain.h"
 
 namespace insula::case_builder {
 namespace {
@@ -25,8 +26,8 @@ Lobe given_lobe(const std::filesystem::path& folder, const std::string& name) {
   lobe.tets = read_tet_mesh(file, 1.0);
   lobe.surface = read_surface(folder / (name + "_surface.ply"), 1.0);
   int held = 0;
-  for (const Vec3& p : lobe.tets.nodes) held += lobe.held.emplace_back((p - Vec3(54, 4, -2)).norm() > 32);
-  if (held < 3) throw InputError(file.string() + ": none of its nodes lies farther than 32 mm from (54, 4, -2), where lobes are held: is it in the frame of meshes/lobes, in mm?");
+  for (const Vec3& p : lobe.tets.nodes) held += lobe.held.emplace_back((p - fissure_centre).norm() > fissure_held);
+  if (held < 3) throw InputError(file.string() + ": fewer than three of its nodes lie farther than 32 mm from (54, 4, -2), where lobes are held: is it in the frame of meshes/lobes, in mm?");
   const Embedding e = embed(lobe.tets, lobe.surface.vertices);
   if (e.outside_m > 5) throw InputError(file.string() + ": its surface reaches more than 5 mm outside of it");
   for (std::size_t v = 0; v < lobe.surface.vertices.size(); ++v) lobe.riders.push_back({4, e.nodes[v], e.weights[v], Vec3::Zero()});

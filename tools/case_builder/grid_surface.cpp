@@ -220,19 +220,8 @@ TriMesh surface_of_volume(const std::filesystem::path& file, const mesh_tool::Ni
   return out;
 }
 
-TriMesh rebuilt(const TriMesh& m, double spacing) {
-  Box box;
-  std::vector<Box> boxes;
-  for (const auto& t : m.triangles) {
-    Box b;
-    for (const int v : t) b.extend(m.vertices[std::size_t(v)]);
-    boxes.push_back(b), box.extend(b);
-  }
-  Grid grid;
-  grid.spacing = spacing;
-  double nodes = 1;
-  for (int a = 0; a < 3; ++a) grid.origin[std::size_t(a)] = box.min()[a] - spacing * (3.07 + 0.03 * a), nodes *= grid.size[std::size_t(a)] = int(std::ceil(box.sizes()[a] / spacing)) + 7;
-  if (nodes > most_nodes) throw InputError(fmt::format("a grid of {:g} mm is too fine for a surface {:.1f} mm across; choose a larger --rebuild", spacing, box.diagonal().norm()));
+mesh_tool::Mask inside_of(const TriMesh& m, const Grid& grid) {
+  const double spacing = grid.spacing;
   // Parity along each axis; two of three decide, so that a slit in the surface does not leave a streak.
   std::vector<unsigned char> votes(grid.count(), 0);
   for (int axis = 0; axis < 3; ++axis) {
@@ -243,7 +232,7 @@ TriMesh rebuilt(const TriMesh& m, double spacing) {
       const Vec3 &a = m.vertices[std::size_t(t[0])], &b = m.vertices[std::size_t(t[1])], &c = m.vertices[std::size_t(t[2])];
       const double det = (b[u] - a[u]) * (c[w] - a[w]) - (c[u] - a[u]) * (b[w] - a[w]);
       if (det == 0) continue;
-      const auto first = [&](double x, int d) { return int(std::ceil((x - grid.origin[std::size_t(d)]) / spacing)); };
+      const auto first = [&](double x, int d) { return int(std::clamp(std::ceil((x - grid.origin[std::size_t(d)]) / spacing), 0.0, double(grid.size[std::size_t(d)]))); };
       const int i0 = first(std::min({a[u], b[u], c[u]}), u), i1 = first(std::max({a[u], b[u], c[u]}), u);
       const int j0 = first(std::min({a[w], b[w], c[w]}), w), j1 = first(std::max({a[w], b[w], c[w]}), w);
       for (int j = j0; j < j1; ++j)
@@ -268,6 +257,23 @@ TriMesh rebuilt(const TriMesh& m, double spacing) {
   }
   Mask mask(grid.count());
   for (std::size_t i = 0; i < mask.size(); ++i) mask[i] = votes[i] >= 2;
+  return mask;
+}
+
+TriMesh rebuilt(const TriMesh& m, double spacing) {
+  Box box;
+  std::vector<Box> boxes;
+  for (const auto& t : m.triangles) {
+    Box b;
+    for (const int v : t) b.extend(m.vertices[std::size_t(v)]);
+    boxes.push_back(b), box.extend(b);
+  }
+  Grid grid;
+  grid.spacing = spacing;
+  double nodes = 1;
+  for (int a = 0; a < 3; ++a) grid.origin[std::size_t(a)] = box.min()[a] - spacing * (3.07 + 0.03 * a), nodes *= grid.size[std::size_t(a)] = int(std::ceil(box.sizes()[a] / spacing)) + 7;
+  if (nodes > most_nodes) throw InputError(fmt::format("a grid of {:g} mm is too fine for a surface {:.1f} mm across; choose a larger --rebuild", spacing, box.diagonal().norm()));
+  Mask mask = inside_of(m, grid);
   mask = mesh_tool::fill_holes(grid, mesh_tool::largest_component(grid, mask));
   Field inside = mesh_tool::signed_distance(grid, mask);
   // Near the border the true distance is better than that of voxels.

@@ -38,6 +38,12 @@ Json to_json(const Options& o) {
   j["keep"] = o.keep;
   j["vertices"] = o.vertices;
   j["bleb"] = o.bleb;
+  if (!o.brain.empty()) {
+    j["brain"] = o.brain;
+    j["lobe_labels"] = o.lobe_labels;
+    put(j, "brain_unit_mm", o.brain_unit_mm);
+    j["brain_nodes"] = o.brain_nodes;
+  }
   j["in_place"] = o.in_place;
   j["gap"] = o.gap;
   j["spin"] = o.spin;
@@ -47,6 +53,7 @@ Json to_json(const Options& o) {
   put(j, "lift", o.lift);
   put(j, "slide", o.slide);
   put(j, "turn", o.turn);
+  j["rehearse"] = o.rehearse;
   return j;
 }
 
@@ -68,6 +75,10 @@ Options options_from_json(const Json& j) {
     take(j, "keep", o.keep);
     take(j, "vertices", o.vertices);
     take(j, "bleb", o.bleb);
+    take(j, "brain", o.brain);
+    take(j, "lobe_labels", o.lobe_labels);
+    take(j, "brain_unit_mm", o.brain_unit_mm);
+    take(j, "brain_nodes", o.brain_nodes);
     take(j, "in_place", o.in_place);
     take(j, "gap", o.gap);
     take(j, "spin", o.spin);
@@ -77,6 +88,7 @@ Options options_from_json(const Json& j) {
     take(j, "lift", o.lift);
     take(j, "slide", o.slide);
     take(j, "turn", o.turn);
+    take(j, "rehearse", o.rehearse);
   } catch (const nlohmann::json::exception& e) {
     throw InputError(std::string("case.json: an option has the wrong kind of value: ") + e.what());
   }

@@ -33,6 +33,11 @@ struct Options {
   double keep = 13;                  ///< vessels are cut off so far along their centrelines from the neck; 0: nowhere
   int vertices = 1650;               ///< of the wall, about
   double bleb = 1;                   ///< radius of the weak spot at the dome; 0: none
+  // brain
+  std::vector<std::string> brain;    ///< a volume of labels; NAME=FILE for each lobe; or one closed surface. Empty: the shipped lobes
+  std::vector<std::string> lobe_labels;  ///< NAME=LIST, such as frontal=2,4,10-16
+  std::optional<double> brain_unit_mm;   ///< millimetres a unit of the brain's surface files
+  int brain_nodes = 1000;            ///< of both lobes together, at most
   // place
   bool in_place = false;             ///< the input lies in the frame of the lobes already
   double gap = 0.4;                  ///< between the wall and the lobes
@@ -42,6 +47,7 @@ struct Options {
   // scenes
   std::string clip;                  ///< of meshes/clips; empty: chosen for the neck
   std::optional<double> lift, slide, turn;  ///< of the clip's blades at the neck, mm, mm, degrees; none: chosen
+  bool rehearse = true;              ///< exercise 2 gets scripted hands, which takes as long as they need
 };
 
 Json to_json(const Options& options);

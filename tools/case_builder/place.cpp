@@ -25,7 +25,7 @@ void run_place(const CaseFolder& folder, const fs::path& project, const Options&
   progress.stage("place", 5);
   progress.step("reading the fissure");
   const artery::Vessel v = read_wall(folder.wall());
-  Fissure fissure = read_fissure(project, o.lobes);
+  Fissure fissure = read_fissure(project, o.brain.empty() ? fs::path(o.lobes) : folder.brain());
   std::vector<Note> notes;
   const Placement p = find_placement(v, fissure, o, progress);
   const artery::Vessel there = placed(v, p);

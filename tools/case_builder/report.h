@@ -7,7 +7,7 @@
 
 namespace insula::case_builder {
 
-/// A scene of the case, loaded as `insula check` does and stepped.
+/// A scene of the case, loaded as `insula check` does and stepped with the hands still.
 struct MeasuredScene {
   std::string file;
   std::string message;       ///< why it does not load; empty: it does
@@ -16,6 +16,13 @@ struct MeasuredScene {
   bool finite = true;
 };
 MeasuredScene measure_scene(const fs::path& scene, int steps);
+
+/// Steps of a scene under its first motion in which a clip touches the vessel, until a little after one was let go.
+struct MeasuredMotion {
+  double step_ms = 0, most_ms = 0;  ///< median, 95th percentile
+  int steps = 0, rows = 0;          ///< 0: no clip ever touched the vessel, or the scene has no motion
+};
+MeasuredMotion measure_motion(const fs::path& scene, double longest_s);
 
 /// Reads what all stages have written, runs the exercises, writes report.html.
 void run_report(const CaseFolder& folder, Progress& progress);

@@ -78,12 +78,12 @@ std::string field_part(const SceneFacts& f) {
 }
 
 std::string strands(const SceneFacts& f, const std::string& kind) {
-  const Vec3 ball = 0.4 * f.neck + 0.6 * f.dome + 1.5 * to_surgeon;
+  const Vec3 shift = f.strand_shift * to_surgeon, ball = 0.4 * f.neck + 0.6 * f.dome + 1.5 * to_surgeon + shift;
   const double radius = 0.55 * f.dome_reach + 2;
   const bool own = kind == "branches";
-  return fmt::format("  <strand_springs id=\"to_{}\" from=\"artery_wall\" to=\"{}\" made=\"settled\" centre=\"{}\" radius=\"{:.1f} mm\" density=\"{} 1/cm2\" max_length=\"{} mm\" seed=\"{}\"\n"
+  return fmt::format("  <strand_springs id=\"to_{}\" from=\"artery_wall\" to=\"{}\" made=\"settled\" centre=\"{}\" radius=\"{:.1f} mm\" density=\"{:.3g} 1/cm2\" max_length=\"{} mm\" seed=\"{}\"\n"
                      "    stiffness=\"40 N/m\" slack=\"1.1\" strength=\"0.04 N\" cut_force=\"0.015 N\" cut_length=\"0.8 mm\" reach=\"0.6 mm\"/>\n",
-                     kind, own ? std::string("artery_wall") : kind + "_surface", point(own ? Vec3(f.neck + 2 * to_surgeon) : ball), own ? radius - 1 : radius, own ? 40 : 24, own ? "3" : "7",
+                     kind, own ? std::string("artery_wall") : kind + "_surface", point(own ? Vec3(f.neck + 2 * to_surgeon + shift) : ball), own ? radius - 1 : radius, f.strand_share * (own ? 40 : 24), own ? "3" : "7",
                      kind == "frontal" ? 11 : kind == "temporal" ? 12 : 14);
 }
 
@@ -129,7 +129,9 @@ std::string exercise(const SceneFacts& f, int number) {
          "    <fault_force id=\"brain_force\" text=\"Too much force on the brain: ease off\" on=\"frontal temporal\" limit=\"0.2 N\" grace=\"100 ms\"/>\n"
          "    <fault_torn id=\"torn\" text=\"A strand tore: divide it with the edge instead\"/>\n"
          "    <fault_rupture id=\"rupture\" text=\"The aneurysm has ruptured\" fails=\"true\"/>\n"
-         "    <time_limit id=\"time\" text=\"Ten minutes are over\" limit=\"600 s\"/>\n  </exercise>\n</scene>\n";
+         "    <time_limit id=\"time\" text=\"Ten minutes are over\" limit=\"600 s\"/>\n";
+    if (f.rehearsed) s += "    <motion id=\"steady\" file=\"2_aneurysm_dissection_steady.csv\"/>\n";
+    s += "  </exercise>\n</scene>\n";
   } else if (number == 3) {
     open("Exercise 3: clip the aneurysm.", "clipping");
     s += "  <include file=\"field.xml\"/>\n\n";

@@ -23,6 +23,9 @@ struct SceneFacts {
   std::string temporary;
   bool bleb = false;
   std::vector<std::string> strand_sets;
+  double strand_share = 1;            ///< of the usual density of strands
+  double strand_shift = 0;            ///< mm that their balls lie nearer to the surgeon
+  bool rehearsed = false;             ///< exercise 2 has scripted hands
 };
 
 std::string artery_part(const SceneFacts& facts);

@@ -7,8 +7,7 @@
 
 #include "core/base/input_error.h"
 #include "core/model/file_bytes.h"
-#include "core/registry/registry.h"
-#include "core/sim/simulation.h"
+#include "tools/case_builder/dissection_script.h"
 #include "tools/case_builder/motion_script.h"
 #include "tools/case_builder/place.h"
 #include "tools/case_builder/scene_text.h"
@@ -60,13 +59,14 @@ std::vector<fs::path> exercise_files(const CaseFolder& folder) {
 }
 
 void run_scenes(const CaseFolder& folder, const fs::path& project, const Options& o, Progress& progress) {
-  progress.stage("scenes", 4);
+  progress.stage("scenes", 5);
   progress.step("choosing a clip");
   const artery::Vessel v = read_wall(folder.artery());
   if (!v.neck) throw InputError("the vessel has no neck; do the stage wall again");
   std::vector<Note> notes;
   const std::vector<ClipShape> clips = read_clips(project);
-  const ClipPlan plan = plan_clip(v, clips, o, notes);
+  const Solid floor(read_ply(folder.lobes() / "insula_surface.ply"));
+  const ClipPlan plan = plan_clip(v, floor, clips, o, notes);
 
   SceneFacts f;
   f.name = folder.name;
@@ -93,35 +93,9 @@ void run_scenes(const CaseFolder& folder, const fs::path& project, const Options
   write_text(folder.path / "3_clipping_steady.csv", clipping_motion(plan));
   const auto temporary = std::find_if(clips.begin(), clips.end(), [&](const ClipShape& c) { return c.name == f.temporary; });
   if (temporary == clips.end()) throw InputError("the library has no clip " + f.temporary);
-  write_text(folder.path / "4_rupture_steady.csv", rupture_motion(plan, plan_temporary(v, *temporary), f.temporary, f.neck));
+  write_text(folder.path / "4_rupture_steady.csv", rupture_motion(plan, plan_temporary(v, floor, *temporary), f.temporary, f.neck));
 
-  // Strands are spun between surfaces as they lie once settled: a kind for which there is no place is left out.
-  progress.step("spinning strands");
-  Registry registry;
-  register_builtin(registry);
-  f.strand_sets = {"frontal", "temporal", "branches"};
-  for (bool again = true; again;) {
-    again = false;
-    for (int k = 1; k <= 4; ++k) write_text(exercise_files(folder)[std::size_t(k - 1)], exercise(f, k));
-    const auto loaded = load_simulation(exercise_files(folder)[1], registry, 1);
-    if (loaded.simulation) {
-      loaded.simulation->step();
-      notes.push_back({Note::Kind::fact, fmt::format("{} strands tie the aneurysm down.", loaded.simulation->report().strands_total), ""});
-      break;
-    }
-    const std::string text = loaded.diagnostics.format();
-    for (std::size_t i = 0; i < f.strand_sets.size() && !again; ++i) {
-      // Only messages about a strand element's own place concern a kind: its line is that of the element.
-      std::string before = exercise(f, 2);
-      before.resize(before.find("id=\"to_" + f.strand_sets[i]));
-      const auto line = 1 + std::count(before.begin(), before.end(), '\n');
-      if (text.find(fmt::format("2_aneurysm_dissection.xml:{}:", line)) == std::string::npos) continue;
-      notes.push_back({Note::Kind::problem, "There is no place for strands to the " + f.strand_sets[i] + ".", "They were left out; give another ball or max_length in 2_aneurysm_dissection.xml."});
-      f.strand_sets.erase(f.strand_sets.begin() + std::ptrdiff_t(i));
-      again = true;
-    }
-    if (!again || f.strand_sets.empty()) throw InputError("the exercise with strands does not load:\n" + text);
-  }
+  spin_strands(f, folder, o.rehearse, notes, progress);
   progress.step("writing");
   Json json;
   json["clip"] = {{"name", plan.clip.name}, {"blade_mm", rounded(plan.clip.blade)}, {"needed_mm", rounded(plan.needed)}, {"off_view_deg", rounded(plan.off_view)},

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/model/grid_sample.h"
+
 namespace insula::case_builder {
 
 Solid::Solid(TriMesh mesh) : mesh_(std::move(mesh)), collision_(std::make_unique<CollisionMesh>()) {
@@ -38,22 +40,6 @@ DistanceGrid::DistanceGrid(const Solid& solid, const Vec3& low, const Vec3& high
       }
 }
 
-double DistanceGrid::at(const Vec3& p) const {
-  const Vec3 q = (p - low_) / step_;
-  int c[3];
-  double w[3];
-  for (int a = 0; a < 3; ++a) {
-    if (!(q[a] >= 0) || q[a] >= n_[a] - 1) return limit_;
-    c[a] = int(q[a]), w[a] = q[a] - c[a];
-  }
-  double sum = 0;
-  for (int d = 0; d < 8; ++d) {
-    double f = 1;
-    int at[3];
-    for (int a = 0; a < 3; ++a) f *= d >> a & 1 ? w[a] : 1 - w[a], at[a] = c[a] + (d >> a & 1);
-    sum += f * double(value_[(std::size_t(at[2]) * std::size_t(n_[1]) + std::size_t(at[1])) * std::size_t(n_[0]) + std::size_t(at[0])]);
-  }
-  return sum;
-}
+double DistanceGrid::at(const Vec3& p) const { return grid_sample(value_, n_, (p - low_) / step_, limit_); }
 
 }  // namespace insula::case_builder

@@ -117,7 +117,7 @@ inline std::string nifti_text(std::array<int, 3> n, double spacing, const std::f
 }
 
 /// One slice of a DICOM series, 16 bits, explicit little endian.
-inline std::string dicom_text(std::array<int, 2> n, double spacing, int slice, const std::function<int(int, int)>& value) {
+inline std::string dicom_text(std::array<int, 2> n, double spacing, int slice, const std::function<int(int, int)>& value, const std::string& series = "1.2.3.6") {
   std::string s(128, '\0');
   s += "DICM";
   const auto put = [](std::string& to, auto v) { to.append(reinterpret_cast<const char*>(&v), sizeof v); };
@@ -144,7 +144,7 @@ inline std::string dicom_text(std::array<int, 2> n, double spacing, int slice, c
   s += meta;
   element(s, 8, 0x16, "UI", ct), element(s, 8, 0x18, "UI", id), element(s, 8, 0x60, "CS", "CT");
   element(s, 0x18, 0x50, "DS", same);
-  element(s, 0x20, 0xD, "UI", "1.2.3.5"), element(s, 0x20, 0xE, "UI", "1.2.3.6"), element(s, 0x20, 0x13, "IS", std::to_string(slice + 1));
+  element(s, 0x20, 0xD, "UI", "1.2.3.5"), element(s, 0x20, 0xE, "UI", series), element(s, 0x20, 0x13, "IS", std::to_string(slice + 1));
   element(s, 0x20, 0x32, "DS", "0\\0\\" + place), element(s, 0x20, 0x37, "DS", "1\\0\\0\\0\\1\\0");
   element(s, 0x28, 2, "US", number(1)), element(s, 0x28, 4, "CS", "MONOCHROME2"), element(s, 0x28, 0x10, "US", number(n[1])), element(s, 0x28, 0x11, "US", number(n[0]));
   element(s, 0x28, 0x30, "DS", same + "\\" + same);

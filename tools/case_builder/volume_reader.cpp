@@ -17,6 +17,7 @@
 
 #include "core/base/text.h"
 #include "core/model/file_bytes.h"
+#include "tools/case_builder/dicom_check.h"
 
 namespace insula::case_builder {
 namespace {
@@ -112,6 +113,8 @@ mesh_tool::NiftiVolume read_file(const fs::path& file, itk::ImageIOBase& io) {
 }
 
 mesh_tool::NiftiVolume read_series(const fs::path& folder) {
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (entry.is_regular_file() && entry.file_size() < (std::uintmax_t(1) << 30)) check_dicom(entry.path());
   auto names = itk::GDCMSeriesFileNames::New();
   names->SetUseSeriesDetails(true);
   names->SetDirectory(folder.string());
@@ -144,6 +147,10 @@ mesh_tool::NiftiVolume read_series(const fs::path& folder) {
     for (unsigned a = 0; a < 2; ++a)
       for (unsigned r = 0; r < 3; ++r) axes(r, a) = io->GetDirection(a)[r] * io->GetSpacing(a);
   }
+  for (std::size_t k = 1; k < origins.size(); ++k)
+    for (std::size_t l = 0; l < k; ++l)  // GDCM leaves them in any order then
+      if ((origins[k] - origins[l]).norm() < 1e-4)
+        fail(folder, "two of its slices lie at the same place (" + fs::path(files[l]).filename().string() + " and " + fs::path(files[k]).filename().string() + "): leave one out");
   const Eigen::Vector3d between = (origins.back() - origins.front()) / double(origins.size() - 1);
   for (std::size_t k = 1; k < origins.size(); ++k)
     if ((origins[k] - origins[k - 1] - between).norm() > 0.1 * between.norm() + 1e-3)

@@ -12,6 +12,7 @@
 #include "mesh_data.h"
 #include "meshing.h"
 #include "part_fields.h"
+#include "part_meshes.h"
 #include "separate.h"
 
 namespace insula::mesh_tool {
@@ -84,10 +85,6 @@ std::vector<int> label_list(const std::string& text) {
   if (out.empty()) throw std::runtime_error("--part: no labels given");
   return out;
 }
-
-struct Sizes {
-  double near = 0, far = 0;
-};
 
 struct Job {
   std::string labels, intensity;
@@ -192,41 +189,16 @@ Job parse(int argc, char** argv) {
   return job;
 }
 
-// Edge length near the focus, growing smoothly to the far one.
-SizeField sizes(const Job& job, const PartFields& fields, const Field& distance, Sizes size) {
-  return [&job, &fields, &distance, size](const Vec3& p) {
-    double d = job.parts.size() > 1 ? sample(fields.grid, distance, p) : 0;
-    if (job.focus_radius >= 0) d = std::max(d, norm(p - job.focus_point) - job.focus_radius);
-    double t = (d - job.focus.near) / (job.focus.far - job.focus.near);
-    t = t < 0 ? 0 : t > 1 ? 1 : t;
-    return size.near + t * (size.far - size.near);
-  };
+// The size field of a part, with the part's own sizes where they are given.
+SizeField sizes(const Job& job, const PartFields& fields, std::size_t part, Sizes size, const std::map<std::string, Sizes>& own) {
+  const auto at = own.find(job.parts[part].name);
+  return growing(fields, part, at == own.end() ? size : at->second, {job.focus, job.focus_point, job.focus_radius});
 }
 
 void make_tets(const Job& job, const PartFields& fields) {
-  std::vector<TetMesh> meshes;
-  for (std::size_t a = 0; a < job.parts.size(); ++a) {
-    const auto own = job.cell_of.find(job.parts[a].name);
-    meshes.push_back(mesh_volume(fields.grid, fields.coarse[a],
-                                 sizes(job, fields, fields.others[a], own == job.cell_of.end() ? job.cell : own->second),
-                                 sizes(job, fields, fields.others[a], job.cell_error)));
-  }
-  // Nodes of the working grid just inside each fine shape: what the tetrahedra are to hold.
-  std::vector<std::vector<Vec3>> shape(meshes.size());
-  const Grid& g = fields.grid;
-  for (std::size_t a = 0; a < meshes.size(); ++a)
-    for (int k = 0; k < g.size[2]; ++k)
-      for (int j = 0; j < g.size[1]; ++j)
-        for (int i = 0; i < g.size[0]; ++i)
-          if (const float v = fields.fine[a][g.index(i, j, k)]; v > 0 && v < 0.5f) shape[a].push_back(g.point(i, j, k));
-  for (int pass = 0; pass < 6; ++pass) {
-    for (std::size_t a = 0; pass < 4 && a < meshes.size(); ++a) {
-      reach_out(meshes[a], shape[a], 0.4, 4);
-      improve_dihedral(meshes[a], 14, 0.3);
-    }
-    separate_parts(meshes, job.fields.coarse_gap, 12);
-    for (TetMesh& mesh : meshes) improve_dihedral(mesh, 12, 0.8);
-  }
+  std::vector<SizeField> cell, error;
+  for (std::size_t a = 0; a < job.parts.size(); ++a) cell.push_back(sizes(job, fields, a, job.cell, job.cell_of)), error.push_back(sizes(job, fields, a, job.cell_error, {}));
+  const auto [meshes, shape] = mesh_parts(fields, cell, error, job.fields.coarse_gap);
   std::vector<TriangleMesh> borders;
   for (const TetMesh& mesh : meshes) borders.push_back(boundary_mesh(mesh));
   for (std::size_t a = 0; a < meshes.size(); ++a)
@@ -263,9 +235,7 @@ void make_surfaces(const Job& job, const PartFields& fields) {
   std::vector<std::string> names;
   for (const auto& [name, file] : job.surfaces) {
     const std::size_t part = job.part(name);
-    const auto own = job.edge_of.find(name);
-    meshes.push_back(mesh_surface(fields.grid, fields.fine[part],
-                                  sizes(job, fields, fields.others[part], own == job.edge_of.end() ? job.edge : own->second),
+    meshes.push_back(mesh_surface(fields.grid, fields.fine[part], sizes(job, fields, part, job.edge, job.edge_of),
                                   job.edge_error));
     names.push_back(name);
     write_ply(file, meshes.back());

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/collision/closest.h"
+#include "core/model/grid_sample.h"
 
 namespace insula {
 
@@ -45,22 +46,6 @@ void Clearance::add(const std::vector<Vec3>& vertices, const std::vector<std::ar
   }
 }
 
-double Clearance::at(const Vec3& p) const {
-  const Vec3 x = (p - low_) / cell_;
-  int i[3];
-  double f[3];
-  for (int k = 0; k < 3; ++k) {
-    if (!(x[k] >= 0) || x[k] >= n_[k] - 1) return band;
-    i[k] = int(x[k]);
-    f[k] = x[k] - i[k];
-  }
-  double sum = 0;
-  for (int c = 0; c < 8; ++c) {
-    const int dx = c & 1, dy = (c >> 1) & 1, dz = c >> 2;
-    const double w = (dx ? f[0] : 1 - f[0]) * (dy ? f[1] : 1 - f[1]) * (dz ? f[2] : 1 - f[2]);
-    sum += w * double(distance_[std::size_t(((i[2] + dz) * n_[1] + i[1] + dy) * n_[0] + i[0] + dx)]);
-  }
-  return sum;
-}
+double Clearance::at(const Vec3& p) const { return grid_sample(distance_, n_, (p - low_) / cell_, band); }
 
 }  // namespace insula

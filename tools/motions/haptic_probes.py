@@ -107,7 +107,7 @@ def artery(folder):
         return add(add(start, add(end, start, -1.0), s), unit(TOWARDS), off)
 
     rows = [(0.0, 0, 8), (0.2, 0, 8), (0.8, 0, -PRESS), (0.3, 0, -PRESS), (0.8, 1, -PRESS), (0.7, 1, -PRESS), (0.3, 1, 8)]
-    write(folder / "artery.csv", {"right": (orientation(shaft, flat), moves(rows, place), never)}, [(0.02, "exchange,right stylus")])
+    write(folder / "artery.csv", {"right": (orientation(shaft, flat), moves(rows, place), never)}, [(0.0, "exchange,right stylus")])
 
 
 STRETCH = (8, 15)         # points of the branch's centreline

@@ -19,6 +19,7 @@ import { make_environment } from './materials/environment';
 import { parse_options } from './options';
 import { Playback } from './playback';
 import { levels, QualityWatch } from './quality';
+import { silent } from './silence';
 import { ViewModes } from './view_modes';
 import { quaternion, vector, World } from './world';
 
@@ -223,14 +224,14 @@ function headset_lines(): string[] {
   return ['For training only. Not for patient care.', timers.join('     '), spoken_to];
 }
 
-function banner(now: number): string {
+function banner(quiet: (heard_ms: number, limit_ms: number) => boolean): string {
   if (!link.open) return 'Viewer gateway not reached\ntrying again …';
   // Pictures are a sign of life too: on a slow machine they crowd out the second's word of the scene.
-  if (!info || (now - info_ms > 4000 && now - frame_ms > 2500)) return 'Waiting for the engine …';
+  if (!info || (quiet(info_ms, 4000) && quiet(frame_ms, 2500))) return 'Waiting for the engine …';
   if (info.state === 'error') return `The scene has errors\n${info.message}`;
   if (load_error) return `Scene data cannot be read\n${load_error}`;
   if (!world || info.state === 'loading') return 'Loading the scene …';
-  if (playback.frames === 0 || now - frame_ms > 2500) return info.state === 'ended' ? 'The session has ended' : 'No pictures from the engine: waiting for it to come back …';
+  if (playback.frames === 0 || quiet(frame_ms, 2500)) return info.state === 'ended' ? 'The session has ended' : 'No pictures from the engine: waiting for it to come back …';
   return playback.latest?.paused && !world.bundle.inventory ? 'Paused' : '';
 }
 
@@ -248,7 +249,8 @@ let counted = 0;
 let counted_from = last;
 
 function draw(now: number): void {
-  const dt = Math.min(0.1, Math.max(0, (now - last) / 1000));
+  const picture_ms = Math.max(0, now - last), dt = Math.min(0.1, picture_ms / 1000);
+  const quiet = (heard_ms: number, limit_ms: number) => silent(now, heard_ms, limit_ms, picture_ms);
   last = now;
   const presenting = headset.presenting;
   const wide = canvas.clientWidth, high = canvas.clientHeight;
@@ -277,14 +279,14 @@ function draw(now: number): void {
     if (status.ready && document.visibilityState === 'visible' && watch.observe(status.fps, seconds)) apply_quality();
   }
   if (!options.hud) return;
-  const fresh_haptic = now - haptic_ms < 3000 ? haptic : null;
+  const fresh_haptic = quiet(haptic_ms, 3000) ? null : haptic;
   if (playback.latest && world) {
     hud.show_frame(playback.latest, state, may_drive ? hands.active : -1, hands.hands.map((h) => h.taken));
   }
-  hud.show_machine(now - frame_ms < 2500 ? playback.latest : null, fresh_haptic, status.fps, status.quality);
-  const alive = now - frame_ms < Math.max(1000, 3000 * dt);
+  hud.show_machine(quiet(frame_ms, 2500) ? null : playback.latest, fresh_haptic, status.fps, status.quality);
+  const alive = !quiet(frame_ms, 1000);
   hud.show_link(link.open ? (alive ? 'connected' : 'gateway only') : 'disconnected', link.open && alive);
-  hud.show_banner(banner(now));
+  hud.show_banner(banner(quiet));
   hud.show_notice(info && info.state !== 'error' ? info.message : '');
   hud.tick(now);
 }

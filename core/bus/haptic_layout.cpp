@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The parts of a haptic_problem_t message.
+#include "core/bus/haptic_layout.h"
+
+#include <zlib.h>
+
+#include <insula_lcm/haptic_problem_t.hpp>
+
+#include "core/bus/haptic_update.h"
+
+namespace insula::wire {
+
+std::uint32_t problem_checksum(Bytes bytes) { return std::uint32_t(::crc32(0, bytes.data(), unsigned(bytes.size()))); }
+
+bool find_parts(Bytes bytes, ProblemLayout& l, const char*& why) {
+  why = "not a haptic_problem_t message";
+  ByteReader in(bytes);
+  if (in.i64() != insula_lcm::haptic_problem_t::getHash() || !in.ok()) return false;
+  l.session = in.i64();
+  l.sequence = in.i64();
+  l.time_us = in.i64();
+  l.pose_time_us = in.i64();
+  l.step_s = in.f64();
+  l.sim_time_s = in.f64();
+  l.rows = in.i32();
+  const std::int32_t packed = in.i32();
+  if (!in.ok()) return false;
+  if (l.rows < 0 || l.rows > max_problem_rows || packed != l.rows * (l.rows + 1) / 2) {
+    why = "row count out of range or packed size wrong";
+    return false;
+  }
+  l.w = in.take_array(packed, 4);
+  l.delta = in.take_array(l.rows, 8);
+  l.lambda = in.take_array(l.rows, 8);
+  l.rate = in.take_array(l.rows, 4);
+  l.relaxation = in.take_array(l.rows, 4);
+  l.blocks = in.i32();
+  if (!in.ok()) return false;
+  if (l.blocks < 0 || l.blocks > l.rows) {
+    why = "block count out of range";
+    return false;
+  }
+  l.id = in.take_array(l.blocks, 8);
+  l.row = in.take_array(l.blocks, 2);
+  l.law = in.take_array(l.blocks, 1);
+  l.compliance = in.take_array(l.blocks, 4);
+  l.lower = in.take_array(l.blocks, 8);
+  l.upper = in.take_array(l.blocks, 8);
+  l.friction = in.take_array(l.blocks, 4);
+  l.normals = in.take_array(l.blocks, 2);
+  l.tools = in.i8();
+  if (!in.ok()) return false;
+  if (l.tools < 0 || l.tools > max_problem_tools) {
+    why = "more than two tools";
+    return false;
+  }
+  l.tool = in.take_array(l.tools, tool_bytes);
+  const std::int32_t jacobian_size = in.i32();
+  if (!in.ok()) return false;
+  if (jacobian_size != l.tools * l.rows * 6) {
+    why = "Jacobian size does not match tools and rows";
+    return false;
+  }
+  l.jacobian = in.take_array(jacobian_size, 4);
+  const auto said = std::uint32_t(in.i32());
+  if (!in.at_end()) return false;
+  why = "damaged on its way: the checksum is wrong";
+  return said == problem_checksum(bytes.first(bytes.size() - 4));
+}
+
+}  // namespace insula::wire

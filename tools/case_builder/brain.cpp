@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tools/case_builder/brain.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/input_error.h"
+#include "tools/mesh_lobes/part_meshes.h"
+#include "tools/mesh_lobes/separate.h"
+
+namespace insula::case_builder {
+namespace {
+
+using mesh_tool::SizeField;
+using mesh_tool::Sizes;
+
+// Sizes as those of the shipped lobes (tools/mesh_lobes/rebuild.sh), mm.
+const mesh_tool::Focus focus{{2, 14}, {60, 4, 0}, 24};
+constexpr Sizes cell[] = {{2.8, 6.8}, {5.4, 13}}, cell_error{0.5, 1.2}, edge[] = {{0.8, 2.5}, {0.8, 2.5}, {1, 3.5}};
+constexpr double edge_error = 0.08, field_spacing = 0.7;
+
+TriMesh as_mesh(const mesh_tool::TriangleMesh& m) {
+  TriMesh out;
+  for (const auto& p : m.points) out.vertices.emplace_back(p[0], p[1], p[2]);
+  for (const auto& t : m.triangles) out.triangles.push_back({t[0], t[1], t[2]});
+  return out;
+}
+
+std::size_t nodes_of(const std::vector<mesh_tool::TetMesh>& meshes) { return meshes[0].points.size() + meshes[1].points.size(); }
+
+/// The two lobes in tetrahedra, with larger cells where they would be too many.
+std::vector<mesh_tool::TetMesh> lobes_of(const mesh_tool::PartFields& fields, double gap, int most, std::vector<Note>& notes) {
+  std::vector<mesh_tool::TetMesh> meshes;
+  double larger = 1;
+  for (int round = 0; round < 4; ++round) {
+    std::vector<SizeField> cells, errors;
+    for (std::size_t a = 0; a < 2; ++a) {
+      cells.push_back(growing(fields, a, {larger * cell[a].near, larger * cell[a].far}, focus));
+      errors.push_back(growing(fields, a, {larger * cell_error.near, larger * cell_error.far}, focus));
+    }
+    meshes = mesh_parts(fields, cells, errors, gap).meshes;
+    if (nodes_of(meshes) <= std::size_t(most)) break;
+    larger *= 1.05 * std::cbrt(double(nodes_of(meshes)) / most);
+  }
+  if (larger > 1) notes.push_back({Note::Kind::repair, fmt::format("The lobes' cells were made {:.2f} times as large as usual, for {} nodes (--brain-nodes {}).", larger, nodes_of(meshes), most), ""});
+  if (nodes_of(meshes) > std::size_t(most)) notes.push_back({Note::Kind::problem, fmt::format("The lobes have {} nodes, more than the {} that were allowed.", nodes_of(meshes), most), "Give a smoother surface or segmentation, or allow more with --brain-nodes."});
+  return meshes;
+}
+
+}  // namespace
+
+void run_brain(const CaseFolder& folder, const fs::path& project, const Options& o, Progress& progress) {
+  std::error_code ignored;
+  fs::remove_all(folder.brain(), ignored);
+  fs::remove(folder.path / "brain.json", ignored);
+  if (o.brain.empty()) return;
+  if (!o.lobes.empty()) throw InputError("--brain and --lobes exclude each other");
+  progress.stage("brain", 4);
+  progress.step("reading the brain");
+  std::vector<Note> notes;
+  const BrainLabels given = read_brain(o, project, notes);
+  mesh_tool::FieldOptions f;
+  f.spacing = field_spacing, f.radius = fissure_radius, f.coarse_gap = 0.45;
+  f.centre = {fissure_centre.x(), fissure_centre.y(), fissure_centre.z()};
+  Json json;
+  try {
+    progress.step("borders of the lobes");
+    const mesh_tool::PartFields fields = build_part_fields(given.volume, nullptr, given.parts, f);
+    progress.step("surfaces");
+    std::vector<mesh_tool::TriangleMesh> surfaces;
+    for (std::size_t a = 0; a < 3; ++a) surfaces.push_back(mesh_surface(fields.grid, fields.fine[a], growing(fields, a, edge[a], focus), edge_error));
+    for (std::size_t a = 0; a < 3; ++a)
+      for (std::size_t b = a + 1; b < 3; ++b)
+        if (clearance(surfaces[a], surfaces[b]).intersect) throw InputError(fmt::format("--brain: the surfaces of {} and {} run through each other", lobe_names[a], lobe_names[b]));
+    progress.step("tetrahedra");
+    const std::vector<mesh_tool::TetMesh> meshes = lobes_of(fields, f.coarse_gap, o.brain_nodes, notes);
+    if (clearance(boundary_mesh(meshes[0]), boundary_mesh(meshes[1])).intersect) throw InputError("--brain: the tetrahedra of the two lobes run through each other; allow more nodes with --brain-nodes");
+    fs::create_directories(folder.brain());
+    json["lobes"] = Json::array();
+    for (std::size_t a = 0; a < 3; ++a) {
+      const std::string name = lobe_names[a];
+      write_ply(folder.brain() / (name + "_surface.ply"), as_mesh(surfaces[a]), "unit mm; of the case's own brain");
+      Json one{{"name", name}, {"triangles", surfaces[a].triangles.size()}, {"volume_mm3", rounded(signed_volume(surfaces[a]))}};
+      if (a < 2) {
+        write_msh((folder.brain() / (name + ".msh")).string(), meshes[a], mesh_tool::MshFormat::v2_ascii);
+        one["nodes"] = meshes[a].points.size(), one["tetrahedra"] = meshes[a].tets.size(), one["least_angle_deg"] = rounded(dihedral_range(meshes[a]).min_deg);
+      }
+      json["lobes"].push_back(one);
+    }
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::exception& e) {  // the mesh generator's own
+    throw InputError(fmt::format("--brain: {}. What is meshed is a ball of {:g} mm about ({:g}, {:g}, {:g}), the right Sylvian fissure: is the brain in the MNI frame (right-anterior-superior), in mm?", e.what(), fissure_radius,
+                                 fissure_centre.x(), fissure_centre.y(), fissure_centre.z()));
+  }
+  json["notes"] = to_json(notes);
+  write_json(folder.path / "brain.json", json);
+  progress.finish();
+}
+
+}  // namespace insula::case_builder

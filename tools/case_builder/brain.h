@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The stage between wall and place: an author's own brain becomes lobes with tetrahedra and fine surfaces, as those of meshes/lobes. It must
+// lie in their frame (MNI, mm). What the part of the scenes looks at is a ball about the fissure: the rest is left out.
+#pragma once
+#include "tools/case_builder/case_folder.h"
+#include "tools/case_builder/progress.h"
+#include "tools/mesh_lobes/part_fields.h"
+
+namespace insula::case_builder {
+
+/// Of the fissure that is meshed; nodes of the lobes farther than `held` are held (scenes/parts/fissure.xml).
+inline const Vec3 fissure_centre{54, 4, -2};
+inline constexpr double fissure_radius = 35, fissure_held = 32;  ///< mm
+
+inline constexpr const char* lobe_names[] = {"frontal", "temporal", "insula"};
+
+/// What was given, as labels.
+struct BrainLabels {
+  mesh_tool::NiftiVolume volume;
+  std::vector<mesh_tool::Part> parts;  ///< in the order of lobe_names
+};
+/// Reads labels, one surface a lobe, or one closed surface that is shared out to the nearest shipped lobe. Throws InputError: what cannot be
+/// read, surfaces that are open, in pieces, or of a size that no lobe has, labels that do not exist, lobes that are missing.
+BrainLabels read_brain(const Options& options, const fs::path& project, std::vector<Note>& notes);
+
+/// The stage: reads the files named by the options, writes brain/ and brain.json; without --brain it takes both away. Throws InputError.
+void run_brain(const CaseFolder& folder, const fs::path& project, const Options& options, Progress& progress);
+
+}  // namespace insula::case_builder

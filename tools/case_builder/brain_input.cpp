@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "core/base/text.h"
+#include "core/model/file_bytes.h"
+#include "tools/case_builder/brain.h"
+#include "tools/case_builder/fissure.h"
+#include "tools/case_builder/grid_surface.h"
+#include "tools/case_builder/solid.h"
+#include "tools/case_builder/topology.h"
+#include "tools/case_builder/volume_input.h"
+#include "tools/case_builder/vtp_reader.h"
+#ifdef INSULA_WITH_ITK
+#include "tools/case_builder/volume_reader.h"
+#endif
+
+namespace insula::case_builder {
+namespace {
+
+constexpr double least_extent = 15, most_extent = 250;  // mm, of a lobe or of a brain
+constexpr double grid_spacing = 0.7;                    // mm, of the labels that surfaces are turned into
+
+bool is_lobe(const std::string& name) { return std::find(std::begin(lobe_names), std::end(lobe_names), name) != std::end(lobe_names); }
+
+/// "NAME=REST", or an empty name.
+std::pair<std::string, std::string> named(const std::string& text) {
+  const std::size_t sign = text.find('=');
+  return sign == std::string::npos ? std::pair(std::string(), text) : std::pair(text.substr(0, sign), text.substr(sign + 1));
+}
+
+std::vector<int> label_list(const std::string& text) {
+  std::vector<int> out;
+  std::size_t at = 0;
+  while (at <= text.size()) {
+    const std::size_t comma = std::min(text.find(',', at), text.size());
+    const std::string item = text.substr(at, comma - at);
+    const std::size_t dash = item.find('-');
+    std::int64_t first = 0, last = 0;
+    const bool sound = parse_integer(item.substr(0, dash), first) && parse_integer(dash == std::string::npos ? item : item.substr(dash + 1), last);
+    if (!sound || first < 1 || last < first || last > 1'000'000) throw InputError("--lobe: " + in_quotes(item) + " is no label and no range of labels; write it like frontal=2,4,10-16");
+    for (std::int64_t k = first; k <= last; ++k) out.push_back(int(k));
+    at = comma + 1;
+  }
+  return out;
+}
+
+std::string unit_advice(double extent) {
+  for (const auto& [mm, name] : {std::pair(1000.0, "m"), std::pair(10.0, "cm"), std::pair(0.001, "um")})
+    if (extent * mm >= 40 && extent * mm <= 200) return fmt::format("; as if its numbers were in {0}: give --brain-unit {0}", name);
+  return "";
+}
+
+TriMesh read_lobe_surface(const fs::path& file, const std::string& what, const Options& o, std::vector<Note>& notes) {
+  if (!fs::exists(file)) fail(file, "does not exist");
+  const std::string kind = lower_extension(file);
+  const double unit = o.brain_unit_mm ? *o.brain_unit_mm : kind == ".gltf" || kind == ".glb" ? 1000 : 1;
+  TriMesh m = kind == ".vtp" ? read_vtp(file) : read_surface(file, 1.0);
+  Vec3 low = Vec3::Constant(1e300), high = -low;
+  for (Vec3& p : m.vertices) p *= unit, low = low.cwiseMin(p), high = high.cwiseMax(p);
+  const double extent = (high - low).norm();
+  if (extent < least_extent || extent > most_extent)
+    fail(file, fmt::format("the surface is {:.3g} mm across, which no part of a brain is (usual: {:g} to {:g} mm){}", extent, least_extent, most_extent, unit_advice(extent / unit)));
+  weld(m, 1e-6 * extent);
+  drop_doubles(m);
+  if (m.triangles.empty()) fail(file, "holds no triangle with an area");
+  if (const BadEdges bad = non_manifold_edges(m); bad.count > 0) fail(file, fmt::format("{} edges belong to three or more triangles: mend it in the program that made it, or give labels of a volume", bad.count));
+  const Pieces pieces = pieces_of(m);
+  double whole = 0;
+  for (const double a : pieces.area) whole += a;
+  if (pieces.area.size() > 1) {
+    if (pieces.area[0] < 0.9 * whole) fail(file, fmt::format("is in {} pieces; the largest has {:.0f} % of the area: leave the others out in the program that made it", pieces.area.size(), 100 * pieces.area[0] / whole));
+    keep_piece(m, pieces, 0);
+    notes.push_back({Note::Kind::repair, fmt::format("{}: of {} pieces the largest was kept, {:.1f} % of the area.", what, pieces.area.size(), 100 * pieces.area[0] / whole), ""});
+  }
+  if (const std::size_t holes = border_loops(m).size(); holes > 0) fail(file, fmt::format("is not closed: it has {} hole{}. A lobe is given by one closed surface; close it in the program that made it", holes, holes == 1 ? "" : "s"));
+  return m;
+}
+
+/// An empty volume of labels about the fissure.
+mesh_tool::NiftiVolume blank(mesh_tool::Grid& grid) {
+  const int n = int(std::ceil(2 * (fissure_radius + 3) / grid_spacing)) + 1;
+  grid.size = {n, n, n}, grid.spacing = grid_spacing;
+  mesh_tool::NiftiVolume v;
+  v.size = grid.size;
+  v.value.assign(grid.count(), 0.0f);
+  for (std::size_t a = 0; a < 3; ++a) {
+    grid.origin[a] = fissure_centre[Eigen::Index(a)] - fissure_radius - 3;
+    v.to_world[5 * a] = grid_spacing, v.from_world[5 * a] = 1 / grid_spacing;
+    v.to_world[4 * a + 3] = grid.origin[a], v.from_world[4 * a + 3] = -grid.origin[a] / grid_spacing;
+  }
+  return v;
+}
+
+BrainLabels of_surfaces(const std::map<std::string, std::string>& files, const Options& o, std::vector<Note>& notes) {
+  BrainLabels out;
+  mesh_tool::Grid grid;
+  out.volume = blank(grid);
+  std::size_t twice = 0, all = 0;
+  for (int k = 0; k < 3; ++k) {
+    const std::string name = lobe_names[k];
+    const auto at = files.find(name);
+    if (at == files.end()) throw InputError("--brain: there is no " + name + "; give the three of them: --brain frontal=FILE --brain temporal=FILE --brain insula=FILE");
+    const mesh_tool::Mask inside = inside_of(read_lobe_surface(at->second, name, o, notes), grid);
+    for (std::size_t i = 0; i < inside.size(); ++i) {
+      if (!inside[i]) continue;
+      ++all, twice += out.volume.value[i] > 0;
+      if (out.volume.value[i] == 0) out.volume.value[i] = float(k + 1);
+    }
+    out.parts.push_back({name, {k + 1}});
+  }
+  if (double(twice) > 0.02 * double(all)) notes.push_back({Note::Kind::repair, fmt::format("The lobes' surfaces overlap in {:.1f} % of their volume; it went to the one named first of frontal, temporal, insula.", 100 * double(twice) / double(all)), ""});
+  return out;
+}
+
+BrainLabels of_one_surface(const fs::path& file, const Options& o, const fs::path& project, std::vector<Note>& notes) {
+  BrainLabels out;
+  mesh_tool::Grid grid;
+  out.volume = blank(grid);
+  const mesh_tool::Mask inside = inside_of(read_lobe_surface(file, "brain", o, notes), grid);
+  const Fissure shipped = read_fissure(project, {});
+  const Vec3 reach = Vec3::Constant(fissure_radius + 4);
+  std::vector<DistanceGrid> near;
+  for (int k = 0; k < 3; ++k) {
+    const TriMesh* surface = &shipped.insula;
+    for (const Lobe& l : shipped.lobes)
+      if (l.name == lobe_names[k]) surface = &l.surface;
+    near.emplace_back(Solid(*surface), fissure_centre - reach, fissure_centre + reach, 2.0, 40.0);
+    out.parts.push_back({lobe_names[k], {k + 1}});
+  }
+  const auto n0 = std::size_t(grid.size[0]), n1 = std::size_t(grid.size[1]);
+  for (std::size_t i = 0; i < inside.size(); ++i) {
+    if (!inside[i]) continue;
+    const auto q = grid.point(int(i % n0), int(i / n0 % n1), int(i / (n0 * n1)));
+    const Vec3 p(q[0], q[1], q[2]);
+    int best = 0;
+    for (int k = 1; k < 3; ++k)
+      if (near[std::size_t(k)].at(p) < near[std::size_t(best)].at(p)) best = k;
+    out.volume.value[i] = float(best + 1);
+  }
+  notes.push_back({Note::Kind::fact, "The brain was given as one surface: its lobes are told apart by the nearest of the shipped ones, with a cleft between them.", ""});
+  return out;
+}
+
+BrainLabels of_volume(const fs::path& file, const Options& o) {
+  BrainLabels out;
+  std::map<std::string, std::vector<int>> labels;
+  for (const std::string& text : o.lobe_labels) {
+    const auto [name, list] = named(text);
+    if (!is_lobe(name)) throw InputError("--lobe: " + in_quotes(text) + " names no lobe; write frontal=LABELS, temporal=LABELS, insula=LABELS");
+    labels[name] = label_list(list);
+  }
+  for (const char* name : lobe_names)
+    if (!labels.contains(name)) fail(file, std::string("is a volume: say which labels are the ") + name + ", such as --lobe " + name + "=2,4,10-16");
+#ifdef INSULA_WITH_ITK
+  out.volume = read_volume(file);
+#else
+  fail(file, "volumes need ITK (Debian: libinsighttoolkit5-dev), which was not there when this program was built");
+#endif
+  std::set<float> there;
+  for (const float v : out.volume.value) {
+    if (v == 0) continue;
+    if (v != std::floor(v) || v < 0) fail(file, "holds values that are no labels: whole numbers from 0 up");
+    if (there.insert(v).second && there.size() > 4000) fail(file, "has more than 4,000 values: it is no volume of labels");
+  }
+  for (const char* name : lobe_names) {
+    const std::vector<int>& list = labels[name];
+    if (std::none_of(list.begin(), list.end(), [&](int k) { return there.contains(float(k)); })) {
+      std::string known;
+      for (const float v : there) known += (known.empty() ? "" : ", ") + std::to_string(int(v));
+      fail(file, std::string("none of the labels of the ") + name + " is there; there are: " + shown(known));
+    }
+    out.parts.push_back({name, list});
+  }
+  return out;
+}
+
+}  // namespace
+
+BrainLabels read_brain(const Options& o, const fs::path& project, std::vector<Note>& notes) {
+  std::map<std::string, std::string> files;
+  for (const std::string& text : o.brain) {
+    auto [name, file] = named(text);
+    if (!name.empty() && !is_lobe(name)) throw InputError("--brain: " + in_quotes(name) + " is no lobe; frontal, temporal and insula are");
+    if (!files.emplace(name, file).second) throw InputError(name.empty() ? "--brain takes one file, or NAME=FILE for each lobe" : "--brain: the " + name + " is given twice");
+  }
+  if (!files.contains("")) return of_surfaces(files, o, notes);
+  if (files.size() > 1) throw InputError("--brain takes one file, or NAME=FILE for each lobe, not both");
+  const fs::path file = files[""];
+  if (is_volume_input(file)) return of_volume(file, o);
+  if (!o.lobe_labels.empty()) fail(file, "is a surface; --lobe is for volumes of labels");
+  return of_one_surface(file, o, project, notes);
+}
+
+}  // namespace insula::case_builder
