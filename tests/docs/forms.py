@@ -79,6 +79,9 @@ FORMS = (
     Elsewhere(r"\./insula devices --calibrate .*", "DeviceTool.CalibratesByFourPlaces", "a stand-in's arm is moved to the four places"),
     Elsewhere(r"build/release/bin/insula_artery make tools/artery/arteries.json meshes/arteries", "ArteryTool.ShippedArteriesAreMadeAgainBitForBit", "makes all of the table"),
     Elsewhere(r"\./insula case new from_scan .*", "Volumes.ADicomSeriesIsReadByItsThreshold", "makes a series to read"),
+    Elsewhere(r"\./insula case new .* --brain aal\.nii\.gz .*", "OwnBrain.LabelsAreChecked", "makes a volume of labels"),
+    Elsewhere(r"\./insula case new .* --brain frontal=f\.stl .*", "OwnBrain.BlocksAreMeshedWithinTheirNodes", "makes a surface for each lobe"),
+    Elsewhere(r"\./insula case brain .* --brain brain\.ply .*", "OwnBrain.OneSurfaceIsSharedOutToTheNearestShippedLobe", "makes that surface"),
     Elsewhere(r"cd build/release && cpack -G DEB", "install_packages", "makes the packages and looks into them"),
     Elsewhere(r"cmake --install build/release .*", "install_plugins", "installs into a folder of its own"),
     Elsewhere(r"(cmake -S|cmake --build|ctest --test-dir|sudo cmake --install) pia_membrane.*", "install_plugins", "builds, tests and installs the tutorial's plugin"),
@@ -97,6 +100,8 @@ FORMS = (
     Shorter(r"^(\./insula devices --test-force .*)$", r"\1 --yes", "asks before it begins; the arm is a stand-in's"),
 
     # Long ones: a part of the same.
+    Shorter(r"^(\./insula case new .*)$", r"\1 --no-rehearse --vertices 700", "a coarser wall, without operating in exercise 2, which MadeCase and RealCase do"),
+    Shorter(r"^(\./insula case wall .*) --vertices 1200 ", r"\1 --vertices 800 ", "a little finer than that"),
     Shorter(r"--motion none --duration 10\b", "--motion none --duration 1", "a part of it"),
     Shorter(r"^(\./insula run scenes/(training|cases/my_case)/.*--report report)$", r"\1 --duration 1", "the first second of the motion", "state_hash"),
     Shorter(r"--steps 720 --record problems --every 12$", "--steps 40 --record problems --every 10", "fewer steps, and as many of them"),
