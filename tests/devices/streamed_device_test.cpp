@@ -4,9 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <limits>
 #include <thread>
+#include <vector>
 
 #include "core/testing/count_allocations.h"
 #include "haptic_server/test_problem.h"
@@ -118,13 +120,17 @@ TEST(StreamedDevice, VelocityOfTurningComesFromThePosesWhereItIsNotMeasured) {
   MonotonicClock clock;
   const std::int64_t start = clock.now_ns();
   double t = 0;
+  std::vector<double> found;
   while (t < 0.3) {
     t = double(clock.now_ns() - start) * 1e-9;
     DeviceSample s;
     s.pose.q = from_rotation_vector(Vec3(0, 0, 2 * t));
     device.deliver(s);
+    if (t > 0.1) found.push_back(device.read().w.z());
   }
-  EXPECT_NEAR(device.read().w.z(), 2, 0.2);
+  // A pose that was held up between being made and delivered is one of many.
+  std::nth_element(found.begin(), found.begin() + std::ptrdiff_t(found.size() / 2), found.end());
+  EXPECT_NEAR(found[found.size() / 2], 2, 0.1);
   device.lost();
   EXPECT_FALSE(device.read().connected);
 }
