@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Puts the page together: connection, scene, microscope, hands, HUD, and the loop that draws.
 import * as THREE from 'three';
-import { load_bundle } from './bundle';
+import { type Bundle, load_bundle } from './bundle';
 import { Microscope } from './camera';
 import { Connection } from './connection';
 import { tool_in_hand } from './hand_tool';
@@ -139,6 +139,24 @@ const hands: Hands = new Hands(canvas, scope, link, {
   },
 }, may_drive);
 
+function build(bundle: Bundle): void {
+  world?.dispose();
+  world = null;
+  const old = scene.environment;
+  scene.environment = make_environment(renderer, scope.field_axis, vector(bundle.view.up));
+  old?.dispose();
+  const from = performance.now();
+  world = new World(bundle, scope.field_axis, scene.environment);
+  status.build_ms = Math.round(performance.now() - from);
+  scene.add(world.root);
+  world.set_infrared(modes.infrared);
+}
+
+// What was drawn into textures is lost with the context: steel would have nothing to mirror and be black.
+canvas.addEventListener('webglcontextrestored', () => {
+  if (world) build(world.bundle);
+});
+
 /** Loads the bundle of a new session, once; tries again when it fails. */
 let loading = '';
 async function follow(m: SceneInfo): Promise<void> {
@@ -147,19 +165,10 @@ async function follow(m: SceneInfo): Promise<void> {
   loading = session;
   try {
     const bundle = await load_bundle(new URL(`bundle/${session}/`, location.href).href, session);
-    world?.dispose();
-    world = null;
     playback.clear();
     hands.release_all();
     scope.set_home(bundle.view);
-    const old = scene.environment;
-    scene.environment = make_environment(renderer, scope.field_axis, vector(bundle.view.up));
-    old?.dispose();
-    const from = performance.now();
-    world = new World(bundle, scope.field_axis, scene.environment);
-    status.build_ms = Math.round(performance.now() - from);
-    scene.add(world.root);
-    world.set_infrared(modes.infrared);
+    build(bundle);
     state = null;
     state_text = '';
     apply_quality();
