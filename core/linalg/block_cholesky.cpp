@@ -16,6 +16,7 @@ void MultifrontalCholesky<Real>::analyse(const BlockMatrix& a) {
   e_.analyse(a, lanes);
   panel_.assign(std::size_t(e_.panel_size) + slack, Real(0));
   update_.assign(std::size_t(e_.arena_size) + slack, Real(0));
+  inverse_.assign(3 * std::size_t(e_.nodes), Real(0));
   x_.assign(3 * std::size_t(e_.nodes) + slack, Real(0));
   gathered_.assign(3 * std::size_t(e_.nodes) + slack, Real(0));
   columns_ = 0;
@@ -50,7 +51,7 @@ bool MultifrontalCholesky<Real>::factorise(const BlockMatrix& a, const Front& f)
     std::memset(update + long(j) * f.ldu + top, 0, sizeof(Real) * std::size_t(f.ldu - top));
   }
   for (int c : f.children) add_child(f, e_.front[std::size_t(c)]);
-  if (k.cholesky_panel(panel, f.lda, rows, own) >= 0 || !pivots_are_good(a, f)) return false;
+  if (k.cholesky_panel(panel, f.lda, rows, own, inverse_.data() + 3 * f.first) >= 0 || !pivots_are_good(a, f)) return false;
   if (below > 0) k.syrk_sub(update, f.ldu, panel + own, f.lda, below, own);
   return true;
 }
@@ -95,29 +96,16 @@ bool MultifrontalCholesky<Real>::pivots_are_good(const BlockMatrix& a, const Fro
   return true;
 }
 
-// Both gather a front's part of x once, so that its columns run over memory in order, a few of them at a time.
-namespace {
-constexpr int columns_at_once = 6;
-}
-
+// Both gather a front's part of x once, so that its columns run over memory in order.
 template <class Real>
 void MultifrontalCholesky<Real>::forward(Real* x) {
   const KernelsOf<Real>& k = kernels_of<Real>();
   Real* t = gathered_.data();
   for (const Front& f : e_.front) {
-    const Real* l = panel_.data() + f.panel;
-    const int own = 3 * f.own, rows = 3 * f.rows;
+    const int rows = 3 * f.rows;
     const int* index = e_.row_scalar.data() + 3 * f.row_begin;
     for (int r = 0; r < rows; ++r) t[r] = x[index[r]];
-    for (int first = 0; first < own; first += columns_at_once) {
-      const int last = std::min(first + columns_at_once, own);
-      for (int c = first; c < last; ++c) {
-        const Real* col = l + long(c) * f.lda;
-        t[c] /= col[c];
-        for (int r = c + 1; r < last; ++r) t[r] -= col[r] * t[c];
-      }
-      k.columns_sub(t + last, l + last + long(first) * f.lda, f.lda, t + first, rows - last, last - first);
-    }
+    k.front_forward(panel_.data() + f.panel, f.lda, inverse_.data() + 3 * f.first, t, 3 * f.own, rows);
     for (int r = 0; r < rows; ++r) x[index[r]] = t[r];
   }
 }
@@ -128,23 +116,11 @@ void MultifrontalCholesky<Real>::backward(Real* x) {
   Real* t = gathered_.data();
   for (auto it = e_.front.rbegin(); it != e_.front.rend(); ++it) {
     const Front& f = *it;
-    const Real* l = panel_.data() + f.panel;
     const int own = 3 * f.own, rows = 3 * f.rows;
     const int* index = e_.row_scalar.data() + 3 * f.row_begin;
     for (int r = 0; r < rows; ++r) t[r] = x[index[r]];
     std::fill(t + rows, t + rows + lanes, Real(0));
-    for (int last = own; last > 0;) {
-      const int first = (last - 1) / columns_at_once * columns_at_once;
-      Real below[columns_at_once];
-      k.columns_dot(below, l + last + long(first) * f.lda, f.lda, t + last, rows - last, last - first);
-      for (int c = last - 1; c >= first; --c) {
-        const Real* col = l + long(c) * f.lda;
-        Real v = t[c] - below[c - first];
-        for (int r = c + 1; r < last; ++r) v -= col[r] * t[r];
-        t[c] = v / col[c];
-      }
-      last = first;
-    }
+    k.front_backward(panel_.data() + f.panel, f.lda, inverse_.data() + 3 * f.first, t, own, rows);
     std::copy(t, t + own, x + 3 * f.first);
   }
 }

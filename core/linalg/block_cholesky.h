@@ -47,6 +47,7 @@ class MultifrontalCholesky final : public BodySolver {
 
   Elimination e_;
   std::vector<Real> panel_, update_, x_, gathered_;  ///< gathered_: what one front needs of a vector
+  std::vector<Real> inverse_;                        ///< one over each number of L's diagonal, permuted order
 
   // Rows in flight. Columns of Y are theirs in `order_` (-1: a column of zeros), fresh ones up to fresh_, then known ones.
   struct Columns {

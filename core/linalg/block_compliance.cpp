@@ -201,7 +201,7 @@ void MultifrontalCholesky<Real>::forward_columns(int from, int to) {
     const Real* l = panel_.data() + f.panel;
     const int own = 3 * f.own, below = 3 * f.rows - own;
     Real* x = y_.data() + 3L * f.first * ldy_ + lo;
-    k.lower_solve_rows(l, f.lda, own, x, ldy_, hi - lo);
+    k.lower_solve_rows(l, f.lda, inverse_.data() + 3 * f.first, own, x, ldy_, hi - lo);
     if (below > 0)
       k.rows_sub(y_.data() + lo, ldy_, e_.row_scalar.data() + 3 * f.row_begin + own, below, l + own, f.lda, x, ldy_, own, hi - lo);
   }

@@ -22,14 +22,17 @@ struct KernelsOf {
   /// Rows: y_r[0..m) -= sum_k L[r + k ldl] x[k ldx + 0..m), r < rows; y_r = y + index[r] ldy. m a multiple of width.
   void (*rows_sub)(Real* y, long ldy, const int* index, int rows, const Real* l, int ldl, const Real* x, long ldx, int k, int m);
   /// Cholesky of a column-major panel: rows x cols, lower, in place, right below its triangle too (L21 = A21 L11^-T).
-  /// Returns -1, or the column whose pivot was not positive.
-  int (*cholesky_panel)(Real* a, int lda, int rows, int cols);
+  /// `inverse`: one over each number of the diagonal. Returns -1, or the column whose pivot was not positive.
+  int (*cholesky_panel)(Real* a, int lda, int rows, int cols, Real* inverse);
   /// Forward substitution with many right-hand sides: x (cols x m, row-major) = L11^-1 x.
-  void (*lower_solve_rows)(const Real* l, int ldl, int cols, Real* x, long ldx, int m);
-  /// y[r] -= sum_c A[r + c lda] x[c], r < m, c < n. Up to `width` numbers of y past its end become garbage.
-  void (*columns_sub)(Real* y, const Real* a, long lda, const Real* x, int m, int n);
+  void (*lower_solve_rows)(const Real* l, int ldl, const Real* inverse, int cols, Real* x, long ldx, int m);
   /// out[c] = sum_r A[r + c lda] x[r], r < m, c < n. Up to `width` numbers of x past its end must be zero, of A finite.
   void (*columns_dot)(Real* out, const Real* a, long lda, const Real* x, int m, int n);
+  /// One right-hand side and the panel of cholesky_panel(), `own` columns (a multiple of three): t[0..own) := L11^-1 t[0..own), then
+  /// what that takes off t[own..rows). Up to `width` numbers of t past its end become garbage.
+  void (*front_forward)(const Real* panel, int lda, const Real* inverse, Real* t, int own, int rows);
+  /// t[0..own) := L11^-T (t[0..own) - L21^T t[own..rows)). Up to `width` numbers of t past its end must be zero.
+  void (*front_backward)(const Real* panel, int lda, const Real* inverse, Real* t, int own, int rows);
   /// 24 `width` n multiplications with additions in registers alone: what a core can do at most. Returns a sum of them.
   Real (*multiply_add)(long n);
 };

@@ -154,12 +154,12 @@ inline __attribute__((always_inline)) void solve_below(T* d, int lda, int n, con
 }
 
 template <class T>
-int cholesky_panel(T* a, int lda, int rows, int cols) {
+int cholesky_panel(T* a, int lda, int rows, int cols, T* inverse) {
   for (int j = 0; j < cols; j += NR) {
     const int w = cols - j < NR ? cols - j : NR;
     T* d = a + j + long(j) * lda;  // diagonal block
     if (j > 0) gemm<false>(d, lda, a + j, lda, a + j, lda, rows - j, w, j, false);
-    T inv[NR];
+    T* inv = inverse + j;
     for (int c = 0; c < w; ++c) {  // diagonal block, small: column by column
       T p = d[c + long(c) * lda];
       for (int k = 0; k < c; ++k) p -= d[c + long(k) * lda] * d[c + long(k) * lda];
@@ -183,7 +183,7 @@ int cholesky_panel(T* a, int lda, int rows, int cols) {
 }
 
 template <class T>
-void lower_solve_rows(const T* l, int ldl, int cols, T* x, long ldx, int m) {
+void lower_solve_rows(const T* l, int ldl, const T* inverse, int cols, T* x, long ldx, int m) {
   static const int identity[64] = {0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21,
                                    22, 23, 24, 25, 26, 27, 28, 29, 30, 31, 32, 33, 34, 35, 36, 37, 38, 39, 40, 41, 42, 43,
                                    44, 45, 46, 47, 48, 49, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 63};
@@ -191,8 +191,7 @@ void lower_solve_rows(const T* l, int ldl, int cols, T* x, long ldx, int m) {
     const int w = cols - j < NR ? cols - j : NR;
     const T* d = l + j + long(j) * ldl;
     if (j > 0) rows_sub(x + j * ldx, ldx, identity, w, l + j, ldl, x, ldx, j, m);
-    T inv[NR];
-    for (int c = 0; c < w; ++c) inv[c] = 1 / d[c + long(c) * ldl];
+    const T* inv = inverse + j;
     for (int i = 0; i < m; i += W<T>) {
       V<T> xv[NR];
       for (int c = 0; c < w; ++c) {
@@ -247,20 +246,55 @@ inline __attribute__((always_inline)) void dot_columns(T* out, const T* a, long 
   }
 }
 
-// Columns come in threes: the scalars of a node.
-template <class T>
-void columns_sub(T* y, const T* a, long lda, const T* x, int m, int n) {
-  int c = 0;
-  for (; c + 6 <= n; c += 6) take_columns<6>(y, a + c * lda, lda, x + c, m);
-  for (; c + 3 <= n; c += 3) take_columns<3>(y, a + c * lda, lda, x + c, m);
-  for (; c < n; ++c) take_columns<1>(y, a + c * lda, lda, x + c, m);
-}
 template <class T>
 void columns_dot(T* out, const T* a, long lda, const T* x, int m, int n) {
   int c = 0;
   for (; c + 6 <= n; c += 6) dot_columns<6>(out + c, a + c * lda, lda, x, m);
   for (; c + 3 <= n; c += 3) dot_columns<3>(out + c, a + c * lda, lda, x, m);
   for (; c < n; ++c) dot_columns<1>(out + c, a + c * lda, lda, x, m);
+}
+
+// Substitution with n columns of a front from column `first` on. What each number found changes is taken off at once, so that
+// the next waits for one product, not for a sum.
+template <int n, class T>
+inline __attribute__((always_inline)) void forward_columns(const T* l, long lda, const T* inverse, T* t, int rows) {
+  T x[n];
+  for (int c = 0; c < n; ++c) x[c] = t[c];
+#pragma GCC unroll 8
+  for (int c = 0; c < n; ++c) {
+    x[c] *= inverse[c];
+#pragma GCC unroll 8
+    for (int r = c + 1; r < n; ++r) x[r] -= l[c * lda + r] * x[c];
+  }
+  for (int c = 0; c < n; ++c) t[c] = x[c];
+  take_columns<n>(t + n, l + n, lda, x, rows - n);
+}
+template <int n, class T>
+inline __attribute__((always_inline)) void backward_columns(const T* l, long lda, const T* inverse, T* t, int rows) {
+  T x[n];
+  dot_columns<n>(x, l + n, lda, t + n, rows - n);
+  for (int c = 0; c < n; ++c) x[c] = t[c] - x[c];
+#pragma GCC unroll 8
+  for (int c = n - 1; c >= 0; --c) {
+    x[c] *= inverse[c];
+#pragma GCC unroll 8
+    for (int r = 0; r < c; ++r) x[r] -= l[r * lda + c] * x[c];
+  }
+  for (int c = 0; c < n; ++c) t[c] = x[c];
+}
+
+// Columns come in threes, the scalars of a node.
+template <class T>
+void front_forward(const T* l, int lda, const T* inverse, T* t, int own, int rows) {
+  int c = 0;
+  for (; c + 6 <= own; c += 6) forward_columns<6>(l + c + long(c) * lda, lda, inverse + c, t + c, rows - c);
+  if (c < own) forward_columns<3>(l + c + long(c) * lda, lda, inverse + c, t + c, rows - c);
+}
+template <class T>
+void front_backward(const T* l, int lda, const T* inverse, T* t, int own, int rows) {
+  int c = own;
+  if (c % 6 != 0) c -= 3, backward_columns<3>(l + c + long(c) * lda, lda, inverse + c, t + c, rows - c);
+  while (c > 0) c -= 6, backward_columns<6>(l + c + long(c) * lda, lda, inverse + c, t + c, rows - c);
 }
 
 template <class T>
@@ -304,7 +338,7 @@ void block_product(int nodes, const int* start, const int* row, const double* bl
 #define KERNEL_STRING2(x) #x
 #define KERNEL_STRING(x) KERNEL_STRING2(x)
 template <class T>
-constexpr KernelsOf<T> table_of = {KERNEL_STRING(KERNEL_NAME), W<T>, gemm_sub<T>, gemm_add<T>, syrk_add<T>, syrk_sub<T>, rows_sub<T>, cholesky_panel<T>, lower_solve_rows<T>, columns_sub<T>, columns_dot<T>, multiply_add<T>};
+constexpr KernelsOf<T> table_of = {KERNEL_STRING(KERNEL_NAME), W<T>, gemm_sub<T>, gemm_add<T>, syrk_add<T>, syrk_sub<T>, rows_sub<T>, cholesky_panel<T>, lower_solve_rows<T>, columns_dot<T>, front_forward<T>, front_backward<T>, multiply_add<T>};
 extern const KernelSet table;
 const KernelSet table = {table_of<double>, table_of<float>, block_product};
 
