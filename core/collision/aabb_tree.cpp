@@ -81,6 +81,15 @@ void AabbTree::list_leaves_of_vertices(std::size_t vertices) {
     for (int v : vertices_of(nodes_[i])) leaf_of_[std::size_t(at[std::size_t(v)]++)] = int(i);
 }
 
+void AabbTree::mark(std::span<const int> mark_of_vertex) {
+  for (std::size_t i = nodes_.size(); i-- > 0;) {
+    Node& n = nodes_[i];
+    n.marks = 0;
+    for (int v : vertices_of(n)) n.marks |= std::uint64_t(1) << mark_of_vertex[std::size_t(v)];
+    if (n.count == 0) n.marks = nodes_[i + 1].marks | nodes_[std::size_t(n.first)].marks;
+  }
+}
+
 Aabb AabbTree::tight(const Node& leaf) const {
   Aabb box;
   for (int v : vertices_of(leaf)) {
@@ -98,23 +107,24 @@ void AabbTree::look_at(std::span<const Vec3> positions, std::span<const Vec3> di
 
 // What has used up half of its slack gets all of it, as one that is out.
 double AabbTree::renew(std::size_t v) {
+  const auto point = [](const Vec3& p) {
+    const Float4 at{float(p[0]), float(p[1]), float(p[2]), 0};
+    OuterBox box{at, at};
+    box.widen();
+    return box;
+  };
   const Vec3& p = positions_[v];
-  const Float4 at{float(p[0]), float(p[1]), float(p[2]), 0};
-  OuterBox way{at, at};
-  if (!displacements_.empty()) {
-    const Vec3 q = p + displacements_[v];
-    const Float4 end{float(q[0]), float(q[1]), float(q[2]), 0};
-    way.add({end, end});
-  }
-  way.widen();
+  const OuterBox here = point(p);
+  OuterBox way = here;
+  if (!displacements_.empty()) way.add(point(p + displacements_[v]));
   OuterBox& box = ways_[v];
-  const double inside = box.inside(p);
-  if (inside > 0.5 * double(slack) && box.holds(way)) return inside;
+  const float inside = box.room_about(here);
+  if (inside > 0.5f * slack && box.holds(way)) return double(inside);
   way.inflate(slack);
   box = way;
   for (int k = first_leaf_[v]; k < first_leaf_[v + 1]; ++k)
     for (int i = leaf_of_[std::size_t(k)]; i >= 0 && !stale_[std::size_t(i)]; i = parent_[std::size_t(i)]) stale_[std::size_t(i)] = 1;
-  return box.inside(p);
+  return double(box.room_about(here));
 }
 
 double AabbTree::renew(std::span<const int> vertices) {

@@ -80,11 +80,11 @@ struct OuterBox {
     const Halves out = (Halves)((low > o.low) | (o.high > high));
     return (out[0] | out[1]) == 0;
   }
-  /// How far inside a point is, the least of its distances to the six sides; negative: it is outside.
-  double inside(const Vec3& p) const {
-    double least = 1e30;
-    for (int k = 0; k < 3; ++k) least = std::min({least, p[k] - double(low[k]), double(high[k]) - p[k]});
-    return least;
+  /// How far each side of a box inside may move out before it leaves this one, the least of six; negative: it has. At most what
+  /// both were inflated by, since the fourth number counts too.
+  float room_about(const OuterBox& o) const {
+    const Float4 below = o.low - low, above = high - o.high, m = below < above ? below : above;
+    return std::min(std::min(m[0], m[1]), std::min(m[2], m[3]));
   }
   bool overlaps(const OuterBox& o) const {
     const Halves apart = (Halves)((low > o.high) | (o.low > high));
@@ -119,6 +119,22 @@ class AabbTree {
   double renew(std::span<const int> vertices);
   void close();
 
+  /// Gives each vertex one of 64 marks, for marks_near().
+  void mark(std::span<const int> mark_of_vertex);
+  /// The marks, as bits, of all leaves whose loose boxes overlap `box`.
+  std::uint64_t marks_near(const Aabb& box) const {
+    const OuterBox outer = OuterBox::around(box);
+    std::uint64_t found = 0;
+    const int end = int(nodes_.size());
+    for (int i = 0; i < end;) {
+      const Node& n = nodes_[std::size_t(i)];
+      const bool news = (n.marks & ~found) != 0 && n.box.overlaps(outer);
+      if (news && n.count > 0) found |= n.marks;
+      i = news ? i + 1 : n.skip;
+    }
+    return found;
+  }
+
   bool empty() const { return nodes_.empty(); }
   Aabb bounds() const { return nodes_.front().box.box(); }
   int triangle_count() const { return int(order_.size()); }
@@ -131,14 +147,18 @@ class AabbTree {
       return false;
     });
   }
-  /// visit(triangle) for every triangle of every leaf whose vertices' box overlaps `box`.
-  template <class Visit>
-  void overlapping(const Aabb& box, Visit&& visit) const {
+  /// visit(triangle) for every triangle of every leaf whose vertices' box overlaps `box`, and is wanted(that box).
+  template <class Wanted, class Visit>
+  void overlapping(const Aabb& box, Wanted&& wanted, Visit&& visit) const {
     each_leaf(box, [&](const Node& n) {
-      if (tight(n).overlaps(box))
+      if (const Aabb leaf = tight(n); leaf.overlaps(box) && wanted(leaf))
         for (int t : triangles_of(n)) visit(t);
       return false;
     });
+  }
+  template <class Visit>
+  void overlapping(const Aabb& box, Visit&& visit) const {
+    overlapping(box, [](const Aabb&) { return true; }, visit);
   }
 
   /// Whether any leaf's loose box overlaps `box`.
@@ -192,6 +212,7 @@ class AabbTree {
     int count = 0;  ///< triangles, 0 for an inner node
     int skip = 0;   ///< the node after this subtree
     int vertices = 0, vertex_count = 0;  ///< leaf: its vertices in leaf_vertices_
+    std::uint64_t marks = 0;             ///< of the vertices below
   };
   int build_node(int first, int count, std::span<const Vec3> centres, std::span<const std::array<int, 3>> triangles);
   void list_leaves_of_vertices(std::size_t vertices);

@@ -130,6 +130,24 @@ TEST(AabbTree, BoxesInSinglePrecisionHoldWhatTheyAreMadeOf) {
   }
 }
 
+TEST(AabbTree, MarksNearABoxAreThoseOfItsLeaves) {
+  const TriMesh m = shapes::sphere(Vec3(0.1, 0, 0), 0.03, 4);
+  CollisionMesh mesh;
+  mesh.build(m.vertices, m.triangles);
+  mesh.update(m.vertices, {});
+  Random r(8);
+  for (int k = 0; k < 300; ++k) {
+    Aabb box;
+    box.add(Vec3(Vec3(0.1, 0, 0) + r.in_box(0.05)));
+    box.inflate(r.between(0, 0.02));
+    std::uint64_t expected = 0;
+    mesh.tree().leaves(box, [&](const OuterBox&, std::span<const int> triangles) {
+      for (int t : triangles) expected |= mesh.regions_of(t);
+    });
+    EXPECT_EQ(mesh.regions_near(box), expected);
+  }
+}
+
 TEST(AabbTree, EmptyMesh) {
   AabbTree tree;
   tree.build({}, {});

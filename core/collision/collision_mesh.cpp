@@ -20,6 +20,7 @@ void CollisionMesh::build(std::span<const Vec3> rest, std::span<const std::array
   travelled_ = farthest_free_ = 0;
   room_.fill(0);
   region_of_ = group_by_place(rest, regions);
+  tree_.mark(region_of_);
   region_start_.assign(regions + 1, 0);
   in_region_.resize(rest.size());
   std::iota(in_region_.begin(), in_region_.end(), 0);

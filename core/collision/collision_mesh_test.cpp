@@ -30,7 +30,7 @@ int outside(const CollisionMesh& mesh) {
   mesh.tree().leaves(everywhere, [&](const OuterBox& box, std::span<const int> triangles) {
     ++leaves;
     for (int t : triangles)
-      for (int v : mesh.triangle(t)) n += box.inside(mesh.vertex(v)) < 0 || box.inside(mesh.vertex(v, 1)) < 0;
+      for (int v : mesh.triangle(t)) n += box.distance2(mesh.vertex(v)) > 0 || box.distance2(mesh.vertex(v, 1)) > 0;
   });
   EXPECT_GT(leaves, 0);
   return n;

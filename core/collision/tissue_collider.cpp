@@ -3,6 +3,7 @@
 #include "core/collision/tissue_collider.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <unordered_map>
@@ -54,9 +55,9 @@ constexpr double slow = 5e-5;          ///< what moves less in a step has the sa
 
 TissueCollider::TissueCollider(std::vector<int> samples, std::span<const Vec3> rest, int triangles) : samples_(std::move(samples)) {
   leaves_.reserve(std::size_t(triangles));
-  packs_.reserve(std::size_t(triangles) / 4 + 1);
+  packs_.reserve(std::size_t(triangles) / BoxPack::size + 1);
   corners_.reserve(std::size_t(triangles));
-  corners_at_.reserve(std::size_t(triangles));
+  corners_at_.resize(std::size_t(triangles));
   seen_.reserve(3 * std::size_t(triangles) + 1);
   order_by_place(samples_.data(), samples_.data() + samples_.size(), rest, std::ptrdiff_t(group));
   reset();
@@ -69,38 +70,56 @@ void TissueCollider::reset() {
   groups_.assign((samples_.size() + group - 1) / group, {});
 }
 
-// The leaves that any sample of a group may want, four boxes beside each other, about `centre_`: a few mm in single precision.
+// What is kept of leaves in single precision is about the middle of the surface: a few cm.
+void TissueCollider::begin_gathering(const AabbTree& tree) {
+  gathering_ = true;
+  corners_.clear();
+  std::fill(corners_at_.begin(), corners_at_.end(), -1);
+  const Aabb all = tree.bounds();
+  centre_ = 0.5 * (all.low + all.high);
+}
+
+// The leaves that any sample of a group may want, their boxes beside each other.
 void TissueCollider::gather_leaves(const AabbTree& tree, const Aabb& all) {
+  if (!gathering_) begin_gathering(tree);
   leaves_.clear();
   packs_.clear();
-  corners_.clear();
-  centre_ = 0.5 * (all.low + all.high);
   tree.leaves(all, [&](const OuterBox& box, std::span<const int> triangles) {
-    const std::size_t lane = leaves_.size() % 4;
+    const std::size_t lane = leaves_.size() % BoxPack::size;
     if (lane == 0) packs_.emplace_back();
-    for (int k = 0; k < 3; ++k) {
-      packs_.back().low[k][lane] = float(double(box.low[k]) - centre_[k]);
-      packs_.back().high[k][lane] = float(double(box.high[k]) - centre_[k]);
+    for (std::size_t k = 0; k < 3; ++k) {
+      packs_.back().low[k][lane] = box.low[k];
+      packs_.back().high[k][lane] = box.high[k];
     }
     leaves_.push_back(triangles);
   });
-  corners_at_.assign(leaves_.size(), -1);
+  for (std::size_t lane = leaves_.size() % BoxPack::size; lane != 0; lane = (lane + 1) % BoxPack::size)
+    for (auto& row : packs_.back().low) row[lane] = 1e15f;  // nothing is near it
+}
+
+// Coordinates of four points: x of all, y, z.
+static std::array<Float4, 3> beside(const std::array<Float4, 4>& p) {
+  const Float4 xy01 = __builtin_shufflevector(p[0], p[1], 0, 4, 1, 5), xy23 = __builtin_shufflevector(p[2], p[3], 0, 4, 1, 5);
+  const Float4 z01 = __builtin_shufflevector(p[0], p[1], 2, 6, 3, 7), z23 = __builtin_shufflevector(p[2], p[3], 2, 6, 3, 7);
+  return {__builtin_shufflevector(xy01, xy23, 0, 1, 4, 5), __builtin_shufflevector(xy01, xy23, 2, 3, 6, 7), __builtin_shufflevector(z01, z23, 0, 1, 4, 5)};
 }
 
 const FourTriangles& TissueCollider::corners_of(const CollisionMesh& b, std::size_t leaf) {
-  int& at = corners_at_[leaf];
+  const std::span<const int> triangles = leaves_[leaf];
+  int& at = corners_at_[std::size_t(triangles.front())];
   if (at >= 0) return corners_[std::size_t(at)];
   at = int(corners_.size());
   FourTriangles& c = corners_.emplace_back();
-  const std::span<const int> triangles = leaves_[leaf];
-  for (std::size_t lane = 0; lane < 4; ++lane) {
-    const auto& t = b.triangle(triangles[std::min(lane, triangles.size() - 1)]);
-    const Vec3 p = b.vertex(t[0]) - centre_, q = b.vertex(t[1]) - centre_, r = b.vertex(t[2]) - centre_;
-    for (std::size_t k = 0; k < 3; ++k) {
-      c.a[k][lane] = float(p[int(k)]);
-      c.b[k][lane] = float(q[int(k)]);
-      c.c[k][lane] = float(r[int(k)]);
+  std::array<const int*, 4> corner;
+  for (std::size_t lane = 0; lane < 4; ++lane) corner[lane] = b.triangle(triangles[std::min(lane, triangles.size() - 1)]).data();
+  std::array<Float4, 3>* const to[3] = {&c.a, &c.b, &c.c};
+  for (std::size_t k = 0; k < 3; ++k) {
+    std::array<Float4, 4> x;
+    for (std::size_t lane = 0; lane < 4; ++lane) {
+      const Vec3 p = b.vertex(corner[lane][k]) - centre_;
+      x[lane] = Float4{float(p[0]), float(p[1]), float(p[2]), 0};
     }
+    *to[k] = beside(x);
   }
   return c;
 }
@@ -108,27 +127,18 @@ const FourTriangles& TissueCollider::corners_of(const CollisionMesh& b, std::siz
 // look(triangle) for every triangle that may be nearer to x than sqrt(limit2), which `look` lowers.
 template <class Look>
 void TissueCollider::look_at_leaves(const CollisionMesh& b, const Vec3& x, const double& limit2, Look&& look) {
-  const Vec3 at = x - centre_;
-  const float px = float(at[0]), py = float(at[1]), pz = float(at[2]);
-  const auto beyond = [](Float4 low, Float4 high, float p) {
-    const Float4 below = low - p, above = p - high, most = below > above ? below : above;
-    const Float4 sure = most - 1e-8f;  // m, more than rounding has done at some cm
-    return sure > 0 ? sure : Float4{};
-  };
-  for (std::size_t k = 0; k < packs_.size(); ++k) {
-    const Pack& pack = packs_[k];
-    const Float4 dx = beyond(pack.low[0], pack.high[0], px), dy = beyond(pack.low[1], pack.high[1], py), dz = beyond(pack.low[2], pack.high[2], pz);
-    const Float4 d2 = (dx * dx + dy * dy + dz * dz) * 0.999999f;
-    const auto any = reinterpret_cast<OuterBox::Halves>(d2 <= float(limit2) * 1.000001f);
-    if ((any[0] | any[1]) == 0) continue;
-    for (std::size_t lane = 0; lane < 4; ++lane) {
-      const std::size_t leaf = 4 * k + lane;
-      if (double(d2[lane]) > limit2 || leaf >= leaves_.size()) continue;
+  const SearchKernels& kernels = search_kernels();
+  const std::array<float, 3> at{float(x[0]), float(x[1]), float(x[2])};
+  const float rounded = float(x.cwiseAbs().maxCoeff()) * 1.2e-7f;
+  const Vec3 beside = x - centre_;
+  const float px = float(beside[0]), py = float(beside[1]), pz = float(beside[2]);
+  for (std::size_t k = 0; k < packs_.size(); ++k)
+    for (std::uint32_t near = kernels.boxes_near(packs_[k], at, rounded, float(limit2) * 1.000001f); near != 0; near &= near - 1) {
+      const std::size_t leaf = std::size_t(BoxPack::size) * k + std::size_t(std::countr_zero(near));
       const Float4 distance2 = corners_of(b, leaf).distance2(px, py, pz);
       for (std::size_t i = 0; i < leaves_[leaf].size(); ++i)
         if (FourTriangles::may_be_within(distance2[i], limit2)) look(leaves_[leaf][i]);
     }
-  }
 }
 
 // What is known of samples after motion, when what is not known of is no nearer than `at_least`.
@@ -142,16 +152,14 @@ void TissueCollider::lessen(std::size_t first, std::size_t last, double way, dou
 // Which regions of b are near the group.
 void TissueCollider::look_around(Group& g, const CollisionMesh& a, const CollisionMesh& b, std::size_t first, std::size_t last, double may_come) {
   Aabb here;
-  g.own = g.near = 0;
+  g.own = 0;
   for (std::size_t i = first; i < last; ++i) {
     here.add(a.vertex(samples_[i]));
     g.own |= a.region_of(samples_[i]);
   }
   g.around = may_come + surroundings;
   here.inflate(g.around);
-  b.tree().leaves(here, [&](const OuterBox&, std::span<const int> triangles) {
-    for (int t : triangles) g.near |= b.regions_of(t);
-  });
+  g.near = b.regions_near(here);
   g.travelled = a.travelled() + b.travelled();
 }
 
@@ -161,6 +169,7 @@ void TissueCollider::detect(const CollisionMesh& a, const CollisionMesh& b, cons
   // Motion in between that was not seen may have brought anything.
   const bool followed = a.updates() - updates_[0] <= 1 && b.updates() - updates_[1] <= 1;
   updates_ = {a.updates(), b.updates()};
+  gathering_ = false;
   const double travelled = a.travelled() + b.travelled(), open_range = settings.alarm + settings.offset;
   const double farthest = open_range + a.farthest_free() + b.farthest_free();
   for (std::size_t first = 0; first < samples_.size(); first += group) {

@@ -16,6 +16,7 @@
 #include "core/collision/contact_set.h"
 #include "core/collision/facing_search.h"
 #include "core/collision/four_triangles.h"
+#include "core/collision/search_kernels.h"
 
 namespace insula {
 
@@ -57,18 +58,16 @@ class TissueCollider {
   void lessen(std::size_t first, std::size_t last, double way, double at_least);
   std::vector<Group> groups_;
   std::array<long, 2> updates_{};  ///< of the meshes when last looked at
-  /// Bounding boxes of four leaves of b's tree.
-  struct Pack {
-    std::array<Float4, 3> low{}, high{};
-  };
+  void begin_gathering(const AabbTree& tree);
   void gather_leaves(const AabbTree& tree, const Aabb& all);
   template <class Look>
   void look_at_leaves(const CollisionMesh& b, const Vec3& x, const double& limit2, Look&& look);
   const FourTriangles& corners_of(const CollisionMesh& b, std::size_t leaf);
   std::vector<std::span<const int>> leaves_;  ///< triangles of the leaves near a group ...
-  std::vector<Pack> packs_;                   ///< ... their boxes ...
-  std::vector<FourTriangles> corners_;        ///< ... and corners, of those that a sample wanted, about centre_
-  std::vector<int> corners_at_;               ///< of the leaves: place in corners_, -1: not wanted yet
+  std::vector<BoxPack> packs_;                ///< ... and their boxes
+  std::vector<FourTriangles> corners_;        ///< corners of all leaves that a sample wanted in this step, about centre_
+  std::vector<int> corners_at_;               ///< of the leaf that begins with this triangle: place in corners_, -1: not wanted yet
+  bool gathering_ = false;                    ///< any in this step
   Vec3 centre_ = Vec3::Zero();
   std::vector<KnownNearest> known_;  ///< of the samples: spares looks, does not change what is found
   std::array<FacingSearch, group> search_;

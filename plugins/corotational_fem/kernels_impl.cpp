@@ -2,6 +2,7 @@
 // Compiled once per instruction set: KERNEL_NAME, KERNEL_BYTES (of a vector). The formulas stand in corotational_fem.cpp.
 #include <utility>
 
+#include "core/linalg/lane_bits.h"
 #include "plugins/corotational_fem/element_batch.h"
 
 namespace insula::KERNEL_NAME {
@@ -20,18 +21,6 @@ inline V root(V v) {
   store(t, v);
   for (int i = 0; i < W; ++i) t[i] = __builtin_sqrt(t[i]);
   return load(t);
-}
-
-inline unsigned bits(M m) {
-  unsigned out = 0;
-  for (int i = 0; i < W; ++i) out |= m[i] ? 1u << i : 0u;
-  return out;
-}
-
-inline bool any(M m) {
-  long long out = 0;
-  for (int i = 0; i < W; ++i) out |= m[i];
-  return out != 0;
 }
 
 inline V absolute(V v) { return v < 0 ? -v : v; }
@@ -80,7 +69,7 @@ inline M newton(const V f[9], V q[4], V r[9]) {
     q[3] = active ? n3 * scale : q[3];
     matrix_of(q, r);
     active &= (size2 >= close);
-    if (!any(active)) return failed;
+    if (lane_bits(active) == 0) return failed;
   }
   return failed | active;
 }
@@ -100,7 +89,7 @@ unsigned rotate(const ElementBatch& e, const double* x, ElementWork& work) {
       }
     V q[4], r[9];
     for (int k = 0; k < 4; ++k) q[k] = load(e.q[k] + l);
-    out |= bits(newton(f, q, r)) << l;
+    out |= lane_bits(newton(f, q, r)) << l;
     for (int k = 0; k < 9; ++k) {
       store(work.f[k] + l, f[k]);
       store(work.r[k] + l, r[k]);
@@ -136,7 +125,7 @@ unsigned force(const ElementBatch& b, const ElementMaterial& m, ElementWork& wor
   unsigned out = 0;
   for (int l = 0; l < batch_lanes; l += W) {
     const Strain e = strain_of(work, l);
-    out |= bits(e.norm2 > m.far2) << l;
+    out |= lane_bits(e.norm2 > m.far2) << l;
     const V volume = load(b.volume + l), two = 2 * m.mu * volume, all_round = m.lambda * volume * e.trace;
     const V t00 = two * e.e00 + all_round, t11 = two * e.e11 + all_round, t22 = two * e.e22 + all_round;
     const V t01 = two * e.e01, t02 = two * e.e02, t12 = two * e.e12;
@@ -164,7 +153,7 @@ unsigned energy(const ElementBatch& b, const ElementMaterial& m, ElementWork& wo
   unsigned out = 0;
   for (int l = 0; l < batch_lanes; l += W) {
     const Strain e = strain_of(work, l);
-    out |= bits(e.norm2 > m.far2) << l;
+    out |= lane_bits(e.norm2 > m.far2) << l;
     store(work.out[0] + l, load(b.volume + l) * (m.mu * e.norm2 + 0.5 * m.lambda * e.trace * e.trace));
   }
   return out;
