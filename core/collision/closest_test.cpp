@@ -131,6 +131,29 @@ TEST(Hulls, BoxAgainstTriangleSatisfiesTheOptimalityCondition) {
   EXPECT_GT(met, 50);
 }
 
+TEST(Hulls, BeyondALimitABoundIsEnough) {
+  Random r(6);
+  int beyond = 0, within = 0;
+  for (int k = 0; k < 3000; ++k) {
+    std::array<Vec3, 8> hull;
+    const Vec3 at = r.in_box(0.012);
+    for (Vec3& p : hull) p = at + r.in_box(0.004);
+    const std::array<Vec3, 3> tri{r.in_box(0.01), r.in_box(0.01), r.in_box(0.01)};
+    const double exact = hull_distance(hull, tri).distance, limit = r.between(0, 0.01);
+    const double bound = hull_distance(hull, tri, limit).distance;
+    if (exact > limit * (1 + 1e-9)) {
+      ++beyond;
+      EXPECT_GT(bound, limit);
+      EXPECT_LE(bound, exact * (1 + 1e-9));
+    } else if (exact < limit) {
+      ++within;
+      EXPECT_EQ(bound, exact);
+    }
+  }
+  EXPECT_GT(beyond, 500);
+  EXPECT_GT(within, 500);
+}
+
 TEST(Hulls, TouchingAndFlatShapes) {
   const std::array<Vec3, 3> tri{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)};
   const std::array<Vec3, 4> flat{Vec3(0, 0, 0.5), Vec3(1, 0, 0.5), Vec3(1, 1, 0.5), Vec3(0, 1, 0.5)};

@@ -74,7 +74,7 @@ bool reduce(Simplex& s) {
 
 }  // namespace
 
-HullDistance hull_distance(std::span<const Vec3> a, std::span<const Vec3> b) {
+HullDistance hull_distance(std::span<const Vec3> a, std::span<const Vec3> b, double limit) {
   Simplex s;
   s.n = 1;
   s.ia[0] = s.ib[0] = 0;
@@ -82,6 +82,7 @@ HullDistance hull_distance(std::span<const Vec3> a, std::span<const Vec3> b) {
   s.l[0] = 1;
   Vec3 v = s.w[0];
   bool meet = false;
+  double apart = 0;  // a plane across v keeps them so far apart
   for (int iteration = 0; iteration < 64; ++iteration) {
     const double vv = v.squaredNorm();
     if (vv < 1e-24) {  // a picometre
@@ -101,7 +102,12 @@ HullDistance hull_distance(std::span<const Vec3> a, std::span<const Vec3> b) {
         ib = i;
       }
     const Vec3 w = a[ia] - b[ib];
-    if (vv - v.dot(w) <= 1e-13 * vv) break;
+    const double along = v.dot(w);
+    if (vv - along <= 1e-13 * vv) break;
+    if (along > 0 && along * along > limit * limit * vv) {
+      apart = along / std::sqrt(vv);
+      break;
+    }
     bool known = false;
     for (int k = 0; k < s.n; ++k) known = known || (s.ia[k] == ia && s.ib[k] == ib);
     if (known) break;
@@ -130,7 +136,7 @@ HullDistance hull_distance(std::span<const Vec3> a, std::span<const Vec3> b) {
     r.weight[k] = s.l[k];
   }
   r.count = s.n;
-  r.distance = meet ? 0 : v.norm();
+  r.distance = meet ? 0 : apart > 0 ? apart : v.norm();
   return r;
 }
 

@@ -3,6 +3,7 @@
 // Penetration depth is not computed here: against a surface the way out follows from the surface's own outward normals,
 // which the smallest translation out of one single triangle does not know.
 #pragma once
+#include <limits>
 #include <span>
 
 #include "core/base/math.h"
@@ -19,7 +20,8 @@ struct HullDistance {
 };
 
 /// Both spans hold at least one point, scene frame, m. Relative accuracy about 1e-10 of the distance for hulls of
-/// ordinary size; stops after 64 iterations at the latest with the best pair found.
-HullDistance hull_distance(std::span<const Vec3> a, std::span<const Vec3> b);
+/// ordinary size; stops after 64 iterations at the latest with the best pair found. Hulls that turn out to be farther apart than
+/// `limit` are left at that: `distance` is then a bound between the limit and their distance, the points are two of theirs.
+HullDistance hull_distance(std::span<const Vec3> a, std::span<const Vec3> b, double limit = std::numeric_limits<double>::infinity());
 
 }  // namespace insula

@@ -18,7 +18,8 @@ struct Narrow {
   Vec3 p, c, bary;
 };
 
-Narrow closest(std::span<const Vec3> core, const std::array<Vec3, 3>& tri) {
+// Exact if no farther than `limit`, else no more than the distance.
+Narrow closest(std::span<const Vec3> core, const std::array<Vec3, 3>& tri, double limit) {
   Narrow r;
   if (core.size() <= 2) {
     const ClosestPair q = core.size() == 1 ? point_triangle(core[0], tri[0], tri[1], tri[2])
@@ -29,7 +30,7 @@ Narrow closest(std::span<const Vec3> core, const std::array<Vec3, 3>& tri) {
     r.bary = q.bary;
     return r;
   }
-  const HullDistance d = hull_distance(core, tri);
+  const HullDistance d = hull_distance(core, tri, limit);
   r.distance = d.distance;
   r.p = d.a;
   r.c = d.b;
@@ -62,8 +63,10 @@ struct ToolCollider::Placed {
   double radius = 0, bound = 0;
 
   Placed(const RoundedPiece& r, int index, const Pose& s, const Vec6& motion, double t, const Vec3& slid, double offset)
-      : piece(index), time(t), shift(slid), start(s) {
-    pose = t > 0 ? displaced(s, t * motion) : s;
+      : Placed(r, index, s, t > 0 ? displaced(s, t * motion) : s, t, slid, offset) {}
+  /// `there`: the start pose displaced by t of the motion.
+  Placed(const RoundedPiece& r, int index, const Pose& s, const Pose& there, double t, const Vec3& slid, double offset)
+      : piece(index), time(t), shift(slid), start(s), pose(there) {
     pose.p += slid;
     const Mat3 rotation = pose.q.toRotationMatrix();
     count = int(r.core.size());
@@ -112,7 +115,7 @@ void ToolCollider::evaluate(const CollisionMesh& mesh, const Placed& at, const T
       }
       continue;
     }
-    const Narrow n = closest(core, tri);
+    const Narrow n = closest(core, tri, at.radius + range);
     clear = n.distance - at.radius;
     if (slid == 0) {
       k.clear = clear;
@@ -197,11 +200,11 @@ void ToolCollider::detect(const CollisionMesh& mesh, const Pose& start, const Po
   const Vec6 motion = displacement(start, free);
   const double turn = motion.tail<3>().norm();
   const double alarm = settings.alarm, horizon = 1 + settings.look_ahead;
+  const Pose end = displaced(start, horizon * motion);
   for (int index = 0; index < int(pieces_.size()); ++index) {
     const RoundedPiece& piece = pieces_[std::size_t(index)];
     const double radius = piece.radius + settings.offset;
-    const Placed first(piece, index, start, motion, 0, Vec3::Zero(), settings.offset),
-        last(piece, index, start, motion, horizon, Vec3::Zero(), settings.offset);
+    const Placed first(piece, index, start, start, 0, Vec3::Zero(), settings.offset), last(piece, index, start, end, horizon, Vec3::Zero(), settings.offset);
     const bool deep = deep_[std::size_t(index)] != 0;
     deep_[std::size_t(index)] = 0;
     const double range = deep ? std::max(alarm, settings.max_depth - radius) : alarm;
@@ -220,11 +223,18 @@ void ToolCollider::detect(const CollisionMesh& mesh, const Pose& start, const Po
       spread = std::max(spread, (p - centre).norm());
     }
     const double lever = (centre - start.p).norm();
-    box.inflate(radius + range + 0.5 * farthest + turn * turn * (lever + spread));
+    const double beyond = radius + range + 0.5 * farthest + turn * turn * (lever + spread);
+    box.inflate(beyond);
+    // The box of a piece that lies askew is mostly empty: what counts is how far a leaf is from the segment the core lies about.
+    const auto beside = [&](const Aabb& leaf) {
+      const Vec3 middle = 0.5 * (leaf.low + leaf.high);
+      const double s = closest_on_segment(middle, first.axis0, first.axis1), most = first.bound + farthest + beyond + 0.5 * (leaf.high - leaf.low).norm();
+      return (first.axis0 + s * (first.axis1 - first.axis0) - middle).squaredNorm() <= most * most;
+    };
     candidates_.clear();
     const Vec3 velocity = motion.head<3>() + motion.tail<3>().cross(centre - start.p);
     const double uneven = turn * (spread + turn * lever);
-    mesh.tree().overlapping(box, [&](int tri) {
+    mesh.tree().overlapping(box, beside, [&](int tri) {
       double speed2 = 0;
       for (int v : mesh.triangle(tri)) speed2 = std::max(speed2, (mesh.free(v) - velocity).squaredNorm());
       candidates_.push_back({tri, 0.0, 0.0, std::sqrt(speed2) + uneven});
@@ -238,7 +248,7 @@ void ToolCollider::detect(const CollisionMesh& mesh, const Pose& start, const Po
     bool reached = false;
     Placed at = first;
     for (int iteration = 0; iteration < 64; ++iteration) {
-      if (iteration > 0) at = Placed(piece, index, start, motion, t, Vec3::Zero(), settings.offset);
+      if (iteration > 0) at = t == horizon ? last : Placed(piece, index, start, motion, t, Vec3::Zero(), settings.offset);
       found_.clear();
       evaluate(mesh, at, settings, t == 0 ? range : alarm, found_);
       if (t == 0) {
