@@ -7,6 +7,15 @@
 
 namespace insula {
 
+std::array<double, 4> weights_of_rider(const std::array<double, 4>& weight) {
+  constexpr double quantum = 1.0 / (1 << 22);
+  std::array<double, 4> out;
+  double left = 1;
+  for (std::size_t k = 0; k < 4; ++k) left -= out[k] = quantum * std::round(weight[k] / quantum);
+  *std::max_element(out.begin(), out.end()) += left;
+  return out;
+}
+
 void Riders::build(std::span<const MaterialPoint> points, std::span<const int> which, const CollisionMesh& mesh) {
   riders_.clear();
   offset_.clear();
@@ -14,9 +23,12 @@ void Riders::build(std::span<const MaterialPoint> points, std::span<const int> w
   bool any_offset = false;
   for (int v : which) {
     const MaterialPoint& p = points[std::size_t(v)];
-    Rider rider{p.weight, p.node, v, std::countr_zero(mesh.region_of(v))};
-    // What it does not ride on has no weight; any node will do.
-    for (int k = p.count; k < 4; ++k) rider.weight[std::size_t(k)] = 0, rider.node[std::size_t(k)] = p.node[0];
+    Rider rider{{}, p.node, v, std::countr_zero(mesh.region_of(v))};
+    for (std::size_t k = 0; k < 4; ++k) {
+      // What it does not ride on has no weight; any node will do.
+      if (int(k) >= p.count) rider.node[k] = p.node[0];
+      else rider.weight[k] = float(p.weight[k]);
+    }
     riders_.push_back(rider);
     offset_.push_back(p.local);
     most_ = std::max(most_, p.count);
@@ -56,7 +68,7 @@ void Riders::place_on(double step, Vec3* positions, Vec3* expected, RegionMotion
 #pragma GCC unroll 4
     for (std::size_t k = 0; k < nodes; ++k) {
       const Node& n = nodes_[std::size_t(p.node[k])];
-      const Pair w{p.weight[k], p.weight[k]};
+      const Pair w{double(p.weight[k]), double(p.weight[k])};
       xy += w * n.xy;
       zx += w * n.zx;
       yz += w * n.yz;

@@ -49,7 +49,7 @@ void Surface::prepare(PrepareContext& context) {
     if (e.outside_m > 0.005)
       return error(context, mesh, "the surface reaches " + std::to_string(e.outside_m * 1000) +
                                       " mm outside the body's tetrahedra; is its unit or frame another one?");
-    for (std::size_t i = 0; i < points_.size(); ++i) points_[i] = {body_, 4, 0, e.nodes[i], e.weights[i], Vec3::Zero()};
+    for (std::size_t i = 0; i < points_.size(); ++i) points_[i] = {body_, 4, 0, e.nodes[i], weights_of_rider(e.weights[i]), Vec3::Zero()};
   } else if (shell) {
     if (shell->rest().triangles.empty()) return;  // its own error is reported
     if (!attach_to_shell(*shell)) return error(context, mesh, "the surface lies more than 5 mm off the body's wall; is its unit or frame another one?");
@@ -74,7 +74,7 @@ bool Surface::attach_to_shell(const ShellBody& shell) {
     const Vec3& x = rest_.vertices[i];
     double least2 = 0.005 * 0.005;
     int best = -1;
-    Vec3 bary = Vec3::Zero(), at = Vec3::Zero();
+    std::array<double, 4> bary{};
     tree.nearest(x, nullptr, least2, [&](int t, double& limit2) {
       const auto& v = wall.triangles[std::size_t(t)];
       const Vec3 &a = wall.vertices[std::size_t(v[0])], &b = wall.vertices[std::size_t(v[1])], &c = wall.vertices[std::size_t(v[2])];
@@ -84,12 +84,14 @@ bool Surface::attach_to_shell(const ShellBody& shell) {
       if (d2 >= limit2) return;
       limit2 = d2;
       best = t;
-      bary = w;
-      at = p;
+      bary = {w[0], w[1], w[2]};
     });
     if (best < 0) return false;
+    bary = weights_of_rider(bary);
     const auto& v = wall.triangles[std::size_t(best)];
-    points_[i] = {body_, 3, 0, {v[0], v[1], v[2]}, {bary[0], bary[1], bary[2]}, x - at};
+    Vec3 at = Vec3::Zero();
+    for (std::size_t k = 0; k < 3; ++k) at += bary[k] * wall.vertices[std::size_t(v[k])];
+    points_[i] = {body_, 3, 0, {v[0], v[1], v[2]}, bary, x - at};
   }
   return true;
 }
