@@ -38,7 +38,8 @@ void StrandSprings::add_strand(const MaterialPoint& a, const MaterialPoint& b) {
 }
 
 void StrandSprings::connect(PrepareContext& context, Simulation& simulation) {
-  instruments_ = simulation.instruments();
+  blades_.clear();
+  for (Instrument* tool : simulation.instruments()) blades_.push_back({.tool = tool, .edges = tool->tool().blade_edges});
   if (bool(from) != bool(to)) return error(context, "from and to belong together");
   if (from) {
     if (&from->body() == &to->body() && from.get() != to.get())
@@ -116,24 +117,38 @@ void StrandSprings::generate(PrepareContext& context) {
     error(context, "no strand fits: the surfaces are nowhere closer than max_length within the ball");
 }
 
+void StrandSprings::Blade::place() {
+  cutting = tool->cutting();
+  if (!cutting) return;
+  middle.setZero();
+  for (std::size_t i = 0; i < edges.size(); ++i)
+    for (std::size_t k = 0; k < 2; ++k) {
+      edges[i][k] = tool->pose().apply(tool->tool().blade_edges[i][k]);
+      middle += edges[i][k] / (2 * double(edges.size()));
+    }
+  radius = 0;
+  for (const auto& edge : edges)
+    for (const Vec3& p : edge) radius = std::max(radius, (p - middle).norm());
+}
+
 void StrandSprings::detect(const StepContext&) {
+  for (Blade& blade : blades_) blade.place();
   for (Strand& s : strands_) {
     s.blade = nullptr;
     if (s.parted) continue;
     const Vec3 pa = s.a.body->position(s.a), pb = s.b.body->position(s.b);
     double best = reach();
-    for (Instrument* tool : instruments_) {
-      if (!tool->cutting()) continue;
-      for (const auto& edge : tool->tool().blade_edges) {
-        const Vec3 e0 = tool->pose().apply(edge[0]), e1 = tool->pose().apply(edge[1]);
+    for (const Blade& blade : blades_) {
+      if (!blade.cutting || (0.5 * (pa + pb) - blade.middle).norm() > 0.5 * (pb - pa).norm() + blade.radius + 1.001 * best) continue;
+      for (const auto& [e0, e1] : blade.edges) {
         double u, w;
         closest_segments(pa, pb, e0, e1, u, w);
         const Vec3 on_strand = pa + u * (pb - pa), on_edge = e0 + w * (e1 - e0);
         const double distance = (on_strand - on_edge).norm();
         if (distance > best) continue;
         best = distance;
-        s.blade = tool;
-        s.blade_point = tool->point(on_strand);  // the same place as the strand's side: no net moment
+        s.blade = blade.tool;
+        s.blade_point = blade.tool->point(on_strand);  // the same place as the strand's side: no net moment
         s.along = u;
       }
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Fibres of the arachnoid between two bodies, as compliant rows.
 #pragma once
+#include <array>
 #include <vector>
 
 #include "core/constraint/constraint.h"
@@ -59,11 +60,20 @@ class StrandSprings final : public Constraint {
     double along = 0;     ///< 0 at a, 1 at b
     Vec3 push = Vec3::Zero();
   };
+  /// Cutting edges in the scene frame and a ball about them.
+  struct Blade {
+    Instrument* tool = nullptr;
+    bool cutting = false;
+    std::vector<std::array<Vec3, 2>> edges;
+    Vec3 middle = Vec3::Zero();
+    double radius = 0;
+    void place();
+  };
   void generate(PrepareContext& context);
   void part(const StepContext& context, Strand& s, const char* what, double value);
 
   std::vector<Strand> strands_;
-  std::vector<Instrument*> instruments_;
+  std::vector<Blade> blades_;  ///< of all instruments
 };
 
 }  // namespace insula
