@@ -83,16 +83,23 @@ void BendPatches::build(const WallTopology& wall, const std::vector<Vec3>& rest,
     for (int i = 0; i < p.hinges; ++i)
       for (int j = 0; j < p.hinges; ++j)
         step_stiffness_[std::size_t(p.hinge[i])] += share * std::abs(Eigen::Map<const Vec3>(p.c[i]).dot(Eigen::Map<const Vec3>(p.c[j])));
-  rest_angle_.resize(hinges_.size());
-  const double* x = rest.empty() ? nullptr : rest.front().data();
-  for (std::size_t h = 0; h < hinges_.size(); ++h) {
-    WallHinge& hinge = hinges_[h];
+  for (WallHinge& hinge : hinges_)
     for (int s = 0; s < 2; ++s) {
       const auto at = [&](int k) -> const Vec3& { return rest[std::size_t(hinge.node[k])]; };
       hinge.least[s] = collapsed * collapsed * (at(1) - at(0)).cross(at(2 + s) - at(0)).squaredNorm();
     }
-    rest_angle_[h] = hinge_angle(x, hinge, nullptr);
+  batches_.clear();
+  for (std::size_t first = 0; first < hinges_.size(); first += wall_lanes) {
+    HingeBatch& b = batches_.emplace_back();
+    b.count = int(std::min(hinges_.size() - first, std::size_t(wall_lanes)));
+    for (int l = 0; l < wall_lanes; ++l) {
+      const WallHinge& hinge = hinges_[first + std::size_t(std::min(l, b.count - 1))];
+      for (int k = 0; k < 4; ++k) b.node[k][l] = hinge.node[k];
+      for (int s = 0; s < 2; ++s) b.least[s][l] = hinge.least[s];
+    }
   }
+  rest_angle_.assign(hinges_.size(), 0.0);
+  if (!rest.empty()) find_angles(rest.front().data(), rest_angle_, nullptr);
   start_angle_ = energy_angle_ = rest_angle_;
   moment_.assign(hinges_.size(), 0.0);
   gradient_.assign(16 * hinges_.size(), 0.0);  // each node's three padded to four

@@ -22,6 +22,7 @@
 #include "plugins/membrane/assemble.h"
 #include "plugins/membrane/slope.h"
 #include "plugins/membrane/stretch.h"
+#include "plugins/membrane/wall_batch.h"
 
 namespace insula {
 
@@ -54,7 +55,10 @@ class BendPatches {
   void add_hinges(BlockMatrix& stiffness, double scale) const;
   void add_curvature_of_hinges(const double* x, BlockMatrix& stiffness, double scale) const;
 
+  void find_angles(const double* x, std::vector<double>& angle, double* gradient) const;
+
   std::vector<WallHinge> hinges_;
+  std::vector<HingeBatch> batches_;  // of the hinges, in order
   std::vector<double> step_stiffness_;  // of each hinge, N m
   std::vector<double> start_angle_;  // in the rest configuration
   std::vector<double> rest_angle_;   // of the natural shape: another one where there is a prestrain

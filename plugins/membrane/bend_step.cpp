@@ -10,6 +10,13 @@ namespace insula {
 
 using FourAnywhere = double __attribute__((vector_size(32), aligned(8), may_alias));
 
+// Angles nearest to those that `angle` holds.
+void BendPatches::find_angles(const double* x, std::vector<double>& angle, double* gradient) const {
+  const WallKernels& kernels = wall_kernels();
+  for (std::size_t i = 0; i < batches_.size(); ++i)
+    kernels.hinges(batches_[i], x, angle.data() + wall_lanes * i, gradient ? gradient + 16 * wall_lanes * i : nullptr);
+}
+
 void BendPatches::residual(const Patch& p, const std::vector<double>& angle, double r[3]) const {
   r[0] = r[1] = r[2] = 0;
   for (int i = 0; i < p.hinges; ++i) {
@@ -21,13 +28,7 @@ void BendPatches::residual(const Patch& p, const std::vector<double>& angle, dou
 
 void BendPatches::linearise(const double* x, double* force, BlockMatrix* stiffness, double scale, Tangent which, bool patches) {
   patches = patches || which == Tangent::exact;
-  for (std::size_t h = 0; h < hinges_.size(); ++h) {
-    double g[12];
-    angle_[h] = unwrapped(hinge_angle(x, hinges_[h], g), angle_[h]);
-    double* padded = gradient_.data() + 16 * h;
-    for (int k = 0; k < 4; ++k)
-      for (int c = 0; c < 3; ++c) padded[4 * k + c] = g[3 * k + c];
-  }
+  find_angles(x, angle_, gradient_.data());
   std::fill(moment_.begin(), moment_.end(), 0.0);
   const double root = std::sqrt(scale);
   for (const Patch& p : patches_) {
@@ -108,7 +109,8 @@ void BendPatches::prestrain(const double* rest, const double* u) {
 
 double BendPatches::energy(const double* x) {
   std::vector<double>& angle = energy_angle_;
-  for (std::size_t h = 0; h < hinges_.size(); ++h) angle[h] = unwrapped(hinge_angle(x, hinges_[h], nullptr), angle_[h]);
+  angle = angle_;
+  find_angles(x, angle, nullptr);
   double sum = 0;
   for (const Patch& p : patches_) {
     double r[3];

@@ -20,7 +20,4 @@ using Mat12 = Eigen::Matrix<double, 12, 12>;
 /// Second derivatives of the angle, 1/m2, in the order of the nodes.
 Mat12 hinge_hessian(const double* x, const WallHinge& hinge);
 
-/// `angle` plus the multiple of a full turn that brings it nearest to `before`.
-double unwrapped(double angle, double before);
-
 }  // namespace insula

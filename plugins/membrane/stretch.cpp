@@ -6,37 +6,18 @@
 #include <cmath>
 #include <numeric>
 
+#include "plugins/membrane/stretch_formula.h"
+
 namespace insula {
 namespace {
 
-// A triangle crushed to less than this part of its area keeps the direction of its stress.
-constexpr double least_area = 1e-3;
-
-struct Stretch {
-  Vec3 f0, f1;               // columns of F
-  double c00, c01, c11;      // F^T F
-  double det, trace;         // of S
-  double i00, i01, i11;      // S^-1
-};
-
-Stretch stretch_of(const double* x, const int node[3], const double b[3][2]) {
-  Stretch s;
+StretchOf<double> stretch_at(const double* x, const int node[3], const double (&b)[3][2]) {
+  double u[3], v[3];
   for (int c = 0; c < 3; ++c) {
-    const double x0 = x[3 * node[0] + c], x1 = x[3 * node[1] + c], x2 = x[3 * node[2] + c];
-    // Differences first: what is far from the origin must not lose digits.
-    s.f0[c] = (x1 - x0) * b[1][0] + (x2 - x0) * b[2][0];
-    s.f1[c] = (x1 - x0) * b[1][1] + (x2 - x0) * b[2][1];
+    u[c] = x[3 * node[1] + c] - x[3 * node[0] + c];
+    v[c] = x[3 * node[2] + c] - x[3 * node[0] + c];
   }
-  s.c00 = s.f0.squaredNorm();
-  s.c01 = s.f0.dot(s.f1);
-  s.c11 = s.f1.squaredNorm();
-  s.det = s.f0.cross(s.f1).norm();
-  s.trace = std::sqrt(s.c00 + s.c11 + 2 * s.det);
-  const double scale = 1 / (std::max(s.trace, 1e-9) * std::max(s.det, least_area));
-  s.i00 = scale * (s.c11 + s.det);
-  s.i01 = -scale * s.c01;
-  s.i11 = scale * (s.c00 + s.det);
-  return s;
+  return stretch_of(u, v, b);
 }
 
 /// The part of a symmetric 2x2 matrix with eigenvalues above zero.
@@ -105,48 +86,65 @@ void StretchTriangles::bind(const BlockMatrix& a, const std::vector<int>& free_o
         t.slot[s] = fi < 0 || fj < 0 ? -1 : a.slot(fi, fj);
       }
   }
+  pack();
+}
+
+void StretchTriangles::pack() {
+  batches_.resize((triangles_.size() + wall_lanes - 1) / wall_lanes);
+  for (std::size_t i = 0; i < batches_.size(); ++i) {
+    TriangleBatch& b = batches_[i];
+    const std::size_t first = i * wall_lanes;
+    b.count = int(std::min(triangles_.size() - first, std::size_t(wall_lanes)));
+    for (int l = 0; l < wall_lanes; ++l) {
+      const Triangle& t = triangles_[first + std::size_t(std::min(l, b.count - 1))];
+      b.mu[l] = t.mu;
+      b.lambda[l] = t.lambda;
+      for (int k = 0; k < 3; ++k) {
+        b.node[k][l] = t.node[k];
+        b.pre[k][l] = t.pre[k];
+        for (int c = 0; c < 2; ++c) b.b[k][c][l] = t.b[k][c];
+      }
+    }
+  }
 }
 
 void StretchTriangles::prestrain(const double* rest, const double* u) {
   for (Triangle& t : triangles_) {
     double h[2][2] = {};  // gradient of u in the rest frame, whose axes are F at rest
-    const Stretch s = stretch_of(rest, t.node, t.b);
+    const StretchOf<double> s = stretch_at(rest, t.node, t.b);
+    const Eigen::Map<const Vec3> f0(s.f0), f1(s.f1);
     for (int i = 0; i < 3; ++i) {
       const Eigen::Map<const Vec3> ui(u + 3 * t.node[i]);
       for (int c = 0; c < 2; ++c) {
-        h[0][c] += s.f0.dot(ui) * t.b[i][c];
-        h[1][c] += s.f1.dot(ui) * t.b[i][c];
+        h[0][c] += f0.dot(ui) * t.b[i][c];
+        h[1][c] += f1.dot(ui) * t.b[i][c];
       }
     }
     t.pre[0] -= h[0][0];
     t.pre[1] -= 0.5 * (h[0][1] + h[1][0]);
     t.pre[2] -= h[1][1];
   }
+  pack();
 }
 
 void StretchTriangles::linearise(const double* x, double* force, BlockMatrix* stiffness, double scale, Tangent which) const {
+  for (const TriangleBatch& b : batches_) wall_kernels().stretch(b, x, force);
+  if (!stiffness) return;
   for (const Triangle& t : triangles_) {
-    const Stretch s = stretch_of(x, t.node, t.b);
-    const double strain = s.trace - 2, trace = std::max(s.trace, 1e-9);
-    const double z = (t.mu + t.lambda) * (t.pre[0] + t.pre[2]), d = t.mu * (t.pre[0] - t.pre[2]), o = 2 * t.mu * t.pre[1];
-    const double h = (d * (s.c00 - s.c11) + 2 * o * s.c01) / trace;
-    const double k = t.lambda * strain + z - 2 * t.mu - h / trace;
-    double g00 = 2 * (t.mu + d / trace) + k * s.i00, g01 = 2 * o / trace + k * s.i01, g11 = 2 * (t.mu - d / trace) + k * s.i11;
-    const Vec3 p0 = s.f0 * g00 + s.f1 * g01, p1 = s.f0 * g01 + s.f1 * g11;
-    for (int i = 0; i < 3; ++i) {
-      double* f = force + 3 * t.node[i];
-      for (int c = 0; c < 3; ++c) f[c] -= p0[c] * t.b[i][0] + p1[c] * t.b[i][1];
-    }
-    if (!stiffness) continue;
-    const Vec3 r0 = s.f0 * s.i00 + s.f1 * s.i01, r1 = s.f0 * s.i01 + s.f1 * s.i11;
-    const Vec3 n = s.f0.cross(s.f1) / std::max(s.det, 1e-30);
-    double spin = ((t.mu + t.lambda) * strain + z - h / trace) / trace;
+    const StretchOf<double> s = stretch_at(x, t.node, t.b);
+    const StressOf<double> stress = stress_of(s, t.mu, t.lambda, t.pre);
+    const Eigen::Map<const Vec3> f0(s.f0), f1(s.f1);
+    const double strain = s.trace - 2, trace = std::max(s.trace, 1e-9), d = stress.d, o = stress.o, h = stress.h;
+    double g00 = stress.g00, g01 = stress.g01, g11 = stress.g11;
+    const Vec3 r0 = f0 * s.i00 + f1 * s.i01, r1 = f0 * s.i01 + f1 * s.i11;
+    const Vec3 n = f0.cross(f1) / std::max(s.det, 1e-30);
+    double spin = ((t.mu + t.lambda) * strain + stress.z - h / trace) / trace;
     if (which == Tangent::system) {
       spin = std::max(spin, 0.0);
       keep_positive(g00, g01, g11);
     }
     const bool deviator = which == Tangent::exact && (d != 0 || o != 0);
-    const Vec3 y0 = s.f0 * d + s.f1 * o, y1 = s.f0 * o - s.f1 * d;
+    const Vec3 y0 = f0 * d + f1 * o, y1 = f0 * o - f1 * d;
     Vec3 g[3], p[3], y[3];
     for (int i = 0; i < 3; ++i) {
       y[i] = y0 * t.b[i][0] + y1 * t.b[i][1];
@@ -176,7 +174,7 @@ void StretchTriangles::linearise(const double* x, double* force, BlockMatrix* st
 double StretchTriangles::energy(const double* x) const {
   double sum = 0;
   for (const Triangle& t : triangles_) {
-    const Stretch s = stretch_of(x, t.node, t.b);
+    const StretchOf<double> s = stretch_at(x, t.node, t.b);
     const double strain = s.trace - 2 + t.pre[0] + t.pre[2];
     // |e|^2 = tr C - 2 tr S + 2, written without its cancellation: |S - I|^2 with S = (C + det I) / tr S.
     const double e00 = (s.c00 + s.det) / s.trace - 1 + t.pre[0], e01 = s.c01 / s.trace + t.pre[1], e11 = (s.c11 + s.det) / s.trace - 1 + t.pre[2];

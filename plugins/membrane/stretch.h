@@ -23,6 +23,7 @@
 #include <vector>
 
 #include "core/mechanics/force_model.h"
+#include "plugins/membrane/wall_batch.h"
 
 namespace insula {
 
@@ -31,7 +32,7 @@ class StretchTriangles {
   struct Material {
     double thickness, young, poisson;
   };
-  void clear() { triangles_.clear(); }
+  void clear() { triangles_.clear(), batches_.clear(); }
   void add(const std::vector<Vec3>& rest, const std::array<int, 3>& nodes, const Material& material);
   void couplings(std::vector<std::pair<int, int>>& pairs) const;
   void bind(const BlockMatrix& a, const std::vector<int>& free_of_node);
@@ -48,7 +49,9 @@ class StretchTriangles {
     double mu, lambda;  // times area and thickness, N m
     double pre[3];      // e0: 00, 01, 11
   };
+  void pack();
   std::vector<Triangle> triangles_;
+  std::vector<TriangleBatch> batches_;  // of the triangles, in order
 };
 
 }  // namespace insula

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Hinges and triangles of a wall in batches of eight, quantity by quantity, and the loops over them, compiled once per instruction
+// set (kernels_impl.cpp) and chosen at run time. What comes of one does not depend on its companions.
+#pragma once
+
+namespace insula {
+
+inline constexpr int wall_lanes = 8;
+
+/// Lanes past `count` repeat the last one.
+struct alignas(64) HingeBatch {
+  double least[2][wall_lanes];  ///< WallHinge::least
+  int node[4][wall_lanes];
+  int count;
+};
+struct alignas(64) TriangleBatch {
+  double b[3][2][wall_lanes];   ///< rest gradients of the shape functions, 1/m
+  double mu[wall_lanes], lambda[wall_lanes];  ///< times area and thickness, N m
+  double pre[3][wall_lanes];    ///< prestrain: 00, 01, 11
+  int node[3][wall_lanes];
+  int count;
+};
+
+struct WallKernels {
+  /// Angles of a batch's hinges, each the one nearest to what `angle` holds (rad); with `gradient` (16 values a hinge, each node's
+  /// three padded to four) their gradients, 1/m.
+  void (*hinges)(const HingeBatch& batch, const double* x, double* angle, double* gradient);
+  /// force += -dE/dx of the triangles' stretch.
+  void (*stretch)(const TriangleBatch& batch, const double* x, double* force);
+};
+
+/// Those that go with kernels() of core/linalg.
+const WallKernels& wall_kernels();
+
+}  // namespace insula
