@@ -10,7 +10,7 @@ import re
 # What runs on the first page that says it, since nothing later on a page goes on with what it leaves.
 ONCE = r"\./insula (play|run|view|bench|check|describe|list|docs|schema|devices|help|python-types)\b.*|build/release/bin/haptic_server .*"
 
-# What the pages' commands need, made by fixtures.py in the folder they run in.
+# What the pages' commands need, made by project.py in the folder they run in.
 FIXTURES = {
     "README.md": ("vessel.stl",),
     "docs/arteries.md": ("patient.stl",),

@@ -5,14 +5,18 @@
 #include <cstring>
 
 #include "core/base/input_error.h"
+#include "core/registry/registry.h"
+#include "core/sim/simulation.h"
 #include "tools/case_builder/brain.h"
 #include "tools/case_builder/commands.h"
 #include "tools/case_builder/fissure.h"
+#include "tools/case_builder/fissure_fit.h"
 #include "tools/case_builder/project.h"
 #include "tools/case_builder/report.h"
 #include "tools/case_builder/scenes.h"
 #include "tools/case_builder/test_shapes.h"
 #include "tools/case_builder/topology.h"
+#include "tools/mesh_lobes/labels.h"
 
 namespace insula::case_builder {
 namespace {
@@ -133,7 +137,8 @@ TEST_F(OwnBrain, WhatCannotBeIsRefusedWithWhatToDo) {
     return refusal(o);
   };
   EXPECT_NE(with(0, test::scaled(block(0), 1e-3)).find("give --brain-unit m"), std::string::npos);
-  EXPECT_NE(with(1, test::scaled(block(1), 100)).find("no part of a brain is"), std::string::npos);
+  EXPECT_NE(with(1, test::scaled(block(1), 1e3)).find("no part of a brain is (usual: 15 to 250 mm); as if its numbers were in um: give --brain-unit um"), std::string::npos);
+  EXPECT_NE(with(1, test::scaled(block(1), 1e6)).find("give the millimetres of its unit, --brain-unit-mm 1e-06"), std::string::npos);
   TriMesh open = block(1);
   open.triangles.resize(10);
   EXPECT_NE(with(1, open).find("is not closed: it has 1 hole"), std::string::npos);
@@ -161,12 +166,21 @@ TEST_F(OwnBrain, LabelsAreChecked) {
   o.lobe_labels = {"frontal=10-12", "temporal=20", "insula=31"};
   EXPECT_NE(refusal(o).find("none of the labels of the insula is there; there are: 11, 20, 30"), std::string::npos) << refusal(o);
   o.lobe_labels[2] = "insula=3O";
-  EXPECT_NE(refusal(o).find("\"3O\" is no label"), std::string::npos);
+  EXPECT_NE(refusal(o).find("--lobe insula: \"3O\" is neither a label"), std::string::npos) << refusal(o);
+  o.lobe_labels[2] = "insula=12,30";
+  EXPECT_NE(refusal(o).find("the label 12 is given to the frontal and to the insula"), std::string::npos) << refusal(o);
+  o.lobe_labels[2] = "frontal=30";
+  EXPECT_NE(refusal(o).find("the frontal is given twice"), std::string::npos) << refusal(o);
   o.lobe_labels[2] = "insula=30";
   const BrainLabels b = read_brain(o, find_project(INSULA_SOURCE_DIR), notes);
   EXPECT_EQ(b.parts[0].labels, (std::vector<int>{10, 11, 12}));
 }
 #endif
+
+TEST(LabelList, IsReadWholeOrRefusedWithTheItem) {
+  EXPECT_EQ(mesh_tool::label_list("7,2-4,1000000"), (std::vector<int>{7, 2, 3, 4, 1000000}));
+  for (const char* bad : {"", "1,", ",1", "0", "-1", "+5", " 5", "5 ", "4-", "-4", "4-3", "1-2-3", "1000001", "99999999999", "2;3", "0x10"}) EXPECT_THROW(mesh_tool::label_list(bad), std::runtime_error) << bad;
+}
 
 /// Meshes of both lobes and the floor, closed, that fit into each other.
 void expect_meshes(const CaseFolder& made, int most_nodes) {
@@ -188,6 +202,7 @@ TEST_F(OwnBrain, BlocksAreMeshedWithinTheirNodes) {
   const CaseFolder made{folder.path() / "made", "made"};
   Options o = by_lobe();
   o.brain_nodes = 450;
+  o.brain_in_place = true;
   Progress quiet;
   run_brain(made, find_project(INSULA_SOURCE_DIR), o, quiet);
   expect_meshes(made, 450);
@@ -220,25 +235,116 @@ TEST_F(OwnBrain, ABrainElsewhereIsRefused) {
   }
 }
 
-TEST_F(OwnBrain, RealLobesBecomeACase) {
-  const fs::path anatomy = fs::path(INSULA_SOURCE_DIR) / "../shared/anatomy";
-  if (!fs::exists(anatomy / "colin27_insula_R.stl")) GTEST_SKIP() << "no anatomy here";
+/// What the command line says when it makes the case `own` of a tube with a sac and this brain; the case's folder in `made`.
+std::string make_case(const insula::test::SceneFolder& folder, const std::vector<std::string>& brain, CaseFolder& made, int expected = 0) {
   folder.write("vessel.stl", test::stl_text(test::open_tube()));
-  std::vector<std::string> words{"new", "own", path("vessel.stl"), "--out", path("out"), "--vertices", "900", "--no-rehearse"};
-  for (const char* name : lobe_names) words.insert(words.end(), {"--brain", std::string(name) + "=" + (anatomy / ("colin27_" + std::string(name) + "_R.stl")).string()});
+  std::vector<std::string> words{"new", "own", (folder.path() / "vessel.stl").string(), "--out", (folder.path() / "out").string(), "--vertices", "900", "--no-rehearse"};
+  words.insert(words.end(), brain.begin(), brain.end());
   std::FILE *said = std::tmpfile(), *err = std::tmpfile();
   const int status = run_command(words, said, err);
-  std::string text(4096, '\0');
+  std::string text(8192, '\0');
   std::rewind(err);
   text.resize(std::fread(text.data(), 1, text.size(), err));
   std::fclose(said), std::fclose(err);
-  ASSERT_EQ(status, 0) << text;
-  const CaseFolder made{folder.path() / "out/own", "own"};
+  EXPECT_EQ(status, expected) << text;
+  made = {folder.path() / "out/own", "own"};
+  return text;
+}
+
+TEST_F(OwnBrain, RealLobesBecomeACase) {
+  const fs::path anatomy = fs::path(INSULA_SOURCE_DIR) / "../shared/anatomy";
+  if (!fs::exists(anatomy / "colin27_insula_R.stl")) GTEST_SKIP() << "no anatomy here";
+  std::vector<std::string> words;
+  for (const char* name : lobe_names) words.insert(words.end(), {"--brain", std::string(name) + "=" + (anatomy / ("colin27_" + std::string(name) + "_R.stl")).string()});
+  CaseFolder made;
+  make_case(folder, words, made);
+  ASSERT_FALSE(HasFailure());
   expect_meshes(made, 1000);
   const MeasuredScene m = measure_scene(exercise_files(made)[2], 5);
   EXPECT_EQ(m.message, "");
   EXPECT_TRUE(m.finite);
+  for (const Note& n : judged(m.standing)) EXPECT_NE(n.kind, Note::Kind::problem) << n.text;
 }
+
+TEST(FissureFit, UndoesAMotion) {
+  const Course wanted = shipped_course(find_project(INSULA_SOURCE_DIR));
+  ASSERT_GE(wanted.superficial.size(), 5u);
+  EXPECT_NEAR(distance(wanted, wanted), 0, 1e-12);
+  const Placement away{Eigen::AngleAxisd(0.15, Vec3(0.6, -0.48, 0.64)).toRotationMatrix(), Vec3(3, -4, 5)};
+  const Course moved_away = moved(wanted, away);
+  EXPECT_GT(distance(wanted, moved_away), 3);
+  const Placement back = fit(wanted, moved_away);
+  // Along the lines the points may slide a little; the lines themselves lie on each other.
+  EXPECT_LT(distance(wanted, moved(moved_away, back)), 0.1);
+  EXPECT_LT((back.rotation * away.rotation - Mat3::Identity()).norm(), 0.05);
+}
+
+/// How the fissure stands, held open by the arms, with the lobes of the case's own brain and no vessel.
+Standing settled(const CaseFolder& made) {
+  Registry registry;
+  register_builtin(registry);
+  const Assets assets = link_assets(made, find_project(INSULA_SOURCE_DIR), {});
+  const auto loaded = load_simulation_text("<scene><include file=\"" + assets.parts + "/retracted_fissure.xml\"><variable name=\"lobes\" value=\"../../brain\"/></include><settle time=\"3 s\"/></scene>", made.path / "held.xml", registry, 1);
+  EXPECT_EQ(loaded.diagnostics.format(), "");
+  if (!loaded.simulation) return {};
+  loaded.simulation->step();
+  return standing_of(*loaded.simulation);
+}
+
+int problems(const std::vector<Note>& notes) {
+  return int(std::count_if(notes.begin(), notes.end(), [](const Note& n) { return n.kind == Note::Kind::problem; }));
+}
+
+#ifdef INSULA_WITH_ITK
+TEST_F(OwnBrain, IsMovedToWhereTheArmsStandAndThoseThatStandElsewhereAreTold) {
+  Options o;
+  o.lobe_labels = {"frontal=2,4-6", "temporal=81", "insula=30"};
+  o.brain = {path("head.nii")};
+  const Vec3 off(1, -4, 7);
+  folder.write("head.nii", test::head_text(off));
+  Progress quiet;
+  const fs::path project = find_project(INSULA_SOURCE_DIR);
+  const CaseFolder made{folder.path() / "made", "made"};
+  run_brain(made, project, o, quiet);
+  const Placement motion = brain_motion(made);
+  EXPECT_LT((motion.apply(fissure_centre + off) - fissure_centre).norm(), 3.5);
+  EXPECT_NE(read_json(made.path / "brain.json").at("notes").dump().find("so that its fissure lies where the arms"), std::string::npos);
+  const Standing there = settled(made);
+  EXPECT_EQ(problems(judged(there)), 0);
+  ASSERT_EQ(there.arms.size(), 2u);
+  EXPECT_EQ(there.arms[0].lobe, "temporal");
+  EXPECT_EQ(there.arms[1].lobe, "frontal");
+
+  // Left where it is, its fissure runs past the arms.
+  o.brain_in_place = true;
+  run_brain(made, project, o, quiet);
+  EXPECT_TRUE(brain_motion(made).rotation.isIdentity(0));
+  EXPECT_GT(problems(judged(settled(made))), 0);
+
+  // Another frame is told, and left to the author.
+  o.brain_in_place = false;
+  folder.write("head.nii", test::head_text(Vec3(0, 4, -24)));
+  run_brain(made, project, o, quiet);
+  EXPECT_NE(read_json(made.path / "brain.json").at("notes").dump().find("Bring the brain to the MNI frame"), std::string::npos);
+}
+#endif
+
+#ifdef INSULA_WITH_ITK
+TEST_F(OwnBrain, LabelsOfAVolumeBecomeACaseWhoseExercisesRun) {
+  folder.write("head.nii", test::head_text());
+  CaseFolder made;
+  make_case(folder, {"--brain", path("head.nii"), "--lobe", "frontal=2,4-6", "--lobe", "temporal=81", "--lobe", "insula=30"}, made);
+  ASSERT_FALSE(HasFailure());
+  expect_meshes(made, 1000);
+  for (const fs::path& file : exercise_files(made)) {
+    const MeasuredScene m = measure_scene(file, 100);
+    EXPECT_EQ(m.message, "") << file;
+    EXPECT_TRUE(m.finite) << file;
+    EXPECT_GT(m.nodes, 150) << file;
+    for (const Note& n : judged(m.standing)) EXPECT_NE(n.kind, Note::Kind::problem) << file << ": " << n.text;
+  }
+}
+#endif
 
 }  // namespace
 }  // namespace insula::case_builder
