@@ -62,8 +62,17 @@ void move(mesh_tool::NiftiVolume& v, const Placement& p) {
   from_world.leftCols<3>() = m(from).leftCols<3>() * back, from_world.col(3) = m(from).leftCols<3>() * origin + m(from).col(3);
 }
 
-/// Lays the fissure over the shipped one. Levels of the parts are found again after each move. The motion that was made.
-Placement settle_in(BrainLabels& brain, mesh_tool::PartFields& fields, const mesh_tool::FieldOptions& f, const fs::path& project, std::vector<Note>& notes) {
+}  // namespace
+
+mesh_tool::FieldOptions field_options() {
+  mesh_tool::FieldOptions f;
+  f.spacing = field_spacing, f.radius = fissure_radius, f.coarse_gap = 0.45;
+  f.centre = {fissure_centre.x(), fissure_centre.y(), fissure_centre.z()};
+  return f;
+}
+
+Placement settle_in(BrainLabels& brain, mesh_tool::PartFields& fields, const fs::path& project, std::vector<Note>& notes) {
+  const mesh_tool::FieldOptions f = field_options();
   constexpr double near_enough = 1.0;  // mm; brains of one template differ by less
   const Course wanted = shipped_course(project);
   const auto course = [&] { return course_of(describe_cleft(fields, 0, 1, f, {1, 0, 0})); };
@@ -94,8 +103,6 @@ Placement settle_in(BrainLabels& brain, mesh_tool::PartFields& fields, const mes
   return whole;
 }
 
-}  // namespace
-
 Placement brain_motion(const CaseFolder& folder) {
   Placement p;
   const Json json = read_json(folder.path / "brain.json");
@@ -114,15 +121,13 @@ void run_brain(const CaseFolder& folder, const fs::path& project, const Options&
   progress.step("reading the brain");
   std::vector<Note> notes;
   BrainLabels given = read_brain(o, project, notes);
-  mesh_tool::FieldOptions f;
-  f.spacing = field_spacing, f.radius = fissure_radius, f.coarse_gap = 0.45;
-  f.centre = {fissure_centre.x(), fissure_centre.y(), fissure_centre.z()};
+  const mesh_tool::FieldOptions f = field_options();
   Json json;
   try {
     progress.step("borders of the lobes");
     mesh_tool::PartFields fields = build_part_fields(given.volume, nullptr, given.parts, f);
     Placement motion;
-    if (!o.brain_in_place) motion = settle_in(given, fields, f, project, notes);
+    if (!o.brain_in_place) motion = settle_in(given, fields, project, notes);
     json["rotation"] = Json::array();
     for (int k = 0; k < 9; ++k) json["rotation"].push_back(rounded(motion.rotation(k / 3, k % 3)));
     json["shift_mm"] = to_json(motion.shift);

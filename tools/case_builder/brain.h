@@ -27,6 +27,11 @@ BrainLabels read_brain(const Options& options, const fs::path& project, std::vec
 /// How far the stage may move a brain so that its fissure lies where the arms, the hands and the microscope stand: its field by so much, mm,
 /// and turned by so much, degrees. More than that is no matter of persons but of frames.
 inline constexpr double farthest_move = 12, widest_turn = 20;
+/// Lays the fissure of the brain, whose levels are `fields`, over the shipped one, and finds the levels again; the motion that was made. What is
+/// too far away stays where it is, with a note.
+Placement settle_in(BrainLabels& brain, mesh_tool::PartFields& fields, const fs::path& project, std::vector<Note>& notes);
+/// How the levels are found.
+mesh_tool::FieldOptions field_options();
 /// The motion that the stage found for the brain, for vessels in its frame; the identity when it stayed where it was.
 Placement brain_motion(const CaseFolder& folder);
 

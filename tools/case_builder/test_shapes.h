@@ -117,13 +117,15 @@ inline std::string nifti_text(std::array<int, 3> n, double spacing, const std::f
 }
 
 /// Labels of a right half of a head in the MNI frame with a Sylvian fissure where that of the shipped lobes lies: a ball of cortex, a bump of
-/// insula (30) under it, and a plane of fissure between the gyri of the frontal lobe (2, 4 to 6) and the temporal lobe (81). `shift`, mm,
+/// insula (30) under it, and a bent sheet of fissure between the gyri of the frontal lobe (2, 4 to 6) and the temporal lobe (81). `shift`, mm,
 /// moves it all.
 inline int head_label(Vec3 p, const Vec3& shift = Vec3::Zero()) {
   p -= shift;
   if (p.x() < 0 || (p - Vec3(0, -12, -4)).norm() > 70) return 0;
   if (((p - Vec3(20, 3, -2)).array() / Eigen::Array3d(29, 30, 25)).matrix().norm() < 1 || p.x() < 15) return 30;
-  if ((p - Vec3(60.1, 16.3, -3.2)).dot(Vec3(-0.371, 0.335, 0.866)) < 0) return 81;
+  // Inward the fissure goes back and down; along its opening it falls towards the front, the faster the farther.
+  const double y = p.y() + 0.28 * (60 - p.x()), z = p.z() + 0.28 * (60 - p.x());
+  if (z < -3.3 - 0.4 * (y - 16.3) - 0.65 * std::max(0.0, y - 18)) return 81;
   return p.y() > 20 ? 2 : p.z() > 25 ? 4 : p.y() > 0 ? 5 : 6;
 }
 inline std::string head_text(const Vec3& shift = Vec3::Zero()) {
