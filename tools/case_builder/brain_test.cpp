@@ -291,6 +291,37 @@ Standing settled(const CaseFolder& made) {
   return standing_of(*loaded.simulation);
 }
 
+TEST(Standing, ShippedExercisesBeginAsTheyShould) {
+  for (const char* name : {"1_sylvian_fissure", "3_clipping"}) {
+    const MeasuredScene m = measure_scene(find_project(INSULA_SOURCE_DIR) / "scenes/training" / (std::string(name) + ".xml"), 1);
+    EXPECT_EQ(m.message, "");
+    for (const Note& n : judged(m.standing)) EXPECT_NE(n.kind, Note::Kind::problem) << name << ": " << n.text;
+    EXPECT_EQ(m.standing.arms.size(), name[0] == '1' ? 0u : 2u);
+    for (const StandingArm& arm : m.standing.arms) EXPECT_LT(arm.deepest, 1) << arm.id << " presses with " << arm.force << " N";
+    if (name[0] == '3') { EXPECT_GT(m.standing.seen, 0.8); }
+  }
+}
+
+TEST(Standing, WhatIsWrongIsTold) {
+  Standing s;
+  s.arms = {{"left", "frontal", 0.1, 0.2}, {"right", "temporal", 0.2, 0}};
+  s.has_sac = true, s.seen = 0.9;
+  const auto count = [](const std::vector<Note>& notes) { return std::count_if(notes.begin(), notes.end(), [](const Note& n) { return n.kind == Note::Kind::problem; }); };
+  EXPECT_EQ(count(judged(s)), 0);
+  const auto with = [&](const auto& change) {
+    Standing t = s;
+    change(t);
+    return count(judged(t));
+  };
+  EXPECT_EQ(with([](Standing& t) { t.arms[0].lobe = "", t.arms[0].force = 0; }), 1);
+  EXPECT_EQ(with([](Standing& t) { t.arms[0].force = 1e-3; }), 1);
+  EXPECT_EQ(with([](Standing& t) { t.arms[0].force = 5; }), 1);
+  EXPECT_EQ(with([](Standing& t) { t.arms[1].deepest = 4; }), 1);
+  EXPECT_EQ(with([](Standing& t) { t.arms[1].lobe = "frontal"; }), 1);
+  EXPECT_EQ(with([](Standing& t) { t.seen = 0.2; }), 1);
+  EXPECT_EQ(with([](Standing& t) { t.in_tissue = {"suction"}; }), 1);
+}
+
 int problems(const std::vector<Note>& notes) {
   return int(std::count_if(notes.begin(), notes.end(), [](const Note& n) { return n.kind == Note::Kind::problem; }));
 }

@@ -139,7 +139,7 @@ def errors_svg(title, laws):
                 '<path d="M%.1f %.1fH%.1f" stroke="#fee2e2" stroke-width="9"/>' % (x(allowed), y, WIDTH - RIGHT),
                 '<path d="M%.1f %.1fV%.1f" stroke="%s" stroke-width="1.6"/>' % (x(allowed), y - 6, y + 6, COLOURS[1]),
                 '<circle cx="%.1f" cy="%.1f" r="3" fill="none" stroke="%s"/>' % (x(found), y, COLOURS[0])]
-    out.append(text((left + WIDTH - RIGHT) / 2, height - 8, "error over the size at hand: met (circle), allowed (bar)"))
+    out.append(text(WIDTH / 2, height - 8, "error over the size at hand: met (circle), allowed (bar)"))
     return "\n".join(out) + "\n</svg>\n"
 
 
