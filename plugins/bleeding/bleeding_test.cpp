@@ -85,7 +85,7 @@ TEST(Bleeding, FillsTheFieldAtTheTearsRateAndRunsOffAtTheRim) {
   EXPECT_EQ(t.events("rupture", 1), 1);
   EXPECT_NE(t.s->command("ask", "b rupture"), "");
   EXPECT_NEAR(t.state().since, 0.06, 1e-12);
-  test::Figure figure("bowl", "Blood of a tear in the bowl of the field: height = depth sqrt(volume / capacity)", "blood, ml", "height, mm");
+  test::Figure figure("bowl", "Blood in the field: height = depth sqrt(volume / capacity)", "blood, ml", "height, mm");
   double out = 0;
   for (int i = 0; i < 500; ++i) {
     t.run(1);

@@ -103,7 +103,7 @@ TEST(Chambers, AddUpAndAreClosedEachForItself) {
       size += g[i].norm();
     }
     EXPECT_TRUE(test::held("a chamber pushes nowhere", force.norm(), size, 1e-13));
-    EXPECT_TRUE(test::held("and turns nothing", moment.norm(), size * q.norm(), 1e-13));
+    EXPECT_TRUE(test::held("a chamber turns nothing", moment.norm(), size * q.norm(), 1e-13));
     const double e = 1e-7;
     EXPECT_NEAR((chambers.volume(c, q + e * d) - chambers.volume(c, q - e * d)) / (2 * e), slope, 1e-8 * std::abs(slope) + 1e-13);
   }

@@ -16,7 +16,7 @@
 namespace insula::case_builder {
 namespace {
 
-// Of the shipped exercises: 0.1 to 0.4 N, 0.4 mm, all that faces the microscope but a tenth.
+// The shipped exercises: 0.07 and 0.15 N, 0.1 and 0.3 mm, all of it.
 constexpr double least_force = 0.02, most_force = 1.0;  // N
 constexpr double most_depth = 1.5;                      // mm
 constexpr double least_seen = 0.4;

@@ -73,7 +73,7 @@ NO_PICTURE = {  # tests of those sections that hold no closed form: the same bit
     "Contact.AFastToolNeverEndsInsideAPlate", "StrandSprings.TearsBeyondItsStrength", "Clip.EnergyNeverExceedsThatOfTheOpenSpring", "ClipApplier.LetsGoAndTakesBackWithoutAStepOfForce",
     "SelfContact.FastBladesPressNoWallThroughTheOtherAndStayOutside", "SelfContact.JawsPressAVesselFlatAndItsWallsStayApart", "Patch.AllTogetherStickBelowMuNAndSlipAbove",
     "ColliderCache.OfAWallAgainstItselfNeverShows", "SelfContactNeck.RowsOfAClippedNeckKeepTheirNamesAtRest", "RealVessel.Pulses", "RealCase.BecomesACaseWhoseExercisesTheMotionsMadeForItFinish",
-    "OwnBrain.SurfacesBecomeLabels", "RuptureRules.SpurtsTakeNothingBackButBloodThatRunsDoes", "MadeCase.GivesTheSameFilesTwiceAndStagesCanBeDoneAgainAlone", "RealSurface.BecomesAVesselThatTheProductReads",
+    "OwnBrain.SurfacesBecomeLabels", "OwnBrain.ThatStandsElsewhereIsTold", "MadeCase.VesselTooThinForAWayIsNamed", "RuptureRules.SpurtsTakeNothingBackButBloodThatRunsDoes", "MadeCase.GivesTheSameFilesTwiceAndStagesCanBeDoneAgainAlone", "RealSurface.BecomesAVesselThatTheProductReads",
 }
 WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 460, 270, 62, 14, 44, 44
 COLOURS = ("#1f6fb2", "#c2410c", "#15803d", "#7e22ce")
