@@ -127,7 +127,7 @@ void run_brain(const CaseFolder& folder, const fs::path& project, const Options&
     progress.step("borders of the lobes");
     mesh_tool::PartFields fields = build_part_fields(given.volume, nullptr, given.parts, f);
     Placement motion;
-    if (!o.brain_in_place) motion = settle_in(given, fields, project, notes);
+    if (!o.brain_in_place && given.own_fissure) motion = settle_in(given, fields, project, notes);
     json["rotation"] = Json::array();
     for (int k = 0; k < 9; ++k) json["rotation"].push_back(rounded(motion.rotation(k / 3, k % 3)));
     json["shift_mm"] = to_json(motion.shift);

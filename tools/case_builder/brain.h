@@ -19,6 +19,7 @@ inline constexpr const char* lobe_names[] = {"frontal", "temporal", "insula"};
 struct BrainLabels {
   mesh_tool::NiftiVolume volume;
   std::vector<mesh_tool::Part> parts;  ///< in the order of lobe_names
+  bool own_fissure = true;             ///< false: its lobes are told apart by the shipped ones
 };
 /// Reads labels, one surface a lobe, or one closed surface that is shared out to the nearest shipped lobe. Throws InputError: what cannot be
 /// read, surfaces that are open, in pieces, or of a size that no lobe has, labels that do not exist, lobes that are missing.

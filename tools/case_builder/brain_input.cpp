@@ -97,6 +97,7 @@ BrainLabels of_surfaces(const std::map<std::string, std::string>& files, const O
 BrainLabels of_one_surface(const fs::path& file, const Options& o, const fs::path& project, std::vector<Note>& notes) {
   BrainLabels out;
   mesh_tool::Grid grid;
+  out.own_fissure = false;
   out.volume = blank(grid, true);
   const mesh_tool::Mask inside = inside_of(read_lobe_surface(file, "brain", o, notes), grid);
   const Fissure shipped = read_fissure(project, {});

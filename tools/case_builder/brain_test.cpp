@@ -88,6 +88,7 @@ TEST_F(OwnBrain, OneSurfaceIsSharedOutToTheNearestShippedLobe) {
     EXPECT_GT(checked, 5);
   }
   EXPECT_EQ(notes.size(), 1u);
+  EXPECT_FALSE(b.own_fissure);
 }
 
 TEST_F(OwnBrain, WhatCannotBeIsRefusedWithWhatToDo) {
