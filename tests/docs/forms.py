@@ -79,7 +79,7 @@ FORMS = (
     Elsewhere(r"\./insula devices --calibrate .*", "DeviceTool.CalibratesByFourPlaces", "a stand-in's arm is moved to the four places"),
     Elsewhere(r"build/release/bin/insula_artery make tools/artery/arteries.json meshes/arteries", "ArteryTool.ShippedArteriesAreMadeAgainBitForBit", "makes all of the table"),
     Elsewhere(r"\./insula case new from_scan .*", "Volumes.ADicomSeriesIsReadByItsThreshold", "makes a series to read"),
-    Elsewhere(r"\./insula case new .* --brain aal\.nii\.gz .*", "OwnBrain.LabelsAreChecked", "makes a volume of labels"),
+    Elsewhere(r"\./insula case new .* --brain aal\.nii\.gz .*", "OwnBrain.LabelsOfAVolumeBecomeACaseWhoseExercisesRun", "makes a volume of labels"),
     Elsewhere(r"\./insula case new .* --brain frontal=f\.stl .*", "OwnBrain.BlocksAreMeshedWithinTheirNodes", "makes a surface for each lobe"),
     Elsewhere(r"\./insula case brain .* --brain brain\.ply .*", "OwnBrain.OneSurfaceIsSharedOutToTheNearestShippedLobe", "makes that surface"),
     Elsewhere(r"cd build/release && cpack -G DEB", "install_packages", "makes the packages and looks into them"),
