@@ -9,6 +9,7 @@
 #include "core/base/random.h"
 #include "core/testing/contracts.h"
 #include "core/testing/example.h"
+#include "core/testing/held.h"
 
 namespace insula::test {
 namespace {
@@ -62,8 +63,8 @@ void expect_balanced(const Bench& b, const VecX& x, const VecX& f, double refere
     moment += r.cross(fi);
     size = std::max(size, r.norm());
   }
-  EXPECT_LT(sum.norm(), 1e-10 * reference) << "the forces do not add up to nothing";
-  EXPECT_LT(moment.norm(), 1e-10 * reference * size) << "the moments do not add up to nothing";
+  EXPECT_TRUE(held("forces add up to nothing", sum.norm(), reference, 1e-10));
+  EXPECT_TRUE(held("moments add up to nothing", moment.norm(), reference * size, 1e-10));
 }
 
 void check_state(Bench& b, const VecX& x, std::uint64_t seed) {
@@ -84,19 +85,19 @@ void check_state(Bench& b, const VecX& x, std::uint64_t seed) {
       return b.model.energy(y.data());
     };
     const double slope = (8 * (energy(e) - energy(-e)) - (energy(2 * e) - energy(-2 * e))) / (12 * e);
-    EXPECT_NEAR(f[i], -slope, 1e-7 * largest) << "force differs from the energy's gradient at degree of freedom " << i;
+    EXPECT_TRUE(held("force = minus energy gradient", std::abs(f[i] + slope), largest, 1e-7)) << "degree of freedom " << i;
   }
 
   // Stiffness against differences of the force, along random directions.
   const MatX exact = b.stiffness(x, 0, Tangent::exact);
-  EXPECT_LT((exact - exact.transpose()).norm(), 1e-12 * exact.norm());
+  EXPECT_TRUE(held("exact stiffness is symmetric", (exact - exact.transpose()).norm(), exact.norm(), 1e-12));
   for (int trial = 0; trial < 10; ++trial) {
     VecX d(b.n);
     for (int i = 0; i < b.n; ++i) d[i] = random.uniform(-1, 1);
     const double e = 1e-3 * edge;
     const VecX slope = (8 * (b.force(x + e * d) - b.force(x - e * d)) - (b.force(x + 2 * e * d) - b.force(x - 2 * e * d))) / (12 * e);
     const VecX product = exact * d;
-    EXPECT_LT((product + slope).norm(), 1e-6 * product.norm()) << "the exact tangent differs from the force's gradient";
+    EXPECT_TRUE(held("exact stiffness = force gradient", (product + slope).norm(), product.norm(), 1e-6));
   }
 
   const MatX system = b.stiffness(x, 0, Tangent::system);
@@ -136,7 +137,7 @@ void check_force_model(const std::filesystem::path& scene, const std::string& el
       VecX x(rest.size());
       for (int i = 0; i < body->nodes(); ++i) x.segment<3>(3 * i) = q * rest.segment<3>(3 * i) + shift;
       m->reset();
-      if (m->internal()) { EXPECT_LT(bench.force(x).lpNorm<Eigen::Infinity>(), 1e-10 * reference) << "a rigid motion gives forces"; }
+      if (m->internal()) { EXPECT_TRUE(held("rigid motion gives no force", bench.force(x).lpNorm<Eigen::Infinity>(), reference, 1e-10)); }
       EXPECT_GE(m->energy(x.data()), 0);
     }
     EXPECT_GE(m->stiffness_damping(), 0);

@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include "core/sim/report.h"
+#include "core/testing/held.h"
 #include "plugins/pressure/shell_for_test.h"
+#include "tests/figures/figure.h"
 
 namespace insula {
 namespace {
@@ -83,10 +85,13 @@ TEST(Bleeding, FillsTheFieldAtTheTearsRateAndRunsOffAtTheRim) {
   EXPECT_EQ(t.events("rupture", 1), 1);
   EXPECT_NE(t.s->command("ask", "b rupture"), "");
   EXPECT_NEAR(t.state().since, 0.06, 1e-12);
+  test::Figure figure("bowl", "Blood in the field: height = depth sqrt(volume / capacity)", "blood, ml", "height, mm");
   double out = 0;
   for (int i = 0; i < 500; ++i) {
     t.run(1);
     out += h * t.state().rate;
+    if (i % 25 == 24) figure.run("run", out / ml, 1000 * t.state().height);
+    figure.law("law", out / ml, 20 * std::sqrt(out / (std::numbers::pi * 0.015 * 0.015 * 0.02 / 2)));
   }
   EXPECT_NEAR(t.state().lost, out, 1e-12 * out);
   EXPECT_NEAR(t.bleeding->volume(), out, 1e-12 * out);
@@ -155,7 +160,7 @@ TEST(Bleeding, TearsWhenPressedTooHardAndSoonerByAnEdge) {
       // What the contact says is what the region feels.
       double contact = 0;
       for (const ContactPoint& c : t.s->report().contacts) contact += (c.normal_force * c.normal + c.tangent_force).norm();
-      EXPECT_NEAR(t.bleeding->force_on_region(), contact, 1e-9 + 1e-6 * contact);
+      EXPECT_TRUE(test::held("force on the bleb = contact", std::abs(t.bleeding->force_on_region() - contact), 1e-3 + contact, 1e-6));
       last = t.bleeding->force_on_region();
     }
     return -2.0;

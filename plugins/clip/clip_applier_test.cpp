@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The applier: opening, letting go, taking back, loading, what the hand feels of it.
+#include "core/testing/held.h"
 #include "plugins/clip/clip_for_test.h"
 #include "tests/figures/figure.h"
 
@@ -47,7 +48,7 @@ TEST(ClipApplier, TheHandFeelsTheLoadOnTheClip) {
     b.clip->external << force, (b.clip->grip().p - b.clip->pose().apply(b.clip->tool().centre_of_mass)).cross(force);
     b.run(grip_home, 1);
   }
-  EXPECT_LT((b.applier->hand_force().head<3>() - force).norm(), 1e-6 * force.norm());
+  EXPECT_TRUE(test::held("the hand feels the load on its clip", (b.applier->hand_force().head<3>() - force).norm(), force.norm(), 1e-6));
   EXPECT_LT(b.applier->hand_force().tail<3>().norm(), 1e-8);
 }
 
@@ -168,7 +169,7 @@ TEST(ClipApplier, ReleasedClipKeepsHolding) {
   EXPECT_LT((b.clip->pose().p - where.p).norm(), 2e-4) << "it settles into the tissue";
   const Pose rest = b.clip->pose();
   b.run(at(10e-3), 300);
-  EXPECT_LT(displacement(rest, b.clip->pose()).norm(), 1e-6) << "and stays there";
+  EXPECT_TRUE(test::held("a released clip stays, m", displacement(rest, b.clip->pose()).norm(), 1, 1e-6));
   EXPECT_NEAR(b.clip->force(), force, 0.02 * force);
   EXPECT_TRUE(b.clip->touched());
   // A hand that has it again pulls it off.

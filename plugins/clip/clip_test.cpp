@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The clip by itself and on plates: closed forms of its spring, of friction, of a free rigid body.
+#include "core/testing/held.h"
 #include "plugins/clip/clip_for_test.h"
 #include "tests/figures/figure.h"
 
@@ -76,8 +77,8 @@ TEST(Clip, MomentumIsThatOfARigidBody) {
   const Vec3 from = centre();
   b.steps(10);
   const double h = b.s->h();
-  EXPECT_LT((b.clip->momentum() - 10 * h * force).norm(), 1e-12 * force.norm());
-  EXPECT_LT((b.clip->spin() - 10 * h * moment).norm(), 1e-12 * moment.norm());
+  EXPECT_TRUE(test::held("momentum of a clip", (b.clip->momentum() - 10 * h * force).norm(), force.norm(), 1e-12));
+  EXPECT_TRUE(test::held("angular momentum of a clip", (b.clip->spin() - 10 * h * moment).norm(), moment.norm(), 1e-12));
   // sum over k of k h force/m h: the discrete law.
   EXPECT_LT((centre() - from - 55 * h * h / 0.03 * force).norm(), 1e-12);
   b.clip->external.setZero();
@@ -95,7 +96,7 @@ TEST(Clip, FallsByItsTrueWeightAndTheFluidTakesItsMotion) {
   b.steps(600);
   // Terminal speed: m_true g = drag * inertia * v.
   const double v = -b.clip->momentum().z() / 0.03;
-  EXPECT_NEAR(v, 0.00014 * 9.81 / (2 * 0.03), 1e-6 * v);
+  EXPECT_TRUE(test::held("terminal speed of a clip", std::abs(v - 0.00014 * 9.81 / (2 * 0.03)), v, 1e-6));
 }
 
 // Pulled across the blades, which hold a hard strip by friction on both faces: 2 mu N, less what keeps the wedge of the blades
@@ -115,7 +116,7 @@ TEST(Clip, HoldsAndSlipsAtTwiceTheFriction) {
       middle += c.normal_force * c.position;
     }
     middle /= squeeze;
-    EXPECT_NEAR(squeeze, 2 * b.clip->torque(b.clip->opening()) / (hinge_z - middle.z()), 0.02 * squeeze);
+    EXPECT_TRUE(test::held("squeeze of a pulled clip", std::abs(squeeze - 2 * b.clip->torque(b.clip->opening()) / (hinge_z - middle.z())), squeeze, 0.02));
     const Vec3 force(0, pull * squeeze * std::sqrt(mu * mu - std::pow(std::tan(b.clip->opening()), 2)), 0);
     b.clip->external << force, (middle - b.clip->pose().apply(b.clip->tool().centre_of_mass)).cross(force);
     b.steps(60);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Contact in whole steps: closed forms of the discretised law, no tunnelling, balance, determinism, no allocation.
+#include "core/testing/held.h"
 #include "plugins/contact/contact_for_test.h"
 #include "tests/figures/figure.h"
 
@@ -85,7 +86,7 @@ TEST(Contact, SignoriniHoldsRowByRow) {
       for (int k = 0; k < p.rows; ++k) delta += p.w_at(row, k) * p.lambda[std::size_t(k)];
       EXPECT_GE(delta, -1e-12);
       EXPECT_GE(p.lambda[std::size_t(row)], 0);
-      EXPECT_LT(std::abs(delta * p.lambda[std::size_t(row)]), 1e-12);
+      EXPECT_TRUE(test::held("delta lambda = 0 in every row, J", std::abs(delta * p.lambda[std::size_t(row)]), 1, 1e-12));
     }
   }
 }
@@ -165,7 +166,7 @@ TEST(Contact, ForcesOnBothSidesAddUpToNothing) {
             }
           }
         }
-        EXPECT_LT(force.norm(), 1e-12 * size);
+        EXPECT_TRUE(test::held("action = reaction of contacts", force.norm(), size, 1e-12));
         // Both sides act at one place, that of the contact's moment: apart at the start by what lies between (and, for
         // tissue, by the gap, along which the normal force has no arm).
         const Proximity& x = pair.contacts[k];

@@ -2,8 +2,10 @@
 // Bending of a wall: exact for quadratics on any mesh, beams and plates under refinement, large rotation, curved at rest.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numeric>
 
+#include "core/testing/held.h"
 #include "plugins/membrane/shell_fixture.h"
 #include "tests/figures/figure.h"
 
@@ -43,7 +45,7 @@ TEST(Bending, QuadraticDeflectionIsReproducedOnAnyMesh) {
       ASSERT_GE(inside, 25);
       test::settle(*body, 10);
       for (int i = 0; i < body->nodes(); ++i)
-        EXPECT_LT((body->q().segment<3>(3 * i) - place(i)).norm(), 1e-7 * tiny * size) << "node " << i << ", cut " << int(cut);
+        EXPECT_TRUE(test::held("bending patch test", (body->q().segment<3>(3 * i) - place(i)).norm(), tiny * size, 1e-7)) << "node " << i << ", cut " << int(cut);
     }
 }
 
@@ -116,12 +118,33 @@ TEST(Bending, PlateConvergesOnAnyMesh) {
 }
 
 // Large deflection of a cantilever (Bisshopp, Drucker 1945): P L^2 / (E I) = 1 and 10.
+/// The elastica: a cantilever whose end hangs at the angle `slope` under a load across it (Bisshopp, Drucker 1945, equations 8 to 12).
+struct Elastica {
+  double load, down, back;  ///< P L^2 / (E I); of the end, in lengths
+  explicit Elastica(double slope) {
+    const double k = std::sqrt(0.5 * (1 + std::sin(slope))), from = std::asin(1 / (k * std::numbers::sqrt2));
+    const double root = std::comp_ellint_1(k) - std::ellint_1(k, from);
+    load = root * root;
+    down = 1 - 2 * (std::comp_ellint_2(k) - std::ellint_2(k, from)) / root;
+    back = 1 - std::sqrt(2 * std::sin(slope)) / root;
+  }
+  static Elastica under(double load) {
+    double low = 1e-4, high = 1.57;
+    while (high - low > 1e-14) (Elastica(0.5 * (low + high)).load < load ? low : high) = 0.5 * (low + high);
+    return Elastica(low);
+  }
+};
+
 TEST(Bending, ElasticaAtLargeRotation) {
+  test::Figure figure("elastica", "A strip under a load at its end: the elastica", "P L^2 / (E I)", "way of the end over the length");
+  for (double load = 0.1; load <= 10.05; load += 0.1) figure.law("down", load, Elastica::under(load).down), figure.law("back", load, Elastica::under(load).back);
   const double length = 0.05, width = 0.005;
   const int along = 40;
   const double cell = length / (along - 0.5);
   const Wall w{.thickness = 1e-4, .young = 1e6, .poisson = 0};
   for (const auto& [load, down, back] : {std::array{1.0, 0.30172, 0.05643}, std::array{10.0, 0.81061, 0.55500}}) {
+    EXPECT_NEAR(Elastica::under(load).down, down, 1e-5);
+    EXPECT_NEAR(Elastica::under(load).back, back, 1e-5);
     TriMesh mesh = test::plate(length + 0.5 * cell, width, along, 4, Cut::one_way);
     for (Vec3& x : mesh.vertices) x.x() -= 0.5 * cell;
     auto body = test::shell(std::move(mesh), w, [&](const Vec3& x) { return x.x() < 0.6 * cell; });
@@ -134,12 +157,15 @@ TEST(Bending, ElasticaAtLargeRotation) {
           body->external[3 * i + 2] = s / 10.0 * force * (y < 1e-9 || y > width - 1e-9 ? 0.125 : 0.25);
         }
       for (int k = 0; k < 60; ++k) test::step(*body, 0.5);
+      Vec3 moved = Vec3::Zero();
+      for (int i = 0; i < body->nodes(); ++i)
+        if (tip(i)) moved += (body->q().segment<3>(3 * i) - body->rest_nodes()[std::size_t(i)]) / 5;
+      const double now = s / 10.0 * load;
+      const Elastica law = Elastica::under(now);
+      EXPECT_NEAR(moved.z() / length, law.down, 5e-4) << now;
+      EXPECT_NEAR(-moved.x() / length, law.back, 5e-4) << now;
+      if (load > 1 || s == 5) figure.run("down", now, moved.z() / length), figure.run("back", now, -moved.x() / length);
     }
-    Vec3 moved = Vec3::Zero();
-    for (int i = 0; i < body->nodes(); ++i)
-      if (tip(i)) moved += (body->q().segment<3>(3 * i) - body->rest_nodes()[std::size_t(i)]) / 5;
-    EXPECT_NEAR(moved.z() / length, down, 5e-4);
-    EXPECT_NEAR(-moved.x() / length, back, 5e-4);
   }
 }
 

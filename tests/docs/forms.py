@@ -10,7 +10,7 @@ import re
 # What runs on the first page that says it, since nothing later on a page goes on with what it leaves.
 ONCE = r"\./insula (play|run|view|bench|check|describe|list|docs|schema|devices|help|python-types)\b.*|build/release/bin/haptic_server .*"
 
-# What the pages' commands need, made by fixtures.py in the folder they run in.
+# What the pages' commands need, made by project.py in the folder they run in.
 FIXTURES = {
     "README.md": ("vessel.stl",),
     "docs/arteries.md": ("patient.stl",),
@@ -79,7 +79,7 @@ FORMS = (
     Elsewhere(r"\./insula devices --calibrate .*", "DeviceTool.CalibratesByFourPlaces", "a stand-in's arm is moved to the four places"),
     Elsewhere(r"build/release/bin/insula_artery make tools/artery/arteries.json meshes/arteries", "ArteryTool.ShippedArteriesAreMadeAgainBitForBit", "makes all of the table"),
     Elsewhere(r"\./insula case new from_scan .*", "Volumes.ADicomSeriesIsReadByItsThreshold", "makes a series to read"),
-    Elsewhere(r"\./insula case new .* --brain aal\.nii\.gz .*", "OwnBrain.LabelsAreChecked", "makes a volume of labels"),
+    Elsewhere(r"\./insula case new .* --brain aal\.nii\.gz .*", "OwnBrain.LabelsOfAVolumeBecomeACaseWhoseExercisesRun", "makes a volume of labels"),
     Elsewhere(r"\./insula case new .* --brain frontal=f\.stl .*", "OwnBrain.BlocksAreMeshedWithinTheirNodes", "makes a surface for each lobe"),
     Elsewhere(r"\./insula case brain .* --brain brain\.ply .*", "OwnBrain.OneSurfaceIsSharedOutToTheNearestShippedLobe", "makes that surface"),
     Elsewhere(r"cd build/release && cpack -G DEB", "install_packages", "makes the packages and looks into them"),

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/base/random.h"
+#include "core/testing/held.h"
 #include "tests/figures/figure.h"
 #include "tests/physics/soft_fixture.h"
 
@@ -62,7 +63,7 @@ TEST(ImplicitEuler, RigidTranslationAndSmallRotationStayRigid) {
       test::step(*body, h);
       for (int i = 0; i < body->nodes(); ++i) {
         const Vec3 moved = body->q().segment<3>(3 * i) - body->rest().nodes[std::size_t(i)];
-        ASSERT_LT((moved - n * h * velocity(i)).norm(), 1e-10 * (turning ? 0.02 : n * h * v.norm())) << "step " << n;
+        ASSERT_TRUE(test::held("rigid motion stays rigid", (moved - n * h * velocity(i)).norm(), turning ? 0.02 : n * h * v.norm(), 1e-10)) << "step " << n;
         // Rotation by 1e-6 rad: also right to that size relative to itself (its square is the next order).
         if (turning) { ASSERT_LT((moved - n * h * velocity(i)).norm(), 2e-6 * n * h * spin.norm() * 0.02); }
       }
@@ -85,7 +86,7 @@ TEST(ImplicitEuler, FreeBodyKeepsItsMomentum) {
     const Vec3 p = momentum(*body), l = angular_momentum(*body);
     for (int n = 0; n < int(std::lround(0.2 / h)); ++n) {
       test::step(*body, h);
-      ASSERT_LT((momentum(*body) - p).norm(), 1e-11 * size) << "linear momentum, step " << n;
+      ASSERT_TRUE(test::held("momentum of a free body", (momentum(*body) - p).norm(), size, 1e-11)) << "step " << n;
     }
     drift.push_back((angular_momentum(*body) - l).norm() / l.norm());
   }
@@ -196,7 +197,7 @@ TEST(ImplicitEuler, ComplianceAndCorrectionAgree) {
       const int n = points[std::size_t(r)].node[std::size_t(k)];
       moved += points[std::size_t(r)].weight[std::size_t(k)] * directions[std::size_t(r)].dot(body->q().segment<3>(3 * n) - start.segment<3>(3 * n));
     }
-    EXPECT_NEAR(moved, expected, 1e-12) << r;
+    EXPECT_TRUE(test::held("unit lambda moves its point by W", std::abs(moved - expected), 1, 1e-12)) << r;
   }
 }
 

@@ -4,15 +4,20 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <queue>
 #include <set>
 
+#include <fmt/format.h>
+
+#include "core/base/input_error.h"
 #include "import_parts.h"
 
 namespace insula::artery {
 namespace {
 
-constexpr int cells_across = 90;  // along the longest side
+constexpr int cells_across[] = {90, 160, 280};  // along the longest side; more where a thin vessel falls between the nodes
+constexpr double most_cells = 1.2e7;
 
 struct InnerGrid {
   Vec3 low;
@@ -23,10 +28,10 @@ struct InnerGrid {
   int index(int i, int j, int k) const { return (k * n[1] + j) * n[0] + i; }
   Vec3 point(int v) const { return low + step * Vec3(v % n[0], v / n[0] % n[1], v / (n[0] * n[1])); }
 
-  explicit InnerGrid(const TriMesh& m) {
+  InnerGrid(const TriMesh& m, int across_longest) {
     Box box;
     for (const Vec3& p : m.vertices) box.extend(p);
-    step = box.sizes().maxCoeff() / cells_across;
+    step = box.sizes().maxCoeff() / across_longest;
     low = box.min() - step * Vec3(1.31, 1.37, 1.43);  // lines of the grid run through no vertex of a regular mesh
     for (int a = 0; a < 3; ++a) n[a] = int(std::ceil((box.max()[a] - low[a]) / step)) + 2;
     const std::size_t across = std::size_t(n[0]) * std::size_t(n[1]);
@@ -67,10 +72,17 @@ Curve smoothed(std::vector<Vec3> p, const WallPoints& wall, double step) {
   return out;
 }
 
-}  // namespace
+/// Cheapest paths from the inlet, and where they end.
+struct Paths {
+  InnerGrid grid;
+  std::vector<int> cell;    ///< one a cap
+  std::vector<int> before;  ///< one a cell
+  int lost = -1;            ///< a cap to which no way leads; -1: none
+};
 
-std::vector<NamedCurve> grid_centrelines(const Surface& surface, const WallPoints& wall) {
-  const InnerGrid grid(surface.mesh);
+Paths find_paths(const Surface& surface, const WallPoints& wall, int across_longest) {
+  Paths out{InnerGrid(surface.mesh, across_longest), {}, {}, -1};
+  const InnerGrid& grid = out.grid;
   const std::size_t cells = grid.inside.size();
   std::vector<double> depth(cells, 0.0);
   for (std::size_t v = 0; v < cells; ++v)
@@ -85,13 +97,20 @@ std::vector<NamedCurve> grid_centrelines(const Surface& surface, const WallPoint
       if (d < least) least = d, best = int(v);
     }
     if (best < 0) throw std::runtime_error("the surface has no inside");
-    return best;
+    return std::sqrt(least) < cap.radius + 2 * grid.step ? best : -1;  // farther away it is another vessel's
   };
 
+  for (const CapPlane& cap : surface.caps) {
+    out.cell.push_back(cell_at(cap));
+    if (out.cell.back() < 0) out.lost = int(out.cell.size()) - 1;
+  }
+  if (out.lost >= 0) return out;
+
   // Dijkstra from the inlet; equal costs go by cell number.
-  const int start = cell_at(surface.caps[0]);
+  const int start = out.cell[0];
   std::vector<double> cost(cells, std::numeric_limits<double>::infinity());
-  std::vector<int> before(cells, -1);
+  std::vector<int>& before = out.before;
+  before.assign(cells, -1);
   std::priority_queue<std::pair<double, int>, std::vector<std::pair<double, int>>, std::greater<>> queue;
   cost[std::size_t(start)] = 0;
   queue.emplace(0.0, start);
@@ -110,12 +129,38 @@ std::vector<NamedCurve> grid_centrelines(const Surface& surface, const WallPoint
         }
   }
 
+  for (std::size_t c = 1; c < surface.caps.size() && out.lost < 0; ++c)
+    if (!std::isfinite(cost[std::size_t(out.cell[c])])) out.lost = int(c);
+  return out;
+}
+
+}  // namespace
+
+std::vector<NamedCurve> grid_centrelines(const Surface& surface, const WallPoints& wall) {
+  Box box;
+  for (const Vec3& p : surface.mesh.vertices) box.extend(p);
+  const double flatness = box.sizes().prod() / std::pow(box.sizes().maxCoeff(), 3);
+  std::optional<Paths> found;
+  for (const int across : cells_across) {
+    if (found && flatness * std::pow(across, 3) > most_cells) break;
+    found = find_paths(surface, wall, across);
+    if (found->lost < 0) break;
+  }
+  const Paths& paths = *found;
+  if (paths.lost >= 0) {
+    const CapPlane& cap = surface.caps[std::size_t(paths.lost)];
+    throw InputError(fmt::format("no way leads from the inlet to {} at ({:.1f}, {:.1f}, {:.1f}), {:.2f} mm across: the vessel is too thin on the way for a grid of {:.2g} mm. Cut it off before it gets so thin (--cut), or leave out what lies far away",
+                                 cap.name, cap.centre.x(), cap.centre.y(), cap.centre.z(), 2 * cap.radius, paths.grid.step));
+  }
+  const InnerGrid& grid = paths.grid;
+  const std::vector<int>& before = paths.before;
+  const int start = paths.cell[0];
+
   // The union of the paths is a tree: it is walked from the inlet, fork by fork.
   std::map<int, std::set<int>> after;
   std::map<int, std::size_t> outlet;
   for (std::size_t c = 1; c < surface.caps.size(); ++c) {
-    int v = cell_at(surface.caps[c]);
-    if (!std::isfinite(cost[std::size_t(v)])) throw std::runtime_error("no way leads from the inlet to a cap");
+    int v = paths.cell[c];
     outlet[v] = c;
     for (; before[std::size_t(v)] >= 0; v = before[std::size_t(v)]) after[before[std::size_t(v)]].insert(v);
   }

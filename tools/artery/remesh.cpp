@@ -46,6 +46,8 @@ class Remesher {
       split_chords();
       even_valences();
       relax(3);
+      for (const V v : m_.vertices())
+        if (!at(v).allFinite()) throw std::runtime_error("triangles without an area are in the way: make the surface anew from a grid (--rebuild 0.2)");
     }
     for (int i = 0; i < 12; ++i) {
       flip_for_angles();

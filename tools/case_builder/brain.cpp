@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/base/input_error.h"
+#include "tools/case_builder/fissure_fit.h"
 #include "tools/mesh_lobes/part_meshes.h"
 #include "tools/mesh_lobes/separate.h"
 
@@ -49,7 +51,65 @@ std::vector<mesh_tool::TetMesh> lobes_of(const mesh_tool::PartFields& fields, do
   return meshes;
 }
 
+/// The labels as they lie after a motion of the world, mm.
+void move(mesh_tool::NiftiVolume& v, const Placement& p) {
+  const std::array<double, 12> to = v.to_world, from = v.from_world;
+  const Mat3 back = p.rotation.transpose();
+  const Vec3 origin = -back * p.shift;
+  const auto m = [](const std::array<double, 12>& a) { return Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(a.data()); };
+  Eigen::Map<Eigen::Matrix<double, 3, 4, Eigen::RowMajor>> to_world(v.to_world.data()), from_world(v.from_world.data());
+  to_world.leftCols<3>() = p.rotation * m(to).leftCols<3>(), to_world.col(3) = p.rotation * m(to).col(3) + p.shift;
+  from_world.leftCols<3>() = m(from).leftCols<3>() * back, from_world.col(3) = m(from).leftCols<3>() * origin + m(from).col(3);
+}
+
 }  // namespace
+
+mesh_tool::FieldOptions field_options() {
+  mesh_tool::FieldOptions f;
+  f.spacing = field_spacing, f.radius = fissure_radius, f.coarse_gap = 0.45;
+  f.centre = {fissure_centre.x(), fissure_centre.y(), fissure_centre.z()};
+  return f;
+}
+
+Placement settle_in(BrainLabels& brain, mesh_tool::PartFields& fields, const fs::path& project, std::vector<Note>& notes) {
+  const mesh_tool::FieldOptions f = field_options();
+  constexpr double near_enough = 1.0;  // mm; brains of one template differ by less
+  const Course wanted = shipped_course(project);
+  const auto course = [&] { return course_of(describe_cleft(fields, 0, 1, f, {1, 0, 0})); };
+  Course now = course();
+  const double before = distance(wanted, now);
+  double off = before;
+  Placement whole;
+  double shift = 0, turn = 0;
+  for (int round = 0; round < 3 && off > near_enough; ++round) {
+    const Placement step = fit(wanted, now);
+    const Placement next{step.rotation * whole.rotation, step.rotation * whole.shift + step.shift};
+    shift = (next.apply(fissure_centre) - fissure_centre).norm(), turn = Eigen::AngleAxisd(next.rotation).angle() * 180 / std::numbers::pi;
+    if (shift > farthest_move || turn > widest_turn) {
+      notes.push_back({Note::Kind::problem, fmt::format("The fissure lies {:.1f} mm from where the arms, the hands and the microscope stand; it would have to be moved by {:.0f} mm and turned by {:.0f} degrees.", off, shift, turn),
+                       "Bring the brain to the MNI frame (right-anterior-superior) by a registration of its own, best one that follows the gyri."});
+      return whole;
+    }
+    move(brain.volume, step);
+    whole = next;
+    fields = build_part_fields(brain.volume, nullptr, brain.parts, f);
+    now = course();
+    const double last = off;
+    off = distance(wanted, now);
+    if (off > 0.9 * last) break;
+  }
+  if (off < before)
+    notes.push_back({Note::Kind::repair, fmt::format("The brain was moved by {:.1f} mm and turned by {:.1f} degrees, so that its fissure lies where the arms, the hands and the microscope stand: {:.1f} mm off, before {:.1f} mm.", shift, turn, off, before), ""});
+  return whole;
+}
+
+Placement brain_motion(const CaseFolder& folder) {
+  Placement p;
+  const Json json = read_json(folder.path / "brain.json");
+  for (int k = 0; k < 9; ++k) p.rotation(k / 3, k % 3) = json.at("rotation").at(std::size_t(k)).get<double>();
+  p.shift = vec3_from(json.at("shift_mm"));
+  return p;
+}
 
 void run_brain(const CaseFolder& folder, const fs::path& project, const Options& o, Progress& progress) {
   std::error_code ignored;
@@ -60,14 +120,17 @@ void run_brain(const CaseFolder& folder, const fs::path& project, const Options&
   progress.stage("brain", 4);
   progress.step("reading the brain");
   std::vector<Note> notes;
-  const BrainLabels given = read_brain(o, project, notes);
-  mesh_tool::FieldOptions f;
-  f.spacing = field_spacing, f.radius = fissure_radius, f.coarse_gap = 0.45;
-  f.centre = {fissure_centre.x(), fissure_centre.y(), fissure_centre.z()};
+  BrainLabels given = read_brain(o, project, notes);
+  const mesh_tool::FieldOptions f = field_options();
   Json json;
   try {
     progress.step("borders of the lobes");
-    const mesh_tool::PartFields fields = build_part_fields(given.volume, nullptr, given.parts, f);
+    mesh_tool::PartFields fields = build_part_fields(given.volume, nullptr, given.parts, f);
+    Placement motion;
+    if (!o.brain_in_place && given.own_fissure) motion = settle_in(given, fields, project, notes);
+    json["rotation"] = Json::array();
+    for (int k = 0; k < 9; ++k) json["rotation"].push_back(rounded(motion.rotation(k / 3, k % 3)));
+    json["shift_mm"] = to_json(motion.shift);
     progress.step("surfaces");
     std::vector<mesh_tool::TriangleMesh> surfaces;
     for (std::size_t a = 0; a < 3; ++a) surfaces.push_back(mesh_surface(fields.grid, fields.fine[a], growing(fields, a, edge[a], focus), edge_error));

@@ -11,10 +11,12 @@
 #include "tools/case_builder/brain.h"
 #include "tools/case_builder/fissure.h"
 #include "tools/case_builder/grid_surface.h"
+#include "tools/case_builder/size_check.h"
 #include "tools/case_builder/solid.h"
+#include "tools/case_builder/surface_input.h"
 #include "tools/case_builder/topology.h"
 #include "tools/case_builder/volume_input.h"
-#include "tools/case_builder/vtp_reader.h"
+#include "tools/mesh_lobes/labels.h"
 #ifdef INSULA_WITH_ITK
 #include "tools/case_builder/volume_reader.h"
 #endif
@@ -22,8 +24,7 @@
 namespace insula::case_builder {
 namespace {
 
-constexpr double least_extent = 15, most_extent = 250;  // mm, of a lobe or of a brain
-constexpr double grid_spacing = 0.7;                    // mm, of the labels that surfaces are turned into
+constexpr double grid_spacing = 0.7;  // mm, of the labels that surfaces are turned into
 
 bool is_lobe(const std::string& name) { return std::find(std::begin(lobe_names), std::end(lobe_names), name) != std::end(lobe_names); }
 
@@ -33,38 +34,12 @@ std::pair<std::string, std::string> named(const std::string& text) {
   return sign == std::string::npos ? std::pair(std::string(), text) : std::pair(text.substr(0, sign), text.substr(sign + 1));
 }
 
-std::vector<int> label_list(const std::string& text) {
-  std::vector<int> out;
-  std::size_t at = 0;
-  while (at <= text.size()) {
-    const std::size_t comma = std::min(text.find(',', at), text.size());
-    const std::string item = text.substr(at, comma - at);
-    const std::size_t dash = item.find('-');
-    std::int64_t first = 0, last = 0;
-    const bool sound = parse_integer(item.substr(0, dash), first) && parse_integer(dash == std::string::npos ? item : item.substr(dash + 1), last);
-    if (!sound || first < 1 || last < first || last > 1'000'000) throw InputError("--lobe: " + in_quotes(item) + " is no label and no range of labels; write it like frontal=2,4,10-16");
-    for (std::int64_t k = first; k <= last; ++k) out.push_back(int(k));
-    at = comma + 1;
-  }
-  return out;
-}
-
-std::string unit_advice(double extent) {
-  for (const auto& [mm, name] : {std::pair(1000.0, "m"), std::pair(10.0, "cm"), std::pair(0.001, "um")})
-    if (extent * mm >= 40 && extent * mm <= 200) return fmt::format("; as if its numbers were in {0}: give --brain-unit {0}", name);
-  return "";
-}
-
 TriMesh read_lobe_surface(const fs::path& file, const std::string& what, const Options& o, std::vector<Note>& notes) {
   if (!fs::exists(file)) fail(file, "does not exist");
-  const std::string kind = lower_extension(file);
-  const double unit = o.brain_unit_mm ? *o.brain_unit_mm : kind == ".gltf" || kind == ".glb" ? 1000 : 1;
-  TriMesh m = kind == ".vtp" ? read_vtp(file) : read_surface(file, 1.0);
-  Vec3 low = Vec3::Constant(1e300), high = -low;
-  for (Vec3& p : m.vertices) p *= unit, low = low.cwiseMin(p), high = high.cwiseMax(p);
-  const double extent = (high - low).norm();
-  if (extent < least_extent || extent > most_extent)
-    fail(file, fmt::format("the surface is {:.3g} mm across, which no part of a brain is (usual: {:g} to {:g} mm){}", extent, least_extent, most_extent, unit_advice(extent / unit)));
+  const double unit = unit_mm(file, o.brain_unit_mm);
+  TriMesh m = read_any_surface(file, unit);
+  const double extent = extent_of(m);
+  if (const std::string why = check_brain(extent, unit); !why.empty()) fail(file, why);
   weld(m, 1e-6 * extent);
   drop_doubles(m);
   if (m.triangles.empty()) fail(file, "holds no triangle with an area");
@@ -81,15 +56,17 @@ TriMesh read_lobe_surface(const fs::path& file, const std::string& what, const O
   return m;
 }
 
-/// An empty volume of labels about the fissure.
-mesh_tool::NiftiVolume blank(mesh_tool::Grid& grid) {
-  const int n = int(std::ceil(2 * (fissure_radius + 3) / grid_spacing)) + 1;
+/// An empty volume of labels about the fissure, of a brain that stays in its place or may be moved.
+mesh_tool::NiftiVolume blank(mesh_tool::Grid& grid, bool in_place) {
+  // Room for the move that may lay the fissure over the shipped one.
+  const double reach = fissure_radius + 3 + (in_place ? 0 : farthest_move);
+  const int n = int(std::ceil(2 * reach / grid_spacing)) + 1;
   grid.size = {n, n, n}, grid.spacing = grid_spacing;
   mesh_tool::NiftiVolume v;
   v.size = grid.size;
   v.value.assign(grid.count(), 0.0f);
   for (std::size_t a = 0; a < 3; ++a) {
-    grid.origin[a] = fissure_centre[Eigen::Index(a)] - fissure_radius - 3;
+    grid.origin[a] = fissure_centre[Eigen::Index(a)] - reach;
     v.to_world[5 * a] = grid_spacing, v.from_world[5 * a] = 1 / grid_spacing;
     v.to_world[4 * a + 3] = grid.origin[a], v.from_world[4 * a + 3] = -grid.origin[a] / grid_spacing;
   }
@@ -99,7 +76,7 @@ mesh_tool::NiftiVolume blank(mesh_tool::Grid& grid) {
 BrainLabels of_surfaces(const std::map<std::string, std::string>& files, const Options& o, std::vector<Note>& notes) {
   BrainLabels out;
   mesh_tool::Grid grid;
-  out.volume = blank(grid);
+  out.volume = blank(grid, o.brain_in_place);
   std::size_t twice = 0, all = 0;
   for (int k = 0; k < 3; ++k) {
     const std::string name = lobe_names[k];
@@ -120,7 +97,8 @@ BrainLabels of_surfaces(const std::map<std::string, std::string>& files, const O
 BrainLabels of_one_surface(const fs::path& file, const Options& o, const fs::path& project, std::vector<Note>& notes) {
   BrainLabels out;
   mesh_tool::Grid grid;
-  out.volume = blank(grid);
+  out.own_fissure = false;
+  out.volume = blank(grid, true);
   const mesh_tool::Mask inside = inside_of(read_lobe_surface(file, "brain", o, notes), grid);
   const Fissure shipped = read_fissure(project, {});
   const Vec3 reach = Vec3::Constant(fissure_radius + 4);
@@ -149,10 +127,18 @@ BrainLabels of_one_surface(const fs::path& file, const Options& o, const fs::pat
 BrainLabels of_volume(const fs::path& file, const Options& o) {
   BrainLabels out;
   std::map<std::string, std::vector<int>> labels;
+  std::map<int, std::string> lobe_of;
   for (const std::string& text : o.lobe_labels) {
     const auto [name, list] = named(text);
     if (!is_lobe(name)) throw InputError("--lobe: " + in_quotes(text) + " names no lobe; write frontal=LABELS, temporal=LABELS, insula=LABELS");
-    labels[name] = label_list(list);
+    if (labels.contains(name)) throw InputError("--lobe: the " + name + " is given twice");
+    try {
+      labels[name] = mesh_tool::label_list(list);
+    } catch (const std::runtime_error& e) {
+      throw InputError("--lobe " + name + ": " + e.what());
+    }
+    for (const int k : labels[name])
+      if (const auto [at, fresh] = lobe_of.emplace(k, name); !fresh && at->second != name) throw InputError(fmt::format("--lobe: the label {} is given to the {} and to the {}", k, at->second, name));
   }
   for (const char* name : lobe_names)
     if (!labels.contains(name)) fail(file, std::string("is a volume: say which labels are the ") + name + ", such as --lobe " + name + "=2,4,10-16");

@@ -1,38 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An author's own brain: labels, a surface a lobe, one surface for all, and what is refused of them.
+// An author's own brain: labels, a surface a lobe, one surface for all, what is refused of them, and meshes of it.
 #include <gtest/gtest.h>
 
 #include <cstring>
 
 #include "core/base/input_error.h"
-#include "tools/case_builder/brain.h"
-#include "tools/case_builder/commands.h"
+#include "tools/case_builder/brain_fixture.h"
 #include "tools/case_builder/fissure.h"
 #include "tools/case_builder/project.h"
-#include "tools/case_builder/report.h"
-#include "tools/case_builder/scenes.h"
-#include "tools/case_builder/test_shapes.h"
-#include "tools/case_builder/topology.h"
+#include "tools/mesh_lobes/labels.h"
 
 namespace insula::case_builder {
 namespace {
 
-/// A box in twelve triangles, outward.
-TriMesh box(const Vec3& low, const Vec3& high) {
-  TriMesh m;
-  for (int k = 0; k < 8; ++k) m.vertices.emplace_back(k & 1 ? high.x() : low.x(), k & 2 ? high.y() : low.y(), k & 4 ? high.z() : low.z());
-  for (const auto& [a, b, c, d] : {std::array{0, 2, 3, 1}, std::array{4, 5, 7, 6}, std::array{0, 1, 5, 4}, std::array{2, 6, 7, 3}, std::array{0, 4, 6, 2}, std::array{1, 3, 7, 5}})
-    m.triangles.push_back({a, b, c}), m.triangles.push_back({a, c, d});
-  return m;
-}
-
-// Three blocks that meet at a fissure in the plane z = -2 and at a floor in the plane x = 40.
-const Vec3 low_corner(15, -40, -45), high_corner(95, 45, 40);
-TriMesh block(int lobe) {
-  if (lobe == 0) return box({40, low_corner.y(), -2}, high_corner);
-  if (lobe == 1) return box({40, low_corner.y(), low_corner.z()}, {high_corner.x(), high_corner.y(), -2});
-  return box(low_corner, {40, high_corner.y(), high_corner.z()});
-}
 int lobe_at(const Vec3& p) { return p.x() < 40 ? 2 : p.z() > -2 ? 0 : 1; }
 
 std::string refusal(const Options& o) {
@@ -61,21 +41,6 @@ void expect_blocks(const BrainLabels& b, double layer) {
   EXPECT_GT(all, 500);
   EXPECT_EQ(wrong, 0);
 }
-
-class OwnBrain : public testing::Test {
- protected:
-  OwnBrain() {
-    for (int k = 0; k < 3; ++k) folder.write(std::string(lobe_names[k]) + ".stl", test::stl_text(block(k)));
-  }
-  std::string path(const std::string& name) const { return (folder.path() / name).string(); }
-  Options by_lobe() const {
-    Options o;
-    for (const char* name : lobe_names) o.brain.push_back(std::string(name) + "=" + path(std::string(name) + ".stl"));
-    return o;
-  }
-  insula::test::SceneFolder folder;
-  std::vector<Note> notes;
-};
 
 TEST(WritePly, FirstByteThatIsALinesEndIsReadBack) {
   // assimp swallows it: a coordinate whose lowest byte is one loses its last bit instead.
@@ -123,6 +88,7 @@ TEST_F(OwnBrain, OneSurfaceIsSharedOutToTheNearestShippedLobe) {
     EXPECT_GT(checked, 5);
   }
   EXPECT_EQ(notes.size(), 1u);
+  EXPECT_FALSE(b.own_fissure);
 }
 
 TEST_F(OwnBrain, WhatCannotBeIsRefusedWithWhatToDo) {
@@ -133,7 +99,8 @@ TEST_F(OwnBrain, WhatCannotBeIsRefusedWithWhatToDo) {
     return refusal(o);
   };
   EXPECT_NE(with(0, test::scaled(block(0), 1e-3)).find("give --brain-unit m"), std::string::npos);
-  EXPECT_NE(with(1, test::scaled(block(1), 100)).find("no part of a brain is"), std::string::npos);
+  EXPECT_NE(with(1, test::scaled(block(1), 1e3)).find("no part of a brain is (usual: 15 to 250 mm); as if its numbers were in um: give --brain-unit um"), std::string::npos);
+  EXPECT_NE(with(1, test::scaled(block(1), 1e6)).find("give the millimetres of its unit, --brain-unit-mm 1e-06"), std::string::npos);
   TriMesh open = block(1);
   open.triangles.resize(10);
   EXPECT_NE(with(1, open).find("is not closed: it has 1 hole"), std::string::npos);
@@ -161,33 +128,27 @@ TEST_F(OwnBrain, LabelsAreChecked) {
   o.lobe_labels = {"frontal=10-12", "temporal=20", "insula=31"};
   EXPECT_NE(refusal(o).find("none of the labels of the insula is there; there are: 11, 20, 30"), std::string::npos) << refusal(o);
   o.lobe_labels[2] = "insula=3O";
-  EXPECT_NE(refusal(o).find("\"3O\" is no label"), std::string::npos);
+  EXPECT_NE(refusal(o).find("--lobe insula: \"3O\" is neither a label"), std::string::npos) << refusal(o);
+  o.lobe_labels[2] = "insula=12,30";
+  EXPECT_NE(refusal(o).find("the label 12 is given to the frontal and to the insula"), std::string::npos) << refusal(o);
+  o.lobe_labels[2] = "frontal=30";
+  EXPECT_NE(refusal(o).find("the frontal is given twice"), std::string::npos) << refusal(o);
   o.lobe_labels[2] = "insula=30";
   const BrainLabels b = read_brain(o, find_project(INSULA_SOURCE_DIR), notes);
   EXPECT_EQ(b.parts[0].labels, (std::vector<int>{10, 11, 12}));
 }
 #endif
 
-/// Meshes of both lobes and the floor, closed, that fit into each other.
-void expect_meshes(const CaseFolder& made, int most_nodes) {
-  int nodes = 0;
-  for (const char* name : {"frontal", "temporal"}) {
-    const TetMesh tets = read_tet_mesh(made.brain() / (std::string(name) + ".msh"), 1.0);
-    const TriMesh surface = read_ply(made.brain() / (std::string(name) + "_surface.ply"));
-    nodes += int(tets.nodes.size());
-    EXPECT_TRUE(border_loops(surface).empty());
-    EXPECT_GT(signed_volume(surface), 5000);
-    EXPECT_LT(embed(tets, surface.vertices).outside_m, 5);
-  }
-  EXPECT_TRUE(border_loops(read_ply(made.brain() / "insula_surface.ply")).empty());
-  EXPECT_LE(nodes, most_nodes);
-  EXPECT_GT(nodes, 150);
+TEST(LabelList, IsReadWholeOrRefusedWithTheItem) {
+  EXPECT_EQ(mesh_tool::label_list("7,2-4,1000000"), (std::vector<int>{7, 2, 3, 4, 1000000}));
+  for (const char* bad : {"", "1,", ",1", "0", "-1", "+5", " 5", "5 ", "4-", "-4", "4-3", "1-2-3", "1000001", "99999999999", "2;3", "0x10"}) EXPECT_THROW(mesh_tool::label_list(bad), std::runtime_error) << bad;
 }
 
 TEST_F(OwnBrain, BlocksAreMeshedWithinTheirNodes) {
   const CaseFolder made{folder.path() / "made", "made"};
   Options o = by_lobe();
   o.brain_nodes = 450;
+  o.brain_in_place = true;
   Progress quiet;
   run_brain(made, find_project(INSULA_SOURCE_DIR), o, quiet);
   expect_meshes(made, 450);
@@ -218,26 +179,6 @@ TEST_F(OwnBrain, ABrainElsewhereIsRefused) {
   } catch (const InputError& e) {
     EXPECT_NE(std::string(e.what()).find("is the brain in the MNI frame"), std::string::npos) << e.what();
   }
-}
-
-TEST_F(OwnBrain, RealLobesBecomeACase) {
-  const fs::path anatomy = fs::path(INSULA_SOURCE_DIR) / "../shared/anatomy";
-  if (!fs::exists(anatomy / "colin27_insula_R.stl")) GTEST_SKIP() << "no anatomy here";
-  folder.write("vessel.stl", test::stl_text(test::open_tube()));
-  std::vector<std::string> words{"new", "own", path("vessel.stl"), "--out", path("out"), "--vertices", "900", "--no-rehearse"};
-  for (const char* name : lobe_names) words.insert(words.end(), {"--brain", std::string(name) + "=" + (anatomy / ("colin27_" + std::string(name) + "_R.stl")).string()});
-  std::FILE *said = std::tmpfile(), *err = std::tmpfile();
-  const int status = run_command(words, said, err);
-  std::string text(4096, '\0');
-  std::rewind(err);
-  text.resize(std::fread(text.data(), 1, text.size(), err));
-  std::fclose(said), std::fclose(err);
-  ASSERT_EQ(status, 0) << text;
-  const CaseFolder made{folder.path() / "out/own", "own"};
-  expect_meshes(made, 1000);
-  const MeasuredScene m = measure_scene(exercise_files(made)[2], 5);
-  EXPECT_EQ(m.message, "");
-  EXPECT_TRUE(m.finite);
 }
 
 }  // namespace

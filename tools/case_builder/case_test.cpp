@@ -185,6 +185,76 @@ TEST(MadeCase, NeckByTwoPoints) {
   EXPECT_GT(v.bleb->first.z(), 5);
 }
 
+/// Five vessels that meet in three forks, with a ball of radius 2.7 at the middle fork. Their ends are round.
+struct Tree {
+  struct Tube {
+    Vec3 a, b;
+    double radius;
+  };
+  std::vector<Tube> tubes{{Vec3(-20, -1.5, -5.5), Vec3::Zero(), 1.5}, {Vec3::Zero(), Vec3(18, 8.3, -4.2), 1.15}, {Vec3::Zero(), Vec3(17, -11.3, -2.8), 1.0}, {Vec3(8, 3.7, -1.8), Vec3(14, 19, 5), 0.8}, {Vec3(-10, -0.7, -2.7), Vec3(-6, -19, -10), 0.6}};
+  TriMesh mesh() const {
+    const auto value = [&](const Vec3& p) {
+      double tube = 1e300;
+      for (const Tube& t : tubes) {
+        const Vec3 d = t.b - t.a;
+        tube = std::min(tube, (p - t.a - std::clamp((p - t.a).dot(d) / d.squaredNorm(), 0.0, 1.0) * d).norm() - t.radius);
+      }
+      const double ball = (p - Vec3(0.5, 0.3, 4.2)).norm() - 2.7, k = 0.6, w = std::max(k - std::abs(tube - ball), 0.0) / k;
+      return std::min(tube, ball) - 0.25 * w * w * k;
+    };
+    return artery::extract(value, Vec3(-22.03, -21.01, -12.02), Vec3(20.07, 21.05, 8.1), 0.4);
+  }
+  /// Each end cut off 1.5 mm before it.
+  std::vector<Plane> cuts() const {
+    std::vector<Plane> out;
+    for (std::size_t i = 0; i < tubes.size(); ++i) {
+      const Vec3 out_of = (i == 0 ? tubes[i].a - tubes[i].b : tubes[i].b - tubes[i].a).normalized(), at = (i == 0 ? tubes[i].a : tubes[i].b) - 1.5 * out_of;
+      out.push_back({at.x(), at.y(), at.z(), out_of.x(), out_of.y(), out_of.z()});
+    }
+    return out;
+  }
+};
+
+TEST(MadeCase, ATreeIsCutPastItsForksAndKeepsItsNeck) {
+  const Tree tree;
+  Options whole;
+  whole.cuts = tree.cuts();
+  const Intake in = mended(tree.mesh(), "tree", whole, {});
+  ASSERT_EQ(in.surface.caps.size(), 5u);
+  Progress quiet;
+  for (const double keep : {7.0, 10.0, 13.0, 0.0}) {
+    std::vector<Note> notes;
+    Options o;
+    o.keep = keep;
+    const artery::Vessel v = make_wall(in.surface, o, notes, quiet);
+    ASSERT_TRUE(v.neck) << keep;
+    EXPECT_LT((v.neck->centre - Vec3(0.2, 0.1, 1.5)).norm(), 0.8) << keep;
+    EXPECT_GT(v.neck->normal.z(), 0.9) << keep;
+    EXPECT_NEAR(v.dome_height, 5.1, 0.5) << keep;
+    EXPECT_GT(artery::quality(v.wall.mesh).min_angle_deg, 20) << keep;
+    EXPECT_GE(v.wall.caps.size(), keep == 7 ? 3u : 4u) << keep;
+    for (const Note& n : notes) EXPECT_NE(n.kind, Note::Kind::problem) << keep << ": " << n.text;
+  }
+}
+
+TEST(MadeCase, VesselTooThinForAWayIsNamed) {
+  // A thread hangs the outlet's half on that of the inlet.
+  artery::Surface s;
+  s.mesh = artery::extract([](const Vec3& p) { return std::hypot(p.y(), p.z()) - (std::abs(p.x()) < 3 ? 0.09 : 0.8); }, Vec3(-9.03, -2.01, -2.02), Vec3(9.07, 2.05, 2.1), 0.12);
+  s.patch.assign(s.mesh.triangles.size(), -1);
+  artery::cut_and_close(s, {"inlet", Vec3(-8, 0, 0), Vec3(-1, 0, 0), 0.8}, 3.0);
+  artery::cut_and_close(s, {"outlet_1", Vec3(8, 0, 0), Vec3(1, 0, 0), 0.8}, 3.0);
+  for (Vec3& p : s.mesh.vertices) p.y() += p.x() > 0 ? 0.31 * std::clamp(p.x() / 3, 0.0, 1.0) : 0, p.z() += 0.2 * std::abs(p.x()) * 0.01;
+  Progress quiet;
+  std::vector<Note> notes;
+  try {
+    make_wall(mended(s.mesh, "thread", {}, {}).surface, {}, notes, quiet);
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("no way leads from the inlet to outlet_1"), std::string::npos) << e.what();
+  }
+}
+
 TEST(MadeCase, VesselWithoutASacIsRefused) {
   const TriMesh tube = [] {
     artery::Surface s;

@@ -68,6 +68,8 @@ void brain_options(CLI::App* app, Options& o) {
                                                      "your own brain in the MNI frame: a volume of labels, NAME=FILE for frontal, temporal and insula each, or one closed surface")->take_all();
   app->add_option_function<std::vector<std::string>>("--lobe", [&o](const std::vector<std::string>& v) { o.lobe_labels = v; }, "NAME=LABELS of that volume, such as frontal=2,4,10-16")->take_all();
   app->add_option_function<std::string>("--brain-unit", [&o](const std::string& u) { o.brain_unit_mm = mm_of(u); }, "unit of the brain's surfaces (default: mm; glTF: m)")->check(CLI::IsMember({"m", "cm", "mm", "um", "inch"}));
+  app->add_option("--brain-unit-mm", o.brain_unit_mm, "the same in millimetres a unit")->check(CLI::Range(1e-9, 1e9));
+  app->add_flag("--brain-in-place", o.brain_in_place, "do not move the brain so that its fissure lies where the arms and the microscope stand");
   app->add_option("--brain-nodes", o.brain_nodes, "of both lobes' tetrahedra, at most")->check(CLI::Range(200, 20000));
 }
 

@@ -14,9 +14,9 @@
 #include "tools/case_builder/grid_surface.h"
 #include "tools/case_builder/openings.h"
 #include "tools/case_builder/size_check.h"
+#include "tools/case_builder/surface_input.h"
 #include "tools/case_builder/topology.h"
 #include "tools/case_builder/volume_input.h"
-#include "tools/case_builder/vtp_reader.h"
 
 namespace insula::case_builder {
 namespace {
@@ -24,12 +24,6 @@ namespace {
 constexpr std::size_t most_triangles = 2'000'000;   // what is read at all
 constexpr std::size_t many_triangles = 150'000;     // more are made anew from a grid
 constexpr std::uintmax_t most_bytes = 220'000'000;  // of a surface file: beyond that it has more than those triangles
-
-double extent_of(const TriMesh& m) {
-  Box box;
-  for (const Vec3& p : m.vertices) box.extend(p);
-  return m.vertices.empty() ? 0 : box.diagonal().norm();
-}
 
 std::string place(const Vec3& p) { return fmt::format("({:.1f}, {:.1f}, {:.1f})", p.x(), p.y(), p.z()); }
 const char* ending(int n) { return n == 1 ? "" : "s"; }
@@ -49,12 +43,10 @@ TriMesh read_surface_mm(const fs::path& input, const Options& o, std::vector<Not
     in.read(head, 84);
     if (std::string_view(head, 5) != "solid") too_many(std::size_t((bytes - 84) / 50));
   }
-  const double unit = o.unit_mm ? *o.unit_mm : kind == ".gltf" || kind == ".glb" ? 1000 : 1;
-  if (kind == ".gltf" || kind == ".glb")
-    if (!o.unit_mm) notes.push_back({Note::Kind::fact, "glTF is in metres by its standard; it was read so.", ""});
-  TriMesh m = kind == ".vtp" ? read_vtp(input) : read_surface(input, 1.0);
+  const double unit = unit_mm(input, o.unit_mm);
+  if (is_in_metres(input) && !o.unit_mm) notes.push_back({Note::Kind::fact, "glTF is in metres by its standard; it was read so.", ""});
+  TriMesh m = read_any_surface(input, unit);
   if (m.triangles.size() > most_triangles) too_many(m.triangles.size());
-  for (Vec3& p : m.vertices) p *= unit;
   if (!o.any_size)
     if (const std::string why = check_extent(extent_of(m), unit); !why.empty()) fail(input, why + "; --any-size takes it all the same");
   return m;

@@ -42,6 +42,7 @@ Json to_json(const Options& o) {
     j["brain"] = o.brain;
     j["lobe_labels"] = o.lobe_labels;
     put(j, "brain_unit_mm", o.brain_unit_mm);
+    j["brain_in_place"] = o.brain_in_place;
     j["brain_nodes"] = o.brain_nodes;
   }
   j["in_place"] = o.in_place;
@@ -78,6 +79,7 @@ Options options_from_json(const Json& j) {
     take(j, "brain", o.brain);
     take(j, "lobe_labels", o.lobe_labels);
     take(j, "brain_unit_mm", o.brain_unit_mm);
+    take(j, "brain_in_place", o.brain_in_place);
     take(j, "brain_nodes", o.brain_nodes);
     take(j, "in_place", o.in_place);
     take(j, "gap", o.gap);

@@ -37,6 +37,7 @@ struct Options {
   std::vector<std::string> brain;    ///< a volume of labels; NAME=FILE for each lobe; or one closed surface. Empty: the shipped lobes
   std::vector<std::string> lobe_labels;  ///< NAME=LIST, such as frontal=2,4,10-16
   std::optional<double> brain_unit_mm;   ///< millimetres a unit of the brain's surface files
+  bool brain_in_place = false;           ///< it is not moved to where the arms and the microscope stand
   int brain_nodes = 1000;            ///< of both lobes together, at most
   // place
   bool in_place = false;             ///< the input lies in the frame of the lobes already

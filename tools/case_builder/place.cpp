@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "core/base/input_error.h"
+#include "tools/case_builder/brain.h"
 #include "tools/case_builder/wall.h"
 #include "tools/mesh_lobes/mesh_data.h"
 
@@ -27,7 +28,8 @@ void run_place(const CaseFolder& folder, const fs::path& project, const Options&
   const artery::Vessel v = read_wall(folder.wall());
   Fissure fissure = read_fissure(project, o.brain.empty() ? fs::path(o.lobes) : folder.brain());
   std::vector<Note> notes;
-  const Placement p = find_placement(v, fissure, o, progress);
+  // A vessel that lies in the frame of the author's own brain goes where that went.
+  const Placement p = o.in_place && !o.brain.empty() ? brain_motion(folder) : find_placement(v, fissure, o, progress);
   const artery::Vessel there = placed(v, p);
   progress.step("parting the lobes");
   const std::vector<Room> rooms = part_lobes(fissure, there.wall.mesh, o.gap, notes, progress);

@@ -149,6 +149,7 @@ MeasuredScene measure_scene(const fs::path& scene, int steps) {
     times.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
     out.finite = out.finite && s.report().finite;
     out.rows = std::max(out.rows, s.report().rows);
+    if (i == 0) out.standing = standing_of(s);
   }
   std::tie(out.step_ms, out.most_ms) = median_and_most(std::move(times));
   return out;
@@ -230,6 +231,10 @@ void run_report(const CaseFolder& folder, Progress& progress) {
     const bool fast = m.step_ms <= m.budget_ms;
     s += row(m.file, fmt::format("{} nodes, {} rows; hands still, a step takes {:.1f} ms (95 %: {:.1f} ms) of {:.1f} ms{}", m.nodes, m.rows, m.step_ms, m.most_ms, m.budget_ms, m.finite ? "" : "; it LEFT THE RANGE OF NUMBERS"), fast && m.finite ? "good" : "bad",
              fast ? "" : "Slower than life here: fewer vertices (insula case wall FOLDER --vertices 1200 --on), or a faster machine.");
+    for (const Note& n : judged(m.standing)) {
+      const bool good = n.kind != Note::Kind::problem;
+      s += row(m.file + ", as it begins", n.text, good ? "good" : "bad", n.advice);
+    }
   }
   progress.step("playing the clipping");
   const fs::path clipping = exercise_files(folder)[2];

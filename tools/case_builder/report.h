@@ -4,6 +4,7 @@
 #pragma once
 #include "tools/case_builder/case_folder.h"
 #include "tools/case_builder/progress.h"
+#include "tools/case_builder/standing.h"
 
 namespace insula::case_builder {
 
@@ -14,6 +15,7 @@ struct MeasuredScene {
   double step_ms = 0, most_ms = 0, budget_ms = 0;  ///< median, 95th percentile, of the scene's step
   int nodes = 0, rows = 0;
   bool finite = true;
+  Standing standing;         ///< as it begins, before anybody does anything
 };
 MeasuredScene measure_scene(const fs::path& scene, int steps);
 

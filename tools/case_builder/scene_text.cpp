@@ -109,8 +109,9 @@ std::string exercise(const SceneFacts& f, int number) {
          "    <fault_force id=\"force\" text=\"Too much force on the brain: ease off\" on=\"frontal temporal\" limit=\"0.2 N\" grace=\"100 ms\"/>\n"
          "    <fault_torn id=\"torn\" text=\"A strand tore: cut it before you draw the lobe further\"/>\n"
          "    <fault_order id=\"order\" text=\"Too deep too early: divide the strands at the surface first\" inward=\"-0.946 -0.236 -0.220\" margin=\"5 mm\" allowed=\"6\"/>\n"
-         "    <time_limit id=\"time\" text=\"Ten minutes are over\" limit=\"600 s\"/>\n"
-         "    <motion id=\"steady\" file=\"1_sylvian_fissure_steady.csv\"/>\n  </exercise>\n</scene>\n";
+         "    <time_limit id=\"time\" text=\"Ten minutes are over\" limit=\"600 s\"/>\n";
+    if (f.opened) s += "    <motion id=\"steady\" file=\"1_sylvian_fissure_steady.csv\"/>\n";
+    s += "  </exercise>\n</scene>\n";
   } else if (number == 2) {
     open("Exercise 2: free the aneurysm of its strands.", "dissection of the aneurysm");
     s += fissure(f, "retracted_fissure.xml");

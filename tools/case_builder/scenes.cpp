@@ -9,6 +9,7 @@
 #include "core/model/file_bytes.h"
 #include "tools/case_builder/dissection_script.h"
 #include "tools/case_builder/motion_script.h"
+#include "tools/case_builder/opening_play.h"
 #include "tools/case_builder/place.h"
 #include "tools/case_builder/scene_text.h"
 #include "tools/case_builder/wall.h"
@@ -59,7 +60,7 @@ std::vector<fs::path> exercise_files(const CaseFolder& folder) {
 }
 
 void run_scenes(const CaseFolder& folder, const fs::path& project, const Options& o, Progress& progress) {
-  progress.stage("scenes", 5);
+  progress.stage("scenes", o.brain.empty() ? 5 : 6);
   progress.step("choosing a clip");
   const artery::Vessel v = read_wall(folder.artery());
   if (!v.neck) throw InputError("the vessel has no neck; do the stage wall again");
@@ -96,6 +97,7 @@ void run_scenes(const CaseFolder& folder, const fs::path& project, const Options
   write_text(folder.path / "4_rupture_steady.csv", rupture_motion(plan, plan_temporary(v, floor, *temporary), f.temporary, f.neck));
 
   spin_strands(f, folder, o.rehearse, notes, progress);
+  if (!o.brain.empty()) try_opening(f, folder, o.rehearse, notes, progress);
   progress.step("writing");
   Json json;
   json["clip"] = {{"name", plan.clip.name}, {"blade_mm", rounded(plan.clip.blade)}, {"needed_mm", rounded(plan.needed)}, {"off_view_deg", rounded(plan.off_view)},

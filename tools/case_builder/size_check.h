@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether sizes are those of a cerebral artery, and which unit would make them so.
+// Whether sizes are those of a cerebral artery or of a brain, and which unit would make them so.
 #pragma once
 #include <string>
 
 namespace insula::case_builder {
 
-inline constexpr double least_extent = 4, most_extent = 200;     ///< mm, of the whole surface
+inline constexpr double least_extent = 4, most_extent = 200;     ///< mm, of a vessel's whole surface
 inline constexpr double least_calibre = 0.6, most_calibre = 8;   ///< mm, of the widest opening
+inline constexpr double least_brain = 15, most_brain = 250;      ///< mm, of a lobe's or a brain's surface
 
 /// Empty when a surface so large (mm) may be one; else what is wrong and which unit to give. `mm_per_unit` is the one in use.
 std::string check_extent(double extent_mm, double mm_per_unit);
 /// The same for the calibre of the widest opening.
 std::string check_calibre(double calibre_mm, double mm_per_unit);
+/// The same for a surface of a brain.
+std::string check_brain(double extent_mm, double mm_per_unit);
 
 }  // namespace insula::case_builder

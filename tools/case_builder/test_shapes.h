@@ -95,8 +95,8 @@ inline std::string vtp_text(const TriMesh& m) {
          "</DataArray></Polys></Piece></PolyData></VTKFile>\n";
 }
 
-/// A NIfTI file of bytes; `value` at voxel indices.
-inline std::string nifti_text(std::array<int, 3> n, double spacing, const std::function<int(int, int, int)>& value, int times = 1) {
+/// A NIfTI file of bytes; `value` at voxel indices, the first of which lies at `origin`.
+inline std::string nifti_text(std::array<int, 3> n, double spacing, const std::function<int(int, int, int)>& value, int times = 1, const Vec3& origin = Vec3::Zero()) {
   std::string h(352, '\0');
   const auto put = [&h](std::size_t at, auto v) { std::memcpy(h.data() + at, &v, sizeof v); };
   put(0, std::int32_t(348));
@@ -107,13 +107,31 @@ inline std::string nifti_text(std::array<int, 3> n, double spacing, const std::f
   put(108, 352.0f), put(112, 1.0f);
   h[123] = 2;  // millimetres
   put(254, std::int16_t(1));
-  for (std::size_t r = 0; r < 3; ++r) put(280 + 16 * r + 4 * r, float(spacing));
+  for (std::size_t r = 0; r < 3; ++r) put(280 + 16 * r + 4 * r, float(spacing)), put(280 + 16 * r + 12, float(origin[Eigen::Index(r)]));
   std::memcpy(h.data() + 344, "n+1", 4);
   for (int t = 0; t < times; ++t)
     for (int k = 0; k < n[2]; ++k)
       for (int j = 0; j < n[1]; ++j)
         for (int i = 0; i < n[0]; ++i) h.push_back(char(value(i, j, k)));
   return h;
+}
+
+/// Labels of a right half of a head in the MNI frame with a Sylvian fissure where that of the shipped lobes lies: a ball of cortex, a bump of
+/// insula (30) under it, and a bent sheet of fissure between the gyri of the frontal lobe (2, 4 to 6) and the temporal lobe (81). `shift`, mm,
+/// moves it all.
+inline int head_label(Vec3 p, const Vec3& shift = Vec3::Zero()) {
+  p -= shift;
+  if (p.x() < 0 || (p - Vec3(0, -12, -4)).norm() > 70) return 0;
+  if (((p - Vec3(20, 3, -2)).array() / Eigen::Array3d(29, 30, 25)).matrix().norm() < 1 || p.x() < 15) return 30;
+  // Inward the fissure goes back and down; along its opening it falls towards the front, the faster the farther.
+  const double y = p.y() + 0.28 * (60 - p.x()), z = p.z() + 0.28 * (60 - p.x());
+  if (z < -3.3 - 0.4 * (y - 16.3) - 0.65 * std::max(0.0, y - 18)) return 81;
+  return p.y() > 20 ? 2 : p.z() > 25 ? 4 : p.y() > 0 ? 5 : 6;
+}
+inline std::string head_text(const Vec3& shift = Vec3::Zero()) {
+  const Vec3 first(-4.5, -55, -58);
+  constexpr double voxel = 1.5;
+  return nifti_text({54, 78, 78}, voxel, [&](int i, int j, int k) { return head_label(first + voxel * Vec3(i, j, k), shift); }, 1, first);
 }
 
 /// One slice of a DICOM series, 16 bits, explicit little endian.

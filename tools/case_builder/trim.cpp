@@ -12,6 +12,15 @@
 namespace insula::case_builder {
 namespace {
 
+constexpr double past_fork = 1.5;  // radii of a fork that a cut keeps from its middle
+
+/// How far a point is from the nearest vertex, mm.
+double away(const TriMesh& m, const Vec3& p) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Vec3& q : m.vertices) least = std::min(least, (q - p).norm());
+  return least;
+}
+
 /// Way along the lines from the point nearest to `from` to each point of each line, mm.
 std::vector<std::vector<double>> ways(const std::vector<artery::NamedCurve>& lines, const Vec3& from) {
   std::vector<std::vector<double>> out;
@@ -55,12 +64,24 @@ artery::Surface trimmed(const artery::Surface& surface, const std::vector<artery
       if (!out && !in) continue;
       const double end = out ? way[l].back() : way[l].front();
       if (end < keep + 2 * c.radius[k]) continue;  // its own end is hardly farther
+      // A section so near to a fork is not of this line alone.
+      const bool forks = (out ? lines[l].from : lines[l].to).starts_with("bifurcation");
+      const double inner = out ? way[l].front() : way[l].back(), free = forks ? past_fork * (out ? c.radius.front() : c.radius.back()) : 0;
+      std::size_t first = k;
+      while (first > 0 && first + 1 < c.size() && way[l][first] - inner < free) first = out ? first + 1 : first - 1;
+      if (end < way[l][first] + 2 * c.radius[first]) continue;
       bool done = false;
       std::string why;
       for (std::size_t farther = 0; farther < 8 && !done; ++farther) {
-        const std::size_t at = out ? std::min(k + 2 * farther, c.size() - 2) : k >= 2 * farther + 1 ? k - 2 * farther : 1;
+        const std::size_t at = out ? std::min(first + 2 * farther, c.size() - 2) : first >= 2 * farther + 1 ? first - 2 * farther : 1;
         try {
-          cut_off(s, c.points[at], out ? c.tangent(at) : Vec3(-c.tangent(at)), lines[l].name + "_end");
+          artery::Surface shorter = s;
+          cut_off(shorter, c.points[at], out ? c.tangent(at) : Vec3(-c.tangent(at)), lines[l].name + "_end");
+          if (away(shorter.mesh, neck) > away(s.mesh, neck) + 1e-6) {
+            why = "the neck would go with it";
+            continue;
+          }
+          s = std::move(shorter);
           done = true;
           notes.push_back({Note::Kind::repair, fmt::format("{} was cut off {:.1f} mm from the neck ({:.1f} mm of it left out).", lines[l].name, way[l][at], end - way[l][at]),
                            "The fissure has room for short stretches only; --keep MM keeps more."});

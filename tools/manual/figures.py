@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """figures.py BUILD [--check]: the pictures of docs/validation.md, each from a run of the test that holds the law: the law is a line, what
-the simulation gave are the points. With --check nothing is written: pictures that the tests no longer give are told.
+the simulation gave are the points. Laws that hold at a single place have no line to draw: a picture a section shows the errors that their tests
+met, beside what is allowed. With --check nothing is written: pictures that the tests no longer give are told, and so are laws without any.
 
-A test keeps what it finds when INSULA_FIGURES names a folder (tests/figures/figure.h).
+A test keeps what it finds when INSULA_FIGURES names a folder (tests/figures/figure.h), and errors as its properties (core/testing/held.h).
 """
 import json
 import math
@@ -18,6 +19,9 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 OUT = ROOT / "docs/images/validation"
 FIGURES = {  # name: (program, test)
     "anchors": ("plugin_tests", "AnchorSprings.WholeFollowsTheDiscretisedOscillator"),
+    "bowl": ("plugin_tests", "Bleeding.FillsTheFieldAtTheTearsRateAndRunsOffAtTheRim"),
+    "elastica": ("plugin_tests", "Bending.ElasticaAtLargeRotation"),
+    "poiseuille": ("plugin_tests", "BloodFlow.StraightTubeIsPoiseuilles"),
     "arm": ("servo_tests", "ArmModel.StepIsImplicitEulerExactly"),
     "bar": ("physics_tests", "Bar.EndLoadIsExact"),
     "cantilever": ("physics_tests", "Cantilever.ConvergesToBeamTheory"),
@@ -40,9 +44,41 @@ FIGURES = {  # name: (program, test)
     "suction": ("plugin_tests", "Suction.HoldsUpToPressureTimesAreaAndLetsGo"),
     "weakening": ("plugin_tests", "ClipApplier.AHeldOpenSpringWeakensAsPublished"),
 }
+ERRORS = {  # section of the page: (picture, {program: tests that keep errors})
+    "Elasticity": ("errors_elasticity", {
+        "physics_tests": "PatchTest.*:Cantilever.IsFrameIndifferent:Bar.Poisson*",
+        "plugin_tests": "ElementBatch.FindsTheRotation*:ElementBatch.Inverted*:CorotationalFem.BothTangents*:CorotationalFem.MassIs*"}),
+    "Membrane": ("errors_membrane", {
+        "plugin_tests": "Membrane.PatchTest:Membrane.Uniaxial*:Membrane.RigidMotion*:Membrane.EachRegion*:Membrane.EnergyIsBounded*:Bending.Quadratic*:Bending.StepOf*:Laplace.Prism*:Laplace.Icosahedron*:"
+                        "PinchedCylinder.*:AnchorSprings.DrawBack*"}),
+    "Time integration": ("errors_integration", {
+        "physics_tests": "ImplicitEuler.RigidTranslation*:ImplicitEuler.FreeBody*:ImplicitEuler.Compliance*:Asynchronous.ForcesAre*",
+        "core_tests": "Direct/*.SolvesAs*:Direct/*.ComplianceAnd*:AsynchronousSolver.CorrectionKnows*"}),
+    "Constraint solver": ("errors_solver", {
+        "physics_tests": "LocalContact.IsTheSolution*:Solver.RandomProblems*:Solver.ConvergesToThe*:Solver.ResultDoesNot*:Solver.KnownAnswer:Solver.ConjugateDirectionsSolve*",
+        "core_tests": "Disc.IsTheSolution*"}),
+    "Contact, strands, suction, tools": ("errors_contact", {
+        "plugin_tests": "Contact.SignoriniHolds*:Contact.ForcesOnBoth*:StrandSprings.TwoBodies*:Retractor.TheHandCarries*:FixedRegion.HeldNodesStay:ContactLimits.ForceOfALayerIs*"}),
+    "Contracts": ("errors_contracts", {"physics_tests": "Elements/EveryElement.*"}),
+    "Pressure and flow": ("errors_flow", {
+        "plugin_tests": "Chambers.AddUp*:Pressure.Balances*:Pressure.SphereOf*:Pressure.FillsAt*:Pressure.Sealed*:Pressure.RowsAre*:Prestress.Imaged*:Prestress.Without*:Section.Cuts*:BloodFlow.Network*:"
+                        "BloodFlow.SplitsThe*:BloodFlow.ClipOn*:BloodFlow.TearBleeds*:BloodFlow.PulsatesWithout*:Bleeding.TearsWhen*"}),
+    "Clips and thin walls": ("errors_clips", {
+        "plugin_tests": "Clip.MomentumIs*:Clip.FallsBy*:Clip.HoldsAnd*:ClipApplier.TheHandFeels*:ClipApplier.Released*:ContactLimits.ForceOfALayerIs*:SelfContact.AWallThat*",
+        "core_tests": "Clip.EveryShipped*:VertexCollider.EveryVertex*:SelfCollider.WallsPressed*:OneSided.AVertexThat*"}),
+}
+CLOSED_FORMS = [s for s in ERRORS if s != "Contracts"]
+NO_PICTURE = {  # tests of those sections that hold no closed form: the same bits, a bound never passed, whole cases
+    "AsynchronousSolver.SolvesToItsToleranceWithAnOldFactor", "Asynchronous.TheSameInputGivesTheSameBits", "Solver.BoundsHoldAfterAnyNumberOfSweeps", "Allocation.SolveAllocatesNothing",
+    "Contact.AFastToolNeverEndsInsideAPlate", "StrandSprings.TearsBeyondItsStrength", "Clip.EnergyNeverExceedsThatOfTheOpenSpring", "ClipApplier.LetsGoAndTakesBackWithoutAStepOfForce",
+    "SelfContact.FastBladesPressNoWallThroughTheOtherAndStayOutside", "SelfContact.JawsPressAVesselFlatAndItsWallsStayApart", "Patch.AllTogetherStickBelowMuNAndSlipAbove",
+    "ColliderCache.OfAWallAgainstItselfNeverShows", "SelfContactNeck.RowsOfAClippedNeckKeepTheirNamesAtRest", "RealVessel.Pulses", "RealCase.BecomesACaseWhoseExercisesTheMotionsMadeForItFinish",
+    "OwnBrain.SurfacesBecomeLabels", "OwnBrain.ThatStandsElsewhereIsTold", "MadeCase.VesselTooThinForAWayIsNamed", "RuptureRules.SpurtsTakeNothingBackButBloodThatRunsDoes", "MadeCase.GivesTheSameFilesTwiceAndStagesCanBeDoneAgainAlone", "RealSurface.BecomesAVesselThatTheProductReads",
+}
 WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 460, 270, 62, 14, 44, 44
 COLOURS = ("#1f6fb2", "#c2410c", "#15803d", "#7e22ce")
 SLACK = 0.3  # pixels by which another processor's last digits may move a point
+ROUNDING = 25  # the same of an error of rounding: two decades, which its test still holds below what is allowed
 
 
 def ticks(low, high):
@@ -86,30 +122,86 @@ def svg(figure):
     return "\n".join(out) + "\n</svg>\n"
 
 
+def errors_svg(title, laws):
+    """laws: {law: (greatest error, allowed)}. A row a law: a circle where the error lies, a bar where it may not be."""
+    row, left = 17, 270
+    height = TOP + row * len(laws) + 44
+    low, high = -17, 0
+    x = lambda v: left + (max(low, min(high, math.log10(v) if v > 0 else low)) - low) / (high - low) * (WIDTH - left - RIGHT)  # noqa: E731
+    out = ['<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 %d %d" width="%d" height="%d" role="img" font-family="sans-serif" font-size="11" fill="#222">' % (WIDTH, height, WIDTH, height),
+           '<rect width="%d" height="%d" fill="#fff"/>' % (WIDTH, height), text(WIDTH / 2, 16, title, more=' font-size="12"')]
+    for power in range(low + 1, high + 1, 4):
+        at = x(10.0 ** power)
+        out += ['<path d="M%.1f %dV%d" stroke="#e5e7eb"/>' % (at, TOP - 10, height - 40), text(at, height - 26, "1e%d" % power)]
+    for i, (law, (found, allowed)) in enumerate(laws.items()):
+        y = TOP + row * i + 4
+        out += [text(left - 8, y + 4, law, "end"),
+                '<path d="M%.1f %.1fH%.1f" stroke="#fee2e2" stroke-width="9"/>' % (x(allowed), y, WIDTH - RIGHT),
+                '<path d="M%.1f %.1fV%.1f" stroke="%s" stroke-width="1.6"/>' % (x(allowed), y - 6, y + 6, COLOURS[1]),
+                '<circle cx="%.1f" cy="%.1f" r="3" fill="none" stroke="%s"/>' % (x(found), y, COLOURS[0])]
+    out.append(text(WIDTH / 2, height - 8, "error over the size at hand: met (circle), allowed (bar)"))
+    return "\n".join(out) + "\n</svg>\n"
+
+
 def run(build, folder):
-    for program in sorted({p for p, _ in FIGURES.values()}):
-        tests = ":".join(sorted(t for p, t in FIGURES.values() if p == program))
-        done = subprocess.run([build / "tests" / program, "--gtest_filter=" + tests, "--gtest_brief=1"], cwd=ROOT, capture_output=True, text=True, env=dict(os.environ, INSULA_FIGURES=str(folder)))
+    """Runs the tests; {picture: {law: (greatest error met, allowed)}} of what they keep of errors. Files in the folder have the rest."""
+    errors = {}
+    jobs = [(p, ":".join(sorted(t for q, t in FIGURES.values() if q == p)), None) for p in sorted({p for p, _ in FIGURES.values()})]
+    jobs += [(program, tests, name) for name, programs in ERRORS.values() for program, tests in programs.items()]
+    for program, tests, name in jobs:
+        report = folder / "report.json"
+        done = subprocess.run([build / "tests" / program, "--gtest_filter=" + tests, "--gtest_brief=1", "--gtest_output=json:%s" % report], cwd=ROOT, capture_output=True, text=True,
+                              env=dict(os.environ, INSULA_FIGURES=str(folder)))
         if done.returncode != 0:
             sys.exit("error: the tests of the pictures fail:\n" + done.stdout + done.stderr)
-    missing = [name for name in FIGURES if not (folder / (name + ".json")).exists()]
+        if name:
+            laws = errors.setdefault(name, {})
+            for test in (t for suite in json.loads(report.read_text(encoding="utf-8"))["testsuites"] for t in suite["testsuite"]):
+                for law, kept in test.items():
+                    if isinstance(kept, str) and re.fullmatch(r"\S+ of \S+", kept) and law not in ("name", "file"):
+                        found, allowed = map(float, kept.split(" of "))
+                        laws[law] = (max(found, laws.get(law, (0, 0))[0]), allowed)
+    missing = [name for name in FIGURES if not (folder / (name + ".json")).exists()] + [name for name, laws in errors.items() if not laws]
     if missing:
         sys.exit("error: no test gave %s" % ", ".join(missing))
+    return errors
 
 
-def differs(a, b):
+def unseen(page):
+    """Rows of the page's tables of laws, above the real cases, of which no picture shows anything."""
+    shown = [t for _, t in FIGURES.values()] + [t for _, programs in ERRORS.values() for tests in programs.values() for t in tests.split(":")]
+    patterns = [re.compile(re.escape(t.replace("/*.", ".")).replace(r"\*", ".*") + "$") for t in shown]
+    section, out = "", []
+    for line in page.splitlines():
+        if line.startswith("## "):
+            section = re.sub(r" \(.*", "", line[3:])
+        cells = [c.strip() for c in line.strip().strip("|").split("|")] if line.startswith("|") else []
+        if section not in CLOSED_FORMS or len(cells) != 3 or not cells[2] or set(cells[0]) <= {"-"} or cells[0] == "law":
+            continue
+        tests = re.findall(r"`(\w+\.\w+)`", cells[1])
+        if not any(p.match(t) for p in patterns for t in tests) and not any(t in NO_PICTURE for t in tests):
+            out.append(cells[0] + ": " + ", ".join(tests))
+    return out
+
+
+def differs(a, b, slack):
     """Whether two pictures are more than the last digits of their numbers apart."""
     number = re.compile(r"-?\d+\.?\d*")
-    return number.sub("#", a) != number.sub("#", b) or any(abs(float(p) - float(q)) > SLACK for p, q in zip(number.findall(a), number.findall(b)))
+    return number.sub("#", a) != number.sub("#", b) or any(abs(float(p) - float(q)) > slack for p, q in zip(number.findall(a), number.findall(b)))
 
 
 def main():
     build, check = pathlib.Path(sys.argv[1]).resolve(), sys.argv[2:] == ["--check"]
     failures = 0
     with tempfile.TemporaryDirectory() as name:
-        run(build, pathlib.Path(name))
+        errors = run(build, pathlib.Path(name))
         made = {n: svg(json.loads((pathlib.Path(name) / (n + ".json")).read_text(encoding="utf-8"))) for n in FIGURES}
+    for section, (name, _) in ERRORS.items():
+        made[name] = errors_svg(section + ": errors met by the tests", errors[name])
     page = (ROOT / "docs/validation.md").read_text(encoding="utf-8")
+    for row in unseen(page):
+        failures += 1
+        print("FAILED: no picture shows the law: %s" % row)
     for name, picture in made.items():
         file = OUT / (name + ".svg")
         if "images/validation/%s.svg" % name not in page:
@@ -118,11 +210,11 @@ def main():
         if not check:
             file.parent.mkdir(parents=True, exist_ok=True)
             file.write_text(picture, encoding="utf-8")
-        elif not file.exists() or differs(file.read_text(encoding="utf-8"), picture):
+        elif not file.exists() or differs(file.read_text(encoding="utf-8"), picture, ROUNDING if name.startswith("errors_") else SLACK):
             failures += 1
             print("FAILED: %s is not what the test gives: python3 tools/manual/figures.py BUILD, and look at it" % file.relative_to(ROOT))
     for file in OUT.glob("*.svg"):
-        if file.stem not in FIGURES:
+        if file.stem not in made:
             failures += 1
             print("FAILED: nothing gives %s" % file.relative_to(ROOT))
     print("%d pictures; %d failures" % (len(made), failures))

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "cleft.h"
+#include "labels.h"
 #include "mesh_data.h"
 #include "meshing.h"
 #include "part_fields.h"
@@ -68,24 +69,6 @@ std::vector<double> numbers(const std::string& text, std::size_t count, const st
   return out;
 }
 
-std::vector<int> label_list(const std::string& text) {
-  std::vector<int> out;
-  std::stringstream stream(text);
-  std::string item;
-  while (std::getline(stream, item, ',')) {
-    int first = 0, last = 0, used = 0;
-    if (std::sscanf(item.c_str(), "%d-%d%n", &first, &last, &used) != 2) {
-      if (std::sscanf(item.c_str(), "%d%n", &first, &used) != 1) used = -1;
-      last = first;
-    }
-    if (used != static_cast<int>(item.size()) || first < 1 || last < first || last > 1000000)
-      throw std::runtime_error("--part: '" + item + "' is not a label or a range of labels");
-    for (int label = first; label <= last; ++label) out.push_back(label);
-  }
-  if (out.empty()) throw std::runtime_error("--part: no labels given");
-  return out;
-}
-
 struct Job {
   std::string labels, intensity;
   std::vector<Part> parts;
@@ -137,7 +120,11 @@ Job parse(int argc, char** argv) {
       const auto [name, list] = split(value, option);
       for (const Part& p : job.parts)
         if (p.name == name) throw std::runtime_error("--part: '" + name + "' is given twice");
-      job.parts.push_back({name, label_list(list)});
+      try {
+        job.parts.push_back({name, label_list(list)});
+      } catch (const std::runtime_error& e) {
+        throw std::runtime_error("--part " + name + ": " + e.what());
+      }
     } else if (option == "--tissue") job.fields.tissue = one(), has_tissue = true;
     else if (option == "--tissue-slope") job.fields.tissue_slope = one();
     else if (option == "--roi") {
