@@ -14,6 +14,7 @@
 #include "engine/condense.h"
 #include "engine/exchange_pause.h"
 #include "engine/publisher.h"
+#include "engine/turned_contacts.h"
 
 namespace insula {
 namespace {
@@ -97,11 +98,13 @@ ForceTrace reference_forces(Simulation& simulation, const Motion& motion, double
   return out;
 }
 
-std::vector<RecordedStep> record_steps(Simulation& simulation, const Motion& motion, double duration_s) {
+std::vector<RecordedStep> record_steps(Simulation& simulation, const Motion& motion, double duration_s, double turned_ahead_s) {
   std::vector<RecordedStep> out;
   Driven driven(simulation, motion);
   ExchangePause pause;
   Condenser condense;
+  TurnedContacts turned;
+  ConstraintProblem whole;
   HapticUpdate sent;
   std::vector<std::uint8_t> bytes;
   std::string why;
@@ -112,7 +115,9 @@ std::vector<RecordedStep> record_steps(Simulation& simulation, const Motion& mot
     step.force = {driven.force(0), driven.force(1)};
     sent.step_s = simulation.h();
     sent.sim_time_s = simulation.time();
-    condense(simulation.problem(), Publisher::most_rows, sent.problem);
+    whole = simulation.problem();
+    if (turned_ahead_s >= 0) turned(simulation, turned_ahead_s, whole);
+    condense(whole, Publisher::most_rows, sent.problem);
     pause.apply(simulation, sent.problem);
     if (!encode_problem(sent, bytes) || !decode_problem(bytes, step.update, why)) out.pop_back();
   }

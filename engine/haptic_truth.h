@@ -37,8 +37,9 @@ struct RecordedStep {
 /// The engine stepped at 1 kHz over `duration_s` of the motion. Throws InputError, as record_steps does, when the engine refuses a command of
 /// the motion: what is measured would be something else.
 ForceTrace reference_forces(Simulation& simulation, const Motion& motion, double duration_s);
-/// Its problems at the rate of the simulation's own step, condensed, encoded and decoded as on the bus.
-std::vector<RecordedStep> record_steps(Simulation& simulation, const Motion& motion, double duration_s);
+/// Its problems at the rate of the simulation's own step, condensed, encoded and decoded as on the bus; with contacts turned to where tools
+/// are so long after the step (engine/turned_contacts.h), negative: as they were in it.
+std::vector<RecordedStep> record_steps(Simulation& simulation, const Motion& motion, double duration_s, double turned_ahead_s = -1);
 
 enum class Rendering { servo, held, diagonal, hindsight };
 

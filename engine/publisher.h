@@ -11,6 +11,7 @@
 #include "core/sim/simulation.h"
 #include "engine/condense.h"
 #include "engine/exchange_pause.h"
+#include "engine/turned_contacts.h"
 
 namespace insula {
 
@@ -43,6 +44,8 @@ class Publisher {
   insula_lcm::scene_info_t info_;
   insula_lcm::render_frame_t frame_;
   HapticUpdate update_;
+  TurnedContacts turn_;
+  ConstraintProblem whole_;
   Condenser condense_;
   ExchangePause pause_;
   std::vector<std::uint8_t> scratch_;
