@@ -10,9 +10,9 @@
 namespace insula {
 
 /// Of the surface's places no farther than `within` from `about`, the one nearest to the piece's core at this pose: the unit vector from it to
-/// the core. `vertex`: where the surface's vertices are now, not far from where the mesh has them. Nothing where there is no such place, or
-/// the core is not before the surface there. Scene frame, m.
+/// the core. Where the core is as near to several, as in a groove: that most along `like`. `vertex`: where the surface's vertices are now, not
+/// far from where the mesh has them. Nothing where there is no such place, or the core is not before the surface there. Scene frame, m.
 std::optional<Vec3> nearest_place(const RoundedPiece& piece, const Pose& pose, const CollisionMesh& mesh, const std::function<Vec3(int)>& vertex,
-                                  const Vec3& about, double within);
+                                  const Vec3& about, double within, const Vec3& like);
 
 }  // namespace insula

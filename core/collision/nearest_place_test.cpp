@@ -12,18 +12,18 @@ namespace {
 constexpr double radius = 1e-3, half = 10e-3;
 
 struct Rig {
-  TriMesh box = shapes::box(Vec3::Constant(-half), Vec3::Constant(half), 8);
+  TriMesh box;
   CollisionMesh mesh;
   RoundedPiece ball = rounded({"ball", {Vec3::Zero()}, radius});
   Vec3 gone = Vec3::Zero();  ///< of the surface
-  Rig() {
+  explicit Rig(TriMesh surface = shapes::box(Vec3::Constant(-half), Vec3::Constant(half), 8)) : box(std::move(surface)) {
     mesh.build(box.vertices, box.triangles);
     mesh.update(box.vertices, {});
   }
-  std::optional<Vec3> nearest(const Vec3& centre) const {
+  std::optional<Vec3> nearest(const Vec3& centre, const Vec3& like = Vec3::Zero()) const {
     Pose pose;
     pose.p = centre;
-    return nearest_place(ball, pose, mesh, [&](int v) { return Vec3(box.vertices[std::size_t(v)] + gone); }, centre, 3 * radius);
+    return nearest_place(ball, pose, mesh, [&](int v) { return Vec3(box.vertices[std::size_t(v)] + gone); }, centre, 3 * radius, like);
   }
 };
 
@@ -49,6 +49,17 @@ TEST(NearestPlace, TheSurfaceIsWhereItHasGone) {
   std::optional<Vec3> normal;
   ASSERT_TRUE((normal = rig.nearest(Vec3(half, 0.7e-3, half) + rig.gone + radius * out)));
   EXPECT_LT((*normal - out).norm(), 1e-9);
+}
+
+// Two boxes side by side with a step between them: in its corner each contact keeps its own wall.
+TEST(NearestPlace, InAGrooveEachContactKeepsItsWall) {
+  const Rig rig(shapes::joined(shapes::box(Vec3(-half, -half, -half), Vec3(0, half, half), 8), shapes::box(Vec3(0, -half, -half), Vec3(half, half, 0), 8)));
+  const Vec3 corner(radius, 0.7e-3, radius);
+  for (const Vec3& wall : {Vec3(Vec3::UnitX()), Vec3(Vec3::UnitZ())}) {
+    const auto normal = rig.nearest(corner, wall);
+    ASSERT_TRUE(normal);
+    EXPECT_LT((*normal - wall).norm(), 1e-12);
+  }
 }
 
 TEST(NearestPlace, NotFromWithinNorFromFarAway) {

@@ -19,7 +19,7 @@ void Contact::turned(double steps, std::vector<Turn>& out) const {
     for (std::size_t i = 0; i < p.forces.size(); ++i) {
       const Proximity& x = p.contacts[i];
       if (!(p.forces[i][0] > 0)) continue;
-      const auto normal = nearest_place(p.pieces_a[std::size_t(x.piece)], then, p.b->collision(), vertex, then.apply(x.local), spacing());
+      const auto normal = nearest_place(p.pieces_a[std::size_t(x.piece)], then, p.b->collision(), vertex, then.apply(x.local), spacing(), x.normal);
       if (normal && normal->dot(x.normal) > 0) out.push_back({p.rows[i], x.normal, x.tangent, *normal});
     }
   }
