@@ -59,7 +59,7 @@ struct TruthOfHand {
   double peak_N = 0;       ///< of the reference
   double rms = 0;          ///< of the error while either feels anything, over the peak
   double worst = 0;        ///< largest error over the peak
-  double onset_s = 0;      ///< largest delay of a contact's onset; negative: early
+  double onset_s = 0;      ///< largest delay of a contact's onset, from nothing over 2 % of the peak; negative: early
   int onsets = 0;
   bool counts() const { return peak_N > 2e-3; }  ///< there was something to feel
 };

@@ -132,6 +132,10 @@ TEST(HapticTruthCompare, ErrorsAndOnsets) {
   for (std::size_t i = 98; i < 103; ++i) rendered[i] = reference[100];
   EXPECT_NEAR(compare(reference, rendered).onset_s, -2e-3, 1e-12);
   EXPECT_FALSE(compare(rendered, reference).onsets == 0);
+  // A force that was there creeps over the threshold: no contact begins.
+  std::vector<Vec3> creeping = reference;
+  for (std::size_t i = 0; i < 100; ++i) creeping[i] = Vec3(0, 0, 2.1e-5 * double(i));
+  EXPECT_EQ(compare(creeping, rendered).onsets, 0);
   EXPECT_FALSE(compare(std::vector<Vec3>(5, Vec3::Zero()), rendered).counts());
 }
 
