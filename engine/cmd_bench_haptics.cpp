@@ -8,12 +8,11 @@
 #include "core/params/param.h"
 #include "engine/haptic_truth.h"
 #include "engine/live_engine.h"
+#include "engine/publisher.h"
 #include "engine/run.h"
 
 namespace insula {
 namespace {
-
-constexpr double most_speeding_up = 1.5;  // a hand may be so much faster than in the step when it meets something
 
 /// From the poses to the problem's arrival: in steps, or a time.
 struct Latency {
@@ -82,7 +81,7 @@ void measure(const CommandContext& context, const HapticBenchOptions& options, S
   for (const double rate : options.rates) {
     auto engine = open(context, options, 1 / rate);
     if (!engine) throw InputError("it does not open with a step of " + std::to_string(1e3 / rate) + " ms");
-    engine->look_ahead((latency.at(1 / rate) + (options.jitter + 1) / rate) * most_speeding_up);
+    engine->look_ahead(Publisher::look_ahead_steps / rate);
     const auto record = [&](double turned_ahead_s) {
       engine->reset();
       return record_steps(*engine, motion, duration, turned_ahead_s);
