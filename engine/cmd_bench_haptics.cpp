@@ -8,12 +8,11 @@
 #include "core/params/param.h"
 #include "engine/haptic_truth.h"
 #include "engine/live_engine.h"
+#include "engine/publisher.h"
 #include "engine/run.h"
 
 namespace insula {
 namespace {
-
-constexpr double most_speeding_up = 1.5;  // a hand may be so much faster than in the step when it meets something
 
 /// From the poses to the problem's arrival: in steps, or a time.
 struct Latency {
@@ -33,6 +32,7 @@ Latency read_latency(std::string text) {
 struct Variant {
   const char* name;
   ReplaySettings settings;
+  bool turned = true;  ///< contacts turned by the engine to where they are when the problem arrives
 };
 
 std::vector<Variant> variants(bool ablation) {
@@ -40,19 +40,23 @@ std::vector<Variant> variants(bool ablation) {
   held.rendering = Rendering::held;
   diagonal.rendering = Rendering::diagonal;
   hindsight.rendering = Rendering::hindsight;
-  std::vector<Variant> out{{"held", held}, {"diagonal of W", diagonal}, {"equation 7", servo}};
+  std::vector<Variant> out{{"held", held}, {"diagonal of W", diagonal, false}, {"equation 7", servo, false}};
   const ServoSettings full = ServoSettings::beyond_equation_7();
   if (ablation) {
     servo.servo.response.slip_by_tick = full.response.slip_by_tick;
-    out.push_back({"+ slip by tick", servo});
+    out.push_back({"+ slip by tick", servo, false});
     servo.servo.response.tissue_moves = full.response.tissue_moves;
-    out.push_back({"+ tissue moves", servo});
+    out.push_back({"+ tissue moves", servo, false});
     servo.servo.response.tissue_in_time = full.response.tissue_in_time;
-    out.push_back({"+ tissue in time", servo});
+    out.push_back({"+ tissue in time", servo, false});
     servo.servo.response.carried_moves = full.response.carried_moves;
-    out.push_back({"+ carried moves", servo});
+    out.push_back({"+ carried moves", servo, false});
     servo.servo.response.rows_turn = full.response.rows_turn;
-    out.push_back({"+ rows turn", servo});
+    out.push_back({"+ rows turn", servo, false});
+    servo.servo.newton_unknowns = full.newton_unknowns;
+    servo.servo.conjugate = full.conjugate;
+    out.push_back({"+ Newton", servo, false});
+    out.push_back({"+ turned contacts", servo});
   }
   servo.servo = full;
   out.push_back({ablation ? "+ hand-over" : "servo", servo});
@@ -77,10 +81,16 @@ void measure(const CommandContext& context, const HapticBenchOptions& options, S
   for (const double rate : options.rates) {
     auto engine = open(context, options, 1 / rate);
     if (!engine) throw InputError("it does not open with a step of " + std::to_string(1e3 / rate) + " ms");
-    engine->look_ahead((latency.at(1 / rate) + (options.jitter + 1) / rate) * most_speeding_up);
-    const auto steps = record_steps(*engine, motion, duration);
+    engine->look_ahead(Publisher::look_ahead_steps / rate);
+    const auto record = [&](double turned_ahead_s) {
+      engine->reset();
+      return record_steps(*engine, motion, duration, turned_ahead_s);
+    };
+    const auto turned = record(latency.at(1 / rate));
+    const auto plain = record(-1);
     engine.reset();
     for (Variant& v : variants(options.ablation)) {
+      const auto& steps = v.turned ? turned : plain;
       v.settings.latency_s = latency.at(1 / rate);
       v.settings.jitter = options.jitter;
       const ForceTrace rendered = replay(steps, motion, duration, v.settings);

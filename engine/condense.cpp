@@ -63,7 +63,10 @@ double Condenser::state(const ConstraintProblem& full, const Block& b) {
     if (pressed_N <= near_bound_N(0)) return infinite;  // its contacts say when
   }
   const double left_N = b.friction * pressed_N - std::hypot(lambda[tangent], lambda[tangent + 1]);
-  if (left_N <= 1e-6 * b.friction * pressed_N) return 0;  // slips, which is no linear equation
+  if (left_N <= 1e-6 * b.friction * pressed_N) {  // linear across the slip alone
+    if (b.friction > 0) fate[tangent] = Fate::slips;
+    return 0;
+  }
   fate[tangent] = fate[tangent + 1] = Fate::linear;
   return std::min(margin_m, left_N * std::max(w(tangent), w(tangent + 1)));
 }
@@ -119,9 +122,8 @@ void Condenser::choose(const ConstraintProblem& full, int most_rows, ConstraintP
   eliminated_.clear();
   for (std::size_t last = groups_.size(); last-- > g;)
     for (int b = groups_[last].first; b <= groups_[last].last && !groups_[last].felt; ++b)
-      for (int r = full.blocks[std::size_t(b)].row, end = r + full.blocks[std::size_t(b)].rows(); r < end; ++r)
-        if (fate_[std::size_t(r)] == Fate::linear && int(eliminated_.size()) < most_eliminated) eliminated_.push_back(r);
-  std::sort(eliminated_.begin(), eliminated_.end());
+      add_eliminated(full, full.blocks[std::size_t(b)]);
+  std::sort(eliminated_.begin(), eliminated_.end(), [](const Direction& a, const Direction& b) { return a.row < b.row; });
   std::sort(chosen_.begin(), chosen_.end());
   kept_.clear();
   small.blocks.clear();
@@ -134,6 +136,20 @@ void Condenser::choose(const ConstraintProblem& full, int most_rows, ConstraintP
     }
     block.row = first;
     small.blocks.push_back(block);
+  }
+}
+
+void Condenser::add_eliminated(const ConstraintProblem& full, const Block& b) {
+  for (int k = 0; k < b.rows() && int(eliminated_.size()) < most_eliminated; ++k) {
+    const std::size_t r = std::size_t(b.row + k);
+    if (fate_[r] == Fate::linear) {
+      const double c = k == 0 && b.law != LawKind::patch ? b.compliance : 0;
+      eliminated_.push_back({int(r), {1, 0}, c, delta_m_[r] + c * full.lambda[r]});
+    } else if (fate_[r] == Fate::slips) {
+      const double *lambda = full.lambda.data() + r, *delta = delta_m_.data() + r, size = std::hypot(lambda[0], lambda[1]);
+      const double v[2] = {-lambda[1] / size, lambda[0] / size};
+      eliminated_.push_back({int(r), {v[0], v[1]}, std::hypot(delta[0], delta[1]) / size, v[0] * delta[0] + v[1] * delta[1]});
+    }
   }
 }
 
@@ -163,8 +179,8 @@ void Condenser::copy_kept(const ConstraintProblem& full, ConstraintProblem& smal
   }
 }
 
-/// lambda_E = lambda_E0 - M (r + W_EK (lambda_K - lambda_K0)), M = (W_EE + C)^-1, r = delta_E + C lambda_E of the full solution.
-/// With W_EE + C = U^T U, Y = U^-T W_EK and z = U^-T r:
+/// With lambda_E in the unknowns' directions: lambda_E = lambda_E0 - M (r + W_EK (lambda_K - lambda_K0)), M = (W_EE + C)^-1,
+/// r = delta_E + C lambda_E of the full solution. With W_EE + C = U^T U, Y = U^-T W_EK and z = U^-T r:
 ///   W' = W_KK - Y^T Y,   delta_free' = (all others held) - Y^T (z - Y lambda_K0)
 void Condenser::eliminate(const ConstraintProblem& full, ConstraintProblem& small) {
   const auto combine = sweep_kernels().combine;
@@ -173,16 +189,20 @@ void Condenser::eliminate(const ConstraintProblem& full, ConstraintProblem& smal
   factor_.assign(n * std::size_t(width), 0.0);
   weights_.assign(std::max(n, k) + 8, 0.0);
   const auto row = [&](std::size_t j) { return factor_.data() + long(j) * width; };
-  for (const Block& b : full.blocks)  // the diagonal's C, on the way to its place
-    if (b.law != LawKind::patch) delta_m_[std::size_t(b.row)] += b.compliance * full.lambda[std::size_t(b.row)];
-  std::size_t block = 0;
+  const auto w_to = [&](const Direction& d, int c) {
+    const double w = d.along[0] * full.w_at(d.row, c);
+    return d.along[1] == 0 ? w : w + d.along[1] * full.w_at(d.row + 1, c);
+  };
   for (std::size_t j = 0; j < n; ++j) {
-    const int s = eliminated_[j];
-    for (std::size_t i = j; i < n; ++i) row(j)[i] = full.w_at(s, eliminated_[i]);
-    for (std::size_t i = 0; i < k; ++i) row(j)[kept_at + long(i)] = full.w_at(s, kept_[i]);
-    row(j)[r_at] = delta_m_[std::size_t(s)];
-    while (full.blocks[block].row + full.blocks[block].rows() <= s) ++block;
-    if (full.blocks[block].row == s && full.blocks[block].law != LawKind::patch) row(j)[j] += full.blocks[block].compliance;
+    const Direction& d = eliminated_[j];
+    for (std::size_t i = j; i < n; ++i) {
+      const Direction& e = eliminated_[i];
+      row(j)[i] = e.along[0] * w_to(d, e.row);
+      if (e.along[1] != 0) row(j)[i] += e.along[1] * w_to(d, e.row + 1);
+    }
+    for (std::size_t i = 0; i < k; ++i) row(j)[kept_at + long(i)] = w_to(d, kept_[i]);
+    row(j)[r_at] = d.free;
+    row(j)[j] += d.compliance;
   }
   // Rows of U, one from those above it; W_EK and r go along and become Y and z.
   for (std::size_t j = 0; j < n; ++j) {

@@ -174,6 +174,52 @@ TEST(CondenseExact, MixedStatesAreExactUntilOneChanges) {
   EXPECT_LT(far, 0.5 * far_held);
 }
 
+/// Where no tool touches, what presses is given (a lower and an upper bound of one size), and friction of that strength slips.
+ConstraintProblem slipping(std::uint64_t seed) {
+  ConstraintProblem p = problem(20, 214, seed);
+  int pressing = 0;
+  for (Block& b : p.blocks) {
+    if (b.id < 9016) continue;  // the patches that no tool touches
+    if (b.law == LawKind::box) b.lower = b.upper = 0.02 + 0.005 * (pressing++ % 5);
+    else b.friction = 0.05;
+  }
+  return p;
+}
+
+// The direction across a slip turns with it; along it the force stays while what presses does. So only the curvature of the cone is left.
+TEST(CondenseExact, FrictionThatSlipsTurnsWithItsSlip) {
+  for (const std::uint64_t seed : {13, 14, 15}) {
+    ConstraintProblem full = slipping(seed);
+    solve_well(full, full.delta_free, full.lambda);
+    int slips = 0;
+    for (const Block& b : full.blocks) {
+      if (b.law != LawKind::patch || b.friction != 0.05) continue;
+      double pressed = 0;
+      for (int i = 1; i <= 3; ++i) pressed += full.lambda[std::size_t(b.row - i)];
+      slips += std::hypot(full.lambda[std::size_t(b.row)], full.lambda[std::size_t(b.row + 1)]) > (1 - 1e-9) * b.friction * pressed;
+    }
+    ASSERT_GE(slips, 10);
+    ConstraintProblem small;
+    Condenser()(full, 90, small);  // 86 are felt
+    ASSERT_LE(small.rows, 90);
+    Random random(seed);
+    const Wrenches rest = felt(full, {Vec6::Zero(), Vec6::Zero()});
+    EXPECT_LT(apart(rest, felt(small, {Vec6::Zero(), Vec6::Zero()})), 1e-9);
+    Wrenches d = moved(random, 1e-5);
+    double off[3], change = 0;
+    for (int k = 0; k < 3; ++k) {
+      const Wrenches whole = felt(full, d);
+      if (k == 0) change = apart(whole, rest);
+      off[k] = apart(whole, felt(small, d));
+      for (Vec6& v : d) v *= 0.1;
+    }
+    std::printf("slips %d: change %.2e, off %.2e %.2e %.2e\n", slips, change, off[0], off[1], off[2]);
+    EXPECT_LT(off[0], 1e-2 * change);
+    EXPECT_LT(off[1], 0.05 * off[0]);  // quadratic
+    EXPECT_LT(off[1], 1e-8);
+  }
+}
+
 TEST(CondenseExact, RowsThatHangOnOthersAreHeld) {
   // The same bilateral row three times: W_EE is singular.
   ConstraintProblem full = problem(40, 154, 9);

@@ -14,6 +14,7 @@
 #include "engine/condense.h"
 #include "engine/exchange_pause.h"
 #include "engine/publisher.h"
+#include "engine/turned_contacts.h"
 
 namespace insula {
 namespace {
@@ -22,7 +23,8 @@ constexpr double tick_s = 1e-3;
 constexpr double felt_N = 1e-6;
 constexpr double onset_share = 0.02;     // of the peak: from here on there is contact
 constexpr double onset_least_N = 0.5e-3;
-constexpr int quiet_ticks = 50;          // without contact before an onset
+constexpr double quiet_share = 0.25;     // of that threshold: from below it, a force that only creeps over the threshold is no onset
+constexpr int quiet_ticks = 50;          // without contact before an onset, and most that it takes
 
 /// Steps a simulation with the devices on the motion's path.
 class Driven {
@@ -97,11 +99,13 @@ ForceTrace reference_forces(Simulation& simulation, const Motion& motion, double
   return out;
 }
 
-std::vector<RecordedStep> record_steps(Simulation& simulation, const Motion& motion, double duration_s) {
+std::vector<RecordedStep> record_steps(Simulation& simulation, const Motion& motion, double duration_s, double turned_ahead_s) {
   std::vector<RecordedStep> out;
   Driven driven(simulation, motion);
   ExchangePause pause;
   Condenser condense;
+  TurnedContacts turned;
+  ConstraintProblem whole;
   HapticUpdate sent;
   std::vector<std::uint8_t> bytes;
   std::string why;
@@ -112,7 +116,9 @@ std::vector<RecordedStep> record_steps(Simulation& simulation, const Motion& mot
     step.force = {driven.force(0), driven.force(1)};
     sent.step_s = simulation.h();
     sent.sim_time_s = simulation.time();
-    condense(simulation.problem(), Publisher::most_rows, sent.problem);
+    whole = simulation.problem();
+    if (turned_ahead_s >= 0) turned(simulation, turned_ahead_s, whole);
+    condense(whole, Publisher::most_rows, sent.problem);
     pause.apply(simulation, sent.problem);
     if (!encode_problem(sent, bytes) || !decode_problem(bytes, step.update, why)) out.pop_back();
   }
@@ -203,13 +209,17 @@ TruthOfHand compare(const std::vector<Vec3>& reference, const std::vector<Vec3>&
   out.rms = std::sqrt(sum / double(std::max<std::size_t>(1, count)));
   // Onsets of the reference, and when the rendered force crosses the same threshold, looked for from as long before as it was quiet.
   const double threshold = std::max(onset_least_N, onset_share * out.peak_N);
-  int quiet = quiet_ticks;
+  int quiet = quiet_ticks, rising = 0;
   for (std::size_t i = 0; i < n; ++i) {
-    if (reference[i].norm() < threshold) {
-      ++quiet;
+    const double size = reference[i].norm();
+    if (size < quiet_share * threshold) {
+      quiet = rising > 0 ? 1 : quiet + 1;
+      rising = 0;
       continue;
     }
-    if (quiet >= quiet_ticks) {
+    ++rising;
+    if (size < threshold) continue;
+    if (quiet >= quiet_ticks && rising <= quiet_ticks) {
       std::size_t at = i;
       if (rendered[i].norm() < threshold)
         while (at < n && rendered[at].norm() < threshold) ++at;

@@ -37,8 +37,9 @@ struct RecordedStep {
 /// The engine stepped at 1 kHz over `duration_s` of the motion. Throws InputError, as record_steps does, when the engine refuses a command of
 /// the motion: what is measured would be something else.
 ForceTrace reference_forces(Simulation& simulation, const Motion& motion, double duration_s);
-/// Its problems at the rate of the simulation's own step, condensed, encoded and decoded as on the bus.
-std::vector<RecordedStep> record_steps(Simulation& simulation, const Motion& motion, double duration_s);
+/// Its problems at the rate of the simulation's own step, condensed, encoded and decoded as on the bus; with contacts turned to where tools
+/// are so long after the step (engine/turned_contacts.h), negative: as they were in it.
+std::vector<RecordedStep> record_steps(Simulation& simulation, const Motion& motion, double duration_s, double turned_ahead_s = -1);
 
 enum class Rendering { servo, held, diagonal, hindsight };
 
@@ -58,7 +59,7 @@ struct TruthOfHand {
   double peak_N = 0;       ///< of the reference
   double rms = 0;          ///< of the error while either feels anything, over the peak
   double worst = 0;        ///< largest error over the peak
-  double onset_s = 0;      ///< largest delay of a contact's onset; negative: early
+  double onset_s = 0;      ///< largest delay of a contact's onset, from nothing over 2 % of the peak; negative: early
   int onsets = 0;
   bool counts() const { return peak_N > 2e-3; }  ///< there was something to feel
 };

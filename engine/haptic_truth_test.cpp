@@ -32,10 +32,10 @@ class HapticTruth : public testing::Test {
     delete motion_;
     delete reference_;
   }
-  static std::vector<RecordedStep> steps(double rate) {
+  static std::vector<RecordedStep> steps(double rate, double turned_ahead_s = -1) {
     auto simulation = fissure(1 / rate);
     simulation->look_ahead(3 / rate);
-    return record_steps(*simulation, *motion_, tap_s);
+    return record_steps(*simulation, *motion_, tap_s, turned_ahead_s);
   }
   static TruthOfHand truth(const ForceTrace& rendered) { return compare(reference_->force[1], rendered.force[1]); }
   static Motion* motion_;
@@ -60,6 +60,17 @@ TEST_F(HapticTruth, ATapAt60HzFeelsAsAt1kHz) {
   EXPECT_GT(held.rms, 5 * full.rms);
   EXPECT_GT(plain.rms, 3 * full.rms);
   EXPECT_GT(held.onset_s, 10e-3);
+}
+
+// A tool that goes over an edge of the surface is past it when the step arrives that began before it.
+TEST_F(HapticTruth, ContactsTurnedByTheEngineAreTruerAt30Hz) {
+  ReplaySettings s;
+  s.latency_s = 3e-3;
+  s.servo = ServoSettings::beyond_equation_7();
+  const double as_in_the_step = truth(replay(steps(30), *motion_, tap_s, s)).rms;
+  const double turned = truth(replay(steps(30, s.latency_s), *motion_, tap_s, s)).rms;
+  std::printf("a tap at 30 Hz: %.4f, turned %.4f\n", as_in_the_step, turned);
+  EXPECT_LT(turned, 0.8 * as_in_the_step);
 }
 
 TEST_F(HapticTruth, ANewProblemDoesNotJumpAt30HzWithJitter) {
@@ -121,6 +132,10 @@ TEST(HapticTruthCompare, ErrorsAndOnsets) {
   for (std::size_t i = 98; i < 103; ++i) rendered[i] = reference[100];
   EXPECT_NEAR(compare(reference, rendered).onset_s, -2e-3, 1e-12);
   EXPECT_FALSE(compare(rendered, reference).onsets == 0);
+  // A force that was there creeps over the threshold: no contact begins.
+  std::vector<Vec3> creeping = reference;
+  for (std::size_t i = 0; i < 100; ++i) creeping[i] = Vec3(0, 0, 2.1e-5 * double(i));
+  EXPECT_EQ(compare(creeping, rendered).onsets, 0);
   EXPECT_FALSE(compare(std::vector<Vec3>(5, Vec3::Zero()), rendered).counts());
 }
 

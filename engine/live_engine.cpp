@@ -141,7 +141,7 @@ int run_live(const LiveOptions& options, const Registry& registry, Bus& bus, con
   if (!loaded.simulation) return 2;
   Simulation& simulation = *loaded.simulation;
   simulation.may_wait(false);  // hands are on it: no step is late for a factor's sake
-  simulation.look_ahead(2 * simulation.h());  // until the next problem reaches the servo
+  simulation.look_ahead(Publisher::look_ahead_steps * simulation.h());
   if (options.seed != 0) simulation.draw_complications(options.seed);
   fs::path motion;
   Motion script;

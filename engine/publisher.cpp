@@ -2,6 +2,7 @@
 // Messages of the engine.
 #include "engine/publisher.h"
 
+#include <algorithm>
 #include <chrono>
 #include <insula_lcm/sim_event_t.hpp>
 
@@ -42,7 +43,9 @@ void Publisher::step(const Simulation& simulation, std::int64_t pose_time_us) {
   update_.pose_time_us = pose_time_us;
   update_.step_s = simulation.h();
   update_.sim_time_s = simulation.time();
-  condense_(simulation.problem(), most_rows, update_.problem);
+  whole_ = simulation.problem();
+  turn_(simulation, std::min(1e-3 * simulation.report().step_ms, simulation.h()), whole_);  // about when the servo has it
+  condense_(whole_, most_rows, update_.problem);
   pause_.apply(simulation, update_.problem);
   if (!encode_problem(update_, scratch_) || !bus_.publish(channel::haptic_problem, scratch_)) ++failed_;
   frame(simulation, false);

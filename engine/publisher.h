@@ -11,6 +11,7 @@
 #include "core/sim/simulation.h"
 #include "engine/condense.h"
 #include "engine/exchange_pause.h"
+#include "engine/turned_contacts.h"
 
 namespace insula {
 
@@ -21,6 +22,8 @@ class Publisher {
  public:
   /// 200 rows of W in float32 are 80 KB: with the rest a message stays under the 120 KB that stock kernels carry.
   static constexpr int most_rows = 200;
+  /// Of Simulation::look_ahead, for who publishes: until the next problem reaches the servo.
+  static constexpr double look_ahead_steps = 2;
 
   Publisher(Bus& bus, std::int64_t session, const std::filesystem::path& scene, const std::filesystem::path& bundle,
             const std::filesystem::path& motion, const std::string& title);
@@ -43,6 +46,8 @@ class Publisher {
   insula_lcm::scene_info_t info_;
   insula_lcm::render_frame_t frame_;
   HapticUpdate update_;
+  TurnedContacts turn_;
+  ConstraintProblem whole_;
   Condenser condense_;
   ExchangePause pause_;
   std::vector<std::uint8_t> scratch_;

@@ -36,7 +36,7 @@ class HandOver {
     }
     now_ = now;
     last_ = now + gap_;
-    peak_ = std::max(size(s, last_), peak_ * std::exp(-dt_s / s.peak_lasts_s));
+    peak_ = std::max({size(s, last_), size(s, now_), peak_ * std::exp(-dt_s / s.peak_lasts_s)});
     felt_ = true;
     return last_;
   }

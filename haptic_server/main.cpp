@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "core/base/input_error.h"
+#include "haptic_server/newton_budget.h"
 #include "haptic_server/server.h"
 #include "haptic_server/servo_loop.h"
 
@@ -49,6 +50,12 @@ int serve(const Arguments& a) {
   }
   ServerOptions options;
   options.period_s = 1 / a.loop.rate_hz;
+  int& unknowns = options.servo.newton_unknowns;
+  constexpr double newton_share = 0.4;  // of a tick; sweeps and the rest take another third
+  if (const int most = unknowns_within(newton_share * options.period_s, unknowns, factorisation_time(unknowns)); most < unknowns) {
+    spdlog::info("this machine makes Newton steps of {} unknowns within a tick, not {}: with more rows forces end less exactly", most, unknowns);
+    unknowns = most;
+  }
   if (a.motion == "none") options.motion = Motion();
   else if (!a.motion.empty()) options.motion = load_motion(a.motion);
   std::array<DeviceChoice, 2> devices{make_device(a.left, 0), make_device(a.right, 1)};

@@ -37,7 +37,7 @@ bool finite(const Vec6& v) {
 }  // namespace
 
 Servo::Servo(const ServoSettings& settings) : settings_(settings), carried_(settings.response.carried_moves ? servo_max_rows : 0), response_(settings.response, servo_max_rows) {
-  workspace_.reserve(servo_max_rows, false);  // sweeps alone
+  workspace_.reserve(servo_max_rows, settings.newton_unknowns > 0);
   kernels();  // chosen here once and not at the first tick
   delta_free_.assign(servo_max_rows, 0.0);
   last_lambda_.assign(servo_max_rows, 0.0);
@@ -134,6 +134,10 @@ ServoResult Servo::tick(const ServoInput& input) noexcept {
     SolveSettings s;
     s.tolerance_m = settings_.tolerance_m;
     s.conjugate = settings_.conjugate;
+    s.max_newton = settings_.newton_unknowns > 0 ? 1 : 0;
+    s.newton_soon = true;
+    s.newton_unknowns = settings_.newton_unknowns;
+    s.newton_sweeps = 0;
     s.max_sweeps = int(std::clamp(settings_.max_operations / std::max(1.0, double(n) * n), 1.0, double(settings_.max_sweeps)));
     if (in_ticks) {
       const ConstraintProblem& tick = response_.next(input.dt_s, moved);

@@ -6,6 +6,7 @@
 
 #include <limits>
 
+#include "haptic_server/carried_problem.h"
 #include "haptic_server/test_problem.h"
 #include "tests/figures/figure.h"
 
@@ -204,6 +205,36 @@ TEST(Servo, SweepsAreBounded) {
   Servo shorter(s);
   shorter.set_problem(&p);
   EXPECT_EQ(shorter.tick(still(p)).stats.sweeps, 3);
+}
+
+// A closing clip has more rows than a tick has sweeps for: what they leave is a step's worth of force that comes too late.
+TEST(Servo, OneNewtonStepEndsWhatSweepsLeave) {
+  ConstraintProblem p = testing::with_clip(180, 4, 6);
+  testing::solve_as_engine(p);
+  ServoSettings sweeps;
+  sweeps.max_sweeps = 20;
+  sweeps.conjugate = true;
+  ServoSettings newton = sweeps;
+  newton.newton_unknowns = 200;
+  ServoSettings few = newton;
+  few.newton_unknowns = 10;  // fewer than press
+  ServoResult r[3];
+  int k = 0;
+  for (const ServoSettings& s : {sweeps, newton, few}) {
+    Servo servo(s);
+    servo.set_problem(&p);
+    ServoInput in = still(p);
+    for (int tick = 0; tick < 10; ++tick) {  // 0.1 m/s
+      in.device[1].p += Vec3(5e-5, -3e-5, 8e-5);
+      r[k] = servo.tick(in);
+    }
+    ++k;
+  }
+  EXPECT_GT(r[0].stats.residual_m, 1e-7);
+  EXPECT_LT(r[1].stats.residual_m, 1e-9);
+  EXPECT_EQ(r[1].stats.newton_steps, 1);
+  EXPECT_GT(r[2].stats.residual_m, 1e-7);
+  EXPECT_LE(r[2].stats.sweeps, 20);
 }
 
 TEST(Servo, RefusesWhatIsTooLargeOrTooFarOrNotFinite) {

@@ -31,6 +31,7 @@ TurningRows::TurningRows(int most_rows) {
     turns_[t].reserve(std::size_t(most_rows));
     last_[t].reserve(std::size_t(most_rows));
   }
+  next_.reserve(std::size_t(most_rows));
 }
 
 void TurningRows::begin(const ConstraintProblem& p, const std::array<Load, 2>& loads) noexcept {
@@ -42,10 +43,12 @@ void TurningRows::begin(const ConstraintProblem& p, const std::array<Load, 2>& l
     const bool same = last_count_ > t && hand_[t] == tool.hand;
     way_[t] = same ? Vec3(tool.device.p - device_[t].p) : Vec3(Vec3::Zero());
     turns_[t].clear();
+    next_.clear();
     for (const Block& b : p.blocks) {
-      if (!same || loads[t].any || !turns(b)) continue;
       const Vec3 now = normal_of(tool, b);
       if (now.isZero(0)) continue;
+      next_.push_back({b.id, now});
+      if (!same || loads[t].any || !turns(b)) continue;
       const auto at = std::lower_bound(last_[t].begin(), last_[t].end(), b.id, [](const Direction& d, std::uint64_t id) { return d.id < id; });
       if (at == last_[t].end() || at->id != b.id) continue;
       const Vec3 by = at->normal.cross(now);
@@ -54,9 +57,7 @@ void TurningRows::begin(const ConstraintProblem& p, const std::array<Load, 2>& l
       for (int k = 0; k < b.rows(); ++k) arm += direction(tool, b.row + k).cross(Vec3(tool.jacobian.row(b.row + k).tail<3>()));
       turns_[t].push_back({b.row, b.rows(), by, b.rows() == 3 ? Vec3(0.5 * arm) : arm});
     }
-    last_[t].clear();
-    for (const Block& b : p.blocks)
-      if (const Vec3 n = normal_of(tool, b); !n.isZero(0)) last_[t].push_back({b.id, n});
+    last_[t].swap(next_);
     std::sort(last_[t].begin(), last_[t].end(), [](const Direction& a, const Direction& b) { return a.id < b.id; });
     device_[t] = tool.device;
     hand_[t] = tool.hand;

@@ -43,6 +43,7 @@ class TurningRows {
   std::array<Jacobian, 2> jacobian_;
   std::array<std::vector<Turn>, 2> turns_;
   std::array<std::vector<Direction>, 2> last_;  ///< of the last problem, by id
+  std::vector<Direction> next_;                 ///< of this one, while they are compared
   std::array<Pose, 2> device_;
   std::array<int, 2> hand_{-1, -1};
   std::array<Vec3, 2> way_{Vec3::Zero(), Vec3::Zero()};

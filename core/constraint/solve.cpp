@@ -133,7 +133,6 @@ void sweep_more(const ConstraintProblem& p, std::span<const double> free, SolveS
 
 constexpr double shortest_step = 0.1;             // of a Newton step that is tried
 constexpr int smoothing = 3;                      // sweeps after it
-constexpr int sweeps_between = 32;                // after a step that led nowhere; conjugate ones, to come to another place
 constexpr double least_proximal = 1e-11, most_proximal = 1;
 
 // Newton from the sweeps' result, which stays what it is unless something better is found.
@@ -147,7 +146,7 @@ void newton_on(const ConstraintProblem& p, std::span<const double> free, const S
     ++stats.newton_steps;
     bool better = false;
     full_delta(p, free, ws.lambda.data(), ws.current);
-    if (newton_target(p, free, ws.lambda.data(), ws.current.data(), proximal, m)) {
+    if (newton_target(p, free, ws.lambda.data(), ws.current.data(), proximal, settings.newton_unknowns, m)) {
       m.base.assign(m.trial.begin(), m.trial.end());  // where a whole step leads
       for (double step = 1; step > shortest_step && !better; step *= 0.4) {
         for (std::size_t i = 0; i < n; ++i) m.trial[i] = ws.lambda[i] + step * (m.base[i] - ws.lambda[i]);
@@ -167,8 +166,9 @@ void newton_on(const ConstraintProblem& p, std::span<const double> free, const S
     }
     proximal = better ? std::max(least_proximal, 0.1 * proximal) : 100 * proximal;
     if (better) continue;
+    if (settings.newton_sweeps <= 0) return;
     if (proximal > most_proximal) proximal = least_proximal;  // sweeps have moved on meanwhile
-    sweep_more(p, free, settings, sweeps_between, true, data, ws, stats);
+    sweep_more(p, free, settings, settings.newton_sweeps, true, data, ws, stats);
   }
 }
 

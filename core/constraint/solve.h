@@ -3,6 +3,7 @@
 // depends on the arguments alone, work is at most max_sweeps sweeps and max_newton Newton steps, and nothing is allocated once the
 // workspace has its size.
 #pragma once
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -21,6 +22,8 @@ struct SolveSettings {
   /// Most Newton steps, made when sweeps would end above the tolerance; 0: sweeps alone. One step costs as much as rows / 3 sweeps.
   int max_newton = 0;
   bool newton_soon = false;  ///< after a few sweeps already, for one who knows that they stall
+  int newton_unknowns = std::numeric_limits<int>::max();  ///< rows that neither separate nor lie at a bound: no step is made with more
+  int newton_sweeps = 32;    ///< conjugate ones, to come to another place after a step that led nowhere; 0: no further step then
 };
 
 enum class SolveMethod : std::uint8_t { sweeps, newton };

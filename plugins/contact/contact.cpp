@@ -164,7 +164,9 @@ void Contact::search(const Search& what) {
     }
     p.contacts.clear();
     if (!p.active()) return;
-    const Pose start = p.tool_a->link_pose(p.link_a), free = p.tool_a->link_free_pose(p.link_a);
+    p.start = p.tool_a->link_pose(p.link_a);
+    const Pose& start = p.start;
+    const Pose free = p.tool_a->link_free_pose(p.link_a);
     if (p.tool_b)
       detect_tools(p.pieces_a, start, free, p.pieces_b, p.tool_b->link_pose(p.link_b), p.tool_b->link_free_pose(p.link_b), settings, p.contacts);
     else if (p.vertex_collider)

@@ -58,6 +58,7 @@ class Contact final : public Constraint {
     std::vector<Proximity> contacts;
     std::vector<Proximity> other_way;  ///< of b's vertices on a, before selection
     std::unique_ptr<FrictionPatches> patches;  ///< one friction force for contacts close together, if wanted
+    Pose start;                 ///< of the tool, in the step last detected
     std::vector<int> rows;      ///< first row of each contact
     std::vector<Vec3> forces;   ///< along (normal, tangent, other tangent), N
     bool active() const { return (!tool_a || tool_a->active()) && (!tool_b || tool_b->active()); }
@@ -66,6 +67,13 @@ class Contact final : public Constraint {
     const Body* body_b() const { return tool_b ? static_cast<const Body*>(tool_b) : &b->body(); }
   };
   const std::vector<Pair>& pairs() const { return pairs_; }
+  /// A contact of a tool as the tool and the surface go on after the step: its three rows and the direction that its normal turns to.
+  struct Turn {
+    int row;
+    Vec3 from, tangent, to;
+  };
+  /// Appends those of contacts that press and have turned, where their tools would be `steps` after the step.
+  void turned(double steps, std::vector<Turn>& out) const;
 
  private:
   /// What one thread may search at a time: a pair, for two surfaces one way of it.

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Rotation of blocks, and the solution of what comes out.
+#include "engine/turned_contacts.h"
+
+#include <algorithm>
+
+#include "core/constraint/sweep.h"
+
+namespace insula {
+namespace {
+
+constexpr double least_turn = 1e-6;
+
+/// The new directions in terms of the old ones: normal and tangents turn together by the smallest rotation.
+Mat3 rotation(const Vec3& normal, const Vec3& tangent, const Vec3& to) {
+  const Mat3 turn = Quat::FromTwoVectors(normal, to).toRotationMatrix();
+  Mat3 old;
+  old << normal.transpose(), tangent.transpose(), normal.cross(tangent).transpose();
+  return old * turn.transpose() * old.transpose();
+}
+
+}  // namespace
+
+void turn_block(ConstraintProblem& p, int row, const Mat3& q, std::vector<double>& delta_m) {
+  const std::size_t n = std::size_t(p.rows), stride = std::size_t(p.stride), r = std::size_t(row);
+  const auto turn = [&](double* at, std::size_t by) {
+    const Vec3 v = q * Vec3(at[0], at[by], at[2 * by]);
+    for (std::size_t k = 0; k < 3; ++k) at[k * by] = v[long(k)];
+  };
+  for (std::size_t j = 0; j < n; ++j) turn(&p.w[r * stride + j], stride);
+  for (std::size_t i = 0; i < n; ++i) turn(&p.w[i * stride + r], 1);
+  for (ToolTerms& tool : p.tools)
+    for (long c = 0; c < 6; ++c) turn(tool.jacobian.data() + 6 * row + c, 6);
+  for (std::vector<double>* v : {&delta_m, &p.lambda, &p.rate}) turn(v->data() + r, 1);
+}
+
+void TurnedContacts::operator()(const Simulation& simulation, double ahead_s, ConstraintProblem& p) {
+  turns_.clear();
+  for (const Constraint* c : simulation.constraints())
+    if (const auto* contact = dynamic_cast<const Contact*>(c)) contact->turned(ahead_s / simulation.h(), turns_);
+  std::erase_if(turns_, [](const Contact::Turn& t) { return t.from.cross(t.to).norm() < least_turn; });
+  if (turns_.empty()) return;
+  const auto combine = sweep_kernels().combine;
+  const std::size_t n = std::size_t(p.rows);
+  work_.assign(std::size_t(p.stride), 0.0);
+  combine(work_.data(), p.w.data(), p.stride, p.lambda.data(), p.rows, p.stride);
+  delta_m_.resize(n);
+  for (std::size_t i = 0; i < n; ++i) delta_m_[i] = p.delta_free[i] + work_[i];
+  for (const Contact::Turn& turn : turns_) {
+    const double gap = delta_m_[std::size_t(turn.row)];
+    turn_block(p, turn.row, rotation(turn.from, turn.tangent, turn.to), delta_m_);
+    delta_m_[std::size_t(turn.row)] = gap;  // what pressed presses
+  }
+  work_.assign(std::size_t(p.stride), 0.0);
+  combine(work_.data(), p.w.data(), p.stride, p.lambda.data(), p.rows, p.stride);
+  for (std::size_t i = 0; i < n; ++i) p.delta_free[i] = delta_m_[i] - work_[i];
+  workspace_.reserve(p.rows);
+  workspace_.lambda.assign(p.lambda.begin(), p.lambda.begin() + p.rows);
+  solve(p, p.delta_free, simulation.solve_settings(), workspace_);
+  p.lambda.assign(workspace_.lambda.begin(), workspace_.lambda.end());
+}
+
+}  // namespace insula
