@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/testing/held.h"
 #include "haptic_server/devices/arm_model.h"
 #include "haptic_server/test_problem.h"
 #include "tests/figures/figure.h"
@@ -41,6 +42,7 @@ TEST(SafetyGate, GarbageNeverGetsThrough) {
                         std::numeric_limits<double>::denorm_min(), 0.0, 1e200, -1e154};
   Vec3 last_force = none, last_torque = none;
   long pushed = 0;
+  double most = 0, most_change = 0;
   auto number = [&] {
     const double scale = std::pow(10.0, 6 * random.next());
     return random.bits() % 16 == 0 ? odd[random.bits() % 8] : scale * random.next();
@@ -62,6 +64,8 @@ TEST(SafetyGate, GarbageNeverGetsThrough) {
     gate.apply(elapsed, live, force, torque);
     const Vec3 f = gate.force(), t = gate.torque();
     ASSERT_TRUE(f.allFinite() && t.allFinite()) << tick;
+    most = std::max(most, f.norm() - profile.max_force_N);
+    most_change = std::max(most_change, (f - last_force).norm() - profile.max_slew_N_s * (elapsed > 0 ? std::min(elapsed, SafetyGate::longest_tick_s) : 0));
     ASSERT_LE(f.norm(), profile.max_force_N * (1 + 1e-12)) << tick;
     ASSERT_LE(t.norm(), profile.max_torque_Nm * (1 + 1e-12)) << tick;
     // No elapsed time (or none that makes sense): no change at all.
@@ -72,6 +76,8 @@ TEST(SafetyGate, GarbageNeverGetsThrough) {
     last_torque = t;
     pushed += f.norm() > 1;
   }
+  EXPECT_TRUE(test::held("garbage beyond the device's force", most, profile.max_force_N, 1e-12));
+  EXPECT_TRUE(test::held("garbage beyond its change of force, N", most_change, 1, 1e-12));
   EXPECT_GT(pushed, 10'000);  // it was not simply shut
   EXPECT_GT(gate.refused(), 0);
   EXPECT_GT(gate.clamped(), 0);
@@ -83,7 +89,7 @@ TEST(SafetyGate, RampsInOverAQuarterSecond) {
   test::Figure figure("gate", "The safety gate: a source comes, and goes", "time, ms", "force on the hand, N");
   for (int k = 1; k <= 250; ++k) {
     gate.apply(dt, true, wanted, none);
-    EXPECT_NEAR(gate.force().z(), k / 250.0, 1e-9);
+    EXPECT_TRUE(test::held("the gate on its way in, N", std::abs(gate.force().z() - k / 250.0), 1, 1e-9));
     if (k % 10 == 0) figure.run("gate", k, gate.force().z());
   }
   for (const auto& [t, f] : {std::pair{0.0, 0.0}, std::pair{250.0, 1.0}, std::pair{400.0, 1.0}, std::pair{450.0, 0.0}, std::pair{500.0, 0.0}}) figure.law("250 ms in, 50 ms out", t, f);
@@ -114,7 +120,7 @@ TEST(SafetyGate, RampsOutToExactlyZeroWithin50ms) {
     ASSERT_NEAR(gate.force().x(), size, 1e-12);
     for (int k = 1; k <= 50; ++k) {
       gate.apply(dt, false, Vec3(size, 0, 0), none);
-      EXPECT_NEAR(gate.force().x(), size * (50 - k) / 50.0, 1e-9) << size;
+      EXPECT_TRUE(test::held("the gate on its way out, N", std::abs(gate.force().x() - size * (50 - k) / 50.0), 1, 1e-9)) << size;
     }
     EXPECT_EQ(gate.force(), none);
     for (int k = 0; k < 100; ++k) {

@@ -66,6 +66,9 @@ ERRORS = {  # section of the page: (picture, {program: tests that keep errors})
     "Clips and thin walls": ("errors_clips", {
         "plugin_tests": "Clip.MomentumIs*:Clip.FallsBy*:Clip.HoldsAnd*:ClipApplier.TheHandFeels*:ClipApplier.Released*:ContactLimits.ForceOfALayerIs*:SelfContact.AWallThat*",
         "core_tests": "Clip.EveryShipped*:VertexCollider.EveryVertex*:SelfCollider.WallsPressed*:OneSided.AVertexThat*"}),
+    "Haptics": ("errors_haptics", {
+        "servo_tests": "Servo.ForceEquals*:SafetyGate.RampsOut*:SafetyGate.RampsIn*:SafetyGate.Garbage*:ArmModel.RestsForce*:ArmModel.EnergyNever*",
+        "device_tests": "StreamedDevice.PowerIs*"}),
 }
 CLOSED_FORMS = [s for s in ERRORS if s != "Contracts"]
 NO_PICTURE = {  # tests of those sections that hold no closed form: the same bits, a bound never passed, whole cases
