@@ -77,6 +77,8 @@ NO_PICTURE = {  # tests of those sections that hold no closed form: the same bit
     "SelfContact.FastBladesPressNoWallThroughTheOtherAndStayOutside", "SelfContact.JawsPressAVesselFlatAndItsWallsStayApart", "Patch.AllTogetherStickBelowMuNAndSlipAbove",
     "ColliderCache.OfAWallAgainstItselfNeverShows", "SelfContactNeck.RowsOfAClippedNeckKeepTheirNamesAtRest", "RealVessel.Pulses", "RealCase.BecomesACaseWhoseExercisesTheMotionsMadeForItFinish",
     "OwnBrain.SurfacesBecomeLabels", "OwnBrain.ThatStandsElsewhereIsTold", "MadeCase.VesselTooThinForAWayIsNamed", "RuptureRules.SpurtsTakeNothingBackButBloodThatRunsDoes", "MadeCase.GivesTheSameFilesTwiceAndStagesCanBeDoneAgainAlone", "RealSurface.BecomesAVesselThatTheProductReads",
+    "Servo.HandsFeelEachOtherThroughTheSharedProblem", "Servo.SweepsAreBounded", "Exchange.TheHandFeelsTheNewToolGently", "DeviceTool.WaysThatCannotBeAreRefused",
+    "HaplyMessages.AMillionDamagedOnesGiveNothingThatCannotBe", "InProcess.AMovingHandGetsAFreshForceAtEachTick", "Allocation.TheServoDoesNone", "TripleBuffer.TwoThreadsNeverShareASlot",
 }
 WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 460, 270, 62, 14, 44, 44
 COLOURS = ("#1f6fb2", "#c2410c", "#15803d", "#7e22ce")
