@@ -168,7 +168,7 @@ CostEstimate estimate(const SceneWork& w, const CostRates& r, int threads) {
     shares.push_back({1000 * compliance.back(), fmt::format("the compliance of {} rows on \"{}\"", b.rows, b.id),
                       "fewer rows: larger spacing, smaller max_contacts, patch, fewer strands"});
   }
-  const double surfaces = r.vertex * (0.8 * w.surface_vertices + 0.2 * w.surface_triangles + 0.25 * w.tissue_vertices + 500.0 * w.tool_pieces + 30.0 * w.wall_vertices + 350.0 * w.expected_rows);
+  const double surfaces = r.vertex * (0.8 * w.surface_vertices + 0.2 * w.surface_triangles + 0.25 * w.tissue_vertices + 500.0 * w.tool_pieces + 120.0 * w.wall_vertices + 550.0 * w.expected_rows);
   // Where Newton is allowed sweeps stall: one step of it, m^3 / 1.5 in small pieces, at the dense rate of the factor.
   const double rows2 = double(w.expected_rows) * w.expected_rows;
   const double sweeps = w.expected_sweeps * rows2 * r.sweep_row2 + (w.newton ? newton_step * rows2 * w.expected_rows / 1.5 * r.compliance_flop : 0);
