@@ -107,16 +107,11 @@ void AabbTree::look_at(std::span<const Vec3> positions, std::span<const Vec3> di
 
 // What has used up half of its slack gets all of it, as one that is out.
 double AabbTree::renew(std::size_t v) {
-  const auto point = [](const Vec3& p) {
-    const Float4 at{float(p[0]), float(p[1]), float(p[2]), 0};
-    OuterBox box{at, at};
-    box.widen();
-    return box;
-  };
+  const auto around = [](const Vec3& p) { return OuterBox::around({p, p}); };
   const Vec3& p = positions_[v];
-  const OuterBox here = point(p);
+  const OuterBox here = around(p);
   OuterBox way = here;
-  if (!displacements_.empty()) way.add(point(p + displacements_[v]));
+  if (!displacements_.empty()) way.add(around(p + displacements_[v]));
   OuterBox& box = ways_[v];
   const float inside = box.room_about(here);
   if (inside > 0.5f * slack && box.holds(way)) return double(inside);

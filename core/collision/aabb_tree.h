@@ -123,15 +123,12 @@ class AabbTree {
   void mark(std::span<const int> mark_of_vertex);
   /// The marks, as bits, of all leaves whose loose boxes overlap `box`.
   std::uint64_t marks_near(const Aabb& box) const {
-    const OuterBox outer = OuterBox::around(box);
     std::uint64_t found = 0;
-    const int end = int(nodes_.size());
-    for (int i = 0; i < end;) {
-      const Node& n = nodes_[std::size_t(i)];
-      const bool news = (n.marks & ~found) != 0 && n.box.overlaps(outer);
-      if (news && n.count > 0) found |= n.marks;
-      i = news ? i + 1 : n.skip;
-    }
+    const auto has_news = [&](const Node& n) { return (n.marks & ~found) != 0; };
+    each_leaf(box, has_news, [&](const Node& n) {
+      found |= n.marks;
+      return false;
+    });
     return found;
   }
 
@@ -220,14 +217,14 @@ class AabbTree {
   std::span<const int> vertices_of(const Node& leaf) const { return {leaf_vertices_.data() + leaf.vertices, std::size_t(leaf.vertex_count)}; }
   Aabb tight(const Node& leaf) const;
   double renew(std::size_t vertex);
-  /// visit(leaf) for those whose loose box overlaps `box`, until it says true; whether it did.
-  template <class Visit>
-  bool each_leaf(const Aabb& box, Visit&& visit) const {
+  /// visit(leaf) for those whose loose box overlaps `box`, until it says true; whether it did. Below what is not wanted(node) none is visited.
+  template <class Wanted, class Visit>
+  bool each_leaf(const Aabb& box, Wanted&& wanted, Visit&& visit) const {
     const OuterBox outer = OuterBox::around(box);
     const int end = int(nodes_.size());
     for (int i = 0; i < end;) {
       const Node& n = nodes_[std::size_t(i)];
-      if (!n.box.overlaps(outer)) {
+      if (!wanted(n) || !n.box.overlaps(outer)) {
         i = n.skip;
         continue;
       }
@@ -235,6 +232,10 @@ class AabbTree {
       ++i;
     }
     return false;
+  }
+  template <class Visit>
+  bool each_leaf(const Aabb& box, Visit&& visit) const {
+    return each_leaf(box, [](const Node&) { return true; }, visit);
   }
 
   std::vector<Node> nodes_;
