@@ -51,6 +51,13 @@ constexpr double horizon = 2e-3;       ///< groups are looked at farther than ne
 constexpr double near_horizon = 5e-4;  ///< and samples
 constexpr double slow = 5e-5;          ///< what moves less in a step has the same nearest triangle for some steps, m
 
+// Coordinates of four points: x of all, y, z.
+std::array<Float4, 3> by_coordinate(const std::array<Float4, 4>& p) {
+  const Float4 xy01 = __builtin_shufflevector(p[0], p[1], 0, 4, 1, 5), xy23 = __builtin_shufflevector(p[2], p[3], 0, 4, 1, 5);
+  const Float4 z01 = __builtin_shufflevector(p[0], p[1], 2, 6, 3, 7), z23 = __builtin_shufflevector(p[2], p[3], 2, 6, 3, 7);
+  return {__builtin_shufflevector(xy01, xy23, 0, 1, 4, 5), __builtin_shufflevector(xy01, xy23, 2, 3, 6, 7), __builtin_shufflevector(z01, z23, 0, 1, 4, 5)};
+}
+
 }  // namespace
 
 TissueCollider::TissueCollider(std::vector<int> samples, std::span<const Vec3> rest, int triangles) : samples_(std::move(samples)) {
@@ -97,13 +104,6 @@ void TissueCollider::gather_leaves(const AabbTree& tree, const Aabb& all) {
     for (auto& row : packs_.back().low) row[lane] = 1e15f;  // nothing is near it
 }
 
-// Coordinates of four points: x of all, y, z.
-static std::array<Float4, 3> beside(const std::array<Float4, 4>& p) {
-  const Float4 xy01 = __builtin_shufflevector(p[0], p[1], 0, 4, 1, 5), xy23 = __builtin_shufflevector(p[2], p[3], 0, 4, 1, 5);
-  const Float4 z01 = __builtin_shufflevector(p[0], p[1], 2, 6, 3, 7), z23 = __builtin_shufflevector(p[2], p[3], 2, 6, 3, 7);
-  return {__builtin_shufflevector(xy01, xy23, 0, 1, 4, 5), __builtin_shufflevector(xy01, xy23, 2, 3, 6, 7), __builtin_shufflevector(z01, z23, 0, 1, 4, 5)};
-}
-
 const FourTriangles& TissueCollider::corners_of(const CollisionMesh& b, std::size_t leaf) {
   const std::span<const int> triangles = leaves_[leaf];
   int& at = corners_at_[std::size_t(triangles.front())];
@@ -119,7 +119,7 @@ const FourTriangles& TissueCollider::corners_of(const CollisionMesh& b, std::siz
       const Vec3 p = b.vertex(corner[lane][k]) - centre_;
       x[lane] = Float4{float(p[0]), float(p[1]), float(p[2]), 0};
     }
-    *to[k] = beside(x);
+    *to[k] = by_coordinate(x);
   }
   return c;
 }
@@ -130,8 +130,8 @@ void TissueCollider::look_at_leaves(const CollisionMesh& b, const Vec3& x, const
   const SearchKernels& kernels = search_kernels();
   const std::array<float, 3> at{float(x[0]), float(x[1]), float(x[2])};
   const float rounded = float(x.cwiseAbs().maxCoeff()) * 1.2e-7f;
-  const Vec3 beside = x - centre_;
-  const float px = float(beside[0]), py = float(beside[1]), pz = float(beside[2]);
+  const Vec3 off = x - centre_;
+  const float px = float(off[0]), py = float(off[1]), pz = float(off[2]);
   for (std::size_t k = 0; k < packs_.size(); ++k)
     for (std::uint32_t near = kernels.boxes_near(packs_[k], at, rounded, float(limit2) * 1.000001f); near != 0; near &= near - 1) {
       const std::size_t leaf = std::size_t(BoxPack::size) * k + std::size_t(std::countr_zero(near));
