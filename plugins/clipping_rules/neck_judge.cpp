@@ -5,16 +5,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/collision/closest.h"
+
 namespace insula {
 namespace {
 
 constexpr double ring_half_width = 0.5e-3;
 
 double distance_to_segment(const Vec3& x, const Vec3& a, const Vec3& b) {
-  const Vec3 d = b - a;
-  const double n = d.squaredNorm();
-  const double t = n > 0 ? std::clamp((x - a).dot(d) / n, 0.0, 1.0) : 0.0;
-  return (x - a - t * d).norm();
+  return (x - a - closest_on_segment(x, a, b) * (b - a)).norm();
 }
 
 }  // namespace

@@ -2,10 +2,10 @@
 #include "tools/case_builder/fissure_fit.h"
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
 
 #include "core/base/input_error.h"
+#include "core/collision/closest.h"
 
 namespace insula::case_builder {
 namespace {
@@ -17,9 +17,8 @@ constexpr int rounds = 60;
 Vec3 nearest_on(const std::vector<Vec3>& line, const Vec3& p) {
   Vec3 best = line.front();
   for (std::size_t i = 0; i + 1 < line.size(); ++i) {
-    const Vec3 d = line[i + 1] - line[i];
-    const double along = d.squaredNorm() > 0 ? std::clamp((p - line[i]).dot(d) / d.squaredNorm(), 0.0, 1.0) : 0;
-    if (const Vec3 q = line[i] + along * d; (q - p).squaredNorm() < (best - p).squaredNorm()) best = q;
+    const Vec3 q = line[i] + closest_on_segment(p, line[i], line[i + 1]) * (line[i + 1] - line[i]);
+    if ((q - p).squaredNorm() < (best - p).squaredNorm()) best = q;
   }
   return best;
 }
