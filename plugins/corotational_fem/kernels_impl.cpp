@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "core/linalg/lane_bits.h"
+#include "core/linalg/lane_math.h"
 #include "plugins/corotational_fem/element_batch.h"
 
 namespace insula::KERNEL_NAME {
@@ -15,13 +16,6 @@ typedef long long M __attribute__((vector_size(W * 8), aligned(8), may_alias));
 inline V load(const double* p) { return *reinterpret_cast<const V*>(p); }
 inline void store(double* p, V v) { *reinterpret_cast<V*>(p) = v; }
 inline V all(double x) { return V{} + x; }
-
-inline V root(V v) {
-  double t[W];
-  store(t, v);
-  for (int i = 0; i < W; ++i) t[i] = __builtin_sqrt(t[i]);
-  return load(t);
-}
 
 inline V absolute(V v) { return v < 0 ? -v : v; }
 
