@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/constraint/solve.h"
 #include "core/constraint/sweep.h"
 #include "haptic_server/carried.h"
 
@@ -72,9 +73,7 @@ double Condenser::state(const ConstraintProblem& full, const Block& b) {
 }
 
 void Condenser::find_states(const ConstraintProblem& full) {
-  delta_m_.assign(std::size_t(full.stride), 0.0);
-  std::copy_n(full.delta_free.begin(), full.rows, delta_m_.begin());
-  sweep_kernels().combine(delta_m_.data(), full.w.data(), full.stride, full.lambda.data(), full.rows, full.stride);
+  full_delta(full, {full.delta_free.data(), std::size_t(full.rows)}, full.lambda.data(), delta_m_);
   fate_.assign(std::size_t(full.rows), Fate::held);
   margin_m_.clear();
   for (const Block& b : full.blocks) margin_m_.push_back(state(full, b));

@@ -105,7 +105,6 @@ std::vector<RecordedStep> record_steps(Simulation& simulation, const Motion& mot
   ExchangePause pause;
   Condenser condense;
   TurnedContacts turned;
-  ConstraintProblem whole;
   HapticUpdate sent;
   std::vector<std::uint8_t> bytes;
   std::string why;
@@ -116,9 +115,7 @@ std::vector<RecordedStep> record_steps(Simulation& simulation, const Motion& mot
     step.force = {driven.force(0), driven.force(1)};
     sent.step_s = simulation.h();
     sent.sim_time_s = simulation.time();
-    whole = simulation.problem();
-    if (turned_ahead_s >= 0) turned(simulation, turned_ahead_s, whole);
-    condense(whole, Publisher::most_rows, sent.problem);
+    condense(turned_ahead_s >= 0 ? turned(simulation, turned_ahead_s) : simulation.problem(), Publisher::most_rows, sent.problem);
     pause.apply(simulation, sent.problem);
     if (!encode_problem(sent, bytes) || !decode_problem(bytes, step.update, why)) out.pop_back();
   }

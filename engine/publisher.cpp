@@ -43,9 +43,8 @@ void Publisher::step(const Simulation& simulation, std::int64_t pose_time_us) {
   update_.pose_time_us = pose_time_us;
   update_.step_s = simulation.h();
   update_.sim_time_s = simulation.time();
-  whole_ = simulation.problem();
-  turn_(simulation, std::min(1e-3 * simulation.report().step_ms, simulation.h()), whole_);  // about when the servo has it
-  condense_(whole_, most_rows, update_.problem);
+  const double until_felt_s = std::min(1e-3 * simulation.report().step_ms, simulation.h());  // about
+  condense_(turn_(simulation, until_felt_s), most_rows, update_.problem);
   pause_.apply(simulation, update_.problem);
   if (!encode_problem(update_, scratch_) || !bus_.publish(channel::haptic_problem, scratch_)) ++failed_;
   frame(simulation, false);

@@ -47,7 +47,6 @@ class Publisher {
   insula_lcm::render_frame_t frame_;
   HapticUpdate update_;
   TurnedContacts turn_;
-  ConstraintProblem whole_;
   Condenser condense_;
   ExchangePause pause_;
   std::vector<std::uint8_t> scratch_;

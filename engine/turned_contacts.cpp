@@ -21,7 +21,7 @@ Mat3 rotation(const Vec3& normal, const Vec3& tangent, const Vec3& to) {
 
 }  // namespace
 
-void turn_block(ConstraintProblem& p, int row, const Mat3& q, std::vector<double>& delta_m) {
+void turn_block(ConstraintProblem& p, int row, const Mat3& q, std::span<double> delta_m) {
   const std::size_t n = std::size_t(p.rows), stride = std::size_t(p.stride), r = std::size_t(row);
   const auto turn = [&](double* at, std::size_t by) {
     const Vec3 v = q * Vec3(at[0], at[by], at[2 * by]);
@@ -31,33 +31,32 @@ void turn_block(ConstraintProblem& p, int row, const Mat3& q, std::vector<double
   for (std::size_t i = 0; i < n; ++i) turn(&p.w[i * stride + r], 1);
   for (ToolTerms& tool : p.tools)
     for (long c = 0; c < 6; ++c) turn(tool.jacobian.data() + 6 * row + c, 6);
-  for (std::vector<double>* v : {&delta_m, &p.lambda, &p.rate}) turn(v->data() + r, 1);
+  for (double* v : {delta_m.data(), p.lambda.data(), p.rate.data()}) turn(v + r, 1);
 }
 
-void TurnedContacts::operator()(const Simulation& simulation, double ahead_s, ConstraintProblem& p) {
+const ConstraintProblem& TurnedContacts::operator()(const Simulation& simulation, double ahead_s) {
   turns_.clear();
   for (const Constraint* c : simulation.constraints())
     if (const auto* contact = dynamic_cast<const Contact*>(c)) contact->turned(ahead_s / simulation.h(), turns_);
   std::erase_if(turns_, [](const Contact::Turn& t) { return t.from.cross(t.to).norm() < least_turn; });
-  if (turns_.empty()) return;
-  const auto combine = sweep_kernels().combine;
+  if (turns_.empty()) return simulation.problem();
+  turned_ = simulation.problem();
+  ConstraintProblem& p = turned_;
   const std::size_t n = std::size_t(p.rows);
-  work_.assign(std::size_t(p.stride), 0.0);
-  combine(work_.data(), p.w.data(), p.stride, p.lambda.data(), p.rows, p.stride);
-  delta_m_.resize(n);
-  for (std::size_t i = 0; i < n; ++i) delta_m_[i] = p.delta_free[i] + work_[i];
+  full_delta(p, {p.delta_free.data(), n}, p.lambda.data(), delta_m_);
   for (const Contact::Turn& turn : turns_) {
     const double gap = delta_m_[std::size_t(turn.row)];
     turn_block(p, turn.row, rotation(turn.from, turn.tangent, turn.to), delta_m_);
     delta_m_[std::size_t(turn.row)] = gap;  // what pressed presses
   }
   work_.assign(std::size_t(p.stride), 0.0);
-  combine(work_.data(), p.w.data(), p.stride, p.lambda.data(), p.rows, p.stride);
+  sweep_kernels().combine(work_.data(), p.w.data(), p.stride, p.lambda.data(), p.rows, p.stride);
   for (std::size_t i = 0; i < n; ++i) p.delta_free[i] = delta_m_[i] - work_[i];
   workspace_.reserve(p.rows);
   workspace_.lambda.assign(p.lambda.begin(), p.lambda.begin() + p.rows);
   solve(p, p.delta_free, simulation.solve_settings(), workspace_);
   p.lambda.assign(workspace_.lambda.begin(), workspace_.lambda.end());
+  return turned_;
 }
 
 }  // namespace insula

@@ -14,17 +14,18 @@
 namespace insula {
 
 /// Turns the three rows of a contact that begin at `row` by q. `delta_m`: of the problem at its lambda; turned likewise.
-void turn_block(ConstraintProblem& problem, int row, const Mat3& q, std::vector<double>& delta_m);
+void turn_block(ConstraintProblem& problem, int row, const Mat3& q, std::span<double> delta_m);
 
 class TurnedContacts {
  public:
-  /// Turns the rows of `problem`, which is that of the simulation's last step, to where tools are `ahead_s` after it if they go on as in it.
-  void operator()(const Simulation& simulation, double ahead_s, ConstraintProblem& problem);
+  /// The problem of the simulation's last step, its rows turned to where tools are `ahead_s` after it if they go on as in it; the simulation's
+  /// own where none turns. Until the next call or step.
+  const ConstraintProblem& operator()(const Simulation& simulation, double ahead_s);
 
  private:
+  ConstraintProblem turned_;
   std::vector<Contact::Turn> turns_;
-  std::vector<double> delta_m_;
-  AlignedVector<double> work_;
+  AlignedVector<double> delta_m_, work_;
   SolveWorkspace workspace_;
 };
 

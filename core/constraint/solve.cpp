@@ -23,13 +23,13 @@ void SolveWorkspace::reserve(int rows, bool with_newton) {
   if (with_newton) newton.reserve(rows);
 }
 
-namespace {
-
 void full_delta(const ConstraintProblem& p, std::span<const double> free, const double* lambda, AlignedVector<double>& delta) {
   delta.assign(std::size_t(p.stride), 0.0);
   std::copy(free.begin(), free.end(), delta.begin());
   sweep_kernels().combine(delta.data(), p.w.data(), p.stride, lambda, p.rows, p.stride);
 }
+
+namespace {
 
 // Moves lambda and delta along the conjugate direction after a sweep; returns the sweep's size.
 double carry_on(const ConstraintProblem& p, SolveWorkspace& ws, double last_norm) {

@@ -48,6 +48,9 @@ struct SolveWorkspace {
   void reserve(int rows, bool with_newton = true);
 };
 
+/// delta := W lambda + free, m; padded to the problem's stride.
+void full_delta(const ConstraintProblem& problem, std::span<const double> free, const double* lambda, AlignedVector<double>& delta);
+
 /// Solves with the given delta_free (problem.rows values; the problem's own or the servo's). workspace.lambda must hold
 /// the warm start (problem.rows values). Never allocates if workspace.reserve(rows) was called.
 SolveStats solve(const ConstraintProblem& problem, std::span<const double> delta_free, const SolveSettings& settings,
