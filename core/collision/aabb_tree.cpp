@@ -107,16 +107,14 @@ void AabbTree::look_at(std::span<const Vec3> positions, std::span<const Vec3> di
 
 // What has used up half of its slack gets all of it, as one that is out.
 double AabbTree::renew(std::size_t v) {
-  const auto around = [](const Vec3& p) { return OuterBox::around({p, p}); };
   const Vec3& p = positions_[v];
-  const OuterBox here = around(p);
-  OuterBox way = here;
-  if (!displacements_.empty()) way.add(around(p + displacements_[v]));
+  const Float4 here = rounded(p), there = displacements_.empty() ? here : rounded(p + displacements_[v]);
   OuterBox& box = ways_[v];
   const float inside = box.room_about(here);
-  if (inside > 0.5f * slack && box.holds(way)) return double(inside);
-  way.inflate(slack);
-  box = way;
+  if (inside > 0.5f * slack && box.room_about(there) >= 0) return double(inside);
+  box = {here < there ? here : there, here > there ? here : there};
+  box.widen();
+  box.inflate(slack);
   for (int k = first_leaf_[v]; k < first_leaf_[v + 1]; ++k)
     for (int i = leaf_of_[std::size_t(k)]; i >= 0 && !stale_[std::size_t(i)]; i = parent_[std::size_t(i)]) stale_[std::size_t(i)] = 1;
   return double(box.room_about(here));

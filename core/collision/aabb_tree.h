@@ -48,25 +48,22 @@ struct Aabb {
 /// Four numbers that are computed with at once.
 using Float4 = float __attribute__((vector_size(16)));
 
+inline Float4 rounded(const Vec3& p) { return Float4{float(p[0]), float(p[1]), float(p[2]), 0}; }
+
 /// A box in single precision that holds the one it is made of. Finite coordinates below 1e30 m.
 struct OuterBox {
   Float4 low{1e30f, 1e30f, 1e30f, 0};
   Float4 high{-1e30f, -1e30f, -1e30f, 0};
 
   static OuterBox around(const Aabb& box) {
-    OuterBox r;
-    for (int k = 0; k < 3; ++k) {
-      r.low[k] = float(box.low[k]);
-      r.high[k] = float(box.high[k]);
-    }
+    OuterBox r{rounded(box.low), rounded(box.high)};
     r.widen();
     return r;
   }
   /// By more than the conversion may have rounded.
   void widen() {
-    const auto size = [](Float4 x) { return x < 0 ? -x : x; };
-    low -= size(low) * 1.2e-7f + 1e-30f;
-    high += size(high) * 1.2e-7f + 1e-30f;
+    low -= rounding(low);
+    high += rounding(high);
   }
   void inflate(float r) {
     low -= r;
@@ -76,15 +73,10 @@ struct OuterBox {
     low = low < o.low ? low : o.low;
     high = high > o.high ? high : o.high;
   }
-  bool holds(const OuterBox& o) const {
-    const Halves out = (Halves)((low > o.low) | (o.high > high));
-    return (out[0] | out[1]) == 0;
-  }
-  /// How far each side of a box inside may move out before it leaves this one, the least of six; negative: it has. At most what
-  /// both were inflated by, since the fourth number counts too.
-  float room_about(const OuterBox& o) const {
-    const Float4 below = o.low - low, above = high - o.high, m = below < above ? below : above;
-    return std::min(std::min(m[0], m[1]), std::min(m[2], m[3]));
+  /// How far the point that was rounded to this one may go before it leaves the box, at least; negative: it may be outside.
+  float room_about(Float4 point) const {
+    const Float4 below = point - low, above = high - point, m = (below < above ? below : above) - rounding(point);
+    return std::min(std::min(m[0], m[1]), m[2]);
   }
   bool overlaps(const OuterBox& o) const {
     const Halves apart = (Halves)((low > o.high) | (o.low > high));
@@ -98,6 +90,7 @@ struct OuterBox {
     }
     return d;
   }
+  static Float4 rounding(Float4 x) { return (x < 0 ? -x : x) * 1.2e-7f + 1e-30f; }
   using Halves = std::int64_t __attribute__((vector_size(16)));
   Aabb box() const { return {Vec3(low[0], low[1], low[2]), Vec3(high[0], high[1], high[2])}; }
 };

@@ -117,7 +117,7 @@ const FourTriangles& TissueCollider::corners_of(const CollisionMesh& b, std::siz
     std::array<Float4, 4> x;
     for (std::size_t lane = 0; lane < 4; ++lane) {
       const Vec3 p = b.vertex(corner[lane][k]) - centre_;
-      x[lane] = Float4{float(p[0]), float(p[1]), float(p[2]), 0};
+      x[lane] = rounded(p);
     }
     *to[k] = by_coordinate(x);
   }
