@@ -64,7 +64,8 @@ TissueCollider::TissueCollider(std::vector<int> samples, std::span<const Vec3> r
   leaves_.reserve(std::size_t(triangles));
   packs_.reserve(std::size_t(triangles) / BoxPack::size + 1);
   corners_.reserve(std::size_t(triangles));
-  corners_at_.resize(std::size_t(triangles));
+  cornered_.reserve(std::size_t(triangles));
+  corners_at_.assign(std::size_t(triangles), -1);
   seen_.reserve(3 * std::size_t(triangles) + 1);
   order_by_place(samples_.data(), samples_.data() + samples_.size(), rest, std::ptrdiff_t(group));
   reset();
@@ -80,8 +81,9 @@ void TissueCollider::reset() {
 // What is kept of leaves in single precision is about the middle of the surface: a few cm.
 void TissueCollider::begin_gathering(const AabbTree& tree) {
   gathering_ = true;
+  for (int t : cornered_) corners_at_[std::size_t(t)] = -1;
+  cornered_.clear();
   corners_.clear();
-  std::fill(corners_at_.begin(), corners_at_.end(), -1);
   const Aabb all = tree.bounds();
   centre_ = 0.5 * (all.low + all.high);
 }
@@ -109,6 +111,7 @@ const FourTriangles& TissueCollider::corners_of(const CollisionMesh& b, std::siz
   int& at = corners_at_[std::size_t(triangles.front())];
   if (at >= 0) return corners_[std::size_t(at)];
   at = int(corners_.size());
+  cornered_.push_back(triangles.front());
   FourTriangles& c = corners_.emplace_back();
   std::array<const int*, 4> corner;
   for (std::size_t lane = 0; lane < 4; ++lane) corner[lane] = b.triangle(triangles[std::min(lane, triangles.size() - 1)]).data();
@@ -152,15 +155,11 @@ void TissueCollider::lessen(std::size_t first, std::size_t last, double way, dou
 // Which regions of b are near the group.
 void TissueCollider::look_around(Group& g, const CollisionMesh& a, const CollisionMesh& b, std::size_t first, std::size_t last, double may_come) {
   Aabb here;
-  g.own = 0;
-  for (std::size_t i = first; i < last; ++i) {
-    here.add(a.vertex(samples_[i]));
-    g.own |= a.region_of(samples_[i]);
-  }
+  for (std::size_t i = first; i < last; ++i) here.add(a.vertex(samples_[i]));
   g.around = may_come + surroundings;
   here.inflate(g.around);
   g.near = b.regions_near(here);
-  g.travelled = a.travelled() + b.travelled();
+  g.travelled = b.travelled();
 }
 
 void TissueCollider::detect(const CollisionMesh& a, const CollisionMesh& b, const TissueContactSettings& settings,
@@ -170,21 +169,25 @@ void TissueCollider::detect(const CollisionMesh& a, const CollisionMesh& b, cons
   const bool followed = a.updates() - updates_[0] <= 1 && b.updates() - updates_[1] <= 1;
   updates_ = {a.updates(), b.updates()};
   gathering_ = false;
-  const double travelled = a.travelled() + b.travelled(), open_range = settings.alarm + settings.offset;
+  const double open_range = settings.alarm + settings.offset;
   const double farthest = open_range + a.farthest_free() + b.farthest_free();
   for (std::size_t first = 0; first < samples_.size(); first += group) {
     const std::size_t last = std::min(first + group, samples_.size());
     Group& g = groups_[first / group];
     // What cannot have come near since it was last looked at needs no look.
-    const double went = a.moved(g.own) + b.moved(g.near), elsewhere = g.around - (travelled - g.travelled);
+    if (g.own == 0)
+      for (std::size_t i = first; i < last; ++i) g.own |= a.region_of(samples_[i]);
+    const double own = a.moved(g.own), went = own + b.moved(g.near);
+    g.around -= own;
+    const double elsewhere = g.around - (b.travelled() - g.travelled), anyone = open_range + a.may_move(g.own) + b.farthest_free();
     g.clear -= went;
     g.went += went;
-    if (!followed || elsewhere <= farthest) {
+    if (!followed || elsewhere <= anyone) {
       const double at_least = followed ? elsewhere : 0.0;  // all that is known was about the regions before
       lessen(first, last, g.went, at_least);
       g.clear = std::min(g.clear, at_least);
       g.went = 0;
-      look_around(g, a, b, first, last, farthest);
+      look_around(g, a, b, first, last, anyone);
     }
     if (g.near == 0 && !g.deep) continue;
     const double may_come = open_range + a.may_move(g.own) + b.may_move(g.near);

@@ -50,8 +50,8 @@ class TissueCollider {
     double clear = 0;    ///< least of its samples', m
     double went = 0;     ///< what the samples' clear_ is yet to be lessened by, m
     std::uint64_t own = 0, near = 0;  ///< regions of its samples, and of all of b that is not farther away than `around`
-    double around = 0;   ///< m, when travelled was ...
-    double travelled = 0;  ///< ... by both meshes
+    double around = 0;   ///< m, less the samples' own way since, when ...
+    double travelled = 0;  ///< ... b had travelled this far
     bool deep = true;    ///< has a sample behind the surface
   };
   void look_around(Group& g, const CollisionMesh& a, const CollisionMesh& b, std::size_t first, std::size_t last, double may_come);
@@ -66,6 +66,7 @@ class TissueCollider {
   std::vector<std::span<const int>> leaves_;  ///< triangles of the leaves near a group ...
   std::vector<BoxPack> packs_;                ///< ... and their boxes
   std::vector<FourTriangles> corners_;        ///< corners of all leaves that a sample wanted in this step, about centre_
+  std::vector<int> cornered_;                 ///< the leaves that they are of, by their first triangle
   std::vector<int> corners_at_;               ///< of the leaf that begins with this triangle: place in corners_, -1: not wanted yet
   bool gathering_ = false;                    ///< any in this step
   Vec3 centre_ = Vec3::Zero();

@@ -29,7 +29,6 @@ void ConstraintBuilder::point(int row, const MaterialPoint& p, const Vec3& d) {
   p.body->rows.open(row);
   p.body->add_row(p.body->rows, p, d);
   relaxation_[std::size_t(row)] = std::max(relaxation_[std::size_t(row)], p.body->relaxation());
-  delta_[std::size_t(row)] += d.dot(p.body->free_displacement(p));
 }
 
 void ConstraintBuilder::surface_point(int row, const Surface& s, int triangle, const Vec3& bary, const Vec3& d) {
@@ -38,8 +37,6 @@ void ConstraintBuilder::surface_point(int row, const Surface& s, int triangle, c
   body.rows.open(row);
   s.add_row(body.rows, triangle, bary, d);
   relaxation_[std::size_t(row)] = std::max(relaxation_[std::size_t(row)], body.relaxation());
-  const auto& t = s.triangles()[std::size_t(triangle)];
-  for (int k = 0; k < 3; ++k) delta_[std::size_t(row)] += bary[k] * d.dot(s.body().free_displacement(s.points()[std::size_t(t[std::size_t(k)])]));
 }
 
 void ConstraintBuilder::finish() {

@@ -114,10 +114,10 @@ void AsynchronousSolver::solve(double* x) {
   status_.residual_m = refine(b_.data(), x, tolerance_);
 }
 
-void AsynchronousSolver::free_motion(double* x, const double* guess) {
-  for (std::size_t i = 0; i < b_.size(); ++i) b_[i] = x[i] + held_[i];
-  std::copy_n(guess, b_.size(), x);
-  status_.residual_m = refine(b_.data(), x, early * tolerance_);
+void AsynchronousSolver::begin_motion(const VecX& load, const VecX& guess) {
+  for (std::size_t i = 0; i < b_.size(); ++i) b_[i] = load[long(i)] + held_[i];
+  free_ = guess;
+  status_.residual_m = refine(b_.data(), free_.data(), early * tolerance_);
   left_ = r_;
 }
 

@@ -27,8 +27,8 @@ class AsynchronousSolver final : public BodySolver {
   bool wants_rotations() const override { return true; }
   void turn(const std::vector<Mat3>& rotation) override;
   void solve(double* x) override;
-  void free_motion(double* x, const double* guess) override;
-  void unforced_motion(const double* load, double* x) override { refine(load, x, early * tolerance_); }
+  void begin_motion(const VecX& load, const VecX& guess) override;
+  void unforced_motion(const VecX& load, VecX& x) override { refine(load.data(), x.data(), early * tolerance_); }
   void begin_compliance(const BodyRows& rows, const std::vector<int>& node_of_block) override;
   int compliance_parts(ComplianceAct act) const override { return front_->full.compliance_parts(act); }
   void compliance_part(ComplianceAct act, int part) override { front_->full.compliance_part(act, part); }
@@ -65,7 +65,7 @@ class AsynchronousSolver final : public BodySolver {
   std::vector<Mat3> turned_, factor_turned_, asked_turned_;  ///< of each node: now, as the factor knows it, as the one asked for will
   std::vector<Mat3> since_;                                 ///< now from then
   BodyRows turned_rows_, rows_before_;  ///< as the factor is given them, numbered from 0; after them that of the held forces, if there are any
-  std::vector<double> held_, given_, left_;  ///< forces on nodes: rows' of the last step, of this one, and what free_motion() has not balanced
+  std::vector<double> held_, given_, left_;  ///< forces on nodes: rows' of the last step, of this one, and what the free motion has not balanced
   std::vector<int> block_of_node_;
   std::vector<double> s_;       ///< compliance of turned_rows_, as last added
   bool factor_is_new_ = true;

@@ -244,10 +244,9 @@ TEST(AsynchronousSolver, FreeMotionUnderHeldForcesAndTheCorrectionAreTheWholeMot
     ASSERT_TRUE(solver.factorise(s.a));
     const VecX force = 1e-3 * any(20) * (1 + 0.05 * step);
     const auto truth = s.dense.ldlt();
-    VecX free = force, more(3 * System::nodes);
-    solver.free_motion(free.data(), last.data());
+    solver.begin_motion(force, last);
     VecX unforced = last;
-    solver.unforced_motion(force.data(), unforced.data());
+    solver.unforced_motion(force, unforced);
     EXPECT_LT(worst_node(unforced - truth.solve(force)), 5 * solver.early * tolerance) << step;
     // Rows vanish for two steps: their last forces must go too.
     const bool touched = step % 6 < 4;
@@ -258,16 +257,16 @@ TEST(AsynchronousSolver, FreeMotionUnderHeldForcesAndTheCorrectionAreTheWholeMot
     if (touched) {
       MatX w = MatX::Zero(2 * m, 2 * m);
       solver.add_compliance(rows, w.data(), 2 * m);
-      VecX delta = VecX::Zero(2 * m), at(m);
-      for (int i = 0; i < m; ++i) delta[2 * i] = h.row(i).dot(free);
+      VecX delta = VecX::Zero(2 * m), free(m), at(m);
+      solver.add_free_motion(rows, identity, delta.data());
+      for (int i = 0; i < m; ++i) free[i] = delta[2 * i];
       solver.take_off_held(rows, delta.data());
       for (int i = 0; i < m; ++i) at[i] = delta[2 * i];
-      const VecX without = h * truth.solve(force), held = h * free - without;
+      const VecX without = h * truth.solve(force), held = free - without;
       EXPECT_LT((at - without).norm(), 0.1 * (without.norm() + held.norm()) + 50 * tolerance) << step;
       if (step == 2) { EXPECT_GT(held.norm(), 100 * (at - without).norm() / 10) << "there is something to take off"; }
     }
-    solver.correct(touched ? rows : none, lambda.data(), more.data());
-    last = free + more;
+    solver.end_motion(touched ? rows : none, lambda.data(), last);
     EXPECT_LT(worst_node(last - truth.solve(force + h.transpose() * own)), 5 * tolerance) << step;
   }
 }

@@ -18,6 +18,8 @@ void MultifrontalCholesky<Real>::analyse(const BlockMatrix& a) {
   update_.assign(std::size_t(e_.arena_size) + slack, Real(0));
   inverse_.assign(3 * std::size_t(e_.nodes), Real(0));
   x_.assign(3 * std::size_t(e_.nodes) + slack, Real(0));
+  load_ = x_;
+  loaded_ = false;
   gathered_.assign(3 * std::size_t(e_.nodes) + slack, Real(0));
   columns_ = 0;
   rows_factor_ = -1;
@@ -27,6 +29,7 @@ template <class Real>
 bool MultifrontalCholesky<Real>::factorise(const BlockMatrix& a) {
   [[maybe_unused]] const FlushSubnormals<Real> flush;
   ++factor_number_;
+  loaded_ = false;
   for (const Front& f : e_.front)
     if (!factorise(a, f)) return false;
   return true;
@@ -96,18 +99,20 @@ bool MultifrontalCholesky<Real>::pivots_are_good(const BlockMatrix& a, const Fro
   return true;
 }
 
-// Both gather a front's part of x once, so that its columns run over memory in order.
+// Both ways gather a front's part of x once, so that its columns run over memory in order.
+template <class Real>
+void MultifrontalCholesky<Real>::forward(const Front& f, Real* x) {
+  Real* t = gathered_.data();
+  const int rows = 3 * f.rows;
+  const int* index = e_.row_scalar.data() + 3 * f.row_begin;
+  for (int r = 0; r < rows; ++r) t[r] = x[index[r]];
+  kernels_of<Real>().front_forward(panel_.data() + f.panel, f.lda, inverse_.data() + 3 * f.first, t, 3 * f.own, rows);
+  for (int r = 0; r < rows; ++r) x[index[r]] = t[r];
+}
+
 template <class Real>
 void MultifrontalCholesky<Real>::forward(Real* x) {
-  const KernelsOf<Real>& k = kernels_of<Real>();
-  Real* t = gathered_.data();
-  for (const Front& f : e_.front) {
-    const int rows = 3 * f.rows;
-    const int* index = e_.row_scalar.data() + 3 * f.row_begin;
-    for (int r = 0; r < rows; ++r) t[r] = x[index[r]];
-    k.front_forward(panel_.data() + f.panel, f.lda, inverse_.data() + 3 * f.first, t, 3 * f.own, rows);
-    for (int r = 0; r < rows; ++r) x[index[r]] = t[r];
-  }
+  for (const Front& f : e_.front) forward(f, x);
 }
 
 template <class Real>
@@ -132,6 +137,42 @@ void MultifrontalCholesky<Real>::solve(double* x) {
   forward(x_.data());
   backward(x_.data());
   e_.restore(x_.data(), x);
+}
+
+template <class Real>
+void MultifrontalCholesky<Real>::begin_motion(const VecX& load, const VecX&) {
+  [[maybe_unused]] const FlushSubnormals<Real> flush;
+  e_.permute(load.data(), load_.data());
+  forward(load_.data());
+  loaded_ = true;
+}
+
+template <class Real>
+bool MultifrontalCholesky<Real>::factorise_and_begin(const BlockMatrix& a, const VecX& load, const VecX&) {
+  [[maybe_unused]] const FlushSubnormals<Real> flush;
+  ++factor_number_;
+  loaded_ = true;
+  e_.permute(load.data(), load_.data());
+  for (const Front& f : e_.front) {
+    if (!factorise(a, f)) return false;
+    forward(f, load_.data());
+  }
+  return true;
+}
+
+template <class Real>
+void MultifrontalCholesky<Real>::unforced_motion(const VecX&, VecX& x) {
+  end_motion({}, nullptr, x);
+}
+
+template <class Real>
+void MultifrontalCholesky<Real>::end_motion(const BodyRows& rows, const double* lambda, VecX& x) {
+  [[maybe_unused]] const FlushSubnormals<Real> flush;
+  std::copy_n(load_.data(), 3 * e_.nodes, x_.data());
+  if (rows.count() > 0) combine(rows, lambda, x_.data());
+  backward(x_.data());
+  x.resize(3 * e_.nodes);
+  e_.restore(x_.data(), x.data());
 }
 
 template class MultifrontalCholesky<double>;

@@ -20,6 +20,12 @@ class MultifrontalCholesky final : public BodySolver {
   void analyse(const BlockMatrix& a) override;
   bool factorise(const BlockMatrix& a) override;
   void solve(double* x) override;
+  void begin_motion(const VecX& load, const VecX& guess) override;
+  /// The load is substituted front by front, while each is at hand.
+  bool factorise_and_begin(const BlockMatrix& a, const VecX& load, const VecX& guess) override;
+  void unforced_motion(const VecX& load, VecX& x) override;
+  void add_free_motion(const BodyRows& rows, const std::vector<int>& node_of_block, double* delta) const override;
+  void end_motion(const BodyRows& rows, const double* lambda, VecX& x) override;
   void begin_compliance(const BodyRows& rows, const std::vector<int>& node_of_block) override;
   int compliance_parts(ComplianceAct act) const override;
   void compliance_part(ComplianceAct act, int part) override;
@@ -31,7 +37,7 @@ class MultifrontalCholesky final : public BodySolver {
 
   const Elimination& elimination() const { return e_; }
   const Real* panels() const { return panel_.data(); }
-  /// x := Y lambda = L^-1 P H^T lambda, permuted order, of the rows in the last begin_compliance().
+  /// x += Y lambda = L^-1 P H^T lambda, permuted order, of the rows in the last begin_compliance().
   void combine(const BodyRows& rows, const double* lambda, Real* x) const;
 
  private:
@@ -40,6 +46,7 @@ class MultifrontalCholesky final : public BodySolver {
   static constexpr int slack = 64;                        ///< kernels read whole vectors
 
   bool factorise(const BlockMatrix& a, const Front& f);
+  void forward(const Front& f, Real* x);
   void add_child(const Front& f, const Front& child);
   bool pivots_are_good(const BlockMatrix& a, const Front& f) const;
   void forward(Real* x);
@@ -48,6 +55,8 @@ class MultifrontalCholesky final : public BodySolver {
   Elimination e_;
   std::vector<Real> panel_, update_, x_, gathered_;  ///< gathered_: what one front needs of a vector
   std::vector<Real> inverse_;                        ///< one over each number of L's diagonal, permuted order
+  std::vector<Real> load_;                           ///< of the step's motion: L^-1 P load
+  bool loaded_ = false;
 
   // Rows in flight. Columns of Y are theirs in `order_` (-1: a column of zeros), fresh ones up to fresh_, then known ones.
   struct Columns {
@@ -59,8 +68,10 @@ class MultifrontalCholesky final : public BodySolver {
   void share_out();
   void forward_columns(int from, int to);
   void product_columns(int from, int to);
+  void load_columns(int group, int from, int to);
   void copy_known_products();
   std::vector<Real> y_, s_;
+  std::vector<Real> of_load_;  ///< of each column: minus Y^T load_
   mutable std::vector<Real> lambda_, products_;  ///< scratch of combine()
   std::vector<int> order_, begin_;
   std::array<std::vector<Columns>, 2> active_;  ///< fresh, known; of each front

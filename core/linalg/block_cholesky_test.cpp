@@ -150,7 +150,8 @@ TYPED_TEST(Direct, SaysWhenAPivotIsLost) {
 }
 
 // Rows come, stay, change their place, change their entries and go while the factor stays, then the factor is made anew: W is to
-// the bit what a solver gives that sees these rows for the first time.
+// the bit what a solver gives that sees these rows for the first time. The load is another in every step, and both halves of the
+// motion are those of dense algebra.
 TYPED_TEST(Direct, RowsThatStayAreNotSolvedAgain) {
   Problem p = make(6, 6, 5, 70, 11), other = make(6, 6, 5, 70, 12);
   const auto choose = [](const BodyRows& from, const std::vector<int>& rows, BodyRows& to) {
@@ -184,12 +185,14 @@ TYPED_TEST(Direct, RowsThatStayAreNotSolvedAgain) {
       choose(other.rows, act.fresh, rows);
       const int m = rows.count(), stride = 80;
       std::vector<double> w(80 * 80, 0.0), expected(w);
+      c.begin_motion(VecX::LinSpaced(p.dense.rows(), -1, m + 1), VecX());
       c.compute_compliance(rows, p.identity);
       c.add_compliance(rows, w.data(), stride);
       EXPECT_EQ(c.rows_reused(), act.reused);
       MultifrontalCholesky<TypeParam> fresh;
       fresh.analyse(p.a);
-      ASSERT_TRUE(fresh.factorise(p.a));
+      const VecX load = VecX::LinSpaced(p.dense.rows(), -1, m + 1), guess = VecX::Zero(load.size());
+      ASSERT_TRUE(fresh.factorise_and_begin(p.a, load, guess));
       fresh.compute_compliance(rows, p.identity);
       fresh.add_compliance(rows, expected.data(), stride);
       EXPECT_EQ(fresh.rows_reused(), 0);
@@ -198,7 +201,24 @@ TYPED_TEST(Direct, RowsThatStayAreNotSolvedAgain) {
       c.correct(rows, lambda.data(), x.data());
       fresh.correct(rows, lambda.data(), y.data());
       EXPECT_LT((x - y).template lpNorm<Eigen::Infinity>(), this->tolerance);
+
+      MatX h = MatX::Zero(m, p.dense.rows());
+      for (int r = 0; r < m; ++r)
+        for (int e = rows.start[std::size_t(r)]; e < rows.start[std::size_t(r) + 1]; ++e)
+          h.block<1, 3>(r, 3 * rows.block[std::size_t(e)]) += rows.coeff[std::size_t(e)].transpose();
+      const auto dense = p.dense.ldlt();
+      const VecX free = dense.solve(load), moved = dense.solve(load + h.transpose() * lambda.head(m));
+      for (MultifrontalCholesky<TypeParam>* solver : {&c, &fresh}) {
+        VecX delta = VecX::Constant(80, 2.0), motion;
+        solver->unforced_motion(load, motion);
+        EXPECT_LT((motion - free).template lpNorm<Eigen::Infinity>(), 4 * this->tolerance);
+        solver->add_free_motion(rows, p.identity, delta.data());
+        if (m > 0) { EXPECT_TRUE(test::held(sizeof(TypeParam) == 8 ? "H A^-1 f" : "H A^-1 f, single precision", (delta.head(m) - h * free - VecX::Constant(m, 2.0)).template lpNorm<Eigen::Infinity>(), 1, 4 * this->tolerance)); }
+        solver->end_motion(rows, lambda.data(), motion);
+        EXPECT_TRUE(test::held(sizeof(TypeParam) == 8 ? "A^-1 (f + H^T l)" : "A^-1 (f + H^T l), single precision", (motion - moved).template lpNorm<Eigen::Infinity>(), 1, 4 * this->tolerance));
+      }
     }
+    p.dense(3 * 17, 3 * 17) += 1;
   }
 }
 

@@ -47,6 +47,7 @@ void MultifrontalCholesky<Real>::begin_compliance(const BodyRows& rows, const st
   arrange();
   y_.resize(std::max(y_.size(), 3 * std::size_t(e_.nodes) * std::size_t(ldy_) + slack));
   s_.resize(std::max(s_.size(), std::size_t(ldy_) * std::size_t(ldy_ + lanes) + slack));
+  of_load_.resize(std::max(of_load_.size(), std::size_t(ldy_) + slack));
   clear_fresh();
   if (reused_ > 0) copy_known();
   for (long c = 0; c < fresh_; ++c) {
@@ -174,16 +175,20 @@ void MultifrontalCholesky<Real>::share_out() {
 
 template <class Real>
 int MultifrontalCholesky<Real>::compliance_parts(ComplianceAct act) const {
-  if (columns_ == 0 || e_.nodes == 0 || unchanged_) return 0;
-  const int parts = std::max(0, int(part_begin_[std::size_t(act)].size()) - 1);
-  return act == ComplianceAct::product ? std::max(1, parts) : parts;  // what is known is copied by the first
+  if (columns_ == 0 || e_.nodes == 0) return 0;
+  const int parts = unchanged_ ? 0 : std::max(0, int(part_begin_[std::size_t(act)].size()) - 1);
+  return act == ComplianceAct::product ? std::max(1, parts) : parts;  // what is known is copied by the first; the load is never known
 }
 
 template <class Real>
 void MultifrontalCholesky<Real>::compliance_part(ComplianceAct act, int part) {
   [[maybe_unused]] const FlushSubnormals<Real> flush;
   const auto& begin = part_begin_[std::size_t(act)];
-  if (act == ComplianceAct::product && part == 0) copy_known_products();
+  if (act == ComplianceAct::product && part == 0) {
+    load_columns(1, int(fresh_), int(ldy_));
+    if (unchanged_) return load_columns(0, 0, int(fresh_));
+    copy_known_products();
+  }
   if (part + 1 >= int(begin.size())) return;
   const int from = begin[std::size_t(part)], to = begin[std::size_t(part) + 1];
   if (act == ComplianceAct::forward) forward_columns(from, to);
@@ -212,6 +217,7 @@ template <class Real>
 void MultifrontalCholesky<Real>::product_columns(int from, int to) {
   const KernelsOf<Real>& k = kernels_of<Real>();
   const int ld = int(ldy_);
+  load_columns(0, from, to);
   std::memset(s_.data() + long(from) * ldy_, 0, sizeof(Real) * std::size_t(to - from) * std::size_t(ldy_));
   for (std::size_t i = 0; i < e_.front.size(); ++i) {
     const Front& f = e_.front[i];
@@ -225,6 +231,27 @@ void MultifrontalCholesky<Real>::product_columns(int from, int to) {
     if (hi < a.end) k.gemm_add(s + hi, ld, y + hi, ld, y + lo, ld, a.end - hi, hi - lo, own);
     if (b.begin < b.end) k.gemm_add(s + b.begin, ld, y + b.begin, ld, y + lo, ld, b.end - b.begin, hi - lo, own);
   }
+}
+
+// What the load does to the rows: Y^T L^-1 P load, of columns of one group.
+template <class Real>
+void MultifrontalCholesky<Real>::load_columns(int group, int from, int to) {
+  if (!loaded_) return;
+  const KernelsOf<Real>& k = kernels_of<Real>();
+  std::fill(of_load_.begin() + from, of_load_.begin() + to, Real(0));
+  for (std::size_t i = 0; i < e_.front.size(); ++i) {
+    const Front& f = e_.front[i];
+    const Columns& a = active_[std::size_t(group)][i];
+    const int lo = std::max(a.begin, from), hi = std::min(a.end, to);
+    if (lo < hi) k.columns_sub(of_load_.data() + lo, y_.data() + 3L * f.first * ldy_ + lo, ldy_, load_.data() + 3 * f.first, hi - lo, 3 * f.own);
+  }
+}
+
+template <class Real>
+void MultifrontalCholesky<Real>::add_free_motion(const BodyRows& rows, const std::vector<int>&, double* delta) const {
+  if (columns_ == 0 || e_.nodes == 0 || !loaded_) return;
+  for (std::size_t c = 0; c < std::size_t(ldy_); ++c)
+    if (order_[c] >= 0) delta[rows.row[std::size_t(order_[c])]] -= double(of_load_[c]);
 }
 
 template <class Real>
@@ -257,7 +284,6 @@ void MultifrontalCholesky<Real>::add_compliance(const BodyRows& rows, double* w,
 template <class Real>
 void MultifrontalCholesky<Real>::combine(const BodyRows& rows, const double* lambda, Real* x) const {
   const KernelsOf<Real>& k = kernels_of<Real>();
-  std::fill_n(x, 3 * e_.nodes, Real(0));
   if (columns_ == 0) return;
   lambda_.resize(std::size_t(ldy_));
   for (std::size_t c = 0; c < lambda_.size(); ++c) lambda_[c] = order_[c] >= 0 ? Real(lambda[rows.row[std::size_t(order_[c])]]) : Real(0);
@@ -275,6 +301,7 @@ void MultifrontalCholesky<Real>::combine(const BodyRows& rows, const double* lam
 template <class Real>
 void MultifrontalCholesky<Real>::correct(const BodyRows& rows, const double* lambda, double* x) {
   [[maybe_unused]] const FlushSubnormals<Real> flush;
+  std::fill_n(x_.data(), 3 * e_.nodes, Real(0));
   combine(rows, lambda, x_.data());
   if (columns_ > 0) backward(x_.data());
   e_.restore(x_.data(), x);
@@ -305,6 +332,8 @@ SolverCost MultifrontalCholesky<Real>::cost() const {
   template void MultifrontalCholesky<Real>::compliance_part(ComplianceAct, int);                        \
   template void MultifrontalCholesky<Real>::forward_columns(int, int);                                  \
   template void MultifrontalCholesky<Real>::product_columns(int, int);                                  \
+  template void MultifrontalCholesky<Real>::load_columns(int, int, int);                                \
+  template void MultifrontalCholesky<Real>::add_free_motion(const BodyRows&, const std::vector<int>&, double*) const; \
   template void MultifrontalCholesky<Real>::copy_known_products();                                      \
   template void MultifrontalCholesky<Real>::add_compliance(const BodyRows&, double*, int);              \
   template void MultifrontalCholesky<Real>::combine(const BodyRows&, const double*, Real*) const;       \

@@ -3,7 +3,11 @@
 // another processor, is put in. A body owns one and knows only this; constraints and collision know nothing of it.
 //
 // A solver is given a matrix by factorise() and serves it until the next. The rows of begin_compliance() stay those of
-// add_compliance() and correct() until the next begin_compliance(). Nothing is allocated unless more rows come than ever before.
+// add_compliance(), correct() and the end of the motion until the next begin_compliance(). Nothing is allocated unless more rows come
+// than ever before.
+//
+// A step's motion A^-1 (f + H^T lambda) comes in two halves, with W and lambda between them: hardly anyone needs the free motion but in the rows,
+// and a direct solver that is not asked for it goes through its factor once each way.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -44,9 +48,38 @@ class BodySolver {
   virtual bool factorise(const BlockMatrix& a) = 0;
   /// x := A^-1 x, 3 * nodes values in natural order.
   virtual void solve(double* x) = 0;
-  /// The step's free motion: the same, but a solver that is not exact begins at `guess`, adds the forces that rows had in the last
-  /// step (held forces, which motion under them changes less than motion without), and may stop early. What that leaves, correct() makes up for.
-  virtual void free_motion(double* x, const double* /*guess*/) { solve(x); }
+  /// First half: takes the load, natural order, N. A solver that is not exact begins at `guess`, m, adds the forces that rows had in the last step
+  /// (held forces, which motion under them changes less than motion without), and may stop early. What that leaves, correct() makes up for.
+  virtual void begin_motion(const VecX& load, const VecX& /*guess*/) {
+    free_ = load;
+    solve(free_.data());
+  }
+  /// factorise(), and if that succeeds begin_motion().
+  virtual bool factorise_and_begin(const BlockMatrix& a, const VecX& load, const VecX& guess) {
+    if (!factorise(a)) return false;
+    begin_motion(load, guess);
+    return true;
+  }
+  /// x := A^-1 load, from x, without held forces, about as well as the free motion. After begin_motion() of that load.
+  virtual void unforced_motion(const VecX& load, VecX& x) {
+    x = load;
+    solve(x.data());
+  }
+  /// Adds H dq of the free motion to delta, by row number, of the rows of the last begin_compliance() when its acts are done.
+  virtual void add_free_motion(const BodyRows& rows, const std::vector<int>& node_of_block, double* delta) const {
+    for (int i = 0; i < rows.count(); ++i)
+      for (int e = rows.start[std::size_t(i)]; e < rows.start[std::size_t(i) + 1]; ++e)
+        if (const int node = node_of_block[std::size_t(rows.block[std::size_t(e)])]; node >= 0)
+          delta[rows.row[std::size_t(i)]] += rows.coeff[std::size_t(e)].dot(free_.segment<3>(3 * node));
+  }
+  /// Second half: x := A^-1 (load + H^T lambda), natural order; rows and lambda as for correct(), no rows: the free motion.
+  virtual void end_motion(const BodyRows& rows, const double* lambda, VecX& x) {
+    x = free_;
+    if (rows.count() == 0 && exact()) return;
+    correction_.resize(x.size());
+    correct(rows, lambda, correction_.data());
+    x += correction_;
+  }
   /// Whether turn() does anything. Rotation of each node from rest, before factorise() of the same step.
   virtual bool wants_rotations() const { return false; }
   virtual void turn(const std::vector<Mat3>& /*rotation*/) {}
@@ -63,11 +96,9 @@ class BodySolver {
   }
   /// Adds it into w (row-major, `stride` numbers a row) at the rows' numbers, both triangles.
   virtual void add_compliance(const BodyRows& rows, double* w, int stride) = 0;
-  /// x := A^-1 load about as well, from x, without held forces. After free_motion().
-  virtual void unforced_motion(const double* /*load*/, double* /*x*/) {}
   /// Takes off delta (by row number) what held forces make of it in the free motion, as far as the compliance knows.
   virtual void take_off_held(const BodyRows& /*rows*/, double* /*delta*/) const {}
-  /// x := A^-1 H^T lambda, natural order, less what free_motion() has of it; lambda is indexed by row number.
+  /// x := A^-1 H^T lambda, natural order, less what the free motion has of it; lambda is indexed by row number.
   virtual void correct(const BodyRows& rows, const double* lambda, double* x) = 0;
 
   /// Rows of the last begin_compliance() whose share was known, entries and factor being those of the time before.
@@ -81,6 +112,12 @@ class BodySolver {
   virtual void may_wait(bool) {}
   virtual SolverStatus status() const { return {}; }
   virtual SolverCost cost() const = 0;
+
+ protected:
+  VecX free_;  ///< the free motion, natural order, m, of solvers that know it
+
+ private:
+  VecX correction_;
 };
 
 }  // namespace insula

@@ -101,6 +101,7 @@ void HalfFactor::solve(double* x) {
 
 void HalfFactor::correct(const BodyRows& rows, const double* lambda, double* x) {
   const FlushSubnormals<float> flush;
+  std::fill(x_.begin(), x_.end(), 0.f);
   factor_->combine(rows, lambda, x_.data());
   for (std::size_t i = 0; i < x_.size(); ++i) x_[i] *= inverse_root_[i];
   backward();

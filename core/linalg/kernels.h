@@ -28,6 +28,8 @@ struct KernelsOf {
   void (*lower_solve_rows)(const Real* l, int ldl, const Real* inverse, int cols, Real* x, long ldx, int m);
   /// out[c] = sum_r A[r + c lda] x[r], r < m, c < n. Up to `width` numbers of x past its end must be zero, of A finite.
   void (*columns_dot)(Real* out, const Real* a, long lda, const Real* x, int m, int n);
+  /// y[r] -= sum_c A[r + c lda] x[c], r < m, c < n. Up to `width` numbers of y past its end become garbage.
+  void (*columns_sub)(Real* y, const Real* a, long lda, const Real* x, int m, int n);
   /// One right-hand side and the panel of cholesky_panel(), `own` columns (a multiple of three): t[0..own) := L11^-1 t[0..own), then
   /// what that takes off t[own..rows). Up to `width` numbers of t past its end become garbage.
   void (*front_forward)(const Real* panel, int lda, const Real* inverse, Real* t, int own, int rows);

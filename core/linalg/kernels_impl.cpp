@@ -254,6 +254,14 @@ void columns_dot(T* out, const T* a, long lda, const T* x, int m, int n) {
   for (; c < n; ++c) dot_columns<1>(out + c, a + c * lda, lda, x, m);
 }
 
+template <class T>
+void columns_sub(T* y, const T* a, long lda, const T* x, int m, int n) {
+  int c = 0;
+  for (; c + 6 <= n; c += 6) take_columns<6>(y, a + c * lda, lda, x + c, m);
+  for (; c + 3 <= n; c += 3) take_columns<3>(y, a + c * lda, lda, x + c, m);
+  for (; c < n; ++c) take_columns<1>(y, a + c * lda, lda, x + c, m);
+}
+
 // Substitution with n columns of a front from column `first` on. What each number found changes is taken off at once, so that
 // the next waits for one product, not for a sum.
 template <int n, class T>
@@ -338,7 +346,7 @@ void block_product(int nodes, const int* start, const int* row, const double* bl
 #define KERNEL_STRING2(x) #x
 #define KERNEL_STRING(x) KERNEL_STRING2(x)
 template <class T>
-constexpr KernelsOf<T> table_of = {KERNEL_STRING(KERNEL_NAME), W<T>, gemm_sub<T>, gemm_add<T>, syrk_add<T>, syrk_sub<T>, rows_sub<T>, cholesky_panel<T>, lower_solve_rows<T>, columns_dot<T>, front_forward<T>, front_backward<T>, multiply_add<T>};
+constexpr KernelsOf<T> table_of = {KERNEL_STRING(KERNEL_NAME), W<T>, gemm_sub<T>, gemm_add<T>, syrk_add<T>, syrk_sub<T>, rows_sub<T>, cholesky_panel<T>, lower_solve_rows<T>, columns_dot<T>, columns_sub<T>, front_forward<T>, front_backward<T>, multiply_add<T>};
 extern const KernelSet table;
 const KernelSet table = {table_of<double>, table_of<float>, block_product};
 

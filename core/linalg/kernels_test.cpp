@@ -41,6 +41,13 @@ void check_columns(const KernelsOf<Real>& k) {
         ASSERT_NEAR(double(out[std::size_t(c)]), sum, near * std::sqrt(m + 1.0)) << m << " x " << n << ", column " << c;
       }
       EXPECT_EQ(out.back(), Real(5));
+      auto less = y;
+      k.columns_sub(less.data(), a.data(), lda, x.data(), m, n);
+      for (int r = 0; r < m; ++r) {
+        double sum = double(y[std::size_t(r)]);
+        for (int c = 0; c < n; ++c) sum -= double(a[std::size_t(r + c * lda)]) * double(x[std::size_t(c)]);
+        ASSERT_NEAR(double(less[std::size_t(r)]), sum, near * std::sqrt(n + 1.0)) << m << " x " << n << ", row " << r;
+      }
     }
 }
 

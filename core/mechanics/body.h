@@ -44,19 +44,18 @@ class Body : public Component {
   virtual bool active() const { return true; }
   /// Position at the start of the step (current q), scene frame.
   virtual Vec3 position(const MaterialPoint& p) const = 0;
-  /// Displacement that the free motion gives the point over the step, linearised, scene frame. Valid after free_motion.
-  virtual Vec3 free_displacement(const MaterialPoint& p) const = 0;
-  /// The same without the last step's forces of rows, which the free motion of a body that is not exact() is under.
-  virtual Vec3 unforced_displacement(const MaterialPoint& p) const { return free_displacement(p); }
-  /// What collision looks ahead along. For tissue it is the last step's displacement: what is held springs back in its free
-  /// motion, step after step, and goes nowhere.
-  virtual Vec3 expected_displacement(const MaterialPoint& p) const { return free_displacement(p); }
+  /// What collision looks ahead along over the step, scene frame. For tools it is the free motion's. For tissue it is the last step's
+  /// displacement: what is held springs back in its free motion, step after step, and goes nowhere.
+  virtual Vec3 expected_displacement(const MaterialPoint& p) const = 0;
+  /// Displacement over the step without any row's force, linearised, scene frame. Valid after free_motion(). What it costs tissue: a solve, when
+  /// first asked in a step; not to be asked by two threads.
+  virtual Vec3 unforced_displacement(const MaterialPoint& p) const { return expected_displacement(p); }
   /// Whether the point ever moves; what is held does not.
   virtual bool can_move(const MaterialPoint&) const { return true; }
   /// The point's row entries for a direction d: adds d . d(point)/d(q) to the open row.
   virtual void add_row(BodyRows& rows, const MaterialPoint& p, const Vec3& d) const = 0;
 
-  /// Assembles and factorises A, solves the free motion.
+  /// Assembles and factorises A, begins the motion.
   virtual void free_motion(const StepContext& context) = 0;
   /// Computes H A^-1 H^T of these rows into the body's own memory; bodies do this in parallel.
   virtual void compute_compliance(const BodyRows&) {}
@@ -66,6 +65,8 @@ class Body : public Component {
   virtual void compliance_part(ComplianceAct, int) {}
   /// Adds it into `w` (row-major, leading dimension `stride`), at the rows' numbers; one body after the other.
   virtual void add_compliance(const BodyRows& rows, double* w, int stride) = 0;
+  /// Adds H dq of the free motion to delta_free, at the rows' numbers. After their compliance.
+  virtual void add_free_motion(const BodyRows&, double* /*delta*/) const {}
   /// Whether add_compliance() and apply() are of the same A. If not, respond() tells what lambda truly does, for defect correction.
   virtual bool exact() const { return true; }
   /// Then the free motion may be that under the last step's forces of rows (BodySolver::free_motion). Takes off delta, by row

@@ -64,7 +64,7 @@ void DeformableBody::connect(PrepareContext& context) {
   if (solver_kind.is("asynchronous")) solver_ = std::make_unique<AsynchronousSolver>(solver_tolerance());
   else solver_ = make_direct_solver(solver_kind.is("single"));
   solver_->analyse(a_);
-  force_ = dq_ = VecX::Zero(3 * nodes());
+  force_ = VecX::Zero(3 * nodes());
   packed_ = guess_ = response_ = load_ = unforced_ = VecX::Zero(3 * free_count_);
   turn_.assign(std::size_t(free_count_), Quat::Identity());
   turned_.assign(std::size_t(free_count_), Mat3::Identity());
@@ -77,31 +77,19 @@ Vec3 DeformableBody::position(const MaterialPoint& p) const {
   return x;
 }
 
-Vec3 DeformableBody::free_displacement(const MaterialPoint& p) const {
+Vec3 DeformableBody::expected_displacement(const MaterialPoint& p) const {
   Vec3 x = Vec3::Zero();
-  for (int k = 0; k < p.count; ++k) x += p.weight[std::size_t(k)] * dq_.segment<3>(3 * p.node[std::size_t(k)]);
-  return x;
-}
-
-void DeformableBody::find_unforced() const {
-  solver_->unforced_motion(load_.data(), unforced_.data());
-  unforced_is_ = Unforced::known;
+  for (int k = 0; k < p.count; ++k) x += p.weight[std::size_t(k)] * v_.segment<3>(3 * p.node[std::size_t(k)]);
+  return x * step_;
 }
 
 Vec3 DeformableBody::unforced_displacement(const MaterialPoint& p) const {
-  if (solver_->exact()) return free_displacement(p);
-  if (unforced_is_ == Unforced::unknown) find_unforced();
+  if (unforced_is_ == Unforced::unknown) solver_->unforced_motion(load_, unforced_);
   unforced_is_ = Unforced::asked;
   Vec3 x = Vec3::Zero();
   for (int k = 0; k < p.count; ++k)
     if (const int b = free_[std::size_t(p.node[std::size_t(k)])]; b >= 0) x += p.weight[std::size_t(k)] * unforced_.segment<3>(3 * b);
   return x;
-}
-
-Vec3 DeformableBody::expected_displacement(const MaterialPoint& p) const {
-  Vec3 x = Vec3::Zero();
-  for (int k = 0; k < p.count; ++k) x += p.weight[std::size_t(k)] * v_.segment<3>(3 * p.node[std::size_t(k)]);
-  return x * step_;
 }
 
 bool DeformableBody::can_move(const MaterialPoint& p) const {
@@ -141,13 +129,17 @@ void DeformableBody::find_rotations() {
 }
 
 // Assembles force and A, factorises A.
-void DeformableBody::make_tangent(double h) {
+// The system's matrix but for inertia, and the force that goes with it.
+void DeformableBody::assemble(double h) {
   if (solver_->wants_rotations()) {
     find_rotations();
     solver_->turn(turned_);
   }
   a_.set_zero();
   for (ForceModel* f : forces_) f->linearise(q_.data(), force_.data(), &a_, h, Tangent::system);
+}
+
+void DeformableBody::factorise(double h) {
   double extra = 1;
   for (int attempt = 0;; ++attempt) {
     for (int i = 0; i < nodes(); ++i) {
@@ -162,7 +154,7 @@ void DeformableBody::make_tangent(double h) {
     }
     // An indefinite matrix (force models promise not to make one) is met with ten times the inertia, as often as needed.
     const auto begin = std::chrono::steady_clock::now();
-    const bool good = solver_->factorise(a_);
+    const bool good = solver_->factorise_and_begin(a_, load_, guess_);
     factor_ms_ += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
     if (good || attempt == 12) break;
     ++indefinite_;
@@ -177,29 +169,21 @@ void DeformableBody::free_motion(const StepContext& context) {
   const double h = step_ = context.h;
   force_ = external + filling;
   factor_ms_ = 0;
-  if (tangent_is_good(h))
-    for (ForceModel* f : forces_) f->linearise(q_.data(), force_.data(), nullptr, h, Tangent::system);
+  const bool fresh = !tangent_is_good(h);
+  if (fresh) assemble(h);
   else
-    make_tangent(h);
+    for (ForceModel* f : forces_) f->linearise(q_.data(), force_.data(), nullptr, h, Tangent::system);
   for (int i = 0; i < nodes(); ++i)
-    if (const int b = free_[std::size_t(i)]; b >= 0)
-      packed_.segment<3>(3 * b) = force_.segment<3>(3 * i) + mass_[std::size_t(i)] * (context.gravity + v_.segment<3>(3 * i) / h);
-  if (!solver_->exact()) {
-    load_ = packed_;
-    for (int i = 0; i < nodes(); ++i)
-      if (const int b = free_[std::size_t(i)]; b >= 0) guess_.segment<3>(3 * b) = h * v_.segment<3>(3 * i);
-  }
-  solver_->free_motion(packed_.data(), guess_.data());
+    if (const int b = free_[std::size_t(i)]; b >= 0) {
+      load_.segment<3>(3 * b) = force_.segment<3>(3 * i) + mass_[std::size_t(i)] * (context.gravity + v_.segment<3>(3 * i) / h);
+      if (!solver_->exact()) guess_.segment<3>(3 * b) = h * v_.segment<3>(3 * i);
+    }
+  if (fresh) factorise(h);
+  else solver_->begin_motion(load_, guess_);
   // Who asked in the last step will ask again: now bodies work side by side.
   const bool asked = unforced_is_ == Unforced::asked;
-  unforced_is_ = Unforced::unknown;
-  if (asked) {
-    unforced_ += packed_ - guess_;
-    find_unforced();
-  }
-  dq_.setZero();
-  for (int i = 0; i < nodes(); ++i)
-    if (free_[std::size_t(i)] >= 0) dq_.segment<3>(3 * i) = packed_.segment<3>(3 * free_[std::size_t(i)]);
+  unforced_is_ = asked ? Unforced::known : Unforced::unknown;
+  if (asked) solver_->unforced_motion(load_, unforced_);
 }
 
 void DeformableBody::compute_compliance(const BodyRows& r) { solver_->compute_compliance(r, free_); }
@@ -219,13 +203,14 @@ void DeformableBody::add_response(const BodyRows& r, double* delta) const {
 }
 
 void DeformableBody::apply(const StepContext& context, const BodyRows& r, const double* lambda) {
-  if (r.count() > 0 || !solver_->exact()) {
-    solver_->correct(r, lambda, packed_.data());
-    for (int i = 0; i < nodes(); ++i)
-      if (free_[std::size_t(i)] >= 0) dq_.segment<3>(3 * i) += packed_.segment<3>(3 * free_[std::size_t(i)]);
-  }
-  q_ += dq_;
-  v_ = dq_ / context.h;
+  solver_->end_motion(r, lambda, packed_);
+  for (int i = 0; i < nodes(); ++i)
+    if (const int b = free_[std::size_t(i)]; b >= 0) {
+      q_.segment<3>(3 * i) += packed_.segment<3>(3 * b);
+      v_.segment<3>(3 * i) = packed_.segment<3>(3 * b) / context.h;
+    } else {
+      v_.segment<3>(3 * i).setZero();
+    }
 }
 
 void DeformableBody::add_rate(const BodyRows& r, double* rate) const {
@@ -244,7 +229,6 @@ void DeformableBody::reset() {
   v_.setZero();
   external.setZero();
   filling.setZero();
-  dq_.setZero();
   indefinite_ = 0;
   factorisations_ = 0;
   factor_h_ = 0;
@@ -288,7 +272,9 @@ double DeformableBody::prestress(const VecX& load) {
   q_.swap(rest);
   const int indefinite = indefinite_, factorisations = factorisations_;
   force_.setZero();
-  make_tangent(slow);
+  assemble(slow);
+  load_.setZero();
+  factorise(slow);
   std::swap(forces_, carry);
   q_.swap(rest);
   indefinite_ = indefinite;

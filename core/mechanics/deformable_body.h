@@ -52,9 +52,8 @@ class DeformableBody : public Body {
 
   int blocks() const override { return nodes(); }
   Vec3 position(const MaterialPoint& p) const override;
-  Vec3 free_displacement(const MaterialPoint& p) const override;
-  Vec3 unforced_displacement(const MaterialPoint& p) const override;
   Vec3 expected_displacement(const MaterialPoint& p) const override;
+  Vec3 unforced_displacement(const MaterialPoint& p) const override;
   bool can_move(const MaterialPoint& p) const override;
   void add_row(BodyRows& rows, const MaterialPoint& p, const Vec3& d) const override;
   void free_motion(const StepContext& context) override;
@@ -63,6 +62,7 @@ class DeformableBody : public Body {
   int compliance_parts(ComplianceAct act) const override;
   void compliance_part(ComplianceAct act, int part) override;
   void add_compliance(const BodyRows& rows, double* w, int stride) override;
+  void add_free_motion(const BodyRows& r, double* delta) const override { solver_->add_free_motion(r, free_, delta); }
   bool exact() const override { return solver_->exact(); }
   void take_off_held(const BodyRows& rows, double* delta) const override;
   void respond(const BodyRows& rows, const double* lambda) override;
@@ -88,10 +88,9 @@ class DeformableBody : public Body {
   std::vector<int> free_;
   int free_count_ = 0;
   std::vector<double> mass_, damping_;
-  VecX q_, v_, force_, dq_, packed_;
-  void find_unforced() const;
-  mutable VecX unforced_;                       ///< of solvers that are not exact, as they are asked for it: motion without held forces
-  VecX load_;                                   ///< what that is the answer to
+  VecX q_, v_, force_, packed_;
+  VecX load_;                          ///< of the step's motion
+  mutable VecX unforced_;              ///< motion under it, as someone asks for it
   enum class Unforced { unknown, known, asked };
   mutable Unforced unforced_is_ = Unforced::unknown;
   double factor_ms_ = 0;
@@ -105,7 +104,8 @@ class DeformableBody : public Body {
   double relaxation_ = 0;
 
   bool tangent_is_good(double h) const;
-  void make_tangent(double h);
+  void assemble(double h);
+  void factorise(double h);
   void find_rotations();
   struct Neighbours {
     int i, j;

@@ -122,6 +122,12 @@ void Instrument::add_compliance(const BodyRows& r, double* w, int stride) {
   }
 }
 
+void Instrument::add_free_motion(const BodyRows& r, double* delta) const {
+  for (int i = 0; i < r.count(); ++i)
+    for (int e = r.start[std::size_t(i)]; e < r.start[std::size_t(i) + 1]; ++e)
+      delta[r.row[std::size_t(i)]] += r.coeff[std::size_t(e)].dot(free_dq_.segment<3>(3 * r.block[std::size_t(e)]));
+}
+
 void Instrument::apply(const StepContext& context, const BodyRows& r, const double* lambda) {
   Vec6 f = Vec6::Zero();
   for (int i = 0; i < r.count(); ++i)

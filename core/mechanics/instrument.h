@@ -74,6 +74,7 @@ class Instrument : public RigidBody {
   void add_row(BodyRows& rows, const MaterialPoint& p, const Vec3& d) const override;
   void free_motion(const StepContext& context) override;
   void add_compliance(const BodyRows& rows, double* w, int stride) override;
+  void add_free_motion(const BodyRows& rows, double* delta) const override;
   void apply(const StepContext& context, const BodyRows& rows, const double* lambda) override;
   void reset() override;
   double energy() const override;

@@ -10,7 +10,7 @@ class Obstacle final : public Body {
   void prepare(PrepareContext& context) override;
   int blocks() const override { return 0; }
   Vec3 position(const MaterialPoint& p) const override { return p.local; }
-  Vec3 free_displacement(const MaterialPoint&) const override { return Vec3::Zero(); }
+  Vec3 expected_displacement(const MaterialPoint&) const override { return Vec3::Zero(); }
   void add_row(BodyRows&, const MaterialPoint&, const Vec3&) const override {}
   void free_motion(const StepContext&) override {}
   void add_compliance(const BodyRows&, double*, int) override {}

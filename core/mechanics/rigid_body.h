@@ -20,6 +20,9 @@ class RigidBody : public Body {
   virtual const std::vector<ConvexPiece>& link_pieces(int link) const = 0;
   virtual Pose link_pose(int link) const = 0;       ///< at the start of the step, scene frame
   virtual Pose link_free_pose(int link) const = 0;  ///< at the end of the free motion
+  /// Displacement that the free motion gives the point over the step, linearised, scene frame. Valid after free_motion().
+  virtual Vec3 free_displacement(const MaterialPoint& p) const = 0;
+  Vec3 expected_displacement(const MaterialPoint& p) const override { return free_displacement(p); }
   /// Puts it somewhere at once; velocity and history stay (tests, replays).
   virtual void place(const Pose& pose, double opening) = 0;
   /// The material point of a link given in the link's frame.

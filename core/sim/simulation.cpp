@@ -84,7 +84,10 @@ void Simulation::step() {
       for (int p = 0; p < b->compliance_parts(act); ++p) parts_.emplace_back(b, p);
     workers_.run(int(parts_.size()), [&](int i) { parts_[std::size_t(i)].first->compliance_part(act, parts_[std::size_t(i)].second); });
   }
-  for (Body* b : bodies_) b->add_compliance(b->rows, problem_.w.data(), problem_.stride);
+  for (Body* b : bodies_) {
+    b->add_compliance(b->rows, problem_.w.data(), problem_.stride);
+    b->add_free_motion(b->rows, problem_.delta_free.data());
+  }
   clock.done(stage_build);
 
   warm_start();

@@ -64,12 +64,12 @@ class RowBench {
         for (int e = rows.start[std::size_t(i)]; e < rows.start[std::size_t(i) + 1]; ++e)
           by_row[std::size_t(rows.row[std::size_t(i)])]->h[b].segment<3>(3 * rows.block[std::size_t(e)]) += rows.coeff[std::size_t(e)];
     }
-    // delta_free = violation + H dq_free: the second part is taken off with the free displacements the bodies have now.
+    // What the builder has is the violation alone; H dq_free comes with the compliance.
     for (std::size_t r = 0; r < by_row.size(); ++r) {
       double motion = 0;
       for (std::size_t b = 0; b < simulation_.bodies().size(); ++b)
-        if (by_row[r]->h[b].size() > 0) motion += by_row[r]->h[b].dot(free_motion(*simulation_.bodies()[b]));
-      by_row[r]->violation = problem_.delta_free[r] - motion;
+        if (by_row[r]->h[b].size() > 0) motion += by_row[r]->h[b].dot(expected_motion(*simulation_.bodies()[b]));
+      by_row[r]->violation = problem_.delta_free[r];
       by_row[r]->way = motion;
     }
     for (const Block& b : problem_.blocks) {
@@ -83,7 +83,7 @@ class RowBench {
   std::vector<Block> blocks;
 
  private:
-  static VecX free_motion(Body& body) {
+  static VecX expected_motion(Body& body) {
     VecX dq = VecX::Zero(3 * body.blocks());
     if (auto* soft = dynamic_cast<DeformableBody*>(&body)) {
       for (int i = 0; i < soft->nodes(); ++i) {
@@ -92,7 +92,7 @@ class RowBench {
         p.count = 1;
         p.node[0] = i;
         p.weight[0] = 1;
-        dq.segment<3>(3 * i) = soft->free_displacement(p);
+        dq.segment<3>(3 * i) = soft->expected_displacement(p);
       }
     } else if (auto* tool = dynamic_cast<RigidBody*>(&body)) {
       // Translation from the tip; the rotation from two points a metre off.

@@ -70,6 +70,7 @@ class Clip final : public RigidBody {
   Vec3 free_displacement(const MaterialPoint& p) const override;
   void add_row(BodyRows& rows, const MaterialPoint& p, const Vec3& d) const override;
   void free_motion(const StepContext& context) override;
+  void add_free_motion(const BodyRows& rows, double* delta) const override;
   void compute_compliance(const BodyRows& rows) override;
   void add_compliance(const BodyRows& rows, double* w, int stride) override;
   void apply(const StepContext& context, const BodyRows& rows, const double* lambda) override;

@@ -107,6 +107,12 @@ void Clip::add_compliance(const BodyRows& r, double* w, int stride) {
     }
 }
 
+void Clip::add_free_motion(const BodyRows& r, double* delta) const {
+  Vec7 free;
+  free << free_shift_ - free_turn_.cross(to_centre_), free_turn_, free_opening_;
+  for (std::size_t i = 0; i < jacobian_.size(); ++i) delta[r.row[i]] += jacobian_[i].dot(free);
+}
+
 void Clip::apply(const StepContext& context, const BodyRows& r, const double* lambda) {
   Vec7 f = Vec7::Zero();
   for (std::size_t i = 0; i < jacobian_.size(); ++i) f += lambda[r.row[i]] * jacobian_[i];

@@ -280,17 +280,11 @@ TEST(Pressure, RowsAreTheDerivativeOfTheirViolation) {
     builder.finish();
     ASSERT_EQ(problem.rows, 2);
     for (int r = 0; r < 2; ++r) {
-      double motion = 0, along = 0;
+      double along = 0;
       for (int k = body.rows.start[std::size_t(r)]; k < body.rows.start[std::size_t(r) + 1]; ++k) {
-        MaterialPoint p;
-        p.body = &body;
-        p.count = 1;
-        p.node[0] = body.rows.block[std::size_t(k)];
-        p.weight[0] = 1;
-        motion += body.rows.coeff[std::size_t(k)].dot(body.free_displacement(p));
-        along += body.rows.coeff[std::size_t(k)].dot(d.segment<3>(3 * p.node[0]));
+        along += body.rows.coeff[std::size_t(k)].dot(d.segment<3>(3 * body.rows.block[std::size_t(k)]));
       }
-      violation[side][r] = problem.delta_free[std::size_t(r)] - motion;
+      violation[side][r] = problem.delta_free[std::size_t(r)];
       slope[r] += 0.5 * along;
     }
   }

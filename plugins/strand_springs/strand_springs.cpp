@@ -155,7 +155,7 @@ void StrandSprings::detect(const StepContext&) {
     if (!s.blade) continue;
     // The strand resists along the blade's motion across it.
     const Vec3 axis = (pb - pa).normalized();
-    Vec3 motion = s.blade->unforced_displacement(s.blade_point) - (1 - s.along) * s.a.body->unforced_displacement(s.a) - s.along * s.b.body->unforced_displacement(s.b);
+    Vec3 motion = s.blade->free_displacement(s.blade_point) - (1 - s.along) * s.a.body->unforced_displacement(s.a) - s.along * s.b.body->unforced_displacement(s.b);
     motion -= motion.dot(axis) * axis;
     if (motion.norm() > 1e-9) s.push = motion.normalized();
     else if (s.push.norm() < 0.5) s.blade = nullptr;  // never moved: nothing to resist
@@ -172,7 +172,7 @@ void StrandSprings::build(const StepContext&, ConstraintBuilder& builder) {
     const double length = d.norm();
     if (length > 1e-9) {
       const Vec3 u = d / length;
-      const double next = length + u.dot(s.a.body->free_displacement(s.a) - s.b.body->free_displacement(s.b));
+      const double next = length + u.dot(s.a.body->expected_displacement(s.a) - s.b.body->expected_displacement(s.b));
       // A strand that is slack by more than half a millimetre cannot become taut within a step's correction.
       if (carries.is("both") || next > s.rest - 0.0005) {
         Block block;
