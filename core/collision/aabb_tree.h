@@ -129,6 +129,11 @@ class AabbTree {
   Aabb bounds() const { return nodes_.front().box.box(); }
   int triangle_count() const { return int(order_.size()); }
 
+  /// The triangle at a place of the tree's order, in which those of a leaf follow each other and leaves that are near each other are close, and
+  /// the place where a leaf's begin.
+  int triangle_at(int place) const { return order_[std::size_t(place)]; }
+  int place_of(std::span<const int> leaf) const { return int(leaf.data() - order_.data()); }
+
   /// visit(loose box, triangles) for every leaf whose loose box overlaps `box`.
   template <class Visit>
   void leaves(const Aabb& box, Visit&& visit) const {

@@ -16,6 +16,8 @@ void CollisionMesh::build(std::span<const Vec3> rest, std::span<const std::array
   positions_ = rest;
   free_ = {};
   tree_.build(rest, triangles_);
+  in_order_.resize(triangles_.size());
+  for (std::size_t i = 0; i < triangles_.size(); ++i) in_order_[i] = triangles_[std::size_t(tree_.triangle_at(int(i)))];
   last_.assign(rest.begin(), rest.end());
   travelled_ = farthest_free_ = 0;
   room_.fill(0);

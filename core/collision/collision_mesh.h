@@ -61,6 +61,8 @@ class CollisionMesh {
   int vertex_count() const { return int(positions_.size()); }
   int triangle_count() const { return int(triangles_.size()); }
   const std::array<int, 3>& triangle(int i) const { return triangles_[std::size_t(i)]; }
+  /// That at a place of the tree's order.
+  const std::array<int, 3>& triangle_at(int place) const { return in_order_[std::size_t(place)]; }
   std::span<const int> triangles_around(int v) const {
     const int first = ring_start_[std::size_t(v)];
     return {ring_.data() + first, std::size_t(ring_start_[std::size_t(v) + 1] - first)};
@@ -94,6 +96,7 @@ class CollisionMesh {
  private:
   AabbTree tree_;
   std::vector<std::array<int, 3>> triangles_;
+  std::vector<std::array<int, 3>> in_order_;  ///< the same as the tree has them: who goes through it finds neighbours beside each other
   std::vector<std::array<int, 3>> across_;  ///< neighbour across the edge that starts at each corner, -1 at a border
   std::vector<int> ring_start_, ring_;      ///< triangles around each vertex
   std::vector<Vec3> last_;  ///< positions of the update before; empty: motion is measured by the caller

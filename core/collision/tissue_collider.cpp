@@ -81,7 +81,7 @@ void TissueCollider::reset() {
 // What is kept of leaves in single precision is about the middle of the surface: a few cm.
 void TissueCollider::begin_gathering(const AabbTree& tree) {
   gathering_ = true;
-  for (int t : cornered_) corners_at_[std::size_t(t)] = -1;
+  for (int place : cornered_) corners_at_[std::size_t(place)] = -1;
   cornered_.clear();
   corners_.clear();
   const Aabb all = tree.bounds();
@@ -108,13 +108,14 @@ void TissueCollider::gather_leaves(const AabbTree& tree, const Aabb& all) {
 
 const FourTriangles& TissueCollider::corners_of(const CollisionMesh& b, std::size_t leaf) {
   const std::span<const int> triangles = leaves_[leaf];
-  int& at = corners_at_[std::size_t(triangles.front())];
+  const int place = b.tree().place_of(triangles);
+  int& at = corners_at_[std::size_t(place)];
   if (at >= 0) return corners_[std::size_t(at)];
   at = int(corners_.size());
-  cornered_.push_back(triangles.front());
+  cornered_.push_back(place);
   FourTriangles& c = corners_.emplace_back();
   std::array<const int*, 4> corner;
-  for (std::size_t lane = 0; lane < 4; ++lane) corner[lane] = b.triangle(triangles[std::min(lane, triangles.size() - 1)]).data();
+  for (std::size_t lane = 0; lane < 4; ++lane) corner[lane] = b.triangle_at(place + int(std::min(lane, triangles.size() - 1))).data();
   std::array<Float4, 3>* const to[3] = {&c.a, &c.b, &c.c};
   for (std::size_t k = 0; k < 3; ++k) {
     std::array<Float4, 4> x;
@@ -152,14 +153,21 @@ void TissueCollider::lessen(std::size_t first, std::size_t last, double way, dou
   }
 }
 
-// Which regions of b are near the group.
-void TissueCollider::look_around(Group& g, const CollisionMesh& a, const CollisionMesh& b, std::size_t first, std::size_t last, double may_come) {
+// Which regions of b are near the group. Returns what those that it did not follow so far are no nearer than, which was `elsewhere`.
+double TissueCollider::look_around(Group& g, const CollisionMesh& a, const CollisionMesh& b, std::size_t first, std::size_t last, double may_come, double elsewhere) {
+  const std::uint64_t followed = g.near;
   Aabb here;
   for (std::size_t i = first; i < last; ++i) here.add(a.vertex(samples_[i]));
   g.around = may_come + surroundings;
   here.inflate(g.around);
   g.near = b.regions_near(here);
   g.travelled = b.travelled();
+  // All that is near by now was followed, or what was not comes in sight: from where?
+  for (double away = g.around; away > may_come; away -= 0.25 * surroundings) {
+    if ((b.regions_near(here) & ~followed) == 0) return away;
+    here.inflate(-0.25 * surroundings);
+  }
+  return elsewhere;
 }
 
 void TissueCollider::detect(const CollisionMesh& a, const CollisionMesh& b, const TissueContactSettings& settings,
@@ -183,11 +191,10 @@ void TissueCollider::detect(const CollisionMesh& a, const CollisionMesh& b, cons
     g.clear -= went;
     g.went += went;
     if (!followed || elsewhere <= anyone) {
-      const double at_least = followed ? elsewhere : 0.0;  // all that is known was about the regions before
+      const double in_sight = look_around(g, a, b, first, last, anyone, elsewhere), at_least = followed ? in_sight : 0.0;
       lessen(first, last, g.went, at_least);
       g.clear = std::min(g.clear, at_least);
       g.went = 0;
-      look_around(g, a, b, first, last, anyone);
     }
     if (g.near == 0 && !g.deep) continue;
     const double may_come = open_range + a.may_move(g.own) + b.may_move(g.near);

@@ -54,7 +54,7 @@ class TissueCollider {
     double travelled = 0;  ///< ... b had travelled this far
     bool deep = true;    ///< has a sample behind the surface
   };
-  void look_around(Group& g, const CollisionMesh& a, const CollisionMesh& b, std::size_t first, std::size_t last, double may_come);
+  double look_around(Group& g, const CollisionMesh& a, const CollisionMesh& b, std::size_t first, std::size_t last, double may_come, double elsewhere);
   void lessen(std::size_t first, std::size_t last, double way, double at_least);
   std::vector<Group> groups_;
   std::array<long, 2> updates_{};  ///< of the meshes when last looked at
@@ -66,8 +66,8 @@ class TissueCollider {
   std::vector<std::span<const int>> leaves_;  ///< triangles of the leaves near a group ...
   std::vector<BoxPack> packs_;                ///< ... and their boxes
   std::vector<FourTriangles> corners_;        ///< corners of all leaves that a sample wanted in this step, about centre_
-  std::vector<int> cornered_;                 ///< the leaves that they are of, by their first triangle
-  std::vector<int> corners_at_;               ///< of the leaf that begins with this triangle: place in corners_, -1: not wanted yet
+  std::vector<int> cornered_;                 ///< the leaves that they are of, by the place of their first triangle in the tree's order
+  std::vector<int> corners_at_;               ///< of the leaf that begins at this place: index of corners_, -1: not wanted yet
   bool gathering_ = false;                    ///< any in this step
   Vec3 centre_ = Vec3::Zero();
   std::vector<KnownNearest> known_;  ///< of the samples: spares looks, does not change what is found
