@@ -13,7 +13,7 @@ namespace insula {
 class Surface;
 
 /// Where constraints put their rows. For every row: delta_free = violation at the start of the step + H dq_free, the
-/// second term summed here from the points' free displacements.
+/// second term added by the bodies with W (Body::add_free_motion).
 class ConstraintBuilder {
  public:
   ConstraintBuilder(ConstraintProblem& problem, const std::vector<Body*>& bodies) : problem_(problem), bodies_(bodies) {}
@@ -24,7 +24,7 @@ class ConstraintBuilder {
   void violation(int row, double value) { delta_[std::size_t(row)] += value; }
   /// H(row) += d . d(point). Rows in ascending order.
   void point(int row, const MaterialPoint& p, const Vec3& d);
-  /// The same for a point of a surface's triangle; its free displacement is that of the surface's vertices.
+  /// The same for a point of a surface's triangle.
   void surface_point(int row, const Surface& s, int triangle, const Vec3& bary, const Vec3& d);
   /// A row that moves by itself between the steps, at this rate (m/s): what a plugin allows a step is more for a longer one.
   void moves(int row, double rate) {
@@ -68,7 +68,7 @@ class Constraint : public Component {
   virtual void connect(PrepareContext&, Simulation&) {}
   /// Once the scene has settled (<settle>), before the exercise begins; again after every reset. May report errors.
   virtual void settled(PrepareContext&) {}
-  /// Stage 2, collision: find what is close. Free motion is known. Default: nothing.
+  /// Stage 2, collision: find what is close. Tools' free motion is known. Default: nothing.
   virtual void detect(const StepContext&) {}
   /// Stage 3: add rows.
   virtual void build(const StepContext& context, ConstraintBuilder& builder) = 0;

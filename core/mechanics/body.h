@@ -66,10 +66,10 @@ class Body : public Component {
   /// Adds it into `w` (row-major, leading dimension `stride`), at the rows' numbers; one body after the other.
   virtual void add_compliance(const BodyRows& rows, double* w, int stride) = 0;
   /// Adds H dq of the free motion to delta_free, at the rows' numbers. After their compliance.
-  virtual void add_free_motion(const BodyRows&, double* /*delta*/) const {}
+  virtual void add_free_motion(const BodyRows& rows, double* delta) const = 0;
   /// Whether add_compliance() and apply() are of the same A. If not, respond() tells what lambda truly does, for defect correction.
   virtual bool exact() const { return true; }
-  /// Then the free motion may be that under the last step's forces of rows (BodySolver::free_motion). Takes off delta, by row
+  /// Then the free motion may be that under the last step's forces of rows (BodySolver::begin_motion). Takes off delta, by row
   /// number, what these do in it.
   virtual void take_off_held(const BodyRows&, double* /*delta*/) const {}
   /// Computes what apply() would add to the free motion; bodies do this in parallel.

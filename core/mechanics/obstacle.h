@@ -14,6 +14,7 @@ class Obstacle final : public Body {
   void add_row(BodyRows&, const MaterialPoint&, const Vec3&) const override {}
   void free_motion(const StepContext&) override {}
   void add_compliance(const BodyRows&, double*, int) override {}
+  void add_free_motion(const BodyRows&, double*) const override {}
   void apply(const StepContext&, const BodyRows&, const double*) override {}
   void reset() override {}
   double energy() const override { return 0; }

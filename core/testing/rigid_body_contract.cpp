@@ -30,6 +30,10 @@ void check_rigid_body(const std::filesystem::path& scene, const std::string& ele
       tool->add_row(rows, p, d);
       VecX h = VecX::Zero(3 * tool->blocks());
       for (std::size_t e = 0; e < rows.block.size(); ++e) h.segment<3>(3 * rows.block[e]) += rows.coeff[e];
+      double free = 0;
+      tool->compute_compliance(rows);
+      tool->add_free_motion(rows, &free);
+      EXPECT_NEAR(free, d.dot(tool->free_displacement(p)), 1e-12) << "H dq of the free motion";
       for (int k = 0; k < 3 * tool->blocks(); ++k) {
         const auto moved = [&](double by) {
           Vec6 change = Vec6::Zero();

@@ -139,7 +139,7 @@ void Clip::build(const StepContext&, ConstraintBuilder& builder) {
     const int row = builder.add(block);
     rows.open(row);
     rows.add(2, Vec3(sign * lever(), 0, 0));
-    builder.violation(row, sign * lever() * (opening_ + free_opening_ - at));
+    builder.violation(row, sign * lever() * (opening_ - at));
     return row;
   };
   held_open_ = held_opening() > 0;
