@@ -172,9 +172,9 @@ void StrandSprings::build(const StepContext&, ConstraintBuilder& builder) {
     const double length = d.norm();
     if (length > 1e-9) {
       const Vec3 u = d / length;
-      const double next = length + u.dot(s.a.body->expected_displacement(s.a) - s.b.body->expected_displacement(s.b));
-      // A strand that is slack by more than half a millimetre cannot become taut within a step's correction.
-      if (carries.is("both") || next > s.rest - 0.0005) {
+      const double longer = std::max(0.0, u.dot(s.a.body->expected_displacement(s.a) - s.b.body->expected_displacement(s.b)));
+      // A strand that is slack by more than half a millimetre, and will be if all goes on, cannot become taut within a step's correction.
+      if (carries.is("both") || length + longer > s.rest - 0.0005) {
         Block block;
         block.id = row_id(*this, key);
         block.compliance = 1.0 / (stiffness() * (1 - s.wear));
