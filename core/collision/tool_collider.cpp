@@ -272,7 +272,7 @@ void ToolCollider::detect(const CollisionMesh& mesh, const Pose& start, const Po
       continue;
     }
 
-    const bool at_end = expected && found_at_end(mesh, *expected, settings);
+    bool at_end = expected && found_at_end(mesh, *expected, settings);
     double t = 0;
     bool reached = false;
     Placed at = first;
@@ -292,7 +292,8 @@ void ToolCollider::detect(const CollisionMesh& mesh, const Pose& start, const Po
             nearest = x.normal;
           }
         }
-        if (at_end && !deep_[std::size_t(index)]) out.insert(out.end(), at_end_.begin(), at_end_.end());
+        at_end = at_end && !deep_[std::size_t(index)];
+        if (at_end) out.insert(out.end(), at_end_.begin(), at_end_.end());
         else for (const Proximity& x : found_) add(x);
         if (least > -0.9 * radius) side = nearest;  // zero where nothing is near
       }
@@ -321,8 +322,8 @@ void ToolCollider::detect(const CollisionMesh& mesh, const Pose& start, const Po
       for (const Proximity& x : found_)
         if (on_free_side(x)) add(x);
 
-    // Slide along what is touched (out of it, if behind) by the motion that is left.
-    if (!reached || t >= 1 || found_.empty()) continue;
+    // Slide along what is touched (out of it, if behind) by the motion that is left. Where that leads to is known if the end is.
+    if (at_end || !reached || t >= 1 || found_.empty()) continue;
     const Proximity* touched = &found_[0];
     for (const Proximity& x : found_)
       if (x.gap < touched->gap) touched = &x;

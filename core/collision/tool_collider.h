@@ -11,10 +11,10 @@
 // A contact found later in the step is used only if the tool starts on its free side; its start_gap is measured between
 // the same material points along the same normal, so that start_gap + H dq is the gap at the end of the step.
 //
-// A step that takes its normals from its start is half of its way behind on a surface that turns. With `expected`, where the tool is thought to
-// be at the end of the step, the contacts of the start are taken there instead, with the surface where its motion leads it: then the normals
-// and the places on both sides are those of the end, and start_gap + H dq is the gap there, exactly if both went as expected. A piece that is
-// behind the surface, or would be, keeps the contacts of the start, and so does one that would be away.
+// A step that takes its normals from its start is behind on a surface that turns. With `expected`, where the tool is thought to be at the
+// end of the step, a piece's contacts of the start, and of sliding, are taken there instead, with the surface where its motion leads it: then
+// normals and places are those of the end, and start_gap + H dq is the gap there, exactly if both go as expected. A piece that is behind
+// the surface, would be behind a wall, or would be away keeps the contacts of the start.
 //
 // One triangle gives a contact only where the distance is smallest among its neighbours too (no ghost contacts at inner
 // edges), plus the corners of the piece's core that stand right above it (a flat or long piece lies on several points).
