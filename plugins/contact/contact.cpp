@@ -153,12 +153,13 @@ void Contact::connect(PrepareContext& context, Simulation& simulation) {
     }
 }
 
-// A tool that presses is as far off its free pose at the end of the step as it was at the end of the last one. Null: it does not press.
-const Pose* Contact::expect(Pair& p, const Pose& free) const {
-  const bool presses = p.free && std::any_of(p.forces.begin(), p.forces.end(), [](const Vec3& f) { return f[0] > 0; });
-  if (presses) p.expected = displaced(free, displacement(*p.free, p.start));
+// A tool that presses is as far off its free pose at the end of the step as it was at the end of the last one.
+void Contact::expect(Pair& p, const Pose& free) const {
+  p.expected.reset();
+  if (!p.tool_collider || !taken_at.is("end")) return;
+  const bool presses = std::any_of(p.forces.begin(), p.forces.end(), [](const Vec3& f) { return f[0] > 0; });
+  if (p.free && presses) p.expected = displaced(free, displacement(*p.free, p.start));
   p.free = free;
-  return presses ? &p.expected : nullptr;
 }
 
 void Contact::search(const Search& what) {
@@ -178,7 +179,8 @@ void Contact::search(const Search& what) {
     if (!p.active()) return p.free.reset();
     const Pose free = p.tool_a->link_free_pose(p.link_a);
     p.start = p.tool_a->link_pose(p.link_a);
-    if (p.tool_collider && taken_at.is("end")) settings.expected = expect(p, free);
+    expect(p, free);
+    if (p.expected) settings.expected = &*p.expected;
     const Pose& start = p.start;
     if (p.tool_b)
       detect_tools(p.pieces_a, start, free, p.pieces_b, p.tool_b->link_pose(p.link_b), p.tool_b->link_free_pose(p.link_b), settings, p.contacts);

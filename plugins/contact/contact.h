@@ -62,7 +62,7 @@ class Contact final : public Constraint {
     std::unique_ptr<FrictionPatches> patches;  ///< one friction force for contacts close together, if wanted
     Pose start;                 ///< of the tool, in the step last detected
     std::optional<Pose> free;   ///< of its free motion, in the same step
-    Pose expected;              ///< at the end of the step, of a tool that presses
+    std::optional<Pose> expected;  ///< at the end of that step, of a tool that presses and whose contacts are taken there
     std::vector<int> rows;      ///< first row of each contact
     std::vector<Vec3> forces;   ///< along (normal, tangent, other tangent), N
     bool active() const { return (!tool_a || tool_a->active()) && (!tool_b || tool_b->active()); }
@@ -87,7 +87,7 @@ class Contact final : public Constraint {
   };
   bool owns(Simulation& simulation, const Body* a, const Body* b) const;
   void search(const Search& what);
-  const Pose* expect(Pair& pair, const Pose& free) const;
+  void expect(Pair& pair, const Pose& free) const;
   void add_pairs(Simulation& simulation, Body* a, Body* b);
   void limit_motion(ConstraintBuilder& builder, const Pair& pair) const;
   double most_force(const Pair& pair) const;  ///< of one contact, N
