@@ -73,6 +73,25 @@ TEST_F(HapticTruth, ContactsTurnedByTheEngineAreTruerAt30Hz) {
   EXPECT_LT(turned, 0.8 * as_in_the_step);
 }
 
+// A blade touches by several places at once: held still, each keeps its own direction.
+TEST(HapticTruthTurned, WhatIsHeldStillIsNotTurned) {
+  constexpr double still_s = 0.44;  // pressed on from 0.35 to 0.45 s
+  const Motion drag = load_motion(source / "scenes/haptics/drag.csv");
+  auto simulation = fissure(1.0 / 60);
+  const auto push = [&](double turned_ahead_s) -> Vec3 {
+    simulation->reset();
+    const ConstraintProblem p = record_steps(*simulation, drag, still_s, turned_ahead_s).back().update.problem;
+    Vec6 sum = Vec6::Zero();
+    for (const ToolTerms& tool : p.tools)
+      for (int i = 0; i < p.rows; ++i) sum += p.lambda[std::size_t(i)] * tool.jacobian.row(i).transpose();
+    return sum.head<3>();
+  };
+  const Vec3 as_in_the_step = push(-1), turned = push(3e-3);
+  std::printf("held still: %.1f mN, turned %.2f mN away\n", 1e3 * as_in_the_step.norm(), 1e3 * (turned - as_in_the_step).norm());
+  EXPECT_GT(as_in_the_step.norm(), 0.02);
+  EXPECT_LT((turned - as_in_the_step).norm(), 0.005 * as_in_the_step.norm());
+}
+
 TEST_F(HapticTruth, ANewProblemDoesNotJumpAt30HzWithJitter) {
   const auto problems = steps(30);
   ReplaySettings s;

@@ -38,7 +38,8 @@ TEST(Detection, AllocatesNothing) {
     faces.clear();
     const Pose start{Vec3(0.012 + 1e-4 * (i % 40), 0.001, 0.002 - 1e-4 * (i % 30)), from_rotation_vector(Vec3(0, 1.2, 0))};
     const Pose free = displaced(start, (Vec6() << 1e-3, 5e-4, -4e-3, 0.01, 0.02, 0).finished());
-    tool.detect(a, start, free, {}, found);
+    const Pose expected = displaced(start, (Vec6() << 1e-3, 5e-4, -1e-4, 0, 0, 0).finished());
+    tool.detect(a, start, free, {.expected = i % 2 ? &expected : nullptr}, found);
     tissue.detect(b, a, {}, faces);
     of_tool.select(found, {}, key);
     of_tissue.select(faces, {.spacing = 4e-3, .advantage = 0, .max_contacts = 8, .max_per_piece = 8}, key);

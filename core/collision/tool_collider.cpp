@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "core/collision/gjk.h"
 
@@ -84,6 +85,7 @@ ToolCollider::ToolCollider(const std::vector<ConvexPiece>& pieces, int triangles
   reset();
   candidates_.reserve(std::size_t(triangles));
   found_.reserve(4096);
+  at_end_.reserve(4096);
 }
 
 void ToolCollider::reset() {
@@ -192,6 +194,19 @@ void ToolCollider::drop_wrong_exits(std::vector<Proximity>& found, const Vec3& s
   found.resize(kept);
 }
 
+// The contacts of a piece where it is expected at the end of the step, into at_end_. False where there are none, or where it would be behind a wall.
+bool ToolCollider::found_at_end(const CollisionMesh& mesh, const Placed& expected, const ToolContactSettings& settings) {
+  at_end_.clear();
+  evaluate(mesh, expected, settings, settings.alarm, at_end_);
+  for (Candidate& k : candidates_) k.clear = k.time = 0;  // what is known of them is not of the free way
+  drop_wrong_exits(at_end_, side_[std::size_t(expected.piece)], settings.offset);
+  for (Proximity& x : at_end_) {
+    if (settings.offset > 0 && x.gap < -0.9 * expected.radius) return false;
+    x.start_gap += std::max(0.0, -settings.max_recovery - x.gap);
+  }
+  return !at_end_.empty();
+}
+
 void ToolCollider::detect(const CollisionMesh& mesh, const Pose& start, const Pose& free, const ToolContactSettings& settings,
                           std::vector<Proximity>& out) {
   touch_time_ = 1;
@@ -201,6 +216,11 @@ void ToolCollider::detect(const CollisionMesh& mesh, const Pose& start, const Po
   const double turn = motion.tail<3>().norm();
   const double alarm = settings.alarm, horizon = 1 + settings.look_ahead;
   const Pose end = displaced(start, horizon * motion);
+  // An overlap is undone by no more than max_recovery in a step.
+  const auto add = [&](Proximity x) {
+    x.start_gap = std::max(x.start_gap, -settings.max_recovery);
+    out.push_back(x);
+  };
   for (int index = 0; index < int(pieces_.size()); ++index) {
     const RoundedPiece& piece = pieces_[std::size_t(index)];
     const double radius = piece.radius + settings.offset;
@@ -215,6 +235,14 @@ void ToolCollider::detect(const CollisionMesh& mesh, const Pose& start, const Po
     Vec3 centre = Vec3::Zero();
     for (int i = 0; i < first.count; ++i) centre += first.points[std::size_t(i)];
     centre /= first.count;
+    std::optional<Placed> expected;
+    if (settings.expected && !deep) {
+      expected.emplace(piece, index, start, *settings.expected, 1, Vec3::Zero(), settings.offset);
+      for (int i = 0; i < first.count; ++i) {
+        box.add(expected->points[std::size_t(i)]);
+        farthest = std::max(farthest, (expected->points[std::size_t(i)] - first.points[std::size_t(i)]).norm());
+      }
+    }
     for (int i = 0; i < first.count; ++i) {
       const Vec3 &p = first.points[std::size_t(i)], &q = last.points[std::size_t(i)];
       box.add(p);
@@ -244,6 +272,7 @@ void ToolCollider::detect(const CollisionMesh& mesh, const Pose& start, const Po
       continue;
     }
 
+    bool at_end = expected && found_at_end(mesh, *expected, settings);
     double t = 0;
     bool reached = false;
     Placed at = first;
@@ -256,14 +285,16 @@ void ToolCollider::detect(const CollisionMesh& mesh, const Pose& start, const Po
         drop_wrong_exits(found_, side, settings.offset);
         double least = 1e300;
         Vec3 nearest = Vec3::Zero();
-        for (Proximity& x : found_) {
+        for (const Proximity& x : found_) {
           if (x.gap < -0.9 * radius) deep_[std::size_t(index)] = 1;
           if (x.gap < least) {
             least = x.gap;
             nearest = x.normal;
           }
-          out.push_back(x);
         }
+        at_end = at_end && !deep_[std::size_t(index)];
+        if (at_end) out.insert(out.end(), at_end_.begin(), at_end_.end());
+        else for (const Proximity& x : found_) add(x);
         if (least > -0.9 * radius) side = nearest;  // zero where nothing is near
       }
       reached = false;
@@ -289,10 +320,10 @@ void ToolCollider::detect(const CollisionMesh& mesh, const Pose& start, const Po
     const auto on_free_side = [&](const Proximity& x) { return x.start_gap >= -0.05 * alarm; };
     if (t > 0)
       for (const Proximity& x : found_)
-        if (on_free_side(x)) out.push_back(x);
+        if (on_free_side(x)) add(x);
 
-    // Slide along what is touched (out of it, if behind) by the motion that is left.
-    if (!reached || t >= 1 || found_.empty()) continue;
+    // Slide along what is touched (out of it, if behind) by the motion that is left. Where that leads to is known if the end is.
+    if (at_end || !reached || t >= 1 || found_.empty()) continue;
     const Proximity* touched = &found_[0];
     for (const Proximity& x : found_)
       if (x.gap < touched->gap) touched = &x;
@@ -309,11 +340,10 @@ void ToolCollider::detect(const CollisionMesh& mesh, const Pose& start, const Po
       for (const Proximity& x : found_) least = std::min(least, x.gap);
       if (least < -0.5 * alarm) continue;
       for (const Proximity& x : found_)
-        if (on_free_side(x)) out.push_back(x);
+        if (on_free_side(x)) add(x);
       break;
     }
   }
-  for (Proximity& x : out) x.start_gap = std::max(x.start_gap, -settings.max_recovery);
 }
 
 }  // namespace insula

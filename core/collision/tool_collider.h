@@ -11,6 +11,11 @@
 // A contact found later in the step is used only if the tool starts on its free side; its start_gap is measured between
 // the same material points along the same normal, so that start_gap + H dq is the gap at the end of the step.
 //
+// A step that takes its normals from its start is behind on a surface that turns. With `expected`, where the tool is thought to be at the
+// end of the step, a piece's contacts of the start, and of sliding, are taken there instead, with the surface where its motion leads it: then
+// normals and places are those of the end, and start_gap + H dq is the gap there, exactly if both go as expected. A piece that is behind
+// the surface, would be behind a wall, or would be away keeps the contacts of the start.
+//
 // One triangle gives a contact only where the distance is smallest among its neighbours too (no ghost contacts at inner
 // edges), plus the corners of the piece's core that stand right above it (a flat or long piece lies on several points).
 // Sides are told by the surface's outward normals. A core behind the surface has a negative gap and is pushed to the nearest
@@ -34,6 +39,7 @@ struct ToolContactSettings {
   double max_depth = 5e-3;     ///< a core this far behind the surface is no longer pushed out, m
   bool one_sided = false;        ///< vertices: those behind a blade that presses a body from the front go back to its front
   double offset = 0;           ///< the surface is the middle of a wall of twice this thickness, m
+  const Pose* expected = nullptr;  ///< of the tool at the end of the step, scene frame; null: contacts of the start are taken at the start
 };
 
 /// A piece as used for collision: core of at most 24 points and a radius that is never 0 (flat blades are shrunk by a
@@ -70,6 +76,7 @@ class ToolCollider {
   struct Placed;  // a piece at a moment
   void evaluate(const CollisionMesh& mesh, const Placed& at, const ToolContactSettings& settings, double range,
                 std::vector<Proximity>& found);
+  bool found_at_end(const CollisionMesh& mesh, const Placed& expected, const ToolContactSettings& settings);
   void drop_wrong_exits(std::vector<Proximity>& found, const Vec3& side, double offset) const;
 
   std::vector<RoundedPiece> pieces_;
@@ -78,7 +85,7 @@ class ToolCollider {
   double touch_time_ = 1;
   int touching_piece_ = -1;
   std::vector<Candidate> candidates_;
-  std::vector<Proximity> found_;
+  std::vector<Proximity> found_, at_end_;
 };
 
 /// Two tools: one contact a pair of pieces that is, or may come in this step, within the alarm distance. A pair whose

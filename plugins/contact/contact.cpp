@@ -17,6 +17,10 @@ Each contact is one block: the gap at the end of the step and its force obey 0 <
 
     gap(end) = gap(start) + n . (H dq)      n fixed over the step, from b to a
 
+n is that of the start of the step, or, with `taken_at="end"`, of its expected end: surfaces where the last step's motion leads them, a tool that
+presses as far off its free pose as it was. Where a tool slides over an edge it then feels the new face in the step in which it gets there; what is
+expected wrongly changes n alone, not the law.
+
 Tools are rounded convex pieces and look ahead along their free motion, so that contact is there before it happens
 (`core/collision/tool_collider.h`); surfaces meet by sampled vertices (`core/collision/tissue_collider.h`). A surface with
 a `thickness` is the middle of a wall: gaps are measured to the wall's faces, and a tool that touches such a wall
@@ -149,6 +153,15 @@ void Contact::connect(PrepareContext& context, Simulation& simulation) {
     }
 }
 
+// A tool that presses is as far off its free pose at the end of the step as it was at the end of the last one.
+void Contact::expect(Pair& p, const Pose& free) const {
+  p.expected.reset();
+  if (!p.tool_collider || !taken_at.is("end")) return;
+  const bool presses = std::any_of(p.forces.begin(), p.forces.end(), [](const Vec3& f) { return f[0] > 0; });
+  if (p.free && presses) p.expected = displaced(free, displacement(*p.free, p.start));
+  p.free = free;
+}
+
 void Contact::search(const Search& what) {
   Pair& p = pairs_[std::size_t(what.pair)];
   if (p.tool_a) {
@@ -163,10 +176,12 @@ void Contact::search(const Search& what) {
       settings.one_sided = true;
     }
     p.contacts.clear();
-    if (!p.active()) return;
-    p.start = p.tool_a->link_pose(p.link_a);
-    const Pose& start = p.start;
+    if (!p.active()) return p.free.reset();
     const Pose free = p.tool_a->link_free_pose(p.link_a);
+    p.start = p.tool_a->link_pose(p.link_a);
+    expect(p, free);
+    if (p.expected) settings.expected = &*p.expected;
+    const Pose& start = p.start;
     if (p.tool_b)
       detect_tools(p.pieces_a, start, free, p.pieces_b, p.tool_b->link_pose(p.link_b), p.tool_b->link_free_pose(p.link_b), settings, p.contacts);
     else if (p.vertex_collider)
@@ -299,6 +314,7 @@ void Contact::reset() {
     if (p.a_on_b) p.a_on_b->reset();
     if (p.b_on_a) p.b_on_a->reset();
     if (p.patches) p.patches->reset();
+    p.free.reset();
     p.contacts.clear();
     p.rows.clear();
     p.forces.clear();

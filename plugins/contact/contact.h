@@ -2,6 +2,7 @@
 // Contact among bodies and tools; what it does and its scene element are described in contact.cpp.
 #pragma once
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/base/workers.h"
@@ -27,6 +28,7 @@ class Contact final : public Constraint {
   Param<Length> max_push{this, {.name = "max_push", .fallback = "0.3 mm", .min = "0.05 mm", .max = "100 mm", .doc = "a tool that touches a wall (a surface with a thickness) goes on by no more than this in a step; the rest of the hand's motion follows in the next ones"}};
   Param<Length> tissue_push{this, {.name = "tissue_push", .fallback = "1.5 mm", .min = "0.05 mm", .max = "100 mm", .doc = "the same for a soft body"}};
   Param<Choice> by{this, {.name = "by", .fallback = "triangles", .choices = {"triangles", "vertices"}, .doc = "how tools meet surfaces: by every triangle, for sharp tools; or by vertices, for blades much wider than the triangles (contacts then stay with their vertices; of a wall, a surface with a thickness, all are kept out, else one per spacing)"}};
+  Param<Choice> taken_at{this, {.name = "taken_at", .fallback = "start", .choices = {"start", "end"}, .doc = "by triangles: where the normals and places of a tool that presses are taken: at the start of the step; or where tool and surface are expected at its end, which is nearer to the truth where a tool slides over what turns, and for long steps most"}};
   Param<Length> patch{this, {.name = "patch", .fallback = "0 mm", .min = "0 mm", .max = "20 mm", .doc = "by vertices: contacts within this length of a blade share one friction force; 0: each has its own"}};
   Param<Length> recovery{this, {.name = "recovery", .fallback = "1 mm", .min = "0.001 mm", .max = "10 mm", .doc = "an overlap of a tool is undone by no more than this in a step: less is gentler on thin walls"}};
   Param<Stiffness> layer{this, {.name = "layer", .fallback = "0 N/m", .min = "0 N/m", .max = "1000 kN/m", .doc = "stiffness of what lies between a tool and the body at one contact, finer than the body's elements (the pia, a pad); 0: nothing, contact is hard"}};
@@ -59,6 +61,8 @@ class Contact final : public Constraint {
     std::vector<Proximity> other_way;  ///< of b's vertices on a, before selection
     std::unique_ptr<FrictionPatches> patches;  ///< one friction force for contacts close together, if wanted
     Pose start;                 ///< of the tool, in the step last detected
+    std::optional<Pose> free;   ///< of its free motion, in the same step
+    std::optional<Pose> expected;  ///< at the end of that step, of a tool that presses and whose contacts are taken there
     std::vector<int> rows;      ///< first row of each contact
     std::vector<Vec3> forces;   ///< along (normal, tangent, other tangent), N
     bool active() const { return (!tool_a || tool_a->active()) && (!tool_b || tool_b->active()); }
@@ -83,6 +87,7 @@ class Contact final : public Constraint {
   };
   bool owns(Simulation& simulation, const Body* a, const Body* b) const;
   void search(const Search& what);
+  void expect(Pair& pair, const Pose& free) const;
   void add_pairs(Simulation& simulation, Body* a, Body* b);
   void limit_motion(ConstraintBuilder& builder, const Pair& pair) const;
   double most_force(const Pair& pair) const;  ///< of one contact, N

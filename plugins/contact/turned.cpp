@@ -16,11 +16,21 @@ void Contact::turned(double steps, std::vector<Turn>& out) const {
       const Vec3 end = p.b->body().position(p.b->points()[std::size_t(v)]);
       return end + steps * (end - start);
     };
+    const auto nearest = [&](const Proximity& x, const Pose& pose, const std::function<Vec3(int)>& vertices) {
+      return nearest_place(p.pieces_a[std::size_t(x.piece)], pose, p.b->collision(), vertices, pose.apply(x.local), spacing(), x.normal);
+    };
     for (std::size_t i = 0; i < p.forces.size(); ++i) {
       const Proximity& x = p.contacts[i];
       if (!(p.forces[i][0] > 0)) continue;
-      const auto normal = nearest_place(p.pieces_a[std::size_t(x.piece)], then, p.b->collision(), vertex, then.apply(x.local), spacing(), x.normal);
-      if (normal && normal->dot(x.normal) > 0) out.push_back({p.rows[i], x.normal, x.tangent, *normal});
+      const auto normal = nearest(x, then, vertex);
+      if (!normal) continue;
+      // As far as the nearest place has turned: what rests is not turned, even if it touches by another place.
+      Vec3 to = *normal;
+      if (x.time == 0 || (x.time == 1 && p.expected)) {
+        const auto taken = nearest(x, x.time == 0 ? p.start : *p.expected, [&](int v) { return p.b->collision().vertex(v, x.time); });
+        if (taken) to = Quat::FromTwoVectors(*taken, *normal) * x.normal;
+      }
+      if (to.dot(x.normal) > 0) out.push_back({p.rows[i], x.normal, x.tangent, to});
     }
   }
 }
