@@ -16,6 +16,8 @@ constexpr double bent = 0.8;        ///< ... those that agree by this need looki
 constexpr double horizon = 0.5e-3;    ///< farther than needed, to know for how long nothing will come, m
 constexpr double skin = 0.4e-3;     ///< motion after which a list of partners is made anew, m
 constexpr double yields = 0.3;        ///< part of its turn that the normal of a pressing contact takes in a step
+constexpr double least_turn = 1e-3;    ///< a turn of less is none, rad
+constexpr int swings_for_good = 120;   ///< to and fro in two steps or in three: reached after one second or two
 constexpr std::size_t longest_list = 192;  ///< partners of a sample; with more, the tree is asked in every step
 
 /// Where the ray from `from` along the unit vector `along` goes out through triangle pqr; -1 if it does not.
@@ -72,8 +74,19 @@ SelfCollider::SelfCollider(std::span<const Vec3> rest, std::span<const std::arra
 void SelfCollider::reset() {
   for (auto& c : close_) c.assign(samples_.size(), 0);
   for (auto& d : direction_) d.assign(samples_.size(), Vec3::Zero());
+  for (auto& s : swing_) s.assign(samples_.size(), Swing());
   for (auto& c : clear_) c.assign(samples_.size(), 0.0);
   for (auto& c : covered_) c.assign(samples_.size(), -1.0);
+}
+
+// A hard press on a sharp fold throws even a slow normal to and fro, the wall after it: force times change of normal, N/m, against the
+// wall's own stiffness. It is known by turning back again and again for a second or two, which neither a pulse nor a hand does.
+double SelfCollider::Swing::share(const Vec3& wanted) {
+  constexpr int back = 2, on = 1;
+  const bool turned_back = wanted.dot(turn) < 0 && wanted.squaredNorm() > least_turn * least_turn && turn.squaredNorm() > least_turn * least_turn;
+  turn = wanted;
+  if (count < swings_for_good) count = turned_back ? std::min(count + back, swings_for_good) : std::max(0, count - on);
+  return count < swings_for_good ? yields : 0.1 * yields;
 }
 
 // From a vertex straight inward to the opposite wall; 0 if there is none.
@@ -226,7 +239,11 @@ void SelfCollider::near(const CollisionMesh& mesh, const SelfContactSettings& se
   // answer would throw it to and fro, step by step. So the normal of what presses turns slowly; but not where walls are hard,
   // whose gap is now a little above, now a little below zero.
   Vec3& direction = direction_[side][sample];
-  if (settings.slow_normals && was && c.gap < 0 && direction.dot(c.normal) > 0.5) c.normal = (direction + yields * (c.normal - direction)).normalized();
+  Swing& swing = swing_[side][sample];
+  if (settings.slow_normals && was && c.gap < 0 && direction.dot(c.normal) > 0.5)
+    c.normal = (direction + swing.share(c.normal - direction) * (c.normal - direction)).normalized();
+  else
+    swing = {};
   direction = c.normal;
   close_[side][sample] = crossed ? 2 : 1;
   c.start_gap = std::max(c.gap, -settings.max_recovery);

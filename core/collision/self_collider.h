@@ -80,6 +80,14 @@ class SelfCollider {
   std::vector<char> outward_known_;
   std::vector<char> close_[2];                   ///< 1: had a contact of this side in the last step, 2: had crossed; looked for farther
   std::vector<Vec3> direction_[2];               ///< of the samples: normal of the last contact of this side
+  /// Of a sample that presses: how its normal goes to and fro.
+  struct Swing {
+    Vec3 turn = Vec3::Zero();  ///< that was last wanted
+    int count = 0;             ///< of turns that took back the one before, of late
+    /// What part of the wanted turn the normal takes in this step: less, until the pressing ends, once it has swung for long.
+    double share(const Vec3& wanted);
+  };
+  std::vector<Swing> swing_[2];
   std::vector<double> clear_[2];                 ///< of the samples: no partner of this side is nearer than this, m
   std::vector<std::vector<Partner>> lists_[2];   ///< of the samples: what may be a partner soon, nearest first ...
   std::vector<double> covered_[2];               ///< ... as long as no more than this has moved; negative: to be made, m

@@ -81,6 +81,52 @@ TEST(SelfCollider, NormalsOfWhatPressesTurnSlowly) {
   }
 }
 
+// The upper wall tilts to and fro at every look: the normals follow by three tenths of each turn for sixty looks, then by three hundredths,
+// until what presses lets go.
+TEST(SelfCollider, NormalsThatSwingYieldATenth) {
+  Flat f;
+  f.height(0.2e-3);
+  SelfContactSettings settings;
+  settings.slow_normals = true;
+  f.detect(settings);
+  const auto level = f.now;
+  const double slope = 0.05;
+  const auto tilt = [&](double by) {
+    f.now = level;
+    for (std::size_t i = 0; i < f.now.size(); ++i) f.now[i].z() += by * f.now[i].x();
+  };
+  const auto check = [&](const Vec3& up, int look) {
+    int seen = 0;
+    for (const Proximity& x : f.detect(settings)) {
+      const Vec3& rest = f.rest.vertices[std::size_t(x.vertex)];
+      if (std::abs(rest.x()) > 3e-3 || std::abs(rest.y()) > 3e-3) continue;
+      ++seen;
+      ASSERT_NEAR(((f.top(x) ? x.normal : Vec3(-x.normal)) - up).norm(), 0, 1e-9) << "look " << look;
+    }
+    EXPECT_GE(seen, 30);
+  };
+  Vec3 up = Vec3::UnitZ();
+  for (int look = 0; look < 100; ++look) {
+    const double by = look % 2 ? -slope : slope;
+    tilt(by);
+    up = (up + (look < 60 ? 0.3 : 0.03) * (Vec3(-by, 0, 1).normalized() - up)).normalized();
+    check(up, look);
+  }
+  // Still slow while it presses on, as fast as ever once it has been off.
+  tilt(slope);
+  for (int look = 100; look < 110; ++look) {
+    up = (up + 0.03 * (Vec3(-slope, 0, 1).normalized() - up)).normalized();
+    check(up, look);
+  }
+  f.now = level;
+  for (std::size_t i = 0; i < f.now.size(); ++i) f.now[i].z() += f.now[i].z() > 0 ? 0.1e-3 : -0.1e-3;
+  f.detect(settings);
+  f.now = level;
+  f.detect(settings);
+  tilt(slope);
+  check((Vec3::UnitZ() + 0.3 * (Vec3(-slope, 0, 1).normalized() - Vec3::UnitZ())).normalized(), 110);
+}
+
 TEST(SelfCollider, NothingAtRestAndNothingFarOff) {
   for (const TriMesh& m : {shapes::sphere(Vec3::Zero(), 2e-3, 3), shapes::sphere(Vec3::Zero(), 0.6e-3, 2), shapes::box(Vec3::Zero(), Vec3(4e-3, 4e-3, 4e-3), 6)}) {
     CollisionMesh mesh;

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Assembly and stepping of a deformable body.
+// Stepping of a deformable body. How its matrix is made and kept: tangent.cpp; its prestress: prestress.cpp.
 #include "core/mechanics/deformable_body.h"
 
 #include <algorithm>
-#include <chrono>
 
-#include "core/base/nearest_rotation.h"
 #include "core/base/sorted_pairs.h"
 #include "core/linalg/asynchronous_solver.h"
 #include "core/linalg/direct_solver.h"
@@ -103,68 +101,6 @@ void DeformableBody::add_row(BodyRows& out, const MaterialPoint& p, const Vec3& 
     if (p.weight[std::size_t(k)] != 0) out.add(p.node[std::size_t(k)], p.weight[std::size_t(k)] * d);
 }
 
-// Whether the factor at hand still serves: no pair of neighbours has turned or stretched much since it was made.
-bool DeformableBody::tangent_is_good(double h) const {
-  if (factor_h_ != h || tangent_tolerance() <= 0 || !solver_->exact()) return false;
-  const double limit = tangent_tolerance() * tangent_tolerance();
-  for (const Neighbours& n : neighbours_) {
-    const Vec3 now = q_.segment<3>(3 * n.i) - q_.segment<3>(3 * n.j);
-    const Vec3 then = factor_q_.segment<3>(3 * n.i) - factor_q_.segment<3>(3 * n.j);
-    if ((now - then).squaredNorm() > limit * n.distance2) return false;
-  }
-  return true;
-}
-
-// Of each free node: that which turns its neighbours at rest into its neighbours now, best in the least squares.
-void DeformableBody::find_rotations() {
-  for (int j = 0; j < free_count_; ++j) around_[std::size_t(j)].setZero();
-  const auto add = [&](int i, int j) {
-    const Vec3 rest = rest_nodes()[std::size_t(i)] - rest_nodes()[std::size_t(j)];
-    const Mat3 m = (q_.segment<3>(3 * i) - q_.segment<3>(3 * j)) * rest.transpose();
-    if (const int b = free_[std::size_t(i)]; b >= 0) around_[std::size_t(b)] += m;
-    if (const int b = free_[std::size_t(j)]; b >= 0) around_[std::size_t(b)] += m;
-  };
-  for (const Neighbours& n : neighbours_) add(n.i, n.j);
-  for (int j = 0; j < free_count_; ++j) turned_[std::size_t(j)] = nearest_rotation(around_[std::size_t(j)], turn_[std::size_t(j)]);
-}
-
-// Assembles force and A, factorises A.
-// The system's matrix but for inertia, and the force that goes with it.
-void DeformableBody::assemble(double h) {
-  if (solver_->wants_rotations()) {
-    find_rotations();
-    solver_->turn(turned_);
-  }
-  a_.set_zero();
-  for (ForceModel* f : forces_) f->linearise(q_.data(), force_.data(), &a_, h, Tangent::system);
-}
-
-void DeformableBody::factorise(double h) {
-  double extra = 1;
-  for (int attempt = 0;; ++attempt) {
-    for (int i = 0; i < nodes(); ++i) {
-      const int b = free_[std::size_t(i)];
-      if (b < 0) continue;
-      const double inertia = mass_[std::size_t(i)] / (h * h) + damping_[std::size_t(i)] / h;
-      double* d = a_.block(a_.diagonal(b));
-      const double add = attempt == 0 ? inertia : (extra - extra / 10) * inertia;
-      d[0] += add;
-      d[4] += add;
-      d[8] += add;
-    }
-    // An indefinite matrix (force models promise not to make one) is met with ten times the inertia, as often as needed.
-    const auto begin = std::chrono::steady_clock::now();
-    const bool good = solver_->factorise_and_begin(a_, load_, guess_);
-    factor_ms_ += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
-    if (good || attempt == 12) break;
-    ++indefinite_;
-    extra *= 10;
-  }
-  ++factorisations_;
-  factor_q_ = q_;
-  factor_h_ = h;
-}
-
 void DeformableBody::free_motion(const StepContext& context) {
   const double h = step_ = context.h;
   force_ = external + filling;
@@ -237,74 +173,6 @@ void DeformableBody::reset() {
   for (Quat& t : turn_) t.setIdentity();
   solver_->forget();
   for (ForceModel* f : forces_) f->reset();
-}
-
-// At rest the force of the prestrained models is linear in the displacement u that leads to their natural shape, f = f0 + K u:
-// K u = -(load + f0) by conjugate gradients. K is known by its products only; the preconditioner is the step's tangent of the
-// models that take part, with what inertia a step of a second leaves, so that a body no one holds is no exception.
-double DeformableBody::prestress(const VecX& load) {
-  constexpr double enough = 1e-10, slow = 1;
-  constexpr int most = 500;
-  VecX rest(3 * nodes());
-  for (int i = 0; i < nodes(); ++i) rest.segment<3>(3 * i) = rest_nodes()[std::size_t(i)];
-  const VecX none = VecX::Zero(3 * nodes());
-  std::vector<ForceModel*> carry;
-  for (ForceModel* f : forces_)
-    if (f->prestrain(none.data())) carry.push_back(f);
-  const auto free_part = [&](VecX x) {
-    for (int i = 0; i < nodes(); ++i)
-      if (held_[std::size_t(i)]) x.segment<3>(3 * i).setZero();
-    return x;
-  };
-  const auto unbalanced = [&] {
-    VecX f = load;
-    for (ForceModel* m : carry) m->linearise(rest.data(), f.data(), nullptr, slow, Tangent::system);
-    return free_part(std::move(f));
-  };
-  const auto prestrain = [&](const VecX& u) {
-    for (ForceModel* m : carry) m->prestrain(u.data());
-  };
-  const double size = free_part(load).norm();
-  if (size == 0) return 0;
-  if (carry.empty()) return 1;
-
-  std::swap(forces_, carry);
-  q_.swap(rest);
-  const int indefinite = indefinite_, factorisations = factorisations_;
-  force_.setZero();
-  assemble(slow);
-  load_.setZero();
-  factorise(slow);
-  std::swap(forces_, carry);
-  q_.swap(rest);
-  indefinite_ = indefinite;
-  factorisations_ = factorisations;
-  factor_h_ = 0;
-
-  VecX f = unbalanced(), r = -f, z = none, p = none;
-  double before = 1, left = r.norm();
-  for (int k = 0; k < most && left > enough * size; ++k) {
-    for (int i = 0; i < nodes(); ++i)
-      if (const int b = free_[std::size_t(i)]; b >= 0) packed_.segment<3>(3 * b) = r.segment<3>(3 * i);
-    solver_->solve(packed_.data());
-    for (int i = 0; i < nodes(); ++i)
-      if (const int b = free_[std::size_t(i)]; b >= 0) z.segment<3>(3 * i) = packed_.segment<3>(3 * b);
-    const double rz = r.dot(z);
-    p = z + (k > 0 ? rz / before : 0) * p;
-    before = rz;
-    prestrain(p);
-    const double curvature = p.dot(unbalanced() - f);
-    if (!(curvature > 0)) {
-      prestrain(-p);
-      break;
-    }
-    prestrain((rz / curvature - 1) * p);
-    f = unbalanced();
-    r = -f;
-    left = r.norm();
-  }
-  solver_->forget();
-  return left / size;
 }
 
 double DeformableBody::energy() const {

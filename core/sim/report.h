@@ -46,8 +46,8 @@ struct VesselState {
 /// Blood outside the vessels.
 struct BleedingState {
   bool open = false;         ///< there is a tear
-  double rate = 0;           ///< m3/s out of the tear, of this moment
-  double lost = 0;           ///< m3 since the tear
+  double rate = 0;           ///< of blood out of the tear, m3/s, of this moment; 0 while it flows back
+  double lost = 0;           ///< m3 since the tear, less what flowed back
   double height = 0;         ///< of the blood over the bottom of the field, m; 0: dry
   Vec3 origin = Vec3::Zero();///< bottom of the field, scene frame
   Vec3 up = Vec3::UnitZ();   ///< the blood's surface stands at origin + height * up, normal up

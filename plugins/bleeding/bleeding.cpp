@@ -9,7 +9,9 @@ force is the sum over all rows of the step's problem, except those of the pressu
     F = sum over blocks | sum over nodes in the region of H^T lambda |
 
 The tear is an opening of `tear_area` in the network of <blood_flow>, so its rate follows the pressure, and a clip on the
-parent or across the neck stops it. Blood rises as a level surface that hides the field. With V the volume in the field,
+parent or across the neck stops it. A wall that draws takes back of what stands over the tear: blood of the pool, and where there
+is none what else is there (cerebrospinal fluid, air), which leaves first again. Blood rises as a level surface that hides the
+field. With V the volume in the field and `tear` negative while blood flows back,
 
     dV/dt = tear - suction,      height = depth sqrt(V / V_full),   V_full = pi radius^2 depth / 2   (a paraboloid)
 
@@ -113,7 +115,7 @@ void Bleeding::tear(const StepContext& context, const char* why, double value) {
 
 void Bleeding::finish(const StepContext& context, const ConstraintSolution& solution) {
   measure_forces(solution);
-  rate_ = open_ ? flow->tear_flow(chamber_) : 0;
+  const double out = open_ ? flow->tear_flow(chamber_) : 0;
   if (!open_) {
     const double inside = flow->blood_pressure->pressure(chamber_);
     if (asked_) tear(context, "asked for", 0);
@@ -121,14 +123,33 @@ void Bleeding::finish(const StepContext& context, const ConstraintSolution& solu
     else if (force_ > force()) tear(context, "pressed or pulled too hard", force_);
     else if (inside > burst()) tear(context, "burst", inside);
   }
-  fill(context.h);
+  fill(context.h, blood_of(context.h, out));
   if (open_) tell(context);
 }
 
-void Bleeding::fill(double h) {
-  const double in = h * rate_;
-  lost_ += in;
-  volume_ += in;
+double Bleeding::blood_of(double h, double out) {
+  if (out > 0) {
+    const double first = std::min(other_, h * out);
+    other_ -= first;
+    return out - first / h;
+  }
+  const double taken = tear_height() < height() ? std::min(volume_, -h * out) : 0;
+  other_ += -h * out - taken;
+  return -taken / h;
+}
+
+double Bleeding::tear_height() const {
+  double sum = 0;
+  int n = 0;
+  for (std::size_t v = 0; v < zone_.size(); ++v)
+    if (zone_[v]) sum += (Eigen::Map<const Vec3>(on->q().data() + 3 * v) - origin()).dot(up_), ++n;
+  return sum / n;
+}
+
+void Bleeding::fill(double h, double blood) {
+  rate_ = std::max(0.0, blood);
+  lost_ += h * blood;
+  volume_ += h * blood;
   double most = 0;
   for (const Instrument* s : suctions_) {
     if (!s->active()) continue;
@@ -172,12 +193,13 @@ void Bleeding::report(StepReport& report) const {
 
 void Bleeding::reset() {
   open_ = asked_ = stopped_ = false;
-  rate_ = lost_ = volume_ = first_rate_ = low_for_ = force_ = sharp_ = 0;
+  rate_ = lost_ = volume_ = other_ = first_rate_ = low_for_ = force_ = sharp_ = 0;
   since_ = -1;
 }
 
 void Bleeding::append_state(std::vector<double>& out) const {
   out.insert(out.end(), {double(open_), double(asked_), double(stopped_), rate_, lost_, volume_, since_, first_rate_, low_for_});
+  if (other_ > 0) out.push_back(other_);
 }
 
 std::vector<CommandInfo> Bleeding::commands() const {
@@ -193,7 +215,7 @@ std::string Bleeding::run_command(std::string_view name, std::string_view) {
   if (name == "seal") {
     if (!open_) return "nothing bleeds";
     open_ = false;
-    rate_ = 0;
+    rate_ = other_ = 0;
     flow->set_tear(chamber_, 0);
     return {};
   }

@@ -49,7 +49,7 @@ class Bleeding final : public Constraint {
   std::string run_command(std::string_view name, std::string_view argument) override;
 
   bool open() const { return open_; }
-  double rate() const { return rate_; }                       ///< m3/s
+  double rate() const { return rate_; }                       ///< of blood out of the tear, m3/s; 0 while it flows back
   double volume() const { return volume_; }                   ///< in the field, m3
   double height() const { return bowl_.height(volume_); }     ///< m
   /// Forces on the region in the last step, N: the sum over contacts and ties, and the part of edged instruments.
@@ -59,7 +59,10 @@ class Bleeding final : public Constraint {
  private:
   void measure_forces(const ConstraintSolution& solution);
   void tear(const StepContext& context, const char* why, double value);
-  void fill(double h);
+  /// Blood out of the tear, m3/s, when `out` of anything leaves it; negative: back out of the pool.
+  double blood_of(double h, double out);
+  double tear_height() const;  ///< over the bottom of the field, m
+  void fill(double h, double blood);
   void tell(const StepContext& context);
   void emit(const StepContext& context, const char* what, const char* text, double value) const;
 
@@ -72,6 +75,7 @@ class Bleeding final : public Constraint {
   std::vector<double> row_force_;           ///< three a row: force on the region
   // State.
   bool open_ = false, asked_ = false, stopped_ = false;
+  double other_ = 0;  ///< in the sac, that is no blood: came in while no pool stood over the tear, m3
   double rate_ = 0, lost_ = 0, volume_ = 0, since_ = -1, first_rate_ = 0, low_for_ = 0, force_ = 0, sharp_ = 0;
 };
 

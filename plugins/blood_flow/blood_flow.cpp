@@ -13,7 +13,8 @@ network is linear in the pressures of the moment and is solved together with the
     arteries   p(t) --- upstream --- inlet            loses `upstream_drop` of the mean pressure at rest
     outlets    --- bed --- venous pressure            never backwards: a collapsed bed does not feed the vessel
                --- collateral --- p(t)                other arteries, little
-    tear       Q = Cd A sqrt(2 dp / rho)              as conductance Cd A sqrt(2 / (rho dp)) of the last step's dp
+    tear       Q = Cd A sqrt(2 dp / rho)              as conductance Cd A sqrt(2 / (rho dp)) of the last step's dp;
+                                                      inward where the wall draws: a sac that is cut off comes to the pressure outside
 
 The beds follow from the flow at rest: inlet flow, split among the outlets by area to the power `split` (1.5: Murray's law). A
 part cut off from every opening is sealed: its pressure decays towards that outside within `seal_decay`.
@@ -121,7 +122,7 @@ void BloodFlow::reduce(const StepContext& context, StarMesh& out) {
   for (int c = 0; c < chambers; ++c) {
     const std::size_t i = std::size_t(c);
     const double drop = pressure_[std::size_t(chamber_node_[i])] - outside();
-    tear_conductance_[i] = drop > 0 ? discharge() * tear_area_[i] * std::sqrt(2 / (density() * std::max(drop, least_drop))) : 0;
+    tear_conductance_[i] = discharge() * tear_area_[i] * std::sqrt(2 / (density() * std::max(std::abs(drop), least_drop)));
     mesh_.ground(at(chamber_node_[i]), tear_conductance_[i] + (sealed_[i] ? yielding_[i] / seal_decay() : 0), outside());
   }
   const int first = n - chambers;
@@ -138,7 +139,7 @@ void BloodFlow::settle(const StepContext& context, const double* pressure, const
   for (int c = 0; c < chambers; ++c) {
     solved_[std::size_t(first + c)] = pressure[c];
     yielding_[std::size_t(c)] = yielding[c];
-    tear_flow_[std::size_t(c)] = std::max(0.0, tear_conductance_[std::size_t(c)] * (pressure[c] - outside()));
+    tear_flow_[std::size_t(c)] = tear_conductance_[std::size_t(c)] * (pressure[c] - outside());
   }
   for (int k = first - 1; k >= 0; --k) solved_[std::size_t(k)] = mesh_.pressure(k, solved_.data(), pressure_[std::size_t(node_at_[std::size_t(k)])]);
   // Beds were open or shut by the pressure of the step before.

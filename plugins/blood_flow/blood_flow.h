@@ -46,7 +46,7 @@ class BloodFlow final : public Constraint, public ChamberFeed {
 
   /// A tear in a chamber's wall, m2; 0 closes it.
   void set_tear(int chamber, double area) { tear_area_[std::size_t(chamber)] = area; }
-  double tear_flow(int chamber) const { return tear_flow_[std::size_t(chamber)]; }  ///< m3/s, of the last step
+  double tear_flow(int chamber) const { return tear_flow_[std::size_t(chamber)]; }  ///< m3/s out of it, of the last step
   bool sealed(int chamber) const { return sealed_[std::size_t(chamber)] != 0; }     ///< cut off from every opening
   const VesselGraph& graph() const { return graph_; }
   double node_pressure(int node) const { return pressure_[std::size_t(node)]; }     ///< Pa

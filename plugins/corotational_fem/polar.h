@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rotation of a deformation gradient F = R S where Newton's method (kernels_impl.cpp) does not find it: the maximum of
+// Rotation of a deformation gradient F = R S where Newton's method (newton_rotation.h) does not find it: the maximum of
 // tr(R^T F) over rotations. Of an inverted element the least principal stretch is the negative one.
 #pragma once
 #include <Eigen/SVD>

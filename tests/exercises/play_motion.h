@@ -21,6 +21,7 @@ struct Played {
   double end = -1;                            ///< of the exercise, s
   double duration = 0;                        ///< of the motion, s
   int strands = 0, left = 0;
+  double least_pressure = 1e300;              ///< of any stretch of vessel, Pa
   double most_force[2] = {0, 0};              ///< of each hand's tool on what it touches, N
 };
 
@@ -44,6 +45,7 @@ inline Played play_motion(const std::filesystem::path& scene, const std::string&
     out.finite = out.finite && s.report().finite;
     for (const ToolReport& t : s.report().tools)
       if (t.hand >= 0) out.most_force[t.hand] = std::max(out.most_force[t.hand], t.contact_force);
+    for (const VesselState& v : s.report().vessels) out.least_pressure = std::min(out.least_pressure, v.pressure);
     for (const Event& e : s.events()) ++out.events[e.kind];
   }
   for (int h = 0; h < 2; ++h)

@@ -155,8 +155,8 @@ void run_brain(const CaseFolder& folder, const fs::path& project, const Options&
   } catch (const InputError&) {
     throw;
   } catch (const std::exception& e) {  // the mesh generator's own
-    throw InputError(fmt::format("--brain: {}. What is meshed is a ball of {:g} mm about ({:g}, {:g}, {:g}), the right Sylvian fissure: is the brain in the MNI frame (right-anterior-superior), in mm?", e.what(), fissure_radius,
-                                 fissure_centre.x(), fissure_centre.y(), fissure_centre.z()));
+    throw InputError(fmt::format("--brain: {}. What is meshed is a ball of {:g} mm about ({:g}, {:g}, {:g}), the right Sylvian fissure: is the brain in the MNI frame (right-anterior-superior), in mm?{}", e.what(), fissure_radius,
+                                 fissure_centre.x(), fissure_centre.y(), fissure_centre.z(), o.mirror ? " It was mirrored (--mirror): was it of the left side?" : " One of the left side needs --mirror."));
   }
   json["notes"] = to_json(notes);
   write_json(folder.path / "brain.json", json);

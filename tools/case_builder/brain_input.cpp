@@ -11,6 +11,7 @@
 #include "tools/case_builder/brain.h"
 #include "tools/case_builder/fissure.h"
 #include "tools/case_builder/grid_surface.h"
+#include "tools/case_builder/mirror.h"
 #include "tools/case_builder/size_check.h"
 #include "tools/case_builder/solid.h"
 #include "tools/case_builder/surface_input.h"
@@ -38,6 +39,7 @@ TriMesh read_lobe_surface(const fs::path& file, const std::string& what, const O
   if (!fs::exists(file)) fail(file, "does not exist");
   const double unit = unit_mm(file, o.brain_unit_mm);
   TriMesh m = read_any_surface(file, unit);
+  if (o.mirror) mirror(m);
   const double extent = extent_of(m);
   if (const std::string why = check_brain(extent, unit); !why.empty()) fail(file, why);
   weld(m, 1e-6 * extent);
@@ -144,6 +146,7 @@ BrainLabels of_volume(const fs::path& file, const Options& o) {
     if (!labels.contains(name)) fail(file, std::string("is a volume: say which labels are the ") + name + ", such as --lobe " + name + "=2,4,10-16");
 #ifdef INSULA_WITH_ITK
   out.volume = read_volume(file);
+  if (o.mirror) mirror(out.volume);
 #else
   fail(file, "volumes need ITK (Debian: libinsighttoolkit5-dev), which was not there when this program was built");
 #endif

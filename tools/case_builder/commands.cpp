@@ -40,6 +40,7 @@ void intake_options(CLI::App* app, Options& o) {
   app->add_option_function<std::string>("--unit", [&o](const std::string& u) { o.unit_mm = mm_of(u); },
                                         "unit of a surface file (default: mm; glTF: m)")->check(CLI::IsMember({"m", "cm", "mm", "um", "inch"}));
   app->add_option("--unit-mm", o.unit_mm, "the same in millimetres a unit")->check(CLI::Range(1e-9, 1e9));
+  app->add_flag("--mirror,!--no-mirror", o.mirror, "the input, vessel and brain, is of the left side: mirror it at x = 0; positions given here stay those of your files");
   app->add_flag("--any-size", o.any_size, "take sizes that no cerebral artery has");
   app->add_option("--label", o.label, "volumes: the vessel's label");
   app->add_option("--threshold", o.threshold, "volumes: grey value from which on it is vessel");
@@ -127,7 +128,7 @@ void do_stage(const std::string& stage, const CaseFolder& folder, const Line& li
   if (stage == "brain") run_brain(folder, project, o, progress);
   if (stage == "place") run_place(folder, project, o, progress);
   if (stage == "scenes") run_scenes(folder, project, o, progress);
-  if (stage == "report") run_report(folder, progress);
+  if (stage == "report") run_report(folder, o, progress);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "core/model/file_bytes.h"
 #include "tools/artery/import_parts.h"
 #include "tools/case_builder/grid_surface.h"
+#include "tools/case_builder/mirror.h"
 #include "tools/case_builder/openings.h"
 #include "tools/case_builder/size_check.h"
 #include "tools/case_builder/surface_input.h"
@@ -46,6 +47,7 @@ TriMesh read_surface_mm(const fs::path& input, const Options& o, std::vector<Not
   const double unit = unit_mm(input, o.unit_mm);
   if (is_in_metres(input) && !o.unit_mm) notes.push_back({Note::Kind::fact, "glTF is in metres by its standard; it was read so.", ""});
   TriMesh m = read_any_surface(input, unit);
+  if (o.mirror) mirror(m);
   if (m.triangles.size() > most_triangles) too_many(m.triangles.size());
   if (!o.any_size)
     if (const std::string why = check_extent(extent_of(m), unit); !why.empty()) fail(input, why + "; --any-size takes it all the same");
@@ -180,8 +182,11 @@ Intake mended(TriMesh m, const std::string& what, const Options& o, std::vector<
   return out;
 }
 
-Intake take_in(const fs::path& input, const Options& o, Progress& progress) {
+Intake take_in(const fs::path& input, const Options& given, Progress& progress) {
   if (!fs::exists(input)) fail(input, "does not exist");
+  const Options o = as_read(given);
+  // Messages tell positions.
+  const std::string what = input.filename().string() + (o.mirror ? " (mirrored)" : "");
   std::vector<Note> notes;
   TriMesh m;
   progress.step("reading " + input.filename().string());
@@ -199,11 +204,11 @@ Intake take_in(const fs::path& input, const Options& o, Progress& progress) {
   progress.step("mending the surface");
   Intake out;
   try {
-    out = mended(std::move(m), input.filename().string(), with_ends, std::move(notes));
+    out = mended(std::move(m), what, with_ends, std::move(notes));
   } catch (const InputError&) {
     throw;
   } catch (const std::runtime_error& e) {
-    throw InputError(input.filename().string() + ": " + e.what());
+    throw InputError(what + ": " + e.what());
   }
   out.facts["kind"] = volume ? "volume" : "surface";
   out.facts["file"] = input.filename().string();

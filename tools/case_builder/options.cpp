@@ -24,6 +24,7 @@ void take(const Json& json, const char* name, T& value) {
 Json to_json(const Options& o) {
   Json j = Json::object();
   put(j, "unit_mm", o.unit_mm);
+  if (o.mirror) j["mirror"] = true;
   j["any_size"] = o.any_size;
   put(j, "threshold", o.threshold);
   put(j, "label", o.label);
@@ -62,6 +63,7 @@ Options options_from_json(const Json& j) {
   Options o;
   try {
     take(j, "unit_mm", o.unit_mm);
+    take(j, "mirror", o.mirror);
     take(j, "any_size", o.any_size);
     take(j, "threshold", o.threshold);
     take(j, "label", o.label);

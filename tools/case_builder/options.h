@@ -14,10 +14,11 @@ using Point = std::array<double, 3>;
 using Plane = std::array<double, 6>;  ///< a point and a normal
 using Json = nlohmann::ordered_json;
 
-/// Lengths in millimetres, positions in the frame of the input after its unit has been applied.
+/// Lengths in millimetres, positions in the frame of the input after its unit has been applied, before it is mirrored.
 struct Options {
   // intake
   std::optional<double> unit_mm;     ///< millimetres a unit of a surface file; none: what the format says, else 1
+  bool mirror = false;               ///< the input, vessel and brain, is of the left side: x changes its sign (mirror.h)
   bool any_size = false;             ///< sizes that no cerebral artery has are taken all the same
   std::optional<double> threshold;   ///< of a grey volume: vessel from here up
   std::optional<int> label;          ///< of a label volume

@@ -155,7 +155,7 @@ MeasuredScene measure_scene(const fs::path& scene, int steps) {
   return out;
 }
 
-void run_report(const CaseFolder& folder, Progress& progress) {
+void run_report(const CaseFolder& folder, const Options& options, Progress& progress) {
   progress.stage("report", 7);
   progress.step("reading the case");
   const Intake in = read_intake(folder);
@@ -177,6 +177,7 @@ void run_report(const CaseFolder& folder, Progress& progress) {
 
   s += "<h2>The input</h2><table>";
   s += row("file", fmt::format("{} ({})", in.facts.value("file", ""), in.facts.value("kind", "")), "fact");
+  if (options.mirror) s += row("side", "left, mirrored at x = 0: what is left here is right in the patient, and positions in the case's files have the other sign of x than in yours", "fact", "Positions that you give are those of your files; --no-mirror takes them as they are.");
   s += row("size", fmt::format("{:.1f} mm across, {:.0f} mm2, {:.0f} mm3", in.facts.value("extent_mm", 0.0), in.facts.value("area_mm2", 0.0), in.facts.value("volume_mm3", 0.0)), "good", "within what a stretch of cerebral artery measures");
   std::string openings;
   for (const Json& o : in.facts.at("openings")) openings += fmt::format("{}{:.2f} mm", openings.empty() ? "" : ", ", o.at("calibre_mm").get<double>());

@@ -26,7 +26,7 @@ struct MeasuredMotion {
 };
 MeasuredMotion measure_motion(const fs::path& scene, double longest_s);
 
-/// Reads what all stages have written, runs the exercises, writes report.html.
-void run_report(const CaseFolder& folder, Progress& progress);
+/// Reads what all stages have written, runs the exercises, writes report.html; of the options it tells whether the input was mirrored.
+void run_report(const CaseFolder& folder, const Options& options, Progress& progress);
 
 }  // namespace insula::case_builder

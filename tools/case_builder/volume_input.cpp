@@ -3,6 +3,7 @@
 
 #include "core/model/file_bytes.h"
 #include "tools/case_builder/grid_surface.h"
+#include "tools/case_builder/mirror.h"
 #ifdef INSULA_WITH_ITK
 #include "tools/case_builder/volume_reader.h"
 #endif
@@ -18,7 +19,9 @@ TriMesh read_volume_surface(const fs::path& input, const Options& options, std::
   if (options.label && options.threshold) fail(input, "--label and --threshold exclude each other");
   if (options.unit_mm) fail(input, "a volume says its unit itself; --unit is for surfaces");
 #ifdef INSULA_WITH_ITK
-  return surface_of_volume(input, read_volume(input), options, notes, ends);
+  mesh_tool::NiftiVolume volume = read_volume(input);
+  if (options.mirror) mirror(volume);
+  return surface_of_volume(input, volume, options, notes, ends);
 #else
   (void)notes, (void)ends;
   fail(input, "volumes need ITK (Debian: libinsighttoolkit5-dev), which was not there when this program was built");

@@ -10,6 +10,7 @@
 #include "core/model/vessel_model.h"
 #include "tools/artery/import_parts.h"
 #include "tools/case_builder/intake.h"
+#include "tools/case_builder/mirror.h"
 #include "tools/case_builder/trim.h"
 
 namespace insula::case_builder {
@@ -133,7 +134,7 @@ void run_wall(const CaseFolder& folder, const Options& o, Progress& progress) {
   progress.stage("wall", 5);
   const Intake in = read_intake(folder);
   std::vector<Note> notes;
-  const Vessel v = make_wall(in.surface, o, notes, progress);
+  const Vessel v = make_wall(in.surface, as_read(o), notes, progress);
   progress.step("writing");
   artery::write_vessel(v, folder.wall());
   Json json;

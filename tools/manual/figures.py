@@ -42,6 +42,7 @@ FIGURES = {  # name: (program, test)
     "strand": ("plugin_tests", "StrandSprings.PullsAsTheDiscretisedLawSays"),
     "strip": ("plugin_tests", "Bending.CantileverConvergesToEulerBernoulli"),
     "suction": ("plugin_tests", "Suction.HoldsUpToPressureTimesAreaAndLetsGo"),
+    "torn_sac": ("plugin_tests", "BloodFlow.TornSacThatIsCutOffComesToThePressureOutside"),
     "weakening": ("plugin_tests", "ClipApplier.AHeldOpenSpringWeakensAsPublished"),
 }
 ERRORS = {  # section of the page: (picture, {program: tests that keep errors})
@@ -62,7 +63,7 @@ ERRORS = {  # section of the page: (picture, {program: tests that keep errors})
     "Contracts": ("errors_contracts", {"physics_tests": "Elements/EveryElement.*"}),
     "Pressure and flow": ("errors_flow", {
         "plugin_tests": "Chambers.AddUp*:Pressure.Balances*:Pressure.SphereOf*:Pressure.FillsAt*:Pressure.Sealed*:Pressure.RowsAre*:Prestress.Imaged*:Prestress.Without*:Section.Cuts*:BloodFlow.Network*:"
-                        "BloodFlow.SplitsThe*:BloodFlow.ClipOn*:BloodFlow.TearBleeds*:BloodFlow.PulsatesWithout*:Bleeding.TearsWhen*"}),
+                        "BloodFlow.SplitsThe*:BloodFlow.ClipOn*:BloodFlow.TearBleeds*:BloodFlow.TornSac*:BloodFlow.PulsatesWithout*:Bleeding.TearsWhen*:Bleeding.AWallThat*"}),
     "Clips and thin walls": ("errors_clips", {
         "plugin_tests": "Clip.MomentumIs*:Clip.FallsBy*:Clip.HoldsAnd*:ClipApplier.TheHandFeels*:ClipApplier.Released*:ContactLimits.ForceOfALayerIs*:SelfContact.AWallThat*",
         "core_tests": "Clip.EveryShipped*:VertexCollider.EveryVertex*:SelfCollider.WallsPressed*:OneSided.AVertexThat*"}),

@@ -4,6 +4,7 @@ import * as THREE from 'three';
 import { type Bundle, load_bundle } from './bundle';
 import { Microscope } from './camera';
 import { Connection } from './connection';
+import { Graphics } from './graphics';
 import { tool_in_hand } from './hand_tool';
 import { Hands } from './hands';
 import { Headset } from './headset';
@@ -71,7 +72,7 @@ let spoken_to = '';
 
 const status = {
   ready: false, frames: 0, pictures: 0, fps: 0, session: '', quality: '', connected: false, frozen: false, refused: 0, error: '',
-  build_ms: 0, taken: [false, false], active: 1, triangles: 0, stereo: 'off', infrared: false, presenting: false,
+  build_ms: 0, taken: [false, false], active: 1, triangles: 0, stereo: 'off', infrared: false, presenting: false, graphics_lost: false,
 };
 (window as unknown as { __insula: typeof status }).__insula = status;
 
@@ -152,10 +153,8 @@ function build(bundle: Bundle): void {
   world.set_infrared(modes.infrared);
 }
 
-// What was drawn into textures is lost with the context: steel would have nothing to mirror and be black.
-canvas.addEventListener('webglcontextrestored', () => {
-  if (world) build(world.bundle);
-});
+// Steel would have nothing to mirror and be black.
+const graphics = new Graphics(canvas, () => { if (world) build(world.bundle); });
 
 /** Loads the bundle of a new session, once; tries again when it fails. */
 let loading = '';
@@ -233,7 +232,9 @@ function headset_lines(): string[] {
   return ['For training only. Not for patient care.', timers.join('     '), spoken_to];
 }
 
-function banner(quiet: (heard_ms: number, limit_ms: number) => boolean): string {
+function banner(now_ms: number, quiet: (heard_ms: number, limit_ms: number) => boolean): string {
+  // It explains the empty picture, whatever else is amiss.
+  if (graphics.lost) return graphics.notice(now_ms);
   if (!link.open) return 'Viewer gateway not reached\ntrying again …';
   // Pictures are a sign of life too: on a slow machine they crowd out the second's word of the scene.
   if (!info || (quiet(info_ms, 4000) && quiet(frame_ms, 2500))) return 'Waiting for the engine …';
@@ -274,8 +275,11 @@ function draw(now: number): void {
   else lens.render(scene, scope.camera, scope.distance, modes.stereo, angle);
   status.presenting = presenting;
   status.triangles = lens.triangles;
-  counted++;
-  status.pictures++;
+  status.graphics_lost = graphics.lost;
+  if (!graphics.lost) {
+    counted++;
+    status.pictures++;
+  }
   status.frames = playback.frames;
   status.refused = link.refused;
   status.ready = world !== null && playback.frames > 0;
@@ -285,7 +289,7 @@ function draw(now: number): void {
     counted = 0;
     counted_from = now;
     // A hidden tab draws rarely by design; loading stalls are no sign of a slow machine either.
-    if (status.ready && document.visibilityState === 'visible' && watch.observe(status.fps, seconds)) apply_quality();
+    if (status.ready && document.visibilityState === 'visible' && !graphics.lost && watch.observe(status.fps, seconds)) apply_quality();
   }
   if (!options.hud) return;
   const fresh_haptic = quiet(haptic_ms, 3000) ? null : haptic;
@@ -295,7 +299,7 @@ function draw(now: number): void {
   hud.show_machine(quiet(frame_ms, 2500) ? null : playback.latest, fresh_haptic, status.fps, status.quality);
   const alive = !quiet(frame_ms, 1000);
   hud.show_link(link.open ? (alive ? 'connected' : 'gateway only') : 'disconnected', link.open && alive);
-  hud.show_banner(banner(quiet));
+  hud.show_banner(banner(now, quiet));
   hud.show_notice(info && info.state !== 'error' ? info.message : '');
   hud.tick(now);
 }

@@ -31,6 +31,30 @@ try {
   assert.ok(seen.red > 0.2, `share of reddish pixels ${seen.red}`);
   check(`canvas shows tissue (brightness ${seen.mean.toFixed(0)}, contrast ${seen.deviation.toFixed(0)}, reddish ${(100 * seen.red).toFixed(0)} %)`);
 
+  const whole = await status();
+  // The extension is asked for beforehand: a lost context gives none.
+  await page.evaluate(() => {
+    window.__card = document.getElementById('view').getContext('webgl2').getExtension('WEBGL_lose_context');
+    window.__card.loseContext();
+  });
+  const banner = (text) => page.waitForFunction((t) => (document.querySelector('.banner')?.textContent ?? '').startsWith(t) && (t !== '' || document.querySelector('.banner').hidden), text, patience);
+  await page.waitForFunction(() => window.__insula.graphics_lost, null, patience);
+  await banner('The graphics card was reset');
+  const lost = await status();
+  await page.waitForFunction((n) => window.__insula.frames > n + 20, lost.frames, patience);
+  const dark = await look(page, { x: 140, y: 60, width: 200, height: 200 });
+  assert.equal((await status()).pictures, lost.pictures, 'no picture is counted that nobody sees');
+  assert.ok(dark.red < 0.02 && dark.deviation < 5, `nothing is drawn meanwhile: reddish ${dark.red}, contrast ${dark.deviation}`);
+  await page.evaluate(() => window.__card.restoreContext());
+  await page.waitForFunction((n) => !window.__insula.graphics_lost && window.__insula.pictures > n + 3, lost.pictures, patience);
+  await banner('');
+  const again = await look(page, { x: 140, y: 60, width: 200, height: 200 });
+  assert.ok(Math.abs(again.mean - seen.mean) < 0.1 * seen.mean && Math.abs(again.deviation - seen.deviation) < 0.2 * seen.deviation && Math.abs(again.red - seen.red) < 0.1,
+    `the picture is as before: brightness ${seen.mean} -> ${again.mean}, contrast ${seen.deviation} -> ${again.deviation}, reddish ${seen.red} -> ${again.red}`);
+  const { session: session_now, connected } = await status();
+  assert.deepEqual([session_now, connected], [whole.session, true], 'the same session, without a reload');
+  check('it says that the graphics card was reset, and draws the same again when it is back, without a reload');
+
   await page.keyboard.press('p');
   await wait_for('pause', () => mock.state.commands.includes('pause'));
   await page.waitForFunction(() => document.querySelector('.banner')?.textContent === 'Paused', null, patience);

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The system matrix of a deformable body and its factor: made, and kept while it serves.
+#include <chrono>
+
+#include "core/base/nearest_rotation.h"
+#include "core/mechanics/deformable_body.h"
+
+namespace insula {
+
+// Whether the factor at hand still serves: no pair of neighbours has turned or stretched much since it was made.
+bool DeformableBody::tangent_is_good(double h) const {
+  if (factor_h_ != h || tangent_tolerance() <= 0 || !solver_->exact()) return false;
+  const double limit = tangent_tolerance() * tangent_tolerance();
+  for (const Neighbours& n : neighbours_) {
+    const Vec3 now = q_.segment<3>(3 * n.i) - q_.segment<3>(3 * n.j);
+    const Vec3 then = factor_q_.segment<3>(3 * n.i) - factor_q_.segment<3>(3 * n.j);
+    if ((now - then).squaredNorm() > limit * n.distance2) return false;
+  }
+  return true;
+}
+
+// Of each free node: that which turns its neighbours at rest into its neighbours now, best in the least squares.
+void DeformableBody::find_rotations() {
+  for (int j = 0; j < free_count_; ++j) around_[std::size_t(j)].setZero();
+  const auto add = [&](int i, int j) {
+    const Vec3 rest = rest_nodes()[std::size_t(i)] - rest_nodes()[std::size_t(j)];
+    const Mat3 m = (q_.segment<3>(3 * i) - q_.segment<3>(3 * j)) * rest.transpose();
+    if (const int b = free_[std::size_t(i)]; b >= 0) around_[std::size_t(b)] += m;
+    if (const int b = free_[std::size_t(j)]; b >= 0) around_[std::size_t(b)] += m;
+  };
+  for (const Neighbours& n : neighbours_) add(n.i, n.j);
+  for (int j = 0; j < free_count_; ++j) turned_[std::size_t(j)] = nearest_rotation(around_[std::size_t(j)], turn_[std::size_t(j)]);
+}
+
+// A but for inertia, and the force that goes with it.
+void DeformableBody::assemble(double h) {
+  if (solver_->wants_rotations()) {
+    find_rotations();
+    solver_->turn(turned_);
+  }
+  a_.set_zero();
+  for (ForceModel* f : forces_) f->linearise(q_.data(), force_.data(), &a_, h, Tangent::system);
+}
+
+// With inertia; begins the motion under load_.
+void DeformableBody::factorise(double h) {
+  double extra = 1;
+  for (int attempt = 0;; ++attempt) {
+    for (int i = 0; i < nodes(); ++i) {
+      const int b = free_[std::size_t(i)];
+      if (b < 0) continue;
+      const double inertia = mass_[std::size_t(i)] / (h * h) + damping_[std::size_t(i)] / h;
+      double* d = a_.block(a_.diagonal(b));
+      const double add = attempt == 0 ? inertia : (extra - extra / 10) * inertia;
+      d[0] += add;
+      d[4] += add;
+      d[8] += add;
+    }
+    // An indefinite matrix (force models promise not to make one) is met with ten times the inertia, as often as needed.
+    const auto begin = std::chrono::steady_clock::now();
+    const bool good = solver_->factorise_and_begin(a_, load_, guess_);
+    factor_ms_ += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+    if (good || attempt == 12) break;
+    ++indefinite_;
+    extra *= 10;
+  }
+  ++factorisations_;
+  factor_q_ = q_;
+  factor_h_ = h;
+}
+
+}  // namespace insula
