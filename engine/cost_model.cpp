@@ -155,9 +155,9 @@ CostEstimate estimate(const SceneWork& w, const CostRates& r, int threads) {
     const double tangent = b.elements * r.tetrahedron * (b.wall ? wall_tangent : 1), force = b.elements * r.tetrahedron_force * (b.wall ? wall_force : 1);
     const double factor = b.background ? 0 : b.solver.factor_flops * r.factor_flop + double(b.solver.factor_entries) * r.factor_entry;
     const double solve = double(b.solver.factor_entries) * r.solve_entry * (b.background ? 0.5 * iterations : 1);
-    const double often = b.keeps_tangent ? anew : 1;
-    free.push_back(in_a_step * (often * (tangent + factor) + (1 - often) * force + solve) + 12 * b.nodes * r.vertex);
-    correct.push_back(b.rows > 0 ? 0.8 * solve : 0);
+    const double often = b.keeps_tangent ? anew : 1, forward = b.background ? solve : 0.5 * solve;
+    free.push_back(in_a_step * (often * (tangent + factor) + (1 - often) * force + forward) + 12 * b.nodes * r.vertex);
+    correct.push_back(b.background ? (b.rows > 0 ? 0.8 * solve : 0) : 0.5 * solve);
     compliance.push_back(b.rows > 0 ? b.compliance_flops * r.compliance_flop + 1.5 * std::max(0.0, double(b.solver.factor_entries) - cached) * r.solve_entry : 0);
     add += double(b.rows) * b.rows * r.compliance_row2;
     if (b.keeps_tangent) out.refactor_ms = std::max(out.refactor_ms, 1000 * (tangent + factor));

@@ -62,6 +62,7 @@ struct ToolCollider::Placed {
   int count = 0;
   Vec3 axis0, axis1;
   double radius = 0, bound = 0;
+  bool expected = false;  ///< at the end of the step, not on the free way
 
   Placed(const RoundedPiece& r, int index, const Pose& s, const Vec6& motion, double t, const Vec3& slid, double offset)
       : Placed(r, index, s, t > 0 ? displaced(s, t * motion) : s, t, slid, offset) {}
@@ -93,15 +94,16 @@ void ToolCollider::reset() {
   side_.assign(pieces_.size(), Vec3::Zero());
 }
 
-// Brings the candidates' bounds up to date and appends the contacts within `range`.
+// Brings the candidates' bounds up to date (on the free way) and appends the contacts within `range`.
 void ToolCollider::evaluate(const CollisionMesh& mesh, const Placed& at, const ToolContactSettings& settings, double range,
                             std::vector<Proximity>& found) {
   const double t = at.time;
   const double slid = at.shift.norm();
   const Vec3 side = t == 0 && slid == 0 ? side_[std::size_t(at.piece)] : Vec3(Vec3::Zero());
   const auto core = at.core();
+  const bool on_way = slid == 0 && !at.expected;
   for (Candidate& k : candidates_) {
-    if (k.clear - k.speed * std::abs(t - k.time) - slid > range) continue;
+    if (k.clear - (at.expected ? k.to_end : k.speed * std::abs(t - k.time)) - slid > range) continue;
     const auto& v = mesh.triangle(k.triangle);
     const std::array<Vec3, 3> tri{mesh.vertex(v[0], t), mesh.vertex(v[1], t), mesh.vertex(v[2], t)};
     // Cheap bound first: sphere about the triangle, segment about the core.
@@ -111,7 +113,7 @@ void ToolCollider::evaluate(const CollisionMesh& mesh, const Placed& at, const T
     const double axis = (at.axis0 + s * (at.axis1 - at.axis0) - centre).norm();
     double clear = axis - std::sqrt(reach2) - at.bound - at.radius;
     if (clear > range) {
-      if (slid == 0) {
+      if (on_way) {
         k.clear = clear;
         k.time = t;
       }
@@ -119,7 +121,7 @@ void ToolCollider::evaluate(const CollisionMesh& mesh, const Placed& at, const T
     }
     const Narrow n = closest(core, tri, at.radius + range);
     clear = n.distance - at.radius;
-    if (slid == 0) {
+    if (on_way) {
       k.clear = clear;
       k.time = t;
     }
@@ -194,11 +196,11 @@ void ToolCollider::drop_wrong_exits(std::vector<Proximity>& found, const Vec3& s
   found.resize(kept);
 }
 
-// The contacts of a piece where it is expected at the end of the step, into at_end_. False where there are none, or where it would be behind a wall.
+// The contacts of a piece where it is expected at the end of the step, into at_end_, after those at its start. False where there are none, or
+// where it would be behind a wall.
 bool ToolCollider::found_at_end(const CollisionMesh& mesh, const Placed& expected, const ToolContactSettings& settings) {
   at_end_.clear();
   evaluate(mesh, expected, settings, settings.alarm, at_end_);
-  for (Candidate& k : candidates_) k.clear = k.time = 0;  // what is known of them is not of the free way
   drop_wrong_exits(at_end_, side_[std::size_t(expected.piece)], settings.offset);
   for (Proximity& x : at_end_) {
     if (settings.offset > 0 && x.gap < -0.9 * expected.radius) return false;
@@ -236,11 +238,17 @@ void ToolCollider::detect(const CollisionMesh& mesh, const Pose& start, const Po
     for (int i = 0; i < first.count; ++i) centre += first.points[std::size_t(i)];
     centre /= first.count;
     std::optional<Placed> expected;
+    Vec3 to_end = Vec3::Zero();
+    double uneven_to_end = 0;
     if (settings.expected && !deep) {
       expected.emplace(piece, index, start, *settings.expected, 1, Vec3::Zero(), settings.offset);
+      expected->expected = true;
+      const auto way = [&](int i) { return Vec3(expected->points[std::size_t(i)] - first.points[std::size_t(i)]); };
+      for (int i = 0; i < first.count; ++i) to_end += way(i) / first.count;
       for (int i = 0; i < first.count; ++i) {
         box.add(expected->points[std::size_t(i)]);
-        farthest = std::max(farthest, (expected->points[std::size_t(i)] - first.points[std::size_t(i)]).norm());
+        farthest = std::max(farthest, way(i).norm());
+        uneven_to_end = std::max(uneven_to_end, (way(i) - to_end).norm());
       }
     }
     for (int i = 0; i < first.count; ++i) {
@@ -263,16 +271,19 @@ void ToolCollider::detect(const CollisionMesh& mesh, const Pose& start, const Po
     const Vec3 velocity = motion.head<3>() + motion.tail<3>().cross(centre - start.p);
     const double uneven = turn * (spread + turn * lever);
     mesh.tree().overlapping(box, beside, [&](int tri) {
-      double speed2 = 0;
-      for (int v : mesh.triangle(tri)) speed2 = std::max(speed2, (mesh.free(v) - velocity).squaredNorm());
-      candidates_.push_back({tri, 0.0, 0.0, std::sqrt(speed2) + uneven});
+      double speed2 = 0, to_end2 = 0;
+      for (int v : mesh.triangle(tri)) {
+        speed2 = std::max(speed2, (mesh.free(v) - velocity).squaredNorm());
+        if (expected) to_end2 = std::max(to_end2, (mesh.free(v) - to_end).squaredNorm());
+      }
+      candidates_.push_back({tri, 0.0, 0.0, std::sqrt(speed2) + uneven, std::sqrt(to_end2) + uneven_to_end});
     });
     if (candidates_.empty()) {
       side_[std::size_t(index)].setZero();
       continue;
     }
 
-    bool at_end = expected && found_at_end(mesh, *expected, settings);
+    bool at_end = false;
     double t = 0;
     bool reached = false;
     Placed at = first;
@@ -281,6 +292,7 @@ void ToolCollider::detect(const CollisionMesh& mesh, const Pose& start, const Po
       found_.clear();
       evaluate(mesh, at, settings, t == 0 ? range : alarm, found_);
       if (t == 0) {
+        at_end = expected && found_at_end(mesh, *expected, settings);
         Vec3& side = side_[std::size_t(index)];
         drop_wrong_exits(found_, side, settings.offset);
         double least = 1e300;

@@ -71,7 +71,8 @@ class ToolCollider {
     int triangle;
     double clear;   ///< lower bound of the unsigned gap ...
     double time;    ///< ... at this time
-    double speed;   ///< bound on the relative motion over the whole step, m
+    double speed;   ///< bound on the relative motion over the whole step, m ...
+    double to_end;  ///< ... and on that to where the piece is expected at its end
   };
   struct Placed;  // a piece at a moment
   void evaluate(const CollisionMesh& mesh, const Placed& at, const ToolContactSettings& settings, double range,
