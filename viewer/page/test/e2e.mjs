@@ -25,12 +25,16 @@ try {
   assert.equal((await status()).refused, 0);
   check('frames and pictures go on');
 
-  const seen = await look(page, { x: 140, y: 60, width: 200, height: 200 });
+  const clip = { x: 140, y: 60, width: 200, height: 200 };
+  const seen = await look(page, clip);
   assert.ok(seen.mean > 25 && seen.mean < 230, `mean brightness ${seen.mean}`);
   assert.ok(seen.deviation > 15, `contrast ${seen.deviation}`);
   assert.ok(seen.red > 0.2, `share of reddish pixels ${seen.red}`);
   check(`canvas shows tissue (brightness ${seen.mean.toFixed(0)}, contrast ${seen.deviation.toFixed(0)}, reddish ${(100 * seen.red).toFixed(0)} %)`);
 
+  // The first pictures are brighter, until occlusion has been worked out vertex by vertex: what comes back is held against a settled one.
+  let settled = seen;
+  for (let last = null; !last || Math.abs(settled.mean - last.mean) > 0.02 * last.mean;) [last, settled] = [settled, await look(page, clip)];
   const whole = await status();
   // The extension is asked for beforehand: a lost context gives none.
   await page.evaluate(() => {
@@ -42,15 +46,15 @@ try {
   await banner('The graphics card was reset');
   const lost = await status();
   await page.waitForFunction((n) => window.__insula.frames > n + 20, lost.frames, patience);
-  const dark = await look(page, { x: 140, y: 60, width: 200, height: 200 });
+  const dark = await look(page, clip);
   assert.equal((await status()).pictures, lost.pictures, 'no picture is counted that nobody sees');
   assert.ok(dark.red < 0.02 && dark.deviation < 5, `nothing is drawn meanwhile: reddish ${dark.red}, contrast ${dark.deviation}`);
   await page.evaluate(() => window.__card.restoreContext());
   await page.waitForFunction((n) => !window.__insula.graphics_lost && window.__insula.pictures > n + 3, lost.pictures, patience);
   await banner('');
-  const again = await look(page, { x: 140, y: 60, width: 200, height: 200 });
-  assert.ok(Math.abs(again.mean - seen.mean) < 0.1 * seen.mean && Math.abs(again.deviation - seen.deviation) < 0.2 * seen.deviation && Math.abs(again.red - seen.red) < 0.1,
-    `the picture is as before: brightness ${seen.mean} -> ${again.mean}, contrast ${seen.deviation} -> ${again.deviation}, reddish ${seen.red} -> ${again.red}`);
+  const again = await look(page, clip);
+  assert.ok(Math.abs(again.mean - settled.mean) < 0.1 * settled.mean && Math.abs(again.deviation - settled.deviation) < 0.2 * settled.deviation && Math.abs(again.red - settled.red) < 0.1,
+    `the picture is as before: brightness ${settled.mean} -> ${again.mean}, contrast ${settled.deviation} -> ${again.deviation}, reddish ${settled.red} -> ${again.red}`);
   const { session: session_now, connected } = await status();
   assert.deepEqual([session_now, connected], [whole.session, true], 'the same session, without a reload');
   check('it says that the graphics card was reset, and draws the same again when it is back, without a reload');
