@@ -32,7 +32,7 @@ try {
   assert.ok(seen.red > 0.2, `share of reddish pixels ${seen.red}`);
   check(`canvas shows tissue (brightness ${seen.mean.toFixed(0)}, contrast ${seen.deviation.toFixed(0)}, reddish ${(100 * seen.red).toFixed(0)} %)`);
 
-  // The first pictures are brighter, until occlusion has been worked out vertex by vertex: what comes back is held against a settled one.
+  // The first pictures are brighter, while strands lie over the tissue: what comes back is held against one without them.
   let settled = seen;
   for (let last = null; !last || Math.abs(settled.mean - last.mean) > 0.02 * last.mean;) [last, settled] = [settled, await look(page, clip)];
   const whole = await status();
