@@ -43,6 +43,13 @@ class FolderIO : public Assimp::DefaultIOSystem {
   std::filesystem::path folder_;
 };
 
+// assimp takes a first byte of binary data that is a line's end for one of the header's, unless that ends as on Windows.
+std::string with_clear_end_of_header(std::string ply) {
+  constexpr std::string_view end = "\nend_header\n";
+  if (const auto at = ply.find(end); at != std::string::npos) ply.insert(at + end.size() - 1, 1, '\r');
+  return ply;
+}
+
 /// Of finite places without -0, so that equal ones have equal bits.
 struct VertexHash {
   std::size_t operator()(const Vec3& p) const { return std::hash<std::string_view>{}({reinterpret_cast<const char*>(p.data()), 3 * sizeof(double)}); }
@@ -91,13 +98,19 @@ class Joiner {
 
 TriMesh read_surface(const std::filesystem::path& file, double metres_per_unit) {
   check_unit(file, metres_per_unit);
-  const std::size_t expected = precheck_surface(file, read_file_bytes(file));
+  const std::string bytes = read_file_bytes(file);
+  const std::size_t expected = precheck_surface(file, bytes);
   Assimp::Importer importer;
   importer.SetIOHandler(new FolderIO(file));  // the importer owns it
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
   const aiScene* scene = nullptr;
   try {
-    scene = importer.ReadFile(std::filesystem::absolute(file).string(), aiProcess_Triangulate);
+    if (lower_extension(file) == ".ply") {
+      const std::string ply = with_clear_end_of_header(bytes);
+      scene = importer.ReadFileFromMemory(ply.data(), ply.size(), aiProcess_Triangulate, "ply");
+    } else {
+      scene = importer.ReadFile(std::filesystem::absolute(file).string(), aiProcess_Triangulate);
+    }
   } catch (const std::exception& e) {
     fail(file, std::string("cannot be read: ") + shown(e.what()));
   }

@@ -2,6 +2,8 @@
 // Surfaces: the same one from every format, what is refused, and the real anatomy where it lies at hand.
 #include <gtest/gtest.h>
 
+#include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -112,6 +114,22 @@ TEST(SurfaceFile, DropsFlatTrianglesAndMergesEqualVertices) {
   const TriMesh mesh = read_surface(folder.write("a.obj", obj), 1);
   EXPECT_EQ(mesh.triangles.size(), 2u);
   EXPECT_EQ(mesh.vertices.size(), 4u);
+}
+
+// Data may begin with any byte, also with one that would end a line.
+TEST(SurfaceFile, BinaryPlyMayBeginWithAnyByte) {
+  const test_files::TempFolder folder;
+  for (int byte = 0; byte < 256; ++byte) {
+    const float first = std::bit_cast<float>(0x3f800a00u | unsigned(byte));
+    const std::array<float, 9> corners{first, 0, 0, 3, 0, 0, 0, 2, 0};
+    const std::array<std::int32_t, 3> triangle{0, 1, 2};
+    std::string ply = "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
+    ply.append(reinterpret_cast<const char*>(corners.data()), sizeof corners).push_back('\3');
+    ply.append(reinterpret_cast<const char*>(triangle.data()), sizeof triangle);
+    const TriMesh mesh = read_surface(folder.write("a.ply", ply), 1);
+    ASSERT_EQ(mesh.vertices.size(), 3u) << byte;
+    EXPECT_EQ(mesh.vertices[0].x(), double(first));
+  }
 }
 
 TEST(SurfaceFile, SplitsQuads) {
