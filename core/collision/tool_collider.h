@@ -46,12 +46,14 @@ struct ToolContactSettings {
 /// fifth of a millimetre or 0.45 of their least extent and rounded by as much, so that resting contact keeps the
 /// core clear of the surface and normals well defined).
 struct RoundedPiece {
+  static constexpr std::size_t most_core = 24;  ///< read_tool refuses more
   std::vector<Vec3> core;  ///< tool frame
   double radius = 0;
   Vec3 axis0 = Vec3::Zero(), axis1 = Vec3::Zero();  ///< segment that the core lies about ...
   double bound = 0;                                 ///< ... within this distance
 };
 RoundedPiece rounded(const ConvexPiece& piece);
+struct PlacedPiece;
 
 /// One tool, one surface. Keeps which pieces overlapped last step (they are looked for deeper) and their sides; allocates in
 /// the constructor only, as long as `out` has capacity.
@@ -74,10 +76,18 @@ class ToolCollider {
     double speed;   ///< bound on the relative motion over the whole step, m ...
     double to_end;  ///< ... and on that to where the piece is expected at its end
   };
-  struct Placed;  // a piece at a moment
-  void evaluate(const CollisionMesh& mesh, const Placed& at, const ToolContactSettings& settings, double range,
+  struct Way;      // of a piece in the step
+  struct Reached;  // by it
+  void list_candidates(const CollisionMesh& mesh, const Way& way);
+  Reached advance(const CollisionMesh& mesh, const Way& way, const ToolContactSettings& settings, double range, std::vector<Proximity>& out);
+  bool take_contacts_of_start(const CollisionMesh& mesh, const Way& way, const ToolContactSettings& settings, std::vector<Proximity>& out);
+  void slide_on(const CollisionMesh& mesh, const Way& way, double t, const ToolContactSettings& settings, std::vector<Proximity>& out);
+  void add_those_on_free_side(const ToolContactSettings& settings, std::vector<Proximity>& out) const;
+  static void add(Proximity x, const ToolContactSettings& settings, std::vector<Proximity>& out);
+  // Contacts at a moment (tool_contacts.cpp).
+  void evaluate(const CollisionMesh& mesh, const PlacedPiece& at, const ToolContactSettings& settings, double range,
                 std::vector<Proximity>& found);
-  bool found_at_end(const CollisionMesh& mesh, const Placed& expected, const ToolContactSettings& settings);
+  bool found_at_end(const CollisionMesh& mesh, const PlacedPiece& expected, const ToolContactSettings& settings);
   void drop_wrong_exits(std::vector<Proximity>& found, const Vec3& side, double offset) const;
 
   std::vector<RoundedPiece> pieces_;
