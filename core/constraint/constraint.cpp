@@ -28,7 +28,7 @@ int ConstraintBuilder::add(Block block) {
 void ConstraintBuilder::point(int row, const MaterialPoint& p, const Vec3& d) {
   p.body->rows.open(row);
   p.body->add_row(p.body->rows, p, d);
-  relaxation_[std::size_t(row)] = std::max(relaxation_[std::size_t(row)], p.body->relaxation());
+  relaxation_[std::size_t(row)] = std::max(relaxation_[std::size_t(row)], p.body->relaxation(p));
 }
 
 void ConstraintBuilder::surface_point(int row, const Surface& s, int triangle, const Vec3& bary, const Vec3& d) {
@@ -36,7 +36,10 @@ void ConstraintBuilder::surface_point(int row, const Surface& s, int triangle, c
   if (body.blocks() == 0) return;
   body.rows.open(row);
   s.add_row(body.rows, triangle, bary, d);
-  relaxation_[std::size_t(row)] = std::max(relaxation_[std::size_t(row)], body.relaxation());
+  double time = 0;
+  for (int k = 0; k < 3; ++k)
+    if (bary[k] != 0) time += bary[k] * body.relaxation(s.points()[std::size_t(s.triangles()[std::size_t(triangle)][std::size_t(k)])]);
+  relaxation_[std::size_t(row)] = std::max(relaxation_[std::size_t(row)], time);
 }
 
 void ConstraintBuilder::finish() {

@@ -83,8 +83,8 @@ class Body : public Component {
   virtual void apply(const StepContext& context, const BodyRows& rows, const double* lambda) = 0;
   /// After apply(): adds d(row)/dt at the rows' numbers, m/s. What a hand holds adds nothing: the hand moves it between steps.
   virtual void add_rate(const BodyRows&, double* /*rate*/) const {}
-  /// In what time its shape follows a force, viscous over elastic modulus, s.
-  virtual double relaxation() const { return 0; }
+  /// In what time its shape follows a force there, viscous over elastic modulus, s. After the first free motion.
+  virtual double relaxation(const MaterialPoint&) const { return 0; }
   /// Rows of its own (stops of a hinge, a tool's pull), after those of the constraints; bodies in document order.
   virtual void build(const StepContext&, ConstraintBuilder&) {}
   /// After stage 5: reads the lambda of its rows.

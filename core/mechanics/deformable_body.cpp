@@ -29,11 +29,7 @@ void DeformableBody::connect(PrepareContext& context) {
     if (!held_[i]) free_[i] = free_count_++;
 
   const int errors_before = context.diagnostics.errors();
-  relaxation_ = 0;
-  for (ForceModel* f : forces_) {
-    f->attach(context, *this);
-    relaxation_ = std::max(relaxation_, f->stiffness_damping());
-  }
+  for (ForceModel* f : forces_) f->attach(context, *this);
   std::vector<std::pair<int, int>> all, pairs;
   for (ForceModel* f : forces_) f->couplings(all, Tangent::system);
   for (auto [i, j] : all)
@@ -62,6 +58,7 @@ void DeformableBody::connect(PrepareContext& context) {
   if (solver_kind.is("asynchronous")) solver_ = std::make_unique<AsynchronousSolver>(solver_tolerance());
   else solver_ = make_direct_solver(solver_kind.is("single"));
   solver_->analyse(a_);
+  start_relaxation();
   force_ = VecX::Zero(3 * nodes());
   packed_ = guess_ = response_ = load_ = unforced_ = VecX::Zero(3 * free_count_);
   turn_.assign(std::size_t(free_count_), Quat::Identity());

@@ -72,7 +72,7 @@ class DeformableBody : public Body {
   void apply(const StepContext& context, const BodyRows& rows, const double* lambda) override;
   void add_rate(const BodyRows& rows, double* rate) const override;
   void finish(const StepContext& context, const ConstraintSolution& solution) override;
-  double relaxation() const override { return relaxation_; }
+  double relaxation(const MaterialPoint& p) const override;
   void reset() override;
   double energy() const override;
   bool finite() const override { return v_.allFinite(); }  // and so is q, the sum of all h v
@@ -101,12 +101,15 @@ class DeformableBody : public Body {
   std::unique_ptr<BodySolver> solver_;
   int indefinite_ = 0;
   double step_ = 0;  ///< of the step that is on, s
-  double relaxation_ = 0;
+  std::vector<double> relaxation_;  ///< of each node's place, s
+  bool relaxation_known_ = false;
 
   bool tangent_is_good(double h) const;
   void assemble(double h);
   void factorise(double h);
   void find_rotations();
+  void start_relaxation();
+  void find_relaxation(double h);
   struct Neighbours {
     int i, j;
     double distance2;  ///< at rest, m2

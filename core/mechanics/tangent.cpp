@@ -64,6 +64,10 @@ void DeformableBody::factorise(double h) {
     ++indefinite_;
     extra *= 10;
   }
+  if (!relaxation_known_) {
+    find_relaxation(h);
+    solver_->begin_motion(load_, guess_);
+  }
   ++factorisations_;
   factor_q_ = q_;
   factor_h_ = h;

@@ -11,13 +11,13 @@ namespace {
 
 constexpr double side = 0.02;
 
-std::string prepared(ShellBody& body, double stiffness, double damping, const std::string& regions) {
+std::string prepared(ShellBody& body, double stiffness, double damping, const std::string& regions, const test::Wall& wall = {.thickness = 1e-3, .density = 1000}) {
   auto springs = test::builtin().create("anchor_springs");
   dynamic_cast<QuantityParam&>(*springs->find_param("stiffness")).set(stiffness);
   dynamic_cast<QuantityParam&>(*springs->find_param("damping")).set(damping);
   dynamic_cast<Param<std::string>&>(*springs->find_param("regions")).set(regions);
   springs->parent = &body;
-  test::add_membrane(body, {.thickness = 1e-3, .density = 1000});
+  test::add_membrane(body, wall);
   body.children.push_back(std::move(springs));
   return test::finish(body);
 }
@@ -58,6 +58,47 @@ TEST(AnchorSprings, WholeFollowsTheDiscretisedOscillator) {
     figure.law("law", n + 1, u * 1e3);
     figure.run("run", n + 1, (body.q()[1] - body.rest_nodes()[0].y()) * 1e3);
     for (int i = 0; i < body.nodes(); ++i) ASSERT_NEAR(body.q()[3 * i + 1] - body.rest_nodes()[std::size_t(i)].y(), u, 1e-12) << n;
+  }
+}
+
+// A place's time constant is what its compliance tells over steps of two lengths: between the wall's own and that of the springs.
+TEST(AnchorSprings, ShareAPlacesTimeConstantWithTheWall) {
+  for (const double stiffness : {1e5, 1e7, 1e9}) {
+    const auto opened = [&] {
+      auto body = std::make_unique<ShellBody>();
+      body->set_mesh(test::plate(side, side, 5, 5, test::Cut::shaken));
+      EXPECT_EQ(prepared(*body, stiffness, 20e-3, "", {.thickness = 1e-3, .young = 1e5, .density = 1, .stiffness_damping = 2e-3}), "");
+      return body;
+    };
+    const auto compliance = [](ShellBody& body, double h, int node, int axis) {
+      test::step(body, h);
+      body.rows.clear();
+      body.rows.open(0);
+      body.rows.add(node, Vec3::Unit(axis));
+      body.compute_compliance(body.rows);
+      double w = 0;
+      body.add_compliance(body.rows, &w, 1);
+      return w;
+    };
+    const auto a = opened(), b = opened(), c = opened();
+    const double rate = 60, d = 1e-3;
+    for (int node : {0, 14, 21}) {
+      double elastic = 0, viscous = 0;
+      for (int axis = 0; axis < 3; ++axis) {
+        const double w = compliance(*a, 1 / rate, node, axis), slope = (compliance(*b, 1 / (rate + d), node, axis) - compliance(*c, 1 / (rate - d), node, axis)) / (2 * d);
+        viscous -= slope;
+        elastic += w + rate * slope;
+      }
+      MaterialPoint p;
+      p.body = a.get();
+      p.count = 1;
+      p.node[0] = node;
+      p.weight[0] = 1;
+      const double told = viscous / elastic;
+      EXPECT_TRUE(test::held("a place's time constant is that of its compliance, s", a->relaxation(p) - told, told, 1e-6)) << stiffness << " " << node;
+      EXPECT_GT(a->relaxation(p), 2e-3);
+      EXPECT_LT(a->relaxation(p), 20e-3);
+    }
   }
 }
 
