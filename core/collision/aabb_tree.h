@@ -7,6 +7,7 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -82,10 +83,11 @@ struct OuterBox {
     const Halves apart = (Halves)((low > o.high) | (o.low > high));
     return (apart[0] | apart[1]) == 0;
   }
-  double distance2(const Vec3& p) const {
+  double distance2(const Vec3& p) const { return distance2(Aabb{p, p}); }
+  double distance2(const Aabb& o) const {
     double d = 0;
     for (int k = 0; k < 3; ++k) {
-      const double x = std::max({double(low[k]) - p[k], p[k] - double(high[k]), 0.0});
+      const double x = std::max({double(low[k]) - o.high[k], o.low[k] - double(high[k]), 0.0});
       d += x * x;
     }
     return d;
@@ -114,12 +116,16 @@ class AabbTree {
 
   /// Gives each vertex one of 64 marks, for marks_near().
   void mark(std::span<const int> mark_of_vertex);
-  /// The marks, as bits, of all leaves whose loose boxes overlap `box`.
-  std::uint64_t marks_near(const Aabb& box) const {
+  /// The marks, as bits, of all leaves whose loose boxes are within a distance of `box`, axis by axis. Lowers `other` to how far the nearest
+  /// of them is that has a mark besides those that are `known`, m.
+  std::uint64_t marks_near(const Aabb& box, double within, std::uint64_t known, double& other) const {
     std::uint64_t found = 0;
-    const auto has_news = [&](const Node& n) { return (n.marks & ~found) != 0; };
-    each_leaf(box, has_news, [&](const Node& n) {
+    Aabb wide = box;
+    wide.inflate(within);
+    const auto is_nearer = [&](const Node& n) { return (n.marks & ~known) != 0 && n.box.distance2(box) < other * other; };
+    each_leaf(wide, [&](const Node& n) { return (n.marks & ~found) != 0 || is_nearer(n); }, [&](const Node& n) {
       found |= n.marks;
+      if (is_nearer(n)) other = std::sqrt(n.box.distance2(box));
       return false;
     });
     return found;

@@ -130,7 +130,7 @@ TEST(AabbTree, BoxesInSinglePrecisionHoldWhatTheyAreMadeOf) {
   }
 }
 
-TEST(AabbTree, MarksNearABoxAreThoseOfItsLeaves) {
+TEST(AabbTree, MarksNearABoxAreThoseOfItsLeavesAndTheNearestUnknownOneIsTold) {
   const TriMesh m = shapes::sphere(Vec3(0.1, 0, 0), 0.03, 4);
   CollisionMesh mesh;
   mesh.build(m.vertices, m.triangles);
@@ -139,12 +139,20 @@ TEST(AabbTree, MarksNearABoxAreThoseOfItsLeaves) {
   for (int k = 0; k < 300; ++k) {
     Aabb box;
     box.add(Vec3(Vec3(0.1, 0, 0) + r.in_box(0.05)));
-    box.inflate(r.between(0, 0.02));
+    const double within = r.between(0, 0.02);
+    const std::uint64_t known = std::uint64_t(r.between(0, 1e18)) * 18;
     std::uint64_t expected = 0;
-    mesh.tree().leaves(box, [&](const OuterBox&, std::span<const int> triangles) {
-      for (int t : triangles) expected |= mesh.regions_of(t);
+    double nearest = 1, other = 1;
+    Aabb wide = box;
+    wide.inflate(within);
+    mesh.tree().leaves(wide, [&](const OuterBox& leaf, std::span<const int> triangles) {
+      std::uint64_t marks = 0;
+      for (int t : triangles) marks |= mesh.regions_of(t);
+      expected |= marks;
+      if ((marks & ~known) != 0) nearest = std::min(nearest, std::sqrt(leaf.distance2(box)));
     });
-    EXPECT_EQ(mesh.regions_near(box), expected);
+    EXPECT_EQ(mesh.regions_near(box, within, known, other), expected);
+    EXPECT_EQ(other, nearest);
   }
 }
 

@@ -52,7 +52,8 @@ class CollisionMesh {
     const auto& t = triangle(tri);
     return region_of(t[0]) | region_of(t[1]) | region_of(t[2]);
   }
-  std::uint64_t regions_near(const Aabb& box) const { return tree_.marks_near(box); }  ///< that may reach into it in this step
+  /// Regions that may come within a distance of the box in this step, m. Lowers `other` to where the nearest begins that is not `known`.
+  std::uint64_t regions_near(const Aabb& box, double within, std::uint64_t known, double& other) const { return tree_.marks_near(box, within, known, other); }
   double moved(std::uint64_t mask) const { return most(motion_.moved, mask); }       ///< farthest that a vertex of these went in the last update, m
   double may_move(std::uint64_t mask) const { return most(motion_.may_move, mask); } ///< and its free displacement, m
   long updates() const { return updates_; }

@@ -155,19 +155,12 @@ void TissueCollider::lessen(std::size_t first, std::size_t last, double way, dou
 
 // Which regions of b are near the group. Returns what those that it did not follow so far are no nearer than, which was `elsewhere`.
 double TissueCollider::look_around(Group& g, const CollisionMesh& a, const CollisionMesh& b, std::size_t first, std::size_t last, double may_come, double elsewhere) {
-  const std::uint64_t followed = g.near;
   Aabb here;
   for (std::size_t i = first; i < last; ++i) here.add(a.vertex(samples_[i]));
-  g.around = may_come + surroundings;
-  here.inflate(g.around);
-  g.near = b.regions_near(here);
+  double comes_in_sight = g.around = may_come + surroundings;
+  g.near = b.regions_near(here, g.around, g.near, comes_in_sight);
   g.travelled = b.travelled();
-  // All that is near by now was followed, or what was not comes in sight: from where?
-  for (double away = g.around; away > may_come; away -= 0.25 * surroundings) {
-    if ((b.regions_near(here) & ~followed) == 0) return away;
-    here.inflate(-0.25 * surroundings);
-  }
-  return elsewhere;
+  return std::max(elsewhere, comes_in_sight);
 }
 
 void TissueCollider::detect(const CollisionMesh& a, const CollisionMesh& b, const TissueContactSettings& settings,
