@@ -122,10 +122,11 @@ class AabbTree {
     std::uint64_t found = 0;
     Aabb wide = box;
     wide.inflate(within);
-    const auto is_nearer = [&](const Node& n) { return (n.marks & ~known) != 0 && n.box.distance2(box) < other * other; };
-    each_leaf(wide, [&](const Node& n) { return (n.marks & ~found) != 0 || is_nearer(n); }, [&](const Node& n) {
+    const auto is_other = [&](const Node& n) { return (n.marks & ~known) != 0; };
+    const auto has_news = [&](const Node& n) { return (n.marks & ~found) != 0 || (is_other(n) && n.box.distance2(box) < other * other); };
+    each_leaf(wide, has_news, [&](const Node& n) {
       found |= n.marks;
-      if (is_nearer(n)) other = std::sqrt(n.box.distance2(box));
+      if (is_other(n)) other = std::min(other, std::sqrt(n.box.distance2(box)));
       return false;
     });
     return found;

@@ -36,9 +36,10 @@ void ConstraintBuilder::surface_point(int row, const Surface& s, int triangle, c
   if (body.blocks() == 0) return;
   body.rows.open(row);
   s.add_row(body.rows, triangle, bary, d);
+  const auto& corner = s.triangles()[std::size_t(triangle)];
   double time = 0;
   for (int k = 0; k < 3; ++k)
-    if (bary[k] != 0) time += bary[k] * body.relaxation(s.points()[std::size_t(s.triangles()[std::size_t(triangle)][std::size_t(k)])]);
+    if (bary[k] != 0) time += bary[k] * body.relaxation(s.points()[std::size_t(corner[std::size_t(k)])]);
   relaxation_[std::size_t(row)] = std::max(relaxation_[std::size_t(row)], time);
 }
 

@@ -5,20 +5,19 @@
 // With A = M/h^2 + sum_j (1 + T_j/h) K_j and x = A^-1 f what the poke f does in a step, it is the energies' mean
 //   T = sum_j T_j x^T K_j x / sum_j x^T K_j x,
 // which is what the place's compliance W = f^T x tells by itself where inertia is nothing: T = -W' / (W + W'/h), W' = dW/d(1/h).
+#include <algorithm>
+
 #include "core/collision/vertex_groups.h"
 #include "core/mechanics/deformable_body.h"
 
 namespace insula {
 
-// Until it is asked (see find_relaxation()), and where the solver can only tell roughly: the slowest.
+// That of the slowest: all there is to know where all are alike, and where the solver could only tell roughly.
 void DeformableBody::start_relaxation() {
   double slowest = 0;
   for (const ForceModel* f : forces_) slowest = std::max(slowest, f->stiffness_damping());
   relaxation_.assign(std::size_t(nodes()), slowest);
-  relaxation_known_ = !solver_->exact();
-  bool alike = true;
-  for (const ForceModel* f : forces_) alike = alike && f->stiffness_damping() == slowest;
-  relaxation_known_ = relaxation_known_ || alike;
+  relaxation_known_ = !solver_->exact() || std::all_of(forces_.begin(), forces_.end(), [&](const ForceModel* f) { return f->stiffness_damping() == slowest; });
 }
 
 // With the factor of a_ at hand. Places are told apart as well as some dozens of pokes can.

@@ -60,13 +60,13 @@ void DeformableBody::factorise(double h) {
     const auto begin = std::chrono::steady_clock::now();
     const bool good = solver_->factorise_and_begin(a_, load_, guess_);
     factor_ms_ += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+    if (good && !relaxation_known_) {  // once
+      find_relaxation(h);
+      solver_->begin_motion(load_, guess_);
+    }
     if (good || attempt == 12) break;
     ++indefinite_;
     extra *= 10;
-  }
-  if (!relaxation_known_) {
-    find_relaxation(h);
-    solver_->begin_motion(load_, guess_);
   }
   ++factorisations_;
   factor_q_ = q_;

@@ -98,7 +98,7 @@ class Joiner {
 
 TriMesh read_surface(const std::filesystem::path& file, double metres_per_unit) {
   check_unit(file, metres_per_unit);
-  const std::string bytes = read_file_bytes(file);
+  std::string bytes = read_file_bytes(file);
   const std::size_t expected = precheck_surface(file, bytes);
   Assimp::Importer importer;
   importer.SetIOHandler(new FolderIO(file));  // the importer owns it
@@ -106,7 +106,7 @@ TriMesh read_surface(const std::filesystem::path& file, double metres_per_unit) 
   const aiScene* scene = nullptr;
   try {
     if (lower_extension(file) == ".ply") {
-      const std::string ply = with_clear_end_of_header(bytes);
+      const std::string ply = with_clear_end_of_header(std::move(bytes));
       scene = importer.ReadFileFromMemory(ply.data(), ply.size(), aiProcess_Triangulate, "ply");
     } else {
       scene = importer.ReadFile(std::filesystem::absolute(file).string(), aiProcess_Triangulate);

@@ -34,7 +34,11 @@ try {
 
   // The first pictures are brighter, while strands lie over the tissue: what comes back is held against one without them.
   let settled = seen;
-  for (let last = null; !last || Math.abs(settled.mean - last.mean) > 0.02 * last.mean;) [last, settled] = [settled, await look(page, clip)];
+  await wait_for('picture like the one before', async () => {
+    const last = settled;
+    settled = await look(page, clip);
+    return Math.abs(settled.mean - last.mean) <= 0.02 * last.mean;
+  });
   const whole = await status();
   // The extension is asked for beforehand: a lost context gives none.
   await page.evaluate(() => {
