@@ -75,6 +75,7 @@ FORMS = (
     # What other tests do, step by step as on the page.
     Elsewhere(r"\./insula docs --html manual", "docs_html", "builds the site and asks its search"),
     Elsewhere(r"python3 -m venv .*|venv/bin/python examples/python/.*", "python_example", "makes that environment and runs the examples against an engine and a server"),
+    Elsewhere(r"\./insula spy", "spy_window", "opens it on a screen of its own, where Java is"),
     Elsewhere(r"lcm-logger .*|build/release/bin/gateway|\./insula replay .*", "Replay.BothPlayersBringTheSessionToAPage", "records a session and plays it back to a page"),
     Elsewhere(r"\./insula devices --calibrate .*", "DeviceTool.CalibratesByFourPlaces", "a stand-in's arm is moved to the four places"),
     Elsewhere(r"build/release/bin/insula_artery make tools/artery/arteries.json meshes/arteries", "ArteryTool.ShippedArteriesAreMadeAgainBitForBit", "makes all of the table"),
