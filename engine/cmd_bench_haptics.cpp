@@ -3,6 +3,7 @@
 #include <fmt/ostream.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/base/input_error.h"
 #include "core/params/param.h"
@@ -51,12 +52,12 @@ std::vector<Variant> variants(bool ablation) {
     out.push_back({"+ tissue in time", servo, false});
     servo.servo.response.carried_moves = full.response.carried_moves;
     out.push_back({"+ carried moves", servo, false});
-    servo.servo.response.rows_turn = full.response.rows_turn;
-    out.push_back({"+ rows turn", servo, false});
     servo.servo.newton_unknowns = full.newton_unknowns;
     servo.servo.conjugate = full.conjugate;
     out.push_back({"+ Newton", servo, false});
     out.push_back({"+ turned contacts", servo});
+    servo.servo.response.rows_turn = full.response.rows_turn;
+    out.push_back({"+ rows turn", servo});
   }
   servo.servo = full;
   out.push_back({ablation ? "+ hand-over" : "servo", servo});
@@ -70,6 +71,13 @@ std::unique_ptr<Simulation> open(const CommandContext& context, const HapticBenc
   return std::move(loaded.simulation);
 }
 
+/// Each nth.
+std::vector<RecordedStep> every(std::size_t n, const std::vector<RecordedStep>& steps) {
+  std::vector<RecordedStep> out;
+  for (std::size_t k = n; k <= steps.size(); k += n) out.push_back(steps[k - 1]);
+  return out;
+}
+
 void measure(const CommandContext& context, const HapticBenchOptions& options, Simulation& simulation) {
   const Latency latency = read_latency(options.latency);
   const Motion motion = load_motion(find_motion(simulation, options.motion));
@@ -79,12 +87,14 @@ void measure(const CommandContext& context, const HapticBenchOptions& options, S
   simulation.reset();
   fmt::print(context.out, "  {:<6}{:<18}{:<7}{:>9}{:>9}{:>9}{:>11}{:>9}\n", "Hz", "rendering", "hand", "peak mN", "rms %", "worst %", "onset ms", "jump %");
   for (const double rate : options.rates) {
-    auto engine = open(context, options, 1 / rate);
-    if (!engine) throw InputError("it does not open with a step of " + std::to_string(1e3 / rate) + " ms");
-    engine->look_ahead(Publisher::look_ahead_steps / rate);
+    const double step_s = options.fine ? 1e-3 : 1 / rate;
+    auto engine = open(context, options, step_s);
+    if (!engine) throw InputError(fmt::format("it does not open with a step of {:.3g} ms", 1e3 * step_s));
+    engine->look_ahead(Publisher::look_ahead_steps * step_s);
     const auto record = [&](double turned_ahead_s) {
       engine->reset();
-      return record_steps(*engine, motion, duration, turned_ahead_s);
+      auto steps = record_steps(*engine, motion, duration, turned_ahead_s);
+      return options.fine ? every(std::size_t(std::lround(1e3 / rate)), steps) : steps;
     };
     const auto turned = record(latency.at(1 / rate));
     const auto plain = record(-1);

@@ -157,6 +157,7 @@ void Condenser::copy_kept(const ConstraintProblem& full, ConstraintProblem& smal
   const std::size_t rows = kept_.size();
   small.resize(int(rows));
   small.step_s = full.step_s;
+  small.turned_steps = full.turned_steps;
   for (std::size_t i = 0; i < rows; ++i) {
     const std::size_t s = std::size_t(kept_[i]);
     double free = full.delta_free[s];

@@ -133,6 +133,7 @@ int main(int argc, char** argv) {
   bench->add_option("--duration", haptics.duration, "with --haptics: simulated seconds; 0: the whole motion")->check(CLI::NonNegativeNumber)->needs(haptics_flag);
   bench->add_option("--latency", haptics.latency, "with --haptics: from poses to the problem's arrival, in steps (0.5) or as a time (3ms)")->capture_default_str()->needs(haptics_flag);
   bench->add_option("--jitter", haptics.jitter, "with --haptics: and so much later still at most, in steps")->check(CLI::Range(0.0, 3.0))->needs(haptics_flag);
+  bench->add_flag("--fine", haptics.fine, "with --haptics: problems come at the rate, but from an engine that steps at 1 kHz: what is left is the servo's part of the error")->needs(haptics_flag);
   bench->add_flag("--ablation", haptics.ablation, "with --haptics: what goes beyond equation 7, one after the other")->needs(haptics_flag);
   bench->add_option("--traces", haptics.traces, "with --haptics: folder for the forces as CSV")->needs(haptics_flag);
   bench->callback([&] {

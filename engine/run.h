@@ -54,6 +54,7 @@ struct HapticBenchOptions {
   std::string latency = "1";  ///< from the devices' poses to the arrival of the step's problem: "0.5" steps, or "3 ms"
   double jitter = 0;     ///< and so much later still at most, in steps
   bool ablation = false; ///< what goes beyond equation 7, one after the other
+  bool fine = false;     ///< the engine steps at 1 kHz whatever the rate, which tells the servo's part of the error from the step's
   std::filesystem::path traces;  ///< folder for the forces as CSV; empty: none
   int threads = 0;
 };

@@ -10,6 +10,7 @@ namespace insula {
 namespace {
 
 constexpr double least_turn = 1e-6;
+constexpr double most_later = 0.2;  // rad in a step; more is an edge of the surface, and nobody knows when the tool gets over it
 
 /// The new directions in terms of the old ones: normal and tangents turn together by the smallest rotation.
 Mat3 rotation(const Vec3& normal, const Vec3& tangent, const Vec3& to) {
@@ -17,6 +18,18 @@ Mat3 rotation(const Vec3& normal, const Vec3& tangent, const Vec3& to) {
   Mat3 old;
   old << normal.transpose(), tangent.transpose(), normal.cross(tangent).transpose();
   return old * turn.transpose() * old.transpose();
+}
+
+/// As a block has it.
+std::array<float, 3> rotation_vector(const Vec3& from, const Vec3& to) {
+  const Eigen::AngleAxisd turn(Quat::FromTwoVectors(from, to));
+  if (turn.angle() > most_later) return {};
+  const Vec3 v = turn.angle() * turn.axis();
+  return {float(v[0]), float(v[1]), float(v[2])};
+}
+
+Block& block_at(ConstraintProblem& p, int row) {
+  return *std::lower_bound(p.blocks.begin(), p.blocks.end(), row, [](const Block& b, int first) { return b.row < first; });
 }
 
 }  // namespace
@@ -38,10 +51,13 @@ const ConstraintProblem& TurnedContacts::operator()(const Simulation& simulation
   turns_.clear();
   for (const Constraint* c : simulation.constraints())
     if (const auto* contact = dynamic_cast<const Contact*>(c)) contact->turned(ahead_s / simulation.h(), turns_);
-  std::erase_if(turns_, [](const Contact::Turn& t) { return t.from.cross(t.to).norm() < least_turn; });
   if (turns_.empty()) return simulation.problem();
   turned_ = simulation.problem();
   ConstraintProblem& p = turned_;
+  p.turned_steps = ahead_s / simulation.h();
+  for (const Contact::Turn& turn : turns_) block_at(p, turn.row).turn = rotation_vector(turn.to, turn.later);
+  std::erase_if(turns_, [](const Contact::Turn& t) { return t.from.cross(t.to).norm() < least_turn; });
+  if (turns_.empty()) return p;
   const std::size_t n = std::size_t(p.rows);
   full_delta(p, {p.delta_free.data(), n}, p.lambda.data(), delta_m_);
   for (const Contact::Turn& turn : turns_) {

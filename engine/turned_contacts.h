@@ -6,6 +6,8 @@
 // of space at one place, so the problem in other directions follows exactly, block by block, from a rotation Q of each:
 //   H' = Q H,   W' = Q W Q^T,   delta' = Q delta, of contacts that press with the gap as it was,   rate' = Q rate
 // and lambda' solves it. The engine's own step is what it was.
+//
+// How far each will have turned another step later goes with the block, and the servo turns it on as the tool goes.
 #pragma once
 #include "core/constraint/solve.h"
 #include "core/sim/simulation.h"
@@ -19,7 +21,7 @@ void turn_block(ConstraintProblem& problem, int row, const Mat3& q, std::span<do
 class TurnedContacts {
  public:
   /// The problem of the simulation's last step, its rows turned to where tools are `ahead_s` after it if they go on as in it; the simulation's
-  /// own where none turns. Until the next call or step.
+  /// own where nothing presses. Until the next call or step.
   const ConstraintProblem& operator()(const Simulation& simulation, double ahead_s);
 
  private:

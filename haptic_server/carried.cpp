@@ -93,6 +93,7 @@ const ConstraintProblem& Carried::take_in(const ConstraintProblem& problem) noex
 void Carried::copy_rest(const ConstraintProblem& from, int first, ConstraintProblem& to) noexcept {
   to.resize(from.rows - tying_rows);  // within its capacity
   to.step_s = from.step_s;
+  to.turned_steps = from.turned_steps;
   to.blocks.clear();
   for (Block b : from.blocks) {
     if (b.row >= first && b.row < first + tying_rows) continue;

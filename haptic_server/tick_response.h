@@ -39,7 +39,6 @@ class TickResponse {
   /// The next problem has nothing to do with the one before: what a tool carries begins where it is in that one.
   void forget() noexcept {
     for (LoadedTool& tool : loaded_) tool.lose();
-    turning_.forget();
   }
   /// The problem of the next tick, `dt_s` after the last one; the first one covers the problem's age instead. `moved`: of the
   /// devices since the problem's poses, tool by tool.

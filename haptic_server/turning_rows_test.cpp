@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Directions of contact between steps: a tool that slides round a ball feels its normal where it is, not where it was.
+// Directions of contact between steps: a tool that slides round a ball feels its normal where it is, not where the problem has it.
 #include "haptic_server/turning_rows.h"
 
 #include <gtest/gtest.h>
@@ -17,70 +17,72 @@ const Vec3 axis = Vec3(0.2, 1, -0.3).normalized(), up = axis.unitOrthogonal(), r
 
 Vec3 normal_at(double angle) { return from_rotation_vector(angle * axis) * up; }
 
-/// A tool that has gone by `angle` round a hard ball, pressed on it by `deep`; a contact of three rows at `reach` from its origin.
-ConstraintProblem on_ball(double angle, double deep = 0, std::uint64_t id = 7) {
+/// A tool that has gone by `angle` round a hard ball, pressed on it by `deep`; a contact of three rows at `reach` from its origin, in the
+/// directions that it has after `turned` more steps of step_rad.
+ConstraintProblem on_ball(double angle, double deep = 0, double turned = 0) {
   ConstraintProblem p;
   p.resize(3);
   p.step_s = 0.02;
   Pose device;
   device.p = (ball_m - deep) * normal_at(angle);
   ToolTerms t = testing::held_tool(1, device, 3);
+  t.way = device.p - (ball_m - deep) * normal_at(angle - step_rad);
   t.gain.setIdentity();
-  const Vec3 n = normal_at(angle), along = axis.cross(n), directions[3] = {n, along, n.cross(along)};
+  const Vec3 n = normal_at(angle + turned * step_rad), along = axis.cross(n), directions[3] = {n, along, n.cross(along)};
   for (int k = 0; k < 3; ++k) t.jacobian.row(k) << directions[k].transpose(), reach.cross(directions[k]).transpose();
   const MatX w = t.jacobian * t.compliance * t.jacobian.transpose();
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) p.w[std::size_t(i * p.stride + j)] = w(i, j);
   p.delta_free[0] = -deep;
-  p.blocks.push_back({.id = id, .law = LawKind::friction});
+  p.turned_steps = turned;
+  p.blocks.push_back({.id = 7, .law = LawKind::friction});
+  for (int k = 0; k < 3; ++k) p.blocks[0].turn[std::size_t(k)] = float(step_rad * axis[k]);
   p.tools.push_back(t);
   testing::solve_as_engine(p);
   return p;
 }
 
-std::array<Vec6, 2> gone(const ConstraintProblem& from, const ConstraintProblem& to, double share) {
+std::array<Vec6, 2> gone(const ConstraintProblem& from, double share) {
   std::array<Vec6, 2> out{Vec6::Zero(), Vec6::Zero()};
-  out[0].head<3>() = share * (to.tools[0].device.p - from.tools[0].device.p);
+  out[0].head<3>() = share * from.tools[0].way;
   return out;
 }
 
-TEST(TurningRows, GoOnTurningAboutTheirPlaceAsTheToolGoesOn) {
-  const ConstraintProblem first = on_ball(0), second = on_ball(step_rad);
-  TurningRows rows(servo_max_rows);
-  rows.begin(first, {});
-  rows.begin(second, {});
-  for (const double share : {0.0, 0.5, 1.0, -0.5}) {
-    rows.turn(gone(first, second, share));
-    const ConstraintProblem there = on_ball((1 + share) * step_rad);
-    for (int k = 0; k < 3; ++k) {
-      const Vec6 row = rows.jacobian(0).row(k).transpose(), expected = there.tools[0].jacobian.row(k).transpose();
-      // sin for the angle of the last turn, and two terms of the rotation.
-      EXPECT_LT((row - expected).head<3>().norm(), std::pow(step_rad, 3)) << k << ' ' << share;
-      EXPECT_LT((row - expected).tail<3>().norm(), std::pow(step_rad, 3) * reach.norm()) << k << ' ' << share;
-      EXPECT_NEAR(row.head<3>().norm(), 1, 1e-12);
+TEST(TurningRows, TurnAboutTheirPlaceAsFarAsTheToolGoes) {
+  for (const double turned : {0.0, 0.4}) {
+    const ConstraintProblem problem = on_ball(step_rad, 0, turned);
+    TurningRows rows(servo_max_rows);
+    rows.begin(problem, {});
+    for (const double share : {0.0, 0.4, 1.0, -0.5}) {
+      rows.turn(gone(problem, share));
+      const ConstraintProblem there = on_ball((1 + share) * step_rad);
+      for (int k = 0; k < 3; ++k) {
+        const Vec6 row = rows.jacobian(0).row(k).transpose(), expected = there.tools[0].jacobian.row(k).transpose();
+        // Two terms of the rotation, and the device goes straight on.
+        EXPECT_LT((row - expected).head<3>().norm(), std::pow(step_rad, 3)) << k << ' ' << share;
+        EXPECT_LT((row - expected).tail<3>().norm(), std::pow(step_rad, 3) * reach.norm()) << k << ' ' << share;
+        EXPECT_NEAR(row.head<3>().norm(), 1, 1e-12);
+      }
     }
   }
 }
 
-TEST(TurningRows, NothingTurnsThatIsNotKnownToHaveTurned) {
-  const auto stays = [](const ConstraintProblem& first, const ConstraintProblem& second, const std::array<Load, 2>& loads) {
+TEST(TurningRows, NothingTurnsThatIsNotSaidToTurn) {
+  const auto stays = [](const ConstraintProblem& problem, const std::array<Load, 2>& loads = {}) {
     TurningRows rows(servo_max_rows);
-    rows.begin(first, {});
-    rows.begin(second, loads);
-    rows.turn(gone(first, second, 1));
-    return rows.jacobian(0).topRows(3) == second.tools[0].jacobian;
+    rows.begin(problem, loads);
+    rows.turn(gone(problem, 1));
+    return rows.jacobian(0).topRows(3) == problem.tools[0].jacobian;
   };
-  const ConstraintProblem first = on_ball(0), second = on_ball(step_rad);
-  EXPECT_FALSE(stays(first, second, {}));
-  EXPECT_TRUE(stays(on_ball(0, 0, 8), second, {})) << "another contact";
-  EXPECT_TRUE(stays(first, on_ball(3 * step_rad), {})) << "over an edge";
-  EXPECT_TRUE(stays(first, second, {Load{.any = true}, Load{}})) << "of what a tool carries";
-  ConstraintProblem rests = second;
-  rests.tools[0].device = first.tools[0].device;
-  EXPECT_TRUE(stays(first, rests, {})) << "the hand rests";
-  ConstraintProblem other = first;
-  other.tools[0].hand = 0;
-  EXPECT_TRUE(stays(other, second, {})) << "another hand's tool";
+  const ConstraintProblem problem = on_ball(step_rad);
+  EXPECT_FALSE(stays(problem));
+  ConstraintProblem still = problem;
+  still.blocks[0].turn = {};
+  EXPECT_TRUE(stays(still)) << "no turn is known";
+  EXPECT_TRUE(stays(problem, {Load{.any = true}, Load{}})) << "of what a tool carries";
+  ConstraintProblem rests = problem;
+  rests.tools[0].way.setZero();
+  EXPECT_TRUE(stays(rests)) << "the hand rests";
 }
 
 // Without friction the force lies along the normal, wherever the tool has gone since the problem.
@@ -92,13 +94,10 @@ TEST(TurningRows, TheForceRoundABallKeepsToItsNormal) {
     settings.hand_over.within_s = 0;
     settings.response.rows_turn = turn;
     Servo servo(settings);
-    const ConstraintProblem first = on_ball(0, deep), second = on_ball(step_rad, deep);
-    servo.set_problem(&first, {}, 1e-3);
+    const ConstraintProblem problem = on_ball(step_rad, deep);
+    servo.set_problem(&problem, {}, 1e-3);
     ServoInput in;
     in.connected[1] = true;
-    in.device[1] = first.tools[0].device;
-    servo.tick(in);
-    servo.set_problem(&second, {}, 1e-3);
     off[turn] = 0;
     for (int k = 1; k <= 20; ++k) {
       const double angle = step_rad * (1 + k / 20.0);

@@ -34,6 +34,7 @@ bool find_parts(Bytes bytes, ProblemLayout& l, const char*& why) {
   l.lambda = in.take_array(l.rows, 8);
   l.rate = in.take_array(l.rows, 4);
   l.relaxation = in.take_array(l.rows, 4);
+  l.turned_steps = in.f64();
   l.blocks = in.i32();
   if (!in.ok()) return false;
   if (l.blocks < 0 || l.blocks > l.rows) {
@@ -48,6 +49,13 @@ bool find_parts(Bytes bytes, ProblemLayout& l, const char*& why) {
   l.upper = in.take_array(l.blocks, 8);
   l.friction = in.take_array(l.blocks, 4);
   l.normals = in.take_array(l.blocks, 2);
+  const std::int32_t turn_size = in.i32();
+  if (!in.ok()) return false;
+  if (turn_size != l.blocks * 3) {
+    why = "turns do not match blocks";
+    return false;
+  }
+  l.turn = in.take_array(turn_size, 4);
   l.tools = in.i8();
   if (!in.ok()) return false;
   if (l.tools < 0 || l.tools > max_problem_tools) {

@@ -10,7 +10,9 @@
 namespace insula::wire {
 
 inline constexpr std::size_t pose_bytes = 7 * 8, matrix_bytes = 36 * 8;
-inline constexpr std::size_t tool_bytes = 1 + 2 * pose_bytes + 3 * matrix_bytes + pose_bytes;
+// A tool: hand, device pose and way, free pose, three matrices, offset.
+inline constexpr std::size_t way_at = 1 + pose_bytes, free_at = way_at + 3 * 8, matrices_at = free_at + pose_bytes;
+inline constexpr std::size_t offset_at = matrices_at + 3 * matrix_bytes, tool_bytes = offset_at + pose_bytes;
 
 inline void load_doubles(const std::uint8_t* from, int count, double* to) {
   for (int i = 0; i < count; ++i) to[i] = load_double(from + 8 * i);
@@ -19,9 +21,9 @@ inline void load_doubles(const std::uint8_t* from, int count, double* to) {
 /// Null for empty arrays is never read.
 struct ProblemLayout {
   std::int64_t session, sequence, time_us, pose_time_us;
-  double step_s, sim_time_s;
+  double step_s, sim_time_s, turned_steps;
   int rows, blocks, tools;
-  const std::uint8_t *w, *delta, *lambda, *rate, *relaxation, *id, *row, *law, *compliance, *lower, *upper, *friction, *normals, *tool, *jacobian;
+  const std::uint8_t *w, *delta, *lambda, *rate, *relaxation, *id, *row, *law, *compliance, *lower, *upper, *friction, *normals, *turn, *tool, *jacobian;
 
   double w_at(std::size_t k) const { return double(load_float(w + 4 * k)); }
   double delta_at(int i) const { return load_double(delta + 8 * i); }
@@ -36,6 +38,7 @@ struct ProblemLayout {
   double upper_at(int b) const { return load_double(upper + 8 * b); }
   double friction_at(int b) const { return double(load_float(friction + 4 * b)); }
   int normals_at(int b) const { return std::int16_t(load16(normals + 2 * b)); }
+  float turn_at(int b, int axis) const { return load_float(turn + 4 * (3 * b + axis)); }
   const std::uint8_t* tool_at(int t) const { return tool + tool_bytes * std::size_t(t); }
   double jacobian_at(std::size_t k) const { return double(load_float(jacobian + 4 * k)); }
 };

@@ -12,13 +12,13 @@ namespace insula::wire {
 namespace {
 
 constexpr double most_delta_m = 1, most_w = 1e4, most_jacobian = 1e3;
-constexpr double most_rate = 1e3, most_relaxation_s = 100;
+constexpr double most_rate = 1e3, most_relaxation_s = 100, most_turn_rad = 1, most_turned_steps = 100;
 constexpr double most_gain = 1e4, most_compliance = 1e8, most_stiffness = 1e8, most_block_compliance = 1e6;
 
 bool header_ok(const ProblemLayout& l, const char*& why) {
   why = "time, step or sequence out of range";
   return l.session >= 0 && l.sequence >= 0 && l.time_us >= 0 && l.pose_time_us >= 0 && l.step_s > 0 && l.step_s <= 1 && l.sim_time_s >= 0 &&
-         l.sim_time_s <= 1e9;
+         l.sim_time_s <= 1e9 && l.turned_steps >= 0 && l.turned_steps <= most_turned_steps;
 }
 
 bool matrix_ok(const ProblemLayout& l, const char*& why) {
@@ -85,6 +85,9 @@ bool blocks_ok(const ProblemLayout& l, const char*& why) {
     if (!(l.lower_at(b) <= l.upper_at(b)) || l.lower_at(b) == infinite || l.upper_at(b) == -infinite) return false;
     why = "friction out of range";
     if (!(l.friction_at(b) >= 0 && l.friction_at(b) <= 10)) return false;
+    why = "directions turn too far in a step";
+    for (int axis = 0; axis < 3; ++axis)
+      if (!(std::abs(l.turn_at(b, axis)) <= most_turn_rad)) return false;
     why = "lambda outside its law";
     if (!lambda_in_law(l, b, row)) return false;
     row = end;
@@ -125,10 +128,12 @@ bool tools_ok(const ProblemLayout& l, const char*& why) {
     why = "tool's hand is neither left nor right, or both tools are in one hand";
     if (*at > 1 || (t == 1 && *at == *l.tool_at(0))) return false;
     why = "tool pose out of range or no unit quaternion";
-    if (!pose_ok(at + 1) || !pose_ok(at + 1 + pose_bytes) || !pose_ok(at + 1 + 2 * pose_bytes + 3 * matrix_bytes))
-      return false;
+    if (!pose_ok(at + 1) || !pose_ok(at + free_at) || !pose_ok(at + offset_at)) return false;
     double m[36];
-    at += 1 + 2 * pose_bytes;
+    why = "tool's way too long";
+    load_doubles(at + way_at, 3, m);
+    if (!within(m, 3, limits::position_m)) return false;
+    at += matrices_at;
     load_doubles(at, 36, m);
     why = "tool gain out of range";
     if (!within(m, 36, most_gain)) return false;

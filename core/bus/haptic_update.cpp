@@ -51,12 +51,12 @@ void read_tool(const ProblemLayout& l, int t, ToolTerms& tool, Pose& offset) {
   const std::uint8_t* at = l.tool_at(t);
   tool.hand = *at;
   tool.device = read_pose(at + 1);
-  tool.free = read_pose(at + 1 + wire::pose_bytes);
-  at += 1 + 2 * wire::pose_bytes;
-  tool.gain = read_matrix(at);
-  tool.compliance = read_matrix(at + wire::matrix_bytes);
-  tool.stiffness = read_matrix(at + 2 * wire::matrix_bytes);
-  offset = read_pose(at + 3 * wire::matrix_bytes);
+  wire::load_doubles(at + wire::way_at, 3, tool.way.data());
+  tool.free = read_pose(at + wire::free_at);
+  tool.gain = read_matrix(at + wire::matrices_at);
+  tool.compliance = read_matrix(at + wire::matrices_at + wire::matrix_bytes);
+  tool.stiffness = read_matrix(at + wire::matrices_at + 2 * wire::matrix_bytes);
+  offset = read_pose(at + wire::offset_at);
   tool.jacobian.resize(l.rows, 6);
   const auto count = std::size_t(l.rows) * 6, first = std::size_t(t) * count;
   for (std::size_t k = 0; k < count; ++k) tool.jacobian.data()[k] = l.jacobian_at(first + k);
@@ -72,6 +72,7 @@ void read_all(const ProblemLayout& l, HapticUpdate& into) {
   ConstraintProblem& p = into.problem;
   p.resize(l.rows);
   p.step_s = l.step_s;
+  p.turned_steps = l.turned_steps;
   std::size_t k = 0;
   const auto stride = std::size_t(p.stride);
   for (std::size_t i = 0; i < std::size_t(l.rows); ++i)
@@ -93,6 +94,7 @@ void read_all(const ProblemLayout& l, HapticUpdate& into) {
     block.upper = l.upper_at(b);
     block.friction = l.friction_at(b);
     block.normals = l.normals_at(b);
+    for (int axis = 0; axis < 3; ++axis) block.turn[std::size_t(axis)] = l.turn_at(b, axis);
   }
   p.tools.resize(std::size_t(l.tools));
   for (int t = 0; t < l.tools; ++t) read_tool(l, t, p.tools[std::size_t(t)], into.offset[std::size_t(t)]);
@@ -119,6 +121,7 @@ bool encode_problem(const HapticUpdate& update, std::vector<std::uint8_t>& out) 
   for (int i = 0; i < p.rows; ++i) w.f64(p.lambda[std::size_t(i)]);
   for (int i = 0; i < p.rows; ++i) w.f32(float(p.rate[std::size_t(i)]));
   for (int i = 0; i < p.rows; ++i) w.f32(float(p.relaxation[std::size_t(i)]));
+  w.f64(p.turned_steps);
   w.i32(int(p.blocks.size()));
   for (const Block& b : p.blocks) w.i64(std::int64_t(b.id));
   for (const Block& b : p.blocks) w.i16(std::int16_t(b.row));
@@ -128,11 +131,15 @@ bool encode_problem(const HapticUpdate& update, std::vector<std::uint8_t>& out) 
   for (const Block& b : p.blocks) w.f64(b.upper);
   for (const Block& b : p.blocks) w.f32(float(b.friction));
   for (const Block& b : p.blocks) w.i16(std::int16_t(b.normals));
+  w.i32(3 * int(p.blocks.size()));
+  for (const Block& b : p.blocks)
+    for (const float by : b.turn) w.f32(by);
   w.i8(std::int8_t(p.tools.size()));
   for (std::size_t t = 0; t < p.tools.size(); ++t) {
     const ToolTerms& tool = p.tools[t];
     w.i8(std::int8_t(tool.hand));
     write_pose(w, tool.device);
+    for (int i = 0; i < 3; ++i) w.f64(tool.way[i]);
     write_pose(w, tool.free);
     write_matrix(w, tool.gain);
     write_matrix(w, tool.compliance);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A block of rows and its law. Without Eigen: the sweep's kernels are compiled once per instruction set.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <limits>
 
@@ -27,6 +28,8 @@ struct Block {
   double upper = infinite;    ///< N, box only
   double friction = 0;        ///< Coulomb coefficient, friction and patch blocks only
   int normals = 0;            ///< of the blocks before this one, patch only
+  /// For who asks between steps: rotation vector, rad, by which the directions turn about their place while the tool goes on by a step's way.
+  std::array<float, 3> turn{};
   bool operator==(const Block&) const = default;
   int rows() const { return law == LawKind::friction ? 3 : law == LawKind::patch ? 2 : 1; }
 };

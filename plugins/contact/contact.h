@@ -71,12 +71,13 @@ class Contact final : public Constraint {
     const Body* body_b() const { return tool_b ? static_cast<const Body*>(tool_b) : &b->body(); }
   };
   const std::vector<Pair>& pairs() const { return pairs_; }
-  /// A contact of a tool as the tool and the surface go on after the step: its three rows and the direction that its normal turns to.
+  /// A contact of a tool as the tool and the surface go on after the step: its three rows, the direction that its normal has turned to, and
+  /// that a step later.
   struct Turn {
     int row;
-    Vec3 from, tangent, to;
+    Vec3 from, tangent, to, later;
   };
-  /// Appends those of contacts that press and have turned, where their tools would be `steps` after the step.
+  /// Appends those of contacts that press, where their tools would be `steps` after the step.
   void turned(double steps, std::vector<Turn>& out) const;
 
  private:

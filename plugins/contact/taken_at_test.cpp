@@ -61,6 +61,32 @@ TEST(ContactTakenAt, TheEndIsManyTimesNearerToTheTruthThanTheStart) {
   EXPECT_LT(worst[1], 0.02);
 }
 
+// Where the ball will be nearest to the edge, half a step on and a step later, if it goes on as it did.
+TEST(ContactTurned, FollowsAnEdgeAsTheToolGoesOn) {
+  Bench b(test_tool_urdf(radius), block(), upright, R"(friction="1e-9" taken_at="end")");
+  ASSERT_TRUE(b.tool);
+  b.move_to({edge + 1.5 * radius * around(0.45 * std::numbers::pi), b.tool->home_pose().q});
+  std::vector<Contact::Turn> turns;
+  Vec3 before = Vec3::Zero();
+  for (int i = -4; i < 8; ++i) {
+    Pose at = device(0.45 * std::numbers::pi - std::max(0, i) * 8 * std::numbers::pi / 180);
+    at.q = b.tool->home_pose().q;
+    b.move_to(at);
+    const Contact::Pair& pair = b.contact->pairs()[0];
+    const Vec3 now = pair.tool_a->link_pose(pair.link_a).p;
+    if (i >= 1) {
+      turns.clear();
+      b.contact->turned(0.5, turns);
+      ASSERT_EQ(turns.size(), 1u) << i;
+      for (const double steps : {0.5, 1.5}) {
+        const Vec3 expected = (now + steps * (now - before) - edge).normalized();
+        EXPECT_NEAR(((steps < 1 ? turns[0].to : turns[0].later) - expected).norm(), 0, 1e-9) << i;
+      }
+    }
+    before = now;
+  }
+}
+
 // In one step from the top to the side: what is felt is the side alone.
 TEST(ContactTakenAt, OverAnEdgeTheNewFaceIsFeltInTheStepThatGetsThere) {
   for (const bool end : {false, true}) {
