@@ -94,7 +94,8 @@ void measure(const CommandContext& context, const HapticBenchOptions& options, S
     const auto record = [&](double turned_ahead_s) {
       engine->reset();
       auto steps = record_steps(*engine, motion, duration, turned_ahead_s);
-      return options.fine ? every(std::size_t(std::lround(1e3 / rate)), steps) : steps;
+      if (options.fine) steps = every(std::size_t(std::lround(1e3 / rate)), steps);
+      return steps;
     };
     const auto turned = record(latency.at(1 / rate));
     const auto plain = record(-1);

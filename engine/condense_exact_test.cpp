@@ -8,6 +8,7 @@
 #include "core/testing/count_allocations.h"
 #include "core/bus/haptic_update.h"
 #include "engine/condense.h"
+#include "engine/condense_for_test.h"
 #include "engine/publisher.h"
 #include "haptic_server/servo.h"
 #include "haptic_server/test_problem.h"
@@ -16,7 +17,7 @@ namespace insula {
 namespace {
 
 using testing::Random;
-using Wrenches = std::array<Vec6, 2>;
+using testing::Wrenches;
 constexpr int all_rows = 360, most_rows = 206;
 
 /// 360 rows: `contacts` of three rows, 16 patches of five, the rest fibres. A tool touches the first twenty contacts, four patches and
@@ -43,30 +44,17 @@ ConstraintProblem problem(int contacts, int unbounded, std::uint64_t seed, doubl
   return p;
 }
 
+constexpr SolveSettings well{.max_sweeps = 3000, .tolerance_m = 1e-17, .max_newton = 40};
+
 void solve_well(const ConstraintProblem& p, const std::vector<double>& delta_free, std::vector<double>& lambda) {
   SolveWorkspace ws;
   ws.reserve(p.rows);
   ws.lambda = lambda;
-  solve(p, delta_free, {.max_sweeps = 3000, .tolerance_m = 1e-17, .max_newton = 40}, ws);
+  solve(p, delta_free, well, ws);
   lambda = ws.lambda;
 }
 
-/// Equation 7 with the devices moved by d.
-Wrenches felt(const ConstraintProblem& p, const Wrenches& d) {
-  std::vector<double> delta_free = p.delta_free, lambda = p.lambda;
-  for (std::size_t t = 0; t < 2; ++t) {
-    const VecX more = p.tools[t].jacobian * (p.tools[t].gain * d[t]);
-    for (int i = 0; i < p.rows; ++i) delta_free[std::size_t(i)] += more[i];
-  }
-  solve_well(p, delta_free, lambda);
-  Wrenches out;
-  for (std::size_t t = 0; t < 2; ++t) {
-    const ToolTerms& tool = p.tools[t];
-    const Vec6 push = tool.jacobian.transpose() * Eigen::Map<const VecX>(lambda.data(), p.rows);
-    out[t] = tool.stiffness * displacement(displaced(tool.device, d[t]), displaced(tool.free, tool.gain * d[t] + tool.compliance * push));
-  }
-  return out;
-}
+Wrenches felt(const ConstraintProblem& p, const Wrenches& d) { return testing::felt(p, d, well); }
 
 Wrenches moved(Random& random, double size_m) {
   Wrenches d;

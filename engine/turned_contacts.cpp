@@ -48,13 +48,14 @@ void turn_block(ConstraintProblem& p, int row, const Mat3& q, std::span<double> 
 }
 
 const ConstraintProblem& TurnedContacts::operator()(const Simulation& simulation, double ahead_s) {
+  const double steps = ahead_s / simulation.h();
   turns_.clear();
   for (const Constraint* c : simulation.constraints())
-    if (const auto* contact = dynamic_cast<const Contact*>(c)) contact->turned(ahead_s / simulation.h(), turns_);
+    if (const auto* contact = dynamic_cast<const Contact*>(c)) contact->turned(steps, turns_);
   if (turns_.empty()) return simulation.problem();
   turned_ = simulation.problem();
   ConstraintProblem& p = turned_;
-  p.turned_steps = ahead_s / simulation.h();
+  p.turned_steps = steps;
   for (const Contact::Turn& turn : turns_) block_at(p, turn.row).turn = rotation_vector(turn.to, turn.later);
   std::erase_if(turns_, [](const Contact::Turn& t) { return t.from.cross(t.to).norm() < least_turn; });
   if (turns_.empty()) return p;

@@ -4,7 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "haptic_server/test_problem.h"
+#include "plugins/contact/contact_for_test.h"
 
 namespace insula {
 namespace {
@@ -57,6 +61,29 @@ TEST(TurnedContacts, OtherTangentsChangeNoForce) {
     EXPECT_GT(was.norm(), 0.01);
     EXPECT_LT((p.tools[t].jacobian.transpose() * vector_of(p.lambda, p.rows) - was).norm(), 1e-8);
   }
+}
+
+/// The largest turn that blocks tell while a ball is led about the edge of a plate by `degrees` a step.
+double most_turn_about_an_edge(double degrees) {
+  using namespace test;
+  constexpr double pressed = 0.05e-3;
+  const Vec3 edge(0.05, 0.003, 0);
+  Bench b(test_tool_urdf(radius), ground(), upright, R"(friction="1e-9" taken_at="end")");
+  if (!b.tool) return -1;
+  TurnedContacts turned;
+  double most = 0;
+  for (int i = -4; i < 4; ++i) {
+    const double angle = (80 - std::max(0, i) * degrees) * std::numbers::pi / 180;
+    b.move_to({edge + (radius - pressed) * Vec3(std::cos(angle), 0, std::sin(angle)), b.tool->home_pose().q});
+    for (const Block& block : turned(*b.s, 0.5 * b.s->h()).blocks)
+      if (i >= 2) most = std::max(most, std::hypot(double(block.turn[0]), double(block.turn[1]), double(block.turn[2])));
+  }
+  return most;
+}
+
+TEST(TurnedContacts, BlocksTellHowFarTheyTurnNextUnlessItIsOverAnEdge) {
+  EXPECT_NEAR(most_turn_about_an_edge(8), 8 * std::numbers::pi / 180, 0.01);
+  EXPECT_EQ(most_turn_about_an_edge(16), 0);
 }
 
 }  // namespace

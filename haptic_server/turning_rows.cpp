@@ -12,11 +12,11 @@ constexpr double least_way_m = 5e-5;    // a hand that rests turns nothing
 
 Vec3 direction(const ToolTerms& t, int row) { return t.jacobian.row(row).head<3>().transpose(); }
 
-/// Where the block's rows take hold of the tool, from its origin and across them: directions are orthonormal.
-Vec3 arm_of(const ToolTerms& t, const Block& b) {
+/// Where a contact's three rows, which are orthonormal, take hold of the tool, from its origin.
+Vec3 arm_of(const ToolTerms& t, int row) {
   Vec3 arm = Vec3::Zero();
-  for (int k = 0; k < b.rows(); ++k) arm += direction(t, b.row + k).cross(Vec3(t.jacobian.row(b.row + k).tail<3>()));
-  return b.rows() == 3 ? Vec3(0.5 * arm) : arm;
+  for (int k = row; k < row + 3; ++k) arm += 0.5 * direction(t, k).cross(Vec3(t.jacobian.row(k).tail<3>()));
+  return arm;
 }
 
 }  // namespace
@@ -36,7 +36,7 @@ void TurningRows::begin(const ConstraintProblem& p, const std::array<Load, 2>& l
     turns_[t].clear();
     for (const Block& b : p.blocks) {
       const Vec3 by(b.turn[0], b.turn[1], b.turn[2]);
-      if (!by.isZero(0) && !loads[t].any && !direction(tool, b.row).isZero(0)) turns_[t].push_back({b.row, b.rows(), by, arm_of(tool, b)});
+      if (b.law == LawKind::friction && !by.isZero(0) && !loads[t].any && !direction(tool, b.row).isZero(0)) turns_[t].push_back({b.row, by, arm_of(tool, b.row)});
     }
   }
 }
@@ -49,7 +49,7 @@ void TurningRows::turn(const std::array<Vec6, 2>& moved) noexcept {
     const double share = std::clamp(moved[t].head<3>().dot(way) / square - problem_->turned_steps, -most_share, most_share);
     for (const Turn& turn : turns_[t]) {
       const Vec3 by = share * turn.by;
-      for (int k = turn.row; k < turn.row + turn.rows; ++k) {
+      for (int k = turn.row; k < turn.row + 3; ++k) {
         Vec3 d = direction(problem_->tools[t], k);
         const double size = d.norm();
         const Vec3 moment = problem_->tools[t].jacobian.row(k).tail<3>().transpose();

@@ -30,7 +30,7 @@ class TurningRows {
 
  private:
   struct Turn {
-    int row, rows;
+    int row;       ///< first of a contact's three
     Vec3 by, arm;  ///< in a step's way, about this place on the tool
   };
   const ConstraintProblem* problem_ = nullptr;

@@ -32,6 +32,7 @@ def main():
     with tempfile.TemporaryDirectory(prefix="insula_spy_") as folder:
         read, write = os.pipe()
         screen = subprocess.Popen(["Xvfb", "-displayfd", str(write), "-screen", "0", "800x600x24"], pass_fds=[write], stderr=subprocess.DEVNULL)
+        os.close(write)  # or nothing would ever be read of a screen that does not open
         env = dict(os.environ, DISPLAY=":" + os.read(read, 16).decode().strip(), LCM_DEFAULT_URL=f"udpm://239.255.76.67:{port}?ttl=0", XDG_RUNTIME_DIR=folder)
         log = open(pathlib.Path(folder) / "spy.log", "w+")
         engine = subprocess.Popen([str(build / "bin/insula"), "engine", str(source / "scenes/training/1_sylvian_fissure.xml"), "--motion", "none"],
