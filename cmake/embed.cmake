@@ -2,7 +2,7 @@
 # insula_embed(OUTPUT NAMESPACE FILE name [FILE name ...]): a source with a table of files' texts, so that a program holds them
 # wherever it is installed. FILE is read when CMake runs, and again whenever it changes.
 function(insula_embed output function)
-  set(text "// generated: texts of files\n#include \"engine/embedded.h\"\nnamespace insula {\nstd::span<const EmbeddedFile> ${function}() {\n  static constexpr EmbeddedFile files[] = {\n")
+  set(text "// generated: texts of files\n#include \"engine/authoring/embedded.h\"\nnamespace insula {\nstd::span<const EmbeddedFile> ${function}() {\n  static constexpr EmbeddedFile files[] = {\n")
   set(rest ${ARGN})
   while(rest)
     list(POP_FRONT rest file name)

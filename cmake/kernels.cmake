@@ -3,7 +3,7 @@
 # way: their bits must not depend on the build type.
 file(GLOB plugin_kernels CONFIGURE_DEPENDS plugins/*/kernels_impl.cpp)
 function(insula_kernels name bytes nv nr)
-  add_library(kernels_${name} OBJECT core/linalg/kernels_impl.cpp core/linalg/half_kernels_impl.cpp core/constraint/kernels_impl.cpp core/collision/kernels_impl.cpp ${plugin_kernels})
+  add_library(kernels_${name} OBJECT core/linalg/kernels_impl.cpp core/linalg/fp16_kernels_impl.cpp core/constraint/kernels_impl.cpp core/collision/search/kernels_impl.cpp ${plugin_kernels})
   target_compile_definitions(kernels_${name} PRIVATE KERNEL_NAME=${name} KERNEL_BYTES=${bytes} KERNEL_NV=${nv} KERNEL_NR=${nr})
   target_compile_options(kernels_${name} PRIVATE -O3 -ffp-contract=fast -fno-math-errno -Wall -Wextra -Wno-psabi -fno-sanitize=all ${ARGN})
   target_sources(insula_core PRIVATE $<TARGET_OBJECTS:kernels_${name}>)

@@ -7,7 +7,7 @@
 
 #include "core/constraint/solve.h"
 #include "core/constraint/sweep.h"
-#include "haptic_server/carried.h"
+#include "haptic_server/weld_elimination.h"
 
 namespace insula {
 namespace {
@@ -19,18 +19,18 @@ long padded(std::size_t n) { return long((n + 7) / 8 * 8); }
 
 }  // namespace
 
-void Condenser::find_felt(const ConstraintProblem& full) {
-  felt_.assign(std::size_t(full.rows), 0);
-  tied_.assign(std::size_t(full.rows), 0);
+void Condenser::find_tool_coupled_rows(const ConstraintProblem& full) {
+  tool_coupled_.assign(std::size_t(full.rows), 0);
+  is_weld_.assign(std::size_t(full.rows), 0);
   for (std::size_t t = 0; t < std::min<std::size_t>(full.tools.size(), 2); ++t) {
     for (int r = 0; r < full.rows; ++r)
-      if (!full.tools[t].jacobian.row(r).isZero(0)) felt_[std::size_t(r)] = 1;
-    // What a carried clip touches is touched by the tool: the servo makes the two one (haptic_server/carried.h).
-    const int tied = carrying_rows(full, t);
-    for (int r = 0; tied >= 0 && r < full.rows; ++r)
-      for (int k = 0; k < tying_rows; ++k)
-        if (full.w_at(r, tied + k) != 0) felt_[std::size_t(r)] = 1;
-    if (tied >= 0) std::fill_n(tied_.begin() + tied, tying_rows, char(1));
+      if (!full.tools[t].jacobian.row(r).isZero(0)) tool_coupled_[std::size_t(r)] = 1;
+    // What a carried clip touches is touched by the tool: the servo makes the two one (haptic_server/weld_elimination.h).
+    const int weld = first_weld_row(full, t);
+    for (int r = 0; weld >= 0 && r < full.rows; ++r)
+      for (int k = 0; k < weld_rows; ++k)
+        if (full.w_at(r, weld + k) != 0) tool_coupled_[std::size_t(r)] = 1;
+    if (weld >= 0) std::fill_n(is_weld_.begin() + weld, weld_rows, char(1));
   }
 }
 
@@ -86,41 +86,41 @@ void Condenser::make_groups(const ConstraintProblem& full) {
     Group g{int(b), int(b), block.rows(), false, margin_m_[b] < 0, 0};
     for (int k = 0; k < block.rows(); ++k) {
       const int r = block.row + k;
-      g.felt = g.felt || felt_[std::size_t(r)];
+      g.tool_coupled = g.tool_coupled || tool_coupled_[std::size_t(r)];
       double coupling = 0;
       for (int c = 0; c < full.rows; ++c)
-        if (felt_[std::size_t(c)]) coupling = std::max(coupling, std::abs(full.w_at(r, c)));
+        if (tool_coupled_[std::size_t(c)]) coupling = std::max(coupling, std::abs(full.w_at(r, c)));
       // How far the tools' rows would move if this row's force went; for rows that nobody touches, if it changed by a newton, and the
       // more so the sooner it may do what its linear equation does not say.
-      g.rank = std::max(g.rank, tied_[std::size_t(r)] ? infinite : (std::abs(full.lambda[std::size_t(r)]) + 1e-6) * coupling);
-      if (!felt_[std::size_t(r)]) g.rank = std::max(g.rank, coupling / (std::abs(margin_m_[b]) + 1e-6));
+      g.rank = std::max(g.rank, is_weld_[std::size_t(r)] ? infinite : (std::abs(full.lambda[std::size_t(r)]) + 1e-6) * coupling);
+      if (!tool_coupled_[std::size_t(r)]) g.rank = std::max(g.rank, coupling / (std::abs(margin_m_[b]) + 1e-6));
     }
     if (block.law == LawKind::patch)
       for (int i = 0; i < block.normals; ++i) {
         const Group& contact = groups_.back();
-        g = {contact.first, g.last, g.rows + contact.rows, g.felt || contact.felt, false, std::max(g.rank, contact.rank)};
+        g = {contact.first, g.last, g.rows + contact.rows, g.tool_coupled || contact.tool_coupled, false, std::max(g.rank, contact.rank)};
         groups_.pop_back();
       }
     groups_.push_back(g);
   }
   std::sort(groups_.begin(), groups_.end(), [](const Group& a, const Group& b) {
-    if (a.felt != b.felt) return a.felt;
-    if (!a.felt && a.linear != b.linear) return b.linear;
+    if (a.tool_coupled != b.tool_coupled) return a.tool_coupled;
+    if (!a.tool_coupled && a.linear != b.linear) return b.linear;
     return a.rank != b.rank ? a.rank > b.rank : a.first < b.first;
   });
 }
 
-void Condenser::choose(const ConstraintProblem& full, int most_rows, ConstraintProblem& small) {
+void Condenser::choose(const ConstraintProblem& full, int max_rows, ConstraintProblem& small) {
   chosen_.clear();
   std::size_t g = 0;
-  for (int rows = 0; g < groups_.size() && !(groups_[g].linear && !groups_[g].felt) && rows + groups_[g].rows <= most_rows; ++g) {
+  for (int rows = 0; g < groups_.size() && !(groups_[g].linear && !groups_[g].tool_coupled) && rows + groups_[g].rows <= max_rows; ++g) {
     rows += groups_[g].rows;
     for (int b = groups_[g].first; b <= groups_[g].last; ++b) chosen_.push_back(b);
   }
   // Laws without bounds come last in the order and first here: they are the exact ones.
   eliminated_.clear();
   for (std::size_t last = groups_.size(); last-- > g;)
-    for (int b = groups_[last].first; b <= groups_[last].last && !groups_[last].felt; ++b)
+    for (int b = groups_[last].first; b <= groups_[last].last && !groups_[last].tool_coupled; ++b)
       add_eliminated(full, full.blocks[std::size_t(b)]);
   std::sort(eliminated_.begin(), eliminated_.end(), [](const Direction& a, const Direction& b) { return a.row < b.row; });
   std::sort(chosen_.begin(), chosen_.end());
@@ -139,7 +139,7 @@ void Condenser::choose(const ConstraintProblem& full, int most_rows, ConstraintP
 }
 
 void Condenser::add_eliminated(const ConstraintProblem& full, const Block& b) {
-  for (int k = 0; k < b.rows() && int(eliminated_.size()) < most_eliminated; ++k) {
+  for (int k = 0; k < b.rows() && int(eliminated_.size()) < max_eliminated; ++k) {
     const std::size_t r = std::size_t(b.row + k);
     if (fate_[r] == Fate::linear) {
       const double c = k == 0 && b.law != LawKind::patch ? b.compliance : 0;
@@ -157,7 +157,7 @@ void Condenser::copy_kept(const ConstraintProblem& full, ConstraintProblem& smal
   const std::size_t rows = kept_.size();
   small.resize(int(rows));
   small.step_s = full.step_s;
-  small.turned_steps = full.turned_steps;
+  small.prediction_horizon_steps = full.prediction_horizon_steps;
   for (std::size_t i = 0; i < rows; ++i) {
     const std::size_t s = std::size_t(kept_[i]);
     double free = full.delta_free[s];
@@ -166,7 +166,7 @@ void Condenser::copy_kept(const ConstraintProblem& full, ConstraintProblem& smal
     small.delta_free[i] = free;
     small.lambda[i] = full.lambda[s];
     small.rate[i] = full.rate[s];
-    small.relaxation[i] = full.relaxation[s];
+    small.retardation_time[i] = full.retardation_time[s];
     for (std::size_t j = 0; j < rows; ++j) small.w[i * std::size_t(small.stride) + j] = full.w_at(int(s), kept_[j]);
   }
   small.tools.resize(full.tools.size());
@@ -238,15 +238,15 @@ void Condenser::eliminate(const ConstraintProblem& full, ConstraintProblem& smal
     for (std::size_t c = i + 1; c < k; ++c) small.w[c * std::size_t(small.stride) + i] = small.w[i * std::size_t(small.stride) + c];
 }
 
-void Condenser::operator()(const ConstraintProblem& full, int most_rows, ConstraintProblem& small) {
-  if (full.rows <= most_rows) {
+void Condenser::operator()(const ConstraintProblem& full, int max_rows, ConstraintProblem& small) {
+  if (full.rows <= max_rows) {
     small = full;
     return;
   }
-  find_felt(full);
+  find_tool_coupled_rows(full);
   find_states(full);
   make_groups(full);
-  choose(full, most_rows, small);
+  choose(full, max_rows, small);
   copy_kept(full, small);
   if (!eliminated_.empty() && !kept_.empty()) eliminate(full, small);
 }

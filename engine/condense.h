@@ -22,16 +22,16 @@ namespace insula {
 /// lambda of `full` must be its solution. Allocates when sizes grow, and when the tools' Jacobians change theirs.
 class Condenser {
  public:
-  void operator()(const ConstraintProblem& full, int most_rows, ConstraintProblem& small);
+  void operator()(const ConstraintProblem& full, int max_rows, ConstraintProblem& small);
 
   /// Beyond this, the least coupled are held: the cost grows with the cube.
-  static constexpr int most_eliminated = 400;
+  static constexpr int max_eliminated = 400;
 
  private:
   enum class Fate : char { held, linear, slips, kept };  // slips: of the first of two tangents
   struct Group {  ///< blocks first to last: a patch goes with the contacts it is of
     int first, last, rows;
-    bool felt, linear;
+    bool tool_coupled, linear;
     double rank;
   };
   /// An unknown that is eliminated: a row, or a direction in the plane of two tangents.
@@ -41,17 +41,17 @@ class Condenser {
     double compliance;
     double free;  ///< delta + compliance lambda of the full solution
   };
-  void find_felt(const ConstraintProblem& full);
+  void find_tool_coupled_rows(const ConstraintProblem& full);
   void find_states(const ConstraintProblem& full);
   double state(const ConstraintProblem& full, const Block& block);
   void make_groups(const ConstraintProblem& full);
-  void choose(const ConstraintProblem& full, int most_rows, ConstraintProblem& small);
+  void choose(const ConstraintProblem& full, int max_rows, ConstraintProblem& small);
   void copy_kept(const ConstraintProblem& full, ConstraintProblem& small) const;
   void add_eliminated(const ConstraintProblem& full, const Block& block);
   void eliminate(const ConstraintProblem& full, ConstraintProblem& small);
 
-  std::vector<char> felt_;        ///< by row of the full problem
-  std::vector<char> tied_;        ///< by row: between a tool and what it carries
+  std::vector<char> tool_coupled_;        ///< by row of the full problem
+  std::vector<char> is_weld_;        ///< by row: between a tool and what it carries
   std::vector<Fate> fate_;        ///< linear: could be eliminated, until chosen
   std::vector<double> margin_m_;  ///< by block: how far it is from another state; negative: it has no other
   AlignedVector<double> delta_m_, factor_, weights_;

@@ -9,16 +9,16 @@
 #include "core/bus/haptic_update.h"
 #include "engine/condense.h"
 #include "engine/condense_for_test.h"
-#include "engine/publisher.h"
+#include "engine/live/publisher.h"
 #include "haptic_server/servo.h"
-#include "haptic_server/test_problem.h"
+#include "haptic_server/problem_for_test.h"
 
 namespace insula {
 namespace {
 
 using testing::Random;
 using testing::Wrenches;
-constexpr int all_rows = 360, most_rows = 206;
+constexpr int all_rows = 360, max_rows = 206;
 
 /// 360 rows: `contacts` of three rows, 16 patches of five, the rest fibres. A tool touches the first twenty contacts, four patches and
 /// six fibres. Where none does, friction is `sticky`; of the other fibres `unbounded` have laws without bounds, every second of them bilateral.
@@ -27,18 +27,18 @@ ConstraintProblem problem(int contacts, int unbounded, std::uint64_t seed, doubl
   ConstraintProblem p = testing::two_tool_problem(contacts, fibres, seed, patches);
   int fibre = 0, patch_row = 0;
   for (Block& b : p.blocks) {
-    bool felt = b.row < 60;
+    bool tool_coupled = b.row < 60;
     if (b.id >= 5000 && b.id < 9000) {
-      felt = fibre++ < 6;
-      if (!felt && fibre - 6 <= unbounded) {
+      tool_coupled = fibre++ < 6;
+      if (!tool_coupled && fibre - 6 <= unbounded) {
         b.upper = infinite;
         if (fibre % 2) b.compliance = 0;
       }
     } else if (b.id >= 9000) {
-      felt = patch_row++ < 16;  // four blocks a patch
+      tool_coupled = patch_row++ < 16;  // four blocks a patch
     }
-    if (!felt && b.law != LawKind::box) b.friction = sticky;
-    for (int k = 0; k < b.rows() && !felt; ++k)
+    if (!tool_coupled && b.law != LawKind::box) b.friction = sticky;
+    for (int k = 0; k < b.rows() && !tool_coupled; ++k)
       for (ToolTerms& t : p.tools) t.jacobian.row(b.row + k).setZero();
   }
   return p;
@@ -54,7 +54,7 @@ void solve_well(const ConstraintProblem& p, const std::vector<double>& delta_fre
   lambda = ws.lambda;
 }
 
-Wrenches felt(const ConstraintProblem& p, const Wrenches& d) { return testing::felt(p, d, well); }
+Wrenches hand_wrenches(const ConstraintProblem& p, const Wrenches& d) { return testing::hand_wrenches(p, d, well); }
 
 Wrenches moved(Random& random, double size_m) {
   Wrenches d;
@@ -74,14 +74,14 @@ TEST(CondenseExact, RowsWithoutBoundsAreEliminatedExactlyWhereverTheToolsGo) {
   ConstraintProblem full = problem(40, 154, 7);
   solve_well(full, full.delta_free, full.lambda);
   ConstraintProblem small;
-  Condenser()(full, most_rows, small);
-  ASSERT_EQ(small.rows, most_rows);
+  Condenser()(full, max_rows, small);
+  ASSERT_EQ(small.rows, max_rows);
   Random random(3);
   for (int k = 0; k < 12; ++k) {
     const Wrenches d = moved(random, k < 8 ? 1e-3 : 1e-2);
-    const Wrenches whole = felt(full, d);
+    const Wrenches whole = hand_wrenches(full, d);
     EXPECT_GT(whole[0].norm(), 0.01);
-    EXPECT_LT(apart(whole, felt(small, d)), 1e-9) << k;
+    EXPECT_LT(apart(whole, hand_wrenches(small, d)), 1e-9) << k;
   }
 }
 
@@ -105,8 +105,8 @@ TEST(CondenseExact, RowsThatHangOnEliminatedOnesHoldStill) {
       if (b.row >= 60 && b.law == LawKind::friction) b.friction = 0;  // how two that share a load divide it is open, and so is their friction
     solve_well(full, full.delta_free, full.lambda);
     ConstraintProblem small;
-    Condenser()(full, most_rows, small);
-    ASSERT_EQ(small.rows, most_rows);
+    Condenser()(full, max_rows, small);
+    ASSERT_EQ(small.rows, max_rows);
     for (int i = 0; i < small.rows; ++i) {
       ASSERT_GE(small.w_at(i, i), 0) << i;
       hanging += small.w_at(i, i) == 0;
@@ -115,7 +115,7 @@ TEST(CondenseExact, RowsThatHangOnEliminatedOnesHoldStill) {
     Random random(seed);
     for (int k = 0; k < 3; ++k) {
       const Wrenches d = moved(random, 1e-3);
-      EXPECT_LT(apart(felt(full, d), felt(small, d)), 1e-7) << seed << ' ' << k;
+      EXPECT_LT(apart(hand_wrenches(full, d), hand_wrenches(small, d)), 1e-7) << seed << ' ' << k;
     }
   }
   EXPECT_EQ(hanging, 16);
@@ -125,9 +125,9 @@ TEST(CondenseExact, MixedStatesAreExactUntilOneChanges) {
   ConstraintProblem full = problem(60, 50, 11, 1.5);
   solve_well(full, full.delta_free, full.lambda);
   ConstraintProblem small;
-  Condenser()(full, most_rows, small);
-  ASSERT_LE(small.rows, most_rows);
-  ASSERT_GT(small.rows, most_rows - 5);
+  Condenser()(full, max_rows, small);
+  ASSERT_LE(small.rows, max_rows);
+  ASSERT_GT(small.rows, max_rows - 5);
   // All others held, which is what was done before there was an elimination.
   ConstraintProblem held = small;
   for (int i = 0; i < small.rows; ++i) {
@@ -147,14 +147,14 @@ TEST(CondenseExact, MixedStatesAreExactUntilOneChanges) {
   }
   Random random(4);
   double far = 0, far_held = 0, change = 0;
-  const Wrenches rest = felt(full, {Vec6::Zero(), Vec6::Zero()});
-  EXPECT_LT(apart(rest, felt(small, {Vec6::Zero(), Vec6::Zero()})), 1e-9);
+  const Wrenches rest = hand_wrenches(full, {Vec6::Zero(), Vec6::Zero()});
+  EXPECT_LT(apart(rest, hand_wrenches(small, {Vec6::Zero(), Vec6::Zero()})), 1e-9);
   for (int k = 0; k < 10; ++k) {
     const Wrenches near = moved(random, 2e-7);
-    EXPECT_LT(apart(felt(full, near), felt(small, near)), 1e-9) << k;
-    const Wrenches d = moved(random, 1e-3), whole = felt(full, d);
-    far = std::max(far, apart(whole, felt(small, d)));
-    far_held = std::max(far_held, apart(whole, felt(held, d)));
+    EXPECT_LT(apart(hand_wrenches(full, near), hand_wrenches(small, near)), 1e-9) << k;
+    const Wrenches d = moved(random, 1e-3), whole = hand_wrenches(full, d);
+    far = std::max(far, apart(whole, hand_wrenches(small, d)));
+    far_held = std::max(far_held, apart(whole, hand_wrenches(held, d)));
     change = std::max(change, apart(whole, rest));
   }
   std::printf("a millimetre away: %.2e N of a change of %.2e N, held %.2e N\n", far, change, far_held);
@@ -191,14 +191,14 @@ TEST(CondenseExact, FrictionThatSlipsTurnsWithItsSlip) {
     Condenser()(full, 90, small);  // 86 are felt
     ASSERT_LE(small.rows, 90);
     Random random(seed);
-    const Wrenches rest = felt(full, {Vec6::Zero(), Vec6::Zero()});
-    EXPECT_LT(apart(rest, felt(small, {Vec6::Zero(), Vec6::Zero()})), 1e-9);
+    const Wrenches rest = hand_wrenches(full, {Vec6::Zero(), Vec6::Zero()});
+    EXPECT_LT(apart(rest, hand_wrenches(small, {Vec6::Zero(), Vec6::Zero()})), 1e-9);
     Wrenches d = moved(random, 1e-5);
     double off[3], change = 0;
     for (int k = 0; k < 3; ++k) {
-      const Wrenches whole = felt(full, d);
+      const Wrenches whole = hand_wrenches(full, d);
       if (k == 0) change = apart(whole, rest);
-      off[k] = apart(whole, felt(small, d));
+      off[k] = apart(whole, hand_wrenches(small, d));
       for (Vec6& v : d) v *= 0.1;
     }
     std::printf("slips %d: change %.2e, off %.2e %.2e %.2e\n", slips, change, off[0], off[1], off[2]);
@@ -223,11 +223,11 @@ TEST(CondenseExact, RowsThatHangOnOthersAreHeld) {
   }
   solve_well(full, full.delta_free, full.lambda);
   ConstraintProblem small;
-  Condenser()(full, most_rows, small);
+  Condenser()(full, max_rows, small);
   Random random(5);
   for (int k = 0; k < 4; ++k) {
     const Wrenches d = moved(random, 1e-3);
-    EXPECT_LT(apart(felt(full, d), felt(small, d)), 1e-7) << k;
+    EXPECT_LT(apart(hand_wrenches(full, d), hand_wrenches(small, d)), 1e-7) << k;
   }
 }
 
@@ -236,7 +236,7 @@ TEST(CondenseExact, ThreeHundredAndSixtyRowsAreServedOverTheBus) {
   solve_well(full, full.delta_free, full.lambda);
   HapticUpdate sent, got;
   sent.step_s = 0.016;
-  Condenser()(full, Publisher::most_rows, sent.problem);
+  Condenser()(full, Publisher::max_rows, sent.problem);
   std::vector<std::uint8_t> bytes;
   std::string why;
   ASSERT_TRUE(encode_problem(sent, bytes));
@@ -246,7 +246,7 @@ TEST(CondenseExact, ThreeHundredAndSixtyRowsAreServedOverTheBus) {
   servo.set_problem(&got.problem);
   Random random(6);
   for (int k = 0; k < 5; ++k) {
-    const Wrenches d = moved(random, 2e-4), whole = felt(full, d);
+    const Wrenches d = moved(random, 2e-4), whole = hand_wrenches(full, d);
     ServoInput input;
     input.connected = {true, true};
     for (std::size_t t = 0; t < 2; ++t) input.device[t] = displaced(full.tools[t].device, d[t]);
@@ -263,9 +263,9 @@ TEST(CondenseExact, AllocatesNothingOnceItHasItsSize) {
   ConstraintProblem full = problem(60, 50, 11), small;
   solve_well(full, full.delta_free, full.lambda);
   Condenser condense;
-  condense(full, most_rows, small);
+  condense(full, max_rows, small);
   const long before = allocations;
-  condense(full, most_rows, small);
+  condense(full, max_rows, small);
   EXPECT_EQ(allocations - before, 0);
 }
 

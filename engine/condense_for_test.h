@@ -10,7 +10,7 @@ namespace insula::testing {
 using Wrenches = std::array<Vec6, 2>;
 
 /// On the hands by equation 7 with the devices moved by d, tool by tool.
-inline Wrenches felt(const ConstraintProblem& p, const Wrenches& d, const SolveSettings& settings) {
+inline Wrenches hand_wrenches(const ConstraintProblem& p, const Wrenches& d, const SolveSettings& settings) {
   std::vector<double> free = p.delta_free;
   for (std::size_t t = 0; t < p.tools.size(); ++t) {
     const VecX more = p.tools[t].jacobian * (p.tools[t].gain * d[t]);

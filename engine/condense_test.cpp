@@ -13,7 +13,7 @@ namespace insula {
 namespace {
 
 // n box rows with a dense positive W; the tool touches the first `felt`.
-ConstraintProblem make(int n, int felt) {
+ConstraintProblem make(int n, int tool_coupled) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> u(-1, 1);
   ConstraintProblem p;
@@ -31,7 +31,7 @@ ConstraintProblem make(int n, int felt) {
   }
   ToolTerms tool;
   tool.jacobian.setZero(n, 6);
-  for (int i = 0; i < felt; ++i) tool.jacobian.row(i).setConstant(1.0 + i);
+  for (int i = 0; i < tool_coupled; ++i) tool.jacobian.row(i).setConstant(1.0 + i);
   p.tools.push_back(tool);
   SolveWorkspace ws;
   ws.lambda.assign(std::size_t(n), 0.0);
@@ -49,7 +49,7 @@ TEST(Condense, SmallProblemsAreCopied) {
   EXPECT_EQ(small.lambda, full.lambda);
 }
 
-TEST(Condense, KeepsTheFeltRowsAndTheirSolution) {
+TEST(Condense, KeepsTheToolCoupledRowsAndTheirSolution) {
   const ConstraintProblem full = make(60, 7);
   ConstraintProblem small;
   Condenser()(full, 20, small);
@@ -89,7 +89,7 @@ TEST(Condense, NeverSplitsAContact) {
 }
 
 // Twelve patches of three contacts; what is felt of each is one row: a contact, a tangent, or nothing.
-ConstraintProblem patches(bool felt_tangents) {
+ConstraintProblem patches(bool tool_coupled_tangents) {
   ConstraintProblem full = make(60, 0);
   full.blocks.clear();
   for (int patch = 0; patch < 12; ++patch)
@@ -106,7 +106,7 @@ ConstraintProblem patches(bool felt_tangents) {
       }
       full.blocks.push_back(b);
     }
-  for (const int patch : {2, 7, 11}) full.tools[0].jacobian.row(5 * patch + (felt_tangents ? 4 : 1)).setConstant(1.0);
+  for (const int patch : {2, 7, 11}) full.tools[0].jacobian.row(5 * patch + (tool_coupled_tangents ? 4 : 1)).setConstant(1.0);
   SolveWorkspace ws;
   ws.lambda.assign(60, 0.0);
   solve(full, full.delta_free, {5000, 1e-15}, ws);
@@ -115,9 +115,9 @@ ConstraintProblem patches(bool felt_tangents) {
 }
 
 TEST(Condense, APatchIsKeptOrLeftOutTogetherWithItsContacts) {
-  for (const bool felt_tangents : {false, true})
+  for (const bool tool_coupled_tangents : {false, true})
     for (int most = 4; most < 60; ++most) {
-      const ConstraintProblem full = patches(felt_tangents);
+      const ConstraintProblem full = patches(tool_coupled_tangents);
       ConstraintProblem small;
       Condenser()(full, most, small);
       ASSERT_EQ(small.rows, 5 * (most / 5));

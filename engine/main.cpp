@@ -8,11 +8,11 @@
 
 #include "core/registry/plugin_loader.h"
 #include "core/registry/registry.h"
-#include "engine/case_command.h"
-#include "engine/commands.h"
-#include "engine/new_plugin.h"
-#include "engine/play.h"
-#include "engine/run.h"
+#include "engine/command_line/case_command.h"
+#include "engine/command_line/commands.h"
+#include "engine/authoring/new_plugin.h"
+#include "engine/command_line/play.h"
+#include "engine/command_line/run.h"
 
 namespace {
 

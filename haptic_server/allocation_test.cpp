@@ -5,14 +5,14 @@
 #include <array>
 #include <vector>
 
-#include "haptic_server/carried_problem.h"
+#include "haptic_server/welded_problem_for_test.h"
 #include "haptic_server/devices/make_device.h"
 #include "haptic_server/hand_guide.h"
 #include "haptic_server/in_process.h"
 #include "haptic_server/safety_gate.h"
 #include "haptic_server/servo.h"
-#include "haptic_server/test_problem.h"
-#include "haptic_server/test_rig.h"
+#include "haptic_server/problem_for_test.h"
+#include "haptic_server/rig_for_test.h"
 #include "core/testing/count_allocations.h"
 
 namespace insula {

@@ -30,29 +30,29 @@ const HandGoal& HandGuide::advance(double dt, const HandSample& wish) noexcept {
     smooth_ = displaced(smooth_, (dt / (settings_.smoothing_s + dt)) * displacement(smooth_, viewer_.pose));
     target.pose = smooth_;
   }
-  Vec6 way = displacement(goal_.pose, target.pose);
-  const double far = way.head<3>().norm(), turn = way.tail<3>().norm();
+  Vec6 swept = displacement(goal_.pose, target.pose);
+  const double far = swept.head<3>().norm(), turn = swept.tail<3>().norm();
   const bool slowed = far > settings_.max_speed_m_s * dt || turn > settings_.max_spin_rad_s * dt;
-  if (far > settings_.max_speed_m_s * dt) way.head<3>() *= settings_.max_speed_m_s * dt / far;
-  if (turn > settings_.max_spin_rad_s * dt) way.tail<3>() *= settings_.max_spin_rad_s * dt / turn;
-  goal_.v = way.head<3>() / dt;
-  goal_.w = way.tail<3>() / dt;
-  goal_.pose = slowed ? displaced(goal_.pose, way) : target.pose;
+  if (far > settings_.max_speed_m_s * dt) swept.head<3>() *= settings_.max_speed_m_s * dt / far;
+  if (turn > settings_.max_spin_rad_s * dt) swept.tail<3>() *= settings_.max_spin_rad_s * dt / turn;
+  goal_.v = swept.head<3>() / dt;
+  goal_.w = swept.tail<3>() / dt;
+  goal_.pose = slowed ? displaced(goal_.pose, swept) : target.pose;
   return goal_;
 }
 
 void MotionClock::step_arrived(double sim_time, double step_s) noexcept {
   target_ = sim_time;
-  most_ = sim_time + step_s;
+  end_ = sim_time + step_s;
 }
 
 double MotionClock::advance(double dt) noexcept {
   if (!(dt > 0)) return time_;
-  target_ = std::min(target_ + dt, most_);
+  target_ = std::min(target_ + dt, end_);
   // Own pace plus a pull of 50 ms towards the steps' time; a lag of more than a quarter second is not worth walking.
   if (target_ - time_ > 0.25) time_ = target_;
   const double pulled = time_ + dt + (target_ - time_ - dt) * std::min(1.0, dt / 0.05);
-  time_ = std::max(time_, std::min(pulled, most_));
+  time_ = std::max(time_, std::min(pulled, end_));
   return time_;
 }
 

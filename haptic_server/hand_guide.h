@@ -38,13 +38,13 @@ class HandGuide {
 /// between two steps, at most one step ahead, and never backwards.
 class MotionClock {
  public:
-  void reset(double sim_time) noexcept { time_ = target_ = most_ = sim_time; }
+  void reset(double sim_time) noexcept { time_ = target_ = end_ = sim_time; }
   void step_arrived(double sim_time, double step_s) noexcept;
   double advance(double dt) noexcept;
   double time() const { return time_; }
 
  private:
-  double time_ = 0, target_ = 0, most_ = 0;
+  double time_ = 0, target_ = 0, end_ = 0;
 };
 
 /// Centre and edge lengths of an arm's reach in the scene. The person who sets up a device lays its reach over the field:

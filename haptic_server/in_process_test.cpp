@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "haptic_server/devices/make_device.h"
-#include "haptic_server/test_problem.h"
+#include "haptic_server/problem_for_test.h"
 
 namespace insula {
 namespace {

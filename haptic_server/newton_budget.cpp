@@ -15,14 +15,14 @@ double factorisation_time(int unknowns) {
   for (long i = 0; i < n; ++i)
     for (long j = 0; j < n; ++j) whole[std::size_t(i * stride + j)] = 1.0 / double(1 + (i - j) * (i - j));  // positive definite and full
   std::vector<int> pivots(std::size_t(n), 0);
-  double least_s = 1;
+  double min_s = 1;
   for (int k = 0; k < 8; ++k) {
     matrix = whole;
     const auto start = std::chrono::steady_clock::now();
     lu_factor(matrix.data(), int(n), stride, pivots.data(), 1e-14);
-    least_s = std::min(least_s, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    min_s = std::min(min_s, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   }
-  return least_s;
+  return min_s;
 }
 
 }  // namespace insula

@@ -8,7 +8,7 @@ namespace insula {
 
 void PassivityObserver::observe(const Vec3& force_N, const Vec3& device_m) noexcept {
   constexpr int enough_air = 50;
-  const Vec3 way = placed_ ? Vec3(device_m - last_) : Vec3(Vec3::Zero());
+  const Vec3 swept = placed_ ? Vec3(device_m - last_) : Vec3(Vec3::Zero());
   last_ = device_m;
   placed_ = true;
   if (force_N.isZero(0)) {
@@ -16,10 +16,10 @@ void PassivityObserver::observe(const Vec3& force_N, const Vec3& device_m) noexc
     return;
   }
   in_air_ = 0;
-  const double work = force_N.dot(way);
+  const double work = force_N.dot(swept);
   if (!std::isfinite(work)) return;
   given_ += work;
-  most_ = std::max(most_, given_);
+  max_given_ = std::max(max_given_, given_);
 }
 
 }  // namespace insula

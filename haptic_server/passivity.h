@@ -15,10 +15,10 @@ class PassivityObserver {
   void reset() noexcept { *this = {}; }
 
   double given() const { return given_; }  ///< to the hand since it touched, less what the hand put in, J; negative: it put in more
-  double most() const { return most_; }    ///< largest so far, J
+  double most() const { return max_given_; }    ///< largest so far, J
 
  private:
-  double given_ = 0, most_ = 0;
+  double given_ = 0, max_given_ = 0;
   int in_air_ = 0;  ///< ticks without a force
   bool placed_ = false;
   Vec3 last_ = Vec3::Zero();

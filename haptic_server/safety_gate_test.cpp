@@ -9,7 +9,7 @@
 
 #include "core/testing/held.h"
 #include "haptic_server/devices/arm_model.h"
-#include "haptic_server/test_problem.h"
+#include "haptic_server/problem_for_test.h"
 #include "tests/figures/figure.h"
 
 namespace insula {
@@ -42,7 +42,7 @@ TEST(SafetyGate, GarbageNeverGetsThrough) {
                         std::numeric_limits<double>::denorm_min(), 0.0, 1e200, -1e154};
   Vec3 last_force = none, last_torque = none;
   long pushed = 0;
-  double most = 0, most_change = 0;
+  double most = 0, max_change = 0;
   auto number = [&] {
     const double scale = std::pow(10.0, 6 * random.next());
     return random.bits() % 16 == 0 ? odd[random.bits() % 8] : scale * random.next();
@@ -65,7 +65,7 @@ TEST(SafetyGate, GarbageNeverGetsThrough) {
     const Vec3 f = gate.force(), t = gate.torque();
     ASSERT_TRUE(f.allFinite() && t.allFinite()) << tick;
     most = std::max(most, f.norm() - profile.max_force_N);
-    most_change = std::max(most_change, (f - last_force).norm() - profile.max_slew_N_s * (elapsed > 0 ? std::min(elapsed, SafetyGate::longest_tick_s) : 0));
+    max_change = std::max(max_change, (f - last_force).norm() - profile.max_slew_N_s * (elapsed > 0 ? std::min(elapsed, SafetyGate::longest_tick_s) : 0));
     ASSERT_LE(f.norm(), profile.max_force_N * (1 + 1e-12)) << tick;
     ASSERT_LE(t.norm(), profile.max_torque_Nm * (1 + 1e-12)) << tick;
     // No elapsed time (or none that makes sense): no change at all.
@@ -77,7 +77,7 @@ TEST(SafetyGate, GarbageNeverGetsThrough) {
     pushed += f.norm() > 1;
   }
   EXPECT_TRUE(test::held("garbage beyond the device's force", most, profile.max_force_N, 1e-12));
-  EXPECT_TRUE(test::held("garbage beyond its change of force, N", most_change, 1, 1e-12));
+  EXPECT_TRUE(test::held("garbage beyond its change of force, N", max_change, 1, 1e-12));
   EXPECT_GT(pushed, 10'000);  // it was not simply shut
   EXPECT_GT(gate.refused(), 0);
   EXPECT_GT(gate.clamped(), 0);

@@ -139,26 +139,26 @@ bool HapticServer::live(const ServoHand& hand, std::int64_t now) const noexcept 
 }
 
 // What becomes of the servo's force on the way to the gate, and what knocks.
-Vec3 HapticServer::feel(std::size_t i, double dt, bool alive) noexcept {
+Vec3 HapticServer::force_output(std::size_t i, double dt, bool alive) noexcept {
   Hand& hand = hands_[i];
   const Vec3& force = last_.hand[i].force;
-  const int parted = parted_[i].load(std::memory_order_relaxed), shut = shut_[i].load(std::memory_order_relaxed);
+  const int severed = severed_[i].load(std::memory_order_relaxed), shut = shut_[i].load(std::memory_order_relaxed);
   if (alive) {
     const Vec3 along = force.isZero(0) ? hand.reading.v : force;
     if (hand.onset.met(dt, force.norm()) && servo_.problem())
-      hand.feel.knock(force, wall_met(-hand.reading.v.dot(force.normalized()), hardness(*servo_.problem(), int(i), servo_.lambda())));
-    if (parted != hand.parted_seen) hand.feel.knock(along, strand_parts);
-    if (shut != hand.shut_seen) hand.feel.knock(along, clip_clicks);
+      hand.force_output.start_transient(force, impact_transient(-hand.reading.v.dot(force.normalized()), hardness(*servo_.problem(), int(i), servo_.lambda())));
+    if (severed != hand.severed_seen) hand.force_output.start_transient(along, severing_transient);
+    if (shut != hand.shut_seen) hand.force_output.start_transient(along, latching_transient);
   }
-  hand.parted_seen = parted;
+  hand.severed_seen = severed;
   hand.shut_seen = shut;
   if (setup_ && setup_->session == session_) {
-    FeelSettings settings = hand.feel.settings();
+    ForceOutputSettings settings = hand.force_output.settings();
     settings.force_scale = setup_->force_scale;
-    hand.feel.set(settings);
+    hand.force_output.set(settings);
   }
   const Vec3 up = (setup_ ? setup_->person_to_scene : Quat::Identity()) * Vec3(Vec3::UnitZ());
-  return hand.feel.apply(hand.device->profile(), dt, force, hand.reading.v, up, alive);
+  return hand.force_output.apply(hand.device->profile(), dt, force, hand.reading.v, up, alive);
 }
 
 void HapticServer::tick(std::int64_t due_ns, std::int64_t missed) noexcept {
@@ -208,7 +208,7 @@ void HapticServer::tick(std::int64_t due_ns, std::int64_t missed) noexcept {
     const ServoHand& wanted = last_.hand[i];
     const bool alive = live(wanted, now);
     hand.energy.observe(hand.gate.force(), hand.reading.pose.p);
-    hand.gate.apply(dt, alive, feel(i, dt, alive), hand.feel.settings().force_scale * wanted.torque);
+    hand.gate.apply(dt, alive, force_output(i, dt, alive), hand.force_output.settings().force_scale * wanted.torque);
     sample.given_J[i] = float(hand.energy.given());
     hand.device->write(hand.gate.force(), hand.gate.torque());
     sample.fresh[i] = alive && wanted.force != hand.last_force;
@@ -224,7 +224,7 @@ void HapticServer::leave_snapshot(std::int64_t now) noexcept {
   Snapshot& s = snapshots_.back();
   s.time_ns = now;
   s.receive_ns = has_problem_ ? problems_.front().receive_ns : 0;
-  s.force_scale = hands_[0].feel.settings().force_scale;
+  s.force_scale = hands_[0].force_output.settings().force_scale;
   for (std::size_t i = 0; i < 2; ++i) {
     s.reading[i] = hands_[i].reading;
     s.force[i] = hands_[i].gate.force();

@@ -14,7 +14,7 @@
 #include "haptic_server/clock.h"
 #include "haptic_server/devices/make_device.h"
 #include "haptic_server/devices/remark.h"
-#include "haptic_server/feel.h"
+#include "haptic_server/force_output.h"
 #include "haptic_server/hand_guide.h"
 #include "haptic_server/passivity.h"
 #include "haptic_server/safety_gate.h"
@@ -86,10 +86,10 @@ class HapticServer {
     std::unique_ptr<Device> device;
     HandSource source;
     SafetyGate gate;
-    Feel feel;
+    ForceOutput force_output;
     Onset onset;
     PassivityObserver energy;
-    int parted_seen = 0, shut_seen = 0;  ///< of this hand's knocks
+    int severed_seen = 0, shut_seen = 0;  ///< of this hand's knocks
     HandGuide guide;
     DeviceReading reading;
     HandSample home;
@@ -119,7 +119,7 @@ class HapticServer {
   void place_hands(std::int64_t now) noexcept;
   const Motion* motion() const noexcept;
   bool live(const ServoHand& hand, std::int64_t now) const noexcept;
-  Vec3 feel(std::size_t hand, double dt, bool alive) noexcept;
+  Vec3 force_output(std::size_t hand, double dt, bool alive) noexcept;
   void leave_snapshot(std::int64_t now) noexcept;
   // Publishing thread.
   std::string note(double age_ms) const;
@@ -146,8 +146,8 @@ class HapticServer {
   SetupExchange setups_;
   std::atomic<std::int64_t> received_{0}, refused_{0}, missed_{0};
   std::atomic<bool> stopping_{false}, quiet_{true};
-  /// Events that a hand's tool made, counted: strands parted, clips shut.
-  std::array<std::atomic<int>, 2> parted_{}, shut_{};
+  /// Events that a hand's tool made, counted: strands severed, clips shut.
+  std::array<std::atomic<int>, 2> severed_{}, shut_{};
   Remark remark_;
 
   // Servo thread's own.

@@ -71,11 +71,11 @@ void HapticServer::on_input(Bytes bytes) {
 void HapticServer::on_event(Bytes bytes) {
   if (!decode(bytes, event_, why_)) return refuse("SIM_EVENT", why_);
   if (event_.session != order_.session()) return;
-  const bool parted = event_.kind == "strand_cut" || event_.kind == "strand_torn";
-  if (!parted && event_.kind != "clip_shut") return;
+  const bool severed = event_.kind == "strand_cut" || event_.kind == "strand_torn";
+  if (!severed && event_.kind != "clip_shut") return;
   // A strand that tears under no blade is felt by whoever pulls.
   for (std::size_t i = 0; i < 2; ++i)
-    if (event_.hand < 0 || std::size_t(event_.hand) == i) (parted ? parted_ : shut_)[i].fetch_add(1, std::memory_order_relaxed);
+    if (event_.hand < 0 || std::size_t(event_.hand) == i) (severed ? severed_ : shut_)[i].fetch_add(1, std::memory_order_relaxed);
 }
 
 bool HapticServer::publish_state() {

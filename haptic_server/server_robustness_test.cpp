@@ -9,8 +9,8 @@
 
 #include "core/bus/mem_bus.h"
 #include "haptic_server/servo_loop.h"
-#include "haptic_server/test_problem.h"
-#include "haptic_server/test_rig.h"
+#include "haptic_server/problem_for_test.h"
+#include "haptic_server/rig_for_test.h"
 
 namespace insula {
 namespace {

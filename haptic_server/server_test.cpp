@@ -7,8 +7,8 @@
 #include <cmath>
 #include <fstream>
 
-#include "haptic_server/test_problem.h"
-#include "haptic_server/test_rig.h"
+#include "haptic_server/problem_for_test.h"
+#include "haptic_server/rig_for_test.h"
 
 namespace insula {
 namespace {
@@ -61,8 +61,8 @@ TEST(Server, AStrandThatPartsIsFeltByTheHandThatCutIt) {
     }
     EXPECT_LT(other, 0.02);
   }
-  EXPECT_GT(most[1], most[0] + 0.4 * strand_parts.amplitude_N);
-  EXPECT_LT(most[1], most[0] + 1.5 * strand_parts.amplitude_N);
+  EXPECT_GT(most[1], most[0] + 0.4 * severing_transient.amplitude_N);
+  EXPECT_LT(most[1], most[0] + 1.5 * severing_transient.amplitude_N);
 }
 
 TEST(Server, ForcesEndWithin100msOfTheLastProblemAndComeBackGently) {

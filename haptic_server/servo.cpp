@@ -36,7 +36,7 @@ bool finite(const Vec6& v) {
 
 }  // namespace
 
-Servo::Servo(const ServoSettings& settings) : settings_(settings), carried_(settings.response.carried_moves ? servo_max_rows : 0), response_(settings.response, servo_max_rows) {
+Servo::Servo(const ServoSettings& settings) : settings_(settings), weld_elimination_(settings.substep.eliminate_welds ? servo_max_rows : 0), substep_(settings.substep, servo_max_rows) {
   workspace_.reserve(servo_max_rows, settings.newton_unknowns > 0);
   kernels();  // chosen here once and not at the first tick
   delta_free_.assign(servo_max_rows, 0.0);
@@ -46,20 +46,20 @@ Servo::Servo(const ServoSettings& settings) : settings_(settings), carried_(sett
 
 void Servo::reset() noexcept {
   known_count_ = 0;
-  hand_over_ = {};
-  response_.forget();
+  force_crossfade_ = {};
+  substep_.reset();
 }
 
-void Servo::hand_over(ServoResult& result, double dt) noexcept {
+void Servo::force_crossfade(ServoResult& result, double dt) noexcept {
   for (std::size_t i = 0; i < 2; ++i) {
     ServoHand& hand = result.hand[i];
     if (!hand.valid) {
-      hand_over_[i].lost();
+      force_crossfade_[i].lost();
       continue;
     }
     Vec6 now;
     now << hand.force, hand.torque;
-    now = hand_over_[i](settings_.hand_over, fresh_problem_, now, dt);
+    now = force_crossfade_[i](settings_.force_crossfade, fresh_problem_, now, dt);
     hand.force = now.head<3>();
     hand.torque = now.tail<3>();
   }
@@ -80,11 +80,11 @@ void Servo::set_problem(const ConstraintProblem* problem, const std::array<Pose,
   remember_solution();
   const bool fits = problem && problem->rows <= servo_max_rows && problem->blocks.size() <= std::size_t(servo_max_rows);
   problem_ = fits ? problem : nullptr;
-  if (!problem_) return response_.forget();
+  if (!problem_) return substep_.reset();
   offset_ = offset;
   fresh_problem_ = true;
-  if (settings_.response.carried_moves) problem_ = &carried_.take_in(*problem);
-  if (settings_.response.any()) response_.begin(*problem_, carried_.loads(), age_s);
+  if (settings_.substep.eliminate_welds) problem_ = &weld_elimination_.eliminate(*problem);
+  if (settings_.substep.any()) substep_.begin(*problem_, weld_elimination_.grasped(), age_s);
   workspace_.lambda.resize(std::size_t(problem_->rows));  // within its capacity
   const auto known_end = known_.begin() + std::ptrdiff_t(known_count_);
   for (const Block& b : problem_->blocks) {
@@ -104,7 +104,7 @@ ServoResult Servo::tick(const ServoInput& input) noexcept {
   if (!problem_) return result;
   const ConstraintProblem& p = *problem_;
   const int n = p.rows;
-  const bool in_ticks = settings_.response.any();
+  const bool in_ticks = settings_.substep.any();
   result.rows = n;
 
   std::array<Vec6, 2> moved{Vec6::Zero(), Vec6::Zero()};  // of the devices
@@ -140,9 +140,9 @@ ServoResult Servo::tick(const ServoInput& input) noexcept {
     s.newton_sweeps = 0;
     s.max_sweeps = int(std::clamp(settings_.max_operations / std::max(1.0, double(n) * n), 1.0, double(settings_.max_sweeps)));
     if (in_ticks) {
-      const ConstraintProblem& tick = response_.next(input.dt_s, moved);
+      const ConstraintProblem& tick = substep_.next(input.dt_s, moved);
       result.stats = solve(tick, tick.delta_free, s, workspace_);
-      response_.solved(workspace_.lambda, workspace_.delta);
+      substep_.solved(workspace_.lambda, workspace_.delta);
     } else {
       result.stats = solve(p, std::span<const double>(delta_free_.data(), std::size_t(n)), s, workspace_);
     }
@@ -153,8 +153,8 @@ ServoResult Servo::tick(const ServoInput& input) noexcept {
     const ToolTerms& tool = p.tools[t];
     const std::size_t index = std::size_t(tool.hand & 1);
     ServoHand& hand = result.hand[index];
-    const Vec6 push = transposed_product(in_ticks ? response_.jacobian(t) : tool.jacobian, workspace_.lambda, n);
-    if (const LoadedTool* loaded = in_ticks ? response_.loaded(t) : nullptr) hand.tool = loaded->pose();
+    const Vec6 push = transposed_product(in_ticks ? substep_.jacobian(t) : tool.jacobian, workspace_.lambda, n);
+    if (const GraspingTool* grasping = in_ticks ? substep_.grasping(t) : nullptr) hand.tool = grasping->pose();
     else hand.tool = displaced(tool.free, tool.gain * moved[t] + tool.compliance * push);
     const Vec6 wrench = tool.stiffness * displacement(device[t], hand.tool);
     hand.valid = in_range[t] && input.connected[index] && finite(wrench);
@@ -171,7 +171,7 @@ ServoResult Servo::tick(const ServoInput& input) noexcept {
     std::fill_n(workspace_.lambda.begin(), n, 0.0);
     for (ServoHand& hand : result.hand) hand.valid = false;
   }
-  if (settings_.hand_over.within_s > 0) hand_over(result, input.dt_s);
+  if (settings_.force_crossfade.within_s > 0) force_crossfade(result, input.dt_s);
   return result;
 }
 

@@ -7,8 +7,8 @@
 
 #include "core/constraint/problem.h"
 #include "core/constraint/solve.h"
-#include "haptic_server/hand_over.h"
-#include "haptic_server/tick_response.h"
+#include "haptic_server/force_crossfade.h"
+#include "haptic_server/substep_correction.h"
 
 namespace insula {
 
@@ -27,15 +27,15 @@ struct ServoSettings {
   double max_displacement_m = 0.03;
   double max_rotation_rad = 0.8;
   /// What goes beyond equation 7; nothing of it is on by default.
-  TickResponseSettings response;
+  SubstepCorrectionSettings substep;
   /// How a new problem takes over from the force of the old one; at once by default.
-  HandOverSettings hand_over;
+  ForceCrossfadeSettings force_crossfade;
   /// All of it, as measured in docs/haptic-truth.md.
   static ServoSettings beyond_equation_7() {
     ServoSettings s;
-    s.response = {.tissue_in_time = true, .tissue_moves = true, .slip_by_tick = true, .carried_moves = true, .rows_turn = true};
-    s.hand_over.within_s = 0.005;
-    s.hand_over.share_per_s = 14;
+    s.substep = {.substep_compliance = true, .extrapolate_tissue = true, .incremental_slip = true, .eliminate_welds = true, .extrapolate_frames = true};
+    s.force_crossfade.within_s = 0.005;
+    s.force_crossfade.share_per_s = 14;
     s.conjugate = true;
     s.newton_unknowns = 200;
     return s;
@@ -104,10 +104,10 @@ class Servo {
   ServoSettings settings_;
   const ConstraintProblem* problem_ = nullptr;
   std::array<Pose, 2> offset_;
-  Carried carried_;
-  TickResponse response_;
-  void hand_over(ServoResult& result, double dt) noexcept;
-  std::array<HandOver, 2> hand_over_;
+  WeldElimination weld_elimination_;
+  SubstepCorrection substep_;
+  void force_crossfade(ServoResult& result, double dt) noexcept;
+  std::array<ForceCrossfade, 2> force_crossfade_;
   bool fresh_problem_ = false;
   SolveWorkspace workspace_;
   std::vector<double> delta_free_;

@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "core/testing/held.h"
-#include "haptic_server/carried_problem.h"
-#include "haptic_server/test_problem.h"
+#include "haptic_server/welded_problem_for_test.h"
+#include "haptic_server/problem_for_test.h"
 #include "tests/figures/figure.h"
 
 namespace insula {

@@ -113,7 +113,7 @@ void drop_stale(insula_lcm::render_frame_t& m) {
   if (m.bodies == 0) m.body_force_N.clear();
   if (m.strand_points == 0) m.strand_x_m.clear();
   if (m.strands == 0) {
-    m.strand_health.clear();
+    m.strand_integrity.clear();
     m.strand_tension_N.clear();
   }
   if (m.contacts == 0) {

@@ -87,7 +87,7 @@ insula_lcm::render_frame_t sample() {
   m.strands = 2;
   m.strand_points = 4;
   m.strand_x_m.assign(4, {0.f, 0.1f, 0.2f});
-  m.strand_health = {1.f, -1.f};
+  m.strand_integrity = {1.f, -1.f};
   m.strand_tension_N = {0.05f, 0.f};
   m.tools = 1;
   insula_lcm::render_tool_t t{};
@@ -241,7 +241,7 @@ TEST(Plausible, RenderFrame) {
   expect_refused<T>("body twice", [](T& m) { m.body[1].index = 0; });
   expect_refused<T>("nodes", [](T& m) { m.body[1].nodes = 4; });
   expect_refused<T>("points", [](T& m) { m.strand_points = 3; });
-  expect_refused<T>("health", [](T& m) { m.strand_health[0] = 1.5f; });
+  expect_refused<T>("integrity", [](T& m) { m.strand_integrity[0] = 1.5f; });
   expect_refused<T>("tension", [](T& m) { m.strand_tension_N[0] = NAN; });
   expect_refused<T>("json", [](T& m) { m.hud_json = "{"; });
   for (const int s : {-1, 3, 127}) expect_refused<T>("state", [s](T& m) { m.tool[0].state = std::int8_t(s); });
@@ -283,7 +283,7 @@ TEST(Codec, EmptyFrameIntoAUsedObject) {
   insula_lcm::render_frame_t used = sample<insula_lcm::render_frame_t>(), empty{};
   std::string why;
   ASSERT_TRUE(decode(encoded(empty), used, why)) << why;
-  EXPECT_TRUE(used.strand_health.empty());
+  EXPECT_TRUE(used.strand_integrity.empty());
   EXPECT_TRUE(used.contact_x_m.empty());
 }
 

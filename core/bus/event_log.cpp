@@ -15,8 +15,8 @@ namespace {
 
 constexpr std::uint32_t mark = 0xEDA1DA01;
 constexpr std::size_t head_bytes = 28;
-constexpr int most_name = 63;                          // LCM_MAX_CHANNEL_NAME_LENGTH
-constexpr int most_message = 64 * 1024 * 1024;         // other programs may share the bus; ours are far smaller
+constexpr int max_name = 63;                          // LCM_MAX_CHANNEL_NAME_LENGTH
+constexpr int max_message = 64 * 1024 * 1024;         // other programs may share the bus; ours are far smaller
 
 }  // namespace
 
@@ -38,7 +38,7 @@ bool EventLog::next(LogEvent& event) {
   event.number = std::int64_t(wire::load64(head.data() + 4));
   event.time_us = std::int64_t(wire::load64(head.data() + 12));
   const auto name = std::int32_t(wire::load32(head.data() + 20)), size = std::int32_t(wire::load32(head.data() + 24));
-  if (name < 1 || name > most_name || size < 0 || size > most_message)
+  if (name < 1 || name > max_name || size < 0 || size > max_message)
     fail(fmt::format("an event with a name of {} and a message of {} bytes: the log is damaged", name, size));
   event.channel.resize(std::size_t(name));
   event.message.resize(std::size_t(size));

@@ -33,8 +33,8 @@ bool find_parts(Bytes bytes, ProblemLayout& l, const char*& why) {
   l.delta = in.take_array(l.rows, 8);
   l.lambda = in.take_array(l.rows, 8);
   l.rate = in.take_array(l.rows, 4);
-  l.relaxation = in.take_array(l.rows, 4);
-  l.turned_steps = in.f64();
+  l.retardation_time = in.take_array(l.rows, 4);
+  l.prediction_horizon_steps = in.f64();
   l.blocks = in.i32();
   if (!in.ok()) return false;
   if (l.blocks < 0 || l.blocks > l.rows) {
@@ -49,13 +49,13 @@ bool find_parts(Bytes bytes, ProblemLayout& l, const char*& why) {
   l.upper = in.take_array(l.blocks, 8);
   l.friction = in.take_array(l.blocks, 4);
   l.normals = in.take_array(l.blocks, 2);
-  const std::int32_t turn_size = in.i32();
+  const std::int32_t frame_rotation_size = in.i32();
   if (!in.ok()) return false;
-  if (turn_size != l.blocks * 3) {
+  if (frame_rotation_size != l.blocks * 3) {
     why = "turns do not match blocks";
     return false;
   }
-  l.turn = in.take_array(turn_size, 4);
+  l.frame_rotation = in.take_array(frame_rotation_size, 4);
   l.tools = in.i8();
   if (!in.ok()) return false;
   if (l.tools < 0 || l.tools > max_problem_tools) {

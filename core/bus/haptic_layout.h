@@ -11,7 +11,7 @@ namespace insula::wire {
 
 inline constexpr std::size_t pose_bytes = 7 * 8, matrix_bytes = 36 * 8;
 // A tool: hand, device pose and way, free pose, three matrices, offset.
-inline constexpr std::size_t way_at = 1 + pose_bytes, free_at = way_at + 3 * 8, matrices_at = free_at + pose_bytes;
+inline constexpr std::size_t swept_displacement_at = 1 + pose_bytes, free_at = swept_displacement_at + 3 * 8, matrices_at = free_at + pose_bytes;
 inline constexpr std::size_t offset_at = matrices_at + 3 * matrix_bytes, tool_bytes = offset_at + pose_bytes;
 
 inline void load_doubles(const std::uint8_t* from, int count, double* to) {
@@ -21,15 +21,15 @@ inline void load_doubles(const std::uint8_t* from, int count, double* to) {
 /// Null for empty arrays is never read.
 struct ProblemLayout {
   std::int64_t session, sequence, time_us, pose_time_us;
-  double step_s, sim_time_s, turned_steps;
+  double step_s, sim_time_s, prediction_horizon_steps;
   int rows, blocks, tools;
-  const std::uint8_t *w, *delta, *lambda, *rate, *relaxation, *id, *row, *law, *compliance, *lower, *upper, *friction, *normals, *turn, *tool, *jacobian;
+  const std::uint8_t *w, *delta, *lambda, *rate, *retardation_time, *id, *row, *law, *compliance, *lower, *upper, *friction, *normals, *frame_rotation, *tool, *jacobian;
 
   double w_at(std::size_t k) const { return double(load_float(w + 4 * k)); }
   double delta_at(int i) const { return load_double(delta + 8 * i); }
   double lambda_at(int i) const { return load_double(lambda + 8 * i); }
   double rate_at(int i) const { return double(load_float(rate + 4 * i)); }
-  double relaxation_at(int i) const { return double(load_float(relaxation + 4 * i)); }
+  double retardation_time_at(int i) const { return double(load_float(retardation_time + 4 * i)); }
   std::uint64_t id_at(int b) const { return load64(id + 8 * b); }
   int row_at(int b) const { return std::int16_t(load16(row + 2 * b)); }
   int law_at(int b) const { return std::int8_t(law[b]); }
@@ -38,7 +38,7 @@ struct ProblemLayout {
   double upper_at(int b) const { return load_double(upper + 8 * b); }
   double friction_at(int b) const { return double(load_float(friction + 4 * b)); }
   int normals_at(int b) const { return std::int16_t(load16(normals + 2 * b)); }
-  float turn_at(int b, int axis) const { return load_float(turn + 4 * (3 * b + axis)); }
+  float frame_rotation_at(int b, int axis) const { return load_float(frame_rotation + 4 * (3 * b + axis)); }
   const std::uint8_t* tool_at(int t) const { return tool + tool_bytes * std::size_t(t); }
   double jacobian_at(std::size_t k) const { return double(load_float(jacobian + 4 * k)); }
 };

@@ -11,14 +11,14 @@
 namespace insula::wire {
 namespace {
 
-constexpr double most_delta_m = 1, most_w = 1e4, most_jacobian = 1e3;
-constexpr double most_rate = 1e3, most_relaxation_s = 100, most_turn_rad = 1, most_turned_steps = 100;
-constexpr double most_gain = 1e4, most_compliance = 1e8, most_stiffness = 1e8, most_block_compliance = 1e6;
+constexpr double max_delta_m = 1, max_w = 1e4, max_jacobian = 1e3;
+constexpr double max_rate = 1e3, max_retardation_time_s = 100, max_frame_rotation_rad = 1, max_prediction_horizon_steps = 100;
+constexpr double max_gain = 1e4, max_compliance = 1e8, max_stiffness = 1e8, max_block_compliance = 1e6;
 
 bool header_ok(const ProblemLayout& l, const char*& why) {
   why = "time, step or sequence out of range";
   return l.session >= 0 && l.sequence >= 0 && l.time_us >= 0 && l.pose_time_us >= 0 && l.step_s > 0 && l.step_s <= 1 && l.sim_time_s >= 0 &&
-         l.sim_time_s <= 1e9 && l.turned_steps >= 0 && l.turned_steps <= most_turned_steps;
+         l.sim_time_s <= 1e9 && l.prediction_horizon_steps >= 0 && l.prediction_horizon_steps <= max_prediction_horizon_steps;
 }
 
 bool matrix_ok(const ProblemLayout& l, const char*& why) {
@@ -26,16 +26,16 @@ bool matrix_ok(const ProblemLayout& l, const char*& why) {
   std::size_t k = 0;
   for (int i = 0; i < l.rows; ++i)
     for (int j = 0; j <= i; ++j, ++k)
-      if (!(std::abs(l.w_at(k)) < most_w)) return false;
+      if (!(std::abs(l.w_at(k)) < max_w)) return false;
   why = "W has a negative diagonal";
   for (int i = 0; i < l.rows; ++i)
     if (l.w_at(std::size_t(i) * std::size_t(i + 3) / 2) < 0) return false;
   why = "delta_free or lambda not finite or too large";
   for (int i = 0; i < l.rows; ++i)
-    if (!(std::abs(l.delta_at(i)) < most_delta_m) || !(std::abs(l.lambda_at(i)) < limits::force_N)) return false;
-  why = "rate or relaxation not finite or out of range";
+    if (!(std::abs(l.delta_at(i)) < max_delta_m) || !(std::abs(l.lambda_at(i)) < limits::force_N)) return false;
+  why = "rate or retardation time not finite or out of range";
   for (int i = 0; i < l.rows; ++i)
-    if (!(std::abs(l.rate_at(i)) < most_rate) || !(l.relaxation_at(i) >= 0 && l.relaxation_at(i) <= most_relaxation_s)) return false;
+    if (!(std::abs(l.rate_at(i)) < max_rate) || !(l.retardation_time_at(i) >= 0 && l.retardation_time_at(i) <= max_retardation_time_s)) return false;
   return true;
 }
 
@@ -80,14 +80,14 @@ bool blocks_ok(const ProblemLayout& l, const char*& why) {
     const int end = row + Block{.law = LawKind(law)}.rows();
     if (l.row_at(b) != row || end > l.rows) return false;
     why = "block compliance out of range";
-    if (!(l.compliance_at(b) >= 0 && l.compliance_at(b) <= most_block_compliance)) return false;
+    if (!(l.compliance_at(b) >= 0 && l.compliance_at(b) <= max_block_compliance)) return false;
     why = "block bounds are no interval";
     if (!(l.lower_at(b) <= l.upper_at(b)) || l.lower_at(b) == infinite || l.upper_at(b) == -infinite) return false;
     why = "friction out of range";
     if (!(l.friction_at(b) >= 0 && l.friction_at(b) <= 10)) return false;
     why = "directions turn too far in a step";
     for (int axis = 0; axis < 3; ++axis)
-      if (!(std::abs(l.turn_at(b, axis)) <= most_turn_rad)) return false;
+      if (!(std::abs(l.frame_rotation_at(b, axis)) <= max_frame_rotation_rad)) return false;
     why = "lambda outside its law";
     if (!lambda_in_law(l, b, row)) return false;
     row = end;
@@ -130,24 +130,24 @@ bool tools_ok(const ProblemLayout& l, const char*& why) {
     why = "tool pose out of range or no unit quaternion";
     if (!pose_ok(at + 1) || !pose_ok(at + free_at) || !pose_ok(at + offset_at)) return false;
     double m[36];
-    why = "tool's way too long";
-    load_doubles(at + way_at, 3, m);
+    why = "tool's swept displacement too long";
+    load_doubles(at + swept_displacement_at, 3, m);
     if (!within(m, 3, limits::position_m)) return false;
     at += matrices_at;
     load_doubles(at, 36, m);
     why = "tool gain out of range";
-    if (!within(m, 36, most_gain)) return false;
+    if (!within(m, 36, max_gain)) return false;
     load_doubles(at + matrix_bytes, 36, m);
     why = "tool compliance out of range or not symmetric";
-    if (!symmetric_ok(m, most_compliance)) return false;
+    if (!symmetric_ok(m, max_compliance)) return false;
     load_doubles(at + 2 * matrix_bytes, 36, m);
     why = "coupling stiffness out of range or not symmetric";
-    if (!symmetric_ok(m, most_stiffness)) return false;
+    if (!symmetric_ok(m, max_stiffness)) return false;
   }
   why = "Jacobian not finite or too large";
   const auto count = std::size_t(l.tools) * std::size_t(l.rows) * 6;
   for (std::size_t k = 0; k < count; ++k)
-    if (!(std::abs(l.jacobian_at(k)) < most_jacobian)) return false;
+    if (!(std::abs(l.jacobian_at(k)) < max_jacobian)) return false;
   return true;
 }
 

@@ -17,7 +17,7 @@ using wire::ProblemLayout;
 bool has_wire_form(const ConstraintProblem& p) {
   const auto rows = std::size_t(p.rows);
   if (p.rows < 0 || p.rows > max_problem_rows || p.tools.size() > max_problem_tools || p.blocks.size() > rows) return false;
-  if (p.delta_free.size() < rows || p.lambda.size() < rows || p.rate.size() < rows || p.relaxation.size() < rows) return false;
+  if (p.delta_free.size() < rows || p.lambda.size() < rows || p.rate.size() < rows || p.retardation_time.size() < rows) return false;
   if (p.rows > 0 && (p.stride < p.rows || p.w.size() < rows * std::size_t(p.stride))) return false;
   return std::all_of(p.tools.begin(), p.tools.end(), [&](const ToolTerms& t) { return t.jacobian.rows() == p.rows; });
 }
@@ -51,7 +51,7 @@ void read_tool(const ProblemLayout& l, int t, ToolTerms& tool, Pose& offset) {
   const std::uint8_t* at = l.tool_at(t);
   tool.hand = *at;
   tool.device = read_pose(at + 1);
-  wire::load_doubles(at + wire::way_at, 3, tool.way.data());
+  wire::load_doubles(at + wire::swept_displacement_at, 3, tool.swept_displacement.data());
   tool.free = read_pose(at + wire::free_at);
   tool.gain = read_matrix(at + wire::matrices_at);
   tool.compliance = read_matrix(at + wire::matrices_at + wire::matrix_bytes);
@@ -72,7 +72,7 @@ void read_all(const ProblemLayout& l, HapticUpdate& into) {
   ConstraintProblem& p = into.problem;
   p.resize(l.rows);
   p.step_s = l.step_s;
-  p.turned_steps = l.turned_steps;
+  p.prediction_horizon_steps = l.prediction_horizon_steps;
   std::size_t k = 0;
   const auto stride = std::size_t(p.stride);
   for (std::size_t i = 0; i < std::size_t(l.rows); ++i)
@@ -81,7 +81,7 @@ void read_all(const ProblemLayout& l, HapticUpdate& into) {
     p.delta_free[std::size_t(i)] = l.delta_at(i);
     p.lambda[std::size_t(i)] = l.lambda_at(i);
     p.rate[std::size_t(i)] = l.rate_at(i);
-    p.relaxation[std::size_t(i)] = l.relaxation_at(i);
+    p.retardation_time[std::size_t(i)] = l.retardation_time_at(i);
   }
   p.blocks.resize(std::size_t(l.blocks));
   for (int b = 0; b < l.blocks; ++b) {
@@ -94,7 +94,7 @@ void read_all(const ProblemLayout& l, HapticUpdate& into) {
     block.upper = l.upper_at(b);
     block.friction = l.friction_at(b);
     block.normals = l.normals_at(b);
-    for (int axis = 0; axis < 3; ++axis) block.turn[std::size_t(axis)] = l.turn_at(b, axis);
+    for (int axis = 0; axis < 3; ++axis) block.frame_rotation[std::size_t(axis)] = l.frame_rotation_at(b, axis);
   }
   p.tools.resize(std::size_t(l.tools));
   for (int t = 0; t < l.tools; ++t) read_tool(l, t, p.tools[std::size_t(t)], into.offset[std::size_t(t)]);
@@ -120,8 +120,8 @@ bool encode_problem(const HapticUpdate& update, std::vector<std::uint8_t>& out) 
   for (int i = 0; i < p.rows; ++i) w.f64(p.delta_free[std::size_t(i)]);
   for (int i = 0; i < p.rows; ++i) w.f64(p.lambda[std::size_t(i)]);
   for (int i = 0; i < p.rows; ++i) w.f32(float(p.rate[std::size_t(i)]));
-  for (int i = 0; i < p.rows; ++i) w.f32(float(p.relaxation[std::size_t(i)]));
-  w.f64(p.turned_steps);
+  for (int i = 0; i < p.rows; ++i) w.f32(float(p.retardation_time[std::size_t(i)]));
+  w.f64(p.prediction_horizon_steps);
   w.i32(int(p.blocks.size()));
   for (const Block& b : p.blocks) w.i64(std::int64_t(b.id));
   for (const Block& b : p.blocks) w.i16(std::int16_t(b.row));
@@ -133,13 +133,13 @@ bool encode_problem(const HapticUpdate& update, std::vector<std::uint8_t>& out) 
   for (const Block& b : p.blocks) w.i16(std::int16_t(b.normals));
   w.i32(3 * int(p.blocks.size()));
   for (const Block& b : p.blocks)
-    for (const float by : b.turn) w.f32(by);
+    for (const float by : b.frame_rotation) w.f32(by);
   w.i8(std::int8_t(p.tools.size()));
   for (std::size_t t = 0; t < p.tools.size(); ++t) {
     const ToolTerms& tool = p.tools[t];
     w.i8(std::int8_t(tool.hand));
     write_pose(w, tool.device);
-    for (int i = 0; i < 3; ++i) w.f64(tool.way[i]);
+    for (int i = 0; i < 3; ++i) w.f64(tool.swept_displacement[i]);
     write_pose(w, tool.free);
     write_matrix(w, tool.gain);
     write_matrix(w, tool.compliance);

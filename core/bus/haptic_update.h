@@ -27,7 +27,7 @@ struct HapticUpdate {
   std::array<Pose, max_problem_tools> offset;
 };
 
-/// Writes the message into `out`, which keeps its capacity. W, Jacobians, friction, compliance, rate and relaxation travel as float32, W as
+/// Writes the message into `out`, which keeps its capacity. W, Jacobians, friction, compliance, rate and retardation time travel as float32, W as
 /// its lower triangle. False, with `out` empty, when the problem has no wire form: more than 240 rows or 2 tools, or vectors
 /// that do not match `rows`.
 /// The last four bytes are a checksum: UDP checks nothing on a loopback interface, and a bit that flips in the mantissa of a
@@ -39,7 +39,7 @@ void seal_problem(std::vector<std::uint8_t>& message);
 
 /// Reads and validates: sizes agree with each other and with the message's length; the checksum is right; every number finite and of plausible
 /// magnitude (|delta| < 1 m, |W| < 1e4 m/N, |lambda| < 1e4 N); W's diagonal >= 0; blocks cover all rows once, in order, with
-/// unique ids, known laws, lower <= upper, friction in [0, 10], compliance >= 0; lambda within its law; |rate| < 1000 m/s, relaxation in [0, 100] s; directions
+/// unique ids, known laws, lower <= upper, friction in [0, 10], compliance >= 0; lambda within its law; |rate| < 1000 m/s, retardation time in [0, 100] s; directions
 /// turn by 1 rad a step at most about any axis; at most two tools with
 /// distinct hands, unit quaternions, symmetric compliance and stiffness with a non-negative diagonal.
 /// On failure `into` is untouched and `why` holds the reason. Allocates only when `into` must grow, its Jacobians change size,

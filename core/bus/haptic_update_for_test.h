@@ -48,17 +48,17 @@ inline HapticUpdate make_update(unsigned seed, int boxes = 4, int contacts = 3, 
     }
   for (int i = 0; i < n; ++i) p.delta_free[std::size_t(i)] = normal(random) * 1e-3;
   p.step_s = u.step_s;
-  p.turned_steps = 0.375;
+  p.prediction_horizon_steps = 0.375;
   for (int i = 0; i < n; ++i) {
     p.rate[std::size_t(i)] = double(float(normal(random) * 1e-2));
-    p.relaxation[std::size_t(i)] = double(float(0.01 * (i % 3)));
+    p.retardation_time[std::size_t(i)] = double(float(0.01 * (i % 3)));
   }
   int row = 0;
   for (int k = 0; k < boxes + contacts; ++k) {
     Block b;
     b.id = 0xfedc000000000000u + std::uint64_t(1000 + k * 7);
     b.row = row;
-    for (float& by : b.turn) by = float(0.1 * normal(random));
+    for (float& by : b.frame_rotation) by = float(0.1 * normal(random));
     if (k % 2 == 1 && contacts > 0) {
       --contacts;
       ++boxes;  // keeps k's bound
@@ -80,7 +80,7 @@ inline HapticUpdate make_update(unsigned seed, int boxes = 4, int contacts = 3, 
     ToolTerms tool;
     tool.hand = 1 - t;
     tool.device = random_pose(random);
-    tool.way = 0.01 * Vec3(normal(random), normal(random), normal(random));
+    tool.swept_displacement = 0.01 * Vec3(normal(random), normal(random), normal(random));
     tool.free = random_pose(random);
     tool.gain = random_symmetric(random, 0.01);
     tool.gain(0, 5) += 0.5;  // a gain need not be symmetric
@@ -114,9 +114,9 @@ inline void expect_equal(const HapticUpdate& a, const HapticUpdate& b) {
   EXPECT_EQ(p.delta_free, r.delta_free);
   EXPECT_EQ(p.lambda, r.lambda);
   EXPECT_EQ(p.step_s, r.step_s);
-  EXPECT_EQ(p.turned_steps, r.turned_steps);
+  EXPECT_EQ(p.prediction_horizon_steps, r.prediction_horizon_steps);
   EXPECT_EQ(p.rate, r.rate);
-  EXPECT_EQ(p.relaxation, r.relaxation);
+  EXPECT_EQ(p.retardation_time, r.retardation_time);
   ASSERT_EQ(p.blocks.size(), r.blocks.size());
   for (std::size_t i = 0; i < p.blocks.size(); ++i) EXPECT_TRUE(p.blocks[i] == r.blocks[i]) << "block " << i;
   ASSERT_EQ(p.tools.size(), r.tools.size());
@@ -125,7 +125,7 @@ inline void expect_equal(const HapticUpdate& a, const HapticUpdate& b) {
     EXPECT_EQ(x.hand, y.hand);
     EXPECT_EQ(x.device.p, y.device.p);
     EXPECT_EQ(x.device.q.coeffs(), y.device.q.coeffs());
-    EXPECT_EQ(x.way, y.way);
+    EXPECT_EQ(x.swept_displacement, y.swept_displacement);
     EXPECT_EQ(x.free.p, y.free.p);
     EXPECT_EQ(x.free.q.coeffs(), y.free.q.coeffs());
     EXPECT_EQ(x.gain, y.gain);

@@ -20,7 +20,7 @@ namespace insula {
 namespace {
 
 constexpr int queue_capacity = 1000;  // LCM's own default of 30 loses small streams on a busy machine
-constexpr int most_per_poll = 2000;
+constexpr int max_per_poll = 2000;
 constexpr const char* advice =
     "Insula's processes talk over UDP multicast. A machine without a network (a container, a laptop offline) has no route "
     "for it; add one on the loopback interface:\n"
@@ -118,7 +118,7 @@ int LcmBus::poll(int timeout_ms) {
   }
   pollfd wait{lcm_get_fileno(lcm_), POLLIN, 0};
   int handled = 0;
-  for (int timeout = std::max(timeout_ms, 0); handled < most_per_poll; timeout = 0) {
+  for (int timeout = std::max(timeout_ms, 0); handled < max_per_poll; timeout = 0) {
     if (::poll(&wait, 1, timeout) <= 0 || !(wait.revents & POLLIN)) break;
     if (lcm_handle(lcm_) != 0) break;
     ++handled;

@@ -31,8 +31,8 @@ bool word_ok(const std::string& s, std::size_t most) {
 bool non_negative(double v, double most) { return v >= 0 && v <= most; }  // false for NaN
 bool flag_ok(int v) { return v == 0 || v == 1; }
 
-constexpr double most_seconds = 1e9;
-constexpr double most_us = 1e12;
+constexpr double max_seconds = 1e9;
+constexpr double max_us = 1e12;
 
 }  // namespace
 
@@ -85,13 +85,13 @@ bool plausible(const insula_lcm::haptic_status_t& m, std::string& why) {
   for (double v : {m.ticks_per_s, m.fresh_forces_per_s[0], m.fresh_forces_per_s[1]})
     if (!non_negative(v, 1e6)) return fail(why, "rate out of range");
   for (double v : {m.lateness_us_p50, m.lateness_us_p99, m.lateness_us_max, m.solve_us_p50, m.solve_us_p99})
-    if (!non_negative(v, most_us)) return fail(why, "time out of range");
+    if (!non_negative(v, max_us)) return fail(why, "time out of range");
   if (std::any_of(std::begin(m.lateness_count), std::end(m.lateness_count), [](int n) { return n < 0; })) return fail(why, "negative count");
   if (!non_negative(m.sweeps_mean, 1e6) || !non_negative(m.residual_m_max, 1e6))
     return fail(why, "solver figures out of range");
   if (!non_negative(m.given_mJ[0], 1e6) || !non_negative(m.given_mJ[1], 1e6)) return fail(why, "energy out of range");
   if (!non_negative(m.force_scale, 100)) return fail(why, "force scale out of range");
-  if (!(std::abs(m.problem_age_ms) <= most_us)) return fail(why, "age out of range");  // -1: no problem yet
+  if (!(std::abs(m.problem_age_ms) <= max_us)) return fail(why, "age out of range");  // -1: no problem yet
   if (!text_ok(m.note, path_text)) return fail(why, "note too long");
   return true;
 }
@@ -99,7 +99,7 @@ bool plausible(const insula_lcm::haptic_status_t& m, std::string& why) {
 bool plausible(const insula_lcm::render_frame_t& m, std::string& why) {
   if (m.session < 0 || m.sequence < 0 || m.time_us < 0) return fail(why, "negative session, sequence or time");
   if (!consistent(m)) return fail(why, "counts disagree");
-  if (!non_negative(m.sim_time_s, most_seconds)) return fail(why, "simulated time out of range");
+  if (!non_negative(m.sim_time_s, max_seconds)) return fail(why, "simulated time out of range");
   if (!flag_ok(m.paused)) return fail(why, "flag is neither 0 nor 1");
   if (m.bodies > 256 || m.tools > 100) return fail(why, "too many bodies or tools");
   for (std::size_t i = 0; i < m.body.size(); ++i) {
@@ -112,8 +112,8 @@ bool plausible(const insula_lcm::render_frame_t& m, std::string& why) {
   }
   for (const auto& x : m.strand_x_m)
     if (!within(x.data(), 3, limits::position_m)) return fail(why, "strand position out of range");
-  for (float h : m.strand_health)
-    if (!(h == -1.f || (h >= 0.f && h <= 1.f))) return fail(why, "strand health out of range");
+  for (float h : m.strand_integrity)
+    if (!(h == -1.f || (h >= 0.f && h <= 1.f))) return fail(why, "strand integrity out of range");
   if (!within(m.strand_tension_N.data(), m.strands, limits::force_N)) return fail(why, "strand tension out of range");
   for (std::size_t i = 0; i < m.tool.size(); ++i) {
     const auto& t = m.tool[i];
@@ -149,7 +149,7 @@ bool plausible(const insula_lcm::scene_info_t& m, std::string& why) {
 
 bool plausible(const insula_lcm::sim_event_t& m, std::string& why) {
   if (m.session < 0 || m.sequence < 0 || m.time_us < 0) return fail(why, "negative session, sequence or time");
-  if (!non_negative(m.sim_time_s, most_seconds)) return fail(why, "simulated time out of range");
+  if (!non_negative(m.sim_time_s, max_seconds)) return fail(why, "simulated time out of range");
   if (m.kind.empty() || !word_ok(m.kind, 64)) return fail(why, "kind is no short word");
   if (!text_ok(m.id, short_text) || !text_ok(m.text, path_text)) return fail(why, "text too long");
   if (!within(&m.value, 1, 1e12)) return fail(why, "value out of range");
@@ -179,7 +179,7 @@ bool consistent(const insula_lcm::render_frame_t& m) {
   for (const auto& b : m.body)
     if (b.nodes < 0 || b.x_m.size() != std::size_t(b.nodes) || !all_triples(b.x_m)) return false;
   return m.strand_points == 2 * m.strands && m.strand_x_m.size() == std::size_t(m.strand_points) &&
-         all_triples(m.strand_x_m) && m.strand_health.size() == std::size_t(m.strands) &&
+         all_triples(m.strand_x_m) && m.strand_integrity.size() == std::size_t(m.strands) &&
          m.strand_tension_N.size() == std::size_t(m.strands) && m.tool.size() == std::size_t(m.tools) &&
          m.contact_x_m.size() == std::size_t(m.contacts) && all_triples(m.contact_x_m) &&
          m.contact_N.size() == std::size_t(m.contacts);

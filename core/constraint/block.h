@@ -29,7 +29,7 @@ struct Block {
   double friction = 0;        ///< Coulomb coefficient, friction and patch blocks only
   int normals = 0;            ///< of the blocks before this one, patch only
   /// For who asks between steps: rotation vector, rad, by which a friction block's directions turn about their place while the tool goes on by a step's way.
-  std::array<float, 3> turn{};
+  std::array<float, 3> frame_rotation{};
   bool operator==(const Block&) const = default;
   int rows() const { return law == LawKind::friction ? 3 : law == LawKind::patch ? 2 : 1; }
 };

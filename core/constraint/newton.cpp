@@ -146,11 +146,11 @@ class Pieces {
 }  // namespace
 
 bool newton_target(const ConstraintProblem& p, std::span<const double> free, const double* lambda, const double* delta, double proximal,
-                   int most_unknowns, NewtonMemory& m) {
+                   int max_unknowns, NewtonMemory& m) {
   const auto combine = sweep_kernels().combine;
   Pieces(p, lambda, delta, m).collect();
   const int count = int(m.unknowns.size());
-  if (count > most_unknowns) return false;
+  if (count > max_unknowns) return false;
   m.trial.assign(m.base.begin(), m.base.end());
   if (count == 0) return true;
   m.delta.assign(std::size_t(p.stride), 0.0);

@@ -42,7 +42,7 @@ struct NewtonMemory {
 /// The lambda that a full Newton step from lambda (with its delta, padded to the stride) leads to, written to memory.trial, not yet put
 /// into the bounds. `proximal` is eps above. False when the matrix is singular, or has more than most_unknowns.
 bool newton_target(const ConstraintProblem& problem, std::span<const double> delta_free, const double* lambda, const double* delta, double proximal,
-                   int most_unknowns, NewtonMemory& memory);
+                   int max_unknowns, NewtonMemory& memory);
 
 /// The nearest lambda within the bounds of every law.
 void put_into_bounds(const ConstraintProblem& problem, double* lambda);

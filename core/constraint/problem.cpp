@@ -11,7 +11,7 @@ void ConstraintProblem::resize(int n) {
   delta_free.assign(std::size_t(n), 0.0);
   lambda.assign(std::size_t(n), 0.0);
   rate.assign(std::size_t(n), 0.0);
-  relaxation.assign(std::size_t(n), 0.0);
+  retardation_time.assign(std::size_t(n), 0.0);
 }
 
 }  // namespace insula

@@ -16,7 +16,7 @@ namespace insula {
 struct ToolCoupling {
   int hand = 0;                      ///< 0 left, 1 right
   Pose device;                       ///< device pose (with the tool's offset applied) the problem was built with
-  Vec3 way = Vec3::Zero();           ///< of the device in the step, to `device`
+  Vec3 swept_displacement = Vec3::Zero();           ///< of the device in the step, to `device`
   Pose free;                         ///< the tool's free pose at the end of the step
   Mat6 gain = Mat6::Identity();      ///< d(free displacement)/d(device displacement)
   Mat6 compliance = Mat6::Zero();    ///< A_tool^-1, (m, rad) per (N, N m)
@@ -37,9 +37,9 @@ struct ConstraintProblem {
   std::vector<double> lambda;      ///< warm start, rows
   // How the answer goes on after the step, for who asks between steps (the servo).
   double step_s = 0;               ///< length h of the step that W is of; 0: unknown
-  double turned_steps = 0;         ///< contacts' directions are those so many steps after the poses, the tools going on as in the step
+  double prediction_horizon_steps = 0;         ///< contacts' directions are those so many steps after the poses, the tools going on as in the step
   std::vector<double> rate;        ///< rows: of delta at the end of the step, from all that is no hand's tool, m/s
-  std::vector<double> relaxation;  ///< rows: time constant of what the row lies on, viscous over elastic, s; 0: none
+  std::vector<double> retardation_time;  ///< rows: time constant of what the row lies on, viscous over elastic, s; 0: none
   std::vector<Block> blocks;       ///< in row order, covering every row once
   std::vector<ToolTerms> tools;    ///< at most two
 

@@ -62,7 +62,7 @@ std::string unsound_block(const ConstraintProblem& p, std::size_t k) {
 }  // namespace
 
 std::string unsound(const ConstraintProblem& p) {
-  if (p.rows < 0 || p.rows > most_file_rows || p.stride < p.rows || p.w.size() < std::size_t(p.rows) * std::size_t(p.stride)) return "sizes do not fit";
+  if (p.rows < 0 || p.rows > max_file_rows || p.stride < p.rows || p.w.size() < std::size_t(p.rows) * std::size_t(p.stride)) return "sizes do not fit";
   if (p.delta_free.size() != std::size_t(p.rows) || p.lambda.size() != std::size_t(p.rows)) return "sizes do not fit";
   int row = 0;
   for (std::size_t k = 0; k < p.blocks.size(); ++k) {
@@ -109,7 +109,7 @@ ConstraintProblem read_problem(const std::filesystem::path& file) {
   Reader read(bytes, name);
   read.next<std::uint64_t>();
   const auto rows = read.next<std::int32_t>(), blocks = read.next<std::int32_t>();
-  if (rows < 0 || rows > most_file_rows) throw InputError(fmt::format("{}: {} rows, 0 to {} are possible", name, rows, most_file_rows));
+  if (rows < 0 || rows > max_file_rows) throw InputError(fmt::format("{}: {} rows, 0 to {} are possible", name, rows, max_file_rows));
   if (blocks < 0 || blocks > rows) throw InputError(fmt::format("{}: {} blocks for {} rows", name, blocks, rows));
   const std::size_t n = std::size_t(rows), expected = std::size_t(blocks) * 48 + 8 * (2 * n + n * (n + 1) / 2);
   if (read.left() != expected) throw InputError(fmt::format("{}: has {} bytes after its head, {} are expected", name, read.left(), expected));

@@ -13,7 +13,7 @@
 
 namespace insula {
 
-inline constexpr int most_file_rows = 4096;
+inline constexpr int max_file_rows = 4096;
 
 /// Throws InputError when the file cannot be written.
 void write_problem(const std::filesystem::path& file, const ConstraintProblem& problem);

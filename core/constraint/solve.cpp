@@ -76,13 +76,13 @@ class Forecast {
  public:
   Forecast(const SolveSettings& s) : settings_(s) {}
   bool stalls(int sweeps, double moved) {
-    most_ = std::max(most_, moved);
+    max_moved_ = std::max(max_moved_, moved);
     if (settings_.max_newton <= 0) return false;
     if (settings_.newton_soon && sweeps >= window / 2) return true;
     if (sweeps % window != 0) return false;
-    const double share = last_ > 0 ? most_ / last_ : 0;
-    last_ = most_;
-    most_ = 0;
+    const double share = last_ > 0 ? max_moved_ / last_ : 0;
+    last_ = max_moved_;
+    max_moved_ = 0;
     if (share <= 0) return false;
     if (share >= 1) return sweeps >= 4 * window;  // at first a warm start may have far to go
     return sweeps + window * std::log(settings_.tolerance_m / last_) / std::log(share) > 2.0 * settings_.max_sweeps;
@@ -91,7 +91,7 @@ class Forecast {
  private:
   static constexpr int window = 16;
   const SolveSettings& settings_;
-  double most_ = 0, last_ = 0;
+  double max_moved_ = 0, last_ = 0;
 };
 
 // Sweeps until one moves less than the tolerance, or there have been enough of them, or they are forecast to stall.
@@ -133,7 +133,7 @@ void sweep_more(const ConstraintProblem& p, std::span<const double> free, SolveS
 
 constexpr double shortest_step = 0.1;             // of a Newton step that is tried
 constexpr int smoothing = 3;                      // sweeps after it
-constexpr double least_proximal = 1e-11, most_proximal = 1;
+constexpr double min_proximal = 1e-11, max_proximal = 1;
 
 // Newton from the sweeps' result, which stays what it is unless something better is found.
 void newton_on(const ConstraintProblem& p, std::span<const double> free, const SolveSettings& settings, const SweepData& data, SolveWorkspace& ws,
@@ -141,7 +141,7 @@ void newton_on(const ConstraintProblem& p, std::span<const double> free, const S
   const auto sweep = sweep_kernels().sweep;
   const std::size_t n = std::size_t(p.rows);
   NewtonMemory& m = ws.newton;
-  double proximal = least_proximal;
+  double proximal = min_proximal;
   while (stats.residual_m > settings.tolerance_m && stats.newton_steps < settings.max_newton) {
     ++stats.newton_steps;
     bool better = false;
@@ -164,10 +164,10 @@ void newton_on(const ConstraintProblem& p, std::span<const double> free, const S
         ws.lambda.assign(m.trial.begin(), m.trial.end());
       }
     }
-    proximal = better ? std::max(least_proximal, 0.1 * proximal) : 100 * proximal;
+    proximal = better ? std::max(min_proximal, 0.1 * proximal) : 100 * proximal;
     if (better) continue;
     if (settings.newton_sweeps <= 0) return;
-    if (proximal > most_proximal) proximal = least_proximal;  // sweeps have moved on meanwhile
+    if (proximal > max_proximal) proximal = min_proximal;  // sweeps have moved on meanwhile
     sweep_more(p, free, settings, settings.newton_sweeps, true, data, ws, stats);
   }
 }

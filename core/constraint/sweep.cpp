@@ -49,7 +49,7 @@ void local_solution(const ConstraintProblem& p, const Block& b, const double* la
 
 namespace {
 
-constexpr double least_ratio = 1e-9;  // of the eigenvalues of a block, below which its inverse is not used
+constexpr double min_ratio = 1e-9;  // of the eigenvalues of a block, below which its inverse is not used
 
 void set_up_tangents(LocalBlock& l, double s11, double s12, double s22) {
   const Eigen2 eigen(s11, s12, s22);
@@ -67,7 +67,7 @@ void set_up_friction(LocalBlock& l, const double* w, int s) {
   set_up_tangents(l, s11, s12, s22);
   l.m1 = l.vx * wn1 + l.vy * wn2;
   l.m2 = -l.vy * wn1 + l.vx * wn2;
-  l.regular = l.friction > 0 && l.low > least_ratio * (l.high + wnn);
+  l.regular = l.friction > 0 && l.low > min_ratio * (l.high + wnn);
   if (!l.regular) return;
   // By the Schur complement: tangential part S^-1, normal part bordered.
   const double d = 1 / (s11 * s22 - s12 * s12), t11 = s22 * d, t12 = -s12 * d, t22 = s11 * d;
@@ -78,7 +78,7 @@ void set_up_friction(LocalBlock& l, const double* w, int s) {
 
 void set_up_patch(LocalBlock& l, const double* w, int s) {
   set_up_tangents(l, w[0], w[1], w[s + 1]);
-  l.regular = l.high > 0 && l.low > least_ratio * l.high;
+  l.regular = l.high > 0 && l.low > min_ratio * l.high;
   if (!l.regular) return;
   const double d = 1 / (w[0] * w[s + 1] - w[1] * w[1]);
   l.inverse[0] = w[s + 1] * d;

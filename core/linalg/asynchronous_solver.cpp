@@ -31,15 +31,15 @@ double product(const std::vector<double>& a, const std::vector<double>& b) {
 AsynchronousSolver::AsynchronousSolver(double tolerance) : tolerance_(tolerance) {}
 
 void AsynchronousSolver::analyse(const BlockMatrix& a) {
-  front_ = std::make_unique<NearFactor>(a);
+  front_ = std::make_unique<StaleFactor>(a);
   background_.prepare(a, *front_);
   const std::size_t n = 3 * std::size_t(a.nodes());
-  for (std::vector<double>* v : {&b_, &r_, &z_, &p_, &ap_, &last_x_, &difference_, &held_, &given_, &left_}) v->assign(n, 0.0);
-  turned_.assign(std::size_t(a.nodes()), Mat3::Identity());
-  since_ = factor_turned_ = asked_turned_ = turned_;
+  for (std::vector<double>* v : {&b_, &r_, &z_, &p_, &ap_, &last_x_, &difference_, &lagged_, &given_, &left_}) v->assign(n, 0.0);
+  rotation_.assign(std::size_t(a.nodes()), Mat3::Identity());
+  since_ = factor_rotation_ = requested_rotation_ = rotation_;
 }
 
-void AsynchronousSolver::turn(const std::vector<Mat3>& rotation) { turned_ = rotation; }
+void AsynchronousSolver::set_rotations(const std::vector<Mat3>& rotation) { rotation_ = rotation; }
 
 bool AsynchronousSolver::factorise(const BlockMatrix& a) {
   a_ = &a;
@@ -47,7 +47,7 @@ bool AsynchronousSolver::factorise(const BlockMatrix& a) {
     status_ = {};
     if (!front_->factorise(a)) return false;
     usable_ = true;
-    factor_turned_ = turned_;
+    factor_rotation_ = rotation_;
     factor_is_new_ = true;
     ++status_.factors;
   } else {
@@ -58,16 +58,16 @@ bool AsynchronousSolver::factorise(const BlockMatrix& a) {
   }
   status_.iterations = 0;
   status_.residual_m = 0;
-  held_.swap(given_);
+  lagged_.swap(given_);
   std::fill(given_.begin(), given_.end(), 0.0);
   std::fill(left_.begin(), left_.end(), 0.0);
-  for (std::size_t i = 0; i < since_.size(); ++i) since_[i].noalias() = turned_[i] * factor_turned_[i].transpose();
+  for (std::size_t i = 0; i < since_.size(); ++i) since_[i].noalias() = rotation_[i] * factor_rotation_[i].transpose();
   return true;
 }
 
 void AsynchronousSolver::precondition(const double* r, double* z) {
   for (std::size_t i = 0; i < since_.size(); ++i) Eigen::Map<Vec3>(z + 3 * i) = since_[i].transpose() * Eigen::Map<const Vec3>(r + 3 * i);
-  front_->half.solve(z);
+  front_->fp16.solve(z);
   for (std::size_t i = 0; i < since_.size(); ++i) Eigen::Map<Vec3>(z + 3 * i) = (since_[i] * Eigen::Map<Vec3>(z + 3 * i)).eval();
 }
 
@@ -80,7 +80,7 @@ double AsynchronousSolver::refine(const double* b, double* x, double tolerance) 
   for (std::size_t i = 0; i < n; ++i) r_[i] = b[i] - ap_[i];
   double before = 0, size = 0, left = 0;
   int k = 0;
-  while (k < most_iterations) {
+  while (k < max_iterations) {
     precondition(r_.data(), z_.data());
     const double last = size;
     size = largest(z_);
@@ -115,58 +115,58 @@ void AsynchronousSolver::solve(double* x) {
 }
 
 void AsynchronousSolver::begin_motion(const VecX& load, const VecX& guess) {
-  for (std::size_t i = 0; i < b_.size(); ++i) b_[i] = load[long(i)] + held_[i];
+  for (std::size_t i = 0; i < b_.size(); ++i) b_[i] = load[long(i)] + lagged_[i];
   free_ = guess;
   status_.residual_m = refine(b_.data(), free_.data(), early * tolerance_);
   left_ = r_;
 }
 
 void AsynchronousSolver::begin_compliance(const BodyRows& rows, const std::vector<int>& node_of_block) {
-  std::swap(turned_rows_, rows_before_);
-  turned_rows_.row.resize(rows.row.size());
-  std::iota(turned_rows_.row.begin(), turned_rows_.row.end(), 0);
-  turned_rows_.start = rows.start;
-  turned_rows_.block = rows.block;
-  turned_rows_.coeff.resize(rows.coeff.size());
+  std::swap(rotated_rows_, rows_before_);
+  rotated_rows_.row.resize(rows.row.size());
+  std::iota(rotated_rows_.row.begin(), rotated_rows_.row.end(), 0);
+  rotated_rows_.start = rows.start;
+  rotated_rows_.block = rows.block;
+  rotated_rows_.coeff.resize(rows.coeff.size());
   for (std::size_t e = 0; e < rows.coeff.size(); ++e)
-    if (const int node = node_of_block[std::size_t(rows.block[e])]; node >= 0) turned_rows_.coeff[e].noalias() = since_[std::size_t(node)].transpose() * rows.coeff[e];
-    else turned_rows_.coeff[e].setZero();
+    if (const int node = node_of_block[std::size_t(rows.block[e])]; node >= 0) rotated_rows_.coeff[e].noalias() = since_[std::size_t(node)].transpose() * rows.coeff[e];
+    else rotated_rows_.coeff[e].setZero();
   nodes_of_block_ = &node_of_block;
-  add_held_row(node_of_block);
+  add_lagged_row(node_of_block);
   if (!factor_is_new_) keep_rows();
   factor_is_new_ = false;
-  front_->full.begin_compliance(turned_rows_, node_of_block);
+  front_->full.begin_compliance(rotated_rows_, node_of_block);
   corrected_ = false;
-  const std::size_t all = std::size_t(turned_rows_.count());
+  const std::size_t all = std::size_t(rotated_rows_.count());
   s_.resize(all * all);
 }
 
-// The held forces as a row whose lambda is -1: what they do is taken off with the same compliance that lambda adds it with.
-void AsynchronousSolver::add_held_row(const std::vector<int>& node_of_block) {
+// The lagged forces as a row whose lambda is -1: what they do is taken off with the same compliance that lambda adds it with.
+void AsynchronousSolver::add_lagged_row(const std::vector<int>& node_of_block) {
   if (block_of_node_.empty()) {
-    block_of_node_.resize(held_.size() / 3);
+    block_of_node_.resize(lagged_.size() / 3);
     for (std::size_t k = 0; k < node_of_block.size(); ++k)
       if (node_of_block[k] >= 0) block_of_node_[std::size_t(node_of_block[k])] = int(k);
   }
-  if (std::all_of(held_.begin(), held_.end(), [](double f) { return f == 0; })) return;
-  turned_rows_.open(turned_rows_.count());
+  if (std::all_of(lagged_.begin(), lagged_.end(), [](double f) { return f == 0; })) return;
+  rotated_rows_.open(rotated_rows_.count());
   for (std::size_t i = 0; i < since_.size(); ++i) {
-    const Eigen::Map<const Vec3> force(held_.data() + 3 * i);
-    if (!force.isZero(0)) turned_rows_.add(block_of_node_[i], since_[i].transpose() * force);
+    const Eigen::Map<const Vec3> force(lagged_.data() + 3 * i);
+    if (!force.isZero(0)) rotated_rows_.add(block_of_node_[i], since_[i].transpose() * force);
   }
 }
 
 void AsynchronousSolver::add_compliance(const BodyRows& rows, double* w, int stride) {
-  const std::size_t m = std::size_t(rows.count()), all = std::size_t(turned_rows_.count());
+  const std::size_t m = std::size_t(rows.count()), all = std::size_t(rotated_rows_.count());
   if (m == 0) return;
   std::fill(s_.begin(), s_.end(), 0.0);
-  front_->full.add_compliance(turned_rows_, s_.data(), int(all));
+  front_->full.add_compliance(rotated_rows_, s_.data(), int(all));
   for (std::size_t i = 0; i < m; ++i)
     for (std::size_t j = 0; j < m; ++j) w[std::size_t(rows.row[i]) * std::size_t(stride) + std::size_t(rows.row[j])] += s_[i * all + j];
 }
 
-void AsynchronousSolver::take_off_held(const BodyRows& rows, double* delta) const {
-  const std::size_t m = std::size_t(rows.count()), all = std::size_t(turned_rows_.count());
+void AsynchronousSolver::subtract_lagged(const BodyRows& rows, double* delta) const {
+  const std::size_t m = std::size_t(rows.count()), all = std::size_t(rotated_rows_.count());
   if (all == m) return;
   for (std::size_t i = 0; i < m; ++i) delta[rows.row[i]] -= s_[i * all + m];
 }
@@ -174,18 +174,18 @@ void AsynchronousSolver::take_off_held(const BodyRows& rows, double* delta) cons
 // Rows turn a little in every step, and one that is the same to the bit costs nothing. Compliance is not exact here anyway.
 void AsynchronousSolver::keep_rows() {
   const BodyRows& old = rows_before_;
-  for (int i = 0; i < turned_rows_.count(); ++i) {
-    const int begin = turned_rows_.start[std::size_t(i)], size = turned_rows_.start[std::size_t(i) + 1] - begin;
+  for (int i = 0; i < rotated_rows_.count(); ++i) {
+    const int begin = rotated_rows_.start[std::size_t(i)], size = rotated_rows_.start[std::size_t(i) + 1] - begin;
     for (int j = 0; j < old.count(); ++j) {
       const int from = old.start[std::size_t(j)];
-      if (old.start[std::size_t(j) + 1] - from != size || !std::equal(old.block.begin() + from, old.block.begin() + from + size, turned_rows_.block.begin() + begin)) continue;
+      if (old.start[std::size_t(j) + 1] - from != size || !std::equal(old.block.begin() + from, old.block.begin() + from + size, rotated_rows_.block.begin() + begin)) continue;
       double most = 0, change = 0;
       for (int e = 0; e < size; ++e) {
         most = std::max(most, old.coeff[std::size_t(from + e)].squaredNorm());
-        change = std::max(change, (old.coeff[std::size_t(from + e)] - turned_rows_.coeff[std::size_t(begin + e)]).squaredNorm());
+        change = std::max(change, (old.coeff[std::size_t(from + e)] - rotated_rows_.coeff[std::size_t(begin + e)]).squaredNorm());
       }
       if (change > hardly * hardly * most) continue;
-      std::copy_n(old.coeff.begin() + from, size, turned_rows_.coeff.begin() + begin);
+      std::copy_n(old.coeff.begin() + from, size, rotated_rows_.coeff.begin() + begin);
       break;
     }
   }
@@ -195,11 +195,11 @@ void AsynchronousSolver::keep_rows() {
 void AsynchronousSolver::correct(const BodyRows& rows, const double* lambda, double* x) {
   const std::size_t m = std::size_t(rows.count()), n = b_.size();
   bool moved = !corrected_;
-  change_.assign(std::size_t(turned_rows_.count()), 0.0);
+  change_.assign(std::size_t(rotated_rows_.count()), 0.0);
   if (!corrected_) {
     last_lambda_.assign(m, 0.0);
     std::fill(last_x_.begin(), last_x_.end(), 0.0);
-    if (change_.size() > m) change_[m] = -1;  // the held forces
+    if (change_.size() > m) change_[m] = -1;  // the lagged forces
     lacks_ = 1;
     corrected_ = true;
   }
@@ -209,7 +209,7 @@ void AsynchronousSolver::correct(const BodyRows& rows, const double* lambda, dou
     moved = moved || change_[i] != 0;
   }
   if (moved) {
-    front_->half.correct(turned_rows_, change_.data(), difference_.data());
+    front_->fp16.correct(rotated_rows_, change_.data(), difference_.data());
     for (std::size_t i = 0; i < since_.size(); ++i) Eigen::Map<Vec3>(difference_.data() + 3 * i) = (since_[i] * Eigen::Map<Vec3>(difference_.data() + 3 * i)).eval();
     for (std::size_t i = 0; i < n; ++i) last_x_[i] += difference_[i];
     // A change is as good as the factor knows it, and its rows, which may be off by `hardly`.
@@ -221,14 +221,14 @@ void AsynchronousSolver::correct(const BodyRows& rows, const double* lambda, dou
           Eigen::Map<Vec3>(given_.data() + 3 * node) += lambda[rows.row[i]] * rows.coeff[std::size_t(e)];
   }
   if (lacks_ > tolerance_) {
-    for (std::size_t i = 0; i < n; ++i) b_[i] = given_[i] - held_[i] + left_[i];
+    for (std::size_t i = 0; i < n; ++i) b_[i] = given_[i] - lagged_[i] + left_[i];
     lacks_ = refine(b_.data(), last_x_.data(), tolerance_);
   }
   status_.residual_m = lacks_;
   std::copy(last_x_.begin(), last_x_.end(), x);
 }
 
-void AsynchronousSolver::forget() {
+void AsynchronousSolver::reset() {
   background_.drop();
   usable_ = false;
   quality_ = 1;
@@ -240,16 +240,16 @@ void AsynchronousSolver::forget() {
 void AsynchronousSolver::ask() {
   if (!background_.idle()) return;
   background_.ask(*a_);
-  asked_turned_ = turned_;
+  requested_rotation_ = rotation_;
   asked_steps_ = 0;
 }
 
 void AsynchronousSolver::take() {
   ++asked_steps_;
-  if (may_wait_ && asked_steps_ < delay()) return;
-  if (background_.take(front_, may_wait_) != BackgroundFactor::Answer::good) return;
+  if (deterministic_ && asked_steps_ < delay()) return;
+  if (background_.take(front_, deterministic_) != BackgroundFactor::Answer::good) return;
   factor_is_new_ = true;
-  std::swap(factor_turned_, asked_turned_);
+  std::swap(factor_rotation_, requested_rotation_);
   status_.age = asked_steps_;
   quality_ = 1;
   seen_ = 0;

@@ -25,7 +25,7 @@ class AsynchronousSolver final : public BodySolver {
   /// background, when iterations have become many. False: the first was not positive definite.
   bool factorise(const BlockMatrix& a) override;
   bool wants_rotations() const override { return true; }
-  void turn(const std::vector<Mat3>& rotation) override;
+  void set_rotations(const std::vector<Mat3>& rotation) override;
   void solve(double* x) override;
   void begin_motion(const VecX& load, const VecX& guess) override;
   void unforced_motion(const VecX& load, VecX& x) override { refine(load.data(), x.data(), early * tolerance_); }
@@ -33,11 +33,11 @@ class AsynchronousSolver final : public BodySolver {
   int compliance_parts(ComplianceAct act) const override { return front_->full.compliance_parts(act); }
   void compliance_part(ComplianceAct act, int part) override { front_->full.compliance_part(act, part); }
   void add_compliance(const BodyRows& rows, double* w, int stride) override;
-  void take_off_held(const BodyRows& rows, double* delta) const override;
+  void subtract_lagged(const BodyRows& rows, double* delta) const override;
   void correct(const BodyRows& rows, const double* lambda, double* x) override;
   bool exact() const override { return false; }
-  void forget() override;
-  void may_wait(bool yes) override { may_wait_ = yes; }
+  void reset() override;
+  void set_deterministic(bool yes) override { deterministic_ = yes; }
   SolverStatus status() const override { return status_; }
   int rows_reused() const override { return front_->full.rows_reused(); }
   SolverCost cost() const override { return front_->full.cost(); }
@@ -47,27 +47,27 @@ class AsynchronousSolver final : public BodySolver {
   int delay() const { return 1 + int(front_->full.cost().factor_flops / 5e8); }
   static constexpr double early = 30;  ///< free motion may lack so many tolerances
   static constexpr int enough_iterations = 2;  ///< of a solve: more of them and a new factor is asked for
-  static constexpr int most_iterations = 12;
+  static constexpr int max_iterations = 12;
 
  private:
   void keep_rows();
   void precondition(const double* r, double* z);
   double refine(const double* b, double* x, double tolerance);  ///< what is left, m
-  void add_held_row(const std::vector<int>& node_of_block);
+  void add_lagged_row(const std::vector<int>& node_of_block);
   void ask();
   void take();
 
   double tolerance_;
   const BlockMatrix* a_ = nullptr;
-  std::unique_ptr<NearFactor> front_;
+  std::unique_ptr<StaleFactor> front_;
   BackgroundFactor background_;
   int asked_steps_ = 0;                                      ///< since it was asked
-  std::vector<Mat3> turned_, factor_turned_, asked_turned_;  ///< of each node: now, as the factor knows it, as the one asked for will
+  std::vector<Mat3> rotation_, factor_rotation_, requested_rotation_;  ///< of each node: now, as the factor knows it, as the one asked for will
   std::vector<Mat3> since_;                                 ///< now from then
-  BodyRows turned_rows_, rows_before_;  ///< as the factor is given them, numbered from 0; after them that of the held forces, if there are any
-  std::vector<double> held_, given_, left_;  ///< forces on nodes: rows' of the last step, of this one, and what the free motion has not balanced
+  BodyRows rotated_rows_, rows_before_;  ///< as the factor is given them, numbered from 0; after them that of the lagged forces, if there are any
+  std::vector<double> lagged_, given_, left_;  ///< forces on nodes: rows' of the last step, of this one, and what the free motion has not balanced
   std::vector<int> block_of_node_;
-  std::vector<double> s_;       ///< compliance of turned_rows_, as last added
+  std::vector<double> s_;       ///< compliance of rotated_rows_, as last added
   bool factor_is_new_ = true;
   bool corrected_ = false;      ///< since begin_compliance(): last_lambda_ and last_x_ are of its rows
   std::vector<double> b_, r_, z_, p_, ap_, last_lambda_, last_x_, difference_, change_;
@@ -76,7 +76,7 @@ class AsynchronousSolver final : public BodySolver {
   double seen_ = 0;     ///< what an iteration left of an error, when last seen
   double quality_ = 1;  ///< the same, doubled in every step until seen again
   SolverStatus status_;
-  bool may_wait_ = true, usable_ = false;
+  bool deterministic_ = true, usable_ = false;
 };
 
 }  // namespace insula

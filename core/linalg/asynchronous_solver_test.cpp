@@ -111,7 +111,7 @@ TEST(AsynchronousSolver, AMatrixThatTurnsWithItsNodesCostsNothing) {
     auto& [s, solver] = ready;
     const auto r = turned(0.7);
     s.fill(r, 0);
-    if (told) solver.turn(r);
+    if (told) solver.set_rotations(r);
     ASSERT_TRUE(solver.factorise(s.a));
     if (told) {
       EXPECT_LE(iterations(solver, s), few);
@@ -143,7 +143,7 @@ TEST(AsynchronousSolver, AFactorComesSoManyStepsAfterItWasAskedFor) {
 TEST(AsynchronousSolver, WithoutLeaveToWaitAStepGoesOnWithTheOldFactor) {
   Ready ready(4);
   auto& [s, solver] = ready;
-  solver.may_wait(false);
+  solver.set_deterministic(false);
   s.fill(turned(0), 3);
   // However long the thread takes, every step has a solution; and at last the factor comes.
   int steps = 0;
@@ -202,7 +202,7 @@ TEST(AsynchronousSolver, CorrectionKnowsTheStepsOwnMatrix) {
   auto& [s, solver] = ready;
   const auto r = turned(0.3);
   s.fill(r, 0.3);
-  solver.turn(r);
+  solver.set_rotations(r);
   ASSERT_TRUE(solver.factorise(s.a));
 
   constexpr int m = ThreeNodeRows::m;
@@ -228,8 +228,8 @@ TEST(AsynchronousSolver, CorrectionKnowsTheStepsOwnMatrix) {
 }
 
 // Steps of a body under rows whose forces change: free motion under the last forces, then what is new. Together they are the step's
-// motion, and what the compliance takes off for the held forces leaves nearly the motion without any.
-TEST(AsynchronousSolver, FreeMotionUnderHeldForcesAndTheCorrectionAreTheWholeMotion) {
+// motion, and what the compliance takes off for the lagged forces leaves nearly the motion without any.
+TEST(AsynchronousSolver, FreeMotionUnderLaggedForcesAndTheCorrectionAreTheWholeMotion) {
   Ready ready(7);
   auto& [s, solver] = ready;
   constexpr int m = ThreeNodeRows::m;
@@ -240,7 +240,7 @@ TEST(AsynchronousSolver, FreeMotionUnderHeldForcesAndTheCorrectionAreTheWholeMot
   for (int step = 0; step < 12; ++step) {
     const auto r = turned(0.02 * step);
     s.fill(r, 0.02 * step);
-    solver.turn(r);
+    solver.set_rotations(r);
     ASSERT_TRUE(solver.factorise(s.a));
     const VecX force = 1e-3 * any(20) * (1 + 0.05 * step);
     const auto truth = s.dense.ldlt();
@@ -260,7 +260,7 @@ TEST(AsynchronousSolver, FreeMotionUnderHeldForcesAndTheCorrectionAreTheWholeMot
       VecX delta = VecX::Zero(2 * m), free(m), at(m);
       solver.add_free_motion(rows, identity, delta.data());
       for (int i = 0; i < m; ++i) free[i] = delta[2 * i];
-      solver.take_off_held(rows, delta.data());
+      solver.subtract_lagged(rows, delta.data());
       for (int i = 0; i < m; ++i) at[i] = delta[2 * i];
       const VecX without = h * truth.solve(force), held = free - without;
       EXPECT_LT((at - without).norm(), 0.1 * (without.norm() + held.norm()) + 50 * tolerance) << step;
@@ -277,19 +277,19 @@ TEST(AsynchronousSolver, ForgetsAndBeginsAnewWithTheSameBits) {
   solver.analyse(s.a);
   std::vector<double> bits[2];
   for (auto& out : bits) {
-    solver.forget();
+    solver.reset();
     s.fill(turned(0), 0);
     ASSERT_TRUE(solver.factorise(s.a));
     for (int k = 0; k < 30; ++k) {
       const auto r = turned(0.01 * k);
       s.fill(r, 0.05 * k);
-      solver.turn(r);
+      solver.set_rotations(r);
       ASSERT_TRUE(solver.factorise(s.a));
       VecX x = any(unsigned(k));
       solver.solve(x.data());
       out.insert(out.end(), x.data(), x.data() + x.size());
     }
-    solver.turn(turned(0));
+    solver.set_rotations(turned(0));
   }
   EXPECT_EQ(bits[0], bits[1]);
   EXPECT_GT(solver.status().factors, 1);

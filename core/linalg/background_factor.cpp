@@ -16,16 +16,16 @@ MultifrontalCholesky<float> analysed(const BlockMatrix& a) {
 
 }  // namespace
 
-NearFactor::NearFactor(const BlockMatrix& a) : full(analysed(a)), half(full) {}
+StaleFactor::StaleFactor(const BlockMatrix& a) : full(analysed(a)), fp16(full) {}
 
-bool NearFactor::factorise(const BlockMatrix& a) {
+bool StaleFactor::factorise(const BlockMatrix& a) {
   if (!full.factorise(a)) return false;
-  half.round();
+  fp16.round();
   return true;
 }
 
-void BackgroundFactor::prepare(const BlockMatrix& a, const NearFactor& like) {
-  factor_ = std::make_unique<NearFactor>(like);
+void BackgroundFactor::prepare(const BlockMatrix& a, const StaleFactor& like) {
+  factor_ = std::make_unique<StaleFactor>(like);
   matrix_ = a;
   if (!thread_.joinable()) thread_ = std::thread([this] { work(); });
 }
@@ -45,7 +45,7 @@ void BackgroundFactor::ask(const BlockMatrix& a) {
   wake_.notify_one();
 }
 
-BackgroundFactor::Answer BackgroundFactor::take(std::unique_ptr<NearFactor>& factor, bool wait) {
+BackgroundFactor::Answer BackgroundFactor::take(std::unique_ptr<StaleFactor>& factor, bool wait) {
   std::unique_lock lock(mutex_);
   if (state_ == State::idle) return Answer::nothing_asked;
   if (wait) done_.wait(lock, [this] { return state_ != State::asked; });

@@ -6,34 +6,34 @@
 #include <mutex>
 #include <thread>
 
-#include "core/linalg/half_factor.h"
+#include "core/linalg/fp16_factor.h"
 
 namespace insula {
 
 /// A factor for compliance, and its numbers in 16 bits for what need only be near.
-struct NearFactor {
-  explicit NearFactor(const BlockMatrix& a);
+struct StaleFactor {
+  explicit StaleFactor(const BlockMatrix& a);
   /// Another one for matrices of the same pattern, without its symbolic work.
-  NearFactor(const NearFactor& like) : full(like.full), half(full) {}
+  StaleFactor(const StaleFactor& like) : full(like.full), fp16(full) {}
   /// False when `a` is not positive definite in single precision.
   bool factorise(const BlockMatrix& a);
 
   MultifrontalCholesky<float> full;
-  HalfFactor half;
+  Fp16Factor fp16;
 };
 
 class BackgroundFactor {
  public:
   ~BackgroundFactor();
   /// For matrices of the pattern of `a`, which `like` was made for; starts the thread.
-  void prepare(const BlockMatrix& a, const NearFactor& like);
+  void prepare(const BlockMatrix& a, const StaleFactor& like);
 
   enum class Answer { nothing_asked, not_yet, good, bad };
   bool idle();
   /// Copies `a` and has it factorised, when idle.
   void ask(const BlockMatrix& a);
   /// A good answer leaves the new factor in `factor` and takes the old one for the next; good and bad make this idle again.
-  Answer take(std::unique_ptr<NearFactor>& factor, bool wait);
+  Answer take(std::unique_ptr<StaleFactor>& factor, bool wait);
   /// Waits for what was asked, and drops it.
   void drop();
 
@@ -41,7 +41,7 @@ class BackgroundFactor {
   void work();
 
   enum class State { idle, asked, ready, failed };  ///< while asked, factor and matrix are the thread's
-  std::unique_ptr<NearFactor> factor_;
+  std::unique_ptr<StaleFactor> factor_;
   BlockMatrix matrix_;
   std::thread thread_;
   std::mutex mutex_;

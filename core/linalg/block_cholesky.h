@@ -41,7 +41,7 @@ class MultifrontalCholesky final : public BodySolver {
   void combine(const BodyRows& rows, const double* lambda, Real* x) const;
 
  private:
-  static constexpr int least_part = 32;                   ///< columns that are worth a part
+  static constexpr int min_part = 32;                   ///< columns that are worth a part
   static constexpr int lanes = 64 / int(sizeof(Real));    ///< of the widest vector; what leading dimensions are multiples of
   static constexpr int slack = 64;                        ///< kernels read whole vectors
 

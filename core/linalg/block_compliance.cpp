@@ -150,7 +150,7 @@ void MultifrontalCholesky<Real>::share_out() {
     auto& begin = part_begin_[std::size_t(act)];
     begin.clear();
     if (whole > 0) begin.push_back(0);
-    if (fresh_ >= 2 * least_part) {
+    if (fresh_ >= 2 * min_part) {
       work_.assign(std::size_t(whole), 0.0);
       double all = 0;
       for (std::size_t i = 0; i < e_.front.size(); ++i) {

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "core/linalg/block_matrix.h"
-#include "core/mechanics/rows.h"
+#include "core/linalg/body_rows.h"
 
 namespace insula {
 
@@ -49,7 +49,7 @@ class BodySolver {
   /// x := A^-1 x, 3 * nodes values in natural order.
   virtual void solve(double* x) = 0;
   /// First half: takes the load, natural order, N. A solver that is not exact begins at `guess`, m, adds the forces that rows had in the last step
-  /// (held forces, which motion under them changes less than motion without), and may stop early. What that leaves, correct() makes up for.
+  /// (lagged forces, which motion under them changes less than motion without), and may stop early. What that leaves, correct() makes up for.
   virtual void begin_motion(const VecX& load, const VecX& /*guess*/) {
     free_ = load;
     solve(free_.data());
@@ -60,7 +60,7 @@ class BodySolver {
     begin_motion(load, guess);
     return true;
   }
-  /// x := A^-1 load, from x, without held forces, about as well as the free motion. After begin_motion() of that load.
+  /// x := A^-1 load, from x, without lagged forces, about as well as the free motion. After begin_motion() of that load.
   virtual void unforced_motion(const VecX& load, VecX& x) {
     x = load;
     solve(x.data());
@@ -82,10 +82,10 @@ class BodySolver {
   }
   /// Whether turn() does anything. Rotation of each node from rest, before factorise() of the same step.
   virtual bool wants_rotations() const { return false; }
-  virtual void turn(const std::vector<Mat3>& /*rotation*/) {}
+  virtual void set_rotations(const std::vector<Mat3>& /*rotation*/) {}
 
   /// H A^-1 H^T of the rows in three acts: set-up, Y = L^-1 H^T, then Y^T Y. The last two come in parts that threads may share; the
-  /// bits do not depend on who does which. `node_of_block` maps a row's block to a node of the matrix, -1 for a held one.
+  /// bits do not depend on who does which. `node_of_block` maps a row's block to a node of the matrix, -1 for a fixed one.
   virtual void begin_compliance(const BodyRows& rows, const std::vector<int>& node_of_block) = 0;
   virtual int compliance_parts(ComplianceAct act) const = 0;
   virtual void compliance_part(ComplianceAct act, int part) = 0;
@@ -96,8 +96,8 @@ class BodySolver {
   }
   /// Adds it into w (row-major, `stride` numbers a row) at the rows' numbers, both triangles.
   virtual void add_compliance(const BodyRows& rows, double* w, int stride) = 0;
-  /// Takes off delta (by row number) what held forces make of it in the free motion, as far as the compliance knows.
-  virtual void take_off_held(const BodyRows& /*rows*/, double* /*delta*/) const {}
+  /// Takes off delta (by row number) what lagged forces make of it in the free motion, as far as the compliance knows.
+  virtual void subtract_lagged(const BodyRows& /*rows*/, double* /*delta*/) const {}
   /// x := A^-1 H^T lambda, natural order, less what the free motion has of it; lambda is indexed by row number.
   virtual void correct(const BodyRows& rows, const double* lambda, double* x) = 0;
 
@@ -107,9 +107,9 @@ class BodySolver {
   /// another lambda of the same rows.
   virtual bool exact() const { return true; }
   /// The next factorise() is the first.
-  virtual void forget() {}
+  virtual void reset() {}
   /// Whether a solver that works in the background may be waited for, so that the same input gives the same bits.
-  virtual void may_wait(bool) {}
+  virtual void set_deterministic(bool) {}
   virtual SolverStatus status() const { return {}; }
   virtual SolverCost cost() const = 0;
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/mechanics/rows.h"
+#include "core/linalg/body_rows.h"
 
 namespace insula {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/linalg/body_solver.h"
-#include "core/mechanics/rows.h"
+#include "core/linalg/body_rows.h"
 #include "core/mechanics/step_context.h"
 #include "core/registry/component.h"
 
@@ -71,20 +71,20 @@ class Body : public Component {
   virtual bool exact() const { return true; }
   /// Then the free motion may be that under the last step's forces of rows (BodySolver::begin_motion). Takes off delta, by row
   /// number, what these do in it.
-  virtual void take_off_held(const BodyRows&, double* /*delta*/) const {}
+  virtual void subtract_lagged(const BodyRows&, double* /*delta*/) const {}
   /// Computes what apply() would add to the free motion; bodies do this in parallel.
-  virtual void respond(const BodyRows&, const double* /*lambda*/) {}
+  virtual void apply_compliance(const BodyRows&, const double* /*lambda*/) {}
   /// Adds it at the rows' numbers.
-  virtual void add_response(const BodyRows&, double* /*delta*/) const {}
+  virtual void add_applied_compliance(const BodyRows&, double* /*delta*/) const {}
   /// What works in the background may be waited for (same input, same bits) or not (a step is never late). Default: it may.
-  virtual void may_wait(bool) {}
+  virtual void set_deterministic(bool) {}
   virtual SolverStatus solver_status() const { return {}; }
   /// q += free displacement + A^-1 H^T lambda (less the forces that the free motion is under); v = dq / h.
   virtual void apply(const StepContext& context, const BodyRows& rows, const double* lambda) = 0;
   /// After apply(): adds d(row)/dt at the rows' numbers, m/s. What a hand holds adds nothing: the hand moves it between steps.
   virtual void add_rate(const BodyRows&, double* /*rate*/) const {}
   /// In what time its shape follows a force there, viscous over elastic modulus, s. After the first free motion.
-  virtual double relaxation(const MaterialPoint&) const { return 0; }
+  virtual double retardation_time(const MaterialPoint&) const { return 0; }
   /// Rows of its own (stops of a hinge, a tool's pull), after those of the constraints; bodies in document order.
   virtual void build(const StepContext&, ConstraintBuilder&) {}
   /// After stage 5: reads the lambda of its rows.

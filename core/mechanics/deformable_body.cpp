@@ -20,13 +20,13 @@ void DeformableBody::start_at_rest() {
 void DeformableBody::connect(PrepareContext& context) {
   const std::size_t n = std::size_t(nodes());
   forces_ = children_of<ForceModel>();
-  held_.assign(n, 0);
-  hold_own(held_);
-  for (Support* s : children_of<Support>()) s->hold(context, rest_nodes(), held_);
+  fixed_.assign(n, 0);
+  fix_own_nodes(fixed_);
+  for (Support* s : children_of<Support>()) s->fix(context, rest_nodes(), fixed_);
   free_.assign(n, -1);
   free_count_ = 0;
   for (std::size_t i = 0; i < n; ++i)
-    if (!held_[i]) free_[i] = free_count_++;
+    if (!fixed_[i]) free_[i] = free_count_++;
 
   const int errors_before = context.diagnostics.errors();
   for (ForceModel* f : forces_) f->attach(context, *this);
@@ -49,7 +49,7 @@ void DeformableBody::connect(PrepareContext& context) {
     f->add_mass(mass_, damping_);
   }
   for (std::size_t i = 0; i < n; ++i)
-    if (!held_[i] && !(mass_[i] > 0)) {
+    if (!fixed_[i] && !(mass_[i] > 0)) {
       // A force model that said what is wrong with it has given no mass; once is enough.
       if (context.diagnostics.errors() == errors_before)
         error(context, "node " + std::to_string(i) + " has no mass; a force model with a density is needed");
@@ -58,12 +58,12 @@ void DeformableBody::connect(PrepareContext& context) {
   if (solver_kind.is("asynchronous")) solver_ = std::make_unique<AsynchronousSolver>(solver_tolerance());
   else solver_ = make_direct_solver(solver_kind.is("single"));
   solver_->analyse(a_);
-  start_relaxation();
+  start_retardation_times();
   force_ = VecX::Zero(3 * nodes());
   packed_ = guess_ = response_ = load_ = unforced_ = VecX::Zero(3 * free_count_);
   turn_.assign(std::size_t(free_count_), Quat::Identity());
-  turned_.assign(std::size_t(free_count_), Mat3::Identity());
-  around_ = turned_;
+  rotation_.assign(std::size_t(free_count_), Mat3::Identity());
+  around_ = rotation_;
 }
 
 Vec3 DeformableBody::position(const MaterialPoint& p) const {
@@ -89,7 +89,7 @@ Vec3 DeformableBody::unforced_displacement(const MaterialPoint& p) const {
 
 bool DeformableBody::can_move(const MaterialPoint& p) const {
   for (int k = 0; k < p.count; ++k)
-    if (p.weight[std::size_t(k)] != 0 && !held_[std::size_t(p.node[std::size_t(k)])]) return true;
+    if (p.weight[std::size_t(k)] != 0 && !fixed_[std::size_t(p.node[std::size_t(k)])]) return true;
   return false;
 }
 
@@ -125,10 +125,10 @@ int DeformableBody::compliance_parts(ComplianceAct act) const { return solver_->
 void DeformableBody::compliance_part(ComplianceAct act, int part) { solver_->compliance_part(act, part); }
 void DeformableBody::add_compliance(const BodyRows& r, double* w, int stride) { solver_->add_compliance(r, w, stride); }
 
-void DeformableBody::take_off_held(const BodyRows& r, double* delta) const { solver_->take_off_held(r, delta); }
-void DeformableBody::respond(const BodyRows& r, const double* lambda) { solver_->correct(r, lambda, response_.data()); }
+void DeformableBody::subtract_lagged(const BodyRows& r, double* delta) const { solver_->subtract_lagged(r, delta); }
+void DeformableBody::apply_compliance(const BodyRows& r, const double* lambda) { solver_->correct(r, lambda, response_.data()); }
 
-void DeformableBody::add_response(const BodyRows& r, double* delta) const {
+void DeformableBody::add_applied_compliance(const BodyRows& r, double* delta) const {
   for (int i = 0; i < r.count(); ++i)
     for (int e = r.start[std::size_t(i)]; e < r.start[std::size_t(i) + 1]; ++e)
       if (const int b = free_[std::size_t(r.block[std::size_t(e)])]; b >= 0)
@@ -168,7 +168,7 @@ void DeformableBody::reset() {
   unforced_.setZero();
   unforced_is_ = Unforced::unknown;
   for (Quat& t : turn_) t.setIdentity();
-  solver_->forget();
+  solver_->reset();
   for (ForceModel* f : forces_) f->reset();
 }
 

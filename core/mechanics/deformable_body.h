@@ -22,7 +22,7 @@ class DeformableBody : public Body {
   /// Rest positions of the nodes, scene frame, m. Known after prepare().
   virtual const std::vector<Vec3>& rest_nodes() const = 0;
   /// Nodes that the topology itself holds (a shell's caps); supports hold more. Default: none.
-  virtual void hold_own(std::vector<char>&) const {}
+  virtual void fix_own_nodes(std::vector<char>&) const {}
   void connect(PrepareContext& context) override;
 
   int nodes() const { return int(rest_nodes().size()); }
@@ -32,8 +32,8 @@ class DeformableBody : public Body {
   VecX& v() { return v_; }
   double step_length() const { return step_; }  ///< of the step that is on, s
   const std::vector<double>& node_mass() const { return mass_; }
-  const std::vector<char>& held() const { return held_; }
-  const std::vector<int>& free_of_node() const { return free_; }  ///< node -> block of the system matrix, -1 when held
+  const std::vector<char>& fixed() const { return fixed_; }
+  const std::vector<int>& free_of_node() const { return free_; }  ///< node -> block of the system matrix, -1 when fixed
   const std::vector<ForceModel*>& forces() const { return forces_; }
   const BodySolver& solver() const { return *solver_; }
   const BlockMatrix& system() const { return a_; }  ///< as it was last assembled
@@ -64,15 +64,15 @@ class DeformableBody : public Body {
   void add_compliance(const BodyRows& rows, double* w, int stride) override;
   void add_free_motion(const BodyRows& r, double* delta) const override { solver_->add_free_motion(r, free_, delta); }
   bool exact() const override { return solver_->exact(); }
-  void take_off_held(const BodyRows& rows, double* delta) const override;
-  void respond(const BodyRows& rows, const double* lambda) override;
-  void add_response(const BodyRows& rows, double* delta) const override;
-  void may_wait(bool yes) override { solver_->may_wait(yes); }
+  void subtract_lagged(const BodyRows& rows, double* delta) const override;
+  void apply_compliance(const BodyRows& rows, const double* lambda) override;
+  void add_applied_compliance(const BodyRows& rows, double* delta) const override;
+  void set_deterministic(bool yes) override { solver_->set_deterministic(yes); }
   SolverStatus solver_status() const override { return solver_->status(); }
   void apply(const StepContext& context, const BodyRows& rows, const double* lambda) override;
   void add_rate(const BodyRows& rows, double* rate) const override;
   void finish(const StepContext& context, const ConstraintSolution& solution) override;
-  double relaxation(const MaterialPoint& p) const override;
+  double retardation_time(const MaterialPoint& p) const override;
   void reset() override;
   double energy() const override;
   bool finite() const override { return v_.allFinite(); }  // and so is q, the sum of all h v
@@ -84,7 +84,7 @@ class DeformableBody : public Body {
 
  private:
   std::vector<ForceModel*> forces_;
-  std::vector<char> held_;
+  std::vector<char> fixed_;
   std::vector<int> free_;
   int free_count_ = 0;
   std::vector<double> mass_, damping_;
@@ -96,20 +96,20 @@ class DeformableBody : public Body {
   double factor_ms_ = 0;
   VecX guess_, response_;               ///< of solvers that are not exact: the last step's displacement, what lambda does
   std::vector<Quat> turn_;              ///< rotation of each free node's neighbourhood from rest
-  std::vector<Mat3> turned_, around_;
+  std::vector<Mat3> rotation_, around_;
   BlockMatrix a_;
   std::unique_ptr<BodySolver> solver_;
   int indefinite_ = 0;
   double step_ = 0;  ///< of the step that is on, s
-  std::vector<double> relaxation_;  ///< of each node's place, s
-  bool relaxation_known_ = false;
+  std::vector<double> retardation_time_;  ///< of each node's place, s
+  bool retardation_times_known_ = false;
 
   bool tangent_is_good(double h) const;
   void assemble(double h);
   void factorise(double h);
   void find_rotations();
-  void start_relaxation();
-  void find_relaxation(double h);
+  void start_retardation_times();
+  void find_retardation_times(double h);
   struct Neighbours {
     int i, j;
     double distance2;  ///< at rest, m2

@@ -26,7 +26,7 @@ class ForceModel : public Component {
   virtual void attach(PrepareContext&, DeformableBody&) {}
   /// Pairs of nodes that this tangent couples.
   virtual void couplings(std::vector<std::pair<int, int>>& pairs, Tangent which) const = 0;
-  /// Once, when the matrix pattern is known. free_of_node: node -> block of `a`, -1 when held.
+  /// Once, when the matrix pattern is known. free_of_node: node -> block of `a`, -1 when fixed.
   virtual void bind(const BlockMatrix& a, const std::vector<int>& free_of_node) = 0;
   /// Lumped mass (kg) and Rayleigh mass damping (kg/s), one value a node; added to what is there.
   virtual void add_mass(std::vector<double>&, std::vector<double>&) const {}
@@ -35,9 +35,9 @@ class ForceModel : public Component {
   virtual void linearise(const double* x, double* force, BlockMatrix* stiffness, double h, Tangent tangent) = 0;
   /// J
   virtual double energy(const double* x) = 0;
-  /// Moves the natural shape by u (3 values a node, m) while the rest configuration stays: the linear strain of u at rest is
+  /// Moves the stress-free configuration by u (3 values a node, m) while the rest configuration stays: the linear strain of u at rest is
   /// taken from the strain, in force, tangent and energy alike. Adds up over calls; reset() keeps it. Between connect and the
-  /// first step. False when the model has no natural shape of its own to move (springs to the surroundings) and does nothing.
+  /// first step. False when the model has no stress-free configuration of its own to move (springs to the surroundings) and does nothing.
   virtual bool prestrain(const double*) { return false; }
   /// Rayleigh stiffness damping, s.
   virtual double stiffness_damping() const { return 0; }
@@ -57,7 +57,7 @@ class Support : public Component {
  public:
   static constexpr std::string_view kind_name = "support";
   /// Sets held[i] for the nodes it holds. Rest positions in metres, scene frame.
-  virtual void hold(PrepareContext&, const std::vector<Vec3>& rest, std::vector<char>& held) = 0;
+  virtual void fix(PrepareContext&, const std::vector<Vec3>& rest, std::vector<char>& fixed) = 0;
 };
 
 }  // namespace insula

@@ -144,7 +144,7 @@ void Instrument::apply(const StepContext& context, const BodyRows& r, const doub
 void Instrument::fill_terms(ToolTerms& t, int problem_rows) const {
   t.hand = hand_index();
   t.device = device_;
-  t.way = device_.p - last_device_.p;
+  t.swept_displacement = device_.p - last_device_.p;
   t.free = free_pose_;
   t.gain = gain_;
   t.compliance = compliance_;

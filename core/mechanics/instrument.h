@@ -2,7 +2,7 @@
 // A hand-held tool: a rigid body tied to the device pose by a 6-DoF spring and damper (virtual coupling), with its own
 // 6x6 system matrix. Instrument plugins add what their tip does.
 #pragma once
-#include "core/constraint/constraint.h"
+#include "core/mechanics/constraint.h"
 #include "core/mechanics/rigid_body.h"
 
 namespace insula {

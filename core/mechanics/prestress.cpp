@@ -4,7 +4,7 @@
 
 namespace insula {
 
-// At rest the force of the prestrained models is linear in the displacement u that leads to their natural shape, f = f0 + K u:
+// At rest the force of the prestrained models is linear in the displacement u that leads to their stress-free configuration, f = f0 + K u:
 // K u = -(load + f0) by conjugate gradients. K is known by its products only; the preconditioner is the step's tangent of the
 // models that take part, with what inertia a step of a second leaves, so that a body no one holds is no exception.
 double DeformableBody::prestress(const VecX& load) {
@@ -18,7 +18,7 @@ double DeformableBody::prestress(const VecX& load) {
     if (f->prestrain(none.data())) carry.push_back(f);
   const auto free_part = [&](VecX x) {
     for (int i = 0; i < nodes(); ++i)
-      if (held_[std::size_t(i)]) x.segment<3>(3 * i).setZero();
+      if (fixed_[std::size_t(i)]) x.segment<3>(3 * i).setZero();
     return x;
   };
   const auto unbalanced = [&] {
@@ -68,7 +68,7 @@ double DeformableBody::prestress(const VecX& load) {
     r = -f;
     left = r.norm();
   }
-  solver_->forget();
+  solver_->reset();
   return left / size;
 }
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/mechanics/body.h"
-#include "core/model/tool_model.h"
+#include "core/model/tools/tool_model.h"
 
 namespace insula {
 

@@ -46,10 +46,10 @@ void ShellBody::finish_model() {
     if (!cap[t]) wall_.push_back(model_.wall.triangles[t]);
 }
 
-void ShellBody::hold_own(std::vector<char>& held) const {
+void ShellBody::fix_own_nodes(std::vector<char>& fixed) const {
   for (const auto& c : model_.caps)
     for (int t : c.triangles)
-      for (int v : model_.wall.triangles[std::size_t(t)]) held[std::size_t(v)] = 1;
+      for (int v : model_.wall.triangles[std::size_t(t)]) fixed[std::size_t(v)] = 1;
 }
 
 int ShellBody::region(std::string_view name) const {

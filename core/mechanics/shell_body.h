@@ -22,7 +22,7 @@ class ShellBody final : public DeformableBody {
 
   void prepare(PrepareContext& context) override;
   const std::vector<Vec3>& rest_nodes() const override { return model_.wall.vertices; }
-  void hold_own(std::vector<char>& held) const override;
+  void fix_own_nodes(std::vector<char>& fixed) const override;
 
   /// The vessel as read; for a plain surface: no caps, no centrelines, one region "wall".
   const VesselModel& model() const { return model_; }

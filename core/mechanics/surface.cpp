@@ -3,9 +3,9 @@
 #include "core/mechanics/surface.h"
 
 #include "core/base/input_error.h"
-#include "core/collision/aabb_tree.h"
-#include "core/collision/closest.h"
-#include "core/mechanics/riders.h"
+#include "core/collision/search/aabb_tree.h"
+#include "core/collision/shapes/closest.h"
+#include "core/mechanics/barycentric_embedding.h"
 #include "core/mechanics/shell_body.h"
 #include "core/mechanics/soft_body.h"
 
@@ -49,7 +49,7 @@ void Surface::prepare(PrepareContext& context) {
     if (e.outside_m > 0.005)
       return error(context, mesh, "the surface reaches " + std::to_string(e.outside_m * 1000) +
                                       " mm outside the body's tetrahedra; is its unit or frame another one?");
-    for (std::size_t i = 0; i < points_.size(); ++i) points_[i] = {body_, 4, 0, e.nodes[i], weights_of_rider(e.weights[i]), Vec3::Zero()};
+    for (std::size_t i = 0; i < points_.size(); ++i) points_[i] = {body_, 4, 0, e.nodes[i], embedding_weights(e.weights[i]), Vec3::Zero()};
   } else if (shell) {
     if (shell->rest().triangles.empty()) return;  // its own error is reported
     if (!attach_to_shell(*shell)) return error(context, mesh, "the surface lies more than 5 mm off the body's wall; is its unit or frame another one?");
@@ -87,7 +87,7 @@ bool Surface::attach_to_shell(const ShellBody& shell) {
       bary = {w[0], w[1], w[2]};
     });
     if (best < 0) return false;
-    bary = weights_of_rider(bary);
+    bary = embedding_weights(bary);
     const auto& v = wall.triangles[std::size_t(best)];
     Vec3 at = Vec3::Zero();
     for (std::size_t k = 0; k < 3; ++k) at += bary[k] * wall.vertices[std::size_t(v[k])];
@@ -102,14 +102,14 @@ void Surface::update() {
   for (std::size_t i = 0; i < points_.size(); ++i) positions_[i] = body_->position(points_[i]);
 }
 
-void Surface::look_ahead() {
+void Surface::update_collision() {
   if (body_->blocks() == 0) return;
   if (!collision_) {
     if (contact()) update();
     return;
   }
-  if (riders_) {
-    riders_->place(static_cast<const DeformableBody&>(*body_), positions_.data(), expected_.data(), motion_);
+  if (embedding_) {
+    embedding_->place(static_cast<const DeformableBody&>(*body_), positions_.data(), expected_.data(), motion_);
     return collision_->update(positions_, expected_, motion_);
   }
   for (int i : moving_) {
@@ -126,8 +126,8 @@ void Surface::will_collide() {
   for (std::size_t i = 0; i < points_.size(); ++i)
     if (body_->can_move(points_[i])) moving_.push_back(int(i));
   if (!dynamic_cast<const DeformableBody*>(body_)) return;
-  riders_ = std::make_unique<Riders>();
-  riders_->build(points_, moving_, *collision_);
+  embedding_ = std::make_unique<BarycentricEmbedding>();
+  embedding_->build(points_, moving_, *collision_);
 }
 
 void Surface::add_row(BodyRows& rows, int triangle, const Vec3& bary, const Vec3& d) const {

@@ -6,13 +6,13 @@
 #include <array>
 #include <vector>
 
-#include "core/collision/collision_mesh.h"
+#include "core/collision/search/collision_mesh.h"
 #include "core/mechanics/body.h"
 #include "core/model/mesh.h"
 
 namespace insula {
 
-class Riders;
+class BarycentricEmbedding;
 class ShellBody;
 
 class Surface : public Component {
@@ -43,7 +43,7 @@ class Surface : public Component {
   void update();
   /// After free motion: positions(), but of what is for the picture alone, and expected_displacements() and collision(), if
   /// anything looks for contacts.
-  void look_ahead();
+  void update_collision();
   /// Called in connect() of what looks for contacts: from then on the step keeps collision() up to date.
   void will_collide();
   const CollisionMesh& collision() const { return *collision_; }
@@ -58,7 +58,7 @@ class Surface : public Component {
   TriMesh rest_;
   std::vector<MaterialPoint> points_;
   std::vector<int> moving_;  ///< the vertices that the step places
-  std::unique_ptr<Riders> riders_;  ///< those, on a deformable body
+  std::unique_ptr<BarycentricEmbedding> embedding_;  ///< those, on a deformable body
   RegionMotion motion_;
   std::vector<Vec3> positions_, expected_;
 };

@@ -29,14 +29,14 @@ void DeformableBody::find_rotations() {
     if (const int b = free_[std::size_t(j)]; b >= 0) around_[std::size_t(b)] += m;
   };
   for (const Neighbours& n : neighbours_) add(n.i, n.j);
-  for (int j = 0; j < free_count_; ++j) turned_[std::size_t(j)] = nearest_rotation(around_[std::size_t(j)], turn_[std::size_t(j)]);
+  for (int j = 0; j < free_count_; ++j) rotation_[std::size_t(j)] = nearest_rotation(around_[std::size_t(j)], turn_[std::size_t(j)]);
 }
 
 // A but for inertia, and the force that goes with it.
 void DeformableBody::assemble(double h) {
   if (solver_->wants_rotations()) {
     find_rotations();
-    solver_->turn(turned_);
+    solver_->set_rotations(rotation_);
   }
   a_.set_zero();
   for (ForceModel* f : forces_) f->linearise(q_.data(), force_.data(), &a_, h, Tangent::system);
@@ -60,8 +60,8 @@ void DeformableBody::factorise(double h) {
     const auto begin = std::chrono::steady_clock::now();
     const bool good = solver_->factorise_and_begin(a_, load_, guess_);
     factor_ms_ += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
-    if (good && !relaxation_known_) {  // once
-      find_relaxation(h);
+    if (good && !retardation_times_known_) {  // once
+      find_retardation_times(h);
       solver_->begin_motion(load_, guess_);
     }
     if (good || attempt == 12) break;

@@ -8,8 +8,8 @@
 #include <set>
 
 #include "core/base/text.h"
-#include "core/model/file_bytes.h"
-#include "core/model/ply_check.h"
+#include "core/model/formats/file_bytes.h"
+#include "core/model/formats/ply_check.h"
 
 namespace insula {
 namespace {

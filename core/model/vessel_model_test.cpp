@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/input_error.h"
-#include "core/model/test_files.h"
+#include "core/model/formats/mesh_files_for_test.h"
 #include "core/model/vessel_model.h"
 
 namespace insula {

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "core/base/text.h"
-#include "core/scene/document.h"
+#include "core/xml/document.h"
 
 namespace insula {
 

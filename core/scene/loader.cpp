@@ -7,21 +7,21 @@
 #include <exception>
 
 #include "core/scene/builder.h"
-#include "core/scene/document.h"
+#include "core/xml/document.h"
 #include "core/scene/expand.h"
 
 namespace insula {
 namespace {
 
-constexpr int most_errors = 200;
+constexpr int max_errors = 200;
 
 /// In order of position; beyond a screenful or ten nobody reads on.
 Diagnostics tidy(Diagnostics all) {
   all.sort_by_position();
-  if (static_cast<int>(all.all().size()) <= most_errors) return all;
+  if (static_cast<int>(all.all().size()) <= max_errors) return all;
   Diagnostics out;
   for (const auto& d : all.all()) {
-    if (static_cast<int>(out.all().size()) == most_errors) break;
+    if (static_cast<int>(out.all().size()) == max_errors) break;
     d.severity == Severity::error ? out.error(d.pos, d.text) : out.warning(d.pos, d.text);
   }
   // The number of errors must not become zero by cutting warnings off the front of them.

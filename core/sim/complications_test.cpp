@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "core/constraint/constraint.h"
+#include "core/mechanics/constraint.h"
 #include "core/registry/registry.h"
 #include "core/sim/simulation.h"
 

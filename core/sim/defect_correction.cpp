@@ -14,14 +14,14 @@ void DefectCorrection::begin(ConstraintProblem& problem, const std::vector<Body*
   w_.assign(problem.w.size(), 0.0);
   for (Body* b : bodies_) b->add_compliance(b->rows, w_.data(), problem.stride);
   free_.assign(problem.delta_free.begin(), problem.delta_free.end());
-  for (const Body* b : bodies_) b->take_off_held(b->rows, problem.delta_free.data());
+  for (const Body* b : bodies_) b->subtract_lagged(b->rows, problem.delta_free.data());
 }
 
 double DefectCorrection::pass(ConstraintProblem& problem, const double* lambda, Workers& workers) {
-  workers.run(int(bodies_.size()), [&](int i) { bodies_[std::size_t(i)]->respond(bodies_[std::size_t(i)]->rows, lambda); });
+  workers.run(int(bodies_.size()), [&](int i) { bodies_[std::size_t(i)]->apply_compliance(bodies_[std::size_t(i)]->rows, lambda); });
   before_.assign(problem.delta_free.begin(), problem.delta_free.end());
   std::copy(free_.begin(), free_.end(), problem.delta_free.begin());
-  for (const Body* b : bodies_) b->add_response(b->rows, problem.delta_free.data());
+  for (const Body* b : bodies_) b->add_applied_compliance(b->rows, problem.delta_free.data());
   double most = 0;
   for (int i = 0; i < problem.rows; ++i) {
     const double* w = w_.data() + std::size_t(i) * std::size_t(problem.stride);

@@ -28,7 +28,7 @@ class StageClock {
 };
 
 constexpr int steps_with_newton_soon = 15;  ///< after one whose sweeps stalled; then they are tried again
-constexpr int most_passes = 3;  ///< of defect correction
+constexpr int max_passes = 3;  ///< of defect correction
 
 }  // namespace
 
@@ -65,7 +65,7 @@ void Simulation::step() {
   });
   clock.done(stage_free_motion);
 
-  workers_.run(int(surfaces_.size()), [this](int i) { surfaces_[std::size_t(i)]->look_ahead(); });
+  workers_.run(int(surfaces_.size()), [this](int i) { surfaces_[std::size_t(i)]->update_collision(); });
   for (Constraint* c : constraints_) c->detect(context_);
   clock.done(stage_collision);
 
@@ -96,7 +96,7 @@ void Simulation::step() {
   solve_settings_.newton_soon = newton_soon_ > 0;
   defect_.begin(problem_, bodies_);
   report_.solve = solve(problem_, problem_.delta_free, solve_settings_, workspace_);
-  for (int pass = 0; defect_.needed() && pass < most_passes; ++pass) {
+  for (int pass = 0; defect_.needed() && pass < max_passes; ++pass) {
     report_.defect_m = defect_.pass(problem_, workspace_.lambda.data(), workers_);
     if (report_.defect_m <= solve_settings_.tolerance_m) break;
     const int sweeps = report_.solve.sweeps;

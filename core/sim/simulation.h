@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "core/base/workers.h"
-#include "core/constraint/constraint.h"
+#include "core/mechanics/constraint.h"
 #include "core/mechanics/instrument.h"
 #include "core/mechanics/surface.h"
 #include "core/scene/scene.h"
@@ -49,10 +49,10 @@ class Simulation {
   /// Draws the scene's complications anew from that seed, now and after every reset; 0: from the scene's own.
   void draw_complications(std::uint64_t seed);
   /// Whether a step may wait for what works in the background (default: the same input gives the same bits) or is never late.
-  void may_wait(bool yes);
+  void set_deterministic(bool yes);
   /// Tools' contacts of so long after a step are in its problem already, as the servo needs them before the next one arrives; 0, the
   /// default: those of the step and within the alarm distance alone.
-  void look_ahead(double seconds) { context_.look_ahead_s = seconds; }
+  void set_collision_horizon(double seconds) { context_.collision_horizon_s = seconds; }
   /// Back to the start, to the same bits.
   void reset();
 

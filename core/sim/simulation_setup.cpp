@@ -100,8 +100,8 @@ double Simulation::energy() const {
   return sum;
 }
 
-void Simulation::may_wait(bool yes) {
-  for (Body* b : bodies_) b->may_wait(yes);
+void Simulation::set_deterministic(bool yes) {
+  for (Body* b : bodies_) b->set_deterministic(yes);
 }
 
 void Simulation::draw_complications(std::uint64_t seed) {

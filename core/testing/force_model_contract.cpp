@@ -141,7 +141,7 @@ void check_force_model(const std::filesystem::path& scene, const std::string& el
       EXPECT_GE(m->energy(x.data()), 0);
     }
     EXPECT_GE(m->stiffness_damping(), 0);
-    // The same laws about another natural shape.
+    // The same laws about another stress-free configuration.
     const VecX moved = 0.5 * (deformed(*body, 0.1, 4) - rest);
     const VecX before = bench.force(rest);
     if (!m->prestrain(moved.data())) continue;

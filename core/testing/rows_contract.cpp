@@ -20,7 +20,7 @@ struct RowData {
   int offset = 0;         ///< row within its block
   bool unilateral = false;
   double violation = 0;   ///< at the start of the step
-  double way = 0;         ///< of the block's place in the free motion, m
+  double swept = 0;         ///< of the block's place in the free motion, m
   std::vector<VecX> h;    ///< one piece a body, blocks() * 3 long
 };
 using RowMap = std::map<std::pair<std::uint64_t, int>, RowData>;
@@ -36,7 +36,7 @@ class RowBench {
   RowMap rows() {
     for (Surface* f : simulation_.surfaces()) {
       f->update();
-      f->look_ahead();
+      f->update_collision();
     }
     ++context_.step;  // what is refreshed once a step is refreshed now
     builder_.clear();
@@ -70,12 +70,12 @@ class RowBench {
       for (std::size_t b = 0; b < simulation_.bodies().size(); ++b)
         if (by_row[r]->h[b].size() > 0) motion += by_row[r]->h[b].dot(expected_motion(*simulation_.bodies()[b]));
       by_row[r]->violation = problem_.delta_free[r];
-      by_row[r]->way = motion;
+      by_row[r]->swept = motion;
     }
     for (const Block& b : problem_.blocks) {
       double way2 = 0;
-      for (int k = 0; k < b.rows(); ++k) way2 += by_row[std::size_t(b.row + k)]->way * by_row[std::size_t(b.row + k)]->way;
-      for (int k = 0; k < b.rows(); ++k) by_row[std::size_t(b.row + k)]->way = std::sqrt(way2);
+      for (int k = 0; k < b.rows(); ++k) way2 += by_row[std::size_t(b.row + k)]->swept * by_row[std::size_t(b.row + k)]->swept;
+      for (int k = 0; k < b.rows(); ++k) by_row[std::size_t(b.row + k)]->swept = std::sqrt(way2);
     }
     blocks = problem_.blocks;
     return out;
@@ -197,7 +197,7 @@ int check_derivatives(Simulation& s, Component& c, std::uint64_t seed) {
       if (row.unilateral) found = std::clamp(slope, std::min(forward, backward), std::max(forward, backward));
       // The normal of a contact is fixed over a step; where it is no direction of least distance (an edge, a corner) an
       // open gap turns with it; so does the way to a contact that was found along the free motion.
-      const double turning = row.unilateral ? 50 * (std::abs(row.violation) + row.way) : 0.0;
+      const double turning = row.unilateral ? 50 * (std::abs(row.violation) + row.swept) : 0.0;
       EXPECT_TRUE(held("row = derivative of its violation", std::max(0.0, std::abs(found - slope) - turning * scale), scale, 1e-5)) << "violation " << row.violation << " m, row id " << key.first << " + " << key.second;
       compared.insert(key);
     }

@@ -76,15 +76,15 @@ void check_support(const std::filesystem::path& scene, const std::string& elemen
     ++found;
     auto* body = dynamic_cast<DeformableBody*>(support->parent);
     ASSERT_TRUE(body);
-    std::vector<char> held(std::size_t(body->nodes()), 0);
+    std::vector<char> fixed(std::size_t(body->nodes()), 0);
     Diagnostics diagnostics;
     PrepareContext context{diagnostics, s->h()};
-    support->hold(context, body->rest_nodes(), held);
+    support->fix(context, body->rest_nodes(), fixed);
     EXPECT_TRUE(diagnostics.ok()) << diagnostics.format();
     int own = 0;
-    for (std::size_t i = 0; i < held.size(); ++i) {
-      own += held[i] != 0;
-      if (held[i]) { EXPECT_TRUE(body->held()[i]) << "node " << i; }
+    for (std::size_t i = 0; i < fixed.size(); ++i) {
+      own += fixed[i] != 0;
+      if (fixed[i]) { EXPECT_TRUE(body->fixed()[i]) << "node " << i; }
     }
     EXPECT_GT(own, 0) << support->id << " holds nothing";
   }
@@ -96,7 +96,7 @@ void check_support(const std::filesystem::path& scene, const std::string& elemen
     int moved = 0;
     for (int i = 0; i < body->nodes(); ++i) {
       const bool same = body->q().segment<3>(3 * i) == body->rest_nodes()[std::size_t(i)];
-      if (body->held()[std::size_t(i)]) { EXPECT_TRUE(same && body->v().segment<3>(3 * i).isZero(0)) << "held node " << i << " moved"; }
+      if (body->fixed()[std::size_t(i)]) { EXPECT_TRUE(same && body->v().segment<3>(3 * i).isZero(0)) << "fixed node " << i << " moved"; }
       else moved += !same;
     }
     EXPECT_GT(moved, 0) << "nothing moves in the example, so it shows nothing";
@@ -149,11 +149,11 @@ void check_surfaces(const std::filesystem::path& scene) {
     body->q() = rest;
     s->step();
     surface->will_collide();
-    surface->look_ahead();
+    surface->update_collision();
     const std::vector<Vec3> before = surface->positions();
     body->q() = q;
     body->v() = 7 * (q - rest);
-    surface->look_ahead();
+    surface->update_collision();
     double farthest = 0, farthest_free = 0;
     for (std::size_t i = 0; i < before.size(); ++i) {
       const MaterialPoint& p = surface->points()[i];

@@ -15,7 +15,7 @@
 namespace insula {
 namespace {
 
-constexpr double shortest_way_m = 0.02;
+constexpr double min_stroke_m = 0.02;
 constexpr double largest_error_rad = 0.44;  // 25 degrees: a hand is no ruler
 constexpr double steady_s = 0.3, steady_m = 0.003;
 
@@ -45,9 +45,9 @@ DeviceCalibration fit_calibration(const Pose& rest, const Vec3& right, const Vec
   const std::array<const char*, 3> name{"right", "away", "up"};
   Mat3 ways;  // row i: where the person's axis i points in the device's frame
   for (std::size_t i = 0; i < 3; ++i) {
-    const Vec3 way = to[i] - rest.p;
-    if (!(way.norm() >= shortest_way_m)) throw InputError(fmt::format("the way {} was {:.0f} mm, less than {:.0f} mm", name[i], 1e3 * way.norm(), 1e3 * shortest_way_m));
-    ways.row(Eigen::Index(i)) = way.normalized();
+    const Vec3 stroke = to[i] - rest.p;
+    if (!(stroke.norm() >= min_stroke_m)) throw InputError(fmt::format("the way {} was {:.0f} mm, less than {:.0f} mm", name[i], 1e3 * stroke.norm(), 1e3 * min_stroke_m));
+    ways.row(Eigen::Index(i)) = stroke.normalized();
   }
   const Eigen::JacobiSVD<Mat3> svd(ways, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Mat3 sign = Mat3::Identity();

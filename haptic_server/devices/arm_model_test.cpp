@@ -10,7 +10,7 @@
 #include "core/testing/held.h"
 #include "haptic_server/devices/make_device.h"
 #include "haptic_server/devices/simulated.h"
-#include "haptic_server/test_problem.h"
+#include "haptic_server/problem_for_test.h"
 #include "tests/figures/figure.h"
 
 namespace insula {

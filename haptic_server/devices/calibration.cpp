@@ -41,7 +41,7 @@ std::string calibration_error(const DeviceCalibration& c) {
     return "axes: not a rotation (three rows of length 1, at right angles, right-handed)";
   if (c.rest.p.norm() > 2) return "rest_p_m: farther than 2 m from the device's origin";
   if (std::abs(c.rest.q.norm() - 1) > 1e-6) return "rest_q: not a unit quaternion";
-  if (c.scale < DeviceCalibration::least_scale || c.scale > DeviceCalibration::largest_scale)
+  if (c.scale < DeviceCalibration::min_scale || c.scale > DeviceCalibration::largest_scale)
     return "scale: outside 0.05 to 5";
   return {};
 }

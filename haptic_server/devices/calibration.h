@@ -17,7 +17,7 @@ struct DeviceCalibration {
   Pose rest;                     ///< device's frame
   double scale = 1;              ///< movement of the tool over movement of the hand
 
-  static constexpr double least_scale = 0.05, largest_scale = 5;
+  static constexpr double min_scale = 0.05, largest_scale = 5;
 };
 
 /// Empty when usable, else what is wrong: everything finite, axes a rotation, rest pose within 2 m, scale within its range.

@@ -38,7 +38,7 @@ DataSheet data_sheet(int type) {
 }
 
 /// No hand is pushed with more than this, whatever its device could do: the forces of this surgery stay far below.
-constexpr double most_force_N = 10;
+constexpr double force_limit_N = 10;
 
 }  // namespace
 
@@ -102,7 +102,7 @@ bool ForceDimensionDevice::open() {
   const bool weightless = !dhd::failed(api_->gravity_compensation(dhd::on, nr));
   if (!profile_fixed_) {
     profile_.gravity_compensated = weightless;
-    profile_.max_force_N = std::min(sheet.force_N, most_force_N);
+    profile_.max_force_N = std::min(sheet.force_N, force_limit_N);
     profile_.max_slew_N_s = 20 * profile_.max_force_N;
     profile_.max_torque_Nm = torques_ ? sheet.torque_Nm : 0;
     profile_.max_slew_Nm_s = 20 * profile_.max_torque_Nm;

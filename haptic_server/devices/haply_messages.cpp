@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::size_t most_devices = 16, longest_id = 64;
+constexpr std::size_t max_devices = 16, longest_id = 64;
 
 const Json* member(const Json& j, const char* name) {
   if (!j.is_object()) return nullptr;
@@ -101,7 +101,7 @@ bool parse_haply(std::string_view text, HaplyState& state, std::string& why) {
   for (const char* list : {"inverse3", "verse_grip", "wireless_verse_grip"}) {
     const Json* devices = member(json, list);
     if (devices == nullptr) continue;
-    if (!devices->is_array() || devices->size() > most_devices) {
+    if (!devices->is_array() || devices->size() > max_devices) {
       why = std::string(list) + " is no list of devices";
       return false;
     }

@@ -21,7 +21,7 @@ using namespace std::chrono_literals;
 constexpr auto retry = 500ms;
 constexpr int calibration_check_frames = 200;
 /// No hand is pushed with more than this, whatever its device could do: the forces of this surgery stay far below.
-constexpr double most_force_N = 10;
+constexpr double force_limit_N = 10;
 
 /// A model's friction and mass by its maker's data sheet (Omni and Touch are one design).
 void add_data_sheet(const std::string& model, DeviceProfile& profile) {
@@ -99,7 +99,7 @@ void OpenHapticsDevice::take_over_facts() {
   const double force = std::isfinite(facts_.max_force_N) && facts_.max_force_N > 0 ? facts_.max_force_N : profile_.max_force_N;
   if (!profile_fixed_) {
     add_data_sheet(facts_.model.data(), profile_);
-    profile_.max_force_N = std::min(force, most_force_N);
+    profile_.max_force_N = std::min(force, force_limit_N);
     profile_.max_slew_N_s = 20 * profile_.max_force_N;
     const auto& box = facts_.box_mm;
     const Vec3 edges = 1e-3 * Vec3(box[3] - box[0], box[4] - box[1], box[5] - box[2]);

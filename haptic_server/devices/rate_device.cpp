@@ -61,9 +61,9 @@ void RateDevice::advance(double dt) noexcept {
   }
   const Pose before = goal_.pose;
   const Pose& arm = arm_.arm().pose();
-  Vec6 way;
-  way << dt * v, dt * w;
-  Pose goal = displaced(before, way);
+  Vec6 swept;
+  swept << dt * v, dt * w;
+  Pose goal = displaced(before, swept);
   Vec3 from_home = goal.p - placed_at_.p;
   shorten(from_home, settings_.reach_m);
   // Where tissue or a stop holds the hand back the goal waits: a person who feels nothing would press ever harder.

@@ -34,7 +34,7 @@ namespace insula {
 namespace {
 
 constexpr double collateral_delay = 3;  // s, of the dye on its way round
-constexpr double least_drop = 10;       // Pa, over a tear in its linear law
+constexpr double min_drop = 10;       // Pa, over a tear in its linear law
 
 VecX rest_shape(const ShellBody& body) {
   VecX q(3 * body.nodes());
@@ -122,7 +122,7 @@ void BloodFlow::reduce(const StepContext& context, StarMesh& out) {
   for (int c = 0; c < chambers; ++c) {
     const std::size_t i = std::size_t(c);
     const double drop = pressure_[std::size_t(chamber_node_[i])] - outside();
-    tear_conductance_[i] = discharge() * tear_area_[i] * std::sqrt(2 / (density() * std::max(std::abs(drop), least_drop)));
+    tear_conductance_[i] = discharge() * tear_area_[i] * std::sqrt(2 / (density() * std::max(std::abs(drop), min_drop)));
     mesh_.ground(at(chamber_node_[i]), tear_conductance_[i] + (sealed_[i] ? yielding_[i] / seal_decay() : 0), outside());
   }
   const int first = n - chambers;

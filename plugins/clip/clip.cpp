@@ -25,7 +25,7 @@ on a vessel in one step grip nothing. A spring held open gives way slowly (Papad
     d strength / dt = ln(1 - weakening) / 600 s * (o / widest) * strength    while an applier holds it open.
 
 A real clip weighs 0.1 g; at a 60th of a second that inertia gives way a hundred times more than a vessel's wall, and the
-solver would crawl. `inertia` replaces it, and `gyration` adds moments of inertia: contact normals and levers are fixed over a step,
+solver would crawl. `inertial_mass` replaces it, and `gyration` adds moments of inertia: contact normals and levers are fixed over a step,
 so a clip that turns more easily than J/h^2 = closing force times its length would be thrown off by its own grip. What
 matters is that the force of inertia stays small beside the closing force; weight is the true one. Linear and angular momentum about the centre of mass are kept exactly.
 */
@@ -143,7 +143,7 @@ void Clip::build(const StepContext&, ConstraintBuilder& builder) {
     return row;
   };
   held_open_ = held_opening() > 0;
-  stop_row_ = stop(0, 1, least_opening());
+  stop_row_ = stop(0, 1, min_opening());
   // Only what pulls the jaws apart can bring them here.
   limit_row_ = opening_ + std::max(0.0, free_opening_) > 0.8 * tool_.opening_max ? stop(1, -1, tool_.opening_max) : -1;
 }
@@ -177,9 +177,9 @@ double Clip::energy() const {
   if (!active()) return 0;
   const double r = tool_.clip->reference;
   const double spring = strength_ * 2 * r * (closing() * opening_ + slope() * 2 * r * (1 - std::cos(opening_)));
-  const double turn = inertia() * r * r / 3 * turn_rate_ * turn_rate_;
+  const double turn = inertial_mass() * r * r / 3 * turn_rate_ * turn_rate_;
   const double rotation = moments_.isZero(0) ? 0 : spin_.dot(moments_.ldlt().solve(spin_));
-  return spring + 0.5 * (inertia() * velocity_.squaredNorm() + rotation + turn);
+  return spring + 0.5 * (inertial_mass() * velocity_.squaredNorm() + rotation + turn);
 }
 
 void Clip::append_state(std::vector<double>& out) const {

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "core/collision/shapes_for_test.h"
+#include "core/collision/shapes/shapes_for_test.h"
 #include "core/testing/block_mesh.h"
 #include "core/testing/example.h"
 #include "plugins/clip/clip.h"

@@ -12,7 +12,7 @@
 namespace insula {
 
 void Clip::free_motion(const StepContext& context) {
-  const double h = context.h, m = inertia(), factor = 1 / (h * h) + drag() / h;
+  const double h = context.h, m = inertial_mass(), factor = 1 / (h * h) + drag() / h;
   const Mat3 r = pose_.q.toRotationMatrix();
   to_centre_ = r * tool_.centre_of_mass;
   moments_ = (m / tool_.mass) * r * tool_.inertia * r.transpose();
@@ -49,7 +49,7 @@ Pose Clip::link_pose(int link) const {
 // Where collision looks ahead to: with the applier that holds it; jaws no further closed than their stop, and hardly faster
 // than in the last step, for without what is between them they would be shut at once. The rows know the free motion proper.
 Pose Clip::link_free_pose(int link) const {
-  const double least = least_opening();
+  const double least = min_opening();
   const double change = std::max(free_opening_, std::min(0.0, last_change_) - 0.02);
   const double angle = std::clamp(opening_ + change, least, std::max(least, tool_.opening_max));
   const Pose t = tool_.link_pose(link, angle);

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/model/tool_model.h"
+#include "core/model/tools/tool_model.h"
 
 namespace insula {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Whether rows of other components push a body: tissue in the jaws, bone at the shaft.
 #pragma once
-#include "core/constraint/constraint.h"
+#include "core/mechanics/constraint.h"
 
 namespace insula {
 

@@ -93,7 +93,7 @@ class GoalClipped final : public ExerciseRule {
       if (!c.temporary) applications += c.applications;
     if (asked_) {
       asked_ = false;
-      least_applications_ = applications + 1;
+      min_applications_ = applications + 1;
       log.goal_lost(goal_, r.time);
       log.message("Take the clip back and place it again", r.time);
     }
@@ -116,7 +116,7 @@ class GoalClipped final : public ExerciseRule {
       log.measure(past_, 1000 * j.tip_past_neck, j.tip_past_neck > 0 && j.tip_past_neck < 0.004 ? 1 : -1);
       log.measure(slit_, 1000 * j.gap, j.gap < 0.0012 ? 1 : -1);
     }
-    const bool good = j.clips > 0 && shut && j.grade <= max_grade() && open && applications >= least_applications_;
+    const bool good = j.clips > 0 && shut && j.grade <= max_grade() && open && applications >= min_applications_;
     held_ = good ? held_ + r.h : 0;
     if (good && held_ >= hold()) log.goal(goal_, r.time);
     if (!good && log.goals()[std::size_t(goal_)].done) log.goal_lost(goal_, r.time);
@@ -124,7 +124,7 @@ class GoalClipped final : public ExerciseRule {
   void reset() override {
     held_ = 0;
     asked_ = false;
-    least_applications_ = 1;
+    min_applications_ = 1;
   }
 
  private:
@@ -134,7 +134,7 @@ class GoalClipped final : public ExerciseRule {
   std::vector<int> flow_, narrow_;
   double held_ = 0;
   bool asked_ = false;
-  int least_applications_ = 1;
+  int min_applications_ = 1;
 };
 
 class FaultStenosis final : public ExerciseRule {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/collision/closest.h"
+#include "core/collision/shapes/closest.h"
 
 namespace insula {
 namespace {

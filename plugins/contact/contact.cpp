@@ -17,19 +17,19 @@ Each contact is one block: the gap at the end of the step and its force obey 0 <
 
     gap(end) = gap(start) + n . (H dq)      n fixed over the step, from b to a
 
-n is that of the start of the step, or, with `taken_at="end"`, of its expected end: surfaces where the last step's motion leads them, a tool that
+n is that of the start of the step, or, with `linearized_at="end"`, of its expected end: surfaces where the last step's motion leads them, a tool that
 presses as far off its free pose as it was. Where a tool slides over an edge it then feels the new face in the step in which it gets there; what is
 expected wrongly changes n alone, not the law.
 
 Tools are rounded convex pieces and look ahead along their free motion, so that contact is there before it happens
-(`core/collision/tool_collider.h`); surfaces meet by sampled vertices (`core/collision/tissue_collider.h`). A surface with
+(`core/collision/colliders/tool_collider.h`); surfaces meet by sampled vertices (`core/collision/colliders/tissue_collider.h`). A surface with
 a `thickness` is the middle of a wall: gaps are measured to the wall's faces, and a tool that touches such a wall
-goes on by no more than `max_push` in a step (rows on the tool alone), however fast the hand is. `alarm` is the
+goes on by no more than `max_step_displacement` in a step (rows on the tool alone), however fast the hand is. `alarm` is the
 distance at which a contact enters the problem; the haptic loop needs it too, since it moves the tool between steps. Contact
 forces act on both sides at the same place of the triangle's side of the gap, so a tool's contact adds neither force nor
 moment to the whole; between two surfaces the moment is exact once the gap is closed.
 
-A blade that meets a wall `by="vertices"` has many contacts side by side. With a `patch` those within that length share one
+A blade that meets a wall `contact_geometry="vertices"` has many contacts side by side. With a `patch` those within that length share one
 friction force: |f_t| <= mu sum of their f_n, opposing the mean slip, weighted by what each bore in the last step
 (`friction_patches.h`): one row a contact and two a patch instead of three a contact.
 
@@ -47,7 +47,7 @@ namespace insula {
 // A tool that presses is as far off its free pose at the end of the step as it was at the end of the last one.
 void Contact::expect(Pair& p, const Pose& free) const {
   p.expected.reset();
-  if (!p.tool_collider || !taken_at.is("end")) return;
+  if (!p.tool_collider || !linearized_at.is("end")) return;
   const bool presses = std::any_of(p.forces.begin(), p.forces.end(), [](const Vec3& f) { return f[0] > 0; });
   if (p.free && presses) p.expected = displaced(free, displacement(*p.free, p.start));
   p.free = free;
@@ -58,11 +58,11 @@ void Contact::search(const Search& what) {
   if (p.tool_a) {
     ToolContactSettings settings;
     settings.alarm = alarm();
-    settings.look_ahead = look_ahead_;
-    settings.max_recovery = recovery();
+    settings.collision_horizon = collision_horizon_;
+    settings.max_correction = max_correction();
     if (p.b && p.b->thickness() > 0) {
       settings.offset = 0.5 * p.b->thickness();
-      settings.max_recovery = std::min(recovery(), max_push());
+      settings.max_correction = std::min(max_correction(), max_step_displacement());
     } else {
       settings.one_sided = true;
     }
@@ -91,7 +91,7 @@ void Contact::search(const Search& what) {
 }
 
 void Contact::detect(const StepContext& context) {
-  look_ahead_ = context.look_ahead_s / context.h;
+  collision_horizon_ = context.collision_horizon_s / context.h;
   workers_->run(int(searches_.size()), [this](int i) { search(searches_[std::size_t(i)]); });
   // Names are given in the order of the pairs, for any number of threads.
   for (Pair& p : pairs_) {
@@ -115,7 +115,7 @@ void Contact::detect(const StepContext& context) {
   }
 }
 
-double Contact::most_force(const Pair& p) const {
+double Contact::max_contact_force(const Pair& p) const {
   const double most = p.tool_a ? max_force() : tissue_max_force();
   return most > 0 ? most : infinite;
 }
@@ -150,7 +150,7 @@ void Contact::build(const StepContext&, ConstraintBuilder& builder) {
         block.friction = friction();
       } else {
         block.lower = 0;
-        block.upper = most_force(p);
+        block.upper = max_contact_force(p);
       }
       block.compliance = compliance(p);
       const int row = builder.add(block);

@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "core/base/workers.h"
-#include "core/collision/contact_selection.h"
-#include "core/collision/tissue_collider.h"
-#include "core/collision/tool_collider.h"
-#include "core/collision/vertex_collider.h"
-#include "core/constraint/constraint.h"
+#include "core/collision/colliders/contact_selection.h"
+#include "core/collision/colliders/tissue_collider.h"
+#include "core/collision/colliders/tool_collider.h"
+#include "core/collision/colliders/vertex_collider.h"
+#include "core/mechanics/constraint.h"
 #include "core/mechanics/rigid_body.h"
 #include "core/mechanics/surface.h"
 #include "core/sim/report.h"
@@ -25,13 +25,13 @@ class Contact final : public Constraint {
   Param<Length> alarm{this, {.name = "alarm", .fallback = "1 mm", .min = "0.01 mm", .max = "10 mm", .doc = "a tool closer than this is in contact's care"}};
   Param<Length> spacing{this, {.name = "spacing", .fallback = "2 mm", .min = "0.01 mm", .max = "100 mm", .doc = "contacts of a tool are no closer than this unless the surface turns"}};
   Param<int> max_contacts{this, {.name = "max_contacts", .fallback = "8", .min = "1", .max = "100", .doc = "most contacts of a tool with one surface"}};
-  Param<Length> max_push{this, {.name = "max_push", .fallback = "0.3 mm", .min = "0.05 mm", .max = "100 mm", .doc = "a tool that touches a wall (a surface with a thickness) goes on by no more than this in a step; the rest of the hand's motion follows in the next ones"}};
-  Param<Length> tissue_push{this, {.name = "tissue_push", .fallback = "1.5 mm", .min = "0.05 mm", .max = "100 mm", .doc = "the same for a soft body"}};
-  Param<Choice> by{this, {.name = "by", .fallback = "triangles", .choices = {"triangles", "vertices"}, .doc = "how tools meet surfaces: by every triangle, for sharp tools; or by vertices, for blades much wider than the triangles (contacts then stay with their vertices; of a wall, a surface with a thickness, all are kept out, else one per spacing)"}};
-  Param<Choice> taken_at{this, {.name = "taken_at", .fallback = "start", .choices = {"start", "end"}, .doc = "by triangles: where the normals and places of a tool that presses are taken: at the start of the step; or where tool and surface are expected at its end, which is nearer to the truth where a tool slides over what turns, and for long steps most"}};
+  Param<Length> max_step_displacement{this, {.name = "max_step_displacement", .fallback = "0.3 mm", .min = "0.05 mm", .max = "100 mm", .doc = "a tool that touches a wall (a surface with a thickness) goes on by no more than this in a step; the rest of the hand's motion follows in the next ones"}};
+  Param<Length> tissue_max_step_displacement{this, {.name = "tissue_max_step_displacement", .fallback = "1.5 mm", .min = "0.05 mm", .max = "100 mm", .doc = "the same for a soft body"}};
+  Param<Choice> contact_geometry{this, {.name = "contact_geometry", .fallback = "triangles", .choices = {"triangles", "vertices"}, .doc = "how tools meet surfaces: by every triangle, for sharp tools; or by vertices, for blades much wider than the triangles (contacts then stay with their vertices; of a wall, a surface with a thickness, all are kept out, else one per spacing)"}};
+  Param<Choice> linearized_at{this, {.name = "linearized_at", .fallback = "start", .choices = {"start", "end"}, .doc = "by triangles: where the normals and places of a tool that presses are taken: at the start of the step; or where tool and surface are expected at its end, which is nearer to the truth where a tool slides over what turns, and for long steps most"}};
   Param<Length> patch{this, {.name = "patch", .fallback = "0 mm", .min = "0 mm", .max = "20 mm", .doc = "by vertices: contacts within this length of a blade share one friction force; 0: each has its own"}};
-  Param<Length> recovery{this, {.name = "recovery", .fallback = "1 mm", .min = "0.001 mm", .max = "10 mm", .doc = "an overlap of a tool is undone by no more than this in a step: less is gentler on thin walls"}};
-  Param<Stiffness> layer{this, {.name = "layer", .fallback = "0 N/m", .min = "0 N/m", .max = "1000 kN/m", .doc = "stiffness of what lies between a tool and the body at one contact, finer than the body's elements (the pia, a pad); 0: nothing, contact is hard"}};
+  Param<Length> max_correction{this, {.name = "max_correction", .fallback = "1 mm", .min = "0.001 mm", .max = "10 mm", .doc = "an overlap of a tool is undone by no more than this in a step: less is gentler on thin walls"}};
+  Param<Stiffness> contact_stiffness{this, {.name = "contact_stiffness", .fallback = "0 N/m", .min = "0 N/m", .max = "1000 kN/m", .doc = "stiffness of what lies between a tool and the body at one contact, finer than the body's elements (the pia, a pad); 0: nothing, contact is hard"}};
   Param<Force> max_force{this, {.name = "max_force", .fallback = "0 N", .min = "0 N", .max = "100 N", .doc = "most normal force of one contact of a tool: what is pressed harder goes in, and out again, instead of dragging the tissue along; with friction only by patches; 0: any"}};
   Param<Length> tissue_alarm{this, {.name = "tissue_alarm", .fallback = "0.5 mm", .min = "0.01 mm", .max = "10 mm", .doc = "the same distance between two surfaces"}};
   Param<Length> tissue_spacing{this, {.name = "tissue_spacing", .fallback = "4 mm", .min = "0.05 mm", .max = "100 mm", .doc = "contacts of two surfaces are no closer than this; their vertices are sampled at three quarters of it"}};
@@ -73,12 +73,12 @@ class Contact final : public Constraint {
   const std::vector<Pair>& pairs() const { return pairs_; }
   /// A contact of a tool as the tool and the surface go on after the step: its three rows, the direction that its normal has turned to, and
   /// that a step later.
-  struct Turn {
+  struct FramePrediction {
     int row;
     Vec3 from, tangent, to, later;
   };
   /// Appends those of contacts that press, where their tools would be `steps` after the step.
-  void turned(double steps, std::vector<Turn>& out) const;
+  void predict_frames(double steps, std::vector<FramePrediction>& out) const;
 
  private:
   /// What one thread may search at a time: a pair, for two surfaces one way of it.
@@ -91,8 +91,8 @@ class Contact final : public Constraint {
   void expect(Pair& pair, const Pose& free) const;
   void add_pairs(Simulation& simulation, Body* a, Body* b);
   void limit_motion(ConstraintBuilder& builder, const Pair& pair) const;
-  double most_force(const Pair& pair) const;  ///< of one contact, N
-  double compliance(const Pair& pair) const { return pair.tool_a && layer() > 0 ? 1 / layer() : 0.0; }  ///< m/N
+  double max_contact_force(const Pair& pair) const;  ///< of one contact, N
+  double compliance(const Pair& pair) const { return pair.tool_a && contact_stiffness() > 0 ? 1 / contact_stiffness() : 0.0; }  ///< m/N
   void build_patches(ConstraintBuilder& builder, Pair& pair);
   void add_row(ConstraintBuilder& builder, int row, const Pair& pair, const Proximity& x, const Vec3& direction) const;
 
@@ -100,7 +100,7 @@ class Contact final : public Constraint {
   std::vector<Search> searches_;
   Workers* workers_ = nullptr;
   std::uint64_t next_key_ = 0;
-  double look_ahead_ = 0;  ///< of this step, in steps
+  double collision_horizon_ = 0;  ///< of this step, in steps
 };
 
 }  // namespace insula

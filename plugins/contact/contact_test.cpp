@@ -212,7 +212,7 @@ TEST(Contact, SurfacesDoNotPassThroughOneAnother) {
       CollisionMesh other;
       other.build(surfaces[1]->rest().vertices, surfaces[1]->triangles());
       other.update(surfaces[1]->positions(), {});
-      one.detect(other, mesh, {.alarm = 1e-3, .max_recovery = 1, .max_depth = 2e-3}, found);
+      one.detect(other, mesh, {.alarm = 1e-3, .max_correction = 1, .max_depth = 2e-3}, found);
       for (const auto& x : found) deepest = std::min(deepest, x.gap);
     }
   }

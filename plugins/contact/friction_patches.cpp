@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/collision/contact_selection.h"
+#include "core/collision/colliders/contact_selection.h"
 #include "plugins/contact/contact.h"
 
 namespace insula {
 namespace {
 
-constexpr double most_creep = 0.1e-3;  ///< a hold that is farther off than this is given up, m
+constexpr double max_creep = 0.1e-3;  ///< a hold that is farther off than this is given up, m
 
 // Cell of the grid (its planes half a cell off the tool's own, where faces may lie) and the direction, of six, that the normal is nearest to, both in the tool's frame.
 std::uint32_t name_of(const Vec3& place, const Vec3& normal, double size) {
@@ -95,7 +95,7 @@ void FrictionPatches::finish(std::span<const Proximity> contacts, const Constrai
     double pressed_in_all = 0;
     for (int i = p.first; i < p.first + p.count; ++i) pressed_in_all += solution.lambda[members_[std::size_t(i)].row];
     // Slipping gives the hold up; members_ is in order of names.
-    const bool holds = friction.norm() < (1 - 1e-6) * mu * pressed_in_all && p.crept.norm() < most_creep;
+    const bool holds = friction.norm() < (1 - 1e-6) * mu * pressed_in_all && p.crept.norm() < max_creep;
     held_.push_back({p.name, holds, p.crept, Vec3::Zero(), 0});
     for (int i = p.first; i < p.first + p.count; ++i) {
       const Member& m = members_[std::size_t(i)];
@@ -127,7 +127,7 @@ void Contact::build_patches(ConstraintBuilder& builder, Pair& p) {
       Block block;
       block.id = row_id(*this, x.key);
       block.lower = 0;
-      block.upper = most_force(p);
+      block.upper = max_contact_force(p);
       block.compliance = compliance(p);
       m.row = builder.add(block);
       builder.violation(m.row, x.start_gap);

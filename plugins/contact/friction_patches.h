@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "core/collision/contact_set.h"
-#include "core/constraint/constraint.h"
+#include "core/mechanics/constraint.h"
 
 namespace insula {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How far a tool may go on a wall or in tissue in one step.
-#include "core/collision/closest.h"
+#include "core/collision/shapes/closest.h"
 #include "plugins/contact/contact.h"
 
 namespace insula {
@@ -10,10 +10,10 @@ constexpr double servo_step_s = 1e-3;  // who goes on in such steps is allowed a
 
 // Tissue answers linearly over a step, while its true motion is not: a far push would turn a thin wall or the elements of a lobe
 // inside out, a far slide would leave the places that contact looked at. So a tool that touches goes on by no more than
-// max_push (a wall) or tissue_push: three rows along the free motion of three places of the touching piece.
+// max_step_displacement (a wall) or tissue_max_step_displacement: three rows along the free motion of three places of the touching piece.
 void Contact::limit_motion(ConstraintBuilder& builder, const Pair& p) const {
   if (!p.tool_a || !p.b || !p.active() || p.b->body().blocks() == 0) return;
-  const double most = p.b->thickness() > 0 ? max_push() : tissue_push();
+  const double most = p.b->thickness() > 0 ? max_step_displacement() : tissue_max_step_displacement();
   int piece = -1;
   double touch = 1;
   if (p.tool_collider) {

@@ -51,7 +51,7 @@ void Contact::add_pairs(Simulation& simulation, Body* a, Body* b) {
         p.link_a = i;
         p.b = sb;
         for (const ConvexPiece& piece : tool_a->link_pieces(i)) p.pieces_a.push_back(rounded(piece));
-        if (by.is("vertices"))
+        if (contact_geometry.is("vertices"))
           p.vertex_collider = std::make_unique<VertexCollider>(tool_a->link_pieces(i), sb->triangles(), p.b->collision().vertex_count());
         else
           p.tool_collider = std::make_unique<ToolCollider>(tool_a->link_pieces(i), p.b->collision().triangle_count());
@@ -78,8 +78,8 @@ void Contact::add_pairs(Simulation& simulation, Body* a, Body* b) {
 
 void Contact::connect(PrepareContext& context, Simulation& simulation) {
   const auto& all = between();
-  if (max_force() > 0 && friction() > 0 && !(by.is("vertices") && patch() > 0))
-    return error(context, max_force, "max_force: a contact with friction has a bound only in a patch (by=\"vertices\" and patch); or set friction=\"0\"");
+  if (max_force() > 0 && friction() > 0 && !(contact_geometry.is("vertices") && patch() > 0))
+    return error(context, max_force, "max_force: a contact with friction has a bound only in a patch (contact_geometry=\"vertices\" and patch); or set friction=\"0\"");
   if (all.size() < 2) return error(context, between, "between: contact needs two names or more");
   for (std::size_t i = 0; i < all.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j)

@@ -19,7 +19,7 @@ std::string plate_urdf(double wide, double up = 0, double beside = 0) {
 <collision name="plate"><origin xyz="{} 0 {}"/><geometry><box size="{} {} 0.002"/></geometry></collision></link></robot>)", beside, 1e-3 + up, wide, wide);
 }
 TriMesh fine_ground() { return shapes::box(Vec3(-0.01, -0.01, -0.01), Vec3(0.01, 0.01, 0), 20); }
-const std::string by_vertices = R"(by="vertices" spacing="0.5 mm" max_contacts="100" alarm="0.5 mm" )";
+const std::string by_vertices = R"(contact_geometry="vertices" spacing="0.5 mm" max_contacts="100" alarm="0.5 mm" )";
 
 struct Sum {
   double normal = 0;
@@ -106,7 +106,7 @@ const char* const soft_scene = R"(<scene>
 <fixed region="beyond" centre="0 0 -3.9 mm" normal="0 0 -1"/><surface/></soft_body>
 <retractor id="tool" model="meshes/tool/tool.urdf" hand="right" home="-5.69 0.23 {} mm" shaft="0 0 1" flat="1 0 0" coupling="{} N/m" angular_coupling="0.1 N m/rad"/>
 <solver max_sweeps="3000" tolerance="1e-12 m" conjugate="true"/>
-<contact id="touch" between="tool pad" by="vertices" friction="0.4" patch="2 mm" spacing="0.5 mm" max_contacts="60" alarm="0.3 mm"/></scene>)";
+<contact id="touch" between="tool pad" contact_geometry="vertices" friction="0.4" patch="2 mm" spacing="0.5 mm" max_contacts="60" alarm="0.3 mm"/></scene>)";
 
 struct Soft {
   SceneFolder folder;

@@ -9,7 +9,7 @@ Hooke's law. With F the deformation gradient, F = R S (polar), e = S - I:
     P = R (2 mu e + lambda tr(e) I),   force on node i = -V P b_i,   b_i the rest gradient of its shape function
 
 which is the exact gradient of the energy. Hooke's law lets an element be crushed flat, and through itself, by a few times
-E; soft tissue stiffens long before. So a principal stretch s below `least_stretch` s0 costs in addition
+E; soft tissue stiffens long before. So a principal stretch s below `barrier_stretch` s0 costs in addition
 
     energy density   stiffening E / 2 (s0 - s)^2           (s < s0; nothing above)
 
@@ -28,7 +28,7 @@ de Goes, Kim 2019 (Hessian of energies of the principal stretches).
 
 #include "core/mechanics/soft_body.h"
 #include "core/registry/registry.h"
-#include "plugins/corotational_fem/crushed.h"
+#include "plugins/corotational_fem/compression_barrier.h"
 #include "plugins/corotational_fem/element_batch.h"
 #include "plugins/corotational_fem/polar.h"
 
@@ -44,7 +44,7 @@ class CorotationalFem final : public ForceModel {
   Param<Duration> rayleigh_stiffness{this, {.name = "rayleigh_stiffness", .fallback = "20 ms", .min = "0 s", .max = "1 s", .doc = "Rayleigh damping in proportion to stiffness"}};
   Param<Choice> tangent{this, {.name = "tangent", .fallback = "rotated", .choices = {"rotated", "exact"}, .doc = "stiffness used in a step: rotated Hooke, or with the element's spin as well"}};
 
-  Param<Scalar> least_stretch{this, {.name = "least_stretch", .fallback = "0.4", .min = "0", .max = "0.9", .doc = "principal stretch below which an element stiffens; 0: only once it is inverted"}};
+  Param<Scalar> barrier_stretch{this, {.name = "barrier_stretch", .fallback = "0.4", .min = "0", .max = "0.9", .doc = "principal stretch below which an element stiffens; 0: only once it is inverted"}};
   Param<Scalar> stiffening{this, {.name = "stiffening", .fallback = "30", .min = "0", .max = "1000", .doc = "stiffness below that stretch, in Young's moduli; 0: none"}};
 
   void attach(PrepareContext& context, DeformableBody& body) override;
@@ -59,7 +59,7 @@ class CorotationalFem final : public ForceModel {
  private:
   void rotate(const ElementBatch& e, const double* x, ElementWork& work) const;
   ElementMaterial material() const;
-  CrushLaw crush_law() const { return {stiffening() * young(), least_stretch()}; }
+  BarrierLaw barrier_law() const { return {stiffening() * young(), barrier_stretch()}; }
 
   std::vector<ElementBatch> batches_;
 };
@@ -133,7 +133,7 @@ void CorotationalFem::add_mass(std::vector<double>& mass, std::vector<double>& d
 
 ElementMaterial CorotationalFem::material() const {
   // No principal stretch is less than 1 - |e|: spares nearly every element the eigenvalues.
-  const double far = stiffening() > 0 ? 1 - least_stretch() : std::numeric_limits<double>::infinity();
+  const double far = stiffening() > 0 ? 1 - barrier_stretch() : std::numeric_limits<double>::infinity();
   return {young() / (2 * (1 + poisson())), young() * poisson() / ((1 + poisson()) * (1 - 2 * poisson())), far * far};
 }
 
@@ -158,10 +158,10 @@ void CorotationalFem::linearise(const double* x, double* force, BlockMatrix* sti
   for (ElementBatch& e : batches_) {
     rotate(e, x, work);
     std::memcpy(e.q, work.q, sizeof e.q);
-    const unsigned crushed = kernel.force(e, m, work, force);
+    const unsigned compressed = kernel.force(e, m, work, force);
     if (stiffness) kernel.stiffness(e, m, work, scale, spin, stiffness->block(0));
-    for (int l = 0; crushed && l < e.count; ++l)
-      if (crushed >> l & 1) stiffen(e, work, l, crush_law(), force, stiffness, scale, system);
+    for (int l = 0; compressed && l < e.count; ++l)
+      if (compressed >> l & 1) stiffen(e, work, l, barrier_law(), force, stiffness, scale, system);
   }
 }
 
@@ -172,10 +172,10 @@ double CorotationalFem::energy(const double* x) {
   double sum = 0;
   for (const ElementBatch& e : batches_) {
     rotate(e, x, work);
-    const unsigned crushed = kernel.energy(e, m, work);
+    const unsigned compressed = kernel.energy(e, m, work);
     for (int l = 0; l < e.count; ++l) {
       sum += work.out[0][l];
-      if (crushed >> l & 1) sum += crush_energy(e, work, l, crush_law());
+      if (compressed >> l & 1) sum += barrier_energy(e, work, l, barrier_law());
     }
   }
   return sum;

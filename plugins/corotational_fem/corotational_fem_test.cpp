@@ -33,7 +33,7 @@ std::vector<double> newton(SoftBody& body, int steps) {
     for (ForceModel* m : body.forces()) m->linearise(body.q().data(), f.data(), nullptr, 0, Tangent::system);
     double worst = 0;
     for (int i = 0; i < body.nodes(); ++i)
-      if (!body.held()[std::size_t(i)]) worst = std::max(worst, f.segment<3>(3 * i).norm());
+      if (!body.fixed()[std::size_t(i)]) worst = std::max(worst, f.segment<3>(3 * i).norm());
     residual.push_back(worst);
   }
   return residual;

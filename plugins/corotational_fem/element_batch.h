@@ -20,7 +20,7 @@ struct alignas(64) ElementBatch {
 
 struct ElementMaterial {
   double mu, lambda;   ///< Pa
-  double far2;         ///< squared norm of the strain above which an element may be crushed; infinite: none ever is
+  double far2;         ///< squared norm of the strain above which an element may be compressed below the barrier; infinite: none ever is
 };
 
 /// What the loops hand on from one to the next.
@@ -37,11 +37,11 @@ enum class SpinTerm { none, exact, positive };
 struct ElementKernels {
   /// F of each element and, from the batch's q, its rotation. Returns the lanes (bits) whose rotation was not found.
   unsigned (*rotate)(const ElementBatch& batch, const double* x, ElementWork& work);
-  /// Stretch, and force += -dE/dx. Returns the lanes that may be crushed.
+  /// Stretch, and force += -dE/dx. Returns the lanes that may be compressed below the barrier.
   unsigned (*force)(const ElementBatch& batch, const ElementMaterial& m, ElementWork& work, double* force);
   /// values (3x3 blocks, column-major) += scale d2E/dx2: Hooke's law in the turned frame and the spin of the element.
   void (*stiffness)(const ElementBatch& batch, const ElementMaterial& m, const ElementWork& work, double scale, SpinTerm spin, double* values);
-  /// Stretch, and each lane's energy in work.out[0]. Returns the lanes that may be crushed.
+  /// Stretch, and each lane's energy in work.out[0]. Returns the lanes that may be compressed below the barrier.
   unsigned (*energy)(const ElementBatch& batch, const ElementMaterial& m, ElementWork& work);
 };
 

@@ -9,7 +9,7 @@
 #include "core/base/random.h"
 #include "core/linalg/instruction_set.h"
 #include "core/testing/held.h"
-#include "plugins/corotational_fem/crushed.h"
+#include "plugins/corotational_fem/compression_barrier.h"
 #include "plugins/corotational_fem/polar.h"
 
 namespace insula {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Crushed elements: energy in closed form, force and tangent as derivatives, and no inversion under load.
+// Elements compressed below the barrier: energy in closed form, force and tangent as derivatives, and no inversion under load.
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
@@ -13,7 +13,7 @@ namespace {
 
 const std::filesystem::path example = std::filesystem::path(INSULA_SOURCE_DIR) / "plugins/corotational_fem/example.xml";
 
-struct Crushed : ::testing::Test {
+struct CompressionBarrier : ::testing::Test {
   std::unique_ptr<Simulation> s;
   SoftBody* body = nullptr;
   ForceModel* model = nullptr;
@@ -66,7 +66,7 @@ struct Crushed : ::testing::Test {
   }
 };
 
-TEST_F(Crushed, EnergyOfAUniformSqueeze) {
+TEST_F(CompressionBarrier, EnergyOfAUniformSqueeze) {
   // E 2100 Pa and nu 0.45 are the defaults of the element.
   const double young = 2100, nu = 0.45, mu = young / (2 * (1 + nu)), lambda = young * nu / ((1 + nu) * (1 - 2 * nu));
   const VecX rest = body->q();
@@ -90,7 +90,7 @@ TEST_F(Crushed, EnergyOfAUniformSqueeze) {
   }
 }
 
-TEST_F(Crushed, ForceIsTheEnergysGradientAndTheTangentTheForces) {
+TEST_F(CompressionBarrier, ForceIsTheEnergysGradientAndTheTangentTheForces) {
   for (const double z : {0.3, 0.15, 0.05}) {
     const VecX x = squeezed(z, 0.1);
     const VecX f = force(x);
@@ -106,7 +106,7 @@ TEST_F(Crushed, ForceIsTheEnergysGradientAndTheTangentTheForces) {
   }
 }
 
-TEST_F(Crushed, TheStepsTangentIsPositive) {
+TEST_F(CompressionBarrier, TheStepsTangentIsPositive) {
   const VecX x = squeezed(0.1, 0.2);
   for (int k = 0; k < 20; ++k) {
     const VecX d = direction(k);

@@ -6,7 +6,7 @@ Goals, faults and the clock of training exercises. Rules read the report of each
 write to the exercise's log alone.
 
 A force fault counts once each time a tool presses a body harder than the limit for longer than the grace time, and is
-armed again when the force has fallen below nine tenths of the limit. An order fault counts a strand that was parted
+armed again when the force has fallen below nine tenths of the limit. An order fault counts a strand that was severed
 while a good number of strands nearer to the surface still stood.
 */
 #include <algorithm>
@@ -137,13 +137,13 @@ class FaultOrder final : public ExerciseRule {
     if (depth_.size() != r.strands.size()) {  // first step: depths at the start
       depth_.clear();
       for (const StrandState& s : r.strands) depth_.push_back(0.5 * (s.a + s.b).dot(inward().normalized()));
-      parted_.assign(r.strands.size(), 0);
+      severed_.assign(r.strands.size(), 0);
     }
     for (std::size_t i = 0; i < r.strands.size(); ++i) {
-      if (parted_[i] || r.strands[i].health >= 0) continue;
-      parted_[i] = 1;
+      if (severed_[i] || r.strands[i].integrity >= 0) continue;
+      severed_[i] = 1;
       int before = 0;
-      for (std::size_t k = 0; k < r.strands.size(); ++k) before += !parted_[k] && r.strands[k].health >= 0 && depth_[k] < depth_[i] - margin();
+      for (std::size_t k = 0; k < r.strands.size(); ++k) before += !severed_[k] && r.strands[k].integrity >= 0 && depth_[k] < depth_[i] - margin();
       if (before > allowed()) log.fault(fault_, r.time, before);
     }
   }
@@ -152,7 +152,7 @@ class FaultOrder final : public ExerciseRule {
  private:
   int fault_ = 0;
   std::vector<double> depth_;
-  std::vector<char> parted_;
+  std::vector<char> severed_;
 };
 
 class TimeLimit final : public ExerciseRule {
@@ -170,7 +170,7 @@ class TimeLimit final : public ExerciseRule {
 
 INSULA_PLUGIN(exercise_rules) {
   using namespace insula;
-  registry.add<GoalStrands>("goal_strands", Kind::exercise_rule, "reached when enough strands are parted");
+  registry.add<GoalStrands>("goal_strands", Kind::exercise_rule, "reached when enough strands are severed");
   registry.add<GoalOpening>("goal_opening", Kind::exercise_rule, "reached when two surfaces are held apart");
   registry.add<FaultForce>("fault_force", Kind::exercise_rule, "counts too much force of a tool on a body");
   registry.add<FaultTorn>("fault_torn", Kind::exercise_rule, "counts strands torn by pulling");

@@ -59,7 +59,7 @@ class Rules : public ::testing::Test {
   }
   void part(std::initializer_list<int> which) {
     for (int i : which) {
-      report.strands[std::size_t(i)].health = -1;
+      report.strands[std::size_t(i)].integrity = -1;
       --report.strands_left;
     }
   }

@@ -3,7 +3,7 @@
 # fixed
 
 Holds nodes of a soft body where they rest. The region is a ball, its outside, or a half space; several `<fixed>` add up.
-Held nodes leave the system matrix, so they cost nothing and move not at all.
+Fixed nodes leave the system matrix, so they cost nothing and move not at all.
 */
 #include "core/mechanics/force_model.h"
 #include "core/registry/registry.h"
@@ -19,14 +19,14 @@ class Fixed final : public Support {
   Param<Length> radius{this, {.name = "radius", .fallback = "0 m", .min = "0 m", .max = "10 m", .doc = "radius of the ball"}};
   Param<Vec<Scalar>> normal{this, {.name = "normal", .fallback = "0 0 1", .doc = "normal of the plane, towards the held side"}};
 
-  void hold(PrepareContext& context, const std::vector<Vec3>& rest, std::vector<char>& held) override {
+  void fix(PrepareContext& context, const std::vector<Vec3>& rest, std::vector<char>& fixed) override {
     int count = 0;
     for (std::size_t i = 0; i < rest.size(); ++i) {
       const Vec3 d = rest[i] - centre();
       const bool in = region.is("all") || (region.is("inside") && d.norm() <= radius()) ||
                       (region.is("outside") && d.norm() >= radius()) || (region.is("beyond") && d.dot(normal()) >= 0);
       if (in) {
-        held[i] = 1;
+        fixed[i] = 1;
         ++count;
       }
     }

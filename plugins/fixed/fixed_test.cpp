@@ -16,7 +16,7 @@ class FixedRegion : public ::testing::Test {
   std::string scene(const std::string& supports) const {
     return "<scene gravity=\"0 0 -9.81 m/s2\"><soft_body id=\"cube\" mesh=\"meshes/cube.msh\" mesh_unit=\"m\"><corotational_fem/>" + supports + "</soft_body></scene>";
   }
-  /// Number of held nodes; each must satisfy `inside`, no free one may.
+  /// Number of fixed nodes; each must satisfy `inside`, no free one may.
   int held(const std::string& supports, const std::function<bool(const Vec3&)>& inside) const {
     auto s = test::load_text(scene(supports), folder_.path() / "cube.xml");
     EXPECT_TRUE(s);
@@ -24,8 +24,8 @@ class FixedRegion : public ::testing::Test {
     auto& body = *s->scene().find_as<SoftBody>("cube");
     int count = 0;
     for (int i = 0; i < body.nodes(); ++i) {
-      EXPECT_EQ(bool(body.held()[std::size_t(i)]), inside(body.rest().nodes[std::size_t(i)])) << "node " << i;
-      count += body.held()[std::size_t(i)];
+      EXPECT_EQ(bool(body.fixed()[std::size_t(i)]), inside(body.rest().nodes[std::size_t(i)])) << "node " << i;
+      count += body.fixed()[std::size_t(i)];
     }
     s->step();
     return count;
@@ -58,8 +58,8 @@ TEST_F(FixedRegion, HoldingNothingIsAnError) {
   EXPECT_NE(result.diagnostics.format().find("holds no node"), std::string::npos) << result.diagnostics.format();
 }
 
-// What is held carries the weight of what is not: the reaction is the weight, and held nodes stay to the bit.
-TEST_F(FixedRegion, HeldNodesStay) {
+// What is held carries the weight of what is not: the reaction is the weight, and fixed nodes stay to the bit.
+TEST_F(FixedRegion, FixedNodesStay) {
   auto s = test::load_text(scene("<fixed region=\"beyond\" centre=\"0 0 5 mm\" normal=\"0 0 -1\"/>"), folder_.path() / "cube.xml");
   ASSERT_TRUE(s);
   auto& body = *s->scene().find_as<SoftBody>("cube");
@@ -68,14 +68,14 @@ TEST_F(FixedRegion, HeldNodesStay) {
   for (ForceModel* m : body.forces()) m->linearise(body.q().data(), f.data(), nullptr, 0, Tangent::system);
   double reaction = 0, weight = 0;
   for (int i = 0; i < body.nodes(); ++i) {
-    if (body.held()[std::size_t(i)]) {
+    if (body.fixed()[std::size_t(i)]) {
       EXPECT_TRUE((body.q().segment<3>(3 * i) == body.rest().nodes[std::size_t(i)]));
       reaction -= f[3 * i + 2];
     } else {
       weight += 9.81 * body.node_mass()[std::size_t(i)];
     }
   }
-  EXPECT_TRUE(test::held("reaction of held nodes = weight", std::abs(reaction - weight), weight, 1e-6));
+  EXPECT_TRUE(test::held("reaction of fixed nodes = weight", std::abs(reaction - weight), weight, 1e-6));
 }
 
 }  // namespace

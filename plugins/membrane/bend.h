@@ -61,7 +61,7 @@ class BendPatches {
   std::vector<HingeBatch> batches_;  // of the hinges, in order
   std::vector<double> step_stiffness_;  // of each hinge, N m
   std::vector<double> start_angle_;  // in the rest configuration
-  std::vector<double> rest_angle_;   // of the natural shape: another one where there is a prestrain
+  std::vector<double> rest_angle_;   // of the stress-free configuration: another one where there is a prestrain
   std::vector<double> angle_, energy_angle_, moment_, gradient_;
   std::vector<std::array<int, 10>> hinge_slot_;  // lower triangle of the hinge's blocks; ~slot where stored the other way round
   std::vector<Patch> patches_;

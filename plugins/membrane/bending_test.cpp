@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "core/testing/held.h"
-#include "plugins/membrane/shell_fixture.h"
+#include "plugins/membrane/shell_for_test.h"
 #include "tests/figures/figure.h"
 
 namespace insula {
@@ -38,7 +38,7 @@ TEST(Bending, QuadraticDeflectionIsReproducedOnAnyMesh) {
       int inside = 0;
       for (int i = 0; i < body->nodes(); ++i) {
         body->q().segment<3>(3 * i) = place(i);
-        if (body->held()[std::size_t(i)]) continue;
+        if (body->fixed()[std::size_t(i)]) continue;
         body->q()[3 * i + 2] = 0;
         ++inside;
       }
@@ -49,7 +49,7 @@ TEST(Bending, QuadraticDeflectionIsReproducedOnAnyMesh) {
     }
 }
 
-// Held nodes keep a triangle's plane, which is the slope at its middle: the clamp lies in the middle of the held cell.
+// Fixed nodes keep a triangle's plane, which is the slope at its middle: the clamp lies in the middle of the held cell.
 double strip_ratio(int along, int across, Cut cut) {
   const double length = 0.05, width = 0.01, cell = length / (along - 0.5);
   const Wall w{.thickness = 2e-4, .young = 1e6, .poisson = 0};

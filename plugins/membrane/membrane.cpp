@@ -15,11 +15,11 @@ The usual energy of hinges (a spring on the angle of each edge) is not used: how
 the mesh is cut (a tenth too little on irregular meshes, a third on some regular ones) and does not improve with refinement.
 
 Several membranes share a shell by `regions`; every triangle has exactly one. Where two meet each bends its own triangles
-against the common slope, so the border is no hinge. A free rim carries no moment; nodes that are held keep their place,
+against the common slope, so the border is no hinge. A free rim carries no moment; nodes that are fixed keep their place,
 not their slope: hold two rows of them to clamp a rim. Caps carry no wall.
 
 A prestrain (the wall is under tension in the shape that was imaged) is a strain of each triangle and a turn of each rest
-angle, both linear in the displacement that leads to the natural shape.
+angle, both linear in the displacement that leads to the stress-free configuration.
 
 A triangle crushed below a tenth of its area at rest bends more softly than the law says (its angle's gradient is bounded).
 

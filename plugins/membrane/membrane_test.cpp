@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/testing/held.h"
-#include "plugins/membrane/shell_fixture.h"
+#include "plugins/membrane/shell_for_test.h"
 
 namespace insula {
 namespace {
@@ -24,7 +24,7 @@ TEST(Membrane, PatchTest) {
     int inside = 0;
     for (int i = 0; i < body->nodes(); ++i) {
       Vec3 x = turned * body->rest_nodes()[std::size_t(i)] + shift;
-      if (!body->held()[std::size_t(i)]) {
+      if (!body->fixed()[std::size_t(i)]) {
         x += 2e-4 * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
         ++inside;
       }

@@ -13,7 +13,7 @@ using Vec2 = Eigen::Vector2d;
 /// Hinges farther out than the edge's own are used less readily by this factor.
 constexpr double outer = 0.3;
 /// Combinations of quadratics that the hinges tell apart less well than this, relative to the best, are given up.
-constexpr double least_singular = 0.02;
+constexpr double min_singular = 0.02;
 
 /// Where the apex of a triangle lies in a plane that holds its edge (p, q) at (p2, q2), on the left of p2 to q2 or the right.
 Vec2 unfold(const Vec3& p, const Vec3& q, const Vec3& apex, const Vec2& p2, const Vec2& q2, double side) {
@@ -82,7 +82,7 @@ SlopeWeights slope_weights(const WallTopology& wall, const std::vector<Vec3>& re
   Eigen::Matrix<double, 3, 5> scaled = outer * m;
   scaled.col(0) = m.col(0);
   Eigen::JacobiSVD<Eigen::Matrix<double, 3, 5>, Eigen::FullPivHouseholderQRPreconditioner> svd(scaled, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  svd.setThreshold(least_singular);
+  svd.setThreshold(min_singular);
   const Eigen::Matrix<double, 5, 1> more = svd.solve(wanted);
   for (int k = 0; k < w.count; ++k) w.weight[k] = (k == 0 ? 1 : outer) * more[k];
   w.weight[0] += two;

@@ -6,7 +6,7 @@
 namespace insula {
 
 /// A triangle crushed to less than this part of its area keeps the direction of its stress.
-inline constexpr double least_area = 1e-3;
+inline constexpr double min_area = 1e-3;
 
 template <class V>
 struct StretchOf {
@@ -32,7 +32,7 @@ static inline StretchOf<V> stretch_of(const V (&u)[3], const V (&v)[3], const V 
   cross(s.f0, s.f1, n);
   s.det = root(dot(n, n));
   s.trace = root(V(s.c00 + s.c11 + 2 * s.det));
-  const V scale = 1 / (most(s.trace, V{} + 1e-9) * most(s.det, V{} + least_area));
+  const V scale = 1 / (most(s.trace, V{} + 1e-9) * most(s.det, V{} + min_area));
   s.i00 = scale * (s.c11 + s.det);
   s.i01 = -scale * s.c01;
   s.i11 = scale * (s.c00 + s.det);

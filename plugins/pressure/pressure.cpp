@@ -99,7 +99,7 @@ double BloodPressure::arterial(double h) const {
 
 void BloodPressure::prepare_feed(double h) {
   const int n = chambers_.count();
-  const double most_compliance = 1e-5 / area_;
+  const double max_compliance = 1e-5 / area_;
   for (int k = 0; k < n; ++k) {  // pressures count from those of the last step
     double s = -mesh_.ground(k) * pressure(k);
     for (int j = 0; j < n; ++j)
@@ -115,7 +115,7 @@ void BloodPressure::prepare_feed(double h) {
       for (int i = 0; i <= k; ++i) mix_[std::size_t(j * n + i)] += mesh_.share(k, j) * mix_[std::size_t(k * n + i)];
     Row& r = rows_[std::size_t(k)];
     r.feed = mesh_.pivot(k) > 0 ? mesh_.current(k) / mesh_.pivot(k) : 0;
-    r.conductance = std::min(mesh_.pivot(k), most_compliance * area_ * area_ / h);
+    r.conductance = std::min(mesh_.pivot(k), max_compliance * area_ * area_ / h);
   }
 }
 

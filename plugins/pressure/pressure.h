@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/constraint/constraint.h"
+#include "core/mechanics/constraint.h"
 #include "core/mechanics/shell_body.h"
 #include "plugins/pressure/chambers.h"
 #include "plugins/pressure/star_mesh.h"
@@ -27,7 +27,7 @@ class ChamberFeed {
 class BloodPressure final : public Constraint {
  public:
   static constexpr std::string_view kind_name = "pressure";
-  static constexpr int most_chambers = 8;
+  static constexpr int max_chambers = 8;
 
   Ref<ShellBody> on{this, {.name = "on", .doc = "closed shell whose wall the blood loads"}};
   Param<Pressure> systolic{this, {.name = "systolic", .fallback = "120 mmHg", .min = "20 mmHg", .max = "300 mmHg", .doc = "greatest pressure of a beat"}};
@@ -36,7 +36,7 @@ class BloodPressure final : public Constraint {
   Param<Pressure> imaged_at{this, {.name = "imaged_at", .fallback = "0 mmHg", .min = "0 mmHg", .max = "300 mmHg", .doc = "pressure at which the shape was imaged; 0: the mean of a beat"}};
   Param<bool> prestress{this, {.name = "prestress", .fallback = "true", .doc = "the wall balances the pressure of imaging in the imaged shape by a tension of its own, and is slack without pressure; false: its imaged shape is free of stress, and only what exceeds that pressure loads it (so it is, too, for a shell without a membrane)"}};
   Param<Duration> response{this, {.name = "response", .fallback = "1 s", .min = "0 s", .max = "60 s", .doc = "time in which pressure and rate follow a command"}};
-  Param<std::string> regions{this, {.name = "chambers", .fallback = "", .doc = "regions of each chamber, chambers parted by semicolons: \"parent; superior; sac bleb\"; none: one a region with a centreline"}};
+  Param<std::string> regions{this, {.name = "chambers", .fallback = "", .doc = "regions of each chamber, chambers separated by semicolons: \"parent; superior; sac bleb\"; none: one a region with a centreline"}};
 
   /// Makes the chambers, if they are not made yet; false when something is wrong with them.
   bool ready(PrepareContext& context);

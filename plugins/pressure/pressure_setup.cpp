@@ -55,8 +55,8 @@ bool BloodPressure::read_groups(PrepareContext& context, std::vector<std::vector
       }
       seen.push_back(r);
     }
-  if (good && int(groups.size()) > most_chambers) {
-    error(context, regions, std::to_string(groups.size()) + " chambers are too many; group the regions into at most " + std::to_string(most_chambers));
+  if (good && int(groups.size()) > max_chambers) {
+    error(context, regions, std::to_string(groups.size()) + " chambers are too many; group the regions into at most " + std::to_string(max_chambers));
     good = false;
   }
   return good;
@@ -85,7 +85,7 @@ bool BloodPressure::make_chambers(PrepareContext& context) {
     volume += rest_volume_.back();
     area += chambers_.area(c);
     bool yields = false;
-    for (int v : chambers_.nodes(c)) yields = yields || !on->held()[std::size_t(v)];
+    for (int v : chambers_.nodes(c)) yields = yields || !on->fixed()[std::size_t(v)];
     yields_.push_back(yields);
   }
   if (!(volume > 0)) {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/testing/held.h"
-#include "plugins/membrane/shell_fixture.h"
+#include "plugins/membrane/shell_for_test.h"
 #include "plugins/pressure/pressure.h"
 #include "plugins/pressure/shell_for_test.h"
 

@@ -28,7 +28,7 @@ const char* const scene = R"(<scene time_step="16.6667 ms"><solver max_sweeps="1
 <pressure on="artery" systolic="93 mmHg" diastolic="93 mmHg"/>
 <self_contact id="lumen" on="wall" thickness="0.22 mm" friction="0" max_contacts="40" spacing="0.8 mm" alarm="0.3 mm"/>
 <clip id="straight" model="../../meshes/clips/straight/straight.urdf" start="field" home="{} {} {} mm" shaft="{} {} {}" flat="{} {} {}" start_opening="0.24 rad"/>
-<contact id="blades" between="artery straight" friction="0.35" by="vertices" patch="1.5 mm" max_contacts="60" alarm="0.12 mm" recovery="0.1 mm"/></scene>)";
+<contact id="blades" between="artery straight" friction="0.35" contact_geometry="vertices" patch="1.5 mm" max_contacts="60" alarm="0.12 mm" max_correction="0.1 mm"/></scene>)";
 
 std::set<std::uint64_t> ids(const Simulation& s) {
   std::set<std::uint64_t> out;

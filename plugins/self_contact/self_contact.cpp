@@ -11,16 +11,16 @@ one block, as in <contact>:
 
     gap = distance - thickness,   0 <= gap(end) _|_ force >= 0,   |f_t| <= mu f_n
 
-`layer` lets the wall itself be pressed thinner there: delta + lambda / layer = gap. Rigid jaws on a wall that is never thinner rest on its
+`contact_stiffness` lets the wall itself be pressed thinner there: delta + lambda / contact_stiffness = gap. Rigid jaws on a wall that is never thinner rest on its
 thickest fold alone, near the hinge, and hold the rest loosely, which the pulse then drags out, beat by beat; a wall
 that gives way a little is gripped all along the blade. E A / t: 3 kN/m is 1 MPa under 0.7 mm2 of 0.22 mm.
 
 `sides="outer"` or `"both"` looks after the outer sides too, a sac against its branch. Which side a pair belongs to is told by
-the rest shape (`core/collision/self_collider.h`), so walls that have crossed are recognised and come apart again.
+the rest shape (`core/collision/colliders/self_collider.h`), so walls that have crossed are recognised and come apart again.
 
 A thin wall gives way between its contacts, so every place that a tool or a clip presses on (a contact of `<contact>`) has a
 support of its own: one row without friction between that place and the one behind it, along the tool's normal. Supports look
-as far ahead as tools may go in a step (`max_push` of `<contact>`), so that not even a fast tool presses one wall through the
+as far ahead as tools may go in a step (`max_step_displacement` of `<contact>`), so that not even a fast tool presses one wall through the
 other. `max_contacts` and `max_supports` bound the rows: three for each contact, one for each support.
 
 Sources: contact law as in <contact>; side by the rest shape and the supports are our own.
@@ -56,8 +56,8 @@ void SelfContact::detect(const StepContext&) {
   SelfContactSettings settings;
   settings.thickness = thickness();
   settings.alarm = alarm();
-  settings.max_recovery = most_recovery();
-  settings.slow_normals = layer() > 0;
+  settings.max_correction = max_correction();
+  settings.normal_under_relaxation = contact_stiffness() > 0;
   settings.inner = !sides.is("outer");
   settings.outer = !sides.is("inner");
   contacts_.clear();
@@ -78,7 +78,7 @@ void SelfContact::find_supports() {
   for (const Contact* c : touches_)
     for (const Contact::Pair& p : c->pairs()) {
       if (!p.tool_a || !p.b || p.b != &*on) continue;
-      const double far = thickness() + alarm() + 2 * c->max_push();
+      const double far = thickness() + alarm() + 2 * c->max_step_displacement();
       // By key, not by gap: what supports whom must not change while nothing moves.
       pressed_.clear();
       for (const Proximity& x : p.contacts) pressed_.emplace_back(x.key, &x);
@@ -110,14 +110,14 @@ void SelfContact::add_row(ConstraintBuilder& builder, int row, const Proximity& 
 
 void SelfContact::build(const StepContext&, ConstraintBuilder& builder) {
   find_supports();
-  const double compliance = layer() > 0 ? 1 / layer() : 0;
+  const double compliance = contact_stiffness() > 0 ? 1 / contact_stiffness() : 0;
   for (Support& s : supports_) {
     Block block;
     block.id = s.id;
     block.lower = 0;
     block.compliance = compliance;
     s.row = builder.add(block);
-    builder.violation(s.row, std::max(s.gap, -most_recovery()));
+    builder.violation(s.row, std::max(s.gap, -max_correction()));
     builder.surface_point(s.row, *on, s.triangle, s.bary, s.normal);
     builder.surface_point(s.row, *on, s.behind, s.behind_bary, -s.normal);
   }

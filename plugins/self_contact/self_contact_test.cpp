@@ -22,7 +22,7 @@ struct Jaws : VesselBench {
   explicit Jaws(const std::string& self_contact)
       : VesselBench(test::tube(2e-3, 16e-3, 17), 7.6e-3, R"(<retractor id="up" model="meshes/jaw/tool.urdf" hand="right" home="0 -4.5 5 mm" shaft="0 1 0" flat="0 0 1" coupling="250 N/m"/>
 <retractor id="down" model="meshes/jaw/tool.urdf" hand="left" home="0 -4.5 -5 mm" shaft="0 1 0" flat="0 0 1" coupling="250 N/m"/>)",
-                    "up down", R"(friction="0.2" by="vertices" max_contacts="40" alarm="0.3 mm")", self_contact, 400) {}
+                    "up down", R"(friction="0.2" contact_geometry="vertices" max_contacts="40" alarm="0.3 mm")", self_contact, 400) {}
   /// Step i of closing in 90 steps, then staying.
   void close(int i) {
     for (int which = 0; which < 2; ++which) {
@@ -72,7 +72,7 @@ TEST(SelfContact, JawsPressAVesselFlatAndItsWallsStayApart) {
 // The walls' own force on one another is the layer's law; what they bear together is what the jaws press with.
 TEST(SelfContact, AWallThatGivesWayBearsItsStiffnessTimesTheOverlap) {
   constexpr double layer = 3000;
-  Jaws b(R"(thickness="0.3 mm" layer="3 kN/m")");
+  Jaws b(R"(thickness="0.3 mm" contact_stiffness="3 kN/m")");
   ASSERT_TRUE(b.s);
   for (int i = 0; i < 330; ++i) {
     b.close(i);

@@ -6,7 +6,7 @@
 
 #include <set>
 
-#include "core/collision/shapes_for_test.h"
+#include "core/collision/shapes/shapes_for_test.h"
 #include "core/mechanics/shell_body.h"
 #include "core/testing/block_mesh.h"
 #include "core/testing/example.h"

@@ -23,7 +23,7 @@ Source: Dequidt et al. 2015, section 3.3 (springs between lobes as constraints);
 #include <cmath>
 
 #include "core/base/random.h"
-#include "core/collision/closest.h"
+#include "core/collision/shapes/closest.h"
 #include "core/registry/registry.h"
 #include "plugins/strand_springs/nearest.h"
 
@@ -44,12 +44,12 @@ void StrandSprings::connect(PrepareContext& context, Simulation& simulation) {
   if (from) {
     if (&from->body() == &to->body() && from.get() != to.get())
       return error(context, to, "to: strands within one body begin and end on the same surface");
-    if (made.is("at_rest")) generate(context);
+    if (created_at.is("at_rest")) generate(context);
   }
 }
 
 void StrandSprings::settled(PrepareContext& context) {
-  if (!from || !made.is("settled")) return;
+  if (!from || !created_at.is("settled")) return;
   strands_.clear();
   generate(context);
 }
@@ -135,7 +135,7 @@ void StrandSprings::detect(const StepContext&) {
   for (Blade& blade : blades_) blade.place();
   for (Strand& s : strands_) {
     s.blade = nullptr;
-    if (s.parted) continue;
+    if (s.severed) continue;
     const Vec3 pa = s.a.body->position(s.a), pb = s.b.body->position(s.b);
     double best = reach();
     for (const Blade& blade : blades_) {
@@ -167,18 +167,18 @@ void StrandSprings::build(const StepContext&, ConstraintBuilder& builder) {
   for (Strand& s : strands_) {
     s.row = s.blade_row = -1;
     key += 2;
-    if (s.parted) continue;
+    if (s.severed) continue;
     const Vec3 d = s.a.body->position(s.a) - s.b.body->position(s.b);
     const double length = d.norm();
     if (length > 1e-9) {
       const Vec3 u = d / length;
       const double longer = std::max(0.0, u.dot(s.a.body->expected_displacement(s.a) - s.b.body->expected_displacement(s.b)));
       // A strand that is slack by more than half a millimetre, and will be if all goes on, cannot become taut within a step's correction.
-      if (carries.is("both") || length + longer > s.rest - 0.0005) {
+      if (load_direction.is("both") || length + longer > s.rest - 0.0005) {
         Block block;
         block.id = row_id(*this, key);
-        block.compliance = 1.0 / (stiffness() * (1 - s.wear));
-        block.upper = carries.is("both") ? infinite : 0.0;
+        block.compliance = 1.0 / (stiffness() * (1 - s.damage));
+        block.upper = load_direction.is("both") ? infinite : 0.0;
         s.row = builder.add(block);
         builder.violation(s.row, length - s.rest);
         builder.point(s.row, s.a, u);
@@ -199,15 +199,15 @@ void StrandSprings::build(const StepContext&, ConstraintBuilder& builder) {
 }
 
 void StrandSprings::part(const StepContext& context, Strand& s, const char* what, double value) {
-  s.parted = true;
-  s.wear = 1;
+  s.severed = true;
+  s.damage = 1;
   s.tension = 0;
   if (context.events) context.events->emit({what, id, "", value, context.time + context.h, s.blade ? s.blade->hand_index() : -1});
 }
 
 void StrandSprings::finish(const StepContext& context, const ConstraintSolution& solution) {
   for (Strand& s : strands_) {
-    if (s.parted) continue;
+    if (s.severed) continue;
     s.tension = s.row >= 0 ? -solution.lambda[s.row] : 0;
     if (s.blade) {
       double travel;
@@ -215,8 +215,8 @@ void StrandSprings::finish(const StepContext& context, const ConstraintSolution&
         travel = solution.delta[s.blade_row];
       else  // no resistance: the free motion cuts
         travel = s.push.dot(s.blade->free_displacement(s.blade_point));
-      s.wear += std::max(0.0, travel) / cut_length();
-      if (s.wear >= 1) {
+      s.damage += std::max(0.0, travel) / cut_length();
+      if (s.damage >= 1) {
         part(context, s, "strand_cut", cut_force());
         continue;
       }
@@ -224,33 +224,33 @@ void StrandSprings::finish(const StepContext& context, const ConstraintSolution&
       s.push.setZero();
     }
     // Under a blade a taut strand is cut: pulling it tight first is how it is done.
-    if (strength() > 0 && s.tension > strength() * (1 - s.wear)) part(context, s, s.blade ? "strand_cut" : "strand_torn", s.tension);
+    if (strength() > 0 && s.tension > strength() * (1 - s.damage)) part(context, s, s.blade ? "strand_cut" : "strand_torn", s.tension);
   }
 }
 
 void StrandSprings::report(StepReport& report) const {
   for (const Strand& s : strands_)
-    report.strands.push_back({s.a.body->position(s.a), s.b.body->position(s.b), s.parted ? -1.0 : 1 - s.wear, s.tension});
+    report.strands.push_back({s.a.body->position(s.a), s.b.body->position(s.b), s.severed ? -1.0 : 1 - s.damage, s.tension});
   report.strands_total += count();
   report.strands_left += left();
 }
 
 int StrandSprings::left() const {
-  return int(std::count_if(strands_.begin(), strands_.end(), [](const Strand& s) { return !s.parted; }));
+  return int(std::count_if(strands_.begin(), strands_.end(), [](const Strand& s) { return !s.severed; }));
 }
 
 void StrandSprings::reset() {
-  if (made.is("settled")) strands_.clear();
+  if (created_at.is("settled")) strands_.clear();
   for (Strand& s : strands_) {
-    s.wear = s.tension = 0;
-    s.parted = false;
+    s.damage = s.tension = 0;
+    s.severed = false;
     s.blade = nullptr;
     s.push.setZero();
   }
 }
 
 void StrandSprings::append_state(std::vector<double>& out) const {
-  for (const Strand& s : strands_) out.push_back(s.wear);
+  for (const Strand& s : strands_) out.push_back(s.damage);
 }
 
 }  // namespace insula

@@ -22,7 +22,7 @@ constexpr double mu = young / (2 * (1 + poisson)), lame = young * poisson / ((1 
 constexpr double volume = a * a * a / 6, spring = volume * (2 * mu + lame) / (a * a), mass = density * volume / 4;
 constexpr double h = 0.01;
 
-/// A tetrahedron on three held nodes whose apex, on the z axis, is a linear spring along z; and `other`.
+/// A tetrahedron on three fixed nodes whose apex, on the z axis, is a linear spring along z; and `other`.
 std::string scene(const std::string& strands, const std::string& other) {
   return fmt::format(R"(<scene time_step="10 ms">
   <solver tolerance="1e-15 m" max_sweeps="10000"/>
@@ -68,7 +68,7 @@ TEST(StrandSprings, PullsAsTheDiscretisedLawSays) {
   test::Figure figure("strand", "A mass on a strand: one stretched, one slack (nothing pulls)", "step", "displacement, mm");
   for (const bool both : {false, true}) {
     for (const double slack : {0.8, 1.0, 1.3}) {
-      Bed t(fmt::format("stiffness=\"30 N/m\" slack=\"{}\" carries=\"{}\"", slack, both ? "both" : "tension"), "<obstacle id=\"wall\"/>");
+      Bed t(fmt::format("stiffness=\"30 N/m\" slack=\"{}\" load_direction=\"{}\"", slack, both ? "both" : "tension"), "<obstacle id=\"wall\"/>");
       ASSERT_TRUE(t.strands);
       t.strands->add_strand(t.apex("mass"), t.wall(Vec3(0, 0, a + gap)));
       const double k = 30, rest = slack * gap;
@@ -145,15 +145,15 @@ TEST(StrandSprings, ResistsWithCutForceAndPartsAfterCutLength) {
   CutBed t("stiffness=\"30 N/m\" slack=\"0.9\" cut_force=\"0.045 N\" cut_length=\"0.3 mm\" reach=\"0.5 mm\"");
   ASSERT_TRUE(t.strands && t.knife);
   double travel = 0;
-  int parted_at = -1;
+  int severed_at = -1;
   test::Figure figure("cut", "A blade drawn over a strand: 45 mN at most, until it parts", "the hand's way, mm", "force on the hand, mN");
   for (int n = 1; n <= 10; ++n) {
-    const double before = t.knife->pose().p.x(), wear = 1 - t.strands->health(0);
+    const double before = t.knife->pose().p.x(), damage = 1 - t.strands->integrity(0);
     t.move(0.00045 - n * 1e-4);
     figure.run("run", n * 0.1, t.knife->hand_force()[0] * 1e3);
-    figure.law("law", n * 0.1, parted_at >= 0 ? 0 : std::min(n * 1e-4 * 300, 0.045) * 1e3);
-    if (parted_at >= 0) {
-      EXPECT_LT(t.knife->hand_force().norm(), 1e-12) << "a parted strand resists, step " << n;
+    figure.law("law", n * 0.1, severed_at >= 0 ? 0 : std::min(n * 1e-4 * 300, 0.045) * 1e3);
+    if (severed_at >= 0) {
+      EXPECT_LT(t.knife->hand_force().norm(), 1e-12) << "a severed strand resists, step " << n;
       EXPECT_EQ(t.s->report().strands_left, 0);
       continue;
     }
@@ -162,18 +162,18 @@ TEST(StrandSprings, ResistsWithCutForceAndPartsAfterCutLength) {
     EXPECT_LT(t.knife->hand_force().tail<5>().norm(), 1e-12);
     travel += before - t.knife->pose().p.x();
     if (travel >= 0.0003 - 1e-12) {
-      parted_at = n;
+      severed_at = n;
       ASSERT_EQ(t.s->events().size(), 1u);
       EXPECT_EQ(t.s->events()[0].kind, "strand_cut");
       EXPECT_EQ(t.strands->left(), 0);
     } else {
       EXPECT_EQ(t.strands->left(), 1);
-      EXPECT_NEAR(t.strands->health(0), 1 - travel / 0.0003, 1e-9) << "step " << n;
-      EXPECT_NEAR(t.strands->tension(0), 30 * (1 - wear) * 0.1 * 0.01, 1e-9) << "stiffness falls with the wear";
+      EXPECT_NEAR(t.strands->integrity(0), 1 - travel / 0.0003, 1e-9) << "step " << n;
+      EXPECT_NEAR(t.strands->tension(0), 30 * (1 - damage) * 0.1 * 0.01, 1e-9) << "stiffness falls with the wear";
       EXPECT_TRUE(t.s->events().empty());
     }
   }
-  EXPECT_EQ(parted_at, 5);
+  EXPECT_EQ(severed_at, 5);
 }
 
 TEST(StrandSprings, BluntOrWithoutTheButtonDoesNotCut) {
@@ -181,7 +181,7 @@ TEST(StrandSprings, BluntOrWithoutTheButtonDoesNotCut) {
     CutBed t("cut_force=\"0.045 N\" cut_length=\"0.3 mm\"", sharp);
     ASSERT_TRUE(t.strands && t.knife);
     for (int n = 1; n <= 10; ++n) t.move(0.00045 - n * 1e-4);
-    EXPECT_EQ(t.strands->health(0), 1) << sharp;
+    EXPECT_EQ(t.strands->integrity(0), 1) << sharp;
     EXPECT_EQ(t.strands->left(), 1);
   }
   CutBed t("cut_force=\"0.045 N\" cut_length=\"0.3 mm\"", "button");
@@ -208,7 +208,7 @@ TEST(StrandSprings, ResetMakesThemWholeAgain) {
   ASSERT_EQ(t.strands->left(), 0);
   t.s->reset();
   EXPECT_EQ(t.strands->left(), 1);
-  EXPECT_EQ(t.strands->health(0), 1);
+  EXPECT_EQ(t.strands->integrity(0), 1);
 }
 
 TEST(StrandSprings, TearsBeyondItsStrength) {

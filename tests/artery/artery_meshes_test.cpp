@@ -10,8 +10,8 @@
 #include <numbers>
 #include <set>
 
-#include "core/model/box_tree.h"
-#include "core/model/triangle_distance.h"
+#include "core/model/geometry/box_tree.h"
+#include "core/model/geometry/triangle_distance.h"
 #include "core/model/vessel_model.h"
 
 namespace insula {

@@ -47,17 +47,17 @@ std::unique_ptr<Simulation> scene(int threads) { return test::load_text(everythi
 TEST(Determinism, SceneShowsWhatItShould) {
   auto s = scene(1);
   ASSERT_TRUE(s);
-  std::size_t contacts = 0, most_rows = 0;
+  std::size_t contacts = 0, max_rows = 0;
   int cut = 0;
   for (int i = 0; i < 240; ++i) {
     run(*s, 1);
     contacts += s->report().contacts.size();
-    most_rows = std::max(most_rows, std::size_t(s->problem().rows));
+    max_rows = std::max(max_rows, std::size_t(s->problem().rows));
     cut = s->report().strands_total - s->report().strands_left;
     ASSERT_TRUE(s->report().finite);
   }
   EXPECT_GT(contacts, 100u);
-  EXPECT_GT(most_rows, 20u);
+  EXPECT_GT(max_rows, 20u);
   EXPECT_GT(cut, 0);
 }
 

@@ -7,7 +7,7 @@
 
 #include "core/base/input_error.h"
 #include "haptic_server/device_tool/calibrate.h"
-#include "haptic_server/test_problem.h"
+#include "haptic_server/problem_for_test.h"
 #include "tests/devices/device_bench.h"
 #include "tests/devices/haply_stand_in.h"
 

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "haptic_server/devices/device_sample.h"
-#include "haptic_server/test_problem.h"
+#include "haptic_server/problem_for_test.h"
 
 namespace insula {
 namespace {

@@ -7,7 +7,7 @@
 #include <mutex>
 
 #include "core/bus/lcm_bus.h"
-#include "haptic_server/test_rig.h"
+#include "haptic_server/rig_for_test.h"
 #include "tests/devices/device_bench.h"
 #include "tests/devices/haply_stand_in.h"
 #include "core/testing/multicast.h"

@@ -12,7 +12,7 @@
 
 #include "core/testing/count_allocations.h"
 #include "core/testing/held.h"
-#include "haptic_server/test_problem.h"
+#include "haptic_server/problem_for_test.h"
 
 namespace insula {
 namespace {

@@ -21,7 +21,7 @@ TEST(AneurysmDissection, SteadyHandsDivideTheStrandsWithoutAFault) {
   ASSERT_EQ(o.goals.size(), 1u);
   EXPECT_GT(o.goals["divide"], 0);
   EXPECT_EQ(o.state, ExerciseState::done);
-  EXPECT_LT(o.most_force[1], 0.12) << "the dissector leans on something";
+  EXPECT_LT(o.max_force[1], 0.12) << "the dissector leans on something";
 }
 
 TEST(AneurysmDissection, RoughHandsTearPressAndRupture) {

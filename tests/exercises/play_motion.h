@@ -7,7 +7,7 @@
 #include <map>
 
 #include "core/registry/registry.h"
-#include "engine/headless.h"
+#include "engine/live/headless.h"
 
 namespace insula::test {
 
@@ -21,8 +21,8 @@ struct Played {
   double end = -1;                            ///< of the exercise, s
   double duration = 0;                        ///< of the motion, s
   int strands = 0, left = 0;
-  double least_pressure = 1e300;              ///< of any stretch of vessel, Pa
-  double most_force[2] = {0, 0};              ///< of each hand's tool on what it touches, N
+  double min_pressure = 1e300;              ///< of any stretch of vessel, Pa
+  double max_force[2] = {0, 0};              ///< of each hand's tool on what it touches, N
 };
 
 /// The motion with this id in the scene's exercise.
@@ -44,8 +44,8 @@ inline Played play_motion(const std::filesystem::path& scene, const std::string&
     run.step();
     out.finite = out.finite && s.report().finite;
     for (const ToolReport& t : s.report().tools)
-      if (t.hand >= 0) out.most_force[t.hand] = std::max(out.most_force[t.hand], t.contact_force);
-    for (const VesselState& v : s.report().vessels) out.least_pressure = std::min(out.least_pressure, v.pressure);
+      if (t.hand >= 0) out.max_force[t.hand] = std::max(out.max_force[t.hand], t.contact_force);
+    for (const VesselState& v : s.report().vessels) out.min_pressure = std::min(out.min_pressure, v.pressure);
     for (const Event& e : s.events()) ++out.events[e.kind];
   }
   for (int h = 0; h < 2; ++h)

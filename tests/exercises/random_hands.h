@@ -18,9 +18,9 @@ struct RandomHandsSettings {
   double busy = 3;           ///< time of random motion, s
   double rest = 1.5;         ///< at home at the end, s
   double half_box = 12e-3;   ///< the targets' box is twice this wide, about what the microscope looks at, m
-  double least_speed = 0.02, most_speed = 0.5;  ///< highest speed of a stroke, m/s
-  double most_spin = 6;      ///< rad/s
-  double most_tilt = 0.6;    ///< from the orientation at home, rad
+  double min_speed = 0.02, max_speed = 0.5;  ///< highest speed of a stroke, m/s
+  double max_spin = 6;      ///< rad/s
+  double max_tilt = 0.6;    ///< from the orientation at home, rad
 };
 
 /// Strung together from strokes with the smoothest speed that starts and ends at rest (minimum jerk: its peak is 15/8 of its mean).
@@ -109,11 +109,11 @@ inline Motion random_motion(const Simulation& s, std::uint64_t seed, std::uint64
       Pose target = home;
       for (int c = 0; c < 3; ++c) target.p[c] = middle[c] + r.uniform(-settings.half_box, settings.half_box);
       if (r.uniform() < 0.2) target.p = 0.5 * (target.p + home.p);
-      target.q = from_rotation_vector(r.uniform(0, settings.most_tilt) * random_direction(r)) * home.q;
+      target.q = from_rotation_vector(r.uniform(0, settings.max_tilt) * random_direction(r)) * home.q;
       // Slow and fast strokes alike.
-      const double speed = settings.least_speed * std::pow(settings.most_speed / settings.least_speed, r.uniform());
+      const double speed = settings.min_speed * std::pow(settings.max_speed / settings.min_speed, r.uniform());
       w.buttons(r.uniform() < 0.35 ? !w.one() : w.one(), r.uniform() < 0.35 ? !w.two() : w.two());
-      w.stroke(target, std::max(speed, 1.5 * (target.p - w.pose().p).norm()), settings.most_spin);
+      w.stroke(target, std::max(speed, 1.5 * (target.p - w.pose().p).norm()), settings.max_spin);
       if (r.uniform() < 0.4) w.hold(r.uniform(0.1, 0.5));
     }
     w.buttons(false, false);
@@ -121,8 +121,8 @@ inline Motion random_motion(const Simulation& s, std::uint64_t seed, std::uint64
     // Out along the shaft, as the way in may be round a corner.
     Pose out = w.pose();
     out.p += out.q * Vec3(0, 0, 40e-3);
-    w.stroke(out, 0.15, settings.most_spin);
-    w.stroke(home, 0.3, settings.most_spin);
+    w.stroke(out, 0.15, settings.max_spin);
+    w.stroke(home, 0.3, settings.max_spin);
     end = std::max(end, w.time());
     random_commands(motion, s, hand, r, settings.busy);
   }

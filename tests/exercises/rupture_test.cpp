@@ -24,7 +24,7 @@ TEST(Rupture, MasteredWithTemporaryAndFinalClip) {
   EXPECT_EQ(o.faults["stenosis"], 0);
   EXPECT_GT(o.measures["clip_flow_superior"], 75);
   EXPECT_GT(o.measures["clip_flow_inferior"], 75);
-  EXPECT_GT(o.least_pressure, -40) << "Pa: the torn sac that a clip cuts off comes to the pressure outside";
+  EXPECT_GT(o.min_pressure, -40) << "Pa: the torn sac that a clip cuts off comes to the pressure outside";
 }
 
 TEST(Rupture, TimeRunsOutWhenNobodyClips) {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/registry/registry.h"
-#include "engine/command_script.h"
+#include "engine/live/command_script.h"
 #include "tests/exercises/random_hands.h"
 #include "tests/exercises/soundness.h"
 

@@ -7,7 +7,7 @@
 #include <set>
 #include <string>
 
-#include "core/collision/collision_mesh.h"
+#include "core/collision/search/collision_mesh.h"
 #include "core/mechanics/shell_body.h"
 #include "core/mechanics/soft_body.h"
 #include "core/sim/simulation.h"

@@ -27,8 +27,8 @@ const Exercise exercises[] = {
 };
 void PrintTo(const Exercise& e, std::ostream* out) { *out << e.file; }
 
-constexpr double most_drift = 1e-4;  // m
-constexpr double most_depth = 4e-4;  // m: the corner of a retractor between two vertices (1 mm apart) of the tissue that it presses
+constexpr double max_drift = 1e-4;  // m
+constexpr double max_depth = 4e-4;  // m: the corner of a retractor between two vertices (1 mm apart) of the tissue that it presses
 constexpr double collapsed = 0.01;   // of the size at rest
 
 const char* environment(const char* name) {
@@ -53,12 +53,12 @@ TEST_P(Stability, LeftAloneNothingMoves) {
               e.name, o.seconds, o.drift.value, o.drift.whose.c_str(), o.energy.front(), o.energy.back(), o.energy.size(), o.rest.inverted, o.rest.volume.value,
               o.rest.volume.whose.c_str(), o.rest.area.value, o.rest.area.whose.c_str(), 1e3 * o.tool.value, o.tool.whose.c_str(), 1e3 * o.clip.value, o.clip.whose.c_str(), o.cpu_s);
   EXPECT_TRUE(o.finite);
-  EXPECT_LT(o.drift.value, most_drift) << o.drift.whose;
+  EXPECT_LT(o.drift.value, max_drift) << o.drift.whose;
   EXPECT_LE(o.energy.back(), o.energy.front() * 1.001 + 1e-8);
   EXPECT_EQ(o.rest.inverted, 0);
   EXPECT_GT(o.rest.volume.value, collapsed) << o.rest.volume.whose;
   EXPECT_GT(o.rest.area.value, collapsed) << o.rest.area.whose;
-  EXPECT_LT(o.tool.value, most_depth) << o.tool.whose;
+  EXPECT_LT(o.tool.value, max_depth) << o.tool.whose;
 }
 
 TEST_P(Stability, RandomHandsBreakNothing) {
@@ -85,8 +85,8 @@ TEST_P(Stability, RandomHandsBreakNothing) {
     if (o.rest.inverted > 0) why += " " + std::to_string(o.rest.inverted) + " inverted, first at " + std::to_string(o.first_inverted) + " s;";
     if (!(o.rest.volume.value > collapsed)) why += " " + o.rest.volume.whose + " has " + std::to_string(o.rest.volume.value) + " of its volume;";
     if (!(o.rest.area.value > collapsed)) why += " " + o.rest.area.whose + " has " + std::to_string(o.rest.area.value) + " of its area;";
-    if (!(o.tool.value < most_depth)) why += " " + o.tool.whose + " " + std::to_string(1e3 * o.tool.value) + " mm;";
-    if (!(o.clip.value < most_depth)) why += " " + o.clip.whose + " " + std::to_string(1e3 * o.clip.value) + " mm;";
+    if (!(o.tool.value < max_depth)) why += " " + o.tool.whose + " " + std::to_string(1e3 * o.tool.value) + " mm;";
+    if (!(o.clip.value < max_depth)) why += " " + o.clip.whose + " " + std::to_string(1e3 * o.clip.value) + " mm;";
     if (!(o.astray.value < 1e-3)) why += " " + o.astray.whose + " " + std::to_string(1e3 * o.astray.value) + " mm from its hand;";
     failed += !why.empty();
     EXPECT_EQ(why, "") << e.name << ", seed " << seed << ", motion " << k;

@@ -8,7 +8,7 @@
 #include "core/bus/arrival_order.h"
 #include "core/bus/codec.h"
 #include "core/bus/mem_bus.h"
-#include "haptic_server/test_problem.h"
+#include "haptic_server/problem_for_test.h"
 #include "tests/faults/faulty_bus.h"
 
 namespace insula::testing {

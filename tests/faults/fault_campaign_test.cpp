@@ -52,16 +52,16 @@ void expect_promise(const FaultCase& fault, int seed) {
     const int silent = hit && fault.zero_after_s >= 0 ? begin + int(std::lround(1000 * fault.zero_after_s)) : end;
     for (int t = silent; t < end; ++t)
       ASSERT_EQ(rig.trace[std::size_t(t)][std::size_t(hand)], Vec3(0, 0, 0)) << t - begin << " ms after it began, hand " << hand;
-    double felt = 0, all = 0;
+    double rendered = 0, all = 0;
     bool same = true;
     for (int t = begin; t < end; ++t) {
       const Vec3 &is = rig.trace[std::size_t(t)][std::size_t(hand)], &was = clean[std::size_t(t)][std::size_t(hand)];
-      felt += is.norm();
+      rendered += is.norm();
       all += was.norm();
       same = same && is == was;
     }
-    EXPECT_TRUE(same || fault.least_share < 1) << "hand " << hand;
-    EXPECT_GE(felt, (hit ? fault.least_share : 0.95) * all * (1 - 1e-12)) << "hand " << hand << ": " << felt / all;
+    EXPECT_TRUE(same || fault.min_share < 1) << "hand " << hand;
+    EXPECT_GE(rendered, (hit ? fault.min_share : 0.95) * all * (1 - 1e-12)) << "hand " << hand << ": " << rendered / all;
     const Vec3 back = mean(rig.trace, last - 20, last, hand), wanted = mean(clean, last - 20, last, hand);
     EXPECT_LT((back - wanted).norm(), 0.05 * wanted.norm())
         << "not back after a second, hand " << hand << ": " << back.transpose() << " instead of " << wanted.transpose();

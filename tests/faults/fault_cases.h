@@ -19,7 +19,7 @@ struct FaultCase {
   void (*set)(FaultRig&, bool on) = nullptr;
   double lasts_s = 0.6;
   double zero_after_s = -1;                 ///< forces exactly 0 from so long after its begin to its end; negative: not promised
-  double least_share = 0;                   ///< of the undisturbed force, on average while it lasts; 1: the same to the last bit
+  double min_share = 0;                   ///< of the undisturbed force, on average while it lasts; 1: the same to the last bit
   bool one_hand = false;                    ///< the left hand's alone: the right hand's stays what it is
 };
 
@@ -132,20 +132,20 @@ inline void wrong_size(Buffer& b) {
 
 inline constexpr FaultCase fault_cases[] = {
     {.name = "loss", .cause = "20 % of all messages lost, both ways", .promise = "felt on: at least 80 % of the force on average",
-     .link = {.lose = 0.2}, .lasts_s = 2, .least_share = 0.8},
+     .link = {.lose = 0.2}, .lasts_s = 2, .min_share = 0.8},
     {.name = "reordering", .cause = "messages late by 0 to 40 ms each, so that they overtake one another",
-     .promise = "what comes after a newer one is ignored; at least 80 %", .link = {.late_most_s = 0.04}, .lasts_s = 2, .least_share = 0.8},
+     .promise = "what comes after a newer one is ignored; at least 80 %", .link = {.late_most_s = 0.04}, .lasts_s = 2, .min_share = 0.8},
     {.name = "duplicates", .cause = "every second message comes twice", .promise = "not a bit of the forces differs",
-     .link = {.duplicate = 0.5}, .lasts_s = 1, .least_share = 1},
+     .link = {.duplicate = 0.5}, .lasts_s = 1, .min_share = 1},
     {.name = "delay", .cause = "messages late by 0 to 200 ms each", .promise = "felt where one is younger than 50 ms, else ramped to 0",
      .link = {.late_most_s = 0.2}, .lasts_s = 2},
     {.name = "delay_200ms", .cause = "every message late by 200 ms", .promise = to_zero,
      .link = {.late_least_s = 0.2, .late_most_s = 0.2}, .zero_after_s = untrusted_s},
     {.name = "bit_flips", .cause = "one to eight bits turned over in 20 % of all messages",
-     .promise = "those are refused by their checksum; at least 80 %", .link = {.flip = 0.2}, .lasts_s = 2, .least_share = 0.8},
+     .promise = "those are refused by their checksum; at least 80 %", .link = {.flip = 0.2}, .lasts_s = 2, .min_share = 0.8},
     {.name = "bit_flips_in_all", .cause = "the same in every message", .promise = to_zero, .link = {.flip = 1}, .zero_after_s = untrusted_s},
     {.name = "engine_stall_50ms", .cause = "the engine stands still for 50 ms", .promise = "felt on: at least 80 %",
-     .set = fault::engine_stall, .lasts_s = 0.05, .least_share = 0.8},
+     .set = fault::engine_stall, .lasts_s = 0.05, .min_share = 0.8},
     {.name = "engine_stall_200ms", .cause = "for 200 ms", .promise = to_zero, .set = fault::engine_stall, .lasts_s = 0.2, .zero_after_s = untrusted_s},
     {.name = "engine_stall_500ms", .cause = "for 500 ms", .promise = to_zero, .set = fault::engine_stall, .lasts_s = 0.5, .zero_after_s = untrusted_s},
     {.name = "link_stall_500ms", .cause = "nothing passes for 500 ms, then all of it at once", .promise = to_zero,
@@ -172,11 +172,11 @@ inline constexpr FaultCase fault_cases[] = {
     {.name = "sequence_back", .cause = "the engine's numbers go back by 1000", .promise = "0 within 102 ms, believed after 0.5 s of silence",
      .set = fault::sequence_back, .lasts_s = 0.45, .zero_after_s = untrusted_s},
     {.name = "sequence_far_ahead", .cause = "one message with a number far ahead", .promise = "that one is ignored: at least 80 %",
-     .set = fault::sequence_ahead, .lasts_s = 0.1, .least_share = 0.8},
+     .set = fault::sequence_ahead, .lasts_s = 0.1, .min_share = 0.8},
     {.name = "two_engines", .cause = "a second engine on the same channel", .promise = "the one that started last counts: at least 80 %",
-     .set = fault::second_engine, .lasts_s = 1, .least_share = 0.8},
+     .set = fault::second_engine, .lasts_s = 1, .min_share = 0.8},
     {.name = "replayed_log", .cause = "another session's messages played into this one", .promise = "not a bit of the forces differs",
-     .set = fault::replayed, .lasts_s = 1, .least_share = 1},
+     .set = fault::replayed, .lasts_s = 1, .min_share = 1},
     {.name = "stamps_ahead", .cause = "the engine's clock an hour ahead", .promise = to_zero, .set = fault::stamps<3600>, .zero_after_s = untrusted_s},
     {.name = "stamps_behind", .cause = "the engine's clock an hour behind", .promise = to_zero, .set = fault::stamps<-3600>, .zero_after_s = untrusted_s},
     {.name = "clock_forward", .cause = "the machine's clock jumps 10 s ahead", .promise = "one tick of 5 ms; felt on within a second",

@@ -10,7 +10,7 @@
 
 #include "core/bus/bus.h"
 #include "haptic_server/clock.h"
-#include "haptic_server/test_problem.h"
+#include "haptic_server/problem_for_test.h"
 
 namespace insula::testing {
 

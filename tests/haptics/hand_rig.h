@@ -37,7 +37,7 @@ struct Press {
 struct Pressed {
   double first_speed = 0, last_speed = 0;  ///< rms of the arm across the plate, first and last second of contact, m/s
   double swing = 0;                        ///< largest less smallest height in the last second, m
-  double most_energy = 0;                  ///< that the hand was ever given, all it had given before taken off, J
+  double max_energy = 0;                  ///< that the hand was ever given, all it had given before taken off, J
   double last_energy = 0;                  ///< at the end
   double observed = 0;                     ///< the observer's own largest
   double force = 0;                        ///< mean at the end, N
@@ -54,7 +54,7 @@ inline Pressed press(const Press& press, const Person& person) {
   Pressed out;
   const auto s = load_text(text, std::filesystem::path(INSULA_SOURCE_DIR) / "plugins/contact/plate.xml");
   if (!s) return out;
-  s->look_ahead(2 * s->h());
+  s->set_collision_horizon(2 * s->h());
   ArmParameters p = simulated_arm(1);
   p.tremor_m = p.tremor_rad = 0;
   p.arm_friction_N = person.friction_N;
@@ -117,7 +117,7 @@ inline Pressed press(const Press& press, const Person& person) {
     observer.observe(gate.force(), reading.pose.p);
     gate.apply(dt, r.solved && hand.valid, wanted, Vec3::Zero());
     device.write(gate.force(), Vec3::Zero());
-    out.most_energy = std::max(out.most_energy, energy);
+    out.max_energy = std::max(out.max_energy, energy);
     const double speed = (device.arm().pose().p.z() - z_before) / dt;
     if (t >= begin + arrival && t < begin + arrival + 1) first2 += speed * speed, ++first_count;
     if (k >= ticks - 1000) {

@@ -28,8 +28,8 @@ std::vector<double> on_the_dome(double rate_per_min, const ServoSettings& settin
     <contact between="artery tool" friction="0.1" spacing="1 mm" max_contacts="10"/></scene>)",
                 rate_per_min, home.x(), home.y(), home.z(), out.x(), out.y(), out.z());
   const auto s = load_text(text, std::filesystem::path(INSULA_SOURCE_DIR) / "pulse.xml");
-  std::vector<double> felt;
-  if (!s) return felt;
+  std::vector<double> rendered;
+  if (!s) return rendered;
   Pose device = s->instrument_of(1)->home_pose();
   Servo servo(settings);
   std::array<ConstraintProblem, 2> problem;
@@ -51,11 +51,11 @@ std::vector<double> on_the_dome(double rate_per_min, const ServoSettings& settin
     for (int k = 0; k < ticks; ++k) {
       const ServoHand hand = servo.tick(in).hand[1];
       if (s->time() < 3 * beat) continue;
-      felt.push_back(hand.force.dot(out));
+      rendered.push_back(hand.force.dot(out));
       engine.push_back(s->instrument_of(1)->hand_force().head<3>().dot(out));
     }
   }
-  return felt;
+  return rendered;
 }
 
 /// Amplitude of the part of a signal that goes round `times` over its length.
@@ -72,20 +72,20 @@ double amplitude(const std::vector<double>& x, int times) {
 TEST(Pulse, AFingertipFeelsEveryBeat) {
   for (const double rate : {60.0, 90.0}) {
     std::vector<double> engine;
-    const std::vector<double> felt = on_the_dome(rate, ServoSettings::beyond_equation_7(), engine);
-    ASSERT_FALSE(felt.empty());
+    const std::vector<double> rendered = on_the_dome(rate, ServoSettings::beyond_equation_7(), engine);
+    ASSERT_FALSE(rendered.empty());
     // Two beats: what goes round twice is the pulse.
-    const double pulse = amplitude(felt, 2), between = amplitude(felt, 1) + amplitude(felt, 3);
+    const double pulse = amplitude(rendered, 2), between = amplitude(rendered, 1) + amplitude(rendered, 3);
     EXPECT_GT(pulse, 1e-3) << "N, at " << rate << " a minute";
     EXPECT_GT(pulse, 3 * between);
     EXPECT_NEAR(pulse, amplitude(engine, 2), 0.1 * pulse);
     // No staircase: the largest change in a millisecond is a small part of the beat, that of the engine's steps is not.
-    double most = 0, step = 0, low = felt[0], high = felt[0];
-    for (std::size_t i = 1; i < felt.size(); ++i) {
-      most = std::max(most, std::abs(felt[i] - felt[i - 1]));
+    double most = 0, step = 0, low = rendered[0], high = rendered[0];
+    for (std::size_t i = 1; i < rendered.size(); ++i) {
+      most = std::max(most, std::abs(rendered[i] - rendered[i - 1]));
       step = std::max(step, std::abs(engine[i] - engine[i - 1]));
-      low = std::min(low, felt[i]);
-      high = std::max(high, felt[i]);
+      low = std::min(low, rendered[i]);
+      high = std::max(high, rendered[i]);
     }
     EXPECT_LT(most, 0.04 * (high - low));
     EXPECT_GT(step, 3 * most);

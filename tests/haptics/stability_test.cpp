@@ -49,7 +49,7 @@ void expect_rest(const Press& what, const Person& person) {
   ASSERT_TRUE(std::isfinite(r.swing));
   EXPECT_GT(r.force, 0.02) << "it touches";
   EXPECT_TRUE(at_rest(r, what, person)) << "speed " << r.first_speed << " then " << r.last_speed << " m/s, swing " << r.swing;
-  EXPECT_LT(r.last_energy, enough_J) << "more was given back than put in, J; at most " << r.most_energy;
+  EXPECT_LT(r.last_energy, enough_J) << "more was given back than put in, J; at most " << r.max_energy;
 }
 
 TEST(Stability, ArmsAndHandsAtEveryRateOfTheEngine) {

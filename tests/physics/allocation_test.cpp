@@ -3,13 +3,13 @@
 // program counts.
 #include <gtest/gtest.h>
 
-#include "core/collision/contact_selection.h"
-#include "core/collision/shapes_for_test.h"
-#include "core/collision/vertex_collider.h"
+#include "core/collision/colliders/contact_selection.h"
+#include "core/collision/shapes/shapes_for_test.h"
+#include "core/collision/colliders/vertex_collider.h"
 #include "core/linalg/kernels.h"
 #include "core/testing/count_allocations.h"
 #include "core/testing/example.h"
-#include "engine/report_writer.h"
+#include "engine/reports/report_writer.h"
 #include "tests/physics/random_problem.h"
 
 namespace insula {

@@ -7,7 +7,7 @@
 #include "core/base/random.h"
 #include "core/testing/held.h"
 #include "tests/figures/figure.h"
-#include "tests/physics/soft_fixture.h"
+#include "tests/physics/soft_body_for_test.h"
 
 namespace insula {
 namespace {
@@ -33,7 +33,7 @@ TEST(PatchTest, AffineDeformationIsReproduced) {
     int inside = 0;
     for (int i = 0; i < body->nodes(); ++i) {
       Vec3 x = f * mesh.nodes[std::size_t(i)] + shift;
-      if (!body->held()[std::size_t(i)]) {
+      if (!body->fixed()[std::size_t(i)]) {
         x += 0.001 * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
         ++inside;
       }

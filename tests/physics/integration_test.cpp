@@ -7,7 +7,7 @@
 #include "core/base/random.h"
 #include "core/testing/held.h"
 #include "tests/figures/figure.h"
-#include "tests/physics/soft_fixture.h"
+#include "tests/physics/soft_body_for_test.h"
 
 namespace insula {
 namespace {
@@ -113,7 +113,7 @@ TEST(RayleighDamping, MassPartSlowsRigidMotion) {
   }
 }
 
-// One tetrahedron on three held nodes, its apex moved along the height: an undistorted frame, so the spring is exactly
+// One tetrahedron on three fixed nodes, its apex moved along the height: an undistorted frame, so the spring is exactly
 // linear, k = V (2 mu + lambda) / a^2, and the step is a scalar recursion:
 //   (m/h^2 + alpha m/h + (1 + beta/h) k) dq = -k u + m v/h
 TEST(RayleighDamping, OscillatorFollowsTheDiscretisedLaw) {
@@ -153,7 +153,7 @@ TEST(ImplicitEuler, ComplianceAndCorrectionAgree) {
   body->q() = [&] {
     VecX q = body->q();
     for (int i = 0; i < body->nodes(); ++i)
-      if (!body->held()[std::size_t(i)]) q[3 * i] += 0.1 * (q[3 * i + 2] - 0.3);
+      if (!body->fixed()[std::size_t(i)]) q[3 * i] += 0.1 * (q[3 * i + 2] - 0.3);
     return q;
   }();
   const VecX start = body->q();

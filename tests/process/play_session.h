@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "core/testing/multicast.h"
-#include "engine/child_process.h"
+#include "engine/live/child_process.h"
 #include "tests/process/watcher.h"
 
 namespace insula::testing {

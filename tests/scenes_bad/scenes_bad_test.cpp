@@ -10,7 +10,7 @@
 #include <sstream>
 
 #include "core/scene/loader.h"
-#include "engine/commands.h"
+#include "engine/command_line/commands.h"
 
 namespace insula {
 namespace {

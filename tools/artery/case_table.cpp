@@ -8,7 +8,7 @@
 #include <set>
 
 #include "core/base/text.h"
-#include "core/model/file_bytes.h"
+#include "core/model/formats/file_bytes.h"
 
 namespace insula::artery {
 namespace {

@@ -5,18 +5,18 @@
 #include <map>
 #include <numbers>
 
-#include "core/model/triangle_distance.h"
+#include "core/model/geometry/triangle_distance.h"
 #include "import_parts.h"
 
 namespace insula::artery {
 namespace {
 
 constexpr double flat_deg = 20;             // what a label volume's smoothed surface needs
-constexpr double least_area_share = 0.003;  // of the whole surface
-constexpr double least_roundness = 0.5;     // 4 pi area / perimeter^2: 1 for a circle, 0.5 for an ellipse of 1 to 3.6
+constexpr double min_area_share = 0.003;  // of the whole surface
+constexpr double min_roundness = 0.5;     // 4 pi area / perimeter^2: 1 for a circle, 0.5 for an ellipse of 1 to 3.6
 constexpr double rim_width = 0.35;          // times the cap's radius: within it the surface must have turned away
-constexpr int sectors = 8, least_turned = 7;  // in all directions but one ...
-constexpr double most_cosine = 0.7;         // ... by 45 degrees on average
+constexpr int sectors = 8, min_turned = 7;  // in all directions but one ...
+constexpr double max_cosine = 0.7;         // ... by 45 degrees on average
 
 }  // namespace
 
@@ -85,7 +85,7 @@ Surface with_flat_caps(const TriMesh& m) {
     const auto seed = std::size_t(first);
     if (taken[seed] || refused[seed]) continue;
     Found cap = grow(seed, normal[seed]);
-    const auto large = [&] { return std::numbers::pi * cap.plane.radius * cap.plane.radius >= least_area_share * whole; };
+    const auto large = [&] { return std::numbers::pi * cap.plane.radius * cap.plane.radius >= min_area_share * whole; };
     if (large()) cap = grow(seed, cap.plane.normal);
     const double r = cap.plane.radius, total = std::numbers::pi * r * r;
     // The ring of triangles about it, each with the place on the rim it was reached from.
@@ -113,8 +113,8 @@ Surface with_flat_caps(const TriMesh& m) {
       for (std::size_t k = 0; k < 3; ++k) reach(across(std::size_t(t), k), from);
     }
     int turned = 0;
-    for (int i = 0; i < sectors; ++i) turned += ring_cosine[i] < most_cosine * ring_area[i];
-    const bool good = large() && turned >= least_turned && 4 * std::numbers::pi * total > least_roundness * rim * rim;
+    for (int i = 0; i < sectors; ++i) turned += ring_cosine[i] < max_cosine * ring_area[i];
+    const bool good = large() && turned >= min_turned && 4 * std::numbers::pi * total > min_roundness * rim * rim;
     if (!good) {
       refused[seed] = 1;
       continue;

@@ -17,7 +17,7 @@ namespace insula::artery {
 namespace {
 
 constexpr int cells_across[] = {90, 160, 280};  // along the longest side; more where a thin vessel falls between the nodes
-constexpr double most_cells = 1.2e7;
+constexpr double max_cells = 1.2e7;
 
 struct InnerGrid {
   Vec3 low;
@@ -142,7 +142,7 @@ std::vector<NamedCurve> grid_centrelines(const Surface& surface, const WallPoint
   const double flatness = box.sizes().prod() / std::pow(box.sizes().maxCoeff(), 3);
   std::optional<Paths> found;
   for (const int across : cells_across) {
-    if (found && flatness * std::pow(across, 3) > most_cells) break;
+    if (found && flatness * std::pow(across, 3) > max_cells) break;
     found = find_paths(surface, wall, across);
     if (found->lost < 0) break;
   }

@@ -5,7 +5,7 @@
 #include <map>
 #include <memory>
 
-#include "core/model/box_tree.h"
+#include "core/model/geometry/box_tree.h"
 #include "vessel.h"
 
 namespace insula::artery {

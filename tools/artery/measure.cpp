@@ -10,7 +10,7 @@
 namespace insula::artery {
 namespace {
 
-constexpr double most_sagitta = 0.15;  // of an edge's length: an arc of a third of a circle has 0.14
+constexpr double max_sagitta = 0.15;  // of an edge's length: an arc of a third of a circle has 0.14
 
 }  // namespace
 
@@ -53,7 +53,7 @@ Surface subdivided(const Surface& s, const RemeshGuide& guide) {
       const auto [l, r] = patches.at(std::minmax(a, b));
       const Vec3 on = l != r ? guide.on_rim(std::max(l, r), p) : l >= 0 ? guide.on_cap(l, p) : guide.on_wall(p);
       // In a narrow groove the nearest surface may be the other bank: the middle stays where it is.
-      const bool groove = (on - p).norm() > most_sagitta * (s.mesh.vertices[std::size_t(a)] - s.mesh.vertices[std::size_t(b)]).norm();
+      const bool groove = (on - p).norm() > max_sagitta * (s.mesh.vertices[std::size_t(a)] - s.mesh.vertices[std::size_t(b)]).norm();
       out.mesh.vertices.push_back(groove ? p : on);
     }
     return at->second;

@@ -10,9 +10,9 @@
 namespace insula::artery {
 namespace {
 
-constexpr double least_sac_share = 0.03;  // of the surface's vertices
+constexpr double min_sac_share = 0.03;  // of the surface's vertices
 constexpr double neck_half_width = 0.45;  // mm, to either side of the neck's plane
-constexpr double least_sac_vertices = 12;
+constexpr double min_sac_vertices = 12;
 
 double height(const Vec3& p, const NeckPlane& plane) { return (p - plane.centre).dot(plane.normal); }
 
@@ -121,7 +121,7 @@ void find_sac(Vessel& v, std::vector<char> bulging) {
         if (bulging[std::size_t(n)]) bulging[std::size_t(n)] = 0, set.push_back(n);
     if (set.size() > sac.size()) sac = set;
   }
-  if (double(sac.size()) < least_sac_share * double(m.vertices.size())) return;
+  if (double(sac.size()) < min_sac_share * double(m.vertices.size())) return;
   const int sac_region = int(v.regions.size()) + 1, neck_region = sac_region - 1;
   v.regions.insert(v.regions.end(), {"neck", "sac"});
   for (const int i : sac) v.region[std::size_t(i)] = sac_region;
@@ -149,7 +149,7 @@ void sac_beyond(Vessel& v, const NeckPlane& given) {
   NeckPlane plane{given.centre, given.normal.normalized()};
   Loop loop;
   const std::vector<int> dome = dome_beyond(m, next, plane, loop);
-  if (double(dome.size()) < least_sac_vertices) throw std::runtime_error("the neck's plane cuts off no dome: nothing of the wall lies beyond it");
+  if (double(dome.size()) < min_sac_vertices) throw std::runtime_error("the neck's plane cuts off no dome: nothing of the wall lies beyond it");
   if (holds_a_cap(v.wall, dome))
     throw std::runtime_error("the neck's plane parts no dome from the vessel: an opening lies on its dome side; turn the plane, or move it towards the dome");
   const int neck_region = int(v.regions.size()), sac_region = neck_region + 1;
@@ -181,7 +181,7 @@ NeckPlane narrowest_neck(const Vessel& v) {
   const auto cost = [&](const NeckPlane& plane, double up) {
     Loop loop;
     const std::vector<int> dome = dome_beyond(m, next, plane, loop);
-    if (double(dome.size()) < least_sac_vertices || holds_a_cap(v.wall, dome)) return 1e300;
+    if (double(dome.size()) < min_sac_vertices || holds_a_cap(v.wall, dome)) return 1e300;
     return loop.area * (1 + 0.5 * std::abs(up) / top);  // every dome is narrower at its top: going there costs
   };
   struct State {

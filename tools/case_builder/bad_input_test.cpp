@@ -7,7 +7,7 @@
 
 #include "core/base/input_error.h"
 #include "tools/case_builder/intake.h"
-#include "tools/case_builder/test_shapes.h"
+#include "tools/case_builder/shapes_for_test.h"
 
 namespace insula::case_builder {
 namespace {

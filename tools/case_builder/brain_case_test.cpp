@@ -5,7 +5,7 @@
 #include "core/base/input_error.h"
 #include "core/registry/registry.h"
 #include "core/sim/simulation.h"
-#include "tools/case_builder/brain_fixture.h"
+#include "tools/case_builder/brain_for_test.h"
 #include "tools/case_builder/commands.h"
 #include "tools/case_builder/fissure_fit.h"
 #include "tools/case_builder/project.h"

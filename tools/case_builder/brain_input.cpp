@@ -7,7 +7,7 @@
 #include <set>
 
 #include "core/base/text.h"
-#include "core/model/file_bytes.h"
+#include "core/model/formats/file_bytes.h"
 #include "tools/case_builder/brain.h"
 #include "tools/case_builder/fissure.h"
 #include "tools/case_builder/grid_surface.h"

@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "core/base/input_error.h"
-#include "tools/case_builder/brain_fixture.h"
+#include "tools/case_builder/brain_for_test.h"
 #include "tools/case_builder/fissure.h"
 #include "tools/case_builder/project.h"
 #include "tools/mesh_lobes/labels.h"

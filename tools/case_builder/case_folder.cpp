@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "core/base/input_error.h"
-#include "core/model/file_bytes.h"
+#include "core/model/formats/file_bytes.h"
 
 namespace insula::case_builder {
 

@@ -6,14 +6,14 @@
 #include <cstring>
 
 #include "core/base/input_error.h"
-#include "core/model/file_bytes.h"
+#include "core/model/formats/file_bytes.h"
 #include "core/registry/registry.h"
-#include "engine/headless.h"
+#include "engine/live/headless.h"
 #include "tools/case_builder/commands.h"
 #include "tools/case_builder/intake.h"
 #include "tools/case_builder/report.h"
 #include "tools/case_builder/scenes.h"
-#include "tools/case_builder/test_shapes.h"
+#include "tools/case_builder/shapes_for_test.h"
 #include "tools/case_builder/wall.h"
 
 namespace insula::case_builder {

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "core/base/input_error.h"
-#include "core/model/tool_model.h"
+#include "core/model/tools/tool_model.h"
 #include "tools/case_builder/place.h"
 
 namespace insula::case_builder {

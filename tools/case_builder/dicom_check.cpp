@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "core/model/file_bytes.h"
+#include "core/model/formats/file_bytes.h"
 
 namespace insula::case_builder {
 namespace {

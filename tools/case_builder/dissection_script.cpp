@@ -13,12 +13,12 @@
 namespace insula::case_builder {
 namespace {
 
-constexpr int most_strands = 24;       // what a trainee divides in some minutes
+constexpr int max_strands = 24;       // what a trainee divides in some minutes
 constexpr double step_outward = 0.7;   // mm
-constexpr int most_steps = 5;
+constexpr int max_steps = 5;
 
 /// Slower than a skilled hand, quicker than the shipped exercise's.
-constexpr Pace pace{.stroke = 0.12, .stroke_per_m = 70, .travel = 0.028, .turn = 3.5, .at_least = 0.2, .enter = 1.6, .until_parted = true};
+constexpr Pace pace{.stroke = 0.12, .stroke_per_m = 70, .travel = 0.028, .turn = 3.5, .at_least = 0.2, .enter = 1.6, .until_severed = true};
 
 void write_exercises(const SceneFacts& f, const CaseFolder& folder) {
   const std::vector<fs::path> files = exercise_files(folder);
@@ -67,14 +67,14 @@ void spin_strands(SceneFacts& f, const CaseFolder& folder, bool rehearse, std::v
     surgeon = std::make_unique<Surgeon>(*loaded.simulation);
     const int count = int(surgeon->strands().size());
     // Thinned out; and, once, made up for where the move outward has left few.
-    const bool many = count > most_strands && f.strand_share == 1, few = moved > 0 && count > 0 && count < most_strands / 2 && f.strand_share < 1 && !made_up;
+    const bool many = count > max_strands && f.strand_share == 1, few = moved > 0 && count > 0 && count < max_strands / 2 && f.strand_share < 1 && !made_up;
     if (many || few) {
-      f.strand_share = std::min(1.0, f.strand_share * (many ? most_strands : 2 * most_strands / 3) / count);
+      f.strand_share = std::min(1.0, f.strand_share * (many ? max_strands : 2 * max_strands / 3) / count);
       made_up = made_up || few;
       continue;
     }
     const int hidden = int(surgeon->out_of_reach().size());
-    if (hidden == 0 || moved == most_steps) {
+    if (hidden == 0 || moved == max_steps) {
       notes.push_back({Note::Kind::fact, fmt::format("{} strands tie the aneurysm down.", count), ""});
       if (hidden > 0) notes.push_back({Note::Kind::problem, fmt::format("{} of them are out of the dissector's reach.", hidden), "Give the strands another ball in 2_aneurysm_dissection.xml, nearer to the surgeon."});
       break;
@@ -87,7 +87,7 @@ void spin_strands(SceneFacts& f, const CaseFolder& folder, bool rehearse, std::v
   const int count = int(surgeon->strands().size());
   int left = count;
   const int standing = surgeon->divide(pace, [&](const Sweep&, int) {
-    left = int(std::count_if(surgeon->strands().begin(), surgeon->strands().end(), [](const StrandState& s) { return s.health >= 0; }));
+    left = int(std::count_if(surgeon->strands().begin(), surgeon->strands().end(), [](const StrandState& s) { return s.integrity >= 0; }));
     progress.share(1 - double(left) / std::max(1, count));
   });
   surgeon->write(motion);

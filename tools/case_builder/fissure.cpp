@@ -25,12 +25,12 @@ Lobe given_lobe(const std::filesystem::path& folder, const std::string& name) {
   lobe.name = name;
   lobe.tets = read_tet_mesh(file, 1.0);
   lobe.surface = read_surface(folder / (name + "_surface.ply"), 1.0);
-  int held = 0;
-  for (const Vec3& p : lobe.tets.nodes) held += lobe.held.emplace_back((p - fissure_centre).norm() > fissure_held);
-  if (held < 3) throw InputError(file.string() + ": fewer than three of its nodes lie farther than 32 mm from (54, 4, -2), where lobes are held: is it in the frame of meshes/lobes, in mm?");
+  int fixed = 0;
+  for (const Vec3& p : lobe.tets.nodes) fixed += lobe.fixed.emplace_back((p - fissure_centre).norm() > fissure_held);
+  if (fixed < 3) throw InputError(file.string() + ": fewer than three of its nodes lie farther than 32 mm from (54, 4, -2), where lobes are held: is it in the frame of meshes/lobes, in mm?");
   const Embedding e = embed(lobe.tets, lobe.surface.vertices);
   if (e.outside_m > 5) throw InputError(file.string() + ": its surface reaches more than 5 mm outside of it");
-  for (std::size_t v = 0; v < lobe.surface.vertices.size(); ++v) lobe.riders.push_back({4, e.nodes[v], e.weights[v], Vec3::Zero()});
+  for (std::size_t v = 0; v < lobe.surface.vertices.size(); ++v) lobe.embedded_vertices.push_back({4, e.nodes[v], e.weights[v], Vec3::Zero()});
   return lobe;
 }
 
@@ -50,9 +50,9 @@ Fissure read_fissure(const std::filesystem::path& project, const std::filesystem
     lobe.name = soft->id;
     lobe.tets = soft->rest();
     for (Vec3& p : lobe.tets.nodes) p *= 1000;
-    lobe.held = soft->held();
+    lobe.fixed = soft->fixed();
     lobe.surface = in_mm(s->rest());
-    for (const MaterialPoint& p : s->points()) lobe.riders.push_back({p.count, p.node, p.weight, 1000 * p.local});
+    for (const MaterialPoint& p : s->points()) lobe.embedded_vertices.push_back({p.count, p.node, p.weight, 1000 * p.local});
     out.lobes.push_back(std::move(lobe));
   }
   for (const Instrument* tool : loaded.simulation->instruments())

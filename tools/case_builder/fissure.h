@@ -13,15 +13,15 @@ namespace insula::case_builder {
 struct Lobe {
   std::string name;                ///< frontal, temporal
   TetMesh tets;
-  std::vector<char> held;          ///< nodes at the cut face of the ball
+  std::vector<char> fixed;          ///< nodes at the cut face of the ball
   TriMesh surface;
-  struct Rider {
+  struct EmbeddedVertex {
     int count = 0;
     std::array<int, 4> node{};
     std::array<double, 4> weight{};
     Vec3 offset = Vec3::Zero();
   };
-  std::vector<Rider> riders;       ///< where each surface vertex is: weighted nodes plus an offset
+  std::vector<EmbeddedVertex> embedded_vertices;       ///< where each surface vertex is: weighted nodes plus an offset
 };
 
 struct Fissure {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/base/input_error.h"
-#include "core/collision/closest.h"
+#include "core/collision/shapes/closest.h"
 
 namespace insula::case_builder {
 namespace {

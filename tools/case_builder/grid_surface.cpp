@@ -9,9 +9,9 @@
 #include <map>
 
 #include "core/base/input_error.h"
-#include "core/model/file_bytes.h"
-#include "core/model/box_tree.h"
-#include "core/model/triangle_distance.h"
+#include "core/model/formats/file_bytes.h"
+#include "core/model/geometry/box_tree.h"
+#include "core/model/geometry/triangle_distance.h"
 #include "tools/artery/import_parts.h"
 #include "tools/mesh_lobes/grid_ops.h"
 
@@ -21,7 +21,7 @@ namespace {
 using mesh_tool::Field;
 using mesh_tool::Grid;
 using mesh_tool::Mask;
-constexpr double most_nodes = 6e7;
+constexpr double max_nodes = 6e7;
 
 constexpr double wanted_triangles = 20000, even_triangles = 9000;
 
@@ -192,7 +192,7 @@ TriMesh surface_of_volume(const std::filesystem::path& file, const mesh_tool::Ni
   grid.spacing = fine;
   double nodes = 1;
   for (int a = 0; a < 3; ++a) grid.origin[std::size_t(a)] = from[a], nodes *= grid.size[std::size_t(a)] = int(std::ceil((to[a] - from[a]) / fine)) + 1;
-  if (nodes > most_nodes) fail(file, "the vessel fills too large a box; cut out the region around the aneurysm first");
+  if (nodes > max_nodes) fail(file, "the vessel fills too large a box; cut out the region around the aneurysm first");
   if (coarse > 1.05 * fine) notes.push_back({Note::Kind::repair, fmt::format("Voxels of {:.3g} x {:.3g} x {:.3g} mm were brought to cubes of {:.3g} mm.", voxel[0], voxel[1], voxel[2], fine), ""});
   Mask mask(grid.count(), 0);
   Field grey(o.label ? 0 : grid.count());
@@ -272,7 +272,7 @@ TriMesh rebuilt(const TriMesh& m, double spacing) {
   grid.spacing = spacing;
   double nodes = 1;
   for (int a = 0; a < 3; ++a) grid.origin[std::size_t(a)] = box.min()[a] - spacing * (3.07 + 0.03 * a), nodes *= grid.size[std::size_t(a)] = int(std::ceil(box.sizes()[a] / spacing)) + 7;
-  if (nodes > most_nodes) throw InputError(fmt::format("a grid of {:g} mm is too fine for a surface {:.1f} mm across; choose a larger --rebuild", spacing, box.diagonal().norm()));
+  if (nodes > max_nodes) throw InputError(fmt::format("a grid of {:g} mm is too fine for a surface {:.1f} mm across; choose a larger --rebuild", spacing, box.diagonal().norm()));
   Mask mask = inside_of(m, grid);
   mask = mesh_tool::fill_holes(grid, mesh_tool::largest_component(grid, mask));
   Field inside = mesh_tool::signed_distance(grid, mask);

@@ -9,7 +9,7 @@
 
 #include "core/base/input_error.h"
 #include "core/base/text.h"
-#include "core/model/file_bytes.h"
+#include "core/model/formats/file_bytes.h"
 #include "tools/artery/import_parts.h"
 #include "tools/case_builder/grid_surface.h"
 #include "tools/case_builder/mirror.h"
@@ -22,9 +22,9 @@
 namespace insula::case_builder {
 namespace {
 
-constexpr std::size_t most_triangles = 2'000'000;   // what is read at all
+constexpr std::size_t max_triangles = 2'000'000;   // what is read at all
 constexpr std::size_t many_triangles = 150'000;     // more are made anew from a grid
-constexpr std::uintmax_t most_bytes = 220'000'000;  // of a surface file: beyond that it has more than those triangles
+constexpr std::uintmax_t max_bytes = 220'000'000;  // of a surface file: beyond that it has more than those triangles
 
 std::string place(const Vec3& p) { return fmt::format("({:.1f}, {:.1f}, {:.1f})", p.x(), p.y(), p.z()); }
 const char* ending(int n) { return n == 1 ? "" : "s"; }
@@ -35,10 +35,10 @@ TriMesh read_surface_mm(const fs::path& input, const Options& o, std::vector<Not
   const std::uintmax_t bytes = fs::file_size(input, error);
   const auto too_many = [&](std::size_t n) {
     fail(input, fmt::format("has {} triangles; more than {} are not taken. An artery needs some 20,000: decimate it in the program that made it, or cut out the region around the aneurysm",
-                            n > 0 ? std::to_string(n) : "far too many", most_triangles));
+                            n > 0 ? std::to_string(n) : "far too many", max_triangles));
   };
-  if (!error && bytes > most_bytes) too_many(kind == ".stl" ? std::size_t((bytes - 84) / 50) : 0);
-  if (!error && kind == ".stl" && bytes > 84 && (bytes - 84) / 50 > most_triangles) {
+  if (!error && bytes > max_bytes) too_many(kind == ".stl" ? std::size_t((bytes - 84) / 50) : 0);
+  if (!error && kind == ".stl" && bytes > 84 && (bytes - 84) / 50 > max_triangles) {
     std::ifstream in(input, std::ios::binary);
     char head[84] = {};
     in.read(head, 84);
@@ -48,7 +48,7 @@ TriMesh read_surface_mm(const fs::path& input, const Options& o, std::vector<Not
   if (is_in_metres(input) && !o.unit_mm) notes.push_back({Note::Kind::fact, "glTF is in metres by its standard; it was read so.", ""});
   TriMesh m = read_any_surface(input, unit);
   if (o.mirror) mirror(m);
-  if (m.triangles.size() > most_triangles) too_many(m.triangles.size());
+  if (m.triangles.size() > max_triangles) too_many(m.triangles.size());
   if (!o.any_size)
     if (const std::string why = check_extent(extent_of(m), unit); !why.empty()) fail(input, why + "; --any-size takes it all the same");
   return m;

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "core/base/input_error.h"
-#include "core/model/file_bytes.h"
-#include "tools/case_builder/brain_fixture.h"
+#include "core/model/formats/file_bytes.h"
+#include "tools/case_builder/brain_for_test.h"
 #include "tools/case_builder/commands.h"
 #include "tools/case_builder/intake.h"
 #include "tools/case_builder/project.h"

@@ -6,7 +6,7 @@
 #include "core/base/input_error.h"
 #include "core/registry/registry.h"
 #include "core/sim/simulation.h"
-#include "engine/headless.h"
+#include "engine/live/headless.h"
 
 namespace insula::case_builder {
 namespace {

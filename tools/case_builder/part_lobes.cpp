@@ -2,7 +2,7 @@
 /*
 Parts a lobe as a retractor would: the elastic shape at rest that keeps clear of the wall,
 
-    min 1/2 u^T K u   with   C u >= d          u: displacement of the tetrahedra's nodes, mm; held nodes stay
+    min 1/2 u^T K u   with   C u >= d          u: displacement of the tetrahedra's nodes, mm; fixed nodes stay
 
 K is that of linear elasticity (only its ratios matter). Rows of C are points of the lobe that are too near to something, each along
 the way out; they are found anew a few times as the lobe moves. Through K^-1 C^T the conditions meet in W = C K^-1 C^T, solved by
@@ -39,7 +39,7 @@ class ElasticLobe {
   explicit ElasticLobe(Lobe& lobe) : lobe_(lobe), start_(lobe.tets.nodes) {
     of_.assign(start_.size(), -1);
     for (std::size_t i = 0; i < start_.size(); ++i)
-      if (!lobe.held[i]) of_[i] = free_++;
+      if (!lobe.fixed[i]) of_[i] = free_++;
     std::vector<Eigen::Triplet<double>> entries;
     for (const auto& t : lobe.tets.tets) add(t, entries);
     Sparse k(3 * free_, 3 * free_);
@@ -90,8 +90,8 @@ class ElasticLobe {
       lobe_.tets.nodes[i] = start_[i];
       if (of_[i] >= 0) lobe_.tets.nodes[i] += u_.segment<3>(3 * of_[i]), most = std::max(most, u_.segment<3>(3 * of_[i]).norm());
     }
-    for (std::size_t v = 0; v < lobe_.riders.size(); ++v) {
-      const Lobe::Rider& r = lobe_.riders[v];
+    for (std::size_t v = 0; v < lobe_.embedded_vertices.size(); ++v) {
+      const Lobe::EmbeddedVertex& r = lobe_.embedded_vertices[v];
       Vec3 p = r.offset;
       for (int k = 0; k < r.count; ++k) p += r.weight[std::size_t(k)] * lobe_.tets.nodes[std::size_t(r.node[std::size_t(k)])];
       lobe_.surface.vertices[v] = p;
@@ -99,7 +99,7 @@ class ElasticLobe {
     return most;
   }
   /// Least volume of a tetrahedron over what it was.
-  double least_volume() const {
+  double min_volume() const {
     double least = 1e300;
     const auto volume = [](const std::vector<Vec3>& x, const std::array<int, 4>& t) {
       const Vec3& a = x[std::size_t(t[0])];
@@ -114,7 +114,7 @@ class ElasticLobe {
     c.way = way;
     for (std::size_t k = 0; k < 3; ++k) {
       if (bary[Eigen::Index(k)] < 1e-9) continue;
-      const Lobe::Rider& r = lobe_.riders[std::size_t(vertices[k])];
+      const Lobe::EmbeddedVertex& r = lobe_.embedded_vertices[std::size_t(vertices[k])];
       for (std::size_t j = 0; j < std::size_t(r.count); ++j) c.node[std::size_t(c.count)] = r.node[j], c.weight[std::size_t(c.count++)] = bary[Eigen::Index(k)] * r.weight[j];
     }
     c.least = missing + way.dot(at(c));
@@ -252,7 +252,7 @@ std::vector<Room> part_lobes(Fissure& fissure, const TriMesh& wall_mesh, double 
     }
   for (std::size_t i = 0; i < 2; ++i) {
     out[i].after = room(solid[i], wall) - wall_half;
-    const double least = lobe[i].least_volume();
+    const double least = lobe[i].min_volume();
     if (least < 0.15)
       notes.push_back({Note::Kind::problem, fmt::format("The {} lobe had to be parted so far that an element has {:.0f} % of its volume left.", out[i].what, 100 * least),
                        "Keep less of the vessel (--keep), or turn it (--spin), so that it needs less room."});

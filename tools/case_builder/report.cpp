@@ -12,7 +12,7 @@
 #include "core/mechanics/shell_body.h"
 #include "core/registry/registry.h"
 #include "core/sim/simulation.h"
-#include "engine/headless.h"
+#include "engine/live/headless.h"
 #include "plugins/clip/clip.h"
 #include "tools/case_builder/intake.h"
 #include "tools/case_builder/picture.h"
@@ -124,7 +124,7 @@ MeasuredMotion measure_motion(const fs::path& scene, double longest) {
     out.rows = std::max(out.rows, s.report().rows);
   }
   out.steps = int(times.size());
-  std::tie(out.step_ms, out.most_ms) = median_and_most(std::move(times));
+  std::tie(out.step_ms, out.max_ms) = median_and_most(std::move(times));
   return out;
 }
 
@@ -151,7 +151,7 @@ MeasuredScene measure_scene(const fs::path& scene, int steps) {
     out.rows = std::max(out.rows, s.report().rows);
     if (i == 0) out.standing = standing_of(s);
   }
-  std::tie(out.step_ms, out.most_ms) = median_and_most(std::move(times));
+  std::tie(out.step_ms, out.max_ms) = median_and_most(std::move(times));
   return out;
 }
 
@@ -230,7 +230,7 @@ void run_report(const CaseFolder& folder, const Options& options, Progress& prog
     }
     budget = m.budget_ms;
     const bool fast = m.step_ms <= m.budget_ms;
-    s += row(m.file, fmt::format("{} nodes, {} rows; hands still, a step takes {:.1f} ms (95 %: {:.1f} ms) of {:.1f} ms{}", m.nodes, m.rows, m.step_ms, m.most_ms, m.budget_ms, m.finite ? "" : "; it LEFT THE RANGE OF NUMBERS"), fast && m.finite ? "good" : "bad",
+    s += row(m.file, fmt::format("{} nodes, {} rows; hands still, a step takes {:.1f} ms (95 %: {:.1f} ms) of {:.1f} ms{}", m.nodes, m.rows, m.step_ms, m.max_ms, m.budget_ms, m.finite ? "" : "; it LEFT THE RANGE OF NUMBERS"), fast && m.finite ? "good" : "bad",
              fast ? "" : "Slower than life here: fewer vertices (insula case wall FOLDER --vertices 1200 --on), or a faster machine.");
     for (const Note& n : judged(m.standing)) {
       const bool good = n.kind != Note::Kind::problem;
@@ -240,7 +240,7 @@ void run_report(const CaseFolder& folder, const Options& options, Progress& prog
   progress.step("playing the clipping");
   const fs::path clipping = exercise_files(folder)[2];
   if (const MeasuredMotion m = measure_motion(clipping, 12); m.steps > 0)
-    s += row(clipping.filename().string() + ", scripted hands", fmt::format("{} steps with the clip at the vessel, up to {} rows; a step takes {:.1f} ms (95 %: {:.1f} ms) of {:.1f} ms", m.steps, m.rows, m.step_ms, m.most_ms, budget), m.step_ms <= budget ? "good" : "bad",
+    s += row(clipping.filename().string() + ", scripted hands", fmt::format("{} steps with the clip at the vessel, up to {} rows; a step takes {:.1f} ms (95 %: {:.1f} ms) of {:.1f} ms", m.steps, m.rows, m.step_ms, m.max_ms, budget), m.step_ms <= budget ? "good" : "bad",
              m.step_ms <= budget ? "" : "Slower than life while it is clipped: fewer vertices (insula case wall FOLDER --vertices 1200 --on), or a faster machine.");
   else
     s += row(clipping.filename().string() + ", scripted hands", "the clip never touches the vessel", "bad", "Choose another clip or place: insula case scenes FOLDER --clip NAME --lift MM --slide MM --turn DEGREES");

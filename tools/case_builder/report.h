@@ -12,7 +12,7 @@ namespace insula::case_builder {
 struct MeasuredScene {
   std::string file;
   std::string message;       ///< why it does not load; empty: it does
-  double step_ms = 0, most_ms = 0, budget_ms = 0;  ///< median, 95th percentile, of the scene's step
+  double step_ms = 0, max_ms = 0, budget_ms = 0;  ///< median, 95th percentile, of the scene's step
   int nodes = 0, rows = 0;
   bool finite = true;
   Standing standing;         ///< as it begins, before anybody does anything
@@ -21,7 +21,7 @@ MeasuredScene measure_scene(const fs::path& scene, int steps);
 
 /// Steps of a scene under its first motion in which a clip touches the vessel, until a little after one was let go.
 struct MeasuredMotion {
-  double step_ms = 0, most_ms = 0;  ///< median, 95th percentile
+  double step_ms = 0, max_ms = 0;  ///< median, 95th percentile
   int steps = 0, rows = 0;          ///< 0: no clip ever touched the vessel, or the scene has no motion
 };
 MeasuredMotion measure_motion(const fs::path& scene, double longest_s);

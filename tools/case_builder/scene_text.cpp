@@ -48,7 +48,7 @@ std::string artery_part(const SceneFacts& f) {
        "  </shell_body>\n"
        "  <pressure id=\"heart\" on=\"artery\" systolic=\"120 mmHg\" diastolic=\"80 mmHg\" heart_rate=\"70 1/min\"/>\n"
        "  <blood_flow id=\"flow\" pressure=\"heart\" thickness=\"0.3 mm\" closed_below=\"0.2\"/>\n"
-       "  <self_contact id=\"lumen\" on=\"artery_wall\" thickness=\"0.22 mm\" layer=\"3 kN/m\" friction=\"0\" max_contacts=\"40\" spacing=\"0.8 mm\" alarm=\"0.3 mm\"/>\n"
+       "  <self_contact id=\"lumen\" on=\"artery_wall\" thickness=\"0.22 mm\" contact_stiffness=\"3 kN/m\" friction=\"0\" max_contacts=\"40\" spacing=\"0.8 mm\" alarm=\"0.3 mm\"/>\n"
        "</part>\n";
   return s;
 }
@@ -70,10 +70,10 @@ std::string field_part(const SceneFacts& f) {
   s += fmt::format("\n  <bleeding id=\"bleeding\" on=\"artery\" flow=\"flow\" region=\"{}\" origin=\"{}\" up=\"0.93 0.25 0.27\" radius=\"16 mm\" depth=\"20 mm\" force=\"1.5 N\"/>\n", f.bleb ? "bleb" : "sac",
                    point(f.neck - 5 * to_surgeon));
   s += "  <contact id=\"bed\" between=\"artery frontal temporal insula\" friction=\"0\" tissue_alarm=\"0.3 mm\" tissue_spacing=\"1.5 mm\" tissue_max_contacts=\"12\" tissue_max_force=\"0.05 N\"/>\n"
-       "  <contact id=\"tools\" between=\"artery frontal temporal insula suction probe applier stylus\" friction=\"0.1\" spacing=\"1 mm\" max_contacts=\"10\" recovery=\"0.2 mm\"/>\n";
-  s += fmt::format("  <contact id=\"blades\" between=\"artery {}\" friction=\"0.35\" by=\"vertices\" patch=\"2.5 mm\" max_contacts=\"60\" alarm=\"0.12 mm\" recovery=\"0.1 mm\"/>\n", clips);
-  s += fmt::format("  <contact id=\"clips_in_the_field\" between=\"insula {}\" friction=\"0.2\" spacing=\"2 mm\" max_contacts=\"6\" alarm=\"0.5 mm\" recovery=\"0.2 mm\"/>\n", clips);
-  s += fmt::format("  <contact id=\"clips_on_the_lobes\" between=\"frontal temporal {}\" friction=\"0\" max_force=\"0.1 N\" spacing=\"2 mm\" max_contacts=\"6\" alarm=\"0.5 mm\" recovery=\"0.2 mm\"/>\n</part>\n", clips);
+       "  <contact id=\"tools\" between=\"artery frontal temporal insula suction probe applier stylus\" friction=\"0.1\" spacing=\"1 mm\" max_contacts=\"10\" max_correction=\"0.2 mm\"/>\n";
+  s += fmt::format("  <contact id=\"blades\" between=\"artery {}\" friction=\"0.35\" contact_geometry=\"vertices\" patch=\"2.5 mm\" max_contacts=\"60\" alarm=\"0.12 mm\" max_correction=\"0.1 mm\"/>\n", clips);
+  s += fmt::format("  <contact id=\"clips_in_the_field\" between=\"insula {}\" friction=\"0.2\" spacing=\"2 mm\" max_contacts=\"6\" alarm=\"0.5 mm\" max_correction=\"0.2 mm\"/>\n", clips);
+  s += fmt::format("  <contact id=\"clips_on_the_lobes\" between=\"frontal temporal {}\" friction=\"0\" max_force=\"0.1 N\" spacing=\"2 mm\" max_contacts=\"6\" alarm=\"0.5 mm\" max_correction=\"0.2 mm\"/>\n</part>\n", clips);
   return s;
 }
 
@@ -81,7 +81,7 @@ std::string strands(const SceneFacts& f, const std::string& kind) {
   const Vec3 shift = f.strand_shift * to_surgeon, ball = 0.4 * f.neck + 0.6 * f.dome + 1.5 * to_surgeon + shift;
   const double radius = 0.55 * f.dome_reach + 2;
   const bool own = kind == "branches";
-  return fmt::format("  <strand_springs id=\"to_{}\" from=\"artery_wall\" to=\"{}\" made=\"settled\" centre=\"{}\" radius=\"{:.1f} mm\" density=\"{:.3g} 1/cm2\" max_length=\"{} mm\" seed=\"{}\"\n"
+  return fmt::format("  <strand_springs id=\"to_{}\" from=\"artery_wall\" to=\"{}\" created_at=\"settled\" centre=\"{}\" radius=\"{:.1f} mm\" density=\"{:.3g} 1/cm2\" max_length=\"{} mm\" seed=\"{}\"\n"
                      "    stiffness=\"40 N/m\" slack=\"1.1\" strength=\"0.04 N\" cut_force=\"0.015 N\" cut_length=\"0.8 mm\" reach=\"0.6 mm\"/>\n",
                      kind, own ? std::string("artery_wall") : kind + "_surface", point(own ? Vec3(f.neck + 2 * to_surgeon + shift) : ball), own ? radius - 1 : radius, f.strand_share * (own ? 40 : 24), own ? "3" : "7",
                      kind == "frontal" ? 11 : kind == "temporal" ? 12 : 14);

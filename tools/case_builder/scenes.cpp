@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "core/base/input_error.h"
-#include "core/model/file_bytes.h"
+#include "core/model/formats/file_bytes.h"
 #include "tools/case_builder/dissection_script.h"
 #include "tools/case_builder/motion_script.h"
 #include "tools/case_builder/opening_play.h"

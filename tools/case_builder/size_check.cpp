@@ -42,8 +42,8 @@ std::string check(double size, double mm_per_unit, const Usual& usual) {
 
 }  // namespace
 
-std::string check_extent(double extent, double unit) { return check(extent, unit, {"surface", "stretch of cerebral artery", 30, least_extent, most_extent, "--unit"}); }
-std::string check_calibre(double calibre, double unit) { return check(calibre, unit, {"widest opening", "cerebral artery", 2.5, least_calibre, most_calibre, "--unit"}); }
-std::string check_brain(double extent, double unit) { return check(extent, unit, {"surface", "part of a brain", 100, least_brain, most_brain, "--brain-unit"}); }
+std::string check_extent(double extent, double unit) { return check(extent, unit, {"surface", "stretch of cerebral artery", 30, min_extent, max_extent, "--unit"}); }
+std::string check_calibre(double calibre, double unit) { return check(calibre, unit, {"widest opening", "cerebral artery", 2.5, min_calibre, max_calibre, "--unit"}); }
+std::string check_brain(double extent, double unit) { return check(extent, unit, {"surface", "part of a brain", 100, min_brain, max_brain, "--brain-unit"}); }
 
 }  // namespace insula::case_builder

@@ -5,9 +5,9 @@
 
 namespace insula::case_builder {
 
-inline constexpr double least_extent = 4, most_extent = 200;     ///< mm, of a vessel's whole surface
-inline constexpr double least_calibre = 0.6, most_calibre = 8;   ///< mm, of the widest opening
-inline constexpr double least_brain = 15, most_brain = 250;      ///< mm, of a lobe's or a brain's surface
+inline constexpr double min_extent = 4, max_extent = 200;     ///< mm, of a vessel's whole surface
+inline constexpr double min_calibre = 0.6, max_calibre = 8;   ///< mm, of the widest opening
+inline constexpr double min_brain = 15, max_brain = 250;      ///< mm, of a lobe's or a brain's surface
 
 /// Empty when a surface so large (mm) may be one; else what is wrong and which unit to give. `mm_per_unit` is the one in use.
 std::string check_extent(double extent_mm, double mm_per_unit);

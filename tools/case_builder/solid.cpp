@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/model/grid_sample.h"
+#include "core/model/geometry/grid_sample.h"
 
 namespace insula::case_builder {
 

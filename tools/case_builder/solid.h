@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/collision/collision_mesh.h"
+#include "core/collision/search/collision_mesh.h"
 #include "core/model/mesh.h"
 
 namespace insula::case_builder {

@@ -17,9 +17,9 @@ namespace insula::case_builder {
 namespace {
 
 // The shipped exercises: 0.07 and 0.15 N, 0.1 and 0.3 mm, all of it.
-constexpr double least_force = 0.02, most_force = 1.0;  // N
-constexpr double most_depth = 1.5;                      // mm
-constexpr double least_seen = 0.4;
+constexpr double min_force = 0.02, max_force = 1.0;  // N
+constexpr double max_depth = 1.5;                      // mm
+constexpr double min_seen = 0.4;
 constexpr double limit = 12;                            // mm, within which depths are looked for
 
 TriMesh in_mm(const std::vector<Vec3>& vertices, const std::vector<std::array<int, 3>>& triangles) {
@@ -138,13 +138,13 @@ std::vector<Note> judged(const Standing& standing) {
   const auto tell = [&](bool good, std::string text) { notes.push_back({good ? Note::Kind::fact : Note::Kind::problem, std::move(text), good ? "" : where}); };
   for (const StandingArm& arm : standing.arms) {
     if (arm.lobe.empty()) tell(false, fmt::format("{} holds no lobe.", arm.id));
-    else tell(arm.force >= least_force && arm.force <= most_force, fmt::format("{} holds the {} lobe with {:.2f} N.", arm.id, arm.lobe, arm.force));
-    if (arm.deepest > most_depth) tell(false, fmt::format("{} stands {:.1f} mm deep in tissue.", arm.id, arm.deepest));
+    else tell(arm.force >= min_force && arm.force <= max_force, fmt::format("{} holds the {} lobe with {:.2f} N.", arm.id, arm.lobe, arm.force));
+    if (arm.deepest > max_depth) tell(false, fmt::format("{} stands {:.1f} mm deep in tissue.", arm.id, arm.deepest));
   }
   for (std::size_t i = 0; i < standing.arms.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
       if (!standing.arms[i].lobe.empty() && standing.arms[i].lobe == standing.arms[j].lobe) tell(false, fmt::format("{} and {} both hold the {} lobe.", standing.arms[j].id, standing.arms[i].id, standing.arms[i].lobe));
-  if (standing.has_sac) tell(standing.seen >= least_seen, fmt::format("The microscope sees {:.0f} % of the sac's side towards it.", 100 * standing.seen));
+  if (standing.has_sac) tell(standing.seen >= min_seen, fmt::format("The microscope sees {:.0f} % of the sac's side towards it.", 100 * standing.seen));
   for (const std::string& id : standing.in_tissue) tell(false, fmt::format("{} starts within tissue or bone.", id));
   return notes;
 }

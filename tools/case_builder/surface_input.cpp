@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/case_builder/surface_input.h"
 
-#include "core/model/box_tree.h"
-#include "core/model/file_bytes.h"
+#include "core/model/geometry/box_tree.h"
+#include "core/model/formats/file_bytes.h"
 #include "tools/case_builder/vtp_reader.h"
 
 namespace insula::case_builder {

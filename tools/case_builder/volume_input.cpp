@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/case_builder/volume_input.h"
 
-#include "core/model/file_bytes.h"
+#include "core/model/formats/file_bytes.h"
 #include "tools/case_builder/grid_surface.h"
 #include "tools/case_builder/mirror.h"
 #ifdef INSULA_WITH_ITK

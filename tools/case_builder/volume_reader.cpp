@@ -16,14 +16,14 @@
 #include <fstream>
 
 #include "core/base/text.h"
-#include "core/model/file_bytes.h"
+#include "core/model/formats/file_bytes.h"
 #include "tools/case_builder/dicom_check.h"
 
 namespace insula::case_builder {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr double most_voxels = 1e9;
+constexpr double max_voxels = 1e9;
 
 bool ends_with(const std::string& text, const std::string& end) { return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0; }
 
@@ -76,7 +76,7 @@ void place(mesh_tool::NiftiVolume& v, const fs::path& file, const Eigen::Vector3
 void check_size(const fs::path& file, const std::array<int, 3>& n) {
   for (const int k : n)
     if (k < 2) fail(file, "is no volume: it has " + std::to_string(n[0]) + " x " + std::to_string(n[1]) + " x " + std::to_string(n[2]) + " voxels");
-  if (double(n[0]) * n[1] * n[2] > most_voxels) fail(file, "has more than 1,000 million voxels; cut out the region around the aneurysm first");
+  if (double(n[0]) * n[1] * n[2] > max_voxels) fail(file, "has more than 1,000 million voxels; cut out the region around the aneurysm first");
 }
 
 void read_header(const fs::path& file, itk::ImageIOBase& io) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/case_builder/vtp_reader.h"
 
-#include "core/model/vtk_xml.h"
+#include "core/model/formats/vtk_xml.h"
 
 namespace insula::case_builder {
 namespace {

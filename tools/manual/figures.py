@@ -38,7 +38,7 @@ FIGURES = {  # name: (program, test)
     "plate": ("plugin_tests", "Bending.PlateConvergesOnAnyMesh"),
     "sealed_sac": ("plugin_tests", "BloodFlow.SacBehindAClosedNeckGoesSoft"),
     "sphere": ("plugin_tests", "Laplace.SphereConverges"),
-    "squeeze": ("plugin_tests", "Crushed.EnergyOfAUniformSqueeze"),
+    "squeeze": ("plugin_tests", "CompressionBarrier.EnergyOfAUniformSqueeze"),
     "strand": ("plugin_tests", "StrandSprings.PullsAsTheDiscretisedLawSays"),
     "strip": ("plugin_tests", "Bending.CantileverConvergesToEulerBernoulli"),
     "suction": ("plugin_tests", "Suction.HoldsUpToPressureTimesAreaAndLetsGo"),
@@ -59,7 +59,7 @@ ERRORS = {  # section of the page: (picture, {program: tests that keep errors})
         "physics_tests": "LocalContact.IsTheSolution*:Solver.RandomProblems*:Solver.ConvergesToThe*:Solver.ResultDoesNot*:Solver.KnownAnswer:Solver.ConjugateDirectionsSolve*",
         "core_tests": "Disc.IsTheSolution*"}),
     "Contact, strands, suction, tools": ("errors_contact", {
-        "plugin_tests": "Contact.SignoriniHolds*:Contact.ForcesOnBoth*:StrandSprings.TwoBodies*:Retractor.TheHandCarries*:FixedRegion.HeldNodesStay:ContactLimits.ForceOfALayerIs*"}),
+        "plugin_tests": "Contact.SignoriniHolds*:Contact.ForcesOnBoth*:StrandSprings.TwoBodies*:Retractor.TheHandCarries*:FixedRegion.FixedNodesStay:ContactLimits.ForceOfALayerIs*"}),
     "Contracts": ("errors_contracts", {"physics_tests": "Elements/EveryElement.*"}),
     "Pressure and flow": ("errors_flow", {
         "plugin_tests": "Chambers.AddUp*:Pressure.Balances*:Pressure.SphereOf*:Pressure.FillsAt*:Pressure.Sealed*:Pressure.RowsAre*:Prestress.Imaged*:Prestress.Without*:Section.Cuts*:BloodFlow.Network*:"

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/collision/closest.h"
-#include "core/model/grid_sample.h"
+#include "core/collision/shapes/closest.h"
+#include "core/model/geometry/grid_sample.h"
 
 namespace insula {
 

@@ -84,7 +84,7 @@ class Trainer : public Surgeon {
  private:
   void say_left() const {
     for (std::size_t i = 0; i < strands().size(); ++i)
-      if (const StrandState& s = strands()[i]; s.health >= 0) {
+      if (const StrandState& s = strands()[i]; s.integrity >= 0) {
         const Vec3 a = (s.a - centre_) / mm, b = (s.b - centre_) / mm;
         std::printf("strand %2zu stands: %.1f mm from (%.1f %.1f %.1f) to (%.1f %.1f %.1f) mm from the sac\n", i, (a - b).norm(), a.x(), a.y(), a.z(), b.x(), b.y(), b.z());
       }

@@ -8,7 +8,7 @@
 
 #include "core/base/input_error.h"
 #include "core/registry/registry.h"
-#include "engine/headless.h"
+#include "engine/live/headless.h"
 
 namespace insula {
 

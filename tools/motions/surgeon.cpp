@@ -66,7 +66,7 @@ int Surgeon::divide(const Pace& pace, const std::function<void(const Sweep&, int
     go({sweep.pose(-way * sweep.half)}, pace);
     for (const int stroke : {1, -1, 1}) {
       hands_.move(pace.stroke + pace.stroke_per_m * sweep.half, {sweep.pose(stroke * way * sweep.half)});  // more than parts it, should the arms lag
-      if (pace.until_parted && strands()[strand].health < 0) break;
+      if (pace.until_severed && strands()[strand].integrity < 0) break;
     }
     ++tries[strand];
     if (told) told(sweep, tries[strand]);

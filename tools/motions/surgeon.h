@@ -15,7 +15,7 @@ struct Pace {
   double travel = 0.016, turn = 2.2;         ///< m/s, rad/s
   double at_least = 0.3;                     ///< s, of a way between strokes
   double enter = 2.2;                        ///< s, from outside of the field and back
-  bool until_parted = false;                 ///< no more strokes than part the strand; else three in any case
+  bool until_severed = false;                 ///< no more strokes than part the strand; else three in any case
 };
 
 class Surgeon {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/collision/closest.h"
+#include "core/collision/shapes/closest.h"
 
 namespace insula {
 
@@ -81,7 +81,7 @@ Sweep SweepPlanner::best(const std::vector<StrandState>& strands, const std::vec
   };
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < strands.size(); ++i)
-    if (strands[i].health >= 0) order.push_back(i);
+    if (strands[i].integrity >= 0) order.push_back(i);
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return ease(a) != ease(b) ? ease(a) > ease(b) : a < b; });
   const std::vector<double> places = thorough ? std::vector<double>{0.5, 0.3, 0.7, 0.15, 0.85, 0.05, 0.95} : std::vector<double>{0.5, 0.35, 0.65, 0.2, 0.8};
   const std::vector<double> depths = thorough ? std::vector<double>{0.2e-3, -0.15e-3, -0.35e-3, 0.7e-3, 1.4e-3} : std::vector<double>{0.2e-3, -0.15e-3, 0.7e-3, 1.4e-3};
@@ -118,7 +118,7 @@ Sweep SweepPlanner::best(const std::vector<StrandState>& strands, const std::vec
               if (score + 1.5 < best.score || cutting(w, s) < 1.5) continue;
               int more = 0;
               for (std::size_t k = 0; k < strands.size(); ++k)
-                if (k != i && strands[k].health >= 0 && ((strands[k].a + strands[k].b) / 2 - w.middle).norm() < 4e-3)
+                if (k != i && strands[k].integrity >= 0 && ((strands[k].a + strands[k].b) / 2 - w.middle).norm() < 4e-3)
                   more += cutting(w, strands[k]) > 1.5;
               w.score = score + 0.5 * std::min(more, 3);
               if (w.score > best.score) best = w;

@@ -17,11 +17,11 @@ inline constexpr std::size_t topics = 5;
 
 class Outbox {
  public:
-  static constexpr std::size_t most_events = 256;
+  static constexpr std::size_t max_events = 256;
 
   void put(Topic topic, Message message) {
     if (topic == Topic::sim_event) {
-      if (events_.size() == most_events) {
+      if (events_.size() == max_events) {
         events_.pop_front();
         ++dropped_;
       }

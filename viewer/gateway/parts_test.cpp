@@ -124,8 +124,8 @@ TEST(Outbox, KeepsTheNewestStateAndABoundedNumberOfEvents) {
     box.put(Topic::render_frame, message(40'000, std::uint8_t(i)));
     box.put(Topic::sim_event, message(100, std::uint8_t(i)));
   }
-  EXPECT_LE(box.bytes(), 40'000 + 100 * Outbox::most_events);
-  EXPECT_EQ(box.dropped(), 9'999 + (10'000 - Outbox::most_events));
+  EXPECT_LE(box.bytes(), 40'000 + 100 * Outbox::max_events);
+  EXPECT_EQ(box.dropped(), 9'999 + (10'000 - Outbox::max_events));
   std::size_t events = 0, frames = 0;
   std::uint8_t last_event = 0;
   while (const Message m = box.take()) {
@@ -137,7 +137,7 @@ TEST(Outbox, KeepsTheNewestStateAndABoundedNumberOfEvents) {
       EXPECT_EQ((*m)[0], std::uint8_t(9'999));
     }
   }
-  EXPECT_EQ(events, Outbox::most_events);
+  EXPECT_EQ(events, Outbox::max_events);
   EXPECT_EQ(last_event, std::uint8_t(9'999));
   EXPECT_EQ(frames, 1u);
   EXPECT_EQ(box.bytes(), 0u);

@@ -10,8 +10,8 @@ namespace websocket = boost::beast::websocket;
 namespace insula::gateway {
 namespace {
 
-constexpr std::size_t most_from_page = 64 * 1024;
-constexpr double most_messages_per_s = 500;  // two hands at 60 Hz and some commands, with room
+constexpr std::size_t max_from_page = 64 * 1024;
+constexpr double max_messages_per_s = 500;  // two hands at 60 Hz and some commands, with room
 // Less than the kernel would take: what waits there is old by the time a slow client reads it.
 constexpr int socket_send_buffer = 128 * 1024;
 
@@ -29,7 +29,7 @@ void WsClient::start(const http::request<http::empty_body>& request) {
   timeouts.idle_timeout = std::chrono::seconds(30);
   timeouts.keep_alive_pings = true;
   ws_.set_option(timeouts);
-  ws_.read_message_max(most_from_page);
+  ws_.read_message_max(max_from_page);
   ws_.binary(true);
   ws_.auto_fragment(false);
   ws_.async_accept(request, [self = shared_from_this()](beast::error_code error) {
@@ -63,7 +63,7 @@ bool WsClient::within_rate() {
   const auto now = std::chrono::steady_clock::now();
   const double seconds = std::chrono::duration<double>(now - allowance_at_).count();
   allowance_at_ = now;
-  allowance_ = std::min(most_messages_per_s, allowance_ + seconds * most_messages_per_s);
+  allowance_ = std::min(max_messages_per_s, allowance_ + seconds * max_messages_per_s);
   if (allowance_ < 1) return false;
   allowance_ -= 1;
   return true;

@@ -2,7 +2,7 @@
 // The component whose commands docs/bodies-in-plugins.md shows.
 #include <charconv>
 
-#include "core/constraint/constraint.h"
+#include "core/mechanics/constraint.h"
 #include "core/registry/registry.h"
 
 namespace insula {

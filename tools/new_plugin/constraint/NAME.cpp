@@ -6,7 +6,7 @@ A spring from the vertex of a surface nearest to `at` (at rest) to an anchor tha
 
     delta = |x - anchor| - length,   delta + lambda / k = 0
 */
-#include "core/constraint/constraint.h"
+#include "core/mechanics/constraint.h"
 #include "core/mechanics/surface.h"
 #include "core/registry/registry.h"
 

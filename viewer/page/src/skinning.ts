@@ -3,7 +3,7 @@
 // the deformation gradient F of each tetrahedron, averaged to the nodes and interpolated like the positions, so that the
 // shading stays smooth across tetrahedra: n' ~ sum_i w_i C_i n, with C = cof(F) = sum_k c_k (x) e_k / det(E),
 // e_k the rest edges, c_k the cross products of the deformed edges (cof(D) columns). A triangle of a shell counts as a
-// tetrahedron whose third edge is its normal. A vertex that rides beside its nodes keeps its offset:
+// tetrahedron whose third edge is its normal. A vertex that is embedded beside its nodes keeps its offset:
 // x = sum_i w_i x_i + (X - sum_i w_i X_i).
 
 /** Texels per node in the node texture: position and the three columns of C. */

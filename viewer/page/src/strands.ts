@@ -9,7 +9,7 @@ import { make_random } from './random';
 const fibres_per_strand = 3;
 const rings_per_half = 9;
 const sides = 5;
-/** Seconds until a parted strand has gone. */
+/** Seconds until a severed strand has gone. */
 const fade_s = 2.2;
 const whole_mark = Infinity;
 
@@ -31,19 +31,19 @@ export class Strands {
   private readonly slack: THREE.InstancedBufferAttribute;
   private readonly fibres: Fibre[] = [];
   private readonly ends: Float32Array;
-  private readonly health: Float32Array;
+  private readonly integrity: Float32Array;
   private readonly tension: Float32Array;
   private readonly rest_length: Float32Array;
-  private readonly parted_at: Float64Array;
+  private readonly severed_at: Float64Array;
   private webbed = false;
 
   constructor(private readonly count: number, private readonly radius_m: number, field: FieldUniforms) {
     const capacity = count * (fibres_per_strand + 2);
     this.ends = new Float32Array(count * 6);
-    this.health = new Float32Array(count);
+    this.integrity = new Float32Array(count);
     this.tension = new Float32Array(count);
     this.rest_length = new Float32Array(count);
-    this.parted_at = new Float64Array(count).fill(whole_mark);
+    this.severed_at = new Float64Array(count).fill(whole_mark);
     const random = make_random(101);
     for (let i = 0; i < count; i++)
       for (let k = 0; k < fibres_per_strand; k++) this.fibres.push({ a: i, b: i, ta: 0, tb: 1, radius: radius_m * (k === 0 ? 0.75 : 0.28 + 0.22 * random()) });
@@ -69,19 +69,19 @@ export class Strands {
   }
 
   /** ends: 6 floats a strand (both end points); time in seconds, any steady clock. */
-  update(ends: Float32Array, health: Float32Array, tension: Float32Array, time: number): void {
-    const n = Math.min(this.count, health.length, Math.floor(ends.length / 6));
+  update(ends: Float32Array, integrity: Float32Array, tension: Float32Array, time: number): void {
+    const n = Math.min(this.count, integrity.length, Math.floor(ends.length / 6));
     for (let i = 0; i < n; i++) {
-      const whole = health[i]! >= 0;
-      const whole_before = this.health[i]! >= 0;
-      // A parted strand keeps the last ends known when the engine no longer sends any.
+      const whole = integrity[i]! >= 0;
+      const whole_before = this.integrity[i]! >= 0;
+      // A severed strand keeps the last ends known when the engine no longer sends any.
       let any = false;
       for (let k = 0; k < 6; k++) any ||= ends[i * 6 + k] !== 0;
       if (any) for (let k = 0; k < 6; k++) this.ends[i * 6 + k] = ends[i * 6 + k]!;
-      if (whole) this.parted_at[i] = whole_mark;
+      if (whole) this.severed_at[i] = whole_mark;
       // Already parted when this page came: nothing to animate.
-      else if (this.parted_at[i] === whole_mark) this.parted_at[i] = whole_before && this.webbed ? time : time - 1e6;
-      this.health[i] = health[i]!;
+      else if (this.severed_at[i] === whole_mark) this.severed_at[i] = whole_before && this.webbed ? time : time - 1e6;
+      this.integrity[i] = integrity[i]!;
       this.tension[i] = tension[i] ?? 0;
       const length = this.length(i);
       if (this.rest_length[i] === 0 && any) this.rest_length[i] = length;
@@ -91,14 +91,14 @@ export class Strands {
     let out = 0;
     this.fibres.forEach((f, index) => {
       if (f.a >= n || f.b >= n) return;
-      const parted = Math.max(this.age(f.a, time), this.age(f.b, time));
-      if (parted > fade_s) return;
+      const severed = Math.max(this.age(f.a, time), this.age(f.b, time));
+      if (severed > fade_s) return;
       const own = f.a === f.b;
       for (let k = 0; k < 3; k++) {
         this.ends_a.array[out * 3 + k] = this.along(f.a, f.ta, k);
         this.ends_b.array[out * 3 + k] = this.along(f.b, f.tb, k);
       }
-      this.state.array.set([f.radius, Math.max(0, Math.min(this.health[f.a]!, this.health[f.b]!)), own ? this.tension[f.a]! : 0, parted], out * 4);
+      this.state.array.set([f.radius, Math.max(0, Math.min(this.integrity[f.a]!, this.integrity[f.b]!)), own ? this.tension[f.a]! : 0, severed], out * 4);
       const l0 = this.rest_length[f.a]!;
       const l = this.length(f.a);
       const loose = own ? Math.sqrt(Math.max(0, l0 * l0 - l * l)) * 0.38 : 0.0002;
@@ -114,7 +114,7 @@ export class Strands {
     (this.mesh.material as THREE.Material).dispose();
   }
 
-  private age(i: number, time: number): number { return this.health[i]! >= 0 ? -1 : time - this.parted_at[i]!; }
+  private age(i: number, time: number): number { return this.integrity[i]! >= 0 ? -1 : time - this.severed_at[i]!; }
 
   private along(i: number, t: number, k: number): number { return this.ends[i * 6 + k]! * (1 - t) + this.ends[i * 6 + 3 + k]! * t; }
 
@@ -127,10 +127,10 @@ export class Strands {
   private weave(n: number): void {
     const random = make_random(55);
     for (let i = 0; i < n; i++) {
-      if (this.health[i]! < 0) continue;
+      if (this.integrity[i]! < 0) continue;
       const near: { j: number; d: number }[] = [];
       for (let j = 0; j < n; j++) {
-        if (j === i || this.health[j]! < 0) continue;
+        if (j === i || this.integrity[j]! < 0) continue;
         const d = Math.hypot(...[0, 1, 2].map((k) => this.along(i, 0.5, k) - this.along(j, 0.5, k)));
         if (d < 0.0045) near.push({ j, d });
       }
@@ -227,7 +227,7 @@ function strand_material(field: FieldUniforms): THREE.MeshPhysicalMaterial {
         vec3 transformed = here + objectNormal * radius;
         v_strand = vec4(state.yzw, t);`);
     shader.fragmentShader = shader.fragmentShader
-      .replace('#include <common>', '#include <common>\nvarying vec4 v_strand; // health, tension, age, t')
+      .replace('#include <common>', '#include <common>\nvarying vec4 v_strand; // integrity, tension, age, t')
       .replace('#include <color_fragment>', `#include <color_fragment>
         float pull = v_strand.y / (v_strand.y + 0.025);
         vec3 strand = mix(vec3(0.80, 0.74, 0.69), vec3(0.72, 0.20, 0.15), clamp(pull * 0.9 + 0.25 * (1.0 - v_strand.x), 0.0, 1.0));

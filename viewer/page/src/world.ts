@@ -119,7 +119,7 @@ export class World {
       const x = playback.nodes(m.index, t);
       if (x && x.length === m.skin.field.rest.length) m.skin.update(x);
     }
-    this.strands?.update(playback.strand_ends(t), frame.strand_health, frame.strand_tension_N, now_ms / 1000);
+    this.strands?.update(playback.strand_ends(t), frame.strand_integrity, frame.strand_tension_N, now_ms / 1000);
     this.update_pressed(frame);
     this.update_flow(state, frame.sim_time_s, dt);
     for (const [index, tool] of this.tools) {

@@ -23,7 +23,7 @@ describe('lcm codec', () => {
     expect(f.session).toBe(1795254564745000n);
     expect(f.paused).toBe(true);
     expect([...f.body[0]!.x_m]).toEqual([0.5, 0.25, -1, 2, 4, 8]);
-    expect([...f.strand_health]).toEqual([-1]);
+    expect([...f.strand_integrity]).toEqual([-1]);
     expect(f.tool[0]!.hand).toBe(-1);
     expect([f.tool[0]!.state, f.tool[0]!.opening_rad]).toEqual([2, 0.25]);
     expect([...f.tool[0]!.q]).toEqual([0.5, 0.5, 0.5, 0.5]);
@@ -65,6 +65,6 @@ describe('lcm codec', () => {
   it('will not encode arrays that disagree with their counts', () => {
     const f = lcm.render_frame_t.make();
     f.strands = 2;
-    expect(() => lcm.render_frame_t.encode(f)).toThrow(/strand_health/);
+    expect(() => lcm.render_frame_t.encode(f)).toThrow(/strand_integrity/);
   });
 });

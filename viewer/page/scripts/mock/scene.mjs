@@ -147,15 +147,15 @@ export function make_frame(scene, lcm, time, held, theatre) {
   moved.push(move_artery(artery, theatre.pulse, theatre.tension, squeeze, seat.across));
   const at = (b, v) => [0, 1, 2].map((j) => [0, 1, 2, 3].reduce((sum, k) => sum + bodies[b].skin.weights[v * 4 + k] * moved[b][bodies[b].skin.nodes[v * 4 + k] * 3 + j], 0));
   const n = scene.strands.length;
-  const strand_x_m = new Float32Array(n * 6), health = new Float32Array(n), tension = new Float32Array(n);
+  const strand_x_m = new Float32Array(n * 6), integrity = new Float32Array(n), tension = new Float32Array(n);
   let left = 0;
   scene.strands.forEach((s, i) => {
     const p = at(0, s.va), q = at(1, s.vb);
     strand_x_m.set([...p, ...q], i * 6);
-    const wear = ramp(time, s.cut_at - 1.2, s.cut_at);
-    health[i] = time >= s.cut_at ? -1 : 1 - wear;
-    if (health[i] >= 0) left++;
-    tension[i] = health[i] < 0 ? 0 : Math.max(0, Math.hypot(...sub(p, q)) - s.length * 1.6) * 12 * health[i];
+    const damage = ramp(time, s.cut_at - 1.2, s.cut_at);
+    integrity[i] = time >= s.cut_at ? -1 : 1 - damage;
+    if (integrity[i] >= 0) left++;
+    tension[i] = integrity[i] < 0 ? 0 : Math.max(0, Math.hypot(...sub(p, q)) - s.length * 1.6) * 12 * integrity[i];
   });
   const f = lcm.render_frame_t.make();
   f.sim_time_s = time;
@@ -164,7 +164,7 @@ export function make_frame(scene, lcm, time, held, theatre) {
   f.strands = n;
   f.strand_points = 2 * n;
   f.strand_x_m = strand_x_m;
-  f.strand_health = health;
+  f.strand_integrity = integrity;
   f.strand_tension_N = tension;
   f.tool = scene.tools.map((tool) => tool_frame(scene, lcm, tool, time, spread, held, left, theatre, seat));
   f.tools = f.tool.length;

@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Wall against wall of one surface.
+#include "core/collision/colliders/self_collider.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/collision/colliders/tissue_collider.h"
+
+namespace insula {
+namespace {
+
+constexpr double facing = 0.1;      ///< cosine by which two normals must oppose one another
+constexpr double along_wall = 0.92; ///< normals that agree by this at rest belong to one stretch of wall ...
+constexpr double bent = 0.8;        ///< ... those that agree by this need looking at only once the wall between them is bent
+constexpr double horizon = 0.5e-3;    ///< farther than needed, to know for how long nothing will come, m
+constexpr double skin = 0.4e-3;     ///< motion after which a list of partners is made anew, m
+constexpr double yields = 0.3;        ///< part of its turn that the normal of a pressing contact takes in a step
+constexpr double min_turn = 1e-3;    ///< a turn of less is none, rad
+constexpr int swings_for_good = 120;   ///< to and fro in two steps or in three: reached after one second or two
+constexpr std::size_t longest_list = 192;  ///< partners of a sample; with more, the tree is asked in every step
+
+/// Where the ray from `from` along the unit vector `along` goes out through triangle pqr; -1 if it does not.
+double exit_through(const Vec3& from, const Vec3& along, const Vec3& p, const Vec3& q, const Vec3& r, Vec3& bary) {
+  const Vec3 n = (q - p).cross(r - p);
+  const double rate = n.dot(along);
+  if (!(rate > facing * n.norm())) return -1;
+  const double t = n.dot(p - from) / rate;
+  const Vec3 x = from + t * along;
+  const Vec3 w(n.dot((r - q).cross(x - q)), n.dot((p - r).cross(x - r)), n.dot((q - p).cross(x - p)));
+  // A ray through an edge or a vertex must not slip between the triangles there.
+  if (w.minCoeff() < -1e-9 * n.squaredNorm()) return -1;
+  bary = w.cwiseMax(0.0) / w.cwiseMax(0.0).sum();
+  return t;
+}
+
+}  // namespace
+
+SelfCollider::SelfCollider(std::span<const Vec3> rest, std::span<const std::array<int, 3>> triangles, double spacing, double thickness)
+    : samples_(sample_vertices(rest, triangles, spacing)), neighbour_(2 * thickness) {
+  for (const auto& t : triangles) {
+    const Vec3 &a = rest[std::size_t(t[0])], &b = rest[std::size_t(t[1])], &c = rest[std::size_t(t[2])];
+    const Vec3 middle = (a + b + c) / 3;
+    face_position_.push_back(middle);
+    corners_.push_back({a, b, c});
+    extent2_.push_back(std::max({(a - middle).squaredNorm(), (b - middle).squaredNorm(), (c - middle).squaredNorm()}));
+    face_normal_.push_back((b - a).cross(c - a).normalized());
+  }
+  CollisionMesh mesh;
+  mesh.build(rest, triangles);
+  mesh.update(rest, {});
+  for (int v : samples_) {
+    position_.push_back(rest[std::size_t(v)]);
+    normal_.push_back(mesh.vertex_normal(v));
+    // A few lumens: across an ellipse, a neck or a bifurcation, but not through one vessel into the next.
+    reach_.push_back(2.5 * lumen(mesh, v));
+  }
+  for (int v : samples_) own_.push_back(mesh.region_of(v));
+  for (auto& p : partners_) p.assign(samples_.size(), 0);
+  for (std::size_t i = 0; i < samples_.size(); ++i)
+    for (std::size_t t = 0; t < triangles.size(); ++t)
+      if (const int side = kind(i, int(t)); side >= 0) partners_[side][i] |= mesh.regions_of(int(t));
+  found_.resize((samples_.size() + piece - 1) / piece);
+  for (auto& f : found_) f.reserve(2 * piece);
+  for (auto& side : lists_) {
+    side.resize(samples_.size());
+    for (auto& list : side) list.reserve(longest_list + 1);
+  }
+  outward_.resize(samples_.size());
+  outward_known_.resize(samples_.size());
+  reset();
+}
+
+void SelfCollider::reset() {
+  for (auto& c : close_) c.assign(samples_.size(), 0);
+  for (auto& d : direction_) d.assign(samples_.size(), Vec3::Zero());
+  for (auto& s : swing_) s.assign(samples_.size(), Swing());
+  for (auto& c : clear_) c.assign(samples_.size(), 0.0);
+  for (auto& c : covered_) c.assign(samples_.size(), -1.0);
+}
+
+// A hard press on a sharp fold throws even a slow normal to and fro, the wall after it: force times change of normal, N/m, against the
+// wall's own stiffness. It is known by turning back again and again for a second or two, which neither a pulse nor a hand does.
+double SelfCollider::Swing::share(const Vec3& wanted) {
+  constexpr int back = 2, on = 1;
+  const bool turned_back = wanted.dot(turn) < 0 && wanted.squaredNorm() > min_turn * min_turn && turn.squaredNorm() > min_turn * min_turn;
+  turn = wanted;
+  if (count < swings_for_good) count = turned_back ? std::min(count + back, swings_for_good) : std::max(0, count - on);
+  return count < swings_for_good ? yields : 0.1 * yields;
+}
+
+// From a vertex straight inward to the opposite wall; 0 if there is none.
+double SelfCollider::lumen(const CollisionMesh& rest, int vertex) const {
+  const Vec3 from = rest.vertex(vertex), along = -rest.vertex_normal(vertex);
+  double least = 1e300;
+  Aabb box;
+  box.add(from);
+  box.add(Vec3(from + 0.03 * along));  // no lumen is wider
+  rest.tree().overlapping(box, [&](int tri) {
+    const auto& v = rest.triangle(tri);
+    if (v[0] == vertex || v[1] == vertex || v[2] == vertex) return;
+    Vec3 bary;
+    const double t = exit_through(from, along, rest.vertex(v[0]), rest.vertex(v[1]), rest.vertex(v[2]), bary);
+    if (t > 0) least = std::min(least, t);
+  });
+  return least < 0.03 ? least : 0.0;
+}
+
+int SelfCollider::kind(std::size_t sample, int triangle) const {
+  const Vec3 d = face_position_[std::size_t(triangle)] - position_[sample];
+  const double d2 = d.squaredNorm();
+  if (d2 < neighbour_ * neighbour_ || normal_[sample].dot(face_normal_[std::size_t(triangle)]) > along_wall) return -1;
+  const double leaves = normal_[sample].dot(d), ends = face_normal_[std::size_t(triangle)].dot(d);
+  const int side = leaves < 0 && ends > 0 && d2 < reach_[sample] * reach_[sample] ? inner : leaves > 0 && ends < 0 ? outer : -1;
+  if (side < 0 || d2 > neighbour_ * neighbour_ + extent2_[std::size_t(triangle)] + 2 * neighbour_ * std::sqrt(extent2_[std::size_t(triangle)])) return side;
+  // A large triangle may be near although its middle is not.
+  const auto& c = corners_[std::size_t(triangle)];
+  const Vec3 w = closest_on_triangle(position_[sample], c[0], c[1], c[2]);
+  return (w[0] * c[0] + w[1] * c[1] + w[2] * c[2] - position_[sample]).squaredNorm() < neighbour_ * neighbour_ ? -1 : side;
+}
+
+// Whether what has moved since the sample was last looked at may have brought a partner within range of it.
+bool SelfCollider::may_be_near(const CollisionMesh& mesh, std::size_t sample, int side, double range) {
+  const std::uint64_t partners = partners_[side][sample];
+  const double went = mesh.moved(own_[sample]) + mesh.moved(partners);
+  clear_[side][sample] -= went;
+  covered_[side][sample] -= went;
+  return clear_[side][sample] <= range + std::min(mesh.free(samples_[sample]).norm() + mesh.may_move(partners), horizon);
+}
+
+// All possible partners within `far`, and what may come there before the list is made anew.
+void SelfCollider::list_partners(const CollisionMesh& mesh, std::size_t sample, int side, double far) {
+  auto& list = lists_[side][sample];
+  list.clear();
+  const Vec3 x = mesh.vertex(samples_[sample]);
+  Aabb box;
+  box.add(x);
+  box.inflate(far + skin);
+  mesh.tree().overlapping(box, [&](int tri) {
+    if (list.size() > longest_list || kind(sample, tri) != side) return;
+    const auto& t = mesh.triangle(tri);
+    const Vec3 p = mesh.vertex(t[0]), q = mesh.vertex(t[1]), r = mesh.vertex(t[2]);
+    const Vec3 w = closest_on_triangle(x, p, q, r);
+    const double d = (w[0] * p + w[1] * q + w[2] * r - x).norm();
+    if (d <= far + skin) list.push_back({d, tri});
+  });
+  std::sort(list.begin(), list.end(), [](const Partner& a, const Partner& b) { return a.was != b.was ? a.was < b.was : a.triangle < b.triangle; });
+  covered_[side][sample] = list.size() > longest_list ? -1.0 : skin;
+}
+
+void SelfCollider::near(const CollisionMesh& mesh, const SelfContactSettings& settings, std::size_t sample, int side,
+                        std::vector<Proximity>& out) {
+  const int v = samples_[sample];
+  const int before = close_[side][sample];
+  const bool was = before != 0;
+  // What touched is looked for farther, what has crossed as deep as crossings are undone.
+  const double range = (was ? 1.2 * settings.alarm + horizon : settings.alarm) + settings.thickness;
+  const double reach = before == 2 ? std::max(range, settings.max_depth) : range;
+  if (!may_be_near(mesh, sample, side, range) && !was) return;
+  close_[side][sample] = 0;
+  const Vec3 x = mesh.vertex(v);
+  double least2 = 1e300, any2 = (range + horizon) * (range + horizon);
+  int best = -1;
+  Vec3 bary = Vec3::Zero(), point = Vec3::Zero();
+  if (!outward_known_[sample]) {
+    outward_[sample] = mesh.rough_normal(v);
+    outward_known_[sample] = 1;
+  }
+  const auto look = [&](int tri, double& limit2) {
+    const auto& t = mesh.triangle(tri);
+    const Vec3 p = mesh.vertex(t[0]), q = mesh.vertex(t[1]), r = mesh.vertex(t[2]);
+    const Vec3 n = (q - p).cross(r - p);
+    const double h = n.dot(x - p), nn = n.squaredNorm();
+    if (h * h > limit2 * nn) return;  // its plane is farther than the best
+    const double agree = outward_[sample].dot(n) / std::sqrt(nn);
+    if (agree > 0.5 && normal_[sample].dot(face_normal_[std::size_t(tri)]) > bent) return;
+    const Vec3 w = closest_on_triangle(x, p, q, r);
+    const Vec3 c = w[0] * p + w[1] * q + w[2] * r;
+    const double d2 = (x - c).squaredNorm();
+    any2 = std::min(any2, d2);
+    if (agree > -facing || d2 > limit2 || (d2 == limit2 && best >= 0 && tri > best)) return;
+    // Beside it rather than over it: something nearer was no partner.
+    const double over = n.dot(x - c);
+    if (d2 > 1e-12 && over * over < 0.36 * d2 * nn) return;
+    limit2 = d2;
+    best = tri;
+    bary = w;
+    point = c;
+  };
+  // What the free motion may bring is within the horizon.
+  const double far = settings.thickness + 1.2 * settings.alarm + horizon;
+  if (reach <= far && covered_[side][sample] < 0) list_partners(mesh, sample, side, far);
+  if (reach <= far && covered_[side][sample] >= 0) {
+    const double went = skin - covered_[side][sample];
+    for (const Partner& p : lists_[side][sample]) {
+      const double at_least = std::max(0.0, p.was - went);
+      if (at_least * at_least > least2) {  // nor does any after it
+        any2 = std::min(any2, at_least * at_least);
+        break;
+      }
+      look(p.triangle, least2);
+    }
+  } else {
+    Aabb box;
+    box.add(x);
+    box.inflate(std::max(reach, far));
+    mesh.tree().nearest(x, &box, least2, [&](int tri, double& limit2) {
+      if (kind(sample, tri) == side) look(tri, limit2);
+    });
+  }
+  clear_[side][sample] = was ? 0.0 : std::sqrt(any2);
+  if (best < 0) return;
+  const TriangleFeature f = feature_of(bary);
+  const Vec3 free_side = (side == inner ? -1.0 : 1.0) * mesh.pseudo_normal(best, f);
+  const Vec3 d = x - point;
+  const double distance = d.norm();
+  const bool crossed = d.dot(free_side) < 0;
+  Proximity c;
+  c.vertex = v;
+  c.side = side;
+  c.triangle = best;
+  c.bary = bary;
+  c.point = point;
+  if (distance > 1e-6) {
+    c.normal = (crossed ? Vec3(-d) : d) / distance;
+  } else {
+    c.normal = free_side;
+  }
+  // Outside, two vessels side by side and two that have crossed look alike: only what touched before can have crossed. And a
+  // crossing begins shallow: a fold of the wall that faces the wrong way is none.
+  if (crossed && (distance > settings.max_depth || (side == outer && !was))) return;
+  if (crossed && before != 2 && distance > settings.thickness + settings.alarm) return;
+  c.gap = (crossed ? -distance : distance) - settings.thickness;
+  const double approach = c.normal.dot(mesh.free(v) - mesh.free_at(best, bary));
+  // What had a contact keeps it a little longer, lest rows come and go while nothing moves.
+  const double alarm = was ? 1.2 * settings.alarm : settings.alarm;
+  if (c.gap > alarm && c.gap + approach > alarm) return;
+  // On a fold the nearest place turns about with the slightest motion of the wall, which is so light there that its own
+  // answer would throw it to and fro, step by step. So the normal of what presses turns slowly; but not where walls are hard,
+  // whose gap is now a little above, now a little below zero.
+  Vec3& direction = direction_[side][sample];
+  Swing& swing = swing_[side][sample];
+  if (settings.normal_under_relaxation && was && c.gap < 0 && direction.dot(c.normal) > 0.5)
+    c.normal = (direction + swing.share(c.normal - direction) * (c.normal - direction)).normalized();
+  else
+    swing = {};
+  direction = c.normal;
+  close_[side][sample] = crossed ? 2 : 1;
+  c.start_gap = std::max(c.gap, -settings.max_correction);
+  out.push_back(c);
+}
+
+Opposite SelfCollider::opposite(const CollisionMesh& mesh, int triangle, const Vec3& bary, const Vec3& along, double far) const {
+  Opposite best;
+  best.distance = far;
+  const Vec3 from = mesh.point(triangle, bary);
+  Aabb swept;
+  swept.add(from);
+  swept.add(Vec3(from + far * along));
+  const auto& own = mesh.triangle(triangle);
+  mesh.tree().overlapping(swept, [&](int tri) {
+    const auto& t = mesh.triangle(tri);
+    for (int v : t)
+      if (v == own[0] || v == own[1] || v == own[2]) return;
+    // Inner by the rest shape, as for samples.
+    const Vec3 d = face_position_[std::size_t(tri)] - face_position_[std::size_t(triangle)];
+    if (d.squaredNorm() < neighbour_ * neighbour_ || face_normal_[std::size_t(triangle)].dot(d) >= 0 || face_normal_[std::size_t(tri)].dot(d) <= 0) return;
+    Vec3 w;
+    const double s = exit_through(from, along, mesh.vertex(t[0]), mesh.vertex(t[1]), mesh.vertex(t[2]), w);
+    if (s < 0 || s > best.distance || (s == best.distance && best.triangle >= 0 && tri > best.triangle)) return;
+    best = {tri, w, s};
+  });
+  return best;
+}
+
+void SelfCollider::detect(const CollisionMesh& mesh, const SelfContactSettings& settings, std::vector<Proximity>& out, Workers& workers) {
+  if (mesh.tree().empty()) return;
+  std::fill(outward_known_.begin(), outward_known_.end(), char(0));
+  if (mesh.updates() - updates_ > 1) {  // motion in between that was not seen may have brought anything
+    for (auto& c : clear_) std::fill(c.begin(), c.end(), 0.0);
+    for (auto& c : covered_) std::fill(c.begin(), c.end(), -1.0);
+  }
+  updates_ = mesh.updates();
+  workers.run(int(found_.size()), [&](int task) {
+    auto& found = found_[std::size_t(task)];
+    found.clear();
+    const std::size_t first = std::size_t(task) * piece, last = std::min(first + piece, samples_.size());
+    for (std::size_t i = first; i < last; ++i) {
+      if (settings.inner && reach_[i] > 0) near(mesh, settings, i, inner, found);
+      if (settings.outer) near(mesh, settings, i, outer, found);
+    }
+  });
+  for (const auto& found : found_) out.insert(out.end(), found.begin(), found.end());
+}
+
+}  // namespace insula

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Surface against surface: sample vertices of a against the triangles of b.
+//
+// The samples are an even choice of a's vertices, fixed at the start (a contact is then known by its vertex, which stays
+// the same while the surfaces slide). For each, the nearest triangle of b that faces it among those it is, or may come in
+// the step's free motion, within the alarm distance of; a vertex behind that triangle is an overlap and has a negative gap.
+// Geometry is that of the start of the step: tissue moves by less than its own details in a step. A bump narrower than
+// the samples' distance s can reach into the other surface by about s^2 / (8 R), R its radius of curvature.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/collision/search/collision_mesh.h"
+#include "core/collision/contact_set.h"
+#include "core/collision/search/facing_search.h"
+#include "core/collision/shapes/four_triangles.h"
+#include "core/collision/search/search_kernels.h"
+
+namespace insula {
+
+struct TissueContactSettings {
+  double alarm = 0.5e-3;        ///< m
+  double max_correction = 0.5e-3; ///< an overlap is undone by no more than this in a step, m
+  double max_depth = 5e-3;      ///< a vertex this far behind the surface is no longer pushed out, m
+  double offset = 0;            ///< half the thicknesses of both walls, where surfaces are the middle of a wall, m
+};
+
+/// Vertices of the surface no two of which are closer than `distance`, such that every used vertex is that close to one.
+/// In order of vertex number. Deterministic.
+std::vector<int> sample_vertices(std::span<const Vec3> rest, std::span<const std::array<int, 3>> triangles, double distance);
+
+class TissueCollider {
+ public:
+  /// Samples in an order of neighbourhoods, by the rest shape; `triangles`: how many b has.
+  TissueCollider(std::vector<int> samples, std::span<const Vec3> rest, int triangles);
+  /// Appends one contact a sample that has one, in the order of samples(). Keeps which samples were behind the surface
+  /// (they are looked for deeper). Does not allocate while `out` has capacity.
+  void detect(const CollisionMesh& a, const CollisionMesh& b, const TissueContactSettings& settings, std::vector<Proximity>& out);
+  const std::vector<int>& samples() const { return samples_; }
+  void reset();
+
+ private:
+  static constexpr std::size_t group = 16;  ///< samples that are ruled out together
+  std::vector<int> samples_;
+  std::vector<char> behind_;
+  std::vector<double> clear_;     ///< of the samples: nothing of b is nearer than this, m
+  struct Group {
+    double clear = 0;    ///< least of its samples', m
+    double went = 0;     ///< what the samples' clear_ is yet to be lessened by, m
+    std::uint64_t own = 0, near = 0;  ///< regions of its samples, and of all of b that is not farther away than `around`
+    double around = 0;   ///< m, less the samples' own way since, when ...
+    double travelled = 0;  ///< ... b had travelled this far
+    bool deep = true;    ///< has a sample behind the surface
+  };
+  double look_around(Group& g, const CollisionMesh& a, const CollisionMesh& b, std::size_t first, std::size_t last, double may_come, double elsewhere);
+  void lessen(std::size_t first, std::size_t last, double swept, double at_least);
+  std::vector<Group> groups_;
+  std::array<long, 2> updates_{};  ///< of the meshes when last looked at
+  void begin_gathering(const AabbTree& tree);
+  void gather_leaves(const AabbTree& tree, const Aabb& all);
+  template <class Look>
+  void look_at_leaves(const CollisionMesh& b, const Vec3& x, const double& limit2, Look&& look);
+  const FourTriangles& corners_of(const CollisionMesh& b, std::size_t leaf);
+  std::vector<std::span<const int>> leaves_;  ///< triangles of the leaves near a group ...
+  std::vector<BoxPack> packs_;                ///< ... and their boxes
+  std::vector<FourTriangles> corners_;        ///< corners of all leaves that a sample wanted in this step, about centre_
+  std::vector<int> cornered_;                 ///< the leaves that they are of, by the place of their first triangle in the tree's order
+  std::vector<int> corners_at_;               ///< of the leaf that begins at this place: index of corners_, -1: not wanted yet
+  bool gathering_ = false;                    ///< any in this step
+  Vec3 centre_ = Vec3::Zero();
+  std::vector<KnownNearest> known_;  ///< of the samples: spares looks, does not change what is found
+  std::array<FacingSearch, group> search_;
+  std::array<bool, group> looked_{}, settled_{};  ///< of these
+  FacingSearch::Seen seen_;
+};
+
+}  // namespace insula

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A rigid tool of rounded convex pieces against a surface, looking ahead over the step.
+//
+// Geometry is taken at the start of the step and, when the free motion is larger than what is close, along it: tool pose
+// start -> free, surface x -> x + u. Each piece advances no faster than its distance to the surface allows (conservative
+// advancement; Mirtich 1996) until it touches or the step ends, so that a fast tool meets the surface it would have passed
+// through. Contacts are those within the alarm distance
+//   - at the start,
+//   - where the piece first touches, or at the end of its free motion,
+//   - where it would be after sliding along what it touches by the rest of its motion.
+// A contact found later in the step is used only if the tool starts on its free side; its start_gap is measured between
+// the same material points along the same normal, so that start_gap + H dq is the gap at the end of the step.
+//
+// A step that takes its normals from its start is behind on a surface that turns. With `expected`, where the tool is thought to be at the
+// end of the step, a piece's contacts of the start, and of sliding, are taken there instead, with the surface where its motion leads it: then
+// normals and places are those of the end, and start_gap + H dq is the gap there, exactly if both go as expected. A piece that is behind
+// the surface, would be behind a wall, or would be away keeps the contacts of the start.
+//
+// One triangle gives a contact only where the distance is smallest among its neighbours too (no ghost contacts at inner
+// edges), plus the corners of the piece's core that stand right above it (a flat or long piece lies on several points).
+// Sides are told by the surface's outward normals. A core behind the surface has a negative gap and is pushed to the nearest
+// place of the surface, as long as it is no deeper than max_depth; one that goes through a triangle is pushed along its normal.
+//
+// A vessel pressed flat is thinner than a blade, and what is behind its one wall is soon nearest to the other. So each piece
+// remembers on which side of the surface it was when it was last outside, and never leaves towards the opposite one.
+#pragma once
+#include <vector>
+
+#include "core/collision/search/collision_mesh.h"
+#include "core/collision/contact_set.h"
+#include "core/model/tools/tool_model.h"
+
+namespace insula {
+
+struct ToolContactSettings {
+  double alarm = 1e-3;         ///< m
+  double max_correction = 1e-3;  ///< an overlap is undone by no more than this in a step, m
+  double collision_horizon = 0;       ///< in steps: the tool's motion is followed so far beyond the step
+  double max_depth = 5e-3;     ///< a core this far behind the surface is no longer pushed out, m
+  bool one_sided = false;        ///< vertices: those behind a blade that presses a body from the front go back to its front
+  double offset = 0;           ///< the surface is the middle of a wall of twice this thickness, m
+  const Pose* expected = nullptr;  ///< of the tool at the end of the step, scene frame; null: contacts of the start are taken at the start
+};
+
+/// A piece as used for collision: core of at most 24 points and a radius that is never 0 (flat blades are shrunk by a
+/// fifth of a millimetre or 0.45 of their least extent and rounded by as much, so that resting contact keeps the
+/// core clear of the surface and normals well defined).
+struct RoundedPiece {
+  static constexpr std::size_t max_core = 24;  ///< read_tool refuses more
+  std::vector<Vec3> core;  ///< tool frame
+  double radius = 0;
+  Vec3 axis0 = Vec3::Zero(), axis1 = Vec3::Zero();  ///< segment that the core lies about ...
+  double bound = 0;                                 ///< ... within this distance
+};
+RoundedPiece rounded(const ConvexPiece& piece);
+struct PlacedPiece;
+
+/// One tool, one surface. Keeps which pieces overlapped last step (they are looked for deeper) and their sides; allocates in
+/// the constructor only, as long as `out` has capacity.
+class ToolCollider {
+ public:
+  ToolCollider(const std::vector<ConvexPiece>& pieces, int triangles);
+  /// Appends to `out`, piece by piece, in an order that depends on the arguments alone.
+  void detect(const CollisionMesh& mesh, const Pose& start, const Pose& free, const ToolContactSettings& settings,
+              std::vector<Proximity>& out);
+  void reset();
+  /// When in the last detect's step a piece first touched on its free way, moving inward; 1: none did.
+  double touch_time() const { return touch_time_; }
+  int touching_piece() const { return touching_piece_; }  ///< the first to touch, -1: none
+
+ private:
+  struct Candidate {
+    int triangle;
+    double clear;   ///< lower bound of the unsigned gap ...
+    double time;    ///< ... at this time
+    double speed;   ///< bound on the relative motion over the whole step, m ...
+    double to_end;  ///< ... and on that to where the piece is expected at its end
+  };
+  struct SweptPiece;      // of a piece in the step
+  struct Reached;  // by it
+  void list_candidates(const CollisionMesh& mesh, const SweptPiece& swept);
+  Reached advance(const CollisionMesh& mesh, const SweptPiece& swept, const ToolContactSettings& settings, double range, std::vector<Proximity>& out);
+  bool take_contacts_of_start(const CollisionMesh& mesh, const SweptPiece& swept, const ToolContactSettings& settings, std::vector<Proximity>& out);
+  void slide_on(const CollisionMesh& mesh, const SweptPiece& swept, double t, const ToolContactSettings& settings, std::vector<Proximity>& out);
+  void add_those_on_free_side(const ToolContactSettings& settings, std::vector<Proximity>& out) const;
+  static void add(Proximity x, const ToolContactSettings& settings, std::vector<Proximity>& out);
+  // Contacts at a moment (tool_contacts.cpp).
+  void evaluate(const CollisionMesh& mesh, const PlacedPiece& at, const ToolContactSettings& settings, double range,
+                std::vector<Proximity>& found);
+  bool found_at_end(const CollisionMesh& mesh, const PlacedPiece& expected, const ToolContactSettings& settings);
+  void drop_wrong_exits(std::vector<Proximity>& found, const Vec3& side, double offset) const;
+
+  std::vector<RoundedPiece> pieces_;
+  std::vector<char> deep_;  ///< per piece
+  std::vector<Vec3> side_;  ///< per piece: surface normal where it was last near and outside; zero: none known
+  double touch_time_ = 1;
+  int touching_piece_ = -1;
+  std::vector<Candidate> candidates_;
+  std::vector<Proximity> found_, at_end_;
+};
+
+/// Two tools: one contact a pair of pieces that is, or may come in this step, within the alarm distance. A pair whose
+/// cores meet is pushed apart along the line between their middles.
+void detect_tools(const std::vector<RoundedPiece>& a, const Pose& a_start, const Pose& a_free,
+                  const std::vector<RoundedPiece>& b, const Pose& b_start, const Pose& b_free,
+                  const ToolContactSettings& settings, std::vector<Proximity>& out);
+
+}  // namespace insula

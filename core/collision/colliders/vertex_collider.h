@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Rounded convex pieces against the vertices of a finely meshed thin wall.
+//
+// Where the wall's triangles are smaller than the pieces are round, no piece can enter between vertices, and keeping every
+// vertex near a piece out of it keeps the wall out of it. Unlike contacts of triangles (tool_collider.h) this asks for no
+// inside of the wall: a neck pressed flat between two jaws has none. Each vertex has one contact, with the piece it is nearest
+// to, known by the vertex from step to step.
+//
+// A vertex within the alarm distance at the start gives a contact there; one that the free motion would bring in gives it at
+// the moment of touch (conservative advancement; Mirtich 1996). A vertex remembers the direction in which it is kept out: if a
+// thin piece has passed through it all the same, it goes back the way it came.
+#pragma once
+#include <array>
+#include <vector>
+
+#include "core/collision/search/collision_mesh.h"
+#include "core/collision/contact_set.h"
+#include "core/collision/colliders/tool_collider.h"
+
+namespace insula {
+
+class VertexCollider {
+ public:
+  VertexCollider(const std::vector<ConvexPiece>& pieces, const std::vector<std::array<int, 3>>& triangles, int vertices);
+  /// Appends to `out` in order of vertices. Allocates in the constructor only, as long as `out` has capacity.
+  void detect(const CollisionMesh& mesh, const Pose& start, const Pose& free, const ToolContactSettings& settings,
+              std::vector<Proximity>& out);
+  void reset();
+
+ private:
+  struct Near {
+    double clear;  ///< distance of the core less its radius and the wall's half thickness, m
+    Vec3 normal;   ///< from the vertex to the core, unit; zero inside the core
+  };
+  Near nearest(const RoundedPiece& piece, const Pose& pose, const Vec3& x, double offset) const;
+
+  struct Candidate {
+    int piece;
+    double at_least;  ///< no more than what nearest() gives, m
+  };
+
+  std::vector<RoundedPiece> pieces_;
+  std::vector<Aabb> boxes_;                      ///< of the pieces' cores
+  std::vector<std::array<int, 2>> triangle_of_;  ///< one triangle of each vertex, and the vertex's corner in it; -1: none
+  std::vector<Vec3> kept_out_;                   ///< per vertex: last normal, frame of the pieces; zero: none
+  Vec3 side_ = Vec3::Zero();                     ///< from most vertices that press to the core, frame of the pieces; up to unit length
+  std::vector<int> seen_;                        ///< vertices near the pieces in this step
+  std::vector<char> marked_;
+  std::vector<Candidate> near_pieces_;           ///< of one vertex
+};
+
+}  // namespace insula

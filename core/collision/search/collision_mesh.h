@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A deforming triangle surface as collision sees it: its box tree, its neighbourhoods, and where each point is during
+// the step: x(t) = x + t u, t in [0, 1], u the displacement of the free motion. Scene frame, m.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <span>
+#include <tuple>
+#include <vector>
+
+#include "core/collision/search/aabb_tree.h"
+#include "core/collision/shapes/closest.h"
+
+namespace insula {
+
+/// The surface point nearest to some point p.
+struct NearestPoint {
+  int triangle = -1;       ///< -1: none within the limit
+  Vec3 bary = Vec3::Zero(), point = Vec3::Zero();
+  double distance = 0;
+  bool behind = false;     ///< p is behind the surface
+  Vec3 outward = Vec3::UnitZ();  ///< unit, along the line through p and the point, out of the surface
+};
+
+/// How far the vertices of each region of a mesh went since the update before, at most, and will in the free motion, m.
+struct RegionMotion {
+  std::array<double, 64> moved{}, may_move{};
+};
+
+class CollisionMesh {
+ public:
+  /// Counter-clockwise triangles seen from outside; closed surfaces and open sheets (one-sided, facing along their normals).
+  void build(std::span<const Vec3> rest, std::span<const std::array<int, 3>> triangles);
+  /// Takes this step's positions and free displacements (empty: a surface that does not move) and refits the tree. The
+  /// arrays must live until the next update.
+  void update(std::span<const Vec3> positions, std::span<const Vec3> free);
+  /// The same, motion already measured since the last update.
+  void update(std::span<const Vec3> positions, std::span<const Vec3> free, const RegionMotion& motion);
+  /// Before positions are changed otherwise: the next update measures from where they are now.
+  void keep_positions();
+
+  /// Sum over all updates of the farthest way that a vertex went, m: between two updates no vertex went farther than the difference.
+  double travelled() const { return travelled_; }
+  double farthest_free() const { return farthest_free_; }  ///< of all vertices in this step, m
+
+  /// Vertices in regions of neighbours, the bits of a mask, so that what moves in one place is no news for what is elsewhere.
+  static constexpr int regions = std::tuple_size_v<decltype(RegionMotion::moved)>;
+  std::uint64_t region_of(int v) const { return std::uint64_t(1) << region_of_[std::size_t(v)]; }
+  std::uint64_t regions_of(int tri) const {
+    const auto& t = triangle(tri);
+    return region_of(t[0]) | region_of(t[1]) | region_of(t[2]);
+  }
+  /// Regions that may come within a distance of the box in this step, m. Lowers `other` to where the nearest begins that is not `known`.
+  std::uint64_t regions_near(const Aabb& box, double within, std::uint64_t known, double& other) const { return tree_.marks_near(box, within, known, other); }
+  double moved(std::uint64_t mask) const { return most(motion_.moved, mask); }       ///< farthest that a vertex of these went in the last update, m
+  double may_move(std::uint64_t mask) const { return most(motion_.may_move, mask); } ///< and its free displacement, m
+  long updates() const { return updates_; }
+
+  const AabbTree& tree() const { return tree_; }
+  int vertex_count() const { return int(positions_.size()); }
+  int triangle_count() const { return int(triangles_.size()); }
+  const std::array<int, 3>& triangle(int i) const { return triangles_[std::size_t(i)]; }
+  /// That at a place of the tree's order.
+  const std::array<int, 3>& triangle_at(int place) const { return in_order_[std::size_t(place)]; }
+  std::span<const int> triangles_around(int v) const {
+    const int first = ring_start_[std::size_t(v)];
+    return {ring_.data() + first, std::size_t(ring_start_[std::size_t(v) + 1] - first)};
+  }
+
+  Vec3 vertex(int v, double t = 0) const {
+    const Vec3& x = positions_[std::size_t(v)];
+    return free_.empty() || t == 0 ? x : Vec3(x + t * free_[std::size_t(v)]);
+  }
+  Vec3 free(int v) const { return free_.empty() ? Vec3(Vec3::Zero()) : free_[std::size_t(v)]; }
+  Vec3 point(int tri, const Vec3& bary, double t = 0) const {
+    const auto& v = triangle(tri);
+    return bary[0] * vertex(v[0], t) + bary[1] * vertex(v[1], t) + bary[2] * vertex(v[2], t);
+  }
+  Vec3 free_at(int tri, const Vec3& bary) const {
+    const auto& v = triangle(tri);
+    return bary[0] * free(v[0]) + bary[1] * free(v[1]) + bary[2] * free(v[2]);
+  }
+  Vec3 face_normal(int tri, double t = 0) const;    ///< unit
+  Vec3 vertex_normal(int v, double t = 0) const;    ///< unit, weighted by angle
+  Vec3 rough_normal(int v) const;                   ///< unit, weighted by area, at the start of the step
+  /// Outward normal of the feature (face, mean of an edge's faces, angle-weighted at a vertex): its product with p - c
+  /// has the sign of the distance of p, c the surface point closest to p (Baerentzen, Aanaes 2005). Unit.
+  Vec3 pseudo_normal(int tri, const TriangleFeature& f, double t = 0) const;
+  /// Whether c, closest to something in direction d (unit, from c) on this triangle, is so on the neighbouring triangles
+  /// too: no step from c into one of them leads along d by more than `slack` (a sine).
+  bool locally_closest(int tri, const TriangleFeature& f, const Vec3& d, double t, double slack) const;
+  /// Nearest point of the surface at time t, if no farther than `limit`; with `side`, of the triangles that face that way.
+  NearestPoint nearest(const Vec3& p, double t, double limit, const Vec3* side = nullptr) const;
+
+ private:
+  AabbTree tree_;
+  std::vector<std::array<int, 3>> triangles_;
+  std::vector<std::array<int, 3>> in_order_;  ///< the same as the tree has them: who goes through it finds neighbours beside each other
+  std::vector<std::array<int, 3>> across_;  ///< neighbour across the edge that starts at each corner, -1 at a border
+  std::vector<int> ring_start_, ring_;      ///< triangles around each vertex
+  std::vector<Vec3> last_;  ///< positions of the update before; empty: motion is measured by the caller
+  double travelled_ = 0, farthest_free_ = 0;
+  void take(std::span<const Vec3> positions, std::span<const Vec3> free, const RegionMotion& motion);
+  using PerRegion = std::array<double, regions>;
+  static double most(const PerRegion& of, std::uint64_t mask) {
+    double m = 0;
+    for (; mask != 0; mask &= mask - 1) m = std::max(m, of[std::size_t(std::countr_zero(mask))]);
+    return m;
+  }
+  std::vector<int> region_of_;  ///< of the vertices
+  std::vector<int> region_start_, in_region_;  ///< vertices of the regions
+  RegionMotion motion_;
+  PerRegion room_{};  ///< each region's vertices may go so far before one leaves its boxes in the tree, m
+  long updates_ = 0;
+  std::span<const Vec3> positions_, free_;
+};
+
+}  // namespace insula

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The triangle of one surface that is nearest to a vertex of another and faces it, for a vertex that is looked after step
+// after step: what was farther than the nearest by more than anything has moved since needs no look. What is found depends
+// on where things are alone; of two at the same distance it is the triangle of the lower number.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "core/collision/search/collision_mesh.h"
+
+namespace insula {
+
+/// What is known of a vertex from the steps before. Distances are to be lessened by all motion.
+struct KnownNearest {
+  int triangle = -1;  ///< nearest in the last step
+  int home = -1;      ///< whose neighbours are told from all others
+  double beside = 0;  ///< no triangle but the nearest is closer than this, m ...
+  double beyond = 0;  ///< ... and none that shares no corner with `home`
+
+  /// Things have moved by up to `way`, and what is not known of is no nearer than `at_least`.
+  void lessen(double swept, double at_least) {
+    beside = std::min(beside - swept, at_least);
+    beyond = std::min(beyond - swept, at_least);
+  }
+};
+
+class FacingSearch {
+ public:
+  using Seen = std::vector<std::pair<int, double>>;  ///< triangles and their squared distances, m2
+
+  /// Nothing beyond `reach` is looked for. What is farther than the nearest by up to `margin` is looked at too, so that it is
+  /// known for a while that nothing else will be the nearest, m.
+  void begin(const CollisionMesh& a, int vertex, const CollisionMesh& b, double reach, double margin);
+  /// Looks where it was. Whether that settles it, as it may if it is no farther than `sure`; if not, look() at all triangles that
+  /// may be within limit2(), and settle().
+  bool follow(KnownNearest& known, double sure, Seen& seen);
+  void look(int triangle, Seen& seen);
+  void settle(KnownNearest& known, const Seen& seen) const;
+
+  const Vec3& x() const { return x_; }
+  const double& limit2() const { return limit2_; }  ///< m2
+  int nearest() const { return best_; }             ///< -1: none within reach
+  const Vec3& bary() const { return bary_; }
+  const Vec3& point() const { return point_; }
+  double clear() const { return std::sqrt(any2_); }  ///< no triangle at all is nearer, m
+
+ private:
+  const CollisionMesh *a_ = nullptr, *b_ = nullptr;
+  int vertex_ = -1, best_ = -1;
+  Vec3 x_ = Vec3::Zero(), normal_ = Vec3::Zero(), bary_ = Vec3::Zero(), point_ = Vec3::Zero();
+  double any2_ = 0, least2_ = 0, limit2_ = 0, margin_ = 0;
+};
+
+}  // namespace insula

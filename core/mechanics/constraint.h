@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Base of every constraint plugin: adds rows to the step's problem and reads their lambda afterwards.
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "core/constraint/problem.h"
+#include "core/mechanics/body.h"
+#include "core/registry/component.h"
+
+namespace insula {
+
+class Surface;
+
+/// Where constraints put their rows. For every row: delta_free = violation at the start of the step + H dq_free, the
+/// second term added by the bodies with W (Body::add_free_motion).
+class ConstraintBuilder {
+ public:
+  ConstraintBuilder(ConstraintProblem& problem, const std::vector<Body*>& bodies) : problem_(problem), bodies_(bodies) {}
+
+  /// Adds a block of one row (box) or three (friction); `block.row` is filled in. Returns the first row.
+  int add(Block block);
+  /// Violation of a row at the start of the step, metres (for contact: the gap).
+  void violation(int row, double value) { delta_[std::size_t(row)] += value; }
+  /// H(row) += d . d(point). Rows in ascending order.
+  void point(int row, const MaterialPoint& p, const Vec3& d);
+  /// The same for a point of a surface's triangle.
+  void surface_point(int row, const Surface& s, int triangle, const Vec3& bary, const Vec3& d);
+  /// A row that moves by itself between the steps, at this rate (m/s): what a plugin allows a step is more for a longer one.
+  void moves(int row, double rate) {
+    rate_[std::size_t(row)] += rate;
+    retardation_time_[std::size_t(row)] = lasting;
+  }
+  int rows() const { return int(delta_.size()); }
+
+  void clear();
+  /// Copies rows, blocks and delta_free into the problem (W is not touched).
+  void finish();
+
+ private:
+  ConstraintProblem& problem_;
+  const std::vector<Body*>& bodies_;
+  static constexpr double lasting = 10;  ///< s: a rate that does not die away
+  std::vector<double> delta_, rate_, retardation_time_;
+  std::vector<Block> blocks_;
+};
+
+/// lambda of the rows after the solve.
+struct ConstraintSolution {
+  const ConstraintProblem& problem;
+  const double* lambda;  ///< N
+  const double* delta;   ///< m, W lambda + delta_free
+};
+
+/// Unique row ids: `order` of the component in the document, then a key of its own choice (44 bits).
+inline std::uint64_t row_id(const Component& c, std::uint64_t key) {
+  return (std::uint64_t(c.order) << 44) ^ (key & ((std::uint64_t(1) << 44) - 1));
+}
+
+class Simulation;
+struct StepReport;
+
+class Constraint : public Component {
+ public:
+  static constexpr std::string_view kind_name = "constraint";
+
+  /// Once, after every component is prepared: generate what spans bodies. May report errors.
+  virtual void connect(PrepareContext&, Simulation&) {}
+  /// Once the scene has settled (<settle>), before the exercise begins; again after every reset. May report errors.
+  virtual void settled(PrepareContext&) {}
+  /// Stage 2, collision: find what is close. Tools' free motion is known. Default: nothing.
+  virtual void detect(const StepContext&) {}
+  /// Stage 3: add rows.
+  virtual void build(const StepContext& context, ConstraintBuilder& builder) = 0;
+  /// Whether build ever adds a row; false: it acts between the steps alone (a flow network, a bleeding).
+  virtual bool adds_rows() const { return true; }
+  /// After stage 5: read own lambda, wear, break, emit events.
+  virtual void finish(const StepContext&, const ConstraintSolution&) {}
+  /// Stage 6: add own numbers to the report.
+  virtual void report(StepReport&) const {}
+  virtual void reset() {}
+  virtual void append_state(std::vector<double>&) const {}
+};
+
+}  // namespace insula

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// In what time a deformable body follows a force, place by place: each of its force models has a time of its own, viscous over
+// elastic, and a unit load strains all of them, each by its share.
+//
+// With A = M/h^2 + sum_j (1 + T_j/h) K_j and x = A^-1 f what the unit load f does in a step, it is the energies' mean
+//   T = sum_j T_j x^T K_j x / sum_j x^T K_j x,
+// which is what the place's compliance W = f^T x tells by itself where inertia is nothing: T = -W' / (W + W'/h), W' = dW/d(1/h).
+#include <algorithm>
+
+#include "core/collision/search/vertex_groups.h"
+#include "core/mechanics/deformable_body.h"
+
+namespace insula {
+
+// That of the slowest: all there is to know where all are alike, and where the solver could only tell roughly.
+void DeformableBody::start_retardation_times() {
+  double slowest = 0;
+  for (const ForceModel* f : forces_) slowest = std::max(slowest, f->stiffness_damping());
+  retardation_time_.assign(std::size_t(nodes()), slowest);
+  retardation_times_known_ = !solver_->exact() || std::all_of(forces_.begin(), forces_.end(), [&](const ForceModel* f) { return f->stiffness_damping() == slowest; });
+}
+
+// With the factor of a_ at hand. Places are told apart as well as some dozens of unit loads can.
+void DeformableBody::find_retardation_times(double h) {
+  constexpr int unit_loads = 64;
+  retardation_times_known_ = true;
+  std::vector<BlockMatrix> stiffness(forces_.size(), a_);
+  VecX scratch = VecX::Zero(3 * nodes());
+  for (std::size_t j = 0; j < forces_.size(); ++j) {
+    stiffness[j].set_zero();
+    forces_[j]->linearise(q_.data(), scratch.data(), &stiffness[j], h, Tangent::system);
+  }
+  const std::vector<int> group = group_by_position(rest_nodes(), unit_loads);
+  std::vector<double> time(unit_loads, -1.0);
+  VecX x(3 * free_count_), force(3 * free_count_);
+  for (int i = 0; i < nodes(); ++i) {
+    const int b = free_[std::size_t(i)];
+    double& mean = time[std::size_t(group[std::size_t(i)])];
+    if (b < 0 || mean >= 0) continue;
+    double elastic = 0, viscous = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      x.setZero();
+      x[3 * b + axis] = 1;
+      solver_->solve(x.data());
+      for (std::size_t j = 0; j < forces_.size(); ++j) {
+        force.setZero();
+        stiffness[j].add_product(x.data(), force.data());
+        const double own = forces_[j]->stiffness_damping(), energy = x.dot(force) / (1 + own / h);
+        elastic += energy;
+        viscous += own * energy;
+      }
+    }
+    if (elastic > 0) mean = viscous / elastic;
+  }
+  for (int i = 0; i < nodes(); ++i)
+    if (const double mean = time[std::size_t(group[std::size_t(i)])]; mean >= 0) retardation_time_[std::size_t(i)] = mean;
+}
+
+double DeformableBody::retardation_time(const MaterialPoint& p) const {
+  double time = 0;
+  for (int k = 0; k < p.count; ++k) time += p.weight[std::size_t(k)] * retardation_time_[std::size_t(p.node[std::size_t(k)])];
+  return std::max(0.0, time);
+}
+
+}  // namespace insula

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Words for what a component declares.
+#include "engine/authoring/describe.h"
+
+#include <algorithm>
+
+#include "core/base/text.h"
+#include "core/params/number.h"
+
+namespace insula {
+
+std::string allowed_text(const ParamBase& param) {
+  const auto& spec = param.spec();
+  if (!spec.choices.empty()) return joined({spec.choices.begin(), spec.choices.end()});
+  const std::string min(spec.min), max(spec.max);
+  if (!min.empty() && !max.empty()) return min + " to " + max;
+  if (!min.empty()) return "at least " + min;
+  if (!max.empty()) return "at most " + max;
+  return {};
+}
+
+std::string default_text(const ParamBase& param) {
+  if (param.required()) return "(required)";
+  const std::string text(*param.spec().fallback);
+  return text.empty() ? "(none)" : text;
+}
+
+std::string units_text(const ParamBase& param) { return unit_list(param.units()); }
+
+std::vector<const ComponentInfo*> children_of_kind(const Registry& registry, Kind parent) {
+  std::vector<const ComponentInfo*> out;
+  for (const auto* info : registry.all())
+    if (std::find(info->parents.begin(), info->parents.end(), parent) != info->parents.end()) out.push_back(info);
+  return out;
+}
+
+std::string place_text(const Registry& registry, const ComponentInfo& info) {
+  if (info.kind == Kind::scene) return "the root of a scene file";
+  std::vector<std::string> places;
+  for (const Kind kind : info.parents) {
+    if (kind == Kind::scene) {
+      places.push_back("directly in <scene>");
+      continue;
+    }
+    std::vector<std::string> names;
+    for (const auto* other : registry.all())
+      if (other->kind == kind) names.push_back("<" + other->element + ">");
+    places.push_back("in " + with_article(kind_name(kind)) + (names.empty() ? "" : ": " + joined(names)));
+  }
+  return joined(places, "; ");
+}
+
+}  // namespace insula

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The inventory of an example against what is known of it.
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "core/testing/example.h"
+#include "engine/authoring/inventory.h"
+#include "engine/command_line/play.h"
+
+namespace insula {
+namespace {
+
+const std::filesystem::path source = INSULA_SOURCE_DIR;
+
+const InventoryItem* find(const std::vector<InventoryItem>& items, const std::string& group, const std::string& name) {
+  for (const InventoryItem& i : items)
+    if (i.group == group && i.name == name) return &i;
+  return nullptr;
+}
+
+std::string value(const InventoryItem& item, const std::string& name) {
+  for (const auto& [n, v] : item.values)
+    if (n == name) return v;
+  return "none";
+}
+
+TEST(Inventory, OfTheRulesExample) {
+  const auto s = test::load(source / "plugins/exercise_rules/example.xml");
+  ASSERT_TRUE(s);
+  const auto items = inventory(*s);
+  const auto* lower = find(items, "body", "lower");
+  ASSERT_TRUE(lower);
+  EXPECT_NE(lower->size.find("20.0 x 20.0 x 20.0 mm"), std::string::npos) << lower->size;
+  EXPECT_NE(lower->size.find("file in mm"), std::string::npos) << lower->size;
+  EXPECT_FALSE(lower->lines.empty());
+  EXPECT_EQ(lower->lines.size() % 2, 0u);
+  EXPECT_TRUE(find(items, "surface", "lower_surface"));
+  const auto* strands = find(items, "strands", "strands");
+  ASSERT_TRUE(strands);
+  StepReport report;
+  for (const Constraint* c : s->constraints()) c->report(report);
+  EXPECT_EQ(strands->lines.size(), 2 * report.strands.size());
+  EXPECT_EQ(value(*strands, "max_length"), "6 mm");
+  int pairs = 0, anchors = 0;
+  for (const InventoryItem& i : items) {
+    pairs += i.group == "contact pair";
+    if (i.group != "anchor") continue;
+    ++anchors;
+    EXPECT_FALSE(i.points.empty());
+  }
+  EXPECT_EQ(pairs, 3);
+  EXPECT_EQ(anchors, 2);
+  ASSERT_TRUE(find(items, "contact pair", "lower - upper"));
+  const auto* knife = find(items, "tool", "knife");
+  ASSERT_TRUE(knife);
+  EXPECT_NE(knife->size.find("right hand"), std::string::npos) << knife->size;
+}
+
+TEST(Inventory, RegionsOfAVesselHaveTheirAreas) {
+  const auto s = test::load(source / "plugins/membrane/example.xml");
+  ASSERT_TRUE(s);
+  double sum = 0, wall = 0;
+  for (const InventoryItem& i : inventory(*s))
+    if (i.group == "region") sum += std::atof(i.size.c_str() + i.size.rfind(", ") + 2);
+  for (const ShellBody* shell : s->scene().all<ShellBody>())
+    for (const auto& t : shell->wall_triangles()) {
+      const auto& v = shell->rest().vertices;
+      wall += 0.5e6 * (v[std::size_t(t[1])] - v[std::size_t(t[0])]).cross(v[std::size_t(t[2])] - v[std::size_t(t[0])]).norm();
+    }
+  ASSERT_GT(wall, 0);
+  EXPECT_NEAR(sum, wall, 0.01 * wall);
+}
+
+TEST(Inventory, ListNamesEverything) {
+  std::ostringstream out, err;
+  EXPECT_EQ(cmd_view_list({test::builtin(), out, err}, source / "plugins/exercise_rules/example.xml"), 0) << err.str();
+  for (const char* text : {"body:", "anchor:", "contact pair:", " mm"}) EXPECT_NE(out.str().find(text), std::string::npos) << text << "\n" << out.str();
+  EXPECT_EQ(cmd_view_list({test::builtin(), out, err}, "nowhere.xml"), 2);
+}
+
+}  // namespace
+}  // namespace insula

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// insula play [SCENE]
+#include <fmt/format.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <ostream>
+
+#include "core/bus/bus.h"
+#include "core/scene/loader.h"
+#include "core/sim/exercise.h"
+#include "engine/command_line/play.h"
+#include "engine/live/scene_devices.h"
+#include "engine/live/scene_reload.h"
+#include "engine/live/supervisor.h"
+
+namespace fs = std::filesystem;
+
+namespace insula {
+namespace {
+
+fs::path own_program() {
+  std::error_code error;
+  return fs::read_symlink("/proc/self/exe", error);
+}
+
+/// Loads the scene and lets it go again: the engine loads its own. Returns false when it has errors, which are printed.
+/// Fills in the devices that the scene names where the command line does not.
+bool scene_ok(const CommandContext& context, PlayOptions& options) {
+  LoadResult result = load_scene(options.scene, context.registry);
+  if (result.scene) check_scene_devices(*result.scene, result.diagnostics);
+  context.err << result.diagnostics.format();
+  if (!result.ok() || !result.diagnostics.ok()) return false;
+  int hand = 0;
+  for (std::string* device : {&options.left, &options.right}) {
+    if (device->empty()) *device = scene_device(*result.scene, hand);
+    const std::string obstacle = device->empty() ? std::string() : device_obstacle(*device);
+    if (!obstacle.empty()) {
+      context.err << "error: " << (hand == 0 ? "left" : "right") << " hand: " << obstacle << '\n';
+      return false;
+    }
+    ++hand;
+  }
+  const std::string& motion = options.motion;
+  if (!motion.empty() && motion != "none" && !fs::is_regular_file(motion)) {
+    std::vector<std::string> ids;
+    for (const MotionEntry* entry : result.scene->all<MotionEntry>()) ids.push_back(entry->id);
+    if (std::find(ids.begin(), ids.end(), motion) == ids.end()) {
+      std::string known;
+      for (const std::string& id : ids) known += (known.empty() ? "" : ", ") + id;
+      context.err << fmt::format("error: \"{}\" is neither a motion of {} ({}) nor a file\n", motion, options.scene.generic_string(),
+                                 known.empty() ? "it has none" : "it has " + known);
+      return false;
+    }
+  }
+  context.out << fmt::format("insula: scene {} is fine{}{}\n", options.scene.generic_string(),
+                             result.scene->title().empty() ? "" : ": ", result.scene->title());
+  return true;
+}
+
+/// Opens and uses the bus once, so that a machine without multicast hears of it from one place.
+bool bus_ok(const CommandContext& context) {
+  const auto bus = make_bus();
+  if (bus->good()) bus->subscribe("SCENE_INFO", [](Bytes) {});
+  if (bus->good()) return true;
+  context.err << "error: " << bus->error() << '\n';
+  return false;
+}
+
+bool has_display() {
+  for (const char* name : {"DISPLAY", "WAYLAND_DISPLAY"})
+    if (const char* value = std::getenv(name); value != nullptr && *value != '\0') return true;
+  return false;
+}
+
+/// Starts xdg-open and forgets it: forked twice, so that it is nobody's child here and lives on.
+void open_browser(const std::string& url) {
+  const char* address = url.c_str();
+  const pid_t pid = fork();
+  if (pid == 0) {
+    for (int s : {SIGINT, SIGTERM, SIGHUP, SIGCHLD, SIGPIPE}) signal(s, SIG_DFL);
+    setsid();
+    if (fork() == 0) {
+      if (freopen("/dev/null", "w", stdout) == nullptr || freopen("/dev/null", "w", stderr) == nullptr) _exit(1);
+      execlp("xdg-open", "xdg-open", address, static_cast<char*>(nullptr));
+      _exit(127);
+    }
+    _exit(0);
+  }
+  if (pid > 0) waitpid(pid, nullptr, 0);
+}
+
+/// Where the engine writes what the viewer needs. An engine that is killed leaves its files: they go with the session.
+class BundleFolder {
+ public:
+  BundleFolder() {
+    const char* runtime = std::getenv("XDG_RUNTIME_DIR");
+    std::error_code error;
+    const bool usable = runtime != nullptr && *runtime != '\0' && fs::is_directory(runtime, error);
+    std::string name = ((usable ? fs::path(runtime) : fs::temp_directory_path(error)) / "insula-XXXXXX").string();
+    if (mkdtemp(name.data()) != nullptr) path_ = name;
+  }
+  ~BundleFolder() {
+    std::error_code ignored;
+    if (!path_.empty()) fs::remove_all(path_, ignored);
+  }
+  BundleFolder(const BundleFolder&) = delete;
+  BundleFolder& operator=(const BundleFolder&) = delete;
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+ChildSpec engine_child(const PlayOptions& options, const fs::path& program, const fs::path& bundles) {
+  ChildSpec engine;
+  engine.name = "engine";
+  engine.ends_session = true;
+  engine.command = {program.string()};
+  for (const fs::path& path : options.plugin_paths) engine.command.insert(engine.command.end(), {"--plugin-path", path.string()});
+  engine.command.insert(engine.command.end(), {"engine", options.scene.string()});
+  if (!options.motion.empty()) engine.command.insert(engine.command.end(), {"--motion", options.motion});
+  if (options.seed != 0) engine.command.insert(engine.command.end(), {"--seed", std::to_string(options.seed)});
+  if (!options.keep_bundle.empty()) engine.command.insert(engine.command.end(), {"--bundle-dir", options.keep_bundle.string(), "--keep-bundle"});
+  else if (!bundles.empty()) engine.command.insert(engine.command.end(), {"--bundle-dir", bundles.string()});
+  if (options.view) engine.command.emplace_back("--still");
+  if (!bundles.empty()) engine.command.insert(engine.command.end(), {"--notice", (bundles / "notice.txt").string()});
+  if (!options.report.empty()) engine.command.insert(engine.command.end(), {"--report", options.report.string()});
+  engine.waits_for_offer = options.reload;
+  return engine;
+}
+
+ChildSpec haptic_child(const PlayOptions& options, const fs::path& folder) {
+  ChildSpec server;
+  server.name = "haptic_server";
+  server.command = {(folder / "haptic_server").string()};
+  if (!options.left.empty()) server.command.insert(server.command.end(), {"--left", options.left});
+  if (!options.right.empty()) server.command.insert(server.command.end(), {"--right", options.right});
+  return server;
+}
+
+ChildSpec gateway_child(const PlayOptions& options, const fs::path& folder, const Supervisor::Print& print) {
+  ChildSpec gateway;
+  gateway.name = "gateway";
+  const auto command = [program = (folder / "gateway").string(), listen = options.listen](int port) {
+    return std::vector<std::string>{program, "--listen", listen, "--port", std::to_string(port)};
+  };
+  gateway.command = command(options.port);
+  gateway.on_line = [=, first = true, browser = options.browser](ChildSpec& self, std::string_view line) mutable {
+    constexpr std::string_view serving = "serving ";
+    if (!line.starts_with(serving)) return true;
+    const std::string url(line.substr(serving.size()));
+    print("insula: viewer at " + url);
+    const std::size_t colon = url.rfind(':');
+    if (first && colon != std::string::npos) {
+      // A gateway that comes back must be where the pages look for it.
+      self.command = command(std::atoi(url.c_str() + colon + 1));
+      self.command.emplace_back("--exact-port");
+      if (browser && has_display()) open_browser(url);
+      first = false;
+    }
+    return false;
+  };
+  return gateway;
+}
+
+}  // namespace
+
+fs::path default_scene() {
+  const fs::path scene = "scenes/training/1_sylvian_fissure.xml";
+  std::error_code error;
+  const fs::path bin = own_program().parent_path();
+  for (const fs::path& root : {fs::path("."), bin / "../../..", bin / "../share/insula"})
+    if (fs::is_regular_file(root / scene, error)) return (root / scene).lexically_normal();
+  return scene;  // the loader says that it is missing
+}
+
+int cmd_play(const CommandContext& context, const PlayOptions& given) {
+  PlayOptions options = given;
+  if (options.scene.empty()) options.scene = default_scene();
+  if (!scene_ok(context, options)) return 2;
+  if (!bus_ok(context)) return 1;
+  const fs::path program = own_program(), folder = program.parent_path();
+  for (const char* name : {"haptic_server", "gateway"})
+    if (::access((folder / name).c_str(), X_OK) != 0) {
+      context.err << fmt::format("error: {} is missing: build it first\n", (folder / name).string());
+      return 1;
+    }
+  signal(SIGPIPE, SIG_IGN);
+  const Supervisor::Print print = [&out = context.out](std::string_view line) { out << line << std::endl; };
+  const BundleFolder bundles;
+  const ChildSpec engine = engine_child(options, program, bundles.path());
+  std::vector<std::string> standby = engine.command;
+  standby.emplace_back("--standby");
+  SceneReload reload(options.scene, options.plugin_paths, std::move(standby), bundles.path().empty() ? fs::path() : bundles.path() / "notice.txt", print);
+  SupervisorSettings settings;
+  settings.duration_s = options.duration_s;
+  Supervisor* running = nullptr;
+  if (options.reload) settings.look = [&] { reload.look(*running); };
+  Supervisor supervisor(settings, print);
+  running = &supervisor;
+  // The viewer first: it is up while the engine still loads.
+  supervisor.add(gateway_child(options, folder, print));
+  if (!options.view) supervisor.add(haptic_child(options, folder));
+  supervisor.add(engine);
+  return supervisor.run();
+}
+
+}  // namespace insula

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// insula run: a scene from start to end, and what became of it.
+#include <fmt/ostream.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "core/mechanics/shell_body.h"
+#include "core/mechanics/soft_body.h"
+#include "engine/live/headless.h"
+#include "engine/reports/report_writer.h"
+#include "engine/command_line/run.h"
+
+namespace insula {
+namespace {
+
+void export_bodies(const Simulation& simulation, const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder);
+  for (const Body* b : simulation.bodies()) {
+    const auto* body = dynamic_cast<const DeformableBody*>(b);
+    if (!body) continue;
+    std::vector<Vec3> nodes, moved;
+    for (int i = 0; i < body->nodes(); ++i) {
+      nodes.push_back(body->q().segment<3>(3 * i));
+      moved.push_back(nodes.back() - body->rest_nodes()[std::size_t(i)]);
+    }
+    const auto file = folder / (body->id + ".vtu");
+    if (const auto* soft = dynamic_cast<const SoftBody*>(body)) write_vtu(file, nodes, soft->rest().tets, moved);
+    else if (const auto* shell = dynamic_cast<const ShellBody*>(body)) write_vtu(file, nodes, shell->rest().triangles, moved);
+  }
+}
+
+}  // namespace
+
+int cmd_run(const CommandContext& context, const RunOptions& options) {
+  const OpenedRun opened = open_run(context, options.scene, options.motion, false, options.threads);
+  if (!opened.simulation) return 2;
+  Simulation& simulation = *opened.simulation;
+  if (options.seed != 0) simulation.draw_complications(options.seed);
+  const Motion& motion = opened.motion;
+  const double duration = options.duration > 0 ? options.duration : motion.empty() ? 10.0 : motion.duration() + 1.0;
+  const auto steps = std::int64_t(std::ceil(duration / simulation.h() - 1e-9));
+
+  HeadlessRun run(simulation, motion);
+  RunRecorder recorder;
+  RunSummary summary;
+  int shown = -1;
+  for (std::int64_t k = 0; k < steps; ++k) {
+    run.step();
+    const auto& haptics = run.haptics();
+    recorder.record(simulation.report(), simulation.events(), {haptics.hand(0).force.norm(), haptics.hand(1).force.norm()}, simulation.energy());
+    summary.wall_seconds += simulation.report().step_ms / 1000;
+    if (!options.quiet) {
+      for (const Event& e : simulation.events())
+        fmt::print(context.out, "  {:7.2f} s  {} {} {}\n", e.time, e.kind, e.id, e.text);
+      const int percent = int(100 * (k + 1) / steps);
+      if (percent / 5 != shown / 5 || shown < 0) {
+        shown = percent;
+        fmt::print(context.out, "{:3d} %  {:7.2f} s  {} rows, {} strands left\n", percent, simulation.time(), simulation.report().rows,
+                   simulation.report().strands_left);
+        context.out.flush();
+      }
+    }
+    if (!simulation.report().finite) break;
+  }
+  summary.take(simulation);
+  summary.scene = options.scene.string();
+  summary.motion = options.motion;
+  summary.fresh_forces_per_s = run.haptics().fresh_forces_per_s();
+  for (int h = 0; h < 2; ++h) summary.max_force_N[std::size_t(h)] = run.haptics().hand(h).max_force_N;
+  try {
+    if (!options.report.empty()) write_report(options.report, recorder, summary);
+    if (!options.export_folder.empty()) export_bodies(simulation, options.export_folder);
+  } catch (const std::exception& e) {
+    fmt::print(context.err, "error: {}\n", e.what());
+    return 1;
+  }
+  fmt::print(context.out, "{:.2f} s simulated in {:.2f} s (real_time_factor {:.2f}), state_hash {:016x}\n", simulation.time(),
+             summary.wall_seconds, simulation.time() / std::max(1e-9, summary.wall_seconds), summary.state_hash);
+  if (!recorder.finite()) {
+    fmt::print(context.err, "error: the simulation left the range of numbers at {:.3f} s\n", simulation.time());
+    return 1;
+  }
+  return 0;
+}
+
+}  // namespace insula

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Rotation of blocks, and the solution of what comes out.
+#include "engine/contact_frame_prediction.h"
+
+#include <algorithm>
+
+#include "core/constraint/sweep.h"
+
+namespace insula {
+namespace {
+
+constexpr double min_turn = 1e-6;
+constexpr double max_later = 0.2;  // rad in a step; more is an edge of the surface, and nobody knows when the tool gets over it
+
+/// The new directions in terms of the old ones: normal and tangents turn together by the smallest rotation.
+Mat3 rotation(const Vec3& normal, const Vec3& tangent, const Vec3& to) {
+  const Mat3 turn = Quat::FromTwoVectors(normal, to).toRotationMatrix();
+  Mat3 old;
+  old << normal.transpose(), tangent.transpose(), normal.cross(tangent).transpose();
+  return old * turn.transpose() * old.transpose();
+}
+
+/// As a block has it.
+std::array<float, 3> rotation_vector(const Vec3& from, const Vec3& to) {
+  const Eigen::AngleAxisd turn(Quat::FromTwoVectors(from, to));
+  if (turn.angle() > max_later) return {};
+  const Vec3 v = turn.angle() * turn.axis();
+  return {float(v[0]), float(v[1]), float(v[2])};
+}
+
+Block& block_at(ConstraintProblem& p, int row) {
+  return *std::lower_bound(p.blocks.begin(), p.blocks.end(), row, [](const Block& b, int first) { return b.row < first; });
+}
+
+}  // namespace
+
+void rotate_contact_rows(ConstraintProblem& p, int row, const Mat3& q, std::span<double> delta_m) {
+  const std::size_t n = std::size_t(p.rows), stride = std::size_t(p.stride), r = std::size_t(row);
+  const auto turn = [&](double* at, std::size_t by) {
+    const Vec3 v = q * Vec3(at[0], at[by], at[2 * by]);
+    for (std::size_t k = 0; k < 3; ++k) at[k * by] = v[long(k)];
+  };
+  for (std::size_t j = 0; j < n; ++j) turn(&p.w[r * stride + j], stride);
+  for (std::size_t i = 0; i < n; ++i) turn(&p.w[i * stride + r], 1);
+  for (ToolTerms& tool : p.tools)
+    for (long c = 0; c < 6; ++c) turn(tool.jacobian.data() + 6 * row + c, 6);
+  for (double* v : {delta_m.data(), p.lambda.data(), p.rate.data()}) turn(v + r, 1);
+}
+
+const ConstraintProblem& ContactFramePrediction::operator()(const Simulation& simulation, double ahead_s) {
+  const double steps = ahead_s / simulation.h();
+  rotations_.clear();
+  for (const Constraint* c : simulation.constraints())
+    if (const auto* contact = dynamic_cast<const Contact*>(c)) contact->predict_frames(steps, rotations_);
+  if (rotations_.empty()) return simulation.problem();
+  predicted_ = simulation.problem();
+  ConstraintProblem& p = predicted_;
+  p.prediction_horizon_steps = steps;
+  for (const Contact::FramePrediction& turn : rotations_) block_at(p, turn.row).frame_rotation = rotation_vector(turn.to, turn.later);
+  std::erase_if(rotations_, [](const Contact::FramePrediction& t) { return t.from.cross(t.to).norm() < min_turn; });
+  if (rotations_.empty()) return p;
+  const std::size_t n = std::size_t(p.rows);
+  full_delta(p, {p.delta_free.data(), n}, p.lambda.data(), delta_m_);
+  for (const Contact::FramePrediction& turn : rotations_) {
+    const double gap = delta_m_[std::size_t(turn.row)];
+    rotate_contact_rows(p, turn.row, rotation(turn.from, turn.tangent, turn.to), delta_m_);
+    delta_m_[std::size_t(turn.row)] = gap;  // what pressed presses
+  }
+  work_.assign(std::size_t(p.stride), 0.0);
+  sweep_kernels().combine(work_.data(), p.w.data(), p.stride, p.lambda.data(), p.rows, p.stride);
+  for (std::size_t i = 0; i < n; ++i) p.delta_free[i] = delta_m_[i] - work_[i];
+  workspace_.reserve(p.rows);
+  workspace_.lambda.assign(p.lambda.begin(), p.lambda.begin() + p.rows);
+  solve(p, p.delta_free, simulation.solve_settings(), workspace_);
+  p.lambda.assign(workspace_.lambda.begin(), workspace_.lambda.end());
+  return predicted_;
+}
+
+}  // namespace insula

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Simulation -> render_frame_t.
+#include "engine/live/frame.h"
+
+#include <algorithm>
+
+#include "core/mechanics/deformable_body.h"
+#include "engine/live/hud.h"
+
+namespace insula {
+namespace {
+
+void put(float* to, const Vec3& v) {
+  for (int k = 0; k < 3; ++k) to[k] = float(v[k]);
+}
+void put(double* to, const Vec3& v) {
+  for (int k = 0; k < 3; ++k) to[k] = v[k];
+}
+template <class Row>
+void put(std::vector<Row>& to, std::size_t i, const Vec3& v) {
+  to[i].resize(3);
+  put(to[i].data(), v);
+}
+
+constexpr std::int8_t on_tray = 0, held = 1, free_in_field = 2;
+
+void fill_tool(const StepReport& r, const RigidBody& body, insula_lcm::render_tool_t& to) {
+  const Pose pose = body.link_pose(0);
+  put(to.p_m, pose.p);
+  to.q[0] = pose.q.w();
+  to.q[1] = pose.q.x();
+  to.q[2] = pose.q.y();
+  to.q[3] = pose.q.z();
+  put(to.device_p_m, pose.p);
+  to.hand = -1;
+  to.state = body.active() ? held : on_tray;
+  if (const auto* tool = dynamic_cast<const Instrument*>(&body)) {
+    to.hand = std::int8_t(tool->hand_index());
+    put(to.device_p_m, tool->device().p);
+    put(to.force_N, tool->hand_force().head<3>());
+    to.button1 = tool->state().button1;
+    to.button2 = tool->state().button2;
+    to.activity = float(tool->activity());
+    return;
+  }
+  for (const ClipState& c : r.clips) {
+    if (c.clip != &body) continue;
+    to.state = c.on_tray ? on_tray : c.holder ? held : free_in_field;
+    to.opening_rad = float(c.opening);
+    if (const auto* holder = dynamic_cast<const Instrument*>(c.holder)) to.hand = std::int8_t(holder->hand_index());
+  }
+}
+
+// Contacts shown at most: a picture needs no more, and frames stay small.
+constexpr std::size_t max_contacts = 120;
+
+}  // namespace
+
+std::vector<const DeformableBody*> picture_bodies(const Simulation& simulation) {
+  std::vector<const DeformableBody*> out;
+  for (const Body* b : simulation.bodies())
+    if (auto* body = dynamic_cast<const DeformableBody*>(b)) out.push_back(body);
+  return out;
+}
+
+std::vector<const RigidBody*> picture_tools(const Simulation& simulation) {
+  std::vector<const RigidBody*> out(simulation.instruments().begin(), simulation.instruments().end());
+  for (const Body* b : simulation.bodies())
+    if (auto* body = dynamic_cast<const RigidBody*>(b); body && !dynamic_cast<const Instrument*>(b)) out.push_back(body);
+  return out;
+}
+
+void fill_frame(const Simulation& simulation, insula_lcm::render_frame_t& f) {
+  const StepReport& r = simulation.report();
+  const auto bodies = picture_bodies(simulation);
+  f.sim_time_s = r.time;
+  f.bodies = std::int32_t(bodies.size());
+  f.body.resize(bodies.size());
+  f.body_force_N.assign(bodies.size(), 0.0);
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    auto& to = f.body[b];
+    to.index = std::int32_t(b);
+    to.nodes = bodies[b]->nodes();
+    to.x_m.resize(std::size_t(to.nodes));
+    for (int i = 0; i < to.nodes; ++i) put(to.x_m, std::size_t(i), bodies[b]->q().segment<3>(3 * i));
+    // The largest force any one tool puts on the body.
+    for (const Instrument* tool : simulation.instruments()) {
+      Vec3 sum = Vec3::Zero();
+      for (const ContactPoint& c : r.contacts) {
+        if (c.a == tool && c.b == bodies[b]) sum -= c.normal_force * c.normal + c.tangent_force;
+        if (c.b == tool && c.a == bodies[b]) sum += c.normal_force * c.normal + c.tangent_force;
+      }
+      f.body_force_N[b] = std::max(f.body_force_N[b], sum.norm());
+    }
+  }
+  f.strands = std::int32_t(r.strands.size());
+  f.strand_points = 2 * f.strands;
+  f.strand_x_m.resize(2 * r.strands.size());
+  f.strand_integrity.resize(r.strands.size());
+  f.strand_tension_N.resize(r.strands.size());
+  for (std::size_t i = 0; i < r.strands.size(); ++i) {
+    put(f.strand_x_m, 2 * i, r.strands[i].a);
+    put(f.strand_x_m, 2 * i + 1, r.strands[i].b);
+    f.strand_integrity[i] = float(r.strands[i].integrity);
+    f.strand_tension_N[i] = float(r.strands[i].tension);
+  }
+  const auto tools = picture_tools(simulation);
+  f.tools = std::int8_t(tools.size());
+  f.tool.resize(tools.size());
+  for (std::size_t i = 0; i < tools.size(); ++i) {
+    f.tool[i] = insula_lcm::render_tool_t{};
+    f.tool[i].index = std::int32_t(i);
+    fill_tool(r, *tools[i], f.tool[i]);
+  }
+  const std::size_t contacts = std::min(max_contacts, r.contacts.size());
+  f.contacts = std::int32_t(contacts);
+  f.contact_x_m.resize(contacts);
+  f.contact_N.resize(contacts);
+  for (std::size_t i = 0; i < contacts; ++i) {
+    put(f.contact_x_m, i, r.contacts[i].position);
+    f.contact_N[i] = float(r.contacts[i].normal_force);
+  }
+  f.step_ms = r.step_ms;
+  f.step_period_ms = simulation.h() * 1000;
+  f.rows = r.rows;
+  f.sweeps = r.solve.sweeps;
+  f.hud_json = hud_json(simulation);
+}
+
+}  // namespace insula

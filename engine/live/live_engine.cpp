@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The real-time loop.
+#include "engine/live/live_engine.h"
+
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <thread>
+
+#include "core/base/input_error.h"
+#include "core/bus/arrival_order.h"
+#include "core/bus/channels.h"
+#include "core/bus/codec.h"
+#include "core/base/text.h"
+#include "engine/live/bundle.h"
+#include "engine/live/command_script.h"
+#include "engine/live/notice.h"
+#include "engine/live/publisher.h"
+#include "engine/reports/session_reports.h"
+
+namespace insula {
+namespace fs = std::filesystem;
+namespace {
+
+// A device state older than this no longer moves a tool.
+constexpr std::int64_t stale_us = 200'000;
+constexpr double settle_s = 0.3;
+// Requests taken between two steps; more is a script gone wild.
+constexpr std::size_t max_requested = 100;
+
+struct Inputs {
+  insula_lcm::device_state_t devices{};
+  ArrivalOrder order;
+  std::int64_t received_us = 0;
+  bool pause = false, reset = false, quit = false;
+  bool driven = false;  ///< a person has moved a hand since the start
+  std::vector<std::pair<std::string, std::string>> asked;  ///< command and argument, in order of arrival
+
+  void subscribe(Bus& bus, SessionReports& reports) {
+    bus.subscribe(channel::device_state, [this, &reports](Bytes b) {
+      std::string why;
+      insula_lcm::device_state_t m;
+      if (!decode(b, m, why)) return;
+      const std::int64_t now_us = monotonic_us();
+      if (!order.take(m.session, m.sequence, 1000 * now_us)) return;
+      devices = std::move(m);
+      received_us = now_us;
+      reports.hear(devices);
+    });
+    bus.subscribe(channel::haptic_status, [&reports](Bytes b) {
+      std::string why;
+      insula_lcm::haptic_status_t m;
+      if (decode(b, m, why)) reports.hear(m);
+    });
+    bus.subscribe(channel::hand_input, [this](Bytes b) {
+      std::string why;
+      insula_lcm::hand_input_t m;
+      if (decode(b, m, why)) driven = true;
+    });
+    bus.subscribe(channel::user_command, [this](Bytes b) {
+      std::string why;
+      insula_lcm::user_command_t m;
+      if (!decode(b, m, why)) return;
+      if (m.command == "pause") pause = true;
+      else if (m.command == "resume") pause = false;
+      else if (m.command == "reset") reset = true;
+      else if (m.command == "quit") quit = true;
+      else if (m.command == "exchange" || m.command == "ask" || m.command == "message") {
+        if (asked.size() < max_requested) asked.emplace_back(m.command, m.argument);
+      } else spdlog::info("unknown command \"{}\" ignored", m.command.substr(0, 40));
+    });
+  }
+
+  /// Whether the arms do what the motion says: simulated ones that nobody has taken over.
+  bool follows(const Motion& motion) const {
+    if (driven) return false;
+    if (!motion.has(0) && !motion.has(1)) return true;
+    if (monotonic_us() - received_us > stale_us) return false;
+    for (const auto& h : devices.hand)
+      if (motion.has(h.hand) && !(h.connected && h.device == "simulated")) return false;
+    return true;
+  }
+
+  /// Stamp of the poses that the step is made with, CLOCK_MONOTONIC; 0: none.
+  std::int64_t apply(Simulation& simulation) const {
+    if (monotonic_us() - received_us > stale_us) return 0;
+    // Until the haptic server has seen this session its hands are still where the last one left them.
+    if (simulation.time() < settle_s) return 0;
+    for (const auto& h : devices.hand) {
+      if (!h.connected || h.hand < 0 || h.hand > 1) continue;
+      HandState s;
+      s.present = true;
+      s.device.p = Vec3(h.p_m[0], h.p_m[1], h.p_m[2]);
+      s.device.q = Quat(h.q[0], h.q[1], h.q[2], h.q[3]).normalized();
+      s.button1 = h.button1;
+      s.button2 = h.button2;
+      simulation.set_hand(h.hand, s);
+    }
+    return std::max<std::int64_t>(0, devices.time_us);
+  }
+};
+
+fs::path bundle_folder(const fs::path& root, std::int64_t session) {
+  fs::path base = root;
+  if (base.empty()) {
+    const char* runtime = std::getenv("XDG_RUNTIME_DIR");
+    base = runtime && *runtime ? fs::path(runtime) : fs::temp_directory_path();
+    base /= "insula-" + std::to_string(getuid());
+  }
+  return fs::absolute(base) / std::to_string(session);
+}
+
+}  // namespace
+
+fs::path find_motion(const Simulation& simulation, const std::string& wanted) {
+  if (wanted.empty() || wanted == "none") return {};
+  std::vector<std::string> ids;
+  if (const Exercise* e = simulation.exercise())
+    for (const MotionEntry* m : e->motions()) {
+      if (m->id == wanted) return fs::absolute(m->file());
+      ids.push_back(m->id);
+    }
+  if (fs::is_regular_file(wanted)) return fs::absolute(wanted);
+  std::string text = "no motion \"" + wanted + "\"";
+  const std::string near = nearest_name(wanted, ids);
+  if (!near.empty()) text += "; did you mean \"" + near + "\"?";
+  else if (!ids.empty()) {
+    text += "; this scene has";
+    for (const auto& id : ids) text += " " + id;
+  }
+  throw InputError(text);
+}
+
+int run_live(const LiveOptions& options, const Registry& registry, Bus& bus, const std::atomic<bool>& stop) {
+  SimulationResult loaded = load_simulation(options.scene, registry, options.threads);
+  const std::string said = loaded.diagnostics.format();
+  if (!said.empty()) std::fputs(said.c_str(), stderr);
+  if (!loaded.simulation) return 2;
+  Simulation& simulation = *loaded.simulation;
+  simulation.set_deterministic(false);  // hands are on it: no step is late for a factor's sake
+  simulation.set_collision_horizon(Publisher::collision_horizon_steps * simulation.h());
+  if (options.seed != 0) simulation.draw_complications(options.seed);
+  fs::path motion;
+  Motion script;
+  try {
+    motion = find_motion(simulation, options.motion);
+    if (!motion.empty()) script = load_motion(motion);
+  } catch (const InputError& e) {
+    // A scene without the default motion is played by hand.
+    if (options.motion != "steady") {
+      std::fprintf(stderr, "error: %s\n", e.what());
+      return 2;
+    }
+  }
+  if (options.take_over && !options.take_over()) return 0;
+  const std::int64_t session = monotonic_us();
+  const fs::path bundle = bundle_folder(options.bundle_root, session);
+  write_bundle(simulation, bundle, session, options.still);
+  const std::string title = simulation.scene().title().empty() ? options.scene.stem().string() : simulation.scene().title();
+  Publisher publisher(bus, session, options.scene, bundle, motion, title);
+  SessionReports reports(options.report, options.scene, motion.empty() ? "" : options.motion);
+  Inputs inputs;
+  inputs.subscribe(bus, reports);
+  CommandScript commands(script.commands());
+  Notice notice(options.notice);
+  spdlog::info("\"{}\" runs: {} bodies, {} constraints, step {:.2f} ms", title, simulation.bodies().size(),
+               simulation.constraints().size(), simulation.h() * 1000);
+  publisher.info("running");
+
+  using Clock = std::chrono::steady_clock;
+  const auto period = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(simulation.h()));
+  auto next = Clock::now();
+  const auto began = next;
+  std::int64_t late = 0;
+  while (!stop && !inputs.quit && (options.duration <= 0 || simulation.time() < options.duration - 1e-9)) {
+    while (bus.poll(0) > 0) {
+    }
+    if (inputs.reset) {
+      inputs.reset = false;
+      inputs.driven = false;  // the haptic server gives the hands back to the motion
+      commands.reset();
+      reports.end_run(simulation);
+      simulation.reset();
+      spdlog::info("reset");
+    }
+    for (const auto& [verb, argument] : inputs.asked) {
+      const std::string why = simulation.command(verb, argument);
+      if (!why.empty()) spdlog::info("{} \"{}\" refused: {}", verb, shown(argument), why);
+    }
+    inputs.asked.clear();
+    if (inputs.pause || options.still) {
+      const std::vector<Event> announced = simulation.take_announced();  // no step will
+      publisher.events(announced);
+      reports.note(announced);
+      publisher.paused_frame(simulation);
+      publisher.info("paused", notice.text());
+    } else {
+      const std::int64_t posed = inputs.apply(simulation);
+      const bool follows = inputs.follows(script);
+      commands.advance(simulation, follows);
+      simulation.step();
+      if (!simulation.report().finite) {
+        reports.step(simulation, posed > 0, follows);
+        reports.end_run(simulation);
+        spdlog::error("the simulation left the range of numbers at {:.3f} s; it starts again", simulation.time());
+        simulation.reset();
+        commands.reset();
+        continue;
+      }
+      publisher.step(simulation, posed);
+      publisher.info("running", notice.text());
+      reports.step(simulation, posed > 0, follows);
+    }
+    if (options.unthrottled && !inputs.pause) continue;
+    next += period;
+    const auto now = Clock::now();
+    if (now > next + 2 * period) {  // far behind: time is dropped, not caught up
+      ++late;
+      next = now;
+    }
+    while (Clock::now() < next) {
+      const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(next - Clock::now()).count();
+      if (left > 1) bus.poll(int(left) - 1);
+      else std::this_thread::sleep_until(next);
+    }
+  }
+  publisher.info("ended");
+  reports.end_run(simulation);
+  const double wall = std::chrono::duration<double>(Clock::now() - began).count();
+  spdlog::info("ended after {:.2f} s simulated in {:.2f} s (real_time_factor {:.2f}), {} steps dropped, {} messages not sent",
+               simulation.time(), wall, wall > 0 ? simulation.time() / wall : 0, late, publisher.failed());
+  std::error_code ignored;
+  if (!options.keep_bundle) fs::remove_all(bundle, ignored);
+  return 0;
+}
+
+}  // namespace insula

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A text for the viewers that another process leaves in a file: the errors of a scene that has been saved.
+#pragma once
+#include <chrono>
+#include <filesystem>
+#include <string>
+
+namespace insula {
+
+class Notice {
+ public:
+  /// Longer texts are cut at a line's end; the message that carries it stays small.
+  static constexpr std::size_t max_bytes = 8 * 1024;
+  explicit Notice(std::filesystem::path file) : file_(std::move(file)) {}
+
+  /// What the file says now, looked at every quarter of a second; empty without a file.
+  const std::string& text();
+
+ private:
+  std::filesystem::path file_;
+  std::string text_;
+  std::chrono::steady_clock::time_point next_{};
+  std::filesystem::file_time_type read_{};
+};
+
+/// Leaves a text there, whole or not at all. Returns whether it could be written.
+bool leave_notice(const std::filesystem::path& file, const std::string& text);
+
+}  // namespace insula

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Messages of the engine.
+#include "engine/live/publisher.h"
+
+#include <algorithm>
+#include <chrono>
+#include <insula_lcm/sim_event_t.hpp>
+
+#include "core/bus/channels.h"
+#include "core/bus/codec.h"
+#include "engine/live/frame.h"
+
+namespace insula {
+
+std::int64_t monotonic_us() {
+  return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+Publisher::Publisher(Bus& bus, std::int64_t session, const std::filesystem::path& scene, const std::filesystem::path& bundle,
+                     const std::filesystem::path& motion, const std::string& title)
+    : bus_(bus), session_(session) {
+  info_.session = session;
+  info_.scene = scene.string();
+  info_.bundle = bundle.string();
+  info_.motion = motion.string();
+  info_.title = title;
+}
+
+void Publisher::info(const std::string& state, const std::string& message) {
+  const std::int64_t now = monotonic_us();
+  if (now - last_info_us_ < 1'000'000 && info_.state == state && info_.message == message) return;
+  last_info_us_ = now;
+  info_.time_us = now;
+  info_.state = state;
+  info_.message = message;
+  if (!publish(bus_, channel::scene_info, info_, scratch_)) ++failed_;
+}
+
+void Publisher::step(const Simulation& simulation, std::int64_t pose_time_us) {
+  update_.session = session_;
+  update_.sequence = ++sequence_;
+  update_.time_us = monotonic_us();
+  update_.pose_time_us = pose_time_us;
+  update_.step_s = simulation.h();
+  update_.sim_time_s = simulation.time();
+  const double until_rendered_s = std::min(1e-3 * simulation.report().step_ms, simulation.h());  // about
+  condense_(turn_(simulation, until_rendered_s), max_rows, update_.problem);
+  pause_.apply(simulation, update_.problem);
+  if (!encode_problem(update_, scratch_) || !bus_.publish(channel::haptic_problem, scratch_)) ++failed_;
+  frame(simulation, false);
+  events(simulation.events());
+}
+
+void Publisher::events(const std::vector<Event>& events) {
+  for (const Event& e : events) {
+    insula_lcm::sim_event_t m;
+    m.session = session_;
+    m.sequence = ++event_sequence_;
+    m.time_us = monotonic_us();
+    m.sim_time_s = e.time;
+    m.kind = e.kind;
+    m.id = e.id;
+    m.text = e.text;
+    m.value = e.value;
+    m.hand = std::int8_t(e.hand);
+    if (!publish(bus_, channel::sim_event, m, scratch_)) ++failed_;
+  }
+}
+
+void Publisher::paused_frame(const Simulation& simulation) { frame(simulation, true); }
+
+void Publisher::frame(const Simulation& simulation, bool paused) {
+  fill_frame(simulation, frame_);
+  frame_.session = session_;
+  frame_.sequence = ++frame_sequence_;
+  frame_.time_us = monotonic_us();
+  frame_.paused = paused;
+  if (!publish(bus_, channel::render_frame, frame_, scratch_)) ++failed_;
+}
+
+}  // namespace insula

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sends what a step made: the haptic problem, the picture, events, and once a second what runs.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <insula_lcm/render_frame_t.hpp>
+#include <insula_lcm/scene_info_t.hpp>
+
+#include "core/bus/bus.h"
+#include "core/bus/haptic_update.h"
+#include "core/sim/simulation.h"
+#include "engine/condense.h"
+#include "engine/live/exchange_pause.h"
+#include "engine/contact_frame_prediction.h"
+
+namespace insula {
+
+/// Microseconds of CLOCK_MONOTONIC.
+std::int64_t monotonic_us();
+
+class Publisher {
+ public:
+  /// 200 rows of W in float32 are 80 KB: with the rest a message stays under the 120 KB that stock kernels carry.
+  static constexpr int max_rows = 200;
+  /// Of Simulation::look_ahead, for who publishes: until the next problem reaches the servo.
+  static constexpr double collision_horizon_steps = 2;
+
+  Publisher(Bus& bus, std::int64_t session, const std::filesystem::path& scene, const std::filesystem::path& bundle,
+            const std::filesystem::path& motion, const std::string& title);
+
+  /// After a step: problem, frame, events. pose_time_us: stamp of the devices' poses that the step was made with, 0: none.
+  void step(const Simulation& simulation, std::int64_t pose_time_us = 0);
+  /// Events that belong to no step.
+  void events(const std::vector<Event>& events);
+  /// The frame alone, while paused.
+  void paused_frame(const Simulation& simulation);
+  /// Repeats the scene's state when a second has passed since the last time, or at once when it changed.
+  void info(const std::string& state, const std::string& message = "");
+  std::int64_t failed() const { return failed_; }
+
+ private:
+  void frame(const Simulation& simulation, bool paused);
+
+  Bus& bus_;
+  std::int64_t session_, sequence_ = 0, event_sequence_ = 0, frame_sequence_ = 0, last_info_us_ = 0, failed_ = 0;
+  insula_lcm::scene_info_t info_;
+  insula_lcm::render_frame_t frame_;
+  HapticUpdate update_;
+  ContactFramePrediction turn_;
+  Condenser condense_;
+  ExchangePause pause_;
+  std::vector<std::uint8_t> scratch_;
+};
+
+}  // namespace insula

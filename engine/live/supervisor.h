@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Keeps the processes of a session alive: starts them, passes on what they print, brings back whichever dies, ends all
+// together.
+#pragma once
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/live/child_process.h"
+
+namespace insula {
+
+struct SupervisorSettings {
+  double first_wait_s = 0.2;  ///< before a dead child is started again; doubles while it keeps dying young
+  double longest_wait_s = 2;
+  double settled_s = 5;       ///< a child that lived so long starts over with first_wait_s
+  double patience_s = 3;      ///< from SIGTERM to SIGKILL when ending
+  double duration_s = 0;      ///< end by itself after so long; 0: never
+  std::function<void()> look = {};  ///< called again and again while the session runs, every look_s
+  double look_s = 0.1;
+};
+
+struct ChildSpec {
+  std::string name;
+  std::vector<std::string> command;  ///< program (a path) and arguments
+  bool ends_session = false;         ///< when it ends with status 0, everything ends
+  bool waits_for_offer = false;      ///< when it has run and says later that its input is bad (status 2), it stays away until there is another offer
+  /// Sees each line of output; may change the command for the next start. Returns false to keep the line from being shown.
+  std::function<bool(ChildSpec&, std::string_view)> on_line;
+};
+
+class Supervisor {
+ public:
+  using Print = std::function<void(std::string_view)>;  ///< one line, without its end
+  Supervisor(SupervisorSettings settings, Print print);
+  ~Supervisor();
+
+  void add(ChildSpec spec);
+  /// Another command for a child that has been added: it is started beside the running one, and takes its place when it has
+  /// printed the line `ready_line`: then the old one is ended, and once it is gone the new one gets SIGUSR1. When it ends before,
+  /// the old one goes on, and `refused` is told what it printed. A second offer takes the place of a first that is not ready.
+  struct Offer {
+    std::vector<std::string> command;
+    std::string ready_line;
+    std::function<void(const std::vector<std::string>& lines, const ChildExit& exit)> refused;
+    std::function<void()> taken;
+  };
+  /// False while an earlier offer is just taking over: to be made again a moment later.
+  bool offer(const std::string& name, Offer offer);
+  /// Until SIGINT, SIGTERM or SIGHUP, the duration, or a child that ends the session. Status 0; 2 when a child says that
+  /// its input is bad (status 2); 1 when a program cannot be run or refuses its arguments (status 100 and more).
+  /// Must be called on the main thread: children die with the thread that started them.
+  int run();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  struct Child;
+  void start(Child& child);
+  void pass_on(Child& child, bool rest);
+  void collect();
+  void after_exit(Child& child, const ChildExit& exit);
+  void collect_offer(Child& child);
+  void end_all(int status);
+  int wait_ms() const;
+  void wait(int signal_descriptor);
+
+  SupervisorSettings settings_;
+  Print print_;
+  std::vector<std::unique_ptr<Child>> children_;  // in the order of starting
+  bool ending_ = false;
+  int status_ = 0;
+  Clock::time_point began_, kill_at_;
+};
+
+}  // namespace insula

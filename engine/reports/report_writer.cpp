@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Collects what the steps of a run did; report.json.
+#include "engine/reports/report_writer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "core/base/input_error.h"
+#include "core/sim/simulation.h"
+#include "engine/reports/perceptible_forces.h"
+
+namespace insula {
+namespace {
+
+using Json = nlohmann::ordered_json;
+constexpr std::size_t max_events = 5000;
+constexpr std::size_t max_moments = 2000;
+
+template <class Get>
+std::vector<double> column(const RunRecorder& recorder, Get get) {
+  std::vector<double> out;
+  out.reserve(recorder.samples().size());
+  for (const auto& s : recorder.samples()) out.push_back(double(get(s)));
+  return out;
+}
+
+double mean(const std::vector<double>& v) {
+  double sum = 0;
+  for (double x : v) sum += x;
+  return v.empty() ? 0 : sum / double(v.size());
+}
+double largest(const std::vector<double>& v) { return v.empty() ? 0 : *std::max_element(v.begin(), v.end()); }
+
+Json mean_max(const std::vector<double>& v) { return {{"mean", mean(v)}, {"max", largest(v)}}; }
+
+Json exercise_json(const RunRecorder& recorder, const std::optional<ExerciseOutcome>& exercise) {
+  Json goals = Json::array(), faults = Json::array(), timers = Json::array(), measures = Json::array();
+  Json out;
+  if (exercise) {
+    for (const auto& g : exercise->log.goals())
+      goals.push_back({{"id", g.id}, {"done", g.done}, {"time_s", g.done ? Json(g.time) : Json()}, {"required", g.required}, {"text", g.text}});
+    for (const auto& f : exercise->log.faults()) faults.push_back({{"id", f.id}, {"count", f.count}, {"text", f.text}});
+    for (const auto& t : exercise->log.timers())
+      timers.push_back({{"id", t.id}, {"elapsed_s", t.elapsed}, {"longest_s", t.longest}, {"limit_s", t.limit}, {"running", t.running}, {"text", t.text}});
+    for (const auto& m : exercise->log.measures())
+      measures.push_back({{"id", m.id}, {"value", m.known ? Json(m.value) : Json()}, {"unit", m.unit}, {"good", m.good}, {"text", m.text}});
+    static constexpr const char* states[] = {"running", "done", "failed"};
+    out["id"] = exercise->id;
+    out["title"] = exercise->title;
+    out["state"] = states[int(exercise->log.state())];
+  }
+  out["goals"] = goals;
+  out["faults"] = faults;
+  out["timers"] = timers;
+  out["measures"] = measures;
+  out["strands_cut"] = recorder.strands_cut();
+  out["strands_total"] = recorder.strands_total();
+  return out;
+}
+
+Json perceptible_json(const PerceptibleForces& perceptible) {
+  Json out = {{"touching_s", perceptible.touching_s}, {"median_N", perceptible.median_N}, {"max_N", perceptible.largest_N}, {"above_friction", Json::array()}};
+  for (std::size_t d = 0; d < known_frictions.size(); ++d)
+    out["above_friction"].push_back({{"devices", known_frictions[d].devices}, {"friction_N", known_frictions[d].friction_N}, {"time_share", perceptible.above[d].time_share},
+                                     {"range_share", perceptible.above[d].range_share}, {"scale_for_half", perceptible.above[d].scale}});
+  return out;
+}
+
+Json series_json(const RunSeries& s) {
+  Json stages;
+  for (std::size_t k = 0; k < stage_count; ++k) stages[stage_names()[k]] = s.stage_ms[k];
+  return {{"time_s", s.time_s},
+          {"hand_force_N", {{"left", s.hand_force_N[0]}, {"right", s.hand_force_N[1]}}},
+          {"tool_force_N", {{"left", s.tool_force_N[0]}, {"right", s.tool_force_N[1]}}},
+          {"strands_left", s.strands_left}, {"rows", s.rows}, {"contacts", s.contacts}, {"sweeps", s.sweeps},
+          {"residual_N", s.residual_N}, {"energy_J", s.energy_J}, {"step_ms", s.step_ms}, {"stage_ms", stages}};
+}
+
+void write(const std::filesystem::path& file, const std::string& text) {
+  errno = 0;
+  std::ofstream out(file, std::ios::binary | std::ios::trunc);
+  out << text;
+  out.close();
+  if (!out) throw InputError(fmt::format("{}: cannot be written{}", file.string(), errno ? fmt::format(": {}", std::strerror(errno)) : ""));
+}
+
+/// `b` follows `a`.
+void join(RunRecorder::Sample& a, const RunRecorder::Sample& b) {
+  const auto larger = [](auto& x, auto y) { x = std::max(x, y); };
+  a.time_s = b.time_s;
+  a.steps += b.steps;
+  a.strands_left = b.strands_left;
+  for (std::size_t k = 0; k < stage_count; ++k) larger(a.stage_ms[k], b.stage_ms[k]);
+  larger(a.step_ms, b.step_ms);
+  for (std::size_t h = 0; h < 2; ++h) {
+    larger(a.hand_force_N[h], b.hand_force_N[h]);
+    larger(a.tool_force_N[h], b.tool_force_N[h]);
+  }
+  larger(a.residual_N, b.residual_N);
+  larger(a.residual_m, b.residual_m);
+  larger(a.energy_J, b.energy_J);
+  larger(a.rows, b.rows);
+  larger(a.contacts, b.contacts);
+  larger(a.sweeps, b.sweeps);
+}
+
+}  // namespace
+
+RunRecorder::RunRecorder(std::size_t most) : max_samples_(most) { samples_.reserve(most); }
+
+void RunRecorder::record(const StepReport& r, const std::vector<Event>& events, const std::array<double, 2>& hand_force_N, double energy_J) {
+  Sample s;
+  s.time_s = float(r.time);
+  for (std::size_t k = 0; k < stage_count; ++k) s.stage_ms[k] = float(r.stage_ms[k]);
+  s.step_ms = float(r.step_ms);
+  for (std::size_t h = 0; h < 2; ++h) s.hand_force_N[h] = float(hand_force_N[h]);
+  for (const auto& t : r.tools)
+    if (t.hand == 0 || t.hand == 1) s.tool_force_N[std::size_t(t.hand)] += float(t.contact_force);
+  s.residual_N = float(r.solve.residual_N);
+  s.residual_m = float(r.solve.residual_m);
+  s.energy_J = float(energy_J);
+  s.rows = r.rows;
+  s.contacts = int(r.contacts.size());
+  s.sweeps = r.solve.sweeps;
+  s.strands_left = r.strands_left;
+  add(s);
+  note(events);
+  strands_total_ = r.strands_total;
+  strands_left_ = r.strands_left;
+  finite_ = finite_ && r.finite;
+  outcome_.observe(r);
+}
+
+void RunRecorder::note(const std::vector<Event>& events) {
+  for (const auto& e : events) {
+    if (events_.size() < max_events) events_.push_back(e);
+    else ++events_left_out_;
+  }
+  outcome_.note(events);
+}
+
+void RunRecorder::add(const Sample& sample) {
+  ++steps_;
+  if (!samples_.empty() && samples_.back().steps < per_sample_) return join(samples_.back(), sample);
+  if (samples_.size() == max_samples_) {
+    for (std::size_t i = 0; i < max_samples_ / 2; ++i) {
+      samples_[i] = samples_[2 * i];
+      join(samples_[i], samples_[2 * i + 1]);
+    }
+    samples_.resize(max_samples_ / 2);
+    per_sample_ *= 2;
+  }
+  samples_.push_back(sample);
+}
+
+void RunRecorder::clear() { *this = RunRecorder(max_samples_); }
+
+void RunSummary::take(const Simulation& simulation) {
+  title = simulation.scene().title();
+  state_hash = simulation.state_hash();
+  exercise.reset();
+  complications.reset();
+  if (simulation.exercise()) exercise.emplace(*simulation.exercise());
+  if (simulation.complications()) complications.emplace(*simulation.complications());
+}
+
+const std::array<const char*, stage_count>& stage_names() {
+  static constexpr std::array<const char*, stage_count> names{"free_motion", "collision", "build", "solve", "correct", "publish"};
+  return names;
+}
+
+double percentile(std::vector<double> values, double share) {
+  if (values.empty()) return 0;
+  const auto rank = std::size_t(std::clamp(std::ceil(share * double(values.size())) - 1, 0.0, double(values.size() - 1)));
+  std::nth_element(values.begin(), values.begin() + std::ptrdiff_t(rank), values.end());
+  return values[rank];
+}
+
+RunSeries series_of(const RunRecorder& recorder, std::size_t most) {
+  RunSeries out;
+  const auto& samples = recorder.samples();
+  const std::size_t bin = std::max<std::size_t>(1, (samples.size() + most - 1) / std::max<std::size_t>(1, most));
+  const auto add = [&](std::vector<double>& to, std::size_t begin, std::size_t end, auto get) {
+    double v = double(get(samples[begin]));
+    for (std::size_t i = begin + 1; i < end; ++i) v = std::max(v, double(get(samples[i])));
+    to.push_back(v);
+  };
+  using S = RunRecorder::Sample;
+  for (std::size_t begin = 0; begin < samples.size(); begin += bin) {
+    const std::size_t end = std::min(begin + bin, samples.size());
+    add(out.time_s, begin, end, [](const S& s) { return s.time_s; });
+    add(out.step_ms, begin, end, [](const S& s) { return s.step_ms; });
+    add(out.residual_N, begin, end, [](const S& s) { return s.residual_N; });
+    add(out.energy_J, begin, end, [](const S& s) { return s.energy_J; });
+    add(out.rows, begin, end, [](const S& s) { return s.rows; });
+    add(out.contacts, begin, end, [](const S& s) { return s.contacts; });
+    add(out.sweeps, begin, end, [](const S& s) { return s.sweeps; });
+    add(out.strands_left, end - 1, end, [](const S& s) { return s.strands_left; });
+    for (std::size_t k = 0; k < stage_count; ++k) add(out.stage_ms[k], begin, end, [k](const S& s) { return s.stage_ms[k]; });
+    for (std::size_t h = 0; h < 2; ++h) {
+      add(out.hand_force_N[h], begin, end, [h](const S& s) { return s.hand_force_N[h]; });
+      add(out.tool_force_N[h], begin, end, [h](const S& s) { return s.tool_force_N[h]; });
+    }
+  }
+  return out;
+}
+
+std::string report_json(const RunRecorder& recorder, const RunSummary& summary) {
+  using S = RunRecorder::Sample;
+  const auto& samples = recorder.samples();
+  const double sim_seconds = samples.empty() ? 0 : double(samples.back().time_s);
+  Json json;
+  json["for_training_only"] = true;
+  json["title"] = summary.title;
+  json["scene"] = summary.scene;
+  json["motion"] = summary.motion;
+  if (!summary.began.empty()) json["began"] = summary.began;
+  json["steps"] = recorder.steps();
+  json["steps_per_sample"] = recorder.steps_per_sample();
+  json["sim_seconds"] = sim_seconds;
+  json["wall_seconds"] = summary.wall_seconds;
+  json["real_time_factor"] = summary.wall_seconds > 0 ? sim_seconds / summary.wall_seconds : 0;
+  for (std::size_t k = 0; k < stage_count; ++k) {
+    const auto v = column(recorder, [k](const S& s) { return s.stage_ms[k]; });
+    json["stage_ms"][stage_names()[k]] = {{"p50", percentile(v, 0.5)}, {"p95", percentile(v, 0.95)}};
+  }
+  const auto step = column(recorder, [](const S& s) { return s.step_ms; });
+  json["step_ms"] = {{"p50", percentile(step, 0.5)}, {"p95", percentile(step, 0.95)}, {"max", largest(step)}};
+  json["rows"] = mean_max(column(recorder, [](const S& s) { return s.rows; }));
+  json["contacts"] = mean_max(column(recorder, [](const S& s) { return s.contacts; }));
+  json["sweeps"] = mean_max(column(recorder, [](const S& s) { return s.sweeps; }));
+  const auto newtons = column(recorder, [](const S& s) { return s.residual_N; });
+  json["residual"] = {{"p50", percentile(newtons, 0.5)}, {"max", largest(newtons)}, {"unit", "N"}};
+  const auto metres = column(recorder, [](const S& s) { return s.residual_m; });
+  json["residual_m"] = {{"p50", percentile(metres, 0.5)}, {"max", largest(metres)}};
+  json["haptic"] = {{"fresh_forces_per_s", summary.fresh_forces_per_s},
+                    {"max_force_N", {{"left", summary.max_force_N[0]}, {"right", summary.max_force_N[1]}}},
+                    {"perceptible", {{"left", perceptible_json(perceptible_forces(recorder, 0))}, {"right", perceptible_json(perceptible_forces(recorder, 1))}}}};
+  json["exercise"] = exercise_json(recorder, summary.exercise);
+  if (summary.complications) json["complications"] = complications_json(*summary.complications);
+  recorder.outcome().add_to(json);
+  json["finite"] = recorder.finite();
+  json["state_hash"] = fmt::format("{:016x}", summary.state_hash);
+  json["events"] = Json::array();
+  for (const auto& e : recorder.events())
+    json["events"].push_back({{"time_s", e.time}, {"kind", e.kind}, {"id", e.id}, {"text", e.text}, {"value", e.value}});
+  json["events_left_out"] = recorder.events_left_out();
+  json["series"] = series_json(series_of(recorder, max_moments));
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+void write_report(const std::filesystem::path& dir, const RunRecorder& recorder, const RunSummary& summary) {
+  std::error_code error;
+  std::filesystem::create_directories(dir, error);
+  if (error) throw InputError(dir.string() + ": cannot be created: " + error.message());
+  write(dir / "report.json", report_json(recorder, summary));
+  write(dir / "report.html", report_html(recorder, summary));
+}
+
+}  // namespace insula

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Collects what the steps of a run did and writes it down: report.json for programs, report.html for people.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/sim/exercise.h"
+#include "core/sim/report.h"
+#include "engine/reports/run_outcome.h"
+
+namespace insula {
+
+class Simulation;
+
+/// An exercise as it stood when the report was made.
+struct ExerciseOutcome {
+  explicit ExerciseOutcome(const Exercise& exercise) : id(exercise.id), title(exercise.title()), text(exercise.text()), log(exercise.log()) {}
+  std::string id, title, text;
+  ExerciseLog log;
+};
+
+/// What is known of a run as a whole; holds copies, so that a report may be written while the simulation goes on.
+struct RunSummary {
+  /// Title, state hash, exercise and complications as they are now.
+  void take(const Simulation& simulation);
+
+  std::string title;               ///< of the scene
+  std::string scene, motion;       ///< as named on the command line
+  std::string began;               ///< local date and time of a session that people play; empty: not said
+  double wall_seconds = 0;         ///< of all steps
+  double fresh_forces_per_s = 0;   ///< distinct fresh forces a simulated second of touch
+  std::array<double, 2> max_force_N{};  ///< on the hands: left, right
+  std::uint64_t state_hash = 0;
+  std::optional<ExerciseOutcome> exercise;            ///< none when the scene has none
+  std::optional<ComplicationsOutcome> complications;  ///< the same
+};
+
+class RunRecorder {
+ public:
+  /// Of one step, or of some that follow each other: the largest value of each, time and strands of the last.
+  struct Sample {
+    float time_s = 0;
+    std::int32_t steps = 1;
+    std::array<float, stage_count> stage_ms{};
+    float step_ms = 0;
+    std::array<float, 2> hand_force_N{};     ///< sent to the hand
+    std::array<float, 2> tool_force_N{};     ///< of all contacts of the hand's tool
+    float residual_N = 0;
+    float residual_m = 0;
+    float energy_J = 0;
+    std::int32_t rows = 0, contacts = 0, sweeps = 0, strands_left = 0;
+  };
+
+  /// Every step of half an hour at 60 Hz, in 11 MB that are taken at the start. A longer run takes no more: neighbours are joined
+  /// whenever it is full, and from then on a sample stands for twice as many steps.
+  static constexpr std::size_t max_samples = 120'000;
+  /// most: samples at most, even and at least 2.
+  explicit RunRecorder(std::size_t most = max_samples);
+
+  /// After a step: its report, its events (the exercise's included), the force on each hand (N; left, right) and the energy of all bodies.
+  void record(const StepReport& report, const std::vector<Event>& events, const std::array<double, 2>& hand_force_N, double energy_J);
+  /// Events that belong to no step, as while paused.
+  void note(const std::vector<Event>& events);
+  void clear();
+
+  std::int64_t steps() const { return steps_; }
+  /// Steps that a sample stands for (the last one for so many at most).
+  int steps_per_sample() const { return per_sample_; }
+  const std::vector<Sample>& samples() const { return samples_; }
+  /// The first events of the run, 5,000 at most.
+  const std::vector<Event>& events() const { return events_; }
+  std::int64_t events_left_out() const { return events_left_out_; }
+  int strands_total() const { return strands_total_; }
+  int strands_cut() const { return strands_total_ - strands_left_; }
+  bool finite() const { return finite_; }
+  const RunOutcome& outcome() const { return outcome_; }
+
+ private:
+  void add(const Sample& sample);
+
+  std::size_t max_samples_;
+  int per_sample_ = 1;
+  std::int64_t steps_ = 0;
+  std::vector<Sample> samples_;
+  std::vector<Event> events_;
+  std::int64_t events_left_out_ = 0;
+  int strands_total_ = 0, strands_left_ = 0;
+  bool finite_ = true;
+  RunOutcome outcome_;
+};
+
+/// Steps gathered for a plot: at most `most` moments, each the largest value of its steps (strands: the last).
+struct RunSeries {
+  std::vector<double> time_s, step_ms, residual_N, rows, contacts, sweeps, strands_left, energy_J;
+  std::array<std::vector<double>, stage_count> stage_ms;
+  std::array<std::vector<double>, 2> hand_force_N, tool_force_N;
+};
+RunSeries series_of(const RunRecorder& recorder, std::size_t most);
+
+/// Names of the stages as reports call them.
+const std::array<const char*, stage_count>& stage_names();
+
+/// The value below which the given share of `values` lies (nearest rank); 0 when there are none.
+double percentile(std::vector<double> values, double share);
+
+std::string report_json(const RunRecorder& recorder, const RunSummary& summary);
+std::string report_html(const RunRecorder& recorder, const RunSummary& summary);
+/// Writes report.json and report.html into `dir`, which is created. Throws InputError when it cannot.
+void write_report(const std::filesystem::path& dir, const RunRecorder& recorder, const RunSummary& summary);
+
+}  // namespace insula

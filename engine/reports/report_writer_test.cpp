@@ -1,0 +1,354 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The report of a run: keys, numbers, plots and a page that is well-formed whatever the texts hold.
+#include "engine/reports/report_writer.h"
+
+#include <expat.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "core/base/input_error.h"
+#include "core/registry/registry.h"
+#include "core/sim/simulation.h"
+#include "engine/reports/svg_plot.h"
+
+namespace insula {
+namespace {
+
+using Json = nlohmann::json;
+
+std::string xml_error(const std::string& text) {
+  XML_Parser parser = XML_ParserCreate(nullptr);
+  std::string error;
+  if (XML_Parse(parser, text.data(), int(text.size()), 1) != XML_STATUS_OK)
+    error = std::string(XML_ErrorString(XML_GetErrorCode(parser))) + " in line " + std::to_string(XML_GetCurrentLineNumber(parser));
+  XML_ParserFree(parser);
+  return error;
+}
+
+/// 100 steps of 0.1 s; in step k (from 1): k rows, solve takes k ms, 10 strands of which one is cut every ten steps.
+RunRecorder hundred_steps() {
+  RunRecorder recorder;
+  for (int k = 1; k <= 100; ++k) {
+    StepReport r;
+    r.time = 0.1 * k;
+    r.h = 0.1;
+    r.rows = k;
+    r.contacts.resize(std::size_t(k % 3));
+    r.solve.sweeps = 2 * k;
+    r.solve.residual_N = 1e-6 * k;
+    r.solve.residual_m = 1e-9 * k;
+    r.strands_total = 10;
+    r.strands_left = 10 - k / 10;
+    r.stage_ms[stage_solve] = k;
+    r.step_ms = k + 1;
+    ToolReport tool;
+    tool.hand = 1;
+    tool.contact_force = k == 50 ? 2.5 : 0.5;
+    r.tools.push_back(tool);
+    std::vector<Event> events;
+    if (k % 10 == 0) events.push_back({"strand_cut", "s", "", 1, r.time});
+    if (k == 70) events.push_back({"fault", "force", "Too much <force> & \"more\"", 2.5, r.time});
+    recorder.record(r, events, {0.1, k == 30 ? 1.5 : 0.2}, 1e-3);
+  }
+  return recorder;
+}
+
+RunSummary summary(const Exercise* exercise) {
+  RunSummary s;
+  s.title = "A <title> & more";
+  s.scene = "scenes/a.xml";
+  s.motion = "steady";
+  s.wall_seconds = 2;
+  s.fresh_forces_per_s = 991.5;
+  s.max_force_N = {0.25, 1.75};
+  s.state_hash = 0xfedcba9876543210ull;
+  if (exercise) s.exercise.emplace(*exercise);
+  return s;
+}
+
+void fill(Exercise& exercise) {
+  exercise.id = "fissure";
+  exercise.log().add_goal("open", "Open it");
+  exercise.log().add_goal("all", "Divide all", false);
+  exercise.log().add_fault("force", "Too much <force>");
+  exercise.log().fault(0, 3.0, 2.5);
+  exercise.log().goal(0, 4.5);  // the last required one: that is the end
+}
+
+TEST(ReportJson, HasEveryKeyWithItsNumber) {
+  Exercise exercise;
+  fill(exercise);
+  const Json j = Json::parse(report_json(hundred_steps(), summary(&exercise)));
+  EXPECT_EQ(j.at("steps"), 100);
+  EXPECT_NEAR(j.at("sim_seconds").get<double>(), 10, 1e-5);
+  EXPECT_EQ(j.at("wall_seconds"), 2);
+  EXPECT_NEAR(j.at("real_time_factor").get<double>(), 5, 1e-5);
+  for (const char* stage : {"free_motion", "collision", "build", "solve", "correct", "publish"})
+    for (const char* part : {"p50", "p95"}) EXPECT_TRUE(j.at("stage_ms").at(stage).at(part).is_number()) << stage << part;
+  EXPECT_EQ(j.at("stage_ms").at("solve").at("p50"), 50);
+  EXPECT_EQ(j.at("stage_ms").at("solve").at("p95"), 95);
+  EXPECT_EQ(j.at("rows").at("mean"), 50.5);
+  EXPECT_EQ(j.at("rows").at("max"), 100);
+  EXPECT_EQ(j.at("contacts").at("mean"), 1);
+  EXPECT_EQ(j.at("contacts").at("max"), 2);
+  EXPECT_EQ(j.at("sweeps").at("mean"), 101);
+  EXPECT_EQ(j.at("sweeps").at("max"), 200);
+  EXPECT_NEAR(j.at("residual").at("p50").get<double>(), 50e-6, 1e-11);
+  EXPECT_NEAR(j.at("residual").at("max").get<double>(), 100e-6, 1e-11);
+  EXPECT_EQ(j.at("haptic").at("fresh_forces_per_s"), 991.5);
+  EXPECT_EQ(j.at("haptic").at("max_force_N").at("left"), 0.25);
+  EXPECT_EQ(j.at("haptic").at("max_force_N").at("right"), 1.75);
+  const Json& e = j.at("exercise");
+  EXPECT_EQ(e.at("goals").at(0).at("id"), "open");
+  EXPECT_EQ(e.at("goals").at(0).at("done"), true);
+  EXPECT_EQ(e.at("goals").at(0).at("time_s"), 4.5);
+  EXPECT_EQ(e.at("goals").at(1).at("done"), false);
+  EXPECT_TRUE(e.at("goals").at(1).at("time_s").is_null());
+  EXPECT_EQ(e.at("faults").at(0).at("id"), "force");
+  EXPECT_EQ(e.at("faults").at(0).at("count"), 1);
+  EXPECT_EQ(e.at("strands_cut"), 10);
+  EXPECT_EQ(j.at("state_hash"), "fedcba9876543210");
+  EXPECT_EQ(j.at("events").size(), 11u);
+  EXPECT_EQ(j.at("series").at("time_s").size(), 100u);
+  EXPECT_EQ(j.at("series").at("tool_force_N").at("right").at(49), 2.5);
+  EXPECT_EQ(j.at("series").at("strands_left").at(99), 0);
+}
+
+TEST(ReportJson, TellsOfBleedingVesselsClipsAndCommands) {
+  Exercise exercise;
+  fill(exercise);
+  exercise.log().add_timer("t", "Temporary clip", 2);
+  exercise.log().add_measure("m", "Neck <remnant>", "%");
+  exercise.log().timer(0, 3, true);
+  exercise.log().timer(0, 1, false);
+  exercise.log().measure(0, 12.5, -1);
+  RunRecorder recorder;
+  const std::string vessel = "superior";
+  for (int k = 1; k <= 10; ++k) {
+    StepReport r;
+    r.time = 0.1 * k;
+    r.h = 0.1;
+    BleedingState b;
+    b.open = k >= 3;
+    b.rate = k >= 3 && k < 8 ? 1e-6 : 0;
+    b.lost = 2.5e-6;
+    b.height = k == 5 ? 0.007 : 0.001;
+    b.since = k >= 3 ? 0.2 : -1;
+    r.bleeding.push_back(b);
+    r.vessels.push_back({vessel, 10665.790993, 1e-6, 2e-6, 0.5, 0});
+    std::vector<Event> events;
+    if (k == 4) events = {{"command", "ask", "applier load a", 0, 0.4}, {"refused", "exchange", "draw the <instrument> out", 0, 0.4}, {"message", "message", "well done", 0, 0.4}};
+    recorder.record(r, events, {0, 0}, 1e-3);
+  }
+  const Json j = Json::parse(report_json(recorder, summary(&exercise)));
+  EXPECT_NEAR(j.at("bleeding").at("lost_mL").get<double>(), 2.5, 1e-12);
+  EXPECT_NEAR(j.at("bleeding").at("duration_s").get<double>(), 0.5, 1e-12);
+  EXPECT_NEAR(j.at("bleeding").at("highest_mm").get<double>(), 7, 1e-12);
+  EXPECT_EQ(j.at("bleeding").at("rupture_s"), 0.2);
+  EXPECT_EQ(j.at("bleeding").at("open"), false);
+  EXPECT_NEAR(j.at("vessels").at(0).at("pressure_mmHg").get<double>(), 80, 1e-6);
+  EXPECT_NEAR(j.at("vessels").at(0).at("flow_percent").get<double>(), 50, 1e-9);
+  ASSERT_EQ(j.at("commands").size(), 3u);
+  EXPECT_EQ(j.at("commands").at(0).at("argument"), "applier load a");
+  EXPECT_EQ(j.at("commands").at(1).at("done"), false);
+  EXPECT_EQ(j.at("commands").at(1).at("refused"), "draw the <instrument> out");
+  EXPECT_EQ(j.at("commands").at(2).at("command"), "message");
+  EXPECT_EQ(j.at("exercise").at("timers").at(0).at("longest_s"), 3);
+  EXPECT_EQ(j.at("exercise").at("timers").at(0).at("elapsed_s"), 1);
+  EXPECT_EQ(j.at("exercise").at("measures").at(0).at("value"), 12.5);
+  EXPECT_FALSE(j.contains("complications"));
+  const std::string html = report_html(recorder, summary(&exercise));
+  EXPECT_EQ(xml_error(html), "");
+  for (const char* part : {"2.5 mL lost in 0.5 s", "superior", "refused: draw the &lt;instrument&gt; out", "Neck &lt;remnant&gt;", "12.5 %", "Temporary clip"})
+    EXPECT_NE(html.find(part), std::string::npos) << part;
+}
+
+/// Something that can go wrong.
+class Valve final : public Constraint {
+ public:
+  std::vector<CommandInfo> commands() const override { return {{"burst", "bursts", "", 0, 0}}; }
+  std::string run_command(std::string_view, std::string_view) override { return burst_++ ? "it has burst already" : ""; }
+  void build(const StepContext&, ConstraintBuilder&) override {}
+  void reset() override { burst_ = 0; }
+
+ private:
+  int burst_ = 0;
+};
+
+TEST(ReportJson, StatesTheSeedAndWhatWasDrawn) {
+  Registry registry;
+  register_builtin(registry);
+  registry.add<Valve>("valve", Kind::constraint, "for tests");
+  const auto loaded = load_simulation_text(R"(<scene time_step="10 ms"><valve id="v"/><complications seed="12">
+  <complication id="one" command="v burst" from="0.05 s" to="0.05 s"/><complication id="two" command="v burst" from="0.1 s" to="0.1 s"/>
+  <complication id="late" command="v burst" from="9 s" to="9 s"/><complication id="never" command="v burst" probability="0" to="1 s"/>
+</complications></scene>)", "/s.xml", registry, 1);
+  ASSERT_TRUE(loaded.simulation) << loaded.diagnostics.format();
+  RunRecorder recorder;
+  for (int k = 0; k < 20; ++k) {
+    loaded.simulation->step();
+    recorder.record(loaded.simulation->report(), loaded.simulation->events(), {0, 0}, loaded.simulation->energy());
+  }
+  RunSummary s = summary(nullptr);
+  s.complications.emplace(*loaded.simulation->complications());
+  const Json j = Json::parse(report_json(recorder, s));
+  EXPECT_EQ(j.at("complications").at("seed"), 12);
+  const Json& drawn = j.at("complications").at("drawn");
+  ASSERT_EQ(drawn.size(), 4u);
+  EXPECT_EQ(drawn.at(0).at("time_s"), 0.05);
+  EXPECT_EQ(drawn.at(0).at("refused"), "");
+  EXPECT_EQ(drawn.at(1).at("refused"), "it has burst already");
+  EXPECT_EQ(drawn.at(2).at("happens"), true);
+  EXPECT_EQ(drawn.at(2).at("begun"), false);
+  EXPECT_EQ(drawn.at(3).at("happens"), false);
+  EXPECT_TRUE(drawn.at(3).at("time_s").is_null());
+  ASSERT_EQ(j.at("commands").size(), 2u);
+  EXPECT_NEAR(j.at("commands").at(0).at("time_s").get<double>(), 0.05, 1e-9);
+  const std::string html = report_html(recorder, s);
+  EXPECT_EQ(xml_error(html), "");
+  for (const char* part : {"Drawn from seed 12", "refused: it has burst already", "not in this run", "drawn for 9.0 s, not reached"})
+    EXPECT_NE(html.find(part), std::string::npos) << part;
+}
+
+TEST(ReportJson, StandsWithoutExerciseAndSteps) {
+  const Json j = Json::parse(report_json(RunRecorder(), summary(nullptr)));
+  EXPECT_EQ(j.at("steps"), 0);
+  EXPECT_EQ(j.at("rows").at("max"), 0);
+  EXPECT_TRUE(j.at("exercise").at("goals").empty());
+  EXPECT_EQ(j.at("exercise").at("strands_cut"), 0);
+  EXPECT_EQ(xml_error(report_html(RunRecorder(), summary(nullptr))), "");
+}
+
+TEST(ReportJson, IsJsonEvenWhenTheSimulationIsNot) {
+  RunRecorder recorder;
+  StepReport r;
+  r.finite = false;
+  r.solve.residual_N = std::numeric_limits<double>::infinity();
+  r.time = 0.1;
+  recorder.record(r, {{"message", "\xff", "bad \xc3 bytes \x01", 0, 0.1}}, {0, std::numeric_limits<double>::quiet_NaN()}, std::numeric_limits<double>::quiet_NaN());
+  const Json j = Json::parse(report_json(recorder, summary(nullptr)));
+  EXPECT_EQ(j.at("finite"), false);
+  EXPECT_EQ(xml_error(report_html(recorder, summary(nullptr))), "");
+}
+
+TEST(ReportHtml, IsWellFormedAndSaysWhatItMust) {
+  Exercise exercise;
+  fill(exercise);
+  const std::string html = report_html(hundred_steps(), summary(&exercise));
+  EXPECT_EQ(xml_error(html), "");
+  for (const char* part : {"For training only", "A &lt;title&gt; &amp; more", "Force on the hands", "Strands left", "Rows, contacts and sweeps", "Residual of the solver",
+                           "Stages", "force (N)", "wall time (ms)", "Open it", "Too much &lt;force&gt;", "fedcba9876543210", "@media print"})
+    EXPECT_NE(html.find(part), std::string::npos) << part;
+  // Self-contained: nothing is fetched.
+  for (const char* part : {"<script", "src=", "<link", "url("}) EXPECT_EQ(html.find(part), std::string::npos) << part;
+}
+
+TEST(RunSeries, KeepsPeaksWhenItGathers) {
+  RunRecorder recorder;
+  for (int k = 0; k < 10007; ++k) {
+    StepReport r;
+    r.time = 0.001 * k;
+    r.rows = k == 5003 ? 999 : 1;
+    r.strands_left = 10007 - k;
+    recorder.record(r, {}, {k == 77 ? 3.0 : 0.0, 0}, 0);
+  }
+  const RunSeries s = series_of(recorder, 500);
+  EXPECT_LE(s.time_s.size(), 500u);
+  EXPECT_EQ(*std::max_element(s.rows.begin(), s.rows.end()), 999);
+  EXPECT_EQ(*std::max_element(s.hand_force_N[0].begin(), s.hand_force_N[0].end()), 3);
+  EXPECT_EQ(s.strands_left.back(), 1);
+  EXPECT_NEAR(s.time_s.back(), 10.006, 1e-5);
+}
+
+TEST(RunRecorder, ALongRunTakesNoMoreSamplesAndLosesNoPeak) {
+  RunRecorder recorder(100);
+  const int steps = 1037;
+  for (int k = 1; k <= steps; ++k) {
+    StepReport r;
+    r.time = 0.01 * k;
+    r.rows = k == 511 ? 999 : 1;
+    r.strands_left = steps - k;
+    recorder.record(r, {}, {k == 3 ? 3.0 : 0.0, k == 1036 ? 2.0 : 0.0}, 0);
+    ASSERT_LE(recorder.samples().size(), 100u);
+    ASSERT_EQ(recorder.steps(), k);
+  }
+  EXPECT_EQ(recorder.steps_per_sample(), 16);
+  int held = 0, rows = 0;
+  float left = 0, right = 0;
+  for (const auto& s : recorder.samples()) {
+    held += s.steps;
+    EXPECT_NEAR(s.time_s, 0.01 * held, 1e-5) << "of the last of its steps";
+    EXPECT_EQ(s.strands_left, steps - held);
+    rows = std::max(rows, int(s.rows));
+    left = std::max(left, s.hand_force_N[0]);
+    right = std::max(right, s.hand_force_N[1]);
+  }
+  EXPECT_EQ(held, steps);
+  EXPECT_EQ(rows, 999);
+  EXPECT_EQ(left, 3);
+  EXPECT_EQ(right, 2);
+  EXPECT_EQ(Json::parse(report_json(recorder, summary(nullptr))).at("steps"), steps);
+  EXPECT_NE(report_html(recorder, summary(nullptr)).find("16 steps"), std::string::npos);
+}
+
+TEST(RunRecorder, LimitsItsEvents) {
+  RunRecorder recorder;
+  StepReport r;
+  for (int k = 0; k < 5100; ++k) recorder.record(r, {{"message", "a", "b", 0, 0}}, {0, 0}, 0);
+  EXPECT_EQ(recorder.events().size(), 5000u);
+  EXPECT_EQ(recorder.events_left_out(), 100);
+  recorder.clear();
+  EXPECT_TRUE(recorder.events().empty());
+  EXPECT_TRUE(recorder.samples().empty());
+}
+
+TEST(Percentile, IsTheNearestRank) {
+  EXPECT_EQ(percentile({}, 0.5), 0);
+  EXPECT_EQ(percentile({7}, 0.95), 7);
+  EXPECT_EQ(percentile({3, 1, 2}, 0.5), 2);
+  EXPECT_EQ(percentile({4, 3, 1, 2}, 0.5), 2);
+  EXPECT_EQ(percentile({4, 3, 1, 2}, 1), 4);
+  EXPECT_EQ(percentile({4, 3, 1, 2}, 0), 1);
+}
+
+TEST(Svg, TicksAreRoundAndCoverTheRange) {
+  EXPECT_EQ(nice_ticks(0, 10, 5), (std::vector<double>{0, 2, 4, 6, 8, 10}));
+  std::mt19937 random(1);
+  for (int i = 0; i < 1000; ++i) {
+    const double low = -1 + double(random() % 1000) / 500, high = low + std::pow(10.0, int(random() % 12) - 6);
+    const auto ticks = nice_ticks(low, high, 5);
+    EXPECT_LE(ticks.front(), low + 1e-9 * std::abs(high - low));
+    EXPECT_GE(ticks.back(), high - 1e-9 * std::abs(high - low));
+    EXPECT_LE(ticks.size(), 9u);
+  }
+}
+
+TEST(Svg, IsWellFormedForEveryCurve) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const auto& y : {std::vector<double>{}, {0, 0, 0}, {nan, nan, nan}, {1, nan, 3}, {-1, 0, 1e30}, {1e-12, 1e-12, 1e-12}})
+    for (bool log : {false, true}) {
+      const std::string text = svg({"t & t", "x", "y <N>", {0, 1, 2}, {{"c", "#111", y, "2 2"}}, {{1, "m & m", "#222"}}, log});
+      EXPECT_EQ(xml_error(text), "");
+      EXPECT_EQ(text.find("nan"), std::string::npos);
+      EXPECT_EQ(text.find("inf"), std::string::npos);
+    }
+}
+
+TEST(WriteReport, WritesBothFilesOrSaysWhyNot) {
+  const auto dir = std::filesystem::temp_directory_path() / ("insula_report_" + std::to_string(std::random_device()()));
+  write_report(dir / "deep", hundred_steps(), summary(nullptr));
+  std::ifstream in(dir / "deep" / "report.json");
+  EXPECT_EQ(Json::parse(in).at("steps"), 100);
+  EXPECT_TRUE(std::filesystem::exists(dir / "deep" / "report.html"));
+  std::ofstream(dir / "file") << "x";
+  EXPECT_THROW(write_report(dir / "file", RunRecorder(), summary(nullptr)), InputError);
+  std::filesystem::remove_all(dir);
+}
+
+}  // namespace
+}  // namespace insula

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A session as people play it writes a report at the exercise's end, before a reset and at its own end, each into a new folder.
+#include "engine/reports/session_reports.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <regex>
+
+#include "core/base/input_error.h"
+#include "core/bus/channels.h"
+#include "core/bus/codec.h"
+#include "core/bus/mem_bus.h"
+#include "core/registry/registry.h"
+#include "engine/live/live_engine.h"
+
+namespace insula {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+/// Its goal is reached after so many seconds.
+class ReachedAt final : public ExerciseRule {
+ public:
+  Param<Duration> at{this, {.name = "at", .doc = "for tests"}};
+  void declare(PrepareContext&, const Simulation&, ExerciseLog& log) override { goal_ = log.add_goal("there", "Be there"); }
+  void observe(const StepReport& report, ExerciseLog& log) override {
+    if (report.time > at() - 1e-9) log.goal(goal_, report.time);
+  }
+
+ private:
+  int goal_ = 0;
+};
+
+class SessionReportsTest : public testing::Test {
+ protected:
+  SessionReportsTest() : folder_(fs::temp_directory_path() / ("insula_session_" + std::to_string(std::random_device()()))) {
+    fs::create_directories(folder_);
+    register_builtin(registry_);
+    registry_.add<ReachedAt>("reached_at", Kind::exercise_rule, "for tests");
+    // What the engine says in each step is where a test acts: in simulated time, whatever the machine does. It is heard before the
+    // next step; that of the last one no more.
+    bus_.subscribe(channel::haptic_problem, [this](Bytes) {
+      ++steps_;
+      if (on_step_) on_step_(steps_);
+    });
+  }
+  ~SessionReportsTest() override { fs::remove_all(folder_); }
+
+  /// A session of so many simulated seconds since its last reset, by steps of 10 ms; the exercise's goal is reached at `end`.
+  int play(double duration_s, double end_s) {
+    std::ofstream(folder_ / "press.xml") << R"(<scene title="Press" time_step="10 ms"><exercise id="e" title="Waiting"><reached_at id="r" at=")" << end_s
+                                         << R"( s"/></exercise></scene>)";
+    LiveOptions options;
+    options.scene = folder_ / "press.xml";
+    options.bundle_root = folder_ / "bundle";
+    options.duration = duration_s;
+    options.unthrottled = true;
+    options.threads = 1;
+    options.report = root();
+    return run_live(options, registry_, bus_, stop_);
+  }
+  void ask(const std::string& command, const std::string& argument = "") {
+    insula_lcm::user_command_t m;
+    m.time_us = 1;
+    m.sender = "test";
+    m.command = command;
+    m.argument = argument;
+    std::vector<std::uint8_t> scratch;
+    EXPECT_TRUE(publish(bus_, channel::user_command, m, scratch));
+  }
+  void hand_force(double newtons) {
+    insula_lcm::device_state_t m{};
+    m.session = 1;
+    m.sequence = ++sequence_;
+    m.time_us = 1000 + sequence_;
+    m.hand.resize(1);
+    m.hands = 1;
+    m.hand[0].hand = 1;
+    m.hand[0].device = "mouse";
+    m.hand[0].connected = true;
+    m.hand[0].q[0] = 1;
+    m.hand[0].force_N[2] = -newtons;
+    std::vector<std::uint8_t> scratch;
+    EXPECT_TRUE(publish(bus_, channel::device_state, m, scratch));
+  }
+  /// In the order they were made.
+  std::vector<Json> reports() const {
+    std::vector<fs::path> folders;
+    for (const auto& entry : fs::directory_iterator(root())) folders.push_back(entry.path());
+    std::sort(folders.begin(), folders.end(), [](const auto& a, const auto& b) { return std::pair(a.string().size(), a) < std::pair(b.string().size(), b); });
+    std::vector<Json> out;
+    for (const fs::path& f : folders) {
+      EXPECT_TRUE(std::regex_match(f.filename().string(), std::regex(R"(\d{4}-\d\d-\d\d_\d\d-\d\d-\d\d_press(_\d+)?)"))) << f;
+      EXPECT_TRUE(fs::is_regular_file(f / "report.html"));
+      EXPECT_GT(fs::file_size(f / "report.html"), 1000u);
+      std::ifstream in(f / "report.json");
+      out.push_back(Json::parse(in));
+    }
+    return out;
+  }
+  fs::path root() const { return folder_ / "reports"; }
+
+  fs::path folder_;
+  Registry registry_;
+  MemBus bus_;
+  std::atomic<bool> stop_{false};
+  std::function<void(int)> on_step_;
+  int steps_ = 0;
+  std::int64_t sequence_ = 0;
+};
+
+TEST_F(SessionReportsTest, EndsWithTheExercise) {
+  ASSERT_EQ(play(0.5, 0.2), 0);
+  EXPECT_EQ(steps_, 49) << "the session went on";
+  const auto all = reports();
+  ASSERT_EQ(all.size(), 1u) << "and wrote no other at its end";
+  EXPECT_EQ(all[0].at("steps"), 20);
+  EXPECT_NEAR(all[0].at("sim_seconds").get<double>(), 0.2, 1e-6);
+  EXPECT_EQ(all[0].at("title"), "Press");
+  EXPECT_EQ(all[0].at("exercise").at("state"), "done");
+  EXPECT_EQ(all[0].at("exercise").at("goals").at(0).at("done"), true);
+  EXPECT_EQ(all[0].at("events").back().at("kind"), "end");
+  EXPECT_EQ(all[0].at("began").get<std::string>().size(), 19u);
+}
+
+TEST_F(SessionReportsTest, AResetBeginsAnotherAndTheEndOfTheSessionTheLast) {
+  on_step_ = [this](int step) {
+    if (step == 5) ask("ask", "nobody listens");
+    if (step == 10) ask("reset");
+    if (step == 25) ask("quit");
+  };
+  ASSERT_EQ(play(0, 9), 0);
+  const auto all = reports();
+  ASSERT_EQ(all.size(), 2u);
+  EXPECT_EQ(all[0].at("steps").get<int>() + all[1].at("steps").get<int>(), steps_ + 1);
+  EXPECT_NEAR(all[0].at("steps").get<int>(), 10, 2);
+  EXPECT_EQ(all[0].at("commands").size(), 1u);
+  EXPECT_EQ(all[1].at("commands").size(), 0u);
+  for (const Json& report : all) {
+    EXPECT_EQ(report.at("exercise").at("state"), "running");
+    EXPECT_NEAR(report.at("series").at("time_s").front().get<double>(), 0.01, 1e-6) << "each begins at the start";
+  }
+}
+
+TEST_F(SessionReportsTest, TheExerciseMayEndAgainAfterAReset) {
+  on_step_ = [this](int step) {
+    if (step == 30) ask("reset");
+  };
+  ASSERT_EQ(play(0.4, 0.2), 0);
+  const auto all = reports();
+  ASSERT_EQ(all.size(), 2u);
+  EXPECT_EQ(all[0].at("steps"), 20);
+  EXPECT_EQ(all[0].at("state_hash"), all[1].at("state_hash"));
+  EXPECT_EQ(all[1].at("steps"), 20);
+}
+
+TEST_F(SessionReportsTest, HoldsTheLargestForceBetweenTwoSteps) {
+  on_step_ = [this](int step) {  // a peak that is over before the step looks
+    if (step == 60) hand_force(0.75);
+    hand_force(0.125);
+  };
+  ASSERT_EQ(play(1, 9), 0);
+  const auto all = reports();
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_EQ(all[0].at("haptic").at("max_force_N").at("right"), 0.75);
+  EXPECT_EQ(all[0].at("haptic").at("max_force_N").at("left"), 0);
+  int peaks = 0, held = 0;
+  for (const Json& force : all[0].at("series").at("hand_force_N").at("right")) {
+    peaks += force == 0.75;
+    held += force == 0.125;
+  }
+  EXPECT_EQ(peaks, 1);
+  EXPECT_GT(held, 60);
+}
+
+TEST_F(SessionReportsTest, WhatCannotBeWrittenDoesNotEndTheSession) {
+  std::ofstream(root()) << "a file";
+  on_step_ = [this](int step) {
+    if (step == 10) ask("reset");
+  };
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(play(0.5, 9), 0);
+  const std::string said = testing::internal::GetCapturedStdout();
+  EXPECT_GT(steps_, 50);
+  EXPECT_NE(said.find("no report can be written there"), std::string::npos) << said;
+  EXPECT_NE(said.find("a report was not written"), std::string::npos) << said;
+  EXPECT_TRUE(fs::is_regular_file(root()));
+}
+
+TEST_F(SessionReportsTest, NothingIsWrittenBeforeTheFirstStep) {
+  stop_ = true;
+  ASSERT_EQ(play(0, 9), 0);
+  EXPECT_TRUE(reports().empty());
+}
+
+TEST_F(SessionReportsTest, NoFolderIsTakenTwice) {
+  EXPECT_EQ(new_report_folder(root(), "a"), root() / "a");
+  EXPECT_EQ(new_report_folder(root(), "a"), root() / "a_2");
+  EXPECT_EQ(new_report_folder(root(), "a"), root() / "a_3");
+  std::ofstream(folder_ / "file") << "x";
+  EXPECT_THROW(new_report_folder(folder_ / "file", "a"), InputError);
+}
+
+}  // namespace
+}  // namespace insula

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Rows from tick to tick.
+#include "haptic_server/substep_correction.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace insula {
+namespace {
+
+constexpr double shortest_s = 1e-5;  // a tick of no length would leave tissue no compliance
+constexpr double same_length = 0.1;  // ticks that differ by less share a W
+
+}  // namespace
+
+SubstepCorrection::SubstepCorrection(const SubstepCorrectionSettings& settings, int max_rows) : settings_(settings), extrapolation_(max_rows) {
+  tick_.resize(max_rows);
+  tick_.blocks.reserve(std::size_t(max_rows));
+  for (auto* v : {&gap_, &rate_, &known_, &share_}) v->assign(std::size_t(max_rows), 0.0);
+  slips_.assign(std::size_t(max_rows), 0);
+  tool_coupled_.reserve(std::size_t(max_rows));
+}
+
+void SubstepCorrection::begin(const ConstraintProblem& p, const std::array<GraspedBody, 2>& grasped, double age_s) noexcept {
+  step_ = &p;
+  grasped_ = grasped;
+  const std::size_t n = std::size_t(p.rows);
+  tick_.resize(p.rows);  // within its capacity, and so are the blocks
+  tick_.blocks.assign(p.blocks.begin(), p.blocks.end());
+  std::copy_n(p.lambda.begin(), n, known_.begin());
+  std::fill_n(slips_.begin(), n, char(0));
+  for (const Block& b : p.blocks)
+    for (int k = b.law == LawKind::friction ? 1 : 0; k < b.rows() && b.law != LawKind::box; ++k) slips_[std::size_t(b.row + k)] = 1;
+  for (std::size_t i = 0; i < n; ++i) {
+    double gap = p.delta_free[i];
+    const double* w = p.w.data() + i * std::size_t(p.stride);
+    for (std::size_t j = 0; j < n; ++j) gap += w[j] * p.lambda[j];
+    gap_[i] = gap;
+    rate_[i] = p.rate[i];
+  }
+  find_tool_coupled_rows();
+  extrapolation_.begin(p, grasped);
+  for (std::size_t t = 0; t < tools(); ++t) {
+    moved_[t].setZero();
+    push_[t] = push(t, p.lambda);
+    if (grasped_[t].any) grasping_[t].begin(p.tools[t], p.step_s, grasped_[t].velocity, push_[t]);
+    else grasping_[t].lose();
+  }
+  age_ = std::isfinite(age_s) ? age_s : 0;
+  compliance_dt_ = 0;
+  first_ = true;
+}
+
+void SubstepCorrection::find_tool_coupled_rows() noexcept {
+  tool_coupled_.clear();
+  for (int i = 0; i < step_->rows; ++i) {
+    bool tool_coupled = false;
+    for (std::size_t t = 0; t < tools(); ++t)
+      for (int c = 0; c < 6; ++c) tool_coupled = tool_coupled || step_->tools[t].jacobian(i, c) != 0;
+    if (tool_coupled) tool_coupled_.push_back(i);
+  }
+}
+
+Vec6 SubstepCorrection::push(std::size_t tool, std::span<const double> lambda) const noexcept {
+  Vec6 sum = Vec6::Zero();
+  for (const int i : tool_coupled_)
+    for (int c = 0; c < 6; ++c) sum[c] += extrapolation_.jacobian(tool)(i, c) * lambda[std::size_t(i)];
+  return sum;
+}
+
+// What the tools give in dt, and as much of the rest as tissue yields in it.
+void SubstepCorrection::scale_compliance(double dt) noexcept {
+  const ConstraintProblem& p = *step_;
+  const std::size_t n = std::size_t(p.rows), stride = std::size_t(tick_.stride);
+  const double h = p.step_s;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double beta = p.retardation_time[i];
+    share_[i] = settings_.substep_compliance && h > 0 ? std::sqrt(dt / (beta + dt) * (h + beta) / h) : 1.0;
+  }
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < n; ++j) tick_.w[i * stride + j] = share_[i] * share_[j] * p.w_at(int(i), int(j));
+  for (std::size_t t = 0; t < tools(); ++t)
+    for (const int a : tool_coupled_) {
+      Vec6 step = Vec6::Zero(), tick = Vec6::Zero();
+      for (int c = 0; c < 6; ++c)
+        for (int k = 0; k < 6; ++k) {
+          step[c] += p.tools[t].compliance(c, k) * p.tools[t].jacobian(a, k);
+          tick[c] += give(t)(c, k) * p.tools[t].jacobian(a, k);
+        }
+      for (const int b : tool_coupled_) {
+        const double share = share_[std::size_t(a)] * share_[std::size_t(b)];
+        double sum = 0;
+        for (int c = 0; c < 6; ++c) sum += p.tools[t].jacobian(b, c) * (tick[c] - share * step[c]);
+        tick_.w[std::size_t(a) * stride + std::size_t(b)] += sum;
+      }
+    }
+  compliance_dt_ = dt;
+}
+
+const ConstraintProblem& SubstepCorrection::next(double dt, const std::array<Vec6, 2>& moved) noexcept {
+  const ConstraintProblem& p = *step_;
+  const std::size_t n = std::size_t(p.rows), stride = std::size_t(tick_.stride);
+  dt = std::max(dt, shortest_s);
+  dt_ = first_ ? std::max(age_, shortest_s) : dt;
+  if (first_ || std::abs(dt_ - compliance_dt_) > same_length * dt_ || second_) {
+    for (std::size_t t = 0; t < tools(); ++t)
+      if (grasped_[t].any) grasping_[t].set_tick(dt, dt_);
+    scale_compliance(dt_);
+  }
+  second_ = first_;
+  first_ = false;
+  if (settings_.extrapolate_frames) extrapolation_.extrapolate(moved);
+  for (std::size_t t = 0; t < tools(); ++t) {
+    const Vec6 turned = settings_.extrapolate_frames ? Vec6(push(t, known_) - push_[t]) : Vec6(Vec6::Zero());
+    push_[t] += turned;
+    if (grasped_[t].any) {
+      went_[t] = grasping_[t].free_displacement(moved[t]) + give(t) * push_[t];
+      continue;
+    }
+    const Vec6 free = p.tools[t].gain * moved[t];
+    went_[t] = free - moved_[t] + give(t) * turned;
+    moved_[t] = free;
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    double free = start(i);
+    if (settings_.extrapolate_tissue) {
+      const double beta = p.retardation_time[i], last = settings_.substep_compliance ? dt_ : p.step_s;
+      free += beta / (beta + last) * dt_ * rate_[i];
+    }
+    const double* w = tick_.w.data() + i * stride;
+    for (std::size_t j = 0; j < n; ++j) free -= w[j] * known_[j];
+    for (std::size_t t = 0; t < tools(); ++t)
+      for (int c = 0; c < 6; ++c) free += extrapolation_.jacobian(t)(int(i), c) * went_[t][c];
+    tick_.delta_free[i] = free;
+  }
+  return tick_;
+}
+
+void SubstepCorrection::solved(std::span<const double> lambda, std::span<const double> delta) noexcept {
+  const ConstraintProblem& p = *step_;
+  // What the tools did: their free way and what the change of force makes them yield.
+  std::array<Vec6, 2> swept = went_;
+  for (std::size_t t = 0; t < tools(); ++t) {
+    const Vec6 now = push(t, lambda);
+    swept[t] += give(t) * (now - push_[t]);
+    push_[t] = now;
+    if (grasped_[t].any) grasping_[t].went(swept[t]);
+  }
+  for (std::size_t i = 0; i < std::size_t(p.rows); ++i) {
+    double tissue = delta[i] - start(i);
+    for (std::size_t t = 0; t < tools(); ++t)
+      for (int c = 0; c < 6; ++c) tissue -= extrapolation_.jacobian(t)(int(i), c) * swept[t][c];
+    if (settings_.substep_compliance) rate_[i] = tissue / dt_;
+    gap_[i] = delta[i];
+    known_[i] = lambda[i];
+  }
+}
+
+}  // namespace insula

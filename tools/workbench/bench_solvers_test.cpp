@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The comparison of solvers: all of them on the same step, near the same answer; the borrowed ones keep the interface's promises.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tools/workbench/reference_solvers.h"
+#include "engine/command_line/run.h"
+
+namespace insula {
+namespace {
+
+TEST(BenchSolvers, EverySolverAgreesOnTheSameStep) {
+  Registry registry;
+  register_builtin(registry);
+  std::ostringstream out, err;
+  BenchOptions options;
+  options.scene = std::filesystem::path(INSULA_SOURCE_DIR) / "plugins/strand_springs/example.xml";
+  options.motion = "none";
+  options.threads = 1;
+  options.json = true;
+  options.rows = 12;
+  ASSERT_EQ(cmd_bench_solvers({registry, out, err}, options), 0) << err.str();
+  const auto j = nlohmann::json::parse(out.str());
+  for (const char* rate : {"peak_f64", "peak_f32", "product_f64", "product_f32", "read"}) EXPECT_GT(j["machine"][rate].get<double>(), 1e6) << rate;
+  ASSERT_FALSE(j["bodies"].empty());
+  int rows = 0;
+  for (const auto& body : j["bodies"]) {
+    rows += body["rows"].get<int>();
+    EXPECT_LE(body["rows"].get<int>(), 12);
+    ASSERT_EQ(body["solvers"].size(), 4u);
+    for (const auto& s : body["solvers"]) {
+      const std::string name = s["solver"];
+      const double tolerance = name.find("single") != std::string::npos ? 1e-4 : 1e-11;
+      EXPECT_LT(s["solve_error"].get<double>(), tolerance) << name;
+      EXPECT_LT(s["w_error"].get<double>(), tolerance) << name;
+      for (const char* key : {"factor_ms", "solve_ms", "w_ms", "w_again_ms", "factor_flops", "solve_bytes", "factor_share_of_product", "solve_share_of_read"}) {
+        EXPECT_GT(s[key].get<double>(), 0) << name << ' ' << key;
+        EXPECT_LT(s[key].get<double>(), 1e12) << name << ' ' << key;
+      }
+    }
+  }
+  EXPECT_GT(rows, 0);
+}
+
+TEST(BenchSolvers, BorrowedSolversSayWhenAMatrixIsIndefinite) {
+  BlockMatrix a;
+  a.set_pattern(2, {{0, 1}});
+  for (const auto& s : {make_cholmod_solver(), make_eigen_solver()}) {
+    s->analyse(a);
+    for (double pivot : {3.0, -3.0, 3.0}) {
+      for (int i = 0; i < 3; ++i) {
+        a.block(a.diagonal(0))[4 * i] = 2;
+        a.block(a.diagonal(1))[4 * i] = pivot;
+        a.block(a.slot(1, 0))[4 * i] = 1;
+      }
+      EXPECT_EQ(s->factorise(a), pivot > 0) << s->name();
+      if (pivot < 0) continue;
+      double x[6] = {1, 0, 0, 0, 0, 0};
+      s->solve(x);
+      EXPECT_NEAR(x[0], 0.6, 1e-15) << s->name();
+      EXPECT_NEAR(x[3], -0.2, 1e-15) << s->name();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace insula

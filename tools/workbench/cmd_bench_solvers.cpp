@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// insula bench --solvers: the solvers side by side on the same recorded step, each on one thread.
+#include <fmt/ostream.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+
+#include "core/linalg/direct_solver.h"
+#include "core/linalg/kernels.h"
+#include "core/mechanics/deformable_body.h"
+#include "engine/live/headless.h"
+#include "tools/workbench/machine_rates.h"
+#include "tools/workbench/reference_solvers.h"
+#include "engine/command_line/run.h"
+
+namespace insula {
+namespace {
+
+/// One body's part of the step.
+struct Recorded {
+  const DeformableBody* body;
+  BodyRows rows;
+  int compared;  ///< columns of W held against the reference
+  VecX b, x;     ///< a right-hand side and its solution
+  MatX w;        ///< rows x compared
+};
+
+// x with A x = b to the last digit: refined with residuals in extended precision.
+VecX refined(BodySolver& solver, const BlockMatrix& a, const VecX& b) {
+  using Long = Eigen::Matrix<long double, 3, 1>;
+  VecX x = VecX::Zero(b.size());
+  Eigen::Matrix<long double, Eigen::Dynamic, 1> r(b.size()), sum = x.cast<long double>();
+  for (int round = 0; round < 4; ++round) {
+    r = b.cast<long double>();
+    for (int j = 0; j < a.nodes(); ++j)
+      for (int s = a.column_start(j); s < a.column_start(j + 1); ++s) {
+        const Eigen::Matrix<long double, 3, 3> block = Eigen::Map<const Mat3>(a.block(s)).cast<long double>();
+        const int i = a.row(s);
+        r.segment<3>(3 * i) -= Long(block * sum.segment<3>(3 * j));
+        if (i != j) r.segment<3>(3 * j) -= Long(block.transpose() * sum.segment<3>(3 * i));
+      }
+    x = r.cast<double>();
+    solver.solve(x.data());
+    sum += x.cast<long double>();
+  }
+  return sum.cast<double>();
+}
+
+Recorded record(const DeformableBody& body, int max_rows) {
+  const BlockMatrix& a = body.system();
+  const std::vector<int>& node = body.free_of_node();
+  Recorded out{&body, {}, 0, VecX(3 * a.nodes()), {}, {}};
+  out.rows.clear();
+  const int m = max_rows > 0 ? std::min(max_rows, body.rows.count()) : body.rows.count();
+  for (int r = 0; r < m; ++r) {
+    out.rows.open(r);
+    for (int e = body.rows.start[std::size_t(r)]; e < body.rows.start[std::size_t(r) + 1]; ++e)
+      out.rows.add(body.rows.block[std::size_t(e)], body.rows.coeff[std::size_t(e)]);
+  }
+  const auto solver = make_direct_solver(false);
+  solver->analyse(a);
+  if (!solver->factorise(a)) throw std::runtime_error("the matrix of \"" + body.id + "\" is not positive definite");
+  for (int i = 0; i < 3 * a.nodes(); ++i) out.b[i] = i % 3 == 0 ? 1 : i % 3 == 1 ? 0.5 : -0.25;
+  out.x = refined(*solver, a, out.b);
+  out.compared = a.nodes() > 3000 ? std::min(m, 8) : m;
+  out.w.resize(m, out.compared);
+  const auto column_of = [&](int r, auto&& f) {
+    for (int e = out.rows.start[std::size_t(r)]; e < out.rows.start[std::size_t(r) + 1]; ++e)
+      if (const int n = node[std::size_t(out.rows.block[std::size_t(e)])]; n >= 0) f(n, out.rows.coeff[std::size_t(e)]);
+  };
+  for (int c = 0; c < out.compared; ++c) {
+    const int row = c * m / out.compared;  // spread over all of them
+    VecX h = VecX::Zero(3 * a.nodes());
+    column_of(row, [&](int n, const Vec3& d) { h.segment<3>(3 * n) += d; });
+    const VecX x = refined(*solver, a, h);
+    for (int r = 0; r < m; ++r) {
+      double sum = 0;
+      column_of(r, [&](int n, const Vec3& d) { sum += d.dot(x.segment<3>(3 * n)); });
+      out.w(r, c) = sum;
+    }
+  }
+  return out;
+}
+
+struct Measured {
+  std::string name;
+  double factor_ms = 1e300, solve_ms = 1e300, w_ms = 1e300;
+  double again_ms = 1e300;  ///< W of the same rows with the same factor
+  double solve_error = 0, w_error = 0;  ///< largest, over the largest value
+  SolverCost cost;
+};
+
+template <class F>
+double milliseconds(F&& f) {
+  const auto begin = std::chrono::steady_clock::now();
+  f();
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+}
+
+// In rounds, all solvers in each round: what disturbs the machine disturbs them all. The fastest run counts.
+std::vector<Measured> measure(const Recorded& step, std::vector<std::unique_ptr<BodySolver>> solvers) {
+  constexpr double budget_ms = 1000;  // of each solver
+  constexpr int least = 3, most = 300;
+  const BlockMatrix& a = step.body->system();
+  const std::vector<int>& node = step.body->free_of_node();
+  const int m = step.rows.count(), stride = std::max(8, (m + 7) & ~7);
+  std::vector<Measured> out(solvers.size());
+  VecX x;
+  std::vector<double> w(std::size_t(stride) * std::size_t(stride)), spent(solvers.size(), 0.0);
+  for (std::size_t i = 0; i < solvers.size(); ++i) {
+    out[i].name = solvers[i]->name();
+    solvers[i]->analyse(a);
+  }
+  for (int k = 0; k < most; ++k)
+    for (std::size_t i = 0; i < solvers.size(); ++i) {
+      if (k >= least && spent[i] > budget_ms) continue;
+      BodySolver& s = *solvers[i];
+      const auto timed = [&](double& best, auto&& f) {
+        const double ms = milliseconds(f);
+        spent[i] += ms;
+        best = std::min(best, ms);
+      };
+      const auto compliance = [&] {
+        s.compute_compliance(step.rows, node);
+        s.add_compliance(step.rows, w.data(), stride);
+      };
+      timed(out[i].factor_ms, [&] {
+        if (!s.factorise(a)) throw std::runtime_error(s.name() + " calls the matrix of \"" + step.body->id + "\" indefinite");
+      });
+      x = step.b;
+      timed(out[i].solve_ms, [&] { s.solve(x.data()); });
+      timed(out[i].w_ms, compliance);
+      out[i].cost = s.cost();
+      timed(out[i].again_ms, compliance);
+    }
+  for (std::size_t i = 0; i < solvers.size(); ++i) {
+    BodySolver& s = *solvers[i];
+    x = step.b;
+    s.solve(x.data());
+    out[i].solve_error = (x - step.x).cwiseAbs().maxCoeff() / step.x.cwiseAbs().maxCoeff();
+    if (m == 0) continue;
+    std::fill(w.begin(), w.end(), 0.0);
+    s.add_compliance(step.rows, w.data(), stride);
+    double error = 0;
+    for (int r = 0; r < m; ++r)
+      for (int c = 0; c < step.compared; ++c)
+        error = std::max(error, std::abs(w[std::size_t(r * stride + c * m / step.compared)] - step.w(r, c)));
+    out[i].w_error = error / step.w.cwiseAbs().maxCoeff();
+  }
+  return out;
+}
+
+std::vector<std::unique_ptr<BodySolver>> all_solvers() {
+  std::vector<std::unique_ptr<BodySolver>> out;
+  out.push_back(make_direct_solver(false));
+  out.push_back(make_direct_solver(true));
+  out.push_back(make_cholmod_solver());
+  out.push_back(make_eigen_solver());
+  return out;
+}
+
+bool is_single(const Measured& s) { return s.name.find("single") != std::string::npos; }
+
+nlohmann::json as_json(const Measured& s, const MachineRates& machine) {
+  const double product = is_single(s) ? machine.product_f32 : machine.product_f64;
+  const double factor_rate = s.cost.factor_flops / (s.factor_ms * 1e-3), w_rate = s.cost.compliance_flops / (s.w_ms * 1e-3);
+  const double read = s.cost.factor_bytes / (s.solve_ms * 1e-3);
+  nlohmann::json j{{"solver", s.name}, {"factor_ms", s.factor_ms}, {"solve_ms", s.solve_ms}, {"w_ms", s.w_ms}, {"w_again_ms", s.again_ms},
+                   {"solve_error", s.solve_error}, {"w_error", s.w_error},
+                   {"factor_entries", s.cost.factor_entries}, {"factor_flops", s.cost.factor_flops}, {"w_flops", s.cost.compliance_flops}, {"solve_bytes", s.cost.factor_bytes},
+                   {"factor_share_of_product", factor_rate / product}, {"w_share_of_product", w_rate / product}, {"solve_share_of_read", read / machine.read}};
+  return j;
+}
+
+void print(std::ostream& out, const Recorded& step, const std::vector<Measured>& all, const MachineRates& machine) {
+  fmt::print(out, "\n{}: {} free nodes, {} rows\n", step.body->id, step.body->system().nodes(), step.rows.count());
+  fmt::print(out, "  {:<26}{:>10}{:>10}{:>10}{:>10}{:>11}{:>11}{:>10}{:>11}{:>7}{:>7}{:>7}\n", "solver", "factor ms", "solve ms", "W ms", "W again", "err solve", "err W", "entries",
+             "fac Mflop", "fac %", "W %", "read %");
+  for (const Measured& s : all) {
+    const nlohmann::json j = as_json(s, machine);
+    fmt::print(out, "  {:<26}{:>10.3f}{:>10.3f}{:>10.3f}{:>10.3f}{:>11.1e}{:>11.1e}{:>10}{:>11.1f}{:>7.0f}{:>7.0f}{:>7.0f}\n", s.name, s.factor_ms, s.solve_ms, s.w_ms, s.again_ms,
+               s.solve_error, s.w_error, s.cost.factor_entries, s.cost.factor_flops * 1e-6, 100 * j["factor_share_of_product"].get<double>(),
+               100 * j["w_share_of_product"].get<double>(), 100 * j["solve_share_of_read"].get<double>());
+  }
+  const Measured& ours = all.front();
+  for (const Measured& s : all)
+    if (&s != &ours)
+      fmt::print(out, "  {} over {}: factor {:.1f}, W {:.1f}, factor and W {:.1f}\n", s.name, ours.name, s.factor_ms / ours.factor_ms, s.w_ms / ours.w_ms,
+                 (s.factor_ms + s.w_ms) / (ours.factor_ms + ours.w_ms));
+}
+
+}  // namespace
+
+int cmd_bench_solvers(const CommandContext& context, const BenchOptions& options) {
+  const OpenedRun opened = open_run(context, options.scene, options.motion, options.motion == "steady", options.threads);
+  if (!opened.simulation) return 2;
+  HeadlessRun run(*opened.simulation, opened.motion);
+  const auto steps = std::max<std::int64_t>(5, std::int64_t(options.from / opened.simulation->h()));
+  for (std::int64_t k = 0; k < steps; ++k) run.step();
+
+  const MachineRates machine = measure_machine();
+  nlohmann::json j;
+  j["scene"] = options.scene.string();
+  j["time_s"] = opened.simulation->time();
+  j["kernels"] = kernels().name;
+  j["blas"] = blas_library();
+  j["machine"] = {{"peak_f64", machine.peak_f64}, {"peak_f32", machine.peak_f32}, {"product_f64", machine.product_f64}, {"product_f32", machine.product_f32}, {"read", machine.read}};
+  if (!options.json)
+    fmt::print(context.out,
+               "{} at {:.2f} s  ({} kernels, one thread; CHOLMOD on {})\n"
+               "this core, Gflop/s: peak {:.0f} (single {:.0f}), dense product of our kernels {:.0f} (single {:.0f}); reads {:.1f} GB/s\n"
+               "%: of the rate of the dense product; of the rate of reading\n",
+               options.scene.string(), opened.simulation->time(), kernels().name, blas_library(), machine.peak_f64 * 1e-9, machine.peak_f32 * 1e-9,
+               machine.product_f64 * 1e-9, machine.product_f32 * 1e-9, machine.read * 1e-9);
+  for (const Body* b : opened.simulation->bodies()) {
+    const auto* body = dynamic_cast<const DeformableBody*>(b);
+    if (!body || body->system().nodes() == 0) continue;
+    const Recorded step = record(*body, options.rows);
+    const std::vector<Measured> all = measure(step, all_solvers());
+    nlohmann::json of_body{{"body", body->id}, {"nodes", body->system().nodes()}, {"rows", step.rows.count()}};
+    for (const Measured& s : all) of_body["solvers"].push_back(as_json(s, machine));
+    j["bodies"].push_back(of_body);
+    if (!options.json) print(context.out, step, all, machine);
+  }
+  if (options.json) context.out << j.dump(2) << '\n';
+  return 0;
+}
+
+}  // namespace insula

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// insula check SCENE...
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
+#include <optional>
+#include <ostream>
+
+#include "core/mechanics/deformable_body.h"
+#include "core/scene/loader.h"
+#include "core/sim/settings.h"
+#include "core/sim/simulation.h"
+#include "engine/command_line/commands.h"
+#include "tools/workbench/cost_model.h"
+#include "engine/live/scene_devices.h"
+
+namespace insula {
+namespace {
+
+/// What a step will cost on this machine, and what to do when it is too much.
+std::string cost_text(const std::string& file, Simulation& simulation, const CostRates& rates) {
+  simulation.step();  // rows that stand
+  const SceneWork work = count_work(simulation);
+  const int threads = simulation.workers().threads();
+  const CostEstimate e = estimate(work, rates, threads);
+  std::string out = fmt::format("  needs about {:.{}f} ms a step of {:.1f} ms on {} thread{}, at {} rows of {}; most of it is {}\n", e.step_ms, e.step_ms < 10 ? 1 : 0,
+                                1000 * work.h, threads, threads == 1 ? "" : "s", work.expected_rows, work.max_rows, e.most);
+  if (e.refactor_ms > 0.25 * e.step_ms)
+    out += fmt::format("  and {:.1f} ms more in a step that makes a kept factor anew\n", e.refactor_ms);
+  if (e.step_ms <= 1000 * work.h) return out;
+  out += fmt::format("{}: warning: too slow for this machine by a factor of {:.1f}: it would run slower than life\n", file, e.step_ms / (1000 * work.h));
+  for (const std::string& a : e.advice) out += "  " + a + "\n";
+  return out;
+}
+
+/// One scene: loaded, and put together as for a run, since some mistakes show only there. Returns the lines to print.
+std::string check_one(const std::filesystem::path& file, const Registry& registry, Diagnostics& diagnostics, std::optional<CostRates>& rates, bool settle) {
+  auto loaded = load_scene(file, registry);
+  diagnostics = std::move(loaded.diagnostics);
+  if (!loaded.scene) return {};
+  check_scene_devices(*loaded.scene, diagnostics);
+  const auto& components = loaded.scene->components();
+  const auto bodies = std::count_if(components.begin(), components.end(), [](const Component* c) { return c->kind == Kind::body; });
+  std::string lines = fmt::format("{}: ok, {} components, {} bodies, content {:016x}\n", file.generic_string(), components.size(), bodies,
+                                  loaded.scene->content_hash());
+  const bool deforms = !loaded.scene->all<DeformableBody>().empty();
+  double settling = 0;
+  for (SettleSettings* s : loaded.scene->all<SettleSettings>()) {
+    settling = s->time();
+    if (!settle) s->time.set(0);
+  }
+  try {
+    Simulation simulation(std::move(loaded.scene), diagnostics);
+    if (settling > 0 && !settle) {
+      lines += fmt::format("  settles for {:.3g} s first; with --settle it does so, and the cost of a step is told\n", settling);
+    } else if (deforms && diagnostics.ok()) {
+      if (!rates) rates = measure_rates(registry);
+      lines += cost_text(file.generic_string(), simulation, *rates);
+    }
+  } catch (const std::exception& e) {
+    diagnostics.error({file.generic_string(), 0, 0}, e.what());
+  }
+  diagnostics.sort_by_position();
+  return diagnostics.ok() ? lines : std::string();
+}
+
+}  // namespace
+
+int cmd_check(const CommandContext& context, const std::vector<std::filesystem::path>& files, bool settle) {
+  int status = 0;
+  std::optional<CostRates> rates;
+  for (const auto& file : files) {
+    Diagnostics diagnostics;
+    const std::string lines = check_one(file, context.registry, diagnostics, rates, settle);
+    context.err << diagnostics.format();
+    if (lines.empty()) status = 2;
+    context.out << lines;
+  }
+  return status;
+}
+
+}  // namespace insula

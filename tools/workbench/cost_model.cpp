@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Counts of a scene and what they make of a step.
+#include "tools/workbench/cost_model.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "core/mechanics/instrument.h"
+#include "core/mechanics/shell_body.h"
+#include "core/mechanics/soft_body.h"
+#include "plugins/contact/contact.h"
+#include "plugins/self_contact/self_contact.h"
+
+namespace insula {
+namespace {
+
+/// Rows of a contact of this component; a patch's two are shared.
+double rows_of_contact(const Contact& c) { return c.friction() <= 0 ? 1 : c.patch() > 0 ? 1.3 : 3; }
+
+bool is_clip(const RigidBody* r) { return r && !dynamic_cast<const Instrument*>(r); }
+/// The tool that a pair of tool and surface is about; null for other pairs.
+const RigidBody* tool_of(const Contact::Pair& p) { return p.tool_a && !p.tool_b ? p.tool_a : nullptr; }
+
+/// What the hands and a clip add to the rows that stand already.
+struct MoreRows {
+  double expected = 0, most = 0;
+  std::vector<std::pair<const Body*, double>> of_body;
+};
+
+MoreRows rows_of_hands(const Simulation& s) {
+  constexpr double usual = 4;  // contacts of a tool at work with tissue
+  MoreRows out;
+  const RigidBody* clip = nullptr;  // one at a time is closed
+  for (int hand = 0; hand < 2; ++hand) {
+    const Instrument* tool = s.instrument_of(hand);
+    if (!tool) continue;
+    bool counted = false;
+    for (const Constraint* k : s.constraints()) {
+      const auto* contact = dynamic_cast<const Contact*>(k);
+      if (!contact) continue;
+      for (const Contact::Pair& p : contact->pairs()) {
+        if (tool_of(p) != tool || p.body_b()->blocks() == 0) continue;
+        const double rows = rows_of_contact(*contact);
+        out.most += rows * contact->max_contacts() * (contact->contact_geometry.is("vertices") ? 2 : 1);
+        if (counted) continue;
+        counted = true;
+        out.expected += rows * std::min<double>(usual, contact->max_contacts());
+        out.of_body.emplace_back(p.body_b(), rows * std::min<double>(usual, contact->max_contacts()));
+      }
+    }
+  }
+  for (const Constraint* k : s.constraints()) {
+    const auto* contact = dynamic_cast<const Contact*>(k);
+    if (!contact || !contact->contact_geometry.is("vertices")) continue;
+    for (const Contact::Pair& p : contact->pairs()) {
+      if (!is_clip(tool_of(p)) || p.body_b()->blocks() == 0 || (clip && clip != tool_of(p))) continue;
+      if (!clip && tool_of(p)->links() < 2) continue;
+      clip = tool_of(p);
+      if (p.link_a == 0) continue;  // its coil; the jaws grip
+      const double rows = rows_of_contact(*contact) * contact->max_contacts();
+      out.expected += rows;
+      out.most += rows;
+      out.of_body.emplace_back(p.body_b(), rows);
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+SceneWork count_work(const Simulation& s) {
+  SceneWork w;
+  w.h = s.h();
+  w.standing_rows = s.problem().rows;
+  const MoreRows more = rows_of_hands(s);
+  w.expected_rows = w.standing_rows + int(std::lround(more.expected));
+  w.max_rows = w.standing_rows + int(std::lround(more.most));
+  w.newton = s.solve_settings().max_newton > 0;
+  w.expected_sweeps = 6 + 0.05 * w.expected_rows;
+
+  for (const Body* b : s.bodies()) {
+    const auto* body = dynamic_cast<const DeformableBody*>(b);
+    if (!body) continue;
+    BodyWork k;
+    k.id = body->id;
+    k.nodes = body->nodes();
+    k.h = s.h();
+    if (const auto* soft = dynamic_cast<const SoftBody*>(body)) k.elements = int(soft->rest().tets.size());
+    if (const auto* shell = dynamic_cast<const ShellBody*>(body)) k.elements = int(shell->wall_triangles().size()), k.wall = true;
+    k.background = body->solver_kind.is("asynchronous");
+    k.keeps_tangent = !k.background && body->tangent_tolerance() > 0;
+    k.solver = body->solver().cost();
+    const int now = body->rows.count();
+    double rows = now;
+    for (const auto& [which, n] : more.of_body) rows += which == body ? n : 0;
+    k.rows = int(std::lround(rows));
+    // What the last rows took, and for those to come the usual part of the factor that a row reaches.
+    const auto usual = [&](double m) { return 0.7 * (m * double(k.solver.factor_entries) + 0.3 * m * m * 3 * k.nodes); };
+    k.compliance_flops = k.solver.compliance_flops > 0 ? k.solver.compliance_flops + usual(rows) - usual(now) : usual(rows);
+    w.bodies.push_back(std::move(k));
+  }
+
+  std::set<const Surface*> touched;
+  const auto moves = [](const Surface* f) { return f->body().blocks() > 0; };
+  for (const Surface* f : s.surfaces())
+    if (moves(f)) w.surface_vertices += int(f->rest().vertices.size());
+  for (const Constraint* k : s.constraints()) {
+    if (const auto* self = dynamic_cast<const SelfContact*>(k)) {
+      w.wall_vertices += int(self->on->rest().vertices.size());
+      touched.insert(self->on.get());
+    }
+    const auto* contact = dynamic_cast<const Contact*>(k);
+    if (!contact) continue;
+    for (const Contact::Pair& p : contact->pairs()) {
+      for (const auto& f : {p.a, p.b})
+        if (f && moves(f)) touched.insert(f);
+      if (!p.tool_a && p.a && p.b) w.tissue_vertices += int(p.a->rest().vertices.size() + p.b->rest().vertices.size());
+      if (p.tool_a && !p.tool_b && p.tool_a->active()) w.tool_pieces += int(p.pieces_a.size());
+    }
+  }
+  for (const Surface* f : touched) w.surface_triangles += int(f->triangles().size());
+  return w;
+}
+
+namespace {
+
+/// Bodies by their cost, the heaviest first, on so many threads: when the last one is done.
+double on_threads(std::vector<double> seconds, int threads) {
+  std::sort(seconds.rbegin(), seconds.rend());
+  std::vector<double> busy(std::size_t(std::max(1, threads)), 0.0);
+  for (double t : seconds) *std::min_element(busy.begin(), busy.end()) += t;
+  return *std::max_element(busy.begin(), busy.end());
+}
+
+struct Share {
+  double ms;
+  std::string what, advice;
+};
+
+}  // namespace
+
+CostEstimate estimate(const SceneWork& w, const CostRates& r, int threads) {
+  // A triangle of a wall with its hinges, over a tetrahedron; how often a kept factor is made anew; iterations of a solve with one
+  // made in the background; a step over the best of several runs in a row, whose data lie in the caches; entries of a factor that a
+  // cache holds.
+  constexpr double wall_tangent = 3, wall_force = 3.2, anew = 0.05, iterations = 3, in_a_step = 1.25, cached = 1e6, newton_step = 2;
+  CostEstimate out;
+  std::vector<double> free, correct, compliance;
+  std::vector<Share> shares;
+  double add = 0;
+  for (const BodyWork& b : w.bodies) {
+    const double tangent = b.elements * r.tetrahedron * (b.wall ? wall_tangent : 1), force = b.elements * r.tetrahedron_force * (b.wall ? wall_force : 1);
+    const double factor = b.background ? 0 : b.solver.factor_flops * r.factor_flop + double(b.solver.factor_entries) * r.factor_entry;
+    const double solve = double(b.solver.factor_entries) * r.solve_entry * (b.background ? 0.5 * iterations : 1);
+    const double often = b.keeps_tangent ? anew : 1, forward = b.background ? solve : 0.5 * solve;
+    free.push_back(in_a_step * (often * (tangent + factor) + (1 - often) * force + forward) + 12 * b.nodes * r.vertex);
+    correct.push_back(b.background ? (b.rows > 0 ? 0.8 * solve : 0) : 0.5 * solve);
+    compliance.push_back(b.rows > 0 ? b.compliance_flops * r.compliance_flop + 1.5 * std::max(0.0, double(b.solver.factor_entries) - cached) * r.solve_entry : 0);
+    add += double(b.rows) * b.rows * r.compliance_row2;
+    if (b.keeps_tangent) out.refactor_ms = std::max(out.refactor_ms, 1000 * (tangent + factor));
+    shares.push_back({1000 * often * factor, fmt::format("the factor of \"{}\" ({} nodes, {:.0f} Mflop)", b.id, b.nodes, b.solver.factor_flops * 1e-6),
+                      fmt::format("fewer nodes in \"{}\": half of them make its factor about four times cheaper; hold what lies far with <fixed>{}", b.id,
+                                  b.keeps_tangent ? "" : b.solver.factor_flops > 1e9 ? ", or have it made in the background with solver=\"asynchronous\"" : ", or keep the factor with tangent_tolerance=\"0.02\"")});
+    shares.push_back({1000 * (tangent * often + force * (1 - often)), fmt::format("the {} elements of \"{}\"", b.elements, b.id), fmt::format("fewer elements in \"{}\"", b.id)});
+    shares.push_back({1000 * compliance.back(), fmt::format("the compliance of {} rows on \"{}\"", b.rows, b.id),
+                      "fewer rows: larger spacing, smaller max_contacts, patch, fewer strands"});
+  }
+  const double surfaces = r.vertex * (0.8 * w.surface_vertices + 0.2 * w.surface_triangles + 0.25 * w.tissue_vertices + 500.0 * w.tool_pieces + 120.0 * w.wall_vertices + 550.0 * w.expected_rows);
+  // Where Newton is allowed sweeps stall: one step of it, m^3 / 1.5 in small pieces, at the dense rate of the factor.
+  const double rows2 = double(w.expected_rows) * w.expected_rows;
+  const double sweeps = w.expected_sweeps * rows2 * r.sweep_row2 + (w.newton ? newton_step * rows2 * w.expected_rows / 1.5 * r.compliance_flop : 0);
+  const double row = 10 * r.vertex;  // what a row costs besides: built, read, told
+  double all = 0;
+  for (double c : compliance) all += c;
+  // Parts of a body's compliance are shared too: threads are even, but for what one thread adds up.
+  out.stage_ms[stage_free_motion] = 1000 * on_threads(free, threads);
+  out.stage_ms[stage_collision] = 1000 * surfaces / std::max(1.0, 0.85 * threads);
+  out.stage_ms[stage_build] = 1000 * (all / std::max(1, threads) + add + row * w.expected_rows);
+  out.stage_ms[stage_solve] = 1000 * sweeps;
+  out.stage_ms[stage_correct] = 1000 * (on_threads(correct, threads) + row * w.expected_rows);
+  out.stage_ms[stage_publish] = 1000 * row * w.expected_rows;
+  for (double ms : out.stage_ms) out.step_ms += ms;
+
+  shares.push_back({out.stage_ms[stage_collision], fmt::format("collision of surfaces with {} triangles", w.surface_triangles),
+                    "coarser surfaces for contact; contact=\"false\" on those for the picture; a larger tissue_spacing; smaller alarms"});
+  shares.push_back({out.stage_ms[stage_solve], fmt::format("{:.0f} sweeps over {} rows", w.expected_sweeps, w.expected_rows),
+                    "fewer rows: larger spacing, smaller max_contacts, patch, fewer strands; a smaller max_sweeps of <solver>"});
+  std::stable_sort(shares.begin(), shares.end(), [](const Share& a, const Share& b) { return a.ms > b.ms; });
+  out.most = shares.front().what;
+  if (out.step_ms > 1000 * w.h)
+    for (const Share& s : shares)
+      if (s.ms > 0.15 * out.step_ms && std::find(out.advice.begin(), out.advice.end(), s.advice) == out.advice.end()) out.advice.push_back(s.advice);
+  return out;
+}
+
+}  // namespace insula
