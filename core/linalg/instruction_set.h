@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Loops that are compiled once per instruction set (cmake/kernels.cmake) come as one table a set; here the set is chosen, once.
+// Loops that are compiled once per instruction set (cmake/core.cmake) come as one table a set; here the set is chosen, once.
 #pragma once
 #include <array>
 

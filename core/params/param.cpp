@@ -8,7 +8,6 @@
 
 #include "core/base/text.h"
 #include "core/params/number.h"
-#include "core/registry/component.h"
 
 namespace insula {
 namespace {
@@ -46,7 +45,13 @@ std::optional<double> declared_bound(const ParamSpec& spec, std::string_view bou
 
 }  // namespace
 
-ParamBase::ParamBase(Component* owner, ParamSpec spec) : spec_(std::move(spec)) {
+ParamBase* ParamSet::find_param(std::string_view name) const {
+  for (ParamBase* p : params_)
+    if (p->spec().name == name) return p;
+  return nullptr;
+}
+
+ParamBase::ParamBase(ParamSet* owner, ParamSpec spec) : spec_(std::move(spec)) {
   if (spec_.name.empty() || spec_.name == "id") bad_declaration(spec_.name, "it needs a name other than \"id\"");
   if (!owner) bad_declaration(spec_.name, "it has no owner");
   if (owner->find_param(spec_.name)) bad_declaration(spec_.name, "the component has it twice");
@@ -69,7 +74,7 @@ bool ParamBase::assign_fallback() {
   return true;
 }
 
-QuantityParam::QuantityParam(Component* owner, ParamSpec spec, std::string_view quantity, std::string_view si,
+QuantityParam::QuantityParam(ParamSet* owner, ParamSpec spec, std::string_view quantity, std::string_view si,
                              std::span<const Unit> units)
     : ParamBase(owner, std::move(spec)), quantity_(quantity), si_(si), units_(units) {
   min_ = declared_bound(this->spec(), this->spec().min, units, quantity);
@@ -87,7 +92,7 @@ std::string QuantityParam::parse(std::string_view text) {
   return {};
 }
 
-VectorParam::VectorParam(Component* owner, ParamSpec spec, std::string_view quantity, std::string_view si,
+VectorParam::VectorParam(ParamSet* owner, ParamSpec spec, std::string_view quantity, std::string_view si,
                          std::span<const Unit> units)
     : ParamBase(owner, std::move(spec)), quantity_(quantity), si_(si), units_(units) {
   declared_bound(this->spec(), this->spec().min, units, quantity);
@@ -176,7 +181,7 @@ std::string Param<LengthUnit>::parse(std::string_view text) {
   return in_quotes(text) + " is not a unit of length (use one of " + unit_list(Length::units()) + ")";
 }
 
-RefParamBase::RefParamBase(Component* owner, ParamSpec spec, std::string_view kind, bool list)
+RefParamBase::RefParamBase(ParamSet* owner, ParamSpec spec, std::string_view kind, bool list)
     : ParamBase(owner, std::move(spec)), kind_(kind), list_(list) {}
 
 std::string RefParamBase::type_name() const {

@@ -17,11 +17,10 @@
 
 #include "core/base/diagnostic.h"
 #include "core/base/math.h"
+#include "core/params/param_set.h"
 #include "core/params/quantity.h"
 
 namespace insula {
-
-class Component;
 
 struct ParamSpec {
   std::string_view name;
@@ -35,7 +34,7 @@ struct ParamSpec {
 /// Base of every parameter: what list, describe, schema and docs read.
 class ParamBase {
  public:
-  ParamBase(Component* owner, ParamSpec spec);
+  ParamBase(ParamSet* owner, ParamSpec spec);
   virtual ~ParamBase() = default;
   ParamBase(const ParamBase&) = delete;
   ParamBase& operator=(const ParamBase&) = delete;
@@ -74,7 +73,7 @@ std::optional<double> parse_quantity(std::string_view text, std::span<const Unit
 
 class QuantityParam : public ParamBase {
  public:
-  QuantityParam(Component* owner, ParamSpec spec, std::string_view quantity, std::string_view si, std::span<const Unit> units);
+  QuantityParam(ParamSet* owner, ParamSpec spec, std::string_view quantity, std::string_view si, std::span<const Unit> units);
   double operator()() const { return value_; }
   void set(double value) { value_ = value; }  ///< in SI; for tests and tools; the range is not checked
   std::string type_name() const override { return std::string(quantity_); }
@@ -96,7 +95,7 @@ class QuantityParam : public ParamBase {
 template <class Q>
 class Param : public QuantityParam {
  public:
-  Param(Component* owner, ParamSpec spec) : QuantityParam(owner, std::move(spec), Q::name, Q::si, Q::units()) {}
+  Param(ParamSet* owner, ParamSpec spec) : QuantityParam(owner, std::move(spec), Q::name, Q::si, Q::units()) {}
 };
 
 template <>
@@ -164,7 +163,7 @@ class Param<Choice> : public ParamBase {  // one of spec.choices; compare with o
 /// Three numbers and one unit: "38 0 -15 mm". For Q = Scalar (a direction) no unit.
 class VectorParam : public ParamBase {
  public:
-  VectorParam(Component* owner, ParamSpec spec, std::string_view quantity, std::string_view si, std::span<const Unit> units);
+  VectorParam(ParamSet* owner, ParamSpec spec, std::string_view quantity, std::string_view si, std::span<const Unit> units);
   const Vec3& operator()() const { return value_; }
   void set(const Vec3& v) { value_ = v; }
   std::string type_name() const override { return "three numbers (" + std::string(quantity_) + ")"; }
@@ -185,7 +184,7 @@ struct Vec {};
 template <class Q>
 class Param<Vec<Q>> : public VectorParam {
  public:
-  Param(Component* owner, ParamSpec spec) : VectorParam(owner, std::move(spec), Q::name, Q::si, Q::units()) {}
+  Param(ParamSet* owner, ParamSpec spec) : VectorParam(owner, std::move(spec), Q::name, Q::si, Q::units()) {}
 };
 
 /// A file beside the scene. Relative to the file that names it; must not leave the scene's root folder (the loader
@@ -227,13 +226,13 @@ class Param<LengthUnit> : public ParamBase {
 /// Names of other components, separated by blanks; resolved by the loader after everything is read.
 class RefParamBase : public ParamBase {
  public:
-  RefParamBase(Component* owner, ParamSpec spec, std::string_view kind, bool list);
+  RefParamBase(ParamSet* owner, ParamSpec spec, std::string_view kind, bool list);
   std::string type_name() const override;
   std::string_view ref_kind() const override { return kind_; }
   bool is_list() const override { return list_; }
   const std::vector<std::string>& ids() const { return ids_; }
   /// Loader only: the component found for ids()[i]; a message when its type does not fit, else empty.
-  virtual std::string resolve(std::size_t i, Component* target) = 0;
+  virtual std::string resolve(std::size_t i, ParamSet* target) = 0;
 
  protected:
   std::string parse(std::string_view text) override;
@@ -248,13 +247,13 @@ class RefParamBase : public ParamBase {
 template <class T>
 class Ref : public RefParamBase {
  public:
-  Ref(Component* owner, ParamSpec spec) : RefParamBase(owner, std::move(spec), T::kind_name, false) {}
+  Ref(ParamSet* owner, ParamSpec spec) : RefParamBase(owner, std::move(spec), T::kind_name, false) {}
   T* get() const { return target_; }
   T* operator->() const { return target_; }
   T& operator*() const { return *target_; }
   explicit operator bool() const { return target_ != nullptr; }
   void set(T* t) { target_ = t; }
-  std::string resolve(std::size_t, Component* target) override {
+  std::string resolve(std::size_t, ParamSet* target) override {
     target_ = dynamic_cast<T*>(target);
     return target_ ? "" : std::string("is not a ") + std::string(T::kind_name);
   }
@@ -267,10 +266,10 @@ class Ref : public RefParamBase {
 template <class T>
 class RefList : public RefParamBase {
  public:
-  RefList(Component* owner, ParamSpec spec) : RefParamBase(owner, std::move(spec), T::kind_name, true) {}
+  RefList(ParamSet* owner, ParamSpec spec) : RefParamBase(owner, std::move(spec), T::kind_name, true) {}
   const std::vector<T*>& operator()() const { return targets_; }
   void set(std::vector<T*> t) { targets_ = std::move(t); }
-  std::string resolve(std::size_t i, Component* target) override {
+  std::string resolve(std::size_t i, ParamSet* target) override {
     T* t = dynamic_cast<T*>(target);
     if (!t) return std::string("is not a ") + std::string(T::kind_name);
     if (targets_.size() <= i) targets_.resize(i + 1, nullptr);

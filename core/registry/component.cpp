@@ -25,12 +25,6 @@ std::string_view kind_name(Kind kind) {
   return "component";
 }
 
-ParamBase* Component::find_param(std::string_view name) const {
-  for (ParamBase* p : params_)
-    if (p->spec().name == name) return p;
-  return nullptr;
-}
-
 void Component::error(PrepareContext& context, std::string text) const { context.diagnostics.error(pos, std::move(text)); }
 
 void Component::error(PrepareContext& context, const ParamBase& param, std::string text) const {

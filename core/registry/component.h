@@ -36,13 +36,10 @@ struct PrepareContext {
   double time_step_s;  ///< of the scene
 };
 
-class Component {
+class Component : public ParamSet {
  public:
   static constexpr std::string_view kind_name = "component";
   Component() = default;
-  virtual ~Component() = default;
-  Component(const Component&) = delete;
-  Component& operator=(const Component&) = delete;
 
   /// Second phase of loading: parameters, references and children are in place. Read files, check what spans several
   /// parameters, build rest state. Report through the context; never throw for bad input. Called in document order,
@@ -53,9 +50,6 @@ class Component {
   virtual std::vector<CommandInfo> commands() const { return {}; }
   /// Does it, between two steps. Returns why not; empty when done. Bad arguments are refused, never clamped.
   virtual std::string run_command(std::string_view, std::string_view) { return "unknown command"; }
-
-  const std::vector<ParamBase*>& params() const { return params_; }  ///< in order of declaration
-  ParamBase* find_param(std::string_view name) const;
 
   std::string id;        ///< as written, or the element name with its ordinal when none was given ("contact#1")
   std::string element;   ///< element name
@@ -77,10 +71,6 @@ class Component {
   /// the text, and the full path of a file parameter is replaced by what the author wrote.
   void error(PrepareContext& context, std::string text) const;
   void error(PrepareContext& context, const ParamBase& param, std::string text) const;
-
- private:
-  friend class ParamBase;
-  std::vector<ParamBase*> params_;
 };
 
 }  // namespace insula
