@@ -6,39 +6,17 @@
 #include <iostream>
 #include <string_view>
 
-#include "core/registry/plugin_loader.h"
 #include "core/registry/registry.h"
-#include "engine/command_line/case_command.h"
 #include "engine/command_line/commands.h"
+#include "engine/command_line/load_plugins.h"
 #include "engine/authoring/new_plugin.h"
 #include "engine/command_line/play.h"
 #include "engine/command_line/run.h"
+#include "engine/command_line/tool_program.h"
 
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Built-in elements, then the installation's plugins, then those of --plugin-path. Exit status 2 on the first bad one.
-int fill_registry(insula::Registry& registry, const std::vector<fs::path>& plugin_paths) {
-  insula::register_builtin(registry);
-  std::vector<fs::path> files = insula::plugin_files(insula::installed_plugin_folder());
-  for (const auto& path : plugin_paths) {
-    if (!fs::is_directory(path)) {
-      files.push_back(path);
-      continue;
-    }
-    const auto found = insula::plugin_files(path);
-    files.insert(files.end(), found.begin(), found.end());
-  }
-  int status = 0;
-  for (const auto& file : files) {
-    const std::string error = insula::load_plugin(registry, file);
-    if (error.empty()) continue;
-    std::cerr << "error: " << error << '\n';
-    status = 2;
-  }
-  return status;
-}
 
 }  // namespace
 
@@ -53,12 +31,6 @@ int main(int argc, char** argv) {
   std::string element;
   fs::path output, folder, plugin_folder;
   std::function<int(const insula::CommandContext&)> run;
-
-  auto* check = app.add_subcommand("check", "read scenes and report everything that is wrong with them");
-  check->add_option("scene", files, "scene files")->required();
-  bool settle = false;
-  check->add_flag("--settle", settle, "let scenes settle that do so first: slower, and tells what a step of them costs");
-  check->callback([&] { run = [&](const auto& c) { return insula::cmd_check(c, files, settle); }; });
 
   auto* list = app.add_subcommand("list", "all elements a scene may hold");
   list->callback([&] { run = [](const auto& c) { return insula::cmd_list(c); }; });
@@ -107,60 +79,6 @@ int main(int argc, char** argv) {
   headless->add_option("--seed", run_options.seed, "what complications are drawn from; 0: the scene's own seed");
   headless->add_flag("--quiet", run_options.quiet, "print the last line only");
   headless->callback([&] { run = [&](const auto& c) { return insula::cmd_run(c, run_options); }; });
-
-  insula::BenchOptions bench_options;
-  auto* bench = app.add_subcommand("bench", "where the time of a step goes");
-  insula::ScalingOptions scaling;
-  bool scale = false;
-  auto* bench_scene = bench->add_option("scene", bench_options.scene, "scene file");
-  auto* scaling_flag = bench->add_flag("--scaling", scale, "without a scene: the stages against nodes, rows and strands, with their slopes; one thread unless --threads says otherwise")->excludes(bench_scene);
-  bench->add_flag("--quick", scaling.quick, "with --scaling: small sizes only")->needs(scaling_flag);
-  bench->add_option("--output", scaling.output, "with --scaling: folder for scaling.json and scaling.svg")->needs(scaling_flag);
-  bench->add_option("--steps", bench_options.steps, "steps to measure")->check(CLI::PositiveNumber)->capture_default_str();
-  bench->add_option("--from", bench_options.from, "simulated second at which measuring begins")->check(CLI::NonNegativeNumber);
-  bench->add_option("--motion", bench_options.motion, "what the hands do: a motion of the exercise, a CSV file, or none")->capture_default_str();
-  bench->add_option("--threads", bench_options.threads, "threads; 0 takes the machine's");
-  bench->add_flag("--json", bench_options.json, "print JSON");
-  bench->add_flag("--solvers", bench_options.solvers, "compare the solvers on the matrices and rows of the step at --from");
-  bench->add_option("--rows", bench_options.rows, "with --solvers: so many rows of each body at most; 0 takes all")->check(CLI::NonNegativeNumber);
-  auto* record = bench->add_option("--record", bench_options.record, "write the steps' constraint problems to this folder instead");
-  bench->add_option("--every", bench_options.every, "with --record: a problem of so many is written")->check(CLI::PositiveNumber)->needs(record);
-  bench->add_option("--problems", bench_options.problems, "solve this folder's constraint problems instead of stepping a scene")->excludes(bench_scene);
-  insula::HapticBenchOptions haptics;
-  bool measure_haptics = false;
-  auto* haptics_flag = bench->add_flag("--haptics", measure_haptics, "how far the servo's force is from that of the engine stepped at 1 kHz, devices on the motion's path");
-  bench->add_option("--rates", haptics.rates, "with --haptics: the engine's rates, Hz")->delimiter(',')->check(CLI::Range(20.0, 1000.0))->needs(haptics_flag);
-  bench->add_option("--duration", haptics.duration, "with --haptics: simulated seconds; 0: the whole motion")->check(CLI::NonNegativeNumber)->needs(haptics_flag);
-  bench->add_option("--latency", haptics.latency, "with --haptics: from poses to the problem's arrival, in steps (0.5) or as a time (3ms)")->capture_default_str()->needs(haptics_flag);
-  bench->add_option("--jitter", haptics.jitter, "with --haptics: and so much later still at most, in steps")->check(CLI::Range(0.0, 3.0))->needs(haptics_flag);
-  bench->add_flag("--fine", haptics.fine, "with --haptics: problems come at the rate, but from an engine that steps at 1 kHz: what is left is the servo's part of the error")->needs(haptics_flag);
-  bench->add_flag("--ablation", haptics.ablation, "with --haptics: what goes beyond equation 7, one after the other")->needs(haptics_flag);
-  bench->add_option("--traces", haptics.traces, "with --haptics: folder for the forces as CSV")->needs(haptics_flag);
-  bench->callback([&] {
-    if (scale) {
-      scaling.threads = bench_options.threads > 0 ? bench_options.threads : 1;
-      scaling.json = bench_options.json;
-      run = [&](const auto& c) { return insula::cmd_bench_scaling(c, scaling); };
-      return;
-    }
-    if (!bench_options.problems.empty()) {
-      run = [&](const auto& c) { return insula::cmd_bench_problems(c, bench_options); };
-      return;
-    }
-    if (bench_options.scene.empty()) throw CLI::RequiredError("scene (or --scaling)");
-    if (measure_haptics) {
-      haptics.scene = bench_options.scene;
-      haptics.motion = bench_options.motion;
-      haptics.threads = bench_options.threads;
-      run = [&](const auto& c) { return insula::cmd_bench_haptics(c, haptics); };
-      return;
-    }
-    if (!bench_options.record.empty()) {
-      run = [&](const auto& c) { return insula::cmd_record_problems(c, bench_options); };
-      return;
-    }
-    run = [&](const auto& c) { return bench_options.solvers ? insula::cmd_bench_solvers(c, bench_options) : insula::cmd_bench(c, bench_options); };
-  });
 
   insula::EngineOptions engine_options;
   auto* engine = app.add_subcommand("engine", "the engine process of a session, over the bus");
@@ -224,9 +142,26 @@ int main(int argc, char** argv) {
     run = [&](const auto& c) { return list_only ? insula::cmd_view_list(c, play_options.scene) : insula::cmd_play(c, play_options); };
   });
 
-  // It reads what follows itself.
-  if (argc > 1 && std::string_view(argv[1]) == "case") return insula::cmd_case({argv + 2, argv + argc}, std::cerr);
-  app.add_subcommand("case", "training cases from surfaces and scans (see docs/making-a-case.md)");
+  // Programs of their own, which read what follows themselves.
+  struct ToolProgram {
+    const char *command, *doc, *program, *when_missing;
+  };
+  const ToolProgram tools[] = {
+      {"check", "read scenes and report everything that is wrong with them, and what a step of them costs", "insula_workbench", "Build it: ./insula build."},
+      {"bench", "where the time of a step goes", "insula_workbench", "Build it: ./insula build."},
+      {"case", "training cases from surfaces and scans (see docs/making-a-case.md)", "insula_case",
+       "The case builder needs CGAL (Debian: libcgal-dev), and ITK for volumes (libinsighttoolkit5-dev). Install them, then build again."}};
+  for (const ToolProgram& tool : tools) {
+    auto* command = app.add_subcommand(tool.command, tool.doc)->prefix_command();
+    command->set_help_flag();
+    command->callback([&, command] {
+      std::vector<std::string> words;
+      for (const fs::path& path : plugin_paths) words.insert(words.end(), {"--plugin-path", path.string()});
+      if (std::string_view(tool.program) != "insula_case") words.emplace_back(tool.command);
+      for (const std::string& word : command->remaining()) words.push_back(word);
+      run = [&tool, words](const auto& c) { return insula::run_tool_program(tool.program, words, tool.when_missing, c.err); };
+    });
+  }
 
   try {
     app.parse(argc, argv);
@@ -236,7 +171,7 @@ int main(int argc, char** argv) {
   }
   try {
     insula::Registry registry;
-    if (const int status = fill_registry(registry, plugin_paths)) return status;
+    if (const int status = insula::load_plugins(registry, plugin_paths, std::cerr)) return status;
     return run({registry, std::cout, std::cerr});
   } catch (const std::exception& e) {
     std::cerr << "error: " << e.what() << '\n';

@@ -10,6 +10,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "tools/workbench/workbench.h"
+
 namespace insula {
 namespace {
 namespace fs = std::filesystem;

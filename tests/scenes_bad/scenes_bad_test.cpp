@@ -10,7 +10,7 @@
 #include <sstream>
 
 #include "core/scene/loader.h"
-#include "engine/command_line/commands.h"
+#include "tools/workbench/workbench.h"
 
 namespace insula {
 namespace {

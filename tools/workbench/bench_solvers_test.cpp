@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "tools/workbench/reference_solvers.h"
-#include "engine/command_line/run.h"
+#include "tools/workbench/workbench.h"
 
 namespace insula {
 namespace {

@@ -8,7 +8,7 @@
 #include "core/mechanics/deformable_body.h"
 #include "engine/live/headless.h"
 #include "engine/reports/report_writer.h"
-#include "engine/command_line/run.h"
+#include "tools/workbench/workbench.h"
 
 namespace insula {
 

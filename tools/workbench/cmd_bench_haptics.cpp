@@ -10,7 +10,7 @@
 #include "tools/workbench/haptic_truth.h"
 #include "engine/live/live_engine.h"
 #include "engine/live/publisher.h"
-#include "engine/command_line/run.h"
+#include "tools/workbench/workbench.h"
 
 namespace insula {
 namespace {

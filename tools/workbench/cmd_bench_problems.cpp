@@ -12,7 +12,7 @@
 #include "core/linalg/kernels.h"
 #include "engine/live/headless.h"
 #include "engine/reports/report_writer.h"
-#include "engine/command_line/run.h"
+#include "tools/workbench/workbench.h"
 
 namespace insula {
 namespace {

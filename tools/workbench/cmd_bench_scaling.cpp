@@ -10,7 +10,7 @@
 
 #include "core/linalg/kernels.h"
 #include "core/mechanics/soft_body.h"
-#include "engine/command_line/commands.h"
+#include "tools/workbench/workbench.h"
 #include "engine/reports/report_writer.h"
 #include "tools/workbench/scaling_scene.h"
 #include "engine/reports/svg_plot.h"

@@ -11,7 +11,7 @@
 #include "engine/live/headless.h"
 #include "tools/workbench/machine_rates.h"
 #include "tools/workbench/reference_solvers.h"
-#include "engine/command_line/run.h"
+#include "tools/workbench/workbench.h"
 
 namespace insula {
 namespace {

@@ -11,7 +11,7 @@
 #include "core/scene/loader.h"
 #include "core/sim/settings.h"
 #include "core/sim/simulation.h"
-#include "engine/command_line/commands.h"
+#include "tools/workbench/workbench.h"
 #include "tools/workbench/cost_model.h"
 #include "engine/live/scene_devices.h"
 

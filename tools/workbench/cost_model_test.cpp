@@ -8,7 +8,7 @@
 #include "core/mechanics/soft_body.h"
 #include "core/testing/example.h"
 #include "engine/live/headless.h"
-#include "engine/command_line/run.h"
+#include "tools/workbench/workbench.h"
 #include "tools/workbench/scaling_scene.h"
 
 namespace insula {
