@@ -52,7 +52,7 @@ target_link_libraries(insula_core PUBLIC $<BUILD_INTERFACE:insula_warnings> Eige
 include(cmake/kernels.cmake OPTIONAL)
 
 # --- bus -------------------------------------------------------------------------------------------------------------
-insula_glob(bus_src core/bus/*.cpp)
+insula_glob(bus_src core/bus/*.cpp platform/linux/*.cpp)
 if(bus_src)
   add_library(insula_bus STATIC ${bus_src})
   target_link_libraries(insula_bus PUBLIC insula_core insula_lcm)
