@@ -151,6 +151,7 @@ TEST_F(LcmLoopback, MessagesBeyondTheLimitAreRefusedBySenders) {
 
 /// LCM's own library at the other end: its tools must be able to listen and to talk.
 TEST_F(LcmLoopback, TalksWithLcmItself) {
+  if (!testing::lcm_tools_work()) GTEST_SKIP() << "LCM has no multicast route here";
   lcm_t* lcm = lcm_create((receiver_->url() + "&recv_buf_size=2097152").c_str());
   ASSERT_NE(lcm, nullptr);
   Buffer at_lcm, here;
