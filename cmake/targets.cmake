@@ -43,7 +43,7 @@ include_directories(${CMAKE_BINARY_DIR}/generated/abi)
 include(cmake/core.cmake)
 
 # --- bus -------------------------------------------------------------------------------------------------------------
-insula_glob(bus_src core/bus/*.cpp)
+insula_glob(bus_src core/bus/*.cpp platform/linux/*.cpp)
 if(bus_src)
   add_library(insula_bus STATIC ${bus_src})
   target_link_libraries(insula_bus PUBLIC insula_core insula_lcm)

@@ -1,31 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// LCM behind the Bus interface, with errors that say what to do.
+// LCM's protocol behind the Bus interface, with errors that say what to do.
 #include "core/bus/lcm_bus.h"
 
 #include <fmt/format.h>
-#include <lcm/lcm.h>
-#include <poll.h>
 
-#include <algorithm>
-#include <cerrno>
+#include <array>
 #include <chrono>
 #include <cstdlib>
-#include <cstring>
-#include <thread>
 #include <utility>
 
+#include "core/bus/channels.h"
 #include "core/bus/mem_bus.h"
+#include "core/bus/udpm_packet.h"
 
 namespace insula {
 namespace {
 
-constexpr int queue_capacity = 1000;  // LCM's own default of 30 loses small streams on a busy machine
 constexpr int max_per_poll = 2000;
 constexpr const char* advice =
-    "Insula's processes talk over UDP multicast. A machine without a network (a container, a laptop offline) has no route "
-    "for it; add one on the loopback interface:\n"
-    "    ip link set lo up multicast on && ip route add 224.0.0.0/4 dev lo\n"
-    "or choose another address and port with LCM_DEFAULT_URL.";
+    "Insula's processes talk over UDP multicast on this machine. Its loopback interface must be up:\n"
+    "    ip link set lo up multicast on\n"
+    "LCM's own tools also need a route for multicast. A machine without a network (a container, a laptop offline) has none:\n"
+    "    ip route add 224.0.0.0/4 dev lo\n"
+    "LCM_DEFAULT_URL gives another group and port, as in udpm://239.255.76.67:7668?ttl=0.";
 
 }  // namespace
 
@@ -34,37 +31,21 @@ std::string lcm_url_from_environment() {
   return url != nullptr && *url != '\0' ? std::string(url) : std::string(default_lcm_url);
 }
 
-std::string with_receive_buffer(std::string_view url) {
-  std::string out(url);
-  if (!url.starts_with("udpm://") || url.find("recv_buf_size=") != std::string_view::npos) return out;
-  if (url.find('?') == std::string_view::npos)
-    out += '?';
-  else if (!url.ends_with('?') && !url.ends_with('&'))
-    out += '&';
-  return out + "recv_buf_size=2097152";
-}
-
-struct LcmBus::Callback {
-  static void call(const lcm_recv_buf_t* buffer, const char*, void* user) noexcept {
-    auto* subscription = static_cast<Subscription*>(user);
-    try {
-      subscription->handler(Bytes(static_cast<const std::uint8_t*>(buffer->data), buffer->data_size));
-    } catch (...) {  // must not pass through LCM, which is C
-      subscription->bus->thrown_ = std::current_exception();
-    }
+LcmBus::LcmBus(std::string_view url) : url_(url.empty() ? lcm_url_from_environment() : std::string(url)) {
+  const auto address = parse_udpm_url(url_);
+  if (!address) {
+    fail("this is no address of a bus:");
+    return;
   }
-};
-
-LcmBus::LcmBus(std::string_view url) : url_(with_receive_buffer(url.empty() ? lcm_url_from_environment() : std::string(url))) {
-  lcm_ = lcm_create(url_.c_str());
-  if (lcm_ == nullptr)
-    fail("cannot open");
-  else
-    good_ = true;
+  address_ = *address;
+  sender_ = std::make_unique<UdpSender>(address_);
+  good_ = sender_->error().empty();
+  if (!good_) fail(fmt::format("cannot open ({})", sender_->error()));
 }
 
 LcmBus::~LcmBus() {
-  if (lcm_ != nullptr) lcm_destroy(lcm_);
+  if (receiver_) receiver_->wake();
+  if (thread_.joinable()) thread_.join();
 }
 
 void LcmBus::fail(const std::string& what) {
@@ -80,49 +61,77 @@ std::string LcmBus::error() const {
 }
 
 bool LcmBus::publish(std::string_view channel, Bytes message) {
-  if (lcm_ == nullptr) return false;
-  char name[LCM_MAX_CHANNEL_NAME_LENGTH + 1];
-  if (channel.empty() || channel.size() > LCM_MAX_CHANNEL_NAME_LENGTH) {
-    fail(fmt::format("channel name \"{}\" is empty or longer than {} characters on", channel, LCM_MAX_CHANNEL_NAME_LENGTH));
+  if (!sender_) return false;
+  if (channel.empty() || channel.size() > udpm::max_name_bytes) {
+    fail(fmt::format("channel name \"{}\" is empty or longer than {} characters on", channel, udpm::max_name_bytes));
     return false;
   }
-  std::memcpy(name, channel.data(), channel.size());
-  name[channel.size()] = '\0';
-  if (lcm_publish(lcm_, name, message.data(), unsigned(message.size())) != 0) {
-    fail(fmt::format("cannot send {} bytes on channel {} ({}) over", message.size(), channel, std::strerror(errno)));
+  if (message.size() > max_message_bytes) {
+    fail(fmt::format("{} bytes on channel {} are more than the {} allowed over", message.size(), channel, max_message_bytes));
     return false;
   }
-  good_.store(true, std::memory_order_relaxed);  // a passing failure (route gone and back) is over
+  std::unique_lock lock(send_mutex_);
+  const auto send = [this](const udpm::Datagram& d) { return sender_->send({d.head.data(), d.head_bytes}, d.payload); };
+  if (!udpm::cut(channel, message, sequence_++, send)) {
+    const std::string why = sender_->error();
+    lock.unlock();
+    fail(fmt::format("cannot send {} bytes on channel {} ({}) over", message.size(), channel, why));
+    return false;
+  }
+  // A passing failure (a route gone and back) is over. What is wrong with the receiver stays.
+  if (!receiver_ || receiver_->error().empty()) good_.store(true, std::memory_order_relaxed);
   return true;
 }
 
 void LcmBus::subscribe(std::string_view channel, Handler handler) {
-  if (lcm_ == nullptr) return;
-  // LCM reads the name as a regular expression; ours are plain words.
-  auto subscription = std::make_unique<Subscription>(Subscription{this, std::move(handler)});
-  lcm_subscription_t* handle =
-      lcm_subscribe(lcm_, std::string(channel).c_str(), &Callback::call, subscription.get());
-  if (handle == nullptr) {
-    fail(fmt::format("cannot receive channel {} over", channel));
-    return;
+  if (!sender_) return;
+  {
+    std::lock_guard lock(queue_mutex_);
+    handlers_[std::string(channel)].push_back(std::move(handler));
   }
-  lcm_subscription_set_queue_capacity(handle, queue_capacity);
-  subscriptions_.push_back(std::move(subscription));
+  if (receiver_) return;
+  std::lock_guard lock(send_mutex_);  // publish looks at receiver_
+  receiver_ = std::make_unique<UdpReceiver>(address_);
+  if (!receiver_->error().empty()) return fail(fmt::format("cannot receive ({}) over", receiver_->error()));
+  thread_ = std::thread([this] { receive(); });
+}
+
+void LcmBus::receive() {
+  std::array<std::uint8_t, 65'536> datagram;
+  udpm::Assembler assembler;
+  udpm::Received received;
+  std::uint64_t sender = 0;
+  while (const std::size_t size = receiver_->receive(datagram, sender)) {
+    const bool whole = assembler.add(sender, Bytes(datagram.data(), size), received);
+    refused_.store(assembler.refused(), std::memory_order_relaxed);
+    if (!whole) continue;
+    std::unique_lock lock(queue_mutex_);
+    const auto found = handlers_.find(received.channel);
+    if (found == handlers_.end()) continue;
+    queue_.push_back({&found->first, {received.message.begin(), received.message.end()}});
+    queue_bytes_ += received.message.size();
+    while (queue_.size() > max_waiting || queue_bytes_ > max_waiting_bytes) {
+      queue_bytes_ -= queue_.front().bytes.size();
+      queue_.pop_front();
+    }
+    lock.unlock();
+    arrived_.notify_one();
+  }
 }
 
 int LcmBus::poll(int timeout_ms) {
-  if (lcm_ == nullptr || subscriptions_.empty()) {
-    // Nothing can arrive; a caller's loop must not spin.
-    if (timeout_ms > 0) std::this_thread::sleep_for(std::chrono::milliseconds(timeout_ms));
-    return 0;
-  }
-  pollfd wait{lcm_get_fileno(lcm_), POLLIN, 0};
+  std::unique_lock lock(queue_mutex_);
+  if (queue_.empty() && timeout_ms > 0)
+    arrived_.wait_for(lock, std::chrono::milliseconds(timeout_ms), [this] { return !queue_.empty(); });
   int handled = 0;
-  for (int timeout = std::max(timeout_ms, 0); handled < max_per_poll; timeout = 0) {
-    if (::poll(&wait, 1, timeout) <= 0 || !(wait.revents & POLLIN)) break;
-    if (lcm_handle(lcm_) != 0) break;
-    ++handled;
-    if (thrown_) std::rethrow_exception(std::exchange(thrown_, nullptr));
+  for (; handled < max_per_poll && !queue_.empty(); ++handled) {
+    const Message message = std::move(queue_.front());
+    queue_bytes_ -= message.bytes.size();
+    queue_.pop_front();
+    const std::vector<Handler>& handlers = handlers_.find(*message.channel)->second;  // only this thread adds to them
+    lock.unlock();  // handlers may publish, and they may throw
+    for (const Handler& handler : handlers) handler(message.bytes);
+    lock.lock();
   }
   return handled;
 }

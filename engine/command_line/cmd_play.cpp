@@ -146,8 +146,10 @@ ChildSpec haptic_child(const PlayOptions& options, const fs::path& folder) {
 ChildSpec gateway_child(const PlayOptions& options, const fs::path& folder, const Supervisor::Print& print) {
   ChildSpec gateway;
   gateway.name = "gateway";
-  const auto command = [program = (folder / "gateway").string(), listen = options.listen](int port) {
-    return std::vector<std::string>{program, "--listen", listen, "--port", std::to_string(port)};
+  const auto command = [program = (folder / "gateway").string(), listen = options.listen, hosts = options.hosts](int port) {
+    std::vector<std::string> line{program, "--listen", listen, "--port", std::to_string(port)};
+    for (const std::string& host : hosts) line.insert(line.end(), {"--host", host});
+    return line;
   };
   gateway.command = command(options.port);
   gateway.on_line = [=, first = true, browser = options.browser](ChildSpec& self, std::string_view line) mutable {

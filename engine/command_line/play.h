@@ -16,6 +16,7 @@ struct PlayOptions {
   std::string motion;                 ///< id, CSV file or "none" for simulated hands; empty: the engine's default
   std::string left, right;            ///< devices; empty: the scene's, else the haptic server's default
   int port = 8080;                    ///< the viewer's; following ones are tried when it is busy
+  std::vector<std::string> hosts;     ///< names under which other machines' pages may ask for the viewer
   std::string listen = "127.0.0.1";   ///< 0.0.0.0 lets other machines watch
   bool browser = true;                ///< open one when there is a display
   double duration_s = 0;              ///< 0: until Ctrl-C

@@ -86,7 +86,7 @@ TEST_F(ServerWithDevices, ADriverThatTellsNonsenseIsLostAlone) {
 }
 
 TEST_F(ServerWithDevices, TheRealProgramOverTheBus) {
-  if (!testing::multicast_works()) GTEST_SKIP() << "this machine has no multicast route";
+  if (!testing::multicast_works()) GTEST_SKIP() << "no multicast on this machine";
   const std::string bus_url = testing::own_bus_url();
   ::setenv("LCM_DEFAULT_URL", bus_url.c_str(), 1);
   service.change(1, [](auto& a) { a.plugged = false; });

@@ -32,7 +32,7 @@ bool was_silent(const Watcher& watcher, std::int64_t from_us, std::int64_t to_us
 class LcmFaults : public ::testing::Test {
  protected:
   void SetUp() override {
-    if (!multicast_works()) GTEST_SKIP() << "no multicast on this machine, and no rights to add a route";
+    if (!multicast_works()) GTEST_SKIP() << "no multicast on this machine";
     // The session's folder and scene; its processes are started one by one.
     bin_ = std::string(INSULA_BINARY_DIR) + "/bin/";
     scene_ = (session_.folder() / "press.xml").string();

@@ -12,7 +12,7 @@ namespace insula::testing {
 class LiveSession : public ::testing::Test {
  protected:
   void SetUp() override {
-    if (!multicast_works()) GTEST_SKIP() << "no multicast on this machine, and no rights to add a route";
+    if (!multicast_works()) GTEST_SKIP() << "no multicast on this machine";
     session_ = std::make_unique<PlaySession>();
     ASSERT_EQ(session_->start({"--report", reports().string()}), "");
     watcher_ = std::make_unique<Watcher>(session_->url());

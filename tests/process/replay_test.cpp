@@ -55,7 +55,7 @@ unsigned http_status(int port, const std::string& target) {
 class Replay : public ::testing::Test {
  protected:
   void SetUp() override {
-    if (!multicast_works()) GTEST_SKIP() << "no multicast on this machine, and no rights to add a route";
+    if (!lcm_tools_work()) GTEST_SKIP() << "no multicast route on this machine, and no rights to add one";
     if (::access(logger, X_OK) != 0 || ::access(player, X_OK) != 0) GTEST_SKIP() << "liblcm-bin is not installed";
     insula_ = std::string(INSULA_BINARY_DIR) + "/bin/insula";
     record();

@@ -21,9 +21,10 @@ namespace insula::gateway {
 
 struct Gateway::Impl {
   Impl(Bus& bus, Options o)
-      : options(std::move(o)), hub(bus, [this](std::function<void()> f) { asio::post(io, std::move(f)); }) {}
+      : options(std::move(o)), hosts(options.hosts), hub(bus, [this](std::function<void()> f) { asio::post(io, std::move(f)); }) {}
 
   Options options;
+  AllowedHosts hosts;
   asio::io_context io{1};
   tcp::acceptor acceptor{io};
   asio::steady_timer retry{io};
@@ -37,6 +38,8 @@ struct Gateway::Impl {
 };
 
 std::string Gateway::Impl::open() {
+  for (const std::string& name : options.hosts)
+    if (!AllowedHosts::is_name(name)) return fmt::format("\"{}\" is no name of a host", name);
   boost::system::error_code error;
   const auto address = asio::ip::make_address(options.listen, error);
   if (error) return fmt::format("\"{}\" is no address to listen on", options.listen);
@@ -63,7 +66,7 @@ void Gateway::Impl::accept() {
   acceptor.async_accept([this](boost::system::error_code error, tcp::socket socket) {
     if (stopping) return;
     if (!error) {
-      std::make_shared<HttpSession>(std::move(socket), hub, options.page)->start();
+      std::make_shared<HttpSession>(std::move(socket), hub, hosts, options.page)->start();
       return accept();
     }
     // Out of file descriptors, most likely: wait for some to come back instead of spinning.

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "core/bus/bus.h"
 
@@ -15,6 +16,7 @@ struct Options {
   std::string listen = "127.0.0.1";  ///< address to listen on; 0.0.0.0 lets other machines in
   std::uint16_t port = 8080;         ///< 0: any free one
   int more_ports = 20;               ///< so many following ports are tried when this one is busy
+  std::vector<std::string> hosts;    ///< names, besides its addresses, under which pages may ask for it
   std::filesystem::path page;        ///< folder with index.html; empty: a note instead of the page
 };
 

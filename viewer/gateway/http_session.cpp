@@ -5,6 +5,7 @@
 #include <boost/beast/websocket.hpp>
 #include <type_traits>
 
+#include "core/base/text.h"
 #include "viewer/gateway/static_files.h"
 #include "viewer/gateway/ws_client.h"
 
@@ -19,26 +20,22 @@ constexpr std::string_view not_built =
 
 std::string_view view(beast::string_view s) { return {s.data(), s.size()}; }
 
-/// Host without its port.
-std::string_view host_name(std::string_view host) {
-  if (host.starts_with('[')) return host.substr(0, host.find(']') + 1);
-  return host.substr(0, host.find(':'));
-}
-
 /// A page of another site may open a WebSocket to this one: browsers send its origin, which must be ours. The port may
 /// differ (the page's development server). Programs that are no browsers send no origin.
 bool same_site(const http::request<http::empty_body>& request) {
-  std::string_view origin = view(request[http::field::origin]);
+  const std::string_view origin = view(request[http::field::origin]);
   if (origin.empty()) return true;
   const std::size_t scheme = origin.find("://");
   if (scheme == std::string_view::npos) return false;
-  return host_name(origin.substr(scheme + 3)) == host_name(view(request[http::field::host]));
+  const std::string name = host_name(origin.substr(scheme + 3));
+  return !name.empty() && name == host_name(view(request[http::field::host]));
 }
 
 }  // namespace
 
-HttpSession::HttpSession(boost::asio::ip::tcp::socket&& socket, Hub& hub, const std::filesystem::path& page)
-    : stream_(std::move(socket)), hub_(hub), page_(page) {}
+HttpSession::HttpSession(boost::asio::ip::tcp::socket&& socket, Hub& hub, const AllowedHosts& hosts,
+                         const std::filesystem::path& page)
+    : stream_(std::move(socket)), hub_(hub), hosts_(hosts), page_(page) {}
 
 void HttpSession::read() {
   parser_.emplace();
@@ -53,13 +50,31 @@ void HttpSession::read() {
 void HttpSession::on_read(beast::error_code error) {
   if (error) return close();
   const Request request = parser_->release();
-  if (beast::websocket::is_upgrade(request)) {
-    if (request.target() != "/ws" && !request.target().starts_with("/ws?"))
-      return send_text(request, http::status::not_found, "text/plain", "no WebSocket here\n");
-    if (!same_site(request)) return send_text(request, http::status::forbidden, "text/plain", "foreign origin\n");
-    return std::make_shared<WsClient>(std::move(stream_), hub_)->start(request);
-  }
-  answer(request);
+  if (refuse_foreign(request)) return;
+  beast::websocket::is_upgrade(request) ? upgrade(request) : answer(request);
+}
+
+/// A request under a name that is not ours is not answered, whatever it asks for: a foreign page may have let its own name
+/// point here (DNS rebinding).
+bool HttpSession::refuse_foreign(const Request& request) {
+  beast::error_code error;
+  const auto reached = stream_.socket().local_endpoint(error);
+  const std::string_view host = view(request[http::field::host]);
+  if (!error && request.count(http::field::host) == 1 && hosts_.allows(host, reached.address())) return false;
+  send_text(request, http::status::misdirected_request, "text/plain; charset=utf-8",
+            "This viewer does not answer to the name " + in_quotes(host) +
+                ". Ask for it by its address, or start it with --host NAME to allow a name.\n");
+  return true;
+}
+
+void HttpSession::upgrade(const Request& request) {
+  if (request.target() != "/ws" && !request.target().starts_with("/ws?"))
+    return send_text(request, http::status::not_found, "text/plain", "no WebSocket here\n");
+  if (!same_site(request)) return send_text(request, http::status::forbidden, "text/plain", "foreign origin\n");
+  beast::error_code no_local, no_remote;
+  const auto local = stream_.socket().local_endpoint(no_local), remote = stream_.socket().remote_endpoint(no_remote);
+  const bool here = !no_local && !no_remote && (remote.address().is_loopback() || remote.address() == local.address());
+  std::make_shared<WsClient>(std::move(stream_), hub_, rights_of(role_of(view(request.target())), here))->start(request);
 }
 
 void HttpSession::answer(const Request& request) {
@@ -91,6 +106,7 @@ void HttpSession::send_text(const Request& request, http::status status, std::st
   http::response<http::string_body> response{status, request.version()};
   response.set(http::field::content_type, beast::string_view(type.data(), type.size()));
   response.set(http::field::cache_control, "no-store");
+  response.set("X-Content-Type-Options", "nosniff");
   response.keep_alive(request.keep_alive());
   if (request.method() == http::verb::head) {
     response.content_length(body.size());  // of what GET would give

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 
+#include "viewer/gateway/access.h"
 #include "viewer/gateway/hub.h"
 
 namespace insula::gateway {
@@ -16,13 +17,15 @@ namespace http = beast::http;
 
 class HttpSession : public std::enable_shared_from_this<HttpSession> {
  public:
-  HttpSession(boost::asio::ip::tcp::socket&& socket, Hub& hub, const std::filesystem::path& page);
+  HttpSession(boost::asio::ip::tcp::socket&& socket, Hub& hub, const AllowedHosts& hosts, const std::filesystem::path& page);
   void start() { read(); }
 
  private:
   using Request = http::request<http::empty_body>;
   void read();
   void on_read(beast::error_code error);
+  bool refuse_foreign(const Request& request);
+  void upgrade(const Request& request);
   void answer(const Request& request);
   void send_text(const Request& request, http::status status, std::string_view type, std::string body);
   void send_file(const Request& request, const std::filesystem::path& file, std::string_view caching);
@@ -32,6 +35,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
 
   beast::tcp_stream stream_;
   Hub& hub_;
+  const AllowedHosts& hosts_;
   const std::filesystem::path& page_;
   beast::flat_buffer in_;
   std::optional<http::request_parser<http::empty_body>> parser_;

@@ -90,12 +90,12 @@ bool Hub::republish(std::string_view channel, Bytes payload) {
   return publish(bus_, channel, *message, scratch_);
 }
 
-bool Hub::from_page(Bytes framed) {
+bool Hub::from_page(Bytes framed, Rights rights) {
   bool ok = false;
   if (const auto parts = unframe(framed)) {
-    if (parts->channel == channel::user_command)
+    if (parts->channel == channel::user_command && rights.commands)
       ok = republish<insula_lcm::user_command_t>(channel::user_command, parts->payload);
-    else if (parts->channel == channel::hand_input)
+    else if (parts->channel == channel::hand_input && rights.hands)
       ok = republish<insula_lcm::hand_input_t>(channel::hand_input, parts->payload);
   }
   ++(ok ? page_accepted_ : page_refused_);

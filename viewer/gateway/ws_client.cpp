@@ -17,7 +17,8 @@ constexpr int socket_send_buffer = 128 * 1024;
 
 }  // namespace
 
-WsClient::WsClient(beast::tcp_stream&& stream, Hub& hub) : ws_(std::move(stream)), hub_(hub) {}
+WsClient::WsClient(beast::tcp_stream&& stream, Hub& hub, Rights rights)
+    : ws_(std::move(stream)), hub_(hub), rights_(rights) {}
 
 void WsClient::start(const http::request<http::empty_body>& request) {
   beast::error_code ignored;
@@ -52,7 +53,7 @@ void WsClient::on_read(beast::error_code error, std::size_t) {
   }
   const auto data = in_.cdata();
   if (ws_.got_binary() && within_rate())
-    hub_.from_page(Bytes(static_cast<const std::uint8_t*>(data.data()), data.size()));
+    hub_.from_page(Bytes(static_cast<const std::uint8_t*>(data.data()), data.size()), rights_);
   else
     hub_.refuse_from_page();
   in_.consume(in_.size());

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <memory>
 
+#include "viewer/gateway/access.h"
 #include "viewer/gateway/hub.h"
 
 namespace insula::gateway {
@@ -16,7 +17,7 @@ namespace http = beast::http;
 
 class WsClient final : public Client, public std::enable_shared_from_this<WsClient> {
  public:
-  WsClient(beast::tcp_stream&& stream, Hub& hub);
+  WsClient(beast::tcp_stream&& stream, Hub& hub, Rights rights);
   /// Answers the upgrade request and starts to talk. The client lives until its connection ends.
   void start(const http::request<http::empty_body>& request);
 
@@ -31,6 +32,7 @@ class WsClient final : public Client, public std::enable_shared_from_this<WsClie
 
   beast::websocket::stream<beast::tcp_stream> ws_;
   Hub& hub_;
+  Rights rights_;
   beast::flat_buffer in_;
   Outbox outbox_;
   Message in_flight_;

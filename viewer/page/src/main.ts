@@ -80,7 +80,7 @@ const hud_root = document.getElementById('hud')!;
 hud_root.hidden = !options.hud;
 const ws_url = new URL('ws', location.href);
 ws_url.protocol = ws_url.protocol === 'https:' ? 'wss:' : 'ws:';
-ws_url.search = '';
+ws_url.search = `?role=${options.role}`;  // the gateway takes from a page what its role may send
 
 const link = new Connection(ws_url.href, {
   frame: (m) => {
