@@ -20,7 +20,7 @@ CODE = re.compile(r"`([^`]+)`")
 PATH = re.compile(r"[A-Za-z0-9_.\-]+(/[A-Za-z0-9_.\-*]+)+/?")
 TEST = re.compile(r"([A-Z]\w+)\.([A-Z]\w+)")
 DECLARED = re.compile(r"\b(?:TYPED_)?TEST(?:_F|_P)?\(\s*(\w+)\s*,\s*(\w+)\s*\)")
-LONGEST_PAGE = 220
+LONGEST_PAGE = 240
 
 
 class Checker:
