@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Defaults that the manual states, against what declares them: parameters of elements, options of programs, members of C++ headers.
+"""Defaults that the manual states, against what declares them: parameters of elements, options of programs, members of
+C++ headers.
 
-A page states a default where a sentence or a table's row has a number beside the word "default", in one of these forms:
-    `alarm` (default 1 mm)      the default of `alarm` is 1 mm      `alarm` is 1 mm by default      `contact_geometry="triangles"` (default)
-The name is the last one in a code span before the number, else the first one behind it. Where the same text names an element
-(`<contact>`), its parameter is meant; otherwise any declaration of that name may agree.
+A page states a default where a sentence or a row of a table has a number beside the word "default", such as
+    `alarm` (default 1 mm)      the default of `alarm` is 1 mm      `alarm` is 1 mm by default
+or a choice: `contact_geometry="triangles"` (default). The name is the last one in a code span before the number, else the first one
+behind it. Where the same text names an element (`<contact>`), its parameter is meant. Otherwise any declaration of that
+name may agree.
 """
 import math
 import pathlib
@@ -16,9 +18,11 @@ ROW = re.compile(r"^\| `(\w+)` \| [^|]* \| ([^|]*) \|", re.M)
 OPTION = re.compile(r"^\s+(?:-\w,)?--([\w-]+) [A-Z]+\S*(?: in \[[^\]]*\])?=(\S+)", re.M)
 MEMBER = re.compile(r"\b(?:double|float|int|std::u?int\d+_t) (\w+) = (-?[\d.']+(?:e-?\d+)?);")
 # What the end of a C++ name says of its unit.
-SUFFIXES = {"_N_s": "N/s", "_m_s": "m/s", "_rad_s": "rad/s", "_ms": "ms", "_us": "us", "_mm": "mm", "_rad": "rad", "_Hz": "Hz", "_m": "m", "_s": "s", "_N": "N"}
+SUFFIXES = {"_N_s": "N/s", "_m_s": "m/s", "_rad_s": "rad/s", "_ms": "ms", "_us": "us", "_mm": "mm", "_rad": "rad",
+            "_Hz": "Hz", "_m": "m", "_s": "s", "_N": "N"}
 NUMBER = r"-?\d[\d,]*(?:\.\d+)?(?:e-?\d+)?"
 WORDS = {"million": 1e6}
+BEHIND = r",? (?:which is |is )?the default\b|,? by default\b|\s*\(default\)"  # what makes what is before it a default
 SPAN = re.compile(r"`([^`]+)`")
 
 
@@ -27,8 +31,16 @@ def units_of(source):
     text = (source / "core/params/quantity.cpp").read_text(encoding="utf-8")
     out = {"rad/s": 1.0}
     for symbol, factor in re.findall(r'\{"([^"]+)", ([^},]+)', text):
-        out[symbol] = eval(factor.replace("std::numbers::pi", repr(math.pi)), {"__builtins__": {}})  # noqa: S307  (our own source)
+        value = 1.0
+        for sign, term in re.findall(r"(^|[*/])\s*([^*/]+)", factor):
+            number = math.pi if term.strip() == "std::numbers::pi" else float(term)
+            value = value / number if sign == "/" else value * number
+        out[symbol] = value
     return out
+
+
+def either(defaults):
+    return " or ".join(sorted(set(defaults)))
 
 
 class Declared:
@@ -37,13 +49,15 @@ class Declared:
     def __init__(self, source, insula, haptic_server=None):
         self.units = units_of(source)
         symbols = sorted(self.units, key=len, reverse=True)
-        self.value = r"`?(%s)(?:\s*(million))?(?:\s*(%s)(?![\w/]))?`?" % (NUMBER, "|".join(re.escape(s) for s in symbols))
+        units = "|".join(re.escape(s) for s in symbols)
+        self.value = r"`?(%s)(?:\s*(million))?(?:\s*(%s)(?![\w/]))?`?" % (NUMBER, units)
         self.forms = [re.compile(f, re.I) for f in (
             r"\bdefaults?(?: value)?(?: of (?:it )?(?:is|are)| is| are| of|:|,)?\s+" + self.value,
             r"\bdefault of [^.;|]{1,60}? is " + self.value,
-            self.value + r"(?:,? (?:which is |is )?the default\b|,? by default\b|\s*\(default\)|,? unless (?:said|the scene says) otherwise)",
+            self.value + r"(?:%s|,? unless said otherwise)" % BEHIND,
         )]
-        self.choice = re.compile(r"`(\w+)=\"([^\"]+)\"`(?:\s*\(default\)|,? (?:which is |is )?the default\b|,? by default\b)|\bdefault,? `(\w+)=\"([^\"]+)\"`|`([a-z]\w*)` \(default\)")
+        self.choice = re.compile(r"`(\w+)=\"([^\"]+)\"`(?:" + BEHIND + r")"
+                                 r"|\bdefault,? `(\w+)=\"([^\"]+)\"`|`([a-z]\w*)` \(default\)")
         self.parameters, self.others = {}, {}
         self.read_elements(insula)
         for program in filter(None, (insula, haptic_server)):
@@ -67,7 +81,8 @@ class Declared:
 
     def read_options(self, program):
         helps = [subprocess.run([program, "--help"], capture_output=True, text=True).stdout]
-        commands = re.findall(r"^  ([a-z-]+)\s", helps[0].split("Subcommands:")[-1], re.M) if "Subcommands:" in helps[0] else []
+        listed = helps[0].partition("Subcommands:")[2]
+        commands = re.findall(r"^  ([a-z-]+)\s", listed, re.M)
         helps += [subprocess.run([program, c, "--help"], capture_output=True, text=True).stdout for c in commands]
         for text in helps:
             for name, value in OPTION.findall(text):
@@ -118,14 +133,15 @@ class Declared:
                     continue
                 defaults = self.declared(name, text)
                 if not any(self.agrees(m[1], m[2], m[3], d, name.startswith("--")) for d in defaults):
-                    wrong.append("\"%s\": the default of `%s` is %s" % (m[0], name, " or ".join(sorted(set(defaults)))))
+                    wrong.append("\"%s\": the default of `%s` is %s" % (m[0], name, either(defaults)))
         for m in self.choice.finditer(text):
-            name, value = (m[1], m[2]) if m[1] else (m[3], m[4]) if m[3] else (self.subject(text, m.start(), len(text)), m[5])
+            name = m[1] or m[3] or self.subject(text, m.start(), len(text))
+            value = m[2] or m[4] or m[5]
             if m.start() in taken or name not in self.parameters or re.match(NUMBER, value):
                 continue
             claims += 1
             if value not in self.declared(name, text):
-                wrong.append("`%s=\"%s\"`: the default is %s" % (name, value, " or ".join(sorted(set(self.declared(name, text))))))
+                wrong.append("`%s=\"%s\"`: the default is %s" % (name, value, either(self.declared(name, text))))
         return claims, wrong
 
 

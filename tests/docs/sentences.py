@@ -4,15 +4,17 @@
 
     sentences.py [--json] [--headers] [--long] [PATH...]
 
-The pages are README.md, CONTRIBUTING.md and all of docs/. With --headers the comments of the C++ sources are counted too, an entry a
-file: all comments of a header, the comment at the top of a .cpp file. PATH limits the count to files and folders; with it, --headers
-counts the sources under those paths. A page's mean may be at most 20 words a sentence, and no sentence may have more than 40.
---json prints {page: {"sentences", "mean", "max", "longest"}}; "longest" is the text of the longest sentence. --long lists every
-sentence above the limit. The exit status is 1 above a limit.
+The pages are README.md, CONTRIBUTING.md and all of docs/. With --headers the comments of the C++ sources are counted
+too, an entry a file: all comments of a header, the comment at the top of a .cpp file. PATH limits the count to files
+and folders; with it, --headers counts the sources under those paths.
+
+A page's mean may be at most 20 words a sentence, and no sentence may have more than 40. The exit status is 1 above a
+limit. --json prints {page: {"sentences", "mean", "max", "longest"}}; "longest" is the text of the longest sentence.
+--long lists every sentence above the limit.
 
 What counts as a sentence:
-  - A paragraph, a list item and a quotation are split at full stops, question marks and exclamation marks. A colon that ends one
-    ends its last sentence.
+  - A paragraph, a list item and a quotation are split at full stops, question marks and exclamation marks. A colon that
+    ends one ends its last sentence.
   - A code span counts as one word, and a link counts as its text. A word has at least one letter or digit.
   - Code blocks, formulas (indented by four spaces or more), headings, images and HTML comments do not count.
   - A table's cells do not count for the mean, since they are notes. No cell may hold a sentence above the limit.
@@ -143,8 +145,9 @@ def measure(paragraph_texts, cell_texts):
     in_cells = [s for text in cell_texts for s in sentences(text)]
     longest = max(counted + [s for s in in_cells if s[0] > LONGEST], default=(0, ""))
     words = sum(n for n, _ in counted)
-    return {"sentences": len(counted), "mean": round(words / len(counted), 1) if counted else 0.0, "max": longest[0],
-            "longest": longest[1]}, [s for s in counted + in_cells if s[0] > LONGEST]
+    counts = {"sentences": len(counted), "mean": round(words / len(counted), 1) if counted else 0.0}
+    counts.update({"max": longest[0], "longest": longest[1]})
+    return counts, [s for s in counted + in_cells if s[0] > LONGEST]
 
 
 def files_of(source, paths, headers):
@@ -167,7 +170,8 @@ def main():
     parser.add_argument("--json", action="store_true", help="print the counts of every page as JSON")
     parser.add_argument("--headers", action="store_true", help="count the comments of C++ sources too")
     parser.add_argument("--long", action="store_true", help="list every sentence above the limit")
-    parser.add_argument("--source", default=pathlib.Path(__file__).resolve().parents[2], type=pathlib.Path, help="the project's folder")
+    parser.add_argument("--source", default=pathlib.Path(__file__).resolve().parents[2], type=pathlib.Path,
+                        help="the project's folder")
     parser.add_argument("paths", nargs="*", metavar="PATH", help="files and folders of the project")
     options = parser.parse_args()
     source = options.source.resolve()
@@ -189,7 +193,8 @@ def main():
     for failure in failures:
         print("FAILED: " + failure, file=sys.stderr)
     if not options.json:
-        print("%d pages, %d sentences; %d failures" % (len(result), sum(c["sentences"] for c in result.values()), len(failures)))
+        total = sum(c["sentences"] for c in result.values())
+        print("%d pages, %d sentences; %d failures" % (len(result), total, len(failures)))
     return 1 if failures else 0
 
 

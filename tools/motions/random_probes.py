@@ -4,9 +4,10 @@
 
     python3 tools/motions/random_probes.py COUNT OUTPUT_FOLDER [SEED]
 
-Points are drawn uniformly over a rectangle of the exposed cortex, 24 mm along the fissure and 10 mm across it. Each point gets tap_NN.csv
-and drag_NN.csv: the movements of `tap` and `drag` (haptic_probes.py), measured from the cortex at that point. A drag goes 2 mm in a random
-direction and back. No point is left out. The same input gives the same bytes.
+Points are drawn uniformly over a rectangle of the exposed cortex, 24 mm along the fissure and 10 mm across it. Each
+point gets tap_NN.csv and drag_NN.csv: movements like those of `tap` and `drag` (haptic_probes.py), measured from the
+cortex at that point. A drag goes 2 mm in a random direction and back. No point is left out. The same input gives the
+same bytes.
 """
 import math
 import pathlib
@@ -22,7 +23,8 @@ from sylvian_fissure import add, cross, dot, orientation  # noqa: E402
 SURFACE = course.ROOT / "meshes" / "lobes" / "frontal_surface.ply"
 ALONG, LIFT = (-12.0, 12.0), (5.0, 15.0)  # mm, in the fissure's coordinates
 # seconds, depth below the cortex (mm), part of the drag
-TAP = [(0.0, -5, 0), (0.3, 2.3, 0), (0.1, 2.3, 0), (0.2, -1.3, 0), (0.25, 2.7, 0), (0.1, 2.7, 0), (0.2, -1.3, 0), (0.2, 2.3, 0), (0.2, -5, 0)]
+TAP = [(0.0, -5, 0), (0.3, 2.3, 0), (0.1, 2.3, 0), (0.2, -1.3, 0), (0.25, 2.7, 0), (0.1, 2.7, 0), (0.2, -1.3, 0),
+       (0.2, 2.3, 0), (0.2, -5, 0)]
 DRAG = [(0.0, -5, 0), (0.35, 2.2, 0), (0.1, 2.2, 0), (0.3, 2.2, 1), (0.1, 2.2, 1), (0.25, 2.2, 0), (0.3, -5, 0)]
 DRAG_MM = 2.0
 
@@ -32,7 +34,8 @@ def triangles(path):
     head, body = path.read_bytes().split(b"end_header\n", 1)
     lines = head.decode().split("\n")
     assert "format binary_little_endian 1.0" in lines, path
-    vertices, faces = (next(int(l.split()[2]) for l in lines if l.startswith("element " + what)) for what in ("vertex", "face"))
+    vertices, faces = (next(int(l.split()[2]) for l in lines if l.startswith("element " + what))
+                       for what in ("vertex", "face"))
     kinds = [l.split()[1] for l in lines if l.startswith("property ") and "list" not in l]
     code = {"float": "f", "float32": "f", "double": "d", "uchar": "B", "uint8": "B"}
     vertex = struct.Struct("<" + "".join(code[k] for k in kinds))
