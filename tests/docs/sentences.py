@@ -16,7 +16,8 @@ What counts as a sentence:
   - A paragraph, a list item and a quotation are split at full stops, question marks and exclamation marks. A colon that
     ends one ends its last sentence.
   - A code span counts as one word, and a link counts as its text. A word has at least one letter or digit.
-  - Code blocks, formulas (indented by four spaces or more), headings, images and HTML comments do not count.
+  - Code blocks, formulas (indented by four spaces or more, in comments by two), headings, images and HTML comments do
+    not count.
   - A table's cells do not count for the mean, since they are notes. No cell may hold a sentence above the limit.
 """
 import argparse
@@ -35,6 +36,8 @@ SOURCES = ("core", "plugins", "haptic_server", "engine", "viewer/gateway", "tool
 ITEM = re.compile(r"^\s*([-*+]|\d+[.)])\s+")
 # A full stop after these does not end a sentence.
 ABBREVIATION = re.compile(r"\b(?:e\.g|i\.e|et al|vs|cf|approx|resp|eqs?|figs?|pp|sec)\.$", re.I)
+# What a sentence begins with: a capital, a digit, a code span or a name of code.
+BEGIN = re.compile(r"[\W_]*[A-Z0-9]|code\b|[a-z]\w*(?:\(\)|_\w)")
 END = re.compile(r"[.!?][)\"'*_]*(?=\s)")
 
 
@@ -55,7 +58,7 @@ def sentences(text):
         sentence = shown[begin:end].strip()
         following = shown[end:].lstrip()
         abbreviated = ABBREVIATION.search(sentence.rstrip(")\"'*_"))
-        if following and (abbreviated or not re.match(r"[\W_]*[A-Z0-9]|code\b", following)):
+        if following and (abbreviated or not BEGIN.match(following)):
             continue
         words = sum(1 for w in sentence.split() if re.search(r"\w", w))
         if words:
@@ -137,7 +140,7 @@ def comments(path):
         if re.match(r"\s*```", line):
             fence = not fence
         elif not fence:
-            kept.append(line)
+            kept.append(re.sub(r"^ {2,3}(?=\S)", "    ", line))  # comments indent their formulas by less than pages do
     return paragraphs(kept)
 
 

@@ -30,6 +30,7 @@ echo This is no sentence either.
 """
 HEADER = """// SPDX-License-Identifier: GPL-3.0-or-later
 // The top comment. It has two sentences.
+//   formula = that does not count
 #pragma once
 /// A doc comment,
 /// in two lines.
