@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What lies between the servo's force and the safety gate so that it reaches the hand: the scene's declared force scale, the device's own
-// weight and friction taken off, and short transients for what happens faster than a rendered force can tell.
+// The last stage between the servo's force and the safety gate. It applies the force scale that the scene declares and
+// compensates the weight and friction of the device. It adds short transients for events that are faster than a
+// rendered force.
 #pragma once
 #include <vector>
 

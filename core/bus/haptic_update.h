@@ -37,13 +37,18 @@ bool encode_problem(const HapticUpdate& update, std::vector<std::uint8_t>& out);
 /// Gives changed bytes of a message the checksum that belongs to them (tests of what is behind it).
 void seal_problem(std::vector<std::uint8_t>& message);
 
-/// Reads and validates: sizes agree with each other and with the message's length; the checksum is right; every number finite and of plausible
-/// magnitude (|delta| < 1 m, |W| < 1e4 m/N, |lambda| < 1e4 N); W's diagonal >= 0; blocks cover all rows once, in order, with
-/// unique ids, known laws, lower <= upper, friction in [0, 10], compliance >= 0; lambda within its law; |rate| < 1000 m/s, retardation time in [0, 100] s; directions
-/// turn by 1 rad a step at most about any axis; at most two tools with
-/// distinct hands, unit quaternions, symmetric compliance and stiffness with a non-negative diagonal.
-/// On failure `into` is untouched and `why` holds the reason. Allocates only when `into` must grow, its Jacobians change size,
-/// or the message is refused.
+/// Reads a message and validates it:
+/// - Sizes agree with each other and with the length of the message, and the checksum is right.
+/// - Every number is finite and of plausible magnitude: |delta| < 1 m, |W| < 1e4 m/N, |lambda| < 1e4 N.
+/// - The diagonal of W is >= 0.
+/// - Blocks cover all rows once, in order, with unique ids, known laws, lower <= upper, friction in [0, 10] and
+///   compliance >= 0.
+/// - lambda satisfies the bounds of its law; |rate| < 1000 m/s; retardation time in [0, 100] s.
+/// - Directions turn by 1 rad a step at most about any axis.
+/// - There are at most two tools, with distinct hands, unit quaternions, and symmetric compliance and stiffness with a
+///   non-negative diagonal.
+/// On failure `into` is untouched and `why` holds the reason. Allocates only when `into` must grow, its Jacobians
+/// change size, or the message is refused.
 bool decode_problem(Bytes bytes, HapticUpdate& into, std::string& why);
 
 }  // namespace insula

@@ -8,9 +8,10 @@
 //   friction  open: lambda = 0                 sticks: delta + c lambda_n = 0, delta_t = 0
 //             slips along u: delta_n + c lambda_n = 0, lambda_t = mu lambda_n u + y v, v . delta_t + s y = 0, s = |delta_t| / |lambda_t|
 //   patch     as the tangential part of friction, with the sum of its contacts' lambda
-// In the unknowns that are left, lambda = lambda0 + T x, that is R (W T x + delta0) + C x = 0: solved by LU. The result is put back into
-// the laws' bounds, smoothed by a few sweeps and taken if its residual is smaller; otherwise half the way, or less, is tried, and at last
-// a stronger proximal term eps W_ii x_i, which also makes a semidefinite W (redundant contacts) harmless.
+// In the remaining unknowns, lambda = lambda0 + T x, that is R (W T x + delta0) + C x = 0, solved by LU. The result is
+// projected into the bounds of the laws, smoothed by a few sweeps and taken if its residual is smaller. Otherwise a
+// shorter step is tried. At last a stronger proximal term eps W_ii x_i is used, which also makes a semidefinite W
+// (redundant contacts) harmless.
 #pragma once
 #include <span>
 #include <vector>

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Block Gauss-Seidel with residual updates (core/constraint/sweep_kernels.h), then, where it stalls, Newton (core/constraint/newton.h).
 //
-// On request lambda is carried on between sweeps along a conjugate direction (nonsmooth nonlinear conjugate gradients; Silcowitz, Niebe,
-// Erleben 2010): with g what a sweep moves lambda by, beta = |g_k|^2 / |g_k-1|^2, p_k = beta p_k-1 + g_k, lambda += beta p_k-1;
-// beta > 1 starts anew. A stiff clip on a thin wall takes a tenth of the sweeps. W p follows from the deltas before and
-// after a sweep, so it costs no product with W. The last thing done to lambda is always a sweep, which keeps every law.
+// On request lambda is extrapolated between sweeps along a conjugate direction (nonsmooth nonlinear conjugate
+// gradients; Silcowitz, Niebe, Erleben 2010). With g the change of lambda in a sweep:
+//   beta = |g_k|^2 / |g_k-1|^2,   p_k = beta p_k-1 + g_k,   lambda += beta p_k-1
+// The direction starts anew when beta > 1. A stiff clip on a thin wall takes a tenth of the sweeps. W p follows from
+// the deltas before and after a sweep, so it costs no product with W. The last operation on lambda is always a sweep,
+// which keeps every law.
 #include "core/constraint/solve.h"
 
 #include <algorithm>

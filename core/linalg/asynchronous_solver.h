@@ -42,8 +42,8 @@ class AsynchronousSolver final : public BodySolver {
   int rows_reused() const override { return front_->full.rows_reused(); }
   SolverCost cost() const override { return front_->full.cost(); }
 
-  /// A factor asked for is put in place so many steps later when waiting is allowed: about what a busy core needs for it, but by its flops, not
-  /// by a clock, so that the same input gives the same bits.
+  /// A requested factor is put in place so many steps later when waiting is allowed. This is about what a busy core
+  /// needs for it. It is computed from flops and not from a clock, so the same input gives the same bits.
   int delay() const { return 1 + int(front_->full.cost().factor_flops / 5e8); }
   static constexpr double early = 30;  ///< free motion may lack so many tolerances
   static constexpr int enough_iterations = 2;  ///< of a solve: more of them and a new factor is asked for

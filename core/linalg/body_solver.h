@@ -6,8 +6,9 @@
 // add_compliance(), correct() and the end of the motion until the next begin_compliance(). Nothing is allocated unless more rows come
 // than ever before.
 //
-// A step's motion A^-1 (f + H^T lambda) comes in two halves, with W and lambda between them: hardly anyone needs the free motion but in the rows,
-// and a direct solver that is not asked for it goes through its factor once each way.
+// A step's motion A^-1 (f + H^T lambda) comes in two halves, with W and lambda between them. The free motion is
+// normally used only through the rows. A direct solver that is not asked for it goes through its factor once in each
+// direction.
 #pragma once
 #include <array>
 #include <cstdint>

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Solves with one front of a factor whose numbers are 16-bit floats, once per instruction set. A front's trapezoid, unit diagonal left
-// out, is one stream in the order that both solves read it, or its reverse: for each few columns (half_columns at most, always a multiple
-// of three) their strict triangle, column by column and filled up to half_lanes numbers, then the rows below it, half_lanes rows of one column after
+// Solves with one front of a factor whose numbers are 16-bit floats, compiled once per instruction set. The trapezoid
+// of a front, without its unit diagonal, is one stream in the order in which both solves read it, or the reverse. It is
+// cut into groups of at most half_columns columns, always a multiple of three. A group holds its strict triangle,
+// column by column and filled up to half_lanes numbers. The rows below follow, half_lanes rows of one column after
 // another.
 #pragma once
 #include <cstdint>

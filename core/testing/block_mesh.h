@@ -37,8 +37,9 @@ class SceneFolder {
   std::filesystem::path path_;
 };
 
-/// URDF text of a tool for tests: a ball of `radius` (m) at the tip, inertia of a rod; and its tool.json: `edge` non-empty
-/// gives it one cutting edge along tool y of that half-length (m), `inner_radius` > 0 an opening for suction (m).
+/// URDF text and tool.json of a tool for tests. The URDF has a ball of `radius` (m) at the tip and the inertia of a
+/// rod. `edge` > 0 gives the tool a cutting edge along its y axis, of that half-length (m). `inner_radius` > 0 gives it
+/// an opening for suction (m).
 std::string test_tool_urdf(double radius);
 std::string test_tool_json(double edge, double inner_radius);
 

@@ -39,9 +39,10 @@ class Supervisor {
   ~Supervisor();
 
   void add(ChildSpec spec);
-  /// Another command for a child that has been added: it is started beside the running one, and takes its place when it has
-  /// printed the line `ready_line`: then the old one is ended, and once it is gone the new one gets SIGUSR1. When it ends before,
-  /// the old one goes on, and `refused` is told what it printed. A second offer takes the place of a first that is not ready.
+  /// Another command for a child that has been added. It is started beside the running one. It takes over when it has
+  /// printed the line `ready_line`. The old process is then ended, and the new one gets SIGUSR1 once the old one is
+  /// gone. If the new process ends earlier, the old one continues, and `refused` gets what the new one printed. A
+  /// second offer replaces a first one that is not ready.
   struct Offer {
     std::vector<std::string> command;
     std::string ready_line;

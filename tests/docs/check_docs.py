@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Holds the manual against the project: links, files, scenes, printed messages, commands, names of tests.
+"""Holds the manual against the project: links, files, scenes, printed messages, commands, names of tests, stated defaults.
 
     check_docs.py SOURCE_FOLDER INSULA_PROGRAM [HAPTIC_SERVER_PROGRAM]
 """
@@ -13,6 +13,7 @@ import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+import defaults  # noqa: E402
 import pages  # noqa: E402
 
 LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)")
@@ -20,7 +21,7 @@ CODE = re.compile(r"`([^`]+)`")
 PATH = re.compile(r"[A-Za-z0-9_.\-]+(/[A-Za-z0-9_.\-*]+)+/?")
 TEST = re.compile(r"([A-Z]\w+)\.([A-Z]\w+)")
 DECLARED = re.compile(r"\b(?:TYPED_)?TEST(?:_F|_P)?\(\s*(\w+)\s*,\s*(\w+)\s*\)")
-LONGEST_PAGE = 220
+LONGEST_PAGE = 240
 
 
 class Checker:
@@ -29,6 +30,7 @@ class Checker:
         self.failures = 0
         self.counts = {}
         self.help = {}
+        self.declared = defaults.Declared(source, insula, haptic_server)
         self.folders = {p.name for p in source.iterdir() if p.is_dir() and p.name != "build"}
         self.tests = set()
         for folder in ("core", "plugins", "haptic_server", "engine", "viewer/gateway", "tests", "tools"):
@@ -81,6 +83,14 @@ class Checker:
                     continue
                 self.count("tests")
                 self.that(name.groups() in self.tests, (page, number), "there is no test %s" % code)
+
+    def stated_defaults(self, page, outside):
+        for number, text in defaults.texts(outside):
+            claims, wrong = self.declared.check(text)
+            for _ in range(claims):
+                self.count("defaults")
+            for what in wrong:
+                self.that(False, (page, number), what)
 
     # --- commands ---------------------------------------------------------------------------------------------------
     def help_of(self, *command):
@@ -184,6 +194,7 @@ class Checker:
         self.links(page, outside)
         self.named_files(page, outside, promised)
         self.test_names(page, outside)
+        self.stated_defaults(page, outside)
         for block in blocks:
             if block.language == "sh":
                 for number, line in pages.commands(block):
@@ -203,7 +214,7 @@ def main():
         return 1
     for page in pages.all_pages(source):
         check.page(page)
-    for what in ("links", "files", "scenes", "outputs", "commands", "tests"):
+    for what in ("links", "files", "scenes", "outputs", "commands", "tests", "defaults"):
         if not check.counts.get(what):
             check.failures += 1
             print("FAILED: no %s were found in the manual; is it read rightly?" % what)

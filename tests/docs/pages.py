@@ -63,5 +63,5 @@ def commands(block):
 
 
 def all_pages(source):
-    """The pages in the order in which they are read: the front page first."""
-    return [source / "README.md"] + sorted((source / "docs").glob("*.md"))
+    """The pages in the order in which they are read: the front page first, the notes last."""
+    return [source / "README.md"] + sorted((source / "docs").glob("*.md")) + sorted((source / "docs/notes").glob("*.md"))

@@ -5,9 +5,10 @@
 
 namespace insula::case_builder {
 
-/// Writes the exercises of the case, spins the strands of the second one (facts.strand_sets and what goes with them are set: kinds for
-/// which there is no place are left out, strands are thinned out and moved towards the surgeon until a blade gets at them), and, when
-/// asked to, rehearses the dissection and writes its motion. Throws InputError when the exercise does not load.
+/// Writes the exercises of the case and creates the strands of the second one. It sets facts.strand_sets and what
+/// belongs to them. Kinds without a suitable position are left out, and strands are thinned out and moved towards the
+/// surgeon until a blade reaches them. With `rehearse`, the dissection is rehearsed and its motion is written. Throws
+/// InputError when the exercise does not load.
 void spin_strands(SceneFacts& facts, const CaseFolder& folder, bool rehearse, std::vector<Note>& notes, Progress& progress);
 
 }  // namespace insula::case_builder

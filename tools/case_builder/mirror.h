@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Left for right, at the plane x = 0 that parts the hemispheres of the MNI frame: the fissure, the arms and the microscope stand on the right,
-// so a left-sided input is mirrored as it is read, and all stages see a right-sided one.
+// Mirrors an input at the plane x = 0, which separates the hemispheres of the MNI frame. The fissure, the arms and the
+// microscope stand on the right. A left-sided input is therefore mirrored as it is read, and all stages see a
+// right-sided one.
 #pragma once
 #include "core/model/mesh.h"
 #include "tools/case_builder/options.h"

@@ -116,9 +116,9 @@ inline std::string nifti_text(std::array<int, 3> n, double spacing, const std::f
   return h;
 }
 
-/// Labels of a right half of a head in the MNI frame with a Sylvian fissure where that of the shipped lobes lies: a ball of cortex, a bump of
-/// insula (30) under it, and a bent sheet of fissure between the gyri of the frontal lobe (2, 4 to 6) and the temporal lobe (81). `shift`, mm,
-/// moves it all.
+/// Labels of the right half of a head in the MNI frame. Its Sylvian fissure lies where that of the shipped lobes lies.
+/// The parts are a ball of cortex, a bump of insula (30) under it, and a bent sheet of fissure between the gyri of the
+/// frontal lobe (2, 4 to 6) and the temporal lobe (81). `shift` (mm) moves all of it.
 inline int head_label(Vec3 p, const Vec3& shift = Vec3::Zero()) {
   p -= shift;
   if (p.x() < 0 || (p - Vec3(0, -12, -4)).norm() > 70) return 0;

@@ -39,9 +39,9 @@ struct PartFields {
   std::vector<Field> others;  // distance (mm) to the fine sets of all other parts
 };
 
-// Gives every voxel of tissue to a part (or to "anything else"), by growth from the labels along bright tissue, so that
-// borders follow the dark sulci and white matter without a label joins the gyrus above it; then builds the levels.
-// `intensity` may be null: then every labelled voxel is tissue. Throws std::runtime_error when a part is empty.
+// Gives every voxel of tissue to a part (or to "anything else") by growth from the labels along bright tissue, and then
+// builds the levels. Borders therefore follow the dark sulci, and white matter without a label joins the gyrus above
+// it. `intensity` may be null: then every labelled voxel is tissue. Throws std::runtime_error when a part is empty.
 PartFields build_part_fields(const NiftiVolume& labels, const NiftiVolume* intensity, const std::vector<Part>& parts,
                              const FieldOptions& options);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Scripted hands that free an aneurysm by operating in its running scene: the dissector goes to the nearest and outermost strand, turns
-// the blade across it and sweeps it forth and back, with room to the vessel and the lobes measured on grids of distances.
+// Scripted hands that free an aneurysm by operating in its running scene. The dissector goes to the nearest and
+// outermost strand, turns the blade across it and sweeps it back and forth. Grids of distances keep it clear of the
+// vessel and the lobes.
 #pragma once
 #include <functional>
 

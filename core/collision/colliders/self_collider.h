@@ -2,10 +2,11 @@
 // A thin-walled surface against itself: sampled vertices against triangles that face them, across the lumen (inner sides)
 // or outside. The triangles are the wall's middle surface; the gap is what is left beyond one wall thickness.
 //
-// Which side a pair belongs to is told by the rest shape, where nothing has crossed: inner, if the straight line between
-// the two leaves the vertex inward, ends at the triangle from inside, and is no longer than a few lumens; outer, if it runs
-// outside at both ends. So a vertex found on the wrong side of its partner is known to have crossed (negative gap) and is
-// brought back, and no history is needed for the inner side. Pairs that are near at rest are neighbours and never touch.
+// The rest shape, where nothing has crossed, tells which side a pair belongs to. It is inner if the straight line
+// between the two leaves the vertex inward, ends at the triangle from inside, and is no longer than a few lumens. It is
+// outer if the line runs outside at both ends. A vertex on the wrong side of its partner has therefore crossed. It has
+// a negative gap and is brought back, and no history is needed for the inner side. Pairs that are near at rest are
+// neighbours and never touch.
 //
 // A sample with nothing near is not looked at again before motion can have brought something near: what its region of the mesh and
 // those of its possible partners have moved tells. One with something near keeps a list of its possible partners until

@@ -8,18 +8,20 @@
 //   - at the start,
 //   - where the piece first touches, or at the end of its free motion,
 //   - where it would be after sliding along what it touches by the rest of its motion.
-// A contact found later in the step is used only if the tool starts on its free side; its start_gap is measured between
-// the same material points along the same normal, so that start_gap + H dq is the gap at the end of the step.
+// A contact found later in the step is used only if the tool starts on its free side. Its start_gap is measured between
+// the same material points along the same normal. So start_gap + H dq is the gap at the end of the step.
 //
-// A step that takes its normals from its start is behind on a surface that turns. With `expected`, where the tool is thought to be at the
-// end of the step, a piece's contacts of the start, and of sliding, are taken there instead, with the surface where its motion leads it: then
-// normals and places are those of the end, and start_gap + H dq is the gap there, exactly if both go as expected. A piece that is behind
-// the surface, would be behind a wall, or would be away keeps the contacts of the start.
+// A step that takes its normals from its start lags on a surface that turns. `expected` is the expected pose of the
+// tool at the end of the step. With it, a piece takes its contacts of the start, and of sliding, at that pose and on
+// the surface where its motion leads it. Normals and contact points are then those of the end, and start_gap + H dq is
+// the gap there, exactly if both move as expected. A piece keeps the contacts of the start if it is behind the surface,
+// would be behind a wall, or would be away.
 //
-// One triangle gives a contact only where the distance is smallest among its neighbours too (no ghost contacts at inner
-// edges), plus the corners of the piece's core that stand right above it (a flat or long piece lies on several points).
-// Sides are told by the surface's outward normals. A core behind the surface has a negative gap and is pushed to the nearest
-// place of the surface, as long as it is no deeper than max_depth; one that goes through a triangle is pushed along its normal.
+// One triangle gives a contact only where the distance is smallest among its neighbours too, so there are no ghost
+// contacts at inner edges. Corners of the core that stand right above the triangle are added, since a flat or long
+// piece lies on several points. The outward normals of the surface tell the sides. A core behind the surface has a
+// negative gap and is pushed to the nearest point of the surface, as long as it is no deeper than max_depth. A core
+// that passes through a triangle is pushed along its normal.
 //
 // A vessel pressed flat is thinner than a blade, and what is behind its one wall is soon nearest to the other. So each piece
 // remembers on which side of the surface it was when it was last outside, and never leaves towards the opposite one.
@@ -42,9 +44,9 @@ struct ToolContactSettings {
   const Pose* expected = nullptr;  ///< of the tool at the end of the step, scene frame; null: contacts of the start are taken at the start
 };
 
-/// A piece as used for collision: core of at most 24 points and a radius that is never 0 (flat blades are shrunk by a
-/// fifth of a millimetre or 0.45 of their least extent and rounded by as much, so that resting contact keeps the
-/// core clear of the surface and normals well defined).
+/// A piece as used for collision: a core of at most 24 points, and a radius that is never 0. Flat blades are shrunk by
+/// a fifth of a millimetre, or 0.45 of their smallest extent, and rounded by as much. Resting contact then keeps the
+/// core clear of the surface, and normals are well defined.
 struct RoundedPiece {
   static constexpr std::size_t max_core = 24;  ///< read_tool refuses more
   std::vector<Vec3> core;  ///< tool frame

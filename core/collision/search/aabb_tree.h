@@ -107,9 +107,10 @@ class AabbTree {
   /// Boxes of the triangles at `positions` joined with those at positions + displacements (may be empty). The arrays must live
   /// until the next refit.
   void refit(std::span<const Vec3> positions, std::span<const Vec3> displacements);
-  /// The same in parts, for who knows what may have left its boxes: where vertices are from now on, then those to look after,
-  /// then close(). renew() returns how far their positions are inside of their boxes at least, m: what goes no farther, with its
-  /// displacement, needs no renewal.
+  /// The same in parts, for a caller that knows which vertices may have left their boxes. look_at() gives the positions
+  /// of vertices from now on, renew() takes the vertices to check, and close() ends the refit. renew() returns the
+  /// smallest distance of their positions to the sides of their boxes, m. A vertex whose displacement stays within it
+  /// needs no renewal.
   void look_at(std::span<const Vec3> positions, std::span<const Vec3> displacements);
   double renew(std::span<const int> vertices);
   void close();

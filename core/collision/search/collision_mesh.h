@@ -85,8 +85,9 @@ class CollisionMesh {
   Vec3 face_normal(int tri, double t = 0) const;    ///< unit
   Vec3 vertex_normal(int v, double t = 0) const;    ///< unit, weighted by angle
   Vec3 rough_normal(int v) const;                   ///< unit, weighted by area, at the start of the step
-  /// Outward normal of the feature (face, mean of an edge's faces, angle-weighted at a vertex): its product with p - c
-  /// has the sign of the distance of p, c the surface point closest to p (Baerentzen, Aanaes 2005). Unit.
+  /// Outward unit normal of the feature: of a face, the mean of an edge's faces, or angle-weighted at a vertex. Let c
+  /// be the surface point closest to p. The product of the normal with p - c has the sign of the distance of p
+  /// (Baerentzen, Aanaes 2005).
   Vec3 pseudo_normal(int tri, const TriangleFeature& f, double t = 0) const;
   /// Whether c, closest to something in direction d (unit, from c) on this triangle, is so on the neighbouring triangles
   /// too: no step from c into one of them leads along d by more than `slack` (a sine).

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The triangle of one surface that is nearest to a vertex of another and faces it, for a vertex that is looked after step
-// after step: what was farther than the nearest by more than anything has moved since needs no look. What is found depends
-// on where things are alone; of two at the same distance it is the triangle of the lower number.
+// Finds the triangle of one surface that is nearest to a vertex of another and faces it. The vertex is searched for in
+// every step. A triangle needs no test while it was farther than the nearest one by more than all motion since. The
+// result depends only on positions. Of two triangles at the same distance, the lower number counts.
 #pragma once
 #include <algorithm>
 #include <cmath>
