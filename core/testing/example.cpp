@@ -24,6 +24,8 @@ Registry& registry() {
 const Registry& builtin() { return registry(); }
 std::string add_plugin(const std::filesystem::path& library) { return load_plugin(registry(), library); }
 
+void add_elements(void (*add)(Registry&)) { add(registry()); }
+
 namespace {
 std::unique_ptr<Simulation> take(SimulationResult result) {
   if (!result.diagnostics.all().empty()) ADD_FAILURE() << result.diagnostics.format();

@@ -17,6 +17,9 @@ const Registry& builtin();
 /// Adds the elements of a shared plugin, before the first test. Returns why not, empty when done.
 std::string add_plugin(const std::filesystem::path& library);
 
+/// Adds elements of the test program itself, before it loads scenes that name them.
+void add_elements(void (*add)(Registry&));
+
 /// Loads a scene; what is wrong becomes a test failure and the result is null. Warnings are failures too.
 std::unique_ptr<Simulation> load(const std::filesystem::path& file, int threads = 1);
 std::unique_ptr<Simulation> load_text(const std::string& xml, const std::filesystem::path& virtual_path, int threads = 1);

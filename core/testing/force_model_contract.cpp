@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Contract of force models: energy, force, stiffness and, of those that act within the body, invariance under rigid motion.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
@@ -9,7 +10,7 @@
 #include "core/base/random.h"
 #include "core/testing/contracts.h"
 #include "core/testing/example.h"
-#include "core/testing/held.h"
+#include "core/testing/findings.h"
 
 namespace insula::test {
 namespace {
@@ -52,7 +53,7 @@ struct Bench {
   }
 };
 
-void expect_balanced(const Bench& b, const VecX& x, const VecX& f, double reference) {
+void check_balanced(Findings& findings, const Bench& b, const VecX& x, const VecX& f, double reference) {
   Vec3 sum = Vec3::Zero(), moment = Vec3::Zero(), centre = Vec3::Zero();
   double size = 0;
   const int nodes = b.body.nodes();
@@ -63,49 +64,113 @@ void expect_balanced(const Bench& b, const VecX& x, const VecX& f, double refere
     moment += r.cross(fi);
     size = std::max(size, r.norm());
   }
-  EXPECT_TRUE(held("forces add up to nothing", sum.norm(), reference, 1e-10));
-  EXPECT_TRUE(held("moments add up to nothing", moment.norm(), reference * size, 1e-10));
+  findings.within("forces add up to nothing", sum.norm(), reference, 1e-10);
+  findings.within("moments add up to nothing", moment.norm(), reference * size, 1e-10);
 }
 
-void check_state(Bench& b, const VecX& x, std::uint64_t seed) {
-  Random random(seed);
-  const double edge = shortest_edge(b.body);  // the scale of differences
-  const VecX f = b.force(x);
-  const double largest = f.lpNorm<Eigen::Infinity>();
-  ASSERT_GT(largest, 0) << "the deformed state gives no force";
-  if (b.model.internal()) expect_balanced(b, x, f, f.lpNorm<1>());
-
-  // Fourth-order central differences of the energy at a sample of the degrees of freedom.
+/// Fourth-order central differences of the energy at a sample of the degrees of freedom.
+void check_force(Findings& findings, Bench& b, const VecX& x, const VecX& f, Random& random) {
+  const double e = 1e-3 * shortest_edge(b.body), largest = f.lpNorm<Eigen::Infinity>();
   for (int trial = 0; trial < 60; ++trial) {
     const int i = int(random.below(std::uint32_t(b.n)));
-    const double e = 1e-3 * edge;
     const auto energy = [&](double d) {
       VecX y = x;
       y[i] += d;
       return b.model.energy(y.data());
     };
     const double slope = (8 * (energy(e) - energy(-e)) - (energy(2 * e) - energy(-2 * e))) / (12 * e);
-    EXPECT_TRUE(held("force = minus energy gradient", std::abs(f[i] + slope), largest, 1e-7)) << "degree of freedom " << i;
+    findings.within("force = minus energy gradient", std::abs(f[i] + slope), largest, 1e-7, fmt::format("degree of freedom {}: {:.6g} N, expected {:.6g} N", i, f[i], -slope));
   }
+}
 
-  // Stiffness against differences of the force, along random directions.
+/// Stiffness against differences of the force, along random directions; then the tangent that the step uses.
+void check_stiffness(Findings& findings, Bench& b, const VecX& x, Random& random) {
+  const double e = 1e-3 * shortest_edge(b.body);
   const MatX exact = b.stiffness(x, 0, Tangent::exact);
-  EXPECT_TRUE(held("exact stiffness is symmetric", (exact - exact.transpose()).norm(), exact.norm(), 1e-12));
+  findings.within("exact stiffness is symmetric", (exact - exact.transpose()).norm(), exact.norm(), 1e-12);
   for (int trial = 0; trial < 10; ++trial) {
     VecX d(b.n);
     for (int i = 0; i < b.n; ++i) d[i] = random.uniform(-1, 1);
-    const double e = 1e-3 * edge;
     const VecX slope = (8 * (b.force(x + e * d) - b.force(x - e * d)) - (b.force(x + 2 * e * d) - b.force(x - 2 * e * d))) / (12 * e);
     const VecX product = exact * d;
-    EXPECT_TRUE(held("exact stiffness = force gradient", (product + slope).norm(), product.norm(), 1e-6));
+    findings.within("exact stiffness = force gradient", (product + slope).norm(), product.norm(), 1e-6);
   }
-
   const MatX system = b.stiffness(x, 0, Tangent::system);
-  EXPECT_LT((system - system.transpose()).norm(), 1e-12 * system.norm());
+  findings.within("the step's tangent is symmetric", (system - system.transpose()).norm(), system.norm(), 1e-12);
   const VecX values = Eigen::SelfAdjointEigenSolver<MatX>(system, Eigen::EigenvaluesOnly).eigenvalues();
-  EXPECT_GT(values[0], -1e-10 * values[b.n - 1]) << "the step's tangent has a negative eigenvalue";
-  const double h = 0.01;
-  EXPECT_LT((b.stiffness(x, h, Tangent::system) - (1 + b.model.stiffness_damping() / h) * system).norm(), 1e-12 * system.norm() * (1 + b.model.stiffness_damping() / h));
+  findings.expect(values[0] > -1e-10 * values[b.n - 1], "the step's tangent has a negative eigenvalue", fmt::format("{:.3g}, the largest {:.3g} N/m", values[0], values[b.n - 1]));
+  const double h = 0.01, factor = 1 + b.model.stiffness_damping() / h;
+  findings.within("the step's tangent has the promised damping", (b.stiffness(x, h, Tangent::system) - factor * system).norm(), system.norm() * factor, 1e-12);
+}
+
+void check_state(Findings& findings, Bench& b, const VecX& x, std::uint64_t seed) {
+  Random random(seed);
+  const VecX f = b.force(x);
+  const double largest = f.lpNorm<Eigen::Infinity>();
+  if (!findings.expect(f.allFinite(), "its force is not finite") || !findings.expect(largest > 0, "a deformed state gives no force")) return;
+  if (b.model.internal()) check_balanced(findings, b, x, f, f.lpNorm<1>());
+  check_force(findings, b, x, f, random);
+  check_stiffness(findings, b, x, random);
+}
+
+/// Rigid motions, also far ones and without a warm start.
+void check_rigid_motions(Findings& findings, Bench& b, const VecX& rest, double reference) {
+  Random random(5);
+  for (int trial = 0; trial < 10; ++trial) {
+    const Vec3 turn(random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(-2, 2)), shift(random.uniform(-0.1, 0.1), 0.05, -0.02);
+    const Quat q = from_rotation_vector(turn);
+    VecX x(rest.size());
+    for (int i = 0; i < b.body.nodes(); ++i) x.segment<3>(3 * i) = q * rest.segment<3>(3 * i) + shift;
+    b.model.reset();
+    if (b.model.internal()) findings.within("rigid motion gives no force", b.force(x).lpNorm<Eigen::Infinity>(), reference, 1e-10);
+    findings.expect(b.model.energy(x.data()) >= 0, "its energy is negative");
+  }
+}
+
+/// The same laws about another stress-free configuration.
+void check_prestrain(Findings& findings, Bench& b, const VecX& rest, double reference) {
+  const VecX moved = 0.5 * (deformed(b.body, 0.1, 4) - rest);
+  const VecX before = b.force(rest);
+  if (!b.model.prestrain(moved.data())) return;
+  findings.expect((b.force(rest) - before).lpNorm<Eigen::Infinity>() > 1e-3 * reference, "a prestrain gives no force at rest");
+  for (std::uint64_t seed = 5; seed <= 6; ++seed) {
+    findings.at("prestrained, deformed state " + std::to_string(seed));
+    b.model.reset();
+    check_state(findings, b, deformed(b.body, 0.1, seed), seed);
+  }
+  findings.at("");
+  const VecX back = -moved;
+  b.model.prestrain(back.data());
+  b.model.reset();
+  findings.within("prestrains add up", (b.force(rest) - before).lpNorm<Eigen::Infinity>(), reference, 1e-10);
+}
+
+/// What a run changes for good in a model shows in its state, and reset() takes it back.
+void check_memory(Findings& findings, const std::filesystem::path& scene, const std::string& id) {
+  auto s = load(scene);
+  ASSERT_TRUE(s);
+  auto* model = s->scene().find_as<ForceModel>(id);
+  ASSERT_TRUE(model);
+  auto* body = dynamic_cast<DeformableBody*>(model->parent);
+  ASSERT_TRUE(body);
+  const VecX x = deformed(*body, 0.02, 9);
+  const auto answer = [&] {  // energy alone: it has no warm start
+    return model->energy(x.data());
+  };
+  const auto state = [&] {
+    std::vector<double> out;
+    model->append_state(out);
+    return out;
+  };
+  const double energy = answer();
+  const std::vector<double> before = state();
+  run_script(*s, 75);
+  const double now = answer(), least = 1e-9 * std::abs(energy);
+  findings.expect(std::abs(now - energy) <= least || state() != before, "its law changes with something that append_state() does not tell",
+                  fmt::format("{:.6g} J after a run, {:.6g} J before it", now, energy));
+  model->reset();
+  findings.expect(std::abs(answer() - energy) <= least && state() == before, "reset() does not undo what finish() changed",
+                  fmt::format("{:.6g} J after reset, {:.6g} J at the start", answer(), energy));
 }
 
 }  // namespace
@@ -114,49 +179,30 @@ void check_force_model(const std::filesystem::path& scene, const std::string& el
   auto simulation = load(scene);
   ASSERT_TRUE(simulation);
   int found = 0;
+  Findings none("<" + element + ">");
   for (ForceModel* m : simulation->scene().all<ForceModel>()) {
     if (m->element != element) continue;
     auto* body = dynamic_cast<DeformableBody*>(m->parent);
     ASSERT_TRUE(body);
     ++found;
+    Findings findings("<" + element + "> " + m->id);
     Bench bench(*body, *m);
     const VecX rest = body->q();
     double reference = 0;
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-      SCOPED_TRACE("deformed state " + std::to_string(seed));
+      findings.at("deformed state " + std::to_string(seed));
       const VecX x = deformed(*body, 0.1, seed);
       m->reset();
       reference = bench.force(x).lpNorm<Eigen::Infinity>();
-      check_state(bench, x, seed);
+      check_state(findings, bench, x, seed);
     }
-    // Rigid motions, also far ones and without a warm start.
-    Random random(5);
-    for (int trial = 0; trial < 10; ++trial) {
-      const Vec3 turn(random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(-2, 2)), shift(random.uniform(-0.1, 0.1), 0.05, -0.02);
-      const Quat q = from_rotation_vector(turn);
-      VecX x(rest.size());
-      for (int i = 0; i < body->nodes(); ++i) x.segment<3>(3 * i) = q * rest.segment<3>(3 * i) + shift;
-      m->reset();
-      if (m->internal()) { EXPECT_TRUE(held("rigid motion gives no force", bench.force(x).lpNorm<Eigen::Infinity>(), reference, 1e-10)); }
-      EXPECT_GE(m->energy(x.data()), 0);
-    }
-    EXPECT_GE(m->stiffness_damping(), 0);
-    // The same laws about another stress-free configuration.
-    const VecX moved = 0.5 * (deformed(*body, 0.1, 4) - rest);
-    const VecX before = bench.force(rest);
-    if (!m->prestrain(moved.data())) continue;
-    EXPECT_GT((bench.force(rest) - before).lpNorm<Eigen::Infinity>(), 1e-3 * reference) << "a prestrain gives no force at rest";
-    for (std::uint64_t seed = 5; seed <= 6; ++seed) {
-      SCOPED_TRACE("prestrained, deformed state " + std::to_string(seed));
-      m->reset();
-      check_state(bench, deformed(*body, 0.1, seed), seed);
-    }
-    const VecX back = -moved;
-    m->prestrain(back.data());
-    m->reset();
-    EXPECT_LT((bench.force(rest) - before).lpNorm<Eigen::Infinity>(), 1e-10 * reference) << "prestrains do not add up";
+    findings.at("");
+    check_rigid_motions(findings, bench, rest, reference);
+    findings.expect(m->stiffness_damping() >= 0, "its stiffness damping is negative");
+    check_prestrain(findings, bench, rest, reference);
+    check_memory(findings, scene, m->id);
   }
-  EXPECT_GT(found, 0) << "its example holds no <" << element << ">";
+  none.expect(found > 0, "its example holds none of it");
 }
 
 }  // namespace insula::test

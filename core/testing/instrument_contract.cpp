@@ -6,6 +6,7 @@
 
 #include "core/testing/contracts.h"
 #include "core/testing/example.h"
+#include "core/testing/findings.h"
 
 namespace insula::test {
 namespace {
@@ -23,7 +24,7 @@ HandState hand_at(const Pose& pose) {
   return s;
 }
 
-void check_follows(Simulation& s, Instrument& tool) {
+void check_follows(Findings& findings, Simulation& s, Instrument& tool) {
   s.reset();
   const int hand = tool.hand_index();
   // Out of reach of everything: away along the shaft, held there until it rests, then a free move.
@@ -32,20 +33,20 @@ void check_follows(Simulation& s, Instrument& tool) {
   const Pose away = displaced(tool.home_pose(), d);
   s.set_hand(hand, hand_at(away));
   for (int i = 0; i < 200; ++i) s.step();
-  ASSERT_LT(displacement(away, tool.pose()).norm(), 1e-9) << tool.id << " does not come to rest at the hand";
-  EXPECT_LT(tool.hand_force().norm(), 1e-6) << tool.id << ": a force without a displacement";
+  if (!findings.expect(displacement(away, tool.pose()).norm() < 1e-9, "it does not come to rest at the hand")) return;
+  findings.expect(tool.hand_force().norm() < 1e-6, "the hand feels a force without a displacement");
   if (tool.mass() > 0) return;  // inertia lags by intention
   Vec6 m;
   m << 0.001, -0.002, 0.0015, 0.02, 0.01, -0.03;
   const Pose next = displaced(away, m);
   s.set_hand(hand, hand_at(next));
   s.step();
-  EXPECT_LT(displacement(next, tool.free_pose()).norm(), 1e-12) << tool.id << ": the free tool is not where the hand is";
-  EXPECT_LT(displacement(next, tool.pose()).norm(), 1e-12) << tool.id;
+  findings.expect(displacement(next, tool.free_pose()).norm() < 1e-12, "the free tool is not where the hand is");
+  findings.expect(displacement(next, tool.pose()).norm() < 1e-12, "the tool that touches nothing is not where the hand is");
 }
 
 // The gain of the haptic loop says where the free tool goes for another device pose.
-void check_terms(const std::filesystem::path& scene, const std::string& id, int steps) {
+void check_terms(Findings& findings, const std::filesystem::path& scene, const std::string& id, int steps) {
   auto a = load(scene), b = load(scene);
   ASSERT_TRUE(a && b);
   auto* tool = a->scene().find_as<Instrument>(id);
@@ -66,15 +67,17 @@ void check_terms(const std::filesystem::path& scene, const std::string& id, int 
   for (const ToolTerms& t : a->problem().tools)
     if (t.hand == tool->hand_index()) terms = &t;
   ASSERT_TRUE(terms);
-  EXPECT_LT(displacement(terms->device, tool->device()).norm(), 1e-12);
-  EXPECT_LT(displacement(terms->free, tool->free_pose()).norm(), 1e-12);
-  EXPECT_LT((terms->compliance - terms->compliance.transpose()).norm(), 1e-15 * terms->compliance.norm());
-  EXPECT_GT(Eigen::SelfAdjointEigenSolver<Mat6>(terms->compliance).eigenvalues()[0], 0);
-  EXPECT_LT((terms->stiffness - coupling_stiffness(*tool)).norm(), 1e-12 * terms->stiffness.norm());
-  EXPECT_EQ(terms->jacobian.rows(), a->problem().rows);
+  findings.at("after step " + std::to_string(steps));
+  findings.expect(displacement(terms->device, tool->device()).norm() < 1e-12, "the haptic terms have another device pose than the tool");
+  findings.expect(displacement(terms->free, tool->free_pose()).norm() < 1e-12, "the haptic terms have another free pose than the tool");
+  findings.expect((terms->compliance - terms->compliance.transpose()).norm() < 1e-15 * terms->compliance.norm(), "the tool's compliance is not symmetric");
+  findings.expect(Eigen::SelfAdjointEigenSolver<Mat6>(terms->compliance).eigenvalues()[0] > 0, "the tool's compliance is not positive");
+  findings.expect((terms->stiffness - coupling_stiffness(*tool)).norm() < 1e-12 * terms->stiffness.norm(), "the haptic terms have another stiffness than the coupling");
+  findings.expect(terms->jacobian.rows() == a->problem().rows, "the tool's Jacobian has not the problem's rows");
   const Pose predicted = displaced(terms->free, terms->gain * displacement(terms->device, moved.device));
   // Rotations of 1e-4 rad: second order is 1e-8.
-  EXPECT_LT(displacement(predicted, other->free_pose()).norm(), 1e-7 * (1 + terms->gain.norm())) << id << ": the gain does not predict the free tool";
+  findings.expect(displacement(predicted, other->free_pose()).norm() < 1e-7 * (1 + terms->gain.norm()), "the gain does not predict the free tool for another device pose");
+  findings.at("");
 }
 
 }  // namespace
@@ -83,29 +86,28 @@ void check_instrument(const std::filesystem::path& scene, const std::string& ele
   auto s = load(scene);
   ASSERT_TRUE(s);
   int found = 0;
+  Findings none("<" + element + ">");
   for (Instrument* tool : s->instruments()) {
     if (tool->element != element) continue;
     ++found;
-    EXPECT_LT(displacement(tool->home_pose(), tool->pose()).norm(), 1e-12);
-    EXPECT_FALSE(tool->tool().pieces.empty()) << "nothing to touch with";
+    Findings findings("<" + element + "> " + tool->id);
+    findings.expect(displacement(tool->home_pose(), tool->pose()).norm() < 1e-12, "it does not start at home");
+    findings.expect(!tool->tool().pieces.empty(), "it has no pieces to touch with");
     s->reset();
     for (int i = 0; i < 70; ++i) {
       run_script(*s, 1);
       const Vec6 force = coupling_stiffness(*tool) * displacement(tool->device(), tool->pose());
-      EXPECT_LT((tool->hand_force() - force).norm(), 1e-12 * (1 + force.norm())) << "step " << i;
-      EXPECT_GE(tool->activity(), 0);
-      EXPECT_LE(tool->activity(), 1);
+      findings.expect((tool->hand_force() - force).norm() < 1e-12 * (1 + force.norm()), "the hand's force is not stiffness times displacement");
+      findings.expect(tool->activity() >= 0 && tool->activity() <= 1, "its activity is not within 0 and 1");
     }
     if (tool->hand_index() < 0) {  // an arm holds it: the hands' script must not carry it away
-      EXPECT_LT(displacement(tool->home_pose(), tool->device()).norm(), 1e-12);
+      findings.expect(displacement(tool->home_pose(), tool->device()).norm() < 1e-12, "the hands carry away what an arm holds");
       continue;
     }
-    check_follows(*s, *tool);
-    check_terms(scene, tool->id, 0);
-    check_terms(scene, tool->id, 20);
-    check_terms(scene, tool->id, 50);
+    check_follows(findings, *s, *tool);
+    for (const int steps : {0, 20, 50}) check_terms(findings, scene, tool->id, steps);
   }
-  EXPECT_GT(found, 0) << "its example holds no <" << element << ">";
+  none.expect(found > 0, "its example holds none of it");
 }
 
 }  // namespace insula::test

@@ -50,6 +50,7 @@ int run_plugin_tests(int argc, char** argv, const char* library, const char* exa
   }
   add("ExampleRunsAndStaysBounded", example, [=] { check_example(scene); });
   add("ExampleIsDeterministic", example, [=] { check_deterministic(scene); });
+  add("StepsOfTheExampleAllocateNothing", example, [=] { check_allocations(scene); });
   add("ExampleSurfacesFollowTheirBodies", example, [=] { check_surfaces(scene); });
   return RUN_ALL_TESTS();
 }

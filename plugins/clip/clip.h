@@ -6,13 +6,14 @@
 #include <vector>
 
 #include "core/mechanics/constraint.h"
+#include "core/constraint/stated_law.h"
 #include "core/mechanics/rigid_body.h"
 
 namespace insula {
 
 class ClipApplier;
 
-class Clip final : public RigidBody {
+class Clip final : public RigidBody, public StatesLaw {
  public:
   static constexpr std::string_view kind_name = "clip";
 
@@ -81,6 +82,9 @@ class Clip final : public RigidBody {
   void reset() override;
   double energy() const override;
   void append_state(std::vector<double>& out) const override;
+  StatedLaw law() const override {  // of its stops: rigid
+    return StatedLaw::potential(opening_ < min_opening() || opening_ > tool_.opening_max ? infinite : 0);
+  }
 
  private:
   using Vec7 = Eigen::Matrix<double, 7, 1>;  ///< translation of the tip, rotation vector, opening

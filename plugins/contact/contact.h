@@ -11,6 +11,7 @@
 #include "core/collision/colliders/tool_collider.h"
 #include "core/collision/colliders/vertex_collider.h"
 #include "core/mechanics/constraint.h"
+#include "core/constraint/stated_law.h"
 #include "core/mechanics/rigid_body.h"
 #include "core/mechanics/surface.h"
 #include "core/sim/report.h"
@@ -18,7 +19,7 @@
 
 namespace insula {
 
-class Contact final : public Constraint {
+class Contact final : public Constraint, public StatesLaw {
  public:
   RefList<Body> between{this, {.name = "between", .doc = "bodies and tools that may touch one another, two or more"}};
   Param<Scalar> friction{this, {.name = "friction", .fallback = "0.2", .min = "0", .max = "10", .doc = "Coulomb coefficient; 0 is frictionless"}};
@@ -45,6 +46,7 @@ class Contact final : public Constraint {
   void report(StepReport& report) const override;
   void reset() override;
   void append_state(std::vector<double>& out) const override;
+  StatedLaw law() const override { return StatedLaw::unilateral(); }
 
   /// Two things that may touch, and what was found between them in this step.
   struct Pair {

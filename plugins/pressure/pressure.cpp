@@ -128,6 +128,7 @@ void BloodPressure::detect(const StepContext& context) {
 
 void BloodPressure::build(const StepContext& context, ConstraintBuilder& builder) {
   const int n = chambers_.count();
+  h_ = context.h;
   for (int c = 0; c < n; ++c) {
     chambers_.gradient(c, on->q(), gradient_[std::size_t(c)]);
     volume_[std::size_t(c)] = volume(c) - (feed_ ? fluid_[std::size_t(c)] : rest_volume_[std::size_t(c)]);
@@ -234,6 +235,23 @@ void BloodPressure::append_state(std::vector<double>& out) const {
   out.insert(out.end(), {phase_, systolic_now_, diastolic_now_, rate_, systolic_wanted_, diastolic_wanted_, rate_wanted_});
   out.insert(out.end(), pressure_.begin(), pressure_.end());
   out.insert(out.end(), fluid_.begin(), fluid_.end());
+}
+
+// The pressure that is added in the step does work on the volume; a feed stores what the chambers hold too much.
+StatedLaw BloodPressure::law() const {
+  const int n = chambers_.count();
+  double energy = 0;
+  for (int k = 0; k < n; ++k) {
+    const Row& r = rows_[std::size_t(k)];
+    if (!feed_) {
+      if (yields_[std::size_t(k)]) energy -= (arterial(h_) - pressure(k)) * (volume(k) - rest_volume(k));
+      continue;
+    }
+    double excess = -h_ * r.conductance * r.feed;  // m3
+    for (int j = 0; j <= k; ++j) excess += mix_[std::size_t(k * n + j)] * (volume(j) - fluid(j));
+    if (excess != 0) energy += 0.5 * excess * excess / (h_ * r.conductance);
+  }
+  return StatedLaw::potential(energy);
 }
 
 }  // namespace insula

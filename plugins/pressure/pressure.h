@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/mechanics/constraint.h"
+#include "core/constraint/stated_law.h"
 #include "core/mechanics/shell_body.h"
 #include "plugins/pressure/chambers.h"
 #include "plugins/pressure/star_mesh.h"
@@ -24,7 +25,7 @@ class ChamberFeed {
   virtual void settle(const StepContext& context, const double* pressure, const double* yielding) = 0;
 };
 
-class BloodPressure final : public Constraint {
+class BloodPressure final : public Constraint, public StatesLaw {
  public:
   static constexpr std::string_view kind_name = "pressure";
   static constexpr int max_chambers = 8;
@@ -64,6 +65,7 @@ class BloodPressure final : public Constraint {
   void report(StepReport& report) const override;
   void reset() override;
   void append_state(std::vector<double>& out) const override;
+  StatedLaw law() const override;
   std::vector<CommandInfo> commands() const override;
   std::string run_command(std::string_view name, std::string_view argument) override;
 
@@ -91,6 +93,7 @@ class BloodPressure final : public Constraint {
   std::vector<double> pressure_, fluid_;
 
   // Of this step.
+  double h_ = 0;  ///< its length, s
   struct Row {
     int row = -1;
     double conductance = 0;   ///< that its law uses, m3/(s Pa)

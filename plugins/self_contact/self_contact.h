@@ -7,13 +7,14 @@
 #include "core/collision/colliders/contact_selection.h"
 #include "core/collision/colliders/self_collider.h"
 #include "core/mechanics/constraint.h"
+#include "core/constraint/stated_law.h"
 #include "core/mechanics/surface.h"
 #include "core/sim/report.h"
 #include "plugins/contact/contact.h"
 
 namespace insula {
 
-class SelfContact final : public Constraint {
+class SelfContact final : public Constraint, public StatesLaw {
  public:
   Ref<Surface> on{this, {.name = "on", .doc = "surface of the wall: its triangles are the wall's middle"}};
   Param<Length> thickness{this, {.name = "thickness", .fallback = "0.3 mm", .min = "0.01 mm", .max = "5 mm", .doc = "of the wall: two middles come no closer than this"}};
@@ -32,6 +33,7 @@ class SelfContact final : public Constraint {
   void report(StepReport& report) const override;
   void reset() override;
   void append_state(std::vector<double>& out) const override;
+  StatedLaw law() const override { return StatedLaw::unilateral(); }
 
   const std::vector<Proximity>& contacts() const { return contacts_; }
   int rows() const { return int(supports_.size() + rows_.size() * (friction() > 0 ? 3 : 1)); }

@@ -253,6 +253,15 @@ void StrandSprings::append_state(std::vector<double>& out) const {
   for (const Strand& s : strands_) out.push_back(s.damage);
 }
 
+StatedLaw StrandSprings::law() const {
+  double energy = 0;
+  for (const Strand& s : strands_) {
+    const double stretch = (s.a.body->position(s.a) - s.b.body->position(s.b)).norm() - s.rest;
+    if (!s.severed && (stretch > 0 || load_direction.is("both"))) energy += 0.5 * stiffness() * (1 - s.damage) * stretch * stretch;
+  }
+  return StatedLaw::potential(energy);
+}
+
 }  // namespace insula
 
 INSULA_PLUGIN(strand_springs) {

@@ -5,12 +5,13 @@
 #include <vector>
 
 #include "core/mechanics/constraint.h"
+#include "core/constraint/stated_law.h"
 #include "core/mechanics/surface.h"
 #include "core/sim/simulation.h"
 
 namespace insula {
 
-class StrandSprings final : public Constraint {
+class StrandSprings final : public Constraint, public StatesLaw {
  public:
   Ref<Surface> from{this, {.name = "from", .fallback = "", .doc = "surface where the strands start"}};
   Ref<Surface> to{this, {.name = "to", .fallback = "", .doc = "surface where they end"}};
@@ -39,6 +40,7 @@ class StrandSprings final : public Constraint {
   void report(StepReport& report) const override;
   void reset() override;
   void append_state(std::vector<double>& out) const override;
+  StatedLaw law() const override;
 
   int count() const { return int(strands_.size()); }
   int left() const;

@@ -12,6 +12,7 @@ so the hand feels no more than the vacuum can pull. Tissue drawn farther than `r
 */
 #include <cmath>
 
+#include "core/constraint/stated_law.h"
 #include "core/mechanics/instrument.h"
 #include "core/mechanics/surface.h"
 #include "core/registry/registry.h"
@@ -20,7 +21,7 @@ so the hand feels no more than the vacuum can pull. Tissue drawn farther than `r
 namespace insula {
 namespace {
 
-class Suction final : public Instrument {
+class Suction final : public Instrument, public StatesLaw {
  public:
   Param<Pressure> suction{this, {.name = "suction", .fallback = "15 kPa", .min = "0 Pa", .max = "90 kPa", .doc = "vacuum at the opening while the button is held"}};
   Param<Length> capture{this, {.name = "capture", .fallback = "1.5 mm", .min = "0 mm", .max = "10 mm", .doc = "tissue closer than this to the opening is taken"}};
@@ -46,8 +47,7 @@ class Suction final : public Instrument {
     if (held_.body && (held_.body->position(held_) - pose().p).norm() > release()) held_ = {};
     if (!held_.body) take();
     if (!held_.body) return;
-    const double radius = tool().tip_inner_radius > 0 ? tool().tip_inner_radius : 0.0007;
-    const double force = suction() * 3.14159265358979323846 * radius * radius;
+    const double force = max_force();
     const Mat3 axes = pose().q.toRotationMatrix();
     // The tube's side of the rows is its point at the held tissue: no net moment, and the exact derivative as d turns with it.
     const Vec3 at = held_.body->position(held_);
@@ -66,12 +66,24 @@ class Suction final : public Instrument {
     }
   }
 
+  // Rigid holds that give way at their limit: limit times displacement.
+  StatedLaw law() const override {
+    if (!held_.body) return StatedLaw::potential(0);
+    const Vec3 d = (pose().q.conjugate() * (held_.body->position(held_) - pose().p)).cwiseAbs();
+    return StatedLaw::potential(max_force() * (d.z() + grip() * (d.x() + d.y())));
+  }
+
   void append_state(std::vector<double>& out) const override {
     Instrument::append_state(out);
     out.push_back(held_.body ? held_.body->index : -1);
   }
 
  private:
+  /// Of the vacuum on the opening, N.
+  double max_force() const {
+    const double radius = tool().tip_inner_radius > 0 ? tool().tip_inner_radius : 0.0007;
+    return suction() * 3.14159265358979323846 * radius * radius;
+  }
   // The surface vertex nearest to the opening, in front of it.
   void take() {
     double best = capture();

@@ -53,6 +53,7 @@ TEST_P(EveryPlugin, HasAnExampleATestAndElements) {
 
 TEST_P(EveryPlugin, ExampleRunsAndStaysBounded) { test::check_example(example_of(GetParam())); }
 TEST_P(EveryPlugin, ExampleIsDeterministic) { test::check_deterministic(example_of(GetParam())); }
+TEST_P(EveryPlugin, StepsOfTheExampleAllocateNothing) { test::check_allocations(example_of(GetParam())); }
 TEST_P(EveryPlugin, ExampleSurfacesFollowTheirBodies) { test::check_surfaces(example_of(GetParam())); }
 
 TEST_P(EveryElement, HoldsTheContractOfItsKind) {

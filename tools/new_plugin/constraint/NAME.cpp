@@ -7,13 +7,14 @@ A spring from the vertex of a surface nearest to `at` (at rest) to an anchor tha
     delta = |x - anchor| - length,   delta + lambda / k = 0
 */
 #include "core/mechanics/constraint.h"
+#include "core/constraint/stated_law.h"
 #include "core/mechanics/surface.h"
 #include "core/registry/registry.h"
 
 namespace insula {
 namespace {
 
-class @Name@ final : public Constraint {
+class @Name@ final : public Constraint, public StatesLaw {
  public:
   Ref<Surface> surface{this, {.name = "surface", .doc = "surface that it is tied to"}};
   Param<Vec<Length>> at{this, {.name = "at", .doc = "the vertex nearest to this place at rest is tied"}};
@@ -42,6 +43,12 @@ class @Name@ final : public Constraint {
     const int row = builder.add(block);
     builder.violation(row, now - length());
     builder.point(row, end_, d / now);
+  }
+
+  // What the rows must do, said once more as an energy. The contract tests compare the two; no step reads it.
+  StatedLaw law() const override {
+    const double stretch = (end_.body->position(end_) - anchor()).norm() - length();
+    return StatedLaw::potential(0.5 * stiffness() * stretch * stretch);
   }
 
  private:
