@@ -10,7 +10,6 @@
 namespace insula {
 namespace {
 
-constexpr int component_bits = 44;  // of a row's id, see row_id
 constexpr double nothing = 1e-6;    // of a row's compliance; W comes in single precision
 
 std::size_t tools_of(const ConstraintProblem& p) { return std::min<std::size_t>(p.tools.size(), 2); }
@@ -34,7 +33,7 @@ bool touches(const ToolTerms& t, int row) {
 }
 
 bool ties(const ConstraintProblem& p, std::size_t tool, const Block& b) {
-  if (b.law != LawKind::box || b.lower != -infinite || b.upper != infinite || b.compliance != 0) return false;
+  if (b.role != BlockRole::weld || b.law != LawKind::box || b.lower != -infinite || b.upper != infinite || b.compliance != 0) return false;
   if (p.retardation_time[std::size_t(b.row)] != 0) return false;  // tissue
   for (std::size_t t = 0; t < tools_of(p); ++t)
     if (touches(p.tools[t], b.row) != (t == tool)) return false;
@@ -63,7 +62,7 @@ int first_weld_row(const ConstraintProblem& p, std::size_t tool) {
   int count = 0;
   for (std::size_t b = 0; b < p.blocks.size(); ++b) {
     if (!ties(p, tool, p.blocks[b])) count = 0;
-    else count = count > 0 && p.blocks[b].id >> component_bits != p.blocks[b - 1].id >> component_bits ? 1 : count + 1;
+    else count = count > 0 && p.blocks[b].owner != p.blocks[b - 1].owner ? 1 : count + 1;
     if (count == weld_rows) return p.blocks[b].row - weld_rows + 1;
   }
   return -1;

@@ -49,6 +49,8 @@ bool find_parts(Bytes bytes, ProblemLayout& l, const char*& why) {
   l.upper = in.take_array(l.blocks, 8);
   l.friction = in.take_array(l.blocks, 4);
   l.normals = in.take_array(l.blocks, 2);
+  l.owner = in.take_array(l.blocks, 4);
+  l.role = in.take_array(l.blocks, 1);
   const std::int32_t frame_rotation_size = in.i32();
   if (!in.ok()) return false;
   if (frame_rotation_size != l.blocks * 3) {

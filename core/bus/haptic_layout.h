@@ -23,7 +23,7 @@ struct ProblemLayout {
   std::int64_t session, sequence, time_us, pose_time_us;
   double step_s, sim_time_s, prediction_horizon_steps;
   int rows, blocks, tools;
-  const std::uint8_t *w, *delta, *lambda, *rate, *retardation_time, *id, *row, *law, *compliance, *lower, *upper, *friction, *normals, *frame_rotation, *tool, *jacobian;
+  const std::uint8_t *w, *delta, *lambda, *rate, *retardation_time, *id, *row, *law, *compliance, *lower, *upper, *friction, *normals, *owner, *role, *frame_rotation, *tool, *jacobian;
 
   double w_at(std::size_t k) const { return double(load_float(w + 4 * k)); }
   double delta_at(int i) const { return load_double(delta + 8 * i); }
@@ -38,6 +38,8 @@ struct ProblemLayout {
   double upper_at(int b) const { return load_double(upper + 8 * b); }
   double friction_at(int b) const { return double(load_float(friction + 4 * b)); }
   int normals_at(int b) const { return std::int16_t(load16(normals + 2 * b)); }
+  std::int32_t owner_at(int b) const { return std::int32_t(load32(owner + 4 * b)); }
+  int role_at(int b) const { return std::int8_t(role[b]); }
   float frame_rotation_at(int b, int axis) const { return load_float(frame_rotation + 4 * (3 * b + axis)); }
   const std::uint8_t* tool_at(int t) const { return tool + tool_bytes * std::size_t(t); }
   double jacobian_at(std::size_t k) const { return double(load_float(jacobian + 4 * k)); }

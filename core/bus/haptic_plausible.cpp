@@ -74,6 +74,8 @@ bool blocks_ok(const ProblemLayout& l, const char*& why) {
     const int law = l.law_at(b);
     why = "unknown law";
     if (law < 0 || law > 2) return false;
+    why = "unknown owner or role";
+    if (l.owner_at(b) < -1 || l.role_at(b) < 0 || l.role_at(b) > int(BlockRole::last)) return false;
     why = "a patch without the contacts it is of";
     if (!patch_ok(l, b)) return false;
     why = "blocks do not cover the rows once, in order";

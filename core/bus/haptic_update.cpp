@@ -94,6 +94,8 @@ void read_all(const ProblemLayout& l, HapticUpdate& into) {
     block.upper = l.upper_at(b);
     block.friction = l.friction_at(b);
     block.normals = l.normals_at(b);
+    block.owner = l.owner_at(b);
+    block.role = BlockRole(l.role_at(b));
     for (int axis = 0; axis < 3; ++axis) block.frame_rotation[std::size_t(axis)] = l.frame_rotation_at(b, axis);
   }
   p.tools.resize(std::size_t(l.tools));
@@ -131,6 +133,8 @@ bool encode_problem(const HapticUpdate& update, std::vector<std::uint8_t>& out) 
   for (const Block& b : p.blocks) w.f64(b.upper);
   for (const Block& b : p.blocks) w.f32(float(b.friction));
   for (const Block& b : p.blocks) w.i16(std::int16_t(b.normals));
+  for (const Block& b : p.blocks) w.i32(b.owner);
+  for (const Block& b : p.blocks) w.i8(std::int8_t(b.role));
   w.i32(3 * int(p.blocks.size()));
   for (const Block& b : p.blocks)
     for (const float by : b.frame_rotation) w.f32(by);

@@ -58,6 +58,8 @@ inline HapticUpdate make_update(unsigned seed, int boxes = 4, int contacts = 3, 
     Block b;
     b.id = 0xfedc000000000000u + std::uint64_t(1000 + k * 7);
     b.row = row;
+    b.owner = 3 * k - 1;
+    b.role = BlockRole(k % (int(BlockRole::last) + 1));
     for (float& by : b.frame_rotation) by = float(0.1 * normal(random));
     if (k % 2 == 1 && contacts > 0) {
       --contacts;

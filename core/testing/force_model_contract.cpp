@@ -39,6 +39,17 @@ struct Bench {
     VecX f = VecX::Zero(n);
     matrix.set_zero();
     model.linearise(x.data(), f.data(), &matrix, h, which);
+    return dense();
+  }
+  /// Of the force that depends on velocity; C if it is asked for.
+  VecX damping_force(const VecX& x, const VecX& v, double h, MatX* damping = nullptr) {
+    VecX f = VecX::Zero(n);
+    matrix.set_zero();
+    model.linearise_damping(x.data(), v.data(), f.data(), damping ? &matrix : nullptr, h);
+    if (damping) *damping = dense();
+    return f;
+  }
+  MatX dense() const {
     MatX k = MatX::Zero(n, n);
     for (int j = 0; j < matrix.nodes(); ++j) {
       const int end = j + 1 < matrix.nodes() ? matrix.column_start(j + 1) : matrix.slots();
@@ -108,6 +119,35 @@ void check_state(Bench& b, const VecX& x, std::uint64_t seed) {
   EXPECT_LT((b.stiffness(x, h, Tangent::system) - (1 + b.model.stiffness_damping() / h) * system).norm(), 1e-12 * system.norm() * (1 + b.model.stiffness_damping() / h));
 }
 
+VecX random_vector(Random& random, int n, double scale) {
+  VecX d(n);
+  for (int i = 0; i < n; ++i) d[i] = scale * random.uniform(-1, 1);
+  return d;
+}
+
+/// Damping of the model's own, in a state without a history.
+void check_damping(Bench& b, const VecX& x, std::uint64_t seed) {
+  constexpr double h = 0.01;
+  Random random(seed);
+  const double speed = 0.1 * shortest_edge(b.body) / h;
+  const VecX v = random_vector(random, b.n, speed);
+  MatX damping;
+  const VecX f = b.damping_force(x, v, h, &damping);
+  ASSERT_GT(f.norm(), 0) << "has_damping(), but velocity gives no force";
+  EXPECT_TRUE(held("force with and without its damping matrix", (f - b.damping_force(x, v, h)).norm(), f.norm(), 1e-14));
+  if (b.model.internal()) expect_balanced(b, x, f, f.lpNorm<1>());
+  EXPECT_LT(f.dot(v), 0) << "the damping adds energy";
+  EXPECT_TRUE(held("damping is symmetric", (damping - damping.transpose()).norm(), damping.norm(), 1e-12));
+  for (int trial = 0; trial < 10; ++trial) {
+    const VecX d = random_vector(random, b.n, 1);
+    const double e = 1e-3 * speed;
+    const VecX slope = (b.damping_force(x, v + e * d, h) - b.damping_force(x, v - e * d, h)) / (2 * e), product = damping * d;
+    EXPECT_TRUE(held("damping = minus force gradient by velocity", (product + slope).norm(), product.norm(), 1e-6));
+  }
+  const VecX values = Eigen::SelfAdjointEigenSolver<MatX>(damping, Eigen::EigenvaluesOnly).eigenvalues();
+  EXPECT_GT(values[0], -1e-10 * values[b.n - 1]) << "the damping has a negative eigenvalue";
+}
+
 }  // namespace
 
 void check_force_model(const std::filesystem::path& scene, const std::string& element) {
@@ -128,6 +168,7 @@ void check_force_model(const std::filesystem::path& scene, const std::string& el
       m->reset();
       reference = bench.force(x).lpNorm<Eigen::Infinity>();
       check_state(bench, x, seed);
+      if (m->has_damping()) check_damping(bench, x, seed);
     }
     // Rigid motions, also far ones and without a warm start.
     Random random(5);

@@ -266,7 +266,7 @@ void check_laws(const Simulation& s) {
 std::set<std::uint64_t> ids_of(const Simulation& s, const Component& c) {
   std::set<std::uint64_t> ids;
   for (const Block& b : s.problem().blocks)
-    if (int(b.id >> 44) == c.order) ids.insert(b.id);
+    if (b.owner == c.order) ids.insert(b.id);
   return ids;
 }
 

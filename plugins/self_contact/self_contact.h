@@ -30,6 +30,7 @@ class SelfContact final : public Constraint {
   void build(const StepContext& context, ConstraintBuilder& builder) override;
   void finish(const StepContext& context, const ConstraintSolution& solution) override;
   void report(StepReport& report) const override;
+  void estimate_cost(CostCounts& out) const override;
   void reset() override;
   void append_state(std::vector<double>& out) const override;
 
