@@ -41,7 +41,7 @@ include_directories(${CMAKE_BINARY_DIR}/generated/abi)
 
 # --- core ------------------------------------------------------------------------------------------------------------
 insula_glob(core_src core/*.cpp)
-list(FILTER core_src EXCLUDE REGEX "/core/testing/|/core/bus/")
+list(FILTER core_src EXCLUDE REGEX "/core/testing/|/core/bus/|/core/haptics/")
 add_library(insula_core STATIC ${core_src})
 add_dependencies(insula_core insula_headers_hash)
 target_include_directories(insula_core SYSTEM PUBLIC ${CHOLMOD_INCLUDE})
@@ -51,8 +51,8 @@ target_link_libraries(insula_core PUBLIC $<BUILD_INTERFACE:insula_warnings> Eige
   Threads::Threads ZLIB::ZLIB ${CMAKE_DL_LIBS})
 include(cmake/kernels.cmake OPTIONAL)
 
-# --- bus -------------------------------------------------------------------------------------------------------------
-insula_glob(bus_src core/bus/*.cpp)
+# --- bus and the haptic problem -------------------------------------------------------------------------------------------------------------
+insula_glob(bus_src core/bus/*.cpp core/haptics/*.cpp)
 if(bus_src)
   add_library(insula_bus STATIC ${bus_src})
   target_link_libraries(insula_bus PUBLIC insula_core insula_lcm)

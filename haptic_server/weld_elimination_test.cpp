@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a tool carries: elimination changes no force, and inertia is that of a tick.
-#include "haptic_server/weld_elimination.h"
+#include "core/haptics/weld_elimination.h"
 
 #include <gtest/gtest.h>
 

@@ -23,7 +23,7 @@
 
 #include "core/bus/bus.h"
 #include "core/bus/channels.h"
-#include "core/bus/haptic_update.h"
+#include "core/haptics/haptic_update.h"
 #include "core/bus/plausible.h"
 
 namespace insula {

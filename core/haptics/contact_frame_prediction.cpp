@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Rotation of blocks, and the solution of what comes out.
-#include "engine/contact_frame_prediction.h"
+#include "core/haptics/contact_frame_prediction.h"
 
 #include <algorithm>
 

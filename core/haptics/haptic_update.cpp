@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Flat encoder and decoder of haptic_problem_t. The decoder validates the bytes in place first and writes only then.
-#include "core/bus/haptic_update.h"
+#include "core/haptics/haptic_update.h"
 
 #include <algorithm>
 #include <insula_lcm/haptic_problem_t.hpp>
 
 #include "core/bus/byte_io.h"
 #include "core/bus/channels.h"
-#include "core/bus/haptic_layout.h"
+#include "core/haptics/haptic_layout.h"
 
 namespace insula {
 namespace {

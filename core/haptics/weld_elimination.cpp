@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Elimination of the rows between a tool and what it carries.
-#include "haptic_server/weld_elimination.h"
+#include "core/haptics/weld_elimination.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>

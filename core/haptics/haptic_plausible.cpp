@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "core/bus/haptic_layout.h"
-#include "core/bus/haptic_update.h"
+#include "core/haptics/haptic_layout.h"
+#include "core/haptics/haptic_update.h"
 #include "core/bus/plausible.h"
 
 namespace insula::wire {

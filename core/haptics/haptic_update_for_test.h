@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "core/bus/haptic_update.h"
+#include "core/haptics/haptic_update.h"
 
 namespace insula::testing {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The parts of a haptic_problem_t message.
-#include "core/bus/haptic_layout.h"
+#include "core/haptics/haptic_layout.h"
 
 #include <zlib.h>
 
 #include <insula_lcm/haptic_problem_t.hpp>
 
-#include "core/bus/haptic_update.h"
+#include "core/haptics/haptic_update.h"
 
 namespace insula::wire {
 

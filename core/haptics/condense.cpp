@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Selection of rows for the haptic problem, and elimination of the others.
-#include "engine/condense.h"
+#include "core/haptics/condense.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "core/constraint/solve.h"
 #include "core/constraint/sweep.h"
-#include "haptic_server/weld_elimination.h"
+#include "core/haptics/weld_elimination.h"
 
 namespace insula {
 namespace {
@@ -25,7 +25,7 @@ void Condenser::find_tool_coupled_rows(const ConstraintProblem& full) {
   for (std::size_t t = 0; t < std::min<std::size_t>(full.tools.size(), 2); ++t) {
     for (int r = 0; r < full.rows; ++r)
       if (!full.tools[t].jacobian.row(r).isZero(0)) tool_coupled_[std::size_t(r)] = 1;
-    // What a carried clip touches is touched by the tool: the servo makes the two one (haptic_server/weld_elimination.h).
+    // What a carried clip touches is touched by the tool: the servo makes the two one (core/haptics/weld_elimination.h).
     const int weld = first_weld_row(full, t);
     for (int r = 0; weld >= 0 && r < full.rows; ++r)
       for (int k = 0; k < weld_rows; ++k)
