@@ -51,7 +51,7 @@ target_link_libraries(insula_core PUBLIC $<BUILD_INTERFACE:insula_warnings> Eige
   Threads::Threads ZLIB::ZLIB ${CMAKE_DL_LIBS})
 include(cmake/kernels.cmake OPTIONAL)
 
-# --- bus and the haptic problem -------------------------------------------------------------------------------------------------------------
+# --- bus and the haptic problem -----------------------------------------------------------------------------------------
 insula_glob(bus_src core/bus/*.cpp core/haptics/*.cpp)
 if(bus_src)
   add_library(insula_bus STATIC ${bus_src})

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/constraint/problem_fields.h"
 #include "core/constraint/solve.h"
 #include "core/constraint/sweep.h"
 #include "core/haptics/weld_elimination.h"
@@ -156,17 +157,14 @@ void Condenser::add_eliminated(const ConstraintProblem& full, const Block& b) {
 void Condenser::copy_kept(const ConstraintProblem& full, ConstraintProblem& small) const {
   const std::size_t rows = kept_.size();
   small.resize(int(rows));
-  small.step_s = full.step_s;
-  small.prediction_horizon_steps = full.prediction_horizon_steps;
+  copy_scalars(full, small);
   for (std::size_t i = 0; i < rows; ++i) {
     const std::size_t s = std::size_t(kept_[i]);
     double free = full.delta_free[s];
     for (std::size_t c = 0; c < std::size_t(full.rows); ++c)
       if (fate_[c] != Fate::kept) free += full.w_at(int(s), int(c)) * full.lambda[c];
+    copy_row(full, s, small, i);
     small.delta_free[i] = free;
-    small.lambda[i] = full.lambda[s];
-    small.rate[i] = full.rate[s];
-    small.retardation_time[i] = full.retardation_time[s];
     for (std::size_t j = 0; j < rows; ++j) small.w[i * std::size_t(small.stride) + j] = full.w_at(int(s), kept_[j]);
   }
   small.tools.resize(full.tools.size());

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/constraint/problem_fields.h"
+
 namespace insula {
 namespace {
 
@@ -91,8 +93,7 @@ const ConstraintProblem& WeldElimination::eliminate(const ConstraintProblem& pro
 // Everything but the six rows as it is. Jacobians have room for all rows there may be, whatever the problem's.
 void WeldElimination::copy_rest(const ConstraintProblem& from, int first, ConstraintProblem& to) noexcept {
   to.resize(from.rows - weld_rows);  // within its capacity
-  to.step_s = from.step_s;
-  to.prediction_horizon_steps = from.prediction_horizon_steps;
+  copy_scalars(from, to);
   to.blocks.clear();
   for (Block b : from.blocks) {
     if (b.row >= first && b.row < first + weld_rows) continue;
@@ -109,12 +110,7 @@ void WeldElimination::copy_rest(const ConstraintProblem& from, int first, Constr
     b.coupling() = a;
     for (int i = 0; i < to.rows; ++i) b.jacobian.row(i) = a.jacobian.row(i < first ? i : i + weld_rows);
   }
-  for (int i = 0; i < to.rows; ++i) {
-    const std::size_t s = std::size_t(i < first ? i : i + weld_rows), d = std::size_t(i);
-    to.lambda[d] = from.lambda[s];
-    to.rate[d] = from.rate[s];
-    to.retardation_time[d] = from.retardation_time[s];
-  }
+  for (int i = 0; i < to.rows; ++i) copy_row(from, std::size_t(i < first ? i : i + weld_rows), to, std::size_t(i));
 }
 
 bool WeldElimination::reduce(const ConstraintProblem& from, std::size_t tool, int first, ConstraintProblem& to) noexcept {
