@@ -23,7 +23,7 @@ endif()" COMPONENT insula)
 
 # --- headers, libraries, CMake package --------------------------------------------------------------------------------------
 install(DIRECTORY core DESTINATION include/insula COMPONENT insula-dev FILES_MATCHING PATTERN "*.h"
-  PATTERN "bus" EXCLUDE PATTERN "*_for_test.h" EXCLUDE)
+  PATTERN "bus" EXCLUDE PATTERN "haptics" EXCLUDE PATTERN "*_for_test.h" EXCLUDE)
 install(FILES ${abi_header} DESTINATION include/insula COMPONENT insula-dev)
 target_include_directories(insula_core SYSTEM INTERFACE $<INSTALL_INTERFACE:include/insula>)
 

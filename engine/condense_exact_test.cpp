@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "core/testing/count_allocations.h"
-#include "core/bus/haptic_update.h"
-#include "engine/condense.h"
-#include "engine/condense_for_test.h"
+#include "core/haptics/haptic_update.h"
+#include "core/haptics/condense.h"
+#include "core/haptics/condense_for_test.h"
 #include "engine/live/publisher.h"
 #include "haptic_server/servo.h"
 #include "haptic_server/problem_for_test.h"

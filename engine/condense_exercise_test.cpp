@@ -7,8 +7,8 @@
 
 #include "core/sim/motion.h"
 #include "core/testing/example.h"
-#include "engine/condense.h"
-#include "engine/condense_for_test.h"
+#include "core/haptics/condense.h"
+#include "core/haptics/condense_for_test.h"
 #include "engine/live/headless.h"
 #include "engine/live/live_engine.h"
 #include "engine/live/publisher.h"

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "engine/condense.h"
-#include "haptic_server/weld_elimination.h"
+#include "core/haptics/condense.h"
+#include "core/haptics/weld_elimination.h"
 #include "haptic_server/welded_problem_for_test.h"
 #include "haptic_server/servo.h"
 

@@ -3,7 +3,7 @@
 //
 // A step fixes its normals, but a tool that slides over a lobe, or a lobe that gives way under it, turns them. The engine has turned them to
 // where the tool is when the problem arrives, and says by how much each turns while the tool goes on by another step's way (Block::turn,
-// engine/contact_frame_prediction.h). Rows turn so about their place on the tool, as far as the hand has really gone:
+// core/haptics/contact_frame_prediction.h). Rows turn so about their place on the tool, as far as the hand has really gone:
 //   d(s) = exp(s turn) d,   moment(s) = arm x d(s)
 //   s    = way of the device since the problem's poses, over its way in the step, less the problem's prediction_horizon_steps
 #pragma once
@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/constraint/problem.h"
-#include "haptic_server/weld_elimination.h"
+#include "core/haptics/weld_elimination.h"
 
 namespace insula {
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/bus/mem_bus.h"
+#include "core/haptics/haptic_update.h"
 #include "haptic_server/server.h"
 #include "haptic_server/problem_for_test.h"
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The servo thread's side of the haptic server.
 #include "haptic_server/server.h"
+#include "core/haptics/haptic_update.h"
 
 #include <algorithm>
 #include <cmath>

@@ -11,6 +11,7 @@
 #include "core/bus/arrival_order.h"
 #include "core/bus/bus.h"
 #include "core/bus/codec.h"
+#include "core/haptics/haptic_update.h"
 #include "haptic_server/clock.h"
 #include "haptic_server/devices/make_device.h"
 #include "haptic_server/devices/remark.h"

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "haptic_server/server.h"
+#include "core/haptics/haptic_update.h"
 
 namespace insula {
 namespace {

@@ -9,6 +9,7 @@
 
 #include "haptic_server/problem_for_test.h"
 #include "haptic_server/rig_for_test.h"
+#include "core/haptics/haptic_update.h"
 
 namespace insula {
 namespace {

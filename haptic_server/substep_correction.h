@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "core/constraint/problem.h"
-#include "haptic_server/weld_elimination.h"
+#include "core/haptics/weld_elimination.h"
 #include "haptic_server/grasping_tool.h"
 #include "haptic_server/contact_frame_extrapolation.h"
 

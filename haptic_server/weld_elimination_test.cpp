@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a tool carries: elimination changes no force, and inertia is that of a tick.
-#include "haptic_server/weld_elimination.h"
+#include "core/haptics/weld_elimination.h"
 
 #include <gtest/gtest.h>
 
@@ -85,7 +85,7 @@ TEST(WeldElimination, NothingElseIsTakenForAClip) {
   WeldElimination weld_elimination(servo_max_rows);
   EXPECT_EQ(&weld_elimination.eliminate(none), &none);
   for (const auto& change : {+[](ConstraintProblem& p) { p.blocks[3].upper = 0; }, +[](ConstraintProblem& p) { p.blocks[2].compliance = 1e-3; },
-                             +[](ConstraintProblem& p) { p.retardation_time[5] = 0.02; }, +[](ConstraintProblem& p) { p.blocks[4].id = 99; },
+                             +[](ConstraintProblem& p) { p.retardation_time[5] = 0.02; }, +[](ConstraintProblem& p) { p.blocks[4].owner = 99; }, +[](ConstraintProblem& p) { p.blocks[4].role = BlockRole::other; },
                              +[](ConstraintProblem& p) { p.tools[0].jacobian.row(1).setZero(); }}) {
     ConstraintProblem p = with_clip(4, 0, 2);
     ASSERT_EQ(first_weld_row(p, 0), 0);

@@ -26,7 +26,7 @@ inline ConstraintProblem with_clip(int contacts, int own, std::uint64_t seed) {
   for (int k = 0; k < 6; ++k) {
     clip(own + k, k) = k < 3 ? 1 : lever;
     t.jacobian.row(own + k) = -clip.row(own + k);
-    p.blocks.push_back({.id = (std::uint64_t(7) << 44) + std::uint64_t(k), .row = own + k});
+    p.blocks.push_back({.id = (std::uint64_t(7) << 44) + std::uint64_t(k), .owner = 7, .role = BlockRole::weld, .row = own + k});
   }
   std::vector<Block> before;
   for (int i = 0; i < n; ++i) {

@@ -28,6 +28,14 @@ inline std::uint16_t load16(const std::uint8_t* p) {
   std::memcpy(&v, p, 2);
   return __builtin_bswap16(v);
 }
+/// A number of any wire type.
+template <class T>
+T load(const std::uint8_t* p) {
+  if constexpr (sizeof(T) == 8) return std::bit_cast<T>(load64(p));
+  else if constexpr (sizeof(T) == 4) return std::bit_cast<T>(load32(p));
+  else if constexpr (sizeof(T) == 2) return std::bit_cast<T>(load16(p));
+  else return std::bit_cast<T>(*p);
+}
 inline double load_double(const std::uint8_t* p) { return std::bit_cast<double>(load64(p)); }
 inline float load_float(const std::uint8_t* p) { return std::bit_cast<float>(load32(p)); }
 
@@ -98,6 +106,14 @@ class ByteWriter {
   void i8(std::int8_t v) { out_.push_back(std::uint8_t(v)); }
   void f64(double v) { i64(std::bit_cast<std::int64_t>(v)); }
   void f32(float v) { i32(std::bit_cast<std::int32_t>(v)); }
+  /// A number of any wire type.
+  template <class T>
+  void number(T v) {
+    if constexpr (sizeof(T) == 8) i64(std::bit_cast<std::int64_t>(v));
+    else if constexpr (sizeof(T) == 4) i32(std::bit_cast<std::int32_t>(v));
+    else if constexpr (sizeof(T) == 2) i16(std::bit_cast<std::int16_t>(v));
+    else i8(std::bit_cast<std::int8_t>(v));
+  }
 
  private:
   template <class U>

@@ -23,7 +23,6 @@
 
 #include "core/bus/bus.h"
 #include "core/bus/channels.h"
-#include "core/bus/haptic_update.h"
 #include "core/bus/plausible.h"
 
 namespace insula {

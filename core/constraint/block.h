@@ -19,8 +19,23 @@ enum class LawKind : std::uint8_t {
              ///< sum of their lambda, opposing slip (many contacts close together, one friction force)
 };
 
+/// What a block of rows stands for. The solver does not look at it; whoever reads a problem may.
+enum class BlockRole : std::uint8_t {
+  other,     ///< none of the roles below
+  contact,   ///< two surfaces that may not overlap
+  friction,  ///< friction force that several contacts share
+  fibre,     ///< a spring or fibre between two points
+  weld,      ///< one of six bilateral rows that make a tool and a rigid body without other support one body
+  grip,      ///< a bounded hold of tissue: suction, forceps
+  stop,      ///< the end of the range of a joint or of a motion
+  pressure,  ///< fluid in a closed wall
+  last = pressure,
+};
+
 struct Block {
   std::uint64_t id = 0;  ///< stable from step to step, unique in a problem: the warm start's key
+  std::int32_t owner = -1;  ///< document order of the component that added it; ConstraintBuilder fills it in; -1: none
+  BlockRole role = BlockRole::other;
   int row = 0;           ///< first row
   LawKind law = LawKind::box;
   double compliance = 0;      ///< m/N, >= 0; for friction blocks on the normal row

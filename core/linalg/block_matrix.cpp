@@ -22,6 +22,12 @@ void BlockMatrix::set_pattern(int nodes, std::vector<std::pair<int, int>> coupli
 }
 
 int BlockMatrix::slot(int i, int j) const {
+  const int found = i < 0 || j < 0 || i >= nodes_ || j >= nodes_ ? -1 : find_slot(i, j);
+  if (found < 0) throw UndeclaredCoupling(i, j);
+  return found;
+}
+
+int BlockMatrix::find_slot(int i, int j) const {
   const auto begin = row_.begin() + start_[std::size_t(j)], end = row_.begin() + start_[std::size_t(j) + 1];
   const auto at = std::lower_bound(begin, end, i);
   return at != end && *at == i ? int(at - row_.begin()) : -1;

@@ -18,6 +18,7 @@ void ConstraintBuilder::clear() {
 
 int ConstraintBuilder::add(Block block) {
   block.row = rows();
+  block.owner = owner_;
   delta_.resize(delta_.size() + std::size_t(block.rows()), 0.0);
   rate_.resize(delta_.size(), 0.0);
   retardation_time_.resize(delta_.size(), 0.0);

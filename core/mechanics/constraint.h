@@ -4,6 +4,8 @@
 #include <memory>
 #include <vector>
 
+#include "core/constraint/contact_frame.h"
+#include "core/constraint/cost_estimate.h"
 #include "core/constraint/problem.h"
 #include "core/mechanics/body.h"
 #include "core/registry/component.h"
@@ -18,7 +20,9 @@ class ConstraintBuilder {
  public:
   ConstraintBuilder(ConstraintProblem& problem, const std::vector<Body*>& bodies) : problem_(problem), bodies_(bodies) {}
 
-  /// Adds a block of one row (box) or three (friction); `block.row` is filled in. Returns the first row.
+  /// Blocks added from now on belong to this component. The simulation calls it before each build().
+  void set_owner(const Component& c) { owner_ = c.order; }
+  /// Adds a block of one row (box) or three (friction); `block.row` and `block.owner` are filled in. Returns the first row.
   int add(Block block);
   /// Violation of a row at the start of the step, metres (for contact: the gap).
   void violation(int row, double value) { delta_[std::size_t(row)] += value; }
@@ -43,6 +47,7 @@ class ConstraintBuilder {
   static constexpr double lasting = 10;  ///< s: a rate that does not die away
   std::vector<double> delta_, rate_, retardation_time_;
   std::vector<Block> blocks_;
+  int owner_ = -1;
 };
 
 /// lambda of the rows after the solve.
@@ -78,6 +83,11 @@ class Constraint : public Component {
   virtual void finish(const StepContext&, const ConstraintSolution&) {}
   /// Stage 6: add own numbers to the report.
   virtual void report(StepReport&) const {}
+  /// After a step: appends the frames that its loaded friction contacts will have `steps` steps later.
+  /// Each is of a block with LawKind::friction of the last step; others are ignored. Default: none turn.
+  virtual void predict_frames(double /*steps*/, std::vector<ContactFrame>&) const {}
+  /// After a step: adds what its search and its rows cost. Default: the rows of the last step and no search.
+  virtual void estimate_cost(CostCounts&) const {}
   virtual void reset() {}
   virtual void append_state(std::vector<double>&) const {}
 };

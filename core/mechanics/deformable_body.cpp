@@ -2,9 +2,13 @@
 // Stepping of a deformable body. How its matrix is made and kept: tangent.cpp; its prestress: prestress.cpp.
 #include "core/mechanics/deformable_body.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <iterator>
 
 #include "core/base/sorted_pairs.h"
+#include "core/base/text.h"
 #include "core/linalg/asynchronous_solver.h"
 #include "core/linalg/direct_solver.h"
 
@@ -31,7 +35,7 @@ void DeformableBody::connect(PrepareContext& context) {
   const int errors_before = context.diagnostics.errors();
   for (ForceModel* f : forces_) f->attach(context, *this);
   std::vector<std::pair<int, int>> all, pairs;
-  for (ForceModel* f : forces_) f->couplings(all, Tangent::system);
+  for (const ForceModel* f : forces_) check_couplings(context, *f, all);
   for (auto [i, j] : all)
     if (free_[std::size_t(i)] >= 0 && free_[std::size_t(j)] >= 0)
       pairs.emplace_back(free_[std::size_t(i)], free_[std::size_t(j)]);
@@ -42,10 +46,13 @@ void DeformableBody::connect(PrepareContext& context) {
       if (i != j) neighbours_.push_back({i, j, (rest_nodes()[std::size_t(i)] - rest_nodes()[std::size_t(j)]).squaredNorm()});
   }
   a_.set_pattern(free_count_, std::move(pairs));
+  damped_.clear();
+  std::copy_if(forces_.begin(), forces_.end(), std::back_inserter(damped_), [](const ForceModel* f) { return f->has_damping(); });
+  damping_matrix_ = damped_.empty() ? BlockMatrix() : a_;
   mass_.assign(n, 0.0);
   damping_.assign(n, 0.0);
   for (ForceModel* f : forces_) {
-    f->bind(a_, free_);
+    bind(context, *f);
     f->add_mass(mass_, damping_);
   }
   for (std::size_t i = 0; i < n; ++i)
@@ -60,10 +67,33 @@ void DeformableBody::connect(PrepareContext& context) {
   solver_->analyse(a_);
   start_retardation_times();
   force_ = VecX::Zero(3 * nodes());
-  packed_ = guess_ = response_ = load_ = unforced_ = VecX::Zero(3 * free_count_);
+  packed_ = packed_v_ = damped_load_ = guess_ = response_ = load_ = unforced_ = VecX::Zero(3 * free_count_);
   turn_.assign(std::size_t(free_count_), Quat::Identity());
   rotation_.assign(std::size_t(free_count_), Mat3::Identity());
   around_ = rotation_;
+}
+
+/// Adds the model's couplings to `pairs`. Those that name no node of this body are reported and left out.
+void DeformableBody::check_couplings(PrepareContext& context, const ForceModel& model, std::vector<std::pair<int, int>>& pairs) const {
+  std::vector<std::pair<int, int>> own;
+  model.couplings(own, Tangent::system);
+  for (const auto& [i, j] : own) {
+    const int wrong = i < 0 || i >= nodes() ? i : j;
+    if (wrong < 0 || wrong >= nodes())
+      return model.error(context, fmt::format("couples node {} of {}, which has the nodes 0 to {}", wrong, in_quotes(id), nodes() - 1));
+  }
+  pairs.insert(pairs.end(), own.begin(), own.end());
+}
+
+void DeformableBody::bind(PrepareContext& context, ForceModel& model) {
+  try {
+    model.bind(a_, free_);
+  } catch (const UndeclaredCoupling& e) {
+    const auto node = [&](int block) { return std::find(free_.begin(), free_.end(), block) - free_.begin(); };
+    const bool known = std::min(e.row, e.column) >= 0 && std::max(e.row, e.column) < free_count_;
+    model.error(context, known ? fmt::format("couples the nodes {} and {} of {} without declaring it in couplings()", node(e.column), node(e.row), in_quotes(id))
+                               : fmt::format("asks for a block ({}, {}) of the matrix of {}, which has {} free nodes", e.row, e.column, in_quotes(id), free_count_));
+  }
 }
 
 Vec3 DeformableBody::position(const MaterialPoint& p) const {
@@ -106,11 +136,13 @@ void DeformableBody::free_motion(const StepContext& context) {
   if (fresh) assemble(h);
   else
     for (ForceModel* f : forces_) f->linearise(q_.data(), force_.data(), nullptr, h, Tangent::system);
+  if (!damped_.empty()) add_damping(h, fresh);
   for (int i = 0; i < nodes(); ++i)
     if (const int b = free_[std::size_t(i)]; b >= 0) {
       load_.segment<3>(3 * b) = force_.segment<3>(3 * i) + mass_[std::size_t(i)] * (context.gravity + v_.segment<3>(3 * i) / h);
       if (!solver_->exact()) guess_.segment<3>(3 * b) = h * v_.segment<3>(3 * i);
     }
+  if (!damped_.empty()) load_ += damped_load_;
   if (fresh) factorise(h);
   else solver_->begin_motion(load_, guess_);
   // Who asked in the last step will ask again: now bodies work side by side.

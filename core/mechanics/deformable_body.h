@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A deformable body of any topology: nodes with lumped masses, force models, supports, and one implicit Euler
 // linearisation a step:
-//   (M/h^2 + C/h + K) dq = f + M v/h,   C = alpha M + beta K
+//   (M/h^2 + C/h + K) dq = f + M v/h + D v,   C = alpha M + beta K + D,   D = -df/dv of force models with a damping of their own
 #pragma once
 #include <memory>
 
@@ -104,6 +104,13 @@ class DeformableBody : public Body {
   std::vector<double> retardation_time_;  ///< of each node's place, s
   bool retardation_times_known_ = false;
 
+  std::vector<ForceModel*> damped_;    ///< those with a damping of their own
+  BlockMatrix damping_matrix_;         ///< D as it was last assembled; no nodes if there is none
+  VecX packed_v_, damped_load_;        ///< of the free nodes
+
+  void check_couplings(PrepareContext& context, const ForceModel& model, std::vector<std::pair<int, int>>& pairs) const;
+  void bind(PrepareContext& context, ForceModel& model);
+  void add_damping(double h, bool fresh);
   bool tangent_is_good(double h) const;
   void assemble(double h);
   void factorise(double h);

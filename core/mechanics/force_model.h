@@ -24,7 +24,7 @@ class ForceModel : public Component {
 
   /// Once, when the body's rest shape is known; may report errors, also that the body is not of its topology.
   virtual void attach(PrepareContext&, DeformableBody&) {}
-  /// Pairs of nodes that this tangent couples.
+  /// Pairs of nodes of the body that this tangent and the damping couple. What bind() asks for must be among them.
   virtual void couplings(std::vector<std::pair<int, int>>& pairs, Tangent which) const = 0;
   /// Once, when the matrix pattern is known. free_of_node: node -> block of `a`, -1 when fixed.
   virtual void bind(const BlockMatrix& a, const std::vector<int>& free_of_node) = 0;
@@ -33,6 +33,13 @@ class ForceModel : public Component {
   /// force (3 values a node, N) += -dE/dx at positions x (m). If `stiffness` is not null: its blocks +=
   /// (1 + stiffness_damping()/h) * d2E/dx2 as `tangent` says.
   virtual void linearise(const double* x, double* force, BlockMatrix* stiffness, double h, Tangent tangent) = 0;
+  /// Whether the model has a force that depends on velocity besides stiffness_damping(). Constant after attach().
+  virtual bool has_damping() const { return false; }
+  /// Only if has_damping(). force (3 values a node, N) += the force at positions x (m) and velocities v (m/s) that is not in
+  /// linearise(). If `damping` is not null: its blocks += C = -d(force)/dv, N s/m, symmetric and positive semidefinite. `damping`
+  /// has the pattern of the matrix of bind(). h: the step, s; a law with internal variables integrates them implicitly over it.
+  /// The step solves (M/h^2 + C/h + K) dq = f + C v + M v/h.
+  virtual void linearise_damping(const double* /*x*/, const double* /*v*/, double* /*force*/, BlockMatrix* /*damping*/, double /*h*/) {}
   /// J
   virtual double energy(const double* x) = 0;
   /// Moves the stress-free configuration by u (3 values a node, m) while the rest configuration stays: the linear strain of u at rest is

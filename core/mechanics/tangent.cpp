@@ -42,6 +42,17 @@ void DeformableBody::assemble(double h) {
   for (ForceModel* f : forces_) f->linearise(q_.data(), force_.data(), &a_, h, Tangent::system);
 }
 
+// Forces that depend on velocity, and D v in damped_load_. D is taken when A is; both stay together.
+void DeformableBody::add_damping(double h, bool fresh) {
+  if (fresh) damping_matrix_.set_zero();
+  for (ForceModel* f : damped_) f->linearise_damping(q_.data(), v_.data(), force_.data(), fresh ? &damping_matrix_ : nullptr, h);
+  if (fresh) a_.add_scaled(damping_matrix_, 1 / h);
+  for (int i = 0; i < nodes(); ++i)
+    if (const int b = free_[std::size_t(i)]; b >= 0) packed_v_.segment<3>(3 * b) = v_.segment<3>(3 * i);
+  damped_load_.setZero();
+  damping_matrix_.add_product(packed_v_.data(), damped_load_.data());
+}
+
 // With inertia; begins the motion under load_.
 void DeformableBody::factorise(double h) {
   double extra = 1;

@@ -70,9 +70,15 @@ void Simulation::step() {
   clock.done(stage_collision);
 
   builder_->clear();
-  for (Constraint* c : constraints_) c->build(context_, *builder_);
+  for (Constraint* c : constraints_) {
+    builder_->set_owner(*c);
+    c->build(context_, *builder_);
+  }
   for (Body* b : bodies_)
-    if (b->active()) b->build(context_, *builder_);
+    if (b->active()) {
+      builder_->set_owner(*b);
+      b->build(context_, *builder_);
+    }
   builder_->finish();
   workers_.run(int(heavy_first_.size()), [this](int i) {
     Body* b = heavy_first_[std::size_t(i)];

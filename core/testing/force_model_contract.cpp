@@ -40,6 +40,17 @@ struct Bench {
     VecX f = VecX::Zero(n);
     matrix.set_zero();
     model.linearise(x.data(), f.data(), &matrix, h, which);
+    return dense();
+  }
+  /// Of the force that depends on velocity; C if it is asked for.
+  VecX damping_force(const VecX& x, const VecX& v, double h, MatX* damping = nullptr) {
+    VecX f = VecX::Zero(n);
+    matrix.set_zero();
+    model.linearise_damping(x.data(), v.data(), f.data(), damping ? &matrix : nullptr, h);
+    if (damping) *damping = dense();
+    return f;
+  }
+  MatX dense() const {
     MatX k = MatX::Zero(n, n);
     for (int j = 0; j < matrix.nodes(); ++j) {
       const int end = j + 1 < matrix.nodes() ? matrix.column_start(j + 1) : matrix.slots();
@@ -173,6 +184,37 @@ void check_memory(Findings& findings, const std::filesystem::path& scene, const 
                   fmt::format("{:.6g} J after reset, {:.6g} J at the start", answer(), energy));
 }
 
+VecX random_vector(Random& random, int n, double scale) {
+  VecX d(n);
+  for (int i = 0; i < n; ++i) d[i] = scale * random.uniform(-1, 1);
+  return d;
+}
+
+/// Damping of the model's own, in a state without a history.
+void check_damping(Findings& findings, Bench& b, const VecX& x, std::uint64_t seed) {
+  constexpr double h = 0.01;
+  Random random(seed);
+  const double speed = 0.1 * shortest_edge(b.body) / h;
+  const VecX v = random_vector(random, b.n, speed);
+  MatX damping;
+  const VecX f = b.damping_force(x, v, h, &damping);
+  if (!findings.expect(f.norm() > 0, "has_damping(), but velocity gives no force")) return;
+  findings.within("force with and without its damping matrix", (f - b.damping_force(x, v, h)).norm(), f.norm(), 1e-14);
+  if (b.model.internal()) check_balanced(findings, b, x, f, f.lpNorm<1>());
+  findings.expect(f.dot(v) < 0, "the damping adds energy", fmt::format("power {:.3g} W", f.dot(v)));
+  findings.within("damping is symmetric", (damping - damping.transpose()).norm(), damping.norm(), 1e-12);
+  for (int trial = 0; trial < 10; ++trial) {
+    const VecX d = random_vector(random, b.n, 1);
+    const double e = 1e-3 * speed;
+    const VecX product = damping * d;
+    const VecX slope = (b.damping_force(x, v + e * d, h) - b.damping_force(x, v - e * d, h)) / (2 * e);
+    findings.within("damping = minus force gradient by velocity", (product + slope).norm(), product.norm(), 1e-6);
+  }
+  const VecX values = Eigen::SelfAdjointEigenSolver<MatX>(damping, Eigen::EigenvaluesOnly).eigenvalues();
+  findings.expect(values[0] > -1e-10 * values[b.n - 1], "the damping has a negative eigenvalue",
+                  fmt::format("{:.3g}, the largest {:.3g} N s/m", values[0], values[b.n - 1]));
+}
+
 }  // namespace
 
 void check_force_model(const std::filesystem::path& scene, const std::string& element) {
@@ -195,6 +237,7 @@ void check_force_model(const std::filesystem::path& scene, const std::string& el
       m->reset();
       reference = bench.force(x).lpNorm<Eigen::Infinity>();
       check_state(findings, bench, x, seed);
+      if (m->has_damping()) check_damping(findings, bench, x, seed);
     }
     findings.at("");
     check_rigid_motions(findings, bench, rest, reference);

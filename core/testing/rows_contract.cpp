@@ -219,7 +219,7 @@ bool check_block(Findings& findings, const ConstraintProblem& p, const Block& b)
 bool check_blocks(Findings& findings, const Simulation& s, const Component& c, std::set<std::uint64_t>& own) {
   std::set<std::uint64_t> ids;
   for (const Block& b : s.problem().blocks) {
-    const bool mine = int(b.id >> 44) == c.order;
+    const bool mine = b.owner == c.order;
     const bool once = ids.insert(b.id).second;
     if (!mine) continue;
     own.insert(b.id);
@@ -232,7 +232,7 @@ bool check_blocks(Findings& findings, const Simulation& s, const Component& c, s
 void check_own_ids(Findings& findings, Simulation& s, Component& c) {
   RowBench bench(s, c);
   bench.rows();
-  for (const Block& b : bench.blocks) findings.expect(int(b.id >> 44) == c.order, "the id of a row is not made by row_id(*this, key)", fmt::format("id {}", b.id));
+  for (const Block& b : bench.blocks) findings.expect(b.owner == c.order, "the id of a row is not made by row_id(*this, key)", fmt::format("id {}", b.id));
 }
 
 /// A row that moves by itself says at what rate.

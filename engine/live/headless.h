@@ -6,7 +6,7 @@
 #include "core/sim/simulation.h"
 #include "engine/live/command_script.h"
 #include "engine/command_line/commands.h"
-#include "engine/condense.h"
+#include "core/haptics/condense.h"
 #include "engine/live/exchange_pause.h"
 #include "haptic_server/in_process.h"
 

@@ -8,6 +8,7 @@
 
 #include "core/bus/channels.h"
 #include "core/bus/codec.h"
+#include "core/haptics/haptic_update.h"
 #include "engine/live/frame.h"
 
 namespace insula {

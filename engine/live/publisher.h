@@ -7,11 +7,11 @@
 #include <insula_lcm/scene_info_t.hpp>
 
 #include "core/bus/bus.h"
-#include "core/bus/haptic_update.h"
+#include "core/haptics/haptic_update.h"
 #include "core/sim/simulation.h"
-#include "engine/condense.h"
+#include "core/haptics/condense.h"
 #include "engine/live/exchange_pause.h"
-#include "engine/contact_frame_prediction.h"
+#include "core/haptics/contact_frame_prediction.h"
 
 namespace insula {
 

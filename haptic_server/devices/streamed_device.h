@@ -25,8 +25,6 @@ class StreamedDevice : public Device {
   std::string remark() const override { return remark_.text(); }
 
   const DeviceCalibration& calibration() const { return calibration_; }
-  /// Before start, or while nobody else uses the device.
-  void set_calibration(const DeviceCalibration& c) { calibration_ = c; }
   /// The newest sample as the device measured it, for a calibration; the servo thread's, like read.
   DeviceSample raw() noexcept;
   /// Samples that could not be true.

@@ -83,7 +83,7 @@ void Bleeding::measure_forces(const ConstraintSolution& solution) {
     Eigen::Map<Vec3>(row_force_.data() + 3 * row) = solution.lambda[row] * f;
   }
   for (const Block& b : solution.problem.blocks) {
-    if (int(b.id >> 44) == own) continue;
+    if (b.owner == own) continue;
     Vec3 f = Vec3::Zero();
     for (int k = 0; k < b.rows(); ++k) f += Eigen::Map<const Vec3>(row_force_.data() + 3 * (b.row + k));
     const double size = f.norm();

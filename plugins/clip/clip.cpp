@@ -135,6 +135,7 @@ void Clip::build(const StepContext&, ConstraintBuilder& builder) {
   const auto stop = [&](std::uint64_t key, double sign, double at) {
     Block block;
     block.id = row_id(*this, key);
+    block.role = BlockRole::stop;
     block.lower = 0;
     const int row = builder.add(block);
     rows.open(row);

@@ -62,6 +62,7 @@ class Clip final : public RigidBody, public StatesLaw {
   void place(const Pose& pose, double opening) override;
 
   bool active() const override;
+  bool implant() const override { return true; }
   int links() const override { return 3; }
   const std::vector<ConvexPiece>& link_pieces(int link) const override { return pieces_[std::size_t(link)]; }
   Pose link_pose(int link) const override;

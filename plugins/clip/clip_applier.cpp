@@ -125,6 +125,7 @@ void ClipApplier::join_rows(ConstraintBuilder& builder) const {
   const auto add = [&](int key) {
     Block block;
     block.id = row_id(*this, std::uint64_t(key));
+    block.role = BlockRole::weld;
     return builder.add(block);
   };
   for (int k = 0; k < 3; ++k) {

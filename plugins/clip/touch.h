@@ -12,7 +12,7 @@ inline bool touched_by_others(const Body& body, const ConstraintSolution& soluti
   for (int row : body.rows.row) {
     while (block < blocks.size() && blocks[block].row + blocks[block].rows() <= row) ++block;
     if (block == blocks.size()) return false;
-    const int by = int(blocks[block].id >> 44);
+    const int by = blocks[block].owner;
     if (by != own && by != other && solution.lambda[row] != 0) return true;
   }
   return false;

@@ -145,6 +145,7 @@ void Contact::build(const StepContext&, ConstraintBuilder& builder) {
     for (const Proximity& x : p.contacts) {
       Block block;
       block.id = row_id(*this, x.key);
+      block.role = BlockRole::contact;
       if (friction() > 0) {
         block.law = LawKind::friction;
         block.friction = friction();

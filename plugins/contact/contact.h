@@ -44,6 +44,8 @@ class Contact final : public Constraint, public StatesLaw {
   void build(const StepContext& context, ConstraintBuilder& builder) override;
   void finish(const StepContext& context, const ConstraintSolution& solution) override;
   void report(StepReport& report) const override;
+  void predict_frames(double steps, std::vector<ContactFrame>& out) const override;
+  void estimate_cost(CostCounts& out) const override;
   void reset() override;
   void append_state(std::vector<double>& out) const override;
   StatedLaw law() const override { return StatedLaw::unilateral(); }
@@ -73,14 +75,6 @@ class Contact final : public Constraint, public StatesLaw {
     const Body* body_b() const { return tool_b ? static_cast<const Body*>(tool_b) : &b->body(); }
   };
   const std::vector<Pair>& pairs() const { return pairs_; }
-  /// A contact of a tool as the tool and the surface go on after the step: its three rows, the direction that its normal has turned to, and
-  /// that a step later.
-  struct FramePrediction {
-    int row;
-    Vec3 from, tangent, to, later;
-  };
-  /// Appends those of contacts that press, where their tools would be `steps` after the step.
-  void predict_frames(double steps, std::vector<FramePrediction>& out) const;
 
  private:
   /// What one thread may search at a time: a pair, for two surfaces one way of it.

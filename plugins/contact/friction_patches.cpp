@@ -126,6 +126,7 @@ void Contact::build_patches(ConstraintBuilder& builder, Pair& p) {
       const Proximity& x = p.contacts[std::size_t(m.contact)];
       Block block;
       block.id = row_id(*this, x.key);
+      block.role = BlockRole::contact;
       block.lower = 0;
       block.upper = max_contact_force(p);
       block.compliance = compliance(p);
@@ -135,6 +136,7 @@ void Contact::build_patches(ConstraintBuilder& builder, Pair& p) {
     }
     Block block;
     block.id = row_id(*this, std::uint64_t(1) << 42 | std::uint64_t(&p - pairs_.data()) << 28 | one.name);
+    block.role = BlockRole::friction;
     block.law = LawKind::patch;
     block.friction = friction();
     block.normals = one.count;

@@ -53,6 +53,7 @@ void Contact::limit_motion(ConstraintBuilder& builder, const Pair& p) const {
     if (way <= allowed) continue;
     Block block;
     block.id = row_id(*this, std::uint64_t(1) << 43 | std::uint64_t(&p - pairs_.data()) << 16 | std::uint64_t(piece) << 2 | std::uint64_t(count));
+    block.role = BlockRole::stop;
     block.lower = 0;
     const int row = builder.add(block);
     builder.violation(row, allowed);

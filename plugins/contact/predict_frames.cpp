@@ -5,7 +5,7 @@
 
 namespace insula {
 
-void Contact::predict_frames(double steps, std::vector<FramePrediction>& out) const {
+void Contact::predict_frames(double steps, std::vector<ContactFrame>& out) const {
   if (!(friction() > 0)) return;  // a single row knows no other direction
   for (const Pair& p : pairs_) {
     if (!p.tool_collider || !p.active()) continue;

@@ -128,14 +128,15 @@ void BendPatches::bind(const BlockMatrix& a, const std::vector<int>& free_of_nod
         p.local[h][k] = static_cast<unsigned char>(std::find(p.node, p.node + p.nodes, hinges_[std::size_t(p.hinge[h])].node[k]) - p.node);
     p.first_slot = int(slots_.size());
     for (int i = 0; i < p.nodes; ++i)
-      for (int j = 0; j <= i; ++j) slots_.push_back(block(p.node[i]) < 0 || block(p.node[j]) < 0 ? held : a.slot(block(p.node[i]), block(p.node[j])));
+      // The step's matrix has no such blocks unless its tangent is made of patches.
+      for (int j = 0; j <= i; ++j) slots_.push_back(block(p.node[i]) < 0 || block(p.node[j]) < 0 ? held : a.find_slot(block(p.node[i]), block(p.node[j])));
   }
   hinge_slot_.resize(hinges_.size());
   for (std::size_t h = 0; h < hinges_.size(); ++h)
     for (int i = 0, k = 0; i < 4; ++i)
       for (int j = 0; j <= i; ++j, ++k) {
         const int fi = block(hinges_[h].node[i]), fj = block(hinges_[h].node[j]);
-        hinge_slot_[h][std::size_t(k)] = fi < 0 || fj < 0 ? no_slot : fi >= fj ? a.slot(fi, fj) : ~a.slot(fj, fi);
+        hinge_slot_[h][std::size_t(k)] = fi < 0 || fj < 0 ? no_slot : fi >= fj ? a.find_slot(fi, fj) : ~a.find_slot(fj, fi);
       }
 }
 

@@ -138,6 +138,7 @@ void BloodPressure::build(const StepContext& context, ConstraintBuilder& builder
     r.row = -1;
     Block block;
     block.id = row_id(*this, std::uint64_t(k));
+    block.role = BlockRole::pressure;
     double violation = 0;
     if (feed_) {
       for (int j = 0; j <= k; ++j) violation += mix_[std::size_t(k * n + j)] * volume_[std::size_t(j)];

@@ -114,6 +114,7 @@ void SelfContact::build(const StepContext&, ConstraintBuilder& builder) {
   for (Support& s : supports_) {
     Block block;
     block.id = s.id;
+    block.role = BlockRole::contact;
     block.lower = 0;
     block.compliance = compliance;
     s.row = builder.add(block);
@@ -125,6 +126,7 @@ void SelfContact::build(const StepContext&, ConstraintBuilder& builder) {
   for (const Proximity& x : contacts_) {
     Block block;
     block.id = row_id(*this, x.key);
+    block.role = BlockRole::contact;
     block.compliance = compliance;
     if (friction() > 0) {
       block.law = LawKind::friction;
@@ -174,6 +176,11 @@ void SelfContact::report(StepReport& out) const {
     c.tangent_force = forces_[i][1] * x.tangent + forces_[i][2] * x.normal.cross(x.tangent);
     out.contacts.push_back(c);
   }
+}
+
+void SelfContact::estimate_cost(CostCounts& out) const {
+  out.self_vertices += int(on->rest().vertices.size());
+  out.searched.push_back(on.get());
 }
 
 void SelfContact::reset() {

@@ -31,6 +31,7 @@ class SelfContact final : public Constraint, public StatesLaw {
   void build(const StepContext& context, ConstraintBuilder& builder) override;
   void finish(const StepContext& context, const ConstraintSolution& solution) override;
   void report(StepReport& report) const override;
+  void estimate_cost(CostCounts& out) const override;
   void reset() override;
   void append_state(std::vector<double>& out) const override;
   StatedLaw law() const override { return StatedLaw::unilateral(); }

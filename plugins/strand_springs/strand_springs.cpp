@@ -177,6 +177,7 @@ void StrandSprings::build(const StepContext&, ConstraintBuilder& builder) {
       if (load_direction.is("both") || length + longer > s.rest - 0.0005) {
         Block block;
         block.id = row_id(*this, key);
+        block.role = BlockRole::fibre;
         block.compliance = 1.0 / (stiffness() * (1 - s.damage));
         block.upper = load_direction.is("both") ? infinite : 0.0;
         s.row = builder.add(block);
@@ -188,6 +189,7 @@ void StrandSprings::build(const StepContext&, ConstraintBuilder& builder) {
     if (s.blade && cut_force() > 0) {
       Block block;
       block.id = row_id(*this, key + 1);
+      block.role = BlockRole::contact;
       block.lower = -cut_force();
       block.upper = 0;
       s.blade_row = builder.add(block);

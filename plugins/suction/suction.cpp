@@ -57,6 +57,7 @@ class Suction final : public Instrument, public StatesLaw {
       const double limit = k == 0 ? force : grip() * force;
       Block block;
       block.id = row_id(*this, std::uint64_t(k));
+      block.role = BlockRole::grip;
       block.lower = -limit;
       block.upper = limit;
       const int row = builder.add(block);

@@ -41,7 +41,7 @@ struct Bed {
   bool forces(Vec3& f) const {
     int k = 0;
     for (const Block& b : s->problem().blocks)
-      if (int(b.id >> 44) == tube->order) f[k++] = s->problem().lambda[std::size_t(b.row)];
+      if (b.owner == tube->order) f[k++] = s->problem().lambda[std::size_t(b.row)];
     return k == 3;
   }
   Vec3 tissue() const {  // the vertex under the tube, node (1, 1, 2) of the block

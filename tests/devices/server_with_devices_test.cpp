@@ -7,6 +7,7 @@
 #include <mutex>
 
 #include "core/bus/lcm_bus.h"
+#include "core/haptics/haptic_update.h"
 #include "haptic_server/rig_for_test.h"
 #include "tests/devices/device_bench.h"
 #include "tests/devices/haply_stand_in.h"

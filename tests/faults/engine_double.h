@@ -8,6 +8,7 @@
 #include "core/bus/arrival_order.h"
 #include "core/bus/codec.h"
 #include "core/bus/mem_bus.h"
+#include "core/haptics/haptic_update.h"
 #include "haptic_server/problem_for_test.h"
 #include "tests/faults/faulty_bus.h"
 

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "tests/faults/fault_rig.h"
+#include "core/haptics/haptic_update.h"
 
 namespace insula::testing {
 

@@ -11,13 +11,14 @@ import pathlib
 import re
 import sys
 
-# Folder -> folders it may include from, besides itself. "core" stands for all rooms of core/ but bus and testing.
+# Folder -> folders it may include from, besides itself. "core" stands for all rooms of core/ but bus, haptics and testing.
 FOLDERS = {
     "core/bus": {"core"},
+    "core/haptics": {"core", "core/bus"},
     "core/testing": {"core", "core/bus", "plugins"},
     "plugins": {"core"},
-    "haptic_server": {"core", "core/bus"},
-    "engine": {"core", "core/bus", "haptic_server"},
+    "haptic_server": {"core", "core/bus", "core/haptics"},
+    "engine": {"core", "core/bus", "core/haptics", "haptic_server"},
     "viewer/gateway": {"core", "core/bus"},
 }
 INCLUDE = re.compile(r'^\s*#\s*include "([\w./]+)"')

@@ -11,60 +11,38 @@
 #include "core/mechanics/instrument.h"
 #include "core/mechanics/shell_body.h"
 #include "core/mechanics/soft_body.h"
-#include "plugins/contact/contact.h"
-#include "plugins/self_contact/self_contact.h"
 
 namespace insula {
 namespace {
 
-/// Rows of a contact of this component; a patch's two are shared.
-double rows_of_contact(const Contact& c) { return c.friction() <= 0 ? 1 : c.patch() > 0 ? 1.3 : 3; }
-
-bool is_clip(const RigidBody* r) { return r && !dynamic_cast<const Instrument*>(r); }
-/// The tool that a pair of tool and surface is about; null for other pairs.
-const RigidBody* tool_of(const Contact::Pair& p) { return p.tool_a && !p.tool_b ? p.tool_a : nullptr; }
-
-/// What the hands and a clip add to the rows that stand already.
+/// What the hands and an implant add to the rows that stand already.
 struct MoreRows {
   double expected = 0, most = 0;
   std::vector<std::pair<const Body*, double>> of_body;
 };
 
-MoreRows rows_of_hands(const Simulation& s) {
-  constexpr double usual = 4;  // contacts of a tool at work with tissue
+MoreRows rows_of_hands(const Simulation& s, const std::vector<RowEstimate>& estimates) {
   MoreRows out;
-  const RigidBody* clip = nullptr;  // one at a time is closed
+  const auto expect = [&](const RowEstimate& e) {
+    out.expected += e.expected;
+    out.of_body.emplace_back(e.body, e.expected);
+  };
   for (int hand = 0; hand < 2; ++hand) {
     const Instrument* tool = s.instrument_of(hand);
-    if (!tool) continue;
-    bool counted = false;
-    for (const Constraint* k : s.constraints()) {
-      const auto* contact = dynamic_cast<const Contact*>(k);
-      if (!contact) continue;
-      for (const Contact::Pair& p : contact->pairs()) {
-        if (tool_of(p) != tool || p.body_b()->blocks() == 0) continue;
-        const double rows = rows_of_contact(*contact);
-        out.most += rows * contact->max_contacts() * (contact->contact_geometry.is("vertices") ? 2 : 1);
-        if (counted) continue;
-        counted = true;
-        out.expected += rows * std::min<double>(usual, contact->max_contacts());
-        out.of_body.emplace_back(p.body_b(), rows * std::min<double>(usual, contact->max_contacts()));
-      }
+    bool working = false;  // at one place at a time
+    for (const RowEstimate& e : estimates) {
+      if (!tool || e.tool != tool) continue;
+      out.most += e.most;
+      if (!working) expect(e);
+      working = true;
     }
   }
-  for (const Constraint* k : s.constraints()) {
-    const auto* contact = dynamic_cast<const Contact*>(k);
-    if (!contact || !contact->contact_geometry.is("vertices")) continue;
-    for (const Contact::Pair& p : contact->pairs()) {
-      if (!is_clip(tool_of(p)) || p.body_b()->blocks() == 0 || (clip && clip != tool_of(p))) continue;
-      if (!clip && tool_of(p)->links() < 2) continue;
-      clip = tool_of(p);
-      if (p.link_a == 0) continue;  // its coil; the jaws grip
-      const double rows = rows_of_contact(*contact) * contact->max_contacts();
-      out.expected += rows;
-      out.most += rows;
-      out.of_body.emplace_back(p.body_b(), rows);
-    }
+  const RigidBody* closed = nullptr;  // one implant at a time
+  for (const RowEstimate& e : estimates) {
+    if (!e.tool || !e.tool->implant() || (closed && e.tool != closed)) continue;
+    closed = e.tool;
+    out.most += e.most;
+    expect(e);
   }
   return out;
 }
@@ -75,7 +53,9 @@ SceneWork count_work(const Simulation& s) {
   SceneWork w;
   w.h = s.h();
   w.standing_rows = s.problem().rows;
-  const MoreRows more = rows_of_hands(s);
+  CostCounts counts;
+  for (const Constraint* c : s.constraints()) c->estimate_cost(counts);
+  const MoreRows more = rows_of_hands(s, counts.rows);
   w.expected_rows = w.standing_rows + int(std::lround(more.expected));
   w.max_rows = w.standing_rows + int(std::lround(more.most));
   w.newton = s.solve_settings().max_newton > 0;
@@ -103,24 +83,15 @@ SceneWork count_work(const Simulation& s) {
     w.bodies.push_back(std::move(k));
   }
 
-  std::set<const Surface*> touched;
   const auto moves = [](const Surface* f) { return f->body().blocks() > 0; };
   for (const Surface* f : s.surfaces())
     if (moves(f)) w.surface_vertices += int(f->rest().vertices.size());
-  for (const Constraint* k : s.constraints()) {
-    if (const auto* self = dynamic_cast<const SelfContact*>(k)) {
-      w.wall_vertices += int(self->on->rest().vertices.size());
-      touched.insert(self->on.get());
-    }
-    const auto* contact = dynamic_cast<const Contact*>(k);
-    if (!contact) continue;
-    for (const Contact::Pair& p : contact->pairs()) {
-      for (const auto& f : {p.a, p.b})
-        if (f && moves(f)) touched.insert(f);
-      if (!p.tool_a && p.a && p.b) w.tissue_vertices += int(p.a->rest().vertices.size() + p.b->rest().vertices.size());
-      if (p.tool_a && !p.tool_b && p.tool_a->active()) w.tool_pieces += int(p.pieces_a.size());
-    }
-  }
+  std::set<const Surface*> touched;
+  for (const Surface* f : counts.searched)
+    if (moves(f)) touched.insert(f);
+  w.tissue_vertices = counts.tissue_vertices;
+  w.tool_pieces = counts.tool_pieces;
+  w.wall_vertices = counts.self_vertices;
   for (const Surface* f : touched) w.surface_triangles += int(f->triangles().size());
   return w;
 }

@@ -11,10 +11,11 @@
 #include "core/base/input_error.h"
 #include "core/base/random.h"
 #include "engine/live/command_script.h"
-#include "engine/condense.h"
+#include "core/haptics/condense.h"
 #include "engine/live/exchange_pause.h"
 #include "engine/live/publisher.h"
-#include "engine/contact_frame_prediction.h"
+#include "core/haptics/contact_frame_prediction.h"
+#include "core/haptics/haptic_update.h"
 
 namespace insula {
 namespace {

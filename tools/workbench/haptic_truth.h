@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "core/bus/haptic_update.h"
+#include "core/haptics/haptic_update.h"
 #include "core/sim/motion.h"
 #include "core/sim/simulation.h"
 #include "haptic_server/servo.h"
@@ -38,7 +38,7 @@ struct RecordedStep {
 /// the motion: what is measured would be something else.
 ForceTrace reference_forces(Simulation& simulation, const Motion& motion, double duration_s);
 /// Its problems at the rate of the simulation's own step, condensed, encoded and decoded as on the bus; with contacts turned to where tools
-/// are so long after the step (engine/contact_frame_prediction.h), negative: as they were in it.
+/// are so long after the step (core/haptics/contact_frame_prediction.h), negative: as they were in it.
 std::vector<RecordedStep> record_steps(Simulation& simulation, const Motion& motion, double duration_s, double prediction_horizon_s = -1);
 
 enum class Rendering { servo, held, diagonal, hindsight };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Rotation of blocks, and the solution of what comes out.
-#include "engine/contact_frame_prediction.h"
+#include "core/haptics/contact_frame_prediction.h"
 
 #include <algorithm>
 
@@ -28,8 +28,15 @@ std::array<float, 3> rotation_vector(const Vec3& from, const Vec3& to) {
   return {float(v[0]), float(v[1]), float(v[2])};
 }
 
-Block& block_at(ConstraintProblem& p, int row) {
-  return *std::lower_bound(p.blocks.begin(), p.blocks.end(), row, [](const Block& b, int first) { return b.row < first; });
+template <class Problem>
+auto block_at(Problem& p, int row) {
+  return std::lower_bound(p.blocks.begin(), p.blocks.end(), row, [](const Block& b, int first) { return b.row < first; });
+}
+
+/// Whether the frame is one of a friction block of the problem.
+bool is_of(const ConstraintProblem& p, const ContactFrame& f) {
+  const auto block = block_at(p, f.row);
+  return block != p.blocks.end() && block->row == f.row && block->law == LawKind::friction && f.ahead.allFinite() && f.later.allFinite();
 }
 
 }  // namespace
@@ -49,22 +56,22 @@ void rotate_contact_rows(ConstraintProblem& p, int row, const Mat3& q, std::span
 
 const ConstraintProblem& ContactFramePrediction::operator()(const Simulation& simulation, double ahead_s) {
   const double steps = ahead_s / simulation.h();
-  rotations_.clear();
-  for (const Constraint* c : simulation.constraints())
-    if (const auto* contact = dynamic_cast<const Contact*>(c)) contact->predict_frames(steps, rotations_);
-  if (rotations_.empty()) return simulation.problem();
+  frames_.clear();
+  for (const Constraint* c : simulation.constraints()) c->predict_frames(steps, frames_);
+  std::erase_if(frames_, [&](const ContactFrame& f) { return !is_of(simulation.problem(), f); });
+  if (frames_.empty()) return simulation.problem();
   predicted_ = simulation.problem();
   ConstraintProblem& p = predicted_;
   p.prediction_horizon_steps = steps;
-  for (const Contact::FramePrediction& turn : rotations_) block_at(p, turn.row).frame_rotation = rotation_vector(turn.to, turn.later);
-  std::erase_if(rotations_, [](const Contact::FramePrediction& t) { return t.from.cross(t.to).norm() < min_turn; });
-  if (rotations_.empty()) return p;
+  for (const ContactFrame& f : frames_) block_at(p, f.row)->turn = rotation_vector(f.ahead, f.later);
+  std::erase_if(frames_, [](const ContactFrame& f) { return f.normal.cross(f.ahead).norm() < min_turn; });
+  if (frames_.empty()) return p;
   const std::size_t n = std::size_t(p.rows);
   full_delta(p, {p.delta_free.data(), n}, p.lambda.data(), delta_m_);
-  for (const Contact::FramePrediction& turn : rotations_) {
-    const double gap = delta_m_[std::size_t(turn.row)];
-    rotate_contact_rows(p, turn.row, rotation(turn.from, turn.tangent, turn.to), delta_m_);
-    delta_m_[std::size_t(turn.row)] = gap;  // what pressed presses
+  for (const ContactFrame& f : frames_) {
+    const double gap = delta_m_[std::size_t(f.row)];
+    rotate_contact_rows(p, f.row, rotation(f.normal, f.tangent, f.ahead), delta_m_);
+    delta_m_[std::size_t(f.row)] = gap;  // what pressed presses
   }
   work_.assign(std::size_t(p.stride), 0.0);
   sweep_kernels().combine(work_.data(), p.w.data(), p.stride, p.lambda.data(), p.rows, p.stride);

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Where each part of a haptic_problem_t message lies, and whether what lies there may be believed. Nothing is copied and nothing written.
 #pragma once
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
 #include "core/bus/bus.h"
 #include "core/bus/byte_io.h"
+#include "core/constraint/problem_fields.h"
 
 namespace insula::wire {
 
@@ -23,25 +25,32 @@ struct ProblemLayout {
   std::int64_t session, sequence, time_us, pose_time_us;
   double step_s, sim_time_s, prediction_horizon_steps;
   int rows, blocks, tools;
-  const std::uint8_t *w, *delta, *lambda, *rate, *retardation_time, *id, *row, *law, *compliance, *lower, *upper, *friction, *normals, *frame_rotation, *tool, *jacobian;
+  const std::uint8_t *w, *tool, *jacobian;
+  std::array<const std::uint8_t*, std::tuple_size_v<decltype(row_fields)>> row_values;      ///< in the order of row_fields
+  std::array<const std::uint8_t*, std::tuple_size_v<decltype(block_fields)>> block_values;  ///< in the order of block_fields
 
   double w_at(std::size_t k) const { return double(load_float(w + 4 * k)); }
-  double delta_at(int i) const { return load_double(delta + 8 * i); }
-  double lambda_at(int i) const { return load_double(lambda + 8 * i); }
-  double rate_at(int i) const { return double(load_float(rate + 4 * i)); }
-  double retardation_time_at(int i) const { return double(load_float(retardation_time + 4 * i)); }
-  std::uint64_t id_at(int b) const { return load64(id + 8 * b); }
-  int row_at(int b) const { return std::int16_t(load16(row + 2 * b)); }
-  int law_at(int b) const { return std::int8_t(law[b]); }
-  double compliance_at(int b) const { return double(load_float(compliance + 4 * b)); }
-  double lower_at(int b) const { return load_double(lower + 8 * b); }
-  double upper_at(int b) const { return load_double(upper + 8 * b); }
-  double friction_at(int b) const { return double(load_float(friction + 4 * b)); }
-  int normals_at(int b) const { return std::int16_t(load16(normals + 2 * b)); }
-  float frame_rotation_at(int b, int axis) const { return load_float(frame_rotation + 4 * (3 * b + axis)); }
+  template <class Field>
+  double row_value(const Field&, std::size_t index, int row) const {
+    return double(load<typename Field::Wire>(row_values[index] + sizeof(typename Field::Wire) * std::size_t(row)));
+  }
+  template <class Field>
+  typename Field::Wire block_value(const Field&, std::size_t index, int block, std::size_t k) const {
+    return load<typename Field::Wire>(block_values[index] + sizeof(typename Field::Wire) * (std::size_t(block) * Field::count + k));
+  }
+  double lambda_at(int row) const { return load_double(row_values[1] + 8 * row); }
+  Block block_at(int block) const {
+    Block out;
+    for_each_field(block_fields, [&](const auto& f, std::size_t index) {
+      for (std::size_t k = 0; k < f.count; ++k) f.set(out, k, block_value(f, index, block, k));
+    });
+    return out;
+  }
   const std::uint8_t* tool_at(int t) const { return tool + tool_bytes * std::size_t(t); }
   double jacobian_at(std::size_t k) const { return double(load_float(jacobian + 4 * k)); }
 };
+
+static_assert(std::get<1>(row_fields).values == &ConstraintProblem::lambda);
 
 /// Of a message without its last four bytes.
 std::uint32_t problem_checksum(Bytes bytes);

@@ -11,7 +11,6 @@
 #pragma once
 #include "core/constraint/solve.h"
 #include "core/sim/simulation.h"
-#include "plugins/contact/contact.h"
 
 namespace insula {
 
@@ -26,7 +25,7 @@ class ContactFramePrediction {
 
  private:
   ConstraintProblem predicted_;
-  std::vector<Contact::FramePrediction> rotations_;
+  std::vector<ContactFrame> frames_;
   AlignedVector<double> delta_m_, work_;
   SolveWorkspace workspace_;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Cutting a problem down keeps what the tools feel.
-#include "engine/condense.h"
+#include "core/haptics/condense.h"
 
 #include <gtest/gtest.h>
 

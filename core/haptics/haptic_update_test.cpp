@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The haptic problem's wire format: round trip, agreement with the generated class, and damage of every kind.
-#include "core/bus/haptic_update.h"
+#include "core/haptics/haptic_update.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <functional>
 #include <insula_lcm/haptic_problem_t.hpp>
 
-#include "core/bus/haptic_update_for_test.h"
+#include "core/haptics/haptic_update_for_test.h"
 #include "core/bus/mutate_for_test.h"
 
 namespace insula {

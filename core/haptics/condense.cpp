@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Selection of rows for the haptic problem, and elimination of the others.
-#include "engine/condense.h"
+#include "core/haptics/condense.h"
 
 #include <algorithm>
 #include <cmath>
 
+#include "core/constraint/problem_fields.h"
 #include "core/constraint/solve.h"
 #include "core/constraint/sweep.h"
-#include "haptic_server/weld_elimination.h"
+#include "core/haptics/weld_elimination.h"
 
 namespace insula {
 namespace {
@@ -25,7 +26,7 @@ void Condenser::find_tool_coupled_rows(const ConstraintProblem& full) {
   for (std::size_t t = 0; t < std::min<std::size_t>(full.tools.size(), 2); ++t) {
     for (int r = 0; r < full.rows; ++r)
       if (!full.tools[t].jacobian.row(r).isZero(0)) tool_coupled_[std::size_t(r)] = 1;
-    // What a carried clip touches is touched by the tool: the servo makes the two one (haptic_server/weld_elimination.h).
+    // What a carried clip touches is touched by the tool: the servo makes the two one (core/haptics/weld_elimination.h).
     const int weld = first_weld_row(full, t);
     for (int r = 0; weld >= 0 && r < full.rows; ++r)
       for (int k = 0; k < weld_rows; ++k)
@@ -156,17 +157,14 @@ void Condenser::add_eliminated(const ConstraintProblem& full, const Block& b) {
 void Condenser::copy_kept(const ConstraintProblem& full, ConstraintProblem& small) const {
   const std::size_t rows = kept_.size();
   small.resize(int(rows));
-  small.step_s = full.step_s;
-  small.prediction_horizon_steps = full.prediction_horizon_steps;
+  copy_scalars(full, small);
   for (std::size_t i = 0; i < rows; ++i) {
     const std::size_t s = std::size_t(kept_[i]);
     double free = full.delta_free[s];
     for (std::size_t c = 0; c < std::size_t(full.rows); ++c)
       if (fate_[c] != Fate::kept) free += full.w_at(int(s), int(c)) * full.lambda[c];
+    copy_row(full, s, small, i);
     small.delta_free[i] = free;
-    small.lambda[i] = full.lambda[s];
-    small.rate[i] = full.rate[s];
-    small.retardation_time[i] = full.retardation_time[s];
     for (std::size_t j = 0; j < rows; ++j) small.w[i * std::size_t(small.stride) + j] = full.w_at(int(s), kept_[j]);
   }
   small.tools.resize(full.tools.size());

@@ -25,7 +25,7 @@ struct GraspedBody {
 };
 
 inline constexpr int weld_rows = 6;
-/// First of the six rows by which the tool carries a rigid body that nothing else holds; -1: it carries none.
+/// First of the six rows (BlockRole::weld, one owner) by which the tool carries a rigid body that nothing else holds; -1: it carries none.
 int first_weld_row(const ConstraintProblem& problem, std::size_t tool);
 
 /// Allocates in its constructor only.

@@ -3,7 +3,7 @@
 #include <functional>
 #include <insula_lcm/haptic_problem_t.hpp>
 
-#include "core/bus/haptic_update_for_test.h"
+#include "core/haptics/haptic_update_for_test.h"
 #include "core/bus/mutate_for_test.h"
 
 namespace insula {

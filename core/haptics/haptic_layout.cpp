@@ -1,14 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The parts of a haptic_problem_t message.
-#include "core/bus/haptic_layout.h"
+#include "core/haptics/haptic_layout.h"
 
 #include <zlib.h>
 
 #include <insula_lcm/haptic_problem_t.hpp>
 
-#include "core/bus/haptic_update.h"
+#include "core/haptics/haptic_update.h"
 
 namespace insula::wire {
+namespace {
+
+template <class Field>
+constexpr std::size_t wire_bytes(const Field&) {
+  return sizeof(typename Field::Wire);
+}
+
+}  // namespace
 
 std::uint32_t problem_checksum(Bytes bytes) { return std::uint32_t(::crc32(0, bytes.data(), unsigned(bytes.size()))); }
 
@@ -30,10 +38,7 @@ bool find_parts(Bytes bytes, ProblemLayout& l, const char*& why) {
     return false;
   }
   l.w = in.take_array(packed, 4);
-  l.delta = in.take_array(l.rows, 8);
-  l.lambda = in.take_array(l.rows, 8);
-  l.rate = in.take_array(l.rows, 4);
-  l.retardation_time = in.take_array(l.rows, 4);
+  for_each_field(row_fields, [&](const auto& f, std::size_t index) { l.row_values[index] = in.take_array(l.rows, wire_bytes(f)); });
   l.prediction_horizon_steps = in.f64();
   l.blocks = in.i32();
   if (!in.ok()) return false;
@@ -41,21 +46,9 @@ bool find_parts(Bytes bytes, ProblemLayout& l, const char*& why) {
     why = "block count out of range";
     return false;
   }
-  l.id = in.take_array(l.blocks, 8);
-  l.row = in.take_array(l.blocks, 2);
-  l.law = in.take_array(l.blocks, 1);
-  l.compliance = in.take_array(l.blocks, 4);
-  l.lower = in.take_array(l.blocks, 8);
-  l.upper = in.take_array(l.blocks, 8);
-  l.friction = in.take_array(l.blocks, 4);
-  l.normals = in.take_array(l.blocks, 2);
-  const std::int32_t frame_rotation_size = in.i32();
-  if (!in.ok()) return false;
-  if (frame_rotation_size != l.blocks * 3) {
-    why = "turns do not match blocks";
-    return false;
-  }
-  l.frame_rotation = in.take_array(frame_rotation_size, 4);
+  for_each_field(block_fields, [&](const auto& f, std::size_t index) {
+    l.block_values[index] = in.take_array(l.blocks * int(f.count), wire_bytes(f));
+  });
   l.tools = in.i8();
   if (!in.ok()) return false;
   if (l.tools < 0 || l.tools > max_problem_tools) {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Flat encoder and decoder of haptic_problem_t. The decoder validates the bytes in place first and writes only then.
-#include "core/bus/haptic_update.h"
+#include "core/haptics/haptic_update.h"
 
 #include <algorithm>
 #include <insula_lcm/haptic_problem_t.hpp>
 
 #include "core/bus/byte_io.h"
 #include "core/bus/channels.h"
-#include "core/bus/haptic_layout.h"
+#include "core/haptics/haptic_layout.h"
 
 namespace insula {
 namespace {
@@ -17,7 +17,9 @@ using wire::ProblemLayout;
 bool has_wire_form(const ConstraintProblem& p) {
   const auto rows = std::size_t(p.rows);
   if (p.rows < 0 || p.rows > max_problem_rows || p.tools.size() > max_problem_tools || p.blocks.size() > rows) return false;
-  if (p.delta_free.size() < rows || p.lambda.size() < rows || p.rate.size() < rows || p.retardation_time.size() < rows) return false;
+  bool whole = true;
+  for_each_field(row_fields, [&](const auto& f, std::size_t) { whole = whole && (p.*f.values).size() >= rows; });
+  if (!whole) return false;
   if (p.rows > 0 && (p.stride < p.rows || p.w.size() < rows * std::size_t(p.stride))) return false;
   return std::all_of(p.tools.begin(), p.tools.end(), [&](const ToolTerms& t) { return t.jacobian.rows() == p.rows; });
 }
@@ -77,25 +79,11 @@ void read_all(const ProblemLayout& l, HapticUpdate& into) {
   const auto stride = std::size_t(p.stride);
   for (std::size_t i = 0; i < std::size_t(l.rows); ++i)
     for (std::size_t j = 0; j <= i; ++j, ++k) p.w[i * stride + j] = p.w[j * stride + i] = l.w_at(k);
-  for (int i = 0; i < l.rows; ++i) {
-    p.delta_free[std::size_t(i)] = l.delta_at(i);
-    p.lambda[std::size_t(i)] = l.lambda_at(i);
-    p.rate[std::size_t(i)] = l.rate_at(i);
-    p.retardation_time[std::size_t(i)] = l.retardation_time_at(i);
-  }
+  for_each_field(row_fields, [&](const auto& f, std::size_t index) {
+    for (int i = 0; i < l.rows; ++i) (p.*f.values)[std::size_t(i)] = l.row_value(f, index, i);
+  });
   p.blocks.resize(std::size_t(l.blocks));
-  for (int b = 0; b < l.blocks; ++b) {
-    Block& block = p.blocks[std::size_t(b)];
-    block.id = l.id_at(b);
-    block.row = l.row_at(b);
-    block.law = LawKind(l.law_at(b));
-    block.compliance = l.compliance_at(b);
-    block.lower = l.lower_at(b);
-    block.upper = l.upper_at(b);
-    block.friction = l.friction_at(b);
-    block.normals = l.normals_at(b);
-    for (int axis = 0; axis < 3; ++axis) block.frame_rotation[std::size_t(axis)] = l.frame_rotation_at(b, axis);
-  }
+  for (int b = 0; b < l.blocks; ++b) p.blocks[std::size_t(b)] = l.block_at(b);
   p.tools.resize(std::size_t(l.tools));
   for (int t = 0; t < l.tools; ++t) read_tool(l, t, p.tools[std::size_t(t)], into.offset[std::size_t(t)]);
 }
@@ -117,23 +105,15 @@ bool encode_problem(const HapticUpdate& update, std::vector<std::uint8_t>& out) 
   w.i32(p.rows * (p.rows + 1) / 2);
   for (int i = 0; i < p.rows; ++i)
     for (int j = 0; j <= i; ++j) w.f32(float(p.w_at(i, j)));
-  for (int i = 0; i < p.rows; ++i) w.f64(p.delta_free[std::size_t(i)]);
-  for (int i = 0; i < p.rows; ++i) w.f64(p.lambda[std::size_t(i)]);
-  for (int i = 0; i < p.rows; ++i) w.f32(float(p.rate[std::size_t(i)]));
-  for (int i = 0; i < p.rows; ++i) w.f32(float(p.retardation_time[std::size_t(i)]));
+  for_each_field(row_fields, [&]<class Field>(const Field& f, std::size_t) {
+    for (int i = 0; i < p.rows; ++i) w.number(typename Field::Wire((p.*f.values)[std::size_t(i)]));
+  });
   w.f64(p.prediction_horizon_steps);
   w.i32(int(p.blocks.size()));
-  for (const Block& b : p.blocks) w.i64(std::int64_t(b.id));
-  for (const Block& b : p.blocks) w.i16(std::int16_t(b.row));
-  for (const Block& b : p.blocks) w.i8(std::int8_t(b.law));
-  for (const Block& b : p.blocks) w.f32(float(b.compliance));
-  for (const Block& b : p.blocks) w.f64(b.lower);
-  for (const Block& b : p.blocks) w.f64(b.upper);
-  for (const Block& b : p.blocks) w.f32(float(b.friction));
-  for (const Block& b : p.blocks) w.i16(std::int16_t(b.normals));
-  w.i32(3 * int(p.blocks.size()));
-  for (const Block& b : p.blocks)
-    for (const float by : b.frame_rotation) w.f32(by);
+  for_each_field(block_fields, [&](const auto& f, std::size_t) {
+    for (const Block& b : p.blocks)
+      for (std::size_t k = 0; k < f.count; ++k) w.number(f.get(b, k));
+  });
   w.i8(std::int8_t(p.tools.size()));
   for (std::size_t t = 0; t < p.tools.size(); ++t) {
     const ToolTerms& tool = p.tools[t];

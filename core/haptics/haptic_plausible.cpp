@@ -4,16 +4,15 @@
 #include <array>
 #include <cmath>
 
-#include "core/bus/haptic_layout.h"
-#include "core/bus/haptic_update.h"
+#include "core/haptics/haptic_layout.h"
+#include "core/haptics/haptic_update.h"
 #include "core/bus/plausible.h"
 
 namespace insula::wire {
 namespace {
 
-constexpr double max_delta_m = 1, max_w = 1e4, max_jacobian = 1e3;
-constexpr double max_rate = 1e3, max_retardation_time_s = 100, max_frame_rotation_rad = 1, max_prediction_horizon_steps = 100;
-constexpr double max_gain = 1e4, max_compliance = 1e8, max_stiffness = 1e8, max_block_compliance = 1e6;
+constexpr double max_w = 1e4, max_jacobian = 1e3, max_prediction_horizon_steps = 100;
+constexpr double max_gain = 1e4, max_compliance = 1e8, max_stiffness = 1e8;
 
 bool header_ok(const ProblemLayout& l, const char*& why) {
   why = "time, step or sequence out of range";
@@ -30,73 +29,73 @@ bool matrix_ok(const ProblemLayout& l, const char*& why) {
   why = "W has a negative diagonal";
   for (int i = 0; i < l.rows; ++i)
     if (l.w_at(std::size_t(i) * std::size_t(i + 3) / 2) < 0) return false;
-  why = "delta_free or lambda not finite or too large";
-  for (int i = 0; i < l.rows; ++i)
-    if (!(std::abs(l.delta_at(i)) < max_delta_m) || !(std::abs(l.lambda_at(i)) < limits::force_N)) return false;
-  why = "rate or retardation time not finite or out of range";
-  for (int i = 0; i < l.rows; ++i)
-    if (!(std::abs(l.rate_at(i)) < max_rate) || !(l.retardation_time_at(i) >= 0 && l.retardation_time_at(i) <= max_retardation_time_s)) return false;
-  return true;
+  const char* bad = nullptr;
+  for_each_field(row_fields, [&](const auto& f, std::size_t index) {
+    for (int i = 0; !bad && i < l.rows; ++i)
+      if (!f.range.holds(l.row_value(f, index, i))) bad = f.range.reason;
+  });
+  if (bad) why = bad;
+  return bad == nullptr;
 }
 
 /// A solver stops at a tolerance and friction is rounded to float32 on the way.
 double slack(double bound) { return 1e-6 + 1e-4 * std::abs(bound); }
 
-bool lambda_in_law(const ProblemLayout& l, int block, int row) {
-  const double first = l.lambda_at(row);
-  if (l.law_at(block) == 0) {
-    const double lower = l.lower_at(block), upper = l.upper_at(block);
-    return (lower == -infinite || first >= lower - slack(lower)) && (upper == infinite || first <= upper + slack(upper));
-  }
-  if (l.law_at(block) == 2) {
+bool lambda_in_law(const ProblemLayout& l, const Block& b) {
+  const double first = l.lambda_at(b.row);
+  if (b.law == LawKind::box)
+    return (b.lower == -infinite || first >= b.lower - slack(b.lower)) && (b.upper == infinite || first <= b.upper + slack(b.upper));
+  if (b.law == LawKind::patch) {
     double pressed = 0;
-    for (int i = row - l.normals_at(block); i < row; ++i) pressed += std::max(0.0, l.lambda_at(i));
-    const double disc = l.friction_at(block) * pressed;
-    return std::hypot(first, l.lambda_at(row + 1)) <= disc + slack(disc);
+    for (int i = b.row - b.normals; i < b.row; ++i) pressed += std::max(0.0, l.lambda_at(i));
+    const double disc = b.friction * pressed;
+    return std::hypot(first, l.lambda_at(b.row + 1)) <= disc + slack(disc);
   }
-  const double cone = l.friction_at(block) * std::max(first, 0.0);
-  return first >= -slack(0) && std::hypot(l.lambda_at(row + 1), l.lambda_at(row + 2)) <= cone + slack(cone);
+  const double cone = b.friction * std::max(first, 0.0);
+  return first >= -slack(0) && std::hypot(l.lambda_at(b.row + 1), l.lambda_at(b.row + 2)) <= cone + slack(cone);
 }
 
 /// A patch shares the forces of one-row blocks just before it.
-bool patch_ok(const ProblemLayout& l, int block) {
-  const int n = l.normals_at(block);
-  if (l.law_at(block) != 2) return n == 0;
-  if (n < 1 || n > block) return false;
-  for (int b = block - n; b < block; ++b)
-    if (l.law_at(b) != 0) return false;
+bool patch_ok(const ProblemLayout& l, const Block& b, int index) {
+  if (b.law != LawKind::patch) return b.normals == 0;
+  if (b.normals < 1 || b.normals > index) return false;
+  for (int k = index - b.normals; k < index; ++k)
+    if (l.block_at(k).law != LawKind::box) return false;
   return true;
 }
 
+/// Every number of a block lies in its range.
+bool block_ok(const ProblemLayout& l, int block, const char*& why) {
+  const char* bad = nullptr;
+  for_each_field(block_fields, [&](const auto& f, std::size_t index) {
+    for (std::size_t k = 0; k < f.count; ++k)
+      if (!bad && !f.range.holds(double(l.block_value(f, index, block, k)))) bad = f.range.reason;
+  });
+  if (bad) why = bad;
+  return bad == nullptr;
+}
+
 bool blocks_ok(const ProblemLayout& l, const char*& why) {
+  std::array<std::uint64_t, max_problem_rows> ids;
   int row = 0;
-  for (int b = 0; b < l.blocks; ++b) {
-    const int law = l.law_at(b);
-    why = "unknown law";
-    if (law < 0 || law > 2) return false;
+  for (int k = 0; k < l.blocks; ++k) {
+    if (!block_ok(l, k, why)) return false;
+    const Block b = l.block_at(k);
+    ids[std::size_t(k)] = b.id;
     why = "a patch without the contacts it is of";
-    if (!patch_ok(l, b)) return false;
+    if (!patch_ok(l, b, k)) return false;
     why = "blocks do not cover the rows once, in order";
-    const int end = row + Block{.law = LawKind(law)}.rows();
-    if (l.row_at(b) != row || end > l.rows) return false;
-    why = "block compliance out of range";
-    if (!(l.compliance_at(b) >= 0 && l.compliance_at(b) <= max_block_compliance)) return false;
+    const int end = row + b.rows();
+    if (b.row != row || end > l.rows) return false;
     why = "block bounds are no interval";
-    if (!(l.lower_at(b) <= l.upper_at(b)) || l.lower_at(b) == infinite || l.upper_at(b) == -infinite) return false;
-    why = "friction out of range";
-    if (!(l.friction_at(b) >= 0 && l.friction_at(b) <= 10)) return false;
-    why = "directions turn too far in a step";
-    for (int axis = 0; axis < 3; ++axis)
-      if (!(std::abs(l.frame_rotation_at(b, axis)) <= max_frame_rotation_rad)) return false;
+    if (b.lower > b.upper || b.lower == infinite || b.upper == -infinite) return false;
     why = "lambda outside its law";
-    if (!lambda_in_law(l, b, row)) return false;
+    if (!lambda_in_law(l, b)) return false;
     row = end;
   }
   why = "blocks do not cover the rows once, in order";
   if (row != l.rows) return false;
   why = "the same block id twice";
-  std::array<std::uint64_t, max_problem_rows> ids;
-  for (int b = 0; b < l.blocks; ++b) ids[std::size_t(b)] = l.id_at(b);
   const auto end = ids.begin() + l.blocks;
   std::sort(ids.begin(), end);
   return std::adjacent_find(ids.begin(), end) == end;

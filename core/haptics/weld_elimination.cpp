@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Elimination of the rows between a tool and what it carries.
-#include "haptic_server/weld_elimination.h"
+#include "core/haptics/weld_elimination.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
+#include "core/constraint/problem_fields.h"
+
 namespace insula {
 namespace {
 
-constexpr int component_bits = 44;  // of a row's id, see row_id
 constexpr double nothing = 1e-6;    // of a row's compliance; W comes in single precision
 
 std::size_t tools_of(const ConstraintProblem& p) { return std::min<std::size_t>(p.tools.size(), 2); }
@@ -34,7 +35,7 @@ bool touches(const ToolTerms& t, int row) {
 }
 
 bool ties(const ConstraintProblem& p, std::size_t tool, const Block& b) {
-  if (b.law != LawKind::box || b.lower != -infinite || b.upper != infinite || b.compliance != 0) return false;
+  if (b.role != BlockRole::weld || b.law != LawKind::box || b.lower != -infinite || b.upper != infinite || b.compliance != 0) return false;
   if (p.retardation_time[std::size_t(b.row)] != 0) return false;  // tissue
   for (std::size_t t = 0; t < tools_of(p); ++t)
     if (touches(p.tools[t], b.row) != (t == tool)) return false;
@@ -63,7 +64,7 @@ int first_weld_row(const ConstraintProblem& p, std::size_t tool) {
   int count = 0;
   for (std::size_t b = 0; b < p.blocks.size(); ++b) {
     if (!ties(p, tool, p.blocks[b])) count = 0;
-    else count = count > 0 && p.blocks[b].id >> component_bits != p.blocks[b - 1].id >> component_bits ? 1 : count + 1;
+    else count = count > 0 && p.blocks[b].owner != p.blocks[b - 1].owner ? 1 : count + 1;
     if (count == weld_rows) return p.blocks[b].row - weld_rows + 1;
   }
   return -1;
@@ -92,8 +93,7 @@ const ConstraintProblem& WeldElimination::eliminate(const ConstraintProblem& pro
 // Everything but the six rows as it is. Jacobians have room for all rows there may be, whatever the problem's.
 void WeldElimination::copy_rest(const ConstraintProblem& from, int first, ConstraintProblem& to) noexcept {
   to.resize(from.rows - weld_rows);  // within its capacity
-  to.step_s = from.step_s;
-  to.prediction_horizon_steps = from.prediction_horizon_steps;
+  copy_scalars(from, to);
   to.blocks.clear();
   for (Block b : from.blocks) {
     if (b.row >= first && b.row < first + weld_rows) continue;
@@ -110,12 +110,7 @@ void WeldElimination::copy_rest(const ConstraintProblem& from, int first, Constr
     b.coupling() = a;
     for (int i = 0; i < to.rows; ++i) b.jacobian.row(i) = a.jacobian.row(i < first ? i : i + weld_rows);
   }
-  for (int i = 0; i < to.rows; ++i) {
-    const std::size_t s = std::size_t(i < first ? i : i + weld_rows), d = std::size_t(i);
-    to.lambda[d] = from.lambda[s];
-    to.rate[d] = from.rate[s];
-    to.retardation_time[d] = from.retardation_time[s];
-  }
+  for (int i = 0; i < to.rows; ++i) copy_row(from, std::size_t(i < first ? i : i + weld_rows), to, std::size_t(i));
 }
 
 bool WeldElimination::reduce(const ConstraintProblem& from, std::size_t tool, int first, ConstraintProblem& to) noexcept {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A problem in other directions is the same problem; a tool past an edge feels what lies beyond it.
-#include "engine/contact_frame_prediction.h"
+#include "core/haptics/contact_frame_prediction.h"
 
 #include <gtest/gtest.h>
 
