@@ -72,11 +72,11 @@ class Constraint : public Component {
   virtual void detect(const StepContext&) {}
   /// Stage 3: add rows.
   virtual void build(const StepContext& context, ConstraintBuilder& builder) = 0;
-  /// Whether build ever adds a row; false: it acts between the steps alone (a flow network, a bleeding).
+  /// Whether build ever adds a row; false: it acts between the steps alone (a flow network, a source).
   virtual bool adds_rows() const { return true; }
   /// After stage 5: read own lambda, wear, break, emit events.
   virtual void finish(const StepContext&, const ConstraintSolution&) {}
-  /// Stage 6: add own numbers to the report.
+  /// Stage 6: adds its contacts to the report.
   virtual void report(StepReport&) const {}
   virtual void reset() {}
   virtual void append_state(std::vector<double>&) const {}

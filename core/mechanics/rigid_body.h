@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A rigid thing that is no obstacle: a hand-held tool, a clip. It has one or more links, each a set of convex pieces that
+// A rigid thing that is no obstacle: a hand-held tool, an implant. It has one or more links, each a set of convex pieces that
 // moves as one; contact asks for the poses of the links and nothing else.
 #pragma once
 #include <vector>

@@ -21,7 +21,7 @@ void check_rows(const std::filesystem::path& scene, const std::string& element, 
 /// symmetric and has no negative eigenvalue. Of models that say internal(): rigid motion gives no force (1e-10), forces
 /// and moments add up to nothing.
 void check_force_model(const std::filesystem::path& scene, const std::string& element);
-/// A rigid body that is no instrument (a clip): H of a point of any link is the derivative of its position, and its rows hold
+/// A rigid body that is no instrument (jaws on a hinge): H of a point of any link is the derivative of its position, and its rows hold
 /// the contract of rows.
 void check_rigid_body(const std::filesystem::path& scene, const std::string& element);
 /// Holds at least one node, holds it to the bit, and leaves others free.
