@@ -27,6 +27,10 @@ class Component;
 enum class Shown { none, curve, vital };
 std::string_view shown_name(Shown shown);
 
+/// What a picture of the channel's subject does with it: nothing; shade the region of the group's name by it (0..1); beat
+/// with it as its phase (0..1).
+enum class Role { none, shade, pulse };
+
 /// From and to, written with units; an empty bound is open. Both empty: no band.
 struct Band {
   std::string_view from = {}, to = {};
@@ -42,6 +46,7 @@ struct ChannelSpec {
   int digits = 2;                 ///< behind the point, in that unit
   Band good = {};                 ///< shown green inside
   Band high = {};                 ///< shown amber inside; outside of both: red
+  Role role = Role::none;
 };
 
 /// Base of every channel: what frame, report and reference read.
@@ -65,11 +70,15 @@ class ChannelBase {
   /// "flow", or "superior.flow" of the group "superior".
   std::string name(std::size_t item) const;
   const double* values(std::size_t item) const { return values_.data() + item * std::size_t(size_); }
+  /// The body that the numbers are about, for its picture; null: none in particular.
+  const Component* subject() const { return subject_; }
+  void set_subject(const Component* body) { subject_ = body; }
   /// Makes every value unknown.
   void reset();
 
   std::optional<double> min() const { return min_; }  ///< SI
   std::optional<double> max() const { return max_; }
+  void set_max(double si) { max_ = si; }              ///< for what is only known once the scene is there, such as a count
   using Bounds = std::array<std::optional<double>, 2>;
   const Bounds& good() const { return good_; }        ///< SI
   const Bounds& high() const { return high_; }
@@ -93,6 +102,7 @@ class ChannelBase {
   std::optional<double> min_, max_;
   Bounds good_, high_;
   double scale_ = 1;
+  const Component* subject_ = nullptr;
 };
 
 /// One number a step.

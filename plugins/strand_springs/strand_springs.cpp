@@ -242,7 +242,8 @@ void StrandSprings::publish() {
     fibres.set(std::size_t(i), 1, s.b, s.integrity);
     largest = std::max(largest, s.tension);
   }
-  left.set(strands_left());
+  standing.set_max(count());
+  standing.set(strands_left());
   total.set(count());
   tension.set(largest);
 }

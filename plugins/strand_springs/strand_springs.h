@@ -29,7 +29,7 @@ class StrandSprings final : public Constraint, public StrandSet {
   Param<Length> reach{this, {.name = "reach", .fallback = "0.5 mm", .min = "0.01 mm", .max = "5 mm", .doc = "distance at which an edge touches a strand"}};
   Param<Force> strength{this, {.name = "strength", .fallback = "0 N", .min = "0 N", .max = "100 N", .doc = "tension that tears a whole strand; 0: it does not tear"}};
 
-  Channel<Scalar> left{this, {.name = "left", .doc = "strands that are not parted", .min = "0", .shown = Shown::vital, .digits = 0}};
+  Channel<Scalar> standing{this, {.name = "standing", .doc = "strands that are not parted", .min = "0", .shown = Shown::vital, .digits = 0}};
   Channel<Scalar> total{this, {.name = "total", .doc = "strands at the start", .min = "0", .shown = Shown::none, .digits = 0}};
   Channel<Force> tension{this, {.name = "tension", .doc = "largest tension of a strand", .min = "0 N", .display = "mN", .digits = 1}};
   Polylines fibres{this, {.name = "fibres", .doc = "the strands", .material = "arachnoid", .value = "1 whole, 0 about to be severed, negative: parted", .radius = "0.15 mm"}};
