@@ -178,7 +178,7 @@ ClipState Clip::clip_state() const {
 
 void Clip::publish() {
   pressing.set(force_);
-  angle.set(opening_);
+  opening_now.set(opening_);
   applied.set(applications_);
   place_now.set(!active() ? 0 : holder_ ? 1 : 2);
 }

@@ -34,7 +34,7 @@ class Clip final : public RigidBody, public ClipSource {
   Param<Rate> drag{this, {.name = "drag", .fallback = "2 1/s", .min = "0 1/s", .max = "1000 1/s", .doc = "rate at which the fluid takes a loose clip's motion"}};
 
   Channel<Force> pressing{this, {.name = "force", .doc = "of the blades on what is between them", .min = "0 N"}};
-  Channel<Angle> angle{this, {.name = "opening", .doc = "of each jaw from the closed position", .min = "0 rad", .shown = Shown::none, .display = "deg", .digits = 1}};
+  Channel<Angle> opening_now{this, {.name = "opening", .doc = "of each jaw from the closed position", .min = "0 rad", .shown = Shown::none, .display = "deg", .digits = 1}};
   Channel<Scalar> applied{this, {.name = "applications", .doc = "times it was released in the field", .min = "0", .shown = Shown::none, .digits = 0}};
   Channel<Scalar> place_now{this, {.name = "place", .doc = "0 on the tray, 1 held by an applier, 2 free in the field", .min = "0", .max = "2", .shown = Shown::none, .digits = 0}};
 
