@@ -69,9 +69,13 @@ bool well_formed(const insula_lcm::render_frame_t* type, Bytes bytes) {
   const int bodies = in.i32();
   if (bodies < 0) return false;
   for (int i = 0; i < bodies && in.ok(); ++i) walk_render_body(in);
-  const int strand_points = in.i32(), strands = in.i32();
-  in.take_array(strand_points, 3 * size_f32);
-  in.take_array(strands, 2 * size_f32);  // health, tension
+  in.take_array(in.i32(), size_f32);  // channels
+  const int drawables = in.i32();
+  if (drawables < 0) return false;
+  for (int i = 0; i < drawables && in.ok(); ++i) {
+    in.take(size_i32);  // index
+    in.take_array(in.i32(), size_f32);
+  }
   const int tools = in.i8();
   in.take_array(tools, render_tool_bytes);
   const int contacts = in.i32();
@@ -111,11 +115,10 @@ void drop_stale(insula_lcm::render_frame_t& m) {
   for (auto& b : m.body)
     if (b.nodes == 0) b.x_m.clear();
   if (m.bodies == 0) m.body_force_N.clear();
-  if (m.strand_points == 0) m.strand_x_m.clear();
-  if (m.strands == 0) {
-    m.strand_integrity.clear();
-    m.strand_tension_N.clear();
-  }
+  if (m.channels == 0) m.channel.clear();
+  for (auto& d : m.drawable)
+    if (d.floats == 0) d.data.clear();
+  if (m.drawables == 0) m.drawable.clear();
   if (m.contacts == 0) {
     m.contact_x_m.clear();
     m.contact_N.clear();

@@ -84,11 +84,13 @@ insula_lcm::render_frame_t sample() {
     m.body.push_back(b);
     m.body_force_N.push_back(0.2 * i);
   }
-  m.strands = 2;
-  m.strand_points = 4;
-  m.strand_x_m.assign(4, {0.f, 0.1f, 0.2f});
-  m.strand_integrity = {1.f, -1.f};
-  m.strand_tension_N = {0.05f, 0.f};
+  m.channels = 3;
+  m.channel = {0.05f, std::nanf(""), -2.f};
+  m.drawables = 2;
+  m.drawable.resize(2);
+  m.drawable[0].floats = 8;
+  m.drawable[0].data.assign(8, 0.1f);
+  m.drawable[1].index = 1;
   m.tools = 1;
   insula_lcm::render_tool_t t{};
   t.index = 0;

@@ -110,11 +110,16 @@ bool plausible(const insula_lcm::render_frame_t& m, std::string& why) {
     for (const auto& x : b.x_m)
       if (!within(x.data(), 3, limits::position_m)) return fail(why, "node position out of range");
   }
-  for (const auto& x : m.strand_x_m)
-    if (!within(x.data(), 3, limits::position_m)) return fail(why, "strand position out of range");
-  for (float h : m.strand_integrity)
-    if (!(h == -1.f || (h >= 0.f && h <= 1.f))) return fail(why, "strand integrity out of range");
-  if (!within(m.strand_tension_N.data(), m.strands, limits::force_N)) return fail(why, "strand tension out of range");
+  if (m.channels > 100'000 || m.drawables > 4096) return fail(why, "too many channels or drawables");
+  for (float v : m.channel)  // NaN: not known now
+    if (std::isinf(v)) return fail(why, "channel is not finite");
+  for (std::size_t i = 0; i < m.drawable.size(); ++i) {
+    const auto& d = m.drawable[i];
+    if (d.index < 0 || d.index > 4095) return fail(why, "drawable number out of range");
+    for (std::size_t j = 0; j < i; ++j)
+      if (m.drawable[j].index == d.index) return fail(why, "the same drawable twice");
+    if (!std::all_of(d.data.begin(), d.data.end(), [](float v) { return std::isfinite(v); })) return fail(why, "drawable is not finite");
+  }
   for (std::size_t i = 0; i < m.tool.size(); ++i) {
     const auto& t = m.tool[i];
     if (t.index < 0 || t.index > 127 || t.hand < -1 || t.hand > 1) return fail(why, "tool number or hand out of range");
@@ -174,13 +179,13 @@ bool consistent(const insula_lcm::render_frame_t& m) {
   const auto all_triples = [](const std::vector<std::vector<float>>& v) {
     return std::all_of(v.begin(), v.end(), [](const auto& x) { return x.size() == 3; });
   };
-  if (m.bodies < 0 || m.strands < 0 || m.tools < 0 || m.contacts < 0) return false;
+  if (m.bodies < 0 || m.channels < 0 || m.drawables < 0 || m.tools < 0 || m.contacts < 0) return false;
   if (m.body.size() != std::size_t(m.bodies) || m.body_force_N.size() != std::size_t(m.bodies)) return false;
   for (const auto& b : m.body)
     if (b.nodes < 0 || b.x_m.size() != std::size_t(b.nodes) || !all_triples(b.x_m)) return false;
-  return m.strand_points == 2 * m.strands && m.strand_x_m.size() == std::size_t(m.strand_points) &&
-         all_triples(m.strand_x_m) && m.strand_integrity.size() == std::size_t(m.strands) &&
-         m.strand_tension_N.size() == std::size_t(m.strands) && m.tool.size() == std::size_t(m.tools) &&
+  for (const auto& d : m.drawable)
+    if (d.floats < 0 || d.data.size() != std::size_t(d.floats)) return false;
+  return m.channel.size() == std::size_t(m.channels) && m.drawable.size() == std::size_t(m.drawables) && m.tool.size() == std::size_t(m.tools) &&
          m.contact_x_m.size() == std::size_t(m.contacts) && all_triples(m.contact_x_m) &&
          m.contact_N.size() == std::size_t(m.contacts);
 }

@@ -17,7 +17,7 @@ struct SolveSettings {
   int max_sweeps = 200;
   /// Stop when no lambda of a sweep would move its row by more than this (metres): |W_ii * change| <= tolerance.
   double tolerance_m = 1e-9;
-  /// Carry lambda on along conjugate directions between sweeps: for stiff stacks, such as a clip on a thin wall.
+  /// Carry lambda on along conjugate directions between sweeps: for stiff stacks, such as jaws on a thin wall.
   bool conjugate = false;
   /// Most Newton steps, made when sweeps would end above the tolerance; 0: sweeps alone. One step costs as much as rows / 3 sweeps.
   int max_newton = 0;

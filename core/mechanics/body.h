@@ -40,7 +40,7 @@ class Body : public Component {
   virtual void connect(PrepareContext&) {}
 
   virtual int blocks() const = 0;  ///< number of 3-blocks of degrees of freedom
-  /// Whether it takes part in the step; tools and clips that lie on the tray do not.
+  /// Whether it takes part in the step; a rigid body that lies on the tray does not.
   virtual bool active() const { return true; }
   /// Position at the start of the step (current q), scene frame.
   virtual Vec3 position(const MaterialPoint& p) const = 0;
@@ -89,8 +89,6 @@ class Body : public Component {
   virtual void build(const StepContext&, ConstraintBuilder&) {}
   /// After stage 5: reads the lambda of its rows.
   virtual void finish(const StepContext&, const ConstraintSolution&) {}
-  /// Stage 6: adds its own numbers to the report; also called while it lies on the tray.
-  virtual void report(StepReport&) const {}
   virtual void reset() = 0;
   /// Kinetic plus elastic energy, J.
   virtual double energy() const = 0;

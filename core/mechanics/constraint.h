@@ -77,11 +77,11 @@ class Constraint : public Component {
   virtual void detect(const StepContext&) {}
   /// Stage 3: add rows.
   virtual void build(const StepContext& context, ConstraintBuilder& builder) = 0;
-  /// Whether build ever adds a row; false: it acts between the steps alone (a flow network, a bleeding).
+  /// Whether build ever adds a row; false: it acts between the steps alone (a flow network, a source).
   virtual bool adds_rows() const { return true; }
   /// After stage 5: read own lambda, wear, break, emit events.
   virtual void finish(const StepContext&, const ConstraintSolution&) {}
-  /// Stage 6: add own numbers to the report.
+  /// Stage 6: adds its contacts to the report.
   virtual void report(StepReport&) const {}
   /// After a step: appends the frames that its loaded friction contacts will have `steps` steps later.
   /// Each is of a block with LawKind::friction of the last step; others are ignored. Default: none turn.

@@ -48,6 +48,8 @@ class ForceModel : public Component {
   virtual bool prestrain(const double*) { return false; }
   /// Rayleigh stiffness damping, s.
   virtual double stiffness_damping() const { return 0; }
+  /// Thickness of the wall that it is in a region of a shell, m; 0: it is no wall there. For the picture.
+  virtual double wall_thickness(int /*region*/) const { return 0; }
   /// Whether the body acts on itself alone: no force in rigid motion, forces and moments add up to nothing.
   virtual bool internal() const { return true; }
   /// After stage 5, once a step, at the body's new positions x (m): the only place where the law may change for good (tear,

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A rigid thing that is no obstacle: a hand-held tool, a clip. It has one or more links, each a set of convex pieces that
+// A rigid thing that is no obstacle: a hand-held tool, an implant. It has one or more links, each a set of convex pieces that
 // moves as one; contact asks for the poses of the links and nothing else.
 #pragma once
+#include <string>
 #include <vector>
 
 #include "core/mechanics/body.h"
@@ -9,8 +10,21 @@
 
 namespace insula {
 
+/// Something that a list of tools tells about one.
+struct BodyProperty {
+  std::string name;   ///< "blade_length"
+  double value = 0;   ///< SI
+  std::string unit;   ///< SI symbol
+  std::string text;   ///< for people: "9 mm"
+};
+
 class RigidBody : public Body {
  public:
+  /// What lists of tools show of it, and words by which they sort it ("temporary").
+  virtual std::vector<BodyProperty> properties() const { return {}; }
+  virtual std::vector<std::string> tags() const { return {}; }
+  /// What holds it now; null: nothing does.
+  virtual const RigidBody* held_by() const { return nullptr; }
   /// Its shape in links, its picture, its masses.
   virtual const ToolModel& tool() const = 0;
   /// Angle of its hinges now, rad; 0 when it has none.

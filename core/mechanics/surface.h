@@ -22,9 +22,7 @@ class Surface : public Component {
   /// `<surface mesh="..." mesh_unit="mm" material="cortex" contact="true"/>`; without a mesh: the boundary of the body's tetrahedra.
   Param<File> mesh{this, {.name = "mesh", .fallback = "", .doc = "surface file; none: the boundary of the body's tetrahedra"}};
   Param<LengthUnit> mesh_unit{this, {.name = "mesh_unit", .fallback = "mm", .doc = "unit of length of the surface file"}};
-  Param<Choice> material{this, {.name = "material", .fallback = "cortex",
-      .choices = {"cortex", "pia", "insula", "bone", "dura", "skin", "drape", "vessel", "steel", "polymer"},
-      .doc = "look in the viewer"}};
+  Param<MaterialName> material{this, {.name = "material", .fallback = "cortex", .doc = "look in the viewer"}};
   Param<Length> thickness{this, {.name = "thickness", .fallback = "0 mm", .min = "0 mm", .max = "10 mm", .doc = "of the wall whose middle this surface is; contact keeps half of it away; 0: the surface itself is touched"}};
   Param<bool> contact{this, {.name = "contact", .fallback = "true", .doc = "whether things touch it; false: for the picture alone"}};
 

@@ -154,6 +154,12 @@ std::string Param<std::string>::parse(std::string_view text) {
   return {};
 }
 
+std::string Param<MaterialName>::parse(std::string_view text) {
+  if (text.empty() && required()) return "the value is empty; it must name a material";
+  value_ = text;
+  return {};
+}
+
 std::string Param<Choice>::parse(std::string_view text) {
   const auto& choices = spec().choices;
   if (std::find(choices.begin(), choices.end(), text) == choices.end()) {

@@ -206,6 +206,23 @@ class Param<File> : public ParamBase {
   std::filesystem::path path_;
 };
 
+/// The name of a material (core/registry/material.h); the loader checks that the registry or the scene has it.
+struct MaterialName {};
+template <>
+class Param<MaterialName> : public ParamBase {
+ public:
+  using ParamBase::ParamBase;
+  const std::string& operator()() const { return value_; }
+  void set(std::string v) { value_ = std::move(v); }
+  std::string type_name() const override { return "material"; }
+
+ protected:
+  std::string parse(std::string_view text) override;
+
+ private:
+  std::string value_;
+};
+
 /// A length unit for mesh files: "mm", "cm", "m". Value: metres per file unit.
 struct LengthUnit {};
 template <>

@@ -12,6 +12,7 @@ using Units = std::array<Unit, N>;
 
 constexpr Units<4> length{{{"m", 1}, {"cm", 1e-2}, {"mm", 1e-3}, {"um", 1e-6}}};
 constexpr Units<3> area{{{"m2", 1}, {"cm2", 1e-4}, {"mm2", 1e-6}}};
+constexpr Units<5> volume{{{"m3", 1}, {"l", 1e-3}, {"ml", 1e-6}, {"ul", 1e-9}, {"mm3", 1e-9}}};
 constexpr Units<4> duration{{{"s", 1}, {"ms", 1e-3}, {"us", 1e-6}, {"min", 60}}};
 constexpr Units<3> frequency{{{"Hz", 1}, {"kHz", 1e3}, {"1/min", 1.0 / 60}}};
 constexpr Units<1> rate{{{"1/s", 1}}};
@@ -37,6 +38,7 @@ constexpr Units<4> viscosity{{{"Pa s", 1}, {"mPa s", 1e-3}, {"Pas", 1, false}, {
 std::span<const Unit> Scalar::units() { return {}; }
 std::span<const Unit> Length::units() { return length; }
 std::span<const Unit> Area::units() { return area; }
+std::span<const Unit> Volume::units() { return volume; }
 std::span<const Unit> Duration::units() { return duration; }
 std::span<const Unit> Frequency::units() { return frequency; }
 std::span<const Unit> Rate::units() { return rate; }
@@ -58,7 +60,7 @@ std::span<const Unit> FlowRate::units() { return flow_rate; }
 std::span<const Unit> Viscosity::units() { return viscosity; }
 
 bool is_known_unit(std::string_view symbol) {
-  const std::span<const Unit> all[] = {length,       area,         duration, frequency, rate,         mass,
+  const std::span<const Unit> all[] = {length,       area,         volume, duration, frequency, rate,         mass,
                                        density,      force,        torque,   pressure,  stiffness,    angular_stiffness,
                                        damping,      angle,        speed,    acceleration, area_density, surface_mass,
                                        foundation_modulus, flow_rate, viscosity};

@@ -21,6 +21,7 @@ std::string_view kind_name(Kind kind) {
     case Kind::motion: return "motion";
     case Kind::complications: return "list of complications";
     case Kind::complication: return "complication";
+    case Kind::material: return "material";
   }
   return "component";
 }

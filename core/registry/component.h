@@ -8,7 +8,10 @@
 
 #include "core/base/diagnostic.h"
 #include "core/params/param.h"
+#include "core/registry/channel.h"
 #include "core/registry/command.h"
+#include "core/registry/drawable.h"
+#include "core/registry/event_kind.h"
 
 namespace insula {
 
@@ -27,6 +30,7 @@ enum class Kind {
   motion,       ///< scripted two-hand motion, owned by an exercise
   complications,///< what may go wrong by chance: at most one directly under the scene
   complication, ///< one of them
+  material,     ///< the look of things by name
 };
 std::string_view kind_name(Kind kind);  ///< "force model", "exercise rule", ...
 
@@ -46,10 +50,18 @@ class Component : public ParamSet {
   /// bodies first, children after their parent.
   virtual void prepare(PrepareContext&) {}
 
+  /// At the end of each step, at the start and after a reset: gives its channels and drawables their present values.
+  /// Must not allocate once it has seen its largest state.
+  virtual void publish() {}
+
   /// What it can be asked for while the scene runs.
   virtual std::vector<CommandInfo> commands() const { return {}; }
   /// Does it, between two steps. Returns why not; empty when done. Bad arguments are refused, never clamped.
   virtual std::string run_command(std::string_view, std::string_view) { return "unknown command"; }
+
+  const std::vector<ChannelBase*>& channels() const { return channels_; }      ///< in order of declaration
+  const std::vector<DrawableBase*>& drawables() const { return drawables_; }   ///< in order of declaration
+  const std::vector<EventKind*>& event_kinds() const { return event_kinds_; }  ///< in order of declaration
 
   std::string id;        ///< as written, or the element name with its ordinal when none was given ("contact#1")
   std::string element;   ///< element name
@@ -71,6 +83,14 @@ class Component : public ParamSet {
   /// the text, and the full path of a file parameter is replaced by what the author wrote.
   void error(PrepareContext& context, std::string text) const;
   void error(PrepareContext& context, const ParamBase& param, std::string text) const;
+
+ private:
+  friend class ChannelBase;
+  friend class DrawableBase;
+  friend class EventKind;
+  std::vector<ChannelBase*> channels_;
+  std::vector<DrawableBase*> drawables_;
+  std::vector<EventKind*> event_kinds_;
 };
 
 }  // namespace insula

@@ -19,6 +19,7 @@ std::vector<Kind> usual_parents(Kind kind) {
     case Kind::constraint:
     case Kind::instrument:
     case Kind::exercise:
+    case Kind::material:
     case Kind::complications: return {Kind::scene};
     case Kind::surface:
     case Kind::force_model:
@@ -57,6 +58,12 @@ void Registry::add_info(ComponentInfo info) {
   }
   const std::string element = info.element;
   infos_.emplace(element, std::move(info));
+}
+
+void Registry::add_material(Material material) {
+  for (const Material& other : materials_)
+    if (other.name == material.name) throw std::logic_error("the material \"" + material.name + "\" is already registered");
+  materials_.push_back(std::move(material));
 }
 
 const ComponentInfo* Registry::find(std::string_view element) const {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/registry/component.h"
+#include "core/registry/material.h"
 #ifdef INSULA_PLUGIN_SHARED
 #include "core/registry/abi.h"
 #endif
@@ -36,6 +37,10 @@ class Registry {
   }
   void add_info(ComponentInfo info);
 
+  /// Adds a look that scenes may name. Throws std::logic_error when the name is taken.
+  void add_material(Material material);
+  const std::vector<Material>& materials() const { return materials_; }  ///< in order of registration
+
   const ComponentInfo* find(std::string_view element) const;
   std::vector<const ComponentInfo*> all() const;  ///< by kind, then name
   std::unique_ptr<Component> create(std::string_view element) const;  ///< with defaults in place; null when unknown
@@ -44,6 +49,7 @@ class Registry {
 
  private:
   std::map<std::string, ComponentInfo, std::less<>> infos_;
+  std::vector<Material> materials_;
   std::string current_plugin_ = "core";
 };
 

@@ -59,6 +59,7 @@ std::unique_ptr<Scene> SceneBuilder::build(const std::filesystem::path& file) {
   }
   scene_->content_hash_ = tree_.hash.value();
   prepare_all();
+  join_materials();
   return std::move(scene_);
 }
 

@@ -34,6 +34,9 @@ class SceneBuilder {
   Component* lookup(const ScenePart& part, const std::string& id, bool& lost) const;
   void find_files(Component& component);
 
+  /// Gathers the materials and checks every name of one.
+  void join_materials();
+
   void prepare_all();
   void prepare(Component& component);
   void prepare_tree(Component& component);

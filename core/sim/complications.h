@@ -12,7 +12,7 @@ namespace insula {
 
 class Simulation;
 
-/// `<complication command="bleeding rupture" probability="0.3" from="20 s" to="90 s"/>`: a command of a component
+/// `<complication command="pump fail" probability="0.3" from="20 s" to="90 s"/>`: a command of a component
 /// (Simulation::command "ask") at a time drawn between two.
 class Complication final : public Component {
  public:

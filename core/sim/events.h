@@ -7,7 +7,7 @@
 namespace insula {
 
 struct Event {
-  std::string kind;   ///< "goal", "fault", "strand_cut", "message", "end", "reset", "warning"
+  std::string kind;   ///< "goal", "fault", "message", "end", "reset", "warning", or one that a component declares
   std::string id;     ///< of the component, goal or fault
   std::string text;   ///< for the trainee
   double value = 0;   ///< SI, as the kind says

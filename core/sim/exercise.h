@@ -24,7 +24,7 @@ struct FaultState {
   double last_time = -1;
 };
 
-/// A clock shown to the trainee: how long a temporary clip has been on, how long a vessel has bled.
+/// A clock shown to the trainee: how long something has lasted.
 struct TimerState {
   std::string id, text;
   double limit = 0;       ///< s; 0: none
@@ -51,7 +51,7 @@ class ExerciseLog {
   int add_timer(std::string id, std::string text, double limit_s);
   int add_measure(std::string id, std::string text, std::string unit);
   void goal(int index, double time);
-  /// What was reached is so no more (a clip was taken back). Only while the exercise runs: an end stays.
+  /// What was reached is so no more (what was done was undone). Only while the exercise runs: an end stays.
   void goal_lost(int index, double time);
   void fault(int index, double time, double value);
   void timer(int index, double elapsed_s, bool running);

@@ -5,6 +5,7 @@
 #include "core/mechanics/soft_body.h"
 #include "core/mechanics/surface.h"
 #include "core/registry/registry.h"
+#include "core/scene/material_element.h"
 #include "core/scene/scene.h"
 #include "core/sim/complications.h"
 #include "core/sim/exercise.h"
@@ -12,7 +13,25 @@
 
 namespace insula {
 
+namespace {
+
+void add_materials(Registry& registry) {
+  const auto tissue = [&](const char* name, std::array<double, 4> rgba) { registry.add_material({name, "tissue", rgba, 0.45, 0, 0.2}); };
+  tissue("cortex", {0.62, 0.36, 0.32, 1});
+  tissue("pia", {0.66, 0.40, 0.36, 1});
+  tissue("insula", {0.60, 0.34, 0.30, 1});
+  tissue("dura", {0.70, 0.55, 0.48, 1});
+  tissue("skin", {0.72, 0.48, 0.38, 1});
+  registry.add_material({"bone", "tissue", {0.86, 0.80, 0.66, 1}, 0.6, 0, 0.1});
+  registry.add_material({"drape", "solid", {0.12, 0.30, 0.34, 1}, 0.95, 0, 0});
+  registry.add_material({"steel", "solid", {0.70, 0.70, 0.72, 1}, 0.3, 1, 0});
+  registry.add_material({"polymer", "solid", {0.80, 0.80, 0.78, 1}, 0.5, 0, 0});
+}
+
+}  // namespace
+
 void register_core(Registry& registry) {
+  add_materials(registry);
   register_scene(registry);
   registry.add<SoftBody>("soft_body", Kind::body, "a deformable body on a tetrahedral mesh");
   registry.add<ShellBody>("shell_body", Kind::body, "a thin-walled body on a triangle surface, such as an artery");
@@ -25,6 +44,7 @@ void register_core(Registry& registry) {
   registry.add<Exercise>("exercise", Kind::exercise, "goals, faults and motions of a training exercise");
   registry.add<Complications>("complications", Kind::complications, "what may go wrong by chance, drawn from a seed that the report states");
   registry.add<Complication>("complication", Kind::complication, "a command that comes by chance, at a time drawn between two");
+  registry.add<MaterialElement>("material", Kind::material, "the look of surfaces and drawables by name");
   registry.add<MotionEntry>("motion", Kind::motion, "a scripted motion of both hands");
 }
 

@@ -10,7 +10,7 @@ class SolverSettings final : public Component {
   static constexpr std::string_view kind_name = "settings";
   Param<int> max_sweeps{this, {.name = "max_sweeps", .fallback = "100", .min = "1", .max = "10000", .doc = "most Gauss-Seidel sweeps a step"}};
   Param<Length> tolerance{this, {.name = "tolerance", .fallback = "1e-9 m", .min = "1e-15 m", .max = "1e-3 m", .doc = "a sweep that moves no row by more than this is the last"}};
-  Param<bool> conjugate{this, {.name = "conjugate", .fallback = "false", .doc = "whether sweeps are joined by conjugate directions: fewer of them where clips press on thin walls"}};
+  Param<bool> conjugate{this, {.name = "conjugate", .fallback = "false", .doc = "whether sweeps are joined by conjugate directions: fewer of them where jaws press on thin walls"}};
   Param<int> newton{this, {.name = "newton", .fallback = "0", .min = "0", .max = "100", .doc = "most Newton steps a step, made where sweeps would not come to the tolerance; 0: sweeps alone"}};
 };
 

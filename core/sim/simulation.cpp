@@ -34,14 +34,8 @@ constexpr int max_passes = 3;  ///< of defect correction
 
 void StepReport::clear() {
   contacts.clear();
-  strands.clear();
   tools.clear();
-  vessels.clear();
-  bleeding.clear();
-  clips.clear();
-  heart_phase = 0;
   events.clear();
-  strands_total = strands_left = 0;
   rows = 0;
   solve = {};
   solver = {};
@@ -162,6 +156,11 @@ void Simulation::remember_solution() {
   std::sort(remembered_.begin(), remembered_.end(), [](const Remembered& a, const Remembered& b) { return a.id < b.id; });
 }
 
+void Simulation::publish() {
+  for (Component* c : publishers_) c->publish();
+  channel_table_.read(report_.channels);
+}
+
 void Simulation::make_report() {
   StepReport& r = report_;
   r.time = context_.time;
@@ -178,7 +177,7 @@ void Simulation::make_report() {
     r.solver.factors += s.factors;
   }
   for (Constraint* c : constraints_) c->report(r);
-  for (const Body* b : bodies_) b->report(r);
+  publish();
   for (Instrument* i : instruments_) {
     if (!i->active()) continue;
     ToolReport t;

@@ -17,6 +17,7 @@
 #include "core/mechanics/instrument.h"
 #include "core/mechanics/surface.h"
 #include "core/scene/scene.h"
+#include "core/sim/channel_table.h"
 #include "core/sim/complications.h"
 #include "core/sim/defect_correction.h"
 #include "core/sim/exercise.h"
@@ -38,7 +39,7 @@ class Simulation {
   void step();
   /// What a viewer, a script or a complication asks for between two steps:
   ///   exchange  "right applier"               the hand lays down its tool and takes that one
-  ///   ask       "bleeding rupture", "artery_pressure set_systolic 160"   a command of a component (Component::commands)
+  ///   ask       "pump fail", "artery_pressure set_systolic 160"   a command of a component (Component::commands)
   ///   message   "text"                        said to the trainee
   /// Returns why it was not done; empty when done. What was done, and what was refused, becomes an event.
   std::string command(std::string_view verb, std::string_view argument);
@@ -67,6 +68,16 @@ class Simulation {
   const std::vector<Instrument*>& instruments() const { return instruments_; }
   const std::vector<Surface*>& surfaces() const { return surfaces_; }
   const std::vector<Constraint*>& constraints() const { return constraints_; }
+  /// All channels of the scene; their values of the last step are in report().channels.
+  const ChannelTable& channels() const { return channel_table_; }
+  /// The value of a scalar channel as published last, SI. Throws std::out_of_range when the scene has none of that id.
+  double channel(std::string_view id) const;
+  /// All drawables of the scene in document order, with the component of each.
+  struct DrawableEntry {
+    const Component* component;
+    const DrawableBase* drawable;
+  };
+  const std::vector<DrawableEntry>& drawables() const { return drawables_; }
   Complications* complications() const { return complications_; }         ///< null when the scene has none
   Exercise* exercise() const { return exercise_; }                        ///< null when the scene has none
   const ViewSettings* view() const { return view_; }
@@ -86,6 +97,8 @@ class Simulation {
   void settle(Diagnostics& diagnostics);
   void warm_start();
   void remember_solution();
+  void collect_step_data();
+  void publish();
   void make_report();
 
   std::unique_ptr<Scene> scene_;
@@ -118,6 +131,9 @@ class Simulation {
   double settle_time_ = 0;
   std::vector<std::pair<Body*, int>> parts_;  ///< of the bodies' compliance, in this step
   StepReport report_;
+  ChannelTable channel_table_;
+  std::vector<DrawableEntry> drawables_;
+  std::vector<Component*> publishers_;  ///< what declares channels or drawables, document order
 };
 
 struct SimulationResult {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <stdexcept>
 
 #include "core/scene/loader.h"
 #include "core/sim/simulation.h"
@@ -37,6 +38,7 @@ Simulation::Simulation(std::unique_ptr<Scene> scene, Diagnostics& diagnostics, i
   if (diagnostics.ok()) {
     for (Constraint* c : constraints_) c->connect(prepare, *this);
     for (Instrument* i : instruments_) i->join(prepare, *this);
+    collect_step_data();
     if (auto e = scene_->all<Exercise>(); !e.empty()) {
       exercise_ = e.front();
       exercise_->connect(prepare, *this);
@@ -55,6 +57,22 @@ Simulation::Simulation(std::unique_ptr<Scene> scene, Diagnostics& diagnostics, i
   context_.gravity = scene_->gravity();
   context_.events = &sink_;
   if (diagnostics.ok() && settle_time_ > 0) settle(diagnostics);
+  if (diagnostics.ok()) publish();
+}
+
+void Simulation::collect_step_data() {
+  channel_table_.collect(scene_->components());
+  report_.channel_table = &channel_table_;
+  for (Component* c : scene_->components()) {
+    for (const DrawableBase* d : c->drawables()) drawables_.push_back({c, d});
+    if (!c->channels().empty() || !c->drawables().empty()) publishers_.push_back(c);
+  }
+}
+
+double Simulation::channel(std::string_view id) const {
+  const ChannelEntry* e = channel_table_.find(id);
+  if (!e) throw std::out_of_range("the scene has no channel " + std::string(id));
+  return *e->channel->values(e->item);
 }
 
 Simulation::~Simulation() = default;
@@ -92,6 +110,8 @@ void Simulation::reset() {
     Diagnostics none;  // the same as at the start, where they were reported
     settle(none);
   }
+  for (const ChannelEntry& e : channel_table_.entries()) const_cast<ChannelBase*>(e.channel)->reset();
+  publish();
 }
 
 double Simulation::energy() const {

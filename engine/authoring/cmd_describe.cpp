@@ -11,6 +11,37 @@
 
 namespace insula {
 
+namespace {
+
+struct Line {
+  std::string name, what, doc;
+};
+
+void table(std::ostream& out, const char* heading, const std::vector<Line>& lines) {
+  if (lines.empty()) return;
+  std::size_t name = 0, what = 0;
+  for (const Line& l : lines) {
+    name = std::max(name, l.name.size());
+    what = std::max(what, l.what.size());
+  }
+  out << '\n' << heading << '\n';
+  for (const Line& l : lines) out << fmt::format("  {:<{}}  {:<{}}  {}\n", l.name, name, l.what, what, l.doc);
+}
+
+void describe_step_data(std::ostream& out, const Component& component) {
+  std::vector<Line> lines;
+  for (const ChannelBase* c : component.channels()) lines.push_back({channel_name(*c), channel_text(*c), std::string(c->spec().doc)});
+  table(out, "channels", lines);
+  lines.clear();
+  for (const DrawableBase* d : component.drawables()) lines.push_back({std::string(d->spec().name), drawable_text(*d), std::string(d->spec().doc)});
+  table(out, "drawables", lines);
+  lines.clear();
+  for (const EventKind* e : component.event_kinds()) lines.push_back({e->name(), std::string(e->spec().value), std::string(e->spec().doc)});
+  table(out, "events", lines);
+}
+
+}  // namespace
+
 int cmd_describe(const CommandContext& context, const std::string& element) {
   const auto* info = context.registry.find(element);
   if (!info) {
@@ -45,6 +76,7 @@ int cmd_describe(const CommandContext& context, const std::string& element) {
     if (const auto allowed = allowed_text(*p); !allowed.empty()) doc += " [" + allowed + "]";
     out << fmt::format("  {:<{}}  {:<{}}  {:<{}}  {}\n", p->name(), name_width, p->type_name(), type_width, default_text(*p), default_width, doc);
   }
+  describe_step_data(out, *component);
   return 0;
 }
 

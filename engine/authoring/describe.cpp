@@ -25,6 +25,24 @@ std::string default_text(const ParamBase& param) {
   return text.empty() ? "(none)" : text;
 }
 
+std::string channel_name(const ChannelBase& channel) {
+  return (channel.single() ? "" : "<name>.") + std::string(channel.spec().name);
+}
+
+std::string channel_text(const ChannelBase& channel) {
+  std::string out(channel.quantity().name);
+  if (!channel.display_unit().empty()) out += " in " + std::string(channel.display_unit());
+  const std::string min(channel.spec().min), max(channel.spec().max);
+  if (!min.empty() && !max.empty()) out += ", " + min + " to " + max;
+  else if (!min.empty()) out += ", at least " + min;
+  else if (!max.empty()) out += ", at most " + max;
+  return channel.size() == 3 ? out + ", three numbers" : out;
+}
+
+std::string drawable_text(const DrawableBase& drawable) {
+  return std::string(drawable_kind_name(drawable.kind())) + " of " + drawable.material();
+}
+
 std::string units_text(const ParamBase& param) { return unit_list(param.units()); }
 
 std::vector<const ComponentInfo*> children_of_kind(const Registry& registry, Kind parent) {

@@ -16,6 +16,12 @@ std::string default_text(const ParamBase& param);
 std::string place_text(const Registry& registry, const ComponentInfo& info);
 /// Elements that may stand in a component of that kind, by kind and name.
 std::vector<const ComponentInfo*> children_of_kind(const Registry& registry, Kind parent);
+/// Name of a channel as declared: "<name>.flow" stands for one of each name of a group.
+std::string channel_name(const ChannelBase& channel);
+/// "pressure in mmHg, 0 mmHg to 300 mmHg", "force in N, three numbers".
+std::string channel_text(const ChannelBase& channel);
+/// "polylines of arachnoid".
+std::string drawable_text(const DrawableBase& drawable);
 /// The units as an author may write them, "Pa, kPa, MPa, mmHg", or empty.
 std::string units_text(const ParamBase& param);
 

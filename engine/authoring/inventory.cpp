@@ -65,12 +65,10 @@ class Taker {
     for (Support* s : simulation_.scene().all<Support>()) support(*s);
     for (const ForceModel* f : simulation_.scene().all<ForceModel>())
       if (!f->internal()) add("anchor", *f, "holds " + f->parent->id, lines_of(*dynamic_cast<const Body*>(f->parent)));
-    for (const Constraint* c : simulation_.constraints()) strands(*c);
+    for (const auto& [component, drawable] : simulation_.drawables()) this->drawable(*component, *drawable);
     pairs();
     for (const Constraint* c : simulation_.constraints()) {
-      StepReport report;
-      c->report(report);
-      if (report.strands.empty() && !list_between(*c)) add("constraint", *c, joins(*c), {});
+      if (!list_between(*c)) add("constraint", *c, joins(*c), {});
     }
     for (const Body* b : simulation_.bodies())
       if (const auto* rigid = dynamic_cast<const RigidBody*>(b)) tool(*rigid);
@@ -170,21 +168,32 @@ class Taker {
     InventoryItem& item = add("anchor", s, fmt::format("holds {} of {} nodes of {}, within {}", points.size(), body->nodes(), body->id, box_text(box_of(points))), {});
     item.points = thinned(points, 1, max_points);
   }
-  void strands(const Constraint& c) {
-    StepReport report;
-    c.report(report);
-    if (report.strands.empty()) return;
-    std::vector<Vec3> lines;
-    double least = 1e9, most = 0, sum = 0;
-    for (const StrandState& s : report.strands) {
-      const double length = (s.a - s.b).norm();
-      least = std::min(least, length);
-      most = std::max(most, length);
-      sum += length;
-      lines.push_back(s.a);
-      lines.push_back(s.b);
-    }
-    add("strands", c, fmt::format("{} strands of {} to {} mm, {} mm on average; {}", report.strands.size(), mm(least), mm(most), mm(sum / double(report.strands.size())), joins(c)), thinned(lines, 2, max_lines));
+  void drawable(const Component& c, const DrawableBase& d) {
+    const std::vector<float>& data = d.data();
+    const auto point = [&](std::size_t i) { return Vec3(data[i], data[i + 1], data[i + 2]); };
+    std::vector<Vec3> lines, points;
+    double least = infinite, most = 0, sum = 0;
+    const std::size_t per_line = 4 * std::size_t(d.spec().points_per_line);
+    if (d.kind() == DrawableKind::polylines)
+      for (std::size_t at = 0; at + per_line <= data.size(); at += per_line) {
+        double length = 0;
+        for (std::size_t i = at; i + 4 < at + per_line; i += 4) {
+          lines.push_back(point(i));
+          lines.push_back(point(i + 4));
+          length += (point(i + 4) - point(i)).norm();
+        }
+        least = std::min(least, length);
+        most = std::max(most, length);
+        sum += length;
+      }
+    if (d.kind() == DrawableKind::points)
+      for (std::size_t i = 0; i + 4 <= data.size(); i += 4) points.push_back(point(i));
+    std::string text = fmt::format("{} {}, {}", d.count(), drawable_kind_name(d.kind()), d.spec().doc);
+    if (!lines.empty()) text += fmt::format("; {} to {} mm long, {} mm on average", mm(least), mm(most), mm(sum / d.count()));
+    InventoryItem& item = add("drawable", c, std::move(text), thinned(lines, 2, max_lines));
+    item.name = c.id + "." + std::string(d.spec().name);
+    item.points = thinned(points, 1, max_points);
+    item.values.clear();
   }
   static const RefList<Body>* list_between(const Constraint& c) { return dynamic_cast<const RefList<Body>*>(c.find_param("between")); }
   static std::string joins(const Constraint& c) {

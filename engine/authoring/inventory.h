@@ -10,7 +10,7 @@
 namespace insula {
 
 struct InventoryItem {
-  std::string group;    ///< "body", "surface", "region", "anchor", "strands", "contact pair", "constraint", "tool"
+  std::string group;    ///< "body", "surface", "region", "anchor", "drawable", "contact pair", "constraint", "tool"
   std::string name;     ///< id; of a pair "a - b", of a region "artery: neck"
   std::string element;  ///< element of the scene file
   std::string size;     ///< measured, with units: "532 nodes, 61.2 x 40.0 x 33.1 mm, 54.1 g"

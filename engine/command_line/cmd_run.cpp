@@ -56,8 +56,8 @@ int cmd_run(const CommandContext& context, const RunOptions& options) {
       const int percent = int(100 * (k + 1) / steps);
       if (percent / 5 != shown / 5 || shown < 0) {
         shown = percent;
-        fmt::print(context.out, "{:3d} %  {:7.2f} s  {} rows, {} strands left\n", percent, simulation.time(), simulation.report().rows,
-                   simulation.report().strands_left);
+        fmt::print(context.out, "{:3d} %  {:7.2f} s  {} rows, {} contacts\n", percent, simulation.time(), simulation.report().rows,
+                   simulation.report().contacts.size());
         context.out.flush();
       }
     }

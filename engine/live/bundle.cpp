@@ -11,6 +11,8 @@
 #include "core/base/input_error.h"
 #include "core/mechanics/shell_body.h"
 #include "core/sim/settings.h"
+#include "engine/bundle_step_data.h"
+#include "engine/bundle_writer.h"
 #include "engine/live/frame.h"
 #include "engine/authoring/inventory.h"
 
@@ -20,74 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr double strand_radius_m = 0.00015;
-
 Json list(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
-
-class BundleWriter {
- public:
-  explicit BundleWriter(const fs::path& dir) : dir_(dir) {}
-
-  /// positions, indices and counts of a mesh; `name` begins its files' names.
-  void mesh(Json& to, const std::string& name, const std::vector<Vec3>& vertices, const std::vector<std::array<int, 3>>& triangles) const {
-    to["vertices"] = vertices.size();
-    to["triangles"] = triangles.size();
-    to["positions"] = points(name + "_positions.bin", vertices);
-    std::vector<std::uint32_t> flat;
-    flat.reserve(3 * triangles.size());
-    for (const auto& t : triangles)
-      for (int i : t) flat.push_back(std::uint32_t(i));
-    to["indices"] = file(name + "_indices.bin", flat);
-  }
-
-  std::string points(const std::string& name, const std::vector<Vec3>& values) const {
-    std::vector<float> flat;
-    flat.reserve(3 * values.size());
-    for (const Vec3& v : values)
-      for (int k = 0; k < 3; ++k) flat.push_back(float(v[k]));
-    return file(name, flat);
-  }
-
-  /// Four nodes and weights a vertex; vertices with fewer nodes repeat the first with weight 0.
-  void skin(Json& to, const std::string& name, const Surface& surface) const {
-    std::vector<std::uint32_t> nodes;
-    std::vector<float> weights;
-    for (const MaterialPoint& p : surface.points())
-      for (int k = 0; k < 4; ++k) {
-        nodes.push_back(std::uint32_t(p.node[std::size_t(k < p.count ? k : 0)]));
-        weights.push_back(k < p.count ? float(p.weight[std::size_t(k)]) : 0.f);
-      }
-    to["skin_nodes"] = file(name + "_nodes.bin", nodes);
-    to["skin_weights"] = file(name + "_weights.bin", weights);
-  }
-
-  /// A picture beside a tool's URDF; false when it has none.
-  bool picture(const fs::path& urdf, const std::string& name) const {
-    const fs::path from = urdf.parent_path() / "picture.svg";
-    std::error_code error;
-    if (!fs::is_regular_file(from, error)) return false;
-    fs::copy_file(from, dir_ / name, fs::copy_options::overwrite_existing, error);
-    if (error) throw InputError((dir_ / name).string() + ": cannot be written: " + error.message());
-    return true;
-  }
-
-  template <class T>
-  std::string file(const std::string& name, const std::vector<T>& values) const {
-    static_assert(sizeof(T) == 4);
-    std::ofstream out(dir_ / name, std::ios::binary | std::ios::trunc);
-    for (const T& value : values) {
-      auto bits = std::bit_cast<std::uint32_t>(value);
-      if constexpr (std::endian::native == std::endian::big) bits = __builtin_bswap32(bits);
-      out.write(reinterpret_cast<const char*>(&bits), 4);
-    }
-    out.close();
-    if (!out) throw InputError((dir_ / name).string() + ": cannot be written");
-    return name;
-  }
-
- private:
-  fs::path dir_;
-};
 
 /// The scene's view, or one that holds all its surfaces.
 Json view_of(const Simulation& simulation) {
@@ -111,13 +46,6 @@ Json exercise_of(const Exercise& exercise) {
   return {{"id", exercise.id}, {"title", exercise.title()}, {"text", exercise.text()}, {"goals", goals}, {"faults", faults}, {"timers", timers}, {"measures", measures}};
 }
 
-/// What the constraints know before the first step has reported anything: strands, the bleeding's field.
-StepReport first_report(const Simulation& simulation) {
-  StepReport report;
-  for (const Constraint* c : simulation.constraints()) c->report(report);
-  return report;
-}
-
 /// The region of each vertex: that of the wall's vertex it follows most closely at rest.
 std::vector<std::uint32_t> vertex_regions(const Surface& surface, const ShellBody& shell) {
   std::vector<std::uint32_t> out;
@@ -138,18 +66,21 @@ std::vector<std::uint32_t> vertex_regions(const Surface& surface, const ShellBod
   return out;
 }
 
-/// Centrelines, neck and bleb of a vessel.
-void add_vessel(Json& to, const VesselModel& vessel) {
-  to["regions"] = vessel.regions;
-  to["centrelines"] = Json::array();
-  for (const auto& c : vessel.centrelines) {
-    Json points = Json::array();
-    for (const Vec3& p : c.points) points.push_back(list(p));
-    to["centrelines"].push_back({{"name", c.name}, {"region", c.region}, {"from", c.from}, {"to", c.to}, {"points", points}, {"radius", c.radius}});
+/// Regions of a wall, how thick it is in each, and the channels that its picture follows.
+void add_wall(Json& to, const ShellBody& shell, const ChannelTable& channels) {
+  const std::vector<std::string>& regions = shell.model().regions;
+  to["regions"] = regions;
+  to["region_thickness_m"] = Json::object();
+  for (std::size_t r = 0; r < regions.size(); ++r)
+    for (const ForceModel* f : shell.children_of<ForceModel>())
+      if (const double thickness = f->wall_thickness(int(r)); thickness > 0) to["region_thickness_m"][regions[r]] = thickness;
+  Json shades = Json::object();
+  for (const ChannelEntry& e : channels.entries()) {
+    if (e.channel->subject() != &shell) continue;
+    if (e.channel->spec().role == Role::pulse) to["pulse_channel"] = e.id;
+    if (e.channel->spec().role == Role::shade && shell.region(e.group()) >= 0) shades[e.group()] = e.id;
   }
-  if (vessel.neck_diameter > 0)
-    to["neck"] = {{"centre", list(vessel.neck_centre)}, {"normal", list(vessel.neck_normal)}, {"diameter", vessel.neck_diameter}};
-  if (vessel.bleb_radius > 0) to["bleb"] = {{"centre", list(vessel.bleb_centre)}, {"radius", vessel.bleb_radius}};
+  to["region_value"] = {{"channel_of_region", shades}};
 }
 
 std::string title_of(const std::string& name) {
@@ -158,25 +89,16 @@ std::string title_of(const std::string& name) {
   return out;
 }
 
-Json clip_json(const ToolModel& model) {
-  const ClipData& c = *model.clip;
-  return {{"kind", c.kind},
-          {"shape", c.shape},
-          {"temporary", c.kind.find("temporary") != std::string::npos},
-          {"blade_length_m", c.blade_length},
-          {"closing_force_N", c.closing_force},
-          {"opening_max_rad", model.opening_max}};
-}
-
 Json tool_json(const BundleWriter& writer, const RigidBody& body, std::size_t index) {
   const auto* instrument = dynamic_cast<const Instrument*>(&body);
   const auto* file = dynamic_cast<const Param<File>*>(body.find_param("model"));
-  // A clip keeps its model to itself; what it was read from is there for everybody.
-  const ToolModel model = instrument ? instrument->tool() : file && !file->empty() ? read_tool((*file)()) : ToolModel();
+  const ToolModel& model = body.tool();
   const std::string name = "t" + std::to_string(index);
   Json out = {{"index", index}, {"id", body.id}, {"kind", body.element}, {"hand", instrument ? instrument->hand() : "none"}, {"title", title_of(model.name)}};
   if (file && !file->empty() && writer.picture((*file)(), name + "_picture.svg")) out["picture"] = name + "_picture.svg";
-  if (model.clip) out["clip"] = clip_json(model);
+  out["properties"] = Json::array();
+  for (const BodyProperty& p : body.properties()) out["properties"].push_back({{"name", p.name}, {"value", p.value}, {"unit", p.unit}, {"text", p.text}});
+  out["tags"] = body.tags();
   out["hinges"] = Json::array();
   for (const Hinge& h : model.hinges) out["hinges"].push_back({{"origin", list(h.origin)}, {"axis", list(h.axis)}, {"multiplier", h.multiplier}});
   out["parts"] = Json::array();
@@ -229,7 +151,7 @@ void write_bundle(const Simulation& simulation, const fs::path& dir, std::int64_
   if (error) throw InputError(dir.string() + ": cannot be created: " + error.message());
   const BundleWriter writer(dir);
   Json json;
-  json["version"] = 2;
+  json["version"] = 3;
   json["session"] = session;
   const Exercise* exercise = simulation.exercise();
   json["title"] = !simulation.scene().title().empty() ? simulation.scene().title() : exercise ? exercise->title() : simulation.scene().file().stem().string();
@@ -243,7 +165,7 @@ void write_bundle(const Simulation& simulation, const fs::path& dir, std::int64_
     Json entry = {{"index", b}, {"id", bodies[b]->id}, {"nodes", bodies[b]->nodes()},
                   {"rest", writer.points("body" + std::to_string(b) + "_rest.bin", bodies[b]->rest_nodes())},
                   {"surfaces", Json::array()}};
-    if (const auto* shell = dynamic_cast<const ShellBody*>(bodies[b])) add_vessel(entry, shell->model());
+    if (const auto* shell = dynamic_cast<const ShellBody*>(bodies[b])) add_wall(entry, *shell, simulation.channels());
     json["bodies"].push_back(entry);
   }
   json["static"] = Json::array();
@@ -270,12 +192,9 @@ void write_bundle(const Simulation& simulation, const fs::path& dir, std::int64_
   for (std::size_t i = 0; i < tools.size(); ++i) json["tools"].push_back(tool_json(writer, *tools[i], i));
   json["hands"] = hands_json(simulation);
   json["commands"] = commands_json(simulation.scene());
-  const StepReport start = first_report(simulation);
-  json["strands"] = {{"count", start.strands.size()}, {"radius_m", strand_radius_m}};
-  if (!start.bleeding.empty()) {
-    const BleedingState& b = start.bleeding.front();
-    json["bleeding"] = {{"origin", list(b.origin)}, {"up", list(b.up)}, {"radius_m", b.radius}};
-  }
+  json["channels"] = channels_json(simulation.channels());
+  json["drawables"] = drawables_json(writer, simulation);
+  json["materials"] = materials_json(simulation.scene().materials());
   if (exercise && !with_inventory) json["exercise"] = exercise_of(*exercise);
   if (with_inventory) {
     write_inventory(inventory(simulation), dir / "inventory.json");

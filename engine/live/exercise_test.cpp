@@ -12,6 +12,7 @@
 
 #include "core/registry/registry.h"
 #include "engine/live/headless.h"
+#include "plugins/strand_springs/strand_set.h"
 
 namespace insula {
 namespace {
@@ -80,8 +81,8 @@ Outcome perform(const std::string& id) {
       out.cut += e.kind == "strand_cut";
     }
   }
-  out.strands = s.report().strands_total;
-  out.left = s.report().strands_left;
+  out.strands = Strands(s).total();
+  out.left = Strands(s).left();
   const ExerciseLog& log = s.exercise()->log();
   out.state = log.state();
   for (const FaultState& f : log.faults()) out.faults[f.id] = f.count;

@@ -24,7 +24,7 @@ void put(std::vector<Row>& to, std::size_t i, const Vec3& v) {
 
 constexpr std::int8_t on_tray = 0, held = 1, free_in_field = 2;
 
-void fill_tool(const StepReport& r, const RigidBody& body, insula_lcm::render_tool_t& to) {
+void fill_tool(const RigidBody& body, insula_lcm::render_tool_t& to) {
   const Pose pose = body.link_pose(0);
   put(to.p_m, pose.p);
   to.q[0] = pose.q.w();
@@ -43,11 +43,24 @@ void fill_tool(const StepReport& r, const RigidBody& body, insula_lcm::render_to
     to.activity = float(tool->activity());
     return;
   }
-  for (const ClipState& c : r.clips) {
-    if (c.clip != &body) continue;
-    to.state = c.on_tray ? on_tray : c.holder ? held : free_in_field;
-    to.opening_rad = float(c.opening);
-    if (const auto* holder = dynamic_cast<const Instrument*>(c.holder)) to.hand = std::int8_t(holder->hand_index());
+  to.opening_rad = float(body.opening());
+  if (body.active() && !body.held_by()) to.state = free_in_field;
+  if (const auto* holder = dynamic_cast<const Instrument*>(body.held_by())) to.hand = std::int8_t(holder->hand_index());
+}
+
+void fill_step_data(const Simulation& simulation, insula_lcm::render_frame_t& f) {
+  const std::vector<double>& values = simulation.report().channels;
+  f.channels = std::int32_t(values.size());
+  f.channel.resize(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) f.channel[i] = float(values[i]);
+  const auto& drawables = simulation.drawables();
+  f.drawables = std::int32_t(drawables.size());
+  f.drawable.resize(drawables.size());
+  for (std::size_t i = 0; i < drawables.size(); ++i) {
+    const std::vector<float>& data = drawables[i].drawable->data();
+    f.drawable[i].index = std::int32_t(i);
+    f.drawable[i].floats = std::int32_t(data.size());
+    f.drawable[i].data.assign(data.begin(), data.end());
   }
 }
 
@@ -93,24 +106,14 @@ void fill_frame(const Simulation& simulation, insula_lcm::render_frame_t& f) {
       f.body_force_N[b] = std::max(f.body_force_N[b], sum.norm());
     }
   }
-  f.strands = std::int32_t(r.strands.size());
-  f.strand_points = 2 * f.strands;
-  f.strand_x_m.resize(2 * r.strands.size());
-  f.strand_integrity.resize(r.strands.size());
-  f.strand_tension_N.resize(r.strands.size());
-  for (std::size_t i = 0; i < r.strands.size(); ++i) {
-    put(f.strand_x_m, 2 * i, r.strands[i].a);
-    put(f.strand_x_m, 2 * i + 1, r.strands[i].b);
-    f.strand_integrity[i] = float(r.strands[i].integrity);
-    f.strand_tension_N[i] = float(r.strands[i].tension);
-  }
+  fill_step_data(simulation, f);
   const auto tools = picture_tools(simulation);
   f.tools = std::int8_t(tools.size());
   f.tool.resize(tools.size());
   for (std::size_t i = 0; i < tools.size(); ++i) {
     f.tool[i] = insula_lcm::render_tool_t{};
     f.tool[i].index = std::int32_t(i);
-    fill_tool(r, *tools[i], f.tool[i]);
+    fill_tool(*tools[i], f.tool[i]);
   }
   const std::size_t contacts = std::min(max_contacts, r.contacts.size());
   f.contacts = std::int32_t(contacts);

@@ -12,7 +12,7 @@ class DeformableBody;
 /// The bodies of frames and bundles: deformable bodies in document order; a body's place here is its `index` there.
 std::vector<const DeformableBody*> picture_bodies(const Simulation& simulation);
 
-/// The tools of frames and bundles: instruments in document order, then all other rigid bodies (clips) in document order.
+/// The tools of frames and bundles: instruments in document order, then all other rigid bodies in document order.
 std::vector<const RigidBody*> picture_tools(const Simulation& simulation);
 
 /// Fills a frame from the simulation's last step; keeps the capacity of its vectors. Header fields are the caller's.

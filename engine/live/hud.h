@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What stands beside the picture: goals, faults, clocks, figures, vessels, blood, clips and who holds what.
+// What stands beside the picture: goals, faults, clocks, figures and who holds what.
 #pragma once
 #include <string>
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The state beside the picture: keys, units, and a frame that stays small enough for one message.
+// The state beside the picture: keys, and a frame that stays small enough for one message.
 #include "engine/live/hud.h"
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/bus/codec.h"
@@ -15,37 +16,29 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Reports a vessel, a bleeding and a heart; the clip is no body of the scene.
+/// Publishes a channel in all ways and a drawable of as many lines as wanted.
 class Patient final : public Constraint {
  public:
-  void connect(PrepareContext&, Simulation&) override {}
+  Channel<Pressure> pressure{this, {.name = "pressure", .doc = "for tests", .display = "mmHg"}};
+  Channel<Vec<Force>> pull{this, {.name = "pull", .doc = "for tests"}};
+  Channel<Scalar> silent{this, {.name = "silent", .doc = "never known"}};
+  ChannelGroup<FlowRate> flow{this, {.name = "flow", .doc = "for tests"}};
+  Polylines lines{this, {.name = "lines", .doc = "for tests", .material = "steel"}};
+  Plane level{this, {.name = "level", .doc = "for tests", .material = "steel"}};
+  void connect(PrepareContext&, Simulation&) override { flow.declare({"a", "b"}); }
   void build(const StepContext&, ConstraintBuilder&) override {}
-  void finish(const StepContext&, const ConstraintSolution&) override {}
-  void reset() override {}
-  void append_state(std::vector<double>&) const override {}
-  void report(StepReport& r) const override {
-    for (int i = 0; i < vessels; ++i) r.vessels.push_back({"superior", 13332.2387415, 1e-6, 2e-6, 0.25, 0.125});
-    for (int i = 0; i < clips; ++i) {
-      ClipState c;
-      c.on_tray = false;
-      c.temporary = true;
-      c.opening = 0.12345678;
-      c.force = 1.5;
-      c.applications = 2;
-      r.clips.push_back(c);
+  void publish() override {
+    pressure.set(13332.2387415);
+    pull.set(Vec3(1, 2, 3));
+    flow.set(1, 2e-6);
+    lines.resize(std::size_t(count));
+    for (std::size_t i = 0; i < std::size_t(count); ++i) {
+      lines.set(i, 0, Vec3(0.1, 0.2, 0.3), 1);
+      lines.set(i, 1, Vec3(0.4, 0.5, 0.6), 0.5);
     }
-    BleedingState b;
-    b.open = true;
-    b.rate = 1e-6;
-    b.lost = 3.25e-6;
-    b.height = 0.004;
-    b.origin = Vec3(0.01, 0.02, 0.03);
-    b.radius = 0.015;
-    b.since = 0;
-    r.bleeding.push_back(b);
-    r.heart_phase = 0.5;
+    level.set(Vec3(0, 0, 0.01), Vec3::UnitZ(), 0.02, 0.7);
   }
-  int vessels = 1, clips = 1;
+  int count = 2;
 };
 class Clocks final : public ExerciseRule {
  public:
@@ -71,33 +64,12 @@ Registry registry() {
   return r;
 }
 
-TEST(Hud, SaysItInTheUnitsOfTheClinic) {
+TEST(Hud, TellsOfTheExercise) {
   const Registry r = registry();
   auto loaded = load_simulation_text(R"(<scene time_step="10 ms"><patient/><exercise id="e" title="E"><clocks/></exercise></scene>)", "/s.xml", r, 1);
   ASSERT_TRUE(loaded.simulation) << loaded.diagnostics.format();
   loaded.simulation->step();
   const Json j = Json::parse(hud_json(*loaded.simulation));
-  const Json& v = j.at("vessels").at(0);
-  EXPECT_EQ(v.at("id"), "superior");
-  EXPECT_EQ(v.at("pressure_mmHg"), 100);
-  EXPECT_EQ(v.at("flow_mL_min"), 60);
-  EXPECT_EQ(v.at("flow_percent"), 50);
-  EXPECT_EQ(v.at("lumen_percent"), 25);
-  EXPECT_EQ(v.at("dye"), 0.125);
-  const Json& b = j.at("blood");
-  EXPECT_EQ(b.at("open"), true);
-  EXPECT_EQ(b.at("rate_mL_min"), 60);
-  EXPECT_EQ(b.at("lost_mL"), 3.25);
-  EXPECT_EQ(b.at("height_m"), 0.004);
-  EXPECT_EQ(b.at("origin"), Json({0.01, 0.02, 0.03}));
-  EXPECT_EQ(b.at("up"), Json({0, 0, 1}));
-  EXPECT_EQ(b.at("since_s"), 0.01);
-  const Json& c = j.at("clips").at(0);
-  EXPECT_EQ(c.at("state"), "free");
-  EXPECT_TRUE(c.at("holder").is_null());
-  EXPECT_EQ(c.at("opening_rad"), 0.1235);
-  EXPECT_EQ(c.at("applications"), 2);
-  EXPECT_EQ(j.at("heart_phase"), 0.5);
   EXPECT_EQ(j.at("timers").at(0).at("elapsed_s"), 0.02);
   EXPECT_EQ(j.at("timers").at(0).at("limit_s"), 180);
   EXPECT_EQ(j.at("timers").at(0).at("running"), true);
@@ -113,9 +85,30 @@ TEST(Hud, HasTheSameKeysWithoutAnExercise) {
   ASSERT_TRUE(loaded.simulation);
   loaded.simulation->step();
   const Json j = Json::parse(hud_json(*loaded.simulation));
-  for (const char* key : {"goals", "faults", "timers", "measures", "vessels", "clips", "hands"}) EXPECT_TRUE(j.at(key).is_array()) << key;
-  for (const char* key : {"message", "state", "elapsed_s", "strands_left", "strands_total", "heart_phase"}) EXPECT_TRUE(j.contains(key)) << key;
-  EXPECT_FALSE(j.contains("blood"));
+  for (const char* key : {"goals", "faults", "timers", "measures", "hands"}) EXPECT_TRUE(j.at(key).is_array()) << key;
+  for (const char* key : {"message", "state", "elapsed_s"}) EXPECT_TRUE(j.contains(key)) << key;
+  EXPECT_EQ(j.size(), 8u);
+}
+
+TEST(Frame, CarriesChannelsAndDrawables) {
+  const Registry r = registry();
+  auto loaded = load_simulation_text(R"(<scene><patient id="p"/></scene>)", "/s.xml", r, 1);
+  ASSERT_TRUE(loaded.simulation) << loaded.diagnostics.format();
+  loaded.simulation->step();
+  insula_lcm::render_frame_t f{};
+  fill_frame(*loaded.simulation, f);
+  ASSERT_EQ(f.channels, 7);
+  EXPECT_EQ(f.channel[0], 13332.2387415f);
+  for (int k = 0; k < 3; ++k) EXPECT_EQ(f.channel[std::size_t(1 + k)], float(1 + k));
+  EXPECT_TRUE(std::isnan(f.channel[4]));
+  EXPECT_TRUE(std::isnan(f.channel[5])) << "flow of a was never said";
+  EXPECT_EQ(f.channel[6], 2e-6f);
+  EXPECT_EQ(loaded.simulation->channels().entries().back().id, "p.b.flow");
+  ASSERT_EQ(f.drawables, 2);
+  EXPECT_EQ(f.drawable[0].data, (std::vector<float>{0.1f, 0.2f, 0.3f, 1, 0.4f, 0.5f, 0.6f, 0.5f, 0.1f, 0.2f, 0.3f, 1, 0.4f, 0.5f, 0.6f, 0.5f}));
+  EXPECT_EQ(f.drawable[1].data, (std::vector<float>{0, 0, 0.01f, 0, 0, 1, 0.02f, 0.7f}));
+  loaded.simulation->reset();
+  EXPECT_EQ(loaded.simulation->channel("p.b.flow"), 2e-6) << "published again at the start";
 }
 
 TEST(ExerciseLog, AGoalMayBeLostAgainWhileTheExerciseRuns) {
@@ -139,14 +132,13 @@ TEST(ExerciseLog, AGoalMayBeLostAgainWhileTheExerciseRuns) {
   EXPECT_FALSE(log.goals()[1].done);
 }
 
-// A vessel of 2,000 nodes, two lobes of 900 together, 70 strands, 50 tools and clips, all contacts, all words.
+// A vessel of 2,000 nodes, two lobes of 900 together, 70 lines, 200 channels, 50 tools, all contacts, all words.
 TEST(Frame, StaysUnderWhatOneMessageCarries) {
   const Registry r = registry();
   auto loaded = load_simulation_text(R"(<scene><patient id="p"/><exercise id="e" title="E"><clocks/></exercise></scene>)", "/s.xml", r, 1);
   ASSERT_TRUE(loaded.simulation);
   auto* patient = loaded.simulation->scene().find_as<Patient>("p");
-  patient->vessels = 10;
-  patient->clips = 50;
+  patient->count = 70;
   loaded.simulation->step();
   insula_lcm::render_frame_t f{};
   fill_frame(*loaded.simulation, f);
@@ -159,11 +151,8 @@ TEST(Frame, StaysUnderWhatOneMessageCarries) {
     f.body[std::size_t(b)].nodes = nodes[b];
     f.body[std::size_t(b)].x_m.assign(std::size_t(nodes[b]), std::vector<float>(3, 0.01f));
   }
-  f.strands = 70;
-  f.strand_points = 140;
-  f.strand_x_m.assign(140, std::vector<float>(3, 0.f));
-  f.strand_integrity.assign(70, 1.f);
-  f.strand_tension_N.assign(70, 0.f);
+  f.channels = 200;
+  f.channel.assign(200, 1.f);
   insula_lcm::render_tool_t tool{};
   tool.q[0] = 1;
   f.tools = 50;

@@ -85,17 +85,18 @@ std::string exercise_part(const ExerciseOutcome& exercise) {
   return out;
 }
 
-std::string events_part(const RunRecorder& recorder) {
+std::string events_part(const RunRecorder& recorder, const RunSummary& summary) {
+  const auto among = [](const std::vector<std::string>& kinds, const std::string& kind) { return std::find(kinds.begin(), kinds.end(), kind) != kinds.end(); };
   std::string rows;
   std::size_t shown = 0, more = 0;
   for (const auto& e : recorder.events()) {
-    if (e.kind == "strand_cut" || e.kind == "command" || e.kind == "refused") continue;  // shown elsewhere
+    if (among(summary.unlisted_events, e.kind) || e.kind == "command" || e.kind == "refused") continue;  // shown elsewhere
     if (++shown > 200) {
       ++more;
       continue;
     }
     rows += fmt::format("<tr><td class=\"n\">{:.2f}</td><td class=\"{}\">{}</td><td>{}</td></tr>\n", e.time,
-                        e.kind == "fault" || e.kind == "rupture" || e.kind == "goal_lost" ? "bad" : e.kind == "goal" ? "good" : "", escaped(e.kind), escaped(e.text.empty() ? e.id : e.text));
+                        e.kind == "fault" || among(summary.bad_events, e.kind) || e.kind == "goal_lost" ? "bad" : e.kind == "goal" ? "good" : "", escaped(e.kind), escaped(e.text.empty() ? e.id : e.text));
   }
   if (rows.empty()) return "";
   std::string out = "<h2>What happened</h2>\n<table><thead><tr><th class=\"n\">Time (s)</th><th>Kind</th><th>Text</th></tr></thead><tbody>\n" + rows + "</tbody></table>\n";
@@ -117,6 +118,32 @@ std::string stage_table(const RunRecorder& recorder) {
   return out + "</tbody></table>\n";
 }
 
+/// A plot for each kind of channel of a component, with a curve for each group; what never changed is left out.
+std::string channel_plots(const RunRecorder& recorder, const RunSeries& s, const std::vector<PlotMark>& marks) {
+  static constexpr const char* colours[] = {"#1f6fb2", "#c2410c", "#15803d", "#9333ea", "#d4a017", "#4b5563", "#dc2626", "#0891b2"};
+  const auto& all = recorder.channels().channels();
+  std::string out;
+  std::vector<char> done(all.size(), 0);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    std::vector<PlotCurve> curves;
+    for (std::size_t k = i; k < all.size(); ++k) {
+      const auto& c = all[k];
+      if (done[k] || c.curve < 0 || c.component != all[i].component || c.name != all[i].name) continue;
+      done[k] = 1;
+      const auto& f = recorder.channels().figures(c);
+      if (f.steps == 0 || f.min == f.max) continue;
+      std::vector<double> y = s.channels[std::size_t(c.curve)];
+      for (double& v : y) v *= c.scale;
+      curves.push_back({c.group.empty() ? c.name : c.group, colours[curves.size() % std::size(colours)], std::move(y), ""});
+    }
+    if (curves.empty()) continue;
+    std::string name = all[i].component + ": " + all[i].name;
+    std::replace(name.begin(), name.end(), '_', ' ');
+    out += svg({name, "time (s)", all[i].display_unit.empty() ? all[i].name : all[i].name + " (" + all[i].display_unit + ")", s.time_s, curves, marks, false});
+  }
+  return out.empty() ? out : "<h2>Channels</h2>\n" + out;
+}
+
 std::string plots(const RunRecorder& recorder) {
   const RunSeries s = series_of(recorder, max_moments);
   std::vector<PlotMark> marks;
@@ -128,7 +155,7 @@ std::string plots(const RunRecorder& recorder) {
   std::string out = "<h2>Forces</h2>\n<p class=\"quiet\">Dashed lines: goals (green) and faults (red).</p>\n";
   out += svg({"Force on the hands", "time (s)", "force (N)", s.time_s, {{"left", left_colour, s.hand_force_N[0], ""}, {"right", right_colour, s.hand_force_N[1], ""}}, marks, false});
   out += svg({"Force of the tools on the tissue", "time (s)", "force (N)", s.time_s, {{"left", left_colour, s.tool_force_N[0], ""}, {"right", right_colour, s.tool_force_N[1], ""}}, marks, false});
-  if (recorder.strands_total() > 0) out += svg({"Strands left", "time (s)", "strands", s.time_s, {{"strands", "#4b5563", s.strands_left, ""}}, marks, false});
+  out += channel_plots(recorder, s, marks);
   out += "<h2>Constraints</h2>\n";
   out += svg({"Rows, contacts and sweeps", "time (s)", "count", s.time_s, {{"rows", "#1f6fb2", s.rows, ""}, {"contacts", "#15803d", s.contacts, ""}, {"sweeps", "#9333ea", s.sweeps, "4 3"}}, {}, false});
   out += svg({"Residual of the solver", "time (s)", "residual (N)", s.time_s, {{"residual", "#4b5563", s.residual_N, ""}}, {}, true});
@@ -160,7 +187,7 @@ std::string report_html(const RunRecorder& recorder, const RunSummary& summary) 
   if (!summary.began.empty()) out += fmt::format("<p class=\"quiet\">Begun {}</p>\n", escaped(summary.began));
   if (!recorder.finite()) out += "<p class=\"bad\">The simulation lost its numbers (not finite): nothing below can be relied upon.</p>\n";
   if (summary.exercise) out += exercise_part(*summary.exercise);
-  out += recorder.outcome().html();
+  out += recorder.channels().html() + recorder.outcome().html();
   if (summary.complications) out += complications_html(*summary.complications);
   out += "<h2>The run</h2>\n<table><tbody>\n";
   if (!summary.scene.empty()) out += row("scene", summary.scene);
@@ -177,11 +204,10 @@ std::string report_html(const RunRecorder& recorder, const RunSummary& summary) 
   for (std::size_t d = 0; d < known_frictions.size(); ++d)
     out += row(fmt::format("time in touch above the friction of {} ({:.2f} N)", known_frictions[d].devices, known_frictions[d].friction_N),
                fmt::format("left {:.0f} %, right {:.0f} %", 100 * left.above[d].time_share, 100 * right.above[d].time_share));
-  if (recorder.strands_total() > 0) out += row("strands divided", fmt::format("{} of {}", recorder.strands_cut(), recorder.strands_total()));
   out += row("constraint rows, mean and largest", fmt::format("{:.0f}, {:.0f}", mean(rows), largest(rows)));
   out += row("residual, median and largest", fmt::format("{:.2g} N, {:.2g} N", percentile(residual, 0.5), largest(residual)));
   out += fmt::format("<tr><td>state hash</td><td class=\"n\"><code>{:016x}</code></td></tr>\n</tbody></table>\n", summary.state_hash);
-  out += plots(recorder) + events_part(recorder);
+  out += plots(recorder) + events_part(recorder, summary);
   return out + "</body>\n</html>\n";
 }
 

@@ -39,7 +39,7 @@ double largest(const std::vector<double>& v) { return v.empty() ? 0 : *std::max_
 
 Json mean_max(const std::vector<double>& v) { return {{"mean", mean(v)}, {"max", largest(v)}}; }
 
-Json exercise_json(const RunRecorder& recorder, const std::optional<ExerciseOutcome>& exercise) {
+Json exercise_json(const std::optional<ExerciseOutcome>& exercise) {
   Json goals = Json::array(), faults = Json::array(), timers = Json::array(), measures = Json::array();
   Json out;
   if (exercise) {
@@ -59,8 +59,6 @@ Json exercise_json(const RunRecorder& recorder, const std::optional<ExerciseOutc
   out["faults"] = faults;
   out["timers"] = timers;
   out["measures"] = measures;
-  out["strands_cut"] = recorder.strands_cut();
-  out["strands_total"] = recorder.strands_total();
   return out;
 }
 
@@ -72,13 +70,16 @@ Json perceptible_json(const PerceptibleForces& perceptible) {
   return out;
 }
 
-Json series_json(const RunSeries& s) {
+Json series_json(const RunRecorder& recorder, const RunSeries& s) {
   Json stages;
   for (std::size_t k = 0; k < stage_count; ++k) stages[stage_names()[k]] = s.stage_ms[k];
+  Json channels = Json::object();
+  for (const ChannelRecord::Known& c : recorder.channels().channels())
+    if (c.curve >= 0) channels[c.id] = s.channels[std::size_t(c.curve)];
   return {{"time_s", s.time_s},
           {"hand_force_N", {{"left", s.hand_force_N[0]}, {"right", s.hand_force_N[1]}}},
           {"tool_force_N", {{"left", s.tool_force_N[0]}, {"right", s.tool_force_N[1]}}},
-          {"strands_left", s.strands_left}, {"rows", s.rows}, {"contacts", s.contacts}, {"sweeps", s.sweeps},
+          {"channels", channels}, {"rows", s.rows}, {"contacts", s.contacts}, {"sweeps", s.sweeps},
           {"residual_N", s.residual_N}, {"energy_J", s.energy_J}, {"step_ms", s.step_ms}, {"stage_ms", stages}};
 }
 
@@ -95,7 +96,6 @@ void join(RunRecorder::Sample& a, const RunRecorder::Sample& b) {
   const auto larger = [](auto& x, auto y) { x = std::max(x, y); };
   a.time_s = b.time_s;
   a.steps += b.steps;
-  a.strands_left = b.strands_left;
   for (std::size_t k = 0; k < stage_count; ++k) larger(a.stage_ms[k], b.stage_ms[k]);
   larger(a.step_ms, b.step_ms);
   for (std::size_t h = 0; h < 2; ++h) {
@@ -128,13 +128,11 @@ void RunRecorder::record(const StepReport& r, const std::vector<Event>& events, 
   s.rows = r.rows;
   s.contacts = int(r.contacts.size());
   s.sweeps = r.solve.sweeps;
-  s.strands_left = r.strands_left;
-  add(s);
+  if (r.channel_table && !channels_.begun()) channels_.begin(*r.channel_table, max_samples_);
+  channels_.observe(r.channels);
+  add(s, r.channels);
   note(events);
-  strands_total_ = r.strands_total;
-  strands_left_ = r.strands_left;
   finite_ = finite_ && r.finite;
-  outcome_.observe(r);
 }
 
 void RunRecorder::note(const std::vector<Event>& events) {
@@ -145,18 +143,23 @@ void RunRecorder::note(const std::vector<Event>& events) {
   outcome_.note(events);
 }
 
-void RunRecorder::add(const Sample& sample) {
+void RunRecorder::add(const Sample& sample, const std::vector<double>& channels) {
   ++steps_;
-  if (!samples_.empty() && samples_.back().steps < per_sample_) return join(samples_.back(), sample);
+  if (!samples_.empty() && samples_.back().steps < per_sample_) {
+    channels_.replace_last(channels);
+    return join(samples_.back(), sample);
+  }
   if (samples_.size() == max_samples_) {
     for (std::size_t i = 0; i < max_samples_ / 2; ++i) {
       samples_[i] = samples_[2 * i];
       join(samples_[i], samples_[2 * i + 1]);
     }
     samples_.resize(max_samples_ / 2);
+    channels_.halve(max_samples_);
     per_sample_ *= 2;
   }
   samples_.push_back(sample);
+  channels_.push(channels);
 }
 
 void RunRecorder::clear() { *this = RunRecorder(max_samples_); }
@@ -168,6 +171,13 @@ void RunSummary::take(const Simulation& simulation) {
   complications.reset();
   if (simulation.exercise()) exercise.emplace(*simulation.exercise());
   if (simulation.complications()) complications.emplace(*simulation.complications());
+  bad_events.clear();
+  unlisted_events.clear();
+  for (const Component* c : simulation.scene().components())
+    for (const EventKind* e : c->event_kinds()) {
+      if (e->spec().bad) bad_events.push_back(e->name());
+      if (!e->spec().listed) unlisted_events.push_back(e->name());
+    }
 }
 
 const std::array<const char*, stage_count>& stage_names() {
@@ -192,6 +202,7 @@ RunSeries series_of(const RunRecorder& recorder, std::size_t most) {
     to.push_back(v);
   };
   using S = RunRecorder::Sample;
+  out.channels.resize(std::size_t(recorder.channels().curves()));
   for (std::size_t begin = 0; begin < samples.size(); begin += bin) {
     const std::size_t end = std::min(begin + bin, samples.size());
     add(out.time_s, begin, end, [](const S& s) { return s.time_s; });
@@ -201,7 +212,7 @@ RunSeries series_of(const RunRecorder& recorder, std::size_t most) {
     add(out.rows, begin, end, [](const S& s) { return s.rows; });
     add(out.contacts, begin, end, [](const S& s) { return s.contacts; });
     add(out.sweeps, begin, end, [](const S& s) { return s.sweeps; });
-    add(out.strands_left, end - 1, end, [](const S& s) { return s.strands_left; });
+    for (int c = 0; c < recorder.channels().curves(); ++c) out.channels[std::size_t(c)].push_back(recorder.channels().sample(end - 1, c));
     for (std::size_t k = 0; k < stage_count; ++k) add(out.stage_ms[k], begin, end, [k](const S& s) { return s.stage_ms[k]; });
     for (std::size_t h = 0; h < 2; ++h) {
       add(out.hand_force_N[h], begin, end, [h](const S& s) { return s.hand_force_N[h]; });
@@ -242,8 +253,9 @@ std::string report_json(const RunRecorder& recorder, const RunSummary& summary) 
   json["haptic"] = {{"fresh_forces_per_s", summary.fresh_forces_per_s},
                     {"max_force_N", {{"left", summary.max_force_N[0]}, {"right", summary.max_force_N[1]}}},
                     {"perceptible", {{"left", perceptible_json(perceptible_forces(recorder, 0))}, {"right", perceptible_json(perceptible_forces(recorder, 1))}}}};
-  json["exercise"] = exercise_json(recorder, summary.exercise);
+  json["exercise"] = exercise_json(summary.exercise);
   if (summary.complications) json["complications"] = complications_json(*summary.complications);
+  json["channels"] = recorder.channels().json();
   recorder.outcome().add_to(json);
   json["finite"] = recorder.finite();
   json["state_hash"] = fmt::format("{:016x}", summary.state_hash);
@@ -251,7 +263,7 @@ std::string report_json(const RunRecorder& recorder, const RunSummary& summary) 
   for (const auto& e : recorder.events())
     json["events"].push_back({{"time_s", e.time}, {"kind", e.kind}, {"id", e.id}, {"text", e.text}, {"value", e.value}});
   json["events_left_out"] = recorder.events_left_out();
-  json["series"] = series_json(series_of(recorder, max_moments));
+  json["series"] = series_json(recorder, series_of(recorder, max_moments));
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -10,6 +10,7 @@
 
 #include "core/sim/exercise.h"
 #include "core/sim/report.h"
+#include "engine/channel_record.h"
 #include "engine/reports/run_outcome.h"
 
 namespace insula {
@@ -37,11 +38,13 @@ struct RunSummary {
   std::uint64_t state_hash = 0;
   std::optional<ExerciseOutcome> exercise;            ///< none when the scene has none
   std::optional<ComplicationsOutcome> complications;  ///< the same
+  std::vector<std::string> bad_events;     ///< kinds that components declare as bad
+  std::vector<std::string> unlisted_events;  ///< kinds that the report's list leaves out
 };
 
 class RunRecorder {
  public:
-  /// Of one step, or of some that follow each other: the largest value of each, time and strands of the last.
+  /// Of one step, or of some that follow each other: the largest value of each, the time of the last.
   struct Sample {
     float time_s = 0;
     std::int32_t steps = 1;
@@ -52,7 +55,7 @@ class RunRecorder {
     float residual_N = 0;
     float residual_m = 0;
     float energy_J = 0;
-    std::int32_t rows = 0, contacts = 0, sweeps = 0, strands_left = 0;
+    std::int32_t rows = 0, contacts = 0, sweeps = 0;
   };
 
   /// Every step of half an hour at 60 Hz, in 11 MB that are taken at the start. A longer run takes no more: neighbours are joined
@@ -74,13 +77,12 @@ class RunRecorder {
   /// The first events of the run, 5,000 at most.
   const std::vector<Event>& events() const { return events_; }
   std::int64_t events_left_out() const { return events_left_out_; }
-  int strands_total() const { return strands_total_; }
-  int strands_cut() const { return strands_total_ - strands_left_; }
+  const ChannelRecord& channels() const { return channels_; }  ///< its curves have one sample for each of samples()
   bool finite() const { return finite_; }
   const RunOutcome& outcome() const { return outcome_; }
 
  private:
-  void add(const Sample& sample);
+  void add(const Sample& sample, const std::vector<double>& channels);
 
   std::size_t max_samples_;
   int per_sample_ = 1;
@@ -88,14 +90,15 @@ class RunRecorder {
   std::vector<Sample> samples_;
   std::vector<Event> events_;
   std::int64_t events_left_out_ = 0;
-  int strands_total_ = 0, strands_left_ = 0;
+  ChannelRecord channels_;
   bool finite_ = true;
   RunOutcome outcome_;
 };
 
-/// Steps gathered for a plot: at most `most` moments, each the largest value of its steps (strands: the last).
+/// Steps gathered for a plot: at most `most` moments, each the largest value of its steps (channels: the last).
 struct RunSeries {
-  std::vector<double> time_s, step_ms, residual_N, rows, contacts, sweeps, strands_left, energy_J;
+  std::vector<double> time_s, step_ms, residual_N, rows, contacts, sweeps, energy_J;
+  std::vector<std::vector<double>> channels;  ///< by curve of the record, SI
   std::array<std::vector<double>, stage_count> stage_ms;
   std::array<std::vector<double>, 2> hand_force_N, tool_force_N;
 };

@@ -30,9 +30,32 @@ std::string xml_error(const std::string& text) {
   return error;
 }
 
-/// 100 steps of 0.1 s; in step k (from 1): k rows, solve takes k ms, 10 strands of which one is cut every ten steps.
+/// Publishes the same every time: how many of `total` are left after k, a vector, a pressure of a and none of b.
+class Gauge final : public Component {
+ public:
+  explicit Gauge(double all = 10) : total(all) {
+    id = "g";
+    pressure.declare({"a", "b"});
+    pressure.set(0, 10665.790993);
+    table.collect({this});
+  }
+  void show(double k, StepReport& r) {
+    left.set(total - k);
+    pull.set(Vec3(k, 2 * k, 3 * k));
+    table.read(r.channels);
+    r.channel_table = &table;
+  }
+  Channel<Scalar> left{this, {.name = "left", .doc = "for tests", .digits = 0}};
+  Channel<Vec<Force>> pull{this, {.name = "pull", .doc = "for tests"}};
+  ChannelGroup<Pressure> pressure{this, {.name = "pressure", .doc = "for tests", .shown = Shown::vital, .display = "mmHg", .digits = 0}};
+  double total;
+  ChannelTable table;
+};
+
+/// 100 steps of 0.1 s; in step k (from 1): k rows, solve takes k ms, 10 left of which one goes every ten steps.
 RunRecorder hundred_steps() {
   RunRecorder recorder;
+  Gauge gauge;
   for (int k = 1; k <= 100; ++k) {
     StepReport r;
     r.time = 0.1 * k;
@@ -42,8 +65,7 @@ RunRecorder hundred_steps() {
     r.solve.sweeps = 2 * k;
     r.solve.residual_N = 1e-6 * k;
     r.solve.residual_m = 1e-9 * k;
-    r.strands_total = 10;
-    r.strands_left = 10 - k / 10;
+    gauge.show(k / 10, r);
     r.stage_ms[stage_solve] = k;
     r.step_ms = k + 1;
     ToolReport tool;
@@ -111,15 +133,14 @@ TEST(ReportJson, HasEveryKeyWithItsNumber) {
   EXPECT_TRUE(e.at("goals").at(1).at("time_s").is_null());
   EXPECT_EQ(e.at("faults").at(0).at("id"), "force");
   EXPECT_EQ(e.at("faults").at(0).at("count"), 1);
-  EXPECT_EQ(e.at("strands_cut"), 10);
   EXPECT_EQ(j.at("state_hash"), "fedcba9876543210");
   EXPECT_EQ(j.at("events").size(), 11u);
   EXPECT_EQ(j.at("series").at("time_s").size(), 100u);
   EXPECT_EQ(j.at("series").at("tool_force_N").at("right").at(49), 2.5);
-  EXPECT_EQ(j.at("series").at("strands_left").at(99), 0);
+  EXPECT_EQ(j.at("series").at("channels").at("g.left").at(99), 0);
 }
 
-TEST(ReportJson, TellsOfBleedingVesselsClipsAndCommands) {
+TEST(ReportJson, TellsOfChannelsAndCommands) {
   Exercise exercise;
   fill(exercise);
   exercise.log().add_timer("t", "Temporary clip", 2);
@@ -128,31 +149,29 @@ TEST(ReportJson, TellsOfBleedingVesselsClipsAndCommands) {
   exercise.log().timer(0, 1, false);
   exercise.log().measure(0, 12.5, -1);
   RunRecorder recorder;
-  const std::string vessel = "superior";
+  Gauge gauge;
   for (int k = 1; k <= 10; ++k) {
     StepReport r;
     r.time = 0.1 * k;
     r.h = 0.1;
-    BleedingState b;
-    b.open = k >= 3;
-    b.rate = k >= 3 && k < 8 ? 1e-6 : 0;
-    b.lost = 2.5e-6;
-    b.height = k == 5 ? 0.007 : 0.001;
-    b.since = k >= 3 ? 0.2 : -1;
-    r.bleeding.push_back(b);
-    r.vessels.push_back({vessel, 10665.790993, 1e-6, 2e-6, 0.5, 0});
+    gauge.show(k, r);
     std::vector<Event> events;
     if (k == 4) events = {{"command", "ask", "applier load a", 0, 0.4}, {"refused", "exchange", "draw the <instrument> out", 0, 0.4}, {"message", "message", "well done", 0, 0.4}};
     recorder.record(r, events, {0, 0}, 1e-3);
   }
   const Json j = Json::parse(report_json(recorder, summary(&exercise)));
-  EXPECT_NEAR(j.at("bleeding").at("lost_mL").get<double>(), 2.5, 1e-12);
-  EXPECT_NEAR(j.at("bleeding").at("duration_s").get<double>(), 0.5, 1e-12);
-  EXPECT_NEAR(j.at("bleeding").at("highest_mm").get<double>(), 7, 1e-12);
-  EXPECT_EQ(j.at("bleeding").at("rupture_s"), 0.2);
-  EXPECT_EQ(j.at("bleeding").at("open"), false);
-  EXPECT_NEAR(j.at("vessels").at(0).at("pressure_mmHg").get<double>(), 80, 1e-6);
-  EXPECT_NEAR(j.at("vessels").at(0).at("flow_percent").get<double>(), 50, 1e-9);
+  const Json& left = j.at("channels").at("g.left");
+  EXPECT_EQ(left.at("unit"), "");
+  EXPECT_EQ(left.at("min"), 0);
+  EXPECT_EQ(left.at("max"), 9);
+  EXPECT_EQ(left.at("mean"), 4.5);
+  EXPECT_EQ(left.at("last"), 0);
+  EXPECT_EQ(j.at("channels").at("g.pull").at("max"), Json({10, 20, 30}));
+  EXPECT_EQ(j.at("channels").at("g.pull").at("unit"), "N");
+  EXPECT_NEAR(j.at("channels").at("g.a.pressure").at("last").get<double>(), 10665.790993, 1e-6);
+  EXPECT_TRUE(j.at("channels").at("g.b.pressure").at("mean").is_null()) << "was never known";
+  EXPECT_EQ(j.at("channels").size(), 4u);
+  EXPECT_EQ(j.at("series").at("channels").at("g.left"), Json({9, 8, 7, 6, 5, 4, 3, 2, 1, 0}));
   ASSERT_EQ(j.at("commands").size(), 3u);
   EXPECT_EQ(j.at("commands").at(0).at("argument"), "applier load a");
   EXPECT_EQ(j.at("commands").at(1).at("done"), false);
@@ -164,7 +183,7 @@ TEST(ReportJson, TellsOfBleedingVesselsClipsAndCommands) {
   EXPECT_FALSE(j.contains("complications"));
   const std::string html = report_html(recorder, summary(&exercise));
   EXPECT_EQ(xml_error(html), "");
-  for (const char* part : {"2.5 mL lost in 0.5 s", "superior", "refused: draw the &lt;instrument&gt; out", "Neck &lt;remnant&gt;", "12.5 %", "Temporary clip"})
+  for (const char* part : {"g at the end", "pressure (mmHg)", ">80<", "g: left", "refused: draw the &lt;instrument&gt; out", "Neck &lt;remnant&gt;", "12.5 %", "Temporary clip"})
     EXPECT_NE(html.find(part), std::string::npos) << part;
 }
 
@@ -220,7 +239,7 @@ TEST(ReportJson, StandsWithoutExerciseAndSteps) {
   EXPECT_EQ(j.at("steps"), 0);
   EXPECT_EQ(j.at("rows").at("max"), 0);
   EXPECT_TRUE(j.at("exercise").at("goals").empty());
-  EXPECT_EQ(j.at("exercise").at("strands_cut"), 0);
+  EXPECT_TRUE(j.at("channels").empty());
   EXPECT_EQ(xml_error(report_html(RunRecorder(), summary(nullptr))), "");
 }
 
@@ -241,7 +260,7 @@ TEST(ReportHtml, IsWellFormedAndSaysWhatItMust) {
   fill(exercise);
   const std::string html = report_html(hundred_steps(), summary(&exercise));
   EXPECT_EQ(xml_error(html), "");
-  for (const char* part : {"For training only", "A &lt;title&gt; &amp; more", "Force on the hands", "Strands left", "Rows, contacts and sweeps", "Residual of the solver",
+  for (const char* part : {"For training only", "A &lt;title&gt; &amp; more", "Force on the hands", "g: left", "Rows, contacts and sweeps", "Residual of the solver",
                            "Stages", "force (N)", "wall time (ms)", "Open it", "Too much &lt;force&gt;", "fedcba9876543210", "@media print"})
     EXPECT_NE(html.find(part), std::string::npos) << part;
   // Self-contained: nothing is fetched.
@@ -250,29 +269,32 @@ TEST(ReportHtml, IsWellFormedAndSaysWhatItMust) {
 
 TEST(RunSeries, KeepsPeaksWhenItGathers) {
   RunRecorder recorder;
+  Gauge gauge(10007);
   for (int k = 0; k < 10007; ++k) {
     StepReport r;
     r.time = 0.001 * k;
     r.rows = k == 5003 ? 999 : 1;
-    r.strands_left = 10007 - k;
+    gauge.show(k, r);
     recorder.record(r, {}, {k == 77 ? 3.0 : 0.0, 0}, 0);
   }
   const RunSeries s = series_of(recorder, 500);
   EXPECT_LE(s.time_s.size(), 500u);
   EXPECT_EQ(*std::max_element(s.rows.begin(), s.rows.end()), 999);
   EXPECT_EQ(*std::max_element(s.hand_force_N[0].begin(), s.hand_force_N[0].end()), 3);
-  EXPECT_EQ(s.strands_left.back(), 1);
+  ASSERT_EQ(s.channels.size(), 3u);
+  EXPECT_EQ(s.channels[0].back(), 1);
   EXPECT_NEAR(s.time_s.back(), 10.006, 1e-5);
 }
 
 TEST(RunRecorder, ALongRunTakesNoMoreSamplesAndLosesNoPeak) {
   RunRecorder recorder(100);
   const int steps = 1037;
+  Gauge gauge(steps);
   for (int k = 1; k <= steps; ++k) {
     StepReport r;
     r.time = 0.01 * k;
     r.rows = k == 511 ? 999 : 1;
-    r.strands_left = steps - k;
+    gauge.show(k, r);
     recorder.record(r, {}, {k == 3 ? 3.0 : 0.0, k == 1036 ? 2.0 : 0.0}, 0);
     ASSERT_LE(recorder.samples().size(), 100u);
     ASSERT_EQ(recorder.steps(), k);
@@ -280,10 +302,12 @@ TEST(RunRecorder, ALongRunTakesNoMoreSamplesAndLosesNoPeak) {
   EXPECT_EQ(recorder.steps_per_sample(), 16);
   int held = 0, rows = 0;
   float left = 0, right = 0;
+  ASSERT_EQ(recorder.channels().samples(), recorder.samples().size());
+  std::size_t i = 0;
   for (const auto& s : recorder.samples()) {
     held += s.steps;
     EXPECT_NEAR(s.time_s, 0.01 * held, 1e-5) << "of the last of its steps";
-    EXPECT_EQ(s.strands_left, steps - held);
+    EXPECT_EQ(recorder.channels().sample(i++, 0), steps - held);
     rows = std::max(rows, int(s.rows));
     left = std::max(left, s.hand_force_N[0]);
     right = std::max(right, s.hand_force_N[1]);

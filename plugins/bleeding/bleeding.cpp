@@ -25,15 +25,20 @@ about ten seconds.
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "core/base/text.h"
 #include "core/registry/registry.h"
 #include "core/sim/events.h"
-#include "core/sim/report.h"
 #include "core/sim/simulation.h"
 
 namespace insula {
+namespace {
+
+constexpr double full_jet = 1e-6;  // m3/s: a rate that is drawn as the strongest jet
+
+}  // namespace
 
 double Bowl::capacity() const { return 0.5 * std::numbers::pi * radius * radius * depth; }
 double Bowl::height(double v) const { return v > 0 ? depth * std::sqrt(std::min(1.0, v / capacity())) : 0; }
@@ -64,6 +69,9 @@ void Bleeding::connect(PrepareContext& context, Simulation& simulation) {
   for (std::size_t v = 0; v < zone_.size(); ++v)
     if (on->model().vertex_region[v] == r) zone_[v] = any = true;
   if (!any) return error(context, region, "region " + in_quotes(region()) + " has no vertices");
+  for (const auto& t : on->wall_triangles())
+    if (zone_[std::size_t(t[0])] && zone_[std::size_t(t[1])] && zone_[std::size_t(t[2])]) zone_triangles_.push_back(t);
+  jet.resize(1);
   chamber_ = pressure.chambers().of_region(r);
   instruments_ = simulation.instruments();
   for (Instrument* i : instruments_)
@@ -99,8 +107,8 @@ void Bleeding::measure_forces(const ConstraintSolution& solution) {
   }
 }
 
-void Bleeding::emit(const StepContext& context, const char* what, const char* text, double value) const {
-  if (context.events) context.events->emit({what, id, text, value, context.time + context.h});
+void Bleeding::emit(const StepContext& context, const EventKind& what, const char* text, double value) const {
+  if (context.events) context.events->emit({what.name(), id, text, value, context.time + context.h});
 }
 
 void Bleeding::tear(const StepContext& context, const char* why, double value) {
@@ -110,10 +118,11 @@ void Bleeding::tear(const StepContext& context, const char* why, double value) {
   low_for_ = first_rate_ = lost_ = 0;
   since_ = context.time + context.h;
   flow->set_tear(chamber_, tear_area());
-  emit(context, "rupture", why, value);
+  emit(context, ruptured, why, value);
 }
 
 void Bleeding::finish(const StepContext& context, const ConstraintSolution& solution) {
+  now_ = context.time + context.h;
   measure_forces(solution);
   const double out = open_ ? flow->tear_flow(chamber_) : 0;
   if (!open_) {
@@ -167,34 +176,43 @@ void Bleeding::tell(const StepContext& context) {
     low_for_ += context.h;
     if (!stopped_ && low_for_ > stopped_after()) {
       stopped_ = true;
-      emit(context, "bleeding_stopped", "", lost_);
+      emit(context, stopped, "", lost_);
     }
     return;
   }
   // Hysteresis: what only trickles again has not begun anew.
   if (stopped_ && rate_ < 2 * stopped_below() * first_rate_) return;
   low_for_ = 0;
-  if (stopped_) emit(context, "bleeding_again", "", rate_);
+  if (stopped_) emit(context, again, "", rate_);
   stopped_ = false;
 }
 
-void Bleeding::report(StepReport& report) const {
-  BleedingState b;
-  b.open = open_;
-  b.rate = rate_;
-  b.lost = lost_;
-  b.height = height();
-  b.origin = origin();
-  b.up = up_;
-  b.radius = radius();
-  b.since = since_;
-  report.bleeding.push_back(b);
+void Bleeding::publish() {
+  bleeding_rate.set(rate_);
+  lost.set(lost_);
+  level.set(height());
+  since.set(since_ >= 0 ? now_ - since_ : std::numeric_limits<double>::quiet_NaN());
+  is_open.set(open_);
+  pool.set(origin() + height() * up_, up_, height() > 0 ? radius() : 0, height());  // radius 0: dry
+  Vec3 place = Vec3::Zero(), outward = Vec3::Zero();
+  const auto at = [&](int node) -> Vec3 { return Eigen::Map<const Vec3>(on->q().data() + 3 * node); };
+  int n = 0;
+  for (std::size_t v = 0; v < zone_.size(); ++v)
+    if (zone_[v]) place += at(int(v)), ++n;
+  for (const auto& t : zone_triangles_) outward += (at(t[1]) - at(t[0])).cross(at(t[2]) - at(t[0]));
+  if (n > 0) place /= n;
+  const double length = outward.norm();
+  const Vec3 direction = length > 0 ? Vec3(outward / length) : up_;
+  const double strength = std::min(1.0, rate_ / full_jet);
+  jet.set(0, 0, place, strength);
+  jet.set(0, 1, place + 0.01 * direction, strength);
 }
 
 void Bleeding::reset() {
   open_ = asked_ = stopped_ = false;
   rate_ = lost_ = volume_ = other_ = first_rate_ = low_for_ = force_ = sharp_ = 0;
   since_ = -1;
+  now_ = 0;
 }
 
 void Bleeding::append_state(std::vector<double>& out) const {
@@ -225,5 +243,6 @@ std::string Bleeding::run_command(std::string_view name, std::string_view) {
 }  // namespace insula
 
 INSULA_PLUGIN(bleeding) {
+  registry.add_material({"blood", "fluid", {0.35, 0.01, 0.01, 0.95}, 0.1, 0, 0.1});
   registry.add<insula::Bleeding>("bleeding", insula::Kind::constraint, "a weak spot of a vessel's wall that tears and bleeds into the field");
 }

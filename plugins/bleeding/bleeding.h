@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A tear of the wall that bleeds into the field (the equations stand in bleeding.cpp).
 #pragma once
+#include <array>
 #include <string>
 #include <vector>
 
 #include "core/mechanics/instrument.h"
+#include "plugins/bleeding/bleeding_state.h"
 #include "plugins/blood_flow/blood_flow.h"
 
 namespace insula {
@@ -17,7 +19,7 @@ struct Bowl {
   double volume(double height) const;
 };
 
-class Bleeding final : public Constraint {
+class Bleeding final : public Constraint, public BleedingSource {
  public:
   static constexpr std::string_view kind_name = "bleeding";
 
@@ -37,12 +39,24 @@ class Bleeding final : public Constraint {
   Param<Scalar> stopped_below{this, {.name = "stopped_below", .fallback = "0.05", .min = "0.001", .max = "0.5", .doc = "rate, over that of the rupture, below which bleeding counts as stopped"}};
   Param<Duration> stopped_after{this, {.name = "stopped_after", .fallback = "2 s", .min = "0 s", .max = "60 s", .doc = "time that it must stay below"}};
 
+  Channel<FlowRate> bleeding_rate{this, {.name = "rate", .doc = "blood out of the tear", .min = "0 ml/min", .shown = Shown::vital, .display = "ml/min", .digits = 0, .good = {.to = "1 ml/min"}, .high = {.to = "20 ml/min"}}};
+  Channel<Volume> lost{this, {.name = "lost", .doc = "blood lost since the tear", .shown = Shown::vital, .display = "ml", .digits = 1}};
+  Channel<Length> level{this, {.name = "height", .doc = "of the blood over the bottom of the field", .min = "0 m", .display = "mm", .digits = 1}};
+  Channel<Duration> since{this, {.name = "since", .doc = "time since the rupture", .min = "0 s", .shown = Shown::vital, .digits = 0}};
+  Channel<Scalar> is_open{this, {.name = "open", .doc = "1 while there is a tear, else 0", .min = "0", .max = "1", .shown = Shown::none, .digits = 0}};
+  Plane pool{this, {.name = "pool", .doc = "surface of the blood in the field", .material = "blood", .value = "height over the bottom of the field", .unit = "m", .rate_channel = "rate"}};
+  Polylines jet{this, {.name = "jet", .doc = "where the blood leaves, and its direction", .material = "blood", .value = "rate over 60 ml/min, at most 1", .radius = "0.3 mm"}};
+  EventKind ruptured{this, {.name = "rupture", .doc = "the wall tears", .value = "force or pressure that tore it", .bad = true}};
+  EventKind stopped{this, {.name = "bleeding_stopped", .doc = "the bleeding has come to a stand", .value = "blood lost, m3"}};
+  EventKind again{this, {.name = "bleeding_again", .doc = "it bleeds anew", .value = "rate, m3/s", .bad = true}};
+
   void prepare(PrepareContext& context) override;
   void connect(PrepareContext& context, Simulation& simulation) override;
   void build(const StepContext&, ConstraintBuilder&) override {}
   bool adds_rows() const override { return false; }
   void finish(const StepContext& context, const ConstraintSolution& solution) override;
-  void report(StepReport& report) const override;
+  void publish() override;
+  BleedingState bleeding() const override { return {open_, rate_, lost_, height(), since_}; }
   void reset() override;
   void append_state(std::vector<double>& out) const override;
   std::vector<CommandInfo> commands() const override;
@@ -64,12 +78,14 @@ class Bleeding final : public Constraint {
   double tear_height() const;  ///< over the bottom of the field, m
   void fill(double h, double blood);
   void tell(const StepContext& context);
-  void emit(const StepContext& context, const char* what, const char* text, double value) const;
+  void emit(const StepContext& context, const EventKind& what, const char* text, double value) const;
 
   Bowl bowl_;
   Vec3 up_ = Vec3::UnitZ();
   int chamber_ = -1;
   std::vector<char> zone_;                  ///< one a node
+  std::vector<std::array<int, 3>> zone_triangles_;  ///< of the wall, all corners in the zone
+  double now_ = 0;                          ///< simulated time at the end of the last step, s
   std::vector<Instrument*> instruments_;
   std::vector<Instrument*> suctions_;
   std::vector<double> row_force_;           ///< three a row: force on the region

@@ -71,7 +71,7 @@ struct Field : test::TestScene {
     }
     return count;
   }
-  const BleedingState& state() const { return s->report().bleeding.front(); }
+  BleedingState state() const { return bleeding->bleeding(); }
 };
 const std::string suction = R"(<suction id="tube" model="meshes/tube/tube.urdf" hand="left" home="0 30 0 mm" shaft="0 0 1" flat="1 0 0"/>)";
 

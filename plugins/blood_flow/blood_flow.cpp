@@ -25,10 +25,10 @@ Sources: Murray 1926; Westerhof et al. 1969 (lumped arterial networks); orifice 
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/base/text.h"
 #include "core/registry/registry.h"
-#include "core/sim/report.h"
 
 namespace insula {
 namespace {
@@ -67,6 +67,7 @@ void BloodFlow::connect(PrepareContext& context, Simulation&) {
   for (std::size_t c = 0; c < chambers; ++c)
     if (const std::size_t s = std::size_t(main_stretch_[c]); graph_.stretches[s].dead_end) dye_.volume[s] = blood_pressure->rest_volume(int(c));
   reset();
+  declare_channels();
   blood_pressure->set_feed(this);
 }
 
@@ -194,7 +195,7 @@ void BloodFlow::average(double h) {
   beat_share_ = 0;
 }
 
-void BloodFlow::report(StepReport& report) const {
+void BloodFlow::append_vessels(std::vector<VesselState>& out) const {
   for (std::size_t i = 0; i < graph_.stretches.size(); ++i) {
     const Stretch& s = graph_.stretches[i];
     VesselState v;
@@ -204,8 +205,28 @@ void BloodFlow::report(StepReport& report) const {
     v.flow_at_rest = rest_flow_[i];
     v.lumen = s.narrowest;
     v.dye = std::clamp(DyeTransport::mean(s), 0.0, 1.0);
-    report.vessels.push_back(v);
+    out.push_back(v);
   }
+}
+
+void BloodFlow::publish() {
+  for (std::size_t i = 0; i < stretch_flow.groups().size(); ++i) {
+    const Stretch& s = graph_.stretches[i];
+    stretch_pressure.set(i, pressure_[std::size_t(s.middle)]);
+    stretch_flow.set(i, mean_flow_[i]);
+    flow_share.set(i, rest_flow_[i] != 0 ? mean_flow_[i] / rest_flow_[i] : std::numeric_limits<double>::quiet_NaN());
+    lumen.set(i, s.narrowest);
+    dye.set(i, std::clamp(DyeTransport::mean(s), 0.0, 1.0));
+  }
+}
+
+void BloodFlow::declare_channels() {
+  std::vector<std::string> names;
+  for (const Stretch& s : graph_.stretches) names.emplace_back(s.name);
+  for (auto* group : {&flow_share, &lumen, &dye}) group->declare(names);
+  stretch_pressure.declare(names);
+  dye.set_subject(blood_pressure->on.get());
+  stretch_flow.declare(names);
 }
 
 void BloodFlow::reset() {

@@ -6,11 +6,12 @@
 
 #include "plugins/blood_flow/dye.h"
 #include "plugins/blood_flow/vessel_graph.h"
+#include "plugins/blood_flow/vessel_state.h"
 #include "plugins/pressure/pressure.h"
 
 namespace insula {
 
-class BloodFlow final : public Constraint, public ChamberFeed {
+class BloodFlow final : public Constraint, public ChamberFeed, public VesselSource {
  public:
   static constexpr std::string_view kind_name = "blood_flow";
 
@@ -31,10 +32,17 @@ class BloodFlow final : public Constraint, public ChamberFeed {
   Param<Scalar> sac_exchange{this, {.name = "sac_exchange", .fallback = "0.15", .min = "0", .max = "1", .doc = "blood that a sac exchanges with its vessel at rest, over the flow of the inlet"}};
   Param<Scalar> discharge{this, {.name = "discharge", .fallback = "0.6", .min = "0.1", .max = "1", .doc = "discharge coefficient of a tear"}};
 
+  ChannelGroup<Pressure> stretch_pressure{this, {.name = "pressure", .doc = "in the middle of the stretch", .min = "0 mmHg", .max = "300 mmHg", .shown = Shown::vital, .display = "mmHg", .digits = 0}};
+  ChannelGroup<FlowRate> stretch_flow{this, {.name = "flow", .doc = "mean of the last heartbeat", .shown = Shown::vital, .display = "ml/min", .digits = 0}};
+  ChannelGroup<Scalar> flow_share{this, {.name = "flow_share", .doc = "flow over that at rest", .min = "0", .shown = Shown::vital, .display = "%", .digits = 0, .good = {.from = "0.75"}, .high = {.from = "0.5"}}};
+  ChannelGroup<Scalar> lumen{this, {.name = "lumen", .doc = "narrowest cross-section over its own at rest", .min = "0", .shown = Shown::vital, .display = "%", .digits = 0}};
+  ChannelGroup<Scalar> dye{this, {.name = "dye", .doc = "concentration of indocyanine green", .min = "0", .max = "1", .shown = Shown::none, .digits = 3, .role = Role::shade}};
+
   void connect(PrepareContext& context, Simulation& simulation) override;
   void build(const StepContext&, ConstraintBuilder&) override {}
   bool adds_rows() const override { return false; }  ///< its chambers' rows are those of the pressure
-  void report(StepReport& report) const override;
+  void publish() override;
+  void append_vessels(std::vector<VesselState>& out) const override;
   void reset() override;
   void append_state(std::vector<double>& out) const override;
   std::vector<CommandInfo> commands() const override;
@@ -68,6 +76,7 @@ class BloodFlow final : public Constraint, public ChamberFeed {
   double flow_of(const Stretch& s, int index) const;
   void carry_dye(const StepContext& context);
   void average(double h);
+  void declare_channels();
 
   VesselGraph graph_;
   DyeTransport dye_;

@@ -121,7 +121,8 @@ TEST(BloodFlow, DyeFillsWhatBloodReachesAndWashesOut) {
   double most = 0;
   for (int i = 0; i < 1600; ++i) {
     t.run(1);
-    for (const VesselState& v : t.s->report().vessels) most = std::max(most, v.dye);
+    Vessels vessels(*t.s);
+    for (const VesselState& v : vessels.now()) most = std::max(most, v.dye);
   }
   EXPECT_LE(most, 1);
   EXPECT_LT(t.state("parent").dye, 0.1);

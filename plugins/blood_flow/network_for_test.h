@@ -33,8 +33,10 @@ struct Vessel : TestScene {
     }
   }
   void release() const { wall().place = shell().rest_nodes(); }
+  mutable Vessels vessels;
   const VesselState& state(std::string_view id) const {
-    for (const VesselState& v : s->report().vessels)
+    vessels = Vessels(*s);
+    for (const VesselState& v : vessels.now())
       if (v.id == id) return v;
     throw std::runtime_error("no such stretch");
   }

@@ -31,6 +31,8 @@ matters is that the force of inertia stays small beside the closing force; weigh
 */
 #include "plugins/clip/clip.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -38,7 +40,6 @@ matters is that the force of inertia stays small beside the closing force; weigh
 #include "core/base/input_error.h"
 #include "core/mechanics/force_model.h"
 #include "core/registry/registry.h"
-#include "core/sim/report.h"
 #include "plugins/clip/clip_applier.h"
 #include "plugins/clip/slices.h"
 #include "plugins/clip/touch.h"
@@ -50,10 +51,12 @@ void Clip::prepare(PrepareContext& context) {
   for (const Support* f : children_of<Support>()) f->error(context, "has no effect on a clip, which is rigid");
   try {
     tool_ = read_tool(model());
+    const auto data = read_clip_data(tool_);
+    if (!data) return error(context, model, "this tool is no clip: its tool.json has no \"clip\"");
+    data_ = *data;
   } catch (const InputError& e) {
     return error(context, model, e.what());
   }
-  if (!tool_.clip) return error(context, model, "this tool is no clip: its tool.json has no \"clip\"");
   if (shaft().norm() < 1e-9) return error(context, shaft, "a direction must not be zero");
   if (shaft().cross(flat()).norm() < 1e-6 * shaft().norm()) return error(context, flat, "must not be parallel to the shaft");
   if (start_opening() > tool_.opening_max) return error(context, start_opening, "the jaws open by no more than " + std::to_string(int(tool_.opening_max * 180 / std::numbers::pi)) + " deg");
@@ -64,7 +67,7 @@ void Clip::prepare(PrepareContext& context) {
 }
 
 double Clip::torque(double opening) const {
-  const double r = tool_.clip->reference;
+  const double r = data_.reference;
   return strength_ * r * (closing() + slope() * 2 * r * std::sin(opening));
 }
 
@@ -158,25 +161,42 @@ void Clip::finish(const StepContext& context, const ConstraintSolution& solution
   if (held_open_) strength_ *= std::exp(std::log1p(-weakening()) / 600 * context.h * opening_ / tool_.opening_max);
 }
 
-void Clip::report(StepReport& out) const {
+ClipState Clip::clip_state() const {
   ClipState s;
   s.clip = this;
   s.holder = holder_;
   s.on_tray = !active();
-  s.temporary = tool_.clip->kind.find("temporary") != std::string::npos;
+  s.temporary = data_.temporary();
   s.opening = opening_;
   s.force = force_;
-  s.gap = tool_.clip->gap(opening_);
-  s.blade_root = pose_.apply(tool_.clip->blade_line.front());
-  s.blade_tip = pose_.apply(tool_.clip->blade_line.back());
-  s.blade_width = tool_.clip->blade_width;
+  s.gap = data_.gap(opening_);
+  s.blade_root = pose_.apply(data_.blade_line.front());
+  s.blade_tip = pose_.apply(data_.blade_line.back());
+  s.blade_width = data_.blade_width;
   s.applications = applications_;
-  out.clips.push_back(s);
+  return s;
+}
+
+void Clip::publish() {
+  pressing.set(force_);
+  opening_now.set(opening_);
+  applied.set(applications_);
+  place_now.set(!active() ? 0 : holder_ ? 1 : 2);
+}
+
+const RigidBody* Clip::held_by() const { return holder_; }
+
+std::vector<std::string> Clip::tags() const { return {data_.temporary() ? "temporary" : "permanent", data_.shape}; }
+
+std::vector<BodyProperty> Clip::properties() const {
+  return {{"blade_length", data_.blade_length, "m", std::to_string(int(std::lround(1000 * data_.blade_length))) + " mm"},
+          {"closing_force", data_.closing_force, "N", fmt::format("{:.2g} N", data_.closing_force)},
+          {"opening_max", tool_.opening_max, "rad", std::to_string(int(std::lround(tool_.opening_max * 180 / std::numbers::pi))) + " deg"}};
 }
 
 double Clip::energy() const {
   if (!active()) return 0;
-  const double r = tool_.clip->reference;
+  const double r = data_.reference;
   const double spring = strength_ * 2 * r * (closing() * opening_ + slope() * 2 * r * (1 - std::cos(opening_)));
   const double turn = inertial_mass() * r * r / 3 * turn_rate_ * turn_rate_;
   const double rotation = moments_.isZero(0) ? 0 : spin_.dot(moments_.ldlt().solve(spin_));

@@ -8,12 +8,14 @@
 #include "core/mechanics/constraint.h"
 #include "core/constraint/stated_law.h"
 #include "core/mechanics/rigid_body.h"
+#include "plugins/clip/clip_data.h"
+#include "plugins/clip/clip_state.h"
 
 namespace insula {
 
 class ClipApplier;
 
-class Clip final : public RigidBody, public StatesLaw {
+class Clip final : public RigidBody, public ClipSource, public StatesLaw {
  public:
   static constexpr std::string_view kind_name = "clip";
 
@@ -32,12 +34,21 @@ class Clip final : public RigidBody, public StatesLaw {
   Param<Duration> closing_time{this, {.name = "closing_time", .fallback = "0.3 s", .min = "0 s", .max = "5 s", .doc = "from fully open to shut at the fastest"}};
   Param<Rate> drag{this, {.name = "drag", .fallback = "2 1/s", .min = "0 1/s", .max = "1000 1/s", .doc = "rate at which the fluid takes a loose clip's motion"}};
 
+  Channel<Force> pressing{this, {.name = "force", .doc = "of the blades on what is between them", .min = "0 N"}};
+  Channel<Angle> opening_now{this, {.name = "opening", .doc = "of each jaw from the closed position", .min = "0 rad", .shown = Shown::none, .display = "deg", .digits = 1}};
+  Channel<Scalar> applied{this, {.name = "applications", .doc = "times it was released in the field", .min = "0", .shown = Shown::none, .digits = 0}};
+  Channel<Scalar> place_now{this, {.name = "place", .doc = "0 on the tray, 1 held by an applier, 2 free in the field", .min = "0", .max = "2", .shown = Shown::none, .digits = 0}};
+
   void prepare(PrepareContext& context) override;
 
   const ToolModel& tool() const override { return tool_; }
+  const ClipData& data() const { return data_; }
+  std::vector<BodyProperty> properties() const override;
+  std::vector<std::string> tags() const override;
+  const RigidBody* held_by() const override;
   double opening() const override { return opening_; }
   const Pose& pose() const { return pose_; }          ///< of its frame at the start of the step: origin at the tip
-  Pose grip() const { return {pose_.apply(tool_.clip->grip.p), pose_.q * tool_.clip->grip.q}; }  ///< where an applier holds it
+  Pose grip() const { return {pose_.apply(data_.grip.p), pose_.q * data_.grip.q}; }  ///< where an applier holds it
   double mass() const { return tool_.mass; }          ///< true one, kg
   double strength() const { return strength_; }       ///< force over the force of an unused clip
   double force() const { return force_; }             ///< of each blade on what is between them, at the middle of the blades, N
@@ -79,7 +90,8 @@ class Clip final : public RigidBody, public StatesLaw {
   void add_rate(const BodyRows& rows, double* rate) const override;
   void build(const StepContext& context, ConstraintBuilder& builder) override;
   void finish(const StepContext& context, const ConstraintSolution& solution) override;
-  void report(StepReport& report) const override;
+  void publish() override;
+  ClipState clip_state() const override;
   void reset() override;
   double energy() const override;
   void append_state(std::vector<double>& out) const override;
@@ -94,13 +106,14 @@ class Clip final : public RigidBody, public StatesLaw {
   void settle(const Pose& pose, double opening);
   Vec3 arm(const MaterialPoint& p) const { return pose_.q * turned_[std::size_t(p.link)].apply(p.local); }  ///< from the tip
   double turning(int link, const Vec3& arm, const Vec3& d) const;  ///< d . d(point)/d(opening)
-  double closing() const { return closing_force() > 0 ? closing_force() : tool_.clip->closing_force; }
-  double slope() const { return force_slope() > 0 ? force_slope() : tool_.clip->force_slope; }
-  double lever() const { return 2 * tool_.clip->reference; }  ///< d(gap at the middle of the blades)/d(opening) when closed, m
+  double closing() const { return closing_force() > 0 ? closing_force() : data_.closing_force; }
+  double slope() const { return force_slope() > 0 ? force_slope() : data_.force_slope; }
+  double lever() const { return 2 * data_.reference; }  ///< d(gap at the middle of the blades)/d(opening) when closed, m
   double held_opening() const;   ///< below which an applier does not let the jaws go, 0: none does
   double min_opening() const { return std::max(held_opening(), soonest_); }  ///< below which nothing closes them in this step
 
   ToolModel tool_;
+  ClipData data_;
   std::vector<std::vector<ConvexPiece>> pieces_;  ///< per link
   std::vector<Pose> turned_;                      ///< per link: tool frame to tool frame, at the present opening
   ClipApplier *holder_ = nullptr, *start_holder_ = nullptr;

@@ -35,7 +35,7 @@ Pose inverse(const Pose& a) { return {-(a.q.conjugate() * a.p), a.q.conjugate()}
 /// A clip's pose in the frame of an applier that holds it properly; `turned`: by its other side.
 Pose held_properly(const Clip& clip, bool turned) {
   const Pose half{Vec3::Zero(), turned ? Quat(0, 0, 0, 1) : Quat::Identity()};
-  return compose(half, inverse(clip.tool().clip->grip));
+  return compose(half, inverse(clip.data().grip));
 }
 
 }  // namespace
@@ -105,7 +105,7 @@ void ClipApplier::free_motion(const StepContext& context) {
   const double widest = clip_->tool().opening_max, change = widest / open_time() * context.h;
   if (state().button1) held_opening_ = std::min(widest, std::max(held_opening_, clip_->opening()) + change);
   else {
-    if (held_opening_ > 0 && held_opening_ <= change) say("clip_shut", clip_->id, "");
+    if (held_opening_ > 0 && held_opening_ <= change) say(shut, clip_->id, "");
     held_opening_ = std::max(0.0, held_opening_ - change);
   }
   const double s = std::min(1.0, (held_for_ + context.h) / settle_time());
@@ -115,7 +115,7 @@ void ClipApplier::free_motion(const StepContext& context) {
 void ClipApplier::join_rows(ConstraintBuilder& builder) const {
   const Mat3 axes = pose().q.toRotationMatrix();
   // Both ends act at the clip's grip: no net moment, and the exact derivative as the axes turn with the applier.
-  const Pose& in_clip = clip_->tool().clip->grip;
+  const Pose& in_clip = clip_->data().grip;
   const Vec3 at = clip_->grip().p;
   const Pose wanted = compose(target_, in_clip);  // of the grip, in the applier's frame
   const auto both = [&](int row, const Vec3& where, const Vec3& d) {
@@ -154,7 +154,7 @@ void ClipApplier::finish(const StepContext& context, const ConstraintSolution& s
   // The button acts from the next step on: bodies move in parallel, and nothing changes hands meanwhile.
   if (state().button2 && !button2_) {
     const std::string why = clip_ ? release() : take();
-    if (!why.empty()) say("warning", id, why);
+    if (!why.empty()) say(warning, id, why);
   }
   button2_ = state().button2;
   for (Event& e : said_) {
@@ -164,15 +164,15 @@ void ClipApplier::finish(const StepContext& context, const ConstraintSolution& s
   said_.clear();
 }
 
-void ClipApplier::say(std::string event, const std::string& what, std::string text) {
-  said_.push_back({std::move(event), what, std::move(text), 0, 0, hand_index()});
+void ClipApplier::say(const EventKind& event, const std::string& what, std::string text) {
+  said_.push_back({event.name(), what, std::move(text), 0, 0, hand_index()});
 }
 
 std::string ClipApplier::release() {
   if (!clip_) return "there is no clip in the applier";
   if (held_opening_ > 0 && clip_->stop_force() > 0) return "close the jaws before you let the clip go";
   clip_->let_go();
-  say("clip_released", clip_->id, "Clip " + clip_->id + " let go");
+  say(released, clip_->id, "Clip " + clip_->id + " let go");
   empty();
   return {};
 }
@@ -208,7 +208,7 @@ std::string ClipApplier::take() {
   if (!best) return askew ? "the applier is not in line with the clip" : "no clip is within reach";
   grasp(best, compose(inverse(pose()), best->pose()), best_nominal);
   best->take(*this);
-  say("clip_taken", best->id, "Clip " + best->id + " taken");
+  say(taken, best->id, "Clip " + best->id + " taken");
   return {};
 }
 
@@ -230,7 +230,7 @@ std::string ClipApplier::load(std::string_view wanted) {
   const Pose in = held_properly(*c, false);
   grasp(c, in, in);
   c->load(*this, compose(pose(), in));
-  say("clip_loaded", c->id, "Clip " + c->id + " loaded");
+  say(loaded, c->id, "Clip " + c->id + " loaded");
   return {};
 }
 

@@ -19,6 +19,12 @@ class ClipApplier final : public Instrument {
   Param<Angle> alignment{this, {.name = "alignment", .fallback = "40 deg", .min = "1 deg", .max = "90 deg", .doc = "and turned from the applier by no more than this"}};
   Param<Duration> settle_time{this, {.name = "settle_time", .fallback = "0.3 s", .min = "0.05 s", .max = "5 s", .doc = "in which a clip taken askew slides into the applier's jaws"}};
 
+  EventKind loaded{this, {.name = "clip_loaded", .doc = "a clip came from the tray into the applier"}};
+  EventKind shut{this, {.name = "clip_shut", .doc = "the jaws of the held clip are shut again"}};
+  EventKind released{this, {.name = "clip_released", .doc = "a clip was let go in the field"}};
+  EventKind taken{this, {.name = "clip_taken", .doc = "a clip was taken back"}};
+  EventKind warning{this, {.name = "warning", .doc = "a button could not do what was wanted; the text says why"}};
+
   void join(PrepareContext& context, Simulation& simulation) override;
   Clip* clip() const { return clip_; }
   double held_opening() const { return held_opening_; }  ///< below which it does not let its clip's jaws close, rad
@@ -44,7 +50,7 @@ class ClipApplier final : public Instrument {
   std::string load(std::string_view id);
   std::string release();
   std::string take();
-  void say(std::string event, const std::string& what, std::string text);
+  void say(const EventKind& event, const std::string& what, std::string text);
   void join_rows(ConstraintBuilder& builder) const;
 
   Clip *clip_ = nullptr, *start_clip_ = nullptr;

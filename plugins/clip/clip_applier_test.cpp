@@ -104,7 +104,7 @@ TEST(ClipApplier, LetsGoAndTakesBackWithoutAStepOfForce) {
   EXPECT_TRUE(b.clip->in_field());
   b.run(grip_home, 1, false, true);
   EXPECT_FALSE(b.clip->holder()) << "the button acts once";
-  EXPECT_EQ(b.s->report().clips[0].applications, 1);
+  EXPECT_EQ(b.clip->clip_state().applications, 1);
   // Away: out of reach.
   const Pose away = displaced(grip_home, (Vec6() << 0, 0, 9e-3, 0, 0, 0).finished());
   const Pose lying = b.clip->pose();
@@ -189,7 +189,7 @@ TEST(ClipApplier, LoadsFromTheTray) {
   auto* other = b.s->scene().find_as<Clip>("other");
   EXPECT_FALSE(b.clip->active());
   b.run(grip_home, 1);
-  EXPECT_TRUE(b.s->report().clips[0].on_tray);
+  EXPECT_TRUE(b.clip->clip_state().on_tray);
   EXPECT_EQ(b.s->command("ask", "applier release"), "there is no clip in the applier");
   EXPECT_NE(b.s->command("ask", "applier load clop").find("did you mean \"clip\"?"), std::string::npos);
   EXPECT_EQ(b.s->command("ask", "applier load clip"), "");

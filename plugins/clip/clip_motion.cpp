@@ -22,7 +22,7 @@ void Clip::free_motion(const StepContext& context) {
   give_ = (0.5 * (give_ + give_.transpose())).eval();
   free_shift_ = give_shift_ * (external.head<3>() + tool_.mass * context.gravity + m * velocity_ / h);
   free_turn_ = give_ * (external.tail<3>() + spin_ / h);
-  const double reach = tool_.clip->reference, turning_inertia = m * reach * reach / 3;  // two rods of half the mass each
+  const double reach = data_.reference, turning_inertia = m * reach * reach / 3;  // two rods of half the mass each
   const double rise = strength_ * 4 * reach * reach * slope() * std::cos(opening_);
   give_opening_ = 1 / (turning_inertia * factor + std::max(0.0, rise) * (1 + hinge_time() / h));
   free_opening_ = give_opening_ * (-2 * torque(opening_) + turning_inertia * turn_rate_ / h);

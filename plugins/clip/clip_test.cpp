@@ -47,9 +47,9 @@ TEST(Clip, ClosedJawsRestOnOneAnother) {
   EXPECT_NEAR(b.clip->stop_force(), closing, 1e-6);
   EXPECT_NEAR(b.clip->force(), 0, 1e-9);
   EXPECT_FALSE(b.clip->touched());
-  ASSERT_EQ(b.s->report().clips.size(), 1u);
-  EXPECT_FALSE(b.s->report().clips[0].on_tray);
-  EXPECT_TRUE(b.s->report().clips[0].temporary);
+  ASSERT_EQ(Clips(*b.s).now().size(), 1u);
+  EXPECT_FALSE(b.clip->clip_state().on_tray);
+  EXPECT_TRUE(b.clip->clip_state().temporary);
 }
 
 TEST(Clip, SceneMayChangeTheSpring) {

@@ -21,13 +21,14 @@ Sources: Sindou, Acevedo, Turjman 1998 (grades); the geometry behind them is in 
 #include "core/registry/registry.h"
 #include "core/sim/exercise.h"
 #include "core/sim/simulation.h"
+#include "plugins/blood_flow/vessel_state.h"
 #include "plugins/clipping_rules/neck_judge.h"
 
 namespace insula {
 namespace {
 
-const VesselState* find(const StepReport& r, std::string_view id) {
-  for (const VesselState& v : r.vessels)
+const VesselState* find(const std::vector<VesselState>& vessels, std::string_view id) {
+  for (const VesselState& v : vessels)
     if (v.id == id) return &v;
   return nullptr;
 }
@@ -61,7 +62,9 @@ class GoalClipped final : public ExerciseRule {
   Param<Scalar> sealed{this, {.name = "sealed", .fallback = "0.05", .min = "0", .max = "1", .doc = "narrowest cross-section of the sac over that at rest below which it counts as closed"}};
   Param<Duration> hold{this, {.name = "hold", .fallback = "3 s", .min = "0 s", .max = "600 s", .doc = "how long it must hold"}};
 
-  void declare(PrepareContext& context, const Simulation&, ExerciseLog& log) override {
+  void declare(PrepareContext& context, const Simulation& simulation, ExerciseLog& log) override {
+    clips_ = Clips(simulation);
+    vessels_ = Vessels(simulation);
     goal_ = log.add_goal(id, text());
     const auto* vessel = dynamic_cast<const ShellBody*>(&*on);
     if (!vessel || !judge_.attach(*vessel)) return error(context, on, "needs a shell_body with a vessel that has a neck and a region \"sac\"");
@@ -89,7 +92,9 @@ class GoalClipped final : public ExerciseRule {
 
   void observe(const StepReport& r, ExerciseLog& log) override {
     int applications = 0;
-    for (const ClipState& c : r.clips)
+    const std::vector<ClipState>& clips = clips_.now();
+    const std::vector<VesselState>& vessels = vessels_.now();
+    for (const ClipState& c : clips)
       if (!c.temporary) applications += c.applications;
     if (asked_) {
       asked_ = false;
@@ -97,12 +102,12 @@ class GoalClipped final : public ExerciseRule {
       log.goal_lost(goal_, r.time);
       log.message("Take the clip back and place it again", r.time);
     }
-    const VesselState* s = find(r, sac());
+    const VesselState* s = find(vessels, sac());
     const bool shut = s && s->lumen < sealed();
-    const NeckJudgement j = judge_.judge(r.clips, shut);
+    const NeckJudgement j = judge_.judge(clips, shut);
     bool open = true;
     for (std::size_t i = 0; i < branch_names_.size(); ++i) {
-      const VesselState* b = find(r, branch_names_[i]);
+      const VesselState* b = find(vessels, branch_names_[i]);
       if (!b) continue;
       const double flow = flow_percent(*b), stenosis = 100 * (1 - std::min(1.0, b->lumen));
       log.measure(flow_[i], flow, flow >= 100 * min_flow() ? 1 : -1);
@@ -128,6 +133,8 @@ class GoalClipped final : public ExerciseRule {
   }
 
  private:
+  Clips clips_;
+  Vessels vessels_;
   NeckJudge judge_;
   std::vector<std::string> branch_names_;
   int goal_ = 0, remnant_ = 0, neck_ = 0, past_ = 0, slit_ = 0, count_ = 0;
@@ -145,7 +152,9 @@ class FaultStenosis final : public ExerciseRule {
   Param<Scalar> limit{this, {.name = "limit", .fallback = "0.5", .min = "0", .max = "1", .doc = "least flow of a branch over its flow at rest"}};
   Param<Duration> grace{this, {.name = "grace", .fallback = "5 s", .min = "0 s", .max = "600 s", .doc = "shorter times are forgiven"}};
 
-  void declare(PrepareContext& context, const Simulation&, ExerciseLog& log) override {
+  void declare(PrepareContext& context, const Simulation& simulation, ExerciseLog& log) override {
+    clips_ = Clips(simulation);
+    vessels_ = Vessels(simulation);
     fault_ = log.add_fault(id, text());
     const auto* vessel = dynamic_cast<const ShellBody*>(&*on);
     if (!vessel) return error(context, on, "needs a shell_body with a vessel");
@@ -154,9 +163,10 @@ class FaultStenosis final : public ExerciseRule {
   }
   void observe(const StepReport& r, ExerciseLog& log) override {
     bool temporary = false;
-    for (const ClipState& c : r.clips) temporary = temporary || (c.temporary && !c.on_tray && !c.holder);
+    const std::vector<VesselState>& vessels = vessels_.now();
+    for (const ClipState& c : clips_.now()) temporary = temporary || (c.temporary && !c.on_tray && !c.holder);
     for (std::size_t i = 0; i < names_.size(); ++i) {
-      const VesselState* b = find(r, names_[i]);
+      const VesselState* b = find(vessels, names_[i]);
       const bool low = b && !temporary && flow_percent(*b) < 100 * limit();
       below_[i] = low ? below_[i] + r.h : 0;
       if (low && below_[i] > grace() && armed_[i]) {
@@ -172,6 +182,8 @@ class FaultStenosis final : public ExerciseRule {
   }
 
  private:
+  Clips clips_;
+  Vessels vessels_;
   int fault_ = 0;
   std::vector<std::string> names_;
   std::vector<double> below_;

@@ -2,8 +2,13 @@
 // The judge of a clipping against blades put at known places, and the rules against reports made by hand.
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <iterator>
+
 #include "core/mechanics/shell_body.h"
 #include "core/testing/example.h"
+#include "plugins/blood_flow/vessel_state.h"
+#include "plugins/clip/clip_state.h"
 #include "plugins/clipping_rules/neck_judge.h"
 
 namespace insula {
@@ -11,11 +16,36 @@ namespace {
 
 const std::filesystem::path example = std::filesystem::path(INSULA_SOURCE_DIR) / "plugins/clipping_rules/example.xml";
 
+/// Vessels that a test sets.
+class FakeVessels final : public Constraint, public VesselSource {
+ public:
+  void build(const StepContext&, ConstraintBuilder&) override {}
+  void append_vessels(std::vector<VesselState>& out) const override { out.insert(out.end(), vessels.begin(), vessels.end()); }
+  std::vector<VesselState> vessels;
+};
+
+/// A clip that a test sets; on the tray at first.
+class FakeClip final : public Constraint, public ClipSource {
+ public:
+  void build(const StepContext&, ConstraintBuilder&) override {}
+  ClipState clip_state() const override { return state; }
+  ClipState state;
+};
+
 class ClippingRules : public ::testing::Test {
  protected:
   void SetUp() override {
-    s = test::load(example);
-    ASSERT_TRUE(s && s->exercise());
+    registry.add<FakeVessels>("fake_vessels", Kind::constraint, "for tests");
+    registry.add<FakeClip>("fake_clip", Kind::constraint, "for tests");
+    std::ifstream in(example);
+    std::string text{std::istreambuf_iterator<char>(in), {}};
+    text.insert(text.find("<exercise"), "<fake_vessels id=\"network\"/><fake_clip id=\"fake\"/>");
+    auto loaded = load_simulation_text(text, example, registry, 1);
+    ASSERT_TRUE(loaded.simulation) << loaded.diagnostics.format();
+    s = std::move(loaded.simulation);
+    ASSERT_TRUE(s->exercise());
+    network = s->scene().find_as<FakeVessels>("network");
+    in_field = &s->scene().find_as<FakeClip>("fake")->state;
     artery = s->scene().find_as<ShellBody>("artery");
     ASSERT_TRUE(artery);
     const VesselModel& m = artery->model();
@@ -27,7 +57,7 @@ class ClippingRules : public ::testing::Test {
       VesselState v;
       v.id = id;
       v.flow = v.flow_at_rest = 1e-6;
-      report.vessels.push_back(v);
+      network->vessels.push_back(v);
     }
   }
   /// A released clip whose blades cross the neck's axis at this height, `past` beyond the neck's far side.
@@ -69,7 +99,15 @@ class ClippingRules : public ::testing::Test {
       if (m.id == id) return m.value;
     throw std::runtime_error("no measure " + id);
   }
+  static Registry builtin() {
+    Registry r;
+    register_builtin(r);
+    return r;
+  }
+  Registry registry = builtin();
   std::unique_ptr<Simulation> s;
+  FakeVessels* network = nullptr;
+  ClipState* in_field = nullptr;
   ShellBody* artery = nullptr;
   Vec3 up, centre, across;
   StepReport report;
@@ -115,15 +153,15 @@ TEST_F(ClippingRules, TipAndSlitAreMeasured) {
 
 TEST_F(ClippingRules, GoalNeedsASealedNeckAndOpenBranches) {
   pinch(1.5e-3);
-  report.clips = {clip(0)};
+  *in_field = clip(0);
   show(1);
   EXPECT_FALSE(log().goals()[0].done) << "the sac still fills";
-  report.vessels[3].lumen = 0;
-  report.vessels[1].flow = 0.5e-6;
+  network->vessels[3].lumen = 0;
+  network->vessels[1].flow = 0.5e-6;
   show(1);
   EXPECT_FALSE(log().goals()[0].done) << "a branch is narrowed";
   EXPECT_NEAR(measure("clip_flow_superior"), 50, 1e-12);
-  report.vessels[1].flow = 0.9e-6;
+  network->vessels[1].flow = 0.9e-6;
   show(0.4);
   EXPECT_FALSE(log().goals()[0].done) << "not long enough";
   show(0.2);
@@ -134,27 +172,27 @@ TEST_F(ClippingRules, GoalNeedsASealedNeckAndOpenBranches) {
 TEST_F(ClippingRules, AnotherPlacementCanBeAskedFor) {
   pinch(1.5e-3);
   EXPECT_TRUE(s->command("ask", "clip ask_again").empty());
-  report.clips = {clip(0)};
-  report.vessels[3].lumen = 0;
+  *in_field = clip(0);
+  network->vessels[3].lumen = 0;
   show(2);
   EXPECT_FALSE(log().goals()[0].done) << "the same placement does not count again";
-  report.clips[0].applications = 2;
+  in_field->applications = 2;
   show(1);
   EXPECT_TRUE(log().goals()[0].done);
 }
 
 TEST_F(ClippingRules, AClosedBranchIsOneFault) {
-  report.vessels[2].flow = 0.2e-6;
+  network->vessels[2].flow = 0.2e-6;
   show(0.4);
   EXPECT_EQ(log().faults()[0].count, 0);
   show(2);
   EXPECT_EQ(log().faults()[0].count, 1);
   ClipState temporary = clip(0);
   temporary.temporary = true;
-  report.vessels[2].flow = 1e-6;
+  network->vessels[2].flow = 1e-6;
   show(0.1);
-  report.clips = {temporary};
-  report.vessels[2].flow = 0;
+  *in_field = temporary;
+  network->vessels[2].flow = 0;
   show(2);
   EXPECT_EQ(log().faults()[0].count, 1) << "a temporary clip is meant to";
 }

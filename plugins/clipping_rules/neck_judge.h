@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "core/mechanics/shell_body.h"
-#include "core/sim/report.h"
+#include "plugins/clip/clip_state.h"
 
 namespace insula {
 

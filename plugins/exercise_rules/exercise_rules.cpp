@@ -2,8 +2,8 @@
 /*
 # exercise_rules
 
-Goals, faults and the clock of training exercises. Rules read the report of each step and the positions of surfaces; they
-write to the exercise's log alone.
+Goals, faults and the clock of training exercises. Rules read the report of each step, channels, and the positions of
+surfaces; they write to the exercise's log alone.
 
 A force fault counts once each time a tool presses a body harder than the limit for longer than the grace time, and is
 armed again when the force has fallen below nine tenths of the limit. An order fault counts a strand that was severed
@@ -15,6 +15,8 @@ while a good number of strands nearer to the surface still stood.
 #include "core/registry/registry.h"
 #include "core/sim/exercise.h"
 #include "core/sim/simulation.h"
+#include "plugins/exercise_rules/register.h"
+#include "plugins/strand_springs/strand_set.h"
 
 namespace insula {
 namespace {
@@ -24,12 +26,17 @@ class GoalStrands final : public ExerciseRule {
   Param<std::string> text{this, {.name = "text", .fallback = "Divide the arachnoid strands", .doc = "what the trainee is to do"}};
   Param<Scalar> fraction{this, {.name = "fraction", .fallback = "1", .min = "0.01", .max = "1", .doc = "share of all strands that must be parted"}};
 
-  void declare(PrepareContext&, const Simulation&, ExerciseLog& log) override { goal_ = log.add_goal(id, text()); }
+  void declare(PrepareContext&, const Simulation& simulation, ExerciseLog& log) override {
+    strands_ = Strands(simulation);
+    goal_ = log.add_goal(id, text());
+  }
   void observe(const StepReport& r, ExerciseLog& log) override {
-    if (r.strands_total > 0 && r.strands_total - r.strands_left >= fraction() * r.strands_total - 1e-9) log.goal(goal_, r.time);
+    const int total = strands_.total(), severed = total - strands_.left();
+    if (total > 0 && severed >= fraction() * total - 1e-9) log.goal(goal_, r.time);
   }
 
  private:
+  Strands strands_;
   int goal_ = 0;
 };
 
@@ -132,24 +139,29 @@ class FaultOrder final : public ExerciseRule {
   void prepare(PrepareContext& context) override {
     if (inward().norm() < 1e-9) error(context, inward, "inward: a direction must not be zero");
   }
-  void declare(PrepareContext&, const Simulation&, ExerciseLog& log) override { fault_ = log.add_fault(id, text()); }
+  void declare(PrepareContext&, const Simulation& simulation, ExerciseLog& log) override {
+    strands_ = Strands(simulation);
+    fault_ = log.add_fault(id, text());
+  }
   void observe(const StepReport& r, ExerciseLog& log) override {
-    if (depth_.size() != r.strands.size()) {  // first step: depths at the start
+    const std::vector<StrandState>& strands = strands_.now();
+    if (depth_.size() != strands.size()) {  // first step: depths at the start
       depth_.clear();
-      for (const StrandState& s : r.strands) depth_.push_back(0.5 * (s.a + s.b).dot(inward().normalized()));
-      severed_.assign(r.strands.size(), 0);
+      for (const StrandState& s : strands) depth_.push_back(0.5 * (s.a + s.b).dot(inward().normalized()));
+      severed_.assign(strands.size(), 0);
     }
-    for (std::size_t i = 0; i < r.strands.size(); ++i) {
-      if (severed_[i] || r.strands[i].integrity >= 0) continue;
+    for (std::size_t i = 0; i < strands.size(); ++i) {
+      if (severed_[i] || strands[i].integrity >= 0) continue;
       severed_[i] = 1;
       int before = 0;
-      for (std::size_t k = 0; k < r.strands.size(); ++k) before += !severed_[k] && r.strands[k].integrity >= 0 && depth_[k] < depth_[i] - margin();
+      for (std::size_t k = 0; k < strands.size(); ++k) before += !severed_[k] && strands[k].integrity >= 0 && depth_[k] < depth_[i] - margin();
       if (before > allowed()) log.fault(fault_, r.time, before);
     }
   }
   void reset() override { depth_.clear(); }
 
  private:
+  Strands strands_;
   int fault_ = 0;
   std::vector<double> depth_;
   std::vector<char> severed_;
@@ -175,5 +187,6 @@ INSULA_PLUGIN(exercise_rules) {
   registry.add<FaultForce>("fault_force", Kind::exercise_rule, "counts too much force of a tool on a body");
   registry.add<FaultTorn>("fault_torn", Kind::exercise_rule, "counts strands torn by pulling");
   registry.add<FaultOrder>("fault_order", Kind::exercise_rule, "counts strands cut in the depth before the surface");
+  register_channel_rules(registry);
   registry.add<TimeLimit>("time_limit", Kind::exercise_rule, "ends the exercise when the time is over");
 }

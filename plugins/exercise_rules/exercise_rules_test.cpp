@@ -2,19 +2,43 @@
 // Each rule against step reports made by hand: what counts, what is forgiven, what is counted once.
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <iterator>
+
 #include "core/testing/example.h"
+#include "plugins/strand_springs/strand_set.h"
 
 namespace insula {
 namespace {
 
 const std::filesystem::path example = std::filesystem::path(INSULA_SOURCE_DIR) / "plugins/exercise_rules/example.xml";
 
-/// The example scene; its exercise is shown reports instead of steps.
+/// Strands that a test puts where it wants them.
+class FakeStrands final : public Constraint, public StrandSet {
+ public:
+  void build(const StepContext&, ConstraintBuilder&) override {}
+  int strand_count() const override { return int(strands.size()); }
+  StrandState strand(int i) const override { return strands[std::size_t(i)]; }
+  std::vector<StrandState> strands;
+  Channel<Scalar> standing{this, {.name = "standing", .doc = "for tests"}};
+  Channel<Force> tension{this, {.name = "tension", .doc = "for tests"}};
+};
+
+/// The example scene with strands of the test; its exercise is shown reports instead of steps.
 class Rules : public ::testing::Test {
  protected:
   void SetUp() override {
-    s = test::load(example);
-    ASSERT_TRUE(s && s->exercise());
+    registry.add<FakeStrands>("fake_strands", Kind::constraint, "for tests");
+    std::ifstream in(example);
+    std::string text{std::istreambuf_iterator<char>(in), {}};
+    const std::size_t at = text.find("<strand_springs");
+    ASSERT_NE(at, std::string::npos);
+    text.replace(at, text.find("/>", at) + 2 - at, "<fake_strands id=\"strands\"/>");
+    auto loaded = load_simulation_text(text, example, registry, 1);
+    ASSERT_TRUE(loaded.simulation) << loaded.diagnostics.format();
+    s = std::move(loaded.simulation);
+    ASSERT_TRUE(s->exercise());
+    fake = s->scene().find_as<FakeStrands>("strands");
     knife = s->scene().find_as<Instrument>("knife");
     lower = s->scene().find_as<SoftBody>("lower");
     upper = s->scene().find_as<SoftBody>("upper");
@@ -48,23 +72,28 @@ class Rules : public ::testing::Test {
   }
   /// Strands along x, the first nearest to the surface (inward is -x), 3 mm apart.
   void strands(int n) {
-    report.strands.clear();
+    fake->strands.clear();
     for (int i = 0; i < n; ++i) {
       StrandState t;
       t.a = Vec3(-0.003 * i, 0, 0);
       t.b = Vec3(-0.003 * i, 0, 0.002);
-      report.strands.push_back(t);
+      fake->strands.push_back(t);
     }
-    report.strands_total = report.strands_left = n;
   }
   void part(std::initializer_list<int> which) {
     for (int i : which) {
-      report.strands[std::size_t(i)].integrity = -1;
-      --report.strands_left;
+      fake->strands[std::size_t(i)].integrity = -1;
     }
   }
 
+  static Registry builtin() {
+    Registry r;
+    register_builtin(r);
+    return r;
+  }
+  Registry registry = builtin();
   std::unique_ptr<Simulation> s;
+  FakeStrands* fake = nullptr;
   Instrument* knife = nullptr;
   SoftBody *lower = nullptr, *upper = nullptr;
   StepReport report;
@@ -193,7 +222,7 @@ TEST_F(Rules, OrderCountsAStrandPartedInTheDepth) {
   EXPECT_EQ(faults("order"), 1);
   show();
   EXPECT_EQ(faults("order"), 1) << "once a strand";
-  for (StrandState& t : report.strands) t.a.x() = t.b.x() = -t.a.x();  // depth is that of the start
+  for (StrandState& t : fake->strands) t.a.x() = t.b.x() = -t.a.x();  // depth is that of the start
   part({3});
   show();
   EXPECT_EQ(faults("order"), 2);

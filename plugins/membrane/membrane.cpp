@@ -56,6 +56,7 @@ class Membrane final : public ForceModel {
   double energy(const double* x) override { return stretch_.energy(x) + bend_.energy(x); }
   bool prestrain(const double* u) override;
   double stiffness_damping() const override { return stiffness_time(); }
+  double wall_thickness(int region) const override { return std::size_t(region) < own_.size() && owns(region) ? thickness() : 0; }
   void reset() override { bend_.reset(); }
 
  private:
@@ -178,5 +179,6 @@ bool Membrane::prestrain(const double* u) {
 }  // namespace insula
 
 INSULA_PLUGIN(membrane) {
+  registry.add_material({"vessel", "wall", {0.50, 0.10, 0.08, 1}, 0.46, 0, 0.3});
   registry.add<insula::Membrane>("membrane", insula::Kind::force_model, "wall of a shell that resists stretch and bending");
 }

@@ -40,7 +40,6 @@ Source of the idea: Dequidt et al. 2015, section 3.4 (pressure as a constraint w
 
 #include "core/base/text.h"
 #include "core/registry/registry.h"
-#include "core/sim/report.h"
 #include "core/sim/simulation.h"
 
 namespace insula {
@@ -77,6 +76,10 @@ void BloodPressure::reset() {
   rate_ = rate_wanted_ = heart_rate();
   fluid_ = rest_volume_;
   pressure_.resize(rest_volume_.size());
+  std::vector<std::string> names;
+  for (int c = 0; c < chambers_.count(); ++c) names.push_back(chambers_.name(c));
+  chamber_pressure.declare(std::move(names));
+  heart_phase.set_subject(on.get());
   for (int c = 0; c < int(pressure_.size()); ++c) pressure_[std::size_t(c)] = reference(c);
   fill();
 }
@@ -230,7 +233,11 @@ void BloodPressure::finish_feed(const StepContext& context, const ConstraintSolu
   feed_->settle(context, at_node_.data(), yielding_.data());
 }
 
-void BloodPressure::report(StepReport& report) const { report.heart_phase = phase_; }
+void BloodPressure::publish() {
+  heart_phase.set(phase_);
+  arterial_now.set(arterial(0));
+  for (std::size_t c = 0; c < pressure_.size(); ++c) chamber_pressure.set(c, pressure_[c]);
+}
 
 void BloodPressure::append_state(std::vector<double>& out) const {
   out.insert(out.end(), {phase_, systolic_now_, diastolic_now_, rate_, systolic_wanted_, diastolic_wanted_, rate_wanted_});

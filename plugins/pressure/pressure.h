@@ -39,6 +39,10 @@ class BloodPressure final : public Constraint, public StatesLaw {
   Param<Duration> response{this, {.name = "response", .fallback = "1 s", .min = "0 s", .max = "60 s", .doc = "time in which pressure and rate follow a command"}};
   Param<std::string> regions{this, {.name = "chambers", .fallback = "", .doc = "regions of each chamber, chambers separated by semicolons: \"parent; superior; sac bleb\"; none: one a region with a centreline"}};
 
+  Channel<Pressure> arterial_now{this, {.name = "arterial", .doc = "pressure of the arteries", .min = "0 mmHg", .max = "300 mmHg", .shown = Shown::vital, .display = "mmHg", .digits = 0}};
+  Channel<Scalar> heart_phase{this, {.name = "heart_phase", .doc = "of the beat, 0 the start of systole", .min = "0", .max = "1", .shown = Shown::none, .role = Role::pulse}};
+  ChannelGroup<Pressure> chamber_pressure{this, {.name = "pressure", .doc = "on the wall of a chamber", .min = "0 mmHg", .max = "300 mmHg", .shown = Shown::none, .display = "mmHg", .digits = 0}};
+
   /// Makes the chambers, if they are not made yet; false when something is wrong with them.
   bool ready(PrepareContext& context);
   /// Before the first step: the network that feeds the chambers.
@@ -62,7 +66,7 @@ class BloodPressure final : public Constraint, public StatesLaw {
   void detect(const StepContext& context) override;
   void build(const StepContext& context, ConstraintBuilder& builder) override;
   void finish(const StepContext& context, const ConstraintSolution& solution) override;
-  void report(StepReport& report) const override;
+  void publish() override;
   void reset() override;
   void append_state(std::vector<double>& out) const override;
   StatedLaw law() const override;

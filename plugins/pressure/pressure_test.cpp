@@ -129,7 +129,7 @@ TEST(Pressure, OnlyTheExcessOverTheMeanLoadsAWallWithoutTension) {
   }
   EXPECT_NEAR(sum / 100, 0, 1e-8);
   EXPECT_NEAR(most - least, 60 * mmHg, 0.2 * mmHg);  // samples may miss the peak
-  EXPECT_NEAR(t.s->report().heart_phase, t.pressure->phase(), 0);
+  EXPECT_NEAR(t.pressure->heart_phase(), t.pressure->phase(), 0);
 }
 
 TEST(Pressure, BalancesTheWallsSprings) {

@@ -24,33 +24,48 @@ E. Page, Continuous inspection schemes, Biometrika 1954).
 #include "core/registry/registry.h"
 #include "core/sim/exercise.h"
 #include "core/sim/simulation.h"
+#include "plugins/bleeding/bleeding_state.h"
+#include "plugins/clip/clip_state.h"
 
 namespace insula {
 namespace {
 
 bool released(const ClipState& c) { return !c.on_tray && !c.holder; }
-bool any_clip(const StepReport& r, bool temporary) {
-  return std::any_of(r.clips.begin(), r.clips.end(), [&](const ClipState& c) { return released(c) && c.temporary == temporary; });
-}
-double bleeding_rate(const StepReport& r) {
-  double rate = 0;
-  for (const BleedingState& b : r.bleeding) rate += b.rate;
-  return rate;
-}
-double ruptured_at(const StepReport& r) {
-  double at = -1;
-  for (const BleedingState& b : r.bleeding)
-    if (b.since >= 0 && (at < 0 || b.since < at)) at = b.since;
-  return at;
-}
+
+/// What these rules look at: the clips and bleedings of the scene, as they are now.
+class Patient {
+ public:
+  Patient() = default;
+  explicit Patient(const Simulation& simulation) : clips_(simulation), bleedings_(simulation) {}
+  bool any_clip(bool temporary) {
+    const auto& clips = clips_.now();
+    return std::any_of(clips.begin(), clips.end(), [&](const ClipState& c) { return released(c) && c.temporary == temporary; });
+  }
+  double bleeding_rate() {
+    double rate = 0;
+    for (const BleedingState& b : bleedings_.now()) rate += b.rate;
+    return rate;
+  }
+  /// Simulated time of the first rupture, s; -1: none.
+  double ruptured_at() {
+    double at = -1;
+    for (const BleedingState& b : bleedings_.now())
+      if (b.since >= 0 && (at < 0 || b.since < at)) at = b.since;
+    return at;
+  }
+
+ private:
+  Clips clips_;
+  Bleedings bleedings_;
+};
 
 /// Whether blood runs, over the beats.
 class Running {
  public:
-  bool observe(const StepReport& r, double rate) {
+  bool observe(double h, double now, double rate) {
     const double full = rate * 1.0;  // of a second
-    surplus_ = std::clamp(surplus_ + (bleeding_rate(r) - rate) * r.h, 0.0, full);
-    const bool over = bleeding_rate(r) > rate && surplus_ >= full, none = surplus_ <= 0 && bleeding_rate(r) <= rate;
+    surplus_ = std::clamp(surplus_ + (now - rate) * h, 0.0, full);
+    const bool over = now > rate && surplus_ >= full, none = surplus_ <= 0 && now <= rate;
     runs_ = over || (runs_ && !none);
     return runs_;
   }
@@ -82,9 +97,12 @@ class GoalBleedingStopped final : public ExerciseRule {
   Param<std::string> text{this, {.name = "text", .fallback = "Stop the bleeding", .doc = "what the trainee is to do"}};
   Param<FlowRate> rate{this, {.name = "rate", .fallback = "1 ml/min", .min = "0 ml/min", .max = "1000 ml/min", .doc = "bleeding that counts as none"}};
   Param<Duration> hold{this, {.name = "hold", .fallback = "2 s", .min = "0 s", .max = "600 s", .doc = "how long it must stand"}};
-  void declare(PrepareContext&, const Simulation&, ExerciseLog& log) override { goal_ = log.add_goal(id, text()); }
+  void declare(PrepareContext&, const Simulation& simulation, ExerciseLog& log) override {
+    patient_ = Patient(simulation);
+    goal_ = log.add_goal(id, text());
+  }
   void observe(const StepReport& r, ExerciseLog& log) override {
-    const bool runs = running_.observe(r, rate()), dry = ruptured_at(r) >= 0 && bleeding_rate(r) <= rate();
+    const bool runs = running_.observe(r.h, patient_.bleeding_rate(), rate()), dry = patient_.ruptured_at() >= 0 && patient_.bleeding_rate() <= rate();
     held_ = dry ? held_ + r.h : 0;
     if (dry && held_ >= hold()) log.goal(goal_, r.time);
     if (!dry && runs && log.goals()[std::size_t(goal_)].done) log.goal_lost(goal_, r.time);
@@ -95,6 +113,7 @@ class GoalBleedingStopped final : public ExerciseRule {
   }
 
  private:
+  Patient patient_;
   int goal_ = 0;
   double held_ = 0;
   Running running_;
@@ -106,12 +125,15 @@ class TimerRupture final : public ExerciseRule {
   Param<std::string> over{this, {.name = "over", .fallback = "Too much time has passed since the rupture", .doc = "what the trainee is told when the time is over"}};
   Param<Duration> limit{this, {.name = "limit", .fallback = "300 s", .min = "1 s", .max = "7200 s", .doc = "time until the exercise has failed"}};
   Param<FlowRate> rate{this, {.name = "rate", .fallback = "1 ml/min", .min = "0 ml/min", .max = "1000 ml/min", .doc = "bleeding that counts as none"}};
-  void declare(PrepareContext&, const Simulation&, ExerciseLog& log) override { timer_ = log.add_timer(id, text(), limit()); }
+  void declare(PrepareContext&, const Simulation& simulation, ExerciseLog& log) override {
+    patient_ = Patient(simulation);
+    timer_ = log.add_timer(id, text(), limit());
+  }
   void observe(const StepReport& r, ExerciseLog& log) override {
-    const double since = ruptured_at(r);
-    const bool runs = running_.observe(r, rate());
+    const double since = patient_.ruptured_at();
+    const bool runs = running_.observe(r.h, patient_.bleeding_rate(), rate());
     if (since < 0) return;
-    const bool mastered = any_clip(r, false) && !any_clip(r, true) && !runs;
+    const bool mastered = patient_.any_clip(false) && !patient_.any_clip(true) && !runs;
     if (!mastered) elapsed_ = r.time - since;
     log.timer(timer_, elapsed_, !mastered);
     if (elapsed_ > limit()) log.fail(over(), r.time);
@@ -122,6 +144,7 @@ class TimerRupture final : public ExerciseRule {
   }
 
  private:
+  Patient patient_;
   int timer_ = 0;
   double elapsed_ = 0;
   Running running_;
@@ -132,12 +155,13 @@ class TimerTemporaryClip final : public ExerciseRule {
   Param<std::string> text{this, {.name = "text", .fallback = "Temporary clip", .doc = "what the clock is called"}};
   Param<std::string> over{this, {.name = "over", .fallback = "The temporary clip has been on for too long", .doc = "what the trainee is told when the time is over"}};
   Param<Duration> limit{this, {.name = "limit", .fallback = "180 s", .min = "1 s", .max = "3600 s", .doc = "longest occlusion without a fault"}};
-  void declare(PrepareContext&, const Simulation&, ExerciseLog& log) override {
+  void declare(PrepareContext&, const Simulation& simulation, ExerciseLog& log) override {
+    patient_ = Patient(simulation);
     timer_ = log.add_timer(id, text(), limit());
     fault_ = log.add_fault(id + "_over", over());
   }
   void observe(const StepReport& r, ExerciseLog& log) override {
-    const bool on = any_clip(r, true);
+    const bool on = patient_.any_clip(true);
     elapsed_ = on ? elapsed_ + r.h : 0;
     log.timer(timer_, elapsed_, on);
     if (!on) warned_ = false;
@@ -152,6 +176,7 @@ class TimerTemporaryClip final : public ExerciseRule {
   }
 
  private:
+  Patient patient_;
   int timer_ = 0, fault_ = 0;
   double elapsed_ = 0;
   bool warned_ = false;
@@ -161,12 +186,15 @@ class GoalTemporaryRemoved final : public ExerciseRule {
  public:
   Param<std::string> text{this, {.name = "text", .fallback = "Remove the temporary clip", .doc = "what the trainee is to do"}};
   Param<FlowRate> rate{this, {.name = "rate", .fallback = "1 ml/min", .min = "0 ml/min", .max = "1000 ml/min", .doc = "bleeding that counts as none"}};
-  void declare(PrepareContext&, const Simulation&, ExerciseLog& log) override { goal_ = log.add_goal(id, text()); }
+  void declare(PrepareContext&, const Simulation& simulation, ExerciseLog& log) override {
+    patient_ = Patient(simulation);
+    goal_ = log.add_goal(id, text());
+  }
   void observe(const StepReport& r, ExerciseLog& log) override {
-    const bool on = any_clip(r, true);
+    const bool on = patient_.any_clip(true);
     was_on_ = was_on_ || on;
-    const bool runs = running_.observe(r, rate());
-    const bool good = was_on_ && !on && any_clip(r, false) && !runs;
+    const bool runs = running_.observe(r.h, patient_.bleeding_rate(), rate());
+    const bool good = was_on_ && !on && patient_.any_clip(false) && !runs;
     if (good) log.goal(goal_, r.time);
     if (!good && log.goals()[std::size_t(goal_)].done) log.goal_lost(goal_, r.time);
   }
@@ -176,6 +204,7 @@ class GoalTemporaryRemoved final : public ExerciseRule {
   }
 
  private:
+  Patient patient_;
   int goal_ = 0;
   bool was_on_ = false;
   Running running_;

@@ -2,7 +2,13 @@
 // The rules of a rupture against step reports made by hand.
 #include <gtest/gtest.h>
 
+#include <array>
+#include <fstream>
+#include <iterator>
+
 #include "core/testing/example.h"
+#include "plugins/bleeding/bleeding_state.h"
+#include "plugins/clip/clip_state.h"
 
 namespace insula {
 namespace {
@@ -10,15 +16,38 @@ namespace {
 const std::filesystem::path example = std::filesystem::path(INSULA_SOURCE_DIR) / "plugins/rupture_rules/example.xml";
 constexpr double ml_per_min = 1e-6 / 60;
 
+/// A bleeding that a test sets.
+class FakeBleeding final : public Constraint, public BleedingSource {
+ public:
+  void build(const StepContext&, ConstraintBuilder&) override {}
+  BleedingState bleeding() const override { return state; }
+  BleedingState state;
+};
+
+/// A clip that a test sets.
+class FakeClip final : public Constraint, public ClipSource {
+ public:
+  void build(const StepContext&, ConstraintBuilder&) override {}
+  ClipState clip_state() const override { return state; }
+  ClipState state;
+};
+
 class RuptureRules : public ::testing::Test {
  protected:
   void SetUp() override {
-    s = test::load(example);
-    ASSERT_TRUE(s && s->exercise());
+    registry.add<FakeBleeding>("fake_bleeding", Kind::constraint, "for tests");
+    registry.add<FakeClip>("fake_clip", Kind::constraint, "for tests");
+    std::ifstream in(example);
+    std::string text{std::istreambuf_iterator<char>(in), {}};
+    text.insert(text.find("<exercise"), "<fake_bleeding id=\"bleb\"/><fake_clip id=\"a\"/><fake_clip id=\"b\"/>");
+    auto loaded = load_simulation_text(text, example, registry, 1);
+    ASSERT_TRUE(loaded.simulation) << loaded.diagnostics.format();
+    s = std::move(loaded.simulation);
+    ASSERT_TRUE(s->exercise());
     report.h = 0.05;
-    report.bleeding.resize(1);
-    report.clips.resize(2);
-    report.clips[1].temporary = true;
+    bleeding = &s->scene().find_as<FakeBleeding>("bleb")->state;
+    clips = {&s->scene().find_as<FakeClip>("a")->state, &s->scene().find_as<FakeClip>("b")->state};
+    clips[1]->temporary = true;
   }
   void show(double seconds) {
     for (double t = 0; t < seconds - 1e-9; t += report.h) {
@@ -29,10 +58,10 @@ class RuptureRules : public ::testing::Test {
     }
   }
   void rupture() {
-    report.bleeding[0] = {true, 40 * ml_per_min, 0, 0, Vec3::Zero(), Vec3::UnitZ(), 0.01, report.time};
+    *bleeding = {true, 40 * ml_per_min, 0, 0, report.time};
     report.events.push_back({"rupture", "bleb", "", 0, report.time});
   }
-  void put(int clip, bool on) { report.clips[std::size_t(clip)].on_tray = !on; }
+  void put(int clip, bool on) { clips[std::size_t(clip)]->on_tray = !on; }
   const ExerciseLog& log() { return s->exercise()->log(); }
   bool done(const std::string& id) {
     for (const GoalState& g : log().goals())
@@ -49,7 +78,15 @@ class RuptureRules : public ::testing::Test {
       if (t.id == id) return t;
     throw std::runtime_error("no timer " + id);
   }
+  static Registry builtin() {
+    Registry r;
+    register_builtin(r);
+    return r;
+  }
+  Registry registry = builtin();
   std::unique_ptr<Simulation> s;
+  BleedingState* bleeding = nullptr;
+  std::array<ClipState*, 2> clips{};
   StepReport report;
 };
 
@@ -69,7 +106,7 @@ TEST_F(RuptureRules, MasteredInOrder) {
   EXPECT_NEAR(timer("clock").elapsed, 1, 1e-9);
   EXPECT_TRUE(timer("clock").running);
   put(1, true);
-  report.bleeding[0].rate = 0.1 * ml_per_min;
+  bleeding->rate = 0.1 * ml_per_min;
   show(0.15);
   EXPECT_FALSE(done("stop")) << "too short";
   show(0.1);
@@ -90,10 +127,10 @@ TEST_F(RuptureRules, MasteredInOrder) {
 TEST_F(RuptureRules, BleedingAgainTakesTheGoalBack) {
   rupture();
   show(0.1);
-  report.bleeding[0].rate = 0;
+  bleeding->rate = 0;
   show(0.5);
   EXPECT_TRUE(done("stop"));
-  report.bleeding[0].rate = 10 * ml_per_min;
+  bleeding->rate = 10 * ml_per_min;
   show(0.15);
   EXPECT_FALSE(done("stop"));
 }
@@ -102,7 +139,7 @@ TEST_F(RuptureRules, SpurtsTakeNothingBackButBloodThatRunsDoes) {
   rupture();
   put(0, true);
   put(1, true);
-  report.bleeding[0].rate = 0;
+  bleeding->rate = 0;
   show(0.05);
   put(1, false);
   show(0.05);
@@ -114,7 +151,7 @@ TEST_F(RuptureRules, SpurtsTakeNothingBackButBloodThatRunsDoes) {
     for (int beat = 0; beat < 133; ++beat)
       for (const double now : {rate, 0.5, 0.5}) {
         const bool had = done("removed");
-        report.bleeding[0].rate = now * ml_per_min;
+        bleeding->rate = now * ml_per_min;
         show(0.05);
         lost += had && !done("removed");
       }
@@ -129,14 +166,14 @@ TEST_F(RuptureRules, SpurtsTakeNothingBackButBloodThatRunsDoes) {
 
 TEST_F(RuptureRules, AStoppedBleedingMaySpurt) {
   rupture();
-  report.bleeding[0].rate = 0;
+  bleeding->rate = 0;
   show(0.3);
   ASSERT_TRUE(done("stop"));
   for (int beat = 0; beat < 8; ++beat) {
-    report.bleeding[0].rate = 10 * ml_per_min;
+    bleeding->rate = 10 * ml_per_min;
     show(0.05);
     EXPECT_TRUE(done("stop")) << beat;
-    report.bleeding[0].rate = 0;
+    bleeding->rate = 0;
     show(0.95);
   }
 }
@@ -144,7 +181,7 @@ TEST_F(RuptureRules, AStoppedBleedingMaySpurt) {
 TEST_F(RuptureRules, TooLongOcclusionIsOneFault) {
   rupture();
   put(1, true);
-  report.bleeding[0].rate = 0;
+  bleeding->rate = 0;
   show(2.9);
   EXPECT_EQ(faults("occlusion_over"), 0);
   show(3);
@@ -168,7 +205,7 @@ TEST_F(RuptureRules, TimeRunsOut) {
 TEST_F(RuptureRules, AHeldClipIsNotOn) {
   rupture();
   put(1, true);
-  report.clips[1].holder = s->bodies().front();
+  clips[1]->holder = s->bodies().front();
   show(1);
   EXPECT_FALSE(timer("occlusion").running);
 }

@@ -18,8 +18,8 @@ TEST(StrandSprings, GeneratedAcrossTheGap) {
   auto* strands = one->scene().find_as<StrandSprings>("strands");
   one->step();
   two->step();
-  const auto& a_ends = one->report().strands;
-  const auto& b_ends = two->report().strands;
+  const auto a_ends = Strands(*one).now();
+  const auto b_ends = Strands(*two).now();
   ASSERT_EQ(a_ends.size(), b_ends.size());
   EXPECT_LE(strands->count(), 32);  // 8 per cm2 on 4 cm2, doubles left out
   EXPECT_GE(strands->count(), 14);
@@ -62,16 +62,17 @@ TEST(StrandSprings, OneSurfaceIsTiedToItselfAcrossAGap) {
   const auto s = trough(folder, true, "");
   ASSERT_TRUE(s);
   s->step();
-  EXPECT_GE(s->report().strands.size(), 8u);
+  const auto strands = Strands(*s).now();
+  EXPECT_GE(strands.size(), 8u);
   using Place = std::array<double, 3>;
   std::set<std::pair<Place, Place>> pairs;
-  for (const StrandState& t : s->report().strands) {
+  for (const StrandState& t : strands) {
     EXPECT_NEAR(std::abs(t.a.x() - t.b.x()), 0.002, 1e-4) << "not across the gap";
     EXPECT_GT(t.a.z() + t.b.z(), 0.006 - 1e-4) << "2 (z - 1 mm) + 2 mm must be more than three times 2 mm";
     const Place here{t.a.x(), t.a.y(), t.a.z()}, there{t.b.x(), t.b.y(), t.b.z()};
     pairs.insert({std::min(here, there), std::max(here, there)});
   }
-  EXPECT_EQ(pairs.size(), s->report().strands.size()) << "a strand and its reverse are one";
+  EXPECT_EQ(pairs.size(), strands.size()) << "a strand and its reverse are one";
   EXPECT_FALSE(trough(folder, false, "")) << "nothing faces anything across a gap";
 }
 
@@ -81,7 +82,7 @@ TEST(StrandSprings, StrandsWithinABodyDrawItTogether) {
   ASSERT_TRUE(slack && taut);
   slack->step();
   for (int n = 0; n < 600; ++n) taut->step();
-  const auto &before = slack->report().strands, &after = taut->report().strands;
+  const auto before = Strands(*slack).now(), after = Strands(*taut).now();
   ASSERT_EQ(before.size(), after.size());
   for (std::size_t i = 0; i < after.size(); ++i) {
     const double rest = 0.8 * (before[i].a - before[i].b).norm(), tension = 2 * ((after[i].a - after[i].b).norm() - rest);

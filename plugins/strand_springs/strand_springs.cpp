@@ -200,11 +200,11 @@ void StrandSprings::build(const StepContext&, ConstraintBuilder& builder) {
   }
 }
 
-void StrandSprings::part(const StepContext& context, Strand& s, const char* what, double value) {
+void StrandSprings::part(const StepContext& context, Strand& s, const EventKind& what, double value) {
   s.severed = true;
   s.damage = 1;
   s.tension = 0;
-  if (context.events) context.events->emit({what, id, "", value, context.time + context.h, s.blade ? s.blade->hand_index() : -1});
+  if (context.events) context.events->emit({what.name(), id, "", value, context.time + context.h, s.blade ? s.blade->hand_index() : -1});
 }
 
 void StrandSprings::finish(const StepContext& context, const ConstraintSolution& solution) {
@@ -219,25 +219,38 @@ void StrandSprings::finish(const StepContext& context, const ConstraintSolution&
         travel = s.push.dot(s.blade->free_displacement(s.blade_point));
       s.damage += std::max(0.0, travel) / cut_length();
       if (s.damage >= 1) {
-        part(context, s, "strand_cut", cut_force());
+        part(context, s, cut, cut_force());
         continue;
       }
     } else {
       s.push.setZero();
     }
     // Under a blade a taut strand is cut: pulling it tight first is how it is done.
-    if (strength() > 0 && s.tension > strength() * (1 - s.damage)) part(context, s, s.blade ? "strand_cut" : "strand_torn", s.tension);
+    if (strength() > 0 && s.tension > strength() * (1 - s.damage)) part(context, s, s.blade ? cut : torn, s.tension);
   }
 }
 
-void StrandSprings::report(StepReport& report) const {
-  for (const Strand& s : strands_)
-    report.strands.push_back({s.a.body->position(s.a), s.b.body->position(s.b), s.severed ? -1.0 : 1 - s.damage, s.tension});
-  report.strands_total += count();
-  report.strands_left += left();
+StrandState StrandSprings::strand(int i) const {
+  const Strand& s = strands_[std::size_t(i)];
+  return {s.a.body->position(s.a), s.b.body->position(s.b), s.severed ? -1.0 : 1 - s.damage, s.tension};
 }
 
-int StrandSprings::left() const {
+void StrandSprings::publish() {
+  double largest = 0;
+  fibres.resize(strands_.size());
+  for (int i = 0; i < count(); ++i) {
+    const StrandState s = strand(i);
+    fibres.set(std::size_t(i), 0, s.a, s.integrity);
+    fibres.set(std::size_t(i), 1, s.b, s.integrity);
+    largest = std::max(largest, s.tension);
+  }
+  standing.set_max(count());
+  standing.set(strands_left());
+  total.set(count());
+  tension.set(largest);
+}
+
+int StrandSprings::strands_left() const {
   return int(std::count_if(strands_.begin(), strands_.end(), [](const Strand& s) { return !s.severed; }));
 }
 
@@ -267,5 +280,6 @@ StatedLaw StrandSprings::law() const {
 }  // namespace insula
 
 INSULA_PLUGIN(strand_springs) {
+  registry.add_material({"arachnoid", "fibre", {0.93, 0.90, 0.84, 0.8}, 0.35, 0, 0.5});
   registry.add<insula::StrandSprings>("strand_springs", insula::Kind::constraint, "arachnoid strands between two surfaces");
 }

@@ -8,10 +8,11 @@
 #include "core/constraint/stated_law.h"
 #include "core/mechanics/surface.h"
 #include "core/sim/simulation.h"
+#include "plugins/strand_springs/strand_set.h"
 
 namespace insula {
 
-class StrandSprings final : public Constraint, public StatesLaw {
+class StrandSprings final : public Constraint, public StrandSet, public StatesLaw {
  public:
   Ref<Surface> from{this, {.name = "from", .fallback = "", .doc = "surface where the strands start"}};
   Ref<Surface> to{this, {.name = "to", .fallback = "", .doc = "surface where they end"}};
@@ -29,6 +30,13 @@ class StrandSprings final : public Constraint, public StatesLaw {
   Param<Length> reach{this, {.name = "reach", .fallback = "0.5 mm", .min = "0.01 mm", .max = "5 mm", .doc = "distance at which an edge touches a strand"}};
   Param<Force> strength{this, {.name = "strength", .fallback = "0 N", .min = "0 N", .max = "100 N", .doc = "tension that tears a whole strand; 0: it does not tear"}};
 
+  Channel<Scalar> standing{this, {.name = "standing", .doc = "strands that are not parted", .min = "0", .shown = Shown::vital, .digits = 0}};
+  Channel<Scalar> total{this, {.name = "total", .doc = "strands at the start", .min = "0", .shown = Shown::none, .digits = 0}};
+  Channel<Force> tension{this, {.name = "tension", .doc = "largest tension of a strand", .min = "0 N", .display = "mN", .digits = 1}};
+  Polylines fibres{this, {.name = "fibres", .doc = "the strands", .material = "arachnoid", .value = "1 whole, 0 about to be severed, negative: parted", .radius = "0.15 mm"}};
+  EventKind cut{this, {.name = "strand_cut", .doc = "a blade parted a strand", .value = "force of the blade or tension, N", .listed = false}};
+  EventKind torn{this, {.name = "strand_torn", .doc = "a strand was pulled beyond its strength", .value = "its tension, N", .bad = true}};
+
   /// Adds one strand between two points (positions at rest in the scene frame); its rest length is slack times their distance.
   void add_strand(const MaterialPoint& a, const MaterialPoint& b);
 
@@ -37,15 +45,17 @@ class StrandSprings final : public Constraint, public StatesLaw {
   void detect(const StepContext& context) override;
   void build(const StepContext& context, ConstraintBuilder& builder) override;
   void finish(const StepContext& context, const ConstraintSolution& solution) override;
-  void report(StepReport& report) const override;
+  void publish() override;
   void reset() override;
   void append_state(std::vector<double>& out) const override;
   StatedLaw law() const override;
 
   int count() const { return int(strands_.size()); }
-  int left() const;
+  int strands_left() const;
   double integrity(int i) const { return 1 - strands_[std::size_t(i)].damage; }
-  double tension(int i) const { return strands_[std::size_t(i)].tension; }
+  double strand_tension(int i) const { return strands_[std::size_t(i)].tension; }
+  int strand_count() const override { return count(); }
+  StrandState strand(int i) const override;
 
  private:
   struct Strand {
@@ -72,7 +82,7 @@ class StrandSprings final : public Constraint, public StatesLaw {
     void place();
   };
   void generate(PrepareContext& context);
-  void part(const StepContext& context, Strand& s, const char* what, double value);
+  void part(const StepContext& context, Strand& s, const EventKind& what, double value);
 
   std::vector<Strand> strands_;
   std::vector<Blade> blades_;  ///< of all instruments

@@ -89,7 +89,7 @@ TEST(StrandSprings, PullsAsTheDiscretisedLawSays) {
           figure.law(curve, n, u * 1e3);
           figure.run(curve, n, (t.height("mass") - a) * 1e3);
         }
-        ASSERT_NEAR(t.strands->tension(0), tension, 1e-9 * k * gap) << "step " << n << " slack " << slack;
+        ASSERT_NEAR(t.strands->strand_tension(0), tension, 1e-9 * k * gap) << "step " << n << " slack " << slack;
       }
       if (slack > 1 && !both) { EXPECT_EQ(u, 0); }
       if (slack > 1 && both) { EXPECT_LT(u, -1e-4); }
@@ -107,11 +107,11 @@ TEST(StrandSprings, TwoBodiesInEquilibrium) {
   t.strands->add_strand(t.apex("second"), t.apex("mass"));
   for (int n = 0; n < 1500; ++n) t.s->step();
   const double expected = (1 - 0.7) * gap / (1 / 20.0 + 1 / spring + 1 / (2 * spring));
-  EXPECT_TRUE(test::held("strand in series with two springs", std::abs(t.strands->tension(0) - expected), expected, 1e-6));
+  EXPECT_TRUE(test::held("strand in series with two springs", std::abs(t.strands->strand_tension(0) - expected), expected, 1e-6));
   EXPECT_NEAR(t.height("mass") - a, expected / spring, 1e-6 * expected / spring);
   EXPECT_NEAR(a + gap - t.height("second"), expected / (2 * spring), 1e-6 * expected / spring);
   const double length = t.height("second") - t.height("mass");
-  EXPECT_NEAR(t.strands->tension(0), 20 * (length - 0.7 * gap), 1e-6 * expected);
+  EXPECT_NEAR(t.strands->strand_tension(0), 20 * (length - 0.7 * gap), 1e-6 * expected);
 }
 
 /// A strand along z between two fixed points, and a blade whose edge lies across it, 0.45 mm off, to be moved along -x.
@@ -165,11 +165,11 @@ TEST(StrandSprings, ResistsWithCutForceAndPartsAfterCutLength) {
       severed_at = n;
       ASSERT_EQ(t.s->events().size(), 1u);
       EXPECT_EQ(t.s->events()[0].kind, "strand_cut");
-      EXPECT_EQ(t.strands->left(), 0);
+      EXPECT_EQ(t.strands->strands_left(), 0);
     } else {
-      EXPECT_EQ(t.strands->left(), 1);
+      EXPECT_EQ(t.strands->strands_left(), 1);
       EXPECT_NEAR(t.strands->integrity(0), 1 - travel / 0.0003, 1e-9) << "step " << n;
-      EXPECT_NEAR(t.strands->tension(0), 30 * (1 - damage) * 0.1 * 0.01, 1e-9) << "stiffness falls with the wear";
+      EXPECT_NEAR(t.strands->strand_tension(0), 30 * (1 - damage) * 0.1 * 0.01, 1e-9) << "stiffness falls with the wear";
       EXPECT_TRUE(t.s->events().empty());
     }
   }
@@ -182,32 +182,32 @@ TEST(StrandSprings, BluntOrWithoutTheButtonDoesNotCut) {
     ASSERT_TRUE(t.strands && t.knife);
     for (int n = 1; n <= 10; ++n) t.move(0.00045 - n * 1e-4);
     EXPECT_EQ(t.strands->integrity(0), 1) << sharp;
-    EXPECT_EQ(t.strands->left(), 1);
+    EXPECT_EQ(t.strands->strands_left(), 1);
   }
   CutBed t("cut_force=\"0.045 N\" cut_length=\"0.3 mm\"", "button");
   ASSERT_TRUE(t.strands && t.knife);
   for (int n = 1; n <= 10; ++n) t.move(0.00045 - n * 1e-4, true);
-  EXPECT_EQ(t.strands->left(), 0);
+  EXPECT_EQ(t.strands->strands_left(), 0);
 }
 
 TEST(StrandSprings, WithoutResistanceTheBladeGoesThroughFreely) {
   CutBed t("cut_force=\"0 N\" cut_length=\"0.35 mm\"");
   ASSERT_TRUE(t.strands && t.knife);
   for (int n = 1; n <= 4; ++n) {
-    EXPECT_EQ(t.strands->left(), 1) << n;
+    EXPECT_EQ(t.strands->strands_left(), 1) << n;
     t.move(0.00045 - n * 1e-4);
     EXPECT_LT(t.knife->hand_force().norm(), 1e-12);
   }
-  EXPECT_EQ(t.strands->left(), 0);
+  EXPECT_EQ(t.strands->strands_left(), 0);
 }
 
 TEST(StrandSprings, ResetMakesThemWholeAgain) {
   CutBed t("cut_force=\"0.045 N\" cut_length=\"0.3 mm\"");
   ASSERT_TRUE(t.strands && t.knife);
   for (int n = 1; n <= 10; ++n) t.move(0.00045 - n * 1e-4);
-  ASSERT_EQ(t.strands->left(), 0);
+  ASSERT_EQ(t.strands->strands_left(), 0);
   t.s->reset();
-  EXPECT_EQ(t.strands->left(), 1);
+  EXPECT_EQ(t.strands->strands_left(), 1);
   EXPECT_EQ(t.strands->integrity(0), 1);
 }
 
@@ -217,7 +217,7 @@ TEST(StrandSprings, TearsBeyondItsStrength) {
     ASSERT_TRUE(t.strands);
     t.strands->add_strand(t.wall(Vec3(0.1, 0, 0)), t.wall(Vec3(0.1, 0, 0.01)));
     t.s->step();
-    EXPECT_EQ(t.strands->left(), strength > 0.03 ? 1 : 0);
+    EXPECT_EQ(t.strands->strands_left(), strength > 0.03 ? 1 : 0);
     ASSERT_EQ(t.s->events().size(), strength > 0.03 ? 0u : 1u);
     if (strength < 0.03) { EXPECT_EQ(t.s->events()[0].kind, "strand_torn"); }
   }

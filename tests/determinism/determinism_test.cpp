@@ -8,6 +8,7 @@
 
 #include "core/testing/example.h"
 #include "tests/determinism/script.h"
+#include "plugins/strand_springs/strand_set.h"
 
 namespace insula {
 namespace {
@@ -53,7 +54,7 @@ TEST(Determinism, SceneShowsWhatItShould) {
     run(*s, 1);
     contacts += s->report().contacts.size();
     max_rows = std::max(max_rows, std::size_t(s->problem().rows));
-    cut = s->report().strands_total - s->report().strands_left;
+    cut = Strands(*s).total() - Strands(*s).left();
     ASSERT_TRUE(s->report().finite);
   }
   EXPECT_GT(contacts, 100u);

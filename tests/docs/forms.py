@@ -86,6 +86,8 @@ FORMS = (
     Elsewhere(r"cd build/release && cpack -G DEB", "install_packages", "makes the packages and looks into them"),
     Elsewhere(r"cmake --install build/release .*", "install_plugins", "installs into a folder of its own"),
     Elsewhere(r"(cmake -S|cmake --build|ctest --test-dir|sudo cmake --install) pia_membrane.*", "install_plugins", "builds, tests and installs the tutorial's plugin"),
+    Elsewhere(r"(cmake -S|cmake --build|ctest --test-dir) suture.*", "install_plugins", "builds and tests the suture"),
+    Elsewhere(r"insula --plugin-path suture/build .*", "install_plugins", "describes it, runs it and reads its report"),
 
     # What install_plugins has left is what these pages have made by then.
     Shorter(r"^insula --plugin-path pia_membrane/build describe pia_membrane$", r"\g<0>", "the library is the one that install_plugins built"),

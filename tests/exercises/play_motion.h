@@ -8,6 +8,8 @@
 
 #include "core/registry/registry.h"
 #include "engine/live/headless.h"
+#include "plugins/blood_flow/vessel_state.h"
+#include "plugins/strand_springs/strand_set.h"
 
 namespace insula::test {
 
@@ -39,13 +41,14 @@ inline Played play_motion(const std::filesystem::path& scene, const std::string&
     if (m->id == id) motion = load_motion(m->file());
   EXPECT_FALSE(motion.empty()) << "motion " << id;
   HeadlessRun run(s, motion);
+  Vessels vessels(s);
   out.duration = motion.duration();
   while (s.time() < out.duration + 0.5) {
     run.step();
     out.finite = out.finite && s.report().finite;
     for (const ToolReport& t : s.report().tools)
       if (t.hand >= 0) out.max_force[t.hand] = std::max(out.max_force[t.hand], t.contact_force);
-    for (const VesselState& v : s.report().vessels) out.min_pressure = std::min(out.min_pressure, v.pressure);
+    for (const VesselState& v : vessels.now()) out.min_pressure = std::min(out.min_pressure, v.pressure);
     for (const Event& e : s.events()) ++out.events[e.kind];
   }
   for (int h = 0; h < 2; ++h)
@@ -53,8 +56,8 @@ inline Played play_motion(const std::filesystem::path& scene, const std::string&
       EXPECT_LT((run.haptics().hand(h).device.p - motion.at(h, 1e9).pose.p).norm(), 0.001) << "hand " << h << " did not follow its motion to the end";
     }
   out.ran = true;
-  out.strands = s.report().strands_total;
-  out.left = s.report().strands_left;
+  out.strands = Strands(s).total();
+  out.left = Strands(s).left();
   const ExerciseLog& log = s.exercise()->log();
   out.state = log.state();
   out.end = log.end_time();

@@ -145,7 +145,11 @@ inline Soak leave_alone(const std::filesystem::path& scene, const IdleSettings& 
   Snapshot first, before, now;
   constexpr double phase = 0.85;
   double last = 0;
-  const auto phase_of = [&] { return s.report().vessels.empty() ? std::fmod(s.time(), 1.0) : s.report().heart_phase; };
+  // The pulse of the scene's pressure; a scene without one counts seconds.
+  const ChannelEntry* pulse = nullptr;
+  for (const ChannelEntry& e : s.channels().entries())
+    if (e.channel->spec().role == Role::pulse) pulse = &e;
+  const auto phase_of = [&] { return pulse ? *pulse->channel->values(0) : std::fmod(s.time(), 1.0); };
   while (s.time() < to) {
     const double energy = s.energy();
     const double at = last, coming = s.time() < from ? 0 : last + s.h() * 3;

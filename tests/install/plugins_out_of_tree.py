@@ -3,6 +3,7 @@
 """plugins_out_of_tree.py SOURCE BUILD CMAKE: installs Insula into a folder of its own and, with nothing but that, builds and
 tests a plugin of each kind as `insula new-plugin` writes it, and the plugin of the manual's tutorial as it is printed there.
 """
+import json
 import os
 import pathlib
 import re
@@ -17,7 +18,7 @@ import pages  # noqa: E402
 from steps import fail, run, that  # noqa: E402
 
 KINDS = ("constraint", "force", "instrument", "exercise")
-TUTORIAL = ("docs/tutorial-plugin.md", "docs/tutorial-plugin-test.md")
+TUTORIALS = {"pia_membrane": ("force", ("docs/tutorial-plugin.md", "docs/tutorial-plugin-test.md")), "suture": ("constraint", ("docs/tutorial-channels.md",))}
 
 
 def installed_page(prefix):
@@ -39,20 +40,36 @@ def installed_page(prefix):
         gateway.wait()
 
 
-def tutorial(source, insula, folder):
-    """Follows the tutorial: its commands, its files as printed."""
+def tutorial(source, insula, folder, plugin):
+    """Follows a tutorial: its commands, its files as printed."""
+    kind, tutorial_pages = TUTORIALS[plugin]
     wanted = {}
-    for page in TUTORIAL:
+    for page in tutorial_pages:
         for block in pages.read(source / page)[0]:
             if block.role == "file":
                 wanted[block.value] = block.text
-    that(set(wanted) == {"pia_membrane/pia_membrane.cpp", "pia_membrane/pia_membrane_test.cpp", "pia_membrane/example.xml"}, "the tutorial prints %s" % sorted(wanted))
-    begin = [line for page in TUTORIAL for block in pages.read(source / page)[0] if block.language == "sh" for line in block.text.split("\n") if "new-plugin" in line]
-    that(begin == ["insula new-plugin pia_membrane --kind force"], "the tutorial begins with %s" % begin)
+    that(set(wanted) == {"%s/%s" % (plugin, f) for f in (plugin + ".cpp", plugin + "_test.cpp", "example.xml")}, "the tutorial prints %s" % sorted(wanted))
+    begin = [line for page in tutorial_pages for block in pages.read(source / page)[0] if block.language == "sh" for line in block.text.split("\n") if "new-plugin" in line]
+    that(begin == ["insula new-plugin %s --kind %s" % (plugin, kind)], "the tutorial begins with %s" % begin)
     run(insula, *begin[0].split()[1:], cwd=folder)
     for name, text in wanted.items():
         that((folder / name).exists(), "new-plugin does not write %s" % name)
         (folder / name).write_text(text, encoding="utf-8")
+
+
+def step_data_of_the_suture(insula, folder, library):
+    """What the suture declares is described, recorded and scored."""
+    said = run(insula, "--plugin-path", library, "describe", "suture")
+    that("channels\n  tension" in said and "drawables\n  thread" in said, said)
+    report = folder / "suture_report"
+    run(insula, "--plugin-path", library, "run", folder / "suture/example.xml", "--duration", "1", "--report", report)
+    data = json.loads((report / "report.json").read_text())
+    tension = data["channels"]["stay.tension"]
+    that(tension["unit"] == "N" and 0 <= tension["min"] <= tension["mean"] <= tension["max"] and tension["max"] > 0.1, "tension: %s" % tension)
+    curve = data["series"]["channels"]["stay.tension"]
+    that(len(curve) == len(data["series"]["time_s"]) and abs(curve[-1] - tension["last"]) < 1e-6, "its curve is another")
+    that([f["count"] for f in data["exercise"]["faults"] if f["id"] == "tight"] == [1], "its fault is not counted once")
+    that("stay: tension" in (report / "report.html").read_text(), "the report has no curve of it")
 
 
 def main():
@@ -70,8 +87,9 @@ def main():
     for kind in KINDS:
         names.append("my_%s_1" % kind)
         run(insula, "new-plugin", names[-1], "--kind", kind, cwd=folder)
-    tutorial(source, insula, folder)
-    names.append("pia_membrane")
+    for plugin in TUTORIALS:
+        tutorial(source, insula, folder, plugin)
+        names.append(plugin)
     run(insula, "new-plugin", "contact", "--kind", "force", cwd=folder, status=2)
     run(insula, "new-plugin", names[0], "--kind", "force", cwd=folder, status=2)
     that("\"Contact\" is no name" in run(insula, "new-plugin", "Contact", "--kind", "force", cwd=folder, status=2), "a bad name is not named")
@@ -91,6 +109,7 @@ def main():
         ran = int(re.search(r"(\d+) tests from 2 test suites ran", listed)[1])
         that(ran >= 5 and "Contract.OfElement_" + name in listed, "%s: %d tests ran" % (name, ran))
 
+    step_data_of_the_suture(insula, folder, out / "suture/suture.so")
     run(cmake, "--install", out, "--prefix", prefix)
     known = run(insula, "list")
     for name in names:

@@ -15,6 +15,7 @@
 #include "tools/case_builder/scenes.h"
 #include "tools/case_builder/shapes_for_test.h"
 #include "tools/case_builder/wall.h"
+#include "plugins/strand_springs/strand_set.h"
 
 namespace insula::case_builder {
 namespace {
@@ -64,7 +65,7 @@ Played play(const fs::path& scene, double longest) {
     out.finite = out.finite && s.report().finite;
   }
   out.state = s.exercise()->log().state(), out.end = s.time();
-  out.strands = s.report().strands_total, out.left = s.report().strands_left;
+  out.strands = Strands(s).total(), out.left = Strands(s).left();
   for (const MeasureState& m : s.exercise()->log().measures()) out.measures[m.id] = m.value;
   for (const FaultState& f : s.exercise()->log().faults()) out.faults[f.id] = f.count;
   return out;

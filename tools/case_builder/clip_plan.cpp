@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "core/base/input_error.h"
-#include "core/model/tools/tool_model.h"
+#include "plugins/clip/clip_data.h"
 #include "tools/case_builder/place.h"
 
 namespace insula::case_builder {
@@ -45,8 +45,9 @@ std::vector<ClipShape> read_clips(const fs::path& project) {
   for (const Json& entry : catalogue.contains("clips") ? catalogue["clips"] : catalogue) {
     const std::string name = entry.at("name");
     const ToolModel tool = read_tool(project / "meshes/clips" / name / (name + ".urdf"));
-    if (!tool.clip || tool.clip->fenestration) continue;
-    const ClipData& c = *tool.clip;
+    const auto data = read_clip_data(tool);
+    if (!data || data->fenestration) continue;
+    const ClipData& c = *data;
     const Vec3 from = 1000 * c.blade_line.front(), to = 1000 * c.blade_line.back();
     if (std::abs(from.x()) > 0.1 || (to - from).norm() < 0.97e3 * c.blade_length) continue;  // bent clamping lines
     ClipShape s{name, c.kind, 1000 * c.blade_length, 1000 * c.gap(tool.opening_max), 0.5 * (from + to), (to - from).normalized(), 1000 * c.grip.p};

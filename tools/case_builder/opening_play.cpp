@@ -7,6 +7,7 @@
 #include "core/registry/registry.h"
 #include "core/sim/simulation.h"
 #include "engine/live/headless.h"
+#include "plugins/strand_springs/strand_set.h"
 
 namespace insula::case_builder {
 namespace {
@@ -28,7 +29,7 @@ std::string complaint(const fs::path& scene, Progress& progress) {
     progress.share(s.time() / end);
   }
   std::string out;
-  if (s.exercise()->log().state() != ExerciseState::done) out = fmt::format("{} of {} strands stand at the end", s.report().strands_left, s.report().strands_total);
+  if (s.exercise()->log().state() != ExerciseState::done) out = fmt::format("{} of {} strands stand at the end", Strands(s).left(), Strands(s).total());
   for (const FaultState& f : s.exercise()->log().faults())
     if (f.count > 0) out += fmt::format("{}{} x \"{}\"", out.empty() ? "" : ", ", f.count, f.text);
   return out;

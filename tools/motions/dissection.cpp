@@ -20,6 +20,7 @@ scene gives the same files on the same processor (see docs/one-step.md on bits).
 #include "core/base/input_error.h"
 #include "tools/motions/dissection_play.h"
 #include "tools/motions/surgeon.h"
+#include "plugins/bleeding/bleeding_state.h"
 
 namespace insula {
 namespace {
@@ -34,7 +35,7 @@ class Trainer : public Surgeon {
   void steady(const fs::path& file) {
     const int left = divide({}, [this](const Sweep& w, int tries) {
       std::printf("%6.2f s strand %2d  room vessel %5.2f others %5.2f mm  %d stand, tries %d\n", time(), w.strand, w.vessel / mm, w.others / mm,
-                  simulation_.report().strands_left, tries);
+                  Strands(simulation_).left(), tries);
     });
     if (left > 0) say_left();
     if (left > 0) throw InputError(fmt::format("{} strands are out of reach", left));
@@ -55,8 +56,8 @@ class Trainer : public Surgeon {
     hands_.move(1.2, left, right);
     // The suction tube shoves the sac away from the frontal lobe: strands between them tear.
     const Vec3 aside = Vec3(0, -1, -0.6).normalized();
-    const int before = simulation_.report().strands_left;
-    press(0, left_shaft_, aside, [&] { return middle_of("sac"); }, 5 * mm, [&] { return simulation_.report().strands_left <= before - 4; });
+    const int before = Strands(simulation_).left();
+    press(0, left_shaft_, aside, [&] { return middle_of("sac"); }, 5 * mm, [&] { return Strands(simulation_).left() <= before - 4; });
     hands_.wait(0.3);
     hands_.move(0.7, left, right);
     // The dissector leans on the frontal lobe.
@@ -73,7 +74,7 @@ class Trainer : public Surgeon {
     // And presses the bleb with the flat of the blade.
     const Vec3 out = (middle_of("bleb") - middle_of("sac")).normalized(), shaft = (outward_ - 0.35 * Vec3::UnitY()).normalized();
     press(1, shaft, -out, [&] { return middle_of("bleb"); }, 9 * mm, [&] {
-      const auto& b = simulation_.report().bleeding;
+      const auto b = Bleedings(simulation_).now();
       return std::any_of(b.begin(), b.end(), [](const BleedingState& x) { return x.open; });
     }, shaft.cross(out));
     hands_.move(0.7, right);
@@ -119,7 +120,7 @@ class Trainer : public Surgeon {
     }
     if (done) go_to(0.25, depth + 1.5 * mm);  // enough also where the arms follow a little differently
     std::printf("%6.2f s pressed to %.1f mm: %s; up to %.3f N on the vessel, %.3f N on the frontal lobe, %d strands stand\n", hands_.time(), depth / mm,
-                done ? "done" : "as far as it goes", vessel, lobe, simulation_.report().strands_left);
+                done ? "done" : "as far as it goes", vessel, lobe, Strands(simulation_).left());
   }
   MaterialPoint nearest(const Body& body, const Vec3& at) const {
     MaterialPoint out;

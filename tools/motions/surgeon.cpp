@@ -41,7 +41,7 @@ int Surgeon::divide(const Pace& pace, const std::function<void(const Sweep&, int
   add_tool(*simulation_.instrument_of(0));
   std::vector<int> tries(strands().size(), 0);
   bool withdrawn = false;
-  for (int n = 0; n < 150 && simulation_.report().strands_left > 0; ++n) {
+  for (int n = 0; n < 150 && Strands(simulation_).left() > 0; ++n) {
     vessel_.clear();
     see(*artery_, vessel_);
     Sweep sweep = planner_.best(strands(), tries, hands_.right().pose.p);
@@ -74,7 +74,7 @@ int Surgeon::divide(const Pace& pace, const std::function<void(const Sweep&, int
   const Pose last = hands_.right().pose;
   hands_.move(0.8, {tool_pose(last.p + 9 * mm * (last.q * Vec3::UnitZ()), last.q * Vec3::UnitZ(), last.q * Vec3::UnitY())});
   hands_.move(pace.enter, {left_home}, {right_home});
-  return simulation_.report().strands_left;
+  return Strands(simulation_).left();
 }
 
 Vec3 Surgeon::middle_of(const std::string& region) const {

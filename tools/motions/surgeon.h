@@ -32,7 +32,7 @@ class Surgeon {
   int divide(const Pace& pace, const std::function<void(const Sweep&, int tries)>& told = nullptr);
   void write(const std::filesystem::path& file) const { hands_.write(file); }
   double time() const { return hands_.time(); }
-  const std::vector<StrandState>& strands() const { return simulation_.report().strands; }
+  const std::vector<StrandState>& strands() const { return strands_.now(); }  ///< as they are now
   const Vec3& centre() const { return centre_; }    ///< of the sac, m
   const Vec3& outward() const { return outward_; }  ///< to the surgeon
 
@@ -43,6 +43,7 @@ class Surgeon {
   Wish left_rest() const;
 
   Simulation& simulation_;
+  mutable Strands strands_{simulation_};
   Hands hands_;
   Vec3 centre_, outward_, lean_, left_shaft_;  ///< set by find()
   const ShellBody* artery_ = nullptr;

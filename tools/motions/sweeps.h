@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "core/sim/report.h"
+#include "plugins/strand_springs/strand_set.h"
 #include "tools/motions/clearance.h"
 #include "tools/motions/hands.h"
 

@@ -10,6 +10,7 @@
 #include "engine/live/headless.h"
 #include "tools/workbench/workbench.h"
 #include "tools/workbench/scaling_scene.h"
+#include "plugins/strand_springs/strand_set.h"
 
 namespace insula {
 namespace {
@@ -24,7 +25,7 @@ TEST(CostModel, CountsAreTheRealOnes) {
   EXPECT_EQ(w.bodies[0].elements, 6 * 6 * 6 * 6);
   EXPECT_EQ(w.bodies[1].nodes, 5 * 5 * 5);
   EXPECT_EQ(w.surface_vertices, (343 - 125) + (125 - 27));
-  EXPECT_EQ(w.standing_rows, s->report().strands_left);
+  EXPECT_EQ(w.standing_rows, Strands(*s).left());
   EXPECT_EQ(w.expected_rows, w.standing_rows);
   std::size_t i = 0;
   for (const char* name : {"lower", "upper"}) {

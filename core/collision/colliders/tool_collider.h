@@ -23,7 +23,7 @@
 // negative gap and is pushed to the nearest point of the surface, as long as it is no deeper than max_depth. A core
 // that passes through a triangle is pushed along its normal.
 //
-// A vessel pressed flat is thinner than a blade, and what is behind its one wall is soon nearest to the other. So each piece
+// A hollow body pressed flat is thinner than a blade, and what is behind its one wall is soon nearest to the other. So each piece
 // remembers on which side of the surface it was when it was last outside, and never leaves towards the opposite one.
 #pragma once
 #include <vector>

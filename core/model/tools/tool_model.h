@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A tool read from URDF (urdfdom) plus the meshes it names and the tool.json beside it: rigid, or with links that one
-// common angle turns about hinges (the jaws of a clip).
+// common angle turns about hinges (jaws).
 #pragma once
 #include <array>
 #include <filesystem>
-#include <optional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -35,34 +35,6 @@ struct Hinge {
   double multiplier = 1;
 };
 
-/// The window of a fenestrated clip: a round hole between the closed jaws.
-struct Fenestration {
-  Vec3 centre = Vec3::Zero();
-  Vec3 axis = Vec3::UnitY();  ///< unit
-  double radius = 0;          ///< m
-};
-
-/// What makes a tool an aneurysm clip: two jaws that a spring presses together. Tool frame, at opening 0, SI units.
-struct ClipData {
-  std::string kind;          ///< "permanent", "temporary", "mini", "mini_temporary"
-  std::string shape;         ///< "straight", "curved", ...
-  double blade_length = 0;   ///< along the clamping line, m
-  double blade_width = 0;    ///< m
-  double closing_force = 0;  ///< between the blades at the reference point when closed, N
-  double force_slope = 0;    ///< rise per metre of opening between the blades at the reference point, N/m
-  double reference = 0;      ///< distance from the hinge axis to the reference point, the middle of the blade, m
-  double friction = 0;       ///< of the clamping faces
-  Pose grip;                 ///< of the applier: origin between its jaws, +z along its shaft
-  std::vector<Vec3> blade_line;  ///< clamping line from the root to the tip, two points or more
-  Vec3 blade_from = Vec3::Zero(), blade_to = Vec3::Zero();  ///< its ends: root and tip
-  std::optional<Fenestration> fenestration;
-
-  /// Gap between the blades at the reference point, m: 2 reference sin(opening).
-  double gap(double opening) const;
-  /// Moment of the spring on each jaw about the hinge, N m. The clamping force at the distance r from the hinge is torque / r.
-  double torque(double opening) const;
-};
-
 struct ToolModel {
   std::string name;
   double mass = 0;                ///< kg, all links
@@ -74,7 +46,8 @@ struct ToolModel {
   double opening_min = 0, opening_max = 0;  ///< rad
   std::vector<std::array<Vec3, 2>> blade_edges;  ///< cutting edges, empty when the tool does not cut
   double tip_inner_radius = 0;       ///< suction opening, m
-  std::optional<ClipData> clip;
+  std::map<std::string, std::string> sections;  ///< of tool.json that are none of the above: JSON text by key, for plugins
+  std::filesystem::path json_file;   ///< tool.json, for messages about a section; empty: there is none
 
   int link_count() const { return 1 + int(hinges.size()); }
   /// Where the points of a link go, tool frame to tool frame: the identity for the root and at opening 0.

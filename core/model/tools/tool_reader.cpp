@@ -258,10 +258,6 @@ Pose ToolModel::link_pose(int link, double opening) const {
   return {h.origin - q * h.origin, q};
 }
 
-double ClipData::gap(double opening) const { return 2 * reference * std::sin(opening); }
-
-double ClipData::torque(double opening) const { return reference * (closing_force + force_slope * gap(opening)); }
-
 ToolModel read_tool(const std::filesystem::path& urdf) { return ToolReader(urdf).read(); }
 
 }  // namespace insula

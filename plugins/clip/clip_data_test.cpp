@@ -8,8 +8,8 @@
 
 #include "core/base/input_error.h"
 #include "core/model/formats/mesh_files_for_test.h"
-#include "core/model/tools/tool_model.h"
 #include "core/testing/held.h"
+#include "plugins/clip/clip_data.h"
 
 namespace insula {
 namespace {
@@ -50,7 +50,7 @@ std::string error_of(const std::string& text, const std::string& json = "") {
   const TempFolder folder;
   if (!json.empty()) folder.write("tool.json", json);
   try {
-    read_tool(folder.write("probe.urdf", text));
+    read_clip_data(read_tool(folder.write("probe.urdf", text)));
   } catch (const InputError& e) {
     return e.what();
   }
@@ -84,7 +84,7 @@ TEST(ToolLinks, AreReadInTheToolFrame) {
   }
   EXPECT_EQ(tool.pieces[1].name, "left_piece");
   EXPECT_LT((tool.pieces[1].points[0] - Vec3(-0.001, 0.002, 0.004)).norm(), 1e-15);
-  EXPECT_FALSE(tool.clip);
+  EXPECT_FALSE(read_clip_data(tool));
 }
 
 TEST(ToolLinks, MassCentreAndInertiaAreThoseOfAllLinks) {
@@ -139,8 +139,9 @@ TEST(ToolLinks, RefuseBadHinges) {
 
 TEST(Clip, IsReadWhole) {
   const ToolModel tool = probe(clip_json);
-  ASSERT_TRUE(tool.clip);
-  const ClipData& c = *tool.clip;
+  const auto data = read_clip_data(tool);
+  ASSERT_TRUE(data);
+  const ClipData& c = *data;
   EXPECT_EQ(c.kind, "permanent");
   EXPECT_EQ(c.shape, "curved");
   EXPECT_NEAR(c.blade_length, 8.24621125e-3, 1e-15);
@@ -163,7 +164,7 @@ TEST(Clip, IsReadWhole) {
 }
 
 TEST(Clip, SpringRisesWithTheOpeningAndFallsOffAlongTheBlade) {
-  const ClipData c = *probe(clip_json).clip;
+  const ClipData c = *read_clip_data(probe(clip_json));
   EXPECT_DOUBLE_EQ(c.torque(0), 8e-3 * 1.8);
   EXPECT_DOUBLE_EQ(c.gap(0.2), 2 * 8e-3 * std::sin(0.2));
   EXPECT_DOUBLE_EQ(c.torque(0.2), 8e-3 * (1.8 + 300 * 2 * 8e-3 * std::sin(0.2)));
@@ -236,11 +237,12 @@ TEST(Clip, EveryShippedClipClosesAndOpens) {
     EXPECT_LT(tool.mass, 3e-4);
     ASSERT_EQ(tool.link_count(), 3);
     ASSERT_EQ(tool.parts.size(), 3u);
-    ASSERT_TRUE(tool.clip);
+    const auto data = read_clip_data(tool);
+    ASSERT_TRUE(data);
     EXPECT_EQ(tool.opening_min, 0);
-    EXPECT_EQ(tool.clip->blade_to, Vec3(0, 0, 0));
-    EXPECT_TRUE(test::held("shipped clips press twice as hard open", std::abs(tool.clip->torque(tool.opening_max) / tool.clip->torque(0) - 2), 1, 1e-3));
-    if (tool.clip->shape == "side_curved") continue;
+    EXPECT_EQ(data->blade_to, Vec3(0, 0, 0));
+    EXPECT_TRUE(test::held("shipped clips press twice as hard open", std::abs(data->torque(tool.opening_max) / data->torque(0) - 2), 1, 1e-3));
+    if (data->shape == "side_curved") continue;
     EXPECT_NEAR(reach(tool, 1, 1, 0), -5e-6, 1e-6);   // the left jaw's face, 5 um before the middle
     EXPECT_NEAR(reach(tool, 2, -1, 0), -5e-6, 1e-6);
     for (const ConvexPiece& p : tool.pieces) {

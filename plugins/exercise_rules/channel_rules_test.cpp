@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A goal and a fault on a channel: limits in units, hold and grace, and what is said of a wrong name or unit.
+#include <gtest/gtest.h>
+
+#include "core/registry/registry.h"
+#include "core/sim/simulation.h"
+
+namespace insula {
+namespace {
+
+class Gauge final : public Constraint {
+ public:
+  Channel<Force> tension{this, {.name = "tension", .doc = "for tests"}};
+  Channel<Vec<Force>> pull{this, {.name = "pull", .doc = "for tests"}};
+  void build(const StepContext&, ConstraintBuilder&) override {}
+  void publish() override {
+    tension.set(value);
+    pull.set(Vec3(0, 0.6 * value, 0.8 * value));
+  }
+  double value = 0;
+};
+
+struct Bench {
+  Registry registry;
+  SimulationResult loaded;
+  Gauge* gauge = nullptr;
+  explicit Bench(const std::string& rules) {
+    register_builtin(registry);
+    registry.add<Gauge>("gauge", Kind::constraint, "for tests");
+    loaded = load_simulation_text("<scene time_step=\"10 ms\"><gauge id=\"g\"/><exercise title=\"E\">\n" + rules + "</exercise></scene>", "/s.xml", registry, 1);
+    if (loaded.simulation) gauge = loaded.simulation->scene().find_as<Gauge>("g");
+  }
+  std::string messages() const { return loaded.diagnostics.format(); }
+  void hold(double newtons, int steps) const {
+    gauge->value = newtons;
+    for (int i = 0; i < steps; ++i) loaded.simulation->step();
+  }
+  const ExerciseLog& log() const { return loaded.simulation->exercise()->log(); }
+};
+
+TEST(ChannelRules, AGoalIsReachedAfterTheHold) {
+  Bench b(R"(<goal_channel id="pull" text="Pull" channel="g.tension" limit="200 mN" hold="50 ms"/>)");
+  ASSERT_TRUE(b.gauge) << b.messages();
+  b.hold(0.21, 4);
+  b.hold(0.19, 1);
+  b.hold(0.21, 4);
+  EXPECT_FALSE(b.log().goals()[0].done) << "the time counts afresh";
+  b.hold(0.21, 1);
+  EXPECT_TRUE(b.log().goals()[0].done);
+}
+
+TEST(ChannelRules, AFaultCountsOnceUntilTheChannelIsBack) {
+  Bench b(R"(<fault_channel id="tight" text="Too tight" channel="g.pull" limit="0.2 N" grace="30 ms"/>)");
+  ASSERT_TRUE(b.gauge) << b.messages();
+  b.hold(0.3, 3);
+  EXPECT_EQ(b.log().faults()[0].count, 0) << "forgiven";
+  b.hold(0.3, 10);
+  EXPECT_EQ(b.log().faults()[0].count, 1) << "the length of the vector is above";
+  b.hold(0.19, 5);
+  b.hold(0.3, 10);
+  EXPECT_EQ(b.log().faults()[0].count, 1) << "it was not back by a tenth";
+  b.hold(0.17, 1);
+  b.hold(0.3, 10);
+  EXPECT_EQ(b.log().faults()[0].count, 2);
+}
+
+TEST(ChannelRules, BelowIsTheOtherSide) {
+  Bench b(R"(<fault_channel text="Slack" channel="g.tension" comparison="below" limit="0.1 N"/>)");
+  ASSERT_TRUE(b.gauge) << b.messages();
+  b.hold(0.11, 5);
+  EXPECT_EQ(b.log().faults()[0].count, 0);
+  b.hold(0.09, 5);
+  EXPECT_EQ(b.log().faults()[0].count, 1);
+}
+
+TEST(ChannelRules, AWrongNameOrUnitIsALocatedError) {
+  const std::string name = Bench(R"(<fault_channel text="T" channel="g.tensoin" limit="1 N"/>)").messages();
+  EXPECT_NE(name.find("s.xml:2:"), std::string::npos) << name;
+  EXPECT_NE(name.find("did you mean \"g.tension\"?"), std::string::npos) << name;
+  const std::string unit = Bench(R"(<goal_channel text="T" channel="g.tension" limit="1 mmHg"/>)").messages();
+  EXPECT_NE(unit.find("s.xml:2:"), std::string::npos) << unit;
+  EXPECT_NE(unit.find("force"), std::string::npos) << unit;
+}
+
+}  // namespace
+}  // namespace insula

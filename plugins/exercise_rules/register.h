@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The elements of this plugin that stand in files of their own.
+#pragma once
+#include "core/registry/registry.h"
+
+namespace insula {
+
+void register_channel_rules(Registry& registry);
+
+}  // namespace insula

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sets of arachnoid strands as rules and tools see them: a reference that this family of plugins shares. Pictures, reports
+// and the general rules need none of it; they read channels and drawables.
+#pragma once
+#include <vector>
+
+#include "core/sim/simulation.h"
+
+namespace insula {
+
+struct StrandState {
+  Vec3 a = Vec3::Zero(), b = Vec3::Zero();  ///< end points, scene frame
+  double health = 1;    ///< 1 whole, 0 about to be severed, -1 severed
+  double tension = 0;   ///< N
+};
+
+/// A component that holds strands.
+class StrandSet {
+ public:
+  virtual ~StrandSet() = default;
+  virtual int strand_count() const = 0;
+  virtual StrandState strand(int i) const = 0;  ///< as it is now
+};
+
+/// All sets of a scene in document order.
+class Strands {
+ public:
+  Strands() = default;
+  explicit Strands(const Simulation& simulation) : sets_(simulation.scene().all<StrandSet>()) {}
+  /// The strands of all sets as they are now; allocates while their number grows.
+  const std::vector<StrandState>& now() {
+    states_.clear();
+    for (const StrandSet* set : sets_)
+      for (int i = 0; i < set->strand_count(); ++i) states_.push_back(set->strand(i));
+    return states_;
+  }
+  int total() const {
+    int n = 0;
+    for (const StrandSet* set : sets_) n += set->strand_count();
+    return n;
+  }
+  int left() const {
+    int n = 0;
+    for (const StrandSet* set : sets_)
+      for (int i = 0; i < set->strand_count(); ++i) n += set->strand(i).integrity >= 0;
+    return n;
+  }
+
+ private:
+  std::vector<StrandSet*> sets_;
+  std::vector<StrandState> states_;
+};
+
+}  // namespace insula
