@@ -62,10 +62,10 @@ std::string ChannelBase::name(std::size_t item) const {
 void ChannelBase::set_groups(std::vector<std::string> names) {
   groups_ = std::move(names);
   values_.resize(groups_.size() * std::size_t(size_));
-  forget();
+  reset();
 }
 
-void ChannelBase::forget() { std::fill(values_.begin(), values_.end(), std::numeric_limits<double>::quiet_NaN()); }
+void ChannelBase::reset() { std::fill(values_.begin(), values_.end(), std::numeric_limits<double>::quiet_NaN()); }
 
 std::string_view ChannelBase::display_unit() const { return spec_.display.empty() ? quantity_.si : spec_.display; }
 
