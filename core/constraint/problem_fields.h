@@ -62,7 +62,7 @@ inline constexpr auto row_fields = std::tuple{
     RowField<double>{&ConstraintProblem::delta_free, below(1, "delta_free or lambda not finite or too large")},
     RowField<double>{&ConstraintProblem::lambda, below(1e4, "delta_free or lambda not finite or too large")},
     RowField<float>{&ConstraintProblem::rate, below(1e3, "rate or retardation time not finite or out of range")},
-    RowField<float>{&ConstraintProblem::relaxation, {0, 100, "rate or retardation time not finite or out of range"}},
+    RowField<float>{&ConstraintProblem::retardation_time, {0, 100, "rate or retardation time not finite or out of range"}},
 };
 inline constexpr auto block_fields = std::tuple{
     block_field<std::int64_t>(&Block::id),
@@ -75,7 +75,7 @@ inline constexpr auto block_fields = std::tuple{
     block_field<std::int16_t>(&Block::normals),
     block_field<std::int32_t>(&Block::owner, {-1, infinite, "unknown owner or role"}),
     block_field<std::int8_t>(&Block::role, {0, double(BlockRole::last), "unknown owner or role"}),
-    block_field<float>(&Block::turn, {-1, 1, "directions turn too far in a step"}),
+    block_field<float>(&Block::frame_rotation, {-1, 1, "directions turn too far in a step"}),
 };
 
 /// Calls f(field, index) for each field of a list.
