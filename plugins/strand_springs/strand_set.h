@@ -10,7 +10,7 @@ namespace insula {
 
 struct StrandState {
   Vec3 a = Vec3::Zero(), b = Vec3::Zero();  ///< end points, scene frame
-  double health = 1;    ///< 1 whole, 0 about to be severed, -1 severed
+  double integrity = 1;    ///< 1 whole, 0 about to be severed, -1 severed
   double tension = 0;   ///< N
 };
 
