@@ -110,7 +110,7 @@ void check_allocations(const std::filesystem::path& scene) {
   auto s = load(scene, 2);
   ASSERT_TRUE(s);
   Findings findings(name_of(scene));
-  run_script(*s, 70);  // to see the largest problem
+  run_script(*s, 80);  // to see the largest problem; buffers that alternate see it twice
   s->reset();
   for (int i = 0; i < 70; ++i) {
     drive(*s);
