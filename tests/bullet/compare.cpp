@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bullet's convex distance beside ours: time, accuracy and repeatability. Prints the table of docs/libraries.md; no part of a test run.
+// Bullet's convex distance beside ours: time, accuracy and repeatability. Prints the table of docs/libraries.md; no
+// part of a test run.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -31,7 +32,9 @@ double time(const std::vector<Case>& cases, F f) {
   return least / double(cases.size());
 }
 
-double doubt(const Pair& p, double d, const Vec3& a, const Vec3& b) { return d > 0 ? d - apart(p, (a - b).normalized()) : 0; }
+double doubt(const Pair& p, double d, const Vec3& a, const Vec3& b) {
+  return d > 0 ? d - apart(p, (a - b).normalized()) : 0;
+}
 
 void compare(const char* name, int kind) {
   Random random(std::uint64_t(kind) + 1);
@@ -39,19 +42,22 @@ void compare(const char* name, int kind) {
   for (int i = 0; i < count; ++i) cases.emplace_back(random_pair(random, kind));
   double sum = 0;
   const double ours = time(cases, [&](const Case& c) { sum += hull_distance(c.pair.a, c.pair.b).distance; });
-  const double bullet = time(cases, [&](const Case& c) { sum += distance(c.a, c.b, scaled(c.pair.a[0] - c.pair.b[0])).distance; });
+  const double bullet =
+      time(cases, [&](const Case& c) { sum += distance(c.a, c.b, scaled(c.pair.a[0] - c.pair.b[0])).distance; });
   double off = 0, bullet_off = 0;
   int wrong = 0, starts = 0;
   for (const Case& c : cases) {
     const HullDistance d = hull_distance(c.pair.a, c.pair.b);
     off = std::max(off, doubt(c.pair, d.distance, d.a, d.b));
-    const Answer b = distance(c.a, c.b, scaled(c.pair.a[0] - c.pair.b[0])), other = distance(c.a, c.b, scaled(Vec3(0.3 * unit, 0.5 * unit, -0.7 * unit)));
+    const Answer b = distance(c.a, c.b, scaled(c.pair.a[0] - c.pair.b[0])),
+                 other = distance(c.a, c.b, scaled(Vec3(0.3 * unit, 0.5 * unit, -0.7 * unit)));
     const double d2 = doubt(c.pair, b.distance, b.a, b.b);
     bullet_off = std::max(bullet_off, d2);
     wrong += d2 > 1e-9;
     starts += std::memcmp(&b.distance, &other.distance, sizeof(double)) != 0;
   }
-  fmt::print("| {} | {:.0f} | {:.0f} | {:.2f} | {:.1e} | {:.1e} | {} of {} | {} |\n", name, ours, bullet, bullet / ours, off * 1e9, bullet_off * 1e9, wrong, count, starts);
+  fmt::print("| {} | {:.0f} | {:.0f} | {:.2f} | {:.1e} | {:.1e} | {} of {} | {} |\n", name, ours, bullet, bullet / ours,
+             off * 1e9, bullet_off * 1e9, wrong, count, starts);
   if (sum < 0) fmt::print("never\n");
 }
 
@@ -78,7 +84,9 @@ void compare_depths() {
     Vec3 n;
     depth(c.a, c.b, scaled(c.pair.a[0] - c.pair.b[0]), d, n);
   });
-  fmt::print("hulls that meet: the way out along the middles is {:.2f} times EPA's on the mean; EPA takes {:.0f} ns a pair\n", longer, ns);
+  fmt::print(
+      "hulls that meet: the way out along the middles is {:.2f} times EPA's on the mean; EPA takes {:.0f} ns a pair\n",
+      longer, ns);
 }
 
 }  // namespace
@@ -86,9 +94,12 @@ void compare_depths() {
 
 int main() {
   using namespace insula::bullet;
-  fmt::print("| pair | ours, ns | Bullet, ns | ratio | ours off by at most, nm | Bullet off by at most, nm | Bullet off by more than 1 nm | other bits from another start |\n");
+  fmt::print(
+      "| pair | ours, ns | Bullet, ns | ratio | ours off by at most, nm | Bullet off by at most, nm | Bullet off by "
+      "more than 1 nm | other bits from another start |\n");
   fmt::print("|---|---|---|---|---|---|---|---|\n");
-  const char* names[6] = {"sphere, triangle", "capsule, triangle", "hull, triangle", "sphere, hull", "capsule, hull", "hull, hull"};
+  const char* names[6] = {"sphere, triangle", "capsule, triangle", "hull, triangle",
+                          "sphere, hull",     "capsule, hull",     "hull, hull"};
   for (int kind = 0; kind < 6; ++kind) compare(names[kind], kind);
   compare_depths();
 }

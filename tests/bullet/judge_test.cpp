@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bullet as the independent judge of our distances: 100,000 random pairs, a sphere, a capsule or a rounded hull against a triangle or a hull.
+// Bullet as the independent judge of our distances: 100,000 random pairs, a sphere, a capsule or a rounded hull against
+// a triangle or a hull.
 //
-// Each answer is also held to the conditions of optimality, which need no second program: its points are of the two shapes, so that the true
-// distance is no greater; and a plane across their line parts the shapes by as much, so that it is no smaller. Bullet's GJK stops too early on
-// about one pair in 2,500 (up to a quarter of a millimetre off). Its answer then breaks those conditions and it is asked again from other starts.
+// Each answer is also held to the conditions of optimality, which need no second program: its points are of the two
+// shapes, so that the true distance is no greater; and a plane across their line parts the shapes by as much, so that
+// it is no smaller. Bullet's GJK stops too early on about one pair in 2,500 (up to a quarter of a millimetre off). Its
+// answer then breaks those conditions and it is asked again from other starts.
 #include <gtest/gtest.h>
 
 #include <optional>
@@ -16,9 +18,9 @@ namespace insula::bullet {
 namespace {
 
 constexpr int pairs = 100'000;
-constexpr double nanometre = 1e-9;   // m: what two answers may differ by
-constexpr double proven = 1e-10;     // m: what an answer may be off by that claims to be proven
-constexpr int max_unproven = 10;    ///< of Bullet's answers, after the last start
+constexpr double nanometre = 1e-9;  // m: what two answers may differ by
+constexpr double proven = 1e-10;    // m: what an answer may be off by that claims to be proven
+constexpr int max_unproven = 10;   ///< of Bullet's answers, after the last start
 
 /// How far an answer may be above the true distance, m.
 double doubt(const Pair& p, const Vec3& a, const Vec3& b) {
@@ -65,9 +67,11 @@ TEST(BulletJudge, DistancesOfRandomPairs) {
       ++unproven;
       continue;
     }
-    ASSERT_EQ(ours.distance == 0, judge->meet) << "pair " << i << ": " << ours.distance << " m, Bullet " << judge->distance << " m";
+    ASSERT_EQ(ours.distance == 0, judge->meet)
+        << "pair " << i << ": " << ours.distance << " m, Bullet " << judge->distance << " m";
     meeting += judge->meet;
-    if (!judge->meet) max_difference = std::max(max_difference, std::abs((ours.distance - p.radius) - (judge->distance - p.radius)));
+    if (!judge->meet)
+      max_difference = std::max(max_difference, std::abs((ours.distance - p.radius) - (judge->distance - p.radius)));
   }
   RecordProperty("most_difference", std::to_string(max_difference * 1e9) + " nm");
   EXPECT_LT(max_difference, nanometre);
@@ -83,7 +87,8 @@ TEST(BulletJudge, PointsAndSegmentsAgainstTriangles) {
   double most = 0;
   for (int i = 0; i < pairs / 2; ++i) {
     const Pair p = random_pair(random, i % 2);
-    const ClosestPair ours = i % 2 == 0 ? point_triangle(p.a[0], p.b[0], p.b[1], p.b[2]) : segment_triangle(p.a[0], p.a[1], p.b[0], p.b[1], p.b[2]);
+    const ClosestPair ours = i % 2 == 0 ? point_triangle(p.a[0], p.b[0], p.b[1], p.b[2])
+                                        : segment_triangle(p.a[0], p.a[1], p.b[0], p.b[1], p.b[2]);
     const std::optional<Answer> judge = ask(p, starts);
     if (!judge) {
       ++unproven;
@@ -125,8 +130,9 @@ TEST(BulletJudge, DistancesWithALimit) {
     if (!judge) continue;
     const double d = judge->meet ? 0 : judge->distance;
     EXPECT_LE(ours.distance, d + nanometre) << "pair " << i;
-    if (d < limit - nanometre) { EXPECT_NEAR(ours.distance, d, nanometre) << "pair " << i; }
-    else {
+    if (d < limit - nanometre) {
+      EXPECT_NEAR(ours.distance, d, nanometre) << "pair " << i;
+    } else {
       EXPECT_GE(ours.distance, limit - nanometre) << "pair " << i;
       ++left;
     }

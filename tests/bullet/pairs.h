@@ -16,7 +16,8 @@ namespace insula::bullet {
 
 static_assert(sizeof(btScalar) == sizeof(double), "Bullet's double precision variant is wanted");
 
-/// Bullet's tolerances are absolute lengths of 1e-12; coordinates reach it in units of this, so that pieces are of the order of 1.
+/// Bullet's tolerances are absolute lengths of 1e-12; coordinates reach it in units of this, so that pieces are of the
+/// order of 1.
 inline constexpr double unit = 0.01;  // m
 
 struct Pair {
@@ -37,7 +38,8 @@ inline std::vector<Vec3> cloud(Random& random, int count, double size, const Vec
   return out;
 }
 
-/// kind 0 to 5: a sphere, a capsule or a rounded hull against a triangle or a hull. Sizes from a tenth of a millimetre to two centimetres.
+/// kind 0 to 5: a sphere, a capsule or a rounded hull against a triangle or a hull. Sizes from a tenth of a millimetre
+/// to two centimetres.
 inline Pair random_pair(Random& random, int kind) {
   Pair p;
   const double a = 1e-4 * std::pow(200.0, random.uniform()), b = 1e-4 * std::pow(200.0, random.uniform());
@@ -79,7 +81,8 @@ inline Answer distance(const btConvexHullShape& a, const btConvexHullShape& b, c
 }
 
 /// Depth by EPA and the direction that parts them, from b to a; false where EPA gives up.
-inline bool depth(const btConvexHullShape& a, const btConvexHullShape& b, const btVector3& guess, double& out, Vec3& direction) {
+inline bool depth(const btConvexHullShape& a, const btConvexHullShape& b, const btVector3& guess, double& out,
+                  Vec3& direction) {
   const btTransform here = btTransform::getIdentity();
   btGjkEpaSolver2::sResults r;
   if (!btGjkEpaSolver2::Penetration(&a, here, &b, here, guess, r, false)) return false;
@@ -88,7 +91,8 @@ inline bool depth(const btConvexHullShape& a, const btConvexHullShape& b, const 
   return true;
 }
 
-/// How far the pair is apart along a unit direction from b to a, m: no pair is closer than that along any, and one along the best.
+/// How far the pair is apart along a unit direction from b to a, m: no pair is closer than that along any, and one
+/// along the best.
 inline double apart(const Pair& p, const Vec3& n) {
   double low = n.dot(p.a[0]), high = n.dot(p.b[0]);
   for (const Vec3& x : p.a) low = std::min(low, n.dot(x));
