@@ -13,8 +13,9 @@ struct StatedLaw {
   Kind kind = Kind::potential;
   double energy = 0;  ///< J, of a potential at the bodies' present positions
 
-  /// Energy in J at the bodies' present positions, up to a constant: 0 where the constraint is slack, infinite where a rigid one is
-  /// violated. A spring has k/2 stretch^2, a hold that gives way at a force F has F |displacement|, a given load has -F . displacement.
+  /// Energy in J at the bodies' present positions, up to a constant: 0 where the constraint is slack, infinite where a
+  /// rigid one is violated. A spring has k/2 stretch^2, a hold that gives way at a force F has F |displacement|, a
+  /// given load has -F . displacement.
   static StatedLaw potential(double energy) { return {Kind::potential, energy}; }
   static StatedLaw unilateral() { return {Kind::unilateral, 0}; }
 };

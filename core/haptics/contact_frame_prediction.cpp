@@ -63,7 +63,7 @@ const ConstraintProblem& ContactFramePrediction::operator()(const Simulation& si
   predicted_ = simulation.problem();
   ConstraintProblem& p = predicted_;
   p.prediction_horizon_steps = steps;
-  for (const ContactFrame& f : frames_) block_at(p, f.row)->turn = rotation_vector(f.ahead, f.later);
+  for (const ContactFrame& f : frames_) block_at(p, f.row)->frame_rotation = rotation_vector(f.ahead, f.later);
   std::erase_if(frames_, [](const ContactFrame& f) { return f.normal.cross(f.ahead).norm() < min_turn; });
   if (frames_.empty()) return p;
   const std::size_t n = std::size_t(p.rows);

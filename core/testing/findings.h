@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a contract finds wrong. Each broken law is one test failure of one line: what is wrong, what was expected, where it was first seen.
-// INSULA_CONTRACT_DETAIL=1 shows every place.
+// What a contract finds wrong. Each broken law is one test failure of one line: what is wrong, what was expected, where
+// it was first seen. INSULA_CONTRACT_DETAIL=1 shows every place.
 #pragma once
 #include <string>
 #include <string_view>
@@ -18,9 +18,11 @@ class Findings {
 
   /// Where the checks that follow are: "after step 15".
   void at(std::string place) { place_ = std::move(place); }
-  /// Whether `good`. If not: `law` is the sentence that says what is wrong and what was expected, `found` the numbers of this place.
+  /// Whether `good`. If not: `law` is the sentence that says what is wrong and what was expected, `found` the numbers
+  /// of this place.
   bool expect(bool good, std::string_view law, std::string_view found = {});
-  /// Whether error <= tolerance * size; the greatest error / size is kept as a property of the test (held.h) under the name of the law.
+  /// Whether error <= tolerance * size; the greatest error / size is kept as a property of the test (held.h) under the
+  /// name of the law.
   bool within(const std::string& law, double error, double size, double tolerance, std::string_view found = {});
   bool clean() const { return broken_.empty(); }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contract of force models: energy, force, stiffness and, of those that act within the body, invariance under rigid motion.
+// Contract of force models: energy, force, stiffness and, of those that act within the body, invariance under rigid
+// motion.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -90,7 +91,8 @@ void check_force(Findings& findings, Bench& b, const VecX& x, const VecX& f, Ran
       return b.model.energy(y.data());
     };
     const double slope = (8 * (energy(e) - energy(-e)) - (energy(2 * e) - energy(-2 * e))) / (12 * e);
-    findings.within("force = minus energy gradient", std::abs(f[i] + slope), largest, 1e-7, fmt::format("degree of freedom {}: {:.6g} N, expected {:.6g} N", i, f[i], -slope));
+    findings.within("force = minus energy gradient", std::abs(f[i] + slope), largest, 1e-7,
+                    fmt::format("degree of freedom {}: {:.6g} N, expected {:.6g} N", i, f[i], -slope));
   }
 }
 
@@ -102,23 +104,28 @@ void check_stiffness(Findings& findings, Bench& b, const VecX& x, Random& random
   for (int trial = 0; trial < 10; ++trial) {
     VecX d(b.n);
     for (int i = 0; i < b.n; ++i) d[i] = random.uniform(-1, 1);
-    const VecX slope = (8 * (b.force(x + e * d) - b.force(x - e * d)) - (b.force(x + 2 * e * d) - b.force(x - 2 * e * d))) / (12 * e);
+    const VecX slope =
+        (8 * (b.force(x + e * d) - b.force(x - e * d)) - (b.force(x + 2 * e * d) - b.force(x - 2 * e * d))) / (12 * e);
     const VecX product = exact * d;
     findings.within("exact stiffness = force gradient", (product + slope).norm(), product.norm(), 1e-6);
   }
   const MatX system = b.stiffness(x, 0, Tangent::system);
   findings.within("the step's tangent is symmetric", (system - system.transpose()).norm(), system.norm(), 1e-12);
   const VecX values = Eigen::SelfAdjointEigenSolver<MatX>(system, Eigen::EigenvaluesOnly).eigenvalues();
-  findings.expect(values[0] > -1e-10 * values[b.n - 1], "the step's tangent has a negative eigenvalue", fmt::format("{:.3g}, the largest {:.3g} N/m", values[0], values[b.n - 1]));
+  findings.expect(values[0] > -1e-10 * values[b.n - 1], "the step's tangent has a negative eigenvalue",
+                  fmt::format("{:.3g}, the largest {:.3g} N/m", values[0], values[b.n - 1]));
   const double h = 0.01, factor = 1 + b.model.stiffness_damping() / h;
-  findings.within("the step's tangent has the promised damping", (b.stiffness(x, h, Tangent::system) - factor * system).norm(), system.norm() * factor, 1e-12);
+  findings.within("the step's tangent has the promised damping",
+                  (b.stiffness(x, h, Tangent::system) - factor * system).norm(), system.norm() * factor, 1e-12);
 }
 
 void check_state(Findings& findings, Bench& b, const VecX& x, std::uint64_t seed) {
   Random random(seed);
   const VecX f = b.force(x);
   const double largest = f.lpNorm<Eigen::Infinity>();
-  if (!findings.expect(f.allFinite(), "its force is not finite") || !findings.expect(largest > 0, "a deformed state gives no force")) return;
+  if (!findings.expect(f.allFinite(), "its force is not finite") ||
+      !findings.expect(largest > 0, "a deformed state gives no force"))
+    return;
   if (b.model.internal()) check_balanced(findings, b, x, f, f.lpNorm<1>());
   check_force(findings, b, x, f, random);
   check_stiffness(findings, b, x, random);
@@ -128,12 +135,14 @@ void check_state(Findings& findings, Bench& b, const VecX& x, std::uint64_t seed
 void check_rigid_motions(Findings& findings, Bench& b, const VecX& rest, double reference) {
   Random random(5);
   for (int trial = 0; trial < 10; ++trial) {
-    const Vec3 turn(random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(-2, 2)), shift(random.uniform(-0.1, 0.1), 0.05, -0.02);
+    const Vec3 turn(random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(-2, 2)),
+        shift(random.uniform(-0.1, 0.1), 0.05, -0.02);
     const Quat q = from_rotation_vector(turn);
     VecX x(rest.size());
     for (int i = 0; i < b.body.nodes(); ++i) x.segment<3>(3 * i) = q * rest.segment<3>(3 * i) + shift;
     b.model.reset();
-    if (b.model.internal()) findings.within("rigid motion gives no force", b.force(x).lpNorm<Eigen::Infinity>(), reference, 1e-10);
+    if (b.model.internal())
+      findings.within("rigid motion gives no force", b.force(x).lpNorm<Eigen::Infinity>(), reference, 1e-10);
     findings.expect(b.model.energy(x.data()) >= 0, "its energy is negative");
   }
 }
@@ -143,7 +152,8 @@ void check_prestrain(Findings& findings, Bench& b, const VecX& rest, double refe
   const VecX moved = 0.5 * (deformed(b.body, 0.1, 4) - rest);
   const VecX before = b.force(rest);
   if (!b.model.prestrain(moved.data())) return;
-  findings.expect((b.force(rest) - before).lpNorm<Eigen::Infinity>() > 1e-3 * reference, "a prestrain gives no force at rest");
+  findings.expect((b.force(rest) - before).lpNorm<Eigen::Infinity>() > 1e-3 * reference,
+                  "a prestrain gives no force at rest");
   for (std::uint64_t seed = 5; seed <= 6; ++seed) {
     findings.at("prestrained, deformed state " + std::to_string(seed));
     b.model.reset();
@@ -177,10 +187,12 @@ void check_memory(Findings& findings, const std::filesystem::path& scene, const 
   const std::vector<double> before = state();
   run_script(*s, 75);
   const double now = answer(), least = 1e-9 * std::abs(energy);
-  findings.expect(std::abs(now - energy) <= least || state() != before, "its law changes with something that append_state() does not tell",
+  findings.expect(std::abs(now - energy) <= least || state() != before,
+                  "its law changes with something that append_state() does not tell",
                   fmt::format("{:.6g} J after a run, {:.6g} J before it", now, energy));
   model->reset();
-  findings.expect(std::abs(answer() - energy) <= least && state() == before, "reset() does not undo what finish() changed",
+  findings.expect(std::abs(answer() - energy) <= least && state() == before,
+                  "reset() does not undo what finish() changed",
                   fmt::format("{:.6g} J after reset, {:.6g} J at the start", answer(), energy));
 }
 

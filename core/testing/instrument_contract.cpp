@@ -42,7 +42,8 @@ void check_follows(Findings& findings, Simulation& s, Instrument& tool) {
   s.set_hand(hand, hand_at(next));
   s.step();
   findings.expect(displacement(next, tool.free_pose()).norm() < 1e-12, "the free tool is not where the hand is");
-  findings.expect(displacement(next, tool.pose()).norm() < 1e-12, "the tool that touches nothing is not where the hand is");
+  findings.expect(displacement(next, tool.pose()).norm() < 1e-12,
+                  "the tool that touches nothing is not where the hand is");
 }
 
 // The gain of the haptic loop says where the free tool goes for another device pose.
@@ -68,15 +69,21 @@ void check_terms(Findings& findings, const std::filesystem::path& scene, const s
     if (t.hand == tool->hand_index()) terms = &t;
   ASSERT_TRUE(terms);
   findings.at("after step " + std::to_string(steps));
-  findings.expect(displacement(terms->device, tool->device()).norm() < 1e-12, "the haptic terms have another device pose than the tool");
-  findings.expect(displacement(terms->free, tool->free_pose()).norm() < 1e-12, "the haptic terms have another free pose than the tool");
-  findings.expect((terms->compliance - terms->compliance.transpose()).norm() < 1e-15 * terms->compliance.norm(), "the tool's compliance is not symmetric");
-  findings.expect(Eigen::SelfAdjointEigenSolver<Mat6>(terms->compliance).eigenvalues()[0] > 0, "the tool's compliance is not positive");
-  findings.expect((terms->stiffness - coupling_stiffness(*tool)).norm() < 1e-12 * terms->stiffness.norm(), "the haptic terms have another stiffness than the coupling");
+  findings.expect(displacement(terms->device, tool->device()).norm() < 1e-12,
+                  "the haptic terms have another device pose than the tool");
+  findings.expect(displacement(terms->free, tool->free_pose()).norm() < 1e-12,
+                  "the haptic terms have another free pose than the tool");
+  findings.expect((terms->compliance - terms->compliance.transpose()).norm() < 1e-15 * terms->compliance.norm(),
+                  "the tool's compliance is not symmetric");
+  findings.expect(Eigen::SelfAdjointEigenSolver<Mat6>(terms->compliance).eigenvalues()[0] > 0,
+                  "the tool's compliance is not positive");
+  findings.expect((terms->stiffness - coupling_stiffness(*tool)).norm() < 1e-12 * terms->stiffness.norm(),
+                  "the haptic terms have another stiffness than the coupling");
   findings.expect(terms->jacobian.rows() == a->problem().rows, "the tool's Jacobian has not the problem's rows");
   const Pose predicted = displaced(terms->free, terms->gain * displacement(terms->device, moved.device));
   // Rotations of 1e-4 rad: second order is 1e-8.
-  findings.expect(displacement(predicted, other->free_pose()).norm() < 1e-7 * (1 + terms->gain.norm()), "the gain does not predict the free tool for another device pose");
+  findings.expect(displacement(predicted, other->free_pose()).norm() < 1e-7 * (1 + terms->gain.norm()),
+                  "the gain does not predict the free tool for another device pose");
   findings.at("");
 }
 
@@ -97,11 +104,13 @@ void check_instrument(const std::filesystem::path& scene, const std::string& ele
     for (int i = 0; i < 70; ++i) {
       run_script(*s, 1);
       const Vec6 force = coupling_stiffness(*tool) * displacement(tool->device(), tool->pose());
-      findings.expect((tool->hand_force() - force).norm() < 1e-12 * (1 + force.norm()), "the hand's force is not stiffness times displacement");
+      findings.expect((tool->hand_force() - force).norm() < 1e-12 * (1 + force.norm()),
+                      "the hand's force is not stiffness times displacement");
       findings.expect(tool->activity() >= 0 && tool->activity() <= 1, "its activity is not within 0 and 1");
     }
     if (tool->hand_index() < 0) {  // an arm holds it: the hands' script must not carry it away
-      findings.expect(displacement(tool->home_pose(), tool->device()).norm() < 1e-12, "the hands carry away what an arm holds");
+      findings.expect(displacement(tool->home_pose(), tool->device()).norm() < 1e-12,
+                      "the hands carry away what an arm holds");
       continue;
     }
     check_follows(findings, *s, *tool);

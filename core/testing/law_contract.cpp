@@ -36,7 +36,8 @@ struct Energies {
 
 class Probe {
  public:
-  Probe(Findings& f, Simulation& s, Component& c) : findings_(f), s_(s), bench_(s, c), stated_(dynamic_cast<const StatesLaw&>(c)), restore_(s) {}
+  Probe(Findings& f, Simulation& s, Component& c)
+      : findings_(f), s_(s), bench_(s, c), stated_(dynamic_cast<const StatesLaw&>(c)), restore_(s) {}
 
   void row(const RowKey& key, const RowData& row) {
     const std::vector<VecX> dq = along(row);
@@ -46,11 +47,15 @@ class Probe {
       const std::string place = fmt::format("where row {} of key {} has a violation of {:.3g} mm", key.second,
                                             key.first & ((std::uint64_t(1) << 44) - 1), 1e3 * target);
       if (std::isfinite(here.rows) != std::isfinite(here.stated)) {
-        findings_.expect(false, std::isfinite(here.rows) ? "its rows allow what its stated law forbids" : "its rows forbid what its stated law allows", place);
+        findings_.expect(false,
+                         std::isfinite(here.rows) ? "its rows allow what its stated law forbids"
+                                                  : "its rows forbid what its stated law allows",
+                         place);
         continue;
       }
       if (!std::isfinite(before.rows + before.stated + here.rows + after.rows + after.stated)) continue;
-      compare(-(after.rows - before.rows) / (2 * e), -(after.stated - before.stated) / (2 * e), row.block.compliance, place);
+      compare(-(after.rows - before.rows) / (2 * e), -(after.stated - before.stated) / (2 * e), row.block.compliance,
+              place);
     }
     bench_.rows();
   }
@@ -71,11 +76,13 @@ class Probe {
     const auto verb = [](double f) { return f > 0 ? "push" : "pull"; };
     std::string law;
     if (std::abs(stated) <= allowed) law = fmt::format("its rows {} where its stated law has no force", verb(rows));
-    else if (std::abs(rows) <= allowed) law = fmt::format("its rows have no force where its stated law {}es", verb(stated));
+    else if (std::abs(rows) <= allowed)
+      law = fmt::format("its rows have no force where its stated law {}es", verb(stated));
     else if (rows * stated < 0) law = fmt::format("its rows {} where its stated law {}es", verb(rows), verb(stated));
     else law = "its rows' force is not that of its stated law";
     std::string found = fmt::format("{:.4g} N, expected {:.4g} N, {}", rows, stated, place);
-    if (compliance > 0) found += fmt::format("; as if the violation were off by {:.3g} mm", 1e3 * (stated - rows) * compliance);
+    if (compliance > 0)
+      found += fmt::format("; as if the violation were off by {:.3g} mm", 1e3 * (stated - rows) * compliance);
     const std::size_t at = law.find("pulles");
     if (at != std::string::npos) law.replace(at, 6, "pulls");
     findings_.expect(false, law, found);
@@ -130,7 +137,8 @@ void check_far(Findings& findings, Simulation& s, Component& c, const RowMap& ba
       move(s, *dq, 1);
       for (const auto& [far_key, far_row] : bench.rows())
         if (far_row.has_law() && !far_row.h[b].isZero(0))
-          findings.expect(far_row.violation >= 0, "its rows push things apart that are 10 m apart already", name_of(far_key, far_row));
+          findings.expect(far_row.violation >= 0, "its rows push things apart that are 10 m apart already",
+                          name_of(far_key, far_row));
       restore();
     }
   }
@@ -143,12 +151,20 @@ void check_stated_law(Findings& findings, Simulation& s, Component& c, std::uint
   RowBench bench(s, c);
   const RowMap base = bench.rows();
   bool own = false;
-  for (const auto& [key, row] : base) own = own || (row.has_law() && row.block.law == LawKind::box);  // a weld needs no statement
+  for (const auto& [key, row] : base)
+    own = own || (row.has_law() && row.block.law == LawKind::box);  // a weld needs no statement
   const auto* stated = dynamic_cast<const StatesLaw*>(&c);
-  if (own && !findings.expect(stated, "adds rows with bounds or compliance and states no law; implement StatesLaw (core/constraint/stated_law.h)")) return;
+  if (own &&
+      !findings.expect(
+          stated,
+          "adds rows with bounds or compliance and states no law; implement StatesLaw (core/constraint/stated_law.h)"))
+    return;
   if (stated && stated->law().kind == StatedLaw::Kind::potential) return check_potential(findings, s, c, base, seed);
   for (const auto& [key, row] : base)
-    if (row.positional() && (stated || row.has_law())) findings.expect(row.lower() == 0 && row.upper() > 0, "its stated law only pushes, so a row's lower bound is 0 and its upper one above", name_of(key, row));
+    if (row.positional() && (stated || row.has_law()))
+      findings.expect(row.lower() == 0 && row.upper() > 0,
+                      "its stated law only pushes, so a row's lower bound is 0 and its upper one above",
+                      name_of(key, row));
   check_far(findings, s, c, base);
 }
 

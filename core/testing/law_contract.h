@@ -11,8 +11,9 @@ namespace insula::test {
 /// Whether the rows keep things apart, by what the component states: then their direction may turn with an open gap.
 bool is_unilateral(const Component& c, const RowData& row);
 
-/// Moves the bodies along rows, through the place where the law begins to act, and compares the rows' force with the stated law's.
-/// Bodies that a unilateral law holds apart are moved far apart: nothing may act then. The bodies are brought back.
+/// Moves the bodies along rows, through the place where the law begins to act, and compares the rows' force with the
+/// stated law's. Bodies that a unilateral law holds apart are moved far apart: nothing may act then. The bodies are
+/// brought back.
 void check_stated_law(Findings& findings, Simulation& s, Component& c, std::uint64_t seed);
 
 }  // namespace insula::test

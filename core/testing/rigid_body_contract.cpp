@@ -16,7 +16,8 @@ void check_link(Findings& findings, RigidBody& tool, int link) {
   const double opening = tool.opening();
   if (!findings.expect(!tool.link_pieces(link).empty(), "a link has nothing to touch with")) return;
   const MaterialPoint p = tool.link_point(link, tool.link_pieces(link).front().points.front());
-  findings.expect((tool.position(p) - tool.link_pose(link).apply(p.local)).norm() < 1e-15, "position() of a link's point is not where its link is");
+  findings.expect((tool.position(p) - tool.link_pose(link).apply(p.local)).norm() < 1e-15,
+                  "position() of a link's point is not where its link is");
   const Vec3 d(0.6, -0.48, 0.64);
   BodyRows rows;
   rows.clear();
@@ -27,7 +28,8 @@ void check_link(Findings& findings, RigidBody& tool, int link) {
   double free = 0;
   tool.compute_compliance(rows);
   tool.add_free_motion(rows, &free);
-  findings.expect(std::abs(free - d.dot(tool.free_displacement(p))) <= 1e-12, "H dq of the free motion is not the point's free displacement");
+  findings.expect(std::abs(free - d.dot(tool.free_displacement(p))) <= 1e-12,
+                  "H dq of the free motion is not the point's free displacement");
   for (int k = 0; k < 3 * tool.blocks(); ++k) {
     const auto moved = [&](double by) {
       Vec6 change = Vec6::Zero();

@@ -68,7 +68,8 @@ RowMap RowBench::rows(double time) {
     const BodyRows& rows = simulation_.bodies()[b]->rows;
     for (int i = 0; i < rows.count(); ++i)
       for (int e = rows.start[std::size_t(i)]; e < rows.start[std::size_t(i) + 1]; ++e)
-        by_row[std::size_t(rows.row[std::size_t(i)])]->h[b].segment<3>(3 * rows.block[std::size_t(e)]) += rows.coeff[std::size_t(e)];
+        by_row[std::size_t(rows.row[std::size_t(i)])]->h[b].segment<3>(3 * rows.block[std::size_t(e)]) +=
+            rows.coeff[std::size_t(e)];
   }
   // What the builder has is the violation alone; H dq_free comes with the compliance.
   for (std::size_t r = 0; r < by_row.size(); ++r) {
@@ -87,7 +88,8 @@ void RowBench::add_ways(std::vector<RowData*>& by_row) const {
       if (r->h[b].size() > 0) r->way += r->h[b].dot(expected[b]);
   for (const Block& b : blocks) {
     double way2 = 0;
-    for (int k = 0; k < b.rows(); ++k) way2 += by_row[std::size_t(b.row + k)]->way * by_row[std::size_t(b.row + k)]->way;
+    for (int k = 0; k < b.rows(); ++k)
+      way2 += by_row[std::size_t(b.row + k)]->way * by_row[std::size_t(b.row + k)]->way;
     for (int k = 0; k < b.rows(); ++k) by_row[std::size_t(b.row + k)]->way = std::sqrt(way2);
   }
 }
@@ -106,7 +108,9 @@ VecX RowBench::expected_motion(Body& body) const {
   } else if (auto* tool = dynamic_cast<RigidBody*>(&body)) {
     // Translation from the tip; the rotation from two points a metre off.
     const Pose pose = tool->link_pose(0);
-    const auto at = [&](const Vec3& offset) { return tool->free_displacement(tool->link_point(0, pose.q.conjugate() * offset)); };
+    const auto at = [&](const Vec3& offset) {
+      return tool->free_displacement(tool->link_point(0, pose.q.conjugate() * offset));
+    };
     const Vec3 t = at(Vec3::Zero()), x = at(Vec3::UnitX()) - t, y = at(Vec3::UnitY()) - t;
     dq.head<6>() << t, Vec3(y.z(), -x.z(), x.y());
     if (tool->blocks() < 3) return dq;
@@ -132,7 +136,8 @@ void move(Simulation& s, const std::vector<VecX>& dq, double scale) {
   for (std::size_t b = 0; b < s.bodies().size(); ++b) {
     if (auto* soft = dynamic_cast<DeformableBody*>(s.bodies()[b])) soft->q() += scale * dq[b];
     else if (auto* tool = dynamic_cast<RigidBody*>(s.bodies()[b]))
-      tool->place(displaced(tool->link_pose(0), scale * Vec6(dq[b].head<6>())), tool->opening() + (dq[b].size() > 6 ? scale * dq[b][6] : 0));
+      tool->place(displaced(tool->link_pose(0), scale * Vec6(dq[b].head<6>())),
+                  tool->opening() + (dq[b].size() > 6 ? scale * dq[b][6] : 0));
   }
 }
 

@@ -14,11 +14,11 @@ namespace insula::test {
 
 struct RowData {
   Block block;
-  int offset = 0;         ///< row within its block
-  double violation = 0;   ///< at the start of the step, m
-  double rate = 0;        ///< that the component itself declared, m/s
-  double way = 0;         ///< of the block's place in the free motion, m
-  std::vector<VecX> h;    ///< one piece a body, blocks() * 3 long
+  int offset = 0;        ///< row within its block
+  double violation = 0;  ///< at the start of the step, m
+  double rate = 0;       ///< that the component itself declared, m/s
+  double way = 0;        ///< of the block's place in the free motion, m
+  std::vector<VecX> h;   ///< one piece a body, blocks() * 3 long
 
   /// Whether the violation says how the law acts: friction's tangents and the rows of patches go by their motion.
   bool positional() const { return block.law == LawKind::box || (block.law == LawKind::friction && offset == 0); }
@@ -26,7 +26,8 @@ struct RowData {
   bool has_law() const;
   double lower() const { return block.law == LawKind::box ? block.lower : 0.0; }
   double upper() const { return block.law == LawKind::box ? block.upper : infinite; }
-  /// Energy that the row's law holds at its violation, J: the largest -(lambda delta + c lambda^2 / 2) within the bounds.
+  /// Energy that the row's law holds at its violation, J: the largest -(lambda delta + c lambda^2 / 2) within the
+  /// bounds.
   double potential() const;
 };
 

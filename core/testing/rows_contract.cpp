@@ -19,8 +19,9 @@
 namespace insula::test {
 namespace {
 
-// A contact's normal is fixed over a step; where it is no direction of least distance (an edge, a corner) an open gap turns with it,
-// and so does the way to a contact that was found along the free motion. The error is at most the gap over this radius of curvature ...
+// A contact's normal is fixed over a step; where it is no direction of least distance (an edge, a corner) an open gap
+// turns with it, and so does the way to a contact that was found along the free motion. The error is at most the gap
+// over this radius of curvature ...
 constexpr double min_radius = 0.02;  // m
 // ... and a row is compared where that is no more than this share of it.
 constexpr double max_turning = 0.02;
@@ -28,14 +29,15 @@ constexpr double max_turning = 0.02;
 constexpr double rounding = 2e-4;  // m
 
 struct Compared {
-  std::set<RowKey> rows;   ///< had a violation to compare
-  bool unilateral = false; ///< there were such rows ...
-  bool tight = false;      ///< ... and one of them was compared at a small gap
+  std::set<RowKey> rows;    ///< had a violation to compare
+  bool unilateral = false;  ///< there were such rows ...
+  bool tight = false;       ///< ... and one of them was compared at a small gap
 };
 
 class Derivatives {
  public:
-  Derivatives(Findings& f, Simulation& s, Component& c, std::uint64_t seed) : findings_(f), s_(s), c_(c), bench_(s, c), random_(seed) {}
+  Derivatives(Findings& f, Simulation& s, Component& c, std::uint64_t seed)
+      : findings_(f), s_(s), c_(c), bench_(s, c), random_(seed) {}
 
   /// Where the bodies are; then again with each of a few open gaps closed.
   void check(Compared& compared) {
@@ -58,8 +60,8 @@ class Derivatives {
  private:
   static double turning(const RowData& row) { return (std::abs(row.violation) + row.swept) / min_radius; }
 
-  /// Brings the gap to a hundredth of a millimetre by moving one body as a whole along the row, again and again. Nothing where no body
-  /// can be moved so, or where the row goes away.
+  /// Brings the gap to a hundredth of a millimetre by moving one body as a whole along the row, again and again.
+  /// Nothing where no body can be moved so, or where the row goes away.
   std::optional<RowMap> close(const RowKey& key, const RowData& row) {
     double gap = row.violation;
     RowMap now = {{key, row}};
@@ -70,7 +72,8 @@ class Derivatives {
       now = bench_.rows();
       if (!now.contains(key)) return {};
       const double left = now.at(key).violation;
-      if (!findings_.expect(std::abs(left) < 1.2 * std::abs(gap) + 1e-4, "a gap opens when a body moves along its row to close it: the row is not its derivative",
+      if (!findings_.expect(std::abs(left) < 1.2 * std::abs(gap) + 1e-4,
+                            "a gap opens when a body moves along its row to close it: the row is not its derivative",
                             fmt::format("{}, then {:.4g} mm", name_of(key, row), 1e3 * left)))
         return {};
       gap = left;
@@ -110,8 +113,10 @@ class Derivatives {
         const auto p = plus.find(key), m = minus.find(key);
         if (p == plus.end() || m == minus.end() || !row.positional()) continue;
         // A row on motion alone: its violation is zero wherever the bodies are (differences here are of 1e-7 m).
-        if (std::max({std::abs(row.violation), std::abs(p->second.violation), std::abs(m->second.violation)}) < 1e-12) continue;
-        compare(key, row, dq, (p->second.violation - row.violation) / e, (row.violation - m->second.violation) / e, compared);
+        if (std::max({std::abs(row.violation), std::abs(p->second.violation), std::abs(m->second.violation)}) < 1e-12)
+          continue;
+        compare(key, row, dq, (p->second.violation - row.violation) / e, (row.violation - m->second.violation) / e,
+                compared);
       }
     }
   }
@@ -120,12 +125,14 @@ class Derivatives {
     std::vector<VecX> dq = no_motion(s_);
     for (std::size_t b = 0; b < dq.size(); ++b) {
       const bool rigid = dynamic_cast<const RigidBody*>(s_.bodies()[b]) != nullptr;
-      for (int i = 0; i < dq[b].size(); ++i) dq[b][i] = random_.uniform(-1, 1) * (rigid && i > 2 ? 20.0 : 1.0);  // rad per metre
+      for (int i = 0; i < dq[b].size(); ++i)
+        dq[b][i] = random_.uniform(-1, 1) * (rigid && i > 2 ? 20.0 : 1.0);  // rad per metre
     }
     return dq;
   }
 
-  void compare(const RowKey& key, const RowData& row, const std::vector<VecX>& dq, double forward, double backward, Compared& compared) {
+  void compare(const RowKey& key, const RowData& row, const std::vector<VecX>& dq, double forward, double backward,
+               Compared& compared) {
     const bool unilateral = is_unilateral(c_, row);
     compared.unilateral = compared.unilateral || unilateral;
     if (unilateral && turning(row) > max_turning) return;
@@ -194,16 +201,24 @@ void check_balance(Findings& findings, Simulation& s, Component& c) {
 /// Numbers, bounds, and lambda within its law.
 bool check_block(Findings& findings, const ConstraintProblem& p, const Block& b) {
   const double* l = p.lambda.data() + b.row;
-  bool finite = std::isfinite(b.compliance) && std::isfinite(b.friction) && !std::isnan(b.lower) && !std::isnan(b.upper);
+  bool finite =
+      std::isfinite(b.compliance) && std::isfinite(b.friction) && !std::isnan(b.lower) && !std::isnan(b.upper);
   for (int k = 0; k < b.rows(); ++k) finite = finite && std::isfinite(p.delta_free[std::size_t(b.row + k)]);
-  if (!findings.expect(finite, "a row is not made of finite numbers: violation, direction, compliance and friction must be")) return false;
-  findings.expect(b.compliance >= 0, "compliance of a row is negative, expected 0 or more", fmt::format("{:.3g} m/N", b.compliance));
-  findings.expect(b.friction >= 0, "friction coefficient is negative, expected 0 or more", fmt::format("{:.3g}", b.friction));
-  if (!findings.expect(b.law != LawKind::box || b.lower <= b.upper, "bounds are swapped: lower is above upper", fmt::format("[{:.3g}, {:.3g}] N", b.lower, b.upper))) return false;
+  if (!findings.expect(finite,
+                       "a row is not made of finite numbers: violation, direction, compliance and friction must be"))
+    return false;
+  findings.expect(b.compliance >= 0, "compliance of a row is negative, expected 0 or more",
+                  fmt::format("{:.3g} m/N", b.compliance));
+  findings.expect(b.friction >= 0, "friction coefficient is negative, expected 0 or more",
+                  fmt::format("{:.3g}", b.friction));
+  if (!findings.expect(b.law != LawKind::box || b.lower <= b.upper, "bounds are swapped: lower is above upper",
+                       fmt::format("[{:.3g}, {:.3g}] N", b.lower, b.upper)))
+    return false;
   for (int k = 0; k < b.rows(); ++k)
     if (!findings.expect(std::isfinite(l[k]), "the solution of a row is not finite")) return false;
   if (b.law == LawKind::box) {
-    findings.expect(l[0] >= b.lower && l[0] <= b.upper, "lambda is out of its bounds", fmt::format("{:.3g} N of [{:.3g}, {:.3g}] N", l[0], b.lower, b.upper));
+    findings.expect(l[0] >= b.lower && l[0] <= b.upper, "lambda is out of its bounds",
+                    fmt::format("{:.3g} N of [{:.3g}, {:.3g}] N", l[0], b.lower, b.upper));
     return true;
   }
   const bool patch = b.law == LawKind::patch;
@@ -211,7 +226,8 @@ bool check_block(Findings& findings, const ConstraintProblem& p, const Block& b)
   for (int i = 1; patch && i <= b.normals; ++i) pressed += l[-i];
   const double across = patch ? std::hypot(l[0], l[1]) : std::hypot(l[1], l[2]);
   findings.expect(pressed >= 0, "a contact pulls", fmt::format("{:.3g} N", pressed));
-  findings.expect(across <= std::max(0.0, b.friction) * pressed * (1 + 1e-9) + 1e-15, "friction is above its cone", fmt::format("{:.3g} N of {:.3g} N", across, b.friction * pressed));
+  findings.expect(across <= std::max(0.0, b.friction) * pressed * (1 + 1e-9) + 1e-15, "friction is above its cone",
+                  fmt::format("{:.3g} N of {:.3g} N", across, b.friction * pressed));
   return true;
 }
 
@@ -223,7 +239,8 @@ bool check_blocks(Findings& findings, const Simulation& s, const Component& c, s
     const bool once = ids.insert(b.id).second;
     if (!mine) continue;
     own.insert(b.id);
-    findings.expect(once, "two of its rows have one id: every block needs a key of its own", fmt::format("key {}", b.id & ((std::uint64_t(1) << 44) - 1)));
+    findings.expect(once, "two of its rows have one id: every block needs a key of its own",
+                    fmt::format("key {}", b.id & ((std::uint64_t(1) << 44) - 1)));
     if (!check_block(findings, s.problem(), b)) return false;
   }
   return true;
@@ -232,7 +249,9 @@ bool check_blocks(Findings& findings, const Simulation& s, const Component& c, s
 void check_own_ids(Findings& findings, Simulation& s, Component& c) {
   RowBench bench(s, c);
   bench.rows();
-  for (const Block& b : bench.blocks) findings.expect(b.owner == c.order, "the id of a row is not made by row_id(*this, key)", fmt::format("id {}", b.id));
+  for (const Block& b : bench.blocks)
+    findings.expect(b.owner == c.order, "the id of a row is not made by row_id(*this, key)",
+                    fmt::format("id {}", b.id));
 }
 
 /// A row that moves by itself says at what rate.
@@ -244,7 +263,8 @@ void check_rates(Findings& findings, Simulation& s, Component& c) {
     const auto other = later.find(key);
     if (other == later.end() || !row.positional() || is_unilateral(c, row)) continue;
     const double found = (other->second.violation - row.violation) / dt;
-    findings.expect(std::abs(found - row.rate) <= 1e-6 * std::abs(found) + 1e-9, "a row moves by itself at another rate than it declares with moves()",
+    findings.expect(std::abs(found - row.rate) <= 1e-6 * std::abs(found) + 1e-9,
+                    "a row moves by itself at another rate than it declares with moves()",
                     fmt::format("{:.4g} m/s, declared {:.4g} m/s, {}", found, row.rate, name_of(key, row)));
   }
   bench.rows();
@@ -252,13 +272,15 @@ void check_rates(Findings& findings, Simulation& s, Component& c) {
 
 /// Laws of rows that the two have in common, where the bodies are at the same places.
 bool same_laws(const RowMap& a, const RowMap& b, std::string& what) {
-  const auto near = [](double x, double y) { return x == y || std::abs(x - y) <= 1e-9 * std::max(std::abs(x), std::abs(y)); };
+  const auto near = [](double x, double y) {
+    return x == y || std::abs(x - y) <= 1e-9 * std::max(std::abs(x), std::abs(y));
+  };
   for (const auto& [key, row] : a) {
     const auto other = b.find(key);
     if (other == b.end()) continue;
     const Block &x = row.block, &y = other->second.block;
-    if (near(x.compliance, y.compliance) && near(x.lower, y.lower) && near(x.upper, y.upper) && near(x.friction, y.friction) &&
-        std::abs(row.violation - other->second.violation) <= 1e-9)
+    if (near(x.compliance, y.compliance) && near(x.lower, y.lower) && near(x.upper, y.upper) &&
+        near(x.friction, y.friction) && std::abs(row.violation - other->second.violation) <= 1e-9)
       continue;
     what = name_of(key, other->second);
     return false;
@@ -310,12 +332,14 @@ void check_ends(Findings& findings, Simulation& s, Component& c, const std::set<
   std::set<std::uint64_t> after;
   check_blocks(findings, s, c, after);
   const auto kept = std::count_if(before.begin(), before.end(), [&](std::uint64_t id) { return after.contains(id); });
-  findings.expect(kept >= int(0.9 * double(before.size())), "row ids change although nothing moves", fmt::format("{} of {} are kept", kept, before.size()));
+  findings.expect(kept >= int(0.9 * double(before.size())), "row ids change although nothing moves",
+                  fmt::format("{} of {} are kept", kept, before.size()));
   const auto* constraint = dynamic_cast<const Constraint*>(&c);
   if (constraint && !constraint->adds_rows()) findings.expect(!seen, "adds rows, but adds_rows() says it does not");
 }
 
-void check_one(const std::filesystem::path& scene, const std::string& element, const std::string& id, bool& seen, Compared& compared) {
+void check_one(const std::filesystem::path& scene, const std::string& element, const std::string& id, bool& seen,
+               Compared& compared) {
   auto s = load(scene);
   ASSERT_TRUE(s);
   auto* c = s->scene().find_as<Component>(id);
@@ -366,7 +390,8 @@ void check_rows(const std::filesystem::path& scene, const std::string& element, 
   if (!rows_expected || !adds) return;
   if (!findings.expect(seen, "its example never shows a row of it, so it shows nothing")) return;
   findings.expect(!compared.rows.empty(), "no row had a violation to compare with its derivative");
-  findings.expect(!compared.unilateral || compared.tight, "no contact came closer than 0.4 mm, so no direction could be checked; let its example touch");
+  findings.expect(!compared.unilateral || compared.tight,
+                  "no contact came closer than 0.4 mm, so no direction could be checked; let its example touch");
 }
 
 }  // namespace insula::test

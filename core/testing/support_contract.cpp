@@ -30,7 +30,8 @@ void check_held(Findings& findings, const DeformableBody& body) {
   int moved = 0;
   for (int i = 0; i < body.nodes(); ++i) {
     const bool same = body.q().segment<3>(3 * i) == body.rest_nodes()[std::size_t(i)];
-    if (body.fixed()[std::size_t(i)]) findings.expect(same && body.v().segment<3>(3 * i).isZero(0), "a fixed node moves", fmt::format("node {}", i));
+    if (body.fixed()[std::size_t(i)])
+      findings.expect(same && body.v().segment<3>(3 * i).isZero(0), "a fixed node moves", fmt::format("node {}", i));
     else moved += !same;
   }
   findings.expect(moved > 0, "nothing moves in its example, so it shows nothing");

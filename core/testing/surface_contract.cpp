@@ -25,7 +25,8 @@ void check_rigid_motion(Findings& findings, Surface& surface, DeformableBody& bo
   for (int i = 0; i < body.nodes(); ++i) moved.segment<3>(3 * i) = turn * rest.segment<3>(3 * i) + shift;
   put(surface, body, moved);
   for (std::size_t i = 0; i < start.size(); ++i)
-    findings.expect((surface.positions()[i] - (turn * start[i] + shift)).norm() < 1e-12, "a vertex does not follow a rigid motion", fmt::format("vertex {}", i));
+    findings.expect((surface.positions()[i] - (turn * start[i] + shift)).norm() < 1e-12,
+                    "a vertex does not follow a rigid motion", fmt::format("vertex {}", i));
   put(surface, body, rest);
 }
 
@@ -36,7 +37,8 @@ void check_rows_of(Findings& findings, Surface& surface, DeformableBody& body, c
     const Vec3 bary(0.2, 0.5, 0.3), d(0.6, 0, 0.8);
     const auto along = [&] {
       Vec3 x = Vec3::Zero();
-      for (int k = 0; k < 3; ++k) x += bary[k] * surface.positions()[std::size_t(surface.triangles()[t][std::size_t(k)])];
+      for (int k = 0; k < 3; ++k)
+        x += bary[k] * surface.positions()[std::size_t(surface.triangles()[t][std::size_t(k)])];
       return d.dot(x);
     };
     put(surface, body, rest);
@@ -50,14 +52,16 @@ void check_rows_of(Findings& findings, Surface& surface, DeformableBody& body, c
     double predicted = 0;
     for (std::size_t e = 0; e < rows.block.size(); ++e)
       predicted += rows.coeff[e].dot(q.segment<3>(3 * rows.block[e]) - rest.segment<3>(3 * rows.block[e]));
-    findings.expect(std::abs(moved - at_rest - predicted) <= 1e-13, "a row of a triangle's point is not the derivative of its position",
+    findings.expect(std::abs(moved - at_rest - predicted) <= 1e-13,
+                    "a row of a triangle's point is not the derivative of its position",
                     fmt::format("triangle {}: {:.17g} m, expected {:.17g} m", t, predicted, moved - at_rest));
   }
   put(surface, body, rest);
 }
 
 /// The step places all in one go, to the bits of each point by itself, and sees how far they went.
-void check_step(Findings& findings, Simulation& s, Surface& surface, DeformableBody& body, const VecX& rest, const VecX& q) {
+void check_step(Findings& findings, Simulation& s, Surface& surface, DeformableBody& body, const VecX& rest,
+                const VecX& q) {
   s.step();
   surface.will_collide();
   surface.update_collision();
@@ -69,13 +73,16 @@ void check_step(Findings& findings, Simulation& s, Surface& surface, DeformableB
   for (std::size_t i = 0; i < before.size(); ++i) {
     const MaterialPoint& p = surface.points()[i];
     if (!body.can_move(p)) continue;
-    findings.expect(surface.positions()[i] == body.position(p) && surface.expected_displacements()[i] == body.expected_displacement(p),
+    findings.expect(surface.positions()[i] == body.position(p) &&
+                        surface.expected_displacements()[i] == body.expected_displacement(p),
                     "a vertex in the step has other bits than by itself", fmt::format("vertex {}", i));
     farthest = std::max(farthest, (surface.positions()[i] - before[i]).norm());
     farthest_free = std::max(farthest_free, surface.expected_displacements()[i].norm());
   }
-  findings.expect(std::abs(surface.collision().moved(~std::uint64_t(0)) - farthest) <= 1e-12, "it does not know how far it moved");
-  findings.expect(std::abs(surface.collision().farthest_free() - farthest_free) <= 1e-12 && farthest_free > 0, "it does not know how far its free motion goes");
+  findings.expect(std::abs(surface.collision().moved(~std::uint64_t(0)) - farthest) <= 1e-12,
+                  "it does not know how far it moved");
+  findings.expect(std::abs(surface.collision().farthest_free() - farthest_free) <= 1e-12 && farthest_free > 0,
+                  "it does not know how far its free motion goes");
   s.reset();  // the step moved the others too
   for (Surface* other : s.surfaces()) other->update();
 }
@@ -87,12 +94,16 @@ void check_surfaces(const std::filesystem::path& scene) {
   ASSERT_TRUE(s);
   for (Surface* surface : s->surfaces()) {
     Findings findings("surface " + surface->id);
-    if (!findings.expect(surface->positions().size() == surface->rest().vertices.size(), "its positions are not as many as its vertices")) continue;
+    if (!findings.expect(surface->positions().size() == surface->rest().vertices.size(),
+                         "its positions are not as many as its vertices"))
+      continue;
     surface->update();
     for (std::size_t i = 0; i < surface->positions().size(); ++i)
-      findings.expect((surface->positions()[i] - surface->rest().vertices[i]).norm() < 1e-3, "a vertex starts elsewhere than at rest", fmt::format("vertex {}", i));
+      findings.expect((surface->positions()[i] - surface->rest().vertices[i]).norm() < 1e-3,
+                      "a vertex starts elsewhere than at rest", fmt::format("vertex {}", i));
     auto* body = dynamic_cast<DeformableBody*>(&surface->body());
-    if (!body || (dynamic_cast<ShellBody*>(body) && !surface->mesh.empty())) continue;  // a picture beside the wall keeps its distance
+    if (!body || (dynamic_cast<ShellBody*>(body) && !surface->mesh.empty()))
+      continue;  // a picture beside the wall keeps its distance
     const VecX rest = body->q(), q = deformed(*body, 0.2, 3);
     check_rigid_motion(findings, *surface, *body);
     check_rows_of(findings, *surface, *body, q);

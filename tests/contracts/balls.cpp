@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A ball at a tool's tip that keeps a vertex of a surface out, as a contact does; and mistakes that only that form allows.
+// A ball at a tool's tip that keeps a vertex of a surface out, as a contact does; and mistakes that only that form
+// allows.
 #include "core/mechanics/constraint.h"
 #include "core/constraint/stated_law.h"
 #include "core/mechanics/surface.h"
@@ -9,14 +10,25 @@
 namespace insula::mistakes {
 namespace {
 
-enum class Mistake { none, with_friction, stale_direction, stale_direction_far, negative_friction, attracts, pulls, wrong_sign, wrong_side };
+enum class Mistake {
+  none,
+  with_friction,
+  stale_direction,
+  stale_direction_far,
+  negative_friction,
+  attracts,
+  pulls,
+  wrong_sign,
+  wrong_side
+};
 
 template <Mistake M>
 class Ball final : public Constraint, public StatesLaw {
  public:
   Ref<Surface> surface{this, {.name = "surface", .doc = "surface whose first vertex is kept out"}};
   Ref<Instrument> tool{this, {.name = "tool", .doc = "tool that carries the ball"}};
-  Param<Length> radius{this, {.name = "radius", .fallback = "5 mm", .min = "0.1 mm", .max = "1 m", .doc = "of the ball"}};
+  Param<Length> radius{this,
+                       {.name = "radius", .fallback = "5 mm", .min = "0.1 mm", .max = "1 m", .doc = "of the ball"}};
 
   void connect(PrepareContext&, Simulation&) override {
     vertex_ = surface->points()[0];
@@ -63,7 +75,9 @@ class Ball final : public Constraint, public StatesLaw {
 }  // namespace
 
 void add_balls(Registry& registry) {
-  const auto add = [&]<Mistake M>(const char* name) { registry.add<Ball<M>>(name, Kind::constraint, "ball for tests"); };
+  const auto add = [&]<Mistake M>(const char* name) {
+    registry.add<Ball<M>>(name, Kind::constraint, "ball for tests");
+  };
   add.operator()<Mistake::none>("ball");
   add.operator()<Mistake::with_friction>("ball_with_friction");
   add.operator()<Mistake::stale_direction>("ball_stale_direction");

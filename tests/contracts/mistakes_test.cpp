@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Each mistake is caught by the contracts of its kind, in one line that says what is wrong; what has none passes them all.
+// Each mistake is caught by the contracts of its kind, in one line that says what is wrong; what has none passes them
+// all.
 #include <gtest/gtest-spi.h>
 #include <gtest/gtest.h>
 
@@ -90,12 +91,14 @@ std::string scene_with(const std::string& element) {
   const std::string one = "<" + element + "/>", joins = "<" + element + R"( surface="skin" tool="tool"/>)";
   return R"(<scene>
   <soft_body id="block" mesh="meshes/block.msh" mesh_unit="m"><corotational_fem/>)" +
-         (is("hold") ? one : std::string(R"(<fixed region="beyond" centre="0 0 -9 mm" normal="0 0 -1"/>)")) + (is("springs") ? one : "") +
+         (is("hold") ? one : std::string(R"(<fixed region="beyond" centre="0 0 -9 mm" normal="0 0 -1"/>)")) +
+         (is("springs") ? one : "") +
          R"(<surface id="skin"/></soft_body>
   <)" + (is("probe") ? element : std::string("retractor")) +
-         R"( id="tool" model="meshes/tool/tool.urdf" hand="right" home=")" + (is("thread") || is("ball") || is("probe") ? "3 1 6 mm" : "3 1 3 mm") +
-         R"(" shaft="0 0 1" flat="1 0 0"/>)" +
-         (is("thread") || is("ball") ? joins : std::string()) + (is("rule") || is("springs") || is("hold") ? R"(<contact between="block tool"/>)" : "") +
+         R"( id="tool" model="meshes/tool/tool.urdf" hand="right" home=")" +
+         (is("thread") || is("ball") || is("probe") ? "3 1 6 mm" : "3 1 3 mm") + R"(" shaft="0 0 1" flat="1 0 0"/>)" +
+         (is("thread") || is("ball") ? joins : std::string()) +
+         (is("rule") || is("springs") || is("hold") ? R"(<contact between="block tool"/>)" : "") +
          (is("rule") ? "<exercise title=\"wait\">" + one + "</exercise>" : "") + "</scene>";
 }
 
@@ -103,7 +106,8 @@ std::string scene_with(const std::string& element) {
 std::vector<std::string> failures(const std::filesystem::path& scene, const std::string& element) {
   ::testing::TestPartResultArray results;
   {
-    ::testing::ScopedFakeTestPartResultReporter reporter(::testing::ScopedFakeTestPartResultReporter::INTERCEPT_ONLY_CURRENT_THREAD, &results);
+    ::testing::ScopedFakeTestPartResultReporter reporter(
+        ::testing::ScopedFakeTestPartResultReporter::INTERCEPT_ONLY_CURRENT_THREAD, &results);
     test::check_element(scene, element);
     test::check_deterministic(scene);
     test::check_allocations(scene);
@@ -122,11 +126,13 @@ class Mistakes : public ::testing::TestWithParam<Case> {};
 
 TEST_P(Mistakes, AreCaughtInOneLine) {
   [[maybe_unused]] static const bool added = [] {
-    for (const auto add : {mistakes::add_threads, mistakes::add_balls, mistakes::add_springs, mistakes::add_others}) test::add_elements(add);
+    for (const auto add : {mistakes::add_threads, mistakes::add_balls, mistakes::add_springs, mistakes::add_others})
+      test::add_elements(add);
     return true;
   }();
   test::SceneFolder folder;
-  folder.write("meshes/block.msh", test::gmsh_text(test::block_mesh({3, 3, 2}, Vec3(-0.01, -0.01, -0.01), Vec3(0.01, 0.01, 0))));
+  folder.write("meshes/block.msh",
+               test::gmsh_text(test::block_mesh({3, 3, 2}, Vec3(-0.01, -0.01, -0.01), Vec3(0.01, 0.01, 0))));
   folder.write("meshes/tool/tool.urdf", test::test_tool_urdf(1e-3));
   folder.write("meshes/tool/tool.json", test::test_tool_json(0, 0));
   folder.write("scene.xml", scene_with(GetParam().element));
@@ -137,8 +143,11 @@ TEST_P(Mistakes, AreCaughtInOneLine) {
     all += line + "\n";
   }
   const std::string expected = GetParam().line;
-  if (expected.empty()) { EXPECT_EQ(all, ""); }
-  else { EXPECT_NE(all.find(expected), std::string::npos) << "expected: " << expected << "\nfound:\n" << all; }
+  if (expected.empty()) {
+    EXPECT_EQ(all, "");
+  } else {
+    EXPECT_NE(all.find(expected), std::string::npos) << "expected: " << expected << "\nfound:\n" << all;
+  }
   if (!lines.empty()) RecordProperty("first", lines.front());
 }
 

@@ -10,7 +10,18 @@
 namespace insula::mistakes {
 namespace {
 
-enum class Mistake { none, wrong_energy, wrong_stiffness, says_internal, forgets_damping, forgets_reset, state_not_in_hash, not_finite, allocates, softens };
+enum class Mistake {
+  none,
+  wrong_energy,
+  wrong_stiffness,
+  says_internal,
+  forgets_damping,
+  forgets_reset,
+  state_not_in_hash,
+  not_finite,
+  allocates,
+  softens
+};
 
 template <Mistake M>
 class Springs final : public ForceModel {
@@ -31,7 +42,11 @@ class Springs final : public ForceModel {
       if (is(Mistake::not_finite)) f.x() = std::numeric_limits<double>::infinity();
       if (!matrix || slots_[i] < 0) continue;
       const Mat3 tangent = k * Mat3::Identity() + 2 * stiffness() * hardening * d * d.transpose();
-      Eigen::Map<Mat3>(matrix->block(slots_[i])) += damped * (is(Mistake::wrong_stiffness) ? 0.9 : is(Mistake::softens) ? -1 : 1) * tangent;
+      Eigen::Map<Mat3>(matrix->block(slots_[i])) += damped *
+                                                    (is(Mistake::wrong_stiffness) ? 0.9
+                                                     : is(Mistake::softens)       ? -1
+                                                                                  : 1) *
+                                                    tangent;
     }
     if (is(Mistake::allocates)) scratch_ = std::make_unique<std::array<double, 8>>();
   }
@@ -47,7 +62,8 @@ class Springs final : public ForceModel {
   bool internal() const override { return is(Mistake::says_internal); }
   bool finish(const StepContext&, const double* x) override {
     double most = 0;
-    for (std::size_t i = 0; i < rest_.size(); ++i) most = std::max(most, (Eigen::Map<const Vec3>(x + 3 * i) - rest_[i]).norm());
+    for (std::size_t i = 0; i < rest_.size(); ++i)
+      most = std::max(most, (Eigen::Map<const Vec3>(x + 3 * i) - rest_[i]).norm());
     if (most > 1e-7) worn_ = std::min(0.3, worn_ + 0.01);
     return true;
   }
@@ -60,7 +76,7 @@ class Springs final : public ForceModel {
 
  private:
   static constexpr bool is(Mistake m) { return M == m; }
-  static constexpr double hardening = 1e4;                     // 1/m2
+  static constexpr double hardening = 1e4;               // 1/m2
   double stiffness() const { return 20 * (1 - worn_); }  // N/m
   std::vector<Vec3> rest_;
   std::vector<int> slots_;
@@ -71,7 +87,9 @@ class Springs final : public ForceModel {
 }  // namespace
 
 void add_springs(Registry& registry) {
-  const auto add = [&]<Mistake M>(const char* name) { registry.add<Springs<M>>(name, Kind::force_model, "springs for tests"); };
+  const auto add = [&]<Mistake M>(const char* name) {
+    registry.add<Springs<M>>(name, Kind::force_model, "springs for tests");
+  };
   add.operator()<Mistake::none>("springs");
   add.operator()<Mistake::wrong_energy>("springs_wrong_energy");
   add.operator()<Mistake::wrong_stiffness>("springs_wrong_stiffness");

@@ -17,9 +17,33 @@ namespace insula::mistakes {
 namespace {
 
 enum class Mistake {
-  none, reeled, wrong_sign, wrong_lever_arm, missing_body, unstable_ids, foreign_ids, rows_twice, force_twice, pointer_order, load_order,
-  forgets_reset, state_not_in_hash, not_finite, bounds_swapped, negative_compliance, length_off, pushes, no_bound, stale_direction, allocates,
-  not_reproducible, wrong_rate, stiffness_inverse, adds_free_motion, no_law, says_no_rows,
+  none,
+  reeled,
+  wrong_sign,
+  wrong_lever_arm,
+  missing_body,
+  unstable_ids,
+  foreign_ids,
+  rows_twice,
+  force_twice,
+  pointer_order,
+  load_order,
+  forgets_reset,
+  state_not_in_hash,
+  not_finite,
+  bounds_swapped,
+  negative_compliance,
+  length_off,
+  pushes,
+  no_bound,
+  stale_direction,
+  allocates,
+  not_reproducible,
+  wrong_rate,
+  stiffness_inverse,
+  adds_free_motion,
+  no_law,
+  says_no_rows,
 };
 
 struct Nothing {};
@@ -29,8 +53,10 @@ class Thread final : public Constraint, public std::conditional_t<M == Mistake::
  public:
   Ref<Surface> surface{this, {.name = "surface", .doc = "surface that the threads are tied to"}};
   Ref<Instrument> tool{this, {.name = "tool", .doc = "tool at their other ends"}};
-  Param<Length> length{this, {.name = "length", .fallback = "7 mm", .min = "0.1 mm", .max = "1 m", .doc = "length without tension"}};
-  Param<Stiffness> stiffness{this, {.name = "stiffness", .fallback = "20 N/m", .min = "0.1 N/m", .max = "10 kN/m", .doc = "of each"}};
+  Param<Length> length{
+      this, {.name = "length", .fallback = "7 mm", .min = "0.1 mm", .max = "1 m", .doc = "length without tension"}};
+  Param<Stiffness> stiffness{
+      this, {.name = "stiffness", .fallback = "20 N/m", .min = "0.1 N/m", .max = "10 kN/m", .doc = "of each"}};
 
   void connect(PrepareContext&, Simulation&) override {
     static int loads = 0;
@@ -126,7 +152,8 @@ class Thread final : public Constraint, public std::conditional_t<M == Mistake::
     if (is(Mistake::length_off)) violation += 1e-3;
     if (is(Mistake::not_finite) && built_ > 20) violation = std::numeric_limits<double>::quiet_NaN();
     if (is(Mistake::adds_free_motion)) violation += 0.01 + u.dot(f.b.body->expected_displacement(f.b));
-    if (is(Mistake::not_reproducible)) violation += 1e-12 * double(std::chrono::steady_clock::now().time_since_epoch().count() % 1000);
+    if (is(Mistake::not_reproducible))
+      violation += 1e-12 * double(std::chrono::steady_clock::now().time_since_epoch().count() % 1000);
     builder.violation(row, violation);
     if (is(Mistake::reeled)) builder.moves(row, speed);
     builder.point(row, f.a, u);
@@ -143,7 +170,9 @@ class Thread final : public Constraint, public std::conditional_t<M == Mistake::
 }  // namespace
 
 void add_threads(Registry& registry) {
-  const auto add = [&]<Mistake M>(const char* name) { registry.add<Thread<M>>(name, Kind::constraint, "threads for tests"); };
+  const auto add = [&]<Mistake M>(const char* name) {
+    registry.add<Thread<M>>(name, Kind::constraint, "threads for tests");
+  };
   add.operator()<Mistake::none>("thread");
   add.operator()<Mistake::reeled>("thread_reeled");
   add.operator()<Mistake::wrong_sign>("thread_wrong_sign");
