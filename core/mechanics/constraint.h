@@ -61,6 +61,8 @@ struct ConstraintSolution {
 inline std::uint64_t row_id(const Component& c, std::uint64_t key) {
   return (std::uint64_t(c.order) << 44) ^ (key & ((std::uint64_t(1) << 44) - 1));
 }
+/// The `order` that an id was made with.
+inline int owner_of(std::uint64_t id) { return int(id >> 44); }
 
 class Simulation;
 struct StepReport;

@@ -250,7 +250,7 @@ void check_own_ids(Findings& findings, Simulation& s, Component& c) {
   RowBench bench(s, c);
   bench.rows();
   for (const Block& b : bench.blocks)
-    findings.expect(b.owner == c.order, "the id of a row is not made by row_id(*this, key)",
+    findings.expect(owner_of(b.id) == c.order, "the id of a row is not made by row_id(*this, key)",
                     fmt::format("id {}", b.id));
 }
 

@@ -72,7 +72,7 @@ Measured measure(Simulation& s, int warm_up, double seconds) {
   m.step = percentile(step, 0.5);
   m.rows = percentile(rows, 0.5);
   m.sweeps = percentile(sweeps, 0.5);
-  m.strands = s.channel("strands.standing");
+  if (s.channels().find("strands.standing")) m.strands = s.channel("strands.standing");
   auto* body = const_cast<SoftBody*>(s.scene().find_as<SoftBody>("lower"));
   m.nodes = body->nodes();
   m.flops = body->solver().cost().factor_flops;

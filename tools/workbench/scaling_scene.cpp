@@ -68,8 +68,8 @@ std::unique_ptr<Simulation> brick_scene(const Bricks& bricks, const Registry& re
       "<soft_body id=\"upper\" mesh=\"upper.msh\" mesh_unit=\"mm\"><corotational_fem young=\"3 kPa\"/>"
       "<fixed region=\"beyond\" centre=\"0 0 {} mm\" normal=\"0 0 1\"/><surface id=\"upper_skin\"/></soft_body>\n",
       gap + 29.9);
-  if (bricks.strands > 0)
-    text += fmt::format("<strand_springs id=\"strands\" from=\"lower_skin\" to=\"upper_skin\" density=\"{} 1/cm2\" max_length=\"15 mm\" slack=\"0.9\"/>\n", bricks.strands);
+  if (bricks.fibres > 0)
+    text += fmt::format("<strand_springs id=\"strands\" from=\"lower_skin\" to=\"upper_skin\" density=\"{} 1/cm2\" max_length=\"15 mm\" slack=\"0.9\"/>\n", bricks.fibres);
   if (lies)
     text += fmt::format("<contact id=\"contact\" between=\"lower upper\" friction=\"0.3\" tissue_alarm=\"2 mm\" tissue_spacing=\"{} mm\" tissue_max_contacts=\"{}\"/>\n",
                         bricks.contacts > 20 ? 0.5 : 4, bricks.contacts);

@@ -10,7 +10,7 @@ namespace insula {
 struct Bricks {
   int cells = 8;            ///< cubes along each edge of the lower brick, (cells + 1)^3 nodes
   int upper_cells = 8;      ///< of the upper one
-  double strands = 0;       ///< between them, 1/cm2 of 9 cm2; taut
+  double fibres = 0;        ///< between them, 1/cm2 of 9 cm2; taut
   int contacts = 0;         ///< most, with friction, three rows each; the bricks are then pressed together
 };
 

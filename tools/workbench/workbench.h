@@ -11,7 +11,7 @@
 namespace insula {
 
 /// Loads each scene; prints one line per good one to `out`, everything wrong to `err`. Of a scene that settles first
-/// (<settle>) only with `settle` is that done: then strands are spun and contacts stand, and what a step costs is known.
+/// (<settle>) only with `settle` is that done: then what is made after settling and contacts stand, and what a step costs is known.
 int cmd_check(const CommandContext& context, const std::vector<std::filesystem::path>& files, bool settle = false);
 struct ScalingOptions {
   int threads = 1;
@@ -19,7 +19,7 @@ struct ScalingOptions {
   bool json = false;
   std::filesystem::path output;  ///< folder for scaling.json and scaling.svg; empty: none
 };
-/// Measures scenes made for it: the stages of a step against nodes, rows and strands, with the slope beside theory.
+/// Measures scenes made for it: the stages of a step against nodes, rows and fibres, with the slope beside theory.
 int cmd_bench_scaling(const CommandContext& context, const ScalingOptions& options);
 
 struct BenchOptions {
