@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Everything Insula uses, all from Debian 12.
+# Everything Insula uses, all from Debian 12 or 13.
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(fmt REQUIRED)
 find_package(spdlog REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(EXPAT REQUIRED)
-find_package(GTest REQUIRED)
+if(BUILD_TESTING)
+  find_package(GTest REQUIRED)
+endif()
 find_package(Threads REQUIRED)
 find_package(PkgConfig REQUIRED)
 find_package(Boost REQUIRED)
@@ -21,6 +23,3 @@ find_path(CHOLMOD_INCLUDE cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
 # The generator that belongs to the installed headers, not one that a Python environment put first in the path.
 find_program(LCM_GEN lcm-gen HINTS /usr/bin NO_DEFAULT_PATH)
 find_program(LCM_GEN lcm-gen REQUIRED)
-
-add_library(insula_warnings INTERFACE)
-target_compile_options(insula_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Werror -ffp-contract=off)
