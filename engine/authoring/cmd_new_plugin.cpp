@@ -8,6 +8,7 @@
 #include <ostream>
 
 #include "core/base/text.h"
+#include "core/registry/plugin_loader.h"
 #include "engine/authoring/embedded.h"
 #include "engine/authoring/new_plugin.h"
 
@@ -19,10 +20,9 @@ namespace {
 struct KindText {
   std::string_view kind, name, doc;
 };
-constexpr std::array<KindText, 6> kinds{{
+constexpr std::array<KindText, 5> kinds{{
     {"constraint", "constraint", "a spring from a surface to a place that never moves"},
     {"force", "force model", "springs along the edges of a soft body"},
-    {"body", "body", "a bead that a spring and a damper hold in its place"},
     {"support", "support", "holds the nodes within a ball"},
     {"instrument", "instrument", "a probe that marks places while the button is held"},
     {"exercise", "rule of exercises", "reached when a tip has stayed at a place"},
@@ -75,6 +75,15 @@ fs::path place_of(std::string_view file, const KindText& kind, const std::string
   return filled(rest, {{"NAME", name}});
 }
 
+/// What CMake must be told to find Insula: nothing of an installation in /usr, the folder of a build or of another prefix.
+std::string where_insula_is() {
+  std::error_code ec;
+  const fs::path above = installed_plugin_folder().parent_path().parent_path().parent_path();
+  if (fs::exists(above / "InsulaConfig.cmake", ec)) return " -DInsula_DIR=" + above.generic_string();
+  if (above == "/usr" || above == "/usr/local") return {};
+  return " -DCMAKE_PREFIX_PATH=" + above.generic_string();
+}
+
 }  // namespace
 
 std::string plugin_kinds() {
@@ -108,8 +117,8 @@ int cmd_new_plugin(const CommandContext& context, const NewPluginOptions& option
     }
   }
   context.out << fmt::format("{0}: a{3} {1} called <{2}>, with test and example. Build and test it:\n"
-                             "  cmake -S {0} -B {0}/build && cmake --build {0}/build && ctest --test-dir {0}/build\n",
-                             folder.generic_string(), kind->name, options.name, kind->kind == "instrument" ? "n" : "");
+                             "  cmake -S {0} -B {0}/build{4} && cmake --build {0}/build && ctest --test-dir {0}/build\n",
+                             folder.generic_string(), kind->name, options.name, kind->kind == "instrument" ? "n" : "", where_insula_is());
   return 0;
 }
 
