@@ -46,7 +46,7 @@ function(insula_room name)  # insula_room(NAME USES room... LIBS library...)
   endforeach()
   target_include_directories(insula_${name} SYSTEM PUBLIC ${CHOLMOD_INCLUDE})
   target_compile_definitions(insula_${name} PUBLIC EIGEN_DONT_PARALLELIZE)
-  target_link_libraries(insula_${name} PUBLIC insula_warnings Eigen3::Eigen ${R_LIBS})
+  target_link_libraries(insula_${name} PUBLIC Eigen3::Eigen ${R_LIBS})
   list(APPEND objects $<TARGET_OBJECTS:insula_${name}>)
   # The room alone, which only proves that it needs no other rooms than those it names.
   add_library(insula_link_${name} SHARED ${objects})
@@ -76,6 +76,6 @@ add_library(insula_core STATIC ${insula_core_objects})
 add_dependencies(insula_core insula_headers_hash)
 target_include_directories(insula_core SYSTEM PUBLIC ${CHOLMOD_INCLUDE})
 target_compile_definitions(insula_core PUBLIC EIGEN_DONT_PARALLELIZE)
-target_link_libraries(insula_core PUBLIC $<BUILD_INTERFACE:insula_warnings> Eigen3::Eigen fmt::fmt spdlog::spdlog nlohmann_json::nlohmann_json
+target_link_libraries(insula_core PUBLIC Eigen3::Eigen fmt::fmt spdlog::spdlog nlohmann_json::nlohmann_json
   EXPAT::EXPAT PkgConfig::ASSIMP PkgConfig::URDFDOM ${CHOLMOD_LIBRARY}
   Threads::Threads ZLIB::ZLIB ${CMAKE_DL_LIBS})

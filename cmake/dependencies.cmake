@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Everything Insula uses, all from Debian 12.
+# Everything Insula uses, all from Debian 12 or 13.
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(fmt REQUIRED)
 find_package(spdlog REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(EXPAT REQUIRED)
-find_package(GTest REQUIRED)
+if(BUILD_TESTING)
+  find_package(GTest REQUIRED)
+endif()
 find_package(Threads REQUIRED)
 find_package(PkgConfig REQUIRED)
 find_package(Boost REQUIRED)
@@ -22,14 +24,13 @@ find_path(CHOLMOD_INCLUDE cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
 find_program(LCM_GEN lcm-gen HINTS /usr/bin NO_DEFAULT_PATH)
 find_program(LCM_GEN lcm-gen REQUIRED)
 
-# For tests alone: the judge of our collision. Not all of bullet-float64.pc, which names the dynamics too.
-find_path(BULLET_INCLUDE btBulletCollisionCommon.h PATH_SUFFIXES bullet REQUIRED)
-find_library(BULLET_COLLISION BulletCollision-float64 REQUIRED)
-find_library(BULLET_MATH LinearMath-float64 REQUIRED)
-add_library(insula_bullet INTERFACE)
-target_include_directories(insula_bullet SYSTEM INTERFACE ${BULLET_INCLUDE})
-target_compile_definitions(insula_bullet INTERFACE BT_USE_DOUBLE_PRECISION)
-target_link_libraries(insula_bullet INTERFACE ${BULLET_COLLISION} ${BULLET_MATH})
-
-add_library(insula_warnings INTERFACE)
-target_compile_options(insula_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Werror -ffp-contract=off)
+if(BUILD_TESTING)
+  # For tests alone: the judge of our collision. Not all of bullet-float64.pc, which names the dynamics too.
+  find_path(BULLET_INCLUDE btBulletCollisionCommon.h PATH_SUFFIXES bullet REQUIRED)
+  find_library(BULLET_COLLISION BulletCollision-float64 REQUIRED)
+  find_library(BULLET_MATH LinearMath-float64 REQUIRED)
+  add_library(insula_bullet INTERFACE)
+  target_include_directories(insula_bullet SYSTEM INTERFACE ${BULLET_INCLUDE})
+  target_compile_definitions(insula_bullet INTERFACE BT_USE_DOUBLE_PRECISION)
+  target_link_libraries(insula_bullet INTERFACE ${BULLET_COLLISION} ${BULLET_MATH})
+endif()

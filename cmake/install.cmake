@@ -25,11 +25,12 @@ endif()" COMPONENT insula)
 install(DIRECTORY core DESTINATION include/insula COMPONENT insula-dev FILES_MATCHING PATTERN "*.h"
   PATTERN "bus" EXCLUDE PATTERN "haptics" EXCLUDE PATTERN "*_for_test.h" EXCLUDE)
 install(FILES ${abi_header} DESTINATION include/insula COMPONENT insula-dev)
-target_include_directories(insula_core SYSTEM INTERFACE $<INSTALL_INTERFACE:include/insula>)
+target_include_directories(insula_core SYSTEM INTERFACE $<INSTALL_INTERFACE:include/insula> "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR};${CMAKE_BINARY_DIR}/generated/abi>")
 
 # What a plugin is compiled with: headers alone, for the core is in the program that loads it.
 add_library(insula_plugin INTERFACE)
-target_include_directories(insula_plugin SYSTEM INTERFACE $<INSTALL_INTERFACE:include/insula>)
+set(built_headers ${PROJECT_SOURCE_DIR} ${CMAKE_BINARY_DIR}/generated/abi)
+target_include_directories(insula_plugin SYSTEM INTERFACE $<INSTALL_INTERFACE:include/insula> "$<BUILD_INTERFACE:${built_headers}>")
 target_compile_features(insula_plugin INTERFACE cxx_std_20)
 target_compile_options(insula_plugin INTERFACE -ffp-contract=off)
 target_compile_definitions(insula_plugin INTERFACE EIGEN_DONT_PARALLELIZE)
@@ -37,12 +38,22 @@ target_link_libraries(insula_plugin INTERFACE Eigen3::Eigen)
 
 set_target_properties(insula_core PROPERTIES EXPORT_NAME core)
 set_target_properties(insula_plugins PROPERTIES EXPORT_NAME plugins)
-set_target_properties(insula_testing PROPERTIES EXPORT_NAME plugin_testing)
 set_target_properties(insula_plugin PROPERTIES EXPORT_NAME plugin)
-install(TARGETS insula_core insula_plugins insula_testing insula_plugin EXPORT InsulaTargets ARCHIVE DESTINATION lib/insula COMPONENT insula-dev)
+set(libraries insula_core insula_plugins insula_plugin)
+# The contracts need GoogleTest: a build without tests has none to give.
+if(TARGET insula_testing)
+  set_target_properties(insula_testing PROPERTIES EXPORT_NAME plugin_testing)
+  list(APPEND libraries insula_testing)
+endif()
+install(TARGETS ${libraries} EXPORT InsulaTargets ARCHIVE DESTINATION lib/insula COMPONENT insula-dev)
 install(EXPORT InsulaTargets NAMESPACE Insula:: DESTINATION ${config} COMPONENT insula-dev)
 configure_package_config_file(cmake/package/InsulaConfig.cmake.in ${CMAKE_BINARY_DIR}/package/InsulaConfig.cmake INSTALL_DESTINATION ${config})
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/package/InsulaConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+# The build folder is found as an installation is: find_package(Insula HINTS build/release).
+export(EXPORT InsulaTargets NAMESPACE Insula:: FILE ${CMAKE_BINARY_DIR}/InsulaTargets.cmake)
+configure_package_config_file(cmake/package/InsulaConfig.cmake.in ${CMAKE_BINARY_DIR}/InsulaConfig.cmake INSTALL_DESTINATION ${CMAKE_BINARY_DIR}
+  INSTALL_PREFIX ${CMAKE_BINARY_DIR})
+file(COPY ${CMAKE_BINARY_DIR}/package/InsulaConfigVersion.cmake ${PROJECT_SOURCE_DIR}/cmake/package/InsulaAddPlugin.cmake DESTINATION ${CMAKE_BINARY_DIR})
 install(FILES ${CMAKE_BINARY_DIR}/package/InsulaConfig.cmake ${CMAKE_BINARY_DIR}/package/InsulaConfigVersion.cmake
   cmake/package/InsulaAddPlugin.cmake DESTINATION ${config} COMPONENT insula-dev)
 

@@ -2,14 +2,17 @@
 // The program `insula`: one subcommand each for what can be done with scenes.
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <functional>
 #include <iostream>
 #include <string_view>
 
+#include "core/params/option.h"
 #include "core/registry/registry.h"
-#include "engine/command_line/commands.h"
-#include "engine/command_line/load_plugins.h"
 #include "engine/authoring/new_plugin.h"
+#include "engine/command_line/commands.h"
+#include "engine/command_line/common_options.h"
+#include "engine/command_line/load_plugins.h"
 #include "engine/command_line/play.h"
 #include "engine/command_line/run.h"
 #include "engine/command_line/tool_program.h"
@@ -18,163 +21,225 @@ namespace {
 
 namespace fs = std::filesystem;
 
-}  // namespace
+using insula::CommandContext;
+using insula::Duration;
+using insula::Force;
+using insula::add_motion;
+using insula::add_seed;
+using insula::add_threads;
+using insula::seconds;
 
-int main(int argc, char** argv) {
+/// What the options of all commands are read into, and the command that was chosen.
+struct CommandLine {
   CLI::App app{"Insula: aneurysm surgery with two-handed haptics", "insula"};
-  app.require_subcommand(1);
   std::vector<fs::path> plugin_paths;
-  app.add_option("--plugin-path", plugin_paths, "folder of shared plugins, or one plugin (may be given more than once)")
-      ->allow_extra_args(false);
-
-  std::vector<fs::path> files;
   std::string element;
   fs::path output, folder, plugin_folder;
-  std::function<int(const insula::CommandContext&)> run;
+  bool no_browser = false, no_reload = false, list_only = false;
+  insula::NewPluginOptions new_plugin;
+  insula::DevicesOptions devices;
+  insula::RunOptions run;
+  insula::EngineOptions engine;
+  insula::ReplayOptions replay;
+  insula::PlayOptions play;
+  std::function<int(const CommandContext&)> chosen;
+};
 
-  auto* list = app.add_subcommand("list", "all elements a scene may hold");
-  list->callback([&] { run = [](const auto& c) { return insula::cmd_list(c); }; });
+/// list, describe, schema, docs: what needs no simulation.
+void add_scene_commands(CommandLine& c) {
+  auto* list = c.app.add_subcommand("list", "all elements a scene may hold");
+  list->callback([&c] { c.chosen = [](const auto& x) { return insula::cmd_list(x); }; });
 
-  auto* describe = app.add_subcommand("describe", "one element and its parameters");
-  describe->add_option("name", element, "element name")->required();
-  describe->callback([&] { run = [&](const auto& c) { return insula::cmd_describe(c, element); }; });
+  auto* describe = c.app.add_subcommand("describe", "one element and its parameters");
+  describe->add_option("name", c.element, "element name")->required();
+  describe->callback([&c] { c.chosen = [&](const auto& x) { return insula::cmd_describe(x, c.element); }; });
 
-  auto* schema = app.add_subcommand("schema", "XML schema of scene files, for editors");
-  schema->add_option("-o,--output,file", output, "file to write (default: standard output)");
-  schema->callback([&] { run = [&](const auto& c) { return insula::cmd_schema(c, output); }; });
+  auto* schema = c.app.add_subcommand("schema", "XML schema of scene files, for editors");
+  schema->add_option("-o,--output,file", c.output, "file to write (default: standard output)");
+  schema->callback([&c] { c.chosen = [&](const auto& x) { return insula::cmd_schema(x, c.output); }; });
 
-  auto* docs = app.add_subcommand("docs", "reference pages of all elements, in Markdown");
-  docs->add_option("-o,--output,folder", folder, "folder to write to")->required();
-  docs->add_option("--plugins", plugin_folder, "folder of plugin sources, for their examples");
-  docs->callback([&] { run = [&](const auto& c) { return insula::cmd_docs(c, folder, plugin_folder); }; });
+  auto* docs = c.app.add_subcommand("docs", "reference pages of all elements, in Markdown");
+  docs->add_option("-o,--output,folder", c.folder, "folder to write to")->required();
+  docs->add_option("--plugins", c.plugin_folder, "folder of plugin sources, for their examples");
+  docs->callback([&c] { c.chosen = [&](const auto& x) { return insula::cmd_docs(x, c.folder, c.plugin_folder); }; });
+}
 
-  insula::NewPluginOptions plugin_options;
-  auto* new_plugin = app.add_subcommand("new-plugin", "begin a plugin: a folder with source, test, example and build file");
-  new_plugin->add_option("name", plugin_options.name, "its name, and that of its element: small letters, digits, _")->required();
-  new_plugin->add_option("--kind", plugin_options.kind, "what it is: constraint, force, instrument or exercise")->required();
-  new_plugin->add_option("--folder", plugin_options.folder, "folder to be made (default: the name)");
-  new_plugin->callback([&] { run = [&](const auto& c) { return insula::cmd_new_plugin(c, plugin_options); }; });
+void add_new_plugin(CommandLine& c) {
+  auto& o = c.new_plugin;
+  auto* command = c.app.add_subcommand("new-plugin", "begin a plugin: a folder with source, test, example and build file");
+  command->add_option("name", o.name, "its name, and that of its element: small letters, digits, _")->required();
+  command->add_option("--kind", o.kind, "what it is: " + insula::plugin_kinds())->required();
+  command->add_option("--folder", o.folder, "folder to be made (default: the name)");
+  command->callback([&c] { c.chosen = [&](const auto& x) { return insula::cmd_new_plugin(x, c.new_plugin); }; });
+}
 
-  insula::DevicesOptions devices_options;
-  auto* devices = app.add_subcommand("devices", "what there is for the hands, what is missing and how to get it");
-  auto* show_one = devices->add_option("--show", devices_options.show, "this device's live pose, buttons and force, until Ctrl-C");
-  auto* calibrate_one = devices->add_option("--calibrate", devices_options.calibrate, "ask for this device's rest pose and axes and keep them")->excludes(show_one);
-  devices->add_option("--test-force", devices_options.test_force, "let this device push gently along each axis")->excludes(show_one)->excludes(calibrate_one);
-  devices->add_option("--hand", devices_options.hand, "hand that it serves")->check(CLI::IsMember({"left", "right"}))->capture_default_str();
-  devices->add_option("--duration", devices_options.seconds, "with --show: end after so many seconds; 0: never")->check(CLI::NonNegativeNumber);
-  devices->add_option("--newtons", devices_options.newtons, "with --test-force: largest force")->check(CLI::Range(0.1, 3.0))->capture_default_str();
-  devices->add_option("--scale", devices_options.scale, "with --calibrate: movement of the tool over movement of the hand")->check(CLI::Range(0.05, 5.0))->capture_default_str();
-  devices->add_flag("--yes", devices_options.assume_yes, "with --test-force: begin without asking");
-  devices->callback([&] { run = [&](const auto& c) { return insula::cmd_devices(c, devices_options); }; });
+void add_devices(CommandLine& c) {
+  auto& o = c.devices;
+  auto* command = c.app.add_subcommand("devices", "what there is for the hands, what is missing and how to get it");
+  auto* show = command->add_option("--show", o.show, "this device's live pose, buttons and force, until Ctrl-C");
+  auto* calibrate = command->add_option("--calibrate", o.calibrate, "ask for this device's rest pose and axes and keep them");
+  calibrate->excludes(show);
+  auto* test = command->add_option("--test-force", o.test_force, "let this device push gently along each axis");
+  test->excludes(show)->excludes(calibrate);
+  command->add_option("--hand", o.hand, "hand that it serves")->check(CLI::IsMember({"left", "right"}))->capture_default_str();
+  insula::add_quantity<Duration>(*command, "--duration", o.seconds, seconds("with --show: end after this time; 0: never"));
+  insula::add_quantity<Force>(*command, "--newtons", o.newtons,
+                              {.bare = "N", .min = "0.1 N", .max = "3 N", .doc = "with --test-force: largest force"})
+      ->default_str("1 N");
+  command->add_option("--scale", o.scale, "with --calibrate: movement of the tool over movement of the hand")
+      ->check(CLI::Range(0.05, 5.0))
+      ->capture_default_str();
+  command->add_flag("--yes", o.assume_yes, "with --test-force: begin without asking");
+  command->callback([&c] { c.chosen = [&](const auto& x) { return insula::cmd_devices(x, c.devices); }; });
+}
 
-  // --- commands that run a simulation ---
-  insula::RunOptions run_options;
-  auto* headless = app.add_subcommand("run", "a scene from start to end without devices or viewer, with a report");
-  headless->add_option("scene", run_options.scene, "scene file")->required();
-  headless->add_option("--duration", run_options.duration, "simulated seconds (default: the motion and one second more)")->check(CLI::NonNegativeNumber);
-  headless->add_option("--motion", run_options.motion, "what the hands do: a motion of the exercise, a CSV file, or none");
-  headless->add_option("--report", run_options.report, "folder for report.json and report.html");
-  headless->add_option("--export", run_options.export_folder, "folder for the bodies' final nodes as .vtu");
-  headless->add_option("--threads", run_options.threads, "threads; 0 takes the machine's");
-  headless->add_option("--seed", run_options.seed, "what complications are drawn from; 0: the scene's own seed");
-  headless->add_flag("--quiet", run_options.quiet, "print the last line only");
-  headless->callback([&] { run = [&](const auto& c) { return insula::cmd_run(c, run_options); }; });
+void add_run(CommandLine& c) {
+  auto& o = c.run;
+  auto* command = c.app.add_subcommand("run", "a scene from start to end without devices or viewer, with a report");
+  command->add_option("scene", o.scene, "scene file")->required();
+  insula::add_quantity<Duration>(*command, "--duration", o.duration,
+                                 seconds("simulated time (default: the motion and one second more)"));
+  add_motion(*command, o.motion);
+  command->add_option("--report", o.report, "folder for report.json and report.html");
+  command->add_option("--export", o.export_folder, "folder for the bodies' final nodes as .vtu");
+  add_threads(*command, o.threads);
+  add_seed(*command, o.seed);
+  command->add_flag("--quiet", o.quiet, "print the last line only");
+  command->callback([&c] { c.chosen = [&](const auto& x) { return insula::cmd_run(x, c.run); }; });
+}
 
-  insula::EngineOptions engine_options;
-  auto* engine = app.add_subcommand("engine", "the engine process of a session, over the bus");
-  engine->add_option("scene", engine_options.scene, "scene file")->required();
-  engine->add_option("--motion", engine_options.motion, "what simulated hands follow")->capture_default_str();
-  engine->add_option("--bundle-dir", engine_options.bundle_root, "folder for the viewer's scene bundles");
-  engine->add_option("--duration", engine_options.duration, "end after so many simulated seconds; 0: never")->check(CLI::NonNegativeNumber);
-  engine->add_flag("--unthrottled", engine_options.unthrottled, "as fast as the machine can, for measurements");
-  engine->add_option("--threads", engine_options.threads, "threads; 0 takes the machine's");
-  engine->add_option("--seed", engine_options.seed, "what complications are drawn from; 0: the scene's own seed");
-  engine->add_flag("--still", engine_options.still, "to be looked at: time never runs");
-  engine->add_flag("--standby", engine_options.standby, "load, say so, and wait for SIGUSR1 before speaking on the bus");
-  engine->add_option("--notice", engine_options.notice, "file whose text viewers are shown while it is not empty");
-  engine->add_option("--report", engine_options.report, "folder for reports of the session, each in a folder of its own named by date and time");
-  engine->add_flag("--keep-bundle", engine_options.keep_bundle, "leave the bundle where it is at the end, for a replay");
-  engine->callback([&] { run = [&](const auto& c) { return insula::cmd_engine(c, engine_options); }; });
+void add_engine(CommandLine& c) {
+  auto& o = c.engine;
+  auto* command = c.app.add_subcommand("engine", "the engine process of a session, over the bus");
+  command->add_option("scene", o.scene, "scene file")->required();
+  command->add_option("--motion", o.motion, "what simulated hands follow")->capture_default_str();
+  command->add_option("--bundle-dir", o.bundle_root, "folder for the viewer's scene bundles");
+  insula::add_quantity<Duration>(*command, "--duration", o.duration, seconds("end after this simulated time; 0: never"));
+  command->add_flag("--unthrottled", o.unthrottled, "as fast as the machine can, for measurements");
+  add_threads(*command, o.threads);
+  add_seed(*command, o.seed);
+  command->add_flag("--still", o.still, "to be looked at: time never runs");
+  command->add_flag("--standby", o.standby, "load, say so, and wait for SIGUSR1 before speaking on the bus");
+  command->add_option("--notice", o.notice, "file whose text viewers are shown while it is not empty");
+  command->add_option("--report", o.report, "folder for reports of the session, each in a folder of its own named by date and time");
+  command->add_flag("--keep-bundle", o.keep_bundle, "leave the bundle where it is at the end, for a replay");
+  command->callback([&c] { c.chosen = [&](const auto& x) { return insula::cmd_engine(x, c.engine); }; });
+}
 
-  insula::ReplayOptions replay_options;
-  auto* replay = app.add_subcommand("replay", "a log of lcm-logger onto the bus, for viewers");
-  replay->add_option("log", replay_options.log, "log of a session")->required();
-  replay->add_option("--speed", replay_options.speed, "times as fast as it was")->check(CLI::Range(0.01, 1000.0))->capture_default_str();
-  replay->add_flag("--loop", replay_options.loop, "again and again, until Ctrl-C");
-  replay->callback([&] { run = [&](const auto& c) { return insula::cmd_replay(c, replay_options); }; });
+void add_replay(CommandLine& c) {
+  auto& o = c.replay;
+  auto* command = c.app.add_subcommand("replay", "a log of lcm-logger onto the bus, for viewers");
+  command->add_option("log", o.log, "log of a session")->required();
+  command->add_option("--speed", o.speed, "times as fast as it was")->check(CLI::Range(0.01, 1000.0))->capture_default_str();
+  command->add_flag("--loop", o.loop, "again and again, until Ctrl-C");
+  command->callback([&c] { c.chosen = [&](const auto& x) { return insula::cmd_replay(x, c.replay); }; });
+}
 
-  insula::PlayOptions play_options;
-  bool no_browser = false;
-  auto* play = app.add_subcommand("play", "engine, haptic server and viewer together, until Ctrl-C");
-  play->add_option("scene", play_options.scene, "scene file (default: the first training exercise)");
-  play->add_option("--motion", play_options.motion, "what simulated hands follow: a motion of the scene, a CSV file, or none");
-  play->add_option("--left", play_options.left, "device of the left hand, such as touch:\"Left Device\" (see insula devices); default: the scene's, else simulated");
-  play->add_option("--right", play_options.right, "device of the right hand");
-  play->add_option("--port", play_options.port, "port of the viewer; following ones are tried when it is busy")->capture_default_str();
-  play->add_option("--listen", play_options.listen, "address of the viewer; 0.0.0.0 lets other machines watch")->capture_default_str();
-  play->add_option("--host", play_options.hosts, "a name under which other machines' pages may ask for the viewer; may be given several times");
-  play->add_option("--duration", play_options.duration_s, "end after so many seconds; 0: never")->check(CLI::NonNegativeNumber);
-  play->add_option("--seed", play_options.seed, "what complications are drawn from; 0: the scene's own seed");
-  play->add_option("--keep-bundle", play_options.keep_bundle, "folder in which the viewer's scene bundles stay, for a replay of a log");
-  play->add_option("--report", play_options.report, "folder for reports of the session, each in a folder of its own named by date and time");
-  play->add_flag("--no-browser", no_browser, "open no browser");
-  bool no_reload = false;
-  play->add_flag("--no-reload", no_reload, "do not load the scene again when one of its files is saved");
-  play->callback([&] {
-    play_options.browser = !no_browser;
-    play_options.reload = !no_reload;
-    play_options.plugin_paths = plugin_paths;
-    run = [&](const auto& c) { return insula::cmd_play(c, play_options); };
+/// What play and view share.
+void add_viewer_options(CLI::App& command, CommandLine& c) {
+  auto& o = c.play;
+  command.add_option("--port", o.port, "port of the viewer; following ones are tried when it is busy")->capture_default_str();
+  command.add_option("--listen", o.listen, "address of the viewer; 0.0.0.0 lets other machines watch")->capture_default_str();
+  command.add_option("--host", o.hosts, "a name under which other machines' pages may ask for the viewer; may be given several times");
+  insula::add_quantity<Duration>(command, "--duration", o.duration_s, seconds("end after this time; 0: never"));
+  command.add_flag("--no-browser", c.no_browser, "open no browser");
+}
+
+void add_play(CommandLine& c) {
+  auto& o = c.play;
+  auto* command = c.app.add_subcommand("play", "engine, haptic server and viewer together, until Ctrl-C");
+  command->add_option("scene", o.scene, "scene file (default: the first training exercise)");
+  command->add_option("--motion", o.motion, "what simulated hands follow: a motion of the scene, a CSV file, or none");
+  command->add_option("--left", o.left,
+                      "device of the left hand, such as touch:\"Left Device\" (see insula devices); default: the scene's, else "
+                      "simulated");
+  command->add_option("--right", o.right, "device of the right hand");
+  add_viewer_options(*command, c);
+  add_seed(*command, o.seed);
+  command->add_option("--keep-bundle", o.keep_bundle, "folder in which the viewer's scene bundles stay, for a replay of a log");
+  command->add_option("--report", o.report, "folder for reports of the session, each in a folder of its own named by date and time");
+  command->add_flag("--no-reload", c.no_reload, "do not load the scene again when one of its files is saved");
+  command->callback([&c] {
+    c.play.browser = !c.no_browser;
+    c.play.reload = !c.no_reload;
+    c.play.plugin_paths = c.plugin_paths;
+    c.chosen = [&](const auto& x) { return insula::cmd_play(x, c.play); };
   });
+}
 
-  bool list_only = false;
-  auto* view = app.add_subcommand("view", "a scene to be looked at: what is in it by name, with units and sizes; time stands still");
-  view->add_option("scene", play_options.scene, "scene file")->required();
-  view->add_flag("--list", list_only, "print what is in it and end");
-  view->add_option("--port", play_options.port, "port of the viewer; following ones are tried when it is busy")->capture_default_str();
-  view->add_option("--listen", play_options.listen, "address of the viewer; 0.0.0.0 lets other machines watch")->capture_default_str();
-  view->add_option("--host", play_options.hosts, "a name under which other machines' pages may ask for the viewer; may be given several times");
-  view->add_option("--duration", play_options.duration_s, "end after so many seconds; 0: never")->check(CLI::NonNegativeNumber);
-  view->add_flag("--no-browser", no_browser, "open no browser");
-  view->callback([&] {
-    play_options.browser = !no_browser;
-    play_options.view = true;
-    play_options.motion = "none";
-    play_options.plugin_paths = plugin_paths;
-    run = [&](const auto& c) { return list_only ? insula::cmd_view_list(c, play_options.scene) : insula::cmd_play(c, play_options); };
+void add_view(CommandLine& c) {
+  auto* command = c.app.add_subcommand("view", "a scene to be looked at: what is in it by name, with units and sizes; time stands still");
+  command->add_option("scene", c.play.scene, "scene file")->required();
+  command->add_flag("--list", c.list_only, "print what is in it and end");
+  add_viewer_options(*command, c);
+  command->callback([&c] {
+    c.play.browser = !c.no_browser;
+    c.play.view = true;
+    c.play.motion = "none";
+    c.play.plugin_paths = c.plugin_paths;
+    c.chosen = [&](const auto& x) {
+      return c.list_only ? insula::cmd_view_list(x, c.play.scene) : insula::cmd_play(x, c.play);
+    };
   });
+}
 
-  // Programs of their own, which read what follows themselves.
+/// Programs of their own, which read what follows themselves.
+void add_tool_programs(CommandLine& c) {
   struct ToolProgram {
     const char *command, *doc, *program, *when_missing;
   };
-  const ToolProgram tools[] = {
+  static const ToolProgram tools[] = {
       {"check", "read scenes and report everything that is wrong with them, and what a step of them costs", "insula_workbench", "Build it: ./insula build."},
       {"bench", "where the time of a step goes", "insula_workbench", "Build it: ./insula build."},
       {"case", "training cases from surfaces and scans (see docs/making-a-case.md)", "insula_case",
        "The case builder needs CGAL (Debian: libcgal-dev), and ITK for volumes (libinsighttoolkit5-dev). Install them, then build again."}};
   for (const ToolProgram& tool : tools) {
-    auto* command = app.add_subcommand(tool.command, tool.doc)->prefix_command();
+    auto* command = c.app.add_subcommand(tool.command, tool.doc)->prefix_command();
     command->set_help_flag();
-    command->callback([&, command] {
+    command->callback([&c, &tool, command] {
       std::vector<std::string> words;
-      for (const fs::path& path : plugin_paths) words.insert(words.end(), {"--plugin-path", path.string()});
+      for (const fs::path& path : c.plugin_paths) words.insert(words.end(), {"--plugin-path", path.string()});
       if (std::string_view(tool.program) != "insula_case") words.emplace_back(tool.command);
       for (const std::string& word : command->remaining()) words.push_back(word);
-      run = [&tool, words](const auto& c) { return insula::run_tool_program(tool.program, words, tool.when_missing, c.err); };
+      c.chosen = [&tool, words](const auto& x) {
+        return insula::run_tool_program(tool.program, words, tool.when_missing, x.err);
+      };
     });
   }
+}
 
+void add_commands(CommandLine& c) {
+  c.app.require_subcommand(1);
+  c.app.add_option("--plugin-path", c.plugin_paths, "folder of shared plugins, or one plugin (may be given more than once)")
+      ->allow_extra_args(false);
+  add_scene_commands(c);
+  add_new_plugin(c);
+  add_devices(c);
+  add_run(c);
+  add_engine(c);
+  add_replay(c);
+  add_play(c);
+  add_view(c);
+  add_tool_programs(c);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CommandLine line;
+  add_commands(line);
   try {
-    app.parse(argc, argv);
+    std::vector<std::string> words = insula::command_words(argc, argv);
+    std::reverse(words.begin(), words.end());  // as CLI11 takes them
+    line.app.parse(std::move(words));
   } catch (const CLI::ParseError& e) {
-    const int status = app.exit(e);
+    const int status = line.app.exit(e);
     return status == 0 ? 0 : 2;
   }
   try {
     insula::Registry registry;
-    if (const int status = insula::load_plugins(registry, plugin_paths, std::cerr)) return status;
-    return run({registry, std::cout, std::cerr});
+    if (const int status = insula::load_plugins(registry, line.plugin_paths, std::cerr)) return status;
+    return line.chosen({registry, std::cout, std::cerr});
   } catch (const std::exception& e) {
     std::cerr << "error: " << e.what() << '\n';
     return 1;

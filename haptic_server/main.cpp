@@ -6,11 +6,13 @@
 #include <sys/prctl.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <thread>
 
 #include "core/base/input_error.h"
+#include "core/params/option.h"
 #include "haptic_server/newton_budget.h"
 #include "haptic_server/server.h"
 #include "haptic_server/servo_loop.h"
@@ -28,6 +30,7 @@ void on_signal(int) { asked_to_stop.store(true); }
 struct Arguments {
   std::string left = "simulated", right = "simulated", motion;
   double duration_s = 0;
+  double spin_us = -1;  ///< negative: as LoopSettings chooses
   bool status = false;
   LoopSettings loop;
 };
@@ -133,12 +136,20 @@ int main(int argc, char** argv) {
   app.add_option("--left", a.left, "device of the left hand: KIND[:WHICH], several with commas between: the first that is plugged in. Kinds: " + kinds)->capture_default_str();
   app.add_option("--right", a.right, "device of the right hand")->capture_default_str();
   app.add_option("--motion", a.motion, "motion of simulated hands instead of the scene's: a CSV file, or none");
-  app.add_option("--rate", a.loop.rate_hz, "ticks per second")->check(CLI::Range(100, 4000))->capture_default_str();
-  app.add_option("--duration", a.duration_s, "end after so many seconds, 0: never")->check(CLI::NonNegativeNumber);
+  insula::add_quantity<insula::Frequency>(app, "--rate", a.loop.rate_hz, {.bare = "Hz", .min = "100 Hz", .max = "4 kHz", .doc = "rate of the servo"})
+      ->default_str("1 kHz");
+  insula::add_quantity<insula::Duration>(app, "--duration", a.duration_s, {.bare = "s", .min = "0 s", .doc = "end after this time; 0: never"});
   app.add_option("--priority", a.loop.priority, "real-time priority of the servo")->check(CLI::Range(1, 99))->capture_default_str();
-  app.add_option("--spin", a.loop.spin_us, "microseconds of busy waiting before each tick")->check(CLI::Range(0, 500));
+  insula::add_quantity<insula::Duration>(app, "--spin", a.spin_us, {.bare = "us", .min = "0 us", .max = "500 us", .doc = "busy waiting before each tick"});
   app.add_flag("--status", a.status, "print a line each second");
-  CLI11_PARSE(app, argc, argv);
+  try {
+    std::vector<std::string> words = insula::command_words(argc, argv);
+    std::reverse(words.begin(), words.end());  // as CLI11 takes them
+    app.parse(std::move(words));
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e);
+  }
+  a.loop.spin_us = int(a.spin_us);
 
   struct sigaction action {};
   action.sa_handler = on_signal;

@@ -8,6 +8,7 @@
 #include <ostream>
 
 #include "core/base/text.h"
+#include "core/registry/plugin_loader.h"
 #include "engine/authoring/embedded.h"
 #include "engine/authoring/new_plugin.h"
 
@@ -17,13 +18,14 @@ namespace insula {
 namespace {
 
 struct KindText {
-  std::string_view kind, doc;
+  std::string_view kind, name, doc;
 };
-constexpr std::array<KindText, 4> kinds{{
-    {"constraint", "a spring from a surface to a place that never moves"},
-    {"force", "springs along the edges of a soft body"},
-    {"instrument", "a probe that marks places while the button is held"},
-    {"exercise", "reached when a tip has stayed at a place"},
+constexpr std::array<KindText, 5> kinds{{
+    {"constraint", "constraint", "a spring from a surface to a place that never moves"},
+    {"force", "force model", "springs along the edges of a soft body"},
+    {"support", "support", "holds the nodes within a ball"},
+    {"instrument", "instrument", "a probe that marks places while the button is held"},
+    {"exercise", "rule of exercises", "reached when a tip has stayed at a place"},
 }};
 
 /// "pia_patch" becomes "PiaPatch".
@@ -50,7 +52,7 @@ std::string name_error(const Registry& registry, const std::string& name) {
     if (info->element == name || info->plugin == name)
       return fmt::format("\"{}\" is taken by {}; choose another name", name, info->plugin == "core" ? "the core" : "plugin " + info->plugin);
   // Words that CMake or the base classes keep for themselves.
-  for (const std::string_view word : {"all", "clean", "constraint", "force_model", "help", "insula", "install", "instrument", "exercise_rule", "package", "part", "include", "variable", "test"})
+  for (const std::string_view word : {"all", "clean", "constraint", "force_model", "help", "insula", "install", "instrument", "exercise_rule", "package", "part", "include", "variable", "test", "body", "support"})
     if (name == word) return in_quotes(name) + " is a word with a meaning of its own; choose another name";
   return {};
 }
@@ -73,12 +75,27 @@ fs::path place_of(std::string_view file, const KindText& kind, const std::string
   return filled(rest, {{"NAME", name}});
 }
 
+/// What CMake must be told to find Insula: nothing of an installation in /usr, the folder of a build or of another prefix.
+std::string where_insula_is() {
+  std::error_code ec;
+  const fs::path above = installed_plugin_folder().parent_path().parent_path().parent_path();
+  if (fs::exists(above / "InsulaConfig.cmake", ec)) return " -DInsula_DIR=" + above.generic_string();
+  if (above == "/usr" || above == "/usr/local") return {};
+  return " -DCMAKE_PREFIX_PATH=" + above.generic_string();
+}
+
 }  // namespace
+
+std::string plugin_kinds() {
+  std::string out;
+  for (const KindText& k : kinds) out += (out.empty() ? "" : &k == &kinds.back() ? " or " : ", ") + std::string(k.kind);
+  return out;
+}
 
 int cmd_new_plugin(const CommandContext& context, const NewPluginOptions& options) {
   const auto kind = std::find_if(kinds.begin(), kinds.end(), [&](const KindText& k) { return k.kind == options.kind; });
   std::string why = name_error(context.registry, options.name);
-  if (why.empty() && kind == kinds.end()) why = in_quotes(options.kind) + " is no kind: constraint, force, instrument or exercise";
+  if (why.empty() && kind == kinds.end()) why = in_quotes(options.kind) + " is no kind: " + plugin_kinds();
   const fs::path folder = options.folder.empty() ? fs::path(options.name) : options.folder;
   std::error_code ec;
   if (why.empty() && fs::exists(folder, ec) && !(fs::is_directory(folder, ec) && fs::is_empty(folder, ec)))
@@ -99,9 +116,9 @@ int cmd_new_plugin(const CommandContext& context, const NewPluginOptions& option
       return 1;
     }
   }
-  context.out << fmt::format("{0}: a {1} called <{2}>, with test and example. Build and test it:\n"
-                             "  cmake -S {0} -B {0}/build && cmake --build {0}/build && ctest --test-dir {0}/build\n",
-                             folder.generic_string(), options.kind == "force" ? "force model" : options.kind == "exercise" ? "rule of exercises" : options.kind, options.name);
+  context.out << fmt::format("{0}: a{3} {1} called <{2}>, with test and example. Build and test it:\n"
+                             "  cmake -S {0} -B {0}/build{4} && cmake --build {0}/build && ctest --test-dir {0}/build\n",
+                             folder.generic_string(), kind->name, options.name, kind->kind == "instrument" ? "n" : "", where_insula_is());
   return 0;
 }
 

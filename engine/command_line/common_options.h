@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Options that several commands have.
+#pragma once
+#include <CLI/CLI.hpp>
+
+#include <cstdint>
+#include <string>
+#include <utility>
+
+#include "core/params/option.h"
+
+namespace insula {
+
+/// Checks a whole number that is at least `least`.
+inline auto at_least(int least) {
+  return CLI::Validator([least](std::string& text) { return below(text, least); }, "", "at least");
+}
+
+inline QuantityOption seconds(std::string doc) { return {.bare = "s", .min = "0 s", .doc = std::move(doc)}; }
+
+inline void add_seed(CLI::App& command, std::uint64_t& seed) {
+  command.add_option("--seed", seed, "what complications are drawn from; 0: the scene's own seed");
+}
+
+inline void add_threads(CLI::App& command, int& threads) {
+  command.add_option("--threads", threads, "threads; 0 takes the machine's")->check(at_least(0));
+}
+
+inline void add_motion(CLI::App& command, std::string& motion) {
+  command.add_option("--motion", motion, "what the hands do: a motion of the exercise, a CSV file, or none");
+}
+
+}  // namespace insula

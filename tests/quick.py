@@ -1,0 +1,163 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""quick.py SOURCE BUILD [--since COMMIT]: builds and runs the unit tests of what has changed, in three minutes at most.
+
+What has changed: files that differ from the last commit, and new ones. With none, what the last commits changed since the
+branch left the main branch, or the last commit itself. It prints which files it found, which tests it runs, and what it left out.
+"""
+import os
+import pathlib
+import re
+import signal
+import subprocess
+import sys
+import time
+
+BUDGET_S = 175
+# Folder of the changed file: program of tests, and where its test files are.
+PROGRAMS = (("core/", "core_tests"), ("plugins/", "plugin_tests"), ("haptic_server/", "servo_tests"), ("engine/", "engine_tests"),
+            ("viewer/gateway/", "gateway_tests"), ("lcm_types/", "core_tests"))
+SUITE = re.compile(r"^(?:TYPED_)?TEST(?:_F|_P)?\(\s*(\w+)\s*,|^TYPED_TEST_SUITE\(\s*(\w+)", re.M)
+
+
+def git(source, *words):
+    done = subprocess.run(["git", "-C", source, *words], capture_output=True, text=True)
+    return done.stdout.split("\n")[:-1] if done.returncode == 0 else []
+
+
+def changed_files(source, since):
+    """The changed files, and in words what they were compared with."""
+    if since:
+        return git(source, "diff", "--name-only", since), "changed since " + since
+    here = git(source, "diff", "--name-only", "HEAD") + git(source, "ls-files", "--others", "--exclude-standard")
+    if here:
+        return here, "not committed yet"
+    for main in ("origin/main", "main"):
+        base = git(source, "merge-base", "HEAD", main)
+        if base and base != git(source, "rev-parse", "HEAD"):
+            return git(source, "diff", "--name-only", base[0], "HEAD"), "changed since the branch left " + main
+    return git(source, "diff", "--name-only", "HEAD~1", "HEAD"), "of the last commit"
+
+
+def suites(files):
+    names = set()
+    for f in files:
+        for plain, typed in SUITE.findall(f.read_text(encoding="utf-8")):
+            names.add(plain or typed)
+    return names
+
+
+def test_files(source, path):
+    """The test files that are nearest to a changed file: itself, its namesake, else all of its folder."""
+    file = source / path
+    folder = file.parent
+    if file.name.endswith("_test.cpp"):
+        return [file] if file.exists() else []
+    namesakes = sorted(folder.glob(file.stem + "*_test.cpp"))
+    return namesakes or sorted(folder.glob("*_test.cpp"))
+
+
+def plan(source, files):
+    """(program -> names of suites, files without unit tests)."""
+    programs, rest = {}, []
+    for path in files:
+        home = next((program for folder, program in PROGRAMS if path.startswith(folder)), None)
+        match = re.match(r"tests/(\w+)/.*\.(?:cpp|h)$", path)
+        if path.startswith("lcm_types/"):
+            found = sorted((source / "core/bus").glob("*_test.cpp"))
+        elif home and path.endswith((".cpp", ".h", ".xml")):
+            found = test_files(source, path)
+        elif match:
+            home, found = match[1] + "_tests", sorted((source / "tests" / match[1]).glob("*_test.cpp"))
+        else:
+            found = []
+        if home and found:
+            programs.setdefault(home, set()).update(suites(found))
+        else:
+            rest.append(path)
+    return programs, rest
+
+
+class Clock:
+    def __init__(self):
+        self.end = time.monotonic() + BUDGET_S
+
+    def run(self, command, **more):
+        """Its exit status; None when the time was up."""
+        left = self.end - time.monotonic()
+        if left < 1:
+            return None
+        child = subprocess.Popen([str(c) for c in command], start_new_session=True, **more)
+        try:
+            return child.wait(timeout=left)
+        except subprocess.TimeoutExpired:
+            os.killpg(child.pid, signal.SIGTERM)
+            child.wait()
+            return None
+
+
+def say(text):
+    print("== " + text, flush=True)
+
+
+def run_programs(clock, source, build, programs):
+    """Builds and runs the programs of tests; what failed, what there was no time for."""
+    failed, left_out = [], []
+    known = subprocess.run(["ninja", "-C", build, "-t", "targets", "all"], capture_output=True, text=True).stdout
+    targets = [p for p in sorted(programs) if re.search(r"^%s: phony" % p, known, re.M)]
+    left_out += ["%s (no such program)" % p for p in sorted(programs) if p not in targets]
+    if not targets:
+        return failed, left_out
+    say("building " + ", ".join(targets))
+    status = clock.run(["ninja", "-C", build, "--quiet", *targets])
+    if status is None:
+        return failed, left_out + ["%s (the build took all of the time; start again to go on)" % t for t in targets]
+    if status:
+        return ["the build"], left_out
+    for target in targets:
+        names = sorted(programs[target])
+        say("%s: %s" % (target, " ".join(names)))
+        chosen = ":".join("%s.*:%s/*:*/%s.*:*/%s/*" % (n, n, n, n) for n in names)
+        status = clock.run([build / "tests" / target, "--gtest_brief=1", "--gtest_filter=" + chosen], cwd=source)
+        if status is None:
+            left_out.append(target + " (no time left)")
+        elif status:
+            failed.append(target)
+    return failed, left_out
+
+
+def main():
+    source, build = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
+    since = sys.argv[sys.argv.index("--since") + 1] if "--since" in sys.argv else None
+    clock, begin = Clock(), time.monotonic()
+    files, how = changed_files(source, since)
+    say("%d files %s" % (len(files), how))
+    programs, rest = plan(source, files)
+    failed, left_out = [], []
+    for script in ("function_length.py", "lines.py", "clang_format.py"):
+        if clock.run([sys.executable, "-B", source / "tests/style" / script, source]) not in (0, 77, None):
+            failed.append("tests/style/" + script)
+    if any(f.startswith("viewer/page/") for f in files):
+        say("viewer/page: npm test")
+        if clock.run(["npm", "test", "--silent"], cwd=source / "viewer/page") != 0:
+            failed.append("viewer/page")
+        rest = [f for f in rest if not f.startswith("viewer/page/")]
+    scenes = [f for f in files if f.startswith("scenes/") and f.endswith(".xml") and (source / f).exists()]
+    if scenes and (build / "bin/insula").exists():
+        say("insula check " + " ".join(scenes))
+        if clock.run([build / "bin/insula", "check", *scenes], cwd=source) != 0:
+            failed.append("insula check")
+        rest = [f for f in rest if f not in scenes]
+    more_failed, left_out = run_programs(clock, source, build, programs)
+    failed += more_failed
+    if rest:
+        say("no unit test belongs to: " + " ".join(rest[:12]) + (" and %d more" % (len(rest) - 12) if len(rest) > 12 else ""))
+    for what in left_out:
+        say("left out: " + what)
+    say("%s after %d s%s" % ("FAILED: " + ", ".join(failed) if failed else "passed", time.monotonic() - begin,
+                             "; ./insula test runs everything" if not failed else ""))
+    return 1 if failed or left_out else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
