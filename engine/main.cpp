@@ -194,7 +194,8 @@ int main(int argc, char** argv) {
   play->add_option("--right", play_options.right, "device of the right hand");
   play->add_option("--port", play_options.port, "port of the viewer; following ones are tried when it is busy")->capture_default_str();
   play->add_option("--listen", play_options.listen, "address of the viewer; 0.0.0.0 lets other machines watch")->capture_default_str();
-  play->add_option("--host", play_options.hosts, "a name under which other machines' pages may ask for the viewer; may be given several times");
+  play->add_option("--host", play_options.hosts,
+                   "a name under which other machines' pages may ask for the viewer; may be given several times");
   play->add_option("--duration", play_options.duration_s, "end after so many seconds; 0: never")->check(CLI::NonNegativeNumber);
   play->add_option("--seed", play_options.seed, "what complications are drawn from; 0: the scene's own seed");
   play->add_option("--keep-bundle", play_options.keep_bundle, "folder in which the viewer's scene bundles stay, for a replay of a log");
@@ -215,7 +216,8 @@ int main(int argc, char** argv) {
   view->add_flag("--list", list_only, "print what is in it and end");
   view->add_option("--port", play_options.port, "port of the viewer; following ones are tried when it is busy")->capture_default_str();
   view->add_option("--listen", play_options.listen, "address of the viewer; 0.0.0.0 lets other machines watch")->capture_default_str();
-  view->add_option("--host", play_options.hosts, "a name under which other machines' pages may ask for the viewer; may be given several times");
+  view->add_option("--host", play_options.hosts,
+                   "a name under which other machines' pages may ask for the viewer; may be given several times");
   view->add_option("--duration", play_options.duration_s, "end after so many seconds; 0: never")->check(CLI::NonNegativeNumber);
   view->add_flag("--no-browser", no_browser, "open no browser");
   view->callback([&] {

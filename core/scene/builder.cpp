@@ -98,7 +98,8 @@ bool SceneBuilder::second_of_its_kind(const Element& element, const ComponentInf
   if (first == only_ones_.end()) return false;
   const SourcePos& at = first->second->pos;
   diagnostics_.error(element.pos, "<" + element.name + "> may stand only once in a scene; the first is at " +
-                                      (at.file == element.pos.file ? "" : at.file + " ") + "line " + std::to_string(at.line));
+                                      (at.file == element.pos.file ? "" : at.file + " ") + "line " +
+                                      std::to_string(at.line));
   return true;
 }
 

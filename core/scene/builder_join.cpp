@@ -67,7 +67,8 @@ void SceneBuilder::find_files(Component& component) {
     auto* file = dynamic_cast<Param<File>*>(p);
     if (!file || file->empty()) continue;
     std::string error;
-    const auto path = resolve_file(part_of_.at(&component)->path.parent_path(), tree_.root_folder, (*file)().string(), error, tree_.suggestions);
+    const auto path = resolve_file(part_of_.at(&component)->path.parent_path(), tree_.root_folder, (*file)().string(),
+                                   error, tree_.suggestions);
     if (path.empty()) {
       report(component, file->given() ? file->pos() : component.pos, file->name() + ": " + error);
       continue;

@@ -26,7 +26,8 @@ bool is_prefix(std::string_view text) {
 
 class Expander {
  public:
-  Expander(ExpandedScene& out, Diagnostics& diagnostics) : out_(out), diagnostics_(diagnostics), variables_(diagnostics, out.suggestions) {}
+  Expander(ExpandedScene& out, Diagnostics& diagnostics)
+      : out_(out), diagnostics_(diagnostics), variables_(diagnostics, out.suggestions) {}
 
   void run(std::string_view text, const fs::path& path) {
     std::error_code ec;
@@ -212,7 +213,8 @@ std::string nearest_file(const fs::path& path, Suggestions& suggestions) {
   if (!suggestions.afford(5 * max_names)) return {};  // reading a folder takes longer than comparing names
   std::vector<std::string> names;
   std::error_code error;
-  for (fs::directory_iterator it(path.parent_path(), error), end; !error && it != end && names.size() < max_names; it.increment(error))
+  for (fs::directory_iterator it(path.parent_path(), error), end; !error && it != end && names.size() < max_names;
+       it.increment(error))
     names.push_back(it->path().filename().string());
   std::sort(names.begin(), names.end());
   return nearest_name(path.filename().string(), names);

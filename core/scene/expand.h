@@ -39,8 +39,8 @@ struct ExpandedScene {
 /// scene's own.
 std::filesystem::path scene_root_folder(const std::filesystem::path& scene_file);
 
-/// A file named in a scene: relative to `folder`, inside `root`, existing and regular. Returns the canonical path, or an
-/// empty one and the error text, with the name that was probably meant.
+/// A file named in a scene: relative to `folder`, inside `root`, existing and regular. Returns the canonical path, or
+/// an empty one and the error text, with the name that was probably meant.
 std::filesystem::path resolve_file(const std::filesystem::path& folder, const std::filesystem::path& root,
                                    const std::string& name, std::string& error, Suggestions& suggestions);
 

@@ -23,7 +23,8 @@ Diagnostics tidy(Diagnostics all) {
   all.sort_by_position();
   if (all.all().size() <= max_shown) return all;
   const std::size_t errors = std::size_t(all.errors()), warnings = all.all().size() - errors;
-  const std::size_t errors_shown = std::min(errors, max_shown), warnings_shown = std::min(warnings, max_shown - errors_shown);
+  const std::size_t errors_shown = std::min(errors, max_shown),
+                    warnings_shown = std::min(warnings, max_shown - errors_shown);
   Diagnostics out;
   std::size_t errors_left = errors_shown, warnings_left = warnings_shown;
   for (const Diagnostic& d : all.all()) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Names suggested for what was probably meant. A hostile scene may hold 99,000 wrong names and as many good ones, so all
-// comparisons of one load are limited; beyond the limit errors come without a suggestion.
+// Names suggested for what was probably meant. A hostile scene may hold 99,000 wrong names and as many good ones, so
+// all comparisons of one load are limited; beyond the limit errors come without a suggestion.
 #pragma once
 #include <cstddef>
 

@@ -25,7 +25,8 @@ class Variables {
     bool used = false;
   };
 
-  Variables(Diagnostics& diagnostics, Suggestions& suggestions) : diagnostics_(diagnostics), suggestions_(suggestions) {}
+  Variables(Diagnostics& diagnostics, Suggestions& suggestions)
+      : diagnostics_(diagnostics), suggestions_(suggestions) {}
 
   /// A new scope with what `outer` has; scopes live as long as this.
   Scope& new_scope(const Scope* outer);

@@ -7,7 +7,8 @@ namespace insula {
 void ViewSettings::prepare(PrepareContext& context) {
   constexpr double min_m = 1e-6;  // a view needs a direction
   if ((eye() - target()).norm() < min_m)
-    context.diagnostics.error(eye.pos(), "eye: the microscope stands in its own target, so it has no direction to look in");
+    context.diagnostics.error(eye.pos(),
+                              "eye: the microscope stands in its own target, so it has no direction to look in");
 }
 
 }  // namespace insula

@@ -135,12 +135,16 @@ TEST_F(Hostile, NinetyNineThousandErrorsOfEachKind) {
   constexpr double max_s = 1;
 #endif
   struct Case {
-    const char *what, *element, *good;  // '#' is the element's number; so many good ones stand before as there are bad ones
+    const char *what, *element,
+        *good;  // '#' is the element's number; so many good ones stand before as there are bad ones
   };
-  for (const Case& c : {Case{"unknown element", "<obstacel id=\"a#\"/>", ""}, Case{"unknown parameter", "<obstacle id=\"a#\" foo=\"1\"/>", ""},
-                        Case{"unknown id", "<contact between=\"b# c#\"/>", "<obstacle id=\"a#\"/>"}, Case{"one id", "<obstacle id=\"a\"/>", ""},
-                        Case{"unknown variable", "<obstacle id=\"$w#\"/>", "<variable name=\"v#\" value=\"1\"/>"},
-                        Case{"settings again", "<solver/>", "<obstacle/>"}, Case{"missing part", "<include file=\"no#.xml\"/>", ""}}) {
+  for (const Case& c :
+       {Case{"unknown element", "<obstacel id=\"a#\"/>", ""},
+        Case{"unknown parameter", "<obstacle id=\"a#\" foo=\"1\"/>", ""},
+        Case{"unknown id", "<contact between=\"b# c#\"/>", "<obstacle id=\"a#\"/>"},
+        Case{"one id", "<obstacle id=\"a\"/>", ""},
+        Case{"unknown variable", "<obstacle id=\"$w#\"/>", "<variable name=\"v#\" value=\"1\"/>"},
+        Case{"settings again", "<solver/>", "<obstacle/>"}, Case{"missing part", "<include file=\"no#.xml\"/>", ""}}) {
     SCOPED_TRACE(c.what);
     const int count = *c.good != 0 ? 49'500 : 99'000;
     std::string text = "<scene>\n";
