@@ -83,6 +83,8 @@ std::string nearest_name(std::string_view word, const std::vector<std::string>& 
   std::size_t best_distance = std::max<std::size_t>(1, word.size() / 3) + 1;
   for (const auto& c : candidates) {
     if (c.empty() || c.size() > 64) continue;
+    if (std::max(c.size(), word.size()) - std::min(c.size(), word.size()) >= best_distance)
+      continue;  // so far apart at least
     const std::size_t d = edit_distance(word, c);
     // A suggestion that shares nothing with what was written helps nobody.
     if (d < best_distance && d < std::max(word.size(), c.size())) {

@@ -20,7 +20,8 @@ constexpr int max_per_poll = 2000;
 constexpr const char* advice =
     "Insula's processes talk over UDP multicast on this machine. Its loopback interface must be up:\n"
     "    ip link set lo up multicast on\n"
-    "LCM's own tools also need a route for multicast. A machine without a network (a container, a laptop offline) has none:\n"
+    "LCM's own tools also need a route for multicast. A machine without a network (a container, a laptop offline) has "
+    "none:\n"
     "    ip route add 224.0.0.0/4 dev lo\n"
     "LCM_DEFAULT_URL gives another group and port, as in udpm://239.255.76.67:7668?ttl=0.";
 
@@ -67,7 +68,8 @@ bool LcmBus::publish(std::string_view channel, Bytes message) {
     return false;
   }
   if (message.size() > max_message_bytes) {
-    fail(fmt::format("{} bytes on channel {} are more than the {} allowed over", message.size(), channel, max_message_bytes));
+    fail(fmt::format("{} bytes on channel {} are more than the {} allowed over", message.size(), channel,
+                     max_message_bytes));
     return false;
   }
   std::unique_lock lock(send_mutex_);

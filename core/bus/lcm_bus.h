@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The bus between processes: LCM's protocol over UDP multicast, received only from this machine and with every size
-// checked. LCM's own library does neither (docs/notes/bus-transport.md), so it is not used here; its tools are compatible.
+// checked. LCM's own library does neither (docs/notes/bus-transport.md), so it is not used here; its tools are
+// compatible.
 #pragma once
 #include <atomic>
 #include <condition_variable>
@@ -62,7 +63,8 @@ class LcmBus final : public Bus {
   std::thread thread_;
   std::mutex queue_mutex_;
   std::condition_variable arrived_;
-  std::map<std::string, std::vector<Handler>, std::less<>> handlers_;  // changed by the polling thread under queue_mutex_
+  std::map<std::string, std::vector<Handler>, std::less<>>
+      handlers_;  // changed by the polling thread under queue_mutex_
   std::deque<Message> queue_;
   std::size_t queue_bytes_ = 0;
   std::atomic<std::uint64_t> refused_{0};

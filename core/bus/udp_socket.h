@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The two sockets of an endpoint of the bus: one sends to a multicast group, one receives from it what this machine sent.
-// The implementation belongs to the operating system (platform/linux/udp_socket.cpp).
+// The two sockets of an endpoint of the bus: one sends to a multicast group, one receives from it what this machine
+// sent. The implementation belongs to the operating system (platform/linux/udp_socket.cpp).
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -11,8 +11,8 @@
 
 namespace insula {
 
-/// Sends datagrams to the group. They take the way of the machine's routes, as LCM's do, and the loopback interface when
-/// there is no route.
+/// Sends datagrams to the group. They take the way of the machine's routes, as LCM's do, and the loopback interface
+/// when there is no route.
 class UdpSender {
  public:
   explicit UdpSender(const UdpmAddress& address);
@@ -33,8 +33,8 @@ class UdpSender {
   std::string error_;
 };
 
-/// Receives datagrams of the group that were sent on this machine. The kernel drops all others before they take space in
-/// the receive buffer: a filter on the socket lets through what came over the loopback interface and what the kernel
+/// Receives datagrams of the group that were sent on this machine. The kernel drops all others before they take space
+/// in the receive buffer: a filter on the socket lets through what came over the loopback interface and what the kernel
 /// itself looped back from a sending socket of this machine. Where the kernel knows no filters, only the loopback
 /// interface is joined.
 class UdpReceiver {

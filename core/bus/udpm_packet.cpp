@@ -41,7 +41,8 @@ std::string_view take_name(Bytes& rest) {
 
 }  // namespace
 
-bool cut(std::string_view channel, Bytes message, std::uint32_t sequence, const std::function<bool(const Datagram&)>& send) {
+bool cut(std::string_view channel, Bytes message, std::uint32_t sequence,
+         const std::function<bool(const Datagram&)>& send) {
   Datagram d;
   if (short_head + channel.size() + 1 + message.size() <= max_datagram_bytes) {
     put32(d, short_mark);
@@ -89,14 +90,15 @@ bool Assembler::add_short(Bytes datagram, Received& out) {
 bool Assembler::add_fragment(std::uint64_t sender, Bytes datagram, Received& out) {
   if (datagram.size() < fragment_head) return refuse();
   const std::uint8_t* head = datagram.data();
-  const std::uint32_t sequence = wire::load32(head + 4), size = wire::load32(head + 8), offset = wire::load32(head + 12);
+  const std::uint32_t sequence = wire::load32(head + 4), size = wire::load32(head + 8),
+                      offset = wire::load32(head + 12);
   const std::uint16_t number = wire::load16(head + 16), fragments = wire::load16(head + 18);
   if (size > max_message_bytes || number >= fragments) return refuse();
   Bytes rest = datagram.subspan(fragment_head);
   Partial* partial = number == 0 ? begin(sender, datagram, rest) : find(sender);
   if (partial == nullptr) return refuse();
-  const bool follows = partial->sequence == sequence && partial->fragments == fragments && partial->next_fragment == number &&
-                       partial->payload.size() == size && partial->filled == offset;
+  const bool follows = partial->sequence == sequence && partial->fragments == fragments &&
+                       partial->next_fragment == number && partial->payload.size() == size && partial->filled == offset;
   if (!follows || rest.size() > size - partial->filled) {  // filled <= size always: the difference cannot wrap
     partial->next_fragment = partial->fragments = 0;
     return refuse();
@@ -112,7 +114,8 @@ bool Assembler::add_fragment(std::uint64_t sender, Bytes datagram, Received& out
 }
 
 Assembler::Partial* Assembler::find(std::uint64_t sender) {
-  const auto found = std::find_if(partials_.begin(), partials_.end(), [&](const Partial& p) { return p.sender == sender; });
+  const auto found =
+      std::find_if(partials_.begin(), partials_.end(), [&](const Partial& p) { return p.sender == sender; });
   return found == partials_.end() || found->next_fragment == 0 ? nullptr : &*found;
 }
 

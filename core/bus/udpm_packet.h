@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The datagrams of LCM's UDP protocol: how a message is cut into datagrams, and how it is put together again. Every size
-// and offset of a received datagram is checked before it is used. Source: LCM, "UDP Multicast Protocol Description".
-// All numbers are big-endian. A short message is: "LC02", sequence number, channel name with a zero byte, payload. A
-// fragment is: "LC03", sequence number, payload size, offset, fragment number, count of fragments; the first fragment
-// then has the channel name with a zero byte; a piece of the payload follows.
+// The datagrams of LCM's UDP protocol: how a message is cut into datagrams, and how it is put together again. Every
+// size and offset of a received datagram is checked before it is used. Source: LCM, "UDP Multicast Protocol
+// Description". All numbers are big-endian. A short message is: "LC02", sequence number, channel name with a zero byte,
+// payload. A fragment is: "LC03", sequence number, payload size, offset, fragment number, count of fragments; the first
+// fragment then has the channel name with a zero byte; a piece of the payload follows.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -28,7 +28,8 @@ struct Datagram {
 
 /// Calls `send` for each datagram of a message, in order, until it returns false. Returns whether all were sent. The
 /// channel's name must have 1 to most_name_bytes characters and the message at most max_message_bytes.
-bool cut(std::string_view channel, Bytes message, std::uint32_t sequence, const std::function<bool(const Datagram&)>& send);
+bool cut(std::string_view channel, Bytes message, std::uint32_t sequence,
+         const std::function<bool(const Datagram&)>& send);
 
 /// A whole message; both parts are valid until the next call of Assembler::add.
 struct Received {

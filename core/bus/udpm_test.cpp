@@ -31,10 +31,11 @@ TEST(UdpmUrl, PartsAndDefaults) {
 }
 
 TEST(UdpmUrl, MalformedOnesAreRefused) {
-  for (const char* url : {"", "udp://239.255.76.67:7667", "udpm://10.0.0.1:7667", "udpm://240.0.0.1:7667", "udpm://239.255.76:7667",
-                          "udpm://239.255.76.256:7667", "udpm://239.255.76.67.1:7667", "udpm://239.255.76.67:0",
-                          "udpm://239.255.76.67:70000", "udpm://239.255.76.67:", "udpm://239.255.76.67:7667?ttl=256",
-                          "udpm://239.255.76.67:7667?ttl=-1", "udpm://239.255.76.67:7667?tttl=0", "udpm://a:1"})
+  for (const char* url :
+       {"", "udp://239.255.76.67:7667", "udpm://10.0.0.1:7667", "udpm://240.0.0.1:7667", "udpm://239.255.76:7667",
+        "udpm://239.255.76.256:7667", "udpm://239.255.76.67.1:7667", "udpm://239.255.76.67:0",
+        "udpm://239.255.76.67:70000", "udpm://239.255.76.67:", "udpm://239.255.76.67:7667?ttl=256",
+        "udpm://239.255.76.67:7667?ttl=-1", "udpm://239.255.76.67:7667?tttl=0", "udpm://a:1"})
     EXPECT_FALSE(parse_udpm_url(url)) << url;
 }
 
@@ -58,7 +59,8 @@ Buffer counted(std::size_t size) {
 
 TEST(Udpm, EverySizeComesThroughWhole) {
   // Around one datagram (8 bytes of header, 3 of name) and around two fragments.
-  for (const std::size_t size : {0u, 1u, 65'495u, 65'496u, 65'497u, 115'000u, 130'969u, 130'970u, 130'971u, 130'972u, 524'288u}) {
+  for (const std::size_t size :
+       {0u, 1u, 65'495u, 65'496u, 65'497u, 115'000u, 130'969u, 130'970u, 130'971u, 130'972u, 524'288u}) {
     const Buffer sent = counted(size);
     const auto pieces = datagrams("AB", sent, 7);
     EXPECT_EQ(pieces.size(), size <= 65'496 ? 1 : (size + 3 + 65'486) / 65'487) << size;
@@ -165,7 +167,9 @@ TEST(Udpm, AHundredThousandDamagedDatagramsGiveOnlyWholeMessages) {
       ASSERT_LE(got.channel.size(), udpm::max_name_bytes);
       ASSERT_LE(got.message.size(), max_message_bytes);
       const Buffer copy(got.message.begin(), got.message.end());  // reads every byte: the address sanitizer watches
-      if (damages == 0 && !cut_short && sequence % 50 != 0) { ASSERT_EQ(copy, small); }
+      if (damages == 0 && !cut_short && sequence % 50 != 0) {
+        ASSERT_EQ(copy, small);
+      }
     }
   EXPECT_GT(whole, given / 4);
   EXPECT_GT(assembler.refused(), given / 20);

@@ -64,7 +64,8 @@ std::optional<UdpmAddress> parse_udpm_url(std::string_view url) {
     out.port = std::uint16_t(*port);
   }
   while (!url.empty())
-    if (const std::string_view option = up_to('&', url); !option.empty() && !parse_option(option, out)) return std::nullopt;
+    if (const std::string_view option = up_to('&', url); !option.empty() && !parse_option(option, out))
+      return std::nullopt;
   return out;
 }
 

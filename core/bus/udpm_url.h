@@ -16,8 +16,8 @@ struct UdpmAddress {
   int receive_buffer_bytes = 2'097'152;  ///< asked of the kernel, which caps it at net.core.rmem_max
 };
 
-/// The parts of a udpm URL; parts that are left out keep their defaults. Nothing when the URL is malformed, when the group
-/// is no multicast group, or when it has an unknown option.
+/// The parts of a udpm URL; parts that are left out keep their defaults. Nothing when the URL is malformed, when the
+/// group is no multicast group, or when it has an unknown option.
 std::optional<UdpmAddress> parse_udpm_url(std::string_view url);
 
 }  // namespace insula

@@ -26,6 +26,13 @@ bool may_stand_in(const ComponentInfo& info, Kind parent) {
   return std::find(info.parents.begin(), info.parents.end(), parent) != info.parents.end();
 }
 
+bool may_stand_once(const ComponentInfo& info) {
+  return info.kind == Kind::settings || info.kind == Kind::complications || info.kind == Kind::exercise;
+}
+
+/// A scene has one exercise, whatever its element is called, and one of each kind of settings.
+std::string single_key(const ComponentInfo& info) { return info.kind == Kind::exercise ? "exercise" : info.element; }
+
 }  // namespace
 
 void SceneBuilder::report(Component& component, const SourcePos& pos, std::string text) {
@@ -71,20 +78,14 @@ void SceneBuilder::add(const Element& element, Component& parent) {
   const ComponentInfo* info = registry_.find(element.name);
   if (!info) return unknown_element(element, parent);
   if (!may_stand_in(*info, parent.kind)) return misplaced(element, *info, parent);
-  if (info->kind == Kind::settings || info->kind == Kind::complications) {
-    for (const auto& other : parent.children)
-      if (other->element == element.name) {
-        diagnostics_.error(element.pos, "<" + element.name + "> may stand only once in a scene; the first is at line " +
-                                            std::to_string(other->pos.line));
-        return lose_ids(element);
-      }
-  }
+  if (second_of_its_kind(element, *info)) return lose_ids(element);
   auto owned = registry_.create(element.name);
   Component& component = *owned;
   component.pos = element.pos;
   component.order = order_++;
   component.parent = &parent;
   part_of_[&component] = element.part;
+  if (may_stand_once(*info)) only_ones_[single_key(*info)] = &component;
   parent.children.push_back(std::move(owned));
   scene_->in_order_.push_back(&component);
   read_id(element, component);
@@ -92,9 +93,25 @@ void SceneBuilder::add(const Element& element, Component& parent) {
   add_children(element, component);
 }
 
+bool SceneBuilder::second_of_its_kind(const Element& element, const ComponentInfo& info) {
+  if (!may_stand_once(info)) return false;
+  const auto first = only_ones_.find(single_key(info));
+  if (first == only_ones_.end()) return false;
+  const SourcePos& at = first->second->pos;
+  diagnostics_.error(element.pos, "<" + element.name + "> may stand only once in a scene; the first is at " +
+                                      (at.file == element.pos.file ? "" : at.file + " ") + "line " +
+                                      std::to_string(at.line));
+  return true;
+}
+
 void SceneBuilder::unknown_element(const Element& element, const Component& parent) {
+  const auto all = registry_.all();
+  if (!tree_.suggestions.afford(2 * all.size())) {
+    diagnostics_.error(element.pos, "unknown element <" + shown(element.name) + ">");
+    return lose_ids(element);
+  }
   std::vector<std::string> here, anywhere;
-  for (const auto* info : registry_.all()) {
+  for (const auto* info : all) {
     anywhere.push_back(info->element);
     if (may_stand_in(*info, parent.kind)) here.push_back(info->element);
   }
@@ -158,7 +175,7 @@ void SceneBuilder::read_params(const Element& element, Component& component) {
     if (a.name == "id") continue;
     ParamBase* p = component.find_param(a.name);
     if (!p) {
-      const std::string near = nearest_name(a.name, names);
+      const std::string near = tree_.suggestions.afford(names.size()) ? nearest_name(a.name, names) : "";
       std::string text = "<" + component.element + "> has no parameter " + in_quotes(a.name);
       if (!near.empty())
         text += "; did you mean \"" + near + "\"?";

@@ -22,6 +22,7 @@ class SceneBuilder {
  private:
   void add_children(const Element& element, Component& parent);
   void add(const Element& element, Component& parent);
+  bool second_of_its_kind(const Element& element, const ComponentInfo& info);
   void read_params(const Element& element, Component& component);
   void read_id(const Element& element, Component& component);
   void unknown_element(const Element& element, const Component& parent);
@@ -50,6 +51,7 @@ class SceneBuilder {
   std::map<const Component*, const ScenePart*> part_of_;
   std::set<const Component*> failed_, prepared_;
   std::map<std::string, int> ordinals_;
+  std::map<std::string, const Component*, std::less<>> only_ones_;  ///< of what may stand only once in a scene
   std::set<std::string> lost_ids_;  ///< of elements that could not be built: naming them is no second mistake
   int order_ = 0;
 };

@@ -23,6 +23,7 @@ void SceneBuilder::resolve_references(Component& component) {
   for (ParamBase* p : component.params()) {
     auto* ref = dynamic_cast<RefParamBase*>(p);
     if (!ref) continue;
+    std::set<const Component*> listed;
     for (std::size_t i = 0; i < ref->ids().size(); ++i) {
       const std::string& id = ref->ids()[i];
       bool lost = false;
@@ -32,6 +33,8 @@ void SceneBuilder::resolve_references(Component& component) {
       } else if (!target) {
         failed_.insert(&component);
         unresolved(*ref, id);
+      } else if (!listed.insert(target).second) {
+        report(component, ref->pos(), ref->name() + ": " + in_quotes(id) + " is listed twice");
       } else if (const std::string error = ref->resolve(i, target); !error.empty()) {
         report(component, ref->pos(), ref->name() + ": " + in_quotes(id) + " is " + with_article(target->element) + ", not " +
                                           with_article(ref->ref_kind()));
@@ -41,6 +44,8 @@ void SceneBuilder::resolve_references(Component& component) {
 }
 
 void SceneBuilder::unresolved(const RefParamBase& ref, const std::string& id) {
+  const std::string missing = ref.name() + ": no component has the id " + in_quotes(id);
+  if (!tree_.suggestions.afford(2 * scene_->in_order_.size())) return diagnostics_.error(ref.pos(), missing);
   std::vector<std::string> fitting, all;
   for (const Component* c : scene_->in_order_) {
     if (c->id.find('#') != std::string::npos) continue;  // a made-up id is no help
@@ -49,7 +54,7 @@ void SceneBuilder::unresolved(const RefParamBase& ref, const std::string& id) {
   }
   std::string near = nearest_name(id, fitting);
   if (near.empty()) near = nearest_name(id, all);
-  std::string text = ref.name() + ": no component has the id " + in_quotes(id);
+  std::string text = missing;
   if (!near.empty())
     text += "; did you mean \"" + near + "\"?";
   else if (!fitting.empty() && fitting.size() <= 12)
@@ -62,7 +67,8 @@ void SceneBuilder::find_files(Component& component) {
     auto* file = dynamic_cast<Param<File>*>(p);
     if (!file || file->empty()) continue;
     std::string error;
-    const auto path = resolve_file(part_of_.at(&component)->path.parent_path(), tree_.root_folder, (*file)().string(), error);
+    const auto path = resolve_file(part_of_.at(&component)->path.parent_path(), tree_.root_folder, (*file)().string(),
+                                   error, tree_.suggestions);
     if (path.empty()) {
       report(component, file->given() ? file->pos() : component.pos, file->name() + ": " + error);
       continue;

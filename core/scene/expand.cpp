@@ -26,7 +26,8 @@ bool is_prefix(std::string_view text) {
 
 class Expander {
  public:
-  Expander(ExpandedScene& out, Diagnostics& diagnostics) : out_(out), diagnostics_(diagnostics), variables_(diagnostics) {}
+  Expander(ExpandedScene& out, Diagnostics& diagnostics)
+      : out_(out), diagnostics_(diagnostics), variables_(diagnostics, out.suggestions) {}
 
   void run(std::string_view text, const fs::path& path) {
     std::error_code ec;
@@ -77,7 +78,7 @@ class Expander {
   void check_attributes(const Element& e, const std::vector<std::string>& known) {
     for (const auto& a : e.attributes) {
       if (std::find(known.begin(), known.end(), a.name) != known.end()) continue;
-      const std::string near = nearest_name(a.name, known);
+      const std::string near = out_.suggestions.afford(known.size()) ? nearest_name(a.name, known) : "";
       diagnostics_.error(a.name_pos, "<" + e.name + "> has no parameter " + in_quotes(a.name) +
                                          (near.empty() ? " (it has: " + joined(known) + ")" : "; did you mean \"" + near + "\"?"));
     }
@@ -135,7 +136,7 @@ class Expander {
       prefix = p->value;
     }
     std::string error;
-    const fs::path path = resolve_file(part.path.parent_path(), out_.root_folder, file->value, error);
+    const fs::path path = resolve_file(part.path.parent_path(), out_.root_folder, file->value, error, out_.suggestions);
     if (path.empty()) return diagnostics_.error(file->value_pos, "file: " + error);
     if (const auto it = std::find_if(stack_.begin(), stack_.end(), [&](const auto* p) { return p->path == path; }); it != stack_.end()) {
       std::string chain;
@@ -205,7 +206,23 @@ fs::path scene_root_folder(const fs::path& scene_file) {
   return own;
 }
 
-fs::path resolve_file(const fs::path& folder, const fs::path& root, const std::string& name, std::string& error) {
+namespace {
+/// The name in the path's folder that is nearest to the path's own, or empty.
+std::string nearest_file(const fs::path& path, Suggestions& suggestions) {
+  constexpr std::size_t max_names = 1000;
+  if (!suggestions.afford(5 * max_names)) return {};  // reading a folder takes longer than comparing names
+  std::vector<std::string> names;
+  std::error_code error;
+  for (fs::directory_iterator it(path.parent_path(), error), end; !error && it != end && names.size() < max_names;
+       it.increment(error))
+    names.push_back(it->path().filename().string());
+  std::sort(names.begin(), names.end());
+  return nearest_name(path.filename().string(), names);
+}
+}  // namespace
+
+fs::path resolve_file(const fs::path& folder, const fs::path& root, const std::string& name, std::string& error,
+                      Suggestions& suggestions) {
   if (name.empty()) {
     error = "the value is empty; it must name a file";
     return {};
@@ -233,12 +250,7 @@ fs::path resolve_file(const fs::path& folder, const fs::path& root, const std::s
   const auto status = fs::status(path, ec);
   if (!fs::exists(status)) {
     error = in_quotes(name) + " does not exist";
-    std::vector<std::string> names;
-    std::error_code list_ec;
-    for (fs::directory_iterator it(path.parent_path(), list_ec), end; !list_ec && it != end && names.size() < 1000; it.increment(list_ec))
-      names.push_back(it->path().filename().string());
-    std::sort(names.begin(), names.end());
-    const std::string near = nearest_name(path.filename().string(), names);
+    const std::string near = nearest_file(path, suggestions);
     if (!near.empty()) error += "; did you mean \"" + (wanted.parent_path() / near).generic_string() + "\"?";
     return {};
   }

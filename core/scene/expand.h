@@ -16,6 +16,7 @@
 
 #include "core/base/text.h"
 #include "core/xml/document.h"
+#include "core/scene/suggestions.h"
 
 namespace insula {
 
@@ -31,16 +32,17 @@ struct ExpandedScene {
   std::vector<std::unique_ptr<ScenePart>> parts;
   std::filesystem::path root_folder;  ///< nothing outside of it may be read
   Fnv1a hash;                         ///< over the text of all files in the order read
+  Suggestions suggestions;            ///< how much effort is left for them
 };
 
 /// The folder a scene may read from: the nearest folder upwards of the scene file that holds a folder `meshes`, else the
 /// scene's own.
 std::filesystem::path scene_root_folder(const std::filesystem::path& scene_file);
 
-/// A file named in a scene: relative to `folder`, inside `root`, existing and regular. Returns the canonical path, or an
-/// empty one and the error text.
+/// A file named in a scene: relative to `folder`, inside `root`, existing and regular. Returns the canonical path, or
+/// an empty one and the error text, with the name that was probably meant.
 std::filesystem::path resolve_file(const std::filesystem::path& folder, const std::filesystem::path& root,
-                                   const std::string& name, std::string& error);
+                                   const std::string& name, std::string& error, Suggestions& suggestions);
 
 ExpandedScene expand_scene(std::string_view text, const std::filesystem::path& path, Diagnostics& diagnostics);
 

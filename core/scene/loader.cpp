@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <exception>
 
 #include "core/scene/builder.h"
@@ -13,22 +14,30 @@
 namespace insula {
 namespace {
 
-constexpr int max_errors = 200;
+constexpr std::size_t max_shown = 100;
 
-/// In order of position; beyond a screenful or ten nobody reads on.
+std::string counted(std::size_t n, const char* what) { return fmt::format("{} more {}{}", n, what, n == 1 ? "" : "s"); }
+
+/// In order of position; the first hundred, and how many more there are. Errors go before warnings.
 Diagnostics tidy(Diagnostics all) {
   all.sort_by_position();
-  if (static_cast<int>(all.all().size()) <= max_errors) return all;
+  if (all.all().size() <= max_shown) return all;
+  const std::size_t errors = std::size_t(all.errors()), warnings = all.all().size() - errors;
+  const std::size_t errors_shown = std::min(errors, max_shown),
+                    warnings_shown = std::min(warnings, max_shown - errors_shown);
   Diagnostics out;
-  for (const auto& d : all.all()) {
-    if (static_cast<int>(out.all().size()) == max_errors) break;
+  std::size_t errors_left = errors_shown, warnings_left = warnings_shown;
+  for (const Diagnostic& d : all.all()) {
+    std::size_t& left = d.severity == Severity::error ? errors_left : warnings_left;
+    if (left == 0) continue;
+    --left;
     d.severity == Severity::error ? out.error(d.pos, d.text) : out.warning(d.pos, d.text);
   }
-  // The number of errors must not become zero by cutting warnings off the front of them.
-  const auto left = all.all().size() - out.all().size();
+  std::string rest;
+  if (errors > errors_shown) rest = counted(errors - errors_shown, "error");
+  if (warnings > warnings_shown) rest += (rest.empty() ? "" : " and ") + counted(warnings - warnings_shown, "warning");
   const SourcePos whole_file{all.all().front().pos.file, 0, 0};
-  const std::string text = "and " + std::to_string(left) + " more messages";
-  all.ok() ? out.warning(whole_file, text) : out.error(whole_file, text);
+  all.ok() ? out.warning(whole_file, "and " + rest) : out.error(whole_file, "and " + rest);
   return out;
 }
 

@@ -98,7 +98,8 @@ bool Variables::replace(std::string& text, const Scope& scope, const SourcePos& 
     const auto it = scope.find(name);
     if (it == scope.end()) {
       std::vector<std::string> names;
-      for (const auto& [known, unused] : scope) names.push_back(known);
+      if (suggestions_.afford(scope.size()))
+        for (const auto& [known, unused] : scope) names.push_back(known);
       const std::string near = nearest_name(name, names);
       diagnostics_.error(pos, "unknown variable " + in_quotes("$" + name) + (near.empty() ? "" : "; did you mean \"$" + near + "\"?"));
       return false;

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "core/base/diagnostic.h"
+#include "core/scene/suggestions.h"
 
 namespace insula {
 
@@ -24,7 +25,8 @@ class Variables {
     bool used = false;
   };
 
-  explicit Variables(Diagnostics& diagnostics) : diagnostics_(diagnostics) {}
+  Variables(Diagnostics& diagnostics, Suggestions& suggestions)
+      : diagnostics_(diagnostics), suggestions_(suggestions) {}
 
   /// A new scope with what `outer` has; scopes live as long as this.
   Scope& new_scope(const Scope* outer);
@@ -42,6 +44,7 @@ class Variables {
   bool expand(Definition& definition, const SourcePos& pos);
 
   Diagnostics& diagnostics_;
+  Suggestions& suggestions_;
   std::list<Definition> definitions_;
   std::list<Scope> scopes_;
   int depth_ = 0;

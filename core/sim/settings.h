@@ -36,6 +36,8 @@ class ViewSettings final : public Component {
   Param<Vec<Length>> target{this, {.name = "target", .doc = "what it looks at"}};
   Param<Vec<Scalar>> up{this, {.name = "up", .fallback = "0 0 1", .doc = "direction that is up in the picture"}};
   Param<Angle> field_of_view{this, {.name = "field_of_view", .fallback = "20 deg", .min = "1 deg", .max = "120 deg", .doc = "vertical opening angle"}};
+
+  void prepare(PrepareContext& context) override;
 };
 
 }  // namespace insula

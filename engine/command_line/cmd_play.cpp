@@ -146,7 +146,8 @@ ChildSpec haptic_child(const PlayOptions& options, const fs::path& folder) {
 ChildSpec gateway_child(const PlayOptions& options, const fs::path& folder, const Supervisor::Print& print) {
   ChildSpec gateway;
   gateway.name = "gateway";
-  const auto command = [program = (folder / "gateway").string(), listen = options.listen, hosts = options.hosts](int port) {
+  const auto command = [program = (folder / "gateway").string(), listen = options.listen,
+                        hosts = options.hosts](int port) {
     std::vector<std::string> line{program, "--listen", listen, "--port", std::to_string(port)};
     for (const std::string& host : hosts) line.insert(line.end(), {"--host", host});
     return line;

@@ -97,7 +97,8 @@ bool UdpSender::send(std::span<const std::uint8_t> head, std::span<const std::ui
     return n >= 0;
   };
   bool ok = sent();
-  const bool route_gone = !ok && (errno == ENETUNREACH || errno == ENETDOWN || errno == EADDRNOTAVAIL || errno == ENODEV);
+  const bool route_gone =
+      !ok && (errno == ENETUNREACH || errno == ENETDOWN || errno == EADDRNOTAVAIL || errno == ENODEV);
   if (route_gone && !on_loopback_) ok = use_loopback() && sent();
   error_ = ok ? "" : std::strerror(errno);
   return ok;

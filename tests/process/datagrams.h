@@ -101,7 +101,10 @@ class MalformedDatagrams {
         return out;
       }
       case 3: return fragment({sequence_++, std::uint32_t(2000 + below(100'000)), 0, 0, 2}, name, below(1200));
-      case 4: return fragment({sequence_ - 1, std::uint32_t(2000 + below(100'000)), 0xFFFFFFFFu - std::uint32_t(below(2000)), 1, 2}, name, bytes);
+      case 4:
+        return fragment(
+            {sequence_ - 1, std::uint32_t(2000 + below(100'000)), 0xFFFFFFFFu - std::uint32_t(below(2000)), 1, 2}, name,
+            bytes);
       case 5: return fragment({sequence_ - 1, number(), number(), 1, 2}, name, bytes);
       case 6: return fragment({sequence_, number(), number(), number16(), number16()}, name, bytes);
       default: {
@@ -119,7 +122,8 @@ class MalformedDatagrams {
 
   std::size_t below(std::size_t n) { return random_() % n; }
   std::uint32_t number() {
-    static constexpr std::uint32_t edges[] = {0, 1, 0x7FFFFFFF, 0x80000000, 0xFFFFFFFF, 0xFFFF0000, 65'487, 65'507, 524'288, 524'289};
+    static constexpr std::uint32_t edges[] = {0,          1,      0x7FFFFFFF, 0x80000000, 0xFFFFFFFF,
+                                              0xFFFF0000, 65'487, 65'507,     524'288,    524'289};
     return below(2) ? edges[below(std::size(edges))] + std::uint32_t(below(3)) - 1 : std::uint32_t(random_());
   }
   std::uint16_t number16() { return below(2) ? std::uint16_t(below(4)) : std::uint16_t(random_()); }

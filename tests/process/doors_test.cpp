@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What must not get in: malformed datagrams, datagrams of another machine, and pages of a foreign name. The processes are
-// the real ones.
+// What must not get in: malformed datagrams, datagrams of another machine, and pages of a foreign name. The processes
+// are the real ones.
 #include <gtest/gtest.h>
 #include <netinet/ip.h>
 #include <netinet/udp.h>
@@ -26,7 +26,8 @@ class Doors : public LiveSession {
   /// All processes are those of the beginning, and frames go on.
   void expect_alive(std::int64_t engine, std::int64_t server) {
     const std::size_t frames = watcher_->frames(engine), samples = watcher_->samples().size();
-    EXPECT_TRUE(wait_for([&] { return watcher_->frames(engine) > frames + 60 && watcher_->samples().size() > samples + 100; }));
+    EXPECT_TRUE(
+        wait_for([&] { return watcher_->frames(engine) > frames + 60 && watcher_->samples().size() > samples + 100; }));
     EXPECT_EQ(watcher_->frame_session(), engine);
     EXPECT_EQ(watcher_->last()->session, server);
     for (const char* name : {"engine", "haptic_server", "gateway"})
@@ -37,7 +38,8 @@ class Doors : public LiveSession {
 TEST_F(Doors, TheTwoDatagramsThatEndLcm) {
   const std::int64_t engine = watcher_->frame_session(), server = watcher_->last()->session;
   const PlainSender evil(0);
-  for (const auto channel : {channel::haptic_problem, channel::render_frame, channel::user_command, channel::scene_info}) {
+  for (const auto channel :
+       {channel::haptic_problem, channel::render_frame, channel::user_command, channel::scene_info}) {
     // In 32 bits the offset and 60,000 add up to 1000. LCM finds that small enough and writes 4 GB behind its buffer.
     EXPECT_TRUE(evil.send(fragment({7, 100'000, 0, 0, 3}, channel, 1000), group, bus_port()));
     EXPECT_TRUE(evil.send(fragment({7, 100'000, 0u - 59'000u, 1, 3}, channel, 60'000), group, bus_port()));
@@ -71,15 +73,19 @@ TEST_F(Doors, AHundredThousandMalformedDatagramsChangeNothing) {
 
 TEST_F(Doors, PagesOfAForeignNameAreNotAnswered) {
   const std::string port = std::to_string(session_->port());
-  const auto status = [&](const std::string& request) { return web_request("127.0.0.1", session_->port(), request).status; };
-  for (const std::string& host : {"127.0.0.1:" + port, "localhost:" + port, std::string("LOCALHOST."), std::string("[::1]:") + port}) {
+  const auto status = [&](const std::string& request) {
+    return web_request("127.0.0.1", session_->port(), request).status;
+  };
+  for (const std::string& host :
+       {"127.0.0.1:" + port, "localhost:" + port, std::string("LOCALHOST."), std::string("[::1]:") + port}) {
     EXPECT_EQ(status(get_request("/healthz", "Host: " + host + "\r\n")), 200) << host;
     EXPECT_EQ(status(upgrade_request("Host: " + host + "\r\nOrigin: http://" + host + "\r\n")), 101) << host;
   }
   // A name that its owner lets point to 127.0.0.1: the browser takes page and WebSocket for one site.
-  for (const std::string& host : {"evil.example:" + port, std::string("evil.example"), std::string("localhost.evil.example"),
-                                  std::string("127.0.0.1.evil.example"), std::string("10.0.0.1"), std::string("[::2]"),
-                                  std::string("0.0.0.0:") + port, std::string("localhost:80@evil.example"), std::string("")}) {
+  for (const std::string& host :
+       {"evil.example:" + port, std::string("evil.example"), std::string("localhost.evil.example"),
+        std::string("127.0.0.1.evil.example"), std::string("10.0.0.1"), std::string("[::2]"),
+        std::string("0.0.0.0:") + port, std::string("localhost:80@evil.example"), std::string("")}) {
     for (const char* target : {"/", "/healthz", "/bundle/1/scene.json"})
       EXPECT_EQ(status(get_request(target, "Host: " + host + "\r\n")), 421) << host << target;
     EXPECT_EQ(status(upgrade_request("Host: " + host + "\r\nOrigin: http://" + host + "\r\n")), 421) << host;
@@ -103,7 +109,8 @@ class CabledDoors : public Doors {
     session_ = std::make_unique<PlaySession>();
     ASSERT_EQ(session_->start({"--listen", "0.0.0.0", "--host", "Trainer.local"}), "");
     watcher_ = std::make_unique<Watcher>(session_->url());
-    ASSERT_TRUE(wait_for([&] { return session_->port() > 0 && watcher_->frames_now() > 20 && watcher_->last(); })) << session_->log();
+    ASSERT_TRUE(wait_for([&] { return session_->port() > 0 && watcher_->frames_now() > 20 && watcher_->last(); }))
+        << session_->log();
   }
   void TearDown() override {
     LiveSession::TearDown();
@@ -112,7 +119,8 @@ class CabledDoors : public Doors {
     rooms_.reset();
   }
   nlohmann::json health() {
-    const std::string text = web_request("127.0.0.1", session_->port(), get_request("/healthz", "Host: localhost\r\n")).text;
+    const std::string text =
+        web_request("127.0.0.1", session_->port(), get_request("/healthz", "Host: localhost\r\n")).text;
     return nlohmann::json::parse(text.substr(text.find("\r\n\r\n") + 4));
   }
 
@@ -168,7 +176,8 @@ bool send_spoofed(const Buffer& message, const char* from, std::uint16_t port) {
   sockaddr_in to{};
   to.sin_family = AF_INET;
   to.sin_addr.s_addr = ip.daddr;
-  const bool ok = ::sendto(raw, packet.data(), packet.size(), 0, reinterpret_cast<const sockaddr*>(&to), sizeof to) == ssize_t(packet.size());
+  const bool ok = ::sendto(raw, packet.data(), packet.size(), 0, reinterpret_cast<const sockaddr*>(&to), sizeof to) ==
+                  ssize_t(packet.size());
   ::close(raw);
   return ok;
 }
@@ -200,7 +209,8 @@ TEST_F(CabledDoors, NothingOfAnotherMachineIsHeard) {
     }
   }
   ASSERT_TRUE(rooms_->enter_machine());
-  EXPECT_GE(heard, 145) << "the datagrams did not reach the machine; this test shows nothing";  // a busy machine may lose some
+  EXPECT_GE(heard, 145)
+      << "the datagrams did not reach the machine; this test shows nothing";  // a busy machine may lose some
   expect_alive(engine, server);
   EXPECT_TRUE(watcher_->events().empty()) << watcher_->events().back().text;
   EXPECT_EQ(health()["channels"]["RENDER_FRAME"]["refused"], 0);
@@ -210,7 +220,8 @@ TEST_F(CabledDoors, NothingOfAnotherMachineIsHeard) {
   // The same datagrams from this machine are heard, so the silence above was the door's.
   const PlainSender here(0);
   EXPECT_TRUE(wait_for([&] {
-    for (const Buffer& bytes : {asks, garbage, short_datagram(channel::render_frame, Buffer(100, 0xA5))}) here.send(bytes, group, bus_port());
+    for (const Buffer& bytes : {asks, garbage, short_datagram(channel::render_frame, Buffer(100, 0xA5))})
+      here.send(bytes, group, bus_port());
     std::this_thread::sleep_for(20ms);
     return !watcher_->events().empty() && watcher_->status().messages_refused > refused_by_server &&
            health()["channels"]["RENDER_FRAME"]["refused"] > 0;
@@ -222,13 +233,17 @@ TEST_F(CabledDoors, OtherMachinesWatchAndCommandButMoveNoHand) {
   ASSERT_TRUE(rooms_->enter_stranger());
   const auto status = [&](const std::string& host, bool upgrade) {
     const std::string fields = "Host: " + host + "\r\n";
-    return web_request(at, session_->port(), upgrade ? upgrade_request(fields + "Origin: http://" + host + "\r\n") : get_request("/healthz", fields)).status;
+    return web_request(
+               at, session_->port(),
+               upgrade ? upgrade_request(fields + "Origin: http://" + host + "\r\n") : get_request("/healthz", fields))
+        .status;
   };
   for (const std::string& host : {at + ":" + port, "trainer.local:" + port, std::string("TRAINER.LOCAL.")}) {
     EXPECT_EQ(status(host, false), 200) << host;
     EXPECT_EQ(status(host, true), 101) << host;
   }
-  for (const std::string& host : {std::string("evil.example"), std::string(NetworkRooms::stranger_address), std::string("trainer")}) {
+  for (const std::string& host :
+       {std::string("evil.example"), std::string(NetworkRooms::stranger_address), std::string("trainer")}) {
     EXPECT_EQ(status(host, false), 421) << host;
     EXPECT_EQ(status(host, true), 421) << host;
   }

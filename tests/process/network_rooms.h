@@ -10,8 +10,8 @@
 
 namespace insula::testing {
 
-/// `machine` (10.231.7.1) and `stranger` (10.231.7.2), each with its own loopback interface and its multicast route over
-/// the cable. They go with this object, which must be destroyed by the thread that made it.
+/// `machine` (10.231.7.1) and `stranger` (10.231.7.2), each with its own loopback interface and its multicast route
+/// over the cable. They go with this object, which must be destroyed by the thread that made it.
 class NetworkRooms {
  public:
   NetworkRooms() : home_(::open("/proc/thread-self/ns/net", O_RDONLY | O_CLOEXEC)) {
@@ -20,7 +20,8 @@ class NetworkRooms {
              run("ip link add cable0 netns " + m + " type veth peer name cable0 netns " + s) &&
              run(on_m + "addr add 10.231.7.1/24 dev cable0") && run(on_s + "addr add 10.231.7.2/24 dev cable0");
     for (const std::string& on : {on_m, on_s})
-      ready_ = ready_ && run(on + "link set lo up") && run(on + "link set cable0 up") && run(on + "route add 224.0.0.0/4 dev cable0");
+      ready_ = ready_ && run(on + "link set lo up") && run(on + "link set cable0 up") &&
+               run(on + "route add 224.0.0.0/4 dev cable0");
     // A stranger who takes this machine's address gets as far as he can.
     for (const char* setting : {"all.accept_local=1", "all.rp_filter=0", "cable0.rp_filter=0"})
       ready_ = ready_ && run("ip netns exec " + m + " sysctl -qw net.ipv4.conf." + setting);

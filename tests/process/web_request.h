@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // An HTTP request sent as it is written, so that its fields can say anything.
 #pragma once
+#include <algorithm>
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/read.hpp>
 #include <boost/asio/read_until.hpp>
 #include <boost/asio/write.hpp>
-#include <algorithm>
 #include <cstdlib>
 #include <string>
 
@@ -42,8 +42,10 @@ inline std::string get_request(const std::string& target, const std::string& fie
 
 /// A request for a WebSocket; more fields than these are given whole, each with its line end.
 inline std::string upgrade_request(const std::string& fields, const std::string& target = "/ws") {
-  return get_request(target, "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
-                             "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n" + fields);
+  return get_request(target,
+                     "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
+                     "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n" +
+                         fields);
 }
 
 }  // namespace insula::testing

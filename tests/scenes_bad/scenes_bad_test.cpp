@@ -5,6 +5,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -123,6 +125,43 @@ TEST_F(Hostile, ManyAttributes) {
   std::string text = "<scene";
   for (int i = 0; i < 100'000; ++i) text += " a" + std::to_string(i) + "=\"\"";
   EXPECT_NE(check(text + "/>").find("more than 64 attributes"), std::string::npos);
+}
+
+/// 99,000 errors: within a second of processor time, the first hundred shown and the others counted.
+TEST_F(Hostile, NinetyNineThousandErrorsOfEachKind) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  constexpr double max_s = 30;
+#else
+  constexpr double max_s = 1;
+#endif
+  struct Case {
+    const char *what, *element,
+        *good;  // '#' is the element's number; so many good ones stand before as there are bad ones
+  };
+  for (const Case& c :
+       {Case{"unknown element", "<obstacel id=\"a#\"/>", ""},
+        Case{"unknown parameter", "<obstacle id=\"a#\" foo=\"1\"/>", ""},
+        Case{"unknown id", "<contact between=\"b# c#\"/>", "<obstacle id=\"a#\"/>"},
+        Case{"one id", "<obstacle id=\"a\"/>", ""},
+        Case{"unknown variable", "<obstacle id=\"$w#\"/>", "<variable name=\"v#\" value=\"1\"/>"},
+        Case{"settings again", "<solver/>", "<obstacle/>"}, Case{"missing part", "<include file=\"no#.xml\"/>", ""}}) {
+    SCOPED_TRACE(c.what);
+    const int count = *c.good != 0 ? 49'500 : 99'000;
+    std::string text = "<scene>\n";
+    for (const char* piece : {c.good, c.element})
+      for (int i = 0; *piece != 0 && i < count; ++i) {
+        for (const char* p = piece; *p != 0; ++p) *p == '#' ? text += std::to_string(i) : text += *p;
+        text += '\n';
+      }
+    const std::clock_t began = std::clock();
+    const auto result = load_scene_text(text + "</scene>", file_, registry_);
+    EXPECT_LT(double(std::clock() - began) / CLOCKS_PER_SEC, max_s);
+    EXPECT_FALSE(result.ok());
+    ASSERT_EQ(result.diagnostics.all().size(), 101u);
+    const std::string last = result.diagnostics.all().back().text;
+    ASSERT_TRUE(last.starts_with("and ")) << last;
+    EXPECT_GE(std::atoi(last.c_str() + 4), count - 101) << last;
+  }
 }
 
 TEST_F(Hostile, CutAnywhere) {

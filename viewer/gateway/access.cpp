@@ -45,7 +45,8 @@ std::string host_name(std::string_view host) {
   if (colon != std::string_view::npos) port = host.substr(colon + 1);
   if (name.ends_with('.')) name.remove_suffix(1);
   const auto good = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '-' || c == '_';
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '-' ||
+           c == '_';
   };
   if (!is_port(port) || name.size() > 253 || !std::all_of(name.begin(), name.end(), good)) return {};
   std::string out(name);
@@ -65,7 +66,8 @@ bool AllowedHosts::allows(std::string_view host, const asio::ip::address& reache
   if (name.empty()) return false;
   if (name == "localhost" || name == "127.0.0.1" || name == "::1") return true;
   const bool mapped = reached.is_v6() && reached.to_v6().is_v4_mapped();
-  const std::string local = mapped ? asio::ip::make_address_v4(asio::ip::v4_mapped, reached.to_v6()).to_string() : reached.to_string();
+  const std::string local =
+      mapped ? asio::ip::make_address_v4(asio::ip::v4_mapped, reached.to_v6()).to_string() : reached.to_string();
   return name == local || std::find(given_.begin(), given_.end(), name) != given_.end();
 }
 

@@ -21,7 +21,9 @@ namespace insula::gateway {
 
 struct Gateway::Impl {
   Impl(Bus& bus, Options o)
-      : options(std::move(o)), hosts(options.hosts), hub(bus, [this](std::function<void()> f) { asio::post(io, std::move(f)); }) {}
+      : options(std::move(o)),
+        hosts(options.hosts),
+        hub(bus, [this](std::function<void()> f) { asio::post(io, std::move(f)); }) {}
 
   Options options;
   AllowedHosts hosts;

@@ -54,8 +54,8 @@ void HttpSession::on_read(beast::error_code error) {
   beast::websocket::is_upgrade(request) ? upgrade(request) : answer(request);
 }
 
-/// A request under a name that is not ours is not answered, whatever it asks for: a foreign page may have let its own name
-/// point here (DNS rebinding).
+/// A request under a name that is not ours is not answered, whatever it asks for: a foreign page may have let its own
+/// name point here (DNS rebinding).
 bool HttpSession::refuse_foreign(const Request& request) {
   beast::error_code error;
   const auto reached = stream_.socket().local_endpoint(error);
@@ -74,7 +74,8 @@ void HttpSession::upgrade(const Request& request) {
   beast::error_code no_local, no_remote;
   const auto local = stream_.socket().local_endpoint(no_local), remote = stream_.socket().remote_endpoint(no_remote);
   const bool here = !no_local && !no_remote && (remote.address().is_loopback() || remote.address() == local.address());
-  std::make_shared<WsClient>(std::move(stream_), hub_, rights_of(role_of(view(request.target())), here))->start(request);
+  std::make_shared<WsClient>(std::move(stream_), hub_, rights_of(role_of(view(request.target())), here))
+      ->start(request);
 }
 
 void HttpSession::answer(const Request& request) {

@@ -17,7 +17,8 @@ namespace http = beast::http;
 
 class HttpSession : public std::enable_shared_from_this<HttpSession> {
  public:
-  HttpSession(boost::asio::ip::tcp::socket&& socket, Hub& hub, const AllowedHosts& hosts, const std::filesystem::path& page);
+  HttpSession(boost::asio::ip::tcp::socket&& socket, Hub& hub, const AllowedHosts& hosts,
+              const std::filesystem::path& page);
   void start() { read(); }
 
  private:

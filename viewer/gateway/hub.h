@@ -44,8 +44,8 @@ class Hub {
   // The rest is called on the network thread alone.
   void join(const std::shared_ptr<Client>& client);  ///< gets the last SCENE_INFO at once
   void leave(const Client* client);
-  /// A page's message. Anything but a whole, plausible USER_COMMAND or HAND_INPUT that the page has a right to is counted
-  /// and dropped.
+  /// A page's message. Anything but a whole, plausible USER_COMMAND or HAND_INPUT that the page has a right to is
+  /// counted and dropped.
   bool from_page(Bytes framed, Rights rights);
   /// Counts a page's message dropped before it was looked at (text, too many a second).
   void refuse_from_page() { ++page_refused_; }
