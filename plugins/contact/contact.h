@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contact among bodies and tools; what it does and its scene element are described in contact.cpp.
+// Contact among bodies and tools. contact.cpp describes the law and the scene element.
 #pragma once
 #include <memory>
 #include <optional>
@@ -46,7 +46,7 @@ class Contact final : public Constraint {
   void reset() override;
   void append_state(std::vector<double>& out) const override;
 
-  /// Two things that may touch, and what was found between them in this step.
+  /// Two surfaces or tools that may touch, and what was found between them in this step.
   struct Pair {
     RigidBody* tool_a = nullptr;  ///< a is a link of a tool or clip ...
     RigidBody* tool_b = nullptr;
@@ -59,7 +59,7 @@ class Contact final : public Constraint {
     ContactSelection selection;
     std::vector<Proximity> contacts;
     std::vector<Proximity> other_way;  ///< of b's vertices on a, before selection
-    std::unique_ptr<FrictionPatches> patches;  ///< one friction force for contacts close together, if wanted
+    std::unique_ptr<FrictionPatches> patches;  ///< one friction force for neighbouring contacts, or null
     Pose start;                 ///< of the tool, in the step last detected
     std::optional<Pose> free;   ///< of its free motion, in the same step
     std::optional<Pose> expected;  ///< at the end of that step, of a tool that presses and whose contacts are taken there
@@ -71,17 +71,17 @@ class Contact final : public Constraint {
     const Body* body_b() const { return tool_b ? static_cast<const Body*>(tool_b) : &b->body(); }
   };
   const std::vector<Pair>& pairs() const { return pairs_; }
-  /// A contact of a tool as the tool and the surface go on after the step: its three rows, the direction that its normal has turned to, and
-  /// that a step later.
+  /// A contact of a tool under the continued motion of tool and surface after the step: its three rows, the predicted
+  /// direction of its normal, and that direction a step later.
   struct FramePrediction {
     int row;
     Vec3 from, tangent, to, later;
   };
-  /// Appends those of contacts that press, where their tools would be `steps` after the step.
+  /// Appends the predictions for contacts that press, with their tools where they would be `steps` after the step.
   void predict_frames(double steps, std::vector<FramePrediction>& out) const;
 
  private:
-  /// What one thread may search at a time: a pair, for two surfaces one way of it.
+  /// The work of one thread at a time: a pair, or for two surfaces one direction of it.
   struct Search {
     int pair;
     bool other_way;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Blood pressure on the wall of a closed shell, chamber by chamber (the equations stand in pressure.cpp).
+// Blood pressure on the wall of a closed shell, chamber by chamber (equations in pressure.cpp).
 #pragma once
 #include <string>
 #include <vector>
@@ -12,15 +12,16 @@
 
 namespace insula {
 
-/// What feeds the chambers, when the pressure is not simply prescribed: a network of vessels.
+/// What feeds the chambers when the pressure is not prescribed: a network of vessels.
 class ChamberFeed {
  public:
   virtual ~ChamberFeed() = default;
   /// Pressure of a chamber at which the shape was imaged, Pa.
   virtual double reference(int chamber) const = 0;
-  /// The network of this step as the chambers see it: one node each, everything else eliminated. May be asked more than once.
+  /// The network of this step as the chambers see it: one node each, everything else eliminated. May be called
+  /// repeatedly.
   virtual void reduce(const StepContext& context, StarMesh& chambers) = 0;
-  /// After the step: pressure at each chamber's place in the network (Pa), and how much the chamber yields (m3/Pa).
+  /// After the step: pressure at each chamber's node of the network (Pa), and how much the chamber yields (m3/Pa).
   virtual void settle(const StepContext& context, const double* pressure, const double* yielding) = 0;
 };
 
@@ -38,7 +39,7 @@ class BloodPressure final : public Constraint {
   Param<Duration> response{this, {.name = "response", .fallback = "1 s", .min = "0 s", .max = "60 s", .doc = "time in which pressure and rate follow a command"}};
   Param<std::string> regions{this, {.name = "chambers", .fallback = "", .doc = "regions of each chamber, chambers separated by semicolons: \"parent; superior; sac bleb\"; none: one a region with a centreline"}};
 
-  /// Makes the chambers, if they are not made yet; false when something is wrong with them.
+  /// Makes the chambers if they are not made yet; false when something is wrong with them.
   bool ready(PrepareContext& context);
   /// Before the first step: the network that feeds the chambers.
   void set_feed(ChamberFeed* feed);

@@ -28,7 +28,8 @@ class StrandSprings final : public Constraint {
   Param<Length> reach{this, {.name = "reach", .fallback = "0.5 mm", .min = "0.01 mm", .max = "5 mm", .doc = "distance at which an edge touches a strand"}};
   Param<Force> strength{this, {.name = "strength", .fallback = "0 N", .min = "0 N", .max = "100 N", .doc = "tension that tears a whole strand; 0: it does not tear"}};
 
-  /// Adds one strand between two points (positions at rest in the scene frame); its rest length is slack times their distance.
+  /// Adds one strand between two points (positions at rest in the scene frame). Its rest length is slack times their
+  /// distance.
   void add_strand(const MaterialPoint& a, const MaterialPoint& b);
 
   void connect(PrepareContext& context, Simulation& simulation) override;
