@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Errors as data: everything wrong with a scene is collected and shown together, with its place.
+// Errors as data. Everything wrong with a scene is collected and shown together, with its position in the file.
 #pragma once
 #include <string>
 #include <string_view>
@@ -7,7 +7,7 @@
 
 namespace insula {
 
-/// A place in a text file; line and column count from 1, 0 means "the whole file".
+/// A position in a text file. Line and column count from 1; 0 means "the whole file".
 struct SourcePos {
   std::string file;
   int line = 0;
@@ -29,9 +29,9 @@ class Diagnostics {
   bool ok() const { return errors_ == 0; }
   int errors() const { return errors_; }
   const std::vector<Diagnostic>& all() const { return all_; }
-  /// "file:line:column: error: text" lines, in order of file position as met, duplicates removed.
+  /// Lines "file:line:column: error: text", in order of position, without duplicates.
   std::string format() const;
-  /// Orders by file (in the order the files were first met), line, column; equal places keep their order.
+  /// Orders by file (in the order in which files first occurred), line, column. Equal positions keep their order.
   void sort_by_position();
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Thrown by readers of files for input that cannot be used; the text is meant for the person who made the file.
+// Thrown by readers of files for input that cannot be used. The text is meant for the person who made the file.
 #pragma once
 #include <stdexcept>
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The few linear-algebra names used everywhere. All quantities in SI units, scene frame unless said otherwise.
+// The few linear-algebra names used everywhere. All quantities are in SI units and in the scene frame unless stated
+// otherwise.
 #pragma once
 #include <Eigen/Core>
 #include <Eigen/Geometry>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A small generator of our own: the same numbers on every machine and library.
+// A small random generator with the same numbers on every machine and with every library.
 #pragma once
 #include <cstdint>
 

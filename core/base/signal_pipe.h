@@ -9,9 +9,9 @@
 
 namespace insula {
 
-/// While it lives, the given signals end up in its pipe instead of doing what they did before. Unlike a blocked signal with
-/// sigwait or signalfd this does not depend on the masks of threads that libraries start on their own while loading.
-/// One per process at a time (signal handlers belong to the process): a second one throws std::logic_error.
+/// While it lives, the given signals are written into its pipe and have no other effect. Unlike a blocked signal with
+/// sigwait or signalfd, this does not depend on the masks of threads that libraries start while loading. Only one may
+/// exist per process, since signal handlers belong to the process. A second one throws std::logic_error.
 class SignalPipe {
  public:
   explicit SignalPipe(std::initializer_list<int> signals);
@@ -20,7 +20,7 @@ class SignalPipe {
   SignalPipe& operator=(const SignalPipe&) = delete;
 
   int descriptor() const { return ends_[0]; }  ///< readable when a signal has come
-  /// The next signal that has come; 0: none. Never waits.
+  /// The next signal that has arrived; 0: none. Never waits.
   int next() const;
   /// Waits for a signal, at most timeout_ms (-1: without limit); 0: none came.
   int wait(int timeout_ms) const;

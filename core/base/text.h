@@ -12,7 +12,7 @@ inline bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c ==
 std::string_view trim(std::string_view text);
 /// The words between blanks.
 std::vector<std::string_view> split_blanks(std::string_view text);
-/// `text` as it may stand in a message: control characters replaced, at most 80 bytes, cut at a character's border.
+/// `text` for a message: control characters are replaced, and it is cut to at most 80 bytes at a character's border.
 std::string shown(std::string_view text);
 /// shown(text) in double quotes.
 std::string in_quotes(std::string_view text);

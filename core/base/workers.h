@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A few threads that share a loop. Which thread does which index is open, so loop bodies must not depend on it: then the
-// bits of a step are the same for any number of threads. The caller never waits for a thread that has not begun a piece:
-// on a busy machine it does the whole loop itself.
+// A few threads that share a loop. The assignment of indices to threads is not determined, so loop bodies must not
+// depend on it. The bits of a step are then the same for any number of threads. The caller never waits for a thread
+// that has not begun a piece. On a busy machine it does the whole loop itself.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace insula {
 
 class Workers {
  public:
-  /// threads in all, the caller's included; 0: as many as the machine has cores, at most 8.
+  /// Total number of threads, including the caller's. 0: as many as the machine has cores, at most 8.
   explicit Workers(int threads = 0);
   ~Workers();
   Workers(const Workers&) = delete;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What collision detection finds, as plain data: places where two shapes are, or come within the step, closer than the
-// alarm distance. Shape a is pushed along +normal, shape b along -normal. Scene frame, m.
+// The result of collision detection as plain data: points where two shapes are, or come within the step, closer than
+// the alarm distance. Shape a is pushed along +normal, shape b along -normal. Scene frame, m.
 #pragma once
 #include <cstdint>
 #include <vector>

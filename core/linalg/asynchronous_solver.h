@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Solver of large bodies: conjugate gradients on the step's own matrix A, preconditioned by a factor that a thread of its own made
-// of the matrix of some steps ago (Courtecuisse, Allard, Kerfriden, Bordas, Cotin, Duriez 2010 and 2014). With R the nodes'
-// rotations since then,
+// Solver of large bodies: conjugate gradients on the step's own matrix A. The preconditioner is a factor of the matrix
+// of some earlier step, which a background thread computes (Courtecuisse, Allard, Kerfriden, Bordas, Cotin, Duriez 2010
+// and 2014). With R the nodes' rotations since then,
 //     P^-1 = R A0^-1 R^T,
-// for a co-rotational matrix turns with its nodes. A step never waits for a factor: it goes on with the old one, and pays with iterations.
+// since a co-rotational matrix turns with its nodes. A step never waits for a factor. It uses the old one and needs
+// more iterations.
 //
-// Free motion is that under the forces that rows had in the step before: what a step then changes is small, and so is what an old
-// factor gets wrong of it. Compliance of rows is H P^-1 H^T, of rows that have hardly changed that of the steps before. What it lacks
-// is told by correct(), which solves with A, and is put right by defect correction (core/sim/defect_correction.h). Every solve ends
-// when P^-1 of what is left moves no node by more than `tolerance`, and then is moved by just that.
+// The free motion is computed under the row forces of the step before. The change in a step is then small, and so is
+// the error of an old factor. The compliance of rows is H P^-1 H^T. For rows that have hardly changed it is that of the
+// steps before. correct() solves with A and so gives its error. Defect correction removes the error
+// (core/sim/defect_correction.h). A solve ends when P^-1 of the residual moves no node by more than `tolerance`. The
+// solution is then moved by exactly that displacement.
 #pragma once
 #include "core/linalg/background_factor.h"
 #include "core/linalg/body_solver.h"
@@ -21,8 +23,9 @@ class AsynchronousSolver final : public BodySolver {
 
   std::string name() const override { return "asynchronous"; }
   void analyse(const BlockMatrix& a) override;
-  /// Takes the step's matrix, which must stay as it is until the next call. The first is factorised at once; later ones in the
-  /// background, when iterations have become many. False: the first was not positive definite.
+  /// Takes the step's matrix, which must not change until the next call. The first matrix is factorised at once. Later
+  /// ones are factorised in the background, when the number of iterations has grown. False: the first matrix was not
+  /// positive definite.
   bool factorise(const BlockMatrix& a) override;
   bool wants_rotations() const override { return true; }
   void set_rotations(const std::vector<Mat3>& rotation) override;
@@ -42,10 +45,10 @@ class AsynchronousSolver final : public BodySolver {
   int rows_reused() const override { return front_->full.rows_reused(); }
   SolverCost cost() const override { return front_->full.cost(); }
 
-  /// A requested factor is put in place so many steps later when waiting is allowed. This is about what a busy core
-  /// needs for it. It is computed from flops and not from a clock, so the same input gives the same bits.
+  /// A requested factor is put in place this many steps later when waiting is allowed. This is about the time that a
+  /// busy core needs for it. It is computed from flops and not from a clock, so the same input gives the same bits.
   int delay() const { return 1 + int(front_->full.cost().factor_flops / 5e8); }
-  static constexpr double early = 30;  ///< free motion may lack so many tolerances
+  static constexpr double early = 30;  ///< error of the free motion that is allowed, in tolerances
   static constexpr int enough_iterations = 2;  ///< of a solve: more of them and a new factor is asked for
   static constexpr int max_iterations = 12;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A thread that factorises one matrix at a time, and whoever asked does not wait for it.
+// A thread that factorises one matrix at a time. The caller does not wait for it.
 #pragma once
 #include <condition_variable>
 #include <memory>
@@ -10,10 +10,10 @@
 
 namespace insula {
 
-/// A factor for compliance, and its numbers in 16 bits for what need only be near.
+/// A factor for compliance, and a copy of its numbers in 16 bits for approximate solves.
 struct StaleFactor {
   explicit StaleFactor(const BlockMatrix& a);
-  /// Another one for matrices of the same pattern, without its symbolic work.
+  /// Another factor for matrices of the same pattern, without its symbolic work.
   StaleFactor(const StaleFactor& like) : full(like.full), fp16(full) {}
   /// False when `a` is not positive definite in single precision.
   bool factorise(const BlockMatrix& a);
@@ -25,22 +25,23 @@ struct StaleFactor {
 class BackgroundFactor {
  public:
   ~BackgroundFactor();
-  /// For matrices of the pattern of `a`, which `like` was made for; starts the thread.
+  /// For matrices of the pattern of `a`, for which `like` was made. Starts the thread.
   void prepare(const BlockMatrix& a, const StaleFactor& like);
 
   enum class Answer { nothing_asked, not_yet, good, bad };
   bool idle();
-  /// Copies `a` and has it factorised, when idle.
+  /// Copies `a` and starts its factorisation, when idle.
   void ask(const BlockMatrix& a);
-  /// A good answer leaves the new factor in `factor` and takes the old one for the next; good and bad make this idle again.
+  /// A successful result puts the new factor into `factor` and keeps the old one for the next request. Either result
+  /// makes this idle again.
   Answer take(std::unique_ptr<StaleFactor>& factor, bool wait);
-  /// Waits for what was asked, and drops it.
+  /// Waits for the requested factor, and drops it.
   void drop();
 
  private:
   void work();
 
-  enum class State { idle, asked, ready, failed };  ///< while asked, factor and matrix are the thread's
+  enum class State { idle, asked, ready, failed };  ///< while asked, the thread owns factor and matrix
   std::unique_ptr<StaleFactor> factor_;
   BlockMatrix matrix_;
   std::thread thread_;

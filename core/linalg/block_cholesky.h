@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Direct solver of one body's system matrix: multifrontal supernodal Cholesky A = P^T L L^T P on 3x3 blocks, and the
-// compliance H A^-1 H^T of sparse rows by forward substitution on the rows that the elimination tree reaches.
-// The factor and all that is made with it is in Real; matrix, vectors and compliance outside are in double.
-// Everything after analyse() allocates nothing unless the number of rows grows past what was seen.
+// Direct solver of one body's system matrix: multifrontal supernodal Cholesky A = P^T L L^T P on 3x3 blocks. It also
+// gives the compliance H A^-1 H^T of sparse rows, by forward substitution on the rows that the elimination tree
+// reaches. The factor and all that is computed with it is in Real. The outer matrix, vectors and compliance are in
+// double. After analyse(), nothing is allocated unless the number of rows exceeds all earlier ones.
 #pragma once
 #include <array>
 #include <vector>
@@ -21,7 +21,7 @@ class MultifrontalCholesky final : public BodySolver {
   bool factorise(const BlockMatrix& a) override;
   void solve(double* x) override;
   void begin_motion(const VecX& load, const VecX& guess) override;
-  /// The load is substituted front by front, while each is at hand.
+  /// The load is substituted front by front, while each front is in the cache.
   bool factorise_and_begin(const BlockMatrix& a, const VecX& load, const VecX& guess) override;
   void unforced_motion(const VecX& load, VecX& x) override;
   void add_free_motion(const BodyRows& rows, const std::vector<int>& node_of_block, double* delta) const override;
@@ -58,7 +58,8 @@ class MultifrontalCholesky final : public BodySolver {
   std::vector<Real> load_;                           ///< of the step's motion: L^-1 P load
   bool loaded_ = false;
 
-  // Rows in flight. Columns of Y are theirs in `order_` (-1: a column of zeros), fresh ones up to fresh_, then known ones.
+  // Rows of the last begin_compliance(). `order_` gives the row of each column of Y (-1: a column of zeros): fresh ones
+  // up to fresh_, then known ones.
   struct Columns {
     int begin, end;
   };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The symbolic half of the direct solver, once per pattern: fill-reducing ordering and supernodes from CHOLMOD, from them the fronts
-// of the elimination tree, where their numbers lie in memory and where each block of A goes. It knows no number of A.
+// The symbolic half of the direct solver, once per pattern. CHOLMOD gives a fill-reducing ordering and supernodes. The
+// fronts of the elimination tree follow from them, with the position of their numbers in memory and the target of each
+// block of A. It contains no number of A.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -9,7 +10,8 @@
 
 namespace insula {
 
-/// One supernode: a dense trapezoid of L (`panel`) and what its elimination takes off its ancestors (`update`).
+/// One supernode: a dense trapezoid of L (`panel`) and the update that its elimination subtracts from its ancestors
+/// (`update`).
 struct Front {
   int first = 0;        ///< first own node, permuted order
   int own = 0;          ///< own nodes (columns)
@@ -45,7 +47,7 @@ struct Elimination {
   /// Leading dimensions become multiples of `lanes` scalars, a power of two.
   void analyse(const BlockMatrix& a, int lanes);
 
-  /// Of 3 nodes values each: natural order to permuted, and back.
+  /// Reorders 3 nodes values each: natural order to permuted, and back.
   template <class Real>
   void permute(const double* natural_order, Real* permuted_order) const {
     for (int p = 0; p < nodes; ++p)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// In single precision what couples distant nodes sinks below the smallest normal number, where processors are a hundred times
-// slower. While one of these lives such numbers are zero on this thread; they are far below the rounding of all that is kept.
+// In single precision, coefficients between distant nodes fall below the smallest normal number, where processors are a
+// hundred times slower. While an object of this class exists, such numbers are zero on its thread. They are far below
+// the rounding error of the results.
 #pragma once
 #if defined(__x86_64__)
 #include <xmmintrin.h>

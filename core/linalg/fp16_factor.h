@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A factor's numbers in 16 bits, for solves that need it only nearly: they are bound by memory, and this is half of it.
-// A = P^T L D L^T P with L's diagonal 1: whatever rounding (2^-11) does to L, the product stays positive definite.
+// A factor's numbers in 16 bits, for approximate solves. These are bound by memory bandwidth, and 16 bits halve the
+// traffic. A = P^T L D L^T P with the diagonal of L equal to 1. The rounding of L (2^-11) therefore leaves the product
+// positive definite.
 #pragma once
 #include <vector>
 
@@ -11,13 +12,14 @@ namespace insula {
 
 class Fp16Factor {
  public:
-  /// Of a factor that has been analysed, and stays while this does.
+  /// Uses a factor that has been analysed and that outlives this object.
   explicit Fp16Factor(const MultifrontalCholesky<float>& factor);
-  /// Takes over the factor's numbers as they are now.
+  /// Copies the factor's present numbers.
   void round();
   /// x := A^-1 x, 3 nodes values in natural order.
   void solve(double* x);
-  /// x := A^-1 H^T lambda of the factor's last compliance rows, as its correct(), but for this half's rounding.
+  /// x := A^-1 H^T lambda of the factor's last compliance rows, as its correct(), except for the rounding of the 16-bit
+  /// half.
   void correct(const BodyRows& rows, const double* lambda, double* x);
 
  private:

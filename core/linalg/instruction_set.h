@@ -8,7 +8,7 @@ namespace insula {
 enum class InstructionSet { sse2, avx2, avx512 };
 
 bool processor_has(InstructionSet set);
-/// The best one the processor has (INSULA_KERNELS=sse2|avx2|avx512 in the environment asks for a lesser one).
+/// The best set of the processor. INSULA_KERNELS=sse2|avx2|avx512 in the environment selects a lower one.
 InstructionSet chosen_instruction_set();
 
 /// A table for each set, in the order of InstructionSet.
@@ -20,7 +20,7 @@ struct TablesOf {
 
 }  // namespace insula
 
-/// In namespace insula: declares the tables `name` of the sets, and every_name() that has them all.
+/// In namespace insula: declares the tables `name` of the sets, and every_name(), which lists them all.
 #if defined(__x86_64__)
 #define INSULA_TABLES(Table, name)              \
   namespace sse2 { extern const Table name; }   \

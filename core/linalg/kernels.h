@@ -15,14 +15,14 @@ struct KernelsOf {
   /// overwritten with garbage; so C's leading dimension is padded.
   void (*gemm_sub)(Real* c, int ldc, const Real* a, int lda, const Real* b, int ldb, int m, int n, int k);
   void (*gemm_add)(Real* c, int ldc, const Real* a, int lda, const Real* b, int ldb, int m, int n, int k);
-  /// As gemm_add with A = B, and only blocks that touch j <= i.
+  /// As gemm_add with A = B, but only for blocks that touch j <= i.
   void (*syrk_add)(Real* c, int ldc, const Real* a, int lda, int m, int k);
-  /// As gemm_sub with A = B, only blocks that touch j <= i.
+  /// As gemm_sub with A = B, but only for blocks that touch j <= i.
   void (*syrk_sub)(Real* c, int ldc, const Real* a, int lda, int m, int k);
   /// Rows: y_r[0..m) -= sum_k L[r + k ldl] x[k ldx + 0..m), r < rows; y_r = y + index[r] ldy. m a multiple of width.
   void (*rows_sub)(Real* y, long ldy, const int* index, int rows, const Real* l, int ldl, const Real* x, long ldx, int k, int m);
-  /// Cholesky of a column-major panel: rows x cols, lower, in place, right below its triangle too (L21 = A21 L11^-T).
-  /// `inverse`: one over each number of the diagonal. Returns -1, or the column whose pivot was not positive.
+  /// Cholesky of a column-major panel: rows x cols, lower, in place, including the rows below its triangle (L21 = A21
+  /// L11^-T). `inverse` gets the reciprocals of the diagonal. Returns -1, or the column whose pivot was not positive.
   int (*cholesky_panel)(Real* a, int lda, int rows, int cols, Real* inverse);
   /// Forward substitution with many right-hand sides: x (cols x m, row-major) = L11^-1 x.
   void (*lower_solve_rows)(const Real* l, int ldl, const Real* inverse, int cols, Real* x, long ldx, int m);
@@ -30,18 +30,19 @@ struct KernelsOf {
   void (*columns_dot)(Real* out, const Real* a, long lda, const Real* x, int m, int n);
   /// y[r] -= sum_c A[r + c lda] x[c], r < m, c < n. Up to `width` numbers of y past its end become garbage.
   void (*columns_sub)(Real* y, const Real* a, long lda, const Real* x, int m, int n);
-  /// One right-hand side and the panel of cholesky_panel(), `own` columns (a multiple of three): t[0..own) := L11^-1 t[0..own), then
-  /// what that takes off t[own..rows). Up to `width` numbers of t past its end become garbage.
+  /// One right-hand side and the panel of cholesky_panel(), with `own` columns (a multiple of three): t[0..own) :=
+  /// L11^-1 t[0..own), then subtracts the update from t[own..rows). Up to `width` numbers of t past its end become
+  /// garbage.
   void (*front_forward)(const Real* panel, int lda, const Real* inverse, Real* t, int own, int rows);
   /// t[0..own) := L11^-T (t[0..own) - L21^T t[own..rows)). Up to `width` numbers of t past its end must be zero.
   void (*front_backward)(const Real* panel, int lda, const Real* inverse, Real* t, int own, int rows);
-  /// 24 `width` n multiplications with additions in registers alone: what a core can do at most. Returns a sum of them.
+  /// Makes 24 `width` n multiplications and additions in registers alone, the peak rate of a core. Returns their sum.
   Real (*multiply_add)(long n);
 };
 using Kernels = KernelsOf<double>;
 /// y += A x, A symmetric in 3x3 blocks column by column, the lower triangle of each, its diagonal first (BlockMatrix).
 using BlockProduct = void (*)(int nodes, const int* start, const int* row, const double* block, const double* x, double* y);
-/// What is compiled for one instruction set.
+/// The tables that are compiled for one instruction set.
 struct KernelSet {
   KernelsOf<double> f64;
   KernelsOf<float> f32;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For loops compiled once per instruction set: which lanes of a comparison hold, as the bits of a number. Compilers take the
-// lanes one by one where the processor has an instruction for it.
+// The true lanes of a comparison as the bits of a number, for loops compiled once per instruction set. Compilers read
+// the lanes one by one where the processor has one instruction for it.
 #pragma once
 #if defined(__SSE2__)
 #include <immintrin.h>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Functions of a double or of a vector of doubles, so that a formula is written once for both. They are static, and so should be
-// what is made of them: code compiled for one instruction set must never stand in for that of another.
+// Functions of a double or of a vector of doubles, so that a formula is written once for both. They are static, and
+// functions made of them should be static too. Code compiled for one instruction set must never replace that of
+// another.
 #pragma once
 #include <cmath>
 #include <type_traits>
@@ -28,15 +29,16 @@ static inline void cross(const V (&a)[3], const V (&b)[3], V (&out)[3]) {
   for (int i = 0; i < 3; ++i) out[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
 }
 
-/// The nearest whole number, of |x| < 2^51.
+/// The nearest integer, for |x| < 2^51.
 template <class V>
 static inline V whole(V x) {
   constexpr double shift = 6755399441055744.0;  // 1.5 * 2^52: its last digit is 1
   return (x + shift) - shift;
 }
 
-/// The angle of the point (x, y), rad in [-pi, pi], to some 3e-16; 0 for the origin. A rational approximation of the arc tangent
-/// up to 0.66 (Moshier, Methods and Programs for Mathematical Functions, 1989), beyond it that of the rest to pi/4.
+/// The angle of the point (x, y), rad in [-pi, pi], with an error of about 3e-16; 0 for the origin. Up to 0.66 it is a
+/// rational approximation of the arc tangent (Moshier, Methods and Programs for Mathematical Functions, 1989). Beyond
+/// that the difference to pi/4 is approximated.
 template <class V>
 static inline V direction(V y, V x) {
   constexpr double quarter = 0.78539816339744830962;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The entries of a body's rows in the solver's own numbering, and which rows of one set are those of another: rows have no name
-// here, so they are known by their entries, bit by bit.
+// The entries of a body's rows in the solver's own numbering, and the correspondence of the rows of two sets. Rows have
+// no name here, so they are identified by their entries, bit by bit.
 #pragma once
 #include <cstdint>
 #include <utility>
@@ -12,13 +12,13 @@ namespace insula {
 
 struct RowEntries {
   std::vector<int> start;    ///< first entry of each row; one more at the end
-  std::vector<int> node;     ///< permuted; held ones are left out
+  std::vector<int> node;     ///< permuted; fixed nodes are left out
   std::vector<Vec3> coeff;
 
   int count() const { return int(start.size()) - 1; }
   void clear();
   void take(const BodyRows& rows, const std::vector<int>& node_of_block, const std::vector<int>& permuted);
-  /// The row here that has the entries of row r of `other`, or -1.
+  /// The row in this set with the entries of row r of `other`, or -1.
   int find(const RowEntries& other, int r) const;
 
  private:

@@ -40,8 +40,8 @@ struct VesselModel {
   int region(const std::string& name) const;
 };
 
-/// Reads vessel.json and the wall.ply beside it. Throws InputError: unreadable, malformed, wrong unit, sizes that do not
-/// fit one another, indices out of range, names used twice, not finite, a wall that is open or turned inside out.
+/// Reads vessel.json and the wall.ply beside it. Throws InputError: unreadable, malformed, wrong unit, sizes that do
+/// not match one another, indices out of range, names used twice, not finite, a wall that is open or turned inside out.
 VesselModel read_vessel(const std::filesystem::path& json_file);
 
 }  // namespace insula

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reading numbers and units strictly: the whole text or nothing, in the same way under every locale.
+// Strict reading of numbers and units: the whole text or nothing, in the same way under every locale.
 #pragma once
 #include <optional>
 #include <span>
@@ -18,7 +18,8 @@ struct ParsedQuantity {
 
 /// Length of the decimal number ([+-] digits [. digits] [e [+-] digits]) at the front of `text`; 0 when there is none.
 std::size_t number_length(std::string_view text);
-/// The value of a text that is one decimal number and nothing else; the error text (starting with the quoted text) otherwise.
+/// The value of a text that is one decimal number and nothing else. Otherwise the error text, which starts with the
+/// quoted text.
 std::optional<double> read_number(std::string_view text, std::string& error);
 /// "12.5 kPa"; with no units, "12.5".
 std::optional<ParsedQuantity> read_quantity(std::string_view text, std::span<const Unit> units, std::string_view quantity,
@@ -26,7 +27,7 @@ std::optional<ParsedQuantity> read_quantity(std::string_view text, std::span<con
 /// "38 0 -15 mm"; with no units, "0 0 1".
 std::optional<Vec3> read_vector(std::string_view text, std::span<const Unit> units, std::string_view quantity,
                                 const Unit*& unit, std::string& error);
-/// A value as it would be written: six significant digits and the unit.
+/// A value as an author would write it: six significant digits and the unit.
 std::string written(double si, const Unit* unit);
 /// "Pa, kPa, MPa, mmHg".
 std::string unit_list(std::span<const Unit> units);

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A component's parameters, each declared once as a member: its name, default, range, unit and doc serve
-// reading, validation, the schema, the reference pages and the bounds tests.
+// A component's parameters. Each is declared once as a member. Its name, default, range, unit and doc serve reading,
+// validation, the schema, the reference pages and the bounds tests.
 //
 //   class CorotationalFem final : public ForceModel {
 //     Param<Pressure> young{this, {.name = "young", .fallback = "2100 Pa", .min = "1 Pa", .max = "1 GPa",
 //                                  .doc = "Young's modulus of the tissue"}};
 //   };  ... young() is then the value in SI.
 //
-// A parameter without a fallback is required. `min`/`max` are inclusive and written with units, as an author would.
+// A parameter without a fallback is required. `min` and `max` are inclusive and written with units, as an author would
+// write them.
 #pragma once
 #include <filesystem>
 #include <optional>
@@ -46,9 +47,9 @@ class ParamBase {
   const SourcePos& pos() const { return pos_; }     ///< of the value in the scene
   const std::string& text() const { return text_; } ///< as written (or the fallback)
 
-  /// Parses and range-checks; returns the error text, empty when the value was taken.
+  /// Parses and range-checks. Returns the error text, empty when the value was accepted.
   std::string assign(std::string_view text, const SourcePos& pos);
-  /// Puts the fallback in place; returns false when there is none.
+  /// Sets the default; returns false when there is none.
   bool assign_fallback();
 
   virtual std::string type_name() const = 0;            ///< "pressure", "text", "reference to body", ...
@@ -67,7 +68,8 @@ class ParamBase {
   bool given_ = false;
 };
 
-/// Reads "12.5 kPa" whole: no trailing characters, no decimal comma, finite. Error text in `error` when it returns none.
+/// Reads "12.5 kPa" as a whole: no trailing characters, no decimal comma, finite. Returns none on failure, with the
+/// error text in `error`.
 std::optional<double> parse_quantity(std::string_view text, std::span<const Unit> units, std::string_view quantity_name,
                                      std::string& error);
 
@@ -187,8 +189,8 @@ class Param<Vec<Q>> : public VectorParam {
   Param(ParamSet* owner, ParamSpec spec) : VectorParam(owner, std::move(spec), Q::name, Q::si, Q::units()) {}
 };
 
-/// A file beside the scene. Relative to the file that names it; must not leave the scene's root folder (the loader
-/// checks: absolute paths and paths that climb out of the root are errors); must exist and be a regular file.
+/// A file beside the scene, relative to the file that names it. It must exist, be a regular file and lie in the scene's
+/// root folder. The loader checks this: absolute paths and paths that leave the root are errors.
 struct File {};
 template <>
 class Param<File> : public ParamBase {
@@ -240,7 +242,7 @@ class Param<LengthUnit> : public ParamBase {
   double value_ = 0;
 };
 
-/// Names of other components, separated by blanks; resolved by the loader after everything is read.
+/// Names of other components, separated by blanks. The loader resolves them after everything is read.
 class RefParamBase : public ParamBase {
  public:
   RefParamBase(ParamSet* owner, ParamSpec spec, std::string_view kind, bool list);
@@ -260,7 +262,7 @@ class RefParamBase : public ParamBase {
   bool list_;
 };
 
-/// Reference to one component of C++ type T (T::kind_name names it in messages); null when optional and not given.
+/// Reference to one component of C++ type T (T::kind_name is its name in messages). Null when optional and not given.
 template <class T>
 class Ref : public RefParamBase {
  public:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Physical quantities and their units. A value in a scene file is a number with a unit; inside it is SI.
+// Physical quantities and their units. A value in a scene file is a number with a unit. Inside the program it is in SI.
 #pragma once
 #include <span>
 #include <string>
@@ -13,7 +13,7 @@ struct Unit {
   bool listed = true;  ///< false: read, but not offered in messages (other spellings, rare units)
 };
 
-/// Each quantity is a tag type: `name` as used in messages, `si` its SI symbol, `units()` what may be written.
+/// Each quantity is a tag type. `name` is its name in messages, `si` its SI symbol, and `units()` the allowed units.
 #define INSULA_QUANTITY(Tag, text, si_symbol)                 \
   struct Tag {                                                \
     static constexpr std::string_view name = text;            \
@@ -45,7 +45,7 @@ INSULA_QUANTITY(FlowRate, "flow rate", "m3/s");     // m3/s ml/s ml/min
 INSULA_QUANTITY(Viscosity, "viscosity", "Pa s");    // Pa s, mPa s
 #undef INSULA_QUANTITY
 
-/// Whether any quantity has a unit of this symbol (tells a wrong unit from a mistyped number).
+/// Whether any quantity has a unit of this symbol. This distinguishes a wrong unit from a mistyped number.
 bool is_known_unit(std::string_view symbol);
 
 }  // namespace insula

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a component can be asked for while the scene runs: by an instructor, a script, a complication. Declared by the
-// component; the instructor's page and the reference are made from the declaration.
+// A command that a component accepts while the scene runs, from an instructor, a script or a complication. The
+// component declares it. The instructor's page and the reference are made from the declaration.
 #pragma once
 #include <string>
 #include <vector>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What every element of a scene file becomes: a component with parameters, an id, owned children and its place in the file.
+// The base of every element of a scene file: a component with parameters, an id, owned children and its position in the
+// file.
 #pragma once
 #include <memory>
 #include <string>
@@ -15,7 +16,7 @@
 
 namespace insula {
 
-/// The kinds of component. A kind says where an element may stand and which contract test applies to it.
+/// The kinds of component. The kind determines the allowed parents and the contract test.
 enum class Kind {
   scene,        ///< the root element
   settings,     ///< time step, solver, view: at most one of each directly under the scene
@@ -34,7 +35,7 @@ enum class Kind {
 };
 std::string_view kind_name(Kind kind);  ///< "force model", "exercise rule", ...
 
-/// What `prepare` may report to and ask for.
+/// Services for `prepare`: reports of errors, and properties of the scene.
 struct PrepareContext {
   Diagnostics& diagnostics;
   double time_step_s;  ///< of the scene
@@ -45,9 +46,9 @@ class Component : public ParamSet {
   static constexpr std::string_view kind_name = "component";
   Component() = default;
 
-  /// Second phase of loading: parameters, references and children are in place. Read files, check what spans several
-  /// parameters, build rest state. Report through the context; never throw for bad input. Called in document order,
-  /// bodies first, children after their parent.
+  /// Second phase of loading: parameters, references and children are available. Read files, check what spans several
+  /// parameters, and build the rest state. Report errors through the context; never throw for bad input. Called in
+  /// document order, bodies first, children after their parent.
   virtual void prepare(PrepareContext&) {}
 
   /// At the end of each step, at the start and after a reset: gives its channels and drawables their present values.
@@ -56,7 +57,8 @@ class Component : public ParamSet {
 
   /// What it can be asked for while the scene runs.
   virtual std::vector<CommandInfo> commands() const { return {}; }
-  /// Does it, between two steps. Returns why not; empty when done. Bad arguments are refused, never clamped.
+  /// Carries out a command between two steps. Returns the reason for a refusal; empty when done. Bad arguments are
+  /// refused, never clamped.
   virtual std::string run_command(std::string_view, std::string_view) { return "unknown command"; }
 
   const std::vector<ChannelBase*>& channels() const { return channels_; }      ///< in order of declaration
@@ -79,8 +81,8 @@ class Component : public ParamSet {
       if (auto* t = dynamic_cast<T*>(c.get())) out.push_back(t);
     return out;
   }
-  /// Reports an error at this component's start tag, or at a parameter's value; then the parameter's name is put before
-  /// the text, and the full path of a file parameter is replaced by what the author wrote.
+  /// Reports an error at this component's start tag, or at a parameter's value. In the second case the parameter's name
+  /// is put before the text, and the full path of a file parameter is replaced by what the author wrote.
   void error(PrepareContext& context, std::string text) const;
   void error(PrepareContext& context, const ParamBase& param, std::string text) const;
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which elements exist. Plugins add themselves by an explicit function; nothing registers as a side effect of linking.
+// The elements that exist. Plugins add themselves by an explicit function. Nothing registers as a side effect of
+// linking.
 #pragma once
 #include <filesystem>
 #include <functional>
@@ -28,8 +29,8 @@ struct ComponentInfo {
 
 class Registry {
  public:
-  /// Adds T as <element>. Where it may stand follows from its kind: body, constraint, instrument, settings, exercise in
-  /// the scene; force_model, support, surface in a body; rules and motions in an exercise. Throws std::logic_error when
+  /// Adds T as <element>. Its kind determines its parents: body, constraint, instrument, settings and exercise in the
+  /// scene; force_model, support and surface in a body; rules and motions in an exercise. Throws std::logic_error when
   /// the element name is taken.
   template <class T>
   void add(std::string_view element, Kind kind, std::string_view doc) {
@@ -56,10 +57,11 @@ class Registry {
 /// Registers the elements of core and of every plugin built in, in alphabetical order.
 void register_builtin(Registry& registry);
 
-/// Loads a shared plugin: checks its ABI string before anything else is called. Returns the error text, empty when loaded.
+/// Loads a shared plugin. Checks its ABI string before any other call. Returns the error text, empty when loaded.
 std::string load_plugin(Registry& registry, const std::filesystem::path& so);
 
-/// ABI identity: the headers' text, compiler, C++ library, Eigen alignment. Two equal strings may be mixed.
+/// ABI identity: the headers' text, compiler, C++ library, Eigen alignment. A plugin and a program with equal strings
+/// fit.
 const char* abi_string();
 
 }  // namespace insula

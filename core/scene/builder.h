@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Second half of loading: the expanded tree becomes components, ids are joined, files found, everything prepared.
+// Second half of loading. The expanded tree becomes components, ids are resolved, files are found, and everything is
+// prepared.
 #pragma once
 #include <map>
 #include <set>
@@ -31,7 +32,7 @@ class SceneBuilder {
 
   void resolve_references(Component& component);
   void unresolved(const RefParamBase& ref, const std::string& id);
-  /// The component that `id` means in that part of the scene, with the prefixes of its includes.
+  /// The component with the id `id` in that part of the scene, with the prefixes of its includes.
   Component* lookup(const ScenePart& part, const std::string& id, bool& lost) const;
   void find_files(Component& component);
 

@@ -2,12 +2,12 @@
 // The preprocessing of scene files: <include> and <variable>, and nothing else.
 //
 //   <include file="parts/window.xml" prefix="left_"><variable name="width" value="30 mm"/></include>
-// puts the children of that file's root (<part> or <scene>) in the place of the element. The file is found relative to the
-// file that includes it and must lie in the scene's root folder. `prefix` goes before every id of the part; references
+// replaces the element by the children of that file's root (<part> or <scene>). The file is found relative to the file
+// that includes it, and it must lie in the scene's root folder. `prefix` is put before every id of the part. References
 // inside the part look for the prefixed id first.
 //
 //   <variable name="width" value="25 mm"/>   directly in <scene> or <part>; used as $width or ${width}; $$ is a dollar.
-// A variable of the including file, or better one inside the <include>, replaces the part's own of the same name.
+// A variable of the including file replaces the part's own of the same name. One inside the <include> replaces both.
 #pragma once
 #include <filesystem>
 #include <memory>
@@ -24,7 +24,7 @@ namespace insula {
 struct ScenePart {
   std::filesystem::path path;         ///< canonical
   std::string shown;                  ///< as messages call it
-  std::vector<std::string> prefixes;  ///< what may stand before an id here, innermost first, "" last
+  std::vector<std::string> prefixes;  ///< possible prefixes of an id here, innermost first, "" last
 };
 
 struct ExpandedScene {
@@ -35,8 +35,8 @@ struct ExpandedScene {
   Suggestions suggestions;            ///< how much effort is left for them
 };
 
-/// The folder a scene may read from: the nearest folder upwards of the scene file that holds a folder `meshes`, else the
-/// scene's own.
+/// The folder from which a scene may read: the nearest folder upwards of the scene file that holds a folder `meshes`,
+/// else the scene's own.
 std::filesystem::path scene_root_folder(const std::filesystem::path& scene_file);
 
 /// A file named in a scene: relative to `folder`, inside `root`, existing and regular. Returns the canonical path, or

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // From a scene file to checked components.
 //
-// Everything that is wrong is found and reported together, in order of file and position; a scene comes out only when
-// nothing is. No exception leaves these functions, whatever the file holds.
+// All errors are found and reported together, in order of file and position. A scene is returned only if there is none.
+// No exception leaves these functions, whatever the file contains.
 #pragma once
 #include <filesystem>
 #include <memory>
@@ -21,10 +21,10 @@ struct LoadResult {
   bool ok() const { return scene != nullptr; }
 };
 
-/// time_step_s: in place of the scene's own, for comparisons; 0: as written.
+/// time_step_s replaces the scene's own step, for comparisons; 0: as written.
 LoadResult load_scene(const std::filesystem::path& file, const Registry& registry, double time_step_s = 0);
 
-/// The same for a text; relative paths in it are read from the folder of `virtual_path`, which need not exist.
+/// The same for a text. Relative paths in it are read from the folder of `virtual_path`, which need not exist.
 LoadResult load_scene_text(std::string_view text, const std::filesystem::path& virtual_path, const Registry& registry, double time_step_s = 0);
 
 }  // namespace insula

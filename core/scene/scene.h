@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The root of a loaded scene: every component checked, prepared and owned; references resolved.
+// The root of a loaded scene. Every component is checked, prepared and owned; references are resolved.
 #pragma once
 #include <filesystem>
 #include <map>
@@ -50,7 +50,7 @@ class Scene final : public Component {
   const std::filesystem::path& file() const { return file_; }                ///< as it was given to the loader
   const std::filesystem::path& base_folder() const { return base_folder_; }  ///< folder of the scene file, absolute
   const std::filesystem::path& root_folder() const { return root_folder_; }  ///< nothing outside may be named by a scene
-  /// FNV-1a over the scene file, the included files and every file a parameter names, in the order read.
+  /// FNV-1a over the scene file, the included files and every file that a parameter names, in the order read.
   unsigned long long content_hash() const { return content_hash_; }
 
  private:

@@ -14,13 +14,13 @@ namespace insula {
 class Variables {
  public:
   struct Definition;
-  /// What is visible in one file.
+  /// The variables that are visible in one file.
   using Scope = std::map<std::string, Definition*, std::less<>>;
 
   struct Definition {
     std::string name, value;
     SourcePos pos, value_pos;
-    const Scope* scope = nullptr;  ///< where its value's own variables are looked up
+    const Scope* scope = nullptr;  ///< where the variables in its value are looked up
     enum class State { fresh, expanding, done } state = State::fresh;
     bool used = false;
   };
@@ -28,13 +28,13 @@ class Variables {
   Variables(Diagnostics& diagnostics, Suggestions& suggestions)
       : diagnostics_(diagnostics), suggestions_(suggestions) {}
 
-  /// A new scope with what `outer` has; scopes live as long as this.
+  /// A new scope with the variables of `outer`. Scopes live as long as this object.
   Scope& new_scope(const Scope* outer);
-  /// Reports names that are no names or already defined in this file (`local`); with `replace`, takes the place of an
-  /// outer variable, else an outer one of the same name wins.
+  /// Reports invalid names and names that are already defined in this file (`local`). With `replace`, the new variable
+  /// takes the place of an outer one. Otherwise an outer one of the same name takes precedence.
   void define(Scope& scope, Scope& local, const std::string& name, const std::string& value, const SourcePos& pos,
               const SourcePos& value_pos, bool replace);
-  /// Replaces $x, ${x} and $$; false, and reported, when that fails.
+  /// Replaces $x, ${x} and $$. Returns false, with a report, when that fails.
   bool replace(std::string& text, const Scope& scope, const SourcePos& pos);
   void warn_unused();
 
@@ -48,7 +48,7 @@ class Variables {
   std::list<Definition> definitions_;
   std::list<Scope> scopes_;
   int depth_ = 0;
-  std::size_t budget_ = 32u << 20;  ///< bytes all replacements together may produce
+  std::size_t budget_ = 32u << 20;  ///< limit of all replacements together, bytes
 };
 
 }  // namespace insula

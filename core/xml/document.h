@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A scene file as a tree of elements that remembers the line and column of everything, for messages.
-// Read with expat: UTF-8 only, no document types (hence no entities of one's own), nesting and sizes limited, so that a
-// hostile file costs milliseconds and no recursion.
+// A scene file as a tree of elements. Everything keeps its line and column for messages.
+// The file is read with expat: UTF-8 only, and no document types (hence no own entities). Nesting and sizes are
+// limited, so a hostile file costs milliseconds and no recursion.
 #pragma once
 #include <memory>
 #include <string>
@@ -12,7 +12,7 @@
 
 namespace insula {
 
-/// What a scene file may be at most; beyond it a clear error.
+/// The limits of a scene file. A file beyond them is an error with a clear message.
 struct DocumentLimits {
   std::size_t file_bytes = 16u << 20;
   std::size_t depth = 64;
@@ -47,11 +47,11 @@ struct Document {
   std::unique_ptr<Element> root;  ///< null when the text is no well-formed document
 };
 
-/// Reads `text`, which messages call `file`. Columns count characters, not bytes; a byte order mark is skipped.
+/// Reads `text`. Messages use `file` as its name. Columns count characters, not bytes; a byte order mark is skipped.
 Document parse_document(std::string_view text, const std::string& file, Diagnostics& diagnostics,
                         const DocumentLimits& limits = {});
 
-/// Reads a whole file of at most `limit` bytes; the error text, empty when it was read.
+/// Reads a whole file of at most `limit` bytes. Returns the error text, empty when it was read.
 std::string read_text_file(const std::string& path, std::size_t limit, std::string& text);
 
 }  // namespace insula

@@ -5,7 +5,7 @@
 
 namespace insula {
 
-/// Going forward through the text costs its length once in all; going back starts over at the beginning of a line.
+/// Going forward through the whole text costs its length once. Going back starts again at the beginning of a line.
 class LineIndex {
  public:
   explicit LineIndex(std::string_view text) : text_(text) {}

@@ -2,12 +2,13 @@
 /*
 # anchor_springs
 
-What holds a wall from outside: arachnoid, fluid, tissue around a vessel. Each node is drawn to its place at rest by a spring
-in proportion to its share of the wall (Winkler's foundation, in all directions):
+An elastic foundation that holds a wall from outside. It stands for arachnoid, fluid and the tissue around a vessel. A
+spring pulls each node to its position at rest. Its stiffness is proportional to the node's share of the wall
+(Winkler's foundation, in all directions):
 
     f = -k A_i (x - X),   A_i a third of the triangles about the node,   k the foundation modulus
 
-with damping k A_i T v. It is linear, so it does not follow a wall that moves as a whole: it pulls it back.
+with damping k A_i T v. The foundation is linear. It does not follow a wall that moves as a whole, but pulls it back.
 */
 #include <algorithm>
 

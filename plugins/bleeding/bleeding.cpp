@@ -2,24 +2,30 @@
 /*
 # bleeding
 
-A weak region of a vessel's wall (the bleb) tears when it is pressed or pulled harder than `force`, or `sharp_force` by
-instruments with a cutting edge; when the pressure inside reaches `burst`; or when asked to by the command `rupture`. The
-force is the sum over all rows of the step's problem, except those of the pressure, of the size of what they put on the region:
+A weak region of a vessel's wall (the bleb) tears in one of these cases:
+
+- it is pressed or pulled harder than `force`, or than `sharp_force` by instruments with a cutting edge;
+- the pressure inside reaches `burst`;
+- the command `rupture` is sent.
+
+The force is summed over all rows of the step's problem except those of the pressure. Each row contributes the
+magnitude of the force that it puts on the region:
 
     F = sum over blocks | sum over nodes in the region of H^T lambda |
 
-The tear is an opening of `tear_area` in the network of <blood_flow>, so its rate follows the pressure, and a clip on the
-parent or across the neck stops it. A wall that draws takes back of what stands over the tear: blood of the pool, and where there
-is none what else is there (cerebrospinal fluid, air), which leaves first again. Blood rises as a level surface that hides the
-field. With V the volume in the field and `tear` negative while blood flows back,
+The tear is an opening of `tear_area` in the network of <blood_flow>. Its rate therefore follows the pressure, and a
+clip on the parent or across the neck stops it. If the wall draws inward, fluid over the tear flows back. This fluid
+is blood of the pool, if there is any. Otherwise it is cerebrospinal fluid or air, which leaves first again. Blood
+rises as a level surface that hides the field. With V the volume in the field and `tear` negative while blood flows
+back,
 
     dV/dt = tear - suction,      height = depth sqrt(V / V_full),   V_full = pi radius^2 depth / 2   (a paraboloid)
 
-and what is above the rim runs off. A suction tube takes `suction_rate` while its button is held, `idle_suction` of it
-otherwise, if its tip is below the surface.
+Blood above the rim runs off. If its tip is below the surface, a suction tube takes `suction_rate` while its button is
+held. Otherwise it takes `idle_suction` of that rate.
 
-Flows of the middle cerebral artery: 120-170 mL/min; a microsurgical field holds 5-15 mL: unattended, the default tear hides it in
-about ten seconds.
+The flow of the middle cerebral artery is 120-170 mL/min, and a microsurgical field holds 5-15 mL. Without suction,
+the default tear hides the field in about ten seconds.
 */
 #include "plugins/bleeding/bleeding.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A tear of the wall that bleeds into the field (the equations stand in bleeding.cpp).
+// A tear of the wall that bleeds into the field (equations in bleeding.cpp).
 #pragma once
 #include <array>
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace insula {
 
-/// The field as a bowl, a paraboloid of `radius` at the height `depth`: its area grows with height as blood fills it.
+/// The field as a bowl, a paraboloid of `radius` at the height `depth`. Its area grows with height as blood fills it.
 struct Bowl {
   double radius = 0.015, depth = 0.02;  ///< m
   double capacity() const;              ///< m3, to the rim
@@ -66,14 +66,15 @@ class Bleeding final : public Constraint, public BleedingSource {
   double rate() const { return rate_; }                       ///< of blood out of the tear, m3/s; 0 while it flows back
   double volume() const { return volume_; }                   ///< in the field, m3
   double height() const { return bowl_.height(volume_); }     ///< m
-  /// Forces on the region in the last step, N: the sum over contacts and ties, and the part of edged instruments.
+  /// Forces on the region in the last step, N: the sum over contacts and ties, and the part of instruments with an
+  /// edge.
   double force_on_region() const { return force_; }
   double sharp_force_on_region() const { return sharp_; }
 
  private:
   void measure_forces(const ConstraintSolution& solution);
   void tear(const StepContext& context, const char* why, double value);
-  /// Blood out of the tear, m3/s, when `out` of anything leaves it; negative: back out of the pool.
+  /// Blood out of the tear, m3/s, when `out` of any fluid leaves it. Negative: back out of the pool.
   double blood_of(double h, double out);
   double tear_height() const;  ///< over the bottom of the field, m
   void fill(double h, double blood);
@@ -91,7 +92,7 @@ class Bleeding final : public Constraint, public BleedingSource {
   std::vector<double> row_force_;           ///< three a row: force on the region
   // State.
   bool open_ = false, asked_ = false, stopped_ = false;
-  double other_ = 0;  ///< in the sac, that is no blood: came in while no pool stood over the tear, m3
+  double other_ = 0;  ///< fluid in the sac that is no blood: it came in while no pool stood over the tear, m3
   double rate_ = 0, lost_ = 0, volume_ = 0, since_ = -1, first_rate_ = 0, low_for_ = 0, force_ = 0, sharp_ = 0;
 };
 

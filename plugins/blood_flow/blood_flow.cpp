@@ -3,21 +3,24 @@
 # blood_flow
 
 Blood flow through a vessel with centrelines, as a network of resistances that follows the deformed wall. Along every
-centreline the wall is cut into cross-sections that stay material (section.h). A station of lumen A, perimeter P and length l has
+centreline the wall is cut into material cross-sections (section.h). A station of lumen A, perimeter P and length l
+has
 
     R = 2 mu P^2 l / A^3          (a circle: Poiseuille, 8 mu l / (pi r^4));   closed when A falls below `closed_below` of its rest
 
-Between the ends of a centreline stands a node, the chamber of that stretch, whose wall stores blood (plugins/pressure): the
-network is linear in the pressures of the moment and is solved together with the wall, the contacts and the hands.
+Between the ends of a centreline is a node. It is the chamber of that stretch, whose wall stores blood
+(plugins/pressure). The network is linear in the current pressures. It is solved together with the wall, the contacts
+and the hands.
 
     arteries   p(t) --- upstream --- inlet            loses `upstream_drop` of the mean pressure at rest
     outlets    --- bed --- venous pressure            never backwards: a collapsed bed does not feed the vessel
                --- collateral --- p(t)                other arteries, little
     tear       Q = Cd A sqrt(2 dp / rho)              as conductance Cd A sqrt(2 / (rho dp)) of the last step's dp;
-                                                      inward where the wall draws: a sac that is cut off comes to the pressure outside
+                                                      inward where the wall draws (a sac that is cut off)
 
-The beds follow from the flow at rest: inlet flow, split among the outlets by area to the power `split` (1.5: Murray's law). A
-part cut off from every opening is sealed: its pressure decays towards that outside within `seal_decay`.
+The beds follow from the flow at rest. The inlet flow is split among the outlets by area to the power `split` (1.5:
+Murray's law). A part that is cut off from every opening is sealed. Its pressure decays to the pressure outside within
+`seal_decay`.
 
 Sources: Murray 1926; Westerhof et al. 1969 (lumped arterial networks); orifice law as in any text on hydraulics.
 */

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Blood flow through a vessel as a lumped network along its centrelines (the equations stand in blood_flow.cpp).
+// Blood flow through a vessel as a lumped network along its centrelines (equations in blood_flow.cpp).
 #pragma once
 #include <string>
 #include <vector>
@@ -52,7 +52,7 @@ class BloodFlow final : public Constraint, public ChamberFeed, public VesselSour
   void reduce(const StepContext& context, StarMesh& chambers) override;
   void settle(const StepContext& context, const double* pressure, const double* yielding) override;
 
-  /// A tear in a chamber's wall, m2; 0 closes it.
+  /// Opens a tear in a chamber's wall, m2; 0 closes it.
   void set_tear(int chamber, double area) { tear_area_[std::size_t(chamber)] = area; }
   double tear_flow(int chamber) const { return tear_flow_[std::size_t(chamber)]; }  ///< m3/s out of it, of the last step
   bool sealed(int chamber) const { return sealed_[std::size_t(chamber)] != 0; }     ///< cut off from every opening

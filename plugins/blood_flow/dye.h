@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Indocyanine green in the blood: a bolus that arrives with the arterial blood and is carried by the flow, first-order
-// upwind and implicit in time, so stable for any flow. Cells are the stations; a dead end is one well-mixed cell.
+// Indocyanine green in the blood. A bolus arrives with the arterial blood and is carried by the flow, first-order
+// upwind and implicit in time. The scheme is stable for any flow. Cells are the stations; a dead end is one well-mixed
+// cell.
 #pragma once
 #include <vector>
 
@@ -8,16 +9,16 @@
 
 namespace insula {
 
-/// Concentration of arterial blood, 0..1, `t` after injection into a vein (s): gamma variate that arrives after 2 s and
-/// peaks at 7 s; a tenth of it is left after 20 s.
+/// Concentration of arterial blood, 0..1, `t` (s) after injection into a vein. It is a gamma variate that arrives after
+/// 2 s and peaks at 7 s. A tenth of it is left after 20 s.
 double arterial_dye(double t);
 
 class DyeTransport {
  public:
   void prepare(const VesselGraph& graph);
-  /// inflow and its dye: what enters each node from outside the graph (m3/s, and m3/s times concentration).
+  /// inflow and inflow_dye: what enters each node from outside the graph, m3/s, and m3/s times concentration.
   void step(VesselGraph& graph, double h, const std::vector<double>& pressure, const std::vector<double>& inflow, const std::vector<double>& inflow_dye);
-  /// Exchange of a dead end with its junction, m3/s, one a stretch; what blood does in a sac although no net flow enters it.
+  /// Exchange of a dead end with its junction, m3/s, one a stretch. It models the mixing in a sac without net inflow.
   std::vector<double> exchange;
   /// Volume of the mixed cell of a dead end, m3, one a stretch.
   std::vector<double> volume;

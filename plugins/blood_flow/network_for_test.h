@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Vessels with a network for tests: shut by moving the places that the wall's springs pull to.
+// Vessels with a network for tests. They are closed by moving the positions that the wall's springs pull to.
 #pragma once
 #include "core/sim/report.h"
 #include "plugins/blood_flow/blood_flow.h"
@@ -42,7 +42,7 @@ struct Vessel : TestScene {
   }
 };
 
-/// A parent that parts into two branches and carries a sac.
+/// A parent that divides into two branches and carries a sac.
 struct Bifurcation : Vessel {
   Bifurcation(const std::string& p = steady, const std::string& f = "") {
     TestVessel v;

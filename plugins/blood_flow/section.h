@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A cross-section of a vessel as a material polygon: the rest wall cut by a plane, its corners remembered as points on wall
-// edges, so that area and perimeter can be measured on the deformed wall in every step.
+// A cross-section of a vessel as a material polygon. The rest wall is cut by a plane, and the corners are stored as
+// points on wall edges. Area and perimeter can then be measured on the deformed wall in every step.
 #pragma once
 #include <array>
 #include <vector>
@@ -22,17 +22,17 @@ struct Section {
   std::vector<Corner> corners;
   /// Area and perimeter of the polygon of the wall's middle surface.
   Lumen wall(const VecX& q) const;
-  /// Of what is inside the wall: a strip of half its thickness is taken off along the perimeter. Two flat walls that touch
-  /// leave nothing; a circle of radius r leaves a circle of r - thickness / 2.
+  /// The same for the space inside the wall: a strip of half its thickness is subtracted along the perimeter. Two flat
+  /// walls that touch leave nothing. A circle of radius r leaves a circle of r - thickness / 2.
   Lumen lumen(const VecX& q, double thickness) const;
 };
 
-/// The loop in which the plane cuts the triangles that goes around `at`; the tightest, if several do. Empty when none does
-/// or when it is open.
+/// The loop in which the plane cuts the triangles that goes around `at`, the smallest if there are several. Empty when
+/// there is none or when it is open.
 Section cut(const std::vector<Vec3>& nodes, const std::vector<std::array<int, 3>>& triangles, const Vec3& at, const Vec3& normal);
 
-/// Pressure drop per flow and length, Pa s/m4: Poiseuille's law with the hydraulic diameter, 2 mu P^2 / A^3. A circle has
-/// 8 mu / (pi r^4); a slit is underestimated by a third.
+/// Pressure drop per flow and length, Pa s/m4: Poiseuille's law with the hydraulic diameter, 2 mu P^2 / A^3. A circle
+/// has 8 mu / (pi r^4). A slit is underestimated by a third.
 double resistance_per_length(const Lumen& lumen, double viscosity);
 
 }  // namespace insula

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The centrelines of a vessel as a graph of stretches: each has stations about every `spacing` with a cross-section of the
-// wall, and a node in its middle where its chamber stores blood.
+// The centrelines of a vessel as a graph of stretches. Each stretch has stations about every `spacing` with a
+// cross-section of the wall. The node in its middle is where its chamber stores blood.
 #pragma once
 #include <string>
 #include <vector>
@@ -11,7 +11,7 @@
 namespace insula {
 
 struct Station {
-  Section section;     ///< no corners: none could be cut, the lumen stays what the centreline says
+  Section section;     ///< no corners: no section could be cut, and the lumen stays that of the centreline
   double length = 0;   ///< of the stretch it stands for, m
   Lumen rest;          ///< lumen at rest
   Lumen now;
@@ -20,7 +20,7 @@ struct Station {
   double dye = 0;
 };
 
-/// Half a stretch, between an end and the middle; flow counts from `a` to `b`.
+/// Half a stretch, between an end and the middle; flow is positive from `a` to `b`.
 struct Branch {
   int a = -1, b = -1;          ///< nodes
   int first = 0, last = 0;     ///< stations [first, last) of the stretch
@@ -34,7 +34,7 @@ struct Stretch {
   std::vector<Station> stations;
   int from = -1, to = -1, middle = -1;  ///< nodes
   bool dead_end = false;                ///< leads from `from` to nowhere: a sac; its middle is the widest station
-  double narrowest = 1;                 ///< lumen over that at rest, the least of its stations
+  double narrowest = 1;                 ///< lumen over that at rest, the minimum of its stations
 };
 
 struct VesselGraph {
@@ -47,10 +47,11 @@ struct VesselGraph {
   std::vector<Stretch> stretches;  ///< as the model's centrelines
   std::vector<Branch> branches;    ///< two a stretch, one for a dead end
 
-  /// Ends that no other centreline and no cap shares become dead ends, and a part without a cap is joined to the nearest
-  /// junction or middle of the rest. Returns what is wrong, or nothing.
+  /// Ends that no other centreline and no cap shares become dead ends. A part without a cap is joined to the nearest
+  /// junction or middle of the rest. Returns what is wrong, or an empty text.
   std::string build(const VesselModel& model, const std::vector<std::array<int, 3>>& wall, double thickness, double spacing);
-  /// Cross-sections and conductances on the wall as it is. A section below `closed_below` of its lumen at rest is closed.
+  /// Cross-sections and conductances on the current wall. A section below `closed_below` of its lumen at rest is
+  /// closed.
   void measure(const VecX& q, double thickness, double viscosity, double closed_below);
 
  private:

@@ -8,26 +8,34 @@ An aneurysm clip: two jaws on one hinge and a spring that closes them.
     <clip_applier id="applier" clips="straight" load="straight" .../>
     <contact between="straight artery" friction="0.35"/>
 
-It lies on the tray, is held by a `<clip_applier>`, or is free in the field, where it stays simulated: it holds by its spring and
-by friction, and slips when it is pulled harder than friction allows. Seven unknowns: three of translation, three of
-rotation, and the angle `o` by which each jaw is turned from the closed position.
+The clip lies on the tray, is held by a `<clip_applier>`, or is free in the field. In the field it stays simulated. It
+holds by its spring and by friction, and it slips when it is pulled harder than friction allows. It has seven
+unknowns: three of translation, three of rotation, and the angle `o` by which each jaw is turned from the closed
+position.
 
-The spring turns each jaw with the moment (F0 closing force, s its slope, r the distance from the hinge to the middle of the blade)
+The spring turns each jaw with the moment (F0 closing force, s its slope, r the distance from the hinge to the middle
+of the blade)
 
-    T(o) = strength * r * (F0 + s * 2 r sin(o)),      so a blade presses with T / x at the distance x from the hinge,
+    T(o) = strength * r * (F0 + s * 2 r sin(o)),      so a blade presses with T / x at the distance x from the hinge.
 
-implicitly: A of the opening is I/h^2 + (1 + hinge_time/h) 2 dT/do. Closed jaws rest on one another: a unilateral row, gap at the middle of the blades
-2 r (o - least) >= 0; an applier that holds the jaws open moves `least`. So does `closing_time`, in which the jaws may at the
-fastest go from fully open to shut: contact normals and levers are those of the start of a step, and jaws that shut
-on a vessel in one step grip nothing. A spring held open gives way slowly (Papadopoulos et al.
-2004: 19 to 26 % of the force in ten minutes fully open):
+The moment is integrated implicitly: A of the opening is I/h^2 + (1 + hinge_time/h) 2 dT/do. Closed jaws rest on one
+another by a unilateral row. Its gap at the middle of the blades is 2 r (o - least) >= 0. An applier that holds the
+jaws open moves `least`.
+
+`closing_time` moves it too. It is the shortest time in which the jaws go from fully open to shut. Contact normals and
+levers are those of the start of a step. Jaws that shut on a vessel within one step would therefore grip nothing.
+
+A spring that is held open weakens slowly (Papadopoulos et al. 2004: by 19 to 26 % of the force in ten minutes fully
+open):
 
     d strength / dt = ln(1 - weakening) / 600 s * (o / widest) * strength    while an applier holds it open.
 
-A real clip weighs 0.1 g; at a 60th of a second that inertia gives way a hundred times more than a vessel's wall, and the
-solver would crawl. `inertial_mass` replaces it, and `gyration` adds moments of inertia: contact normals and levers are fixed over a step,
-so a clip that turns more easily than J/h^2 = closing force times its length would be thrown off by its own grip. What
-matters is that the force of inertia stays small beside the closing force; weight is the true one. Linear and angular momentum about the centre of mass are kept exactly.
+A real clip weighs 0.1 g. At a step of 1/60 s this inertia is a hundred times more compliant than a vessel's wall, and
+the solver would converge very slowly. `inertial_mass` therefore replaces the mass in the inertial terms, and `gyration`
+adds moments of inertia. Contact normals and levers are constant over a step. A clip that turns more easily than J/h^2
+= closing force times its length would be thrown off by its own grip. The inertial force must only stay small beside
+the closing force. The weight is the true one. Linear and angular momentum about the centre of mass are conserved
+exactly.
 */
 #include "plugins/clip/clip.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An aneurysm clip: a rigid body of three links, two jaws that a spring closes about one hinge. What it does and its scene
-// element are described in clip.cpp.
+// An aneurysm clip: a rigid body of three links, two of them jaws that a spring closes about one hinge. clip.cpp
+// describes its behaviour and its scene element.
 #pragma once
 #include <algorithm>
 #include <vector>
@@ -69,7 +69,7 @@ class Clip final : public RigidBody, public ClipSource, public StatesLaw {
   void take(ClipApplier& applier) { holder_ = &applier; }
   void let_go();
   void to_tray();
-  /// Puts it somewhere at once (tests, replays).
+  /// Moves it to a pose at once (tests, replays).
   void place(const Pose& pose, double opening) override;
 
   bool active() const override;

@@ -2,16 +2,21 @@
 /*
 # clip_applier
 
-A clip applier on the virtual coupling. It holds at most one `<clip>` by six rows: three at the grip, three of rotation with a
-lever of 5 mm,
+A clip applier on the virtual coupling. It holds at most one `<clip>` by six rows: three at the grip, and three of
+rotation with a lever of 5 mm,
 
     delta_k = a_k . (clip's grip - applier's),    delta_k+3 = 5 mm * a_k . (rotation vector from applier to clip)
 
-(a_k the applier's axes), so that the hand feels all that the clip touches. While the device's first button is held its jaws
-are squeezed open, within `open_time` to their limit; let go, it opens its grip in the same time and the spring closes the jaws: it
-holds them open, never presses them shut. The second button lets the clip go where it is, unless the applier holds it open; pressed
-again with the grip of a clip in the field within `reach` and `alignment` it takes that clip back: held as it lies at first, then
-brought into the applier's jaws within `settle_time`, without a jump. A clip may be held by either side (half a turn about its shaft).
+where a_k are the applier's axes. The hand thus feels all that the clip touches.
+
+- First button, held: the jaws are squeezed open to their limit within `open_time`.
+- First button, let go: the applier opens its grip in the same time, and the spring closes the jaws. The applier holds
+  the jaws open and never presses them shut.
+- Second button: the clip is released where it is, unless the applier holds it open.
+- Second button with the grip of a clip in the field within `reach` and `alignment`: that clip is taken back. It is
+  first held as it lies, then brought into the applier's jaws within `settle_time`, without a jump.
+
+A clip may be held by either side (half a turn about its shaft).
 
 Commands: `load <clip>` (from the tray; the clip in the applier goes back there), `release`, `take`.
 Events: clip_loaded, clip_shut (the jaws no longer hold it open), clip_released, clip_taken, with the clip's id.

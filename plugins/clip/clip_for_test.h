@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A plain clip (two boxes on a hinge) and a bench to try it on.
+// A plain clip (two boxes on a hinge) and a test bench for it.
 #pragma once
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -49,12 +49,12 @@ struct ClipBench {
     folder.write("meshes/clip/tool.json", clip_json());
     folder.write("meshes/tool/tool.urdf", test_tool_urdf(0.0005));
   }
-  /// A plate that never moves, `thickness` across the blades, at z from low to high.
+  /// A fixed plate, `thickness` across the blades, at z from low to high.
   std::string plate(double thickness, double low, double high) {
     folder.write("meshes/plate.obj", obj_text(shapes::box(Vec3(-0.5 * thickness, -4e-3, low), Vec3(0.5 * thickness, 4e-3, high), 6)));
     return R"(<obstacle id="plate"><surface mesh="meshes/plate.obj" mesh_unit="m" material="bone"/></obstacle>)";
   }
-  /// A round bar along y that never moves, between the blades at z.
+  /// A fixed round bar along y, between the blades at z.
   std::string bar(double radius, double z) {
     constexpr int sides = 24, rings = 9;
     TriMesh m;
@@ -77,7 +77,7 @@ struct ClipBench {
     folder.write("meshes/bar.obj", obj_text(m));
     return R"(<obstacle id="plate"><surface mesh="meshes/bar.obj" mesh_unit="m" material="bone"/></obstacle>)";
   }
-  /// A strip of tissue between the blades, held at its foot: 1.2 mm across, z from 1 to 5 mm.
+  /// A strip of tissue between the blades, fixed at its foot: 1.2 mm across, z from 1 to 5 mm.
   std::string strip(const std::string& young) {
     folder.write("meshes/strip.msh", gmsh_text(block_mesh({2, 6, 4}, Vec3(-0.6e-3, -3e-3, 1e-3), Vec3(0.6e-3, 3e-3, 5e-3))));
     return R"(<soft_body id="plate" mesh="meshes/strip.msh" mesh_unit="m"><corotational_fem young=")" + young + R"("/>

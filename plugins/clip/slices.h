@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A blade cut into short pieces. Contact looks at the corners of a piece and at the nearest place: a vessel between the corners of
-// one long blade would be held at one point a side, and rock about it.
+// A blade cut into short pieces. Contact uses the corners of a piece and its nearest point. With one long blade, a
+// vessel between the corners would be held at one point on each side and rock about it.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 
 namespace insula {
 
-/// Appends the piece in slices of about a millimetre across its longest extent; what is short stays whole.
+/// Appends the piece in slices of about a millimetre across its longest extent. A short piece stays whole.
 inline void add_slices(const ConvexPiece& piece, std::vector<ConvexPiece>& out) {
   constexpr double length = 1.2e-3;  // m
   constexpr int corners = 8;         // of a section: 16 a slice, 24 are allowed

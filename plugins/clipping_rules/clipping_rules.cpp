@@ -5,15 +5,16 @@
 Judges a clipped aneurysm. `goal_clipped` measures in every step
 
 - the remnant as a Sindou grade (0 nothing left ... 5 more than three quarters of the sac),
-- flow and narrowing of each branch, in percent of what they were at rest,
-- how far the blades' tips reach past the neck, the slit between the blades, and how often a clip was released,
+- flow and narrowing of each branch, in percent of the values at rest,
+- how far the blades' tips reach past the neck, the slit between the blades, and how often a clip was released.
 
-and is reached when released clips have held the neck shut, with every branch open, for `hold`. Taken back, or on an
-instructor's request for another placement (`ask_again`), the goal is lost again and has to be reached with a new release.
+The goal is reached when released clips have held the neck shut, with every branch open, for `hold`. It is lost again
+when the clip is taken back, or when an instructor asks for another placement (`ask_again`). It must then be reached
+with a new release.
 
 `fault_stenosis` counts a branch whose flow falls below `limit` for longer than `grace` while no temporary clip is on.
 
-Sources: Sindou, Acevedo, Turjman 1998 (grades); the geometry behind them is in neck_judge.h.
+Sources: Sindou, Acevedo, Turjman 1998 (grades); neck_judge.h describes the geometry.
 */
 #include <algorithm>
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a clip has left of an aneurysm, from the shape of the wall and the line of the blades.
+// What a clip leaves of an aneurysm, computed from the shape of the wall and the line of the blades.
 //
-// Sindou, Acevedo, Turjman 1998 grade the remnant: I less than half of the neck, II more than half of the neck, III a lobe
-// of the sac, IV less than three quarters of the sac, V more. Here 0 stands for nothing left.
-//   neck      the ring of wall vertices at the neck plane; a vertex is left open when it is farther from the blades than
-//             half their width and `margin`
-//   sac       the share of the sac's wall that lies between the neck and the blades; as a clipped dome leans to any side, this
-//             is told by where the wall that the blades hold was at rest
-//   lobe      the bleb lies on the near side of the blades while most of the sac does not
+// Sindou, Acevedo, Turjman 1998 grade the remnant: I less than half of the neck, II more than half of the neck, III a
+// lobe of the sac, IV less than three quarters of the sac, V more. Here 0 means that nothing is left.
+// - neck: the ring of wall vertices at the neck plane. A vertex is left open when it is farther from the blades than
+//   half their width and `margin`.
+// - sac: the share of the sac's wall that lies between the neck and the blades. A clipped dome leans to any side. The
+//   rest position of the wall that the blades hold therefore decides this.
+// - lobe: the bleb lies on the near side of the blades while most of the sac does not.
 #pragma once
 #include <vector>
 
@@ -43,7 +43,7 @@ class NeckJudge {
   };
   const ShellBody* vessel_ = nullptr;
   std::vector<Patch> ring_, sac_;
-  std::vector<Patch> bleb_, held_;  ///< held_: all that blades may hold, neck included
+  std::vector<Patch> bleb_, held_;  ///< held_: all that blades may hold, including the neck
   double ring_area_ = 0, sac_area_ = 0;
   Vec3 up_ = Vec3::UnitZ();  ///< towards the dome
 };

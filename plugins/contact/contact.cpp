@@ -8,32 +8,39 @@ Signorini contact with Coulomb friction among the bodies and tools named in `bet
     <contact between="suction frontal temporal floor" friction="0.2"/>
     <contact between="suction frontal" friction="0.05"/>
 
-Every pair of the names is looked after, except two things that never move and a body with itself. One coefficient
-holds for all pairs of an element; a pair that several elements name belongs to the one with the fewest names, and among
-those of equal length to the last, so that a pair can be given its own coefficient.
+The element handles every pair of the names, except two bodies that never move and a body with itself. One coefficient
+holds for all pairs of an element. If several elements name a pair, the element with the fewest names applies, and
+among equals the last one. A pair can therefore be given its own coefficient.
 
-Each contact is one block: the gap at the end of the step and its force obey 0 <= gap _|_ force >= 0, and the friction
-|f_t| <= mu f_n opposes the slip of the step (normal row, then two tangent rows; without friction the normal row alone).
+Each contact is one block. The gap at the end of the step and its force obey 0 <= gap _|_ force >= 0. The friction
+|f_t| <= mu f_n opposes the slip of the step. The block has the normal row, then two tangent rows. Without friction it
+has the normal row alone.
 
     gap(end) = gap(start) + n . (H dq)      n fixed over the step, from b to a
 
-n is that of the start of the step, or, with `linearized_at="end"`, of its expected end: surfaces where the last step's motion leads them, a tool that
-presses as far off its free pose as it was. Where a tool slides over an edge it then feels the new face in the step in which it gets there; what is
-expected wrongly changes n alone, not the law.
+n is the normal at the start of the step. With `linearized_at="end"` it is the normal at the expected end of the step.
+Surfaces are then expected where their motion in the last step leads them. A tool is expected to keep its offset from
+its free pose. A tool that slides over an edge thus meets the new face in the step in which it gets there. A wrong
+expectation changes n alone, not the law.
 
-Tools are rounded convex pieces and look ahead along their free motion, so that contact is there before it happens
-(`core/collision/colliders/tool_collider.h`); surfaces meet by sampled vertices (`core/collision/colliders/tissue_collider.h`). A surface with
-a `thickness` is the middle of a wall: gaps are measured to the wall's faces, and a tool that touches such a wall
-goes on by no more than `max_step_displacement` in a step (rows on the tool alone), however fast the hand is. `alarm` is the
-distance at which a contact enters the problem; the haptic loop needs it too, since it moves the tool between steps. Contact
-forces act on both sides at the same place of the triangle's side of the gap, so a tool's contact adds neither force nor
-moment to the whole; between two surfaces the moment is exact once the gap is closed.
+Tools are rounded convex pieces. They search ahead along their free motion, so that a contact exists before bodies
+touch (`core/collision/colliders/tool_collider.h`). Surfaces meet by sampled vertices (`core/collision/colliders/tissue_collider.h`). A
+surface with a `thickness` is the middle surface of a wall, and gaps are measured to the wall's faces. A tool that
+touches such a wall moves by no more than `max_step_displacement` in a step, however fast the hand is. Rows on the tool alone limit
+it.
 
-A blade that meets a wall `contact_geometry="vertices"` has many contacts side by side. With a `patch` those within that length share one
-friction force: |f_t| <= mu sum of their f_n, opposing the mean slip, weighted by what each bore in the last step
-(`friction_patches.h`): one row a contact and two a patch instead of three a contact.
+`alarm` is the distance at which a contact enters the problem. The haptic loop needs it too, since it moves the tool
+between steps. Contact forces act on both sides at the same point, on the triangle's side of the gap. A tool's contact
+therefore adds neither a resultant force nor a moment. Between two surfaces the moment is exact once the gap is
+closed.
 
-Sources: Dequidt et al. 2015, sections 3.3 and 3.4; Duriez, Dubois, Kheddar, Andriot 2006 (friction in the block solve).
+A blade that meets a wall `contact_geometry="vertices"` has many contacts side by side. With a `patch`, contacts within that length
+share one friction force, |f_t| <= mu sum of their f_n. It opposes their mean slip, weighted by the force of each in
+the last step (`friction_patches.h`). This takes one row for each contact and two for each patch, instead of three for
+each contact.
+
+Sources: Dequidt et al. 2015, sections 3.3 and 3.4; Duriez, Dubois, Kheddar, Andriot 2006 (friction in the block
+solve).
 */
 #include "plugins/contact/contact.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contact among bodies and tools; what it does and its scene element are described in contact.cpp.
+// Contact among bodies and tools. contact.cpp describes the law and the scene element.
 #pragma once
 #include <memory>
 #include <optional>
@@ -50,7 +50,7 @@ class Contact final : public Constraint, public StatesLaw {
   void append_state(std::vector<double>& out) const override;
   StatedLaw law() const override { return StatedLaw::unilateral(); }
 
-  /// Two things that may touch, and what was found between them in this step.
+  /// Two surfaces or tools that may touch, and what was found between them in this step.
   struct Pair {
     RigidBody* tool_a = nullptr;  ///< a is a link of a tool or clip ...
     RigidBody* tool_b = nullptr;
@@ -63,7 +63,7 @@ class Contact final : public Constraint, public StatesLaw {
     ContactSelection selection;
     std::vector<Proximity> contacts;
     std::vector<Proximity> other_way;  ///< of b's vertices on a, before selection
-    std::unique_ptr<FrictionPatches> patches;  ///< one friction force for contacts close together, if wanted
+    std::unique_ptr<FrictionPatches> patches;  ///< one friction force for neighbouring contacts, or null
     Pose start;                 ///< of the tool, in the step last detected
     std::optional<Pose> free;   ///< of its free motion, in the same step
     std::optional<Pose> expected;  ///< at the end of that step, of a tool that presses and whose contacts are taken there
@@ -77,7 +77,7 @@ class Contact final : public Constraint, public StatesLaw {
   const std::vector<Pair>& pairs() const { return pairs_; }
 
  private:
-  /// What one thread may search at a time: a pair, for two surfaces one way of it.
+  /// The work of one thread at a time: a pair, or for two surfaces one direction of it.
   struct Search {
     int pair;
     bool other_way;

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One friction force for contacts that lie close together on a blade.
 //
-// A patch is what falls into one cell of a grid on the tool and faces one way: it does not depend on how contacts come and go.
-// Its slip is the mean slip of its contacts, weighted by the force that each bore in the step before it took hold; its friction is spread
-// over them by the same weights, so that it does work on its slip alone, and is bounded by mu times all they bear.
+// A patch holds the contacts that lie in one cell of a grid on the tool and face one way. This does not depend on how
+// contacts come and go. The slip of a patch is the mean slip of its contacts. The weights are the contacts' forces in
+// the step before the patch began to stick. The friction is spread over the contacts by the same weights, so it does
+// work only on the slip of the patch. It is bounded by mu times the sum of their normal forces.
 //
-// A patch that sticks adds up the mean slip that the steps' linearisation lets pass, and takes it back; and it keeps its contacts and
-// their weights, whatever they bear meanwhile: a mean whose weights follow the pulse would let each contact go a little further in every beat.
-// Without either, a clip on a pulsing neck walks off by a micrometre a beat.
+// A sticking patch sums the mean slip that the steps' linearisation lets pass, and takes it back. It keeps its contacts
+// and their weights, whatever their forces are meanwhile. If the weights followed the pulse, each contact would move a
+// little further in every beat. Without these two rules, a clip on a pulsing neck creeps by a micrometre a beat.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -26,22 +27,23 @@ class FrictionPatches {
   struct Member {
     std::uint32_t patch;  ///< name of its patch
     int contact;          ///< index
-    double weight;        ///< of its slip in that of the patch; those of a patch sum to one
-    int row;              ///< of its normal
-    bool stays;           ///< its patch held in the last step, and it with it
+    double weight;        ///< of its slip in the slip of the patch; weights of a patch sum to one
+    int row;              ///< of its normal row
+    bool stays;           ///< the patch stuck in the last step, with this contact in it
   };
   struct Patch {
     std::uint32_t name;
     int first, count;  ///< of members()
     Vec3 tangent[2];   ///< scene frame, unit
-    Vec3 crept;        ///< mean slip of the tool on the surface since it took hold, the tool's frame, m
-    int row = -1;      ///< of its first tangent
+    Vec3 crept;        ///< mean slip of the tool on the surface since it began to stick, tool frame, m
+    int row = -1;      ///< its first tangent row
   };
   /// Sorts contacts into patches. `tool`: pose of the frame of Proximity::local. Does not allocate.
   void sort(std::span<const Proximity> contacts, const Pose& tool);
   std::vector<Member>& members() { return members_; }
   std::vector<Patch>& patches() { return patches_; }
-  /// Force of each contact along (normal, tangent, other tangent) of its own, N; remembers what each bore and how far its patch has crept.
+  /// Force of each contact along its own (normal, tangent, other tangent), N. Stores the normal forces and the creep of
+  /// each patch.
   void finish(std::span<const Proximity> contacts, const ConstraintSolution& solution, double friction, std::vector<Vec3>& forces);
   void reset();
 
@@ -58,9 +60,9 @@ class FrictionPatches {
   struct Held {
     std::uint32_t name;
     bool holds;
-    Vec3 crept;         ///< the tool's frame, m
+    Vec3 crept;         ///< tool frame, m
     Vec3 slip;          ///< of its contacts since then, by weight
-    double weight = 0;  ///< of those that are still there
+    double weight = 0;  ///< of those that still exist
   };
   const Known* known(std::uint64_t key) const;
   Held* held(std::uint32_t name);

@@ -8,19 +8,21 @@ Hooke's law. With F the deformation gradient, F = R S (polar), e = S - I:
     energy density   mu |e|^2 + lambda/2 tr(e)^2
     P = R (2 mu e + lambda tr(e) I),   force on node i = -V P b_i,   b_i the rest gradient of its shape function
 
-which is the exact gradient of the energy. Hooke's law lets an element be crushed flat, and through itself, by a few times
-E; soft tissue stiffens long before. So a principal stretch s below `barrier_stretch` s0 costs in addition
+which is the exact gradient of the energy. Under Hooke's law a stress of a few times E compresses an element
+flat and inverts it. Soft tissue stiffens long before that. A principal stretch s below `barrier_stretch` s0 therefore
+costs in addition
 
     energy density   stiffening E / 2 (s0 - s)^2           (s < s0; nothing above)
 
-which keeps elements under a tool's tip from inverting and leaves the law as it is elsewhere. Hooke's exact derivative adds
-to the rotated stiffness a term on the spin of the element; it is part of `tangent="exact"` with negative eigenvalues set to
-zero, and left out otherwise.
+This compression barrier keeps elements under a tool's tip from inverting, and leaves the law elsewhere unchanged. The
+exact derivative of Hooke's law adds a term on the spin of the element to the rotated stiffness. `tangent="exact"`
+includes this term with its negative eigenvalues set to zero. Otherwise it is left out.
 
-Elements are computed eight at a time (kernels_impl.cpp); what needs singular values or eigenvalues, rarely, one by one.
+Elements are computed eight at a time (kernels_impl.cpp). The few that need singular values or eigenvalues are
+computed one by one.
 
-Sources: Felippa, Haugen 2005 (co-rotational formulation); Mueller, Gross 2004; Dequidt et al. 2015, section 3.1; Smith,
-de Goes, Kim 2019 (Hessian of energies of the principal stretches).
+Sources: Felippa, Haugen 2005 (co-rotational formulation); Mueller, Gross 2004; Dequidt et al. 2015, section 3.1;
+Smith, de Goes, Kim 2019 (Hessian of energies of the principal stretches).
 */
 #include <algorithm>
 #include <cstring>

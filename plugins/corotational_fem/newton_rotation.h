@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rotations of deformation gradients F = R S, a vector of them at once, for loops compiled once per instruction set. Those that are not found
-// here are left to polar.h.
+// Rotations of deformation gradients F = R S, a vector of them at once, for loops compiled once per instruction set.
+// polar.h handles those that are not found here.
 #pragma once
 #include "core/linalg/lane_bits.h"
 #include "core/linalg/lane_math.h"
@@ -21,9 +21,10 @@ static inline void matrix_of(const V q[4], V r[9]) {
   r[6] = xz - wy, r[7] = yz + wx, r[8] = 1 - (xx + yy);
 }
 
-/// Newton on the rotation that makes A = R^T F symmetric. With S = sym(A) and w the axial vector of A - A^T, one step turns R
-/// by (tr(S) I - S)^-1 w, the tangent of half the angle being half of it: an error of d leaves one of the order of d^3. Lanes
-/// that are done stay as they are. Where S is no maximum of tr(R^T F), or the angle is large, the caller takes singular values.
+/// Newton's method for the rotation that makes A = R^T F symmetric. With S = sym(A) and w the axial vector of A - A^T,
+/// one step rotates R by (tr(S) I - S)^-1 w. The tangent of half the angle is half of that vector. The convergence is
+/// cubic: an error d becomes one of the order d^3. Converged lanes stay as they are. Where S is no maximum of tr(R^T
+/// F), or the angle is large, the lane fails and the caller uses singular values.
 template <class V, class M = decltype(V{} == V{})>
 static inline M rotation_by_newton(const V f[9], V q[4], V r[9]) {
   constexpr double close = 1e-12, far = 0.25;  // of the squared tangent of half an angle

@@ -2,8 +2,8 @@
 /*
 # dissector
 
-A micro dissector or arachnoid knife: a rigid tool on the virtual coupling whose blade edges wear and cut strands.
-`sharp="never"` makes it blunt, `sharp="button"` cuts only while the device's first button is held.
+A micro dissector or arachnoid knife. It is a rigid tool on the virtual coupling, and its blade edges damage and cut
+strands. `sharp="never"` makes it blunt. `sharp="button"` cuts only while the device's first button is held.
 */
 #include "core/mechanics/instrument.h"
 #include "core/registry/registry.h"

@@ -5,9 +5,9 @@
 Goals, faults and the clock of training exercises. Rules read the report of each step, channels, and the positions of
 surfaces; they write to the exercise's log alone.
 
-A force fault counts once each time a tool presses a body harder than the limit for longer than the grace time, and is
-armed again when the force has fallen below nine tenths of the limit. An order fault counts a strand that was severed
-while a good number of strands nearer to the surface still stood.
+A force fault counts once each time a tool presses a body harder than the limit for longer than the grace time. It can
+count again when the force has fallen below nine tenths of the limit. An order fault counts a strand that was severed
+while more than the allowed number of strands nearer to the surface remained.
 */
 #include <algorithm>
 #include <cmath>

@@ -2,8 +2,9 @@
 /*
 # fixed
 
-Holds nodes of a soft body where they rest. The region is a ball, its outside, or a half space; several `<fixed>` add up.
-Fixed nodes leave the system matrix, so they cost nothing and move not at all.
+Fixes nodes of a soft body at their rest positions (a Dirichlet condition). The region is a ball, its outside, or a
+half space. Several `<fixed>` elements add up. Fixed nodes are removed from the system matrix. They cost nothing and
+do not move.
 */
 #include "core/mechanics/force_model.h"
 #include "core/registry/registry.h"

@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bending of a wall: Morley's plate element whose slopes across edges are interpolated from the hinges' angles (slope.h).
+// Bending of a wall: Morley's plate element whose slopes across edges are interpolated from the hinges' angles
+// (slope.h).
 //
-//   curvature of a triangle  kappa = 1/A sum over its edges  l sigma nu nu^T,  nu the edge's normal in the plane at rest
+//   curvature of a triangle  kappa = 1/A sum over its edges  l sigma nu nu^T,  nu the edge's in-plane normal at rest
 //   energy                   A/2 (kappa - kappa0)^T D (kappa - kappa0),
 //   D = E t^3 / (12 (1 - nu^2)) [1 nu 0; nu 1 0; 0 0 (1-nu)/2]  on (k11, k22, 2 k12)
 //
-// So kappa is a constant linear map of at most nine angles, the rest curvature is what the same map gives at rest, and the
-// whole is objective at any rotation. No function of the slaved Morley space but a rigid one bends without energy, and the
-// interpolation is exact for quadratics: the element converges on any mesh of sound triangles. On a free rim the slope is an
-// unknown of its one triangle and is eliminated there: no moment about the rim.
+// kappa is a constant linear map of at most nine angles, and the rest curvature is the same map at rest. The element is
+// objective at any rotation. In the slaved Morley space only rigid functions bend without energy, and the interpolation
+// is exact for quadratics. The element therefore converges on any mesh of well-shaped triangles. On a free rim the
+// slope is an unknown of its one triangle and is eliminated there: no moment about the rim.
 //
-// The exact tangent couples the twelve nodes of a patch, which would fill the factor several times over. The step takes
-// a stiffness of each hinge by itself instead, K~ = sum k_q grad(phi_q) grad(phi_q)^T with k_q = 0.6 sum_r |c_q . c_r|: by
-// Gershgorin's theorem K~ >= 0.6 K, so the linearly implicit step is stable and tends to the same equilibrium.
+// The exact tangent couples the twelve nodes of a patch, which would fill the factor several times over. The step
+// instead takes a stiffness of each hinge by itself, K~ = sum k_q grad(phi_q) grad(phi_q)^T with k_q = 0.6 sum_r |c_q .
+// c_r|. By Gershgorin's theorem K~ >= 0.6 K. The linearly implicit step is therefore stable and tends to the same
+// equilibrium.
 #pragma once
 #include <limits>
 #include <utility>
@@ -34,9 +36,9 @@ class BendPatches {
   void bind(const BlockMatrix& a, const std::vector<int>& free_of_node);
   void linearise(const double* x, double* force, BlockMatrix* stiffness, double scale, Tangent which, bool patches);
   double energy(const double* x);
-  /// Turns the rest angles as displacement u from rest would. Both 3 values a node, m.
+  /// Changes the rest angles by those of the displacement u from rest. Both arguments have 3 values a node, m.
   void prestrain(const double* rest, const double* u);
-  /// Forgets how often a hinge has turned.
+  /// Forgets the number of full turns of each hinge.
   void reset() { angle_ = start_angle_; }
 
  private:

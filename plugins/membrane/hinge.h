@@ -5,15 +5,17 @@
 
 namespace insula {
 
-/// Edge (node[0], node[1]) as the first triangle runs through it; apex node[2] of the first triangle, node[3] of the second.
+/// The edge (node[0], node[1]) has the direction of the first triangle. The apex of the first triangle is node[2], that
+/// of the second node[3].
 struct WallHinge {
   int node[4];
   double least[2] = {0, 0};  ///< squared doubled areas below which a triangle counts as collapsed (its gradient is bounded), m4
 };
 
-/// Angle by which the second triangle is turned from the plane of the first, rad in (-pi, pi]; positive where the apexes
-/// rise along the normals. Its gradient (12 values, 1/m) goes into `gradient` if that is not null.
-///   at the apexes |e| N / |N|^2 with N the doubled area vector; at the edge's ends what makes rigid motion free.
+/// Angle by which the second triangle is turned from the plane of the first, rad in (-pi, pi]. It is positive where the
+/// apexes rise along the normals. Its gradient (12 values, 1/m) goes into `gradient` if that is not null. At the apexes
+/// the gradient is |e| N / |N|^2 with N the doubled area vector. At the edge's ends it is such that rigid motion has no
+/// effect.
 double hinge_angle(const double* x, const WallHinge& hinge, double* gradient);
 
 using Mat12 = Eigen::Matrix<double, 12, 12>;

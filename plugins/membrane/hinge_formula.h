@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A hinge's shape, angle and gradient (hinge.h), of one hinge or of a vector of them.
+// Shape, angle and gradient of a hinge (hinge.h), for one hinge or for a vector of them.
 #pragma once
 #include "core/linalg/lane_math.h"
 

@@ -2,26 +2,29 @@
 /*
 # membrane
 
-The wall of a shell: stretch by plane-stress triangles in a frame that turns with each of them (Comas, Duriez, Cotin 2010),
-and bending by curvature over each triangle. Both are the exact gradient of an energy, so forces and moments add up to
-nothing, and neither knows of rigid motion.
+The wall of a shell. Plane-stress triangles in a frame that turns with each of them model its stretch (Comas, Duriez,
+Cotin 2010). The curvature over each triangle models its bending. Both forces are the exact gradient of an energy.
+They have no resultant force and no moment, and they are zero under rigid motion.
 
-- stretch: `stretch.h`. The step's tangent holds Hooke's law and the geometric stiffness of tension (the part that is never
-  negative), which steadies an inflated wall.
-- bending: `bend.h`, `slope.h`. Morley's triangle with slopes interpolated from the angles between triangles, exact for
-  quadratic deflections on any mesh; rest curvature gives no force. Its step's tangent is the Gauss-Newton part.
+- Stretch: `stretch.h`. The step's tangent contains Hooke's law and the geometric stiffness of tension (its positive
+  semidefinite part), which stabilises an inflated wall.
+- Bending: `bend.h`, `slope.h`. This is Morley's triangle with slopes interpolated from the angles between triangles.
+  It is exact for quadratic deflections on any mesh. Rest curvature gives no force. The step's tangent is the
+  Gauss-Newton part.
 
-The usual energy of hinges (a spring on the angle of each edge) is not used: how far a plate of it deflects depends on how
-the mesh is cut (a tenth too little on irregular meshes, a third on some regular ones) and does not improve with refinement.
+The usual energy of hinges (a spring on the angle of each edge) is not used. The deflection of such a plate depends on
+how the mesh is cut. It is a tenth too small on irregular meshes and a third too small on some regular ones.
+Refinement does not improve it.
 
-Several membranes share a shell by `regions`; every triangle has exactly one. Where two meet each bends its own triangles
-against the common slope, so the border is no hinge. A free rim carries no moment; nodes that are fixed keep their place,
-not their slope: hold two rows of them to clamp a rim. Caps carry no wall.
+Several membranes share a shell by `regions`; every triangle has exactly one. Where two membranes meet, each bends its
+own triangles against the common slope, so the border is no hinge. A free rim carries no moment. Fixed nodes keep
+their position, not their slope: fix two rows of them to clamp a rim. Caps carry no wall.
 
-A prestrain (the wall is under tension in the shape that was imaged) is a strain of each triangle and a turn of each rest
-angle, both linear in the displacement that leads to the stress-free configuration.
+With a prestrain, the wall is under tension in the imaged shape. The prestrain is a strain of each triangle and a
+change of each rest angle. Both are linear in the displacement to the stress-free configuration.
 
-A triangle crushed below a tenth of its area at rest bends more softly than the law says (its angle's gradient is bounded).
+A triangle that is compressed below a tenth of its rest area bends more softly than the law says, since the gradient
+of its angle is bounded.
 
 Sources: Comas, Duriez, Cotin 2010 (co-rotational membrane); Morley 1968; Onate, Cervera 1993 (rotation-free bending);
 Grinspun et al. 2006 (convergence of discrete curvatures); Tamstorf, Grinspun 2013 (derivatives of the angle).

@@ -45,7 +45,7 @@ inline void add_membrane(ShellBody& body, const Wall& w) {
   body.children.push_back(std::move(m));
 }
 
-/// Returns what is reported; empty when all is well.
+/// Returns the reported messages; empty when all is well.
 inline std::string finish(ShellBody& body, std::function<bool(const Vec3&)> fixed = nullptr) {
   if (fixed) {
     auto support = std::make_unique<HoldNodes>();
@@ -77,7 +77,7 @@ inline void step(DeformableBody& body, double h, const Vec3& gravity = Vec3::Zer
   body.apply(context, body.rows, nullptr);
 }
 
-/// Newton steps of the static problem; a load that follows the wall may be renewed before each.
+/// Newton steps of the static problem. A load that follows the wall may be updated before each step.
 inline void settle(DeformableBody& body, int steps, const std::function<void()>& load = nullptr) {
   for (int i = 0; i < steps; ++i) {
     if (load) load();
@@ -93,7 +93,7 @@ inline VecX elastic_force(DeformableBody& body, const VecX& x) {
   return f;
 }
 
-/// Pressure on the wall as it stands: the gradient of the volume times p.
+/// Pressure on the deformed wall: the gradient of the volume times p.
 inline void press(ShellBody& body, double p, const VecX& x) {
   body.external.setZero();
   for (const auto& t : body.wall_triangles()) {
@@ -102,10 +102,11 @@ inline void press(ShellBody& body, double p, const VecX& x) {
   }
 }
 
-/// How a rectangle is cut: diagonals all one way, criss-cross, or all one way with shaken nodes (and Delaunay's choice not made).
+/// How a rectangle is meshed: all diagonals one way, criss-cross, or all one way with perturbed nodes (not Delaunay).
 enum class Cut { one_way, criss_cross, shaken };
 
-/// Parameters (u, v) in [0, 1]^2 on an nu x nv grid, mapped by `place`; `shake` in parts of a cell, rims stay straight.
+/// Parameters (u, v) in [0, 1]^2 on an nu x nv grid, mapped by `place`. `shake` is in parts of a cell; rims stay
+/// straight.
 inline TriMesh sheet(int nu, int nv, Cut cut, const std::function<Vec3(double, double)>& place, double shake = 0.25, bool around = false) {
   TriMesh m;
   Random random(7);
@@ -144,7 +145,7 @@ inline TriMesh cylinder(double radius, double length, int around, int along, Cut
   }, 0.25, true);
 }
 
-/// An icosahedron on a sphere, each triangle cut into four `times` times.
+/// An icosahedron on a sphere. Each triangle is divided into four, `times` times.
 inline TriMesh icosphere(double radius, int times) {
   TriMesh m;
   const double g = 0.5 * (1 + std::sqrt(5.0));

@@ -5,19 +5,21 @@
 //   mu = E / (2 (1 + nu)),   lambda = E nu / (1 - nu^2)   (plane stress)
 //   G = 2 mu I + (lambda tr e - 2 mu) S^-1,   force on node i = -A t F G b_i
 //
-// With g_i = R b_i, n the normal, p_i = n x g_i the exact second derivative is, over A t,
+// Let g_i = R b_i, n the normal and p_i = n x g_i. Then the exact second derivative, divided by A t, is
 //   mu (g_i.g_j) (I - n n^T) + mu g_j g_i^T + lambda g_i g_j^T      Hooke's law in the turned frame
 //   + (mu + lambda) tr e / (2 + tr e) p_i p_j^T                      spin in the plane
 //   + (b_i^T G b_j) n n^T                                            tension against deflection
-// The last two are the geometric stiffness: the step's tangent keeps their part under tension (negative eigenvalues, which
-// pressure in the plane brings, are set to zero), so it is positive semidefinite and still stiff across a tensed wall.
+// The last two terms are the geometric stiffness. The step's tangent keeps their part under tension. Negative
+// eigenvalues, which in-plane compression causes, are set to zero. The tangent is thus positive semidefinite and still
+// stiff across a wall under tension.
 //
-// Prestrain e0, symmetric, in the triangle's rest frame: e + e0 in place of e. With Z = 2 mu e0 + lambda tr(e0) I = z I + D,
-// D without trace, that adds Z : S to the energy. z adds to lambda tr e in G and to (mu + lambda) tr e in the spin. D : S is
-// h = D : C / tr S in the plane, C = F^T F, so with y_i = F D b_i
+// Prestrain e0 is symmetric, in the triangle's rest frame: e + e0 replaces e. Let Z = 2 mu e0 + lambda tr(e0) I = z I +
+// D, with D free of trace. The prestrain adds Z : S to the energy. z adds to lambda tr e in G and to (mu + lambda) tr e
+// in the spin. In the plane, D : S is h = D : C / tr S with C = F^T F. With y_i = F D b_i,
 //   G += (2 D - h S^-1) / tr S
-//   second derivative += 2/tr S (b_i^T D b_j) I - 2/(tr S)^2 (y_i g_j^T + g_i y_j^T - h g_i g_j^T + h/2 p_i p_j^T), and n n^T as above.
-// Its part in the plane couples spin and shear, has no definite sign and is small against Hooke's law: the step leaves it out.
+//   second derivative += 2/tr S (b_i^T D b_j) I - 2/(tr S)^2 (y_i g_j^T + g_i y_j^T - h g_i g_j^T + h/2 p_i p_j^T),
+// and n n^T as above. Its in-plane part couples spin and shear, is indefinite and is small against Hooke's law. The
+// step leaves it out.
 #pragma once
 #include <utility>
 #include <vector>
@@ -38,7 +40,7 @@ class StretchTriangles {
   void bind(const BlockMatrix& a, const std::vector<int>& free_of_node);
   void linearise(const double* x, double* force, BlockMatrix* stiffness, double scale, Tangent which) const;
   double energy(const double* x) const;
-  /// Takes the linear strain of displacement u from the strain. Both 3 values a node, m.
+  /// Subtracts the linear strain of displacement u from the strain. Both arguments have 3 values a node, m.
   void prestrain(const double* rest, const double* u);
 
  private:

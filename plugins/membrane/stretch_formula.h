@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Deformation and stress of a wall's triangle (stretch.h), of one or of a vector of them.
+// Deformation and stress of a wall's triangle (stretch.h), for one triangle or for a vector of them.
 #pragma once
 #include "core/linalg/lane_math.h"
 
 namespace insula {
 
-/// A triangle crushed to less than this part of its area keeps the direction of its stress.
+/// A triangle compressed below this part of its area keeps the direction of its stress.
 inline constexpr double min_area = 1e-3;
 
 template <class V>
@@ -16,8 +16,8 @@ struct StretchOf {
   V i00, i01, i11;      // S^-1
 };
 
-/// u, v: the triangle's second and third corner from the first, m; b: rest gradients of all three, of which the last two count, 1/m.
-/// Differences, since what is far from the origin must not lose digits.
+/// u, v: the triangle's second and third corner from the first, m. b: rest gradients of all three, of which the last
+/// two are used, 1/m. Differences keep their digits far from the origin.
 template <class V>
 static inline StretchOf<V> stretch_of(const V (&u)[3], const V (&v)[3], const V (&b)[3][2]) {
   StretchOf<V> s;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Hinges and triangles of a wall in batches of eight, quantity by quantity, and the loops over them, compiled once per instruction
-// set (kernels_impl.cpp) and chosen at run time. What comes of one does not depend on its companions.
+// Hinges and triangles of a wall in batches of eight, stored quantity by quantity, and the loops over them. The loops
+// are compiled once per instruction set (kernels_impl.cpp) and chosen at run time. The result of one lane does not
+// depend on the others.
 #pragma once
 
 namespace insula {
@@ -22,14 +23,14 @@ struct alignas(64) TriangleBatch {
 };
 
 struct WallKernels {
-  /// Angles of a batch's hinges, each the one nearest to what `angle` holds (rad); with `gradient` (16 values a hinge, each node's
-  /// three padded to four) their gradients, 1/m.
+  /// Angles of a batch's hinges, rad. Each is the multiple nearest to the value that `angle` holds. With `gradient` (16
+  /// values a hinge, each node's three padded to four) also their gradients, 1/m.
   void (*hinges)(const HingeBatch& batch, const double* x, double* angle, double* gradient);
   /// force += -dE/dx of the triangles' stretch.
   void (*stretch)(const TriangleBatch& batch, const double* x, double* force);
 };
 
-/// Those that go with kernels() of core/linalg.
+/// The loops for the instruction set of kernels() in core/linalg.
 const WallKernels& wall_kernels();
 
 }  // namespace insula

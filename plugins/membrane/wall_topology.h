@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which triangles of a wall are neighbours.
+// Adjacency of a wall's triangles.
 #pragma once
 #include <array>
 #include <string>

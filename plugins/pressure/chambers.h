@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The inside of a closed shell parted into chambers, each with its exact volume and the volume's gradient.
+// The inside of a closed shell divided into chambers, each with its exact volume and the volume's gradient.
 //
-// A chamber is bounded by the triangles that belong to it and, where it borders on others, by a cone over the border whose
-// apex is the mean of the border's nodes. Each is then a closed polyhedron, so uniform pressure in one chamber has neither a
-// resultant force nor a moment; the cones of neighbours cancel, and the chambers' volumes add up to that of the shell.
+// A chamber is bounded by its triangles and by a cone over each border with other chambers. The apex of the cone is the
+// mean of the border's nodes. Each chamber is then a closed polyhedron, so a uniform pressure in one chamber has
+// neither a resultant force nor a moment. The cones of neighbours cancel, and the chambers' volumes add up to that of
+// the shell.
 #pragma once
 #include <string>
 #include <string_view>
@@ -15,7 +16,7 @@ namespace insula {
 
 class Chambers {
  public:
-  /// groups: names of the regions of each chamber; triangles of regions in no group go to the chamber next to them.
+  /// groups: names of the regions of each chamber. Triangles of regions in no group go to the adjacent chamber.
   void build(const ShellBody& body, const std::vector<std::vector<std::string>>& groups);
 
   int count() const { return int(chambers_.size()); }
@@ -34,12 +35,12 @@ class Chambers {
     std::string name;
     double area = 0;
     std::vector<int> nodes;                      ///< ascending
-    std::vector<std::array<int, 3>> triangles;   ///< places in `nodes`
+    std::vector<std::array<int, 3>> triangles;   ///< indices into `nodes`
     struct Cone {
       int a, b, border;                          ///< edge as the cone's outward triangle (apex, a, b) has it
     };
     std::vector<Cone> cones;
-    std::vector<std::vector<int>> border;        ///< of each border: its nodes, places in `nodes`
+    std::vector<std::vector<int>> border;        ///< of each border: its nodes, indices into `nodes`
   };
   void assign(const ShellBody& body, const std::vector<std::vector<std::string>>& groups, std::vector<int>& of);
   void add_borders(const std::vector<std::array<int, 3>>& triangles, const std::vector<int>& of, std::size_t node_count);

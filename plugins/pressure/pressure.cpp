@@ -2,34 +2,37 @@
 /*
 # pressure
 
-Blood pressure inside a closed shell as a constraint on the volumes of its chambers. With V_j the volume of chamber j,
-g_j = dV_j/dq (area-weighted normals, exact for the polyhedron),
+Blood pressure inside a closed shell, as a constraint on the volumes of its chambers. With V_j the volume of chamber j
+and g_j = dV_j/dq (area-weighted normals, exact for the polyhedron):
 
     force on the wall   sum_j g_j P_j          row   delta = (V - V_rest) / A,   lambda = p A,   p = P(t + h) - P(t)
 
-A is the mean area of a chamber: a row is then in metres of mean wall displacement, its lambda in newtons. The pressure of the last
-step is part of the free motion (DeformableBody::filling), so that collision looks where the wall will be, not where it would
-be without blood; the rows add what changes.
+A is the mean area of a chamber. A row is thus in metres of mean wall displacement, and its lambda is in newtons. The
+pressure of the last step is part of the free motion (DeformableBody::filling). Collision therefore searches at the
+position that the wall will have under this pressure. The rows add the change of pressure.
 
 The imaged shape is the one at mean pressure (or at `imaged_at`). The wall is prestressed so that its tension balances
-that pressure there (DeformableBody::prestress, the linear inverse problem), and then bears the whole pressure: without any it
-is slack and somewhat smaller. With prestress="false" the imaged shape is free of stress and P is the excess.
+that pressure there (DeformableBody::prestress, the linear inverse problem). It then bears the whole pressure. Without
+pressure it is slack and somewhat smaller. With prestress="false" the imaged shape is free of stress and P is the
+excess.
 
 Alone, the pressure follows the pulse: bounds of the row lower = upper = (P(t + h) - P(t)) A.
 
-Fed by a network of vessels, the pressures are unknowns. The network, everything but the chambers eliminated, is Y p = s - Q
-with Q the chambers' dV/dt. Implicit in time, with the volume of blood F of each chamber as state:
+If a network of vessels feeds the chambers, the pressures are unknowns. With everything but the chambers eliminated,
+the network is Y p = s - Q, where Q is the chambers' dV/dt. It is integrated implicitly, with the volume of blood F of
+each chamber as state:
 
     V(t + h) - F(t) + h (Y p - s) = 0,         F(t + h) = F(t) - h (Y p - s)
 
-with s that of pressures counted from P(t). Y = L D L^T (L from the star-mesh shares, unit lower triangular, no cancellation) makes the rows' law diagonal: with B = L^-1
+Here s belongs to pressures counted from P(t). The factorisation Y = L D L^T makes the rows' law diagonal. L comes
+from the star-mesh shares; it is unit lower triangular and free of cancellation. With B = L^-1:
 
     row k   delta = B_k (V - F) / A - c_k lambda_k^feed,   c_k = h D_k / A^2,   p = B^T lambda / A
 
-The coupling is exact: an open chamber takes the pressure of its feed, a sealed one is incompressible, two that are sealed
-off together keep their common volume, and so do the hands feel it. F keeps the account, so blood is not lost to linearisation.
-A row whose D is so large that c exceeds what a message to the haptic server may carry gets a resistance in series; the
-pressure of the network behind it stays exact.
+The coupling is exact. An open chamber takes the pressure of its feed. A sealed one is incompressible. Two that are
+sealed off together keep their common volume. The hands feel the same. F keeps the account, so no blood is lost by
+linearisation. If D is large, c may exceed the largest value of a message to the haptic server. Such a row gets a
+resistance in series, and the pressure of the network behind it stays exact.
 
 Source of the idea: Dequidt et al. 2015, section 3.4 (pressure as a constraint with area-weighted normals).
 */

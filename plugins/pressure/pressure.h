@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Blood pressure on the wall of a closed shell, chamber by chamber (the equations stand in pressure.cpp).
+// Blood pressure on the wall of a closed shell, chamber by chamber (equations in pressure.cpp).
 #pragma once
 #include <string>
 #include <vector>
@@ -13,15 +13,16 @@
 
 namespace insula {
 
-/// What feeds the chambers, when the pressure is not simply prescribed: a network of vessels.
+/// What feeds the chambers when the pressure is not prescribed: a network of vessels.
 class ChamberFeed {
  public:
   virtual ~ChamberFeed() = default;
   /// Pressure of a chamber at which the shape was imaged, Pa.
   virtual double reference(int chamber) const = 0;
-  /// The network of this step as the chambers see it: one node each, everything else eliminated. May be asked more than once.
+  /// The network of this step as the chambers see it: one node each, everything else eliminated. May be called
+  /// repeatedly.
   virtual void reduce(const StepContext& context, StarMesh& chambers) = 0;
-  /// After the step: pressure at each chamber's place in the network (Pa), and how much the chamber yields (m3/Pa).
+  /// After the step: pressure at each chamber's node of the network (Pa), and how much the chamber yields (m3/Pa).
   virtual void settle(const StepContext& context, const double* pressure, const double* yielding) = 0;
 };
 

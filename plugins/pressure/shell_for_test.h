@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shells for tests: closed tubes and spheres with regions and centrelines, and a wall of springs whose places a test may move.
+// Shells for tests: closed tubes and spheres with regions and centrelines, and a wall of springs whose anchor points a
+// test may move.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -18,7 +19,8 @@
 
 namespace insula::test {
 
-/// A spring from every node to its place, the rest position unless a test moves it; mass so small that a step is static.
+/// A spring from every node to its anchor, the rest position unless a test moves it. The mass is so small that a step
+/// is static.
 class TestWall final : public ForceModel {
  public:
   Param<Stiffness> stiffness{this, {.name = "stiffness", .fallback = "50 N/m", .min = "0 N/m", .max = "1e9 N/m", .doc = "of a node's spring"}};
@@ -110,8 +112,8 @@ inline TriMesh ball(const Vec3& centre, double radius, int levels) {
   return m;
 }
 
-/// A vessel put together from separate closed parts, each one region with one centreline: what joins them are the names of
-/// the ends. Written as vessel.json and wall.ply below `meshes`.
+/// A vessel of separate closed parts, each one region with one centreline. The names of the ends join them. Written as
+/// vessel.json and wall.ply below `meshes`.
 struct TestVessel {
   TriMesh wall;
   nlohmann::json json = {{"unit", "mm"}, {"regions", nlohmann::json::array()}, {"vertex_region", nlohmann::json::array()},

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The course of arterial pressure over one heartbeat: steep rise, systolic peak, dicrotic notch and wave, slow fall.
+// The course of arterial pressure over one heartbeat: steep rise, systolic peak, dicrotic notch and wave, slow decay.
 #pragma once
 
 namespace insula {
 
-/// Six harmonics, scaled so that its least value is 0 (at phase 0, the start of systole) and its greatest 1.
+/// Six harmonics, scaled so that the minimum is 0 (at phase 0, the start of systole) and the maximum 1.
 class PulseWave {
  public:
   PulseWave();

@@ -3,8 +3,9 @@
 # retractor
 
 A brain spatula: a blunt flat blade that holds a lobe aside by contact alone. With `hand="none"` a table-mounted arm
-holds it at home; `coupling` is then the stiffness of the arm. While the scene settles (`<settle>`) the arm can bring it there:
-it starts at home + `approach`, moves in a straight line during `approach_time`, and is at home `rest` before the exercise begins.
+holds it at home, and `coupling` is the stiffness of the arm. The arm can bring it there while the scene settles
+(`<settle>`). It starts at home + `approach`, moves in a straight line during `approach_time`, and is at home `rest`
+before the exercise begins.
 */
 #include <algorithm>
 

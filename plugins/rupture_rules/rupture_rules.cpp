@@ -6,18 +6,20 @@ Goals and clocks of an intraoperative rupture.
 
 - `fault_rupture` counts a rupture (one that the trainee caused, or any).
 - `goal_bleeding_stopped` is reached when a tear, once open, has let out no more than `rate` for `hold`.
-- `timer_rupture` runs from the rupture until a permanent clip is on and the bleeding stands; beyond `limit` the exercise has failed.
-- `timer_temporary_clip` runs while a temporary clip is on; beyond `limit` (three minutes: longer occlusion risks a stroke) it
-  counts a fault.
-- `goal_temporary_removed` is reached when a temporary clip that was on is off again, with a permanent clip on and no bleeding.
+- `timer_rupture` runs from the rupture until a permanent clip is on and the bleeding has stopped. Beyond `limit` the
+  exercise has failed.
+- `timer_temporary_clip` runs while a temporary clip is on. Beyond `limit` it counts a fault (three minutes: longer
+  occlusion risks a stroke).
+- `goal_temporary_removed` is reached when a temporary clip that was on is off again, with a permanent clip on and no
+  bleeding.
 
-Blood comes with the pulse, and a tear that is all but shut spurts now and then. What is reached is therefore not taken back by one
-step's rate but by blood that runs: with r the rate of bleeding, the surplus
+Blood comes with the pulse, and a tear that is nearly shut spurts now and then. A single step's rate therefore does
+not withdraw a reached goal; only continuing bleeding does. With r the rate of bleeding, the surplus
 
     S <- min(R, max(0, S + (r - rate) h)),   R = rate . 1 s
 
-fills up to R while it bleeds and empties while it does not; it bleeds from S = R until S = 0 (a cumulative sum with hysteresis:
-E. Page, Continuous inspection schemes, Biometrika 1954).
+fills up to R while it bleeds and empties while it does not. The state is "bleeding" from S = R until S = 0. This is a
+cumulative sum with hysteresis (E. Page, Continuous inspection schemes, Biometrika 1954).
 */
 #include <algorithm>
 

@@ -2,28 +2,31 @@
 /*
 # self_contact
 
-Contact of a thin wall with itself, so that the walls of a vessel lie on each other when it is pressed flat:
+Contact of a thin wall with itself. The walls of a vessel then lie on each other when it is pressed flat:
 
     <self_contact on="artery_surface" thickness="0.3 mm" friction="0.3"/>
 
-The surface's triangles are the middle of the wall. A sampled vertex and the triangle across the lumen that faces it make
-one block, as in <contact>:
+The surface's triangles are the middle surface of the wall. A sampled vertex and the triangle that faces it across the
+lumen make one block, as in <contact>:
 
     gap = distance - thickness,   0 <= gap(end) _|_ force >= 0,   |f_t| <= mu f_n
 
-`contact_stiffness` lets the wall itself be pressed thinner there: delta + lambda / contact_stiffness = gap. Rigid jaws on a wall that is never thinner rest on its
-thickest fold alone, near the hinge, and hold the rest loosely, which the pulse then drags out, beat by beat; a wall
-that gives way a little is gripped all along the blade. E A / t: 3 kN/m is 1 MPa under 0.7 mm2 of 0.22 mm.
+`contact_stiffness` is the contact stiffness by which the wall itself becomes thinner there: delta + lambda / contact_stiffness = gap. Without
+it, rigid jaws rest only on the wall's thickest fold, near the hinge. They hold the rest loosely, and the pulse pulls
+it out, beat by beat. A wall that yields a little is gripped all along the blade. The stiffness is E A / t: 3 kN/m is
+1 MPa under 0.7 mm2 of 0.22 mm.
 
-`sides="outer"` or `"both"` looks after the outer sides too, a sac against its branch. Which side a pair belongs to is told by
-the rest shape (`core/collision/colliders/self_collider.h`), so walls that have crossed are recognised and come apart again.
+`sides="outer"` or `"both"` also handles the outer sides, such as a sac against its branch. The rest shape tells to
+which side a pair belongs (`core/collision/colliders/self_collider.h`). Walls that have crossed are thus recognised and separate
+again.
 
-A thin wall gives way between its contacts, so every place that a tool or a clip presses on (a contact of `<contact>`) has a
-support of its own: one row without friction between that place and the one behind it, along the tool's normal. Supports look
-as far ahead as tools may go in a step (`max_step_displacement` of `<contact>`), so that not even a fast tool presses one wall through the
-other. `max_contacts` and `max_supports` bound the rows: three for each contact, one for each support.
+A thin wall yields between its contacts. Every point that a tool or a clip presses on (a contact of `<contact>`)
+therefore has a support of its own. It is one row without friction between that point and the one behind it, along the
+tool's normal. Supports search as far ahead as tools may move in a step (`max_step_displacement` of `<contact>`). Even a fast tool
+then cannot press one wall through the other. `max_contacts` and `max_supports` bound the rows: three for each
+contact, one for each support.
 
-Sources: contact law as in <contact>; side by the rest shape and the supports are our own.
+Sources: contact law as in <contact>; the side by the rest shape and the supports are our own.
 */
 #include "plugins/self_contact/self_contact.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contact of a thin wall with itself; what it does and its scene element are described in self_contact.cpp.
+// Contact of a thin wall with itself. self_contact.cpp describes the law and the scene element.
 #pragma once
 #include <memory>
 #include <vector>
@@ -41,11 +41,12 @@ class SelfContact final : public Constraint, public StatesLaw {
   const std::vector<Vec3>& forces() const { return forces_; }  ///< along (normal, tangent, other tangent), N
 
  private:
-  /// Of walls that overlap, in a step. Walls that give way part by their own force, which is bounded already.
+  /// Largest correction of overlapping walls in a step, m. Yielding walls separate by their own force, which is bounded
+  /// already.
   double max_correction() const { return (contact_stiffness() > 0 ? 1.0 : 0.3) * thickness(); }
   void add_row(ConstraintBuilder& builder, int row, const Proximity& x, const Vec3& d) const;
 
-  /// Two places of the wall, one behind the other as a tool presses.
+  /// Two points of the wall, one behind the other along the direction in which a tool presses.
   struct Support {
     int triangle, behind;
     Vec3 bary, behind_bary, normal;

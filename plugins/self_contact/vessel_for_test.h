@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A thin tube held at both ends, flat tools that come at it, and what must never be: walls through walls, tools inside.
+// A thin tube fixed at both ends, flat tools that approach it, and forbidden states: walls through walls, tools inside.
 #pragma once
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -90,14 +90,14 @@ struct VesselBench {
     state.device = device;
     s->set_hand(which, state);
   }
-  /// The vessel as it stands.
+  /// The vessel in its current shape.
   const CollisionMesh& now() {
     places_.resize(shell->rest().vertices.size());
     for (std::size_t i = 0; i < places_.size(); ++i) places_[i] = shell->q().segment<3>(3 * std::ptrdiff_t(i));
     now_.update(places_, {});
     return now_;
   }
-  /// Edges that go through triangles which do not share a vertex with them.
+  /// Edges that pass through triangles which do not share a vertex with them.
   int crossings() {
     const CollisionMesh& m = now();
     int count = 0;
@@ -114,7 +114,8 @@ struct VesselBench {
     }
     return count;
   }
-  /// How deep the deepest point of a tool's cores is inside the vessel, m; 0: outside. Points of the cores' edges included.
+  /// How deep the deepest point of a tool's cores is inside the vessel, m; 0: outside. Includes points of the cores'
+  /// edges.
   double depth(const Instrument& tool) {
     const CollisionMesh& m = now();
     double deepest = 0;

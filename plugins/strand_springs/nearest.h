@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Small geometry for strands: vertices in reach, paths along a surface and normals.
+// Small geometry for strands: vertices within reach, paths along a surface and normals.
 #pragma once
 #include <vector>
 
@@ -26,7 +26,7 @@ class NearestVertices {
 class SurfacePaths {
  public:
   explicit SurfacePaths(const TriMesh& mesh);
-  /// Whether b can be reached from a by a path of at most `limit`, m; the paths of the last a are kept.
+  /// Whether a path of at most `limit`, m, leads from a to b. The paths of the last a are kept.
   bool connected(int a, int b, double limit);
 
  private:

@@ -6,16 +6,19 @@ Arachnoid strands between two bodies. Each is one compliant row on the distance 
 
     delta = |qi - qj| - l0,   delta + lambda / k = 0,   lambda <= 0  (tension only)
 
-solved with the contacts, so a strand is never stiffer or later than the tissue it pulls. They are generated across the
-gap between two surfaces from a density and a maximal length; the same seed gives the same strands. Both surfaces may be the
-same one (an aneurysm's sac and the branches at its neck): then a strand joins two places that face each other and are not
-near along the surface, that is, the way along its edges is more than three times the strand.
+solved with the contacts. A strand is therefore never stiffer or later than the tissue it pulls. Strands are generated
+across the gap between two surfaces from a density and a maximal length. The same seed gives the same strands. Both
+surfaces may be the same one (an aneurysm's sac and the branches at its neck). A strand then joins two points that
+face each other and are not near along the surface. The path between them along the edges must be more than three
+times as long as the strand.
 
-A blade that touches a strand meets a rigid-plastic resistance: one row on their relative motion whose force is at most
-cut_force. Where the strand gives way, the blade's travel through it wears it: k falls in proportion, and after
-cut_length it parts. Pulled beyond `strength` (of what is left of it) it parts too: torn, or cut if a blade is in it.
+A blade that touches a strand meets a rigid-plastic resistance. This is one row on their relative motion whose force
+is at most cut_force. Where the strand yields, the blade's travel through it damages it. k decreases in proportion,
+and after cut_length the strand is severed. It is also severed when it is pulled beyond `strength` times its remaining
+integrity. It then counts as torn, or as cut if a blade is in it.
 
-Source: Dequidt et al. 2015, section 3.3 (springs between lobes as constraints); forces of dissection: Marcus et al. 2014.
+Source: Dequidt et al. 2015, section 3.3 (springs between lobes as constraints); forces of dissection: Marcus et al.
+2014.
 */
 #include "plugins/strand_springs/strand_springs.h"
 

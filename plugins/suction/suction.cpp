@@ -2,13 +2,14 @@
 /*
 # suction
 
-A suction tube. Its wall pushes tissue by contact; while the device's first button is held, the nearest tissue within
-`capture` of the opening is drawn onto it and held: one row along the tube and two across, each a rigid hold that lets go
-in a plastic way at
+A suction tube. Its wall pushes tissue by contact. While the device's first button is held, the nearest tissue within
+`capture` of the opening is drawn onto it and held. One row along the tube and two across hold it rigidly. They yield
+plastically at
 
     along  F = suction * area of the opening,     across  grip * F
 
-so the hand feels no more than the vacuum can pull. Tissue drawn farther than `release` from the opening is lost.
+so the hand feels no more than the vacuum can pull. Tissue that is drawn farther than `release` from the opening is
+lost.
 */
 #include <cmath>
 

@@ -4,13 +4,13 @@
 
     sentences.py [--json] [--headers] [--long] [PATH...]
 
-The pages are README.md, CONTRIBUTING.md and all of docs/. With --headers the comments of the C++ sources are counted
-too, an entry a file: all comments of a header, the comment at the top of a .cpp file. PATH limits the count to files
-and folders; with it, --headers counts the sources under those paths.
+The pages are README.md, CONTRIBUTING.md, all of docs/, and each README.md below scenes/ and meshes/. With --headers the
+comments of the C++ sources are counted too, an entry a file: all comments of a header, the comment at the top of a .cpp
+file. PATH limits the count to files and folders; with it, --headers counts the sources under those paths.
 
-A page's mean may be at most 20 words a sentence, and no sentence may have more than 40. The mean of a source counts from
-five sentences on. The exit status is 1 above a limit. --json prints {page: {"sentences", "mean", "max", "longest"}};
-"longest" is the text of the longest sentence. --long lists every sentence above the limit.
+A page's mean may be at most 20 words a sentence, and no sentence may have more than 40. The mean of a source counts
+from five sentences on. The exit status is 1 above a limit. --json prints {page: {"sentences", "mean", "max",
+"longest"}}; "longest" is the text of the longest sentence. --long lists every sentence above the limit.
 
 What counts as a sentence:
   - A paragraph, a list item and a quotation are split at full stops, question marks and exclamation marks. A colon that
@@ -162,6 +162,7 @@ def files_of(source, paths, headers):
         return not wanted or any(file == w or w in file.parents for w in wanted)
 
     markdown = [source / "README.md", source / "CONTRIBUTING.md"] + sorted((source / "docs").rglob("*.md"))
+    markdown += [p for folder in ("meshes", "scenes") for p in sorted((source / folder).rglob("README.md"))]
     out = [(p, of_page) for p in markdown if p.exists() and taken(p)]
     for folder in SOURCES if headers else ():
         found = sorted(p for p in (source / folder).rglob("*") if p.suffix in (".h", ".cpp"))

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From many proximities to few contacts, and the same contact's name from step to step.
+// From many proximities to few contacts, with persistent contact keys from step to step.
 //
-// Greedy by gap: a proximity is kept if every kept one is farther than `spacing` or has a normal turned by more than 40
-// degrees. Those of the last step have a small advantage, so that the choice does not flicker. A tool's contact keeps its
-// key and its tangent as long as one of the same pieces stays near in the tool's frame; a tissue contact is known by its
-// vertex. Keys are unique among all selections that share a counter; they serve the warm start.
+// Selection is greedy by gap. A proximity is kept if every kept one is farther than `spacing` or has a normal that
+// differs by more than 40 degrees. Contacts of the last step have a small advantage, so that the choice does not
+// flicker. A tool's contact keeps its key and its tangent as long as one of the same pieces stays near in the tool's
+// frame. A tissue contact is identified by its vertex. Keys are unique among all selections that share a counter; they
+// serve the warm start.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -18,13 +19,13 @@ struct SelectionSettings {
   double advantage = 0.2e-3;  ///< m of gap that a contact of the last step may be farther and still win
   int max_contacts = 8;
   int max_per_piece = 4;
-  bool both_ends = false;  ///< a surface with itself: alike are those with both ends near, whichever way round
+  bool both_ends = false;  ///< a surface with itself: two contacts are alike if both ends are near, in either order
 };
 
 class ContactSelection {
  public:
-  /// Reduces `all` (in any order that is reproducible) in place and fills in keys and tangents. `next_key` counts up for
-  /// every new contact. Allocates only to grow.
+  /// Reduces `all` (in any reproducible order) in place and fills in keys and tangents. `next_key` counts up for every
+  /// new contact. Allocates only to grow.
   void select(std::vector<Proximity>& all, const SelectionSettings& settings, std::uint64_t& next_key);
   void reset() { last_.clear(); }
   /// Makes room: proximities before and contacts after a selection.
@@ -47,7 +48,7 @@ class ContactSelection {
   std::vector<Proximity> kept_;
 };
 
-/// A unit vector perpendicular to n, as near to `wish` as can be; a fixed choice where wish is parallel to n or zero.
+/// A unit vector perpendicular to n, as near to `wish` as possible. A fixed choice where wish is parallel to n or zero.
 Vec3 tangent_to(const Vec3& n, const Vec3& wish);
 
 }  // namespace insula

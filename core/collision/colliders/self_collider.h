@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A thin-walled surface against itself: sampled vertices against triangles that face them, across the lumen (inner sides)
-// or outside. The triangles are the wall's middle surface; the gap is what is left beyond one wall thickness.
+// A thin-walled surface against itself: sampled vertices against triangles that face them, across the lumen (inner
+// sides) or outside. The triangles are the wall's middle surface. The gap is their distance less one wall thickness.
 //
 // The rest shape, where nothing has crossed, tells which side a pair belongs to. It is inner if the straight line
 // between the two leaves the vertex inward, ends at the triangle from inside, and is no longer than a few lumens. It is
@@ -8,12 +8,12 @@
 // a negative gap and is brought back, and no history is needed for the inner side. Pairs that are near at rest are
 // neighbours and never touch.
 //
-// A sample with nothing near is not looked at again before motion can have brought something near: what its region of the mesh and
-// those of its possible partners have moved tells. One with something near keeps a list of its possible partners until
-// motion may have added to them.
+// A sample with nothing near is tested again only when motion may have brought something near. The motion of its region
+// of the mesh and of its possible partners' regions decides that. A sample with something near keeps a list of its
+// possible partners until motion may have added to them.
 //
-// Geometry is that of the start of the step. Where a tool presses on the wall, opposite() finds what lies behind that very
-// place: a thin wall gives way between its supports, so each push needs a support of its own.
+// The geometry is that of the start of the step. Where a tool presses on the wall, opposite() finds the point behind
+// that point. A thin wall yields between its supports, so each push needs a support of its own.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -29,13 +29,13 @@ namespace insula {
 struct SelfContactSettings {
   double thickness = 0.3e-3;     ///< middle surfaces stay this far apart, m
   double alarm = 0.5e-3;         ///< of the gap, m
-  double max_correction = 0.3e-3;  ///< an overlap is undone by no more than this in a step, m
-  double max_depth = 4e-3;       ///< a crossing deeper than this is given up, m
+  double max_correction = 0.3e-3;  ///< largest correction of an overlap in a step, m
+  double max_depth = 4e-3;       ///< a crossing deeper than this is ignored, m
   bool inner = true, outer = false;
-  bool normal_under_relaxation = false;     ///< the normal of what presses turns slowly: for walls that give way where they are pressed
+  bool normal_under_relaxation = false;     ///< normal under-relaxation while pressed, for walls that yield
 };
 
-/// The place across the lumen behind a place of the wall.
+/// The point across the lumen behind a point of the wall.
 struct Opposite {
   int triangle = -1;  ///< -1: none
   Vec3 bary = Vec3::Zero();
@@ -51,7 +51,7 @@ class SelfCollider {
   /// Appends at most one contact a sample and side, in an order that depends on the arguments alone, for any number of
   /// threads. Does not allocate while `out` has capacity.
   void detect(const CollisionMesh& mesh, const SelfContactSettings& settings, std::vector<Proximity>& out, Workers& workers);
-  /// From a place of the wall along a unit vector into the lumen, no farther than `far`.
+  /// From a point of the wall along a unit vector into the lumen, no farther than `far`.
   Opposite opposite(const CollisionMesh& mesh, int triangle, const Vec3& bary, const Vec3& along, double far) const;
   const std::vector<int>& samples() const { return samples_; }
   void reset();
@@ -72,7 +72,7 @@ class SelfCollider {
 
   std::vector<int> samples_;
   std::vector<Vec3> position_, normal_;             ///< of the samples at rest
-  std::vector<double> reach_;                    ///< of the samples: longest way to an inner partner at rest, m
+  std::vector<double> reach_;                    ///< of the samples: longest distance to an inner partner at rest, m
   std::vector<Vec3> face_position_, face_normal_;   ///< of the triangles at rest
   std::vector<std::array<Vec3, 3>> corners_;     ///< of the triangles at rest
   std::vector<double> extent2_;                  ///< of the triangles at rest: farthest corner from the middle, m2
@@ -85,13 +85,14 @@ class SelfCollider {
   struct Swing {
     Vec3 turn = Vec3::Zero();  ///< that was last wanted
     int count = 0;             ///< of turns that took back the one before, of late
-    /// What part of the wanted turn the normal takes in this step: less, until the pressing ends, once it has swung for long.
+    /// The fraction of the wanted rotation that the normal takes in this step. It is reduced once the normal has swung
+    /// for long, until the pressing ends.
     double share(const Vec3& wanted);
   };
   std::vector<Swing> swing_[2];
-  std::vector<double> clear_[2];                 ///< of the samples: no partner of this side is nearer than this, m
+  std::vector<double> clear_[2];                 ///< of the samples: no partner of this side is nearer, m
   std::vector<std::vector<Partner>> lists_[2];   ///< of the samples: what may be a partner soon, nearest first ...
-  std::vector<double> covered_[2];               ///< ... as long as no more than this has moved; negative: to be made, m
+  std::vector<double> covered_[2];  ///< ... as long as no more than this has moved; negative: must be made, m
   long updates_ = 0;                             ///< of the mesh when last looked at
   std::vector<std::vector<Proximity>> found_;    ///< of the tasks
   double neighbour_ = 0;                         ///< m

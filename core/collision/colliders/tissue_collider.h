@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Surface against surface: sample vertices of a against the triangles of b.
 //
-// The samples are an even choice of a's vertices, fixed at the start (a contact is then known by its vertex, which stays
-// the same while the surfaces slide). For each, the nearest triangle of b that faces it among those it is, or may come in
-// the step's free motion, within the alarm distance of; a vertex behind that triangle is an overlap and has a negative gap.
-// Geometry is that of the start of the step: tissue moves by less than its own details in a step. A bump narrower than
-// the samples' distance s can reach into the other surface by about s^2 / (8 R), R its radius of curvature.
+// The samples are an even choice of a's vertices, fixed at the start. A contact is then identified by its vertex, which
+// stays the same while the surfaces slide. Each sample searches the triangles of b that face it and that are within the
+// alarm distance, now or in the step's free motion. The nearest one is taken. A vertex behind that triangle is an
+// overlap and has a negative gap. The geometry is that of the start of the step, since tissue moves by less than its
+// own details in a step. A bump narrower than the samples' distance s can enter the other surface by about s^2 / (8 R),
+// with R its radius of curvature.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -22,33 +23,33 @@ namespace insula {
 
 struct TissueContactSettings {
   double alarm = 0.5e-3;        ///< m
-  double max_correction = 0.5e-3; ///< an overlap is undone by no more than this in a step, m
+  double max_correction = 0.5e-3; ///< largest correction of an overlap in a step, m
   double max_depth = 5e-3;      ///< a vertex this far behind the surface is no longer pushed out, m
-  double offset = 0;            ///< half the thicknesses of both walls, where surfaces are the middle of a wall, m
+  double offset = 0;            ///< half the thicknesses of both walls, for middle surfaces of walls, m
 };
 
-/// Vertices of the surface no two of which are closer than `distance`, such that every used vertex is that close to one.
-/// In order of vertex number. Deterministic.
+/// A subset of the vertices of the surface. No two are closer than `distance`, and every used vertex is that close to
+/// one. In order of vertex number. Deterministic.
 std::vector<int> sample_vertices(std::span<const Vec3> rest, std::span<const std::array<int, 3>> triangles, double distance);
 
 class TissueCollider {
  public:
-  /// Samples in an order of neighbourhoods, by the rest shape; `triangles`: how many b has.
+  /// Samples in an order of neighbourhoods, by the rest shape. `triangles`: the number of triangles of b.
   TissueCollider(std::vector<int> samples, std::span<const Vec3> rest, int triangles);
-  /// Appends one contact a sample that has one, in the order of samples(). Keeps which samples were behind the surface
-  /// (they are looked for deeper). Does not allocate while `out` has capacity.
+  /// Appends one contact for each sample that has one, in the order of samples(). Keeps which samples were behind the
+  /// surface, since they are searched deeper. Does not allocate while `out` has capacity.
   void detect(const CollisionMesh& a, const CollisionMesh& b, const TissueContactSettings& settings, std::vector<Proximity>& out);
   const std::vector<int>& samples() const { return samples_; }
   void reset();
 
  private:
-  static constexpr std::size_t group = 16;  ///< samples that are ruled out together
+  static constexpr std::size_t group = 16;  ///< samples that are excluded together
   std::vector<int> samples_;
   std::vector<char> behind_;
   std::vector<double> clear_;     ///< of the samples: nothing of b is nearer than this, m
   struct Group {
     double clear = 0;    ///< least of its samples', m
-    double went = 0;     ///< what the samples' clear_ is yet to be lessened by, m
+    double went = 0;     ///< reduction of the samples' clear_ that is still due, m
     std::uint64_t own = 0, near = 0;  ///< regions of its samples, and of all of b that is not farther away than `around`
     double around = 0;   ///< m, less the samples' own way since, when ...
     double travelled = 0;  ///< ... b had travelled this far
@@ -70,7 +71,7 @@ class TissueCollider {
   std::vector<int> corners_at_;               ///< of the leaf that begins at this place: index of corners_, -1: not wanted yet
   bool gathering_ = false;                    ///< any in this step
   Vec3 centre_ = Vec3::Zero();
-  std::vector<KnownNearest> known_;  ///< of the samples: spares looks, does not change what is found
+  std::vector<KnownNearest> known_;  ///< of the samples: saves tests, does not change the result
   std::array<FacingSearch, group> search_;
   std::array<bool, group> looked_{}, settled_{};  ///< of these
   FacingSearch::Seen seen_;

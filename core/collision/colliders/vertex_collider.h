@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Rounded convex pieces against the vertices of a finely meshed thin wall.
 //
-// Where the wall's triangles are smaller than the pieces are round, no piece can enter between vertices, and keeping every
-// vertex near a piece out of it keeps the wall out of it. Unlike contacts of triangles (tool_collider.h) this asks for no
-// inside of the wall: a neck pressed flat between two jaws has none. Each vertex has one contact, with the piece it is nearest
-// to, known by the vertex from step to step.
+// Where the wall's triangles are smaller than the rounding of the pieces, no piece can enter between vertices. Keeping
+// every near vertex out of a piece then keeps the whole wall out of it. Unlike contacts of triangles (tool_collider.h)
+// this needs no inside of the wall. A neck pressed flat between two jaws has none. Each vertex has one contact, with
+// the nearest piece. The vertex identifies it from step to step.
 //
-// A vertex within the alarm distance at the start gives a contact there; one that the free motion would bring in gives it at
-// the moment of touch (conservative advancement; Mirtich 1996). A vertex remembers the direction in which it is kept out: if a
-// thin piece has passed through it all the same, it goes back the way it came.
+// A vertex within the alarm distance at the start gives a contact there. A vertex that the free motion would bring in
+// gives it at the moment of touch (conservative advancement; Mirtich 1996). A vertex remembers the direction in which
+// it is kept out. If a thin piece has passed through it nevertheless, it goes back the same way.
 #pragma once
 #include <array>
 #include <vector>
@@ -36,7 +36,7 @@ class VertexCollider {
 
   struct Candidate {
     int piece;
-    double at_least;  ///< no more than what nearest() gives, m
+    double at_least;  ///< lower bound of the result of nearest(), m
   };
 
   std::vector<RoundedPiece> pieces_;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bounding box tree over the triangles of a deforming mesh: built once from the rest shape, refitted every step.
-// Nodes lie in depth-first order in one array, so that a refit is one pass from the back. Their boxes are kept in single
-// precision, a cache line a node, four numbers at a time. They are loose: a vertex that stays within `slack` of where its
-// boxes were made leaves them alone, so that a refit costs what moves. What a query finds does not depend on that history:
-// overlapping() tests the leaves it comes to against their vertices. Queries allocate nothing.
+// Bounding box tree over the triangles of a deforming mesh. It is built once from the rest shape and refitted in every
+// step. Nodes are in depth-first order in one array, so a refit is one backward pass. Their boxes are in single
+// precision, one cache line for each node, four numbers at a time. The boxes are loose. A vertex that stays within
+// `slack` of its position at the last box update leaves its boxes unchanged, so the cost of a refit depends on the
+// motion. The result of a query does not depend on that history: overlapping() tests the vertices of the leaves it
+// reaches. Queries allocate nothing.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -46,12 +47,12 @@ struct Aabb {
   }
 };
 
-/// Four numbers that are computed with at once.
+/// Four numbers that are computed at once.
 using Float4 = float __attribute__((vector_size(16)));
 
 inline Float4 rounded(const Vec3& p) { return Float4{float(p[0]), float(p[1]), float(p[2]), 0}; }
 
-/// A box in single precision that holds the one it is made of. Finite coordinates below 1e30 m.
+/// A single-precision box that contains the box it is made of. Coordinates are finite and below 1e30 m.
 struct OuterBox {
   Float4 low{1e30f, 1e30f, 1e30f, 0};
   Float4 high{-1e30f, -1e30f, -1e30f, 0};
@@ -61,7 +62,7 @@ struct OuterBox {
     r.widen();
     return r;
   }
-  /// By more than the conversion may have rounded.
+  /// A margin above the rounding error of the conversion.
   void widen() {
     low -= rounding(low);
     high += rounding(high);
@@ -74,7 +75,8 @@ struct OuterBox {
     low = low < o.low ? low : o.low;
     high = high > o.high ? high : o.high;
   }
-  /// How far the point that was rounded to this one may go before it leaves the box, at least; negative: it may be outside.
+  /// A lower bound of the distance that the rounded point may move before it leaves the box. Negative: it may be
+  /// outside.
   float room_about(Float4 point) const {
     const Float4 below = point - low, above = high - point, m = (below < above ? below : above) - rounding(point);
     return std::min(std::min(m[0], m[1]), m[2]);
@@ -104,8 +106,8 @@ class AabbTree {
 
   /// Median splits along the longest side; the same input gives the same tree.
   void build(std::span<const Vec3> rest, std::span<const std::array<int, 3>> triangles);
-  /// Boxes of the triangles at `positions` joined with those at positions + displacements (may be empty). The arrays must live
-  /// until the next refit.
+  /// Boxes of the triangles at `positions` joined with those at positions + displacements (may be empty). The arrays
+  /// must exist until the next refit.
   void refit(std::span<const Vec3> positions, std::span<const Vec3> displacements);
   /// The same in parts, for a caller that knows which vertices may have left their boxes. look_at() gives the positions
   /// of vertices from now on, renew() takes the vertices to check, and close() ends the refit. renew() returns the
@@ -117,8 +119,8 @@ class AabbTree {
 
   /// Gives each vertex one of 64 marks, for marks_near().
   void mark(std::span<const int> mark_of_vertex);
-  /// The marks, as bits, of all leaves whose loose boxes are within a distance of `box`, axis by axis. Lowers `other` to how far the nearest
-  /// of them is that has a mark besides those that are `known`, m.
+  /// The marks, as bits, of all leaves whose loose boxes are within a distance of `box`, axis by axis. Lowers `other`
+  /// to the smallest distance of a leaf that has a mark outside of `known`, m.
   std::uint64_t marks_near(const Aabb& box, double within, std::uint64_t known, double& other) const {
     std::uint64_t found = 0;
     Aabb wide = box;
@@ -137,8 +139,8 @@ class AabbTree {
   Aabb bounds() const { return nodes_.front().box.box(); }
   int triangle_count() const { return int(order_.size()); }
 
-  /// The triangle at a place of the tree's order, in which those of a leaf follow each other and leaves that are near each other are close, and
-  /// the place where a leaf's begin.
+  /// The triangle at a position of the tree's order, and the position where a leaf begins. In this order the triangles
+  /// of a leaf are consecutive, and neighbouring leaves are close.
   int triangle_at(int place) const { return order_[std::size_t(place)]; }
   int place_of(std::span<const int> leaf) const { return int(leaf.data() - order_.data()); }
 
@@ -150,7 +152,8 @@ class AabbTree {
       return false;
     });
   }
-  /// visit(triangle) for every triangle of every leaf whose vertices' box overlaps `box`, and is wanted(that box).
+  /// visit(triangle) for every triangle of every leaf whose vertices' box overlaps `box` and satisfies wanted(that
+  /// box).
   template <class Wanted, class Visit>
   void overlapping(const Aabb& box, Wanted&& wanted, Visit&& visit) const {
     each_leaf(box, [&](const Node& n) {
@@ -169,8 +172,8 @@ class AabbTree {
     return each_leaf(box, [](const Node&) { return true; });
   }
 
-  /// Branch and bound: visit(triangle, bound2) for triangles of leaves closer to p than sqrt(bound2); the visitor lowers
-  /// bound2 as it finds closer ones. Nearer children first.
+  /// Branch and bound: visit(triangle, bound2) for triangles of leaves closer to p than sqrt(bound2). The visitor
+  /// lowers bound2 as it finds closer ones. Nearer children are visited first.
   template <class Visit>
   void nearest(const Vec3& p, double& bound2, Visit&& visit) const {
     nearest(p, nullptr, bound2, visit);
@@ -211,7 +214,7 @@ class AabbTree {
  private:
   struct Node {
     OuterBox box;
-    int first = 0;  ///< leaf: first place in order_; inner node: right child (the left one is the next node)
+    int first = 0;  ///< leaf: first index in order_; inner node: right child (the left one is the next node)
     int count = 0;  ///< triangles, 0 for an inner node
     int skip = 0;   ///< the node after this subtree
     int vertices = 0, vertex_count = 0;  ///< leaf: its vertices in leaf_vertices_
@@ -223,7 +226,8 @@ class AabbTree {
   std::span<const int> vertices_of(const Node& leaf) const { return {leaf_vertices_.data() + leaf.vertices, std::size_t(leaf.vertex_count)}; }
   Aabb tight(const Node& leaf) const;
   double renew(std::size_t vertex);
-  /// visit(leaf) for those whose loose box overlaps `box`, until it says true; whether it did. Below what is not wanted(node) none is visited.
+  /// visit(leaf) for leaves whose loose box overlaps `box`, until it returns true. Returns whether it did. Subtrees
+  /// whose node is not wanted(node) are skipped.
   template <class Wanted, class Visit>
   bool each_leaf(const Aabb& box, Wanted&& wanted, Visit&& visit) const {
     const OuterBox outer = OuterBox::around(box);
@@ -250,7 +254,7 @@ class AabbTree {
   std::vector<int> first_leaf_, leaf_of_;  ///< each vertex's leaves: nodes
   std::vector<OuterBox> ways_;      ///< each vertex's, loosely about its way from its position to the displaced one
   std::vector<int> parent_;         ///< of the nodes, -1: the first
-  std::vector<char> stale_;         ///< nodes whose boxes are to be made anew, and all above them
+  std::vector<char> stale_;         ///< nodes whose boxes must be updated, with all above them
   std::span<const Vec3> positions_, displacements_;
 };
 

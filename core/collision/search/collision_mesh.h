@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A deforming triangle surface as collision sees it: its box tree, its neighbourhoods, and where each point is during
-// the step: x(t) = x + t u, t in [0, 1], u the displacement of the free motion. Scene frame, m.
+// A deforming triangle surface for collision: its box tree, its adjacency, and the position of each point during the
+// step, x(t) = x + t u, t in [0, 1], with u the displacement of the free motion. Scene frame, m.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -24,37 +24,41 @@ struct NearestPoint {
   Vec3 outward = Vec3::UnitZ();  ///< unit, along the line through p and the point, out of the surface
 };
 
-/// How far the vertices of each region of a mesh went since the update before, at most, and will in the free motion, m.
+/// Largest displacement of the vertices of each region of a mesh since the update before, and in the free motion, m.
 struct RegionMotion {
   std::array<double, 64> moved{}, may_move{};
 };
 
 class CollisionMesh {
  public:
-  /// Counter-clockwise triangles seen from outside; closed surfaces and open sheets (one-sided, facing along their normals).
+  /// Triangles are counter-clockwise seen from outside. Closed surfaces and open sheets (one-sided, facing along their
+  /// normals) are allowed.
   void build(std::span<const Vec3> rest, std::span<const std::array<int, 3>> triangles);
-  /// Takes this step's positions and free displacements (empty: a surface that does not move) and refits the tree. The
-  /// arrays must live until the next update.
+  /// Takes this step's positions and free displacements (empty: a fixed surface) and refits the tree. The arrays must
+  /// exist until the next update.
   void update(std::span<const Vec3> positions, std::span<const Vec3> free);
-  /// The same, motion already measured since the last update.
+  /// The same with motion that has already been measured since the last update.
   void update(std::span<const Vec3> positions, std::span<const Vec3> free, const RegionMotion& motion);
-  /// Before positions are changed otherwise: the next update measures from where they are now.
+  /// Call before positions are changed in another way. The next update then measures from the present positions.
   void keep_positions();
 
-  /// Sum over all updates of the farthest way that a vertex went, m: between two updates no vertex went farther than the difference.
+  /// Sum over all updates of the largest displacement of a vertex, m. Between two updates no vertex moved farther than
+  /// the difference.
   double travelled() const { return travelled_; }
   double farthest_free() const { return farthest_free_; }  ///< of all vertices in this step, m
 
-  /// Vertices in regions of neighbours, the bits of a mask, so that what moves in one place is no news for what is elsewhere.
+  /// Vertices are divided into regions of neighbours, the bits of a mask. Motion in one region then does not affect the
+  /// others.
   static constexpr int regions = std::tuple_size_v<decltype(RegionMotion::moved)>;
   std::uint64_t region_of(int v) const { return std::uint64_t(1) << region_of_[std::size_t(v)]; }
   std::uint64_t regions_of(int tri) const {
     const auto& t = triangle(tri);
     return region_of(t[0]) | region_of(t[1]) | region_of(t[2]);
   }
-  /// Regions that may come within a distance of the box in this step, m. Lowers `other` to where the nearest begins that is not `known`.
+  /// Regions that may come within a distance of the box in this step, m. Lowers `other` to the distance of the nearest
+  /// region that is not in `known`.
   std::uint64_t regions_near(const Aabb& box, double within, std::uint64_t known, double& other) const { return tree_.marks_near(box, within, known, other); }
-  double moved(std::uint64_t mask) const { return most(motion_.moved, mask); }       ///< farthest that a vertex of these went in the last update, m
+  double moved(std::uint64_t mask) const { return most(motion_.moved, mask); }       ///< farthest in the last update, m
   double may_move(std::uint64_t mask) const { return most(motion_.may_move, mask); } ///< and its free displacement, m
   long updates() const { return updates_; }
 
@@ -62,7 +66,7 @@ class CollisionMesh {
   int vertex_count() const { return int(positions_.size()); }
   int triangle_count() const { return int(triangles_.size()); }
   const std::array<int, 3>& triangle(int i) const { return triangles_[std::size_t(i)]; }
-  /// That at a place of the tree's order.
+  /// The triangle at a position of the tree's order.
   const std::array<int, 3>& triangle_at(int place) const { return in_order_[std::size_t(place)]; }
   std::span<const int> triangles_around(int v) const {
     const int first = ring_start_[std::size_t(v)];
@@ -89,16 +93,17 @@ class CollisionMesh {
   /// be the surface point closest to p. The product of the normal with p - c has the sign of the distance of p
   /// (Baerentzen, Aanaes 2005).
   Vec3 pseudo_normal(int tri, const TriangleFeature& f, double t = 0) const;
-  /// Whether c, closest to something in direction d (unit, from c) on this triangle, is so on the neighbouring triangles
-  /// too: no step from c into one of them leads along d by more than `slack` (a sine).
+  /// Whether c is also closest on the neighbouring triangles. c is closest to something in direction d (unit, from c)
+  /// on this triangle. No step from c into a neighbour may lead along d by more than `slack` (a sine).
   bool locally_closest(int tri, const TriangleFeature& f, const Vec3& d, double t, double slack) const;
-  /// Nearest point of the surface at time t, if no farther than `limit`; with `side`, of the triangles that face that way.
+  /// Nearest point of the surface at time t, if no farther than `limit`. With `side`, only among the triangles that
+  /// face that side.
   NearestPoint nearest(const Vec3& p, double t, double limit, const Vec3* side = nullptr) const;
 
  private:
   AabbTree tree_;
   std::vector<std::array<int, 3>> triangles_;
-  std::vector<std::array<int, 3>> in_order_;  ///< the same as the tree has them: who goes through it finds neighbours beside each other
+  std::vector<std::array<int, 3>> in_order_;  ///< triangles in the tree's order: neighbours are close in memory
   std::vector<std::array<int, 3>> across_;  ///< neighbour across the edge that starts at each corner, -1 at a border
   std::vector<int> ring_start_, ring_;      ///< triangles around each vertex
   std::vector<Vec3> last_;  ///< positions of the update before; empty: motion is measured by the caller
@@ -113,7 +118,7 @@ class CollisionMesh {
   std::vector<int> region_of_;  ///< of the vertices
   std::vector<int> region_start_, in_region_;  ///< vertices of the regions
   RegionMotion motion_;
-  PerRegion room_{};  ///< each region's vertices may go so far before one leaves its boxes in the tree, m
+  PerRegion room_{};  ///< how far each region's vertices may move before one leaves its boxes in the tree, m
   long updates_ = 0;
   std::span<const Vec3> positions_, free_;
 };

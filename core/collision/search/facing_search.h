@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Finds the triangle of one surface that is nearest to a vertex of another and faces it. The vertex is searched for in
-// every step. A triangle needs no test while it was farther than the nearest one by more than all motion since. The
+// every step. A triangle needs no test while its distance exceeds the nearest one by more than all motion since. The
 // result depends only on positions. Of two triangles at the same distance, the lower number counts.
 #pragma once
 #include <algorithm>
@@ -12,14 +12,14 @@
 
 namespace insula {
 
-/// What is known of a vertex from the steps before. Distances are to be lessened by all motion.
+/// What is known of a vertex from earlier steps. Distances must be reduced by all motion.
 struct KnownNearest {
   int triangle = -1;  ///< nearest in the last step
-  int home = -1;      ///< whose neighbours are told from all others
+  int home = -1;      ///< the triangle whose neighbours are treated apart from all others
   double beside = 0;  ///< no triangle but the nearest is closer than this, m ...
   double beyond = 0;  ///< ... and none that shares no corner with `home`
 
-  /// Things have moved by up to `way`, and what is not known of is no nearer than `at_least`.
+  /// Records motion of up to `way`. Unknown triangles are no nearer than `at_least`.
   void lessen(double swept, double at_least) {
     beside = std::min(beside - swept, at_least);
     beyond = std::min(beyond - swept, at_least);
@@ -30,11 +30,11 @@ class FacingSearch {
  public:
   using Seen = std::vector<std::pair<int, double>>;  ///< triangles and their squared distances, m2
 
-  /// Nothing beyond `reach` is looked for. What is farther than the nearest by up to `margin` is looked at too, so that it is
-  /// known for a while that nothing else will be the nearest, m.
+  /// The search ends at `reach`. Triangles that are farther than the nearest by up to `margin` are tested too. It is
+  /// then known for some steps that no other triangle can become the nearest, m.
   void begin(const CollisionMesh& a, int vertex, const CollisionMesh& b, double reach, double margin);
-  /// Looks where it was. Whether that settles it, as it may if it is no farther than `sure`; if not, look() at all triangles that
-  /// may be within limit2(), and settle().
+  /// Tests the triangles of the last step. Returns whether that decides the search, which is possible if the nearest is
+  /// no farther than `sure`. If not, call look() for all triangles that may be within limit2(), and then settle().
   bool follow(KnownNearest& known, double sure, Seen& seen);
   void look(int triangle, Seen& seen);
   void settle(KnownNearest& known, const Seen& seen) const;
@@ -44,7 +44,7 @@ class FacingSearch {
   int nearest() const { return best_; }             ///< -1: none within reach
   const Vec3& bary() const { return bary_; }
   const Vec3& point() const { return point_; }
-  double clear() const { return std::sqrt(any2_); }  ///< no triangle at all is nearer, m
+  double clear() const { return std::sqrt(any2_); }  ///< lower bound of the distance of all triangles, m
 
  private:
   const CollisionMesh *a_ = nullptr, *b_ = nullptr;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The innermost look of the search between surfaces, compiled once per instruction set and chosen at run time. It only rules out:
-// what is found does not depend on the set.
+// The innermost test of the search between surfaces, compiled once per instruction set and chosen at run time. It only
+// excludes candidates, so the result does not depend on the set.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -15,7 +15,8 @@ struct BoxPack {
 };
 
 struct SearchKernels {
-  /// Bit k: point x, known to within `margin` (m) a coordinate, may be no farther than the square root of limit2 (m2) from box k.
+  /// Bit k: point x, known to within `margin` (m) a coordinate, may be no farther than the square root of limit2 (m2)
+  /// from box k.
   std::uint32_t (*boxes_near)(const BoxPack& pack, const std::array<float, 3>& x, float margin, float limit2);
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Vertices in groups of neighbours, so that one test or one bound serves many.
+// Vertices in groups of neighbours, so that one test or one bound covers many.
 #pragma once
 #include <cstddef>
 #include <span>
@@ -9,10 +9,10 @@
 
 namespace insula {
 
-/// Orders vertex indices so that every `group` in a row lie near each other: halves by the longest side.
+/// Orders vertex indices so that every `group` consecutive ones are neighbours: halves by the longest side.
 void order_by_position(int* first, int* last, std::span<const Vec3> rest, std::ptrdiff_t group);
 
-/// For each place the group it is in, 0 to groups - 1; groups are of like size.
+/// The group of each vertex position, 0 to groups - 1; groups have similar sizes.
 std::vector<int> group_by_position(std::span<const Vec3> rest, int groups);
 
 }  // namespace insula

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Closest points of points, segments and triangles. Exact up to rounding, also for triangles and segments of no size.
-// Any length unit; results in barycentric coordinates of the triangle's corners (sum 1, none negative).
+// Closest points of points, segments and triangles. Exact up to rounding, also for degenerate triangles and segments.
+// Any length unit. Results are in barycentric coordinates of the triangle's corners (sum 1, none negative).
 // Source: C. Ericson, Real-Time Collision Detection (2005), 5.1.5, 5.1.9 and 5.1.10, with degenerate cases added.
 #pragma once
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where a tool's piece is nearest to a surface that has gone on since it was last detected.
+// Where a tool's piece is nearest to a surface that has moved since its last detection.
 #pragma once
 #include <functional>
 #include <optional>
@@ -9,9 +9,11 @@
 
 namespace insula {
 
-/// Of the surface's places no farther than `within` from `about`, the one nearest to the piece's core at this pose: the unit vector from it to
-/// the core. Where the core is as near to several, as in a groove: that most along `like`. `vertex`: where the surface's vertices are now, not
-/// far from where the mesh has them. Nothing where there is no such place, or the core is not before the surface there. Scene frame, m.
+/// Of the surface's points no farther than `within` from `about`, takes the one nearest to the piece's core at this
+/// pose. Returns the unit vector from it to the core. If several points are equally near, as in a groove, the vector
+/// most along `like` is taken. `vertex` gives the present positions of the surface's vertices, which are near those of
+/// the mesh. Returns nothing if there is no such point, or if the core is not in front of the surface there. Scene
+/// frame, m.
 std::optional<Vec3> contact_normal_ahead(const RoundedPiece& piece, const Pose& pose, const CollisionMesh& mesh, const std::function<Vec3(int)>& vertex,
                                   const Vec3& about, double within, const Vec3& like);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Four triangles beside each other, and how far a point is from each: without a branch, in single precision, to tell which are
-// worth an exact look. Coordinates are about a centre no more than a few cm away.
+// Four triangles beside each other, and the distance of a point from each. It is computed without a branch, in single
+// precision, to select those that need an exact test. Coordinates are relative to a centre no more than a few cm away.
 #pragma once
 #include <array>
 
@@ -23,7 +23,7 @@ struct FourTriangles {
     // A sliver's normal is mostly rounding; its sides are right.
     return over ? least(plane, to_edges) : to_edges;
   }
-  /// Whether the exact squared distance may be at most limit2, distance2() being off by a 5000th and 0.3 um at most.
+  /// Whether the exact squared distance may be at most limit2. The error of distance2() is at most a 5000th and 0.3 um.
   static bool may_be_within(float distance2, double limit2) { return double(distance2) <= limit2 * 1.001 + 1e-13; }
 
  private:

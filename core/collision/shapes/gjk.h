@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Distance of two convex hulls of few points (Gilbert, Johnson, Keerthi 1988): pure, no state kept between calls.
-// Penetration depth is not computed here: against a surface the way out follows from the surface's own outward normals,
-// which the smallest translation out of one single triangle does not know.
+// Distance of two convex hulls of few points (Gilbert, Johnson, Keerthi 1988). It is a pure function without state. It
+// does not compute penetration depth. Against a surface, the direction of separation follows from the surface's own
+// outward normals. The smallest translation out of a single triangle does not contain them.
 #pragma once
 #include <limits>
 #include <span>
@@ -19,9 +19,10 @@ struct HullDistance {
   double weight[4] = {0, 0, 0, 0};
 };
 
-/// Both spans hold at least one point, scene frame, m. Relative accuracy about 1e-10 of the distance for hulls of
-/// ordinary size; stops after 64 iterations at the latest with the best pair found. Hulls that turn out to be farther apart than
-/// `limit` are left at that: `distance` is then a bound between the limit and their distance, the points are two of theirs.
+/// Both spans hold at least one point, scene frame, m. The relative accuracy is about 1e-10 of the distance for hulls
+/// of ordinary size. Stops after at most 64 iterations with the best pair found. For hulls farther apart than `limit`
+/// the search ends early. `distance` is then a bound between the limit and their distance, and the points are two of
+/// theirs.
 HullDistance hull_distance(std::span<const Vec3> a, std::span<const Vec3> b, double limit = std::numeric_limits<double>::infinity());
 
 }  // namespace insula

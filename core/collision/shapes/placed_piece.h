@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A rounded piece of a tool where it is at a moment of the step.
+// A rounded piece of a tool at a moment of the step.
 #pragma once
 #include <array>
 #include <span>
@@ -18,7 +18,7 @@ struct PlacedPiece {
   int count = 0;
   Vec3 axis0, axis1;
   double radius = 0, bound = 0;
-  bool expected = false;  ///< at the end of the step, not on the free way
+  bool expected = false;  ///< at the expected end of the step, not on the free path
 
   PlacedPiece(const RoundedPiece& r, int index, const Pose& s, const Vec6& motion, double t, const Vec3& slid, double offset)
       : PlacedPiece(r, index, s, t > 0 ? displaced(s, t * motion) : s, t, slid, offset) {}

@@ -43,11 +43,12 @@ class ByteCursor {
   std::string_view line();
   double number(const char* what);
   std::int64_t integer(const char* what);
-  /// A count of things that take at least `bytes_each` bytes of what is left: keeps hostile counts from allocating.
+  /// A count of things that take at least `bytes_each` of the remaining bytes. This keeps hostile counts from
+  /// allocating.
   std::size_t count(const char* what, std::size_t bytes_each);
   /// The same check for a count that was read elsewhere.
   std::size_t checked_count(std::int64_t n, const char* what, std::size_t bytes_each) const;
-  /// Passes everything up to and including the next `mark`.
+  /// Skips everything up to and including the next `mark`.
   void skip_past(std::string_view mark);
 
   std::string_view bytes(std::size_t n, const char* what);

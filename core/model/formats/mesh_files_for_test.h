@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For tests: one small tetrahedral mesh and one surface, written out in every format and coding that is read.
+// For tests: one small tetrahedral mesh and one surface, written in every format and encoding that is read.
 #pragma once
 #include <filesystem>
 #include <functional>
@@ -17,7 +17,7 @@ struct Format {
   bool number_from_one = false;                         ///< how it counts tetrahedra
 };
 
-/// A box of 2 x 2 x 2 cubes of six tetrahedra each, its inner node moved, coordinates that are no round numbers.
+/// A box of 2 x 2 x 2 cubes of six tetrahedra each. Its inner node is moved, and its coordinates are no round numbers.
 TetMesh box_mesh();
 std::vector<Format> formats();
 
@@ -30,7 +30,7 @@ struct SurfaceFormat {
 };
 std::vector<SurfaceFormat> surface_formats();
 
-/// A folder that is removed in the end.
+/// A folder that is removed at the end.
 class TempFolder {
  public:
   TempFolder();

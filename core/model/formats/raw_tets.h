@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What every reader of tetrahedral meshes hands over, and the one place where it is checked.
+// The output of every reader of tetrahedral meshes, and the one function that checks it.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -11,11 +11,11 @@
 
 namespace insula {
 
-/// As it stands in the file, in the file's unit, unchecked.
+/// The data as in the file, in the file's unit, unchecked.
 struct RawTets {
   std::vector<Vec3> nodes;
   std::vector<std::int64_t> node_number;            ///< as the file counts or names them, for messages
-  std::vector<std::array<std::int64_t, 4>> tets;    ///< places in `nodes`; anything may stand here
+  std::vector<std::array<std::int64_t, 4>> tets;    ///< indices into `nodes`; any value may occur
   std::vector<std::int64_t> tet_number;             ///< as the file counts or names them, for messages
 };
 
@@ -24,10 +24,10 @@ RawTets read_vtk_legacy(const std::filesystem::path& file, std::string_view byte
 RawTets read_vtu(const std::filesystem::path& file, std::string_view bytes);
 RawTets read_medit(const std::filesystem::path& file, std::string_view bytes);
 
-/// Checks and scales. Throws InputError naming the first offender of each trouble.
+/// Checks and scales. Throws InputError that names the first error of each kind.
 TetMesh checked_mesh(const std::filesystem::path& file, const RawTets& raw, double metres_per_unit);
 
-/// What read_tet_mesh does with the bytes of `file` (its extension names the format).
+/// The part of read_tet_mesh that works on the bytes of `file` (its extension names the format).
 TetMesh tet_mesh_from_bytes(const std::filesystem::path& file, std::string_view bytes, double metres_per_unit);
 
 /// Throws InputError unless `metres_per_unit` is positive and finite.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// VTK XML files of any type ("VTK XML Formats", VTK documentation): a reader says which arrays of which sections it wants, and gets their
-// numbers piece by piece, however they are stored.
+// VTK XML files of any type ("VTK XML Formats", VTK documentation). A reader names the arrays and sections that it
+// wants. It gets their numbers piece by piece, in whatever way they are stored.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -14,13 +14,13 @@
 
 namespace insula {
 
-/// What is read of a file besides its points.
+/// The parts of a file that are read besides its points.
 struct VtkXmlWanted {
   struct Section {
     std::string name;                  ///< element of a piece, such as "Cells"
-    std::string count;                 ///< attribute of the piece that says how many it has, such as "NumberOfCells"
-    bool needed = true;                ///< false: a piece without that attribute has none
-    std::vector<std::string> arrays;   ///< names of its data arrays; others are passed over
+    std::string count;                 ///< attribute of the piece with its number of entries, such as "NumberOfCells"
+    bool needed = true;                ///< false: a piece without that attribute has no entries
+    std::vector<std::string> arrays;   ///< names of its data arrays; others are skipped
   };
   std::string type;                    ///< of the root: "UnstructuredGrid", "PolyData"
   std::vector<Section> sections;
@@ -38,14 +38,15 @@ class VtkXmlFile {
     std::map<std::string, Section> sections;  ///< all that are wanted
   };
 
-  /// Reads the structure; `bytes` must outlive this. Throws InputError: another type, malformed, truncated, a byte order, header type or
-  /// compressor that is not known, a document type, an array that is there twice.
+  /// Reads the structure; `bytes` must outlive this object. Throws InputError: another type, malformed, truncated, an
+  /// unknown byte order, header type or compressor, a document type, or a repeated array.
   VtkXmlFile(const std::filesystem::path& file, std::string_view bytes, const VtkXmlWanted& wanted);
 
   const std::vector<Piece>& pieces() const { return pieces_; }
-  /// x, y, z of each point, in the file's unit. Throws InputError: missing, short, of another count.
+  /// x, y, z of each point, in the file's unit. Throws InputError: missing, too short, or another count.
   std::vector<double> positions(const Piece& piece) const;
-  /// A section's array of whole numbers, `expected` of them (negative: any). Throws InputError: the same, or one that is not whole.
+  /// A section's array of integers, `expected` of them (negative: any). Throws InputError: the same, or a value that is
+  /// not an integer.
   std::vector<std::int64_t> whole(const Section& section, const std::string& array, std::int64_t expected) const;
 
  private:

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A static tree of axis-aligned boxes for point queries. Built and walked in an order that depends on the boxes only.
+// A static tree of axis-aligned boxes for point queries. The order in which it is built and traversed depends on the
+// boxes only.
 #pragma once
 #include <Eigen/Geometry>
 #include <limits>
@@ -34,8 +35,8 @@ class BoxTree {
     }
   }
 
-  /// The item with the least squared distance, given by distance2(item); equal distances give the lowest item.
-  /// -1 when there are no items.
+  /// The item with the smallest squared distance, given by distance2(item). Equal distances give the lowest item. -1
+  /// when there are no items.
   template <class Distance2>
   int nearest(const Vec3& p, Distance2&& distance2) const {
     int best = -1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Values at the nodes of a regular grid, linear in between.
+// Values at the nodes of a regular grid, interpolated linearly.
 #pragma once
 #include <vector>
 
@@ -7,8 +7,9 @@
 
 namespace insula {
 
-/// Trilinear interpolation of `values` (x fastest, n[0] x n[1] x n[2]) at `at`, counted in cells from the first node; `outside` beyond the
-/// grid and where `at` is not a number. Source: W. Press et al., Numerical Recipes, section 3.6.
+/// Trilinear interpolation of `values` (x fastest, n[0] x n[1] x n[2]) at `at`, counted in cells from the first node.
+/// Returns `outside` beyond the grid and where `at` is not a number. Source: W. Press et al., Numerical Recipes,
+/// section 3.6.
 inline double grid_sample(const std::vector<float>& values, const int (&n)[3], const Vec3& at, double outside) {
   int cell[3];
   double part[3];

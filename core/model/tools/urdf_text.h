@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A URDF file parsed by urdfdom, with what it only prints turned into an InputError.
+// A URDF file parsed by urdfdom. The messages that urdfdom only prints become an InputError.
 #pragma once
 #include <urdf_model/model.h>
 #include <urdf_world/types.h>
