@@ -20,9 +20,9 @@ void add_materials(Registry& registry) {
   tissue("cortex", {0.62, 0.36, 0.32, 1});
   tissue("pia", {0.66, 0.40, 0.36, 1});
   tissue("insula", {0.60, 0.34, 0.30, 1});
-  tissue("dura", {0.70, 0.55, 0.48, 1});
-  tissue("skin", {0.72, 0.48, 0.38, 1});
-  registry.add_material({"bone", "tissue", {0.86, 0.80, 0.66, 1}, 0.6, 0, 0.1});
+  registry.add_material({"dura", "solid", {0.66, 0.48, 0.42, 1}, 0.5, 0, 0});
+  registry.add_material({"skin", "solid", {0.75, 0.54, 0.42, 1}, 0.6, 0, 0});
+  registry.add_material({"bone", "solid", {0.73, 0.65, 0.52, 1}, 0.6, 0, 0});
   registry.add_material({"drape", "solid", {0.12, 0.30, 0.34, 1}, 0.95, 0, 0});
   registry.add_material({"steel", "solid", {0.70, 0.70, 0.72, 1}, 0.3, 1, 0});
   registry.add_material({"polymer", "solid", {0.80, 0.80, 0.78, 1}, 0.5, 0, 0});

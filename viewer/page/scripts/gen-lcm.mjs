@@ -7,6 +7,7 @@
 import { readFileSync, readdirSync, writeFileSync, existsSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
+import * as runtime from './lcm-runtime.mjs';
 
 const here = dirname(fileURLToPath(import.meta.url));
 const numeric = {
@@ -22,14 +23,22 @@ const primitive = new Set([...Object.keys(numeric), 'string', 'boolean']);
 
 /** Parses .lcm text into [{name, members: [{name, type, dims: [{size, constant}]}]}]. */
 export function parse(text) {
-  const tokens = text.replace(/\/\*[\s\S]*?\*\//g, ' ').replace(/\/\/[^\n]*/g, ' ').match(/[A-Za-z_][\w.]*|\d+|[{}[\];,=]/g) ?? [];
+  const tokens =
+    text
+      .replace(/\/\*[\s\S]*?\*\//g, ' ')
+      .replace(/\/\/[^\n]*/g, ' ')
+      .match(/[A-Za-z_][\w.]*|\d+|[{}[\];,=]/g) ?? [];
   const structs = [];
   let i = 0;
   const expect = (t) => {
     if (tokens[i++] !== t) throw new Error(`expected "${t}" before "${tokens.slice(i - 1, i + 4).join(' ')}"`);
   };
   while (i < tokens.length) {
-    if (tokens[i] === 'package') { i += 2; expect(';'); continue; }
+    if (tokens[i] === 'package') {
+      i += 2;
+      expect(';');
+      continue;
+    }
     expect('struct');
     const struct = { name: tokens[i++], members: [] };
     expect('{');
@@ -59,18 +68,24 @@ export function parse(text) {
 const mask = (1n << 64n) - 1n;
 
 /** LCM's hash of one struct without its members' structs; see lcm's documentation of the type language. */
-function base_hash(struct) {
+function baseHash(struct) {
   let v = 0x12345678n;
   const update = (c) => {
     const signed = BigInt.asIntN(64, v);
     v = BigInt.asUintN(64, ((v << 8n) ^ (signed >> 55n)) + BigInt(c));
   };
-  const text = (s) => { update(s.length); for (const c of s) update(c.charCodeAt(0)); };
+  const text = (s) => {
+    update(s.length);
+    for (const c of s) update(c.charCodeAt(0));
+  };
   for (const m of struct.members) {
     text(m.name);
     if (primitive.has(m.type)) text(m.type);
     update(m.dims.length);
-    for (const d of m.dims) { update(d.constant ? 0 : 1); text(d.size); }
+    for (const d of m.dims) {
+      update(d.constant ? 0 : 1);
+      text(d.size);
+    }
   }
   return v;
 }
@@ -80,146 +95,133 @@ export function fingerprint(name, structs, parents = []) {
   if (parents.includes(name)) return 0n;
   const struct = structs.find((s) => s.name === name);
   if (!struct) throw new Error(`unknown type ${name}`);
-  let v = base_hash(struct);
-  for (const m of struct.members) if (!primitive.has(m.type)) v = (v + fingerprint(m.type, structs, [...parents, name])) & mask;
+  let v = baseHash(struct);
+  for (const m of struct.members)
+    if (!primitive.has(m.type)) v = (v + fingerprint(m.type, structs, [...parents, name])) & mask;
   return ((v << 1n) & mask) + (v >> 63n);
 }
 
-const pascal = (s) => s.replace(/_t$/, '').split('_').map((w) => w[0].toUpperCase() + w.slice(1)).join('');
+const pascal = (s) =>
+  s
+    .replace(/_t$/, '')
+    .split('_')
+    .map((w) => w[0].toUpperCase() + w.slice(1))
+    .join('');
 
-function field_type(m) {
-  if (m.dims.length === 0) return m.type === 'int64_t' ? 'bigint' : m.type === 'string' ? 'string' : m.type === 'boolean' ? 'boolean' : numeric[m.type] ? 'number' : pascal(m.type);
+/** TypeScript's type of a value without dimensions, and its empty value. */
+function scalar(type) {
+  if (type === 'int64_t') return { type: 'bigint', empty: '0n' };
+  if (type === 'string') return { type: 'string', empty: "''" };
+  if (type === 'boolean') return { type: 'boolean', empty: 'false' };
+  return numeric[type] ? { type: 'number', empty: '0' } : { type: pascal(type), empty: `make_${type}()` };
+}
+
+function fieldType(m) {
+  if (m.dims.length === 0) return scalar(m.type).type;
   if (numeric[m.type]) return numeric[m.type].array;
   if (m.dims.length > 1) throw new Error(`${m.name}: several dimensions of ${m.type} are not supported`);
-  return `${m.type === 'string' ? 'string' : m.type === 'boolean' ? 'boolean' : pascal(m.type)}[]`;
+  return `${scalar(m.type).type}[]`;
 }
 
-function emit_struct(struct, structs) {
-  const name = pascal(struct.name);
-  const out = [`export interface ${name} {`, ...struct.members.map((m) => `  ${m.name}: ${field_type(m)};`), '}', ''];
-  const length = (m, owner) => m.dims.map((d) => (d.constant ? d.size : `Number(${owner}${d.size})`)).join(' * ');
-  const initial = (m) => {
-    if (m.dims.length === 0) return m.type === 'int64_t' ? '0n' : m.type === 'string' ? "''" : m.type === 'boolean' ? 'false' : numeric[m.type] ? '0' : `make_${m.type}()`;
-    const fixed = m.dims.every((d) => d.constant);
-    if (numeric[m.type]) return `new ${numeric[m.type].array}(${fixed ? length(m, '') : 0})`;
-    return '[]';
-  };
-  out.push(`export function make_${struct.name}(): ${name} {`, '  return {', ...struct.members.map((m) => `    ${m.name}: ${initial(m)},`), '  };', '}', '');
-  out.push(`function read_${struct.name}(r: Reader): ${name} {`);
-  for (const m of struct.members) {
-    const n = numeric[m.type];
-    let value;
-    if (m.dims.length === 0) value = n ? `r.${m.type}()` : primitive.has(m.type) ? `r.${m.type}()` : `read_${m.type}(r)`;
-    else if (n) value = `r.${m.type}_array(${length(m, '')})`;
-    else value = `r.list(${length(m, '')}, () => ${primitive.has(m.type) ? `r.${m.type}()` : `read_${m.type}(r)`})`;
-    out.push(`  const ${m.name} = ${value};`);
-  }
-  out.push(`  return { ${struct.members.map((m) => m.name).join(', ')} };`, '}', '');
-  out.push(`function write_${struct.name}(w: Writer, m: ${name}): void {`);
-  for (const m of struct.members) {
-    if (m.dims.length === 0) { out.push(primitive.has(m.type) ? `  w.${m.type}(m.${m.name});` : `  write_${m.type}(w, m.${m.name});`); continue; }
-    out.push(`  check_length('${struct.name}.${m.name}', m.${m.name}.length, ${length(m, 'm.')});`);
-    out.push(`  for (const x of m.${m.name}) ${primitive.has(m.type) ? `w.${m.type}(x)` : `write_${m.type}(w, x)`};`);
-  }
-  out.push('}', '');
-  out.push(`const ${struct.name}_hash = 0x${fingerprint(struct.name, structs).toString(16)}n;`);
-  out.push(`export const ${struct.name}: Codec<${name}> = {`, `  name: '${struct.name}',`, `  fingerprint: ${struct.name}_hash,`, `  make: make_${struct.name},`);
-  out.push(`  encode: (m) => { const w = new Writer(); w.hash(${struct.name}_hash); write_${struct.name}(w, m); return w.bytes(); },`);
-  out.push(`  decode: (b) => { const r = new Reader(b); r.hash(${struct.name}_hash, '${struct.name}'); const m = read_${struct.name}(r); r.end('${struct.name}'); return m; },`, '};', '');
-  return out.join('\n');
+const length = (m, owner) => m.dims.map((d) => (d.constant ? d.size : `Number(${owner}${d.size})`)).join(' * ');
+
+function initial(m) {
+  if (m.dims.length === 0) return scalar(m.type).empty;
+  if (!numeric[m.type]) return '[]';
+  return `new ${numeric[m.type].array}(${m.dims.every((d) => d.constant) ? length(m, '') : 0})`;
 }
 
-function emit_runtime() {
-  const readers = Object.entries(numeric).map(([t, n]) => `  ${t}(): ${t === 'int64_t' ? 'bigint' : 'number'} { this.need(${n.size}); const v = this.view.${n.get}(this.at); this.at += ${n.size}; return v; }
-  ${t}_array(n: number): ${n.array}<ArrayBuffer> { this.need_many(n, ${n.size}); const a = new ${n.array}(n); for (let i = 0; i < n; i++, this.at += ${n.size}) a[i] = this.view.${n.get}(this.at); return a; }`).join('\n');
-  const writers = Object.entries(numeric).map(([t, n]) => `  ${t}(v: ${t === 'int64_t' ? 'bigint' : 'number'}): void { this.room(${n.size}); this.view.${n.set}(this.at, v); this.at += ${n.size}; }`).join('\n');
-  return `/** Encoder, decoder and fingerprint of one message type. decode throws on a wrong hash, truncation or left-over bytes. */
-export interface Codec<T> {
-  readonly name: string;
-  readonly fingerprint: bigint;
-  make(): T;
-  encode(message: T): Uint8Array<ArrayBuffer>;
-  decode(bytes: Uint8Array): T;
+function readMember(m) {
+  const one = primitive.has(m.type) ? `r.${m.type}()` : `read_${m.type}(r)`;
+  if (m.dims.length === 0) return one;
+  return numeric[m.type] ? `r.${m.type}_array(${length(m, '')})` : `r.list(${length(m, '')}, () => ${one})`;
 }
 
-const utf8_decoder = new TextDecoder();
-const utf8_encoder = new TextEncoder();
-
-function check_length(what: string, got: number, wanted: number): void {
-  if (got !== wanted) throw new RangeError(\`\${what} has \${got} entries, its count says \${wanted}\`);
+function writeMember(struct, m) {
+  const one = (x) => (primitive.has(m.type) ? `w.${m.type}(${x})` : `write_${m.type}(w, ${x})`);
+  if (m.dims.length === 0) return [`  ${one(`m.${m.name}`)};`];
+  return [
+    `  check_length('${struct.name}.${m.name}', m.${m.name}.length, ${length(m, 'm.')});`,
+    `  for (const x of m.${m.name}) ${one('x')};`,
+  ];
 }
 
-class Reader {
-  private at = 0;
-  private readonly view: DataView;
-  constructor(private readonly data: Uint8Array) { this.view = new DataView(data.buffer, data.byteOffset, data.byteLength); }
-  private need(n: number): void { if (this.at + n > this.data.byteLength) throw new RangeError('message is truncated'); }
-  private need_many(n: number, size: number): void {
-    if (!(n >= 0)) throw new RangeError('negative count');
-    this.need(n * size);
+function emitStruct(struct, structs) {
+  const type = pascal(struct.name);
+  const name = struct.name;
+  const { members } = struct;
+  return [
+    `export interface ${type} {`,
+    ...members.map((m) => `  ${m.name}: ${fieldType(m)};`),
+    '}\n',
+    `export function make_${name}(): ${type} {`,
+    '  return {',
+    ...members.map((m) => `    ${m.name}: ${initial(m)},`),
+    '  };\n}\n',
+    `function read_${name}(r: Reader): ${type} {`,
+    ...members.map((m) => `  const ${m.name} = ${readMember(m)};`),
+    `  return { ${members.map((m) => m.name).join(', ')} };\n}\n`,
+    `function write_${name}(w: Writer, m: ${type}): void {`,
+    ...members.flatMap((m) => writeMember(struct, m)),
+    '}\n',
+    `export const ${name} = codec<${type}>(`,
+    `  '${name}', 0x${fingerprint(name, structs).toString(16)}n, make_${name}, read_${name}, write_${name},\n);\n`,
+  ].join('\n');
+}
+
+/** Of each number type: one value, and an array of them. */
+function emitReader([type, n]) {
+  const ts = scalar(type).type;
+  return `  ${type}(): ${ts} {
+    this.need(${n.size});
+    const v = this.view.${n.get}(this.at);
+    this.at += ${n.size};
+    return v;
   }
-  hash(wanted: bigint, name: string): void {
-    this.need(8);
-    if (this.view.getBigUint64(0) !== wanted) throw new TypeError(\`not a \${name}: fingerprint differs\`);
-    this.at = 8;
-  }
-  end(name: string): void { if (this.at !== this.data.byteLength) throw new RangeError(\`\${name}: bytes left over\`); }
-  boolean(): boolean { return this.int8_t() !== 0; }
-  string(): string {
-    const n = this.int32_t();
-    if (n < 1) throw new RangeError('string without its terminator');
-    this.need(n);
-    const s = utf8_decoder.decode(this.data.subarray(this.at, this.at + n - 1));
-    this.at += n;
-    return s;
-  }
-  list<T>(n: number, read: () => T): T[] {
-    this.need_many(n, 1);
-    const a: T[] = [];
-    for (let i = 0; i < n; i++) a.push(read());
+  ${type}_array(n: number): ${n.array}<ArrayBuffer> {
+    this.need_many(n, ${n.size});
+    const a = new ${n.array}(n);
+    for (let i = 0; i < n; i++, this.at += ${n.size}) a[i] = this.view.${n.get}(this.at);
     return a;
-  }
-${readers}
+  }`;
 }
 
-class Writer {
-  private at = 0;
-  private buffer = new ArrayBuffer(256);
-  private view = new DataView(this.buffer);
-  private room(n: number): void {
-    if (this.at + n <= this.buffer.byteLength) return;
-    const bigger = new ArrayBuffer(Math.max(this.buffer.byteLength * 2, this.at + n));
-    new Uint8Array(bigger).set(new Uint8Array(this.buffer));
-    this.buffer = bigger;
-    this.view = new DataView(bigger);
-  }
-  bytes(): Uint8Array<ArrayBuffer> { return new Uint8Array(this.buffer, 0, this.at).slice(); }
-  hash(v: bigint): void { this.room(8); this.view.setBigUint64(this.at, v); this.at += 8; }
-  boolean(v: boolean): void { this.int8_t(v ? 1 : 0); }
-  string(v: string): void {
-    const b = utf8_encoder.encode(v);
-    this.int32_t(b.length + 1);
-    this.room(b.length + 1);
-    new Uint8Array(this.buffer).set(b, this.at);
-    this.at += b.length;
-    this.view.setUint8(this.at++, 0);
-  }
-${writers}
+function emitWriter([type, n]) {
+  return `  ${type}(v: ${scalar(type).type}): void {
+    this.room(${n.size});
+    this.view.${n.set}(this.at, v);
+    this.at += ${n.size};
+  }`;
 }
-`;
+
+function emitRuntime() {
+  const all = Object.entries(numeric);
+  return [
+    runtime.head,
+    `class Reader {\n${runtime.reader}\n${all.map(emitReader).join('\n')}\n}\n`,
+    `class Writer {\n${runtime.writer}\n${all.map(emitWriter).join('\n')}\n}\n`,
+  ].join('\n');
 }
 
 export function generate(structs) {
-  return ['// SPDX-License-Identifier: GPL-3.0-or-later', '// Generated from lcm_types/*.lcm by scripts/gen-lcm.mjs; do not edit.', '', emit_runtime(),
-    ...structs.map((s) => emit_struct(s, structs))].join('\n');
+  return [
+    '// SPDX-License-Identifier: GPL-3.0-or-later',
+    '// Generated from lcm_types/*.lcm by scripts/gen-lcm.mjs; do not edit.',
+    '',
+    emitRuntime(),
+    ...structs.map((s) => emitStruct(s, structs)),
+  ].join('\n');
 }
 
-export function read_types(dir = join(here, '../../../lcm_types')) {
-  return readdirSync(dir).filter((f) => f.endsWith('.lcm')).sort().flatMap((f) => parse(readFileSync(join(dir, f), 'utf8')));
+export function readTypes(dir = join(here, '../../../lcm_types')) {
+  return readdirSync(dir)
+    .filter((f) => f.endsWith('.lcm'))
+    .sort()
+    .flatMap((f) => parse(readFileSync(join(dir, f), 'utf8')));
 }
 
 if (process.argv[1] === fileURLToPath(import.meta.url)) {
   const to = join(here, '../src/lcm.ts');
-  const text = generate(read_types());
+  const text = generate(readTypes());
   if (!existsSync(to) || readFileSync(to, 'utf8') !== text) writeFileSync(to, text);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The operating microscope: turns about a focus point, zooms, pans; every change glides. Its lamp travels with it.
 import * as THREE from 'three';
-import type { ViewData } from './bundle';
+import type { ViewData } from './bundle_types';
 
 interface Pose {
   target: THREE.Vector3;
@@ -29,28 +29,28 @@ export class Microscope {
     this.lamp.shadow.bias = -0.0012;
     this.lamp.shadow.normalBias = 0.0005;
     this.lamp.shadow.radius = 3;
-    this.set_frame(new THREE.Vector3(0, 0, 1), new THREE.Vector3(0, 1, 0));
+    this.setFrame(new THREE.Vector3(0, 0, 1), new THREE.Vector3(0, 1, 0));
   }
 
-  add_to(scene: THREE.Scene): void {
+  addTo(scene: THREE.Scene): void {
     scene.add(this.camera, this.lamp, this.lamp.target, this.fill, this.fill.target);
   }
 
   /** Starts at the scene's view. */
-  set_home(view: ViewData): void {
+  setHome(view: ViewData): void {
     const eye = new THREE.Vector3(...view.eye);
     const target = new THREE.Vector3(...view.target);
     const out = eye.clone().sub(target);
     const distance = Math.max(0.02, out.length());
-    this.set_frame(out.normalize(), new THREE.Vector3(...view.up));
-    this.camera.fov = view.fov_deg;
+    this.setFrame(out.normalize(), new THREE.Vector3(...view.up));
+    this.camera.fov = view.fovDeg;
     this.home = { target, yaw: 0, pitch: 0, distance };
     this.reset(true);
   }
 
-  reset(at_once = false): void {
+  reset(atOnce = false): void {
     this.wanted = clone(this.home);
-    if (at_once) this.now = clone(this.home);
+    if (atOnce) this.now = clone(this.home);
   }
 
   orbit(dx: number, dy: number): void {
@@ -59,10 +59,13 @@ export class Microscope {
   }
 
   /** Pixels; moves the focus in the picture plane. */
-  pan(dx: number, dy: number, height_px: number): void {
-    const s = this.metres_per_pixel(this.wanted.distance, height_px);
+  pan(dx: number, dy: number, heightPx: number): void {
+    const s = this.metresPerPixel(this.wanted.distance, heightPx);
     const { x, y } = this.axes();
-    const t = this.wanted.target.clone().addScaledVector(x, -dx * s).addScaledVector(y, dy * s);
+    const t = this.wanted.target
+      .clone()
+      .addScaledVector(x, -dx * s)
+      .addScaledVector(y, dy * s);
     const away = t.clone().sub(this.home.target);
     if (away.length() > 0.08) away.setLength(0.08);
     this.wanted.target.copy(this.home.target).add(away);
@@ -72,23 +75,35 @@ export class Microscope {
     this.wanted.distance = clamp(this.wanted.distance * factor, this.home.distance * 0.18, this.home.distance * 2.2);
   }
 
-  focus(point: THREE.Vector3): void { this.wanted.target.copy(point); }
+  focus(point: THREE.Vector3): void {
+    this.wanted.target.copy(point);
+  }
 
-  get target(): THREE.Vector3 { return this.now.target; }
-  get home_target(): THREE.Vector3 { return this.home.target; }
-  get distance(): number { return this.now.distance; }
+  get target(): THREE.Vector3 {
+    return this.now.target;
+  }
+  get homeTarget(): THREE.Vector3 {
+    return this.home.target;
+  }
+  get distance(): number {
+    return this.now.distance;
+  }
   /** Direction from the field to the microscope at the home view. */
-  get field_axis(): THREE.Vector3 { return this.out; }
+  get fieldAxis(): THREE.Vector3 {
+    return this.out;
+  }
 
   /** Axes of the picture in the scene: x right, y up, z to the viewer. */
   axes(): { x: THREE.Vector3; y: THREE.Vector3; z: THREE.Vector3 } {
-    const x = new THREE.Vector3(), y = new THREE.Vector3(), z = new THREE.Vector3();
+    const x = new THREE.Vector3();
+    const y = new THREE.Vector3();
+    const z = new THREE.Vector3();
     this.camera.matrixWorld.extractBasis(x, y, z);
     return { x, y, z };
   }
 
-  metres_per_pixel(distance: number, height_px: number): number {
-    return (2 * distance * Math.tan(THREE.MathUtils.degToRad(this.camera.fov) / 2)) / height_px;
+  metresPerPixel(distance: number, heightPx: number): number {
+    return (2 * distance * Math.tan(THREE.MathUtils.degToRad(this.camera.fov) / 2)) / heightPx;
   }
 
   update(dt: number, aspect: number): void {
@@ -97,9 +112,13 @@ export class Microscope {
     this.now.yaw += (this.wanted.yaw - this.now.yaw) * k;
     this.now.pitch += (this.wanted.pitch - this.now.pitch) * k;
     this.now.distance *= (this.wanted.distance / this.now.distance) ** k;
-    const c = Math.cos(this.now.pitch), s = Math.sin(this.now.pitch);
-    const direction = this.out.clone().multiplyScalar(c * Math.cos(this.now.yaw))
-      .addScaledVector(this.right, c * Math.sin(this.now.yaw)).addScaledVector(this.up, s);
+    const c = Math.cos(this.now.pitch);
+    const s = Math.sin(this.now.pitch);
+    const direction = this.out
+      .clone()
+      .multiplyScalar(c * Math.cos(this.now.yaw))
+      .addScaledVector(this.right, c * Math.sin(this.now.yaw))
+      .addScaledVector(this.up, s);
     const camera = this.camera;
     camera.position.copy(this.now.target).addScaledVector(direction, this.now.distance);
     camera.up.copy(this.up);
@@ -109,17 +128,25 @@ export class Microscope {
     camera.far = this.now.distance + 0.6;
     camera.updateProjectionMatrix();
     camera.updateMatrixWorld();
-    this.place_lights();
+    this.placeLights();
   }
 
   /** The lamp sits beside the lens: nearly coaxial, so the depth is lit, but not quite, so relief and shadows show. */
-  private place_lights(): void {
+  private placeLights(): void {
     const { x, y, z } = this.axes();
     const d = Math.max(0.16, this.home.distance);
-    this.lamp.position.copy(this.now.target).addScaledVector(z, d).addScaledVector(x, -0.17 * d).addScaledVector(y, 0.21 * d);
+    this.lamp.position
+      .copy(this.now.target)
+      .addScaledVector(z, d)
+      .addScaledVector(x, -0.17 * d)
+      .addScaledVector(y, 0.21 * d);
     this.lamp.target.position.copy(this.now.target);
     this.lamp.angle = Math.atan2(0.058, d);
-    this.fill.position.copy(this.now.target).addScaledVector(z, d * 0.7).addScaledVector(x, 0.5 * d).addScaledVector(y, -0.25 * d);
+    this.fill.position
+      .copy(this.now.target)
+      .addScaledVector(z, d * 0.7)
+      .addScaledVector(x, 0.5 * d)
+      .addScaledVector(y, -0.25 * d);
     this.fill.target.position.copy(this.now.target);
     this.lamp.target.updateMatrixWorld();
     this.fill.target.updateMatrixWorld();
@@ -128,7 +155,7 @@ export class Microscope {
     shadow.far = d * 1.05 + 0.09;
   }
 
-  private set_frame(out: THREE.Vector3, up: THREE.Vector3): void {
+  private setFrame(out: THREE.Vector3, up: THREE.Vector3): void {
     this.out.copy(out);
     this.right.crossVectors(up, out).normalize();
     this.up.crossVectors(out, this.right).normalize();

@@ -12,25 +12,28 @@ export interface Handlers {
   state(open: boolean): void;
 }
 
-const first_pause_ms = 250;
-const longest_pause_ms = 4000;
+const firstPauseMs = 250;
+const longestPauseMs = 4000;
 
 export class Connection {
   open = false;
   refused = 0;
   private socket: WebSocket | null = null;
-  private pause_ms = first_pause_ms;
+  private pauseMs = firstPauseMs;
 
-  constructor(private readonly url: string, private readonly handlers: Handlers) {
+  constructor(
+    private readonly url: string,
+    private readonly handlers: Handlers,
+  ) {
     this.connect();
   }
 
-  send_command(command: string, argument = ''): void {
-    this.send('USER_COMMAND', lcm.user_command_t.encode({ time_us: now_us(), sender: viewer_id, command, argument }));
+  sendCommand(command: string, argument = ''): void {
+    this.send('USER_COMMAND', lcm.user_command_t.encode({ time_us: nowUs(), sender: viewerId, command, argument }));
   }
 
-  send_hand(message: Omit<lcm.HandInput, 'time_us'>): void {
-    this.send('HAND_INPUT', lcm.hand_input_t.encode({ time_us: now_us(), ...message }));
+  sendHand(message: Omit<lcm.HandInput, 'time_us'>): void {
+    this.send('HAND_INPUT', lcm.hand_input_t.encode({ time_us: nowUs(), ...message }));
   }
 
   private send(channel: string, payload: Uint8Array): void {
@@ -45,30 +48,54 @@ export class Connection {
     socket.binaryType = 'arraybuffer';
     this.socket = socket;
     socket.onopen = () => {
-      this.pause_ms = first_pause_ms;
+      this.pauseMs = firstPauseMs;
       this.open = true;
       this.handlers.state(true);
     };
-    socket.onmessage = (e) => { if (e.data instanceof ArrayBuffer) this.receive(new Uint8Array(e.data)); };
+    socket.onmessage = (e) => {
+      if (e.data instanceof ArrayBuffer) this.receive(new Uint8Array(e.data));
+    };
     socket.onclose = () => {
-      if (this.open) { this.open = false; this.handlers.state(false); }
-      setTimeout(() => this.connect(), this.pause_ms);
-      this.pause_ms = Math.min(this.pause_ms * 1.6, longest_pause_ms);
+      if (this.open) {
+        this.open = false;
+        this.handlers.state(false);
+      }
+      setTimeout(() => this.connect(), this.pauseMs);
+      this.pauseMs = Math.min(this.pauseMs * 1.6, longestPauseMs);
     };
   }
 
   private receive(bytes: Uint8Array): void {
     const packet = unpack(bytes);
-    if (!packet) { this.refused++; return; }
+    if (!packet) {
+      this.refused++;
+      return;
+    }
     const { channel, payload } = packet;
     const decoded = decode(() => {
       switch (channel) {
-        case 'RENDER_FRAME': { const m = lcm.render_frame_t.decode(payload); return () => this.handlers.frame(m); }
-        case 'SCENE_INFO': { const m = lcm.scene_info_t.decode(payload); return () => this.handlers.scene(m); }
-        case 'SIM_EVENT': { const m = lcm.sim_event_t.decode(payload); return () => this.handlers.event(m); }
-        case 'HAPTIC_STATUS': { const m = lcm.haptic_status_t.decode(payload); return () => this.handlers.haptic(m); }
-        case 'DEVICE_STATE': { const m = lcm.device_state_t.decode(payload); return () => this.handlers.devices(m); }
-        default: return () => undefined;
+        case 'RENDER_FRAME': {
+          const m = lcm.render_frame_t.decode(payload);
+          return () => this.handlers.frame(m);
+        }
+        case 'SCENE_INFO': {
+          const m = lcm.scene_info_t.decode(payload);
+          return () => this.handlers.scene(m);
+        }
+        case 'SIM_EVENT': {
+          const m = lcm.sim_event_t.decode(payload);
+          return () => this.handlers.event(m);
+        }
+        case 'HAPTIC_STATUS': {
+          const m = lcm.haptic_status_t.decode(payload);
+          return () => this.handlers.haptic(m);
+        }
+        case 'DEVICE_STATE': {
+          const m = lcm.device_state_t.decode(payload);
+          return () => this.handlers.devices(m);
+        }
+        default:
+          return () => undefined;
       }
     });
     if (decoded) decoded();
@@ -84,5 +111,5 @@ function decode<T>(f: () => T): T | null {
   }
 }
 
-const now_us = (): bigint => BigInt(Math.round(performance.now() * 1000));
-const viewer_id = `viewer-${Math.random().toString(36).slice(2, 8)}`;
+const nowUs = (): bigint => BigInt(Math.round(performance.now() * 1000));
+const viewerId = `viewer-${Math.random().toString(36).slice(2, 8)}`;

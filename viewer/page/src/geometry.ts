@@ -2,14 +2,16 @@
 // Normals for meshes that come without them: smooth ones for tissue, creased ones for instruments and bone.
 
 /** Area-weighted vertex normals; vertices at the same place share theirs. */
-export function smooth_normals(positions: Float32Array, indices: Uint32Array): Float32Array {
-  const weld = weld_map(positions);
+export function smoothNormals(positions: Float32Array, indices: Uint32Array): Float32Array {
+  const weld = weldMap(positions);
   const sum = new Float32Array(positions.length);
   for (let t = 0; t < indices.length; t += 3) {
-    const n = face_normal(positions, indices, t);
+    const n = faceNormal(positions, indices, t);
     for (let k = 0; k < 3; k++) {
       const o = weld[indices[t + k]!]! * 3;
-      sum[o] = sum[o]! + n[0]; sum[o + 1] = sum[o + 1]! + n[1]; sum[o + 2] = sum[o + 2]! + n[2];
+      sum[o] = sum[o]! + n[0];
+      sum[o + 1] = sum[o + 1]! + n[1];
+      sum[o + 2] = sum[o + 2]! + n[2];
     }
   }
   const out = new Float32Array(positions.length);
@@ -22,15 +24,19 @@ export function smooth_normals(positions: Float32Array, indices: Uint32Array): F
 }
 
 /** Unindexed triangles with normals smoothed only across edges flatter than `angle`. */
-export function creased(positions: Float32Array, indices: Uint32Array, angle: number): { positions: Float32Array; normals: Float32Array } {
-  const weld = weld_map(positions);
+export function creased(
+  positions: Float32Array,
+  indices: Uint32Array,
+  angle: number,
+): { positions: Float32Array; normals: Float32Array } {
+  const weld = weldMap(positions);
   const faces = indices.length / 3;
   const normal = new Float32Array(faces * 3);
   const unit = new Float32Array(faces * 3);
   const first = new Int32Array(positions.length / 3).fill(-1);
   const next = new Int32Array(indices.length).fill(-1);
   for (let f = 0; f < faces; f++) {
-    const n = face_normal(positions, indices, f * 3);
+    const n = faceNormal(positions, indices, f * 3);
     const l = Math.hypot(...n) || 1;
     for (let k = 0; k < 3; k++) {
       normal[f * 3 + k] = n[k]!;
@@ -45,28 +51,42 @@ export function creased(positions: Float32Array, indices: Uint32Array, angle: nu
   const out = new Float32Array(indices.length * 3);
   for (let c = 0; c < indices.length; c++) {
     const f = Math.floor(c / 3);
-    let x = 0, y = 0, z = 0;
+    let x = 0;
+    let y = 0;
+    let z = 0;
     for (let o = first[weld[indices[c]!]!]!; o >= 0; o = next[o]!) {
       const g = Math.floor(o / 3) * 3;
       const dot = unit[g]! * unit[f * 3]! + unit[g + 1]! * unit[f * 3 + 1]! + unit[g + 2]! * unit[f * 3 + 2]!;
-      if (dot >= limit) { x += normal[g]!; y += normal[g + 1]!; z += normal[g + 2]!; }
+      if (dot >= limit) {
+        x += normal[g]!;
+        y += normal[g + 1]!;
+        z += normal[g + 2]!;
+      }
     }
     const l = Math.hypot(x, y, z) || 1;
-    out[c * 3] = x / l; out[c * 3 + 1] = y / l; out[c * 3 + 2] = z / l;
+    out[c * 3] = x / l;
+    out[c * 3 + 1] = y / l;
+    out[c * 3 + 2] = z / l;
     for (let k = 0; k < 3; k++) p[c * 3 + k] = positions[indices[c]! * 3 + k]!;
   }
   return { positions: p, normals: out };
 }
 
-function face_normal(p: Float32Array, indices: Uint32Array, t: number): [number, number, number] {
-  const a = indices[t]! * 3, b = indices[t + 1]! * 3, c = indices[t + 2]! * 3;
-  const ux = p[b]! - p[a]!, uy = p[b + 1]! - p[a + 1]!, uz = p[b + 2]! - p[a + 2]!;
-  const vx = p[c]! - p[a]!, vy = p[c + 1]! - p[a + 1]!, vz = p[c + 2]! - p[a + 2]!;
+function faceNormal(p: Float32Array, indices: Uint32Array, t: number): [number, number, number] {
+  const a = indices[t]! * 3;
+  const b = indices[t + 1]! * 3;
+  const c = indices[t + 2]! * 3;
+  const ux = p[b]! - p[a]!;
+  const uy = p[b + 1]! - p[a + 1]!;
+  const uz = p[b + 2]! - p[a + 2]!;
+  const vx = p[c]! - p[a]!;
+  const vy = p[c + 1]! - p[a + 1]!;
+  const vz = p[c + 2]! - p[a + 2]!;
   return [uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx];
 }
 
 /** For each vertex, the first one within a micrometre. */
-function weld_map(p: Float32Array): Uint32Array {
+function weldMap(p: Float32Array): Uint32Array {
   const seen = new Map<string, number>();
   const out = new Uint32Array(p.length / 3);
   for (let v = 0; v < out.length; v++) {

@@ -1,21 +1,38 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The page's graphics context, which a browser takes away when the graphics card resets or runs out of memory. three asks for it
-// back; here is kept whether it is gone, and what must be drawn anew once it is there again.
+// The page's graphics context, which a browser takes away when the graphics card resets or runs out of memory. three
+// asks for it back; here is kept whether it is gone, and what must be drawn anew once it is there again.
 
 export class Graphics {
-  private lost_ms: number | null = null;
+  private lostMs: number | null = null;
 
-  /** restored: what was drawn into textures is lost with the context and has to be made again; what was uploaded three sees to. */
+  /**
+   * restored: what was drawn into textures is lost with the context and has to be made again; what was uploaded three
+   * sees to.
+   */
   constructor(canvas: EventTarget, restored: () => void, now: () => number = () => performance.now()) {
-    canvas.addEventListener('webglcontextlost', () => { this.lost_ms ??= now(); });
-    canvas.addEventListener('webglcontextrestored', () => { this.lost_ms = null; restored(); });
+    canvas.addEventListener('webglcontextlost', () => {
+      this.lostMs ??= now();
+    });
+    canvas.addEventListener('webglcontextrestored', () => {
+      this.lostMs = null;
+      restored();
+    });
   }
 
-  get lost(): boolean { return this.lost_ms !== null; }
+  get lost(): boolean {
+    return this.lostMs !== null;
+  }
 
-  /** What to say of it, '' when nothing is amiss. Browsers give up on a card that fails again and again: only a reload helps then. */
-  notice(now_ms: number): string {
-    if (this.lost_ms === null) return '';
-    return `The graphics card was reset: no picture\n${now_ms - this.lost_ms < 10_000 ? 'waiting for it; the exercise goes on …' : 'reload the page if it does not come back; the exercise goes on'}`;
+  /**
+   * What to say of it, '' when nothing is amiss. Browsers give up on a card that fails again and again: only a reload
+   * helps then.
+   */
+  notice(nowMs: number): string {
+    if (this.lostMs === null) return '';
+    const soon = nowMs - this.lostMs < 10_000;
+    const advice = soon
+      ? 'waiting for it; the exercise goes on …'
+      : 'reload the page if it does not come back; the exercise goes on';
+    return `The graphics card was reset: no picture\n${advice}`;
   }
 }

@@ -2,7 +2,7 @@
 // The pose one hand asks for. It starts at the tool's present pose, so nothing jumps, and stays near the field.
 import * as THREE from 'three';
 
-const reach_m = 0.12;
+const reachM = 0.12;
 
 export class HandPose {
   taken = false;
@@ -25,7 +25,7 @@ export class HandPose {
   move(by: THREE.Vector3, centre: THREE.Vector3): void {
     this.p.add(by);
     const away = this.p.clone().sub(centre);
-    if (away.length() > reach_m) this.p.copy(centre).add(away.setLength(reach_m));
+    if (away.length() > reachM) this.p.copy(centre).add(away.setLength(reachM));
   }
 
   /** Turns about the tip, axis in the scene. */

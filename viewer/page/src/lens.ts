@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Draws the scene through the microscope: one eye or two, each into its own picture, then through the lens onto the screen.
+// Draws the scene through the microscope: one eye or two, each into its own picture, then through the lens onto the
+// screen.
 import * as THREE from 'three';
-import { make_lens_material, type LensSettings } from './lens_material';
-import { anaglyph_left, anaglyph_right, place_eye, type StereoMode } from './stereo';
+import { makeLensMaterial, type LensSettings } from './lens_material';
+import { anaglyphLeft, anaglyphRight, placeEye, type StereoMode } from './stereo';
 
 export type { LensSettings } from './lens_material';
 
@@ -12,19 +13,33 @@ export class Eyepiece {
   readonly material: THREE.ShaderMaterial;
   private target: THREE.WebGLRenderTarget | null = null;
 
-  constructor(in_space: boolean) { this.material = make_lens_material(in_space); }
+  constructor(inSpace: boolean) {
+    this.material = makeLensMaterial(inSpace);
+  }
 
-  get depth(): THREE.DepthTexture | null { return this.target?.depthTexture ?? null; }
+  get depth(): THREE.DepthTexture | null {
+    return this.target?.depthTexture ?? null;
+  }
 
   configure(settings: LensSettings): void {
-    this.material.defines = { ...(settings.occlusion ? { OCCLUSION: '' } : {}), ...(settings.depth_of_field ? { DEPTH_OF_FIELD: '' } : {}) };
+    this.material.defines = {
+      ...(settings.occlusion ? { OCCLUSION: '' } : {}),
+      ...(settings.depthOfField ? { DEPTH_OF_FIELD: '' } : {}),
+    };
     this.material.needsUpdate = true;
     this.drop();
   }
 
   /** Renders the scene into the picture; the camera's field of view and range are those of the lens. */
-  take(renderer: THREE.WebGLRenderer, scene: THREE.Scene, camera: THREE.PerspectiveCamera, focus: number, size: THREE.Vector2, samples: number): void {
-    if (!this.target || this.target.width !== size.x || this.target.height !== size.y) this.make_target(size, samples);
+  take(
+    renderer: THREE.WebGLRenderer,
+    scene: THREE.Scene,
+    camera: THREE.PerspectiveCamera,
+    focus: number,
+    size: THREE.Vector2,
+    samples: number,
+  ): void {
+    if (!this.target || this.target.width !== size.x || this.target.height !== size.y) this.makeTarget(size, samples);
     const target = this.target!;
     renderer.setRenderTarget(target);
     renderer.render(scene, camera);
@@ -43,10 +58,14 @@ export class Eyepiece {
     this.target = null;
   }
 
-  private make_target(size: THREE.Vector2, samples: number): void {
+  private makeTarget(size: THREE.Vector2, samples: number): void {
     this.drop();
     this.target = new THREE.WebGLRenderTarget(size.x, size.y, {
-      type: THREE.HalfFloatType, samples, generateMipmaps: true, minFilter: THREE.LinearMipmapLinearFilter, magFilter: THREE.LinearFilter,
+      type: THREE.HalfFloatType,
+      samples,
+      generateMipmaps: true,
+      minFilter: THREE.LinearMipmapLinearFilter,
+      magFilter: THREE.LinearFilter,
       depthTexture: new THREE.DepthTexture(size.x, size.y, THREE.UnsignedIntType),
     });
   }
@@ -59,8 +78,8 @@ export class Lens {
   private readonly scene = new THREE.Scene();
   private readonly flat = new THREE.OrthographicCamera(-1, 1, 1, -1, 0, 1);
   private readonly quad: THREE.Mesh;
-  private settings: LensSettings = { occlusion: false, depth_of_field: false, samples: 0 };
-  private seen_by: THREE.PerspectiveCamera | null = null;
+  private settings: LensSettings = { occlusion: false, depthOfField: false, samples: 0 };
+  private seenBy: THREE.PerspectiveCamera | null = null;
   private mode: StereoMode = 'off';
 
   constructor(private readonly renderer: THREE.WebGLRenderer) {
@@ -74,21 +93,25 @@ export class Lens {
     for (const e of this.eyes) e.configure(settings);
   }
 
-  render(scene: THREE.Scene, camera: THREE.PerspectiveCamera, focus: number, mode: StereoMode, angle_rad: number): void {
+  render(scene: THREE.Scene, camera: THREE.PerspectiveCamera, focus: number, mode: StereoMode, angleRad: number): void {
     const size = this.renderer.getDrawingBufferSize(new THREE.Vector2());
-    if (mode !== this.mode) { this.eyes[1]!.drop(); this.mode = mode; }
+    if (mode !== this.mode) {
+      this.eyes[1]!.drop();
+      this.mode = mode;
+    }
     if (mode !== 'sbs' && mode !== 'anaglyph') {
-      this.seen_by = camera;
+      this.seenBy = camera;
       this.eyes[0]!.take(this.renderer, scene, camera, focus, size, this.settings.samples);
       this.triangles = this.renderer.info.render.triangles;
       this.show(0, new THREE.Matrix3(), 0);
       return;
     }
     const each = mode === 'sbs' ? new THREE.Vector2(Math.max(1, Math.floor(size.x / 2)), size.y) : size;
-    take_both(this.renderer, scene, camera, focus, angle_rad, each, this.settings.samples, this.eyes);
+    takeBoth(this.renderer, scene, camera, focus, angleRad, each, this.settings.samples, this.eyes);
     this.triangles = 2 * this.renderer.info.render.triangles;
-    this.seen_by = this.eyes[1]!.camera;
-    const wide = size.x / this.renderer.getPixelRatio(), high = size.y / this.renderer.getPixelRatio();
+    this.seenBy = this.eyes[1]!.camera;
+    const wide = size.x / this.renderer.getPixelRatio();
+    const high = size.y / this.renderer.getPixelRatio();
     if (mode === 'sbs') {
       for (const k of [0, 1]) {
         this.renderer.setViewport((k * wide) / 2, 0, wide / 2, high);
@@ -97,9 +120,9 @@ export class Lens {
       }
       this.renderer.setViewport(0, 0, wide, high);
     } else {
-      this.show(0, new THREE.Matrix3().set(...anaglyph_left), 0.25);
+      this.show(0, new THREE.Matrix3().set(...anaglyphLeft), 0.25);
       this.renderer.autoClear = false;
-      this.show(1, new THREE.Matrix3().set(...anaglyph_right), 0.25, true);
+      this.show(1, new THREE.Matrix3().set(...anaglyphRight), 0.25, true);
     }
     this.renderer.autoClear = true;
   }
@@ -110,12 +133,13 @@ export class Lens {
     const across = this.mode === 'sbs' ? ((x / wide) * 2) % 1 : x / wide;
     const uv = new THREE.Vector2(across, 1 - y / high);
     const depth = this.eyes[this.mode === 'sbs' || this.mode === 'anaglyph' ? 1 : 0]!.depth;
-    if (!depth || !this.seen_by) return null;
+    if (!depth || !this.seenBy) return null;
     const one = new THREE.WebGLRenderTarget(1, 1, { type: THREE.FloatType });
     const probe = new THREE.ShaderMaterial({
       uniforms: { depth_map: { value: depth }, at: { value: uv } },
       vertexShader: 'void main() { gl_Position = vec4(position.xy, 0.0, 1.0); }',
-      fragmentShader: 'uniform highp sampler2D depth_map; uniform vec2 at; void main() { gl_FragColor = vec4(texture2D(depth_map, at).x, 0.0, 0.0, 1.0); }',
+      fragmentShader: `uniform highp sampler2D depth_map; uniform vec2 at;
+        void main() { gl_FragColor = vec4(texture2D(depth_map, at).x, 0.0, 0.0, 1.0); }`,
       depthTest: false,
     });
     this.quad.material = probe;
@@ -127,13 +151,13 @@ export class Lens {
     probe.dispose();
     one.dispose();
     if (!(texel[0]! > 0 && texel[0]! < 0.99999)) return null;
-    return new THREE.Vector3(uv.x * 2 - 1, uv.y * 2 - 1, texel[0]! * 2 - 1).unproject(this.seen_by);
+    return new THREE.Vector3(uv.x * 2 - 1, uv.y * 2 - 1, texel[0]! * 2 - 1).unproject(this.seenBy);
   }
 
-  private show(eye: number, colours: THREE.Matrix3, grey_share: number, add = false): void {
+  private show(eye: number, colours: THREE.Matrix3, greyShare: number, add = false): void {
     const material = this.eyes[eye]!.material;
     (material.uniforms.eye_colours!.value as THREE.Matrix3).copy(colours);
-    material.uniforms.grey_share!.value = grey_share;
+    material.uniforms.grey_share!.value = greyShare;
     material.blending = add ? THREE.CustomBlending : THREE.NoBlending;
     material.blendSrc = material.blendDst = THREE.OneFactor;
     this.quad.material = material;
@@ -143,10 +167,18 @@ export class Lens {
 }
 
 /** Renders both eyes; shadows, which both share, once. */
-export function take_both(renderer: THREE.WebGLRenderer, scene: THREE.Scene, middle: THREE.PerspectiveCamera, focus: number, angle_rad: number,
-  size: THREE.Vector2, samples: number, eyes: readonly Eyepiece[]): void {
+export function takeBoth(
+  renderer: THREE.WebGLRenderer,
+  scene: THREE.Scene,
+  middle: THREE.PerspectiveCamera,
+  focus: number,
+  angleRad: number,
+  size: THREE.Vector2,
+  samples: number,
+  eyes: readonly Eyepiece[],
+): void {
   eyes.forEach((eye, k) => {
-    place_eye(middle, k === 0 ? -1 : 1, focus, angle_rad, size.x / size.y, eye.camera);
+    placeEye(middle, k === 0 ? -1 : 1, focus, angleRad, size.x / size.y, eye.camera);
     renderer.shadowMap.autoUpdate = k === 0;
     eye.take(renderer, scene, eye.camera, focus, size, samples);
   });

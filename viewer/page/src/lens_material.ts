@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the microscope's optics add to the rendered picture: shallow depth of field, a little veiling glare, darkness in narrow
-// gaps (screen-space occlusion), the round field of view, tone mapping, and the colours of an anaglyph's eye.
+// What the microscope's optics add to the rendered picture: shallow depth of field, a little veiling glare, darkness
+// in narrow gaps (screen-space occlusion), the round field of view, tone mapping, and the colours of an anaglyph's
+// eye.
 import * as THREE from 'three';
 
 export interface LensSettings {
   occlusion: boolean;
-  depth_of_field: boolean;
+  depthOfField: boolean;
   samples: number;
 }
 
@@ -73,7 +74,8 @@ void main() {
   float shade = gap_shade(v_uv, z);
   c *= mix(vec3(0.35, 0.10, 0.08), vec3(1.0), smoothstep(0.0, 1.0, shade)) * mix(0.75, 1.0, shade);
 #endif
-  vec3 glare = textureLod(picture, v_uv, 4.0).rgb + textureLod(picture, v_uv, 5.0).rgb + textureLod(picture, v_uv, 6.0).rgb;
+  vec3 glare = textureLod(picture, v_uv, 4.0).rgb;
+  glare += textureLod(picture, v_uv, 5.0).rgb + textureLod(picture, v_uv, 6.0).rgb;
   c += min(glare, vec3(9.0)) * 0.016;
   vec2 from_middle = (v_uv - 0.5) * vec2(size.x / size.y, 1.0);
   float r = length(from_middle) * max(1.0, 1.15 * size.y / size.x);
@@ -82,21 +84,33 @@ void main() {
   gl_FragColor = vec4(c, 1.0);
   #include <tonemapping_fragment>
   #include <colorspace_fragment>
-  gl_FragColor.rgb = clamp(eye_colours * mix(gl_FragColor.rgb, vec3(dot(gl_FragColor.rgb, vec3(0.35, 0.5, 0.15))), grey_share), 0.0, 1.0);
+  vec3 grey = vec3(dot(gl_FragColor.rgb, vec3(0.35, 0.5, 0.15)));
+  gl_FragColor.rgb = clamp(eye_colours * mix(gl_FragColor.rgb, grey, grey_share), 0.0, 1.0);
   gl_FragColor.rgb += (hash(gl_FragCoord.xy + 17.0) - 0.5) / 255.0;
 }
 `;
 
+const inSpacePosition = 'projectionMatrix * modelViewMatrix * vec4(position, 1.0)';
+const flatPosition = 'vec4(position.xy, 0.0, 1.0)';
+
 /** `in_space`: for a screen that hangs in a headset's room; else it fills the viewport. */
-export function make_lens_material(in_space = false): THREE.ShaderMaterial {
+export function makeLensMaterial(inSpace = false): THREE.ShaderMaterial {
   return new THREE.ShaderMaterial({
     uniforms: {
-      picture: { value: null }, depth_map: { value: null }, size: { value: new THREE.Vector2(1, 1) }, near_far: { value: new THREE.Vector2(0.01, 1) },
-      focus: { value: 0.25 }, tan_half: { value: 0.26 }, round_field: { value: 1 }, grey_share: { value: 0 }, eye_colours: { value: new THREE.Matrix3() },
+      picture: { value: null },
+      depth_map: { value: null },
+      size: { value: new THREE.Vector2(1, 1) },
+      near_far: { value: new THREE.Vector2(0.01, 1) },
+      focus: { value: 0.25 },
+      tan_half: { value: 0.26 },
+      round_field: { value: 1 },
+      grey_share: { value: 0 },
+      eye_colours: { value: new THREE.Matrix3() },
     },
-    vertexShader: `varying vec2 v_uv; void main() { v_uv = uv; gl_Position = ${in_space ? 'projectionMatrix * modelViewMatrix * vec4(position, 1.0)' : 'vec4(position.xy, 0.0, 1.0)'}; }`,
+    vertexShader: `varying vec2 v_uv;
+      void main() { v_uv = uv; gl_Position = ${inSpace ? inSpacePosition : flatPosition}; }`,
     fragmentShader: fragment,
-    depthTest: in_space,
-    depthWrite: in_space,
+    depthTest: inSpace,
+    depthWrite: inSpace,
   });
 }

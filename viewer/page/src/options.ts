@@ -1,27 +1,30 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the address line may ask for: ?role= ?quality= ?nohud ?t= ?stereo= ?angle= ?icg
 
-import { clamp_angle, type StereoMode, usual_angle_deg } from './stereo';
+import { clampAngle, type StereoMode, usualAngleDeg } from './stereo';
 
 export type Role = 'trainee' | 'instructor' | 'observer';
 export type QualityName = 'low' | 'medium' | 'high' | 'ultra';
 
 export interface Options {
-  /** trainee drives the hands; instructor watches, commands the scene's components and speaks to the trainee; observer only looks. */
+  /**
+   * trainee drives the hands; instructor watches, commands the scene's components and speaks to the trainee; observer
+   * only looks.
+   */
   role: Role;
   /** A fixed level, or null for automatic. */
   quality: QualityName | null;
   hud: boolean;
   /** Simulated second at which the picture stands still (for screenshots), or null. */
-  freeze_at_s: number | null;
+  freezeAtS: number | null;
   stereo: StereoMode;
   /** Between the eyes, at the focus. */
-  angle_deg: number;
+  angleDeg: number;
   /** Begins with the indocyanine-green picture. */
   infrared: boolean;
 }
 
-export function parse_options(search: string): Options {
+export function parseOptions(search: string): Options {
   const q = new URLSearchParams(search);
   const role = q.get('role');
   const quality = q.get('quality');
@@ -32,9 +35,9 @@ export function parse_options(search: string): Options {
     role: role === 'instructor' || role === 'observer' ? role : 'trainee',
     quality: quality === 'low' || quality === 'medium' || quality === 'high' || quality === 'ultra' ? quality : null,
     hud: !q.has('nohud'),
-    freeze_at_s: t !== null && t !== '' && Number.isFinite(Number(t)) ? Number(t) : null,
+    freezeAtS: t !== null && t !== '' && Number.isFinite(Number(t)) ? Number(t) : null,
     stereo: stereo === 'sbs' || stereo === 'anaglyph' || stereo === 'xr' ? stereo : 'off',
-    angle_deg: angle !== null && angle !== '' ? clamp_angle(Number(angle)) : usual_angle_deg,
+    angleDeg: angle !== null && angle !== '' ? clampAngle(Number(angle)) : usualAngleDeg,
     infrared: q.has('icg'),
   };
 }

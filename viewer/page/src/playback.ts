@@ -1,35 +1,40 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The last two frames and the picture's place between them: shown one frame late, so motion is even whatever the network does.
+// The last two frames and the picture's place between them: shown one frame late, so motion is even whatever the
+// network does.
 import type { RenderFrame } from './lcm';
+import { checkDrawable, mixDrawable } from './step_data/drawable_data';
+import type { DrawableData } from './step_data/declarations';
 
 export class Playback {
   frames = 0;
   latest: RenderFrame | null = null;
   private previous: RenderFrame | null = null;
-  private arrived_ms = 0;
-  private period_ms = 1000 / 60;
-  private scratch = new Map<number, Float32Array>();
+  private arrivedMs = 0;
+  private periodMs = 1000 / 60;
+  private scratch = new Map<string, Float32Array>();
+  private checked = new Map<number, Float32Array>();
 
-  push(frame: RenderFrame, now_ms: number): void {
+  push(frame: RenderFrame, nowMs: number): void {
     if (this.latest && (frame.session !== this.latest.session || frame.sequence < this.latest.sequence)) this.clear();
     if (this.latest) {
-      const gap = now_ms - this.arrived_ms;
-      if (gap < 500) this.period_ms += 0.1 * (gap - this.period_ms);
+      const gap = nowMs - this.arrivedMs;
+      if (gap < 500) this.periodMs += 0.1 * (gap - this.periodMs);
     }
     this.previous = this.latest;
     this.latest = frame;
-    this.arrived_ms = now_ms;
+    this.arrivedMs = nowMs;
     this.frames++;
   }
 
   clear(): void {
     this.latest = this.previous = null;
     this.scratch.clear();
+    this.checked.clear();
   }
 
   /** 0: the previous frame, 1: the newest. */
-  blend(now_ms: number): number {
-    return Math.max(0, Math.min(1, (now_ms - this.arrived_ms) / Math.max(1, this.period_ms)));
+  blend(nowMs: number): number {
+    return Math.max(0, Math.min(1, (nowMs - this.arrivedMs) / Math.max(1, this.periodMs)));
   }
 
   /** Blended node positions of a body, or null when the frame has none. The array is reused. */
@@ -37,18 +42,27 @@ export class Playback {
     const b = this.latest?.body.find((x) => x.index === index)?.x_m;
     if (!b) return null;
     const a = this.previous?.body.find((x) => x.index === index)?.x_m;
-    let out = this.scratch.get(index);
-    if (!out || out.length !== b.length) this.scratch.set(index, (out = new Float32Array(b.length)));
+    let out = this.scratch.get(`b${index}`);
+    if (!out || out.length !== b.length) this.scratch.set(`b${index}`, (out = new Float32Array(b.length)));
     mix(a && a.length === b.length ? a : b, b, t, out);
     return out;
   }
 
-  strand_ends(t: number): Float32Array {
-    const b = this.latest?.strand_x_m ?? new Float32Array(0);
-    const a = this.previous?.strand_x_m;
-    let out = this.scratch.get(-1);
-    if (!out || out.length !== b.length) this.scratch.set(-1, (out = new Float32Array(b.length)));
-    mix(a && a.length === b.length ? a : b, b, t, out);
+  /**
+   * Blended numbers of a drawable, or null when the frame has none. Checks them; throws DataError. The array is
+   * reused.
+   */
+  drawable(declared: DrawableData, t: number): Float32Array | null {
+    const { index } = declared;
+    const b = this.latest?.drawable.find((x) => x.index === index)?.data;
+    if (!b) return null;
+    if (this.checked.get(index) !== b) checkDrawable(declared, b);
+    this.checked.set(index, b);
+    const a = this.previous?.drawable.find((x) => x.index === index)?.data ?? null;
+    const key = `d${index}`;
+    let out = this.scratch.get(key);
+    if (!out || out.length !== b.length) this.scratch.set(key, (out = new Float32Array(b.length)));
+    mixDrawable(declared, a, b, t, out);
     return out;
   }
 

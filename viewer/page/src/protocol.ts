@@ -7,7 +7,8 @@ export interface Packet {
 }
 
 export function pack(channel: string, payload: Uint8Array): Uint8Array<ArrayBuffer> {
-  if (channel.length === 0 || channel.length > 255 || !/^[\x21-\x7e]+$/.test(channel)) throw new RangeError('bad channel name');
+  if (channel.length === 0 || channel.length > 255 || !/^[\x21-\x7e]+$/.test(channel))
+    throw new RangeError('bad channel name');
   const out = new Uint8Array(1 + channel.length + payload.length);
   out[0] = channel.length;
   for (let i = 0; i < channel.length; i++) out[1 + i] = channel.charCodeAt(i);

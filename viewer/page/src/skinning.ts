@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Fine surfaces that follow the nodes of a body. Positions: x = sum_i w_i x_i over four nodes. Normals: the cofactor matrix of
-// the deformation gradient F of each tetrahedron, averaged to the nodes and interpolated like the positions, so that the
-// shading stays smooth across tetrahedra: n' ~ sum_i w_i C_i n, with C = cof(F) = sum_k c_k (x) e_k / det(E),
-// e_k the rest edges, c_k the cross products of the deformed edges (cof(D) columns). A triangle of a shell counts as a
-// tetrahedron whose third edge is its normal. A vertex that is embedded beside its nodes keeps its offset:
-// x = sum_i w_i x_i + (X - sum_i w_i X_i).
+// Fine surfaces that follow the nodes of a body. Positions: x = sum_i w_i x_i over four nodes. Normals: the cofactor
+// matrix of the deformation gradient F of each tetrahedron, averaged to the nodes and interpolated like the
+// positions, so that the shading stays smooth across tetrahedra: n' ~ sum_i w_i C_i n, with C = cof(F) = sum_k c_k
+// (x) e_k / det(E), e_k the rest edges, c_k the cross products of the deformed edges (cof(D) columns). A triangle of
+// a shell counts as a tetrahedron whose third edge is its normal. A vertex that is embedded beside its nodes keeps its
+// offset: x = sum_i w_i x_i + (X - sum_i w_i X_i).
 
 /** Texels per node in the node texture: position and the three columns of C. */
-export const texels_per_node = 4;
-export const texture_width = 256;
+export const texelsPerNode = 4;
+export const textureWidth = 256;
 
 /** Node positions and normal transforms of one body in the layout of its float texture (RGBA per texel). */
 export class NodeField {
@@ -16,21 +16,28 @@ export class NodeField {
   readonly texels: Float32Array<ArrayBuffer>;
   /** Four nodes each; the last is -1 in a triangle. */
   private readonly tets: Int32Array;
-  private readonly rest_edges: Float32Array;
+  private readonly restEdges: Float32Array;
 
-  /** `quads`: node quadruples of the tetrahedra that carry surface vertices, repeats allowed; `triangles`: of a shell, by nodes. */
-  constructor(readonly rest: Float32Array, quads: Uint32Array[], triangles: Uint32Array = new Uint32Array(0)) {
+  /**
+   * `quads`: node quadruples of the tetrahedra that carry surface vertices, repeats allowed; `triangles`: of a shell,
+   * by nodes.
+   */
+  constructor(
+    readonly rest: Float32Array,
+    quads: Uint32Array[],
+    triangles: Uint32Array = new Uint32Array(0),
+  ) {
     const nodes = rest.length / 3;
-    this.rows = Math.max(1, Math.ceil((nodes * texels_per_node) / texture_width));
-    this.texels = new Float32Array(this.rows * texture_width * 4);
-    this.tets = unique_elements(rest, quads, triangles);
-    this.rest_edges = new Float32Array((this.tets.length / 4) * 9);
+    this.rows = Math.max(1, Math.ceil((nodes * texelsPerNode) / textureWidth));
+    this.texels = new Float32Array(this.rows * textureWidth * 4);
+    this.tets = uniqueElements(rest, quads, triangles);
+    this.restEdges = new Float32Array((this.tets.length / 4) * 9);
     const e = new Float64Array(9);
     for (let t = 0; t < this.tets.length / 4; t++) {
       edges(rest, this.tets, t, e);
       // Inverted numbering would flip the normals: the sign goes into the rest edges once.
       const sign = determinant(e) < 0 ? -1 : 1;
-      for (let k = 0; k < 9; k++) this.rest_edges[t * 9 + k] = e[k]! * sign;
+      for (let k = 0; k < 9; k++) this.restEdges[t * 9 + k] = e[k]! * sign;
     }
     this.update(rest);
   }
@@ -41,12 +48,15 @@ export class NodeField {
     const out = this.texels;
     for (let i = 0; i < nodes; i++) {
       const o = i * 16;
-      out[o] = x[3 * i]!; out[o + 1] = x[3 * i + 1]!; out[o + 2] = x[3 * i + 2]!; out[o + 3] = 1;
+      out[o] = x[3 * i]!;
+      out[o + 1] = x[3 * i + 1]!;
+      out[o + 2] = x[3 * i + 2]!;
+      out[o + 3] = 1;
       out.fill(0, o + 4, o + 16);
     }
     const d = new Float64Array(9);
     const c = new Float64Array(9);
-    const E = this.rest_edges;
+    const rest = this.restEdges;
     for (let t = 0; t < this.tets.length / 4; t++) {
       edges(x, this.tets, t, d);
       cross(d, 3, 6, c, 0);
@@ -54,14 +64,18 @@ export class NodeField {
       cross(d, 0, 3, c, 6);
       for (let j = 0; j < 3; j++) {
         // Column j of the volume-weighted C.
-        const ex = E[t * 9 + j]!, ey = E[t * 9 + 3 + j]!, ez = E[t * 9 + 6 + j]!;
+        const ex = rest[t * 9 + j]!;
+        const ey = rest[t * 9 + 3 + j]!;
+        const ez = rest[t * 9 + 6 + j]!;
         const cx = c[0]! * ex + c[3]! * ey + c[6]! * ez;
         const cy = c[1]! * ex + c[4]! * ey + c[7]! * ez;
         const cz = c[2]! * ex + c[5]! * ey + c[8]! * ez;
         for (let k = 0; k < 4; k++) {
           if (this.tets[t * 4 + k]! < 0) continue;
           const o = this.tets[t * 4 + k]! * 16 + 4 + j * 4;
-          out[o] = out[o]! + cx; out[o + 1] = out[o + 1]! + cy; out[o + 2] = out[o + 2]! + cz;
+          out[o] = out[o]! + cx;
+          out[o + 1] = out[o + 1]! + cy;
+          out[o + 2] = out[o + 2]! + cz;
         }
       }
     }
@@ -74,36 +88,68 @@ export class NodeField {
         s = Math.sqrt(3 / s);
         for (let k = 0; k < 12; k++) out[o + k] = out[o + k]! * s;
       } else {
-        out[o] = 1; out[o + 5] = 1; out[o + 10] = 1;
+        out[o] = 1;
+        out[o + 5] = 1;
+        out[o + 10] = 1;
       }
     }
   }
 }
 
 /** The same law as the vertex shader, on the CPU; writes position and unit normal. */
-export function skin_vertex(field: NodeField, nodes: ArrayLike<number>, weights: ArrayLike<number>, v: number, normal: ArrayLike<number>,
-  out_position: number[], out_normal: number[], offsets: ArrayLike<number> | null = null): void {
+export function skinVertex(
+  field: NodeField,
+  nodes: ArrayLike<number>,
+  weights: ArrayLike<number>,
+  v: number,
+  normal: ArrayLike<number>,
+  outPosition: number[],
+  outNormal: number[],
+  offsets: ArrayLike<number> | null = null,
+): void {
   const m = new Float64Array(12);
-  let p0 = 0, p1 = 0, p2 = 0;
+  let p0 = 0;
+  let p1 = 0;
+  let p2 = 0;
   for (let k = 0; k < 4; k++) {
     const o = nodes[v * 4 + k]! * 16;
     const w = weights[v * 4 + k]!;
-    p0 += w * field.texels[o]!; p1 += w * field.texels[o + 1]!; p2 += w * field.texels[o + 2]!;
+    p0 += w * field.texels[o]!;
+    p1 += w * field.texels[o + 1]!;
+    p2 += w * field.texels[o + 2]!;
     for (let j = 0; j < 12; j++) m[j] = m[j]! + w * field.texels[o + 4 + j]!;
   }
-  if (offsets) { p0 += offsets[v * 3]!; p1 += offsets[v * 3 + 1]!; p2 += offsets[v * 3 + 2]!; }
-  out_position[0] = p0; out_position[1] = p1; out_position[2] = p2;
-  const a = normal[0]!, b = normal[1]!, c = normal[2]!;
-  const nx = m[0]! * a + m[4]! * b + m[8]! * c, ny = m[1]! * a + m[5]! * b + m[9]! * c, nz = m[2]! * a + m[6]! * b + m[10]! * c;
+  if (offsets) {
+    p0 += offsets[v * 3]!;
+    p1 += offsets[v * 3 + 1]!;
+    p2 += offsets[v * 3 + 2]!;
+  }
+  outPosition[0] = p0;
+  outPosition[1] = p1;
+  outPosition[2] = p2;
+  const a = normal[0]!;
+  const b = normal[1]!;
+  const c = normal[2]!;
+  const nx = m[0]! * a + m[4]! * b + m[8]! * c;
+  const ny = m[1]! * a + m[5]! * b + m[9]! * c;
+  const nz = m[2]! * a + m[6]! * b + m[10]! * c;
   const l = Math.hypot(nx, ny, nz) || 1;
-  out_normal[0] = nx / l; out_normal[1] = ny / l; out_normal[2] = nz / l;
+  outNormal[0] = nx / l;
+  outNormal[1] = ny / l;
+  outNormal[2] = nz / l;
 }
 
 /** Weights of a point in a tetrahedron of rest nodes, extrapolated outside; null when the tetrahedron is flat. */
-export function barycentric(rest: Float32Array, quad: ArrayLike<number>, at: number, p: ArrayLike<number>): [number, number, number, number] | null {
+export function barycentric(
+  rest: Float32Array,
+  quad: ArrayLike<number>,
+  at: number,
+  p: ArrayLike<number>,
+): [number, number, number, number] | null {
   const e = new Float64Array(9);
   const n0 = quad[at]! * 3;
-  for (let k = 0; k < 3; k++) for (let j = 0; j < 3; j++) e[k * 3 + j] = rest[quad[at + k + 1]! * 3 + j]! - rest[n0 + j]!;
+  for (let k = 0; k < 3; k++)
+    for (let j = 0; j < 3; j++) e[k * 3 + j] = rest[quad[at + k + 1]! * 3 + j]! - rest[n0 + j]!;
   const det = determinant(e);
   const size = Math.hypot(e[0]!, e[1]!, e[2]!) * Math.hypot(e[3]!, e[4]!, e[5]!) * Math.hypot(e[6]!, e[7]!, e[8]!);
   if (Math.abs(det) <= 1e-6 * size) return null;
@@ -112,7 +158,11 @@ export function barycentric(rest: Float32Array, quad: ArrayLike<number>, at: num
   cross(e, 3, 6, c, 0);
   cross(e, 6, 0, c, 3);
   cross(e, 0, 3, c, 6);
-  const w = [0, 1, 2].map((k) => (d[0]! * c[k * 3]! + d[1]! * c[k * 3 + 1]! + d[2]! * c[k * 3 + 2]!) / det) as [number, number, number];
+  const w = [0, 1, 2].map((k) => (d[0]! * c[k * 3]! + d[1]! * c[k * 3 + 1]! + d[2]! * c[k * 3 + 2]!) / det) as [
+    number,
+    number,
+    number,
+  ];
   return [1 - w[0] - w[1] - w[2], w[0], w[1], w[2]];
 }
 
@@ -131,7 +181,11 @@ function edges(x: Float32Array, tets: ArrayLike<number>, t: number, out: Float64
 }
 
 function determinant(e: Float64Array): number {
-  return e[0]! * (e[4]! * e[8]! - e[5]! * e[7]!) - e[1]! * (e[3]! * e[8]! - e[5]! * e[6]!) + e[2]! * (e[3]! * e[7]! - e[4]! * e[6]!);
+  return (
+    e[0]! * (e[4]! * e[8]! - e[5]! * e[7]!) -
+    e[1]! * (e[3]! * e[8]! - e[5]! * e[6]!) +
+    e[2]! * (e[3]! * e[7]! - e[4]! * e[6]!)
+  );
 }
 
 function cross(a: Float64Array, i: number, j: number, out: Float64Array, o: number): void {
@@ -140,7 +194,7 @@ function cross(a: Float64Array, i: number, j: number, out: Float64Array, o: numb
   out[o + 2] = a[i]! * a[j + 1]! - a[i + 1]! * a[j]!;
 }
 
-function unique_elements(rest: Float32Array, quads: Uint32Array[], triangles: Uint32Array): Int32Array {
+function uniqueElements(rest: Float32Array, quads: Uint32Array[], triangles: Uint32Array): Int32Array {
   const seen = new Map<string, number[]>();
   const e = new Float64Array(9);
   const take = (nodes: number[]) => {
@@ -156,7 +210,12 @@ function unique_elements(rest: Float32Array, quads: Uint32Array[], triangles: Ui
 }
 
 /** What is left of a vertex' rest place when its nodes' share is taken off; it stays constant as the nodes move. */
-export function skin_offsets(rest: Float32Array, positions: ArrayLike<number>, nodes: ArrayLike<number>, weights: ArrayLike<number>): Float32Array {
+export function skinOffsets(
+  rest: Float32Array,
+  positions: ArrayLike<number>,
+  nodes: ArrayLike<number>,
+  weights: ArrayLike<number>,
+): Float32Array {
   const out = new Float32Array(positions.length);
   for (let v = 0; v < positions.length / 3; v++)
     for (let j = 0; j < 3; j++) {
@@ -171,16 +230,20 @@ export function skin_offsets(rest: Float32Array, positions: ArrayLike<number>, n
  * The triangles of a shell as its surfaces show them: those that carry picture vertices (three weighted nodes), and the
  * surface's own where each vertex is a node. Empty for a body of tetrahedra.
  */
-export function shell_triangles(surfaces: { indices: Uint32Array; skin_nodes: Uint32Array; skin_weights: Float32Array }[]): Uint32Array {
+export function shellTriangles(
+  surfaces: { indices: Uint32Array; skinNodes: Uint32Array; skinWeights: Float32Array }[],
+): Uint32Array {
   const seen = new Map<string, number[]>();
-  const take = (a: number[]) => { if (new Set(a).size === 3) seen.set([...a].sort((x, y) => x - y).join(), a); };
+  const take = (a: number[]) => {
+    if (new Set(a).size === 3) seen.set([...a].sort((x, y) => x - y).join(), a);
+  };
   for (const s of surfaces) {
     const heavy = (v: number) => {
       const used = new Set<number>();
-      for (let k = 0; k < 4; k++) if (Math.abs(s.skin_weights[v * 4 + k]!) > 1e-6) used.add(s.skin_nodes[v * 4 + k]!);
+      for (let k = 0; k < 4; k++) if (Math.abs(s.skinWeights[v * 4 + k]!) > 1e-6) used.add(s.skinNodes[v * 4 + k]!);
       return [...used];
     };
-    const of = Array.from({ length: s.skin_nodes.length / 4 }, (_, v) => heavy(v));
+    const of = Array.from({ length: s.skinNodes.length / 4 }, (_, v) => heavy(v));
     // A vertex in a tetrahedron has four: this is no shell.
     if (of.some((n) => n.length > 3)) return new Uint32Array(0);
     for (const n of of) if (n.length === 3) take(n);

@@ -1,60 +1,105 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Instruments and clips at their streamed poses, links at the streamed opening, and a faint ghost where the hand is when the
-// tool is held back far from it.
+// Rigid tools at their streamed poses, links at the streamed opening, and a faint ghost where the hand is when a tool
+// is held back far from it.
 import * as THREE from 'three';
-import type { ToolData } from './bundle';
+import type { ToolData } from './bundle_types';
 import { creased } from './geometry';
-import { link_pose } from './link_pose';
+import { linkPose } from './link_pose';
 import type { FieldUniforms } from './materials/field';
-import { solid_material } from './materials/solid';
+import { solidMaterial } from './materials/solid';
+import { type MaterialData, materialOf } from './step_data/declarations';
 
-const ghost_from_m = 0.004;
-/** A retractor's blade presses into tissue between the points where contact is sought: what little pokes through is not shown. */
-const blade_forward_m = 0.002;
+const ghostFromM = 0.004;
+/**
+ * A blade on an arm presses into tissue between the points where contact is sought: what little pokes through is not
+ * shown.
+ */
+const armForwardM = 0.002;
+
+export interface ToolPose {
+  p: THREE.Vector3;
+  q: THREE.Quaternion;
+  openingRad: number;
+  /** Where the hand is; null: no hand holds it. */
+  device: THREE.Vector3 | null;
+  /** No hand holds it, and it is not free in the field. */
+  onArm: boolean;
+}
 
 export class Tool {
   readonly group = new THREE.Group();
   private readonly ghost = new THREE.Group();
-  private readonly ghost_material = new THREE.MeshBasicMaterial({ color: 0x8fd8ff, transparent: true, opacity: 0, depthWrite: false });
+  private readonly ghostMaterial = new THREE.MeshBasicMaterial({
+    color: 0x8fd8ff,
+    transparent: true,
+    opacity: 0,
+    depthWrite: false,
+  });
+  /** What no hand ever holds has no ghost. */
+  private readonly inHand: boolean;
+  private readonly forward = { value: 0 };
   private readonly links: THREE.Group[];
   private readonly owned: { dispose(): void }[] = [];
 
-  constructor(readonly data: ToolData, environment: THREE.Texture | null, field: FieldUniforms) {
+  constructor(
+    readonly data: ToolData,
+    environment: THREE.Texture | null,
+    field: FieldUniforms,
+    materials: ReadonlyMap<string, MaterialData>,
+  ) {
+    this.inHand = data.hand === 'left' || data.hand === 'right';
     this.links = Array.from({ length: data.hinges.length + 1 }, () => new THREE.Group());
-    for (const l of this.links) { l.matrixAutoUpdate = false; this.group.add(l); }
+    for (const l of this.links) {
+      l.matrixAutoUpdate = false;
+      this.group.add(l);
+    }
     for (const part of data.parts) {
       const shape = creased(part.positions, part.indices, 0.6);
       const geometry = new THREE.BufferGeometry();
       geometry.setAttribute('position', new THREE.BufferAttribute(shape.positions, 3));
       geometry.setAttribute('normal', new THREE.BufferAttribute(shape.normals, 3));
-      const material = solid_material(part.material, field, undefined, part.rgba, data.hand === 'none' && data.clip === null ? blade_forward_m : 0);
+      const { roughness, metalness } = materialOf(materials, part.material);
+      const material = solidMaterial(part.material, {
+        field,
+        rgba: part.rgba,
+        roughness,
+        metalness,
+        forward: this.forward,
+      });
       // Metal lives from its reflections: it gets the room brighter than tissue does.
       material.envMap = environment;
       const mesh = new THREE.Mesh(geometry, material);
       mesh.castShadow = true;
       mesh.receiveShadow = true;
       this.links[part.link]!.add(mesh);
-      // A clip lies in the field by itself: no hand, no ghost.
-      if (data.clip === null && part.link === 0) this.ghost.add(new THREE.Mesh(geometry, this.ghost_material));
+      if (this.inHand && part.link === 0) this.ghost.add(new THREE.Mesh(geometry, this.ghostMaterial));
       this.owned.push(geometry, material);
     }
-    this.owned.push(this.ghost_material);
+    this.owned.push(this.ghostMaterial);
     this.hide();
   }
 
-  add_to(scene: THREE.Object3D): void { scene.add(this.group, this.ghost); }
+  addTo(scene: THREE.Object3D): void {
+    scene.add(this.group, this.ghost);
+  }
 
-  set_pose(p: THREE.Vector3, q: THREE.Quaternion, opening_rad: number, device: THREE.Vector3 | null): void {
+  setPose(pose: ToolPose): void {
+    const { p, q, openingRad } = pose;
+    const device = this.inHand ? pose.device : null;
+    this.forward.value = pose.onArm ? armForwardM : 0;
     this.group.visible = true;
     this.group.position.copy(p);
     this.group.quaternion.copy(q);
-    this.links.forEach((l, k) => { link_pose(this.data.hinges, k, opening_rad, l.matrix); l.matrixWorldNeedsUpdate = true; });
+    this.links.forEach((l, k) => {
+      linkPose(this.data.hinges, k, openingRad, l.matrix);
+      l.matrixWorldNeedsUpdate = true;
+    });
     const gap = device ? device.distanceTo(p) : 0;
-    this.ghost.visible = gap > ghost_from_m;
+    this.ghost.visible = gap > ghostFromM;
     if (!device) return;
     this.ghost.position.copy(device);
     this.ghost.quaternion.copy(q);
-    this.ghost_material.opacity = Math.min(0.16, (gap - ghost_from_m) * 12);
+    this.ghostMaterial.opacity = Math.min(0.16, (gap - ghostFromM) * 12);
   }
 
   hide(): void {

@@ -1,47 +1,66 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How the field is looked at: one eye or two, in a headset, in infrared; kept in one place for keys, buttons and the address line.
+// How the field is looked at: one eye or two, in a headset, in infrared; kept in one place for keys, buttons and the
+// address line.
 import type { Headset } from './headset';
-import { clamp_angle, type StereoMode } from './stereo';
+import { clampAngle, type StereoMode } from './stereo';
 
 export interface ViewOutputs {
   infrared(on: boolean): void;
-  stereo(mode: StereoMode, angle_deg: number, headset: boolean, presenting: boolean): void;
+  stereo(mode: StereoMode, angleDeg: number, headset: boolean, presenting: boolean): void;
   refuse(why: string): void;
 }
 
 export class ViewModes {
   stereo: StereoMode;
-  angle_deg: number;
+  angleDeg: number;
   infrared: boolean;
-  private headset_found = false;
+  private headsetFound = false;
 
-  constructor(options: { stereo: StereoMode; angle_deg: number; infrared: boolean }, private readonly headset: Headset, private readonly out: ViewOutputs) {
+  constructor(
+    options: { stereo: StereoMode; angleDeg: number; infrared: boolean },
+    private readonly headset: Headset,
+    private readonly out: ViewOutputs,
+  ) {
     this.stereo = options.stereo;
-    this.angle_deg = options.angle_deg;
+    this.angleDeg = options.angleDeg;
     this.infrared = options.infrared;
-    void headset.supported.then((yes) => { this.headset_found = yes; this.tell(); });
+    void headset.supported.then((yes) => {
+      this.headsetFound = yes;
+      this.tell();
+    });
   }
 
   tell(): void {
     this.out.infrared(this.infrared);
-    this.out.stereo(this.stereo, this.angle_deg, this.headset_found, this.headset.presenting);
+    this.out.stereo(this.stereo, this.angleDeg, this.headsetFound, this.headset.presenting);
   }
 
-  set_infrared(on: boolean): void { this.infrared = on; this.tell(); }
+  setInfrared(on: boolean): void {
+    this.infrared = on;
+    this.tell();
+  }
 
-  set_angle(deg: number): void { this.angle_deg = clamp_angle(deg); this.tell(); }
+  setAngle(deg: number): void {
+    this.angleDeg = clampAngle(deg);
+    this.tell();
+  }
 
   /** `clicked`: a headset lets a page in only from a click. */
-  set_stereo(mode: StereoMode, clicked = false): void {
+  setStereo(mode: StereoMode, clicked = false): void {
     if (mode !== 'xr' && this.headset.presenting) void this.headset.leave();
     this.stereo = mode;
     this.tell();
     if (mode !== 'xr' || !clicked || this.headset.presenting) return;
-    this.headset.enter().then(() => this.tell(), (e: unknown) => {
-      this.out.refuse(`The headset is not ready: ${e instanceof Error ? e.message : String(e)}`);
-      this.set_stereo('off');
-    });
+    this.headset.enter().then(
+      () => this.tell(),
+      (e: unknown) => {
+        this.out.refuse(`The headset is not ready: ${e instanceof Error ? e.message : String(e)}`);
+        this.setStereo('off');
+      },
+    );
   }
 
-  next_stereo(): void { this.set_stereo(this.stereo === 'off' ? 'sbs' : this.stereo === 'sbs' ? 'anaglyph' : 'off'); }
+  nextStereo(): void {
+    this.setStereo(this.stereo === 'off' ? 'sbs' : this.stereo === 'sbs' ? 'anaglyph' : 'off');
+  }
 }

@@ -1,19 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The built page in headless Chromium (software rendering) against the mock server: it becomes ready, frames come in, the
-// canvas shows something, pause and reset reach the server, a hand is taken without a jump, and it comes back by itself after
-// the server was away. CHROMIUM names the browser when it is not /usr/bin/chromium. Exit status 77: no browser, skipped.
+// The built page in headless Chromium (software rendering) against the mock server: it becomes ready, frames come in,
+// the canvas shows something, pause and reset reach the server, a hand is taken without a jump, and it comes back by
+// itself after the server was away. CHROMIUM names the browser when it is not /usr/bin/chromium. Exit status 77: no
+// browser, skipped.
 import assert from 'node:assert/strict';
-import { start_mock } from '../scripts/mock-server.mjs';
-import { check, launch, look, patience, wait_for } from './browser.mjs';
+import { startMock } from '../scripts/mock-server.mjs';
+import { check, launch, look, patience, waitFor } from './browser.mjs';
 
-let mock = await start_mock({ port: 0, start_s: 3 });
+let mock = await startMock({ port: 0, startS: 3 });
 const port = Number(new URL(mock.url).port);
 const browser = await launch();
 const errors = [];
 let away = false;
 try {
   const page = await browser.newPage({ viewport: { width: 480, height: 320 } });
-  page.on('console', (m) => { if (m.type() === 'error' && !away) errors.push(m.text()); });
+  page.on('console', (m) => {
+    if (m.type() === 'error' && !away) errors.push(m.text());
+  });
   page.on('pageerror', (e) => errors.push(e.message));
   const status = () => page.evaluate(() => ({ ...window.__insula }));
 
@@ -21,7 +24,11 @@ try {
   await page.waitForFunction(() => window.__insula?.ready, null, patience);
   check('page is ready');
   const before = await status();
-  await page.waitForFunction((n) => window.__insula.frames > n + 20 && window.__insula.pictures > 3, before.frames, patience);
+  await page.waitForFunction(
+    (n) => window.__insula.frames > n + 20 && window.__insula.pictures > 3,
+    before.frames,
+    patience,
+  );
   assert.equal((await status()).refused, 0);
   check('frames and pictures go on');
 
@@ -30,11 +37,15 @@ try {
   assert.ok(seen.mean > 25 && seen.mean < 230, `mean brightness ${seen.mean}`);
   assert.ok(seen.deviation > 15, `contrast ${seen.deviation}`);
   assert.ok(seen.red > 0.2, `share of reddish pixels ${seen.red}`);
-  check(`canvas shows tissue (brightness ${seen.mean.toFixed(0)}, contrast ${seen.deviation.toFixed(0)}, reddish ${(100 * seen.red).toFixed(0)} %)`);
+  check(
+    `canvas shows tissue (brightness ${seen.mean.toFixed(0)}, contrast ${seen.deviation.toFixed(0)}, ` +
+      `reddish ${(100 * seen.red).toFixed(0)} %)`,
+  );
 
-  // The first pictures are brighter, while strands lie over the tissue: what comes back is held against one without them.
+  // The first pictures are brighter, while strands lie over the tissue: what comes back is held against one without
+  // them.
   let settled = seen;
-  await wait_for('picture like the one before', async () => {
+  await waitFor('picture like the one before', async () => {
     const last = settled;
     settled = await look(page, clip);
     return Math.abs(settled.mean - last.mean) <= 0.02 * last.mean;
@@ -45,29 +56,48 @@ try {
     window.__card = document.getElementById('view').getContext('webgl2').getExtension('WEBGL_lose_context');
     window.__card.loseContext();
   });
-  const banner = (text) => page.waitForFunction((t) => (document.querySelector('.banner')?.textContent ?? '').startsWith(t) && (t !== '' || document.querySelector('.banner').hidden), text, patience);
+  const banner = (text) =>
+    page.waitForFunction(
+      (t) =>
+        (document.querySelector('.banner')?.textContent ?? '').startsWith(t) &&
+        (t !== '' || document.querySelector('.banner').hidden),
+      text,
+      patience,
+    );
   await page.waitForFunction(() => window.__insula.graphics_lost, null, patience);
   await banner('The graphics card was reset');
   const lost = await status();
   await page.waitForFunction((n) => window.__insula.frames > n + 20, lost.frames, patience);
   const dark = await look(page, clip);
   assert.equal((await status()).pictures, lost.pictures, 'no picture is counted that nobody sees');
-  assert.ok(dark.red < 0.02 && dark.deviation < 5, `nothing is drawn meanwhile: reddish ${dark.red}, contrast ${dark.deviation}`);
+  assert.ok(
+    dark.red < 0.02 && dark.deviation < 5,
+    `nothing is drawn meanwhile: reddish ${dark.red}, contrast ${dark.deviation}`,
+  );
   await page.evaluate(() => window.__card.restoreContext());
-  await page.waitForFunction((n) => !window.__insula.graphics_lost && window.__insula.pictures > n + 3, lost.pictures, patience);
+  await page.waitForFunction(
+    (n) => !window.__insula.graphics_lost && window.__insula.pictures > n + 3,
+    lost.pictures,
+    patience,
+  );
   await banner('');
   const again = await look(page, clip);
-  assert.ok(Math.abs(again.mean - settled.mean) < 0.1 * settled.mean && Math.abs(again.deviation - settled.deviation) < 0.2 * settled.deviation && Math.abs(again.red - settled.red) < 0.1,
-    `the picture is as before: brightness ${settled.mean} -> ${again.mean}, contrast ${settled.deviation} -> ${again.deviation}, reddish ${settled.red} -> ${again.red}`);
-  const { session: session_now, connected } = await status();
-  assert.deepEqual([session_now, connected], [whole.session, true], 'the same session, without a reload');
+  assert.ok(
+    Math.abs(again.mean - settled.mean) < 0.1 * settled.mean &&
+      Math.abs(again.deviation - settled.deviation) < 0.2 * settled.deviation &&
+      Math.abs(again.red - settled.red) < 0.1,
+    `the picture is as before: brightness ${settled.mean} -> ${again.mean}, ` +
+      `contrast ${settled.deviation} -> ${again.deviation}, reddish ${settled.red} -> ${again.red}`,
+  );
+  const { session: sessionNow, connected } = await status();
+  assert.deepEqual([sessionNow, connected], [whole.session, true], 'the same session, without a reload');
   check('it says that the graphics card was reset, and draws the same again when it is back, without a reload');
 
   await page.keyboard.press('p');
-  await wait_for('pause', () => mock.state.commands.includes('pause'));
+  await waitFor('pause', () => mock.state.commands.includes('pause'));
   await page.waitForFunction(() => document.querySelector('.banner')?.textContent === 'Paused', null, patience);
   await page.keyboard.press('p');
-  await wait_for('resume', () => mock.state.commands.includes('resume'));
+  await waitFor('resume', () => mock.state.commands.includes('resume'));
   check('pause and resume reach the engine');
 
   assert.equal(mock.state.inputs, 0, 'no hand input before a hand is taken');
@@ -75,16 +105,16 @@ try {
   await page.mouse.move(240, 160);
   await page.mouse.down();
   await page.mouse.move(244, 160);
-  await wait_for('hand input', () => mock.state.held[0] !== null);
+  await waitFor('hand input', () => mock.state.held[0] !== null);
   const first = [...mock.state.held[0].p_m];
-  assert.ok(Math.hypot(...first.map((x, i) => x - mock_tool(mock.state)[i])) < 0.003, 'the hand starts at the tool');
+  assert.ok(Math.hypot(...first.map((x, i) => x - mockTool(mock.state)[i])) < 0.003, 'the hand starts at the tool');
   await page.mouse.move(250, 160, { steps: 4 });
-  await wait_for('movement', () => Math.hypot(...[...mock.state.held[0].p_m].map((x, i) => x - first[i])) > 1e-4);
+  await waitFor('movement', () => Math.hypot(...[...mock.state.held[0].p_m].map((x, i) => x - first[i])) > 1e-4);
   await page.mouse.up();
   await page.keyboard.down('Space');
-  await wait_for('button 1', () => mock.state.held[0].button1);
+  await waitFor('button 1', () => mock.state.held[0].button1);
   await page.keyboard.up('Space');
-  await wait_for('button 1 up', () => !mock.state.held[0].button1);
+  await waitFor('button 1 up', () => !mock.state.held[0].button1);
   await page.keyboard.press('g');
   await page.waitForFunction(() => !window.__insula.taken[0], null, patience);
   check('mouse and keys drive a hand, without a jump, until it is released');
@@ -92,9 +122,17 @@ try {
   away = true;
   const session = (await status()).session;
   await mock.stop();
-  await page.waitForFunction(() => !window.__insula.connected && document.querySelector('.banner')?.textContent.startsWith('Viewer gateway'), null, patience);
-  mock = await start_mock({ port, start_s: 3 });
-  await page.waitForFunction((old) => window.__insula.connected && window.__insula.ready && window.__insula.session !== old, session, patience);
+  await page.waitForFunction(
+    () => !window.__insula.connected && document.querySelector('.banner')?.textContent.startsWith('Viewer gateway'),
+    null,
+    patience,
+  );
+  mock = await startMock({ port, startS: 3 });
+  await page.waitForFunction(
+    (old) => window.__insula.connected && window.__insula.ready && window.__insula.session !== old,
+    session,
+    patience,
+  );
   check('it says that the gateway is gone, reconnects, and loads the new session');
   assert.deepEqual(errors, []);
   check('no errors in the console');
@@ -104,4 +142,6 @@ try {
 }
 
 /** Where the mock's left tool is when nobody holds it: it hardly moves. */
-function mock_tool(state) { return state.last_tool; }
+function mockTool(state) {
+  return state.lastTool;
+}

@@ -2,21 +2,23 @@
 // The aneurysm's side of the page against the mock: tool exchange, choosing a clip, refusals, blood in the picture,
 // indocyanine green, stereo, a headset (a made-up one), and the instructor's page beside the trainee's.
 import assert from 'node:assert/strict';
-import { start_mock } from '../scripts/mock-server.mjs';
-import { check, launch, look, patience, wait_for } from './browser.mjs';
-import { fake_headset } from './fake_headset.mjs';
+import { startMock } from '../scripts/mock-server.mjs';
+import { check, launch, look, patience, waitFor } from './browser.mjs';
+import { fakeHeadset } from './fake_headset.mjs';
 
-const mock = await start_mock({ port: 0, start_s: 14 });
+const mock = await startMock({ port: 0, startS: 14 });
 const theatre = mock.state.theatre;
-const sent = (text) => wait_for(text, () => mock.state.commands.includes(text));
+const sent = (text) => waitFor(text, () => mock.state.commands.includes(text));
 const errors = [];
 const browser = await launch();
 try {
   const page = await browser.newPage({ viewport: { width: 480, height: 320 } });
   page.setDefaultTimeout(patience.timeout);
-  page.on('console', (m) => { if (m.type() === 'error') errors.push(m.text()); });
+  page.on('console', (m) => {
+    if (m.type() === 'error') errors.push(m.text());
+  });
   page.on('pageerror', (e) => errors.push(e.message));
-  await page.addInitScript(fake_headset);
+  await page.addInitScript(fakeHeadset);
   await page.goto(`${mock.url}?quality=low`);
   await page.waitForFunction(() => window.__insula?.ready, null, patience);
   const pictures = async (n) => {
@@ -25,68 +27,112 @@ try {
   };
   // Clicks by the page itself: on a slow machine a pointer click waits for pictures.
   const press = (selector) => page.evaluate((s) => document.querySelector(s).click(), selector);
-  const text_of = (selector) => page.evaluate((s) => document.querySelector(s)?.textContent ?? '', selector);
+  const textOf = (selector) => page.evaluate((s) => document.querySelector(s)?.textContent ?? '', selector);
 
   assert.equal(await page.locator('[data-tool=right_dissector]').getAttribute('aria-pressed'), 'true');
   assert.ok(await page.locator('[data-tool=right_dissector]').isDisabled());
   await press('[data-tool=right_clip_applier]');
   await sent('exchange right right_clip_applier');
-  await page.waitForFunction(() => document.querySelector('[data-tool=right_clip_applier]')?.getAttribute('aria-pressed') === 'true', null, patience);
+  await page.waitForFunction(
+    () => document.querySelector('[data-tool=right_clip_applier]')?.getAttribute('aria-pressed') === 'true',
+    null,
+    patience,
+  );
   await page.keyboard.press('t');
   await sent('exchange right right_dissector');
   check('tools are exchanged by button and by key, and the one in hand is marked');
 
   const clip = theatre.clips[0];
   await page.keyboard.press('l');
-  await page.waitForFunction(() => !document.querySelector('.clip-list').hidden, null, patience);
-  assert.equal(await page.evaluate(() => document.activeElement.dataset.clip), clip);
-  assert.equal(await page.evaluate(() => [...document.querySelectorAll('.clip-list img')].every((i) => i.complete && i.naturalWidth > 0)), true, 'every clip has its picture');
+  await page.waitForFunction(() => !document.querySelector('.tool-list-entries').hidden, null, patience);
+  assert.equal(await page.evaluate(() => document.activeElement.dataset.choice), clip);
+  assert.equal(
+    await page.evaluate(() =>
+      [...document.querySelectorAll('.tool-list-entries img')].every((i) => i.complete && i.naturalWidth > 0),
+    ),
+    true,
+    'every clip has its picture',
+  );
   await page.keyboard.press('Enter');
   await sent(`ask right_clip_applier load ${clip}`);
-  await page.waitForFunction((c) => document.querySelector(`[data-clip=${c}] .badge`)?.textContent === 'loaded' && document.querySelector(`[data-clip=${c}]`).disabled, clip, patience);
-  assert.notEqual(await text_of('.clip-head b'), 'No clip loaded');
+  await page.waitForFunction(
+    (c) =>
+      document.querySelector(`[data-choice=${c}] .badge`)?.textContent === 'loaded' &&
+      document.querySelector(`[data-choice=${c}]`).disabled,
+    clip,
+    patience,
+  );
+  assert.notEqual(await textOf('.tool-list-head b'), 'No clip loaded');
   assert.equal(mock.state.inputs, 0, 'keys in the list move no hand');
   check('a clip is chosen from the drop-down by key; it shows what is loaded');
 
   theatre.run('exchange', 'right hammer');
-  await page.waitForFunction(() => document.querySelector('.toast.refused')?.textContent.includes('hammer'), null, patience);
+  await page.waitForFunction(
+    () => document.querySelector('.toast.refused')?.textContent.includes('hammer'),
+    null,
+    patience,
+  );
   check('a refusal is shown');
 
   theatre.run('message', 'Mind the perforators');
-  await page.waitForFunction(() => document.querySelector('.toast.instruction')?.textContent.includes('Mind the perforators'), null, patience);
+  await page.waitForFunction(
+    () => document.querySelector('.toast.instruction')?.textContent.includes('Mind the perforators'),
+    null,
+    patience,
+  );
   check("the instructor's words are shown");
 
   const field = { x: 205, y: 125, width: 70, height: 70 };
-  // The middle of the pool, from two pictures of a frozen field: waves go on, so reflections of the lamp differ; what lies below does not.
+  // The middle of the pool, from two pictures of a frozen field: waves go on, so reflections of the lamp differ; what
+  // lies below does not.
   const pool = () => look(page, { x: 190, y: 115, width: 90, height: 90 }, { disc: true });
-  const freeze = async () => { mock.state.paused = true; await pictures(4); };
+  const freeze = async () => {
+    mock.state.paused = true;
+    await pictures(4);
+  };
   await freeze();
   const before = await pool();
   mock.state.paused = false;
   theatre.run('ask', 'artery_bleeding rupture');
-  await page.waitForFunction(() => document.querySelector('[data-timer=rupture]')?.hidden === false && /^4:\d\d$/.test(document.querySelector('[data-timer=rupture] .time').textContent), null, patience);
-  assert.match(await text_of('.blood'), /bleeding \d+ mL\/min/);
-  assert.ok(Number(await text_of('[data-vessel=parent] td')) > 20);
+  await page.waitForFunction(
+    () =>
+      document.querySelector('[data-timer=rupture]')?.hidden === false &&
+      /^4:\d\d$/.test(document.querySelector('[data-timer=rupture] .time').textContent),
+    null,
+    patience,
+  );
+  assert.match(await textOf('[data-channel="bleeding.rate"] .value'), /^\d+ mL\/min$/);
+  assert.ok(Number(await textOf('[data-channel="flow.parent.pressure"]')) > 20);
   theatre.height = 0.009;
   await pictures(6);
   await freeze();
   const flooded = await pool();
   mock.state.paused = false;
-  assert.ok(flooded.dark_red > 0.5 && flooded.dark_red > before.dark_red + 0.15, `dark red ${before.dark_red} -> ${flooded.dark_red}`);
-  assert.ok(flooded.spread < 0.4 * before.spread, `the field is hidden: contrast ${before.spread} -> ${flooded.spread}`);
-  check(`timers, flow and blood are told, and blood hides the field (dark red ${(100 * before.dark_red).toFixed(0)} -> ${(100 * flooded.dark_red).toFixed(0)} %, contrast ${before.spread.toFixed(0)} -> ${flooded.spread.toFixed(0)})`);
+  assert.ok(
+    flooded.dark_red > 0.5 && flooded.dark_red > before.dark_red + 0.15,
+    `dark red ${before.dark_red} -> ${flooded.dark_red}`,
+  );
+  assert.ok(
+    flooded.spread < 0.4 * before.spread,
+    `the field is hidden: contrast ${before.spread} -> ${flooded.spread}`,
+  );
+  check(
+    'timers, flow and blood are told, and blood hides the field ' +
+      `(dark red ${(100 * before.dark_red).toFixed(0)} -> ${(100 * flooded.dark_red).toFixed(0)} %, ` +
+      `contrast ${before.spread.toFixed(0)} -> ${flooded.spread.toFixed(0)})`,
+  );
 
   theatre.reset();
   await page.keyboard.press('j');
-  await sent('ask artery_flow inject_dye');
+  await sent('ask flow inject_dye');
   await page.keyboard.press('i');
-  mock.state.paused = true;  // dye is washed out in half a minute, which a slow machine needs for its pictures
-  theatre.dye_at = theatre.time - 4;
+  mock.state.paused = true; // dye is washed out in half a minute, which a slow machine needs for its pictures
+  theatre.dyeAt = theatre.time - 4;
   await pictures(12);
   const shining = await look(page, { x: 140, y: 60, width: 200, height: 200 });
   assert.ok(shining.green > 0.01, `greenish ${shining.green}`);
   assert.ok(shining.mean < 70, `dark around: ${shining.mean}`);
-  theatre.dye_at = null;
+  theatre.dyeAt = null;
   await pictures(16);
   const faded = await look(page, { x: 140, y: 60, width: 200, height: 200 });
   assert.ok(faded.green < 0.2 * shining.green, `greenish ${shining.green} -> ${faded.green}`);
@@ -99,7 +145,10 @@ try {
   await pictures(8);
   const halves = [];
   for (const x of [85, 325]) halves.push(await look(page, { x, y: 125, width: 70, height: 70 }));
-  assert.ok(halves.every((h) => h.mean > 15), 'a picture in each half');
+  assert.ok(
+    halves.every((h) => h.mean > 15),
+    'a picture in each half',
+  );
   assert.ok(Math.abs(halves[0].mean - halves[1].mean) < 0.3 * halves[0].mean, 'of the same place');
   await page.keyboard.press('o');
   await pictures(6);
@@ -111,7 +160,10 @@ try {
   await page.selectOption('select[aria-label=stereo]', 'xr');
   await page.waitForFunction(() => window.__insula.presenting && window.__headset.pictures > 2, null, patience);
   const eyes = await page.evaluate(() => window.__headset.eyes);
-  assert.ok(eyes.every((e) => e > 8), `brightness in the eyes ${eyes}`);
+  assert.ok(
+    eyes.every((e) => e > 8),
+    `brightness in the eyes ${eyes}`,
+  );
   await page.evaluate(() => window.__headset.end());
   await page.waitForFunction(() => !window.__insula.presenting && window.__insula.stereo === 'off', null, patience);
   await pictures(3);
@@ -119,7 +171,11 @@ try {
 
   theatre.reset();
   await page.goto(`${mock.url}?quality=low&role=instructor`);
-  await page.waitForFunction(() => window.__insula?.ready && document.querySelector('[data-ask="artery_bleeding rupture"]'), null, patience);
+  await page.waitForFunction(
+    () => window.__insula?.ready && document.querySelector('[data-ask="artery_bleeding rupture"]'),
+    null,
+    patience,
+  );
   assert.ok(await page.locator('[data-tool=right_clip_applier]').isDisabled(), 'the instructor exchanges no tools');
   assert.equal(await page.locator('.touch').count(), 0);
   await page.evaluate(() => {
@@ -129,14 +185,12 @@ try {
   });
   await press('[data-ask="artery_pressure set_systolic"]');
   await sent('ask artery_pressure set_systolic 180');
-  await wait_for('systolic pressure', () => theatre.systolic === 180);
+  await waitFor('systolic pressure', () => theatre.systolic === 180);
   await page.evaluate(() => {
     document.querySelector('.instructor form input').value = 'Temporary clip first';
     document.querySelector('.instructor form').requestSubmit();
   });
   await sent('message Temporary clip first');
-  await press('[data-ask=placement]');
-  await sent('message Please take the clip off and place it again.');
   await press('[data-ask="artery_bleeding rupture"]');
   await sent('ask artery_bleeding rupture');
   await page.waitForFunction(() => document.querySelector('.log [data-kind=rupture]') !== null, null, patience);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Framing of packets, options of the address line, HUD text.
 import { describe, expect, it } from 'vitest';
-import { clock_text, force_bar, force_level, parse_hud } from '../src/hud/state';
-import { parse_options } from '../src/options';
+import { clockText, forceBar, forceLevel, parseHud } from '../src/hud/state';
+import { parseOptions } from '../src/options';
 import { pack, unpack } from '../src/protocol';
 
 describe('protocol', () => {
@@ -20,7 +20,8 @@ describe('protocol', () => {
   });
 
   it('refuses what is no packet', () => {
-    for (const bad of [[], [0], [0, 1], [3, 65, 66], [2, 65, 7], [1, 200]]) expect(unpack(Uint8Array.from(bad))).toBeNull();
+    for (const bad of [[], [0], [0, 1], [3, 65, 66], [2, 65, 7], [1, 200]])
+      expect(unpack(Uint8Array.from(bad))).toBeNull();
     expect(() => pack('', new Uint8Array(0))).toThrow();
     expect(() => pack('ä', new Uint8Array(0))).toThrow();
     expect(() => pack('A'.repeat(256), new Uint8Array(0))).toThrow();
@@ -29,34 +30,57 @@ describe('protocol', () => {
 
 describe('options', () => {
   it('reads the address line', () => {
-    const plain = { stereo: 'off', angle_deg: 5, infrared: false };
-    expect(parse_options('?role=instructor&quality=ultra&nohud&t=4.5')).toEqual({ role: 'instructor', quality: 'ultra', hud: false, freeze_at_s: 4.5, ...plain });
-    expect(parse_options('')).toEqual({ role: 'trainee', quality: null, hud: true, freeze_at_s: null, ...plain });
-    expect(parse_options('?role=king&quality=best&t=soon')).toEqual({ role: 'trainee', quality: null, hud: true, freeze_at_s: null, ...plain });
-    expect(parse_options('?stereo=anaglyph&angle=3&icg')).toMatchObject({ stereo: 'anaglyph', angle_deg: 3, infrared: true });
-    expect(parse_options('?stereo=hologram&angle=900')).toMatchObject({ stereo: 'off', angle_deg: 9 });
+    const plain = { stereo: 'off', angleDeg: 5, infrared: false };
+    expect(parseOptions('?role=instructor&quality=ultra&nohud&t=4.5')).toEqual({
+      role: 'instructor',
+      quality: 'ultra',
+      hud: false,
+      freezeAtS: 4.5,
+      ...plain,
+    });
+    expect(parseOptions('')).toEqual({ role: 'trainee', quality: null, hud: true, freezeAtS: null, ...plain });
+    expect(parseOptions('?role=king&quality=best&t=soon')).toEqual({
+      role: 'trainee',
+      quality: null,
+      hud: true,
+      freezeAtS: null,
+      ...plain,
+    });
+    expect(parseOptions('?stereo=anaglyph&angle=3&icg')).toMatchObject({
+      stereo: 'anaglyph',
+      angleDeg: 3,
+      infrared: true,
+    });
+    expect(parseOptions('?stereo=hologram&angle=900')).toMatchObject({ stereo: 'off', angleDeg: 9 });
   });
 });
 
 describe('hud text', () => {
   it('reads the exercise state', () => {
-    const s = parse_hud('{"goals":[{"id":"a","text":"A","done":true}],"faults":[{"id":"f","count":2}],"strands_left":3,"strands_total":9,"state":"running","elapsed_s":61.25}')!;
+    const s = parseHud(
+      '{"goals":[{"id":"a","text":"A","done":true}],"faults":[{"id":"f","count":2}],' +
+        '"state":"running","elapsed_s":61.25}',
+    )!;
     expect(s.goals).toEqual([{ id: 'a', text: 'A', done: true }]);
     expect(s.faults).toEqual([{ id: 'f', text: 'f', count: 2 }]);
-    expect([s.strands_left, s.strands_total, s.elapsed_s, s.message]).toEqual([3, 9, 61.25, '']);
+    expect([s.elapsedS, s.message]).toEqual([61.25, '']);
   });
 
   it('bears nonsense', () => {
-    expect(parse_hud('{')).toBeNull();
-    expect(parse_hud('7')).toBeNull();
-    expect(parse_hud('{"goals":{"a":1},"faults":[null,3],"strands_left":"many"}')).toMatchObject({ goals: [], faults: [], strands_left: null });
+    expect(parseHud('{')).toBeNull();
+    expect(parseHud('7')).toBeNull();
+    expect(parseHud('{"goals":{"a":1},"faults":[null,3],"elapsed_s":"late"}')).toMatchObject({
+      goals: [],
+      faults: [],
+      elapsedS: null,
+    });
   });
 
   it('shows time and force', () => {
-    expect([clock_text(0), clock_text(61.25), clock_text(-3)]).toEqual(['0:00.0', '1:01.3', '0:00.0']);
-    expect(force_bar(3.3)).toBe(1);
-    expect(force_bar(50)).toBe(1);
-    expect(force_bar(0.825)).toBeCloseTo(0.5, 12);
-    expect([0.1, 0.3, 0.6].map(force_level)).toEqual(['good', 'high', 'too_much']);
+    expect([clockText(0), clockText(61.25), clockText(-3)]).toEqual(['0:00.0', '1:01.3', '0:00.0']);
+    expect(forceBar(3.3)).toBe(1);
+    expect(forceBar(50)).toBe(1);
+    expect(forceBar(0.825)).toBeCloseTo(0.5, 12);
+    expect([0.1, 0.3, 0.6].map(forceLevel)).toEqual(['good', 'high', 'too_much']);
   });
 });

@@ -1,65 +1,111 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The forces of both hands over the last ten seconds, as curves.
+// Numbers over the last ten seconds, as curves of one unit in one chart.
 import { el } from './dom';
 
-const span_s = 10;
-const colours = ['#7cc4ff', '#f0b64a'];
-const names = ['left', 'right'];
+const spanS = 10;
+const colours = ['#7cc4ff', '#f0b64a', '#5fcf92', '#f2604f', '#c79bff', '#e9edf0'];
 
-export class ForceCurves {
-  readonly root = el('canvas', { class: 'curves', width: '460', height: '200', 'aria-label': 'forces of the hands over ten seconds' });
-  private readonly samples: { t: number; f: (number | null)[] }[] = [];
+interface Frame {
+  left: number;
+  right: number;
+  top: number;
+  bottom: number;
+}
 
-  /** One sample; time may jump back (a reset): then the curves begin anew. */
-  add(time_s: number, forces: (number | null)[]): void {
+export class TimeChart {
+  readonly root: HTMLElement;
+  private readonly canvas: HTMLCanvasElement;
+  private readonly samples: { t: number; values: (number | null)[] }[] = [];
+
+  constructor(
+    label: string,
+    private readonly unit: string,
+    names: readonly string[],
+  ) {
+    this.canvas = el('canvas', { class: 'curves', width: '460', height: '180', 'aria-label': label });
+    const legend = names.map((name, k) => {
+      const entry = el('span', {}, name);
+      entry.style.color = colourOf(k);
+      return entry;
+    });
+    this.root = el('div', { class: 'chart' }, this.canvas, el('div', { class: 'legend' }, ...legend));
+  }
+
+  /** One sample; time may jump back (a reset): then the curves begin anew. null: not known, a gap. */
+  add(timeS: number, values: (number | null)[]): void {
     const last = this.samples[this.samples.length - 1];
-    if (last && time_s < last.t) this.samples.length = 0;
-    if (last && time_s === last.t) return;
-    this.samples.push({ t: time_s, f: forces });
-    while (this.samples.length > 0 && this.samples[0]!.t < time_s - span_s) this.samples.shift();
+    if (last && timeS < last.t) this.samples.length = 0;
+    if (last && timeS === last.t) return;
+    this.samples.push({ t: timeS, values });
+    while (this.samples.length > 0 && this.samples[0]!.t < timeS - spanS) this.samples.shift();
   }
 
   draw(): void {
-    const c = this.root.getContext('2d');
+    const c = this.canvas.getContext('2d');
     const last = this.samples[this.samples.length - 1];
     if (!c || !last) return;
-    const { width, height } = this.root;
-    const top = nice_top(Math.max(...this.samples.flatMap((s) => s.f.map((f) => f ?? 0))));
-    const left = 46, bottom = height - 24, right = width - 6, high = bottom - 10;
-    const x = (t: number) => right - ((last.t - t) / span_s) * (right - left);
-    const y = (f: number) => bottom - (Math.min(f, top) / top) * high;
+    const { width, height } = this.canvas;
+    const frame = { left: 58, right: width - 6, top: 12, bottom: height - 24 };
+    const known = this.samples.flatMap((s) => s.values.filter((v) => v !== null));
+    const [low, high] = niceRange(known);
+    const x = (t: number) => frame.right - ((last.t - t) / spanS) * (frame.right - frame.left);
+    const y = (v: number) => frame.bottom - ((v - low) / (high - low)) * (frame.bottom - frame.top);
     c.clearRect(0, 0, width, height);
     c.font = '18px sans-serif';
-    c.lineWidth = 1;
-    for (const [f, text] of [[0, '0'], [top / 2, ''], [top, `${top} N`]] as [number, string][]) {
-      c.strokeStyle = 'rgba(255,255,255,0.14)';
-      c.beginPath(); c.moveTo(left, y(f)); c.lineTo(right, y(f)); c.stroke();
-      c.fillStyle = '#9aa4ad';
-      c.fillText(text, 0, y(f) + 6);
+    drawGrid(c, frame, [low, (low + high) / 2, high], y, this.unit);
+    last.values.forEach((_, k) => this.drawCurve(c, k, x, y));
+  }
+
+  private drawCurve(c: CanvasRenderingContext2D, k: number, x: (t: number) => number, y: (v: number) => number): void {
+    c.strokeStyle = colourOf(k);
+    c.lineWidth = 2;
+    c.beginPath();
+    let pen = false;
+    for (const s of this.samples) {
+      const v = s.values[k] ?? null;
+      if (v !== null && pen) c.lineTo(x(s.t), y(v));
+      else if (v !== null) c.moveTo(x(s.t), y(v));
+      pen = v !== null;
     }
-    c.fillText('−10 s', left, height - 4);
-    c.fillText('now', right - 36, height - 4);
-    for (const hand of [0, 1]) {
-      c.strokeStyle = c.fillStyle = colours[hand]!;
-      c.fillText(names[hand]!, left + 90 + 70 * hand, height - 4);
-      c.lineWidth = 2;
-      c.beginPath();
-      let pen = false;
-      for (const s of this.samples) {
-        const f = s.f[hand] ?? null;
-        if (f === null) { pen = false; continue; }
-        if (pen) c.lineTo(x(s.t), y(f));
-        else c.moveTo(x(s.t), y(f));
-        pen = true;
-      }
-      c.stroke();
-    }
+    c.stroke();
   }
 }
 
-/** Next of 0.2, 0.5, 1, 2, 5, ... newtons. */
-export function nice_top(largest: number): number {
-  let step = 0.2;
-  while (step < largest) for (const k of [2.5, 2, 2]) { step = Number((step * k).toPrecision(2)); if (step >= largest) break; }
-  return step;
+const colourOf = (k: number): string => colours[k % colours.length]!;
+
+function drawGrid(
+  c: CanvasRenderingContext2D,
+  f: Frame,
+  at: [number, number, number],
+  y: (v: number) => number,
+  unit: string,
+): void {
+  c.lineWidth = 1;
+  c.strokeStyle = 'rgba(255,255,255,0.14)';
+  c.fillStyle = '#9aa4ad';
+  at.forEach((v, k) => {
+    c.beginPath();
+    c.moveTo(f.left, y(v));
+    c.lineTo(f.right, y(v));
+    c.stroke();
+    const number = String(Number(v.toPrecision(3)));
+    if (k !== 1) c.fillText(k === 2 && unit ? `${number} ${unit}` : number, 0, y(v) + 6, f.left + 60);
+  });
+  c.fillText('−10 s', f.left, f.bottom + 20);
+  c.fillText('now', f.right - 36, f.bottom + 20);
+}
+
+/** Next of 1, 2, 5 times a power of ten, at least as large; 0 for 0. */
+export function niceTop(largest: number): number {
+  if (!(largest > 0)) return 0;
+  const power = 10 ** Math.floor(Math.log10(largest));
+  const step = [1, 2, 5, 10].find((k) => k * power >= largest * (1 - 1e-9)) ?? 10;
+  return Number((step * power).toPrecision(2));
+}
+
+/** Round ends of an axis that holds all values and 0. */
+export function niceRange(values: readonly number[]): [number, number] {
+  const high = niceTop(Math.max(0, ...values));
+  const low = -niceTop(Math.max(0, ...values.map((v) => -v)));
+  return high === 0 && low === 0 ? [0, 1] : [low === 0 ? 0 : low, high];
 }

@@ -1,53 +1,64 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How well the servo keeps to its time: figures, the histogram of a second's lateness, and what to do when it does not.
 import type { HapticStatus } from '../lcm';
-import { el, set_text } from './dom';
+import { el, setText } from './dom';
 
 /** Upper bounds of lateness_count's entries, microseconds; the last has none (lcm_types/haptic_status.lcm). */
-export const lateness_bounds_us = [10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000];
+export const latenessBoundsUs = [10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000];
 
-export function haptic_text(s: HapticStatus | null): string {
+export function hapticText(s: HapticStatus | null): string {
   if (!s) return 'haptics –';
-  const scaled = s.force_scale > 0 && s.force_scale !== 1 ? `forces × ${s.force_scale.toLocaleString('en', { maximumFractionDigits: 2 })}, ` : '';
-  return `${scaled}haptics ${s.ticks_per_s.toFixed(0)} /s, fresh ${s.fresh_forces_per_s[0]!.toFixed(0)} · ${s.fresh_forces_per_s[1]!.toFixed(0)}, solve ${s.solve_us_p99.toFixed(0)} µs, ${s.sweeps_mean.toFixed(0)} sweeps`;
+  const scaled =
+    s.force_scale > 0 && s.force_scale !== 1
+      ? `forces × ${s.force_scale.toLocaleString('en', { maximumFractionDigits: 2 })}, `
+      : '';
+  const fresh = [...s.fresh_forces_per_s].map((f) => f.toFixed(0)).join(' · ');
+  const solve = `solve ${s.solve_us_p99.toFixed(0)} µs, ${s.sweeps_mean.toFixed(0)} sweeps`;
+  return `${scaled}haptics ${s.ticks_per_s.toFixed(0)} /s, fresh ${fresh}, ${solve}`;
 }
 
 /** Heights of the bars, 0 to 1. One tick among a thousand still shows: the root of the share. */
-export function bar_heights(counts: readonly number[]): number[] {
+export function barHeights(counts: readonly number[]): number[] {
   const all = counts.reduce((a, n) => a + n, 0);
   return counts.map((n) => (all > 0 ? Math.sqrt(n / all) : 0));
 }
 
 /** From this entry on a tick comes later than half of its millisecond. */
-export const first_late = lateness_bounds_us.indexOf(500) + 1;
+export const firstLate = latenessBoundsUs.indexOf(500) + 1;
 
-export function bar_title(counts: readonly number[], k: number): string {
-  const from = k === 0 ? 0 : lateness_bounds_us[k - 1]!;
-  const range = k < lateness_bounds_us.length ? `${from} to ${lateness_bounds_us[k]!} µs` : `more than ${from} µs`;
+export function barTitle(counts: readonly number[], k: number): string {
+  const from = k === 0 ? 0 : latenessBoundsUs[k - 1]!;
+  const range = k < latenessBoundsUs.length ? `${from} to ${latenessBoundsUs[k]!} µs` : `more than ${from} µs`;
   return `${counts[k] ?? 0} ticks of the last second began ${range} late`;
 }
 
 export class HapticPanel {
   readonly root = el('span', { class: 'haptic' });
   private readonly text = el('span');
-  private readonly bars = [...lateness_bounds_us, Infinity].map((_, k) => el('i', k >= first_late ? { class: 'late' } : {}));
+  private readonly bars = [...latenessBoundsUs, Infinity].map((_, k) =>
+    el('i', k >= firstLate ? { class: 'late' } : {}),
+  );
   private readonly advice = el('b', { class: 'advice' });
   private shown: HapticStatus | null | undefined;
 
   constructor() {
-    this.root.append(this.text, el('span', { class: 'histogram', role: 'img', 'aria-label': 'lateness of the servo' }, ...this.bars), this.advice);
+    this.root.append(
+      this.text,
+      el('span', { class: 'histogram', role: 'img', 'aria-label': 'lateness of the servo' }, ...this.bars),
+      this.advice,
+    );
   }
 
   show(s: HapticStatus | null): void {
     if (s === this.shown) return;
     this.shown = s;
-    set_text(this.text, haptic_text(s));
+    setText(this.text, hapticText(s));
     const counts = s ? [...s.lateness_count] : [];
-    const heights = bar_heights(counts);
+    const heights = barHeights(counts);
     this.bars.forEach((bar, k) => {
       bar.style.height = `${(100 * (heights[k] ?? 0)).toFixed(0)}%`;
-      bar.title = bar_title(counts, k);
+      bar.title = barTitle(counts, k);
     });
-    set_text(this.advice, s?.note ?? '');
+    setText(this.advice, s?.note ?? '');
   }
 }

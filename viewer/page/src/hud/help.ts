@@ -8,11 +8,11 @@ const rows: [string, string][] = [
   ['Shift + wheel, W / S', 'push the tool deeper, draw it back'],
   ['Q / E', 'roll the tool about its shaft'],
   ['A / D, R / F', 'swing the tool left and right, up and down about its tip'],
-  ['Space', 'button 1: suction, blade, open the clip'],
-  ['B', 'button 2: let go of the clip, take it back'],
+  ['Space', 'button 1: act with the tool'],
+  ['B', 'button 2: let go of what the tool holds, take it back'],
   ['T, Shift + T', 'next, previous tool of the active hand'],
-  ['L', 'choose a clip (arrow keys or 1-9, Enter)'],
-  ['I, J', 'indocyanine green picture; inject the dye'],
+  ['L', 'choose what the tool takes up (arrow keys or 1-9, Enter)'],
+  ['I, J', 'infrared picture; inject the dye'],
   ['O, [ ]', 'stereo: off, side by side, red-cyan; less, more depth'],
   ['M', 'beep with the heart'],
   ['G', 'release the hand (back to device or script)'],
@@ -26,9 +26,14 @@ const rows: [string, string][] = [
   ['touch', 'one finger moves the tool, two turn and zoom'],
 ];
 
-export function make_help(): HTMLElement {
+export function makeHelp(): HTMLElement {
   const table = el('table', {}, ...rows.map(([k, t]) => el('tr', {}, el('th', {}, k), el('td', {}, t))));
-  const panel = el('div', { class: 'panel help', role: 'dialog', 'aria-label': 'Help' }, el('h2', {}, 'Mouse and keyboard'), table);
+  const panel = el(
+    'div',
+    { class: 'panel help', role: 'dialog', 'aria-label': 'Help' },
+    el('h2', {}, 'Mouse and keyboard'),
+    table,
+  );
   panel.hidden = true;
   return panel;
 }

@@ -3,35 +3,44 @@
 import type { InventoryItem } from '../inventory';
 import { el } from './dom';
 
-/** Several of a group, in words. */
-const headings: Record<string, string> = {
-  body: 'Bodies', surface: 'Surfaces', region: 'Regions', anchor: 'Anchors and supports', strands: 'Strands',
-  'contact pair': 'Contact pairs', constraint: 'Other constraints', tool: 'Tools and clips',
-};
+/** "contact pair" -> "Contact pair". */
+const heading = (group: string): string => group.charAt(0).toUpperCase() + group.slice(1);
 
 export class InventoryPanel {
   readonly root = el('section', { class: 'panel inventory', 'aria-label': 'what is in the scene' });
   private chosen: HTMLButtonElement | null = null;
 
-  constructor(private readonly choose: (item: InventoryItem | null) => void) { this.root.hidden = true; }
+  constructor(private readonly choose: (item: InventoryItem | null) => void) {
+    this.root.hidden = true;
+  }
 
   /** null: a scene that is played. */
-  show_scene(title: string, items: InventoryItem[] | null): void {
+  showScene(title: string, items: InventoryItem[] | null): void {
     this.root.hidden = items === null;
     this.chosen = null;
     this.choose(null);
     const parts: HTMLElement[] = [el('header', {}, el('h1', {}, title))];
     for (const group of new Set((items ?? []).map((i) => i.group))) {
       const members = (items ?? []).filter((i) => i.group === group);
-      parts.push(el('details', members.length <= 12 ? { open: '' } : {}, el('summary', {}, headings[group] ?? group, el('small', {}, String(members.length))),
-        ...members.map((i) => this.entry(i))));
+      parts.push(
+        el(
+          'details',
+          members.length <= 12 ? { open: '' } : {},
+          el('summary', {}, heading(group), el('small', {}, String(members.length))),
+          ...members.map((i) => this.entry(i)),
+        ),
+      );
     }
     this.root.replaceChildren(...parts);
   }
 
   private entry(item: InventoryItem): HTMLElement {
-    const details = el('div', { class: 'values' }, el('code', {}, `<${item.element}>  ${item.file}`),
-      ...item.values.map(([name, text]) => el('div', {}, el('span', {}, name), el('span', {}, text))));
+    const details = el(
+      'div',
+      { class: 'values' },
+      el('code', {}, `<${item.element}>  ${item.file}`),
+      ...item.values.map(([name, text]) => el('div', {}, el('span', {}, name), el('span', {}, text))),
+    );
     details.hidden = true;
     const button = el('button', { 'aria-pressed': 'false' }, el('b', {}, item.name), el('small', {}, item.size));
     button.onclick = () => {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Timers that count down, and what is measured of the result.
-import { el, set_text } from './dom';
+import { el, setText } from './dom';
 import type { MeasureView, TimerView } from './state';
-import { time_left_text, urgency, used_share } from './timers';
+import { timeLeftText, urgency, usedShare } from './timers';
 
 /** A few digits, no noise: 3.2, 12, 0.05. */
-export function value_text(value: number, unit: string): string {
+export function valueText(value: number, unit: string): string {
   if (!Number.isFinite(value)) return '–';
   const a = Math.abs(value);
   const digits = unit === '' && Number.isInteger(value) ? 0 : a >= 10 ? 0 : a >= 1 ? 1 : 2;
@@ -27,17 +27,28 @@ export class Progress {
     for (const t of timers) {
       let w = this.timers.get(t.id);
       if (!w) {
-        const time = el('span', { class: 'time' }), bar = el('i');
-        w = { time, bar, row: el('div', { class: 'timer', 'data-timer': t.id }, el('span', {}, t.text), time, el('span', { class: 'line' }, bar)) };
+        const time = el('span', { class: 'time' });
+        const bar = el('i');
+        w = {
+          time,
+          bar,
+          row: el(
+            'div',
+            { class: 'timer', 'data-timer': t.id },
+            el('span', {}, t.text),
+            time,
+            el('span', { class: 'line' }, bar),
+          ),
+        };
         this.timers.set(t.id, w);
         this.root.append(w.row);
       }
-      set_text(w.time, time_left_text(t));
-      w.bar.style.width = `${used_share(t) * 100}%`;
+      setText(w.time, timeLeftText(t));
+      w.bar.style.width = `${usedShare(t) * 100}%`;
       w.row.dataset.urgency = urgency(t);
       w.row.classList.toggle('idle', !t.running);
       // A timer that never ran says nothing yet.
-      w.row.hidden = !t.running && t.elapsed_s === 0;
+      w.row.hidden = !t.running && t.elapsedS === 0;
     }
     for (const m of measures) {
       let w = this.measures.get(m.id);
@@ -47,7 +58,7 @@ export class Progress {
         this.measures.set(m.id, w);
         this.root.append(w.row);
       }
-      set_text(w.value, value_text(m.value, m.unit));
+      setText(w.value, valueText(m.value, m.unit));
       w.row.dataset.good = String(m.good);
       w.row.hidden = !Number.isFinite(m.value);
     }

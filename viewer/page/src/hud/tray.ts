@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The tools of one hand: a button each; the one in hand is marked, the others lie on the tray.
-import type { HandData, ToolData } from '../bundle';
+import type { HandData, ToolData } from '../bundle_types';
 import { el } from './dom';
 import { exchange, type UserCommand } from './commands';
 
@@ -10,15 +10,26 @@ export class Tray {
   private hand: HandData | null = null;
   private held = '';
 
-  constructor(private readonly run: (c: UserCommand) => void, private readonly may_drive: boolean) {}
+  constructor(
+    private readonly run: (c: UserCommand) => void,
+    private readonly mayDrive: boolean,
+  ) {}
 
-  show_scene(hand: HandData | null): void {
+  showScene(hand: HandData | null): void {
     this.hand = hand;
     this.held = '';
     this.root.setAttribute('aria-label', `tools of the ${hand?.hand ?? ''} hand`);
     this.buttons = (hand && hand.tools.length > 1 ? hand.tools : []).map((tool) => {
-      const button = el('button', { title: tool.title, 'data-tool': tool.id }, ...(tool.picture ? [el('img', { src: tool.picture, alt: '' })] : []), el('span', {}, short(tool, hand!.hand)));
-      button.onclick = () => { this.run(exchange(hand!.hand, tool.id)); button.blur(); };
+      const button = el(
+        'button',
+        { title: tool.title, 'data-tool': tool.id },
+        ...(tool.picture ? [el('img', { src: tool.picture, alt: '' })] : []),
+        el('span', {}, short(tool, hand!.hand)),
+      );
+      button.onclick = () => {
+        this.run(exchange(hand!.hand, tool.id));
+        button.blur();
+      };
       return { tool, button };
     });
     this.root.replaceChildren(...this.buttons.map((b) => b.button));
@@ -31,14 +42,14 @@ export class Tray {
     this.held = held;
     for (const { tool, button } of this.buttons) {
       button.setAttribute('aria-pressed', String(tool.id === held));
-      button.disabled = !this.may_drive || tool.id === held;
+      button.disabled = !this.mayDrive || tool.id === held;
     }
   }
 
   /** Asks for the next (or previous) tool of the hand. */
   next(step: 1 | -1): void {
     const tools = this.hand?.tools ?? [];
-    if (!this.may_drive || !this.hand || tools.length < 2) return;
+    if (!this.mayDrive || !this.hand || tools.length < 2) return;
     const at = tools.findIndex((t) => t.id === this.held);
     this.run(exchange(this.hand.hand, tools[(Math.max(0, at) + step + tools.length) % tools.length]!.id));
   }
@@ -50,6 +61,6 @@ export function short(tool: ToolData, hand: string): string {
   return name || tool.kind;
 }
 
-export function tool_label(tool: ToolData | undefined, hand: number): string {
+export function toolLabel(tool: ToolData | undefined, hand: number): string {
   return tool ? short(tool, hand === 0 ? 'left' : 'right') : '';
 }

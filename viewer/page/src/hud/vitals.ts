@@ -1,92 +1,170 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The patient's monitor: heartbeat, with a soft beep if wanted, pressure and flow of each branch, and the bleeding.
-import { el, set_text } from './dom';
-import type { BloodState, VesselView } from './state';
+// The patient's monitor: the pulse, with a soft beep if wanted, and the channels that a scene shows as vital signs.
+// Channels of a group are a row of a table with the names as columns; the others are lines of their own.
+import type { Bundle } from '../bundle_types';
+import { spoken } from '../bundle';
+import {
+  barShare,
+  byComponent,
+  channelText,
+  type Channels,
+  isShare,
+  level,
+  numberText,
+  shortName,
+} from '../step_data/channels';
+import type { ChannelData } from '../step_data/declarations';
+import { el, setText } from './dom';
 
-/** Flow that is left decides the colour; a sac is meant to lose it. */
-export function flow_level(v: Pick<VesselView, 'id' | 'flow_percent'>): 'good' | 'high' | 'too_much' | 'none' {
-  if (v.flow_percent === null || v.id === 'sac' || v.id === 'bleb' || v.id === 'tear') return 'none';
-  return v.flow_percent >= 80 ? 'good' : v.flow_percent >= 50 ? 'high' : 'too_much';
+interface Cell {
+  channel: ChannelData;
+  text: HTMLElement;
+  bar: HTMLElement | null;
+  /** What takes the colour of the channel's bands. */
+  row: HTMLElement;
+  write: (c: ChannelData, value: number | null) => string;
 }
 
-/** Rounded, and a trickle backwards is 0, not -0. */
-export const whole = (value: number): string => String(Math.round(value) || 0);
+/** Of a component's channels: lines without a group, and groups with their columns' names. */
+export function tableOf(channels: readonly ChannelData[]): {
+  lines: ChannelData[];
+  columns: string[];
+  rows: { group: string; cells: (ChannelData | null)[] }[];
+} {
+  const grouped = channels.filter((c) => c.group !== '');
+  const columns = [...new Set(grouped.map(shortName))];
+  const groups = [...new Set(grouped.map((c) => c.group))];
+  const find = (group: string, name: string) => grouped.find((c) => c.group === group && shortName(c) === name) ?? null;
+  return {
+    lines: channels.filter((c) => c.group === ''),
+    columns,
+    rows: groups.map((group) => ({ group, cells: columns.map((name) => find(group, name)) })),
+  };
+}
 
 export class Vitals {
   readonly root = el('section', { class: 'panel vitals' });
   private readonly beat = el('span', { class: 'beat', title: 'heartbeat' }, '♥');
   private readonly rate = el('span', { class: 'rate' });
-  private readonly blood = el('div', { class: 'blood' });
-  private readonly table = el('table');
   private readonly sound = el('button', { title: 'beep with the heart (M)', 'aria-pressed': 'false' }, '♪');
-  private readonly rows = new Map<string, { row: HTMLElement; pressure: HTMLElement; flow: HTMLElement; bar: HTMLElement; percent: HTMLElement }>();
+  private readonly head = el('header', {}, el('span', {}, this.beat, this.rate), this.sound);
+  private readonly parts = el('div');
+  private components: { id: string; root: HTMLElement; cells: Cell[] }[] = [];
+  private pulseChannel = '';
   private phase: number | null = null;
   private beats: number[] = [];
   private audio: AudioContext | null = null;
   private loud = false;
 
   constructor() {
-    this.sound.onclick = () => { this.toggle_sound(); this.sound.blur(); };
-    this.root.append(el('header', {}, el('span', {}, this.beat, this.rate), this.blood, this.sound), this.table);
+    this.sound.onclick = () => {
+      this.toggleSound();
+      this.sound.blur();
+    };
+    this.root.append(this.head, this.parts);
     this.root.hidden = true;
   }
 
-  clear(): void {
-    this.rows.clear();
-    this.table.replaceChildren();
+  showScene(bundle: Bundle): void {
     this.phase = null;
     this.beats = [];
-    this.root.hidden = true;
+    this.pulseChannel = bundle.bodies.find((b) => b.pulseChannel !== '')?.pulseChannel ?? '';
+    const vital = byComponent(bundle.channels.filter((c) => c.shown === 'vital'));
+    this.components = [...vital].map(([id, channels]) => this.makeComponent(id, channels));
+    this.parts.replaceChildren(...this.components.map((c) => c.root));
+    this.head.hidden = this.pulseChannel === '';
+    this.root.hidden = this.components.length === 0 && this.pulseChannel === '';
   }
 
-  toggle_sound(): void {
+  toggleSound(): void {
     this.loud = !this.loud;
     this.sound.setAttribute('aria-pressed', String(this.loud));
     if (this.loud) this.audio ??= new AudioContext();
   }
 
-  show(phase: number | null, vessels: readonly VesselView[], blood: BloodState | null, time_s: number): void {
-    this.root.hidden = vessels.length === 0 && phase === null;
+  /** stowed: components that are tools on the tray; nobody looks at their numbers. */
+  show(channels: Channels, stowed: ReadonlySet<string>, timeS: number): void {
     if (this.root.hidden) return;
-    if (phase !== null) {
-      if (this.phase !== null && phase < this.phase - 0.5) this.on_beat(time_s);
-      this.phase = phase;
-      this.beat.style.transform = `scale(${(1 + 0.35 * Math.exp(-phase * 6)).toFixed(3)})`;
+    this.showPulse(channels.value(this.pulseChannel), timeS);
+    for (const { id, root, cells } of this.components) {
+      root.hidden = stowed.has(id);
+      if (!root.hidden) for (const cell of cells) showCell(cell, channels);
     }
-    for (const v of vessels) this.show_vessel(v);
-    const bleeding = blood && (blood.open || blood.lost_mL > 0.05);
-    set_text(this.blood, bleeding ? `${blood.open ? `bleeding ${blood.rate_mL_min.toFixed(0)} mL/min · ` : ''}lost ${blood.lost_mL.toFixed(1)} mL` : '');
-    this.blood.classList.toggle('open', !!blood?.open);
   }
 
-  private on_beat(time_s: number): void {
-    this.beats = [...this.beats.filter((t) => t < time_s), time_s].slice(-6);
+  private showPulse(phase: number | null, timeS: number): void {
+    if (phase === null) return;
+    if (this.phase !== null && phase < this.phase - 0.5) this.onBeat(timeS);
+    this.phase = phase;
+    this.beat.style.transform = `scale(${(1 + 0.35 * Math.exp(-phase * 6)).toFixed(3)})`;
+  }
+
+  private onBeat(timeS: number): void {
+    this.beats = [...this.beats.filter((t) => t < timeS), timeS].slice(-6);
     const n = this.beats.length;
     // At a few pictures a second beats are missed: then no number is better than a wrong one.
     const rate = n > 2 ? (60 * (n - 1)) / Math.max(0.1, this.beats[n - 1]! - this.beats[0]!) : 0;
-    set_text(this.rate, rate > 30 && rate < 220 ? `${Math.round(rate)} /min` : '');
+    setText(this.rate, rate > 30 && rate < 220 ? `${Math.round(rate)} /min` : '');
     if (this.loud && this.audio) beep(this.audio);
   }
 
-  private show_vessel(v: VesselView): void {
-    let w = this.rows.get(v.id);
-    if (!w) {
-      const pressure = el('td'), flow = el('td'), percent = el('td'), bar = el('i');
-      w = { pressure, flow, bar, percent, row: el('tr', { 'data-vessel': v.id }, el('th', {}, v.id.replace(/_/g, ' ')), pressure, flow, el('td', { class: 'line' }, bar), percent) };
-      if (this.rows.size === 0) this.table.append(el('tr', { class: 'units' }, el('th'), el('td', {}, 'mmHg'), el('td', {}, 'mL/min'), el('td'), el('td', {}, '% rest')));
-      this.rows.set(v.id, w);
-      this.table.append(w.row);
+  private makeComponent(
+    id: string,
+    channels: readonly ChannelData[],
+  ): { id: string; root: HTMLElement; cells: Cell[] } {
+    const { lines, columns, rows } = tableOf(channels);
+    const cells: Cell[] = [];
+    const table = el('table');
+    if (rows.length > 0) {
+      const unitOf = (k: number) => rows.map((r) => r.cells[k]).find((c) => c)?.display.unit ?? '';
+      table.append(
+        el('tr', { class: 'units' }, el('th'), ...columns.map((name, k) => el('td', {}, el('b', {}, name), unitOf(k)))),
+      );
     }
-    set_text(w.pressure, whole(v.pressure_mmHg));
-    set_text(w.flow, whole(v.flow_mL_min));
-    set_text(w.percent, v.flow_percent === null ? '–' : whole(v.flow_percent));
-    w.bar.style.width = `${Math.max(0, Math.min(100, v.flow_percent ?? 0))}%`;
-    w.row.dataset.level = flow_level(v);
+    for (const r of rows) table.append(makeRow(r.group, r.cells, cells));
+    const singles = lines.map((c) => makeLine(c, cells));
+    const root = el('div', { class: 'component', 'data-component': id }, el('h2', {}, spoken(id)), ...singles, table);
+    return { id, root, cells };
   }
 }
 
+function makeRow(group: string, channels: readonly (ChannelData | null)[], cells: Cell[]): HTMLElement {
+  const row = el('tr', { 'data-group': group }, el('th', {}, spoken(group)));
+  for (const channel of channels) {
+    const text = el('span');
+    const bar = channel && isShare(channel) ? el('i') : null;
+    const place = el('td', channel ? { title: channel.doc, 'data-channel': channel.id } : {}, text);
+    if (bar) place.append(el('span', { class: 'line' }, bar));
+    row.append(place);
+    if (channel) cells.push({ channel, text, bar, row: place, write: numberText });
+  }
+  return row;
+}
+
+function makeLine(channel: ChannelData, cells: Cell[]): HTMLElement {
+  const text = el('span', { class: 'value' });
+  const bar = isShare(channel) ? el('i') : null;
+  const row = el(
+    'div',
+    { class: 'vital', 'data-channel': channel.id, title: channel.doc },
+    el('span', {}, shortName(channel)),
+    text,
+  );
+  if (bar) row.append(el('span', { class: 'line' }, bar));
+  cells.push({ channel, text, bar, row, write: channelText });
+  return row;
+}
+
+function showCell({ channel, text, bar, row, write }: Cell, channels: Channels): void {
+  const value = channels.value(channel);
+  setText(text, write(channel, value));
+  if (bar) bar.style.width = `${100 * barShare(channel, value)}%`;
+  row.dataset.level = level(channel, value);
+}
+
 function beep(audio: AudioContext): void {
-  const tone = audio.createOscillator(), loudness = audio.createGain();
+  const tone = audio.createOscillator();
+  const loudness = audio.createGain();
   tone.frequency.value = 620;
   loudness.gain.setValueAtTime(0, audio.currentTime);
   loudness.gain.linearRampToValueAtTime(0.05, audio.currentTime + 0.01);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Everything that is not brain: bone, dura, drape, instrument metals and plastics.
 import * as THREE from 'three';
-import { type FieldUniforms, inject_veil } from './field';
-import { noise_glsl, noise_texture } from './noise';
+import { type FieldUniforms, injectVeil } from './field';
+import { injectSkinning, type SkinTexture } from '../skin_shader';
+import { noiseGlsl, noiseTexture } from './noise';
 
 interface Recipe {
   base: THREE.MeshPhysicalMaterialParameters;
@@ -15,7 +16,7 @@ interface Recipe {
 }
 
 /** Lamps in metal end below white, and differences between dim parts of the reflection are kept. */
-const roll_off = (share: number) => `
+const rollOff = (share: number) => `
   vec3 shine = ${share.toFixed(2)} * (0.04 * reflectedLight.directSpecular + reflectedLight.indirectSpecular);
   reflectedLight.directSpecular = vec3(0.0);
   reflectedLight.indirectSpecular = shine / (1.0 + 1.2 * max(shine.r, max(shine.g, shine.b)));`;
@@ -31,7 +32,8 @@ const recipes: Record<string, Recipe> = {
       diffuseColor.rgb *= 1.0 + 0.10 * a.x + 0.05 * b.x;
       diffuseColor.rgb = mix(diffuseColor.rgb, vec3(0.42, 0.10, 0.06), cut * (0.18 + 0.60 * pores));
       // A film of blood left on the outer table.
-      diffuseColor.rgb = mix(diffuseColor.rgb, diffuseColor.rgb * vec3(0.95, 0.60, 0.50), 0.55 * smoothstep(0.05, 0.65, a.x + 0.3 * b.x));`,
+      float film = 0.55 * smoothstep(0.05, 0.65, a.x + 0.3 * b.x);
+      diffuseColor.rgb = mix(diffuseColor.rgb, diffuseColor.rgb * vec3(0.95, 0.60, 0.50), film);`,
     relief: '0.10 * noise(p * 1.3).yzw + 0.12 * noise(p * 3.4).yzw',
   },
   dura: {
@@ -39,13 +41,22 @@ const recipes: Record<string, Recipe> = {
     colour: `
       vec4 a = noise(p * vec3(0.25, 0.9, 0.5)), b = noise(p * vec3(0.7, 2.6, 1.4));
       diffuseColor.rgb *= 1.0 + 0.10 * a.x + 0.08 * b.x;
-      float line = (1.0 - smoothstep(0.0, 0.05, abs(noise(p * 0.20 + a.yzw * 0.35).x))) * smoothstep(0.0, 0.5, noise(p * 0.11 + 2.0).x);
+      float line = 1.0 - smoothstep(0.0, 0.05, abs(noise(p * 0.20 + a.yzw * 0.35).x));
+      line *= smoothstep(0.0, 0.5, noise(p * 0.11 + 2.0).x);
       diffuseColor.rgb = mix(diffuseColor.rgb, vec3(0.34, 0.06, 0.05), 0.45 * line);
-      diffuseColor.rgb = mix(diffuseColor.rgb, vec3(0.50, 0.16, 0.13), 0.35 * smoothstep(0.2, 0.8, noise(p * 0.15 + 4.0).x));`,
+      float flush = 0.35 * smoothstep(0.2, 0.8, noise(p * 0.15 + 4.0).x);
+      diffuseColor.rgb = mix(diffuseColor.rgb, vec3(0.50, 0.16, 0.13), flush);`,
     relief: '0.16 * noise(p * vec3(0.25, 0.9, 0.5)).yzw + 0.12 * noise(p * vec3(0.7, 2.6, 1.4)).yzw',
   },
   drape: {
-    base: { color: '#1e5b55', roughness: 0.92, sheen: 0.4, sheenRoughness: 0.6, sheenColor: new THREE.Color('#3f8a82'), side: THREE.DoubleSide },
+    base: {
+      color: '#1e5b55',
+      roughness: 0.92,
+      sheen: 0.4,
+      sheenRoughness: 0.6,
+      sheenColor: new THREE.Color('#3f8a82'),
+      side: THREE.DoubleSide,
+    },
     colour: `
       vec4 a = noise(p * 0.12);
       vec2 weave = sin(vec2(dot(p, vec3(1.0, 0.35, -0.2)), dot(p, vec3(-0.3, 0.9, 0.55))) * 9.0);
@@ -61,7 +72,9 @@ const recipes: Record<string, Recipe> = {
       diffuseColor.rgb *= 1.0 + 0.10 * a.x + 0.08 * b.x;
       // The cut edge shows fat and blood, the surface the iodine it was painted with.
       float cut = 1.0 - smoothstep(0.25, 0.7, abs(dot(normalize(v_object_normal), field_axis)));
-      diffuseColor.rgb = mix(diffuseColor.rgb, mix(vec3(0.62, 0.36, 0.10), vec3(0.36, 0.05, 0.03), smoothstep(-0.2, 0.4, noise(p * 0.7).x)), cut);`,
+      float meat = smoothstep(-0.2, 0.4, noise(p * 0.7).x);
+      vec3 inside = mix(vec3(0.62, 0.36, 0.10), vec3(0.36, 0.05, 0.03), meat);
+      diffuseColor.rgb = mix(diffuseColor.rgb, inside, cut);`,
     relief: '0.14 * noise(p * 0.9).yzw + 0.14 * noise(p * 2.2).yzw',
   },
   steel: {
@@ -96,30 +109,72 @@ const recipes: Record<string, Recipe> = {
   },
 };
 
-export const solid_names = Object.keys(recipes);
+export const solidNames = Object.keys(recipes);
 
-/**
- * `field_axis`: direction out of the operating field, to tell tables of bone from cut edges. `forward_m`: so much nearer to the eye
- * than it is when it is decided what hides what.
- */
-export function solid_material(name: string, field: FieldUniforms, field_axis = new THREE.Vector3(0, 0, 1), rgba?: readonly number[], forward_m = 0): THREE.MeshPhysicalMaterial {
-  const recipe = recipes[name] ?? recipes.steel!;
-  const m = new THREE.MeshPhysicalMaterial(recipe.base);
-  if ((name === 'polymer' || !recipes[name]) && rgba) m.color.setRGB(rgba[0]!, rgba[1]!, rgba[2]!, THREE.SRGBColorSpace);
-  m.onBeforeCompile = (shader) => {
-    inject_veil(shader, field);
-    shader.uniforms.noise_map = { value: noise_texture() };
-    shader.uniforms.field_axis = { value: field_axis };
-    shader.vertexShader = shader.vertexShader
-      .replace('#include <common>', '#include <common>\nvarying vec3 v_object; varying vec3 v_object_normal;')
-      .replace('#include <project_vertex>', '#include <project_vertex>\nv_object = position * 1000.0; v_object_normal = normal;'
-        + (forward_m > 0 ? `\nvec4 nearer = projectionMatrix * (mvPosition + vec4(0.0, 0.0, ${forward_m.toFixed(5)}, 0.0));\ngl_Position.z = nearer.z / nearer.w * gl_Position.w;` : ''));
-    shader.fragmentShader = shader.fragmentShader
-      .replace('#include <common>', `#include <common>\n${noise_glsl}\nvarying vec3 v_object; varying vec3 v_object_normal; uniform vec3 field_axis; uniform mat3 normalMatrix;`)
-      .replace('#include <color_fragment>', `#include <color_fragment>\nvec3 p = v_object;\n{${recipe.colour}}`)
-      .replace('#include <normal_fragment_maps>', `#include <normal_fragment_maps>\nnormal = bump(normal, normalMatrix * (${recipe.relief}));`);
-    if (recipe.metal) shader.fragmentShader = shader.fragmentShader.replace('#include <lights_fragment_end>', `#include <lights_fragment_end>${roll_off(recipe.metal)}`);
+export interface SolidOptions {
+  field: FieldUniforms;
+  /** Of a material that has no texture here; else a polymer's colour. */
+  rgba?: readonly number[];
+  roughness?: number;
+  metalness?: number;
+  /** Direction out of the operating field, to tell tables of bone from cut edges. */
+  fieldAxis?: THREE.Vector3;
+  /** So much nearer to the eye, m, when it is decided what hides what. */
+  forward?: { value: number };
+  skin?: SkinTexture | null;
+}
+
+/** A material that only its declaration describes. */
+function plainRecipe(o: SolidOptions): Recipe {
+  const metalness = o.metalness ?? 0;
+  const base = { roughness: o.roughness ?? 0.5, metalness, clearcoat: 0.2 * (1 - metalness), clearcoatRoughness: 0.4 };
+  return {
+    base: { ...base, side: o.skin ? THREE.DoubleSide : THREE.FrontSide },
+    colour: '',
+    relief: 'vec3(0.0)',
+    ...(metalness > 0.5 ? { metal: 0.6 } : {}),
   };
-  m.customProgramCacheKey = () => `solid_${name}_${forward_m}`;
+}
+
+export function solidMaterial(name: string, o: SolidOptions): THREE.MeshPhysicalMaterial {
+  const recipe = recipes[name] ?? plainRecipe(o);
+  const m = new THREE.MeshPhysicalMaterial(recipe.base);
+  if ((name === 'polymer' || !recipes[name]) && o.rgba)
+    m.color.setRGB(o.rgba[0]!, o.rgba[1]!, o.rgba[2]!, THREE.SRGBColorSpace);
+  m.onBeforeCompile = (shader) => {
+    if (o.skin) injectSkinning(shader, o.skin);
+    injectVeil(shader, o.field);
+    shader.uniforms.noise_map = { value: noiseTexture() };
+    shader.uniforms.field_axis = { value: o.fieldAxis ?? new THREE.Vector3(0, 0, 1) };
+    shader.uniforms.forward_m = o.forward ?? { value: 0 };
+    shader.vertexShader = shader.vertexShader
+      .replace('#include <common>', `#include <common>\n${varyings} uniform float forward_m;`)
+      .replace(
+        '#include <project_vertex>',
+        `#include <project_vertex>
+        v_object = position * 1000.0; v_object_normal = normal;
+        vec4 nearer = projectionMatrix * (mvPosition + vec4(0.0, 0.0, forward_m, 0.0));
+        if (forward_m > 0.0) gl_Position.z = nearer.z / nearer.w * gl_Position.w;`,
+      );
+    shader.fragmentShader = shader.fragmentShader
+      .replace(
+        '#include <common>',
+        `#include <common>\n${noiseGlsl}\n${varyings} uniform vec3 field_axis; uniform mat3 normalMatrix;`,
+      )
+      .replace('#include <color_fragment>', `#include <color_fragment>\nvec3 p = v_object;\n{${recipe.colour}}`)
+      .replace(
+        '#include <normal_fragment_maps>',
+        `#include <normal_fragment_maps>\nnormal = bump(normal, normalMatrix * (${recipe.relief}));`,
+      );
+    if (recipe.metal)
+      shader.fragmentShader = shader.fragmentShader.replace(
+        '#include <lights_fragment_end>',
+        `#include <lights_fragment_end>${rollOff(recipe.metal)}`,
+      );
+  };
+  m.customProgramCacheKey = () =>
+    `solid_${recipes[name] ? name : `plain_${recipe.metal ?? 0}`}_${o.skin ? 'skinned' : ''}`;
   return m;
 }
+
+const varyings = 'varying vec3 v_object; varying vec3 v_object_normal;';

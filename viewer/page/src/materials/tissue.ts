@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Wet brain surface: colour from baked convexity and openness, fine capillaries and mottling from noise, a glistening film
-// (clearcoat) broken up by small bumps, red light bleeding at grazing angles, fissure and sulci dark.
+// Wet brain surface: colour from baked convexity and openness, fine capillaries and mottling from noise, a glistening
+// film (clearcoat) broken up by small bumps, red light bleeding at grazing angles, fissure and sulci dark.
 import * as THREE from 'three';
-import { inject_skinning, type SkinTexture } from '../skin_shader';
-import { fluorescence_glsl, type FieldUniforms, inject_veil } from './field';
-import { noise_glsl, noise_texture } from './noise';
+import { injectSkinning, type SkinTexture } from '../skin_shader';
+import { fluorescenceGlsl, type FieldUniforms, injectVeil } from './field';
+import type { MaterialData } from '../step_data/declarations';
+import { noiseGlsl, noiseTexture } from './noise';
 
 export interface TissueLook {
   crown: string;
@@ -17,49 +18,48 @@ export interface TissueLook {
   haze: number;
 }
 
-export const looks: Record<string, TissueLook> = {
+const looks: Record<string, TissueLook> = {
   cortex: { crown: '#bf7e6e', sulcus: '#963c34', deep: '#4a1210', capillary: '#8a1f1a', capillaries: 1.0, haze: 0.4 },
   pia: { crown: '#c48a79', sulcus: '#9a4c42', deep: '#4a1210', capillary: '#861e19', capillaries: 1.0, haze: 0.6 },
   insula: { crown: '#b67462', sulcus: '#8c3d33', deep: '#46110f', capillary: '#841c17', capillaries: 0.9, haze: 0.3 },
 };
 
+/** Of a material that is not among these the colours follow from its own: darker and redder in the folds. */
+export function tissueLook(name: string, m: MaterialData): TissueLook {
+  const known = looks[name];
+  if (known) return known;
+  const crown = new THREE.Color().setRGB(m.rgba[0], m.rgba[1], m.rgba[2], THREE.SRGBColorSpace);
+  const darker = (r: number, g: number, b: number): string =>
+    `#${new THREE.Color(crown.r * r, crown.g * g, crown.b * b).getHexString()}`;
+  return {
+    crown: darker(1, 1, 1),
+    sulcus: darker(0.6, 0.25, 0.25),
+    deep: darker(0.13, 0.03, 0.03),
+    capillary: '#86201b',
+    capillaries: 1 - m.translucency,
+    haze: 0.4,
+  };
+}
+
 /** Where tissue is pressed: place in the scene and force in newtons, strongest first; w = 0 is none. */
 export type Pressed = THREE.Vector4[];
-export const pressed_count = 8;
+export const pressedCount = 8;
 
-export function tissue_material(look: TissueLook, skin: SkinTexture | null, pressed: Pressed, field: FieldUniforms): THREE.MeshPhysicalMaterial {
-  const m = new THREE.MeshPhysicalMaterial({
-    color: 0xffffff, roughness: 0.62, metalness: 0, ior: 1.38, specularIntensity: 0.6,
-    clearcoat: 1, clearcoatRoughness: 0.2,
-  });
-  m.onBeforeCompile = (shader) => {
-    if (skin) inject_skinning(shader, skin);
-    inject_veil(shader, field);
-    shader.uniforms.noise_map = { value: noise_texture() };
-    shader.uniforms.crown = { value: new THREE.Color(look.crown) };
-    shader.uniforms.sulcus = { value: new THREE.Color(look.sulcus) };
-    shader.uniforms.deep = { value: new THREE.Color(look.deep) };
-    shader.uniforms.capillary = { value: new THREE.Color(look.capillary) };
-    shader.uniforms.pressed = { value: pressed };
-    shader.uniforms.amounts = { value: new THREE.Vector2(look.capillaries, look.haze) };
-    shader.vertexShader = shader.vertexShader
-      .replace('#include <common>', '#include <common>\nattribute vec2 shading; varying vec2 v_shading; varying vec3 v_rest, v_place;')
-      .replace('#include <project_vertex>', '#include <project_vertex>\nv_shading = shading; v_rest = position * 1000.0; v_place = (modelMatrix * vec4(transformed, 1.0)).xyz;');
-    shader.fragmentShader = shader.fragmentShader
-      .replace('#include <common>', `#include <common>
-        ${noise_glsl}
+const tissueDeclarations = /* glsl */ `#include <common>
+        ${noiseGlsl}
         uniform vec3 crown, sulcus, deep, capillary;
         uniform vec2 amounts;
         uniform mat3 normalMatrix;
         varying vec2 v_shading;
         varying vec3 v_rest, v_place;
-        uniform vec4 pressed[${pressed_count}];
+        uniform vec4 pressed[${pressedCount}];
         // Network of thin lines where warped noise crosses zero; width in noise units.
         float network(vec3 p, vec3 warp, float width) {
           float n = noise(p + warp).x;
           return 1.0 - smoothstep(0.0, width, abs(n));
-        }`)
-      .replace('#include <color_fragment>', `#include <color_fragment>
+        }`;
+
+const tissueColour = /* glsl */ `#include <color_fragment>
         float openness = v_shading.x;
         vec4 coarse = noise(v_rest * 0.16);
         vec4 middle = noise(v_rest * 0.55);
@@ -72,13 +72,15 @@ export function tissue_material(look: TissueLook, skin: SkinTexture | null, pres
         tint *= 1.0 + 0.07 * coarse.x + 0.05 * middle.x + 0.05 * fine.x;
         tint = mix(tint, tint * vec3(1.08, 0.86, 0.80), smoothstep(0.0, 0.7, noise(v_rest * 0.3 + 7.3).x));
         // Capillaries: a coarse and a fine net, patchy.
+        float patches = smoothstep(-0.1, 0.5, noise(v_rest * 0.33 + 5.7).x);
         float net = 0.45 * network(v_rest * 0.34, warp, 0.055) * smoothstep(-0.25, 0.35, noise(v_rest * 0.21 + 3.1).x)
-          + 0.55 * network(v_rest * 0.95 + 11.0, warp * 0.7, 0.11) * smoothstep(-0.1, 0.5, noise(v_rest * 0.33 + 5.7).x);
+          + 0.55 * network(v_rest * 0.95 + 11.0, warp * 0.7, 0.11) * patches;
         tint = mix(tint, capillary, clamp(net, 0.0, 1.0) * 0.62 * amounts.x);
-        tint = mix(tint, vec3(0.86, 0.78, 0.74), amounts.y * 0.30 * smoothstep(0.1, 0.9, fold) * smoothstep(-0.3, 0.6, middle.x) * openness);
+        float haze = amounts.y * 0.30 * smoothstep(0.1, 0.9, fold) * smoothstep(-0.3, 0.6, middle.x) * openness;
+        tint = mix(tint, vec3(0.86, 0.78, 0.74), haze);
         // Pressed tissue blanches, with a flushed ring around.
         float pale = 0.0, flush = 0.0;
-        for (int i = 0; i < ${pressed_count}; i++) {
+        for (int i = 0; i < ${pressedCount}; i++) {
           float d = distance(v_place, pressed[i].xyz) * 1000.0;
           float f = clamp(pressed[i].w * 5.0, 0.0, 1.0);
           pale += f * exp(-d * d / 2.2);
@@ -87,18 +89,13 @@ export function tissue_material(look: TissueLook, skin: SkinTexture | null, pres
         tint = mix(tint, vec3(0.74, 0.60, 0.52), 0.55 * min(1.0, pale));
         tint *= mix(vec3(1.0), vec3(0.95, 0.80, 0.78), min(1.0, flush) * (1.0 - min(1.0, pale)));
         tint = mix(deep, tint, smoothstep(0.06, 0.62, openness));
-        diffuseColor.rgb *= tint;`)
-      .replace('#include <roughnessmap_fragment>', `#include <roughnessmap_fragment>
-        roughnessFactor = clamp(roughnessFactor + 0.12 * fine.x, 0.3, 0.9);`)
-      .replace('#include <normal_fragment_maps>', `#include <normal_fragment_maps>
-        vec3 ripple = normalMatrix * (0.16 * middle.yzw + 0.13 * fine.yzw + 0.05 * noise(v_rest * 5.3).yzw);
-        normal = bump(normal, ripple);`)
-      .replace('#include <clearcoat_normal_fragment_maps>', `#include <clearcoat_normal_fragment_maps>
+        diffuseColor.rgb *= tint;`;
+
+const tissueFilm = /* glsl */ `#include <clearcoat_normal_fragment_maps>
         // The fluid film evens out the finest relief.
-        clearcoatNormal = bump(clearcoatNormal, normalMatrix * (0.13 * middle.yzw + 0.06 * fine.yzw));`)
-      .replace('#include <lights_physical_fragment>', `#include <lights_physical_fragment>
-        material.clearcoatRoughness = clamp(0.19 + 0.10 * coarse.x + 0.03 * fine.x, 0.08, 1.0);`)
-      .replace('#include <lights_fragment_end>', `#include <lights_fragment_end>
+        clearcoatNormal = bump(clearcoatNormal, normalMatrix * (0.13 * middle.yzw + 0.06 * fine.yzw));`;
+
+const tissueLight = /* glsl */ `#include <lights_fragment_end>
         // Light scattered below the surface comes out redder where the surface turns away.
         float facing = saturate(dot(normalize(vViewPosition), nonPerturbedNormal));
         float rim = (1.0 - facing) * (1.0 - facing);
@@ -110,39 +107,116 @@ export function tissue_material(look: TissueLook, skin: SkinTexture | null, pres
         reflectedLight.directDiffuse *= mix(0.25, 1.0, openness);
         reflectedLight.directSpecular *= mix(0.15, 1.0, openness);
         clearcoatSpecularIndirect *= shut;
-        clearcoatSpecularDirect *= mix(0.1, 1.0, shut);`);
+        clearcoatSpecularDirect *= mix(0.1, 1.0, shut);`;
+
+export function tissueMaterial(
+  look: TissueLook,
+  skin: SkinTexture | null,
+  pressed: Pressed,
+  field: FieldUniforms,
+): THREE.MeshPhysicalMaterial {
+  const m = new THREE.MeshPhysicalMaterial({
+    roughness: 0.62,
+    ior: 1.38,
+    specularIntensity: 0.6,
+    clearcoat: 1,
+    clearcoatRoughness: 0.2,
+  });
+  m.onBeforeCompile = (shader) => {
+    if (skin) injectSkinning(shader, skin);
+    injectVeil(shader, field);
+    shader.uniforms.noise_map = { value: noiseTexture() };
+    for (const name of ['crown', 'sulcus', 'deep', 'capillary'] as const)
+      shader.uniforms[name] = { value: new THREE.Color(look[name]) };
+    shader.uniforms.pressed = { value: pressed };
+    shader.uniforms.amounts = { value: new THREE.Vector2(look.capillaries, look.haze) };
+    shader.vertexShader = shader.vertexShader
+      .replace(
+        '#include <common>',
+        '#include <common>\nattribute vec2 shading; varying vec2 v_shading; varying vec3 v_rest, v_place;',
+      )
+      .replace(
+        '#include <project_vertex>',
+        `#include <project_vertex>
+        v_shading = shading; v_rest = position * 1000.0; v_place = (modelMatrix * vec4(transformed, 1.0)).xyz;`,
+      );
+    shader.fragmentShader = shader.fragmentShader
+      .replace('#include <common>', tissueDeclarations)
+      .replace('#include <color_fragment>', tissueColour)
+      .replace(
+        '#include <roughnessmap_fragment>',
+        `#include <roughnessmap_fragment>
+        roughnessFactor = clamp(roughnessFactor + 0.12 * fine.x, 0.3, 0.9);`,
+      )
+      .replace(
+        '#include <normal_fragment_maps>',
+        `#include <normal_fragment_maps>
+        vec3 ripple = normalMatrix * (0.16 * middle.yzw + 0.13 * fine.yzw + 0.05 * noise(v_rest * 5.3).yzw);
+        normal = bump(normal, ripple);`,
+      )
+      .replace('#include <clearcoat_normal_fragment_maps>', tissueFilm)
+      .replace(
+        '#include <lights_physical_fragment>',
+        `#include <lights_physical_fragment>
+        material.clearcoatRoughness = clamp(0.19 + 0.10 * coarse.x + 0.03 * fine.x, 0.08, 1.0);`,
+      )
+      .replace('#include <lights_fragment_end>', tissueLight);
   };
   m.customProgramCacheKey = () => `tissue_${skin ? 'skinned' : 'static'}`;
   return m;
 }
 
-/** Small vessels on the brain: wet, dark at the edges as blood absorbs more along the longer path. */
-export function vessel_material(skin: SkinTexture | null, field: FieldUniforms): THREE.MeshPhysicalMaterial {
-  const m = new THREE.MeshPhysicalMaterial({ color: 0xffffff, roughness: 0.42, clearcoat: 1, clearcoatRoughness: 0.14, ior: 1.4 });
-  m.onBeforeCompile = (shader) => {
-    if (skin) inject_skinning(shader, skin);
-    // They fill from the large arteries: thinner, later, and the veins hardly.
-    inject_veil(shader, field, '0.45 * fluorescence(dye_far * mix(0.7, 0.12, v_vessel.x), edge) * v_vessel.y');
-    shader.uniforms.noise_map = { value: noise_texture() };
-    shader.uniforms.dye_far = field.dye_far;
-    shader.vertexShader = shader.vertexShader
-      .replace('#include <common>', '#include <common>\nattribute vec2 vessel; varying vec2 v_vessel; varying vec3 v_rest;')
-      .replace('#include <project_vertex>', '#include <project_vertex>\nv_vessel = vessel; v_rest = position * 1000.0;');
-    shader.fragmentShader = shader.fragmentShader
-      .replace('#include <common>', `#include <common>\n${noise_glsl}\n${fluorescence_glsl}\nuniform float dye_far; varying vec2 v_vessel; varying vec3 v_rest; uniform mat3 normalMatrix;`)
-      .replace('#include <color_fragment>', `#include <color_fragment>
+const vesselColour = /* glsl */ `#include <color_fragment>
         vec4 blood = noise(v_rest * 0.8);
         vec3 artery = vec3(0.30, 0.020, 0.017), vein = vec3(0.105, 0.014, 0.030);
         float edge = saturate(dot(normalize(vViewPosition), normalize(vNormal)));
         diffuseColor.rgb = mix(artery, vein, v_vessel.x) * (0.9 + 0.2 * blood.x) * mix(0.5, 1.25, edge);
-        diffuseColor.rgb *= mix(0.35, 1.0, v_vessel.y);`)
-      .replace('#include <clearcoat_normal_fragment_maps>', `#include <clearcoat_normal_fragment_maps>
-        clearcoatNormal = bump(clearcoatNormal, normalMatrix * (0.10 * noise(v_rest * 1.4).yzw));`)
-      .replace('#include <lights_fragment_end>', `#include <lights_fragment_end>
+        diffuseColor.rgb *= mix(0.35, 1.0, v_vessel.y);`;
+
+/** Small vessels on the brain: wet, dark at the edges as blood absorbs more along the longer path. */
+export function vesselMaterial(skin: SkinTexture | null, field: FieldUniforms): THREE.MeshPhysicalMaterial {
+  const m = new THREE.MeshPhysicalMaterial({
+    color: 0xffffff,
+    roughness: 0.42,
+    clearcoat: 1,
+    clearcoatRoughness: 0.14,
+    ior: 1.4,
+  });
+  m.onBeforeCompile = (shader) => {
+    if (skin) injectSkinning(shader, skin);
+    // They fill from the large arteries: thinner, later, and the veins hardly.
+    injectVeil(shader, field, '0.45 * fluorescence(far_glow * mix(0.7, 0.12, v_vessel.x), edge) * v_vessel.y');
+    shader.uniforms.noise_map = { value: noiseTexture() };
+    shader.uniforms.far_glow = field.farGlow;
+    shader.vertexShader = shader.vertexShader
+      .replace(
+        '#include <common>',
+        '#include <common>\nattribute vec2 vessel; varying vec2 v_vessel; varying vec3 v_rest;',
+      )
+      .replace(
+        '#include <project_vertex>',
+        '#include <project_vertex>\nv_vessel = vessel; v_rest = position * 1000.0;',
+      );
+    shader.fragmentShader = shader.fragmentShader
+      .replace(
+        '#include <common>',
+        `#include <common>\n${noiseGlsl}\n${fluorescenceGlsl}
+        uniform float far_glow; varying vec2 v_vessel; varying vec3 v_rest; uniform mat3 normalMatrix;`,
+      )
+      .replace('#include <color_fragment>', vesselColour)
+      .replace(
+        '#include <clearcoat_normal_fragment_maps>',
+        `#include <clearcoat_normal_fragment_maps>
+        clearcoatNormal = bump(clearcoatNormal, normalMatrix * (0.10 * noise(v_rest * 1.4).yzw));`,
+      )
+      .replace(
+        '#include <lights_fragment_end>',
+        `#include <lights_fragment_end>
         reflectedLight.indirectDiffuse *= v_vessel.y;
         reflectedLight.indirectSpecular *= v_vessel.y;
         clearcoatSpecularIndirect *= v_vessel.y * v_vessel.y;
-        clearcoatSpecularDirect *= mix(0.1, 1.0, v_vessel.y);`);
+        clearcoatSpecularDirect *= mix(0.1, 1.0, v_vessel.y);`,
+      );
   };
   m.customProgramCacheKey = () => `vessel_${skin ? 'skinned' : 'static'}`;
   return m;

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A pool of fluid in the field: its surface, and the veil over what lies below it. A radius of 0 means a dry field.
+import * as THREE from 'three';
+import { dryLevel, type FieldUniforms } from '../materials/field';
+import { fluidMaterial } from '../materials/fluid';
+import { fluidLook } from '../materials/fluid_look';
+import type { DrawableContext, Drawn, Moment } from './drawn';
+import { placeDisc } from './shapes';
+
+const stainFadeS = 40;
+/** Shallower pools are a film that nobody sees. */
+const leastM = 2e-5;
+
+export class FluidPlane implements Drawn {
+  readonly root: THREE.Mesh;
+  private readonly field: FieldUniforms;
+  /** Where the pool was first seen: levels are counted from there. */
+  private bottom: THREE.Vector3 | null = null;
+  private level: number | null = null;
+
+  constructor(private readonly context: DrawableContext) {
+    this.field = context.field;
+    this.root = new THREE.Mesh(new THREE.CircleGeometry(1, 64), fluidMaterial(context.field, context.environment));
+    this.root.renderOrder = 3;
+    this.root.visible = false;
+    this.root.frustumCulled = false;
+    if (context.firstFluid) this.field.setFluid(fluidLook(context.declared.material, context.material));
+  }
+
+  update(data: Float32Array, { dt }: Moment): void {
+    const wet = data.length > 0 && data[6]! > 0;
+    const up = wet ? placeDisc(this.root, data) : null;
+    if (up) this.bottom ??= this.root.position.clone();
+    // Frames come at 60 Hz at most; the level glides between them.
+    const wanted = up ? this.root.position.clone().sub(this.bottom!).dot(up) : null;
+    this.level = wanted === null || this.level === null ? wanted : glide(this.level, wanted, 12 * dt);
+    this.root.visible = wet;
+    if (up) this.root.position.addScaledVector(up, this.level! - wanted!);
+    if (this.context.firstFluid) this.veil(up, wet ? data[6]! : 0, dt);
+  }
+
+  dispose(): void {
+    this.root.removeFromParent();
+    this.root.geometry.dispose();
+    (this.root.material as THREE.Material).dispose();
+    if (this.context.firstFluid) this.field.fluidPlane.value.w = this.field.stainLevel.value = dryLevel;
+  }
+
+  private veil(up: THREE.Vector3 | null, radius: number, dt: number): void {
+    const f = this.field;
+    const level = this.level ?? dryLevel;
+    f.stainLevel.value = Math.max(level, f.stainLevel.value - (dt / stainFadeS) * 0.01);
+    f.fluidPlane.value.w = level;
+    if (!up || !this.bottom) return;
+    f.fluidPlane.value.set(up.x, up.y, up.z, level + leastM);
+    f.fluidOrigin.value.set(this.bottom.x, this.bottom.y, this.bottom.z, radius);
+  }
+}
+
+const glide = (from: number, to: number, rate: number): number => from + (to - from) * (1 - Math.exp(-rate));

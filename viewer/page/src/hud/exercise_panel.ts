@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is to be done: title, text, goals, timers and measures, faults.
+import type { Bundle } from '../bundle_types';
+import { el, setText } from './dom';
+import { Progress } from './progress';
+import { clockText, type HudState } from './state';
+
+export class ExercisePanel {
+  readonly root: HTMLElement;
+  private readonly title = el('h1', {}, 'Insula');
+  private readonly clock = el('span', { class: 'clock' }, '0:00.0');
+  private readonly text = el('p', { class: 'text' });
+  private readonly goals = el('ul', { class: 'goals' });
+  private readonly faults = el('ul', { class: 'faults' });
+  private readonly progress = new Progress();
+  private shown = '';
+
+  constructor() {
+    const head = el('header', {}, this.title, this.clock);
+    this.root = el(
+      'section',
+      { class: 'panel exercise' },
+      head,
+      this.text,
+      this.goals,
+      this.progress.root,
+      this.faults,
+    );
+  }
+
+  showScene({ exercise, title, description }: Bundle): void {
+    setText(this.title, exercise?.title || title || 'Insula');
+    setText(this.text, exercise?.text || description);
+    this.progress.clear();
+    const goals = (exercise?.goals ?? []).map((g) => ({ ...g, done: false }));
+    this.showLists(goals, []);
+  }
+
+  showClock(seconds: number): void {
+    setText(this.clock, clockText(seconds));
+  }
+
+  showState(s: HudState): void {
+    this.showLists(s.goals, s.faults);
+    this.progress.show(s.timers, s.measures);
+  }
+
+  private showLists(goals: HudState['goals'], faults: HudState['faults']): void {
+    // The clock changes the state with every frame; the lists seldom.
+    const key = JSON.stringify([goals, faults]);
+    if (key === this.shown) return;
+    this.shown = key;
+    this.goals.replaceChildren(...goals.map((g) => el('li', { class: g.done ? 'done' : '' }, g.text)));
+    const made = faults.filter((f) => f.count > 0);
+    this.faults.replaceChildren(...made.map((f) => el('li', {}, el('b', {}, String(f.count)), f.text)));
+  }
+}

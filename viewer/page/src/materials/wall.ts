@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The style "wall" of hollow organs: wet, pinkish, with fine vessels in its coat; where it is thin the dark fluid
+// inside shows through and swirls. In the infrared picture it shines with the value of its region.
+import * as THREE from 'three';
+import { injectSkinning, type SkinTexture } from '../skin_shader';
+import { fluorescenceGlsl, type FieldUniforms, injectVeil } from './field';
+import { noiseGlsl, noiseTexture } from './noise';
+
+/** Regions whose values a wall can show. */
+export const regionCapacity = 16;
+
+const wallColour = /* glsl */ `#include <color_fragment>
+        float facing = saturate(dot(normalize(vViewPosition), normalize(vNormal)));
+        vec4 broad = noise(v_rest * 0.33);
+        vec4 middle = noise(v_rest * 1.05);
+        float thin = v_wall.y;
+        // Coat: muscle under whitish fibres.
+        float pale = smoothstep(-0.5, 0.6, broad.x + 0.35 * middle.x);
+        vec3 coat = mix(vec3(0.36, 0.034, 0.030), vec3(0.50, 0.098, 0.078), pale);
+        #ifndef CHEAP
+        vec4 fine = noise(v_rest * 3.1);
+        float vasa = 1.0 - smoothstep(0.0, 0.075, abs(noise(v_rest * 0.62 + middle.yzw * 0.55).x));
+        vasa *= smoothstep(-0.15, 0.35, noise(v_rest * 0.27 + 4.0).x);
+        coat *= 1.0 + 0.10 * fine.x;
+        coat = mix(coat, vec3(0.30, 0.022, 0.020), 0.62 * vasa * (1.0 - 0.4 * thin));
+        // Blood under the thin wall, seen a little below the surface: it turns with the jet that comes in at the neck.
+        vec3 inward = normalize(v_place - cameraPosition) * 1.1;
+        vec3 q = (v_rest + inward) * 0.34;
+        float turn = seconds * 0.55;
+        vec3 drift = noise(q * 0.8 + vec3(0.0, turn * 0.5, turn * 0.3)).yzw;
+        float swirl = noise(q * 1.5 + drift * 1.3 - vec3(turn * 0.6, 0.0, turn * 0.35)).x;
+        swirl = smoothstep(-0.55, 0.6, swirl + 0.25 * (pulse - 0.4));
+        #else
+        float swirl = 0.5 + 0.4 * broad.x;
+        #endif
+        vec3 blood = mix(vec3(0.070, 0.0028, 0.0065), vec3(0.29, 0.013, 0.011), swirl);
+        // The path through blood is longest in the middle, the wall looks thickest at the edge.
+        float through = thin * mix(0.55, 1.0, smoothstep(0.1, 0.9, facing));
+        // Plaque: pale, opaque islands in the thin wall.
+        float plaque = smoothstep(0.30, 0.62, noise(v_rest * 0.42 + 9.0).x + 0.3 * middle.x);
+        plaque *= smoothstep(0.25, 0.55, thin) * (1.0 - smoothstep(0.85, 1.0, thin));
+        coat = mix(coat, vec3(0.66, 0.40, 0.25), 0.6 * plaque);
+        through *= 1.0 - 0.75 * plaque;
+        vec3 tint = mix(coat, blood, through);
+        tint *= mix(0.62, 1.12, facing);
+        diffuseColor.rgb = tint * mix(0.30, 1.0, v_wall.x);`;
+
+const wallLight = /* glsl */ `#include <lights_fragment_end>
+        // Light that entered comes out again red where the wall is thin.
+        vec3 back = diffuseColor.rgb * vec3(0.30, 0.05, 0.04) + vec3(0.030, 0.0012, 0.0010) * thin;
+        reflectedLight.indirectDiffuse += back * v_wall.x;
+        reflectedLight.indirectDiffuse *= v_wall.x;
+        reflectedLight.indirectSpecular *= v_wall.x;
+        clearcoatSpecularIndirect *= v_wall.x * v_wall.x;
+        clearcoatSpecularDirect *= mix(0.15, 1.0, v_wall.x);`;
+
+const wallDeclarations = /* glsl */ `#include <common>
+        ${noiseGlsl}
+        ${fluorescenceGlsl}
+        varying vec2 v_wall; varying float v_glow; varying vec3 v_rest, v_place;
+        uniform mat3 normalMatrix; uniform float seconds, pulse;`;
+
+/** Vertex attributes: `wall` = (openness 0..1, thinness 0..1), `region` = index into `values` (0..1 each). */
+export function wallMaterial(
+  skin: SkinTexture | null,
+  field: FieldUniforms,
+  values: { value: Float32Array },
+): THREE.MeshPhysicalMaterial {
+  const m = new THREE.MeshPhysicalMaterial({
+    roughness: 0.46,
+    clearcoat: 1,
+    clearcoatRoughness: 0.12,
+    ior: 1.4,
+    specularIntensity: 0.6,
+  });
+  m.onBeforeCompile = (shader) => {
+    if (skin) injectSkinning(shader, skin);
+    injectVeil(shader, field, 'fluorescence(v_glow, saturate(dot(normalize(vViewPosition), normalize(vNormal))))');
+    Object.assign(shader.uniforms, {
+      noise_map: { value: noiseTexture() },
+      region_value: values,
+      seconds: field.seconds,
+      pulse: field.pulse,
+    });
+    shader.vertexShader = shader.vertexShader
+      .replace(
+        '#include <common>',
+        `#include <common>
+        attribute vec2 wall; attribute float region;
+        uniform float region_value[${regionCapacity}];
+        varying vec2 v_wall; varying float v_glow; varying vec3 v_rest, v_place;`,
+      )
+      .replace(
+        '#include <project_vertex>',
+        `#include <project_vertex>
+        v_wall = wall; v_glow = region_value[int(region + 0.5)]; v_rest = position * 1000.0;
+        v_place = (modelMatrix * vec4(transformed, 1.0)).xyz;`,
+      );
+    shader.fragmentShader = shader.fragmentShader
+      .replace('#include <common>', wallDeclarations)
+      .replace('#include <color_fragment>', wallColour)
+      .replace(
+        '#include <normal_fragment_maps>',
+        `#include <normal_fragment_maps>
+        normal = bump(normal, normalMatrix * ((0.13 * middle.yzw) * (1.0 - 0.6 * v_wall.y)));`,
+      )
+      .replace(
+        '#include <clearcoat_normal_fragment_maps>',
+        `#include <clearcoat_normal_fragment_maps>
+        clearcoatNormal = bump(clearcoatNormal, normalMatrix * (0.05 * broad.yzw + 0.035 * middle.yzw));`,
+      )
+      .replace('#include <lights_fragment_end>', wallLight);
+  };
+  m.customProgramCacheKey = () => `wall_${skin ? 'skinned' : 'static'}`;
+  m.userData.has_cheap = true;
+  return m;
+}

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The surfaces of bodies and of what stands still, each drawn in the style of its material.
+import * as THREE from 'three';
+import type { BodyData, Bundle, SkinnedSurface, SurfaceData } from './bundle_types';
+import { creased, smoothNormals } from './geometry';
+import type { FieldUniforms } from './materials/field';
+import { solidMaterial } from './materials/solid';
+import { type Pressed, tissueLook, tissueMaterial, vesselMaterial } from './materials/tissue';
+import { bakeShading, type Shading, type Tissue } from './occlusion';
+import { hashText } from './random';
+import { drawnSurfaces } from './regions';
+import { barycentric, NodeField, shellTriangles } from './skinning';
+import { setSkinAttributes, SkinTexture, skinnedDepthMaterial } from './skin_shader';
+import { PointGrid } from './spatial';
+import { type MaterialData, materialOf } from './step_data/declarations';
+import { growVessels, makeTubes, vesselStyleOf } from './surface_vessels';
+import { Wall } from './wall';
+
+interface Plan {
+  surface: SurfaceData;
+  /** The surface's skinning, its texture and body; null: it stands still. */
+  moving: { skinned: SkinnedSurface; skin: SkinTexture; body: BodyData } | null;
+  material: MaterialData;
+  tissue: Tissue;
+}
+
+export interface SceneryOptions {
+  field: FieldUniforms;
+  pressed: Pressed;
+  /** Out of the operating field. */
+  fieldAxis: THREE.Vector3;
+}
+
+export class Scenery {
+  readonly root = new THREE.Group();
+  readonly walls: Wall[] = [];
+  private readonly skins: { index: number; skin: SkinTexture }[] = [];
+  private readonly owned: { dispose(): void }[] = [];
+
+  constructor(
+    bundle: Bundle,
+    private readonly options: SceneryOptions,
+  ) {
+    const plans: Plan[] = [];
+    for (const body of bundle.bodies) plans.push(...this.planBody(body, bundle));
+    for (const surface of bundle.static)
+      plans.push({
+        surface,
+        moving: null,
+        material: materialOf(bundle.materials, surface.material),
+        tissue: asTissue(surface),
+      });
+    // Solids cast no baked darkness: only wet surfaces are dark where they face each other.
+    const wet = plans.filter((p) => p.material.style === 'tissue' || (p.moving && p.material.style === 'wall'));
+    const shading = bakeShading(wet.map((p) => p.tissue));
+    for (const p of plans) this.addPlan(p, shading[wet.indexOf(p)] ?? null);
+  }
+
+  /** Node positions of each body, or null where there are none. */
+  update(nodes: (body: number) => Float32Array | null): void {
+    for (const { index, skin } of this.skins) {
+      const x = nodes(index);
+      if (x && x.length === skin.field.rest.length) skin.update(x);
+    }
+  }
+
+  dispose(): void {
+    this.root.removeFromParent();
+    for (const o of this.owned) o.dispose();
+  }
+
+  private planBody(body: BodyData, bundle: Bundle): Plan[] {
+    if (body.surfaces.length === 0) return [];
+    const triangles = shellTriangles(body.surfaces);
+    const quads = triangles.length > 0 ? [] : body.surfaces.map((s) => s.skinNodes);
+    const skin = new SkinTexture(new NodeField(body.rest, quads, triangles));
+    this.skins.push({ index: body.index, skin });
+    this.owned.push(skin);
+    return drawnSurfaces(body.surfaces).map((s) => ({
+      surface: s,
+      moving: { skinned: s, skin, body },
+      material: materialOf(bundle.materials, s.material),
+      tissue: asTissue(s),
+    }));
+  }
+
+  private addPlan(p: Plan, shading: Shading | null): void {
+    const { style } = p.material;
+    if (style === 'tissue' && shading) this.addTissue(p, shading);
+    else if (style === 'wall' && p.moving && shading) this.addMovingWall(p, shading);
+    else if (style === 'wall') this.addStillWall(p);
+    else if (p.moving) this.addMovingSolid(p);
+    else this.addSolid(p);
+  }
+
+  private add(
+    geometry: THREE.BufferGeometry,
+    material: THREE.Material,
+    casts: boolean,
+    skin: SkinTexture | null,
+  ): void {
+    const mesh = new THREE.Mesh(geometry, material);
+    mesh.castShadow = casts;
+    mesh.receiveShadow = true;
+    if (skin) {
+      mesh.customDepthMaterial = skinnedDepthMaterial(skin);
+      this.owned.push(mesh.customDepthMaterial);
+      mesh.frustumCulled = false;
+    }
+    this.root.add(mesh);
+    this.owned.push(geometry, material);
+  }
+
+  private solid(p: Plan): THREE.MeshPhysicalMaterial {
+    const { field, fieldAxis } = this.options;
+    const { rgba, roughness, metalness } = p.material;
+    const skin = p.moving?.skin ?? null;
+    return solidMaterial(p.surface.material, { field, fieldAxis: fieldAxis.clone(), rgba, roughness, metalness, skin });
+  }
+
+  private addSolid(p: Plan): void {
+    const s = p.surface;
+    const shape = creased(s.positions, s.indices, s.material === 'bone' ? 0.75 : 1.1);
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute('position', new THREE.BufferAttribute(shape.positions, 3));
+    geometry.setAttribute('normal', new THREE.BufferAttribute(shape.normals, 3));
+    this.add(geometry, this.solid(p), true, null);
+  }
+
+  private addMovingSolid(p: Plan): void {
+    const geometry = smoothGeometry(p);
+    this.add(geometry, this.solid(p), true, p.moving!.skin);
+  }
+
+  private addStillWall(p: Plan): void {
+    const geometry = smoothGeometry(p);
+    const n = p.surface.positions.length / 3;
+    geometry.setAttribute(
+      'vessel',
+      new THREE.BufferAttribute(
+        new Float32Array(n * 2).map((_, i) => i % 2),
+        2,
+      ),
+    );
+    this.add(geometry, vesselMaterial(null, this.options.field), true, null);
+  }
+
+  private addMovingWall(p: Plan, shading: Shading): void {
+    const { skinned, body, skin } = p.moving!;
+    const wall = new Wall(skinned, body, skin, shading.openness, this.options.field);
+    this.walls.push(wall);
+    this.add(wall.geometry, wall.material, true, skin);
+  }
+
+  private addTissue(p: Plan, shading: Shading): void {
+    const geometry = smoothGeometry(p);
+    geometry.setAttribute('shading', new THREE.BufferAttribute(interleave(shading.openness, shading.convexity), 2));
+    const { pressed, field } = this.options;
+    const skin = p.moving?.skin ?? null;
+    this.add(geometry, tissueMaterial(tissueLook(p.surface.material, p.material), skin, pressed, field), true, skin);
+    this.addVessels(p, shading);
+  }
+
+  /** Small vessels on tissue; each follows the tetrahedron of the nearest surface vertex. */
+  private addVessels(p: Plan, shading: Shading): void {
+    const s = p.surface;
+    const tubes = makeTubes(growVessels(p.tissue, shading, vesselStyleOf(s.material), hashText(s.id)));
+    const n = tubes.kind.length;
+    if (n === 0) return;
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute('position', new THREE.Float32BufferAttribute(tubes.positions, 3));
+    geometry.setAttribute('normal', new THREE.Float32BufferAttribute(tubes.normals, 3));
+    geometry.setIndex(tubes.indices);
+    const grid = new PointGrid(s.positions, 0.002);
+    const near = Array.from({ length: n }, (_, i) => {
+      const f = tubes.foot.slice(i * 3, i * 3 + 3);
+      return Math.max(0, grid.nearest(f[0]!, f[1]!, f[2]!, 0.004));
+    });
+    const lit = Float32Array.from(near, (v) => Math.min(1, shading.openness[v]! * 1.15));
+    geometry.setAttribute('vessel', new THREE.BufferAttribute(interleave(tubes.kind, lit), 2));
+    if (p.moving) skinTubes(geometry, tubes.positions, near, p.moving.skinned, p.moving.body.rest);
+    const skin = p.moving?.skin ?? null;
+    this.add(geometry, vesselMaterial(skin, this.options.field), false, skin);
+  }
+}
+
+function skinTubes(
+  geometry: THREE.BufferGeometry,
+  positions: number[],
+  near: number[],
+  skinned: SkinnedSurface,
+  rest: Float32Array,
+): void {
+  const nodes = new Uint32Array(near.length * 4);
+  const weights = new Float32Array(near.length * 4);
+  near.forEach((v, i) => {
+    const w = barycentric(rest, skinned.skinNodes, v * 4, positions.slice(i * 3, i * 3 + 3));
+    for (let k = 0; k < 4; k++) {
+      nodes[i * 4 + k] = skinned.skinNodes[v * 4 + k]!;
+      weights[i * 4 + k] = w ? w[k]! : skinned.skinWeights[v * 4 + k]!;
+    }
+  });
+  setSkinAttributes(geometry, nodes, weights, rest);
+}
+
+function smoothGeometry(p: Plan): THREE.BufferGeometry {
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute('position', new THREE.BufferAttribute(p.surface.positions, 3));
+  geometry.setAttribute('normal', new THREE.BufferAttribute(p.tissue.normals, 3));
+  geometry.setIndex(new THREE.BufferAttribute(p.surface.indices, 1));
+  if (p.moving) {
+    const { skinned, body } = p.moving;
+    setSkinAttributes(geometry, skinned.skinNodes, skinned.skinWeights, body.rest);
+  }
+  return geometry;
+}
+
+function interleave(a: ArrayLike<number>, b: ArrayLike<number>): Float32Array {
+  const out = new Float32Array(a.length * 2);
+  for (let i = 0; i < a.length; i++) {
+    out[i * 2] = a[i]!;
+    out[i * 2 + 1] = b[i]!;
+  }
+  return out;
+}
+
+function asTissue(s: SurfaceData): Tissue {
+  return { positions: s.positions, indices: s.indices, normals: smoothNormals(s.positions, s.indices) };
+}

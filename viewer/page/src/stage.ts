@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The renderer with its scene, microscope and lens, and how much effort a quality level puts into them.
+import * as THREE from 'three';
+import { Microscope } from './camera';
+import { Lens } from './lens';
+import { makeEnvironment } from './materials/environment';
+import type { Level } from './quality';
+import type { StereoMode } from './stereo';
+
+/** What is seen through a gap between the tissues: the depth of the field, not a hole. */
+const depths = { eye: new THREE.Color(0x38100c), infrared: new THREE.Color(0x020303) };
+
+export class Stage {
+  readonly renderer: THREE.WebGLRenderer;
+  readonly scene = new THREE.Scene();
+  readonly scope = new Microscope();
+  private readonly lens: Lens;
+
+  constructor(readonly canvas: HTMLCanvasElement) {
+    this.renderer = makeRenderer(canvas);
+    this.scene.background = depths.eye;
+    this.scene.environmentIntensity = 0.42;
+    this.scope.addTo(this.scene);
+    this.lens = new Lens(this.renderer);
+  }
+
+  /** Of the last picture, shadows included. */
+  get triangles(): number {
+    return this.lens.triangles;
+  }
+
+  /** The room that metal mirrors, anew. */
+  light(up: THREE.Vector3): THREE.Texture {
+    const old = this.scene.environment;
+    const room = makeEnvironment(this.renderer, this.scope.fieldAxis, up);
+    this.scene.environment = room;
+    old?.dispose();
+    return room;
+  }
+
+  setInfrared(on: boolean): void {
+    this.scene.background = on ? depths.infrared : depths.eye;
+  }
+
+  setLevel(level: Level): void {
+    const { renderer } = this;
+    renderer.setPixelRatio(Math.min(window.devicePixelRatio * Math.min(1, level.pixelRatio), level.pixelRatio));
+    this.lens.configure(level.lens);
+    const lamp = this.scope.lamp;
+    const shadow = lamp.shadow;
+    const shadows = level.shadowSize > 0;
+    if (renderer.shadowMap.enabled !== shadows) {
+      renderer.shadowMap.enabled = shadows;
+      this.scene.traverse((o) => {
+        if (o instanceof THREE.Mesh) (o.material as THREE.Material).needsUpdate = true;
+      });
+    }
+    lamp.castShadow = shadows;
+    if (!shadows || shadow.mapSize.x === level.shadowSize) return;
+    shadow.mapSize.set(level.shadowSize, level.shadowSize);
+    shadow.map?.dispose();
+    shadow.map = null;
+  }
+
+  /** Follows the window's size and moves the microscope on; presenting: a headset has its own size. */
+  update(dt: number, mode: StereoMode, presenting: boolean): void {
+    const wide = this.canvas.clientWidth;
+    const high = this.canvas.clientHeight;
+    const size = this.renderer.getSize(new THREE.Vector2());
+    if (!presenting && (size.x !== wide || size.y !== high)) this.renderer.setSize(wide, high, false);
+    const halves = mode === 'sbs' && !presenting ? 2 : 1;
+    this.scope.update(dt, presenting ? 1 : wide / halves / Math.max(1, high));
+  }
+
+  render(mode: StereoMode, angleRad: number): void {
+    this.lens.render(this.scene, this.scope.camera, this.scope.distance, mode, angleRad);
+  }
+
+  /** The point under the pointer becomes the focus. */
+  focusAt(x: number, y: number): void {
+    const point = this.lens.pick(x, y, this.canvas.clientWidth, this.canvas.clientHeight);
+    if (point) this.scope.focus(point);
+  }
+}
+
+function makeRenderer(canvas: HTMLCanvasElement): THREE.WebGLRenderer {
+  let renderer: THREE.WebGLRenderer;
+  try {
+    renderer = new THREE.WebGLRenderer({ canvas, antialias: false, powerPreference: 'high-performance' });
+  } catch (e) {
+    document.body.textContent =
+      'This browser offers no WebGL 2, which the picture needs. ' +
+      'Switch on hardware acceleration or use another browser.';
+    throw e;
+  }
+  renderer.toneMapping = THREE.ACESFilmicToneMapping;
+  renderer.toneMappingExposure = 1.0;
+  renderer.shadowMap.type = THREE.PCFSoftShadowMap;
+  renderer.debug.onShaderError = (gl, program, vs, fs) => {
+    console.error('shader:', gl.getProgramInfoLog(program), gl.getShaderInfoLog(vs), gl.getShaderInfoLog(fs));
+  };
+  return renderer;
+}

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the page tells tests and screenshots about itself, as window.__insula.
+export const status = {
+  ready: false,
+  frames: 0,
+  pictures: 0,
+  fps: 0,
+  session: '',
+  quality: '',
+  connected: false,
+  frozen: false,
+  refused: 0,
+  error: '',
+  /** What is wrong with the engine's data, one line each. */
+  problems: [] as string[],
+  build_ms: 0,
+  taken: [false, false],
+  active: 1,
+  triangles: 0,
+  stereo: 'off',
+  infrared: false,
+  presenting: false,
+  graphics_lost: false,
+};
+(window as unknown as { __insula: typeof status }).__insula = status;

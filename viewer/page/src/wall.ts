@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A deforming surface of the style "wall": its mesh with regions, how thin each is, and the value each shows.
+import * as THREE from 'three';
+import type { BodyData, SkinnedSurface } from './bundle_types';
+import { smoothNormals } from './geometry';
+import type { FieldUniforms } from './materials/field';
+import { regionCapacity, wallMaterial } from './materials/wall';
+import { nearestKnown, wallThinness } from './regions';
+import { setSkinAttributes, type SkinTexture } from './skin_shader';
+import type { Channels } from './step_data/channels';
+
+/** A channel as a share of its largest value. */
+function share(channels: Channels, id: string): number {
+  const value = channels.value(id) ?? 0;
+  return Math.max(0, Math.min(1, value / (channels.find(id)?.max || 1)));
+}
+
+export class Wall {
+  readonly geometry = new THREE.BufferGeometry();
+  readonly material: THREE.MeshPhysicalMaterial;
+  /** Channel of each region; null: it has none of its own. */
+  private readonly channelOf: (string | null)[];
+  private readonly shown = { value: new Float32Array(regionCapacity) };
+
+  constructor(
+    surface: SkinnedSurface,
+    body: BodyData,
+    skin: SkinTexture,
+    openness: Float32Array,
+    field: FieldUniforms,
+  ) {
+    const n = surface.positions.length / 3;
+    const regions = surface.regions.slice(0, regionCapacity);
+    this.channelOf = regions.map((r) => body.channelOfRegion[r] ?? null);
+    const given = surface.vertexRegion ?? new Uint32Array(n);
+    const region = nearestKnown(
+      given,
+      surface.indices,
+      this.channelOf.map((c) => c !== null),
+    );
+    const thin = wallThinness(given, regions, body.regionThicknessM, surface.indices);
+    const wall = new Float32Array(n * 2);
+    // It lies in a gap that was baked shut: that darkness counts by half.
+    for (let i = 0; i < n; i++) {
+      wall[i * 2] = 0.5 + 0.5 * openness[i]!;
+      wall[i * 2 + 1] = thin[i]!;
+    }
+    const normals = smoothNormals(surface.positions, surface.indices);
+    const shownRegion = Float32Array.from(region, (r) => Math.min(r, regionCapacity - 1));
+    this.geometry.setAttribute('position', new THREE.BufferAttribute(surface.positions, 3));
+    this.geometry.setAttribute('normal', new THREE.BufferAttribute(normals, 3));
+    this.geometry.setAttribute('wall', new THREE.BufferAttribute(wall, 2));
+    this.geometry.setAttribute('region', new THREE.BufferAttribute(shownRegion, 1));
+    this.geometry.setIndex(new THREE.BufferAttribute(surface.indices, 1));
+    setSkinAttributes(this.geometry, surface.skinNodes, surface.skinWeights, body.rest);
+    this.material = wallMaterial(skin, field, this.shown);
+  }
+
+  /** Values move from frame to frame; the picture follows within a fifth of a second. */
+  update(channels: Channels, dt: number): void {
+    this.channelOf.forEach((id, r) => {
+      const before = this.shown.value[r]!;
+      this.shown.value[r] = before + ((id === null ? 0 : share(channels, id)) - before) * (1 - Math.exp(-dt * 5));
+    });
+  }
+
+  /** Mean over the regions that have a channel; null: none has. */
+  mean(channels: Channels): number | null {
+    const ids = [...new Set(this.channelOf.filter((id) => id !== null))];
+    return ids.length === 0 ? null : ids.reduce((sum, id) => sum + share(channels, id), 0) / ids.length;
+  }
+}
