@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A clip in its applier, made one with it.
+// Elimination of a weld: a rigid body that a tool grasps becomes one body with the tool.
 //
-// The engine has the clip as a body of its own, with a numerical inertia far above its own, tied to the applier by six rows J without
-// bounds. Between steps that is bad twice: six stiff rows on which everything that the clip touches hangs keep the sweeps from converging,
-// and inertia that is asked for its answer over a step is felt as a spring to where the clip was (80 N/m at 60 Hz). So these rows are
-// eliminated, exactly, and the clip's mass becomes the tool's. All of it follows from the problem: with H the tool's Jacobian, A its
-// matrix, B = W - H A^-1 H^T between the other rows and J (the clip alone), P = B_JJ^-1:
-//   H'  = H - B P H_J               what the clip touches is now touched by the tool
+// The engine has the grasped body as a body of its own, with a numerical inertia far above its true one. Six weld rows J
+// without bounds tie it to the tool. Between steps this is bad twice. The six stiff rows carry all contacts of the grasped
+// body and keep the sweeps from converging. And the inertia acts as a spring to the last position (80 N/m at 60 Hz).
+// The rows are therefore eliminated exactly, and the mass becomes the tool's. With H the tool's Jacobian, A its matrix,
+// B = W - H A^-1 H^T between the other rows and J (the grasped body alone), and P = B_JJ^-1:
+//   H'  = H - B P H_J               the contacts of the grasped body are now contacts of the tool
 //   A'  = A + H_J^T P H_J           mass over step squared, of both
 //   W'  = W - H A^-1 H^T - B P B^T + H' A'^-1 H'^T
-//   v   = -H_J^-1 rate_J            of the tool, as the clip's
-// delta_free, gain and the tool's free pose become such that forces and poses are what they were, wherever the devices go.
+//   v   = -H_J^-1 rate_J            of the tool, as the grasped body's
+// delta_free, gain and the free pose of the tool change such that forces and poses stay the same for all device poses.
 #pragma once
 #include <array>
 
@@ -42,7 +42,7 @@ class WeldElimination {
 
   std::array<ConstraintProblem, 2> reduced_;
   Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor> spare_;  ///< memory of the second tool's Jacobian while there is none
-  std::vector<Vec6> clip_, tool_, both_;  ///< by row: B, H, H'
+  std::vector<Vec6> grasped_, tool_, both_;  ///< by row: B, H, H'
   std::array<GraspedBody, 2> grasped_;
 };
 

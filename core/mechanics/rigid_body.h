@@ -30,7 +30,7 @@ class RigidBody : public Body {
   /// Angle of its hinges now, rad; 0 when it has none.
   virtual double opening() const { return 0; }
   virtual int links() const { return 1; }
-  /// Whether it is left in the field when its applier lets go of it, and closes on tissue there (a clip).
+  /// Whether it is left in the field when the tool that grasps it lets go, and closes on tissue there.
   virtual bool implant() const { return false; }
   /// Convex pieces of a link, in the link's frame.
   virtual const std::vector<ConvexPiece>& link_pieces(int link) const = 0;

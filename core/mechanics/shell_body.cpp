@@ -9,24 +9,24 @@
 namespace insula {
 
 void ShellBody::set_mesh(TriMesh m) {
-  VesselModel model;
+  WallModel model;
   model.wall = std::move(m);
   set_model(std::move(model));
 }
 
-void ShellBody::set_model(VesselModel m) {
+void ShellBody::set_model(WallModel m) {
   model_ = std::move(m);
   given_ = true;
 }
 
 void ShellBody::prepare(PrepareContext& context) {
   if (!given_) {
-    if (vessel.empty() == mesh.empty()) return error(context, "a shell needs a vessel or a mesh, one of the two");
+    if (wall.empty() == mesh.empty()) return error(context, "a shell needs a wall or a mesh, one of the two");
     try {
-      if (!vessel.empty()) model_ = read_vessel(vessel());
+      if (!wall.empty()) model_ = read_wall(wall());
       else model_.wall = read_surface(mesh(), mesh_unit());
     } catch (const InputError& e) {
-      return vessel.empty() ? error(context, mesh, e.what()) : error(context, vessel, e.what());
+      return wall.empty() ? error(context, mesh, e.what()) : error(context, wall, e.what());
     }
   }
   finish_model();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A thin-walled body on a triangle surface: an artery, a strip. The triangles are the wall's middle surface; what the wall
-// is made of is said by the force models it owns. A vessel's caps close it for volume and contact, but are no wall: they carry
+// is made of is said by the force models it owns. Caps close it for volume and contact, but are no wall: they carry
 // no elements, and their nodes with the rims are held.
 #pragma once
 #include <string>
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/mechanics/deformable_body.h"
-#include "core/model/vessel_model.h"
+#include "core/model/wall_model.h"
 
 namespace insula {
 
@@ -16,16 +16,16 @@ class ShellBody final : public DeformableBody {
  public:
   static constexpr std::string_view kind_name = "shell_body";  ///< in messages about references to one
 
-  Param<File> vessel{this, {.name = "vessel", .fallback = "", .doc = "vessel.json: wall surface with its regions, caps and centrelines"}};
-  Param<File> mesh{this, {.name = "mesh", .fallback = "", .doc = "plain surface file instead of a vessel"}};
+  Param<File> wall{this, {.name = "wall", .fallback = "", .doc = "JSON file: wall surface with its regions, caps and centrelines"}};
+  Param<File> mesh{this, {.name = "mesh", .fallback = "", .doc = "plain surface file instead of that"}};
   Param<LengthUnit> mesh_unit{this, {.name = "mesh_unit", .fallback = "mm", .doc = "unit of length of the surface file"}};
 
   void prepare(PrepareContext& context) override;
   const std::vector<Vec3>& rest_nodes() const override { return model_.wall.vertices; }
   void fix_own_nodes(std::vector<char>& fixed) const override;
 
-  /// The vessel as read; for a plain surface: no caps, no centrelines, one region "wall".
-  const VesselModel& model() const { return model_; }
+  /// The wall as read; for a plain surface: no caps, no centrelines, one region "wall".
+  const WallModel& model() const { return model_; }
   const TriMesh& rest() const { return model_.wall; }  ///< caps included
   /// Triangles of the wall proper (without caps), in the order of rest().triangles.
   const std::vector<std::array<int, 3>>& wall_triangles() const { return wall_; }
@@ -35,11 +35,11 @@ class ShellBody final : public DeformableBody {
   int region_of_triangle(const std::array<int, 3>& t) const;
   /// In place of a file, before prepare(): for tests and generated bodies.
   void set_mesh(TriMesh m);
-  void set_model(VesselModel m);
+  void set_model(WallModel m);
 
  private:
   void finish_model();
-  VesselModel model_;
+  WallModel model_;
   std::vector<std::array<int, 3>> wall_;
   bool given_ = false;
 };

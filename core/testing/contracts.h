@@ -33,7 +33,7 @@ void check_rows(const std::filesystem::path& scene, const std::string& element, 
 /// Of models with a damping of their own: damping = minus force gradient by velocity to 1e-6, symmetric, without negative
 /// eigenvalues, and the force takes energy out.
 void check_force_model(const std::filesystem::path& scene, const std::string& element);
-/// A rigid body that is no instrument (a clip): H of a point of any link is the derivative of its position, and its
+/// A rigid body that is no instrument: H of a point of any link is the derivative of its position, and its
 /// rows hold the contract of rows.
 void check_rigid_body(const std::filesystem::path& scene, const std::string& element);
 /// Holds at least one node, holds it to the bit, leaves others free, and lets no node go that another support holds.

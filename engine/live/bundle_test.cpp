@@ -178,7 +178,7 @@ TEST_F(BundleOfAScene, AHandHasAllItsToolsAndAnArmNone) {
 TEST_F(BundleOfAScene, TellsOfVesselsAndArticulatedTools) {
   const std::filesystem::path source = INSULA_SOURCE_DIR;
   simulation_ = test::load_text(R"(<scene>
-  <shell_body id="artery" vessel="../../meshes/arteries/narrow_neck/vessel.json"><fixed/>
+  <shell_body id="artery" wall="../../meshes/arteries/narrow_neck/vessel.json"><fixed/>
     <surface id="wall" material="vessel"/>
     <surface id="picture" mesh="../../meshes/arteries/narrow_neck/picture.ply" mesh_unit="mm" material="vessel" contact="false"/></shell_body>
   <retractor id="clip" hand="right" model="../../meshes/clips/straight/straight.urdf" home="0 0 90 mm" shaft="0 0 1" flat="1 0 0"/>

@@ -104,7 +104,7 @@ TEST(AnchorSprings, ShareAPlacesTimeConstantWithTheWall) {
 
 TEST(AnchorSprings, HoldTheirRegionsOnly) {
   const auto model = [] {
-    VesselModel v;
+    WallModel v;
     v.wall = test::plate(side, side, 4, 4, test::Cut::one_way);
     v.regions = {"parent", "sac"};
     for (const Vec3& x : v.wall.vertices) v.vertex_region.push_back(x.x() > 0.51 * side);

@@ -45,7 +45,7 @@ struct Field : test::TestScene {
     folder.write("meshes/knife/tool.json", test::test_tool_json(0.0005, 0));
     load(fmt::format(R"(<scene time_step="10 ms"><solver tolerance="1e-12 m" max_sweeps="1000"/>
   <bleeding id="b" on="artery" flow="flow" origin="0 0 -20 mm" {}/>
-  <shell_body id="artery" vessel="meshes/vessel.json"><test_wall stiffness="200 N/m"/><surface id="wall"/></shell_body>
+  <shell_body id="artery" wall="meshes/vessel.json"><test_wall stiffness="200 N/m"/><surface id="wall"/></shell_body>
   <blood_flow id="flow" pressure="p"/><pressure id="p" on="artery" {} chambers="parent; superior; sac bleb"/>{}</scene>)", attributes, pressure, extra));
     if (!s) return;
     flow = &get<BloodFlow>("flow");
@@ -234,7 +234,7 @@ TEST(Bleeding, SaysWhatIsWrong) {
   test::TestVessel v;
   v.add_tube("parent", "inlet", "outlet", Vec3::Zero(), 0.0014, 0.014);
   v.write(two.folder);
-  two.load(R"(<scene><shell_body id="a" vessel="meshes/vessel.json"><test_wall/></shell_body><shell_body id="c" vessel="meshes/vessel.json"><test_wall/></shell_body>
+  two.load(R"(<scene><shell_body id="a" wall="meshes/vessel.json"><test_wall/></shell_body><shell_body id="c" wall="meshes/vessel.json"><test_wall/></shell_body>
   <pressure id="p" on="a"/><blood_flow id="f" pressure="p"/><bleeding on="c" flow="f" region="parent" origin="0 0 0 mm"/></scene>)");
   EXPECT_NE(two.messages.find("is the blood of \"a\", not of \"c\""), std::string::npos) << two.messages;
 }

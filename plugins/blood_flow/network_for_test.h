@@ -17,7 +17,7 @@ struct Vessel : TestScene {
     v.write(folder);
     // The network first: the order of elements does not matter.
     load(fmt::format(R"(<scene time_step="10 ms"><solver tolerance="1e-14 m" max_sweeps="2000"/>
-  <shell_body id="artery" vessel="meshes/vessel.json"><test_wall stiffness="2000 N/m"/></shell_body>
+  <shell_body id="artery" wall="meshes/vessel.json"><test_wall stiffness="2000 N/m"/></shell_body>
   <blood_flow id="flow" pressure="p" {}/><pressure id="p" on="artery" {}/></scene>)", flow_attributes, pressure_attributes));
     if (!s) return;
     pressure = &get<BloodPressure>("p");

@@ -10,7 +10,7 @@
 
 namespace insula {
 
-int VesselGraph::node(const std::string& name, const Vec3& place, const VesselModel& model) {
+int VesselGraph::node(const std::string& name, const Vec3& place, const WallModel& model) {
   for (std::size_t i = 0; i < nodes.size(); ++i)
     if (nodes[i].name == name) return int(i);
   Node n{name, place, -1};
@@ -20,7 +20,7 @@ int VesselGraph::node(const std::string& name, const Vec3& place, const VesselMo
   return int(nodes.size()) - 1;
 }
 
-void VesselGraph::add_stations(Stretch& s, const VesselModel::Centreline& line, const std::vector<Vec3>& vertices,
+void VesselGraph::add_stations(Stretch& s, const WallModel::Centreline& line, const std::vector<Vec3>& vertices,
                                const std::vector<std::array<int, 3>>& wall, double thickness, double spacing) {
   std::vector<double> along{0};
   for (std::size_t i = 1; i < line.points.size(); ++i) along.push_back(along.back() + (line.points[i] - line.points[i - 1]).norm());
@@ -96,7 +96,7 @@ std::string VesselGraph::join_parts() {
   }
 }
 
-std::string VesselGraph::build(const VesselModel& model, const std::vector<std::array<int, 3>>& wall, double thickness, double spacing) {
+std::string VesselGraph::build(const WallModel& model, const std::vector<std::array<int, 3>>& wall, double thickness, double spacing) {
   nodes.clear();
   stretches.clear();
   branches.clear();
@@ -120,7 +120,7 @@ std::string VesselGraph::build(const VesselModel& model, const std::vector<std::
   const auto loose = [&](int n) { return uses[std::size_t(n)] == 1 && nodes[std::size_t(n)].cap < 0; };
   for (std::size_t i = 0; i < stretches.size(); ++i) {
     Stretch& s = stretches[i];
-    VesselModel::Centreline line = model.centrelines[i];
+    WallModel::Centreline line = model.centrelines[i];
     if (loose(s.from) && !loose(s.to)) {  // a dead end leads away from the vessel
       std::swap(s.from, s.to);
       std::reverse(line.points.begin(), line.points.end());

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/model/vessel_model.h"
+#include "core/model/wall_model.h"
 #include "plugins/blood_flow/section.h"
 
 namespace insula {
@@ -49,14 +49,14 @@ struct VesselGraph {
 
   /// Ends that no other centreline and no cap shares become dead ends. A part without a cap is joined to the nearest
   /// junction or middle of the rest. Returns what is wrong, or an empty text.
-  std::string build(const VesselModel& model, const std::vector<std::array<int, 3>>& wall, double thickness, double spacing);
+  std::string build(const WallModel& model, const std::vector<std::array<int, 3>>& wall, double thickness, double spacing);
   /// Cross-sections and conductances on the current wall. A section below `closed_below` of its lumen at rest is
   /// closed.
   void measure(const VecX& q, double thickness, double viscosity, double closed_below);
 
  private:
-  int node(const std::string& name, const Vec3& place, const VesselModel& model);
-  void add_stations(Stretch& s, const VesselModel::Centreline& line, const std::vector<Vec3>& vertices, const std::vector<std::array<int, 3>>& wall, double thickness, double spacing);
+  int node(const std::string& name, const Vec3& place, const WallModel& model);
+  void add_stations(Stretch& s, const WallModel::Centreline& line, const std::vector<Vec3>& vertices, const std::vector<std::array<int, 3>>& wall, double thickness, double spacing);
   std::string join_parts();
 };
 

@@ -48,7 +48,7 @@ class ClippingRules : public ::testing::Test {
     in_field = &s->scene().find_as<FakeClip>("fake")->state;
     artery = s->scene().find_as<ShellBody>("artery");
     ASSERT_TRUE(artery);
-    const VesselModel& m = artery->model();
+    const WallModel& m = artery->model();
     up = m.neck_normal;
     centre = m.neck_centre;
     across = up.unitOrthogonal();

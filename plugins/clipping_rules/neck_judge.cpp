@@ -20,7 +20,7 @@ double distance_to_segment(const Vec3& x, const Vec3& a, const Vec3& b) {
 
 bool NeckJudge::attach(const ShellBody& vessel) {
   vessel_ = &vessel;
-  const VesselModel& m = vessel.model();
+  const WallModel& m = vessel.model();
   const int sac = vessel.region("sac"), bleb = vessel.region("bleb"), neck = vessel.region("neck");
   if (!(m.neck_diameter > 0) || sac < 0) return false;
   up_ = m.neck_normal;

@@ -79,8 +79,8 @@ TEST(Membrane, MassIsDensityTimesThicknessTimesAreaAndWhatIsAdded) {
 }
 
 /// A strip whose right half is the region "sac".
-VesselModel two_regions() {
-  VesselModel model;
+WallModel two_regions() {
+  WallModel model;
   model.wall = test::plate(0.04, 0.01, 8, 2, Cut::one_way);
   model.regions = {"parent", "sac"};
   for (const Vec3& x : model.wall.vertices) model.vertex_region.push_back(x.x() > 0.0201);

@@ -141,7 +141,7 @@ TEST(Bending, StepOfThicknessBendsAsItsParts) {
   double last = 1;
   for (const int along : {12, 24, 48}) {
     const double cell = length / (along - 0.5);
-    VesselModel model;
+    WallModel model;
     model.wall = test::plate(length + 0.5 * cell, width, along, 4, Cut::one_way);
     model.regions = {"root", "tip"};
     for (Vec3& x : model.wall.vertices) x.x() -= 0.5 * cell;

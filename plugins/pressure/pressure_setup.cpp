@@ -22,7 +22,7 @@ std::vector<std::string> words(std::string_view text) {
 }  // namespace
 
 bool BloodPressure::read_groups(PrepareContext& context, std::vector<std::vector<std::string>>& groups) const {
-  const VesselModel& model = on->model();
+  const WallModel& model = on->model();
   if (regions().find_first_not_of(" \t\r\n") == std::string::npos) {
     // A region with a centreline is a stretch of vessel (or the sac); what has none belongs to its neighbours.
     for (const std::string& r : model.regions)

@@ -61,7 +61,7 @@ struct Sphere : test::TestScene {
 
 TEST(Chambers, AddUpAndAreClosedEachForItself) {
   ShellBody body;
-  VesselModel model;
+  WallModel model;
   model.wall = test::ball(Vec3(0.04, -0.01, 0.02), 0.004, 3);
   model.regions = {"a", "b", "c", "between"};
   for (const Vec3& x : model.wall.vertices) {  // three sectors that meet at the poles, and a belt that belongs to none
@@ -192,7 +192,7 @@ struct Pair : test::TestScene {
     v.add_tube("two", "middle", "outlet", Vec3(0.01, 0, 0), 0.0015, 0.012);
     v.write(folder);
     load(R"(<scene time_step="10 ms"><solver tolerance="1e-15 m" max_sweeps="2000"/>
-  <shell_body id="artery" vessel="meshes/vessel.json"><test_wall stiffness="20 N/m"/></shell_body>
+  <shell_body id="artery" wall="meshes/vessel.json"><test_wall stiffness="20 N/m"/></shell_body>
   <pressure id="p" on="artery"/></scene>)");
     if (!s) return;
     pressure = &get<BloodPressure>("p");

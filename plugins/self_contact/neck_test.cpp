@@ -18,7 +18,7 @@ namespace {
 // The wall of scenes/parts/artery.xml under a pressure that does not pulsate; the clip closes across the neck as slowly as an applier lets
 // it: one that snaps shut within two steps is thrown off.
 const char* const scene = R"(<scene time_step="16.6667 ms"><solver max_sweeps="150" tolerance="1e-7 m" conjugate="true"/>
-<shell_body id="artery" tangent_tolerance="0.1" vessel="../../meshes/arteries/anterior_superior/vessel.json">
+<shell_body id="artery" tangent_tolerance="0.1" wall="../../meshes/arteries/anterior_superior/vessel.json">
 <membrane regions="parent superior inferior ends" thickness="0.3 mm" young="1.5 MPa" added_mass="1 kg/m2"/>
 <membrane regions="neck" thickness="0.25 mm" young="1.2 MPa" added_mass="1 kg/m2"/>
 <membrane regions="sac" thickness="0.2 mm" young="1.05 MPa" added_mass="1 kg/m2"/>

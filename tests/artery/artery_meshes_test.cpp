@@ -12,7 +12,7 @@
 
 #include "core/model/geometry/box_tree.h"
 #include "core/model/geometry/triangle_distance.h"
-#include "core/model/vessel_model.h"
+#include "core/model/wall_model.h"
 
 namespace insula {
 namespace {
@@ -107,7 +107,7 @@ double section(const TriMesh& m, const Vec3& point, const Vec3& n) {
 class Artery : public testing::TestWithParam<const char*> {
  protected:
   void SetUp() override {
-    vessel = read_vessel(source / "meshes/arteries" / GetParam() / "vessel.json");
+    vessel = read_wall(source / "meshes/arteries" / GetParam() / "vessel.json");
     std::ifstream in(source / "tools/artery/arteries.json");
     const Json all = Json::parse(in);
     for (const Json& c : all["cases"])
@@ -120,7 +120,7 @@ class Artery : public testing::TestWithParam<const char*> {
       if (vessel.vertex_region[v] == vessel.region(name)) out.push_back(v);
     return out;
   }
-  VesselModel vessel;  // read_vessel has checked that it is closed and outward
+  WallModel vessel;  // read_wall has checked that it is closed and outward
   Json table;
 };
 

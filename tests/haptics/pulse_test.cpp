@@ -17,7 +17,7 @@ std::vector<double> on_the_dome(double rate_per_min, const ServoSettings& settin
   const Vec3 home = 1000 * (top + 0.1e-3 * out);
   char text[1500];
   std::snprintf(text, sizeof text, R"(<scene title="pulse">
-    <shell_body id="artery" vessel="meshes/arteries/narrow_neck/vessel.json">
+    <shell_body id="artery" wall="meshes/arteries/narrow_neck/vessel.json">
       <membrane thickness="0.3 mm" young="1 MPa"/>
       <anchor_springs stiffness="2000000 N/m3"/>
       <surface id="wall" material="vessel"/>

@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "core/base/input_error.h"
-#include "core/model/vessel_model.h"
+#include "core/model/wall_model.h"
 #include "import_parts.h"
 
 namespace insula::artery {
@@ -144,7 +144,7 @@ TEST_P(RealSurface, BecomesAVesselThatTheProductReads) {
   EXPECT_TRUE(v.neck.has_value());
   const TempFolder folder;
   write_vessel(v, folder.path());
-  const VesselModel read = read_vessel(folder.path() / "vessel.json");
+  const WallModel read = read_wall(folder.path() / "vessel.json");
   EXPECT_EQ(read.wall.vertices.size(), v.wall.mesh.vertices.size());
   EXPECT_EQ(read.caps.size(), GetParam().caps);
   for (const char* region : {"parent", "neck", "sac", "ends"}) EXPECT_GE(read.region(region), 0) << region;

@@ -26,7 +26,7 @@ class RealVessel : public testing::TestWithParam<const char*> {
     vessel = import_surface(read_surface(file, 1.0), {});
     write_vessel(vessel, folder.path() / "meshes");
     Vec3 low = Vec3::Constant(1e9), high = -low;
-    const VesselModel read = read_vessel(folder.path() / "meshes" / "vessel.json");
+    const WallModel read = read_wall(folder.path() / "meshes" / "vessel.json");
     for (const Vec3& x : read.wall.vertices) {
       low = low.cwiseMin(x);
       high = high.cwiseMax(x);
@@ -40,7 +40,7 @@ class RealVessel : public testing::TestWithParam<const char*> {
       walls += fmt::format(R"(<membrane regions="{}" thickness="{} mm" young="1.2 MPa" added_mass="1 kg/m2"/>)", region, sac ? 0.2 : 0.3);
       if (!sac && region != "neck") tethered += (tethered.empty() ? "" : " ") + region;
     }
-    return test::load_text(fmt::format(R"(<scene time_step="16.6667 ms"><shell_body id="artery" vessel="meshes/vessel.json">{}
+    return test::load_text(fmt::format(R"(<scene time_step="16.6667 ms"><shell_body id="artery" wall="meshes/vessel.json">{}
 <anchor_springs regions="{}" stiffness="1 kPa/mm"/></shell_body>
 <pressure id="heart" on="artery" systolic="{} mmHg" diastolic="{} mmHg"/></scene>)", walls, tethered, systolic, diastolic),
                            folder.path() / "scene.xml");

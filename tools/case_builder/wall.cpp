@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "core/base/input_error.h"
-#include "core/model/vessel_model.h"
+#include "core/model/wall_model.h"
 #include "tools/artery/import_parts.h"
 #include "tools/case_builder/intake.h"
 #include "tools/case_builder/mirror.h"
@@ -149,7 +149,7 @@ void run_wall(const CaseFolder& folder, const Options& o, Progress& progress) {
 }
 
 Vessel read_wall(const fs::path& folder) {
-  const VesselModel m = read_vessel(folder / "vessel.json");
+  const WallModel m = read_wall(folder / "vessel.json");
   Vessel v;
   v.wall.mesh = m.wall;
   for (Vec3& p : v.wall.mesh.vertices) p *= 1000;

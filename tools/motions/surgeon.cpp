@@ -78,7 +78,7 @@ int Surgeon::divide(const Pace& pace, const std::function<void(const Sweep&, int
 }
 
 Vec3 Surgeon::middle_of(const std::string& region) const {
-  const VesselModel& m = artery_->model();
+  const WallModel& m = artery_->model();
   Vec3 sum = Vec3::Zero();
   int n = 0;
   for (int v = 0; v < artery_->nodes(); ++v)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Reads vessel.json and wall.ply.
-#include "core/model/vessel_model.h"
+#include "core/model/wall_model.h"
 
 #include <algorithm>
 #include <cmath>
@@ -118,7 +118,7 @@ class VesselReader {
  public:
   explicit VesselReader(const std::filesystem::path& file) : file_(file) {}
 
-  VesselModel read() {
+  WallModel read() {
     Json json;
     try {
       json = Json::parse(read_file_bytes(file_, 1u << 26));
@@ -195,7 +195,7 @@ class VesselReader {
     std::set<std::string> seen;
     std::set<int> taken;
     for (const Json& json : caps) {
-      VesselModel::Cap cap;
+      WallModel::Cap cap;
       cap.name = text(member(json, "name", "a cap's "), "a cap's name");
       new_name(seen, cap.name, "caps");
       const std::string what = "cap " + in_quotes(cap.name);
@@ -213,7 +213,7 @@ class VesselReader {
   void read_centrelines(const Json& lines) {
     std::set<std::string> seen;
     for (const Json& json : lines) {
-      VesselModel::Centreline line;
+      WallModel::Centreline line;
       line.name = text(member(json, "name", "a centreline's "), "a centreline's name");
       new_name(seen, line.name, "centrelines");
       const std::string what = "centreline " + in_quotes(line.name) + ": ";
@@ -245,16 +245,16 @@ class VesselReader {
   }
 
   std::filesystem::path file_;
-  VesselModel out_;
+  WallModel out_;
 };
 
 }  // namespace
 
-int VesselModel::region(const std::string& name) const {
+int WallModel::region(const std::string& name) const {
   const auto at = std::find(regions.begin(), regions.end(), name);
   return at == regions.end() ? -1 : int(at - regions.begin());
 }
 
-VesselModel read_vessel(const std::filesystem::path& json_file) { return VesselReader(json_file).read(); }
+WallModel read_wall(const std::filesystem::path& json_file) { return VesselReader(json_file).read(); }
 
 }  // namespace insula

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A vessel for simulation: its closed wall with named regions, caps and centrelines, as tools/artery writes it.
+// A closed wall for simulation, with named regions, caps and centrelines, as tools/artery writes it.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -10,7 +10,7 @@
 namespace insula {
 
 /// Lengths in metres, positions in the frame of the files.
-struct VesselModel {
+struct WallModel {
   struct Cap {
     std::string name;
     std::vector<int> triangles;  ///< of the wall, ascending
@@ -29,7 +29,7 @@ struct VesselModel {
   std::vector<Cap> caps;
   std::vector<Centreline> centrelines;
 
-  bool has_neck = false;           ///< a vessel without an aneurysm has none
+  bool has_neck = false;           ///< not every wall has one
   Vec3 neck_centre = Vec3::Zero(), neck_normal = Vec3::UnitZ();  ///< unit, towards the dome
   double neck_diameter = 0;
   double dome_height = 0;          ///< over the neck's plane; 0 without a neck
@@ -40,8 +40,8 @@ struct VesselModel {
   int region(const std::string& name) const;
 };
 
-/// Reads vessel.json and the wall.ply beside it. Throws InputError: unreadable, malformed, wrong unit, sizes that do
+/// Reads the JSON file and the wall.ply beside it. Throws InputError: unreadable, malformed, wrong unit, sizes that do
 /// not match one another, indices out of range, names used twice, not finite, a wall that is open or turned inside out.
-VesselModel read_vessel(const std::filesystem::path& json_file);
+WallModel read_wall(const std::filesystem::path& json_file);
 
 }  // namespace insula

@@ -7,7 +7,7 @@
 
 #include "core/base/input_error.h"
 #include "core/model/formats/mesh_files_for_test.h"
-#include "core/model/vessel_model.h"
+#include "core/model/wall_model.h"
 
 namespace insula {
 namespace {
@@ -29,14 +29,14 @@ Json good() {
     "bleb": {"centre": [0, 0, 5], "radius": 0.7}})");
 }
 
-VesselModel read(const Json& json, const std::string& ply = header + vertices + faces) {
+WallModel read(const Json& json, const std::string& ply = header + vertices + faces) {
   const test_files::TempFolder folder;
   folder.write("wall.ply", ply);
-  return read_vessel(folder.write("vessel.json", json.dump()));
+  return read_wall(folder.write("vessel.json", json.dump()));
 }
 
-TEST(VesselModel, EverythingIsReadInMetres) {
-  const VesselModel v = read(good());
+TEST(WallModel, EverythingIsReadInMetres) {
+  const WallModel v = read(good());
   ASSERT_EQ(v.wall.vertices.size(), 4u);
   EXPECT_EQ(v.wall.vertices[2], Vec3(0, 2e-3, 0));
   ASSERT_EQ(v.wall.triangles.size(), 4u);
@@ -63,17 +63,17 @@ TEST(VesselModel, EverythingIsReadInMetres) {
   EXPECT_NEAR(v.bleb_centre.z(), 5e-3, 1e-15);
 }
 
-TEST(VesselModel, NeckAndBlebMayBeAbsent) {
+TEST(WallModel, NeckAndBlebMayBeAbsent) {
   Json json = good();
   json.erase("neck"), json.erase("bleb"), json.erase("dome_height");
-  const VesselModel v = read(json);
+  const WallModel v = read(json);
   EXPECT_FALSE(v.has_neck);
   EXPECT_EQ(v.bleb_radius, 0);
 }
 
-TEST(VesselModel, VerticesKeepTheirNumbers) {
+TEST(WallModel, VerticesKeepTheirNumbers) {
   // The first triangle uses vertex 3 first; a reader that renumbers by use would show.
-  const VesselModel v = read(good(), header + "0 0 2\n0 0 0\n2 0 0\n0 2 0\n" + "3 3 2 1\n3 1 2 0\n3 1 0 3\n3 2 3 0\n");
+  const WallModel v = read(good(), header + "0 0 2\n0 0 0\n2 0 0\n0 2 0\n" + "3 3 2 1\n3 1 2 0\n3 1 0 3\n3 2 3 0\n");
   EXPECT_EQ(v.wall.vertices[0], Vec3(0, 0, 2e-3));
   EXPECT_EQ(v.wall.triangles[0], (std::array{3, 2, 1}));
 }
@@ -173,15 +173,15 @@ INSTANTIATE_TEST_SUITE_P(
                     BadWall{"edges", changed(whole, "end_header", "element edge 0\nproperty int a\nend_header"), "nothing else"}),
     [](const auto& test) { return std::string(test.param.name); });
 
-TEST(VesselModel, MissingFilesAndBrokenJsonAreNamed) {
+TEST(WallModel, MissingFilesAndBrokenJsonAreNamed) {
   const test_files::TempFolder folder;
-  EXPECT_THROW(read_vessel(folder.path() / "vessel.json"), InputError);
+  EXPECT_THROW(read_wall(folder.path() / "vessel.json"), InputError);
   const auto file = folder.write("vessel.json", good().dump());
-  EXPECT_THROW(read_vessel(file), InputError);  // no wall
+  EXPECT_THROW(read_wall(file), InputError);  // no wall
   folder.write("wall.ply", whole);
-  EXPECT_NO_THROW(read_vessel(file));
+  EXPECT_NO_THROW(read_wall(file));
   folder.write("vessel.json", good().dump().substr(0, 100));
-  EXPECT_THROW(read_vessel(file), InputError);
+  EXPECT_THROW(read_wall(file), InputError);
 }
 
 }  // namespace
