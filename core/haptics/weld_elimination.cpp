@@ -71,7 +71,7 @@ int first_weld_row(const ConstraintProblem& p, std::size_t tool) {
 }
 
 WeldElimination::WeldElimination(int max_rows) {
-  for (auto* rows : {&grasped_, &tool_, &both_}) rows->assign(std::size_t(max_rows), Vec6::Zero());
+  for (auto* rows : {&body_, &tool_, &both_}) rows->assign(std::size_t(max_rows), Vec6::Zero());
   for (ConstraintProblem& p : reduced_) {
     p.resize(max_rows);
     p.blocks.reserve(std::size_t(max_rows));
@@ -137,9 +137,9 @@ bool WeldElimination::reduce(const ConstraintProblem& from, std::size_t tool, in
   for (int i = 0; i < n; ++i) {
     const int s = i < first ? i : i + weld_rows;
     const std::size_t d = std::size_t(i);
-    for (int k = 0; k < 6; ++k) grasped_[d][k] = from.w_at(s, first + k) - w_tools(from, s, first + k);
+    for (int k = 0; k < 6; ++k) body_[d][k] = from.w_at(s, first + k) - w_tools(from, s, first + k);
     tool_[d] = t.jacobian.row(s).transpose();
-    const Vec6 share = p * grasped_[d];  // of the clip's way, by its six rows
+    const Vec6 share = p * body_[d];  // of the clip's way, by its six rows
     both_[d] = tool_[d] - h_joint.transpose() * share;
     now.jacobian.row(i) = both_[d].transpose();
     to.rate[d] -= share.dot(rate_joint);
@@ -147,12 +147,12 @@ bool WeldElimination::reduce(const ConstraintProblem& from, std::size_t tool, in
   }
   for (int i = 0; i < n; ++i) {
     const int s = i < first ? i : i + weld_rows;
-    const Vec6 by_tool = t.compliance * tool_[std::size_t(i)], by_clip = p * grasped_[std::size_t(i)], by_both = give * both_[std::size_t(i)];
+    const Vec6 by_tool = t.compliance * tool_[std::size_t(i)], by_clip = p * body_[std::size_t(i)], by_both = give * both_[std::size_t(i)];
     double delta = from.delta_free[std::size_t(s)], delta_now = 0;
     for (int j = 0; j < from.rows; ++j) delta += from.w_at(s, j) * from.lambda[std::size_t(j)];
     for (int j = 0; j < n; ++j) {
       const std::size_t c = std::size_t(j);
-      double w = from.w_at(s, j < first ? j : j + weld_rows) - by_tool.dot(tool_[c]) - by_clip.dot(grasped_[c]);
+      double w = from.w_at(s, j < first ? j : j + weld_rows) - by_tool.dot(tool_[c]) - by_clip.dot(body_[c]);
       w += by_both.dot(both_[c]);
       to.w[std::size_t(i) * std::size_t(to.stride) + c] = w;
       delta_now += w * to.lambda[c];

@@ -42,7 +42,7 @@ class WeldElimination {
 
   std::array<ConstraintProblem, 2> reduced_;
   Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor> spare_;  ///< memory of the second tool's Jacobian while there is none
-  std::vector<Vec6> grasped_, tool_, both_;  ///< by row: B, H, H'
+  std::vector<Vec6> body_, tool_, both_;  ///< by row: B, H, H'
   std::array<GraspedBody, 2> grasped_;
 };
 
