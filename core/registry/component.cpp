@@ -31,6 +31,12 @@ ParamBase* Component::find_param(std::string_view name) const {
   return nullptr;
 }
 
+const ParamBase* Component::find_renamed_param(std::string_view former_name) const {
+  for (const ParamBase* p : params_)
+    if (!former_name.empty() && p->spec().formerly == former_name) return p;
+  return nullptr;
+}
+
 void Component::error(PrepareContext& context, std::string text) const { context.diagnostics.error(pos, std::move(text)); }
 
 void Component::error(PrepareContext& context, const ParamBase& param, std::string text) const {

@@ -56,6 +56,8 @@ class Component {
 
   const std::vector<ParamBase*>& params() const { return params_; }  ///< in order of declaration
   ParamBase* find_param(std::string_view name) const;
+  /// The parameter that had this name in older scenes (ParamSpec::formerly); null when there is none.
+  const ParamBase* find_renamed_param(std::string_view former_name) const;
 
   std::string id;        ///< as written, or the element name with its ordinal when none was given ("contact#1")
   std::string element;   ///< element name
