@@ -16,7 +16,7 @@ class ShellBody final : public DeformableBody {
  public:
   static constexpr std::string_view kind_name = "shell_body";  ///< in messages about references to one
 
-  Param<File> wall{this, {.name = "wall", .fallback = "", .doc = "JSON file: wall surface with its regions, caps and centrelines"}};
+  Param<File> wall{this, {.name = "wall", .formerly = "vessel", .fallback = "", .doc = "JSON file: wall surface with its regions, caps and centrelines"}};
   Param<File> mesh{this, {.name = "mesh", .fallback = "", .doc = "plain surface file instead of that"}};
   Param<LengthUnit> mesh_unit{this, {.name = "mesh_unit", .fallback = "mm", .doc = "unit of length of the surface file"}};
 

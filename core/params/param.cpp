@@ -51,6 +51,12 @@ ParamBase* ParamSet::find_param(std::string_view name) const {
   return nullptr;
 }
 
+const ParamBase* ParamSet::find_renamed_param(std::string_view former_name) const {
+  for (const ParamBase* p : params_)
+    if (!former_name.empty() && p->spec().formerly == former_name) return p;
+  return nullptr;
+}
+
 ParamBase::ParamBase(ParamSet* owner, ParamSpec spec) : spec_(std::move(spec)) {
   if (spec_.name.empty() || spec_.name == "id") bad_declaration(spec_.name, "it needs a name other than \"id\"");
   if (!owner) bad_declaration(spec_.name, "it has no owner");

@@ -30,6 +30,7 @@ struct ParamSpec {
   std::string_view max = {};
   std::vector<std::string_view> choices = {};  ///< for Param<Choice>
   std::string_view doc;                        ///< one line
+  std::string_view formerly = {};              ///< its name in older scenes; whoever still writes that is told the new one
 };
 
 /// Base of every parameter: what list, describe, schema and docs read.

@@ -18,6 +18,8 @@ class ParamSet {
   const std::vector<ParamBase*>& params() const { return params_; }  ///< in order of declaration
   /// The parameter of that name; null when there is none.
   ParamBase* find_param(std::string_view name) const;
+  /// The parameter that had this name in older scenes (ParamSpec::formerly); null when there is none.
+  const ParamBase* find_renamed_param(std::string_view former_name) const;
 
  private:
   friend class ParamBase;

@@ -174,6 +174,11 @@ void SceneBuilder::read_params(const Element& element, Component& component) {
   for (const auto& a : element.attributes) {
     if (a.name == "id") continue;
     ParamBase* p = component.find_param(a.name);
+    if (const ParamBase* renamed = p ? nullptr : component.find_renamed_param(a.name)) {
+      report(component, a.name_pos, in_quotes(a.name) + " is now called " + in_quotes(renamed->name()));
+      suggested.push_back(renamed->name());
+      continue;
+    }
     if (!p) {
       const std::string near = tree_.suggestions.afford(names.size()) ? nearest_name(a.name, names) : "";
       std::string text = "<" + component.element + "> has no parameter " + in_quotes(a.name);

@@ -47,7 +47,7 @@ struct PressureConstraint : Noting<0> {
   Param<Pressure> diastolic{this, {.name = "diastolic", .doc = "lowest pressure"}};
 };
 struct Clip : Noting<0> {
-  Param<Force> closing_force{this, {.name = "closing_force", .fallback = "1 N", .min = "0.1 N", .max = "5 N", .doc = "force"}};
+  Param<Force> closing_force{this, {.name = "closing_force", .fallback = "1 N", .min = "0.1 N", .max = "5 N", .doc = "force", .formerly = "spring"}};
 };
 struct Thrower : Component {
   void prepare(PrepareContext&) override { throw std::runtime_error("something inside gave way"); }
@@ -173,6 +173,7 @@ TEST_F(Loader, Parameters) {
             "s.xml:1:15: error: <goo> needs parameter \"young\" (pressure: Young's modulus)\n");
   EXPECT_EQ(errors("<scene><clip force_of_nature=\"1\"/></scene>"),
             "s.xml:1:14: error: <clip> has no parameter \"force_of_nature\" (it has: closing_force)\n");
+  EXPECT_EQ(errors("<scene><clip spring=\"2 N\"/></scene>"), "s.xml:1:14: error: \"spring\" is now called \"closing_force\"\n");
   EXPECT_EQ(errors("<scene><tuning x=\"1\"/></scene>"), "s.xml:1:16: error: <tuning> has no parameter \"x\"; it has none\n");
   EXPECT_EQ(errors("<scene time_step=\"1 s\"/>"),
             "s.xml:1:19: error: time_step: 1 s is outside the allowed range 0.001 s to 0.05 s\n");

@@ -31,7 +31,7 @@ open):
     d strength / dt = ln(1 - weakening) / 600 s * (o / widest) * strength    while an applier holds it open.
 
 A real clip weighs 0.1 g. At a step of 1/60 s this inertia is a hundred times more compliant than a vessel's wall, and
-the solver would converge very slowly. `inertial_mass` therefore replaces the mass in the inertial terms, and `gyration`
+the solver would converge very slowly. `added_mass` therefore replaces the mass in the inertial terms, and `gyration`
 adds moments of inertia. Contact normals and levers are constant over a step. A clip that turns more easily than J/h^2
 = closing force times its length would be thrown off by its own grip. The inertial force must only stay small beside
 the closing force. The weight is the true one. Linear and angular momentum about the centre of mass are conserved
@@ -206,9 +206,9 @@ double Clip::energy() const {
   if (!active()) return 0;
   const double r = data_.reference;
   const double spring = strength_ * 2 * r * (closing() * opening_ + slope() * 2 * r * (1 - std::cos(opening_)));
-  const double turn = inertial_mass() * r * r / 3 * turn_rate_ * turn_rate_;
+  const double turn = added_mass() * r * r / 3 * turn_rate_ * turn_rate_;
   const double rotation = moments_.isZero(0) ? 0 : spin_.dot(moments_.ldlt().solve(spin_));
-  return spring + 0.5 * (inertial_mass() * velocity_.squaredNorm() + rotation + turn);
+  return spring + 0.5 * (added_mass() * velocity_.squaredNorm() + rotation + turn);
 }
 
 void Clip::append_state(std::vector<double>& out) const {

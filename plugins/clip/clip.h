@@ -28,7 +28,7 @@ class Clip final : public RigidBody, public ClipSource, public StatesLaw {
   Param<Force> closing_force{this, {.name = "closing_force", .fallback = "0 N", .min = "0 N", .max = "20 N", .doc = "between the closed blades at their middle; 0: as the model says"}};
   Param<Stiffness> force_slope{this, {.name = "force_slope", .fallback = "0 N/m", .min = "0 N/m", .max = "10 kN/m", .doc = "rise of that force with the gap between the blades there; 0: as the model says"}};
   Param<Scalar> weakening{this, {.name = "weakening", .fallback = "0.22", .min = "0", .max = "0.9", .doc = "part of the force lost in ten minutes of being held fully open"}};
-  Param<Mass> inertial_mass{this, {.name = "inertial_mass", .fallback = "30 g", .min = "0.01 g", .max = "1 kg", .doc = "mass that resists acceleration, larger than the true one for the solver's sake; weight is that of the model"}};
+  Param<Mass> added_mass{this, {.name = "added_mass", .fallback = "30 g", .min = "0.01 g", .max = "1 kg", .doc = "mass that resists acceleration, larger than the true one for the solver's sake; weight is that of the model", .formerly = "inertia"}};
   Param<Length> gyration{this, {.name = "gyration", .fallback = "20 mm", .min = "0 mm", .max = "100 mm", .doc = "radius at which that mass stands against being turned, in addition to the clip's own shape"}};
   Param<Duration> hinge_time{this, {.name = "hinge_time", .fallback = "30 ms", .min = "0 ms", .max = "1 s", .doc = "damping of the hinge over the spring's stiffness"}};
   Param<Duration> closing_time{this, {.name = "closing_time", .fallback = "0.3 s", .min = "0 s", .max = "5 s", .doc = "from fully open to shut at the fastest"}};
@@ -56,7 +56,7 @@ class Clip final : public RigidBody, public ClipSource, public StatesLaw {
   bool touched() const { return touched_; }           ///< something but its applier pushed it in the last step
   bool in_field() const { return !holder_ && in_field_; }  ///< let go
   ClipApplier* holder() const { return holder_; }
-  Vec3 momentum() const { return inertial_mass() * velocity_; }      ///< kg m/s
+  Vec3 momentum() const { return added_mass() * velocity_; }      ///< kg m/s
   const Vec3& spin() const { return spin_; }                   ///< angular momentum about the centre of mass, kg m2/s
   /// Moment of the spring that closes each jaw, N m.
   double torque(double opening) const;

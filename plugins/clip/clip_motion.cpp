@@ -12,7 +12,7 @@
 namespace insula {
 
 void Clip::free_motion(const StepContext& context) {
-  const double h = context.h, m = inertial_mass(), factor = 1 / (h * h) + drag() / h;
+  const double h = context.h, m = added_mass(), factor = 1 / (h * h) + drag() / h;
   const Mat3 r = pose_.q.toRotationMatrix();
   to_centre_ = r * tool_.centre_of_mass;
   moments_ = (m / tool_.mass) * r * tool_.inertia * r.transpose();

@@ -46,7 +46,7 @@ class CorotationalFem final : public ForceModel {
   Param<Duration> rayleigh_stiffness{this, {.name = "rayleigh_stiffness", .fallback = "20 ms", .min = "0 s", .max = "1 s", .doc = "Rayleigh damping in proportion to stiffness"}};
   Param<Choice> tangent{this, {.name = "tangent", .fallback = "rotated", .choices = {"rotated", "exact"}, .doc = "stiffness used in a step: rotated Hooke, or with the element's spin as well"}};
 
-  Param<Scalar> barrier_stretch{this, {.name = "barrier_stretch", .fallback = "0.4", .min = "0", .max = "0.9", .doc = "principal stretch below which an element stiffens; 0: only once it is inverted"}};
+  Param<Scalar> barrier_stretch{this, {.name = "barrier_stretch", .fallback = "0.4", .min = "0", .max = "0.9", .doc = "principal stretch below which an element stiffens; 0: only once it is inverted", .formerly = "barrier_stretch"}};
   Param<Scalar> stiffening{this, {.name = "stiffening", .fallback = "30", .min = "0", .max = "1000", .doc = "stiffness below that stretch, in Young's moduli; 0: none"}};
 
   void attach(PrepareContext& context, DeformableBody& body) override;

@@ -19,7 +19,7 @@ class SelfContact final : public Constraint, public StatesLaw {
   Ref<Surface> on{this, {.name = "on", .doc = "surface of the wall: its triangles are the wall's middle"}};
   Param<Length> thickness{this, {.name = "thickness", .fallback = "0.3 mm", .min = "0.01 mm", .max = "5 mm", .doc = "of the wall: two middles come no closer than this"}};
   Param<Scalar> friction{this, {.name = "friction", .fallback = "0", .min = "0", .max = "10", .doc = "Coulomb coefficient of wall on wall; 0 is frictionless and takes one row a contact instead of three"}};
-  Param<Stiffness> contact_stiffness{this, {.name = "contact_stiffness", .fallback = "0 N/m", .min = "0 N/m", .max = "1000 kN/m", .doc = "stiffness at one contact of the two walls against being pressed thinner; 0: they never are"}};
+  Param<Stiffness> contact_stiffness{this, {.name = "contact_stiffness", .fallback = "0 N/m", .min = "0 N/m", .max = "1000 kN/m", .doc = "stiffness at one contact of the two walls against being pressed thinner; 0: they never are", .formerly = "layer"}};
   Param<Length> alarm{this, {.name = "alarm", .fallback = "0.5 mm", .min = "0.01 mm", .max = "10 mm", .doc = "walls with less than this between them are in contact's care"}};
   Param<Choice> sides{this, {.name = "sides", .fallback = "inner", .choices = {"inner", "outer", "both"}, .doc = "which sides may touch: inner ones across the lumen, outer ones, both"}};
   Param<Length> spacing{this, {.name = "spacing", .fallback = "0.7 mm", .min = "0.05 mm", .max = "100 mm", .doc = "contacts are no closer than this; vertices are sampled at three quarters of it"}};

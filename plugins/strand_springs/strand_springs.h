@@ -20,11 +20,11 @@ class StrandSprings final : public Constraint, public StrandSet, public StatesLa
   Param<Length> max_length{this, {.name = "max_length", .fallback = "3 mm", .min = "0.01 mm", .max = "50 mm", .doc = "no strand is longer at rest"}};
   Param<Vec<Length>> centre{this, {.name = "centre", .fallback = "0 0 0 m", .doc = "centre of the ball that strands start in"}};
   Param<Length> radius{this, {.name = "radius", .fallback = "10 m", .min = "0.1 mm", .max = "10 m", .doc = "radius of that ball"}};
-  Param<Choice> created_at{this, {.name = "created_at", .fallback = "at_rest", .choices = {"at_rest", "settled"}, .doc = "when the strands are spun: between the surfaces at rest, or as they lie once the scene has settled"}};
+  Param<Choice> created_at{this, {.name = "created_at", .fallback = "at_rest", .choices = {"at_rest", "settled"}, .doc = "when the strands are spun: between the surfaces at rest, or as they lie once the scene has settled", .formerly = "made"}};
   Param<int> seed{this, {.name = "seed", .fallback = "1", .min = "0", .max = "2147483647", .doc = "start of the random choice"}};
   Param<Stiffness> stiffness{this, {.name = "stiffness", .fallback = "20 N/m", .min = "0.001 N/m", .max = "100000 N/m", .doc = "of a whole strand"}};
   Param<Scalar> slack{this, {.name = "slack", .fallback = "1.1", .min = "0.5", .max = "3", .doc = "length without tension over the length at the start"}};
-  Param<Choice> load_direction{this, {.name = "load_direction", .fallback = "tension", .choices = {"tension", "both"}, .doc = "a fibre carries tension only; both: a two-sided spring"}};
+  Param<Choice> load_direction{this, {.name = "load_direction", .fallback = "tension", .choices = {"tension", "both"}, .doc = "a fibre carries tension only; both: a two-sided spring", .formerly = "carries"}};
   Param<Force> cut_force{this, {.name = "cut_force", .fallback = "0.03 N", .min = "0 N", .max = "5 N", .doc = "force with which a strand resists a blade that cuts it"}};
   Param<Length> cut_length{this, {.name = "cut_length", .fallback = "1 mm", .min = "0.01 mm", .max = "50 mm", .doc = "travel of the blade through a strand that parts it"}};
   Param<Length> reach{this, {.name = "reach", .fallback = "0.5 mm", .min = "0.01 mm", .max = "5 mm", .doc = "distance at which an edge touches a strand"}};
