@@ -69,7 +69,8 @@ Json drawables_json(const BundleWriter& writer, const Simulation& simulation) {
     const std::string name = "d" + std::to_string(i);
     if (const auto* patch = dynamic_cast<const Patch*>(d)) {
       std::vector<Vec3> vertices;
-      for (std::size_t v = 0; v + 3 < patch->data().size(); v += 4) vertices.emplace_back(patch->data()[v], patch->data()[v + 1], patch->data()[v + 2]);
+      for (std::size_t v = 0; v + 3 < patch->data().size(); v += 4)
+        vertices.emplace_back(patch->data()[v], patch->data()[v + 1], patch->data()[v + 2]);
       writer.mesh(entry, name, vertices, patch->triangles());
     }
     if (const auto* links = dynamic_cast<const Links*>(d)) {
@@ -88,7 +89,11 @@ Json drawables_json(const BundleWriter& writer, const Simulation& simulation) {
 Json materials_json(const std::vector<Material>& materials) {
   Json out = Json::object();
   for (const Material& m : materials)
-    out[m.name] = {{"style", m.style}, {"rgba", m.rgba}, {"roughness", m.roughness}, {"metalness", m.metalness}, {"translucency", m.translucency}};
+    out[m.name] = {{"style", m.style},
+                   {"rgba", m.rgba},
+                   {"roughness", m.roughness},
+                   {"metalness", m.metalness},
+                   {"translucency", m.translucency}};
   return out;
 }
 

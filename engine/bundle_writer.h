@@ -18,7 +18,8 @@ class BundleWriter {
   explicit BundleWriter(const std::filesystem::path& dir) : dir_(dir) {}
 
   /// positions, indices and counts of a mesh; `name` begins its files' names.
-  void mesh(nlohmann::ordered_json& to, const std::string& name, const std::vector<Vec3>& vertices, const std::vector<std::array<int, 3>>& triangles) const {
+  void mesh(nlohmann::ordered_json& to, const std::string& name, const std::vector<Vec3>& vertices,
+            const std::vector<std::array<int, 3>>& triangles) const {
     to["vertices"] = vertices.size();
     to["triangles"] = triangles.size();
     to["positions"] = points(name + "_positions.bin", vertices);

@@ -24,8 +24,18 @@ void ChannelRecord::begin(const ChannelTable& table, std::size_t most) {
   begun_ = true;
   for (const ChannelEntry& e : table.entries()) {
     const ChannelBase& c = *e.channel;
-    Known k{e.id, e.component->id, e.group(), std::string(c.spec().name), std::string(c.quantity().si), std::string(c.display_unit()),
-            c.display_scale(), c.spec().digits, e.size(), c.spec().shown, e.offset, -1};
+    Known k{e.id,
+            e.component->id,
+            e.group(),
+            std::string(c.spec().name),
+            std::string(c.quantity().si),
+            std::string(c.display_unit()),
+            c.display_scale(),
+            c.spec().digits,
+            e.size(),
+            c.spec().shown,
+            e.offset,
+            -1};
     if (k.shown != Shown::none && k.size == 1) {
       k.curve = int(curve_offset_.size());
       curve_offset_.push_back(k.offset);
@@ -106,15 +116,18 @@ std::string ChannelRecord::html() const {
     out += fmt::format("<h2>{} at the end</h2>\n<table><thead><tr><th></th>", escaped(words(component)));
     for (const std::string& name : names) {
       const auto first = std::find_if(vital.begin(), vital.end(), [&](const Known* k) { return k->name == name; });
-      out += fmt::format("<th class=\"n\">{}{}</th>", escaped(words(name)), (*first)->display_unit.empty() ? "" : escaped(" (" + (*first)->display_unit + ")"));
+      out += fmt::format("<th class=\"n\">{}{}</th>", escaped(words(name)),
+                         (*first)->display_unit.empty() ? "" : escaped(" (" + (*first)->display_unit + ")"));
     }
     out += "</tr></thead><tbody>\n";
     for (const std::string& group : groups) {
       out += fmt::format("<tr><td>{}</td>", escaped(words(group)));
       for (const std::string& name : names) {
-        const auto at = std::find_if(vital.begin(), vital.end(), [&](const Known* k) { return k->name == name && k->group == group; });
+        const auto at = std::find_if(vital.begin(), vital.end(),
+                                     [&](const Known* k) { return k->name == name && k->group == group; });
         const double v = at == vital.end() ? std::nan("") : figures(**at).last * (*at)->scale;
-        out += std::isfinite(v) ? fmt::format("<td class=\"n\">{:.{}f}</td>", v, (*at)->digits) : "<td class=\"n\"></td>";
+        out +=
+            std::isfinite(v) ? fmt::format("<td class=\"n\">{:.{}f}</td>", v, (*at)->digits) : "<td class=\"n\"></td>";
       }
       out += "</tr>\n";
     }

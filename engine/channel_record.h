@@ -16,11 +16,11 @@ class ChannelRecord {
   struct Known {
     std::string id, component, group, name;  ///< name: without the group
     std::string unit, display_unit;
-    double scale = 1;      ///< shown number = SI value * scale
+    double scale = 1;  ///< shown number = SI value * scale
     int digits = 2, size = 1;
     Shown shown = Shown::curve;
     std::size_t offset = 0;
-    int curve = -1;        ///< its number among the curves; -1: it has none
+    int curve = -1;  ///< its number among the curves; -1: it has none
   };
   /// Of one number over all steps in which it was known.
   struct Figures {

@@ -21,12 +21,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-using insula::CommandContext;
-using insula::Duration;
-using insula::Force;
 using insula::add_motion;
 using insula::add_seed;
 using insula::add_threads;
+using insula::CommandContext;
+using insula::Duration;
+using insula::Force;
 using insula::seconds;
 
 /// What the options of all commands are read into, and the command that was chosen.
@@ -66,7 +66,8 @@ void add_scene_commands(CommandLine& c) {
 
 void add_new_plugin(CommandLine& c) {
   auto& o = c.new_plugin;
-  auto* command = c.app.add_subcommand("new-plugin", "begin a plugin: a folder with source, test, example and build file");
+  auto* command =
+      c.app.add_subcommand("new-plugin", "begin a plugin: a folder with source, test, example and build file");
   command->add_option("name", o.name, "its name, and that of its element: small letters, digits, _")->required();
   command->add_option("--kind", o.kind, "what it is: " + insula::plugin_kinds())->required();
   command->add_option("--folder", o.folder, "folder to be made (default: the name)");
@@ -77,12 +78,16 @@ void add_devices(CommandLine& c) {
   auto& o = c.devices;
   auto* command = c.app.add_subcommand("devices", "what there is for the hands, what is missing and how to get it");
   auto* show = command->add_option("--show", o.show, "this device's live pose, buttons and force, until Ctrl-C");
-  auto* calibrate = command->add_option("--calibrate", o.calibrate, "ask for this device's rest pose and axes and keep them");
+  auto* calibrate =
+      command->add_option("--calibrate", o.calibrate, "ask for this device's rest pose and axes and keep them");
   calibrate->excludes(show);
   auto* test = command->add_option("--test-force", o.test_force, "let this device push gently along each axis");
   test->excludes(show)->excludes(calibrate);
-  command->add_option("--hand", o.hand, "hand that it serves")->check(CLI::IsMember({"left", "right"}))->capture_default_str();
-  insula::add_quantity<Duration>(*command, "--duration", o.seconds, seconds("with --show: end after this time; 0: never"));
+  command->add_option("--hand", o.hand, "hand that it serves")
+      ->check(CLI::IsMember({"left", "right"}))
+      ->capture_default_str();
+  insula::add_quantity<Duration>(*command, "--duration", o.seconds,
+                                 seconds("with --show: end after this time; 0: never"));
   insula::add_quantity<Force>(*command, "--newtons", o.newtons,
                               {.bare = "N", .min = "0.1 N", .max = "3 N", .doc = "with --test-force: largest force"})
       ->default_str("1 N");
@@ -114,14 +119,16 @@ void add_engine(CommandLine& c) {
   command->add_option("scene", o.scene, "scene file")->required();
   command->add_option("--motion", o.motion, "what simulated hands follow")->capture_default_str();
   command->add_option("--bundle-dir", o.bundle_root, "folder for the viewer's scene bundles");
-  insula::add_quantity<Duration>(*command, "--duration", o.duration, seconds("end after this simulated time; 0: never"));
+  insula::add_quantity<Duration>(*command, "--duration", o.duration,
+                                 seconds("end after this simulated time; 0: never"));
   command->add_flag("--unthrottled", o.unthrottled, "as fast as the machine can, for measurements");
   add_threads(*command, o.threads);
   add_seed(*command, o.seed);
   command->add_flag("--still", o.still, "to be looked at: time never runs");
   command->add_flag("--standby", o.standby, "load, say so, and wait for SIGUSR1 before speaking on the bus");
   command->add_option("--notice", o.notice, "file whose text viewers are shown while it is not empty");
-  command->add_option("--report", o.report, "folder for reports of the session, each in a folder of its own named by date and time");
+  command->add_option("--report", o.report,
+                      "folder for reports of the session, each in a folder of its own named by date and time");
   command->add_flag("--keep-bundle", o.keep_bundle, "leave the bundle where it is at the end, for a replay");
   command->callback([&c] { c.chosen = [&](const auto& x) { return insula::cmd_engine(x, c.engine); }; });
 }
@@ -130,7 +137,9 @@ void add_replay(CommandLine& c) {
   auto& o = c.replay;
   auto* command = c.app.add_subcommand("replay", "a log of lcm-logger onto the bus, for viewers");
   command->add_option("log", o.log, "log of a session")->required();
-  command->add_option("--speed", o.speed, "times as fast as it was")->check(CLI::Range(0.01, 1000.0))->capture_default_str();
+  command->add_option("--speed", o.speed, "times as fast as it was")
+      ->check(CLI::Range(0.01, 1000.0))
+      ->capture_default_str();
   command->add_flag("--loop", o.loop, "again and again, until Ctrl-C");
   command->callback([&c] { c.chosen = [&](const auto& x) { return insula::cmd_replay(x, c.replay); }; });
 }
@@ -138,9 +147,12 @@ void add_replay(CommandLine& c) {
 /// What play and view share.
 void add_viewer_options(CLI::App& command, CommandLine& c) {
   auto& o = c.play;
-  command.add_option("--port", o.port, "port of the viewer; following ones are tried when it is busy")->capture_default_str();
-  command.add_option("--listen", o.listen, "address of the viewer; 0.0.0.0 lets other machines watch")->capture_default_str();
-  command.add_option("--host", o.hosts, "a name under which other machines' pages may ask for the viewer; may be given several times");
+  command.add_option("--port", o.port, "port of the viewer; following ones are tried when it is busy")
+      ->capture_default_str();
+  command.add_option("--listen", o.listen, "address of the viewer; 0.0.0.0 lets other machines watch")
+      ->capture_default_str();
+  command.add_option("--host", o.hosts,
+                     "a name under which other machines' pages may ask for the viewer; may be given several times");
   insula::add_quantity<Duration>(command, "--duration", o.duration_s, seconds("end after this time; 0: never"));
   command.add_flag("--no-browser", c.no_browser, "open no browser");
 }
@@ -150,14 +162,17 @@ void add_play(CommandLine& c) {
   auto* command = c.app.add_subcommand("play", "engine, haptic server and viewer together, until Ctrl-C");
   command->add_option("scene", o.scene, "scene file (default: the first training exercise)");
   command->add_option("--motion", o.motion, "what simulated hands follow: a motion of the scene, a CSV file, or none");
-  command->add_option("--left", o.left,
-                      "device of the left hand, such as touch:\"Left Device\" (see insula devices); default: the scene's, else "
-                      "simulated");
+  command->add_option(
+      "--left", o.left,
+      "device of the left hand, such as touch:\"Left Device\" (see insula devices); default: the scene's, else "
+      "simulated");
   command->add_option("--right", o.right, "device of the right hand");
   add_viewer_options(*command, c);
   add_seed(*command, o.seed);
-  command->add_option("--keep-bundle", o.keep_bundle, "folder in which the viewer's scene bundles stay, for a replay of a log");
-  command->add_option("--report", o.report, "folder for reports of the session, each in a folder of its own named by date and time");
+  command->add_option("--keep-bundle", o.keep_bundle,
+                      "folder in which the viewer's scene bundles stay, for a replay of a log");
+  command->add_option("--report", o.report,
+                      "folder for reports of the session, each in a folder of its own named by date and time");
   command->add_flag("--no-reload", c.no_reload, "do not load the scene again when one of its files is saved");
   command->callback([&c] {
     c.play.browser = !c.no_browser;
@@ -168,7 +183,8 @@ void add_play(CommandLine& c) {
 }
 
 void add_view(CommandLine& c) {
-  auto* command = c.app.add_subcommand("view", "a scene to be looked at: what is in it by name, with units and sizes; time stands still");
+  auto* command = c.app.add_subcommand(
+      "view", "a scene to be looked at: what is in it by name, with units and sizes; time stands still");
   command->add_option("scene", c.play.scene, "scene file")->required();
   command->add_flag("--list", c.list_only, "print what is in it and end");
   add_viewer_options(*command, c);
@@ -189,10 +205,12 @@ void add_tool_programs(CommandLine& c) {
     const char *command, *doc, *program, *when_missing;
   };
   static const ToolProgram tools[] = {
-      {"check", "read scenes and report everything that is wrong with them, and what a step of them costs", "insula_workbench", "Build it: ./insula build."},
+      {"check", "read scenes and report everything that is wrong with them, and what a step of them costs",
+       "insula_workbench", "Build it: ./insula build."},
       {"bench", "where the time of a step goes", "insula_workbench", "Build it: ./insula build."},
       {"case", "training cases from surfaces and scans (see docs/making-a-case.md)", "insula_case",
-       "The case builder needs CGAL (Debian: libcgal-dev), and ITK for volumes (libinsighttoolkit5-dev). Install them, then build again."}};
+       "The case builder needs CGAL (Debian: libcgal-dev), and ITK for volumes (libinsighttoolkit5-dev). Install them, "
+       "then build again."}};
   for (const ToolProgram& tool : tools) {
     auto* command = c.app.add_subcommand(tool.command, tool.doc)->prefix_command();
     command->set_help_flag();
@@ -210,7 +228,9 @@ void add_tool_programs(CommandLine& c) {
 
 void add_commands(CommandLine& c) {
   c.app.require_subcommand(1);
-  c.app.add_option("--plugin-path", c.plugin_paths, "folder of shared plugins, or one plugin (may be given more than once)")
+  c.app
+      .add_option("--plugin-path", c.plugin_paths,
+                  "folder of shared plugins, or one plugin (may be given more than once)")
       ->allow_extra_args(false);
   add_scene_commands(c);
   add_new_plugin(c);

@@ -5,15 +5,15 @@
 #include <array>
 #include <vector>
 
-#include "haptic_server/welded_problem_for_test.h"
+#include "core/testing/count_allocations.h"
 #include "haptic_server/devices/make_device.h"
 #include "haptic_server/hand_guide.h"
 #include "haptic_server/in_process.h"
-#include "haptic_server/safety_gate.h"
-#include "haptic_server/servo.h"
 #include "haptic_server/problem_for_test.h"
 #include "haptic_server/rig_for_test.h"
-#include "core/testing/count_allocations.h"
+#include "haptic_server/safety_gate.h"
+#include "haptic_server/servo.h"
+#include "haptic_server/welded_problem_for_test.h"
 
 namespace insula {
 namespace {
@@ -26,8 +26,9 @@ TEST(Allocation, TheCounterCounts) {
 }
 
 TEST(Allocation, TheServoDoesNone) {
-  const std::array<ConstraintProblem, 5> problems{testing::two_tool_problem(10, 20, 1), testing::two_tool_problem(60, 60, 2),
-                                                  testing::two_tool_problem(30, 40, 3, 5), testing::with_clip(8, 4, 4), testing::with_clip(30, 0, 5)};
+  const std::array<ConstraintProblem, 5> problems{
+      testing::two_tool_problem(10, 20, 1), testing::two_tool_problem(60, 60, 2),
+      testing::two_tool_problem(30, 40, 3, 5), testing::with_clip(8, 4, 4), testing::with_clip(30, 0, 5)};
   for (const ServoSettings& settings : {ServoSettings(), ServoSettings::beyond_equation_7()}) {
     Servo servo(settings);
     ServoInput in;

@@ -8,7 +8,7 @@ namespace insula {
 namespace {
 
 constexpr double max_share = 1.5;
-constexpr double min_swept_displacement_m = 5e-5;    // a hand that rests turns nothing
+constexpr double min_swept_displacement_m = 5e-5;  // a hand that rests turns nothing
 
 Vec3 direction(const ToolTerms& t, int row) { return t.jacobian.row(row).head<3>().transpose(); }
 
@@ -36,7 +36,8 @@ void ContactFrameExtrapolation::begin(const ConstraintProblem& p, const std::arr
     rotations_[t].clear();
     for (const Block& b : p.blocks) {
       const Vec3 by(b.frame_rotation[0], b.frame_rotation[1], b.frame_rotation[2]);
-      if (b.law == LawKind::friction && !by.isZero(0) && !grasped[t].any && !direction(tool, b.row).isZero(0)) rotations_[t].push_back({b.row, by, arm_of(tool, b.row)});
+      if (b.law == LawKind::friction && !by.isZero(0) && !grasped[t].any && !direction(tool, b.row).isZero(0))
+        rotations_[t].push_back({b.row, by, arm_of(tool, b.row)});
     }
   }
 }
@@ -46,7 +47,9 @@ void ContactFrameExtrapolation::extrapolate(const std::array<Vec6, 2>& moved) no
     const Vec3& swept_displacement = problem_->tools[t].swept_displacement;
     const double square = swept_displacement.squaredNorm();
     if (square < min_swept_displacement_m * min_swept_displacement_m) continue;
-    const double share = std::clamp(moved[t].head<3>().dot(swept_displacement) / square - problem_->prediction_horizon_steps, -max_share, max_share);
+    const double share =
+        std::clamp(moved[t].head<3>().dot(swept_displacement) / square - problem_->prediction_horizon_steps, -max_share,
+                   max_share);
     for (const FrameRotation& turn : rotations_[t]) {
       const Vec3 by = share * turn.by;
       for (int k = turn.row; k < turn.row + 3; ++k) {

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Directions of contact that turn between steps.
 //
-// A step fixes its normals, but a tool that slides over a lobe, or a lobe that gives way under it, turns them. The engine has turned them to
-// where the tool is when the problem arrives, and says by how much each turns while the tool goes on by another step's way (Block::turn,
-// core/haptics/contact_frame_prediction.h). Rows turn so about their place on the tool, as far as the hand has really gone:
+// A step fixes its normals, but a tool that slides over a lobe, or a lobe that gives way under it, turns them. The
+// engine has turned them to where the tool is when the problem arrives, and says by how much each turns while the tool
+// goes on by another step's way (Block::turn, core/haptics/contact_frame_prediction.h). Rows turn so about their place
+// on the tool, as far as the hand has really gone:
 //   d(s) = exp(s turn) d,   moment(s) = arm x d(s)
-//   s    = way of the device since the problem's poses, over its way in the step, less the problem's prediction_horizon_steps
+//   s    = way of the device since the problem's poses, over its way in the step, less the problem's
+//   prediction_horizon_steps
 #pragma once
 #include <array>
 #include <vector>
@@ -21,7 +23,8 @@ class ContactFrameExtrapolation {
   using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>;
 
   explicit ContactFrameExtrapolation(int max_rows);
-  /// The next problem. What a tool carries touches by many small faces, whose turning says nothing: its rows stay as they are.
+  /// The next problem. What a tool carries touches by many small faces, whose turning says nothing: its rows stay as
+  /// they are.
   void begin(const ConstraintProblem& problem, const std::array<GraspedBody, 2>& grasped) noexcept;
   /// The devices are so far from the problem's poses, tool by tool.
   void extrapolate(const std::array<Vec6, 2>& moved) noexcept;

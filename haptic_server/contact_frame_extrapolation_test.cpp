@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Directions of contact between steps: a tool that slides round a ball feels its normal where it is, not where the problem has it.
+// Directions of contact between steps: a tool that slides round a ball feels its normal where it is, not where the
+// problem has it.
 #include "haptic_server/contact_frame_extrapolation.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "haptic_server/servo.h"
 #include "haptic_server/problem_for_test.h"
+#include "haptic_server/servo.h"
 
 namespace insula {
 namespace {
@@ -17,8 +18,8 @@ const Vec3 axis = Vec3(0.2, 1, -0.3).normalized(), up = axis.unitOrthogonal(), r
 
 Vec3 normal_at(double angle) { return from_rotation_vector(angle * axis) * up; }
 
-/// A tool that has gone by `angle` round a hard ball, pressed on it by `deep`; a contact of three rows at `reach` from its origin, in the
-/// directions that it has after `turned` more steps of step_rad.
+/// A tool that has gone by `angle` round a hard ball, pressed on it by `deep`; a contact of three rows at `reach` from
+/// its origin, in the directions that it has after `turned` more steps of step_rad.
 ConstraintProblem on_ball(double angle, double deep = 0, double turned = 0) {
   ConstraintProblem p;
   p.resize(3);
@@ -28,7 +29,8 @@ ConstraintProblem on_ball(double angle, double deep = 0, double turned = 0) {
   ToolTerms t = testing::held_tool(1, device, 3);
   t.swept_displacement = device.p - (ball_m - deep) * normal_at(angle - step_rad);
   t.gain.setIdentity();
-  const Vec3 n = normal_at(angle + turned * step_rad), along = axis.cross(n), directions[3] = {n, along, n.cross(along)};
+  const Vec3 n = normal_at(angle + turned * step_rad), along = axis.cross(n),
+             directions[3] = {n, along, n.cross(along)};
   for (int k = 0; k < 3; ++k) t.jacobian.row(k) << directions[k].transpose(), reach.cross(directions[k]).transpose();
   const MatX w = t.jacobian * t.compliance * t.jacobian.transpose();
   for (int i = 0; i < 3; ++i)

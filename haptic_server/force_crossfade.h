@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From one problem's force to the next one's: what the old problem said last stays, and what it differs by from the new one fades.
+// From one problem's force to the next one's: what the old problem said last stays, and what it differs by from the new
+// one fades.
 //
 //   force = force of the new problem + gap        gap = old - new at the tick at which the new one came
 //
-// The gap goes in a straight line: within `within_s`, but by no more a second than `share_per_s` of the largest force felt lately. So a
-// step's news come as a slope that is lost among the hand's own changes, and large ones take longer. Where the new problem's force comes
-// by itself towards what is felt, that is as much less to hand over; or gaps would add up where each problem strays alike.
+// The gap goes in a straight line: within `within_s`, but by no more a second than `share_per_s` of the largest force
+// felt lately. So a step's news come as a slope that is lost among the hand's own changes, and large ones take longer.
+// Where the new problem's force comes by itself towards what is felt, that is as much less to hand over; or gaps would
+// add up where each problem strays alike.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -15,11 +17,11 @@
 namespace insula {
 
 struct ForceCrossfadeSettings {
-  double within_s = 0;       ///< 0: a new problem takes over at once
-  double share_per_s = 10;   ///< of the peak: 1 % a millisecond
-  double min_N_s = 0.2;    ///< however small the peak; 0.2 mN a millisecond is what no hand tells
-  double peak_lasts_s = 5;   ///< time constant with which a peak is forgotten
-  double lever_m = 0.1;      ///< a torque counts as this force: about from the grip to the tip
+  double within_s = 0;      ///< 0: a new problem takes over at once
+  double share_per_s = 10;  ///< of the peak: 1 % a millisecond
+  double min_N_s = 0.2;     ///< however small the peak; 0.2 mN a millisecond is what no hand tells
+  double peak_lasts_s = 5;  ///< time constant with which a peak is forgotten
+  double lever_m = 0.1;     ///< a torque counts as this force: about from the grip to the tip
 };
 
 /// One hand's. Force and torque of each tick in, what is felt out; nothing is allocated.
@@ -52,7 +54,9 @@ class ForceCrossfade {
     const double square = gap_.head<3>().squaredNorm();
     return square > 0 ? std::clamp(gap_.head<3>().dot(change.head<3>()) / square, 0.0, 1.0) : 0;
   }
-  static double size(const ForceCrossfadeSettings& s, const Vec6& v) { return std::max(v.head<3>().norm(), v.tail<3>().norm() / s.lever_m); }
+  static double size(const ForceCrossfadeSettings& s, const Vec6& v) {
+    return std::max(v.head<3>().norm(), v.tail<3>().norm() / s.lever_m);
+  }
 
   bool active_ = false;
   Vec6 last_ = Vec6::Zero(), now_ = Vec6::Zero(), gap_ = Vec6::Zero();

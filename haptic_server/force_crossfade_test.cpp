@@ -6,8 +6,8 @@
 
 #include <limits>
 
-#include "haptic_server/servo.h"
 #include "haptic_server/problem_for_test.h"
+#include "haptic_server/servo.h"
 
 namespace insula {
 namespace {

@@ -12,28 +12,35 @@ constexpr double over = 5;  ///< a transient is over after so many of its decay 
 
 bool finite(const Vec3& v) { return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z()); }
 
-double strength(const Transient& t, double since_s) { return t.decay_s > 0 && since_s < over * t.decay_s ? t.amplitude_N * std::exp(-since_s / t.decay_s) : 0; }
+double strength(const Transient& t, double since_s) {
+  return t.decay_s > 0 && since_s < over * t.decay_s ? t.amplitude_N * std::exp(-since_s / t.decay_s) : 0;
+}
 
 }  // namespace
 
 void ForceOutput::start_transient(const Vec3& direction, const Transient& transient) noexcept {
   const double size = direction.norm();
-  if (!settings_.transients || !(size > 0) || !finite(direction) || !(transient.amplitude_N > strength(sounding_, since_s_))) return;
+  if (!settings_.transients || !(size > 0) || !finite(direction) ||
+      !(transient.amplitude_N > strength(sounding_, since_s_)))
+    return;
   sounding_ = transient;
   along_ = direction / size;
   since_s_ = 0;
 }
 
-Vec3 ForceOutput::apply(const DeviceProfile& device, double dt, const Vec3& force_N, const Vec3& v, const Vec3& up, bool live) noexcept {
+Vec3 ForceOutput::apply(const DeviceProfile& device, double dt, const Vec3& force_N, const Vec3& v, const Vec3& up,
+                        bool live) noexcept {
   if (!live) {
     sounding_ = {};
     return force_N;
   }
   Vec3 out = settings_.force_scale * force_N;
   if (device.weight_N > 0) out += device.weight_N * up;
-  // Along the way the hand goes, and nothing at rest: no more than a share of what the arm takes, so that the arm never drives itself.
+  // Along the way the hand goes, and nothing at rest: no more than a share of what the arm takes, so that the arm never
+  // drives itself.
   const double speed = v.norm();
-  if (device.friction_N > 0 && speed > 0 && finite(v)) out += settings_.friction_share * device.friction_N * std::min(1.0, speed / slow_m_s) / speed * v;
+  if (device.friction_N > 0 && speed > 0 && finite(v))
+    out += settings_.friction_share * device.friction_N * std::min(1.0, speed / slow_m_s) / speed * v;
   if (const double now = strength(sounding_, since_s_); now > 0) {
     out += now * std::sin(2 * std::numbers::pi * sounding_.frequency_Hz * since_s_) * along_;
     since_s_ += dt;
@@ -75,7 +82,8 @@ double hardness(const ConstraintProblem& p, int hand, const std::vector<double>&
 
 Transient impact_transient(double speed_m_s, double hardness) {
   constexpr double per_speed = 6;  // N s/m: some 0.3 N for a brisk tap on bone
-  const double hard = std::max(0.0, 2 * hardness - 1);  // what gives way as much as the tool is held, or more, does not knock
+  const double hard =
+      std::max(0.0, 2 * hardness - 1);  // what gives way as much as the tool is held, or more, does not knock
   return {std::clamp(per_speed * speed_m_s * hard, 0.0, 0.5), 220, 0.008};
 }
 

@@ -10,8 +10,9 @@
 
 namespace insula {
 
-/// A knock: amplitude exp(-t / decay) sin(2 pi frequency t) along a direction. Contact with something hard is told from something soft by
-/// such transients, which no stiffness that a device can render has (Okamura, Cutkosky, Dennerlein 2001; Kuchenbecker, Fiene, Niemeyer 2006).
+/// A knock: amplitude exp(-t / decay) sin(2 pi frequency t) along a direction. Contact with something hard is told from
+/// something soft by such transients, which no stiffness that a device can render has (Okamura, Cutkosky, Dennerlein
+/// 2001; Kuchenbecker, Fiene, Niemeyer 2006).
 struct Transient {
   double amplitude_N = 0;
   double frequency_Hz = 0;
@@ -19,8 +20,9 @@ struct Transient {
 };
 
 struct ForceOutputSettings {
-  double force_scale = 1;       ///< force on the hand over force in the scene
-  double friction_share = 0.8;  ///< of the device's friction that is taken off: less than all, so that what is left still damps
+  double force_scale = 1;  ///< force on the hand over force in the scene
+  double friction_share =
+      0.8;  ///< of the device's friction that is taken off: less than all, so that what is left still damps
   bool transients = true;
 };
 
@@ -31,11 +33,13 @@ class ForceOutput {
   const ForceOutputSettings& settings() const { return settings_; }
   /// Begins a transient; one that still sounds goes on when it is the stronger one.
   void start_transient(const Vec3& direction, const Transient& transient) noexcept;
-  /// Force for the gate. v: of the device, m/s; up: unit, scene frame. live: the force is the servo's answer to a live problem; when it is
-  /// not, nothing is added to it and what sounds ends.
-  Vec3 apply(const DeviceProfile& device, double dt, const Vec3& force_N, const Vec3& v, const Vec3& up, bool live) noexcept;
+  /// Force for the gate. v: of the device, m/s; up: unit, scene frame. live: the force is the servo's answer to a live
+  /// problem; when it is not, nothing is added to it and what sounds ends.
+  Vec3 apply(const DeviceProfile& device, double dt, const Vec3& force_N, const Vec3& v, const Vec3& up,
+             bool live) noexcept;
 
-  static constexpr double slow_m_s = 0.01;  ///< friction is taken off in full from this speed on: at rest its direction is not known
+  static constexpr double slow_m_s =
+      0.01;  ///< friction is taken off in full from this speed on: at rest its direction is not known
 
  private:
   ForceOutputSettings settings_;
@@ -54,8 +58,8 @@ class Onset {
   double out_of_touch_s_ = 1;
 };
 
-/// How little what the hand's tool presses on gives way: the tool's own compliance at its hardest pressed contact over the whole there. 0:
-/// nothing is pressed on; 1: a wall.
+/// How little what the hand's tool presses on gives way: the tool's own compliance at its hardest pressed contact over
+/// the whole there. 0: nothing is pressed on; 1: a wall.
 double hardness(const ConstraintProblem& problem, int hand, const std::vector<double>& lambda) noexcept;
 
 /// Of a tool that meets something at this speed. Tissue, which gives way much more than a tool is held, does not knock.

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "haptic_server/safety_gate.h"
 #include "haptic_server/devices/arm_model.h"
+#include "haptic_server/safety_gate.h"
 
 namespace insula {
 namespace {
@@ -35,12 +35,15 @@ TEST(ForceOutput, TakesOffAShareOfTheDevicesFrictionAlongTheMotion) {
   device.friction_N = 0.26;
   const Vec3 fast = Vec3(3, 0, 4).normalized() * 0.05;
   EXPECT_LT((force_output.apply(device, dt, still, fast, up, true) - 0.8 * 0.26 * Vec3(0.6, 0, 0.8)).norm(), 1e-15);
-  EXPECT_LT((force_output.apply(device, dt, still, 0.1 * fast, up, true) - 0.5 * 0.8 * 0.26 * Vec3(0.6, 0, 0.8)).norm(), 1e-15) << "at half of the slow speed, half";
+  EXPECT_LT((force_output.apply(device, dt, still, 0.1 * fast, up, true) - 0.5 * 0.8 * 0.26 * Vec3(0.6, 0, 0.8)).norm(),
+            1e-15)
+      << "at half of the slow speed, half";
   EXPECT_EQ(force_output.apply(device, dt, still, still, up, true), still);
   EXPECT_EQ(force_output.apply(device, dt, still, Vec3(std::nan(""), 0, 0), up, true), still);
 }
 
-/// With the device's friction still on it, a compensated arm that was pushed comes to rest: what is taken off never drives.
+/// With the device's friction still on it, a compensated arm that was pushed comes to rest: what is taken off never
+/// drives.
 TEST(ForceOutput, ACompensatedArmStillComesToRest) {
   ArmParameters p;
   p.profile = omni_profile();
@@ -75,7 +78,10 @@ TEST(ForceOutput, AKnockIsADampedSineAndEnds) {
   ForceOutput force_output;
   force_output.start_transient(Vec3(0, 2, 0), severing_transient);
   for (int i = 0; i < 200; ++i) {
-    const double t = i * dt, want = t < 5 * severing_transient.decay_s ? severing_transient.amplitude_N * std::exp(-t / severing_transient.decay_s) * std::sin(2 * std::numbers::pi * severing_transient.frequency_Hz * t) : 0;
+    const double t = i * dt, want = t < 5 * severing_transient.decay_s
+                                        ? severing_transient.amplitude_N * std::exp(-t / severing_transient.decay_s) *
+                                              std::sin(2 * std::numbers::pi * severing_transient.frequency_Hz * t)
+                                        : 0;
     const Vec3 f = force_output.apply(DeviceProfile{}, dt, still, still, up, true);
     ASSERT_NEAR(f.y(), want, 1e-12) << i;
     ASSERT_EQ(f.x(), 0);

@@ -48,7 +48,8 @@ Vec6 GraspingTool::free_displacement(const Vec6& device) noexcept {
   const Pose now = displaced(problem_device_, device);
   device_displacement_ = displacement(device_, now);
   device_ = now;
-  return ahead_ + give_ * (mass_ * velocity_ / dt_ - stiffness_ * (stretch_ - device_displacement_) + damping_ * device_displacement_ / dt_);
+  return ahead_ + give_ * (mass_ * velocity_ / dt_ - stiffness_ * (stretch_ - device_displacement_) +
+                           damping_ * device_displacement_ / dt_);
 }
 
 void GraspingTool::went(const Vec6& swept) noexcept {

@@ -56,7 +56,8 @@ double MotionClock::advance(double dt) noexcept {
   return time_;
 }
 
-void lay_workspace(const Motion* motion, int hand, const Vec3& home, const Vec3& workspace, Vec3& centre, Vec3& extent) {
+void lay_workspace(const Motion* motion, int hand, const Vec3& home, const Vec3& workspace, Vec3& centre,
+                   Vec3& extent) {
   centre = home;
   extent = workspace;
   Vec3 low, high;

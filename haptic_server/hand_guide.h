@@ -7,9 +7,9 @@
 namespace insula {
 
 struct GuideSettings {
-  double max_speed_m_s = 0.3;      ///< however far the wish jumps, the goal moves no faster
+  double max_speed_m_s = 0.3;  ///< however far the wish jumps, the goal moves no faster
   double max_spin_rad_s = 6;
-  double smoothing_s = 0.025;      ///< first-order filter on the viewer's poses, which come at 60 Hz at best
+  double smoothing_s = 0.025;  ///< first-order filter on the viewer's poses, which come at 60 Hz at best
 };
 
 /// Turns wishes of any source into a goal that moves steadily, with its velocity. Neither allocates nor throws.
@@ -47,8 +47,9 @@ class MotionClock {
   double time_ = 0, target_ = 0, end_ = 0;
 };
 
-/// Centre and edge lengths of an arm's reach in the scene. The person who sets up a device lays its reach over the field:
-/// around home, or over the scripted motion's box with the longest edge of the reach along the longest edge of the box.
+/// Centre and edge lengths of an arm's reach in the scene. The person who sets up a device lays its reach over the
+/// field: around home, or over the scripted motion's box with the longest edge of the reach along the longest edge of
+/// the box.
 void lay_workspace(const Motion* motion, int hand, const Vec3& home, const Vec3& workspace, Vec3& centre, Vec3& extent);
 
 }  // namespace insula

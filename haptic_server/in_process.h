@@ -26,20 +26,20 @@ struct HandHome {
 class InProcessHaptics {
  public:
   struct Hand {
-    bool present = false;        ///< placed; follows the motion when that has keys for the hand
-    Pose device;                 ///< as the device reports it, scene frame
+    bool present = false;  ///< placed; follows the motion when that has keys for the hand
+    Pose device;           ///< as the device reports it, scene frame
     Vec3 v = Vec3::Zero();
     bool button1 = false;
     bool button2 = false;
-    Vec3 force = Vec3::Zero();   ///< sent to the device at the last tick, N
-    Vec3 torque = Vec3::Zero();  ///< N m
-    double max_force_N = 0;      ///< since the start
+    Vec3 force = Vec3::Zero();      ///< sent to the device at the last tick, N
+    Vec3 torque = Vec3::Zero();     ///< N m
+    double max_force_N = 0;         ///< since the start
     std::int64_t fresh_forces = 0;  ///< forces from a new solve that differ from the one before
     double touching_s = 0;          ///< time with a force to feel; in free air there is none, new or old
   };
 
-  /// Hands that the motion does not move stay at `home`; without a home they are absent. The motion's hands begin at its
-  /// start.
+  /// Hands that the motion does not move stay at `home`; without a home they are absent. The motion's hands begin at
+  /// its start.
   using Home = HandHome;
   explicit InProcessHaptics(const Motion& motion, const std::array<Home, 2>& home = {},
                             const ServoSettings& settings = {});

@@ -36,12 +36,13 @@ struct Arguments {
 };
 
 void print_status(const insula_lcm::haptic_status_t& s) {
-  std::printf("%.0f ticks/s, fresh forces left %.0f/s right %.0f/s, late p50 %.0f p99 %.0f max %.0f us, missed %lld, solve p50 "
-              "%.0f p99 %.0f us, sweeps %.1f, residual %.1e m, %d rows, problem %.1f ms old, received %lld, refused %lld%s%s\n",
-              s.ticks_per_s, s.fresh_forces_per_s[0], s.fresh_forces_per_s[1], s.lateness_us_p50, s.lateness_us_p99,
-              s.lateness_us_max, static_cast<long long>(s.missed_ticks), s.solve_us_p50, s.solve_us_p99, s.sweeps_mean,
-              s.residual_m_max, s.rows, s.problem_age_ms, static_cast<long long>(s.problems_received),
-              static_cast<long long>(s.messages_refused), s.note.empty() ? "" : ": ", s.note.c_str());
+  std::printf(
+      "%.0f ticks/s, fresh forces left %.0f/s right %.0f/s, late p50 %.0f p99 %.0f max %.0f us, missed %lld, solve p50 "
+      "%.0f p99 %.0f us, sweeps %.1f, residual %.1e m, %d rows, problem %.1f ms old, received %lld, refused %lld%s%s\n",
+      s.ticks_per_s, s.fresh_forces_per_s[0], s.fresh_forces_per_s[1], s.lateness_us_p50, s.lateness_us_p99,
+      s.lateness_us_max, static_cast<long long>(s.missed_ticks), s.solve_us_p50, s.solve_us_p99, s.sweeps_mean,
+      s.residual_m_max, s.rows, s.problem_age_ms, static_cast<long long>(s.problems_received),
+      static_cast<long long>(s.messages_refused), s.note.empty() ? "" : ": ", s.note.c_str());
   std::fflush(stdout);
 }
 
@@ -55,8 +56,11 @@ int serve(const Arguments& a) {
   options.period_s = 1 / a.loop.rate_hz;
   int& unknowns = options.servo.newton_unknowns;
   constexpr double newton_share = 0.4;  // of a tick; sweeps and the rest take another third
-  if (const int most = unknowns_within(newton_share * options.period_s, unknowns, factorisation_time(unknowns)); most < unknowns) {
-    spdlog::info("this machine makes Newton steps of {} unknowns within a tick, not {}: with more rows forces end less exactly", most, unknowns);
+  if (const int most = unknowns_within(newton_share * options.period_s, unknowns, factorisation_time(unknowns));
+      most < unknowns) {
+    spdlog::info(
+        "this machine makes Newton steps of {} unknowns within a tick, not {}: with more rows forces end less exactly",
+        most, unknowns);
     unknowns = most;
   }
   if (a.motion == "none") options.motion = Motion();
@@ -133,14 +137,23 @@ int main(int argc, char** argv) {
   CLI::App app{"Insula's haptic server: one servo for both hands"};
   std::string kinds;
   for (const std::string& k : device_kinds()) kinds += (kinds.empty() ? "" : ", ") + k;
-  app.add_option("--left", a.left, "device of the left hand: KIND[:WHICH], several with commas between: the first that is plugged in. Kinds: " + kinds)->capture_default_str();
+  app.add_option(
+         "--left", a.left,
+         "device of the left hand: KIND[:WHICH], several with commas between: the first that is plugged in. Kinds: " +
+             kinds)
+      ->capture_default_str();
   app.add_option("--right", a.right, "device of the right hand")->capture_default_str();
   app.add_option("--motion", a.motion, "motion of simulated hands instead of the scene's: a CSV file, or none");
-  insula::add_quantity<insula::Frequency>(app, "--rate", a.loop.rate_hz, {.bare = "Hz", .min = "100 Hz", .max = "4 kHz", .doc = "rate of the servo"})
+  insula::add_quantity<insula::Frequency>(app, "--rate", a.loop.rate_hz,
+                                          {.bare = "Hz", .min = "100 Hz", .max = "4 kHz", .doc = "rate of the servo"})
       ->default_str("1 kHz");
-  insula::add_quantity<insula::Duration>(app, "--duration", a.duration_s, {.bare = "s", .min = "0 s", .doc = "end after this time; 0: never"});
-  app.add_option("--priority", a.loop.priority, "real-time priority of the servo")->check(CLI::Range(1, 99))->capture_default_str();
-  insula::add_quantity<insula::Duration>(app, "--spin", a.spin_us, {.bare = "us", .min = "0 us", .max = "500 us", .doc = "busy waiting before each tick"});
+  insula::add_quantity<insula::Duration>(app, "--duration", a.duration_s,
+                                         {.bare = "s", .min = "0 s", .doc = "end after this time; 0: never"});
+  app.add_option("--priority", a.loop.priority, "real-time priority of the servo")
+      ->check(CLI::Range(1, 99))
+      ->capture_default_str();
+  insula::add_quantity<insula::Duration>(
+      app, "--spin", a.spin_us, {.bare = "us", .min = "0 us", .max = "500 us", .doc = "busy waiting before each tick"});
   app.add_flag("--status", a.status, "print a line each second");
   try {
     std::vector<std::string> words = insula::command_words(argc, argv);

@@ -13,7 +13,8 @@ double factorisation_time(int unknowns) {
   const long n = unknowns, stride = (n + 7) & ~7L;
   AlignedVector<double> whole(std::size_t(n * stride), 0.0), matrix;
   for (long i = 0; i < n; ++i)
-    for (long j = 0; j < n; ++j) whole[std::size_t(i * stride + j)] = 1.0 / double(1 + (i - j) * (i - j));  // positive definite and full
+    for (long j = 0; j < n; ++j)
+      whole[std::size_t(i * stride + j)] = 1.0 / double(1 + (i - j) * (i - j));  // positive definite and full
   std::vector<int> pivots(std::size_t(n), 0);
   double min_s = 1;
   for (int k = 0; k < 8; ++k) {

@@ -12,7 +12,8 @@ inline int unknowns_within(double budget_s, int unknowns, double took_s) {
   return int(unknowns * std::min(1.0, std::cbrt(std::max(0.0, budget_s) / took_s)));
 }
 
-/// Shortest of some factorisations of a dense matrix of so many unknowns here and now, s. Takes some milliseconds and allocates.
+/// Shortest of some factorisations of a dense matrix of so many unknowns here and now, s. Takes some milliseconds and
+/// allocates.
 double factorisation_time(int unknowns);
 
 }  // namespace insula

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The observer against closed forms: a spring gives back what was put in, held or late it gives more, by how much is known.
+// The observer against closed forms: a spring gives back what was put in, held or late it gives more, by how much is
+// known.
 #include "haptic_server/passivity.h"
 
 #include <gtest/gtest.h>

@@ -29,7 +29,8 @@ class Random {
   std::uint64_t state_;
 };
 
-/// A massless tool held by a virtual coupling of 300 N/m and 0.3 N m/rad; inertia and damping keep it behind the device.
+/// A massless tool held by a virtual coupling of 300 N/m and 0.3 N m/rad; inertia and damping keep it behind the
+/// device.
 inline ToolTerms held_tool(int hand, const Pose& device, int rows) {
   ToolTerms t;
   t.hand = hand;
@@ -42,9 +43,9 @@ inline ToolTerms held_tool(int hand, const Pose& device, int rows) {
   return t;
 }
 
-/// Two tools, each with a virtual coupling of 300 N/m and 0.3 N m/rad and a rigid-body compliance, in `contacts` frictional
-/// contacts, `strands` compliant rows and `patches` of three contacts that share a friction force, with soft bodies behind. W = H C H^T (tools) + a soft part, so it is what an
-/// engine would build.
+/// Two tools, each with a virtual coupling of 300 N/m and 0.3 N m/rad and a rigid-body compliance, in `contacts`
+/// frictional contacts, `strands` compliant rows and `patches` of three contacts that share a friction force, with soft
+/// bodies behind. W = H C H^T (tools) + a soft part, so it is what an engine would build.
 inline ConstraintProblem two_tool_problem(int contacts, int strands, std::uint64_t seed = 1, int patches = 0) {
   Random random(seed);
   ConstraintProblem p;

@@ -12,16 +12,15 @@
 
 #include "core/bus/mem_bus.h"
 #include "core/haptics/haptic_update.h"
-#include "haptic_server/server.h"
 #include "haptic_server/problem_for_test.h"
+#include "haptic_server/server.h"
 
 namespace insula::testing {
 
 inline constexpr std::int64_t ms = 1'000'000;
 
 struct TestDirectory {
-  std::filesystem::path path =
-      std::filesystem::temp_directory_path() / ("insula_server_" + std::to_string(::getpid()));
+  std::filesystem::path path = std::filesystem::temp_directory_path() / ("insula_server_" + std::to_string(::getpid()));
   TestDirectory() { std::filesystem::create_directories(path); }
   ~TestDirectory() { std::filesystem::remove_all(path); }
 };
@@ -44,7 +43,8 @@ struct Rig {
   Vec3 last_force[2] = {Vec3::Zero(), Vec3::Zero()};
   int tick_count = 0;
 
-  explicit Rig(const std::string& left = "simulated", const std::string& right = "simulated", ServerOptions options = {}) {
+  explicit Rig(const std::string& left = "simulated", const std::string& right = "simulated",
+               ServerOptions options = {}) {
     tool[0].p = Vec3(-0.02, 0, 0.002);
     tool[1].p = Vec3(0.02, 0, 0.002);
     std::array<DeviceChoice, 2> devices{make_device(left, 0), make_device(right, 1)};
@@ -116,8 +116,8 @@ struct Rig {
     ASSERT_TRUE(engine_bus.publish(channel::haptic_problem, bytes));
   }
 
-  /// Runs the servo for so many milliseconds; the engine steps every 16, DEVICE_STATE goes out every 4. The slew limit is
-  /// checked at every tick of every test.
+  /// Runs the servo for so many milliseconds; the engine steps every 16, DEVICE_STATE goes out every 4. The slew limit
+  /// is checked at every tick of every test.
   void run(int milliseconds) {
     for (int k = 0; k < milliseconds; ++k, ++tick_count) {
       if (tick_count % 16 == 0 && engine_alive) {

@@ -14,10 +14,8 @@ bool finite(const Vec3& v) { return std::isfinite(v.x()) && std::isfinite(v.y())
 bool shorten(Vec3& v, double limit) {
   const double length = v.stableNorm();
   if (length <= limit) return false;
-  if (!(length < 1e300))
-    v.setZero();
-  else
-    v *= limit / length;
+  if (!(length < 1e300)) v.setZero();
+  else v *= limit / length;
   return true;
 }
 
@@ -39,10 +37,8 @@ void SafetyGate::Channel::step(double dt, const Vec3& wanted) {
   const Vec3 change = target - out;
   const double length = change.norm();
   // A ramp as steep as the limit must end at its end, not a rounding error before it.
-  if (length <= slew * dt * (1 + 1e-12))
-    out = target;
-  else if (length > 0)
-    out += change * (slew * dt / length);
+  if (length <= slew * dt * (1 + 1e-12)) out = target;
+  else if (length > 0) out += change * (slew * dt / length);
   // Rounding must not carry the sum past the limit.
   shorten(out, limit);
 }

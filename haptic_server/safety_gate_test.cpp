@@ -38,8 +38,14 @@ TEST(SafetyGate, GarbageNeverGetsThrough) {
   testing::Random random(11);
   const DeviceProfile profile = with_torque();
   SafetyGate gate(profile);
-  const double odd[] = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), -1e308, 1e308,
-                        std::numeric_limits<double>::denorm_min(), 0.0, 1e200, -1e154};
+  const double odd[] = {std::numeric_limits<double>::quiet_NaN(),
+                        std::numeric_limits<double>::infinity(),
+                        -1e308,
+                        1e308,
+                        std::numeric_limits<double>::denorm_min(),
+                        0.0,
+                        1e200,
+                        -1e154};
   Vec3 last_force = none, last_torque = none;
   long pushed = 0;
   double most = 0, max_change = 0;
@@ -55,7 +61,8 @@ TEST(SafetyGate, GarbageNeverGetsThrough) {
       noise = !noise;
       steady = random.vector(50);
     }
-    const double elapsed = random.bits() % 64 == 0 ? (random.bits() % 2 ? 10.0 : odd[random.bits() % 8]) : dt * (1 + 0.5 * random.next());
+    const double elapsed =
+        random.bits() % 64 == 0 ? (random.bits() % 2 ? 10.0 : odd[random.bits() % 8]) : dt * (1 + 0.5 * random.next());
     Vec3 force = steady, torque = 0.1 * steady;
     for (int i = 0; i < 3 && (noise || random.bits() % 1000 == 0); ++i) {
       force[i] = number();
@@ -65,7 +72,9 @@ TEST(SafetyGate, GarbageNeverGetsThrough) {
     const Vec3 f = gate.force(), t = gate.torque();
     ASSERT_TRUE(f.allFinite() && t.allFinite()) << tick;
     most = std::max(most, f.norm() - profile.max_force_N);
-    max_change = std::max(max_change, (f - last_force).norm() - profile.max_slew_N_s * (elapsed > 0 ? std::min(elapsed, SafetyGate::longest_tick_s) : 0));
+    max_change = std::max(max_change,
+                          (f - last_force).norm() -
+                              profile.max_slew_N_s * (elapsed > 0 ? std::min(elapsed, SafetyGate::longest_tick_s) : 0));
     ASSERT_LE(f.norm(), profile.max_force_N * (1 + 1e-12)) << tick;
     ASSERT_LE(t.norm(), profile.max_torque_Nm * (1 + 1e-12)) << tick;
     // No elapsed time (or none that makes sense): no change at all.
@@ -92,7 +101,9 @@ TEST(SafetyGate, RampsInOverAQuarterSecond) {
     EXPECT_TRUE(test::held("the gate on its way in, N", std::abs(gate.force().z() - k / 250.0), 1, 1e-9));
     if (k % 10 == 0) figure.run("gate", k, gate.force().z());
   }
-  for (const auto& [t, f] : {std::pair{0.0, 0.0}, std::pair{250.0, 1.0}, std::pair{400.0, 1.0}, std::pair{450.0, 0.0}, std::pair{500.0, 0.0}}) figure.law("250 ms in, 50 ms out", t, f);
+  for (const auto& [t, f] : {std::pair{0.0, 0.0}, std::pair{250.0, 1.0}, std::pair{400.0, 1.0}, std::pair{450.0, 0.0},
+                             std::pair{500.0, 0.0}})
+    figure.law("250 ms in, 50 ms out", t, f);
   for (int k = 251; k <= 400; ++k) {
     gate.apply(dt, true, wanted, none);
     EXPECT_EQ(gate.force().z(), 1);
@@ -120,7 +131,9 @@ TEST(SafetyGate, RampsOutToExactlyZeroWithin50ms) {
     ASSERT_NEAR(gate.force().x(), size, 1e-12);
     for (int k = 1; k <= 50; ++k) {
       gate.apply(dt, false, Vec3(size, 0, 0), none);
-      EXPECT_TRUE(test::held("the gate on its way out, N", std::abs(gate.force().x() - size * (50 - k) / 50.0), 1, 1e-9)) << size;
+      EXPECT_TRUE(
+          test::held("the gate on its way out, N", std::abs(gate.force().x() - size * (50 - k) / 50.0), 1, 1e-9))
+          << size;
     }
     EXPECT_EQ(gate.force(), none);
     for (int k = 0; k < 100; ++k) {

@@ -29,12 +29,14 @@ void read_view(const nlohmann::json& view, SceneSetup& into) {
 
 void read_bundle(const std::filesystem::path& file, SceneSetup& into) {
   std::error_code none;
-  if (!std::filesystem::is_regular_file(file, none) || std::filesystem::file_size(file, none) > largest_scene_json) return;
+  if (!std::filesystem::is_regular_file(file, none) || std::filesystem::file_size(file, none) > largest_scene_json)
+    return;
   std::ifstream in(file);
   const auto json = nlohmann::json::parse(in);
   if (json.contains("view")) read_view(json.at("view"), into);
   if (json.contains("force_scale"))
-    if (const double scale = json.at("force_scale").get<double>(); scale >= 0.1 && scale <= 10) into.force_scale = scale;
+    if (const double scale = json.at("force_scale").get<double>(); scale >= 0.1 && scale <= 10)
+      into.force_scale = scale;
   if (!json.contains("hands")) return;
   for (const auto& hand : json.at("hands")) {
     const std::string name = hand.at("hand").get<std::string>();

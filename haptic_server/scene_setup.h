@@ -24,8 +24,8 @@ struct SceneSetup {
   std::string problem;  ///< why motion or homes could not be read, empty when fine
 };
 
-/// Reads the motion (`motion_file`, empty: none), the homes and the view from `bundle`/scene.json. Never throws: what cannot be read
-/// is left out and said in `problem`.
+/// Reads the motion (`motion_file`, empty: none), the homes and the view from `bundle`/scene.json. Never throws: what
+/// cannot be read is left out and said in `problem`.
 SceneSetup read_scene_setup(std::int64_t session, const std::string& motion_file, const std::filesystem::path& bundle);
 
 /// Hands setups from one thread to the servo without locks; the old ones are freed on the giving side.

@@ -18,12 +18,12 @@ bool finite(const Pose& pose) {
   return pose.p.allFinite() && pose.q.coeffs().allFinite() && std::abs(pose.q.squaredNorm() - 1) < 1e-3;
 }
 
-/// What DEVICE_STATE may say. Anything else counts as a device that is gone: one hand's broken reading must not make the
-/// engine refuse the message that carries the other hand's.
+/// What DEVICE_STATE may say. Anything else counts as a device that is gone: one hand's broken reading must not make
+/// the engine refuse the message that carries the other hand's.
 bool sound(const DeviceReading& r) {
   const double q[4] = {r.pose.q.w(), r.pose.q.x(), r.pose.q.y(), r.pose.q.z()};
-  return within(r.pose.p.data(), 3, limits::position_m) && unit_quaternion(q) && within(r.v.data(), 3, limits::speed_m_s) &&
-         within(r.w.data(), 3, limits::spin_rad_s);
+  return within(r.pose.p.data(), 3, limits::position_m) && unit_quaternion(q) &&
+         within(r.v.data(), 3, limits::speed_m_s) && within(r.w.data(), 3, limits::spin_rad_s);
 }
 
 /// The device pose that the problem was built with; false when it has no tool of this hand.
@@ -133,8 +133,8 @@ bool HapticServer::live(const ServoHand& hand, std::int64_t now) const noexcept 
   if (stopping_.load(std::memory_order_relaxed) || !last_.solved || !hand.valid) return false;
   const Received& r = problems_.front();
   const std::int64_t stale_ns = std::int64_t(SafetyGate::stale_after_s * 1e9);
-  // By arrival and by the engine's own stamp: a queue that drains late must not pass for a living engine. What arrived in the
-  // future says that the clock went back, and nothing of how old it is.
+  // By arrival and by the engine's own stamp: a queue that drains late must not pass for a living engine. What arrived
+  // in the future says that the clock went back, and nothing of how old it is.
   const std::int64_t age = now - r.receive_ns;
   return age >= 0 && age <= stale_ns && now - r.update.time_us * 1000 <= stale_ns;
 }
@@ -147,7 +147,8 @@ Vec3 HapticServer::force_output(std::size_t i, double dt, bool alive) noexcept {
   if (alive) {
     const Vec3 along = force.isZero(0) ? hand.reading.v : force;
     if (hand.onset.met(dt, force.norm()) && servo_.problem())
-      hand.force_output.start_transient(force, impact_transient(-hand.reading.v.dot(force.normalized()), hardness(*servo_.problem(), int(i), servo_.lambda())));
+      hand.force_output.start_transient(force, impact_transient(-hand.reading.v.dot(force.normalized()),
+                                                                hardness(*servo_.problem(), int(i), servo_.lambda())));
     if (severed != hand.severed_seen) hand.force_output.start_transient(along, severing_transient);
     if (shut != hand.shut_seen) hand.force_output.start_transient(along, latching_transient);
   }
@@ -232,7 +233,8 @@ void HapticServer::leave_snapshot(std::int64_t now) noexcept {
     s.torque[i] = hands_[i].gate.torque();
     // While a tool is exchanged the problem has none for its hand: that is not out of range.
     Pose none;
-    s.in_range[i] = !last_.solved || !hands_[i].reading.connected || last_.hand[i].valid || !device_in_problem(problems_.front().update, int(i), none);
+    s.in_range[i] = !last_.solved || !hands_[i].reading.connected || last_.hand[i].valid ||
+                    !device_in_problem(problems_.front().update, int(i), none);
   }
   snapshots_.publish();
 }

@@ -32,16 +32,16 @@ struct ServerOptions {
   double period_s = 1e-3;
   /// Instead of the scene's motion: this one (may be empty: none).
   std::optional<Motion> motion;
-  bool realtime = false;   ///< what HAPTIC_STATUS says about the servo's scheduling
-  std::string advice;      ///< shown in HAPTIC_STATUS when nothing more urgent is to be said
+  bool realtime = false;  ///< what HAPTIC_STATUS says about the servo's scheduling
+  std::string advice;     ///< shown in HAPTIC_STATUS when nothing more urgent is to be said
 };
 
 /// Three threads meet here without locks: `receive` in one, `tick` in the servo thread, `publish_*` in a third.
 /// Messages: in HAPTIC_PROBLEM, SCENE_INFO, SIM_EVENT, HAND_INPUT; out DEVICE_STATE, HAPTIC_STATUS.
 ///
-/// A new engine (session) or a simulated time that goes back puts simulated arms at the start of the motion (or at home)
-/// and hands them back to the script. A server that comes into a running scene starts its arms where the engine has the
-/// tools and walks to the motion from there.
+/// A new engine (session) or a simulated time that goes back puts simulated arms at the start of the motion (or at
+/// home) and hands them back to the script. A server that comes into a running scene starts its arms where the engine
+/// has the tools and walks to the motion from there.
 class HapticServer {
  public:
   HapticServer(Bus& bus, std::array<DeviceChoice, 2> devices, const Clock& clock, ServerOptions options = {});
@@ -95,7 +95,8 @@ class HapticServer {
     DeviceReading reading;
     HandSample home;
     bool placed = false;
-    bool to_be_laid = true;  ///< since the session began anew; a real arm keeps the frame it has until the new one is known
+    bool to_be_laid =
+        true;  ///< since the session began anew; a real arm keeps the frame it has until the new one is known
     std::int64_t wishes_seen = 0;
     Vec3 last_force = Vec3::Zero();
   };

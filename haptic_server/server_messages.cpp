@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "haptic_server/server.h"
 #include "core/haptics/haptic_update.h"
+#include "haptic_server/server.h"
 
 namespace insula {
 namespace {
@@ -23,7 +23,8 @@ int HapticServer::receive(int timeout_ms) { return bus_.poll(timeout_ms); }
 void HapticServer::refuse(const std::string& channel, const std::string& why) {
   // Said once per power of ten: a flood of garbage must not become a flood of lines.
   const std::int64_t n = refused_.fetch_add(1, std::memory_order_relaxed) + 1;
-  if (n == 1 || n == 10 || n == 100 || n % 1000 == 0) spdlog::warn("{}: message refused ({} in all): {}", channel, n, why);
+  if (n == 1 || n == 10 || n == 100 || n % 1000 == 0)
+    spdlog::warn("{}: message refused ({} in all): {}", channel, n, why);
 }
 
 void HapticServer::on_problem(Bytes bytes) {
@@ -76,7 +77,8 @@ void HapticServer::on_event(Bytes bytes) {
   if (!severed && event_.kind != "clip_shut") return;
   // A strand that tears under no blade is felt by whoever pulls.
   for (std::size_t i = 0; i < 2; ++i)
-    if (event_.hand < 0 || std::size_t(event_.hand) == i) (severed ? severed_ : shut_)[i].fetch_add(1, std::memory_order_relaxed);
+    if (event_.hand < 0 || std::size_t(event_.hand) == i)
+      (severed ? severed_ : shut_)[i].fetch_add(1, std::memory_order_relaxed);
 }
 
 bool HapticServer::publish_state() {

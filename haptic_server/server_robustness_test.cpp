@@ -9,9 +9,9 @@
 
 #include "core/bus/mem_bus.h"
 #include "core/haptics/haptic_update.h"
-#include "haptic_server/servo_loop.h"
 #include "haptic_server/problem_for_test.h"
 #include "haptic_server/rig_for_test.h"
+#include "haptic_server/servo_loop.h"
 
 namespace insula {
 namespace {

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <fstream>
 
+#include "core/haptics/haptic_update.h"
 #include "haptic_server/problem_for_test.h"
 #include "haptic_server/rig_for_test.h"
-#include "core/haptics/haptic_update.h"
 
 namespace insula {
 namespace {

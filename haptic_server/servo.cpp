@@ -36,7 +36,10 @@ bool finite(const Vec6& v) {
 
 }  // namespace
 
-Servo::Servo(const ServoSettings& settings) : settings_(settings), weld_elimination_(settings.substep.eliminate_welds ? servo_max_rows : 0), substep_(settings.substep, servo_max_rows) {
+Servo::Servo(const ServoSettings& settings)
+    : settings_(settings),
+      weld_elimination_(settings.substep.eliminate_welds ? servo_max_rows : 0),
+      substep_(settings.substep, servo_max_rows) {
   workspace_.reserve(servo_max_rows, settings.newton_unknowns > 0);
   kernels();  // chosen here once and not at the first tick
   delta_free_.assign(servo_max_rows, 0.0);
@@ -88,8 +91,8 @@ void Servo::set_problem(const ConstraintProblem* problem, const std::array<Pose,
   workspace_.lambda.resize(std::size_t(problem_->rows));  // within its capacity
   const auto known_end = known_.begin() + std::ptrdiff_t(known_count_);
   for (const Block& b : problem_->blocks) {
-    const auto found = std::lower_bound(known_.begin(), known_end, b.id,
-                                        [](const Known& k, std::uint64_t id) { return k.id < id; });
+    const auto found =
+        std::lower_bound(known_.begin(), known_end, b.id, [](const Known& k, std::uint64_t id) { return k.id < id; });
     const bool same = found != known_end && found->id == b.id && found->law == b.law;
     for (int k = 0; k < b.rows(); ++k) {
       double value = same ? last_lambda_[std::size_t(found->row + k)] : problem_->lambda[std::size_t(b.row + k)];
@@ -108,7 +111,7 @@ ServoResult Servo::tick(const ServoInput& input) noexcept {
   result.rows = n;
 
   std::array<Vec6, 2> moved{Vec6::Zero(), Vec6::Zero()};  // of the devices
-  std::array<Pose, 2> device;  // with the tool's offset applied
+  std::array<Pose, 2> device;                             // with the tool's offset applied
   std::array<bool, 2> in_range{true, true};
   const std::size_t tools = std::min<std::size_t>(p.tools.size(), 2);
   std::copy_n(p.delta_free.begin(), n, delta_free_.begin());
@@ -138,7 +141,8 @@ ServoResult Servo::tick(const ServoInput& input) noexcept {
     s.newton_soon = true;
     s.newton_unknowns = settings_.newton_unknowns;
     s.newton_sweeps = 0;
-    s.max_sweeps = int(std::clamp(settings_.max_operations / std::max(1.0, double(n) * n), 1.0, double(settings_.max_sweeps)));
+    s.max_sweeps =
+        int(std::clamp(settings_.max_operations / std::max(1.0, double(n) * n), 1.0, double(settings_.max_sweeps)));
     if (in_ticks) {
       const ConstraintProblem& tick = substep_.next(input.dt_s, moved);
       result.stats = solve(tick, tick.delta_free, s, workspace_);

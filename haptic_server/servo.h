@@ -20,8 +20,8 @@ struct ServoSettings {
   double max_operations = 1.2e6;
   double tolerance_m = 1e-9;
   bool conjugate = false;  ///< sweeps go on along conjugate directions (core/constraint/solve.h)
-  /// Where a few sweeps leave more than the tolerance, one Newton step of as many unknowns at most (core/constraint/newton.h): 0.4 ms for
-  /// 200 on the machine of docs/haptic-truth.md; 0: sweeps alone.
+  /// Where a few sweeps leave more than the tolerance, one Newton step of as many unknowns at most
+  /// (core/constraint/newton.h): 0.4 ms for 200 on the machine of docs/haptic-truth.md; 0: sweeps alone.
   int newton_unknowns = 0;
   /// A device further than this from the pose the problem was built with is outside the linearisation: no force.
   double max_displacement_m = 0.03;
@@ -33,7 +33,11 @@ struct ServoSettings {
   /// All of it, as measured in docs/haptic-truth.md.
   static ServoSettings beyond_equation_7() {
     ServoSettings s;
-    s.substep = {.substep_compliance = true, .extrapolate_tissue = true, .incremental_slip = true, .eliminate_welds = true, .extrapolate_frames = true};
+    s.substep = {.substep_compliance = true,
+                 .extrapolate_tissue = true,
+                 .incremental_slip = true,
+                 .eliminate_welds = true,
+                 .extrapolate_frames = true};
     s.force_crossfade.within_s = 0.005;
     s.force_crossfade.share_per_s = 14;
     s.conjugate = true;
@@ -54,7 +58,7 @@ struct ServoHand {
   bool valid = false;  ///< a tool of this hand is in the problem, everything is finite and in range
   Vec3 force = Vec3::Zero();
   Vec3 torque = Vec3::Zero();
-  Pose tool;           ///< predicted tool pose
+  Pose tool;  ///< predicted tool pose
 };
 
 struct ServoResult {

@@ -2,7 +2,6 @@
 // Timing and scheduling of the servo thread.
 #include "haptic_server/servo_loop.h"
 
-#include <cerrno>
 #include <pthread.h>
 #include <sched.h>
 #include <sys/mman.h>
@@ -10,6 +9,7 @@
 #include <sys/resource.h>
 #include <time.h>
 #include <unistd.h>
+#include <cerrno>
 
 #include <algorithm>
 #include <thread>
@@ -42,8 +42,9 @@ RealtimeGrant probe_realtime(int priority) {
         "cap_sys_nice,cap_ipc_lock+ep haptic_server, or \"@haptics - rtprio 80\" in /etc/security/limits.d/insula.conf "
         "(in a container: --cap-add SYS_NICE --ulimit rtprio=80)";
   else if (!grant.memory)
-    grant.advice = "memory could not be locked; to allow it: sudo setcap cap_sys_nice,cap_ipc_lock+ep haptic_server, or "
-                   "\"@haptics - memlock unlimited\" in /etc/security/limits.d/insula.conf";
+    grant.advice =
+        "memory could not be locked; to allow it: sudo setcap cap_sys_nice,cap_ipc_lock+ep haptic_server, or "
+        "\"@haptics - memlock unlimited\" in /etc/security/limits.d/insula.conf";
   return grant;
 }
 

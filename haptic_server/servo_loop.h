@@ -22,8 +22,8 @@ bool lock_memory();
 /// SCHED_FIFO for the calling thread.
 bool make_realtime(int priority);
 
-/// Ticks due at start, start + period, ...; a wake-up that is whole periods late skips those ticks: they are counted and
-/// never made up for.
+/// Ticks due at start, start + period, ...; a wake-up that is whole periods late skips those ticks: they are counted
+/// and never made up for.
 class TickSchedule {
  public:
   TickSchedule(std::int64_t start_ns, std::int64_t period_ns) : due_(start_ns), period_(period_ns) {}
@@ -38,12 +38,14 @@ class TickSchedule {
 struct LoopSettings {
   double rate_hz = 1000;
   int priority = 80;
-  int spin_us = -1;  ///< busy waiting before each tick instead of sleeping; negative: short_spin_us where real-time is granted
+  int spin_us =
+      -1;  ///< busy waiting before each tick instead of sleeping; negative: short_spin_us where real-time is granted
 };
 
 /// Covers a wake-up from a shallow sleep of the processor; 3 % of a core at 1 kHz.
 inline constexpr int short_spin_us = 30;
-/// Without real-time scheduling a spin is only taken from others, and taken away from in its midst: none unless asked for.
+/// Without real-time scheduling a spin is only taken from others, and taken away from in its midst: none unless asked
+/// for.
 inline int chosen_spin_us(const LoopSettings& settings, bool realtime) {
   return settings.spin_us >= 0 ? settings.spin_us : realtime ? short_spin_us : 0;
 }

@@ -82,7 +82,10 @@ TEST(ServoLoop, SaysHowToAllowRealTimeWhereItIsRefused) {
     const rlimit none{0, 0};
     if (setrlimit(RLIMIT_RTPRIO, &none) != 0 || (geteuid() == 0 && setuid(65534) != 0)) _exit(2);
     const RealtimeGrant grant = probe_realtime(80);
-    _exit(!grant.scheduler && grant.advice.find("real-time scheduling was refused") == 0 && grant.advice.find("setcap") != std::string::npos ? 0 : 1);
+    _exit(!grant.scheduler && grant.advice.find("real-time scheduling was refused") == 0 &&
+                  grant.advice.find("setcap") != std::string::npos
+              ? 0
+              : 1);
   }
   int status = 0;
   ASSERT_EQ(waitpid(child, &status, 0), child);

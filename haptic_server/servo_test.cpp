@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "core/testing/held.h"
-#include "haptic_server/welded_problem_for_test.h"
 #include "haptic_server/problem_for_test.h"
+#include "haptic_server/welded_problem_for_test.h"
 #include "tests/figures/figure.h"
 
 namespace insula {
@@ -68,15 +68,18 @@ TEST(Servo, ForceEqualsTheEnginesWhenTheDeviceStandsStill) {
       const Pose end = displaced(tool.free, tool.compliance * (tool.jacobian.transpose() * lambda));
       const Vec6 engine = tool.stiffness * displacement(tool.device, end);
       EXPECT_GT(engine.head<3>().norm(), 1e-3);  // contacts push, else the test says nothing
-      EXPECT_TRUE(test::held("force of a hand that is still, N", (r.hand[std::size_t(hand)].force - engine.head<3>()).norm(), 1, 1e-6));
-      EXPECT_TRUE(test::held("torque of a hand that is still, N m", (r.hand[std::size_t(hand)].torque - engine.tail<3>()).norm(), 1, 1e-6));
+      EXPECT_TRUE(test::held("force of a hand that is still, N",
+                             (r.hand[std::size_t(hand)].force - engine.head<3>()).norm(), 1, 1e-6));
+      EXPECT_TRUE(test::held("torque of a hand that is still, N m",
+                             (r.hand[std::size_t(hand)].torque - engine.tail<3>()).norm(), 1, 1e-6));
     }
   }
 }
 
 TEST(Servo, EquationSevenAgainstAFreshSolve) {
   testing::Random random(7);
-  test::Figure figure("equation7", "The servo's force against a fresh solve, random problems and hands", "force of a fresh solve, N", "force of the servo, N");
+  test::Figure figure("equation7", "The servo's force against a fresh solve, random problems and hands",
+                      "force of a fresh solve, N", "force of the servo, N");
   figure.law("the same", 0, 0);
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     ConstraintProblem p = testing::two_tool_problem(12, 20, seed, int(seed % 4));
@@ -208,7 +211,8 @@ TEST(Servo, SweepsAreBounded) {
   EXPECT_EQ(shorter.tick(still(p)).stats.sweeps, 3);
 }
 
-// A closing clip has more rows than a tick has sweeps for: what they leave is a step's worth of force that comes too late.
+// A closing clip has more rows than a tick has sweeps for: what they leave is a step's worth of force that comes too
+// late.
 TEST(Servo, OneNewtonStepEndsWhatSweepsLeave) {
   ConstraintProblem p = testing::with_clip(180, 4, 6);
   testing::solve_as_engine(p);

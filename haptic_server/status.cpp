@@ -43,7 +43,8 @@ void StatusCollector::finish(double elapsed_s, insula_lcm::haptic_status_t& stat
   status.lateness_us_max = lateness_.empty() ? 0 : *std::max_element(lateness_.begin(), lateness_.end());
   std::fill(std::begin(status.lateness_count), std::end(status.lateness_count), 0);
   for (const float late : lateness_)
-    ++status.lateness_count[std::lower_bound(lateness_bounds_us.begin(), lateness_bounds_us.end(), late) - lateness_bounds_us.begin()];
+    ++status.lateness_count[std::lower_bound(lateness_bounds_us.begin(), lateness_bounds_us.end(), late) -
+                            lateness_bounds_us.begin()];
   status.solve_us_p50 = percentile(solve_, 0.50);
   status.solve_us_p99 = percentile(solve_, 0.99);
   status.sweeps_mean = solve_.empty() ? 0 : sweeps_ / double(solve_.size());
@@ -59,20 +60,27 @@ void StatusCollector::finish(double elapsed_s, insula_lcm::haptic_status_t& stat
 std::string budget_advice(const insula_lcm::haptic_status_t& s, double period_us, std::int64_t missed) {
   if (!(s.ticks_per_s > 0)) return {};
   if (s.solve_us_p99 > 0.7 * period_us)
-    return fmt::format("solving takes {:.0f} us of a tick's {:.0f}: forces come late; less in contact at once ({} rows), or a faster processor",
-                       s.solve_us_p99, period_us, s.rows);
-  const char* cure = s.realtime ? "end what else runs on this machine, or try --spin 100" : "allow real-time scheduling (manual: Haptics and safety)";
+    return fmt::format(
+        "solving takes {:.0f} us of a tick's {:.0f}: forces come late; less in contact at once ({} rows), or a faster "
+        "processor",
+        s.solve_us_p99, period_us, s.rows);
+  const char* cure = s.realtime ? "end what else runs on this machine, or try --spin 100"
+                                : "allow real-time scheduling (manual: Haptics and safety)";
   const double share = double(missed) / (double(missed) + s.ticks_per_s);
   if (share > 0.01) return fmt::format("{:.0f} % of the servo's ticks were missed: {}", 100 * share, cure);
-  if (s.lateness_us_p99 > 0.5 * period_us) return fmt::format("ticks begin up to {:.0f} us late: {}", s.lateness_us_p99, cure);
+  if (s.lateness_us_p99 > 0.5 * period_us)
+    return fmt::format("ticks begin up to {:.0f} us late: {}", s.lateness_us_p99, cure);
   constexpr double much_mJ = 1;  // what an encoder's steps give a loose hand stays below
   for (std::size_t i = 0; i < 2; ++i)
     if (s.given_mJ[i] > much_mJ)
-      return fmt::format("the {} hand gets energy out of what it touches ({:.1f} mJ), and may feel it buzz: a tool with a softer coupling, or a firmer grip",
-                         i == 0 ? "left" : "right", s.given_mJ[i]);
+      return fmt::format(
+          "the {} hand gets energy out of what it touches ({:.1f} mJ), and may feel it buzz: a tool with a softer "
+          "coupling, or a firmer grip",
+          i == 0 ? "left" : "right", s.given_mJ[i]);
   if (s.residual_m_max > 1e-4)
-    return fmt::format("forces are {:.2f} mm from their solution after {:.0f} sweeps of {} rows: less in contact at once", 1e3 * s.residual_m_max,
-                       s.sweeps_mean, s.rows);
+    return fmt::format(
+        "forces are {:.2f} mm from their solution after {:.0f} sweeps of {} rows: less in contact at once",
+        1e3 * s.residual_m_max, s.sweeps_mean, s.rows);
   return {};
 }
 

@@ -17,8 +17,8 @@ struct TickSample {
   std::int16_t sweeps = 0;
   std::int16_t rows = 0;
   bool solved = false;
-  /// Per hand: came from a new solve of a recent problem and differs, in any bit, from the tick before. Where nothing is
-  /// touched the force itself is next to nothing and so is the difference.
+  /// Per hand: came from a new solve of a recent problem and differs, in any bit, from the tick before. Where nothing
+  /// is touched the force itself is next to nothing and so is the difference.
   std::array<bool, 2> fresh{false, false};
   std::array<float, 2> given_J{};  ///< PassivityObserver::given()
 };

@@ -15,7 +15,8 @@ namespace {
 
 TEST(Status, CountsLatenessByItsBounds) {
   StatusCollector collector;
-  for (const float late : {0.f, 10.f, 11.f, 20.f, 499.f, 500.f, 501.f, 20'000.f, 20'001.f, 1e9f}) collector.add({.lateness_us = late});
+  for (const float late : {0.f, 10.f, 11.f, 20.f, 499.f, 500.f, 501.f, 20'000.f, 20'001.f, 1e9f})
+    collector.add({.lateness_us = late});
   insula_lcm::haptic_status_t s{};
   collector.finish(1, s);
   const int wanted[12] = {2, 2, 0, 0, 0, 2, 1, 0, 0, 0, 1, 2};
@@ -46,10 +47,13 @@ TEST(Status, AdviceIsGivenWhenABudgetIsMissedAndOnlyThen) {
   auto s = good;
   s.solve_us_p99 = 900;
   s.rows = 180;
-  EXPECT_EQ(budget_advice(s, 1000, 0), "solving takes 900 us of a tick's 1000: forces come late; less in contact at once (180 rows), or a faster processor");
+  EXPECT_EQ(budget_advice(s, 1000, 0),
+            "solving takes 900 us of a tick's 1000: forces come late; less in contact at once (180 rows), or a faster "
+            "processor");
   s = good;
   s.ticks_per_s = 900;
-  EXPECT_EQ(budget_advice(s, 1000, 100), "10 % of the servo's ticks were missed: end what else runs on this machine, or try --spin 100");
+  EXPECT_EQ(budget_advice(s, 1000, 100),
+            "10 % of the servo's ticks were missed: end what else runs on this machine, or try --spin 100");
   s.realtime = 0;
   EXPECT_NE(budget_advice(s, 1000, 100).find("allow real-time scheduling"), std::string::npos);
   s = good;

@@ -13,7 +13,8 @@ constexpr double same_length = 0.1;  // ticks that differ by less share a W
 
 }  // namespace
 
-SubstepCorrection::SubstepCorrection(const SubstepCorrectionSettings& settings, int max_rows) : settings_(settings), extrapolation_(max_rows) {
+SubstepCorrection::SubstepCorrection(const SubstepCorrectionSettings& settings, int max_rows)
+    : settings_(settings), extrapolation_(max_rows) {
   tick_.resize(max_rows);
   tick_.blocks.reserve(std::size_t(max_rows));
   for (auto* v : {&gap_, &rate_, &known_, &share_}) v->assign(std::size_t(max_rows), 0.0);
@@ -21,7 +22,8 @@ SubstepCorrection::SubstepCorrection(const SubstepCorrectionSettings& settings, 
   tool_coupled_.reserve(std::size_t(max_rows));
 }
 
-void SubstepCorrection::begin(const ConstraintProblem& p, const std::array<GraspedBody, 2>& grasped, double age_s) noexcept {
+void SubstepCorrection::begin(const ConstraintProblem& p, const std::array<GraspedBody, 2>& grasped,
+                              double age_s) noexcept {
   step_ = &p;
   grasped_ = grasped;
   const std::size_t n = std::size_t(p.rows);
@@ -30,7 +32,8 @@ void SubstepCorrection::begin(const ConstraintProblem& p, const std::array<Grasp
   std::copy_n(p.lambda.begin(), n, known_.begin());
   std::fill_n(slips_.begin(), n, char(0));
   for (const Block& b : p.blocks)
-    for (int k = b.law == LawKind::friction ? 1 : 0; k < b.rows() && b.law != LawKind::box; ++k) slips_[std::size_t(b.row + k)] = 1;
+    for (int k = b.law == LawKind::friction ? 1 : 0; k < b.rows() && b.law != LawKind::box; ++k)
+      slips_[std::size_t(b.row + k)] = 1;
   for (std::size_t i = 0; i < n; ++i) {
     double gap = p.delta_free[i];
     const double* w = p.w.data() + i * std::size_t(p.stride);

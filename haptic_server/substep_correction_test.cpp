@@ -1,20 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Between steps: a viscoelastic layer against implicit Euler at 1 kHz, friction that turns round, tissue that goes on, force cross-fade.
+// Between steps: a viscoelastic layer against implicit Euler at 1 kHz, friction that turns round, tissue that goes on,
+// force cross-fade.
 #include "haptic_server/substep_correction.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "haptic_server/servo.h"
 #include "haptic_server/problem_for_test.h"
+#include "haptic_server/servo.h"
 
 namespace insula {
 namespace {
 
 constexpr double tick_s = 1e-3;
 
-/// A layer of stiffness K and K beta v under a tool on a spring: u is how far it is pressed in, x the device, lambda the contact.
+/// A layer of stiffness K and K beta v under a tool on a spring: u is how far it is pressed in, x the device, lambda
+/// the contact.
 ///   step of h: K (1 + beta/h) du = lambda - K u,   gap = x + lambda / coupling + u
 struct Layer {
   double stiffness = 60, beta = 0.02, coupling = 250;  // N/m, s, N/m

@@ -55,7 +55,7 @@ TEST(TripleBuffer, TwoThreadsNeverShareASlot) {
     ++taken;
     const Value& v = b.front();
     const long first = v.words[0];
-    ASSERT_GT(first, last);  // newer each time
+    ASSERT_GT(first, last);                                                                        // newer each time
     ASSERT_TRUE(std::all_of(v.words.begin(), v.words.end(), [&](long w) { return w == first; }));  // never torn
     last = first;
   }

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "haptic_server/welded_problem_for_test.h"
 #include "haptic_server/servo.h"
+#include "haptic_server/welded_problem_for_test.h"
 
 namespace insula {
 namespace {
@@ -84,8 +84,11 @@ TEST(WeldElimination, NothingElseIsTakenForAClip) {
   const ConstraintProblem none = testing::two_tool_problem(10, 10, 3);
   WeldElimination weld_elimination(servo_max_rows);
   EXPECT_EQ(&weld_elimination.eliminate(none), &none);
-  for (const auto& change : {+[](ConstraintProblem& p) { p.blocks[3].upper = 0; }, +[](ConstraintProblem& p) { p.blocks[2].compliance = 1e-3; },
-                             +[](ConstraintProblem& p) { p.retardation_time[5] = 0.02; }, +[](ConstraintProblem& p) { p.blocks[4].owner = 99; }, +[](ConstraintProblem& p) { p.blocks[4].role = BlockRole::other; },
+  for (const auto& change : {+[](ConstraintProblem& p) { p.blocks[3].upper = 0; },
+                             +[](ConstraintProblem& p) { p.blocks[2].compliance = 1e-3; },
+                             +[](ConstraintProblem& p) { p.retardation_time[5] = 0.02; },
+                             +[](ConstraintProblem& p) { p.blocks[4].owner = 99; },
+                             +[](ConstraintProblem& p) { p.blocks[4].role = BlockRole::other; },
                              +[](ConstraintProblem& p) { p.tools[0].jacobian.row(1).setZero(); }}) {
     ConstraintProblem p = with_clip(4, 0, 2);
     ASSERT_EQ(first_weld_row(p, 0), 0);

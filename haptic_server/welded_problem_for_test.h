@@ -5,7 +5,8 @@
 
 namespace insula::testing {
 
-/// A tool at the origin, a clip in it that is touched by `contacts` at `reach` below, six rows between them after as many of the tool's own.
+/// A tool at the origin, a clip in it that is touched by `contacts` at `reach` below, six rows between them after as
+/// many of the tool's own.
 inline ConstraintProblem with_clip(int contacts, int own, std::uint64_t seed) {
   constexpr double step_s = 1.0 / 60, mass_kg = 0.03, turning = 1.2e-5, lever = 5e-3, reach = 0.01;
   Random random(seed);
@@ -26,7 +27,8 @@ inline ConstraintProblem with_clip(int contacts, int own, std::uint64_t seed) {
   for (int k = 0; k < 6; ++k) {
     clip(own + k, k) = k < 3 ? 1 : lever;
     t.jacobian.row(own + k) = -clip.row(own + k);
-    p.blocks.push_back({.id = (std::uint64_t(7) << 44) + std::uint64_t(k), .owner = 7, .role = BlockRole::weld, .row = own + k});
+    p.blocks.push_back(
+        {.id = (std::uint64_t(7) << 44) + std::uint64_t(k), .owner = 7, .role = BlockRole::weld, .row = own + k});
   }
   std::vector<Block> before;
   for (int i = 0; i < n; ++i) {

@@ -34,8 +34,9 @@ TEST(Diagnostics, SortsByFileAsMetThenLineThenColumn) {
   d.error({"z.xml", 2, 3}, "4");
   d.error({"z.xml", 2, 3}, "5");
   d.sort_by_position();
-  EXPECT_EQ(d.format(),
-            "z.xml:2:3: error: 4\nz.xml:2:3: error: 5\nz.xml:2:7: error: 3\nz.xml:9:1: error: 1\na.xml:1:1: error: 2\n");
+  EXPECT_EQ(
+      d.format(),
+      "z.xml:2:3: error: 4\nz.xml:2:3: error: 5\nz.xml:2:7: error: 3\nz.xml:9:1: error: 1\na.xml:1:1: error: 2\n");
   EXPECT_EQ(d.errors(), 5);
 }
 

@@ -11,7 +11,8 @@ namespace insula {
 namespace {
 
 TEST(Rotation, RoundTrip) {
-  for (const Vec3& r : {Vec3(0, 0, 0), Vec3(1e-14, 0, 0), Vec3(0.3, -0.2, 0.9), Vec3(0, 3.1, 0), Vec3(1e-6, 2e-6, -1e-6)})
+  for (const Vec3& r :
+       {Vec3(0, 0, 0), Vec3(1e-14, 0, 0), Vec3(0.3, -0.2, 0.9), Vec3(0, 3.1, 0), Vec3(1e-6, 2e-6, -1e-6)})
     EXPECT_LT((rotation_vector(from_rotation_vector(r)) - r).norm(), 1e-12) << r.transpose();
 }
 

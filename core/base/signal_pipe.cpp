@@ -31,7 +31,8 @@ SignalPipe::SignalPipe(std::initializer_list<int> signals) {
   if (pipe2(ends_, O_CLOEXEC | O_NONBLOCK) != 0) throw std::system_error(errno, std::generic_category(), "pipe");
   write_end = ends_[1];
   for (int signal : signals) {
-    struct sigaction action {}, previous {};
+    struct sigaction action {
+    }, previous{};
     action.sa_handler = on_signal;
     action.sa_flags = SA_RESTART;
     sigaction(signal, &action, &previous);

@@ -11,7 +11,8 @@ namespace insula {
 namespace {
 
 TEST(SignalPipe, TakesSignalsOfTheProcessAndOfThreads) {
-  struct sigaction before {}, after {};
+  struct sigaction before {
+  }, after{};
   sigaction(SIGUSR1, nullptr, &before);
   {
     const SignalPipe pipe{SIGUSR1, SIGUSR2};

@@ -15,7 +15,8 @@ void sort_unique_pairs(std::vector<std::pair<int, int>>& pairs, int count) {
   for (const auto& [i, j] : pairs) larger[fill[std::size_t(std::min(i, j))]++] = std::max(i, j);
   pairs.clear();
   for (int i = 0; i < count; ++i) {
-    const auto begin = larger.begin() + std::ptrdiff_t(start[std::size_t(i)]), end = larger.begin() + std::ptrdiff_t(start[std::size_t(i) + 1]);
+    const auto begin = larger.begin() + std::ptrdiff_t(start[std::size_t(i)]),
+               end = larger.begin() + std::ptrdiff_t(start[std::size_t(i) + 1]);
     std::sort(begin, end);
     for (auto at = begin; at != end; ++at)
       if (at == begin || *at != *(at - 1)) pairs.emplace_back(i, *at);

@@ -28,18 +28,19 @@ TEST(Text, Articles) {
 }
 
 TEST(Utf8, AcceptsWellFormed) {
-  for (const char* good : {"", "plain", "\xC3\xA4", "\xE2\x82\xAC", "\xF0\x9F\xA7\xA0", "\xED\x9F\xBF", "\xF4\x8F\xBF\xBF"})
+  for (const char* good :
+       {"", "plain", "\xC3\xA4", "\xE2\x82\xAC", "\xF0\x9F\xA7\xA0", "\xED\x9F\xBF", "\xF4\x8F\xBF\xBF"})
     EXPECT_EQ(find_invalid_utf8(good), std::string_view::npos) << good;
 }
 
 TEST(Utf8, FindsTheFirstBadByte) {
-  EXPECT_EQ(find_invalid_utf8("ab\xE4"), 2u);              // Latin-1
-  EXPECT_EQ(find_invalid_utf8("\xC3"), 0u);                // cut
-  EXPECT_EQ(find_invalid_utf8("\xC0\xAF"), 0u);            // longer than needed
+  EXPECT_EQ(find_invalid_utf8("ab\xE4"), 2u);    // Latin-1
+  EXPECT_EQ(find_invalid_utf8("\xC3"), 0u);      // cut
+  EXPECT_EQ(find_invalid_utf8("\xC0\xAF"), 0u);  // longer than needed
   EXPECT_EQ(find_invalid_utf8("\xE0\x80\xAF"), 0u);
-  EXPECT_EQ(find_invalid_utf8("\xED\xA0\x80"), 0u);        // surrogate
-  EXPECT_EQ(find_invalid_utf8("\xF4\x90\x80\x80"), 0u);    // beyond Unicode
-  EXPECT_EQ(find_invalid_utf8("a\x80"), 1u);               // continuation alone
+  EXPECT_EQ(find_invalid_utf8("\xED\xA0\x80"), 0u);      // surrogate
+  EXPECT_EQ(find_invalid_utf8("\xF4\x90\x80\x80"), 0u);  // beyond Unicode
+  EXPECT_EQ(find_invalid_utf8("a\x80"), 1u);             // continuation alone
   EXPECT_EQ(find_invalid_utf8("\xFF\xFE"), 0u);
 }
 

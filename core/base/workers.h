@@ -23,7 +23,8 @@ class Workers {
   /// Calls task(0) ... task(count - 1), each once, and returns when all are done. Allocates nothing.
   template <class F>
   void run(int count, F&& task) {
-    run_raw(count, [](void* t, int i) { (*static_cast<std::remove_reference_t<F>*>(t))(i); }, &task);
+    run_raw(
+        count, [](void* t, int i) { (*static_cast<std::remove_reference_t<F>*>(t))(i); }, &task);
   }
 
  private:

@@ -7,15 +7,15 @@ namespace insula {
 
 class ArrivalOrder {
  public:
-  /// After this silence a sender that started earlier, or an earlier number, is believed: with the gate's ramp-in, feeling is
-  /// back within a second.
+  /// After this silence a sender that started earlier, or an earlier number, is believed: with the gate's ramp-in,
+  /// feeling is back within a second.
   static constexpr std::int64_t silence_ns = 500'000'000;
   /// Numbers lost in one go that need no explanation.
   static constexpr std::int64_t far = 1000;
 
-  /// Whether a message that arrives now counts; then it is the newest. False: out of order, doubled, or of a sender that was
-  /// replaced. A later sender, or a number far ahead, is believed when it goes on: one damaged message must not shut out all
-  /// that are whole.
+  /// Whether a message that arrives now counts; then it is the newest. False: out of order, doubled, or of a sender
+  /// that was replaced. A later sender, or a number far ahead, is believed when it goes on: one damaged message must
+  /// not shut out all that are whole.
   bool take(std::int64_t session, std::int64_t sequence, std::int64_t now_ns) {
     const Place place{session, sequence};
     // A clock that went back says nothing of how long it was silent.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Publish and subscribe of messages between processes, or inside one. A message is a channel name and bytes (see codec.h).
+// Publish and subscribe of messages between processes, or inside one. A message is a channel name and bytes (see
+// codec.h).
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -12,8 +13,8 @@ namespace insula {
 
 using Bytes = std::span<const std::uint8_t>;
 
-/// One endpoint. `publish` may be called from any thread; `subscribe` and `poll` from one thread at a time. Handlers run
-/// inside `poll`, in the order of arrival. An endpoint receives its own messages too when it subscribed to them.
+/// One endpoint. `publish` may be called from any thread; `subscribe` and `poll` from one thread at a time. Handlers
+/// run inside `poll`, in the order of arrival. An endpoint receives its own messages too when it subscribed to them.
 class Bus {
  public:
   using Handler = std::function<void(Bytes)>;
@@ -23,8 +24,8 @@ class Bus {
   virtual bool publish(std::string_view channel, Bytes message) = 0;
   /// Calls `handler` for each message of exactly this channel. Not to be called from inside a handler.
   virtual void subscribe(std::string_view channel, Handler handler) = 0;
-  /// Waits at most timeout_ms for a first message, then handles what is there (a bounded number of messages); returns how
-  /// many were handled. An exception of a handler comes out of here.
+  /// Waits at most timeout_ms for a first message, then handles what is there (a bounded number of messages); returns
+  /// how many were handled. An exception of a handler comes out of here.
   virtual int poll(int timeout_ms) = 0;
   /// False when the endpoint cannot work: not created, or the last message could not be sent.
   virtual bool good() const = 0;
@@ -32,8 +33,8 @@ class Bus {
   virtual std::string error() const = 0;
 };
 
-/// "udpm://..." gives an LcmBus; "memq://" a MemBus on a hub of its own; "" the URL of LCM_DEFAULT_URL or, when that is not
-/// set, udpm://239.255.76.67:7667?ttl=0. Never null: check good() and show error().
+/// "udpm://..." gives an LcmBus; "memq://" a MemBus on a hub of its own; "" the URL of LCM_DEFAULT_URL or, when that is
+/// not set, udpm://239.255.76.67:7667?ttl=0. Never null: check good() and show error().
 std::unique_ptr<Bus> make_bus(std::string_view url = {});
 
 }  // namespace insula

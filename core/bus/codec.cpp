@@ -15,12 +15,12 @@ bool starts_as(ByteReader& in, const Message*) {
 }
 
 void walk_hand_state(ByteReader& in) {
-  in.take(size_i8);      // hand
-  in.skip_string();      // device
-  in.take(size_i8);      // connected
+  in.take(size_i8);        // hand
+  in.skip_string();        // device
+  in.take(size_i8);        // connected
   in.take(13 * size_f64);  // p, q, v, w
-  in.take(2 * size_i8);  // buttons
-  in.take(6 * size_f64);  // force, torque
+  in.take(2 * size_i8);    // buttons
+  in.take(6 * size_f64);   // force, torque
 }
 
 void walk_render_body(ByteReader& in) {
@@ -28,7 +28,8 @@ void walk_render_body(ByteReader& in) {
   in.take_array(in.i32(), 3 * size_f32);
 }
 
-constexpr std::size_t render_tool_bytes = size_i32 + 2 * size_i8 + (3 + 4 + 3 + 3) * size_f64 + 2 * size_i8 + 2 * size_f32;
+constexpr std::size_t render_tool_bytes =
+    size_i32 + 2 * size_i8 + (3 + 4 + 3 + 3) * size_f64 + 2 * size_i8 + 2 * size_f32;
 
 }  // namespace
 
@@ -52,10 +53,10 @@ bool well_formed(const insula_lcm::hand_input_t* type, Bytes bytes) {
 bool well_formed(const insula_lcm::haptic_status_t* type, Bytes bytes) {
   ByteReader in(bytes);
   if (!starts_as(in, type)) return false;
-  in.take(3 * size_i64);  // session, sequence, time
-  in.take(3 * size_f64);  // ticks, fresh forces
-  in.take(size_i64);      // missed ticks
-  in.take(7 * size_f64 + 12 * size_i32);  // lateness and its histogram, solve, sweeps, residual
+  in.take(3 * size_i64);                        // session, sequence, time
+  in.take(3 * size_f64);                        // ticks, fresh forces
+  in.take(size_i64);                            // missed ticks
+  in.take(7 * size_f64 + 12 * size_i32);        // lateness and its histogram, solve, sweeps, residual
   in.take(size_i32 + size_f64 + 2 * size_i64);  // rows, age, counts
   in.take(3 * size_f64 + size_i8);              // energies, force scale, real time
   in.skip_string();

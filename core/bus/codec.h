@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Messages <-> bytes. Decoders take anything at all: garbage, truncated or hostile bytes give `false` and a reason, never an
-// exception, a read out of bounds or a large allocation, and leave the target as it was or (generated types) unused.
+// Messages <-> bytes. Decoders take anything at all: garbage, truncated or hostile bytes give `false` and a reason,
+// never an exception, a read out of bounds or a large allocation, and leave the target as it was or (generated types)
+// unused.
 //
 //   insula_lcm::scene_info_t info;            std::vector<std::uint8_t> bytes;  std::string why;
 //   encode(info, bytes);                      // false when counts and vector sizes disagree
@@ -27,8 +28,8 @@
 
 namespace insula {
 
-/// Whether the bytes have the structure of the type: fingerprint, counts that fit, whole strings, no byte too few or too
-/// many. Reads every count before anything is allocated.
+/// Whether the bytes have the structure of the type: fingerprint, counts that fit, whole strings, no byte too few or
+/// too many. Reads every count before anything is allocated.
 bool well_formed(const insula_lcm::device_state_t*, Bytes bytes);
 bool well_formed(const insula_lcm::hand_input_t*, Bytes bytes);
 bool well_formed(const insula_lcm::haptic_status_t*, Bytes bytes);

@@ -15,17 +15,20 @@ namespace {
 
 constexpr std::uint32_t mark = 0xEDA1DA01;
 constexpr std::size_t head_bytes = 28;
-constexpr int max_name = 63;                          // LCM_MAX_CHANNEL_NAME_LENGTH
-constexpr int max_message = 64 * 1024 * 1024;         // other programs may share the bus; ours are far smaller
+constexpr int max_name = 63;                   // LCM_MAX_CHANNEL_NAME_LENGTH
+constexpr int max_message = 64 * 1024 * 1024;  // other programs may share the bus; ours are far smaller
 
 }  // namespace
 
 EventLog::EventLog(const std::filesystem::path& file) : file_(file), in_(file, std::ios::binary) {
   if (!in_ || std::filesystem::is_directory(file)) throw InputError(fmt::format("{}: cannot be read", file.string()));
-  if (in_.peek() == std::ifstream::traits_type::eof()) throw InputError(fmt::format("{}: the log is empty", file.string()));
+  if (in_.peek() == std::ifstream::traits_type::eof())
+    throw InputError(fmt::format("{}: the log is empty", file.string()));
 }
 
-void EventLog::fail(const std::string& what) const { throw InputError(fmt::format("{}: byte {}: {}", file_.string(), at_, what)); }
+void EventLog::fail(const std::string& what) const {
+  throw InputError(fmt::format("{}: byte {}: {}", file_.string(), at_, what));
+}
 
 bool EventLog::next(LogEvent& event) {
   std::array<std::uint8_t, head_bytes> head;

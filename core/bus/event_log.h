@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Reads the logs of lcm-logger, strictly: what is damaged is said with its place, never skipped in silence.
 //
-// An event, all numbers big-endian: uint32 0xEDA1DA01, int64 number, int64 time (us since 1970), int32 length of the channel's name, int32 length
-// of the message, name, message.
+// An event, all numbers big-endian: uint32 0xEDA1DA01, int64 number, int64 time (us since 1970), int32 length of the
+// channel's name, int32 length of the message, name, message.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -23,7 +23,8 @@ class EventLog {
  public:
   /// Throws InputError when the file cannot be read or does not begin with an event.
   explicit EventLog(const std::filesystem::path& file);
-  /// False at the end. Throws InputError "file: byte N: ..." where the log is damaged or cut short; what was read before is whole.
+  /// False at the end. Throws InputError "file: byte N: ..." where the log is damaged or cut short; what was read
+  /// before is whole.
   bool next(LogEvent& event);
 
  private:

@@ -13,8 +13,8 @@ class Mutator {
  public:
   explicit Mutator(std::uint32_t seed) : random_(seed) {}
 
-  /// One to four hurts of a copy of `original`; the fingerprint (first 8 bytes) is mostly left alone so that the decoder
-  /// gets past it.
+  /// One to four hurts of a copy of `original`; the fingerprint (first 8 bytes) is mostly left alone so that the
+  /// decoder gets past it.
   std::vector<std::uint8_t> operator()(const std::vector<std::uint8_t>& original) {
     std::vector<std::uint8_t> bytes = original;
     const int hurts = 1 + int(below(4));
@@ -26,7 +26,8 @@ class Mutator {
   std::size_t below(std::size_t n) { return std::uniform_int_distribution<std::size_t>(0, n - 1)(random_); }
 
   void put(std::vector<std::uint8_t>& b, std::size_t at, std::uint64_t value, std::size_t width) {
-    for (std::size_t i = 0; i < width && at + i < b.size(); ++i) b[at + i] = std::uint8_t(value >> (8 * (width - 1 - i)));
+    for (std::size_t i = 0; i < width && at + i < b.size(); ++i)
+      b[at + i] = std::uint8_t(value >> (8 * (width - 1 - i)));
   }
 
   void hurt(std::vector<std::uint8_t>& b) {
@@ -39,10 +40,11 @@ class Mutator {
     switch (below(9)) {
       case 0: b[at] ^= std::uint8_t(1u << below(8)); break;
       case 1: b[at] = std::uint8_t(below(256)); break;
-      case 2: put(b, at, 0x7ff8000000000000u, 8); break;  // NaN
+      case 2: put(b, at, 0x7ff8000000000000u, 8); break;                                   // NaN
       case 3: put(b, at, below(2) ? 0x7ff0000000000000u : 0xfff0000000000000u, 8); break;  // infinities
-      case 4: {  // counts
-        static constexpr std::uint32_t odd[] = {0, 1, 0x7fffffff, 0x80000000, 0xffffffff, 0xfffffff0, 0x00ffffff, 0x10000};
+      case 4: {                                                                            // counts
+        static constexpr std::uint32_t odd[] = {0,          1,          0x7fffffff, 0x80000000,
+                                                0xffffffff, 0xfffffff0, 0x00ffffff, 0x10000};
         put(b, at, odd[below(8)], 4);
         break;
       }

@@ -18,15 +18,13 @@ bool fail(std::string& why, const char* text) {
 }
 
 /// No NUL inside, valid length.
-bool text_ok(const std::string& s, std::size_t most) {
-  return s.size() <= most && s.find('\0') == std::string::npos;
-}
+bool text_ok(const std::string& s, std::size_t most) { return s.size() <= most && s.find('\0') == std::string::npos; }
 /// A short plain word: letters, digits, _ - . : #
 bool word_ok(const std::string& s, std::size_t most) {
   return s.size() <= most && std::all_of(s.begin(), s.end(), [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-           std::string_view("_-.:#").find(c) != std::string_view::npos;
-  });
+           return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                  std::string_view("_-.:#").find(c) != std::string_view::npos;
+         });
 }
 bool non_negative(double v, double most) { return v >= 0 && v <= most; }  // false for NaN
 bool flag_ok(int v) { return v == 0 || v == 1; }
@@ -59,10 +57,12 @@ bool plausible(const insula_lcm::device_state_t& m, std::string& why) {
     if (h.hand != 0 && h.hand != 1) return fail(why, "hand is neither left nor right");
     if (i == 1 && h.hand == m.hand[0].hand) return fail(why, "the same hand twice");
     if (!word_ok(h.device, 64)) return fail(why, "device name is no short word");
-    if (!flag_ok(h.connected) || !flag_ok(h.button1) || !flag_ok(h.button2)) return fail(why, "flag is neither 0 nor 1");
+    if (!flag_ok(h.connected) || !flag_ok(h.button1) || !flag_ok(h.button2))
+      return fail(why, "flag is neither 0 nor 1");
     if (!within(h.p_m, 3, limits::position_m)) return fail(why, "device position out of range");
     if (!unit_quaternion(h.q)) return fail(why, "device orientation is no unit quaternion");
-    if (!within(h.v_m_s, 3, limits::speed_m_s) || !within(h.w_rad_s, 3, limits::spin_rad_s)) return fail(why, "device velocity out of range");
+    if (!within(h.v_m_s, 3, limits::speed_m_s) || !within(h.w_rad_s, 3, limits::spin_rad_s))
+      return fail(why, "device velocity out of range");
     if (!within(h.force_N, 3, 100) || !within(h.torque_Nm, 3, 100)) return fail(why, "device force out of range");
   }
   return true;
@@ -86,7 +86,8 @@ bool plausible(const insula_lcm::haptic_status_t& m, std::string& why) {
     if (!non_negative(v, 1e6)) return fail(why, "rate out of range");
   for (double v : {m.lateness_us_p50, m.lateness_us_p99, m.lateness_us_max, m.solve_us_p50, m.solve_us_p99})
     if (!non_negative(v, max_us)) return fail(why, "time out of range");
-  if (std::any_of(std::begin(m.lateness_count), std::end(m.lateness_count), [](int n) { return n < 0; })) return fail(why, "negative count");
+  if (std::any_of(std::begin(m.lateness_count), std::end(m.lateness_count), [](int n) { return n < 0; }))
+    return fail(why, "negative count");
   if (!non_negative(m.sweeps_mean, 1e6) || !non_negative(m.residual_m_max, 1e6))
     return fail(why, "solver figures out of range");
   if (!non_negative(m.given_mJ[0], 1e6) || !non_negative(m.given_mJ[1], 1e6)) return fail(why, "energy out of range");
@@ -118,7 +119,8 @@ bool plausible(const insula_lcm::render_frame_t& m, std::string& why) {
     if (d.index < 0 || d.index > 4095) return fail(why, "drawable number out of range");
     for (std::size_t j = 0; j < i; ++j)
       if (m.drawable[j].index == d.index) return fail(why, "the same drawable twice");
-    if (!std::all_of(d.data.begin(), d.data.end(), [](float v) { return std::isfinite(v); })) return fail(why, "drawable is not finite");
+    if (!std::all_of(d.data.begin(), d.data.end(), [](float v) { return std::isfinite(v); }))
+      return fail(why, "drawable is not finite");
   }
   for (std::size_t i = 0; i < m.tool.size(); ++i) {
     const auto& t = m.tool[i];
@@ -129,7 +131,8 @@ bool plausible(const insula_lcm::render_frame_t& m, std::string& why) {
     if (!within(t.force_N, 3, limits::force_N)) return fail(why, "tool force out of range");
     if (!(t.activity >= 0.f && t.activity <= 1.f)) return fail(why, "tool activity out of range");
     if (t.state < 0 || t.state > 2) return fail(why, "tool state is none of 0, 1, 2");
-    if (!(t.opening_rad >= -limits::opening_rad && t.opening_rad <= limits::opening_rad)) return fail(why, "tool opening out of range");
+    if (!(t.opening_rad >= -limits::opening_rad && t.opening_rad <= limits::opening_rad))
+      return fail(why, "tool opening out of range");
   }
   for (const auto& x : m.contact_x_m)
     if (!within(x.data(), 3, limits::position_m)) return fail(why, "contact position out of range");
@@ -168,7 +171,8 @@ bool plausible(const insula_lcm::user_command_t& m, std::string& why) {
   if (!word_ok(m.sender, 64)) return fail(why, "sender is no short word");
   if (!text_ok(m.argument, path_text)) return fail(why, "argument too long");
   // What a component or a person is asked goes into logs and onto screens.
-  if (std::any_of(m.argument.begin(), m.argument.end(), [](char c) { return (c >= 0 && c < 0x20 && c != '\t') || c == 0x7f; }))
+  if (std::any_of(m.argument.begin(), m.argument.end(),
+                  [](char c) { return (c >= 0 && c < 0x20 && c != '\t') || c == 0x7f; }))
     return fail(why, "argument holds control characters");
   return true;
 }
@@ -185,9 +189,9 @@ bool consistent(const insula_lcm::render_frame_t& m) {
     if (b.nodes < 0 || b.x_m.size() != std::size_t(b.nodes) || !all_triples(b.x_m)) return false;
   for (const auto& d : m.drawable)
     if (d.floats < 0 || d.data.size() != std::size_t(d.floats)) return false;
-  return m.channel.size() == std::size_t(m.channels) && m.drawable.size() == std::size_t(m.drawables) && m.tool.size() == std::size_t(m.tools) &&
-         m.contact_x_m.size() == std::size_t(m.contacts) && all_triples(m.contact_x_m) &&
-         m.contact_N.size() == std::size_t(m.contacts);
+  return m.channel.size() == std::size_t(m.channels) && m.drawable.size() == std::size_t(m.drawables) &&
+         m.tool.size() == std::size_t(m.tools) && m.contact_x_m.size() == std::size_t(m.contacts) &&
+         all_triples(m.contact_x_m) && m.contact_N.size() == std::size_t(m.contacts);
 }
 
 }  // namespace insula

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a message may say, beyond its structure: finite numbers, unit quaternions, known hands, magnitudes of an operating
-// table. A message that is not plausible is dropped whole.
+// What a message may say, beyond its structure: finite numbers, unit quaternions, known hands, magnitudes of an
+// operating table. A message that is not plausible is dropped whole.
 #pragma once
 #include <insula_lcm/device_state_t.hpp>
 #include <insula_lcm/hand_input_t.hpp>
@@ -32,12 +32,12 @@ bool consistent(const Message&) {
 
 /// Shared with the haptic problem's decoder.
 namespace limits {
-inline constexpr double position_m = 10;      ///< of any coordinate in the scene frame
+inline constexpr double position_m = 10;        ///< of any coordinate in the scene frame
 inline constexpr double unit_tolerance = 1e-4;  ///< of a quaternion's norm
 inline constexpr double force_N = 1e4;
-inline constexpr double speed_m_s = 1e3;       ///< of a device
+inline constexpr double speed_m_s = 1e3;  ///< of a device
 inline constexpr double spin_rad_s = 1e5;
-inline constexpr double opening_rad = 3.2;     ///< of an articulated tool, either way
+inline constexpr double opening_rad = 3.2;  ///< of an articulated tool, either way
 }  // namespace limits
 
 /// |v_i| <= most for all; false for NaN.

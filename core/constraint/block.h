@@ -15,8 +15,8 @@ enum class LawKind : std::uint8_t {
              ///< bilateral: c = 0, no bounds; compliant: c > 0; contact without friction: c = 0, [0, inf);
              ///< a fibre that carries tension only: c = 1/k, (-inf, 0]
   friction,  ///< three rows (normal, tangent, tangent): Signorini on the normal, Coulomb on the tangents
-  patch,     ///< two rows (tangent, tangent) that the `normals` one-row blocks before it share: |lambda_t| <= friction * the
-             ///< sum of their lambda, opposing slip (many contacts close together, one friction force)
+  patch,  ///< two rows (tangent, tangent) that the `normals` one-row blocks before it share: |lambda_t| <= friction *
+          ///< the sum of their lambda, opposing slip (many contacts close together, one friction force)
 };
 
 /// What a block of rows stands for. The solver does not look at it; whoever reads a problem may.
@@ -33,17 +33,18 @@ enum class BlockRole : std::uint8_t {
 };
 
 struct Block {
-  std::uint64_t id = 0;  ///< stable from step to step, unique in a problem: the warm start's key
+  std::uint64_t id = 0;     ///< stable from step to step, unique in a problem: the warm start's key
   std::int32_t owner = -1;  ///< document order of the component that added it; ConstraintBuilder fills it in; -1: none
   BlockRole role = BlockRole::other;
-  int row = 0;           ///< first row
+  int row = 0;  ///< first row
   LawKind law = LawKind::box;
-  double compliance = 0;      ///< m/N, >= 0; for friction blocks on the normal row
-  double lower = -infinite;   ///< N, box only
-  double upper = infinite;    ///< N, box only
-  double friction = 0;        ///< Coulomb coefficient, friction and patch blocks only
-  int normals = 0;            ///< of the blocks before this one, patch only
-  /// For who asks between steps: rotation vector, rad, by which a friction block's directions turn about their place while the tool goes on by a step's way.
+  double compliance = 0;     ///< m/N, >= 0; for friction blocks on the normal row
+  double lower = -infinite;  ///< N, box only
+  double upper = infinite;   ///< N, box only
+  double friction = 0;       ///< Coulomb coefficient, friction and patch blocks only
+  int normals = 0;           ///< of the blocks before this one, patch only
+  /// For who asks between steps: rotation vector, rad, by which a friction block's directions turn about their place
+  /// while the tool goes on by a step's way.
   std::array<float, 3> frame_rotation{};
   bool operator==(const Block&) const = default;
   int rows() const { return law == LawKind::friction ? 3 : law == LawKind::patch ? 2 : 1; }

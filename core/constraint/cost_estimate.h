@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a constraint will cost in a step, as counts that do not depend on the machine. tools/workbench/cost_model.h turns them into times.
+// What a constraint will cost in a step, as counts that do not depend on the machine. tools/workbench/cost_model.h
+// turns them into times.
 #pragma once
 #include <vector>
 

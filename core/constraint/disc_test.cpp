@@ -27,8 +27,8 @@ Mat2 matrix(double ratio, double angle) {
   return r * Vec2(1, ratio).asDiagonal() * r.transpose();
 }
 
-// The law is that of the least of l W l / 2 + q l over the disc: the inner minimum if it lies inside, else the lowest place of
-// the rim, found by a scan and bisection of its slope.
+// The law is that of the least of l W l / 2 + q l over the disc: the inner minimum if it lies inside, else the lowest
+// place of the rim, found by a scan and bisection of its slope.
 Vec2 search(const Mat2& w, const Vec2& q, double bound) {
   const Vec2 free = -w.fullPivLu().solve(q);
   if (free.norm() <= bound) return free;
@@ -56,7 +56,8 @@ TEST(Disc, IsTheSolutionThatASearchFinds) {
   Random random(3);
   int stick = 0, slip = 0;
   for (int trial = 0; trial < 4000; ++trial) {
-    const Mat2 w = matrix(std::pow(10.0, random.uniform(-4, 0)), random.uniform(0, 7)) * std::pow(10.0, random.uniform(-5, 1));
+    const Mat2 w =
+        matrix(std::pow(10.0, random.uniform(-4, 0)), random.uniform(0, 7)) * std::pow(10.0, random.uniform(-5, 1));
     const Vec2 q(random.uniform(-1, 1), random.uniform(-1, 1));
     const double free = w.fullPivLu().solve(q).norm();
     const double bound = free * random.uniform(0.01, 1.5);
@@ -70,7 +71,8 @@ TEST(Disc, IsTheSolutionThatASearchFinds) {
     } else {
       ++slip;
       ASSERT_NEAR(l.norm(), bound, 1e-12 * bound) << trial;
-      ASSERT_LT((delta.normalized() + l.normalized()).norm(), 1e-9 * q.norm() / delta.norm()) << trial << ": slip and force are not opposed";
+      ASSERT_LT((delta.normalized() + l.normalized()).norm(), 1e-9 * q.norm() / delta.norm())
+          << trial << ": slip and force are not opposed";
     }
   }
   EXPECT_GT(stick, 1000);
@@ -91,13 +93,14 @@ TEST(Disc, KnownAnswers) {
 }
 
 TEST(Disc, WithoutStrengthOrWithoutAMatrixThereIsNoForce) {
-  for (const double bound : {0.0, -1.0, std::nan("")}) EXPECT_TRUE(disc(Mat2::Identity(), Vec2(1, 2), bound).isZero(0)) << bound;
+  for (const double bound : {0.0, -1.0, std::nan("")})
+    EXPECT_TRUE(disc(Mat2::Identity(), Vec2(1, 2), bound).isZero(0)) << bound;
   EXPECT_TRUE(disc(Mat2::Zero(), Vec2(1, 2), 1).isZero(0));
   EXPECT_TRUE(disc(Mat2::Identity(), Vec2::Zero(), 1).isZero(0));
 }
 
-// One direction that hardly yields, or not at all: never longer than it may be, never upwards, and never worse than what the
-// other direction alone can do.
+// One direction that hardly yields, or not at all: never longer than it may be, never upwards, and never worse than
+// what the other direction alone can do.
 TEST(Disc, NearlySingularMatricesKeepTheBoundAndOpposeTheSlip) {
   Random random(5);
   for (const double ratio : {1e-8, 1e-11, 1e-13, 1e-16, 0.0})
@@ -111,7 +114,8 @@ TEST(Disc, NearlySingularMatricesKeepTheBoundAndOpposeTheSlip) {
       const Vec2 delta = w * l + q;
       ASSERT_LE(l.dot(delta), 1e-9 * bound * q.norm()) << "friction that drives";
       const auto energy = [&](const Vec2& x) { return 0.5 * x.dot(w * x) + q.dot(x); };
-      ASSERT_LE(energy(l), energy(search(w + 1e-12 * Mat2::Identity(), q, bound)) + 1e-6 * bound * q.norm()) << ratio << " " << trial;
+      ASSERT_LE(energy(l), energy(search(w + 1e-12 * Mat2::Identity(), q, bound)) + 1e-6 * bound * q.norm())
+          << ratio << " " << trial;
     }
 }
 

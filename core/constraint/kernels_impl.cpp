@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The sweep, compiled once per instruction set: KERNEL_NAME, KERNEL_BYTES a vector. Nothing inline from elsewhere is used
-// here: it would be compiled for this instruction set and might be linked into the rest.
+// The sweep, compiled once per instruction set: KERNEL_NAME, KERNEL_BYTES a vector. Nothing inline from elsewhere is
+// used here: it would be compiled for this instruction set and might be linked into the rest.
 #include "core/constraint/sweep_kernels.h"
 
 namespace insula::KERNEL_NAME {
@@ -35,7 +35,8 @@ struct Three {
 };
 
 // What the fast ways below do not cover. Leaves a start for the next slip, from (S + s) lambda_t = g.
-__attribute__((noinline)) Three exact(const SweepData& data, int k, LocalBlock& b, const double* lambda, const double* delta, double g1, double g2) {
+__attribute__((noinline)) Three exact(const SweepData& data, int k, LocalBlock& b, const double* lambda,
+                                      const double* delta, double g1, double g2) {
   double out[3] = {0, 0, 0};
   data.exact(*data.problem, k, lambda, delta, out);
   const double* t = b.law == LawKind::friction ? out + 1 : out;
@@ -45,9 +46,9 @@ __attribute__((noinline)) Three exact(const SweepData& data, int k, LocalBlock& 
   return {out[0], out[1], out[2]};
 }
 
-// Slip: |lambda_t| = mu lambda_n with (S + s) lambda_t = g and lambda_n = a0 + (a1 d2 + a2 d1) / (d1 d2), d = e + s. Times d1 d2, squared,
-// this is a polynomial in s. Newton from the last sweep's s, most often one step: its error is the square of what s moves by, which
-// vanishes with the sweeps, and the result is put on the cone.
+// Slip: |lambda_t| = mu lambda_n with (S + s) lambda_t = g and lambda_n = a0 + (a1 d2 + a2 d1) / (d1 d2), d = e + s.
+// Times d1 d2, squared, this is a polynomial in s. Newton from the last sweep's s, most often one step: its error is
+// the square of what s moves by, which vanishes with the sweeps, and the result is put on the cone.
 constexpr double slip_step = 0.03;  // relative to d2: further than that and one more step is made
 
 inline Three next_friction(const SweepData& data, int k, LocalBlock& b, const double* lambda, const double* delta) {
@@ -56,7 +57,8 @@ inline Three next_friction(const SweepData& data, int k, LocalBlock& b, const do
   const double* w = data.w + r * s + r;
   const double l0 = lambda[r], l1 = lambda[r + 1], l2 = lambda[r + 2];
   // W lambda of the block itself: known before delta is.
-  const double w0 = w[0] * l0 + w[1] * l1 + w[2] * l2, w1 = w[1] * l0 + w[s + 1] * l1 + w[s + 2] * l2, w2 = w[2] * l0 + w[s + 2] * l1 + w[2 * s + 2] * l2;
+  const double w0 = w[0] * l0 + w[1] * l1 + w[2] * l2, w1 = w[1] * l0 + w[s + 1] * l1 + w[s + 2] * l2,
+               w2 = w[2] * l0 + w[s + 2] * l1 + w[2 * s + 2] * l2;
   const double i = b.inverse_normal, c1 = b.m1 * i, c2 = b.m2 * i;
   const double own1 = b.vx * w1 + b.vy * w2 - c1 * w0, own2 = b.vx * w2 - b.vy * w1 - c2 * w0;
   const double dn = delta[r], d1 = delta[r + 1], d2 = delta[r + 2];
@@ -73,7 +75,8 @@ inline Three next_friction(const SweepData& data, int k, LocalBlock& b, const do
   double slip = b.slip, e1 = b.high + slip, e2 = b.low + slip;
   if (!(slip >= 0)) return exact(data, k, b, lambda, delta, g1, g2);
   for (int step_count = 0;; ++step_count) {
-    const double p1 = g1 * e2, p2 = g2 * e1, m = -i * (qn * (e1 * e2) + b.m1 * p1 + b.m2 * p2), dm = -i * (qn * (e1 + e2) + b.m1 * g1 + b.m2 * g2);
+    const double p1 = g1 * e2, p2 = g2 * e1, m = -i * (qn * (e1 * e2) + b.m1 * p1 + b.m2 * p2),
+                 dm = -i * (qn * (e1 + e2) + b.m1 * g1 + b.m2 * g2);
     const double f = p1 * p1 + p2 * p2 - mu2 * m * m, df = 2 * (g1 * p1 + g2 * p2 - mu2 * m * dm);
     const double step = f / df;
     slip -= step;
@@ -83,7 +86,8 @@ inline Three next_friction(const SweepData& data, int k, LocalBlock& b, const do
     if (size(step) <= slip_step * e2) break;
   }
   const double p1 = g1 * e2, p2 = g2 * e1, area = e1 * e2, length2 = p1 * p1 + p2 * p2;
-  const double normal = -i * (qn * area + b.m1 * p1 + b.m2 * p2) / area, scale = b.friction * normal / __builtin_sqrt(length2);
+  const double normal = -i * (qn * area + b.m1 * p1 + b.m2 * p2) / area,
+               scale = b.friction * normal / __builtin_sqrt(length2);
   // A slow fall of f may end elsewhere: the right place has lambda_n > 0 and is nearly on the cone already.
   if (!(normal > 0 && size(scale * area - 1) < 1e-2)) return exact(data, k, b, lambda, delta, g1, g2);
   b.slip = slip;

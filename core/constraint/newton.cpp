@@ -24,7 +24,8 @@ namespace {
 
 class Pieces {
  public:
-  Pieces(const ConstraintProblem& p, const double* lambda, const double* delta, NewtonMemory& m) : p_(p), lambda_(lambda), delta_(delta), m_(m) {}
+  Pieces(const ConstraintProblem& p, const double* lambda, const double* delta, NewtonMemory& m)
+      : p_(p), lambda_(lambda), delta_(delta), m_(m) {}
 
   void collect() {
     m_.unknowns.clear();
@@ -134,7 +135,8 @@ class Pieces {
     base(r) = b.friction * bound * u0;
     base(r + 1) = b.friction * bound * u1;
     for (int i = r - b.normals; i < r; ++i)
-      if (const int k = m_.unknown_of_row[std::size_t(i)]; k >= 0) follow(m_.unknowns[std::size_t(k)], r, b.friction * u0, b.friction * u1);
+      if (const int k = m_.unknown_of_row[std::size_t(i)]; k >= 0)
+        follow(m_.unknowns[std::size_t(k)], r, b.friction * u0, b.friction * u1);
     across(r, u0, u1, slip_rate(r, r, 2, next));
   }
 
@@ -145,8 +147,8 @@ class Pieces {
 
 }  // namespace
 
-bool newton_target(const ConstraintProblem& p, std::span<const double> free, const double* lambda, const double* delta, double proximal,
-                   int max_unknowns, NewtonMemory& m) {
+bool newton_target(const ConstraintProblem& p, std::span<const double> free, const double* lambda, const double* delta,
+                   double proximal, int max_unknowns, NewtonMemory& m) {
   const auto combine = sweep_kernels().combine;
   Pieces(p, lambda, delta, m).collect();
   const int count = int(m.unknowns.size());

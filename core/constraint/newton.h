@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Nonsmooth Newton on the laws themselves, for problems on which Gauss-Seidel stalls: stiff bodies on soft ones, mass ratios of thousands,
-// long chains of contacts.
+// Nonsmooth Newton on the laws themselves, for problems on which Gauss-Seidel stalls: stiff bodies on soft ones, mass
+// ratios of thousands, long chains of contacts.
 //
-// Each block is in one of the pieces of its law, the one that its local solution falls into (Alart and Curnier 1991, who linearise the
-// projection of lambda - rho delta; the pieces are theirs):
+// Each block is in one of the pieces of its law, the one that its local solution falls into (Alart and Curnier 1991,
+// who linearise the projection of lambda - rho delta; the pieces are theirs):
 //   box       at a bound: lambda given         inside: delta + c lambda = 0
 //   friction  open: lambda = 0                 sticks: delta + c lambda_n = 0, delta_t = 0
-//             slips along u: delta_n + c lambda_n = 0, lambda_t = mu lambda_n u + y v, v . delta_t + s y = 0, s = |delta_t| / |lambda_t|
+//             slips along u: delta_n + c lambda_n = 0, lambda_t = mu lambda_n u + y v, v . delta_t + s y = 0, s =
+//             |delta_t| / |lambda_t|
 //   patch     as the tangential part of friction, with the sum of its contacts' lambda
 // In the remaining unknowns, lambda = lambda0 + T x, that is R (W T x + delta0) + C x = 0, solved by LU. The result is
 // projected into the bounds of the laws, smoothed by a few sweeps and taken if its residual is smaller. Otherwise a
@@ -20,7 +21,8 @@
 
 namespace insula {
 
-/// One unknown: lambda changes by `weight` times x in each of `count` rows; its equation is the same rows' delta with `test`.
+/// One unknown: lambda changes by `weight` times x in each of `count` rows; its equation is the same rows' delta with
+/// `test`.
 struct NewtonUnknown {
   int count = 0;
   int rows[3] = {};
@@ -40,10 +42,11 @@ struct NewtonMemory {
   void reserve(int rows);
 };
 
-/// The lambda that a full Newton step from lambda (with its delta, padded to the stride) leads to, written to memory.trial, not yet put
-/// into the bounds. `proximal` is eps above. False when the matrix is singular, or has more than most_unknowns.
-bool newton_target(const ConstraintProblem& problem, std::span<const double> delta_free, const double* lambda, const double* delta, double proximal,
-                   int max_unknowns, NewtonMemory& memory);
+/// The lambda that a full Newton step from lambda (with its delta, padded to the stride) leads to, written to
+/// memory.trial, not yet put into the bounds. `proximal` is eps above. False when the matrix is singular, or has more
+/// than most_unknowns.
+bool newton_target(const ConstraintProblem& problem, std::span<const double> delta_free, const double* lambda,
+                   const double* delta, double proximal, int max_unknowns, NewtonMemory& memory);
 
 /// The nearest lambda within the bounds of every law.
 void put_into_bounds(const ConstraintProblem& problem, double* lambda);

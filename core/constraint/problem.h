@@ -14,19 +14,19 @@ namespace insula {
 
 /// How a hand-held tool's free pose follows the device and how the tool yields.
 struct ToolCoupling {
-  int hand = 0;                      ///< 0 left, 1 right
-  Pose device;                       ///< device pose (with the tool's offset applied) the problem was built with
-  Vec3 swept_displacement = Vec3::Zero();           ///< of the device in the step, to `device`
-  Pose free;                         ///< the tool's free pose at the end of the step
-  Mat6 gain = Mat6::Identity();      ///< d(free displacement)/d(device displacement)
-  Mat6 compliance = Mat6::Zero();    ///< A_tool^-1, (m, rad) per (N, N m)
-  Mat6 stiffness = Mat6::Zero();     ///< coupling spring; force on the hand = stiffness * displacement(device, tool)
+  int hand = 0;                            ///< 0 left, 1 right
+  Pose device;                             ///< device pose (with the tool's offset applied) the problem was built with
+  Vec3 swept_displacement = Vec3::Zero();  ///< of the device in the step, to `device`
+  Pose free;                               ///< the tool's free pose at the end of the step
+  Mat6 gain = Mat6::Identity();            ///< d(free displacement)/d(device displacement)
+  Mat6 compliance = Mat6::Zero();          ///< A_tool^-1, (m, rad) per (N, N m)
+  Mat6 stiffness = Mat6::Zero();  ///< coupling spring; force on the hand = stiffness * displacement(device, tool)
 };
 
 /// A hand-held tool in the problem, and the rows that it has a part in.
 struct ToolTerms : ToolCoupling {
   Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor> jacobian;  ///< H_tool, rows x 6
-  ToolCoupling& coupling() { return *this; }  ///< all but the Jacobian
+  ToolCoupling& coupling() { return *this; }                           ///< all but the Jacobian
 };
 
 struct ConstraintProblem {
@@ -36,12 +36,14 @@ struct ConstraintProblem {
   std::vector<double> delta_free;  ///< rows
   std::vector<double> lambda;      ///< warm start, rows
   // How the answer goes on after the step, for who asks between steps (the servo).
-  double step_s = 0;               ///< length h of the step that W is of; 0: unknown
-  double prediction_horizon_steps = 0;         ///< contacts' directions are those so many steps after the poses, the tools going on as in the step
-  std::vector<double> rate;        ///< rows: of delta at the end of the step, from all that is no hand's tool, m/s
-  std::vector<double> retardation_time;  ///< rows: time constant of what the row lies on, viscous over elastic, s; 0: none
-  std::vector<Block> blocks;       ///< in row order, covering every row once
-  std::vector<ToolTerms> tools;    ///< at most two
+  double step_s = 0;  ///< length h of the step that W is of; 0: unknown
+  double prediction_horizon_steps =
+      0;  ///< contacts' directions are those so many steps after the poses, the tools going on as in the step
+  std::vector<double> rate;  ///< rows: of delta at the end of the step, from all that is no hand's tool, m/s
+  std::vector<double>
+      retardation_time;          ///< rows: time constant of what the row lies on, viscous over elastic, s; 0: none
+  std::vector<Block> blocks;     ///< in row order, covering every row once
+  std::vector<ToolTerms> tools;  ///< at most two
 
   double w_at(int i, int j) const { return w[std::size_t(i) * stride + j]; }
   /// Sets the size and zeroes W and what each row has; keeps capacity.

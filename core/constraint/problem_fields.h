@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The fields of a constraint problem that have a value a row or a value a block, listed once. The list drives resizing, the
-// copies of chosen rows, encoding, decoding and the check of ranges. A new field is a member of ConstraintProblem or Block, a
-// line here and a line at the same place of lcm_types/haptic_problem.lcm.
+// The fields of a constraint problem that have a value a row or a value a block, listed once. The list drives resizing,
+// the copies of chosen rows, encoding, decoding and the check of ranges. A new field is a member of ConstraintProblem
+// or Block, a line here and a line at the same place of lcm_types/haptic_problem.lcm.
 #pragma once
 #include <array>
 #include <cmath>
@@ -19,14 +19,16 @@ struct FieldRange {
   bool holds(double x) const { return x >= least && x <= most; }  // false for NaN
 };
 /// |x| < bound.
-constexpr FieldRange below(double bound, const char* reason) { return {-bound * (1 - 1e-9), bound * (1 - 1e-9), reason}; }
+constexpr FieldRange below(double bound, const char* reason) {
+  return {-bound * (1 - 1e-9), bound * (1 - 1e-9), reason};
+}
 inline constexpr FieldRange any_value{-infinite, infinite, ""};
 
 /// A number a row. Wire: its type in a message.
 template <class WireType>
 struct RowField {
   using Wire = WireType;
-  std::vector<double> ConstraintProblem::* values;
+  std::vector<double> ConstraintProblem::*values;
   FieldRange range;
 };
 
@@ -40,7 +42,7 @@ struct BlockField {
     if constexpr (is_array) return std::tuple_size_v<Member>;
     else return std::size_t(1);
   }();
-  Member Block::* member;
+  Member Block::*member;
   FieldRange range;
 
   Wire get(const Block& b, std::size_t k) const {
@@ -53,7 +55,7 @@ struct BlockField {
   }
 };
 template <class Wire, class Member>
-constexpr BlockField<Wire, Member> block_field(Member Block::* member, FieldRange range = any_value) {
+constexpr BlockField<Wire, Member> block_field(Member Block::*member, FieldRange range = any_value) {
   return {member, range};
 }
 
@@ -62,7 +64,8 @@ inline constexpr auto row_fields = std::tuple{
     RowField<double>{&ConstraintProblem::delta_free, below(1, "delta_free or lambda not finite or too large")},
     RowField<double>{&ConstraintProblem::lambda, below(1e4, "delta_free or lambda not finite or too large")},
     RowField<float>{&ConstraintProblem::rate, below(1e3, "rate or retardation time not finite or out of range")},
-    RowField<float>{&ConstraintProblem::retardation_time, {0, 100, "rate or retardation time not finite or out of range"}},
+    RowField<float>{&ConstraintProblem::retardation_time,
+                    {0, 100, "rate or retardation time not finite or out of range"}},
 };
 inline constexpr auto block_fields = std::tuple{
     block_field<std::int64_t>(&Block::id),
@@ -81,10 +84,12 @@ inline constexpr auto block_fields = std::tuple{
 /// Calls f(field, index) for each field of a list.
 template <class Fields, class F>
 constexpr void for_each_field(const Fields& fields, F&& f) {
-  std::apply([&](const auto&... field) {
-    std::size_t index = 0;
-    (f(field, index++), ...);
-  }, fields);
+  std::apply(
+      [&](const auto&... field) {
+        std::size_t index = 0;
+        (f(field, index++), ...);
+      },
+      fields);
 }
 
 /// Row `d` of `to` has what row `s` of `from` has, but for W and the tools' Jacobians.

@@ -50,7 +50,8 @@ std::string unsound_block(const ConstraintProblem& p, std::size_t k) {
   const Block& b = p.blocks[k];
   if (b.law != LawKind::box && b.law != LawKind::friction && b.law != LawKind::patch) return "unknown law";
   if (!(usable(b.compliance) && b.compliance >= 0)) return "compliance out of range";
-  if (!(bound(b.lower) && bound(b.upper) && b.lower <= b.upper && b.lower < infinite && b.upper > -infinite)) return "bounds out of order";
+  if (!(bound(b.lower) && bound(b.upper) && b.lower <= b.upper && b.lower < infinite && b.upper > -infinite))
+    return "bounds out of order";
   if (!(usable(b.friction) && b.friction >= 0)) return "friction out of range";
   if (b.law != LawKind::patch) return b.normals == 0 ? "" : "normals of a block that is no patch";
   if (b.normals < 1 || std::size_t(b.normals) > k) return "a patch without its contacts";
@@ -62,7 +63,9 @@ std::string unsound_block(const ConstraintProblem& p, std::size_t k) {
 }  // namespace
 
 std::string unsound(const ConstraintProblem& p) {
-  if (p.rows < 0 || p.rows > max_file_rows || p.stride < p.rows || p.w.size() < std::size_t(p.rows) * std::size_t(p.stride)) return "sizes do not fit";
+  if (p.rows < 0 || p.rows > max_file_rows || p.stride < p.rows ||
+      p.w.size() < std::size_t(p.rows) * std::size_t(p.stride))
+    return "sizes do not fit";
   if (p.delta_free.size() != std::size_t(p.rows) || p.lambda.size() != std::size_t(p.rows)) return "sizes do not fit";
   int row = 0;
   for (std::size_t k = 0; k < p.blocks.size(); ++k) {
@@ -76,7 +79,8 @@ std::string unsound(const ConstraintProblem& p) {
     if (!usable(p.lambda[std::size_t(i)])) return fmt::format("lambda of row {} is no usable number", i);
     if (!(p.w_at(i, i) >= 0)) return fmt::format("W has a negative diagonal in row {}", i);
     for (int j = 0; j <= i; ++j)
-      if (!usable(p.w_at(i, j)) || p.w_at(i, j) != p.w_at(j, i)) return fmt::format("W in row {}, column {} is no usable number or not symmetric", i, j);
+      if (!usable(p.w_at(i, j)) || p.w_at(i, j) != p.w_at(j, i))
+        return fmt::format("W in row {}, column {} is no usable number or not symmetric", i, j);
   }
   return "";
 }
@@ -105,14 +109,17 @@ ConstraintProblem read_problem(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   if (!in) throw InputError(name + ": cannot be read");
   const std::vector<char> bytes{std::istreambuf_iterator<char>(in), {}};
-  if (bytes.size() < 8 || std::memcmp(bytes.data(), magic, 8) != 0) throw InputError(name + ": is no constraint problem");
+  if (bytes.size() < 8 || std::memcmp(bytes.data(), magic, 8) != 0)
+    throw InputError(name + ": is no constraint problem");
   Reader read(bytes, name);
   read.next<std::uint64_t>();
   const auto rows = read.next<std::int32_t>(), blocks = read.next<std::int32_t>();
-  if (rows < 0 || rows > max_file_rows) throw InputError(fmt::format("{}: {} rows, 0 to {} are possible", name, rows, max_file_rows));
+  if (rows < 0 || rows > max_file_rows)
+    throw InputError(fmt::format("{}: {} rows, 0 to {} are possible", name, rows, max_file_rows));
   if (blocks < 0 || blocks > rows) throw InputError(fmt::format("{}: {} blocks for {} rows", name, blocks, rows));
   const std::size_t n = std::size_t(rows), expected = std::size_t(blocks) * 48 + 8 * (2 * n + n * (n + 1) / 2);
-  if (read.left() != expected) throw InputError(fmt::format("{}: has {} bytes after its head, {} are expected", name, read.left(), expected));
+  if (read.left() != expected)
+    throw InputError(fmt::format("{}: has {} bytes after its head, {} are expected", name, read.left(), expected));
   ConstraintProblem p;
   p.resize(rows);
   int row = 0;
@@ -131,7 +138,8 @@ ConstraintProblem read_problem(const std::filesystem::path& file) {
   for (double& x : p.delta_free) x = read.next<double>();
   for (double& x : p.lambda) x = read.next<double>();
   for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t j = 0; j <= i; ++j) p.w[i * std::size_t(p.stride) + j] = p.w[j * std::size_t(p.stride) + i] = read.next<double>();
+    for (std::size_t j = 0; j <= i; ++j)
+      p.w[i * std::size_t(p.stride) + j] = p.w[j * std::size_t(p.stride) + i] = read.next<double>();
   if (const std::string why = unsound(p); !why.empty()) throw InputError(name + ": " + why);
   return p;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A constraint problem as a file: what `solve` needs, without the tools' terms. For benchmarks and regression tests of the solver.
+// A constraint problem as a file: what `solve` needs, without the tools' terms. For benchmarks and regression tests of
+// the solver.
 //
 //   8 bytes "INSULAP1"; int32 rows, blocks
 //   a block: uint64 id; int32 law (0 box, 1 friction, 2 patch), normals; float64 compliance, lower, upper, friction

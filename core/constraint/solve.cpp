@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Block Gauss-Seidel with residual updates (core/constraint/sweep_kernels.h), then, where it stalls, Newton (core/constraint/newton.h).
+// Block Gauss-Seidel with residual updates (core/constraint/sweep_kernels.h), then, where it stalls, Newton
+// (core/constraint/newton.h).
 //
 // On request lambda is extrapolated between sweeps along a conjugate direction (nonsmooth nonlinear conjugate
 // gradients; Silcowitz, Niebe, Erleben 2010). With g the change of lambda in a sweep:
@@ -25,7 +26,8 @@ void SolveWorkspace::reserve(int rows, bool with_newton) {
   if (with_newton) newton.reserve(rows);
 }
 
-void full_delta(const ConstraintProblem& p, std::span<const double> free, const double* lambda, AlignedVector<double>& delta) {
+void full_delta(const ConstraintProblem& p, std::span<const double> free, const double* lambda,
+                AlignedVector<double>& delta) {
   delta.assign(std::size_t(p.stride), 0.0);
   std::copy(free.begin(), free.end(), delta.begin());
   sweep_kernels().combine(delta.data(), p.w.data(), p.stride, lambda, p.rows, p.stride);
@@ -97,12 +99,14 @@ class Forecast {
 };
 
 // Sweeps until one moves less than the tolerance, or there have been enough of them, or they are forecast to stall.
-void sweep_on(const ConstraintProblem& p, const SolveSettings& settings, const SweepData& data, SolveWorkspace& ws, SolveStats& stats) {
+void sweep_on(const ConstraintProblem& p, const SolveSettings& settings, const SweepData& data, SolveWorkspace& ws,
+              SolveStats& stats) {
   const int n = p.rows;
   double* lambda = ws.lambda.data();
   const auto sweep = sweep_kernels().sweep;
   Forecast forecast(settings);
-  for (std::vector<double>* v : {&ws.before, &ws.before_delta, &ws.along, &ws.along_delta}) v->assign(std::size_t(n), 0.0);
+  for (std::vector<double>* v : {&ws.before, &ws.before_delta, &ws.along, &ws.along_delta})
+    v->assign(std::size_t(n), 0.0);
   double last_norm = 0;  // of the sweep before, 0: no direction yet
   while (stats.sweeps < settings.max_sweeps) {
     if (settings.conjugate) {
@@ -111,14 +115,15 @@ void sweep_on(const ConstraintProblem& p, const SolveSettings& settings, const S
     }
     const double moved = sweep(data, lambda, ws.current.data());
     ++stats.sweeps;
-    if (moved <= settings.tolerance_m || stats.sweeps >= settings.max_sweeps || forecast.stalls(stats.sweeps, moved)) break;
+    if (moved <= settings.tolerance_m || stats.sweeps >= settings.max_sweeps || forecast.stalls(stats.sweeps, moved))
+      break;
     if (settings.conjugate) last_norm = carry_on(p, ws, last_norm);
   }
 }
 
 // Some sweeps more; lambda stays what it was if its residual was smaller.
-void sweep_more(const ConstraintProblem& p, std::span<const double> free, SolveSettings settings, int count, bool conjugate, const SweepData& data,
-                SolveWorkspace& ws, SolveStats& stats) {
+void sweep_more(const ConstraintProblem& p, std::span<const double> free, SolveSettings settings, int count,
+                bool conjugate, const SweepData& data, SolveWorkspace& ws, SolveStats& stats) {
   NewtonMemory& m = ws.newton;
   m.trial.assign(ws.lambda.begin(), ws.lambda.end());
   full_delta(p, free, ws.lambda.data(), ws.current);
@@ -133,13 +138,13 @@ void sweep_more(const ConstraintProblem& p, std::span<const double> free, SolveS
   else ws.lambda.assign(m.trial.begin(), m.trial.end());
 }
 
-constexpr double shortest_step = 0.1;             // of a Newton step that is tried
-constexpr int smoothing = 3;                      // sweeps after it
+constexpr double shortest_step = 0.1;  // of a Newton step that is tried
+constexpr int smoothing = 3;           // sweeps after it
 constexpr double min_proximal = 1e-11, max_proximal = 1;
 
 // Newton from the sweeps' result, which stays what it is unless something better is found.
-void newton_on(const ConstraintProblem& p, std::span<const double> free, const SolveSettings& settings, const SweepData& data, SolveWorkspace& ws,
-               SolveStats& stats) {
+void newton_on(const ConstraintProblem& p, std::span<const double> free, const SolveSettings& settings,
+               const SweepData& data, SolveWorkspace& ws, SolveStats& stats) {
   const auto sweep = sweep_kernels().sweep;
   const std::size_t n = std::size_t(p.rows);
   NewtonMemory& m = ws.newton;
@@ -176,7 +181,8 @@ void newton_on(const ConstraintProblem& p, std::span<const double> free, const S
 
 }  // namespace
 
-SolveStats solve(const ConstraintProblem& p, std::span<const double> free, const SolveSettings& settings, SolveWorkspace& ws) {
+SolveStats solve(const ConstraintProblem& p, std::span<const double> free, const SolveSettings& settings,
+                 SolveWorkspace& ws) {
   const std::size_t n = std::size_t(p.rows);
   ws.lambda.resize(n);
   ws.delta.resize(n);
@@ -198,7 +204,8 @@ SolveStats solve(const ConstraintProblem& p, std::span<const double> free, const
     stats.stalled = true;
     newton_on(p, free, settings, data, ws, stats);
     finish();
-    if (stats.residual_m > settings.tolerance_m && sweeps < settings.max_sweeps) {  // the forecast was wrong: the sweeps that are left
+    if (stats.residual_m > settings.tolerance_m &&
+        sweeps < settings.max_sweeps) {  // the forecast was wrong: the sweeps that are left
       sweep_more(p, free, settings, settings.max_sweeps - sweeps, settings.conjugate, data, ws, stats);
       finish();
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The mixed nonlinear complementarity problem: block Gauss-Seidel, and nonsmooth Newton where that stalls. Pure and bounded: the result
-// depends on the arguments alone, work is at most max_sweeps sweeps and max_newton Newton steps, and nothing is allocated once the
-// workspace has its size.
+// The mixed nonlinear complementarity problem: block Gauss-Seidel, and nonsmooth Newton where that stalls. Pure and
+// bounded: the result depends on the arguments alone, work is at most max_sweeps sweeps and max_newton Newton steps,
+// and nothing is allocated once the workspace has its size.
 #pragma once
 #include <limits>
 #include <span>
@@ -19,11 +19,14 @@ struct SolveSettings {
   double tolerance_m = 1e-9;
   /// Carry lambda on along conjugate directions between sweeps: for stiff stacks, such as jaws on a thin wall.
   bool conjugate = false;
-  /// Most Newton steps, made when sweeps would end above the tolerance; 0: sweeps alone. One step costs as much as rows / 3 sweeps.
+  /// Most Newton steps, made when sweeps would end above the tolerance; 0: sweeps alone. One step costs as much as rows
+  /// / 3 sweeps.
   int max_newton = 0;
   bool newton_soon = false;  ///< after a few sweeps already, for one who knows that they stall
-  int newton_unknowns = std::numeric_limits<int>::max();  ///< rows that neither separate nor lie at a bound: no step is made with more
-  int newton_sweeps = 32;    ///< conjugate ones, to come to another place after a step that led nowhere; 0: no further step then
+  int newton_unknowns =
+      std::numeric_limits<int>::max();  ///< rows that neither separate nor lie at a bound: no step is made with more
+  int newton_sweeps =
+      32;  ///< conjugate ones, to come to another place after a step that led nowhere; 0: no further step then
 };
 
 enum class SolveMethod : std::uint8_t { sweeps, newton };
@@ -39,8 +42,8 @@ struct SolveStats {
 
 /// Everything solve writes. One per caller; grows in reserve() only.
 struct SolveWorkspace {
-  std::vector<double> lambda;  ///< in: warm start, out: solution; N
-  std::vector<double> delta;   ///< out: W lambda + delta_free, m
+  std::vector<double> lambda;                                    ///< in: warm start, out: solution; N
+  std::vector<double> delta;                                     ///< out: W lambda + delta_free, m
   std::vector<double> before, before_delta, along, along_delta;  ///< of the conjugate directions
   AlignedVector<double> current;                                 ///< delta while it is being solved for, padded
   SweepMemory sweep;
@@ -49,7 +52,8 @@ struct SolveWorkspace {
 };
 
 /// delta := W lambda + free, m; padded to the problem's stride.
-void full_delta(const ConstraintProblem& problem, std::span<const double> free, const double* lambda, AlignedVector<double>& delta);
+void full_delta(const ConstraintProblem& problem, std::span<const double> free, const double* lambda,
+                AlignedVector<double>& delta);
 
 /// Solves with the given delta_free (problem.rows values; the problem's own or the servo's). workspace.lambda must hold
 /// the warm start (problem.rows values). Never allocates if workspace.reserve(rows) was called.

@@ -13,7 +13,8 @@ INSULA_TABLES(SweepKernels, sweep_table)
 
 const SweepKernels& sweep_kernels() { return every_sweep_table().chosen(); }
 
-void local_solution(const ConstraintProblem& p, const Block& b, const double* lambda, const double* delta, double* out) {
+void local_solution(const ConstraintProblem& p, const Block& b, const double* lambda, const double* delta,
+                    double* out) {
   const int r = b.row;
   const double* w = p.w.data() + std::size_t(r) * p.stride + r;
   if (b.law == LawKind::box) {
@@ -29,7 +30,8 @@ void local_solution(const ConstraintProblem& p, const Block& b, const double* la
   if (b.law == LawKind::patch) {
     double pressed = 0;
     for (int i = r - b.normals; i < r; ++i) pressed += std::max(0.0, lambda[i]);
-    const double q1 = delta[r] - (w[0] * lambda[r] + w[1] * lambda[r + 1]), q2 = delta[r + 1] - (w[1] * lambda[r] + w[s + 1] * lambda[r + 1]);
+    const double q1 = delta[r] - (w[0] * lambda[r] + w[1] * lambda[r + 1]),
+                 q2 = delta[r + 1] - (w[1] * lambda[r] + w[s + 1] * lambda[r + 1]);
     return solve_disc(w[0], w[1], w[s + 1], q1, q2, b.friction * pressed, out);
   }
   LocalContact c;

@@ -19,6 +19,7 @@ struct SweepMemory {
 };
 
 /// The block's lambda that satisfies its law while the other blocks keep theirs; delta belongs to lambda.
-void local_solution(const ConstraintProblem& problem, const Block& block, const double* lambda, const double* delta, double* out);
+void local_solution(const ConstraintProblem& problem, const Block& block, const double* lambda, const double* delta,
+                    double* out);
 
 }  // namespace insula

@@ -26,7 +26,8 @@ void Condenser::find_tool_coupled_rows(const ConstraintProblem& full) {
   for (std::size_t t = 0; t < std::min<std::size_t>(full.tools.size(), 2); ++t) {
     for (int r = 0; r < full.rows; ++r)
       if (!full.tools[t].jacobian.row(r).isZero(0)) tool_coupled_[std::size_t(r)] = 1;
-    // What a carried clip touches is touched by the tool: the servo makes the two one (core/haptics/weld_elimination.h).
+    // What a carried clip touches is touched by the tool: the servo makes the two one
+    // (core/haptics/weld_elimination.h).
     const int weld = first_weld_row(full, t);
     for (int r = 0; weld >= 0 && r < full.rows; ++r)
       for (int k = 0; k < weld_rows; ++k)
@@ -91,15 +92,21 @@ void Condenser::make_groups(const ConstraintProblem& full) {
       double coupling = 0;
       for (int c = 0; c < full.rows; ++c)
         if (tool_coupled_[std::size_t(c)]) coupling = std::max(coupling, std::abs(full.w_at(r, c)));
-      // How far the tools' rows would move if this row's force went; for rows that nobody touches, if it changed by a newton, and the
-      // more so the sooner it may do what its linear equation does not say.
-      g.rank = std::max(g.rank, is_weld_[std::size_t(r)] ? infinite : (std::abs(full.lambda[std::size_t(r)]) + 1e-6) * coupling);
+      // How far the tools' rows would move if this row's force went; for rows that nobody touches, if it changed by a
+      // newton, and the more so the sooner it may do what its linear equation does not say.
+      g.rank = std::max(
+          g.rank, is_weld_[std::size_t(r)] ? infinite : (std::abs(full.lambda[std::size_t(r)]) + 1e-6) * coupling);
       if (!tool_coupled_[std::size_t(r)]) g.rank = std::max(g.rank, coupling / (std::abs(margin_m_[b]) + 1e-6));
     }
     if (block.law == LawKind::patch)
       for (int i = 0; i < block.normals; ++i) {
         const Group& contact = groups_.back();
-        g = {contact.first, g.last, g.rows + contact.rows, g.tool_coupled || contact.tool_coupled, false, std::max(g.rank, contact.rank)};
+        g = {contact.first,
+             g.last,
+             g.rows + contact.rows,
+             g.tool_coupled || contact.tool_coupled,
+             false,
+             std::max(g.rank, contact.rank)};
         groups_.pop_back();
       }
     groups_.push_back(g);
@@ -114,7 +121,9 @@ void Condenser::make_groups(const ConstraintProblem& full) {
 void Condenser::choose(const ConstraintProblem& full, int max_rows, ConstraintProblem& small) {
   chosen_.clear();
   std::size_t g = 0;
-  for (int rows = 0; g < groups_.size() && !(groups_[g].linear && !groups_[g].tool_coupled) && rows + groups_[g].rows <= max_rows; ++g) {
+  for (int rows = 0;
+       g < groups_.size() && !(groups_[g].linear && !groups_[g].tool_coupled) && rows + groups_[g].rows <= max_rows;
+       ++g) {
     rows += groups_[g].rows;
     for (int b = groups_[g].first; b <= groups_[g].last; ++b) chosen_.push_back(b);
   }
@@ -123,7 +132,8 @@ void Condenser::choose(const ConstraintProblem& full, int max_rows, ConstraintPr
   for (std::size_t last = groups_.size(); last-- > g;)
     for (int b = groups_[last].first; b <= groups_[last].last && !groups_[last].tool_coupled; ++b)
       add_eliminated(full, full.blocks[std::size_t(b)]);
-  std::sort(eliminated_.begin(), eliminated_.end(), [](const Direction& a, const Direction& b) { return a.row < b.row; });
+  std::sort(eliminated_.begin(), eliminated_.end(),
+            [](const Direction& a, const Direction& b) { return a.row < b.row; });
   std::sort(chosen_.begin(), chosen_.end());
   kept_.clear();
   small.blocks.clear();
@@ -146,9 +156,11 @@ void Condenser::add_eliminated(const ConstraintProblem& full, const Block& b) {
       const double c = k == 0 && b.law != LawKind::patch ? b.compliance : 0;
       eliminated_.push_back({int(r), {1, 0}, c, delta_m_[r] + c * full.lambda[r]});
     } else if (fate_[r] == Fate::slips) {
-      const double *lambda = full.lambda.data() + r, *delta = delta_m_.data() + r, size = std::hypot(lambda[0], lambda[1]);
+      const double *lambda = full.lambda.data() + r, *delta = delta_m_.data() + r,
+                   size = std::hypot(lambda[0], lambda[1]);
       const double v[2] = {-lambda[1] / size, lambda[0] / size};
-      eliminated_.push_back({int(r), {v[0], v[1]}, std::hypot(delta[0], delta[1]) / size, v[0] * delta[0] + v[1] * delta[1]});
+      eliminated_.push_back(
+          {int(r), {v[0], v[1]}, std::hypot(delta[0], delta[1]) / size, v[0] * delta[0] + v[1] * delta[1]});
     }
   }
 }
@@ -177,8 +189,8 @@ void Condenser::copy_kept(const ConstraintProblem& full, ConstraintProblem& smal
   }
 }
 
-/// With lambda_E in the unknowns' directions: lambda_E = lambda_E0 - M (r + W_EK (lambda_K - lambda_K0)), M = (W_EE + C)^-1,
-/// r = delta_E + C lambda_E of the full solution. With W_EE + C = U^T U, Y = U^-T W_EK and z = U^-T r:
+/// With lambda_E in the unknowns' directions: lambda_E = lambda_E0 - M (r + W_EK (lambda_K - lambda_K0)), M = (W_EE +
+/// C)^-1, r = delta_E + C lambda_E of the full solution. With W_EE + C = U^T U, Y = U^-T W_EK and z = U^-T r:
 ///   W' = W_KK - Y^T Y,   delta_free' = (all others held) - Y^T (z - Y lambda_K0)
 void Condenser::eliminate(const ConstraintProblem& full, ConstraintProblem& small) {
   const auto combine = sweep_kernels().combine;
@@ -225,7 +237,8 @@ void Condenser::eliminate(const ConstraintProblem& full, ConstraintProblem& smal
     for (std::size_t j = 0; j < n; ++j) weights_[j] = -row(j)[kept_at + long(i)];
     combine(w + from, factor_.data() + kept_at + from, width, weights_.data(), int(n), int(small.stride - from));
   }
-  // What hangs on the eliminated rows alone moves with nothing else: rounding must not make it soft, or of negative stiffness.
+  // What hangs on the eliminated rows alone moves with nothing else: rounding must not make it soft, or of negative
+  // stiffness.
   for (std::size_t i = 0; i < k; ++i) {
     double* w = small.w.data() + i * std::size_t(small.stride);
     if (w[i] > 1e-10 * full.w_at(kept_[i], kept_[i])) continue;
@@ -233,7 +246,8 @@ void Condenser::eliminate(const ConstraintProblem& full, ConstraintProblem& smal
     for (std::size_t r = 0; r < i; ++r) small.w[r * std::size_t(small.stride) + i] = 0;
   }
   for (std::size_t i = 0; i < k; ++i)
-    for (std::size_t c = i + 1; c < k; ++c) small.w[c * std::size_t(small.stride) + i] = small.w[i * std::size_t(small.stride) + c];
+    for (std::size_t c = i + 1; c < k; ++c)
+      small.w[c * std::size_t(small.stride) + i] = small.w[i * std::size_t(small.stride) + c];
 }
 
 void Condenser::operator()(const ConstraintProblem& full, int max_rows, ConstraintProblem& small) {

@@ -8,18 +8,21 @@
 namespace insula {
 
 /// Copies `full` into `small` where it has at most most_rows rows. Otherwise each block has one of three fates:
-///   kept        those that touch a tool or what it carries, then those that are coupled to them and may soon change their state, in their order
-///   eliminated  what no tool touches, in a state in which its law is a linear equation delta_E + C lambda_E = 0: pressure, springs,
-///               fibres in tension, contacts that press or stick, and of friction that slips the direction across it, which turns with
-///               the slip: C = |delta_t| / |lambda_t|. Exactly, by the Schur complement
+///   kept        those that touch a tool or what it carries, then those that are coupled to them and may soon change
+///   their state, in their order eliminated  what no tool touches, in a state in which its law is a linear equation
+///   delta_E + C lambda_E = 0: pressure, springs,
+///               fibres in tension, contacts that press or stick, and of friction that slips the direction across it,
+///               which turns with the slip: C = |delta_t| / |lambda_t|. Exactly, by the Schur complement
 ///                 W'          = W_KK - W_KE (W_EE + C)^-1 W_EK
 ///                 delta_free' = what gives the kept rows the delta of the full problem at its lambda
-///   held        lambda stays what it is: rows at a bound (separated contacts, slack fibres), friction along its slip (its bound follows
-///               the normal force, which no symmetric W' can say), rows that hang on others (pivots near 0), and those that touch a tool
-///               and find no place
-/// Eliminating is exact for laws without bounds (bilateral, compliant) wherever the tools go, for the others as long as none changes its
-/// state. Laws without bounds are therefore eliminated first; as long as all the other rows fit, the condensed problem is the full one.
-/// lambda of `full` must be its solution. Allocates when sizes grow, and when the tools' Jacobians change theirs.
+///   held        lambda stays what it is: rows at a bound (separated contacts, slack fibres), friction along its slip
+///   (its bound follows
+///               the normal force, which no symmetric W' can say), rows that hang on others (pivots near 0), and those
+///               that touch a tool and find no place
+/// Eliminating is exact for laws without bounds (bilateral, compliant) wherever the tools go, for the others as long as
+/// none changes its state. Laws without bounds are therefore eliminated first; as long as all the other rows fit, the
+/// condensed problem is the full one. lambda of `full` must be its solution. Allocates when sizes grow, and when the
+/// tools' Jacobians change theirs.
 class Condenser {
  public:
   void operator()(const ConstraintProblem& full, int max_rows, ConstraintProblem& small);
@@ -50,10 +53,10 @@ class Condenser {
   void add_eliminated(const ConstraintProblem& full, const Block& block);
   void eliminate(const ConstraintProblem& full, ConstraintProblem& small);
 
-  std::vector<char> tool_coupled_;        ///< by row of the full problem
-  std::vector<char> is_weld_;        ///< by row: between a tool and what it carries
-  std::vector<Fate> fate_;        ///< linear: could be eliminated, until chosen
-  std::vector<double> margin_m_;  ///< by block: how far it is from another state; negative: it has no other
+  std::vector<char> tool_coupled_;  ///< by row of the full problem
+  std::vector<char> is_weld_;       ///< by row: between a tool and what it carries
+  std::vector<Fate> fate_;          ///< linear: could be eliminated, until chosen
+  std::vector<double> margin_m_;    ///< by block: how far it is from another state; negative: it has no other
   AlignedVector<double> delta_m_, factor_, weights_;
   std::vector<Group> groups_;
   std::vector<int> chosen_, kept_;

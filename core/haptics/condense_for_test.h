@@ -24,7 +24,8 @@ inline Wrenches hand_wrenches(const ConstraintProblem& p, const Wrenches& d, con
   for (std::size_t t = 0; t < p.tools.size(); ++t) {
     const ToolTerms& tool = p.tools[t];
     const Vec6 push = tool.jacobian.transpose() * Eigen::Map<const VecX>(ws.lambda.data(), p.rows);
-    out[t] = tool.stiffness * displacement(displaced(tool.device, d[t]), displaced(tool.free, tool.gain * d[t] + tool.compliance * push));
+    out[t] = tool.stiffness * displacement(displaced(tool.device, d[t]),
+                                           displaced(tool.free, tool.gain * d[t] + tool.compliance * push));
   }
   return out;
 }

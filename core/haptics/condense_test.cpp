@@ -106,7 +106,8 @@ ConstraintProblem patches(bool tool_coupled_tangents) {
       }
       full.blocks.push_back(b);
     }
-  for (const int patch : {2, 7, 11}) full.tools[0].jacobian.row(5 * patch + (tool_coupled_tangents ? 4 : 1)).setConstant(1.0);
+  for (const int patch : {2, 7, 11})
+    full.tools[0].jacobian.row(5 * patch + (tool_coupled_tangents ? 4 : 1)).setConstant(1.0);
   SolveWorkspace ws;
   ws.lambda.assign(60, 0.0);
   solve(full, full.delta_free, {5000, 1e-15}, ws);
@@ -132,7 +133,9 @@ TEST(Condense, APatchIsKeptOrLeftOutTogetherWithItsContacts) {
       // Felt through one of its rows, a patch comes before those that are not.
       if (most < 15) continue;
       for (const std::uint64_t patch : {20u, 70u, 110u})
-        EXPECT_TRUE(std::any_of(small.blocks.begin(), small.blocks.end(), [&](const Block& b) { return b.id == patch; })) << patch;
+        EXPECT_TRUE(std::any_of(small.blocks.begin(), small.blocks.end(), [&](const Block& b) {
+          return b.id == patch;
+        })) << patch;
       // Solved from nothing, the small problem gives the forces of the full one.
       SolveWorkspace ws;
       ws.lambda.assign(std::size_t(small.rows), 0.0);

@@ -10,7 +10,8 @@ namespace insula {
 namespace {
 
 constexpr double min_turn = 1e-6;
-constexpr double max_later = 0.2;  // rad in a step; more is an edge of the surface, and nobody knows when the tool gets over it
+constexpr double max_later =
+    0.2;  // rad in a step; more is an edge of the surface, and nobody knows when the tool gets over it
 
 /// The new directions in terms of the old ones: normal and tangents turn together by the smallest rotation.
 Mat3 rotation(const Vec3& normal, const Vec3& tangent, const Vec3& to) {
@@ -30,13 +31,15 @@ std::array<float, 3> rotation_vector(const Vec3& from, const Vec3& to) {
 
 template <class Problem>
 auto block_at(Problem& p, int row) {
-  return std::lower_bound(p.blocks.begin(), p.blocks.end(), row, [](const Block& b, int first) { return b.row < first; });
+  return std::lower_bound(p.blocks.begin(), p.blocks.end(), row,
+                          [](const Block& b, int first) { return b.row < first; });
 }
 
 /// Whether the frame is one of a friction block of the problem.
 bool is_of(const ConstraintProblem& p, const ContactFrame& f) {
   const auto block = block_at(p, f.row);
-  return block != p.blocks.end() && block->row == f.row && block->law == LawKind::friction && f.ahead.allFinite() && f.later.allFinite();
+  return block != p.blocks.end() && block->row == f.row && block->law == LawKind::friction && f.ahead.allFinite() &&
+         f.later.allFinite();
 }
 
 }  // namespace

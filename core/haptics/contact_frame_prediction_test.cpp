@@ -39,7 +39,8 @@ TEST(ContactFramePrediction, ForcesMotionsAndWorkAreTheSameInOtherDirections) {
   EXPECT_LT((now - all * lambda).norm(), 1e-14);
   EXPECT_LT((vector_of(delta_m, p.rows) - all * delta).norm(), 1e-16);
   EXPECT_LT((w_of(p) - all * w_of(old) * all.transpose()).norm(), 1e-15);
-  for (std::size_t t = 0; t < 2; ++t) EXPECT_LT((p.tools[t].jacobian.transpose() * now - old.tools[t].jacobian.transpose() * lambda).norm(), 1e-14);
+  for (std::size_t t = 0; t < 2; ++t)
+    EXPECT_LT((p.tools[t].jacobian.transpose() * now - old.tools[t].jacobian.transpose() * lambda).norm(), 1e-14);
 }
 
 // Friction knows no direction in the plane of its contact: with other tangents the solution is the same force.
@@ -49,7 +50,8 @@ TEST(ContactFramePrediction, OtherTangentsChangeNoForce) {
   const ConstraintProblem old = p;
   std::vector<double> delta_m(std::size_t(p.rows), 0.0);
   for (int row = 0; row < 18; row += 3) {
-    const Mat3 q = from_rotation_vector((0.3 + row) * Vec3::UnitX()).toRotationMatrix();  // rows are normal, tangent, tangent
+    const Mat3 q =
+        from_rotation_vector((0.3 + row) * Vec3::UnitX()).toRotationMatrix();  // rows are normal, tangent, tangent
     rotate_contact_rows(p, row, q, delta_m);
     const Vec3 free = q * Eigen::Map<const Vec3>(p.delta_free.data() + row);
     for (int k = 0; k < 3; ++k) p.delta_free[std::size_t(row + k)] = free[k];
@@ -76,7 +78,9 @@ double max_turn_about_an_edge(double degrees) {
     const double angle = (80 - std::max(0, i) * degrees) * std::numbers::pi / 180;
     b.move_to({edge + (radius - pressed) * Vec3(std::cos(angle), 0, std::sin(angle)), b.tool->home_pose().q});
     for (const Block& block : turned(*b.s, 0.5 * b.s->h()).blocks)
-      if (i >= 2) most = std::max(most, std::hypot(double(block.frame_rotation[0]), double(block.frame_rotation[1]), double(block.frame_rotation[2])));
+      if (i >= 2)
+        most = std::max(most, std::hypot(double(block.frame_rotation[0]), double(block.frame_rotation[1]),
+                                         double(block.frame_rotation[2])));
   }
   return most;
 }

@@ -38,7 +38,8 @@ bool find_parts(Bytes bytes, ProblemLayout& l, const char*& why) {
     return false;
   }
   l.w = in.take_array(packed, 4);
-  for_each_field(row_fields, [&](const auto& f, std::size_t index) { l.row_values[index] = in.take_array(l.rows, wire_bytes(f)); });
+  for_each_field(row_fields,
+                 [&](const auto& f, std::size_t index) { l.row_values[index] = in.take_array(l.rows, wire_bytes(f)); });
   l.prediction_horizon_steps = in.f64();
   l.blocks = in.i32();
   if (!in.ok()) return false;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where each part of a haptic_problem_t message lies, and whether what lies there may be believed. Nothing is copied and nothing written.
+// Where each part of a haptic_problem_t message lies, and whether what lies there may be believed. Nothing is copied
+// and nothing written.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -13,7 +14,8 @@ namespace insula::wire {
 
 inline constexpr std::size_t pose_bytes = 7 * 8, matrix_bytes = 36 * 8;
 // A tool: hand, device pose and way, free pose, three matrices, offset.
-inline constexpr std::size_t swept_displacement_at = 1 + pose_bytes, free_at = swept_displacement_at + 3 * 8, matrices_at = free_at + pose_bytes;
+inline constexpr std::size_t swept_displacement_at = 1 + pose_bytes, free_at = swept_displacement_at + 3 * 8,
+                             matrices_at = free_at + pose_bytes;
 inline constexpr std::size_t offset_at = matrices_at + 3 * matrix_bytes, tool_bytes = offset_at + pose_bytes;
 
 inline void load_doubles(const std::uint8_t* from, int count, double* to) {
@@ -26,8 +28,9 @@ struct ProblemLayout {
   double step_s, sim_time_s, prediction_horizon_steps;
   int rows, blocks, tools;
   const std::uint8_t *w, *tool, *jacobian;
-  std::array<const std::uint8_t*, std::tuple_size_v<decltype(row_fields)>> row_values;      ///< in the order of row_fields
-  std::array<const std::uint8_t*, std::tuple_size_v<decltype(block_fields)>> block_values;  ///< in the order of block_fields
+  std::array<const std::uint8_t*, std::tuple_size_v<decltype(row_fields)>> row_values;  ///< in the order of row_fields
+  std::array<const std::uint8_t*, std::tuple_size_v<decltype(block_fields)>>
+      block_values;  ///< in the order of block_fields
 
   double w_at(std::size_t k) const { return double(load_float(w + 4 * k)); }
   template <class Field>
@@ -36,7 +39,8 @@ struct ProblemLayout {
   }
   template <class Field>
   typename Field::Wire block_value(const Field&, std::size_t index, int block, std::size_t k) const {
-    return load<typename Field::Wire>(block_values[index] + sizeof(typename Field::Wire) * (std::size_t(block) * Field::count + k));
+    return load<typename Field::Wire>(block_values[index] +
+                                      sizeof(typename Field::Wire) * (std::size_t(block) * Field::count + k));
   }
   double lambda_at(int row) const { return load_double(row_values[1] + 8 * row); }
   Block block_at(int block) const {
@@ -55,7 +59,8 @@ static_assert(std::get<1>(row_fields).values == &ConstraintProblem::lambda);
 /// Of a message without its last four bytes.
 std::uint32_t problem_checksum(Bytes bytes);
 
-/// Structure: the kind of message, sizes that agree with each other and with its length, the checksum. False with the reason in `why`.
+/// Structure: the kind of message, sizes that agree with each other and with its length, the checksum. False with the
+/// reason in `why`.
 bool find_parts(Bytes bytes, ProblemLayout& layout, const char*& why);
 
 /// Content: every number finite and of plausible magnitude, and what decode_problem() promises beyond that.

@@ -3,8 +3,8 @@
 #include <functional>
 #include <insula_lcm/haptic_problem_t.hpp>
 
-#include "core/haptics/haptic_update_for_test.h"
 #include "core/bus/mutate_for_test.h"
+#include "core/haptics/haptic_update_for_test.h"
 
 namespace insula {
 namespace {
@@ -13,7 +13,8 @@ using testing::Buffer;
 using testing::encoded;
 using testing::make_update;
 
-/// Rows: a spring, three contacts, their patch (two rows), a contact with friction (three rows), one contact, its patch.
+/// Rows: a spring, three contacts, their patch (two rows), a contact with friction (three rows), one contact, its
+/// patch.
 enum : std::size_t { spring, contact, patch = 4, friction, last_contact, last_patch };
 
 HapticUpdate patch_update(unsigned seed) {
@@ -73,7 +74,9 @@ TEST(HapticPatch, WhatIsNoPatchIsRefused) {
     std::function<void(HapticUpdate&)> make;
     const char* reason;
   };
-  const auto normals = [](std::size_t block, int value) { return [=](HapticUpdate& u) { u.problem.blocks[block].normals = value; }; };
+  const auto normals = [](std::size_t block, int value) {
+    return [=](HapticUpdate& u) { u.problem.blocks[block].normals = value; };
+  };
   const char* none = "a patch without the contacts it is of";
   const std::vector<Fault> faults = {
       {"negative", normals(patch, -1), none},

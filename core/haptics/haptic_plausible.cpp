@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 
+#include "core/bus/plausible.h"
 #include "core/haptics/haptic_layout.h"
 #include "core/haptics/haptic_update.h"
-#include "core/bus/plausible.h"
 
 namespace insula::wire {
 namespace {
@@ -16,8 +16,9 @@ constexpr double max_gain = 1e4, max_compliance = 1e8, max_stiffness = 1e8;
 
 bool header_ok(const ProblemLayout& l, const char*& why) {
   why = "time, step or sequence out of range";
-  return l.session >= 0 && l.sequence >= 0 && l.time_us >= 0 && l.pose_time_us >= 0 && l.step_s > 0 && l.step_s <= 1 && l.sim_time_s >= 0 &&
-         l.sim_time_s <= 1e9 && l.prediction_horizon_steps >= 0 && l.prediction_horizon_steps <= max_prediction_horizon_steps;
+  return l.session >= 0 && l.sequence >= 0 && l.time_us >= 0 && l.pose_time_us >= 0 && l.step_s > 0 && l.step_s <= 1 &&
+         l.sim_time_s >= 0 && l.sim_time_s <= 1e9 && l.prediction_horizon_steps >= 0 &&
+         l.prediction_horizon_steps <= max_prediction_horizon_steps;
 }
 
 bool matrix_ok(const ProblemLayout& l, const char*& why) {
@@ -44,7 +45,8 @@ double slack(double bound) { return 1e-6 + 1e-4 * std::abs(bound); }
 bool lambda_in_law(const ProblemLayout& l, const Block& b) {
   const double first = l.lambda_at(b.row);
   if (b.law == LawKind::box)
-    return (b.lower == -infinite || first >= b.lower - slack(b.lower)) && (b.upper == infinite || first <= b.upper + slack(b.upper));
+    return (b.lower == -infinite || first >= b.lower - slack(b.lower)) &&
+           (b.upper == infinite || first <= b.upper + slack(b.upper));
   if (b.law == LawKind::patch) {
     double pressed = 0;
     for (int i = b.row - b.normals; i < b.row; ++i) pressed += std::max(0.0, l.lambda_at(i));

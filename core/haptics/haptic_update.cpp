@@ -16,7 +16,8 @@ using wire::ProblemLayout;
 
 bool has_wire_form(const ConstraintProblem& p) {
   const auto rows = std::size_t(p.rows);
-  if (p.rows < 0 || p.rows > max_problem_rows || p.tools.size() > max_problem_tools || p.blocks.size() > rows) return false;
+  if (p.rows < 0 || p.rows > max_problem_rows || p.tools.size() > max_problem_tools || p.blocks.size() > rows)
+    return false;
   bool whole = true;
   for_each_field(row_fields, [&](const auto& f, std::size_t) { whole = whole && (p.*f.values).size() >= rows; });
   if (!whole) return false;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One step's constraint problem on its way from the engine to the haptic server: haptic_problem_t's wire format, written and
-// read directly so that nothing is allocated once the buffers have their size.
+// One step's constraint problem on its way from the engine to the haptic server: haptic_problem_t's wire format,
+// written and read directly so that nothing is allocated once the buffers have their size.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -16,22 +16,21 @@ inline constexpr int max_problem_rows = 240;
 inline constexpr int max_problem_tools = 2;
 
 struct HapticUpdate {
-  std::int64_t session = 0;   ///< engine run, microseconds of its start
-  std::int64_t sequence = 0;  ///< counts up by one each step
-  std::int64_t time_us = 0;   ///< CLOCK_MONOTONIC when the step ended
+  std::int64_t session = 0;       ///< engine run, microseconds of its start
+  std::int64_t sequence = 0;      ///< counts up by one each step
+  std::int64_t time_us = 0;       ///< CLOCK_MONOTONIC when the step ended
   std::int64_t pose_time_us = 0;  ///< CLOCK_MONOTONIC of the device poses the step was made with; 0: not known
-  double step_s = 0;          ///< time step h, also the problem's own
-  double sim_time_s = 0;      ///< simulated time at the end of the step
+  double step_s = 0;              ///< time step h, also the problem's own
+  double sim_time_s = 0;          ///< simulated time at the end of the step
   ConstraintProblem problem;
   /// Tool frame relative to the device's pose, per entry of problem.tools; identity unless calibrated.
   std::array<Pose, max_problem_tools> offset;
 };
 
-/// Writes the message into `out`, which keeps its capacity. W, Jacobians, friction, compliance, rate and retardation time travel as float32, W as
-/// its lower triangle. False, with `out` empty, when the problem has no wire form: more than 240 rows or 2 tools, or vectors
-/// that do not match `rows`.
-/// The last four bytes are a checksum: UDP checks nothing on a loopback interface, and a bit that flips in the mantissa of a
-/// number leaves it plausible.
+/// Writes the message into `out`, which keeps its capacity. W, Jacobians, friction, compliance, rate and retardation
+/// time travel as float32, W as its lower triangle. False, with `out` empty, when the problem has no wire form: more
+/// than 240 rows or 2 tools, or vectors that do not match `rows`. The last four bytes are a checksum: UDP checks
+/// nothing on a loopback interface, and a bit that flips in the mantissa of a number leaves it plausible.
 bool encode_problem(const HapticUpdate& update, std::vector<std::uint8_t>& out);
 
 /// Gives changed bytes of a message the checksum that belongs to them (tests of what is behind it).

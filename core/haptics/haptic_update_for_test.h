@@ -114,7 +114,9 @@ inline void expect_equal(const HapticUpdate& a, const HapticUpdate& b) {
   ASSERT_EQ(p.rows, r.rows);
   for (int i = 0; i < p.rows; ++i)
     for (int j = 0; j < p.rows; ++j) EXPECT_EQ(p.w_at(i, j), r.w_at(i, j));
-  for_each_field(row_fields, [&](const auto& x, std::size_t index) { EXPECT_EQ(p.*x.values, r.*x.values) << "row field " << index; });
+  for_each_field(row_fields, [&](const auto& x, std::size_t index) {
+    EXPECT_EQ(p.*x.values, r.*x.values) << "row field " << index;
+  });
   EXPECT_EQ(p.step_s, r.step_s);
   EXPECT_EQ(p.prediction_horizon_steps, r.prediction_horizon_steps);
   ASSERT_EQ(p.blocks.size(), r.blocks.size());

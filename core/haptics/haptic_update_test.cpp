@@ -8,8 +8,8 @@
 #include <functional>
 #include <insula_lcm/haptic_problem_t.hpp>
 
-#include "core/haptics/haptic_update_for_test.h"
 #include "core/bus/mutate_for_test.h"
+#include "core/haptics/haptic_update_for_test.h"
 
 namespace insula {
 namespace {
@@ -125,7 +125,8 @@ TEST(HapticUpdate, EachRuleHasItsReason) {
       {"huge rate", [](auto& u) { u.problem.rate[1] = -2e3; }, "rate"},
       {"negative retardation time", [](auto& u) { u.problem.retardation_time[3] = -1e-3; }, "retardation time"},
       {"endless retardation time", [](auto& u) { u.problem.retardation_time[3] = infinite; }, "retardation time"},
-      {"endless swept displacement", [](auto& u) { u.problem.tools[0].swept_displacement.x() = 1e9; }, "swept displacement too long"},
+      {"endless swept displacement", [](auto& u) { u.problem.tools[0].swept_displacement.x() = 1e9; },
+       "swept displacement too long"},
       {"turned before the poses", [](auto& u) { u.problem.prediction_horizon_steps = -0.5; }, "time"},
       {"turned long after", [](auto& u) { u.problem.prediction_horizon_steps = infinite; }, "time"},
       {"turns round and round", [](auto& u) { u.problem.blocks[1].frame_rotation[2] = 7; }, "turn too far"},

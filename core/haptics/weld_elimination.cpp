@@ -12,7 +12,7 @@
 namespace insula {
 namespace {
 
-constexpr double nothing = 1e-6;    // of a row's compliance; W comes in single precision
+constexpr double nothing = 1e-6;  // of a row's compliance; W comes in single precision
 
 std::size_t tools_of(const ConstraintProblem& p) { return std::min<std::size_t>(p.tools.size(), 2); }
 
@@ -35,7 +35,9 @@ bool touches(const ToolTerms& t, int row) {
 }
 
 bool ties(const ConstraintProblem& p, std::size_t tool, const Block& b) {
-  if (b.role != BlockRole::weld || b.law != LawKind::box || b.lower != -infinite || b.upper != infinite || b.compliance != 0) return false;
+  if (b.role != BlockRole::weld || b.law != LawKind::box || b.lower != -infinite || b.upper != infinite ||
+      b.compliance != 0)
+    return false;
   if (p.retardation_time[std::size_t(b.row)] != 0) return false;  // tissue
   for (std::size_t t = 0; t < tools_of(p); ++t)
     if (touches(p.tools[t], b.row) != (t == tool)) return false;
@@ -113,13 +115,15 @@ void WeldElimination::copy_rest(const ConstraintProblem& from, int first, Constr
   for (int i = 0; i < to.rows; ++i) copy_row(from, std::size_t(i < first ? i : i + weld_rows), to, std::size_t(i));
 }
 
-bool WeldElimination::reduce(const ConstraintProblem& from, std::size_t tool, int first, ConstraintProblem& to) noexcept {
+bool WeldElimination::reduce(const ConstraintProblem& from, std::size_t tool, int first,
+                             ConstraintProblem& to) noexcept {
   const ToolTerms& t = from.tools[tool];
   const double h = from.step_s;
   const Mat6 h_joint = rows_of(t, first);
   Mat6 clip_joint;
   for (int a = 0; a < 6; ++a)
-    for (int b = 0; b < 6; ++b) clip_joint(a, b) = from.w_at(first + a, first + b) - w_tools(from, first + a, first + b);
+    for (int b = 0; b < 6; ++b)
+      clip_joint(a, b) = from.w_at(first + a, first + b) - w_tools(from, first + a, first + b);
   const Eigen::LLT<Mat6> factor(clip_joint);
   const Eigen::PartialPivLU<Mat6> kinematics(h_joint);
   if (!(h > 0) || factor.info() != Eigen::Success || !(std::abs(kinematics.determinant()) > 0)) return false;
@@ -147,7 +151,8 @@ bool WeldElimination::reduce(const ConstraintProblem& from, std::size_t tool, in
   }
   for (int i = 0; i < n; ++i) {
     const int s = i < first ? i : i + weld_rows;
-    const Vec6 by_tool = t.compliance * tool_[std::size_t(i)], by_clip = p * body_[std::size_t(i)], by_both = give * both_[std::size_t(i)];
+    const Vec6 by_tool = t.compliance * tool_[std::size_t(i)], by_clip = p * body_[std::size_t(i)],
+               by_both = give * both_[std::size_t(i)];
     double delta = from.delta_free[std::size_t(s)], delta_now = 0;
     for (int j = 0; j < from.rows; ++j) delta += from.w_at(s, j) * from.lambda[std::size_t(j)];
     for (int j = 0; j < n; ++j) {
@@ -160,7 +165,8 @@ bool WeldElimination::reduce(const ConstraintProblem& from, std::size_t tool, in
     to.delta_free[std::size_t(i)] = delta - delta_now;
   }
   for (int i = 0; i < n; ++i)
-    if (to.w_at(i, i) < nothing * from.w_at(i < first ? i : i + weld_rows, i < first ? i : i + weld_rows)) silence(to, tool, i);
+    if (to.w_at(i, i) < nothing * from.w_at(i < first ? i : i + weld_rows, i < first ? i : i + weld_rows))
+      silence(to, tool, i);
   now.gain = give * (a * t.gain);
   now.compliance = 0.5 * (give + give.transpose());
   now.free = displaced(t.free, t.compliance * push - now.compliance * push_now);

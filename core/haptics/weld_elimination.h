@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Elimination of a weld: a rigid body that a tool grasps becomes one body with the tool.
 //
-// The engine has the grasped body as a body of its own, with a numerical inertia far above its true one. Six weld rows J
-// without bounds tie it to the tool. Between steps this is bad twice. The six stiff rows carry all contacts of the grasped
-// body and keep the sweeps from converging. And the inertia acts as a spring to the last position (80 N/m at 60 Hz).
-// The rows are therefore eliminated exactly, and the mass becomes the tool's. With H the tool's Jacobian, A its matrix,
-// B = W - H A^-1 H^T between the other rows and J (the grasped body alone), and P = B_JJ^-1:
+// The engine has the grasped body as a body of its own, with a numerical inertia far above its true one. Six weld rows
+// J without bounds tie it to the tool. Between steps this is bad twice. The six stiff rows carry all contacts of the
+// grasped body and keep the sweeps from converging. And the inertia acts as a spring to the last position (80 N/m at 60
+// Hz). The rows are therefore eliminated exactly, and the mass becomes the tool's. With H the tool's Jacobian, A its
+// matrix, B = W - H A^-1 H^T between the other rows and J (the grasped body alone), and P = B_JJ^-1:
 //   H'  = H - B P H_J               the contacts of the grasped body are now contacts of the tool
 //   A'  = A + H_J^T P H_J           mass over step squared, of both
 //   W'  = W - H A^-1 H^T - B P B^T + H' A'^-1 H'^T
@@ -25,7 +25,8 @@ struct GraspedBody {
 };
 
 inline constexpr int weld_rows = 6;
-/// First of the six rows (BlockRole::weld, one owner) by which the tool carries a rigid body that nothing else holds; -1: it carries none.
+/// First of the six rows (BlockRole::weld, one owner) by which the tool carries a rigid body that nothing else holds;
+/// -1: it carries none.
 int first_weld_row(const ConstraintProblem& problem, std::size_t tool);
 
 /// Allocates in its constructor only.
@@ -41,7 +42,8 @@ class WeldElimination {
   void copy_rest(const ConstraintProblem& from, int first, ConstraintProblem& to) noexcept;
 
   std::array<ConstraintProblem, 2> reduced_;
-  Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor> spare_;  ///< memory of the second tool's Jacobian while there is none
+  Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>
+      spare_;                             ///< memory of the second tool's Jacobian while there is none
   std::vector<Vec6> body_, tool_, both_;  ///< by row: B, H, H'
   std::array<GraspedBody, 2> grasped_;
 };

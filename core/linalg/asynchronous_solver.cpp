@@ -8,12 +8,14 @@
 namespace insula {
 namespace {
 
-constexpr double hardly = 0.02;  ///< a row whose entries have changed by less than this part of the largest is kept as it was
+constexpr double hardly =
+    0.02;  ///< a row whose entries have changed by less than this part of the largest is kept as it was
 constexpr double poor = 0.05;  ///< a factor that leaves more than this of an error in each iteration is replaced
 
 double largest(const std::vector<double>& x) {
   double out = 0;
-  for (std::size_t i = 0; i + 2 < x.size(); i += 3) out = std::max(out, x[i] * x[i] + x[i + 1] * x[i + 1] + x[i + 2] * x[i + 2]);
+  for (std::size_t i = 0; i + 2 < x.size(); i += 3)
+    out = std::max(out, x[i] * x[i] + x[i + 1] * x[i + 1] + x[i + 2] * x[i + 2]);
   return std::sqrt(out);
 }
 
@@ -34,7 +36,8 @@ void AsynchronousSolver::analyse(const BlockMatrix& a) {
   front_ = std::make_unique<StaleFactor>(a);
   background_.prepare(a, *front_);
   const std::size_t n = 3 * std::size_t(a.nodes());
-  for (std::vector<double>* v : {&b_, &r_, &z_, &p_, &ap_, &last_x_, &difference_, &lagged_, &given_, &left_}) v->assign(n, 0.0);
+  for (std::vector<double>* v : {&b_, &r_, &z_, &p_, &ap_, &last_x_, &difference_, &lagged_, &given_, &left_})
+    v->assign(n, 0.0);
   rotation_.assign(std::size_t(a.nodes()), Mat3::Identity());
   since_ = factor_rotation_ = requested_rotation_ = rotation_;
 }
@@ -66,13 +69,15 @@ bool AsynchronousSolver::factorise(const BlockMatrix& a) {
 }
 
 void AsynchronousSolver::precondition(const double* r, double* z) {
-  for (std::size_t i = 0; i < since_.size(); ++i) Eigen::Map<Vec3>(z + 3 * i) = since_[i].transpose() * Eigen::Map<const Vec3>(r + 3 * i);
+  for (std::size_t i = 0; i < since_.size(); ++i)
+    Eigen::Map<Vec3>(z + 3 * i) = since_[i].transpose() * Eigen::Map<const Vec3>(r + 3 * i);
   front_->fp16.solve(z);
-  for (std::size_t i = 0; i < since_.size(); ++i) Eigen::Map<Vec3>(z + 3 * i) = (since_[i] * Eigen::Map<Vec3>(z + 3 * i)).eval();
+  for (std::size_t i = 0; i < since_.size(); ++i)
+    Eigen::Map<Vec3>(z + 3 * i) = (since_[i] * Eigen::Map<Vec3>(z + 3 * i)).eval();
 }
 
-// Preconditioned conjugate gradients from x. What an iteration leaves is told from how much the last ones left: to look would cost as
-// much as another.
+// Preconditioned conjugate gradients from x. What an iteration leaves is told from how much the last ones left: to look
+// would cost as much as another.
 double AsynchronousSolver::refine(const double* b, double* x, double tolerance) {
   const std::size_t n = r_.size();
   std::fill(ap_.begin(), ap_.end(), 0.0);
@@ -129,7 +134,8 @@ void AsynchronousSolver::begin_compliance(const BodyRows& rows, const std::vecto
   rotated_rows_.block = rows.block;
   rotated_rows_.coeff.resize(rows.coeff.size());
   for (std::size_t e = 0; e < rows.coeff.size(); ++e)
-    if (const int node = node_of_block[std::size_t(rows.block[e])]; node >= 0) rotated_rows_.coeff[e].noalias() = since_[std::size_t(node)].transpose() * rows.coeff[e];
+    if (const int node = node_of_block[std::size_t(rows.block[e])]; node >= 0)
+      rotated_rows_.coeff[e].noalias() = since_[std::size_t(node)].transpose() * rows.coeff[e];
     else rotated_rows_.coeff[e].setZero();
   nodes_of_block_ = &node_of_block;
   add_lagged_row(node_of_block);
@@ -141,7 +147,8 @@ void AsynchronousSolver::begin_compliance(const BodyRows& rows, const std::vecto
   s_.resize(all * all);
 }
 
-// The lagged forces as a row whose lambda is -1: what they do is taken off with the same compliance that lambda adds it with.
+// The lagged forces as a row whose lambda is -1: what they do is taken off with the same compliance that lambda adds it
+// with.
 void AsynchronousSolver::add_lagged_row(const std::vector<int>& node_of_block) {
   if (block_of_node_.empty()) {
     block_of_node_.resize(lagged_.size() / 3);
@@ -162,7 +169,8 @@ void AsynchronousSolver::add_compliance(const BodyRows& rows, double* w, int str
   std::fill(s_.begin(), s_.end(), 0.0);
   front_->full.add_compliance(rotated_rows_, s_.data(), int(all));
   for (std::size_t i = 0; i < m; ++i)
-    for (std::size_t j = 0; j < m; ++j) w[std::size_t(rows.row[i]) * std::size_t(stride) + std::size_t(rows.row[j])] += s_[i * all + j];
+    for (std::size_t j = 0; j < m; ++j)
+      w[std::size_t(rows.row[i]) * std::size_t(stride) + std::size_t(rows.row[j])] += s_[i * all + j];
 }
 
 void AsynchronousSolver::subtract_lagged(const BodyRows& rows, double* delta) const {
@@ -171,18 +179,22 @@ void AsynchronousSolver::subtract_lagged(const BodyRows& rows, double* delta) co
   for (std::size_t i = 0; i < m; ++i) delta[rows.row[i]] -= s_[i * all + m];
 }
 
-// Rows turn a little in every step, and one that is the same to the bit costs nothing. Compliance is not exact here anyway.
+// Rows turn a little in every step, and one that is the same to the bit costs nothing. Compliance is not exact here
+// anyway.
 void AsynchronousSolver::keep_rows() {
   const BodyRows& old = rows_before_;
   for (int i = 0; i < rotated_rows_.count(); ++i) {
     const int begin = rotated_rows_.start[std::size_t(i)], size = rotated_rows_.start[std::size_t(i) + 1] - begin;
     for (int j = 0; j < old.count(); ++j) {
       const int from = old.start[std::size_t(j)];
-      if (old.start[std::size_t(j) + 1] - from != size || !std::equal(old.block.begin() + from, old.block.begin() + from + size, rotated_rows_.block.begin() + begin)) continue;
+      if (old.start[std::size_t(j) + 1] - from != size ||
+          !std::equal(old.block.begin() + from, old.block.begin() + from + size, rotated_rows_.block.begin() + begin))
+        continue;
       double most = 0, change = 0;
       for (int e = 0; e < size; ++e) {
         most = std::max(most, old.coeff[std::size_t(from + e)].squaredNorm());
-        change = std::max(change, (old.coeff[std::size_t(from + e)] - rotated_rows_.coeff[std::size_t(begin + e)]).squaredNorm());
+        change = std::max(
+            change, (old.coeff[std::size_t(from + e)] - rotated_rows_.coeff[std::size_t(begin + e)]).squaredNorm());
       }
       if (change > hardly * hardly * most) continue;
       std::copy_n(old.coeff.begin() + from, size, rotated_rows_.coeff.begin() + begin);
@@ -210,7 +222,8 @@ void AsynchronousSolver::correct(const BodyRows& rows, const double* lambda, dou
   }
   if (moved) {
     front_->fp16.correct(rotated_rows_, change_.data(), difference_.data());
-    for (std::size_t i = 0; i < since_.size(); ++i) Eigen::Map<Vec3>(difference_.data() + 3 * i) = (since_[i] * Eigen::Map<Vec3>(difference_.data() + 3 * i)).eval();
+    for (std::size_t i = 0; i < since_.size(); ++i)
+      Eigen::Map<Vec3>(difference_.data() + 3 * i) = (since_[i] * Eigen::Map<Vec3>(difference_.data() + 3 * i)).eval();
     for (std::size_t i = 0; i < n; ++i) last_x_[i] += difference_[i];
     // A change is as good as the factor knows it, and its rows, which may be off by `hardly`.
     lacks_ += largest(difference_) * std::max(quality_, hardly);

@@ -48,7 +48,7 @@ class AsynchronousSolver final : public BodySolver {
   /// A requested factor is put in place this many steps later when waiting is allowed. This is about the time that a
   /// busy core needs for it. It is computed from flops and not from a clock, so the same input gives the same bits.
   int delay() const { return 1 + int(front_->full.cost().factor_flops / 5e8); }
-  static constexpr double early = 30;  ///< error of the free motion that is allowed, in tolerances
+  static constexpr double early = 30;          ///< error of the free motion that is allowed, in tolerances
   static constexpr int enough_iterations = 2;  ///< of a solve: more of them and a new factor is asked for
   static constexpr int max_iterations = 12;
 
@@ -64,15 +64,18 @@ class AsynchronousSolver final : public BodySolver {
   const BlockMatrix* a_ = nullptr;
   std::unique_ptr<StaleFactor> front_;
   BackgroundFactor background_;
-  int asked_steps_ = 0;                                      ///< since it was asked
-  std::vector<Mat3> rotation_, factor_rotation_, requested_rotation_;  ///< of each node: now, as the factor knows it, as the one asked for will
-  std::vector<Mat3> since_;                                 ///< now from then
-  BodyRows rotated_rows_, rows_before_;  ///< as the factor is given them, numbered from 0; after them that of the lagged forces, if there are any
-  std::vector<double> lagged_, given_, left_;  ///< forces on nodes: rows' of the last step, of this one, and what the free motion has not balanced
+  int asked_steps_ = 0;  ///< since it was asked
+  std::vector<Mat3> rotation_, factor_rotation_,
+      requested_rotation_;               ///< of each node: now, as the factor knows it, as the one asked for will
+  std::vector<Mat3> since_;              ///< now from then
+  BodyRows rotated_rows_, rows_before_;  ///< as the factor is given them, numbered from 0; after them that of the
+                                         ///< lagged forces, if there are any
+  std::vector<double> lagged_, given_,
+      left_;  ///< forces on nodes: rows' of the last step, of this one, and what the free motion has not balanced
   std::vector<int> block_of_node_;
-  std::vector<double> s_;       ///< compliance of rotated_rows_, as last added
+  std::vector<double> s_;  ///< compliance of rotated_rows_, as last added
   bool factor_is_new_ = true;
-  bool corrected_ = false;      ///< since begin_compliance(): last_lambda_ and last_x_ are of its rows
+  bool corrected_ = false;  ///< since begin_compliance(): last_lambda_ and last_x_ are of its rows
   std::vector<double> b_, r_, z_, p_, ap_, last_lambda_, last_x_, difference_, change_;
   const std::vector<int>* nodes_of_block_ = nullptr;
   double lacks_ = 0;    ///< about what a node of last_x_ is off by, m

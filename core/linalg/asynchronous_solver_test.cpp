@@ -14,7 +14,8 @@ namespace {
 constexpr double tolerance = 1e-7;
 constexpr int few = 4;  ///< iterations with the factor of the matrix itself, as rounded as it is
 
-// A chain of boxes of nodes: positive definite, and badly enough conditioned that a diagonal would not do as a preconditioner.
+// A chain of boxes of nodes: positive definite, and badly enough conditioned that a diagonal would not do as a
+// preconditioner.
 struct System {
   static constexpr int nx = 7, ny = 4, nz = 4, nodes = nx * ny * nz;
   BlockMatrix a;
@@ -37,7 +38,8 @@ struct System {
     for (std::size_t k = 0; k < pairs.size(); ++k) block.push_back(Vec3(u(random), u(random), u(random)).asDiagonal());
     fill(std::vector<Mat3>(nodes, Mat3::Identity()), 0);
   }
-  // Springs R_i B R_j^T between neighbours: the energy of differences in each node's own turned frame. `stiffer` changes some.
+  // Springs R_i B R_j^T between neighbours: the energy of differences in each node's own turned frame. `stiffer`
+  // changes some.
   void fill(const std::vector<Mat3>& r, double stiffer) {
     dense.setZero();
     for (std::size_t k = 0; k < pairs.size(); ++k) {
@@ -52,13 +54,16 @@ struct System {
     dense.diagonal().array() += 1e-2;
     a.set_zero();
     for (int j = 0; j < nodes; ++j)
-      for (int s = a.column_start(j); s < a.column_start(j + 1); ++s) Eigen::Map<Mat3>(a.block(s)) = dense.block<3, 3>(3 * a.row(s), 3 * j);
+      for (int s = a.column_start(j); s < a.column_start(j + 1); ++s)
+        Eigen::Map<Mat3>(a.block(s)) = dense.block<3, 3>(3 * a.row(s), 3 * j);
   }
 };
 
 std::vector<Mat3> turned(double angle) {
   std::vector<Mat3> r(System::nodes);
-  for (int i = 0; i < System::nodes; ++i) r[std::size_t(i)] = from_rotation_vector(Vec3(angle, 0.3 * angle * i / System::nodes, -0.5 * angle)).toRotationMatrix();
+  for (int i = 0; i < System::nodes; ++i)
+    r[std::size_t(i)] =
+        from_rotation_vector(Vec3(angle, 0.3 * angle * i / System::nodes, -0.5 * angle)).toRotationMatrix();
   return r;
 }
 
@@ -223,19 +228,25 @@ TEST(AsynchronousSolver, CorrectionKnowsTheStepsOwnMatrix) {
     VecX own = VecX::Zero(m);
     for (int i = 0; i < m; ++i) own[i] = lambda[2 * i] = 1e-3 * scale * std::cos(i + scale);
     solver.correct(rows, lambda.data(), x.data());
-    EXPECT_TRUE(test::held("what lambda does, W an old one's", worst_node(x - s.dense.ldlt().solve(h.transpose() * own)), 1, 3 * tolerance)) << scale;
+    EXPECT_TRUE(test::held("what lambda does, W an old one's",
+                           worst_node(x - s.dense.ldlt().solve(h.transpose() * own)), 1, 3 * tolerance))
+        << scale;
   }
 }
 
-// Steps of a body under rows whose forces change: free motion under the last forces, then what is new. Together they are the step's
-// motion, and what the compliance takes off for the lagged forces leaves nearly the motion without any.
+// Steps of a body under rows whose forces change: free motion under the last forces, then what is new. Together they
+// are the step's motion, and what the compliance takes off for the lagged forces leaves nearly the motion without any.
 TEST(AsynchronousSolver, FreeMotionUnderLaggedForcesAndTheCorrectionAreTheWholeMotion) {
   Ready ready(7);
   auto& [s, solver] = ready;
   constexpr int m = ThreeNodeRows::m;
   const ThreeNodeRows all;
   const auto& [rows, h, identity] = all;
-  const BodyRows none = [] { BodyRows r; r.clear(); return r; }();
+  const BodyRows none = [] {
+    BodyRows r;
+    r.clear();
+    return r;
+  }();
   VecX last = VecX::Zero(3 * System::nodes);
   for (int step = 0; step < 12; ++step) {
     const auto r = turned(0.02 * step);
@@ -264,7 +275,9 @@ TEST(AsynchronousSolver, FreeMotionUnderLaggedForcesAndTheCorrectionAreTheWholeM
       for (int i = 0; i < m; ++i) at[i] = delta[2 * i];
       const VecX without = h * truth.solve(force), held = free - without;
       EXPECT_LT((at - without).norm(), 0.1 * (without.norm() + held.norm()) + 50 * tolerance) << step;
-      if (step == 2) { EXPECT_GT(held.norm(), 100 * (at - without).norm() / 10) << "there is something to take off"; }
+      if (step == 2) {
+        EXPECT_GT(held.norm(), 100 * (at - without).norm() / 10) << "there is something to take off";
+      }
     }
     solver.end_motion(touched ? rows : none, lambda.data(), last);
     EXPECT_LT(worst_node(last - truth.solve(force + h.transpose() * own)), 5 * tolerance) << step;

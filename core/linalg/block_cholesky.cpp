@@ -54,7 +54,8 @@ bool MultifrontalCholesky<Real>::factorise(const BlockMatrix& a, const Front& f)
     std::memset(update + long(j) * f.ldu + top, 0, sizeof(Real) * std::size_t(f.ldu - top));
   }
   for (int c : f.children) add_child(f, e_.front[std::size_t(c)]);
-  if (k.cholesky_panel(panel, f.lda, rows, own, inverse_.data() + 3 * f.first) >= 0 || !pivots_are_good(a, f)) return false;
+  if (k.cholesky_panel(panel, f.lda, rows, own, inverse_.data() + 3 * f.first) >= 0 || !pivots_are_good(a, f))
+    return false;
   if (below > 0) k.syrk_sub(update, f.ldu, panel + own, f.lda, below, own);
   return true;
 }
@@ -84,8 +85,8 @@ void MultifrontalCholesky<Real>::add_child(const Front& f, const Front& child) {
   }
 }
 
-// A pivot that is what rounding left of its diagonal entry says that A is not positive definite in this precision. So does one
-// that is no number or too large for one.
+// A pivot that is what rounding left of its diagonal entry says that A is not positive definite in this precision. So
+// does one that is no number or too large for one.
 template <class Real>
 bool MultifrontalCholesky<Real>::pivots_are_good(const BlockMatrix& a, const Front& f) const {
   constexpr double least = 16 * double(std::numeric_limits<Real>::epsilon());

@@ -41,9 +41,10 @@ class MultifrontalCholesky final : public BodySolver {
   void combine(const BodyRows& rows, const double* lambda, Real* x) const;
 
  private:
-  static constexpr int min_part = 32;                   ///< columns that are worth a part
-  static constexpr int lanes = 64 / int(sizeof(Real));    ///< of the widest vector; what leading dimensions are multiples of
-  static constexpr int slack = 64;                        ///< kernels read whole vectors
+  static constexpr int min_part = 32;  ///< columns that are worth a part
+  static constexpr int lanes =
+      64 / int(sizeof(Real));       ///< of the widest vector; what leading dimensions are multiples of
+  static constexpr int slack = 64;  ///< kernels read whole vectors
 
   bool factorise(const BlockMatrix& a, const Front& f);
   void forward(const Front& f, Real* x);
@@ -72,7 +73,7 @@ class MultifrontalCholesky final : public BodySolver {
   void load_columns(int group, int from, int to);
   void copy_known_products();
   std::vector<Real> y_, s_;
-  std::vector<Real> of_load_;  ///< of each column: minus Y^T load_
+  std::vector<Real> of_load_;                    ///< of each column: minus Y^T load_
   mutable std::vector<Real> lambda_, products_;  ///< scratch of combine()
   std::vector<int> order_, begin_;
   std::array<std::vector<Columns>, 2> active_;  ///< fresh, known; of each front
@@ -86,7 +87,8 @@ class MultifrontalCholesky final : public BodySolver {
   std::int64_t factor_number_ = 0, rows_factor_ = -1;
   RowEntries before_;
   std::vector<Real> old_y_, old_s_;
-  std::vector<int> old_order_, old_column_, known_, from_;  ///< known_: the row's number among the rows before, -1; from_: scratch
+  std::vector<int> old_order_, old_column_, known_,
+      from_;  ///< known_: the row's number among the rows before, -1; from_: scratch
   std::array<std::vector<Columns>, 2> old_active_;
   long old_ldy_ = 0;
   int reused_ = 0;

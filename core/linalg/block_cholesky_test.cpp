@@ -84,7 +84,8 @@ TYPED_TEST(Direct, SolvesAsDenseAlgebraDoes) {
     EXPECT_LT((p.dense * x - b).template lpNorm<Eigen::Infinity>(), this->tolerance);
     VecX y = VecX::Zero(b.size());
     p.a.add_product(x.data(), y.data());
-    EXPECT_TRUE(test::held(sizeof(TypeParam) == 8 ? "A x = b" : "A x = b, single precision", (y - b).template lpNorm<Eigen::Infinity>(), 1, this->tolerance));
+    EXPECT_TRUE(test::held(sizeof(TypeParam) == 8 ? "A x = b" : "A x = b, single precision",
+                           (y - b).template lpNorm<Eigen::Infinity>(), 1, this->tolerance));
   }
 }
 
@@ -100,7 +101,9 @@ TYPED_TEST(Direct, ComplianceAndCorrection) {
     c.add_compliance(p.rows, w.data(), stride);
     const MatX expected = p.h * p.dense.ldlt().solve(MatX(p.h.transpose()));
     for (int i = 0; i < m; ++i)
-      for (int j = 0; j < m; ++j) EXPECT_TRUE(test::held(sizeof(TypeParam) == 8 ? "H A^-1 H^T" : "H A^-1 H^T, single precision", std::abs(w[std::size_t(i * stride + j)] - expected(i, j)), 1, this->tolerance));
+      for (int j = 0; j < m; ++j)
+        EXPECT_TRUE(test::held(sizeof(TypeParam) == 8 ? "H A^-1 H^T" : "H A^-1 H^T, single precision",
+                               std::abs(w[std::size_t(i * stride + j)] - expected(i, j)), 1, this->tolerance));
     VecX lambda = VecX::LinSpaced(m, 1, 2), x(p.dense.rows());
     c.correct(p.rows, lambda.data(), x.data());
     EXPECT_LT((x - p.dense.ldlt().solve(p.h.transpose() * lambda)).template lpNorm<Eigen::Infinity>(), this->tolerance);
@@ -121,8 +124,8 @@ TYPED_TEST(Direct, SaysWhenTheMatrixIsIndefinite) {
   EXPECT_LT((p.dense * x - b).template lpNorm<Eigen::Infinity>(), this->tolerance);
 }
 
-// Two nodes tied to each other and to nothing else, by a spring so stiff that their inertia is lost in its rounding; no number, too
-// large a number. None may pass as a factor.
+// Two nodes tied to each other and to nothing else, by a spring so stiff that their inertia is lost in its rounding; no
+// number, too large a number. None may pass as a factor.
 TYPED_TEST(Direct, SaysWhenAPivotIsLost) {
   BlockMatrix a;
   a.set_pattern(2, {{0, 1}});
@@ -149,15 +152,16 @@ TYPED_TEST(Direct, SaysWhenAPivotIsLost) {
   EXPECT_TRUE(c.factorise(a));
 }
 
-// Rows come, stay, change their place, change their entries and go while the factor stays, then the factor is made anew: W is to
-// the bit what a solver gives that sees these rows for the first time. The load is another in every step, and both halves of the
-// motion are those of dense algebra.
+// Rows come, stay, change their place, change their entries and go while the factor stays, then the factor is made
+// anew: W is to the bit what a solver gives that sees these rows for the first time. The load is another in every step,
+// and both halves of the motion are those of dense algebra.
 TYPED_TEST(Direct, RowsThatStayAreNotSolvedAgain) {
   Problem p = make(6, 6, 5, 70, 11), other = make(6, 6, 5, 70, 12);
   const auto choose = [](const BodyRows& from, const std::vector<int>& rows, BodyRows& to) {
     for (int r : rows) {
       to.open(to.count());
-      for (int e = from.start[std::size_t(r)]; e < from.start[std::size_t(r) + 1]; ++e) to.add(from.block[std::size_t(e)], from.coeff[std::size_t(e)]);
+      for (int e = from.start[std::size_t(r)]; e < from.start[std::size_t(r) + 1]; ++e)
+        to.add(from.block[std::size_t(e)], from.coeff[std::size_t(e)]);
     }
   };
   std::vector<int> none, all, odd, turned, most;
@@ -171,8 +175,9 @@ TYPED_TEST(Direct, RowsThatStayAreNotSolvedAgain) {
     std::vector<int> kept, fresh;  ///< of p, of other
     int reused;
   };
-  const std::vector<Act> acts = {{all, none, 0}, {all, none, 70}, {turned, none, 70}, {odd, {}, 35}, {odd, {5}, 35}, {odd, odd, 36}, {most, {3, 9}, 33}, {none, {4}, 0},
-                                 {none, {4, 4}, 2}, {none, none, 0}, {odd, {3}, 0}, {odd, {3}, 36}};
+  const std::vector<Act> acts = {{all, none, 0},    {all, none, 70}, {turned, none, 70}, {odd, {}, 35},
+                                 {odd, {5}, 35},    {odd, odd, 36},  {most, {3, 9}, 33}, {none, {4}, 0},
+                                 {none, {4, 4}, 2}, {none, none, 0}, {odd, {3}, 0},      {odd, {3}, 36}};
   MultifrontalCholesky<TypeParam> c;
   c.analyse(p.a);
   for (int factor = 0; factor < 2; ++factor) {
@@ -213,17 +218,22 @@ TYPED_TEST(Direct, RowsThatStayAreNotSolvedAgain) {
         solver->unforced_motion(load, motion);
         EXPECT_LT((motion - free).template lpNorm<Eigen::Infinity>(), 4 * this->tolerance);
         solver->add_free_motion(rows, p.identity, delta.data());
-        if (m > 0) { EXPECT_TRUE(test::held(sizeof(TypeParam) == 8 ? "H A^-1 f" : "H A^-1 f, single precision", (delta.head(m) - h * free - VecX::Constant(m, 2.0)).template lpNorm<Eigen::Infinity>(), 1, 4 * this->tolerance)); }
+        if (m > 0) {
+          EXPECT_TRUE(test::held(sizeof(TypeParam) == 8 ? "H A^-1 f" : "H A^-1 f, single precision",
+                                 (delta.head(m) - h * free - VecX::Constant(m, 2.0)).template lpNorm<Eigen::Infinity>(),
+                                 1, 4 * this->tolerance));
+        }
         solver->end_motion(rows, lambda.data(), motion);
-        EXPECT_TRUE(test::held(sizeof(TypeParam) == 8 ? "A^-1 (f + H^T l)" : "A^-1 (f + H^T l), single precision", (motion - moved).template lpNorm<Eigen::Infinity>(), 1, 4 * this->tolerance));
+        EXPECT_TRUE(test::held(sizeof(TypeParam) == 8 ? "A^-1 (f + H^T l)" : "A^-1 (f + H^T l), single precision",
+                               (motion - moved).template lpNorm<Eigen::Infinity>(), 1, 4 * this->tolerance));
       }
     }
     p.dense(3 * 17, 3 * 17) += 1;
   }
 }
 
-// A chain so long that what its ends know of each other is below the smallest normal number in single precision. That is no reason
-// to be slow (see FlushSubnormals), nor to be wrong, and the caller's rounding mode stays as it was.
+// A chain so long that what its ends know of each other is below the smallest normal number in single precision. That
+// is no reason to be slow (see FlushSubnormals), nor to be wrong, and the caller's rounding mode stays as it was.
 TYPED_TEST(Direct, WhatIsFarApartMayVanish) {
   const int n = 60;
   std::vector<std::pair<int, int>> pairs;

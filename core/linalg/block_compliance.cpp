@@ -2,8 +2,8 @@
 // The Delassus operator of one body: Y = L^-1 P H^T on the reach of the rows, W = Y^T Y.
 // Rows are sorted by the first column they touch. In a postordered tree the descendants of a supernode are one range
 // of columns, so the rows active there are (nearly) one range too: only that range is solved and multiplied.
-// While the factor stays, rows that stay keep their column of Y, and W among themselves; they stand in a range of their own
-// behind the fresh ones.
+// While the factor stays, rows that stay keep their column of Y, and W among themselves; they stand in a range of their
+// own behind the fresh ones.
 #include <algorithm>
 #include <cstring>
 
@@ -64,7 +64,8 @@ void MultifrontalCholesky<Real>::begin_compliance(const BodyRows& rows, const st
   share_out();
 }
 
-// Gives every row its column, fresh ones first, and every front its active columns: those of its own entries and of its children.
+// Gives every row its column, fresh ones first, and every front its active columns: those of its own entries and of its
+// children.
 template <class Real>
 void MultifrontalCholesky<Real>::arrange() {
   const int m = columns_;
@@ -72,7 +73,8 @@ void MultifrontalCholesky<Real>::arrange() {
   order_.resize(std::size_t(m));
   for (int r = 0; r < m; ++r) {
     int first = e_.nodes;
-    for (int e = entries_.start[std::size_t(r)]; e < entries_.start[std::size_t(r) + 1]; ++e) first = std::min(first, entries_.node[std::size_t(e)]);
+    for (int e = entries_.start[std::size_t(r)]; e < entries_.start[std::size_t(r) + 1]; ++e)
+      first = std::min(first, entries_.node[std::size_t(e)]);
     begin_[std::size_t(r)] = first;
     order_[std::size_t(r)] = r;
   }
@@ -117,7 +119,8 @@ void MultifrontalCholesky<Real>::clear_fresh() {
   for (std::size_t f = 0; f < e_.front.size(); ++f)
     if (const Columns& a = active_[0][f]; a.begin < a.end)
       for (int i = 0; i < 3 * e_.front[f].own; ++i)
-        std::memset(y_.data() + (3L * e_.front[f].first + i) * ldy_ + a.begin, 0, sizeof(Real) * std::size_t(a.end - a.begin));
+        std::memset(y_.data() + (3L * e_.front[f].first + i) * ldy_ + a.begin, 0,
+                    sizeof(Real) * std::size_t(a.end - a.begin));
 }
 
 // Columns of Y that are known, out of the last Y. What was not active in it is zero.
@@ -129,7 +132,8 @@ void MultifrontalCholesky<Real>::copy_known() {
     from_.clear();
     for (int c = a.begin; c < a.end; ++c) {
       const int r = order_[std::size_t(c)], old = r < 0 ? -1 : old_column_[std::size_t(known_[std::size_t(r)])];
-      const bool there = old >= 0 && ((old >= old_active_[0][f].begin && old < old_active_[0][f].end) || (old >= old_active_[1][f].begin && old < old_active_[1][f].end));
+      const bool there = old >= 0 && ((old >= old_active_[0][f].begin && old < old_active_[0][f].end) ||
+                                      (old >= old_active_[1][f].begin && old < old_active_[1][f].end));
       from_.push_back(there ? old : -1);
     }
     for (long row = 3L * e_.front[f].first; row < 3L * (e_.front[f].first + e_.front[f].own); ++row) {
@@ -140,8 +144,8 @@ void MultifrontalCholesky<Real>::copy_known() {
   }
 }
 
-// Parts of equal work. Every part of the forward act reads the whole factor: one that does not fit the caches is read no more
-// often than needed.
+// Parts of equal work. Every part of the forward act reads the whole factor: one that does not fit the caches is read
+// no more often than needed.
 template <class Real>
 void MultifrontalCholesky<Real>::share_out() {
   constexpr std::size_t cached = std::size_t(2) << 20;
@@ -155,7 +159,8 @@ void MultifrontalCholesky<Real>::share_out() {
       double all = 0;
       for (std::size_t i = 0; i < e_.front.size(); ++i) {
         const Columns &a = active_[0][i], &b = active_[1][i];
-        const double own = 3 * e_.front[i].own, below = 3 * e_.front[i].rows - own, known = std::max(0, b.end - b.begin);
+        const double own = 3 * e_.front[i].own, below = 3 * e_.front[i].rows - own,
+                     known = std::max(0, b.end - b.begin);
         for (int c = a.begin; c < a.end; c += lanes) {
           const double flops = own * (act == ComplianceAct::forward ? own + 2 * below : a.end - c + 2 * known);
           work_[std::size_t(c / lanes)] += flops;
@@ -165,7 +170,8 @@ void MultifrontalCholesky<Real>::share_out() {
       const int parts = act == ComplianceAct::forward && panel_.size() * sizeof(Real) > cached ? 2 : 4;
       double done = 0;
       for (int v = 0; v < whole; ++v) {
-        if (int(begin.size()) < parts && v > 0 && done >= all * double(begin.size()) / parts) begin.push_back(lanes * v);
+        if (int(begin.size()) < parts && v > 0 && done >= all * double(begin.size()) / parts)
+          begin.push_back(lanes * v);
         done += work_[std::size_t(v)];
       }
     }
@@ -177,7 +183,8 @@ template <class Real>
 int MultifrontalCholesky<Real>::compliance_parts(ComplianceAct act) const {
   if (columns_ == 0 || e_.nodes == 0) return 0;
   const int parts = unchanged_ ? 0 : std::max(0, int(part_begin_[std::size_t(act)].size()) - 1);
-  return act == ComplianceAct::product ? std::max(1, parts) : parts;  // what is known is copied by the first; the load is never known
+  return act == ComplianceAct::product ? std::max(1, parts)
+                                       : parts;  // what is known is copied by the first; the load is never known
 }
 
 template <class Real>
@@ -208,7 +215,8 @@ void MultifrontalCholesky<Real>::forward_columns(int from, int to) {
     Real* x = y_.data() + 3L * f.first * ldy_ + lo;
     k.lower_solve_rows(l, f.lda, inverse_.data() + 3 * f.first, own, x, ldy_, hi - lo);
     if (below > 0)
-      k.rows_sub(y_.data() + lo, ldy_, e_.row_scalar.data() + 3 * f.row_begin + own, below, l + own, f.lda, x, ldy_, own, hi - lo);
+      k.rows_sub(y_.data() + lo, ldy_, e_.row_scalar.data() + 3 * f.row_begin + own, below, l + own, f.lda, x, ldy_,
+                 own, hi - lo);
   }
 }
 
@@ -243,7 +251,9 @@ void MultifrontalCholesky<Real>::load_columns(int group, int from, int to) {
     const Front& f = e_.front[i];
     const Columns& a = active_[std::size_t(group)][i];
     const int lo = std::max(a.begin, from), hi = std::min(a.end, to);
-    if (lo < hi) k.columns_sub(of_load_.data() + lo, y_.data() + 3L * f.first * ldy_ + lo, ldy_, load_.data() + 3 * f.first, hi - lo, 3 * f.own);
+    if (lo < hi)
+      k.columns_sub(of_load_.data() + lo, y_.data() + 3L * f.first * ldy_ + lo, ldy_, load_.data() + 3 * f.first,
+                    hi - lo, 3 * f.own);
   }
 }
 
@@ -258,8 +268,10 @@ template <class Real>
 void MultifrontalCholesky<Real>::copy_known_products() {
   for (long c = fresh_; c < fresh_ + reused_; ++c)
     for (long r = c; r < fresh_ + reused_; ++r) {
-      const int oc = old_column_[std::size_t(known_[std::size_t(order_[std::size_t(c)])])], o = old_column_[std::size_t(known_[std::size_t(order_[std::size_t(r)])])];
-      s_[std::size_t(c * ldy_ + r)] = old_s_[std::size_t(std::min(oc, o)) * std::size_t(old_ldy_) + std::size_t(std::max(oc, o))];
+      const int oc = old_column_[std::size_t(known_[std::size_t(order_[std::size_t(c)])])],
+                o = old_column_[std::size_t(known_[std::size_t(order_[std::size_t(r)])])];
+      s_[std::size_t(c * ldy_ + r)] =
+          old_s_[std::size_t(std::min(oc, o)) * std::size_t(old_ldy_) + std::size_t(std::max(oc, o))];
     }
 }
 
@@ -286,14 +298,16 @@ void MultifrontalCholesky<Real>::combine(const BodyRows& rows, const double* lam
   const KernelsOf<Real>& k = kernels_of<Real>();
   if (columns_ == 0) return;
   lambda_.resize(std::size_t(ldy_));
-  for (std::size_t c = 0; c < lambda_.size(); ++c) lambda_[c] = order_[c] >= 0 ? Real(lambda[rows.row[std::size_t(order_[c])]]) : Real(0);
+  for (std::size_t c = 0; c < lambda_.size(); ++c)
+    lambda_[c] = order_[c] >= 0 ? Real(lambda[rows.row[std::size_t(order_[c])]]) : Real(0);
   products_.resize(x_.size());
   for (const auto& group : active_)
     for (std::size_t i = 0; i < e_.front.size(); ++i) {
       const Columns& a = group[i];
       if (a.begin >= a.end) continue;
       const int first = 3 * e_.front[i].first, own = 3 * e_.front[i].own;
-      k.columns_dot(products_.data(), y_.data() + long(first) * ldy_ + a.begin, ldy_, lambda_.data() + a.begin, a.end - a.begin, own);
+      k.columns_dot(products_.data(), y_.data() + long(first) * ldy_ + a.begin, ldy_, lambda_.data() + a.begin,
+                    a.end - a.begin, own);
       for (int r = 0; r < own; ++r) x[first + r] += products_[std::size_t(r)];
     }
 }
@@ -315,29 +329,30 @@ SolverCost MultifrontalCholesky<Real>::cost() const {
   c.factor_flops = e_.flops;
   c.factor_bytes = 2.0 * sizeof(Real) * double(e_.entries);
   for (std::size_t i = 0; compliance_parts(ComplianceAct::forward) > 0 && i < e_.front.size(); ++i) {
-    const double fresh = std::max(0, active_[0][i].end - active_[0][i].begin), known = std::max(0, active_[1][i].end - active_[1][i].begin);
+    const double fresh = std::max(0, active_[0][i].end - active_[0][i].begin),
+                 known = std::max(0, active_[1][i].end - active_[1][i].begin);
     const double own = 3 * e_.front[i].own, below = 3 * e_.front[i].rows - own;
     c.compliance_flops += fresh * own * (own + 2 * below + fresh + 2 * known);
   }
   return c;
 }
 
-#define INSULA_COMPLIANCE_OF(Real)                                                                      \
-  template void MultifrontalCholesky<Real>::begin_compliance(const BodyRows&, const std::vector<int>&); \
-  template void MultifrontalCholesky<Real>::arrange();                                                  \
-  template void MultifrontalCholesky<Real>::clear_fresh();                                              \
-  template void MultifrontalCholesky<Real>::copy_known();                                               \
-  template void MultifrontalCholesky<Real>::share_out();                                                \
-  template int MultifrontalCholesky<Real>::compliance_parts(ComplianceAct) const;                       \
-  template void MultifrontalCholesky<Real>::compliance_part(ComplianceAct, int);                        \
-  template void MultifrontalCholesky<Real>::forward_columns(int, int);                                  \
-  template void MultifrontalCholesky<Real>::product_columns(int, int);                                  \
-  template void MultifrontalCholesky<Real>::load_columns(int, int, int);                                \
+#define INSULA_COMPLIANCE_OF(Real)                                                                                    \
+  template void MultifrontalCholesky<Real>::begin_compliance(const BodyRows&, const std::vector<int>&);               \
+  template void MultifrontalCholesky<Real>::arrange();                                                                \
+  template void MultifrontalCholesky<Real>::clear_fresh();                                                            \
+  template void MultifrontalCholesky<Real>::copy_known();                                                             \
+  template void MultifrontalCholesky<Real>::share_out();                                                              \
+  template int MultifrontalCholesky<Real>::compliance_parts(ComplianceAct) const;                                     \
+  template void MultifrontalCholesky<Real>::compliance_part(ComplianceAct, int);                                      \
+  template void MultifrontalCholesky<Real>::forward_columns(int, int);                                                \
+  template void MultifrontalCholesky<Real>::product_columns(int, int);                                                \
+  template void MultifrontalCholesky<Real>::load_columns(int, int, int);                                              \
   template void MultifrontalCholesky<Real>::add_free_motion(const BodyRows&, const std::vector<int>&, double*) const; \
-  template void MultifrontalCholesky<Real>::copy_known_products();                                      \
-  template void MultifrontalCholesky<Real>::add_compliance(const BodyRows&, double*, int);              \
-  template void MultifrontalCholesky<Real>::combine(const BodyRows&, const double*, Real*) const;       \
-  template void MultifrontalCholesky<Real>::correct(const BodyRows&, const double*, double*);           \
+  template void MultifrontalCholesky<Real>::copy_known_products();                                                    \
+  template void MultifrontalCholesky<Real>::add_compliance(const BodyRows&, double*, int);                            \
+  template void MultifrontalCholesky<Real>::combine(const BodyRows&, const double*, Real*) const;                     \
+  template void MultifrontalCholesky<Real>::correct(const BodyRows&, const double*, double*);                         \
   template SolverCost MultifrontalCholesky<Real>::cost() const
 INSULA_COMPLIANCE_OF(double);
 INSULA_COMPLIANCE_OF(float);

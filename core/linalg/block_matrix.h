@@ -32,7 +32,7 @@ class BlockMatrix {
   int diagonal(int j) const { return start_[std::size_t(j)]; }
 
   void set_zero() { std::fill(value_.begin(), value_.end(), 0.0); }
-  double* block(int slot) { return value_.data() + 9 * std::size_t(slot); }              ///< column-major 3x3
+  double* block(int slot) { return value_.data() + 9 * std::size_t(slot); }  ///< column-major 3x3
   const double* block(int slot) const { return value_.data() + 9 * std::size_t(slot); }
   /// A += scale * other, of the same pattern.
   void add_scaled(const BlockMatrix& other, double scale) {

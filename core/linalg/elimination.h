@@ -13,28 +13,28 @@ namespace insula {
 /// One supernode: a dense trapezoid of L (`panel`) and the update that its elimination subtracts from its ancestors
 /// (`update`).
 struct Front {
-  int first = 0;        ///< first own node, permuted order
-  int own = 0;          ///< own nodes (columns)
-  int rows = 0;         ///< nodes in all (own + below)
-  int row_begin = 0;    ///< into Elimination::row_node
-  int lda = 0;          ///< of the panel, scalars
-  long panel = 0;       ///< offset among all panels, scalars
-  long update = -1;     ///< offset in the arena of update matrices, of the below x below matrix
+  int first = 0;      ///< first own node, permuted order
+  int own = 0;        ///< own nodes (columns)
+  int rows = 0;       ///< nodes in all (own + below)
+  int row_begin = 0;  ///< into Elimination::row_node
+  int lda = 0;        ///< of the panel, scalars
+  long panel = 0;     ///< offset among all panels, scalars
+  long update = -1;   ///< offset in the arena of update matrices, of the below x below matrix
   int ldu = 0;
   int parent = -1;
-  int map_begin = 0;    ///< into Elimination::map: below nodes as positions in the parent's rows
+  int map_begin = 0;  ///< into Elimination::map: below nodes as positions in the parent's rows
   int scatter_begin = 0, scatter_end = 0;
   std::vector<int> children;
 };
 
 struct Elimination {
   struct Scatter {
-    int slot;        ///< block of A
-    long offset;     ///< of the block's first entry in the panels
+    int slot;     ///< block of A
+    long offset;  ///< of the block's first entry in the panels
     bool transpose;
   };
   int nodes = 0;
-  std::vector<Front> front;             ///< in postorder
+  std::vector<Front> front;  ///< in postorder
   std::vector<int> row_node, map;
   std::vector<int> row_scalar;          ///< row_node, three scalars each
   std::vector<int> permuted, natural;   ///< natural node -> permuted node, and back

@@ -49,7 +49,8 @@ void Fp16Factor::round() {
         const float* l = panel + long(c) * f.lda;
         for (int r = c + 1; r < last; ++r) *triangle++ = l[r] * inverse[c];
         float* below = block_.data() + half_lanes + long(c - first) * half_lanes;
-        for (int r = last; r < rows; ++r) below[long((r - last) / half_lanes) * half_lanes * n + (r - last) % half_lanes] = l[r] * inverse[c];
+        for (int r = last; r < rows; ++r)
+          below[long((r - last) / half_lanes) * half_lanes * n + (r - last) % half_lanes] = l[r] * inverse[c];
       }
       k.to_half(to, block_.data(), size);
       to += size;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The factor in 16 bits against the same numbers rounded by hand, with every instruction set, and against the factor it is of.
+// The factor in 16 bits against the same numbers rounded by hand, with every instruction set, and against the factor it
+// is of.
 #include "core/linalg/fp16_factor.h"
 
 #include <gtest/gtest.h>
@@ -40,7 +41,8 @@ TEST(Fp16Kernels, RoundAndSolveAsPlainLoopsDo) {
           for (int c = first; c < last; ++c)
             for (int r = last; r < rows; ++r) {
               const int i = r - last;
-              l(r, c) = block[std::size_t(half_lanes + (i / half_lanes) * half_lanes * n + (c - first) * half_lanes + i % half_lanes)] = 0.3f * any(dice);
+              l(r, c) = block[std::size_t(half_lanes + (i / half_lanes) * half_lanes * n + (c - first) * half_lanes +
+                                          i % half_lanes)] = 0.3f * any(dice);
             }
           numbers.insert(numbers.end(), block.begin(), block.end());
           first = last;
@@ -55,7 +57,8 @@ TEST(Fp16Kernels, RoundAndSolveAsPlainLoopsDo) {
         for (int c = 0; c < own; ++c)
           for (int r = c + 1; r < rows; ++r) want[r] -= exact(r, c) * want[c];
         EXPECT_EQ(k.forward(t.data(), stream.data(), own, rows), stream.data() + stream.size());
-        for (int r = 0; r < rows; ++r) ASSERT_NEAR(t[std::size_t(r)], want[r], 2e-6 * (1 + want.cwiseAbs().maxCoeff())) << r;
+        for (int r = 0; r < rows; ++r)
+          ASSERT_NEAR(t[std::size_t(r)], want[r], 2e-6 * (1 + want.cwiseAbs().maxCoeff())) << r;
 
         for (int r = 0; r < rows; ++r) t[std::size_t(r)] = any(dice);
         std::fill(t.begin() + rows, t.end(), 0.f);
@@ -63,7 +66,8 @@ TEST(Fp16Kernels, RoundAndSolveAsPlainLoopsDo) {
         for (int c = own - 1; c >= 0; --c)
           for (int r = c + 1; r < rows; ++r) want[c] -= exact(r, c) * want[r];
         EXPECT_EQ(k.backward(t.data(), stream.data() + stream.size(), own, rows), stream.data());
-        for (int r = 0; r < rows; ++r) ASSERT_NEAR(t[std::size_t(r)], want[r], 2e-6 * (1 + want.cwiseAbs().maxCoeff())) << r;
+        for (int r = 0; r < rows; ++r)
+          ASSERT_NEAR(t[std::size_t(r)], want[r], 2e-6 * (1 + want.cwiseAbs().maxCoeff())) << r;
       }
     const std::vector<float> odd{0.f, -0.f, 1e30f, -1e30f, 65519.f, 1 + 0x1p-11f, 1 + 3 * 0x1p-12f, -0x1p-14f};
     std::vector<Half> bits(odd.size());

@@ -18,7 +18,9 @@ inline V load(const float* p) { return *reinterpret_cast<const V*>(p); }
 inline void store(float* p, V v) { *reinterpret_cast<V*>(p) = v; }
 
 #if defined(__AVX512F__)
-inline V widened(const Half* p) { return V(_mm512_maskz_cvtph_ps(0xffff, _mm256_loadu_si256(reinterpret_cast<const __m256i*>(p)))); }
+inline V widened(const Half* p) {
+  return V(_mm512_maskz_cvtph_ps(0xffff, _mm256_loadu_si256(reinterpret_cast<const __m256i*>(p))));
+}
 inline float widened_one(Half h) { return _cvtsh_ss(h); }
 #elif defined(__F16C__)
 inline V widened(const Half* p) { return V(_mm256_cvtph_ps(_mm_loadu_si128(reinterpret_cast<const __m128i*>(p)))); }
@@ -44,7 +46,9 @@ inline float widened_one(Half h) {
 constexpr float largest_half = 65504;
 
 void to_half(Half* out, const float* in, long n) {
-  const auto bounded = [](float x) { return x < largest_half ? (x > -largest_half ? x : -largest_half) : largest_half; };
+  const auto bounded = [](float x) {
+    return x < largest_half ? (x > -largest_half ? x : -largest_half) : largest_half;
+  };
   long i = 0;
 #if defined(__F16C__)
   for (; i + 8 <= n; i += 8) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Loops that are compiled once per instruction set (cmake/core.cmake) come as one table a set; here the set is chosen, once.
+// Loops that are compiled once per instruction set (cmake/core.cmake) come as one table a set; here the set is chosen,
+// once.
 #pragma once
 #include <array>
 
@@ -22,13 +23,21 @@ struct TablesOf {
 
 /// In namespace insula: declares the tables `name` of the sets, and every_name(), which lists them all.
 #if defined(__x86_64__)
-#define INSULA_TABLES(Table, name)              \
-  namespace sse2 { extern const Table name; }   \
-  namespace avx2 { extern const Table name; }   \
-  namespace avx512 { extern const Table name; } \
+#define INSULA_TABLES(Table, name) \
+  namespace sse2 {                 \
+  extern const Table name;         \
+  }                                \
+  namespace avx2 {                 \
+  extern const Table name;         \
+  }                                \
+  namespace avx512 {               \
+  extern const Table name;         \
+  }                                \
   inline TablesOf<Table> every_##name() { return {{&sse2::name, &avx2::name, &avx512::name}}; }
 #else
-#define INSULA_TABLES(Table, name)            \
-  namespace sse2 { extern const Table name; } \
+#define INSULA_TABLES(Table, name) \
+  namespace sse2 {                 \
+  extern const Table name;         \
+  }                                \
   inline TablesOf<Table> every_##name() { return {{&sse2::name, &sse2::name, &sse2::name}}; }
 #endif

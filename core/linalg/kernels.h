@@ -20,7 +20,8 @@ struct KernelsOf {
   /// As gemm_sub with A = B, but only for blocks that touch j <= i.
   void (*syrk_sub)(Real* c, int ldc, const Real* a, int lda, int m, int k);
   /// Rows: y_r[0..m) -= sum_k L[r + k ldl] x[k ldx + 0..m), r < rows; y_r = y + index[r] ldy. m a multiple of width.
-  void (*rows_sub)(Real* y, long ldy, const int* index, int rows, const Real* l, int ldl, const Real* x, long ldx, int k, int m);
+  void (*rows_sub)(Real* y, long ldy, const int* index, int rows, const Real* l, int ldl, const Real* x, long ldx,
+                   int k, int m);
   /// Cholesky of a column-major panel: rows x cols, lower, in place, including the rows below its triangle (L21 = A21
   /// L11^-T). `inverse` gets the reciprocals of the diagonal. Returns -1, or the column whose pivot was not positive.
   int (*cholesky_panel)(Real* a, int lda, int rows, int cols, Real* inverse);
@@ -41,7 +42,8 @@ struct KernelsOf {
 };
 using Kernels = KernelsOf<double>;
 /// y += A x, A symmetric in 3x3 blocks column by column, the lower triangle of each, its diagonal first (BlockMatrix).
-using BlockProduct = void (*)(int nodes, const int* start, const int* row, const double* block, const double* x, double* y);
+using BlockProduct = void (*)(int nodes, const int* start, const int* row, const double* block, const double* x,
+                              double* y);
 /// The tables that are compiled for one instruction set.
 struct KernelSet {
   KernelsOf<double> f64;

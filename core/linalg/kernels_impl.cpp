@@ -11,8 +11,8 @@ namespace {
 
 template <class T>
 constexpr int W = KERNEL_BYTES / int(sizeof(T));  // numbers a vector
-constexpr int NV = KERNEL_NV;  // vectors of rows in a tile
-constexpr int NR = KERNEL_NR;  // columns in a tile
+constexpr int NV = KERNEL_NV;                     // vectors of rows in a tile
+constexpr int NR = KERNEL_NR;                     // columns in a tile
 
 template <class T>
 struct Vector;
@@ -28,13 +28,18 @@ template <class T>
 using V = typename Vector<T>::type;
 
 template <class T>
-inline V<T> load(const T* p) { return *reinterpret_cast<const V<T>*>(p); }
+inline V<T> load(const T* p) {
+  return *reinterpret_cast<const V<T>*>(p);
+}
 template <class T>
-inline void store(T* p, V<T> v) { *reinterpret_cast<V<T>*>(p) = v; }
+inline void store(T* p, V<T> v) {
+  *reinterpret_cast<V<T>*>(p) = v;
+}
 
 // One register tile: nv vectors of rows times NR columns; `cols` of them are stored. B may be read NR wide.
 template <int nv, bool add, class T>
-inline __attribute__((always_inline)) void tile(T* c, int ldc, const T* a, int lda, const T* b, int ldb, int cols, int k) {
+inline __attribute__((always_inline)) void tile(T* c, int ldc, const T* a, int lda, const T* b, int ldb, int cols,
+                                                int k) {
   V<T> acc[nv][NR];
   for (int v = 0; v < nv; ++v)
     for (int j = 0; j < NR; ++j) acc[v][j] = V<T>{};
@@ -89,12 +94,17 @@ void gemm_add(T* c, int ldc, const T* a, int lda, const T* b, int ldb, int m, in
   gemm<true>(c, ldc, a, lda, b, ldb, m, n, k, false);
 }
 template <class T>
-void syrk_add(T* c, int ldc, const T* a, int lda, int m, int k) { gemm<true>(c, ldc, a, lda, a, lda, m, m, k, true); }
+void syrk_add(T* c, int ldc, const T* a, int lda, int m, int k) {
+  gemm<true>(c, ldc, a, lda, a, lda, m, m, k, true);
+}
 template <class T>
-void syrk_sub(T* c, int ldc, const T* a, int lda, int m, int k) { gemm<false>(c, ldc, a, lda, a, lda, m, m, k, true); }
+void syrk_sub(T* c, int ldc, const T* a, int lda, int m, int k) {
+  gemm<false>(c, ldc, a, lda, a, lda, m, m, k, true);
+}
 
 template <int nv, class T>
-inline __attribute__((always_inline)) void row_tile(T* y, long ldy, const int* index, int rows, const T* l, int ldl, const T* x, long ldx, int k) {
+inline __attribute__((always_inline)) void row_tile(T* y, long ldy, const int* index, int rows, const T* l, int ldl,
+                                                    const T* x, long ldx, int k) {
   V<T> acc[NR][nv];
   for (int r = 0; r < NR; ++r)
     for (int v = 0; v < nv; ++v) acc[r][v] = V<T>{};
@@ -134,8 +144,8 @@ void rows_sub(T* y, long ldy, const int* index, int rows, const T* l, int ldl, c
   }
 }
 
-// The rows of a panel below its diagonal block d of w columns, a vector at a time; of the last vector only what belongs to the
-// panel is stored, since the next column begins behind it.
+// The rows of a panel below its diagonal block d of w columns, a vector at a time; of the last vector only what belongs
+// to the panel is stored, since the next column begins behind it.
 template <int fixed, class T>
 inline __attribute__((always_inline)) void solve_below(T* d, int lda, int n, const T* inv, int width = 0) {
   const int w = fixed > 0 ? fixed : width;
@@ -184,9 +194,10 @@ int cholesky_panel(T* a, int lda, int rows, int cols, T* inverse) {
 
 template <class T>
 void lower_solve_rows(const T* l, int ldl, const T* inverse, int cols, T* x, long ldx, int m) {
-  static const int identity[64] = {0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21,
-                                   22, 23, 24, 25, 26, 27, 28, 29, 30, 31, 32, 33, 34, 35, 36, 37, 38, 39, 40, 41, 42, 43,
-                                   44, 45, 46, 47, 48, 49, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 63};
+  static const int identity[64] = {0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 12, 13, 14, 15,
+                                   16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30, 31,
+                                   32, 33, 34, 35, 36, 37, 38, 39, 40, 41, 42, 43, 44, 45, 46, 47,
+                                   48, 49, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 63};
   for (int j = 0; j < cols; j += NR) {
     const int w = cols - j < NR ? cols - j : NR;
     const T* d = l + j + long(j) * ldl;
@@ -262,8 +273,8 @@ void columns_sub(T* y, const T* a, long lda, const T* x, int m, int n) {
   for (; c < n; ++c) take_columns<1>(y, a + c * lda, lda, x + c, m);
 }
 
-// Substitution with n columns of a front from column `first` on. What each number found changes is taken off at once, so that
-// the next waits for one product, not for a sum.
+// Substitution with n columns of a front from column `first` on. What each number found changes is taken off at once,
+// so that the next waits for one product, not for a sum.
 template <int n, class T>
 inline __attribute__((always_inline)) void forward_columns(const T* l, long lda, const T* inverse, T* t, int rows) {
   T x[n];
@@ -323,7 +334,8 @@ void block_product(int nodes, const int* start, const int* row, const double* bl
   for (int j = 0; j < nodes; ++j) {
     const double x0 = x[3L * j], x1 = x[3L * j + 1], x2 = x[3L * j + 2];
     const double* d = block + 9L * start[j];  // the diagonal's
-    double y0 = d[0] * x0 + d[3] * x1 + d[6] * x2, y1 = d[1] * x0 + d[4] * x1 + d[7] * x2, y2 = d[2] * x0 + d[5] * x1 + d[8] * x2;
+    double y0 = d[0] * x0 + d[3] * x1 + d[6] * x2, y1 = d[1] * x0 + d[4] * x1 + d[7] * x2,
+           y2 = d[2] * x0 + d[5] * x1 + d[8] * x2;
     for (int s = start[j] + 1; s < start[j + 1]; ++s) {
       const double* b = block + 9L * s;
       const double* xi = x + 3L * row[s];
@@ -346,7 +358,20 @@ void block_product(int nodes, const int* start, const int* row, const double* bl
 #define KERNEL_STRING2(x) #x
 #define KERNEL_STRING(x) KERNEL_STRING2(x)
 template <class T>
-constexpr KernelsOf<T> table_of = {KERNEL_STRING(KERNEL_NAME), W<T>, gemm_sub<T>, gemm_add<T>, syrk_add<T>, syrk_sub<T>, rows_sub<T>, cholesky_panel<T>, lower_solve_rows<T>, columns_dot<T>, columns_sub<T>, front_forward<T>, front_backward<T>, multiply_add<T>};
+constexpr KernelsOf<T> table_of = {KERNEL_STRING(KERNEL_NAME),
+                                   W<T>,
+                                   gemm_sub<T>,
+                                   gemm_add<T>,
+                                   syrk_add<T>,
+                                   syrk_sub<T>,
+                                   rows_sub<T>,
+                                   cholesky_panel<T>,
+                                   lower_solve_rows<T>,
+                                   columns_dot<T>,
+                                   columns_sub<T>,
+                                   front_forward<T>,
+                                   front_backward<T>,
+                                   multiply_add<T>};
 extern const KernelSet table;
 const KernelSet table = {table_of<double>, table_of<float>, block_product};
 

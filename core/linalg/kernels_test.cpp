@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Products with a few columns and substitution with one front, of every instruction set the processor has, against plain loops.
+// Products with a few columns and substitution with one front, of every instruction set the processor has, against
+// plain loops.
 #include "core/linalg/kernels.h"
 
 #include <gtest/gtest.h>
@@ -84,10 +85,13 @@ void check_front(const KernelsOf<Real>& k) {
       std::fill(backward.begin() + rows, backward.begin() + rows + k.width, Real(0));
       k.front_backward(l.data(), lda, inverse.data(), backward.data(), own, rows);
       for (int r = 0; r < rows; ++r) {
-        ASSERT_NEAR(double(forward[std::size_t(r)]), down[std::size_t(r)], near) << own << " columns, row " << r << " of " << rows;
-        ASSERT_NEAR(double(backward[std::size_t(r)]), up[std::size_t(r)], near) << own << " columns, row " << r << " of " << rows;
+        ASSERT_NEAR(double(forward[std::size_t(r)]), down[std::size_t(r)], near)
+            << own << " columns, row " << r << " of " << rows;
+        ASSERT_NEAR(double(backward[std::size_t(r)]), up[std::size_t(r)], near)
+            << own << " columns, row " << r << " of " << rows;
       }
-      for (std::size_t r = std::size_t(rows + k.width); r < t.size(); ++r) ASSERT_EQ(forward[r], t[r]) << "beyond a vector past the end";
+      for (std::size_t r = std::size_t(rows + k.width); r < t.size(); ++r)
+        ASSERT_EQ(forward[r], t[r]) << "beyond a vector past the end";
     }
 }
 

@@ -9,7 +9,9 @@
 namespace insula {
 
 template <class V>
-static inline V most(V a, V b) { return a > b ? a : b; }
+static inline V most(V a, V b) {
+  return a > b ? a : b;
+}
 
 template <class V>
 static inline V root(V v) {
@@ -22,7 +24,9 @@ static inline V root(V v) {
 }
 
 template <class V>
-static inline V dot(const V (&a)[3], const V (&b)[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+static inline V dot(const V (&a)[3], const V (&b)[3]) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
 template <class V>
 static inline void cross(const V (&a)[3], const V (&b)[3], V (&out)[3]) {
@@ -46,8 +50,14 @@ static inline V direction(V y, V x) {
   const auto steep = small > 0.66 * large;
   const V up = steep ? small - large : small, down = steep ? small + large : large;
   const V t = up / (down > 0 ? down : V{} + 1.0), z = t * t;
-  const V p = (((-8.750608600031904122785e-1 * z - 1.615753718733365076637e1) * z - 7.500855792314704667340e1) * z - 1.228866684490136173410e2) * z - 6.485021904942025371773e1;
-  const V q = ((((z + 2.485846490142306297962e1) * z + 1.650270098316988542046e2) * z + 4.328810604912902668951e2) * z + 4.853903996359136964868e2) * z + 1.945506571482613964425e2;
+  const V p = (((-8.750608600031904122785e-1 * z - 1.615753718733365076637e1) * z - 7.500855792314704667340e1) * z -
+               1.228866684490136173410e2) *
+                  z -
+              6.485021904942025371773e1;
+  const V q = ((((z + 2.485846490142306297962e1) * z + 1.650270098316988542046e2) * z + 4.328810604912902668951e2) * z +
+               4.853903996359136964868e2) *
+                  z +
+              1.945506571482613964425e2;
   V angle = t + t * z * p / q;
   angle = steep ? angle + quarter : angle;
   angle = ay > ax ? 2 * quarter - angle : angle;

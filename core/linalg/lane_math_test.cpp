@@ -19,7 +19,8 @@ TEST(LaneMath, DirectionIsTheArcTangentInEveryQuadrant) {
     const double y = any(dice) * std::pow(10, exponent(dice)), x = any(dice) * std::pow(10, exponent(dice));
     const double expected = std::atan2(y, x);
     // To rounding of the angle from the nearest axis: what is small keeps its digits.
-    ASSERT_NEAR(direction(y, x), expected, 4e-16 * (x > 0 ? std::max(std::abs(expected), 1e-300) : 3)) << y << ", " << x;
+    ASSERT_NEAR(direction(y, x), expected, 4e-16 * (x > 0 ? std::max(std::abs(expected), 1e-300) : 3))
+        << y << ", " << x;
     const Two both = direction(Two{y, -x}, Two{x, y});
     ASSERT_EQ(both[0], direction(y, x));
     ASSERT_EQ(both[1], direction(-x, y));
@@ -35,7 +36,8 @@ TEST(LaneMath, DirectionIsTheArcTangentInEveryQuadrant) {
 }
 
 TEST(LaneMath, WholeNumbersAndRoots) {
-  for (const double x : {0.0, 0.49, 0.51, -0.49, -0.51, 3.2, -7.8, 1e9 + 0.7}) EXPECT_EQ(whole(x), std::nearbyint(x)) << x;
+  for (const double x : {0.0, 0.49, 0.51, -0.49, -0.51, 3.2, -7.8, 1e9 + 0.7})
+    EXPECT_EQ(whole(x), std::nearbyint(x)) << x;
   const Two r = root(Two{2, 9});
   EXPECT_EQ(r[0], std::sqrt(2.0));
   EXPECT_EQ(r[1], 3);

@@ -43,14 +43,16 @@ bool RowEntries::equal(int mine, const RowEntries& other, int r) const {
   const std::size_t a = std::size_t(start[std::size_t(mine)]), b = std::size_t(other.start[std::size_t(r)]);
   const std::size_t n = std::size_t(other.start[std::size_t(r) + 1]) - b;
   if (std::size_t(start[std::size_t(mine) + 1]) - a != n) return false;
-  return n == 0 || (std::memcmp(&node[a], &other.node[b], n * sizeof(int)) == 0 && std::memcmp(coeff[a].data(), other.coeff[b].data(), n * sizeof(Vec3)) == 0);
+  return n == 0 || (std::memcmp(&node[a], &other.node[b], n * sizeof(int)) == 0 &&
+                    std::memcmp(coeff[a].data(), other.coeff[b].data(), n * sizeof(Vec3)) == 0);
 }
 
 // The same place first: of rows that are alike each then is itself.
 int RowEntries::find(const RowEntries& other, int r) const {
   if (r < count() && equal(r, other, r)) return r;
   const std::uint64_t h = other.hash_[std::size_t(r)];
-  for (auto at = std::lower_bound(by_hash_.begin(), by_hash_.end(), std::make_pair(h, 0)); at != by_hash_.end() && at->first == h; ++at)
+  for (auto at = std::lower_bound(by_hash_.begin(), by_hash_.end(), std::make_pair(h, 0));
+       at != by_hash_.end() && at->first == h; ++at)
     if (equal(at->second, other, r)) return at->second;
   return -1;
 }

@@ -11,8 +11,8 @@
 namespace insula {
 
 struct RowEntries {
-  std::vector<int> start;    ///< first entry of each row; one more at the end
-  std::vector<int> node;     ///< permuted; fixed nodes are left out
+  std::vector<int> start;  ///< first entry of each row; one more at the end
+  std::vector<int> node;   ///< permuted; fixed nodes are left out
   std::vector<Vec3> coeff;
 
   int count() const { return int(start.size()) - 1; }
@@ -23,8 +23,8 @@ struct RowEntries {
 
  private:
   bool equal(int mine, const RowEntries& other, int r) const;
-  std::vector<std::uint64_t> hash_;                      ///< of each row
-  std::vector<std::pair<std::uint64_t, int>> by_hash_;   ///< sorted
+  std::vector<std::uint64_t> hash_;                     ///< of each row
+  std::vector<std::pair<std::uint64_t, int>> by_hash_;  ///< sorted
 };
 
 }  // namespace insula

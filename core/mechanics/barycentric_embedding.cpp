@@ -16,7 +16,8 @@ std::array<double, 4> embedding_weights(const std::array<double, 4>& weight) {
   return out;
 }
 
-void BarycentricEmbedding::build(std::span<const MaterialPoint> points, std::span<const int> which, const CollisionMesh& mesh) {
+void BarycentricEmbedding::build(std::span<const MaterialPoint> points, std::span<const int> which,
+                                 const CollisionMesh& mesh) {
   vertices_.clear();
   offset_.clear();
   max_nodes_ = 0;
@@ -78,7 +79,8 @@ void BarycentricEmbedding::place_on(double step, Vec3* positions, Vec3* expected
     double* x = positions[p.vertex].data();
     double* swept = expected[p.vertex].data();
     const Pair a = xy - Pair{x[0], x[1]}, b = zx - Pair{x[2], 0}, a2 = a * a, b2 = b * b, c2 = yz * yz;
-    const Pair sum = __builtin_shufflevector(a2, b2, 0, 3) + (__builtin_shufflevector(a2, c2, 1, 2) + __builtin_shufflevector(b2, c2, 0, 3));
+    const Pair sum = __builtin_shufflevector(a2, b2, 0, 3) +
+                     (__builtin_shufflevector(a2, c2, 1, 2) + __builtin_shufflevector(b2, c2, 0, 3));
     Pair& farthest = farthest2[std::size_t(p.region)];
     farthest = farthest > sum ? farthest : sum;
     x[0] = xy[0], x[1] = xy[1], x[2] = zx[0];

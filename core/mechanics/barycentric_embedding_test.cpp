@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Weights that single precision holds. What BarycentricEmbedding places is held against Body::position() by the contract of every scene.
+// Weights that single precision holds. What BarycentricEmbedding places is held against Body::position() by the
+// contract of every scene.
 #include "core/mechanics/barycentric_embedding.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +17,8 @@ TEST(BarycentricEmbedding, WeightsAreFloatsOfSumOne) {
   for (int k = 0; k < 10000; ++k) {
     std::array<double, 4> w;
     double sum = 0;
-    for (std::size_t i = 0; i < 3; ++i) sum += w[i] = k % 3 == 0 ? random.uniform(0, 1.0 / 3) : random.uniform(-0.3, 0.9);
+    for (std::size_t i = 0; i < 3; ++i)
+      sum += w[i] = k % 3 == 0 ? random.uniform(0, 1.0 / 3) : random.uniform(-0.3, 0.9);
     w[3] = 1 - sum;
     const auto out = embedding_weights(w);
     float single = 0;

@@ -18,11 +18,13 @@ class Surface;
 /// second term added by the bodies with W (Body::add_free_motion).
 class ConstraintBuilder {
  public:
-  ConstraintBuilder(ConstraintProblem& problem, const std::vector<Body*>& bodies) : problem_(problem), bodies_(bodies) {}
+  ConstraintBuilder(ConstraintProblem& problem, const std::vector<Body*>& bodies)
+      : problem_(problem), bodies_(bodies) {}
 
   /// Blocks added from now on belong to this component. The simulation calls it before each build().
   void set_owner(const Component& c) { owner_ = c.order; }
-  /// Adds a block of one row (box) or three (friction); `block.row` and `block.owner` are filled in. Returns the first row.
+  /// Adds a block of one row (box) or three (friction); `block.row` and `block.owner` are filled in. Returns the first
+  /// row.
   int add(Block block);
   /// Violation of a row at the start of the step, metres (for contact: the gap).
   void violation(int row, double value) { delta_[std::size_t(row)] += value; }
@@ -30,7 +32,8 @@ class ConstraintBuilder {
   void point(int row, const MaterialPoint& p, const Vec3& d);
   /// The same for a point of a surface's triangle.
   void surface_point(int row, const Surface& s, int triangle, const Vec3& bary, const Vec3& d);
-  /// A row that moves by itself between the steps, at this rate (m/s): what a plugin allows a step is more for a longer one.
+  /// A row that moves by itself between the steps, at this rate (m/s): what a plugin allows a step is more for a longer
+  /// one.
   void moves(int row, double rate) {
     rate_[std::size_t(row)] += rate;
     retardation_time_[std::size_t(row)] = lasting;

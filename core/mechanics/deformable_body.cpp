@@ -43,11 +43,13 @@ void DeformableBody::connect(PrepareContext& context) {
   if (tangent_tolerance() > 0 || solver_kind.is("asynchronous")) {
     sort_unique_pairs(all, int(n));
     for (auto [i, j] : all)
-      if (i != j) neighbours_.push_back({i, j, (rest_nodes()[std::size_t(i)] - rest_nodes()[std::size_t(j)]).squaredNorm()});
+      if (i != j)
+        neighbours_.push_back({i, j, (rest_nodes()[std::size_t(i)] - rest_nodes()[std::size_t(j)]).squaredNorm()});
   }
   a_.set_pattern(free_count_, std::move(pairs));
   damped_.clear();
-  std::copy_if(forces_.begin(), forces_.end(), std::back_inserter(damped_), [](const ForceModel* f) { return f->has_damping(); });
+  std::copy_if(forces_.begin(), forces_.end(), std::back_inserter(damped_),
+               [](const ForceModel* f) { return f->has_damping(); });
   damping_matrix_ = damped_.empty() ? BlockMatrix() : a_;
   mass_.assign(n, 0.0);
   damping_.assign(n, 0.0);
@@ -74,13 +76,15 @@ void DeformableBody::connect(PrepareContext& context) {
 }
 
 /// Adds the model's couplings to `pairs`. Those that name no node of this body are reported and left out.
-void DeformableBody::check_couplings(PrepareContext& context, const ForceModel& model, std::vector<std::pair<int, int>>& pairs) const {
+void DeformableBody::check_couplings(PrepareContext& context, const ForceModel& model,
+                                     std::vector<std::pair<int, int>>& pairs) const {
   std::vector<std::pair<int, int>> own;
   model.couplings(own, Tangent::system);
   for (const auto& [i, j] : own) {
     const int wrong = i < 0 || i >= nodes() ? i : j;
     if (wrong < 0 || wrong >= nodes())
-      return model.error(context, fmt::format("couples node {} of {}, which has the nodes 0 to {}", wrong, in_quotes(id), nodes() - 1));
+      return model.error(context, fmt::format("couples node {} of {}, which has the nodes 0 to {}", wrong,
+                                              in_quotes(id), nodes() - 1));
   }
   pairs.insert(pairs.end(), own.begin(), own.end());
 }
@@ -91,8 +95,10 @@ void DeformableBody::bind(PrepareContext& context, ForceModel& model) {
   } catch (const UndeclaredCoupling& e) {
     const auto node = [&](int block) { return std::find(free_.begin(), free_.end(), block) - free_.begin(); };
     const bool known = std::min(e.row, e.column) >= 0 && std::max(e.row, e.column) < free_count_;
-    model.error(context, known ? fmt::format("couples the nodes {} and {} of {} without declaring it in couplings()", node(e.column), node(e.row), in_quotes(id))
-                               : fmt::format("asks for a block ({}, {}) of the matrix of {}, which has {} free nodes", e.row, e.column, in_quotes(id), free_count_));
+    model.error(context, known ? fmt::format("couples the nodes {} and {} of {} without declaring it in couplings()",
+                                             node(e.column), node(e.row), in_quotes(id))
+                               : fmt::format("asks for a block ({}, {}) of the matrix of {}, which has {} free nodes",
+                                             e.row, e.column, in_quotes(id), free_count_));
   }
 }
 
@@ -113,7 +119,8 @@ Vec3 DeformableBody::unforced_displacement(const MaterialPoint& p) const {
   unforced_is_ = Unforced::asked;
   Vec3 x = Vec3::Zero();
   for (int k = 0; k < p.count; ++k)
-    if (const int b = free_[std::size_t(p.node[std::size_t(k)])]; b >= 0) x += p.weight[std::size_t(k)] * unforced_.segment<3>(3 * b);
+    if (const int b = free_[std::size_t(p.node[std::size_t(k)])]; b >= 0)
+      x += p.weight[std::size_t(k)] * unforced_.segment<3>(3 * b);
   return x;
 }
 
@@ -139,7 +146,8 @@ void DeformableBody::free_motion(const StepContext& context) {
   if (!damped_.empty()) add_damping(h, fresh);
   for (int i = 0; i < nodes(); ++i)
     if (const int b = free_[std::size_t(i)]; b >= 0) {
-      load_.segment<3>(3 * b) = force_.segment<3>(3 * i) + mass_[std::size_t(i)] * (context.gravity + v_.segment<3>(3 * i) / h);
+      load_.segment<3>(3 * b) =
+          force_.segment<3>(3 * i) + mass_[std::size_t(i)] * (context.gravity + v_.segment<3>(3 * i) / h);
       if (!solver_->exact()) guess_.segment<3>(3 * b) = h * v_.segment<3>(3 * i);
     }
   if (!damped_.empty()) load_ += damped_load_;
@@ -158,7 +166,9 @@ void DeformableBody::compliance_part(ComplianceAct act, int part) { solver_->com
 void DeformableBody::add_compliance(const BodyRows& r, double* w, int stride) { solver_->add_compliance(r, w, stride); }
 
 void DeformableBody::subtract_lagged(const BodyRows& r, double* delta) const { solver_->subtract_lagged(r, delta); }
-void DeformableBody::apply_compliance(const BodyRows& r, const double* lambda) { solver_->correct(r, lambda, response_.data()); }
+void DeformableBody::apply_compliance(const BodyRows& r, const double* lambda) {
+  solver_->correct(r, lambda, response_.data());
+}
 
 void DeformableBody::add_applied_compliance(const BodyRows& r, double* delta) const {
   for (int i = 0; i < r.count(); ++i)

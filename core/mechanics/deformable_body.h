@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A deformable body of any topology: nodes with lumped masses, force models, supports, and one implicit Euler
 // linearisation a step:
-//   (M/h^2 + C/h + K) dq = f + M v/h + D v,   C = alpha M + beta K + D,   D = -df/dv of force models with a damping of their own
+//   (M/h^2 + C/h + K) dq = f + M v/h + D v,   C = alpha M + beta K + D,   D = -df/dv of force models with a damping of
+//   their own
 #pragma once
 #include <memory>
 
@@ -14,10 +15,30 @@ namespace insula {
 class DeformableBody : public Body {
  public:
   /// The tangent may be older than the force: the equilibrium is the same, and so is the order of the time integration.
-  Param<Scalar> tangent_tolerance{this, {.name = "tangent_tolerance", .fallback = "0", .min = "0", .max = "0.5", .doc = "change of shape (of the distance vector of neighbouring nodes, over their distance) up to which the system matrix and its factor are used again; 0: made anew every step"}};
+  Param<Scalar> tangent_tolerance{
+      this,
+      {.name = "tangent_tolerance",
+       .fallback = "0",
+       .min = "0",
+       .max = "0.5",
+       .doc = "change of shape (of the distance vector of neighbouring nodes, over their distance) up to which the "
+              "system matrix and its factor are used again; 0: made anew every step"}};
 
-  Param<Choice> solver_kind{this, {.name = "solver", .fallback = "direct", .choices = {"direct", "single", "asynchronous"}, .doc = "how the body's system is solved: a factor made anew when the tissue has changed shape, in double or single precision, or for large bodies conjugate gradients with a factor that is made in the background"}};
-  Param<Length> solver_tolerance{this, {.name = "solver_tolerance", .fallback = "0.001 mm", .min = "1e-9 mm", .max = "1 mm", .doc = "asynchronous solver: a solve ends when what is left would move no node by more than this"}};
+  Param<Choice> solver_kind{
+      this,
+      {.name = "solver",
+       .fallback = "direct",
+       .choices = {"direct", "single", "asynchronous"},
+       .doc =
+           "how the body's system is solved: a factor made anew when the tissue has changed shape, in double or single "
+           "precision, or for large bodies conjugate gradients with a factor that is made in the background"}};
+  Param<Length> solver_tolerance{
+      this,
+      {.name = "solver_tolerance",
+       .fallback = "0.001 mm",
+       .min = "1e-9 mm",
+       .max = "1 mm",
+       .doc = "asynchronous solver: a solve ends when what is left would move no node by more than this"}};
 
   /// Rest positions of the nodes, scene frame, m. Known after prepare().
   virtual const std::vector<Vec3>& rest_nodes() const = 0;
@@ -26,8 +47,8 @@ class DeformableBody : public Body {
   void connect(PrepareContext& context) override;
 
   int nodes() const { return int(rest_nodes().size()); }
-  const VecX& q() const { return q_; }    ///< 3 values a node, m
-  const VecX& v() const { return v_; }    ///< m/s
+  const VecX& q() const { return q_; }  ///< 3 values a node, m
+  const VecX& v() const { return v_; }  ///< m/s
   VecX& q() { return q_; }
   VecX& v() { return v_; }
   double step_length() const { return step_; }  ///< of the step that is on, s
@@ -41,13 +62,16 @@ class DeformableBody : public Body {
   int indefinite_steps() const { return indefinite_; }
   /// Steps that made and factorised the system matrix anew.
   int factorisations() const { return factorisations_; }
-  double factor_ms() const { return factor_ms_; }  ///< of the last step; 0: the factor was kept, or is made in the background
+  double factor_ms() const {
+    return factor_ms_;
+  }  ///< of the last step; 0: the factor was kept, or is made in the background
   /// External force for the next steps, 3 values a node, N (tests, loads).
   VecX external;
   /// Force of what fills the body, renewed by a constraint between the steps, 3 values a node, N.
   VecX filling;
-  /// Prestrains the force models so that they balance `load` (3 values a node, N) in the rest configuration. Returns what is
-  /// left, over |load|, on the free nodes: 1 when no force model takes a prestrain. After connect(), before the first step.
+  /// Prestrains the force models so that they balance `load` (3 values a node, N) in the rest configuration. Returns
+  /// what is left, over |load|, on the free nodes: 1 when no force model takes a prestrain. After connect(), before the
+  /// first step.
   double prestress(const VecX& load);
 
   int blocks() const override { return nodes(); }
@@ -89,24 +113,24 @@ class DeformableBody : public Body {
   int free_count_ = 0;
   std::vector<double> mass_, damping_;
   VecX q_, v_, force_, packed_;
-  VecX load_;                          ///< of the step's motion
-  mutable VecX unforced_;              ///< motion under it, as someone asks for it
+  VecX load_;              ///< of the step's motion
+  mutable VecX unforced_;  ///< motion under it, as someone asks for it
   enum class Unforced { unknown, known, asked };
   mutable Unforced unforced_is_ = Unforced::unknown;
   double factor_ms_ = 0;
-  VecX guess_, response_;               ///< of solvers that are not exact: the last step's displacement, what lambda does
-  std::vector<Quat> turn_;              ///< rotation of each free node's neighbourhood from rest
+  VecX guess_, response_;   ///< of solvers that are not exact: the last step's displacement, what lambda does
+  std::vector<Quat> turn_;  ///< rotation of each free node's neighbourhood from rest
   std::vector<Mat3> rotation_, around_;
   BlockMatrix a_;
   std::unique_ptr<BodySolver> solver_;
   int indefinite_ = 0;
-  double step_ = 0;  ///< of the step that is on, s
+  double step_ = 0;                       ///< of the step that is on, s
   std::vector<double> retardation_time_;  ///< of each node's place, s
   bool retardation_times_known_ = false;
 
-  std::vector<ForceModel*> damped_;    ///< those with a damping of their own
-  BlockMatrix damping_matrix_;         ///< D as it was last assembled; no nodes if there is none
-  VecX packed_v_, damped_load_;        ///< of the free nodes
+  std::vector<ForceModel*> damped_;  ///< those with a damping of their own
+  BlockMatrix damping_matrix_;       ///< D as it was last assembled; no nodes if there is none
+  VecX packed_v_, damped_load_;      ///< of the free nodes
 
   void check_couplings(PrepareContext& context, const ForceModel& model, std::vector<std::pair<int, int>>& pairs) const;
   void bind(PrepareContext& context, ForceModel& model);

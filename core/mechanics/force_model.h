@@ -15,7 +15,8 @@ struct StepContext;
 /// Which derivative of the force goes into the system matrix.
 enum class Tangent {
   exact,   ///< the force's full gradient; may be indefinite (contract tests)
-  system,  ///< what the step uses: positive semidefinite, and at least half of the exact one where it is an approximation
+  system,  ///< what the step uses: positive semidefinite, and at least half of the exact one where it is an
+           ///< approximation
 };
 
 class ForceModel : public Component {
@@ -35,16 +36,18 @@ class ForceModel : public Component {
   virtual void linearise(const double* x, double* force, BlockMatrix* stiffness, double h, Tangent tangent) = 0;
   /// Whether the model has a force that depends on velocity besides stiffness_damping(). Constant after attach().
   virtual bool has_damping() const { return false; }
-  /// Only if has_damping(). force (3 values a node, N) += the force at positions x (m) and velocities v (m/s) that is not in
-  /// linearise(). If `damping` is not null: its blocks += C = -d(force)/dv, N s/m, symmetric and positive semidefinite. `damping`
-  /// has the pattern of the matrix of bind(). h: the step, s; a law with internal variables integrates them implicitly over it.
-  /// The step solves (M/h^2 + C/h + K) dq = f + C v + M v/h.
-  virtual void linearise_damping(const double* /*x*/, const double* /*v*/, double* /*force*/, BlockMatrix* /*damping*/, double /*h*/) {}
+  /// Only if has_damping(). force (3 values a node, N) += the force at positions x (m) and velocities v (m/s) that is
+  /// not in linearise(). If `damping` is not null: its blocks += C = -d(force)/dv, N s/m, symmetric and positive
+  /// semidefinite. `damping` has the pattern of the matrix of bind(). h: the step, s; a law with internal variables
+  /// integrates them implicitly over it. The step solves (M/h^2 + C/h + K) dq = f + C v + M v/h.
+  virtual void linearise_damping(const double* /*x*/, const double* /*v*/, double* /*force*/, BlockMatrix* /*damping*/,
+                                 double /*h*/) {}
   /// J
   virtual double energy(const double* x) = 0;
-  /// Moves the stress-free configuration by u (3 values a node, m) while the rest configuration stays: the linear strain of u at rest is
-  /// taken from the strain, in force, tangent and energy alike. Adds up over calls; reset() keeps it. Between connect and the
-  /// first step. False when the model has no stress-free configuration of its own to move (springs to the surroundings) and does nothing.
+  /// Moves the stress-free configuration by u (3 values a node, m) while the rest configuration stays: the linear
+  /// strain of u at rest is taken from the strain, in force, tangent and energy alike. Adds up over calls; reset()
+  /// keeps it. Between connect and the first step. False when the model has no stress-free configuration of its own to
+  /// move (springs to the surroundings) and does nothing.
   virtual bool prestrain(const double*) { return false; }
   /// Rayleigh stiffness damping, s.
   virtual double stiffness_damping() const { return 0; }
@@ -52,8 +55,9 @@ class ForceModel : public Component {
   virtual double wall_thickness(int /*region*/) const { return 0; }
   /// Whether the body acts on itself alone: no force in rigid motion, forces and moments add up to nothing.
   virtual bool internal() const { return true; }
-  /// After stage 5, once a step, at the body's new positions x (m): the only place where the law may change for good (tear,
-  /// yield, wear) and where events may be told. True when it has changed: the next step then makes a new tangent.
+  /// After stage 5, once a step, at the body's new positions x (m): the only place where the law may change for good
+  /// (tear, yield, wear) and where events may be told. True when it has changed: the next step then makes a new
+  /// tangent.
   virtual bool finish(const StepContext&, const double* /*x*/) { return false; }
   /// Back to what it was before the first step; undoes what finish() did.
   virtual void reset() {}

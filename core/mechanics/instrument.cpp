@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The virtual coupling of a tool.
-//   A dq = Kc disp(tool, device) + (D/h) disp(last device, device) + M v/h,   A = M/h^2 + D/h + Kc,  D = coupling_time Kc
+//   A dq = Kc disp(tool, device) + (D/h) disp(last device, device) + M v/h,   A = M/h^2 + D/h + Kc,  D = coupling_time
+//   Kc
 // so the free tool follows the device as dq_free' = dq_free + A^-1 (Kc + D/h) (x_dev' - x_dev): the gain of equation 7.
 #include "core/mechanics/instrument.h"
 
@@ -17,7 +18,8 @@ void Instrument::prepare(PrepareContext& context) {
     return error(context, model, e.what());
   }
   if (shaft().norm() < 1e-9) return error(context, shaft, "shaft: a direction must not be zero");
-  if (shaft().cross(flat()).norm() < 1e-6 * shaft().norm()) return error(context, flat, "flat: must not be parallel to the shaft");
+  if (shaft().cross(flat()).norm() < 1e-6 * shaft().norm())
+    return error(context, flat, "flat: must not be parallel to the shaft");
   Instrument::reset();
 }
 
@@ -75,7 +77,8 @@ void Instrument::free_motion(const StepContext& context) {
   stiffness_.bottomRightCorner<3, 3>().diagonal().setConstant(angular_coupling());
   const Mat6 follow = (1 + coupling_time() / h) * stiffness_;
   Mat6 a = follow;
-  Vec6 b = stiffness_ * displacement(pose_, device_) + (coupling_time() / h) * stiffness_ * displacement(last_device_, device_);
+  Vec6 b = stiffness_ * displacement(pose_, device_) +
+           (coupling_time() / h) * stiffness_ * displacement(last_device_, device_);
   if (mass() > 0) {
     // Inertia of the model, scaled to the mass asked for, about the tip.
     const double m = mass(), scale = m / tool_.mass;
@@ -152,7 +155,8 @@ void Instrument::fill_terms(ToolTerms& t, int problem_rows) const {
   t.jacobian.setZero(problem_rows, 6);
   for (int i = 0; i < rows.count(); ++i)
     for (int e = rows.start[std::size_t(i)]; e < rows.start[std::size_t(i) + 1]; ++e)
-      t.jacobian.block<1, 3>(rows.row[std::size_t(i)], 3 * rows.block[std::size_t(e)]) += rows.coeff[std::size_t(e)].transpose();
+      t.jacobian.block<1, 3>(rows.row[std::size_t(i)], 3 * rows.block[std::size_t(e)]) +=
+          rows.coeff[std::size_t(e)].transpose();
 }
 
 double Instrument::energy() const {

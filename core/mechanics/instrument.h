@@ -10,7 +10,7 @@ namespace insula {
 /// What a hand asks for during a step.
 struct HandState {
   bool present = false;
-  Pose device;          ///< at the end of the step, scene frame
+  Pose device;  ///< at the end of the step, scene frame
   bool button1 = false;
   bool button2 = false;
 };
@@ -20,22 +20,48 @@ class Instrument : public RigidBody {
   static constexpr std::string_view kind_name = "instrument";
 
   Param<File> model{this, {.name = "model", .doc = "URDF of the tool"}};
-  Param<Choice> hand{this, {.name = "hand", .choices = {"left", "right", "none"}, .doc = "hand that uses the tool; the first one of a hand is in it at the start, the others lie on the tray; none: a table-mounted arm holds it"}};
+  Param<Choice> hand{this,
+                     {.name = "hand",
+                      .choices = {"left", "right", "none"},
+                      .doc = "hand that uses the tool; the first one of a hand is in it at the start, the others lie "
+                             "on the tray; none: a table-mounted arm holds it"}};
   Param<Vec<Length>> home{this, {.name = "home", .doc = "tip at the start, scene frame"}};
-  Param<Vec<Scalar>> shaft{this, {.name = "shaft", .doc = "direction from the tip along the shaft to the handle at the start"}};
-  Param<Vec<Scalar>> flat{this, {.name = "flat", .fallback = "0 0 1", .doc = "normal of the blade's flat side at the start"}};
-  Param<Stiffness> coupling{this, {.name = "coupling", .fallback = "300 N/m", .min = "10 N/m", .max = "5000 N/m", .doc = "translational stiffness of the virtual coupling"}};
-  Param<AngularStiffness> angular_coupling{this, {.name = "angular_coupling", .fallback = "0.3 N m/rad", .min = "0.001 N m/rad", .max = "10 N m/rad", .doc = "rotational stiffness of the virtual coupling"}};
-  Param<Duration> coupling_time{this, {.name = "coupling_time", .fallback = "0 ms", .min = "0 ms", .max = "100 ms", .doc = "damping of the virtual coupling over its stiffness"}};
-  Param<Mass> mass{this, {.name = "mass", .fallback = "0 g", .min = "0 g", .max = "1 kg", .doc = "mass that the coupling moves; 0: the tool follows the hand without lag"}};
+  Param<Vec<Scalar>> shaft{
+      this, {.name = "shaft", .doc = "direction from the tip along the shaft to the handle at the start"}};
+  Param<Vec<Scalar>> flat{this,
+                          {.name = "flat", .fallback = "0 0 1", .doc = "normal of the blade's flat side at the start"}};
+  Param<Stiffness> coupling{this,
+                            {.name = "coupling",
+                             .fallback = "300 N/m",
+                             .min = "10 N/m",
+                             .max = "5000 N/m",
+                             .doc = "translational stiffness of the virtual coupling"}};
+  Param<AngularStiffness> angular_coupling{this,
+                                           {.name = "angular_coupling",
+                                            .fallback = "0.3 N m/rad",
+                                            .min = "0.001 N m/rad",
+                                            .max = "10 N m/rad",
+                                            .doc = "rotational stiffness of the virtual coupling"}};
+  Param<Duration> coupling_time{this,
+                                {.name = "coupling_time",
+                                 .fallback = "0 ms",
+                                 .min = "0 ms",
+                                 .max = "100 ms",
+                                 .doc = "damping of the virtual coupling over its stiffness"}};
+  Param<Mass> mass{this,
+                   {.name = "mass",
+                    .fallback = "0 g",
+                    .min = "0 g",
+                    .max = "1 kg",
+                    .doc = "mass that the coupling moves; 0: the tool follows the hand without lag"}};
 
   void prepare(PrepareContext& context) override;
   /// Once: whether it begins in its hand or on the tray.
   void start_in_hand(bool yes) { active_ = in_hand_at_start_ = yes; }
   int hand_index() const { return hand.is("right") ? 1 : hand.is("left") ? 0 : -1; }  ///< -1: held by an arm
   const ToolModel& tool() const override { return tool_; }
-  const Pose& pose() const { return pose_; }             ///< tool pose at the start of the step
-  const Pose& device() const { return device_; }         ///< device pose at the end of the step
+  const Pose& pose() const { return pose_; }      ///< tool pose at the start of the step
+  const Pose& device() const { return device_; }  ///< device pose at the end of the step
   const Pose& free_pose() const { return free_pose_; }
   const HandState& state() const { return hand_state_; }
   Pose home_pose() const;
@@ -62,7 +88,8 @@ class Instrument : public RigidBody {
   virtual bool cutting() const { return !tool_.blade_edges.empty(); }
   /// 0..1 for the picture: suction on, blade at work.
   virtual double activity() const { return 0; }
-  /// Once, after every component is connected: what its own effect (suction pull, ...) acts on. Its rows come by build().
+  /// Once, after every component is connected: what its own effect (suction pull, ...) acts on. Its rows come by
+  /// build().
   virtual void join(PrepareContext&, Simulation&) {}
 
   const std::vector<ConvexPiece>& link_pieces(int) const override { return tool_.pieces; }

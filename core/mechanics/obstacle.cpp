@@ -7,7 +7,8 @@
 namespace insula {
 
 void Obstacle::prepare(PrepareContext& context) {
-  for (const ForceModel* f : children_of<ForceModel>()) f->error(context, "has no effect on an obstacle, which never moves");
+  for (const ForceModel* f : children_of<ForceModel>())
+    f->error(context, "has no effect on an obstacle, which never moves");
   for (const Support* s : children_of<Support>()) s->error(context, "has no effect on an obstacle, which never moves");
 }
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// In what time a deformable body follows a force, place by place: each of its force models has a time of its own, viscous over
-// elastic, and a unit load strains all of them, each by its share.
+// In what time a deformable body follows a force, place by place: each of its force models has a time of its own,
+// viscous over elastic, and a unit load strains all of them, each by its share.
 //
 // With A = M/h^2 + sum_j (1 + T_j/h) K_j and x = A^-1 f what the unit load f does in a step, it is the energies' mean
 //   T = sum_j T_j x^T K_j x / sum_j x^T K_j x,
-// which is what the place's compliance W = f^T x tells by itself where inertia is nothing: T = -W' / (W + W'/h), W' = dW/d(1/h).
+// which is what the place's compliance W = f^T x tells by itself where inertia is nothing: T = -W' / (W + W'/h), W' =
+// dW/d(1/h).
 #include <algorithm>
 
 #include "core/collision/search/vertex_groups.h"
@@ -17,7 +18,9 @@ void DeformableBody::start_retardation_times() {
   double slowest = 0;
   for (const ForceModel* f : forces_) slowest = std::max(slowest, f->stiffness_damping());
   retardation_time_.assign(std::size_t(nodes()), slowest);
-  retardation_times_known_ = !solver_->exact() || std::all_of(forces_.begin(), forces_.end(), [&](const ForceModel* f) { return f->stiffness_damping() == slowest; });
+  retardation_times_known_ = !solver_->exact() || std::all_of(forces_.begin(), forces_.end(), [&](const ForceModel* f) {
+    return f->stiffness_damping() == slowest;
+  });
 }
 
 // With the factor of a_ at hand. Places are told apart as well as some dozens of unit loads can.
@@ -53,12 +56,14 @@ void DeformableBody::find_retardation_times(double h) {
     if (elastic > 0) mean = viscous / elastic;
   }
   for (int i = 0; i < nodes(); ++i)
-    if (const double mean = time[std::size_t(group[std::size_t(i)])]; mean >= 0) retardation_time_[std::size_t(i)] = mean;
+    if (const double mean = time[std::size_t(group[std::size_t(i)])]; mean >= 0)
+      retardation_time_[std::size_t(i)] = mean;
 }
 
 double DeformableBody::retardation_time(const MaterialPoint& p) const {
   double time = 0;
-  for (int k = 0; k < p.count; ++k) time += p.weight[std::size_t(k)] * retardation_time_[std::size_t(p.node[std::size_t(k)])];
+  for (int k = 0; k < p.count; ++k)
+    time += p.weight[std::size_t(k)] * retardation_time_[std::size_t(p.node[std::size_t(k)])];
   return std::max(0.0, time);
 }
 

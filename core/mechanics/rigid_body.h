@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A rigid thing that is no obstacle: a hand-held tool, an implant. It has one or more links, each a set of convex pieces that
-// moves as one; contact asks for the poses of the links and nothing else.
+// A rigid thing that is no obstacle: a hand-held tool, an implant. It has one or more links, each a set of convex
+// pieces that moves as one; contact asks for the poses of the links and nothing else.
 #pragma once
 #include <string>
 #include <vector>
@@ -12,10 +12,10 @@ namespace insula {
 
 /// Something that a list of tools tells about one.
 struct BodyProperty {
-  std::string name;   ///< "blade_length"
-  double value = 0;   ///< SI
-  std::string unit;   ///< SI symbol
-  std::string text;   ///< for people: "9 mm"
+  std::string name;  ///< "blade_length"
+  double value = 0;  ///< SI
+  std::string unit;  ///< SI symbol
+  std::string text;  ///< for people: "9 mm"
 };
 
 class RigidBody : public Body {
@@ -36,7 +36,8 @@ class RigidBody : public Body {
   virtual const std::vector<ConvexPiece>& link_pieces(int link) const = 0;
   virtual Pose link_pose(int link) const = 0;       ///< at the start of the step, scene frame
   virtual Pose link_free_pose(int link) const = 0;  ///< at the end of the free motion
-  /// Displacement that the free motion gives the point over the step, linearised, scene frame. Valid after free_motion().
+  /// Displacement that the free motion gives the point over the step, linearised, scene frame. Valid after
+  /// free_motion().
   virtual Vec3 free_displacement(const MaterialPoint& p) const = 0;
   Vec3 expected_displacement(const MaterialPoint& p) const override { return free_displacement(p); }
   /// Puts it somewhere at once; velocity and history stay (tests, replays).

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A thin-walled body on a triangle surface: an artery, a strip. The triangles are the wall's middle surface; what the wall
-// is made of is said by the force models it owns. Caps close it for volume and contact, but are no wall: they carry
-// no elements, and their nodes with the rims are held.
+// A thin-walled body on a triangle surface: an artery, a strip. The triangles are the wall's middle surface; what the
+// wall is made of is said by the force models it owns. Caps close it for volume and contact, but are no wall: they
+// carry no elements, and their nodes with the rims are held.
 #pragma once
 #include <string>
 #include <string_view>
@@ -16,9 +16,14 @@ class ShellBody final : public DeformableBody {
  public:
   static constexpr std::string_view kind_name = "shell_body";  ///< in messages about references to one
 
-  Param<File> wall{this, {.name = "wall", .formerly = "vessel", .fallback = "", .doc = "JSON file: wall surface with its regions, caps and centrelines"}};
+  Param<File> wall{this,
+                   {.name = "wall",
+                    .formerly = "vessel",
+                    .fallback = "",
+                    .doc = "JSON file: wall surface with its regions, caps and centrelines"}};
   Param<File> mesh{this, {.name = "mesh", .fallback = "", .doc = "plain surface file instead of that"}};
-  Param<LengthUnit> mesh_unit{this, {.name = "mesh_unit", .fallback = "mm", .doc = "unit of length of the surface file"}};
+  Param<LengthUnit> mesh_unit{this,
+                              {.name = "mesh_unit", .fallback = "mm", .doc = "unit of length of the surface file"}};
 
   void prepare(PrepareContext& context) override;
   const std::vector<Vec3>& rest_nodes() const override { return model_.wall.vertices; }

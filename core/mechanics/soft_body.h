@@ -16,7 +16,10 @@ class SoftBody final : public DeformableBody {
 
   const TetMesh& rest() const { return rest_; }
   /// In place of a file, before prepare(): for tests and generated bodies.
-  void set_mesh(TetMesh m) { rest_ = std::move(m); given_ = true; }
+  void set_mesh(TetMesh m) {
+    rest_ = std::move(m);
+    given_ = true;
+  }
 
  private:
   TetMesh rest_;

@@ -47,12 +47,16 @@ void Surface::prepare(PrepareContext& context) {
     const Embedding e = embed(soft->rest(), rest_.vertices);
     // Points far from the tetrahedra would be flung about by extrapolation: more likely the wrong unit or frame.
     if (e.outside_m > 0.005)
-      return error(context, mesh, "the surface reaches " + std::to_string(e.outside_m * 1000) +
-                                      " mm outside the body's tetrahedra; is its unit or frame another one?");
-    for (std::size_t i = 0; i < points_.size(); ++i) points_[i] = {body_, 4, 0, e.nodes[i], embedding_weights(e.weights[i]), Vec3::Zero()};
+      return error(context, mesh,
+                   "the surface reaches " + std::to_string(e.outside_m * 1000) +
+                       " mm outside the body's tetrahedra; is its unit or frame another one?");
+    for (std::size_t i = 0; i < points_.size(); ++i)
+      points_[i] = {body_, 4, 0, e.nodes[i], embedding_weights(e.weights[i]), Vec3::Zero()};
   } else if (shell) {
     if (shell->rest().triangles.empty()) return;  // its own error is reported
-    if (!attach_to_shell(*shell)) return error(context, mesh, "the surface lies more than 5 mm off the body's wall; is its unit or frame another one?");
+    if (!attach_to_shell(*shell))
+      return error(context, mesh,
+                   "the surface lies more than 5 mm off the body's wall; is its unit or frame another one?");
   } else {
     for (std::size_t i = 0; i < points_.size(); ++i) points_[i] = {body_, 0, 0, {}, {}, rest_.vertices[i]};
   }
@@ -60,7 +64,8 @@ void Surface::prepare(PrepareContext& context) {
   expected_.assign(positions_.size(), Vec3::Zero());
 }
 
-// A vertex follows the nearest triangle of the wall and keeps its distance to it; a surface of the body's own is its nodes.
+// A vertex follows the nearest triangle of the wall and keeps its distance to it; a surface of the body's own is its
+// nodes.
 bool Surface::attach_to_shell(const ShellBody& shell) {
   const TriMesh& wall = shell.rest();
   if (mesh.empty()) {
@@ -77,7 +82,8 @@ bool Surface::attach_to_shell(const ShellBody& shell) {
     std::array<double, 4> bary{};
     tree.nearest(x, nullptr, least2, [&](int t, double& limit2) {
       const auto& v = wall.triangles[std::size_t(t)];
-      const Vec3 &a = wall.vertices[std::size_t(v[0])], &b = wall.vertices[std::size_t(v[1])], &c = wall.vertices[std::size_t(v[2])];
+      const Vec3 &a = wall.vertices[std::size_t(v[0])], &b = wall.vertices[std::size_t(v[1])],
+                 &c = wall.vertices[std::size_t(v[2])];
       const Vec3 w = closest_on_triangle(x, a, b, c);
       const Vec3 p = w[0] * a + w[1] * b + w[2] * c;
       const double d2 = (p - x).squaredNorm();

@@ -29,7 +29,8 @@ void DeformableBody::find_rotations() {
     if (const int b = free_[std::size_t(j)]; b >= 0) around_[std::size_t(b)] += m;
   };
   for (const Neighbours& n : neighbours_) add(n.i, n.j);
-  for (int j = 0; j < free_count_; ++j) rotation_[std::size_t(j)] = nearest_rotation(around_[std::size_t(j)], turn_[std::size_t(j)]);
+  for (int j = 0; j < free_count_; ++j)
+    rotation_[std::size_t(j)] = nearest_rotation(around_[std::size_t(j)], turn_[std::size_t(j)]);
 }
 
 // A but for inertia, and the force that goes with it.
@@ -45,7 +46,8 @@ void DeformableBody::assemble(double h) {
 // Forces that depend on velocity, and D v in damped_load_. D is taken when A is; both stay together.
 void DeformableBody::add_damping(double h, bool fresh) {
   if (fresh) damping_matrix_.set_zero();
-  for (ForceModel* f : damped_) f->linearise_damping(q_.data(), v_.data(), force_.data(), fresh ? &damping_matrix_ : nullptr, h);
+  for (ForceModel* f : damped_)
+    f->linearise_damping(q_.data(), v_.data(), force_.data(), fresh ? &damping_matrix_ : nullptr, h);
   if (fresh) a_.add_scaled(damping_matrix_, 1 / h);
   for (int i = 0; i < nodes(); ++i)
     if (const int b = free_[std::size_t(i)]; b >= 0) packed_v_.segment<3>(3 * b) = v_.segment<3>(3 * i);
@@ -67,7 +69,8 @@ void DeformableBody::factorise(double h) {
       d[4] += add;
       d[8] += add;
     }
-    // An indefinite matrix (force models promise not to make one) is met with ten times the inertia, as often as needed.
+    // An indefinite matrix (force models promise not to make one) is met with ten times the inertia, as often as
+    // needed.
     const auto begin = std::chrono::steady_clock::now();
     const bool good = solver_->factorise_and_begin(a_, load_, guess_);
     factor_ms_ += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();

@@ -10,12 +10,12 @@
 namespace insula {
 
 struct TetMesh {
-  std::vector<Vec3> nodes;                ///< m
-  std::vector<std::array<int, 4>> tets;   ///< positively oriented: (b-a) x (c-a) . (d-a) > 0
+  std::vector<Vec3> nodes;               ///< m
+  std::vector<std::array<int, 4>> tets;  ///< positively oriented: (b-a) x (c-a) . (d-a) > 0
 };
 
 struct TriMesh {
-  std::vector<Vec3> vertices;             ///< m
+  std::vector<Vec3> vertices;                 ///< m
   std::vector<std::array<int, 3>> triangles;  ///< counter-clockwise from outside
 };
 

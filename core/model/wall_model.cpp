@@ -59,7 +59,8 @@ class WallPly {
         const std::string& name = scalars[k + 1];
         if (name.size() == 1 && name[0] >= 'x' && name[0] <= 'z') p[name[0] - 'x'] = x * mm;
       }
-      if (!p.allFinite() || p.cwiseAbs().maxCoeff() > largest_mm * mm) in_.fail("vertex " + std::to_string(v) + " is not finite or too far away");
+      if (!p.allFinite() || p.cwiseAbs().maxCoeff() > largest_mm * mm)
+        in_.fail("vertex " + std::to_string(v) + " is not finite or too far away");
       mesh.vertices.push_back(p);
     }
     for (std::int64_t f = 0; f < faces; ++f) {
@@ -67,7 +68,8 @@ class WallPly {
       std::array<int, 3> t;
       for (int& v : t) {
         const double x = value(lists[1], ascii, swap);
-        if (!(x >= 0 && x < double(vertices) && x == std::floor(x))) in_.fail("face " + std::to_string(f) + " names a vertex that does not exist");
+        if (!(x >= 0 && x < double(vertices) && x == std::floor(x)))
+          in_.fail("face " + std::to_string(f) + " names a vertex that does not exist");
         v = int(x);
       }
       mesh.triangles.push_back(t);
@@ -96,10 +98,12 @@ void check_wall(const std::filesystem::path& file, const TriMesh& wall) {
   double volume = 0;
   for (std::size_t t = 0; t < wall.triangles.size(); ++t) {
     const auto [a, b, c] = wall.triangles[t];
-    const Vec3 &p = wall.vertices[std::size_t(a)], &q = wall.vertices[std::size_t(b)], &r = wall.vertices[std::size_t(c)];
+    const Vec3 &p = wall.vertices[std::size_t(a)], &q = wall.vertices[std::size_t(b)],
+               &r = wall.vertices[std::size_t(c)];
     if (!((q - p).cross(r - p).norm() > 1e-14)) fail(file, "triangle " + std::to_string(t) + " is flat");
     volume += (p - wall.vertices[0]).dot((q - wall.vertices[0]).cross(r - wall.vertices[0])) / 6;
-    for (const auto& e : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) edges.push_back(e), used[std::size_t(e.first)] = 1;
+    for (const auto& e : {std::pair(a, b), std::pair(b, c), std::pair(c, a)})
+      edges.push_back(e), used[std::size_t(e.first)] = 1;
   }
   const auto unused = std::find(used.begin(), used.end(), 0);
   if (unused != used.end()) fail(file, "no triangle uses vertex " + std::to_string(unused - used.begin()));
@@ -110,7 +114,8 @@ void check_wall(const std::filesystem::path& file, const TriMesh& wall) {
   const auto twice = std::adjacent_find(edges.begin(), edges.end());
   if (twice != edges.end()) fail(file, name(*twice) + " belongs to two triangles in the same direction");
   for (const auto& e : edges)
-    if (!std::binary_search(edges.begin(), edges.end(), std::pair(e.second, e.first))) fail(file, "is not closed: " + name(e) + " is open");
+    if (!std::binary_search(edges.begin(), edges.end(), std::pair(e.second, e.first)))
+      fail(file, "is not closed: " + name(e) + " is open");
   if (!(volume > 0)) fail(file, "is turned inside out: its triangles must be counter-clockwise as seen from outside");
 }
 
@@ -172,7 +177,8 @@ class VesselReader {
   }
   int index(const Json& json, std::size_t limit, const std::string& what) const {
     if (!json.is_number_integer() || json.get<double>() < 0 || json.get<double>() >= double(limit))
-      bad(what + " holds " + shown(json.dump()) + ", which is not between 0 and " + std::to_string(std::int64_t(limit) - 1));
+      bad(what + " holds " + shown(json.dump()) + ", which is not between 0 and " +
+          std::to_string(std::int64_t(limit) - 1));
     return json.get<int>();
   }
   void new_name(std::set<std::string>& names, const std::string& name, const char* kind) const {
@@ -187,7 +193,8 @@ class VesselReader {
     }
     if (out_.regions.empty()) bad("regions must name at least one region");
     if (of_vertex.size() != out_.wall.vertices.size())
-      bad("vertex_region has " + std::to_string(of_vertex.size()) + " entries, and wall.ply " + std::to_string(out_.wall.vertices.size()) + " vertices");
+      bad("vertex_region has " + std::to_string(of_vertex.size()) + " entries, and wall.ply " +
+          std::to_string(out_.wall.vertices.size()) + " vertices");
     for (const Json& r : of_vertex) out_.vertex_region.push_back(index(r, out_.regions.size(), "vertex_region"));
   }
 
@@ -201,7 +208,8 @@ class VesselReader {
       const std::string what = "cap " + in_quotes(cap.name);
       for (const Json& t : list(json, "triangles", what + ": ")) {
         cap.triangles.push_back(index(t, out_.wall.triangles.size(), what));
-        if (!taken.insert(cap.triangles.back()).second) bad(what + ": triangle " + std::to_string(cap.triangles.back()) + " is in a cap already");
+        if (!taken.insert(cap.triangles.back()).second)
+          bad(what + ": triangle " + std::to_string(cap.triangles.back()) + " is in a cap already");
       }
       if (cap.triangles.empty()) bad(what + " has no triangles");
       std::sort(cap.triangles.begin(), cap.triangles.end());
@@ -223,12 +231,14 @@ class VesselReader {
       line.to = text(member(json, "to", what), what + "to");
       for (const Json& p : list(json, "points", what)) {
         line.points.push_back(point(p, what + "points"));
-        if (line.points.size() > 1 && !((line.points.back() - line.points[line.points.size() - 2]).norm() > 1e-9)) bad(what + "two points in a row are the same");
+        if (line.points.size() > 1 && !((line.points.back() - line.points[line.points.size() - 2]).norm() > 1e-9))
+          bad(what + "two points in a row are the same");
       }
       if (line.points.size() < 2) bad(what + "points must be two or more");
       for (const Json& r : list(json, "radius", what)) line.radius.push_back(positive(r, what + "radius"));
       if (line.radius.size() != line.points.size())
-        bad(what + "has " + std::to_string(line.points.size()) + " points and " + std::to_string(line.radius.size()) + " radii");
+        bad(what + "has " + std::to_string(line.points.size()) + " points and " + std::to_string(line.radius.size()) +
+            " radii");
       out_.centrelines.push_back(std::move(line));
     }
     if (out_.centrelines.empty()) bad("centrelines must hold at least one centreline");

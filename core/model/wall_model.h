@@ -23,17 +23,17 @@ struct WallModel {
     std::vector<double> radius;  ///< one a point, > 0
   };
 
-  TriMesh wall;                    ///< closed, outward, caps included; vertices numbered as in wall.ply
+  TriMesh wall;  ///< closed, outward, caps included; vertices numbered as in wall.ply
   std::vector<std::string> regions;
   std::vector<int> vertex_region;  ///< index into regions, one a wall vertex
   std::vector<Cap> caps;
   std::vector<Centreline> centrelines;
 
-  bool has_neck = false;           ///< not every wall has one
+  bool has_neck = false;                                         ///< not every wall has one
   Vec3 neck_centre = Vec3::Zero(), neck_normal = Vec3::UnitZ();  ///< unit, towards the dome
   double neck_diameter = 0;
-  double dome_height = 0;          ///< over the neck's plane; 0 without a neck
-  double bleb_radius = 0;          ///< 0 when there is no bleb
+  double dome_height = 0;  ///< over the neck's plane; 0 without a neck
+  double bleb_radius = 0;  ///< 0 when there is no bleb
   Vec3 bleb_centre = Vec3::Zero();
 
   /// Index of a region, or -1.

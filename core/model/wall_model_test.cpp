@@ -15,8 +15,9 @@ namespace {
 using Json = nlohmann::json;
 
 // A tetrahedron with legs of 2 mm; one triangle is the cap.
-const std::string header = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
-                           "element face 4\nproperty list uchar int vertex_indices\nend_header\n";
+const std::string header =
+    "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+    "element face 4\nproperty list uchar int vertex_indices\nend_header\n";
 const std::string vertices = "0 0 0\n2 0 0\n0 2 0\n0 0 2\n";
 const std::string faces = "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
 
@@ -108,30 +109,55 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"regions_empty", [](Json& j) { j["regions"] = Json::array(); }, "at least one region"},
         Bad{"region_number", [](Json& j) { j["regions"][0] = 3; }, "a region's name must be text"},
         Bad{"region_twice", [](Json& j) { j["regions"][1] = "parent"; }, "two regions are called \"parent\""},
-        Bad{"too_few", [](Json& j) { j["vertex_region"].erase(0); }, "vertex_region has 3 entries, and wall.ply 4 vertices"},
-        Bad{"region_high", [](Json& j) { j["vertex_region"][2] = 2; }, "vertex_region holds 2, which is not between 0 and 1"},
+        Bad{"too_few", [](Json& j) { j["vertex_region"].erase(0); },
+            "vertex_region has 3 entries, and wall.ply 4 vertices"},
+        Bad{"region_high", [](Json& j) { j["vertex_region"][2] = 2; },
+            "vertex_region holds 2, which is not between 0 and 1"},
         Bad{"region_negative", [](Json& j) { j["vertex_region"][2] = -1; }, "holds -1"},
         Bad{"region_half", [](Json& j) { j["vertex_region"][2] = 0.5; }, "holds 0.5"},
-        Bad{"region_huge", [](Json& j) { j["vertex_region"][2] = 18446744073709551615ull; }, "holds 18446744073709551615"},
+        Bad{"region_huge", [](Json& j) { j["vertex_region"][2] = 18446744073709551615ull; },
+            "holds 18446744073709551615"},
         Bad{"no_caps", [](Json& j) { j["caps"] = Json::array(); }, "at least one cap"},
         Bad{"cap_text", [](Json& j) { j["caps"][0] = "inlet"; }, "a cap's name is missing"},
         Bad{"cap_empty", [](Json& j) { j["caps"][0]["triangles"] = Json::array(); }, "cap \"inlet\" has no triangles"},
-        Bad{"cap_high", [](Json& j) { j["caps"][0]["triangles"][0] = 4; }, "cap \"inlet\" holds 4, which is not between 0 and 3"},
-        Bad{"cap_twice", [](Json& j) { j["caps"].push_back({{"name", "inlet"}, {"triangles", {1}}}); }, "two caps are called \"inlet\""},
-        Bad{"cap_shared", [](Json& j) { j["caps"].push_back({{"name", "outlet"}, {"triangles", {2}}}); }, "cap \"outlet\": triangle 2 is in a cap already"},
+        Bad{"cap_high", [](Json& j) { j["caps"][0]["triangles"][0] = 4; },
+            "cap \"inlet\" holds 4, which is not between 0 and 3"},
+        Bad{"cap_twice",
+            [](Json& j) {
+              j["caps"].push_back({{"name", "inlet"}, {"triangles", {1}}});
+            },
+            "two caps are called \"inlet\""},
+        Bad{"cap_shared",
+            [](Json& j) {
+              j["caps"].push_back({{"name", "outlet"}, {"triangles", {2}}});
+            },
+            "cap \"outlet\": triangle 2 is in a cap already"},
         Bad{"no_lines", [](Json& j) { j["centrelines"] = Json::array(); }, "at least one centreline"},
-        Bad{"line_twice", [](Json& j) { j["centrelines"].push_back(j["centrelines"][0]); }, "two centrelines are called \"trunk\""},
+        Bad{"line_twice", [](Json& j) { j["centrelines"].push_back(j["centrelines"][0]); },
+            "two centrelines are called \"trunk\""},
         Bad{"line_region", [](Json& j) { j["centrelines"][0]["region"] = "sac"; }, "there is no region \"sac\""},
         Bad{"line_from", [](Json& j) { j["centrelines"][0].erase("from"); }, "from is missing"},
         Bad{"line_point", [](Json& j) { j["centrelines"][0]["points"].erase(0); }, "points must be two or more"},
-        Bad{"line_flat_point", [](Json& j) { j["centrelines"][0]["points"][0] = {1, 2}; }, "points must be three numbers"},
-        Bad{"line_same", [](Json& j) { j["centrelines"][0]["points"][0] = {1, 2, 3}; }, "two points in a row are the same"},
+        Bad{"line_flat_point",
+            [](Json& j) {
+              j["centrelines"][0]["points"][0] = {1, 2};
+            },
+            "points must be three numbers"},
+        Bad{"line_same",
+            [](Json& j) {
+              j["centrelines"][0]["points"][0] = {1, 2, 3};
+            },
+            "two points in a row are the same"},
         Bad{"line_null", [](Json& j) { j["centrelines"][0]["points"][0][0] = nullptr; }, "points must be a number"},
         Bad{"line_far", [](Json& j) { j["centrelines"][0]["points"][0][0] = 1e300; }, "points must be a number"},
         Bad{"line_radii", [](Json& j) { j["centrelines"][0]["radius"].erase(0); }, "has 2 points and 1 radii"},
         Bad{"line_radius", [](Json& j) { j["centrelines"][0]["radius"][0] = 0; }, "radius must be positive"},
         Bad{"neck_text", [](Json& j) { j["neck"] = "wide"; }, "neck.centre is missing"},
-        Bad{"neck_normal", [](Json& j) { j["neck"]["normal"] = {0, 0, 2}; }, "neck.normal must have length 1"},
+        Bad{"neck_normal",
+            [](Json& j) {
+              j["neck"]["normal"] = {0, 0, 2};
+            },
+            "neck.normal must have length 1"},
         Bad{"neck_diameter", [](Json& j) { j["neck"]["diameter"] = -1; }, "neck.diameter must be positive"},
         Bad{"no_dome", [](Json& j) { j.erase("dome_height"); }, "dome_height is missing"},
         Bad{"bleb", [](Json& j) { j["bleb"].erase("radius"); }, "bleb.radius is missing"}),
@@ -154,7 +180,9 @@ TEST_P(BadWallFile, IsRefusedWithItsFileAndAReason) {
   }
 }
 
-std::string changed(std::string text, const std::string& from, const std::string& to) { return text.replace(text.find(from), from.size(), to); }
+std::string changed(std::string text, const std::string& from, const std::string& to) {
+  return text.replace(text.find(from), from.size(), to);
+}
 const std::string whole = header + vertices + faces;
 
 INSTANTIATE_TEST_SUITE_P(
@@ -169,8 +197,10 @@ INSTANTIATE_TEST_SUITE_P(
                     BadWall{"turned", header + vertices + "3 0 1 2\n3 0 3 1\n3 0 2 3\n3 1 3 2\n", "inside out"},
                     BadWall{"one_turned", changed(whole, "3 1 2 3", "3 1 3 2"), "in the same direction"},
                     BadWall{"flat", changed(whole, "0 0 2", "1 0 0"), "is flat"},
-                    BadWall{"unused", changed(changed(whole, "vertex 4", "vertex 5"), "0 0 2\n", "0 0 2\n5 5 5\n"), "no triangle uses vertex 4"},
-                    BadWall{"edges", changed(whole, "end_header", "element edge 0\nproperty int a\nend_header"), "nothing else"}),
+                    BadWall{"unused", changed(changed(whole, "vertex 4", "vertex 5"), "0 0 2\n", "0 0 2\n5 5 5\n"),
+                            "no triangle uses vertex 4"},
+                    BadWall{"edges", changed(whole, "end_header", "element edge 0\nproperty int a\nend_header"),
+                            "nothing else"}),
     [](const auto& test) { return std::string(test.param.name); });
 
 TEST(WallModel, MissingFilesAndBrokenJsonAreNamed) {

@@ -111,8 +111,8 @@ std::optional<double> read_number(std::string_view text, std::string& error) {
   return convert(text, n, error);
 }
 
-std::optional<ParsedQuantity> read_quantity(std::string_view text, std::span<const Unit> units, std::string_view quantity,
-                                            std::string& error) {
+std::optional<ParsedQuantity> read_quantity(std::string_view text, std::span<const Unit> units,
+                                            std::string_view quantity, std::string& error) {
   text = trim(text);
   if (text.empty()) {
     error = "the value is empty";
@@ -137,7 +137,8 @@ std::optional<ParsedQuantity> read_quantity(std::string_view text, std::span<con
     } else if (units.empty()) {
       error = in_quotes(symbol) + " may not stand here: the value is a plain number without a unit";
     } else {
-      error = in_quotes(symbol) + " is not a unit of " + std::string(quantity) + " (use one of " + unit_list(units) + ")";
+      error =
+          in_quotes(symbol) + " is not a unit of " + std::string(quantity) + " (use one of " + unit_list(units) + ")";
     }
     return std::nullopt;
   }
@@ -159,8 +160,9 @@ std::optional<Vec3> read_vector(std::string_view text, std::span<const Unit> uni
                                 const Unit*& unit, std::string& error) {
   text = trim(text);
   const auto words = split_blanks(text);
-  const std::string wanted = units.empty() ? "three plain numbers, as in \"0 0 1\""
-                                           : "three numbers and one unit, as in \"1 0 -1 " + std::string(units.front().symbol) + "\"";
+  const std::string wanted =
+      units.empty() ? "three plain numbers, as in \"0 0 1\""
+                    : "three numbers and one unit, as in \"1 0 -1 " + std::string(units.front().symbol) + "\"";
   if (words.size() < 3) {
     error = text.empty() ? "the value is empty; it needs " + wanted : in_quotes(text) + " needs " + wanted;
     return std::nullopt;

@@ -22,8 +22,8 @@ std::size_t number_length(std::string_view text);
 /// quoted text.
 std::optional<double> read_number(std::string_view text, std::string& error);
 /// "12.5 kPa"; with no units, "12.5".
-std::optional<ParsedQuantity> read_quantity(std::string_view text, std::span<const Unit> units, std::string_view quantity,
-                                            std::string& error);
+std::optional<ParsedQuantity> read_quantity(std::string_view text, std::span<const Unit> units,
+                                            std::string_view quantity, std::string& error);
 /// "38 0 -15 mm"; with no units, "0 0 1".
 std::optional<Vec3> read_vector(std::string_view text, std::span<const Unit> units, std::string_view quantity,
                                 const Unit*& unit, std::string& error);

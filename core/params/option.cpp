@@ -39,7 +39,8 @@ std::optional<double> read_option(std::string_view text, std::span<const Unit> u
     error.clear();
     return read->si / bare.to_si;
   }
-  if (min && max) error = whole + " is outside the allowed range " + std::string(option.min) + " to " + std::string(option.max);
+  if (min && max)
+    error = whole + " is outside the allowed range " + std::string(option.min) + " to " + std::string(option.max);
   else if (min) error = whole + " is below the allowed minimum " + std::string(option.min);
   else error = whole + " is above the allowed maximum " + std::string(option.max);
   return std::nullopt;
@@ -53,8 +54,8 @@ std::vector<std::string> command_words(int argc, const char* const* argv) {
   std::vector<std::string> words;
   for (int k = 1; k < argc; ++k) {
     const std::string_view word = argv[k];
-    const bool behind_number = words.size() >= 2 && words[words.size() - 2].starts_with("--") && !words.back().empty() &&
-                               number_length(words.back()) == words.back().size();
+    const bool behind_number = words.size() >= 2 && words[words.size() - 2].starts_with("--") &&
+                               !words.back().empty() && number_length(words.back()) == words.back().size();
     if (behind_number && is_known_unit(word)) words.back() += " " + std::string(word);
     else words.emplace_back(word);
   }

@@ -23,22 +23,23 @@ struct QuantityOption {
   std::string doc;            ///< one line for --help
 };
 
-/// The value of an option's text in the unit `option.bare`. None, and the reason in `error`, when the text is no such quantity
-/// or lies outside of the range. Throws std::logic_error when the option's own unit or range cannot be read.
+/// The value of an option's text in the unit `option.bare`. None, and the reason in `error`, when the text is no such
+/// quantity or lies outside of the range. Throws std::logic_error when the option's own unit or range cannot be read.
 std::optional<double> read_option(std::string_view text, std::span<const Unit> units, std::string_view quantity,
                                   const QuantityOption& option, std::string& error);
 
 /// What --help says of an option with a unit: its text and the unit of a bare number.
 std::string option_doc(const QuantityOption& option);
 
-/// The words of a command line after the program's name. A unit that stands as a word of its own behind an option's number joins
-/// it: `--rate 100 Hz` is `--rate "100 Hz"`.
+/// The words of a command line after the program's name. A unit that stands as a word of its own behind an option's
+/// number joins it: `--rate 100 Hz` is `--rate "100 Hz"`.
 std::vector<std::string> command_words(int argc, const char* const* argv);
 
 /// Why a whole number is not at least `least`; empty when it is. For CLI11's check().
 std::string below(std::string_view text, int least);
 
-/// Adds an option with a unit to a CLI::App (a template, so that this header does not need CLI11). Returns the CLI::Option.
+/// Adds an option with a unit to a CLI::App (a template, so that this header does not need CLI11). Returns the
+/// CLI::Option.
 template <class Q, class App>
 auto* add_quantity(App& app, const std::string& name, double& value, const QuantityOption& option) {
   const auto check = [option](const std::string& text) {
@@ -50,7 +51,9 @@ auto* add_quantity(App& app, const std::string& name, double& value, const Quant
     std::string error;
     if (const auto read = read_option(text, Q::units(), Q::name, option, error)) value = *read;
   };
-  return app.template add_option_function<std::string>(name, take, option_doc(option))->type_name("QUANTITY")->check(check);
+  return app.template add_option_function<std::string>(name, take, option_doc(option))
+      ->type_name("QUANTITY")
+      ->check(check);
 }
 
 /// The same for several values with commas between them.
@@ -64,7 +67,8 @@ auto* add_quantities(App& app, const std::string& name, std::vector<double>& val
   const auto take = [&values, option](const std::vector<std::string>& texts) {
     values.clear();
     std::string error;
-    for (const std::string& text : texts) values.push_back(read_option(text, Q::units(), Q::name, option, error).value());
+    for (const std::string& text : texts)
+      values.push_back(read_option(text, Q::units(), Q::name, option, error).value());
   };
   return app.template add_option_function<std::vector<std::string>>(name, take, option_doc(option))
       ->delimiter(',')

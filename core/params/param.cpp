@@ -76,7 +76,8 @@ bool ParamBase::assign_fallback() {
   text_ = *spec_.fallback;
   given_ = false;
   if (text_.empty()) return true;  // optional without a default: stays as constructed
-  if (const std::string error = parse(trim(text_)); !error.empty()) bad_declaration(spec_.name, "its default: " + error);
+  if (const std::string error = parse(trim(text_)); !error.empty())
+    bad_declaration(spec_.name, "its default: " + error);
   return true;
 }
 
@@ -171,7 +172,8 @@ std::string Param<Choice>::parse(std::string_view text) {
   if (std::find(choices.begin(), choices.end(), text) == choices.end()) {
     const std::vector<std::string> names(choices.begin(), choices.end());
     const std::string near = nearest_name(text, names);
-    if (!near.empty() && text.size() <= 64) return in_quotes(text) + " is not a choice; did you mean \"" + near + "\"? (use one of " + joined(names) + ")";
+    if (!near.empty() && text.size() <= 64)
+      return in_quotes(text) + " is not a choice; did you mean \"" + near + "\"? (use one of " + joined(names) + ")";
     return in_quotes(text) + " is not a choice (use one of " + joined(names) + ")";
   }
   value_ = text;

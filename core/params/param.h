@@ -30,7 +30,7 @@ struct ParamSpec {
   std::string_view max = {};
   std::vector<std::string_view> choices = {};  ///< for Param<Choice>
   std::string_view doc;                        ///< one line
-  std::string_view formerly = {};              ///< its name in older scenes; whoever still writes that is told the new one
+  std::string_view formerly = {};  ///< its name in older scenes; whoever still writes that is told the new one
 };
 
 /// Base of every parameter: what list, describe, schema and docs read.
@@ -44,17 +44,17 @@ class ParamBase {
   const ParamSpec& spec() const { return spec_; }
   std::string name() const { return std::string(spec_.name); }
   bool required() const { return !spec_.fallback; }
-  bool given() const { return given_; }             ///< written in the scene
-  const SourcePos& pos() const { return pos_; }     ///< of the value in the scene
-  const std::string& text() const { return text_; } ///< as written (or the fallback)
+  bool given() const { return given_; }              ///< written in the scene
+  const SourcePos& pos() const { return pos_; }      ///< of the value in the scene
+  const std::string& text() const { return text_; }  ///< as written (or the fallback)
 
   /// Parses and range-checks. Returns the error text, empty when the value was accepted.
   std::string assign(std::string_view text, const SourcePos& pos);
   /// Sets the default; returns false when there is none.
   bool assign_fallback();
 
-  virtual std::string type_name() const = 0;            ///< "pressure", "text", "reference to body", ...
-  virtual std::string_view si() const { return ""; }    ///< SI symbol, empty when none
+  virtual std::string type_name() const = 0;          ///< "pressure", "text", "reference to body", ...
+  virtual std::string_view si() const { return ""; }  ///< SI symbol, empty when none
   virtual std::span<const Unit> units() const { return {}; }
   virtual std::string_view ref_kind() const { return ""; }  ///< kind name when this names other components
   virtual bool is_list() const { return false; }
@@ -76,7 +76,8 @@ std::optional<double> parse_quantity(std::string_view text, std::span<const Unit
 
 class QuantityParam : public ParamBase {
  public:
-  QuantityParam(ParamSet* owner, ParamSpec spec, std::string_view quantity, std::string_view si, std::span<const Unit> units);
+  QuantityParam(ParamSet* owner, ParamSpec spec, std::string_view quantity, std::string_view si,
+                std::span<const Unit> units);
   double operator()() const { return value_; }
   void set(double value) { value_ = value; }  ///< in SI; for tests and tools; the range is not checked
   std::string type_name() const override { return std::string(quantity_); }
@@ -166,7 +167,8 @@ class Param<Choice> : public ParamBase {  // one of spec.choices; compare with o
 /// Three numbers and one unit: "38 0 -15 mm". For Q = Scalar (a direction) no unit.
 class VectorParam : public ParamBase {
  public:
-  VectorParam(ParamSet* owner, ParamSpec spec, std::string_view quantity, std::string_view si, std::span<const Unit> units);
+  VectorParam(ParamSet* owner, ParamSpec spec, std::string_view quantity, std::string_view si,
+              std::span<const Unit> units);
   const Vec3& operator()() const { return value_; }
   void set(const Vec3& v) { value_ = v; }
   std::string type_name() const override { return "three numbers (" + std::string(quantity_) + ")"; }

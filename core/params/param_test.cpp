@@ -12,10 +12,12 @@ namespace insula {
 namespace {
 
 struct Sample : Component {
-  Param<Force> closing_force{this, {.name = "closing_force", .fallback = "1.5 N", .min = "0.1 N", .max = "5 N", .doc = "force"}};
+  Param<Force> closing_force{
+      this, {.name = "closing_force", .fallback = "1.5 N", .min = "0.1 N", .max = "5 N", .doc = "force"}};
   Param<Pressure> young{this, {.name = "young", .min = "1 Pa", .doc = "stiffness"}};
   Param<Length> depth{this, {.name = "depth", .fallback = "1 mm", .max = "10 mm", .doc = "depth"}};
-  Param<Scalar> ratio{this, {.name = "ratio", .fallback = "0.45", .min = "0", .max = "0.499", .doc = "Poisson's ratio"}};
+  Param<Scalar> ratio{this,
+                      {.name = "ratio", .fallback = "0.45", .min = "0", .max = "0.499", .doc = "Poisson's ratio"}};
   Param<bool> on{this, {.name = "on", .fallback = "true", .doc = "switch"}};
   Param<int> count{this, {.name = "count", .fallback = "3", .min = "1", .max = "100", .doc = "how many"}};
   Param<std::string> text{this, {.name = "text", .fallback = "hello", .doc = "words"}};
@@ -123,7 +125,8 @@ TEST(Param, Vectors) {
   EXPECT_LT((s.at() - Vec3(38e-3, 0, -15e-3)).norm(), 1e-15);
   EXPECT_EQ(set(s.at, "1 2 3m"), "");
   EXPECT_EQ(set(s.axis, "0 1 0"), "");
-  for (const char* text : {"", "1 2 mm", "1 2 3", "1,2,3 mm", "1 2 3 4 mm", "1 mm 2 mm 3 mm", "1 x 3 mm", "1 2 nan mm", "1 2 3 N"})
+  for (const char* text :
+       {"", "1 2 mm", "1 2 3", "1,2,3 mm", "1 2 3 4 mm", "1 mm 2 mm 3 mm", "1 x 3 mm", "1 2 nan mm", "1 2 3 N"})
     EXPECT_NE(set(s.at, text), "") << text;
   EXPECT_NE(set(s.axis, "0 1 0 mm"), "");
 }

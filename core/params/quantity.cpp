@@ -60,10 +60,10 @@ std::span<const Unit> FlowRate::units() { return flow_rate; }
 std::span<const Unit> Viscosity::units() { return viscosity; }
 
 bool is_known_unit(std::string_view symbol) {
-  const std::span<const Unit> all[] = {length,       area,         volume, duration, frequency, rate,         mass,
-                                       density,      force,        torque,   pressure,  stiffness,    angular_stiffness,
-                                       damping,      angle,        speed,    acceleration, area_density, surface_mass,
-                                       foundation_modulus, flow_rate, viscosity};
+  const std::span<const Unit> all[] = {
+      length,       area,         volume,       duration,           frequency,         rate,     mass,  density,
+      force,        torque,       pressure,     stiffness,          angular_stiffness, damping,  angle, speed,
+      acceleration, area_density, surface_mass, foundation_modulus, flow_rate,         viscosity};
   for (const auto& units : all)
     for (const auto& u : units)
       if (u.symbol == symbol) return true;

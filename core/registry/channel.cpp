@@ -46,8 +46,11 @@ ChannelBase::ChannelBase(Component* owner, ChannelSpec spec, Quantity quantity, 
   if (spec_.display == "%" && quantity_.units.empty()) {
     scale_ = 100;
   } else if (!spec_.display.empty()) {
-    const auto unit = std::find_if(quantity_.units.begin(), quantity_.units.end(), [&](const Unit& u) { return u.symbol == spec_.display; });
-    if (unit == quantity_.units.end()) bad_declaration(spec_.name, "\"" + std::string(spec_.display) + "\" is no unit of " + std::string(quantity_.name));
+    const auto unit = std::find_if(quantity_.units.begin(), quantity_.units.end(),
+                                   [&](const Unit& u) { return u.symbol == spec_.display; });
+    if (unit == quantity_.units.end())
+      bad_declaration(spec_.name,
+                      "\"" + std::string(spec_.display) + "\" is no unit of " + std::string(quantity_.name));
     scale_ = 1 / unit->to_si;
   }
   if (single_) set_groups({""});

@@ -27,8 +27,8 @@ class Component;
 enum class Shown { none, curve, vital };
 std::string_view shown_name(Shown shown);
 
-/// What a picture of the channel's subject does with it: nothing; shade the region of the group's name by it (0..1); beat
-/// with it as its phase (0..1).
+/// What a picture of the channel's subject does with it: nothing; shade the region of the group's name by it (0..1);
+/// beat with it as its phase (0..1).
 enum class Role { none, shade, pulse };
 
 /// From and to, written with units; an empty bound is open. Both empty: no band.
@@ -38,8 +38,8 @@ struct Band {
 
 struct ChannelSpec {
   std::string_view name;
-  std::string_view doc;           ///< one line
-  std::string_view min = {};      ///< expected range, written with units; empty: open
+  std::string_view doc;       ///< one line
+  std::string_view min = {};  ///< expected range, written with units; empty: open
   std::string_view max = {};
   Shown shown = Shown::curve;
   std::string_view display = {};  ///< unit that people read, one of the quantity's; "%" for a plain number; empty: SI
@@ -78,12 +78,12 @@ class ChannelBase {
 
   std::optional<double> min() const { return min_; }  ///< SI
   std::optional<double> max() const { return max_; }
-  void set_max(double si) { max_ = si; }              ///< for what is only known once the scene is there, such as a count
+  void set_max(double si) { max_ = si; }  ///< for what is only known once the scene is there, such as a count
   using Bounds = std::array<std::optional<double>, 2>;
-  const Bounds& good() const { return good_; }        ///< SI
+  const Bounds& good() const { return good_; }  ///< SI
   const Bounds& high() const { return high_; }
-  std::string_view display_unit() const;              ///< as people read it, may be empty
-  double display_scale() const { return scale_; }     ///< shown number = SI value * scale
+  std::string_view display_unit() const;           ///< as people read it, may be empty
+  double display_scale() const { return scale_; }  ///< shown number = SI value * scale
   /// A value as people read it, with its unit.
   std::string text(double si) const;
 
@@ -109,7 +109,8 @@ class ChannelBase {
 template <class Q>
 class Channel : public ChannelBase {
  public:
-  Channel(Component* owner, ChannelSpec spec) : ChannelBase(owner, std::move(spec), {Q::name, Q::si, Q::units()}, 1, true) {}
+  Channel(Component* owner, ChannelSpec spec)
+      : ChannelBase(owner, std::move(spec), {Q::name, Q::si, Q::units()}, 1, true) {}
   void set(double si) { at(0) = si; }
   double operator()() const { return at(0); }
 };
@@ -118,7 +119,8 @@ class Channel : public ChannelBase {
 template <class Q>
 class Channel<Vec<Q>> : public ChannelBase {
  public:
-  Channel(Component* owner, ChannelSpec spec) : ChannelBase(owner, std::move(spec), {Q::name, Q::si, Q::units()}, 3, true) {}
+  Channel(Component* owner, ChannelSpec spec)
+      : ChannelBase(owner, std::move(spec), {Q::name, Q::si, Q::units()}, 3, true) {}
   void set(const Vec3& si) {
     for (int k = 0; k < 3; ++k) at(std::size_t(k)) = si[k];
   }
@@ -130,7 +132,8 @@ class Channel<Vec<Q>> : public ChannelBase {
 template <class Q>
 class ChannelGroup : public ChannelBase {
  public:
-  ChannelGroup(Component* owner, ChannelSpec spec) : ChannelBase(owner, std::move(spec), {Q::name, Q::si, Q::units()}, 1, false) {}
+  ChannelGroup(Component* owner, ChannelSpec spec)
+      : ChannelBase(owner, std::move(spec), {Q::name, Q::si, Q::units()}, 1, false) {}
   void declare(std::vector<std::string> names) { set_groups(std::move(names)); }
   void set(std::size_t item, double si) { at(item) = si; }
   double operator()(std::size_t item) const { return at(item); }

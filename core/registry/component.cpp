@@ -26,7 +26,9 @@ std::string_view kind_name(Kind kind) {
   return "component";
 }
 
-void Component::error(PrepareContext& context, std::string text) const { context.diagnostics.error(pos, std::move(text)); }
+void Component::error(PrepareContext& context, std::string text) const {
+  context.diagnostics.error(pos, std::move(text));
+}
 
 void Component::error(PrepareContext& context, const ParamBase& param, std::string text) const {
   // Readers name the file they failed on by its full path; the author knows it as written.

@@ -18,20 +18,20 @@ namespace insula {
 
 /// The kinds of component. The kind determines the allowed parents and the contract test.
 enum class Kind {
-  scene,        ///< the root element
-  settings,     ///< time step, solver, view: at most one of each directly under the scene
-  body,         ///< soft_body, obstacle: q, v, mass
-  surface,      ///< collision and picture surface owned by a body
-  force_model,  ///< force, stiffness, energy of the body that owns it
-  support,      ///< holds degrees of freedom of the body that owns it
-  constraint,   ///< adds rows to the constraint problem
-  instrument,   ///< a hand-held tool
-  exercise,     ///< goals, faults, motions
-  exercise_rule,///< owned by an exercise
-  motion,       ///< scripted two-hand motion, owned by an exercise
-  complications,///< what may go wrong by chance: at most one directly under the scene
-  complication, ///< one of them
-  material,     ///< the look of things by name
+  scene,          ///< the root element
+  settings,       ///< time step, solver, view: at most one of each directly under the scene
+  body,           ///< soft_body, obstacle: q, v, mass
+  surface,        ///< collision and picture surface owned by a body
+  force_model,    ///< force, stiffness, energy of the body that owns it
+  support,        ///< holds degrees of freedom of the body that owns it
+  constraint,     ///< adds rows to the constraint problem
+  instrument,     ///< a hand-held tool
+  exercise,       ///< goals, faults, motions
+  exercise_rule,  ///< owned by an exercise
+  motion,         ///< scripted two-hand motion, owned by an exercise
+  complications,  ///< what may go wrong by chance: at most one directly under the scene
+  complication,   ///< one of them
+  material,       ///< the look of things by name
 };
 std::string_view kind_name(Kind kind);  ///< "force model", "exercise rule", ...
 
@@ -65,11 +65,11 @@ class Component : public ParamSet {
   const std::vector<DrawableBase*>& drawables() const { return drawables_; }   ///< in order of declaration
   const std::vector<EventKind*>& event_kinds() const { return event_kinds_; }  ///< in order of declaration
 
-  std::string id;        ///< as written, or the element name with its ordinal when none was given ("contact#1")
-  std::string element;   ///< element name
+  std::string id;       ///< as written, or the element name with its ordinal when none was given ("contact#1")
+  std::string element;  ///< element name
   Kind kind = Kind::scene;
-  SourcePos pos;         ///< of the start tag
-  int order = 0;         ///< document position over all files, unique: the order of everything that must be reproducible
+  SourcePos pos;  ///< of the start tag
+  int order = 0;  ///< document position over all files, unique: the order of everything that must be reproducible
   Component* parent = nullptr;
   std::vector<std::unique_ptr<Component>> children;
 

@@ -27,7 +27,8 @@ std::string_view drawable_kind_name(DrawableKind kind) {
   return "points";
 }
 
-DrawableBase::DrawableBase(Component* owner, DrawableSpec spec, DrawableKind kind) : spec_(spec), kind_(kind), material_(spec.material) {
+DrawableBase::DrawableBase(Component* owner, DrawableSpec spec, DrawableKind kind)
+    : spec_(spec), kind_(kind), material_(spec.material) {
   if (!owner) bad_declaration(spec_.name, "it has no owner");
   if (spec_.name.empty() || spec_.name.find_first_of(". \t") != std::string_view::npos)
     bad_declaration(spec_.name, "it needs a name without dots and blanks");
@@ -38,7 +39,8 @@ DrawableBase::DrawableBase(Component* owner, DrawableSpec spec, DrawableKind kin
     if (other->spec().name == spec_.name) bad_declaration(spec_.name, "the component has it twice");
   std::string error;
   const auto radius = parse_quantity(spec_.radius, Length::units(), Length::name, error);
-  if (!radius || !(*radius > 0)) bad_declaration(spec_.name, "its radius: " + (radius ? std::string("must be positive") : error));
+  if (!radius || !(*radius > 0))
+    bad_declaration(spec_.name, "its radius: " + (radius ? std::string("must be positive") : error));
   radius_ = *radius;
   owner->drawables_.push_back(this);
 }
@@ -55,7 +57,9 @@ int DrawableBase::floats_per_element() const {
 void Patch::set_triangles(std::vector<std::array<int, 3>> triangles, std::size_t vertices) {
   for (const auto& t : triangles)
     for (int v : t)
-      if (v < 0 || std::size_t(v) >= vertices) throw std::logic_error("drawable \"" + std::string(spec().name) + "\": a triangle names a vertex that is not there");
+      if (v < 0 || std::size_t(v) >= vertices)
+        throw std::logic_error("drawable \"" + std::string(spec().name) +
+                               "\": a triangle names a vertex that is not there");
   triangles_ = std::move(triangles);
   resize_elements(vertices);
 }

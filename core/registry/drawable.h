@@ -22,14 +22,14 @@ std::string_view drawable_kind_name(DrawableKind kind);
 
 struct DrawableSpec {
   std::string_view name;
-  std::string_view doc;           ///< one line
-  std::string_view material;      ///< name of a material of the registry or the scene
-  std::string_view value = {};    ///< what the value says, one line; empty: it is not used
-  std::string_view unit = {};     ///< SI unit of the value
+  std::string_view doc;                 ///< one line
+  std::string_view material;            ///< name of a material of the registry or the scene
+  std::string_view value = {};          ///< what the value says, one line; empty: it is not used
+  std::string_view unit = {};           ///< SI unit of the value
   std::string_view radius = "0.15 mm";  ///< of points and polylines, a length with its unit
-  int points_per_line = 2;        ///< of polylines
-  std::string_view text = "{}";   ///< of labels; {} stands for the value
-  std::string_view rate_channel = {};  ///< own channel that says how fast a fluid moves; may be empty
+  int points_per_line = 2;              ///< of polylines
+  std::string_view text = "{}";         ///< of labels; {} stands for the value
+  std::string_view rate_channel = {};   ///< own channel that says how fast a fluid moves; may be empty
 };
 
 /// Base of every drawable: what frames and bundles read.
@@ -49,7 +49,7 @@ class DrawableBase {
   double radius() const { return radius_; }  ///< m
   /// The numbers of a frame, in the layout of lcm_types/render_frame.lcm.
   const std::vector<float>& data() const { return data_; }
-  int floats_per_element() const;            ///< of one point, line, vertex, plane, label or link
+  int floats_per_element() const;  ///< of one point, line, vertex, plane, label or link
   int count() const { return int(data_.size()) / floats_per_element(); }
 
  protected:

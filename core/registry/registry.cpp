@@ -44,7 +44,8 @@ void Registry::add_info(ComponentInfo info) {
   for (const char* taken : {"include", "variable", "part"})
     if (info.element == taken) throw std::logic_error("<" + info.element + "> is an element of the scene language");
   if (const auto* other = find(info.element))
-    throw std::logic_error("<" + info.element + "> of plugin " + info.plugin + " is already registered by " + other->plugin);
+    throw std::logic_error("<" + info.element + "> of plugin " + info.plugin + " is already registered by " +
+                           other->plugin);
   if (info.parents.empty()) info.parents = usual_parents(info.kind);
   // A wrong declaration is a mistake of the programmer: found here, not when an author first writes the element.
   try {
@@ -62,7 +63,8 @@ void Registry::add_info(ComponentInfo info) {
 
 void Registry::add_material(Material material) {
   for (const Material& other : materials_)
-    if (other.name == material.name) throw std::logic_error("the material \"" + material.name + "\" is already registered");
+    if (other.name == material.name)
+      throw std::logic_error("the material \"" + material.name + "\" is already registered");
   materials_.push_back(std::move(material));
 }
 

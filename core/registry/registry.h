@@ -19,11 +19,11 @@
 namespace insula {
 
 struct ComponentInfo {
-  std::string element;              ///< unique element name
+  std::string element;  ///< unique element name
   Kind kind = Kind::constraint;
-  std::string doc;                  ///< one line
-  std::vector<Kind> parents;        ///< kinds of component it may stand in
-  std::string plugin;               ///< folder name of the plugin that brought it, or "core"
+  std::string doc;            ///< one line
+  std::vector<Kind> parents;  ///< kinds of component it may stand in
+  std::string plugin;         ///< folder name of the plugin that brought it, or "core"
   std::function<std::unique_ptr<Component>()> create;
 };
 
@@ -43,7 +43,7 @@ class Registry {
   const std::vector<Material>& materials() const { return materials_; }  ///< in order of registration
 
   const ComponentInfo* find(std::string_view element) const;
-  std::vector<const ComponentInfo*> all() const;  ///< by kind, then name
+  std::vector<const ComponentInfo*> all() const;                      ///< by kind, then name
   std::unique_ptr<Component> create(std::string_view element) const;  ///< with defaults in place; null when unknown
 
   void set_current_plugin(std::string_view name) { current_plugin_ = name; }
@@ -68,11 +68,13 @@ const char* abi_string();
 
 /// At file scope of a plugin's .cpp: INSULA_PLUGIN(contact) { registry.add<Contact>("contact", ...); }
 #ifdef INSULA_PLUGIN_SHARED
-#define INSULA_PLUGIN(name)                                                                    \
-  static void insula_register_##name(::insula::Registry& registry);                            \
+#define INSULA_PLUGIN(name)                                                                                       \
+  static void insula_register_##name(::insula::Registry& registry);                                               \
   extern "C" __attribute__((visibility("default"))) const char* insula_plugin_abi() { return INSULA_ABI_STRING; } \
   extern "C" __attribute__((visibility("default"))) const char* insula_plugin_name() { return #name; }            \
-  extern "C" __attribute__((visibility("default"))) void insula_plugin_register(::insula::Registry* r) { insula_register_##name(*r); } \
+  extern "C" __attribute__((visibility("default"))) void insula_plugin_register(::insula::Registry* r) {          \
+    insula_register_##name(*r);                                                                                   \
+  }                                                                                                               \
   static void insula_register_##name(::insula::Registry& registry)
 #else
 #define INSULA_PLUGIN(name) void insula_register_##name(::insula::Registry& registry)

@@ -113,10 +113,8 @@ TEST_F(EveryElement, NumbersAcceptTheirBoundsAndNothingBeyond) {
         ++bounds;
         EXPECT_EQ(base->assign(bound, {}), "") << name << " at its bound " << bound;
         std::string outside;
-        if (quantity)
-          outside = just_outside(*quantity, bound, lower);
-        else
-          outside = std::to_string(std::stoll(std::string(bound)) + (lower ? -1 : 1));
+        if (quantity) outside = just_outside(*quantity, bound, lower);
+        else outside = std::to_string(std::stoll(std::string(bound)) + (lower ? -1 : 1));
         EXPECT_NE(base->assign(outside, {}), "") << name << " took " << outside;
       }
       for (const char* nonsense : {"", "nan", "inf", "abc", "1e999", "12O0", "0,5"})
@@ -132,7 +130,8 @@ TEST_F(EveryElement, ChoicesAreTaken) {
     for (ParamBase* p : made->params()) {
       if (!dynamic_cast<Param<Choice>*>(p)) continue;
       EXPECT_FALSE(p->spec().choices.empty()) << info->element << " " << p->name();
-      for (const auto choice : p->spec().choices) EXPECT_EQ(p->assign(choice, {}), "") << info->element << " " << choice;
+      for (const auto choice : p->spec().choices)
+        EXPECT_EQ(p->assign(choice, {}), "") << info->element << " " << choice;
     }
   }
 }

@@ -23,7 +23,8 @@ std::string refusal(Declare declare) {
 
 TEST(Channel, KnowsItsUnitsAndBounds) {
   Component owner;
-  Channel<Pressure> p(&owner, {.name = "p", .doc = "d", .min = "0 mmHg", .max = "300 mmHg", .display = "mmHg", .digits = 1});
+  Channel<Pressure> p(&owner,
+                      {.name = "p", .doc = "d", .min = "0 mmHg", .max = "300 mmHg", .display = "mmHg", .digits = 1});
   EXPECT_TRUE(std::isnan(p()));
   p.set(13332.2387415);
   EXPECT_EQ(p.text(p()), "100.0 mmHg");
@@ -53,14 +54,26 @@ TEST(Channel, OfAGroupIsNamedByIt) {
 }
 
 TEST(Channel, RefusesAWrongDeclaration) {
-  EXPECT_NE(refusal([](Component* c) { Channel<Force> x(c, {.name = "a.b", .doc = "d"}); }).find("dots"), std::string::npos);
+  EXPECT_NE(refusal([](Component* c) { Channel<Force> x(c, {.name = "a.b", .doc = "d"}); }).find("dots"),
+            std::string::npos);
   EXPECT_NE(refusal([](Component* c) { Channel<Force> x(c, {.name = "a"}); }).find("doc"), std::string::npos);
-  EXPECT_NE(refusal([](Component* c) { Channel<Force> x(c, {.name = "a", .doc = "d", .max = "3 mm"}); }).find("mm"), std::string::npos);
-  EXPECT_NE(refusal([](Component* c) { Channel<Force> x(c, {.name = "a", .doc = "d", .display = "mmHg"}); }).find("no unit of force"), std::string::npos);
-  EXPECT_NE(refusal([](Component* c) { Channel<Force> x(c, {.name = "a", .doc = "d", .min = "2 N", .max = "1 N"}); }).find("minimum"), std::string::npos);
+  EXPECT_NE(refusal([](Component* c) { Channel<Force> x(c, {.name = "a", .doc = "d", .max = "3 mm"}); }).find("mm"),
+            std::string::npos);
+  EXPECT_NE(refusal([](Component* c) {
+              Channel<Force> x(c, {.name = "a", .doc = "d", .display = "mmHg"});
+            }).find("no unit of force"),
+            std::string::npos);
+  EXPECT_NE(refusal([](Component* c) {
+              Channel<Force> x(c, {.name = "a", .doc = "d", .min = "2 N", .max = "1 N"});
+            }).find("minimum"),
+            std::string::npos);
   EXPECT_NE(refusal([](Component* c) { Points x(c, {.name = "a", .doc = "d"}); }).find("material"), std::string::npos);
-  EXPECT_NE(refusal([](Component* c) { Polylines x(c, {.name = "a", .doc = "d", .material = "m", .radius = "0 mm"}); }).find("radius"), std::string::npos);
-  EXPECT_NE(refusal([](Component* c) { EventKind x(c, {.name = "two words", .doc = "d"}); }).find("one word"), std::string::npos);
+  EXPECT_NE(refusal([](Component* c) {
+              Polylines x(c, {.name = "a", .doc = "d", .material = "m", .radius = "0 mm"});
+            }).find("radius"),
+            std::string::npos);
+  EXPECT_NE(refusal([](Component* c) { EventKind x(c, {.name = "two words", .doc = "d"}); }).find("one word"),
+            std::string::npos);
 }
 
 class Thread final : public Constraint {
@@ -79,7 +92,8 @@ std::string messages(const std::string& scene) {
 }
 
 TEST(Materials, OfASceneAreFoundByName) {
-  EXPECT_EQ(messages(R"(<scene><material id="silk" style="fibre" colour="1 1 0.9"/><thread material="silk"/></scene>)"), "");
+  EXPECT_EQ(messages(R"(<scene><material id="silk" style="fibre" colour="1 1 0.9"/><thread material="silk"/></scene>)"),
+            "");
   EXPECT_EQ(messages(R"(<scene><thread/></scene>)"), "");
 }
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-
 namespace insula {
 namespace {
 
@@ -16,8 +15,8 @@ std::string quoted_list(const std::vector<std::string>& names) {
 
 bool is_id(std::string_view text) {
   const auto good = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' || c == '.' ||
-           (static_cast<unsigned char>(c) & 0x80);  // letters of other languages
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' ||
+           c == '.' || (static_cast<unsigned char>(c) & 0x80);  // letters of other languages
   };
   return !text.empty() && text.size() <= 128 && std::all_of(text.begin(), text.end(), good);
 }
@@ -43,8 +42,9 @@ void SceneBuilder::report(Component& component, const SourcePos& pos, std::strin
 std::unique_ptr<Scene> SceneBuilder::build(const std::filesystem::path& file) {
   const Element& root = *tree_.root;
   if (root.name != "scene") {
-    diagnostics_.error(root.pos, root.name == "part" ? "this is a part, which scenes include; the root of a scene is <scene>"
-                                                     : "the root element must be <scene>, not <" + shown(root.name) + ">");
+    diagnostics_.error(root.pos, root.name == "part"
+                                     ? "this is a part, which scenes include; the root of a scene is <scene>"
+                                     : "the root element must be <scene>, not <" + shown(root.name) + ">");
     return nullptr;
   }
   scene_ = std::make_unique<Scene>();
@@ -119,10 +119,8 @@ void SceneBuilder::unknown_element(const Element& element, const Component& pare
   std::string near = nearest_name(element.name, here);
   if (near.empty()) near = nearest_name(element.name, anywhere);
   std::string text = "unknown element <" + shown(element.name) + ">";
-  if (!near.empty())
-    text += "; did you mean <" + near + ">?";
-  else
-    text += " in <" + parent.element + "> (it may hold: " + quoted_list(here) + ")";
+  if (!near.empty()) text += "; did you mean <" + near + ">?";
+  else text += " in <" + parent.element + "> (it may hold: " + quoted_list(here) + ")";
   diagnostics_.error(element.pos, text);
   lose_ids(element);
 }
@@ -139,8 +137,9 @@ void SceneBuilder::misplaced(const Element& element, const ComponentInfo& info, 
       if (other->kind == kind) names.push_back("<" + other->element + ">");
     places.push_back("in " + with_article(kind_name(kind)) + (names.empty() ? "" : " (" + quoted_list(names) + ")"));
   }
-  diagnostics_.error(element.pos, "<" + element.name + "> may not stand in <" + parent.element + ">" +
-                                      (places.empty() ? "; it is the root of a scene" : "; it belongs " + joined(places, " or ")));
+  diagnostics_.error(element.pos,
+                     "<" + element.name + "> may not stand in <" + parent.element + ">" +
+                         (places.empty() ? "; it is the root of a scene" : "; it belongs " + joined(places, " or ")));
   lose_ids(element);
 }
 
@@ -154,13 +153,15 @@ void SceneBuilder::read_id(const Element& element, Component& component) {
   component.id = component.element + "#" + std::to_string(ordinal);
   const Attribute* attribute = element.find("id");
   if (attribute && !is_id(attribute->value)) {
-    report(component, attribute->value_pos, "id: " + in_quotes(attribute->value) + " may have only letters, digits and . _ -");
+    report(component, attribute->value_pos,
+           "id: " + in_quotes(attribute->value) + " may have only letters, digits and . _ -");
     lost_ids_.insert(element.part->prefixes.front() + attribute->value);
   } else if (attribute) {
     const std::string id = element.part->prefixes.front() + attribute->value;
     if (const Component* other = scene_->find(id)) {
-      report(component, attribute->value_pos, "id " + in_quotes(id) + " is already used at " + other->pos.file + ":" +
-                                                  std::to_string(other->pos.line) + ":" + std::to_string(other->pos.column));
+      report(component, attribute->value_pos,
+             "id " + in_quotes(id) + " is already used at " + other->pos.file + ":" + std::to_string(other->pos.line) +
+                 ":" + std::to_string(other->pos.column));
     } else {
       component.id = id;
     }
@@ -182,12 +183,9 @@ void SceneBuilder::read_params(const Element& element, Component& component) {
     if (!p) {
       const std::string near = tree_.suggestions.afford(names.size()) ? nearest_name(a.name, names) : "";
       std::string text = "<" + component.element + "> has no parameter " + in_quotes(a.name);
-      if (!near.empty())
-        text += "; did you mean \"" + near + "\"?";
-      else if (names.empty())
-        text += "; it has none";
-      else
-        text += " (it has: " + quoted_list(names) + ")";
+      if (!near.empty()) text += "; did you mean \"" + near + "\"?";
+      else if (names.empty()) text += "; it has none";
+      else text += " (it has: " + quoted_list(names) + ")";
       report(component, a.name_pos, text);
       suggested.push_back(near);
       continue;
@@ -200,8 +198,9 @@ void SceneBuilder::read_params(const Element& element, Component& component) {
     if (!p->required() || p->given()) continue;
     // A mistyped name has been reported as such; saying that the right one is missing would be the same news twice.
     if (std::find(suggested.begin(), suggested.end(), p->name()) != suggested.end()) continue;
-    report(component, element.pos, "<" + component.element + "> needs parameter \"" + p->name() + "\" (" + p->type_name() +
-                                       ": " + std::string(p->spec().doc) + ")");
+    report(component, element.pos,
+           "<" + component.element + "> needs parameter \"" + p->name() + "\" (" + p->type_name() + ": " +
+               std::string(p->spec().doc) + ")");
   }
 }
 

@@ -36,8 +36,9 @@ void SceneBuilder::resolve_references(Component& component) {
       } else if (!listed.insert(target).second) {
         report(component, ref->pos(), ref->name() + ": " + in_quotes(id) + " is listed twice");
       } else if (const std::string error = ref->resolve(i, target); !error.empty()) {
-        report(component, ref->pos(), ref->name() + ": " + in_quotes(id) + " is " + with_article(target->element) + ", not " +
-                                          with_article(ref->ref_kind()));
+        report(component, ref->pos(),
+               ref->name() + ": " + in_quotes(id) + " is " + with_article(target->element) + ", not " +
+                   with_article(ref->ref_kind()));
       }
     }
   }
@@ -55,10 +56,8 @@ void SceneBuilder::unresolved(const RefParamBase& ref, const std::string& id) {
   std::string near = nearest_name(id, fitting);
   if (near.empty()) near = nearest_name(id, all);
   std::string text = missing;
-  if (!near.empty())
-    text += "; did you mean \"" + near + "\"?";
-  else if (!fitting.empty() && fitting.size() <= 12)
-    text += " (there are: " + joined(fitting) + ")";
+  if (!near.empty()) text += "; did you mean \"" + near + "\"?";
+  else if (!fitting.empty() && fitting.size() <= 12) text += " (there are: " + joined(fitting) + ")";
   diagnostics_.error(ref.pos(), text);
 }
 
@@ -98,7 +97,8 @@ void SceneBuilder::prepare_tree(Component& component) {
 void SceneBuilder::prepare(Component& component) {
   prepared_.insert(&component);
   // What stands on something broken would only report consequences.
-  if (component.parent && component.parent != scene_.get() && failed_.contains(component.parent)) failed_.insert(&component);
+  if (component.parent && component.parent != scene_.get() && failed_.contains(component.parent))
+    failed_.insert(&component);
   for (ParamBase* p : component.params()) {
     auto* ref = dynamic_cast<RefParamBase*>(p);
     if (!ref || failed_.contains(&component)) continue;

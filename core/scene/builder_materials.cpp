@@ -13,7 +13,8 @@ void SceneBuilder::join_materials() {
   for (Component* c : scene_->in_order_) {
     const auto* element = dynamic_cast<const MaterialElement*>(c);
     if (!element) continue;
-    if (element->id.find('#') != std::string::npos) report(*c, c->pos, "a <material> needs an id, by which others refer to it");
+    if (element->id.find('#') != std::string::npos)
+      report(*c, c->pos, "a <material> needs an id, by which others refer to it");
     const auto known = std::find_if(all.begin(), all.end(), [&](const Material& m) { return m.name == element->id; });
     if (known != all.end()) *known = element->material();  // the scene's own look of it
     else all.push_back(element->material());
@@ -23,7 +24,8 @@ void SceneBuilder::join_materials() {
   const auto wrong = [&](const std::string& name) -> std::string {
     if (std::find(names.begin(), names.end(), name) != names.end()) return {};
     const std::string near = nearest_name(name, names);
-    return in_quotes(name) + " is no material" + (near.empty() ? " (there are: " + joined(names) + ")" : "; did you mean \"" + near + "\"?");
+    return in_quotes(name) + " is no material" +
+           (near.empty() ? " (there are: " + joined(names) + ")" : "; did you mean \"" + near + "\"?");
   };
   for (Component* c : scene_->in_order_) {
     for (const ParamBase* p : c->params())

@@ -20,7 +20,8 @@ bool is_namespace_attribute(std::string_view name) {
 
 bool is_prefix(std::string_view text) {
   return std::all_of(text.begin(), text.end(), [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' || c == '.';
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' ||
+           c == '.';
   });
 }
 
@@ -79,15 +80,17 @@ class Expander {
     for (const auto& a : e.attributes) {
       if (std::find(known.begin(), known.end(), a.name) != known.end()) continue;
       const std::string near = out_.suggestions.afford(known.size()) ? nearest_name(a.name, known) : "";
-      diagnostics_.error(a.name_pos, "<" + e.name + "> has no parameter " + in_quotes(a.name) +
-                                         (near.empty() ? " (it has: " + joined(known) + ")" : "; did you mean \"" + near + "\"?"));
+      diagnostics_.error(a.name_pos,
+                         "<" + e.name + "> has no parameter " + in_quotes(a.name) +
+                             (near.empty() ? " (it has: " + joined(known) + ")" : "; did you mean \"" + near + "\"?"));
     }
   }
 
   void expand(Element& e, const ScenePart& part, const Variables::Scope& scope, std::size_t depth) {
     e.part = &part;
     ++elements_;
-    std::erase_if(e.attributes, [&](Attribute& a) { return !variables_.replace(a.value, scope, a.value_pos) && drop(e, a); });
+    std::erase_if(e.attributes,
+                  [&](Attribute& a) { return !variables_.replace(a.value, scope, a.value_pos) && drop(e, a); });
     bool any = false;
     for (const auto& child : e.children) any = any || child->name == "include" || child->name == "variable";
     if (!any) {
@@ -99,7 +102,8 @@ class Expander {
       if (child->name == "include") {
         include(*child, part, scope, depth, children);
       } else if (child->name == "variable") {
-        diagnostics_.error(child->pos, "<variable> may not stand in <" + shown(e.name) + ">; it belongs directly in <scene>, <part> or <include>");
+        diagnostics_.error(child->pos, "<variable> may not stand in <" + shown(e.name) +
+                                           ">; it belongs directly in <scene>, <part> or <include>");
       } else {
         expand(*child, part, scope, depth + 1);
         children.push_back(std::move(child));
@@ -120,8 +124,7 @@ class Expander {
     auto& inner = variables_.new_scope(&scope);
     Variables::Scope local;
     for (const auto& child : e.children) {
-      if (child->name == "variable")
-        define_for_include(*child, scope, inner, local);
+      if (child->name == "variable") define_for_include(*child, scope, inner, local);
       else
         diagnostics_.error(child->pos, "<" + shown(child->name) + "> may not stand in <include>; only <variable> may");
     }
@@ -132,26 +135,30 @@ class Expander {
     std::string prefix;
     if (const Attribute* p = e.find("prefix")) {
       if (!is_prefix(p->value) || p->value.size() > 64)
-        return diagnostics_.error(p->value_pos, "prefix: " + in_quotes(p->value) + " may have only letters, digits and . _ -");
+        return diagnostics_.error(p->value_pos,
+                                  "prefix: " + in_quotes(p->value) + " may have only letters, digits and . _ -");
       prefix = p->value;
     }
     std::string error;
     const fs::path path = resolve_file(part.path.parent_path(), out_.root_folder, file->value, error, out_.suggestions);
     if (path.empty()) return diagnostics_.error(file->value_pos, "file: " + error);
-    if (const auto it = std::find_if(stack_.begin(), stack_.end(), [&](const auto* p) { return p->path == path; }); it != stack_.end()) {
+    if (const auto it = std::find_if(stack_.begin(), stack_.end(), [&](const auto* p) { return p->path == path; });
+        it != stack_.end()) {
       std::string chain;
       for (auto p = it; p != stack_.end(); ++p) chain += (*p)->shown + " -> ";
       return diagnostics_.error(file->value_pos, "include cycle: " + chain + (*it)->shown);
     }
     if (stack_.size() > max_include_depth)
-      return diagnostics_.error(file->value_pos, "files are included more than " + std::to_string(max_include_depth) + " deep");
+      return diagnostics_.error(file->value_pos,
+                                "files are included more than " + std::to_string(max_include_depth) + " deep");
     if (out_.parts.size() > max_includes)
       return diagnostics_.error(file->value_pos, "more than " + std::to_string(max_includes) + " inclusions");
     std::string text;
     if (error = read_text_file(path.string(), DocumentLimits{}.file_bytes, text); !error.empty())
       return diagnostics_.error(file->value_pos, "file: " + in_quotes(file->value) + ": " + error);
     if (bytes_ + text.size() > max_bytes)
-      return diagnostics_.error(file->value_pos, "the included files are larger than " + std::to_string(max_bytes >> 20) + " MiB in all");
+      return diagnostics_.error(
+          file->value_pos, "the included files are larger than " + std::to_string(max_bytes >> 20) + " MiB in all");
     ScenePart next{path, (fs::path(part.shown).parent_path() / file->value).lexically_normal().generic_string(), {}};
     for (const auto& p : part.prefixes) next.prefixes.push_back(p);
     if (!prefix.empty()) next.prefixes.insert(next.prefixes.begin(), part.prefixes.front() + prefix);
@@ -159,7 +166,8 @@ class Expander {
   }
 
   /// The value of a variable inside <include> is read in the including file, so that width="$width" works.
-  void define_for_include(const Element& e, const Variables::Scope& outer, Variables::Scope& inner, Variables::Scope& local) {
+  void define_for_include(const Element& e, const Variables::Scope& outer, Variables::Scope& inner,
+                          Variables::Scope& local) {
     const std::size_t before = local.size();
     define(e, inner, local, true);
     if (local.size() == before) return;
@@ -169,11 +177,13 @@ class Expander {
   void splice(ScenePart& part, std::string_view text, Variables::Scope& scope, std::size_t depth,
               std::vector<std::unique_ptr<Element>>& into, const SourcePos& include_pos) {
     if (depth + 1 > DocumentLimits{}.depth)
-      return diagnostics_.error(include_pos, "elements are nested more than " + std::to_string(DocumentLimits{}.depth) + " deep");
+      return diagnostics_.error(include_pos,
+                                "elements are nested more than " + std::to_string(DocumentLimits{}.depth) + " deep");
     auto root = parse(text, part);
     if (!root) return;
     if (root->name != "part" && root->name != "scene")
-      return diagnostics_.error(root->pos, "the root of an included file must be <part> or <scene>, not <" + shown(root->name) + ">");
+      return diagnostics_.error(
+          root->pos, "the root of an included file must be <part> or <scene>, not <" + shown(root->name) + ">");
     // An included <scene> brings its elements; its own attributes count only when it is loaded by itself.
     if (root->name == "part") {
       std::erase_if(root->attributes, [](const Attribute& a) { return is_namespace_attribute(a.name); });

@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "core/base/text.h"
-#include "core/xml/document.h"
 #include "core/scene/suggestions.h"
+#include "core/xml/document.h"
 
 namespace insula {
 

@@ -8,8 +8,8 @@
 #include <exception>
 
 #include "core/scene/builder.h"
-#include "core/xml/document.h"
 #include "core/scene/expand.h"
+#include "core/xml/document.h"
 
 namespace insula {
 namespace {
@@ -48,7 +48,8 @@ void set_time_step(Element& root, double step_s) {
 
 }  // namespace
 
-LoadResult load_scene_text(std::string_view text, const std::filesystem::path& virtual_path, const Registry& registry, double time_step_s) {
+LoadResult load_scene_text(std::string_view text, const std::filesystem::path& virtual_path, const Registry& registry,
+                           double time_step_s) {
   LoadResult result;
   Diagnostics found;
   try {

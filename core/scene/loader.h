@@ -25,6 +25,7 @@ struct LoadResult {
 LoadResult load_scene(const std::filesystem::path& file, const Registry& registry, double time_step_s = 0);
 
 /// The same for a text. Relative paths in it are read from the folder of `virtual_path`, which need not exist.
-LoadResult load_scene_text(std::string_view text, const std::filesystem::path& virtual_path, const Registry& registry, double time_step_s = 0);
+LoadResult load_scene_text(std::string_view text, const std::filesystem::path& virtual_path, const Registry& registry,
+                           double time_step_s = 0);
 
 }  // namespace insula

@@ -47,7 +47,9 @@ struct PressureConstraint : Noting<0> {
   Param<Pressure> diastolic{this, {.name = "diastolic", .doc = "lowest pressure"}};
 };
 struct Clip : Noting<0> {
-  Param<Force> closing_force{this, {.name = "closing_force", .fallback = "1 N", .min = "0.1 N", .max = "5 N", .doc = "force", .formerly = "spring"}};
+  Param<Force> closing_force{
+      this,
+      {.name = "closing_force", .fallback = "1 N", .min = "0.1 N", .max = "5 N", .doc = "force", .formerly = "spring"}};
 };
 struct Thrower : Component {
   void prepare(PrepareContext&) override { throw std::runtime_error("something inside gave way"); }
@@ -138,7 +140,8 @@ TEST_F(Loader, BuildsTheTreeInDocumentOrder) {
 TEST_F(Loader, PreparesBodiesFirstAndChildrenAfterParents) {
   Log log;
   Noting<0>::log = &log;
-  const auto r = load(R"(<scene><strand id="s" from="b"/><block id="a"><goo id="g" young="1 Pa"/></block><clip id="c"/><block id="b"/></scene>)");
+  const auto r = load(
+      R"(<scene><strand id="s" from="b"/><block id="a"><goo id="g" young="1 Pa"/></block><clip id="c"/><block id="b"/></scene>)");
   ASSERT_TRUE(r.ok()) << messages(r);
   EXPECT_EQ(log, (Log{"a", "g", "b", "s", "c"}));
 }
@@ -154,7 +157,8 @@ TEST_F(Loader, TheExampleOfTheManual) {
 
 TEST_F(Loader, ElementsThatDoNotExistOrStandWrong) {
   EXPECT_EQ(errors("<scene><blok/></scene>"), "s.xml:1:8: error: unknown element <blok>; did you mean <block>?\n");
-  EXPECT_EQ(errors("<scene><xyzzy/></scene>").substr(0, 73), "s.xml:1:8: error: unknown element <xyzzy> in <scene> (it may hold: tuning");
+  EXPECT_EQ(errors("<scene><xyzzy/></scene>").substr(0, 73),
+            "s.xml:1:8: error: unknown element <xyzzy> in <scene> (it may hold: tuning");
   EXPECT_EQ(errors("<scene><goo young=\"1 Pa\"/></scene>"),
             "s.xml:1:8: error: <goo> may not stand in <scene>; it belongs in a body (<block>)\n");
   EXPECT_EQ(errors("<scene><block><clip/></block></scene>"),
@@ -162,7 +166,8 @@ TEST_F(Loader, ElementsThatDoNotExistOrStandWrong) {
   EXPECT_EQ(errors("<scene><goal/></scene>"),
             "s.xml:1:8: error: <goal> may not stand in <scene>; it belongs in an exercise (<lesson>)\n");
   EXPECT_EQ(errors("<block/>"), "s.xml:1:1: error: the root element must be <scene>, not <block>\n");
-  EXPECT_EQ(errors("<part/>"), "s.xml:1:1: error: this is a part, which scenes include; the root of a scene is <scene>\n");
+  EXPECT_EQ(errors("<part/>"),
+            "s.xml:1:1: error: this is a part, which scenes include; the root of a scene is <scene>\n");
   EXPECT_EQ(errors("<scene><scene/></scene>").substr(0, 55), "s.xml:1:8: error: unknown element <scene> in <scene> (i");
   EXPECT_EQ(errors("<scene>\n<tuning/>\n<tuning/></scene>"),
             "s.xml:3:1: error: <tuning> may stand only once in a scene; the first is at line 2\n");
@@ -173,15 +178,19 @@ TEST_F(Loader, Parameters) {
             "s.xml:1:15: error: <goo> needs parameter \"young\" (pressure: Young's modulus)\n");
   EXPECT_EQ(errors("<scene><clip force_of_nature=\"1\"/></scene>"),
             "s.xml:1:14: error: <clip> has no parameter \"force_of_nature\" (it has: closing_force)\n");
-  EXPECT_EQ(errors("<scene><clip spring=\"2 N\"/></scene>"), "s.xml:1:14: error: \"spring\" is now called \"closing_force\"\n");
-  EXPECT_EQ(errors("<scene><tuning x=\"1\"/></scene>"), "s.xml:1:16: error: <tuning> has no parameter \"x\"; it has none\n");
+  EXPECT_EQ(errors("<scene><clip spring=\"2 N\"/></scene>"),
+            "s.xml:1:14: error: \"spring\" is now called \"closing_force\"\n");
+  EXPECT_EQ(errors("<scene><tuning x=\"1\"/></scene>"),
+            "s.xml:1:16: error: <tuning> has no parameter \"x\"; it has none\n");
   EXPECT_EQ(errors("<scene time_step=\"1 s\"/>"),
             "s.xml:1:19: error: time_step: 1 s is outside the allowed range 0.001 s to 0.05 s\n");
 }
 
 TEST_F(Loader, Ids) {
-  EXPECT_EQ(errors("<scene>\n<block id=\"a\"/>\n<clip id=\"a\"/></scene>"), "s.xml:3:11: error: id \"a\" is already used at s.xml:2:1\n");
-  EXPECT_NE(errors("<scene><block id=\"a b\"/></scene>").find("s.xml:1:19: error: id: \"a b\" may have only letters"), std::string::npos);
+  EXPECT_EQ(errors("<scene>\n<block id=\"a\"/>\n<clip id=\"a\"/></scene>"),
+            "s.xml:3:11: error: id \"a\" is already used at s.xml:2:1\n");
+  EXPECT_NE(errors("<scene><block id=\"a b\"/></scene>").find("s.xml:1:19: error: id: \"a b\" may have only letters"),
+            std::string::npos);
   EXPECT_NE(errors("<scene><block id=\"\"/></scene>").find("id: \"\""), std::string::npos);
   EXPECT_NE(errors("<scene><block id=\"block#1\"/></scene>").find("id: \"block#1\""), std::string::npos);
 }
@@ -197,14 +206,17 @@ TEST_F(Loader, References) {
             "s.xml:1:44: error: to: no component has the id \"q\" (there are: a)\n"
             "s.xml:1:44: error: to: no component has the id \"r\" (there are: a)\n");
   // A component that could not be built is no second mistake where it is named.
-  EXPECT_EQ(errors("<scene><blok id=\"a\"/><strand from=\"a\"/></scene>"), "s.xml:1:8: error: unknown element <blok>; did you mean <block>?\n");
+  EXPECT_EQ(errors("<scene><blok id=\"a\"/><strand from=\"a\"/></scene>"),
+            "s.xml:1:8: error: unknown element <blok>; did you mean <block>?\n");
 }
 
 TEST_F(Loader, BrokenComponentsAreNotPreparedNorWhatStandsOnThem) {
   Log log;
   Noting<0>::log = &log;
-  EXPECT_EQ(errors(R"(<scene><block id="a" broken="true"><goo id="g" young="1 Pa"/></block><strand id="s" from="a"/><strand id="t" from="b"/><block id="b"/></scene>)"),
-            "s.xml:1:30: error: broken: is broken\n");
+  EXPECT_EQ(
+      errors(
+          R"(<scene><block id="a" broken="true"><goo id="g" young="1 Pa"/></block><strand id="s" from="a"/><strand id="t" from="b"/><block id="b"/></scene>)"),
+      "s.xml:1:30: error: broken: is broken\n");
   EXPECT_EQ(log, (Log{"a", "b", "t"}));
 }
 
@@ -216,12 +228,16 @@ TEST_F(Loader, Files) {
   write("m/a.msh", "mesh");
   write("../insula_outside.msh", "x");
   EXPECT_EQ(errors("<scene><block mesh=\"m/a.msh\"/></scene>"), "");
-  EXPECT_EQ(errors("<scene><block mesh=\"m/b.msh\"/></scene>"), "s.xml:1:21: error: mesh: \"m/b.msh\" does not exist; did you mean \"m/a.msh\"?\n");
+  EXPECT_EQ(errors("<scene><block mesh=\"m/b.msh\"/></scene>"),
+            "s.xml:1:21: error: mesh: \"m/b.msh\" does not exist; did you mean \"m/a.msh\"?\n");
   EXPECT_EQ(errors("<scene><block mesh=\"m\"/></scene>"), "s.xml:1:21: error: mesh: \"m\" is not a file\n");
-  EXPECT_NE(errors("<scene><block mesh=\"/etc/passwd\"/></scene>").find("mesh: \"/etc/passwd\" is an absolute path"), std::string::npos);
-  EXPECT_NE(errors("<scene><block mesh=\"../insula_outside.msh\"/></scene>").find("leaves the scene's root folder"), std::string::npos);
+  EXPECT_NE(errors("<scene><block mesh=\"/etc/passwd\"/></scene>").find("mesh: \"/etc/passwd\" is an absolute path"),
+            std::string::npos);
+  EXPECT_NE(errors("<scene><block mesh=\"../insula_outside.msh\"/></scene>").find("leaves the scene's root folder"),
+            std::string::npos);
   fs::create_symlink("../../insula_outside.msh", folder_ / "m" / "link.msh");
-  EXPECT_NE(errors("<scene><block mesh=\"m/link.msh\"/></scene>").find("leaves the scene's root folder"), std::string::npos);
+  EXPECT_NE(errors("<scene><block mesh=\"m/link.msh\"/></scene>").find("leaves the scene's root folder"),
+            std::string::npos);
   fs::remove(folder_.parent_path() / "insula_outside.msh");
   const auto r = load("<scene><block mesh=\"m/../m/a.msh\"/></scene>");
   ASSERT_TRUE(r.ok());

@@ -12,7 +12,8 @@ Component* Scene::find(std::string_view wanted) const {
 }
 
 void register_scene(Registry& registry) {
-  registry.add<Scene>("scene", Kind::scene, "the root of a scene file: bodies, what joins them, instruments, the exercise");
+  registry.add<Scene>("scene", Kind::scene,
+                      "the root of a scene file: bodies, what joins them, instruments, the exercise");
 }
 
 }  // namespace insula

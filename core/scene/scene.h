@@ -19,13 +19,27 @@ class Scene final : public Component {
  public:
   static constexpr std::string_view kind_name = "scene";
 
-  Param<std::string> title{this, {.name = "title", .fallback = "", .doc = "what the window and the reports call the scene"}};
-  Param<Duration> time_step{this, {.name = "time_step", .fallback = "16.6667 ms", .min = "1 ms", .max = "50 ms",
-                                   .doc = "length of one step; the default is a 60th of a second"}};
-  Param<Vec<Acceleration>> gravity{this, {.name = "gravity", .fallback = "0 0 0 m/s2", .min = "-100 m/s2", .max = "100 m/s2",
-                                          .doc = "acceleration of every body; none by default, as the brain floats in its fluid"}};
-  Param<int> seed{this, {.name = "seed", .fallback = "1", .min = "0", .max = "2147483647",
-                         .doc = "start of every random choice; the same seed gives the same run"}};
+  Param<std::string> title{this,
+                           {.name = "title", .fallback = "", .doc = "what the window and the reports call the scene"}};
+  Param<Duration> time_step{this,
+                            {.name = "time_step",
+                             .fallback = "16.6667 ms",
+                             .min = "1 ms",
+                             .max = "50 ms",
+                             .doc = "length of one step; the default is a 60th of a second"}};
+  Param<Vec<Acceleration>> gravity{
+      this,
+      {.name = "gravity",
+       .fallback = "0 0 0 m/s2",
+       .min = "-100 m/s2",
+       .max = "100 m/s2",
+       .doc = "acceleration of every body; none by default, as the brain floats in its fluid"}};
+  Param<int> seed{this,
+                  {.name = "seed",
+                   .fallback = "1",
+                   .min = "0",
+                   .max = "2147483647",
+                   .doc = "start of every random choice; the same seed gives the same run"}};
 
   /// Components of C++ type T of the whole tree, in document order.
   template <class T>
@@ -49,7 +63,9 @@ class Scene final : public Component {
 
   const std::filesystem::path& file() const { return file_; }                ///< as it was given to the loader
   const std::filesystem::path& base_folder() const { return base_folder_; }  ///< folder of the scene file, absolute
-  const std::filesystem::path& root_folder() const { return root_folder_; }  ///< nothing outside may be named by a scene
+  const std::filesystem::path& root_folder() const {
+    return root_folder_;
+  }  ///< nothing outside may be named by a scene
   /// FNV-1a over the scene file, the included files and every file that a parameter names, in the order read.
   unsigned long long content_hash() const { return content_hash_; }
 

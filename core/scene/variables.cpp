@@ -26,13 +26,13 @@ Variables::Scope& Variables::new_scope(const Scope* outer) {
   return outer ? scopes_.emplace_back(*outer) : scopes_.emplace_back();
 }
 
-void Variables::define(Scope& scope, Scope& local, const std::string& name, const std::string& value, const SourcePos& pos,
-                       const SourcePos& value_pos, bool replace) {
+void Variables::define(Scope& scope, Scope& local, const std::string& name, const std::string& value,
+                       const SourcePos& pos, const SourcePos& value_pos, bool replace) {
   if (!is_name(name))
     return diagnostics_.error(pos, in_quotes(name) + " cannot be the name of a variable (use letters, digits and _)");
   if (const auto it = local.find(name); it != local.end())
-    return diagnostics_.error(pos, "variable " + in_quotes(name) + " is already defined at line " +
-                                       std::to_string(it->second->pos.line));
+    return diagnostics_.error(
+        pos, "variable " + in_quotes(name) + " is already defined at line " + std::to_string(it->second->pos.line));
   if (definitions_.size() >= max_variables)
     return diagnostics_.error(pos, "more than " + std::to_string(max_variables) + " variables");
   Definition& d = definitions_.emplace_back();
@@ -42,10 +42,8 @@ void Variables::define(Scope& scope, Scope& local, const std::string& name, cons
   d.value_pos = value_pos;
   d.scope = &scope;
   local[name] = &d;
-  if (replace || !scope.contains(name))
-    scope[name] = &d;
-  else
-    d.used = true;  // a default that the including file replaces
+  if (replace || !scope.contains(name)) scope[name] = &d;
+  else d.used = true;  // a default that the including file replaces
 }
 
 bool Variables::expand(Definition& d, const SourcePos& pos) {
@@ -101,7 +99,8 @@ bool Variables::replace(std::string& text, const Scope& scope, const SourcePos& 
       if (suggestions_.afford(scope.size()))
         for (const auto& [known, unused] : scope) names.push_back(known);
       const std::string near = nearest_name(name, names);
-      diagnostics_.error(pos, "unknown variable " + in_quotes("$" + name) + (near.empty() ? "" : "; did you mean \"$" + near + "\"?"));
+      diagnostics_.error(
+          pos, "unknown variable " + in_quotes("$" + name) + (near.empty() ? "" : "; did you mean \"$" + near + "\"?"));
       return false;
     }
     if (!expand(*it->second, pos)) return false;

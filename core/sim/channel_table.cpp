@@ -18,7 +18,8 @@ void ChannelTable::collect(const std::vector<Component*>& components) {
 
 void ChannelTable::read(std::vector<double>& values) const {
   values.resize(numbers_);
-  for (const ChannelEntry& e : entries_) std::copy_n(e.channel->values(e.item), std::size_t(e.size()), values.begin() + std::ptrdiff_t(e.offset));
+  for (const ChannelEntry& e : entries_)
+    std::copy_n(e.channel->values(e.item), std::size_t(e.size()), values.begin() + std::ptrdiff_t(e.offset));
 }
 
 const ChannelEntry* ChannelTable::find(std::string_view id) const {

@@ -14,9 +14,9 @@ class Scene;
 struct ChannelEntry {
   const Component* component = nullptr;
   const ChannelBase* channel = nullptr;
-  std::size_t item = 0;      ///< of a group of channels
-  std::size_t offset = 0;    ///< of its first number among all
-  std::string id;            ///< "component.channel", "component.group.channel"
+  std::size_t item = 0;    ///< of a group of channels
+  std::size_t offset = 0;  ///< of its first number among all
+  std::string id;          ///< "component.channel", "component.group.channel"
   const std::string& group() const { return channel->groups()[item]; }
   int size() const { return channel->size(); }
 };

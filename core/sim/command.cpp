@@ -30,7 +30,8 @@ std::string Simulation::command(std::string_view verb, std::string_view argument
   else if (verb == "message") why = argument.empty() ? "a message needs text" : "";
   else why = "unknown command " + in_quotes(verb);
   const std::string what(argument.substr(0, longest_argument));
-  if (why.empty()) commanded_.push_back({verb == "message" ? "message" : "command", std::string(verb), what, 0, context_.time});
+  if (why.empty())
+    commanded_.push_back({verb == "message" ? "message" : "command", std::string(verb), what, 0, context_.time});
   else commanded_.push_back({"refused", std::string(verb.substr(0, 40)), why, 0, context_.time});
   return why;
 }
@@ -45,7 +46,8 @@ std::string Simulation::exchange(std::string_view argument) {
     if (i->hand_index() == hand) ids.push_back(i->id);
   if (!wanted || wanted->hand_index() != hand) {
     const std::string near = nearest_name(std::string(name), ids);
-    return "no tool " + in_quotes(name) + " for the " + std::string(side) + " hand" + (near.empty() ? "" : "; did you mean " + in_quotes(near) + "?");
+    return "no tool " + in_quotes(name) + " for the " + std::string(side) + " hand" +
+           (near.empty() ? "" : "; did you mean " + in_quotes(near) + "?");
   }
   if (wanted->active()) return {};
   Instrument* held = instrument_of(hand);
@@ -53,7 +55,8 @@ std::string Simulation::exchange(std::string_view argument) {
   if (held) {
     // A tool that touches something is drawn out first: its successor would start inside of it.
     for (const ContactPoint& c : report_.contacts)
-      if ((c.a == held || c.b == held) && c.normal_force > 0) return "draw the instrument out of the field before you exchange it";
+      if ((c.a == held || c.b == held) && c.normal_force > 0)
+        return "draw the instrument out of the field before you exchange it";
     if (std::string why = held->why_kept(); !why.empty()) return why;
     device = held->device();
     held->lay_down();
@@ -72,7 +75,8 @@ std::string Simulation::ask(std::string_view argument) {
     names.push_back(c.name);
   }
   const std::string near = nearest_name(std::string(name), names);
-  return in_quotes(id) + " has no command " + in_quotes(name) + (near.empty() ? "" : "; did you mean " + in_quotes(near) + "?");
+  return in_quotes(id) + " has no command " + in_quotes(name) +
+         (near.empty() ? "" : "; did you mean " + in_quotes(near) + "?");
 }
 
 }  // namespace insula

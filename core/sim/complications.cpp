@@ -12,7 +12,8 @@ namespace insula {
 
 void Complication::prepare(PrepareContext& context) {
   if (to() < from()) error(context, to, "comes before from");
-  if (split_blanks(command()).size() < 2) error(context, command, "needs the id of a component and one of its commands, such as \"bleeding rupture\"");
+  if (split_blanks(command()).size() < 2)
+    error(context, command, "needs the id of a component and one of its commands, such as \"bleeding rupture\"");
 }
 
 void Complications::prepare(PrepareContext&) { list_ = children_of<Complication>(); }
@@ -26,17 +27,20 @@ void Complications::connect(PrepareContext& context, const Simulation& simulatio
       for (const Component* other : simulation.scene().components())
         if (!other->commands().empty()) ids.push_back(other->id);
       const std::string near = nearest_name(words[0], ids);
-      c->error(context, c->command, "no component has the id " + in_quotes(words[0]) + (near.empty() ? "" : "; did you mean \"" + near + "\"?"));
+      c->error(
+          context, c->command,
+          "no component has the id " + in_quotes(words[0]) + (near.empty() ? "" : "; did you mean \"" + near + "\"?"));
       continue;
     }
     std::vector<std::string> names;
     for (const CommandInfo& info : target->commands()) names.push_back(info.name);
     if (std::find(names.begin(), names.end(), words[1]) != names.end()) continue;
     const std::string near = nearest_name(words[1], names);
-    c->error(context, c->command, "<" + target->element + "> has no command " + in_quotes(words[1]) +
-                                      (!near.empty()     ? "; did you mean \"" + near + "\"?"
-                                       : names.empty() ? "; it has none"
-                                                       : " (it has: " + joined(names) + ")"));
+    c->error(context, c->command,
+             "<" + target->element + "> has no command " + in_quotes(words[1]) +
+                 (!near.empty()   ? "; did you mean \"" + near + "\"?"
+                  : names.empty() ? "; it has none"
+                                  : " (it has: " + joined(names) + ")"));
   }
 }
 

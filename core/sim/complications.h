@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Complications drawn by chance: which of them happen in this run, and when. The draw is made from a seed alone, so that a
-// report that states the seed states the run.
+// Complications drawn by chance: which of them happen in this run, and when. The draw is made from a seed alone, so
+// that a report that states the seed states the run.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -17,9 +17,13 @@ class Simulation;
 class Complication final : public Component {
  public:
   static constexpr std::string_view kind_name = "complication";
-  Param<std::string> command{this, {.name = "command", .doc = "what happens: id of a component, its command, its argument"}};
-  Param<Scalar> probability{this, {.name = "probability", .fallback = "1", .min = "0", .max = "1", .doc = "how likely it is to happen in a run"}};
-  Param<Duration> from{this, {.name = "from", .fallback = "0 s", .min = "0 s", .max = "3600 s", .doc = "earliest time of the exercise"}};
+  Param<std::string> command{this,
+                             {.name = "command", .doc = "what happens: id of a component, its command, its argument"}};
+  Param<Scalar> probability{
+      this,
+      {.name = "probability", .fallback = "1", .min = "0", .max = "1", .doc = "how likely it is to happen in a run"}};
+  Param<Duration> from{
+      this, {.name = "from", .fallback = "0 s", .min = "0 s", .max = "3600 s", .doc = "earliest time of the exercise"}};
   Param<Duration> to{this, {.name = "to", .min = "0 s", .max = "3600 s", .doc = "latest time of the exercise"}};
 
   void prepare(PrepareContext& context) override;
@@ -30,16 +34,21 @@ struct DrawnComplication {
   std::string id, command;
   double probability = 0;
   bool happens = false;
-  double time = 0;       ///< s; drawn whether it happens or not
+  double time = 0;  ///< s; drawn whether it happens or not
   bool begun = false;
-  std::string refused;   ///< why it could not be done when its time came; empty: done, or not begun
+  std::string refused;  ///< why it could not be done when its time came; empty: done, or not begun
 };
 
 /// `<complications>`: owns them. Each draws from a stream of its own, so that one more changes none of the others.
 class Complications final : public Component {
  public:
   static constexpr std::string_view kind_name = "list of complications";
-  Param<int> seed{this, {.name = "seed", .fallback = "0", .min = "0", .max = "2147483647", .doc = "what the draw begins from; 0: the scene's seed"}};
+  Param<int> seed{this,
+                  {.name = "seed",
+                   .fallback = "0",
+                   .min = "0",
+                   .max = "2147483647",
+                   .doc = "what the draw begins from; 0: the scene's seed"}};
 
   void prepare(PrepareContext& context) override;
   /// Checks that the commands exist.

@@ -16,7 +16,9 @@ namespace {
 /// Something that can be asked for.
 class Bell final : public Constraint {
  public:
-  std::vector<CommandInfo> commands() const override { return {{"ring", "rings it", "", 0, 0}, {"tune", "tunes it", "frequency_Hz", 20, 2000}}; }
+  std::vector<CommandInfo> commands() const override {
+    return {{"ring", "rings it", "", 0, 0}, {"tune", "tunes it", "frequency_Hz", 20, 2000}};
+  }
   std::string run_command(std::string_view name, std::string_view argument) override {
     if (name == "tune" && argument != "440") return "out of tune";
     ++rung;
@@ -34,7 +36,9 @@ SimulationResult load(const std::string& inside) {
   Registry registry;
   register_builtin(registry);
   registry.add<Bell>("bell", Kind::constraint, "for tests");
-  return load_simulation_text("<scene time_step=\"10 ms\" seed=\"7\"><bell id=\"big\"/><bell id=\"small\"/>" + inside + "</scene>", "/scene.xml", registry, 1);
+  return load_simulation_text(
+      "<scene time_step=\"10 ms\" seed=\"7\"><bell id=\"big\"/><bell id=\"small\"/>" + inside + "</scene>",
+      "/scene.xml", registry, 1);
 }
 
 const std::string three = R"(
@@ -43,7 +47,8 @@ const std::string three = R"(
   <complication id="never" command="big ring" probability="0" to="1 s"/>)";
 
 TEST(Complications, SameSeedSameDraw) {
-  const auto first = load("<complications>" + three + "</complications>"), second = load("<complications seed=\"7\">" + three + "</complications>");
+  const auto first = load("<complications>" + three + "</complications>"),
+             second = load("<complications seed=\"7\">" + three + "</complications>");
   ASSERT_TRUE(first.simulation && second.simulation) << first.diagnostics.format();
   const Complications &x = *first.simulation->complications(), &y = *second.simulation->complications();
   EXPECT_EQ(x.drawn_from(), 7u);  // the scene's
@@ -57,13 +62,15 @@ TEST(Complications, SameSeedSameDraw) {
 
 TEST(Complications, OneMoreChangesNoneOfTheOthers) {
   const auto few = load("<complications>" + three + "</complications>");
-  const auto more = load("<complications><complication id=\"first\" command=\"small ring\" to=\"9 s\"/>" + three + "</complications>");
+  const auto more = load("<complications><complication id=\"first\" command=\"small ring\" to=\"9 s\"/>" + three +
+                         "</complications>");
   ASSERT_TRUE(few.simulation && more.simulation);
   for (std::size_t i = 0; i < 3; ++i)
     EXPECT_EQ(few.simulation->complications()->drawn()[i].time, more.simulation->complications()->drawn()[i + 1].time);
 }
 
-// Probability 1/2: of 2,000 seeds 1,000 +- 4 standard deviations (22); times uniform on [1, 3]: mean 2 +- 4 * 0.577 / sqrt(2000).
+// Probability 1/2: of 2,000 seeds 1,000 +- 4 standard deviations (22); times uniform on [1, 3]: mean 2 +- 4 * 0.577 /
+// sqrt(2000).
 TEST(Complications, DrawsAreAsLikelyAsTheySay) {
   auto loaded = load("<complications>" + three + "</complications>");
   ASSERT_TRUE(loaded.simulation);
@@ -130,7 +137,8 @@ TEST(Complications, ARefusedOneSaysWhy) {
 }
 
 TEST(Complications, NothingHappensWhileTheSceneSettles) {
-  auto loaded = load(R"(<settle time="1 s"/><complications><complication id="c" command="big ring" to="0 s"/></complications>)");
+  auto loaded =
+      load(R"(<settle time="1 s"/><complications><complication id="c" command="big ring" to="0 s"/></complications>)");
   ASSERT_TRUE(loaded.simulation) << loaded.diagnostics.format();
   auto* big = loaded.simulation->scene().find_as<Bell>("big");
   EXPECT_EQ(big->rung, 0);
@@ -140,11 +148,16 @@ TEST(Complications, NothingHappensWhileTheSceneSettles) {
 
 TEST(Complications, MistakesAreNamed) {
   const std::pair<std::string, std::string> bad[] = {
-      {R"(<complications><complication command="bgi ring" to="1 s"/></complications>)", "command: no component has the id \"bgi\"; did you mean \"big\"?"},
-      {R"(<complications><complication command="big rnig" to="1 s"/></complications>)", "command: <bell> has no command \"rnig\"; did you mean \"ring\"?"},
-      {R"(<complications><complication command="big" to="1 s"/></complications>)", "command: needs the id of a component and one of its commands"},
-      {R"(<complications><complication command="big ring" from="2 s" to="1 s"/></complications>)", "to: comes before from"},
-      {R"(<complications><complication command="big ring" probability="1.2" to="1 s"/></complications>)", "is outside the allowed range"},
+      {R"(<complications><complication command="bgi ring" to="1 s"/></complications>)",
+       "command: no component has the id \"bgi\"; did you mean \"big\"?"},
+      {R"(<complications><complication command="big rnig" to="1 s"/></complications>)",
+       "command: <bell> has no command \"rnig\"; did you mean \"ring\"?"},
+      {R"(<complications><complication command="big" to="1 s"/></complications>)",
+       "command: needs the id of a component and one of its commands"},
+      {R"(<complications><complication command="big ring" from="2 s" to="1 s"/></complications>)",
+       "to: comes before from"},
+      {R"(<complications><complication command="big ring" probability="1.2" to="1 s"/></complications>)",
+       "is outside the allowed range"},
       {R"(<complications/><complications/>)", "may stand only once"},
       {R"(<complication command="big ring" to="1 s"/>)", "<complication> may not stand in <scene>"},
   };

@@ -18,7 +18,8 @@ void DefectCorrection::begin(ConstraintProblem& problem, const std::vector<Body*
 }
 
 double DefectCorrection::pass(ConstraintProblem& problem, const double* lambda, Workers& workers) {
-  workers.run(int(bodies_.size()), [&](int i) { bodies_[std::size_t(i)]->apply_compliance(bodies_[std::size_t(i)]->rows, lambda); });
+  workers.run(int(bodies_.size()),
+              [&](int i) { bodies_[std::size_t(i)]->apply_compliance(bodies_[std::size_t(i)]->rows, lambda); });
   before_.assign(problem.delta_free.begin(), problem.delta_free.end());
   std::copy(free_.begin(), free_.end(), problem.delta_free.begin());
   for (const Body* b : bodies_) b->add_applied_compliance(b->rows, problem.delta_free.data());

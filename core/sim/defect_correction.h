@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Puts right what W lacks where a body knows its compliance only nearly. With W the one in the problem and V the true one,
+// Puts right what W lacks where a body knows its compliance only nearly. With W the one in the problem and V the true
+// one,
 //     V lambda + delta_free = W lambda + (delta_free + (V - W) lambda_k)   at lambda = lambda_k,
-// so the problem is solved again with the bracket in place of delta_free. Each pass makes the error smaller by |W^-1 (V - W)|; its fixed point
-// is the exact step. Where free motion is that under the last step's forces (BodySolver::begin_motion), the first bracket takes off what W
-// knows of them, and the true motion tells the rest. The problem that the hands get has the same bracket: the servo begins at the step's own solution.
+// so the problem is solved again with the bracket in place of delta_free. Each pass makes the error smaller by |W^-1 (V
+// - W)|; its fixed point is the exact step. Where free motion is that under the last step's forces
+// (BodySolver::begin_motion), the first bracket takes off what W knows of them, and the true motion tells the rest. The
+// problem that the hands get has the same bracket: the servo begins at the step's own solution.
 #pragma once
 #include <vector>
 

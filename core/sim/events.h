@@ -7,12 +7,12 @@
 namespace insula {
 
 struct Event {
-  std::string kind;   ///< "goal", "fault", "message", "end", "reset", "warning", or one that a component declares
-  std::string id;     ///< of the component, goal or fault
-  std::string text;   ///< for the trainee
-  double value = 0;   ///< SI, as the kind says
-  double time = 0;    ///< simulated time, s
-  int hand = -1;      ///< whose tool did it: 0 left, 1 right; -1: none's, or not known
+  std::string kind;  ///< "goal", "fault", "message", "end", "reset", "warning", or one that a component declares
+  std::string id;    ///< of the component, goal or fault
+  std::string text;  ///< for the trainee
+  double value = 0;  ///< SI, as the kind says
+  double time = 0;   ///< simulated time, s
+  int hand = -1;     ///< whose tool did it: 0 left, 1 right; -1: none's, or not known
 };
 
 class EventSink {

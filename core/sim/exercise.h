@@ -14,8 +14,8 @@ class Simulation;
 struct GoalState {
   std::string id, text;
   bool done = false;
-  double time = -1;       ///< simulated time when it was reached, s
-  bool required = true;   ///< the exercise ends when all required goals are done
+  double time = -1;      ///< simulated time when it was reached, s
+  bool required = true;  ///< the exercise ends when all required goals are done
 };
 
 struct FaultState {
@@ -27,18 +27,18 @@ struct FaultState {
 /// A clock shown to the trainee: how long something has lasted.
 struct TimerState {
   std::string id, text;
-  double limit = 0;       ///< s; 0: none
-  double elapsed = 0;     ///< s
+  double limit = 0;    ///< s; 0: none
+  double elapsed = 0;  ///< s
   bool running = false;
-  double longest = 0;     ///< largest elapsed so far, s
+  double longest = 0;  ///< largest elapsed so far, s
 };
 
 /// A figure of merit as it is now: neck remnant, narrowing of a branch, ...
 struct MeasureState {
   std::string id, text, unit;
-  bool known = false;     ///< has a value
-  double value = 0;       ///< in `unit`
-  int good = 0;           ///< 1 good, 0 neutral, -1 bad
+  bool known = false;  ///< has a value
+  double value = 0;    ///< in `unit`
+  int good = 0;        ///< 1 good, 0 neutral, -1 bad
 };
 
 enum class ExerciseState { running, done, failed };

@@ -17,10 +17,10 @@ namespace insula {
 namespace {
 
 constexpr std::string_view header = "time_s,hand,px_m,py_m,pz_m,qw,qx,qy,qz,button1,button2";
-constexpr std::array<std::string_view, 11> columns = {"time_s", "hand", "px_m", "py_m", "pz_m",   "qw",
+constexpr std::array<std::string_view, 11> columns = {"time_s", "hand", "px_m", "py_m",    "pz_m",   "qw",
                                                       "qx",     "qy",   "qz",   "button1", "button2"};
 constexpr std::uintmax_t largest_file = 64u << 20;
-constexpr double farthest_m = 1.0;            // a hand further from the scene's origin is a unit mistake
+constexpr double farthest_m = 1.0;             // a hand further from the scene's origin is a unit mistake
 constexpr double quaternion_tolerance = 1e-3;  // what rounding to four digits leaves
 
 struct Reader {
@@ -103,7 +103,8 @@ void read_row(const Reader& at, std::string_view line, Motion& motion) {
     if (stripped(line.substr(first + 1, second == std::string_view::npos ? second : second - first - 1)) == "command") {
       const double time = at.number(stripped(line.substr(0, first)), columns[0]);
       if (time < 0) at.fail("time_s must not be negative");
-      return read_command(at, time, second == std::string_view::npos ? std::string_view() : line.substr(second + 1), motion);
+      return read_command(at, time, second == std::string_view::npos ? std::string_view() : line.substr(second + 1),
+                          motion);
     }
   }
   std::array<std::string_view, columns.size()> field;
@@ -126,8 +127,8 @@ void read_row(const Reader& at, std::string_view line, Motion& motion) {
   for (int i = 0; i < 3; ++i) {
     key.sample.pose.p[i] = at.number(field[std::size_t(2 + i)], columns[std::size_t(2 + i)]);
     if (std::abs(key.sample.pose.p[i]) > farthest_m)
-      at.fail(fmt::format("{}: {} m is outside the range -1 m to 1 m", columns[std::size_t(2 + i)],
-                          key.sample.pose.p[i]));
+      at.fail(
+          fmt::format("{}: {} m is outside the range -1 m to 1 m", columns[std::size_t(2 + i)], key.sample.pose.p[i]));
   }
   std::array<double, 4> q;
   for (std::size_t i = 0; i < 4; ++i) q[i] = at.number(field[5 + i], columns[5 + i]);
@@ -165,7 +166,8 @@ HandSample Motion::at(int hand, double t) const noexcept {
   const auto& keys = keys_[std::size_t(hand)];
   if (!(t > keys.front().time_s)) return keys.front().sample;  // also NaN
   if (t >= keys.back().time_s) return keys.back().sample;
-  const auto next = std::upper_bound(keys.begin(), keys.end(), t, [](double time, const Key& k) { return time < k.time_s; });
+  const auto next =
+      std::upper_bound(keys.begin(), keys.end(), t, [](double time, const Key& k) { return time < k.time_s; });
   const Key& b = *next;
   const Key& a = *(next - 1);
   const double s = (t - a.time_s) / (b.time_s - a.time_s);

@@ -57,9 +57,9 @@ class Motion {
 };
 
 /// Reads `time_s,hand,px_m,py_m,pz_m,qw,qx,qy,qz,button1,button2` (the header line is required; hand is left or right;
-/// buttons are 0 or 1). A row `time_s,command,verb,argument` asks for something at that time; the argument is the rest of the
-/// line, or stands in double quotes (a quote inside is written twice). Command rows may stand anywhere below the header.
-/// Throws InputError "file:line: error: text" at the first line that is wrong.
+/// buttons are 0 or 1). A row `time_s,command,verb,argument` asks for something at that time; the argument is the rest
+/// of the line, or stands in double quotes (a quote inside is written twice). Command rows may stand anywhere below the
+/// header. Throws InputError "file:line: error: text" at the first line that is wrong.
 Motion load_motion(const std::filesystem::path& path);
 /// The same from text; `name` stands for the file in messages.
 Motion parse_motion(std::string_view text, std::string_view name);

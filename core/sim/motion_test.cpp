@@ -30,9 +30,11 @@ std::string error_of(const std::string& text) {
 
 TEST(Motion, InterpolatesLinearlyAndBySlerp) {
   const double c = std::sqrt(0.5);
-  const Motion m = parse_motion(head + "0,left,0,0,0,1,0,0,0,0,1\n"
-                                       "1,right,0.5,0,0,1,0,0,0,0,0\n"
-                                       "2,left,0.1,-0.2,0.04," + std::to_string(c) + ",0,0," + std::to_string(c) + ",1,0\n",
+  const Motion m = parse_motion(head +
+                                    "0,left,0,0,0,1,0,0,0,0,1\n"
+                                    "1,right,0.5,0,0,1,0,0,0,0,0\n"
+                                    "2,left,0.1,-0.2,0.04," +
+                                    std::to_string(c) + ",0,0," + std::to_string(c) + ",1,0\n",
                                 "m.csv");
   const HandSample a = m.at(0, 0.5);
   EXPECT_NEAR((a.pose.p - Vec3(0.025, -0.05, 0.01)).norm(), 0, 1e-15);
@@ -60,7 +62,8 @@ TEST(Motion, TakesTheShortWayRound) {
 }
 
 TEST(Motion, ReadsWindowsLineEndsAndBlankLines) {
-  const Motion m = parse_motion("time_s,hand,px_m,py_m,pz_m,qw,qx,qy,qz,button1,button2\r\n\r\n0,right,0,0,0.01,1,0,0,0,0,0\r\n", "m.csv");
+  const Motion m = parse_motion(
+      "time_s,hand,px_m,py_m,pz_m,qw,qx,qy,qz,button1,button2\r\n\r\n0,right,0,0,0.01,1,0,0,0,0,0\r\n", "m.csv");
   EXPECT_EQ(m.at(1, 0).pose.p.z(), 0.01);
 }
 
@@ -84,20 +87,24 @@ TEST(Motion, SaysFileLineAndWhatIsWrong) {
       {head + "-1,left,0,0,0,1,0,0,0,0,0\n", "m.csv:2: error: time_s must not be negative"},
       {head + good + good, "m.csv:3: error: time_s of the left hand must rise"},
   };
-  for (const auto& [text, expected] : bad) EXPECT_NE(error_of(text).find(expected), std::string::npos) << error_of(text);
+  for (const auto& [text, expected] : bad)
+    EXPECT_NE(error_of(text).find(expected), std::string::npos) << error_of(text);
 }
 
 TEST(Motion, HoldsCommandsInTheOrderOfTheirTimes) {
-  const Motion m = parse_motion(head + "5,command,ask,applier load straight_9\n"
-                                       "0,left,0,0,0,1,0,0,0,0,0\n"
-                                       "2.5 , command , exchange , right applier\n"
-                                       "5,command,message,\"Now, \"\"gently\"\"\"\n"
-                                       "0.5,command,message,one, two\r\n"
-                                       "1,left,0.1,0,0,1,0,0,0,0,0\n",
+  const Motion m = parse_motion(head +
+                                    "5,command,ask,applier load straight_9\n"
+                                    "0,left,0,0,0,1,0,0,0,0,0\n"
+                                    "2.5 , command , exchange , right applier\n"
+                                    "5,command,message,\"Now, \"\"gently\"\"\"\n"
+                                    "0.5,command,message,one, two\r\n"
+                                    "1,left,0.1,0,0,1,0,0,0,0,0\n",
                                 "m.csv");
   ASSERT_EQ(m.commands().size(), 4u);
-  const MotionCommand expected[] = {{0.5, "message", "one, two"}, {2.5, "exchange", "right applier"},
-                                    {5, "ask", "applier load straight_9"}, {5, "message", "Now, \"gently\""}};
+  const MotionCommand expected[] = {{0.5, "message", "one, two"},
+                                    {2.5, "exchange", "right applier"},
+                                    {5, "ask", "applier load straight_9"},
+                                    {5, "message", "Now, \"gently\""}};
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_EQ(m.commands()[i].time_s, expected[i].time_s);
     EXPECT_EQ(m.commands()[i].verb, expected[i].verb);
@@ -119,7 +126,8 @@ TEST(Motion, RefusesBadCommands) {
   const std::pair<std::string, std::string> bad[] = {
       {"1,command\n", "m.csv:2: error: a command needs a verb and an argument"},
       {"1,command,exchange\n", "m.csv:2: error: a command needs a verb and an argument"},
-      {"1,command,exchagne,right a\n", "m.csv:2: error: verb: \"exchagne\" is none of exchange, ask, message; did you mean \"exchange\"?"},
+      {"1,command,exchagne,right a\n",
+       "m.csv:2: error: verb: \"exchagne\" is none of exchange, ask, message; did you mean \"exchange\"?"},
       {"1,command,pause,now\n", "m.csv:2: error: verb: \"pause\" is none of"},
       {"1,command,ask,  \n", "m.csv:2: error: ask needs an argument"},
       {"1,command,ask,\"\"\n", "m.csv:2: error: ask needs an argument"},
@@ -131,7 +139,8 @@ TEST(Motion, RefusesBadCommands) {
       {"x,command,ask,a b\n", "m.csv:2: error: time_s: \"x\" is not a number"},
       {"nan,command,ask,a b\n", "m.csv:2: error: time_s must be finite"},
   };
-  for (const auto& [text, expected] : bad) EXPECT_NE(error_of(head + text).find(expected), std::string::npos) << error_of(head + text);
+  for (const auto& [text, expected] : bad)
+    EXPECT_NE(error_of(head + text).find(expected), std::string::npos) << error_of(head + text);
 }
 
 TEST(Motion, ReadsFilesAndNamesMissingOnes) {

@@ -16,7 +16,9 @@ namespace insula {
 namespace {
 
 void add_materials(Registry& registry) {
-  const auto tissue = [&](const char* name, std::array<double, 4> rgba) { registry.add_material({name, "tissue", rgba, 0.45, 0, 0.2}); };
+  const auto tissue = [&](const char* name, std::array<double, 4> rgba) {
+    registry.add_material({name, "tissue", rgba, 0.45, 0, 0.2});
+  };
   tissue("cortex", {0.62, 0.36, 0.32, 1});
   tissue("pia", {0.66, 0.40, 0.36, 1});
   tissue("insula", {0.60, 0.34, 0.30, 1});
@@ -39,11 +41,14 @@ void register_core(Registry& registry) {
   registry.add<Surface>("surface", Kind::surface, "a surface that follows its body, for contact and for the picture");
   registry.add<SolverSettings>("solver", Kind::settings, "limits of the constraint solver");
   registry.add<SettleSettings>("settle", Kind::settings, "lets the scene come to rest before the exercise begins");
-  registry.add<DeviceSettings>("devices", Kind::settings, "what the hands hold where the command line does not say; see insula devices");
+  registry.add<DeviceSettings>("devices", Kind::settings,
+                               "what the hands hold where the command line does not say; see insula devices");
   registry.add<ViewSettings>("view", Kind::settings, "where the microscope stands at the start");
   registry.add<Exercise>("exercise", Kind::exercise, "goals, faults and motions of a training exercise");
-  registry.add<Complications>("complications", Kind::complications, "what may go wrong by chance, drawn from a seed that the report states");
-  registry.add<Complication>("complication", Kind::complication, "a command that comes by chance, at a time drawn between two");
+  registry.add<Complications>("complications", Kind::complications,
+                              "what may go wrong by chance, drawn from a seed that the report states");
+  registry.add<Complication>("complication", Kind::complication,
+                             "a command that comes by chance, at a time drawn between two");
   registry.add<MaterialElement>("material", Kind::material, "the look of surfaces and drawables by name");
   registry.add<MotionEntry>("motion", Kind::motion, "a scripted motion of both hands");
 }

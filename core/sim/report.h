@@ -18,37 +18,38 @@ class Component;
 enum Stage { stage_free_motion, stage_collision, stage_build, stage_solve, stage_correct, stage_publish, stage_count };
 
 struct ContactPoint {
-  const Body* a = nullptr;   ///< pushed along +normal
-  const Body* b = nullptr;   ///< pushed along -normal
+  const Body* a = nullptr;  ///< pushed along +normal
+  const Body* b = nullptr;  ///< pushed along -normal
   Vec3 position = Vec3::Zero();
   Vec3 normal = Vec3::Zero();
-  double gap = 0;            ///< start of step, m
-  double normal_force = 0;   ///< N
+  double gap = 0;                     ///< start of step, m
+  double normal_force = 0;            ///< N
   Vec3 tangent_force = Vec3::Zero();  ///< on a, N
 };
 
 struct ToolReport {
   const Body* tool = nullptr;
   int hand = 0;
-  Vec6 hand_force = Vec6::Zero();   ///< coupling force and torque on the hand
-  double contact_force = 0;         ///< norm of the sum of its contact forces, N
+  Vec6 hand_force = Vec6::Zero();  ///< coupling force and torque on the hand
+  double contact_force = 0;        ///< norm of the sum of its contact forces, N
 };
 
 struct StepReport {
-  double time = 0;   ///< at the end of the step, s
+  double time = 0;  ///< at the end of the step, s
   double h = 0;
   std::int64_t step = 0;
   int rows = 0;
   SolveStats solve;
-  SolverStatus solver;   ///< of the bodies' solvers: the worst, and all factors taken into use
-  double defect_m = 0;   ///< largest change of a row that the last pass of defect correction made, m; 0: every body is exact
+  SolverStatus solver;  ///< of the bodies' solvers: the worst, and all factors taken into use
+  double defect_m =
+      0;  ///< largest change of a row that the last pass of defect correction made, m; 0: every body is exact
   std::vector<ContactPoint> contacts;
   std::vector<ToolReport> tools;
   const ChannelTable* channel_table = nullptr;  ///< of the simulation; null: there are no channels
-  std::vector<double> channels;      ///< SI, in the order of the table; NaN: not known now
+  std::vector<double> channels;                 ///< SI, in the order of the table; NaN: not known now
   std::array<double, stage_count> stage_ms{};
   double step_ms = 0;
-  std::vector<Event> events;         ///< of this step, before the exercise speaks
+  std::vector<Event> events;  ///< of this step, before the exercise speaks
   bool finite = true;
   void clear();
 };

@@ -28,7 +28,7 @@ class StageClock {
 };
 
 constexpr int steps_with_newton_soon = 15;  ///< after one whose sweeps stalled; then they are tried again
-constexpr int max_passes = 3;  ///< of defect correction
+constexpr int max_passes = 3;               ///< of defect correction
 
 }  // namespace
 
@@ -82,7 +82,8 @@ void Simulation::step() {
     parts_.clear();
     for (Body* b : heavy_first_)
       for (int p = 0; p < b->compliance_parts(act); ++p) parts_.emplace_back(b, p);
-    workers_.run(int(parts_.size()), [&](int i) { parts_[std::size_t(i)].first->compliance_part(act, parts_[std::size_t(i)].second); });
+    workers_.run(int(parts_.size()),
+                 [&](int i) { parts_[std::size_t(i)].first->compliance_part(act, parts_[std::size_t(i)].second); });
   }
   for (Body* b : bodies_) {
     b->add_compliance(b->rows, problem_.w.data(), problem_.stride);
@@ -153,7 +154,8 @@ void Simulation::remember_solution() {
     for (int k = 0; k < b.rows(); ++k) r.lambda[std::size_t(k)] = workspace_.lambda[std::size_t(b.row + k)];
     remembered_.push_back(r);
   }
-  std::sort(remembered_.begin(), remembered_.end(), [](const Remembered& a, const Remembered& b) { return a.id < b.id; });
+  std::sort(remembered_.begin(), remembered_.end(),
+            [](const Remembered& a, const Remembered& b) { return a.id < b.id; });
 }
 
 void Simulation::publish() {

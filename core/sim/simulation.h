@@ -2,8 +2,8 @@
 // Everything of one run: the scene's bodies and constraints, stepped. Several may live in one program.
 //
 // One step: free motion per body (parallel) -> collision -> rows -> W = sum_b H_b A_b^-1 H_b^T (parallel) -> solve ->
-// corrective motion (parallel) -> report -> exercise. Order everywhere is document order, so the same scene and the same
-// hands give the same bits for any number of threads.
+// corrective motion (parallel) -> report -> exercise. Order everywhere is document order, so the same scene and the
+// same hands give the same bits for any number of threads.
 #pragma once
 #include <array>
 #include <filesystem>
@@ -49,10 +49,11 @@ class Simulation {
   std::vector<Event> take_announced() { return std::exchange(commanded_, {}); }
   /// Draws the scene's complications anew from that seed, now and after every reset; 0: from the scene's own.
   void draw_complications(std::uint64_t seed);
-  /// Whether a step may wait for what works in the background (default: the same input gives the same bits) or is never late.
+  /// Whether a step may wait for what works in the background (default: the same input gives the same bits) or is never
+  /// late.
   void set_deterministic(bool yes);
-  /// Tools' contacts of so long after a step are in its problem already, as the servo needs them before the next one arrives; 0, the
-  /// default: those of the step and within the alarm distance alone.
+  /// Tools' contacts of so long after a step are in its problem already, as the servo needs them before the next one
+  /// arrives; 0, the default: those of the step and within the alarm distance alone.
   void set_collision_horizon(double seconds) { context_.collision_horizon_s = seconds; }
   /// Back to the start, to the same bits.
   void reset();
@@ -64,7 +65,7 @@ class Simulation {
   const StepReport& report() const { return report_; }
   /// The last step's problem with its solution as warm start: what the haptic server gets.
   const ConstraintProblem& problem() const { return problem_; }
-  const std::vector<Body*>& bodies() const { return bodies_; }            ///< instruments included, document order
+  const std::vector<Body*>& bodies() const { return bodies_; }  ///< instruments included, document order
   const std::vector<Instrument*>& instruments() const { return instruments_; }
   const std::vector<Surface*>& surfaces() const { return surfaces_; }
   const std::vector<Constraint*>& constraints() const { return constraints_; }
@@ -78,10 +79,12 @@ class Simulation {
     const DrawableBase* drawable;
   };
   const std::vector<DrawableEntry>& drawables() const { return drawables_; }
-  Complications* complications() const { return complications_; }         ///< null when the scene has none
-  Exercise* exercise() const { return exercise_; }                        ///< null when the scene has none
+  Complications* complications() const { return complications_; }  ///< null when the scene has none
+  Exercise* exercise() const { return exercise_; }                 ///< null when the scene has none
   const ViewSettings* view() const { return view_; }
-  const SolveSettings& solve_settings() const { return solve_settings_; } ///< as the scene's <solver> says, else the defaults
+  const SolveSettings& solve_settings() const {
+    return solve_settings_;
+  }                                           ///< as the scene's <solver> says, else the defaults
   Instrument* instrument_of(int hand) const;  ///< the one in that hand now; null when there is none
   Workers& workers() { return workers_; }
   /// Events of the last step: constraints' first, then the exercise's.
@@ -141,7 +144,9 @@ struct SimulationResult {
   Diagnostics diagnostics;
 };
 /// Loads, prepares and connects a scene. time_step_s: in place of its own, 0: as written.
-SimulationResult load_simulation(const std::filesystem::path& file, const Registry& registry, int threads = 0, double time_step_s = 0);
-SimulationResult load_simulation_text(std::string_view text, const std::filesystem::path& virtual_path, const Registry& registry, int threads = 0);
+SimulationResult load_simulation(const std::filesystem::path& file, const Registry& registry, int threads = 0,
+                                 double time_step_s = 0);
+SimulationResult load_simulation_text(std::string_view text, const std::filesystem::path& virtual_path,
+                                      const Registry& registry, int threads = 0);
 
 }  // namespace insula

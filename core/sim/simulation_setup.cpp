@@ -50,7 +50,8 @@ Simulation::Simulation(std::unique_ptr<Scene> scene, Diagnostics& diagnostics, i
     }
   }
   heavy_first_ = bodies_;
-  std::stable_sort(heavy_first_.begin(), heavy_first_.end(), [](Body* a, Body* b) { return a->blocks() > b->blocks(); });
+  std::stable_sort(heavy_first_.begin(), heavy_first_.end(),
+                   [](Body* a, Body* b) { return a->blocks() > b->blocks(); });
   parts_.reserve(8 * bodies_.size());
   builder_ = std::make_unique<ConstraintBuilder>(problem_, bodies_);
   context_.h = scene_->time_step();
@@ -177,11 +178,13 @@ SimulationResult connect(LoadResult loaded, int threads) {
 }
 }  // namespace
 
-SimulationResult load_simulation(const std::filesystem::path& file, const Registry& registry, int threads, double time_step_s) {
+SimulationResult load_simulation(const std::filesystem::path& file, const Registry& registry, int threads,
+                                 double time_step_s) {
   return connect(load_scene(file, registry, time_step_s), threads);
 }
 
-SimulationResult load_simulation_text(std::string_view text, const std::filesystem::path& virtual_path, const Registry& registry, int threads) {
+SimulationResult load_simulation_text(std::string_view text, const std::filesystem::path& virtual_path,
+                                      const Registry& registry, int threads) {
   return connect(load_scene_text(text, virtual_path, registry), threads);
 }
 

@@ -4,16 +4,18 @@
 
 #include <fmt/format.h>
 
+#include <unistd.h>
 #include <atomic>
 #include <fstream>
 #include <stdexcept>
-#include <unistd.h>
 
 namespace insula::test {
 
 TetMesh block_mesh(const std::array<int, 3>& cells, const Vec3& low, const Vec3& high) {
   TetMesh m;
-  const auto number = [&](const std::array<int, 3>& i) { return (i[0] * (cells[1] + 1) + i[1]) * (cells[2] + 1) + i[2]; };
+  const auto number = [&](const std::array<int, 3>& i) {
+    return (i[0] * (cells[1] + 1) + i[1]) * (cells[2] + 1) + i[2];
+  };
   std::array<int, 3> i;
   for (i[0] = 0; i[0] <= cells[0]; ++i[0])
     for (i[1] = 0; i[1] <= cells[1]; ++i[1])
@@ -23,7 +25,8 @@ TetMesh block_mesh(const std::array<int, 3>& cells, const Vec3& low, const Vec3&
         m.nodes.push_back(p);
       }
   // One tetrahedron for each order of stepping along the axes; odd orders are turned round.
-  constexpr std::array<std::array<int, 4>, 6> orders{{{0, 1, 2, 0}, {1, 2, 0, 0}, {2, 0, 1, 0}, {0, 2, 1, 1}, {1, 0, 2, 1}, {2, 1, 0, 1}}};
+  constexpr std::array<std::array<int, 4>, 6> orders{
+      {{0, 1, 2, 0}, {1, 2, 0, 0}, {2, 0, 1, 0}, {0, 2, 1, 1}, {1, 0, 2, 1}, {2, 1, 0, 1}}};
   for (i[0] = 0; i[0] < cells[0]; ++i[0])
     for (i[1] = 0; i[1] < cells[1]; ++i[1])
       for (i[2] = 0; i[2] < cells[2]; ++i[2])
@@ -53,7 +56,8 @@ std::string gmsh_text(const TetMesh& mesh) {
     out += fmt::format("{} {:.17g} {:.17g} {:.17g}\n", i + 1, mesh.nodes[i].x(), mesh.nodes[i].y(), mesh.nodes[i].z());
   out += fmt::format("$EndNodes\n$Elements\n{}\n", mesh.tets.size());
   for (std::size_t t = 0; t < mesh.tets.size(); ++t)
-    out += fmt::format("{} 4 2 1 1 {} {} {} {}\n", t + 1, mesh.tets[t][0] + 1, mesh.tets[t][1] + 1, mesh.tets[t][2] + 1, mesh.tets[t][3] + 1);
+    out += fmt::format("{} 4 2 1 1 {} {} {} {}\n", t + 1, mesh.tets[t][0] + 1, mesh.tets[t][1] + 1, mesh.tets[t][2] + 1,
+                       mesh.tets[t][3] + 1);
   return out + "$EndElements\n";
 }
 
@@ -90,14 +94,16 @@ std::string test_tool_urdf(double radius) {
   <visual name="steel"><geometry><sphere radius="{0}"/></geometry></visual>
   <collision name="tip"><geometry><sphere radius="{0}"/></geometry></collision>
 </link></robot>
-)", radius);
+)",
+                     radius);
 }
 
 std::string test_tool_json(double edge, double inner_radius) {
   std::string out = R"({"unit": "mm", "tip": {"kind": "test")";
   if (inner_radius > 0) out += fmt::format(R"(, "inner_radius_mm": {:.17g})", inner_radius * 1000);
   out += "}";
-  if (edge > 0) out += fmt::format(R"(, "blade": {{"edge": [[0, {0:.17g}, 0], [0, -{0:.17g}, 0]], "cuts": true}})", edge * 1000);
+  if (edge > 0)
+    out += fmt::format(R"(, "blade": {{"edge": [[0, {0:.17g}, 0], [0, -{0:.17g}, 0]], "cuts": true}})", edge * 1000);
   return out + "}\n";
 }
 

@@ -9,8 +9,8 @@
 
 namespace insula::test {
 
-/// A box from `low` to `high` (m) of cells[0] x cells[1] x cells[2] cubes, six tetrahedra each around the cube's diagonal.
-/// Node (i, j, k) has number (i (cells[1] + 1) + j) (cells[2] + 1) + k.
+/// A box from `low` to `high` (m) of cells[0] x cells[1] x cells[2] cubes, six tetrahedra each around the cube's
+/// diagonal. Node (i, j, k) has number (i (cells[1] + 1) + j) (cells[2] + 1) + k.
 TetMesh block_mesh(const std::array<int, 3>& cells, const Vec3& low, const Vec3& high);
 
 /// One tetrahedron with its fourth node over the first three: (0 0 0), (a 0 0), (0 a 0), (0 0 a); shifted by `at`.

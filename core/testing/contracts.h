@@ -30,8 +30,8 @@ void check_rows(const std::filesystem::path& scene, const std::string& element, 
 /// Force = -dE/dx to 1e-7, exact tangent = -df/dx to 1e-6, both with the promised damping factor; the step's tangent is
 /// symmetric and has no negative eigenvalue. Of models that say internal(): rigid motion gives no force (1e-10), forces
 /// and moments add up to nothing. What finish() changes is in append_state() and undone by reset().
-/// Of models with a damping of their own: damping = minus force gradient by velocity to 1e-6, symmetric, without negative
-/// eigenvalues, and the force takes energy out.
+/// Of models with a damping of their own: damping = minus force gradient by velocity to 1e-6, symmetric, without
+/// negative eigenvalues, and the force takes energy out.
 void check_force_model(const std::filesystem::path& scene, const std::string& element);
 /// A rigid body that is no instrument: H of a point of any link is the derivative of its position, and its
 /// rows hold the contract of rows.

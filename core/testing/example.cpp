@@ -71,7 +71,8 @@ double shortest_edge(const DeformableBody& body) {
     for (const auto& cell : cells)
       for (std::size_t i = 0; i < cell.size(); ++i)
         for (std::size_t j = 0; j < i; ++j)
-          edge = std::min(edge, (body.rest_nodes()[std::size_t(cell[i])] - body.rest_nodes()[std::size_t(cell[j])]).norm());
+          edge = std::min(edge,
+                          (body.rest_nodes()[std::size_t(cell[i])] - body.rest_nodes()[std::size_t(cell[j])]).norm());
   };
   if (const auto* soft = dynamic_cast<const SoftBody*>(&body)) take(soft->rest().tets);
   if (const auto* shell = dynamic_cast<const ShellBody*>(&body)) take(shell->rest().triangles);

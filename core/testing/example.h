@@ -5,9 +5,9 @@
 #include <memory>
 #include <string>
 
-#include "core/registry/registry.h"
 #include "core/mechanics/shell_body.h"
 #include "core/mechanics/soft_body.h"
+#include "core/registry/registry.h"
 #include "core/sim/simulation.h"
 
 namespace insula::test {
@@ -22,10 +22,11 @@ void add_elements(void (*add)(Registry&));
 
 /// Loads a scene; what is wrong becomes a test failure and the result is null. Warnings are failures too.
 std::unique_ptr<Simulation> load(const std::filesystem::path& file, int threads = 1);
-std::unique_ptr<Simulation> load_text(const std::string& xml, const std::filesystem::path& virtual_path, int threads = 1);
+std::unique_ptr<Simulation> load_text(const std::string& xml, const std::filesystem::path& virtual_path,
+                                      int threads = 1);
 
-/// Both hands for the coming step: in from home along the shaft by 5 mm within half a second, then across by 2 mm and back
-/// within another; button 1 is held from 0.2 s on. From 1 s on the hands are still.
+/// Both hands for the coming step: in from home along the shaft by 5 mm within half a second, then across by 2 mm and
+/// back within another; button 1 is held from 0.2 s on. From 1 s on the hands are still.
 void drive(Simulation& simulation);
 inline constexpr double script_length = 1.0;  ///< s
 

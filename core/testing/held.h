@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Laws that hold to a tolerance. What was found is kept as a property of the running test (gtest's --gtest_output=json), so that the manual's
-// pictures can show it beside what is allowed.
+// Laws that hold to a tolerance. What was found is kept as a property of the running test (gtest's
+// --gtest_output=json), so that the manual's pictures can show it beside what is allowed.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -11,18 +11,21 @@
 
 namespace insula::test {
 
-/// Whether error <= tolerance * size; the greatest error / size that the test meets under this law is kept with the tolerance.
+/// Whether error <= tolerance * size; the greatest error / size that the test meets under this law is kept with the
+/// tolerance.
 inline ::testing::AssertionResult held(const std::string& law, double error, double size, double tolerance) {
   const double found = error == 0 ? 0 : error / size;
   double most = found;
   const ::testing::TestResult& result = *::testing::UnitTest::GetInstance()->current_test_info()->result();
   for (int i = 0; i < result.test_property_count(); ++i)
-    if (result.GetTestProperty(i).key() == law) most = std::max(most, std::strtod(result.GetTestProperty(i).value(), nullptr));
+    if (result.GetTestProperty(i).key() == law)
+      most = std::max(most, std::strtod(result.GetTestProperty(i).value(), nullptr));
   char kept[64];
   std::snprintf(kept, sizeof kept, "%.3g of %g", most, tolerance);
   ::testing::Test::RecordProperty(law, kept);
   if (found <= tolerance) return ::testing::AssertionSuccess();
-  return ::testing::AssertionFailure() << law << ": off by " << found << ", allowed " << tolerance << " (of " << size << ")";
+  return ::testing::AssertionFailure() << law << ": off by " << found << ", allowed " << tolerance << " (of " << size
+                                       << ")";
 }
 
 }  // namespace insula::test

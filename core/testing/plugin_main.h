@@ -4,8 +4,8 @@
 
 namespace insula::test {
 
-/// Loads the plugin's library into test::builtin(), adds the contracts of every element that it brings, checked on `example`,
-/// to the program's own tests, and runs them all. Returns the exit status.
+/// Loads the plugin's library into test::builtin(), adds the contracts of every element that it brings, checked on
+/// `example`, to the program's own tests, and runs them all. Returns the exit status.
 int run_plugin_tests(int argc, char** argv, const char* library, const char* example);
 
 }  // namespace insula::test

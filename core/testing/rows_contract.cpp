@@ -25,7 +25,8 @@ namespace {
 constexpr double min_radius = 0.02;  // m
 // ... and a row is compared where that is no more than this share of it.
 constexpr double max_turning = 0.02;
-// A tool's piece whose gap is closed still touches at this distance from its core (core/collision/shapes/rounded_piece.cpp).
+// A tool's piece whose gap is closed still touches at this distance from its core
+// (core/collision/shapes/rounded_piece.cpp).
 constexpr double rounding = 2e-4;  // m
 
 struct Compared {

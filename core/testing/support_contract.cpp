@@ -23,7 +23,8 @@ void check_hold(Findings& findings, const Simulation& s, Support& support, const
   findings.expect(own > 0, "it holds nothing, expected one node at least");
   findings.expect(std::find(all.begin(), all.end(), 0) == all.end(), "it lets go what another support holds");
   for (std::size_t i = 0; i < held.size(); ++i)
-    if (held[i]) findings.expect(body.fixed()[i], "a node that it holds is free in its body", fmt::format("node {}", i));
+    if (held[i])
+      findings.expect(body.fixed()[i], "a node that it holds is free in its body", fmt::format("node {}", i));
 }
 
 void check_held(Findings& findings, const DeformableBody& body) {

@@ -111,10 +111,8 @@ class Reader {
     scan_attributes(*element, at, attributes);
     if (stopped_) return;
     Element* added = element.get();
-    if (open_.empty())
-      root_ = std::move(element);
-    else
-      open_.back()->children.push_back(std::move(element));
+    if (open_.empty()) root_ = std::move(element);
+    else open_.back()->children.push_back(std::move(element));
     open_.push_back(added);
   }
 
@@ -138,7 +136,8 @@ class Reader {
       if (++attribute_count_ > limits_.all_attributes)
         return stop(name_at, "more than " + std::to_string(limits_.all_attributes) + " attributes in all");
       if (element.attributes.size() == limits_.attributes)
-        return stop(name_at, "<" + shown(element.name) + "> has more than " + std::to_string(limits_.attributes) + " attributes");
+        return stop(name_at, "<" + shown(element.name) + "> has more than " + std::to_string(limits_.attributes) +
+                                 " attributes");
       if (std::strlen(attributes[0]) > limits_.name_bytes)
         return stop(name_at, "attribute name " + in_quotes(attributes[0]) + " is too long");
       if (std::strlen(attributes[1]) > limits_.value_bytes)
@@ -190,14 +189,16 @@ class Reader {
         }
         break;
       case XML_ERROR_NO_ELEMENTS:
-        if (!root_) return diagnostics_.error(place(at), 
-                                                  trim(text_).empty() ? "the file is empty" : "the file ends before its first element");
+        if (!root_)
+          return diagnostics_.error(
+              place(at), trim(text_).empty() ? "the file is empty" : "the file ends before its first element");
         [[fallthrough]];
       case XML_ERROR_UNCLOSED_TOKEN:
       case XML_ERROR_UNCLOSED_CDATA_SECTION:
         if (!open_.empty())
-          return diagnostics_.error(place(text_.size()), "the file ends before <" + shown(open_.back()->name) + "> of line " +
-                                                             std::to_string(open_.back()->pos.line) + " is closed");
+          return diagnostics_.error(place(text_.size()), "the file ends before <" + shown(open_.back()->name) +
+                                                             "> of line " + std::to_string(open_.back()->pos.line) +
+                                                             " is closed");
         break;
       case XML_ERROR_UNDEFINED_ENTITY:
         return diagnostics_.error(place(unknown_entity(at)),
@@ -207,8 +208,7 @@ class Reader {
       case XML_ERROR_SYNTAX:
         if (!root_) return diagnostics_.error(place(at), "this is no XML: an element such as <scene> is expected");
         break;
-      case XML_ERROR_INVALID_TOKEN:
-        return diagnostics_.error(place(at), "not well-formed XML: " + hint(at));
+      case XML_ERROR_INVALID_TOKEN: return diagnostics_.error(place(at), "not well-formed XML: " + hint(at));
       default: break;
     }
     const char* why = XML_ErrorString(code);
@@ -231,7 +231,8 @@ class Reader {
 /// Names the encoding of a text that cannot be UTF-8, by its byte order mark or by where its zero bytes stand.
 std::string foreign_encoding(std::string_view text) {
   const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 1u; };
-  if ((byte(0) == 0xFF && byte(1) == 0xFE && byte(2) == 0 && byte(3) == 0) || (byte(0) == 0 && byte(1) == 0 && byte(2) == 0xFE && byte(3) == 0xFF))
+  if ((byte(0) == 0xFF && byte(1) == 0xFE && byte(2) == 0 && byte(3) == 0) ||
+      (byte(0) == 0 && byte(1) == 0 && byte(2) == 0xFE && byte(3) == 0xFF))
     return "UTF-32";
   if ((byte(0) == 0xFF && byte(1) == 0xFE) || (byte(0) == 0xFE && byte(1) == 0xFF)) return "UTF-16";
   if ((byte(0) == '<' && byte(1) == 0) || (byte(0) == 0 && byte(1) == '<')) return "UTF-16";

@@ -17,7 +17,7 @@ struct DocumentLimits {
   std::size_t file_bytes = 16u << 20;
   std::size_t depth = 64;
   std::size_t elements = 100'000;
-  std::size_t attributes = 64;        ///< of one element
+  std::size_t attributes = 64;  ///< of one element
   std::size_t all_attributes = 400'000;
   std::size_t value_bytes = 64u << 10;
   std::size_t name_bytes = 128;

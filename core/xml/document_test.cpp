@@ -19,7 +19,9 @@ Read read(std::string_view text, const DocumentLimits& limits = {}) {
 }
 
 TEST(Document, KeepsEveryPosition) {
-  const auto r = read("<?xml version=\"1.0\"?>\n<!-- hi -->\n<scene  title = \"a\"\n    seed='2'>\n\t<body id=\"x&amp;y\"/>\n</scene>\n");
+  const auto r = read(
+      "<?xml version=\"1.0\"?>\n<!-- hi -->\n<scene  title = \"a\"\n    seed='2'>\n\t<body "
+      "id=\"x&amp;y\"/>\n</scene>\n");
   ASSERT_TRUE(r.document.root) << r.messages;
   const Element& root = *r.document.root;
   EXPECT_EQ(root.pos.line, 3);
@@ -79,13 +81,16 @@ TEST(Document, Refusals) {
       {"<!DOCTYPE a><a/>", "f.xml:1:1: error: document types are not allowed in scene files"},
       {"<!DOCTYPE a [<!ENTITY b \"c\">]>\n<a>&b;</a>", "document types are not allowed"},
       {"<!DOCTYPE a SYSTEM \"file:///etc/passwd\"><a/>", "document types are not allowed"},
-      {"<?xml version=\"1.0\" encoding=\"ISO-8859-1\"?><a/>", "f.xml:1:1: error: encoding \"ISO-8859-1\" is not supported; save the file as UTF-8"},
+      {"<?xml version=\"1.0\" encoding=\"ISO-8859-1\"?><a/>",
+       "f.xml:1:1: error: encoding \"ISO-8859-1\" is not supported; save the file as UTF-8"},
       {"<?xml version=\"1.1\"?><a/>", "only XML 1.0 is supported"},
       {"<a b=\"\xE4\"/>", "f.xml:1:7: error: invalid UTF-8"},
       {"\xFF\xFE<\0a\0", "the file is written in UTF-16; save it as UTF-8"},
       {"\xFE\xFF", "UTF-16"},
       {"plain text", "f.xml:1:1: error: this is no XML"},
-      {"\x7F" "ELF", "not well-formed XML"},
+      {"\x7F"
+       "ELF",
+       "not well-formed XML"},
   };
   for (const auto& c : cases) {
     const auto r = read(c.text);
@@ -94,15 +99,19 @@ TEST(Document, Refusals) {
 }
 
 TEST(Document, ZeroBytesAndOtherWidths) {
-  EXPECT_NE(read(std::string_view("<a b=\"x\0y\"/>", 12)).messages.find("f.xml:1:8: error: the file contains a zero byte"), std::string::npos);
+  EXPECT_NE(
+      read(std::string_view("<a b=\"x\0y\"/>", 12)).messages.find("f.xml:1:8: error: the file contains a zero byte"),
+      std::string::npos);
   EXPECT_NE(read(std::string_view("<\0a\0/\0>\0", 8)).messages.find("UTF-16"), std::string::npos);
   EXPECT_NE(read(std::string_view("\0<\0a\0/\0>", 8)).messages.find("UTF-16"), std::string::npos);
   EXPECT_NE(read(std::string_view("\xFF\xFE\0\0<\0\0\0", 8)).messages.find("UTF-32"), std::string::npos);
 }
 
 TEST(Document, GoodEncodings) {
-  for (const char* text : {"<?xml version=\"1.0\" encoding=\"utf-8\"?><a/>", "<?xml version='1.0' encoding='US-ASCII'?><a/>", "\xEF\xBB\xBF<a/>",
-                           "<?xml-model href=\"insula.xsd\"?><a/>", "<a></a>", "<a  />", "<a\n/>", "<a>\n<!-- <b> -->\n</a>"}) {
+  for (const char* text :
+       {"<?xml version=\"1.0\" encoding=\"utf-8\"?><a/>", "<?xml version='1.0' encoding='US-ASCII'?><a/>",
+        "\xEF\xBB\xBF<a/>", "<?xml-model href=\"insula.xsd\"?><a/>", "<a></a>", "<a  />", "<a\n/>",
+        "<a>\n<!-- <b> -->\n</a>"}) {
     const auto r = read(text);
     EXPECT_TRUE(r.document.root) << text << ": " << r.messages;
   }
@@ -137,12 +146,17 @@ TEST(Document, OtherLimits) {
   limits.value_bytes = 1024;
   limits.all_attributes = 5;
   limits.name_bytes = 8;
-  EXPECT_NE(read("<a><b/><b/><b/><b/><b/><b/><b/><b/><b/><b/></a>", limits).messages.find("more than 10 elements"), std::string::npos);
-  EXPECT_NE(read("<a b='' c='' d=''/>", limits).messages.find("f.xml:1:14: error: <a> has more than 2 attributes"), std::string::npos);
-  EXPECT_NE(read("<a b='" + std::string(2000, 'x') + "'/>", limits).messages.find("longer than 1 KiB"), std::string::npos);
+  EXPECT_NE(read("<a><b/><b/><b/><b/><b/><b/><b/><b/><b/><b/></a>", limits).messages.find("more than 10 elements"),
+            std::string::npos);
+  EXPECT_NE(read("<a b='' c='' d=''/>", limits).messages.find("f.xml:1:14: error: <a> has more than 2 attributes"),
+            std::string::npos);
+  EXPECT_NE(read("<a b='" + std::string(2000, 'x') + "'/>", limits).messages.find("longer than 1 KiB"),
+            std::string::npos);
   EXPECT_NE(read("<abcdefghi/>", limits).messages.find("too long"), std::string::npos);
   EXPECT_NE(read("<a abcdefghi=''/>", limits).messages.find("too long"), std::string::npos);
-  EXPECT_NE(read("<a><b c='' d=''/><b c='' d=''/><b c='' d=''/></a>", limits).messages.find("more than 5 attributes in all"), std::string::npos);
+  EXPECT_NE(
+      read("<a><b c='' d=''/><b c='' d=''/><b c='' d=''/></a>", limits).messages.find("more than 5 attributes in all"),
+      std::string::npos);
 }
 
 TEST(Document, OneComplaintAboutTextAnElement) {

@@ -6,8 +6,8 @@
 #include <ostream>
 
 #include "core/base/text.h"
-#include "engine/command_line/commands.h"
 #include "engine/authoring/describe.h"
+#include "engine/command_line/commands.h"
 
 namespace insula {
 
@@ -30,13 +30,16 @@ void table(std::ostream& out, const char* heading, const std::vector<Line>& line
 
 void describe_step_data(std::ostream& out, const Component& component) {
   std::vector<Line> lines;
-  for (const ChannelBase* c : component.channels()) lines.push_back({channel_name(*c), channel_text(*c), std::string(c->spec().doc)});
+  for (const ChannelBase* c : component.channels())
+    lines.push_back({channel_name(*c), channel_text(*c), std::string(c->spec().doc)});
   table(out, "channels", lines);
   lines.clear();
-  for (const DrawableBase* d : component.drawables()) lines.push_back({std::string(d->spec().name), drawable_text(*d), std::string(d->spec().doc)});
+  for (const DrawableBase* d : component.drawables())
+    lines.push_back({std::string(d->spec().name), drawable_text(*d), std::string(d->spec().doc)});
   table(out, "drawables", lines);
   lines.clear();
-  for (const EventKind* e : component.event_kinds()) lines.push_back({e->name(), std::string(e->spec().value), std::string(e->spec().doc)});
+  for (const EventKind* e : component.event_kinds())
+    lines.push_back({e->name(), std::string(e->spec().value), std::string(e->spec().doc)});
   table(out, "events", lines);
 }
 
@@ -54,8 +57,8 @@ int cmd_describe(const CommandContext& context, const std::string& element) {
   }
   auto& out = context.out;
   out << fmt::format("<{}>  {}\n\n", info->element, info->doc);
-  out << fmt::format("kind     {}\nstands   {}\nfrom     {}\n", kind_name(info->kind), place_text(context.registry, *info),
-                     info->plugin == "core" ? "core" : "plugin " + info->plugin);
+  out << fmt::format("kind     {}\nstands   {}\nfrom     {}\n", kind_name(info->kind),
+                     place_text(context.registry, *info), info->plugin == "core" ? "core" : "plugin " + info->plugin);
   const auto children = children_of_kind(context.registry, info->kind);
   if (!children.empty()) {
     std::vector<std::string> names;
@@ -70,11 +73,13 @@ int cmd_describe(const CommandContext& context, const std::string& element) {
     default_width = std::max(default_width, default_text(*p).size());
   }
   out << "\nparameters\n";
-  out << fmt::format("  {:<{}}  {:<{}}  {:<{}}  name by which others refer to it\n", "id", name_width, "text", type_width, "(none)", default_width);
+  out << fmt::format("  {:<{}}  {:<{}}  {:<{}}  name by which others refer to it\n", "id", name_width, "text",
+                     type_width, "(none)", default_width);
   for (const ParamBase* p : component->params()) {
     std::string doc(p->spec().doc);
     if (const auto allowed = allowed_text(*p); !allowed.empty()) doc += " [" + allowed + "]";
-    out << fmt::format("  {:<{}}  {:<{}}  {:<{}}  {}\n", p->name(), name_width, p->type_name(), type_width, default_text(*p), default_width, doc);
+    out << fmt::format("  {:<{}}  {:<{}}  {:<{}}  {}\n", p->name(), name_width, p->type_name(), type_width,
+                       default_text(*p), default_width, doc);
   }
   describe_step_data(out, *component);
   return 0;

@@ -45,14 +45,21 @@ std::string class_name(std::string_view name) {
 /// Why the name does not serve; empty when it does.
 std::string name_error(const Registry& registry, const std::string& name) {
   const auto small = [](char c) { return c >= 'a' && c <= 'z'; };
-  const bool good = !name.empty() && name.size() <= 40 && small(name.front()) &&
-                    std::all_of(name.begin(), name.end(), [&](char c) { return small(c) || (c >= '0' && c <= '9') || c == '_'; });
-  if (!good) return in_quotes(name) + " is no name of a plugin: small letters, digits and _, a letter first, at most 40 of them, such as pia_patch";
+  const bool good =
+      !name.empty() && name.size() <= 40 && small(name.front()) &&
+      std::all_of(name.begin(), name.end(), [&](char c) { return small(c) || (c >= '0' && c <= '9') || c == '_'; });
+  if (!good)
+    return in_quotes(name) +
+           " is no name of a plugin: small letters, digits and _, a letter first, at most 40 of them, such as "
+           "pia_patch";
   for (const auto* info : registry.all())
     if (info->element == name || info->plugin == name)
-      return fmt::format("\"{}\" is taken by {}; choose another name", name, info->plugin == "core" ? "the core" : "plugin " + info->plugin);
+      return fmt::format("\"{}\" is taken by {}; choose another name", name,
+                         info->plugin == "core" ? "the core" : "plugin " + info->plugin);
   // Words that CMake or the base classes keep for themselves.
-  for (const std::string_view word : {"all", "clean", "constraint", "force_model", "help", "insula", "install", "instrument", "exercise_rule", "package", "part", "include", "variable", "test", "body", "support"})
+  for (const std::string_view word :
+       {"all", "clean", "constraint", "force_model", "help", "insula", "install", "instrument", "exercise_rule",
+        "package", "part", "include", "variable", "test", "body", "support"})
     if (name == word) return in_quotes(name) + " is a word with a meaning of its own; choose another name";
   return {};
 }
@@ -60,7 +67,8 @@ std::string name_error(const Registry& registry, const std::string& name) {
 std::string filled(std::string_view text, const std::vector<std::pair<std::string_view, std::string>>& words) {
   std::string out(text);
   for (const auto& [word, value] : words)
-    for (std::size_t at = out.find(word); at != std::string::npos; at = out.find(word, at + value.size())) out.replace(at, word.size(), value);
+    for (std::size_t at = out.find(word); at != std::string::npos; at = out.find(word, at + value.size()))
+      out.replace(at, word.size(), value);
   return out;
 }
 
@@ -75,7 +83,8 @@ fs::path place_of(std::string_view file, const KindText& kind, const std::string
   return filled(rest, {{"NAME", name}});
 }
 
-/// What CMake must be told to find Insula: nothing of an installation in /usr, the folder of a build or of another prefix.
+/// What CMake must be told to find Insula: nothing of an installation in /usr, the folder of a build or of another
+/// prefix.
 std::string where_insula_is() {
   std::error_code ec;
   const fs::path above = installed_plugin_folder().parent_path().parent_path().parent_path();
@@ -104,8 +113,10 @@ int cmd_new_plugin(const CommandContext& context, const NewPluginOptions& option
     context.err << "error: " << why << '\n';
     return 2;
   }
-  const std::vector<std::pair<std::string_view, std::string>> words{
-      {"@name@", options.name}, {"@Name@", class_name(options.name)}, {"@kind@", options.kind}, {"@doc@", std::string(kind->doc)}};
+  const std::vector<std::pair<std::string_view, std::string>> words{{"@name@", options.name},
+                                                                    {"@Name@", class_name(options.name)},
+                                                                    {"@kind@", options.kind},
+                                                                    {"@doc@", std::string(kind->doc)}};
   for (const EmbeddedFile& file : new_plugin_files()) {
     const fs::path place = place_of(file.name, *kind, options.name);
     if (place.empty()) continue;
@@ -116,9 +127,10 @@ int cmd_new_plugin(const CommandContext& context, const NewPluginOptions& option
       return 1;
     }
   }
-  context.out << fmt::format("{0}: a{3} {1} called <{2}>, with test and example. Build and test it:\n"
-                             "  cmake -S {0} -B {0}/build{4} && cmake --build {0}/build && ctest --test-dir {0}/build\n",
-                             folder.generic_string(), kind->name, options.name, kind->kind == "instrument" ? "n" : "", where_insula_is());
+  context.out << fmt::format(
+      "{0}: a{3} {1} called <{2}>, with test and example. Build and test it:\n"
+      "  cmake -S {0} -B {0}/build{4} && cmake --build {0}/build && ctest --test-dir {0}/build\n",
+      folder.generic_string(), kind->name, options.name, kind->kind == "instrument" ? "n" : "", where_insula_is());
   return 0;
 }
 

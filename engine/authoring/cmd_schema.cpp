@@ -9,8 +9,8 @@
 #include <sstream>
 
 #include "core/base/text.h"
-#include "engine/command_line/commands.h"
 #include "engine/authoring/describe.h"
+#include "engine/command_line/commands.h"
 
 namespace insula {
 namespace {
@@ -30,7 +30,8 @@ std::string escaped(std::string_view text) {
 }
 
 std::string annotation(std::string_view text, std::string_view indent) {
-  return fmt::format("{0}<xs:annotation><xs:documentation>{1}</xs:documentation></xs:annotation>\n", indent, escaped(text));
+  return fmt::format("{0}<xs:annotation><xs:documentation>{1}</xs:documentation></xs:annotation>\n", indent,
+                     escaped(text));
 }
 
 std::string type_id(std::string_view prefix, std::string_view name) {
@@ -62,7 +63,10 @@ class Schema {
     std::ostringstream out;
     out << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
            "<xs:schema xmlns:xs=\"http://www.w3.org/2001/XMLSchema\">\n"
-        << annotation("Scene files of Insula. A value that uses a variable ($name) is accepted as it stands; `insula check` checks more.", "  ")
+        << annotation(
+               "Scene files of Insula. A value that uses a variable ($name) is accepted as it stands; `insula check` "
+               "checks more.",
+               "  ")
         << "  <xs:element name=\"scene\" type=\"scene\"/>\n"
         << part() << preprocessing() << groups << types << simple_types_text() << "</xs:schema>\n";
     return out.str();
@@ -100,13 +104,14 @@ class Schema {
     doc += p.required() ? "; required)" : "; default " + default_text(p) + ")";
     const std::string use = p.required() ? " use=\"required\"" : "";
     if (p.spec().choices.empty())
-      return fmt::format("    <xs:attribute name=\"{}\" type=\"{}\"{}>\n{}    </xs:attribute>\n", p.name(), simple_type(p), use,
-                         annotation(doc, "      "));
+      return fmt::format("    <xs:attribute name=\"{}\" type=\"{}\"{}>\n{}    </xs:attribute>\n", p.name(),
+                         simple_type(p), use, annotation(doc, "      "));
     std::string choices;
     for (const auto c : p.spec().choices) choices += fmt::format("<xs:enumeration value=\"{}\"/>", escaped(c));
     return fmt::format(
         "    <xs:attribute name=\"{}\"{}>\n{}"
-        "      <xs:simpleType><xs:union memberTypes=\"with_variable\"><xs:simpleType><xs:restriction base=\"xs:token\">{}"
+        "      <xs:simpleType><xs:union memberTypes=\"with_variable\"><xs:simpleType><xs:restriction "
+        "base=\"xs:token\">{}"
         "</xs:restriction></xs:simpleType></xs:union></xs:simpleType>\n    </xs:attribute>\n",
         p.name(), use, annotation(doc, "      "), choices);
   }
@@ -114,7 +119,8 @@ class Schema {
   std::string element_type(const ComponentInfo& info) {
     std::string out = fmt::format("  <xs:complexType name=\"{}\">\n{}", info.element, annotation(info.doc, "    "));
     if (info.kind == Kind::scene || !children_of_kind(registry_, info.kind).empty())
-      out += fmt::format("    <xs:group ref=\"{}\" minOccurs=\"0\" maxOccurs=\"unbounded\"/>\n", type_id("in_", kind_name(info.kind)));
+      out += fmt::format("    <xs:group ref=\"{}\" minOccurs=\"0\" maxOccurs=\"unbounded\"/>\n",
+                         type_id("in_", kind_name(info.kind)));
     out += "    <xs:attribute name=\"id\" type=\"with_id\"/>\n";
     const auto component = registry_.create(info.element);
     for (const ParamBase* p : component->params()) out += attribute(*p);
@@ -131,11 +137,11 @@ class Schema {
   }
 
   std::string part() {
-    std::string out =
-        "  <xs:element name=\"part\">\n" + annotation("a piece that scenes include", "    ") +
-        "    <xs:complexType>\n      <xs:choice minOccurs=\"0\" maxOccurs=\"unbounded\">\n";
+    std::string out = "  <xs:element name=\"part\">\n" + annotation("a piece that scenes include", "    ") +
+                      "    <xs:complexType>\n      <xs:choice minOccurs=\"0\" maxOccurs=\"unbounded\">\n";
     for (const auto* info : registry_.all())
-      if (info->kind != Kind::scene) out += fmt::format("        <xs:element name=\"{0}\" type=\"{0}\"/>\n", info->element);
+      if (info->kind != Kind::scene)
+        out += fmt::format("        <xs:element name=\"{0}\" type=\"{0}\"/>\n", info->element);
     return out +
            "        <xs:element ref=\"include\"/>\n        <xs:element ref=\"variable\"/>\n      </xs:choice>\n"
            "      <xs:attribute name=\"title\" type=\"xs:string\"/>\n    </xs:complexType>\n  </xs:element>\n";
@@ -149,9 +155,11 @@ class Schema {
            "      <xs:attribute name=\"prefix\" type=\"xs:string\"/>\n    </xs:complexType>\n  </xs:element>\n"
            "  <xs:element name=\"variable\">\n" +
            annotation("a value to be used as $name", "    ") +
-           "    <xs:complexType>\n      <xs:attribute name=\"name\" use=\"required\"><xs:simpleType><xs:restriction base=\"xs:string\">"
+           "    <xs:complexType>\n      <xs:attribute name=\"name\" use=\"required\"><xs:simpleType><xs:restriction "
+           "base=\"xs:string\">"
            "<xs:pattern value=\"[A-Za-z_][A-Za-z0-9_]*\"/></xs:restriction></xs:simpleType></xs:attribute>\n"
-           "      <xs:attribute name=\"value\" type=\"xs:string\" use=\"required\"/>\n    </xs:complexType>\n  </xs:element>\n";
+           "      <xs:attribute name=\"value\" type=\"xs:string\" use=\"required\"/>\n    </xs:complexType>\n  "
+           "</xs:element>\n";
   }
 
   std::string simple_types_text() {
@@ -175,7 +183,9 @@ class Schema {
 
   static std::string enumeration(std::string_view name, const std::vector<std::string>& values) {
     std::string out = fmt::format(
-        "  <xs:simpleType name=\"{}\"><xs:union memberTypes=\"with_variable\"><xs:simpleType><xs:restriction base=\"xs:token\">", name);
+        "  <xs:simpleType name=\"{}\"><xs:union memberTypes=\"with_variable\"><xs:simpleType><xs:restriction "
+        "base=\"xs:token\">",
+        name);
     for (const auto& v : values) out += fmt::format("<xs:enumeration value=\"{}\"/>", escaped(v));
     return out + "</xs:restriction></xs:simpleType></xs:union></xs:simpleType>\n";
   }

@@ -92,13 +92,16 @@ class Taker {
 
   std::vector<Vec3> lines_of(const Body& b) const {
     const auto node_of = [&](const DeformableBody& d) { return [&d](int i) { return node(d, i); }; };
-    if (const auto* soft = dynamic_cast<const SoftBody*>(&b)) return edges_of(boundary_triangles(soft->rest()), node_of(*soft));
-    if (const auto* shell = dynamic_cast<const ShellBody*>(&b)) return edges_of(shell->rest().triangles, node_of(*shell));
+    if (const auto* soft = dynamic_cast<const SoftBody*>(&b))
+      return edges_of(boundary_triangles(soft->rest()), node_of(*soft));
+    if (const auto* shell = dynamic_cast<const ShellBody*>(&b))
+      return edges_of(shell->rest().triangles, node_of(*shell));
     std::vector<Vec3> out;
     if (const auto* rigid = dynamic_cast<const RigidBody*>(&b)) {
       for (const ToolPart& part : rigid->tool().parts) {
         const Pose pose = rigid->link_pose(part.link);
-        const auto more = edges_of(part.mesh.triangles, [&](int i) { return pose.apply(part.mesh.vertices[std::size_t(i)]); });
+        const auto more =
+            edges_of(part.mesh.triangles, [&](int i) { return pose.apply(part.mesh.vertices[std::size_t(i)]); });
         out.insert(out.end(), more.begin(), more.end());
       }
       return thinned(out, 2, max_lines);
@@ -126,7 +129,10 @@ class Taker {
       const auto* soft = dynamic_cast<const SoftBody*>(d);
       const auto* shell = dynamic_cast<const ShellBody*>(d);
       text = fmt::format("{}, {} nodes ({} fixed), {}, {:.3g} g{}", box_text(box), d->nodes(), fixed,
-                         soft ? fmt::format("{} tetrahedra", soft->rest().tets.size()) : shell ? fmt::format("{} triangles", shell->wall_triangles().size()) : "", 1000 * mass, unit_of(b, "mesh"));
+                         soft    ? fmt::format("{} tetrahedra", soft->rest().tets.size())
+                         : shell ? fmt::format("{} triangles", shell->wall_triangles().size())
+                                 : "",
+                         1000 * mass, unit_of(b, "mesh"));
     } else {
       Eigen::AlignedBox3d box;
       for (const Surface* s : b.children_of<Surface>()) box.extend(box_of(s->positions()));
@@ -135,7 +141,9 @@ class Taker {
     add("body", b, std::move(text), lines_of(b));
   }
   void surface(const Surface& s) {
-    add("surface", s, fmt::format("{}, {} triangles{}{}", box_text(box_of(s.positions())), s.triangles().size(), s.contact() ? "" : ", for the picture alone", unit_of(s, "mesh")),
+    add("surface", s,
+        fmt::format("{}, {} triangles{}{}", box_text(box_of(s.positions())), s.triangles().size(),
+                    s.contact() ? "" : ", for the picture alone", unit_of(s, "mesh")),
         edges_of(s.triangles(), [&](int i) { return s.positions()[std::size_t(i)]; }));
   }
   void regions(const ShellBody& shell) {
@@ -150,7 +158,9 @@ class Taker {
         area += 0.5 * (b - a).cross(c - a).norm();
         box.extend(a).extend(b).extend(c);
       }
-      InventoryItem& item = add("region", shell, fmt::format("{}, {} triangles, {:.3g} mm2", box_text(box), triangles.size(), 1e6 * area), edges_of(triangles, [&](int i) { return node(shell, i); }));
+      InventoryItem& item =
+          add("region", shell, fmt::format("{}, {} triangles, {:.3g} mm2", box_text(box), triangles.size(), 1e6 * area),
+              edges_of(triangles, [&](int i) { return node(shell, i); }));
       item.name = shell.id + ": " + shell.model().regions[r];
       item.values.clear();
     }
@@ -165,7 +175,10 @@ class Taker {
     std::vector<Vec3> points;
     for (int i = 0; i < body->nodes(); ++i)
       if (fixed[std::size_t(i)]) points.push_back(node(*body, i));
-    InventoryItem& item = add("anchor", s, fmt::format("holds {} of {} nodes of {}, within {}", points.size(), body->nodes(), body->id, box_text(box_of(points))), {});
+    InventoryItem& item = add("anchor", s,
+                              fmt::format("holds {} of {} nodes of {}, within {}", points.size(), body->nodes(),
+                                          body->id, box_text(box_of(points))),
+                              {});
     item.points = thinned(points, 1, max_points);
   }
   void drawable(const Component& c, const DrawableBase& d) {
@@ -189,13 +202,16 @@ class Taker {
     if (d.kind() == DrawableKind::points)
       for (std::size_t i = 0; i + 4 <= data.size(); i += 4) points.push_back(point(i));
     std::string text = fmt::format("{} {}, {}", d.count(), drawable_kind_name(d.kind()), d.spec().doc);
-    if (!lines.empty()) text += fmt::format("; {} to {} mm long, {} mm on average", mm(least), mm(most), mm(sum / d.count()));
+    if (!lines.empty())
+      text += fmt::format("; {} to {} mm long, {} mm on average", mm(least), mm(most), mm(sum / d.count()));
     InventoryItem& item = add("drawable", c, std::move(text), thinned(lines, 2, max_lines));
     item.name = c.id + "." + std::string(d.spec().name);
     item.points = thinned(points, 1, max_points);
     item.values.clear();
   }
-  static const RefList<Body>* list_between(const Constraint& c) { return dynamic_cast<const RefList<Body>*>(c.find_param("between")); }
+  static const RefList<Body>* list_between(const Constraint& c) {
+    return dynamic_cast<const RefList<Body>*>(c.find_param("between"));
+  }
   static std::string joins(const Constraint& c) {
     std::string out;
     for (const ParamBase* p : c.params())
@@ -218,14 +234,17 @@ class Taker {
       for (std::size_t i = 0; i < all.size(); ++i)
         for (std::size_t j = i + 1; j < all.size(); ++j) {
           if (all[i]->blocks() == 0 && all[j]->blocks() == 0) continue;
-          const std::pair<const Body*, const Body*> pair = std::minmax<const Body*>(all[i], all[j], [](const Body* a, const Body* b) { return a->order < b->order; });
+          const std::pair<const Body*, const Body*> pair = std::minmax<const Body*>(
+              all[i], all[j], [](const Body* a, const Body* b) { return a->order < b->order; });
           if (std::find(known.begin(), known.end(), pair) != known.end()) continue;
           known.push_back(pair);
           std::vector<Vec3> lines = lines_of(*all[i]);
           const std::vector<Vec3> others = lines_of(*all[j]);
           lines.insert(lines.end(), others.begin(), others.end());
           const ParamBase* friction = c->find_param("friction");
-          InventoryItem& item = add("contact pair", *c, (friction ? "friction " + friction->text() + ", " : "") + "by " + c->id, thinned(lines, 2, max_lines));
+          InventoryItem& item =
+              add("contact pair", *c, (friction ? "friction " + friction->text() + ", " : "") + "by " + c->id,
+                  thinned(lines, 2, max_lines));
           item.name = all[i]->id + " - " + all[j]->id;
         }
     }
@@ -234,8 +253,13 @@ class Taker {
     Eigen::AlignedBox3d box;
     for (const ToolPart& part : body.tool().parts) box.extend(box_of(part.mesh.vertices));
     const auto* instrument = dynamic_cast<const Instrument*>(&body);
-    const std::string where = instrument ? (instrument->hand_index() < 0 ? "held by an arm" : instrument->hand() + " hand") + (body.active() ? "" : ", on the tray") : body.active() ? "in the field" : "on the tray";
-    add("tool", body, fmt::format("{}, {:.3g} g, {}; URDF in m", box_text(box), 1000 * body.tool().mass, where), body.active() ? lines_of(body) : std::vector<Vec3>());
+    const std::string where = instrument
+                                  ? (instrument->hand_index() < 0 ? "held by an arm" : instrument->hand() + " hand") +
+                                        (body.active() ? "" : ", on the tray")
+                              : body.active() ? "in the field"
+                                              : "on the tray";
+    add("tool", body, fmt::format("{}, {:.3g} g, {}; URDF in m", box_text(box), 1000 * body.tool().mass, where),
+        body.active() ? lines_of(body) : std::vector<Vec3>());
   }
 
   const Simulation& simulation_;

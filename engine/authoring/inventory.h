@@ -15,7 +15,7 @@ struct InventoryItem {
   std::string element;  ///< element of the scene file
   std::string size;     ///< measured, with units: "532 nodes, 61.2 x 40.0 x 33.1 mm, 54.1 g"
   std::vector<std::pair<std::string, std::string>> values;  ///< parameters as written in the scene, with their units
-  std::string file;     ///< where it is written: "scenes/a.xml:12"
+  std::string file;                                         ///< where it is written: "scenes/a.xml:12"
   std::vector<Vec3> lines;   ///< pairs of points, scene frame, m: its shape, thinned where it is large
   std::vector<Vec3> points;  ///< fixed nodes, m
 };

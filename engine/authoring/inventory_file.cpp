@@ -26,8 +26,14 @@ void write_inventory(const std::vector<InventoryItem>& items, const std::filesys
   for (const InventoryItem& item : items) {
     Json values = Json::array();
     for (const auto& [name, text] : item.values) values.push_back({name, text});
-    json.push_back({{"group", item.group}, {"name", item.name}, {"element", item.element}, {"size", item.size}, {"values", values}, {"file", item.file},
-                    {"lines_m", flat(item.lines)}, {"points_m", flat(item.points)}});
+    json.push_back({{"group", item.group},
+                    {"name", item.name},
+                    {"element", item.element},
+                    {"size", item.size},
+                    {"values", values},
+                    {"file", item.file},
+                    {"lines_m", flat(item.lines)},
+                    {"points_m", flat(item.points)}});
   }
   std::ofstream out(file, std::ios::binary | std::ios::trunc);
   out << Json{{"items", json}}.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';

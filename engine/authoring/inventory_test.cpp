@@ -65,7 +65,8 @@ TEST(Inventory, RegionsOfAVesselHaveTheirAreas) {
   for (const ShellBody* shell : s->scene().all<ShellBody>())
     for (const auto& t : shell->wall_triangles()) {
       const auto& v = shell->rest().vertices;
-      wall += 0.5e6 * (v[std::size_t(t[1])] - v[std::size_t(t[0])]).cross(v[std::size_t(t[2])] - v[std::size_t(t[0])]).norm();
+      wall += 0.5e6 *
+              (v[std::size_t(t[1])] - v[std::size_t(t[0])]).cross(v[std::size_t(t[2])] - v[std::size_t(t[0])]).norm();
     }
   ASSERT_GT(wall, 0);
   EXPECT_NEAR(sum, wall, 0.01 * wall);
@@ -74,7 +75,8 @@ TEST(Inventory, RegionsOfAVesselHaveTheirAreas) {
 TEST(Inventory, ListNamesEverything) {
   std::ostringstream out, err;
   EXPECT_EQ(cmd_view_list({test::builtin(), out, err}, source / "plugins/exercise_rules/example.xml"), 0) << err.str();
-  for (const char* text : {"body:", "anchor:", "contact pair:", " mm"}) EXPECT_NE(out.str().find(text), std::string::npos) << text << "\n" << out.str();
+  for (const char* text : {"body:", "anchor:", "contact pair:", " mm"})
+    EXPECT_NE(out.str().find(text), std::string::npos) << text << "\n" << out.str();
   EXPECT_EQ(cmd_view_list({test::builtin(), out, err}, "nowhere.xml"), 2);
 }
 

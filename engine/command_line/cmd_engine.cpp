@@ -9,13 +9,14 @@
 
 #include "core/base/signal_pipe.h"
 #include "core/bus/bus.h"
-#include "engine/live/live_engine.h"
 #include "engine/command_line/run.h"
+#include "engine/live/live_engine.h"
 
 namespace insula {
 
 int cmd_engine(const CommandContext& context, const EngineOptions& o) {
-  LiveOptions options{o.scene, o.motion, o.bundle_root, o.duration, o.unthrottled, o.threads, o.seed, o.keep_bundle, o.still, o.notice, o.report, {}};
+  LiveOptions options{o.scene, o.motion,      o.bundle_root, o.duration, o.unthrottled, o.threads,
+                      o.seed,  o.keep_bundle, o.still,       o.notice,   o.report,      {}};
   const SignalPipe signals{SIGINT, SIGTERM, SIGHUP, SIGUSR1};
   signal(SIGPIPE, SIG_IGN);
 

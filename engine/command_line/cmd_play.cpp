@@ -52,8 +52,8 @@ bool scene_ok(const CommandContext& context, PlayOptions& options) {
     if (std::find(ids.begin(), ids.end(), motion) == ids.end()) {
       std::string known;
       for (const std::string& id : ids) known += (known.empty() ? "" : ", ") + id;
-      context.err << fmt::format("error: \"{}\" is neither a motion of {} ({}) nor a file\n", motion, options.scene.generic_string(),
-                                 known.empty() ? "it has none" : "it has " + known);
+      context.err << fmt::format("error: \"{}\" is neither a motion of {} ({}) nor a file\n", motion,
+                                 options.scene.generic_string(), known.empty() ? "it has none" : "it has " + known);
       return false;
     }
   }
@@ -121,11 +121,13 @@ ChildSpec engine_child(const PlayOptions& options, const fs::path& program, cons
   engine.name = "engine";
   engine.ends_session = true;
   engine.command = {program.string()};
-  for (const fs::path& path : options.plugin_paths) engine.command.insert(engine.command.end(), {"--plugin-path", path.string()});
+  for (const fs::path& path : options.plugin_paths)
+    engine.command.insert(engine.command.end(), {"--plugin-path", path.string()});
   engine.command.insert(engine.command.end(), {"engine", options.scene.string()});
   if (!options.motion.empty()) engine.command.insert(engine.command.end(), {"--motion", options.motion});
   if (options.seed != 0) engine.command.insert(engine.command.end(), {"--seed", std::to_string(options.seed)});
-  if (!options.keep_bundle.empty()) engine.command.insert(engine.command.end(), {"--bundle-dir", options.keep_bundle.string(), "--keep-bundle"});
+  if (!options.keep_bundle.empty())
+    engine.command.insert(engine.command.end(), {"--bundle-dir", options.keep_bundle.string(), "--keep-bundle"});
   else if (!bundles.empty()) engine.command.insert(engine.command.end(), {"--bundle-dir", bundles.string()});
   if (options.view) engine.command.emplace_back("--still");
   if (!bundles.empty()) engine.command.insert(engine.command.end(), {"--notice", (bundles / "notice.txt").string()});
@@ -199,7 +201,8 @@ int cmd_play(const CommandContext& context, const PlayOptions& given) {
   const ChildSpec engine = engine_child(options, program, bundles.path());
   std::vector<std::string> standby = engine.command;
   standby.emplace_back("--standby");
-  SceneReload reload(options.scene, options.plugin_paths, std::move(standby), bundles.path().empty() ? fs::path() : bundles.path() / "notice.txt", print);
+  SceneReload reload(options.scene, options.plugin_paths, std::move(standby),
+                     bundles.path().empty() ? fs::path() : bundles.path() / "notice.txt", print);
   SupervisorSettings settings;
   settings.duration_s = options.duration_s;
   Supervisor* running = nullptr;

@@ -22,7 +22,8 @@ using Clock = std::chrono::steady_clock;
 
 /// Haptic problems, hands' inputs and commands stay in the log: a device or an engine may be on the bus.
 bool for_viewers(std::string_view name) {
-  constexpr std::array shown{channel::render_frame, channel::scene_info, channel::sim_event, channel::haptic_status, channel::device_state};
+  constexpr std::array shown{channel::render_frame, channel::scene_info, channel::sim_event, channel::haptic_status,
+                             channel::device_state};
   return std::find(shown.begin(), shown.end(), name) != shown.end();
 }
 
@@ -62,14 +63,19 @@ int cmd_replay(const CommandContext& context, const ReplayOptions& o) {
         if (event.channel == channel::scene_info) {
           find_bundle(o.log, event.message);
           const auto info = decode<insula_lcm::scene_info_t>(event.message);
-          if (info && !bundle_missing && info->state == "running" && !fs::exists(fs::path(info->bundle) / "scene.json")) {
-            context.err << fmt::format("warning: the scene's bundle {} is gone: viewers have no geometry (record with --keep-bundle)\n", info->bundle);
+          if (info && !bundle_missing && info->state == "running" &&
+              !fs::exists(fs::path(info->bundle) / "scene.json")) {
+            context.err << fmt::format(
+                "warning: the scene's bundle {} is gone: viewers have no geometry (record with --keep-bundle)\n",
+                info->bundle);
             bundle_missing = true;
           }
         }
-        const auto due = began + std::chrono::microseconds(std::int64_t(double(std::max<std::int64_t>(0, event.time_us - first_us)) / o.speed));
+        const auto due = began + std::chrono::microseconds(std::int64_t(
+                                     double(std::max<std::int64_t>(0, event.time_us - first_us)) / o.speed));
         while (Clock::now() < due)
-          if (ends.wait(int(std::clamp<std::int64_t>(std::chrono::duration_cast<std::chrono::milliseconds>(due - Clock::now()).count(), 0, 50))) != 0)
+          if (ends.wait(int(std::clamp<std::int64_t>(
+                  std::chrono::duration_cast<std::chrono::milliseconds>(due - Clock::now()).count(), 0, 50))) != 0)
             return 0;
         bus->publish(event.channel, event.message);
         ++sent;

@@ -7,9 +7,9 @@
 
 #include "core/mechanics/shell_body.h"
 #include "core/mechanics/soft_body.h"
+#include "engine/command_line/run.h"
 #include "engine/live/headless.h"
 #include "engine/reports/report_writer.h"
-#include "engine/command_line/run.h"
 
 namespace insula {
 namespace {
@@ -26,7 +26,8 @@ void export_bodies(const Simulation& simulation, const std::filesystem::path& fo
     }
     const auto file = folder / (body->id + ".vtu");
     if (const auto* soft = dynamic_cast<const SoftBody*>(body)) write_vtu(file, nodes, soft->rest().tets, moved);
-    else if (const auto* shell = dynamic_cast<const ShellBody*>(body)) write_vtu(file, nodes, shell->rest().triangles, moved);
+    else if (const auto* shell = dynamic_cast<const ShellBody*>(body))
+      write_vtu(file, nodes, shell->rest().triangles, moved);
   }
 }
 
@@ -48,7 +49,8 @@ int cmd_run(const CommandContext& context, const RunOptions& options) {
   for (std::int64_t k = 0; k < steps; ++k) {
     run.step();
     const auto& haptics = run.haptics();
-    recorder.record(simulation.report(), simulation.events(), {haptics.hand(0).force.norm(), haptics.hand(1).force.norm()}, simulation.energy());
+    recorder.record(simulation.report(), simulation.events(),
+                    {haptics.hand(0).force.norm(), haptics.hand(1).force.norm()}, simulation.energy());
     summary.wall_seconds += simulation.report().step_ms / 1000;
     if (!options.quiet) {
       for (const Event& e : simulation.events())
@@ -56,8 +58,8 @@ int cmd_run(const CommandContext& context, const RunOptions& options) {
       const int percent = int(100 * (k + 1) / steps);
       if (percent / 5 != shown / 5 || shown < 0) {
         shown = percent;
-        fmt::print(context.out, "{:3d} %  {:7.2f} s  {} rows, {} contacts\n", percent, simulation.time(), simulation.report().rows,
-                   simulation.report().contacts.size());
+        fmt::print(context.out, "{:3d} %  {:7.2f} s  {} rows, {} contacts\n", percent, simulation.time(),
+                   simulation.report().rows, simulation.report().contacts.size());
         context.out.flush();
       }
     }
@@ -75,8 +77,9 @@ int cmd_run(const CommandContext& context, const RunOptions& options) {
     fmt::print(context.err, "error: {}\n", e.what());
     return 1;
   }
-  fmt::print(context.out, "{:.2f} s simulated in {:.2f} s (real_time_factor {:.2f}), state_hash {:016x}\n", simulation.time(),
-             summary.wall_seconds, simulation.time() / std::max(1e-9, summary.wall_seconds), summary.state_hash);
+  fmt::print(context.out, "{:.2f} s simulated in {:.2f} s (real_time_factor {:.2f}), state_hash {:016x}\n",
+             simulation.time(), summary.wall_seconds, simulation.time() / std::max(1e-9, summary.wall_seconds),
+             summary.state_hash);
   if (!recorder.finite()) {
     fmt::print(context.err, "error: the simulation left the range of numbers at {:.3f} s\n", simulation.time());
     return 1;

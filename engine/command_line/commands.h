@@ -24,7 +24,8 @@ int cmd_describe(const CommandContext& context, const std::string& element);
 /// The XML schema (XSD 1.0) for editors, to a file, or to `out` when the path is empty or "-".
 int cmd_schema(const CommandContext& context, const std::filesystem::path& file);
 /// A Markdown page per element and an index into a folder. With `plugin_folder`, a plugin's example.xml is shown.
-int cmd_docs(const CommandContext& context, const std::filesystem::path& folder, const std::filesystem::path& plugin_folder = {});
+int cmd_docs(const CommandContext& context, const std::filesystem::path& folder,
+             const std::filesystem::path& plugin_folder = {});
 
 struct DevicesOptions {
   std::string show, calibrate, test_force;  ///< a device each; all empty: list

@@ -17,7 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Jelly : Component {
-  Param<Pressure> young{this, {.name = "young", .min = "1 Pa", .max = "1 GPa", .doc = "Young's modulus <of the tissue>"}};
+  Param<Pressure> young{this,
+                        {.name = "young", .min = "1 Pa", .max = "1 GPa", .doc = "Young's modulus <of the tissue>"}};
   Param<Choice> side{this, {.name = "side", .fallback = "left", .choices = {"left", "right"}, .doc = "which hand"}};
   Param<Torque> torque{this, {.name = "torque", .fallback = "0 N m", .doc = "twist"}};
   Param<Vec<Length>> at{this, {.name = "at", .fallback = "0 0 0 mm", .doc = "place"}};
@@ -57,7 +58,8 @@ TEST_F(Commands, CheckReportsAllFiles) {
   EXPECT_TRUE(printed("good.xml: ok, 2 components, 1 bodies"));
   EXPECT_EQ(err_.str(), "");
   EXPECT_EQ(cmd_check(context(), {bad, good, folder_ / "none.xml"}), 2);
-  EXPECT_NE(err_.str().find("bad.xml:1:20: error: <test_jelly> has no parameter \"yung\"; did you mean \"young\"?\n"), std::string::npos);
+  EXPECT_NE(err_.str().find("bad.xml:1:20: error: <test_jelly> has no parameter \"yung\"; did you mean \"young\"?\n"),
+            std::string::npos);
   EXPECT_NE(err_.str().find("none.xml: error: no such file\n"), std::string::npos);
 }
 
@@ -91,10 +93,14 @@ TEST_F(Commands, DescribeShowsEveryParameter) {
 
 TEST_F(Commands, DocsHaveAPagePerElement) {
   EXPECT_EQ(cmd_docs(context(), folder_ / "a" / "b"), 0);
-  for (const auto* info : registry_.all()) EXPECT_TRUE(fs::exists(folder_ / "a" / "b" / (info->element + ".md"))) << info->element;
+  for (const auto* info : registry_.all())
+    EXPECT_TRUE(fs::exists(folder_ / "a" / "b" / (info->element + ".md"))) << info->element;
   std::ifstream in(folder_ / "a" / "b" / "test_jelly.md");
   const std::string page{std::istreambuf_iterator<char>(in), {}};
-  EXPECT_NE(page.find("| `young` | pressure in Pa, kPa, MPa, mmHg | **required** | 1 Pa to 1 GPa | Young's modulus &lt;of the tissue> |"), std::string::npos) << page;
+  EXPECT_NE(page.find("| `young` | pressure in Pa, kPa, MPa, mmHg | **required** | 1 Pa to 1 GPa | Young's modulus "
+                      "&lt;of the tissue> |"),
+            std::string::npos)
+      << page;
   EXPECT_NE(page.find("[test_inner](test_inner.md)"), std::string::npos) << page;
   write("file", "");
   EXPECT_EQ(cmd_docs(context(), folder_ / "file"), 1);
@@ -110,12 +116,14 @@ TEST_F(Commands, DocsShowTheExampleOfThePlugin) {
 }
 
 TEST_F(Commands, SchemaAgreesWithTheLoader) {
-  if (std::system("xmllint --version >/dev/null 2>&1") != 0) GTEST_SKIP() << "xmllint (package libxml2-utils) is not installed";
+  if (std::system("xmllint --version >/dev/null 2>&1") != 0)
+    GTEST_SKIP() << "xmllint (package libxml2-utils) is not installed";
   const fs::path xsd = folder_ / "s.xsd";
   ASSERT_EQ(cmd_schema(context(), xsd), 0);
   const auto valid = [&](const std::string& text) {
     const auto file = write("x.xml", text);
-    const std::string command = "xmllint --noout --schema '" + xsd.string() + "' '" + file.string() + "' >'" + (folder_ / "log").string() + "' 2>&1";
+    const std::string command = "xmllint --noout --schema '" + xsd.string() + "' '" + file.string() + "' >'" +
+                                (folder_ / "log").string() + "' 2>&1";
     const int status = std::system(command.c_str());
     std::ifstream in(folder_ / "log");
     const std::string log{std::istreambuf_iterator<char>(in), {}};
@@ -125,8 +133,10 @@ TEST_F(Commands, SchemaAgreesWithTheLoader) {
   };
   const char* good[] = {
       "<scene/>",
-      "<scene title=\"t\" time_step=\"$h\"><variable name=\"h\" value=\"20 ms\"/><test_jelly id=\"a\" young=\"2.1kPa\" side=\"right\" torque=\"1 N  mm\" at=\"1 -2 3e0 mm\"/></scene>",
-      "<scene><test_jelly id=\"b\" young=\"93 mmHg\" unit=\"cm\" others=\"b c\"><test_inner/><test_inner/></test_jelly><test_jelly id=\"c\" young=\"1 GPa\"/></scene>",
+      "<scene title=\"t\" time_step=\"$h\"><variable name=\"h\" value=\"20 ms\"/><test_jelly id=\"a\" young=\"2.1kPa\" "
+      "side=\"right\" torque=\"1 N  mm\" at=\"1 -2 3e0 mm\"/></scene>",
+      "<scene><test_jelly id=\"b\" young=\"93 mmHg\" unit=\"cm\" others=\"b "
+      "c\"><test_inner/><test_inner/></test_jelly><test_jelly id=\"c\" young=\"1 GPa\"/></scene>",
       "<scene gravity=\"0 0 -9.81 m/s2\" seed=\"3\"/>",
   };
   for (const char* text : good) {

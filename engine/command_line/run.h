@@ -12,12 +12,12 @@ namespace insula {
 
 struct RunOptions {
   std::filesystem::path scene;
-  std::string motion = "none";         ///< id of a motion of the exercise, CSV file, or none
-  double duration = 0;                 ///< simulated seconds; 0: the motion and one second more, or 10 s without one
-  std::filesystem::path report;        ///< folder for report.json and report.html; empty: none
-  std::filesystem::path export_folder; ///< folder for the bodies' final nodes as .vtu; empty: none
+  std::string motion = "none";          ///< id of a motion of the exercise, CSV file, or none
+  double duration = 0;                  ///< simulated seconds; 0: the motion and one second more, or 10 s without one
+  std::filesystem::path report;         ///< folder for report.json and report.html; empty: none
+  std::filesystem::path export_folder;  ///< folder for the bodies' final nodes as .vtu; empty: none
   int threads = 0;
-  std::uint64_t seed = 0;              ///< of the complications; 0: the scene's
+  std::uint64_t seed = 0;  ///< of the complications; 0: the scene's
   bool quiet = false;
 };
 /// Runs a scene headless and deterministic with both hands inside the process. Status 0, or 2 for bad input, 1 when the
@@ -32,11 +32,11 @@ struct EngineOptions {
   bool unthrottled = false;
   int threads = 0;
   std::uint64_t seed = 0;
-  bool keep_bundle = false;       ///< for a replay
-  bool still = false;             ///< to be looked at (insula view)
-  bool standby = false;           ///< loads, prints standby_line, and waits for SIGUSR1 before it speaks on the bus
-  std::filesystem::path notice;   ///< file whose text viewers are shown while it is not empty
-  std::filesystem::path report;   ///< folder for the session's reports; empty: none
+  bool keep_bundle = false;      ///< for a replay
+  bool still = false;            ///< to be looked at (insula view)
+  bool standby = false;          ///< loads, prints standby_line, and waits for SIGUSR1 before it speaks on the bus
+  std::filesystem::path notice;  ///< file whose text viewers are shown while it is not empty
+  std::filesystem::path report;  ///< folder for the session's reports; empty: none
 };
 inline constexpr const char* standby_line = "insula engine stands by";
 /// The engine process of a session; talks over the bus of LCM_DEFAULT_URL until SIGINT or SIGTERM.

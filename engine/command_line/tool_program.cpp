@@ -10,8 +10,8 @@
 
 namespace insula {
 
-int run_tool_program(const std::string& name, const std::vector<std::string>& arguments, const std::string& when_missing,
-                     std::ostream& err) {
+int run_tool_program(const std::string& name, const std::vector<std::string>& arguments,
+                     const std::string& when_missing, std::ostream& err) {
   std::error_code error;
   const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
   const std::filesystem::path program = self.parent_path() / name;

@@ -9,7 +9,7 @@ namespace insula {
 
 /// Replaces this process by the program of that name beside it, with these arguments.
 /// Returns only when that fails: status 1, with the reason on `err`. `when_missing`: how to get the program.
-int run_tool_program(const std::string& name, const std::vector<std::string>& arguments, const std::string& when_missing,
-                     std::ostream& err);
+int run_tool_program(const std::string& name, const std::vector<std::string>& arguments,
+                     const std::string& when_missing, std::ostream& err);
 
 }  // namespace insula

@@ -11,10 +11,10 @@
 #include "core/base/input_error.h"
 #include "core/mechanics/shell_body.h"
 #include "core/sim/settings.h"
+#include "engine/authoring/inventory.h"
 #include "engine/bundle_step_data.h"
 #include "engine/bundle_writer.h"
 #include "engine/live/frame.h"
-#include "engine/authoring/inventory.h"
 
 namespace insula {
 namespace {
@@ -27,13 +27,19 @@ Json list(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 /// The scene's view, or one that holds all its surfaces.
 Json view_of(const Simulation& simulation) {
   if (const ViewSettings* v = simulation.view())
-    return {{"eye", list(v->eye())}, {"target", list(v->target())}, {"up", list(v->up())}, {"fov_deg", v->field_of_view() * 180 / std::numbers::pi}};
+    return {{"eye", list(v->eye())},
+            {"target", list(v->target())},
+            {"up", list(v->up())},
+            {"fov_deg", v->field_of_view() * 180 / std::numbers::pi}};
   Eigen::AlignedBox3d box;
   for (const Surface* s : simulation.surfaces())
     for (const Vec3& p : s->rest().vertices) box.extend(p);
   const Vec3 centre = box.isEmpty() ? Vec3::Zero().eval() : box.center();
   const double size = box.isEmpty() ? 0.1 : std::max(1e-3, box.diagonal().norm());
-  return {{"eye", list(centre + size * Vec3(1.6, 1.2, 0.8))}, {"target", list(centre)}, {"up", list(Vec3::UnitZ())}, {"fov_deg", 30}};
+  return {{"eye", list(centre + size * Vec3(1.6, 1.2, 0.8))},
+          {"target", list(centre)},
+          {"up", list(Vec3::UnitZ())},
+          {"fov_deg", 30}};
 }
 
 Json exercise_of(const Exercise& exercise) {
@@ -41,9 +47,12 @@ Json exercise_of(const Exercise& exercise) {
   for (const GoalState& g : exercise.log().goals()) goals.push_back({{"id", g.id}, {"text", g.text}});
   for (const FaultState& f : exercise.log().faults()) faults.push_back({{"id", f.id}, {"text", f.text}});
   Json timers = Json::array(), measures = Json::array();
-  for (const TimerState& t : exercise.log().timers()) timers.push_back({{"id", t.id}, {"text", t.text}, {"limit_s", t.limit}});
-  for (const MeasureState& m : exercise.log().measures()) measures.push_back({{"id", m.id}, {"text", m.text}, {"unit", m.unit}});
-  return {{"id", exercise.id}, {"title", exercise.title()}, {"text", exercise.text()}, {"goals", goals}, {"faults", faults}, {"timers", timers}, {"measures", measures}};
+  for (const TimerState& t : exercise.log().timers())
+    timers.push_back({{"id", t.id}, {"text", t.text}, {"limit_s", t.limit}});
+  for (const MeasureState& m : exercise.log().measures())
+    measures.push_back({{"id", m.id}, {"text", m.text}, {"unit", m.unit}});
+  return {{"id", exercise.id}, {"title", exercise.title()}, {"text", exercise.text()}, {"goals", goals},
+          {"faults", faults},  {"timers", timers},          {"measures", measures}};
 }
 
 /// The region of each vertex: that of the wall's vertex it follows most closely at rest.
@@ -73,7 +82,8 @@ void add_wall(Json& to, const ShellBody& shell, const ChannelTable& channels) {
   to["region_thickness_m"] = Json::object();
   for (std::size_t r = 0; r < regions.size(); ++r)
     for (const ForceModel* f : shell.children_of<ForceModel>())
-      if (const double thickness = f->wall_thickness(int(r)); thickness > 0) to["region_thickness_m"][regions[r]] = thickness;
+      if (const double thickness = f->wall_thickness(int(r)); thickness > 0)
+        to["region_thickness_m"][regions[r]] = thickness;
   Json shades = Json::object();
   for (const ChannelEntry& e : channels.entries()) {
     if (e.channel->subject() != &shell) continue;
@@ -94,13 +104,20 @@ Json tool_json(const BundleWriter& writer, const RigidBody& body, std::size_t in
   const auto* file = dynamic_cast<const Param<File>*>(body.find_param("model"));
   const ToolModel& model = body.tool();
   const std::string name = "t" + std::to_string(index);
-  Json out = {{"index", index}, {"id", body.id}, {"kind", body.element}, {"hand", instrument ? instrument->hand() : "none"}, {"title", title_of(model.name)}};
-  if (file && !file->empty() && writer.picture((*file)(), name + "_picture.svg")) out["picture"] = name + "_picture.svg";
+  Json out = {{"index", index},
+              {"id", body.id},
+              {"kind", body.element},
+              {"hand", instrument ? instrument->hand() : "none"},
+              {"title", title_of(model.name)}};
+  if (file && !file->empty() && writer.picture((*file)(), name + "_picture.svg"))
+    out["picture"] = name + "_picture.svg";
   out["properties"] = Json::array();
-  for (const BodyProperty& p : body.properties()) out["properties"].push_back({{"name", p.name}, {"value", p.value}, {"unit", p.unit}, {"text", p.text}});
+  for (const BodyProperty& p : body.properties())
+    out["properties"].push_back({{"name", p.name}, {"value", p.value}, {"unit", p.unit}, {"text", p.text}});
   out["tags"] = body.tags();
   out["hinges"] = Json::array();
-  for (const Hinge& h : model.hinges) out["hinges"].push_back({{"origin", list(h.origin)}, {"axis", list(h.axis)}, {"multiplier", h.multiplier}});
+  for (const Hinge& h : model.hinges)
+    out["hinges"].push_back({{"origin", list(h.origin)}, {"axis", list(h.axis)}, {"multiplier", h.multiplier}});
   out["parts"] = Json::array();
   for (std::size_t p = 0; p < model.parts.size(); ++p) {
     const ToolPart& part = model.parts[p];
@@ -125,7 +142,10 @@ Json hands_json(const Simulation& simulation) {
     }
     if (!first) continue;
     const Pose home = first->home_pose();
-    out.push_back({{"hand", first->hand()}, {"tool", tools.front()}, {"tools", tools}, {"home_p_m", list(home.p)},
+    out.push_back({{"hand", first->hand()},
+                   {"tool", tools.front()},
+                   {"tools", tools},
+                   {"home_p_m", list(home.p)},
                    {"home_q", {home.q.w(), home.q.x(), home.q.y(), home.q.z()}}});
   }
   return out;
@@ -137,7 +157,8 @@ Json commands_json(const Scene& scene) {
   for (const Component* c : scene.components()) {
     Json commands = Json::array();
     for (const CommandInfo& info : c->commands())
-      commands.push_back({{"name", info.name}, {"doc", info.doc}, {"argument", info.argument}, {"min", info.min}, {"max", info.max}});
+      commands.push_back(
+          {{"name", info.name}, {"doc", info.doc}, {"argument", info.argument}, {"min", info.min}, {"max", info.max}});
     if (!commands.empty()) out.push_back({{"id", c->id}, {"element", c->element}, {"commands", commands}});
   }
   return out;
@@ -154,15 +175,20 @@ void write_bundle(const Simulation& simulation, const fs::path& dir, std::int64_
   json["version"] = 3;
   json["session"] = session;
   const Exercise* exercise = simulation.exercise();
-  json["title"] = !simulation.scene().title().empty() ? simulation.scene().title() : exercise ? exercise->title() : simulation.scene().file().stem().string();
+  json["title"] = !simulation.scene().title().empty() ? simulation.scene().title()
+                  : exercise                          ? exercise->title()
+                                                      : simulation.scene().file().stem().string();
   json["description"] = exercise ? exercise->text() : "";
   json["view"] = view_of(simulation);
-  if (const auto devices = simulation.scene().all<DeviceSettings>(); !devices.empty()) json["force_scale"] = devices.front()->force_scale();
+  if (const auto devices = simulation.scene().all<DeviceSettings>(); !devices.empty())
+    json["force_scale"] = devices.front()->force_scale();
 
   const auto bodies = picture_bodies(simulation);
   json["bodies"] = Json::array();
   for (std::size_t b = 0; b < bodies.size(); ++b) {
-    Json entry = {{"index", b}, {"id", bodies[b]->id}, {"nodes", bodies[b]->nodes()},
+    Json entry = {{"index", b},
+                  {"id", bodies[b]->id},
+                  {"nodes", bodies[b]->nodes()},
                   {"rest", writer.points("body" + std::to_string(b) + "_rest.bin", bodies[b]->rest_nodes())},
                   {"surfaces", Json::array()}};
     if (const auto* shell = dynamic_cast<const ShellBody*>(bodies[b])) add_wall(entry, *shell, simulation.channels());

@@ -23,8 +23,10 @@ using Json = nlohmann::json;
 class BundleOfAScene : public testing::Test {
  protected:
   void SetUp() override {
-    scene_.write("meshes/low.msh", test::gmsh_text(test::block_mesh({3, 3, 2}, {-0.01, -0.01, -0.01}, {0.01, 0.01, -0.001})));
-    scene_.write("meshes/high.msh", test::gmsh_text(test::block_mesh({2, 2, 2}, {-0.01, -0.01, 0.001}, {0.01, 0.01, 0.01})));
+    scene_.write("meshes/low.msh",
+                 test::gmsh_text(test::block_mesh({3, 3, 2}, {-0.01, -0.01, -0.01}, {0.01, 0.01, -0.001})));
+    scene_.write("meshes/high.msh",
+                 test::gmsh_text(test::block_mesh({2, 2, 2}, {-0.01, -0.01, 0.001}, {0.01, 0.01, 0.01})));
     TriMesh floor;
     floor.vertices = {{-0.02, -0.02, -0.012}, {0.02, -0.02, -0.012}, {0, 0.02, -0.012}};
     floor.triangles = {{0, 1, 2}};
@@ -41,7 +43,8 @@ class BundleOfAScene : public testing::Test {
   <strand_springs id="fibres" from="low_surface" to="high_surface" density="20 1/cm2" max_length="4 mm"/>
   <view eye="100 0 0 mm" target="0 0 0 mm" up="0 0 1" field_of_view="25 deg"/>
   <exercise id="task" title="A task" text="Do it"><goal_strands id="all" text="Divide all"/></exercise>
-</scene>)", scene_.path() / "scene.xml");
+</scene>)",
+                                  scene_.path() / "scene.xml");
     ASSERT_TRUE(simulation_);
   }
 
@@ -127,7 +130,9 @@ TEST_F(BundleOfAScene, SkinsFollowTheNodes) {
         for (int c = 0; c < 3; ++c) at[c] += double(weights[k]) * double(rest[3 * nodes[k] + std::size_t(c)]);
       }
       EXPECT_NEAR(sum, 1, 1e-6);
-      EXPECT_LT((at - Vec3(double(positions[3 * v]), double(positions[3 * v + 1]), double(positions[3 * v + 2]))).norm(), 1e-8);
+      EXPECT_LT(
+          (at - Vec3(double(positions[3 * v]), double(positions[3 * v + 1]), double(positions[3 * v + 2]))).norm(),
+          1e-8);
     }
   }
 }
@@ -151,7 +156,8 @@ TEST_F(BundleOfAScene, AHandHasAllItsToolsAndAnArmNone) {
   <dissector id="first" hand="right" model="meshes/tool/probe.urdf" home="0 0 10 mm" shaft="0 0 1" flat="1 0 0"/>
   <retractor id="other" hand="left" model="meshes/tool/probe.urdf" home="0 0 30 mm" shaft="0 0 1" flat="1 0 0"/>
   <dissector id="second" hand="right" model="meshes/tool/probe.urdf" home="0 0 20 mm" shaft="0 0 1" flat="1 0 0"/>
-</scene>)", scene_.path() / "scene.xml");
+</scene>)",
+                                scene_.path() / "scene.xml");
   ASSERT_TRUE(simulation_);
   const Json j = written();
   ASSERT_EQ(j.at("hands").size(), 2u);
@@ -182,7 +188,8 @@ TEST_F(BundleOfAScene, TellsOfVesselsAndArticulatedTools) {
     <surface id="wall" material="vessel"/>
     <surface id="picture" mesh="../../meshes/arteries/narrow_neck/picture.ply" mesh_unit="mm" material="vessel" contact="false"/></shell_body>
   <retractor id="clip" hand="right" model="../../meshes/clips/straight/straight.urdf" home="0 0 90 mm" shaft="0 0 1" flat="1 0 0"/>
-</scene>)", source / "scenes/training/bundle_test.xml");
+</scene>)",
+                                source / "scenes/training/bundle_test.xml");
   ASSERT_TRUE(simulation_);
   const Json j = written();
   const auto* shell = simulation_->scene().find_as<ShellBody>("artery");
@@ -203,9 +210,12 @@ TEST_F(BundleOfAScene, TellsOfVesselsAndArticulatedTools) {
       ASSERT_LT(region[v], shell->model().regions.size());
       const MaterialPoint& p = surface.points()[v];
       bool found = false;
-      for (int n = 0; n < p.count; ++n) found = found || shell->model().vertex_region[std::size_t(p.node[std::size_t(n)])] == int(region[v]);
+      for (int n = 0; n < p.count; ++n)
+        found = found || shell->model().vertex_region[std::size_t(p.node[std::size_t(n)])] == int(region[v]);
       ASSERT_TRUE(found) << v;
-      if (k == 0) { ASSERT_EQ(int(region[v]), shell->model().vertex_region[v]); }
+      if (k == 0) {
+        ASSERT_EQ(int(region[v]), shell->model().vertex_region[v]);
+      }
     }
   }
   const Json& tool = j.at("tools").at(0);

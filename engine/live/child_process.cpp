@@ -41,7 +41,8 @@ constexpr std::size_t longest_line = 16 * 1024;
 }  // namespace
 
 std::string ChildExit::text() const {
-  return signal != 0 ? fmt::format("was ended by signal {} ({})", signal, strsignal(signal)) : fmt::format("ended with status {}", status);
+  return signal != 0 ? fmt::format("was ended by signal {} ({})", signal, strsignal(signal))
+                     : fmt::format("ended with status {}", status);
 }
 
 ChildProcess::~ChildProcess() {

@@ -27,9 +27,9 @@ class ChildProcess {
   ChildProcess& operator=(const ChildProcess&) = delete;
   ChildProcess& operator=(ChildProcess&& other) noexcept;  ///< kills what still runs here
 
-  /// Starts command[0] with its arguments, in a process group of its own (a terminal's Ctrl-C reaches the parent alone) and
-  /// with SIGTERM on the parent's death. Returns the error text, empty when started; a program that cannot be executed
-  /// ends with status 127.
+  /// Starts command[0] with its arguments, in a process group of its own (a terminal's Ctrl-C reaches the parent alone)
+  /// and with SIGTERM on the parent's death. Returns the error text, empty when started; a program that cannot be
+  /// executed ends with status 127.
   std::string start(const std::vector<std::string>& command);
   bool running() const { return pid_ > 0; }
   pid_t pid() const { return pid_; }

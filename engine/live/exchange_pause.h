@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a hand feels while its tool is exchanged: nothing, and then the new tool gently. The two tools have different
 // couplings, and the new one may come up against what the old one never touched. So the hand's tool is left out of the
-// haptic problem for a while: the safety gate takes that for a lost source, lets the force go to zero, and fades it in again
-// when the tool is back.
+// haptic problem for a while: the safety gate takes that for a lost source, lets the force go to zero, and fades it in
+// again when the tool is back.
 #pragma once
 #include <array>
 

@@ -14,7 +14,8 @@ namespace {
 class Exchange : public testing::Test {
  protected:
   void SetUp() override {
-    scene_.write("meshes/block.msh", test::gmsh_text(test::block_mesh({4, 4, 2}, {-0.02, -0.02, -0.02}, {0.02, 0.02, 0})));
+    scene_.write("meshes/block.msh",
+                 test::gmsh_text(test::block_mesh({4, 4, 2}, {-0.02, -0.02, -0.02}, {0.02, 0.02, 0})));
     for (const auto& [name, radius] : {std::pair{"thin", 0.0005}, std::pair{"thick", 0.003}}) {
       scene_.write(std::string("meshes/") + name + "/probe.urdf", test::test_tool_urdf(radius));
       scene_.write(std::string("meshes/") + name + "/tool.json", test::test_tool_json(0, 0));
@@ -25,19 +26,25 @@ class Exchange : public testing::Test {
   <retractor id="thin" hand="right" model="meshes/thin/probe.urdf" home="0 0 20 mm" shaft="0 0 1" flat="1 0 0"/>
   <retractor id="thick" hand="right" model="meshes/thick/probe.urdf" home="0 0 20 mm" shaft="0 0 1" flat="1 0 0" coupling="2000 N/m"/>
   <contact between="thin thick block"/>
-</scene>)", scene_.path() / "scene.xml");
+</scene>)",
+                                  scene_.path() / "scene.xml");
     ASSERT_TRUE(simulation_);
   }
   static Motion hover(const std::string& commands) {
-    return parse_motion("time_s,hand,px_m,py_m,pz_m,qw,qx,qy,qz,button1,button2\n"
-                        "0,right,0,0,0.02,1,0,0,0,0,0\n0.4,right,0,0,0.001,1,0,0,0,0,0\n3,right,0,0,0.001,1,0,0,0,0,0\n" + commands, "m.csv");
+    return parse_motion(
+        "time_s,hand,px_m,py_m,pz_m,qw,qx,qy,qz,button1,button2\n"
+        "0,right,0,0,0.02,1,0,0,0,0,0\n0.4,right,0,0,0.001,1,0,0,0,0,0\n3,right,0,0,0.001,1,0,0,0,0,0\n" +
+            commands,
+        "m.csv");
   }
   test::SceneFolder scene_;
   std::unique_ptr<Simulation> simulation_;
 };
 
 TEST_F(Exchange, AMotionsCommandsComeAtTheirTimes) {
-  HeadlessRun run(*simulation_, hover("1,command,exchange,right thick\n2,command,message,well done\n2,command,exchange,right thumb\n"));
+  HeadlessRun run(
+      *simulation_,
+      hover("1,command,exchange,right thick\n2,command,message,well done\n2,command,exchange,right thumb\n"));
   for (int round = 0; round < 2; ++round) {
     std::vector<Event> events;
     while (simulation_->time() < 2.5) {
@@ -96,11 +103,12 @@ RenderedForce rendered_force(Simulation& simulation, const Motion& motion, bool 
   return rendered;
 }
 
-// The thick tool appears two millimetres deep in the block. The hand must feel nothing at first, then the push, never faster
-// than its device allows; without the pause it feels the push at once.
+// The thick tool appears two millimetres deep in the block. The hand must feel nothing at first, then the push, never
+// faster than its device allows; without the pause it feels the push at once.
 TEST_F(Exchange, TheHandFeelsTheNewToolGently) {
   const double limit = simulated_arm(1).profile.max_slew_N_s;
-  const RenderedForce bare = rendered_force(*simulation_, hover(""), false), gentle = rendered_force(*simulation_, hover(""), true);
+  const RenderedForce bare = rendered_force(*simulation_, hover(""), false),
+                      gentle = rendered_force(*simulation_, hover(""), true);
   EXPECT_GT(gentle.largest_force, 0.3) << "the thick tool must press, or nothing is tested";
   EXPECT_LE(bare.largest_slew, limit * (1 + 1e-9));  // the gate's promise
   EXPECT_LE(gentle.largest_slew, limit * (1 + 1e-9));

@@ -2,9 +2,9 @@
 // Exercise 1 from start to end with both scripted motions, headless.
 #include <gtest/gtest.h>
 
+#include <unistd.h>
 #include <cmath>
 #include <cstdlib>
-#include <unistd.h>
 
 #include <fstream>
 #include <map>
@@ -89,7 +89,8 @@ Outcome perform(const std::string& id) {
   for (const GoalState& g : log.goals()) out.goals[g.id] = g.done ? g.time : -1;
   for (int h = 0; h < 2; ++h) out.device[h] = run.haptics().hand(h).device.p;
   for (int h = 0; h < 2; ++h)
-    EXPECT_LT((out.device[h] - motion.at(h, 1e9).pose.p).norm(), 0.001) << "hand " << h << " did not follow its motion to the end";
+    EXPECT_LT((out.device[h] - motion.at(h, 1e9).pose.p).norm(), 0.001)
+        << "hand " << h << " did not follow its motion to the end";
   return out;
 }
 
@@ -139,7 +140,9 @@ TEST(SylvianFissure, TheExerciseDoesNotTouchTheTissue) {
   for (int i = 0; i < 210; ++i) {
     a.step();
     b.step();
-    if (i % 10 == 0) { ASSERT_EQ(with.simulation->state_hash(), without.simulation->state_hash()) << "step " << i; }
+    if (i % 10 == 0) {
+      ASSERT_EQ(with.simulation->state_hash(), without.simulation->state_hash()) << "step " << i;
+    }
   }
   int faults = 0;
   for (const FaultState& f : with.simulation->exercise()->log().faults()) faults += f.count;
@@ -149,7 +152,8 @@ TEST(SylvianFissure, TheExerciseDoesNotTouchTheTissue) {
 TEST(SylvianFissure, MotionsAreWhatTheGeneratorWrites) {
   const fs::path folder = fs::temp_directory_path() / ("insula_motions_" + std::to_string(std::uint64_t(::getpid())));
   fs::create_directories(folder);
-  const std::string command = "python3 '" + (source / "tools/motions/sylvian_fissure.py").string() + "' '" + folder.string() + "'";
+  const std::string command =
+      "python3 '" + (source / "tools/motions/sylvian_fissure.py").string() + "' '" + folder.string() + "'";
   ASSERT_EQ(std::system(command.c_str()), 0);
   for (const char* id : {"steady", "rough"}) {
     const std::string name = std::string("1_sylvian_fissure_") + id + ".csv";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Notices that files have been saved, by looking at them: editors write in place, rename, or write twice, and folders may be on
-// any file system.
+// Notices that files have been saved, by looking at them: editors write in place, rename, or write twice, and folders
+// may be on any file system.
 #pragma once
 #include <chrono>
 #include <cstdint>
@@ -12,7 +12,8 @@ namespace insula {
 class FileWatch {
  public:
   using Clock = std::chrono::steady_clock;
-  /// quiet: so long nothing must change after a change before it counts: a file that is still being written is left alone.
+  /// quiet: so long nothing must change after a change before it counts: a file that is still being written is left
+  /// alone.
   explicit FileWatch(std::chrono::milliseconds quiet) : quiet_(quiet) {}
 
   /// Watches these from now on. What was saved before the call and not yet reported counts as seen.

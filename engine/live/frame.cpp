@@ -79,7 +79,8 @@ std::vector<const DeformableBody*> picture_bodies(const Simulation& simulation) 
 std::vector<const RigidBody*> picture_tools(const Simulation& simulation) {
   std::vector<const RigidBody*> out(simulation.instruments().begin(), simulation.instruments().end());
   for (const Body* b : simulation.bodies())
-    if (auto* body = dynamic_cast<const RigidBody*>(b); body && !dynamic_cast<const Instrument*>(b)) out.push_back(body);
+    if (auto* body = dynamic_cast<const RigidBody*>(b); body && !dynamic_cast<const Instrument*>(b))
+      out.push_back(body);
   return out;
 }
 

@@ -46,7 +46,8 @@ void HeadlessRun::reset() {
   pause_ = {};
 }
 
-OpenedRun open_run(const CommandContext& context, const std::filesystem::path& scene, const std::string& motion, bool optional, int threads) {
+OpenedRun open_run(const CommandContext& context, const std::filesystem::path& scene, const std::string& motion,
+                   bool optional, int threads) {
   OpenedRun out;
   SimulationResult loaded = load_simulation(scene, context.registry, threads);
   context.err << loaded.diagnostics.format();

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A simulation with both hands inside the process, in simulated time: the servo's ticks and the engine's steps in a fixed order.
+// A simulation with both hands inside the process, in simulated time: the servo's ticks and the engine's steps in a
+// fixed order.
 #pragma once
 #include <memory>
 
-#include "core/sim/simulation.h"
-#include "engine/live/command_script.h"
-#include "engine/command_line/commands.h"
 #include "core/haptics/condense.h"
+#include "core/sim/simulation.h"
+#include "engine/command_line/commands.h"
+#include "engine/live/command_script.h"
 #include "engine/live/exchange_pause.h"
 #include "haptic_server/in_process.h"
 
@@ -40,7 +41,9 @@ struct OpenedRun {
   std::unique_ptr<Simulation> simulation;  ///< null when something is wrong; it was said on `err`
   Motion motion;
 };
-/// Loads a scene and the motion named by id or file (see find_motion). `optional`: an id the scene lacks means no motion.
-OpenedRun open_run(const CommandContext& context, const std::filesystem::path& scene, const std::string& motion, bool optional, int threads);
+/// Loads a scene and the motion named by id or file (see find_motion). `optional`: an id the scene lacks means no
+/// motion.
+OpenedRun open_run(const CommandContext& context, const std::filesystem::path& scene, const std::string& motion,
+                   bool optional, int threads);
 
 }  // namespace insula

@@ -27,11 +27,21 @@ void add_exercise(Json& j, const Exercise* exercise, double time) {
   for (const GoalState& g : log.goals()) j["goals"].push_back({{"id", g.id}, {"text", g.text}, {"done", g.done}});
   for (const FaultState& f : log.faults()) j["faults"].push_back({{"id", f.id}, {"text", f.text}, {"count", f.count}});
   for (const TimerState& t : log.timers())
-    j["timers"].push_back({{"id", t.id}, {"text", t.text}, {"elapsed_s", rounded(t.elapsed, 2)}, {"limit_s", t.limit}, {"running", t.running}});
+    j["timers"].push_back({{"id", t.id},
+                           {"text", t.text},
+                           {"elapsed_s", rounded(t.elapsed, 2)},
+                           {"limit_s", t.limit},
+                           {"running", t.running}});
   for (const MeasureState& m : log.measures())
-    j["measures"].push_back({{"id", m.id}, {"text", m.text}, {"value", m.known ? rounded(m.value, 3) : Json()}, {"unit", m.unit}, {"good", m.good}});
+    j["measures"].push_back({{"id", m.id},
+                             {"text", m.text},
+                             {"value", m.known ? rounded(m.value, 3) : Json()},
+                             {"unit", m.unit},
+                             {"good", m.good}});
   j["message"] = log.last_message();
-  j["state"] = log.state() == ExerciseState::running ? "running" : log.state() == ExerciseState::done ? "done" : "failed";
+  j["state"] = log.state() == ExerciseState::running ? "running"
+               : log.state() == ExerciseState::done  ? "done"
+                                                     : "failed";
   if (log.end_time() >= 0) j["elapsed_s"] = rounded(log.end_time(), 3);
 }
 
@@ -43,7 +53,8 @@ std::string hud_json(const Simulation& simulation) {
   add_exercise(j, simulation.exercise(), r.time);
   j["hands"] = Json::array();
   for (int h = 0; h < 2; ++h)
-    if (const Instrument* i = simulation.instrument_of(h)) j["hands"].push_back({{"hand", h == 0 ? "left" : "right"}, {"tool", i->id}});
+    if (const Instrument* i = simulation.instrument_of(h))
+      j["hands"].push_back({{"hand", h == 0 ? "left" : "right"}, {"tool", i->id}});
   return j.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 

@@ -66,7 +66,8 @@ Registry registry() {
 
 TEST(Hud, TellsOfTheExercise) {
   const Registry r = registry();
-  auto loaded = load_simulation_text(R"(<scene time_step="10 ms"><patient/><exercise id="e" title="E"><clocks/></exercise></scene>)", "/s.xml", r, 1);
+  auto loaded = load_simulation_text(
+      R"(<scene time_step="10 ms"><patient/><exercise id="e" title="E"><clocks/></exercise></scene>)", "/s.xml", r, 1);
   ASSERT_TRUE(loaded.simulation) << loaded.diagnostics.format();
   loaded.simulation->step();
   const Json j = Json::parse(hud_json(*loaded.simulation));
@@ -105,7 +106,8 @@ TEST(Frame, CarriesChannelsAndDrawables) {
   EXPECT_EQ(f.channel[6], 2e-6f);
   EXPECT_EQ(loaded.simulation->channels().entries().back().id, "p.b.flow");
   ASSERT_EQ(f.drawables, 2);
-  EXPECT_EQ(f.drawable[0].data, (std::vector<float>{0.1f, 0.2f, 0.3f, 1, 0.4f, 0.5f, 0.6f, 0.5f, 0.1f, 0.2f, 0.3f, 1, 0.4f, 0.5f, 0.6f, 0.5f}));
+  EXPECT_EQ(f.drawable[0].data, (std::vector<float>{0.1f, 0.2f, 0.3f, 1, 0.4f, 0.5f, 0.6f, 0.5f, 0.1f, 0.2f, 0.3f, 1,
+                                                    0.4f, 0.5f, 0.6f, 0.5f}));
   EXPECT_EQ(f.drawable[1].data, (std::vector<float>{0, 0, 0.01f, 0, 0, 1, 0.02f, 0.7f}));
   loaded.simulation->reset();
   EXPECT_EQ(loaded.simulation->channel("p.b.flow"), 2e-6) << "published again at the start";
@@ -135,7 +137,8 @@ TEST(ExerciseLog, AGoalMayBeLostAgainWhileTheExerciseRuns) {
 // A vessel of 2,000 nodes, two lobes of 900 together, 70 lines, 200 channels, 50 tools, all contacts, all words.
 TEST(Frame, StaysUnderWhatOneMessageCarries) {
   const Registry r = registry();
-  auto loaded = load_simulation_text(R"(<scene><patient id="p"/><exercise id="e" title="E"><clocks/></exercise></scene>)", "/s.xml", r, 1);
+  auto loaded = load_simulation_text(
+      R"(<scene><patient id="p"/><exercise id="e" title="E"><clocks/></exercise></scene>)", "/s.xml", r, 1);
   ASSERT_TRUE(loaded.simulation);
   auto* patient = loaded.simulation->scene().find_as<Patient>("p");
   patient->count = 70;

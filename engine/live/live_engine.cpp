@@ -11,10 +11,10 @@
 #include <thread>
 
 #include "core/base/input_error.h"
+#include "core/base/text.h"
 #include "core/bus/arrival_order.h"
 #include "core/bus/channels.h"
 #include "core/bus/codec.h"
-#include "core/base/text.h"
 #include "engine/live/bundle.h"
 #include "engine/live/command_script.h"
 #include "engine/live/notice.h"
@@ -36,7 +36,7 @@ struct Inputs {
   ArrivalOrder order;
   std::int64_t received_us = 0;
   bool pause = false, reset = false, quit = false;
-  bool driven = false;  ///< a person has moved a hand since the start
+  bool driven = false;                                     ///< a person has moved a hand since the start
   std::vector<std::pair<std::string, std::string>> asked;  ///< command and argument, in order of arrival
 
   void subscribe(Bus& bus, SessionReports& reports) {
@@ -159,7 +159,8 @@ int run_live(const LiveOptions& options, const Registry& registry, Bus& bus, con
   const std::int64_t session = monotonic_us();
   const fs::path bundle = bundle_folder(options.bundle_root, session);
   write_bundle(simulation, bundle, session, options.still);
-  const std::string title = simulation.scene().title().empty() ? options.scene.stem().string() : simulation.scene().title();
+  const std::string title =
+      simulation.scene().title().empty() ? options.scene.stem().string() : simulation.scene().title();
   Publisher publisher(bus, session, options.scene, bundle, motion, title);
   SessionReports reports(options.report, options.scene, motion.empty() ? "" : options.motion);
   Inputs inputs;
@@ -230,8 +231,9 @@ int run_live(const LiveOptions& options, const Registry& registry, Bus& bus, con
   publisher.info("ended");
   reports.end_run(simulation);
   const double wall = std::chrono::duration<double>(Clock::now() - began).count();
-  spdlog::info("ended after {:.2f} s simulated in {:.2f} s (real_time_factor {:.2f}), {} steps dropped, {} messages not sent",
-               simulation.time(), wall, wall > 0 ? simulation.time() / wall : 0, late, publisher.failed());
+  spdlog::info(
+      "ended after {:.2f} s simulated in {:.2f} s (real_time_factor {:.2f}), {} steps dropped, {} messages not sent",
+      simulation.time(), wall, wall > 0 ? simulation.time() / wall : 0, late, publisher.failed());
   std::error_code ignored;
   if (!options.keep_bundle) fs::remove_all(bundle, ignored);
   return 0;

@@ -14,11 +14,12 @@
 namespace insula {
 
 std::int64_t monotonic_us() {
-  return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now().time_since_epoch())
+      .count();
 }
 
-Publisher::Publisher(Bus& bus, std::int64_t session, const std::filesystem::path& scene, const std::filesystem::path& bundle,
-                     const std::filesystem::path& motion, const std::string& title)
+Publisher::Publisher(Bus& bus, std::int64_t session, const std::filesystem::path& scene,
+                     const std::filesystem::path& bundle, const std::filesystem::path& motion, const std::string& title)
     : bus_(bus), session_(session) {
   info_.session = session;
   info_.scene = scene.string();

@@ -7,11 +7,11 @@
 #include <insula_lcm/scene_info_t.hpp>
 
 #include "core/bus/bus.h"
+#include "core/haptics/condense.h"
+#include "core/haptics/contact_frame_prediction.h"
 #include "core/haptics/haptic_update.h"
 #include "core/sim/simulation.h"
-#include "core/haptics/condense.h"
 #include "engine/live/exchange_pause.h"
-#include "core/haptics/contact_frame_prediction.h"
 
 namespace insula {
 
@@ -28,7 +28,8 @@ class Publisher {
   Publisher(Bus& bus, std::int64_t session, const std::filesystem::path& scene, const std::filesystem::path& bundle,
             const std::filesystem::path& motion, const std::string& title);
 
-  /// After a step: problem, frame, events. pose_time_us: stamp of the devices' poses that the step was made with, 0: none.
+  /// After a step: problem, frame, events. pose_time_us: stamp of the devices' poses that the step was made with, 0:
+  /// none.
   void step(const Simulation& simulation, std::int64_t pose_time_us = 0);
   /// Events that belong to no step.
   void events(const std::vector<Event>& events);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a session needs to follow its scene: which files it is made of, when one has been saved, and the text for the viewers.
+// What a session needs to follow its scene: which files it is made of, when one has been saved, and the text for the
+// viewers.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -31,7 +32,8 @@ class Reload : public ::testing::Test {
   /// Names below the folder.
   std::vector<std::string> files(const std::string& scene) const {
     std::vector<std::string> out;
-    for (const fs::path& f : scene_files(folder_ / scene)) out.push_back(f.lexically_relative(folder_).generic_string());
+    for (const fs::path& f : scene_files(folder_ / scene))
+      out.push_back(f.lexically_relative(folder_).generic_string());
     return out;
   }
   fs::path folder_;
@@ -43,8 +45,11 @@ TEST_F(Reload, FilesOfASceneAndOfWhatItIncludes) {
   write("meshes/tool/tool.json", "");
   write("meshes/tool/blade.obj", "");
   write("parts/p.xml", R"(<part><variable name="m" value="../meshes/a.msh"/><soft_body mesh="$m"/></part>)");
-  write("s.xml", R"(<scene title="no file at all"><include file="parts/p.xml"/><dissector model="meshes/tool/tool.urdf" home="1 2 3.5 mm"/></scene>)");
-  EXPECT_EQ(files("s.xml"), (std::vector<std::string>{"meshes/a.msh", "meshes/tool/blade.obj", "meshes/tool/tool.json", "meshes/tool/tool.urdf", "parts/p.xml", "s.xml"}));
+  write(
+      "s.xml",
+      R"(<scene title="no file at all"><include file="parts/p.xml"/><dissector model="meshes/tool/tool.urdf" home="1 2 3.5 mm"/></scene>)");
+  EXPECT_EQ(files("s.xml"), (std::vector<std::string>{"meshes/a.msh", "meshes/tool/blade.obj", "meshes/tool/tool.json",
+                                                      "meshes/tool/tool.urdf", "parts/p.xml", "s.xml"}));
 }
 
 TEST_F(Reload, FilesOfASceneWithErrors) {

@@ -17,7 +17,9 @@ namespace {
 TEST(SceneDevices, AreReadHandByHand) {
   Registry registry;
   register_builtin(registry);
-  const auto scene = [&](const std::string& text) { return load_scene_text("<scene>" + text + "</scene>", "/tmp/scene.xml", registry); };
+  const auto scene = [&](const std::string& text) {
+    return load_scene_text("<scene>" + text + "</scene>", "/tmp/scene.xml", registry);
+  };
   EXPECT_EQ(scene_device(*scene("").scene, 0), "");
   const auto one = scene(R"(<devices left="touch:Left Device, mouse"/>)");
   ASSERT_TRUE(one.ok()) << one.diagnostics.format();

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <set>
 
-#include "core/xml/document.h"
 #include "core/scene/expand.h"
+#include "core/xml/document.h"
 
 namespace fs = std::filesystem;
 
@@ -19,7 +19,8 @@ constexpr std::size_t max_of_a_folder = 200;
 bool looks_like_a_file(const std::string& value) {
   if (value.empty() || value.size() > 512 || value.find_first_of(" \t\n$\\:") != std::string::npos) return false;
   const std::string extension = fs::path(value).extension().string();
-  return extension.size() >= 2 && extension.size() <= 6 && std::any_of(extension.begin(), extension.end(), [](unsigned char c) { return std::isalpha(c); });
+  return extension.size() >= 2 && extension.size() <= 6 &&
+         std::any_of(extension.begin(), extension.end(), [](unsigned char c) { return std::isalpha(c); });
 }
 
 class Finder {
@@ -34,7 +35,8 @@ class Finder {
     out_.insert(file);
     if (file.extension() != ".urdf" && file.extension() != ".json") return;
     std::size_t count = 0;
-    for (fs::directory_iterator it(file.parent_path(), ec), end; !ec && it != end && count < max_of_a_folder; it.increment(ec))
+    for (fs::directory_iterator it(file.parent_path(), ec), end; !ec && it != end && count < max_of_a_folder;
+         it.increment(ec))
       if (std::error_code ignored; it->is_regular_file(ignored)) {
         out_.insert(it->path());
         ++count;
@@ -64,7 +66,8 @@ std::vector<fs::path> scene_files(const fs::path& scene) {
     // As written, for the names of files to include that are not there; expanded, for all others.
     if (const Document document = parse_document(text, main.string(), unused); document.root)
       for (const auto& child : document.root->children)
-        if (const Attribute* file = child->name == "include" ? child->find("file") : nullptr) finder.value(main.parent_path(), file->value);
+        if (const Attribute* file = child->name == "include" ? child->find("file") : nullptr)
+          finder.value(main.parent_path(), file->value);
     const ExpandedScene tree = expand_scene(text, main, unused);
     for (const auto& part : tree.parts) out.insert(part->path);
     if (tree.root) finder.element(*tree.root);

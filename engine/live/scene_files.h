@@ -6,8 +6,9 @@
 
 namespace insula {
 
-/// The scene, what it includes, and every file that a value in them names; of a file that names others itself (URDF, JSON) its
-/// whole folder. A value that looks like a file's name counts although there is no such file yet. Absolute, sorted, each once.
+/// The scene, what it includes, and every file that a value in them names; of a file that names others itself (URDF,
+/// JSON) its whole folder. A value that looks like a file's name counts although there is no such file yet. Absolute,
+/// sorted, each once.
 std::vector<std::filesystem::path> scene_files(const std::filesystem::path& scene);
 
 }  // namespace insula

@@ -6,8 +6,8 @@
 #include <algorithm>
 
 #include "core/registry/plugin_loader.h"
-#include "engine/live/notice.h"
 #include "engine/command_line/run.h"
+#include "engine/live/notice.h"
 #include "engine/live/scene_files.h"
 
 namespace insula {
@@ -18,9 +18,14 @@ constexpr std::chrono::milliseconds quiet{300}, every{100};
 
 }  // namespace
 
-SceneReload::SceneReload(std::filesystem::path scene, std::vector<std::filesystem::path> plugins, std::vector<std::string> command,
-                         std::filesystem::path notice, Print print)
-    : scene_(std::move(scene)), notice_(std::move(notice)), plugins_(std::move(plugins)), command_(std::move(command)), print_(std::move(print)), watch_(quiet) {
+SceneReload::SceneReload(std::filesystem::path scene, std::vector<std::filesystem::path> plugins,
+                         std::vector<std::string> command, std::filesystem::path notice, Print print)
+    : scene_(std::move(scene)),
+      notice_(std::move(notice)),
+      plugins_(std::move(plugins)),
+      command_(std::move(command)),
+      print_(std::move(print)),
+      watch_(quiet) {
   watch_.set(files());
 }
 
@@ -55,7 +60,9 @@ void SceneReload::look(Supervisor& supervisor) {
 void SceneReload::refused(const std::vector<std::string>& lines, const ChildExit& exit) {
   std::string text;
   for (const std::string& line : lines)
-    if (line.find(": error: ") != std::string::npos || line.find(": warning: ") != std::string::npos || line.starts_with("error: ")) text += line + "\n";
+    if (line.find(": error: ") != std::string::npos || line.find(": warning: ") != std::string::npos ||
+        line.starts_with("error: "))
+      text += line + "\n";
   if (text.empty()) text = fmt::format("the saved scene cannot be run: the engine that loaded it {}\n", exit.text());
   print_("insula: the saved scene has errors; the one before goes on");
   std::string_view rest = text;
@@ -68,7 +75,8 @@ void SceneReload::refused(const std::vector<std::string>& lines, const ChildExit
 }
 
 void SceneReload::tell_viewers(const std::string& text) {
-  if (!notice_.empty() && !leave_notice(notice_, text)) print_("insula: viewers cannot be told: " + notice_.string() + " cannot be written");
+  if (!notice_.empty() && !leave_notice(notice_, text))
+    print_("insula: viewers cannot be told: " + notice_.string() + " cannot be written");
 }
 
 }  // namespace insula

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A session follows its scene's files: when one is saved, a second engine loads the scene beside the first and takes over when it
-// is ready. When it has errors the first goes on, and viewers are shown what is wrong.
+// A session follows its scene's files: when one is saved, a second engine loads the scene beside the first and takes
+// over when it is ready. When it has errors the first goes on, and viewers are shown what is wrong.
 #pragma once
 #include <filesystem>
 #include <functional>
@@ -16,9 +16,10 @@ namespace insula {
 class SceneReload {
  public:
   using Print = std::function<void(std::string_view)>;
-  /// command: the engine with --standby. plugins: libraries, or folders of them, that are watched too. notice: where the engines
-  /// look for the text that viewers are shown; empty: nowhere.
-  SceneReload(std::filesystem::path scene, std::vector<std::filesystem::path> plugins, std::vector<std::string> command, std::filesystem::path notice, Print print);
+  /// command: the engine with --standby. plugins: libraries, or folders of them, that are watched too. notice: where
+  /// the engines look for the text that viewers are shown; empty: nowhere.
+  SceneReload(std::filesystem::path scene, std::vector<std::filesystem::path> plugins, std::vector<std::string> command,
+              std::filesystem::path notice, Print print);
   /// To be called again and again.
   void look(Supervisor& supervisor);
 

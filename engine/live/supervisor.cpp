@@ -112,12 +112,11 @@ void Supervisor::start(Child& child) {
 
 void Supervisor::pass_on(Child& child, bool rest) {
   const auto line = [&](std::string_view text) {
-    if (!child.spec.on_line || child.spec.on_line(child.spec, text)) print_(fmt::format("[{}] {}", child.spec.name, text));
+    if (!child.spec.on_line || child.spec.on_line(child.spec, text))
+      print_(fmt::format("[{}] {}", child.spec.name, text));
   };
-  if (rest)
-    child.process.finish_output(line);
-  else
-    child.process.read_lines(line);
+  if (rest) child.process.finish_output(line);
+  else child.process.read_lines(line);
 }
 
 void Supervisor::collect() {

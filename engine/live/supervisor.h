@@ -16,9 +16,9 @@ namespace insula {
 struct SupervisorSettings {
   double first_wait_s = 0.2;  ///< before a dead child is started again; doubles while it keeps dying young
   double longest_wait_s = 2;
-  double settled_s = 5;       ///< a child that lived so long starts over with first_wait_s
-  double patience_s = 3;      ///< from SIGTERM to SIGKILL when ending
-  double duration_s = 0;      ///< end by itself after so long; 0: never
+  double settled_s = 5;             ///< a child that lived so long starts over with first_wait_s
+  double patience_s = 3;            ///< from SIGTERM to SIGKILL when ending
+  double duration_s = 0;            ///< end by itself after so long; 0: never
   std::function<void()> look = {};  ///< called again and again while the session runs, every look_s
   double look_s = 0.1;
 };
@@ -27,8 +27,10 @@ struct ChildSpec {
   std::string name;
   std::vector<std::string> command;  ///< program (a path) and arguments
   bool ends_session = false;         ///< when it ends with status 0, everything ends
-  bool waits_for_offer = false;      ///< when it has run and says later that its input is bad (status 2), it stays away until there is another offer
-  /// Sees each line of output; may change the command for the next start. Returns false to keep the line from being shown.
+  bool waits_for_offer = false;      ///< when it has run and says later that its input is bad (status 2), it stays away
+                                     ///< until there is another offer
+  /// Sees each line of output; may change the command for the next start. Returns false to keep the line from being
+  /// shown.
   std::function<bool(ChildSpec&, std::string_view)> on_line;
 };
 
@@ -51,8 +53,8 @@ class Supervisor {
   };
   /// False while an earlier offer is just taking over: to be made again a moment later.
   bool offer(const std::string& name, Offer offer);
-  /// Until SIGINT, SIGTERM or SIGHUP, the duration, or a child that ends the session. Status 0; 2 when a child says that
-  /// its input is bad (status 2); 1 when a program cannot be run or refuses its arguments (status 100 and more).
+  /// Until SIGINT, SIGTERM or SIGHUP, the duration, or a child that ends the session. Status 0; 2 when a child says
+  /// that its input is bad (status 2); 1 when a program cannot be run or refuses its arguments (status 100 and more).
   /// Must be called on the main thread: children die with the thread that started them.
   int run();
 

@@ -39,7 +39,8 @@ class SupervisorTest : public ::testing::Test {
     return Supervisor(settings_, [this](std::string_view line) { lines_.emplace_back(line); });
   }
   long count(std::string_view part) const {
-    return std::count_if(lines_.begin(), lines_.end(), [&](const auto& l) { return l.find(part) != std::string::npos; });
+    return std::count_if(lines_.begin(), lines_.end(),
+                         [&](const auto& l) { return l.find(part) != std::string::npos; });
   }
   std::string file(const char* name) const { return (folder_ / name).string(); }
   static std::string content(const std::string& path) {
@@ -55,7 +56,8 @@ class SupervisorTest : public ::testing::Test {
 TEST_F(SupervisorTest, BringsBackWhatDiesWithGrowingWaits) {
   Supervisor s = make();
   // The fifth life ends the session.
-  ChildSpec child = shell("worker", "echo life >> " + file("lives") + "; [ $(wc -l < " + file("lives") + ") -ge 5 ] && exit 0; exit 1");
+  ChildSpec child = shell(
+      "worker", "echo life >> " + file("lives") + "; [ $(wc -l < " + file("lives") + ") -ge 5 ] && exit 0; exit 1");
   child.ends_session = true;
   s.add(std::move(child));
   EXPECT_EQ(s.run(), 0);
@@ -136,7 +138,8 @@ pid_t supervisor_process(SupervisorSettings settings, const std::string& pid_fil
     Supervisor s(settings, [](std::string_view) {});
     ChildSpec spec;
     spec.name = "sleeper";
-    spec.command = {"/bin/sh", "-c", "echo $$ > " + pid_file + ".new; mv " + pid_file + ".new " + pid_file + "; exec sleep 1000"};
+    spec.command = {"/bin/sh", "-c",
+                    "echo $$ > " + pid_file + ".new; mv " + pid_file + ".new " + pid_file + "; exec sleep 1000"};
     s.add(std::move(spec));
     _exit(s.run());
   }
@@ -178,7 +181,9 @@ TEST_F(SupervisorTest, AnOfferTakesOverWhenItIsReady) {
     offered = true;
     Supervisor::Offer offer;
     // The old one must be gone before the new one is told to go.
-    offer.command = {"/bin/sh", "-c", "trap 'cat " + file("old") + " > " + file("seen") + "; exit 0' USR1; echo ready; while :; do sleep 0.01; done"};
+    offer.command = {
+        "/bin/sh", "-c",
+        "trap 'cat " + file("old") + " > " + file("seen") + "; exit 0' USR1; echo ready; while :; do sleep 0.01; done"};
     offer.ready_line = "ready";
     offer.taken = [&] { taken = true; };
     running->offer("worker", std::move(offer));
@@ -186,7 +191,8 @@ TEST_F(SupervisorTest, AnOfferTakesOverWhenItIsReady) {
   settings_.look_s = 0.01;
   Supervisor s = make();
   running = &s;
-  ChildSpec old = shell("worker", "trap 'sleep 0.1; echo gone > " + file("old") + "; exit 0' TERM; while :; do sleep 0.01; done");
+  ChildSpec old =
+      shell("worker", "trap 'sleep 0.1; echo gone > " + file("old") + "; exit 0' TERM; while :; do sleep 0.01; done");
   old.ends_session = true;
   s.add(std::move(old));
   EXPECT_EQ(s.run(), 0);
@@ -208,7 +214,10 @@ TEST_F(SupervisorTest, ARefusedOfferLeavesTheOldOneRunning) {
     Supervisor::Offer offer;
     offer.command = {"/bin/sh", "-c", "echo 'a.xml:1:2: error: wrong'; exit 2"};
     offer.ready_line = "ready";
-    offer.refused = [&](const auto& lines, const ChildExit& exit) { said = lines; how = exit; };
+    offer.refused = [&](const auto& lines, const ChildExit& exit) {
+      said = lines;
+      how = exit;
+    };
     running->offer("worker", std::move(offer));
   };
   Supervisor s = make();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two hands in one problem: each feels what the other does within a tick, through tissue, tool on tool, and with a clip in the applier.
+// Two hands in one problem: each feels what the other does within a tick, through tissue, tool on tool, and with a clip
+// in the applier.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,20 +20,27 @@ class TwoHands : public testing::TestWithParam<bool> {
     for (int h = 0; h < 2; ++h) hand_[std::size_t(h)] = simulation_->instrument_of(h)->home_pose();
   }
   void load_block(const std::string& tools) {
-    scene_.write("meshes/block.msh", test::gmsh_text(test::block_mesh({8, 4, 3}, {-0.02, -0.01, -0.015}, {0.02, 0.01, 0})));
+    scene_.write("meshes/block.msh",
+                 test::gmsh_text(test::block_mesh({8, 4, 3}, {-0.02, -0.01, -0.015}, {0.02, 0.01, 0})));
     scene_.write("meshes/probe/probe.urdf", test::test_tool_urdf(0.002));
     scene_.write("meshes/probe/tool.json", test::test_tool_json(0, 0));
-    load(R"(<soft_body id="lobe" mesh="meshes/block.msh" mesh_unit="m"><corotational_fem/><fixed region="beyond" centre="0 0 -14 mm" normal="0 0 -1"/>
-      <surface/></soft_body>)" + tools, scene_.path() / "scene.xml");
+    load(
+        R"(<soft_body id="lobe" mesh="meshes/block.msh" mesh_unit="m"><corotational_fem/><fixed region="beyond" centre="0 0 -14 mm" normal="0 0 -1"/>
+      <surface/></soft_body>)" +
+            tools,
+        scene_.path() / "scene.xml");
   }
   void load_applier(const std::string& touch) {
-    load(R"(<soft_body id="lobe" mesh="../meshes/examples/block.msh" mesh_unit="mm"><corotational_fem/><fixed region="beyond" centre="0 0 -19 mm" normal="0 0 -1"/>
+    load(
+        R"(<soft_body id="lobe" mesh="../meshes/examples/block.msh" mesh_unit="mm"><corotational_fem/><fixed region="beyond" centre="0 0 -19 mm" normal="0 0 -1"/>
         <surface/></soft_body>
       <solver max_sweeps="100" tolerance="1e-9 m" conjugate="true" newton="8"/>
       <clip id="straight" model="../meshes/clips/straight/straight.urdf"/>
       <clip_applier id="applier" model="../meshes/instruments/clip_applier/clip_applier.urdf" hand="right" clips="straight" load="straight" home="6 0 40 mm" shaft="0 0 1" flat="1 0 0"/>
       <retractor id="spatula" model="../meshes/instruments/retractor/retractor.urdf" hand="left" home="-8 0 3 mm" shaft="0 0 1" flat="1 0 0"/>
-      <contact between=")" + touch + R"(" friction="0.2"/>)", std::filesystem::path(INSULA_SOURCE_DIR) / "scenes/two_hands.xml");
+      <contact between=")" +
+            touch + R"(" friction="0.2"/>)",
+        std::filesystem::path(INSULA_SOURCE_DIR) / "scenes/two_hands.xml");
   }
   /// Steps with both hands where they are; then the servo has the last problem.
   void step(int n) {
@@ -54,7 +62,9 @@ class TwoHands : public testing::TestWithParam<bool> {
   }
   static ServoSettings settings() {
     ServoSettings s;
-    if (GetParam()) s.substep = {.substep_compliance = true, .extrapolate_tissue = true, .incremental_slip = true, .eliminate_welds = true};
+    if (GetParam())
+      s.substep = {
+          .substep_compliance = true, .extrapolate_tissue = true, .incremental_slip = true, .eliminate_welds = true};
     return s;
   }
 
@@ -88,7 +98,8 @@ TEST_P(TwoHands, AHandAtRestFeelsTheOthersPressThroughTheLobe) {
   ServoResult late = after;
   for (int k = 0; k < 200; ++k) late = tick();
   step(30);
-  EXPECT_NEAR(late.hand[0].force.z() - at_once.z(), engine_force(0).z() - at_once.z(), 0.3 * std::abs(engine_force(0).z() - at_once.z()));
+  EXPECT_NEAR(late.hand[0].force.z() - at_once.z(), engine_force(0).z() - at_once.z(),
+              0.3 * std::abs(engine_force(0).z() - at_once.z()));
 }
 
 TEST_P(TwoHands, ToolsThatTouchFeelEachOther) {
@@ -115,12 +126,14 @@ TEST_P(TwoHands, AnApplierWithItsClipAndARetractorStayCoherent) {
   step(30);
   ASSERT_GT(engine_force(0).norm(), 5e-3);
   ASSERT_EQ(problem_.tools.size(), 2u);
-  EXPECT_TRUE(std::any_of(problem_.blocks.begin(), problem_.blocks.end(), [](const Block& b) { return b.lower == -infinite && b.upper == infinite; }));
-  // At rest both hands feel what the engine computed; then both move, each with its own: the clip goes with its applier and
-  // the other hand feels nothing of it.
+  EXPECT_TRUE(std::any_of(problem_.blocks.begin(), problem_.blocks.end(),
+                          [](const Block& b) { return b.lower == -infinite && b.upper == infinite; }));
+  // At rest both hands feel what the engine computed; then both move, each with its own: the clip goes with its applier
+  // and the other hand feels nothing of it.
   ServoResult r;
   for (int k = 0; k < 50; ++k) r = tick();
-  for (int h = 0; h < 2; ++h) EXPECT_NEAR((r.hand[std::size_t(h)].force - engine_force(h)).norm(), 0, 0.02 * engine_force(0).norm()) << h;
+  for (int h = 0; h < 2; ++h)
+    EXPECT_NEAR((r.hand[std::size_t(h)].force - engine_force(h)).norm(), 0, 0.02 * engine_force(0).norm()) << h;
   for (int k = 0; k < 17; ++k) {
     hand_[0].p.z() -= 5e-6;
     hand_[1].p.z() -= 5e-5;
@@ -155,7 +168,8 @@ TEST_P(TwoHandsBetweenSteps, AClipPressedIntoTissueBesideARetractor) {
   ServoResult r;
   for (int k = 0; k < 50; ++k) r = tick();
   const double largest = std::max(engine_force(0).norm(), engine_force(1).norm());
-  for (int h = 0; h < 2; ++h) EXPECT_NEAR((r.hand[std::size_t(h)].force - engine_force(h)).norm(), 0, 0.02 * largest) << h;
+  for (int h = 0; h < 2; ++h)
+    EXPECT_NEAR((r.hand[std::size_t(h)].force - engine_force(h)).norm(), 0, 0.02 * largest) << h;
   for (int k = 0; k < 17; ++k) {
     hand_[0].p.z() -= 5e-6;
     hand_[1].p.z() -= 2e-5;
@@ -170,11 +184,13 @@ TEST_P(TwoHandsBetweenSteps, AClipPressedIntoTissueBesideARetractor) {
   // And where both have come to rest the engine says the same.
   for (int k = 0; k < 300; ++k) r = tick();
   step(60);
-  for (int h = 0; h < 2; ++h) EXPECT_NEAR((r.hand[std::size_t(h)].force - engine_force(h)).norm(), 0, 0.1 * largest) << h;
+  for (int h = 0; h < 2; ++h)
+    EXPECT_NEAR((r.hand[std::size_t(h)].force - engine_force(h)).norm(), 0, 0.1 * largest) << h;
 }
 
 INSTANTIATE_TEST_SUITE_P(Servo, TwoHandsBetweenSteps, testing::Values(true), [](const auto&) { return "in_ticks"; });
-INSTANTIATE_TEST_SUITE_P(Servo, TwoHands, testing::Bool(), [](const auto& about) { return about.param ? "in_ticks" : "equation_7"; });
+INSTANTIATE_TEST_SUITE_P(Servo, TwoHands, testing::Bool(),
+                         [](const auto& about) { return about.param ? "in_ticks" : "equation_7"; });
 
 }  // namespace
 }  // namespace insula

@@ -21,7 +21,9 @@ PerceptibleForces perceptible_forces(const RunRecorder& recorder, int hand) {
   out.median_N = percentile(touch, 0.5);
   for (std::size_t d = 0; d < known_frictions.size(); ++d) {
     const double friction = known_frictions[d].friction_N;
-    out.above[d].time_share = double(std::count_if(touch.begin(), touch.end(), [&](double f) { return f > friction; })) / double(touch.size());
+    out.above[d].time_share =
+        double(std::count_if(touch.begin(), touch.end(), [&](double f) { return f > friction; })) /
+        double(touch.size());
     out.above[d].range_share = std::max(0.0, 1 - friction / out.largest_N);
     out.above[d].scale = friction / out.median_N;
   }

@@ -9,13 +9,13 @@
 namespace insula {
 
 struct PerceptibleForces {
-  double touching_s = 0;    ///< with more than touch_N on the hand
-  double median_N = 0;      ///< of that time
+  double touching_s = 0;  ///< with more than touch_N on the hand
+  double median_N = 0;    ///< of that time
   double largest_N = 0;
   struct Above {
-    double time_share = 0;  ///< of the time in touch with more force than the friction
-    double range_share = 0; ///< of the range up to the largest force that lies above it
-    double scale = 0;       ///< force_scale that brings half of the time in touch above it; 0: nothing was touched
+    double time_share = 0;   ///< of the time in touch with more force than the friction
+    double range_share = 0;  ///< of the range up to the largest force that lies above it
+    double scale = 0;        ///< force_scale that brings half of the time in touch above it; 0: nothing was touched
   };
   std::array<Above, known_frictions.size()> above{};  ///< in the order of known_frictions
 

@@ -50,56 +50,78 @@ std::string exercise_part(const ExerciseOutcome& exercise) {
   if (!exercise.text.empty()) out += fmt::format("<p class=\"quiet\">{}</p>\n", escaped(exercise.text));
   switch (log.state()) {
     case ExerciseState::running: out += "<p>The run ended before the exercise did.</p>\n"; break;
-    case ExerciseState::done: out += fmt::format("<p class=\"good\">Completed after {:.1f} s.</p>\n", log.end_time()); break;
-    case ExerciseState::failed: out += fmt::format("<p class=\"bad\">Failed after {:.1f} s: {}</p>\n", log.end_time(), escaped(log.last_message())); break;
+    case ExerciseState::done:
+      out += fmt::format("<p class=\"good\">Completed after {:.1f} s.</p>\n", log.end_time());
+      break;
+    case ExerciseState::failed:
+      out +=
+          fmt::format("<p class=\"bad\">Failed after {:.1f} s: {}</p>\n", log.end_time(), escaped(log.last_message()));
+      break;
   }
   if (!log.goals().empty()) {
     out += "<table><thead><tr><th>Goal</th><th>Reached</th><th class=\"n\">Time (s)</th></tr></thead><tbody>\n";
     for (const auto& g : log.goals())
       out += fmt::format("<tr><td>{}{}</td><td class=\"{}\">{}</td><td class=\"n\">{}</td></tr>\n", escaped(g.text),
-                         g.required ? "" : " <span class=\"quiet\">(optional)</span>", g.done ? "good" : "bad", g.done ? "yes" : "no",
-                         g.done ? fmt::format("{:.1f}", g.time) : "");
+                         g.required ? "" : " <span class=\"quiet\">(optional)</span>", g.done ? "good" : "bad",
+                         g.done ? "yes" : "no", g.done ? fmt::format("{:.1f}", g.time) : "");
     out += "</tbody></table>\n";
   }
   if (!log.faults().empty()) {
-    out += "<table><thead><tr><th>Fault</th><th class=\"n\">Count</th><th class=\"n\">Last at (s)</th></tr></thead><tbody>\n";
+    out +=
+        "<table><thead><tr><th>Fault</th><th class=\"n\">Count</th><th class=\"n\">Last at "
+        "(s)</th></tr></thead><tbody>\n";
     for (const auto& f : log.faults())
-      out += fmt::format("<tr><td>{}</td><td class=\"n {}\">{}</td><td class=\"n\">{}</td></tr>\n", escaped(f.text), f.count ? "bad" : "good", f.count,
-                         f.count ? fmt::format("{:.1f}", f.last_time) : "");
+      out += fmt::format("<tr><td>{}</td><td class=\"n {}\">{}</td><td class=\"n\">{}</td></tr>\n", escaped(f.text),
+                         f.count ? "bad" : "good", f.count, f.count ? fmt::format("{:.1f}", f.last_time) : "");
     out += "</tbody></table>\n";
   }
   if (!log.measures().empty()) {
     out += "<table><thead><tr><th>Measure</th><th class=\"n\">At the end</th></tr></thead><tbody>\n";
     for (const auto& m : log.measures())
-      out += fmt::format("<tr><td>{}</td><td class=\"n {}\">{}</td></tr>\n", escaped(m.text), m.good > 0 ? "good" : m.good < 0 ? "bad" : "",
+      out += fmt::format("<tr><td>{}</td><td class=\"n {}\">{}</td></tr>\n", escaped(m.text),
+                         m.good > 0   ? "good"
+                         : m.good < 0 ? "bad"
+                                      : "",
                          m.known ? escaped(fmt::format("{:.3g} {}", m.value, m.unit)) : "");
     out += "</tbody></table>\n";
   }
   if (!log.timers().empty()) {
-    out += "<table><thead><tr><th>Clock</th><th class=\"n\">Longest (s)</th><th class=\"n\">Limit (s)</th></tr></thead><tbody>\n";
+    out +=
+        "<table><thead><tr><th>Clock</th><th class=\"n\">Longest (s)</th><th class=\"n\">Limit "
+        "(s)</th></tr></thead><tbody>\n";
     for (const auto& t : log.timers())
-      out += fmt::format("<tr><td>{}</td><td class=\"n {}\">{:.1f}</td><td class=\"n\">{}</td></tr>\n", escaped(t.text), t.limit > 0 && t.longest > t.limit ? "bad" : "",
-                         t.longest, t.limit > 0 ? fmt::format("{:.0f}", t.limit) : "");
+      out += fmt::format("<tr><td>{}</td><td class=\"n {}\">{:.1f}</td><td class=\"n\">{}</td></tr>\n", escaped(t.text),
+                         t.limit > 0 && t.longest > t.limit ? "bad" : "", t.longest,
+                         t.limit > 0 ? fmt::format("{:.0f}", t.limit) : "");
     out += "</tbody></table>\n";
   }
   return out;
 }
 
 std::string events_part(const RunRecorder& recorder, const RunSummary& summary) {
-  const auto among = [](const std::vector<std::string>& kinds, const std::string& kind) { return std::find(kinds.begin(), kinds.end(), kind) != kinds.end(); };
+  const auto among = [](const std::vector<std::string>& kinds, const std::string& kind) {
+    return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
+  };
   std::string rows;
   std::size_t shown = 0, more = 0;
   for (const auto& e : recorder.events()) {
-    if (among(summary.unlisted_events, e.kind) || e.kind == "command" || e.kind == "refused") continue;  // shown elsewhere
+    if (among(summary.unlisted_events, e.kind) || e.kind == "command" || e.kind == "refused")
+      continue;  // shown elsewhere
     if (++shown > 200) {
       ++more;
       continue;
     }
     rows += fmt::format("<tr><td class=\"n\">{:.2f}</td><td class=\"{}\">{}</td><td>{}</td></tr>\n", e.time,
-                        e.kind == "fault" || among(summary.bad_events, e.kind) || e.kind == "goal_lost" ? "bad" : e.kind == "goal" ? "good" : "", escaped(e.kind), escaped(e.text.empty() ? e.id : e.text));
+                        e.kind == "fault" || among(summary.bad_events, e.kind) || e.kind == "goal_lost" ? "bad"
+                        : e.kind == "goal"                                                              ? "good"
+                                                                                                        : "",
+                        escaped(e.kind), escaped(e.text.empty() ? e.id : e.text));
   }
   if (rows.empty()) return "";
-  std::string out = "<h2>What happened</h2>\n<table><thead><tr><th class=\"n\">Time (s)</th><th>Kind</th><th>Text</th></tr></thead><tbody>\n" + rows + "</tbody></table>\n";
+  std::string out =
+      "<h2>What happened</h2>\n<table><thead><tr><th class=\"n\">Time "
+      "(s)</th><th>Kind</th><th>Text</th></tr></thead><tbody>\n" +
+      rows + "</tbody></table>\n";
   const std::int64_t left_out = std::int64_t(more) + recorder.events_left_out();
   if (left_out > 0) out += fmt::format("<p class=\"quiet\">{} more are not shown.</p>\n", left_out);
   return out;
@@ -107,20 +129,25 @@ std::string events_part(const RunRecorder& recorder, const RunSummary& summary) 
 
 std::string stage_table(const RunRecorder& recorder) {
   using S = RunRecorder::Sample;
-  std::string out = "<table><thead><tr><th>Stage</th><th class=\"n\">median (ms)</th><th class=\"n\">95th percentile (ms)</th><th class=\"n\">largest (ms)</th></tr></thead><tbody>\n";
+  std::string out =
+      "<table><thead><tr><th>Stage</th><th class=\"n\">median (ms)</th><th class=\"n\">95th percentile (ms)</th><th "
+      "class=\"n\">largest (ms)</th></tr></thead><tbody>\n";
   const auto line = [&](std::string name, const std::vector<double>& v) {
     std::replace(name.begin(), name.end(), '_', ' ');
-    out += fmt::format("<tr><td>{}</td><td class=\"n\">{:.3f}</td><td class=\"n\">{:.3f}</td><td class=\"n\">{:.3f}</td></tr>\n", name, percentile(v, 0.5),
-                       percentile(v, 0.95), largest(v));
+    out += fmt::format(
+        "<tr><td>{}</td><td class=\"n\">{:.3f}</td><td class=\"n\">{:.3f}</td><td class=\"n\">{:.3f}</td></tr>\n", name,
+        percentile(v, 0.5), percentile(v, 0.95), largest(v));
   };
-  for (std::size_t k = 0; k < stage_count; ++k) line(stage_names()[k], column(recorder, [k](const S& s) { return s.stage_ms[k]; }));
+  for (std::size_t k = 0; k < stage_count; ++k)
+    line(stage_names()[k], column(recorder, [k](const S& s) { return s.stage_ms[k]; }));
   line("whole step", column(recorder, [](const S& s) { return s.step_ms; }));
   return out + "</tbody></table>\n";
 }
 
 /// A plot for each kind of channel of a component, with a curve for each group; what never changed is left out.
 std::string channel_plots(const RunRecorder& recorder, const RunSeries& s, const std::vector<PlotMark>& marks) {
-  static constexpr const char* colours[] = {"#1f6fb2", "#c2410c", "#15803d", "#9333ea", "#d4a017", "#4b5563", "#dc2626", "#0891b2"};
+  static constexpr const char* colours[] = {"#1f6fb2", "#c2410c", "#15803d", "#9333ea",
+                                            "#d4a017", "#4b5563", "#dc2626", "#0891b2"};
   const auto& all = recorder.channels().channels();
   std::string out;
   std::vector<char> done(all.size(), 0);
@@ -134,12 +161,15 @@ std::string channel_plots(const RunRecorder& recorder, const RunSeries& s, const
       if (f.steps == 0 || f.min == f.max) continue;
       std::vector<double> y = s.channels[std::size_t(c.curve)];
       for (double& v : y) v *= c.scale;
-      curves.push_back({c.group.empty() ? c.name : c.group, colours[curves.size() % std::size(colours)], std::move(y), ""});
+      curves.push_back(
+          {c.group.empty() ? c.name : c.group, colours[curves.size() % std::size(colours)], std::move(y), ""});
     }
     if (curves.empty()) continue;
     std::string name = all[i].component + ": " + all[i].name;
     std::replace(name.begin(), name.end(), '_', ' ');
-    out += svg({name, "time (s)", all[i].display_unit.empty() ? all[i].name : all[i].name + " (" + all[i].display_unit + ")", s.time_s, curves, marks, false});
+    out += svg({name, "time (s)",
+                all[i].display_unit.empty() ? all[i].name : all[i].name + " (" + all[i].display_unit + ")", s.time_s,
+                curves, marks, false});
   }
   return out.empty() ? out : "<h2>Channels</h2>\n" + out;
 }
@@ -150,15 +180,42 @@ std::string plots(const RunRecorder& recorder) {
   for (const auto& e : recorder.events()) {
     if (marks.size() >= 300) break;
     if (e.kind == "goal" || e.kind == "fault")
-      marks.push_back({e.time, e.kind + ": " + (e.text.empty() ? e.id : e.text), e.kind == "goal" ? goal_colour : fault_colour});
+      marks.push_back(
+          {e.time, e.kind + ": " + (e.text.empty() ? e.id : e.text), e.kind == "goal" ? goal_colour : fault_colour});
   }
   std::string out = "<h2>Forces</h2>\n<p class=\"quiet\">Dashed lines: goals (green) and faults (red).</p>\n";
-  out += svg({"Force on the hands", "time (s)", "force (N)", s.time_s, {{"left", left_colour, s.hand_force_N[0], ""}, {"right", right_colour, s.hand_force_N[1], ""}}, marks, false});
-  out += svg({"Force of the tools on the tissue", "time (s)", "force (N)", s.time_s, {{"left", left_colour, s.tool_force_N[0], ""}, {"right", right_colour, s.tool_force_N[1], ""}}, marks, false});
+  out += svg({"Force on the hands",
+              "time (s)",
+              "force (N)",
+              s.time_s,
+              {{"left", left_colour, s.hand_force_N[0], ""}, {"right", right_colour, s.hand_force_N[1], ""}},
+              marks,
+              false});
+  out += svg({"Force of the tools on the tissue",
+              "time (s)",
+              "force (N)",
+              s.time_s,
+              {{"left", left_colour, s.tool_force_N[0], ""}, {"right", right_colour, s.tool_force_N[1], ""}},
+              marks,
+              false});
   out += channel_plots(recorder, s, marks);
   out += "<h2>Constraints</h2>\n";
-  out += svg({"Rows, contacts and sweeps", "time (s)", "count", s.time_s, {{"rows", "#1f6fb2", s.rows, ""}, {"contacts", "#15803d", s.contacts, ""}, {"sweeps", "#9333ea", s.sweeps, "4 3"}}, {}, false});
-  out += svg({"Residual of the solver", "time (s)", "residual (N)", s.time_s, {{"residual", "#4b5563", s.residual_N, ""}}, {}, true});
+  out += svg({"Rows, contacts and sweeps",
+              "time (s)",
+              "count",
+              s.time_s,
+              {{"rows", "#1f6fb2", s.rows, ""},
+               {"contacts", "#15803d", s.contacts, ""},
+               {"sweeps", "#9333ea", s.sweeps, "4 3"}},
+              {},
+              false});
+  out += svg({"Residual of the solver",
+              "time (s)",
+              "residual (N)",
+              s.time_s,
+              {{"residual", "#4b5563", s.residual_N, ""}},
+              {},
+              true});
   out += "<h2>Time of a step</h2>\n";
   static constexpr const char* colours[] = {"#1f6fb2", "#15803d", "#d4a017", "#dc2626", "#9333ea", "#9ca3af"};
   std::vector<PlotCurve> curves;
@@ -180,12 +237,15 @@ std::string report_html(const RunRecorder& recorder, const RunSummary& summary) 
   const double sim = samples.empty() ? 0 : double(samples.back().time_s);
   const auto rows = column(recorder, [](const S& s) { return s.rows; });
   const auto residual = column(recorder, [](const S& s) { return s.residual_N; });
-  std::string out = "<!DOCTYPE html>\n<html lang=\"en\" xmlns=\"http://www.w3.org/1999/xhtml\">\n<head>\n<meta charset=\"utf-8\"/>\n"
-                    "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n";
-  out += fmt::format("<title>{0}: report</title>\n<style>{1}</style>\n</head>\n<body>\n<h1>{0}</h1>\n", escaped(summary.title.empty() ? "Run" : summary.title), style);
+  std::string out =
+      "<!DOCTYPE html>\n<html lang=\"en\" xmlns=\"http://www.w3.org/1999/xhtml\">\n<head>\n<meta charset=\"utf-8\"/>\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n";
+  out += fmt::format("<title>{0}: report</title>\n<style>{1}</style>\n</head>\n<body>\n<h1>{0}</h1>\n",
+                     escaped(summary.title.empty() ? "Run" : summary.title), style);
   out += "<p class=\"notice\">For training only. Not a medical device, and no measure of fitness to operate.</p>\n";
   if (!summary.began.empty()) out += fmt::format("<p class=\"quiet\">Begun {}</p>\n", escaped(summary.began));
-  if (!recorder.finite()) out += "<p class=\"bad\">The simulation lost its numbers (not finite): nothing below can be relied upon.</p>\n";
+  if (!recorder.finite())
+    out += "<p class=\"bad\">The simulation lost its numbers (not finite): nothing below can be relied upon.</p>\n";
   if (summary.exercise) out += exercise_part(*summary.exercise);
   out += recorder.channels().html() + recorder.outcome().html();
   if (summary.complications) out += complications_html(*summary.complications);
@@ -193,20 +253,27 @@ std::string report_html(const RunRecorder& recorder, const RunSummary& summary) 
   if (!summary.scene.empty()) out += row("scene", summary.scene);
   if (!summary.motion.empty()) out += row("motion", summary.motion);
   out += row("steps", fmt::format("{}", recorder.steps()));
-  if (recorder.steps_per_sample() > 1) out += row("gathered for what follows, each with its largest values", fmt::format("{} steps", recorder.steps_per_sample()));
+  if (recorder.steps_per_sample() > 1)
+    out += row("gathered for what follows, each with its largest values",
+               fmt::format("{} steps", recorder.steps_per_sample()));
   out += row("simulated time", fmt::format("{:.3f} s", sim));
   out += row("wall time of the steps", fmt::format("{:.3f} s", summary.wall_seconds));
-  out += row("simulated over wall time", fmt::format("{:.2f}", summary.wall_seconds > 0 ? sim / summary.wall_seconds : 0));
+  out +=
+      row("simulated over wall time", fmt::format("{:.2f}", summary.wall_seconds > 0 ? sim / summary.wall_seconds : 0));
   out += row("fresh forces", fmt::format("{:.0f} per second of touch", summary.fresh_forces_per_s));
   out += row("largest force on the left hand", fmt::format("{:.3f} N", summary.max_force_N[0]));
   out += row("largest force on the right hand", fmt::format("{:.3f} N", summary.max_force_N[1]));
   const PerceptibleForces left = perceptible_forces(recorder, 0), right = perceptible_forces(recorder, 1);
   for (std::size_t d = 0; d < known_frictions.size(); ++d)
-    out += row(fmt::format("time in touch above the friction of {} ({:.2f} N)", known_frictions[d].devices, known_frictions[d].friction_N),
-               fmt::format("left {:.0f} %, right {:.0f} %", 100 * left.above[d].time_share, 100 * right.above[d].time_share));
+    out += row(
+        fmt::format("time in touch above the friction of {} ({:.2f} N)", known_frictions[d].devices,
+                    known_frictions[d].friction_N),
+        fmt::format("left {:.0f} %, right {:.0f} %", 100 * left.above[d].time_share, 100 * right.above[d].time_share));
   out += row("constraint rows, mean and largest", fmt::format("{:.0f}, {:.0f}", mean(rows), largest(rows)));
-  out += row("residual, median and largest", fmt::format("{:.2g} N, {:.2g} N", percentile(residual, 0.5), largest(residual)));
-  out += fmt::format("<tr><td>state hash</td><td class=\"n\"><code>{:016x}</code></td></tr>\n</tbody></table>\n", summary.state_hash);
+  out += row("residual, median and largest",
+             fmt::format("{:.2g} N, {:.2g} N", percentile(residual, 0.5), largest(residual)));
+  out += fmt::format("<tr><td>state hash</td><td class=\"n\"><code>{:016x}</code></td></tr>\n</tbody></table>\n",
+                     summary.state_hash);
   out += plots(recorder) + events_part(recorder, summary);
   return out + "</body>\n</html>\n";
 }

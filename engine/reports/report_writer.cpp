@@ -44,12 +44,25 @@ Json exercise_json(const std::optional<ExerciseOutcome>& exercise) {
   Json out;
   if (exercise) {
     for (const auto& g : exercise->log.goals())
-      goals.push_back({{"id", g.id}, {"done", g.done}, {"time_s", g.done ? Json(g.time) : Json()}, {"required", g.required}, {"text", g.text}});
+      goals.push_back({{"id", g.id},
+                       {"done", g.done},
+                       {"time_s", g.done ? Json(g.time) : Json()},
+                       {"required", g.required},
+                       {"text", g.text}});
     for (const auto& f : exercise->log.faults()) faults.push_back({{"id", f.id}, {"count", f.count}, {"text", f.text}});
     for (const auto& t : exercise->log.timers())
-      timers.push_back({{"id", t.id}, {"elapsed_s", t.elapsed}, {"longest_s", t.longest}, {"limit_s", t.limit}, {"running", t.running}, {"text", t.text}});
+      timers.push_back({{"id", t.id},
+                        {"elapsed_s", t.elapsed},
+                        {"longest_s", t.longest},
+                        {"limit_s", t.limit},
+                        {"running", t.running},
+                        {"text", t.text}});
     for (const auto& m : exercise->log.measures())
-      measures.push_back({{"id", m.id}, {"value", m.known ? Json(m.value) : Json()}, {"unit", m.unit}, {"good", m.good}, {"text", m.text}});
+      measures.push_back({{"id", m.id},
+                          {"value", m.known ? Json(m.value) : Json()},
+                          {"unit", m.unit},
+                          {"good", m.good},
+                          {"text", m.text}});
     static constexpr const char* states[] = {"running", "done", "failed"};
     out["id"] = exercise->id;
     out["title"] = exercise->title;
@@ -63,10 +76,16 @@ Json exercise_json(const std::optional<ExerciseOutcome>& exercise) {
 }
 
 Json perceptible_json(const PerceptibleForces& perceptible) {
-  Json out = {{"touching_s", perceptible.touching_s}, {"median_N", perceptible.median_N}, {"max_N", perceptible.largest_N}, {"above_friction", Json::array()}};
+  Json out = {{"touching_s", perceptible.touching_s},
+              {"median_N", perceptible.median_N},
+              {"max_N", perceptible.largest_N},
+              {"above_friction", Json::array()}};
   for (std::size_t d = 0; d < known_frictions.size(); ++d)
-    out["above_friction"].push_back({{"devices", known_frictions[d].devices}, {"friction_N", known_frictions[d].friction_N}, {"time_share", perceptible.above[d].time_share},
-                                     {"range_share", perceptible.above[d].range_share}, {"scale_for_half", perceptible.above[d].scale}});
+    out["above_friction"].push_back({{"devices", known_frictions[d].devices},
+                                     {"friction_N", known_frictions[d].friction_N},
+                                     {"time_share", perceptible.above[d].time_share},
+                                     {"range_share", perceptible.above[d].range_share},
+                                     {"scale_for_half", perceptible.above[d].scale}});
   return out;
 }
 
@@ -79,8 +98,14 @@ Json series_json(const RunRecorder& recorder, const RunSeries& s) {
   return {{"time_s", s.time_s},
           {"hand_force_N", {{"left", s.hand_force_N[0]}, {"right", s.hand_force_N[1]}}},
           {"tool_force_N", {{"left", s.tool_force_N[0]}, {"right", s.tool_force_N[1]}}},
-          {"channels", channels}, {"rows", s.rows}, {"contacts", s.contacts}, {"sweeps", s.sweeps},
-          {"residual_N", s.residual_N}, {"energy_J", s.energy_J}, {"step_ms", s.step_ms}, {"stage_ms", stages}};
+          {"channels", channels},
+          {"rows", s.rows},
+          {"contacts", s.contacts},
+          {"sweeps", s.sweeps},
+          {"residual_N", s.residual_N},
+          {"energy_J", s.energy_J},
+          {"step_ms", s.step_ms},
+          {"stage_ms", stages}};
 }
 
 void write(const std::filesystem::path& file, const std::string& text) {
@@ -88,7 +113,9 @@ void write(const std::filesystem::path& file, const std::string& text) {
   std::ofstream out(file, std::ios::binary | std::ios::trunc);
   out << text;
   out.close();
-  if (!out) throw InputError(fmt::format("{}: cannot be written{}", file.string(), errno ? fmt::format(": {}", std::strerror(errno)) : ""));
+  if (!out)
+    throw InputError(
+        fmt::format("{}: cannot be written{}", file.string(), errno ? fmt::format(": {}", std::strerror(errno)) : ""));
 }
 
 /// `b` follows `a`.
@@ -114,7 +141,8 @@ void join(RunRecorder::Sample& a, const RunRecorder::Sample& b) {
 
 RunRecorder::RunRecorder(std::size_t most) : max_samples_(most) { samples_.reserve(most); }
 
-void RunRecorder::record(const StepReport& r, const std::vector<Event>& events, const std::array<double, 2>& hand_force_N, double energy_J) {
+void RunRecorder::record(const StepReport& r, const std::vector<Event>& events,
+                         const std::array<double, 2>& hand_force_N, double energy_J) {
   Sample s;
   s.time_s = float(r.time);
   for (std::size_t k = 0; k < stage_count; ++k) s.stage_ms[k] = float(r.stage_ms[k]);
@@ -181,13 +209,15 @@ void RunSummary::take(const Simulation& simulation) {
 }
 
 const std::array<const char*, stage_count>& stage_names() {
-  static constexpr std::array<const char*, stage_count> names{"free_motion", "collision", "build", "solve", "correct", "publish"};
+  static constexpr std::array<const char*, stage_count> names{"free_motion", "collision", "build",
+                                                              "solve",       "correct",   "publish"};
   return names;
 }
 
 double percentile(std::vector<double> values, double share) {
   if (values.empty()) return 0;
-  const auto rank = std::size_t(std::clamp(std::ceil(share * double(values.size())) - 1, 0.0, double(values.size() - 1)));
+  const auto rank =
+      std::size_t(std::clamp(std::ceil(share * double(values.size())) - 1, 0.0, double(values.size() - 1)));
   std::nth_element(values.begin(), values.begin() + std::ptrdiff_t(rank), values.end());
   return values[rank];
 }
@@ -212,8 +242,10 @@ RunSeries series_of(const RunRecorder& recorder, std::size_t most) {
     add(out.rows, begin, end, [](const S& s) { return s.rows; });
     add(out.contacts, begin, end, [](const S& s) { return s.contacts; });
     add(out.sweeps, begin, end, [](const S& s) { return s.sweeps; });
-    for (int c = 0; c < recorder.channels().curves(); ++c) out.channels[std::size_t(c)].push_back(recorder.channels().sample(end - 1, c));
-    for (std::size_t k = 0; k < stage_count; ++k) add(out.stage_ms[k], begin, end, [k](const S& s) { return s.stage_ms[k]; });
+    for (int c = 0; c < recorder.channels().curves(); ++c)
+      out.channels[std::size_t(c)].push_back(recorder.channels().sample(end - 1, c));
+    for (std::size_t k = 0; k < stage_count; ++k)
+      add(out.stage_ms[k], begin, end, [k](const S& s) { return s.stage_ms[k]; });
     for (std::size_t h = 0; h < 2; ++h) {
       add(out.hand_force_N[h], begin, end, [h](const S& s) { return s.hand_force_N[h]; });
       add(out.tool_force_N[h], begin, end, [h](const S& s) { return s.tool_force_N[h]; });
@@ -252,7 +284,9 @@ std::string report_json(const RunRecorder& recorder, const RunSummary& summary) 
   json["residual_m"] = {{"p50", percentile(metres, 0.5)}, {"max", largest(metres)}};
   json["haptic"] = {{"fresh_forces_per_s", summary.fresh_forces_per_s},
                     {"max_force_N", {{"left", summary.max_force_N[0]}, {"right", summary.max_force_N[1]}}},
-                    {"perceptible", {{"left", perceptible_json(perceptible_forces(recorder, 0))}, {"right", perceptible_json(perceptible_forces(recorder, 1))}}}};
+                    {"perceptible",
+                     {{"left", perceptible_json(perceptible_forces(recorder, 0))},
+                      {"right", perceptible_json(perceptible_forces(recorder, 1))}}}};
   json["exercise"] = exercise_json(summary.exercise);
   if (summary.complications) json["complications"] = complications_json(*summary.complications);
   json["channels"] = recorder.channels().json();
@@ -261,7 +295,8 @@ std::string report_json(const RunRecorder& recorder, const RunSummary& summary) 
   json["state_hash"] = fmt::format("{:016x}", summary.state_hash);
   json["events"] = Json::array();
   for (const auto& e : recorder.events())
-    json["events"].push_back({{"time_s", e.time}, {"kind", e.kind}, {"id", e.id}, {"text", e.text}, {"value", e.value}});
+    json["events"].push_back(
+        {{"time_s", e.time}, {"kind", e.kind}, {"id", e.id}, {"text", e.text}, {"value", e.value}});
   json["events_left_out"] = recorder.events_left_out();
   json["series"] = series_json(recorder, series_of(recorder, max_moments));
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";

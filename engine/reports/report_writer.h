@@ -19,7 +19,8 @@ class Simulation;
 
 /// An exercise as it stood when the report was made.
 struct ExerciseOutcome {
-  explicit ExerciseOutcome(const Exercise& exercise) : id(exercise.id), title(exercise.title()), text(exercise.text()), log(exercise.log()) {}
+  explicit ExerciseOutcome(const Exercise& exercise)
+      : id(exercise.id), title(exercise.title()), text(exercise.text()), log(exercise.log()) {}
   std::string id, title, text;
   ExerciseLog log;
 };
@@ -29,17 +30,17 @@ struct RunSummary {
   /// Title, state hash, exercise and complications as they are now.
   void take(const Simulation& simulation);
 
-  std::string title;               ///< of the scene
-  std::string scene, motion;       ///< as named on the command line
-  std::string began;               ///< local date and time of a session that people play; empty: not said
-  double wall_seconds = 0;         ///< of all steps
-  double fresh_forces_per_s = 0;   ///< distinct fresh forces a simulated second of touch
+  std::string title;                    ///< of the scene
+  std::string scene, motion;            ///< as named on the command line
+  std::string began;                    ///< local date and time of a session that people play; empty: not said
+  double wall_seconds = 0;              ///< of all steps
+  double fresh_forces_per_s = 0;        ///< distinct fresh forces a simulated second of touch
   std::array<double, 2> max_force_N{};  ///< on the hands: left, right
   std::uint64_t state_hash = 0;
   std::optional<ExerciseOutcome> exercise;            ///< none when the scene has none
   std::optional<ComplicationsOutcome> complications;  ///< the same
-  std::vector<std::string> bad_events;     ///< kinds that components declare as bad
-  std::vector<std::string> unlisted_events;  ///< kinds that the report's list leaves out
+  std::vector<std::string> bad_events;                ///< kinds that components declare as bad
+  std::vector<std::string> unlisted_events;           ///< kinds that the report's list leaves out
 };
 
 class RunRecorder {
@@ -50,22 +51,24 @@ class RunRecorder {
     std::int32_t steps = 1;
     std::array<float, stage_count> stage_ms{};
     float step_ms = 0;
-    std::array<float, 2> hand_force_N{};     ///< sent to the hand
-    std::array<float, 2> tool_force_N{};     ///< of all contacts of the hand's tool
+    std::array<float, 2> hand_force_N{};  ///< sent to the hand
+    std::array<float, 2> tool_force_N{};  ///< of all contacts of the hand's tool
     float residual_N = 0;
     float residual_m = 0;
     float energy_J = 0;
     std::int32_t rows = 0, contacts = 0, sweeps = 0;
   };
 
-  /// Every step of half an hour at 60 Hz, in 11 MB that are taken at the start. A longer run takes no more: neighbours are joined
-  /// whenever it is full, and from then on a sample stands for twice as many steps.
+  /// Every step of half an hour at 60 Hz, in 11 MB that are taken at the start. A longer run takes no more: neighbours
+  /// are joined whenever it is full, and from then on a sample stands for twice as many steps.
   static constexpr std::size_t max_samples = 120'000;
   /// most: samples at most, even and at least 2.
   explicit RunRecorder(std::size_t most = max_samples);
 
-  /// After a step: its report, its events (the exercise's included), the force on each hand (N; left, right) and the energy of all bodies.
-  void record(const StepReport& report, const std::vector<Event>& events, const std::array<double, 2>& hand_force_N, double energy_J);
+  /// After a step: its report, its events (the exercise's included), the force on each hand (N; left, right) and the
+  /// energy of all bodies.
+  void record(const StepReport& report, const std::vector<Event>& events, const std::array<double, 2>& hand_force_N,
+              double energy_J);
   /// Events that belong to no step, as while paused.
   void note(const std::vector<Event>& events);
   void clear();

@@ -25,7 +25,8 @@ std::string xml_error(const std::string& text) {
   XML_Parser parser = XML_ParserCreate(nullptr);
   std::string error;
   if (XML_Parse(parser, text.data(), int(text.size()), 1) != XML_STATUS_OK)
-    error = std::string(XML_ErrorString(XML_GetErrorCode(parser))) + " in line " + std::to_string(XML_GetCurrentLineNumber(parser));
+    error = std::string(XML_ErrorString(XML_GetErrorCode(parser))) + " in line " +
+            std::to_string(XML_GetCurrentLineNumber(parser));
   XML_ParserFree(parser);
   return error;
 }
@@ -47,7 +48,8 @@ class Gauge final : public Component {
   }
   Channel<Scalar> left{this, {.name = "left", .doc = "for tests", .digits = 0}};
   Channel<Vec<Force>> pull{this, {.name = "pull", .doc = "for tests"}};
-  ChannelGroup<Pressure> pressure{this, {.name = "pressure", .doc = "for tests", .shown = Shown::vital, .display = "mmHg", .digits = 0}};
+  ChannelGroup<Pressure> pressure{
+      this, {.name = "pressure", .doc = "for tests", .shown = Shown::vital, .display = "mmHg", .digits = 0}};
   double total;
   ChannelTable table;
 };
@@ -111,7 +113,8 @@ TEST(ReportJson, HasEveryKeyWithItsNumber) {
   EXPECT_EQ(j.at("wall_seconds"), 2);
   EXPECT_NEAR(j.at("real_time_factor").get<double>(), 5, 1e-5);
   for (const char* stage : {"free_motion", "collision", "build", "solve", "correct", "publish"})
-    for (const char* part : {"p50", "p95"}) EXPECT_TRUE(j.at("stage_ms").at(stage).at(part).is_number()) << stage << part;
+    for (const char* part : {"p50", "p95"})
+      EXPECT_TRUE(j.at("stage_ms").at(stage).at(part).is_number()) << stage << part;
   EXPECT_EQ(j.at("stage_ms").at("solve").at("p50"), 50);
   EXPECT_EQ(j.at("stage_ms").at("solve").at("p95"), 95);
   EXPECT_EQ(j.at("rows").at("mean"), 50.5);
@@ -156,7 +159,10 @@ TEST(ReportJson, TellsOfChannelsAndCommands) {
     r.h = 0.1;
     gauge.show(k, r);
     std::vector<Event> events;
-    if (k == 4) events = {{"command", "ask", "applier load a", 0, 0.4}, {"refused", "exchange", "draw the <instrument> out", 0, 0.4}, {"message", "message", "well done", 0, 0.4}};
+    if (k == 4)
+      events = {{"command", "ask", "applier load a", 0, 0.4},
+                {"refused", "exchange", "draw the <instrument> out", 0, 0.4},
+                {"message", "message", "well done", 0, 0.4}};
     recorder.record(r, events, {0, 0}, 1e-3);
   }
   const Json j = Json::parse(report_json(recorder, summary(&exercise)));
@@ -183,7 +189,9 @@ TEST(ReportJson, TellsOfChannelsAndCommands) {
   EXPECT_FALSE(j.contains("complications"));
   const std::string html = report_html(recorder, summary(&exercise));
   EXPECT_EQ(xml_error(html), "");
-  for (const char* part : {"g at the end", "pressure (mmHg)", ">80<", "g: left", "refused: draw the &lt;instrument&gt; out", "Neck &lt;remnant&gt;", "12.5 %", "Temporary clip"})
+  for (const char* part :
+       {"g at the end", "pressure (mmHg)", ">80<", "g: left", "refused: draw the &lt;instrument&gt; out",
+        "Neck &lt;remnant&gt;", "12.5 %", "Temporary clip"})
     EXPECT_NE(html.find(part), std::string::npos) << part;
 }
 
@@ -191,7 +199,9 @@ TEST(ReportJson, TellsOfChannelsAndCommands) {
 class Valve final : public Constraint {
  public:
   std::vector<CommandInfo> commands() const override { return {{"burst", "bursts", "", 0, 0}}; }
-  std::string run_command(std::string_view, std::string_view) override { return burst_++ ? "it has burst already" : ""; }
+  std::string run_command(std::string_view, std::string_view) override {
+    return burst_++ ? "it has burst already" : "";
+  }
   void build(const StepContext&, ConstraintBuilder&) override {}
   void reset() override { burst_ = 0; }
 
@@ -206,7 +216,8 @@ TEST(ReportJson, StatesTheSeedAndWhatWasDrawn) {
   const auto loaded = load_simulation_text(R"(<scene time_step="10 ms"><valve id="v"/><complications seed="12">
   <complication id="one" command="v burst" from="0.05 s" to="0.05 s"/><complication id="two" command="v burst" from="0.1 s" to="0.1 s"/>
   <complication id="late" command="v burst" from="9 s" to="9 s"/><complication id="never" command="v burst" probability="0" to="1 s"/>
-</complications></scene>)", "/s.xml", registry, 1);
+</complications></scene>)",
+                                           "/s.xml", registry, 1);
   ASSERT_TRUE(loaded.simulation) << loaded.diagnostics.format();
   RunRecorder recorder;
   for (int k = 0; k < 20; ++k) {
@@ -230,7 +241,8 @@ TEST(ReportJson, StatesTheSeedAndWhatWasDrawn) {
   EXPECT_NEAR(j.at("commands").at(0).at("time_s").get<double>(), 0.05, 1e-9);
   const std::string html = report_html(recorder, s);
   EXPECT_EQ(xml_error(html), "");
-  for (const char* part : {"Drawn from seed 12", "refused: it has burst already", "not in this run", "drawn for 9.0 s, not reached"})
+  for (const char* part :
+       {"Drawn from seed 12", "refused: it has burst already", "not in this run", "drawn for 9.0 s, not reached"})
     EXPECT_NE(html.find(part), std::string::npos) << part;
 }
 
@@ -249,7 +261,8 @@ TEST(ReportJson, IsJsonEvenWhenTheSimulationIsNot) {
   r.finite = false;
   r.solve.residual_N = std::numeric_limits<double>::infinity();
   r.time = 0.1;
-  recorder.record(r, {{"message", "\xff", "bad \xc3 bytes \x01", 0, 0.1}}, {0, std::numeric_limits<double>::quiet_NaN()}, std::numeric_limits<double>::quiet_NaN());
+  recorder.record(r, {{"message", "\xff", "bad \xc3 bytes \x01", 0, 0.1}},
+                  {0, std::numeric_limits<double>::quiet_NaN()}, std::numeric_limits<double>::quiet_NaN());
   const Json j = Json::parse(report_json(recorder, summary(nullptr)));
   EXPECT_EQ(j.at("finite"), false);
   EXPECT_EQ(xml_error(report_html(recorder, summary(nullptr))), "");
@@ -260,8 +273,9 @@ TEST(ReportHtml, IsWellFormedAndSaysWhatItMust) {
   fill(exercise);
   const std::string html = report_html(hundred_steps(), summary(&exercise));
   EXPECT_EQ(xml_error(html), "");
-  for (const char* part : {"For training only", "A &lt;title&gt; &amp; more", "Force on the hands", "g: left", "Rows, contacts and sweeps", "Residual of the solver",
-                           "Stages", "force (N)", "wall time (ms)", "Open it", "Too much &lt;force&gt;", "fedcba9876543210", "@media print"})
+  for (const char* part : {"For training only", "A &lt;title&gt; &amp; more", "Force on the hands", "g: left",
+                           "Rows, contacts and sweeps", "Residual of the solver", "Stages", "force (N)",
+                           "wall time (ms)", "Open it", "Too much &lt;force&gt;", "fedcba9876543210", "@media print"})
     EXPECT_NE(html.find(part), std::string::npos) << part;
   // Self-contained: nothing is fetched.
   for (const char* part : {"<script", "src=", "<link", "url("}) EXPECT_EQ(html.find(part), std::string::npos) << part;
@@ -354,9 +368,11 @@ TEST(Svg, TicksAreRoundAndCoverTheRange) {
 
 TEST(Svg, IsWellFormedForEveryCurve) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  for (const auto& y : {std::vector<double>{}, {0, 0, 0}, {nan, nan, nan}, {1, nan, 3}, {-1, 0, 1e30}, {1e-12, 1e-12, 1e-12}})
+  for (const auto& y :
+       {std::vector<double>{}, {0, 0, 0}, {nan, nan, nan}, {1, nan, 3}, {-1, 0, 1e30}, {1e-12, 1e-12, 1e-12}})
     for (bool log : {false, true}) {
-      const std::string text = svg({"t & t", "x", "y <N>", {0, 1, 2}, {{"c", "#111", y, "2 2"}}, {{1, "m & m", "#222"}}, log});
+      const std::string text =
+          svg({"t & t", "x", "y <N>", {0, 1, 2}, {{"c", "#111", y, "2 2"}}, {{1, "m & m", "#222"}}, log});
       EXPECT_EQ(xml_error(text), "");
       EXPECT_EQ(text.find("nan"), std::string::npos);
       EXPECT_EQ(text.find("inf"), std::string::npos);

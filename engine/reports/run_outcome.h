@@ -28,7 +28,7 @@ class RunOutcome {
   /// What was asked for, among the events of a step or between two.
   void note(const std::vector<Event>& events);
 
-  const std::vector<Asked>& asked() const { return asked_; }       ///< the first 1,000
+  const std::vector<Asked>& asked() const { return asked_; }  ///< the first 1,000
 
   /// Adds "commands" to a report.
   void add_to(nlohmann::ordered_json& json) const;

@@ -30,13 +30,18 @@ fs::path new_report_folder(const fs::path& root, const std::string& name) {
 }
 
 SessionReports::SessionReports(fs::path root, fs::path scene, std::string motion)
-    : root_(std::move(root)), scene_(std::move(scene)), motion_(std::move(motion)), recorder_(root_.empty() ? 0 : RunRecorder::max_samples) {
+    : root_(std::move(root)),
+      scene_(std::move(scene)),
+      motion_(std::move(motion)),
+      recorder_(root_.empty() ? 0 : RunRecorder::max_samples) {
   if (root_.empty()) return;
   // Said now, not after an hour's work.
   std::error_code error;
   fs::create_directories(root_, error);
   if (!error && ::access(root_.c_str(), W_OK | X_OK) != 0) error.assign(errno, std::generic_category());
-  if (error) spdlog::error("{}: no report can be written there: {}; name another folder with --report. The session goes on", root_.string(), error.message());
+  if (error)
+    spdlog::error("{}: no report can be written there: {}; name another folder with --report. The session goes on",
+                  root_.string(), error.message());
 }
 
 void SessionReports::hear(const insula_lcm::device_state_t& hands) {
@@ -102,10 +107,13 @@ void SessionReports::write(const Simulation& simulation) {
   const std::tm began = fmt::localtime(began_);
   summary_.began = fmt::format("{:%Y-%m-%d %H:%M:%S}", began);
   std::string name = fmt::format("{:%Y-%m-%d_%H-%M-%S}_{}", began, scene_.stem().string());
-  const auto failed = [](const std::exception& e) { spdlog::error("a report was not written: {}. The session goes on", e.what()); };
+  const auto failed = [](const std::exception& e) {
+    spdlog::error("a report was not written: {}. The session goes on", e.what());
+  };
   if (writing_.valid()) writing_.wait();  // folders come in the order of the runs
   try {
-    writing_ = std::async(std::launch::async, [root = root_, name = std::move(name), recorder = std::move(recorder_), summary = summary_, failed] {
+    writing_ = std::async(std::launch::async, [root = root_, name = std::move(name), recorder = std::move(recorder_),
+                                               summary = summary_, failed] {
       try {
         const fs::path folder = new_report_folder(root, name);
         write_report(folder, recorder, summary);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The reports of a session that people play: one for each time the exercise is gone through, from the start or a reset to the
-// exercise's end, the next reset or the session's end, whichever comes first. What comes after the exercise's end is not in it.
+// The reports of a session that people play: one for each time the exercise is gone through, from the start or a reset
+// to the exercise's end, the next reset or the session's end, whichever comes first. What comes after the exercise's
+// end is not in it.
 #pragma once
 #include <array>
 #include <ctime>
@@ -19,20 +20,21 @@ namespace insula {
 /// Throws InputError when it cannot be made.
 std::filesystem::path new_report_folder(const std::filesystem::path& root, const std::string& name);
 
-/// Written beside the steps: reports take longer than a hand may be without a new problem. What cannot be written is said in the log,
-/// and the session goes on.
+/// Written beside the steps: reports take longer than a hand may be without a new problem. What cannot be written is
+/// said in the log, and the session goes on.
 class SessionReports {
  public:
-  /// root: each report gets a folder there, named by date, time and scene; empty: none are written. motion: what simulated hands follow.
+  /// root: each report gets a folder there, named by date, time and scene; empty: none are written. motion: what
+  /// simulated hands follow.
   SessionReports(std::filesystem::path root, std::filesystem::path scene, std::string motion);
 
-  /// What the haptic server says of its hands: the largest force between two steps counts, and the mean rate of fresh forces over the
-  /// seconds in which a hand had any.
+  /// What the haptic server says of its hands: the largest force between two steps counts, and the mean rate of fresh
+  /// forces over the seconds in which a hand had any.
   void hear(const insula_lcm::device_state_t& hands);
   void hear(const insula_lcm::haptic_status_t& status);
 
-  /// After a step; allocates nothing but for events. touched: its hands are those heard of last. followed: they are simulated and do
-  /// what the motion says.
+  /// After a step; allocates nothing but for events. touched: its hands are those heard of last. followed: they are
+  /// simulated and do what the motion says.
   void step(const Simulation& simulation, bool touched, bool followed);
   /// Events of no step, as while paused.
   void note(const std::vector<Event>& events);

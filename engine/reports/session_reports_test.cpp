@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A session as people play it writes a report at the exercise's end, before a reset and at its own end, each into a new folder.
+// A session as people play it writes a report at the exercise's end, before a reset and at its own end, each into a new
+// folder.
 #include "engine/reports/session_reports.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +29,9 @@ using Json = nlohmann::json;
 class ReachedAt final : public ExerciseRule {
  public:
   Param<Duration> at{this, {.name = "at", .doc = "for tests"}};
-  void declare(PrepareContext&, const Simulation&, ExerciseLog& log) override { goal_ = log.add_goal("there", "Be there"); }
+  void declare(PrepareContext&, const Simulation&, ExerciseLog& log) override {
+    goal_ = log.add_goal("there", "Be there");
+  }
   void observe(const StepReport& report, ExerciseLog& log) override {
     if (report.time > at() - 1e-9) log.goal(goal_, report.time);
   }
@@ -39,12 +42,13 @@ class ReachedAt final : public ExerciseRule {
 
 class SessionReportsTest : public testing::Test {
  protected:
-  SessionReportsTest() : folder_(fs::temp_directory_path() / ("insula_session_" + std::to_string(std::random_device()()))) {
+  SessionReportsTest()
+      : folder_(fs::temp_directory_path() / ("insula_session_" + std::to_string(std::random_device()()))) {
     fs::create_directories(folder_);
     register_builtin(registry_);
     registry_.add<ReachedAt>("reached_at", Kind::exercise_rule, "for tests");
-    // What the engine says in each step is where a test acts: in simulated time, whatever the machine does. It is heard before the
-    // next step; that of the last one no more.
+    // What the engine says in each step is where a test acts: in simulated time, whatever the machine does. It is heard
+    // before the next step; that of the last one no more.
     bus_.subscribe(channel::haptic_problem, [this](Bytes) {
       ++steps_;
       if (on_step_) on_step_(steps_);
@@ -52,10 +56,12 @@ class SessionReportsTest : public testing::Test {
   }
   ~SessionReportsTest() override { fs::remove_all(folder_); }
 
-  /// A session of so many simulated seconds since its last reset, by steps of 10 ms; the exercise's goal is reached at `end`.
+  /// A session of so many simulated seconds since its last reset, by steps of 10 ms; the exercise's goal is reached at
+  /// `end`.
   int play(double duration_s, double end_s) {
-    std::ofstream(folder_ / "press.xml") << R"(<scene title="Press" time_step="10 ms"><exercise id="e" title="Waiting"><reached_at id="r" at=")" << end_s
-                                         << R"( s"/></exercise></scene>)";
+    std::ofstream(folder_ / "press.xml")
+        << R"(<scene title="Press" time_step="10 ms"><exercise id="e" title="Waiting"><reached_at id="r" at=")" << end_s
+        << R"( s"/></exercise></scene>)";
     LiveOptions options;
     options.scene = folder_ / "press.xml";
     options.bundle_root = folder_ / "bundle";
@@ -93,10 +99,13 @@ class SessionReportsTest : public testing::Test {
   std::vector<Json> reports() const {
     std::vector<fs::path> folders;
     for (const auto& entry : fs::directory_iterator(root())) folders.push_back(entry.path());
-    std::sort(folders.begin(), folders.end(), [](const auto& a, const auto& b) { return std::pair(a.string().size(), a) < std::pair(b.string().size(), b); });
+    std::sort(folders.begin(), folders.end(), [](const auto& a, const auto& b) {
+      return std::pair(a.string().size(), a) < std::pair(b.string().size(), b);
+    });
     std::vector<Json> out;
     for (const fs::path& f : folders) {
-      EXPECT_TRUE(std::regex_match(f.filename().string(), std::regex(R"(\d{4}-\d\d-\d\d_\d\d-\d\d-\d\d_press(_\d+)?)"))) << f;
+      EXPECT_TRUE(std::regex_match(f.filename().string(), std::regex(R"(\d{4}-\d\d-\d\d_\d\d-\d\d-\d\d_press(_\d+)?)")))
+          << f;
       EXPECT_TRUE(fs::is_regular_file(f / "report.html"));
       EXPECT_GT(fs::file_size(f / "report.html"), 1000u);
       std::ifstream in(f / "report.json");

@@ -71,7 +71,8 @@ std::vector<double> log_ticks(double low, double high) {
 std::string number(double v) { return fmt::format("{:.6g}", v == 0 ? 0.0 : v); }
 
 void text(std::string& to, double x, double y, const char* anchor, const char* style, const std::string& content) {
-  to += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\" {}>{}</text>\n", x, y, anchor, style, escaped(content));
+  to += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\" {}>{}</text>\n", x, y, anchor, style,
+                    escaped(content));
 }
 
 void line(std::string& to, double x1, double y1, double x2, double y2, const std::string& style) {
@@ -118,7 +119,8 @@ std::string svg(const Plot& plot) {
   }
   const Axis y = y_axis(plot);
   std::string out = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" role=\"img\" font-family=\"sans-serif\" font-size=\"11\" fill=\"#222\">\n"
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" role=\"img\" font-family=\"sans-serif\" "
+      "font-size=\"11\" fill=\"#222\">\n"
       "<title>{2}</title>\n<rect width=\"{0}\" height=\"{1}\" fill=\"#fff\"/>\n",
       width, height, escaped(plot.title));
   text(out, left, 18, "start", "font-size=\"13\" font-weight=\"bold\"", plot.title);
@@ -134,12 +136,14 @@ std::string svg(const Plot& plot) {
   line(out, left, height - bottom, width - right, height - bottom, "stroke=\"#222\"");
   line(out, left, top, left, height - bottom, "stroke=\"#222\"");
   text(out, (left + width - right) / 2, height - 8, "middle", "", plot.x_label);
-  out += fmt::format("<text transform=\"translate(14 {:.1f}) rotate(-90)\" text-anchor=\"middle\">{}</text>\n", (top + height - bottom) / 2, escaped(plot.y_label));
+  out += fmt::format("<text transform=\"translate(14 {:.1f}) rotate(-90)\" text-anchor=\"middle\">{}</text>\n",
+                     (top + height - bottom) / 2, escaped(plot.y_label));
 
   for (const auto& m : plot.marks) {
     if (m.x < x.low || m.x > x.high) continue;
     out += fmt::format("<g><title>{}</title>", escaped(m.text));
-    line(out, x.map(m.x), top, x.map(m.x), height - bottom, fmt::format("stroke=\"{}\" stroke-width=\"1\" stroke-dasharray=\"2 3\"", escaped(m.colour)));
+    line(out, x.map(m.x), top, x.map(m.x), height - bottom,
+         fmt::format("stroke=\"{}\" stroke-width=\"1\" stroke-dasharray=\"2 3\"", escaped(m.colour)));
     out += "</g>\n";
   }
   double legend = width - right;
@@ -147,7 +151,8 @@ std::string svg(const Plot& plot) {
     legend -= 7.0 * double(c->name.size()) + 8;
     text(out, legend, 18, "start", "", c->name);
     const std::string dash = c->dash.empty() ? "" : fmt::format(" stroke-dasharray=\"{}\"", escaped(c->dash));
-    line(out, legend - 22, 14, legend - 4, 14, fmt::format("stroke=\"{}\" stroke-width=\"2\"{}", escaped(c->colour), dash));
+    line(out, legend - 22, 14, legend - 4, 14,
+         fmt::format("stroke=\"{}\" stroke-width=\"2\"{}", escaped(c->colour), dash));
     legend -= 32;
   }
   for (const auto& c : plot.curves) {
@@ -163,7 +168,9 @@ std::string svg(const Plot& plot) {
       pen = true;
     }
     if (!path.empty())
-      out += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.4\" stroke-linejoin=\"round\"{}/>\n", path, escaped(c.colour), dash);
+      out +=
+          fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.4\" stroke-linejoin=\"round\"{}/>\n",
+                      path, escaped(c.colour), dash);
   }
   return out + "</svg>\n";
 }

@@ -9,9 +9,9 @@ namespace insula {
 
 struct PlotCurve {
   std::string name;
-  std::string colour;          ///< "#1f6fb2"
-  std::vector<double> y;       ///< one value an x; values that are not finite break the line
-  std::string dash;            ///< SVG dash pattern, empty: solid
+  std::string colour;     ///< "#1f6fb2"
+  std::vector<double> y;  ///< one value an x; values that are not finite break the line
+  std::string dash;       ///< SVG dash pattern, empty: solid
 };
 
 /// A vertical line at a moment.
@@ -24,12 +24,12 @@ struct PlotMark {
 struct Plot {
   std::string title;
   std::string x_label = "time (s)";
-  std::string y_label;         ///< with the unit: "force (N)"
+  std::string y_label;  ///< with the unit: "force (N)"
   std::vector<double> x;
   std::vector<PlotCurve> curves;
   std::vector<PlotMark> marks;
-  bool log_y = false;          ///< decades; values that are not positive break the line
-  bool log_x = false;          ///< x is positive throughout
+  bool log_y = false;  ///< decades; values that are not positive break the line
+  bool log_x = false;  ///< x is positive throughout
 };
 
 /// Dark on white, 760 wide; well-formed XML.

@@ -34,7 +34,8 @@ Pose held_pose(DeviceSession& session) {
     ++n;
     session.wait(0.005);
   }
-  if ((high - low).norm() > steady_m) throw InputError("the device moved; hold it still for a third of a second after the answer");
+  if ((high - low).norm() > steady_m)
+    throw InputError("the device moved; hold it still for a third of a second after the answer");
   return {sum / n, q};
 }
 
@@ -46,7 +47,9 @@ DeviceCalibration fit_calibration(const Pose& rest, const Vec3& right, const Vec
   Mat3 ways;  // row i: where the person's axis i points in the device's frame
   for (std::size_t i = 0; i < 3; ++i) {
     const Vec3 stroke = to[i] - rest.p;
-    if (!(stroke.norm() >= min_stroke_m)) throw InputError(fmt::format("the way {} was {:.0f} mm, less than {:.0f} mm", name[i], 1e3 * stroke.norm(), 1e3 * min_stroke_m));
+    if (!(stroke.norm() >= min_stroke_m))
+      throw InputError(fmt::format("the way {} was {:.0f} mm, less than {:.0f} mm", name[i], 1e3 * stroke.norm(),
+                                   1e3 * min_stroke_m));
     ways.row(Eigen::Index(i)) = stroke.normalized();
   }
   const Eigen::JacobiSVD<Mat3> svd(ways, Eigen::ComputeFullU | Eigen::ComputeFullV);
@@ -59,7 +62,9 @@ DeviceCalibration fit_calibration(const Pose& rest, const Vec3& right, const Vec
   for (Eigen::Index i = 0; i < 3; ++i) {
     const double off = std::acos(std::clamp(c.axes.row(i).dot(ways.row(i)), -1.0, 1.0));
     if (off > largest_error_rad)
-      throw InputError(fmt::format("the ways do not stand at right angles, or one was mistaken for another ({} is off by {:.0f} degrees)", name[std::size_t(i)], off * 180 / 3.14159265358979));
+      throw InputError(fmt::format(
+          "the ways do not stand at right angles, or one was mistaken for another ({} is off by {:.0f} degrees)",
+          name[std::size_t(i)], off * 180 / 3.14159265358979));
   }
   if (const std::string why = calibration_error(c); !why.empty()) throw InputError(why);
   return c;
@@ -80,7 +85,8 @@ int calibrate_device(const DeviceToolOptions& options) {
   out << "Each answer: Enter here, or the device's first button.\n";
   const std::array<const char*, 4> requests{
       "1 of 4: hold the device in the middle of where you want to work, as you would hold the instrument.",
-      "2 of 4: move it 5 cm to the right.", "3 of 4: back to the middle, then 5 cm away from you, towards the screen.", "4 of 4: back to the middle, then 5 cm up."};
+      "2 of 4: move it 5 cm to the right.", "3 of 4: back to the middle, then 5 cm away from you, towards the screen.",
+      "4 of 4: back to the middle, then 5 cm up."};
   std::array<Pose, 4> at;
   for (std::size_t i = 0; i < 4; ++i) {
     switch (session.ask(requests[i])) {

@@ -22,7 +22,7 @@ class DeviceSession {
 
   struct State {
     DeviceReading reading;
-    DeviceSample raw;      ///< as the device measured it; not valid for a simulated arm
+    DeviceSample raw;  ///< as the device measured it; not valid for a simulated arm
     Vec3 force = Vec3::Zero();
   };
   State state() const;
@@ -36,7 +36,7 @@ class DeviceSession {
   /// Enter, or the device's first button pressed anew.
   Answer ask(const std::string& text);
 
-  const std::string& name() const { return name_; }          ///< under which it is calibrated
+  const std::string& name() const { return name_; }  ///< under which it is calibrated
   const DeviceProfile& profile() const { return choice_.device->profile(); }
   std::string remark() const { return choice_.device->remark(); }
   bool streamed() const { return streamed_ != nullptr; }

@@ -48,7 +48,8 @@ int list_devices(std::ostream& out) {
     const DeviceSearch found = kind.search();
     out << fmt::format("{:<15} {}\n", kind.name, kind.summary);
     if (!kind.real) continue;
-    if (!found.missing.empty()) out << fmt::format("    not usable: {}\n    to get it: {}\n", found.missing, kind.how_to_get);
+    if (!found.missing.empty())
+      out << fmt::format("    not usable: {}\n    to get it: {}\n", found.missing, kind.how_to_get);
     else if (found.devices.empty()) out << "    none is plugged in\n";
     for (const FoundDevice& device : found.devices) {
       const DeviceWish wish{kind.name, device.which};
@@ -64,17 +65,20 @@ int show_device(const DeviceToolOptions& options) {
   if (!session.wait_for_device(5)) return not_there(session, out);
   const DeviceProfile& p = session.profile();
   out << fmt::format("{}: up to {:.1f} N{}, workspace {:.0f} x {:.0f} x {:.0f} mm\n", session.name(), p.max_force_N,
-                     p.max_torque_Nm > 0 ? fmt::format(" and {:.2f} N m", p.max_torque_Nm) : std::string(), 1e3 * p.workspace_m.x(), 1e3 * p.workspace_m.y(), 1e3 * p.workspace_m.z());
+                     p.max_torque_Nm > 0 ? fmt::format(" and {:.2f} N m", p.max_torque_Nm) : std::string(),
+                     1e3 * p.workspace_m.x(), 1e3 * p.workspace_m.y(), 1e3 * p.workspace_m.z());
   bool there = true;
   for (double t = 0; options.seconds <= 0 || t < options.seconds; t += 0.1) {
     const DeviceSession::State s = session.state();
     there = s.reading.connected;
     const Vec3 x = 1e3 * s.reading.pose.p, r = rotation_vector(s.reading.pose.q) * (180 / 3.14159265358979);
     if (there)
-      out << fmt::format("right {:7.1f}  away {:7.1f}  up {:7.1f} mm   turned {:6.1f} {:6.1f} {:6.1f} deg   speed {:5.0f} mm/s   buttons {}{}   force {:.2f} N\n", x.x(), x.y(), x.z(),
-                         r.x(), r.y(), r.z(), 1e3 * s.reading.v.norm(), s.reading.button1 ? '1' : '-', s.reading.button2 ? '2' : '-', s.force.norm());
-    else
-      out << "not connected" << (session.remark().empty() ? "" : ": ") << session.remark() << '\n';
+      out << fmt::format(
+          "right {:7.1f}  away {:7.1f}  up {:7.1f} mm   turned {:6.1f} {:6.1f} {:6.1f} deg   speed {:5.0f} mm/s   "
+          "buttons {}{}   force {:.2f} N\n",
+          x.x(), x.y(), x.z(), r.x(), r.y(), r.z(), 1e3 * s.reading.v.norm(), s.reading.button1 ? '1' : '-',
+          s.reading.button2 ? '2' : '-', s.force.norm());
+    else out << "not connected" << (session.remark().empty() ? "" : ": ") << session.remark() << '\n';
     out.flush();
     if (!session.wait(0.1)) break;
   }
@@ -96,8 +100,11 @@ int test_device_force(const DeviceToolOptions& options) {
     return 2;
   }
   if (!options.assume_yes) {
-    const auto answer = session.ask(fmt::format("The device will push with up to {:.1f} N: to the right and left, away and back, up and down. Hold it loosely, keep your face away.\n"
-                                                "Enter here, or the device's first button: begin. Its first button while it pushes, or Ctrl-C: end.", options.newtons));
+    const auto answer = session.ask(fmt::format(
+        "The device will push with up to {:.1f} N: to the right and left, away and back, up and down. Hold it loosely, "
+        "keep your face away.\n"
+        "Enter here, or the device's first button: begin. Its first button while it pushes, or Ctrl-C: end.",
+        options.newtons));
     if (answer != DeviceSession::Answer::yes) {
       out << (answer == DeviceSession::Answer::lost ? "error: the device was lost\n" : "nothing was done\n");
       return 1;
@@ -115,8 +122,11 @@ int test_device_force(const DeviceToolOptions& options) {
       const DeviceSession::State s = session.state();
       strongest = std::max(strongest, s.force.norm());
       farthest = std::max(farthest, (s.reading.pose.p - start).norm());
-      const char* why = !s.reading.connected ? "the device was lost" : s.reading.button1 ? "its button was pressed" : session.told_to_stop() ? "it was told to stop"
-                        : farthest > farthest_m || s.reading.v.norm() > fastest_m_s ? "it ran away from the hand" : nullptr;
+      const char* why = !s.reading.connected                                        ? "the device was lost"
+                        : s.reading.button1                                         ? "its button was pressed"
+                        : session.told_to_stop()                                    ? "it was told to stop"
+                        : farthest > farthest_m || s.reading.v.norm() > fastest_m_s ? "it ran away from the hand"
+                                                                                    : nullptr;
       if (why != nullptr) {
         session.push(Vec3::Zero());
         out << "ended: " << why << '\n';

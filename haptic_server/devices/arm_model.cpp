@@ -96,7 +96,8 @@ double ArmModel::energy() const {
   const double m = p_.arm_mass_kg + p_.hand_mass_kg;
   const Vec3 turn = rotation_vector(goal_.pose.q * pose_.q.conjugate());
   return 0.5 * (m * v_.squaredNorm() + p_.inertia_kgm2 * w_.squaredNorm() +
-                p_.hand_stiffness_N_m * (goal_.pose.p - pose_.p).squaredNorm() + p_.hand_stiffness_Nm_rad * turn.squaredNorm());
+                p_.hand_stiffness_N_m * (goal_.pose.p - pose_.p).squaredNorm() +
+                p_.hand_stiffness_Nm_rad * turn.squaredNorm());
 }
 
 void EncoderTracker::reset(const Vec3& x) {

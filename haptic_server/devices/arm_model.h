@@ -11,22 +11,23 @@ namespace insula {
 /// Pushed with a constant force F it comes to rest F / k away from its goal.
 struct ArmParameters {
   DeviceProfile profile;
-  double arm_mass_kg = 0.045;         ///< apparent mass at the tip
-  double arm_friction_N = 0;          ///< Coulomb friction of the arm, backdrive
-  double hand_mass_kg = 0.08;         ///< hand and fingers that move along
+  double arm_mass_kg = 0.045;  ///< apparent mass at the tip
+  double arm_friction_N = 0;   ///< Coulomb friction of the arm, backdrive
+  double hand_mass_kg = 0.08;  ///< hand and fingers that move along
   double hand_stiffness_N_m = 400;
-  double hand_damping_Ns_m = 10;      ///< ratio 0.7 with the masses above
+  double hand_damping_Ns_m = 10;  ///< ratio 0.7 with the masses above
   double inertia_kgm2 = 1e-4;
   double hand_stiffness_Nm_rad = 1.0;
   double hand_damping_Nms_rad = 0.014;
-  /// Physiological tremor of a resting hand: two incommensurate frequencies in the 8 to 12 Hz band on each axis. Amplitudes.
+  /// Physiological tremor of a resting hand: two incommensurate frequencies in the 8 to 12 Hz band on each axis.
+  /// Amplitudes.
   double tremor_m = 0;
   double tremor_rad = 0;
-  int tremor_seed = 0;                ///< shifts the phases, so that two hands differ
+  int tremor_seed = 0;  ///< shifts the phases, so that two hands differ
 };
 
-/// The limits of a Phantom Omni (maker's data sheet): 160 x 120 x 70 mm, 3.3 N, 0.055 mm, 45 g, 0.26 N backdrive friction,
-/// forces in three axes and no torques. Friction is left out here and can be set in ArmParameters.
+/// The limits of a Phantom Omni (maker's data sheet): 160 x 120 x 70 mm, 3.3 N, 0.055 mm, 45 g, 0.26 N backdrive
+/// friction, forces in three axes and no torques. Friction is left out here and can be set in ArmParameters.
 DeviceProfile omni_profile();
 
 /// State and integration. Deterministic: the same calls give the same bits.

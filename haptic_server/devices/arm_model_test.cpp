@@ -35,7 +35,9 @@ TEST(ArmModel, RestsForceOverStiffnessAway) {
   for (int k = 0; k < 3000; ++k) arm.step(dt);
   const ArmParameters& p = arm.parameters();
   EXPECT_TRUE(test::held("an arm at rest, m", (arm.pose().p - home.p - force / p.hand_stiffness_N_m).norm(), 1, 1e-12));
-  EXPECT_TRUE(test::held("an arm at rest, rad", (displacement(home, arm.pose()).tail<3>() - torque / p.hand_stiffness_Nm_rad).norm(), 1, 1e-9));
+  EXPECT_TRUE(test::held("an arm at rest, rad",
+                         (displacement(home, arm.pose()).tail<3>() - torque / p.hand_stiffness_Nm_rad).norm(), 1,
+                         1e-9));
   EXPECT_NEAR(arm.v().norm(), 0, 1e-12);
 }
 
@@ -60,7 +62,8 @@ TEST(ArmModel, StepIsImplicitEulerExactly) {
     EXPECT_NEAR(x_new, x + dt * v_new, 1e-15);
     x = x_new;
     v = v_new;
-    law_v = (m / dt * law_v + p.hand_stiffness_N_m * (0.004 - law_x) + p.hand_damping_Ns_m * 0.1 + 0.5) / (m / dt + p.hand_damping_Ns_m + p.hand_stiffness_N_m * dt);
+    law_v = (m / dt * law_v + p.hand_stiffness_N_m * (0.004 - law_x) + p.hand_damping_Ns_m * 0.1 + 0.5) /
+            (m / dt + p.hand_damping_Ns_m + p.hand_stiffness_N_m * dt);
     law_x += dt * law_v;
     EXPECT_NEAR(x, law_x, 1e-9);
     figure.law("implicit Euler", k + 1, law_x * 1e3);
@@ -92,7 +95,8 @@ TEST(ArmModel, EnergyNeverGrowsAgainstAPassiveWall) {
     }
     const double k_hand = arm.parameters().hand_stiffness_N_m;
     EXPECT_TRUE(test::held("energy gained in a tick at a wall", gained, first + 1e-3, 1e-9));
-    EXPECT_TRUE(test::held("an arm that presses a wall, m", std::abs(arm.pose().p.x() + 0.003 * k_hand / (k_hand + wall_stiffness)), 1, 1e-9));
+    EXPECT_TRUE(test::held("an arm that presses a wall, m",
+                           std::abs(arm.pose().p.x() + 0.003 * k_hand / (k_hand + wall_stiffness)), 1, 1e-9));
   }
 }
 
@@ -227,7 +231,8 @@ TEST(MakeDevice, KnowsItsKindsAndNamesThem) {
     make_device("omny", 0);
     FAIL();
   } catch (const InputError& e) {
-    EXPECT_STREQ(e.what(), "no device \"omny\"; there are: simulated mouse touch forcedimension haply spacemouse gamepad");
+    EXPECT_STREQ(e.what(),
+                 "no device \"omny\"; there are: simulated mouse touch forcedimension haply spacemouse gamepad");
   }
 }
 

@@ -25,7 +25,8 @@ DeviceCalibration parse(std::istream& in) {
   const auto q = json.at("rest_q").get<std::array<double, 4>>();
   DeviceCalibration c;
   for (std::size_t row = 0; row < 3; ++row)
-    for (std::size_t column = 0; column < 3; ++column) c.axes(Eigen::Index(row), Eigen::Index(column)) = axes[row][column];
+    for (std::size_t column = 0; column < 3; ++column)
+      c.axes(Eigen::Index(row), Eigen::Index(column)) = axes[row][column];
   c.rest.p = Vec3(p[0], p[1], p[2]);
   c.rest.q = Quat(q[0], q[1], q[2], q[3]);
   c.scale = json.at("scale").get<double>();
@@ -65,7 +66,8 @@ DeviceCalibration load_calibration(const std::string& device, const DeviceCalibr
   if (!fs::exists(file, error)) return fallback;
   std::string why;
   try {
-    if (!fs::is_regular_file(file, error) || fs::file_size(file, error) > largest_file || error) throw InputError("not a file of this kind");
+    if (!fs::is_regular_file(file, error) || fs::file_size(file, error) > largest_file || error)
+      throw InputError("not a file of this kind");
     std::ifstream in(file);
     const DeviceCalibration c = parse(in);
     why = calibration_error(c);
@@ -73,11 +75,13 @@ DeviceCalibration load_calibration(const std::string& device, const DeviceCalibr
   } catch (const std::exception& e) {
     why = e.what();
   }
-  throw InputError(file.string() + ": " + why + "; calibrate again with insula devices --calibrate, or delete the file");
+  throw InputError(file.string() + ": " + why +
+                   "; calibrate again with insula devices --calibrate, or delete the file");
 }
 
 fs::path save_calibration(const std::string& device, const DeviceCalibration& c) {
-  if (const std::string why = calibration_error(c); !why.empty()) throw InputError("calibration of " + device + ": " + why);
+  if (const std::string why = calibration_error(c); !why.empty())
+    throw InputError("calibration of " + device + ": " + why);
   nlohmann::json json;
   json["device"] = device;
   for (Eigen::Index row = 0; row < 3; ++row) json["axes"].push_back({c.axes(row, 0), c.axes(row, 1), c.axes(row, 2)});

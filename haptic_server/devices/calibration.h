@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How a device stands in front of the person who holds it: axes, rest pose, scale. Kept in the user's configuration folder.
+// How a device stands in front of the person who holds it: axes, rest pose, scale. Kept in the user's configuration
+// folder.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -20,7 +21,8 @@ struct DeviceCalibration {
   static constexpr double min_scale = 0.05, largest_scale = 5;
 };
 
-/// Empty when usable, else what is wrong: everything finite, axes a rotation, rest pose within 2 m, scale within its range.
+/// Empty when usable, else what is wrong: everything finite, axes a rotation, rest pose within 2 m, scale within its
+/// range.
 std::string calibration_error(const DeviceCalibration& calibration);
 
 /// $XDG_CONFIG_HOME/insula/devices or ~/.config/insula/devices.

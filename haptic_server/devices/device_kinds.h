@@ -26,8 +26,8 @@ struct DeviceSearch {
 struct DeviceKind {
   std::string name;
   std::string summary;
-  bool force = false;         ///< gives forces to the hand
-  bool real = false;          ///< a thing to be plugged in
+  bool force = false;  ///< gives forces to the hand
+  bool real = false;   ///< a thing to be plugged in
   std::string how_to_get;
   DeviceCalibration calibration;  ///< where nobody has calibrated
   std::function<DeviceSearch()> search;

@@ -15,7 +15,7 @@ struct DeviceSample {
   Pose pose;
   Vec3 v = Vec3::Zero();
   Vec3 w = Vec3::Zero();
-  bool has_w = false;        ///< w was measured; otherwise it is taken from the poses
+  bool has_w = false;  ///< w was measured; otherwise it is taken from the poses
   bool button1 = false;
   bool button2 = false;
 };

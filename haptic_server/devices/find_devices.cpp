@@ -57,8 +57,10 @@ DeviceSearch find_touch() {
     const hd::Handle handle = api->init_device(name.empty() ? nullptr : name.c_str());
     if (api->get_error().code != hd::success || handle == hd::invalid_handle) continue;
     api->make_current(handle);
-    const std::string model = text_of(api->get_string(hd::device_model_type)), serial = text_of(api->get_string(hd::device_serial_number));
-    found.devices.push_back({name, fmt::format("{}{}", model.empty() ? "arm" : model, serial.empty() ? "" : ", serial number " + serial)});
+    const std::string model = text_of(api->get_string(hd::device_model_type)),
+                      serial = text_of(api->get_string(hd::device_serial_number));
+    found.devices.push_back(
+        {name, fmt::format("{}{}", model.empty() ? "arm" : model, serial.empty() ? "" : ", serial number " + serial)});
     api->disable_device(handle);
   }
   return found;
@@ -78,8 +80,10 @@ DeviceSearch find_forcedimension() {
       continue;
     }
     unsigned short serial = 0;
-    const bool numbered = api->serial_number != nullptr && api->open_serial != nullptr && !dhd::failed(api->serial_number(&serial, char(i))) && serial > 0;
-    found.devices.push_back({numbered ? std::to_string(serial) : "#" + std::to_string(i), text_of(api->system_name(char(i)))});
+    const bool numbered = api->serial_number != nullptr && api->open_serial != nullptr &&
+                          !dhd::failed(api->serial_number(&serial, char(i))) && serial > 0;
+    found.devices.push_back(
+        {numbered ? std::to_string(serial) : "#" + std::to_string(i), text_of(api->system_name(char(i)))});
     api->close(char(i));
   }
   return found;
@@ -143,7 +147,8 @@ DeviceSearch find_gamepads() {
   std::lock_guard lock(api->mutex);
   api->update();
   for (int i = 0; i < api->count(); ++i)
-    if (api->is_controller(i)) found.devices.push_back({"#" + std::to_string(found.devices.size()), text_of(api->name_of(i))});
+    if (api->is_controller(i))
+      found.devices.push_back({"#" + std::to_string(found.devices.size()), text_of(api->name_of(i))});
   return found;
 }
 

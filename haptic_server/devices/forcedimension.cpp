@@ -26,12 +26,17 @@ struct DataSheet {
 /// Continuous limits by the maker's data sheets; for a model not known here a gentle guess.
 DataSheet data_sheet(int type) {
   switch (type) {
-    case dhd::omega3: case dhd::omega6_left: case dhd::omega6_right: case dhd::omega7_left: case dhd::omega7_right:
-      return {12, 0, 1e-5, {0.110, 0.160, 0.160}};
+    case dhd::omega3:
+    case dhd::omega6_left:
+    case dhd::omega6_right:
+    case dhd::omega7_left:
+    case dhd::omega7_right: return {12, 0, 1e-5, {0.110, 0.160, 0.160}};
     case dhd::delta3: return {20, 0, 2e-5, {0.260, 0.400, 0.400}};
     case dhd::delta6: return {20, 0.15, 2e-5, {0.260, 0.400, 0.400}};
-    case dhd::sigma7_left: case dhd::sigma7_right: case dhd::sigma6_left: case dhd::sigma6_right:
-      return {20, 0.4, 1.5e-6, {0.130, 0.190, 0.190}};
+    case dhd::sigma7_left:
+    case dhd::sigma7_right:
+    case dhd::sigma6_left:
+    case dhd::sigma6_right: return {20, 0.4, 1.5e-6, {0.130, 0.190, 0.190}};
     case dhd::falcon: return {8, 0, 6e-5, {0.1, 0.1, 0.1}};
     default: return {3.3, 0, 0, {0.1, 0.1, 0.1}};
   }
@@ -65,7 +70,8 @@ void ForceDimensionDevice::start() {
   if (thread_.joinable()) return;
   api_ = dhd::Api::shared();
   if (!api_->library.loaded()) throw InputError("forcedimension: " + api_->library.error() + "; " + dhd::how_to_get());
-  if (serial_ >= 0 && api_->open_serial == nullptr) throw InputError(title_ + ": this release of libdhd cannot open by serial number; use #0, #1...");
+  if (serial_ >= 0 && api_->open_serial == nullptr)
+    throw InputError(title_ + ": this release of libdhd cannot open by serial number; use #0, #1...");
   stopping_ = false;
   if (!open()) spdlog::warn("{}", remark());
   profile_fixed_ = true;
@@ -91,7 +97,8 @@ bool ForceDimensionDevice::open() {
   }
   if (id < 0 || api_->open.contains(id)) {
     const char* why = api_->last_error();
-    set_remark(title_ + " is not there (" + (why != nullptr ? why : "no reason given") + "); is it switched on, plugged in, and free?");
+    set_remark(title_ + " is not there (" + (why != nullptr ? why : "no reason given") +
+               "); is it switched on, plugged in, and free?");
     return false;
   }
   api_->open.insert(id);
@@ -109,7 +116,8 @@ bool ForceDimensionDevice::open() {
     profile_.resolution_m = sheet.resolution_m;
     profile_.workspace_m = (calibration().axes * sheet.workspace_m).cwiseAbs();
     double mass = 0;
-    if (api_->effector_mass != nullptr && !dhd::failed(api_->effector_mass(&mass, nr)) && mass > 0 && mass < 5) profile_.apparent_mass_kg = mass;
+    if (api_->effector_mass != nullptr && !dhd::failed(api_->effector_mass(&mass, nr)) && mass > 0 && mass < 5)
+      profile_.apparent_mass_kg = mass;
     if (!weightless) profile_.weight_N = 9.81 * profile_.apparent_mass_kg;
   }
   limit(sheet.force_N, torques_ ? sheet.torque_Nm : 0);
@@ -165,7 +173,8 @@ void ForceDimensionDevice::serve() {
     }
     if (!tick()) {
       const char* why = api_->last_error();
-      const std::string text = title_ + " was lost (" + (why != nullptr ? why : "no reason given") + "); it comes back by itself when it is plugged in again";
+      const std::string text = title_ + " was lost (" + (why != nullptr ? why : "no reason given") +
+                               "); it comes back by itself when it is plugged in again";
       close();
       set_remark(text);
       spdlog::warn("{}", text);

@@ -11,8 +11,8 @@
 
 namespace insula {
 
-/// Calls into the library wait for the device's bus, so a thread of the driver's own makes them, a thousand times a second.
-/// Force Dimension frame: x to the person, y right, z up; metres.
+/// Calls into the library wait for the device's bus, so a thread of the driver's own makes them, a thousand times a
+/// second. Force Dimension frame: x to the person, y right, z up; metres.
 class ForceDimensionDevice final : public StreamedDevice {
  public:
   /// `which`: a serial number, "#0", "#1"... in the library's order, or empty: the first one that no other hand has.

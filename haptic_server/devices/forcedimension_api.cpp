@@ -27,7 +27,8 @@ Api::Api() : library("INSULA_LIBDHD", {"libdhd.so", "libdhd.so.3", "/usr/local/l
 std::shared_ptr<Api> Api::shared() { return shared_while_used<Api>(); }
 
 const char* how_to_get() {
-  return "install Force Dimension's Haptic SDK for Linux (forcedimension.com, Software) and its udev rule; a library in an "
+  return "install Force Dimension's Haptic SDK for Linux (forcedimension.com, Software) and its udev rule; a library "
+         "in an "
          "unusual place: INSULA_LIBDHD=/path/libdhd.so";
 }
 

@@ -14,9 +14,18 @@ inline constexpr int on = 1;  // DHD_ON
 inline bool failed(int result) { return result < 0; }
 
 enum SystemType {  // DHD_DEVICE_...
-  omega3 = 33, omega6_right = 34, omega7_right = 35, omega6_left = 36, omega7_left = 37,
-  falcon = 60, delta3 = 63, delta6 = 64,
-  sigma7_right = 104, sigma7_left = 105, sigma6_right = 106, sigma6_left = 107,
+  omega3 = 33,
+  omega6_right = 34,
+  omega7_right = 35,
+  omega6_left = 36,
+  omega7_left = 37,
+  falcon = 60,
+  delta3 = 63,
+  delta6 = 64,
+  sigma7_right = 104,
+  sigma7_left = 105,
+  sigma6_right = 106,
+  sigma6_left = 107,
 };
 
 struct Api {

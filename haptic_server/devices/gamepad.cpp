@@ -60,7 +60,9 @@ sdl::Api::~Api() {
 
 std::shared_ptr<sdl::Api> sdl::Api::shared() { return shared_while_used<Api>(); }
 
-const char* sdl::how_to_get() { return "sudo apt install libsdl2-2.0-0; the user must be allowed to read /dev/input/event*"; }
+const char* sdl::how_to_get() {
+  return "sudo apt install libsdl2-2.0-0; the user must be allowed to read /dev/input/event*";
+}
 
 GamepadDevice::GamepadDevice(std::string which, int hand, const DeviceCalibration& calibration)
     : RateDevice("gamepad", hand, calibration), which_(std::move(which)) {}
@@ -71,7 +73,9 @@ void GamepadDevice::start() {
   if (thread_.joinable()) return;
   api_ = sdl::Api::shared();
   if (!api_->library.loaded() || !api_->ready)
-    throw InputError("gamepad: " + (api_->library.loaded() ? std::string("SDL2 does not start") : api_->library.error()) + "; " + sdl::how_to_get());
+    throw InputError(
+        "gamepad: " + (api_->library.loaded() ? std::string("SDL2 does not start") : api_->library.error()) + "; " +
+        sdl::how_to_get());
   stopping_ = false;
   thread_ = std::thread([this] { serve(); });
 }
@@ -144,7 +148,8 @@ void GamepadDevice::serve() {
         const auto pressed = [&](sdl::Button x) { return api_->button(pad_, x) != 0; };
         RateSample s;
         s.v = Vec3(axis(sdl::left_x), -axis(sdl::left_y), axis(sdl::trigger_right) - axis(sdl::trigger_left));
-        s.w = Vec3(-axis(sdl::right_y), double(pressed(sdl::shoulder_right)) - double(pressed(sdl::shoulder_left)), -axis(sdl::right_x));
+        s.w = Vec3(-axis(sdl::right_y), double(pressed(sdl::shoulder_right)) - double(pressed(sdl::shoulder_left)),
+                   -axis(sdl::right_x));
         s.button1 = pressed(sdl::a);
         s.button2 = pressed(sdl::b);
         deliver(s);

@@ -54,8 +54,8 @@ const char* how_to_get();
 
 }  // namespace sdl
 
-/// Left stick: right and away. Triggers: down and up. Right stick: turn about up and about right. Shoulders: roll. A, B:
-/// the buttons.
+/// Left stick: right and away. Triggers: down and up. Right stick: turn about up and about right. Shoulders: roll. A,
+/// B: the buttons.
 class GamepadDevice final : public RateDevice {
  public:
   /// `which`: a name or serial number, "#0", "#1"..., or empty: the first one that no other hand has.

@@ -21,7 +21,9 @@ constexpr auto patience = 1000ms;  // of one exchange; the hand is told after St
 }  // namespace
 
 HaplyDevice::HaplyDevice(const std::string& which, int hand, DeviceCalibration calibration)
-    : StreamedDevice(std::move(calibration)), hand_(hand), title_("haply" + (which.empty() ? std::string() : ":" + which)) {
+    : StreamedDevice(std::move(calibration)),
+      hand_(hand),
+      title_("haply" + (which.empty() ? std::string() : ":" + which)) {
   const std::size_t plus = which.find('+');
   arm_id_ = which.substr(0, plus);
   if (plus != std::string::npos) grip_id_ = which.substr(plus + 1);
@@ -71,7 +73,8 @@ void HaplyDevice::serve() {
     WebSocketClient service;
     if (service.connect(url(), patience)) {
       session(service);
-      if (!stopping_ && !service.connected()) say(title_ + ": the Haply service is gone (" + service.error() + "); waiting for it");
+      if (!stopping_ && !service.connected())
+        say(title_ + ": the Haply service is gone (" + service.error() + "); waiting for it");
     } else {
       say(title_ + ": no Haply service at " + url() + " (" + service.error() + "); " + how_to_get_haply());
     }
@@ -117,7 +120,7 @@ void HaplyDevice::deliver(const HaplyArm& arm, const HaplyGrip* grip) {
 }
 
 void HaplyDevice::session(WebSocketClient& service) {
-  std::string id;          // of the arm, from the first message on: only that one tells the handedness
+  std::string id;  // of the arm, from the first message on: only that one tells the handedness
   bool named_vector = false, introduce = true;
   HaplyState state;
   std::string_view text;
@@ -139,7 +142,8 @@ void HaplyDevice::session(WebSocketClient& service) {
       tried_ = true;
       if (arm == nullptr || !arm->ready) {
         lost();
-        say(title_ + (arm == nullptr ? ": the Haply service has no such arm; is it plugged in and switched on?" : ": the arm is not ready; follow Haply Hub"));
+        say(title_ + (arm == nullptr ? ": the Haply service has no such arm; is it plugged in and switched on?"
+                                     : ": the arm is not ready; follow Haply Hub"));
         // A new inventory is sent to a new connection only.
         if (arm == nullptr) return;
       } else if (arm->p_m) {
@@ -157,7 +161,8 @@ void HaplyDevice::session(WebSocketClient& service) {
 }
 
 const char* how_to_get_haply() {
-  return "install and start Haply Hub or the Haply Inverse Service (develop.haply.co); a service elsewhere: INSULA_HAPLY_URL=ws://host:port";
+  return "install and start Haply Hub or the Haply Inverse Service (develop.haply.co); a service elsewhere: "
+         "INSULA_HAPLY_URL=ws://host:port";
 }
 
 }  // namespace insula

@@ -16,8 +16,8 @@ class WebSocketClient;
 /// Haply frame: right-handed, x right, y away from the person, z up; metres.
 class HaplyDevice final : public StreamedDevice {
  public:
-  /// `which`: empty, the arm's id, or "arm+grip". Empty: the arm that is configured for this hand (0 left, 1 right), else
-  /// the first for the left and the last for the right hand.
+  /// `which`: empty, the arm's id, or "arm+grip". Empty: the arm that is configured for this hand (0 left, 1 right),
+  /// else the first for the left and the last for the right hand.
   HaplyDevice(const std::string& which, int hand, DeviceCalibration calibration = default_calibration());
   ~HaplyDevice() override;
   /// A missing service or arm is waited for.

@@ -29,13 +29,16 @@ bool number(const Json& j, const char* name, double& into) {
 
 std::optional<Vec3> vector(const Json* j) {
   Vec3 v;
-  if (j == nullptr || !number(*j, "x", v.x()) || !number(*j, "y", v.y()) || !number(*j, "z", v.z())) return std::nullopt;
+  if (j == nullptr || !number(*j, "x", v.x()) || !number(*j, "y", v.y()) || !number(*j, "z", v.z()))
+    return std::nullopt;
   return v;
 }
 
 std::optional<Quat> quaternion(const Json* j) {
   Quat q;
-  if (j == nullptr || !number(*j, "x", q.x()) || !number(*j, "y", q.y()) || !number(*j, "z", q.z()) || !number(*j, "w", q.w())) return std::nullopt;
+  if (j == nullptr || !number(*j, "x", q.x()) || !number(*j, "y", q.y()) || !number(*j, "z", q.z()) ||
+      !number(*j, "w", q.w()))
+    return std::nullopt;
   const double length = q.norm();
   if (!(std::abs(length - 1) < 0.05)) return std::nullopt;
   q.normalize();
@@ -106,16 +109,18 @@ bool parse_haply(std::string_view text, HaplyState& state, std::string& why) {
       return false;
     }
     any = true;
-    for (const Json& device : *devices) std::string_view(list) == "inverse3" ? read_arm(device, state) : read_grip(device, state);
+    for (const Json& device : *devices)
+      std::string_view(list) == "inverse3" ? read_arm(device, state) : read_grip(device, state);
   }
   if (!any) why = "no list of devices";
   return any;
 }
 
 std::string haply_force(const std::string& arm, const Vec3& force_N, bool named_vector, bool introduce) {
-  return fmt::format(R"({{{}"inverse3":[{{"device_id":"{}","commands":{{"set_cursor_force":{{"{}":{{"x":{:.5f},"y":{:.5f},"z":{:.5f}}}}}}}}}]}})",
-                     introduce ? R"("session":{"configure":{"profile":{"name":"org.insula:haptic_server"}}},)" : "", arm,
-                     named_vector ? "vector" : "values", force_N.x(), force_N.y(), force_N.z());
+  return fmt::format(
+      R"({{{}"inverse3":[{{"device_id":"{}","commands":{{"set_cursor_force":{{"{}":{{"x":{:.5f},"y":{:.5f},"z":{:.5f}}}}}}}}}]}})",
+      introduce ? R"("session":{"configure":{"profile":{"name":"org.insula:haptic_server"}}},)" : "", arm,
+      named_vector ? "vector" : "values", force_N.x(), force_N.y(), force_N.z());
 }
 
 }  // namespace insula

@@ -32,12 +32,12 @@ struct HaplyState {
   std::vector<HaplyGrip> grips;
 };
 
-/// False, with the reason, for anything that is not such a message; then `state` means nothing. Never throws. A number that
-/// is missing, no number or not finite leaves its vector empty; nothing is guessed.
+/// False, with the reason, for anything that is not such a message; then `state` means nothing. Never throws. A number
+/// that is missing, no number or not finite leaves its vector empty; nothing is guessed.
 bool parse_haply(std::string_view text, HaplyState& state, std::string& why);
 
-/// The command of one tick: the service answers each with one state. Forces in the service's axes, N. `introduce`: with the
-/// name under which the session shows in Haply's own programs.
+/// The command of one tick: the service answers each with one state. Forces in the service's axes, N. `introduce`: with
+/// the name under which the session shows in Haply's own programs.
 std::string haply_force(const std::string& arm, const Vec3& force_N, bool named_vector, bool introduce);
 
 }  // namespace insula

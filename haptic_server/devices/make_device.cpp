@@ -22,7 +22,8 @@ bool plugged_in(const DeviceWish& wish) {
     return false;
   }
   const std::string id = wish.which.substr(0, wish.which.find('+'));  // a Haply arm without its grip
-  return std::any_of(found.devices.begin(), found.devices.end(), [&](const FoundDevice& d) { return d.which == id || d.label == wish.which; });
+  return std::any_of(found.devices.begin(), found.devices.end(),
+                     [&](const FoundDevice& d) { return d.which == id || d.label == wish.which; });
 }
 
 }  // namespace
@@ -36,7 +37,8 @@ std::vector<std::string> device_kinds() {
 ArmParameters simulated_arm(int hand) {
   ArmParameters p;
   p.profile = omni_profile();
-  // Physiological tremor, tens of micrometres; more than half a count of the encoders, so that a held arm never reads as dead.
+  // Physiological tremor, tens of micrometres; more than half a count of the encoders, so that a held arm never reads
+  // as dead.
   p.tremor_m = 40e-6;
   p.tremor_rad = 0.3e-3;
   p.tremor_seed = hand;
@@ -58,8 +60,10 @@ std::vector<DeviceWish> parse_device_wishes(std::string_view text) {
       wish.which = std::string(which);
     }
     const DeviceKind* kind = find_device_kind(wish.kind);
-    if (kind == nullptr) throw InputError("no device " + in_quotes(wish.kind) + "; there are: " + joined(device_kinds(), " "));
-    if (!wish.which.empty() && (!kind->real || kind->name == "spacemouse")) throw InputError("device " + wish.kind + " takes no name (it has " + in_quotes(wish.which) + ")");
+    if (kind == nullptr)
+      throw InputError("no device " + in_quotes(wish.kind) + "; there are: " + joined(device_kinds(), " "));
+    if (!wish.which.empty() && (!kind->real || kind->name == "spacemouse"))
+      throw InputError("device " + wish.kind + " takes no name (it has " + in_quotes(wish.which) + ")");
     wishes.push_back(std::move(wish));
     if (comma == std::string_view::npos) return wishes;
     text.remove_prefix(comma + 1);
@@ -75,7 +79,8 @@ DeviceWish choose_device(const std::vector<DeviceWish>& wishes) {
 DeviceChoice make_device(std::string_view wishes, int hand) {
   const DeviceWish wish = choose_device(parse_device_wishes(wishes));
   const DeviceKind& kind = *find_device_kind(wish.kind);
-  const DeviceCalibration calibration = kind.real ? load_calibration(wish.calibration_name(hand), kind.calibration) : kind.calibration;
+  const DeviceCalibration calibration =
+      kind.real ? load_calibration(wish.calibration_name(hand), kind.calibration) : kind.calibration;
   return kind.make(wish.which, hand, calibration);
 }
 

@@ -30,11 +30,13 @@ struct DeviceWish {
   /// As it is written.
   std::string text() const { return which.empty() ? kind : kind + ":" + which; }
   /// What its calibration is kept under: a device without a name of its own is called after the hand that it serves.
-  std::string calibration_name(int hand) const { return which.empty() ? kind + (hand == 0 ? " left" : " right") : text(); }
+  std::string calibration_name(int hand) const {
+    return which.empty() ? kind + (hand == 0 ? " left" : " right") : text();
+  }
 };
 
-/// Reads "KIND[:WHICH][, KIND[:WHICH]]...", best first. Which one goes to the next comma; quotes around it are taken off.
-/// Throws InputError that lists the kinds when one is unknown.
+/// Reads "KIND[:WHICH][, KIND[:WHICH]]...", best first. Which one goes to the next comma; quotes around it are taken
+/// off. Throws InputError that lists the kinds when one is unknown.
 std::vector<DeviceWish> parse_device_wishes(std::string_view text);
 
 /// Names that a wish may begin with, for help texts.

@@ -29,7 +29,9 @@ void add_data_sheet(const std::string& model, DeviceProfile& profile) {
   profile.workspace_m = Vec3(0.160, 0.120, 0.070);
   profile.friction_N = touch_friction.friction_N;
   profile.apparent_mass_kg = 0.045;
-  if (model.find("Premium") == std::string::npos && model.find("Touch X") == std::string::npos && model.find("Desktop") == std::string::npos) return;
+  if (model.find("Premium") == std::string::npos && model.find("Touch X") == std::string::npos &&
+      model.find("Desktop") == std::string::npos)
+    return;
   profile.resolution_m = 23e-6;
   profile.friction_N = touch_x_friction.friction_N;
 }
@@ -76,7 +78,8 @@ bool OpenHapticsDevice::open() {
   const hd::ErrorInfo error = api_->get_error();
   if (error.code != hd::success || handle == hd::invalid_handle) {
     const char* why = api_->error_string(error.code);
-    set_remark(title() + " is not there (" + (why != nullptr ? why : "no reason given") + "); is it switched on, and known to the driver's setup program by this name?");
+    set_remark(title() + " is not there (" + (why != nullptr ? why : "no reason given") +
+               "); is it switched on, and known to the driver's setup program by this name?");
     return false;
   }
   handle_ = handle;
@@ -96,14 +99,16 @@ bool OpenHapticsDevice::open() {
 }
 
 void OpenHapticsDevice::take_over_facts() {
-  const double force = std::isfinite(facts_.max_force_N) && facts_.max_force_N > 0 ? facts_.max_force_N : profile_.max_force_N;
+  const double force =
+      std::isfinite(facts_.max_force_N) && facts_.max_force_N > 0 ? facts_.max_force_N : profile_.max_force_N;
   if (!profile_fixed_) {
     add_data_sheet(facts_.model.data(), profile_);
     profile_.max_force_N = std::min(force, force_limit_N);
     profile_.max_slew_N_s = 20 * profile_.max_force_N;
     const auto& box = facts_.box_mm;
     const Vec3 edges = 1e-3 * Vec3(box[3] - box[0], box[4] - box[1], box[5] - box[2]);
-    if (edges.allFinite() && edges.minCoeff() > 0 && edges.maxCoeff() < 2) profile_.workspace_m = (calibration().axes * edges).cwiseAbs();
+    if (edges.allFinite() && edges.minCoeff() > 0 && edges.maxCoeff() < 2)
+      profile_.workspace_m = (calibration().axes * edges).cwiseAbs();
   }
   limit(force, 0);
 }
@@ -126,7 +131,8 @@ void OpenHapticsDevice::look_after() {
     if (handle_ != hd::invalid_handle && !running_) {
       const char* why = api_->error_string(error_);
       close();
-      set_remark(title() + " was lost (" + (why != nullptr ? why : "no reason given") + "); it comes back by itself when it is plugged in again");
+      set_remark(title() + " was lost (" + (why != nullptr ? why : "no reason given") +
+                 "); it comes back by itself when it is plugged in again");
       spdlog::warn("{}", remark());
     }
     if (handle_ == hd::invalid_handle) {

@@ -12,9 +12,9 @@
 
 namespace insula {
 
-/// The library's scheduler calls back a thousand times a second and is the driver's thread for samples and forces. A thread
-/// of the driver's own opens the device and opens it again when it was lost; that may take its time.
-/// OpenHaptics frame: x right, y up, z to the person; millimetres.
+/// The library's scheduler calls back a thousand times a second and is the driver's thread for samples and forces. A
+/// thread of the driver's own opens the device and opens it again when it was lost; that may take its time. OpenHaptics
+/// frame: x right, y up, z to the person; millimetres.
 class OpenHapticsDevice final : public StreamedDevice {
  public:
   /// `name`: as given to the arm by the maker's setup program; empty: the default device.

@@ -4,7 +4,8 @@
 
 namespace insula::hd {
 
-Api::Api() : library("INSULA_LIBHD", {"libHD.so", "libHD.so.3.4", "/usr/lib/libHD.so", "/opt/OpenHaptics/lib/libHD.so"}) {
+Api::Api()
+    : library("INSULA_LIBHD", {"libHD.so", "libHD.so.3.4", "/usr/lib/libHD.so", "/opt/OpenHaptics/lib/libHD.so"}) {
   library.find(init_device, "hdInitDevice");
   library.find(disable_device, "hdDisableDevice");
   library.find(make_current, "hdMakeCurrentDevice");
@@ -38,7 +39,8 @@ void Api::leave_scheduler() {
 }
 
 const char* how_to_get() {
-  return "install 3D Systems' OpenHaptics for Linux and the Touch driver (support.3dsystems.com), name each arm with the "
+  return "install 3D Systems' OpenHaptics for Linux and the Touch driver (support.3dsystems.com), name each arm with "
+         "the "
          "driver's setup program; a library in an unusual place: INSULA_LIBHD=/path/libHD.so";
 }
 

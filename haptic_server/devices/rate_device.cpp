@@ -26,7 +26,8 @@ void shorten(Vec3& v, double limit) {
 
 }  // namespace
 
-RateDevice::RateDevice(const std::string& name, int hand, const DeviceCalibration& calibration, const RateSettings& settings)
+RateDevice::RateDevice(const std::string& name, int hand, const DeviceCalibration& calibration,
+                       const RateSettings& settings)
     : calibration_(calibration), settings_(settings), arm_(arm_named(name, hand)) {}
 
 bool RateDevice::fresh() noexcept {

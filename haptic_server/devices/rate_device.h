@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Devices that a person deflects (SpaceMouse, gamepad): the deflection is a velocity of the simulated hand, which moves the
-// simulated arm as the mouse does. Nothing is felt.
+// Devices that a person deflects (SpaceMouse, gamepad): the deflection is a velocity of the simulated hand, which moves
+// the simulated arm as the mouse does. Nothing is felt.
 #pragma once
 #include <atomic>
 #include <string>
@@ -24,10 +24,10 @@ struct RateSample {
 };
 
 struct RateSettings {
-  double speed_m_s = 0.06;     ///< at full deflection
+  double speed_m_s = 0.06;  ///< at full deflection
   double spin_rad_s = 1.2;
-  double reach_m = 0.10;       ///< the goal stays within this of where the hand was placed
-  double leash_m = 0.008;      ///< the goal runs no farther ahead of the hand: 400 N/m then press with 3.2 N
+  double reach_m = 0.10;   ///< the goal stays within this of where the hand was placed
+  double leash_m = 0.008;  ///< the goal runs no farther ahead of the hand: 400 N/m then press with 3.2 N
   double leash_rad = 0.5;
 };
 
@@ -46,7 +46,8 @@ class RateDevice : public Device {
   static constexpr double stale_after_s = 0.05;
 
  protected:
-  RateDevice(const std::string& name, int hand, const DeviceCalibration& calibration, const RateSettings& settings = {});
+  RateDevice(const std::string& name, int hand, const DeviceCalibration& calibration,
+             const RateSettings& settings = {});
 
   /// The driver's thread, at least every 20 ms while the device is there. What cannot be true is dropped.
   void deliver(RateSample sample) noexcept;

@@ -5,7 +5,8 @@
 
 namespace insula {
 
-/// What a person should know of a device or server, written by one thread and read by others; never by the servo's, since it locks.
+/// What a person should know of a device or server, written by one thread and read by others; never by the servo's,
+/// since it locks.
 class Remark {
  public:
   void set(const std::string& text) {

@@ -22,7 +22,8 @@ class SharedLibrary {
   /// Why it was not loaded, or which function was missing.
   const std::string& error() const { return error_; }
 
-  /// Finds a function. Where there is none, the library counts as not loaded from then on; `required` false forgives that.
+  /// Finds a function. Where there is none, the library counts as not loaded from then on; `required` false forgives
+  /// that.
   template <class Function>
   void find(Function*& function, const char* symbol, bool required = true) {
     function = reinterpret_cast<Function*>(address(symbol, required));

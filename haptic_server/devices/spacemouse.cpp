@@ -36,7 +36,8 @@ std::shared_ptr<spnav::Api> spnav::Api::shared() { return shared_while_used<Api>
 
 const char* spnav::how_to_get() { return "sudo apt install spacenavd libspnav0"; }
 
-SpaceMouseDevice::SpaceMouseDevice(int hand, const DeviceCalibration& calibration) : RateDevice("spacemouse", hand, calibration) {}
+SpaceMouseDevice::SpaceMouseDevice(int hand, const DeviceCalibration& calibration)
+    : RateDevice("spacemouse", hand, calibration) {}
 
 SpaceMouseDevice::~SpaceMouseDevice() { stop(); }
 
@@ -44,7 +45,9 @@ void SpaceMouseDevice::start() {
   if (thread_.joinable()) return;
   api_ = spnav::Api::shared();
   if (!api_->library.loaded()) throw InputError("spacemouse: " + api_->library.error() + "; " + spnav::how_to_get());
-  if (api_->in_use.exchange(true)) throw InputError("spacemouse: one hand only; the daemon merges all that are plugged in, so two cannot be told apart");
+  if (api_->in_use.exchange(true))
+    throw InputError(
+        "spacemouse: one hand only; the daemon merges all that are plugged in, so two cannot be told apart");
   mine_ = true;
   stopping_ = false;
   thread_ = std::thread([this] { serve(); });
@@ -89,10 +92,8 @@ bool SpaceMouseDevice::listen() {
   // Readable and yet nothing to read: the daemon has ended.
   if (ready > 0 && !any) return false;
   if (double(MonotonicClock().now_ns() - moved_ns_) * 1e-9 > silence_s) sample_.v = sample_.w = Vec3::Zero();
-  if (device_there_)
-    deliver(sample_);
-  else
-    lost();
+  if (device_there_) deliver(sample_);
+  else lost();
   return true;
 }
 
@@ -108,7 +109,9 @@ void SpaceMouseDevice::serve() {
         continue;
       }
       if (remark().empty()) {
-        set_remark(std::string("spacemouse: the daemon spacenavd does not answer; start it (sudo systemctl start spacenavd) or get it: ") + spnav::how_to_get());
+        set_remark(std::string("spacemouse: the daemon spacenavd does not answer; start it (sudo systemctl start "
+                               "spacenavd) or get it: ") +
+                   spnav::how_to_get());
         spdlog::warn("{}", remark());
       }
       for (auto waited = 0ms; waited < retry && !stopping_; waited += 20ms) std::this_thread::sleep_for(20ms);

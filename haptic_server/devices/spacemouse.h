@@ -19,9 +19,17 @@ inline constexpr int device_removed = 1;                // SPNAV_DEV_RM
 /// spnav_event, a union of int structures; room for every kind of event of libspnav 1.x.
 union Event {
   int type;
-  struct { int type, x, y, z, rx, ry, rz; unsigned int period; int* data; } motion;
-  struct { int type, press, number; } button;
-  struct { int type, operation, id, model, usb[2]; } device;
+  struct {
+    int type, x, y, z, rx, ry, rz;
+    unsigned int period;
+    int* data;
+  } motion;
+  struct {
+    int type, press, number;
+  } button;
+  struct {
+    int type, operation, id, model, usb[2];
+  } device;
   unsigned char room[128];
 };
 
@@ -32,9 +40,9 @@ struct Api {
   int (*close)();
   int (*descriptor)();
   int (*poll_event)(Event*);
-  int (*event_mask)(unsigned int);           // newer releases only
-  int (*device_name)(char*, int);            // newer releases only
-  std::atomic<bool> in_use{false};           ///< one connection a process, and all devices speak through it
+  int (*event_mask)(unsigned int);  // newer releases only
+  int (*device_name)(char*, int);   // newer releases only
+  std::atomic<bool> in_use{false};  ///< one connection a process, and all devices speak through it
 
   static std::shared_ptr<Api> shared();
 };
@@ -48,8 +56,8 @@ class SpaceMouseDevice final : public RateDevice {
  public:
   SpaceMouseDevice(int hand, const DeviceCalibration& calibration = {});
   ~SpaceMouseDevice() override;
-  /// Throws InputError when the library is missing or the other hand has the SpaceMouse already: the daemon merges all that
-  /// are plugged in. A missing daemon or device is waited for.
+  /// Throws InputError when the library is missing or the other hand has the SpaceMouse already: the daemon merges all
+  /// that are plugged in. A missing daemon or device is waited for.
   void start() override;
   void stop() override;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What all drivers of real arms share: samples come from a thread of their own, forces go back to it, and the servo waits
-// for neither.
+// What all drivers of real arms share: samples come from a thread of their own, forces go back to it, and the servo
+// waits for neither.
 #pragma once
 #include <atomic>
 #include <string>
@@ -32,8 +32,8 @@ class StreamedDevice : public Device {
 
   /// Without a sample for this long the device counts as gone.
   static constexpr double stale_after_s = 0.05;
-  /// A servo that has been silent for longer fades the force out; at stale_after_s it is zero. When the servo is back, so is
-  /// the force, within another stale_after_s: a stall must not end in a step.
+  /// A servo that has been silent for longer fades the force out; at stale_after_s it is zero. When the servo is back,
+  /// so is the force, within another stale_after_s: a stall must not end in a step.
   static constexpr double silent_after_s = 0.02;
 
  protected:

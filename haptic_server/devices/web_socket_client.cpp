@@ -85,7 +85,9 @@ bool WebSocketClient::connect(const std::string& url, std::chrono::milliseconds 
   tcp.socket().set_option(asio::ip::tcp::no_delay(true), failed);
   tcp.expires_never();
   connection->stream.read_message_max(largest_message);
-  if (!connection->run(patience, error_, [&](auto done) { connection->stream.async_handshake(host + ":" + port, path, done); })) return false;
+  if (!connection->run(patience, error_,
+                       [&](auto done) { connection->stream.async_handshake(host + ":" + port, path, done); }))
+    return false;
   connection_ = std::move(connection);
   return true;
 }
@@ -93,7 +95,8 @@ bool WebSocketClient::connect(const std::string& url, std::chrono::milliseconds 
 bool WebSocketClient::send(const std::string& text, std::chrono::milliseconds patience) {
   if (!connection_) return false;
   connection_->stream.text(true);
-  if (connection_->run(patience, error_, [&](auto done) { connection_->stream.async_write(asio::buffer(text), done); })) return true;
+  if (connection_->run(patience, error_, [&](auto done) { connection_->stream.async_write(asio::buffer(text), done); }))
+    return true;
   connection_.reset();
   return false;
 }
@@ -113,7 +116,8 @@ bool WebSocketClient::receive(std::string_view& text, std::chrono::milliseconds 
 void WebSocketClient::close() {
   if (!connection_) return;
   std::string ignored;
-  connection_->run(std::chrono::milliseconds(200), ignored, [&](auto done) { connection_->stream.async_close(websocket::close_code::normal, done); });
+  connection_->run(std::chrono::milliseconds(200), ignored,
+                   [&](auto done) { connection_->stream.async_close(websocket::close_code::normal, done); });
   connection_.reset();
 }
 

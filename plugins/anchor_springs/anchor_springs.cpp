@@ -21,9 +21,22 @@ namespace {
 
 class AnchorSprings final : public ForceModel {
  public:
-  Param<std::string> regions{this, {.name = "regions", .fallback = "", .doc = "regions of the wall that are held, separated by blanks; none: all of them"}};
-  Param<FoundationModulus> stiffness{this, {.name = "stiffness", .fallback = "1 kPa/mm", .min = "0 N/m3", .max = "10 N/mm3", .doc = "pressure that moves the wall by a length, over that length"}};
-  Param<Duration> damping{this, {.name = "damping", .fallback = "20 ms", .min = "0 s", .max = "10 s", .doc = "viscous over elastic modulus: the time in which it creeps back"}};
+  Param<std::string> regions{this,
+                             {.name = "regions",
+                              .fallback = "",
+                              .doc = "regions of the wall that are held, separated by blanks; none: all of them"}};
+  Param<FoundationModulus> stiffness{this,
+                                     {.name = "stiffness",
+                                      .fallback = "1 kPa/mm",
+                                      .min = "0 N/m3",
+                                      .max = "10 N/mm3",
+                                      .doc = "pressure that moves the wall by a length, over that length"}};
+  Param<Duration> damping{this,
+                          {.name = "damping",
+                           .fallback = "20 ms",
+                           .min = "0 s",
+                           .max = "10 s",
+                           .doc = "viscous over elastic modulus: the time in which it creeps back"}};
 
   void attach(PrepareContext& context, DeformableBody& body) override;
   void couplings(std::vector<std::pair<int, int>>&, Tangent) const override {}
@@ -45,7 +58,8 @@ class AnchorSprings final : public ForceModel {
   double energy(const double* x) override {
     double sum = 0;
     for (const Spring& s : springs_)
-      for (int c = 0; c < 3; ++c) sum += 0.5 * stiffness() * s.area * (x[3 * s.node + c] - s.rest[c]) * (x[3 * s.node + c] - s.rest[c]);
+      for (int c = 0; c < 3; ++c)
+        sum += 0.5 * stiffness() * s.area * (x[3 * s.node + c] - s.rest[c]) * (x[3 * s.node + c] - s.rest[c]);
     return sum;
   }
   double stiffness_damping() const override { return damping(); }
@@ -73,7 +87,9 @@ void AnchorSprings::attach(PrepareContext& context, DeformableBody& body) {
       continue;
     }
     const std::string near = nearest_name(word, names);
-    error(context, regions, in_quotes(word) + " is no region of the wall" + (near.empty() ? "" : "; did you mean \"" + near + "\"?") + " (it has " + joined(names) + ")");
+    error(context, regions,
+          in_quotes(word) + " is no region of the wall" + (near.empty() ? "" : "; did you mean \"" + near + "\"?") +
+              " (it has " + joined(names) + ")");
   }
   const std::vector<Vec3>& rest = shell->rest_nodes();
   std::vector<double> area(rest.size(), 0.0);
@@ -91,5 +107,6 @@ void AnchorSprings::attach(PrepareContext& context, DeformableBody& body) {
 }  // namespace insula
 
 INSULA_PLUGIN(anchor_springs) {
-  registry.add<insula::AnchorSprings>("anchor_springs", insula::Kind::force_model, "soft support that draws a wall back to its place");
+  registry.add<insula::AnchorSprings>("anchor_springs", insula::Kind::force_model,
+                                      "soft support that draws a wall back to its place");
 }

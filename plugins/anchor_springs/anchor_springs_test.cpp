@@ -11,7 +11,8 @@ namespace {
 
 constexpr double side = 0.02;
 
-std::string prepared(ShellBody& body, double stiffness, double damping, const std::string& regions, const test::Wall& wall = {.thickness = 1e-3, .density = 1000}) {
+std::string prepared(ShellBody& body, double stiffness, double damping, const std::string& regions,
+                     const test::Wall& wall = {.thickness = 1e-3, .density = 1000}) {
   auto springs = test::builtin().create("anchor_springs");
   dynamic_cast<QuantityParam&>(*springs->find_param("stiffness")).set(stiffness);
   dynamic_cast<QuantityParam&>(*springs->find_param("damping")).set(damping);
@@ -35,7 +36,8 @@ TEST(AnchorSprings, DrawBackWithModulusTimesAreaTimesDistance) {
   for (int i = 0; i < body.nodes(); ++i) {
     sum += f.segment<3>(3 * i);
     // Mass and spring share the node's area.
-    EXPECT_TRUE(test::held("anchors draw back with k A d, N", (f.segment<3>(3 * i) + 3e5 * body.node_mass()[std::size_t(i)] * moved).norm(), 1, 1e-12));
+    EXPECT_TRUE(test::held("anchors draw back with k A d, N",
+                           (f.segment<3>(3 * i) + 3e5 * body.node_mass()[std::size_t(i)] * moved).norm(), 1, 1e-12));
   }
   EXPECT_LT((sum + 3e5 * side * side * moved).norm(), 1e-12);
   EXPECT_NEAR(body.forces()[1]->energy(x.data()), 0.5 * 3e5 * side * side * moved.squaredNorm(), 1e-15);
@@ -48,7 +50,8 @@ TEST(AnchorSprings, WholeFollowsTheDiscretisedOscillator) {
   const double k = 2e3, time = 0.03, m = 1, h = 0.005;  // 1000 kg/m3 of 1 mm: 1 kg/m2
   ASSERT_EQ(prepared(body, k, time, ""), "");
   double u = 1e-3, v = 0;
-  test::Figure figure("anchors", "A wall let go on its anchors: the damped oscillator in implicit Euler", "step of 5 ms", "displacement, mm");
+  test::Figure figure("anchors", "A wall let go on its anchors: the damped oscillator in implicit Euler",
+                      "step of 5 ms", "displacement, mm");
   for (int i = 0; i < body.nodes(); ++i) body.q()[3 * i + 1] += u;
   for (int n = 0; n < 50; ++n) {
     test::step(body, h);
@@ -57,17 +60,21 @@ TEST(AnchorSprings, WholeFollowsTheDiscretisedOscillator) {
     v = d / h;
     figure.law("law", n + 1, u * 1e3);
     figure.run("run", n + 1, (body.q()[1] - body.rest_nodes()[0].y()) * 1e3);
-    for (int i = 0; i < body.nodes(); ++i) ASSERT_NEAR(body.q()[3 * i + 1] - body.rest_nodes()[std::size_t(i)].y(), u, 1e-12) << n;
+    for (int i = 0; i < body.nodes(); ++i)
+      ASSERT_NEAR(body.q()[3 * i + 1] - body.rest_nodes()[std::size_t(i)].y(), u, 1e-12) << n;
   }
 }
 
-// A place's time constant is what its compliance tells over steps of two lengths: between the wall's own and that of the springs.
+// A place's time constant is what its compliance tells over steps of two lengths: between the wall's own and that of
+// the springs.
 TEST(AnchorSprings, ShareAPlacesTimeConstantWithTheWall) {
   for (const double stiffness : {1e5, 1e7, 1e9}) {
     const auto opened = [&] {
       auto body = std::make_unique<ShellBody>();
       body->set_mesh(test::plate(side, side, 5, 5, test::Cut::shaken));
-      EXPECT_EQ(prepared(*body, stiffness, 20e-3, "", {.thickness = 1e-3, .young = 1e5, .density = 1, .stiffness_damping = 2e-3}), "");
+      EXPECT_EQ(prepared(*body, stiffness, 20e-3, "",
+                         {.thickness = 1e-3, .young = 1e5, .density = 1, .stiffness_damping = 2e-3}),
+                "");
       return body;
     };
     const auto compliance = [](ShellBody& body, double h, int node, int axis) {
@@ -85,7 +92,9 @@ TEST(AnchorSprings, ShareAPlacesTimeConstantWithTheWall) {
     for (int node : {0, 14, 21}) {
       double elastic = 0, viscous = 0;
       for (int axis = 0; axis < 3; ++axis) {
-        const double w = compliance(*a, 1 / rate, node, axis), slope = (compliance(*b, 1 / (rate + d), node, axis) - compliance(*c, 1 / (rate - d), node, axis)) / (2 * d);
+        const double w = compliance(*a, 1 / rate, node, axis),
+                     slope = (compliance(*b, 1 / (rate + d), node, axis) - compliance(*c, 1 / (rate - d), node, axis)) /
+                             (2 * d);
         viscous -= slope;
         elastic += w + rate * slope;
       }
@@ -95,7 +104,9 @@ TEST(AnchorSprings, ShareAPlacesTimeConstantWithTheWall) {
       p.node[0] = node;
       p.weight[0] = 1;
       const double told = viscous / elastic;
-      EXPECT_TRUE(test::held("a place's time constant is that of its compliance, s", a->retardation_time(p) - told, told, 1e-6)) << stiffness << " " << node;
+      EXPECT_TRUE(
+          test::held("a place's time constant is that of its compliance, s", a->retardation_time(p) - told, told, 1e-6))
+          << stiffness << " " << node;
       EXPECT_GT(a->retardation_time(p), 2e-3);
       EXPECT_LT(a->retardation_time(p), 20e-3);
     }
@@ -123,7 +134,8 @@ TEST(AnchorSprings, HoldTheirRegionsOnly) {
   EXPECT_GT(area, 0);
   ShellBody wrong;
   wrong.set_model(model());
-  EXPECT_NE(prepared(wrong, 1e5, 0, "sax").find("regions: \"sax\" is no region of the wall; did you mean \"sac\"?"), std::string::npos);
+  EXPECT_NE(prepared(wrong, 1e5, 0, "sax").find("regions: \"sax\" is no region of the wall; did you mean \"sac\"?"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -57,18 +57,23 @@ void Bleeding::prepare(PrepareContext& context) {
   if (up().norm() < 1e-9) return error(context, up, "must be a direction");
   up_ = up().normalized();
   bowl_ = {radius(), depth()};
-  if (sharp_force() > force()) error(context, sharp_force, "is above force; a sharp instrument tears more easily than a blunt one");
+  if (sharp_force() > force())
+    error(context, sharp_force, "is above force; a sharp instrument tears more easily than a blunt one");
 }
 
 void Bleeding::connect(PrepareContext& context, Simulation& simulation) {
   const BloodPressure& pressure = *flow->blood_pressure;
   if (pressure.on.get() != on.get())
-    return error(context, flow, in_quotes(flow->id) + " is the blood of " + in_quotes(pressure.on->id) + ", not of " + in_quotes(on->id));
+    return error(
+        context, flow,
+        in_quotes(flow->id) + " is the blood of " + in_quotes(pressure.on->id) + ", not of " + in_quotes(on->id));
   if (!flow->blood_pressure->ready(context)) return;
   const int r = on->region(region());
   if (r < 0) {
     const std::string near = nearest_name(region(), on->model().regions);
-    return error(context, region, in_quotes(on->id) + " has no region " + in_quotes(region()) + (near.empty() ? "" : "; did you mean " + in_quotes(near) + "?"));
+    return error(context, region,
+                 in_quotes(on->id) + " has no region " + in_quotes(region()) +
+                     (near.empty() ? "" : "; did you mean " + in_quotes(near) + "?"));
   }
   zone_.assign(std::size_t(on->nodes()), 0);
   bool any = false;
@@ -222,7 +227,8 @@ void Bleeding::reset() {
 }
 
 void Bleeding::append_state(std::vector<double>& out) const {
-  out.insert(out.end(), {double(open_), double(asked_), double(stopped_), rate_, lost_, volume_, since_, first_rate_, low_for_});
+  out.insert(out.end(),
+             {double(open_), double(asked_), double(stopped_), rate_, lost_, volume_, since_, first_rate_, low_for_});
   if (other_ > 0) out.push_back(other_);
 }
 
@@ -250,5 +256,6 @@ std::string Bleeding::run_command(std::string_view name, std::string_view) {
 
 INSULA_PLUGIN(bleeding) {
   registry.add_material({"blood", "fluid", {0.35, 0.01, 0.01, 0.95}, 0.1, 0, 0.1});
-  registry.add<insula::Bleeding>("bleeding", insula::Kind::constraint, "a weak spot of a vessel's wall that tears and bleeds into the field");
+  registry.add<insula::Bleeding>("bleeding", insula::Kind::constraint,
+                                 "a weak spot of a vessel's wall that tears and bleeds into the field");
 }

@@ -26,28 +26,101 @@ class Bleeding final : public Constraint, public BleedingSource {
   Ref<ShellBody> on{this, {.name = "on", .doc = "vessel whose wall may tear"}};
   Ref<BloodFlow> flow{this, {.name = "flow", .doc = "network that feeds the tear"}};
   Param<std::string> region{this, {.name = "region", .fallback = "bleb", .doc = "region of the wall that tears"}};
-  Param<Force> force{this, {.name = "force", .fallback = "0.6 N", .min = "0.001 N", .max = "100 N", .doc = "on the region by instruments and clips, that tears it"}};
-  Param<Force> sharp_force{this, {.name = "sharp_force", .fallback = "0.15 N", .min = "0.001 N", .max = "100 N", .doc = "the same by instruments with a cutting edge"}};
-  Param<Pressure> burst{this, {.name = "burst", .fallback = "280 mmHg", .min = "50 mmHg", .max = "1000 mmHg", .doc = "pressure inside that tears it"}};
-  Param<Area> tear_area{this, {.name = "tear_area", .fallback = "0.3 mm2", .min = "0.001 mm2", .max = "20 mm2", .doc = "of the opening"}};
+  Param<Force> force{this,
+                     {.name = "force",
+                      .fallback = "0.6 N",
+                      .min = "0.001 N",
+                      .max = "100 N",
+                      .doc = "on the region by instruments and clips, that tears it"}};
+  Param<Force> sharp_force{this,
+                           {.name = "sharp_force",
+                            .fallback = "0.15 N",
+                            .min = "0.001 N",
+                            .max = "100 N",
+                            .doc = "the same by instruments with a cutting edge"}};
+  Param<Pressure> burst{this,
+                        {.name = "burst",
+                         .fallback = "280 mmHg",
+                         .min = "50 mmHg",
+                         .max = "1000 mmHg",
+                         .doc = "pressure inside that tears it"}};
+  Param<Area> tear_area{
+      this, {.name = "tear_area", .fallback = "0.3 mm2", .min = "0.001 mm2", .max = "20 mm2", .doc = "of the opening"}};
   Param<Vec<Length>> origin{this, {.name = "origin", .doc = "bottom of the field"}};
   Param<Vec<Scalar>> up{this, {.name = "up", .fallback = "0 0 1", .doc = "out of the field, against gravity"}};
-  Param<Length> radius{this, {.name = "radius", .fallback = "15 mm", .min = "1 mm", .max = "200 mm", .doc = "of the field at its rim"}};
-  Param<Length> depth{this, {.name = "depth", .fallback = "20 mm", .min = "1 mm", .max = "200 mm", .doc = "of the field from bottom to rim; what is above runs off"}};
-  Param<FlowRate> suction_rate{this, {.name = "suction_rate", .fallback = "45 ml/min", .min = "0 ml/min", .max = "2000 ml/min", .doc = "that a suction tube takes while its tip is in the blood"}};
-  Param<Scalar> idle_suction{this, {.name = "idle_suction", .fallback = "0.1", .min = "0", .max = "1", .doc = "share of that which it takes with its vent open"}};
-  Param<Scalar> stopped_below{this, {.name = "stopped_below", .fallback = "0.05", .min = "0.001", .max = "0.5", .doc = "rate, over that of the rupture, below which bleeding counts as stopped"}};
-  Param<Duration> stopped_after{this, {.name = "stopped_after", .fallback = "2 s", .min = "0 s", .max = "60 s", .doc = "time that it must stay below"}};
+  Param<Length> radius{
+      this, {.name = "radius", .fallback = "15 mm", .min = "1 mm", .max = "200 mm", .doc = "of the field at its rim"}};
+  Param<Length> depth{this,
+                      {.name = "depth",
+                       .fallback = "20 mm",
+                       .min = "1 mm",
+                       .max = "200 mm",
+                       .doc = "of the field from bottom to rim; what is above runs off"}};
+  Param<FlowRate> suction_rate{this,
+                               {.name = "suction_rate",
+                                .fallback = "45 ml/min",
+                                .min = "0 ml/min",
+                                .max = "2000 ml/min",
+                                .doc = "that a suction tube takes while its tip is in the blood"}};
+  Param<Scalar> idle_suction{this,
+                             {.name = "idle_suction",
+                              .fallback = "0.1",
+                              .min = "0",
+                              .max = "1",
+                              .doc = "share of that which it takes with its vent open"}};
+  Param<Scalar> stopped_below{this,
+                              {.name = "stopped_below",
+                               .fallback = "0.05",
+                               .min = "0.001",
+                               .max = "0.5",
+                               .doc = "rate, over that of the rupture, below which bleeding counts as stopped"}};
+  Param<Duration> stopped_after{
+      this,
+      {.name = "stopped_after", .fallback = "2 s", .min = "0 s", .max = "60 s", .doc = "time that it must stay below"}};
 
-  Channel<FlowRate> bleeding_rate{this, {.name = "rate", .doc = "blood out of the tear", .min = "0 ml/min", .shown = Shown::vital, .display = "ml/min", .digits = 0, .good = {.to = "1 ml/min"}, .high = {.to = "20 ml/min"}}};
-  Channel<Volume> lost{this, {.name = "lost", .doc = "blood lost since the tear", .shown = Shown::vital, .display = "ml", .digits = 1}};
-  Channel<Length> level{this, {.name = "height", .doc = "of the blood over the bottom of the field", .min = "0 m", .display = "mm", .digits = 1}};
-  Channel<Duration> since{this, {.name = "since", .doc = "time since the rupture", .min = "0 s", .shown = Shown::vital, .digits = 0}};
-  Channel<Scalar> is_open{this, {.name = "open", .doc = "1 while there is a tear, else 0", .min = "0", .max = "1", .shown = Shown::none, .digits = 0}};
-  Plane pool{this, {.name = "pool", .doc = "surface of the blood in the field", .material = "blood", .value = "height over the bottom of the field", .unit = "m", .rate_channel = "rate"}};
-  Polylines jet{this, {.name = "jet", .doc = "where the blood leaves, and its direction", .material = "blood", .value = "rate over 60 ml/min, at most 1", .radius = "0.3 mm"}};
-  EventKind ruptured{this, {.name = "rupture", .doc = "the wall tears", .value = "force or pressure that tore it", .bad = true}};
-  EventKind stopped{this, {.name = "bleeding_stopped", .doc = "the bleeding has come to a stand", .value = "blood lost, m3"}};
+  Channel<FlowRate> bleeding_rate{this,
+                                  {.name = "rate",
+                                   .doc = "blood out of the tear",
+                                   .min = "0 ml/min",
+                                   .shown = Shown::vital,
+                                   .display = "ml/min",
+                                   .digits = 0,
+                                   .good = {.to = "1 ml/min"},
+                                   .high = {.to = "20 ml/min"}}};
+  Channel<Volume> lost{
+      this, {.name = "lost", .doc = "blood lost since the tear", .shown = Shown::vital, .display = "ml", .digits = 1}};
+  Channel<Length> level{this,
+                        {.name = "height",
+                         .doc = "of the blood over the bottom of the field",
+                         .min = "0 m",
+                         .display = "mm",
+                         .digits = 1}};
+  Channel<Duration> since{
+      this, {.name = "since", .doc = "time since the rupture", .min = "0 s", .shown = Shown::vital, .digits = 0}};
+  Channel<Scalar> is_open{this,
+                          {.name = "open",
+                           .doc = "1 while there is a tear, else 0",
+                           .min = "0",
+                           .max = "1",
+                           .shown = Shown::none,
+                           .digits = 0}};
+  Plane pool{this,
+             {.name = "pool",
+              .doc = "surface of the blood in the field",
+              .material = "blood",
+              .value = "height over the bottom of the field",
+              .unit = "m",
+              .rate_channel = "rate"}};
+  Polylines jet{this,
+                {.name = "jet",
+                 .doc = "where the blood leaves, and its direction",
+                 .material = "blood",
+                 .value = "rate over 60 ml/min, at most 1",
+                 .radius = "0.3 mm"}};
+  EventKind ruptured{
+      this, {.name = "rupture", .doc = "the wall tears", .value = "force or pressure that tore it", .bad = true}};
+  EventKind stopped{this,
+                    {.name = "bleeding_stopped", .doc = "the bleeding has come to a stand", .value = "blood lost, m3"}};
   EventKind again{this, {.name = "bleeding_again", .doc = "it bleeds anew", .value = "rate, m3/s", .bad = true}};
 
   void prepare(PrepareContext& context) override;
@@ -63,9 +136,9 @@ class Bleeding final : public Constraint, public BleedingSource {
   std::string run_command(std::string_view name, std::string_view argument) override;
 
   bool open() const { return open_; }
-  double rate() const { return rate_; }                       ///< of blood out of the tear, m3/s; 0 while it flows back
-  double volume() const { return volume_; }                   ///< in the field, m3
-  double height() const { return bowl_.height(volume_); }     ///< m
+  double rate() const { return rate_; }                    ///< of blood out of the tear, m3/s; 0 while it flows back
+  double volume() const { return volume_; }                ///< in the field, m3
+  double height() const { return bowl_.height(volume_); }  ///< m
   /// Forces on the region in the last step, N: the sum over contacts and ties, and the part of instruments with an
   /// edge.
   double force_on_region() const { return force_; }
@@ -84,12 +157,12 @@ class Bleeding final : public Constraint, public BleedingSource {
   Bowl bowl_;
   Vec3 up_ = Vec3::UnitZ();
   int chamber_ = -1;
-  std::vector<char> zone_;                  ///< one a node
+  std::vector<char> zone_;                          ///< one a node
   std::vector<std::array<int, 3>> zone_triangles_;  ///< of the wall, all corners in the zone
-  double now_ = 0;                          ///< simulated time at the end of the last step, s
+  double now_ = 0;                                  ///< simulated time at the end of the last step, s
   std::vector<Instrument*> instruments_;
   std::vector<Instrument*> suctions_;
-  std::vector<double> row_force_;           ///< three a row: force on the region
+  std::vector<double> row_force_;  ///< three a row: force on the region
   // State.
   bool open_ = false, asked_ = false, stopped_ = false;
   double other_ = 0;  ///< fluid in the sac that is no blood: it came in while no pool stood over the tear, m3

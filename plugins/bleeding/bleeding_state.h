@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bleedings as rules and tools see them: a reference that this family of plugins shares. Pictures, reports and the general
-// rules need none of it; they read channels and drawables.
+// Bleedings as rules and tools see them: a reference that this family of plugins shares. Pictures, reports and the
+// general rules need none of it; they read channels and drawables.
 #pragma once
 #include <vector>
 
@@ -10,11 +10,11 @@ namespace insula {
 
 /// Blood outside the vessels.
 struct BleedingState {
-  bool open = false;         ///< there is a tear
-  double rate = 0;           ///< of blood out of the tear, m3/s, of this moment; 0 while it flows back
-  double lost = 0;           ///< m3 since the tear, less what flowed back
-  double height = 0;         ///< of the blood over the bottom of the field, m; 0: dry
-  double since = -1;         ///< simulated time of the rupture, s; -1: none yet
+  bool open = false;  ///< there is a tear
+  double rate = 0;    ///< of blood out of the tear, m3/s, of this moment; 0 while it flows back
+  double lost = 0;    ///< m3 since the tear, less what flowed back
+  double height = 0;  ///< of the blood over the bottom of the field, m; 0: dry
+  double since = -1;  ///< simulated time of the rupture, s; -1: none yet
 };
 
 /// A component that may bleed.

@@ -30,7 +30,8 @@ struct Field : test::TestScene {
   Bleeding* bleeding = nullptr;
   Instrument* tool = nullptr;
   /// A vessel with a sac; its upper part is the bleb. `extra` adds elements, `attributes` go to the bleeding.
-  explicit Field(const std::string& attributes = "", const std::string& extra = "", const std::string& pressure = R"(systolic="93 mmHg" diastolic="93 mmHg")") {
+  explicit Field(const std::string& attributes = "", const std::string& extra = "",
+                 const std::string& pressure = R"(systolic="93 mmHg" diastolic="93 mmHg")") {
     test::TestVessel v;
     v.add_tube("parent", "inlet", "bifurcation", Vec3(0, 0, 0), 0.0014, 0.014, 12, 14);
     v.add_tube("superior", "bifurcation", "superior_outlet", Vec3(0.01, 0, 0), 0.0011, 0.012, 12, 12);
@@ -46,7 +47,8 @@ struct Field : test::TestScene {
     load(fmt::format(R"(<scene time_step="10 ms"><solver tolerance="1e-12 m" max_sweeps="1000"/>
   <bleeding id="b" on="artery" flow="flow" origin="0 0 -20 mm" {}/>
   <shell_body id="artery" wall="meshes/vessel.json"><test_wall stiffness="200 N/m"/><surface id="wall"/></shell_body>
-  <blood_flow id="flow" pressure="p"/><pressure id="p" on="artery" {} chambers="parent; superior; sac bleb"/>{}</scene>)", attributes, pressure, extra));
+  <blood_flow id="flow" pressure="p"/><pressure id="p" on="artery" {} chambers="parent; superior; sac bleb"/>{}</scene>)",
+                     attributes, pressure, extra));
     if (!s) return;
     flow = &get<BloodFlow>("flow");
     bleeding = &get<Bleeding>("b");
@@ -73,7 +75,8 @@ struct Field : test::TestScene {
   }
   BleedingState state() const { return bleeding->bleeding(); }
 };
-const std::string suction = R"(<suction id="tube" model="meshes/tube/tube.urdf" hand="left" home="0 30 0 mm" shaft="0 0 1" flat="1 0 0"/>)";
+const std::string suction =
+    R"(<suction id="tube" model="meshes/tube/tube.urdf" hand="left" home="0 30 0 mm" shaft="0 0 1" flat="1 0 0"/>)";
 
 TEST(Bleeding, FillsTheFieldAtTheTearsRateAndRunsOffAtTheRim) {
   Field t;
@@ -135,7 +138,9 @@ TEST(Bleeding, StopsUnderATemporaryClipAndBeginsAgain) {
   EXPECT_EQ(t.events("bleeding_stopped", 100), 0);
   auto& place = t.wall().place;
   for (std::size_t i = 0; i < place.size(); ++i)
-    if (const Vec3 x = t.shell().rest_nodes()[i]; t.shell().model().vertex_region[i] == 0 && x.z() > 0.008 && x.z() < 0.0102 && std::abs(x.x()) > 1e-9) place[i].x() = std::copysign(0.00015, x.x());
+    if (const Vec3 x = t.shell().rest_nodes()[i];
+        t.shell().model().vertex_region[i] == 0 && x.z() > 0.008 && x.z() < 0.0102 && std::abs(x.x()) > 1e-9)
+      place[i].x() = std::copysign(0.00015, x.x());
   EXPECT_EQ(t.events("bleeding_stopped", 190), 0) << "not before two seconds";
   EXPECT_EQ(t.events("bleeding_stopped", 400), 1);
   EXPECT_TRUE(t.state().open);
@@ -154,9 +159,12 @@ TEST(Bleeding, AWallThatDrawsTakesBackWhatStandsOverTheTear) {
     auto& place = t.wall().place;
     const auto move = [&](double low, double high, const auto& to) {
       for (std::size_t i = 0; i < place.size(); ++i)
-        if (const Vec3 x = t.shell().rest_nodes()[i]; x.x() > 0.025 && x.z() > low && x.z() < high) place[i].x() = to(x.x());
+        if (const Vec3 x = t.shell().rest_nodes()[i]; x.x() > 0.025 && x.z() > low && x.z() < high)
+          place[i].x() = to(x.x());
     };
-    move(0.0005, 0.0025, [](double x) { return std::abs(x - 0.03) > 1e-9 ? 0.03 + std::copysign(0.00015, x - 0.03) : x; });  // the neck is shut
+    move(0.0005, 0.0025, [](double x) {
+      return std::abs(x - 0.03) > 1e-9 ? 0.03 + std::copysign(0.00015, x - 0.03) : x;
+    });  // the neck is shut
     t.run(400);
     const double pool = t.bleeding->volume(), lost = t.state().lost, inside = t.flow->blood_pressure->fluid(2);
     ASSERT_LT(std::abs(t.flow->blood_pressure->pressure(2)), 1);
@@ -178,7 +186,8 @@ TEST(Bleeding, AWallThatDrawsTakesBackWhatStandsOverTheTear) {
     EXPECT_GT(taken, 1e-9);
     EXPECT_NEAR(taken, -out, 1e-9 * taken);
     // Blood is neither made nor lost: what came in stood in the field before, or was none.
-    EXPECT_TRUE(test::held("what flows back through a tear stood over it", std::abs(t.bleeding->volume() - (covered ? pool - taken : pool)), taken, 1e-9));
+    EXPECT_TRUE(test::held("what flows back through a tear stood over it",
+                           std::abs(t.bleeding->volume() - (covered ? pool - taken : pool)), taken, 1e-9));
     EXPECT_NEAR(t.state().lost, covered ? lost - taken : lost, 1e-9 * taken);
     out = 0;
     swell(1.1, 1.01);
@@ -191,7 +200,10 @@ TEST(Bleeding, AWallThatDrawsTakesBackWhatStandsOverTheTear) {
 
 TEST(Bleeding, TearsWhenPressedTooHardAndSoonerByAnEdge) {
   const auto pressed_at = [](const std::string& folder, double step) {
-    Field t(R"(force="0.3 N" sharp_force="0.1 N")", R"(<dissector id="tool" model="meshes/)" + folder + R"(/tube.urdf" hand="left" home="30 0 12 mm" shaft="0 0 1" flat="1 0 0")" + (folder == "tube" ? " sharp=\"never\"" : "") + R"(/>
+    Field t(R"(force="0.3 N" sharp_force="0.1 N")",
+            R"(<dissector id="tool" model="meshes/)" + folder +
+                R"(/tube.urdf" hand="left" home="30 0 12 mm" shaft="0 0 1" flat="1 0 0")" +
+                (folder == "tube" ? " sharp=\"never\"" : "") + R"(/>
       <contact between="tool artery"/>)");
     EXPECT_TRUE(t.tool) << t.messages;
     if (!t.tool) return -1.0;
@@ -205,8 +217,10 @@ TEST(Bleeding, TearsWhenPressedTooHardAndSoonerByAnEdge) {
       }
       // What the contact says is what the region feels.
       double contact = 0;
-      for (const ContactPoint& c : t.s->report().contacts) contact += (c.normal_force * c.normal + c.tangent_force).norm();
-      EXPECT_TRUE(test::held("force on the bleb = contact", std::abs(t.bleeding->force_on_region() - contact), 1e-3 + contact, 1e-6));
+      for (const ContactPoint& c : t.s->report().contacts)
+        contact += (c.normal_force * c.normal + c.tangent_force).norm();
+      EXPECT_TRUE(test::held("force on the bleb = contact", std::abs(t.bleeding->force_on_region() - contact),
+                             1e-3 + contact, 1e-6));
       last = t.bleeding->force_on_region();
     }
     return -2.0;
@@ -229,12 +243,14 @@ TEST(Bleeding, BurstsUnderPressure) {
 TEST(Bleeding, SaysWhatIsWrong) {
   EXPECT_NE(Field(R"(region="blob")").messages.find("no region \"blob\"; did you mean \"bleb\"?"), std::string::npos);
   EXPECT_NE(Field(R"(up="0 0 0")").messages.find("up: must be a direction"), std::string::npos);
-  EXPECT_NE(Field(R"(force="0.1 N" sharp_force="0.2 N")").messages.find("sharp_force: is above force"), std::string::npos);
+  EXPECT_NE(Field(R"(force="0.1 N" sharp_force="0.2 N")").messages.find("sharp_force: is above force"),
+            std::string::npos);
   test::TestScene two;
   test::TestVessel v;
   v.add_tube("parent", "inlet", "outlet", Vec3::Zero(), 0.0014, 0.014);
   v.write(two.folder);
-  two.load(R"(<scene><shell_body id="a" wall="meshes/vessel.json"><test_wall/></shell_body><shell_body id="c" wall="meshes/vessel.json"><test_wall/></shell_body>
+  two.load(
+      R"(<scene><shell_body id="a" wall="meshes/vessel.json"><test_wall/></shell_body><shell_body id="c" wall="meshes/vessel.json"><test_wall/></shell_body>
   <pressure id="p" on="a"/><blood_flow id="f" pressure="p"/><bleeding on="c" flow="f" region="parent" origin="0 0 0 mm"/></scene>)");
   EXPECT_NE(two.messages.find("is the blood of \"a\", not of \"c\""), std::string::npos) << two.messages;
 }

@@ -6,7 +6,8 @@ Blood flow through a vessel with centrelines, as a network of resistances that f
 centreline the wall is cut into material cross-sections (section.h). A station of lumen A, perimeter P and length l
 has
 
-    R = 2 mu P^2 l / A^3          (a circle: Poiseuille, 8 mu l / (pi r^4));   closed when A falls below `closed_below` of its rest
+    R = 2 mu P^2 l / A^3          (a circle: Poiseuille, 8 mu l / (pi r^4));   closed when A falls below `closed_below`
+of its rest
 
 Between the ends of a centreline is a node. It is the chamber of that stretch, whose wall stores blood
 (plugins/pressure). The network is linear in the current pressures. It is solved together with the wall, the contacts
@@ -37,7 +38,7 @@ namespace insula {
 namespace {
 
 constexpr double collateral_delay = 3;  // s, of the dye on its way round
-constexpr double min_drop = 10;       // Pa, over a tear in its linear law
+constexpr double min_drop = 10;         // Pa, over a tear in its linear law
 
 VecX rest_shape(const ShellBody& body) {
   VecX q(3 * body.nodes());
@@ -49,7 +50,8 @@ VecX rest_shape(const ShellBody& body) {
 
 void BloodFlow::connect(PrepareContext& context, Simulation&) {
   if (!blood_pressure->ready(context)) return;
-  if (blood_pressure->fed()) return error(context, blood_pressure, in_quotes(blood_pressure->id) + " is fed by another network already");
+  if (blood_pressure->fed())
+    return error(context, blood_pressure, in_quotes(blood_pressure->id) + " is fed by another network already");
   const ShellBody& body = *blood_pressure->on;
   if (std::string why = graph_.build(body.model(), body.wall_triangles(), thickness(), spacing()); !why.empty())
     return error(context, blood_pressure, in_quotes(body.id) + ": " + why);
@@ -68,7 +70,8 @@ void BloodFlow::connect(PrepareContext& context, Simulation&) {
     if (graph_.stretches[s].dead_end)
       for (const Station& t : graph_.stretches[s].stations) dye_.volume[s] += t.rest.area * t.length;
   for (std::size_t c = 0; c < chambers; ++c)
-    if (const std::size_t s = std::size_t(main_stretch_[c]); graph_.stretches[s].dead_end) dye_.volume[s] = blood_pressure->rest_volume(int(c));
+    if (const std::size_t s = std::size_t(main_stretch_[c]); graph_.stretches[s].dead_end)
+      dye_.volume[s] = blood_pressure->rest_volume(int(c));
   reset();
   declare_channels();
   blood_pressure->set_feed(this);
@@ -105,8 +108,11 @@ void BloodFlow::find_sealed() {
   for (std::size_t c = 0; c < sealed_.size(); ++c) {
     const int part = part_[std::size_t(chamber_node_[c])];
     bool fed = part == part_[std::size_t(inlet_node_)];
-    for (const Outlet& o : outlets_) fed = fed || (part == part_[std::size_t(o.node)] && (o.collateral > 0 || pressure_[std::size_t(o.node)] > venous()));
-    for (std::size_t t = 0; t < sealed_.size(); ++t) fed = fed || (tear_area_[t] > 0 && part == part_[std::size_t(chamber_node_[t])]);
+    for (const Outlet& o : outlets_)
+      fed = fed ||
+            (part == part_[std::size_t(o.node)] && (o.collateral > 0 || pressure_[std::size_t(o.node)] > venous()));
+    for (std::size_t t = 0; t < sealed_.size(); ++t)
+      fed = fed || (tear_area_[t] > 0 && part == part_[std::size_t(chamber_node_[t])]);
     sealed_[c] = !fed;
   }
 }
@@ -126,8 +132,10 @@ void BloodFlow::reduce(const StepContext& context, StarMesh& out) {
   for (int c = 0; c < chambers; ++c) {
     const std::size_t i = std::size_t(c);
     const double drop = pressure_[std::size_t(chamber_node_[i])] - outside();
-    tear_conductance_[i] = discharge() * tear_area_[i] * std::sqrt(2 / (density() * std::max(std::abs(drop), min_drop)));
-    mesh_.ground(at(chamber_node_[i]), tear_conductance_[i] + (sealed_[i] ? yielding_[i] / seal_decay() : 0), outside());
+    tear_conductance_[i] =
+        discharge() * tear_area_[i] * std::sqrt(2 / (density() * std::max(std::abs(drop), min_drop)));
+    mesh_.ground(at(chamber_node_[i]), tear_conductance_[i] + (sealed_[i] ? yielding_[i] / seal_decay() : 0),
+                 outside());
   }
   const int first = n - chambers;
   for (int k = 0; k < first; ++k) mesh_.eliminate(k);
@@ -145,14 +153,16 @@ void BloodFlow::settle(const StepContext& context, const double* pressure, const
     yielding_[std::size_t(c)] = yielding[c];
     tear_flow_[std::size_t(c)] = tear_conductance_[std::size_t(c)] * (pressure[c] - outside());
   }
-  for (int k = first - 1; k >= 0; --k) solved_[std::size_t(k)] = mesh_.pressure(k, solved_.data(), pressure_[std::size_t(node_at_[std::size_t(k)])]);
+  for (int k = first - 1; k >= 0; --k)
+    solved_[std::size_t(k)] = mesh_.pressure(k, solved_.data(), pressure_[std::size_t(node_at_[std::size_t(k)])]);
   // Beds were open or shut by the pressure of the step before.
   for (Outlet& o : outlets_) {
     const double before = pressure_[std::size_t(o.node)];
     o.flow = before > venous() ? o.bed * (solved_[std::size_t(place_[std::size_t(o.node)])] - venous()) : 0;
   }
   for (int k = 0; k < n; ++k) pressure_[std::size_t(node_at_[std::size_t(k)])] = solved_[std::size_t(k)];
-  for (Branch& b : graph_.branches) b.flow = b.conductance * (pressure_[std::size_t(b.a)] - pressure_[std::size_t(b.b)]);
+  for (Branch& b : graph_.branches)
+    b.flow = b.conductance * (pressure_[std::size_t(b.a)] - pressure_[std::size_t(b.b)]);
   arterial_flow_ = upstream_ * (arterial_ - pressure_[std::size_t(inlet_node_)]);
   carry_dye(context);
   average(context.h);
@@ -167,7 +177,8 @@ void BloodFlow::carry_dye(const StepContext& context) {
     if (since_dye_ >= 0) inflow_dye_[std::size_t(node)] += q * arterial_dye(since_dye_ - delay);
   };
   enter(inlet_node_, arterial_flow_, 0);
-  for (const Outlet& o : outlets_) enter(o.node, o.collateral * (arterial_ - pressure_[std::size_t(o.node)]), collateral_delay);
+  for (const Outlet& o : outlets_)
+    enter(o.node, o.collateral * (arterial_ - pressure_[std::size_t(o.node)]), collateral_delay);
   for (const Branch& b : graph_.branches) {
     const Stretch& s = graph_.stretches[std::size_t(b.stretch)];
     if (!s.dead_end) continue;
@@ -180,7 +191,8 @@ void BloodFlow::carry_dye(const StepContext& context) {
       at_rest += std::abs(rest_flow_[std::size_t(other.stretch)]);
     }
     const double share = at_rest > 0 ? std::min(2.0, passing / at_rest) : 1;
-    dye_.exchange[std::size_t(b.stretch)] = b.conductance > 0 ? sac_exchange() * flow() * share * std::min(1.0, s.narrowest) : 0;
+    dye_.exchange[std::size_t(b.stretch)] =
+        b.conductance > 0 ? sac_exchange() * flow() * share * std::min(1.0, s.narrowest) : 0;
   }
   dye_.step(graph_, context.h, pressure_, inflow_, inflow_dye_);
   if (since_dye_ >= 0) since_dye_ += context.h;
@@ -249,7 +261,8 @@ void BloodFlow::reset() {
 }
 
 void BloodFlow::append_state(std::vector<double>& out) const {
-  for (const auto* v : {&pressure_, &yielding_, &tear_area_, &mean_flow_, &beat_flow_}) out.insert(out.end(), v->begin(), v->end());
+  for (const auto* v : {&pressure_, &yielding_, &tear_area_, &mean_flow_, &beat_flow_})
+    out.insert(out.end(), v->begin(), v->end());
   out.insert(out.end(), {beat_share_, since_dye_});
   dye_.append_state(graph_, out);
 }
@@ -267,5 +280,7 @@ std::string BloodFlow::run_command(std::string_view name, std::string_view) {
 }  // namespace insula
 
 INSULA_PLUGIN(blood_flow) {
-  registry.add<insula::BloodFlow>("blood_flow", insula::Kind::constraint, "blood flow through a vessel along its centrelines, with lumens measured on the deformed wall");
+  registry.add<insula::BloodFlow>(
+      "blood_flow", insula::Kind::constraint,
+      "blood flow through a vessel along its centrelines, with lumens measured on the deformed wall");
 }

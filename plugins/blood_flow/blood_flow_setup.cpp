@@ -33,12 +33,15 @@ bool BloodFlow::find_ends(PrepareContext& context) {
     }
   if (inlet_node_ < 0) {
     const std::string near = nearest_name(inlet(), names);
-    error(context, inlet, "no centreline leads to an opening " + in_quotes(inlet()) + (near.empty() ? "" : "; did you mean " + in_quotes(near) + "?"));
+    error(context, inlet,
+          "no centreline leads to an opening " + in_quotes(inlet()) +
+              (near.empty() ? "" : "; did you mean " + in_quotes(near) + "?"));
     return false;
   }
   std::erase_if(outlets_, [&](const Outlet& o) { return o.node == inlet_node_; });
   if (outlets_.empty()) {
-    error(context, blood_pressure, in_quotes(blood_pressure->on->id) + ": the vessel has one opening only; blood needs a way out");
+    error(context, blood_pressure,
+          in_quotes(blood_pressure->on->id) + ": the vessel has one opening only; blood needs a way out");
     return false;
   }
   return true;
@@ -54,7 +57,9 @@ bool BloodFlow::map_chambers(PrepareContext& context) {
   for (int c = 0; c < chambers.count(); ++c) {
     const int s = main_stretch_[std::size_t(c)];
     if (s < 0) {
-      error(context, blood_pressure, "chamber " + in_quotes(chambers.name(c)) + " has no centreline, so no blood reaches it; join it to another one");
+      error(context, blood_pressure,
+            "chamber " + in_quotes(chambers.name(c)) +
+                " has no centreline, so no blood reaches it; join it to another one");
       return false;
     }
     chamber_node_.push_back(graph_.stretches[std::size_t(s)].middle);
@@ -87,12 +92,14 @@ bool BloodFlow::set_beds(PrepareContext& context) {
   for (const Outlet& o : outlets_) mesh_.source(at(o.node), -o.rest_flow);
   solve_all(rest_pressure_);
   rest_flow_.clear();
-  for (Branch& b : graph_.branches) b.flow = b.conductance * (rest_pressure_[std::size_t(b.a)] - rest_pressure_[std::size_t(b.b)]);
+  for (Branch& b : graph_.branches)
+    b.flow = b.conductance * (rest_pressure_[std::size_t(b.a)] - rest_pressure_[std::size_t(b.b)]);
   for (Outlet& o : outlets_) {
     const double p = rest_pressure_[std::size_t(o.node)];
     if (!(p > 1.05 * venous())) {
-      error(context, flow, "so much does not pass: " + std::to_string(int(p / 133.322387415)) + " mmHg would be left at the outlet " +
-                               in_quotes(graph_.nodes[std::size_t(o.node)].name));
+      error(context, flow,
+            "so much does not pass: " + std::to_string(int(p / 133.322387415)) + " mmHg would be left at the outlet " +
+                in_quotes(graph_.nodes[std::size_t(o.node)].name));
       return false;
     }
     o.collateral = collateral() * o.rest_flow / (mean - venous());

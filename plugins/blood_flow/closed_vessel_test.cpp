@@ -23,13 +23,15 @@ TEST(BloodFlow, SacBehindAClosedNeckGoesSoft) {
   ASSERT_TRUE(t.flow->sealed(3));
   EXPECT_EQ(t.state("sac").lumen, 0);
   const double before = t.state("sac").pressure, parent = t.state("parent").pressure;
-  test::Figure figure("sealed_sac", "Pressure in a sac behind a shut neck: decays in 3 s", "time, s", "pressure over that at first");
+  test::Figure figure("sealed_sac", "Pressure in a sac behind a shut neck: decays in 3 s", "time, s",
+                      "pressure over that at first");
   for (int n = 1; n <= 300; ++n) {
     t.run(1);
     figure.law("law", n * 0.01, std::pow(1 / (1 + 0.01 / 3), n));
     if (n % 10 == 0) figure.run("run", n * 0.01, t.state("sac").pressure / before);
   }
-  // Implicit Euler of dp/dt = -p / seal_decay with the yielding of each step; the wall of springs is linear but for its shape.
+  // Implicit Euler of dp/dt = -p / seal_decay with the yielding of each step; the wall of springs is linear but for its
+  // shape.
   EXPECT_NEAR(t.state("sac").pressure / before, std::pow(1 / (1 + 0.01 / 3), 300), 0.01);
   EXPECT_NEAR(t.state("parent").pressure, parent, 1e-3 * parent);
   EXPECT_EQ(t.state("sac").flow, 0);
@@ -78,7 +80,9 @@ TEST(BloodFlow, ClipOnABranchOrTheParentStopsItsFlow) {
   EXPECT_FALSE(t.flow->sealed(3));
   t.release();
   t.run(220);
-  EXPECT_TRUE(test::held("flow comes back when a clip is off", std::abs(t.state("inferior").flow - t.state("inferior").flow_at_rest), t.state("inferior").flow_at_rest, 1e-5));
+  EXPECT_TRUE(test::held("flow comes back when a clip is off",
+                         std::abs(t.state("inferior").flow - t.state("inferior").flow_at_rest),
+                         t.state("inferior").flow_at_rest, 1e-5));
 }
 
 TEST(BloodFlow, TearBleedsByTheOrificeLaw) {
@@ -93,7 +97,8 @@ TEST(BloodFlow, TearBleedsByTheOrificeLaw) {
   EXPECT_LT(q, 80 * ml_min);
   // What comes in goes out.
   double out = t.flow->tear_flow(3);
-  for (const auto& o : t.flow->outlets()) out += o.flow - o.collateral * (t.pressure->arterial(0.01) - t.flow->node_pressure(o.node));
+  for (const auto& o : t.flow->outlets())
+    out += o.flow - o.collateral * (t.pressure->arterial(0.01) - t.flow->node_pressure(o.node));
   EXPECT_NEAR(t.flow->arterial_flow(), out, 1e-6 * out);
   t.squeeze("parent", 0.008, 0.0102, 0, 0.0003);
   t.run(300);
@@ -104,9 +109,9 @@ TEST(BloodFlow, TearBleedsByTheOrificeLaw) {
   EXPECT_LT(t.flow->tear_flow(3), 0.01 * q) << "a closed neck stops it";
 }
 
-/// What a chamber of a wall of springs yields, m3/Pa, in steps whose pressures are each `ratio` of the one before: g . u with
-/// k u = g + load / ratio H u, since the load of a step, Pa, is that on the shape of the step before. H u = d(dV/dq) along u is exact by
-/// differences, V being a cubic of q.
+/// What a chamber of a wall of springs yields, m3/Pa, in steps whose pressures are each `ratio` of the one before: g .
+/// u with k u = g + load / ratio H u, since the load of a step, Pa, is that on the shape of the step before. H u =
+/// d(dV/dq) along u is exact by differences, V being a cubic of q.
 double yields(const Bifurcation& t, int chamber, double load, double ratio) {
   const Chambers& all = t.pressure->chambers();
   const auto& nodes = all.nodes(chamber);
@@ -139,12 +144,14 @@ TEST(BloodFlow, TornSacThatIsCutOffComesToThePressureOutside) {
   t.run(2);
   ASSERT_EQ(t.state("sac").lumen, 0);
   EXPECT_FALSE(t.flow->sealed(3)) << "its tear is an opening";
-  test::Figure figure("torn_sac", "A torn sac behind a shut neck, whose wall draws: comes to the pressure outside", "time, s", "pressure, mmHg");
+  test::Figure figure("torn_sac", "A torn sac behind a shut neck, whose wall draws: comes to the pressure outside",
+                      "time, s", "pressure, mmHg");
   for (const bool draws : {false, true}) {
     if (draws)
       for (std::size_t i = 0; i < t.wall().place.size(); ++i) {
         Vec3& x = t.wall().place[i];
-        if (t.shell().model().vertex_region[i] == 3 && x.z() > 0.003) x.head<2>() += 0.02 * (x.head<2>() - Eigen::Vector2d(0.03, 0));
+        if (t.shell().model().vertex_region[i] == 3 && x.z() > 0.003)
+          x.head<2>() += 0.02 * (x.head<2>() - Eigen::Vector2d(0.03, 0));
       }
     t.run(2);
     const double first = t.pressure->pressure(3);
@@ -159,8 +166,11 @@ TEST(BloodFlow, TornSacThatIsCutOffComesToThePressureOutside) {
       ASSERT_NEAR(t.flow->tear_flow(3), hole * now, 1e-12 * std::abs(hole * now) + 1e-24);
       ASSERT_NEAR(t.pressure->fluid(3) - fluid, -h * hole * now, 1e-9 * std::abs(h * hole * now) + 1e-20);
       // The sac yields as its springs do: implicit Euler of C dp/dt = -Q.
-      const double ratio = now / before, yielding = yields(t, 3, now - t.flow->reference(3), ratio), law = yielding / (yielding + h * hole);
-      if (std::abs(before) > 10) { EXPECT_NEAR(ratio, law, 2e-3) << n; }
+      const double ratio = now / before, yielding = yields(t, 3, now - t.flow->reference(3), ratio),
+                   law = yielding / (yielding + h * hole);
+      if (std::abs(before) > 10) {
+        EXPECT_NEAR(ratio, law, 2e-3) << n;
+      }
       if (std::abs(before) < 1 && std::abs(before) > 1e-3) {  // to the last digits where the wall is all but at rest
         ++straight;
         EXPECT_TRUE(test::held("a torn sac comes to the pressure outside", std::abs(ratio - law), 1, 1e-6)) << before;

@@ -21,7 +21,8 @@ void DyeTransport::prepare(const VesselGraph& graph) {
   node_.assign(graph.nodes.size(), 0.0);
 }
 
-void DyeTransport::step(VesselGraph& graph, double h, const std::vector<double>& pressure, const std::vector<double>& inflow, const std::vector<double>& inflow_dye) {
+void DyeTransport::step(VesselGraph& graph, double h, const std::vector<double>& pressure,
+                        const std::vector<double>& inflow, const std::vector<double>& inflow_dye) {
   std::copy(inflow.begin(), inflow.end(), in_.begin());
   std::copy(inflow_dye.begin(), inflow_dye.end(), dye_.begin());
   // Blood flows from high to low pressure, so in this order everything that enters a node is known before it leaves.
@@ -41,7 +42,9 @@ void DyeTransport::step(VesselGraph& graph, double h, const std::vector<double>&
     const double q = std::abs(b.flow);
     if (s.dead_end) {
       // The sac mixes: as much leaves as enters, what leaves is too little to be seen downstream.
-      const double k = volume[std::size_t(b.stretch)] > 0 ? h * (exchange[std::size_t(b.stretch)] + (forward ? q : 0)) / volume[std::size_t(b.stretch)] : 0;
+      const double k = volume[std::size_t(b.stretch)] > 0
+                           ? h * (exchange[std::size_t(b.stretch)] + (forward ? q : 0)) / volume[std::size_t(b.stretch)]
+                           : 0;
       const double mixed = (s.stations.front().dye + k * node_[std::size_t(b.a)]) / (1 + k);
       for (Station& t : s.stations) t.dye = mixed;
       continue;

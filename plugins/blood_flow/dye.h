@@ -17,7 +17,8 @@ class DyeTransport {
  public:
   void prepare(const VesselGraph& graph);
   /// inflow and inflow_dye: what enters each node from outside the graph, m3/s, and m3/s times concentration.
-  void step(VesselGraph& graph, double h, const std::vector<double>& pressure, const std::vector<double>& inflow, const std::vector<double>& inflow_dye);
+  void step(VesselGraph& graph, double h, const std::vector<double>& pressure, const std::vector<double>& inflow,
+            const std::vector<double>& inflow_dye);
   /// Exchange of a dead end with its junction, m3/s, one a stretch. It models the mixing in a sac without net inflow.
   std::vector<double> exchange;
   /// Volume of the mixed cell of a dead end, m3, one a stretch.

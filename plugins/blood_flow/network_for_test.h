@@ -18,7 +18,8 @@ struct Vessel : TestScene {
     // The network first: the order of elements does not matter.
     load(fmt::format(R"(<scene time_step="10 ms"><solver tolerance="1e-14 m" max_sweeps="2000"/>
   <shell_body id="artery" wall="meshes/vessel.json"><test_wall stiffness="2000 N/m"/></shell_body>
-  <blood_flow id="flow" pressure="p" {}/><pressure id="p" on="artery" {}/></scene>)", flow_attributes, pressure_attributes));
+  <blood_flow id="flow" pressure="p" {}/><pressure id="p" on="artery" {}/></scene>)",
+                     flow_attributes, pressure_attributes));
     if (!s) return;
     pressure = &get<BloodPressure>("p");
     flow = &get<BloodFlow>("flow");
@@ -29,7 +30,8 @@ struct Vessel : TestScene {
     const int r = shell().region(region);
     for (std::size_t i = 0; i < w.place.size(); ++i) {
       const Vec3& x = shell().rest_nodes()[i];
-      if (shell().model().vertex_region[i] == r && x.z() > low && x.z() < high && std::abs(x.x() - axis) > 1e-9) w.place[i].x() = axis + std::copysign(0.5 * gap, x.x() - axis);
+      if (shell().model().vertex_region[i] == r && x.z() > low && x.z() < high && std::abs(x.x() - axis) > 1e-9)
+        w.place[i].x() = axis + std::copysign(0.5 * gap, x.x() - axis);
     }
   }
   void release() const { wall().place = shell().rest_nodes(); }

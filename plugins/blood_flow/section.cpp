@@ -12,7 +12,9 @@ namespace insula {
 Lumen Section::wall(const VecX& q) const {
   Lumen out;
   if (corners.size() < 3) return out;
-  const auto place = [&](const Corner& c) -> Vec3 { return (1 - c.weight) * q.segment<3>(3 * c.a) + c.weight * q.segment<3>(3 * c.b); };
+  const auto place = [&](const Corner& c) -> Vec3 {
+    return (1 - c.weight) * q.segment<3>(3 * c.a) + c.weight * q.segment<3>(3 * c.b);
+  };
   const Vec3 origin = place(corners.front());
   Vec3 area = Vec3::Zero(), last = Vec3::Zero();
   for (std::size_t i = 1; i <= corners.size(); ++i) {
@@ -34,7 +36,8 @@ Lumen Section::lumen(const VecX& q, double thickness) const {
   return l;
 }
 
-Section cut(const std::vector<Vec3>& nodes, const std::vector<std::array<int, 3>>& triangles, const Vec3& at, const Vec3& normal) {
+Section cut(const std::vector<Vec3>& nodes, const std::vector<std::array<int, 3>>& triangles, const Vec3& at,
+            const Vec3& normal) {
   const Vec3 n = normal.normalized(), u = n.unitOrthogonal(), v = n.cross(u);
   const auto side = [&](int i) {
     const double d = n.dot(nodes[std::size_t(i)] - at);

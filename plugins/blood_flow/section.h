@@ -29,7 +29,8 @@ struct Section {
 
 /// The loop in which the plane cuts the triangles that goes around `at`, the smallest if there are several. Empty when
 /// there is none or when it is open.
-Section cut(const std::vector<Vec3>& nodes, const std::vector<std::array<int, 3>>& triangles, const Vec3& at, const Vec3& normal);
+Section cut(const std::vector<Vec3>& nodes, const std::vector<std::array<int, 3>>& triangles, const Vec3& at,
+            const Vec3& normal);
 
 /// Pressure drop per flow and length, Pa s/m4: Poiseuille's law with the hydraulic diameter, 2 mu P^2 / A^3. A circle
 /// has 8 mu / (pi r^4). A slit is underestimated by a third.

@@ -23,7 +23,8 @@ int VesselGraph::node(const std::string& name, const Vec3& place, const WallMode
 void VesselGraph::add_stations(Stretch& s, const WallModel::Centreline& line, const std::vector<Vec3>& vertices,
                                const std::vector<std::array<int, 3>>& wall, double thickness, double spacing) {
   std::vector<double> along{0};
-  for (std::size_t i = 1; i < line.points.size(); ++i) along.push_back(along.back() + (line.points[i] - line.points[i - 1]).norm());
+  for (std::size_t i = 1; i < line.points.size(); ++i)
+    along.push_back(along.back() + (line.points[i] - line.points[i - 1]).norm());
   const int count = std::max(2, int(std::ceil(along.back() / spacing - 1e-9)));
   const double length = along.back() / count;
   VecX rest(3 * Eigen::Index(vertices.size()));
@@ -88,7 +89,8 @@ std::string VesselGraph::join_parts() {
       }
     }
     if (lost < 0) return {};
-    if (own < 0) return "centreline end " + in_quotes(nodes[std::size_t(lost)].name) + " leads to no opening (cap) of the vessel";
+    if (own < 0)
+      return "centreline end " + in_quotes(nodes[std::size_t(lost)].name) + " leads to no opening (cap) of the vessel";
     for (Stretch& s : stretches) {
       if (s.from == own) s.from = other;
       if (s.to == own) s.to = other;
@@ -96,7 +98,8 @@ std::string VesselGraph::join_parts() {
   }
 }
 
-std::string VesselGraph::build(const WallModel& model, const std::vector<std::array<int, 3>>& wall, double thickness, double spacing) {
+std::string VesselGraph::build(const WallModel& model, const std::vector<std::array<int, 3>>& wall, double thickness,
+                               double spacing) {
   nodes.clear();
   stretches.clear();
   branches.clear();

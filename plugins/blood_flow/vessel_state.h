@@ -11,12 +11,12 @@ namespace insula {
 
 /// A stretch of vessel, or the sac, as the blood sees it.
 struct VesselState {
-  std::string_view id;       ///< of the network element: "superior", "sac"; lives as long as the simulation
-  double pressure = 0;       ///< Pa, of this moment
-  double flow = 0;           ///< m3/s, mean of the last heartbeat
-  double flow_at_rest = 0;   ///< m3/s, the same before anything was touched
-  double lumen = 1;          ///< narrowest cross-section over its own at rest
-  double dye = 0;            ///< concentration of indocyanine green, 0..1
+  std::string_view id;      ///< of the network element: "superior", "sac"; lives as long as the simulation
+  double pressure = 0;      ///< Pa, of this moment
+  double flow = 0;          ///< m3/s, mean of the last heartbeat
+  double flow_at_rest = 0;  ///< m3/s, the same before anything was touched
+  double lumen = 1;         ///< narrowest cross-section over its own at rest
+  double dye = 0;           ///< concentration of indocyanine green, 0..1
 };
 
 /// A component that has stretches of vessel.

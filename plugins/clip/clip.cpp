@@ -66,8 +66,12 @@ void Clip::prepare(PrepareContext& context) {
     return error(context, model, e.what());
   }
   if (shaft().norm() < 1e-9) return error(context, shaft, "a direction must not be zero");
-  if (shaft().cross(flat()).norm() < 1e-6 * shaft().norm()) return error(context, flat, "must not be parallel to the shaft");
-  if (start_opening() > tool_.opening_max) return error(context, start_opening, "the jaws open by no more than " + std::to_string(int(tool_.opening_max * 180 / std::numbers::pi)) + " deg");
+  if (shaft().cross(flat()).norm() < 1e-6 * shaft().norm())
+    return error(context, flat, "must not be parallel to the shaft");
+  if (start_opening() > tool_.opening_max)
+    return error(
+        context, start_opening,
+        "the jaws open by no more than " + std::to_string(int(tool_.opening_max * 180 / std::numbers::pi)) + " deg");
   pieces_.assign(3, {});
   for (const ConvexPiece& p : tool_.pieces) add_slices(p, pieces_[std::size_t(p.link)]);
   turned_.resize(3);
@@ -197,9 +201,11 @@ const RigidBody* Clip::held_by() const { return holder_; }
 std::vector<std::string> Clip::tags() const { return {data_.temporary() ? "temporary" : "permanent", data_.shape}; }
 
 std::vector<BodyProperty> Clip::properties() const {
-  return {{"blade_length", data_.blade_length, "m", std::to_string(int(std::lround(1000 * data_.blade_length))) + " mm"},
-          {"closing_force", data_.closing_force, "N", fmt::format("{:.2g} N", data_.closing_force)},
-          {"opening_max", tool_.opening_max, "rad", std::to_string(int(std::lround(tool_.opening_max * 180 / std::numbers::pi))) + " deg"}};
+  return {
+      {"blade_length", data_.blade_length, "m", std::to_string(int(std::lround(1000 * data_.blade_length))) + " mm"},
+      {"closing_force", data_.closing_force, "N", fmt::format("{:.2g} N", data_.closing_force)},
+      {"opening_max", tool_.opening_max, "rad",
+       std::to_string(int(std::lround(tool_.opening_max * 180 / std::numbers::pi))) + " deg"}};
 }
 
 double Clip::energy() const {
@@ -214,12 +220,14 @@ double Clip::energy() const {
 void Clip::append_state(std::vector<double>& out) const {
   for (const Vec3& x : {pose_.p, velocity_, spin_}) out.insert(out.end(), {x.x(), x.y(), x.z()});
   out.insert(out.end(), {pose_.q.w(), pose_.q.x(), pose_.q.y(), pose_.q.z(), opening_, turn_rate_, strength_});
-  out.insert(out.end(), {holder_ ? double(holder_->index) : -1.0, double(in_field_), double(applications_), double(touched_), force_});
+  out.insert(out.end(), {holder_ ? double(holder_->index) : -1.0, double(in_field_), double(applications_),
+                         double(touched_), force_});
 }
 
 }  // namespace insula
 
 INSULA_PLUGIN(clip) {
   registry.add<insula::Clip>("clip", insula::Kind::body, "aneurysm clip: two jaws that a spring closes");
-  registry.add<insula::ClipApplier>("clip_applier", insula::Kind::instrument, "holds a clip, opens it, lets it go and takes it back");
+  registry.add<insula::ClipApplier>("clip_applier", insula::Kind::instrument,
+                                    "holds a clip, opens it, lets it go and takes it back");
 }

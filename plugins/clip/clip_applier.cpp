@@ -50,7 +50,9 @@ void ClipApplier::join(PrepareContext& context, Simulation&) {
   if (first) {
     if (std::find(clips().begin(), clips().end(), first.get()) == clips().end())
       return error(context, first, in_quotes(first->id) + " is none of its clips");
-    if (first->holder()) return error(context, first, in_quotes(first->id) + " is in the applier " + in_quotes(first->holder()->id) + " already");
+    if (first->holder())
+      return error(context, first,
+                   in_quotes(first->id) + " is in the applier " + in_quotes(first->holder()->id) + " already");
     if (first->start.is("field")) return error(context, first, in_quotes(first->id) + " starts in the field");
     start_clip_ = first.get();
     start_clip_->start_in(this);
@@ -97,7 +99,8 @@ void ClipApplier::lay_down() {
 }
 
 std::string ClipApplier::why_kept() const {
-  return clip_ && clip_->touched() ? "let the clip go, or draw it out of the field, before you lay down the applier" : "";
+  return clip_ && clip_->touched() ? "let the clip go, or draw it out of the field, before you lay down the applier"
+                                   : "";
 }
 
 double ClipApplier::activity() const {
@@ -223,7 +226,8 @@ std::string ClipApplier::load(std::string_view wanted) {
     std::vector<std::string> ids;
     for (const Clip* c : clips()) ids.push_back(c->id);
     const std::string near = nearest_name(std::string(wanted), ids);
-    return "no clip " + in_quotes(wanted) + " for this applier" + (near.empty() ? "" : "; did you mean " + in_quotes(near) + "?");
+    return "no clip " + in_quotes(wanted) + " for this applier" +
+           (near.empty() ? "" : "; did you mean " + in_quotes(near) + "?");
   }
   Clip* const c = *found;
   if (c == clip_) return {};
@@ -255,8 +259,10 @@ std::string ClipApplier::run_command(std::string_view name, std::string_view arg
 
 void ClipApplier::append_state(std::vector<double>& out) const {
   Instrument::append_state(out);
-  out.insert(out.end(), {clip_ ? double(clip_->index) : -1.0, held_for_, held_opening_, double(button2_), double(touched_)});
-  out.insert(out.end(), {taken_.p.x(), taken_.p.y(), taken_.p.z(), taken_.q.w(), taken_.q.x(), taken_.q.y(), taken_.q.z()});
+  out.insert(out.end(),
+             {clip_ ? double(clip_->index) : -1.0, held_for_, held_opening_, double(button2_), double(touched_)});
+  out.insert(out.end(),
+             {taken_.p.x(), taken_.p.y(), taken_.p.z(), taken_.q.w(), taken_.q.x(), taken_.q.y(), taken_.q.z()});
 }
 
 }  // namespace insula

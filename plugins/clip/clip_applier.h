@@ -14,10 +14,30 @@ class ClipApplier final : public Instrument {
  public:
   RefList<Clip> clips{this, {.name = "clips", .doc = "clips it can be loaded with"}};
   Ref<Clip> first{this, {.name = "load", .fallback = "", .doc = "clip in it at the start; none: it begins empty"}};
-  Param<Duration> open_time{this, {.name = "open_time", .fallback = "0.3 s", .min = "0.02 s", .max = "10 s", .doc = "from closed to fully open while the button is held, and back"}};
-  Param<Length> reach{this, {.name = "reach", .fallback = "4 mm", .min = "0.1 mm", .max = "20 mm", .doc = "a clip in the field is taken when its grip is this near"}};
-  Param<Angle> alignment{this, {.name = "alignment", .fallback = "40 deg", .min = "1 deg", .max = "90 deg", .doc = "and turned from the applier by no more than this"}};
-  Param<Duration> settle_time{this, {.name = "settle_time", .fallback = "0.3 s", .min = "0.05 s", .max = "5 s", .doc = "in which a clip taken askew slides into the applier's jaws"}};
+  Param<Duration> open_time{this,
+                            {.name = "open_time",
+                             .fallback = "0.3 s",
+                             .min = "0.02 s",
+                             .max = "10 s",
+                             .doc = "from closed to fully open while the button is held, and back"}};
+  Param<Length> reach{this,
+                      {.name = "reach",
+                       .fallback = "4 mm",
+                       .min = "0.1 mm",
+                       .max = "20 mm",
+                       .doc = "a clip in the field is taken when its grip is this near"}};
+  Param<Angle> alignment{this,
+                         {.name = "alignment",
+                          .fallback = "40 deg",
+                          .min = "1 deg",
+                          .max = "90 deg",
+                          .doc = "and turned from the applier by no more than this"}};
+  Param<Duration> settle_time{this,
+                              {.name = "settle_time",
+                               .fallback = "0.3 s",
+                               .min = "0.05 s",
+                               .max = "5 s",
+                               .doc = "in which a clip taken askew slides into the applier's jaws"}};
 
   EventKind loaded{this, {.name = "clip_loaded", .doc = "a clip came from the tray into the applier"}};
   EventKind shut{this, {.name = "clip_shut", .doc = "the jaws of the held clip are shut again"}};

@@ -48,7 +48,8 @@ TEST(ClipApplier, TheHandFeelsTheLoadOnTheClip) {
     b.clip->external << force, (b.clip->grip().p - b.clip->pose().apply(b.clip->tool().centre_of_mass)).cross(force);
     b.run(grip_home, 1);
   }
-  EXPECT_TRUE(test::held("the hand feels the load on its clip", (b.applier->hand_force().head<3>() - force).norm(), force.norm(), 1e-6));
+  EXPECT_TRUE(test::held("the hand feels the load on its clip", (b.applier->hand_force().head<3>() - force).norm(),
+                         force.norm(), 1e-6));
   EXPECT_LT(b.applier->hand_force().tail<3>().norm(), 1e-8);
 }
 
@@ -72,7 +73,8 @@ TEST(ClipApplier, AHeldOpenSpringWeakensAsPublished) {
   ASSERT_TRUE(b.applier);
   b.run(grip_home, 60, true);
   const double before = b.clip->strength();
-  test::Figure figure("weakening", "The spring of a clip held open: 22 % in ten minutes", "time, s", "strength over that at first");
+  test::Figure figure("weakening", "The spring of a clip held open: 22 % in ten minutes", "time, s",
+                      "strength over that at first");
   for (int k = 1; k <= 10; ++k) {
     b.run(grip_home, 60, true);
     figure.law("law", 60 * k * b.s->h(), std::pow(0.78, 60 * k * b.s->h() / 600));
@@ -183,9 +185,10 @@ TEST(ClipApplier, ReleasedClipKeepsHolding) {
 
 TEST(ClipApplier, LoadsFromTheTray) {
   ClipBench b;
-  ASSERT_TRUE(b.load(b.clip_element("") + R"(<clip id="other" model="meshes/clip/clip.urdf"/>)" +
-                     R"(<clip_applier id="applier" model="meshes/tool/tool.urdf" hand="right" clips="clip other" home="0 0 14 mm" shaft="0 0 1" flat="1 0 0"/>)" +
-                     R"(<retractor id="spatula" model="meshes/tool/tool.urdf" hand="right" home="0 0 14 mm" shaft="0 0 1" flat="1 0 0"/>)"));
+  ASSERT_TRUE(b.load(
+      b.clip_element("") + R"(<clip id="other" model="meshes/clip/clip.urdf"/>)" +
+      R"(<clip_applier id="applier" model="meshes/tool/tool.urdf" hand="right" clips="clip other" home="0 0 14 mm" shaft="0 0 1" flat="1 0 0"/>)" +
+      R"(<retractor id="spatula" model="meshes/tool/tool.urdf" hand="right" home="0 0 14 mm" shaft="0 0 1" flat="1 0 0"/>)"));
   auto* other = b.s->scene().find_as<Clip>("other");
   EXPECT_FALSE(b.clip->active());
   b.run(grip_home, 1);
@@ -222,8 +225,9 @@ TEST(ClipApplier, LoadsFromTheTray) {
 
 TEST(ClipApplier, AClipInAnApplierOnTheTrayComesUpWithIt) {
   ClipBench b;
-  ASSERT_TRUE(b.load(R"(<retractor id="spatula" model="meshes/tool/tool.urdf" hand="right" home="0 0 14 mm" shaft="0 0 1" flat="1 0 0"/>)" +
-                     b.applier_element(R"(load="clip")") + b.clip_element("")));
+  ASSERT_TRUE(b.load(
+      R"(<retractor id="spatula" model="meshes/tool/tool.urdf" hand="right" home="0 0 14 mm" shaft="0 0 1" flat="1 0 0"/>)" +
+      b.applier_element(R"(load="clip")") + b.clip_element("")));
   EXPECT_FALSE(b.clip->active());
   const Pose there = displaced(grip_home, (Vec6() << 3e-3, 0, 5e-3, 0.1, 0, 0).finished());
   b.run(there, 3);

@@ -32,17 +32,20 @@ const Json& member(const std::filesystem::path& file, const Json& object, const 
 }
 
 /// A required number within [least, most], both in the unit of the file.
-double in_range(const std::filesystem::path& file, const Json& object, const char* key, const std::string& where, double least, double most) {
+double in_range(const std::filesystem::path& file, const Json& object, const char* key, const std::string& where,
+                double least, double most) {
   const Json& value = member(file, object, key, where);
   const double x = value.is_number() ? value.get<double>() : std::nan("");
-  if (!(x >= least && x <= most)) fail(file, where + "." + key + " must be a number from " + Json(least).dump() + " to " + Json(most).dump());
+  if (!(x >= least && x <= most))
+    fail(file, where + "." + key + " must be a number from " + Json(least).dump() + " to " + Json(most).dump());
   return x;
 }
 
 std::string word(const std::filesystem::path& file, const Json& object, const char* key, const std::string& where) {
   const Json& value = member(file, object, key, where);
   const std::string text = value.is_string() ? value.get<std::string>() : std::string();
-  const bool good = !text.empty() && text.size() <= 40 && text.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string::npos;
+  const bool good = !text.empty() && text.size() <= 40 &&
+                    text.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string::npos;
   if (!good) fail(file, where + "." + key + " must be a word of small letters, digits and _");
   return text;
 }
@@ -61,9 +64,11 @@ void read_blade_line(const std::filesystem::path& file, const Json& clip, const 
   out.blade_line = {out.blade_from, out.blade_to};
   if (clip.contains("blade_line")) {
     const Json& line = clip["blade_line"];
-    if (!line.is_array() || line.size() < 2 || line.size() > 1000) fail(file, "clip.blade_line must be a list of two or more points");
+    if (!line.is_array() || line.size() < 2 || line.size() > 1000)
+      fail(file, "clip.blade_line must be a list of two or more points");
     out.blade_line.clear();
-    for (std::size_t i = 0; i < line.size(); ++i) out.blade_line.push_back(point_mm(file, line[i], "clip.blade_line[" + std::to_string(i) + "]"));
+    for (std::size_t i = 0; i < line.size(); ++i)
+      out.blade_line.push_back(point_mm(file, line[i], "clip.blade_line[" + std::to_string(i) + "]"));
     if ((out.blade_line.front() - out.blade_from).norm() > 1e-6 || (out.blade_line.back() - out.blade_to).norm() > 1e-6)
       fail(file, "clip.blade_line must run from blade_from to blade_to");
   }
@@ -73,21 +78,27 @@ void read_blade_line(const std::filesystem::path& file, const Json& clip, const 
     nearest = std::min(nearest, distance_to_axis(out.blade_line[i], tool.hinges.front()));
     farthest = std::max(farthest, distance_to_axis(out.blade_line[i], tool.hinges.front()));
   }
-  if (std::abs(length - out.blade_length) > 0.02 * out.blade_length) fail(file, "clip.blade_length_mm differs from the length of the clamping line");
+  if (std::abs(length - out.blade_length) > 0.02 * out.blade_length)
+    fail(file, "clip.blade_length_mm differs from the length of the clamping line");
   if (out.reference < nearest - 1e-4 || out.reference > farthest + 1e-4)
     fail(file, "clip.reference_mm must be the distance from the hinge to a point of the blade");
 }
 
 ClipData parse_clip(const std::filesystem::path& file, const Json& clip, const ToolModel& tool) {
   if (!clip.is_object()) fail(file, "clip must be an object");
-  const bool jaws = tool.hinges.size() == 2 && tool.hinges[0].multiplier * tool.hinges[1].multiplier *
-      tool.hinges[0].axis.dot(tool.hinges[1].axis) < -1 + 1e-6 && distance_to_axis(tool.hinges[1].origin, tool.hinges[0]) < 1e-6;
+  const bool jaws =
+      tool.hinges.size() == 2 &&
+      tool.hinges[0].multiplier * tool.hinges[1].multiplier * tool.hinges[0].axis.dot(tool.hinges[1].axis) <
+          -1 + 1e-6 &&
+      distance_to_axis(tool.hinges[1].origin, tool.hinges[0]) < 1e-6;
   if (!jaws) fail(file, "a clip needs a URDF with two jaws that turn about one axis, opposite to each other");
-  if (tool.opening_min > 0 || !(tool.opening_max > 0)) fail(file, "the jaws of a clip close at the angle 0 and open to a positive one");
+  if (tool.opening_min > 0 || !(tool.opening_max > 0))
+    fail(file, "the jaws of a clip close at the angle 0 and open to a positive one");
   ClipData out;
   out.kind = word(file, clip, "kind", "clip");
   const auto kinds = {"permanent", "temporary", "mini", "mini_temporary"};
-  if (std::find(kinds.begin(), kinds.end(), out.kind) == kinds.end()) fail(file, "clip.kind must be permanent, temporary, mini or mini_temporary");
+  if (std::find(kinds.begin(), kinds.end(), out.kind) == kinds.end())
+    fail(file, "clip.kind must be permanent, temporary, mini or mini_temporary");
   out.shape = word(file, clip, "shape", "clip");
   out.blade_length = in_range(file, clip, "blade_length_mm", "clip", 0.5, 60) * mm;
   out.blade_width = in_range(file, clip, "blade_width_mm", "clip", 0.1, 10) * mm;

@@ -16,22 +16,33 @@ namespace {
 
 using test_files::TempFolder;
 
-std::string link(const std::string& name, const std::string& mass, const std::string& at, const std::string& more = "") {
+std::string link(const std::string& name, const std::string& mass, const std::string& at,
+                 const std::string& more = "") {
   return "<link name='" + name + "'><inertial><origin xyz='" + at + "' rpy='0 0 0'/><mass value='" + mass +
          "'/><inertia ixx='2e-9' ixy='0' ixz='0' iyy='3e-9' iyz='0' izz='4e-9'/></inertial>"
-         "<visual name='" + name + "'><geometry><sphere radius='0.001'/></geometry></visual>"
-         "<collision name='" + name + "_piece'><origin xyz='" + at + "'/><geometry><sphere radius='0.001'/></geometry></collision>" + more + "</link>";
+         "<visual name='" +
+         name +
+         "'><geometry><sphere radius='0.001'/></geometry></visual>"
+         "<collision name='" +
+         name + "_piece'><origin xyz='" + at + "'/><geometry><sphere radius='0.001'/></geometry></collision>" + more +
+         "</link>";
 }
 
 const std::string driver =
-    "<joint name='opening' type='revolute'><parent link='body'/><child link='left'/><origin xyz='0 0.002 0.012' rpy='0 0 0'/>"
+    "<joint name='opening' type='revolute'><parent link='body'/><child link='left'/><origin xyz='0 0.002 0.012' rpy='0 "
+    "0 0'/>"
     "<axis xyz='0 2 0'/><limit lower='0' upper='0.3' effort='1' velocity='1'/></joint>";
 const std::string mimic =
-    "<joint name='a_mirrored' type='revolute'><parent link='body'/><child link='right'/><origin xyz='0 0.002 0.012' rpy='0 0 0'/>"
-    "<axis xyz='0 1 0'/><limit lower='-0.3' upper='0' effort='1' velocity='1'/><mimic joint='opening' multiplier='-1' offset='0'/></joint>";
-const std::string links = link("body", "0.0001", "0 0 0.013") + link("left", "0.00002", "-0.001 0 -0.008") + link("right", "0.00002", "0.001 0 -0.008");
+    "<joint name='a_mirrored' type='revolute'><parent link='body'/><child link='right'/><origin xyz='0 0.002 0.012' "
+    "rpy='0 0 0'/>"
+    "<axis xyz='0 1 0'/><limit lower='-0.3' upper='0' effort='1' velocity='1'/><mimic joint='opening' multiplier='-1' "
+    "offset='0'/></joint>";
+const std::string links = link("body", "0.0001", "0 0 0.013") + link("left", "0.00002", "-0.001 0 -0.008") +
+                          link("right", "0.00002", "0.001 0 -0.008");
 
-std::string robot(const std::string& content) { return "<?xml version='1.0'?><robot name='probe'>" + content + "</robot>"; }
+std::string robot(const std::string& content) {
+  return "<?xml version='1.0'?><robot name='probe'>" + content + "</robot>";
+}
 
 const std::string clip_json = R"({"unit": "mm", "rounding_mm": {"left_piece": 0.25},
   "clip": {"kind": "permanent", "shape": "curved", "blade_length_mm": 8.24621125, "blade_width_mm": 1.2, "closing_force_N": 1.8,
@@ -73,7 +84,8 @@ TEST(ToolLinks, AreReadInTheToolFrame) {
   ASSERT_EQ(tool.link_count(), 3);
   EXPECT_DOUBLE_EQ(tool.opening_min, 0);
   EXPECT_DOUBLE_EQ(tool.opening_max, 0.3);
-  EXPECT_EQ(tool.hinges[0].axis, Vec3::UnitY());  // made a unit vector; link 1 is the driver's, whatever the names' order
+  EXPECT_EQ(tool.hinges[0].axis,
+            Vec3::UnitY());  // made a unit vector; link 1 is the driver's, whatever the names' order
   EXPECT_EQ(tool.hinges[0].multiplier, 1);
   EXPECT_EQ(tool.hinges[1].multiplier, -1);
   EXPECT_EQ(tool.hinges[1].origin, Vec3(0, 0.002, 0.012));
@@ -113,26 +125,35 @@ TEST(ToolLinks, TurnAboutTheirHinges) {
 }
 
 TEST(ToolLinks, RefuseOtherTrees) {
-  expect_error(links + driver + replaced(mimic, "parent link='body'", "parent link='left'"), "every joint of a tool hangs on its root \"body\"");
+  expect_error(links + driver + replaced(mimic, "parent link='body'", "parent link='left'"),
+               "every joint of a tool hangs on its root \"body\"");
   for (const char* type : {"prismatic", "continuous", "fixed", "floating"})
-    expect_error(links + driver + replaced(mimic, "type='revolute'", std::string("type='") + type + "'"), "is not revolute");
-  expect_error(links + driver + replaced(mimic, "<mimic joint='opening' multiplier='-1' offset='0'/>", ""), "are independent; one must <mimic> the other");
-  expect_error(links + driver + replaced(mimic, "joint='opening'", "joint='a_mirrored'"), "which is no independent joint");
+    expect_error(links + driver + replaced(mimic, "type='revolute'", std::string("type='") + type + "'"),
+                 "is not revolute");
+  expect_error(links + driver + replaced(mimic, "<mimic joint='opening' multiplier='-1' offset='0'/>", ""),
+               "are independent; one must <mimic> the other");
+  expect_error(links + driver + replaced(mimic, "joint='opening'", "joint='a_mirrored'"),
+               "which is no independent joint");
   expect_error(links + driver + replaced(mimic, "joint='opening'", "joint='none'"), "probe.urdf: ");
   expect_error(links + replaced(driver, "</joint>", "<mimic joint='a_mirrored'/></joint>") + mimic, "mimics");
   expect_error(links + driver, "probe.urdf: ");  // a link that hangs nowhere
-  expect_error(link("body", "0.0001", "0 0 0") + link("left", "0.0001", "0 0 0") + replaced(driver, "child link='left'", "child link='none'"), "probe.urdf: ");
+  expect_error(link("body", "0.0001", "0 0 0") + link("left", "0.0001", "0 0 0") +
+                   replaced(driver, "child link='left'", "child link='none'"),
+               "probe.urdf: ");
 }
 
 TEST(ToolLinks, RefuseBadHinges) {
   expect_error(links + replaced(driver, "xyz='0 2 0'", "xyz='0 0 0'") + mimic, "its axis must be finite and not zero");
   expect_error(links + replaced(driver, "upper='0.3'", "upper='-0.1'") + mimic, "limits must be finite, in order");
   expect_error(links + replaced(driver, "upper='0.3'", "upper='4'") + mimic, "within half a turn");
-  for (const char* bad : {"nan", "inf", "1e999", "wide"}) expect_error(links + replaced(driver, "upper='0.3'", std::string("upper='") + bad + "'") + mimic, "probe.urdf: ");
-  expect_error(links + replaced(driver, "<limit lower='0' upper='0.3' effort='1' velocity='1'/>", "") + mimic, "probe.urdf: ");
+  for (const char* bad : {"nan", "inf", "1e999", "wide"})
+    expect_error(links + replaced(driver, "upper='0.3'", std::string("upper='") + bad + "'") + mimic, "probe.urdf: ");
+  expect_error(links + replaced(driver, "<limit lower='0' upper='0.3' effort='1' velocity='1'/>", "") + mimic,
+               "probe.urdf: ");
   expect_error(links + driver + replaced(mimic, "multiplier='-1'", "multiplier='0'"), "must be finite and not zero");
   expect_error(links + driver + replaced(mimic, "offset='0'", "offset='0.1'"), "offset of its <mimic> must be 0");
-  expect_error(links + driver + replaced(mimic, "lower='-0.3'", "lower='-0.2'"), "narrower than those of the joint it mimics");
+  expect_error(links + driver + replaced(mimic, "lower='-0.3'", "lower='-0.2'"),
+               "narrower than those of the joint it mimics");
   expect_error(link("body", "0.0001", "0 0 0") + link("left", "-1", "0 0 0") + driver, "link \"left\": its mass");
   expect_error(link("body", "0.0001", "0 0 0") + "<link name='left'/>" + driver, "link \"left\" has no <inertial>");
 }
@@ -155,7 +176,8 @@ TEST(Clip, IsReadWhole) {
   EXPECT_LT((c.blade_from - Vec3(0, 0.002, 0.008)).norm(), 1e-15);
   EXPECT_EQ(c.blade_to, Vec3(0, 0, 0));
   EXPECT_LT((c.grip.p - Vec3(0, 0.002, 0.012)).norm(), 1e-15);
-  EXPECT_LT((c.grip.q.toRotationMatrix() - Mat3::Identity()).norm(), 1e-12);  // the flat direction is made square to the shaft
+  EXPECT_LT((c.grip.q.toRotationMatrix() - Mat3::Identity()).norm(),
+            1e-12);  // the flat direction is made square to the shaft
   ASSERT_TRUE(c.fenestration);
   EXPECT_NEAR(c.fenestration->radius, 2.5e-3, 1e-15);
   EXPECT_EQ(c.fenestration->axis, Vec3::UnitY());
@@ -176,7 +198,8 @@ TEST(Clip, RefusesBadNumbers) {
     EXPECT_NE(error.find("tool.json: "), std::string::npos) << from << " -> " << to << ": " << error;
     EXPECT_NE(error.find(part), std::string::npos) << "expected: " << part << "\ngot: " << error;
   };
-  for (const char* key : {"blade_length_mm", "blade_width_mm", "closing_force_N", "force_slope_N_per_m", "reference_mm", "friction"}) {
+  for (const char* key :
+       {"blade_length_mm", "blade_width_mm", "closing_force_N", "force_slope_N_per_m", "reference_mm", "friction"}) {
     const std::string name = "\"" + std::string(key) + "\": ";
     expect(name, "\"x\": ", std::string("clip.") + key + " is missing");
     expect(name, name + "-1, \"x\": ", std::string("clip.") + key + " must be a number from");
@@ -195,7 +218,8 @@ TEST(Clip, RefusesBadNumbers) {
   expect("\"shaft\": [0, 0, 2]", "\"shaft\": [0, 0, 0]", "must not be zero");
   expect("\"flat\": [1, 0, 1]", "\"flat\": [0, 0, 1]", "must not be parallel");
   expect("\"position\"", "\"place\"", "clip.grip.position is missing");
-  expect("\"grip\": {\"position\": [0, 2, 12], \"shaft\": [0, 0, 2], \"flat\": [1, 0, 1]}", "\"grip\": 1", "clip.grip must be an object");
+  expect("\"grip\": {\"position\": [0, 2, 12], \"shaft\": [0, 0, 2], \"flat\": [1, 0, 1]}", "\"grip\": 1",
+         "clip.grip must be an object");
   expect("\"diameter_mm\": 5", "\"diameter_mm\": 0", "clip.fenestration.diameter_mm");
   expect("\"axis\": [0, 3, 0]", "\"axis\": [0, 0, 0]", "must not be zero");
   expect("\"left_piece\": 0.25", "\"none\": 0.25", "names the collision \"none\"");
@@ -210,9 +234,14 @@ TEST(Clip, NeedsTwoOppositeJaws) {
   const std::string jaws = "two jaws that turn about one axis";
   expect(link("body", "0.0001", "0 0 0"), jaws);
   expect(link("body", "0.0001", "0 0 0") + link("left", "0.0001", "0 0 0") + driver, jaws);
-  expect(links + driver + replaced(replaced(mimic, "multiplier='-1'", "multiplier='1'"), "lower='-0.3' upper='0'", "lower='0' upper='0.3'"), jaws);
+  expect(links + driver +
+             replaced(replaced(mimic, "multiplier='-1'", "multiplier='1'"), "lower='-0.3' upper='0'",
+                      "lower='0' upper='0.3'"),
+         jaws);
   expect(links + driver + replaced(mimic, "0 0.002 0.012", "0 0.002 0.013"), jaws);
-  expect(links + replaced(driver, "lower='0' upper='0.3'", "lower='-0.1' upper='0'") + replaced(mimic, "upper='0'", "upper='0.3'"), "open to a positive one");
+  expect(links + replaced(driver, "lower='0' upper='0.3'", "lower='-0.1' upper='0'") +
+             replaced(mimic, "upper='0'", "upper='0.3'"),
+         "open to a positive one");
 }
 
 /// Largest x (side +1) or -x (side -1) of the blades' pieces of a jaw when it is open by `opening`.
@@ -241,9 +270,10 @@ TEST(Clip, EveryShippedClipClosesAndOpens) {
     ASSERT_TRUE(data);
     EXPECT_EQ(tool.opening_min, 0);
     EXPECT_EQ(data->blade_to, Vec3(0, 0, 0));
-    EXPECT_TRUE(test::held("shipped clips press twice as hard open", std::abs(data->torque(tool.opening_max) / data->torque(0) - 2), 1, 1e-3));
+    EXPECT_TRUE(test::held("shipped clips press twice as hard open",
+                           std::abs(data->torque(tool.opening_max) / data->torque(0) - 2), 1, 1e-3));
     if (data->shape == "side_curved") continue;
-    EXPECT_NEAR(reach(tool, 1, 1, 0), -5e-6, 1e-6);   // the left jaw's face, 5 um before the middle
+    EXPECT_NEAR(reach(tool, 1, 1, 0), -5e-6, 1e-6);  // the left jaw's face, 5 um before the middle
     EXPECT_NEAR(reach(tool, 2, -1, 0), -5e-6, 1e-6);
     for (const ConvexPiece& p : tool.pieces) {
       if (p.link == 0 || p.name.find("_blade_") == std::string::npos) continue;

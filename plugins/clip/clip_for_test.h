@@ -51,7 +51,8 @@ struct ClipBench {
   }
   /// A fixed plate, `thickness` across the blades, at z from low to high.
   std::string plate(double thickness, double low, double high) {
-    folder.write("meshes/plate.obj", obj_text(shapes::box(Vec3(-0.5 * thickness, -4e-3, low), Vec3(0.5 * thickness, 4e-3, high), 6)));
+    folder.write("meshes/plate.obj",
+                 obj_text(shapes::box(Vec3(-0.5 * thickness, -4e-3, low), Vec3(0.5 * thickness, 4e-3, high), 6)));
     return R"(<obstacle id="plate"><surface mesh="meshes/plate.obj" mesh_unit="m" material="bone"/></obstacle>)";
   }
   /// A fixed round bar along y, between the blades at z.
@@ -79,7 +80,8 @@ struct ClipBench {
   }
   /// A strip of tissue between the blades, fixed at its foot: 1.2 mm across, z from 1 to 5 mm.
   std::string strip(const std::string& young) {
-    folder.write("meshes/strip.msh", gmsh_text(block_mesh({2, 6, 4}, Vec3(-0.6e-3, -3e-3, 1e-3), Vec3(0.6e-3, 3e-3, 5e-3))));
+    folder.write("meshes/strip.msh",
+                 gmsh_text(block_mesh({2, 6, 4}, Vec3(-0.6e-3, -3e-3, 1e-3), Vec3(0.6e-3, 3e-3, 5e-3))));
     return R"(<soft_body id="plate" mesh="meshes/strip.msh" mesh_unit="m"><corotational_fem young=")" + young + R"("/>
 <fixed region="beyond" centre="0 0 1.01 mm" normal="0 0 -1"/><surface/></soft_body>)";
   }
@@ -87,10 +89,12 @@ struct ClipBench {
     return R"(<clip id="clip" model="meshes/clip/clip.urdf" )" + attributes + "/>";
   }
   static std::string applier_element(const std::string& attributes) {
-    return R"(<clip_applier id="applier" model="meshes/tool/tool.urdf" hand="right" clips="clip" home="0 0 14 mm" shaft="0 0 1" flat="1 0 0" )" + attributes + "/>";
+    return R"(<clip_applier id="applier" model="meshes/tool/tool.urdf" hand="right" clips="clip" home="0 0 14 mm" shaft="0 0 1" flat="1 0 0" )" +
+           attributes + "/>";
   }
   bool load(const std::string& elements, const std::string& scene = "", int threads = 1) {
-    s = load_text("<scene " + scene + R"(><solver max_sweeps="2000" tolerance="1e-13 m"/>)" + elements + "</scene>", folder.path() / "scene.xml", threads);
+    s = load_text("<scene " + scene + R"(><solver max_sweeps="2000" tolerance="1e-13 m"/>)" + elements + "</scene>",
+                  folder.path() / "scene.xml", threads);
     if (!s) return false;
     clip = s->scene().find_as<Clip>("clip");
     applier = s->scene().find_as<ClipApplier>("applier");

@@ -13,12 +13,12 @@ struct ClipState {
   const Body* holder = nullptr;  ///< the applier that holds it, null: released or on the tray
   bool on_tray = true;
   bool temporary = false;
-  double opening = 0;            ///< rad
-  double force = 0;              ///< of the blades on what is between them, N
-  double gap = 0;                ///< between the blades at their middle, m
+  double opening = 0;                                        ///< rad
+  double force = 0;                                          ///< of the blades on what is between them, N
+  double gap = 0;                                            ///< between the blades at their middle, m
   Vec3 blade_root = Vec3::Zero(), blade_tip = Vec3::Zero();  ///< line midway between the blades, scene frame, m
-  double blade_width = 0;        ///< m
-  int applications = 0;          ///< times it was released in the field
+  double blade_width = 0;                                    ///< m
+  int applications = 0;                                      ///< times it was released in the field
 };
 
 /// A component that is a clip.

@@ -16,7 +16,8 @@ using test::slope;
 double torque(double opening) { return reference * (closing + slope * 2 * reference * std::sin(opening)); }
 
 TEST(Clip, JawsBalanceTheSpringAtEveryOpeningAndPlaceOfTheBlade) {
-  test::Figure figure("jaws", "A clip closed on a bar: the contacts balance the spring", "opening of a jaw, rad", "moment about the hinge, N mm");
+  test::Figure figure("jaws", "A clip closed on a bar: the contacts balance the spring", "opening of a jaw, rad",
+                      "moment about the hinge, N mm");
   for (double o = 0; o < 0.3; o += 0.01) figure.law("spring", o, torque(o) * 1e3);
   for (const double radius : {1e-3, 2e-3})
     for (const double z : {1.5e-3, 4.5e-3, 7e-3}) {
@@ -78,7 +79,8 @@ TEST(Clip, MomentumIsThatOfARigidBody) {
   b.steps(10);
   const double h = b.s->h();
   EXPECT_TRUE(test::held("momentum of a clip", (b.clip->momentum() - 10 * h * force).norm(), force.norm(), 1e-12));
-  EXPECT_TRUE(test::held("angular momentum of a clip", (b.clip->spin() - 10 * h * moment).norm(), moment.norm(), 1e-12));
+  EXPECT_TRUE(
+      test::held("angular momentum of a clip", (b.clip->spin() - 10 * h * moment).norm(), moment.norm(), 1e-12));
   // sum over k of k h force/m h: the discrete law.
   EXPECT_LT((centre() - from - 55 * h * h / 0.03 * force).norm(), 1e-12);
   b.clip->external.setZero();
@@ -87,7 +89,8 @@ TEST(Clip, MomentumIsThatOfARigidBody) {
   EXPECT_LT((b.clip->momentum() - momentum).norm(), 1e-13 * momentum.norm());
   EXPECT_LT((b.clip->spin() - spin).norm(), 1e-13 * spin.norm());
   EXPECT_LT((centre() - at - 60 * h / 0.03 * momentum).norm(), 1e-11);
-  EXPECT_GT(displacement({Vec3::Zero(), Quat::Identity()}, {Vec3::Zero(), b.clip->pose().q}).norm(), 0.1) << "it should have turned";
+  EXPECT_GT(displacement({Vec3::Zero(), Quat::Identity()}, {Vec3::Zero(), b.clip->pose().q}).norm(), 0.1)
+      << "it should have turned";
 }
 
 TEST(Clip, FallsByItsTrueWeightAndTheFluidTakesItsMotion) {
@@ -99,14 +102,16 @@ TEST(Clip, FallsByItsTrueWeightAndTheFluidTakesItsMotion) {
   EXPECT_TRUE(test::held("terminal speed of a clip", std::abs(v - 0.00014 * 9.81 / (2 * 0.03)), v, 1e-6));
 }
 
-// Pulled across the blades, which hold a hard strip by friction on both faces: 2 mu N, less what keeps the wedge of the blades
-// (half angle o) from being squeezed off: each face bears P/2 across and N tan(o) along, so P = 2 N sqrt(mu^2 - tan(o)^2).
+// Pulled across the blades, which hold a hard strip by friction on both faces: 2 mu N, less what keeps the wedge of the
+// blades (half angle o) from being squeezed off: each face bears P/2 across and N tan(o) along, so P = 2 N sqrt(mu^2 -
+// tan(o)^2).
 TEST(Clip, HoldsAndSlipsAtTwiceTheFriction) {
   constexpr double mu = 0.3;
   for (const double pull : {0.98, 1.02}) {
     ClipBench b;
-    ASSERT_TRUE(b.load(b.strip("200 MPa") + b.clip_element(R"(start="field" start_opening="0.1 rad")") +
-                       fmt::format(R"(<contact between="clip plate" friction="{}" spacing="0.3 mm" max_contacts="20"/>)", mu)));
+    ASSERT_TRUE(
+        b.load(b.strip("200 MPa") + b.clip_element(R"(start="field" start_opening="0.1 rad")") +
+               fmt::format(R"(<contact between="clip plate" friction="{}" spacing="0.3 mm" max_contacts="20"/>)", mu)));
     b.steps(240);
     // Through the middle of the pressure, so that nothing turns the clip.
     double squeeze = 0;
@@ -116,7 +121,9 @@ TEST(Clip, HoldsAndSlipsAtTwiceTheFriction) {
       middle += c.normal_force * c.position;
     }
     middle /= squeeze;
-    EXPECT_TRUE(test::held("squeeze of a pulled clip", std::abs(squeeze - 2 * b.clip->torque(b.clip->opening()) / (hinge_z - middle.z())), squeeze, 0.02));
+    EXPECT_TRUE(test::held("squeeze of a pulled clip",
+                           std::abs(squeeze - 2 * b.clip->torque(b.clip->opening()) / (hinge_z - middle.z())), squeeze,
+                           0.02));
     const Vec3 force(0, pull * squeeze * std::sqrt(mu * mu - std::pow(std::tan(b.clip->opening()), 2)), 0);
     b.clip->external << force, (middle - b.clip->pose().apply(b.clip->tool().centre_of_mass)).cross(force);
     b.steps(60);
@@ -148,7 +155,8 @@ TEST(Clip, EnergyNeverExceedsThatOfTheOpenSpring) {
 TEST(Clip, SaysWhatIsWrong) {
   ClipBench b;
   const auto message = [&](const std::string& elements) {
-    const auto r = load_simulation_text("<scene>" + elements + "</scene>", b.folder.path() / "scene.xml", test::builtin(), 1);
+    const auto r =
+        load_simulation_text("<scene>" + elements + "</scene>", b.folder.path() / "scene.xml", test::builtin(), 1);
     EXPECT_FALSE(r.simulation);
     return r.diagnostics.format();
   };
@@ -156,10 +164,19 @@ TEST(Clip, SaysWhatIsWrong) {
   EXPECT_NE(message(b.clip_element(R"(start_opening="0.9 rad")")).find("open by no more"), std::string::npos);
   EXPECT_NE(message(b.clip_element(R"(flat="0 0 2")")).find("parallel"), std::string::npos);
   EXPECT_NE(message(b.clip_element(R"(shaft="0 0 0")")).find("zero"), std::string::npos);
-  EXPECT_NE(message(b.clip_element("") + R"(<clip id="other" model="meshes/clip/clip.urdf"/>)" + b.applier_element(R"(load="other")")).find("none of its clips"), std::string::npos);
-  EXPECT_NE(message(b.clip_element(R"(start="field")") + b.applier_element(R"(load="clip")")).find("starts in the field"), std::string::npos);
-  EXPECT_NE(message(b.clip_element("") + b.applier_element(R"(load="clip")") +
-                    R"(<clip_applier id="second" model="meshes/tool/tool.urdf" hand="left" clips="clip" load="clip" home="0 0 0 m" shaft="0 0 1" flat="1 0 0"/>)").find("in the applier"), std::string::npos);
+  EXPECT_NE(message(b.clip_element("") + R"(<clip id="other" model="meshes/clip/clip.urdf"/>)" +
+                    b.applier_element(R"(load="other")"))
+                .find("none of its clips"),
+            std::string::npos);
+  EXPECT_NE(
+      message(b.clip_element(R"(start="field")") + b.applier_element(R"(load="clip")")).find("starts in the field"),
+      std::string::npos);
+  EXPECT_NE(
+      message(
+          b.clip_element("") + b.applier_element(R"(load="clip")") +
+          R"(<clip_applier id="second" model="meshes/tool/tool.urdf" hand="left" clips="clip" load="clip" home="0 0 0 m" shaft="0 0 1" flat="1 0 0"/>)")
+          .find("in the applier"),
+      std::string::npos);
 }
 
 }  // namespace

@@ -30,7 +30,8 @@ inline void add_slices(const ConvexPiece& piece, std::vector<ConvexPiece>& out) 
   }
   along /= whole;
   const Vec3 x = along.unitOrthogonal(), y = along.cross(x);
-  // The section at s is the hull of where the lines between any two points pass it; its farthest points in a few directions.
+  // The section at s is the hull of where the lines between any two points pass it; its farthest points in a few
+  // directions.
   const auto section = [&](double s, std::vector<Vec3>& into) {
     std::vector<Vec3> points;
     for (const Vec3& a : piece.points)
@@ -42,7 +43,8 @@ inline void add_slices(const ConvexPiece& piece, std::vector<ConvexPiece>& out) 
     for (int k = 0; k < corners && !points.empty(); ++k) {
       const double angle = 2 * 3.14159265358979323846 * (k + 0.5) / corners;
       const Vec3 d = std::cos(angle) * x + std::sin(angle) * y;
-      const Vec3 best = *std::max_element(points.begin(), points.end(), [&](const Vec3& a, const Vec3& b) { return d.dot(a) < d.dot(b); });
+      const Vec3 best = *std::max_element(points.begin(), points.end(),
+                                          [&](const Vec3& a, const Vec3& b) { return d.dot(a) < d.dot(b); });
       const bool known = std::any_of(into.begin(), into.end(), [&](const Vec3& p) { return (p - best).norm() < 1e-7; });
       if (!known) into.push_back(best);
     }

@@ -37,15 +37,17 @@ const VesselState* find(const std::vector<VesselState>& vessels, std::string_vie
 double flow_percent(const VesselState& v) { return v.flow_at_rest != 0 ? 100 * v.flow / v.flow_at_rest : 100; }
 
 /// The names in `text`, each checked to be a centreline of the vessel.
-std::vector<std::string> vessel_names(PrepareContext& context, const Component& rule, const Param<std::string>& param, const ShellBody& vessel) {
+std::vector<std::string> vessel_names(PrepareContext& context, const Component& rule, const Param<std::string>& param,
+                                      const ShellBody& vessel) {
   std::vector<std::string> known, out;
   for (const auto& c : vessel.model().centrelines) known.push_back(c.name);
   for (std::string_view word : split_blanks(param())) {
     const std::string name(word);
     if (std::find(known.begin(), known.end(), name) == known.end()) {
       const std::string near = nearest_name(name, known);
-      rule.error(context, param, in_quotes(name) + " is no centreline of \"" + vessel.id + "\"" +
-                                     (near.empty() ? "; it has " + joined(known) : "; did you mean " + in_quotes(near) + "?"));
+      rule.error(context, param,
+                 in_quotes(name) + " is no centreline of \"" + vessel.id + "\"" +
+                     (near.empty() ? "; it has " + joined(known) : "; did you mean " + in_quotes(near) + "?"));
     }
     out.push_back(name);
   }
@@ -54,21 +56,38 @@ std::vector<std::string> vessel_names(PrepareContext& context, const Component& 
 
 class GoalClipped final : public ExerciseRule {
  public:
-  Param<std::string> text{this, {.name = "text", .fallback = "Close the neck of the aneurysm with a clip", .doc = "what the trainee is to do"}};
+  Param<std::string> text{
+      this,
+      {.name = "text", .fallback = "Close the neck of the aneurysm with a clip", .doc = "what the trainee is to do"}};
   Ref<Body> on{this, {.name = "on", .doc = "the artery, a shell_body made from a vessel"}};
   Param<std::string> sac{this, {.name = "sac", .fallback = "sac", .doc = "centreline of the sac"}};
-  Param<std::string> branches{this, {.name = "branches", .fallback = "superior inferior", .doc = "centrelines that must stay open"}};
-  Param<int> max_grade{this, {.name = "max_grade", .fallback = "1", .min = "0", .max = "5", .doc = "worst Sindou grade that is accepted"}};
-  Param<Scalar> min_flow{this, {.name = "min_flow", .fallback = "0.75", .min = "0", .max = "1", .doc = "least flow of a branch over its flow at rest"}};
-  Param<Scalar> sealed{this, {.name = "sealed", .fallback = "0.05", .min = "0", .max = "1", .doc = "narrowest cross-section of the sac over that at rest below which it counts as closed"}};
-  Param<Duration> hold{this, {.name = "hold", .fallback = "3 s", .min = "0 s", .max = "600 s", .doc = "how long it must hold"}};
+  Param<std::string> branches{
+      this, {.name = "branches", .fallback = "superior inferior", .doc = "centrelines that must stay open"}};
+  Param<int> max_grade{
+      this,
+      {.name = "max_grade", .fallback = "1", .min = "0", .max = "5", .doc = "worst Sindou grade that is accepted"}};
+  Param<Scalar> min_flow{this,
+                         {.name = "min_flow",
+                          .fallback = "0.75",
+                          .min = "0",
+                          .max = "1",
+                          .doc = "least flow of a branch over its flow at rest"}};
+  Param<Scalar> sealed{this,
+                       {.name = "sealed",
+                        .fallback = "0.05",
+                        .min = "0",
+                        .max = "1",
+                        .doc = "narrowest cross-section of the sac over that at rest below which it counts as closed"}};
+  Param<Duration> hold{
+      this, {.name = "hold", .fallback = "3 s", .min = "0 s", .max = "600 s", .doc = "how long it must hold"}};
 
   void declare(PrepareContext& context, const Simulation& simulation, ExerciseLog& log) override {
     clips_ = Clips(simulation);
     vessels_ = Vessels(simulation);
     goal_ = log.add_goal(id, text());
     const auto* vessel = dynamic_cast<const ShellBody*>(&*on);
-    if (!vessel || !judge_.attach(*vessel)) return error(context, on, "needs a shell_body with a vessel that has a neck and a region \"sac\"");
+    if (!vessel || !judge_.attach(*vessel))
+      return error(context, on, "needs a shell_body with a vessel that has a neck and a region \"sac\"");
     vessel_names(context, *this, sac, *vessel);
     branch_names_ = vessel_names(context, *this, branches, *vessel);
     remnant_ = log.add_measure(id + "_remnant", "Remnant (Sindou grade)", "");
@@ -147,11 +166,19 @@ class GoalClipped final : public ExerciseRule {
 
 class FaultStenosis final : public ExerciseRule {
  public:
-  Param<std::string> text{this, {.name = "text", .fallback = "A branch is closed by the clip", .doc = "what the trainee is told"}};
+  Param<std::string> text{
+      this, {.name = "text", .fallback = "A branch is closed by the clip", .doc = "what the trainee is told"}};
   Ref<Body> on{this, {.name = "on", .doc = "the artery, a shell_body made from a vessel"}};
-  Param<std::string> branches{this, {.name = "branches", .fallback = "superior inferior", .doc = "centrelines that must stay open"}};
-  Param<Scalar> limit{this, {.name = "limit", .fallback = "0.5", .min = "0", .max = "1", .doc = "least flow of a branch over its flow at rest"}};
-  Param<Duration> grace{this, {.name = "grace", .fallback = "5 s", .min = "0 s", .max = "600 s", .doc = "shorter times are forgiven"}};
+  Param<std::string> branches{
+      this, {.name = "branches", .fallback = "superior inferior", .doc = "centrelines that must stay open"}};
+  Param<Scalar> limit{this,
+                      {.name = "limit",
+                       .fallback = "0.5",
+                       .min = "0",
+                       .max = "1",
+                       .doc = "least flow of a branch over its flow at rest"}};
+  Param<Duration> grace{
+      this, {.name = "grace", .fallback = "5 s", .min = "0 s", .max = "600 s", .doc = "shorter times are forgiven"}};
 
   void declare(PrepareContext& context, const Simulation& simulation, ExerciseLog& log) override {
     clips_ = Clips(simulation);
@@ -196,6 +223,7 @@ class FaultStenosis final : public ExerciseRule {
 
 INSULA_PLUGIN(clipping_rules) {
   using namespace insula;
-  registry.add<GoalClipped>("goal_clipped", Kind::exercise_rule, "reached when clips hold the neck shut and the branches stay open");
+  registry.add<GoalClipped>("goal_clipped", Kind::exercise_rule,
+                            "reached when clips hold the neck shut and the branches stay open");
   registry.add<FaultStenosis>("fault_stenosis", Kind::exercise_rule, "counts branches closed by a misplaced clip");
 }

@@ -20,7 +20,9 @@ const std::filesystem::path example = std::filesystem::path(INSULA_SOURCE_DIR) /
 class FakeVessels final : public Constraint, public VesselSource {
  public:
   void build(const StepContext&, ConstraintBuilder&) override {}
-  void append_vessels(std::vector<VesselState>& out) const override { out.insert(out.end(), vessels.begin(), vessels.end()); }
+  void append_vessels(std::vector<VesselState>& out) const override {
+    out.insert(out.end(), vessels.begin(), vessels.end());
+  }
   std::vector<VesselState> vessels;
 };
 

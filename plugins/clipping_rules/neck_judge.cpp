@@ -26,7 +26,8 @@ bool NeckJudge::attach(const ShellBody& vessel) {
   up_ = m.neck_normal;
   std::vector<double> area(m.wall.vertices.size(), 0.0);
   for (const auto& t : m.wall.triangles) {
-    const Vec3 &a = m.wall.vertices[std::size_t(t[0])], &b = m.wall.vertices[std::size_t(t[1])], &c = m.wall.vertices[std::size_t(t[2])];
+    const Vec3 &a = m.wall.vertices[std::size_t(t[0])], &b = m.wall.vertices[std::size_t(t[1])],
+               &c = m.wall.vertices[std::size_t(t[2])];
     for (int v : t) area[std::size_t(v)] += (b - a).cross(c - a).norm() / 6;
   }
   ring_.clear();
@@ -58,7 +59,8 @@ NeckJudgement NeckJudge::judge(const std::vector<ClipState>& clips, bool sealed)
   Vec3 centre = Vec3::Zero();
   for (const Patch& p : ring_) centre += p.area / ring_area_ * at(p.node);
   const auto on_neck = [&](const ClipState& c) {
-    return !c.on_tray && !c.holder && !c.temporary && distance_to_segment(centre, c.blade_root, c.blade_tip) < near_neck;
+    return !c.on_tray && !c.holder && !c.temporary &&
+           distance_to_segment(centre, c.blade_root, c.blade_tip) < near_neck;
   };
   double height = -1e9, far = -1e9;
   out.gap = 1e9;
@@ -67,7 +69,8 @@ NeckJudgement NeckJudge::judge(const std::vector<ClipState>& clips, bool sealed)
     ++out.clips;
     out.gap = std::min(out.gap, c.gap);
     const Vec3 along = (c.blade_tip - c.blade_root).normalized();
-    // Where the wall between the blades was at rest; the blades nearest to the sac's base decide how much of it is left.
+    // Where the wall between the blades was at rest; the blades nearest to the sac's base decide how much of it is
+    // left.
     double sum = 0, share = 0;
     for (const Patch& p : held_)
       if (distance_to_segment(at(p.node), c.blade_root, c.blade_tip) < 0.5 * c.blade_width + 0.3e-3) {
@@ -89,7 +92,8 @@ NeckJudgement NeckJudge::judge(const std::vector<ClipState>& clips, bool sealed)
   for (const Patch& p : ring_) {
     bool closed = false;
     for (const ClipState& c : clips)
-      closed = closed || (on_neck(c) && distance_to_segment(at(p.node), c.blade_root, c.blade_tip) < 0.5 * c.blade_width + margin);
+      closed = closed || (on_neck(c) &&
+                          distance_to_segment(at(p.node), c.blade_root, c.blade_tip) < 0.5 * c.blade_width + margin);
     if (!closed) out.neck_open += p.area / ring_area_;
   }
   for (const Patch& p : sac_)

@@ -17,18 +17,19 @@
 namespace insula {
 
 struct NeckJudgement {
-  int grade = 5;              ///< 0..5
-  double neck_open = 1;       ///< share of the neck ring that is left
-  double sac_open = 1;        ///< share of the sac's wall that is left
-  double tip_past_neck = 0;   ///< how far the blades' tips reach beyond the far side of the neck, m; negative: short of it
-  double gap = 0;             ///< slit between the blades that close most, m
-  int clips = 0;              ///< clips on the neck
+  int grade = 5;         ///< 0..5
+  double neck_open = 1;  ///< share of the neck ring that is left
+  double sac_open = 1;   ///< share of the sac's wall that is left
+  double tip_past_neck =
+      0;           ///< how far the blades' tips reach beyond the far side of the neck, m; negative: short of it
+  double gap = 0;  ///< slit between the blades that close most, m
+  int clips = 0;   ///< clips on the neck
 };
 
 class NeckJudge {
  public:
-  double margin = 0.6e-3;     ///< m
-  double near_neck = 6e-3;    ///< a clip whose blades are farther from the neck is not one on the neck, m
+  double margin = 0.6e-3;   ///< m
+  double near_neck = 6e-3;  ///< a clip whose blades are farther from the neck is not one on the neck, m
 
   /// False when the vessel has no aneurysm (no neck, or no region "sac").
   bool attach(const ShellBody& vessel);

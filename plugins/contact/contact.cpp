@@ -24,20 +24,20 @@ its free pose. A tool that slides over an edge thus meets the new face in the st
 expectation changes n alone, not the law.
 
 Tools are rounded convex pieces. They search ahead along their free motion, so that a contact exists before bodies
-touch (`core/collision/colliders/tool_collider.h`). Surfaces meet by sampled vertices (`core/collision/colliders/tissue_collider.h`). A
-surface with a `thickness` is the middle surface of a wall, and gaps are measured to the wall's faces. A tool that
-touches such a wall moves by no more than `max_step_displacement` in a step, however fast the hand is. Rows on the tool alone limit
-it.
+touch (`core/collision/colliders/tool_collider.h`). Surfaces meet by sampled vertices
+(`core/collision/colliders/tissue_collider.h`). A surface with a `thickness` is the middle surface of a wall, and gaps
+are measured to the wall's faces. A tool that touches such a wall moves by no more than `max_step_displacement` in a
+step, however fast the hand is. Rows on the tool alone limit it.
 
 `alarm` is the distance at which a contact enters the problem. The haptic loop needs it too, since it moves the tool
 between steps. Contact forces act on both sides at the same point, on the triangle's side of the gap. A tool's contact
 therefore adds neither a resultant force nor a moment. Between two surfaces the moment is exact once the gap is
 closed.
 
-A blade that meets a wall `contact_geometry="vertices"` has many contacts side by side. With a `patch`, contacts within that length
-share one friction force, |f_t| <= mu sum of their f_n. It opposes their mean slip, weighted by the force of each in
-the last step (`friction_patches.h`). This takes one row for each contact and two for each patch, instead of three for
-each contact.
+A blade that meets a wall `contact_geometry="vertices"` has many contacts side by side. With a `patch`, contacts within
+that length share one friction force, |f_t| <= mu sum of their f_n. It opposes their mean slip, weighted by the force of
+each in the last step (`friction_patches.h`). This takes one row for each contact and two for each patch, instead of
+three for each contact.
 
 Sources: Dequidt et al. 2015, sections 3.3 and 3.4; Duriez, Dubois, Kheddar, Andriot 2006 (friction in the block
 solve).
@@ -81,11 +81,10 @@ void Contact::search(const Search& what) {
     if (p.expected) settings.expected = &*p.expected;
     const Pose& start = p.start;
     if (p.tool_b)
-      detect_tools(p.pieces_a, start, free, p.pieces_b, p.tool_b->link_pose(p.link_b), p.tool_b->link_free_pose(p.link_b), settings, p.contacts);
-    else if (p.vertex_collider)
-      p.vertex_collider->detect(p.b->collision(), start, free, settings, p.contacts);
-    else
-      p.tool_collider->detect(p.b->collision(), start, free, settings, p.contacts);
+      detect_tools(p.pieces_a, start, free, p.pieces_b, p.tool_b->link_pose(p.link_b),
+                   p.tool_b->link_free_pose(p.link_b), settings, p.contacts);
+    else if (p.vertex_collider) p.vertex_collider->detect(p.b->collision(), start, free, settings, p.contacts);
+    else p.tool_collider->detect(p.b->collision(), start, free, settings, p.contacts);
     return;
   }
   TissueContactSettings settings;
@@ -104,11 +103,13 @@ void Contact::detect(const StepContext& context) {
   for (Pair& p : pairs_) {
     SelectionSettings choice;
     if (p.tool_a) {
-      choice.spacing = p.vertex_collider && p.b->thickness() > 0 ? 0.0 : spacing();  // a wall's vertices are all kept out
+      choice.spacing =
+          p.vertex_collider && p.b->thickness() > 0 ? 0.0 : spacing();  // a wall's vertices are all kept out
       choice.advantage = 0.2 * alarm();
       choice.max_contacts = max_contacts();
       // A jaw is one piece and may use all; of several pieces none takes more than half.
-      choice.max_per_piece = p.single_piece() || p.vertex_collider ? max_contacts() : std::max(2, (max_contacts() + 1) / 2);
+      choice.max_per_piece =
+          p.single_piece() || p.vertex_collider ? max_contacts() : std::max(2, (max_contacts() + 1) / 2);
     } else {
       choice.spacing = tissue_spacing();
       choice.advantage = 0.5 * tissue_alarm();

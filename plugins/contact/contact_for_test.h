@@ -16,8 +16,9 @@ inline std::string feet_urdf(double half, double radius) {
   std::string s = R"(<robot name="feet"><link name="tool"><inertial><mass value="0.02"/>
 <inertia ixx="1e-6" iyy="1e-6" izz="1e-6" ixy="0" ixz="0" iyz="0"/></inertial>)";
   for (int i = 0; i < 4; ++i)
-    s += fmt::format(R"(<collision name="foot_{}"><origin xyz="{} {} 0"/><geometry><sphere radius="{}"/></geometry></collision>)",
-                     i, i & 1 ? half : -half, i & 2 ? half : -half, radius);
+    s += fmt::format(
+        R"(<collision name="foot_{}"><origin xyz="{} {} 0"/><geometry><sphere radius="{}"/></geometry></collision>)", i,
+        i & 1 ? half : -half, i & 2 ? half : -half, radius);
   return s + "</link></robot>";
 }
 
@@ -34,8 +35,8 @@ struct Bench {
   Instrument* tool = nullptr;
   Contact* contact = nullptr;
 
-  Bench(const std::string& urdf, const TriMesh& ground, const std::string& tool_attributes, const std::string& contact_attributes,
-        const std::string& rest = "") {
+  Bench(const std::string& urdf, const TriMesh& ground, const std::string& tool_attributes,
+        const std::string& contact_attributes, const std::string& rest = "") {
     folder.write("meshes/tool/tool.urdf", urdf);
     folder.write("meshes/ground.obj", obj_text(ground));
     s = load_text(fmt::format(R"(<scene title="bench">
@@ -43,8 +44,8 @@ struct Bench {
 {}<retractor id="tool" model="meshes/tool/tool.urdf" hand="right" {}/>
 <solver max_sweeps="10000" tolerance="1e-14 m"/>
 <contact id="touch" between="tool ground" {}/></scene>)",
-                                    rest, tool_attributes, contact_attributes),
-                        folder.path() / "scene.xml");
+                              rest, tool_attributes, contact_attributes),
+                  folder.path() / "scene.xml");
     if (!s) return;
     tool = s->scene().find_as<Instrument>("tool");
     contact = s->scene().find_as<Contact>("touch");
@@ -61,24 +62,28 @@ struct Bench {
   }
 };
 
-inline const std::string upright = R"(home="0 0 3 mm" shaft="0 0 1" flat="1 0 0" coupling="400 N/m" angular_coupling="1 N m/rad")";
+inline const std::string upright =
+    R"(home="0 0 3 mm" shaft="0 0 1" flat="1 0 0" coupling="400 N/m" angular_coupling="1 N m/rad")";
 inline TriMesh ground() { return shapes::box(Vec3(-0.05, -0.05, -0.01), Vec3(0.05, 0.05, 0), 20); }
 constexpr double radius = 1e-3;
 
-inline const std::string pad = R"(<soft_body id="pad" mesh="meshes/pad.msh" mesh_unit="m"><corotational_fem young="4 kPa"/>
+inline const std::string pad =
+    R"(<soft_body id="pad" mesh="meshes/pad.msh" mesh_unit="m"><corotational_fem young="4 kPa"/>
 <fixed region="beyond" centre="0 0 -18 mm" normal="0 0 -1"/><surface/></soft_body>)";
 
 inline std::unique_ptr<Simulation> soft_bench(SceneFolder& folder, const std::string& contact) {
   folder.write("meshes/pad.msh", gmsh_text(block_mesh({6, 6, 4}, Vec3(-0.015, -0.015, -0.02), Vec3(0.015, 0.015, 0))));
-  folder.write("meshes/top.msh", gmsh_text(block_mesh({5, 5, 4}, Vec3(-0.015, -0.015, 0.0008), Vec3(0.015, 0.015, 0.02))));
+  folder.write("meshes/top.msh",
+               gmsh_text(block_mesh({5, 5, 4}, Vec3(-0.015, -0.015, 0.0008), Vec3(0.015, 0.015, 0.02))));
   folder.write("meshes/tool/tool.urdf", test_tool_urdf(radius));
   return load_text(R"(<scene title="soft">)" + pad + R"(
 <soft_body id="top" mesh="meshes/top.msh" mesh_unit="m"><corotational_fem young="4 kPa"/>
 <fixed region="beyond" centre="-14 0 0 mm" normal="-1 0 0"/><surface/></soft_body>
 <retractor id="left" model="meshes/tool/tool.urdf" hand="left" home="24 0 4 mm" shaft="1 0 0"/>
 <retractor id="right" model="meshes/tool/tool.urdf" hand="right" home="0 0 24 mm" shaft="0 0 1" flat="1 0 0"/>
-<solver max_sweeps="2000" tolerance="1e-12 m"/>)" + contact + "</scene>",
-                         folder.path() / "scene.xml");
+<solver max_sweeps="2000" tolerance="1e-12 m"/>)" +
+                       contact + "</scene>",
+                   folder.path() / "scene.xml");
 }
 
 inline void press(Simulation& s, int i) {

@@ -12,7 +12,8 @@ using namespace test;
 // The coupling stands in for a weight on a slope: pulled down by k dz and along by k dx, tan(angle) = dx / dz.
 TEST(Contact, ABlockOnASlopeSticksAndSlipsAtTheFrictionAngle) {
   constexpr double mu = 0.35, dz = 1e-3;
-  test::Figure figure("friction", "A block pulled along what it presses on: sticks, then slips at mu N", "pull over mu N", "friction, N");
+  test::Figure figure("friction", "A block pulled along what it presses on: sticks, then slips at mu N",
+                      "pull over mu N", "friction, N");
   for (const double pull : {0.0, 1.0, 1.5}) figure.law("law", pull, std::min(pull, 1.0) * mu * 400 * dz);
   for (const double angle_factor : {0.5, 1 - 1e-5, 1 + 1e-5, 1.5}) {
     for (const double heading : {0.0, 0.7, 2.1}) {
@@ -59,9 +60,11 @@ TEST(Contact, NeverPenetratesAndOnlyPushes) {
   for (int i = 0; i < 400; ++i) {
     Pose at = home;
     at.p += Vec3(0.01 * std::sin(0.05 * i), 0.008 * std::sin(0.031 * i), 0.004 * std::sin(0.11 * i) - 0.003);
-    at.q = from_rotation_vector(Vec3(0.05 * std::sin(0.07 * i), 0.05 * std::cos(0.05 * i), 0.1 * std::sin(0.02 * i))) * at.q;
+    at.q = from_rotation_vector(Vec3(0.05 * std::sin(0.07 * i), 0.05 * std::cos(0.05 * i), 0.1 * std::sin(0.02 * i))) *
+           at.q;
     b.move_to(at);
-    for (const ConvexPiece& p : b.tool->tool().pieces) EXPECT_GT(b.tool->pose().apply(p.points[0]).z() - p.radius, -1e-6) << i;
+    for (const ConvexPiece& p : b.tool->tool().pieces)
+      EXPECT_GT(b.tool->pose().apply(p.points[0]).z() - p.radius, -1e-6) << i;
     for (const ContactPoint& c : b.s->report().contacts) {
       EXPECT_GE(c.normal_force, 0);
       EXPECT_LE(c.tangent_force.norm(), 0.3 * c.normal_force + 1e-9);
@@ -86,7 +89,8 @@ TEST(Contact, SignoriniHoldsRowByRow) {
       for (int k = 0; k < p.rows; ++k) delta += p.w_at(row, k) * p.lambda[std::size_t(k)];
       EXPECT_GE(delta, -1e-12);
       EXPECT_GE(p.lambda[std::size_t(row)], 0);
-      EXPECT_TRUE(test::held("delta lambda = 0 in every row, J", std::abs(delta * p.lambda[std::size_t(row)]), 1, 1e-12));
+      EXPECT_TRUE(
+          test::held("delta lambda = 0 in every row, J", std::abs(delta * p.lambda[std::size_t(row)]), 1, 1e-12));
     }
   }
 }
@@ -115,7 +119,8 @@ TEST(Contact, AFastToolNeverEndsInsideAPlate) {
         b.move_to(at);
         // A long tool turns about its contacts within the step, which the rows take as linear.
         double least = 1;
-        for (const Vec3& p : b.tool->tool().pieces[0].points) least = std::min(least, b.tool->pose().apply(p).z() - radius);
+        for (const Vec3& p : b.tool->tool().pieces[0].points)
+          least = std::min(least, b.tool->pose().apply(p).z() - radius);
         EXPECT_GT(least, long_tool ? -1e-5 : -1e-6) << "pose " << k << " step " << i;
         for (const ContactPoint& c : b.s->report().contacts) hits += c.normal_force > 0;
       }
@@ -192,7 +197,9 @@ TEST(Contact, ForcesOnBothSidesAddUpToNothing) {
 
 TEST(Contact, SurfacesDoNotPassThroughOneAnother) {
   SceneFolder folder;
-  auto s = soft_bench(folder, R"(<contact between="left right pad top" friction="0.1" tissue_spacing="3 mm" tissue_max_contacts="60"/>)");
+  auto s = soft_bench(
+      folder,
+      R"(<contact between="left right pad top" friction="0.1" tissue_spacing="3 mm" tissue_max_contacts="60"/>)");
   ASSERT_TRUE(s);
   const auto surfaces = s->surfaces();
   double deepest = 0;
@@ -285,7 +292,8 @@ TEST(Contact, WrongElementsAreRefused) {
   const auto message = [&](const std::string& between) {
     auto r = load_simulation_text(
         R"(<scene><obstacle id="a"><surface mesh="meshes/ground.obj"/></obstacle><obstacle id="b"><surface mesh="meshes/ground.obj"/></obstacle>
-<obstacle id="bare"/><contact between=")" + between + R"("/></scene>)",
+<obstacle id="bare"/><contact between=")" +
+            between + R"("/></scene>)",
         folder.path() / "scene.xml", test::builtin(), 1);
     EXPECT_FALSE(r.simulation);
     return r.diagnostics.format();

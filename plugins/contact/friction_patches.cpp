@@ -13,7 +13,8 @@ namespace {
 
 constexpr double max_creep = 0.1e-3;  ///< a hold that is farther off than this is given up, m
 
-// Cell of the grid (its planes half a cell off the tool's own, where faces may lie) and the direction, of six, that the normal is nearest to, both in the tool's frame.
+// Cell of the grid (its planes half a cell off the tool's own, where faces may lie) and the direction, of six, that the
+// normal is nearest to, both in the tool's frame.
 std::uint32_t name_of(const Vec3& place, const Vec3& normal, double size) {
   std::uint32_t name = 0;
   for (int k = 0; k < 3; ++k) name = name << 8 | (std::uint32_t(int(std::floor(place[k] / size + 0.5)) + 128) & 0xff);
@@ -32,12 +33,14 @@ FrictionPatches::FrictionPatches(double size, std::size_t room) : size_(size) {
 }
 
 const FrictionPatches::Known* FrictionPatches::known(std::uint64_t key) const {
-  const auto at = std::lower_bound(known_.begin(), known_.end(), key, [](const Known& k, std::uint64_t wanted) { return k.key < wanted; });
+  const auto at = std::lower_bound(known_.begin(), known_.end(), key,
+                                   [](const Known& k, std::uint64_t wanted) { return k.key < wanted; });
   return at != known_.end() && at->key == key ? &*at : nullptr;
 }
 
 FrictionPatches::Held* FrictionPatches::held(std::uint32_t name) {
-  const auto at = std::lower_bound(held_.begin(), held_.end(), name, [](const Held& h, std::uint32_t wanted) { return h.name < wanted; });
+  const auto at = std::lower_bound(held_.begin(), held_.end(), name,
+                                   [](const Held& h, std::uint32_t wanted) { return h.name < wanted; });
   return at != held_.end() && at->name == name ? &*at : nullptr;
 }
 
@@ -53,12 +56,18 @@ void FrictionPatches::sort(std::span<const Proximity> contacts, const Pose& tool
     const Known* k = known(x.key);
     Held* h = k ? held(k->patch) : nullptr;
     const bool stays = h && h->holds;
-    members_.push_back({stays ? k->patch : name_of(x.local, tool.q.conjugate() * x.normal, size_), int(i), stays ? k->weight : k ? k->bore : 0.0, -1, stays});
+    members_.push_back({stays ? k->patch : name_of(x.local, tool.q.conjugate() * x.normal, size_), int(i),
+                        stays ? k->weight
+                        : k   ? k->bore
+                              : 0.0,
+                        -1, stays});
     if (!h) continue;
     h->slip += k->weight * (k->local - x.local);
     h->weight += k->weight;
   }
-  std::sort(members_.begin(), members_.end(), [](const Member& a, const Member& b) { return a.patch != b.patch ? a.patch < b.patch : a.contact < b.contact; });
+  std::sort(members_.begin(), members_.end(), [](const Member& a, const Member& b) {
+    return a.patch != b.patch ? a.patch < b.patch : a.contact < b.contact;
+  });
   for (std::size_t first = 0; first < members_.size();) {
     std::size_t last = first;
     double sum = 0, kept = 0;
@@ -70,9 +79,11 @@ void FrictionPatches::sort(std::span<const Proximity> contacts, const Pose& tool
       else sum += m.weight, ++fresh;
       normal += contacts[std::size_t(m.contact)].normal;
     }
-    // What bore nothing has a small share, so that a new patch has a slip. Those that hold keep their shares, and newcomers get small ones.
+    // What bore nothing has a small share, so that a new patch has a slip. Those that hold keep their shares, and
+    // newcomers get small ones.
     const double n = double(last - first), least = 0.1 * sum / n + 1e-9, new_share = kept > 0 ? 0.1 / n : 0;
-    const double scale = kept > 0 && fresh == 0 && kept > 1 - 1e-12 ? 1 : 1 / (kept > 0 ? kept + fresh * new_share : sum + n * least);
+    const double scale =
+        kept > 0 && fresh == 0 && kept > 1 - 1e-12 ? 1 : 1 / (kept > 0 ? kept + fresh * new_share : sum + n * least);
     for (std::size_t i = first; i < last; ++i) {
       Member& m = members_[i];
       m.weight = scale * (m.stays ? m.weight : kept > 0 ? new_share : m.weight + least);
@@ -86,7 +97,8 @@ void FrictionPatches::sort(std::span<const Proximity> contacts, const Pose& tool
   }
 }
 
-void FrictionPatches::finish(std::span<const Proximity> contacts, const ConstraintSolution& solution, double mu, std::vector<Vec3>& forces) {
+void FrictionPatches::finish(std::span<const Proximity> contacts, const ConstraintSolution& solution, double mu,
+                             std::vector<Vec3>& forces) {
   forces.resize(contacts.size());
   known_.clear();
   held_.clear();

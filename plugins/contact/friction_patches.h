@@ -44,7 +44,8 @@ class FrictionPatches {
   std::vector<Patch>& patches() { return patches_; }
   /// Force of each contact along its own (normal, tangent, other tangent), N. Stores the normal forces and the creep of
   /// each patch.
-  void finish(std::span<const Proximity> contacts, const ConstraintSolution& solution, double friction, std::vector<Vec3>& forces);
+  void finish(std::span<const Proximity> contacts, const ConstraintSolution& solution, double friction,
+              std::vector<Vec3>& forces);
   void reset();
 
  private:

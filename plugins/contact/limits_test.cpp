@@ -16,7 +16,8 @@ struct BladeBench : Bench {
 <inertia ixx="1e-6" iyy="1e-6" izz="1e-6" ixy="0" ixz="0" iyz="0"/></inertial>
 <collision name="blade"><origin xyz="0 0 0.001"/><geometry><box size="0.0065 0.0065 0.002"/></geometry></collision></link></robot>)",
               shapes::box(Vec3(-0.01, -0.01, -0.01), Vec3(0.01, 0.01, 0), 20), test::upright,
-              R"(friction="0.3" contact_geometry="vertices" patch="2 mm" spacing="0.5 mm" max_contacts="100" )" + limit) {}
+              R"(friction="0.3" contact_geometry="vertices" patch="2 mm" spacing="0.5 mm" max_contacts="100" )" +
+                  limit) {}
 };
 
 // Four feet on layers, and the coupling over them: springs in series.
@@ -25,7 +26,8 @@ TEST(ContactLimits, ForceOfALayerIsItsStiffnessTimesTheOverlap) {
   for (const double layer : {200.0, 2000.0, 50000.0})
     for (const double friction : {0.0, 0.3}) {
       SCOPED_TRACE(fmt::format("layer {} N/m, friction {}", layer, friction));
-      Bench b(test::feet_urdf(5e-3, test::radius), test::ground(), test::upright, fmt::format(R"(friction="{}" contact_stiffness="{} N/m")", friction, layer));
+      Bench b(test::feet_urdf(5e-3, test::radius), test::ground(), test::upright,
+              fmt::format(R"(friction="{}" contact_stiffness="{} N/m")", friction, layer));
       ASSERT_TRUE(b.tool);
       Pose down = b.tool->home_pose();
       down.p.z() = test::radius - dz;
@@ -66,7 +68,8 @@ TEST(ContactLimits, AFootBearsSoMuchAndGoesIn) {
   constexpr double coupling = 400, dz = 1e-3;
   for (const double bound : {0.02, 0.07, 0.3}) {
     SCOPED_TRACE(fmt::format("{} N", bound));
-    Bench b(test::feet_urdf(5e-3, test::radius), test::ground(), test::upright, fmt::format(R"(friction="0" max_force="{} N")", bound));
+    Bench b(test::feet_urdf(5e-3, test::radius), test::ground(), test::upright,
+            fmt::format(R"(friction="0" max_force="{} N")", bound));
     ASSERT_TRUE(b.tool);
     Pose down = b.tool->home_pose();
     down.p.z() = test::radius - dz;
@@ -106,7 +109,9 @@ TEST(ContactLimits, AVertexUnderABladeBearsSoMuch) {
 
 double max_force(const std::string& contact, double* overlap = nullptr) {
   SceneFolder folder;
-  auto s = test::soft_bench(folder, R"(<contact between="pad top" friction="0" tissue_spacing="3 mm" tissue_max_contacts="60" )" + contact + R"(/>
+  auto s = test::soft_bench(
+      folder,
+      R"(<contact between="pad top" friction="0" tissue_spacing="3 mm" tissue_max_contacts="60" )" + contact + R"(/>
 <contact between="right top" friction="0.1"/>)");
   EXPECT_TRUE(s);
   double most = 0;
@@ -132,20 +137,26 @@ TEST(ContactLimits, AContactOfTwoTissuesBearsSoMuchAndNoMore) {
   EXPECT_NEAR(max_force(fmt::format(R"(tissue_max_force="{} N")", bound), &overlap), bound, 1e-6 * bound);
   EXPECT_GT(overlap, overlap_freely + 0.1e-3) << "with more they go through one another";
   const double loose = 2 * freely;
-  EXPECT_NEAR(max_force(fmt::format(R"(tissue_max_force="{} N")", loose)), freely, 1e-6 * freely) << "a bound that is not reached changes nothing";
+  EXPECT_NEAR(max_force(fmt::format(R"(tissue_max_force="{} N")", loose)), freely, 1e-6 * freely)
+      << "a bound that is not reached changes nothing";
 }
 
-// The hand leaps 20 mm into the pad and across it, from rest on it: the tool follows by tissue_max_step_displacement a step as long as it touches.
+// The hand leaps 20 mm into the pad and across it, from rest on it: the tool follows by tissue_max_step_displacement a
+// step as long as it touches.
 TEST(ContactLimits, AFastToolGoesOnInTissueByNoMoreThanTissuePush) {
   for (const Vec3& leap : {Vec3(0, 0, -0.02), Vec3(0.014, 0, -0.014)})
     for (const double push : {0.5e-3, 1.5e-3, 100e-3}) {
       SCOPED_TRACE(fmt::format("{} mm down, push {} mm", -1e3 * leap.z(), 1e3 * push));
       SceneFolder folder;
-      folder.write("meshes/pad.msh", test::gmsh_text(test::block_mesh({6, 6, 4}, Vec3(-0.015, -0.015, -0.02), Vec3(0.015, 0.015, 0))));
+      folder.write("meshes/pad.msh",
+                   test::gmsh_text(test::block_mesh({6, 6, 4}, Vec3(-0.015, -0.015, -0.02), Vec3(0.015, 0.015, 0))));
       folder.write("meshes/tool/tool.urdf", test::test_tool_urdf(test::radius));
-      auto s = test::load_text(fmt::format(R"(<scene>{}<retractor id="tool" model="meshes/tool/tool.urdf" hand="right" home="0 0 1 mm" shaft="0 0 1" flat="1 0 0" coupling="2000 N/m"/>
-<solver max_sweeps="2000" tolerance="1e-12 m"/><contact between="tool pad" friction="0.2" tissue_max_step_displacement="{} m"/></scene>)", test::pad, push),
-                               folder.path() / "scene.xml");
+      auto s = test::load_text(
+          fmt::format(
+              R"(<scene>{}<retractor id="tool" model="meshes/tool/tool.urdf" hand="right" home="0 0 1 mm" shaft="0 0 1" flat="1 0 0" coupling="2000 N/m"/>
+<solver max_sweeps="2000" tolerance="1e-12 m"/><contact between="tool pad" friction="0.2" tissue_max_step_displacement="{} m"/></scene>)",
+              test::pad, push),
+          folder.path() / "scene.xml");
       ASSERT_TRUE(s);
       const Instrument* tool = s->instrument_of(1);
       HandState state;
@@ -161,7 +172,8 @@ TEST(ContactLimits, AFastToolGoesOnInTissueByNoMoreThanTissuePush) {
       state.device.p += leap;
       double farthest = 0;
       for (int i = 0; i < 8; ++i) {
-        const Vec3 before = tool->pose().p, way = (state.device.p - before).normalized();  // without mass the free tool is with the hand
+        const Vec3 before = tool->pose().p,
+                   way = (state.device.p - before).normalized();  // without mass the free tool is with the hand
         const bool touches = !s->report().contacts.empty() && s->report().contacts[0].normal_force > 0;
         s->set_hand(1, state);
         s->step();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contacts taken at the expected end of a step: a ball led about the edge of a box, in closed form of the discretised law.
+// Contacts taken at the expected end of a step: a ball led about the edge of a box, in closed form of the discretised
+// law.
 #include <cmath>
 #include <numbers>
 
@@ -11,12 +12,14 @@ namespace {
 using namespace test;
 
 constexpr double stiffness = 400, pressed = 0.05e-3;  // N/m, m
-const Vec3 edge(0.046875, 0.003, 0);                  // of the block, at the ball's y; a number that single precision holds, as the file's reader has it
+const Vec3 edge(0.046875, 0.003,
+                0);  // of the block, at the ball's y; a number that single precision holds, as the file's reader has it
 
 TriMesh block() { return shapes::box(Vec3(-edge.x(), -0.05, -0.01), Vec3(edge.x(), 0.05, 0), 20); }
 
 Vec3 around(double angle) { return {std::cos(angle), 0, std::sin(angle)}; }
-/// The device at this angle about the edge: a ball that yields nowhere presses with stiffness times `pressed`, straight away from the edge.
+/// The device at this angle about the edge: a ball that yields nowhere presses with stiffness times `pressed`, straight
+/// away from the edge.
 Pose device(double angle) { return {edge + (radius - pressed) * around(angle), Quat::Identity()}; }
 
 /// Force on the hand at the end of each step while the device goes about the edge by 8 degrees a step.
@@ -37,7 +40,8 @@ std::vector<Vec3> led_about_the_edge(const std::string& linearized_at) {
 TEST(ContactTakenAt, TheEndFollowsAnEdgeAsTheLawSays) {
   const auto forces = led_about_the_edge("end");
   ASSERT_EQ(forces.size(), 10u);
-  // The normal is that of the expected place, the device's with the push of the step before; the row then says n . (x - edge) = radius.
+  // The normal is that of the expected place, the device's with the push of the step before; the row then says n . (x -
+  // edge) = radius.
   Vec3 push = pressed * around(0.45 * std::numbers::pi);
   for (int i = 0; i < 10; ++i) {
     const Vec3 at = device(0.45 * std::numbers::pi - i * 8 * std::numbers::pi / 180).p - edge;
@@ -54,7 +58,8 @@ TEST(ContactTakenAt, TheEndIsManyTimesNearerToTheTruthThanTheStart) {
     ASSERT_EQ(forces.size(), 10u);
     for (int i = 0; i < 10; ++i) {
       const Vec3 truth = stiffness * pressed * around(0.45 * std::numbers::pi - i * 8 * std::numbers::pi / 180);
-      worst[std::size_t(end)] = std::max(worst[std::size_t(end)], (forces[std::size_t(i)] - truth).norm() / truth.norm());
+      worst[std::size_t(end)] =
+          std::max(worst[std::size_t(end)], (forces[std::size_t(i)] - truth).norm() / truth.norm());
     }
   }
   EXPECT_GT(worst[0], 0.1);
@@ -90,7 +95,8 @@ TEST(ContactTurned, FollowsAnEdgeAsTheToolGoesOn) {
 // In one step from the top to the side: what is felt is the side alone.
 TEST(ContactTakenAt, OverAnEdgeTheNewFaceIsFeltInTheStepThatGetsThere) {
   for (const bool end : {false, true}) {
-    Bench b(test_tool_urdf(radius), block(), upright, fmt::format(R"(friction="0" linearized_at="{}")", end ? "end" : "start"));
+    Bench b(test_tool_urdf(radius), block(), upright,
+            fmt::format(R"(friction="0" linearized_at="{}")", end ? "end" : "start"));
     ASSERT_TRUE(b.tool);
     Pose at = b.tool->home_pose();
     at.p = edge + Vec3(-0.4e-3, 0, radius - pressed);
@@ -115,7 +121,9 @@ TEST(ContactTakenAt, ResetLeadsBackToTheSameBits) {
       press(*s, i);
       s->step();
       if (run == 0) hashes.push_back(s->state_hash());
-      else { ASSERT_EQ(s->state_hash(), hashes[std::size_t(i)]) << i; }
+      else {
+        ASSERT_EQ(s->state_hash(), hashes[std::size_t(i)]) << i;
+      }
     }
   }
 }

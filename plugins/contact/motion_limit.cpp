@@ -8,9 +8,10 @@ namespace {
 constexpr double servo_step_s = 1e-3;  // who goes on in such steps is allowed as much in each
 }
 
-// Tissue answers linearly over a step, while its true motion is not: a far push would turn a thin wall or the elements of a lobe
-// inside out, a far slide would leave the places that contact looked at. So a tool that touches goes on by no more than
-// max_step_displacement (a wall) or tissue_max_step_displacement: three rows along the free motion of three places of the touching piece.
+// Tissue answers linearly over a step, while its true motion is not: a far push would turn a thin wall or the elements
+// of a lobe inside out, a far slide would leave the places that contact looked at. So a tool that touches goes on by no
+// more than max_step_displacement (a wall) or tissue_max_step_displacement: three rows along the free motion of three
+// places of the touching piece.
 void Contact::limit_motion(ConstraintBuilder& builder, const Pair& p) const {
   if (!p.tool_a || !p.b || !p.active() || p.b->body().blocks() == 0) return;
   const double most = p.b->thickness() > 0 ? max_step_displacement() : tissue_max_step_displacement();
@@ -52,7 +53,8 @@ void Contact::limit_motion(ConstraintBuilder& builder, const Pair& p) const {
     ++count;
     if (way <= allowed) continue;
     Block block;
-    block.id = row_id(*this, std::uint64_t(1) << 43 | std::uint64_t(&p - pairs_.data()) << 16 | std::uint64_t(piece) << 2 | std::uint64_t(count));
+    block.id = row_id(*this, std::uint64_t(1) << 43 | std::uint64_t(&p - pairs_.data()) << 16 |
+                                 std::uint64_t(piece) << 2 | std::uint64_t(count));
     block.role = BlockRole::stop;
     block.lower = 0;
     const int row = builder.add(block);

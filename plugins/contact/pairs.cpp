@@ -52,7 +52,8 @@ void Contact::add_pairs(Simulation& simulation, Body* a, Body* b) {
         p.b = sb;
         for (const ConvexPiece& piece : tool_a->link_pieces(i)) p.pieces_a.push_back(rounded(piece));
         if (contact_geometry.is("vertices"))
-          p.vertex_collider = std::make_unique<VertexCollider>(tool_a->link_pieces(i), sb->triangles(), p.b->collision().vertex_count());
+          p.vertex_collider = std::make_unique<VertexCollider>(tool_a->link_pieces(i), sb->triangles(),
+                                                               p.b->collision().vertex_count());
         else
           p.tool_collider = std::make_unique<ToolCollider>(tool_a->link_pieces(i), p.b->collision().triangle_count());
         p.contacts.reserve(room);
@@ -67,8 +68,10 @@ void Contact::add_pairs(Simulation& simulation, Body* a, Body* b) {
       p.a = sa;
       p.b = sb;
       const double distance = 0.75 * tissue_spacing();
-      p.a_on_b = std::make_unique<TissueCollider>(sample_vertices(sa->rest().vertices, sa->triangles(), distance), sa->rest().vertices, p.b->collision().triangle_count());
-      p.b_on_a = std::make_unique<TissueCollider>(sample_vertices(sb->rest().vertices, sb->triangles(), distance), sb->rest().vertices, p.a->collision().triangle_count());
+      p.a_on_b = std::make_unique<TissueCollider>(sample_vertices(sa->rest().vertices, sa->triangles(), distance),
+                                                  sa->rest().vertices, p.b->collision().triangle_count());
+      p.b_on_a = std::make_unique<TissueCollider>(sample_vertices(sb->rest().vertices, sb->triangles(), distance),
+                                                  sb->rest().vertices, p.a->collision().triangle_count());
       p.contacts.reserve(p.a_on_b->samples().size() + p.b_on_a->samples().size());
       p.other_way.reserve(p.b_on_a->samples().size());
       pairs_.push_back(std::move(p));
@@ -79,7 +82,9 @@ void Contact::add_pairs(Simulation& simulation, Body* a, Body* b) {
 void Contact::connect(PrepareContext& context, Simulation& simulation) {
   const auto& all = between();
   if (max_force() > 0 && friction() > 0 && !(contact_geometry.is("vertices") && patch() > 0))
-    return error(context, max_force, "max_force: a contact with friction has a bound only in a patch (contact_geometry=\"vertices\" and patch); or set friction=\"0\"");
+    return error(context, max_force,
+                 "max_force: a contact with friction has a bound only in a patch (contact_geometry=\"vertices\" and "
+                 "patch); or set friction=\"0\"");
   if (all.size() < 2) return error(context, between, "between: contact needs two names or more");
   for (std::size_t i = 0; i < all.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j)
@@ -101,7 +106,8 @@ void Contact::connect(PrepareContext& context, Simulation& simulation) {
     p.selection.reserve(p.contacts.capacity() + p.other_way.capacity(), most);
     p.contacts.reserve(p.contacts.capacity() + p.other_way.capacity());
     p.rows.reserve(most);
-    if (p.vertex_collider && patch() > 0 && friction() > 0) p.patches = std::make_unique<FrictionPatches>(patch(), most);
+    if (p.vertex_collider && patch() > 0 && friction() > 0)
+      p.patches = std::make_unique<FrictionPatches>(patch(), most);
     p.forces.reserve(most);
   }
   // Surfaces against surfaces take longest: first, so that threads end together.

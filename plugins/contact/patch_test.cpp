@@ -16,7 +16,8 @@ using test::SceneFolder;
 std::string plate_urdf(double wide, double up = 0, double beside = 0) {
   return fmt::format(R"(<robot name="plate"><link name="tool"><inertial><mass value="0.02"/>
 <inertia ixx="1e-6" iyy="1e-6" izz="1e-6" ixy="0" ixz="0" iyz="0"/></inertial>
-<collision name="plate"><origin xyz="{} 0 {}"/><geometry><box size="{} {} 0.002"/></geometry></collision></link></robot>)", beside, 1e-3 + up, wide, wide);
+<collision name="plate"><origin xyz="{} 0 {}"/><geometry><box size="{} {} 0.002"/></geometry></collision></link></robot>)",
+                     beside, 1e-3 + up, wide, wide);
 }
 TriMesh fine_ground() { return shapes::box(Vec3(-0.01, -0.01, -0.01), Vec3(0.01, 0.01, 0), 20); }
 const std::string by_vertices = R"(contact_geometry="vertices" spacing="0.5 mm" max_contacts="100" alarm="0.5 mm" )";
@@ -34,7 +35,8 @@ struct Sum {
 
 TEST(Patch, ThereIsOneRowAContactAndTwoAPatch) {
   for (const double size : {1.0, 2.0, 3.5, 20.0}) {
-    Bench b(plate_urdf(6.5e-3), fine_ground(), test::upright, by_vertices + fmt::format(R"(friction="0.3" patch="{} mm")", size));
+    Bench b(plate_urdf(6.5e-3), fine_ground(), test::upright,
+            by_vertices + fmt::format(R"(friction="0.3" patch="{} mm")", size));
     ASSERT_TRUE(b.tool);
     Pose down = b.tool->home_pose();
     down.p.z() = -1e-3;
@@ -57,7 +59,8 @@ TEST(Patch, ThereIsOneRowAContactAndTwoAPatch) {
     EXPECT_EQ(p.rows, contacts + 2 * patches);
     EXPECT_EQ(contacts, int(b.contact->pairs()[0].contacts.size()));
     EXPECT_GE(contacts, 49);
-    // One patch a cell of the grid and direction: cells of the plate are known, the rim's contacts look sideways or down.
+    // One patch a cell of the grid and direction: cells of the plate are known, the rim's contacts look sideways or
+    // down.
     std::set<std::array<int, 4>> cells;
     for (const Proximity& x : b.contact->pairs()[0].contacts) {
       const Vec3 n = b.tool->pose().q.conjugate() * x.normal;
@@ -77,7 +80,8 @@ TEST(Patch, AllTogetherStickBelowMuNAndSlipAbove) {
   constexpr double mu = 0.35, dz = 1e-3;
   for (const double factor : {0.98, 1.02})
     for (const double heading : {0.0, 0.7, 2.1}) {
-      Bench b(plate_urdf(4.5e-3), fine_ground(), test::upright, by_vertices + fmt::format(R"(friction="{}" patch="1.5 mm")", mu));
+      Bench b(plate_urdf(4.5e-3), fine_ground(), test::upright,
+              by_vertices + fmt::format(R"(friction="{}" patch="1.5 mm")", mu));
       ASSERT_TRUE(b.tool);
       Pose down = b.tool->home_pose();
       down.p.z() = -dz;
@@ -115,8 +119,10 @@ struct Soft {
   const Contact* contact = nullptr;
   explicit Soft(double coupling, double home_mm = 0.7) {
     const std::string scene = fmt::format(fmt::runtime(soft_scene), home_mm, coupling);
-    folder.write("meshes/pad.msh", test::gmsh_text(test::block_mesh({8, 8, 3}, Vec3(-6e-3, -6e-3, -4e-3), Vec3(6e-3, 6e-3, 0))));
-    folder.write("meshes/tool/tool.urdf", plate_urdf(5e-3, 0.3e-3, 6e-3));  // no contact lies between two cells of the patches
+    folder.write("meshes/pad.msh",
+                 test::gmsh_text(test::block_mesh({8, 8, 3}, Vec3(-6e-3, -6e-3, -4e-3), Vec3(6e-3, 6e-3, 0))));
+    folder.write("meshes/tool/tool.urdf",
+                 plate_urdf(5e-3, 0.3e-3, 6e-3));  // no contact lies between two cells of the patches
     folder.write("scene.xml", scene);
     s = test::load_text(scene, folder.path() / "scene.xml");
     if (!s) return;
@@ -154,9 +160,9 @@ std::pair<Vec3, int> slid(const std::map<std::uint64_t, Vec3>& from, const std::
   return {n > 0 ? Vec3(sum / n) : Vec3(Vec3::Zero()), n};
 }
 
-// Pressed by a force that pulsates by a fifth and rocked by 1.1 degrees about a place 6 mm off, 70 to the minute, and pulled along with
-// 0.8 of what its least can hold. The first hold beds in by some micrometres; after that it walks nowhere. (Steps take a turn as
-// linear: without memory the second creeps as the first does.)
+// Pressed by a force that pulsates by a fifth and rocked by 1.1 degrees about a place 6 mm off, 70 to the minute, and
+// pulled along with 0.8 of what its least can hold. The first hold beds in by some micrometres; after that it walks
+// nowhere. (Steps take a turn as linear: without memory the second creeps as the first does.)
 TEST(Patch, AHoldUnderAPulsatingForceDoesNotCreep) {
   constexpr double mu = 0.4, k = 400, force = 0.08, least = 0.8 * force, beat = 60.0 / 70;
   Soft b(k);

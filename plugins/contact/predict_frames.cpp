@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Directions of contacts after the step. A step's normals are those of its start; they are found anew where tools and surfaces have come.
+// Directions of contacts after the step. A step's normals are those of its start; they are found anew where tools and
+// surfaces have come.
 #include "core/collision/shapes/contact_normal_ahead.h"
 #include "plugins/contact/contact.h"
 
@@ -18,7 +19,8 @@ void Contact::predict_frames(double steps, std::vector<ContactFrame>& out) const
       return end + after * (end - start);
     };
     const auto nearest = [&](const Proximity& x, const Pose& pose, const std::function<Vec3(int)>& vertices) {
-      return contact_normal_ahead(p.pieces_a[std::size_t(x.piece)], pose, p.b->collision(), vertices, pose.apply(x.local), spacing(), x.normal);
+      return contact_normal_ahead(p.pieces_a[std::size_t(x.piece)], pose, p.b->collision(), vertices,
+                                  pose.apply(x.local), spacing(), x.normal);
     };
     const auto nearest_after = [&](const Proximity& x, double after) {
       return nearest(x, displaced(now, after * way), [&](int v) { return vertex(after, v); });
@@ -31,7 +33,8 @@ void Contact::predict_frames(double steps, std::vector<ContactFrame>& out) const
       // As far as the nearest place has turned: what rests is not turned, even if it touches by another place.
       Vec3 to = *normal;
       if (x.time == 0 || (x.time == 1 && p.expected)) {
-        const auto taken = nearest(x, x.time == 0 ? p.start : *p.expected, [&](int v) { return p.b->collision().vertex(v, x.time); });
+        const auto taken =
+            nearest(x, x.time == 0 ? p.start : *p.expected, [&](int v) { return p.b->collision().vertex(v, x.time); });
         if (taken) to = Quat::FromTwoVectors(*taken, *normal) * x.normal;
       }
       if (!(to.dot(x.normal) > 0)) continue;

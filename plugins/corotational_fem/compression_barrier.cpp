@@ -13,14 +13,15 @@ namespace {
 
 Mat3 stretch_of(const ElementWork& work, int l) {
   Mat3 s;
-  s << work.s[0][l], work.s[3][l], work.s[4][l], work.s[3][l], work.s[1][l], work.s[5][l], work.s[4][l], work.s[5][l], work.s[2][l];
+  s << work.s[0][l], work.s[3][l], work.s[4][l], work.s[3][l], work.s[1][l], work.s[5][l], work.s[4][l], work.s[5][l],
+      work.s[2][l];
   return s;
 }
 
 }  // namespace
 
-void stiffen(const ElementBatch& e, const ElementWork& work, int l, const BarrierLaw& law, double* force, BlockMatrix* stiffness,
-             double scale, bool positive) {
+void stiffen(const ElementBatch& e, const ElementWork& work, int l, const BarrierLaw& law, double* force,
+             BlockMatrix* stiffness, double scale, bool positive) {
   Eigen::SelfAdjointEigenSolver<Mat3> eigen;
   eigen.computeDirect(stretch_of(work, l));
   const Vec3 stretch = eigen.eigenvalues();

@@ -8,7 +8,7 @@
 namespace insula {
 
 struct BarrierLaw {
-  double stiffness;      ///< k, Pa
+  double stiffness;        ///< k, Pa
   double barrier_stretch;  ///< s0
 };
 
@@ -24,8 +24,8 @@ inline Vec3 rest_gradient(const ElementBatch& e, int l, int node) {
 }
 
 /// Adds the element's force, and its tangent if `stiffness` is given. `positive`: without negative eigenvalues.
-void stiffen(const ElementBatch& e, const ElementWork& work, int lane, const BarrierLaw& law, double* force, BlockMatrix* stiffness,
-             double scale, bool positive);
+void stiffen(const ElementBatch& e, const ElementWork& work, int lane, const BarrierLaw& law, double* force,
+             BlockMatrix* stiffness, double scale, bool positive);
 double barrier_energy(const ElementBatch& e, const ElementWork& work, int lane, const BarrierLaw& law);
 
 }  // namespace insula

@@ -39,15 +39,44 @@ namespace {
 
 class CorotationalFem final : public ForceModel {
  public:
-  Param<Pressure> young{this, {.name = "young", .fallback = "2100 Pa", .min = "1 Pa", .max = "1 GPa", .doc = "Young's modulus"}};
-  Param<Scalar> poisson{this, {.name = "poisson", .fallback = "0.45", .min = "0", .max = "0.495", .doc = "Poisson's ratio"}};
-  Param<Density> density{this, {.name = "density", .fallback = "1 g/cm3", .min = "0.01 g/cm3", .max = "25 g/cm3", .doc = "mass density"}};
-  Param<Rate> rayleigh_mass{this, {.name = "rayleigh_mass", .fallback = "1 1/s", .min = "0 1/s", .max = "1000 1/s", .doc = "Rayleigh damping in proportion to mass"}};
-  Param<Duration> rayleigh_stiffness{this, {.name = "rayleigh_stiffness", .fallback = "20 ms", .min = "0 s", .max = "1 s", .doc = "Rayleigh damping in proportion to stiffness"}};
-  Param<Choice> tangent{this, {.name = "tangent", .fallback = "rotated", .choices = {"rotated", "exact"}, .doc = "stiffness used in a step: rotated Hooke, or with the element's spin as well"}};
+  Param<Pressure> young{
+      this, {.name = "young", .fallback = "2100 Pa", .min = "1 Pa", .max = "1 GPa", .doc = "Young's modulus"}};
+  Param<Scalar> poisson{this,
+                        {.name = "poisson", .fallback = "0.45", .min = "0", .max = "0.495", .doc = "Poisson's ratio"}};
+  Param<Density> density{
+      this, {.name = "density", .fallback = "1 g/cm3", .min = "0.01 g/cm3", .max = "25 g/cm3", .doc = "mass density"}};
+  Param<Rate> rayleigh_mass{this,
+                            {.name = "rayleigh_mass",
+                             .fallback = "1 1/s",
+                             .min = "0 1/s",
+                             .max = "1000 1/s",
+                             .doc = "Rayleigh damping in proportion to mass"}};
+  Param<Duration> rayleigh_stiffness{this,
+                                     {.name = "rayleigh_stiffness",
+                                      .fallback = "20 ms",
+                                      .min = "0 s",
+                                      .max = "1 s",
+                                      .doc = "Rayleigh damping in proportion to stiffness"}};
+  Param<Choice> tangent{this,
+                        {.name = "tangent",
+                         .fallback = "rotated",
+                         .choices = {"rotated", "exact"},
+                         .doc = "stiffness used in a step: rotated Hooke, or with the element's spin as well"}};
 
-  Param<Scalar> barrier_stretch{this, {.name = "barrier_stretch", .fallback = "0.4", .min = "0", .max = "0.9", .doc = "principal stretch below which an element stiffens; 0: only once it is inverted", .formerly = "barrier_stretch"}};
-  Param<Scalar> stiffening{this, {.name = "stiffening", .fallback = "30", .min = "0", .max = "1000", .doc = "stiffness below that stretch, in Young's moduli; 0: none"}};
+  Param<Scalar> barrier_stretch{
+      this,
+      {.name = "barrier_stretch",
+       .fallback = "0.4",
+       .min = "0",
+       .max = "0.9",
+       .doc = "principal stretch below which an element stiffens; 0: only once it is inverted",
+       .formerly = "barrier_stretch"}};
+  Param<Scalar> stiffening{this,
+                           {.name = "stiffening",
+                            .fallback = "30",
+                            .min = "0",
+                            .max = "1000",
+                            .doc = "stiffness below that stretch, in Young's moduli; 0: none"}};
 
   void attach(PrepareContext& context, DeformableBody& body) override;
   void couplings(std::vector<std::pair<int, int>>& pairs, Tangent) const override;
@@ -113,12 +142,14 @@ void CorotationalFem::bind(const BlockMatrix& a, const std::vector<int>& free_of
         const int n = e.node[k][l];
         corner[k] = {free_of_node[std::size_t(n)], n, rest_gradient(e, l, k)};
       }
-      std::sort(corner, corner + 4, [](const Corner& p, const Corner& q) { return p.free != q.free ? p.free < q.free : p.node < q.node; });
+      std::sort(corner, corner + 4,
+                [](const Corner& p, const Corner& q) { return p.free != q.free ? p.free < q.free : p.node < q.node; });
       for (int i = 0, k = 0; i < 4; ++i) {
         e.node[i][l] = corner[i].node;
         if (i > 0)
           for (int c = 0; c < 3; ++c) e.b[i - 1][c][l] = corner[i].b[c];
-        for (int j = 0; j <= i; ++j, ++k) e.slot[k][l] = corner[j].free < 0 || l >= e.count ? -1 : a.slot(corner[i].free, corner[j].free);
+        for (int j = 0; j <= i; ++j, ++k)
+          e.slot[k][l] = corner[j].free < 0 || l >= e.count ? -1 : a.slot(corner[i].free, corner[j].free);
       }
     }
 }

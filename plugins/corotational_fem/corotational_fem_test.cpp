@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the two tangents are worth in a Newton iteration. Elements by themselves: element_batch_test.cpp; bars, beams and
-// patches: tests/physics.
+// What the two tangents are worth in a Newton iteration. Elements by themselves: element_batch_test.cpp; bars, beams
+// and patches: tests/physics.
 #include <gtest/gtest.h>
 
 #include "core/mechanics/soft_body.h"
@@ -13,8 +13,10 @@ namespace {
 
 std::unique_ptr<Simulation> bar(const std::string& fem, const test::SceneFolder& folder) {
   folder.write("meshes/bar.msh", test::gmsh_text(test::block_mesh({6, 2, 2}, Vec3(0, 0, 0), Vec3(0.06, 0.02, 0.02))));
-  return test::load_text("<scene><soft_body id=\"bar\" mesh=\"meshes/bar.msh\" mesh_unit=\"m\"><corotational_fem " + fem +
-                         "/><fixed region=\"beyond\" centre=\"0.001 0 0 m\" normal=\"-1 0 0\"/></soft_body></scene>", folder.path() / "bar.xml");
+  return test::load_text(
+      "<scene><soft_body id=\"bar\" mesh=\"meshes/bar.msh\" mesh_unit=\"m\"><corotational_fem " + fem +
+          "/><fixed region=\"beyond\" centre=\"0.001 0 0 m\" normal=\"-1 0 0\"/></soft_body></scene>",
+      folder.path() / "bar.xml");
 }
 
 /// Static Newton on a bent bar: residual force after each step, N.
@@ -50,7 +52,8 @@ TEST(CorotationalFem, BothTangentsReachTheSameEquilibrium) {
   EXPECT_LT(slow.back(), 1e-12);
   EXPECT_LT(fast.back(), 1e-12);
   EXPECT_TRUE(test::held("both tangents, one equilibrium, m", (a.q() - b.q()).lpNorm<Eigen::Infinity>(), 1, 1e-9));
-  EXPECT_GT((a.q() - rotated->scene().find_as<SoftBody>("bar")->rest().nodes[0][0] * VecX::Ones(a.q().size())).norm(), 0);
+  EXPECT_GT((a.q() - rotated->scene().find_as<SoftBody>("bar")->rest().nodes[0][0] * VecX::Ones(a.q().size())).norm(),
+            0);
 }
 
 TEST(CorotationalFem, MassIsDensityTimesVolume) {
@@ -65,8 +68,12 @@ TEST(CorotationalFem, MassIsDensityTimesVolume) {
 // A twist by several turns' worth of steps: elements follow their own rotation without flipping back.
 TEST(CorotationalFem, SpinningBodyKeepsItsShape) {
   test::SceneFolder folder;
-  folder.write("meshes/cube.msh", test::gmsh_text(test::block_mesh({2, 2, 2}, Vec3::Constant(-0.01), Vec3::Constant(0.01))));
-  auto s = test::load_text("<scene time_step=\"2 ms\"><soft_body id=\"cube\" mesh=\"meshes/cube.msh\" mesh_unit=\"m\"><corotational_fem young=\"50 kPa\" rayleigh_mass=\"0 1/s\"/></soft_body></scene>", folder.path() / "cube.xml");
+  folder.write("meshes/cube.msh",
+               test::gmsh_text(test::block_mesh({2, 2, 2}, Vec3::Constant(-0.01), Vec3::Constant(0.01))));
+  auto s = test::load_text(
+      "<scene time_step=\"2 ms\"><soft_body id=\"cube\" mesh=\"meshes/cube.msh\" mesh_unit=\"m\"><corotational_fem "
+      "young=\"50 kPa\" rayleigh_mass=\"0 1/s\"/></soft_body></scene>",
+      folder.path() / "cube.xml");
   ASSERT_TRUE(s);
   auto& body = *s->scene().find_as<SoftBody>("cube");
   const Vec3 spin(0, 0, 30);

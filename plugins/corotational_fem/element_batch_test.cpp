@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Batches of elements against formulas written out with Eigen: rotations, force and tangents; the same on every instruction set.
+// Batches of elements against formulas written out with Eigen: rotations, force and tangents; the same on every
+// instruction set.
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
@@ -75,8 +76,11 @@ TEST(ElementBatch, FindsTheRotationFromNearby) {
       const unsigned failed = kernel->rotate(b.e, b.x.data(), b.work);
       for (int l = 0; l < batch_lanes; ++l) {
         if (failed >> l & 1) b.work.r[0][l] = 2;  // seen below
-        EXPECT_TRUE(test::held("rotation of a stretched element", (b.r(l) - expected[l]).norm(), 1, 2e-13)) << trial << " lane " << l;
-        EXPECT_LT((Quat(b.work.q[0][l], b.work.q[1][l], b.work.q[2][l], b.work.q[3][l]).toRotationMatrix() - b.r(l)).norm(), 1e-14);
+        EXPECT_TRUE(test::held("rotation of a stretched element", (b.r(l) - expected[l]).norm(), 1, 2e-13))
+            << trial << " lane " << l;
+        EXPECT_LT(
+            (Quat(b.work.q[0][l], b.work.q[1][l], b.work.q[2][l], b.work.q[3][l]).toRotationMatrix() - b.r(l)).norm(),
+            1e-14);
       }
     }
   }
@@ -120,7 +124,8 @@ TEST(ElementBatch, InvertedAndFlatElementsGetAProperRotation) {
     if (std::abs(f.determinant()) > 1e-2) {
       EXPECT_LT((s - s.transpose()).norm(), 1e-10) << trial;
     }
-    Eigen::SelfAdjointEigenSolver<Mat3> eigen(Mat3(0.5 * (s + s.transpose())));  // one stretch at most is negative, the least in size
+    Eigen::SelfAdjointEigenSolver<Mat3> eigen(
+        Mat3(0.5 * (s + s.transpose())));  // one stretch at most is negative, the least in size
     if (!failed) {
       EXPECT_GE(eigen.eigenvalues()[0] + eigen.eigenvalues()[1], -1e-9) << trial;
     }
@@ -138,7 +143,8 @@ TEST(ElementBatch, AnElementDoesNotDependOnItsCompanions) {
     }
     alone.set(2, f, Mat3::Identity());
     crowd.set(2, f, Mat3::Identity());
-    EXPECT_EQ(kernel->rotate(alone.e, alone.x.data(), alone.work) >> 2 & 1, kernel->rotate(crowd.e, crowd.x.data(), crowd.work) >> 2 & 1);
+    EXPECT_EQ(kernel->rotate(alone.e, alone.x.data(), alone.work) >> 2 & 1,
+              kernel->rotate(crowd.e, crowd.x.data(), crowd.work) >> 2 & 1);
     for (int k = 0; k < 9; ++k) EXPECT_EQ(alone.work.r[k][2], crowd.work.r[k][2]);
   }
 }
@@ -148,7 +154,8 @@ struct Plain {
   Eigen::Matrix<double, 12, 1> force;
   Eigen::Matrix<double, 12, 12> k;
   double energy;
-  Plain(const Mat3& r, const Mat3& s, const Mat3& b, double volume, const ElementMaterial& m, double scale, SpinTerm spin) {
+  Plain(const Mat3& r, const Mat3& s, const Mat3& b, double volume, const ElementMaterial& m, double scale,
+        SpinTerm spin) {
     const Mat3 e = s - Mat3::Identity();
     energy = volume * (m.mu * e.squaredNorm() + 0.5 * m.lambda * e.trace() * e.trace());
     const Mat3 p = r * (2 * m.mu * e + m.lambda * e.trace() * Mat3::Identity());
@@ -166,8 +173,10 @@ struct Plain {
     const Mat3 v = r * eigen.eigenvectors(), turn = v * resists.asDiagonal() * v.transpose();
     for (int i = 0; i < 4; ++i)
       for (int j = 0; j < 4; ++j)
-        k.block<3, 3>(3 * i, 3 * j) = scale * volume * (m.mu * (g[i].dot(g[j]) * Mat3::Identity() + g[j] * g[i].transpose()) + m.lambda * g[i] * g[j].transpose() +
-                                                        0.5 * skew(g[i]).transpose() * turn * skew(g[j]));
+        k.block<3, 3>(3 * i, 3 * j) =
+            scale * volume *
+            (m.mu * (g[i].dot(g[j]) * Mat3::Identity() + g[j] * g[i].transpose()) + m.lambda * g[i] * g[j].transpose() +
+             0.5 * skew(g[i]).transpose() * turn * skew(g[j]));
   }
 };
 
@@ -200,7 +209,8 @@ TEST(ElementBatch, ForceTangentAndEnergyAreThoseOfTheFormulas) {
           for (int i = 0, k = 0; i < 4; ++i)
             for (int j = 0; j <= i; ++j, ++k) {
               const Eigen::Map<const Mat3> block(values.data() + 9 * (10 * l + k));
-              EXPECT_LE((block - plain.k.block<3, 3>(3 * i, 3 * j)).norm(), 1e-11 * plain.k.norm()) << trial << " lane " << l << " block " << k;
+              EXPECT_LE((block - plain.k.block<3, 3>(3 * i, 3 * j)).norm(), 1e-11 * plain.k.norm())
+                  << trial << " lane " << l << " block " << k;
             }
         }
         EXPECT_EQ(kernel->energy(b.e, m, b.work), 0u);

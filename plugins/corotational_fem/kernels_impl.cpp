@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Compiled once per instruction set: KERNEL_NAME, KERNEL_BYTES (of a vector). The formulas stand in corotational_fem.cpp.
+// Compiled once per instruction set: KERNEL_NAME, KERNEL_BYTES (of a vector). The formulas stand in
+// corotational_fem.cpp.
 #include <utility>
 
 #include "core/linalg/lane_bits.h"
@@ -28,7 +29,8 @@ unsigned rotate(const ElementBatch& e, const double* x, ElementWork& work) {
         for (int c = 0; c < 3; ++c) p[3 * k + c][i] = x[3 * e.node[k][l + i] + c];
     for (int k = 0; k < 3; ++k)
       for (int c = 0; c < 3; ++c) {
-        const V d = load(p[3 * k + 3 + c]) - load(p[c]);  // differences first: what is far from the origin must not lose digits
+        const V d =
+            load(p[3 * k + 3 + c]) - load(p[c]);  // differences first: what is far from the origin must not lose digits
         for (int j = 0; j < 3; ++j) f[3 * c + j] += d * load(e.b[k][j] + l);
       }
     V q[4], r[9];
@@ -75,7 +77,8 @@ unsigned force(const ElementBatch& b, const ElementMaterial& m, ElementWork& wor
     const V t01 = two * e.e01, t02 = two * e.e02, t12 = two * e.e12;
     for (int c = 0; c < 3; ++c) {
       const V r0 = load(work.r[3 * c] + l), r1 = load(work.r[3 * c + 1] + l), r2 = load(work.r[3 * c + 2] + l);
-      const V p0 = r0 * t00 + r1 * t01 + r2 * t02, p1 = r0 * t01 + r1 * t11 + r2 * t12, p2 = r0 * t02 + r1 * t12 + r2 * t22;
+      const V p0 = r0 * t00 + r1 * t01 + r2 * t02, p1 = r0 * t01 + r1 * t11 + r2 * t12,
+              p2 = r0 * t02 + r1 * t12 + r2 * t22;
       V sum = V{};
       for (int k = 0; k < 3; ++k) {
         const V g = p0 * load(b.b[k][0] + l) + p1 * load(b.b[k][1] + l) + p2 * load(b.b[k][2] + l);
@@ -122,8 +125,8 @@ inline void turn(V& low, V& high, V& off, V& p, V& q, V* from, V* to) {
   }
 }
 
-// How the spin of the element resists, R (2 mu I - k (tr(S) I - S)^-1) R^T with k = 2 (2 mu - lambda tr e), symmetric; with
-// `positive` its negative eigenvalues are zero.
+// How the spin of the element resists, R (2 mu I - k (tr(S) I - S)^-1) R^T with k = 2 (2 mu - lambda tr e), symmetric;
+// with `positive` its negative eigenvalues are zero.
 inline void spin_of(const ElementMaterial& m, const ElementWork& work, int l, bool positive, V g[6]) {
   V s[6], r[9];
   for (int k = 0; k < 6; ++k) s[k] = load(work.s[k] + l);
@@ -141,7 +144,7 @@ inline void spin_of(const ElementMaterial& m, const ElementWork& work, int l, bo
     for (int i = 0; i < 3; ++i) {
       const V gap = trace - s[i], resists = 2 * m.mu - k / gap;
       const V v = ((gap > 1e-9) & (resists > 0)) ? resists : V{};
-      const V *a = axis[i];
+      const V* a = axis[i];
       h[0] += v * a[0] * a[0], h[1] += v * a[1] * a[1], h[2] += v * a[2] * a[2];
       h[3] += v * a[0] * a[1], h[4] += v * a[0] * a[2], h[5] += v * a[1] * a[2];
     }
@@ -149,12 +152,13 @@ inline void spin_of(const ElementMaterial& m, const ElementWork& work, int l, bo
     const V xx = trace - s[0], yy = trace - s[1], zz = trace - s[2], xy = -s[3], xz = -s[4], yz = -s[5];
     const V c00 = yy * zz - yz * yz, c01 = xz * yz - xy * zz, c02 = xy * yz - xz * yy;
     const V scale = k / (xx * c00 + xy * c01 + xz * c02);
-    h[0] = 2 * m.mu - scale * c00, h[1] = 2 * m.mu - scale * (xx * zz - xz * xz), h[2] = 2 * m.mu - scale * (xx * yy - xy * xy);
+    h[0] = 2 * m.mu - scale * c00, h[1] = 2 * m.mu - scale * (xx * zz - xz * xz),
+    h[2] = 2 * m.mu - scale * (xx * yy - xy * xy);
     h[3] = -scale * c01, h[4] = -scale * c02, h[5] = -scale * (xy * xz - xx * yz);
   }
   V rh[3][3];
   for (int i = 0; i < 3; ++i) {
-    const V *a = r + 3 * i;
+    const V* a = r + 3 * i;
     rh[i][0] = a[0] * h[0] + a[1] * h[3] + a[2] * h[4];
     rh[i][1] = a[0] * h[3] + a[1] * h[1] + a[2] * h[5];
     rh[i][2] = a[0] * h[4] + a[1] * h[5] + a[2] * h[2];
@@ -197,12 +201,14 @@ inline void add_blocks(V v[9], const int* slot, int count, double* values) {
 }
 
 template <bool spin>
-inline void stiffness_of(const ElementBatch& b, const ElementMaterial& m, const ElementWork& work, int l, double scale, const V* turned, double* values) {
+inline void stiffness_of(const ElementBatch& b, const ElementMaterial& m, const ElementWork& work, int l, double scale,
+                         const V* turned, double* values) {
   const V weight = scale * load(b.volume + l), wm = weight * m.mu, wl = weight * m.lambda;
   V g[4][3];
   for (int c = 0; c < 3; ++c) {
     const V r0 = load(work.r[3 * c] + l), r1 = load(work.r[3 * c + 1] + l), r2 = load(work.r[3 * c + 2] + l);
-    for (int k = 0; k < 3; ++k) g[k + 1][c] = r0 * load(b.b[k][0] + l) + r1 * load(b.b[k][1] + l) + r2 * load(b.b[k][2] + l);
+    for (int k = 0; k < 3; ++k)
+      g[k + 1][c] = r0 * load(b.b[k][0] + l) + r1 * load(b.b[k][1] + l) + r2 * load(b.b[k][2] + l);
     g[0][c] = -(g[1][c] + g[2][c] + g[3][c]);
   }
   const int count = b.count - l < W ? b.count - l : W;
@@ -211,8 +217,9 @@ inline void stiffness_of(const ElementBatch& b, const ElementMaterial& m, const 
     V a[3], x[3][3];
     for (int c = 0; c < 3; ++c) a[c] = wm * g[i][c];
     if constexpr (spin) {  // rows of skew(g_i)^T G
-      const V *p = g[i];
-      const V gs[3][3] = {{turned[0], turned[3], turned[4]}, {turned[3], turned[1], turned[5]}, {turned[4], turned[5], turned[2]}};
+      const V* p = g[i];
+      const V gs[3][3] = {
+          {turned[0], turned[3], turned[4]}, {turned[3], turned[1], turned[5]}, {turned[4], turned[5], turned[2]}};
       for (int c = 0; c < 3; ++c) {
         x[0][c] = weight * 0.5 * (gs[1][c] * p[2] - gs[2][c] * p[1]);
         x[1][c] = weight * 0.5 * (gs[2][c] * p[0] - gs[0][c] * p[2]);
@@ -228,7 +235,7 @@ inline void stiffness_of(const ElementBatch& b, const ElementMaterial& m, const 
         v[4 * c] += dot;
       }
       if constexpr (spin) {
-        const V *p = g[j];
+        const V* p = g[j];
         for (int r = 0; r < 3; ++r) {
           v[r] += x[r][1] * p[2] - x[r][2] * p[1];
           v[3 + r] += x[r][2] * p[0] - x[r][0] * p[2];
@@ -240,7 +247,8 @@ inline void stiffness_of(const ElementBatch& b, const ElementMaterial& m, const 
   }
 }
 
-void stiffness(const ElementBatch& b, const ElementMaterial& m, const ElementWork& work, double scale, SpinTerm spin, double* values) {
+void stiffness(const ElementBatch& b, const ElementMaterial& m, const ElementWork& work, double scale, SpinTerm spin,
+               double* values) {
   for (int l = 0; l < b.count; l += W) {
     if (spin == SpinTerm::none) {
       stiffness_of<false>(b, m, work, l, scale, nullptr, values);

@@ -8,7 +8,9 @@
 namespace insula::KERNEL_NAME {
 
 template <class V>
-static inline V absolute(V v) { return v < 0 ? -v : v; }
+static inline V absolute(V v) {
+  return v < 0 ? -v : v;
+}
 
 /// Rows of R, r[3 i + j], of a unit quaternion.
 template <class V>
@@ -43,7 +45,8 @@ static inline M rotation_by_newton(const V f[9], V q[4], V r[9]) {
     const V size = absolute(t) + absolute(xy) + absolute(xz) + absolute(yz);
     const M good = (xx > 0) & (c22 > 0) & (det > 1e-9 * size * size * size);
     const V half = 0.5 / det;
-    const V d0 = half * (c00 * w0 + c01 * w1 + c02 * w2), d1 = half * (c01 * w0 + c11 * w1 + c12 * w2), d2 = half * (c02 * w0 + c12 * w1 + c22 * w2);
+    const V d0 = half * (c00 * w0 + c01 * w1 + c02 * w2), d1 = half * (c01 * w0 + c11 * w1 + c12 * w2),
+            d2 = half * (c02 * w0 + c12 * w1 + c22 * w2);
     const V size2 = d0 * d0 + d1 * d1 + d2 * d2;
     const M usable = good & (size2 <= far);
     failed |= active & ~usable;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Elements compressed below the barrier: energy in closed form, force and tangent as derivatives, and no inversion under load.
+// Elements compressed below the barrier: energy in closed form, force and tangent as derivatives, and no inversion
+// under load.
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
@@ -73,14 +74,16 @@ TEST_F(CompressionBarrier, EnergyOfAUniformSqueeze) {
   double volume = 0;
   for (const auto& t : body->rest().tets) {
     Mat3 d;
-    for (int k = 0; k < 3; ++k) d.col(k) = body->rest().nodes[std::size_t(t[std::size_t(k + 1)])] - body->rest().nodes[std::size_t(t[0])];
+    for (int k = 0; k < 3; ++k)
+      d.col(k) = body->rest().nodes[std::size_t(t[std::size_t(k + 1)])] - body->rest().nodes[std::size_t(t[0])];
     volume += d.determinant() / 6;
   }
   const auto energy = [&](double z) {
     const double e = z - 1, short_of = std::max(0.0, 0.4 - z);
     return volume * (mu * e * e + 0.5 * lambda * e * e + 0.5 * 30 * young * short_of * short_of);
   };
-  test::Figure figure("squeeze", "Tissue squeezed flat, which stiffens below 0.4 of its height", "height over that at rest", "energy, mJ");
+  test::Figure figure("squeeze", "Tissue squeezed flat, which stiffens below 0.4 of its height",
+                      "height over that at rest", "energy, mJ");
   for (double z = 1; z > 0.04; z -= 0.01) figure.law("law", z, energy(z) * 1e3);
   for (const double z : {0.7, 0.41, 0.39, 0.2, 0.05}) {
     VecX x = rest;

@@ -13,7 +13,9 @@ namespace {
 
 class Dissector final : public Instrument {
  public:
-  Param<Choice> sharp{this, {.name = "sharp", .fallback = "always", .choices = {"always", "button", "never"}, .doc = "when the blade cuts"}};
+  Param<Choice> sharp{
+      this,
+      {.name = "sharp", .fallback = "always", .choices = {"always", "button", "never"}, .doc = "when the blade cuts"}};
 
   void prepare(PrepareContext& context) override {
     Instrument::prepare(context);
@@ -30,5 +32,6 @@ class Dissector final : public Instrument {
 }  // namespace insula
 
 INSULA_PLUGIN(dissector) {
-  registry.add<insula::Dissector>("dissector", insula::Kind::instrument, "micro dissector or knife that cuts strands with its edges");
+  registry.add<insula::Dissector>("dissector", insula::Kind::instrument,
+                                  "micro dissector or knife that cuts strands with its edges");
 }

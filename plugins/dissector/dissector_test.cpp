@@ -9,7 +9,9 @@ namespace insula {
 namespace {
 
 std::string scene(const std::string& sharp, const std::string& tool) {
-  return "<scene><dissector id=\"d\" model=\"meshes/" + tool + "/tool.urdf\" hand=\"right\" home=\"0 0 0 m\" shaft=\"0 0 1\" flat=\"1 0 0\" sharp=\"" + sharp + "\"/></scene>";
+  return "<scene><dissector id=\"d\" model=\"meshes/" + tool +
+         "/tool.urdf\" hand=\"right\" home=\"0 0 0 m\" shaft=\"0 0 1\" flat=\"1 0 0\" sharp=\"" + sharp +
+         "\"/></scene>";
 }
 
 class DissectorTest : public ::testing::Test {
@@ -23,7 +25,8 @@ class DissectorTest : public ::testing::Test {
 };
 
 TEST_F(DissectorTest, CutsWhenItsSharpnessSays) {
-  for (const auto& [sharp, without, with] : {std::tuple{"always", true, true}, {"button", false, true}, {"never", false, false}}) {
+  for (const auto& [sharp, without, with] :
+       {std::tuple{"always", true, true}, {"button", false, true}, {"never", false, false}}) {
     auto s = test::load_text(scene(sharp, "edged"), folder_.path() / "d.xml");
     ASSERT_TRUE(s);
     auto* d = s->scene().find_as<Instrument>("d");

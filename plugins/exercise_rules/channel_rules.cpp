@@ -13,21 +13,24 @@
 
 namespace insula {
 
-bool ChannelWatch::connect(PrepareContext& context, const Simulation& simulation, const Component& rule, const Param<std::string>& channel,
-                           const Param<std::string>& limit) {
+bool ChannelWatch::connect(PrepareContext& context, const Simulation& simulation, const Component& rule,
+                           const Param<std::string>& channel, const Param<std::string>& limit) {
   entry_ = simulation.channels().find(channel());
   if (!entry_) {
     const std::string near = nearest_name(channel(), simulation.channels().ids());
-    rule.error(context, channel, "no component publishes the channel " + in_quotes(channel()) +
-                                     (near.empty() ? "; `insula describe NAME` lists those of an element" : "; did you mean \"" + near + "\"?"));
+    rule.error(
+        context, channel,
+        "no component publishes the channel " + in_quotes(channel()) +
+            (near.empty() ? "; `insula describe NAME` lists those of an element" : "; did you mean \"" + near + "\"?"));
     return false;
   }
   std::string error;
   const auto& quantity = entry_->channel->quantity();
   const auto value = parse_quantity(limit(), quantity.units, quantity.name, error);
   if (!value) {
-    rule.error(context, limit, error + "; " + in_quotes(channel()) + " is a " + std::string(quantity.name) +
-                                   (quantity.units.empty() ? "" : " in " + unit_list(quantity.units)));
+    rule.error(context, limit,
+               error + "; " + in_quotes(channel()) + " is a " + std::string(quantity.name) +
+                   (quantity.units.empty() ? "" : " in " + unit_list(quantity.units)));
     return false;
   }
   limit_ = *value;
@@ -55,9 +58,14 @@ class GoalChannel final : public ExerciseRule {
  public:
   Param<std::string> text{this, {.name = "text", .doc = "what the trainee is to do"}};
   Param<std::string> channel{this, {.name = "channel", .doc = "component and channel: \"arachnoid.standing\""}};
-  Param<Choice> comparison{this, {.name = "comparison", .fallback = "above", .choices = {"above", "below"}, .doc = "on which side of the limit it is good"}};
+  Param<Choice> comparison{this,
+                           {.name = "comparison",
+                            .fallback = "above",
+                            .choices = {"above", "below"},
+                            .doc = "on which side of the limit it is good"}};
   Param<std::string> limit{this, {.name = "limit", .doc = "limit with a unit of the channel: \"0.2 N\""}};
-  Param<Duration> hold{this, {.name = "hold", .fallback = "0 s", .min = "0 s", .max = "600 s", .doc = "how long it must stay so"}};
+  Param<Duration> hold{
+      this, {.name = "hold", .fallback = "0 s", .min = "0 s", .max = "600 s", .doc = "how long it must stay so"}};
 
   void declare(PrepareContext& context, const Simulation& simulation, ExerciseLog& log) override {
     goal_ = log.add_goal(id, text());
@@ -80,9 +88,14 @@ class FaultChannel final : public ExerciseRule {
  public:
   Param<std::string> text{this, {.name = "text", .doc = "what the trainee is told"}};
   Param<std::string> channel{this, {.name = "channel", .doc = "component and channel: \"suture.tension\""}};
-  Param<Choice> comparison{this, {.name = "comparison", .fallback = "above", .choices = {"above", "below"}, .doc = "on which side of the limit it is bad"}};
+  Param<Choice> comparison{this,
+                           {.name = "comparison",
+                            .fallback = "above",
+                            .choices = {"above", "below"},
+                            .doc = "on which side of the limit it is bad"}};
   Param<std::string> limit{this, {.name = "limit", .doc = "limit with a unit of the channel: \"0.2 N\""}};
-  Param<Duration> grace{this, {.name = "grace", .fallback = "0 s", .min = "0 s", .max = "600 s", .doc = "shorter times are forgiven"}};
+  Param<Duration> grace{
+      this, {.name = "grace", .fallback = "0 s", .min = "0 s", .max = "600 s", .doc = "shorter times are forgiven"}};
 
   void declare(PrepareContext& context, const Simulation& simulation, ExerciseLog& log) override {
     fault_ = log.add_fault(id, text());
@@ -113,7 +126,8 @@ class FaultChannel final : public ExerciseRule {
 }  // namespace
 
 void register_channel_rules(Registry& registry) {
-  registry.add<GoalChannel>("goal_channel", Kind::exercise_rule, "reached when a channel has stayed on one side of a limit");
+  registry.add<GoalChannel>("goal_channel", Kind::exercise_rule,
+                            "reached when a channel has stayed on one side of a limit");
   registry.add<FaultChannel>("fault_channel", Kind::exercise_rule, "counts how often a channel goes beyond a limit");
 }
 

@@ -14,12 +14,14 @@ class ChannelWatch {
   enum class Comparison { above, below };
 
   /// False when something is wrong, which is reported.
-  bool connect(PrepareContext& context, const Simulation& simulation, const Component& rule, const Param<std::string>& channel,
-               const Param<std::string>& limit);
+  bool connect(PrepareContext& context, const Simulation& simulation, const Component& rule,
+               const Param<std::string>& channel, const Param<std::string>& limit);
   /// The channel now: the length of a vector. NaN: not known.
   double value(const StepReport& report) const;
   /// Whether it is beyond the limit; a value that is not known never is.
-  bool beyond(double value, Comparison comparison) const { return comparison == Comparison::above ? value > limit_ : value < limit_; }
+  bool beyond(double value, Comparison comparison) const {
+    return comparison == Comparison::above ? value > limit_ : value < limit_;
+  }
   /// Whether it is back by a tenth of the limit, from where a fault may count again.
   bool back(double value, Comparison comparison) const;
 

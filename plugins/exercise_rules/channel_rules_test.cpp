@@ -27,7 +27,9 @@ struct Bench {
   explicit Bench(const std::string& rules) {
     register_builtin(registry);
     registry.add<Gauge>("gauge", Kind::constraint, "for tests");
-    loaded = load_simulation_text("<scene time_step=\"10 ms\"><gauge id=\"g\"/><exercise title=\"E\">\n" + rules + "</exercise></scene>", "/s.xml", registry, 1);
+    loaded = load_simulation_text(
+        "<scene time_step=\"10 ms\"><gauge id=\"g\"/><exercise title=\"E\">\n" + rules + "</exercise></scene>",
+        "/s.xml", registry, 1);
     if (loaded.simulation) gauge = loaded.simulation->scene().find_as<Gauge>("g");
   }
   std::string messages() const { return loaded.diagnostics.format(); }

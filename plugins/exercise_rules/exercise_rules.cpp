@@ -23,8 +23,14 @@ namespace {
 
 class GoalStrands final : public ExerciseRule {
  public:
-  Param<std::string> text{this, {.name = "text", .fallback = "Divide the arachnoid strands", .doc = "what the trainee is to do"}};
-  Param<Scalar> fraction{this, {.name = "fraction", .fallback = "1", .min = "0.01", .max = "1", .doc = "share of all strands that must be parted"}};
+  Param<std::string> text{
+      this, {.name = "text", .fallback = "Divide the arachnoid strands", .doc = "what the trainee is to do"}};
+  Param<Scalar> fraction{this,
+                         {.name = "fraction",
+                          .fallback = "1",
+                          .min = "0.01",
+                          .max = "1",
+                          .doc = "share of all strands that must be parted"}};
 
   void declare(PrepareContext&, const Simulation& simulation, ExerciseLog& log) override {
     strands_ = Strands(simulation);
@@ -47,8 +53,14 @@ class GoalOpening final : public ExerciseRule {
   Ref<Surface> a{this, {.name = "a", .doc = "one lip"}};
   Ref<Surface> b{this, {.name = "b", .doc = "the other lip"}};
   Param<Vec<Length>> at{this, {.name = "at", .doc = "place between the lips at rest"}};
-  Param<Length> distance{this, {.name = "distance", .fallback = "4 mm", .min = "0.1 mm", .max = "100 mm", .doc = "distance of the lips that counts as open"}};
-  Param<Duration> hold{this, {.name = "hold", .fallback = "1 s", .min = "0 s", .max = "600 s", .doc = "how long they must stay open"}};
+  Param<Length> distance{this,
+                         {.name = "distance",
+                          .fallback = "4 mm",
+                          .min = "0.1 mm",
+                          .max = "100 mm",
+                          .doc = "distance of the lips that counts as open"}};
+  Param<Duration> hold{
+      this, {.name = "hold", .fallback = "1 s", .min = "0 s", .max = "600 s", .doc = "how long they must stay open"}};
 
   void declare(PrepareContext&, const Simulation&, ExerciseLog& log) override {
     goal_ = log.add_goal(id, text());
@@ -76,10 +88,17 @@ class GoalOpening final : public ExerciseRule {
 
 class FaultForce final : public ExerciseRule {
  public:
-  Param<std::string> text{this, {.name = "text", .fallback = "Too much force on the brain", .doc = "what the trainee is told"}};
+  Param<std::string> text{
+      this, {.name = "text", .fallback = "Too much force on the brain", .doc = "what the trainee is told"}};
   RefList<Body> on{this, {.name = "on", .doc = "bodies that must be spared"}};
-  Param<Force> limit{this, {.name = "limit", .fallback = "0.3 N", .min = "0.001 N", .max = "20 N", .doc = "largest force of one tool on one body"}};
-  Param<Duration> grace{this, {.name = "grace", .fallback = "100 ms", .min = "0 s", .max = "10 s", .doc = "shorter peaks are forgiven"}};
+  Param<Force> limit{this,
+                     {.name = "limit",
+                      .fallback = "0.3 N",
+                      .min = "0.001 N",
+                      .max = "20 N",
+                      .doc = "largest force of one tool on one body"}};
+  Param<Duration> grace{
+      this, {.name = "grace", .fallback = "100 ms", .min = "0 s", .max = "10 s", .doc = "shorter peaks are forgiven"}};
 
   void declare(PrepareContext&, const Simulation& simulation, ExerciseLog& log) override {
     fault_ = log.add_fault(id, text());
@@ -118,7 +137,8 @@ class FaultForce final : public ExerciseRule {
 
 class FaultTorn final : public ExerciseRule {
  public:
-  Param<std::string> text{this, {.name = "text", .fallback = "A strand was torn instead of cut", .doc = "what the trainee is told"}};
+  Param<std::string> text{
+      this, {.name = "text", .fallback = "A strand was torn instead of cut", .doc = "what the trainee is told"}};
   void declare(PrepareContext&, const Simulation&, ExerciseLog& log) override { fault_ = log.add_fault(id, text()); }
   void observe(const StepReport& r, ExerciseLog& log) override {
     for (const Event& e : r.events)
@@ -131,10 +151,18 @@ class FaultTorn final : public ExerciseRule {
 
 class FaultOrder final : public ExerciseRule {
  public:
-  Param<std::string> text{this, {.name = "text", .fallback = "Work from the surface to the depth", .doc = "what the trainee is told"}};
+  Param<std::string> text{
+      this, {.name = "text", .fallback = "Work from the surface to the depth", .doc = "what the trainee is told"}};
   Param<Vec<Scalar>> inward{this, {.name = "inward", .doc = "direction from the surface to the depth"}};
-  Param<Length> margin{this, {.name = "margin", .fallback = "4 mm", .min = "0 mm", .max = "100 mm", .doc = "strands this much nearer to the surface come first"}};
-  Param<int> allowed{this, {.name = "allowed", .fallback = "3", .min = "0", .max = "100000", .doc = "that many of them may still stand"}};
+  Param<Length> margin{this,
+                       {.name = "margin",
+                        .fallback = "4 mm",
+                        .min = "0 mm",
+                        .max = "100 mm",
+                        .doc = "strands this much nearer to the surface come first"}};
+  Param<int> allowed{
+      this,
+      {.name = "allowed", .fallback = "3", .min = "0", .max = "100000", .doc = "that many of them may still stand"}};
 
   void prepare(PrepareContext& context) override {
     if (inward().norm() < 1e-9) error(context, inward, "inward: a direction must not be zero");
@@ -154,7 +182,8 @@ class FaultOrder final : public ExerciseRule {
       if (severed_[i] || strands[i].integrity >= 0) continue;
       severed_[i] = 1;
       int before = 0;
-      for (std::size_t k = 0; k < strands.size(); ++k) before += !severed_[k] && strands[k].integrity >= 0 && depth_[k] < depth_[i] - margin();
+      for (std::size_t k = 0; k < strands.size(); ++k)
+        before += !severed_[k] && strands[k].integrity >= 0 && depth_[k] < depth_[i] - margin();
       if (before > allowed()) log.fault(fault_, r.time, before);
     }
   }
@@ -170,7 +199,8 @@ class FaultOrder final : public ExerciseRule {
 class TimeLimit final : public ExerciseRule {
  public:
   Param<std::string> text{this, {.name = "text", .fallback = "The time is over", .doc = "what the trainee is told"}};
-  Param<Duration> limit{this, {.name = "limit", .min = "1 s", .max = "7200 s", .doc = "simulated time until the exercise has failed"}};
+  Param<Duration> limit{
+      this, {.name = "limit", .min = "1 s", .max = "7200 s", .doc = "simulated time until the exercise has failed"}};
   void declare(PrepareContext&, const Simulation&, ExerciseLog&) override {}
   void observe(const StepReport& r, ExerciseLog& log) override {
     if (r.time > limit()) log.fail(text(), r.time);

@@ -190,7 +190,9 @@ TEST_F(Rules, ForceIsTheSumOfOneToolsContactsOnOneBody) {
 }
 
 TEST_F(Rules, TornStrandsCountAndCutOnesDoNot) {
-  report.events = {{"strand_cut", "strands", "", 0.03, 1}, {"strand_torn", "strands", "", 0.05, 1}, {"strand_torn", "strands", "", 0.06, 1}};
+  report.events = {{"strand_cut", "strands", "", 0.03, 1},
+                   {"strand_torn", "strands", "", 0.05, 1},
+                   {"strand_torn", "strands", "", 0.06, 1}};
   show();
   EXPECT_EQ(faults("torn"), 2);
   report.events.clear();
@@ -201,13 +203,13 @@ TEST_F(Rules, TornStrandsCountAndCutOnesDoNot) {
 TEST_F(Rules, OrderForgivesNeighboursAndAFewThatStand) {
   strands(5);  // at 0, 3, 6, 9, 12 mm
   show();
-  part({1});   // 0 stands before it, but within the margin
+  part({1});  // 0 stands before it, but within the margin
   show();
   EXPECT_EQ(faults("order"), 0);
-  part({2});   // 0 stands 6 mm nearer to the surface: one is allowed
+  part({2});  // 0 stands 6 mm nearer to the surface: one is allowed
   show();
   EXPECT_EQ(faults("order"), 0);
-  part({4});   // 0 stands, and 3 within the margin
+  part({4});  // 0 stands, and 3 within the margin
   show();
   EXPECT_EQ(faults("order"), 0);
   show();
@@ -270,9 +272,11 @@ TEST_F(Rules, ResetForgetsEverything) {
 
 TEST(RulesOfAScene, ZeroDirectionIsAnError) {
   const auto loaded = load_simulation_text(
-      "<scene><exercise id=\"e\" title=\"t\"><fault_order id=\"o\" inward=\"0 0 0\"/></exercise></scene>", example, test::builtin());
+      "<scene><exercise id=\"e\" title=\"t\"><fault_order id=\"o\" inward=\"0 0 0\"/></exercise></scene>", example,
+      test::builtin());
   EXPECT_FALSE(loaded.simulation);
-  EXPECT_NE(loaded.diagnostics.format().find("a direction must not be zero"), std::string::npos) << loaded.diagnostics.format();
+  EXPECT_NE(loaded.diagnostics.format().find("a direction must not be zero"), std::string::npos)
+      << loaded.diagnostics.format();
 }
 
 }  // namespace

@@ -14,11 +14,18 @@ namespace {
 
 class Fixed final : public Support {
  public:
-  Param<Choice> region{this, {.name = "region", .fallback = "all", .choices = {"all", "inside", "outside", "beyond"},
-                              .doc = "inside or outside a ball about centre; beyond the plane through centre, on the side of normal; or all"}};
-  Param<Vec<Length>> centre{this, {.name = "centre", .fallback = "0 0 0 m", .doc = "centre of the ball, or a point of the plane"}};
-  Param<Length> radius{this, {.name = "radius", .fallback = "0 m", .min = "0 m", .max = "10 m", .doc = "radius of the ball"}};
-  Param<Vec<Scalar>> normal{this, {.name = "normal", .fallback = "0 0 1", .doc = "normal of the plane, towards the held side"}};
+  Param<Choice> region{
+      this,
+      {.name = "region",
+       .fallback = "all",
+       .choices = {"all", "inside", "outside", "beyond"},
+       .doc = "inside or outside a ball about centre; beyond the plane through centre, on the side of normal; or all"}};
+  Param<Vec<Length>> centre{
+      this, {.name = "centre", .fallback = "0 0 0 m", .doc = "centre of the ball, or a point of the plane"}};
+  Param<Length> radius{this,
+                       {.name = "radius", .fallback = "0 m", .min = "0 m", .max = "10 m", .doc = "radius of the ball"}};
+  Param<Vec<Scalar>> normal{
+      this, {.name = "normal", .fallback = "0 0 1", .doc = "normal of the plane, towards the held side"}};
 
   void fix(PrepareContext& context, const std::vector<Vec3>& rest, std::vector<char>& fixed) override {
     int count = 0;

@@ -12,9 +12,13 @@ namespace {
 
 class FixedRegion : public ::testing::Test {
  protected:
-  FixedRegion() { folder_.write("meshes/cube.msh", test::gmsh_text(test::block_mesh({4, 4, 4}, Vec3::Zero(), Vec3::Constant(0.04)))); }
+  FixedRegion() {
+    folder_.write("meshes/cube.msh", test::gmsh_text(test::block_mesh({4, 4, 4}, Vec3::Zero(), Vec3::Constant(0.04))));
+  }
   std::string scene(const std::string& supports) const {
-    return "<scene gravity=\"0 0 -9.81 m/s2\"><soft_body id=\"cube\" mesh=\"meshes/cube.msh\" mesh_unit=\"m\"><corotational_fem/>" + supports + "</soft_body></scene>";
+    return "<scene gravity=\"0 0 -9.81 m/s2\"><soft_body id=\"cube\" mesh=\"meshes/cube.msh\" "
+           "mesh_unit=\"m\"><corotational_fem/>" +
+           supports + "</soft_body></scene>";
   }
   /// Number of fixed nodes; each must satisfy `inside`, no free one may.
   int held(const std::string& supports, const std::function<bool(const Vec3&)>& inside) const {
@@ -40,27 +44,35 @@ TEST_F(FixedRegion, All) {
 TEST_F(FixedRegion, InsideAndOutsideOfABall) {
   const auto ball = [](const Vec3& x) { return (x - Vec3::Constant(0.02)).norm() <= 0.0105; };
   EXPECT_EQ(held("<fixed region=\"inside\" centre=\"2 2 2 cm\" radius=\"10.5 mm\"/>", ball), 7);
-  EXPECT_EQ(held("<fixed region=\"outside\" centre=\"2 2 2 cm\" radius=\"10.5 mm\"/>", [&](const Vec3& x) { return !ball(x); }), 118);
+  EXPECT_EQ(held("<fixed region=\"outside\" centre=\"2 2 2 cm\" radius=\"10.5 mm\"/>",
+                 [&](const Vec3& x) { return !ball(x); }),
+            118);
 }
 
 TEST_F(FixedRegion, BeyondAPlane) {
-  EXPECT_EQ(held("<fixed region=\"beyond\" centre=\"0 0 35 mm\" normal=\"0 0 2\"/>", [](const Vec3& x) { return x.z() > 0.035; }), 25);
+  EXPECT_EQ(held("<fixed region=\"beyond\" centre=\"0 0 35 mm\" normal=\"0 0 2\"/>",
+                 [](const Vec3& x) { return x.z() > 0.035; }),
+            25);
 }
 
 TEST_F(FixedRegion, SeveralAddUp) {
-  EXPECT_EQ(held("<fixed region=\"beyond\" centre=\"0 0 35 mm\" normal=\"0 0 1\"/><fixed region=\"beyond\" centre=\"5 0 0 mm\" normal=\"-1 0 0\"/>",
-                 [](const Vec3& x) { return x.z() > 0.035 || x.x() < 0.005; }), 45);
+  EXPECT_EQ(held("<fixed region=\"beyond\" centre=\"0 0 35 mm\" normal=\"0 0 1\"/><fixed region=\"beyond\" centre=\"5 "
+                 "0 0 mm\" normal=\"-1 0 0\"/>",
+                 [](const Vec3& x) { return x.z() > 0.035 || x.x() < 0.005; }),
+            45);
 }
 
 TEST_F(FixedRegion, HoldingNothingIsAnError) {
-  const auto result = load_simulation_text(scene("<fixed region=\"inside\" centre=\"2 2 2 m\" radius=\"10 mm\"/>"), folder_.path() / "cube.xml", test::builtin(), 1);
+  const auto result = load_simulation_text(scene("<fixed region=\"inside\" centre=\"2 2 2 m\" radius=\"10 mm\"/>"),
+                                           folder_.path() / "cube.xml", test::builtin(), 1);
   EXPECT_FALSE(result.simulation);
   EXPECT_NE(result.diagnostics.format().find("holds no node"), std::string::npos) << result.diagnostics.format();
 }
 
 // What is held carries the weight of what is not: the reaction is the weight, and fixed nodes stay to the bit.
 TEST_F(FixedRegion, FixedNodesStay) {
-  auto s = test::load_text(scene("<fixed region=\"beyond\" centre=\"0 0 5 mm\" normal=\"0 0 -1\"/>"), folder_.path() / "cube.xml");
+  auto s = test::load_text(scene("<fixed region=\"beyond\" centre=\"0 0 5 mm\" normal=\"0 0 -1\"/>"),
+                           folder_.path() / "cube.xml");
   ASSERT_TRUE(s);
   auto& body = *s->scene().find_as<SoftBody>("cube");
   for (int i = 0; i < 600; ++i) s->step();

@@ -12,7 +12,8 @@ namespace {
 constexpr double collapsed = 0.1;  ///< part of its area at rest below which a triangle's angle gradient is bounded
 constexpr int held = -1;
 
-/// Square root of the bending stiffness on (k11, k22, 2 k12) with the directions `free` (columns) given up to no moment.
+/// Square root of the bending stiffness on (k11, k22, 2 k12) with the directions `free` (columns) given up to no
+/// moment.
 Mat3 root_of_stiffness(const StretchTriangles::Material& m, const Eigen::Matrix<double, 3, Eigen::Dynamic>& free) {
   const double d = m.young * m.thickness * m.thickness * m.thickness / (12 * (1 - m.poisson * m.poisson));
   Mat3 k;
@@ -29,7 +30,8 @@ Mat3 root_of_stiffness(const StretchTriangles::Material& m, const Eigen::Matrix<
 
 }  // namespace
 
-void BendPatches::build(const WallTopology& wall, const std::vector<Vec3>& rest, const std::vector<const StretchTriangles::Material*>& material) {
+void BendPatches::build(const WallTopology& wall, const std::vector<Vec3>& rest,
+                        const std::vector<const StretchTriangles::Material*>& material) {
   std::vector<SlopeWeights> slopes(wall.hinges.size());
   std::vector<int> number(wall.hinges.size(), -1);  // of the hinges that patches here use
   hinges_.clear();
@@ -38,7 +40,8 @@ void BendPatches::build(const WallTopology& wall, const std::vector<Vec3>& rest,
     if (!material[t]) continue;
     const auto& v = wall.triangles[t];
     const Vec3 x0 = rest[std::size_t(v[0])], e1 = (rest[std::size_t(v[1])] - x0).normalized();
-    const Vec3 doubled = (rest[std::size_t(v[1])] - x0).cross(rest[std::size_t(v[2])] - x0), e2 = doubled.normalized().cross(e1);
+    const Vec3 doubled = (rest[std::size_t(v[1])] - x0).cross(rest[std::size_t(v[2])] - x0),
+               e2 = doubled.normalized().cross(e1);
     const double area = 0.5 * doubled.norm();
     Patch p;
     double curvature[max_hinges][3] = {};
@@ -82,7 +85,8 @@ void BendPatches::build(const WallTopology& wall, const std::vector<Vec3>& rest,
   for (const Patch& p : patches_)
     for (int i = 0; i < p.hinges; ++i)
       for (int j = 0; j < p.hinges; ++j)
-        step_stiffness_[std::size_t(p.hinge[i])] += share * std::abs(Eigen::Map<const Vec3>(p.c[i]).dot(Eigen::Map<const Vec3>(p.c[j])));
+        step_stiffness_[std::size_t(p.hinge[i])] +=
+            share * std::abs(Eigen::Map<const Vec3>(p.c[i]).dot(Eigen::Map<const Vec3>(p.c[j])));
   for (WallHinge& hinge : hinges_)
     for (int s = 0; s < 2; ++s) {
       const auto at = [&](int k) -> const Vec3& { return rest[std::size_t(hinge.node[k])]; };
@@ -122,21 +126,27 @@ void BendPatches::bind(const BlockMatrix& a, const std::vector<int>& free_of_nod
   const auto block = [&](int node) { return free_of_node[std::size_t(node)]; };
   slots_.clear();
   for (Patch& p : patches_) {
-    std::sort(p.node, p.node + p.nodes, [&](int i, int j) { return block(i) != block(j) ? block(i) < block(j) : i < j; });
+    std::sort(p.node, p.node + p.nodes,
+              [&](int i, int j) { return block(i) != block(j) ? block(i) < block(j) : i < j; });
     for (int h = 0; h < p.hinges; ++h)
       for (int k = 0; k < 4; ++k)
-        p.local[h][k] = static_cast<unsigned char>(std::find(p.node, p.node + p.nodes, hinges_[std::size_t(p.hinge[h])].node[k]) - p.node);
+        p.local[h][k] = static_cast<unsigned char>(
+            std::find(p.node, p.node + p.nodes, hinges_[std::size_t(p.hinge[h])].node[k]) - p.node);
     p.first_slot = int(slots_.size());
     for (int i = 0; i < p.nodes; ++i)
       // The step's matrix has no such blocks unless its tangent is made of patches.
-      for (int j = 0; j <= i; ++j) slots_.push_back(block(p.node[i]) < 0 || block(p.node[j]) < 0 ? held : a.find_slot(block(p.node[i]), block(p.node[j])));
+      for (int j = 0; j <= i; ++j)
+        slots_.push_back(
+            block(p.node[i]) < 0 || block(p.node[j]) < 0 ? held : a.find_slot(block(p.node[i]), block(p.node[j])));
   }
   hinge_slot_.resize(hinges_.size());
   for (std::size_t h = 0; h < hinges_.size(); ++h)
     for (int i = 0, k = 0; i < 4; ++i)
       for (int j = 0; j <= i; ++j, ++k) {
         const int fi = block(hinges_[h].node[i]), fj = block(hinges_[h].node[j]);
-        hinge_slot_[h][std::size_t(k)] = fi < 0 || fj < 0 ? no_slot : fi >= fj ? a.find_slot(fi, fj) : ~a.find_slot(fj, fi);
+        hinge_slot_[h][std::size_t(k)] = fi < 0 || fj < 0 ? no_slot
+                                         : fi >= fj       ? a.find_slot(fi, fj)
+                                                          : ~a.find_slot(fj, fi);
       }
 }
 

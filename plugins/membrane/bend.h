@@ -31,7 +31,8 @@ namespace insula {
 class BendPatches {
  public:
   /// Patches of the wall's triangles for which material(t) is not null.
-  void build(const WallTopology& wall, const std::vector<Vec3>& rest, const std::vector<const StretchTriangles::Material*>& material);
+  void build(const WallTopology& wall, const std::vector<Vec3>& rest,
+             const std::vector<const StretchTriangles::Material*>& material);
   void couplings(std::vector<std::pair<int, int>>& pairs, Tangent which, bool patches) const;
   void bind(const BlockMatrix& a, const std::vector<int>& free_of_node);
   void linearise(const double* x, double* force, BlockMatrix* stiffness, double scale, Tangent which, bool patches);
@@ -60,12 +61,13 @@ class BendPatches {
   void find_angles(const double* x, std::vector<double>& angle, double* gradient) const;
 
   std::vector<WallHinge> hinges_;
-  std::vector<HingeBatch> batches_;  // of the hinges, in order
+  std::vector<HingeBatch> batches_;     // of the hinges, in order
   std::vector<double> step_stiffness_;  // of each hinge, N m
-  std::vector<double> start_angle_;  // in the rest configuration
-  std::vector<double> rest_angle_;   // of the stress-free configuration: another one where there is a prestrain
+  std::vector<double> start_angle_;     // in the rest configuration
+  std::vector<double> rest_angle_;      // of the stress-free configuration: another one where there is a prestrain
   std::vector<double> angle_, energy_angle_, moment_, gradient_;
-  std::vector<std::array<int, 10>> hinge_slot_;  // lower triangle of the hinge's blocks; ~slot where stored the other way round
+  std::vector<std::array<int, 10>>
+      hinge_slot_;  // lower triangle of the hinge's blocks; ~slot where stored the other way round
   std::vector<Patch> patches_;
   std::vector<int> slots_;
   PatchRows rows_{};  // work of assemble()

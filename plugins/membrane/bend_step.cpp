@@ -26,7 +26,8 @@ void BendPatches::residual(const Patch& p, const std::vector<double>& angle, dou
   }
 }
 
-void BendPatches::linearise(const double* x, double* force, BlockMatrix* stiffness, double scale, Tangent which, bool patches) {
+void BendPatches::linearise(const double* x, double* force, BlockMatrix* stiffness, double scale, Tangent which,
+                            bool patches) {
   patches = patches || which == Tangent::exact;
   find_angles(x, angle_, gradient_.data());
   std::fill(moment_.begin(), moment_.end(), 0.0);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bending of a wall: exact for quadratics on any mesh, beams and plates under refinement, large rotation, curved at rest.
+// Bending of a wall: exact for quadratics on any mesh, beams and plates under refinement, large rotation, curved at
+// rest.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -23,13 +24,16 @@ void draw(test::Figure& figure, Cut cut, const std::vector<std::pair<double, dou
   }
 }
 
-// A quadratic deflection has constant moments, so it is in equilibrium inside whatever the mesh; all nodes near the rim,
-// where slopes have fewer hinges to come from, are put there.
+// A quadratic deflection has constant moments, so it is in equilibrium inside whatever the mesh; all nodes near the
+// rim, where slopes have fewer hinges to come from, are put there.
 TEST(Bending, QuadraticDeflectionIsReproducedOnAnyMesh) {
   const double size = 0.03, tiny = 1e-5;
   for (const Cut cut : every_cut)
-    for (const Mat3& curvature : {Mat3{{1, 0, 0}, {0, 0, 0}, {0, 0, 0}}, Mat3{{0, 1, 0}, {1, 0, 0}, {0, 0, 0}}, Mat3{{0.3, -0.7, 0}, {-0.7, 1.1, 0}, {0, 0, 0}}}) {
-      const auto rim = [&](const Vec3& x) { return std::min({x.x(), x.y(), size - x.x(), size - x.y()}) < 3.5 * size / 12; };
+    for (const Mat3& curvature : {Mat3{{1, 0, 0}, {0, 0, 0}, {0, 0, 0}}, Mat3{{0, 1, 0}, {1, 0, 0}, {0, 0, 0}},
+                                  Mat3{{0.3, -0.7, 0}, {-0.7, 1.1, 0}, {0, 0, 0}}}) {
+      const auto rim = [&](const Vec3& x) {
+        return std::min({x.x(), x.y(), size - x.x(), size - x.y()}) < 3.5 * size / 12;
+      };
       auto body = test::shell(test::plate(size, size, 12, 12, cut), {}, rim);
       const auto place = [&](int i) -> Vec3 {
         const Vec3 x = body->rest_nodes()[std::size_t(i)], r = x - Vec3(0.5 * size, 0.5 * size, 0);
@@ -45,7 +49,9 @@ TEST(Bending, QuadraticDeflectionIsReproducedOnAnyMesh) {
       ASSERT_GE(inside, 25);
       test::settle(*body, 10);
       for (int i = 0; i < body->nodes(); ++i)
-        EXPECT_TRUE(test::held("bending patch test", (body->q().segment<3>(3 * i) - place(i)).norm(), tiny * size, 1e-7)) << "node " << i << ", cut " << int(cut);
+        EXPECT_TRUE(
+            test::held("bending patch test", (body->q().segment<3>(3 * i) - place(i)).norm(), tiny * size, 1e-7))
+            << "node " << i << ", cut " << int(cut);
     }
 }
 
@@ -76,7 +82,8 @@ double strip_ratio(int along, int across, Cut cut) {
 }
 
 TEST(Bending, CantileverConvergesToEulerBernoulli) {
-  test::Figure figure("strip", "A strip of wall as a cantilever, P L^3 / (3 E I), under refinement", "cells along", "deflection over beam theory");
+  test::Figure figure("strip", "A strip of wall as a cantilever, P L^3 / (3 E I), under refinement", "cells along",
+                      "deflection over beam theory");
   for (const Cut cut : every_cut) {
     const double coarse = strip_ratio(10, 2, cut), middle = strip_ratio(20, 4, cut), fine = strip_ratio(40, 8, cut);
     draw(figure, cut, {{10, coarse}, {20, middle}, {40, fine}});
@@ -90,7 +97,9 @@ TEST(Bending, CantileverConvergesToEulerBernoulli) {
 double plate_ratio(int n, Cut cut) {
   const double a = 0.04;
   const Wall w{.thickness = 2e-4, .young = 1e6, .poisson = 0.3};
-  auto body = test::shell(test::plate(a, a, n, n, cut), w, [&](const Vec3& x) { return std::min({x.x(), x.y(), a - x.x(), a - x.y()}) < 1e-9; });
+  auto body = test::shell(test::plate(a, a, n, n, cut), w, [&](const Vec3& x) {
+    return std::min({x.x(), x.y(), a - x.x(), a - x.y()}) < 1e-9;
+  });
   const double d = w.young * std::pow(w.thickness, 3) / (12 * (1 - w.poisson * w.poisson)), p = 1e-7;
   double mean = 0, series = 0;
   std::vector<double> area(std::size_t(body->nodes()), 0.0);
@@ -102,12 +111,14 @@ double plate_ratio(int n, Cut cut) {
   test::settle(*body, 2);
   for (int i = 0; i < body->nodes(); ++i) mean += body->q()[3 * i + 2] * area[std::size_t(i)] / (a * a);
   for (int i = 1; i < 60; i += 2)
-    for (int j = 1; j < 60; j += 2) series += 64 / (std::pow(std::numbers::pi, 8) * i * i * j * j * std::pow(i * i + j * j, 2));
+    for (int j = 1; j < 60; j += 2)
+      series += 64 / (std::pow(std::numbers::pi, 8) * i * i * j * j * std::pow(i * i + j * j, 2));
   return mean / (series * p * std::pow(a, 4) / d);
 }
 
 TEST(Bending, PlateConvergesOnAnyMesh) {
-  test::Figure figure("plate", "A simply supported plate, Navier's series, under refinement", "cells along a side", "deflection over Navier's");
+  test::Figure figure("plate", "A simply supported plate, Navier's series, under refinement", "cells along a side",
+                      "deflection over Navier's");
   for (const Cut cut : every_cut) {
     const double coarse = plate_ratio(8, cut), middle = plate_ratio(16, cut), fine = plate_ratio(32, cut);
     draw(figure, cut, {{8, coarse}, {16, middle}, {32, fine}});
@@ -118,7 +129,8 @@ TEST(Bending, PlateConvergesOnAnyMesh) {
 }
 
 // Large deflection of a cantilever (Bisshopp, Drucker 1945): P L^2 / (E I) = 1 and 10.
-/// The elastica: a cantilever whose end hangs at the angle `slope` under a load across it (Bisshopp, Drucker 1945, equations 8 to 12).
+/// The elastica: a cantilever whose end hangs at the angle `slope` under a load across it (Bisshopp, Drucker 1945,
+/// equations 8 to 12).
 struct Elastica {
   double load, down, back;  ///< P L^2 / (E I); of the end, in lengths
   explicit Elastica(double slope) {
@@ -136,8 +148,10 @@ struct Elastica {
 };
 
 TEST(Bending, ElasticaAtLargeRotation) {
-  test::Figure figure("elastica", "A strip under a load at its end: the elastica", "P L^2 / (E I)", "way of the end over the length");
-  for (double load = 0.1; load <= 10.05; load += 0.1) figure.law("down", load, Elastica::under(load).down), figure.law("back", load, Elastica::under(load).back);
+  test::Figure figure("elastica", "A strip under a load at its end: the elastica", "P L^2 / (E I)",
+                      "way of the end over the length");
+  for (double load = 0.1; load <= 10.05; load += 0.1)
+    figure.law("down", load, Elastica::under(load).down), figure.law("back", load, Elastica::under(load).back);
   const double length = 0.05, width = 0.005;
   const int along = 40;
   const double cell = length / (along - 0.5);
@@ -173,7 +187,8 @@ TEST(Bending, ElasticaAtLargeRotation) {
 TEST(Bending, StripCurvedAtRest) {
   const double radius = 0.02, width = 0.005;
   const Wall w{.thickness = 1e-4, .young = 1e6, .poisson = 0};
-  test::Figure figure("curved_strip", "A quarter circle at rest, bent (Castigliano), under refinement", "cells along", "movement over Castigliano's");
+  test::Figure figure("curved_strip", "A quarter circle at rest, bent (Castigliano), under refinement", "cells along",
+                      "movement over Castigliano's");
   for (const Cut cut : every_cut) {
     double last = 1;
     for (const int n : {8, 16, 32}) {
@@ -182,8 +197,10 @@ TEST(Bending, StripCurvedAtRest) {
         const double angle = 0.5 * std::numbers::pi * (n * u - 0.5) / (n - 0.5);
         return Vec3(radius * std::sin(angle), width * v, radius * (1 - std::cos(angle)));
       });
-      auto body = test::shell(std::move(mesh), w, [&](const Vec3& x) { return x.x() < 1.4 * radius / n && x.z() < 0.5 * radius; });
-      const double force = 1e-10, unit = force * std::pow(radius, 3) * 12 / (w.young * width * std::pow(w.thickness, 3));
+      auto body = test::shell(std::move(mesh), w,
+                              [&](const Vec3& x) { return x.x() < 1.4 * radius / n && x.z() < 0.5 * radius; });
+      const double force = 1e-10,
+                   unit = force * std::pow(radius, 3) * 12 / (w.young * width * std::pow(w.thickness, 3));
       const auto tip = [&](int i) { return body->rest_nodes()[std::size_t(i)].z() > radius - 1e-9; };
       for (int i = 0; i < body->nodes(); ++i)
         if (tip(i)) {
@@ -194,7 +211,8 @@ TEST(Bending, StripCurvedAtRest) {
       Vec3 moved = Vec3::Zero();
       for (int i = 0; i < body->nodes(); ++i)
         if (tip(i)) moved += (body->q().segment<3>(3 * i) - body->rest_nodes()[std::size_t(i)]) / (across + 1);
-      const double error = std::max(std::abs(moved.x() / unit / (std::numbers::pi / 4) - 1), std::abs(moved.z() / unit / -0.5 - 1));
+      const double error =
+          std::max(std::abs(moved.x() / unit / (std::numbers::pi / 4) - 1), std::abs(moved.z() / unit / -0.5 - 1));
       EXPECT_LT(error, 0.4 * last) << "cut " << int(cut) << ", " << n;
       draw(figure, cut, {{double(n), moved.x() / unit / (std::numbers::pi / 4)}});
       last = error;
@@ -232,7 +250,8 @@ TEST(Bending, HingesBoundThePatches) {
       // Deflections of the flat plate: bending alone; from smooth to rough.
       for (int i = 0; i < body->nodes(); ++i) {
         const Vec3 x = body->rest_nodes()[std::size_t(i)];
-        d[3 * i + 2] = trial < 20 ? std::sin(300 * trial * x.x()) * std::cos(200 * trial * x.y() + trial) : random.uniform(-1, 1);
+        d[3 * i + 2] =
+            trial < 20 ? std::sin(300 * trial * x.x()) * std::cos(200 * trial * x.y() + trial) : random.uniform(-1, 1);
       }
       const double patches = product("patches", d), hinges = product("hinges", d);
       EXPECT_GE(hinges, 0.5 * patches);

@@ -33,7 +33,8 @@ Mat12 hinge_hessian(const double* x, const WallHinge& h) {
   const auto vector = [](const double* v) { return Eigen::Map<const Vec3>(v); };
   const auto e = vector(s.e), a = vector(s.a), b = vector(s.b), n1 = vector(s.n1), n2 = vector(s.n2);
   const double length = std::sqrt(s.e2);
-  const auto of_apex = [&](const Vec3& n, double size, const Vec3& apex, double sign, Vec3& g, Mat3& by_edge, Mat3& by_apex) {
+  const auto of_apex = [&](const Vec3& n, double size, const Vec3& apex, double sign, Vec3& g, Mat3& by_edge,
+                           Mat3& by_apex) {
     g = (length / size) * n;
     const Mat3 m = (length / size) * (Mat3::Identity() - (2 / size) * n * n.transpose());
     by_apex = sign * m * skew(e);

@@ -9,7 +9,8 @@ namespace insula {
 /// of the second node[3].
 struct WallHinge {
   int node[4];
-  double least[2] = {0, 0};  ///< squared doubled areas below which a triangle counts as collapsed (its gradient is bounded), m4
+  double least[2] = {
+      0, 0};  ///< squared doubled areas below which a triangle counts as collapsed (its gradient is bounded), m4
 };
 
 /// Angle by which the second triangle is turned from the plane of the first, rad in (-pi, pi]. It is positive where the

@@ -7,8 +7,8 @@ namespace insula {
 
 template <class V>
 struct HingeShape {
-  V e[3], a[3], b[3];    // edge, apexes from the edge's first end
-  V n1[3], n2[3];        // doubled area vectors
+  V e[3], a[3], b[3];  // edge, apexes from the edge's first end
+  V n1[3], n2[3];      // doubled area vectors
   V e2, size1, size2, along1, along2;
 };
 

@@ -41,15 +41,45 @@ namespace {
 
 class Membrane final : public ForceModel {
  public:
-  Param<std::string> regions{this, {.name = "regions", .fallback = "", .doc = "regions of the wall it is, separated by blanks; none: all of them"}};
-  Param<Length> thickness{this, {.name = "thickness", .fallback = "0.3 mm", .min = "1 um", .max = "10 mm", .doc = "of the wall"}};
-  Param<Pressure> young{this, {.name = "young", .fallback = "1 MPa", .min = "1 Pa", .max = "10 GPa", .doc = "Young's modulus"}};
-  Param<Scalar> poisson{this, {.name = "poisson", .fallback = "0.45", .min = "0", .max = "0.495", .doc = "Poisson's ratio"}};
-  Param<Density> density{this, {.name = "density", .fallback = "1.1 g/cm3", .min = "0.01 g/cm3", .max = "25 g/cm3", .doc = "mass density of the wall"}};
-  Param<SurfaceMass> added_mass{this, {.name = "added_mass", .fallback = "0 kg/m2", .min = "0 kg/m2", .max = "1000 kg/m2", .doc = "mass per area that moves with the wall: blood, fluid around it"}};
-  Param<Rate> mass_damping{this, {.name = "mass_damping", .fallback = "1 1/s", .min = "0 1/s", .max = "1000 1/s", .doc = "Rayleigh damping in proportion to mass"}};
-  Param<Duration> stiffness_time{this, {.name = "stiffness_damping", .fallback = "2 ms", .min = "0 s", .max = "1 s", .doc = "Rayleigh damping in proportion to stiffness"}};
-  Param<Choice> tangent{this, {.name = "tangent", .fallback = "hinges", .choices = {"hinges", "patches"}, .doc = "bending in the system matrix: each hinge by itself, an upper bound that keeps the factor small; or whole patches of twelve nodes, which settle in fewer steps"}};
+  Param<std::string> regions{
+      this,
+      {.name = "regions", .fallback = "", .doc = "regions of the wall it is, separated by blanks; none: all of them"}};
+  Param<Length> thickness{
+      this, {.name = "thickness", .fallback = "0.3 mm", .min = "1 um", .max = "10 mm", .doc = "of the wall"}};
+  Param<Pressure> young{
+      this, {.name = "young", .fallback = "1 MPa", .min = "1 Pa", .max = "10 GPa", .doc = "Young's modulus"}};
+  Param<Scalar> poisson{this,
+                        {.name = "poisson", .fallback = "0.45", .min = "0", .max = "0.495", .doc = "Poisson's ratio"}};
+  Param<Density> density{this,
+                         {.name = "density",
+                          .fallback = "1.1 g/cm3",
+                          .min = "0.01 g/cm3",
+                          .max = "25 g/cm3",
+                          .doc = "mass density of the wall"}};
+  Param<SurfaceMass> added_mass{this,
+                                {.name = "added_mass",
+                                 .fallback = "0 kg/m2",
+                                 .min = "0 kg/m2",
+                                 .max = "1000 kg/m2",
+                                 .doc = "mass per area that moves with the wall: blood, fluid around it"}};
+  Param<Rate> mass_damping{this,
+                           {.name = "mass_damping",
+                            .fallback = "1 1/s",
+                            .min = "0 1/s",
+                            .max = "1000 1/s",
+                            .doc = "Rayleigh damping in proportion to mass"}};
+  Param<Duration> stiffness_time{this,
+                                 {.name = "stiffness_damping",
+                                  .fallback = "2 ms",
+                                  .min = "0 s",
+                                  .max = "1 s",
+                                  .doc = "Rayleigh damping in proportion to stiffness"}};
+  Param<Choice> tangent{this,
+                        {.name = "tangent",
+                         .fallback = "hinges",
+                         .choices = {"hinges", "patches"},
+                         .doc = "bending in the system matrix: each hinge by itself, an upper bound that keeps the "
+                                "factor small; or whole patches of twelve nodes, which settle in fewer steps"}};
 
   void attach(PrepareContext& context, DeformableBody& body) override;
   void couplings(std::vector<std::pair<int, int>>& pairs, Tangent which) const override;
@@ -59,7 +89,9 @@ class Membrane final : public ForceModel {
   double energy(const double* x) override { return stretch_.energy(x) + bend_.energy(x); }
   bool prestrain(const double* u) override;
   double stiffness_damping() const override { return stiffness_time(); }
-  double wall_thickness(int region) const override { return std::size_t(region) < own_.size() && owns(region) ? thickness() : 0; }
+  double wall_thickness(int region) const override {
+    return std::size_t(region) < own_.size() && owns(region) ? thickness() : 0;
+  }
   void reset() override { bend_.reset(); }
 
  private:
@@ -88,7 +120,9 @@ bool Membrane::choose_regions(PrepareContext& context, const ShellBody& shell) {
       continue;
     }
     const std::string near = nearest_name(word, names);
-    error(context, regions, in_quotes(word) + " is no region of the wall" + (near.empty() ? "" : "; did you mean \"" + near + "\"?") + " (it has " + joined(names) + ")");
+    error(context, regions,
+          in_quotes(word) + " is no region of the wall" + (near.empty() ? "" : "; did you mean \"" + near + "\"?") +
+              " (it has " + joined(names) + ")");
     good = false;
   }
   return good;
@@ -108,7 +142,9 @@ void Membrane::check_cover(PrepareContext& context, const ShellBody& shell) cons
     const Membrane* owner = nullptr;
     for (const Membrane* m : all) {
       if (!m->own_[r]) continue;
-      if (owner) m->error(context, m->regions, in_quotes(names[r]) + " is the wall of " + owner->id + " already; each region has one membrane");
+      if (owner)
+        m->error(context, m->regions,
+                 in_quotes(names[r]) + " is the wall of " + owner->id + " already; each region has one membrane");
       owner = m;
     }
     if (!owner && used[r]) bare.push_back(names[r]);
@@ -139,7 +175,9 @@ void Membrane::attach(PrepareContext& context, DeformableBody& body) {
     if (!owns(shell->region_of_triangle(v))) continue;
     of_triangle[t] = &material;
     triangles_.push_back(v);
-    area_.push_back(0.5 * (rest[std::size_t(v[1])] - rest[std::size_t(v[0])]).cross(rest[std::size_t(v[2])] - rest[std::size_t(v[0])]).norm());
+    area_.push_back(0.5 * (rest[std::size_t(v[1])] - rest[std::size_t(v[0])])
+                              .cross(rest[std::size_t(v[2])] - rest[std::size_t(v[0])])
+                              .norm());
     stretch_.add(rest, v, material);
   }
   bend_.build(wall, rest, of_triangle);
@@ -183,5 +221,6 @@ bool Membrane::prestrain(const double* u) {
 
 INSULA_PLUGIN(membrane) {
   registry.add_material({"vessel", "wall", {0.50, 0.10, 0.08, 1}, 0.46, 0, 0.3});
-  registry.add<insula::Membrane>("membrane", insula::Kind::force_model, "wall of a shell that resists stretch and bending");
+  registry.add<insula::Membrane>("membrane", insula::Kind::force_model,
+                                 "wall of a shell that resists stretch and bending");
 }

@@ -13,7 +13,9 @@ using test::Wall;
 
 // A homogeneous deformation is in equilibrium on any mesh: with the rim put there, the inside must follow.
 TEST(Membrane, PatchTest) {
-  const auto rim = [](const Vec3& x) { return x.x() < 1e-9 || x.y() < 1e-9 || x.x() > 0.03 - 1e-9 || x.y() > 0.02 - 1e-9; };
+  const auto rim = [](const Vec3& x) {
+    return x.x() < 1e-9 || x.y() < 1e-9 || x.x() > 0.03 - 1e-9 || x.y() > 0.02 - 1e-9;
+  };
   for (const double turn : {0.0, 2.0}) {
     auto body = test::shell(test::plate(0.03, 0.02, 6, 4, Cut::shaken), {.poisson = 0.4}, rim);
     Mat3 f = Mat3::Identity();
@@ -33,7 +35,10 @@ TEST(Membrane, PatchTest) {
     ASSERT_EQ(inside, 15);
     test::settle(*body, 60);
     for (int i = 0; i < body->nodes(); ++i)
-      EXPECT_TRUE(test::held("patch test of a wall", (body->q().segment<3>(3 * i) - (turned * body->rest_nodes()[std::size_t(i)] + shift)).norm(), 0.03, 1e-9)) << "node " << i;
+      EXPECT_TRUE(test::held(
+          "patch test of a wall",
+          (body->q().segment<3>(3 * i) - (turned * body->rest_nodes()[std::size_t(i)] + shift)).norm(), 0.03, 1e-9))
+          << "node " << i;
   }
 }
 
@@ -53,26 +58,32 @@ TEST(Membrane, UniaxialTensionHasItsClosedForm) {
   for (int i = 0; i < body->nodes(); ++i) {
     const Vec3& at = body->rest_nodes()[std::size_t(i)];
     if (at.x() > 0.04 - 1e-9) pull -= f[3 * i];
-    else if (at.x() > 1e-9) { EXPECT_LT(f.segment<3>(3 * i).norm(), 1e-12); }
+    else if (at.x() > 1e-9) {
+      EXPECT_LT(f.segment<3>(3 * i).norm(), 1e-12);
+    }
   }
   EXPECT_TRUE(test::held("uniaxial tension, N", std::abs(pull - w.young * strain * w.thickness * 0.01), 1, 1e-12));
 }
 
 TEST(Membrane, RigidMotionGivesNoForceOnAnyShape) {
-  for (const TriMesh& mesh : {test::cylinder(0.002, 0.01, 12, 10, Cut::shaken), test::icosphere(0.003, 2), test::plate(0.01, 0.01, 5, 5, Cut::criss_cross)}) {
+  for (const TriMesh& mesh : {test::cylinder(0.002, 0.01, 12, 10, Cut::shaken), test::icosphere(0.003, 2),
+                              test::plate(0.01, 0.01, 5, 5, Cut::criss_cross)}) {
     auto body = test::shell(mesh, {});
     const VecX rest = body->q();
     VecX noisy = test::deformed(*body, 0.1, 1);
     const double scale = test::elastic_force(*body, noisy).lpNorm<Eigen::Infinity>();
     const Quat turn = from_rotation_vector(Vec3(1.5, -2, 0.7));
-    for (int i = 0; i < body->nodes(); ++i) noisy.segment<3>(3 * i) = turn * rest.segment<3>(3 * i) + Vec3(0.02, 0.1, -0.3);
-    EXPECT_TRUE(test::held("rigid motion of a curved wall", test::elastic_force(*body, noisy).lpNorm<Eigen::Infinity>(), scale, 1e-10));
+    for (int i = 0; i < body->nodes(); ++i)
+      noisy.segment<3>(3 * i) = turn * rest.segment<3>(3 * i) + Vec3(0.02, 0.1, -0.3);
+    EXPECT_TRUE(test::held("rigid motion of a curved wall", test::elastic_force(*body, noisy).lpNorm<Eigen::Infinity>(),
+                           scale, 1e-10));
     EXPECT_LT(test::elastic_force(*body, rest).lpNorm<Eigen::Infinity>(), 1e-12 * scale);
   }
 }
 
 TEST(Membrane, MassIsDensityTimesThicknessTimesAreaAndWhatIsAdded) {
-  auto body = test::shell(test::plate(0.03, 0.02, 7, 5, Cut::shaken), {.thickness = 4e-4, .density = 1100, .added_mass = 0.3});
+  auto body =
+      test::shell(test::plate(0.03, 0.02, 7, 5, Cut::shaken), {.thickness = 4e-4, .density = 1100, .added_mass = 0.3});
   double mass = 0;
   for (double m : body->node_mass()) mass += m;
   EXPECT_NEAR(mass, (1100 * 4e-4 + 0.3) * 0.03 * 0.02, 1e-15);
@@ -99,7 +110,8 @@ TEST(Membrane, EachRegionHasItsOwnThickness) {
   double area[2] = {0, 0};
   for (const auto& t : body.wall_triangles()) area[body.region_of_triangle(t)] += 0.5 * 0.005 * 0.005;
   EXPECT_NEAR(area[0] + area[1], 4e-4, 1e-15);
-  EXPECT_TRUE(test::held("mass of two regions, kg", std::abs(mass - 1000 * (1e-3 * area[0] + 2e-4 * area[1])), 1, 1e-15));
+  EXPECT_TRUE(
+      test::held("mass of two regions, kg", std::abs(mass - 1000 * (1e-3 * area[0] + 2e-4 * area[1])), 1, 1e-15));
   const double force = 1e-3;
   for (int i = 0; i < body.nodes(); ++i)
     if (body.rest_nodes()[std::size_t(i)].x() > 0.04 - 1e-9) {
@@ -132,7 +144,9 @@ TEST(Membrane, RegionsAreOwnedExactlyOnce) {
   EXPECT_EQ(wrong({""}), "");
   EXPECT_EQ(wrong({"sac parent"}), "");
   EXPECT_EQ(wrong({"sac", "parent"}), "");
-  EXPECT_NE(wrong({"parent", "sacc"}).find("\"sacc\" is no region of the wall; did you mean \"sac\"? (it has parent, sac)"), std::string::npos);
+  EXPECT_NE(
+      wrong({"parent", "sacc"}).find("\"sacc\" is no region of the wall; did you mean \"sac\"? (it has parent, sac)"),
+      std::string::npos);
   EXPECT_NE(wrong({"sac"}).find("no membrane of this shell is the wall of parent"), std::string::npos);
   EXPECT_NE(wrong({"", "sac"}).find("regions: \"sac\" is the wall of membrane#1 already"), std::string::npos);
 }
@@ -140,11 +154,13 @@ TEST(Membrane, RegionsAreOwnedExactlyOnce) {
 TEST(Membrane, RefusesWhatIsNoSurface) {
   const auto refused = [](std::vector<std::array<int, 3>> triangles) {
     ShellBody body;
-    body.set_mesh({{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1), Vec3(0, -1, 0), Vec3(2, 0, 0)}, std::move(triangles)});
+    body.set_mesh({{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1), Vec3(0, -1, 0), Vec3(2, 0, 0)},
+                   std::move(triangles)});
     test::add_membrane(body, {});
     return test::finish(body);
   };
-  EXPECT_NE(refused({{0, 1, 2}, {1, 0, 3}, {0, 1, 4}}).find("has 3 triangles; a wall has two at most"), std::string::npos);
+  EXPECT_NE(refused({{0, 1, 2}, {1, 0, 3}, {0, 1, 4}}).find("has 3 triangles; a wall has two at most"),
+            std::string::npos);
   EXPECT_NE(refused({{0, 1, 2}, {0, 1, 3}}).find("do not agree on which side is out"), std::string::npos);
   EXPECT_NE(refused({{0, 1, 5}}).find("is flat"), std::string::npos);
 }

@@ -15,7 +15,8 @@
 namespace insula::test {
 
 struct Wall {
-  double thickness = 1e-3, young = 1e6, poisson = 0.3, density = 1000, added_mass = 0, mass_damping = 0, stiffness_damping = 0;
+  double thickness = 1e-3, young = 1e6, poisson = 0.3, density = 1000, added_mass = 0, mass_damping = 0,
+         stiffness_damping = 0;
   std::string regions = {};
 };
 
@@ -29,7 +30,9 @@ class HoldNodes final : public Support {
 
 inline void add_membrane(ShellBody& body, const Wall& w) {
   auto m = builtin().create("membrane");
-  const auto set = [&](const char* name, double value) { dynamic_cast<QuantityParam&>(*m->find_param(name)).set(value); };
+  const auto set = [&](const char* name, double value) {
+    dynamic_cast<QuantityParam&>(*m->find_param(name)).set(value);
+  };
   set("thickness", w.thickness);
   set("young", w.young);
   set("poisson", w.poisson);
@@ -98,7 +101,8 @@ inline void press(ShellBody& body, double p, const VecX& x) {
   body.external.setZero();
   for (const auto& t : body.wall_triangles()) {
     const auto at = [&](int k) -> Vec3 { return x.segment<3>(3 * t[std::size_t(k)]); };
-    for (int k = 0; k < 3; ++k) body.external.segment<3>(3 * t[std::size_t(k)]) += p / 6 * at((k + 1) % 3).cross(at((k + 2) % 3));
+    for (int k = 0; k < 3; ++k)
+      body.external.segment<3>(3 * t[std::size_t(k)]) += p / 6 * at((k + 1) % 3).cross(at((k + 2) % 3));
   }
 }
 
@@ -107,7 +111,8 @@ enum class Cut { one_way, criss_cross, shaken };
 
 /// Parameters (u, v) in [0, 1]^2 on an nu x nv grid, mapped by `place`. `shake` is in parts of a cell; rims stay
 /// straight.
-inline TriMesh sheet(int nu, int nv, Cut cut, const std::function<Vec3(double, double)>& place, double shake = 0.25, bool around = false) {
+inline TriMesh sheet(int nu, int nv, Cut cut, const std::function<Vec3(double, double)>& place, double shake = 0.25,
+                     bool around = false) {
   TriMesh m;
   Random random(7);
   for (int j = 0; j <= nv; ++j)
@@ -139,10 +144,13 @@ inline TriMesh plate(double lx, double ly, int nx, int ny, Cut cut) {
 }
 
 inline TriMesh cylinder(double radius, double length, int around, int along, Cut cut = Cut::one_way) {
-  return sheet(around, along, cut, [=](double u, double v) {
-    const double a = 2 * std::numbers::pi * u;
-    return Vec3(radius * std::cos(a), radius * std::sin(a), length * v);
-  }, 0.25, true);
+  return sheet(
+      around, along, cut,
+      [=](double u, double v) {
+        const double a = 2 * std::numbers::pi * u;
+        return Vec3(radius * std::cos(a), radius * std::sin(a), length * v);
+      },
+      0.25, true);
 }
 
 /// An icosahedron on a sphere. Each triangle is divided into four, `times` times.
@@ -156,7 +164,8 @@ inline TriMesh icosphere(double radius, int times) {
     for (int j = 0; j < 12; ++j)
       for (int k = 0; k < 12; ++k) {
         const Vec3 &a = m.vertices[std::size_t(i)], &b = m.vertices[std::size_t(j)], &c = m.vertices[std::size_t(k)];
-        const bool sides = std::abs((b - a).norm() - 2) < 1e-9 && std::abs((c - b).norm() - 2) < 1e-9 && std::abs((a - c).norm() - 2) < 1e-9;
+        const bool sides = std::abs((b - a).norm() - 2) < 1e-9 && std::abs((c - b).norm() - 2) < 1e-9 &&
+                           std::abs((a - c).norm() - 2) < 1e-9;
         if (i < j && i < k && sides && (b - a).cross(c - a).dot(a) > 0) m.triangles.push_back({i, j, k});
       }
   for (int n = 0; n < times; ++n) {

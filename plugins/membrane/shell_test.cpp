@@ -13,8 +13,8 @@ using test::Cut;
 using test::Wall;
 constexpr double pi = std::numbers::pi;
 
-// A prism of N flat panels, Poisson's ratio 0: the chord's tension T = E t (r/r0 - 1) carries p r cos(pi/N). Its angles do not
-// change, so bending has no part in it.
+// A prism of N flat panels, Poisson's ratio 0: the chord's tension T = E t (r/r0 - 1) carries p r cos(pi/N). Its angles
+// do not change, so bending has no part in it.
 TEST(Laplace, PrismFollowsTheDiscretisedLaw) {
   const double radius = 0.002, length = 0.006;
   const int around = 12, along = 6;
@@ -32,7 +32,9 @@ TEST(Laplace, PrismFollowsTheDiscretisedLaw) {
     Vec3 out = x.segment<3>(3 * i);
     out.z() = 0;
     const double push = (end ? 0.5 : 1.0) * p * length / along * std::sin(2 * pi / around) * grown;
-    EXPECT_TRUE(test::held("inflated prism, T = p r cos(pi/N)", (f.segment<3>(3 * i) + push * out.normalized()).norm(), push, 1e-10)) << i;
+    EXPECT_TRUE(test::held("inflated prism, T = p r cos(pi/N)", (f.segment<3>(3 * i) + push * out.normalized()).norm(),
+                           push, 1e-10))
+        << i;
   }
 }
 
@@ -47,7 +49,8 @@ double inflated(TriMesh mesh, const Wall& w, double p) {
   return sum;
 }
 
-// All corners of an icosahedron are alike, so it grows as a whole: p dV = dE with V0 s^3 and E t A0 / (1 - nu) (s - 1)^2.
+// All corners of an icosahedron are alike, so it grows as a whole: p dV = dE with V0 s^3 and E t A0 / (1 - nu) (s -
+// 1)^2.
 TEST(Laplace, IcosahedronFollowsTheDiscretisedLaw) {
   const Wall w{.thickness = 3e-4, .young = 1e6, .poisson = 0.45};
   const double radius = 0.003, p = 8e3, edge = radius / std::sin(2 * pi / 5), area = 5 * std::sqrt(3.0) * edge * edge,
@@ -55,23 +58,29 @@ TEST(Laplace, IcosahedronFollowsTheDiscretisedLaw) {
   const double k = 2 * w.young * w.thickness * area / (1 - w.poisson);
   double s = 1;
   for (int i = 0; i < 50; ++i) s = 1 + 3 * p * volume * s * s / k;
-  EXPECT_TRUE(test::held("inflated icosahedron, p dV = dE", std::abs(inflated(test::icosphere(radius, 0), w, p) - s * radius), radius, 1e-9));
+  EXPECT_TRUE(test::held("inflated icosahedron, p dV = dE",
+                         std::abs(inflated(test::icosphere(radius, 0), w, p) - s * radius), radius, 1e-9));
   EXPECT_GT(s, 1.01);
 }
 
-// The sphere: p = 2 t sigma / r with sigma = E / (1 - nu) (r/r0 - 1) per area at rest, so p r^2 = 2 t E / (1 - nu) (r - r0).
+// The sphere: p = 2 t sigma / r with sigma = E / (1 - nu) (r/r0 - 1) per area at rest, so p r^2 = 2 t E / (1 - nu) (r -
+// r0).
 TEST(Laplace, SphereConverges) {
   const Wall w{.thickness = 1e-4, .young = 1e6, .poisson = 0.45};
   const double radius = 0.003, p = 4e3, k = 2 * w.young * w.thickness / (1 - w.poisson);
   double r = radius;
   for (int i = 0; i < 100; ++i) r = radius + p * r * r / k;
   double last = 1;
-  test::Figure figure("sphere", "A sphere inflated, p = 2 t sigma / r, under refinement", "triangles", "growth of the radius over Laplace's");
+  test::Figure figure("sphere", "A sphere inflated, p = 2 t sigma / r, under refinement", "triangles",
+                      "growth of the radius over Laplace's");
   for (const int times : {1, 2, 3}) {
-    const double growth = (inflated(test::icosphere(radius, times), w, p) - radius) / (r - radius), error = std::abs(growth - 1);
+    const double growth = (inflated(test::icosphere(radius, times), w, p) - radius) / (r - radius),
+                 error = std::abs(growth - 1);
     figure.run("growth", 20 * std::pow(4, times), growth);
     figure.law("Laplace", 20 * std::pow(4, times), 1);
-    if (times > 1) { EXPECT_LT(error, 0.3 * last) << times; }
+    if (times > 1) {
+      EXPECT_LT(error, 0.3 * last) << times;
+    }
     last = error;
   }
   EXPECT_LT(last, 0.01);
@@ -175,7 +184,8 @@ TEST(Bending, StepOfThicknessBendsAsItsParts) {
 
 // Free vibration of a shaken tube: implicit Euler takes energy away and never adds any; momentum stays.
 TEST(Membrane, EnergyIsBoundedInFreeVibration) {
-  auto body = test::shell(test::cylinder(0.002, 0.008, 12, 10, Cut::shaken), {.thickness = 2e-4, .young = 1e5, .poisson = 0.45});
+  auto body = test::shell(test::cylinder(0.002, 0.008, 12, 10, Cut::shaken),
+                          {.thickness = 2e-4, .young = 1e5, .poisson = 0.45});
   Random random(11);
   for (int i = 0; i < body->v().size(); ++i) body->v()[i] = 0.2 * random.uniform(-1, 1);
   const auto momentum = [&] {
@@ -197,7 +207,10 @@ TEST(Membrane, EnergyIsBoundedInFreeVibration) {
 
 // A folded hinge comes back: angles past a half turn are told from those before it.
 TEST(Membrane, AWallPressedThroughItselfUnfolds) {
-  auto body = test::shell({{Vec3(0, 0, 0), Vec3(0, 1e-3, 0), Vec3(-1e-3, 5e-4, 0), Vec3(1e-3, 5e-4, 0), Vec3(-1e-3, 2e-3, 0)}, {{0, 1, 2}, {1, 0, 3}, {2, 1, 4}}}, {});
+  auto body =
+      test::shell({{Vec3(0, 0, 0), Vec3(0, 1e-3, 0), Vec3(-1e-3, 5e-4, 0), Vec3(1e-3, 5e-4, 0), Vec3(-1e-3, 2e-3, 0)},
+                   {{0, 1, 2}, {1, 0, 3}, {2, 1, 4}}},
+                  {});
   VecX x = body->q();
   double last = -1;
   ForceModel& m = *body->forces()[0];

@@ -15,7 +15,8 @@ constexpr double outer = 0.3;
 /// Combinations of quadratics that the hinges tell apart less well than this, relative to the best, are given up.
 constexpr double min_singular = 0.02;
 
-/// Where the apex of a triangle lies in a plane that holds its edge (p, q) at (p2, q2), on the left of p2 to q2 or the right.
+/// Where the apex of a triangle lies in a plane that holds its edge (p, q) at (p2, q2), on the left of p2 to q2 or the
+/// right.
 Vec2 unfold(const Vec3& p, const Vec3& q, const Vec3& apex, const Vec2& p2, const Vec2& q2, double side) {
   const Vec3 e = q - p, a = apex - p;
   const double length = e.norm(), along = e.dot(a) / length, across = e.cross(a).norm() / length;
@@ -24,7 +25,8 @@ Vec2 unfold(const Vec3& p, const Vec3& q, const Vec3& apex, const Vec2& p2, cons
 }
 
 /// By how much a deflection rises at the apex over the plane's value on the edge, over the apex's height.
-double rise(const double edge1, const double edge2, const double at_apex, const Vec2& p, const Vec2& q, const Vec2& apex) {
+double rise(const double edge1, const double edge2, const double at_apex, const Vec2& p, const Vec2& q,
+            const Vec2& apex) {
   const Vec2 e = q - p, a = apex - p;
   const double s = e.dot(a) / e.squaredNorm(), height = std::abs(e.x() * a.y() - e.y() * a.x()) / e.norm();
   return (at_apex - (1 - s) * edge1 - s * edge2) / height;
@@ -81,7 +83,8 @@ SlopeWeights slope_weights(const WallTopology& wall, const std::vector<Vec3>& re
   wanted -= two * m.col(0);
   Eigen::Matrix<double, 3, 5> scaled = outer * m;
   scaled.col(0) = m.col(0);
-  Eigen::JacobiSVD<Eigen::Matrix<double, 3, 5>, Eigen::FullPivHouseholderQRPreconditioner> svd(scaled, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::JacobiSVD<Eigen::Matrix<double, 3, 5>, Eigen::FullPivHouseholderQRPreconditioner> svd(
+      scaled, Eigen::ComputeFullU | Eigen::ComputeFullV);
   svd.setThreshold(min_singular);
   const Eigen::Matrix<double, 5, 1> more = svd.solve(wanted);
   for (int k = 0; k < w.count; ++k) w.weight[k] = (k == 0 ? 1 : outer) * more[k];

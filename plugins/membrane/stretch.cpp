@@ -45,8 +45,10 @@ void StretchTriangles::add(const std::vector<Vec3>& rest, const std::array<int, 
     t.node[k] = nodes[std::size_t(k)];
     p[k] = rest[std::size_t(t.node[k])];
   }
-  const Vec3 along = (p[1] - p[0]).normalized(), normal = (p[1] - p[0]).cross(p[2] - p[0]).normalized(), across = normal.cross(along);
-  const double u1 = (p[1] - p[0]).dot(along), u2 = (p[2] - p[0]).dot(along), v2 = (p[2] - p[0]).dot(across), twice = u1 * v2;
+  const Vec3 along = (p[1] - p[0]).normalized(), normal = (p[1] - p[0]).cross(p[2] - p[0]).normalized(),
+             across = normal.cross(along);
+  const double u1 = (p[1] - p[0]).dot(along), u2 = (p[2] - p[0]).dot(along), v2 = (p[2] - p[0]).dot(across),
+               twice = u1 * v2;
   t.b[1][0] = v2 / twice;
   t.b[1][1] = -u2 / twice;
   t.b[2][0] = 0;
@@ -127,7 +129,8 @@ void StretchTriangles::prestrain(const double* rest, const double* u) {
   pack();
 }
 
-void StretchTriangles::linearise(const double* x, double* force, BlockMatrix* stiffness, double scale, Tangent which) const {
+void StretchTriangles::linearise(const double* x, double* force, BlockMatrix* stiffness, double scale,
+                                 Tangent which) const {
   for (const TriangleBatch& b : batches_) wall_kernels().stretch(b, x, force);
   if (!stiffness) return;
   for (const Triangle& t : triangles_) {
@@ -157,7 +160,8 @@ void StretchTriangles::linearise(const double* x, double* force, BlockMatrix* st
         if (t.slot[slot] < 0) continue;
         double* out = stiffness->block(t.slot[slot]);
         const double hooke = mu * g[i].dot(g[j]);
-        const double tension = scale * (t.b[i][0] * (g00 * t.b[j][0] + g01 * t.b[j][1]) + t.b[i][1] * (g01 * t.b[j][0] + g11 * t.b[j][1]));
+        const double tension =
+            scale * (t.b[i][0] * (g00 * t.b[j][0] + g01 * t.b[j][1]) + t.b[i][1] * (g01 * t.b[j][0] + g11 * t.b[j][1]));
         const double across = tension - hooke;
         for (int c = 0; c < 3; ++c) {
           const double gi = mu * g[i][c], gj = lambda * g[j][c], pj = scale * spin * p[j][c], nc = across * n[c];
@@ -166,7 +170,10 @@ void StretchTriangles::linearise(const double* x, double* force, BlockMatrix* st
         }
         if (!deviator) continue;
         const double both = t.b[i][0] * (d * t.b[j][0] + o * t.b[j][1]) + t.b[i][1] * (o * t.b[j][0] - d * t.b[j][1]);
-        Eigen::Map<Mat3>(out, 3, 3) += 2 * scale / trace * (both * (Mat3::Identity() - n * n.transpose()) - (y[i] * g[j].transpose() + g[i] * y[j].transpose() - h * g[i] * g[j].transpose()) / trace);
+        Eigen::Map<Mat3>(out, 3, 3) +=
+            2 * scale / trace *
+            (both * (Mat3::Identity() - n * n.transpose()) -
+             (y[i] * g[j].transpose() + g[i] * y[j].transpose() - h * g[i] * g[j].transpose()) / trace);
       }
   }
 }
@@ -177,7 +184,8 @@ double StretchTriangles::energy(const double* x) const {
     const StretchOf<double> s = stretch_at(x, t.node, t.b);
     const double strain = s.trace - 2 + t.pre[0] + t.pre[2];
     // |e|^2 = tr C - 2 tr S + 2, written without its cancellation: |S - I|^2 with S = (C + det I) / tr S.
-    const double e00 = (s.c00 + s.det) / s.trace - 1 + t.pre[0], e01 = s.c01 / s.trace + t.pre[1], e11 = (s.c11 + s.det) / s.trace - 1 + t.pre[2];
+    const double e00 = (s.c00 + s.det) / s.trace - 1 + t.pre[0], e01 = s.c01 / s.trace + t.pre[1],
+                 e11 = (s.c11 + s.det) / s.trace - 1 + t.pre[2];
     sum += t.mu * (e00 * e00 + 2 * e01 * e01 + e11 * e11) + 0.5 * t.lambda * strain * strain;
   }
   return sum;

@@ -45,9 +45,9 @@ class StretchTriangles {
 
  private:
   struct Triangle {
-    int node[3];      // in the order of the matrix once bound
-    int slot[6];      // (0,0) (1,0) (1,1) (2,0) (2,1) (2,2); -1 where a node is held
-    double b[3][2];   // rest gradients of the shape functions, 1/m
+    int node[3];        // in the order of the matrix once bound
+    int slot[6];        // (0,0) (1,0) (1,1) (2,0) (2,1) (2,2); -1 where a node is held
+    double b[3][2];     // rest gradients of the shape functions, 1/m
     double mu, lambda;  // times area and thickness, N m
     double pre[3];      // e0: 00, 01, 11
   };

@@ -10,10 +10,10 @@ inline constexpr double min_area = 1e-3;
 
 template <class V>
 struct StretchOf {
-  V f0[3], f1[3];       // columns of F
-  V c00, c01, c11;      // F^T F
-  V det, trace;         // of S
-  V i00, i01, i11;      // S^-1
+  V f0[3], f1[3];   // columns of F
+  V c00, c01, c11;  // F^T F
+  V det, trace;     // of S
+  V i00, i01, i11;  // S^-1
 };
 
 /// u, v: the triangle's second and third corner from the first, m. b: rest gradients of all three, of which the last
@@ -41,9 +41,9 @@ static inline StretchOf<V> stretch_of(const V (&u)[3], const V (&v)[3], const V 
 
 template <class V>
 struct StressOf {
-  V z, d, o, h;          // of the prestrain: z, D, D : S
-  V g00, g01, g11;       // G
-  V p0[3], p1[3];        // columns of F G
+  V z, d, o, h;     // of the prestrain: z, D, D : S
+  V g00, g01, g11;  // G
+  V p0[3], p1[3];   // columns of F G
 };
 
 template <class V>

@@ -15,9 +15,9 @@ struct alignas(64) HingeBatch {
   int count;
 };
 struct alignas(64) TriangleBatch {
-  double b[3][2][wall_lanes];   ///< rest gradients of the shape functions, 1/m
+  double b[3][2][wall_lanes];                 ///< rest gradients of the shape functions, 1/m
   double mu[wall_lanes], lambda[wall_lanes];  ///< times area and thickness, N m
-  double pre[3][wall_lanes];    ///< prestrain: 00, 01, 11
+  double pre[3][wall_lanes];                  ///< prestrain: 00, 01, 11
   int node[3][wall_lanes];
   int count;
 };

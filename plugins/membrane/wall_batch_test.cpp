@@ -38,7 +38,8 @@ TEST(WallBatch, HingesAreThoseOfASingleOne) {
       std::vector<double> angle(wall_lanes), before, gradient(16 * wall_lanes, 7.0);
       for (int l = 0; l < wall_lanes; ++l) {
         for (int k = 0; k < 4; ++k) batch.node[k][l] = hinge[l].node[k] = 4 * l + k;
-        for (int s = 0; s < 2; ++s) batch.least[s][l] = hinge[l].least[s] = l % 3 == 0 ? 1e-10 : 1e-14;  // collapsed, and not
+        for (int s = 0; s < 2; ++s)
+          batch.least[s][l] = hinge[l].least[s] = l % 3 == 0 ? 1e-10 : 1e-14;  // collapsed, and not
         angle[std::size_t(l)] = random.uniform(-20, 20);
       }
       before = angle;
@@ -50,12 +51,14 @@ TEST(WallBatch, HingesAreThoseOfASingleOne) {
           continue;
         }
         double g[12];
-        const double one = hinge_angle(x.data(), hinge[l], g), turns = (angle[std::size_t(l)] - one) / (2 * std::numbers::pi);
+        const double one = hinge_angle(x.data(), hinge[l], g),
+                     turns = (angle[std::size_t(l)] - one) / (2 * std::numbers::pi);
         EXPECT_NEAR(turns, std::nearbyint(turns), 1e-12);
         EXPECT_LE(std::abs(angle[std::size_t(l)] - before[std::size_t(l)]), std::numbers::pi * (1 + 1e-12));
         double size = 0;
         for (double v : g) size = std::max(size, std::abs(v));
-        for (int k = 0; k < 12; ++k) EXPECT_NEAR(gradient[std::size_t(16 * l + 4 * (k / 3) + k % 3)], g[k], 1e-11 * size);
+        for (int k = 0; k < 12; ++k)
+          EXPECT_NEAR(gradient[std::size_t(16 * l + 4 * (k / 3) + k % 3)], g[k], 1e-11 * size);
       }
     }
   });
@@ -80,16 +83,19 @@ TEST(WallBatch, TrianglesAreThoseOfASingleOne) {
           pre[k] = batch.pre[k][l] = random.uniform(-0.1, 0.1);
           for (int c = 0; c < 2; ++c) batch.b[k][c][l] = b[k][c];
         }
-        const double mu = batch.mu[l] = random.uniform(1e-4, 1e-3), lambda = batch.lambda[l] = random.uniform(1e-4, 1e-3);
+        const double mu = batch.mu[l] = random.uniform(1e-4, 1e-3),
+                     lambda = batch.lambda[l] = random.uniform(1e-4, 1e-3);
         if (l >= count) continue;
         const double* at = x.data() + 9 * l;
         for (int c = 0; c < 3; ++c) u[c] = at[3 + c] - at[c], v[c] = at[6 + c] - at[c];
         const auto stress = stress_of(stretch_of(u, v, b), mu, lambda, pre);
         for (int k = 0; k < 3; ++k)
-          for (int c = 0; c < 3; ++c) expected[std::size_t(9 * l + 3 * k + c)] = -(stress.p0[c] * b[k][0] + stress.p1[c] * b[k][1]);
+          for (int c = 0; c < 3; ++c)
+            expected[std::size_t(9 * l + 3 * k + c)] = -(stress.p0[c] * b[k][0] + stress.p1[c] * b[k][1]);
       }
       kernels.stretch(batch, x.data(), force.data());
-      for (std::size_t i = 0; i < force.size(); ++i) EXPECT_NEAR(force[i], expected[i], 1e-12 * (1 + std::abs(expected[i]))) << i << " of " << count;
+      for (std::size_t i = 0; i < force.size(); ++i)
+        EXPECT_NEAR(force[i], expected[i], 1e-12 * (1 + std::abs(expected[i]))) << i << " of " << count;
     }
   });
 }

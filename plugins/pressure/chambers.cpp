@@ -21,7 +21,8 @@ std::map<Edge, int> edges_of(const std::vector<std::array<int, 3>>& triangles) {
 
 }  // namespace
 
-void Chambers::assign(const ShellBody& body, const std::vector<std::vector<std::string>>& groups, std::vector<int>& of) {
+void Chambers::assign(const ShellBody& body, const std::vector<std::vector<std::string>>& groups,
+                      std::vector<int>& of) {
   const auto& triangles = body.rest().triangles;
   std::vector<int> chamber_of_region(body.model().regions.size(), -1);
   for (std::size_t g = 0; g < groups.size(); ++g)
@@ -64,14 +65,16 @@ void Chambers::build(const ShellBody& body, const std::vector<std::vector<std::s
   chambers_.assign(groups.size(), {});
   std::vector<int> of;
   assign(body, groups, of);
-  origin_ = std::accumulate(mesh.vertices.begin(), mesh.vertices.end(), Vec3(Vec3::Zero())) / double(mesh.vertices.size());
+  origin_ =
+      std::accumulate(mesh.vertices.begin(), mesh.vertices.end(), Vec3(Vec3::Zero())) / double(mesh.vertices.size());
   for (std::size_t c = 0; c < groups.size(); ++c) chambers_[c].name = groups[c].front();
   for (std::size_t t = 0; t < of.size(); ++t) {
     Chamber& c = chambers_[std::size_t(of[t])];
     const auto& v = mesh.triangles[t];
     c.triangles.push_back(v);
     c.nodes.insert(c.nodes.end(), v.begin(), v.end());
-    const Vec3 &x = mesh.vertices[std::size_t(v[0])], &y = mesh.vertices[std::size_t(v[1])], &z = mesh.vertices[std::size_t(v[2])];
+    const Vec3 &x = mesh.vertices[std::size_t(v[0])], &y = mesh.vertices[std::size_t(v[1])],
+               &z = mesh.vertices[std::size_t(v[2])];
     c.area += 0.5 * (y - x).cross(z - x).norm();
   }
   add_borders(mesh.triangles, of, mesh.vertices.size());
@@ -80,7 +83,9 @@ void Chambers::build(const ShellBody& body, const std::vector<std::vector<std::s
     for (const auto& b : c.border) c.nodes.insert(c.nodes.end(), b.begin(), b.end());
     std::sort(c.nodes.begin(), c.nodes.end());
     c.nodes.erase(std::unique(c.nodes.begin(), c.nodes.end()), c.nodes.end());
-    const auto place = [&](int v) { return int(std::lower_bound(c.nodes.begin(), c.nodes.end(), v) - c.nodes.begin()); };
+    const auto place = [&](int v) {
+      return int(std::lower_bound(c.nodes.begin(), c.nodes.end(), v) - c.nodes.begin());
+    };
     for (auto& t : c.triangles) t = {place(t[0]), place(t[1]), place(t[2])};
     for (auto& e : c.cones) e = {place(e.a), place(e.b), e.border};
     for (auto& b : c.border)
@@ -88,7 +93,8 @@ void Chambers::build(const ShellBody& body, const std::vector<std::vector<std::s
   }
 }
 
-void Chambers::add_borders(const std::vector<std::array<int, 3>>& triangles, const std::vector<int>& of, std::size_t node_count) {
+void Chambers::add_borders(const std::vector<std::array<int, 3>>& triangles, const std::vector<int>& of,
+                           std::size_t node_count) {
   // Borders that touch are one: a single apex closes every chamber there, also where three meet.
   std::vector<int> parent(node_count);
   std::iota(parent.begin(), parent.end(), 0);

@@ -21,12 +21,12 @@ class Chambers {
 
   int count() const { return int(chambers_.size()); }
   const std::string& name(int c) const { return chambers_[std::size_t(c)].name; }
-  int find(std::string_view name) const;         ///< -1 when there is none
+  int find(std::string_view name) const;                                       ///< -1 when there is none
   int of_region(int region) const { return of_region_[std::size_t(region)]; }  ///< the chamber of most of its triangles
   double area(int c) const { return chambers_[std::size_t(c)].area; }          ///< of its wall and caps at rest, m2
   const std::vector<int>& nodes(int c) const { return chambers_[std::size_t(c)].nodes; }
 
-  double volume(int c, const VecX& q) const;                              ///< m3
+  double volume(int c, const VecX& q) const;  ///< m3
   /// d volume / d node, m2, one a node of nodes(c). `out` is resized.
   void gradient(int c, const VecX& q, std::vector<Vec3>& out) const;
 
@@ -34,16 +34,17 @@ class Chambers {
   struct Chamber {
     std::string name;
     double area = 0;
-    std::vector<int> nodes;                      ///< ascending
-    std::vector<std::array<int, 3>> triangles;   ///< indices into `nodes`
+    std::vector<int> nodes;                     ///< ascending
+    std::vector<std::array<int, 3>> triangles;  ///< indices into `nodes`
     struct Cone {
-      int a, b, border;                          ///< edge as the cone's outward triangle (apex, a, b) has it
+      int a, b, border;  ///< edge as the cone's outward triangle (apex, a, b) has it
     };
     std::vector<Cone> cones;
-    std::vector<std::vector<int>> border;        ///< of each border: its nodes, indices into `nodes`
+    std::vector<std::vector<int>> border;  ///< of each border: its nodes, indices into `nodes`
   };
   void assign(const ShellBody& body, const std::vector<std::vector<std::string>>& groups, std::vector<int>& of);
-  void add_borders(const std::vector<std::array<int, 3>>& triangles, const std::vector<int>& of, std::size_t node_count);
+  void add_borders(const std::vector<std::array<int, 3>>& triangles, const std::vector<int>& of,
+                   std::size_t node_count);
 
   std::vector<Chamber> chambers_;
   std::vector<int> of_region_;

@@ -188,8 +188,7 @@ void BloodPressure::add_row(ConstraintBuilder& builder, int k, Block block, doub
 
 void BloodPressure::finish(const StepContext& context, const ConstraintSolution& solution) {
   if (feed_) finish_feed(context, solution);
-  else
-    std::fill(pressure_.begin(), pressure_.end(), arterial(context.h));
+  else std::fill(pressure_.begin(), pressure_.end(), arterial(context.h));
   fill();
   const double next = phase_ + context.h * rate_;
   phase_ = next - std::floor(next);
@@ -220,7 +219,8 @@ void BloodPressure::finish_feed(const StepContext& context, const ConstraintSolu
   // How chambers yield: A^2 L W L^T, the diagonal.
   const auto w = [&](int i, int j) -> double& { return yielding_[std::size_t(i * n + j)]; };
   for (int i = 0; i < n; ++i)
-    for (int j = 0; j < n; ++j) w(i, j) = area_ * area_ * solution.problem.w_at(rows_[std::size_t(i)].row, rows_[std::size_t(j)].row);
+    for (int j = 0; j < n; ++j)
+      w(i, j) = area_ * area_ * solution.problem.w_at(rows_[std::size_t(i)].row, rows_[std::size_t(j)].row);
   for (int k = n - 1; k >= 0; --k)
     for (int j = k + 1; j < n; ++j)
       for (int i = 0; i < n; ++i) w(j, i) -= mesh_.share(k, j) * w(k, i);
@@ -243,7 +243,8 @@ void BloodPressure::publish() {
 }
 
 void BloodPressure::append_state(std::vector<double>& out) const {
-  out.insert(out.end(), {phase_, systolic_now_, diastolic_now_, rate_, systolic_wanted_, diastolic_wanted_, rate_wanted_});
+  out.insert(out.end(),
+             {phase_, systolic_now_, diastolic_now_, rate_, systolic_wanted_, diastolic_wanted_, rate_wanted_});
   out.insert(out.end(), pressure_.begin(), pressure_.end());
   out.insert(out.end(), fluid_.begin(), fluid_.end());
 }
@@ -268,5 +269,6 @@ StatedLaw BloodPressure::law() const {
 }  // namespace insula
 
 INSULA_PLUGIN(pressure) {
-  registry.add<insula::BloodPressure>("pressure", insula::Kind::constraint, "pulsating blood pressure on the wall of a closed shell");
+  registry.add<insula::BloodPressure>("pressure", insula::Kind::constraint,
+                                      "pulsating blood pressure on the wall of a closed shell");
 }

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "core/mechanics/constraint.h"
 #include "core/constraint/stated_law.h"
+#include "core/mechanics/constraint.h"
 #include "core/mechanics/shell_body.h"
 #include "plugins/pressure/chambers.h"
 #include "plugins/pressure/star_mesh.h"
@@ -32,17 +32,68 @@ class BloodPressure final : public Constraint, public StatesLaw {
   static constexpr int max_chambers = 8;
 
   Ref<ShellBody> on{this, {.name = "on", .doc = "closed shell whose wall the blood loads"}};
-  Param<Pressure> systolic{this, {.name = "systolic", .fallback = "120 mmHg", .min = "20 mmHg", .max = "300 mmHg", .doc = "greatest pressure of a beat"}};
-  Param<Pressure> diastolic{this, {.name = "diastolic", .fallback = "80 mmHg", .min = "10 mmHg", .max = "200 mmHg", .doc = "least pressure of a beat"}};
-  Param<Frequency> heart_rate{this, {.name = "heart_rate", .fallback = "70 1/min", .min = "20 1/min", .max = "220 1/min", .doc = "beats"}};
-  Param<Pressure> imaged_at{this, {.name = "imaged_at", .fallback = "0 mmHg", .min = "0 mmHg", .max = "300 mmHg", .doc = "pressure at which the shape was imaged; 0: the mean of a beat"}};
-  Param<bool> prestress{this, {.name = "prestress", .fallback = "true", .doc = "the wall balances the pressure of imaging in the imaged shape by a tension of its own, and is slack without pressure; false: its imaged shape is free of stress, and only what exceeds that pressure loads it (so it is, too, for a shell without a membrane)"}};
-  Param<Duration> response{this, {.name = "response", .fallback = "1 s", .min = "0 s", .max = "60 s", .doc = "time in which pressure and rate follow a command"}};
-  Param<std::string> regions{this, {.name = "chambers", .fallback = "", .doc = "regions of each chamber, chambers separated by semicolons: \"parent; superior; sac bleb\"; none: one a region with a centreline"}};
+  Param<Pressure> systolic{this,
+                           {.name = "systolic",
+                            .fallback = "120 mmHg",
+                            .min = "20 mmHg",
+                            .max = "300 mmHg",
+                            .doc = "greatest pressure of a beat"}};
+  Param<Pressure> diastolic{this,
+                            {.name = "diastolic",
+                             .fallback = "80 mmHg",
+                             .min = "10 mmHg",
+                             .max = "200 mmHg",
+                             .doc = "least pressure of a beat"}};
+  Param<Frequency> heart_rate{
+      this, {.name = "heart_rate", .fallback = "70 1/min", .min = "20 1/min", .max = "220 1/min", .doc = "beats"}};
+  Param<Pressure> imaged_at{this,
+                            {.name = "imaged_at",
+                             .fallback = "0 mmHg",
+                             .min = "0 mmHg",
+                             .max = "300 mmHg",
+                             .doc = "pressure at which the shape was imaged; 0: the mean of a beat"}};
+  Param<bool> prestress{
+      this,
+      {.name = "prestress",
+       .fallback = "true",
+       .doc = "the wall balances the pressure of imaging in the imaged shape by a tension of its own, and is slack "
+              "without pressure; false: its imaged shape is free of stress, and only what exceeds that pressure loads "
+              "it (so it is, too, for a shell without a membrane)"}};
+  Param<Duration> response{this,
+                           {.name = "response",
+                            .fallback = "1 s",
+                            .min = "0 s",
+                            .max = "60 s",
+                            .doc = "time in which pressure and rate follow a command"}};
+  Param<std::string> regions{this,
+                             {.name = "chambers",
+                              .fallback = "",
+                              .doc = "regions of each chamber, chambers separated by semicolons: \"parent; superior; "
+                                     "sac bleb\"; none: one a region with a centreline"}};
 
-  Channel<Pressure> arterial_now{this, {.name = "arterial", .doc = "pressure of the arteries", .min = "0 mmHg", .max = "300 mmHg", .shown = Shown::vital, .display = "mmHg", .digits = 0}};
-  Channel<Scalar> heart_phase{this, {.name = "heart_phase", .doc = "of the beat, 0 the start of systole", .min = "0", .max = "1", .shown = Shown::none, .role = Role::pulse}};
-  ChannelGroup<Pressure> chamber_pressure{this, {.name = "pressure", .doc = "on the wall of a chamber", .min = "0 mmHg", .max = "300 mmHg", .shown = Shown::none, .display = "mmHg", .digits = 0}};
+  Channel<Pressure> arterial_now{this,
+                                 {.name = "arterial",
+                                  .doc = "pressure of the arteries",
+                                  .min = "0 mmHg",
+                                  .max = "300 mmHg",
+                                  .shown = Shown::vital,
+                                  .display = "mmHg",
+                                  .digits = 0}};
+  Channel<Scalar> heart_phase{this,
+                              {.name = "heart_phase",
+                               .doc = "of the beat, 0 the start of systole",
+                               .min = "0",
+                               .max = "1",
+                               .shown = Shown::none,
+                               .role = Role::pulse}};
+  ChannelGroup<Pressure> chamber_pressure{this,
+                                          {.name = "pressure",
+                                           .doc = "on the wall of a chamber",
+                                           .min = "0 mmHg",
+                                           .max = "300 mmHg",
+                                           .shown = Shown::none,
+                                           .display = "mmHg",
+                                           .digits = 0}};
 
   /// Makes the chambers, if they are not made yet; false when something is wrong with them.
   bool ready(PrepareContext& context);
@@ -51,16 +102,20 @@ class BloodPressure final : public Constraint, public StatesLaw {
   bool fed() const { return feed_ != nullptr; }
 
   const Chambers& chambers() const { return chambers_; }
-  double wave_mean() const { return diastolic() + (systolic() - diastolic()) * wave_.mean(); }  ///< of a beat as declared, Pa
-  double imaged_pressure() const { return imaged_at() > 0 ? imaged_at() : wave_mean(); }        ///< of the arteries, Pa
-  double arterial(double h) const;           ///< pressure of the arteries at the end of the coming step, Pa
-  double phase() const { return phase_; }    ///< of the heart, 0..1, 0 the start of systole
-  double beat_share(double h) const { return h * rate_; }  ///< share of a beat that a step lasts
-  double area_scale() const { return area_; }  ///< A_ref, m2
+  double wave_mean() const {
+    return diastolic() + (systolic() - diastolic()) * wave_.mean();
+  }                                                                                       ///< of a beat as declared, Pa
+  double imaged_pressure() const { return imaged_at() > 0 ? imaged_at() : wave_mean(); }  ///< of the arteries, Pa
+  double arterial(double h) const;         ///< pressure of the arteries at the end of the coming step, Pa
+  double phase() const { return phase_; }  ///< of the heart, 0..1, 0 the start of systole
+  double beat_share(double h) const { return h * rate_; }                         ///< share of a beat that a step lasts
+  double area_scale() const { return area_; }                                     ///< A_ref, m2
   double pressure(int chamber) const { return pressure_[std::size_t(chamber)]; }  ///< on its wall in the last step, Pa
-  double volume(int chamber) const { return chambers_.volume(chamber, on->q()); } ///< now, m3
+  double volume(int chamber) const { return chambers_.volume(chamber, on->q()); }  ///< now, m3
   double rest_volume(int chamber) const { return rest_volume_[std::size_t(chamber)]; }
-  double fluid(int chamber) const { return fluid_[std::size_t(chamber)]; }        ///< volume of blood by the network's account, m3
+  double fluid(int chamber) const {
+    return fluid_[std::size_t(chamber)];
+  }  ///< volume of blood by the network's account, m3
 
   void prepare(PrepareContext& context) override;
   void connect(PrepareContext& context, Simulation& simulation) override;
@@ -90,7 +145,7 @@ class BloodPressure final : public Constraint, public StatesLaw {
   bool connected_ = false, good_ = false, prestressed_ = false;
   double area_ = 1;
   std::vector<double> rest_volume_;
-  std::vector<char> yields_;            ///< has a node that is not held
+  std::vector<char> yields_;  ///< has a node that is not held
 
   // State.
   double phase_ = 0, systolic_now_ = 0, diastolic_now_ = 0, rate_ = 0;
@@ -101,12 +156,12 @@ class BloodPressure final : public Constraint, public StatesLaw {
   double h_ = 0;  ///< its length, s
   struct Row {
     int row = -1;
-    double conductance = 0;   ///< that its law uses, m3/(s Pa)
-    double feed = 0;          ///< pressure over that of the last step that would let nothing flow, Pa
+    double conductance = 0;  ///< that its law uses, m3/(s Pa)
+    double feed = 0;         ///< pressure over that of the last step that would let nothing flow, Pa
   };
   std::vector<Row> rows_;
   StarMesh mesh_;
-  std::vector<double> mix_;               ///< mix_[k n + j]: part of chamber j in row k
+  std::vector<double> mix_;  ///< mix_[k n + j]: part of chamber j in row k
   std::vector<std::vector<Vec3>> gradient_;
   std::vector<Vec3> row_gradient_;
   std::vector<int> row_nodes_;

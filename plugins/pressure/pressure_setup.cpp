@@ -26,7 +26,8 @@ bool BloodPressure::read_groups(PrepareContext& context, std::vector<std::vector
   if (regions().find_first_not_of(" \t\r\n") == std::string::npos) {
     // A region with a centreline is a stretch of vessel (or the sac); what has none belongs to its neighbours.
     for (const std::string& r : model.regions)
-      if (std::any_of(model.centrelines.begin(), model.centrelines.end(), [&](const auto& c) { return c.region == r; })) groups.push_back({r});
+      if (std::any_of(model.centrelines.begin(), model.centrelines.end(), [&](const auto& c) { return c.region == r; }))
+        groups.push_back({r});
     if (groups.empty()) groups.push_back({model.regions.front()});
   } else {
     std::string_view rest = regions();
@@ -47,7 +48,9 @@ bool BloodPressure::read_groups(PrepareContext& context, std::vector<std::vector
     for (const std::string& r : g) {
       if (on->region(r) < 0) {
         const std::string near = nearest_name(r, model.regions);
-        error(context, regions, in_quotes(on->id) + " has no region " + in_quotes(r) + (near.empty() ? "" : "; did you mean " + in_quotes(near) + "?"));
+        error(context, regions,
+              in_quotes(on->id) + " has no region " + in_quotes(r) +
+                  (near.empty() ? "" : "; did you mean " + in_quotes(near) + "?"));
         good = false;
       } else if (std::find(seen.begin(), seen.end(), r) != seen.end()) {
         error(context, regions, "region " + in_quotes(r) + " is named twice");
@@ -56,7 +59,9 @@ bool BloodPressure::read_groups(PrepareContext& context, std::vector<std::vector
       seen.push_back(r);
     }
   if (good && int(groups.size()) > max_chambers) {
-    error(context, regions, std::to_string(groups.size()) + " chambers are too many; group the regions into at most " + std::to_string(max_chambers));
+    error(context, regions,
+          std::to_string(groups.size()) + " chambers are too many; group the regions into at most " +
+              std::to_string(max_chambers));
     good = false;
   }
   return good;
@@ -70,7 +75,9 @@ bool BloodPressure::make_chambers(PrepareContext& context) {
   std::sort(edges.begin(), edges.end());
   for (const auto& [a, b] : edges)
     if (!std::binary_search(edges.begin(), edges.end(), std::pair(b, a))) {
-      error(context, on, in_quotes(on->id) + " is not closed (edge between vertices " + std::to_string(a) + " and " + std::to_string(b) + "), so it holds no pressure");
+      error(context, on,
+            in_quotes(on->id) + " is not closed (edge between vertices " + std::to_string(a) + " and " +
+                std::to_string(b) + "), so it holds no pressure");
       return false;
     }
   std::vector<std::vector<std::string>> groups;
@@ -89,7 +96,8 @@ bool BloodPressure::make_chambers(PrepareContext& context) {
     yields_.push_back(yields);
   }
   if (!(volume > 0)) {
-    error(context, on, in_quotes(on->id) + " is turned inside out: its triangles must be counter-clockwise from outside");
+    error(context, on,
+          in_quotes(on->id) + " is turned inside out: its triangles must be counter-clockwise from outside");
     return false;
   }
   area_ = area / double(n);
@@ -109,7 +117,8 @@ bool BloodPressure::make_chambers(PrepareContext& context) {
   return true;
 }
 
-/// A shell without a wall that could be tensed, on springs alone, keeps the image's pressure out of its account. Where a network feeds the chambers, each has a reference of its own: what a second call adds is the difference alone.
+/// A shell without a wall that could be tensed, on springs alone, keeps the image's pressure out of its account. Where
+/// a network feeds the chambers, each has a reference of its own: what a second call adds is the difference alone.
 void BloodPressure::prestress_wall(PrepareContext* context) {
   if (!prestress()) return;
   constexpr double good = 1e-8;
@@ -123,14 +132,18 @@ void BloodPressure::prestress_wall(PrepareContext* context) {
   const double left = on->prestress(load);
   prestressed_ = prestressed_ || left < good;  // what a second call leaves is a part of a small difference
   if (!prestressed_ && left < 1 && context)
-    error(*context, prestress, "no tension of " + in_quotes(on->id) + " bears the pressure of its image; with prestress=\"false\" only the excess over that pressure loads it");
+    error(*context, prestress,
+          "no tension of " + in_quotes(on->id) +
+              " bears the pressure of its image; with prestress=\"false\" only the excess over that pressure loads it");
 }
 
 std::vector<CommandInfo> BloodPressure::commands() const {
   const auto in = [](double si, double unit) { return std::round(si / unit * 1e6) / 1e6; };
-  return {{"set_systolic", "systolic pressure", "pressure_mmHg", in(*systolic.min(), mmHg), in(*systolic.max(), mmHg)},
-          {"set_diastolic", "diastolic pressure", "pressure_mmHg", in(*diastolic.min(), mmHg), in(*diastolic.max(), mmHg)},
-          {"set_heart_rate", "heart rate", "beats_per_min", in(*heart_rate.min(), 1.0 / 60), in(*heart_rate.max(), 1.0 / 60)}};
+  return {
+      {"set_systolic", "systolic pressure", "pressure_mmHg", in(*systolic.min(), mmHg), in(*systolic.max(), mmHg)},
+      {"set_diastolic", "diastolic pressure", "pressure_mmHg", in(*diastolic.min(), mmHg), in(*diastolic.max(), mmHg)},
+      {"set_heart_rate", "heart rate", "beats_per_min", in(*heart_rate.min(), 1.0 / 60),
+       in(*heart_rate.max(), 1.0 / 60)}};
 }
 
 std::string BloodPressure::run_command(std::string_view name, std::string_view argument) {
@@ -140,7 +153,8 @@ std::string BloodPressure::run_command(std::string_view name, std::string_view a
     const auto value = read_number(trim(argument), why);
     if (!value) return std::string(name) + " needs a number: " + why;
     if (*value < c.min || *value > c.max)
-      return std::string(name) + ": " + shown(argument) + " is outside the allowed range " + std::to_string(int(c.min)) + " to " + std::to_string(int(c.max));
+      return std::string(name) + ": " + shown(argument) + " is outside the allowed range " +
+             std::to_string(int(c.min)) + " to " + std::to_string(int(c.max));
     if (name == "set_heart_rate") rate_wanted_ = *value / 60;
     else if (name == "set_systolic") {
       if (*value * mmHg < diastolic_wanted_) return "systolic pressure cannot be below diastolic";

@@ -54,7 +54,8 @@ struct Sphere : test::TestScene {
     folder.write("meshes/ball.obj", test::obj_text(test::ball(Vec3(0.04, -0.01, 0.02), 0.004, levels)));
     load(fmt::format(R"(<scene time_step="10 ms"><solver tolerance="1e-14 m"/>
   <shell_body id="artery" mesh="meshes/ball.obj" mesh_unit="m"><test_wall {}/></shell_body>
-  <pressure id="p" on="artery" {}/></scene>)", wall, attributes));
+  <pressure id="p" on="artery" {}/></scene>)",
+                     wall, attributes));
     if (s) pressure = &get<BloodPressure>("p");
   }
 };
@@ -105,7 +106,8 @@ TEST(Chambers, AddUpAndAreClosedEachForItself) {
     EXPECT_TRUE(test::held("a chamber pushes nowhere", force.norm(), size, 1e-13));
     EXPECT_TRUE(test::held("a chamber turns nothing", moment.norm(), size * q.norm(), 1e-13));
     const double e = 1e-7;
-    EXPECT_NEAR((chambers.volume(c, q + e * d) - chambers.volume(c, q - e * d)) / (2 * e), slope, 1e-8 * std::abs(slope) + 1e-13);
+    EXPECT_NEAR((chambers.volume(c, q + e * d) - chambers.volume(c, q - e * d)) / (2 * e), slope,
+                1e-8 * std::abs(slope) + 1e-13);
   }
   EXPECT_NEAR(sum, whole, 1e-13 * whole);
 }
@@ -121,7 +123,8 @@ TEST(Pressure, OnlyTheExcessOverTheMeanLoadsAWallWithoutTension) {
     std::vector<Vec3> g;
     t.pressure->chambers().gradient(0, t.shell().q(), g);
     for (std::size_t v = 0; v < g.size(); ++v)
-      ASSERT_LT((t.shell().filling.segment<3>(3 * t.pressure->chambers().nodes(0)[v]) - p * g[v]).norm(), 1e-12 * now * g[v].norm());
+      ASSERT_LT((t.shell().filling.segment<3>(3 * t.pressure->chambers().nodes(0)[v]) - p * g[v]).norm(),
+                1e-12 * now * g[v].norm());
     last = now;
     sum += p;
     most = std::max(most, p);
@@ -142,7 +145,8 @@ TEST(Pressure, BalancesTheWallsSprings) {
   for (std::size_t i = 0; i < g.size(); ++i) {
     const int v = t.pressure->chambers().nodes(0)[i];
     const Vec3 u = t.shell().q().segment<3>(3 * v) - t.shell().rest_nodes()[std::size_t(v)];
-    EXPECT_TRUE(test::held("pressure against the wall's springs", (20 * u - p * g[i]).norm(), (p * g[i]).norm(), 1e-9)) << v;
+    EXPECT_TRUE(test::held("pressure against the wall's springs", (20 * u - p * g[i]).norm(), (p * g[i]).norm(), 1e-9))
+        << v;
   }
   EXPECT_GT(t.pressure->volume(0), 1.005 * t.pressure->rest_volume(0));
 }
@@ -218,7 +222,8 @@ TEST(Pressure, OpenChamberTakesThePressureOfItsFeed) {
 }
 
 TEST(Pressure, FillsAtTheRateOfItsConductance) {
-  // dV/dt = G (feed - p), V = C (p - reference) for a wall that yields by C: implicit Euler in closed form for the first step.
+  // dV/dt = G (feed - p), V = C (p - reference) for a wall that yields by C: implicit Euler in closed form for the
+  // first step.
   Pair t;
   ASSERT_TRUE(t.pressure) << t.messages;
   t.feed.conductance = 1e-12;
@@ -230,10 +235,12 @@ TEST(Pressure, FillsAtTheRateOfItsConductance) {
     t.pressure->chambers().gradient(c, rest, g);
     double yields = 0;
     for (std::size_t i = 0; i < g.size(); ++i)
-      if (!t.shell().fixed()[std::size_t(t.pressure->chambers().nodes(c)[i])]) yields += g[i].squaredNorm() / (20 + 1e-12 / 1e-4);
+      if (!t.shell().fixed()[std::size_t(t.pressure->chambers().nodes(c)[i])])
+        yields += g[i].squaredNorm() / (20 + 1e-12 / 1e-4);
     EXPECT_NEAR(t.feed.yields[c], yields, 1e-9 * yields);
     const double hg = 0.01 * t.feed.conductance, p = hg * (t.feed.pressure - t.feed.at) / (yields + hg);
-    EXPECT_TRUE(test::held("filling through a conductance", std::abs(t.pressure->pressure(c) - t.feed.at - p), p, 1e-8));
+    EXPECT_TRUE(
+        test::held("filling through a conductance", std::abs(t.pressure->pressure(c) - t.feed.at - p), p, 1e-8));
   }
 }
 
@@ -243,12 +250,16 @@ TEST(Pressure, SealedChambersKeepTheirVolumeAndJoinedOnesTheirSum) {
   t.feed.conductance = 0;
   t.push(0, -0.002);
   t.run(40);
-  for (int c = 0; c < 2; ++c) EXPECT_TRUE(test::held("sealed chambers keep their volume", std::abs(t.pressure->volume(c) - t.pressure->rest_volume(c)), t.pressure->rest_volume(c), 1e-9));
+  for (int c = 0; c < 2; ++c)
+    EXPECT_TRUE(test::held("sealed chambers keep their volume",
+                           std::abs(t.pressure->volume(c) - t.pressure->rest_volume(c)), t.pressure->rest_volume(c),
+                           1e-9));
   EXPECT_GT(t.pressure->pressure(0), t.feed.at + 100);
   EXPECT_NEAR(t.pressure->pressure(1), t.feed.at, 1e-6);
   t.feed.joint = 1e-6;  // what is squeezed out of one goes into the other
   t.run(60);
-  const double v0 = t.pressure->volume(0) - t.pressure->rest_volume(0), v1 = t.pressure->volume(1) - t.pressure->rest_volume(1);
+  const double v0 = t.pressure->volume(0) - t.pressure->rest_volume(0),
+               v1 = t.pressure->volume(1) - t.pressure->rest_volume(1);
   EXPECT_LT(v0, -1e-11);
   EXPECT_NEAR(v0 + v1, 0, 1e-9 * t.pressure->rest_volume(0));
   EXPECT_NEAR(t.pressure->pressure(0), t.pressure->pressure(1), 1e-3);
@@ -288,14 +299,17 @@ TEST(Pressure, RowsAreTheDerivativeOfTheirViolation) {
       slope[r] += 0.5 * along;
     }
   }
-  for (int r = 0; r < 2; ++r) EXPECT_TRUE(test::held("rows that mix chambers", std::abs((violation[1][r] - violation[0][r]) / 2e-7 - slope[r]), 1, 1e-8));
+  for (int r = 0; r < 2; ++r)
+    EXPECT_TRUE(
+        test::held("rows that mix chambers", std::abs((violation[1][r] - violation[0][r]) / 2e-7 - slope[r]), 1, 1e-8));
   EXPECT_GT(std::abs(slope[1]), 1e-4);
   EXPECT_EQ(body.rows.start[1] - body.rows.start[0], int(t.pressure->chambers().nodes(0).size()));
   EXPECT_EQ(body.rows.start[2] - body.rows.start[1], body.nodes());
 }
 
 TEST(Pressure, SaysWhatIsWrong) {
-  EXPECT_NE(Sphere(R"(systolic="80 mmHg" diastolic="90 mmHg")").messages.find("diastolic: is above systolic"), std::string::npos);
+  EXPECT_NE(Sphere(R"(systolic="80 mmHg" diastolic="90 mmHg")").messages.find("diastolic: is above systolic"),
+            std::string::npos);
   EXPECT_NE(Sphere(R"(chambers="wal")").messages.find("no region \"wal\"; did you mean \"wall\"?"), std::string::npos);
   EXPECT_NE(Sphere(R"(chambers="wall; wall")").messages.find("named twice"), std::string::npos);
   EXPECT_NE(Sphere(R"(chambers=" ; ")").messages.find("names no region"), std::string::npos);
@@ -314,7 +328,8 @@ TEST(Pressure, FollowsCommandsWithinTheirRange) {
   ASSERT_TRUE(t.pressure) << t.messages;
   EXPECT_EQ(t.s->command("ask", "p set_systolic 180"), "");
   EXPECT_EQ(t.s->command("ask", "p set_heart_rate 120"), "");
-  for (const char* bad : {"p set_systolic 60", "p set_systolic 5000", "p set_systolic", "p set_diastolic 190", "p set_heart_rate 1e9", "p set_heart_rate nan", "p set_diastolic 100x"})
+  for (const char* bad : {"p set_systolic 60", "p set_systolic 5000", "p set_systolic", "p set_diastolic 190",
+                          "p set_heart_rate 1e9", "p set_heart_rate nan", "p set_diastolic 100x"})
     EXPECT_NE(t.s->command("ask", bad), "") << bad;
   t.run(1);
   double most = 0;

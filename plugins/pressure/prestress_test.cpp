@@ -29,14 +29,16 @@ struct Sac : test::TestScene {
     load(fmt::format(R"(<scene time_step="16 ms"><solver tolerance="1e-14 m"/>
   <shell_body id="artery" mesh="meshes/sac.obj" mesh_unit="m">
     <membrane thickness="0.2 mm" young="0.9 MPa" poisson="0.45" added_mass="1 kg/m2" mass_damping="20 1/s"/>{}</shell_body>
-  <pressure id="p" on="artery" systolic="93 mmHg" diastolic="93 mmHg" {}/></scene>)", support, attributes));
+  <pressure id="p" on="artery" systolic="93 mmHg" diastolic="93 mmHg" {}/></scene>)",
+                     support, attributes));
     if (!s) return;
     pressure = &get<BloodPressure>("p");
     pressure->set_feed(&source);
   }
   double moved() {
     double most = 0;
-    for (int i = 0; i < shell().nodes(); ++i) most = std::max(most, (shell().q().segment<3>(3 * i) - shell().rest_nodes()[std::size_t(i)]).norm());
+    for (int i = 0; i < shell().nodes(); ++i)
+      most = std::max(most, (shell().q().segment<3>(3 * i) - shell().rest_nodes()[std::size_t(i)]).norm());
     return most;
   }
 };
@@ -53,7 +55,8 @@ TriMesh pear() {
 }
 
 TEST(Prestress, ImagedShapeIsInBalanceAtItsPressure) {
-  for (const TriMesh& mesh : {test::ball(Vec3(0.03, 0, 0), radius, 3), test::tube(Vec3(0, 0.02, 0), 0.002, 0.012, 16, 16), pear()}) {
+  for (const TriMesh& mesh :
+       {test::ball(Vec3(0.03, 0, 0), radius, 3), test::tube(Vec3(0, 0.02, 0), 0.002, 0.012, 16, 16), pear()}) {
     Sac t(mesh);
     ASSERT_TRUE(t.pressure) << t.messages;
     t.run(60);

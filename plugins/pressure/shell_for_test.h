@@ -9,8 +9,8 @@
 #include <cmath>
 #include <map>
 #include <memory>
-#include <numbers>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "core/mechanics/shell_body.h"
 #include "core/registry/registry.h"
@@ -23,7 +23,8 @@ namespace insula::test {
 /// is static.
 class TestWall final : public ForceModel {
  public:
-  Param<Stiffness> stiffness{this, {.name = "stiffness", .fallback = "50 N/m", .min = "0 N/m", .max = "1e9 N/m", .doc = "of a node's spring"}};
+  Param<Stiffness> stiffness{
+      this, {.name = "stiffness", .fallback = "50 N/m", .min = "0 N/m", .max = "1e9 N/m", .doc = "of a node's spring"}};
   std::vector<Vec3> place;
 
   void attach(PrepareContext&, DeformableBody& body) override { place = body.rest_nodes(); }
@@ -43,7 +44,8 @@ class TestWall final : public ForceModel {
   }
   double energy(const double* x) override {
     double e = 0;
-    for (std::size_t i = 0; i < place.size(); ++i) e += 0.5 * stiffness() * (Eigen::Map<const Vec3>(x + 3 * i) - place[i]).squaredNorm();
+    for (std::size_t i = 0; i < place.size(); ++i)
+      e += 0.5 * stiffness() * (Eigen::Map<const Vec3>(x + 3 * i) - place[i]).squaredNorm();
     return e;
   }
 
@@ -116,10 +118,14 @@ inline TriMesh ball(const Vec3& centre, double radius, int levels) {
 /// vessel.json and wall.ply below `meshes`.
 struct TestVessel {
   TriMesh wall;
-  nlohmann::json json = {{"unit", "mm"}, {"regions", nlohmann::json::array()}, {"vertex_region", nlohmann::json::array()},
-                         {"caps", nlohmann::json::array()}, {"centrelines", nlohmann::json::array()}};
+  nlohmann::json json = {{"unit", "mm"},
+                         {"regions", nlohmann::json::array()},
+                         {"vertex_region", nlohmann::json::array()},
+                         {"caps", nlohmann::json::array()},
+                         {"centrelines", nlohmann::json::array()}};
   /// A tube along z; ends whose names end in "let" become caps.
-  void add_tube(const std::string& region, const std::string& from, const std::string& to, const Vec3& low, double radius, double length, int around = 12, int along = 12) {
+  void add_tube(const std::string& region, const std::string& from, const std::string& to, const Vec3& low,
+                double radius, double length, int around = 12, int along = 12) {
     const TriMesh m = tube(low, radius, length, around, along);
     const int v0 = int(wall.vertices.size()), t0 = int(wall.triangles.size());
     wall.vertices.insert(wall.vertices.end(), m.vertices.begin(), m.vertices.end());
@@ -137,14 +143,21 @@ struct TestVessel {
       json["caps"].push_back(cap);
     }
     const auto point = [&](double z) { return nlohmann::json{1000 * low.x(), 1000 * low.y(), 1000 * (low.z() + z)}; };
-    json["centrelines"].push_back({{"name", region}, {"region", region}, {"from", from}, {"to", to},
-                                   {"points", {point(0), point(0.3 * length), point(length)}}, {"radius", {1000 * radius, 1000 * radius, 1000 * radius}}});
+    json["centrelines"].push_back({{"name", region},
+                                   {"region", region},
+                                   {"from", from},
+                                   {"to", to},
+                                   {"points", {point(0), point(0.3 * length), point(length)}},
+                                   {"radius", {1000 * radius, 1000 * radius, 1000 * radius}}});
   }
   void write(const SceneFolder& folder) const {
     folder.write("meshes/vessel.json", json.dump());
-    std::string ply = fmt::format("ply\nformat ascii 1.0\nelement vertex {}\nproperty double x\nproperty double y\nproperty double z\n"
-                                  "element face {}\nproperty list uchar int vertex_indices\nend_header\n", wall.vertices.size(), wall.triangles.size());
-    for (const Vec3& v : wall.vertices) ply += fmt::format("{:.17g} {:.17g} {:.17g}\n", 1000 * v.x(), 1000 * v.y(), 1000 * v.z());
+    std::string ply = fmt::format(
+        "ply\nformat ascii 1.0\nelement vertex {}\nproperty double x\nproperty double y\nproperty double z\n"
+        "element face {}\nproperty list uchar int vertex_indices\nend_header\n",
+        wall.vertices.size(), wall.triangles.size());
+    for (const Vec3& v : wall.vertices)
+      ply += fmt::format("{:.17g} {:.17g} {:.17g}\n", 1000 * v.x(), 1000 * v.y(), 1000 * v.z());
     for (const auto& t : wall.triangles) ply += fmt::format("3 {} {} {}\n", t[0], t[1], t[2]);
     folder.write("meshes/wall.ply", ply);
   }

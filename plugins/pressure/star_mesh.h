@@ -14,8 +14,8 @@ class StarMesh {
   /// n nodes without links. Allocates only when n grows.
   void clear(int n);
   int nodes() const { return n_; }
-  void link(int i, int j, double g);        ///< conductance between two nodes, m3/(s Pa)
-  void ground(int i, double g, double p);   ///< conductance to a given pressure p, Pa
+  void link(int i, int j, double g);                               ///< conductance between two nodes, m3/(s Pa)
+  void ground(int i, double g, double p);                          ///< conductance to a given pressure p, Pa
   void source(int i, double q) { current_[std::size_t(i)] += q; }  ///< inflow from outside, m3/s
 
   double link(int i, int j) const { return g_[std::size_t(i * n_ + j)]; }
@@ -24,7 +24,7 @@ class StarMesh {
 
   /// Nodes are eliminated in ascending order. Afterwards link(k, j), j > k, are the links of node k at its elimination.
   void eliminate(int k);
-  double pivot(int k) const { return pivot_[std::size_t(k)]; }      ///< sum of all links of node k when it was eliminated
+  double pivot(int k) const { return pivot_[std::size_t(k)]; }  ///< sum of all links of node k when it was eliminated
   double share(int k, int j) const { return pivot(k) > 0 ? link(k, j) / pivot(k) : 0; }
   /// The pressure of an eliminated node from those of the later ones; `floating` when nothing is linked to it.
   double pressure(int k, const double* p, double floating) const;

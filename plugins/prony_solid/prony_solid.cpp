@@ -2,15 +2,15 @@
 /*
 # prony_solid
 
-A viscoelastic solid on tetrahedra: an elastic spring beside two Maxwell elements (a Prony series of two terms). The stress
-relaxes from the sum of all moduli to the elastic one. With F the deformation gradient, E = (F^T F - I) / 2 the Green strain and
-C(young) Hooke's law of that modulus:
+A viscoelastic solid on tetrahedra: an elastic spring beside two Maxwell elements (a Prony series of two terms). The
+stress relaxes from the sum of all moduli to the elastic one. With F the deformation gradient, E = (F^T F - I) / 2 the
+Green strain and C(young) Hooke's law of that modulus:
 
     S = C(young) E + H_1 + H_2,     dH_k/dt = C(young_k) dE/dt - H_k / time_k
     force on node i = -V F S b_i,   b_i the rest gradient of its shape function
 
-A step of length h integrates each H_k by implicit Euler, so a strain that is held relaxes by 1 / (1 + h / time_k) a step. The
-part of H_k in the step depends on velocity and enters the system matrix as damping:
+A step of length h integrates each H_k by implicit Euler, so a strain that is held relaxes by 1 / (1 + h / time_k) a
+step. The part of H_k in the step depends on velocity and enters the system matrix as damping:
 
     H_k(t+h) = (H_k + h C(young_k) dE/dt) / (1 + h / time_k)
 
@@ -39,13 +39,41 @@ struct Moduli {
 
 class PronySolid final : public ForceModel {
  public:
-  Param<Pressure> young{this, {.name = "young", .fallback = "1 kPa", .min = "1 Pa", .max = "1 GPa", .doc = "Young's modulus that is left when all has relaxed"}};
-  Param<Scalar> poisson{this, {.name = "poisson", .fallback = "0.45", .min = "0", .max = "0.495", .doc = "Poisson's ratio of all moduli"}};
-  Param<Density> density{this, {.name = "density", .fallback = "1 g/cm3", .min = "0.001 g/cm3", .max = "25 g/cm3", .doc = "mass density"}};
-  Param<Pressure> young_1{this, {.name = "young_1", .fallback = "2 kPa", .min = "0 Pa", .max = "1 GPa", .doc = "Young's modulus of the first Maxwell element"}};
-  Param<Duration> time_1{this, {.name = "time_1", .fallback = "100 ms", .min = "1 ms", .max = "1000 s", .doc = "relaxation time of the first Maxwell element"}};
-  Param<Pressure> young_2{this, {.name = "young_2", .fallback = "0 Pa", .min = "0 Pa", .max = "1 GPa", .doc = "Young's modulus of the second Maxwell element; 0: there is none"}};
-  Param<Duration> time_2{this, {.name = "time_2", .fallback = "1 s", .min = "1 ms", .max = "1000 s", .doc = "relaxation time of the second Maxwell element"}};
+  Param<Pressure> young{this,
+                        {.name = "young",
+                         .fallback = "1 kPa",
+                         .min = "1 Pa",
+                         .max = "1 GPa",
+                         .doc = "Young's modulus that is left when all has relaxed"}};
+  Param<Scalar> poisson{
+      this,
+      {.name = "poisson", .fallback = "0.45", .min = "0", .max = "0.495", .doc = "Poisson's ratio of all moduli"}};
+  Param<Density> density{
+      this, {.name = "density", .fallback = "1 g/cm3", .min = "0.001 g/cm3", .max = "25 g/cm3", .doc = "mass density"}};
+  Param<Pressure> young_1{this,
+                          {.name = "young_1",
+                           .fallback = "2 kPa",
+                           .min = "0 Pa",
+                           .max = "1 GPa",
+                           .doc = "Young's modulus of the first Maxwell element"}};
+  Param<Duration> time_1{this,
+                         {.name = "time_1",
+                          .fallback = "100 ms",
+                          .min = "1 ms",
+                          .max = "1000 s",
+                          .doc = "relaxation time of the first Maxwell element"}};
+  Param<Pressure> young_2{this,
+                          {.name = "young_2",
+                           .fallback = "0 Pa",
+                           .min = "0 Pa",
+                           .max = "1 GPa",
+                           .doc = "Young's modulus of the second Maxwell element; 0: there is none"}};
+  Param<Duration> time_2{this,
+                         {.name = "time_2",
+                          .fallback = "1 s",
+                          .min = "1 ms",
+                          .max = "1000 s",
+                          .doc = "relaxation time of the second Maxwell element"}};
 
   void attach(PrepareContext& context, DeformableBody& body) override;
   void couplings(std::vector<std::pair<int, int>>& pairs, Tangent) const override;
@@ -63,8 +91,8 @@ class PronySolid final : public ForceModel {
   static constexpr std::size_t branches = 2;
   struct Element {
     std::array<int, 4> node;
-    std::array<Vec3, 4> b;  ///< rest gradients of the shape functions, 1/m
-    double volume;          ///< m3
+    std::array<Vec3, 4> b;                   ///< rest gradients of the shape functions, 1/m
+    double volume;                           ///< m3
     std::array<std::array<int, 4>, 4> slot;  ///< block of the matrix in its lower triangle, else -1
     Mat3 strain = Mat3::Zero();              ///< Green's, at the end of the last step
     std::array<Mat3, branches> branch{Mat3::Zero(), Mat3::Zero()};  ///< H_k then, Pa
@@ -220,5 +248,6 @@ void PronySolid::append_state(std::vector<double>& out) const {
 }  // namespace insula
 
 INSULA_PLUGIN(prony_solid) {
-  registry.add<insula::PronySolid>("prony_solid", insula::Kind::force_model, "viscoelastic solid with two relaxation times (Prony series)");
+  registry.add<insula::PronySolid>("prony_solid", insula::Kind::force_model,
+                                   "viscoelastic solid with two relaxation times (Prony series)");
 }

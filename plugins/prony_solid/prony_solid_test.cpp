@@ -15,11 +15,15 @@ namespace {
 
 constexpr double length = 0.06, width = 0.02;
 
-std::unique_ptr<Simulation> bar(const test::SceneFolder& folder, const std::string& solid, const std::string& attributes = "") {
-  folder.write("meshes/bar.msh", test::gmsh_text(test::block_mesh({6, 2, 2}, Vec3::Zero(), Vec3(length, width, width))));
+std::unique_ptr<Simulation> bar(const test::SceneFolder& folder, const std::string& solid,
+                                const std::string& attributes = "") {
+  folder.write("meshes/bar.msh",
+               test::gmsh_text(test::block_mesh({6, 2, 2}, Vec3::Zero(), Vec3(length, width, width))));
   return test::load_text(fmt::format(R"(<scene time_step="10 ms" gravity="0 0 0 m/s2">
 <soft_body id="bar" mesh="meshes/bar.msh" mesh_unit="m" {}><prony_solid {}/>
-<fixed region="beyond" centre="0.001 0 0 m" normal="-1 0 0"/></soft_body></scene>)", attributes, solid), folder.path() / "bar.xml");
+<fixed region="beyond" centre="0.001 0 0 m" normal="-1 0 0"/></soft_body></scene>)",
+                                     attributes, solid),
+                         folder.path() / "bar.xml");
 }
 
 /// Elastic force, and that of the Maxwell elements as they are now.
@@ -66,7 +70,8 @@ double end_strain(const SoftBody& body) {
   double sum = 0;
   int count = 0;
   for (int i = 0; i < body.nodes(); ++i)
-    if (const double rest = body.rest().nodes[std::size_t(i)].x(); rest > length - 1e-6) sum += (body.q()[3 * i] - rest) / length, ++count;
+    if (const double rest = body.rest().nodes[std::size_t(i)].x(); rest > length - 1e-6)
+      sum += (body.q()[3 * i] - rest) / length, ++count;
   return sum / count;
 }
 
@@ -80,7 +85,8 @@ TEST(PronySolid, ABarUnderALoadCreeps) {
     ASSERT_DOUBLE_EQ(s->h(), h);
     auto& body = *s->scene().find_as<SoftBody>("bar");
     pull(body, young * strain);
-    const double a = h / time, first = (1 + a) * young / (young_1 + (1 + a) * young), ratio = (young + young_1) / (young + young_1 + a * young);
+    const double a = h / time, first = (1 + a) * young / (young_1 + (1 + a) * young),
+                 ratio = (young + young_1) / (young + young_1 + a * young);
     double worst = 0;
     for (int n = 1; n <= 400; ++n) {
       s->step();

@@ -17,9 +17,20 @@ namespace {
 
 class Retractor final : public Instrument {
  public:
-  Param<Vec<Length>> approach{this, {.name = "approach", .fallback = "0 0 0 m", .doc = "where the arm starts, relative to home"}};
-  Param<Duration> approach_time{this, {.name = "approach_time", .fallback = "1.5 s", .min = "0.1 s", .max = "60 s", .doc = "how long the arm takes to home"}};
-  Param<Duration> rest{this, {.name = "rest", .fallback = "1 s", .min = "0 s", .max = "60 s", .doc = "time at home before the exercise begins"}};
+  Param<Vec<Length>> approach{
+      this, {.name = "approach", .fallback = "0 0 0 m", .doc = "where the arm starts, relative to home"}};
+  Param<Duration> approach_time{this,
+                                {.name = "approach_time",
+                                 .fallback = "1.5 s",
+                                 .min = "0.1 s",
+                                 .max = "60 s",
+                                 .doc = "how long the arm takes to home"}};
+  Param<Duration> rest{this,
+                       {.name = "rest",
+                        .fallback = "1 s",
+                        .min = "0 s",
+                        .max = "60 s",
+                        .doc = "time at home before the exercise begins"}};
 
   bool cutting() const override { return false; }
   Pose arm_pose(double time) const override {
@@ -35,5 +46,6 @@ class Retractor final : public Instrument {
 }  // namespace insula
 
 INSULA_PLUGIN(retractor) {
-  registry.add<insula::Retractor>("retractor", insula::Kind::instrument, "blunt brain spatula, in a hand or on a table-mounted arm");
+  registry.add<insula::Retractor>("retractor", insula::Kind::instrument,
+                                  "blunt brain spatula, in a hand or on a table-mounted arm");
 }

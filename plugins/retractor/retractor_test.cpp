@@ -14,13 +14,16 @@ struct Bed {
   std::unique_ptr<Simulation> s;
   Instrument* spatula = nullptr;
   explicit Bed(const std::string& hand, const std::string& home) {
-    folder.write("meshes/block.msh", test::gmsh_text(test::block_mesh({4, 4, 4}, Vec3(-0.01, -0.01, -0.02), Vec3(0.01, 0.01, 0))));
+    folder.write("meshes/block.msh",
+                 test::gmsh_text(test::block_mesh({4, 4, 4}, Vec3(-0.01, -0.01, -0.02), Vec3(0.01, 0.01, 0))));
     folder.write("meshes/spatula/spatula.urdf", test::test_tool_urdf(0.002));
     s = test::load_text(R"(<scene><solver tolerance="1e-15 m" max_sweeps="10000"/>
       <soft_body id="block" mesh="meshes/block.msh" mesh_unit="m"><corotational_fem/>
         <fixed region="beyond" centre="0 0 -19 mm" normal="0 0 -1"/><surface/></soft_body>
-      <retractor id="spatula" model="meshes/spatula/spatula.urdf" hand=")" + hand + R"(" home=")" + home + R"(" shaft="0 0 1" flat="1 0 0" coupling="500 N/m"/>
-      <contact between="spatula block" friction="0.2"/></scene>)", folder.path() / "retractor.xml");
+      <retractor id="spatula" model="meshes/spatula/spatula.urdf" hand=")" +
+                            hand + R"(" home=")" + home + R"(" shaft="0 0 1" flat="1 0 0" coupling="500 N/m"/>
+      <contact between="spatula block" friction="0.2"/></scene>)",
+                        folder.path() / "retractor.xml");
     if (s) spatula = s->scene().find_as<Instrument>("spatula");
   }
   Vec3 contact_force() const {
@@ -46,7 +49,8 @@ TEST(Retractor, TheHandCarriesTheContactForce) {
     t.s->set_hand(0, hand);
     t.s->step();
     const Vec3 f = t.contact_force();
-    EXPECT_TRUE(test::held("the hand carries the contact, N", (t.spatula->hand_force().head<3>() - f).norm(), 1, 1e-9)) << "step " << n;
+    EXPECT_TRUE(test::held("the hand carries the contact, N", (t.spatula->hand_force().head<3>() - f).norm(), 1, 1e-9))
+        << "step " << n;
     most = std::max(most, f.z());
   }
   EXPECT_GT(most, 0.01) << "it never pressed";

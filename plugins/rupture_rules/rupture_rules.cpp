@@ -41,7 +41,8 @@ class Patient {
   explicit Patient(const Simulation& simulation) : clips_(simulation), bleedings_(simulation) {}
   bool any_clip(bool temporary) {
     const auto& clips = clips_.now();
-    return std::any_of(clips.begin(), clips.end(), [&](const ClipState& c) { return released(c) && c.temporary == temporary; });
+    return std::any_of(clips.begin(), clips.end(),
+                       [&](const ClipState& c) { return released(c) && c.temporary == temporary; });
   }
   double bleeding_rate() {
     double rate = 0;
@@ -79,7 +80,8 @@ class Running {
 
 class FaultRupture final : public ExerciseRule {
  public:
-  Param<std::string> text{this, {.name = "text", .fallback = "The aneurysm has ruptured", .doc = "what the trainee is told"}};
+  Param<std::string> text{this,
+                          {.name = "text", .fallback = "The aneurysm has ruptured", .doc = "what the trainee is told"}};
   Param<bool> fails{this, {.name = "fails", .fallback = "false", .doc = "whether the exercise ends with it"}};
   void declare(PrepareContext&, const Simulation&, ExerciseLog& log) override { fault_ = log.add_fault(id, text()); }
   void observe(const StepReport& r, ExerciseLog& log) override {
@@ -97,14 +99,21 @@ class FaultRupture final : public ExerciseRule {
 class GoalBleedingStopped final : public ExerciseRule {
  public:
   Param<std::string> text{this, {.name = "text", .fallback = "Stop the bleeding", .doc = "what the trainee is to do"}};
-  Param<FlowRate> rate{this, {.name = "rate", .fallback = "1 ml/min", .min = "0 ml/min", .max = "1000 ml/min", .doc = "bleeding that counts as none"}};
-  Param<Duration> hold{this, {.name = "hold", .fallback = "2 s", .min = "0 s", .max = "600 s", .doc = "how long it must stand"}};
+  Param<FlowRate> rate{this,
+                       {.name = "rate",
+                        .fallback = "1 ml/min",
+                        .min = "0 ml/min",
+                        .max = "1000 ml/min",
+                        .doc = "bleeding that counts as none"}};
+  Param<Duration> hold{
+      this, {.name = "hold", .fallback = "2 s", .min = "0 s", .max = "600 s", .doc = "how long it must stand"}};
   void declare(PrepareContext&, const Simulation& simulation, ExerciseLog& log) override {
     patient_ = Patient(simulation);
     goal_ = log.add_goal(id, text());
   }
   void observe(const StepReport& r, ExerciseLog& log) override {
-    const bool runs = running_.observe(r.h, patient_.bleeding_rate(), rate()), dry = patient_.ruptured_at() >= 0 && patient_.bleeding_rate() <= rate();
+    const bool runs = running_.observe(r.h, patient_.bleeding_rate(), rate()),
+               dry = patient_.ruptured_at() >= 0 && patient_.bleeding_rate() <= rate();
     held_ = dry ? held_ + r.h : 0;
     if (dry && held_ >= hold()) log.goal(goal_, r.time);
     if (!dry && runs && log.goals()[std::size_t(goal_)].done) log.goal_lost(goal_, r.time);
@@ -123,10 +132,24 @@ class GoalBleedingStopped final : public ExerciseRule {
 
 class TimerRupture final : public ExerciseRule {
  public:
-  Param<std::string> text{this, {.name = "text", .fallback = "From rupture to the final clip", .doc = "what the clock is called"}};
-  Param<std::string> over{this, {.name = "over", .fallback = "Too much time has passed since the rupture", .doc = "what the trainee is told when the time is over"}};
-  Param<Duration> limit{this, {.name = "limit", .fallback = "300 s", .min = "1 s", .max = "7200 s", .doc = "time until the exercise has failed"}};
-  Param<FlowRate> rate{this, {.name = "rate", .fallback = "1 ml/min", .min = "0 ml/min", .max = "1000 ml/min", .doc = "bleeding that counts as none"}};
+  Param<std::string> text{
+      this, {.name = "text", .fallback = "From rupture to the final clip", .doc = "what the clock is called"}};
+  Param<std::string> over{this,
+                          {.name = "over",
+                           .fallback = "Too much time has passed since the rupture",
+                           .doc = "what the trainee is told when the time is over"}};
+  Param<Duration> limit{this,
+                        {.name = "limit",
+                         .fallback = "300 s",
+                         .min = "1 s",
+                         .max = "7200 s",
+                         .doc = "time until the exercise has failed"}};
+  Param<FlowRate> rate{this,
+                       {.name = "rate",
+                        .fallback = "1 ml/min",
+                        .min = "0 ml/min",
+                        .max = "1000 ml/min",
+                        .doc = "bleeding that counts as none"}};
   void declare(PrepareContext&, const Simulation& simulation, ExerciseLog& log) override {
     patient_ = Patient(simulation);
     timer_ = log.add_timer(id, text(), limit());
@@ -155,8 +178,16 @@ class TimerRupture final : public ExerciseRule {
 class TimerTemporaryClip final : public ExerciseRule {
  public:
   Param<std::string> text{this, {.name = "text", .fallback = "Temporary clip", .doc = "what the clock is called"}};
-  Param<std::string> over{this, {.name = "over", .fallback = "The temporary clip has been on for too long", .doc = "what the trainee is told when the time is over"}};
-  Param<Duration> limit{this, {.name = "limit", .fallback = "180 s", .min = "1 s", .max = "3600 s", .doc = "longest occlusion without a fault"}};
+  Param<std::string> over{this,
+                          {.name = "over",
+                           .fallback = "The temporary clip has been on for too long",
+                           .doc = "what the trainee is told when the time is over"}};
+  Param<Duration> limit{this,
+                        {.name = "limit",
+                         .fallback = "180 s",
+                         .min = "1 s",
+                         .max = "3600 s",
+                         .doc = "longest occlusion without a fault"}};
   void declare(PrepareContext&, const Simulation& simulation, ExerciseLog& log) override {
     patient_ = Patient(simulation);
     timer_ = log.add_timer(id, text(), limit());
@@ -186,8 +217,14 @@ class TimerTemporaryClip final : public ExerciseRule {
 
 class GoalTemporaryRemoved final : public ExerciseRule {
  public:
-  Param<std::string> text{this, {.name = "text", .fallback = "Remove the temporary clip", .doc = "what the trainee is to do"}};
-  Param<FlowRate> rate{this, {.name = "rate", .fallback = "1 ml/min", .min = "0 ml/min", .max = "1000 ml/min", .doc = "bleeding that counts as none"}};
+  Param<std::string> text{
+      this, {.name = "text", .fallback = "Remove the temporary clip", .doc = "what the trainee is to do"}};
+  Param<FlowRate> rate{this,
+                       {.name = "rate",
+                        .fallback = "1 ml/min",
+                        .min = "0 ml/min",
+                        .max = "1000 ml/min",
+                        .doc = "bleeding that counts as none"}};
   void declare(PrepareContext&, const Simulation& simulation, ExerciseLog& log) override {
     patient_ = Patient(simulation);
     goal_ = log.add_goal(id, text());
@@ -218,8 +255,10 @@ class GoalTemporaryRemoved final : public ExerciseRule {
 INSULA_PLUGIN(rupture_rules) {
   using namespace insula;
   registry.add<FaultRupture>("fault_rupture", Kind::exercise_rule, "counts ruptures of the aneurysm");
-  registry.add<GoalBleedingStopped>("goal_bleeding_stopped", Kind::exercise_rule, "reached when a bleeding has come to a stand");
+  registry.add<GoalBleedingStopped>("goal_bleeding_stopped", Kind::exercise_rule,
+                                    "reached when a bleeding has come to a stand");
   registry.add<TimerRupture>("timer_rupture", Kind::exercise_rule, "clock from the rupture to the final clip");
   registry.add<TimerTemporaryClip>("timer_temporary_clip", Kind::exercise_rule, "clock of a temporary clip");
-  registry.add<GoalTemporaryRemoved>("goal_temporary_removed", Kind::exercise_rule, "reached when the temporary clip is off again");
+  registry.add<GoalTemporaryRemoved>("goal_temporary_removed", Kind::exercise_rule,
+                                     "reached when the temporary clip is off again");
 }

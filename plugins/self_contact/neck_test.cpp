@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A shipped clip closes on the neck of a shipped aneurysm: its walls meet, and rows keep their names while nothing moves.
+// A shipped clip closes on the neck of a shipped aneurysm: its walls meet, and rows keep their names while nothing
+// moves.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -15,9 +16,10 @@
 namespace insula {
 namespace {
 
-// The wall of scenes/parts/artery.xml under a pressure that does not pulsate; the clip closes across the neck as slowly as an applier lets
-// it: one that snaps shut within two steps is thrown off.
-const char* const scene = R"(<scene time_step="16.6667 ms"><solver max_sweeps="150" tolerance="1e-7 m" conjugate="true"/>
+// The wall of scenes/parts/artery.xml under a pressure that does not pulsate; the clip closes across the neck as slowly
+// as an applier lets it: one that snaps shut within two steps is thrown off.
+const char* const scene =
+    R"(<scene time_step="16.6667 ms"><solver max_sweeps="150" tolerance="1e-7 m" conjugate="true"/>
 <shell_body id="artery" tangent_tolerance="0.1" wall="../../meshes/arteries/anterior_superior/vessel.json">
 <membrane regions="parent superior inferior ends" thickness="0.3 mm" young="1.5 MPa" added_mass="1 kg/m2"/>
 <membrane regions="neck" thickness="0.25 mm" young="1.2 MPa" added_mass="1 kg/m2"/>
@@ -41,8 +43,9 @@ TEST(SelfContactNeck, RowsOfAClippedNeckKeepTheirNamesAtRest) {
   const Vec3 centre(48.2289, 15.2891, -8.7169), normal = Vec3(0.682702, 0.160636, 0.712821).normalized();
   const Vec3 shaft = Vec3(0.678615, 0.222318, -0.700041).normalized(), flat = normal.cross(shaft).normalized();
   const Vec3 tip = centre + 0.4 * normal - 2.6 * shaft;
-  auto s = test::load_text(fmt::format(fmt::runtime(scene), tip[0], tip[1], tip[2], shaft[0], shaft[1], shaft[2], flat[0], flat[1], flat[2]),
-                           std::filesystem::path(INSULA_SOURCE_DIR) / "scenes" / "training" / "neck.xml");
+  auto s = test::load_text(
+      fmt::format(fmt::runtime(scene), tip[0], tip[1], tip[2], shaft[0], shaft[1], shaft[2], flat[0], flat[1], flat[2]),
+      std::filesystem::path(INSULA_SOURCE_DIR) / "scenes" / "training" / "neck.xml");
   ASSERT_TRUE(s);
   const auto* clip = s->scene().find_as<Clip>("straight");
   const auto* self = s->scene().find_as<SelfContact>("lumen");

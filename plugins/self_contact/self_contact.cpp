@@ -11,19 +11,19 @@ lumen make one block, as in <contact>:
 
     gap = distance - thickness,   0 <= gap(end) _|_ force >= 0,   |f_t| <= mu f_n
 
-`contact_stiffness` is the contact stiffness by which the wall itself becomes thinner there: delta + lambda / contact_stiffness = gap. Without
-it, rigid jaws rest only on the wall's thickest fold, near the hinge. They hold the rest loosely, and the pulse pulls
-it out, beat by beat. A wall that yields a little is gripped all along the blade. The stiffness is E A / t: 3 kN/m is
-1 MPa under 0.7 mm2 of 0.22 mm.
+`contact_stiffness` is the contact stiffness by which the wall itself becomes thinner there: delta + lambda /
+contact_stiffness = gap. Without it, rigid jaws rest only on the wall's thickest fold, near the hinge. They hold the
+rest loosely, and the pulse pulls it out, beat by beat. A wall that yields a little is gripped all along the blade. The
+stiffness is E A / t: 3 kN/m is 1 MPa under 0.7 mm2 of 0.22 mm.
 
 `sides="outer"` or `"both"` also handles the outer sides, such as a sac against its branch. The rest shape tells to
-which side a pair belongs (`core/collision/colliders/self_collider.h`). Walls that have crossed are thus recognised and separate
-again.
+which side a pair belongs (`core/collision/colliders/self_collider.h`). Walls that have crossed are thus recognised and
+separate again.
 
 A thin wall yields between its contacts. Every point that a tool or a clip presses on (a contact of `<contact>`)
 therefore has a support of its own. It is one row without friction between that point and the one behind it, along the
-tool's normal. Supports search as far ahead as tools may move in a step (`max_step_displacement` of `<contact>`). Even a fast tool
-then cannot press one wall through the other. `max_contacts` and `max_supports` bound the rows: three for each
+tool's normal. Supports search as far ahead as tools may move in a step (`max_step_displacement` of `<contact>`). Even a
+fast tool then cannot press one wall through the other. `max_contacts` and `max_supports` bound the rows: three for each
 contact, one for each support.
 
 Sources: contact law as in <contact>; the side by the rest shape and the supports are our own.
@@ -38,7 +38,8 @@ Sources: contact law as in <contact>; the side by the rest shape and the support
 namespace insula {
 
 void SelfContact::connect(PrepareContext& context, Simulation& simulation) {
-  if (on->body().blocks() == 0) return error(context, on, "on: \"" + on->id + "\" never moves, so it cannot touch itself");
+  if (on->body().blocks() == 0)
+    return error(context, on, "on: \"" + on->id + "\" never moves, so it cannot touch itself");
   if (!on->contact()) return error(context, on, "on: \"" + on->id + "\" is for the picture alone (contact=\"false\")");
   const auto& rest = on->rest();
   on->will_collide();
@@ -100,8 +101,10 @@ void SelfContact::find_supports() {
                   ((a - there).squaredNorm() < near2 && (b - here).squaredNorm() < near2);
         }
         if (known) continue;
-        const std::uint64_t key = std::uint64_t(1) << 43 | std::uint64_t(c->order & 0xffff) << 26 | (contact & 0x3ffffff);
-        supports_.push_back({x.triangle, o.triangle, x.bary, o.bary, x.normal, o.distance - thickness(), row_id(*this, key), -1, 0});
+        const std::uint64_t key =
+            std::uint64_t(1) << 43 | std::uint64_t(c->order & 0xffff) << 26 | (contact & 0x3ffffff);
+        supports_.push_back(
+            {x.triangle, o.triangle, x.bary, o.bary, x.normal, o.distance - thickness(), row_id(*this, key), -1, 0});
       }
     }
 }
@@ -207,5 +210,6 @@ void SelfContact::append_state(std::vector<double>& out) const {
 }  // namespace insula
 
 INSULA_PLUGIN(self_contact) {
-  registry.add<insula::SelfContact>("self_contact", insula::Kind::constraint, "contact of a thin wall with itself, across the lumen or outside");
+  registry.add<insula::SelfContact>("self_contact", insula::Kind::constraint,
+                                    "contact of a thin wall with itself, across the lumen or outside");
 }

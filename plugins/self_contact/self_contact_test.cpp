@@ -20,9 +20,12 @@ std::vector<std::uint64_t> ids(const Simulation& s) {
 // A tube between two jaws that end 8 mm beyond the middle: about 2 N on either side.
 struct Jaws : VesselBench {
   explicit Jaws(const std::string& self_contact)
-      : VesselBench(test::tube(2e-3, 16e-3, 17), 7.6e-3, R"(<retractor id="up" model="meshes/jaw/tool.urdf" hand="right" home="0 -4.5 5 mm" shaft="0 1 0" flat="0 0 1" coupling="250 N/m"/>
+      : VesselBench(
+            test::tube(2e-3, 16e-3, 17), 7.6e-3,
+            R"(<retractor id="up" model="meshes/jaw/tool.urdf" hand="right" home="0 -4.5 5 mm" shaft="0 1 0" flat="0 0 1" coupling="250 N/m"/>
 <retractor id="down" model="meshes/jaw/tool.urdf" hand="left" home="0 -4.5 -5 mm" shaft="0 1 0" flat="0 0 1" coupling="250 N/m"/>)",
-                    "up down", R"(friction="0.2" contact_geometry="vertices" max_contacts="40" alarm="0.3 mm")", self_contact, 400) {}
+            "up down", R"(friction="0.2" contact_geometry="vertices" max_contacts="40" alarm="0.3 mm")", self_contact,
+            400) {}
   /// Step i of closing in 90 steps, then staying.
   void close(int i) {
     for (int which = 0; which < 2; ++which) {
@@ -82,7 +85,9 @@ TEST(SelfContact, AWallThatGivesWayBearsItsStiffnessTimesTheOverlap) {
   int bearing = 0;
   for (const ContactPoint& c : b.s->report().contacts) {
     if (c.a != b.shell || c.b != b.shell) continue;
-    EXPECT_TRUE(test::held("a wall bears its layer's force, N", std::abs(c.normal_force - layer * std::max(0.0, -c.gap)), 1, 1e-5)) << c.gap;
+    EXPECT_TRUE(test::held("a wall bears its layer's force, N",
+                           std::abs(c.normal_force - layer * std::max(0.0, -c.gap)), 1, 1e-5))
+        << c.gap;
     sum += c.normal_force * std::abs(c.normal.z());
     bearing += c.normal_force > 0.05;
   }
@@ -94,9 +99,10 @@ TEST(SelfContact, AWallThatGivesWayBearsItsStiffnessTimesTheOverlap) {
 }
 
 TEST(SelfContact, FastBladesPressNoWallThroughTheOtherAndStayOutside) {
-  const std::string blade = R"(<retractor id="blade" model="meshes/blade/tool.urdf" hand="right" home="0 0 30 mm" shaft="0 0 1" flat="1 0 0" coupling="250 N/m"/>)";
-  VesselBench b(test::tube(2e-3, 12e-3, 15), 5.8e-3, blade, "blade", R"(friction="0.2" spacing="0.7 mm" max_contacts="24")",
-                R"(thickness="0.3 mm")", 100);
+  const std::string blade =
+      R"(<retractor id="blade" model="meshes/blade/tool.urdf" hand="right" home="0 0 30 mm" shaft="0 0 1" flat="1 0 0" coupling="250 N/m"/>)";
+  VesselBench b(test::tube(2e-3, 12e-3, 15), 5.8e-3, blade, "blade",
+                R"(friction="0.2" spacing="0.7 mm" max_contacts="24")", R"(thickness="0.3 mm")", 100);
   ASSERT_TRUE(b.s);
   auto* tool = b.s->scene().find_as<Instrument>("blade");
   shapes::Random r(7);
@@ -141,8 +147,10 @@ TEST(SelfContact, FastBladesPressNoWallThroughTheOtherAndStayOutside) {
 TEST(SelfContact, ASurfaceThatCannotTouchItselfIsRefused) {
   test::SceneFolder folder;
   folder.write("meshes/tube.obj", test::obj_text(test::tube(2e-3, 8e-3, 12)));
-  auto r = load_simulation_text(R"(<scene><obstacle id="still"><surface id="wall" mesh="meshes/tube.obj" mesh_unit="m"/></obstacle>
-<self_contact on="wall"/></scene>)", folder.path() / "scene.xml", test::builtin(), 1);
+  auto r = load_simulation_text(
+      R"(<scene><obstacle id="still"><surface id="wall" mesh="meshes/tube.obj" mesh_unit="m"/></obstacle>
+<self_contact on="wall"/></scene>)",
+      folder.path() / "scene.xml", test::builtin(), 1);
   EXPECT_FALSE(r.simulation);
   EXPECT_NE(r.diagnostics.format().find("never moves"), std::string::npos);
 }

@@ -63,8 +63,8 @@ struct VesselBench {
   Contact* touch = nullptr;
   std::set<std::pair<int, int>> edges;
 
-  VesselBench(const TriMesh& vessel, double half_length, const std::string& tools, const std::string& between, const std::string& contact,
-              const std::string& self_contact, double sweeps = 200) {
+  VesselBench(const TriMesh& vessel, double half_length, const std::string& tools, const std::string& between,
+              const std::string& contact, const std::string& self_contact, double sweeps = 200) {
     folder.write("meshes/vessel.obj", obj_text(vessel));
     folder.write("meshes/blade/tool.urdf", box_urdf(0.4e-3, 4e-3, 12e-3));
     folder.write("meshes/jaw/tool.urdf", box_urdf(1e-3, 1.5e-3, 9e-3));
@@ -73,8 +73,8 @@ struct VesselBench {
 <fixed region="beyond" centre="{} 0 0 m" normal="1 0 0"/><fixed region="beyond" centre="-{} 0 0 m" normal="-1 0 0"/>
 <surface id="wall" material="vessel" thickness="0.3 mm"/></shell_body>
 {}<contact id="touch" between="{} vessel" {}/><self_contact id="self" on="wall" {}/></scene>)",
-                                   sweeps, half_length, half_length, tools, between, contact, self_contact),
-                       folder.path() / "scene.xml");
+                              sweeps, half_length, half_length, tools, between, contact, self_contact),
+                  folder.path() / "scene.xml");
     if (!s) return;
     shell = s->scene().find_as<ShellBody>("vessel");
     self = s->scene().find_as<SelfContact>("self");
@@ -109,7 +109,9 @@ struct VesselBench {
         const auto& t = m.triangle(tri);
         for (int v : t)
           if (v == a || v == b) return;
-        count += segment_triangle(places_[std::size_t(a)], places_[std::size_t(b)], m.vertex(t[0]), m.vertex(t[1]), m.vertex(t[2])).distance2 == 0;
+        count += segment_triangle(places_[std::size_t(a)], places_[std::size_t(b)], m.vertex(t[0]), m.vertex(t[1]),
+                                  m.vertex(t[2]))
+                     .distance2 == 0;
       });
     }
     return count;

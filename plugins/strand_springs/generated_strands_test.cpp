@@ -35,7 +35,8 @@ TEST(StrandSprings, GeneratedAcrossTheGap) {
   EXPECT_GT(starts.size(), 8u) << "strands bunch up";
 }
 
-/// A trough of a soft body, 6 mm wide: walls of 2 mm, a floor of 1 mm, a gap of 2 mm, 9 mm deep; or only one wall and the floor.
+/// A trough of a soft body, 6 mm wide: walls of 2 mm, a floor of 1 mm, a gap of 2 mm, 9 mm deep; or only one wall and
+/// the floor.
 std::unique_ptr<Simulation> trough(test::SceneFolder& folder, bool two_walls, const std::string& attributes) {
   TetMesh block = test::block_mesh({3, 4, 10}, Vec3(0, 0, 0), Vec3(0.006, 0.004, 0.01));
   std::vector<std::array<int, 4>> kept;
@@ -50,9 +51,12 @@ std::unique_ptr<Simulation> trough(test::SceneFolder& folder, bool two_walls, co
   <solver tolerance="1e-15 m" max_sweeps="10000"/>
   <soft_body id="trough" mesh="meshes/trough.msh" mesh_unit="m"><corotational_fem/>
     <fixed region="beyond" centre="0 0 0.0005 m" normal="0 0 -1"/><surface id="skin"/></soft_body>
-  <strand_springs id="strands" from="skin" to="skin" max_length="2.6 mm" density="60 1/cm2" seed="3" )" + attributes + "/></scene>",
+  <strand_springs id="strands" from="skin" to="skin" max_length="2.6 mm" density="60 1/cm2" seed="3" )" +
+                                                     attributes + "/></scene>",
                                                  folder.path() / "trough.xml", test::builtin());
-  if (!loaded.simulation) { EXPECT_NE(loaded.diagnostics.format().find("no strand fits"), std::string::npos) << loaded.diagnostics.format(); }
+  if (!loaded.simulation) {
+    EXPECT_NE(loaded.diagnostics.format().find("no strand fits"), std::string::npos) << loaded.diagnostics.format();
+  }
   return std::move(loaded.simulation);
 }
 
@@ -78,14 +82,16 @@ TEST(StrandSprings, OneSurfaceIsTiedToItselfAcrossAGap) {
 
 TEST(StrandSprings, StrandsWithinABodyDrawItTogether) {
   test::SceneFolder folder;
-  const auto slack = trough(folder, true, "slack=\"1.2\""), taut = trough(folder, true, "slack=\"0.8\" stiffness=\"2 N/m\"");
+  const auto slack = trough(folder, true, "slack=\"1.2\""),
+             taut = trough(folder, true, "slack=\"0.8\" stiffness=\"2 N/m\"");
   ASSERT_TRUE(slack && taut);
   slack->step();
   for (int n = 0; n < 600; ++n) taut->step();
   const auto before = Strands(*slack).now(), after = Strands(*taut).now();
   ASSERT_EQ(before.size(), after.size());
   for (std::size_t i = 0; i < after.size(); ++i) {
-    const double rest = 0.8 * (before[i].a - before[i].b).norm(), tension = 2 * ((after[i].a - after[i].b).norm() - rest);
+    const double rest = 0.8 * (before[i].a - before[i].b).norm(),
+                 tension = 2 * ((after[i].a - after[i].b).norm() - rest);
     EXPECT_LT(tension, 2 * 0.25 * rest) << "the walls did not come nearer";
     EXPECT_NEAR(after[i].tension, std::max(0.0, tension), 1e-9);
   }

@@ -46,12 +46,14 @@ void NearestVertices::within(const Vec3& p, double r, std::vector<int>& out) con
       for (int x = lo[0]; x <= hi[0]; ++x) {
         const std::size_t c = std::size_t((z * n_[1] + y) * n_[0] + x);
         for (int i = start_[c]; i < start_[c + 1]; ++i)
-          if ((vertices_[std::size_t(index_[std::size_t(i)])] - p).squaredNorm() <= r * r) out.push_back(index_[std::size_t(i)]);
+          if ((vertices_[std::size_t(index_[std::size_t(i)])] - p).squaredNorm() <= r * r)
+            out.push_back(index_[std::size_t(i)]);
       }
   std::sort(out.begin(), out.end());
 }
 
-SurfacePaths::SurfacePaths(const TriMesh& mesh) : mesh_(mesh), length_(mesh.vertices.size(), std::numeric_limits<double>::infinity()) {
+SurfacePaths::SurfacePaths(const TriMesh& mesh)
+    : mesh_(mesh), length_(mesh.vertices.size(), std::numeric_limits<double>::infinity()) {
   start_.assign(mesh.vertices.size() + 1, 0);
   for (const auto& t : mesh.triangles)
     for (int v : t) start_[std::size_t(v) + 1] += 2;
@@ -95,7 +97,8 @@ bool SurfacePaths::connected(int a, int b, double limit) {
 std::vector<Vec3> vertex_normals(const TriMesh& mesh) {
   std::vector<Vec3> n(mesh.vertices.size(), Vec3::Zero());
   for (const auto& t : mesh.triangles) {
-    const Vec3 &a = mesh.vertices[std::size_t(t[0])], &b = mesh.vertices[std::size_t(t[1])], &c = mesh.vertices[std::size_t(t[2])];
+    const Vec3 &a = mesh.vertices[std::size_t(t[0])], &b = mesh.vertices[std::size_t(t[1])],
+               &c = mesh.vertices[std::size_t(t[2])];
     const Vec3 w = (b - a).cross(c - a);
     for (int v : t) n[std::size_t(v)] += w;
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sets of arachnoid strands as rules and tools see them: a reference that this family of plugins shares. Pictures, reports
-// and the general rules need none of it; they read channels and drawables.
+// Sets of arachnoid strands as rules and tools see them: a reference that this family of plugins shares. Pictures,
+// reports and the general rules need none of it; they read channels and drawables.
 #pragma once
 #include <vector>
 
@@ -10,8 +10,8 @@ namespace insula {
 
 struct StrandState {
   Vec3 a = Vec3::Zero(), b = Vec3::Zero();  ///< end points, scene frame
-  double integrity = 1;    ///< 1 whole, 0 about to be severed, -1 severed
-  double tension = 0;   ///< N
+  double integrity = 1;                     ///< 1 whole, 0 about to be severed, -1 severed
+  double tension = 0;                       ///< N
 };
 
 /// A component that holds strands.

@@ -42,7 +42,8 @@ void StrandSprings::add_strand(const MaterialPoint& a, const MaterialPoint& b) {
 
 void StrandSprings::connect(PrepareContext& context, Simulation& simulation) {
   blades_.clear();
-  for (Instrument* tool : simulation.instruments()) blades_.push_back({.tool = tool, .edges = tool->tool().blade_edges});
+  for (Instrument* tool : simulation.instruments())
+    blades_.push_back({.tool = tool, .edges = tool->tool().blade_edges});
   if (bool(from) != bool(to)) return error(context, "from and to belong together");
   if (from) {
     if (&from->body() == &to->body() && from.get() != to.get())
@@ -75,7 +76,9 @@ void StrandSprings::generate(PrepareContext& context) {
       for (int o : found) {
         const Vec3 d = other.vertices[std::size_t(o)] - p;
         const double length = d.norm();
-        if (length < 1e-6 || d.dot(normals[std::size_t(v)]) < 0.2 * length || d.dot(other_normals[std::size_t(o)]) > -0.2 * length) continue;
+        if (length < 1e-6 || d.dot(normals[std::size_t(v)]) < 0.2 * length ||
+            d.dot(other_normals[std::size_t(o)]) > -0.2 * length)
+          continue;
         if (within && paths.connected(v, o, detour * max_length()) && paths.connected(v, o, detour * length)) continue;
         if (pass == 0) least = std::min(least, length);
         else if (length <= std::min(max_length(), 1.7 * least)) out.push_back(o);
@@ -96,7 +99,8 @@ void StrandSprings::generate(PrepareContext& context) {
     }
     if (!all) continue;
     const auto& tri = mesh.triangles[t];
-    const Vec3 &a = mesh.vertices[std::size_t(tri[0])], &b = mesh.vertices[std::size_t(tri[1])], &c = mesh.vertices[std::size_t(tri[2])];
+    const Vec3 &a = mesh.vertices[std::size_t(tri[0])], &b = mesh.vertices[std::size_t(tri[1])],
+               &c = mesh.vertices[std::size_t(tri[2])];
     area += 0.5 * (b - a).cross(c - a).norm();
     until.push_back(area);
     triangle.push_back(int(t));
@@ -142,7 +146,9 @@ void StrandSprings::detect(const StepContext&) {
     const Vec3 pa = s.a.body->position(s.a), pb = s.b.body->position(s.b);
     double best = reach();
     for (const Blade& blade : blades_) {
-      if (!blade.cutting || (0.5 * (pa + pb) - blade.middle).norm() > 0.5 * (pb - pa).norm() + blade.radius + 1.001 * best) continue;
+      if (!blade.cutting ||
+          (0.5 * (pa + pb) - blade.middle).norm() > 0.5 * (pb - pa).norm() + blade.radius + 1.001 * best)
+        continue;
       for (const auto& [e0, e1] : blade.edges) {
         double u, w;
         closest_segments(pa, pb, e0, e1, u, w);
@@ -158,7 +164,8 @@ void StrandSprings::detect(const StepContext&) {
     if (!s.blade) continue;
     // The strand resists along the blade's motion across it.
     const Vec3 axis = (pb - pa).normalized();
-    Vec3 motion = s.blade->free_displacement(s.blade_point) - (1 - s.along) * s.a.body->unforced_displacement(s.a) - s.along * s.b.body->unforced_displacement(s.b);
+    Vec3 motion = s.blade->free_displacement(s.blade_point) - (1 - s.along) * s.a.body->unforced_displacement(s.a) -
+                  s.along * s.b.body->unforced_displacement(s.b);
     motion -= motion.dot(axis) * axis;
     if (motion.norm() > 1e-9) s.push = motion.normalized();
     else if (s.push.norm() < 0.5) s.blade = nullptr;  // never moved: nothing to resist
@@ -175,8 +182,10 @@ void StrandSprings::build(const StepContext&, ConstraintBuilder& builder) {
     const double length = d.norm();
     if (length > 1e-9) {
       const Vec3 u = d / length;
-      const double longer = std::max(0.0, u.dot(s.a.body->expected_displacement(s.a) - s.b.body->expected_displacement(s.b)));
-      // A strand that is slack by more than half a millimetre, and will be if all goes on, cannot become taut within a step's correction.
+      const double longer =
+          std::max(0.0, u.dot(s.a.body->expected_displacement(s.a) - s.b.body->expected_displacement(s.b)));
+      // A strand that is slack by more than half a millimetre, and will be if all goes on, cannot become taut within a
+      // step's correction.
       if (load_direction.is("both") || length + longer > s.rest - 0.0005) {
         Block block;
         block.id = row_id(*this, key);
@@ -207,7 +216,8 @@ void StrandSprings::part(const StepContext& context, Strand& s, const EventKind&
   s.severed = true;
   s.damage = 1;
   s.tension = 0;
-  if (context.events) context.events->emit({what.name(), id, "", value, context.time + context.h, s.blade ? s.blade->hand_index() : -1});
+  if (context.events)
+    context.events->emit({what.name(), id, "", value, context.time + context.h, s.blade ? s.blade->hand_index() : -1});
 }
 
 void StrandSprings::finish(const StepContext& context, const ConstraintSolution& solution) {
@@ -216,8 +226,7 @@ void StrandSprings::finish(const StepContext& context, const ConstraintSolution&
     s.tension = s.row >= 0 ? -solution.lambda[s.row] : 0;
     if (s.blade) {
       double travel;
-      if (s.blade_row >= 0)
-        travel = solution.delta[s.blade_row];
+      if (s.blade_row >= 0) travel = solution.delta[s.blade_row];
       else  // no resistance: the free motion cuts
         travel = s.push.dot(s.blade->free_displacement(s.blade_point));
       s.damage += std::max(0.0, travel) / cut_length();
@@ -275,7 +284,8 @@ StatedLaw StrandSprings::law() const {
   double energy = 0;
   for (const Strand& s : strands_) {
     const double stretch = (s.a.body->position(s.a) - s.b.body->position(s.b)).norm() - s.rest;
-    if (!s.severed && (stretch > 0 || load_direction.is("both"))) energy += 0.5 * stiffness() * (1 - s.damage) * stretch * stretch;
+    if (!s.severed && (stretch > 0 || load_direction.is("both")))
+      energy += 0.5 * stiffness() * (1 - s.damage) * stretch * stretch;
   }
   return StatedLaw::potential(energy);
 }
@@ -284,5 +294,6 @@ StatedLaw StrandSprings::law() const {
 
 INSULA_PLUGIN(strand_springs) {
   registry.add_material({"arachnoid", "fibre", {0.93, 0.90, 0.84, 0.8}, 0.35, 0, 0.5});
-  registry.add<insula::StrandSprings>("strand_springs", insula::Kind::constraint, "arachnoid strands between two surfaces");
+  registry.add<insula::StrandSprings>("strand_springs", insula::Kind::constraint,
+                                      "arachnoid strands between two surfaces");
 }

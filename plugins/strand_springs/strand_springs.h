@@ -4,8 +4,8 @@
 #include <array>
 #include <vector>
 
-#include "core/mechanics/constraint.h"
 #include "core/constraint/stated_law.h"
+#include "core/mechanics/constraint.h"
 #include "core/mechanics/surface.h"
 #include "core/sim/simulation.h"
 #include "plugins/strand_springs/strand_set.h"
@@ -16,28 +16,96 @@ class StrandSprings final : public Constraint, public StrandSet, public StatesLa
  public:
   Ref<Surface> from{this, {.name = "from", .fallback = "", .doc = "surface where the strands start"}};
   Ref<Surface> to{this, {.name = "to", .fallback = "", .doc = "surface where they end"}};
-  Param<AreaDensity> density{this, {.name = "density", .fallback = "10 1/cm2", .min = "0 1/cm2", .max = "10000 1/cm2", .doc = "strands per area of the start surface that faces the other one"}};
-  Param<Length> max_length{this, {.name = "max_length", .fallback = "3 mm", .min = "0.01 mm", .max = "50 mm", .doc = "no strand is longer at rest"}};
-  Param<Vec<Length>> centre{this, {.name = "centre", .fallback = "0 0 0 m", .doc = "centre of the ball that strands start in"}};
-  Param<Length> radius{this, {.name = "radius", .fallback = "10 m", .min = "0.1 mm", .max = "10 m", .doc = "radius of that ball"}};
-  Param<Choice> created_at{this, {.name = "created_at", .fallback = "at_rest", .choices = {"at_rest", "settled"}, .doc = "when the strands are spun: between the surfaces at rest, or as they lie once the scene has settled", .formerly = "made"}};
-  Param<int> seed{this, {.name = "seed", .fallback = "1", .min = "0", .max = "2147483647", .doc = "start of the random choice"}};
-  Param<Stiffness> stiffness{this, {.name = "stiffness", .fallback = "20 N/m", .min = "0.001 N/m", .max = "100000 N/m", .doc = "of a whole strand"}};
-  Param<Scalar> slack{this, {.name = "slack", .fallback = "1.1", .min = "0.5", .max = "3", .doc = "length without tension over the length at the start"}};
-  Param<Choice> load_direction{this, {.name = "load_direction", .fallback = "tension", .choices = {"tension", "both"}, .doc = "a fibre carries tension only; both: a two-sided spring", .formerly = "carries"}};
-  Param<Force> cut_force{this, {.name = "cut_force", .fallback = "0.03 N", .min = "0 N", .max = "5 N", .doc = "force with which a strand resists a blade that cuts it"}};
-  Param<Length> cut_length{this, {.name = "cut_length", .fallback = "1 mm", .min = "0.01 mm", .max = "50 mm", .doc = "travel of the blade through a strand that parts it"}};
-  Param<Length> reach{this, {.name = "reach", .fallback = "0.5 mm", .min = "0.01 mm", .max = "5 mm", .doc = "distance at which an edge touches a strand"}};
-  Param<Force> strength{this, {.name = "strength", .fallback = "0 N", .min = "0 N", .max = "100 N", .doc = "tension that tears a whole strand; 0: it does not tear"}};
+  Param<AreaDensity> density{this,
+                             {.name = "density",
+                              .fallback = "10 1/cm2",
+                              .min = "0 1/cm2",
+                              .max = "10000 1/cm2",
+                              .doc = "strands per area of the start surface that faces the other one"}};
+  Param<Length> max_length{this,
+                           {.name = "max_length",
+                            .fallback = "3 mm",
+                            .min = "0.01 mm",
+                            .max = "50 mm",
+                            .doc = "no strand is longer at rest"}};
+  Param<Vec<Length>> centre{
+      this, {.name = "centre", .fallback = "0 0 0 m", .doc = "centre of the ball that strands start in"}};
+  Param<Length> radius{
+      this, {.name = "radius", .fallback = "10 m", .min = "0.1 mm", .max = "10 m", .doc = "radius of that ball"}};
+  Param<Choice> created_at{
+      this,
+      {.name = "created_at",
+       .fallback = "at_rest",
+       .choices = {"at_rest", "settled"},
+       .doc = "when the strands are spun: between the surfaces at rest, or as they lie once the scene has settled",
+       .formerly = "made"}};
+  Param<int> seed{
+      this, {.name = "seed", .fallback = "1", .min = "0", .max = "2147483647", .doc = "start of the random choice"}};
+  Param<Stiffness> stiffness{
+      this,
+      {.name = "stiffness", .fallback = "20 N/m", .min = "0.001 N/m", .max = "100000 N/m", .doc = "of a whole strand"}};
+  Param<Scalar> slack{this,
+                      {.name = "slack",
+                       .fallback = "1.1",
+                       .min = "0.5",
+                       .max = "3",
+                       .doc = "length without tension over the length at the start"}};
+  Param<Choice> load_direction{this,
+                               {.name = "load_direction",
+                                .fallback = "tension",
+                                .choices = {"tension", "both"},
+                                .doc = "a fibre carries tension only; both: a two-sided spring",
+                                .formerly = "carries"}};
+  Param<Force> cut_force{this,
+                         {.name = "cut_force",
+                          .fallback = "0.03 N",
+                          .min = "0 N",
+                          .max = "5 N",
+                          .doc = "force with which a strand resists a blade that cuts it"}};
+  Param<Length> cut_length{this,
+                           {.name = "cut_length",
+                            .fallback = "1 mm",
+                            .min = "0.01 mm",
+                            .max = "50 mm",
+                            .doc = "travel of the blade through a strand that parts it"}};
+  Param<Length> reach{this,
+                      {.name = "reach",
+                       .fallback = "0.5 mm",
+                       .min = "0.01 mm",
+                       .max = "5 mm",
+                       .doc = "distance at which an edge touches a strand"}};
+  Param<Force> strength{this,
+                        {.name = "strength",
+                         .fallback = "0 N",
+                         .min = "0 N",
+                         .max = "100 N",
+                         .doc = "tension that tears a whole strand; 0: it does not tear"}};
 
-  Channel<Scalar> standing{this, {.name = "standing", .doc = "strands that are not parted", .min = "0", .shown = Shown::vital, .digits = 0}};
-  Channel<Scalar> total{this, {.name = "total", .doc = "strands at the start", .min = "0", .shown = Shown::none, .digits = 0}};
-  Channel<Force> tension{this, {.name = "tension", .doc = "largest tension of a strand", .min = "0 N", .display = "mN", .digits = 1}};
-  Polylines fibres{this, {.name = "fibres", .doc = "the strands", .material = "arachnoid", .value = "1 whole, 0 about to be severed, negative: parted", .radius = "0.15 mm"}};
-  EventKind cut{this, {.name = "strand_cut", .doc = "a blade parted a strand", .value = "force of the blade or tension, N", .listed = false}};
-  EventKind torn{this, {.name = "strand_torn", .doc = "a strand was pulled beyond its strength", .value = "its tension, N", .bad = true}};
+  Channel<Scalar> standing{
+      this, {.name = "standing", .doc = "strands that are not parted", .min = "0", .shown = Shown::vital, .digits = 0}};
+  Channel<Scalar> total{
+      this, {.name = "total", .doc = "strands at the start", .min = "0", .shown = Shown::none, .digits = 0}};
+  Channel<Force> tension{
+      this, {.name = "tension", .doc = "largest tension of a strand", .min = "0 N", .display = "mN", .digits = 1}};
+  Polylines fibres{this,
+                   {.name = "fibres",
+                    .doc = "the strands",
+                    .material = "arachnoid",
+                    .value = "1 whole, 0 about to be severed, negative: parted",
+                    .radius = "0.15 mm"}};
+  EventKind cut{this,
+                {.name = "strand_cut",
+                 .doc = "a blade parted a strand",
+                 .value = "force of the blade or tension, N",
+                 .listed = false}};
+  EventKind torn{this,
+                 {.name = "strand_torn",
+                  .doc = "a strand was pulled beyond its strength",
+                  .value = "its tension, N",
+                  .bad = true}};
 
-  /// Adds one strand between two points (positions at rest in the scene frame); its rest length is slack times their distance.
+  /// Adds one strand between two points (positions at rest in the scene frame); its rest length is slack times their
+  /// distance.
   void add_strand(const MaterialPoint& a, const MaterialPoint& b);
 
   void connect(PrepareContext& context, Simulation& simulation) override;
@@ -60,16 +128,16 @@ class StrandSprings final : public Constraint, public StrandSet, public StatesLa
  private:
   struct Strand {
     MaterialPoint a, b;
-    double rest = 0;      ///< length without tension, m
-    double damage = 0;      ///< 0 whole ... 1 severed
+    double rest = 0;    ///< length without tension, m
+    double damage = 0;  ///< 0 whole ... 1 severed
     bool severed = false;
-    double tension = 0;   ///< N
+    double tension = 0;  ///< N
     int row = -1;
     // The blade that touches it in this step.
     int blade_row = -1;
     Instrument* blade = nullptr;
     MaterialPoint blade_point;
-    double along = 0;     ///< 0 at a, 1 at b
+    double along = 0;  ///< 0 at a, 1 at b
     Vec3 push = Vec3::Zero();
   };
   /// Cutting edges in the scene frame and a ball about them.

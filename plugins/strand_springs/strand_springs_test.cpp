@@ -32,7 +32,8 @@ std::string scene(const std::string& strands, const std::string& other) {
   </soft_body>
   {}
   <strand_springs id="strands" {}/>
-</scene>)", young, poisson, density, alpha, beta, other, strands);
+</scene>)",
+                     young, poisson, density, alpha, beta, other, strands);
 }
 
 struct Bed {
@@ -65,17 +66,20 @@ struct Bed {
 };
 
 TEST(StrandSprings, PullsAsTheDiscretisedLawSays) {
-  test::Figure figure("strand", "A mass on a strand: one stretched, one slack (nothing pulls)", "step", "displacement, mm");
+  test::Figure figure("strand", "A mass on a strand: one stretched, one slack (nothing pulls)", "step",
+                      "displacement, mm");
   for (const bool both : {false, true}) {
     for (const double slack : {0.8, 1.0, 1.3}) {
-      Bed t(fmt::format("stiffness=\"30 N/m\" slack=\"{}\" load_direction=\"{}\"", slack, both ? "both" : "tension"), "<obstacle id=\"wall\"/>");
+      Bed t(fmt::format("stiffness=\"30 N/m\" slack=\"{}\" load_direction=\"{}\"", slack, both ? "both" : "tension"),
+            "<obstacle id=\"wall\"/>");
       ASSERT_TRUE(t.strands);
       t.strands->add_strand(t.apex("mass"), t.wall(Vec3(0, 0, a + gap)));
       const double k = 30, rest = slack * gap;
       double u = 0, v = 0;
       for (int n = 1; n <= 200; ++n) {
         t.s->step();
-        const double inertia = mass / (h * h) + alpha * mass / h + (1 + beta / h) * spring, b = -spring * u + mass * v / h;
+        const double inertia = mass / (h * h) + alpha * mass / h + (1 + beta / h) * spring,
+                     b = -spring * u + mass * v / h;
         double dq = b / inertia, tension = 0;
         if (both || gap - u - dq > rest) {  // stretched at the end of the free step
           dq = (b + k * (gap - u - rest)) / (inertia + k);
@@ -91,23 +95,32 @@ TEST(StrandSprings, PullsAsTheDiscretisedLawSays) {
         }
         ASSERT_NEAR(t.strands->strand_tension(0), tension, 1e-9 * k * gap) << "step " << n << " slack " << slack;
       }
-      if (slack > 1 && !both) { EXPECT_EQ(u, 0); }
-      if (slack > 1 && both) { EXPECT_LT(u, -1e-4); }
-      if (slack < 1) { EXPECT_GT(u, 1e-4); }
+      if (slack > 1 && !both) {
+        EXPECT_EQ(u, 0);
+      }
+      if (slack > 1 && both) {
+        EXPECT_LT(u, -1e-4);
+      }
+      if (slack < 1) {
+        EXPECT_GT(u, 1e-4);
+      }
     }
   }
 }
 
 // F = k (l - l0) in series with the two bodies' own springs.
 TEST(StrandSprings, TwoBodiesInEquilibrium) {
-  Bed t("stiffness=\"20 N/m\" slack=\"0.7\"", fmt::format(R"(<soft_body id="second" mesh="meshes/flipped.msh" mesh_unit="m">
+  Bed t("stiffness=\"20 N/m\" slack=\"0.7\"",
+        fmt::format(R"(<soft_body id="second" mesh="meshes/flipped.msh" mesh_unit="m">
     <corotational_fem young="{} Pa" poisson="{}" density="{} kg/m3" rayleigh_mass="0 1/s" rayleigh_stiffness="{} s"/>
-    <fixed region="beyond" centre="0 0 0.035 m" normal="0 0 1"/></soft_body>)", 2 * young, poisson, density, beta));
+    <fixed region="beyond" centre="0 0 0.035 m" normal="0 0 1"/></soft_body>)",
+                    2 * young, poisson, density, beta));
   ASSERT_TRUE(t.strands);
   t.strands->add_strand(t.apex("second"), t.apex("mass"));
   for (int n = 0; n < 1500; ++n) t.s->step();
   const double expected = (1 - 0.7) * gap / (1 / 20.0 + 1 / spring + 1 / (2 * spring));
-  EXPECT_TRUE(test::held("strand in series with two springs", std::abs(t.strands->strand_tension(0) - expected), expected, 1e-6));
+  EXPECT_TRUE(test::held("strand in series with two springs", std::abs(t.strands->strand_tension(0) - expected),
+                         expected, 1e-6));
   EXPECT_NEAR(t.height("mass") - a, expected / spring, 1e-6 * expected / spring);
   EXPECT_NEAR(a + gap - t.height("second"), expected / (2 * spring), 1e-6 * expected / spring);
   const double length = t.height("second") - t.height("mass");
@@ -121,8 +134,11 @@ struct CutBed : Bed {
       : Bed(attributes, "<obstacle id=\"wall\"/>") {
     folder.write("meshes/knife/knife.urdf", test::test_tool_urdf(0.0005));
     folder.write("meshes/knife/tool.json", test::test_tool_json(0.003, 0));
-    s = test::load_text(scene(attributes, R"(<obstacle id="wall"/><dissector id="knife" model="meshes/knife/knife.urdf" hand="right"
-      home="0.45 0 5 mm" shaft="1 0 0" flat="0 0 1" coupling="300 N/m" sharp=")" + sharp + "\"/>"), folder.path() / "cut.xml");
+    s = test::load_text(
+        scene(attributes, R"(<obstacle id="wall"/><dissector id="knife" model="meshes/knife/knife.urdf" hand="right"
+      home="0.45 0 5 mm" shaft="1 0 0" flat="0 0 1" coupling="300 N/m" sharp=")" +
+                              sharp + "\"/>"),
+        folder.path() / "cut.xml");
     if (!s) return;
     strands = s->scene().find_as<StrandSprings>("strands");
     knife = s->scene().find_as<Instrument>("knife");
@@ -146,7 +162,8 @@ TEST(StrandSprings, ResistsWithCutForceAndPartsAfterCutLength) {
   ASSERT_TRUE(t.strands && t.knife);
   double travel = 0;
   int severed_at = -1;
-  test::Figure figure("cut", "A blade drawn over a strand: 45 mN at most, until it parts", "the hand's way, mm", "force on the hand, mN");
+  test::Figure figure("cut", "A blade drawn over a strand: 45 mN at most, until it parts", "the hand's way, mm",
+                      "force on the hand, mN");
   for (int n = 1; n <= 10; ++n) {
     const double before = t.knife->pose().p.x(), damage = 1 - t.strands->integrity(0);
     t.move(0.00045 - n * 1e-4);
@@ -169,7 +186,8 @@ TEST(StrandSprings, ResistsWithCutForceAndPartsAfterCutLength) {
     } else {
       EXPECT_EQ(t.strands->strands_left(), 1);
       EXPECT_NEAR(t.strands->integrity(0), 1 - travel / 0.0003, 1e-9) << "step " << n;
-      EXPECT_NEAR(t.strands->strand_tension(0), 30 * (1 - damage) * 0.1 * 0.01, 1e-9) << "stiffness falls with the wear";
+      EXPECT_NEAR(t.strands->strand_tension(0), 30 * (1 - damage) * 0.1 * 0.01, 1e-9)
+          << "stiffness falls with the wear";
       EXPECT_TRUE(t.s->events().empty());
     }
   }
@@ -219,7 +237,9 @@ TEST(StrandSprings, TearsBeyondItsStrength) {
     t.s->step();
     EXPECT_EQ(t.strands->strands_left(), strength > 0.03 ? 1 : 0);
     ASSERT_EQ(t.s->events().size(), strength > 0.03 ? 0u : 1u);
-    if (strength < 0.03) { EXPECT_EQ(t.s->events()[0].kind, "strand_torn"); }
+    if (strength < 0.03) {
+      EXPECT_EQ(t.s->events()[0].kind, "strand_torn");
+    }
   }
 }
 

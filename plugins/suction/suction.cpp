@@ -24,10 +24,30 @@ namespace {
 
 class Suction final : public Instrument, public StatesLaw {
  public:
-  Param<Pressure> suction{this, {.name = "suction", .fallback = "15 kPa", .min = "0 Pa", .max = "90 kPa", .doc = "vacuum at the opening while the button is held"}};
-  Param<Length> capture{this, {.name = "capture", .fallback = "1.5 mm", .min = "0 mm", .max = "10 mm", .doc = "tissue closer than this to the opening is taken"}};
-  Param<Length> release{this, {.name = "release", .fallback = "3 mm", .min = "0 mm", .max = "20 mm", .doc = "tissue farther than this is lost"}};
-  Param<Scalar> grip{this, {.name = "grip", .fallback = "0.6", .min = "0", .max = "2", .doc = "hold across the opening over the hold along the tube"}};
+  Param<Pressure> suction{this,
+                          {.name = "suction",
+                           .fallback = "15 kPa",
+                           .min = "0 Pa",
+                           .max = "90 kPa",
+                           .doc = "vacuum at the opening while the button is held"}};
+  Param<Length> capture{this,
+                        {.name = "capture",
+                         .fallback = "1.5 mm",
+                         .min = "0 mm",
+                         .max = "10 mm",
+                         .doc = "tissue closer than this to the opening is taken"}};
+  Param<Length> release{this,
+                        {.name = "release",
+                         .fallback = "3 mm",
+                         .min = "0 mm",
+                         .max = "20 mm",
+                         .doc = "tissue farther than this is lost"}};
+  Param<Scalar> grip{this,
+                     {.name = "grip",
+                      .fallback = "0.6",
+                      .min = "0",
+                      .max = "2",
+                      .doc = "hold across the opening over the hold along the tube"}};
 
   void join(PrepareContext&, Simulation& simulation) override {
     for (Surface* s : simulation.surfaces())
@@ -50,7 +70,8 @@ class Suction final : public Instrument, public StatesLaw {
     if (!held_.body) return;
     const double force = max_force();
     const Mat3 axes = pose().q.toRotationMatrix();
-    // The tube's side of the rows is its point at the held tissue: no net moment, and the exact derivative as d turns with it.
+    // The tube's side of the rows is its point at the held tissue: no net moment, and the exact derivative as d turns
+    // with it.
     const Vec3 at = held_.body->position(held_);
     const MaterialPoint own = point(at);
     for (int k = 0; k < 3; ++k) {
@@ -107,5 +128,6 @@ class Suction final : public Instrument, public StatesLaw {
 }  // namespace insula
 
 INSULA_PLUGIN(suction) {
-  registry.add<insula::Suction>("suction", insula::Kind::instrument, "suction tube that holds tissue at its opening while a button is pressed");
+  registry.add<insula::Suction>("suction", insula::Kind::instrument,
+                                "suction tube that holds tissue at its opening while a button is pressed");
 }

@@ -18,14 +18,17 @@ struct Bed {
   std::unique_ptr<Simulation> s;
   Instrument* tube = nullptr;
   explicit Bed(double height = 0.0005) {
-    folder.write("meshes/block.msh", test::gmsh_text(test::block_mesh({2, 2, 2}, Vec3(-0.01, -0.01, -0.02), Vec3(0.01, 0.01, 0))));
+    folder.write("meshes/block.msh",
+                 test::gmsh_text(test::block_mesh({2, 2, 2}, Vec3(-0.01, -0.01, -0.02), Vec3(0.01, 0.01, 0))));
     folder.write("meshes/tube/tube.urdf", test::test_tool_urdf(0.0008));
     folder.write("meshes/tube/tool.json", test::test_tool_json(0, radius));
     s = test::load_text(R"(<scene><solver tolerance="1e-15 m" max_sweeps="10000"/>
       <soft_body id="block" mesh="meshes/block.msh" mesh_unit="m"><corotational_fem young="5 kPa"/>
         <fixed region="beyond" centre="0 0 -19 mm" normal="0 0 -1"/><surface/></soft_body>
-      <suction id="tube" model="meshes/tube/tube.urdf" hand="left" home="0 0 )" + std::to_string(height * 1000) + R"( mm" shaft="0 0 1" flat="1 0 0"
-        suction="15 kPa" capture="1.5 mm" release="3 mm" grip="0.6"/></scene>)", folder.path() / "suction.xml");
+      <suction id="tube" model="meshes/tube/tube.urdf" hand="left" home="0 0 )" +
+                            std::to_string(height * 1000) + R"( mm" shaft="0 0 1" flat="1 0 0"
+        suction="15 kPa" capture="1.5 mm" release="3 mm" grip="0.6"/></scene>)",
+                        folder.path() / "suction.xml");
     if (s) tube = s->scene().find_as<Instrument>("tube");
   }
   void hold(const Vec3& at, bool button) {
@@ -55,7 +58,8 @@ TEST(Suction, HoldsUpToPressureTimesAreaAndLetsGo) {
   ASSERT_LT(t.tissue().norm(), 1e-12);
   double most = 0;
   bool held = false, lost = false, gave_way = false;
-  test::Figure figure("suction", "Tissue drawn up by suction: at most pressure x area, then it lets go", "tool drawn up, mm", "force along the tool, mN");
+  test::Figure figure("suction", "Tissue drawn up by suction: at most pressure x area, then it lets go",
+                      "tool drawn up, mm", "force along the tool, mN");
   for (int n = 0; n < 200; ++n) {
     t.hold(Vec3(0, 0, 0.0005 + 0.00005 * n), true);
     Vec3 f;
@@ -74,7 +78,9 @@ TEST(Suction, HoldsUpToPressureTimesAreaAndLetsGo) {
     EXPECT_LE(f.tail<2>().lpNorm<Eigen::Infinity>(), 0.6 * limit * (1 + 1e-12));
     // The hand feels what the rows carry, and is drawn towards the tissue.
     EXPECT_NEAR(t.tube->hand_force().head<3>().norm(), f.norm(), 1e-12);
-    if (n > 20) { EXPECT_LT(t.tube->hand_force()[2], 0); }
+    if (n > 20) {
+      EXPECT_LT(t.tube->hand_force()[2], 0);
+    }
     most = std::max(most, std::abs(f[0]));
     const double distance = (t.tissue() - t.tube->pose().p).norm();
     if (std::abs(f[0]) < limit * (1 - 1e-9) && n > 0) {

@@ -20,7 +20,9 @@ namespace {
 const std::filesystem::path source = INSULA_SOURCE_DIR;
 using Json = nlohmann::json;
 
-const Vec3& corner(const TriMesh& m, std::size_t t, std::size_t k) { return m.vertices[std::size_t(m.triangles[t][k])]; }
+const Vec3& corner(const TriMesh& m, std::size_t t, std::size_t k) {
+  return m.vertices[std::size_t(m.triangles[t][k])];
+}
 
 BoxTree tree_of(const TriMesh& m, double margin) {
   std::vector<Box> boxes;
@@ -33,7 +35,9 @@ BoxTree tree_of(const TriMesh& m, double margin) {
 }
 
 bool segment_hits(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
-  const auto side = [](const Vec3& o, const Vec3& x, const Vec3& y, const Vec3& z) { return (x - o).cross(y - o).dot(z - o); };
+  const auto side = [](const Vec3& o, const Vec3& x, const Vec3& y, const Vec3& z) {
+    return (x - o).cross(y - o).dot(z - o);
+  };
   if (side(a, b, c, p) * side(a, b, c, q) > 0) return false;
   const double u = side(p, q, a, b), v = side(p, q, b, c), w = side(p, q, c, a);
   return (u > 0 && v > 0 && w > 0) || (u < 0 && v < 0 && w < 0);
@@ -53,7 +57,8 @@ int edges_through(const TriMesh& edges_of, const TriMesh& m, bool itself) {
       tree.containing(0.5 * (p + q), [&](int other) {
         const auto& o = m.triangles[std::size_t(other)];
         const bool shared = itself && std::any_of(o.begin(), o.end(), [&](int v) { return v == i || v == j; });
-        hits += !shared && segment_hits(p, q, corner(m, std::size_t(other), 0), corner(m, std::size_t(other), 1), corner(m, std::size_t(other), 2));
+        hits += !shared && segment_hits(p, q, corner(m, std::size_t(other), 0), corner(m, std::size_t(other), 1),
+                                        corner(m, std::size_t(other), 2));
         return false;
       });
     }
@@ -150,8 +155,10 @@ TEST_P(Artery, IsOneBallLikeSurfaceOfGoodTriangles) {
 }
 
 TEST_P(Artery, RegionsAreWholeAndLargeEnough) {
-  EXPECT_EQ(vessel.regions, (std::vector<std::string>{"parent", "superior", "inferior", "neck", "sac", "bleb", "ends"}));
-  const std::map<const char*, std::size_t> least{{"parent", 250}, {"superior", 180}, {"inferior", 180}, {"neck", 60}, {"sac", 150}, {"bleb", 20}, {"ends", 40}};
+  EXPECT_EQ(vessel.regions,
+            (std::vector<std::string>{"parent", "superior", "inferior", "neck", "sac", "bleb", "ends"}));
+  const std::map<const char*, std::size_t> least{{"parent", 250}, {"superior", 180}, {"inferior", 180}, {"neck", 60},
+                                                 {"sac", 150},    {"bleb", 20},      {"ends", 40}};
   for (const auto& [name, count] : least) EXPECT_GE(of_region(name).size(), count) << name;
   // Ends are the vertices of caps, no more and no fewer.
   std::set<std::size_t> on_caps;
@@ -160,15 +167,19 @@ TEST_P(Artery, RegionsAreWholeAndLargeEnough) {
       for (const int v : vessel.wall.triangles[std::size_t(t)]) on_caps.insert(std::size_t(v));
   const auto ends = of_region("ends");
   EXPECT_EQ(std::vector<std::size_t>(on_caps.begin(), on_caps.end()), ends);
-  for (const std::size_t v : of_region("sac")) EXPECT_GT((vessel.wall.vertices[v] - vessel.neck_centre).dot(vessel.neck_normal), 0);
-  for (const std::size_t v : of_region("bleb")) EXPECT_LT((vessel.wall.vertices[v] - vessel.bleb_centre).norm(), 1.4 * vessel.bleb_radius);
+  for (const std::size_t v : of_region("sac"))
+    EXPECT_GT((vessel.wall.vertices[v] - vessel.neck_centre).dot(vessel.neck_normal), 0);
+  for (const std::size_t v : of_region("bleb"))
+    EXPECT_LT((vessel.wall.vertices[v] - vessel.bleb_centre).norm(), 1.4 * vessel.bleb_radius);
 }
 
 TEST_P(Artery, CapsAreFlatDiscsAtTheEndsOfCentrelines) {
   ASSERT_EQ(vessel.caps.size(), 3u);
-  const std::map<std::string, std::string> line_of{{"inlet", "parent"}, {"superior_outlet", "superior"}, {"inferior_outlet", "inferior"}};
+  const std::map<std::string, std::string> line_of{
+      {"inlet", "parent"}, {"superior_outlet", "superior"}, {"inferior_outlet", "inferior"}};
   for (const auto& cap : vessel.caps) {
-    const auto line = std::find_if(vessel.centrelines.begin(), vessel.centrelines.end(), [&](const auto& c) { return c.name == line_of.at(cap.name); });
+    const auto line = std::find_if(vessel.centrelines.begin(), vessel.centrelines.end(),
+                                   [&](const auto& c) { return c.name == line_of.at(cap.name); });
     ASSERT_NE(line, vessel.centrelines.end());
     const bool start = line->from == cap.name;
     EXPECT_EQ(start ? line->from : line->to, cap.name);
@@ -176,25 +187,32 @@ TEST_P(Artery, CapsAreFlatDiscsAtTheEndsOfCentrelines) {
     const double r = start ? line->radius.front() : line->radius.back();
     Vec3 area = Vec3::Zero();
     for (const int t : cap.triangles)
-      area += 0.5 * (corner(vessel.wall, std::size_t(t), 1) - corner(vessel.wall, std::size_t(t), 0)).cross(corner(vessel.wall, std::size_t(t), 2) - corner(vessel.wall, std::size_t(t), 0));
-    EXPECT_NEAR(area.norm(), std::numbers::pi * r * r, 0.1 * std::numbers::pi * r * r) << cap.name;  // a polygon of ten sides lacks 6.5 %
+      area += 0.5 * (corner(vessel.wall, std::size_t(t), 1) - corner(vessel.wall, std::size_t(t), 0))
+                        .cross(corner(vessel.wall, std::size_t(t), 2) - corner(vessel.wall, std::size_t(t), 0));
+    EXPECT_NEAR(area.norm(), std::numbers::pi * r * r, 0.1 * std::numbers::pi * r * r)
+        << cap.name;  // a polygon of ten sides lacks 6.5 %
     for (const int t : cap.triangles)
-      for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR((corner(vessel.wall, std::size_t(t), k) - end).dot(area.normalized()), 0, 1e-6);
+      for (std::size_t k = 0; k < 3; ++k)
+        EXPECT_NEAR((corner(vessel.wall, std::size_t(t), k) - end).dot(area.normalized()), 0, 1e-6);
   }
 }
 
 TEST_P(Artery, DimensionsAreThoseOfTheTable) {
   constexpr double mm = 1e-3, share = 0.05;
-  const auto near = [](double measured, double wanted, const char* what) { EXPECT_NEAR(measured, wanted, share * wanted) << what; };
+  const auto near = [](double measured, double wanted, const char* what) {
+    EXPECT_NEAR(measured, wanted, share * wanted) << what;
+  };
   const double neck = table["sac"]["neck"].get<double>() * mm, height = table["sac"]["dome_height"].get<double>() * mm;
   near(section(vessel.wall, vessel.neck_centre, vessel.neck_normal), neck, "neck");
   near(vessel.neck_diameter, neck, "neck as told");
   double top = 0;
-  for (const std::size_t v : of_region("sac")) top = std::max(top, (vessel.wall.vertices[v] - vessel.neck_centre).dot(vessel.neck_normal));
+  for (const std::size_t v : of_region("sac"))
+    top = std::max(top, (vessel.wall.vertices[v] - vessel.neck_centre).dot(vessel.neck_normal));
   near(top, height, "dome height");
   near(vessel.dome_height, height, "dome height as told");
   for (const char* name : {"parent", "superior", "inferior"}) {
-    const auto& line = *std::find_if(vessel.centrelines.begin(), vessel.centrelines.end(), [&](const auto& c) { return c.name == name; });
+    const auto& line = *std::find_if(vessel.centrelines.begin(), vessel.centrelines.end(),
+                                     [&](const auto& c) { return c.name == name; });
     const auto& d = table[name]["diameter"];
     const double n = double(line.points.size() - 1);
     for (const double at : {0.35, 0.5, 0.65}) {
@@ -233,7 +251,9 @@ TEST_P(Artery, ThePictureIsTheWallFourTimesAsFine) {
     double d2 = 1;
     tree.nearest(q, [&](int t) {
       const auto i = std::size_t(t);
-      const double d = (nearest_on_triangle(q, corner(vessel.wall, i, 0), corner(vessel.wall, i, 1), corner(vessel.wall, i, 2)) - q).squaredNorm();
+      const double d =
+          (nearest_on_triangle(q, corner(vessel.wall, i, 0), corner(vessel.wall, i, 1), corner(vessel.wall, i, 2)) - q)
+              .squaredNorm();
       d2 = std::min(d2, d);
       return d;
     });
@@ -241,7 +261,8 @@ TEST_P(Artery, ThePictureIsTheWallFourTimesAsFine) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Shipped, Artery, testing::Values("narrow_neck", "anterior_superior", "wide_neck"), [](const auto& test) { return std::string(test.param); });
+INSTANTIATE_TEST_SUITE_P(Shipped, Artery, testing::Values("narrow_neck", "anterior_superior", "wide_neck"),
+                         [](const auto& test) { return std::string(test.param); });
 
 }  // namespace
 }  // namespace insula

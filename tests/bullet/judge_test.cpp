@@ -20,7 +20,7 @@ namespace {
 constexpr int pairs = 100'000;
 constexpr double nanometre = 1e-9;  // m: what two answers may differ by
 constexpr double proven = 1e-10;    // m: what an answer may be off by that claims to be proven
-constexpr int max_unproven = 10;   ///< of Bullet's answers, after the last start
+constexpr int max_unproven = 10;    ///< of Bullet's answers, after the last start
 
 /// How far an answer may be above the true distance, m.
 double doubt(const Pair& p, const Vec3& a, const Vec3& b) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A ball at a tool's tip that keeps a vertex of a surface out, as a contact does; and mistakes that only that form
 // allows.
-#include "core/mechanics/constraint.h"
 #include "core/constraint/stated_law.h"
+#include "core/mechanics/constraint.h"
 #include "core/mechanics/surface.h"
 #include "core/sim/simulation.h"
 #include "tests/contracts/mistakes.h"

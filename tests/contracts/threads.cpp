@@ -7,8 +7,8 @@
 #include <limits>
 #include <memory>
 
-#include "core/mechanics/constraint.h"
 #include "core/constraint/stated_law.h"
+#include "core/mechanics/constraint.h"
 #include "core/mechanics/surface.h"
 #include "core/sim/simulation.h"
 #include "tests/contracts/mistakes.h"

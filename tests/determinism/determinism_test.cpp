@@ -7,8 +7,8 @@
 #include <thread>
 
 #include "core/testing/example.h"
-#include "tests/determinism/script.h"
 #include "plugins/strand_springs/strand_set.h"
+#include "tests/determinism/script.h"
 
 namespace insula {
 namespace {
@@ -43,7 +43,9 @@ std::vector<std::uint64_t> run(Simulation& s, int steps) {
   return out;
 }
 
-std::unique_ptr<Simulation> scene(int threads) { return test::load_text(everything(), source / "determinism.xml", threads); }
+std::unique_ptr<Simulation> scene(int threads) {
+  return test::load_text(everything(), source / "determinism.xml", threads);
+}
 
 TEST(Determinism, SceneShowsWhatItShould) {
   auto s = scene(1);
@@ -114,7 +116,8 @@ TEST(Determinism, TwoSimulationsInOneProgramDoNotMeet) {
 TEST(Determinism, UnrelatedComponentsDoNotMatter) {
   const std::string block = R"(<soft_body id="block" mesh="meshes/examples/block.msh" mesh_unit="mm"><corotational_fem/>
     <fixed region="beyond" centre="0 0 -19 mm" normal="0 0 -1"/></soft_body>)";
-  const std::string other = R"(<soft_body id="other" mesh="meshes/examples/block_upper.msh" mesh_unit="mm"><corotational_fem young="4 kPa"/>
+  const std::string other =
+      R"(<soft_body id="other" mesh="meshes/examples/block_upper.msh" mesh_unit="mm"><corotational_fem young="4 kPa"/>
     <fixed region="beyond" centre="0 0 21 mm" normal="0 0 1"/></soft_body>)";
   auto one = test::load_text("<scene gravity=\"1 0 -9.81 m/s2\">" + block + other + "</scene>", source / "a.xml", 2);
   auto two = test::load_text("<scene gravity=\"1 0 -9.81 m/s2\">" + other + block + "</scene>", source / "a.xml", 2);

@@ -46,9 +46,11 @@ TEST_F(Calibration, WhatCannotBeIsNeitherKeptNorUsed) {
   EXPECT_FALSE(std::filesystem::exists(calibration_file("touch:A")));
   std::filesystem::create_directories(calibration_folder());
   const std::string good = R"({"axes":[[1,0,0],[0,1,0],[0,0,1]],"rest_p_m":[0,0,0],"rest_q":[1,0,0,0],"scale":1})";
-  for (const std::string& bad : {std::string("{}"), std::string("no JSON"), std::string(), good.substr(0, good.size() - 2), std::string(R"({"axes":[[1,0,0],[0,1,0],[0,0,1]],"rest_p_m":[0,0,0],"rest_q":[1,0,0,0],"scale":1e9})"),
-                                 std::string(R"({"axes":[[1,0],[0,1,0],[0,0,1]],"rest_p_m":[0,0,0],"rest_q":[1,0,0,0],"scale":1})"),
-                                 std::string(R"({"axes":[[1,0,0],[0,1,0],[0,0,1]],"rest_p_m":[0,0,"0"],"rest_q":[1,0,0,0],"scale":1})")}) {
+  for (const std::string& bad :
+       {std::string("{}"), std::string("no JSON"), std::string(), good.substr(0, good.size() - 2),
+        std::string(R"({"axes":[[1,0,0],[0,1,0],[0,0,1]],"rest_p_m":[0,0,0],"rest_q":[1,0,0,0],"scale":1e9})"),
+        std::string(R"({"axes":[[1,0],[0,1,0],[0,0,1]],"rest_p_m":[0,0,0],"rest_q":[1,0,0,0],"scale":1})"),
+        std::string(R"({"axes":[[1,0,0],[0,1,0],[0,0,1]],"rest_p_m":[0,0,"0"],"rest_q":[1,0,0,0],"scale":1})")}) {
     std::ofstream(calibration_file("touch:A")) << bad;
     try {
       make_device("touch:A", 0);
@@ -70,7 +72,9 @@ TEST(DeviceWishes, AreRead) {
   EXPECT_EQ(wishes[2].which, "049D+61548");
   EXPECT_EQ(wishes[3].calibration_name(0), "mouse left");
   EXPECT_EQ(wishes[0].calibration_name(1), "touch:Left Device");
-  for (const char* bad : {"", "tuch", "touch:", "touch,,mouse", "touch, ", "mouse:1", "spacemouse:2", ":x", "touch:\"\""}) EXPECT_THROW(parse_device_wishes(bad), InputError) << bad;
+  for (const char* bad :
+       {"", "tuch", "touch:", "touch,,mouse", "touch, ", "mouse:1", "spacemouse:2", ":x", "touch:\"\""})
+    EXPECT_THROW(parse_device_wishes(bad), InputError) << bad;
 }
 
 class Wishes : public testing::DeviceBench {};
@@ -95,7 +99,8 @@ TEST_F(Wishes, TheFirstThatIsPluggedInIsTaken) {
 }
 
 TEST_F(Wishes, EveryKindIsMadeUnderItsName) {
-  for (const DeviceKind& kind : all_device_kinds()) EXPECT_EQ(make_device(kind.name, 0).device->profile().name, kind.name);
+  for (const DeviceKind& kind : all_device_kinds())
+    EXPECT_EQ(make_device(kind.name, 0).device->profile().name, kind.name);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A table with stand-ins of devices on it, a folder for calibrations, and somebody who calls a device as the servo does.
+// A table with stand-ins of devices on it, a folder for calibrations, and somebody who calls a device as the servo
+// does.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -34,7 +35,8 @@ class DeviceBench : public ::testing::Test {
     std::filesystem::create_directories(folder);
     // The stubs of this process map the file once: every test works on the same one.
     static StubBoard* const mapped = [this] {
-      const std::string file = (std::filesystem::temp_directory_path() / ("insula_board_" + std::to_string(::getpid()))).string();
+      const std::string file =
+          (std::filesystem::temp_directory_path() / ("insula_board_" + std::to_string(::getpid()))).string();
       ::setenv("INSULA_STUB_BOARD", file.c_str(), 1);
       return map_board(file.c_str());
     }();
@@ -79,17 +81,20 @@ class DeviceBench : public ::testing::Test {
   /// Calls the device a thousand times a second with this force until the condition holds.
   static bool serve(Device& device, const Vec3& push, const std::function<bool(const DeviceReading&)>& condition,
                     std::chrono::milliseconds patience = 20s) {
-    return wait_for([&] {
-      const DeviceReading r = device.read();
-      device.write(push, Vec3::Zero());
-      return condition(r);
-    }, patience);
+    return wait_for(
+        [&] {
+          const DeviceReading r = device.read();
+          device.write(push, Vec3::Zero());
+          return condition(r);
+        },
+        patience);
   }
   static bool connected(Device& device, bool wanted = true) {
     return serve(device, Vec3::Zero(), [&](const DeviceReading& r) { return r.connected == wanted; });
   }
 
-  std::string folder = (std::filesystem::temp_directory_path() / ("insula_devices_" + std::to_string(::getpid()))).string();
+  std::string folder =
+      (std::filesystem::temp_directory_path() / ("insula_devices_" + std::to_string(::getpid()))).string();
   StubBoard* stubs = nullptr;
 };
 

@@ -37,7 +37,8 @@ class DeviceTool : public testing::DeviceBench {
 
 TEST_F(DeviceTool, ListsWhatIsThereAndHowToGetTheRest) {
   std::filesystem::create_directories(folder + "/config");
-  for (const char* name : {"Left Device", "Right Device", "Lost Device"}) std::ofstream(folder + "/config/" + name + ".config") << "";
+  for (const char* name : {"Left Device", "Right Device", "Lost Device"})
+    std::ofstream(folder + "/config/" + name + ".config") << "";
   DeviceCalibration c;
   save_calibration("forcedimension:1002", c);
   testing::HaplyStandIn service(testing::two_arms());
@@ -82,7 +83,8 @@ TEST_F(DeviceTool, CalibratesByFourPlaces) {
   });
   testing::wait_for([&] { return arm(0).frames > 20; });
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
-  const double places[4][3] = {{10, 20, 30}, {10, 22, 90}, {60, 20, 33}, {12, 70, 30}};  // mm; right is +z, away is +x, up is +y
+  const double places[4][3] = {
+      {10, 20, 30}, {10, 22, 90}, {60, 20, 33}, {12, 70, 30}};  // mm; right is +z, away is +x, up is +y
   for (const auto& p : places) {
     put(arm(0).p, p[0], p[1], p[2]);
     press();
@@ -109,7 +111,9 @@ TEST_F(DeviceTool, ACalibrationWithoutAnswersChangesNothing) {
 
 TEST_F(DeviceTool, WaysThatCannotBeAreRefused) {
   const Pose rest{Vec3(0, -0.1, 0.1), Quat::Identity()};
-  const auto fit = [&](const Vec3& r, const Vec3& a, const Vec3& u) { return fit_calibration(rest, rest.p + r, rest.p + a, rest.p + u, 1); };
+  const auto fit = [&](const Vec3& r, const Vec3& a, const Vec3& u) {
+    return fit_calibration(rest, rest.p + r, rest.p + a, rest.p + u, 1);
+  };
   EXPECT_TRUE(fit({0.05, 0, 0}, {0, 0.05, 0}, {0, 0, 0.05}).axes.isIdentity(1e-12));
   EXPECT_THROW(fit({0.01, 0, 0}, {0, 0.05, 0}, {0, 0, 0.05}), InputError);   // too short
   EXPECT_THROW(fit({0.05, 0, 0}, {0.05, 0, 0}, {0, 0, 0.05}), InputError);   // the same twice
@@ -134,7 +138,8 @@ TEST_F(DeviceTool, TheForceTestStartsGentlyAndStaysWithinItsForce) {
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();
   std::thread watcher([&] {
     Vec3 last = Vec3::Zero();
-    auto then = std::chrono::steady_clock::now();  // before the last look: a slope is never taken for steeper than it was
+    auto then =
+        std::chrono::steady_clock::now();  // before the last look: a slope is never taken for steeper than it was
     while (!done) {
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
       const auto before = std::chrono::steady_clock::now();

@@ -16,7 +16,10 @@ TEST_F(ForceDimension, StreamsAndPushesInThePersonsAxes) {
   put(arm(0).p, 0.01, 0.02, 0.03);  // to the person, right, up
   put(arm(0).v, 0, 0.1, 0);
   arm(0).buttons = 1;
-  ASSERT_TRUE(serve(device, Vec3(1, 2, 3), [&](const DeviceReading& r) { return r.connected && r.button1 && (r.pose.p - Vec3(0.02, -0.01, 0.03)).norm() < 1e-12 && (force(0) - Vec3(-2, 1, 3)).norm() < 1e-12; }));
+  ASSERT_TRUE(serve(device, Vec3(1, 2, 3), [&](const DeviceReading& r) {
+    return r.connected && r.button1 && (r.pose.p - Vec3(0.02, -0.01, 0.03)).norm() < 1e-12 &&
+           (force(0) - Vec3(-2, 1, 3)).norm() < 1e-12;
+  }));
   const DeviceReading r = device.read();
   EXPECT_NEAR((r.v - Vec3(0.1, 0, 0)).norm(), 0, 1e-12);
   EXPECT_FALSE(r.button2);
@@ -55,7 +58,8 @@ TEST_F(ForceDimension, TwoWithoutNamesTakeOneEach) {
   none.start();
   put(arm(0).p, 0, 0.01, 0);
   put(arm(1).p, 0, -0.01, 0);
-  ASSERT_TRUE(serve(left, Vec3::Zero(), [&](const DeviceReading& r) { return r.pose.p.x() > 0 && right.read().pose.p.x() < 0; }));
+  ASSERT_TRUE(serve(left, Vec3::Zero(),
+                    [&](const DeviceReading& r) { return r.pose.p.x() > 0 && right.read().pose.p.x() < 0; }));
   EXPECT_FALSE(none.read().connected);
   EXPECT_NE(none.remark().find("is not there"), std::string::npos);
   left.stop();

@@ -58,7 +58,8 @@ TEST(HaplyMessages, AnIdThatWouldBreakACommandIsNone) {
 TEST(HaplyMessages, AMillionDamagedOnesGiveNothingThatCannotBe) {
   testing::Random random(31);
   const auto pick = [&](std::size_t n) { return std::size_t(0.5 * (random.next() + 1) * double(n)) % n; };
-  const std::array<std::string, 12> words{"1e999", "-1e308", "null", "\"x\"", "{", "}", "[", "]", "9999999999999999999999", "\\u0000", "true", ","};
+  const std::array<std::string, 12> words{
+      "1e999", "-1e308", "null", "\"x\"", "{", "}", "[", "]", "9999999999999999999999", "\\u0000", "true", ","};
   long read = 0;
   for (int k = 0; k < 1'000'000; ++k) {
     std::string text = inventory;

@@ -29,7 +29,10 @@ class HaplyStandIn {
     long commands = 0;
   };
 
-  explicit HaplyStandIn(std::vector<Arm> arms, bool session_id = true) : arms_(std::move(arms)), session_id_(session_id) { start(0); }
+  explicit HaplyStandIn(std::vector<Arm> arms, bool session_id = true)
+      : arms_(std::move(arms)), session_id_(session_id) {
+    start(0);
+  }
   ~HaplyStandIn() { stop(); }
 
   std::string url() const { return "ws://127.0.0.1:" + std::to_string(port_); }
@@ -107,11 +110,17 @@ class HaplyStandIn {
     j["inverse3"] = j["wireless_verse_grip"] = Json::array();
     for (const Arm& a : arms_) {
       if (!a.plugged) continue;
-      Json arm = {{"device_id", a.id}, {"state", {{"cursor_position", xyz(a.p)}, {"cursor_velocity", xyz(a.v)}}}, {"status", {{"calibrated", true}, {"ready", a.ready}}}};
+      Json arm = {{"device_id", a.id},
+                  {"state", {{"cursor_position", xyz(a.p)}, {"cursor_velocity", xyz(a.v)}}},
+                  {"status", {{"calibrated", true}, {"ready", a.ready}}}};
       if (first) arm["config"] = {{"type", "inverse3"}, {"handedness", a.handedness}};
       j["inverse3"].push_back(arm);
       if (a.grip.empty()) continue;
-      j["wireless_verse_grip"].push_back({{"device_id", a.grip}, {"state", {{"orientation", {{"x", a.q.x()}, {"y", a.q.y()}, {"z", a.q.z()}, {"w", a.q.w()}}}, {"buttons", {{"a", a.a}, {"b", a.b}, {"c", false}}}}}});
+      j["wireless_verse_grip"].push_back(
+          {{"device_id", a.grip},
+           {"state",
+            {{"orientation", {{"x", a.q.x()}, {"y", a.q.y()}, {"z", a.q.z()}, {"w", a.q.w()}}},
+             {"buttons", {{"a", a.a}, {"b", a.b}, {"c", false}}}}}});
     }
     return j.dump();
   }
@@ -123,7 +132,9 @@ class HaplyStandIn {
     if (j.is_object() && j.contains("inverse3"))
       for (const Json& device : j["inverse3"])
         for (Arm& a : arms_) {
-          if (device.value("device_id", "") != a.id || !device["commands"].contains("set_cursor_force") || !device["commands"]["set_cursor_force"].contains(key)) continue;
+          if (device.value("device_id", "") != a.id || !device["commands"].contains("set_cursor_force") ||
+              !device["commands"]["set_cursor_force"].contains(key))
+            continue;
           const Json& f = device["commands"]["set_cursor_force"][key];
           a.force = Vec3(f["x"], f["y"], f["z"]);
           ++a.commands;
@@ -180,7 +191,8 @@ class HaplyStandIn {
 
 /// Two arms with a grip each, as they come out of the box.
 inline std::vector<HaplyStandIn::Arm> two_arms() {
-  HaplyStandIn::Arm right{.id = "04BA", .handedness = "right", .grip = "61548"}, left{.id = "049D", .handedness = "left", .grip = "61549"};
+  HaplyStandIn::Arm right{.id = "04BA", .handedness = "right", .grip = "61548"},
+      left{.id = "049D", .handedness = "left", .grip = "61549"};
   right.p = left.p = Vec3(0, -0.12, 0.15);
   return {right, left};
 }

@@ -13,7 +13,9 @@ using testing::HaplyStandIn;
 
 class Haply : public testing::DeviceBench {
  protected:
-  explicit Haply(bool session_id = true) : service(testing::two_arms(), session_id) { ::setenv("INSULA_HAPLY_URL", service.url().c_str(), 1); }
+  explicit Haply(bool session_id = true) : service(testing::two_arms(), session_id) {
+    ::setenv("INSULA_HAPLY_URL", service.url().c_str(), 1);
+  }
   HaplyStandIn service;
 };
 
@@ -27,12 +29,22 @@ TEST_F(Haply, EachHandGetsItsArmAndGrip) {
   left.start();
   right.start();
   EXPECT_DOUBLE_EQ(left.profile().max_force_N, 4);
-  service.change(1, [](auto& a) { a.p = Vec3(0.01, -0.12, 0.15); a.v = Vec3(0.1, 0, 0); a.b = true; a.q = from_rotation_vector(Vec3(0, 0, 0.5)); });
-  service.change(0, [](auto& a) { a.p = Vec3(-0.02, -0.12, 0.15); a.a = true; });
+  service.change(1, [](auto& a) {
+    a.p = Vec3(0.01, -0.12, 0.15);
+    a.v = Vec3(0.1, 0, 0);
+    a.b = true;
+    a.q = from_rotation_vector(Vec3(0, 0, 0.5));
+  });
+  service.change(0, [](auto& a) {
+    a.p = Vec3(-0.02, -0.12, 0.15);
+    a.a = true;
+  });
   ASSERT_TRUE(serve(left, Vec3(1, 2, 0.5), [&](const DeviceReading& l) {
     const DeviceReading r = right.read();
     right.write(Vec3(0, 0, -1), Vec3::Zero());
-    return l.connected && r.connected && l.button2 && r.button1 && (service.arm(1).force - Vec3(1, 2, 0.5)).norm() < 1e-4 && (service.arm(0).force - Vec3(0, 0, -1)).norm() < 1e-4;
+    return l.connected && r.connected && l.button2 && r.button1 &&
+           (service.arm(1).force - Vec3(1, 2, 0.5)).norm() < 1e-4 &&
+           (service.arm(0).force - Vec3(0, 0, -1)).norm() < 1e-4;
   }));
   const DeviceReading l = left.read(), r = right.read();
   EXPECT_NEAR((l.pose.p - Vec3(0.01, 0, 0)).norm(), 0, 1e-9);
@@ -48,7 +60,8 @@ TEST_F(Haply, EachHandGetsItsArmAndGrip) {
 TEST_F(OldHaply, IsSpokenToInItsOwnWords) {
   HaplyDevice device("04BA", 0);
   device.start();
-  ASSERT_TRUE(serve(device, Vec3(0, 1, 0), [&](const DeviceReading& r) { return r.connected && service.arm(0).force.y() > 0.9; }));
+  ASSERT_TRUE(serve(device, Vec3(0, 1, 0),
+                    [&](const DeviceReading& r) { return r.connected && service.arm(0).force.y() > 0.9; }));
   EXPECT_EQ(service.misunderstood(), 0);
 }
 
@@ -59,7 +72,8 @@ TEST_F(Haply, ByNameWithAGripOfItsOwn) {
   service.change(1, [](auto& a) { a.a = true; });
   ASSERT_TRUE(serve(device, Vec3::Zero(), [](const DeviceReading& r) { return r.connected && r.button1; }));
   EXPECT_FALSE(missing.read().connected);
-  EXPECT_NE(missing.remark().find("haply:FFFF: the Haply service has no such arm"), std::string::npos) << missing.remark();
+  EXPECT_NE(missing.remark().find("haply:FFFF: the Haply service has no such arm"), std::string::npos)
+      << missing.remark();
 }
 
 TEST_F(Haply, UnpluggedInContactAndPluggedInAgain) {
@@ -101,8 +115,9 @@ TEST_F(Haply, GarbageNeverMovesAHand) {
   ASSERT_TRUE(connected(device));
   const std::string head = R"({"inverse3":[{"device_id":"04BA","state":{"cursor_position":)";
   for (const std::string& garbage :
-       {std::string("no JSON"), std::string("[1,2,3]"), std::string("{}"), head + R"({"x":1e999,"y":0,"z":0}}}]})", head + R"({"x":"1","y":0,"z":0}}}]})",
-        head + R"({"x":0,"y":0}}}]})", head + R"([0,0,0]}}]})", head + R"({"x":50,"y":0,"z":0}}}]})", head + "null}}]}", std::string(100000, '[')}) {
+       {std::string("no JSON"), std::string("[1,2,3]"), std::string("{}"), head + R"({"x":1e999,"y":0,"z":0}}}]})",
+        head + R"({"x":"1","y":0,"z":0}}}]})", head + R"({"x":0,"y":0}}}]})", head + R"([0,0,0]}}]})",
+        head + R"({"x":50,"y":0,"z":0}}}]})", head + "null}}]}", std::string(100000, '[')}) {
     service.answer(garbage);
     const bool gone = serve(device, Vec3::Zero(), [&](const DeviceReading& r) {
       EXPECT_TRUE(!r.connected || r.pose.p.norm() < 1e-9) << garbage.substr(0, 100);
@@ -119,7 +134,8 @@ TEST_F(Haply, WithoutAServiceItSaysHowToGetIt) {
   ::setenv("INSULA_HAPLY_URL", "http://localhost", 1);
   HaplyDevice device("", 0);
   device.start();
-  EXPECT_NE(device.remark().find("\"http://localhost\" is no address like ws://localhost:10001"), std::string::npos) << device.remark();
+  EXPECT_NE(device.remark().find("\"http://localhost\" is no address like ws://localhost:10001"), std::string::npos)
+      << device.remark();
   EXPECT_NE(device.remark().find("Haply Hub"), std::string::npos);
 }
 

@@ -21,7 +21,9 @@ TEST_F(OpenHaptics, StreamsPosesInThePersonsAxesAndMetres) {
   arm(0).q[0] = half;
   arm(0).q[2] = half;  // a quarter turn about up
   arm(0).buttons = 2;
-  ASSERT_TRUE(serve(device, Vec3::Zero(), [](const DeviceReading& r) { return r.connected && r.button2 && (r.pose.p - Vec3(0.01, -0.03, 0.02)).norm() < 1e-12 && r.v.x() > 0; }));
+  ASSERT_TRUE(serve(device, Vec3::Zero(), [](const DeviceReading& r) {
+    return r.connected && r.button2 && (r.pose.p - Vec3(0.01, -0.03, 0.02)).norm() < 1e-12 && r.v.x() > 0;
+  }));
   const DeviceReading r = device.read();
   EXPECT_FALSE(r.button1);
   EXPECT_NEAR((r.v - Vec3(0.1, 0, 0)).norm(), 0, 1e-12);
@@ -38,7 +40,10 @@ TEST_F(OpenHaptics, LaysItsRestPoseAtTheHandsHomeAsTheMicroscopeSees) {
   const Pose home{Vec3(0.1, 0.2, 0.3), from_rotation_vector(Vec3(0.3, 0, 0))};
   device.face(from_rotation_vector(Vec3(0, 0, std::acos(0.0))));  // looks along -x: the person's right is the scene's y
   device.place(home, Vec3::Zero(), Vec3::Zero());
-  ASSERT_TRUE(serve(device, Vec3(0, 1, 0), [&](const DeviceReading& r) { return r.connected && (r.pose.p - home.p - Vec3(0, 0.01, 0)).norm() < 1e-9 && (force(0) - Vec3(1, 0, 0)).norm() < 1e-9; }));  // a push along the scene's y goes to the hand's right
+  ASSERT_TRUE(serve(device, Vec3(0, 1, 0), [&](const DeviceReading& r) {
+    return r.connected && (r.pose.p - home.p - Vec3(0, 0.01, 0)).norm() < 1e-9 &&
+           (force(0) - Vec3(1, 0, 0)).norm() < 1e-9;
+  }));  // a push along the scene's y goes to the hand's right
   EXPECT_NEAR(rotation_vector(device.read().pose.q * home.q.conjugate()).norm(), 0, 1e-9);
 }
 
@@ -57,7 +62,9 @@ TEST_F(OpenHaptics, TakesItsLimitsFromTheDevice) {
   arm(0).max_force = 3.3;
   arm(0).plugged = 1;
   double strongest = 0;
-  ASSERT_TRUE(serve(device, Vec3(7, 0, 0), [&](const DeviceReading&) { return (strongest = std::max(strongest, force(0).norm())) > 3.3 - 1e-9; }));
+  ASSERT_TRUE(serve(device, Vec3(7, 0, 0), [&](const DeviceReading&) {
+    return (strongest = std::max(strongest, force(0).norm())) > 3.3 - 1e-9;
+  }));
   EXPECT_LE(strongest, 3.3 + 1e-9);
   EXPECT_DOUBLE_EQ(device.profile().max_force_N, 7.9);
 }
@@ -69,7 +76,10 @@ TEST_F(OpenHaptics, UnpluggedInContactAndPluggedInAgain) {
   arm(0).plugged = 0;
   ASSERT_TRUE(serve(device, Vec3(0, 0, 1), [&](const DeviceReading& r) { return !r.connected; }));
   EXPECT_EQ(force(0), Vec3(0, 0, 0));
-  ASSERT_TRUE(serve(device, Vec3(0, 0, 1), [&](const DeviceReading&) { return device.remark().find("lost (HD_COMM_ERROR)") != std::string::npos || device.remark().find("not there") != std::string::npos; }));
+  ASSERT_TRUE(serve(device, Vec3(0, 0, 1), [&](const DeviceReading&) {
+    return device.remark().find("lost (HD_COMM_ERROR)") != std::string::npos ||
+           device.remark().find("not there") != std::string::npos;
+  }));
   EXPECT_EQ(force(0), Vec3(0, 0, 0));
   arm(0).plugged = 1;
   ASSERT_TRUE(serve(device, Vec3(0, 0, 1), [&](const DeviceReading& r) { return r.connected && force(0).y() > 0.9; }));
@@ -120,7 +130,9 @@ TEST_F(OpenHaptics, UncalibratedEncodersMoveNothingAndPushNothing) {
   arm(0).calibration_state = 0x5002;  // the stylus has to go into the inkwell
   OpenHapticsDevice device("Left Device");
   device.start();
-  EXPECT_FALSE(serve(device, Vec3(1, 0, 0), [&](const DeviceReading& r) { return r.connected || force(0).norm() > 0; }, std::chrono::milliseconds(300)));
+  EXPECT_FALSE(serve(
+      device, Vec3(1, 0, 0), [&](const DeviceReading& r) { return r.connected || force(0).norm() > 0; },
+      std::chrono::milliseconds(300)));
   arm(0).calibration_state = 0x5001;  // in the inkwell: the driver asks for the update
   EXPECT_TRUE(serve(device, Vec3(1, 0, 0), [&](const DeviceReading& r) { return r.connected && force(0).x() > 0.9; }));
   EXPECT_EQ(arm(0).calibration_state, 0x5000);

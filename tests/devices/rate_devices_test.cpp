@@ -11,11 +11,14 @@ namespace insula {
 namespace {
 
 /// Lets the arm live on in real time until the condition holds.
-bool live(RateDevice& device, const std::function<bool(const DeviceReading&)>& condition, std::chrono::milliseconds patience = std::chrono::seconds(20)) {
-  return testing::wait_for([&] {
-    device.advance(1e-3);
-    return condition(device.read());
-  }, patience);
+bool live(RateDevice& device, const std::function<bool(const DeviceReading&)>& condition,
+          std::chrono::milliseconds patience = std::chrono::seconds(20)) {
+  return testing::wait_for(
+      [&] {
+        device.advance(1e-3);
+        return condition(device.read());
+      },
+      patience);
 }
 
 class SpaceMouse : public testing::DeviceBench {};
@@ -35,7 +38,8 @@ TEST_F(SpaceMouse, MovesTheHandAsItIsPushed) {
   ASSERT_TRUE(live(device, [](const DeviceReading& r) { return r.v.norm() < 2e-3; }));
   put(arm(0).v, 0, 350, 0);  // turned about up
   arm(0).buttons = 3;
-  ASSERT_TRUE(live(device, [](const DeviceReading& r) { return rotation_vector(r.pose.q).z() > 0.2 && r.button1 && r.button2; }));
+  ASSERT_TRUE(live(
+      device, [](const DeviceReading& r) { return rotation_vector(r.pose.q).z() > 0.2 && r.button1 && r.button2; }));
   arm(0).buttons = 1;
   put(arm(0).v, 0, 0, 0);
   EXPECT_TRUE(live(device, [](const DeviceReading& r) { return r.button1 && !r.button2; }));
@@ -74,7 +78,8 @@ TEST_F(SpaceMouse, UnpluggedAndPluggedInAgain) {
   ASSERT_TRUE(live(device, [](const DeviceReading& r) { return r.connected; }));
   stubs->daemon = 0;  // the daemon ends
   ASSERT_TRUE(live(device, [](const DeviceReading& r) { return !r.connected; }));
-  ASSERT_TRUE(testing::wait_for([&] { return device.remark().find("spacenavd does not answer") != std::string::npos; }));
+  ASSERT_TRUE(
+      testing::wait_for([&] { return device.remark().find("spacenavd does not answer") != std::string::npos; }));
   stubs->daemon = 1;
   EXPECT_TRUE(live(device, [](const DeviceReading& r) { return r.connected; }));
   EXPECT_EQ(device.remark(), "");
@@ -112,7 +117,8 @@ class Gamepad : public testing::DeviceBench {
  protected:
   void SetUp() override {
     void* library = dlopen("libSDL2-2.0.so.0", RTLD_NOW);
-    attach_ = library != nullptr ? reinterpret_cast<decltype(attach_)>(dlsym(library, "SDL_JoystickAttachVirtualEx")) : nullptr;
+    attach_ = library != nullptr ? reinterpret_cast<decltype(attach_)>(dlsym(library, "SDL_JoystickAttachVirtualEx"))
+                                 : nullptr;
     if (attach_ == nullptr) GTEST_SKIP() << "needs SDL 2.24 or later (libsdl2-2.0-0)";
     detach_ = reinterpret_cast<decltype(detach_)>(dlsym(library, "SDL_JoystickDetachVirtual"));
     open_ = reinterpret_cast<decltype(open_)>(dlsym(library, "SDL_JoystickOpen"));

@@ -8,10 +8,10 @@
 
 #include "core/bus/lcm_bus.h"
 #include "core/haptics/haptic_update.h"
+#include "core/testing/multicast.h"
 #include "haptic_server/rig_for_test.h"
 #include "tests/devices/device_bench.h"
 #include "tests/devices/haply_stand_in.h"
-#include "core/testing/multicast.h"
 
 namespace insula {
 namespace {
@@ -45,7 +45,8 @@ TEST_F(ServerWithDevices, TwoKindsFeelTissueAndOneMayBeLostInContact) {
   testing::Rig rig("touch:Left Device", "haply:04BA");
   rig.send_scene();
   ASSERT_TRUE(run_until(rig, [&] { return rig.server->reading(0).connected && rig.server->reading(1).connected; }));
-  EXPECT_NEAR((rig.server->reading(0).pose.p - Vec3(-0.02, 0, 0.002)).norm(), 0, 1e-6);  // the rest pose lies at the hand's home
+  EXPECT_NEAR((rig.server->reading(0).pose.p - Vec3(-0.02, 0, 0.002)).norm(), 0,
+              1e-6);  // the rest pose lies at the hand's home
   EXPECT_EQ(rig.state.hand[0].device, "touch");
   EXPECT_EQ(rig.state.hand[1].device, "haply");
   press();
@@ -53,16 +54,20 @@ TEST_F(ServerWithDevices, TwoKindsFeelTissueAndOneMayBeLostInContact) {
   EXPECT_NEAR(left_force(), 0.75, 0.05);
   arm(0).plugged = 0;
   ASSERT_TRUE(run_until(rig, [&] { return !rig.server->reading(0).connected; }));
-  ASSERT_TRUE(run_until(rig, [&] { return rig.server->force(0) == Vec3(0, 0, 0); }, 200));
+  ASSERT_TRUE(run_until(
+      rig, [&] { return rig.server->force(0) == Vec3(0, 0, 0); }, 200));
   EXPECT_GT(right_force(), 0.7);  // nothing to the other hand
-  run_until(rig, [] { return false; }, 100);
-  EXPECT_NE(rig.server->publish_status().note.find("left: touch:\"Left Device\""), std::string::npos) << rig.server->publish_status().note;
+  run_until(
+      rig, [] { return false; }, 100);
+  EXPECT_NE(rig.server->publish_status().note.find("left: touch:\"Left Device\""), std::string::npos)
+      << rig.server->publish_status().note;
   arm(0).plugged = 1;
   ASSERT_TRUE(run_until(rig, [&] { return rig.server->reading(0).connected; }));
   EXPECT_LT(rig.server->force(0).norm(), 0.2);  // comes back gently; the rig checks every tick's slew
   ASSERT_TRUE(run_until(rig, [&] { return left_force() > 0.7; }));
   rig.server->begin_stop();
-  EXPECT_TRUE(run_until(rig, [&] { return rig.server->quiet() && left_force() == 0 && right_force() == 0; }, 1000));
+  EXPECT_TRUE(run_until(
+      rig, [&] { return rig.server->quiet() && left_force() == 0 && right_force() == 0; }, 1000));
 }
 
 TEST_F(ServerWithDevices, TwoOfTheSameAndOneMissing) {
@@ -97,7 +102,8 @@ TEST_F(ServerWithDevices, TheRealProgramOverTheBus) {
   const pid_t server = ::fork();
   if (server == 0) {
     const std::string program = INSULA_BINARY_DIR "/bin/haptic_server";
-    ::execl(program.c_str(), "haptic_server", "--left", "haply:049D, touch:Left Device", "--right", "haply:04BA", static_cast<char*>(nullptr));
+    ::execl(program.c_str(), "haptic_server", "--left", "haply:049D, touch:Left Device", "--right", "haply:04BA",
+            static_cast<char*>(nullptr));
     ::_exit(127);
   }
   testing::Rig engine;  // only its problems are used
@@ -110,25 +116,28 @@ TEST_F(ServerWithDevices, TheRealProgramOverTheBus) {
   });
   int step = 0;
   const auto until = [&](const std::function<bool()>& condition) {
-    return testing::wait_for([&] {
-      engine.clock.advance_ns(MonotonicClock().now_ns() - engine.clock.now_ns());
-      engine.sim_time += 0.016;
-      if (step++ % 30 == 0) {
-        insula_lcm::scene_info_t info;
-        info.session = engine.session;
-        info.time_us = engine.clock.now_ns() / 1000;
-        info.scene = "test.xml";
-        info.state = "running";
-        bus.publish(channel::scene_info, engine.encoded(info));
-      }
-      EXPECT_TRUE(encode_problem(engine.update(), engine.bytes));
-      bus.publish(channel::haptic_problem, engine.bytes);
-      const auto next = std::chrono::steady_clock::now() + std::chrono::milliseconds(16);
-      while (std::chrono::steady_clock::now() < next) bus.poll(4);
-      return condition();
-    }, std::chrono::seconds(60));
+    return testing::wait_for(
+        [&] {
+          engine.clock.advance_ns(MonotonicClock().now_ns() - engine.clock.now_ns());
+          engine.sim_time += 0.016;
+          if (step++ % 30 == 0) {
+            insula_lcm::scene_info_t info;
+            info.session = engine.session;
+            info.time_us = engine.clock.now_ns() / 1000;
+            info.scene = "test.xml";
+            info.state = "running";
+            bus.publish(channel::scene_info, engine.encoded(info));
+          }
+          EXPECT_TRUE(encode_problem(engine.update(), engine.bytes));
+          bus.publish(channel::haptic_problem, engine.bytes);
+          const auto next = std::chrono::steady_clock::now() + std::chrono::milliseconds(16);
+          while (std::chrono::steady_clock::now() < next) bus.poll(4);
+          return condition();
+        },
+        std::chrono::seconds(60));
   };
-  EXPECT_TRUE(until([&] { return engine.state_seen && engine.state.hand[0].connected && engine.state.hand[1].connected; }));
+  EXPECT_TRUE(
+      until([&] { return engine.state_seen && engine.state.hand[0].connected && engine.state.hand[1].connected; }));
   EXPECT_EQ(engine.state.hand[0].device, "touch");
   press();
   EXPECT_TRUE(until([&] { return left_force() > 0.6 && right_force() > 0.6; }));

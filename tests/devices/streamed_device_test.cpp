@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What all drivers share: nothing in the servo's calls allocates, forces keep to their limits, poses and forces belong together.
+// What all drivers share: nothing in the servo's calls allocates, forces keep to their limits, poses and forces belong
+// together.
 #include "haptic_server/devices/streamed_device.h"
 
 #include <gtest/gtest.h>
@@ -68,13 +69,16 @@ TEST(StreamedDevice, PowerIsTheSameOnBothSides) {
     const Vec3 force = random.vector(1), torque = random.vector(0.05);
     device.write(force, torque);
     const DeviceForce f = device.wanted();
-    ASSERT_TRUE(test::held("power of a real device, W", std::abs(force.dot(r.v) - c.scale * f.force_N.dot(s.v)), 1, 1e-12));
+    ASSERT_TRUE(
+        test::held("power of a real device, W", std::abs(force.dot(r.v) - c.scale * f.force_N.dot(s.v)), 1, 1e-12));
     ASSERT_TRUE(test::held("power of its torque, W", std::abs(torque.dot(r.w) - f.torque_Nm.dot(s.w)), 1, 1e-12));
     // A small turn of the device turns the tool about the axis that w says.
     const Quat small = from_rotation_vector(1e-4 * s.w);
     s.pose.q = small * s.pose.q;
     device.deliver(s);
-    ASSERT_TRUE(test::held("a small turn of a device, rad", (rotation_vector(device.read().pose.q * r.pose.q.conjugate()) - 1e-4 * r.w).norm(), 1, 1e-9));
+    ASSERT_TRUE(test::held("a small turn of a device, rad",
+                           (rotation_vector(device.read().pose.q * r.pose.q.conjugate()) - 1e-4 * r.w).norm(), 1,
+                           1e-9));
   }
 }
 

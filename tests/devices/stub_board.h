@@ -11,7 +11,8 @@
 
 namespace insula::testing {
 
-/// One arm, in the frame and units of its library (mm for libHD, m for libdhd). Zero-filled is a valid state: not there.
+/// One arm, in the frame and units of its library (mm for libHD, m for libdhd). Zero-filled is a valid state: not
+/// there.
 struct StubArm {
   char name[32];
   char model[32];

@@ -70,7 +70,8 @@ int dhdGetLinearVelocity(double* vx, double* vy, double* vz, char id) {
   *vx = a->v[0], *vy = a->v[1], *vz = a->v[2];
   return 1;  // DHD_TIMEGUARD: no error
 }
-int dhdSetForceAndTorqueAndGripperForce(double fx, double fy, double fz, double tx, double ty, double tz, double, char id) {
+int dhdSetForceAndTorqueAndGripperForce(double fx, double fy, double fz, double tx, double ty, double tz, double,
+                                        char id) {
   StubArm* a = arm(id);
   if (a == nullptr) return -1;
   const double f[3] = {fx, fy, fz}, t[3] = {tx, ty, tz};

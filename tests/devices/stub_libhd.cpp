@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A stand-in for OpenHaptics' libHD.so: the functions that the driver uses, with the library's habits (a stack of errors,
-// frames, one scheduler for all devices, forces above the limit refused).
+// A stand-in for OpenHaptics' libHD.so: the functions that the driver uses, with the library's habits (a stack of
+// errors, frames, one scheduler for all devices, forces above the limit refused).
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -162,7 +162,9 @@ Error hdGetError() {
   return e;
 }
 const char* hdGetErrorString(unsigned int code) { return code == 0x0302 ? "HD_COMM_ERROR" : "HD_OTHER_ERROR"; }
-unsigned int hdCheckCalibration() { return arm() != nullptr && arm()->calibration_state != 0 ? unsigned(arm()->calibration_state.load()) : 0x5000u; }
+unsigned int hdCheckCalibration() {
+  return arm() != nullptr && arm()->calibration_state != 0 ? unsigned(arm()->calibration_state.load()) : 0x5000u;
+}
 void hdUpdateCalibration(unsigned int) {
   if (arm() != nullptr) arm()->calibration_state = 0x5000;
 }

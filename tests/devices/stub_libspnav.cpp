@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A stand-in for libspnav with its daemon: a deflected cap sends events all the time, a pressed button one, a device that
-// comes or goes one, and a daemon that ends closes its socket.
+// A stand-in for libspnav with its daemon: a deflected cap sends events all the time, a pressed button one, a device
+// that comes or goes one, and a daemon that ends closes its socket.
 #include <unistd.h>
 
 #include <chrono>
@@ -17,9 +17,17 @@ using insula::testing::StubArm;
 
 union Event {
   int type;
-  struct { int type, x, y, z, rx, ry, rz; unsigned int period; int* data; } motion;
-  struct { int type, press, bnum; } button;
-  struct { int type, op, id, devtype, usbid[2]; } dev;
+  struct {
+    int type, x, y, z, rx, ry, rz;
+    unsigned int period;
+    int* data;
+  } motion;
+  struct {
+    int type, press, bnum;
+  } button;
+  struct {
+    int type, op, id, devtype, usbid[2];
+  } dev;
 };
 
 std::mutex mutex;

@@ -5,7 +5,8 @@
 namespace insula {
 namespace {
 
-const std::filesystem::path scene = std::filesystem::path(INSULA_SOURCE_DIR) / "scenes/training/2_aneurysm_dissection.xml";
+const std::filesystem::path scene =
+    std::filesystem::path(INSULA_SOURCE_DIR) / "scenes/training/2_aneurysm_dissection.xml";
 
 TEST(AneurysmDissection, SteadyHandsDivideTheStrandsWithoutAFault) {
   test::Played o = test::play_motion(scene, "steady");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The shipped arteries as scenes get them from scenes/parts/artery.xml: they pulse as they should and are otherwise at rest.
+// The shipped arteries as scenes get them from scenes/parts/artery.xml: they pulse as they should and are otherwise at
+// rest.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -20,8 +21,10 @@ TEST_P(LivingArtery, PulsesByFiveToEightPercentAndTouchesItselfNowhere) {
   register_builtin(registry);
   const auto text = fmt::format(R"(<scene time_step="16.6667 ms">
   <include file="../parts/artery.xml"><variable name="artery_case" value="{}"/></include>
-</scene>)", GetParam());
-  auto loaded = load_simulation_text(text, std::filesystem::path(INSULA_SOURCE_DIR) / "scenes" / "training" / "artery.xml", registry, 1);
+</scene>)",
+                                GetParam());
+  auto loaded = load_simulation_text(
+      text, std::filesystem::path(INSULA_SOURCE_DIR) / "scenes" / "training" / "artery.xml", registry, 1);
   ASSERT_TRUE(loaded.simulation) << loaded.diagnostics.format();
   Simulation& s = *loaded.simulation;
   const auto* heart = s.scene().find_as<BloodPressure>("heart");

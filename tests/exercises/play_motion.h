@@ -20,11 +20,11 @@ struct Played {
   std::map<std::string, double> measures;     ///< at the end, in their units
   std::map<std::string, double> longest;      ///< of each timer, s
   ExerciseState state = ExerciseState::running;
-  double end = -1;                            ///< of the exercise, s
-  double duration = 0;                        ///< of the motion, s
+  double end = -1;      ///< of the exercise, s
+  double duration = 0;  ///< of the motion, s
   int strands = 0, left = 0;
-  double min_pressure = 1e300;              ///< of any stretch of vessel, Pa
-  double max_force[2] = {0, 0};              ///< of each hand's tool on what it touches, N
+  double min_pressure = 1e300;   ///< of any stretch of vessel, Pa
+  double max_force[2] = {0, 0};  ///< of each hand's tool on what it touches, N
 };
 
 /// The motion with this id in the scene's exercise.
@@ -53,7 +53,8 @@ inline Played play_motion(const std::filesystem::path& scene, const std::string&
   }
   for (int h = 0; h < 2; ++h)
     if (motion.has(h)) {
-      EXPECT_LT((run.haptics().hand(h).device.p - motion.at(h, 1e9).pose.p).norm(), 0.001) << "hand " << h << " did not follow its motion to the end";
+      EXPECT_LT((run.haptics().hand(h).device.p - motion.at(h, 1e9).pose.p).norm(), 0.001)
+          << "hand " << h << " did not follow its motion to the end";
     }
   out.ran = true;
   out.strands = Strands(s).total();

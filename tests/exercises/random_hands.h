@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two hands that do as they please: smooth random motions about an exercise's field, fast and slow, turning, buttons pressed,
-// tools exchanged, clips loaded and let go; at the end both draw back along their shafts and rest at home. Motion k of a
-// seed is the same however many were made before it.
+// Two hands that do as they please: smooth random motions about an exercise's field, fast and slow, turning, buttons
+// pressed, tools exchanged, clips loaded and let go; at the end both draw back along their shafts and rest at home.
+// Motion k of a seed is the same however many were made before it.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -15,15 +15,16 @@
 namespace insula::test {
 
 struct RandomHandsSettings {
-  double busy = 3;           ///< time of random motion, s
-  double rest = 1.5;         ///< at home at the end, s
-  double half_box = 12e-3;   ///< the targets' box is twice this wide, about what the microscope looks at, m
+  double busy = 3;          ///< time of random motion, s
+  double rest = 1.5;        ///< at home at the end, s
+  double half_box = 12e-3;  ///< the targets' box is twice this wide, about what the microscope looks at, m
   double min_speed = 0.02, max_speed = 0.5;  ///< highest speed of a stroke, m/s
-  double max_spin = 6;      ///< rad/s
-  double max_tilt = 0.6;    ///< from the orientation at home, rad
+  double max_spin = 6;                       ///< rad/s
+  double max_tilt = 0.6;                     ///< from the orientation at home, rad
 };
 
-/// Strung together from strokes with the smoothest speed that starts and ends at rest (minimum jerk: its peak is 15/8 of its mean).
+/// Strung together from strokes with the smoothest speed that starts and ends at rest (minimum jerk: its peak is 15/8
+/// of its mean).
 class StrokeWriter {
  public:
   StrokeWriter(Motion& motion, int hand, const Pose& start) : motion_(motion), hand_(hand), pose_(start) { key(); }
@@ -83,7 +84,10 @@ inline void random_commands(Motion& motion, const Simulation& s, int hand, Rando
         const auto& all = applier->clips();
         const std::uint32_t what = at_start ? 0 : r.below(4);
         const std::string clip = all[r.below(std::uint32_t(all.size()))]->id;
-        motion.add(MotionCommand{t, "ask", applier->id + (what < 2 ? " load " + clip : what == 2 ? " release" : " take")});
+        motion.add(MotionCommand{t, "ask",
+                                 applier->id + (what < 2    ? " load " + clip
+                                                : what == 2 ? " release"
+                                                            : " take")});
       }
   };
   if (tools.size() > 1 && r.uniform() < 0.4) exchange(0.02);
@@ -94,7 +98,8 @@ inline void random_commands(Motion& motion, const Simulation& s, int hand, Rando
   }
 }
 
-inline Motion random_motion(const Simulation& s, std::uint64_t seed, std::uint64_t k, const RandomHandsSettings& settings = {}) {
+inline Motion random_motion(const Simulation& s, std::uint64_t seed, std::uint64_t k,
+                            const RandomHandsSettings& settings = {}) {
   Motion motion;
   const Vec3 middle = s.view() ? Vec3(s.view()->target()) : Vec3(Vec3::Zero());
   double end = 0;

@@ -14,18 +14,18 @@ namespace insula::test {
 
 struct Soak {
   bool ran = false, finite = true;
-  double seconds = 0;                ///< simulated
+  double seconds = 0;  ///< simulated
   // Left alone.
-  Worst drift;                       ///< of any node, vertex, tool or clip from where it was in the same phase of the first beat, m
-  std::vector<double> energy;        ///< in the same phase of each beat, J
+  Worst drift;  ///< of any node, vertex, tool or clip from where it was in the same phase of the first beat, m
+  std::vector<double> energy;  ///< in the same phase of each beat, J
   // Elements: with the hands at rest, and the worst at any time.
   ElementState rest, ever;
-  double first_inverted = -1;        ///< s
+  double first_inverted = -1;  ///< s
   // Hands away and at rest.
-  Worst tool, clip;                  ///< depth of a core in a surface, m
-  Worst astray;                      ///< distance of a tool from where its hand holds it, m
-  Worst moved;                       ///< of a deformable body's nodes from where they were at the start, m
-  double cpu_s = 0;                  ///< of computing
+  Worst tool, clip;  ///< depth of a core in a surface, m
+  Worst astray;      ///< distance of a tool from where its hand holds it, m
+  Worst moved;       ///< of a deformable body's nodes from where they were at the start, m
+  double cpu_s = 0;  ///< of computing
 };
 
 inline SimulationResult open_exercise(const std::filesystem::path& scene) {
@@ -67,7 +67,8 @@ class Snapshot {
     else
       for (std::size_t n = 0; n < names_.size(); ++n)
         for (std::size_t i = names_[n].first; i < (n + 1 < names_.size() ? names_[n + 1].first : points_.size()); ++i)
-          if (const double d = (points_[i] - other.points_[i]).norm(); !(d <= out.value)) out.most(d, names_[n].second + " " + std::to_string(i - names_[n].first));
+          if (const double d = (points_[i] - other.points_[i]).norm(); !(d <= out.value))
+            out.most(d, names_[n].second + " " + std::to_string(i - names_[n].first));
     return out;
   }
 
@@ -122,10 +123,10 @@ inline void no_complication_after(Simulation& s, double t) {
 }
 
 struct IdleSettings {
-  std::string motion;      ///< id, empty: no hand ever moves
-  double hold_from = 0;    ///< of the motion no more than this is played, s
-  double settle = 1.5;     ///< after that, before the first beat that counts, s
-  double duration = 600;   ///< from then on, s
+  std::string motion;     ///< id, empty: no hand ever moves
+  double hold_from = 0;   ///< of the motion no more than this is played, s
+  double settle = 1.5;    ///< after that, before the first beat that counts, s
+  double duration = 600;  ///< from then on, s
 };
 
 /// Plays, then holds still and compares each beat with the first in the same phase, late in diastole.
@@ -168,7 +169,9 @@ inline Soak leave_alone(const std::filesystem::path& scene, const IdleSettings& 
     const Worst d = now.farthest_from(first);
     if (d.value > out.drift.value) out.drift = d;
     if (speak && (out.energy.size() < 20 || out.energy.size() % 20 == 1))
-      std::printf("    %7.2f s: drift %.2e m (%s), energy %.6e J\n", s.time(), d.value, d.whose.c_str(), out.energy.back()), std::fflush(stdout);
+      std::printf("    %7.2f s: drift %.2e m (%s), energy %.6e J\n", s.time(), d.value, d.whose.c_str(),
+                  out.energy.back()),
+          std::fflush(stdout);
   }
   out.finite = out.finite && all_finite(s);
   out.rest = out.ever = look_at_elements(s);
@@ -221,7 +224,8 @@ class RandomCampaign {
         out.astray.most((i->pose().p - i->device().p).norm(), i->id);
       if (const auto* d = dynamic_cast<const DeformableBody*>(b)) {
         const VecX way = d->q() - start[n++];
-        for (int i = 0; i < d->nodes(); ++i) out.moved.most(way.segment<3>(3 * i).norm(), d->id + " " + std::to_string(i));
+        for (int i = 0; i < d->nodes(); ++i)
+          out.moved.most(way.segment<3>(3 * i).norm(), d->id + " " + std::to_string(i));
       }
     }
     out.seconds = s.time();
@@ -250,15 +254,21 @@ class RandomCampaign {
       sum[1] += c.normal_force;
       sum[2] = std::min(sum[2], c.gap);
     }
-    std::printf("    %6.2f s: inverted %d, volume %.3f (%s), area %.3f (%s), inside %.3f, core %.2f mm (%s), rows %d, sweeps %d, energy %.3e\n", s.time(), e.inverted,
-                e.volume.value, e.volume.whose.c_str(), e.area.value, e.area.whose.c_str(), e.inside.value, 1e3 * deep.value, deep.whose.c_str(), s.report().rows, s.report().solve.sweeps, s.energy());
+    std::printf(
+        "    %6.2f s: inverted %d, volume %.3f (%s), area %.3f (%s), inside %.3f, core %.2f mm (%s), rows %d, sweeps "
+        "%d, energy %.3e\n",
+        s.time(), e.inverted, e.volume.value, e.volume.whose.c_str(), e.area.value, e.area.whose.c_str(),
+        e.inside.value, 1e3 * deep.value, deep.whose.c_str(), s.report().rows, s.report().solve.sweeps, s.energy());
     for (const auto& [names, sum] : by_pair)
-      if (sum[1] > 0.02) std::printf("        %s: %d contacts, %.2f N, gap down to %.2f mm\n", names.c_str(), int(sum[0]), sum[1], 1e3 * sum[2]);
+      if (sum[1] > 0.02)
+        std::printf("        %s: %d contacts, %.2f N, gap down to %.2f mm\n", names.c_str(), int(sum[0]), sum[1],
+                    1e3 * sum[2]);
     for (int hand = 0; hand < 2; ++hand)
       if (const Instrument* i = s.instrument_of(hand)) {
         const HandSample at = motion.at(hand, s.time());
-        std::printf("        %-12s at %6.1f %6.1f %6.1f mm, hand at %6.1f %6.1f %6.1f mm\n", i->id.c_str(), 1e3 * i->pose().p.x(), 1e3 * i->pose().p.y(), 1e3 * i->pose().p.z(),
-                    1e3 * at.pose.p.x(), 1e3 * at.pose.p.y(), 1e3 * at.pose.p.z());
+        std::printf("        %-12s at %6.1f %6.1f %6.1f mm, hand at %6.1f %6.1f %6.1f mm\n", i->id.c_str(),
+                    1e3 * i->pose().p.x(), 1e3 * i->pose().p.y(), 1e3 * i->pose().p.z(), 1e3 * at.pose.p.x(),
+                    1e3 * at.pose.p.y(), 1e3 * at.pose.p.z());
       }
     for (const Event& x : s.events()) std::printf("        %s %s %s\n", x.kind.c_str(), x.id.c_str(), x.text.c_str());
     std::fflush(stdout);

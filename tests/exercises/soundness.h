@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether what a simulation holds is sound: elements inverted or collapsed, tools inside of bodies, numbers that are none.
+// Whether what a simulation holds is sound: elements inverted or collapsed, tools inside of bodies, numbers that are
+// none.
 #pragma once
 #include <cmath>
 #include <map>
@@ -36,10 +37,10 @@ struct Worst {
 
 /// Of all bodies; 1 where there is none of a kind.
 struct ElementState {
-  int inverted = 0;                ///< tetrahedra
-  Worst volume{1, "-"};        ///< least volume of a tetrahedron over its volume at rest
-  Worst area{1, "-"};          ///< least area of a wall's triangle over its area at rest
-  Worst inside{1, "-"};        ///< least volume that a closed wall encloses, over that at rest; below 0: turned inside out
+  int inverted = 0;      ///< tetrahedra
+  Worst volume{1, "-"};  ///< least volume of a tetrahedron over its volume at rest
+  Worst area{1, "-"};    ///< least area of a wall's triangle over its area at rest
+  Worst inside{1, "-"};  ///< least volume that a closed wall encloses, over that at rest; below 0: turned inside out
 };
 
 inline Vec3 node(const DeformableBody& b, int i) { return b.q().segment<3>(3 * i); }
@@ -48,7 +49,9 @@ inline ElementState look_at_elements(const Simulation& s) {
   ElementState out;
   for (const Body* body : s.bodies()) {
     if (const auto* soft = dynamic_cast<const SoftBody*>(body)) {
-      const auto volume = [](const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) { return (b - a).cross(c - a).dot(d - a); };
+      const auto volume = [](const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+        return (b - a).cross(c - a).dot(d - a);
+      };
       const auto& rest = soft->rest();
       for (std::size_t i = 0; i < rest.tets.size(); ++i) {
         const auto& t = rest.tets[i];
@@ -61,7 +64,8 @@ inline ElementState look_at_elements(const Simulation& s) {
       const auto& rest = shell->rest_nodes();
       for (std::size_t i = 0; i < shell->wall_triangles().size(); ++i) {
         const auto& t = shell->wall_triangles()[i];
-        const double now = (node(*shell, t[1]) - node(*shell, t[0])).cross(node(*shell, t[2]) - node(*shell, t[0])).norm();
+        const double now =
+            (node(*shell, t[1]) - node(*shell, t[0])).cross(node(*shell, t[2]) - node(*shell, t[0])).norm();
         const Vec3 a = rest[std::size_t(t[0])], b = rest[std::size_t(t[1])], c = rest[std::size_t(t[2])];
         out.area.least(now / (b - a).cross(c - a).norm(), shell->id + " " + std::to_string(i));
       }
@@ -69,7 +73,8 @@ inline ElementState look_at_elements(const Simulation& s) {
       double now = 0, then = 0;
       for (const auto& t : shell->rest().triangles) {
         now += (node(*shell, t[0]) - origin).dot((node(*shell, t[1]) - origin).cross(node(*shell, t[2]) - origin));
-        const Vec3 a = rest[std::size_t(t[0])] - origin, b = rest[std::size_t(t[1])] - origin, c = rest[std::size_t(t[2])] - origin;
+        const Vec3 a = rest[std::size_t(t[0])] - origin, b = rest[std::size_t(t[1])] - origin,
+                   c = rest[std::size_t(t[2])] - origin;
         then += a.dot(b.cross(c));
       }
       if (!shell->model().caps.empty()) out.inside.least(now / then, shell->id);

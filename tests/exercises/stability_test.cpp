@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every exercise left alone, and in random hands. The test runs a short part of it; docs/validation.md says how to run all.
+// Every exercise left alone, and in random hands. The test runs a short part of it; docs/validation.md says how to run
+// all.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -28,8 +29,9 @@ const Exercise exercises[] = {
 void PrintTo(const Exercise& e, std::ostream* out) { *out << e.file; }
 
 constexpr double max_drift = 1e-4;  // m
-constexpr double max_depth = 4e-4;  // m: the corner of a retractor between two vertices (1 mm apart) of the tissue that it presses
-constexpr double collapsed = 0.01;   // of the size at rest
+constexpr double max_depth =
+    4e-4;  // m: the corner of a retractor between two vertices (1 mm apart) of the tissue that it presses
+constexpr double collapsed = 0.01;  // of the size at rest
 
 const char* environment(const char* name) {
   const char* v = std::getenv(name);
@@ -38,7 +40,9 @@ const char* environment(const char* name) {
 double number(const char* name, double fallback) { return environment(name) ? std::atof(environment(name)) : fallback; }
 bool all_of_it() { return environment("INSULA_SOAK") != nullptr; }
 
-std::filesystem::path scene(const Exercise& e) { return std::filesystem::path(INSULA_SOURCE_DIR) / "scenes/training" / e.file; }
+std::filesystem::path scene(const Exercise& e) {
+  return std::filesystem::path(INSULA_SOURCE_DIR) / "scenes/training" / e.file;
+}
 
 class Stability : public testing::TestWithParam<Exercise> {};
 
@@ -49,9 +53,12 @@ TEST_P(Stability, LeftAloneNothingMoves) {
   const Soak o = test::leave_alone(scene(e), settings, all_of_it() || environment("INSULA_SOAK_TRACE"));
   ASSERT_TRUE(o.ran);
   ASSERT_FALSE(o.energy.empty());
-  std::printf("%s left alone: %.1f s, drift %.2e m (%s), energy %.6e -> %.6e J in %zu beats, %d inverted, least volume %.3f (%s), area %.3f (%s), tool %.3f mm deep (%s), clip %.3f mm (%s); %.1f s of computing\n",
-              e.name, o.seconds, o.drift.value, o.drift.whose.c_str(), o.energy.front(), o.energy.back(), o.energy.size(), o.rest.inverted, o.rest.volume.value,
-              o.rest.volume.whose.c_str(), o.rest.area.value, o.rest.area.whose.c_str(), 1e3 * o.tool.value, o.tool.whose.c_str(), 1e3 * o.clip.value, o.clip.whose.c_str(), o.cpu_s);
+  std::printf(
+      "%s left alone: %.1f s, drift %.2e m (%s), energy %.6e -> %.6e J in %zu beats, %d inverted, least volume %.3f "
+      "(%s), area %.3f (%s), tool %.3f mm deep (%s), clip %.3f mm (%s); %.1f s of computing\n",
+      e.name, o.seconds, o.drift.value, o.drift.whose.c_str(), o.energy.front(), o.energy.back(), o.energy.size(),
+      o.rest.inverted, o.rest.volume.value, o.rest.volume.whose.c_str(), o.rest.area.value, o.rest.area.whose.c_str(),
+      1e3 * o.tool.value, o.tool.whose.c_str(), 1e3 * o.clip.value, o.clip.whose.c_str(), o.cpu_s);
   EXPECT_TRUE(o.finite);
   EXPECT_LT(o.drift.value, max_drift) << o.drift.whose;
   EXPECT_LE(o.energy.back(), o.energy.front() * 1.001 + 1e-8);
@@ -78,22 +85,32 @@ TEST_P(Stability, RandomHandsBreakNothing) {
   Soak worst;
   int failed = 0;
   for (std::uint64_t k = first; k < first + count; ++k) {
-    if (all_of_it()) std::printf("%s, seed %llu, motion %llu ...\n", e.name, (unsigned long long)seed, (unsigned long long)k), std::fflush(stdout);
+    if (all_of_it())
+      std::printf("%s, seed %llu, motion %llu ...\n", e.name, (unsigned long long)seed, (unsigned long long)k),
+          std::fflush(stdout);
     const Soak o = campaign.run(seed, k, hands, trace);
     std::string why;
     if (!o.finite) why += " a number that is none;";
-    if (o.rest.inverted > 0) why += " " + std::to_string(o.rest.inverted) + " inverted, first at " + std::to_string(o.first_inverted) + " s;";
-    if (!(o.rest.volume.value > collapsed)) why += " " + o.rest.volume.whose + " has " + std::to_string(o.rest.volume.value) + " of its volume;";
-    if (!(o.rest.area.value > collapsed)) why += " " + o.rest.area.whose + " has " + std::to_string(o.rest.area.value) + " of its area;";
+    if (o.rest.inverted > 0)
+      why += " " + std::to_string(o.rest.inverted) + " inverted, first at " + std::to_string(o.first_inverted) + " s;";
+    if (!(o.rest.volume.value > collapsed))
+      why += " " + o.rest.volume.whose + " has " + std::to_string(o.rest.volume.value) + " of its volume;";
+    if (!(o.rest.area.value > collapsed))
+      why += " " + o.rest.area.whose + " has " + std::to_string(o.rest.area.value) + " of its area;";
     if (!(o.tool.value < max_depth)) why += " " + o.tool.whose + " " + std::to_string(1e3 * o.tool.value) + " mm;";
     if (!(o.clip.value < max_depth)) why += " " + o.clip.whose + " " + std::to_string(1e3 * o.clip.value) + " mm;";
-    if (!(o.astray.value < 1e-3)) why += " " + o.astray.whose + " " + std::to_string(1e3 * o.astray.value) + " mm from its hand;";
+    if (!(o.astray.value < 1e-3))
+      why += " " + o.astray.whose + " " + std::to_string(1e3 * o.astray.value) + " mm from its hand;";
     failed += !why.empty();
     EXPECT_EQ(why, "") << e.name << ", seed " << seed << ", motion " << k;
     if (all_of_it() || !why.empty())
-      std::printf("  %.2f s: %s inverted at most %d, least volume %.3f, area %.3f, inside %.3f; at rest volume %.3f, area %.3f, inside %.3f, moved %.2f mm (%s), tool %.3f mm (%s), clip %.3f mm (%s); %.1f s of computing\n",
-                  o.seconds, why.empty() ? "sound;" : why.c_str(), o.ever.inverted, o.ever.volume.value, o.ever.area.value, o.ever.inside.value, o.rest.volume.value, o.rest.area.value, o.rest.inside.value,
-                  1e3 * o.moved.value, o.moved.whose.c_str(), 1e3 * o.tool.value, o.tool.whose.c_str(), 1e3 * o.clip.value, o.clip.whose.c_str(), o.cpu_s),
+      std::printf(
+          "  %.2f s: %s inverted at most %d, least volume %.3f, area %.3f, inside %.3f; at rest volume %.3f, area "
+          "%.3f, inside %.3f, moved %.2f mm (%s), tool %.3f mm (%s), clip %.3f mm (%s); %.1f s of computing\n",
+          o.seconds, why.empty() ? "sound;" : why.c_str(), o.ever.inverted, o.ever.volume.value, o.ever.area.value,
+          o.ever.inside.value, o.rest.volume.value, o.rest.area.value, o.rest.inside.value, 1e3 * o.moved.value,
+          o.moved.whose.c_str(), 1e3 * o.tool.value, o.tool.whose.c_str(), 1e3 * o.clip.value, o.clip.whose.c_str(),
+          o.cpu_s),
           std::fflush(stdout);
     worst.finite = worst.finite && o.finite;
     worst.rest.inverted = std::max(worst.rest.inverted, o.rest.inverted);
@@ -106,13 +123,18 @@ TEST_P(Stability, RandomHandsBreakNothing) {
     worst.seconds += o.seconds;
     worst.cpu_s += o.cpu_s;
   }
-  std::printf("%s in random hands: %llu motions (%.0f s), %d unsound, %s, inverted at rest %d (at most %d), least volume %.3f (%s), area %.3f (%s), tool %.3f mm deep (%s), clip %.3f mm (%s), astray %.3f mm (%s); %.1f s of computing\n",
-              e.name, (unsigned long long)count, worst.seconds, failed, worst.finite ? "finite" : "NOT FINITE", worst.rest.inverted, worst.ever.inverted, worst.rest.volume.value,
-              worst.rest.volume.whose.c_str(), worst.rest.area.value, worst.rest.area.whose.c_str(), 1e3 * worst.tool.value, worst.tool.whose.c_str(), 1e3 * worst.clip.value,
-              worst.clip.whose.c_str(), 1e3 * worst.astray.value, worst.astray.whose.c_str(), worst.cpu_s);
+  std::printf(
+      "%s in random hands: %llu motions (%.0f s), %d unsound, %s, inverted at rest %d (at most %d), least volume %.3f "
+      "(%s), area %.3f (%s), tool %.3f mm deep (%s), clip %.3f mm (%s), astray %.3f mm (%s); %.1f s of computing\n",
+      e.name, (unsigned long long)count, worst.seconds, failed, worst.finite ? "finite" : "NOT FINITE",
+      worst.rest.inverted, worst.ever.inverted, worst.rest.volume.value, worst.rest.volume.whose.c_str(),
+      worst.rest.area.value, worst.rest.area.whose.c_str(), 1e3 * worst.tool.value, worst.tool.whose.c_str(),
+      1e3 * worst.clip.value, worst.clip.whose.c_str(), 1e3 * worst.astray.value, worst.astray.whose.c_str(),
+      worst.cpu_s);
 }
 
-INSTANTIATE_TEST_SUITE_P(Exercises, Stability, testing::ValuesIn(exercises), [](const auto& i) { return std::string(i.param.name); });
+INSTANTIATE_TEST_SUITE_P(Exercises, Stability, testing::ValuesIn(exercises),
+                         [](const auto& i) { return std::string(i.param.name); });
 
 }  // namespace
 }  // namespace insula

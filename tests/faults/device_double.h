@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A real arm as the haptic server sees one: held by a person who presses into tissue and draws along it, fails when told to,
-// and remembers whether what was written to it kept to its profile.
+// A real arm as the haptic server sees one: held by a person who presses into tissue and draws along it, fails when
+// told to, and remembers whether what was written to it kept to its profile.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -15,12 +15,12 @@ namespace insula::testing {
 
 enum class DeviceError {
   none,
-  gone,       ///< says that it is not connected
+  gone,  ///< says that it is not connected
   nan_pose,
-  far_pose,   ///< a million metres away
-  crooked,    ///< orientation is no unit quaternion
-  jumps,      ///< five millimetres to and fro, every tick
-  stuck,      ///< the same reading again and again
+  far_pose,  ///< a million metres away
+  crooked,   ///< orientation is no unit quaternion
+  jumps,     ///< five millimetres to and fro, every tick
+  stuck,     ///< the same reading again and again
   nan_speed,
 };
 
@@ -82,7 +82,8 @@ class DeviceDouble final : public Device {
   }
   HandGoal goal() const {
     HandGoal g;
-    g.pose.p = Vec3(side_ * 0.02 + 0.004 * std::sin(2.5 * time_), 0, std::max(-0.006, 0.001 - 0.01 * time_) + 0.001 * std::sin(6 * time_));
+    g.pose.p = Vec3(side_ * 0.02 + 0.004 * std::sin(2.5 * time_), 0,
+                    std::max(-0.006, 0.001 - 0.01 * time_) + 0.001 * std::sin(6 * time_));
     g.stops = false;
     return g;
   }
@@ -96,10 +97,10 @@ class DeviceDouble final : public Device {
   }
   void check(const char* what, const Vec3& value, const Vec3& last, double limit, double change) {
     if (!broken_.empty()) return;
-    const char* rule = !value.allFinite()                                      ? "not finite"
-                       : value.norm() > limit * (1 + 1e-9)                     ? "over the limit"
-                       : (value - last).norm() > change * (1 + 1e-9) + 1e-15   ? "faster than the slew limit"
-                                                                               : nullptr;
+    const char* rule = !value.allFinite()                                    ? "not finite"
+                       : value.norm() > limit * (1 + 1e-9)                   ? "over the limit"
+                       : (value - last).norm() > change * (1 + 1e-9) + 1e-15 ? "faster than the slew limit"
+                                                                             : nullptr;
     if (rule == nullptr) return;
     std::ostringstream out;
     out << what << " " << rule << " at " << time_ << " s: " << value.transpose() << " after " << last.transpose();

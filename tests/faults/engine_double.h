@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What an engine sends while two plates press on soft tissue: built from the DEVICE_STATE that reached it, 60 times a second.
+// What an engine sends while two plates press on soft tissue: built from the DEVICE_STATE that reached it, 60 times a
+// second.
 #pragma once
 #include <functional>
 #include <memory>

@@ -51,7 +51,8 @@ void expect_promise(const FaultCase& fault, int seed) {
     const bool hit = !fault.one_hand || hand == 0;
     const int silent = hit && fault.zero_after_s >= 0 ? begin + int(std::lround(1000 * fault.zero_after_s)) : end;
     for (int t = silent; t < end; ++t)
-      ASSERT_EQ(rig.trace[std::size_t(t)][std::size_t(hand)], Vec3(0, 0, 0)) << t - begin << " ms after it began, hand " << hand;
+      ASSERT_EQ(rig.trace[std::size_t(t)][std::size_t(hand)], Vec3(0, 0, 0))
+          << t - begin << " ms after it began, hand " << hand;
     double rendered = 0, all = 0;
     bool same = true;
     for (int t = begin; t < end; ++t) {
@@ -61,7 +62,8 @@ void expect_promise(const FaultCase& fault, int seed) {
       same = same && is == was;
     }
     EXPECT_TRUE(same || fault.min_share < 1) << "hand " << hand;
-    EXPECT_GE(rendered, (hit ? fault.min_share : 0.95) * all * (1 - 1e-12)) << "hand " << hand << ": " << rendered / all;
+    EXPECT_GE(rendered, (hit ? fault.min_share : 0.95) * all * (1 - 1e-12))
+        << "hand " << hand << ": " << rendered / all;
     const Vec3 back = mean(rig.trace, last - 20, last, hand), wanted = mean(clean, last - 20, last, hand);
     EXPECT_LT((back - wanted).norm(), 0.05 * wanted.norm())
         << "not back after a second, hand " << hand << ": " << back.transpose() << " instead of " << wanted.transpose();
@@ -77,7 +79,8 @@ TEST_P(Fault, KeepsItsPromise) {
     if (HasFatalFailure()) return;
   }
 }
-INSTANTIATE_TEST_SUITE_P(Campaign, Fault, ::testing::ValuesIn(fault_cases), [](const auto& i) { return std::string(i.param.name); });
+INSTANTIATE_TEST_SUITE_P(Campaign, Fault, ::testing::ValuesIn(fault_cases),
+                         [](const auto& i) { return std::string(i.param.name); });
 
 TEST(FaultRigs, AreInContactAndTheSameEveryTime) {
   const Trace& clean = undisturbed();
@@ -103,7 +106,8 @@ TEST(FaultTable, IsTheManuals) {
   std::stringstream text;
   text << in.rdbuf();
   std::string wanted;
-  for (const FaultCase& c : fault_cases) wanted += std::string("| `") + c.name + "` | " + c.cause + " | " + c.promise + " |\n";
+  for (const FaultCase& c : fault_cases)
+    wanted += std::string("| `") + c.name + "` | " + c.cause + " | " + c.promise + " |\n";
   EXPECT_NE(text.str().find(wanted), std::string::npos) << "the manual's table of faults should read:\n" << wanted;
 }
 

@@ -31,7 +31,8 @@ class FaultRig {
  public:
   static constexpr std::int64_t ms = 1'000'000, first_session = 1000;
 
-  explicit FaultRig(std::uint64_t seed) : seed_(seed), server_link_(server_bus_, clock, ~seed), schedule_(clock.now_ns() + ms, ms) {
+  explicit FaultRig(std::uint64_t seed)
+      : seed_(seed), server_link_(server_bus_, clock, ~seed), schedule_(clock.now_ns() + ms, ms) {
     std::array<DeviceChoice, 2> choice;
     for (int hand = 0; hand < 2; ++hand) {
       auto d = std::make_unique<DeviceDouble>(hand, clock);
@@ -63,7 +64,8 @@ class FaultRig {
 
   void start_engine() {
     engine_buses_.push_back(std::make_unique<MemBus>(hub_));
-    engines.push_back(std::make_unique<EngineDouble>(*engine_buses_.back(), clock, first_session + std::int64_t(engines.size()), seed_ + engines.size()));
+    engines.push_back(std::make_unique<EngineDouble>(
+        *engine_buses_.back(), clock, first_session + std::int64_t(engines.size()), seed_ + engines.size()));
   }
   /// Both ways.
   void set_link(const LinkFaults& faults) {

@@ -19,11 +19,11 @@ using Buffer = std::vector<std::uint8_t>;
 /// Shares are of the messages, 0 to 1.
 struct LinkFaults {
   double lose = 0;
-  double duplicate = 0;       ///< comes again, some time within the next 50 ms
-  double flip = 0;            ///< with one to eight bits turned over
-  double late_least_s = 0;    ///< each message's own delay, so that they overtake one another
+  double duplicate = 0;     ///< comes again, some time within the next 50 ms
+  double flip = 0;          ///< with one to eight bits turned over
+  double late_least_s = 0;  ///< each message's own delay, so that they overtake one another
   double late_most_s = 0;
-  bool hold = false;          ///< nothing passes; all of it comes at once when this is over
+  bool hold = false;  ///< nothing passes; all of it comes at once when this is over
 };
 
 /// Decorates the sending side of `inner`. One thread.
@@ -60,7 +60,8 @@ class FaultyBus final : public Bus {
     if (faults.hold) return;
     const auto first_not = std::stable_partition(waiting_.begin(), waiting_.end(),
                                                  [now = clock_.now_ns()](const Waiting& w) { return w.due_ns <= now; });
-    std::stable_sort(waiting_.begin(), first_not, [](const Waiting& a, const Waiting& b) { return a.due_ns < b.due_ns; });
+    std::stable_sort(waiting_.begin(), first_not,
+                     [](const Waiting& a, const Waiting& b) { return a.due_ns < b.due_ns; });
     for (auto w = waiting_.begin(); w != first_not; ++w) inner_.publish(w->channel, w->bytes);
     waiting_.erase(waiting_.begin(), first_not);
   }

@@ -13,13 +13,18 @@
 
 namespace insula::test {
 
-/// Written as NAME.json when INSULA_FIGURES names a folder; otherwise nothing is kept. tools/manual/figures.py draws it: laws as lines,
-/// what the run gave as points.
+/// Written as NAME.json when INSULA_FIGURES names a folder; otherwise nothing is kept. tools/manual/figures.py draws
+/// it: laws as lines, what the run gave as points.
 class Figure {
  public:
-  Figure(std::string name, const std::string& title, const std::string& x, const std::string& y) : name_(std::move(name)) {
+  Figure(std::string name, const std::string& title, const std::string& x, const std::string& y)
+      : name_(std::move(name)) {
     if (const char* folder = std::getenv("INSULA_FIGURES")) folder_ = folder;
-    json_ = {{"title", title}, {"x", x}, {"y", y}, {"law", nlohmann::ordered_json::object()}, {"run", nlohmann::ordered_json::object()}};
+    json_ = {{"title", title},
+             {"x", x},
+             {"y", y},
+             {"law", nlohmann::ordered_json::object()},
+             {"run", nlohmann::ordered_json::object()}};
   }
   Figure(const Figure&) = delete;
   Figure& operator=(const Figure&) = delete;

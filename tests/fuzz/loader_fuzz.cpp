@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// libFuzzer target: whatever bytes a scene file holds, the loader returns, says the same thing twice, and gives either a
-// scene or an error. One element of each kind, with a parameter of each type, stands for all.
+// libFuzzer target: whatever bytes a scene file holds, the loader returns, says the same thing twice, and gives either
+// a scene or an error. One element of each kind, with a parameter of each type, stands for all.
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -71,10 +71,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   require(first.ok() == first.diagnostics.ok(), "a scene or an error");
   require(first.diagnostics.format() == second.diagnostics.format(), "the same messages twice");
   require(find_invalid_utf8(first.diagnostics.format()) == std::string_view::npos, "messages are UTF-8");
-  for (const auto& d : first.diagnostics.all()) require(!d.pos.file.empty() && !d.text.empty(), "every message has a place and a text");
+  for (const auto& d : first.diagnostics.all())
+    require(!d.pos.file.empty() && !d.text.empty(), "every message has a place and a text");
   if (first.ok()) {
     require(first.scene->content_hash() == second.scene->content_hash(), "the same hash twice");
-    for (const Component* c : first.scene->components()) require(first.scene->find(c->id) == c, "every component is found by its id");
+    for (const Component* c : first.scene->components())
+      require(first.scene->find(c->id) == c, "every component is found by its id");
   }
   return 0;
 }

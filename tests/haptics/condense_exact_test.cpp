@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/testing/count_allocations.h"
-#include "core/haptics/haptic_update.h"
 #include "core/haptics/condense.h"
 #include "core/haptics/condense_for_test.h"
+#include "core/haptics/haptic_update.h"
+#include "core/testing/count_allocations.h"
 #include "engine/live/publisher.h"
-#include "haptic_server/servo.h"
 #include "haptic_server/problem_for_test.h"
+#include "haptic_server/servo.h"
 
 namespace insula {
 namespace {
@@ -20,8 +20,9 @@ using testing::Random;
 using testing::Wrenches;
 constexpr int all_rows = 360, max_rows = 206;
 
-/// 360 rows: `contacts` of three rows, 16 patches of five, the rest fibres. A tool touches the first twenty contacts, four patches and
-/// six fibres. Where none does, friction is `sticky`; of the other fibres `unbounded` have laws without bounds, every second of them bilateral.
+/// 360 rows: `contacts` of three rows, 16 patches of five, the rest fibres. A tool touches the first twenty contacts,
+/// four patches and six fibres. Where none does, friction is `sticky`; of the other fibres `unbounded` have laws
+/// without bounds, every second of them bilateral.
 ConstraintProblem problem(int contacts, int unbounded, std::uint64_t seed, double sticky = 0.3) {
   const int patches = 16, fibres = all_rows - 3 * contacts - 5 * patches;
   ConstraintProblem p = testing::two_tool_problem(contacts, fibres, seed, patches);
@@ -65,7 +66,8 @@ Wrenches moved(Random& random, double size_m) {
 /// Newtons, moments counted at a lever of 2 cm.
 double apart(const Wrenches& a, const Wrenches& b) {
   double most = 0;
-  for (std::size_t t = 0; t < 2; ++t) most = std::max({most, (a[t] - b[t]).head<3>().norm(), (a[t] - b[t]).tail<3>().norm() / 0.02});
+  for (std::size_t t = 0; t < 2; ++t)
+    most = std::max({most, (a[t] - b[t]).head<3>().norm(), (a[t] - b[t]).tail<3>().norm() / 0.02});
   return most;
 }
 
@@ -85,7 +87,8 @@ TEST(CondenseExact, RowsWithoutBoundsAreEliminatedExactlyWhereverTheToolsGo) {
   }
 }
 
-// A contact that only repeats a bilateral row cannot move once that is eliminated: rounding leaves a compliance of either sign.
+// A contact that only repeats a bilateral row cannot move once that is eliminated: rounding leaves a compliance of
+// either sign.
 TEST(CondenseExact, RowsThatHangOnEliminatedOnesHoldStill) {
   int hanging = 0;
   for (std::uint64_t seed : {7, 8, 9, 10}) {
@@ -102,7 +105,8 @@ TEST(CondenseExact, RowsThatHangOnEliminatedOnesHoldStill) {
       full.delta_free[to] = full.delta_free[from];
     }
     for (Block& b : full.blocks)
-      if (b.row >= 60 && b.law == LawKind::friction) b.friction = 0;  // how two that share a load divide it is open, and so is their friction
+      if (b.row >= 60 && b.law == LawKind::friction)
+        b.friction = 0;  // how two that share a load divide it is open, and so is their friction
     solve_well(full, full.delta_free, full.lambda);
     ConstraintProblem small;
     Condenser()(full, max_rows, small);
@@ -139,7 +143,8 @@ TEST(CondenseExact, MixedStatesAreExactUntilOneChanges) {
       return -1;
     };
     held.delta_free[std::size_t(i)] = full.delta_free[std::size_t(original(i))];
-    for (int c = 0; c < full.rows; ++c) held.delta_free[std::size_t(i)] += full.w_at(original(i), c) * full.lambda[std::size_t(c)];
+    for (int c = 0; c < full.rows; ++c)
+      held.delta_free[std::size_t(i)] += full.w_at(original(i), c) * full.lambda[std::size_t(c)];
     for (int j = 0; j < small.rows; ++j) {
       held.w[std::size_t(i) * std::size_t(held.stride) + std::size_t(j)] = full.w_at(original(i), original(j));
       held.delta_free[std::size_t(i)] -= full.w_at(original(i), original(j)) * small.lambda[std::size_t(j)];
@@ -162,7 +167,8 @@ TEST(CondenseExact, MixedStatesAreExactUntilOneChanges) {
   EXPECT_LT(far, 0.5 * far_held);
 }
 
-/// Where no tool touches, what presses is given (a lower and an upper bound of one size), and friction of that strength slips.
+/// Where no tool touches, what presses is given (a lower and an upper bound of one size), and friction of that strength
+/// slips.
 ConstraintProblem slipping(std::uint64_t seed) {
   ConstraintProblem p = problem(20, 214, seed);
   int pressing = 0;
@@ -174,7 +180,8 @@ ConstraintProblem slipping(std::uint64_t seed) {
   return p;
 }
 
-// The direction across a slip turns with it; along it the force stays while what presses does. So only the curvature of the cone is left.
+// The direction across a slip turns with it; along it the force stays while what presses does. So only the curvature of
+// the cone is left.
 TEST(CondenseExact, FrictionThatSlipsTurnsWithItsSlip) {
   for (const std::uint64_t seed : {13, 14, 15}) {
     ConstraintProblem full = slipping(seed);
@@ -184,7 +191,8 @@ TEST(CondenseExact, FrictionThatSlipsTurnsWithItsSlip) {
       if (b.law != LawKind::patch || b.friction != 0.05) continue;
       double pressed = 0;
       for (int i = 1; i <= 3; ++i) pressed += full.lambda[std::size_t(b.row - i)];
-      slips += std::hypot(full.lambda[std::size_t(b.row)], full.lambda[std::size_t(b.row + 1)]) > (1 - 1e-9) * b.friction * pressed;
+      slips += std::hypot(full.lambda[std::size_t(b.row)], full.lambda[std::size_t(b.row + 1)]) >
+               (1 - 1e-9) * b.friction * pressed;
     }
     ASSERT_GE(slips, 10);
     ConstraintProblem small;
@@ -213,9 +221,12 @@ TEST(CondenseExact, RowsThatHangOnOthersAreHeld) {
   ConstraintProblem full = problem(40, 154, 9);
   std::vector<int> twins;
   for (const Block& b : full.blocks)
-    if (b.upper == infinite && b.law == LawKind::box && b.compliance == 0 && twins.size() < 3 && b.lower == -infinite) twins.push_back(b.row);
+    if (b.upper == infinite && b.law == LawKind::box && b.compliance == 0 && twins.size() < 3 && b.lower == -infinite)
+      twins.push_back(b.row);
   ASSERT_EQ(twins.size(), 3u);
-  const auto w = [&](int i, int j) -> double& { return full.w[std::size_t(i) * std::size_t(full.stride) + std::size_t(j)]; };
+  const auto w = [&](int i, int j) -> double& {
+    return full.w[std::size_t(i) * std::size_t(full.stride) + std::size_t(j)];
+  };
   for (std::size_t k = 1; k < 3; ++k) {
     for (int j = 0; j < full.rows; ++j) w(twins[k], j) = w(twins[0], j);
     for (int j = 0; j < full.rows; ++j) w(j, twins[k]) = w(j, twins[0]);
@@ -251,7 +262,8 @@ TEST(CondenseExact, ThreeHundredAndSixtyRowsAreServedOverTheBus) {
     input.connected = {true, true};
     for (std::size_t t = 0; t < 2; ++t) input.device[t] = displaced(full.tools[t].device, d[t]);
     ServoResult result;
-    for (int tick = 0; tick < 5; ++tick) result = servo.tick(input);  // a hand moves less in a tick than from one k to the next
+    for (int tick = 0; tick < 5; ++tick)
+      result = servo.tick(input);  // a hand moves less in a tick than from one k to the next
     for (std::size_t t = 0; t < 2; ++t) {
       ASSERT_TRUE(result.hand[t].valid);
       EXPECT_LT((result.hand[t].force - whole[t].head<3>()).norm(), 0.02 * whole[t].head<3>().norm()) << k;

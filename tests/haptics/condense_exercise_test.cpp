@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "core/sim/motion.h"
-#include "core/testing/example.h"
 #include "core/haptics/condense.h"
 #include "core/haptics/condense_for_test.h"
+#include "core/sim/motion.h"
+#include "core/testing/example.h"
 #include "engine/live/headless.h"
 #include "engine/live/live_engine.h"
 #include "engine/live/publisher.h"
@@ -40,16 +40,19 @@ TEST(CondenseExercise, AClippingIsFeltAsByTheWholeProblem) {
     Wrenches still{Vec6::Zero(), Vec6::Zero()}, on = still;
     for (std::size_t t = 0; t < full.tools.size(); ++t) {
       const int hand = full.tools[t].hand;
-      on[t] = displacement(motion.at(hand, simulation.time()).pose, motion.at(hand, simulation.time() + simulation.h()).pose);
+      on[t] = displacement(motion.at(hand, simulation.time()).pose,
+                           motion.at(hand, simulation.time() + simulation.h()).pose);
     }
-    const auto before = hand_wrenches(full, still, well), whole = hand_wrenches(full, on, well), cut = hand_wrenches(small, on, well);
+    const auto before = hand_wrenches(full, still, well), whole = hand_wrenches(full, on, well),
+               cut = hand_wrenches(small, on, well);
     for (std::size_t t = 0; t < 2; ++t) {
       max_error_N = std::max(max_error_N, (cut[t] - whole[t]).head<3>().norm());
       max_change_N = std::max(max_change_N, (whole[t] - before[t]).head<3>().norm());
     }
     ++compared;
   }
-  std::printf("%d problems: off by %.4f mN at most, of a change of %.2f mN in a step\n", compared, 1e3 * max_error_N, 1e3 * max_change_N);
+  std::printf("%d problems: off by %.4f mN at most, of a change of %.2f mN in a step\n", compared, 1e3 * max_error_N,
+              1e3 * max_change_N);
   EXPECT_GT(compared, max_compared / 2);
   EXPECT_GT(max_change_N, 5e-3);
   EXPECT_LT(max_error_N, 2e-3 * max_change_N);

@@ -7,16 +7,16 @@
 
 #include "core/haptics/condense.h"
 #include "core/haptics/weld_elimination.h"
-#include "haptic_server/welded_problem_for_test.h"
 #include "haptic_server/servo.h"
+#include "haptic_server/welded_problem_for_test.h"
 
 namespace insula {
 namespace {
 
 using testing::Random;
 
-/// 110 rows of a tool and its clip, and as many again that neither touches, of tissue that joins them all. The others are nearer to another
-/// state than the clip's contacts are.
+/// 110 rows of a tool and its clip, and as many again that neither touches, of tissue that joins them all. The others
+/// are nearer to another state than the clip's contacts are.
 ConstraintProblem clip_among_others(std::uint64_t seed) {
   constexpr int own = 4, contacts = 100, others = 110, soft = 30;
   const ConstraintProblem clip = testing::with_clip(contacts, own, seed);
@@ -31,11 +31,14 @@ ConstraintProblem clip_among_others(std::uint64_t seed) {
   Random random(seed + 1);
   MatX shape(all, soft);
   for (int i = 0; i < all; ++i)
-    for (int k = 0; k < soft; ++k) shape(i, k) = random.next() * (i >= own && i < own + weld_rows ? 0 : i < n ? 1e-2 : 3e-2);
+    for (int k = 0; k < soft; ++k)
+      shape(i, k) = random.next() * (i >= own && i < own + weld_rows ? 0 : i < n ? 1e-2 : 3e-2);
   const MatX tissue = shape * shape.transpose();
   for (int i = 0; i < all; ++i) {
     for (int j = 0; j < all; ++j)
-      p.w[std::size_t(i) * std::size_t(p.stride) + std::size_t(j)] = tissue(i, j) + (i < n && j < n ? clip.w_at(i, j) : i == j ? 4e-3 : 0.0);
+      p.w[std::size_t(i) * std::size_t(p.stride) + std::size_t(j)] = tissue(i, j) + (i < n && j < n ? clip.w_at(i, j)
+                                                                                     : i == j       ? 4e-3
+                                                                                                    : 0.0);
     p.retardation_time[std::size_t(i)] = i >= own && i < own + weld_rows ? 0 : 0.02;
     p.delta_free[std::size_t(i)] = i < n ? clip.delta_free[std::size_t(i)] : -1e-5;
     if (i >= n) p.blocks.push_back({.id = std::uint64_t(5000 + i), .row = i, .lower = 0});
@@ -56,7 +59,9 @@ TEST(CondenseCarried, WhatACarriedClipTouchesIsKept) {
   Condenser()(full, 114, small);
   ASSERT_LE(small.rows, 114);
   for (int b = 0; b < 110; ++b)  // the first 110 blocks have a row each
-    EXPECT_TRUE(std::any_of(small.blocks.begin(), small.blocks.end(), [&](const Block& s) { return s.id == full.blocks[std::size_t(b)].id; })) << b;
+    EXPECT_TRUE(std::any_of(small.blocks.begin(), small.blocks.end(), [&](const Block& s) {
+      return s.id == full.blocks[std::size_t(b)].id;
+    })) << b;
   // The six rows come along even where not all that is felt does, or there would be no telling what the clip is.
   ConstraintProblem tiny;
   Condenser()(full, 30, tiny);

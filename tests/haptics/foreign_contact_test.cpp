@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "core/mechanics/constraint.h"
 #include "core/haptics/contact_frame_prediction.h"
+#include "core/mechanics/constraint.h"
 #include "core/mechanics/instrument.h"
 #include "core/registry/registry.h"
 #include "core/testing/block_mesh.h"
@@ -42,7 +42,8 @@ class RollerContact final : public Constraint {
   void predict_frames(double steps, std::vector<ContactFrame>& out) const override {
     if (!pressed_) return;
     const Vec3 now = tool->position(point()), way = now - start_;
-    out.push_back({row_ + wrong_row, normal(start_), Vec3::UnitY(), normal(now + steps * way), normal(now + (steps + 1) * way)});
+    out.push_back(
+        {row_ + wrong_row, normal(start_), Vec3::UnitY(), normal(now + steps * way), normal(now + (steps + 1) * way)});
   }
   void estimate_cost(CostCounts& out) const override {
     out.tool_pieces += 2;
@@ -68,7 +69,8 @@ class ForeignContact : public ::testing::Test {
     folder_.write("meshes/tool/tool.urdf", test::test_tool_urdf(1e-3));
     auto result = load_simulation_text(R"(<scene title="roller">
 <retractor id="tool" model="meshes/tool/tool.urdf" hand="right" home="0 0 3 mm" shaft="0 0 1" flat="1 0 0"/>
-<roller_contact id="roller" tool="tool"/></scene>)", folder_.path() / "scene.xml", registry_, 1);
+<roller_contact id="roller" tool="tool"/></scene>)",
+                                       folder_.path() / "scene.xml", registry_, 1);
     ASSERT_TRUE(result.diagnostics.all().empty()) << result.diagnostics.format();
     s_ = std::move(result.simulation);
     contact_ = s_->scene().find_as<RollerContact>("roller");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A person's arm against something hard, in simulated time: engine at its rate, servo at 1 kHz, gate, encoder, arm and hand. What the servo
-// makes may be held between problems (as solvers without a haptic loop do), for comparison.
+// A person's arm against something hard, in simulated time: engine at its rate, servo at 1 kHz, gate, encoder, arm and
+// hand. What the servo makes may be held between problems (as solvers without a haptic loop do), for comparison.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -18,8 +18,9 @@ namespace insula::test {
 /// Device and hand together, as one mass on the person's spring and damper.
 struct Person {
   double mass_kg = 0.125, damping_Ns_m = 10, stiffness_N_m = 400;
-  /// Of the device: a tenth of what the best arms have. Without any, an encoder's steps alone keep a tool on a wall trembling, by less than
-  /// a step; friction above stiffness x step / 2, here 14 mN, ends it (Abbott and Okamura 2005).
+  /// Of the device: a tenth of what the best arms have. Without any, an encoder's steps alone keep a tool on a wall
+  /// trembling, by less than a step; friction above stiffness x step / 2, here 14 mN, ends it (Abbott and Okamura
+  /// 2005).
   double friction_N = 0.02;
 };
 
@@ -29,15 +30,16 @@ struct Press {
   double depth_m = 2e-3;  ///< the goal lies so deep in the plate
   double slide_m_s = 0;   ///< and goes along it
   double seconds = 5;
-  bool held = false;      ///< the force of a tick in which a problem came stays until the next one
-  bool late = true;       ///< a problem reaches the servo a step after the poses it was made with, as from an engine that only just keeps up
+  bool held = false;  ///< the force of a tick in which a problem came stays until the next one
+  bool late = true;   ///< a problem reaches the servo a step after the poses it was made with, as from an engine that
+                      ///< only just keeps up
   ServoSettings servo = ServoSettings::beyond_equation_7();
 };
 
 struct Pressed {
   double first_speed = 0, last_speed = 0;  ///< rms of the arm across the plate, first and last second of contact, m/s
   double swing = 0;                        ///< largest less smallest height in the last second, m
-  double max_energy = 0;                  ///< that the hand was ever given, all it had given before taken off, J
+  double max_energy = 0;                   ///< that the hand was ever given, all it had given before taken off, J
   double last_energy = 0;                  ///< at the end
   double observed = 0;                     ///< the observer's own largest
   double force = 0;                        ///< mean at the end, N

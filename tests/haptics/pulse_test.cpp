@@ -13,7 +13,8 @@ namespace {
 
 /// A dissector that lies still against the dome of an aneurysm; force along it every millisecond, N.
 std::vector<double> on_the_dome(double rate_per_min, const ServoSettings& settings, std::vector<double>& engine) {
-  const Vec3 top(52.012e-3, 15.325e-3, -6.586e-3), out = Vec3(0.86411434, -0.03014352, 0.50239206).normalized();  // apex, and away from the neck
+  const Vec3 top(52.012e-3, 15.325e-3, -6.586e-3),
+      out = Vec3(0.86411434, -0.03014352, 0.50239206).normalized();  // apex, and away from the neck
   const Vec3 home = 1000 * (top + 0.1e-3 * out);
   char text[1500];
   std::snprintf(text, sizeof text, R"(<scene title="pulse">

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether a hand against something hard comes to rest, whatever the arm, the person and the engine's rate; and how stiff a wall may be.
-// INSULA_SOAK=1: a minute each, all combinations, and the table of the manual.
+// Whether a hand against something hard comes to rest, whatever the arm, the person and the engine's rate; and how
+// stiff a wall may be. INSULA_SOAK=1: a minute each, all combinations, and the table of the manual.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -17,7 +17,8 @@ bool soak() { return std::getenv("INSULA_SOAK") != nullptr; }
 
 /// Tools that meet a wall without giving way themselves: the coupling is what the hand feels.
 constexpr double stiffest_N_m = 500;
-/// What a hand may have had out of its arrival at the wall, however long it then stays, J: a tenth of a newton's way of a tenth of a millimetre.
+/// What a hand may have had out of its arrival at the wall, however long it then stays, J: a tenth of a newton's way of
+/// a tenth of a millimetre.
 constexpr double enough_J = 1e-5;
 
 TEST(Stability, NoExerciseHasAStifferToolInAHand) {
@@ -40,15 +41,19 @@ double own_decay(const Person& p, double seconds) {
 
 /// The person's own swing may not have died yet; nothing else moves the hand farther than the encoder sees.
 bool at_rest(const Pressed& r, const Press& what, const Person& person) {
-  return r.last_speed < r.first_speed * (0.1 + own_decay(person, what.seconds - 2.3)) || r.swing < omni_profile().resolution_m;
+  return r.last_speed < r.first_speed * (0.1 + own_decay(person, what.seconds - 2.3)) ||
+         r.swing < omni_profile().resolution_m;
 }
 
 void expect_rest(const Press& what, const Person& person) {
-  SCOPED_TRACE(testing::Message() << what.engine_Hz << " Hz, coupling " << what.coupling_N_m << " N/m, " << person.mass_kg << " kg, " << person.damping_Ns_m << " N s/m, " << person.stiffness_N_m << " N/m");
+  SCOPED_TRACE(testing::Message() << what.engine_Hz << " Hz, coupling " << what.coupling_N_m << " N/m, "
+                                  << person.mass_kg << " kg, " << person.damping_Ns_m << " N s/m, "
+                                  << person.stiffness_N_m << " N/m");
   const Pressed r = press(what, person);
   ASSERT_TRUE(std::isfinite(r.swing));
   EXPECT_GT(r.force, 0.02) << "it touches";
-  EXPECT_TRUE(at_rest(r, what, person)) << "speed " << r.first_speed << " then " << r.last_speed << " m/s, swing " << r.swing;
+  EXPECT_TRUE(at_rest(r, what, person)) << "speed " << r.first_speed << " then " << r.last_speed << " m/s, swing "
+                                        << r.swing;
   EXPECT_LT(r.last_energy, enough_J) << "more was given back than put in, J; at most " << r.max_energy;
 }
 
@@ -104,7 +109,10 @@ TEST(Stability, WallsAreStifferThanWithAHeldForce) {
     const char* name;
     Person person;
   };
-  const std::vector<Case> cases{{"let go of", {0.05, 1, 50, 0}}, {"loosely held", {0.125, 3, 150, 0}}, {"held", {0.125, 10, 400, 0}}, {"held firmly", {0.3, 30, 1000, 0}}};
+  const std::vector<Case> cases{{"let go of", {0.05, 1, 50, 0}},
+                                {"loosely held", {0.125, 3, 150, 0}},
+                                {"held", {0.125, 10, 400, 0}},
+                                {"held firmly", {0.3, 30, 1000, 0}}};
   for (const Case& c : cases)
     for (const double rate : {30.0, 60.0}) {
       if (!soak() && (rate != 30 || c.person.stiffness_N_m > 200)) continue;

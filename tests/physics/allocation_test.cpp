@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What allocates: nothing in solve, nothing in the parts of a step. Every operator new of this program counts. Whole steps of
-// every plugin: contracts_test.cpp.
+// What allocates: nothing in solve, nothing in the parts of a step. Every operator new of this program counts. Whole
+// steps of every plugin: contracts_test.cpp.
 #include <gtest/gtest.h>
 
 #include "core/collision/colliders/contact_selection.h"
-#include "core/collision/shapes/shapes_for_test.h"
 #include "core/collision/colliders/vertex_collider.h"
+#include "core/collision/shapes/shapes_for_test.h"
 #include "core/linalg/kernels.h"
 #include "core/testing/count_allocations.h"
 #include "core/testing/example.h"
@@ -122,7 +122,8 @@ TEST(Allocation, DetectionByVerticesAllocatesNothing) {
     mesh.update(now, free);
     found.clear();
     const Pose start{Vec3(1e-4 * (i % 10), 0, 5e-3 - 5e-5 * i), from_rotation_vector(Vec3(0.01 * i, 0, 0))};
-    collider.detect(mesh, start, displaced(start, (Vec6() << 0, 0, -1e-3, 0.05, 0, 0).finished()), {.alarm = 3e-4, .offset = 1.5e-4}, found);
+    collider.detect(mesh, start, displaced(start, (Vec6() << 0, 0, -1e-3, 0.05, 0, 0).finished()),
+                    {.alarm = 3e-4, .offset = 1.5e-4}, found);
     selection.select(found, {.spacing = 0, .advantage = 1e-4, .max_contacts = 100, .max_per_piece = 100}, key);
     seen += long(found.size());
   }

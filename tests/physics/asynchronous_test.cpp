@@ -11,7 +11,8 @@
 namespace insula {
 namespace {
 
-/// A block of tissue that a probe presses, drags on and leaves; off its middle, where friction would be as good one way as the other.
+/// A block of tissue that a probe presses, drags on and leaves; off its middle, where friction would be as good one way
+/// as the other.
 struct Pressed {
   test::SceneFolder folder;
   std::unique_ptr<Simulation> s;
@@ -24,14 +25,16 @@ struct Pressed {
 <soft_body id="tissue" mesh="meshes/block.msh" mesh_unit="m" {}><corotational_fem young="3 kPa" poisson="0.45" density="1 g/cm3"/>
 <fixed region="beyond" centre="0 0 -9.9 mm" normal="0 0 -1"/><surface id="skin"/></soft_body>
 <dissector id="probe" hand="right" sharp="never" model="meshes/probe/tool.urdf" home="0.7 0.4 2.5 mm" shaft="0 0 1" flat="1 0 0" coupling="400 N/m"/>
-<contact id="touch" between="tissue probe" friction="0.3" spacing="0.5 mm" max_contacts="12"/></scene>)", solver),
-                                              folder.path() / "scene.xml", threads);
+<contact id="touch" between="tissue probe" friction="0.3" spacing="0.5 mm" max_contacts="12"/></scene>)",
+                                    solver),
+                        folder.path() / "scene.xml", threads);
   }
   /// Force on the hand after each of so many steps.
   std::vector<Vec3> play(int steps) {
     std::vector<Vec3> out;
     for (int k = 0; k < steps; ++k) {
-      const double t = k * s->h(), down = std::min(1.0, t / 0.3), side = std::clamp((t - 0.4) / 0.6, 0.0, 1.0), up = std::clamp((t - 1.2) / 0.3, 0.0, 1.0);
+      const double t = k * s->h(), down = std::min(1.0, t / 0.3), side = std::clamp((t - 0.4) / 0.6, 0.0, 1.0),
+                   up = std::clamp((t - 1.2) / 0.3, 0.0, 1.0);
       HandState hand;
       hand.present = true;
       hand.device = s->instrument_of(1)->home_pose();

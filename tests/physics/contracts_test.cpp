@@ -21,7 +21,8 @@ fs::path example_of(const std::string& plugin) { return source / "plugins" / plu
 std::vector<std::string> plugins() {
   std::vector<std::string> out;
   for (const auto& entry : fs::directory_iterator(source / "plugins"))
-    if (entry.is_directory() && fs::exists(entry.path() / (entry.path().filename().string() + ".cpp"))) out.push_back(entry.path().filename().string());
+    if (entry.is_directory() && fs::exists(entry.path() / (entry.path().filename().string() + ".cpp")))
+      out.push_back(entry.path().filename().string());
   std::sort(out.begin(), out.end());
   return out;
 }

@@ -45,7 +45,9 @@ TEST(ImplicitEuler, FreeFall) {
     if (n % 4 == 0) figure.run("run", n, body->rest().nodes[0].z() - body->q()[2]);
     for (int i = 0; i < body->nodes(); ++i) {
       ASSERT_LT((body->v().segment<3>(3 * i) - n * h * g).norm(), 1e-9 * n * h * g.norm()) << "step " << n;
-      ASSERT_LT((body->q().segment<3>(3 * i) - body->rest().nodes[std::size_t(i)] - 0.5 * h * h * n * (n + 1) * g).norm(), 1e-9 * h * h * n * (n + 1) * g.norm());
+      ASSERT_LT(
+          (body->q().segment<3>(3 * i) - body->rest().nodes[std::size_t(i)] - 0.5 * h * h * n * (n + 1) * g).norm(),
+          1e-9 * h * h * n * (n + 1) * g.norm());
     }
   }
 }
@@ -57,15 +59,21 @@ TEST(ImplicitEuler, RigidTranslationAndSmallRotationStayRigid) {
     auto body = test::soft_body(cube(), {.young = 2100, .poisson = 0.45});
     Vec3 centre = Vec3::Zero();
     for (const Vec3& x : body->rest().nodes) centre += x / body->nodes();
-    const auto velocity = [&](int i) -> Vec3 { return turning ? Vec3(spin.cross(body->rest().nodes[std::size_t(i)] - centre)) : v; };
+    const auto velocity = [&](int i) -> Vec3 {
+      return turning ? Vec3(spin.cross(body->rest().nodes[std::size_t(i)] - centre)) : v;
+    };
     for (int i = 0; i < body->nodes(); ++i) body->v().segment<3>(3 * i) = velocity(i);
     for (int n = 1; n <= 100; ++n) {
       test::step(*body, h);
       for (int i = 0; i < body->nodes(); ++i) {
         const Vec3 moved = body->q().segment<3>(3 * i) - body->rest().nodes[std::size_t(i)];
-        ASSERT_TRUE(test::held("rigid motion stays rigid", (moved - n * h * velocity(i)).norm(), turning ? 0.02 : n * h * v.norm(), 1e-10)) << "step " << n;
+        ASSERT_TRUE(test::held("rigid motion stays rigid", (moved - n * h * velocity(i)).norm(),
+                               turning ? 0.02 : n * h * v.norm(), 1e-10))
+            << "step " << n;
         // Rotation by 1e-6 rad: also right to that size relative to itself (its square is the next order).
-        if (turning) { ASSERT_LT((moved - n * h * velocity(i)).norm(), 2e-6 * n * h * spin.norm() * 0.02); }
+        if (turning) {
+          ASSERT_LT((moved - n * h * velocity(i)).norm(), 2e-6 * n * h * spin.norm() * 0.02);
+        }
       }
     }
   }
@@ -79,7 +87,8 @@ TEST(ImplicitEuler, FreeBodyKeepsItsMomentum) {
     double size = 0;
     for (int i = 0; i < body->nodes(); ++i) {
       const Vec3 r = body->rest().nodes[std::size_t(i)] - Vec3(0.11, -0.19, 0.31);
-      body->q().segment<3>(3 * i) += 0.1 * Vec3(r.y(), -r.x() + r.z(), r.x()) + 0.0002 * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+      body->q().segment<3>(3 * i) += 0.1 * Vec3(r.y(), -r.x() + r.z(), r.x()) +
+                                     0.0002 * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
       body->v().segment<3>(3 * i) = Vec3(0.1, -0.3, 0.2) + Vec3(3, -2, 4).cross(r);
       size += body->node_mass()[std::size_t(i)] * body->v().segment<3>(3 * i).norm();
     }
@@ -103,13 +112,15 @@ TEST(RayleighDamping, MassPartSlowsRigidMotion) {
   const Vec3 v(0.1, 0.2, -0.4);
   for (int i = 0; i < body->nodes(); ++i) body->v().segment<3>(3 * i) = v;
   double factor = 1;
-  test::Figure figure("mass_damping", "A body slowed by the damping of its mass: 1 / (1 + alpha h)^n", "step", "speed over that at first");
+  test::Figure figure("mass_damping", "A body slowed by the damping of its mass: 1 / (1 + alpha h)^n", "step",
+                      "speed over that at first");
   for (int n = 1; n <= 120; ++n) {
     test::step(*body, h);
     factor /= 1 + alpha * h;
     figure.law("law", n, factor);
     if (n % 4 == 0) figure.run("run", n, body->v()[2] / v.z());
-    for (int i = 0; i < body->nodes(); ++i) ASSERT_LT((body->v().segment<3>(3 * i) - factor * v).norm(), 1e-10 * v.norm()) << n;
+    for (int i = 0; i < body->nodes(); ++i)
+      ASSERT_LT((body->v().segment<3>(3 * i) - factor * v).norm(), 1e-10 * v.norm()) << n;
   }
 }
 
@@ -121,8 +132,10 @@ TEST(RayleighDamping, OscillatorFollowsTheDiscretisedLaw) {
   const double mu = young / (2 * (1 + nu)), lambda = young * nu / ((1 + nu) * (1 - 2 * nu));
   const double volume = a * a * a / 6, k = volume * (2 * mu + lambda) / (a * a), m = density * volume / 4;
   test::Figure figure("oscillator", "A mass on tissue in implicit Euler", "step", "displacement, mm");
-  for (const auto& [alpha, beta, h] : {std::tuple{0.0, 0.0, 1e-4}, std::tuple{0.0, 0.0, 1.0 / 60}, std::tuple{1.0, 0.02, 1.0 / 60}, std::tuple{50.0, 0.0, 1e-3}}) {
-    auto body = test::soft_body(test::single_tet(a), {young, nu, density, alpha, beta}, [](const Vec3& x) { return x.z() < 1e-9; });
+  for (const auto& [alpha, beta, h] : {std::tuple{0.0, 0.0, 1e-4}, std::tuple{0.0, 0.0, 1.0 / 60},
+                                       std::tuple{1.0, 0.02, 1.0 / 60}, std::tuple{50.0, 0.0, 1e-3}}) {
+    auto body = test::soft_body(test::single_tet(a), {young, nu, density, alpha, beta},
+                                [](const Vec3& x) { return x.z() < 1e-9; });
     double u = 0.2 * a, v = -0.3;
     body->q()[11] += u;
     body->v()[11] = v;
@@ -149,7 +162,8 @@ TEST(RayleighDamping, OscillatorFollowsTheDiscretisedLaw) {
 
 // The rows' compliance is that of the body's own system matrix: a unit force through a row moves its point by W.
 TEST(ImplicitEuler, ComplianceAndCorrectionAgree) {
-  auto body = test::soft_body(cube(), {.young = 2100, .poisson = 0.45, .rayleigh_mass = 1, .rayleigh_stiffness = 0.02}, [](const Vec3& x) { return x.z() < 0.3 + 1e-9; });
+  auto body = test::soft_body(cube(), {.young = 2100, .poisson = 0.45, .rayleigh_mass = 1, .rayleigh_stiffness = 0.02},
+                              [](const Vec3& x) { return x.z() < 0.3 + 1e-9; });
   body->q() = [&] {
     VecX q = body->q();
     for (int i = 0; i < body->nodes(); ++i)
@@ -195,7 +209,8 @@ TEST(ImplicitEuler, ComplianceAndCorrectionAgree) {
     double moved = 0;
     for (int k = 0; k < 3; ++k) {
       const int n = points[std::size_t(r)].node[std::size_t(k)];
-      moved += points[std::size_t(r)].weight[std::size_t(k)] * directions[std::size_t(r)].dot(body->q().segment<3>(3 * n) - start.segment<3>(3 * n));
+      moved += points[std::size_t(r)].weight[std::size_t(k)] *
+               directions[std::size_t(r)].dot(body->q().segment<3>(3 * n) - start.segment<3>(3 * n));
     }
     EXPECT_TRUE(test::held("unit lambda moves its point by W", std::abs(moved - expected), 1, 1e-12)) << r;
   }

@@ -9,7 +9,9 @@ namespace {
 
 using namespace test;
 
-LocalContact local(const Mat3& w, const Vec3& q) { return {w(0, 0), w(0, 1), w(0, 2), w(1, 1), w(1, 2), w(2, 2), q[0], q[1], q[2]}; }
+LocalContact local(const Mat3& w, const Vec3& q) {
+  return {w(0, 0), w(0, 1), w(0, 2), w(1, 1), w(1, 2), w(2, 2), q[0], q[1], q[2]};
+}
 
 // All sliding solutions by search over the direction of friction: gap closed and slip against it.
 std::vector<Vec3> search(const Mat3& w, const Vec3& q, double mu) {
@@ -63,13 +65,15 @@ TEST(LocalContact, IsTheSolutionThatASearchFinds) {
     solve_contact(local(w, q), mu, lambda.data());
     const Vec3 delta = w * lambda + q;
     const double force = q.norm() / w.trace(), length = q.norm();
-    ASSERT_LT(contact_error(delta, lambda, mu, length, std::max(force, lambda.norm())), 1e-8) << "trial " << trial << " mu " << mu << " lambda " << lambda.transpose() << " delta " << delta.transpose();
+    ASSERT_LT(contact_error(delta, lambda, mu, length, std::max(force, lambda.norm())), 1e-8)
+        << "trial " << trial << " mu " << mu << " lambda " << lambda.transpose() << " delta " << delta.transpose();
     if (mu == 0) continue;
     const auto all = search(w, q, mu);
     ASSERT_FALSE(all.empty()) << trial;
     double nearest = 1e300;
     for (const Vec3& s : all) nearest = std::min(nearest, (s - lambda).norm());
-    EXPECT_TRUE(test::held("contact with friction = search", nearest, std::max(force, lambda.norm()), 1e-7)) << "trial " << trial << ": " << all.size() << " found by search";
+    EXPECT_TRUE(test::held("contact with friction = search", nearest, std::max(force, lambda.norm()), 1e-7))
+        << "trial " << trial << ": " << all.size() << " found by search";
     several += all.size() > 1;
     if (q[0] >= 0) ++open;
     else if (delta.tail<2>().norm() < 1e-9) ++stick;
@@ -83,7 +87,8 @@ TEST(LocalContact, IsTheSolutionThatASearchFinds) {
 TEST(LocalContact, DegenerateInputsGiveFiniteForces) {
   const Vec3 q(-1, 0.5, 0.2);
   for (const double mu : {0.0, 0.3, 5.0})
-    for (const Mat3& w : {Mat3(Mat3::Zero()), Mat3(Vec3(1, 0, 0).asDiagonal()), Mat3(Mat3::Ones()), Mat3(1e-12 * Mat3::Identity()), Mat3(Vec3(1, 1e-14, 1).asDiagonal())}) {
+    for (const Mat3& w : {Mat3(Mat3::Zero()), Mat3(Vec3(1, 0, 0).asDiagonal()), Mat3(Mat3::Ones()),
+                          Mat3(1e-12 * Mat3::Identity()), Mat3(Vec3(1, 1e-14, 1).asDiagonal())}) {
       Vec3 lambda;
       solve_contact(local(w, q), mu, lambda.data());
       EXPECT_TRUE(lambda.allFinite());

@@ -24,14 +24,15 @@ inline double contact_error(const Vec3& delta, const Vec3& lambda, double mu, do
   double error = std::max(-delta[0] / length, -lambda[0] / force);
   error = std::max(error, std::min(std::abs(delta[0]) / length, std::abs(lambda[0]) / force));
   const Eigen::Vector2d slip = delta.tail<2>(), f = lambda.tail<2>();
-  error = std::max(error, (f.norm() - mu * lambda[0]) / force);  // cone
+  error = std::max(error, (f.norm() - mu * lambda[0]) / force);            // cone
   if (lambda[0] > 1e-12 * force && slip.norm() > 1e-9 * length && mu > 0)  // slips: on the cone, opposing
-    error = std::max({error, std::abs(f.norm() - mu * lambda[0]) / force, (f + mu * lambda[0] * slip / slip.norm()).norm() / force * std::min(1.0, slip.norm() / length)});
+    error = std::max({error, std::abs(f.norm() - mu * lambda[0]) / force,
+                      (f + mu * lambda[0] * slip / slip.norm()).norm() / force * std::min(1.0, slip.norm() / length)});
   return error;
 }
 
-/// Contacts, patches, fibres, holds and links among a few bodies of several degrees of freedom: W = H A^-1 H^T plus a little on
-/// the diagonal, so that the solution is one.
+/// Contacts, patches, fibres, holds and links among a few bodies of several degrees of freedom: W = H A^-1 H^T plus a
+/// little on the diagonal, so that the solution is one.
 inline ConstraintProblem random_problem(Random& random, double friction) {
   ConstraintProblem p;
   int rows = 0;
@@ -49,12 +50,18 @@ inline ConstraintProblem random_problem(Random& random, double friction) {
     Block b;
     const int self = int(made.size());
     switch (random.below(7)) {
-      case 0: break;                                                                     // bilateral
-      case 1: b.compliance = random.uniform(0.1, 2); break;                              // two-sided spring
-      case 2: b.compliance = random.uniform(0.1, 2); b.upper = 0; break;                 // fibre
-      case 3: b.lower = 0; break;                                                        // contact without friction
-      case 4: b.upper = random.uniform(0.1, 1); b.lower = -b.upper; break;               // plastic hold
-      case 5: {                                                                          // contacts that share a friction force
+      case 0: break;                                         // bilateral
+      case 1: b.compliance = random.uniform(0.1, 2); break;  // two-sided spring
+      case 2:
+        b.compliance = random.uniform(0.1, 2);
+        b.upper = 0;
+        break;                     // fibre
+      case 3: b.lower = 0; break;  // contact without friction
+      case 4:
+        b.upper = random.uniform(0.1, 1);
+        b.lower = -b.upper;
+        break;   // plastic hold
+      case 5: {  // contacts that share a friction force
         const int normals = 1 + int(random.below(4));
         Block contact;
         contact.lower = 0;
@@ -95,7 +102,8 @@ inline ConstraintProblem random_problem(Random& random, double friction) {
 }
 
 /// The same for a patch whose contacts bear `pressed` together.
-inline double patch_error(const Eigen::Vector2d& slip, const Eigen::Vector2d& f, double bound, double length, double force) {
+inline double patch_error(const Eigen::Vector2d& slip, const Eigen::Vector2d& f, double bound, double length,
+                          double force) {
   double error = (f.norm() - bound) / force;
   error = std::max(error, std::min(slip.norm() / length, (bound - f.norm()) / force));  // slips only on the bound ...
   if (slip.norm() > 1e-9 * length)                                                      // ... and against the force
@@ -116,7 +124,8 @@ inline double law_error(const ConstraintProblem& p, const std::vector<double>& l
   for (const Block& b : p.blocks) {
     const double* l = lambda.data() + b.row;
     if (b.law == LawKind::friction) {
-      error = std::max(error, contact_error(delta.segment<3>(b.row), Vec3(l[0], l[1], l[2]), b.friction, length, force));
+      error =
+          std::max(error, contact_error(delta.segment<3>(b.row), Vec3(l[0], l[1], l[2]), b.friction, length, force));
       continue;
     }
     if (b.law == LawKind::patch) {
@@ -127,14 +136,15 @@ inline double law_error(const ConstraintProblem& p, const std::vector<double>& l
     }
     const double d = (delta[b.row] + b.compliance * l[0]) / length;
     error = std::max({error, (b.lower - l[0]) / force, (l[0] - b.upper) / force});
-    if (l[0] <= b.lower) error = std::max(error, -d);       // pushed against its lower bound: may open
+    if (l[0] <= b.lower) error = std::max(error, -d);  // pushed against its lower bound: may open
     else if (l[0] >= b.upper) error = std::max(error, d);
     else error = std::max(error, std::abs(d));
   }
   return error;
 }
 
-inline SolveStats solve_to(const ConstraintProblem& p, SolveWorkspace& ws, int sweeps, double tolerance, bool conjugate) {
+inline SolveStats solve_to(const ConstraintProblem& p, SolveWorkspace& ws, int sweeps, double tolerance,
+                           bool conjugate) {
   ws.reserve(p.rows);
   return solve(p, p.delta_free, {sweeps, tolerance, conjugate}, ws);
 }

@@ -25,11 +25,14 @@ class HoldWhere final : public Support {
 };
 
 /// Nodes for which `held` is true do not move.
-inline std::unique_ptr<SoftBody> soft_body(TetMesh mesh, const Material& m, std::function<bool(const Vec3&)> fixed = nullptr) {
+inline std::unique_ptr<SoftBody> soft_body(TetMesh mesh, const Material& m,
+                                           std::function<bool(const Vec3&)> fixed = nullptr) {
   auto body = std::make_unique<SoftBody>();
   body->set_mesh(std::move(mesh));
   auto fem = builtin().create("corotational_fem");
-  const auto set = [&](const char* name, double value) { dynamic_cast<QuantityParam&>(*fem->find_param(name)).set(value); };
+  const auto set = [&](const char* name, double value) {
+    dynamic_cast<QuantityParam&>(*fem->find_param(name)).set(value);
+  };
   set("young", m.young);
   set("poisson", m.poisson);
   set("density", m.density);

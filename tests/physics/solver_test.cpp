@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The constraint solver: thousands of random problems against the laws themselves, convergence against an accurate solution,
-// and independence of the warm start.
+// The constraint solver: thousands of random problems against the laws themselves, convergence against an accurate
+// solution, and independence of the warm start.
 #include "core/testing/held.h"
 #include "tests/physics/random_problem.h"
 
@@ -59,9 +59,12 @@ TEST(Solver, ConvergesToTheAccurateSolution) {
       ws.lambda.assign(std::size_t(p.rows), 0.0);
       const SolveStats stats = solve_to(p, ws, 500000, tolerance, conjugate);
       double error = 0;
-      for (int i = 0; i < p.rows; ++i) error = std::max(error, std::abs(ws.lambda[std::size_t(i)] - exact.lambda[std::size_t(i)]));
-      // The least eigenvalue of W is 0.05 or more and rows move by `tolerance` at most; Gauss-Seidel's rate is the rest.
-      EXPECT_TRUE(test::held("error over the tolerance asked for", error, tolerance * std::max(1.0, force), 1e4)) << trial;
+      for (int i = 0; i < p.rows; ++i)
+        error = std::max(error, std::abs(ws.lambda[std::size_t(i)] - exact.lambda[std::size_t(i)]));
+      // The least eigenvalue of W is 0.05 or more and rows move by `tolerance` at most; Gauss-Seidel's rate is the
+      // rest.
+      EXPECT_TRUE(test::held("error over the tolerance asked for", error, tolerance * std::max(1.0, force), 1e4))
+          << trial;
       // A sweep may meet the solution by chance; whoever goes on from there leaves it by no more than the tolerance.
       EXPECT_LE(error, std::max(last * (1 + 1e-9), tolerance * std::max(1.0, force))) << trial;
       EXPECT_LE(stats.residual_m, 1e2 * tolerance) << trial;
@@ -87,7 +90,10 @@ TEST(Solver, ResultDoesNotDependOnTheWarmStart) {
     solve_to(p, warm, 500000, 1e-14, trial % 4 > 1);  // both ways, and one against the other
     double force = 1e-300;
     for (double l : cold.lambda) force = std::max(force, std::abs(l));
-    for (int i = 0; i < p.rows; ++i) EXPECT_TRUE(test::held("solution from any warm start", std::abs(cold.lambda[std::size_t(i)] - warm.lambda[std::size_t(i)]), force, 1e-8)) << trial;
+    for (int i = 0; i < p.rows; ++i)
+      EXPECT_TRUE(test::held("solution from any warm start",
+                             std::abs(cold.lambda[std::size_t(i)] - warm.lambda[std::size_t(i)]), force, 1e-8))
+          << trial;
     // From its own solution one sweep is enough.
     SolveWorkspace again;
     again.lambda = cold.lambda;
@@ -122,7 +128,8 @@ TEST(Solver, EmptyProblem) {
 TEST(Solver, KnownAnswer) {
   ConstraintProblem p;
   p.resize(2);
-  // A body of unit mass and inertia, contacts at arms +1 and -2: W = J J^T, delta_free = push of a force 3 at the centre.
+  // A body of unit mass and inertia, contacts at arms +1 and -2: W = J J^T, delta_free = push of a force 3 at the
+  // centre.
   p.w[0] = 1 + 1;
   p.w[1] = 1 - 2;
   p.w[std::size_t(p.stride)] = 1 - 2;
@@ -138,7 +145,8 @@ TEST(Solver, KnownAnswer) {
   SolveWorkspace ws;
   ws.lambda.assign(2, 0.0);
   solve_to(p, ws, 1000, 1e-15, false);
-  EXPECT_TRUE(test::held("two contacts share a load", std::abs(ws.lambda[0] - 2), 1, 1e-12));  // lambda_0 + lambda_1 = 3, lambda_0 = 2 lambda_1
+  EXPECT_TRUE(test::held("two contacts share a load", std::abs(ws.lambda[0] - 2), 1,
+                         1e-12));  // lambda_0 + lambda_1 = 3, lambda_0 = 2 lambda_1
   EXPECT_NEAR(ws.lambda[1], 1, 1e-12);
 }
 
@@ -188,7 +196,8 @@ TEST(Solver, ConjugateDirectionsSolveAHardStackInFarFewerSweeps) {
       for (const Block& b : p.blocks) {
         e = std::max(e, std::abs(lambda[std::size_t(b.row)] - normal));
         if (c.friction > 0)
-          e = std::max({e, std::abs(lambda[std::size_t(b.row + 1)] - tangent), std::abs(lambda[std::size_t(b.row + 2)])});
+          e = std::max(
+              {e, std::abs(lambda[std::size_t(b.row + 1)] - tangent), std::abs(lambda[std::size_t(b.row + 2)])});
       }
       return e / normal;
     };
@@ -212,7 +221,8 @@ TEST(Solver, ConjugateDirectionsSolveAHardStackInFarFewerSweeps) {
 TEST(Solver, BoundsHoldAfterAnyNumberOfSweeps) {
   Random random(61);
   for (int trial = 0; trial < 200; ++trial) {
-    const ConstraintProblem p = trial % 4 == 0 ? squeezed_stack(3 + trial % 20, 0.3, 0.02, 0.0005 * (trial % 50)) : random_problem(random, 0.6);
+    const ConstraintProblem p =
+        trial % 4 == 0 ? squeezed_stack(3 + trial % 20, 0.3, 0.02, 0.0005 * (trial % 50)) : random_problem(random, 0.6);
     for (const int sweeps : {1, 2, 3, 5, 8, 13, 40, 120}) {
       SolveWorkspace ws;
       ws.lambda.assign(std::size_t(p.rows), 0.0);

@@ -12,7 +12,8 @@ namespace {
 
 class TinyConstraint final : public insula::Component {
  public:
-  insula::Param<insula::Force> strength{this, {.name = "strength", .fallback = "1 N", .min = "0 N", .max = "2 N", .doc = "how strong it is"}};
+  insula::Param<insula::Force> strength{
+      this, {.name = "strength", .fallback = "1 N", .min = "0 N", .max = "2 N", .doc = "how strong it is"}};
 };
 
 }  // namespace

@@ -33,8 +33,8 @@ inline Block contact(double friction) {
   return b;
 }
 
-/// A slab, `mass` and (side, side, thickness), on side x side contacts with a table, weight on it and a push along x through the plane of
-/// contact: W has rank six. In a step without memory a force F moves it by F / mass (h = 1).
+/// A slab, `mass` and (side, side, thickness), on side x side contacts with a table, weight on it and a push along x
+/// through the plane of contact: W has rank six. In a step without memory a force F moves it by F / mass (h = 1).
 struct Slab {
   static constexpr double mass = 2, gravity = 10, mu = 0.4;
   int side;
@@ -56,11 +56,13 @@ struct Slab {
     Eigen::Matrix<double, 6, 1> force = Eigen::Matrix<double, 6, 1>::Zero();
     force[0] = push;
     force[2] = -mass * gravity;
-    return problem_of(h * inverse * h.transpose(), h * (inverse * force), std::vector<Block>(std::size_t(contacts()), contact(mu)));
+    return problem_of(h * inverse * h.transpose(), h * (inverse * force),
+                      std::vector<Block>(std::size_t(contacts()), contact(mu)));
   }
 };
 
-/// `light` bodies of mass 1 in a column on the ground, one of mass `ratio` on top, gravity 1: contact k bears what is above it.
+/// `light` bodies of mass 1 in a column on the ground, one of mass `ratio` on top, gravity 1: contact k bears what is
+/// above it.
 struct Column {
   int light;
   double ratio;
@@ -79,8 +81,8 @@ struct Column {
   double force(int k) const { return light - k + ratio; }
 };
 
-/// Two jaws, each of compliance `jaw`, close by `close` each on a chain of `nodes` light nodes of compliance 1 and shear by `shear`:
-/// the same force goes through the whole chain.
+/// Two jaws, each of compliance `jaw`, close by `close` each on a chain of `nodes` light nodes of compliance 1 and
+/// shear by `shear`: the same force goes through the whole chain.
 struct Jaws {
   int nodes;
   double jaw, close, shear, mu;
@@ -105,13 +107,15 @@ struct Jaws {
   double tangent() const { return -std::min(shear / jaw, mu * normal()); }
 };
 
-/// Contacts with friction that share few ways to yield: W of rank `rank`, and a little on its diagonal that makes the answer one.
+/// Contacts with friction that share few ways to yield: W of rank `rank`, and a little on its diagonal that makes the
+/// answer one.
 inline ConstraintProblem crowded(Random& random, int contacts, int rank, double own) {
   const int n = 3 * contacts;
   const MatX h = random_matrix(random, n, rank);
   VecX free(n);
   for (int i = 0; i < n; ++i) free[i] = random.uniform(-1, 1) - (i % 3 == 0 ? 0.5 : 0);
-  return problem_of(h * h.transpose() / rank + own * MatX::Identity(n, n), free, std::vector<Block>(std::size_t(contacts), contact(0.3)));
+  return problem_of(h * h.transpose() / rank + own * MatX::Identity(n, n), free,
+                    std::vector<Block>(std::size_t(contacts), contact(0.3)));
 }
 
 }  // namespace insula::test

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Hard problems by each method, against closed forms: Gauss-Seidel alone stalls on most of them, Newton takes a few steps.
+// Hard problems by each method, against closed forms: Gauss-Seidel alone stalls on most of them, Newton takes a few
+// steps.
 #include "tests/problems/hard_problems.h"
 
 namespace insula {
@@ -11,7 +12,9 @@ constexpr double tolerance = 1e-10;  // m
 const struct {
   const char* name;
   SolveSettings settings;
-} methods[] = {{"sweeps, Newton", {150, tolerance, false, 30}}, {"conjugate, Newton", {150, tolerance, true, 30}}, {"Newton at once", {1, tolerance, false, 30}}};
+} methods[] = {{"sweeps, Newton", {150, tolerance, false, 30}},
+               {"conjugate, Newton", {150, tolerance, true, 30}},
+               {"Newton at once", {1, tolerance, false, 30}}};
 
 SolveStats solve_cold(const ConstraintProblem& p, const SolveSettings& settings, SolveWorkspace& ws) {
   ws.reserve(p.rows);
@@ -59,7 +62,8 @@ TEST(HardProblems, NewtonSoonSparesSweeps) {
   EXPECT_GE(a.sweeps, 16);
   EXPECT_LE(b.sweeps, 8 + 4 * b.newton_steps);
   EXPECT_LE(b.residual_m, settings.tolerance_m);
-  for (std::size_t i = 0; i < late.lambda.size(); ++i) EXPECT_NEAR(soon.lambda[i], late.lambda[i], 1e-6 * jaws.normal());
+  for (std::size_t i = 0; i < late.lambda.size(); ++i)
+    EXPECT_NEAR(soon.lambda[i], late.lambda[i], 1e-6 * jaws.normal());
 }
 
 TEST(HardProblems, MassRatiosOfTenThousandAndAMillion) {
@@ -73,7 +77,8 @@ TEST(HardProblems, MassRatiosOfTenThousandAndAMillion) {
         const SolveStats s = solve_cold(p, m.settings, ws);
         EXPECT_LE(s.residual_m, tolerance);
         EXPECT_LE(s.newton_steps, 8);
-        for (int k = 0; k <= light; ++k) EXPECT_NEAR(ws.lambda[std::size_t(k)], column.force(k), 1e-7 * column.force(k)) << k;
+        for (int k = 0; k <= light; ++k)
+          EXPECT_NEAR(ws.lambda[std::size_t(k)], column.force(k), 1e-7 * column.force(k)) << k;
       }
       SolveWorkspace sweeps;
       solve_cold(p, {5000, tolerance, false, 0}, sweeps);
@@ -81,8 +86,8 @@ TEST(HardProblems, MassRatiosOfTenThousandAndAMillion) {
     }
 }
 
-// 36 contacts on a rigid body, W of rank six out of 108: how they share the load is open, the sums and the motion are not. The push goes
-// through the friction's limit: sticks below mu m g, slides with (push - mu m g) / m above.
+// 36 contacts on a rigid body, W of rank six out of 108: how they share the load is open, the sums and the motion are
+// not. The push goes through the friction's limit: sticks below mu m g, slides with (push - mu m g) / m above.
 TEST(HardProblems, RedundantContactsStickAndSlip) {
   const double limit = Slab::mu * Slab::mass * Slab::gravity;
   for (const double push : {0.0, 0.5 * limit, 0.99 * limit, 1.01 * limit, 1.5 * limit, 4 * limit}) {
@@ -127,7 +132,8 @@ TEST(HardProblems, ThreeHundredAndSixtyRows) {
     EXPECT_LE(s.residual_N, 10 * tolerance / 0.3);
     EXPECT_LT(law_error(p, ws.lambda), 1e-9);
     expect_bounds(p, ws.lambda);
-    for (std::size_t i = 0; i < ws.lambda.size(); ++i) EXPECT_NEAR(ws.lambda[i], reference.lambda[i], 1e-7 * force) << i;
+    for (std::size_t i = 0; i < ws.lambda.size(); ++i)
+      EXPECT_NEAR(ws.lambda[i], reference.lambda[i], 1e-7 * force) << i;
   }
 }
 
@@ -145,7 +151,8 @@ TEST(HardProblems, NewtonAgreesWithSweepsOnRandomProblems) {
     expect_bounds(p, few.lambda);
     double force = 1e-300;
     for (const double l : many.lambda) force = std::max(force, std::abs(l));
-    for (std::size_t i = 0; i < few.lambda.size(); ++i) ASSERT_NEAR(few.lambda[i], many.lambda[i], 1e-7 * force) << trial;
+    for (std::size_t i = 0; i < few.lambda.size(); ++i)
+      ASSERT_NEAR(few.lambda[i], many.lambda[i], 1e-7 * force) << trial;
   }
   EXPECT_GT(newton, 800);
 }
@@ -166,7 +173,8 @@ TEST(HardProblems, NewtonStaysAwayFromEasyProblems) {
   EXPECT_GT(compared, 200);
 }
 
-// An impossible problem: two bilateral rows that contradict each other. Bounded work, finite numbers, no better answer claimed.
+// An impossible problem: two bilateral rows that contradict each other. Bounded work, finite numbers, no better answer
+// claimed.
 TEST(HardProblems, ContradictionEndsAndStaysFinite) {
   const ConstraintProblem p = problem_of(MatX::Constant(2, 2, 1), (VecX(2) << 1, -1).finished(), {Block{}, Block{}});
   for (const auto& m : methods) {

@@ -19,7 +19,8 @@ namespace fs = std::filesystem;
 class ProblemFile : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("insula_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
+    folder_ = fs::temp_directory_path() /
+              ("insula_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
     fs::create_directories(folder_);
     file_ = folder_ / "a.problem";
   }
@@ -80,7 +81,9 @@ TEST_F(ProblemFile, DamageIsNamed) {
     write_problem(file_, p);
     return refusal();
   };
-  const auto has = [](const std::string& text, const char* part) { return text.find(part) != std::string::npos && text.find("a.problem") != std::string::npos; };
+  const auto has = [](const std::string& text, const char* part) {
+    return text.find(part) != std::string::npos && text.find("a.problem") != std::string::npos;
+  };
   EXPECT_PRED2(has, with([](auto& p) { p.w[0] = std::nan(""); }), "W");
   EXPECT_PRED2(has, with([](auto& p) { p.w[0] = -1; }), "negative diagonal");
   EXPECT_PRED2(has, with([](auto& p) { p.delta_free[1] = infinite; }), "delta_free of row 1");

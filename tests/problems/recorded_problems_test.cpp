@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Problems recorded from the four exercises: each way of solving them comes to the tolerance, and all to the same motion.
+// Problems recorded from the four exercises: each way of solving them comes to the tolerance, and all to the same
+// motion.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -47,7 +48,9 @@ TEST(RecordedProblems, EachMethodSolvesThem) {
   const struct {
     const char* name;
     SolveSettings settings;
-  } methods[] = {{"sweeps, Newton", {150, tolerance, false, 20}}, {"conjugate, Newton", {150, tolerance, true, 20}}, {"Newton at once", {1, tolerance, false, 20}}};
+  } methods[] = {{"sweeps, Newton", {150, tolerance, false, 20}},
+                 {"conjugate, Newton", {150, tolerance, true, 20}},
+                 {"Newton at once", {1, tolerance, false, 20}}};
   for (const auto& m : methods) {
     std::vector<int> sweeps, newton;
     double worst_N = 0;
@@ -66,8 +69,9 @@ TEST(RecordedProblems, EachMethodSolvesThem) {
     }
     EXPECT_LE(unsolved, allowed(files.size())) << m.name;
     EXPECT_LE(at_the_cap, allowed(files.size())) << m.name;
-    std::printf("%-18s sweeps %d %d %d, Newton steps %d %d %d (p50, p95, most), residual %.1e N at most\n", m.name, quantile(sweeps, 0.5), quantile(sweeps, 0.95),
-                quantile(sweeps, 1), quantile(newton, 0.5), quantile(newton, 0.95), quantile(newton, 1), worst_N);
+    std::printf("%-18s sweeps %d %d %d, Newton steps %d %d %d (p50, p95, most), residual %.1e N at most\n", m.name,
+                quantile(sweeps, 0.5), quantile(sweeps, 0.95), quantile(sweeps, 1), quantile(newton, 0.5),
+                quantile(newton, 0.95), quantile(newton, 1), worst_N);
   }
 }
 
@@ -87,7 +91,8 @@ TEST(RecordedProblems, MethodsAgreeOnTheMotion) {
   }
   EXPECT_LE(unsolved, allowed(files.size()));
   std::sort(differences.begin(), differences.end());
-  std::printf("difference of delta: %.1e m median, %.1e m at most\n", differences[differences.size() / 2], differences.back());
+  std::printf("difference of delta: %.1e m median, %.1e m at most\n", differences[differences.size() / 2],
+              differences.back());
   EXPECT_LT(differences[differences.size() / 2], 1e-9);
   EXPECT_LT(differences.back(), 1e-6);
 }

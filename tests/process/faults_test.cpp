@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Faults of the campaign with real processes over LCM: loss, damage, delay on the way; processes that stop and go on; two engines.
-// Times are not judged finely here, a machine under test is busy: tests/faults does that on a clock of its own.
+// Faults of the campaign with real processes over LCM: loss, damage, delay on the way; processes that stop and go on;
+// two engines. Times are not judged finely here, a machine under test is busy: tests/faults does that on a clock of its
+// own.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -19,7 +20,8 @@ using namespace testing;
 constexpr double firm_N = 0.1;
 
 const FaultCase& fault_case(std::string_view name) {
-  return *std::find_if(std::begin(fault_cases), std::end(fault_cases), [&](const FaultCase& c) { return c.name == name; });
+  return *std::find_if(std::begin(fault_cases), std::end(fault_cases),
+                       [&](const FaultCase& c) { return c.name == name; });
 }
 
 /// Zero by the servo's own stamps between two times; how long a fault may take to be seen here.
@@ -71,7 +73,8 @@ TEST_F(LcmFaults, BadLinks) {
   Relay relay(engine_url, session_.url());
   ASSERT_TRUE(wait_for([&] { return watcher_->frames_now() > 20 && watcher_->last(); }));
   ASSERT_TRUE(watcher_->press(firm_N)) << watcher_->force();
-  for (const char* name : {"loss", "reordering", "duplicates", "delay", "bit_flips", "bit_flips_in_all", "link_stall_500ms"}) {
+  for (const char* name :
+       {"loss", "reordering", "duplicates", "delay", "bit_flips", "bit_flips_in_all", "link_stall_500ms"}) {
     SCOPED_TRACE(name);
     const FaultCase& fault = fault_case(name);
     const std::int64_t began = now_us(), refused = watcher_->status().messages_refused;

@@ -8,7 +8,8 @@
 
 namespace insula::testing {
 
-/// A session that runs when the test begins; when it ends, all forces that were seen must have kept the gate's limit of change.
+/// A session that runs when the test begins; when it ends, all forces that were seen must have kept the gate's limit of
+/// change.
 class LiveSession : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -16,7 +17,9 @@ class LiveSession : public ::testing::Test {
     session_ = std::make_unique<PlaySession>();
     ASSERT_EQ(session_->start({"--report", reports().string()}), "");
     watcher_ = std::make_unique<Watcher>(session_->url());
-    ASSERT_TRUE(wait_for([&] { return session_->port() > 0 && watcher_->frames_now() > 20 && watcher_->last() && watcher_->status().rows >= 0; })) << session_->log();
+    ASSERT_TRUE(wait_for([&] {
+      return session_->port() > 0 && watcher_->frames_now() > 20 && watcher_->last() && watcher_->status().rows >= 0;
+    })) << session_->log();
   }
   void TearDown() override {
     if (!watcher_) return;

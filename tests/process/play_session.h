@@ -50,8 +50,8 @@ class PlaySession {
   PlaySession& operator=(const PlaySession&) = delete;
 
   std::string start(const std::vector<std::string>& more = {}) {
-    std::vector<std::string> command{std::string(INSULA_BINARY_DIR) + "/bin/insula", "play", (folder_ / "press.xml").string(),
-                                     "--port", "0"};
+    std::vector<std::string> command{std::string(INSULA_BINARY_DIR) + "/bin/insula", "play",
+                                     (folder_ / "press.xml").string(), "--port", "0"};
     command.insert(command.end(), more.begin(), more.end());
     const std::string error = process_.start(command);
     reader_ = std::thread([this] {

@@ -28,8 +28,8 @@ class Play : public LiveSession {
   }
 };
 
-// 50 ms until a problem is too old, 50 ms to ramp out, the rest for a machine with other things to do. These are stamps of
-// the servo's own ticks.
+// 50 ms until a problem is too old, 50 ms to ramp out, the rest for a machine with other things to do. These are stamps
+// of the servo's own ticks.
 constexpr std::int64_t silence_us = 400'000;
 
 TEST_F(Play, EngineKilled) {
@@ -113,8 +113,8 @@ TEST_F(Play, AWatchingPageGetsEveryFrame) {
   }
 }
 
-// Refused while the tool presses; done in free air, with forces that stay within the gate's limit (checked over everything
-// seen, when the test ends), and with a tool that can press again.
+// Refused while the tool presses; done in free air, with forces that stay within the gate's limit (checked over
+// everything seen, when the test ends), and with a tool that can press again.
 TEST_F(Play, AToolIsExchanged) {
   EXPECT_EQ(watcher_->tool_states(), (std::vector<int>{1, 1, 0}));
   ASSERT_TRUE(watcher_->press(0.1)) << watcher_->force();
@@ -143,7 +143,8 @@ TEST_F(Play, GarbageOnEveryChannelChangesNothing) {
   std::mutex mutex;
   {
     LcmBus listen(session_->url());
-    for (const auto name : {channel::haptic_problem, channel::device_state, channel::haptic_status, channel::render_frame, channel::scene_info})
+    for (const auto name : {channel::haptic_problem, channel::device_state, channel::haptic_status,
+                            channel::render_frame, channel::scene_info})
       listen.subscribe(name, [&real, name](Bytes b) { real[std::string(name)].assign(b.begin(), b.end()); });
     ASSERT_TRUE(wait_for([&] {
       listen.poll(20);
@@ -182,7 +183,8 @@ TEST_F(Play, GarbageOnEveryChannelChangesNothing) {
     std::this_thread::sleep_for(10ms);
   }
   const std::size_t frames = watcher_->frames(engine), seen = page.frames(engine).size();
-  ASSERT_TRUE(wait_for([&] { return watcher_->frames(engine) > frames + 60 && page.frames(engine).size() > seen + 60; }));
+  ASSERT_TRUE(
+      wait_for([&] { return watcher_->frames(engine) > frames + 60 && page.frames(engine).size() > seen + 60; }));
   EXPECT_EQ(watcher_->frame_session(), engine);
   EXPECT_EQ(watcher_->last()->session, server);
   EXPECT_EQ(page.connections(), 1);

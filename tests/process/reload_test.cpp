@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A session whose scene is saved while hands press: a good scene takes over without a jump of force, a bad one is told to the
-// viewers and changes nothing.
+// A session whose scene is saved while hands press: a good scene takes over without a jump of force, a bad one is told
+// to the viewers and changes nothing.
 #include "tests/process/live_session.h"
 
 namespace insula {
@@ -48,7 +48,10 @@ TEST_F(Reload, GoodAndBadSaves) {
   const std::int64_t first = watcher_->frame_session(), server = watcher_->last()->session;
   // Something wrong: told with its place, and the engine goes on.
   save("title=\"Press\"", "title=\"Press\" gravty=\"1 N\"");
-  ASSERT_TRUE(heard([](const auto& i) { return i.message.find("press.xml:1:") != std::string::npos && i.message.find("did you mean \"gravity\"?") != std::string::npos; })) << info_.message;
+  ASSERT_TRUE(heard([](const auto& i) {
+    return i.message.find("press.xml:1:") != std::string::npos &&
+           i.message.find("did you mean \"gravity\"?") != std::string::npos;
+  })) << info_.message;
   EXPECT_EQ(info_.state, "running");
   EXPECT_EQ(info_.session, first);
   // Half a file is an error like any other, and told instead of the one before.
@@ -59,7 +62,8 @@ TEST_F(Reload, GoodAndBadSaves) {
   // Put right: a new run of the new scene, the message is gone, server and hands have stayed.
   std::ofstream(scene()) << whole;
   save("title=\"Press\" gravty=\"1 N\"", "title=\"Pressed again\"");
-  ASSERT_TRUE(heard([&](const auto& i) { return i.session != first && i.title == "Pressed again" && i.message.empty(); }));
+  ASSERT_TRUE(
+      heard([&](const auto& i) { return i.session != first && i.title == "Pressed again" && i.message.empty(); }));
   ASSERT_TRUE(wait_for([&] { return watcher_->frame_session() != first && watcher_->frames_now() > 20; }));
   EXPECT_EQ(watcher_->last()->session, server);
   EXPECT_TRUE(watcher_->press(0.1)) << "no force after the scene was loaded again: " << watcher_->force();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// LCM's own tools on a running session: lcm-logger records it, lcm-logplayer and `insula replay` bring it back to a page.
+// LCM's own tools on a running session: lcm-logger records it, lcm-logplayer and `insula replay` bring it back to a
+// page.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -14,7 +15,6 @@ namespace {
 using namespace testing;
 const char* const logger = "/usr/bin/lcm-logger";
 const char* const player = "/usr/bin/lcm-logplayer";
-
 
 /// A child with its output.
 class Tool {
@@ -78,10 +78,12 @@ class Replay : public ::testing::Test {
   }
   void start_gateway() {
     ::setenv("LCM_DEFAULT_URL", url_.c_str(), 1);
-    gateway_ = std::make_unique<Tool>(std::vector<std::string>{std::string(INSULA_BINARY_DIR) + "/bin/gateway", "--port", "0"});
+    gateway_ = std::make_unique<Tool>(
+        std::vector<std::string>{std::string(INSULA_BINARY_DIR) + "/bin/gateway", "--port", "0"});
     ASSERT_TRUE(wait_for([&] {
       gateway_->read();
-      const std::size_t at = gateway_->said.find("serving http"), end = gateway_->said.find('\n', at == std::string::npos ? 0 : at);
+      const std::size_t at = gateway_->said.find("serving http"),
+                        end = gateway_->said.find('\n', at == std::string::npos ? 0 : at);
       if (at == std::string::npos || end == std::string::npos) return false;
       port_ = std::atoi(gateway_->said.c_str() + gateway_->said.rfind(':', end) + 1);
       return true;
@@ -101,7 +103,8 @@ TEST_F(Replay, BothPlayersBringTheSessionToAPage) {
   std::map<std::string, int> channels;
   EventLog log(log_);
   for (LogEvent e; log.next(e);) ++channels[e.channel];
-  for (const char* name : {"RENDER_FRAME", "HAPTIC_PROBLEM", "DEVICE_STATE", "HAPTIC_STATUS", "SCENE_INFO"}) EXPECT_GT(channels[name], 0) << name;
+  for (const char* name : {"RENDER_FRAME", "HAPTIC_PROBLEM", "DEVICE_STATE", "HAPTIC_STATUS", "SCENE_INFO"})
+    EXPECT_GT(channels[name], 0) << name;
 
   start_gateway();
   const Page page([this] { return port_; });
@@ -133,7 +136,8 @@ TEST_F(Replay, AMovedRecordingBringsItsBundleAndADamagedLogIsSaid) {
   start_gateway();
   Tool moved({insula_, "replay", (there / "session.lcmlog").string(), "--speed", "20"});
   EXPECT_EQ(moved.end().status, 0) << moved.said;
-  EXPECT_TRUE(wait_for([&] { return http_status(port_, "/bundle/" + std::to_string(recorded_) + "/scene.json") == 200; }));
+  EXPECT_TRUE(
+      wait_for([&] { return http_status(port_, "/bundle/" + std::to_string(recorded_) + "/scene.json") == 200; }));
 
   fs::resize_file(there / "session.lcmlog", fs::file_size(there / "session.lcmlog") - 10);
   Tool cut({insula_, "replay", (there / "session.lcmlog").string(), "--speed", "1000"});

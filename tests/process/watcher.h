@@ -35,7 +35,8 @@ bool wait_for(Condition condition) {
 }
 
 inline std::int64_t now_us() {
-  return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now().time_since_epoch())
+      .count();
 }
 
 /// One hand in one DEVICE_STATE.
@@ -128,7 +129,8 @@ class Watcher {
       ask(command, argument);
       std::this_thread::sleep_for(100ms);
       const auto all = events();
-      return std::any_of(all.begin() + std::ptrdiff_t(seen), all.end(), [&](const auto& e) { return e.kind == kind && e.id == command; });
+      return std::any_of(all.begin() + std::ptrdiff_t(seen), all.end(),
+                         [&](const auto& e) { return e.kind == kind && e.id == command; });
     });
   }
 

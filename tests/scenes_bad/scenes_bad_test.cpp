@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every scene of this folder is wrong; its .expected file says what must be reported: one line an error, each a part of one
-// printed line, and nothing more may be printed. Hostile files too big to keep are made here.
+// Every scene of this folder is wrong; its .expected file says what must be reported: one line an error, each a part of
+// one printed line, and nothing more may be printed. Hostile files too big to keep are made here.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -54,16 +54,16 @@ TEST_P(BadScene, IsReportedAsExpected) {
   const auto expected = lines_of(expected_file);
   ASSERT_FALSE(expected.empty());
   for (const auto& line : expected) {
-    const auto found = std::find_if(printed.begin(), printed.end(), [&](const auto& p) { return p.find(line) != std::string::npos; });
-    if (found == printed.end())
-      ADD_FAILURE() << "not reported: " << line << "\nprinted:\n" << text;
-    else
-      printed.erase(found);
+    const auto found =
+        std::find_if(printed.begin(), printed.end(), [&](const auto& p) { return p.find(line) != std::string::npos; });
+    if (found == printed.end()) ADD_FAILURE() << "not reported: " << line << "\nprinted:\n" << text;
+    else printed.erase(found);
   }
   for (const auto& line : printed) ADD_FAILURE() << "reported, but not expected: " << line;
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, BadScene, testing::ValuesIn(scene_names()), [](const auto& scene) { return scene.param; });
+INSTANTIATE_TEST_SUITE_P(Scenes, BadScene, testing::ValuesIn(scene_names()),
+                         [](const auto& scene) { return scene.param; });
 
 TEST(BadScenes, ThereAreManyAndNoExpectationWithoutScene) {
   EXPECT_GE(scene_names().size(), 60u);
@@ -89,7 +89,8 @@ class Hostile : public testing::Test {
     status_ = cmd_check({registry_, out, err}, {file_});
     std::string messages = err.str();
     const std::string name = file_.generic_string();
-    for (auto at = messages.find(name); at != std::string::npos; at = messages.find(name)) messages.replace(at, name.size(), "f");
+    for (auto at = messages.find(name); at != std::string::npos; at = messages.find(name))
+      messages.replace(at, name.size(), "f");
     return messages;
   }
   static std::string repeat(std::string_view piece, std::size_t bytes) {
@@ -109,15 +110,19 @@ TEST_F(Hostile, HundredMegabytesOfNesting) {
 }
 
 TEST_F(Hostile, DeepNestingOfAllowedSize) {
-  EXPECT_EQ(check(repeat("<exercise title=\"t\">", 15u << 20)), "f:1:1281: error: elements are nested more than 64 deep\n");
+  EXPECT_EQ(check(repeat("<exercise title=\"t\">", 15u << 20)),
+            "f:1:1281: error: elements are nested more than 64 deep\n");
 }
 
 TEST_F(Hostile, MillionsOfElements) {
-  EXPECT_NE(check("<scene>" + repeat("<obstacle/>", 15u << 20) + "</scene>").find("more than 100000 elements"), std::string::npos);
+  EXPECT_NE(check("<scene>" + repeat("<obstacle/>", 15u << 20) + "</scene>").find("more than 100000 elements"),
+            std::string::npos);
 }
 
 TEST_F(Hostile, OneEndlessValueOrName) {
-  EXPECT_NE(check("<scene title=\"" + repeat("x", 15u << 20) + "\"/>").find("f:1:15: error: the value is longer than 64 KiB"), std::string::npos);
+  EXPECT_NE(
+      check("<scene title=\"" + repeat("x", 15u << 20) + "\"/>").find("f:1:15: error: the value is longer than 64 KiB"),
+      std::string::npos);
   EXPECT_NE(check("<" + repeat("x", 15u << 20) + "/>").find("is too long"), std::string::npos);
 }
 
@@ -165,7 +170,8 @@ TEST_F(Hostile, NinetyNineThousandErrorsOfEachKind) {
 }
 
 TEST_F(Hostile, CutAnywhere) {
-  const std::string whole = "<?xml version=\"1.0\"?>\n<scene title=\"a\">\n  <!-- c -->\n  <solver max_sweeps=\"10\"/>\n</scene>";
+  const std::string whole =
+      "<?xml version=\"1.0\"?>\n<scene title=\"a\">\n  <!-- c -->\n  <solver max_sweeps=\"10\"/>\n</scene>";
   for (std::size_t n = 0; n < whole.size(); ++n) {
     EXPECT_NE(check(whole.substr(0, n)).find(": error: "), std::string::npos) << n;
     EXPECT_EQ(status_, 2) << n;
@@ -206,10 +212,12 @@ TEST_F(Hostile, GoodEdges) {
            "<scene time_step=\"0.001 s\"/>",
            "<!-- before --><scene><!-- inside --></scene><!-- after -->",
            "<?xml-model href=\"insula.xsd\"?><scene/>",
-           "<scene xmlns:xsi=\"http://www.w3.org/2001/XMLSchema-instance\" xsi:noNamespaceSchemaLocation=\"insula.xsd\"/>",
+           "<scene xmlns:xsi=\"http://www.w3.org/2001/XMLSchema-instance\" "
+           "xsi:noNamespaceSchemaLocation=\"insula.xsd\"/>",
            "<scene><obstacle id=\"a.b-c_1\"/><obstacle id=\"\xC3\xA4\"/></scene>",
            "<scene><variable name=\"h\" value=\"20\"/><variable name=\"u\" value=\"ms\"/><solver/></scene>",
-           "<scene time_step=\"${h}${u}\"><variable name=\"h\" value=\"20\"/><variable name=\"u\" value=\"ms\"/></scene>",
+           "<scene time_step=\"${h}${u}\"><variable name=\"h\" value=\"20\"/><variable name=\"u\" "
+           "value=\"ms\"/></scene>",
        }) {
     const std::string messages = check(text);
     EXPECT_EQ(status_, 0) << text << "\n" << messages;

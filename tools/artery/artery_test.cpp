@@ -62,10 +62,12 @@ TEST(ArteryTool, ShippedArteriesAreMadeAgainBitForBit) {
 /// A straight tube of radius 1 along z from 0 to 10, by the extraction and cutting of the tool.
 Surface tube() {
   Surface s;
-  s.mesh = extract([](const Vec3& p) {
-    const double z = std::clamp(p.z(), -1.0, 11.0);
-    return (p - Vec3(0, 0, z)).norm() - 1;
-  }, Vec3(-1.5, -1.5, -2.5), Vec3(1.5, 1.5, 12.5), 0.2);
+  s.mesh = extract(
+      [](const Vec3& p) {
+        const double z = std::clamp(p.z(), -1.0, 11.0);
+        return (p - Vec3(0, 0, z)).norm() - 1;
+      },
+      Vec3(-1.5, -1.5, -2.5), Vec3(1.5, 1.5, 12.5), 0.2);
   s.patch.assign(s.mesh.triangles.size(), -1);
   cut_and_close(s, {"low", Vec3::Zero(), -Vec3::UnitZ(), 1}, 2.5);
   cut_and_close(s, {"high", Vec3(0, 0, 10), Vec3::UnitZ(), 1}, 2.5);
@@ -76,7 +78,8 @@ TEST(ArteryTool, ATubeIsCutFlatAndClosed) {
   const Surface s = tube();
   double volume = 0, cap_area[2] = {0, 0};
   for (std::size_t t = 0; t < s.patch.size(); ++t) {
-    const Vec3 &a = s.mesh.vertices[std::size_t(s.mesh.triangles[t][0])], &b = s.mesh.vertices[std::size_t(s.mesh.triangles[t][1])],
+    const Vec3 &a = s.mesh.vertices[std::size_t(s.mesh.triangles[t][0])],
+               &b = s.mesh.vertices[std::size_t(s.mesh.triangles[t][1])],
                &c = s.mesh.vertices[std::size_t(s.mesh.triangles[t][2])];
     volume += a.dot(b.cross(c)) / 6;
     if (s.patch[t] >= 0) {
@@ -87,7 +90,8 @@ TEST(ArteryTool, ATubeIsCutFlatAndClosed) {
   const Quality q = quality(s.mesh);
   EXPECT_TRUE(q.closed);
   EXPECT_EQ(q.euler, 2);
-  EXPECT_NEAR(volume, 10 * std::numbers::pi, 0.03 * 10 * std::numbers::pi);  // chords of a grid of a fifth of the radius
+  EXPECT_NEAR(volume, 10 * std::numbers::pi,
+              0.03 * 10 * std::numbers::pi);  // chords of a grid of a fifth of the radius
   for (const double a : cap_area) EXPECT_NEAR(a, std::numbers::pi, 0.03 * std::numbers::pi);
   EXPECT_NEAR(section_diameter(s.mesh, Vec3(0.1, 0.2, 5.03), Vec3::UnitZ(), 3), 2, 0.04);
   EXPECT_EQ(section_diameter(s.mesh, Vec3(3, 0, 5), Vec3::UnitZ(), 1), 0);  // no loop about a point outside
@@ -118,7 +122,8 @@ TEST(ArteryTool, ATubesCapsAndCentrelineAreFound) {
 }
 
 TEST(ArteryTool, ABallHasNoCaps) {
-  const TriMesh ball = extract([](const Vec3& p) { return p.norm() - 1; }, Vec3::Constant(-1.5), Vec3::Constant(1.5), 0.13);
+  const TriMesh ball =
+      extract([](const Vec3& p) { return p.norm() - 1; }, Vec3::Constant(-1.5), Vec3::Constant(1.5), 0.13);
   EXPECT_TRUE(with_flat_caps(ball).caps.empty());
   EXPECT_THROW(import_surface(ball, {}), std::runtime_error);
 }
@@ -150,7 +155,8 @@ TEST_P(RealSurface, BecomesAVesselThatTheProductReads) {
   for (const char* region : {"parent", "neck", "sac", "ends"}) EXPECT_GE(read.region(region), 0) << region;
 }
 
-INSTANTIATE_TEST_SUITE_P(Anatomy, RealSurface, testing::Values(Real{"dolfin_aneurysm_closed.stl", 3}, Real{"aneumo_aneux4_closed.stl", 2}));
+INSTANTIATE_TEST_SUITE_P(Anatomy, RealSurface,
+                         testing::Values(Real{"dolfin_aneurysm_closed.stl", 3}, Real{"aneumo_aneux4_closed.stl", 2}));
 
 TEST(ArteryTool, BadTablesAreRefused) {
   const TempFolder folder;

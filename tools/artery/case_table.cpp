@@ -45,7 +45,8 @@ class TableReader {
   double number(const Json& json, const std::string& what, double low, double high) const {
     if (!json.is_number()) fail(file_, what + " must be a number");
     const double v = json.get<double>();
-    if (!(v >= low && v <= high)) fail(file_, what + " must lie between " + shown(Json(low).dump()) + " and " + shown(Json(high).dump()));
+    if (!(v >= low && v <= high))
+      fail(file_, what + " must lie between " + shown(Json(low).dump()) + " and " + shown(Json(high).dump()));
     return v;
   }
   Vec3 vector(const Json& json, const std::string& what) const {
@@ -64,7 +65,8 @@ class TableReader {
     out.first_diameter = number(diameter[0], what + ".diameter", 0.5, 10);
     out.last_diameter = number(diameter[1], what + ".diameter", 0.5, 10);
     const Json& points = member(json, "points", what + ".");
-    if (!points.is_array() || points.size() < 3 || points.size() > 100) fail(file_, what + ".points must be three to a hundred points");
+    if (!points.is_array() || points.size() < 3 || points.size() > 100)
+      fail(file_, what + ".points must be three to a hundred points");
     for (const Json& p : points) {
       out.points.push_back(vector(p, what + ".points"));
       if (out.points.size() > 1 && !((out.points.back() - out.points[out.points.size() - 2]).norm() > 0.2))
@@ -98,7 +100,8 @@ class TableReader {
     c.bleb_diameter = number(member(bleb, "diameter", at + "bleb."), at + "bleb.diameter", 0.5, 6);
     c.bleb_tilt = number(member(bleb, "tilt_deg", at + "bleb."), at + "bleb.tilt_deg", 0, 90) * std::numbers::pi / 180;
     c.bleb_towards = direction(member(bleb, "towards", at + "bleb."), at + "bleb.towards");
-    if (!(c.bleb_towards.cross(c.projection).norm() > 0.1)) fail(file_, at + "bleb.towards must lie across the projection");
+    if (!(c.bleb_towards.cross(c.projection).norm() > 0.1))
+      fail(file_, at + "bleb.towards must lie across the projection");
     return c;
   }
 

@@ -47,7 +47,8 @@ Curve smooth_curve(const std::vector<Vec3>& through, double first_radius, double
     const int parts = std::max(1, int(std::ceil(h / (0.2 * step))));
     for (int k = 0; k < parts + (i + 2 == through.size() ? 1 : 0); ++k) {
       const double b = double(k) / parts, a = 1 - b;
-      fine.points.push_back(a * through[i] + b * through[i + 1] + h * h / 6 * ((a * a * a - a) * m[i] + (b * b * b - b) * m[i + 1]));
+      fine.points.push_back(a * through[i] + b * through[i + 1] +
+                            h * h / 6 * ((a * a * a - a) * m[i] + (b * b * b - b) * m[i + 1]));
     }
   }
   const std::vector<double> s = arc_lengths(fine.points);

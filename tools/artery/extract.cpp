@@ -59,7 +59,8 @@ TriMesh extract(const std::function<double(const Vec3&)>& value, const Vec3& low
           for (const auto v : t) (f[std::size_t(v)] < 0 ? in : outside).push_back(v);
           if (in.empty() || outside.empty()) continue;
           const auto add = [&](int a, int b, int d) {  // oriented from inside to outside
-            const Vec3 normal = (out.vertices[std::size_t(b)] - out.vertices[std::size_t(a)]).cross(out.vertices[std::size_t(d)] - out.vertices[std::size_t(a)]);
+            const Vec3 normal = (out.vertices[std::size_t(b)] - out.vertices[std::size_t(a)])
+                                    .cross(out.vertices[std::size_t(d)] - out.vertices[std::size_t(a)]);
             if (normal.dot(grid.point(outside[0]) - grid.point(in[0])) < 0) std::swap(b, d);
             out.triangles.push_back({a, b, d});
           };
@@ -68,7 +69,8 @@ TriMesh extract(const std::function<double(const Vec3&)>& value, const Vec3& low
           } else if (in.size() == 3) {
             add(crossing(in[0], outside[0]), crossing(in[1], outside[0]), crossing(in[2], outside[0]));
           } else {
-            const int a = crossing(in[0], outside[0]), b = crossing(in[0], outside[1]), c2 = crossing(in[1], outside[1]), d = crossing(in[1], outside[0]);
+            const int a = crossing(in[0], outside[0]), b = crossing(in[0], outside[1]),
+                      c2 = crossing(in[1], outside[1]), d = crossing(in[1], outside[0]);
             add(a, b, c2);
             add(a, c2, d);
           }
@@ -115,10 +117,12 @@ void cut_and_close(Surface& surface, const CapPlane& cap, double reach) {
       if ((over[std::size_t(a)] < 0) != (over[std::size_t(b)] < 0)) {
         const int x = crossing(a, b);
         polygon.push_back(x);
-        if (over[std::size_t(a)] < 0) rim.insert(rim.begin(), x); else rim.push_back(x);
+        if (over[std::size_t(a)] < 0) rim.insert(rim.begin(), x);
+        else rim.push_back(x);
       }
     }
-    for (std::size_t k = 1; k + 1 < polygon.size(); ++k) kept.push_back({polygon[0], polygon[k], polygon[k + 1]}), patch.push_back(surface.patch[t]);
+    for (std::size_t k = 1; k + 1 < polygon.size(); ++k)
+      kept.push_back({polygon[0], polygon[k], polygon[k + 1]}), patch.push_back(surface.patch[t]);
     next[rim[1]] = rim[0];  // the wall runs rim[0] -> rim[1]
   }
   if (next.empty()) throw std::runtime_error("the plane of " + cap.name + " meets no vessel");

@@ -12,11 +12,11 @@ namespace insula::artery {
 namespace {
 
 constexpr double flat_deg = 20;             // what a label volume's smoothed surface needs
-constexpr double min_area_share = 0.003;  // of the whole surface
-constexpr double min_roundness = 0.5;     // 4 pi area / perimeter^2: 1 for a circle, 0.5 for an ellipse of 1 to 3.6
+constexpr double min_area_share = 0.003;    // of the whole surface
+constexpr double min_roundness = 0.5;       // 4 pi area / perimeter^2: 1 for a circle, 0.5 for an ellipse of 1 to 3.6
 constexpr double rim_width = 0.35;          // times the cap's radius: within it the surface must have turned away
 constexpr int sectors = 8, min_turned = 7;  // in all directions but one ...
-constexpr double max_cosine = 0.7;         // ... by 45 degrees on average
+constexpr double max_cosine = 0.7;          // ... by 45 degrees on average
 
 }  // namespace
 
@@ -28,11 +28,13 @@ Surface with_flat_caps(const TriMesh& m) {
   double whole = 0;
   for (std::size_t t = 0; t < n; ++t) {
     const auto& tri = m.triangles[t];
-    const Vec3 &a = m.vertices[std::size_t(tri[0])], &b = m.vertices[std::size_t(tri[1])], &c = m.vertices[std::size_t(tri[2])];
+    const Vec3 &a = m.vertices[std::size_t(tri[0])], &b = m.vertices[std::size_t(tri[1])],
+               &c = m.vertices[std::size_t(tri[2])];
     const Vec3 twice = (b - a).cross(c - a);
     area[t] = 0.5 * twice.norm(), normal[t] = twice.normalized(), whole += area[t];
     for (std::size_t k = 0; k < 3; ++k)
-      if (!left.emplace(std::pair(tri[k], tri[(k + 1) % 3]), int(t)).second) throw std::runtime_error("the surface is no manifold");
+      if (!left.emplace(std::pair(tri[k], tri[(k + 1) % 3]), int(t)).second)
+        throw std::runtime_error("the surface is no manifold");
   }
   for (const auto& [edge, t] : left)
     if (!left.count({edge.second, edge.first})) throw std::runtime_error("the surface is not closed");
@@ -63,7 +65,9 @@ Surface with_flat_caps(const TriMesh& m) {
       total += area[t], sum += area[t] * normal[t], centre += area[t] * middle(t);
       for (std::size_t k = 0; k < 3; ++k) {
         const std::size_t next = across(t, k);
-        if (mark[next] == marks || taken[next] || normal[next].dot(towards) < std::cos(flat_deg * std::numbers::pi / 180)) continue;
+        if (mark[next] == marks || taken[next] ||
+            normal[next].dot(towards) < std::cos(flat_deg * std::numbers::pi / 180))
+          continue;
         mark[next] = marks;
         cap.triangles.push_back(int(next));
       }
@@ -100,7 +104,8 @@ Surface with_flat_caps(const TriMesh& m) {
     if (large())
       for (const int t : cap.triangles)
         for (std::size_t k = 0; k < 3; ++k) {
-          const Vec3 &a = m.vertices[std::size_t(m.triangles[std::size_t(t)][k])], &b = m.vertices[std::size_t(m.triangles[std::size_t(t)][(k + 1) % 3])];
+          const Vec3 &a = m.vertices[std::size_t(m.triangles[std::size_t(t)][k])],
+                     &b = m.vertices[std::size_t(m.triangles[std::size_t(t)][(k + 1) % 3])];
           if (mark[across(std::size_t(t), k)] == marks) continue;
           rim += (b - a).norm();
           reach(across(std::size_t(t), k), 0.5 * (a + b));
@@ -108,8 +113,10 @@ Surface with_flat_caps(const TriMesh& m) {
     for (std::size_t i = 0; i < ring.size(); ++i) {
       const auto [t, from] = ring[i];
       const Vec3 d = middle(std::size_t(t)) - cap.plane.centre;
-      const int sector = std::clamp(int((std::atan2(d.dot(e2), d.dot(e1)) / std::numbers::pi + 1) / 2 * sectors), 0, sectors - 1);
-      ring_area[sector] += area[std::size_t(t)], ring_cosine[sector] += area[std::size_t(t)] * normal[std::size_t(t)].dot(cap.plane.normal);
+      const int sector =
+          std::clamp(int((std::atan2(d.dot(e2), d.dot(e1)) / std::numbers::pi + 1) / 2 * sectors), 0, sectors - 1);
+      ring_area[sector] += area[std::size_t(t)],
+          ring_cosine[sector] += area[std::size_t(t)] * normal[std::size_t(t)].dot(cap.plane.normal);
       for (std::size_t k = 0; k < 3; ++k) reach(across(std::size_t(t), k), from);
     }
     int turned = 0;
@@ -122,7 +129,8 @@ Surface with_flat_caps(const TriMesh& m) {
     for (const int t : cap.triangles) taken[std::size_t(t)] = 1;
     found.push_back(std::move(cap));
   }
-  std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.plane.radius > b.plane.radius; });
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Found& a, const Found& b) { return a.plane.radius > b.plane.radius; });
   Surface out{m, std::vector<int>(n, -1), {}};
   for (const Found& f : found) {
     for (const int t : f.triangles) out.patch[std::size_t(t)] = int(out.caps.size());
@@ -137,7 +145,8 @@ WallPoints::WallPoints(const Surface& s) {
     if (s.patch[t] >= 0) continue;
     auto& tri = triangles_.emplace_back();
     Box box;
-    for (std::size_t k = 0; k < 3; ++k) tri[k] = s.mesh.vertices[std::size_t(s.mesh.triangles[t][k])], box.extend(tri[k]);
+    for (std::size_t k = 0; k < 3; ++k)
+      tri[k] = s.mesh.vertices[std::size_t(s.mesh.triangles[t][k])], box.extend(tri[k]);
     boxes.push_back(box);
   }
   if (boxes.empty()) throw std::runtime_error("the surface has no wall");

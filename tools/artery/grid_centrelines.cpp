@@ -16,7 +16,8 @@
 namespace insula::artery {
 namespace {
 
-constexpr int cells_across[] = {90, 160, 280};  // along the longest side; more where a thin vessel falls between the nodes
+constexpr int cells_across[] = {90, 160,
+                                280};  // along the longest side; more where a thin vessel falls between the nodes
 constexpr double max_cells = 1.2e7;
 
 struct InnerGrid {
@@ -39,15 +40,18 @@ struct InnerGrid {
     // Parity along z: where each line of the grid crosses the surface.
     std::vector<std::vector<double>> crossings(across);
     for (const auto& t : m.triangles) {
-      const Vec3 &a = m.vertices[std::size_t(t[0])], &b = m.vertices[std::size_t(t[1])], &c = m.vertices[std::size_t(t[2])];
+      const Vec3 &a = m.vertices[std::size_t(t[0])], &b = m.vertices[std::size_t(t[1])],
+                 &c = m.vertices[std::size_t(t[2])];
       const double det = (b.x() - a.x()) * (c.y() - a.y()) - (c.x() - a.x()) * (b.y() - a.y());
       if (det == 0) continue;
       const Vec3 least = a.cwiseMin(b).cwiseMin(c), most = a.cwiseMax(b).cwiseMax(c);
       for (int i = int(std::ceil((least.x() - low.x()) / step)); low.x() + i * step <= most.x(); ++i)
         for (int j = int(std::ceil((least.y() - low.y()) / step)); low.y() + j * step <= most.y(); ++j) {
           const double x = low.x() + i * step - a.x(), y = low.y() + j * step - a.y();
-          const double u = (x * (c.y() - a.y()) - (c.x() - a.x()) * y) / det, w = ((b.x() - a.x()) * y - x * (b.y() - a.y())) / det;
-          if (u >= 0 && w >= 0 && u + w < 1) crossings[std::size_t(j * n[0] + i)].push_back(a.z() + u * (b.z() - a.z()) + w * (c.z() - a.z()));
+          const double u = (x * (c.y() - a.y()) - (c.x() - a.x()) * y) / det,
+                       w = ((b.x() - a.x()) * y - x * (b.y() - a.y())) / det;
+          if (u >= 0 && w >= 0 && u + w < 1)
+            crossings[std::size_t(j * n[0] + i)].push_back(a.z() + u * (b.z() - a.z()) + w * (c.z() - a.z()));
         }
     }
     for (int j = 0; j < n[1]; ++j)
@@ -55,7 +59,8 @@ struct InnerGrid {
         auto& line = crossings[std::size_t(j * n[0] + i)];
         std::sort(line.begin(), line.end());
         for (std::size_t c = 0; c + 1 < line.size(); c += 2)
-          for (int k = int(std::ceil((line[c] - low.z()) / step)); k < n[2] && low.z() + k * step < line[c + 1]; ++k) inside[std::size_t(index(i, j, k))] = 1;
+          for (int k = int(std::ceil((line[c] - low.z()) / step)); k < n[2] && low.z() + k * step < line[c + 1]; ++k)
+            inside[std::size_t(index(i, j, k))] = 1;
       }
   }
 };
@@ -125,7 +130,8 @@ Paths find_paths(const Surface& surface, const WallPoints& wall, int across_long
           if (to == v || !grid.inside[std::size_t(to)]) continue;
           const double d = 0.5 * (depth[std::size_t(v)] + depth[std::size_t(to)]) + 0.1 * grid.step;
           const double through = c + std::sqrt(double(di * di + dj * dj + dk * dk)) * grid.step * grid.step / (d * d);
-          if (through < cost[std::size_t(to)]) cost[std::size_t(to)] = through, before[std::size_t(to)] = v, queue.emplace(through, to);
+          if (through < cost[std::size_t(to)])
+            cost[std::size_t(to)] = through, before[std::size_t(to)] = v, queue.emplace(through, to);
         }
   }
 
@@ -149,8 +155,10 @@ std::vector<NamedCurve> grid_centrelines(const Surface& surface, const WallPoint
   const Paths& paths = *found;
   if (paths.lost >= 0) {
     const CapPlane& cap = surface.caps[std::size_t(paths.lost)];
-    throw InputError(fmt::format("no way leads from the inlet to {} at ({:.1f}, {:.1f}, {:.1f}), {:.2f} mm across: the vessel is too thin on the way for a grid of {:.2g} mm. Cut it off before it gets so thin (--cut), or leave out what lies far away",
-                                 cap.name, cap.centre.x(), cap.centre.y(), cap.centre.z(), 2 * cap.radius, paths.grid.step));
+    throw InputError(fmt::format(
+        "no way leads from the inlet to {} at ({:.1f}, {:.1f}, {:.1f}), {:.2f} mm across: the vessel is too thin on "
+        "the way for a grid of {:.2g} mm. Cut it off before it gets so thin (--cut), or leave out what lies far away",
+        cap.name, cap.centre.x(), cap.centre.y(), cap.centre.z(), 2 * cap.radius, paths.grid.step));
   }
   const InnerGrid& grid = paths.grid;
   const std::vector<int>& before = paths.before;

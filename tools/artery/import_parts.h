@@ -31,10 +31,11 @@ class WallPoints {
 /// its length over the squared distance to the wall, so that they keep to the middle.
 std::vector<NamedCurve> grid_centrelines(const Surface& surface, const WallPoints& wall);
 
-/// The largest connected set of bulging vertices, if it is large enough, becomes the sac; the plane through its border is the neck.
+/// The largest connected set of bulging vertices, if it is large enough, becomes the sac; the plane through its border
+/// is the neck.
 void find_sac(Vessel& vessel, std::vector<char> bulging);
-/// What lies beyond a plane becomes the sac, what lies near it the neck. `vessel` has no sac yet. Throws std::runtime_error when
-/// the plane parts no dome from the vessel.
+/// What lies beyond a plane becomes the sac, what lies near it the neck. `vessel` has no sac yet. Throws
+/// std::runtime_error when the plane parts no dome from the vessel.
 void sac_beyond(Vessel& vessel, const NeckPlane& plane);
 /// The plane near that of the vessel's neck whose section is narrowest, not far up the dome.
 NeckPlane narrowest_neck(const Vessel& vessel);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A real surface becomes a vessel: caps, even triangles, centrelines, and the sac as what lies far from all centrelines.
+// A real surface becomes a vessel: caps, even triangles, centrelines, and the sac as what lies far from all
+// centrelines.
 #include <algorithm>
 #include <cmath>
 
@@ -8,7 +9,7 @@
 namespace insula::artery {
 namespace {
 
-constexpr double bulge = 1.45;            // times the vessel's radius from its centreline: no vessel any more
+constexpr double bulge = 1.45;  // times the vessel's radius from its centreline: no vessel any more
 
 Vec3 nearest_on_segments(const std::vector<std::array<Vec3, 2>>& segments, const Vec3& p) {
   Vec3 best = p;
@@ -25,11 +26,13 @@ std::vector<std::vector<std::array<Vec3, 2>>> rims(const Surface& s) {
   std::map<std::pair<int, int>, int> wall_edges;
   std::vector<std::vector<std::array<Vec3, 2>>> out(s.caps.size());
   for (std::size_t t = 0; t < s.patch.size(); ++t)
-    for (std::size_t k = 0; k < 3 && s.patch[t] < 0; ++k) wall_edges[{s.mesh.triangles[t][k], s.mesh.triangles[t][(k + 1) % 3]}] = 1;
+    for (std::size_t k = 0; k < 3 && s.patch[t] < 0; ++k)
+      wall_edges[{s.mesh.triangles[t][k], s.mesh.triangles[t][(k + 1) % 3]}] = 1;
   for (std::size_t t = 0; t < s.patch.size(); ++t)
     for (std::size_t k = 0; k < 3 && s.patch[t] >= 0; ++k) {
       const int a = s.mesh.triangles[t][k], b = s.mesh.triangles[t][(k + 1) % 3];
-      if (wall_edges.count({b, a})) out[std::size_t(s.patch[t])].push_back({s.mesh.vertices[std::size_t(a)], s.mesh.vertices[std::size_t(b)]});
+      if (wall_edges.count({b, a}))
+        out[std::size_t(s.patch[t])].push_back({s.mesh.vertices[std::size_t(a)], s.mesh.vertices[std::size_t(b)]});
     }
   return out;
 }
@@ -50,7 +53,8 @@ std::vector<char> name_vessels(Vessel& v) {
     for (std::size_t c = 0; c < v.centrelines.size(); ++c) {
       const Curve& curve = v.centrelines[c].curve;
       for (std::size_t k = 0; k < curve.size(); ++k) {
-        const double ratio = (p - curve.points[k]).norm() / std::clamp(curve.radius[k], 0.85 * usual[c], 1.15 * usual[c]);
+        const double ratio =
+            (p - curve.points[k]).norm() / std::clamp(curve.radius[k], 0.85 * usual[c], 1.15 * usual[c]);
         if (ratio < best) best = ratio, region = int(c);
       }
     }
@@ -71,25 +75,31 @@ Vessel import_surface(const TriMesh& mesh, const ImportOptions& options) {
 Vessel vessel_of(Surface original, const ImportOptions& options) {
   Vessel v;
   if (original.caps.size() < 2)
-    throw std::runtime_error("the surface has " + std::to_string(original.caps.size()) + " flat caps; two or more are needed (an inlet and an outlet)");
+    throw std::runtime_error("the surface has " + std::to_string(original.caps.size()) +
+                             " flat caps; two or more are needed (an inlet and an outlet)");
   std::size_t inlet = 0;
   if (options.inlet.cwiseAbs().maxCoeff() < 1e100)
     for (std::size_t c = 1; c < original.caps.size(); ++c)
-      if ((original.caps[c].centre - options.inlet).norm() < (original.caps[inlet].centre - options.inlet).norm()) inlet = c;
+      if ((original.caps[c].centre - options.inlet).norm() < (original.caps[inlet].centre - options.inlet).norm())
+        inlet = c;
   std::swap(original.caps[0], original.caps[inlet]);
   for (int& p : original.patch) p = p == 0 ? int(inlet) : p == int(inlet) ? 0 : p;
-  for (std::size_t c = 0; c < original.caps.size(); ++c) original.caps[c].name = c == 0 ? "inlet" : "outlet_" + std::to_string(c);
+  for (std::size_t c = 0; c < original.caps.size(); ++c)
+    original.caps[c].name = c == 0 ? "inlet" : "outlet_" + std::to_string(c);
 
   const WallPoints wall(original);
   const auto rim = rims(original);
   const auto caps = original.caps;
   RemeshGuide guide;
   double edge = options.edge_length;
-  if (!(edge > 0)) edge = std::sqrt(expected_vertices(original.mesh, [](const Vec3&) { return 1.0; }) / options.vertices);
+  if (!(edge > 0))
+    edge = std::sqrt(expected_vertices(original.mesh, [](const Vec3&) { return 1.0; }) / options.vertices);
   guide.edge_length = [edge](const Vec3&) { return edge; };
   guide.on_wall = [&wall](const Vec3& p) { return wall.nearest(p); };
   guide.on_rim = [&rim](int c, const Vec3& p) { return nearest_on_segments(rim[std::size_t(c)], p); };
-  guide.on_cap = [&caps](int c, const Vec3& p) -> Vec3 { return p - (p - caps[std::size_t(c)].centre).dot(caps[std::size_t(c)].normal) * caps[std::size_t(c)].normal; };
+  guide.on_cap = [&caps](int c, const Vec3& p) -> Vec3 {
+    return p - (p - caps[std::size_t(c)].centre).dot(caps[std::size_t(c)].normal) * caps[std::size_t(c)].normal;
+  };
   v.wall = original;
   remesh(v.wall, guide, 10);
   v.picture = subdivided(v.wall, guide).mesh;

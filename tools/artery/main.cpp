@@ -12,10 +12,14 @@ namespace {
 
 int finish(const Vessel& v, const std::filesystem::path& folder) {
   const Quality q = quality(v.wall.mesh);
-  const bool sound = q.closed && q.components == 1 && q.euler == 2 && !q.self_intersecting && !quality(v.picture).self_intersecting;
-  std::printf("%s: %zu vertices, %zu triangles, least angle %.1f deg, %s\n", folder.filename().c_str(), v.wall.mesh.vertices.size(),
-              v.wall.mesh.triangles.size(), q.min_angle_deg, sound ? "closed, one piece, no holes through it, no self-intersection" : "NOT SOUND");
-  if (!sound) std::printf("  closed %d, pieces %d, Euler number %d, self-intersecting %d\n", q.closed, q.components, q.euler, q.self_intersecting);
+  const bool sound =
+      q.closed && q.components == 1 && q.euler == 2 && !q.self_intersecting && !quality(v.picture).self_intersecting;
+  std::printf("%s: %zu vertices, %zu triangles, least angle %.1f deg, %s\n", folder.filename().c_str(),
+              v.wall.mesh.vertices.size(), v.wall.mesh.triangles.size(), q.min_angle_deg,
+              sound ? "closed, one piece, no holes through it, no self-intersection" : "NOT SOUND");
+  if (!sound)
+    std::printf("  closed %d, pieces %d, Euler number %d, self-intersecting %d\n", q.closed, q.components, q.euler,
+                q.self_intersecting);
   for (const auto& [name, value] : v.dimensions) std::printf("  %-22s %9.3f\n", name.c_str(), value);
   if (!sound) return 1;
   write_vessel(v, folder);
@@ -38,7 +42,8 @@ int main(int argc, char** argv) {
   import->add_option("surface", file)->required();
   import->add_option("folder", out)->required();
   import->add_option("--unit-mm", unit, "millimetres a unit of the file")->check(CLI::Range(1e-6, 1e6));
-  import->add_option("--edge", edge, "edge length, mm; by default for about 1,700 vertices")->check(CLI::Range(0.01, 10.0));
+  import->add_option("--edge", edge, "edge length, mm; by default for about 1,700 vertices")
+      ->check(CLI::Range(0.01, 10.0));
   import->add_option("--inlet", inlet, "a point near the inlet, mm; by default the widest cap")->expected(3);
   CLI11_PARSE(app, argc, argv);
   try {

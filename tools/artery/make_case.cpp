@@ -12,8 +12,8 @@ namespace {
 
 constexpr double extraction_step = 0.4;  // mm; much below the smallest diameter
 constexpr double wanted_vertices = 1700;
-constexpr double tip_radius = 0.3;         // of the sac's centreline where it ends in the wall
-constexpr double neck_band = 0.45;       // mm to either side of the neck's plane
+constexpr double tip_radius = 0.3;  // of the sac's centreline where it ends in the wall
+constexpr double neck_band = 0.45;  // mm to either side of the neck's plane
 constexpr const char* tube_names[3] = {"parent", "superior", "inferior"};
 constexpr const char* cap_names[3] = {"inlet", "superior_outlet", "inferior_outlet"};
 
@@ -40,7 +40,8 @@ double edge_length(const Shape& shape, const Vec3& p) {
   double length = tube + (0.60 - tube) * ramp(height, -0.5, 0.8);
   const bool at_neck = (p - shape.neck_centre()).norm() < 2.5 * shape.neck_radius();
   if (at_neck) length = std::min(length, 0.47 + 0.15 * ramp(std::abs(height), 0.5, 2.0));
-  return std::min(length, 0.42 + 0.2 * ramp((p - shape.bleb_centre()).norm(), 1.1 * shape.bleb_radius(), 1.1 * shape.bleb_radius() + 1.5));
+  return std::min(length, 0.42 + 0.2 * ramp((p - shape.bleb_centre()).norm(), 1.1 * shape.bleb_radius(),
+                                            1.1 * shape.bleb_radius() + 1.5));
 }
 
 RemeshGuide guide_of(const Shape& shape, const std::vector<CapPlane>& caps) {
@@ -96,7 +97,8 @@ Vessel make_case(const CaseSpec& spec) {
   include(shape.sac_centre(), std::max(spec.width, spec.dome_height));
   include(shape.bleb_centre(), spec.bleb_diameter);
   for (int i = 0; i < 3; ++i)
-    for (std::size_t k = 0; k < shape.tube(i).size(); ++k) include(shape.tube(i).points[k], shape.tube(i).radius[k] + 2);
+    for (std::size_t k = 0; k < shape.tube(i).size(); ++k)
+      include(shape.tube(i).points[k], shape.tube(i).radius[k] + 2);
   Vessel v;
   v.wall.mesh = extract([&](const Vec3& p) { return shape.value(p); }, low, high, extraction_step);
   v.wall.patch.assign(v.wall.mesh.triangles.size(), -1);
@@ -112,15 +114,17 @@ Vessel make_case(const CaseSpec& spec) {
 
   constexpr double step = 0.5;
   for (int i = 0; i < 3; ++i)
-    v.centrelines.push_back({tube_names[i], tube_names[i], i == 0 ? cap_names[0] : "bifurcation", i == 0 ? "bifurcation" : cap_names[i],
-                             resampled(shape.tube(i), step)});
+    v.centrelines.push_back({tube_names[i], tube_names[i], i == 0 ? cap_names[0] : "bifurcation",
+                             i == 0 ? "bifurcation" : cap_names[i], resampled(shape.tube(i), step)});
   // From the fork through the neck to the dome; the radius is that of the equal section's circle.
   const Vec3 fork = shape.tube(0).points.back(), dome = shape.neck_centre() + shape.dome_height() * shape.axis();
   Curve sac{{fork, dome}, {0, 0}};
   sac = resampled(sac, step);
   for (std::size_t k = 0; k < sac.size(); ++k) {
     const double height = shape.height(sac.points[k]);
-    const double section = height < 0 ? 2 * shape.neck_radius() : section_diameter(v.wall.mesh, sac.points[k], shape.axis(), 1.5 * shape.sac_radius());
+    const double section = height < 0
+                               ? 2 * shape.neck_radius()
+                               : section_diameter(v.wall.mesh, sac.points[k], shape.axis(), 1.5 * shape.sac_radius());
     sac.radius[k] = std::max(0.5 * section, tip_radius);
   }
   v.centrelines.push_back({"sac", "sac", "bifurcation", "dome", sac});

@@ -30,7 +30,8 @@ std::vector<VertexKind> vertex_kinds(const Surface& s) {
 double expected_vertices(const TriMesh& mesh, const std::function<double(const Vec3&)>& edge_length) {
   double sum = 0;  // an equilateral triangle takes sqrt(3)/4 l^2, and two of them go to a vertex
   for (const auto& t : mesh.triangles) {
-    const Vec3 &a = mesh.vertices[std::size_t(t[0])], &b = mesh.vertices[std::size_t(t[1])], &c = mesh.vertices[std::size_t(t[2])];
+    const Vec3 &a = mesh.vertices[std::size_t(t[0])], &b = mesh.vertices[std::size_t(t[1])],
+               &c = mesh.vertices[std::size_t(t[2])];
     const double l = edge_length((a + b + c) / 3);
     sum += (b - a).cross(c - a).norm() / (std::sqrt(3.0) * l * l);
   }
@@ -42,7 +43,8 @@ Surface subdivided(const Surface& s, const RemeshGuide& guide) {
   std::map<std::pair<int, int>, std::array<int, 2>> patches;  // of an edge's two triangles
   for (std::size_t t = 0; t < s.patch.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k) {
-      const auto [at, fresh] = patches.emplace(std::minmax(s.mesh.triangles[t][k], s.mesh.triangles[t][(k + 1) % 3]), std::array{s.patch[t], s.patch[t]});
+      const auto [at, fresh] = patches.emplace(std::minmax(s.mesh.triangles[t][k], s.mesh.triangles[t][(k + 1) % 3]),
+                                               std::array{s.patch[t], s.patch[t]});
       if (!fresh) at->second[1] = s.patch[t];
     }
   std::map<std::pair<int, int>, int> middles;
@@ -53,7 +55,8 @@ Surface subdivided(const Surface& s, const RemeshGuide& guide) {
       const auto [l, r] = patches.at(std::minmax(a, b));
       const Vec3 on = l != r ? guide.on_rim(std::max(l, r), p) : l >= 0 ? guide.on_cap(l, p) : guide.on_wall(p);
       // In a narrow groove the nearest surface may be the other bank: the middle stays where it is.
-      const bool groove = (on - p).norm() > max_sagitta * (s.mesh.vertices[std::size_t(a)] - s.mesh.vertices[std::size_t(b)]).norm();
+      const bool groove =
+          (on - p).norm() > max_sagitta * (s.mesh.vertices[std::size_t(a)] - s.mesh.vertices[std::size_t(b)]).norm();
       out.mesh.vertices.push_back(groove ? p : on);
     }
     return at->second;
@@ -104,7 +107,8 @@ double section_diameter(const TriMesh& mesh, const Vec3& point, const Vec3& norm
       before = at, at = to;
       closed = at == start;
     }
-    if (closed && within && std::abs(angle) > std::numbers::pi) return 2 * std::sqrt(0.5 * twice_area.norm() / std::numbers::pi);
+    if (closed && within && std::abs(angle) > std::numbers::pi)
+      return 2 * std::sqrt(0.5 * twice_area.norm() / std::numbers::pi);
   }
   return 0;
 }
@@ -128,7 +132,8 @@ void join_fragments(Vessel& v) {
       seen[start] = 1;
       for (std::size_t i = 0; i < piece.size(); ++i)
         for (const int n : next[std::size_t(piece[i])])
-          if (!seen[std::size_t(n)] && v.region[std::size_t(n)] == v.region[start]) seen[std::size_t(n)] = 1, piece.push_back(n);
+          if (!seen[std::size_t(n)] && v.region[std::size_t(n)] == v.region[start])
+            seen[std::size_t(n)] = 1, piece.push_back(n);
       pieces[v.region[start]].push_back(std::move(piece));
     }
     const int ends = int(v.regions.size()) - 1;
@@ -138,9 +143,11 @@ void join_fragments(Vessel& v) {
       std::map<int, int> touched;
       for (const int i : list.back())
         for (const int n : next[std::size_t(i)])
-          if (v.region[std::size_t(n)] != region && v.region[std::size_t(n)] != ends) ++touched[v.region[std::size_t(n)]];
+          if (v.region[std::size_t(n)] != region && v.region[std::size_t(n)] != ends)
+            ++touched[v.region[std::size_t(n)]];
       if (touched.empty()) continue;
-      const auto most = std::max_element(touched.begin(), touched.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+      const auto most = std::max_element(touched.begin(), touched.end(),
+                                         [](const auto& a, const auto& b) { return a.second < b.second; });
       for (const int i : list.back()) v.region[std::size_t(i)] = most->first;
       any = true;
     }
@@ -155,7 +162,8 @@ void measure(Vessel& v) {
   d["shortest_edge"] = q.shortest, d["longest_edge"] = q.longest;
   double area = 0, volume = 0;
   for (const auto& t : m.triangles) {
-    const Vec3 &a = m.vertices[std::size_t(t[0])], &b = m.vertices[std::size_t(t[1])], &c = m.vertices[std::size_t(t[2])];
+    const Vec3 &a = m.vertices[std::size_t(t[0])], &b = m.vertices[std::size_t(t[1])],
+               &c = m.vertices[std::size_t(t[2])];
     area += 0.5 * (b - a).cross(c - a).norm();
     volume += a.dot(b.cross(c)) / 6;
   }
@@ -174,7 +182,8 @@ void measure(Vessel& v) {
     if (is(i, "sac")) height = std::max(height, (m.vertices[i] - v.neck->centre).dot(v.neck->normal));
   v.dome_height = d["dome_height"] = height;
   for (int k = 1; k < 20; ++k)
-    width = std::max(width, section_diameter(m, v.neck->centre + 0.05 * k * height * v.neck->normal, v.neck->normal, 3 * v.neck->diameter));
+    width = std::max(width, section_diameter(m, v.neck->centre + 0.05 * k * height * v.neck->normal, v.neck->normal,
+                                             3 * v.neck->diameter));
   d["sac_width"] = width;
 }
 

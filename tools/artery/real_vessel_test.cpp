@@ -37,18 +37,22 @@ class RealVessel : public testing::TestWithParam<const char*> {
     std::string walls, tethered;
     for (const std::string& region : vessel.regions) {
       const bool sac = region == "sac" || region == "bleb";
-      walls += fmt::format(R"(<membrane regions="{}" thickness="{} mm" young="1.2 MPa" added_mass="1 kg/m2"/>)", region, sac ? 0.2 : 0.3);
+      walls += fmt::format(R"(<membrane regions="{}" thickness="{} mm" young="1.2 MPa" added_mass="1 kg/m2"/>)", region,
+                           sac ? 0.2 : 0.3);
       if (!sac && region != "neck") tethered += (tethered.empty() ? "" : " ") + region;
     }
-    return test::load_text(fmt::format(R"(<scene time_step="16.6667 ms"><shell_body id="artery" wall="meshes/vessel.json">{}
+    return test::load_text(
+        fmt::format(R"(<scene time_step="16.6667 ms"><shell_body id="artery" wall="meshes/vessel.json">{}
 <anchor_springs regions="{}" stiffness="1 kPa/mm"/></shell_body>
-<pressure id="heart" on="artery" systolic="{} mmHg" diastolic="{} mmHg"/></scene>)", walls, tethered, systolic, diastolic),
-                           folder.path() / "scene.xml");
+<pressure id="heart" on="artery" systolic="{} mmHg" diastolic="{} mmHg"/></scene>)",
+                    walls, tethered, systolic, diastolic),
+        folder.path() / "scene.xml");
   }
   static double moved(Simulation& s) {
     const auto* shell = s.scene().find_as<ShellBody>("artery");
     double most = 0;
-    for (int i = 0; i < shell->nodes(); ++i) most = std::max(most, (shell->q().segment<3>(3 * i) - shell->rest_nodes()[std::size_t(i)]).norm());
+    for (int i = 0; i < shell->nodes(); ++i)
+      most = std::max(most, (shell->q().segment<3>(3 * i) - shell->rest_nodes()[std::size_t(i)]).norm());
     return most;
   }
 };

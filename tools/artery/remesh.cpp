@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Isotropic remeshing with sharp rims on CGAL's surface mesh, and the self-intersection test. The only file that needs CGAL.
+// Isotropic remeshing with sharp rims on CGAL's surface mesh, and the self-intersection test. The only file that needs
+// CGAL.
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
 #include <CGAL/Surface_mesh.h>
@@ -22,7 +23,9 @@ using E = Mesh::Edge_index;
 using F = Mesh::Face_index;
 
 double smallest_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const auto at = [](const Vec3& p, const Vec3& q, const Vec3& r) { return std::atan2((q - p).cross(r - p).norm(), (q - p).dot(r - p)); };
+  const auto at = [](const Vec3& p, const Vec3& q, const Vec3& r) {
+    return std::atan2((q - p).cross(r - p).norm(), (q - p).dot(r - p));
+  };
   return std::min({at(a, b, c), at(b, c, a), at(c, a, b)});
 }
 
@@ -47,7 +50,9 @@ class Remesher {
       even_valences();
       relax(3);
       for (const V v : m_.vertices())
-        if (!at(v).allFinite()) throw std::runtime_error("triangles without an area are in the way: make the surface anew from a grid (--rebuild 0.2)");
+        if (!at(v).allFinite())
+          throw std::runtime_error(
+              "triangles without an area are in the way: make the surface anew from a grid (--rebuild 0.2)");
     }
     for (int i = 0; i < 12; ++i) {
       flip_for_angles();
@@ -62,7 +67,8 @@ class Remesher {
     for (const V v : m_.vertices()) out.mesh.vertices.push_back(at(v));
     for (const F f : m_.faces()) {
       const H h = m_.halfedge(f);
-      out.mesh.triangles.push_back({int(unsigned(m_.source(h))), int(unsigned(m_.target(h))), int(unsigned(m_.target(m_.next(h))))});
+      out.mesh.triangles.push_back(
+          {int(unsigned(m_.source(h))), int(unsigned(m_.target(h))), int(unsigned(m_.target(m_.next(h))))});
       out.patch.push_back(patch_[f]);
     }
     number_by_use(out.mesh);
@@ -70,7 +76,10 @@ class Remesher {
   }
 
  private:
-  Vec3 at(V v) const { const auto& p = m_.point(v); return {p.x(), p.y(), p.z()}; }
+  Vec3 at(V v) const {
+    const auto& p = m_.point(v);
+    return {p.x(), p.y(), p.z()};
+  }
   void put(V v, const Vec3& p) { m_.point(v) = Kernel::Point_3(p[0], p[1], p[2]); }
   bool is_rim(H h) const { return patch_[m_.face(h)] != patch_[m_.face(m_.opposite(h))]; }
   double length(H h) const { return (at(m_.target(h)) - at(m_.source(h))).norm(); }
@@ -179,8 +188,10 @@ class Remesher {
     return c != d && m_.halfedge(c, d) == Mesh::null_halfedge();
   }
   bool flip_keeps_shape(H h) const {
-    const Vec3 a = at(m_.source(h)), b = at(m_.target(h)), c = at(m_.target(m_.next(h))), d = at(m_.target(m_.next(m_.opposite(h))));
-    const Vec3 n1 = (b - a).cross(c - a), n2 = (d - a).cross(b - a), m1 = (d - a).cross(c - a), m2 = (c - b).cross(d - b);
+    const Vec3 a = at(m_.source(h)), b = at(m_.target(h)), c = at(m_.target(m_.next(h))),
+               d = at(m_.target(m_.next(m_.opposite(h))));
+    const Vec3 n1 = (b - a).cross(c - a), n2 = (d - a).cross(b - a), m1 = (d - a).cross(c - a),
+               m2 = (c - b).cross(d - b);
     const Vec3 n = n1.normalized() + n2.normalized();
     return m1.norm() > 1e-8 && m2.norm() > 1e-8 && m1.normalized().dot(n) > 1.2 && m2.normalized().dot(n) > 1.2;
   }
@@ -289,11 +300,13 @@ Quality quality(const TriMesh& mesh) {
   bool manifold = true;
   for (const auto& t : mesh.triangles) {
     manifold = m.add_face(V(unsigned(t[0])), V(unsigned(t[1])), V(unsigned(t[2]))) != Mesh::null_face() && manifold;
-    const Vec3 &a = mesh.vertices[std::size_t(t[0])], &b = mesh.vertices[std::size_t(t[1])], &c = mesh.vertices[std::size_t(t[2])];
+    const Vec3 &a = mesh.vertices[std::size_t(t[0])], &b = mesh.vertices[std::size_t(t[1])],
+               &c = mesh.vertices[std::size_t(t[2])];
     const double angle = smallest_angle(a, b, c) * 180 / std::numbers::pi;
     q.min_angle_deg = std::min(q.min_angle_deg, angle);
     q.mean_min_angle_deg += angle / double(mesh.triangles.size());
-    for (const double l : {(a - b).norm(), (b - c).norm(), (c - a).norm()}) q.shortest = std::min(q.shortest, l), q.longest = std::max(q.longest, l);
+    for (const double l : {(a - b).norm(), (b - c).norm(), (c - a).norm()})
+      q.shortest = std::min(q.shortest, l), q.longest = std::max(q.longest, l);
   }
   q.closed = manifold && CGAL::is_closed(m);
   q.euler = int(m.number_of_vertices()) - int(m.number_of_edges()) + int(m.number_of_faces());

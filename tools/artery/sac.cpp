@@ -10,7 +10,7 @@
 namespace insula::artery {
 namespace {
 
-constexpr double min_sac_share = 0.03;  // of the surface's vertices
+constexpr double min_sac_share = 0.03;    // of the surface's vertices
 constexpr double neck_half_width = 0.45;  // mm, to either side of the neck's plane
 constexpr double min_sac_vertices = 12;
 
@@ -23,7 +23,8 @@ struct Loop {
 };
 
 /// The vertices beyond a plane, in connected pieces.
-std::vector<std::vector<int>> pieces_beyond(const TriMesh& m, const std::vector<std::vector<int>>& next, const NeckPlane& plane) {
+std::vector<std::vector<int>> pieces_beyond(const TriMesh& m, const std::vector<std::vector<int>>& next,
+                                            const NeckPlane& plane) {
   std::vector<char> open(m.vertices.size());
   for (std::size_t i = 0; i < open.size(); ++i) open[i] = height(m.vertices[i], plane) > 0;
   std::vector<std::vector<int>> out;
@@ -38,15 +39,18 @@ std::vector<std::vector<int>> pieces_beyond(const TriMesh& m, const std::vector<
   return out;
 }
 
-/// Where edges leave the set through the plane, in order of their angle about the middle: right for a loop that is star-shaped.
-Loop loop_of(const TriMesh& m, const std::vector<std::vector<int>>& next, const std::vector<int>& set, const NeckPlane& plane) {
+/// Where edges leave the set through the plane, in order of their angle about the middle: right for a loop that is
+/// star-shaped.
+Loop loop_of(const TriMesh& m, const std::vector<std::vector<int>>& next, const std::vector<int>& set,
+             const NeckPlane& plane) {
   std::vector<Vec3> points;
   Loop out;
   for (const int i : set)
     for (const int n : next[std::size_t(i)]) {
       const double a = height(m.vertices[std::size_t(i)], plane), b = height(m.vertices[std::size_t(n)], plane);
       if (b > 0) continue;
-      points.push_back(m.vertices[std::size_t(i)] + a / (a - b) * (m.vertices[std::size_t(n)] - m.vertices[std::size_t(i)]));
+      points.push_back(m.vertices[std::size_t(i)] +
+                       a / (a - b) * (m.vertices[std::size_t(n)] - m.vertices[std::size_t(i)]));
       out.centre += points.back();
     }
   if (points.size() < 3) return {};
@@ -62,7 +66,8 @@ Loop loop_of(const TriMesh& m, const std::vector<std::vector<int>>& next, const 
 }
 
 /// The piece beyond the plane that the loop nearest to its centre belongs to.
-std::vector<int> dome_beyond(const TriMesh& m, const std::vector<std::vector<int>>& next, const NeckPlane& plane, Loop& loop) {
+std::vector<int> dome_beyond(const TriMesh& m, const std::vector<std::vector<int>>& next, const NeckPlane& plane,
+                             Loop& loop) {
   std::vector<int> best;
   double least = 1e300;
   for (auto& set : pieces_beyond(m, next, plane)) {
@@ -83,8 +88,8 @@ bool holds_a_cap(const Surface& s, const std::vector<int>& set) {
   return false;
 }
 
-/// The line from just before the neck to the dome; its radius is that of equal sections. It does not begin in the vessel: sections there
-/// are wider than any of the sac, and flow is judged by those up to the widest.
+/// The line from just before the neck to the dome; its radius is that of equal sections. It does not begin in the
+/// vessel: sections there are wider than any of the sac, and flow is judged by those up to the widest.
 void add_sac_line(Vessel& v, const std::vector<int>& sac) {
   const TriMesh& m = v.wall.mesh;
   const Vec3 centre = v.neck->centre, normal = v.neck->normal;
@@ -96,12 +101,14 @@ void add_sac_line(Vessel& v, const std::vector<int>& sac) {
   }
   std::string start = "neck";
   for (const NamedCurve& c : v.centrelines)  // the nearest fork; without one the network joins it to the nearest vessel
-    if (c.to.starts_with("bifurcation") && (c.curve.points.back() - centre).norm() < least) least = (c.curve.points.back() - centre).norm(), start = c.to;
+    if (c.to.starts_with("bifurcation") && (c.curve.points.back() - centre).norm() < least)
+      least = (c.curve.points.back() - centre).norm(), start = c.to;
   Curve line = resampled(Curve{{centre - 0.25 * normal, centre, dome}, {0, 0, 0}}, std::max(0.05 * top, 1e-6));
   for (std::size_t k = 0; k < line.size(); ++k) {
     const bool below = (line.points[k] - centre).dot(normal) < 0;
     const double section = below ? v.neck->diameter : section_diameter(m, line.points[k], normal, 3 * v.neck->diameter);
-    line.radius[k] = 0.5 * std::max(section, 0.15 * v.neck->diameter);  // the line ends in the wall, where the section is none
+    line.radius[k] =
+        0.5 * std::max(section, 0.15 * v.neck->diameter);  // the line ends in the wall, where the section is none
   }
   v.centrelines.push_back({"sac", "sac", start, "dome", line});
 }
@@ -127,12 +134,15 @@ void find_sac(Vessel& v, std::vector<char> bulging) {
   for (const int i : sac) v.region[std::size_t(i)] = sac_region;
   std::vector<int> rim;
   for (const int i : sac)
-    if (std::any_of(next[std::size_t(i)].begin(), next[std::size_t(i)].end(), [&](int n) { return v.region[std::size_t(n)] < neck_region; })) rim.push_back(i);
+    if (std::any_of(next[std::size_t(i)].begin(), next[std::size_t(i)].end(),
+                    [&](int n) { return v.region[std::size_t(n)] < neck_region; }))
+      rim.push_back(i);
   Vec3 centre = Vec3::Zero(), middle = Vec3::Zero();
   for (const int i : rim) centre += m.vertices[std::size_t(i)] / double(rim.size());
   for (const int i : sac) middle += m.vertices[std::size_t(i)] / double(sac.size());
   Mat3 spread = Mat3::Zero();
-  for (const int i : rim) spread += (m.vertices[std::size_t(i)] - centre) * (m.vertices[std::size_t(i)] - centre).transpose();
+  for (const int i : rim)
+    spread += (m.vertices[std::size_t(i)] - centre) * (m.vertices[std::size_t(i)] - centre).transpose();
   Vec3 normal = Eigen::SelfAdjointEigenSolver<Mat3>(spread).eigenvectors().col(0);
   if (normal.dot(middle - centre) < 0) normal = -normal;
   for (const int i : rim) v.region[std::size_t(i)] = neck_region;
@@ -149,15 +159,19 @@ void sac_beyond(Vessel& v, const NeckPlane& given) {
   NeckPlane plane{given.centre, given.normal.normalized()};
   Loop loop;
   const std::vector<int> dome = dome_beyond(m, next, plane, loop);
-  if (double(dome.size()) < min_sac_vertices) throw std::runtime_error("the neck's plane cuts off no dome: nothing of the wall lies beyond it");
+  if (double(dome.size()) < min_sac_vertices)
+    throw std::runtime_error("the neck's plane cuts off no dome: nothing of the wall lies beyond it");
   if (holds_a_cap(v.wall, dome))
-    throw std::runtime_error("the neck's plane parts no dome from the vessel: an opening lies on its dome side; turn the plane, or move it towards the dome");
+    throw std::runtime_error(
+        "the neck's plane parts no dome from the vessel: an opening lies on its dome side; turn the plane, or move it "
+        "towards the dome");
   const int neck_region = int(v.regions.size()), sac_region = neck_region + 1;
   v.regions.insert(v.regions.end(), {"neck", "sac"});
   std::vector<int> ring;  // grows from the dome's side of the plane to the other
   for (const int i : dome) {
     const auto& around = next[std::size_t(i)];
-    const bool border = std::any_of(around.begin(), around.end(), [&](int n) { return height(m.vertices[std::size_t(n)], plane) <= 0; });
+    const bool border = std::any_of(around.begin(), around.end(),
+                                    [&](int n) { return height(m.vertices[std::size_t(n)], plane) <= 0; });
     const bool near = border || height(m.vertices[std::size_t(i)], plane) <= neck_half_width;
     v.region[std::size_t(i)] = near ? neck_region : sac_region;
     if (near) ring.push_back(i);
@@ -166,7 +180,8 @@ void sac_beyond(Vessel& v, const NeckPlane& given) {
   for (const int i : ring) reach = std::max(reach, (m.vertices[std::size_t(i)] - loop.centre).norm() + neck_half_width);
   for (std::size_t k = 0; k < ring.size(); ++k)
     for (const int n : next[std::size_t(ring[k])])
-      if (v.region[std::size_t(n)] < neck_region && height(m.vertices[std::size_t(n)], plane) > -neck_half_width && (m.vertices[std::size_t(n)] - loop.centre).norm() < reach)
+      if (v.region[std::size_t(n)] < neck_region && height(m.vertices[std::size_t(n)], plane) > -neck_half_width &&
+          (m.vertices[std::size_t(n)] - loop.centre).norm() < reach)
         v.region[std::size_t(n)] = neck_region, ring.push_back(n);
   v.neck = Neck{loop.centre, plane.normal, 2 * std::sqrt(loop.area / std::numbers::pi)};
   add_sac_line(v, dome);
@@ -197,11 +212,18 @@ NeckPlane narrowest_neck(const Vessel& v) {
     for (double a = -0.4; a < 0.5; a += 0.2)
       for (double b = -0.4; b < 0.5; b += 0.2)
         if (const double c = cost(plane_of({up * top, a, b}), up * top); c < least) least = c, best = {up * top, a, b};
-  if (least > 1e299) throw std::runtime_error("no plane near the border of what bulges parts a dome from the vessel; give the neck's plane");
+  if (least > 1e299)
+    throw std::runtime_error(
+        "no plane near the border of what bulges parts a dome from the vessel; give the neck's plane");
   for (const double step : {1.0, 0.5, 0.25})  // pattern search
     for (bool moved = true; moved;) {
       moved = false;
-      for (const State d : {State{0.1 * top * step, 0, 0}, {-0.1 * top * step, 0, 0}, {0, 0.12 * step, 0}, {0, -0.12 * step, 0}, {0, 0, 0.12 * step}, {0, 0, -0.12 * step}}) {
+      for (const State d : {State{0.1 * top * step, 0, 0},
+                            {-0.1 * top * step, 0, 0},
+                            {0, 0.12 * step, 0},
+                            {0, -0.12 * step, 0},
+                            {0, 0, 0.12 * step},
+                            {0, 0, -0.12 * step}}) {
         const State s{best.up + d.up, best.tilt_a + d.tilt_a, best.tilt_b + d.tilt_b};
         if (s.up < -0.15 * top || s.up > 0.45 * top || std::hypot(s.tilt_a, s.tilt_b) > 0.6) continue;
         const double c = cost(plane_of(s), s.up);

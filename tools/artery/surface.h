@@ -18,7 +18,7 @@ struct CapPlane {
 
 struct Surface {
   TriMesh mesh;
-  std::vector<int> patch;      ///< a triangle's cap, or -1 on the wall
+  std::vector<int> patch;  ///< a triangle's cap, or -1 on the wall
   std::vector<CapPlane> caps;
 };
 
@@ -32,10 +32,10 @@ void cut_and_close(Surface& surface, const CapPlane& cap, double reach);
 void number_by_use(TriMesh& mesh);
 
 struct RemeshGuide {
-  std::function<double(const Vec3&)> edge_length;         ///< wanted here
-  std::function<Vec3(const Vec3&)> on_wall;               ///< nearest point of the true wall
-  std::function<Vec3(int cap, const Vec3&)> on_rim;       ///< nearest point of a cap's rim
-  std::function<Vec3(int cap, const Vec3&)> on_cap;       ///< nearest point of a cap's plane
+  std::function<double(const Vec3&)> edge_length;    ///< wanted here
+  std::function<Vec3(const Vec3&)> on_wall;          ///< nearest point of the true wall
+  std::function<Vec3(int cap, const Vec3&)> on_rim;  ///< nearest point of a cap's rim
+  std::function<Vec3(int cap, const Vec3&)> on_cap;  ///< nearest point of a cap's plane
 };
 
 /// Splits, collapses and flips edges and relaxes vertices until edges have the wanted length (Botsch and Kobbelt 2004),

@@ -43,15 +43,16 @@ struct NeckPlane {
 struct ImportOptions {
   double edge_length = 0;  ///< mm; 0: chosen for about so many vertices:
   double vertices = 1700;
-  std::optional<NeckPlane> neck;  ///< in place of the one that is found
-  bool narrow_neck = false;       ///< the plane that is found is moved and turned to the narrowest section near it
+  std::optional<NeckPlane> neck;       ///< in place of the one that is found
+  bool narrow_neck = false;            ///< the plane that is found is moved and turned to the narrowest section near it
   Vec3 inlet = Vec3::Constant(1e300);  ///< the cap nearest to this point; by default the widest
 };
 /// The vessel of a closed surface whose openings are flat caps.
 Vessel import_surface(const TriMesh& surface, const ImportOptions& options);
 /// The same where the caps are known: a closed surface whose triangles are marked, two caps or more.
 Vessel vessel_of(Surface surface, const ImportOptions& options);
-/// The weak tip of the sac: vertices within `radius` mm of the dome become the region "bleb". Does nothing without a sac.
+/// The weak tip of the sac: vertices within `radius` mm of the dome become the region "bleb". Does nothing without a
+/// sac.
 void add_bleb(Vessel& vessel, double radius);
 
 /// Equivalent diameter (of the circle of equal area) of the loop that a plane cuts out of the wall about a point on it.

@@ -28,7 +28,8 @@ void append(std::string& bytes, T value) {
 
 std::string ply(const TriMesh& m, const char* what) {
   std::string s = std::string("ply\nformat binary_little_endian 1.0\ncomment unit mm; ") + what + "\nelement vertex " +
-                  std::to_string(m.vertices.size()) + "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
+                  std::to_string(m.vertices.size()) +
+                  "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
                   std::to_string(m.triangles.size()) + "\nproperty list uchar int vertex_indices\nend_header\n";
   for (const Vec3& p : m.vertices)
     for (int i = 0; i < 3; ++i) append(s, float(p[i]));
@@ -86,10 +87,16 @@ void write_vessel(const Vessel& v, const std::filesystem::path& folder) {
     Json points = Json::array(), radius = Json::array();
     for (const Vec3& p : c.curve.points) points.push_back(point(p));
     for (const double r : c.curve.radius) radius.push_back(rounded(r));
-    json["centrelines"].push_back({{"name", c.name}, {"region", c.region}, {"from", c.from}, {"to", c.to}, {"points", points}, {"radius", radius}});
+    json["centrelines"].push_back({{"name", c.name},
+                                   {"region", c.region},
+                                   {"from", c.from},
+                                   {"to", c.to},
+                                   {"points", points},
+                                   {"radius", radius}});
   }
   if (v.neck) {
-    json["neck"] = {{"centre", point(v.neck->centre)}, {"normal", unit(v.neck->normal)}, {"diameter", rounded(v.neck->diameter)}};
+    json["neck"] = {
+        {"centre", point(v.neck->centre)}, {"normal", unit(v.neck->normal)}, {"diameter", rounded(v.neck->diameter)}};
     json["dome_height"] = rounded(v.dome_height);
   }
   if (v.bleb) json["bleb"] = {{"centre", point(v.bleb->first)}, {"radius", rounded(v.bleb->second)}};

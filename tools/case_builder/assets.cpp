@@ -26,8 +26,10 @@ Assets link_assets(const CaseFolder& folder, const fs::path& project, const std:
   }
   // A scene may name files below the folder that holds "meshes" alone: the case brings all it needs.
   out = {"meshes", "scenes/parts", "../../lobes", true};
-  for (const char* part : {"fissure.xml", "retracted_fissure.xml"}) copy_all(root / "scenes/parts" / part, here / "scenes/parts" / part);
-  for (const char* tool : {"suction", "dissector", "clip_applier", "retractor"}) copy_all(root / "meshes/instruments" / tool, here / "meshes/instruments" / tool);
+  for (const char* part : {"fissure.xml", "retracted_fissure.xml"})
+    copy_all(root / "scenes/parts" / part, here / "scenes/parts" / part);
+  for (const char* tool : {"suction", "dissector", "clip_applier", "retractor"})
+    copy_all(root / "meshes/instruments" / tool, here / "meshes/instruments" / tool);
   for (const std::string& clip : clips) copy_all(root / "meshes/clips" / clip, here / "meshes/clips" / clip);
   copy_all(root / "meshes/window", here / "meshes/window");
   return out;

@@ -30,10 +30,13 @@ TriMesh as_mesh(const mesh_tool::TriangleMesh& m) {
   return out;
 }
 
-std::size_t nodes_of(const std::vector<mesh_tool::TetMesh>& meshes) { return meshes[0].points.size() + meshes[1].points.size(); }
+std::size_t nodes_of(const std::vector<mesh_tool::TetMesh>& meshes) {
+  return meshes[0].points.size() + meshes[1].points.size();
+}
 
 /// The two lobes in tetrahedra, with larger cells where they would be too many.
-std::vector<mesh_tool::TetMesh> lobes_of(const mesh_tool::PartFields& fields, double gap, int most, std::vector<Note>& notes) {
+std::vector<mesh_tool::TetMesh> lobes_of(const mesh_tool::PartFields& fields, double gap, int most,
+                                         std::vector<Note>& notes) {
   std::vector<mesh_tool::TetMesh> meshes;
   double larger = 1;
   for (int round = 0; round < 4; ++round) {
@@ -46,8 +49,17 @@ std::vector<mesh_tool::TetMesh> lobes_of(const mesh_tool::PartFields& fields, do
     if (nodes_of(meshes) <= std::size_t(most)) break;
     larger *= 1.05 * std::cbrt(double(nodes_of(meshes)) / most);
   }
-  if (larger > 1) notes.push_back({Note::Kind::repair, fmt::format("The lobes' cells were made {:.2f} times as large as usual, for {} nodes (--brain-nodes {}).", larger, nodes_of(meshes), most), ""});
-  if (nodes_of(meshes) > std::size_t(most)) notes.push_back({Note::Kind::problem, fmt::format("The lobes have {} nodes, more than the {} that were allowed.", nodes_of(meshes), most), "Give a smoother surface or segmentation, or allow more with --brain-nodes."});
+  if (larger > 1)
+    notes.push_back(
+        {Note::Kind::repair,
+         fmt::format("The lobes' cells were made {:.2f} times as large as usual, for {} nodes (--brain-nodes {}).",
+                     larger, nodes_of(meshes), most),
+         ""});
+  if (nodes_of(meshes) > std::size_t(most))
+    notes.push_back(
+        {Note::Kind::problem,
+         fmt::format("The lobes have {} nodes, more than the {} that were allowed.", nodes_of(meshes), most),
+         "Give a smoother surface or segmentation, or allow more with --brain-nodes."});
   return meshes;
 }
 
@@ -56,10 +68,13 @@ void move(mesh_tool::NiftiVolume& v, const Placement& p) {
   const std::array<double, 12> to = v.to_world, from = v.from_world;
   const Mat3 back = p.rotation.transpose();
   const Vec3 origin = -back * p.shift;
-  const auto m = [](const std::array<double, 12>& a) { return Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(a.data()); };
+  const auto m = [](const std::array<double, 12>& a) {
+    return Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>(a.data());
+  };
   Eigen::Map<Eigen::Matrix<double, 3, 4, Eigen::RowMajor>> to_world(v.to_world.data()), from_world(v.from_world.data());
   to_world.leftCols<3>() = p.rotation * m(to).leftCols<3>(), to_world.col(3) = p.rotation * m(to).col(3) + p.shift;
-  from_world.leftCols<3>() = m(from).leftCols<3>() * back, from_world.col(3) = m(from).leftCols<3>() * origin + m(from).col(3);
+  from_world.leftCols<3>() = m(from).leftCols<3>() * back,
+  from_world.col(3) = m(from).leftCols<3>() * origin + m(from).col(3);
 }
 
 }  // namespace
@@ -71,7 +86,8 @@ mesh_tool::FieldOptions field_options() {
   return f;
 }
 
-Placement settle_in(BrainLabels& brain, mesh_tool::PartFields& fields, const fs::path& project, std::vector<Note>& notes) {
+Placement settle_in(BrainLabels& brain, mesh_tool::PartFields& fields, const fs::path& project,
+                    std::vector<Note>& notes) {
   const mesh_tool::FieldOptions f = field_options();
   constexpr double near_enough = 1.0;  // mm; brains of one template differ by less
   const Course wanted = shipped_course(project);
@@ -84,10 +100,15 @@ Placement settle_in(BrainLabels& brain, mesh_tool::PartFields& fields, const fs:
   for (int round = 0; round < 3 && off > near_enough; ++round) {
     const Placement step = fit(wanted, now);
     const Placement next{step.rotation * whole.rotation, step.rotation * whole.shift + step.shift};
-    shift = (next.apply(fissure_centre) - fissure_centre).norm(), turn = Eigen::AngleAxisd(next.rotation).angle() * 180 / std::numbers::pi;
+    shift = (next.apply(fissure_centre) - fissure_centre).norm(),
+    turn = Eigen::AngleAxisd(next.rotation).angle() * 180 / std::numbers::pi;
     if (shift > farthest_move || turn > widest_turn) {
-      notes.push_back({Note::Kind::problem, fmt::format("The fissure lies {:.1f} mm from where the arms, the hands and the microscope stand; it would have to be moved by {:.0f} mm and turned by {:.0f} degrees.", off, shift, turn),
-                       "Bring the brain to the MNI frame (right-anterior-superior) by a registration of its own, best one that follows the gyri."});
+      notes.push_back({Note::Kind::problem,
+                       fmt::format("The fissure lies {:.1f} mm from where the arms, the hands and the microscope "
+                                   "stand; it would have to be moved by {:.0f} mm and turned by {:.0f} degrees.",
+                                   off, shift, turn),
+                       "Bring the brain to the MNI frame (right-anterior-superior) by a registration of its own, best "
+                       "one that follows the gyri."});
       return whole;
     }
     move(brain.volume, step);
@@ -99,7 +120,12 @@ Placement settle_in(BrainLabels& brain, mesh_tool::PartFields& fields, const fs:
     if (off > 0.9 * last) break;
   }
   if (off < before)
-    notes.push_back({Note::Kind::repair, fmt::format("The brain was moved by {:.1f} mm and turned by {:.1f} degrees, so that its fissure lies where the arms, the hands and the microscope stand: {:.1f} mm off, before {:.1f} mm.", shift, turn, off, before), ""});
+    notes.push_back(
+        {Note::Kind::repair,
+         fmt::format("The brain was moved by {:.1f} mm and turned by {:.1f} degrees, so that its fissure lies where "
+                     "the arms, the hands and the microscope stand: {:.1f} mm off, before {:.1f} mm.",
+                     shift, turn, off, before),
+         ""});
   return whole;
 }
 
@@ -133,30 +159,41 @@ void run_brain(const CaseFolder& folder, const fs::path& project, const Options&
     json["shift_mm"] = to_json(motion.shift);
     progress.step("surfaces");
     std::vector<mesh_tool::TriangleMesh> surfaces;
-    for (std::size_t a = 0; a < 3; ++a) surfaces.push_back(mesh_surface(fields.grid, fields.fine[a], growing(fields, a, edge[a], focus), edge_error));
+    for (std::size_t a = 0; a < 3; ++a)
+      surfaces.push_back(mesh_surface(fields.grid, fields.fine[a], growing(fields, a, edge[a], focus), edge_error));
     for (std::size_t a = 0; a < 3; ++a)
       for (std::size_t b = a + 1; b < 3; ++b)
-        if (clearance(surfaces[a], surfaces[b]).intersect) throw InputError(fmt::format("--brain: the surfaces of {} and {} run through each other", lobe_names[a], lobe_names[b]));
+        if (clearance(surfaces[a], surfaces[b]).intersect)
+          throw InputError(
+              fmt::format("--brain: the surfaces of {} and {} run through each other", lobe_names[a], lobe_names[b]));
     progress.step("tetrahedra");
     const std::vector<mesh_tool::TetMesh> meshes = lobes_of(fields, f.coarse_gap, o.brain_nodes, notes);
-    if (clearance(boundary_mesh(meshes[0]), boundary_mesh(meshes[1])).intersect) throw InputError("--brain: the tetrahedra of the two lobes run through each other; allow more nodes with --brain-nodes");
+    if (clearance(boundary_mesh(meshes[0]), boundary_mesh(meshes[1])).intersect)
+      throw InputError(
+          "--brain: the tetrahedra of the two lobes run through each other; allow more nodes with --brain-nodes");
     fs::create_directories(folder.brain());
     json["lobes"] = Json::array();
     for (std::size_t a = 0; a < 3; ++a) {
       const std::string name = lobe_names[a];
       write_ply(folder.brain() / (name + "_surface.ply"), as_mesh(surfaces[a]), "unit mm; of the case's own brain");
-      Json one{{"name", name}, {"triangles", surfaces[a].triangles.size()}, {"volume_mm3", rounded(signed_volume(surfaces[a]))}};
+      Json one{{"name", name},
+               {"triangles", surfaces[a].triangles.size()},
+               {"volume_mm3", rounded(signed_volume(surfaces[a]))}};
       if (a < 2) {
         write_msh((folder.brain() / (name + ".msh")).string(), meshes[a], mesh_tool::MshFormat::v2_ascii);
-        one["nodes"] = meshes[a].points.size(), one["tetrahedra"] = meshes[a].tets.size(), one["least_angle_deg"] = rounded(dihedral_range(meshes[a]).min_deg);
+        one["nodes"] = meshes[a].points.size(), one["tetrahedra"] = meshes[a].tets.size(),
+        one["least_angle_deg"] = rounded(dihedral_range(meshes[a]).min_deg);
       }
       json["lobes"].push_back(one);
     }
   } catch (const InputError&) {
     throw;
   } catch (const std::exception& e) {  // the mesh generator's own
-    throw InputError(fmt::format("--brain: {}. What is meshed is a ball of {:g} mm about ({:g}, {:g}, {:g}), the right Sylvian fissure: is the brain in the MNI frame (right-anterior-superior), in mm?{}", e.what(), fissure_radius,
-                                 fissure_centre.x(), fissure_centre.y(), fissure_centre.z(), o.mirror ? " It was mirrored (--mirror): was it of the left side?" : " One of the left side needs --mirror."));
+    throw InputError(fmt::format(
+        "--brain: {}. What is meshed is a ball of {:g} mm about ({:g}, {:g}, {:g}), the right Sylvian fissure: is the "
+        "brain in the MNI frame (right-anterior-superior), in mm?{}",
+        e.what(), fissure_radius, fissure_centre.x(), fissure_centre.y(), fissure_centre.z(),
+        o.mirror ? " It was mirrored (--mirror): was it of the left side?" : " One of the left side needs --mirror."));
   }
   json["notes"] = to_json(notes);
   write_json(folder.path / "brain.json", json);

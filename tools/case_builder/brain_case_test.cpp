@@ -15,10 +15,19 @@
 namespace insula::case_builder {
 namespace {
 
-/// What the command line says when it makes the case `own` of a tube with a sac and this brain; the case's folder in `made`.
-std::string make_case(const insula::test::SceneFolder& folder, const std::vector<std::string>& brain, CaseFolder& made, int expected = 0) {
+/// What the command line says when it makes the case `own` of a tube with a sac and this brain; the case's folder in
+/// `made`.
+std::string make_case(const insula::test::SceneFolder& folder, const std::vector<std::string>& brain, CaseFolder& made,
+                      int expected = 0) {
   folder.write("vessel.stl", test::stl_text(test::open_tube()));
-  std::vector<std::string> words{"new", "own", (folder.path() / "vessel.stl").string(), "--out", (folder.path() / "out").string(), "--vertices", "900", "--no-rehearse"};
+  std::vector<std::string> words{"new",
+                                 "own",
+                                 (folder.path() / "vessel.stl").string(),
+                                 "--out",
+                                 (folder.path() / "out").string(),
+                                 "--vertices",
+                                 "900",
+                                 "--no-rehearse"};
   words.insert(words.end(), brain.begin(), brain.end());
   std::FILE *said = std::tmpfile(), *err = std::tmpfile();
   const int status = run_command(words, said, err);
@@ -49,7 +58,10 @@ Standing settled(const CaseFolder& made) {
   Registry registry;
   register_builtin(registry);
   const Assets assets = link_assets(made, find_project(INSULA_SOURCE_DIR), {});
-  const auto loaded = load_simulation_text("<scene><include file=\"" + assets.parts + "/retracted_fissure.xml\"><variable name=\"lobes\" value=\"../../brain\"/></include><settle time=\"3 s\"/></scene>", made.path / "held.xml", registry, 1);
+  const auto loaded = load_simulation_text("<scene><include file=\"" + assets.parts +
+                                               "/retracted_fissure.xml\"><variable name=\"lobes\" "
+                                               "value=\"../../brain\"/></include><settle time=\"3 s\"/></scene>",
+                                           made.path / "held.xml", registry, 1);
   EXPECT_EQ(loaded.diagnostics.format(), "");
   if (!loaded.simulation) return {};
   loaded.simulation->step();
@@ -58,12 +70,16 @@ Standing settled(const CaseFolder& made) {
 
 TEST(Standing, ShippedExercisesBeginAsTheyShould) {
   for (const char* name : {"1_sylvian_fissure", "3_clipping"}) {
-    const MeasuredScene m = measure_scene(find_project(INSULA_SOURCE_DIR) / "scenes/training" / (std::string(name) + ".xml"), 1);
+    const MeasuredScene m =
+        measure_scene(find_project(INSULA_SOURCE_DIR) / "scenes/training" / (std::string(name) + ".xml"), 1);
     EXPECT_EQ(m.message, "");
     for (const Note& n : judged(m.standing)) EXPECT_NE(n.kind, Note::Kind::problem) << name << ": " << n.text;
     EXPECT_EQ(m.standing.arms.size(), name[0] == '1' ? 0u : 2u);
-    for (const StandingArm& arm : m.standing.arms) EXPECT_LT(arm.deepest, 1) << arm.id << " presses with " << arm.force << " N";
-    if (name[0] == '3') { EXPECT_GT(m.standing.seen, 0.8); }
+    for (const StandingArm& arm : m.standing.arms)
+      EXPECT_LT(arm.deepest, 1) << arm.id << " presses with " << arm.force << " N";
+    if (name[0] == '3') {
+      EXPECT_GT(m.standing.seen, 0.8);
+    }
   }
 }
 
@@ -71,7 +87,9 @@ TEST(Standing, WhatIsWrongIsTold) {
   Standing s;
   s.arms = {{"left", "frontal", 0.1, 0.2}, {"right", "temporal", 0.2, 0}};
   s.has_sac = true, s.seen = 0.9;
-  const auto count = [](const std::vector<Note>& notes) { return std::count_if(notes.begin(), notes.end(), [](const Note& n) { return n.kind == Note::Kind::problem; }); };
+  const auto count = [](const std::vector<Note>& notes) {
+    return std::count_if(notes.begin(), notes.end(), [](const Note& n) { return n.kind == Note::Kind::problem; });
+  };
   EXPECT_EQ(count(judged(s)), 0);
   const auto with = [&](const auto& change) {
     Standing t = s;
@@ -95,7 +113,8 @@ TEST_F(OwnBrain, RealLobesAreMeshedAndHeldOpen) {
   const fs::path anatomy = fs::path(INSULA_SOURCE_DIR) / "../shared/anatomy";
   if (!fs::exists(anatomy / "colin27_insula_R.stl")) GTEST_SKIP() << "no anatomy here";
   Options o;
-  for (const char* name : lobe_names) o.brain.push_back(std::string(name) + "=" + (anatomy / ("colin27_" + std::string(name) + "_R.stl")).string());
+  for (const char* name : lobe_names)
+    o.brain.push_back(std::string(name) + "=" + (anatomy / ("colin27_" + std::string(name) + "_R.stl")).string());
   const CaseFolder made{folder.path() / "made", "made"};
   Progress quiet;
   run_brain(made, find_project(INSULA_SOURCE_DIR), o, quiet);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Brains for tests: three blocks with known borders, as surfaces, and what must hold of any that was meshed. Millimetres, MNI.
+// Brains for tests: three blocks with known borders, as surfaces, and what must hold of any that was meshed.
+// Millimetres, MNI.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -12,8 +13,10 @@ namespace insula::case_builder {
 /// A box in twelve triangles, outward.
 inline TriMesh box(const Vec3& low, const Vec3& high) {
   TriMesh m;
-  for (int k = 0; k < 8; ++k) m.vertices.emplace_back(k & 1 ? high.x() : low.x(), k & 2 ? high.y() : low.y(), k & 4 ? high.z() : low.z());
-  for (const auto& [a, b, c, d] : {std::array{0, 2, 3, 1}, std::array{4, 5, 7, 6}, std::array{0, 1, 5, 4}, std::array{2, 6, 7, 3}, std::array{0, 4, 6, 2}, std::array{1, 3, 7, 5}})
+  for (int k = 0; k < 8; ++k)
+    m.vertices.emplace_back(k & 1 ? high.x() : low.x(), k & 2 ? high.y() : low.y(), k & 4 ? high.z() : low.z());
+  for (const auto& [a, b, c, d] : {std::array{0, 2, 3, 1}, std::array{4, 5, 7, 6}, std::array{0, 1, 5, 4},
+                                   std::array{2, 6, 7, 3}, std::array{0, 4, 6, 2}, std::array{1, 3, 7, 5}})
     m.triangles.push_back({a, b, c}), m.triangles.push_back({a, c, d});
   return m;
 }

@@ -27,12 +27,15 @@ namespace {
 
 constexpr double grid_spacing = 0.7;  // mm, of the labels that surfaces are turned into
 
-bool is_lobe(const std::string& name) { return std::find(std::begin(lobe_names), std::end(lobe_names), name) != std::end(lobe_names); }
+bool is_lobe(const std::string& name) {
+  return std::find(std::begin(lobe_names), std::end(lobe_names), name) != std::end(lobe_names);
+}
 
 /// "NAME=REST", or an empty name.
 std::pair<std::string, std::string> named(const std::string& text) {
   const std::size_t sign = text.find('=');
-  return sign == std::string::npos ? std::pair(std::string(), text) : std::pair(text.substr(0, sign), text.substr(sign + 1));
+  return sign == std::string::npos ? std::pair(std::string(), text)
+                                   : std::pair(text.substr(0, sign), text.substr(sign + 1));
 }
 
 TriMesh read_lobe_surface(const fs::path& file, const std::string& what, const Options& o, std::vector<Note>& notes) {
@@ -45,16 +48,30 @@ TriMesh read_lobe_surface(const fs::path& file, const std::string& what, const O
   weld(m, 1e-6 * extent);
   drop_doubles(m);
   if (m.triangles.empty()) fail(file, "holds no triangle with an area");
-  if (const BadEdges bad = non_manifold_edges(m); bad.count > 0) fail(file, fmt::format("{} edges belong to three or more triangles: mend it in the program that made it, or give labels of a volume", bad.count));
+  if (const BadEdges bad = non_manifold_edges(m); bad.count > 0)
+    fail(file, fmt::format("{} edges belong to three or more triangles: mend it in the program that made it, or give "
+                           "labels of a volume",
+                           bad.count));
   const Pieces pieces = pieces_of(m);
   double whole = 0;
   for (const double a : pieces.area) whole += a;
   if (pieces.area.size() > 1) {
-    if (pieces.area[0] < 0.9 * whole) fail(file, fmt::format("is in {} pieces; the largest has {:.0f} % of the area: leave the others out in the program that made it", pieces.area.size(), 100 * pieces.area[0] / whole));
+    if (pieces.area[0] < 0.9 * whole)
+      fail(
+          file,
+          fmt::format(
+              "is in {} pieces; the largest has {:.0f} % of the area: leave the others out in the program that made it",
+              pieces.area.size(), 100 * pieces.area[0] / whole));
     keep_piece(m, pieces, 0);
-    notes.push_back({Note::Kind::repair, fmt::format("{}: of {} pieces the largest was kept, {:.1f} % of the area.", what, pieces.area.size(), 100 * pieces.area[0] / whole), ""});
+    notes.push_back({Note::Kind::repair,
+                     fmt::format("{}: of {} pieces the largest was kept, {:.1f} % of the area.", what,
+                                 pieces.area.size(), 100 * pieces.area[0] / whole),
+                     ""});
   }
-  if (const std::size_t holes = border_loops(m).size(); holes > 0) fail(file, fmt::format("is not closed: it has {} hole{}. A lobe is given by one closed surface; close it in the program that made it", holes, holes == 1 ? "" : "s"));
+  if (const std::size_t holes = border_loops(m).size(); holes > 0)
+    fail(file, fmt::format("is not closed: it has {} hole{}. A lobe is given by one closed surface; close it in the "
+                           "program that made it",
+                           holes, holes == 1 ? "" : "s"));
   return m;
 }
 
@@ -83,7 +100,9 @@ BrainLabels of_surfaces(const std::map<std::string, std::string>& files, const O
   for (int k = 0; k < 3; ++k) {
     const std::string name = lobe_names[k];
     const auto at = files.find(name);
-    if (at == files.end()) throw InputError("--brain: there is no " + name + "; give the three of them: --brain frontal=FILE --brain temporal=FILE --brain insula=FILE");
+    if (at == files.end())
+      throw InputError("--brain: there is no " + name +
+                       "; give the three of them: --brain frontal=FILE --brain temporal=FILE --brain insula=FILE");
     const mesh_tool::Mask inside = inside_of(read_lobe_surface(at->second, name, o, notes), grid);
     for (std::size_t i = 0; i < inside.size(); ++i) {
       if (!inside[i]) continue;
@@ -92,7 +111,12 @@ BrainLabels of_surfaces(const std::map<std::string, std::string>& files, const O
     }
     out.parts.push_back({name, {k + 1}});
   }
-  if (double(twice) > 0.02 * double(all)) notes.push_back({Note::Kind::repair, fmt::format("The lobes' surfaces overlap in {:.1f} % of their volume; it went to the one named first of frontal, temporal, insula.", 100 * double(twice) / double(all)), ""});
+  if (double(twice) > 0.02 * double(all))
+    notes.push_back({Note::Kind::repair,
+                     fmt::format("The lobes' surfaces overlap in {:.1f} % of their volume; it went to the one named "
+                                 "first of frontal, temporal, insula.",
+                                 100 * double(twice) / double(all)),
+                     ""});
   return out;
 }
 
@@ -122,7 +146,10 @@ BrainLabels of_one_surface(const fs::path& file, const Options& o, const fs::pat
       if (near[std::size_t(k)].at(p) < near[std::size_t(best)].at(p)) best = k;
     out.volume.value[i] = float(best + 1);
   }
-  notes.push_back({Note::Kind::fact, "The brain was given as one surface: its lobes are told apart by the nearest of the shipped ones, with a cleft between them.", ""});
+  notes.push_back({Note::Kind::fact,
+                   "The brain was given as one surface: its lobes are told apart by the nearest of the shipped ones, "
+                   "with a cleft between them.",
+                   ""});
   return out;
 }
 
@@ -132,7 +159,9 @@ BrainLabels of_volume(const fs::path& file, const Options& o) {
   std::map<int, std::string> lobe_of;
   for (const std::string& text : o.lobe_labels) {
     const auto [name, list] = named(text);
-    if (!is_lobe(name)) throw InputError("--lobe: " + in_quotes(text) + " names no lobe; write frontal=LABELS, temporal=LABELS, insula=LABELS");
+    if (!is_lobe(name))
+      throw InputError("--lobe: " + in_quotes(text) +
+                       " names no lobe; write frontal=LABELS, temporal=LABELS, insula=LABELS");
     if (labels.contains(name)) throw InputError("--lobe: the " + name + " is given twice");
     try {
       labels[name] = mesh_tool::label_list(list);
@@ -140,10 +169,13 @@ BrainLabels of_volume(const fs::path& file, const Options& o) {
       throw InputError("--lobe " + name + ": " + e.what());
     }
     for (const int k : labels[name])
-      if (const auto [at, fresh] = lobe_of.emplace(k, name); !fresh && at->second != name) throw InputError(fmt::format("--lobe: the label {} is given to the {} and to the {}", k, at->second, name));
+      if (const auto [at, fresh] = lobe_of.emplace(k, name); !fresh && at->second != name)
+        throw InputError(fmt::format("--lobe: the label {} is given to the {} and to the {}", k, at->second, name));
   }
   for (const char* name : lobe_names)
-    if (!labels.contains(name)) fail(file, std::string("is a volume: say which labels are the ") + name + ", such as --lobe " + name + "=2,4,10-16");
+    if (!labels.contains(name))
+      fail(file,
+           std::string("is a volume: say which labels are the ") + name + ", such as --lobe " + name + "=2,4,10-16");
 #ifdef INSULA_WITH_ITK
   out.volume = read_volume(file);
   if (o.mirror) mirror(out.volume);
@@ -154,7 +186,8 @@ BrainLabels of_volume(const fs::path& file, const Options& o) {
   for (const float v : out.volume.value) {
     if (v == 0) continue;
     if (v != std::floor(v) || v < 0) fail(file, "holds values that are no labels: whole numbers from 0 up");
-    if (there.insert(v).second && there.size() > 4000) fail(file, "has more than 4,000 values: it is no volume of labels");
+    if (there.insert(v).second && there.size() > 4000)
+      fail(file, "has more than 4,000 values: it is no volume of labels");
   }
   for (const char* name : lobe_names) {
     const std::vector<int>& list = labels[name];
@@ -174,8 +207,11 @@ BrainLabels read_brain(const Options& o, const fs::path& project, std::vector<No
   std::map<std::string, std::string> files;
   for (const std::string& text : o.brain) {
     auto [name, file] = named(text);
-    if (!name.empty() && !is_lobe(name)) throw InputError("--brain: " + in_quotes(name) + " is no lobe; frontal, temporal and insula are");
-    if (!files.emplace(name, file).second) throw InputError(name.empty() ? "--brain takes one file, or NAME=FILE for each lobe" : "--brain: the " + name + " is given twice");
+    if (!name.empty() && !is_lobe(name))
+      throw InputError("--brain: " + in_quotes(name) + " is no lobe; frontal, temporal and insula are");
+    if (!files.emplace(name, file).second)
+      throw InputError(name.empty() ? "--brain takes one file, or NAME=FILE for each lobe"
+                                    : "--brain: the " + name + " is given twice");
   }
   if (!files.contains("")) return of_surfaces(files, o, notes);
   if (files.size() > 1) throw InputError("--brain takes one file, or NAME=FILE for each lobe, not both");

@@ -33,7 +33,8 @@ void expect_blocks(const BrainLabels& b, double layer) {
     for (double y = -25; y < 33; y += 7)
       for (double z = -30; z < 28; z += 3) {
         const Vec3 p(x, y, z);
-        if ((p - fissure_centre).norm() > 30 || std::abs(x - 40) < layer || (x > 40 && std::abs(z + 2) < layer)) continue;
+        if ((p - fissure_centre).norm() > 30 || std::abs(x - 40) < layer || (x > 40 && std::abs(z + 2) < layer))
+          continue;
         ++all;
         const int label = int(b.volume.nearest({x, y, z}));
         wrong += b.parts[std::size_t(lobe_at(p))].labels.front() != label;
@@ -82,7 +83,8 @@ TEST_F(OwnBrain, OneSurfaceIsSharedOutToTheNearestShippedLobe) {
       for (const Vec3& q : shipped.insula.vertices) near = std::min(near, (p - q).norm());
       if (near < 10) continue;
       ++checked;
-      const auto name = std::find(std::begin(lobe_names), std::end(lobe_names), shipped.lobes[k].name) - std::begin(lobe_names);
+      const auto name =
+          std::find(std::begin(lobe_names), std::end(lobe_names), shipped.lobes[k].name) - std::begin(lobe_names);
       EXPECT_EQ(int(b.volume.nearest({p.x(), p.y(), p.z()})), int(name) + 1) << p.transpose();
     }
     EXPECT_GT(checked, 5);
@@ -99,8 +101,12 @@ TEST_F(OwnBrain, WhatCannotBeIsRefusedWithWhatToDo) {
     return refusal(o);
   };
   EXPECT_NE(with(0, test::scaled(block(0), 1e-3)).find("give --brain-unit m"), std::string::npos);
-  EXPECT_NE(with(1, test::scaled(block(1), 1e3)).find("no part of a brain is (usual: 15 to 250 mm); as if its numbers were in um: give --brain-unit um"), std::string::npos);
-  EXPECT_NE(with(1, test::scaled(block(1), 1e6)).find("give the millimetres of its unit, --brain-unit-mm 1e-06"), std::string::npos);
+  EXPECT_NE(
+      with(1, test::scaled(block(1), 1e3))
+          .find("no part of a brain is (usual: 15 to 250 mm); as if its numbers were in um: give --brain-unit um"),
+      std::string::npos);
+  EXPECT_NE(with(1, test::scaled(block(1), 1e6)).find("give the millimetres of its unit, --brain-unit-mm 1e-06"),
+            std::string::npos);
   TriMesh open = block(1);
   open.triangles.resize(10);
   EXPECT_NE(with(1, open).find("is not closed: it has 1 hole"), std::string::npos);
@@ -121,12 +127,15 @@ TEST_F(OwnBrain, WhatCannotBeIsRefusedWithWhatToDo) {
 
 #ifdef INSULA_WITH_ITK
 TEST_F(OwnBrain, LabelsAreChecked) {
-  folder.write("labels.nii", test::nifti_text({20, 20, 20}, 4, [](int i, int, int k) { return i < 6 ? 30 : k < 10 ? 20 : 11; }));
+  folder.write("labels.nii", test::nifti_text({20, 20, 20}, 4, [](int i, int, int k) {
+                 return i < 6 ? 30 : k < 10 ? 20 : 11;
+               }));
   Options o;
   o.brain = {path("labels.nii")};
   EXPECT_NE(refusal(o).find("say which labels are the frontal"), std::string::npos);
   o.lobe_labels = {"frontal=10-12", "temporal=20", "insula=31"};
-  EXPECT_NE(refusal(o).find("none of the labels of the insula is there; there are: 11, 20, 30"), std::string::npos) << refusal(o);
+  EXPECT_NE(refusal(o).find("none of the labels of the insula is there; there are: 11, 20, 30"), std::string::npos)
+      << refusal(o);
   o.lobe_labels[2] = "insula=3O";
   EXPECT_NE(refusal(o).find("--lobe insula: \"3O\" is neither a label"), std::string::npos) << refusal(o);
   o.lobe_labels[2] = "insula=12,30";
@@ -141,7 +150,9 @@ TEST_F(OwnBrain, LabelsAreChecked) {
 
 TEST(LabelList, IsReadWholeOrRefusedWithTheItem) {
   EXPECT_EQ(mesh_tool::label_list("7,2-4,1000000"), (std::vector<int>{7, 2, 3, 4, 1000000}));
-  for (const char* bad : {"", "1,", ",1", "0", "-1", "+5", " 5", "5 ", "4-", "-4", "4-3", "1-2-3", "1000001", "99999999999", "2;3", "0x10"}) EXPECT_THROW(mesh_tool::label_list(bad), std::runtime_error) << bad;
+  for (const char* bad : {"", "1,", ",1", "0", "-1", "+5", " 5", "5 ", "4-", "-4", "4-3", "1-2-3", "1000001",
+                          "99999999999", "2;3", "0x10"})
+    EXPECT_THROW(mesh_tool::label_list(bad), std::runtime_error) << bad;
 }
 
 TEST_F(OwnBrain, BlocksAreMeshedWithinTheirNodes) {
@@ -159,7 +170,8 @@ TEST_F(OwnBrain, BlocksAreMeshedWithinTheirNodes) {
       if ((p - fissure_centre).norm() > 28) continue;
       const double to_floor = k == 2 ? 40 - p.x() : p.x() - 40, to_cleft = k == 0 ? p.z() + 2 : -2 - p.z();
       const double inside = k == 2 ? to_floor : std::min(to_floor, to_cleft);
-      if (k == 2 || std::max(to_floor, to_cleft) > 4) away = std::max(away, std::abs(inside - 0.5));  // edges are rounded
+      if (k == 2 || std::max(to_floor, to_cleft) > 4)
+        away = std::max(away, std::abs(inside - 0.5));  // edges are rounded
     }
     EXPECT_LT(away, 0.6) << lobe_names[k];
   }
@@ -171,7 +183,8 @@ TEST_F(OwnBrain, BlocksAreMeshedWithinTheirNodes) {
 
 TEST_F(OwnBrain, ABrainElsewhereIsRefused) {
   Options o = by_lobe();
-  for (int k = 0; k < 3; ++k) folder.write(std::string(lobe_names[k]) + ".stl", test::stl_text(test::joined({}, block(k), Vec3(0, 300, 0))));
+  for (int k = 0; k < 3; ++k)
+    folder.write(std::string(lobe_names[k]) + ".stl", test::stl_text(test::joined({}, block(k), Vec3(0, 300, 0))));
   Progress quiet;
   try {
     run_brain({folder.path() / "made", "made"}, find_project(INSULA_SOURCE_DIR), o, quiet);

@@ -26,7 +26,10 @@ std::vector<Note> notes_from_json(const Json& json) {
   std::vector<Note> out;
   for (const Json& one : json) {
     const std::string kind = one.value("kind", "fact");
-    out.push_back({kind == "fact" ? Note::Kind::fact : kind == "repair" ? Note::Kind::repair : Note::Kind::problem, one.value("text", ""), one.value("advice", "")});
+    out.push_back({kind == "fact"     ? Note::Kind::fact
+                   : kind == "repair" ? Note::Kind::repair
+                                      : Note::Kind::problem,
+                   one.value("text", ""), one.value("advice", "")});
   }
   return out;
 }
@@ -34,7 +37,8 @@ std::vector<Note> notes_from_json(const Json& json) {
 Json read_json(const fs::path& file) {
   if (!fs::exists(file)) throw InputError(file.string() + ": does not exist; has the stage before been done?");
   Json json = Json::parse(read_file_bytes(file), nullptr, false);
-  if (json.is_discarded()) throw InputError(file.string() + ": is no JSON, or ends early; do the stage that writes it again");
+  if (json.is_discarded())
+    throw InputError(file.string() + ": is no JSON, or ends early; do the stage that writes it again");
   return json;
 }
 
@@ -50,14 +54,16 @@ void write_text(const fs::path& file, const std::string& text) {
 void write_json(const fs::path& file, const Json& json) { write_text(file, json.dump(1) + "\n"); }
 
 void write_ply(const fs::path& file, const TriMesh& m, const std::string& comment) {
-  std::string s = "ply\nformat binary_little_endian 1.0\ncomment " + comment + "\nelement vertex " + std::to_string(m.vertices.size()) +
-                  "\nproperty float x\nproperty float y\nproperty float z\nelement face " + std::to_string(m.triangles.size()) +
-                  "\nproperty list uchar int vertex_indices\nend_header\n";
+  std::string s = "ply\nformat binary_little_endian 1.0\ncomment " + comment + "\nelement vertex " +
+                  std::to_string(m.vertices.size()) +
+                  "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
+                  std::to_string(m.triangles.size()) + "\nproperty list uchar int vertex_indices\nend_header\n";
   const auto append = [&s](auto value) { s.append(reinterpret_cast<const char*>(&value), sizeof value); };
   const std::size_t data = s.size();
   for (const Vec3& p : m.vertices)
     for (int i = 0; i < 3; ++i) append(float(p[i]));
-  // assimp takes a first byte that is a line's end for a part of the header: the last bit of that coordinate is given up.
+  // assimp takes a first byte that is a line's end for a part of the header: the last bit of that coordinate is given
+  // up.
   if (s.size() > data && (s[data] == '\n' || s[data] == '\r')) s[data] = char(s[data] ^ 1);
   for (const auto& t : m.triangles) {
     append(std::uint8_t(3));
@@ -91,7 +97,9 @@ TriMesh read_ply(const fs::path& file) {
 }
 
 Options read_options(CaseFolder& folder) {
-  if (!fs::exists(folder.options_file())) throw InputError(folder.path.string() + ": is no case: there is no case.json in it; make one with: insula case new NAME INPUT");
+  if (!fs::exists(folder.options_file()))
+    throw InputError(folder.path.string() +
+                     ": is no case: there is no case.json in it; make one with: insula case new NAME INPUT");
   const Json json = read_json(folder.options_file());
   if (!json.is_object() || !json.contains("name") || !json["name"].is_string() || !json.contains("options"))
     throw InputError(folder.options_file().string() + ": is no description of a case");

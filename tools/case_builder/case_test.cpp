@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whole cases: a made vessel through all stages, stages done again alone, and both real aneurysms clipped with the motion made for them.
+// Whole cases: a made vessel through all stages, stages done again alone, and both real aneurysms clipped with the
+// motion made for them.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -9,13 +10,13 @@
 #include "core/model/formats/file_bytes.h"
 #include "core/registry/registry.h"
 #include "engine/live/headless.h"
+#include "plugins/strand_springs/strand_set.h"
 #include "tools/case_builder/commands.h"
 #include "tools/case_builder/intake.h"
 #include "tools/case_builder/report.h"
 #include "tools/case_builder/scenes.h"
 #include "tools/case_builder/shapes_for_test.h"
 #include "tools/case_builder/wall.h"
-#include "plugins/strand_springs/strand_set.h"
 
 namespace insula::case_builder {
 namespace {
@@ -36,14 +37,16 @@ int command(const std::vector<std::string>& words, std::string* said = nullptr) 
 std::map<std::string, std::string> files_of(const fs::path& folder) {
   std::map<std::string, std::string> out;
   for (const auto& f : fs::recursive_directory_iterator(folder))
-    if (f.is_regular_file() && f.path().filename() != "report.html" && f.path().string().find("/meshes/") == std::string::npos) out[f.path().lexically_relative(folder).string()] = read_file_bytes(f.path());
+    if (f.is_regular_file() && f.path().filename() != "report.html" &&
+        f.path().string().find("/meshes/") == std::string::npos)
+      out[f.path().lexically_relative(folder).string()] = read_file_bytes(f.path());
   return out;
 }
 
 /// Plays an exercise with its first motion as `insula run` does, until it is over.
 struct Played {
   bool loaded = false, finite = true;
-  double end = 0;          ///< s
+  double end = 0;  ///< s
   int strands = 0, left = 0;
   ExerciseState state = ExerciseState::running;
   std::map<std::string, double> measures;
@@ -125,14 +128,17 @@ constexpr const char* second = "aneumo_aneux4_label.nii.gz";
 #else
 constexpr const char* second = "aneumo_aneux4_closed.stl";
 #endif
-INSTANTIATE_TEST_SUITE_P(Anatomy, RealCase, testing::Values("dolfin_aneurysm_closed.stl", second), [](const auto& p) { return std::string(p.param).substr(0, 6); });
+INSTANTIATE_TEST_SUITE_P(Anatomy, RealCase, testing::Values("dolfin_aneurysm_closed.stl", second),
+                         [](const auto& p) { return std::string(p.param).substr(0, 6); });
 
 TEST(MadeCase, GivesTheSameFilesTwiceAndStagesCanBeDoneAgainAlone) {
   insula::test::SceneFolder folder;
   folder.write("vessel.stl", test::stl_text(test::open_tube()));
   const std::string input = (folder.path() / "vessel.stl").string();
   std::string said;
-  for (const char* out : {"a", "b"}) ASSERT_EQ(command({"new", "tube", input, "--out", (folder.path() / out).string(), "--vertices", "900"}, &said), 0) << said;
+  for (const char* out : {"a", "b"})
+    ASSERT_EQ(command({"new", "tube", input, "--out", (folder.path() / out).string(), "--vertices", "900"}, &said), 0)
+        << said;
   const CaseFolder made{folder.path() / "a/tube", "tube"};
   const auto first = files_of(made.path);
   EXPECT_GT(first.size(), 15u);
@@ -146,9 +152,12 @@ TEST(MadeCase, GivesTheSameFilesTwiceAndStagesCanBeDoneAgainAlone) {
     EXPECT_GT(m.step_ms, 0);
   }
   const std::string report = read_file_bytes(made.path / "report.html");
-  for (const char* part : {"<svg", "worst angle", "dome to neck", "room to the frontal", "closed by flat caps", "a step takes", "3_clipping.xml"}) EXPECT_NE(report.find(part), std::string::npos) << part;
+  for (const char* part : {"<svg", "worst angle", "dome to neck", "room to the frontal", "closed by flat caps",
+                           "a step takes", "3_clipping.xml"})
+    EXPECT_NE(report.find(part), std::string::npos) << part;
 
-  // A stage again with nothing new changes nothing; with a neck of one's own it moves the neck there and keeps the other choices.
+  // A stage again with nothing new changes nothing; with a neck of one's own it moves the neck there and keeps the
+  // other choices.
   ASSERT_EQ(command({"wall", made.path.string()}, &said), 0) << said;
   ASSERT_EQ(command({"place", made.path.string()}, &said), 0) << said;
   EXPECT_EQ(first, files_of(made.path));
@@ -192,15 +201,21 @@ struct Tree {
     Vec3 a, b;
     double radius;
   };
-  std::vector<Tube> tubes{{Vec3(-20, -1.5, -5.5), Vec3::Zero(), 1.5}, {Vec3::Zero(), Vec3(18, 8.3, -4.2), 1.15}, {Vec3::Zero(), Vec3(17, -11.3, -2.8), 1.0}, {Vec3(8, 3.7, -1.8), Vec3(14, 19, 5), 0.8}, {Vec3(-10, -0.7, -2.7), Vec3(-6, -19, -10), 0.6}};
+  std::vector<Tube> tubes{{Vec3(-20, -1.5, -5.5), Vec3::Zero(), 1.5},
+                          {Vec3::Zero(), Vec3(18, 8.3, -4.2), 1.15},
+                          {Vec3::Zero(), Vec3(17, -11.3, -2.8), 1.0},
+                          {Vec3(8, 3.7, -1.8), Vec3(14, 19, 5), 0.8},
+                          {Vec3(-10, -0.7, -2.7), Vec3(-6, -19, -10), 0.6}};
   TriMesh mesh() const {
     const auto value = [&](const Vec3& p) {
       double tube = 1e300;
       for (const Tube& t : tubes) {
         const Vec3 d = t.b - t.a;
-        tube = std::min(tube, (p - t.a - std::clamp((p - t.a).dot(d) / d.squaredNorm(), 0.0, 1.0) * d).norm() - t.radius);
+        tube =
+            std::min(tube, (p - t.a - std::clamp((p - t.a).dot(d) / d.squaredNorm(), 0.0, 1.0) * d).norm() - t.radius);
       }
-      const double ball = (p - Vec3(0.5, 0.3, 4.2)).norm() - 2.7, k = 0.6, w = std::max(k - std::abs(tube - ball), 0.0) / k;
+      const double ball = (p - Vec3(0.5, 0.3, 4.2)).norm() - 2.7, k = 0.6,
+                   w = std::max(k - std::abs(tube - ball), 0.0) / k;
       return std::min(tube, ball) - 0.25 * w * w * k;
     };
     return artery::extract(value, Vec3(-22.03, -21.01, -12.02), Vec3(20.07, 21.05, 8.1), 0.4);
@@ -209,7 +224,8 @@ struct Tree {
   std::vector<Plane> cuts() const {
     std::vector<Plane> out;
     for (std::size_t i = 0; i < tubes.size(); ++i) {
-      const Vec3 out_of = (i == 0 ? tubes[i].a - tubes[i].b : tubes[i].b - tubes[i].a).normalized(), at = (i == 0 ? tubes[i].a : tubes[i].b) - 1.5 * out_of;
+      const Vec3 out_of = (i == 0 ? tubes[i].a - tubes[i].b : tubes[i].b - tubes[i].a).normalized(),
+                 at = (i == 0 ? tubes[i].a : tubes[i].b) - 1.5 * out_of;
       out.push_back({at.x(), at.y(), at.z(), out_of.x(), out_of.y(), out_of.z()});
     }
     return out;
@@ -241,11 +257,13 @@ TEST(MadeCase, ATreeIsCutPastItsForksAndKeepsItsNeck) {
 TEST(MadeCase, VesselTooThinForAWayIsNamed) {
   // A thread hangs the outlet's half on that of the inlet.
   artery::Surface s;
-  s.mesh = artery::extract([](const Vec3& p) { return std::hypot(p.y(), p.z()) - (std::abs(p.x()) < 3 ? 0.09 : 0.8); }, Vec3(-9.03, -2.01, -2.02), Vec3(9.07, 2.05, 2.1), 0.12);
+  s.mesh = artery::extract([](const Vec3& p) { return std::hypot(p.y(), p.z()) - (std::abs(p.x()) < 3 ? 0.09 : 0.8); },
+                           Vec3(-9.03, -2.01, -2.02), Vec3(9.07, 2.05, 2.1), 0.12);
   s.patch.assign(s.mesh.triangles.size(), -1);
   artery::cut_and_close(s, {"inlet", Vec3(-8, 0, 0), Vec3(-1, 0, 0), 0.8}, 3.0);
   artery::cut_and_close(s, {"outlet_1", Vec3(8, 0, 0), Vec3(1, 0, 0), 0.8}, 3.0);
-  for (Vec3& p : s.mesh.vertices) p.y() += p.x() > 0 ? 0.31 * std::clamp(p.x() / 3, 0.0, 1.0) : 0, p.z() += 0.2 * std::abs(p.x()) * 0.01;
+  for (Vec3& p : s.mesh.vertices)
+    p.y() += p.x() > 0 ? 0.31 * std::clamp(p.x() / 3, 0.0, 1.0) : 0, p.z() += 0.2 * std::abs(p.x()) * 0.01;
   Progress quiet;
   std::vector<Note> notes;
   try {
@@ -259,7 +277,8 @@ TEST(MadeCase, VesselTooThinForAWayIsNamed) {
 TEST(MadeCase, VesselWithoutASacIsRefused) {
   const TriMesh tube = [] {
     artery::Surface s;
-    s.mesh = artery::extract([](const Vec3& p) { return std::hypot(p.y(), p.z()) - 1.4; }, Vec3(-9.03, -2.01, -2.02), Vec3(9.07, 2.05, 2.1), 0.4);
+    s.mesh = artery::extract([](const Vec3& p) { return std::hypot(p.y(), p.z()) - 1.4; }, Vec3(-9.03, -2.01, -2.02),
+                             Vec3(9.07, 2.05, 2.1), 0.4);
     s.patch.assign(s.mesh.triangles.size(), -1);
     artery::cut_and_close(s, {"a", Vec3(-8, 0, 0), Vec3(-1, 0, 0), 1.4}, 3.0);
     artery::cut_and_close(s, {"b", Vec3(8, 0, 0), Vec3(1, 0, 0), 1.4}, 3.0);

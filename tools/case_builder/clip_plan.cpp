@@ -34,7 +34,8 @@ double way_back(const Solid& floor, const ClipShape& clip, const Vec3& middle, c
   return farthest;
 }
 
-/// Height of the blades over the neck's plane, mm: a little towards the parent, as the neck bulges when it is pressed flat.
+/// Height of the blades over the neck's plane, mm: a little towards the parent, as the neck bulges when it is pressed
+/// flat.
 double default_lift(double neck_diameter) { return -0.5 - 0.08 * neck_diameter; }
 
 }  // namespace
@@ -50,7 +51,13 @@ std::vector<ClipShape> read_clips(const fs::path& project) {
     const ClipData& c = *data;
     const Vec3 from = 1000 * c.blade_line.front(), to = 1000 * c.blade_line.back();
     if (std::abs(from.x()) > 0.1 || (to - from).norm() < 0.97e3 * c.blade_length) continue;  // bent clamping lines
-    ClipShape s{name, c.kind, 1000 * c.blade_length, 1000 * c.gap(tool.opening_max), 0.5 * (from + to), (to - from).normalized(), 1000 * c.grip.p};
+    ClipShape s{name,
+                c.kind,
+                1000 * c.blade_length,
+                1000 * c.gap(tool.opening_max),
+                0.5 * (from + to),
+                (to - from).normalized(),
+                1000 * c.grip.p};
     out.push_back(s);
   }
   if (out.empty()) throw InputError("meshes/clips holds no clip");
@@ -69,7 +76,9 @@ ApplierPose applier_pose(const ClipShape& clip, const Vec3& middle, const Vec3& 
 NeckSize neck_size(const artery::Vessel& v, const Vec3& along) {
   const artery::Neck& neck = *v.neck;
   const Vec3 closing = neck.normal.cross(along);
-  const auto index = [&](const char* name) { return int(std::find(v.regions.begin(), v.regions.end(), name) - v.regions.begin()); };
+  const auto index = [&](const char* name) {
+    return int(std::find(v.regions.begin(), v.regions.end(), name) - v.regions.begin());
+  };
   const int n = index("neck"), s = index("sac");
   const auto of_sac = [&](int i) { return v.region[std::size_t(i)] == n || v.region[std::size_t(i)] == s; };
   NeckSize out;
@@ -78,7 +87,8 @@ NeckSize neck_size(const artery::Vessel& v, const Vec3& along) {
     if (!of_sac(t[0]) && !of_sac(t[1]) && !of_sac(t[2])) continue;
     std::vector<Vec3> ends;
     for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3 a = v.wall.mesh.vertices[std::size_t(t[k])] - neck.centre, b = v.wall.mesh.vertices[std::size_t(t[(k + 1) % 3])] - neck.centre;
+      const Vec3 a = v.wall.mesh.vertices[std::size_t(t[k])] - neck.centre,
+                 b = v.wall.mesh.vertices[std::size_t(t[(k + 1) % 3])] - neck.centre;
       const double ha = a.dot(neck.normal), hb = b.dot(neck.normal);
       if ((ha > 0) != (hb > 0)) ends.push_back(a + ha / (ha - hb) * (b - a));
     }
@@ -93,7 +103,8 @@ NeckSize neck_size(const artery::Vessel& v, const Vec3& along) {
   return out;
 }
 
-ClipPlan plan_clip(const artery::Vessel& v, const Solid& floor, const std::vector<ClipShape>& clips, const Options& o, std::vector<Note>& notes) {
+ClipPlan plan_clip(const artery::Vessel& v, const Solid& floor, const std::vector<ClipShape>& clips, const Options& o,
+                   std::vector<Note>& notes) {
   const artery::Neck& neck = *v.neck;
   const Vec3 facing = across(to_surgeon, neck.normal);
   ClipPlan best;
@@ -115,22 +126,32 @@ ClipPlan plan_clip(const artery::Vessel& v, const Solid& floor, const std::vecto
         const double back = o.slide ? 0 : way_back(floor, clip, wanted, -outward);
         const ApplierPose pose = applier_pose(clip, wanted + back * outward, -outward, closing);
         const double off = std::acos(std::clamp(pose.shaft.dot(to_surgeon), -1.0, 1.0)) / degree;
-        const double cost = std::pow(off / 12, 2) + std::pow(angle / 60, 2) + 1.2 * std::max(0.0, needed - clip.blade) + 0.35 * std::max(0.0, clip.blade - needed - 1) +
+        const double cost = std::pow(off / 12, 2) + std::pow(angle / 60, 2) + 1.2 * std::max(0.0, needed - clip.blade) +
+                            0.35 * std::max(0.0, clip.blade - needed - 1) +
                             1.5 * std::max(0.0, 0.75 * size.across - 0.6 * clip.opening) + 1.2 * back;
         if (cost < least) least = cost, best = {clip, pose, needed, off, lift, slide - back, angle, back};
       }
       if (o.turn) break;
     }
   }
-  if (!known) throw InputError("--clip: the library has no clip \"" + o.clip + "\" with a straight clamping line; see meshes/clips/README.md");
+  if (!known)
+    throw InputError("--clip: the library has no clip \"" + o.clip +
+                     "\" with a straight clamping line; see meshes/clips/README.md");
   if (best.clip.blade < best.needed - past)
-    notes.push_back({Note::Kind::problem, fmt::format("The flattened neck is {:.1f} mm wide; the blades of {} reach over {:.1f} mm of it.", best.needed - past, best.clip.name, best.clip.blade),
+    notes.push_back({Note::Kind::problem,
+                     fmt::format("The flattened neck is {:.1f} mm wide; the blades of {} reach over {:.1f} mm of it.",
+                                 best.needed - past, best.clip.name, best.clip.blade),
                      "Expect a remnant, or a second clip; a longer clip can be chosen with --clip."});
   if (best.drawn_back > past)
-    notes.push_back({Note::Kind::problem, fmt::format("The insula lies {:.1f} mm nearer behind the neck than the blades' tips need.", best.drawn_back),
-                     "Expect a remnant behind; turn the vessel (--spin) or the blades (--turn), or choose a shorter clip (--clip)."});
+    notes.push_back(
+        {Note::Kind::problem,
+         fmt::format("The insula lies {:.1f} mm nearer behind the neck than the blades' tips need.", best.drawn_back),
+         "Expect a remnant behind; turn the vessel (--spin) or the blades (--turn), or choose a shorter clip "
+         "(--clip)."});
   if (best.off_view > 50)
-    notes.push_back({Note::Kind::problem, fmt::format("The applier comes {:.0f} degrees off the line of sight.", best.off_view), "Turn the vessel (--spin), or choose another clip (--clip)."});
+    notes.push_back({Note::Kind::problem,
+                     fmt::format("The applier comes {:.0f} degrees off the line of sight.", best.off_view),
+                     "Turn the vessel (--spin), or choose another clip (--clip)."});
   return best;
 }
 
@@ -147,7 +168,8 @@ ApplierPose plan_temporary(const artery::Vessel& v, const Solid& floor, const Cl
   // Pressed flat the parent is half its perimeter wide; the tips go past its far edge where the floor lets them.
   const double tips = 0.5 * std::numbers::pi * c.radius[at] + past, slide = tips - 0.5 * clip.blade;
   const Vec3 middle = c.points[at] - slide * outward;
-  return applier_pose(clip, middle + way_back(floor, clip, middle, -outward) * outward, -outward, along.cross(outward).normalized());
+  return applier_pose(clip, middle + way_back(floor, clip, middle, -outward) * outward, -outward,
+                      along.cross(outward).normalized());
 }
 
 }  // namespace insula::case_builder

@@ -22,28 +22,30 @@ std::vector<ClipShape> read_clips(const fs::path& project);
 
 /// A pose of the applier that holds a clip.
 struct ApplierPose {
-  Vec3 tip, flat, shaft;          ///< flat: the way in which the blades close (+x); unit
+  Vec3 tip, flat, shaft;  ///< flat: the way in which the blades close (+x); unit
 };
 ApplierPose applier_pose(const ClipShape& clip, const Vec3& middle, const Vec3& inward, const Vec3& closing);
 
 /// The neck in its own plane.
 struct NeckSize {
-  double perimeter = 0;           ///< mm
-  double along = 0, across = 0;   ///< extents along the blades and in the way they close, mm
+  double perimeter = 0;          ///< mm
+  double along = 0, across = 0;  ///< extents along the blades and in the way they close, mm
 };
 NeckSize neck_size(const artery::Vessel& vessel, const Vec3& along);
 
 struct ClipPlan {
   ClipShape clip;
   ApplierPose pose;
-  double needed = 0;              ///< length that the flattened neck asks for, mm
-  double off_view = 0;            ///< of the shaft from the line of sight, degrees
+  double needed = 0;    ///< length that the flattened neck asks for, mm
+  double off_view = 0;  ///< of the shaft from the line of sight, degrees
   double lift = 0, slide = 0, turn = 0;
-  double drawn_back = 0;          ///< how far the tips stay short of where they should be, so that they keep off the floor, mm
+  double drawn_back = 0;  ///< how far the tips stay short of where they should be, so that they keep off the floor, mm
 };
-/// A placed vessel's clip: the options' choices, and the best of the rest. The tips keep off `floor` (the insula, which does
-/// not give way: blades that run against it are lifted off the neck). Throws InputError when a wanted clip does not exist.
-ClipPlan plan_clip(const artery::Vessel& vessel, const Solid& floor, const std::vector<ClipShape>& clips, const Options& options, std::vector<Note>& notes);
+/// A placed vessel's clip: the options' choices, and the best of the rest. The tips keep off `floor` (the insula, which
+/// does not give way: blades that run against it are lifted off the neck). Throws InputError when a wanted clip does
+/// not exist.
+ClipPlan plan_clip(const artery::Vessel& vessel, const Solid& floor, const std::vector<ClipShape>& clips,
+                   const Options& options, std::vector<Note>& notes);
 
 /// A temporary clip across the parent, before the neck; it keeps off the floor too.
 ApplierPose plan_temporary(const artery::Vessel& vessel, const Solid& floor, const ClipShape& clip);

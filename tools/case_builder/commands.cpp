@@ -26,82 +26,122 @@ struct Line {
 };
 
 template <std::size_t N>
-void numbers(CLI::App* app, const std::string& name, std::optional<std::array<double, N>>& to, const std::string& text) {
-  app->add_option_function<std::vector<double>>(name, [&to](const std::vector<double>& v) {
-       std::array<double, N> a;
-       std::copy(v.begin(), v.end(), a.begin());
-       to = a;
-     }, text)->expected(int(N));
+void numbers(CLI::App* app, const std::string& name, std::optional<std::array<double, N>>& to,
+             const std::string& text) {
+  app->add_option_function<std::vector<double>>(
+         name,
+         [&to](const std::vector<double>& v) {
+           std::array<double, N> a;
+           std::copy(v.begin(), v.end(), a.begin());
+           to = a;
+         },
+         text)
+      ->expected(int(N));
 }
 
-double mm_of(const std::string& unit) { return unit == "m" ? 1000 : unit == "cm" ? 10 : unit == "um" ? 0.001 : unit == "inch" ? 25.4 : 1; }
+double mm_of(const std::string& unit) {
+  return unit == "m" ? 1000 : unit == "cm" ? 10 : unit == "um" ? 0.001 : unit == "inch" ? 25.4 : 1;
+}
 
 void intake_options(CLI::App* app, Options& o) {
-  app->add_option_function<std::string>("--unit", [&o](const std::string& u) { o.unit_mm = mm_of(u); },
-                                        "unit of a surface file (default: mm; glTF: m)")->check(CLI::IsMember({"m", "cm", "mm", "um", "inch"}));
+  app->add_option_function<std::string>(
+         "--unit", [&o](const std::string& u) { o.unit_mm = mm_of(u); },
+         "unit of a surface file (default: mm; glTF: m)")
+      ->check(CLI::IsMember({"m", "cm", "mm", "um", "inch"}));
   app->add_option("--unit-mm", o.unit_mm, "the same in millimetres a unit")->check(CLI::Range(1e-9, 1e9));
-  app->add_flag("--mirror,!--no-mirror", o.mirror, "the input, vessel and brain, is of the left side: mirror it at x = 0; positions given here stay those of your files");
+  app->add_flag("--mirror,!--no-mirror", o.mirror,
+                "the input, vessel and brain, is of the left side: mirror it at x = 0; positions given here stay those "
+                "of your files");
   app->add_flag("--any-size", o.any_size, "take sizes that no cerebral artery has");
   app->add_option("--label", o.label, "volumes: the vessel's label");
   app->add_option("--threshold", o.threshold, "volumes: grey value from which on it is vessel");
   app->add_option("--smooth", o.smoothing, "volumes: smoothing of the border, in voxels")->check(CLI::Range(0.0, 5.0));
   numbers<3>(app, "--seed", o.seed, "a point, mm: the piece nearest to it is the vessel");
   app->add_flag("--keep-largest", o.keep_largest, "of several pieces take the largest, however large the others are");
-  app->add_option("--rebuild", o.rebuild, "make the surface anew from a grid of this spacing, mm")->check(CLI::Range(0.03, 2.0));
-  app->add_option_function<std::vector<double>>("--cut", [&o](const std::vector<double>& v) {
-       if (v.size() % 6 != 0) throw CLI::ValidationError("--cut", "needs six numbers: a point and the direction of what goes");
-       o.cuts.clear();
-       for (std::size_t k = 0; k < v.size(); k += 6) o.cuts.push_back({v[k], v[k + 1], v[k + 2], v[k + 3], v[k + 4], v[k + 5]});
-     }, "X Y Z NX NY NZ: cut the vessel across at the point, what lies in the direction goes; may be given again")->expected(6, 6 * 32);
+  app->add_option("--rebuild", o.rebuild, "make the surface anew from a grid of this spacing, mm")
+      ->check(CLI::Range(0.03, 2.0));
+  app->add_option_function<std::vector<double>>(
+         "--cut",
+         [&o](const std::vector<double>& v) {
+           if (v.size() % 6 != 0)
+             throw CLI::ValidationError("--cut", "needs six numbers: a point and the direction of what goes");
+           o.cuts.clear();
+           for (std::size_t k = 0; k < v.size(); k += 6)
+             o.cuts.push_back({v[k], v[k + 1], v[k + 2], v[k + 3], v[k + 4], v[k + 5]});
+         },
+         "X Y Z NX NY NZ: cut the vessel across at the point, what lies in the direction goes; may be given again")
+      ->expected(6, 6 * 32);
 }
 
 void wall_options(CLI::App* app, Options& o) {
   numbers<6>(app, "--neck", o.neck, "X Y Z NX NY NZ: plane of the neck, the normal towards the dome");
   numbers<6>(app, "--neck-points", o.neck_points, "two points on opposite sides of the neck, X Y Z X Y Z");
   numbers<3>(app, "--inlet", o.inlet, "a point near the opening where blood comes in (default: the widest)");
-  app->add_option("--keep", o.keep, "mm of vessel kept along each centreline from the neck; 0: all")->check(CLI::Range(0.0, 200.0));
+  app->add_option("--keep", o.keep, "mm of vessel kept along each centreline from the neck; 0: all")
+      ->check(CLI::Range(0.0, 200.0));
   app->add_option("--vertices", o.vertices, "of the wall, about")->check(CLI::Range(400, 6000));
   app->add_option("--bleb", o.bleb, "radius of the weak spot at the dome, mm; 0: none")->check(CLI::Range(0.0, 4.0));
 }
 
 void brain_options(CLI::App* app, Options& o) {
-  app->add_option_function<std::vector<std::string>>("--brain", [&o](const std::vector<std::string>& v) { o.brain = v; },
-                                                     "your own brain in the MNI frame: a volume of labels, NAME=FILE for frontal, temporal and insula each, or one closed surface")->take_all();
-  app->add_option_function<std::vector<std::string>>("--lobe", [&o](const std::vector<std::string>& v) { o.lobe_labels = v; }, "NAME=LABELS of that volume, such as frontal=2,4,10-16")->take_all();
-  app->add_option_function<std::string>("--brain-unit", [&o](const std::string& u) { o.brain_unit_mm = mm_of(u); }, "unit of the brain's surfaces (default: mm; glTF: m)")->check(CLI::IsMember({"m", "cm", "mm", "um", "inch"}));
+  app->add_option_function<std::vector<std::string>>(
+         "--brain", [&o](const std::vector<std::string>& v) { o.brain = v; },
+         "your own brain in the MNI frame: a volume of labels, NAME=FILE for frontal, temporal and insula each, or one "
+         "closed surface")
+      ->take_all();
+  app->add_option_function<std::vector<std::string>>(
+         "--lobe", [&o](const std::vector<std::string>& v) { o.lobe_labels = v; },
+         "NAME=LABELS of that volume, such as frontal=2,4,10-16")
+      ->take_all();
+  app->add_option_function<std::string>(
+         "--brain-unit", [&o](const std::string& u) { o.brain_unit_mm = mm_of(u); },
+         "unit of the brain's surfaces (default: mm; glTF: m)")
+      ->check(CLI::IsMember({"m", "cm", "mm", "um", "inch"}));
   app->add_option("--brain-unit-mm", o.brain_unit_mm, "the same in millimetres a unit")->check(CLI::Range(1e-9, 1e9));
-  app->add_flag("--brain-in-place", o.brain_in_place, "do not move the brain so that its fissure lies where the arms and the microscope stand");
+  app->add_flag("--brain-in-place", o.brain_in_place,
+                "do not move the brain so that its fissure lies where the arms and the microscope stand");
   app->add_option("--brain-nodes", o.brain_nodes, "of both lobes' tetrahedra, at most")->check(CLI::Range(200, 20000));
 }
 
 void place_options(CLI::App* app, Options& o) {
   app->add_flag("--in-place", o.in_place, "the input lies in the frame of the lobes (MNI, mm) already");
-  app->add_option("--lobes", o.lobes, "folder with lobes of your own, named as in meshes/lobes, in its frame (MNI, mm)")->check(CLI::ExistingDirectory);
+  app->add_option("--lobes", o.lobes, "folder with lobes of your own, named as in meshes/lobes, in its frame (MNI, mm)")
+      ->check(CLI::ExistingDirectory);
   app->add_option("--gap", o.gap, "room between wall and lobes, mm")->check(CLI::Range(0.1, 2.0));
-  app->add_option_function<double>("--spin", [&o](double d) { o.spin = d, o.keep_spin = true; }, "turn about the sac's axis, degrees (default: the one with the most room)")->check(CLI::Range(-360.0, 360.0));
+  app->add_option_function<double>(
+         "--spin", [&o](double d) { o.spin = d, o.keep_spin = true; },
+         "turn about the sac's axis, degrees (default: the one with the most room)")
+      ->check(CLI::Range(-360.0, 360.0));
 }
 
 void scene_options(CLI::App* app, Options& o) {
   app->add_option("--clip", o.clip, "clip for the neck, of meshes/clips (default: chosen)");
   app->add_option("--lift", o.lift, "of the blades over the neck's plane, mm")->check(CLI::Range(-10.0, 10.0));
   app->add_option("--slide", o.slide, "of the blades' middle beyond the neck's, mm")->check(CLI::Range(-15.0, 15.0));
-  app->add_flag("--rehearse,!--no-rehearse", o.rehearse, "operate in exercise 2 once and keep the hands' motion (default); else it has none, which is quicker");
-  app->add_option("--turn", o.turn, "of the blades about the dome's axis from the surgeon's side, degrees")->check(CLI::Range(-180.0, 180.0));
+  app->add_flag("--rehearse,!--no-rehearse", o.rehearse,
+                "operate in exercise 2 once and keep the hands' motion (default); else it has none, which is quicker");
+  app->add_option("--turn", o.turn, "of the blades about the dome's axis from the surgeon's side, degrees")
+      ->check(CLI::Range(-180.0, 180.0));
 }
 
 /// 0: parsed; else the exit status, help or complaint already said.
 int parse(const std::vector<std::string>& arguments, Line& line, Options& o, std::FILE* out, std::FILE* err) {
-  CLI::App app{"Makes training cases from patients' vessels. For training only, never for the care of patients.", "insula case"};
+  CLI::App app{"Makes training cases from patients' vessels. For training only, never for the care of patients.",
+               "insula case"};
   app.require_subcommand(1);
-  auto* fresh = app.add_subcommand("new", "a case from a surface (STL, OBJ, PLY, glTF, VTP) or a volume (NIfTI, MetaImage, a folder of DICOM)");
+  auto* fresh = app.add_subcommand(
+      "new", "a case from a surface (STL, OBJ, PLY, glTF, VTP) or a volume (NIfTI, MetaImage, a folder of DICOM)");
   fresh->add_option("name", line.name, "of the case: letters, digits, _ and -")->required();
   fresh->add_option("input", line.input, "file, or folder of a DICOM series")->required();
   fresh->add_option("--out", line.out, "folder that gets the case's folder (default: scenes/cases of the project)");
-  intake_options(fresh, o), wall_options(fresh, o), brain_options(fresh, o), place_options(fresh, o), scene_options(fresh, o);
+  intake_options(fresh, o), wall_options(fresh, o), brain_options(fresh, o), place_options(fresh, o),
+      scene_options(fresh, o);
   for (const char* stage : stages) {
-    auto* again = app.add_subcommand(stage, std::string("do the stage ") + stage + " of a case again, from what the one before wrote");
+    auto* again = app.add_subcommand(
+        stage, std::string("do the stage ") + stage + " of a case again, from what the one before wrote");
     again->add_option("folder", line.folder, "of the case")->required();
-    if (stage == std::string("intake")) again->add_option("input", line.input, "file, or folder of a DICOM series")->required(), intake_options(again, o);
+    if (stage == std::string("intake"))
+      again->add_option("input", line.input, "file, or folder of a DICOM series")->required(), intake_options(again, o);
     if (stage == std::string("wall")) wall_options(again, o);
     if (stage == std::string("brain")) brain_options(again, o);
     if (stage == std::string("place")) place_options(again, o);
@@ -113,7 +153,10 @@ int parse(const std::vector<std::string>& arguments, Line& line, Options& o, std
   try {
     app.parse(reversed);
   } catch (const CLI::CallForHelp&) {
-    std::fputs((app.get_subcommands().empty() ? app.help("", CLI::AppFormatMode::All) : app.get_subcommands()[0]->help()).c_str(), out);
+    std::fputs(
+        (app.get_subcommands().empty() ? app.help("", CLI::AppFormatMode::All) : app.get_subcommands()[0]->help())
+            .c_str(),
+        out);
     return -1;
   } catch (const CLI::ParseError& e) {
     std::fprintf(err, "error: %s\nRun with --help for more.\n", e.what());
@@ -122,7 +165,8 @@ int parse(const std::vector<std::string>& arguments, Line& line, Options& o, std
   return 0;
 }
 
-void do_stage(const std::string& stage, const CaseFolder& folder, const Line& line, const fs::path& project, const Options& o, Progress& progress) {
+void do_stage(const std::string& stage, const CaseFolder& folder, const Line& line, const fs::path& project,
+              const Options& o, Progress& progress) {
   if (stage == "intake") run_intake(folder, line.input, o, progress);
   if (stage == "wall") run_wall(folder, o, progress);
   if (stage == "brain") run_brain(folder, project, o, progress);
@@ -141,11 +185,17 @@ int run_command(const std::vector<std::string>& arguments, std::FILE* out, std::
     Progress progress(err);
     CaseFolder folder;
     if (line.stage.empty()) {
-      if (line.name.empty() || line.name.size() > 64 || !std::all_of(line.name.begin(), line.name.end(), [](unsigned char c) { return c < 128 && (std::isalnum(c) || c == '_' || c == '-'); }))
-        throw InputError("the name of a case has letters, digits, _ and - only, 64 at most: \"" + line.name + "\" has not");
+      if (line.name.empty() || line.name.size() > 64 ||
+          !std::all_of(line.name.begin(), line.name.end(),
+                       [](unsigned char c) { return c < 128 && (std::isalnum(c) || c == '_' || c == '-'); }))
+        throw InputError("the name of a case has letters, digits, _ and - only, 64 at most: \"" + line.name +
+                         "\" has not");
       const fs::path into = line.out.empty() ? find_project(fs::current_path()) / "scenes/cases" : fs::path(line.out);
       folder = {into / line.name, line.name};
-      if (fs::exists(folder.path)) throw InputError(folder.path.string() + " exists already; remove it, or do a stage of it again: insula case wall " + folder.path.string());
+      if (fs::exists(folder.path))
+        throw InputError(folder.path.string() +
+                         " exists already; remove it, or do a stage of it again: insula case wall " +
+                         folder.path.string());
     } else {
       folder.path = line.folder;
       o = read_options(folder);
@@ -154,7 +204,8 @@ int run_command(const std::vector<std::string>& arguments, std::FILE* out, std::
       parse(arguments, again, o, out, err);
     }
     const fs::path project = find_project(folder.path);
-    const auto first = line.stage.empty() ? std::begin(stages) : std::find(std::begin(stages), std::end(stages), line.stage);
+    const auto first =
+        line.stage.empty() ? std::begin(stages) : std::find(std::begin(stages), std::end(stages), line.stage);
     // A new case's folder is there from the first stage that worked.
     for (auto stage = first; stage != std::end(stages); ++stage) {
       do_stage(*stage, folder, line, project, o, progress);
@@ -162,8 +213,11 @@ int run_command(const std::vector<std::string>& arguments, std::FILE* out, std::
       if (!line.stage.empty() && !line.on) break;
     }
     const fs::path last = folder.path / "report.html";
-    std::fprintf(out, "%s: done; look at %s\n", folder.path.string().c_str(), fs::exists(last) ? last.string().c_str() : folder.path.string().c_str());
-    if (line.stage.empty()) std::fprintf(out, "next: insula check %s && insula play %s\n", (folder.path / "3_clipping.xml").string().c_str(), (folder.path / "3_clipping.xml").string().c_str());
+    std::fprintf(out, "%s: done; look at %s\n", folder.path.string().c_str(),
+                 fs::exists(last) ? last.string().c_str() : folder.path.string().c_str());
+    if (line.stage.empty())
+      std::fprintf(out, "next: insula check %s && insula play %s\n", (folder.path / "3_clipping.xml").string().c_str(),
+                   (folder.path / "3_clipping.xml").string().c_str());
     return 0;
   } catch (const InputError& e) {
     std::fprintf(err, "\nerror: %s\n", e.what());

@@ -7,8 +7,8 @@
 
 namespace insula::case_builder {
 
-/// Arguments without the program's name; progress and errors go to `err`, what was made to `out`. Status: 0 well, 1 the system's fault, 2
-/// the input's.
+/// Arguments without the program's name; progress and errors go to `err`, what was made to `out`. Status: 0 well, 1 the
+/// system's fault, 2 the input's.
 int run_command(const std::vector<std::string>& arguments, std::FILE* out, std::FILE* err);
 
 }  // namespace insula::case_builder

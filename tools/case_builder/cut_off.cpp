@@ -69,7 +69,8 @@ class Cutter {
     }
     return out;
   }
-  /// Triangles that hang together without those of the ring, from its far side; false when they reach its near side too.
+  /// Triangles that hang together without those of the ring, from its far side; false when they reach its near side
+  /// too.
   bool far_side(const Ring& ring, std::vector<char>& far) const {
     std::vector<char> in_ring(m_.triangles.size());
     for (const int t : ring.triangles) in_ring[std::size_t(t)] = 1;
@@ -107,9 +108,13 @@ void cut_off(artery::Surface& s, const Vec3& point, const Vec3& normal, const st
   const std::string where = fmt::format("({:.1f}, {:.1f}, {:.1f})", point.x(), point.y(), point.z());
   std::vector<Ring> rings = cutter.rings();
   if (rings.empty()) throw InputError("the plane at " + where + " does not meet the vessel");
-  const Ring ring = *std::min_element(rings.begin(), rings.end(), [&](const Ring& a, const Ring& b) { return (a.centre - point).norm() < (b.centre - point).norm(); });
+  const Ring ring = *std::min_element(rings.begin(), rings.end(), [&](const Ring& a, const Ring& b) {
+    return (a.centre - point).norm() < (b.centre - point).norm();
+  });
   std::vector<char> far;
-  if (!cutter.far_side(ring, far)) throw InputError("the plane at " + where + " does not part the vessel in two; move it along the vessel, to where that is a single tube");
+  if (!cutter.far_side(ring, far))
+    throw InputError("the plane at " + where +
+                     " does not part the vessel in two; move it along the vessel, to where that is a single tube");
 
   artery::Surface out;
   out.mesh.vertices = s.mesh.vertices;
@@ -117,7 +122,8 @@ void cut_off(artery::Surface& s, const Vec3& point, const Vec3& normal, const st
   for (const int t : ring.triangles) in_ring[std::size_t(t)] = 1;
   std::vector<int> to(s.caps.size(), -1);
   const auto add = [&](const std::array<int, 3>& t, int patch) {
-    if (patch >= 0 && to[std::size_t(patch)] < 0) to[std::size_t(patch)] = int(out.caps.size()), out.caps.push_back(s.caps[std::size_t(patch)]);
+    if (patch >= 0 && to[std::size_t(patch)] < 0)
+      to[std::size_t(patch)] = int(out.caps.size()), out.caps.push_back(s.caps[std::size_t(patch)]);
     out.mesh.triangles.push_back(t);
     out.patch.push_back(patch < 0 ? -1 : to[std::size_t(patch)]);
   };
@@ -152,7 +158,9 @@ void cut_off(artery::Surface& s, const Vec3& point, const Vec3& normal, const st
   out.mesh.vertices.push_back(ring.centre);
   double size = 0;
   for (const auto& [a, b] : rim) {
-    size += 0.5 * (out.mesh.vertices[std::size_t(a)] - ring.centre).cross(out.mesh.vertices[std::size_t(b)] - ring.centre).dot(n);
+    size +=
+        0.5 *
+        (out.mesh.vertices[std::size_t(a)] - ring.centre).cross(out.mesh.vertices[std::size_t(b)] - ring.centre).dot(n);
     out.mesh.triangles.push_back({a, b, hub});
     out.patch.push_back(cap);
   }

@@ -9,7 +9,8 @@ namespace insula::case_builder {
 namespace {
 
 constexpr std::uint32_t undefined = 0xFFFFFFFF;
-constexpr std::uint32_t item = 0xFFFEE000, end_of_item = 0xFFFEE00D, end_of_sequence = 0xFFFEE0DD, picture = 0x7FE00010, syntax = 0x00020010;
+constexpr std::uint32_t item = 0xFFFEE000, end_of_item = 0xFFFEE00D, end_of_sequence = 0xFFFEE0DD, picture = 0x7FE00010,
+                        syntax = 0x00020010;
 
 class Walk {
  public:
@@ -26,7 +27,8 @@ class Walk {
       const Element e = element(meta || explicit_);
       seen = seen || e.tag == picture;
       if (e.length == undefined) sequence();
-      else if (const std::string_view value = in_.bytes(e.length, "an element"); e.tag == syntax) transfer = std::string(value.substr(0, value.find('\0')));
+      else if (const std::string_view value = in_.bytes(e.length, "an element"); e.tag == syntax)
+        transfer = std::string(value.substr(0, value.find('\0')));
     }
     if (!seen) in_.fail("ends early: there is no picture in it");
   }
@@ -44,7 +46,8 @@ class Walk {
   void choose(const std::string& transfer) {
     chosen_ = true;
     explicit_ = transfer != "1.2.840.10008.1.2";
-    skipped_ = transfer == "1.2.840.10008.1.2.2" || transfer == "1.2.840.10008.1.2.1.99";  // big endian, deflated: rare, left to the library
+    skipped_ = transfer == "1.2.840.10008.1.2.2" ||
+               transfer == "1.2.840.10008.1.2.1.99";  // big endian, deflated: rare, left to the library
   }
   Element element(bool with_kind) {
     constexpr bool swap = !machine_is_little_endian;
@@ -55,7 +58,8 @@ class Walk {
       e.length = in_.binary<std::uint32_t>(swap, "an element");
       return e;
     }
-    static constexpr std::string_view long_kinds[] = {"OB", "OD", "OF", "OL", "OV", "OW", "SQ", "SV", "UC", "UN", "UR", "UT", "UV"};
+    static constexpr std::string_view long_kinds[] = {"OB", "OD", "OF", "OL", "OV", "OW", "SQ",
+                                                      "SV", "UC", "UN", "UR", "UT", "UV"};
     const std::string_view kind = in_.bytes(2, "an element");
     if (std::find(std::begin(long_kinds), std::end(long_kinds), kind) == std::end(long_kinds)) {
       e.length = in_.binary<std::uint16_t>(swap, "an element");

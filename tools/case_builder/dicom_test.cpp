@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// DICOM series: read by their threshold; with slices that are missing, there twice, cut off or of another series, refused by name.
+// DICOM series: read by their threshold; with slices that are missing, there twice, cut off or of another series,
+// refused by name.
 #ifdef INSULA_WITH_ITK
 #include <gtest/gtest.h>
 
@@ -13,7 +14,9 @@ namespace {
 /// A series of DICOM slices of the tube, but for the one that is left out.
 void write_series(const insula::test::SceneFolder& folder, int missing) {
   for (int k = 0; k < 32; ++k)
-    if (k != missing) folder.write("series/" + std::to_string(k) + ".dcm", test::dicom_text({54, 24}, 0.3, k, [k](int i, int j) { return 900 * test::tube_label(i, j, k); }));
+    if (k != missing)
+      folder.write("series/" + std::to_string(k) + ".dcm",
+                   test::dicom_text({54, 24}, 0.3, k, [k](int i, int j) { return 900 * test::tube_label(i, j, k); }));
 }
 
 TEST(Volumes, ADicomSeriesIsReadByItsThreshold) {
@@ -46,7 +49,8 @@ std::string refusal(const insula::test::SceneFolder& folder) {
   return "";
 }
 std::string slice(int k, std::array<int, 2> size, const std::string& series) {
-  return test::dicom_text(size, 0.3, k, [k](int i, int j) { return 900 * test::tube_label(i, j, k); }, series);
+  return test::dicom_text(
+      size, 0.3, k, [k](int i, int j) { return 900 * test::tube_label(i, j, k); }, series);
 }
 
 TEST(Volumes, AMissingSliceIsNamed) {
@@ -57,7 +61,8 @@ TEST(Volumes, AMissingSliceIsNamed) {
 }
 
 TEST(Volumes, ASliceThatEndsEarlyIsNamed) {
-  // Of some 3,100 bytes: within the picture, at its last byte, within the header (on which GDCM aborts), within the meta information.
+  // Of some 3,100 bytes: within the picture, at its last byte, within the header (on which GDCM aborts), within the
+  // meta information.
   for (const std::uintmax_t bytes : {2000, 3000, 300, 200}) {
     insula::test::SceneFolder folder;
     write_series(folder, -1);
@@ -85,7 +90,8 @@ TEST(Volumes, SlicesOfAnotherSizeAreNoPartOfASeries) {
   write_series(folder, 12);
   folder.write("series/12.dcm", slice(12, {40, 24}, "1.2.3.6"));
   const std::string said = refusal(folder);
-  EXPECT_TRUE(said.find("holds 2 DICOM series") != std::string::npos || said.find("another size") != std::string::npos) << said;
+  EXPECT_TRUE(said.find("holds 2 DICOM series") != std::string::npos || said.find("another size") != std::string::npos)
+      << said;
 }
 
 TEST(Volumes, ASliceThatIsThereTwiceIsNamed) {

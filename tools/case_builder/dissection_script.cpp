@@ -14,11 +14,17 @@ namespace insula::case_builder {
 namespace {
 
 constexpr int max_strands = 24;       // what a trainee divides in some minutes
-constexpr double step_outward = 0.7;   // mm
+constexpr double step_outward = 0.7;  // mm
 constexpr int max_steps = 5;
 
 /// Slower than a skilled hand, quicker than the shipped exercise's.
-constexpr Pace pace{.stroke = 0.12, .stroke_per_m = 70, .travel = 0.028, .turn = 3.5, .at_least = 0.2, .enter = 1.6, .until_severed = true};
+constexpr Pace pace{.stroke = 0.12,
+                    .stroke_per_m = 70,
+                    .travel = 0.028,
+                    .turn = 3.5,
+                    .at_least = 0.2,
+                    .enter = 1.6,
+                    .until_severed = true};
 
 void write_exercises(const SceneFacts& f, const CaseFolder& folder) {
   const std::vector<fs::path> files = exercise_files(folder);
@@ -33,7 +39,8 @@ bool leave_out(SceneFacts& f, const std::string& text, std::vector<Note>& notes)
     before.resize(before.find("id=\"to_" + f.strand_sets[i]));
     const auto line = 1 + std::count(before.begin(), before.end(), '\n');
     if (text.find(fmt::format("2_aneurysm_dissection.xml:{}:", line)) == std::string::npos) continue;
-    notes.push_back({Note::Kind::problem, "There is no place for strands to the " + f.strand_sets[i] + ".", "They were left out; give another ball or max_length in 2_aneurysm_dissection.xml."});
+    notes.push_back({Note::Kind::problem, "There is no place for strands to the " + f.strand_sets[i] + ".",
+                     "They were left out; give another ball or max_length in 2_aneurysm_dissection.xml."});
     f.strand_sets.erase(f.strand_sets.begin() + std::ptrdiff_t(i));
     return true;
   }
@@ -42,7 +49,8 @@ bool leave_out(SceneFacts& f, const std::string& text, std::vector<Note>& notes)
 
 }  // namespace
 
-void spin_strands(SceneFacts& f, const CaseFolder& folder, bool rehearse, std::vector<Note>& notes, Progress& progress) {
+void spin_strands(SceneFacts& f, const CaseFolder& folder, bool rehearse, std::vector<Note>& notes,
+                  Progress& progress) {
   progress.step("spinning strands");
   Registry registry;
   register_builtin(registry);
@@ -61,13 +69,15 @@ void spin_strands(SceneFacts& f, const CaseFolder& folder, bool rehearse, std::v
     loaded = load_simulation(scene, registry, 1);
     if (!loaded.simulation) {
       const std::string text = loaded.diagnostics.format();
-      if (!leave_out(f, text, notes) || f.strand_sets.empty()) throw InputError("the exercise with strands does not load:\n" + text);
+      if (!leave_out(f, text, notes) || f.strand_sets.empty())
+        throw InputError("the exercise with strands does not load:\n" + text);
       continue;
     }
     surgeon = std::make_unique<Surgeon>(*loaded.simulation);
     const int count = int(surgeon->strands().size());
     // Thinned out; and, once, made up for where the move outward has left few.
-    const bool many = count > max_strands && f.strand_share == 1, few = moved > 0 && count > 0 && count < max_strands / 2 && f.strand_share < 1 && !made_up;
+    const bool many = count > max_strands && f.strand_share == 1,
+               few = moved > 0 && count > 0 && count < max_strands / 2 && f.strand_share < 1 && !made_up;
     if (many || few) {
       f.strand_share = std::min(1.0, f.strand_share * (many ? max_strands : 2 * max_strands / 3) / count);
       made_up = made_up || few;
@@ -76,7 +86,9 @@ void spin_strands(SceneFacts& f, const CaseFolder& folder, bool rehearse, std::v
     const int hidden = int(surgeon->out_of_reach().size());
     if (hidden == 0 || moved == max_steps) {
       notes.push_back({Note::Kind::fact, fmt::format("{} strands tie the aneurysm down.", count), ""});
-      if (hidden > 0) notes.push_back({Note::Kind::problem, fmt::format("{} of them are out of the dissector's reach.", hidden), "Give the strands another ball in 2_aneurysm_dissection.xml, nearer to the surgeon."});
+      if (hidden > 0)
+        notes.push_back({Note::Kind::problem, fmt::format("{} of them are out of the dissector's reach.", hidden),
+                         "Give the strands another ball in 2_aneurysm_dissection.xml, nearer to the surgeon."});
       break;
     }
     f.strand_shift = step_outward * ++moved;
@@ -87,13 +99,17 @@ void spin_strands(SceneFacts& f, const CaseFolder& folder, bool rehearse, std::v
   const int count = int(surgeon->strands().size());
   int left = count;
   const int standing = surgeon->divide(pace, [&](const Sweep&, int) {
-    left = int(std::count_if(surgeon->strands().begin(), surgeon->strands().end(), [](const StrandState& s) { return s.integrity >= 0; }));
+    left = int(std::count_if(surgeon->strands().begin(), surgeon->strands().end(),
+                             [](const StrandState& s) { return s.integrity >= 0; }));
     progress.share(1 - double(left) / std::max(1, count));
   });
   surgeon->write(motion);
   f.rehearsed = true;
   write_exercises(f, folder);
-  if (standing > 0) notes.push_back({Note::Kind::problem, fmt::format("The scripted hands leave {} of {} strands in exercise 2.", standing, count), "They are out of reach from the surgeon's side: give the strands another ball in 2_aneurysm_dissection.xml."});
+  if (standing > 0)
+    notes.push_back(
+        {Note::Kind::problem, fmt::format("The scripted hands leave {} of {} strands in exercise 2.", standing, count),
+         "They are out of reach from the surgeon's side: give the strands another ball in 2_aneurysm_dissection.xml."});
 }
 
 }  // namespace insula::case_builder

@@ -9,6 +9,7 @@ namespace insula::case_builder {
 /// belongs to them. Kinds without a suitable position are left out, and strands are thinned out and moved towards the
 /// surgeon until a blade reaches them. With `rehearse`, the dissection is rehearsed and its motion is written. Throws
 /// InputError when the exercise does not load.
-void spin_strands(SceneFacts& facts, const CaseFolder& folder, bool rehearse, std::vector<Note>& notes, Progress& progress);
+void spin_strands(SceneFacts& facts, const CaseFolder& folder, bool rehearse, std::vector<Note>& notes,
+                  Progress& progress);
 
 }  // namespace insula::case_builder

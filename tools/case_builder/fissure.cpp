@@ -27,10 +27,14 @@ Lobe given_lobe(const std::filesystem::path& folder, const std::string& name) {
   lobe.surface = read_surface(folder / (name + "_surface.ply"), 1.0);
   int fixed = 0;
   for (const Vec3& p : lobe.tets.nodes) fixed += lobe.fixed.emplace_back((p - fissure_centre).norm() > fissure_held);
-  if (fixed < 3) throw InputError(file.string() + ": fewer than three of its nodes lie farther than 32 mm from (54, 4, -2), where lobes are held: is it in the frame of meshes/lobes, in mm?");
+  if (fixed < 3)
+    throw InputError(file.string() +
+                     ": fewer than three of its nodes lie farther than 32 mm from (54, 4, -2), where lobes are held: "
+                     "is it in the frame of meshes/lobes, in mm?");
   const Embedding e = embed(lobe.tets, lobe.surface.vertices);
   if (e.outside_m > 5) throw InputError(file.string() + ": its surface reaches more than 5 mm outside of it");
-  for (std::size_t v = 0; v < lobe.surface.vertices.size(); ++v) lobe.embedded_vertices.push_back({4, e.nodes[v], e.weights[v], Vec3::Zero()});
+  for (std::size_t v = 0; v < lobe.surface.vertices.size(); ++v)
+    lobe.embedded_vertices.push_back({4, e.nodes[v], e.weights[v], Vec3::Zero()});
   return lobe;
 }
 
@@ -39,7 +43,8 @@ Lobe given_lobe(const std::filesystem::path& folder, const std::string& name) {
 Fissure read_fissure(const std::filesystem::path& project, const std::filesystem::path& lobes) {
   Registry registry;
   register_builtin(registry);
-  const auto loaded = load_simulation_text(R"(<scene><include file="../parts/retracted_fissure.xml"/></scene>)", project / "scenes/cases/placing.xml", registry, 1);
+  const auto loaded = load_simulation_text(R"(<scene><include file="../parts/retracted_fissure.xml"/></scene>)",
+                                           project / "scenes/cases/placing.xml", registry, 1);
   if (!loaded.simulation) throw InputError("the fissure cannot be read:\n" + loaded.diagnostics.format());
   Fissure out;
   for (Surface* s : loaded.simulation->surfaces()) {
@@ -52,20 +57,23 @@ Fissure read_fissure(const std::filesystem::path& project, const std::filesystem
     for (Vec3& p : lobe.tets.nodes) p *= 1000;
     lobe.fixed = soft->fixed();
     lobe.surface = in_mm(s->rest());
-    for (const MaterialPoint& p : s->points()) lobe.embedded_vertices.push_back({p.count, p.node, p.weight, 1000 * p.local});
+    for (const MaterialPoint& p : s->points())
+      lobe.embedded_vertices.push_back({p.count, p.node, p.weight, 1000 * p.local});
     out.lobes.push_back(std::move(lobe));
   }
   for (const Instrument* tool : loaded.simulation->instruments())
     for (const ToolPart& part : tool->tool().parts) {
       const int first = int(out.retractors.vertices.size());
       for (const Vec3& p : part.mesh.vertices) out.retractors.vertices.push_back(1000 * tool->home_pose().apply(p));
-      for (const auto& t : part.mesh.triangles) out.retractors.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+      for (const auto& t : part.mesh.triangles)
+        out.retractors.triangles.push_back({first + t[0], first + t[1], first + t[2]});
     }
   if (!lobes.empty()) {
     out.insula = read_surface(lobes / "insula_surface.ply", 1.0);
     for (Lobe& lobe : out.lobes) lobe = given_lobe(lobes, lobe.name);
   }
-  if (out.lobes.size() != 2 || out.insula.triangles.empty() || out.retractors.triangles.empty()) throw InputError("the part of the fissure lacks a lobe, the insula or a retractor");
+  if (out.lobes.size() != 2 || out.insula.triangles.empty() || out.retractors.triangles.empty())
+    throw InputError("the part of the fissure lacks a lobe, the insula or a retractor");
   return out;
 }
 

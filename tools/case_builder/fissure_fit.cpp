@@ -41,7 +41,9 @@ std::vector<Vec3> all_of(const Course& c) {
 
 Course course_of(const mesh_tool::Cleft& cleft) {
   Course c;
-  for (const mesh_tool::CleftStation& s : cleft.stations) c.superficial.emplace_back(s.superficial[0], s.superficial[1], s.superficial[2]), c.deep.emplace_back(s.deep[0], s.deep[1], s.deep[2]);
+  for (const mesh_tool::CleftStation& s : cleft.stations)
+    c.superficial.emplace_back(s.superficial[0], s.superficial[1], s.superficial[2]),
+        c.deep.emplace_back(s.deep[0], s.deep[1], s.deep[2]);
   return c;
 }
 
@@ -53,7 +55,8 @@ Course shipped_course(const fs::path& project) {
     const Vec3 p = vec3_from(s.at("superficial"));
     if ((p - field_centre).norm() < field_radius) c.superficial.push_back(p), c.deep.push_back(vec3_from(s.at("deep")));
   }
-  if (c.superficial.size() < 3) throw InputError(file.string() + ": has fewer than three stations in the field of the exercises");
+  if (c.superficial.size() < 3)
+    throw InputError(file.string() + ": has fewer than three stations in the field of the exercises");
   return c;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Brings an author's brain to where arms, hands and microscope stand: a rigid motion that lays its Sylvian fissure over the shipped one.
+// Brings an author's brain to where arms, hands and microscope stand: a rigid motion that lays its Sylvian fissure over
+// the shipped one.
 #pragma once
 #include <vector>
 
@@ -13,13 +14,15 @@ struct Course {
   std::vector<Vec3> superficial, deep;
 };
 Course course_of(const mesh_tool::Cleft& cleft);
-/// Of the shipped lobes (meshes/lobes/fissure.json), as far as it matters: within 16 mm of the middle of what the exercises open.
+/// Of the shipped lobes (meshes/lobes/fissure.json), as far as it matters: within 16 mm of the middle of what the
+/// exercises open.
 Course shipped_course(const fs::path& project);
 
 /// How far the points of `wanted` are from the lines of `course`, root mean square, mm.
 double distance(const Course& wanted, const Course& course);
 
-/// The motion that lays `course` over `wanted`: iterated closest points (Besl, McKay 1992), each round solved by Umeyama's method (1991).
+/// The motion that lays `course` over `wanted`: iterated closest points (Besl, McKay 1992), each round solved by
+/// Umeyama's method (1991).
 Placement fit(const Course& wanted, const Course& course);
 Course moved(Course course, const Placement& placement);
 

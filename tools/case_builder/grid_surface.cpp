@@ -25,28 +25,37 @@ constexpr double max_nodes = 6e7;
 
 constexpr double wanted_triangles = 20000, even_triangles = 9000;
 
-/// The border of what is positive, in cubes of the grid's spacing, or larger ones where that would give far more triangles than are needed.
+/// The border of what is positive, in cubes of the grid's spacing, or larger ones where that would give far more
+/// triangles than are needed.
 TriMesh zero_set(const Grid& grid, const Field& inside) {
   double faces = 0;
   for (int k = 0; k < grid.size[2]; ++k)
     for (int j = 0; j < grid.size[1]; ++j)
-      for (int i = 0; i + 1 < grid.size[0]; ++i) faces += (inside[grid.index(i, j, k)] > 0) != (inside[grid.index(i + 1, j, k)] > 0);
+      for (int i = 0; i + 1 < grid.size[0]; ++i)
+        faces += (inside[grid.index(i, j, k)] > 0) != (inside[grid.index(i + 1, j, k)] > 0);
   const double area = 2 * faces * grid.spacing * grid.spacing;  // a third of the walls face along x
   const double step = std::clamp(std::sqrt(10 * area / wanted_triangles), grid.spacing, 4 * grid.spacing);
   const Vec3 low(grid.origin[0], grid.origin[1], grid.origin[2]);
   const Vec3 high = low + grid.spacing * Vec3(grid.size[0] - 1, grid.size[1] - 1, grid.size[2] - 1);
-  TriMesh mesh = artery::extract([&](const Vec3& p) { return -mesh_tool::sample(grid, inside, {p.x(), p.y(), p.z()}); }, low, high - Vec3::Constant(step), step);
+  TriMesh mesh = artery::extract(
+      [&](const Vec3& p) {
+        return -mesh_tool::sample(grid, inside, {p.x(), p.y(), p.z()});
+      },
+      low, high - Vec3::Constant(step), step);
   artery::number_by_use(mesh);
   return mesh;
 }
 
-/// The same surface in even triangles: those of a grid are slivers whose normals say little, and flat ends are known by normals.
+/// The same surface in even triangles: those of a grid are slivers whose normals say little, and flat ends are known by
+/// normals.
 TriMesh evened(const TriMesh& mesh) {
   const artery::Surface given{mesh, std::vector<int>(mesh.triangles.size(), -1), {}};
   const artery::WallPoints wall(given);
   double area = 0;
   for (const auto& t : mesh.triangles)
-    area += 0.5 * (mesh.vertices[std::size_t(t[1])] - mesh.vertices[std::size_t(t[0])]).cross(mesh.vertices[std::size_t(t[2])] - mesh.vertices[std::size_t(t[0])]).norm();
+    area += 0.5 * (mesh.vertices[std::size_t(t[1])] - mesh.vertices[std::size_t(t[0])])
+                      .cross(mesh.vertices[std::size_t(t[2])] - mesh.vertices[std::size_t(t[0])])
+                      .norm();
   const double edge = std::sqrt(area / even_triangles * 4 / std::sqrt(3.0));
   artery::RemeshGuide guide;
   guide.edge_length = [edge](const Vec3&) { return edge; };
@@ -72,7 +81,8 @@ Mask vessel_part(const Grid& grid, const Mask& mask, const Options& o, std::vect
       ++size, left[i] = 0;
       if (o.seed) {
         const int n0 = grid.size[0], n1 = grid.size[1];
-        const auto p = grid.point(int(i % std::size_t(n0)), int(i / std::size_t(n0) % std::size_t(n1)), int(i / (std::size_t(n0) * std::size_t(n1))));
+        const auto p = grid.point(int(i % std::size_t(n0)), int(i / std::size_t(n0) % std::size_t(n1)),
+                                  int(i / (std::size_t(n0) * std::size_t(n1))));
         near = std::min(near, std::hypot(p[0] - (*o.seed)[0], p[1] - (*o.seed)[1], p[2] - (*o.seed)[2]));
       }
     }
@@ -83,16 +93,21 @@ Mask vessel_part(const Grid& grid, const Mask& mask, const Options& o, std::vect
     if (!o.seed) break;
   }
   if (kept < whole)
-    notes.push_back({Note::Kind::repair, fmt::format("The vessel's voxels are in several pieces; the {} one was kept, {:.1f} % of them.", o.seed ? "wanted" : "largest", 100.0 * double(kept) / double(whole)),
+    notes.push_back({Note::Kind::repair,
+                     fmt::format("The vessel's voxels are in several pieces; the {} one was kept, {:.1f} % of them.",
+                                 o.seed ? "wanted" : "largest", 100.0 * double(kept) / double(whole)),
                      kept * 2 < whole ? "If this is another one than meant, name a point in it with --seed." : ""});
   return best;
 }
 
-/// Where the vessel meets the faces of the volume: the middle of each patch there, drawn in by `inset`, and the way out.
-std::vector<Plane> border_ends(const mesh_tool::NiftiVolume& v, const std::function<bool(float)>& is_vessel, const TriMesh& surface, double inset) {
+/// Where the vessel meets the faces of the volume: the middle of each patch there, drawn in by `inset`, and the way
+/// out.
+std::vector<Plane> border_ends(const mesh_tool::NiftiVolume& v, const std::function<bool(float)>& is_vessel,
+                               const TriMesh& surface, double inset) {
   std::vector<Plane> out;
   for (int face = 0; face < 6; ++face) {
-    const int axis = face / 2, u = (axis + 1) % 3, w = (axis + 2) % 3, layer = face % 2 ? v.size[std::size_t(axis)] - 1 : 0;
+    const int axis = face / 2, u = (axis + 1) % 3, w = (axis + 2) % 3,
+              layer = face % 2 ? v.size[std::size_t(axis)] - 1 : 0;
     const int nu = v.size[std::size_t(u)], nw = v.size[std::size_t(w)];
     std::vector<char> open(std::size_t(nu) * std::size_t(nw));
     for (int j = 0; j < nw; ++j)
@@ -110,7 +125,8 @@ std::vector<Plane> border_ends(const mesh_tool::NiftiVolume& v, const std::funct
         const int i = patch[k] % nu, j = patch[k] / nu;
         si += i, sj += j;
         for (const auto& [a, b] : {std::pair(i - 1, j), std::pair(i + 1, j), std::pair(i, j - 1), std::pair(i, j + 1)})
-          if (a >= 0 && a < nu && b >= 0 && b < nw && open[std::size_t(b) * std::size_t(nu) + std::size_t(a)]) open[std::size_t(b) * std::size_t(nu) + std::size_t(a)] = 0, patch.push_back(b * nu + a);
+          if (a >= 0 && a < nu && b >= 0 && b < nw && open[std::size_t(b) * std::size_t(nu) + std::size_t(a)])
+            open[std::size_t(b) * std::size_t(nu) + std::size_t(a)] = 0, patch.push_back(b * nu + a);
       }
       if (patch.size() < 9) continue;
       double at[3];
@@ -146,12 +162,17 @@ std::string labels_there(const mesh_tool::NiftiVolume& v) {
 
 }  // namespace
 
-TriMesh surface_of_volume(const std::filesystem::path& file, const mesh_tool::NiftiVolume& v, const Options& o, std::vector<Note>& notes, std::vector<Plane>& ends) {
+TriMesh surface_of_volume(const std::filesystem::path& file, const mesh_tool::NiftiVolume& v, const Options& o,
+                          std::vector<Note>& notes, std::vector<Plane>& ends) {
   double voxel[3];
-  for (std::size_t a = 0; a < 3; ++a) voxel[a] = std::sqrt(v.to_world[a] * v.to_world[a] + v.to_world[4 + a] * v.to_world[4 + a] + v.to_world[8 + a] * v.to_world[8 + a]);
+  for (std::size_t a = 0; a < 3; ++a)
+    voxel[a] = std::sqrt(v.to_world[a] * v.to_world[a] + v.to_world[4 + a] * v.to_world[4 + a] +
+                         v.to_world[8 + a] * v.to_world[8 + a]);
   const double fine = std::min({voxel[0], voxel[1], voxel[2]}), coarse = std::max({voxel[0], voxel[1], voxel[2]});
   if (!o.any_size && (fine < 0.02 || coarse > 2))
-    fail(file, fmt::format("its voxels are {:.4g} x {:.4g} x {:.4g} mm; for an artery of 3 mm 0.05 to 1 mm are usual. Is the unit in its header right? --any-size takes it all the same", voxel[0], voxel[1], voxel[2]));
+    fail(file, fmt::format("its voxels are {:.4g} x {:.4g} x {:.4g} mm; for an artery of 3 mm 0.05 to 1 mm are usual. "
+                           "Is the unit in its header right? --any-size takes it all the same",
+                           voxel[0], voxel[1], voxel[2]));
   float least = 1e30f, most = -1e30f;
   for (const float x : v.value) {
     if (!std::isfinite(x)) fail(file, "holds a value that is not finite");
@@ -164,12 +185,16 @@ TriMesh surface_of_volume(const std::filesystem::path& file, const mesh_tool::Ni
       whole = whole && x == std::floor(x);
       if (labels.size() < 9) labels[x] = 1;
     }
-    fail(file, whole && labels.size() < 9 ? "say which label is the vessel, --label N; " + labels_there(v)
-                                          : fmt::format("say from which grey value on it is vessel, --threshold N; values run from {:g} to {:g}", least, most));
+    fail(file,
+         whole && labels.size() < 9
+             ? "say which label is the vessel, --label N; " + labels_there(v)
+             : fmt::format("say from which grey value on it is vessel, --threshold N; values run from {:g} to {:g}",
+                           least, most));
   }
   const double level = o.label ? *o.label : *o.threshold;
   const auto is_vessel = [&](float x) { return o.label ? x == float(level) : double(x) >= level; };
-  // The box of the vessel in the volume, a few voxels wider: beyond the volume there is none, so that vessels which leave it end flat.
+  // The box of the vessel in the volume, a few voxels wider: beyond the volume there is none, so that vessels which
+  // leave it end flat.
   int low[3] = {1 << 30, 1 << 30, 1 << 30}, high[3] = {-1, -1, -1};
   for (int k = 0; k < v.size[2]; ++k)
     for (int j = 0; j < v.size[1]; ++j)
@@ -179,21 +204,31 @@ TriMesh surface_of_volume(const std::filesystem::path& file, const mesh_tool::Ni
           for (int a = 0; a < 3; ++a) low[a] = std::min(low[a], at[a]), high[a] = std::max(high[a], at[a]);
         }
   if (high[0] < 0)
-    fail(file, o.label ? fmt::format("has no voxel of label {}; {}", *o.label, labels_there(v)) : fmt::format("nothing reaches the threshold {:g}; values run from {:g} to {:g}", level, least, most));
+    fail(file,
+         o.label ? fmt::format("has no voxel of label {}; {}", *o.label, labels_there(v))
+                 : fmt::format("nothing reaches the threshold {:g}; values run from {:g} to {:g}", level, least, most));
   Vec3 from = Vec3::Constant(1e300), to = -from;
   for (int c = 0; c < 8; ++c) {
     double at[3];
     for (int a = 0; a < 3; ++a) at[a] = c >> a & 1 ? high[a] + 3.0 : low[a] - 3.0;
     Vec3 p;
-    for (int r = 0; r < 3; ++r) p[r] = v.to_world[std::size_t(4 * r)] * at[0] + v.to_world[std::size_t(4 * r + 1)] * at[1] + v.to_world[std::size_t(4 * r + 2)] * at[2] + v.to_world[std::size_t(4 * r + 3)];
+    for (int r = 0; r < 3; ++r)
+      p[r] = v.to_world[std::size_t(4 * r)] * at[0] + v.to_world[std::size_t(4 * r + 1)] * at[1] +
+             v.to_world[std::size_t(4 * r + 2)] * at[2] + v.to_world[std::size_t(4 * r + 3)];
     from = from.cwiseMin(p), to = to.cwiseMax(p);
   }
   Grid grid;
   grid.spacing = fine;
   double nodes = 1;
-  for (int a = 0; a < 3; ++a) grid.origin[std::size_t(a)] = from[a], nodes *= grid.size[std::size_t(a)] = int(std::ceil((to[a] - from[a]) / fine)) + 1;
+  for (int a = 0; a < 3; ++a)
+    grid.origin[std::size_t(a)] = from[a],
+    nodes *= grid.size[std::size_t(a)] = int(std::ceil((to[a] - from[a]) / fine)) + 1;
   if (nodes > max_nodes) fail(file, "the vessel fills too large a box; cut out the region around the aneurysm first");
-  if (coarse > 1.05 * fine) notes.push_back({Note::Kind::repair, fmt::format("Voxels of {:.3g} x {:.3g} x {:.3g} mm were brought to cubes of {:.3g} mm.", voxel[0], voxel[1], voxel[2], fine), ""});
+  if (coarse > 1.05 * fine)
+    notes.push_back({Note::Kind::repair,
+                     fmt::format("Voxels of {:.3g} x {:.3g} x {:.3g} mm were brought to cubes of {:.3g} mm.", voxel[0],
+                                 voxel[1], voxel[2], fine),
+                     ""});
   Mask mask(grid.count(), 0);
   Field grey(o.label ? 0 : grid.count());
   std::size_t n = 0;
@@ -213,10 +248,17 @@ TriMesh surface_of_volume(const std::filesystem::path& file, const mesh_tool::Ni
   if (solid != mask) notes.push_back({Note::Kind::repair, "Voids inside of the vessel were filled.", ""});
   Field inside = mesh_tool::signed_distance(grid, solid);
   mesh_tool::smooth(grid, inside, std::max(0.01, o.smoothing * coarse));
-  notes.push_back({Note::Kind::fact, fmt::format("The surface was taken from voxels of {:.3g} mm, its border smoothed over {:.2g} mm.", fine, o.smoothing * coarse), ""});
+  notes.push_back({Note::Kind::fact,
+                   fmt::format("The surface was taken from voxels of {:.3g} mm, its border smoothed over {:.2g} mm.",
+                               fine, o.smoothing * coarse),
+                   ""});
   TriMesh out = evened(zero_set(grid, inside));
   ends = border_ends(v, is_vessel, out, 1.2 * coarse);
-  if (!ends.empty()) notes.push_back({Note::Kind::repair, fmt::format("The vessel leaves the volume at {} place{}; it was cut straight there.", ends.size(), ends.size() == 1 ? "" : "s"), ""});
+  if (!ends.empty())
+    notes.push_back({Note::Kind::repair,
+                     fmt::format("The vessel leaves the volume at {} place{}; it was cut straight there.", ends.size(),
+                                 ends.size() == 1 ? "" : "s"),
+                     ""});
   return out;
 }
 
@@ -229,17 +271,25 @@ mesh_tool::Mask inside_of(const TriMesh& m, const Grid& grid) {
     const auto nu = std::size_t(grid.size[std::size_t(u)]);
     std::vector<std::vector<double>> crossings(nu * std::size_t(grid.size[std::size_t(w)]));
     for (const auto& t : m.triangles) {
-      const Vec3 &a = m.vertices[std::size_t(t[0])], &b = m.vertices[std::size_t(t[1])], &c = m.vertices[std::size_t(t[2])];
+      const Vec3 &a = m.vertices[std::size_t(t[0])], &b = m.vertices[std::size_t(t[1])],
+                 &c = m.vertices[std::size_t(t[2])];
       const double det = (b[u] - a[u]) * (c[w] - a[w]) - (c[u] - a[u]) * (b[w] - a[w]);
       if (det == 0) continue;
-      const auto first = [&](double x, int d) { return int(std::clamp(std::ceil((x - grid.origin[std::size_t(d)]) / spacing), 0.0, double(grid.size[std::size_t(d)]))); };
+      const auto first = [&](double x, int d) {
+        return int(
+            std::clamp(std::ceil((x - grid.origin[std::size_t(d)]) / spacing), 0.0, double(grid.size[std::size_t(d)])));
+      };
       const int i0 = first(std::min({a[u], b[u], c[u]}), u), i1 = first(std::max({a[u], b[u], c[u]}), u);
       const int j0 = first(std::min({a[w], b[w], c[w]}), w), j1 = first(std::max({a[w], b[w], c[w]}), w);
       for (int j = j0; j < j1; ++j)
         for (int i = i0; i < i1; ++i) {
-          const double x = grid.origin[std::size_t(u)] + i * spacing - a[u], y = grid.origin[std::size_t(w)] + j * spacing - a[w];
-          const double p = (x * (c[w] - a[w]) - (c[u] - a[u]) * y) / det, q = ((b[u] - a[u]) * y - x * (b[w] - a[w])) / det;
-          if (p >= 0 && q >= 0 && p + q < 1) crossings[std::size_t(j) * nu + std::size_t(i)].push_back(a[axis] + p * (b[axis] - a[axis]) + q * (c[axis] - a[axis]));
+          const double x = grid.origin[std::size_t(u)] + i * spacing - a[u],
+                       y = grid.origin[std::size_t(w)] + j * spacing - a[w];
+          const double p = (x * (c[w] - a[w]) - (c[u] - a[u]) * y) / det,
+                       q = ((b[u] - a[u]) * y - x * (b[w] - a[w])) / det;
+          if (p >= 0 && q >= 0 && p + q < 1)
+            crossings[std::size_t(j) * nu + std::size_t(i)].push_back(a[axis] + p * (b[axis] - a[axis]) +
+                                                                      q * (c[axis] - a[axis]));
         }
     }
     for (int j = 0; j < grid.size[std::size_t(w)]; ++j)
@@ -271,8 +321,13 @@ TriMesh rebuilt(const TriMesh& m, double spacing) {
   Grid grid;
   grid.spacing = spacing;
   double nodes = 1;
-  for (int a = 0; a < 3; ++a) grid.origin[std::size_t(a)] = box.min()[a] - spacing * (3.07 + 0.03 * a), nodes *= grid.size[std::size_t(a)] = int(std::ceil(box.sizes()[a] / spacing)) + 7;
-  if (nodes > max_nodes) throw InputError(fmt::format("a grid of {:g} mm is too fine for a surface {:.1f} mm across; choose a larger --rebuild", spacing, box.diagonal().norm()));
+  for (int a = 0; a < 3; ++a)
+    grid.origin[std::size_t(a)] = box.min()[a] - spacing * (3.07 + 0.03 * a),
+    nodes *= grid.size[std::size_t(a)] = int(std::ceil(box.sizes()[a] / spacing)) + 7;
+  if (nodes > max_nodes)
+    throw InputError(
+        fmt::format("a grid of {:g} mm is too fine for a surface {:.1f} mm across; choose a larger --rebuild", spacing,
+                    box.diagonal().norm()));
   Mask mask = inside_of(m, grid);
   mask = mesh_tool::fill_holes(grid, mesh_tool::largest_component(grid, mask));
   Field inside = mesh_tool::signed_distance(grid, mask);
@@ -285,13 +340,17 @@ TriMesh rebuilt(const TriMesh& m, double spacing) {
     const Vec3 p(q[0], q[1], q[2]);
     const auto distance2 = [&](int t) {
       const auto& tri = m.triangles[std::size_t(t)];
-      return (nearest_on_triangle(p, m.vertices[std::size_t(tri[0])], m.vertices[std::size_t(tri[1])], m.vertices[std::size_t(tri[2])]) - p).squaredNorm();
+      return (nearest_on_triangle(p, m.vertices[std::size_t(tri[0])], m.vertices[std::size_t(tri[1])],
+                                  m.vertices[std::size_t(tri[2])]) -
+              p)
+          .squaredNorm();
     };
     const double d = std::sqrt(distance2(tree.nearest(p, distance2)));
     if (d < 1.5 * spacing) inside[i] = float(mask[i] ? d : -d);
   }
   TriMesh out = zero_set(grid, inside);
-  if (out.triangles.empty()) throw InputError("nothing is left of the surface on that grid: it encloses nothing, or the grid is too coarse");
+  if (out.triangles.empty())
+    throw InputError("nothing is left of the surface on that grid: it encloses nothing, or the grid is too coarse");
   return evened(out);
 }
 

@@ -23,7 +23,7 @@ namespace insula::case_builder {
 namespace {
 
 constexpr std::size_t max_triangles = 2'000'000;   // what is read at all
-constexpr std::size_t many_triangles = 150'000;     // more are made anew from a grid
+constexpr std::size_t many_triangles = 150'000;    // more are made anew from a grid
 constexpr std::uintmax_t max_bytes = 220'000'000;  // of a surface file: beyond that it has more than those triangles
 
 std::string place(const Vec3& p) { return fmt::format("({:.1f}, {:.1f}, {:.1f})", p.x(), p.y(), p.z()); }
@@ -34,7 +34,8 @@ TriMesh read_surface_mm(const fs::path& input, const Options& o, std::vector<Not
   std::error_code error;
   const std::uintmax_t bytes = fs::file_size(input, error);
   const auto too_many = [&](std::size_t n) {
-    fail(input, fmt::format("has {} triangles; more than {} are not taken. An artery needs some 20,000: decimate it in the program that made it, or cut out the region around the aneurysm",
+    fail(input, fmt::format("has {} triangles; more than {} are not taken. An artery needs some 20,000: decimate it in "
+                            "the program that made it, or cut out the region around the aneurysm",
                             n > 0 ? std::to_string(n) : "far too many", max_triangles));
   };
   if (!error && bytes > max_bytes) too_many(kind == ".stl" ? std::size_t((bytes - 84) / 50) : 0);
@@ -45,24 +46,35 @@ TriMesh read_surface_mm(const fs::path& input, const Options& o, std::vector<Not
     if (std::string_view(head, 5) != "solid") too_many(std::size_t((bytes - 84) / 50));
   }
   const double unit = unit_mm(input, o.unit_mm);
-  if (is_in_metres(input) && !o.unit_mm) notes.push_back({Note::Kind::fact, "glTF is in metres by its standard; it was read so.", ""});
+  if (is_in_metres(input) && !o.unit_mm)
+    notes.push_back({Note::Kind::fact, "glTF is in metres by its standard; it was read so.", ""});
   TriMesh m = read_any_surface(input, unit);
   if (o.mirror) mirror(m);
   if (m.triangles.size() > max_triangles) too_many(m.triangles.size());
   if (!o.any_size)
-    if (const std::string why = check_extent(extent_of(m), unit); !why.empty()) fail(input, why + "; --any-size takes it all the same");
+    if (const std::string why = check_extent(extent_of(m), unit); !why.empty())
+      fail(input, why + "; --any-size takes it all the same");
   return m;
 }
 
 /// Triangles that agree, in one piece, without doubles.
 void tidy(TriMesh& m, const std::string& what, const Options& o, std::vector<Note>& notes) {
   const double size = extent_of(m);
-  if (const int n = weld(m, 1e-6 * size); n > 0) notes.push_back({Note::Kind::repair, fmt::format("{} vertices that lay on others to a millionth of the size were joined.", n), ""});
-  if (const int n = drop_doubles(m); n > 0) notes.push_back({Note::Kind::repair, fmt::format("{} triangle{} that {} there twice {} left out.", n, ending(n), n == 1 ? "was" : "were", n == 1 ? "was" : "were"), ""});
+  if (const int n = weld(m, 1e-6 * size); n > 0)
+    notes.push_back({Note::Kind::repair,
+                     fmt::format("{} vertices that lay on others to a millionth of the size were joined.", n), ""});
+  if (const int n = drop_doubles(m); n > 0)
+    notes.push_back({Note::Kind::repair,
+                     fmt::format("{} triangle{} that {} there twice {} left out.", n, ending(n),
+                                 n == 1 ? "was" : "were", n == 1 ? "was" : "were"),
+                     ""});
   if (m.triangles.empty()) throw InputError(what + ": holds no triangle with an area");
   if (const BadEdges bad = non_manifold_edges(m); bad.count > 0)
-    throw InputError(fmt::format("{}: {} edge{} to three or more triangles (the first at {}): walls meet there inside of the vessel. Mend it in the program that made it, or make the surface "
-                                 "anew from a grid with --rebuild 0.2", what, bad.count, bad.count == 1 ? " belongs" : "s belong", place(bad.first)));
+    throw InputError(
+        fmt::format("{}: {} edge{} to three or more triangles (the first at {}): walls meet there inside of the "
+                    "vessel. Mend it in the program that made it, or make the surface "
+                    "anew from a grid with --rebuild 0.2",
+                    what, bad.count, bad.count == 1 ? " belongs" : "s belong", place(bad.first)));
   Pieces pieces = pieces_of(m);
   if (pieces.area.size() > 1) {
     double whole = 0;
@@ -72,18 +84,34 @@ void tidy(TriMesh& m, const std::string& what, const Options& o, std::vector<Not
       const Vec3 seed((*o.seed)[0], (*o.seed)[1], (*o.seed)[2]);
       double least = 1e300;
       for (std::size_t t = 0; t < m.triangles.size(); ++t)
-        if (const double d = (m.vertices[std::size_t(m.triangles[t][0])] - seed).norm(); d < least) least = d, keep = pieces.of[t];
+        if (const double d = (m.vertices[std::size_t(m.triangles[t][0])] - seed).norm(); d < least)
+          least = d, keep = pieces.of[t];
     } else if (pieces.area[0] < 0.9 * whole && !o.keep_largest) {
-      throw InputError(fmt::format("{}: is in {} pieces; the largest has {:.0f} % of the area, the next {:.0f} %. Name a point on the wanted one with --seed X Y Z, or take the largest with --keep-largest",
-                                   what, pieces.area.size(), 100 * pieces.area[0] / whole, 100 * pieces.area[1] / whole));
+      throw InputError(
+          fmt::format("{}: is in {} pieces; the largest has {:.0f} % of the area, the next {:.0f} %. Name a point on "
+                      "the wanted one with --seed X Y Z, or take the largest with --keep-largest",
+                      what, pieces.area.size(), 100 * pieces.area[0] / whole, 100 * pieces.area[1] / whole));
     }
-    notes.push_back({Note::Kind::repair, fmt::format("The surface was in {} pieces; the {} one was kept, {:.1f} % of the area.", pieces.area.size(), o.seed ? "wanted" : "largest", 100 * pieces.area[std::size_t(keep)] / whole), ""});
+    notes.push_back(
+        {Note::Kind::repair,
+         fmt::format("The surface was in {} pieces; the {} one was kept, {:.1f} % of the area.", pieces.area.size(),
+                     o.seed ? "wanted" : "largest", 100 * pieces.area[std::size_t(keep)] / whole),
+         ""});
     keep_piece(m, pieces, keep);
   }
   const int turned = agree(m);
-  if (turned < 0) throw InputError(what + ": its surface has only one side (a twisted band); mend it in the program that made it");
-  if (turned > 0) notes.push_back({Note::Kind::repair, fmt::format("{} triangle{} that faced the wrong way {} turned.", turned, ending(turned), turned == 1 ? "was" : "were"), ""});
-  if (const int n = part_fans(m); n > 0) notes.push_back({Note::Kind::repair, fmt::format("{} place{} where the surface touched itself in a point {} parted.", n, ending(n), n == 1 ? "was" : "were"), ""});
+  if (turned < 0)
+    throw InputError(what + ": its surface has only one side (a twisted band); mend it in the program that made it");
+  if (turned > 0)
+    notes.push_back({Note::Kind::repair,
+                     fmt::format("{} triangle{} that faced the wrong way {} turned.", turned, ending(turned),
+                                 turned == 1 ? "was" : "were"),
+                     ""});
+  if (const int n = part_fans(m); n > 0)
+    notes.push_back({Note::Kind::repair,
+                     fmt::format("{} place{} where the surface touched itself in a point {} parted.", n, ending(n),
+                                 n == 1 ? "was" : "were"),
+                     ""});
 }
 
 void check_inside(artery::Surface& s, const std::string& what, std::vector<Note>& notes) {
@@ -96,7 +124,10 @@ void check_inside(artery::Surface& s, const std::string& what, std::vector<Note>
   }
   const double thick = 2 * volume / area(s.mesh);  // the radius, of a tube
   if (thick < 0.01 * extent_of(s.mesh))
-    throw InputError(fmt::format("{}: encloses next to nothing (it is {:.3g} mm thick for {:.3g} mm of length): a sheet without thickness, or an inner and an outer wall. A vessel is given by one surface", what, 2 * thick, extent_of(s.mesh)));
+    throw InputError(
+        fmt::format("{}: encloses next to nothing (it is {:.3g} mm thick for {:.3g} mm of length): a sheet without "
+                    "thickness, or an inner and an outer wall. A vessel is given by one surface",
+                    what, 2 * thick, extent_of(s.mesh)));
 }
 
 }  // namespace
@@ -107,7 +138,8 @@ Intake mended(TriMesh m, const std::string& what, const Options& o, std::vector<
   if (m.triangles.empty()) throw InputError(what + ": holds no triangles");
   const auto remake = [&](double spacing, const char* why) {
     m = rebuilt(m, spacing);
-    notes.push_back({Note::Kind::repair, fmt::format("The surface was made anew from a grid of {:.3g} mm{}.", spacing, why), ""});
+    notes.push_back(
+        {Note::Kind::repair, fmt::format("The surface was made anew from a grid of {:.3g} mm{}.", spacing, why), ""});
   };
   if (o.rebuild) remake(*o.rebuild, ", as asked for");
   tidy(m, what, o, notes);
@@ -121,7 +153,11 @@ Intake mended(TriMesh m, const std::string& what, const Options& o, std::vector<
     tidy(m, what, o, notes);
     s = artery::Surface{m, std::vector<int>(m.triangles.size(), -1), {}};
     for (const artery::CapPlane& cap : caps) cut_off(s, cap.centre - spacing * cap.normal, cap.normal, cap.name);
-    notes.push_back({Note::Kind::repair, fmt::format("The surface had {} triangles, far more than its shape needs; it was made anew from a grid of {:.2g} mm: {} triangles.", before, spacing, s.mesh.triangles.size()), ""});
+    notes.push_back({Note::Kind::repair,
+                     fmt::format("The surface had {} triangles, far more than its shape needs; it was made anew from a "
+                                 "grid of {:.2g} mm: {} triangles.",
+                                 before, spacing, s.mesh.triangles.size()),
+                     ""});
   }
   for (std::size_t c = 0; c < o.cuts.size(); ++c) {
     const Plane& p = o.cuts[c];
@@ -146,30 +182,43 @@ Intake mended(TriMesh m, const std::string& what, const Options& o, std::vector<
     out.facts["openings_found_by"] = "borders and cuts";
   }
   if (s.caps.size() < 2)
-    throw InputError(fmt::format("{}: has {} opening{}; a vessel needs an inlet and an outlet. Ends must be open, or cut straight and closed flat; where they are rounded, cut them with --cut X Y Z NX NY NZ "
-                                 "(a point in the vessel and the direction of what is to go), once an end", what, s.caps.size(), ending(int(s.caps.size()))));
+    throw InputError(
+        fmt::format("{}: has {} opening{}; a vessel needs an inlet and an outlet. Ends must be open, or cut straight "
+                    "and closed flat; where they are rounded, cut them with --cut X Y Z NX NY NZ "
+                    "(a point in the vessel and the direction of what is to go), once an end",
+                    what, s.caps.size(), ending(int(s.caps.size()))));
   // By calibre, from the widest down.
   std::vector<int> order(s.caps.size()), rank(s.caps.size());
   for (std::size_t c = 0; c < order.size(); ++c) order[c] = int(c);
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return s.caps[std::size_t(a)].radius > s.caps[std::size_t(b)].radius; });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int a, int b) { return s.caps[std::size_t(a)].radius > s.caps[std::size_t(b)].radius; });
   std::vector<artery::CapPlane> sorted;
-  for (std::size_t r = 0; r < order.size(); ++r) rank[std::size_t(order[r])] = int(r), sorted.push_back(s.caps[std::size_t(order[r])]);
+  for (std::size_t r = 0; r < order.size(); ++r)
+    rank[std::size_t(order[r])] = int(r), sorted.push_back(s.caps[std::size_t(order[r])]);
   s.caps = sorted;
   for (int& p : s.patch)
     if (p >= 0) p = rank[std::size_t(p)];
   Json openings = Json::array();
   for (std::size_t c = 0; c < s.caps.size(); ++c) {
     s.caps[c].name = fmt::format("opening_{}", c + 1);
-    openings.push_back({{"centre", to_json(s.caps[c].centre)}, {"normal", to_json(s.caps[c].normal)}, {"calibre_mm", rounded(2 * s.caps[c].radius)}});
+    openings.push_back({{"centre", to_json(s.caps[c].centre)},
+                        {"normal", to_json(s.caps[c].normal)},
+                        {"calibre_mm", rounded(2 * s.caps[c].radius)}});
   }
   if (!o.any_size)
-    if (const std::string why = check_calibre(2 * s.caps[0].radius, o.unit_mm.value_or(1)); !why.empty()) throw InputError(what + ": " + why + "; --any-size takes it all the same");
+    if (const std::string why = check_calibre(2 * s.caps[0].radius, o.unit_mm.value_or(1)); !why.empty())
+      throw InputError(what + ": " + why + "; --any-size takes it all the same");
   const artery::Quality q = artery::quality(s.mesh);
   if (q.euler != 2)
-    throw InputError(fmt::format("{}: has {} handle{}: two branches touch and have grown together, or a hole runs through the wall. Part them in the program that made the surface; with a volume, a higher "
-                                 "--threshold or less --smooth may part them", what, (2 - q.euler) / 2, ending((2 - q.euler) / 2)));
+    throw InputError(
+        fmt::format("{}: has {} handle{}: two branches touch and have grown together, or a hole runs through the wall. "
+                    "Part them in the program that made the surface; with a volume, a higher "
+                    "--threshold or less --smooth may part them",
+                    what, (2 - q.euler) / 2, ending((2 - q.euler) / 2)));
   if (q.self_intersecting)
-    notes.push_back({Note::Kind::problem, "The given surface runs through itself.", "The wall is made of new triangles, which are checked again; if they are found wanting, make the surface anew from a grid with --rebuild 0.2."});
+    notes.push_back({Note::Kind::problem, "The given surface runs through itself.",
+                     "The wall is made of new triangles, which are checked again; if they are found wanting, make the "
+                     "surface anew from a grid with --rebuild 0.2."});
   out.facts["openings"] = openings;
   out.facts["triangles"] = s.mesh.triangles.size();
   out.facts["extent_mm"] = rounded(extent_of(s.mesh));
@@ -227,7 +276,11 @@ void run_intake(const CaseFolder& folder, const fs::path& input, const Options& 
     Json triangles = Json::array();
     for (std::size_t t = 0; t < in.surface.patch.size(); ++t)
       if (in.surface.patch[t] == int(c)) triangles.push_back(t);
-    json["caps"].push_back({{"name", cap.name}, {"centre", to_json(cap.centre)}, {"normal", to_json(cap.normal)}, {"radius", rounded(cap.radius)}, {"triangles", triangles}});
+    json["caps"].push_back({{"name", cap.name},
+                            {"centre", to_json(cap.centre)},
+                            {"normal", to_json(cap.normal)},
+                            {"radius", rounded(cap.radius)},
+                            {"triangles", triangles}});
   }
   json["notes"] = to_json(in.notes);
   write_json(folder.intake() / "intake.json", json);
@@ -241,12 +294,15 @@ Intake read_intake(const CaseFolder& folder) {
   out.surface.patch.assign(out.surface.mesh.triangles.size(), -1);
   try {
     for (const Json& cap : out.facts.at("caps")) {
-      for (const Json& t : cap.at("triangles")) out.surface.patch.at(t.get<std::size_t>()) = int(out.surface.caps.size());
-      out.surface.caps.push_back({cap.at("name"), vec3_from(cap.at("centre")), vec3_from(cap.at("normal")).normalized(), cap.at("radius")});
+      for (const Json& t : cap.at("triangles"))
+        out.surface.patch.at(t.get<std::size_t>()) = int(out.surface.caps.size());
+      out.surface.caps.push_back(
+          {cap.at("name"), vec3_from(cap.at("centre")), vec3_from(cap.at("normal")).normalized(), cap.at("radius")});
     }
     out.notes = notes_from_json(out.facts.at("notes"));
   } catch (const std::exception&) {
-    throw InputError((folder.intake() / "intake.json").string() + ": does not belong to surface.ply beside it; do the stage intake again");
+    throw InputError((folder.intake() / "intake.json").string() +
+                     ": does not belong to surface.ply beside it; do the stage intake again");
   }
   return out;
 }

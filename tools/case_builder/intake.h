@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Stage 1: a file becomes one closed surface in millimetres whose openings are flat caps, with everything that was repaired written down.
+// Stage 1: a file becomes one closed surface in millimetres whose openings are flat caps, with everything that was
+// repaired written down.
 #pragma once
 #include "tools/artery/surface.h"
 #include "tools/case_builder/case_folder.h"
@@ -9,9 +10,9 @@ namespace insula::case_builder {
 
 /// What the surface of a vessel looks like before anything is made of it.
 struct Intake {
-  artery::Surface surface;   ///< mm, closed, outward; caps from the widest down
+  artery::Surface surface;  ///< mm, closed, outward; caps from the widest down
   std::vector<Note> notes;
-  Json facts;                ///< counts and sizes, for the report
+  Json facts;  ///< counts and sizes, for the report
 };
 
 /// Mends a surface (mm) or says why it cannot be mended. Throws InputError; `what` names the input in messages.

@@ -14,7 +14,8 @@ void mirror(TriMesh& mesh);
 /// Voxels stay as they are stored; where they lie changes.
 void mirror(mesh_tool::NiftiVolume& volume);
 
-/// The options as the stages take them: positions are those of the author's file, so with `mirror` they go with what it holds.
+/// The options as the stages take them: positions are those of the author's file, so with `mirror` they go with what it
+/// holds.
 Options as_read(Options options);
 
 }  // namespace insula::case_builder

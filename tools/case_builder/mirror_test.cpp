@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Left for right: mirroring twice gives the same bits, and a left-sided vessel and brain become the case of their right-sided twins.
+// Left for right: mirroring twice gives the same bits, and a left-sided vessel and brain become the case of their
+// right-sided twins.
 #include "tools/case_builder/mirror.h"
 
 #include <gtest/gtest.h>
@@ -41,7 +42,8 @@ std::string said(const std::vector<std::string>& words, int& status) {
 std::map<std::string, std::string> files_of(const fs::path& folder) {
   std::map<std::string, std::string> out;
   for (const auto& f : fs::recursive_directory_iterator(folder))
-    if (f.is_regular_file() && f.path().filename() != "report.html" && f.path().filename() != "case.json" && f.path().string().find("/meshes/") == std::string::npos)
+    if (f.is_regular_file() && f.path().filename() != "report.html" && f.path().filename() != "case.json" &&
+        f.path().string().find("/meshes/") == std::string::npos)
       out[f.path().lexically_relative(folder).string()] = read_file_bytes(f.path());
   return out;
 }
@@ -58,7 +60,8 @@ TEST(Mirror, TwiceIsTheSameAndOutwardStaysOutward) {
   EXPECT_EQ(twice.triangles, m.triangles);
   TriMesh middle = box({0, 0, 0}, {1, 1, 1});
   mirror(middle);
-  for (const Vec3& p : middle.vertices) EXPECT_FALSE(p.x() == 0 && std::signbit(p.x())) << "a zero with a sign shows in a file";
+  for (const Vec3& p : middle.vertices)
+    EXPECT_FALSE(p.x() == 0 && std::signbit(p.x())) << "a zero with a sign shows in a file";
 }
 
 TEST(Mirror, PositionsOfTheFilesGoWithThem) {
@@ -100,7 +103,10 @@ TEST(Mirror, MessagesSayThatTheirPositionsAreMirrored) {
     take_in(folder.path() / "fin.stl", o, quiet);
     FAIL();
   } catch (const InputError& e) {
-    EXPECT_NE(std::string(e.what()).find("fin.stl (mirrored): 1 edge belongs to three or more triangles (the first at (-"), std::string::npos) << e.what();
+    EXPECT_NE(
+        std::string(e.what()).find("fin.stl (mirrored): 1 edge belongs to three or more triangles (the first at (-"),
+        std::string::npos)
+        << e.what();
   }
 }
 
@@ -118,7 +124,8 @@ void expect_same(const fs::path& right, const fs::path& left, std::size_t least)
 TEST_F(OwnBrain, OfTheLeftSideBecomesThatOfItsRightSidedTwin) {
   for (const char* side : {"right", "left"}) {
     const bool is_left = side[0] == 'l';
-    for (int k = 0; k < 3; ++k) folder.write(std::string(lobe_names[k]) + ".stl", test::stl_text(is_left ? left_of(block(k)) : block(k)));
+    for (int k = 0; k < 3; ++k)
+      folder.write(std::string(lobe_names[k]) + ".stl", test::stl_text(is_left ? left_of(block(k)) : block(k)));
     Options o = by_lobe();
     o.mirror = is_left, o.brain_nodes = 450, o.brain_in_place = true;
     Progress quiet;
@@ -140,14 +147,32 @@ TEST_F(OwnBrain, OfTheLeftSideBecomesThatOfItsRightSidedTwin) {
 TEST(MirroredCase, IsTheCaseOfItsTwinAndPassesItsCheck) {
   insula::test::SceneFolder folder;
   const auto path = [&](const std::string& name) { return (folder.path() / name).string(); };
-  // The same names in two folders; the neck and the inlet are given, so that positions of the author's files are a part of it.
+  // The same names in two folders; the neck and the inlet are given, so that positions of the author's files are a part
+  // of it.
   const TriMesh vessel = test::open_tube();
   for (const char* side : {"right", "left"}) {
     const bool is_left = side[0] == 'l';
     const std::string in = std::string(side) + "_files/vessel.stl";
     folder.write(in, test::stl_text(is_left ? left_of(vessel) : vessel));
-    std::vector<std::string> words{"new", "own", path(in), "--out", path(side), "--vertices", "900", "--no-rehearse", "--neck", is_left ? "-0.1" : "0.1", "0", "2.2", is_left ? "-0.05" : "0.05", "0", "1",
-                                   "--inlet", is_left ? "-8" : "8", "0", "0"};
+    std::vector<std::string> words{"new",
+                                   "own",
+                                   path(in),
+                                   "--out",
+                                   path(side),
+                                   "--vertices",
+                                   "900",
+                                   "--no-rehearse",
+                                   "--neck",
+                                   is_left ? "-0.1" : "0.1",
+                                   "0",
+                                   "2.2",
+                                   is_left ? "-0.05" : "0.05",
+                                   "0",
+                                   "1",
+                                   "--inlet",
+                                   is_left ? "-8" : "8",
+                                   "0",
+                                   "0"};
     if (is_left) words.push_back("--mirror");
     int status = 0;
     const std::string text = said(words, status);
@@ -179,7 +204,8 @@ std::string other_side(std::string nifti) {
 
 TEST(Mirror, LabelsOfTheLeftSideLieWhereThoseOfTheRightDo) {
   insula::test::SceneFolder folder;
-  const std::string right = test::nifti_text({30, 20, 24}, 0.7, [](int i, int j, int k) { return (i * 7 + j * 3 + k) % 5; }, 1, Vec3(31, -4, 2.5));
+  const std::string right = test::nifti_text(
+      {30, 20, 24}, 0.7, [](int i, int j, int k) { return (i * 7 + j * 3 + k) % 5; }, 1, Vec3(31, -4, 2.5));
   folder.write("right.nii", right);
   folder.write("left.nii", other_side(right));
   const mesh_tool::NiftiVolume a = read_volume(folder.path() / "right.nii");
@@ -200,7 +226,8 @@ TEST(Mirror, LabelsOfTheLeftSideLieWhereThoseOfTheRightDo) {
 
 TEST(Mirror, AVesselOfLabelsKeepsItsShape) {
   insula::test::SceneFolder folder;
-  const std::string right = test::nifti_text({54, 25, 33}, 0.3, [](int i, int j, int k) { return test::tube_label(i, j, k); }, 1, Vec3(40, -3.6, -2.4));
+  const std::string right = test::nifti_text(
+      {54, 25, 33}, 0.3, [](int i, int j, int k) { return test::tube_label(i, j, k); }, 1, Vec3(40, -3.6, -2.4));
   folder.write("right.nii", right);
   folder.write("left.nii", other_side(right));
   Options o;

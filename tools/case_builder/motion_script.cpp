@@ -21,11 +21,15 @@ void MotionScript::key(bool right, double seconds, const ApplierPose& pose, bool
   m << pose.flat, pose.shaft.cross(pose.flat), pose.shaft;
   const Eigen::Quaterniond q(m);
   const double sign = q.w() < 0 ? -1 : 1;
-  rows_.push_back({t, fmt::format("{:g},{},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{},{}", t, right ? "right" : "left", pose.tip.x() / 1000, pose.tip.y() / 1000, pose.tip.z() / 1000,
-                                  sign * q.w(), sign * q.x(), sign * q.y(), sign * q.z(), int(button1), int(button2))});
+  rows_.push_back(
+      {t, fmt::format("{:g},{},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{},{}", t, right ? "right" : "left",
+                      pose.tip.x() / 1000, pose.tip.y() / 1000, pose.tip.z() / 1000, sign * q.w(), sign * q.x(),
+                      sign * q.y(), sign * q.z(), int(button1), int(button2))});
 }
 
-void MotionScript::command(double time, const std::string& text) { rows_.push_back({time, fmt::format("{:g},command,ask,{}", time, text)}); }
+void MotionScript::command(double time, const std::string& text) {
+  rows_.push_back({time, fmt::format("{:g},command,ask,{}", time, text)});
+}
 
 void MotionScript::place_clip(const ApplierPose& at, double open_at, double approach) {
   const ApplierPose outside = drawn_back(at, out_of_field), opened = drawn_back(at, open_at);

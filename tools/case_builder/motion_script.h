@@ -15,7 +15,8 @@ class MotionScript {
   void command(double time, const std::string& text);
   double time(bool right) const { return time_[right]; }
 
-  /// From outside the field: in, blades opened `open_at` mm before the place, closed there by their spring, let go, out again.
+  /// From outside the field: in, blades opened `open_at` mm before the place, closed there by their spring, let go, out
+  /// again.
   void place_clip(const ApplierPose& pose, double open_at, double approach);
   /// Back onto a clip in the field: gripped, opened, drawn out.
   void take_clip(const ApplierPose& pose);

@@ -29,7 +29,8 @@ std::string complaint(const fs::path& scene, Progress& progress) {
     progress.share(s.time() / end);
   }
   std::string out;
-  if (s.exercise()->log().state() != ExerciseState::done) out = fmt::format("{} of {} strands stand at the end", Strands(s).left(), Strands(s).total());
+  if (s.exercise()->log().state() != ExerciseState::done)
+    out = fmt::format("{} of {} strands stand at the end", Strands(s).left(), Strands(s).total());
   for (const FaultState& f : s.exercise()->log().faults())
     if (f.count > 0) out += fmt::format("{}{} x \"{}\"", out.empty() ? "" : ", ", f.count, f.text);
   return out;
@@ -48,7 +49,9 @@ void try_opening(SceneFacts& f, const CaseFolder& folder, bool rehearse, std::ve
     progress.step("playing the opening");
     const std::string wrong = complaint(scene, progress);
     if (wrong.empty()) return;
-    notes.push_back({Note::Kind::problem, "The scripted hands of exercise 1 are those of the shipped lobes; in this fissure: " + wrong + ".", "They were left out. Open it by hand."});
+    notes.push_back({Note::Kind::problem,
+                     "The scripted hands of exercise 1 are those of the shipped lobes; in this fissure: " + wrong + ".",
+                     "They were left out. Open it by hand."});
     write(false);
   }
   std::error_code ignored;

@@ -6,8 +6,9 @@
 
 namespace insula::case_builder {
 
-/// Plays exercise 1 of the case. Where it does not finish, or earns a fault, the exercise is left without scripted hands and a note says so.
-/// Without a rehearsal it has none from the start.
-void try_opening(SceneFacts& facts, const CaseFolder& folder, bool rehearse, std::vector<Note>& notes, Progress& progress);
+/// Plays exercise 1 of the case. Where it does not finish, or earns a fault, the exercise is left without scripted
+/// hands and a note says so. Without a rehearsal it has none from the start.
+void try_opening(SceneFacts& facts, const CaseFolder& folder, bool rehearse, std::vector<Note>& notes,
+                 Progress& progress);
 
 }  // namespace insula::case_builder

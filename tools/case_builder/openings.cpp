@@ -14,9 +14,10 @@
 namespace insula::case_builder {
 namespace {
 
-constexpr double round_enough = 0.6;   // 4 pi area / perimeter^2 of a border that is an end of a vessel: an ellipse of 1 to 3
-constexpr double flat_enough = 0.5;    // farthest from its plane, in radii
-constexpr double small_hole = 0.3;     // of the widest border's radius: filled
+constexpr double round_enough =
+    0.6;  // 4 pi area / perimeter^2 of a border that is an end of a vessel: an ellipse of 1 to 3
+constexpr double flat_enough = 0.5;  // farthest from its plane, in radii
+constexpr double small_hole = 0.3;   // of the widest border's radius: filled
 
 struct Border {
   std::vector<int> loop;
@@ -36,7 +37,8 @@ double roundness(const TriMesh& m, const std::vector<int>& loop) {
   }
   Vec3 twice = Vec3::Zero();
   double perimeter = 0;
-  for (std::size_t k = 0; k < n; ++k) twice += (p[k] - p[0]).cross(p[(k + 1) % n] - p[0]), perimeter += (p[(k + 1) % n] - p[k]).norm();
+  for (std::size_t k = 0; k < n; ++k)
+    twice += (p[k] - p[0]).cross(p[(k + 1) % n] - p[0]), perimeter += (p[(k + 1) % n] - p[k]).norm();
   return 4 * std::numbers::pi * 0.5 * twice.norm() / std::max(perimeter * perimeter, 1e-300);
 }
 
@@ -53,7 +55,8 @@ Border measured(const TriMesh& m, std::vector<int> loop) {
   for (std::size_t k = 0; k < b.loop.size(); ++k) twice += (at(k) - b.centre).cross(at(k + 1) - b.centre);
   const double size = 0.5 * twice.norm();
   if (size > 0) b.normal = twice.normalized();
-  for (const int v : b.loop) b.deviation = std::max(b.deviation, std::abs((m.vertices[std::size_t(v)] - b.centre).dot(b.normal)));
+  for (const int v : b.loop)
+    b.deviation = std::max(b.deviation, std::abs((m.vertices[std::size_t(v)] - b.centre).dot(b.normal)));
   b.radius = std::sqrt(size / std::numbers::pi);
   b.roundness = roundness(m, b.loop);
   return b;
@@ -81,7 +84,8 @@ artery::Surface closed_surface(const TriMesh& mesh, std::vector<Note>& notes) {
     b.end = b.roundness > round_enough && b.deviation < flat_enough * b.radius;
     if (b.end) widest = std::max(widest, b.radius);
   }
-  std::stable_sort(borders.begin(), borders.end(), [](const Border& a, const Border& b) { return a.radius > b.radius; });
+  std::stable_sort(borders.begin(), borders.end(),
+                   [](const Border& a, const Border& b) { return a.radius > b.radius; });
   artery::Surface s{mesh, std::vector<int>(mesh.triangles.size(), -1), {}};
   std::vector<Border> cut;
   int filled = 0;
@@ -98,18 +102,31 @@ artery::Surface closed_surface(const TriMesh& mesh, std::vector<Note>& notes) {
       fill(s, b, -1);
       ++filled;
     } else {
-      throw InputError(fmt::format("the surface has a hole of {:.1f} mm around at {} that is neither a round, flat end of a vessel nor small: close it in the program that "
-                                   "made the surface, cut the vessel straight before it, or make the surface anew from a grid with --rebuild 0.2 after closing it",
-                                   b.perimeter, place(b.centre)));
+      throw InputError(
+          fmt::format("the surface has a hole of {:.1f} mm around at {} that is neither a round, flat end of a vessel "
+                      "nor small: close it in the program that "
+                      "made the surface, cut the vessel straight before it, or make the surface anew from a grid with "
+                      "--rebuild 0.2 after closing it",
+                      b.perimeter, place(b.centre)));
     }
   }
   for (const Border& b : cut) {
     const double back = b.deviation + 0.05 * b.radius;
     cut_off(s, b.centre - back * b.normal, b.normal, fmt::format("opening_{}", s.caps.size()));
-    notes.push_back({Note::Kind::repair, fmt::format("The end at {} was not flat: it was cut straight, {:.2f} mm were lost.", place(b.centre), back), ""});
+    notes.push_back(
+        {Note::Kind::repair,
+         fmt::format("The end at {} was not flat: it was cut straight, {:.2f} mm were lost.", place(b.centre), back),
+         ""});
   }
-  if (!s.caps.empty()) notes.push_back({Note::Kind::repair, fmt::format("The surface was open at {} ends; they were closed by flat caps.", s.caps.size()), ""});
-  if (filled > 0) notes.push_back({Note::Kind::repair, fmt::format("{} small hole{} in the wall {} filled.", filled, filled == 1 ? "" : "s", filled == 1 ? "was" : "were"), ""});
+  if (!s.caps.empty())
+    notes.push_back({Note::Kind::repair,
+                     fmt::format("The surface was open at {} ends; they were closed by flat caps.", s.caps.size()),
+                     ""});
+  if (filled > 0)
+    notes.push_back({Note::Kind::repair,
+                     fmt::format("{} small hole{} in the wall {} filled.", filled, filled == 1 ? "" : "s",
+                                 filled == 1 ? "was" : "were"),
+                     ""});
   artery::number_by_use(s.mesh);
   return s;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What an author may choose for a case, kept in the case's folder so that a stage can be done again with the same choices.
+// What an author may choose for a case, kept in the case's folder so that a stage can be done again with the same
+// choices.
 #pragma once
 #include <array>
 #include <filesystem>
@@ -17,39 +18,40 @@ using Json = nlohmann::ordered_json;
 /// Lengths in millimetres, positions in the frame of the input after its unit has been applied, before it is mirrored.
 struct Options {
   // intake
-  std::optional<double> unit_mm;     ///< millimetres a unit of a surface file; none: what the format says, else 1
-  bool mirror = false;               ///< the input, vessel and brain, is of the left side: x changes its sign (mirror.h)
-  bool any_size = false;             ///< sizes that no cerebral artery has are taken all the same
-  std::optional<double> threshold;   ///< of a grey volume: vessel from here up
-  std::optional<int> label;          ///< of a label volume
-  std::optional<Point> seed;         ///< the piece nearest to this point is the vessel; by default the largest
-  bool keep_largest = false;         ///< even when other pieces are large
-  std::optional<double> rebuild;     ///< a surface is made anew from a grid of that spacing
-  std::vector<Plane> cuts;           ///< what lies beyond is cut off and the opening closed; the normal points to what goes
-  double smoothing = 1;              ///< of a volume's border, in its voxels
+  std::optional<double> unit_mm;    ///< millimetres a unit of a surface file; none: what the format says, else 1
+  bool mirror = false;              ///< the input, vessel and brain, is of the left side: x changes its sign (mirror.h)
+  bool any_size = false;            ///< sizes that no cerebral artery has are taken all the same
+  std::optional<double> threshold;  ///< of a grey volume: vessel from here up
+  std::optional<int> label;         ///< of a label volume
+  std::optional<Point> seed;        ///< the piece nearest to this point is the vessel; by default the largest
+  bool keep_largest = false;        ///< even when other pieces are large
+  std::optional<double> rebuild;    ///< a surface is made anew from a grid of that spacing
+  std::vector<Plane> cuts;  ///< what lies beyond is cut off and the opening closed; the normal points to what goes
+  double smoothing = 1;     ///< of a volume's border, in its voxels
   // wall
-  std::optional<Plane> neck;         ///< in place of the proposed one; the normal points to the dome
+  std::optional<Plane> neck;                         ///< in place of the proposed one; the normal points to the dome
   std::optional<std::array<double, 6>> neck_points;  ///< two points on opposite sides of the neck
-  std::optional<Point> inlet;        ///< the opening nearest to it; by default the widest
-  double keep = 13;                  ///< vessels are cut off so far along their centrelines from the neck; 0: nowhere
-  int vertices = 1650;               ///< of the wall, about
-  double bleb = 1;                   ///< radius of the weak spot at the dome; 0: none
+  std::optional<Point> inlet;                        ///< the opening nearest to it; by default the widest
+  double keep = 13;     ///< vessels are cut off so far along their centrelines from the neck; 0: nowhere
+  int vertices = 1650;  ///< of the wall, about
+  double bleb = 1;      ///< radius of the weak spot at the dome; 0: none
   // brain
-  std::vector<std::string> brain;    ///< a volume of labels; NAME=FILE for each lobe; or one closed surface. Empty: the shipped lobes
+  std::vector<std::string>
+      brain;  ///< a volume of labels; NAME=FILE for each lobe; or one closed surface. Empty: the shipped lobes
   std::vector<std::string> lobe_labels;  ///< NAME=LIST, such as frontal=2,4,10-16
   std::optional<double> brain_unit_mm;   ///< millimetres a unit of the brain's surface files
   bool brain_in_place = false;           ///< it is not moved to where the arms and the microscope stand
-  int brain_nodes = 1000;            ///< of both lobes together, at most
+  int brain_nodes = 1000;                ///< of both lobes together, at most
   // place
-  bool in_place = false;             ///< the input lies in the frame of the lobes already
-  double gap = 0.4;                  ///< between the wall and the lobes
-  double spin = 0;                   ///< turns the vessel about the sac's axis, degrees, after which the place is looked for nearby
-  bool keep_spin = false;            ///< no other spin is tried
-  std::string lobes;                 ///< folder with lobes as those of meshes/lobes; empty: those
+  bool in_place = false;  ///< the input lies in the frame of the lobes already
+  double gap = 0.4;       ///< between the wall and the lobes
+  double spin = 0;  ///< turns the vessel about the sac's axis, degrees, after which the place is looked for nearby
+  bool keep_spin = false;  ///< no other spin is tried
+  std::string lobes;       ///< folder with lobes as those of meshes/lobes; empty: those
   // scenes
-  std::string clip;                  ///< of meshes/clips; empty: chosen for the neck
+  std::string clip;                         ///< of meshes/clips; empty: chosen for the neck
   std::optional<double> lift, slide, turn;  ///< of the clip's blades at the neck, mm, mm, degrees; none: chosen
-  bool rehearse = true;              ///< exercise 2 gets scripted hands, which takes as long as they need
+  bool rehearse = true;                     ///< exercise 2 gets scripted hands, which takes as long as they need
 };
 
 Json to_json(const Options& options);

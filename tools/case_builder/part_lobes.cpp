@@ -4,15 +4,15 @@ Parts a lobe as a retractor would: the elastic shape at rest that keeps clear of
 
     min 1/2 u^T K u   with   C u >= d          u: displacement of the tetrahedra's nodes, mm; fixed nodes stay
 
-K is that of linear elasticity (only its ratios matter). Rows of C are points of the lobe that are too near to something, each along
-the way out; they are found anew a few times as the lobe moves. Through K^-1 C^T the conditions meet in W = C K^-1 C^T, solved by
-projected Gauss-Seidel like a step's contacts.
+K is that of linear elasticity (only its ratios matter). Rows of C are points of the lobe that are too near to
+something, each along the way out; they are found anew a few times as the lobe moves. Through K^-1 C^T the conditions
+meet in W = C K^-1 C^T, solved by projected Gauss-Seidel like a step's contacts.
 */
+#include <fmt/format.h>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 #include <deque>
-#include <fmt/format.h>
 
 #include "tools/case_builder/place.h"
 #include "tools/case_builder/solid.h"
@@ -21,9 +21,10 @@ namespace insula::case_builder {
 namespace {
 
 using Sparse = Eigen::SparseMatrix<double>;
-constexpr double wall_half = 0.15;   // mm, of the vessel's wall
-constexpr double margin = 0.5;       // points so much farther than they must be are conditions too, so that they do not come back
-constexpr double deepest = 6;        // mm
+constexpr double wall_half = 0.15;  // mm, of the vessel's wall
+constexpr double margin =
+    0.5;  // points so much farther than they must be are conditions too, so that they do not come back
+constexpr double deepest = 6;  // mm
 constexpr int rounds = 10;
 
 struct Condition {
@@ -51,7 +52,8 @@ class ElasticLobe {
   Vec3 at(const Condition& c) const {
     Vec3 sum = Vec3::Zero();
     for (int k = 0; k < c.count; ++k)
-      if (const int f = of_[std::size_t(c.node[std::size_t(k)])]; f >= 0) sum += c.weight[std::size_t(k)] * u_.segment<3>(3 * f);
+      if (const int f = of_[std::size_t(c.node[std::size_t(k)])]; f >= 0)
+        sum += c.weight[std::size_t(k)] * u_.segment<3>(3 * f);
     return sum;
   }
   void solve(const std::vector<Condition>& all) {
@@ -68,7 +70,8 @@ class ElasticLobe {
       const Condition& c = *rows[std::size_t(r)];
       d[r] = c.least;
       for (int k = 0; k < c.count; ++k)
-        if (const int f = of_[std::size_t(c.node[std::size_t(k)])]; f >= 0) ct.block<3, 1>(3 * f, r) += c.weight[std::size_t(k)] * c.way;
+        if (const int f = of_[std::size_t(c.node[std::size_t(k)])]; f >= 0)
+          ct.block<3, 1>(3 * f, r) += c.weight[std::size_t(k)] * c.way;
     }
     const Eigen::MatrixXd back = factor_.solve(ct), w = ct.transpose() * back;
     VecX lambda = VecX::Zero(n);
@@ -88,12 +91,14 @@ class ElasticLobe {
     double most = 0;
     for (std::size_t i = 0; i < start_.size(); ++i) {
       lobe_.tets.nodes[i] = start_[i];
-      if (of_[i] >= 0) lobe_.tets.nodes[i] += u_.segment<3>(3 * of_[i]), most = std::max(most, u_.segment<3>(3 * of_[i]).norm());
+      if (of_[i] >= 0)
+        lobe_.tets.nodes[i] += u_.segment<3>(3 * of_[i]), most = std::max(most, u_.segment<3>(3 * of_[i]).norm());
     }
     for (std::size_t v = 0; v < lobe_.embedded_vertices.size(); ++v) {
       const Lobe::EmbeddedVertex& r = lobe_.embedded_vertices[v];
       Vec3 p = r.offset;
-      for (int k = 0; k < r.count; ++k) p += r.weight[std::size_t(k)] * lobe_.tets.nodes[std::size_t(r.node[std::size_t(k)])];
+      for (int k = 0; k < r.count; ++k)
+        p += r.weight[std::size_t(k)] * lobe_.tets.nodes[std::size_t(r.node[std::size_t(k)])];
       lobe_.surface.vertices[v] = p;
     }
     return most;
@@ -115,7 +120,9 @@ class ElasticLobe {
     for (std::size_t k = 0; k < 3; ++k) {
       if (bary[Eigen::Index(k)] < 1e-9) continue;
       const Lobe::EmbeddedVertex& r = lobe_.embedded_vertices[std::size_t(vertices[k])];
-      for (std::size_t j = 0; j < std::size_t(r.count); ++j) c.node[std::size_t(c.count)] = r.node[j], c.weight[std::size_t(c.count++)] = bary[Eigen::Index(k)] * r.weight[j];
+      for (std::size_t j = 0; j < std::size_t(r.count); ++j)
+        c.node[std::size_t(c.count)] = r.node[j],
+        c.weight[std::size_t(c.count++)] = bary[Eigen::Index(k)] * r.weight[j];
     }
     c.least = missing + way.dot(at(c));
     return c;
@@ -123,7 +130,8 @@ class ElasticLobe {
 
  private:
   void add(const std::array<int, 4>& t, std::vector<Eigen::Triplet<double>>& entries) {
-    const Vec3 &a = start_[std::size_t(t[0])], &b = start_[std::size_t(t[1])], &c = start_[std::size_t(t[2])], &d = start_[std::size_t(t[3])];
+    const Vec3 &a = start_[std::size_t(t[0])], &b = start_[std::size_t(t[1])], &c = start_[std::size_t(t[2])],
+               &d = start_[std::size_t(t[3])];
     Mat3 m;
     m << b - a, c - a, d - a;
     const double volume = m.determinant() / 6;
@@ -136,7 +144,8 @@ class ElasticLobe {
       for (int j = 0; j < 4; ++j) {
         const int fi = of_[std::size_t(t[std::size_t(i)])], fj = of_[std::size_t(t[std::size_t(j)])];
         if (fi < 0 || fj < 0) continue;
-        const Mat3 block = volume * (lambda * g[i] * g[j].transpose() + mu * g[j] * g[i].transpose() + mu * g[i].dot(g[j]) * Mat3::Identity());
+        const Mat3 block = volume * (lambda * g[i] * g[j].transpose() + mu * g[j] * g[i].transpose() +
+                                     mu * g[i].dot(g[j]) * Mat3::Identity());
         for (int r = 0; r < 3; ++r)
           for (int s = 0; s < 3; ++s) entries.emplace_back(3 * fi + r, 3 * fj + s, block(r, s));
       }
@@ -159,11 +168,13 @@ double room(const Solid& a, const Solid& b) {
 }
 
 /// Conditions that keep the lobe's vertices from a solid; each no nearer than `gap`, or than it was at the start.
-void keep_from(const ElasticLobe& lobe, const Solid& own, const Solid& other, double gap, const std::vector<double>* at_start, std::vector<Condition>& out) {
+void keep_from(const ElasticLobe& lobe, const Solid& own, const Solid& other, double gap,
+               const std::vector<double>* at_start, std::vector<Condition>& out) {
   for (std::size_t v = 0; v < own.mesh().vertices.size(); ++v) {
     const double wanted = at_start ? std::min(gap, (*at_start)[v]) : gap;
     const Nearest n = other.nearest(own.mesh().vertices[v], deepest);
-    if (n.found && n.distance < wanted + margin) out.push_back(lobe.condition({int(v), int(v), int(v)}, {1, 0, 0}, n.outward, wanted - n.distance));
+    if (n.found && n.distance < wanted + margin)
+      out.push_back(lobe.condition({int(v), int(v), int(v)}, {1, 0, 0}, n.outward, wanted - n.distance));
   }
 }
 
@@ -191,7 +202,8 @@ double draw_back(Solid& floor, const Solid& wall, double gap) {
       if (by.norm() > push[std::size_t(v)].norm()) push[std::size_t(v)] = by, pushed[std::size_t(v)] = 1, any = true;
     };
     for (std::size_t v = 0; v < m.vertices.size(); ++v)
-      if (const Nearest n = wall.nearest(floor.mesh().vertices[v], deepest); n.found && n.distance < gap - 1e-3) need(int(v), (gap - n.distance) * n.outward);
+      if (const Nearest n = wall.nearest(floor.mesh().vertices[v], deepest); n.found && n.distance < gap - 1e-3)
+        need(int(v), (gap - n.distance) * n.outward);
     for (const Vec3& p : wall.mesh().vertices)
       if (const Nearest n = floor.nearest(p, deepest); n.found && n.distance < gap - 1e-3)
         for (const int v : floor.mesh().triangles[std::size_t(n.triangle)]) need(v, -(gap - n.distance) * n.outward);
@@ -214,7 +226,8 @@ double draw_back(Solid& floor, const Solid& wall, double gap) {
 
 }  // namespace
 
-std::vector<Room> part_lobes(Fissure& fissure, const TriMesh& wall_mesh, double gap, std::vector<Note>& notes, Progress& progress) {
+std::vector<Room> part_lobes(Fissure& fissure, const TriMesh& wall_mesh, double gap, std::vector<Note>& notes,
+                             Progress& progress) {
   const Solid wall(wall_mesh);
   const double wanted = gap + wall_half;
   std::vector<Room> out;
@@ -233,7 +246,8 @@ std::vector<Room> part_lobes(Fissure& fissure, const TriMesh& wall_mesh, double 
     out.push_back({l.name, room(solid.back(), wall) - wall_half, 0, 0});
   }
   std::vector<std::vector<double>> to_floor, to_other;
-  for (std::size_t i = 0; i < 2; ++i) to_floor.push_back(distances(solid[i], floor)), to_other.push_back(distances(solid[i], solid[1 - i]));
+  for (std::size_t i = 0; i < 2; ++i)
+    to_floor.push_back(distances(solid[i], floor)), to_other.push_back(distances(solid[i], solid[1 - i]));
   if (out[0].before < gap || out[1].before < gap || floor_room.moved > 0)
     for (int round = 0; round < rounds; ++round) {
       progress.share(double(round) / rounds);
@@ -242,7 +256,8 @@ std::vector<Room> part_lobes(Fissure& fissure, const TriMesh& wall_mesh, double 
         keep_from(lobe[i], solid[i], wall, wanted + 0.05, nullptr, conditions);
         for (const Vec3& p : wall.mesh().vertices)
           if (const Nearest n = solid[i].nearest(p, deepest); n.found && n.distance < wanted + 0.05 + margin)
-            conditions.push_back(lobe[i].condition(solid[i].mesh().triangles[std::size_t(n.triangle)], n.bary, -n.outward, wanted + 0.05 - n.distance));
+            conditions.push_back(lobe[i].condition(solid[i].mesh().triangles[std::size_t(n.triangle)], n.bary,
+                                                   -n.outward, wanted + 0.05 - n.distance));
         keep_from(lobe[i], solid[i], floor, 0.3, &to_floor[i], conditions);
         keep_from(lobe[i], solid[i], solid[1 - i], 0.6, &to_other[i], conditions);
         lobe[i].solve(conditions);
@@ -254,13 +269,25 @@ std::vector<Room> part_lobes(Fissure& fissure, const TriMesh& wall_mesh, double 
     out[i].after = room(solid[i], wall) - wall_half;
     const double least = lobe[i].min_volume();
     if (least < 0.15)
-      notes.push_back({Note::Kind::problem, fmt::format("The {} lobe had to be parted so far that an element has {:.0f} % of its volume left.", out[i].what, 100 * least),
-                       "Keep less of the vessel (--keep), or turn it (--spin), so that it needs less room."});
+      notes.push_back(
+          {Note::Kind::problem,
+           fmt::format("The {} lobe had to be parted so far that an element has {:.0f} % of its volume left.",
+                       out[i].what, 100 * least),
+           "Keep less of the vessel (--keep), or turn it (--spin), so that it needs less room."});
   }
   out.push_back(floor_room);
   for (const Room& r : out) {
-    if (r.moved > 0.01) notes.push_back({Note::Kind::repair, fmt::format("The {} was parted by up to {:.1f} mm, so that it keeps {:.2f} mm from the wall (before: {:.2f} mm).", r.what, r.moved, r.after, r.before), ""});
-    if (r.after < 0.05) notes.push_back({Note::Kind::problem, fmt::format("The {} still overlaps the wall or touches it ({:.2f} mm).", r.what, r.after), "Keep less of the vessel (--keep), or turn it (--spin)."});
+    if (r.moved > 0.01)
+      notes.push_back(
+          {Note::Kind::repair,
+           fmt::format(
+               "The {} was parted by up to {:.1f} mm, so that it keeps {:.2f} mm from the wall (before: {:.2f} mm).",
+               r.what, r.moved, r.after, r.before),
+           ""});
+    if (r.after < 0.05)
+      notes.push_back({Note::Kind::problem,
+                       fmt::format("The {} still overlaps the wall or touches it ({:.2f} mm).", r.what, r.after),
+                       "Keep less of the vessel (--keep), or turn it (--spin)."});
   }
   return out;
 }

@@ -23,7 +23,8 @@ TriMesh disc(const Vec3& centre, const Vec3& normal, double radius) {
   return m;
 }
 
-std::string svg_picture(const std::vector<Drawn>& things, const Vec3& from, const Vec3& up, const Vec3& centre, double radius, int width) {
+std::string svg_picture(const std::vector<Drawn>& things, const Vec3& from, const Vec3& up, const Vec3& centre,
+                        double radius, int width) {
   const Vec3 z = from.normalized(), x = up.cross(z).normalized(), y = z.cross(x);
   struct Face {
     double depth;
@@ -47,15 +48,23 @@ std::string svg_picture(const std::vector<Drawn>& things, const Vec3& from, cons
       if (!seen) continue;
       const auto& c = d.colour.size() == 1 ? d.colour[0] : d.colour[t];
       const double light = d.flat ? 1 : 0.35 + 0.65 * lit;
-      const std::string colour = fmt::format("#{:02x}{:02x}{:02x}", int(c[0] * light), int(c[1] * light), int(c[2] * light));
-      faces.push_back({(p[0] + p[1] + p[2]).dot(z), fmt::format("<path d=\"M{}Z\" fill=\"{}\" stroke=\"{}\" stroke-width=\".4\"{}/>", points, colour, colour,
-                                                              d.opacity < 1 ? fmt::format(" opacity=\"{:.2f}\"", d.opacity) : "")});
+      const std::string colour =
+          fmt::format("#{:02x}{:02x}{:02x}", int(c[0] * light), int(c[1] * light), int(c[2] * light));
+      faces.push_back({(p[0] + p[1] + p[2]).dot(z),
+                       fmt::format("<path d=\"M{}Z\" fill=\"{}\" stroke=\"{}\" stroke-width=\".4\"{}/>", points, colour,
+                                   colour, d.opacity < 1 ? fmt::format(" opacity=\"{:.2f}\"", d.opacity) : "")});
     }
   std::stable_sort(faces.begin(), faces.end(), [](const Face& a, const Face& b) { return a.depth < b.depth; });
-  std::string out = fmt::format("<svg viewBox=\"0 0 {0} {0}\" width=\"{0}\" height=\"{0}\" xmlns=\"http://www.w3.org/2000/svg\"><rect width=\"{0}\" height=\"{0}\" fill=\"#10151c\"/>", width);
+  std::string out = fmt::format(
+      "<svg viewBox=\"0 0 {0} {0}\" width=\"{0}\" height=\"{0}\" xmlns=\"http://www.w3.org/2000/svg\"><rect "
+      "width=\"{0}\" height=\"{0}\" fill=\"#10151c\"/>",
+      width);
   for (const Face& f : faces) out += f.text;
   // A bar of 5 mm.
-  out += fmt::format("<rect x=\"12\" y=\"{}\" width=\"{:.1f}\" height=\"3\" fill=\"#fff\"/><text x=\"12\" y=\"{}\" fill=\"#fff\" font-size=\"12\" font-family=\"sans-serif\">5 mm</text></svg>", width - 14, 5 * scale, width - 20);
+  out += fmt::format(
+      "<rect x=\"12\" y=\"{}\" width=\"{:.1f}\" height=\"3\" fill=\"#fff\"/><text x=\"12\" y=\"{}\" fill=\"#fff\" "
+      "font-size=\"12\" font-family=\"sans-serif\">5 mm</text></svg>",
+      width - 14, 5 * scale, width - 20);
   return out;
 }
 

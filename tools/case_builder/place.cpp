@@ -43,7 +43,11 @@ void run_place(const CaseFolder& folder, const fs::path& project, const Options&
     for (int c = 0; c < 3; ++c) json["rotation"].push_back(rounded(p.rotation(r, c)));
   json["shift_mm"] = to_json(p.shift);
   json["rooms"] = Json::array();
-  for (const Room& r : rooms) json["rooms"].push_back({{"what", r.what}, {"before_mm", rounded(r.before)}, {"after_mm", rounded(r.after)}, {"moved_mm", rounded(r.moved)}});
+  for (const Room& r : rooms)
+    json["rooms"].push_back({{"what", r.what},
+                             {"before_mm", rounded(r.before)},
+                             {"after_mm", rounded(r.after)},
+                             {"moved_mm", rounded(r.moved)}});
   json["notes"] = to_json(notes);
   write_json(folder.path / "place.json", json);
   progress.finish();

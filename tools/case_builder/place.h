@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Stage 3: the wall is brought into the fissure by a rigid motion, and the lobes are parted where they would overlap it.
+// Stage 3: the wall is brought into the fissure by a rigid motion, and the lobes are parted where they would overlap
+// it.
 #pragma once
 #include "tools/artery/vessel.h"
 #include "tools/case_builder/case_folder.h"
@@ -21,8 +22,10 @@ inline const Vec3 way_of_sac = Vec3(0.745, -0.030, 0.667).normalized();
 inline const Vec3 way_of_parent = Vec3(0.72, 0.15, 0.67).normalized();
 inline const Vec3 to_surgeon = Vec3(0.93, 0.25, 0.27).normalized();
 
-/// The placement near the shipped one with the least overlap, found on a fixed grid of turns and shifts and then refined.
-Placement find_placement(const artery::Vessel& vessel, const Fissure& fissure, const Options& options, Progress& progress);
+/// The placement near the shipped one with the least overlap, found on a fixed grid of turns and shifts and then
+/// refined.
+Placement find_placement(const artery::Vessel& vessel, const Fissure& fissure, const Options& options,
+                         Progress& progress);
 
 artery::Vessel placed(artery::Vessel vessel, const Placement& placement);
 
@@ -33,8 +36,10 @@ struct Room {
   double moved = 0;              ///< farthest that a node was moved, mm
 };
 
-/// Parts the lobes elastically (and draws the insula back) until each is `gap` from the wall, each other no nearer than they were.
-std::vector<Room> part_lobes(Fissure& fissure, const TriMesh& wall, double gap, std::vector<Note>& notes, Progress& progress);
+/// Parts the lobes elastically (and draws the insula back) until each is `gap` from the wall, each other no nearer than
+/// they were.
+std::vector<Room> part_lobes(Fissure& fissure, const TriMesh& wall, double gap, std::vector<Note>& notes,
+                             Progress& progress);
 
 /// The stage: reads wall/ and the project's fissure, writes artery/ and lobes/.
 void run_place(const CaseFolder& folder, const fs::path& project, const Options& options, Progress& progress);

@@ -11,8 +11,8 @@
 namespace insula::case_builder {
 namespace {
 
-constexpr double reach = 12;      // mm, of the turns about the neck's place that are looked at
-constexpr double limit = 4;       // mm, beyond which distances do not matter
+constexpr double reach = 12;  // mm, of the turns about the neck's place that are looked at
+constexpr double limit = 4;   // mm, beyond which distances do not matter
 constexpr double wall_half = 0.15;
 
 Mat3 turn(double angle, const Vec3& axis) { return Eigen::AngleAxisd(angle, axis).toRotationMatrix(); }
@@ -42,7 +42,8 @@ Placement find_placement(const artery::Vessel& v, const Fissure& fissure, const 
   for (std::size_t k = 0; k < parent.size(); ++k)
     if ((parent.points[k] - v.neck->centre).norm() < (parent.points[near] - v.neck->centre).norm()) near = k;
   const std::size_t back = near > parent.size() / 3 ? near - parent.size() / 3 : 0;
-  const Vec3 arrives = near > back ? Vec3((parent.points[near] - parent.points[back]).normalized()) : parent.tangent(near);
+  const Vec3 arrives =
+      near > back ? Vec3((parent.points[near] - parent.points[back]).normalized()) : parent.tangent(near);
   const Mat3 base = frame(way_of_sac, way_of_parent) * frame(v.neck->normal, arrives).transpose();
 
   const Vec3 low = place_of_neck - Vec3::Constant(reach + 4), high = place_of_neck + Vec3::Constant(reach + 4);
@@ -52,16 +53,20 @@ Placement find_placement(const artery::Vessel& v, const Fissure& fissure, const 
   };
   std::vector<Obstacle> obstacles;
   progress.step("distances in the fissure");
-  for (const Lobe& lobe : fissure.lobes) obstacles.push_back({DistanceGrid(Solid(lobe.surface), low, high, 0.8, limit), 1});
+  for (const Lobe& lobe : fissure.lobes)
+    obstacles.push_back({DistanceGrid(Solid(lobe.surface), low, high, 0.8, limit), 1});
   obstacles.push_back({DistanceGrid(Solid(fissure.insula), low, high, 0.8, limit), 6});
   obstacles.push_back({DistanceGrid(Solid(fissure.retractors), low, high, 0.8, limit), 6});
 
   progress.step("looking for the place");
   std::vector<Vec3> samples;
   const auto& all = v.wall.mesh.vertices;
-  for (std::size_t i = 0; i < all.size(); i += std::max<std::size_t>(1, all.size() / 350)) samples.push_back(all[i] - v.neck->centre);
+  for (std::size_t i = 0; i < all.size(); i += std::max<std::size_t>(1, all.size() / 350))
+    samples.push_back(all[i] - v.neck->centre);
   const Vec3 u = way_of_sac.unitOrthogonal(), w = way_of_sac.cross(u);
-  const auto rotation = [&](const Turn& t) -> Mat3 { return turn(t.tilt_a, u) * turn(t.tilt_b, w) * turn(t.spin, way_of_sac) * base; };
+  const auto rotation = [&](const Turn& t) -> Mat3 {
+    return turn(t.tilt_a, u) * turn(t.tilt_b, w) * turn(t.spin, way_of_sac) * base;
+  };
   const double wanted_spin = o.spin * std::numbers::pi / 180;
   const auto cost = [&](const Turn& t) {
     const Mat3 r = rotation(t);
@@ -72,7 +77,8 @@ Placement find_placement(const artery::Vessel& v, const Fissure& fissure, const 
         if (const double in = o.gap + wall_half - ob.grid.at(p); in > 0) sum += ob.weight * in * in;
     }
     const double away = std::remainder(t.spin - wanted_spin, 2 * std::numbers::pi);
-    return sum / double(samples.size()) + 0.25 * (t.tilt_a * t.tilt_a + t.tilt_b * t.tilt_b) + 0.01 * t.shift.squaredNorm() + (o.keep_spin ? 50 : 0.01) * away * away;
+    return sum / double(samples.size()) + 0.25 * (t.tilt_a * t.tilt_a + t.tilt_b * t.tilt_b) +
+           0.01 * t.shift.squaredNorm() + (o.keep_spin ? 50 : 0.01) * away * away;
   };
   Turn best;
   double least = 1e300;

@@ -12,7 +12,10 @@ fs::path find_project(const fs::path& near) {
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   for (const fs::path& start : {fs::weakly_canonical(near, error), program, fs::path(INSULA_SOURCE_DIR)})
     for (fs::path folder = start; !folder.empty(); folder = folder.parent_path()) {
-      if (fs::exists(folder / "scenes/parts/retracted_fissure.xml", error) && fs::exists(folder / "meshes/lobes/frontal.msh", error) && fs::exists(folder / "meshes/clips/catalogue.json", error)) return folder;
+      if (fs::exists(folder / "scenes/parts/retracted_fissure.xml", error) &&
+          fs::exists(folder / "meshes/lobes/frontal.msh", error) &&
+          fs::exists(folder / "meshes/clips/catalogue.json", error))
+        return folder;
       if (folder == folder.parent_path()) break;
     }
   throw InputError("the project's folder with scenes/parts and meshes is nowhere: run from inside of it");

@@ -25,7 +25,8 @@ namespace {
 
 std::string escaped(const std::string& s) {
   std::string out;
-  for (const char c : s) out += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : c == '"' ? "&quot;" : std::string(1, c);
+  for (const char c : s)
+    out += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : c == '"' ? "&quot;" : std::string(1, c);
   return out;
 }
 
@@ -56,13 +57,21 @@ double extent(const TriMesh& m, Vec3& centre) {
 }
 
 std::string row(const std::string& what, const std::string& value, const char* judged, const std::string& advice = "") {
-  return fmt::format("<tr class=\"{}\"><td>{}</td><td>{}</td><td>{}</td></tr>\n", judged, escaped(what), escaped(value), escaped(advice));
+  return fmt::format("<tr class=\"{}\"><td>{}</td><td>{}</td><td>{}</td></tr>\n", judged, escaped(what), escaped(value),
+                     escaped(advice));
 }
 
 std::string note_rows(const std::vector<Note>& notes) {
   std::string out;
   for (const Note& n : notes)
-    out += row(n.kind == Note::Kind::repair ? "repaired" : n.kind == Note::Kind::problem ? "problem" : "note", n.text, n.kind == Note::Kind::problem ? "bad" : n.kind == Note::Kind::repair ? "mended" : "fact", n.advice);
+    out += row(n.kind == Note::Kind::repair    ? "repaired"
+               : n.kind == Note::Kind::problem ? "problem"
+                                               : "note",
+               n.text,
+               n.kind == Note::Kind::problem  ? "bad"
+               : n.kind == Note::Kind::repair ? "mended"
+                                              : "fact",
+               n.advice);
   return out;
 }
 
@@ -73,12 +82,17 @@ std::string pictures(const artery::Vessel& v, const CaseFolder& folder) {
   const Drawn plane{disc(neck.centre, neck.normal, 0.8 * neck.diameter), {{250, 250, 250}}, 0.35, true};
   const Vec3 side = neck.normal.unitOrthogonal();
   std::string s = "<div class=\"row\">";
-  s += "<figure>" + svg_picture({drawn_regions(v), plane}, side, neck.normal, centre, radius, 330) + "<figcaption>regions and the neck's plane, from the side</figcaption></figure>";
-  s += "<figure>" + svg_picture({drawn_regions(v), plane}, neck.normal.cross(side), neck.normal, centre, radius, 330) + "<figcaption>turned by 90 degrees</figcaption></figure>";
+  s += "<figure>" + svg_picture({drawn_regions(v), plane}, side, neck.normal, centre, radius, 330) +
+       "<figcaption>regions and the neck's plane, from the side</figcaption></figure>";
+  s += "<figure>" + svg_picture({drawn_regions(v), plane}, neck.normal.cross(side), neck.normal, centre, radius, 330) +
+       "<figcaption>turned by 90 degrees</figcaption></figure>";
   std::vector<Drawn> field{drawn_regions(v)};
-  for (const auto& [name, colour] : {std::pair("frontal", std::array<int, 3>{214, 160, 150}), std::pair("temporal", std::array<int, 3>{200, 140, 140}), std::pair("insula", std::array<int, 3>{170, 120, 120})})
+  for (const auto& [name, colour] : {std::pair("frontal", std::array<int, 3>{214, 160, 150}),
+                                     std::pair("temporal", std::array<int, 3>{200, 140, 140}),
+                                     std::pair("insula", std::array<int, 3>{170, 120, 120})})
     field.push_back({read_ply(folder.lobes() / (std::string(name) + "_surface.ply")), {colour}, 0.5, false});
-  s += "<figure>" + svg_picture(field, to_surgeon, Vec3(0, 0, 1), neck.centre, 18, 330) + "<figcaption>in the fissure, from the surgeon's side (lobes half transparent)</figcaption></figure></div>\n";
+  s += "<figure>" + svg_picture(field, to_surgeon, Vec3(0, 0, 1), neck.centre, 18, 330) +
+       "<figcaption>in the fissure, from the surgeon's side (lobes half transparent)</figcaption></figure></div>\n";
   return s;
 }
 
@@ -107,7 +121,8 @@ MeasuredMotion measure_motion(const fs::path& scene, double longest) {
   register_builtin(registry);
   const auto loaded = load_simulation(scene, registry);
   MeasuredMotion out;
-  if (!loaded.simulation || !loaded.simulation->exercise() || loaded.simulation->exercise()->motions().empty()) return out;
+  if (!loaded.simulation || !loaded.simulation->exercise() || loaded.simulation->exercise()->motions().empty())
+    return out;
   Simulation& s = *loaded.simulation;
   const Motion motion = load_motion(s.exercise()->motions().front()->file());
   HeadlessRun run(s, motion);
@@ -116,7 +131,8 @@ MeasuredMotion measure_motion(const fs::path& scene, double longest) {
   while (s.time() < until) {
     const auto begin = std::chrono::steady_clock::now();
     run.step();
-    const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count() - run.haptic_ms();
+    const double ms =
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count() - run.haptic_ms();
     for (const Event& e : s.events())
       if (e.kind == "clip_released") until = std::min(until, s.time() + 0.5);
     if (!clip_touches_vessel(s.report())) continue;
@@ -161,42 +177,84 @@ void run_report(const CaseFolder& folder, const Options& options, Progress& prog
   const Intake in = read_intake(folder);
   const artery::Vessel v = read_wall(folder.artery());
   if (!v.neck) throw InputError("the vessel has no neck; do the stage wall again");
-  const Json wall = read_json(folder.wall() / "notes.json"), place = read_json(folder.path / "place.json"), scenes = read_json(folder.path / "scenes.json");
+  const Json wall = read_json(folder.wall() / "notes.json"), place = read_json(folder.path / "place.json"),
+             scenes = read_json(folder.path / "scenes.json");
   const artery::Quality q = artery::quality(v.wall.mesh);
   const auto size = [&](const char* name) {
     const auto at = v.dimensions.find(name);
     return at == v.dimensions.end() ? 0.0 : at->second;
   };
 
-  std::string s = "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>" + escaped(folder.name) +
-                  "</title><style>body{font:15px/1.45 sans-serif;max-width:1100px;margin:2em auto;padding:0 1em;color:#222}table{border-collapse:collapse;width:100%;margin:.6em 0 1.6em}"
-                  "td{border-bottom:1px solid #ddd;padding:.3em .6em;vertical-align:top}.bad td:first-child{border-left:5px solid #d33}.mended td:first-child{border-left:5px solid #e8a317}"
-                  ".good td:first-child{border-left:5px solid #2a2}.fact td:first-child{border-left:5px solid #99b}.row{display:flex;flex-wrap:wrap;gap:12px}figure{margin:0}figcaption{font-size:13px;color:#555}</style>\n";
-  s += fmt::format("<h1>Case {}</h1><p><b>For training only, never for the care of patients.</b> Red: a problem, with what to do. Yellow: something that was mended. Green: as it should be.</p>\n", escaped(folder.name));
+  std::string s =
+      "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>" + escaped(folder.name) +
+      "</title><style>body{font:15px/1.45 sans-serif;max-width:1100px;margin:2em auto;padding:0 "
+      "1em;color:#222}table{border-collapse:collapse;width:100%;margin:.6em 0 1.6em}"
+      "td{border-bottom:1px solid #ddd;padding:.3em .6em;vertical-align:top}.bad td:first-child{border-left:5px solid "
+      "#d33}.mended td:first-child{border-left:5px solid #e8a317}"
+      ".good td:first-child{border-left:5px solid #2a2}.fact td:first-child{border-left:5px solid "
+      "#99b}.row{display:flex;flex-wrap:wrap;gap:12px}figure{margin:0}figcaption{font-size:13px;color:#555}</style>\n";
+  s += fmt::format(
+      "<h1>Case {}</h1><p><b>For training only, never for the care of patients.</b> Red: a problem, with what to do. "
+      "Yellow: something that was mended. Green: as it should be.</p>\n",
+      escaped(folder.name));
   s += pictures(v, folder);
 
   s += "<h2>The input</h2><table>";
   s += row("file", fmt::format("{} ({})", in.facts.value("file", ""), in.facts.value("kind", "")), "fact");
-  if (options.mirror) s += row("side", "left, mirrored at x = 0: what is left here is right in the patient, and positions in the case's files have the other sign of x than in yours", "fact", "Positions that you give are those of your files; --no-mirror takes them as they are.");
-  s += row("size", fmt::format("{:.1f} mm across, {:.0f} mm2, {:.0f} mm3", in.facts.value("extent_mm", 0.0), in.facts.value("area_mm2", 0.0), in.facts.value("volume_mm3", 0.0)), "good", "within what a stretch of cerebral artery measures");
+  if (options.mirror)
+    s += row("side",
+             "left, mirrored at x = 0: what is left here is right in the patient, and positions in the case's files "
+             "have the other sign of x than in yours",
+             "fact", "Positions that you give are those of your files; --no-mirror takes them as they are.");
+  s += row("size",
+           fmt::format("{:.1f} mm across, {:.0f} mm2, {:.0f} mm3", in.facts.value("extent_mm", 0.0),
+                       in.facts.value("area_mm2", 0.0), in.facts.value("volume_mm3", 0.0)),
+           "good", "within what a stretch of cerebral artery measures");
   std::string openings;
-  for (const Json& o : in.facts.at("openings")) openings += fmt::format("{}{:.2f} mm", openings.empty() ? "" : ", ", o.at("calibre_mm").get<double>());
+  for (const Json& o : in.facts.at("openings"))
+    openings += fmt::format("{}{:.2f} mm", openings.empty() ? "" : ", ", o.at("calibre_mm").get<double>());
   s += row("openings, from the widest", openings, "good");
-  s += row("given triangles", fmt::format("{} given, {} after mending, least angle {:.1f} degrees{}", in.facts.value("triangles_given", 0), in.facts.value("triangles", 0), in.facts.value("least_angle_deg", 0.0),
-                                          in.facts.value("self_intersecting", false) ? ", it runs through itself" : ", it does not run through itself"), in.facts.value("self_intersecting", false) ? "bad" : "good",
-           in.facts.value("self_intersecting", false) ? "Make it anew from a grid: insula case intake FOLDER INPUT --rebuild 0.2 --on" : "");
+  s += row("given triangles",
+           fmt::format("{} given, {} after mending, least angle {:.1f} degrees{}", in.facts.value("triangles_given", 0),
+                       in.facts.value("triangles", 0), in.facts.value("least_angle_deg", 0.0),
+                       in.facts.value("self_intersecting", false) ? ", it runs through itself"
+                                                                  : ", it does not run through itself"),
+           in.facts.value("self_intersecting", false) ? "bad" : "good",
+           in.facts.value("self_intersecting", false)
+               ? "Make it anew from a grid: insula case intake FOLDER INPUT --rebuild 0.2 --on"
+               : "");
   s += note_rows(in.notes) + "</table>\n";
 
   s += "<h2>The wall</h2><table>";
   const int vertices = int(v.wall.mesh.vertices.size());
-  s += row("vertices, triangles", fmt::format("{}, {}", vertices, v.wall.mesh.triangles.size()), vertices <= 2000 ? "good" : "bad", vertices <= 2000 ? "up to 2,000 are stepped in real time" : "More than real time allows on most machines: insula case wall FOLDER --vertices 1650 --on");
-  s += row("worst angle", fmt::format("{:.1f} degrees (mean of the least ones {:.1f})", q.min_angle_deg, q.mean_min_angle_deg), q.min_angle_deg >= 20 ? "good" : "bad", q.min_angle_deg >= 20 ? "" : "Give it other triangles: insula case wall FOLDER --vertices 2000 --on");
-  s += row("holes, handles, pieces", fmt::format("{}, {} pieces, Euler number {}", q.closed ? "closed" : "OPEN", q.components, q.euler), q.closed && q.components == 1 && q.euler == 2 ? "good" : "bad");
-  s += row("self-intersections", q.self_intersecting ? "there are some" : "none", q.self_intersecting ? "bad" : "good", q.self_intersecting ? "insula case intake FOLDER INPUT --rebuild 0.2 --on" : "");
+  s += row("vertices, triangles", fmt::format("{}, {}", vertices, v.wall.mesh.triangles.size()),
+           vertices <= 2000 ? "good" : "bad",
+           vertices <= 2000
+               ? "up to 2,000 are stepped in real time"
+               : "More than real time allows on most machines: insula case wall FOLDER --vertices 1650 --on");
+  s += row("worst angle",
+           fmt::format("{:.1f} degrees (mean of the least ones {:.1f})", q.min_angle_deg, q.mean_min_angle_deg),
+           q.min_angle_deg >= 20 ? "good" : "bad",
+           q.min_angle_deg >= 20 ? "" : "Give it other triangles: insula case wall FOLDER --vertices 2000 --on");
+  s += row("holes, handles, pieces",
+           fmt::format("{}, {} pieces, Euler number {}", q.closed ? "closed" : "OPEN", q.components, q.euler),
+           q.closed && q.components == 1 && q.euler == 2 ? "good" : "bad");
+  s += row("self-intersections", q.self_intersecting ? "there are some" : "none", q.self_intersecting ? "bad" : "good",
+           q.self_intersecting ? "insula case intake FOLDER INPUT --rebuild 0.2 --on" : "");
   const double neck = v.neck->diameter;
-  s += row("neck", fmt::format("{:.2f} mm (circle of equal area), in the frame of the input see wall/vessel.json", neck), neck > 1.5 && neck < 9 ? "good" : "bad", "Not there? insula case wall FOLDER --neck X Y Z NX NY NZ --on");
-  s += row("dome", fmt::format("{:.2f} mm high, {:.2f} mm wide, dome to neck {:.2f}", v.dome_height, size("sac_width"), v.dome_height / neck), v.dome_height > 1 ? "good" : "bad", v.dome_height / neck < 1.2 ? "A broad neck: expect that one clip leaves a part of it." : "");
-  for (const Json& w : wall.at("walls")) s += row("wall of " + w.at("regions").get<std::string>(), fmt::format("{:g} mm thick, {:g} MPa", w.at("thickness_mm").get<double>(), w.at("young_MPa").get<double>()), "fact", "A proposal; change it in artery.xml.");
+  s +=
+      row("neck", fmt::format("{:.2f} mm (circle of equal area), in the frame of the input see wall/vessel.json", neck),
+          neck > 1.5 && neck < 9 ? "good" : "bad", "Not there? insula case wall FOLDER --neck X Y Z NX NY NZ --on");
+  s += row("dome",
+           fmt::format("{:.2f} mm high, {:.2f} mm wide, dome to neck {:.2f}", v.dome_height, size("sac_width"),
+                       v.dome_height / neck),
+           v.dome_height > 1 ? "good" : "bad",
+           v.dome_height / neck < 1.2 ? "A broad neck: expect that one clip leaves a part of it." : "");
+  for (const Json& w : wall.at("walls"))
+    s +=
+        row("wall of " + w.at("regions").get<std::string>(),
+            fmt::format("{:g} mm thick, {:g} MPa", w.at("thickness_mm").get<double>(), w.at("young_MPa").get<double>()),
+            "fact", "A proposal; change it in artery.xml.");
   s += note_rows(notes_from_json(wall.at("notes"))) + "</table>\n";
 
   if (fs::exists(folder.path / "brain.json")) {
@@ -205,21 +263,35 @@ void run_report(const CaseFolder& folder, const Options& options, Progress& prog
     for (const Json& l : brain.at("lobes")) {
       const bool meshed = l.contains("nodes");
       const double least = l.value("least_angle_deg", 90.0);
-      s += row(l.at("name"), fmt::format("{}{} triangles, {:.0f} mm3 about the fissure", meshed ? fmt::format("{} nodes, {} tetrahedra, least angle {:.1f} degrees, ", l.value("nodes", 0), l.value("tetrahedra", 0), least) : "", l.value("triangles", 0), l.value("volume_mm3", 0.0)),
-               least >= 5 ? "good" : "bad", least >= 5 ? "" : "Slivers: give a smoother surface or segmentation, or more nodes (--brain-nodes).");
+      s += row(l.at("name"),
+               fmt::format("{}{} triangles, {:.0f} mm3 about the fissure",
+                           meshed ? fmt::format("{} nodes, {} tetrahedra, least angle {:.1f} degrees, ",
+                                                l.value("nodes", 0), l.value("tetrahedra", 0), least)
+                                  : "",
+                           l.value("triangles", 0), l.value("volume_mm3", 0.0)),
+               least >= 5 ? "good" : "bad",
+               least >= 5 ? "" : "Slivers: give a smoother surface or segmentation, or more nodes (--brain-nodes).");
     }
     s += note_rows(notes_from_json(brain.at("notes"))) + "</table>\n";
   }
   s += "<h2>In the fissure</h2><table>";
   for (const Json& r : place.at("rooms")) {
     const double after = r.at("after_mm");
-    s += row("room to the " + r.at("what").get<std::string>(), fmt::format("{:.2f} mm (before parting {:.2f} mm)", after, r.at("before_mm").get<double>()), after > 0 ? "good" : "bad", after > 0 ? "" : "insula case place FOLDER --spin DEGREES --on, or keep less of the vessel");
+    s += row("room to the " + r.at("what").get<std::string>(),
+             fmt::format("{:.2f} mm (before parting {:.2f} mm)", after, r.at("before_mm").get<double>()),
+             after > 0 ? "good" : "bad",
+             after > 0 ? "" : "insula case place FOLDER --spin DEGREES --on, or keep less of the vessel");
   }
   s += note_rows(notes_from_json(place.at("notes"))) + "</table>\n";
 
   s += "<h2>The exercises, run on this machine</h2><table>";
   const Json clip = scenes.at("clip");
-  s += row("clip for the neck", fmt::format("{}: blades of {:g} mm, {:.1f} mm wanted; the applier comes {:.0f} degrees off the line of sight", clip.at("name").get<std::string>(), clip.at("blade_mm").get<double>(), clip.at("needed_mm").get<double>(), clip.at("off_view_deg").get<double>()), "fact");
+  s +=
+      row("clip for the neck",
+          fmt::format("{}: blades of {:g} mm, {:.1f} mm wanted; the applier comes {:.0f} degrees off the line of sight",
+                      clip.at("name").get<std::string>(), clip.at("blade_mm").get<double>(),
+                      clip.at("needed_mm").get<double>(), clip.at("off_view_deg").get<double>()),
+          "fact");
   double budget = 0;
   for (const fs::path& file : exercise_files(folder)) {
     progress.step("running " + file.filename().string());
@@ -230,8 +302,14 @@ void run_report(const CaseFolder& folder, const Options& options, Progress& prog
     }
     budget = m.budget_ms;
     const bool fast = m.step_ms <= m.budget_ms;
-    s += row(m.file, fmt::format("{} nodes, {} rows; hands still, a step takes {:.1f} ms (95 %: {:.1f} ms) of {:.1f} ms{}", m.nodes, m.rows, m.step_ms, m.max_ms, m.budget_ms, m.finite ? "" : "; it LEFT THE RANGE OF NUMBERS"), fast && m.finite ? "good" : "bad",
-             fast ? "" : "Slower than life here: fewer vertices (insula case wall FOLDER --vertices 1200 --on), or a faster machine.");
+    s += row(
+        m.file,
+        fmt::format("{} nodes, {} rows; hands still, a step takes {:.1f} ms (95 %: {:.1f} ms) of {:.1f} ms{}", m.nodes,
+                    m.rows, m.step_ms, m.max_ms, m.budget_ms, m.finite ? "" : "; it LEFT THE RANGE OF NUMBERS"),
+        fast && m.finite ? "good" : "bad",
+        fast ? ""
+             : "Slower than life here: fewer vertices (insula case wall FOLDER --vertices 1200 --on), or a faster "
+               "machine.");
     for (const Note& n : judged(m.standing)) {
       const bool good = n.kind != Note::Kind::problem;
       s += row(m.file + ", as it begins", n.text, good ? "good" : "bad", n.advice);
@@ -240,10 +318,17 @@ void run_report(const CaseFolder& folder, const Options& options, Progress& prog
   progress.step("playing the clipping");
   const fs::path clipping = exercise_files(folder)[2];
   if (const MeasuredMotion m = measure_motion(clipping, 12); m.steps > 0)
-    s += row(clipping.filename().string() + ", scripted hands", fmt::format("{} steps with the clip at the vessel, up to {} rows; a step takes {:.1f} ms (95 %: {:.1f} ms) of {:.1f} ms", m.steps, m.rows, m.step_ms, m.max_ms, budget), m.step_ms <= budget ? "good" : "bad",
-             m.step_ms <= budget ? "" : "Slower than life while it is clipped: fewer vertices (insula case wall FOLDER --vertices 1200 --on), or a faster machine.");
+    s += row(clipping.filename().string() + ", scripted hands",
+             fmt::format("{} steps with the clip at the vessel, up to {} rows; a step takes {:.1f} ms (95 %: {:.1f} "
+                         "ms) of {:.1f} ms",
+                         m.steps, m.rows, m.step_ms, m.max_ms, budget),
+             m.step_ms <= budget ? "good" : "bad",
+             m.step_ms <= budget ? ""
+                                 : "Slower than life while it is clipped: fewer vertices (insula case wall FOLDER "
+                                   "--vertices 1200 --on), or a faster machine.");
   else
-    s += row(clipping.filename().string() + ", scripted hands", "the clip never touches the vessel", "bad", "Choose another clip or place: insula case scenes FOLDER --clip NAME --lift MM --slide MM --turn DEGREES");
+    s += row(clipping.filename().string() + ", scripted hands", "the clip never touches the vessel", "bad",
+             "Choose another clip or place: insula case scenes FOLDER --clip NAME --lift MM --slide MM --turn DEGREES");
   s += note_rows(notes_from_json(scenes.at("notes"))) + "</table></html>\n";
   write_text(folder.path / "report.html", s);
   progress.finish();

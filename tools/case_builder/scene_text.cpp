@@ -8,7 +8,9 @@
 namespace insula::case_builder {
 namespace {
 
-std::string point(const Vec3& p) { return fmt::format("{:.1f} {:.1f} {:.1f} mm", p.x() + 0.0, p.y() + 0.0, p.z() + 0.0); }
+std::string point(const Vec3& p) {
+  return fmt::format("{:.1f} {:.1f} {:.1f} mm", p.x() + 0.0, p.y() + 0.0, p.z() + 0.0);
+}
 
 std::string joined(const std::vector<std::string>& all) {
   std::string out;
@@ -21,34 +23,48 @@ constexpr const char* training_only = "For training only, never for the care of 
 
 /// The fissure held open, with the case's own lobes.
 std::string fissure(const SceneFacts& f, const char* part) {
-  return fmt::format("  <include file=\"{}/{}\">\n    <variable name=\"lobes\" value=\"{}\"/>\n  </include>\n", f.assets.parts, part, f.assets.lobes);
+  return fmt::format("  <include file=\"{}/{}\">\n    <variable name=\"lobes\" value=\"{}\"/>\n  </include>\n",
+                     f.assets.parts, part, f.assets.lobes);
 }
 
-std::string tool(const SceneFacts& f, const char* element, const char* id, const char* hand, const char* model, const char* rest) {
-  return fmt::format("  <{} id=\"{}\" hand=\"{}\" model=\"{}/instruments/{}/{}.urdf\"\n    {}/>\n", element, id, hand, f.assets.meshes, model, model, rest);
+std::string tool(const SceneFacts& f, const char* element, const char* id, const char* hand, const char* model,
+                 const char* rest) {
+  return fmt::format("  <{} id=\"{}\" hand=\"{}\" model=\"{}/instruments/{}/{}.urdf\"\n    {}/>\n", element, id, hand,
+                     f.assets.meshes, model, model, rest);
 }
 
 std::string judged(const SceneFacts& f, const char* hold) {
-  return fmt::format("    <goal_clipped id=\"clip\" text=\"Close the neck and keep the branches open\" on=\"artery\" branches=\"{0}\" max_grade=\"2\" min_flow=\"0.75\" sealed=\"0.2\" hold=\"{1}\"/>\n"
-                     "    <fault_stenosis id=\"stenosis\" text=\"The clip narrows a vessel: take it back\" on=\"artery\" branches=\"{0}\" limit=\"0.5\" grace=\"3 s\"/>\n",
-                     f.branches, hold);
+  return fmt::format(
+      "    <goal_clipped id=\"clip\" text=\"Close the neck and keep the branches open\" on=\"artery\" branches=\"{0}\" "
+      "max_grade=\"2\" min_flow=\"0.75\" sealed=\"0.2\" hold=\"{1}\"/>\n"
+      "    <fault_stenosis id=\"stenosis\" text=\"The clip narrows a vessel: take it back\" on=\"artery\" "
+      "branches=\"{0}\" limit=\"0.5\" grace=\"3 s\"/>\n",
+      f.branches, hold);
 }
 
 }  // namespace
 
 std::string artery_part(const SceneFacts& f) {
   std::string s = head;
-  s += fmt::format("<!-- The vessel of the case {}: wall, blood, pulse. Thickness and modulus of each region are proposals. {} -->\n<part>\n", f.name, training_only);
+  s += fmt::format(
+      "<!-- The vessel of the case {}: wall, blood, pulse. Thickness and modulus of each region are proposals. {} "
+      "-->\n<part>\n",
+      f.name, training_only);
   s += "  <shell_body id=\"artery\" tangent_tolerance=\"0.1\" vessel=\"artery/vessel.json\">\n";
   for (std::size_t i = 0; i < f.walls.size(); ++i)
-    s += fmt::format("    <membrane id=\"wall_{}\" regions=\"{}\" thickness=\"{:g} mm\" young=\"{:g} MPa\" added_mass=\"1 kg/m2\"/>\n", i + 1, f.walls[i].regions, f.walls[i].thickness_mm, f.walls[i].young_mpa);
+    s += fmt::format(
+        "    <membrane id=\"wall_{}\" regions=\"{}\" thickness=\"{:g} mm\" young=\"{:g} MPa\" added_mass=\"1 "
+        "kg/m2\"/>\n",
+        i + 1, f.walls[i].regions, f.walls[i].thickness_mm, f.walls[i].young_mpa);
   s += fmt::format("    <anchor_springs id=\"tethers\" regions=\"{}\" stiffness=\"1 kPa/mm\"/>\n", f.tethered);
   s += "    <surface id=\"artery_wall\" material=\"vessel\" thickness=\"0.3 mm\"/>\n"
-       "    <surface id=\"artery_picture\" mesh=\"artery/picture.ply\" mesh_unit=\"mm\" material=\"vessel\" contact=\"false\"/>\n"
+       "    <surface id=\"artery_picture\" mesh=\"artery/picture.ply\" mesh_unit=\"mm\" material=\"vessel\" "
+       "contact=\"false\"/>\n"
        "  </shell_body>\n"
        "  <pressure id=\"heart\" on=\"artery\" systolic=\"120 mmHg\" diastolic=\"80 mmHg\" heart_rate=\"70 1/min\"/>\n"
        "  <blood_flow id=\"flow\" pressure=\"heart\" thickness=\"0.3 mm\" closed_below=\"0.2\"/>\n"
-       "  <self_contact id=\"lumen\" on=\"artery_wall\" thickness=\"0.22 mm\" contact_stiffness=\"3 kN/m\" friction=\"0\" max_contacts=\"40\" spacing=\"0.8 mm\" alarm=\"0.3 mm\"/>\n"
+       "  <self_contact id=\"lumen\" on=\"artery_wall\" thickness=\"0.22 mm\" contact_stiffness=\"3 kN/m\" "
+       "friction=\"0\" max_contacts=\"40\" spacing=\"0.8 mm\" alarm=\"0.3 mm\"/>\n"
        "</part>\n";
   return s;
 }
@@ -59,21 +75,42 @@ std::string field_part(const SceneFacts& f) {
   s += fmt::format("<!-- What the exercises with clips share. {} -->\n<part>\n", training_only);
   s += fissure(f, "retracted_fissure.xml");
   s += "  <include file=\"artery.xml\"/>\n";
-  for (const std::string& c : f.clips) s += fmt::format("  <clip id=\"{}\" model=\"{}/clips/{}/{}.urdf\"/>\n", c, f.assets.meshes, c, c);
-  s += fmt::format("  <view eye=\"329 86 72 mm\" target=\"{}\" up=\"0 0 1\" field_of_view=\"5.5 deg\"/>\n", point(f.neck + Vec3(1.8, 0.2, 0.8)));
-  s += "  <settle time=\"3 s\"/>\n  <solver max_sweeps=\"100\" tolerance=\"1e-7 m\" conjugate=\"true\" newton=\"8\"/>\n\n";
-  s += tool(f, "suction", "suction", "left", "suction", "home=\"88 -4 10 mm\" shaft=\"0.85 -0.35 0.39\" flat=\"0 -0.5 0.87\" coupling=\"250 N/m\"");
-  s += tool(f, "dissector", "probe", "left", "dissector", "sharp=\"never\" home=\"88 -4 10 mm\" shaft=\"0.85 -0.35 0.39\" flat=\"0 -0.5 0.87\" coupling=\"250 N/m\"");
+  for (const std::string& c : f.clips)
+    s += fmt::format("  <clip id=\"{}\" model=\"{}/clips/{}/{}.urdf\"/>\n", c, f.assets.meshes, c, c);
+  s += fmt::format("  <view eye=\"329 86 72 mm\" target=\"{}\" up=\"0 0 1\" field_of_view=\"5.5 deg\"/>\n",
+                   point(f.neck + Vec3(1.8, 0.2, 0.8)));
+  s += "  <settle time=\"3 s\"/>\n  <solver max_sweeps=\"100\" tolerance=\"1e-7 m\" conjugate=\"true\" "
+       "newton=\"8\"/>\n\n";
+  s += tool(f, "suction", "suction", "left", "suction",
+            "home=\"88 -4 10 mm\" shaft=\"0.85 -0.35 0.39\" flat=\"0 -0.5 0.87\" coupling=\"250 N/m\"");
+  s += tool(f, "dissector", "probe", "left", "dissector",
+            "sharp=\"never\" home=\"88 -4 10 mm\" shaft=\"0.85 -0.35 0.39\" flat=\"0 -0.5 0.87\" coupling=\"250 N/m\"");
   s += tool(f, "clip_applier", "applier", "right", "clip_applier",
-            fmt::format("home=\"92 26 1 mm\" shaft=\"0.93 0.25 0.27\" flat=\"0 0 1\" coupling=\"500 N/m\" clips=\"{}\"", clips).c_str());
-  s += tool(f, "dissector", "stylus", "right", "dissector", "home=\"92 26 1 mm\" shaft=\"0.93 0.25 0.27\" flat=\"0 0 1\" coupling=\"250 N/m\"");
-  s += fmt::format("\n  <bleeding id=\"bleeding\" on=\"artery\" flow=\"flow\" region=\"{}\" origin=\"{}\" up=\"0.93 0.25 0.27\" radius=\"16 mm\" depth=\"20 mm\" force=\"1.5 N\"/>\n", f.bleb ? "bleb" : "sac",
-                   point(f.neck - 5 * to_surgeon));
-  s += "  <contact id=\"bed\" between=\"artery frontal temporal insula\" friction=\"0\" tissue_alarm=\"0.3 mm\" tissue_spacing=\"1.5 mm\" tissue_max_contacts=\"12\" tissue_max_force=\"0.05 N\"/>\n"
-       "  <contact id=\"tools\" between=\"artery frontal temporal insula suction probe applier stylus\" friction=\"0.1\" spacing=\"1 mm\" max_contacts=\"10\" max_correction=\"0.2 mm\"/>\n";
-  s += fmt::format("  <contact id=\"blades\" between=\"artery {}\" friction=\"0.35\" contact_geometry=\"vertices\" patch=\"2.5 mm\" max_contacts=\"60\" alarm=\"0.12 mm\" max_correction=\"0.1 mm\"/>\n", clips);
-  s += fmt::format("  <contact id=\"clips_in_the_field\" between=\"insula {}\" friction=\"0.2\" spacing=\"2 mm\" max_contacts=\"6\" alarm=\"0.5 mm\" max_correction=\"0.2 mm\"/>\n", clips);
-  s += fmt::format("  <contact id=\"clips_on_the_lobes\" between=\"frontal temporal {}\" friction=\"0\" max_force=\"0.1 N\" spacing=\"2 mm\" max_contacts=\"6\" alarm=\"0.5 mm\" max_correction=\"0.2 mm\"/>\n</part>\n", clips);
+            fmt::format("home=\"92 26 1 mm\" shaft=\"0.93 0.25 0.27\" flat=\"0 0 1\" coupling=\"500 N/m\" clips=\"{}\"",
+                        clips)
+                .c_str());
+  s += tool(f, "dissector", "stylus", "right", "dissector",
+            "home=\"92 26 1 mm\" shaft=\"0.93 0.25 0.27\" flat=\"0 0 1\" coupling=\"250 N/m\"");
+  s += fmt::format(
+      "\n  <bleeding id=\"bleeding\" on=\"artery\" flow=\"flow\" region=\"{}\" origin=\"{}\" up=\"0.93 0.25 0.27\" "
+      "radius=\"16 mm\" depth=\"20 mm\" force=\"1.5 N\"/>\n",
+      f.bleb ? "bleb" : "sac", point(f.neck - 5 * to_surgeon));
+  s += "  <contact id=\"bed\" between=\"artery frontal temporal insula\" friction=\"0\" tissue_alarm=\"0.3 mm\" "
+       "tissue_spacing=\"1.5 mm\" tissue_max_contacts=\"12\" tissue_max_force=\"0.05 N\"/>\n"
+       "  <contact id=\"tools\" between=\"artery frontal temporal insula suction probe applier stylus\" "
+       "friction=\"0.1\" spacing=\"1 mm\" max_contacts=\"10\" max_correction=\"0.2 mm\"/>\n";
+  s += fmt::format(
+      "  <contact id=\"blades\" between=\"artery {}\" friction=\"0.35\" contact_geometry=\"vertices\" patch=\"2.5 mm\" "
+      "max_contacts=\"60\" alarm=\"0.12 mm\" max_correction=\"0.1 mm\"/>\n",
+      clips);
+  s += fmt::format(
+      "  <contact id=\"clips_in_the_field\" between=\"insula {}\" friction=\"0.2\" spacing=\"2 mm\" max_contacts=\"6\" "
+      "alarm=\"0.5 mm\" max_correction=\"0.2 mm\"/>\n",
+      clips);
+  s += fmt::format(
+      "  <contact id=\"clips_on_the_lobes\" between=\"frontal temporal {}\" friction=\"0\" max_force=\"0.1 N\" "
+      "spacing=\"2 mm\" max_contacts=\"6\" alarm=\"0.5 mm\" max_correction=\"0.2 mm\"/>\n</part>\n",
+      clips);
   return s;
 }
 
@@ -81,34 +118,62 @@ std::string strands(const SceneFacts& f, const std::string& kind) {
   const Vec3 shift = f.strand_shift * to_surgeon, ball = 0.4 * f.neck + 0.6 * f.dome + 1.5 * to_surgeon + shift;
   const double radius = 0.55 * f.dome_reach + 2;
   const bool own = kind == "branches";
-  return fmt::format("  <strand_springs id=\"to_{}\" from=\"artery_wall\" to=\"{}\" created_at=\"settled\" centre=\"{}\" radius=\"{:.1f} mm\" density=\"{:.3g} 1/cm2\" max_length=\"{} mm\" seed=\"{}\"\n"
-                     "    stiffness=\"40 N/m\" slack=\"1.1\" strength=\"0.04 N\" cut_force=\"0.015 N\" cut_length=\"0.8 mm\" reach=\"0.6 mm\"/>\n",
-                     kind, own ? std::string("artery_wall") : kind + "_surface", point(own ? Vec3(f.neck + 2 * to_surgeon + shift) : ball), own ? radius - 1 : radius, f.strand_share * (own ? 40 : 24), own ? "3" : "7",
-                     kind == "frontal" ? 11 : kind == "temporal" ? 12 : 14);
+  return fmt::format(
+      "  <strand_springs id=\"to_{}\" from=\"artery_wall\" to=\"{}\" created_at=\"settled\" centre=\"{}\" "
+      "radius=\"{:.1f} mm\" density=\"{:.3g} 1/cm2\" max_length=\"{} mm\" seed=\"{}\"\n"
+      "    stiffness=\"40 N/m\" slack=\"1.1\" strength=\"0.04 N\" cut_force=\"0.015 N\" cut_length=\"0.8 mm\" "
+      "reach=\"0.6 mm\"/>\n",
+      kind, own ? std::string("artery_wall") : kind + "_surface",
+      point(own ? Vec3(f.neck + 2 * to_surgeon + shift) : ball), own ? radius - 1 : radius,
+      f.strand_share * (own ? 40 : 24), own ? "3" : "7",
+      kind == "frontal"    ? 11
+      : kind == "temporal" ? 12
+                           : 14);
 }
 
 std::string exercise(const SceneFacts& f, int number) {
   std::string s = head;
-  const auto open = [&](const char* comment, const char* title) { s += fmt::format("<!-- {} {} -->\n<scene title=\"{}: {}\" time_step=\"16.6667 ms\">\n", comment, training_only, f.name, title); };
-  const std::string clipping_text =
-      fmt::format("Load the applier with {} or another clip. Hold button 1 to open the blades, bring them over the dome, across its neck, tips just past it, and let them close; button 2 lets the clip go, and takes it back if it lies badly.", f.clips.front());
+  const auto open = [&](const char* comment, const char* title) {
+    s += fmt::format("<!-- {} {} -->\n<scene title=\"{}: {}\" time_step=\"16.6667 ms\">\n", comment, training_only,
+                     f.name, title);
+  };
+  const std::string clipping_text = fmt::format(
+      "Load the applier with {} or another clip. Hold button 1 to open the blades, bring them over the dome, across "
+      "its neck, tips just past it, and let them close; button 2 lets the clip go, and takes it back if it lies badly.",
+      f.clips.front());
   if (number == 1) {
     open("Exercise 1: open the Sylvian fissure over the case's vessel.", "opening the Sylvian fissure");
     s += fissure(f, "fissure.xml");
-    s += "  <view eye=\"357 66 -25 mm\" target=\"65 6 1 mm\" up=\"0 0 1\" field_of_view=\"12 deg\"/>\n  <solver max_sweeps=\"80\" tolerance=\"1e-7 m\"/>\n\n";
-    s += fmt::format("  <!-- The vessel lies below: seen through the opened lips, not touched yet. -->\n  <obstacle id=\"artery\">\n    <surface id=\"artery_wall\" mesh=\"artery/picture.ply\" mesh_unit=\"mm\" material=\"vessel\" contact=\"false\"/>\n  </obstacle>\n");
-    s += tool(f, "suction", "left_suction", "left", "suction", "home=\"95.3 -6.4 7.4 mm\" shaft=\"0.912 -0.346 0.220\" flat=\"-0.08 -0.495 0.865\" coupling=\"250 N/m\"");
-    s += tool(f, "dissector", "right_dissector", "right", "dissector", "home=\"82.6 25 10.3 mm\" shaft=\"0.825 0.552 0.120\" flat=\"-0.297 0.372 0.879\" coupling=\"250 N/m\"");
-    s += "  <strand_springs id=\"arachnoid\" from=\"frontal_surface\" to=\"temporal_surface\" density=\"42 1/cm2\" max_length=\"4.5 mm\" centre=\"66 3.5 5 mm\" radius=\"10.5 mm\" seed=\"7\"\n"
-         "    stiffness=\"6 N/m\" slack=\"1.1\" strength=\"0.02 N\" cut_force=\"0.015 N\" cut_length=\"0.8 mm\" reach=\"0.6 mm\"/>\n"
-         "  <contact id=\"lobes\" between=\"frontal temporal\" friction=\"0\" tissue_alarm=\"0.8 mm\" tissue_spacing=\"2 mm\" tissue_max_contacts=\"40\"/>\n"
-         "  <contact id=\"tools\" between=\"frontal temporal insula left_suction right_dissector\" friction=\"0.1\" spacing=\"1 mm\" max_contacts=\"10\"/>\n\n"
-         "  <exercise id=\"sylvian_fissure\" title=\"Opening the Sylvian fissure\" text=\"Take hold of the temporal lobe with the suction tube and draw it down a little. Divide the strands with the dissector's edge, first at the surface, then deeper.\">\n"
-         "    <goal_opening id=\"open\" text=\"Part the lips of the fissure by 5 mm and hold them\" a=\"frontal_surface\" b=\"temporal_surface\" at=\"67 5 4 mm\" distance=\"5 mm\" hold=\"2 s\"/>\n"
+    s += "  <view eye=\"357 66 -25 mm\" target=\"65 6 1 mm\" up=\"0 0 1\" field_of_view=\"12 deg\"/>\n  <solver "
+         "max_sweeps=\"80\" tolerance=\"1e-7 m\"/>\n\n";
+    s += fmt::format(
+        "  <!-- The vessel lies below: seen through the opened lips, not touched yet. -->\n  <obstacle "
+        "id=\"artery\">\n    <surface id=\"artery_wall\" mesh=\"artery/picture.ply\" mesh_unit=\"mm\" "
+        "material=\"vessel\" contact=\"false\"/>\n  </obstacle>\n");
+    s +=
+        tool(f, "suction", "left_suction", "left", "suction",
+             "home=\"95.3 -6.4 7.4 mm\" shaft=\"0.912 -0.346 0.220\" flat=\"-0.08 -0.495 0.865\" coupling=\"250 N/m\"");
+    s += tool(f, "dissector", "right_dissector", "right", "dissector",
+              "home=\"82.6 25 10.3 mm\" shaft=\"0.825 0.552 0.120\" flat=\"-0.297 0.372 0.879\" coupling=\"250 N/m\"");
+    s += "  <strand_springs id=\"arachnoid\" from=\"frontal_surface\" to=\"temporal_surface\" density=\"42 1/cm2\" "
+         "max_length=\"4.5 mm\" centre=\"66 3.5 5 mm\" radius=\"10.5 mm\" seed=\"7\"\n"
+         "    stiffness=\"6 N/m\" slack=\"1.1\" strength=\"0.02 N\" cut_force=\"0.015 N\" cut_length=\"0.8 mm\" "
+         "reach=\"0.6 mm\"/>\n"
+         "  <contact id=\"lobes\" between=\"frontal temporal\" friction=\"0\" tissue_alarm=\"0.8 mm\" "
+         "tissue_spacing=\"2 mm\" tissue_max_contacts=\"40\"/>\n"
+         "  <contact id=\"tools\" between=\"frontal temporal insula left_suction right_dissector\" friction=\"0.1\" "
+         "spacing=\"1 mm\" max_contacts=\"10\"/>\n\n"
+         "  <exercise id=\"sylvian_fissure\" title=\"Opening the Sylvian fissure\" text=\"Take hold of the temporal "
+         "lobe with the suction tube and draw it down a little. Divide the strands with the dissector's edge, first at "
+         "the surface, then deeper.\">\n"
+         "    <goal_opening id=\"open\" text=\"Part the lips of the fissure by 5 mm and hold them\" "
+         "a=\"frontal_surface\" b=\"temporal_surface\" at=\"67 5 4 mm\" distance=\"5 mm\" hold=\"2 s\"/>\n"
          "    <goal_strands id=\"divide\" text=\"Divide all arachnoid strands\" fraction=\"1\"/>\n"
-         "    <fault_force id=\"force\" text=\"Too much force on the brain: ease off\" on=\"frontal temporal\" limit=\"0.2 N\" grace=\"100 ms\"/>\n"
+         "    <fault_force id=\"force\" text=\"Too much force on the brain: ease off\" on=\"frontal temporal\" "
+         "limit=\"0.2 N\" grace=\"100 ms\"/>\n"
          "    <fault_torn id=\"torn\" text=\"A strand tore: cut it before you draw the lobe further\"/>\n"
-         "    <fault_order id=\"order\" text=\"Too deep too early: divide the strands at the surface first\" inward=\"-0.946 -0.236 -0.220\" margin=\"5 mm\" allowed=\"6\"/>\n"
+         "    <fault_order id=\"order\" text=\"Too deep too early: divide the strands at the surface first\" "
+         "inward=\"-0.946 -0.236 -0.220\" margin=\"5 mm\" allowed=\"6\"/>\n"
          "    <time_limit id=\"time\" text=\"Ten minutes are over\" limit=\"600 s\"/>\n";
     if (f.opened) s += "    <motion id=\"steady\" file=\"1_sylvian_fissure_steady.csv\"/>\n";
     s += "  </exercise>\n</scene>\n";
@@ -116,18 +181,31 @@ std::string exercise(const SceneFacts& f, int number) {
     open("Exercise 2: free the aneurysm of its strands.", "dissection of the aneurysm");
     s += fissure(f, "retracted_fissure.xml");
     s += "  <include file=\"artery.xml\"/>\n";
-    s += fmt::format("  <view eye=\"329 86 72 mm\" target=\"{}\" up=\"0 0 1\" field_of_view=\"9 deg\"/>\n  <settle time=\"3 s\"/>\n  <solver max_sweeps=\"80\" tolerance=\"1e-7 m\"/>\n\n", point(f.neck + Vec3(2.5, 0, 1)));
-    s += tool(f, "suction", "left_suction", "left", "suction", "home=\"98 -4 8 mm\" shaft=\"0.87 -0.42 0.26\" flat=\"0 0 1\" coupling=\"250 N/m\"");
-    s += tool(f, "dissector", "right_stylus", "right", "dissector", "home=\"92 44 12 mm\" shaft=\"0.80 0.55 0.24\" flat=\"0 0 1\" coupling=\"250 N/m\"");
-    s += "  <contact id=\"bed\" between=\"artery frontal temporal insula\" friction=\"0\" tissue_alarm=\"0.3 mm\" tissue_spacing=\"1.5 mm\" tissue_max_contacts=\"12\" tissue_max_force=\"0.05 N\"/>\n"
-         "  <contact id=\"tools\" between=\"artery frontal temporal insula left_suction right_stylus\" friction=\"0.1\" spacing=\"1 mm\" max_contacts=\"10\"/>\n";
-    s += fmt::format("  <bleeding id=\"bleeding\" on=\"artery\" flow=\"flow\" region=\"{}\" force=\"0.3 N\" sharp_force=\"0.08 N\" origin=\"{}\" up=\"0.93 0.22 0.28\" radius=\"12 mm\" depth=\"25 mm\"/>\n", f.bleb ? "bleb" : "sac",
-                     point(f.neck - 5 * to_surgeon));
+    s += fmt::format(
+        "  <view eye=\"329 86 72 mm\" target=\"{}\" up=\"0 0 1\" field_of_view=\"9 deg\"/>\n  <settle time=\"3 s\"/>\n "
+        " <solver max_sweeps=\"80\" tolerance=\"1e-7 m\"/>\n\n",
+        point(f.neck + Vec3(2.5, 0, 1)));
+    s += tool(f, "suction", "left_suction", "left", "suction",
+              "home=\"98 -4 8 mm\" shaft=\"0.87 -0.42 0.26\" flat=\"0 0 1\" coupling=\"250 N/m\"");
+    s += tool(f, "dissector", "right_stylus", "right", "dissector",
+              "home=\"92 44 12 mm\" shaft=\"0.80 0.55 0.24\" flat=\"0 0 1\" coupling=\"250 N/m\"");
+    s += "  <contact id=\"bed\" between=\"artery frontal temporal insula\" friction=\"0\" tissue_alarm=\"0.3 mm\" "
+         "tissue_spacing=\"1.5 mm\" tissue_max_contacts=\"12\" tissue_max_force=\"0.05 N\"/>\n"
+         "  <contact id=\"tools\" between=\"artery frontal temporal insula left_suction right_stylus\" "
+         "friction=\"0.1\" spacing=\"1 mm\" max_contacts=\"10\"/>\n";
+    s += fmt::format(
+        "  <bleeding id=\"bleeding\" on=\"artery\" flow=\"flow\" region=\"{}\" force=\"0.3 N\" sharp_force=\"0.08 N\" "
+        "origin=\"{}\" up=\"0.93 0.22 0.28\" radius=\"12 mm\" depth=\"25 mm\"/>\n",
+        f.bleb ? "bleb" : "sac", point(f.neck - 5 * to_surgeon));
     for (const std::string& kind : f.strand_sets) s += strands(f, kind);
-    s += "\n  <exercise id=\"aneurysm_dissection\" title=\"Dissection of the aneurysm\" text=\"Divide all strands with the dissector's edge: turn the blade across each and sweep it slowly, the outermost first. Keep off the dome, and pull on nothing.\">\n"
+    s += "\n  <exercise id=\"aneurysm_dissection\" title=\"Dissection of the aneurysm\" text=\"Divide all strands with "
+         "the dissector's edge: turn the blade across each and sweep it slowly, the outermost first. Keep off the "
+         "dome, and pull on nothing.\">\n"
          "    <goal_strands id=\"divide\" text=\"Divide all strands around the aneurysm\" fraction=\"1\"/>\n"
-         "    <fault_force id=\"vessel_force\" text=\"Too much force on the vessel: ease off\" on=\"artery\" limit=\"0.15 N\" grace=\"100 ms\"/>\n"
-         "    <fault_force id=\"brain_force\" text=\"Too much force on the brain: ease off\" on=\"frontal temporal\" limit=\"0.2 N\" grace=\"100 ms\"/>\n"
+         "    <fault_force id=\"vessel_force\" text=\"Too much force on the vessel: ease off\" on=\"artery\" "
+         "limit=\"0.15 N\" grace=\"100 ms\"/>\n"
+         "    <fault_force id=\"brain_force\" text=\"Too much force on the brain: ease off\" on=\"frontal temporal\" "
+         "limit=\"0.2 N\" grace=\"100 ms\"/>\n"
          "    <fault_torn id=\"torn\" text=\"A strand tore: divide it with the edge instead\"/>\n"
          "    <fault_rupture id=\"rupture\" text=\"The aneurysm has ruptured\" fails=\"true\"/>\n"
          "    <time_limit id=\"time\" text=\"Ten minutes are over\" limit=\"600 s\"/>\n";
@@ -139,20 +217,26 @@ std::string exercise(const SceneFacts& f, int number) {
     s += fmt::format("  <exercise id=\"clipping\" title=\"Clipping\" text=\"{}\">\n", clipping_text);
     s += judged(f, "3 s");
     s += "    <fault_rupture id=\"rupture\" text=\"The dome has ruptured\"/>\n"
-         "    <fault_force id=\"force\" text=\"Too much force on the artery\" on=\"artery\" limit=\"1 N\" grace=\"200 ms\"/>\n"
+         "    <fault_force id=\"force\" text=\"Too much force on the artery\" on=\"artery\" limit=\"1 N\" grace=\"200 "
+         "ms\"/>\n"
          "    <time_limit id=\"time\" text=\"Fifteen minutes are over\" limit=\"900 s\"/>\n"
          "    <motion id=\"steady\" file=\"3_clipping_steady.csv\"/>\n  </exercise>\n</scene>\n";
   } else {
     open("Exercise 4: the dome ruptures.", "rupture");
-    s += "  <include file=\"field.xml\"/>\n\n  <complications id=\"chance\">\n    <complication id=\"rupture_by_itself\" command=\"bleeding rupture\" probability=\"1\" from=\"8 s\" to=\"40 s\"/>\n"
-         "    <complication id=\"pressure_rises\" command=\"heart set_systolic 150\" probability=\"0.3\" from=\"20 s\" to=\"120 s\"/>\n  </complications>\n\n"
-         "  <exercise id=\"rupture\" title=\"Rupture\" text=\"The dome bleeds. Hold the field dry with the suction tube, put a temporary clip across the parent artery, then close the neck with a permanent clip, and take the temporary clip off within three minutes.\">\n"
+    s += "  <include file=\"field.xml\"/>\n\n  <complications id=\"chance\">\n    <complication "
+         "id=\"rupture_by_itself\" command=\"bleeding rupture\" probability=\"1\" from=\"8 s\" to=\"40 s\"/>\n"
+         "    <complication id=\"pressure_rises\" command=\"heart set_systolic 150\" probability=\"0.3\" from=\"20 s\" "
+         "to=\"120 s\"/>\n  </complications>\n\n"
+         "  <exercise id=\"rupture\" title=\"Rupture\" text=\"The dome bleeds. Hold the field dry with the suction "
+         "tube, put a temporary clip across the parent artery, then close the neck with a permanent clip, and take the "
+         "temporary clip off within three minutes.\">\n"
          "    <goal_bleeding_stopped id=\"stop\" text=\"Stop the bleeding\" rate=\"4 ml/min\" hold=\"2 s\"/>\n";
     s += judged(f, "2 s");
     s += "    <goal_temporary_removed id=\"removed\" text=\"Take the temporary clip off\" rate=\"4 ml/min\"/>\n"
          "    <timer_rupture id=\"since_rupture\" text=\"Since the rupture\" limit=\"300 s\" rate=\"4 ml/min\"/>\n"
          "    <timer_temporary_clip id=\"occlusion\" text=\"Temporary clip\" limit=\"180 s\"/>\n"
-         "    <fault_force id=\"force\" text=\"Too much force on the artery\" on=\"artery\" limit=\"1 N\" grace=\"200 ms\"/>\n"
+         "    <fault_force id=\"force\" text=\"Too much force on the artery\" on=\"artery\" limit=\"1 N\" grace=\"200 "
+         "ms\"/>\n"
          "    <motion id=\"steady\" file=\"4_rupture_steady.csv\"/>\n  </exercise>\n</scene>\n";
   }
   return s;

@@ -15,18 +15,18 @@ struct SceneFacts {
   std::string name;
   Assets assets;
   std::vector<WallText> walls;
-  std::string tethered;               ///< regions that the surroundings hold
-  std::string branches;               ///< centrelines that lead to outlets: their flow is to stay
-  Vec3 neck, dome;                    ///< mm
-  double dome_reach = 0;              ///< from the neck to the farthest of the sac, mm
-  std::vector<std::string> clips;     ///< on the tray; the first is the one for the neck
+  std::string tethered;            ///< regions that the surroundings hold
+  std::string branches;            ///< centrelines that lead to outlets: their flow is to stay
+  Vec3 neck, dome;                 ///< mm
+  double dome_reach = 0;           ///< from the neck to the farthest of the sac, mm
+  std::vector<std::string> clips;  ///< on the tray; the first is the one for the neck
   std::string temporary;
   bool bleb = false;
   std::vector<std::string> strand_sets;
-  double strand_share = 1;            ///< of the usual density of strands
-  double strand_shift = 0;            ///< mm that their balls lie nearer to the surgeon
-  bool opened = true;                 ///< exercise 1 has scripted hands
-  bool rehearsed = false;             ///< exercise 2 has scripted hands
+  double strand_share = 1;  ///< of the usual density of strands
+  double strand_shift = 0;  ///< mm that their balls lie nearer to the surgeon
+  bool opened = true;       ///< exercise 1 has scripted hands
+  bool rehearsed = false;   ///< exercise 2 has scripted hands
 };
 
 std::string artery_part(const SceneFacts& facts);

@@ -27,7 +27,8 @@ std::string clipping_motion(const ClipPlan& plan) {
   return m.csv();
 }
 
-std::string rupture_motion(const ClipPlan& plan, const ApplierPose& temporary, const std::string& clip, const Vec3& neck) {
+std::string rupture_motion(const ClipPlan& plan, const ApplierPose& temporary, const std::string& clip,
+                           const Vec3& neck) {
   MotionScript m;
   m.command(1, "bleeding rupture");
   m.command(0.1, "applier load " + clip);
@@ -41,7 +42,8 @@ std::string rupture_motion(const ClipPlan& plan, const ApplierPose& temporary, c
   m.take_clip(temporary);
   m.key(true, 8, drawn_back(temporary, out_of_field));
   // The suction tube, dipped into the field beside the neck.
-  const Vec3 shaft = Vec3(0.85, -0.35, 0.39).normalized(), flat = (Vec3(0, -0.5, 0.87) - Vec3(0, -0.5, 0.87).dot(shaft) * shaft).normalized();
+  const Vec3 shaft = Vec3(0.85, -0.35, 0.39).normalized(),
+             flat = (Vec3(0, -0.5, 0.87) - Vec3(0, -0.5, 0.87).dot(shaft) * shaft).normalized();
   const ApplierPose low{neck + Vec3(0, -7, 0) + 6 * shaft, flat, shaft}, outside = drawn_back(low, 26);
   m.key(false, 0.01, outside);
   m.key(false, 1.5, outside);
@@ -73,7 +75,8 @@ void run_scenes(const CaseFolder& folder, const fs::path& project, const Options
   f.name = folder.name;
   f.temporary = "temporary_straight";
   f.clips = {plan.clip.name};
-  for (const char* menu : {"straight", "curved", "angled", "bayonet", "fenestrated", "mini", "temporary_straight", "temporary_curved"})
+  for (const char* menu :
+       {"straight", "curved", "angled", "bayonet", "fenestrated", "mini", "temporary_straight", "temporary_curved"})
     if (menu != plan.clip.name) f.clips.push_back(menu);
   f.assets = link_assets(folder, project, f.clips);
   const Json wall = read_json(folder.wall() / "notes.json");
@@ -90,18 +93,26 @@ void run_scenes(const CaseFolder& folder, const fs::path& project, const Options
   progress.step("writing the exercises");
   write_text(folder.path / "artery.xml", artery_part(f));
   write_text(folder.path / "field.xml", field_part(f));
-  write_text(folder.path / "1_sylvian_fissure_steady.csv", read_file_bytes(project / "scenes/training/1_sylvian_fissure_steady.csv"));
+  write_text(folder.path / "1_sylvian_fissure_steady.csv",
+             read_file_bytes(project / "scenes/training/1_sylvian_fissure_steady.csv"));
   write_text(folder.path / "3_clipping_steady.csv", clipping_motion(plan));
-  const auto temporary = std::find_if(clips.begin(), clips.end(), [&](const ClipShape& c) { return c.name == f.temporary; });
+  const auto temporary =
+      std::find_if(clips.begin(), clips.end(), [&](const ClipShape& c) { return c.name == f.temporary; });
   if (temporary == clips.end()) throw InputError("the library has no clip " + f.temporary);
-  write_text(folder.path / "4_rupture_steady.csv", rupture_motion(plan, plan_temporary(v, floor, *temporary), f.temporary, f.neck));
+  write_text(folder.path / "4_rupture_steady.csv",
+             rupture_motion(plan, plan_temporary(v, floor, *temporary), f.temporary, f.neck));
 
   spin_strands(f, folder, o.rehearse, notes, progress);
   if (!o.brain.empty()) try_opening(f, folder, o.rehearse, notes, progress);
   progress.step("writing");
   Json json;
-  json["clip"] = {{"name", plan.clip.name}, {"blade_mm", rounded(plan.clip.blade)}, {"needed_mm", rounded(plan.needed)}, {"off_view_deg", rounded(plan.off_view)},
-                  {"lift_mm", rounded(plan.lift)}, {"slide_mm", rounded(plan.slide)}, {"turn_deg", rounded(plan.turn)}};
+  json["clip"] = {{"name", plan.clip.name},
+                  {"blade_mm", rounded(plan.clip.blade)},
+                  {"needed_mm", rounded(plan.needed)},
+                  {"off_view_deg", rounded(plan.off_view)},
+                  {"lift_mm", rounded(plan.lift)},
+                  {"slide_mm", rounded(plan.slide)},
+                  {"turn_deg", rounded(plan.turn)}};
   json["files_copied"] = f.assets.copied;
   json["notes"] = to_json(notes);
   write_json(folder.path / "scenes.json", json);

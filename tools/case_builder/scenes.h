@@ -8,9 +8,9 @@ namespace insula::case_builder {
 
 /// How files of the case name those of the project. Outside of the project what they need is copied into the case.
 struct Assets {
-  std::string meshes;       ///< from a file in the case's folder
-  std::string parts;        ///< the same
-  std::string lobes;        ///< the case's lobes, from a file in the parts' folder
+  std::string meshes;  ///< from a file in the case's folder
+  std::string parts;   ///< the same
+  std::string lobes;   ///< the case's lobes, from a file in the parts' folder
   bool copied = false;
 };
 Assets link_assets(const CaseFolder& folder, const fs::path& project, const std::vector<std::string>& clips);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Vessels for tests, made from functions: a straight tube with a sac, and what can be wrong with such a surface. Millimetres.
+// Vessels for tests, made from functions: a straight tube with a sac, and what can be wrong with such a surface.
+// Millimetres.
 #pragma once
 #include <cmath>
 #include <cstdint>
@@ -14,7 +15,8 @@
 
 namespace insula::case_builder::test {
 
-/// A tube of radius 1.4 along x from -8 to 8, its ends flat, with a ball of radius 2.4 on a neck above its middle. Closed.
+/// A tube of radius 1.4 along x from -8 to 8, its ends flat, with a ball of radius 2.4 on a neck above its middle.
+/// Closed.
 inline TriMesh tube_with_sac(double step = 0.35) {
   const auto value = [](const Vec3& p) {
     const double tube = std::hypot(p.y(), p.z()) - 1.4, ball = (p - Vec3(0, 0, 3.6)).norm() - 2.4, k = 0.5;
@@ -77,37 +79,52 @@ inline std::string stl_text(const TriMesh& m) {
 
 inline std::string obj_text(const TriMesh& m) {
   std::string s;
-  for (const Vec3& p : m.vertices) s += "v " + std::to_string(p.x()) + " " + std::to_string(p.y()) + " " + std::to_string(p.z()) + "\n";
-  for (const auto& t : m.triangles) s += "f " + std::to_string(t[0] + 1) + " " + std::to_string(t[1] + 1) + " " + std::to_string(t[2] + 1) + "\n";
+  for (const Vec3& p : m.vertices)
+    s += "v " + std::to_string(p.x()) + " " + std::to_string(p.y()) + " " + std::to_string(p.z()) + "\n";
+  for (const auto& t : m.triangles)
+    s += "f " + std::to_string(t[0] + 1) + " " + std::to_string(t[1] + 1) + " " + std::to_string(t[2] + 1) + "\n";
   return s;
 }
 
 inline std::string vtp_text(const TriMesh& m) {
   std::string points, nodes, offsets;
-  for (const Vec3& p : m.vertices) points += std::to_string(p.x()) + " " + std::to_string(p.y()) + " " + std::to_string(p.z()) + "\n";
+  for (const Vec3& p : m.vertices)
+    points += std::to_string(p.x()) + " " + std::to_string(p.y()) + " " + std::to_string(p.z()) + "\n";
   for (std::size_t t = 0; t < m.triangles.size(); ++t) {
     for (const int v : m.triangles[t]) nodes += std::to_string(v) + " ";
     offsets += std::to_string(3 * t + 3) + " ";
   }
-  return "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"0.1\" byte_order=\"LittleEndian\"><PolyData><Piece NumberOfPoints=\"" + std::to_string(m.vertices.size()) + "\" NumberOfPolys=\"" +
-         std::to_string(m.triangles.size()) + "\"><Points><DataArray type=\"Float32\" NumberOfComponents=\"3\" format=\"ascii\">" + points +
-         "</DataArray></Points><Polys><DataArray type=\"Int32\" Name=\"connectivity\" format=\"ascii\">" + nodes + "</DataArray><DataArray type=\"Int32\" Name=\"offsets\" format=\"ascii\">" + offsets +
+  return "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"0.1\" "
+         "byte_order=\"LittleEndian\"><PolyData><Piece NumberOfPoints=\"" +
+         std::to_string(m.vertices.size()) + "\" NumberOfPolys=\"" + std::to_string(m.triangles.size()) +
+         "\"><Points><DataArray type=\"Float32\" NumberOfComponents=\"3\" format=\"ascii\">" + points +
+         "</DataArray></Points><Polys><DataArray type=\"Int32\" Name=\"connectivity\" format=\"ascii\">" + nodes +
+         "</DataArray><DataArray type=\"Int32\" Name=\"offsets\" format=\"ascii\">" + offsets +
          "</DataArray></Polys></Piece></PolyData></VTKFile>\n";
 }
 
 /// A NIfTI file of bytes; `value` at voxel indices, the first of which lies at `origin`.
-inline std::string nifti_text(std::array<int, 3> n, double spacing, const std::function<int(int, int, int)>& value, int times = 1, const Vec3& origin = Vec3::Zero()) {
+inline std::string nifti_text(std::array<int, 3> n, double spacing, const std::function<int(int, int, int)>& value,
+                              int times = 1, const Vec3& origin = Vec3::Zero()) {
   std::string h(352, '\0');
   const auto put = [&h](std::size_t at, auto v) { std::memcpy(h.data() + at, &v, sizeof v); };
   put(0, std::int32_t(348));
-  const std::int16_t dim[8] = {std::int16_t(times > 1 ? 4 : 3), std::int16_t(n[0]), std::int16_t(n[1]), std::int16_t(n[2]), std::int16_t(times), 1, 1, 1};
+  const std::int16_t dim[8] = {std::int16_t(times > 1 ? 4 : 3),
+                               std::int16_t(n[0]),
+                               std::int16_t(n[1]),
+                               std::int16_t(n[2]),
+                               std::int16_t(times),
+                               1,
+                               1,
+                               1};
   for (std::size_t k = 0; k < 8; ++k) put(40 + 2 * k, dim[k]);
   put(70, std::int16_t(2)), put(72, std::int16_t(8));
   for (std::size_t k = 0; k < 8; ++k) put(76 + 4 * k, k >= 1 && k <= 3 ? float(spacing) : 1.0f);
   put(108, 352.0f), put(112, 1.0f);
   h[123] = 2;  // millimetres
   put(254, std::int16_t(1));
-  for (std::size_t r = 0; r < 3; ++r) put(280 + 16 * r + 4 * r, float(spacing)), put(280 + 16 * r + 12, float(origin[Eigen::Index(r)]));
+  for (std::size_t r = 0; r < 3; ++r)
+    put(280 + 16 * r + 4 * r, float(spacing)), put(280 + 16 * r + 12, float(origin[Eigen::Index(r)]));
   std::memcpy(h.data() + 344, "n+1", 4);
   for (int t = 0; t < times; ++t)
     for (int k = 0; k < n[2]; ++k)
@@ -131,11 +148,14 @@ inline int head_label(Vec3 p, const Vec3& shift = Vec3::Zero()) {
 inline std::string head_text(const Vec3& shift = Vec3::Zero()) {
   const Vec3 first(-4.5, -55, -58);
   constexpr double voxel = 1.5;
-  return nifti_text({54, 78, 78}, voxel, [&](int i, int j, int k) { return head_label(first + voxel * Vec3(i, j, k), shift); }, 1, first);
+  return nifti_text(
+      {54, 78, 78}, voxel, [&](int i, int j, int k) { return head_label(first + voxel * Vec3(i, j, k), shift); }, 1,
+      first);
 }
 
 /// One slice of a DICOM series, 16 bits, explicit little endian.
-inline std::string dicom_text(std::array<int, 2> n, double spacing, int slice, const std::function<int(int, int)>& value, const std::string& series = "1.2.3.6") {
+inline std::string dicom_text(std::array<int, 2> n, double spacing, int slice,
+                              const std::function<int(int, int)>& value, const std::string& series = "1.2.3.6") {
   std::string s(128, '\0');
   s += "DICM";
   const auto put = [](std::string& to, auto v) { to.append(reinterpret_cast<const char*>(&v), sizeof v); };
@@ -143,7 +163,8 @@ inline std::string dicom_text(std::array<int, 2> n, double spacing, int slice, c
     if (data.size() % 2) data += kind[0] == 'U' ? '\0' : ' ';
     put(to, std::uint16_t(group)), put(to, std::uint16_t(number));
     to += kind;
-    if (std::string(kind) == "OW" || std::string(kind) == "OB") put(to, std::uint16_t(0)), put(to, std::uint32_t(data.size()));
+    if (std::string(kind) == "OW" || std::string(kind) == "OB")
+      put(to, std::uint16_t(0)), put(to, std::uint32_t(data.size()));
     else put(to, std::uint16_t(data.size()));
     to += data;
   };
@@ -152,21 +173,26 @@ inline std::string dicom_text(std::array<int, 2> n, double spacing, int slice, c
     put(t, std::uint16_t(v));
     return t;
   };
-  const std::string place = std::to_string(spacing * slice), same = std::to_string(spacing), id = "1.2.3.4." + std::to_string(slice + 1), ct = "1.2.840.10008.5.1.4.1.1.2";
+  const std::string place = std::to_string(spacing * slice), same = std::to_string(spacing),
+                    id = "1.2.3.4." + std::to_string(slice + 1), ct = "1.2.840.10008.5.1.4.1.1.2";
   std::string meta;
   element(meta, 2, 1, "OB", std::string("\0\1", 2));
-  element(meta, 2, 2, "UI", ct), element(meta, 2, 3, "UI", id), element(meta, 2, 0x10, "UI", "1.2.840.10008.1.2.1"), element(meta, 2, 0x12, "UI", "1.2.3.9");
+  element(meta, 2, 2, "UI", ct), element(meta, 2, 3, "UI", id), element(meta, 2, 0x10, "UI", "1.2.840.10008.1.2.1"),
+      element(meta, 2, 0x12, "UI", "1.2.3.9");
   std::string length;
   put(length, std::uint32_t(meta.size()));
   element(s, 2, 0, "UL", length);
   s += meta;
   element(s, 8, 0x16, "UI", ct), element(s, 8, 0x18, "UI", id), element(s, 8, 0x60, "CS", "CT");
   element(s, 0x18, 0x50, "DS", same);
-  element(s, 0x20, 0xD, "UI", "1.2.3.5"), element(s, 0x20, 0xE, "UI", series), element(s, 0x20, 0x13, "IS", std::to_string(slice + 1));
+  element(s, 0x20, 0xD, "UI", "1.2.3.5"), element(s, 0x20, 0xE, "UI", series),
+      element(s, 0x20, 0x13, "IS", std::to_string(slice + 1));
   element(s, 0x20, 0x32, "DS", "0\\0\\" + place), element(s, 0x20, 0x37, "DS", "1\\0\\0\\0\\1\\0");
-  element(s, 0x28, 2, "US", number(1)), element(s, 0x28, 4, "CS", "MONOCHROME2"), element(s, 0x28, 0x10, "US", number(n[1])), element(s, 0x28, 0x11, "US", number(n[0]));
+  element(s, 0x28, 2, "US", number(1)), element(s, 0x28, 4, "CS", "MONOCHROME2"),
+      element(s, 0x28, 0x10, "US", number(n[1])), element(s, 0x28, 0x11, "US", number(n[0]));
   element(s, 0x28, 0x30, "DS", same + "\\" + same);
-  element(s, 0x28, 0x100, "US", number(16)), element(s, 0x28, 0x101, "US", number(16)), element(s, 0x28, 0x102, "US", number(15)), element(s, 0x28, 0x103, "US", number(0));
+  element(s, 0x28, 0x100, "US", number(16)), element(s, 0x28, 0x101, "US", number(16)),
+      element(s, 0x28, 0x102, "US", number(15)), element(s, 0x28, 0x103, "US", number(0));
   std::string pixels;
   for (int j = 0; j < n[1]; ++j)
     for (int i = 0; i < n[0]; ++i) put(pixels, std::uint16_t(value(i, j)));

@@ -31,19 +31,28 @@ std::string advice(double size, double mm_per_unit, const Usual& usual) {
   if (best) return fmt::format("; as if its numbers were in {0}: give {1} {0}", best->name, usual.option);
   const double factor = std::pow(10.0, std::round(std::log10(usual.size / size)));
   if (factor != 1)
-    return fmt::format("; as if it were {:g} times too {}: scale it, or give the millimetres of its unit, {}-mm {:g}", factor < 1 ? 1 / factor : factor, factor < 1 ? "large" : "small", usual.option, mm_per_unit * factor);
+    return fmt::format("; as if it were {:g} times too {}: scale it, or give the millimetres of its unit, {}-mm {:g}",
+                       factor < 1 ? 1 / factor : factor, factor < 1 ? "large" : "small", usual.option,
+                       mm_per_unit * factor);
   return "";
 }
 
 std::string check(double size, double mm_per_unit, const Usual& usual) {
   if (size >= usual.least && size <= usual.most) return "";
-  return fmt::format("the {} is {:.3g} mm across, which no {} is (usual: {:g} to {:g} mm){}", usual.what, size, usual.kind, usual.least, usual.most, advice(size, mm_per_unit, usual));
+  return fmt::format("the {} is {:.3g} mm across, which no {} is (usual: {:g} to {:g} mm){}", usual.what, size,
+                     usual.kind, usual.least, usual.most, advice(size, mm_per_unit, usual));
 }
 
 }  // namespace
 
-std::string check_extent(double extent, double unit) { return check(extent, unit, {"surface", "stretch of cerebral artery", 30, min_extent, max_extent, "--unit"}); }
-std::string check_calibre(double calibre, double unit) { return check(calibre, unit, {"widest opening", "cerebral artery", 2.5, min_calibre, max_calibre, "--unit"}); }
-std::string check_brain(double extent, double unit) { return check(extent, unit, {"surface", "part of a brain", 100, min_brain, max_brain, "--brain-unit"}); }
+std::string check_extent(double extent, double unit) {
+  return check(extent, unit, {"surface", "stretch of cerebral artery", 30, min_extent, max_extent, "--unit"});
+}
+std::string check_calibre(double calibre, double unit) {
+  return check(calibre, unit, {"widest opening", "cerebral artery", 2.5, min_calibre, max_calibre, "--unit"});
+}
+std::string check_brain(double extent, double unit) {
+  return check(extent, unit, {"surface", "part of a brain", 100, min_brain, max_brain, "--brain-unit"});
+}
 
 }  // namespace insula::case_builder

@@ -29,7 +29,8 @@ Nearest Solid::nearest(const Vec3& p, double limit) const {
   return {true, (n.behind ? -1000 : 1000) * n.distance, n.triangle, n.bary, n.outward};
 }
 
-DistanceGrid::DistanceGrid(const Solid& solid, const Vec3& low, const Vec3& high, double step, double limit) : low_(low), step_(step), limit_(limit) {
+DistanceGrid::DistanceGrid(const Solid& solid, const Vec3& low, const Vec3& high, double step, double limit)
+    : low_(low), step_(step), limit_(limit) {
   for (int a = 0; a < 3; ++a) n_[a] = int(std::ceil((high[a] - low[a]) / step)) + 1;
   value_.reserve(std::size_t(n_[0]) * std::size_t(n_[1]) * std::size_t(n_[2]));
   for (int k = 0; k < n_[2]; ++k)

@@ -10,11 +10,11 @@
 namespace insula::case_builder {
 
 struct Nearest {
-  bool found = false;             ///< none within the limit: nothing else is set
-  double distance = 0;            ///< negative behind the surface
+  bool found = false;   ///< none within the limit: nothing else is set
+  double distance = 0;  ///< negative behind the surface
   int triangle = -1;
   Vec3 bary = Vec3::Zero();
-  Vec3 outward = Vec3::UnitZ();   ///< unit: the way on which the distance grows
+  Vec3 outward = Vec3::UnitZ();  ///< unit: the way on which the distance grows
 };
 
 class Solid {
@@ -25,7 +25,7 @@ class Solid {
   void move(std::vector<Vec3> vertices);
 
  private:
-  TriMesh mesh_;                ///< mm
+  TriMesh mesh_;  ///< mm
   std::vector<Vec3> metres_;
   std::unique_ptr<CollisionMesh> collision_;
 };

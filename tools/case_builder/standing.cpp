@@ -18,9 +18,9 @@ namespace {
 
 // The shipped exercises: 0.07 and 0.15 N, 0.1 and 0.3 mm, all of it.
 constexpr double min_force = 0.02, max_force = 1.0;  // N
-constexpr double max_depth = 1.5;                      // mm
+constexpr double max_depth = 1.5;                    // mm
 constexpr double min_seen = 0.4;
-constexpr double limit = 12;                            // mm, within which depths are looked for
+constexpr double limit = 12;  // mm, within which depths are looked for
 
 TriMesh in_mm(const std::vector<Vec3>& vertices, const std::vector<std::array<int, 3>>& triangles) {
   TriMesh m{vertices, triangles};
@@ -51,7 +51,8 @@ double deepest(const TriMesh& points, const std::vector<Solid>& solids) {
 bool crossed(const Vec3& a, const Vec3& b, const TriMesh& mesh) {
   const Vec3 d = b - a;
   for (const auto& t : mesh.triangles) {
-    const Vec3 &p = mesh.vertices[std::size_t(t[0])], u = mesh.vertices[std::size_t(t[1])] - p, v = mesh.vertices[std::size_t(t[2])] - p;
+    const Vec3 &p = mesh.vertices[std::size_t(t[0])], u = mesh.vertices[std::size_t(t[1])] - p,
+               v = mesh.vertices[std::size_t(t[2])] - p;
     const Vec3 n = d.cross(v);
     const double det = u.dot(n);
     if (std::abs(det) < 1e-12) continue;
@@ -68,24 +69,31 @@ bool crossed(const Vec3& a, const Vec3& b, const TriMesh& mesh) {
 /// Share of the sac's side towards the eye that is not hidden.
 double seen_of(const ShellBody& artery, const Vec3& eye, const std::vector<TriMesh>& others) {
   constexpr double off = 0.05;  // mm, so that a triangle does not hide itself
-  const TriMesh wall = in_mm([&] {
-    std::vector<Vec3> x;
-    for (int i = 0; i < artery.nodes(); ++i) x.push_back(artery.q().segment<3>(3 * i));
-    return x;
-  }(), artery.model().wall.triangles);
+  const TriMesh wall = in_mm(
+      [&] {
+        std::vector<Vec3> x;
+        for (int i = 0; i < artery.nodes(); ++i) x.push_back(artery.q().segment<3>(3 * i));
+        return x;
+      }(),
+      artery.model().wall.triangles);
   const int sac = artery.region("sac"), bleb = artery.region("bleb");
   double facing = 0, free = 0;
   for (const auto& t : wall.triangles) {
-    const auto of_sac = [&](int i) { return artery.model().vertex_region[std::size_t(i)] == sac || (bleb >= 0 && artery.model().vertex_region[std::size_t(i)] == bleb); };
+    const auto of_sac = [&](int i) {
+      return artery.model().vertex_region[std::size_t(i)] == sac ||
+             (bleb >= 0 && artery.model().vertex_region[std::size_t(i)] == bleb);
+    };
     if (!of_sac(t[0]) || !of_sac(t[1]) || !of_sac(t[2])) continue;
-    const Vec3 &a = wall.vertices[std::size_t(t[0])], &b = wall.vertices[std::size_t(t[1])], &c = wall.vertices[std::size_t(t[2])];
+    const Vec3 &a = wall.vertices[std::size_t(t[0])], &b = wall.vertices[std::size_t(t[1])],
+               &c = wall.vertices[std::size_t(t[2])];
     const Vec3 twice = (b - a).cross(c - a), middle = (a + b + c) / 3;
     const double area = 0.5 * twice.dot((eye - middle).normalized());  // as the eye sees it
     if (area <= 0) continue;
     const Vec3 from = middle + off * twice.normalized();
     if (crossed(from, eye, wall)) continue;
     facing += area;
-    if (std::none_of(others.begin(), others.end(), [&](const TriMesh& m) { return crossed(from, eye, m); })) free += area;
+    if (std::none_of(others.begin(), others.end(), [&](const TriMesh& m) { return crossed(from, eye, m); }))
+      free += area;
   }
   return facing > 0 ? free / facing : 0;
 }
@@ -133,18 +141,28 @@ Standing standing_of(const Simulation& s) {
 }
 
 std::vector<Note> judged(const Standing& standing) {
-  constexpr const char* where = "The arms, the hands and the microscope stand about the fissure of a brain in the MNI frame: register yours to it better, or move the arms in a copy of scenes/parts/retracted_fissure.xml.";
+  constexpr const char* where =
+      "The arms, the hands and the microscope stand about the fissure of a brain in the MNI frame: register yours to "
+      "it better, or move the arms in a copy of scenes/parts/retracted_fissure.xml.";
   std::vector<Note> notes;
-  const auto tell = [&](bool good, std::string text) { notes.push_back({good ? Note::Kind::fact : Note::Kind::problem, std::move(text), good ? "" : where}); };
+  const auto tell = [&](bool good, std::string text) {
+    notes.push_back({good ? Note::Kind::fact : Note::Kind::problem, std::move(text), good ? "" : where});
+  };
   for (const StandingArm& arm : standing.arms) {
     if (arm.lobe.empty()) tell(false, fmt::format("{} holds no lobe.", arm.id));
-    else tell(arm.force >= min_force && arm.force <= max_force, fmt::format("{} holds the {} lobe with {:.2f} N.", arm.id, arm.lobe, arm.force));
+    else
+      tell(arm.force >= min_force && arm.force <= max_force,
+           fmt::format("{} holds the {} lobe with {:.2f} N.", arm.id, arm.lobe, arm.force));
     if (arm.deepest > max_depth) tell(false, fmt::format("{} stands {:.1f} mm deep in tissue.", arm.id, arm.deepest));
   }
   for (std::size_t i = 0; i < standing.arms.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
-      if (!standing.arms[i].lobe.empty() && standing.arms[i].lobe == standing.arms[j].lobe) tell(false, fmt::format("{} and {} both hold the {} lobe.", standing.arms[j].id, standing.arms[i].id, standing.arms[i].lobe));
-  if (standing.has_sac) tell(standing.seen >= min_seen, fmt::format("The microscope sees {:.0f} % of the sac's side towards it.", 100 * standing.seen));
+      if (!standing.arms[i].lobe.empty() && standing.arms[i].lobe == standing.arms[j].lobe)
+        tell(false, fmt::format("{} and {} both hold the {} lobe.", standing.arms[j].id, standing.arms[i].id,
+                                standing.arms[i].lobe));
+  if (standing.has_sac)
+    tell(standing.seen >= min_seen,
+         fmt::format("The microscope sees {:.0f} % of the sac's side towards it.", 100 * standing.seen));
   for (const std::string& id : standing.in_tissue) tell(false, fmt::format("{} starts within tissue or bone.", id));
   return notes;
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/case_builder/surface_input.h"
 
-#include "core/model/geometry/box_tree.h"
 #include "core/model/formats/file_bytes.h"
+#include "core/model/geometry/box_tree.h"
 #include "tools/case_builder/vtp_reader.h"
 
 namespace insula::case_builder {
@@ -12,7 +12,9 @@ bool is_in_metres(const std::filesystem::path& file) {
   return kind == ".gltf" || kind == ".glb";
 }
 
-double unit_mm(const std::filesystem::path& file, const std::optional<double>& given) { return given.value_or(is_in_metres(file) ? 1000 : 1); }
+double unit_mm(const std::filesystem::path& file, const std::optional<double>& given) {
+  return given.value_or(is_in_metres(file) ? 1000 : 1);
+}
 
 TriMesh read_any_surface(const std::filesystem::path& file, double unit) {
   TriMesh m = lower_extension(file) == ".vtp" ? read_vtp(file) : read_surface(file, 1.0);

@@ -20,7 +20,8 @@ std::vector<std::pair<Edge, int>> edges_of(const TriMesh& m) {
   std::vector<std::pair<Edge, int>> out;
   out.reserve(3 * m.triangles.size());
   for (std::size_t t = 0; t < m.triangles.size(); ++t)
-    for (std::size_t k = 0; k < 3; ++k) out.emplace_back(edge_of(m.triangles[t][k], m.triangles[t][(k + 1) % 3]), int(t));
+    for (std::size_t k = 0; k < 3; ++k)
+      out.emplace_back(edge_of(m.triangles[t][k], m.triangles[t][(k + 1) % 3]), int(t));
   std::sort(out.begin(), out.end());
   return out;
 }
@@ -36,7 +37,8 @@ std::vector<std::array<int, 3>> across(const TriMesh& m) {
       for (const auto& [mine, other] : {std::pair(i, i + 1), std::pair(i + 1, i)}) {
         const auto t = std::size_t(edges[mine].second);
         for (std::size_t k = 0; k < 3; ++k)
-          if (edge_of(m.triangles[t][k], m.triangles[t][(k + 1) % 3]) == edges[i].first) out[t][k] = edges[other].second;
+          if (edge_of(m.triangles[t][k], m.triangles[t][(k + 1) % 3]) == edges[i].first)
+            out[t][k] = edges[other].second;
       }
     i = j;
   }
@@ -118,7 +120,8 @@ Pieces pieces_of(const TriMesh& m) {
   }
   std::stable_sort(sizes.begin(), sizes.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
   std::vector<int> rank(sizes.size());
-  for (std::size_t r = 0; r < sizes.size(); ++r) rank[std::size_t(sizes[r].second)] = int(r), out.area.push_back(sizes[r].first);
+  for (std::size_t r = 0; r < sizes.size(); ++r)
+    rank[std::size_t(sizes[r].second)] = int(r), out.area.push_back(sizes[r].first);
   for (const int p : of) out.of.push_back(rank[std::size_t(p)]);
   return out;
 }
@@ -156,7 +159,8 @@ int agree(TriMesh& m) {
     for (const int t : list) ones += turned[std::size_t(t)];
     const int minority = 2 * ones > int(list.size()) ? 0 : 1;
     for (const int t : list)
-      if (turned[std::size_t(t)] == minority) std::swap(m.triangles[std::size_t(t)][1], m.triangles[std::size_t(t)][2]), ++count;
+      if (turned[std::size_t(t)] == minority)
+        std::swap(m.triangles[std::size_t(t)][1], m.triangles[std::size_t(t)][2]), ++count;
   }
   return count;
 }
@@ -208,7 +212,9 @@ std::vector<std::vector<int>> border_loops(const TriMesh& m) {
       v = at->second;
       next.erase(at);
     }
-    if (v != loop.front()) throw InputError("the border of the surface is not made of closed lines; make it anew from a grid with --rebuild 0.2");
+    if (v != loop.front())
+      throw InputError(
+          "the border of the surface is not made of closed lines; make it anew from a grid with --rebuild 0.2");
   }
   return out;
 }
@@ -224,7 +230,9 @@ double signed_volume(const TriMesh& m) {
   if (m.vertices.empty()) return 0;
   const Vec3 o = m.vertices[0];
   for (const auto& t : m.triangles)
-    sum += (m.vertices[std::size_t(t[0])] - o).dot((m.vertices[std::size_t(t[1])] - o).cross(m.vertices[std::size_t(t[2])] - o)) / 6;
+    sum += (m.vertices[std::size_t(t[0])] - o)
+               .dot((m.vertices[std::size_t(t[1])] - o).cross(m.vertices[std::size_t(t[2])] - o)) /
+           6;
   return sum;
 }
 

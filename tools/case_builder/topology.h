@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How triangles hang together: pieces, sides, borders. Each function repairs one kind of fault and says how often it did.
+// How triangles hang together: pieces, sides, borders. Each function repairs one kind of fault and says how often it
+// did.
 #pragma once
 #include <vector>
 
@@ -13,7 +14,7 @@ int weld(TriMesh& mesh, double distance);
 int drop_doubles(TriMesh& mesh);
 
 struct BadEdges {
-  int count = 0;          ///< edges of three or more triangles
+  int count = 0;  ///< edges of three or more triangles
   Vec3 first = Vec3::Zero();
 };
 BadEdges non_manifold_edges(const TriMesh& mesh);
@@ -26,13 +27,14 @@ struct Pieces {
 Pieces pieces_of(const TriMesh& mesh);
 void keep_piece(TriMesh& mesh, const Pieces& pieces, int piece);
 
-/// Turns triangles until neighbours agree, in each piece as most of it lies. Returns how many were turned, or -1 when a piece has only
-/// one side (a Moebius band).
+/// Turns triangles until neighbours agree, in each piece as most of it lies. Returns how many were turned, or -1 when a
+/// piece has only one side (a Moebius band).
 int agree(TriMesh& mesh);
 /// Vertices at which two fans of triangles meet in a point become two. Returns how many.
 int part_fans(TriMesh& mesh);
 
-/// Closed lines of border edges, each in the direction in which triangles fill them outward-facing (against the wall's own).
+/// Closed lines of border edges, each in the direction in which triangles fill them outward-facing (against the wall's
+/// own).
 std::vector<std::vector<int>> border_loops(const TriMesh& mesh);
 
 double area(const TriMesh& mesh);

@@ -43,7 +43,8 @@ std::vector<std::vector<double>> ways(const std::vector<artery::NamedCurve>& lin
       };
       meet(lines[l].from, way.front()), meet(lines[l].to, way.back());
       for (std::size_t k = 1; k < p.size(); ++k) way[k] = std::min(way[k], way[k - 1] + (p[k] - p[k - 1]).norm());
-      for (std::size_t k = p.size() - 1; k > 0; --k) way[k - 1] = std::min(way[k - 1], way[k] + (p[k] - p[k - 1]).norm());
+      for (std::size_t k = p.size() - 1; k > 0; --k)
+        way[k - 1] = std::min(way[k - 1], way[k] + (p[k] - p[k - 1]).norm());
       meet(lines[l].from, way.front()), meet(lines[l].to, way.back());
     }
   return out;
@@ -51,7 +52,8 @@ std::vector<std::vector<double>> ways(const std::vector<artery::NamedCurve>& lin
 
 }  // namespace
 
-artery::Surface trimmed(const artery::Surface& surface, const std::vector<artery::NamedCurve>& all, const Vec3& neck, double keep, std::vector<Note>& notes) {
+artery::Surface trimmed(const artery::Surface& surface, const std::vector<artery::NamedCurve>& all, const Vec3& neck,
+                        double keep, std::vector<Note>& notes) {
   artery::Surface s = surface;
   std::vector<artery::NamedCurve> lines;
   for (const auto& l : all)
@@ -66,14 +68,17 @@ artery::Surface trimmed(const artery::Surface& surface, const std::vector<artery
       if (end < keep + 2 * c.radius[k]) continue;  // its own end is hardly farther
       // A section so near to a fork is not of this line alone.
       const bool forks = (out ? lines[l].from : lines[l].to).starts_with("bifurcation");
-      const double inner = out ? way[l].front() : way[l].back(), free = forks ? past_fork * (out ? c.radius.front() : c.radius.back()) : 0;
+      const double inner = out ? way[l].front() : way[l].back(),
+                   free = forks ? past_fork * (out ? c.radius.front() : c.radius.back()) : 0;
       std::size_t first = k;
       while (first > 0 && first + 1 < c.size() && way[l][first] - inner < free) first = out ? first + 1 : first - 1;
       if (end < way[l][first] + 2 * c.radius[first]) continue;
       bool done = false;
       std::string why;
       for (std::size_t farther = 0; farther < 8 && !done; ++farther) {
-        const std::size_t at = out ? std::min(first + 2 * farther, c.size() - 2) : first >= 2 * farther + 1 ? first - 2 * farther : 1;
+        const std::size_t at = out                        ? std::min(first + 2 * farther, c.size() - 2)
+                               : first >= 2 * farther + 1 ? first - 2 * farther
+                                                          : 1;
         try {
           artery::Surface shorter = s;
           cut_off(shorter, c.points[at], out ? c.tangent(at) : Vec3(-c.tangent(at)), lines[l].name + "_end");
@@ -83,13 +88,17 @@ artery::Surface trimmed(const artery::Surface& surface, const std::vector<artery
           }
           s = std::move(shorter);
           done = true;
-          notes.push_back({Note::Kind::repair, fmt::format("{} was cut off {:.1f} mm from the neck ({:.1f} mm of it left out).", lines[l].name, way[l][at], end - way[l][at]),
+          notes.push_back({Note::Kind::repair,
+                           fmt::format("{} was cut off {:.1f} mm from the neck ({:.1f} mm of it left out).",
+                                       lines[l].name, way[l][at], end - way[l][at]),
                            "The fissure has room for short stretches only; --keep MM keeps more."});
         } catch (const InputError& e) {
           why = e.what();
         }
       }
-      if (!done) notes.push_back({Note::Kind::problem, lines[l].name + " could not be cut off: " + why, "Cut it in the program that made the surface, or with --cut."});
+      if (!done)
+        notes.push_back({Note::Kind::problem, lines[l].name + " could not be cut off: " + why,
+                         "Cut it in the program that made the surface, or with --cut."});
     }
   }
   return s;

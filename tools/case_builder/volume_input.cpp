@@ -12,10 +12,12 @@ namespace insula::case_builder {
 
 bool is_volume_input(const fs::path& input) {
   const std::string kind = lower_extension(input);
-  return fs::is_directory(input) || kind == ".nii" || kind == ".gz" || kind == ".mha" || kind == ".mhd" || kind == ".dcm";
+  return fs::is_directory(input) || kind == ".nii" || kind == ".gz" || kind == ".mha" || kind == ".mhd" ||
+         kind == ".dcm";
 }
 
-TriMesh read_volume_surface(const fs::path& input, const Options& options, std::vector<Note>& notes, std::vector<Plane>& ends) {
+TriMesh read_volume_surface(const fs::path& input, const Options& options, std::vector<Note>& notes,
+                            std::vector<Plane>& ends) {
   if (options.label && options.threshold) fail(input, "--label and --threshold exclude each other");
   if (options.unit_mm) fail(input, "a volume says its unit itself; --unit is for surfaces");
 #ifdef INSULA_WITH_ITK

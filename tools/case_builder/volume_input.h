@@ -7,7 +7,9 @@
 namespace insula::case_builder {
 
 bool is_volume_input(const fs::path& input);
-/// Reads a volume and takes the vessel's surface out of it, mm, mirrored where the options say so; their positions are as_read. `ends`: where it is to be cut straight. Throws InputError.
-TriMesh read_volume_surface(const fs::path& input, const Options& options, std::vector<Note>& notes, std::vector<Plane>& ends);
+/// Reads a volume and takes the vessel's surface out of it, mm, mirrored where the options say so; their positions are
+/// as_read. `ends`: where it is to be cut straight. Throws InputError.
+TriMesh read_volume_surface(const fs::path& input, const Options& options, std::vector<Note>& notes,
+                            std::vector<Plane>& ends);
 
 }  // namespace insula::case_builder

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The only file that includes ITK. Its readers are used one by one, without factories and image templates, which keeps this quick to compile.
+// The only file that includes ITK. Its readers are used one by one, without factories and image templates, which keeps
+// this quick to compile.
 #include "tools/case_builder/volume_reader.h"
 
 #include <itkGDCMImageIO.h>
@@ -25,7 +26,9 @@ namespace {
 namespace fs = std::filesystem;
 constexpr double max_voxels = 1e9;
 
-bool ends_with(const std::string& text, const std::string& end) { return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0; }
+bool ends_with(const std::string& text, const std::string& end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
 
 std::string lower_name(const fs::path& path) {
   std::string name = path.filename().string();
@@ -62,38 +65,49 @@ std::vector<float> voxels(const fs::path& file, itk::ImageIOBase& io) {
 }
 
 /// Index to right-anterior-superior millimetres from what ITK gives, which is left-posterior-superior.
-void place(mesh_tool::NiftiVolume& v, const fs::path& file, const Eigen::Vector3d& origin, const Eigen::Matrix3d& axes) {
-  if (!(std::abs(axes.determinant()) > 1e-12) || !axes.allFinite() || !origin.allFinite()) fail(file, "its axes or spacing span no volume");
+void place(mesh_tool::NiftiVolume& v, const fs::path& file, const Eigen::Vector3d& origin,
+           const Eigen::Matrix3d& axes) {
+  if (!(std::abs(axes.determinant()) > 1e-12) || !axes.allFinite() || !origin.allFinite())
+    fail(file, "its axes or spacing span no volume");
   const Eigen::Vector3d flip(-1, -1, 1);
   const Eigen::Matrix3d m = flip.asDiagonal() * axes, inverse = m.inverse();
   const Eigen::Vector3d o = flip.cwiseProduct(origin), back = -inverse * o;
   for (int r = 0; r < 3; ++r) {
-    for (int c = 0; c < 3; ++c) v.to_world[std::size_t(4 * r + c)] = m(r, c), v.from_world[std::size_t(4 * r + c)] = inverse(r, c);
+    for (int c = 0; c < 3; ++c)
+      v.to_world[std::size_t(4 * r + c)] = m(r, c), v.from_world[std::size_t(4 * r + c)] = inverse(r, c);
     v.to_world[std::size_t(4 * r + 3)] = o[r], v.from_world[std::size_t(4 * r + 3)] = back[r];
   }
 }
 
 void check_size(const fs::path& file, const std::array<int, 3>& n) {
   for (const int k : n)
-    if (k < 2) fail(file, "is no volume: it has " + std::to_string(n[0]) + " x " + std::to_string(n[1]) + " x " + std::to_string(n[2]) + " voxels");
-  if (double(n[0]) * n[1] * n[2] > max_voxels) fail(file, "has more than 1,000 million voxels; cut out the region around the aneurysm first");
+    if (k < 2)
+      fail(file, "is no volume: it has " + std::to_string(n[0]) + " x " + std::to_string(n[1]) + " x " +
+                     std::to_string(n[2]) + " voxels");
+  if (double(n[0]) * n[1] * n[2] > max_voxels)
+    fail(file, "has more than 1,000 million voxels; cut out the region around the aneurysm first");
 }
 
 void read_header(const fs::path& file, itk::ImageIOBase& io) {
   if (!io.CanReadFile(file.c_str())) fail(file, "is not what its name says, or is damaged");
   io.SetFileName(file.string());
   io.ReadImageInformation();
-  if (io.GetNumberOfComponents() != 1) fail(file, "has " + std::to_string(io.GetNumberOfComponents()) + " values a voxel; a volume of labels or of grey values has one");
+  if (io.GetNumberOfComponents() != 1)
+    fail(file, "has " + std::to_string(io.GetNumberOfComponents()) +
+                   " values a voxel; a volume of labels or of grey values has one");
 }
 
 mesh_tool::NiftiVolume read_file(const fs::path& file, itk::ImageIOBase& io) {
   read_header(file, io);
   unsigned dimensions = io.GetNumberOfDimensions();
   while (dimensions > 3 && io.GetDimensions(dimensions - 1) == 1) --dimensions;
-  if (dimensions != 3) fail(file, "has " + std::to_string(dimensions) + " dimensions; a volume has three (cut one time or slice out of it)");
+  if (dimensions != 3)
+    fail(file,
+         "has " + std::to_string(dimensions) + " dimensions; a volume has three (cut one time or slice out of it)");
   mesh_tool::NiftiVolume v;
   itk::ImageIORegion region(io.GetNumberOfDimensions());
-  for (unsigned a = 0; a < io.GetNumberOfDimensions(); ++a) region.SetSize(a, io.GetDimensions(a)), region.SetIndex(a, 0);
+  for (unsigned a = 0; a < io.GetNumberOfDimensions(); ++a)
+    region.SetSize(a, io.GetDimensions(a)), region.SetIndex(a, 0);
   for (unsigned a = 0; a < 3; ++a) v.size[a] = int(std::min<std::size_t>(io.GetDimensions(a), 1'000'000));
   check_size(file, v.size);
   io.SetIORegion(region);
@@ -122,7 +136,8 @@ mesh_tool::NiftiVolume read_series(const fs::path& folder) {
   if (series.empty()) fail(folder, "holds no DICOM images");
   if (series.size() > 1) {
     std::string list;
-    for (const std::string& s : series) list += "\n  " + std::to_string(names->GetFileNames(s).size()) + " images in " + in_quotes(s);
+    for (const std::string& s : series)
+      list += "\n  " + std::to_string(names->GetFileNames(s).size()) + " images in " + in_quotes(s);
     fail(folder, "holds " + std::to_string(series.size()) + " DICOM series; put one into a folder of its own:" + list);
   }
   const std::vector<std::string> files = names->GetFileNames(series[0]);
@@ -133,13 +148,15 @@ mesh_tool::NiftiVolume read_series(const fs::path& folder) {
     auto io = itk::GDCMImageIO::New();
     read_header(files[k], *io);
     const unsigned depth = io->GetNumberOfDimensions() > 2 ? unsigned(io->GetDimensions(2)) : 1;
-    if (depth > 1 && files.size() == 1) return read_file(files[0], *itk::GDCMImageIO::New());  // one file that holds all slices
+    if (depth > 1 && files.size() == 1)
+      return read_file(files[0], *itk::GDCMImageIO::New());  // one file that holds all slices
     if (depth > 1) fail(files[k], "holds several slices beside other files of its series");
     const std::array<int, 3> size{int(io->GetDimensions(0)), int(io->GetDimensions(1)), int(files.size())};
     if (k == 0) v.size = size, check_size(folder, size);
     if (size != v.size) fail(files[k], "has another size than the images before it");
     itk::ImageIORegion region(io->GetNumberOfDimensions());
-    for (unsigned a = 0; a < io->GetNumberOfDimensions(); ++a) region.SetSize(a, io->GetDimensions(a)), region.SetIndex(a, 0);
+    for (unsigned a = 0; a < io->GetNumberOfDimensions(); ++a)
+      region.SetSize(a, io->GetDimensions(a)), region.SetIndex(a, 0);
     io->SetIORegion(region);
     const std::vector<float> slice = voxels(files[k], *io);
     v.value.insert(v.value.end(), slice.begin(), slice.begin() + std::ptrdiff_t(size[0]) * size[1]);
@@ -150,11 +167,13 @@ mesh_tool::NiftiVolume read_series(const fs::path& folder) {
   for (std::size_t k = 1; k < origins.size(); ++k)
     for (std::size_t l = 0; l < k; ++l)  // GDCM leaves them in any order then
       if ((origins[k] - origins[l]).norm() < 1e-4)
-        fail(folder, "two of its slices lie at the same place (" + fs::path(files[l]).filename().string() + " and " + fs::path(files[k]).filename().string() + "): leave one out");
+        fail(folder, "two of its slices lie at the same place (" + fs::path(files[l]).filename().string() + " and " +
+                         fs::path(files[k]).filename().string() + "): leave one out");
   const Eigen::Vector3d between = (origins.back() - origins.front()) / double(origins.size() - 1);
   for (std::size_t k = 1; k < origins.size(); ++k)
     if ((origins[k] - origins[k - 1] - between).norm() > 0.1 * between.norm() + 1e-3)
-      fail(folder, "its slices do not stand at even distances (between " + fs::path(files[k - 1]).filename().string() + " and " + fs::path(files[k]).filename().string() + "): is one missing?");
+      fail(folder, "its slices do not stand at even distances (between " + fs::path(files[k - 1]).filename().string() +
+                       " and " + fs::path(files[k]).filename().string() + "): is one missing?");
   axes.col(2) = between;
   place(v, folder, origins.front(), axes);
   return v;
@@ -180,7 +199,9 @@ void check_length(const fs::path& file) {
   if (!sound) fail(file, "ends early, or its compression is damaged");
   if (length < 352) fail(file, "ends early: it is shorter than a NIfTI header");
   const bool swap = head[40] == 0 && head[41] != 0;  // the number of dimensions, 1 to 7
-  const auto whole = [&](std::size_t at) { return std::int16_t(swap ? head[at] << 8 | head[at + 1] : head[at + 1] << 8 | head[at]); };
+  const auto whole = [&](std::size_t at) {
+    return std::int16_t(swap ? head[at] << 8 | head[at + 1] : head[at + 1] << 8 | head[at]);
+  };
   std::uint32_t bits = 0;
   for (std::size_t k = 0; k < 4; ++k) bits |= std::uint32_t(head[108 + (swap ? 3 - k : k)]) << (8 * k);
   float offset;
@@ -188,7 +209,8 @@ void check_length(const fs::path& file) {
   double wanted = whole(72) / 8.0;
   for (int d = 1; d <= whole(40) && d < 8; ++d) wanted *= std::max<int>(1, whole(std::size_t(40 + 2 * d)));
   if (std::memcmp(head + 344, "n+1", 3) == 0 && length < double(offset) + wanted)
-    fail(file, "ends early: its header announces " + std::to_string(std::int64_t(wanted)) + " bytes of voxels, and " + std::to_string(std::int64_t(length - double(offset))) + " are there");
+    fail(file, "ends early: its header announces " + std::to_string(std::int64_t(wanted)) + " bytes of voxels, and " +
+                   std::to_string(std::int64_t(length - double(offset))) + " are there");
 }
 
 /// And so it does with MetaImage. `bytes`: of the voxels, uncompressed.
@@ -206,12 +228,16 @@ void check_meta_length(const fs::path& file, double bytes) {
     if (key == "HeaderSize") parse_double(value, skipped);
     if (key == "ElementDataFile") data = value;
   }
-  if (data.empty() || data == "LIST" || data.find('%') != std::string::npos || (compressed && wanted == bytes)) return;  // ITK reads those file by file
+  if (data.empty() || data == "LIST" || data.find('%') != std::string::npos || (compressed && wanted == bytes))
+    return;  // ITK reads those file by file
   std::error_code error;
   const fs::path holds = data == "LOCAL" || data == "Local" || data == "local" ? file : file.parent_path() / data;
-  const double there = double(fs::file_size(holds, error)) - (holds == file ? double(in.tellg()) : std::max(0.0, skipped));
+  const double there =
+      double(fs::file_size(holds, error)) - (holds == file ? double(in.tellg()) : std::max(0.0, skipped));
   if (error) fail(file, "its data file " + in_quotes(data) + " is not there");
-  if (there < wanted) fail(holds, "ends early: " + std::to_string(std::int64_t(wanted)) + " bytes of voxels are announced, and " + std::to_string(std::int64_t(there)) + " are there");
+  if (there < wanted)
+    fail(holds, "ends early: " + std::to_string(std::int64_t(wanted)) + " bytes of voxels are announced, and " +
+                    std::to_string(std::int64_t(there)) + " are there");
 }
 
 }  // namespace

@@ -7,8 +7,9 @@
 
 namespace insula::case_builder {
 
-/// The volume in right-anterior-superior millimetres. Throws InputError: unreadable, truncated, not three-dimensional, more than one
-/// value a voxel, spacing that is none, slices that do not stand at even distances, more than 1,000 million voxels.
+/// The volume in right-anterior-superior millimetres. Throws InputError: unreadable, truncated, not three-dimensional,
+/// more than one value a voxel, spacing that is none, slices that do not stand at even distances, more than 1,000
+/// million voxels.
 mesh_tool::NiftiVolume read_volume(const std::filesystem::path& path);
 
 }  // namespace insula::case_builder

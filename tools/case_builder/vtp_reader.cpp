@@ -6,7 +6,8 @@
 namespace insula::case_builder {
 namespace {
 
-void add_cells(const std::filesystem::path& file, const VtkXmlFile& in, const VtkXmlFile::Section& cells, bool strip, std::int64_t points, int first, TriMesh& mesh) {
+void add_cells(const std::filesystem::path& file, const VtkXmlFile& in, const VtkXmlFile::Section& cells, bool strip,
+               std::int64_t points, int first, TriMesh& mesh) {
   if (cells.count == 0) return;
   const auto offsets = in.whole(cells, "offsets", cells.count);
   const auto nodes = in.whole(cells, "connectivity", offsets.back());
@@ -15,7 +16,8 @@ void add_cells(const std::filesystem::path& file, const VtkXmlFile& in, const Vt
     if (end < begin || std::uint64_t(end) > nodes.size()) fail(file, "a polygon has a malformed list of points");
     const auto at = [&](std::int64_t k) {
       const std::int64_t i = nodes[std::size_t(k)];
-      if (i < 0 || i >= points) fail(file, "a polygon names point " + std::to_string(i) + " of " + std::to_string(points));
+      if (i < 0 || i >= points)
+        fail(file, "a polygon names point " + std::to_string(i) + " of " + std::to_string(points));
       return first + int(i);
     };
     for (std::int64_t k = begin + 2; k < end; ++k) {
@@ -31,7 +33,9 @@ void add_cells(const std::filesystem::path& file, const VtkXmlFile& in, const Vt
 }  // namespace
 
 TriMesh read_vtp(const std::filesystem::path& file) {
-  static const VtkXmlWanted wanted{"PolyData", {{"Polys", "NumberOfPolys", false, {"connectivity", "offsets"}}, {"Strips", "NumberOfStrips", false, {"connectivity", "offsets"}}}};
+  static const VtkXmlWanted wanted{"PolyData",
+                                   {{"Polys", "NumberOfPolys", false, {"connectivity", "offsets"}},
+                                    {"Strips", "NumberOfStrips", false, {"connectivity", "offsets"}}}};
   const std::string bytes = read_file_bytes(file);
   const VtkXmlFile in(file, bytes, wanted);
   TriMesh mesh;

@@ -7,8 +7,9 @@
 
 namespace insula::case_builder {
 
-/// Polygons are cut into triangles, strips too; lines and points are left out. Coordinates as they stand. Throws InputError:
-/// truncated, malformed, compressed otherwise than by zlib, an index out of range, not finite, no triangles.
+/// Polygons are cut into triangles, strips too; lines and points are left out. Coordinates as they stand. Throws
+/// InputError: truncated, malformed, compressed otherwise than by zlib, an index out of range, not finite, no
+/// triangles.
 TriMesh read_vtp(const std::filesystem::path& file);
 
 }  // namespace insula::case_builder

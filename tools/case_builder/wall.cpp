@@ -46,7 +46,10 @@ artery::NeckPlane through(const std::array<double, 6>& two, const Vec3& normal) 
   const Vec3 a(two[0], two[1], two[2]), b(two[3], two[4], two[5]);
   if ((b - a).norm() < 0.3) throw InputError("--neck-points: the two points are closer than 0.3 mm");
   const Vec3 along = (b - a).normalized(), n = normal - normal.dot(along) * along;
-  if (n.norm() < 0.2) throw InputError("--neck-points: the two points lie above one another as seen from the dome; take two on opposite sides of the neck");
+  if (n.norm() < 0.2)
+    throw InputError(
+        "--neck-points: the two points lie above one another as seen from the dome; take two on opposite sides of the "
+        "neck");
   return {0.5 * (a + b), n.normalized()};
 }
 
@@ -62,10 +65,16 @@ Vessel made(const artery::Surface& s, const artery::ImportOptions& options) {
 
 void check_sound(const Vessel& v) {
   const artery::Quality q = artery::quality(v.wall.mesh);
-  if (!q.closed || q.components != 1) throw InputError("the wall that was made is not closed; make the surface anew from a grid with --rebuild 0.2");
-  if (q.euler != 2) throw InputError("the wall has a hole through it (branches that have grown together); part them in the program that made the surface");
+  if (!q.closed || q.components != 1)
+    throw InputError("the wall that was made is not closed; make the surface anew from a grid with --rebuild 0.2");
+  if (q.euler != 2)
+    throw InputError(
+        "the wall has a hole through it (branches that have grown together); part them in the program that made the "
+        "surface");
   if (q.self_intersecting)
-    throw InputError("the wall runs through itself: parts of the vessel are closer than its triangles are long. Give it more vertices (--vertices 2500), or make the surface anew from a grid with --rebuild 0.2");
+    throw InputError(
+        "the wall runs through itself: parts of the vessel are closer than its triangles are long. Give it more "
+        "vertices (--vertices 2500), or make the surface anew from a grid with --rebuild 0.2");
 }
 
 }  // namespace
@@ -79,12 +88,15 @@ Vessel make_wall(const artery::Surface& surface, const Options& o, std::vector<N
   progress.step("centrelines and proposed neck");
   Vessel v = made(s, options);
   if (o.neck_points) {
-    if (!v.neck) throw InputError("--neck-points turns the proposed neck, and none was found; give the whole plane with --neck");
+    if (!v.neck)
+      throw InputError("--neck-points turns the proposed neck, and none was found; give the whole plane with --neck");
     options.neck = through(*o.neck_points, v.neck->normal);
     v = made(s, options);
   }
   if (!v.neck)
-    throw InputError("no sac was found: nothing of the wall bulges out of the vessels by half of their radius. If there is an aneurysm, give its neck: --neck X Y Z NX NY NZ (a point in the neck and the direction to the dome)");
+    throw InputError(
+        "no sac was found: nothing of the wall bulges out of the vessels by half of their radius. If there is an "
+        "aneurysm, give its neck: --neck X Y Z NX NY NZ (a point in the neck and the direction to the dome)");
   const bool given = options.neck.has_value();
   if (o.keep > 0) {
     progress.step("cutting the ends");
@@ -99,16 +111,24 @@ Vessel make_wall(const artery::Surface& surface, const Options& o, std::vector<N
       v = made(s, options);
     }
   }
-  if (v.wall.caps.size() < 2) throw InputError("only one opening is left after cutting the ends; keep more of the vessel with --keep");
+  if (v.wall.caps.size() < 2)
+    throw InputError("only one opening is left after cutting the ends; keep more of the vessel with --keep");
   progress.step("checks");
   if (o.bleb > 0) {
     artery::add_bleb(v, o.bleb);
     artery::measure(v);
-    notes.push_back({Note::Kind::fact, fmt::format("The weak spot is the tip of the dome, {:g} mm around: a proposal, change it with --bleb.", o.bleb), ""});
+    notes.push_back(
+        {Note::Kind::fact,
+         fmt::format("The weak spot is the tip of the dome, {:g} mm around: a proposal, change it with --bleb.",
+                     o.bleb),
+         ""});
   }
   check_sound(v);
-  notes.push_back({Note::Kind::fact, given ? "The neck is where it was asked for." : "Neck and sac are a proposal: the narrowest section near the border of what bulges out of the vessels.",
-                   given ? "" : "Look at the pictures; move the neck with --neck X Y Z NX NY NZ or --neck-points."});
+  notes.push_back(
+      {Note::Kind::fact,
+       given ? "The neck is where it was asked for."
+             : "Neck and sac are a proposal: the narrowest section near the border of what bulges out of the vessels.",
+       given ? "" : "Look at the pictures; move the neck with --neck X Y Z NX NY NZ or --neck-points."});
   return v;
 }
 
@@ -118,7 +138,8 @@ std::vector<WallOf> walls_of(const Vessel& v) {
   for (const std::string& r : v.regions)
     if (r != "neck" && r != "sac" && r != "bleb") vessels += (vessels.empty() ? "" : " ") + r;
   out.push_back({vessels, 0.3, 1.5});
-  // A thin sphere changes its volume by 3 (1 - nu) dP r / (2 E t): the same share for all sizes asks for E in proportion to r.
+  // A thin sphere changes its volume by 3 (1 - nu) dP r / (2 E t): the same share for all sizes asks for E in
+  // proportion to r.
   const auto at = v.dimensions.find("sac_width");
   const double radius = at == v.dimensions.end() ? 2.8 : 0.5 * std::max(at->second, v.neck ? v.neck->diameter : 0.0);
   const double young = std::clamp(std::round(100 * 1.05 * radius / 2.8) / 100, 0.6, 4.0);
@@ -142,7 +163,8 @@ void run_wall(const CaseFolder& folder, const Options& o, Progress& progress) {
   for (const auto& cap : v.wall.caps) openings.push_back({{"name", cap.name}, {"calibre_mm", rounded(2 * cap.radius)}});
   json["openings"] = openings;
   json["walls"] = Json::array();
-  for (const WallOf& w : walls_of(v)) json["walls"].push_back({{"regions", w.region}, {"thickness_mm", w.thickness_mm}, {"young_MPa", w.young_mpa}});
+  for (const WallOf& w : walls_of(v))
+    json["walls"].push_back({{"regions", w.region}, {"thickness_mm", w.thickness_mm}, {"young_MPa", w.young_mpa}});
   json["notes"] = to_json(notes);
   write_json(folder.wall() / "notes.json", json);
   progress.finish();
@@ -161,11 +183,13 @@ Vessel read_wall(const fs::path& folder) {
     for (const int t : cap.triangles) {
       v.wall.patch[std::size_t(t)] = int(v.wall.caps.size());
       const auto& tri = v.wall.mesh.triangles[std::size_t(t)];
-      const Vec3 &a = v.wall.mesh.vertices[std::size_t(tri[0])], &b = v.wall.mesh.vertices[std::size_t(tri[1])], &c = v.wall.mesh.vertices[std::size_t(tri[2])];
+      const Vec3 &a = v.wall.mesh.vertices[std::size_t(tri[0])], &b = v.wall.mesh.vertices[std::size_t(tri[1])],
+                 &c = v.wall.mesh.vertices[std::size_t(tri[2])];
       const Vec3 n = (b - a).cross(c - a);
       twice += n, whole += n.norm(), plane.centre += n.norm() * (a + b + c) / 3;
     }
-    plane.centre /= whole, plane.normal = twice.normalized(), plane.radius = std::sqrt(0.5 * twice.norm() / 3.14159265358979);
+    plane.centre /= whole, plane.normal = twice.normalized(),
+                           plane.radius = std::sqrt(0.5 * twice.norm() / 3.14159265358979);
     v.wall.caps.push_back(plane);
   }
   v.picture = read_ply(folder / "picture.ply");

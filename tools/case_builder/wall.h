@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Stage 2: the mended surface becomes a wall for simulation: even triangles, centrelines, regions, neck and sac. Still in its own frame.
+// Stage 2: the mended surface becomes a wall for simulation: even triangles, centrelines, regions, neck and sac. Still
+// in its own frame.
 #pragma once
 #include "tools/artery/vessel.h"
 #include "tools/case_builder/case_folder.h"
@@ -13,10 +14,13 @@ struct WallOf {
   double thickness_mm, young_mpa;
 };
 
-/// A vessel cut off `keep` mm along its centrelines from the neck (0: not at all), made of about `vertices` vertices. Throws InputError.
-artery::Vessel make_wall(const artery::Surface& surface, const Options& options, std::vector<Note>& notes, Progress& progress);
+/// A vessel cut off `keep` mm along its centrelines from the neck (0: not at all), made of about `vertices` vertices.
+/// Throws InputError.
+artery::Vessel make_wall(const artery::Surface& surface, const Options& options, std::vector<Note>& notes,
+                         Progress& progress);
 
-/// Thickness as of real walls; the sac as stiff as lets it change its volume by some 6 % over a beat, whatever its size.
+/// Thickness as of real walls; the sac as stiff as lets it change its volume by some 6 % over a beat, whatever its
+/// size.
 std::vector<WallOf> walls_of(const artery::Vessel& vessel);
 
 /// The stage: reads intake/, writes wall/.

@@ -32,8 +32,8 @@ void relax(std::vector<Vec3>& line) {
 
 }  // namespace
 
-Cleft describe_cleft(const PartFields& fields, std::size_t a, std::size_t b, const FieldOptions& options, const Vec3& view,
-                     double width, double step, double rim) {
+Cleft describe_cleft(const PartFields& fields, std::size_t a, std::size_t b, const FieldOptions& options,
+                     const Vec3& view, double width, double step, double rim) {
   const Grid& grid = fields.grid;
   const std::size_t n = grid.count();
   Mask in_a(n), in_b(n);
@@ -73,7 +73,8 @@ Cleft describe_cleft(const PartFields& fields, std::size_t a, std::size_t b, con
   for (auto& [key, points] : bins) {
     if (points.size() < 20) continue;
     // Means over the highest and lowest twentieth, not single points: less noise.
-    std::stable_sort(points.begin(), points.end(), [&](const Vec3& p, const Vec3& q) { return dot(p, up) > dot(q, up); });
+    std::stable_sort(points.begin(), points.end(),
+                     [&](const Vec3& p, const Vec3& q) { return dot(p, up) > dot(q, up); });
     const std::size_t share = std::max<std::size_t>(3, points.size() / 20);
     Vec3 high{}, low{};
     for (std::size_t i = 0; i < share; ++i) high = high + points[i], low = low + points[points.size() - 1 - i];
@@ -114,14 +115,15 @@ void write_cleft_json(const std::string& path, const Cleft& cleft, const std::st
     std::snprintf(number, sizeof number, "%.3f", v);
     return std::string(number);
   };
-  out << "{\n  \"unit\": \"mm\",\n  \"between\": [\"" << name_a << "\", \"" << name_b << "\"],\n  \"centre\": " << json(cleft.centre)
-      << ",\n  \"outward_normal\": " << json(cleft.outward) << ",\n  \"length\": " << fixed(cleft.length)
-      << ",\n  \"region\": {\"centre\": " << json(options.centre) << ", \"radius\": " << fixed(options.radius)
-      << "},\n  \"stations\": [\n";
+  out << "{\n  \"unit\": \"mm\",\n  \"between\": [\"" << name_a << "\", \"" << name_b
+      << "\"],\n  \"centre\": " << json(cleft.centre) << ",\n  \"outward_normal\": " << json(cleft.outward)
+      << ",\n  \"length\": " << fixed(cleft.length) << ",\n  \"region\": {\"centre\": " << json(options.centre)
+      << ", \"radius\": " << fixed(options.radius) << "},\n  \"stations\": [\n";
   for (std::size_t i = 0; i < cleft.stations.size(); ++i) {
     const CleftStation& s = cleft.stations[i];
-    out << "    {\"superficial\": " << json(s.superficial) << ", \"deep\": " << json(s.deep) << ", \"inward\": " << json(s.inward)
-        << ", \"depth\": " << fixed(s.depth) << (i + 1 < cleft.stations.size() ? "},\n" : "}\n");
+    out << "    {\"superficial\": " << json(s.superficial) << ", \"deep\": " << json(s.deep)
+        << ", \"inward\": " << json(s.inward) << ", \"depth\": " << fixed(s.depth)
+        << (i + 1 < cleft.stations.size() ? "},\n" : "}\n");
   }
   out << "  ]\n}\n";
   out.flush();

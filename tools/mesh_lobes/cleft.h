@@ -23,11 +23,11 @@ struct Cleft {
   double length = 0;                   // of the polyline, mm
 };
 
-// `view` points from the field towards the observer. Stations lie `step` mm apart along the cleft's long axis; a station
-// is the point of the mid-surface (equally far from both parts, at most `width` mm between them) nearest the observer,
-// smoothed along the line. Points nearer than `rim` mm to the region's border are left out.
-Cleft describe_cleft(const PartFields& fields, std::size_t a, std::size_t b, const FieldOptions& options, const Vec3& view,
-                     double width = 6, double step = 4, double rim = 5);
+// `view` points from the field towards the observer. Stations lie `step` mm apart along the cleft's long axis; a
+// station is the point of the mid-surface (equally far from both parts, at most `width` mm between them) nearest the
+// observer, smoothed along the line. Points nearer than `rim` mm to the region's border are left out.
+Cleft describe_cleft(const PartFields& fields, std::size_t a, std::size_t b, const FieldOptions& options,
+                     const Vec3& view, double width = 6, double step = 4, double rim = 5);
 
 void write_cleft_json(const std::string& path, const Cleft& cleft, const std::string& name_a, const std::string& name_b,
                       const FieldOptions& options);

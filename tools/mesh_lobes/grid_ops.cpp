@@ -21,7 +21,8 @@ void envelope(std::vector<double>& f, std::vector<double>& d, std::vector<int>& 
     double s = -far_away;
     while (k >= 0) {
       const int p = v[static_cast<std::size_t>(k)];
-      s = ((f[static_cast<std::size_t>(q)] + double(q) * q) - (f[static_cast<std::size_t>(p)] + double(p) * p)) / (2.0 * (q - p));
+      s = ((f[static_cast<std::size_t>(q)] + double(q) * q) - (f[static_cast<std::size_t>(p)] + double(p) * p)) /
+          (2.0 * (q - p));
       if (s > z[static_cast<std::size_t>(k)]) break;
       --k;
     }
@@ -76,9 +77,11 @@ Field distance_to(const Grid& grid, const Mask& set) {
     std::vector<double> f(n), d(n), z(n + 1);
     std::vector<int> v(n);
     for_lines(grid, axis, [&](std::size_t first, std::size_t stride, int length) {
-      for (int i = 0; i < length; ++i) f[static_cast<std::size_t>(i)] = squared[first + static_cast<std::size_t>(i) * stride];
+      for (int i = 0; i < length; ++i)
+        f[static_cast<std::size_t>(i)] = squared[first + static_cast<std::size_t>(i) * stride];
       envelope(f, d, v, z);
-      for (int i = 0; i < length; ++i) squared[first + static_cast<std::size_t>(i) * stride] = d[static_cast<std::size_t>(i)];
+      for (int i = 0; i < length; ++i)
+        squared[first + static_cast<std::size_t>(i) * stride] = d[static_cast<std::size_t>(i)];
     });
   }
   Field out(grid.count());
@@ -184,8 +187,8 @@ Field closing_level(const Grid& grid, const Mask& mask, double radius) {
   const Field eroded = distance_to(grid, outside);
   for (std::size_t i = 0; i < level.size(); ++i)
     level[i] = outside[i] ? std::min(level[i], static_cast<float>(-radius))
-                          : std::max(level[i], static_cast<float>(std::min(1e3, static_cast<double>(eroded[i])) - radius -
-                                                                  grid.spacing / 2));
+                          : std::max(level[i], static_cast<float>(std::min(1e3, static_cast<double>(eroded[i])) -
+                                                                  radius - grid.spacing / 2));
   return level;
 }
 
@@ -204,7 +207,8 @@ std::vector<unsigned char> grow(const Grid& grid, const std::vector<unsigned cha
     const auto [d, node] = queue.top();
     queue.pop();
     if (d > distance[node]) continue;
-    const int i = static_cast<int>(node) % sx, j = (static_cast<int>(node) / sx) % sy, k = static_cast<int>(node) / (sx * sy);
+    const int i = static_cast<int>(node) % sx, j = (static_cast<int>(node) / sx) % sy,
+              k = static_cast<int>(node) / (sx * sy);
     for (int dk = -1; dk <= 1; ++dk)
       for (int dj = -1; dj <= 1; ++dj)
         for (int di = -1; di <= 1; ++di) {
@@ -212,7 +216,8 @@ std::vector<unsigned char> grow(const Grid& grid, const std::vector<unsigned cha
           const int a = i + di, b = j + dj, c = k + dk;
           if (!length || a < 0 || b < 0 || c < 0 || a >= sx || b >= sy || c >= grid.size[2]) continue;
           const std::size_t to = grid.index(a, b, c);
-          const float step = static_cast<float>(grid.spacing * std::sqrt(double(length))) * 0.5f * (cost[node] + cost[to]);
+          const float step =
+              static_cast<float>(grid.spacing * std::sqrt(double(length))) * 0.5f * (cost[node] + cost[to]);
           if (d + step < distance[to]) {
             distance[to] = d + step;
             owner[to] = owner[node];

@@ -7,7 +7,8 @@
 namespace insula::mesh_tool {
 
 // Euclidean distance (mm) of each node to the nearest node of the set; 1e6 when the set is empty.
-// Separable lower envelope of parabolas: Felzenszwalb and Huttenlocher, "Distance transforms of sampled functions", 2012.
+// Separable lower envelope of parabolas: Felzenszwalb and Huttenlocher, "Distance transforms of sampled functions",
+// 2012.
 Field distance_to(const Grid& grid, const Mask& set);
 
 // Signed distance (mm): positive inside the mask, zero half-way between an inside and an outside node.

@@ -26,8 +26,11 @@ std::vector<int> label_list(const std::string& text) {
     const std::size_t comma = std::min(text.find(',', at), text.size());
     const std::string item = text.substr(at, comma - at);
     const std::size_t dash = item.find('-');
-    const int first = label(std::string_view(item).substr(0, dash)), last = dash == std::string::npos ? first : label(std::string_view(item).substr(dash + 1));
-    if (first == 0 || last < first) throw std::runtime_error("\"" + item.substr(0, 40) + "\" is neither a label nor a range of labels; write a list like 2,4,10-16");
+    const int first = label(std::string_view(item).substr(0, dash)),
+              last = dash == std::string::npos ? first : label(std::string_view(item).substr(dash + 1));
+    if (first == 0 || last < first)
+      throw std::runtime_error("\"" + item.substr(0, 40) +
+                               "\" is neither a label nor a range of labels; write a list like 2,4,10-16");
     for (int k = first; k <= last; ++k) out.push_back(k);
     at = comma + 1;
   }

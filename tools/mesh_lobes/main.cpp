@@ -62,10 +62,12 @@ std::vector<double> numbers(const std::string& text, std::size_t count, const st
     } catch (const std::exception&) {
       used = 0;
     }
-    if (!used || used != item.size() || !std::isfinite(value)) throw std::runtime_error(option + ": '" + item + "' is not a number");
+    if (!used || used != item.size() || !std::isfinite(value))
+      throw std::runtime_error(option + ": '" + item + "' is not a number");
     out.push_back(value);
   }
-  if (out.size() != count) throw std::runtime_error(option + " takes " + std::to_string(count) + " numbers separated by commas");
+  if (out.size() != count)
+    throw std::runtime_error(option + " takes " + std::to_string(count) + " numbers separated by commas");
   return out;
 }
 
@@ -88,7 +90,8 @@ struct Job {
 
 std::pair<std::string, std::string> split(const std::string& text, const std::string& option) {
   const auto at = text.find('=');
-  if (at == std::string::npos || at == 0 || at + 1 == text.size()) throw std::runtime_error(option + " takes NAME=VALUE");
+  if (at == std::string::npos || at == 0 || at + 1 == text.size())
+    throw std::runtime_error(option + " takes NAME=VALUE");
   return {text.substr(0, at), text.substr(at + 1)};
 }
 
@@ -165,7 +168,8 @@ Job parse(int argc, char** argv) {
       job.view = {v[0], v[1], v[2]};
     } else throw std::runtime_error(option + ": unknown option (see --help)");
   }
-  if (job.labels.empty() || job.parts.empty()) throw std::runtime_error("--labels and at least one --part are needed (see --help)");
+  if (job.labels.empty() || job.parts.empty())
+    throw std::runtime_error("--labels and at least one --part are needed (see --help)");
   if (!job.intensity.empty() && !has_tissue) throw std::runtime_error("--intensity needs --tissue");
   if (!(job.fields.spacing > 0) || !(job.fields.tissue_slope > 0) || !(job.edge_error > 0))
     throw std::runtime_error("--spacing, --tissue-slope and --edge-error must be positive");
@@ -177,24 +181,29 @@ Job parse(int argc, char** argv) {
 }
 
 // The size field of a part, with the part's own sizes where they are given.
-SizeField sizes(const Job& job, const PartFields& fields, std::size_t part, Sizes size, const std::map<std::string, Sizes>& own) {
+SizeField sizes(const Job& job, const PartFields& fields, std::size_t part, Sizes size,
+                const std::map<std::string, Sizes>& own) {
   const auto at = own.find(job.parts[part].name);
   return growing(fields, part, at == own.end() ? size : at->second, {job.focus, job.focus_point, job.focus_radius});
 }
 
 void make_tets(const Job& job, const PartFields& fields) {
   std::vector<SizeField> cell, error;
-  for (std::size_t a = 0; a < job.parts.size(); ++a) cell.push_back(sizes(job, fields, a, job.cell, job.cell_of)), error.push_back(sizes(job, fields, a, job.cell_error, {}));
+  for (std::size_t a = 0; a < job.parts.size(); ++a)
+    cell.push_back(sizes(job, fields, a, job.cell, job.cell_of)),
+        error.push_back(sizes(job, fields, a, job.cell_error, {}));
   const auto [meshes, shape] = mesh_parts(fields, cell, error, job.fields.coarse_gap);
   std::vector<TriangleMesh> borders;
   for (const TetMesh& mesh : meshes) borders.push_back(boundary_mesh(mesh));
   for (std::size_t a = 0; a < meshes.size(); ++a)
     for (std::size_t b = a + 1; b < meshes.size(); ++b) {
       const Clearance c = clearance(borders[a], borders[b]);
-      std::printf("tetrahedra %s - %s: gap %.3f mm%s\n", job.parts[a].name.c_str(), job.parts[b].name.c_str(), c.distance,
-                  c.intersect ? ", INTERSECT" : "");
+      std::printf("tetrahedra %s - %s: gap %.3f mm%s\n", job.parts[a].name.c_str(), job.parts[b].name.c_str(),
+                  c.distance, c.intersect ? ", INTERSECT" : "");
       std::fflush(stdout);
-      if (c.intersect) throw std::runtime_error("parts intersect; take smaller cells, a smaller --cell-error or a greater --coarse-gap");
+      if (c.intersect)
+        throw std::runtime_error(
+            "parts intersect; take smaller cells, a smaller --cell-error or a greater --coarse-gap");
     }
   for (const auto& [name, target] : job.tets) {
     std::string file = target;
@@ -209,11 +218,12 @@ void make_tets(const Job& job, const PartFields& fields) {
     const TetMesh& mesh = meshes[job.part(name)];
     write_msh(file, mesh, format);
     const DihedralRange angles = dihedral_range(mesh);
-    std::printf("%s: %zu nodes, %zu tetrahedra, dihedral %.2f to %.2f deg, volume %.0f mm3, boundary %s, %s\n", name.c_str(),
-                mesh.points.size(), mesh.tets.size(), angles.min_deg, angles.max_deg, volume(mesh),
+    std::printf("%s: %zu nodes, %zu tetrahedra, dihedral %.2f to %.2f deg, volume %.0f mm3, boundary %s, %s\n",
+                name.c_str(), mesh.points.size(), mesh.tets.size(), angles.min_deg, angles.max_deg, volume(mesh),
                 is_closed(boundary_triangles(mesh)) ? "closed" : "NOT A CLOSED MANIFOLD", file.c_str());
     const Embedding e = embedding({shape[job.part(name)], {}}, mesh);
-    std::printf("  fine shape outside the tetrahedra: %.1f %% of its border, at most %.2f mm\n", 100 * e.share_outside, e.furthest);
+    std::printf("  fine shape outside the tetrahedra: %.1f %% of its border, at most %.2f mm\n", 100 * e.share_outside,
+                e.furthest);
   }
 }
 
@@ -222,23 +232,26 @@ void make_surfaces(const Job& job, const PartFields& fields) {
   std::vector<std::string> names;
   for (const auto& [name, file] : job.surfaces) {
     const std::size_t part = job.part(name);
-    meshes.push_back(mesh_surface(fields.grid, fields.fine[part], sizes(job, fields, part, job.edge, job.edge_of),
-                                  job.edge_error));
+    meshes.push_back(
+        mesh_surface(fields.grid, fields.fine[part], sizes(job, fields, part, job.edge, job.edge_of), job.edge_error));
     names.push_back(name);
     write_ply(file, meshes.back());
     double shortest = 1e30, longest = 0;
     for (const Triangle& t : meshes.back().triangles)
       for (std::size_t e = 0; e < 3; ++e) {
-        const double d = norm(meshes.back().points[static_cast<std::size_t>(t[e])] - meshes.back().points[static_cast<std::size_t>(t[(e + 1) % 3])]);
+        const double d = norm(meshes.back().points[static_cast<std::size_t>(t[e])] -
+                              meshes.back().points[static_cast<std::size_t>(t[(e + 1) % 3])]);
         shortest = std::min(shortest, d), longest = std::max(longest, d);
       }
-    std::printf("%s surface: %zu points, %zu triangles, edges %.2f to %.2f mm, volume %.0f mm3, closed, %s\n", name.c_str(),
-                meshes.back().points.size(), meshes.back().triangles.size(), shortest, longest, signed_volume(meshes.back()), file.c_str());
+    std::printf("%s surface: %zu points, %zu triangles, edges %.2f to %.2f mm, volume %.0f mm3, closed, %s\n",
+                name.c_str(), meshes.back().points.size(), meshes.back().triangles.size(), shortest, longest,
+                signed_volume(meshes.back()), file.c_str());
   }
   for (std::size_t a = 0; a < meshes.size(); ++a)
     for (std::size_t b = a + 1; b < meshes.size(); ++b) {
       const Clearance c = clearance(meshes[a], meshes[b]);
-      std::printf("surfaces %s - %s: gap %.3f mm%s\n", names[a].c_str(), names[b].c_str(), c.distance, c.intersect ? ", INTERSECT" : "");
+      std::printf("surfaces %s - %s: gap %.3f mm%s\n", names[a].c_str(), names[b].c_str(), c.distance,
+                  c.intersect ? ", INTERSECT" : "");
       if (c.intersect) throw std::runtime_error("surfaces intersect; take a greater --gap");
     }
 }
@@ -248,8 +261,10 @@ int run(int argc, char** argv) {
   const NiftiVolume labels = read_nifti(job.labels);
   NiftiVolume intensity;
   if (!job.intensity.empty()) intensity = read_nifti(job.intensity);
-  const PartFields fields = build_part_fields(labels, job.intensity.empty() ? nullptr : &intensity, job.parts, job.fields);
-  std::printf("working grid %d x %d x %d at %.2f mm\n", fields.grid.size[0], fields.grid.size[1], fields.grid.size[2], fields.grid.spacing);
+  const PartFields fields =
+      build_part_fields(labels, job.intensity.empty() ? nullptr : &intensity, job.parts, job.fields);
+  std::printf("working grid %d x %d x %d at %.2f mm\n", fields.grid.size[0], fields.grid.size[1], fields.grid.size[2],
+              fields.grid.spacing);
   std::fflush(stdout);
   if (!job.surfaces.empty()) make_surfaces(job, fields);
   std::fflush(stdout);
@@ -259,7 +274,8 @@ int run(int argc, char** argv) {
     const std::string a = names.substr(0, comma), b = names.substr(comma + 1);
     const Cleft cleft = describe_cleft(fields, job.part(a), job.part(b), job.fields, job.view);
     write_cleft_json(file, cleft, a, b, job.fields);
-    std::printf("cleft %s - %s: %zu stations, %.1f mm long, %s\n", a.c_str(), b.c_str(), cleft.stations.size(), cleft.length, file.c_str());
+    std::printf("cleft %s - %s: %zu stations, %.1f mm long, %s\n", a.c_str(), b.c_str(), cleft.stations.size(),
+                cleft.length, file.c_str());
   }
   if (!job.tets.empty()) make_tets(job, fields);
   return 0;

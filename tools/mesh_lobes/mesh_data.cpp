@@ -77,7 +77,8 @@ double volume(const TetMesh& mesh) {
   for (const Tet& t : mesh.tets) {
     const Vec3& o = mesh.points[static_cast<std::size_t>(t[0])];
     sum += dot(cross(mesh.points[static_cast<std::size_t>(t[1])] - o, mesh.points[static_cast<std::size_t>(t[2])] - o),
-               mesh.points[static_cast<std::size_t>(t[3])] - o) / 6;
+               mesh.points[static_cast<std::size_t>(t[3])] - o) /
+           6;
   }
   return sum;
 }
@@ -85,8 +86,9 @@ double volume(const TetMesh& mesh) {
 double signed_volume(const TriangleMesh& mesh) {
   double sum = 0;
   for (const Triangle& t : mesh.triangles)
-    sum += dot(mesh.points[static_cast<std::size_t>(t[0])], cross(mesh.points[static_cast<std::size_t>(t[1])],
-                                                                  mesh.points[static_cast<std::size_t>(t[2])])) / 6;
+    sum += dot(mesh.points[static_cast<std::size_t>(t[0])],
+               cross(mesh.points[static_cast<std::size_t>(t[1])], mesh.points[static_cast<std::size_t>(t[2])])) /
+           6;
   return sum;
 }
 
@@ -95,7 +97,8 @@ std::vector<Triangle> boundary_triangles(const TetMesh& mesh) {
   std::map<Triangle, std::pair<int, Triangle>> seen;
   for (const Tet& t : mesh.tets)
     for (const auto& f : face) {
-      const Triangle tri{t[static_cast<std::size_t>(f[0])], t[static_cast<std::size_t>(f[1])], t[static_cast<std::size_t>(f[2])]};
+      const Triangle tri{t[static_cast<std::size_t>(f[0])], t[static_cast<std::size_t>(f[1])],
+                         t[static_cast<std::size_t>(f[2])]};
       Triangle key = tri;
       std::sort(key.begin(), key.end());
       auto& entry = seen[key];
@@ -234,8 +237,8 @@ void write_msh(const std::string& path, const TetMesh& mesh, MshFormat format) {
     for (std::size_t a = 0; a < 3; ++a) low[a] = std::min(low[a], p[a]), high[a] = std::max(high[a], p[a]);
   if (format == MshFormat::v4_ascii) {
     const std::string count = std::to_string(n), cells = std::to_string(m);
-    out.text("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Entities\n0 0 0 1\n1 " + coordinates(low) + " " + coordinates(high) +
-             " 0 0\n$EndEntities\n$Nodes\n1 " + count + " 1 " + count + "\n3 1 0 " + count + "\n");
+    out.text("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Entities\n0 0 0 1\n1 " + coordinates(low) + " " +
+             coordinates(high) + " 0 0\n$EndEntities\n$Nodes\n1 " + count + " 1 " + count + "\n3 1 0 " + count + "\n");
     for (std::size_t i = 0; i < n; ++i) out.text(std::to_string(i + 1) + "\n");
     for (const Vec3& p : mesh.points) out.text(coordinates(p) + "\n");
     out.text("$EndNodes\n$Elements\n1 " + cells + " 1 " + cells + "\n3 1 4 " + cells + "\n");
@@ -283,11 +286,14 @@ void write_ply(const std::string& path, const TriangleMesh& mesh) {
     for (const int v : t) normals[static_cast<std::size_t>(v)] = normals[static_cast<std::size_t>(v)] + area;
   }
   Out out(path);
-  out.text("ply\nformat binary_little_endian 1.0\ncomment unit mm, right-anterior-superior axes of the label volume\nelement vertex " +
-           std::to_string(mesh.points.size()) +
-           "\nproperty float x\nproperty float y\nproperty float z\nproperty float nx\nproperty float ny\nproperty float nz\n"
-           "element face " + std::to_string(mesh.triangles.size()) +
-           "\nproperty list uchar int vertex_indices\nend_header\n");
+  out.text(
+      "ply\nformat binary_little_endian 1.0\ncomment unit mm, right-anterior-superior axes of the label "
+      "volume\nelement vertex " +
+      std::to_string(mesh.points.size()) +
+      "\nproperty float x\nproperty float y\nproperty float z\nproperty float nx\nproperty float ny\nproperty float "
+      "nz\n"
+      "element face " +
+      std::to_string(mesh.triangles.size()) + "\nproperty list uchar int vertex_indices\nend_header\n");
   for (std::size_t i = 0; i < mesh.points.size(); ++i) {
     const double length = norm(normals[i]);
     const Vec3 unit = length > 0 ? (1 / length) * normals[i] : Vec3{0, 0, 1};

@@ -31,7 +31,8 @@ std::string slurp(const std::string& path) {
 }
 
 // A NIfTI-1 image of int16 with a given sform; what read_nifti() is to understand.
-std::string nifti_bytes(int nx, int ny, int nz, const std::vector<std::int16_t>& values, const float (&rows)[12], bool swap) {
+std::string nifti_bytes(int nx, int ny, int nz, const std::vector<std::int16_t>& values, const float (&rows)[12],
+                        bool swap) {
   std::string head(352, '\0');
   const auto put = [&](std::size_t offset, auto value) {
     char raw[sizeof value];
@@ -68,7 +69,8 @@ TEST(Nifti, ReadsAffineScaleAndBothByteOrdersPlainAndCompressed) {
   for (std::size_t i = 0; i < 24; ++i) values[i] = static_cast<std::int16_t>(i);
   for (const bool swap : {false, true})
     for (const bool compressed : {false, true}) {
-      const std::string bytes = nifti_bytes(2, 3, 4, values, shear, swap), path = temp(compressed ? "a.nii.gz" : "a.nii");
+      const std::string bytes = nifti_bytes(2, 3, 4, values, shear, swap),
+                        path = temp(compressed ? "a.nii.gz" : "a.nii");
       if (compressed) {
         const gzFile file = gzopen(path.c_str(), "wb");
         gzwrite(file, bytes.data(), static_cast<unsigned>(bytes.size()));
@@ -205,7 +207,8 @@ TEST_F(HalfBalls, SurfacesAreClosedOutwardAndApart) {
   const PartFields f = fields();
   std::vector<TriangleMesh> meshes;
   for (std::size_t a = 0; a < 2; ++a) {
-    meshes.push_back(mesh_surface(f.grid, f.fine[a], [](const Vec3&) { return 1.0; }, 0.05));
+    meshes.push_back(mesh_surface(
+        f.grid, f.fine[a], [](const Vec3&) { return 1.0; }, 0.05));
     EXPECT_TRUE(is_closed(meshes[a].triangles));
     // A half ball less half the gap under its flat face; edges are rounded by the smoothing.
     const double expected = std::numbers::pi * (2000.0 / 3 - 0.5 * 100);
@@ -220,11 +223,13 @@ TEST_F(HalfBalls, TetrahedraAreGoodApartAndHoldTheSurface) {
   const PartFields f = fields();
   std::vector<TetMesh> meshes;
   for (std::size_t a = 0; a < 2; ++a) {
-    meshes.push_back(mesh_volume(f.grid, f.coarse[a], [](const Vec3&) { return 4.0; }, [](const Vec3&) { return 0.4; }));
+    meshes.push_back(mesh_volume(
+        f.grid, f.coarse[a], [](const Vec3&) { return 4.0; }, [](const Vec3&) { return 0.4; }));
     EXPECT_GE(improve_dihedral(meshes[a], 12, 0.5), 10);
     EXPECT_TRUE(is_closed(boundary_triangles(meshes[a])));
     EXPECT_NEAR(volume(meshes[a]), signed_volume(boundary_mesh(meshes[a])), 1e-6 * volume(meshes[a]));
-    const TriangleMesh fine = mesh_surface(f.grid, f.fine[a], [](const Vec3&) { return 1.5; }, 0.1);
+    const TriangleMesh fine = mesh_surface(
+        f.grid, f.fine[a], [](const Vec3&) { return 1.5; }, 0.1);
     reach_out(meshes[a], fine.points, 0.3, 10);
     EXPECT_LT(embedding(fine, meshes[a]).furthest, 0.8);
   }
@@ -238,7 +243,8 @@ TEST_F(HalfBalls, OverlappingPartsAreSeenAndPushedApart) {
   const PartFields f = fields();
   std::vector<TetMesh> meshes;
   for (std::size_t a = 0; a < 2; ++a)
-    meshes.push_back(mesh_volume(f.grid, f.coarse[a], [](const Vec3&) { return 3.0; }, [](const Vec3&) { return 0.3; }));
+    meshes.push_back(mesh_volume(
+        f.grid, f.coarse[a], [](const Vec3&) { return 3.0; }, [](const Vec3&) { return 0.3; }));
   for (Vec3& p : meshes[1].points) p[2] += 1.2;  // into the upper half
   EXPECT_TRUE(clearance(boundary_mesh(meshes[0]), boundary_mesh(meshes[1])).intersect);
   separate_parts(meshes, 0.3, 40);
@@ -247,7 +253,8 @@ TEST_F(HalfBalls, OverlappingPartsAreSeenAndPushedApart) {
 
 TEST_F(HalfBalls, ASinglePartNeedsNoSeparation) {
   const PartFields f = fields();
-  std::vector<TetMesh> one{mesh_volume(f.grid, f.coarse[0], [](const Vec3&) { return 5.0; }, [](const Vec3&) { return 0.6; })};
+  std::vector<TetMesh> one{mesh_volume(
+      f.grid, f.coarse[0], [](const Vec3&) { return 5.0; }, [](const Vec3&) { return 0.6; })};
   const std::vector<Vec3> before = one[0].points;
   EXPECT_GT(separate_parts(one, 0.5, 5), 1e6);
   EXPECT_TRUE(one[0].points == before);
@@ -257,10 +264,12 @@ TEST_F(HalfBalls, SameInputSameBytes) {
   std::string first;
   for (int run = 0; run < 2; ++run) {
     const PartFields f = fields();
-    TetMesh tets = mesh_volume(f.grid, f.coarse[0], [](const Vec3&) { return 4.0; }, [](const Vec3&) { return 0.5; });
+    TetMesh tets = mesh_volume(
+        f.grid, f.coarse[0], [](const Vec3&) { return 4.0; }, [](const Vec3&) { return 0.5; });
     improve_dihedral(tets, 12, 0.5);
     write_msh(temp("same.msh"), tets, MshFormat::v4_ascii);
-    write_ply(temp("same.ply"), mesh_surface(f.grid, f.fine[1], [](const Vec3&) { return 2.0; }, 0.2));
+    write_ply(temp("same.ply"), mesh_surface(
+                                    f.grid, f.fine[1], [](const Vec3&) { return 2.0; }, 0.2));
     const std::string bytes = slurp(temp("same.msh")) + slurp(temp("same.ply"));
     if (run) {
       EXPECT_TRUE(bytes == first);

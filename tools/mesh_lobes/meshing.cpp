@@ -3,13 +3,13 @@
 #include "meshing.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/facets_in_complex_3_to_triangle_mesh.h>
 #include <CGAL/Labeled_mesh_domain_3.h>
 #include <CGAL/Mesh_complex_3_in_triangulation_3.h>
 #include <CGAL/Mesh_criteria_3.h>
 #include <CGAL/Mesh_triangulation_3.h>
 #include <CGAL/Random.h>
 #include <CGAL/Surface_mesh.h>
+#include <CGAL/facets_in_complex_3_to_triangle_mesh.h>
 #include <CGAL/make_mesh_3.h>
 
 #include <algorithm>
@@ -33,7 +33,8 @@ class LevelDomain : public BaseDomain {
  public:
   template <class Function>
   LevelDomain(Function f, const CGAL::Bbox_3& box, CGAL::Random& random, Vec3 deepest)
-      : BaseDomain(f, box, 1e-5, CGAL::Null_subdomain_index(), &random), deepest_(deepest),
+      : BaseDomain(f, box, 1e-5, CGAL::Null_subdomain_index(), &random),
+        deepest_(deepest),
         reach_(box.xmax() - box.xmin() + box.ymax() - box.ymin() + box.zmax() - box.zmin()) {}
 
   struct Construct_initial_points {
@@ -41,16 +42,16 @@ class LevelDomain : public BaseDomain {
     template <class Output>
     Output operator()(Output out, int = 0) const {
       const Vec3& c = domain.deepest_;
-        for (int i = -1; i <= 1; ++i)
-          for (int j = -1; j <= 1; ++j)
-            for (int k = -1; k <= 1; ++k) {
-              if (!i && !j && !k) continue;
-              const double s = domain.reach_;
-              const Kernel::Segment_3 ray(Point(c[0], c[1], c[2]), Point(c[0] + s * i, c[1] + s * j, c[2] + s * k));
-              if (!domain.do_intersect_surface_object()(ray)) continue;
-              const auto hit = domain.construct_intersection_object()(ray);
-              if (std::get<2>(hit) == 2) *out++ = std::make_pair(std::get<0>(hit), std::get<1>(hit));
-            }
+      for (int i = -1; i <= 1; ++i)
+        for (int j = -1; j <= 1; ++j)
+          for (int k = -1; k <= 1; ++k) {
+            if (!i && !j && !k) continue;
+            const double s = domain.reach_;
+            const Kernel::Segment_3 ray(Point(c[0], c[1], c[2]), Point(c[0] + s * i, c[1] + s * j, c[2] + s * k));
+            if (!domain.do_intersect_surface_object()(ray)) continue;
+            const auto hit = domain.construct_intersection_object()(ray);
+            if (std::get<2>(hit) == 2) *out++ = std::make_pair(std::get<0>(hit), std::get<1>(hit));
+          }
       return out;
     }
   };

@@ -73,7 +73,8 @@ std::vector<unsigned char> make_seeds(const Grid& grid, const std::vector<unsign
     for (std::size_t i = 0; i < set.size(); ++i) set[i] = classes[i] && classes[i] != c;
     const Field d = distance_to(grid, set);
     for (std::size_t i = 0; i < set.size(); ++i)
-      if (classes[i] == c && tissue[i] > 0 && static_cast<double>(d[i]) > depth) seeds[i] = static_cast<unsigned char>(c);
+      if (classes[i] == c && tissue[i] > 0 && static_cast<double>(d[i]) > depth)
+        seeds[i] = static_cast<unsigned char>(c);
   }
   return seeds;
 }

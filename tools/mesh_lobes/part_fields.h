@@ -15,21 +15,21 @@ struct Part {
 };
 
 struct FieldOptions {
-  double spacing = 0.5;             // working grid, mm
-  Vec3 centre{};                    // region of interest: a sphere, RAS mm
-  double radius = 0;                // <= 0: the whole volume
-  double tissue = 0;                // intensity at which tissue begins (with an intensity volume)
-  double tissue_slope = 25;         // change of intensity a millimetre across that border
-  double seed_depth = 1.5;          // labels claim their voxels only this far (mm) from labels of other parts
-  double gap = 1;                   // free space left between the fine surfaces of two parts, mm
-  double smoothing = 0.6;           // Gaussian on the fine level, mm
-  double border_smoothing = 1.2;    // Gaussian on the borders between parts, mm
-  double fine_closing = 1;          // radius of sulci filled in the fine surface, mm
-  double fine_opening = 1;          // radius of specks and threads (vessel remains) taken off the fine surface, mm
-  double coarse_closing = 2.5;      // the same for the coarse shape
-  double coarse_smoothing = 1.5;    // Gaussian on the coarse level, mm
-  double coarse_outset = 0.6;       // the coarse shape is grown by this, mm, so that it holds the fine surface
-  double coarse_gap = 0.35;         // free space wanted between the tetrahedra of two parts, mm
+  double spacing = 0.5;           // working grid, mm
+  Vec3 centre{};                  // region of interest: a sphere, RAS mm
+  double radius = 0;              // <= 0: the whole volume
+  double tissue = 0;              // intensity at which tissue begins (with an intensity volume)
+  double tissue_slope = 25;       // change of intensity a millimetre across that border
+  double seed_depth = 1.5;        // labels claim their voxels only this far (mm) from labels of other parts
+  double gap = 1;                 // free space left between the fine surfaces of two parts, mm
+  double smoothing = 0.6;         // Gaussian on the fine level, mm
+  double border_smoothing = 1.2;  // Gaussian on the borders between parts, mm
+  double fine_closing = 1;        // radius of sulci filled in the fine surface, mm
+  double fine_opening = 1;        // radius of specks and threads (vessel remains) taken off the fine surface, mm
+  double coarse_closing = 2.5;    // the same for the coarse shape
+  double coarse_smoothing = 1.5;  // Gaussian on the coarse level, mm
+  double coarse_outset = 0.6;     // the coarse shape is grown by this, mm, so that it holds the fine surface
+  double coarse_gap = 0.35;       // free space wanted between the tetrahedra of two parts, mm
 };
 
 struct PartFields {

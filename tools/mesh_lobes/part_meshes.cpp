@@ -17,16 +17,19 @@ SizeField growing(const PartFields& fields, std::size_t part, Sizes size, const 
   };
 }
 
-PartMeshes mesh_parts(const PartFields& fields, const std::vector<SizeField>& cell, const std::vector<SizeField>& error, double gap) {
+PartMeshes mesh_parts(const PartFields& fields, const std::vector<SizeField>& cell, const std::vector<SizeField>& error,
+                      double gap) {
   PartMeshes out;
-  for (std::size_t a = 0; a < cell.size(); ++a) out.meshes.push_back(mesh_volume(fields.grid, fields.coarse[a], cell[a], error[a]));
+  for (std::size_t a = 0; a < cell.size(); ++a)
+    out.meshes.push_back(mesh_volume(fields.grid, fields.coarse[a], cell[a], error[a]));
   out.shape.resize(out.meshes.size());
   const Grid& g = fields.grid;
   for (std::size_t a = 0; a < out.meshes.size(); ++a)
     for (int k = 0; k < g.size[2]; ++k)
       for (int j = 0; j < g.size[1]; ++j)
         for (int i = 0; i < g.size[0]; ++i)
-          if (const float v = fields.fine[a][g.index(i, j, k)]; v > 0 && v < 0.5f) out.shape[a].push_back(g.point(i, j, k));
+          if (const float v = fields.fine[a][g.index(i, j, k)]; v > 0 && v < 0.5f)
+            out.shape[a].push_back(g.point(i, j, k));
   for (int pass = 0; pass < 6; ++pass) {
     for (std::size_t a = 0; pass < 4 && a < out.meshes.size(); ++a) {
       reach_out(out.meshes[a], out.shape[a], 0.4, 4);

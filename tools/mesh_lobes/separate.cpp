@@ -29,7 +29,8 @@ class SignedDistance {
  public:
   void add(const TriangleMesh& mesh) {
     for (const Triangle& t : mesh.triangles)
-      triangles_.emplace_back(to_point(mesh.points[at(t[0])]), to_point(mesh.points[at(t[1])]), to_point(mesh.points[at(t[2])]));
+      triangles_.emplace_back(to_point(mesh.points[at(t[0])]), to_point(mesh.points[at(t[1])]),
+                              to_point(mesh.points[at(t[2])]));
   }
   void build() {
     tree_.rebuild(triangles_.cbegin(), triangles_.cend());
@@ -57,7 +58,8 @@ class SignedDistance {
   Tree tree_;
 };
 
-std::vector<Vec3> vertex_normals(std::size_t count, const std::vector<Vec3>& points, const std::vector<Triangle>& triangles) {
+std::vector<Vec3> vertex_normals(std::size_t count, const std::vector<Vec3>& points,
+                                 const std::vector<Triangle>& triangles) {
   std::vector<Vec3> normals(count, Vec3{});
   for (const Triangle& t : triangles) {
     const Vec3 area = cross(points[at(t[1])] - points[at(t[0])], points[at(t[2])] - points[at(t[0])]);
@@ -69,7 +71,8 @@ std::vector<Vec3> vertex_normals(std::size_t count, const std::vector<Vec3>& poi
 }
 
 double min_angle(const TetMesh& mesh, const Tet& t) {
-  return dihedral_range(mesh.points[at(t[0])], mesh.points[at(t[1])], mesh.points[at(t[2])], mesh.points[at(t[3])]).min_deg;
+  return dihedral_range(mesh.points[at(t[0])], mesh.points[at(t[1])], mesh.points[at(t[2])], mesh.points[at(t[3])])
+      .min_deg;
 }
 
 // A small counter-based generator: the same sequence everywhere.
@@ -124,10 +127,8 @@ double improve_dihedral(TetMesh& mesh, double target_deg, double boundary_shift)
           }
           mesh.points[at(v)] = old + move;
           const double angle = star_angle(v);
-          if (angle > best)
-            best = angle;
-          else
-            mesh.points[at(v)] = old;
+          if (angle > best) best = angle;
+          else mesh.points[at(v)] = old;
         }
       }
   }
@@ -241,7 +242,8 @@ Clearance clearance(const TriangleMesh& a, const TriangleMesh& b) {
       constexpr int n = 4;  // 15 samples a triangle
       for (int i = 0; i <= n; ++i)
         for (int j = 0; i + j <= n; ++j)
-          out.distance = std::min(out.distance, other.distance((1.0 / n) * (double(i) * p + double(j) * q + double(n - i - j) * r)));
+          out.distance = std::min(out.distance,
+                                  other.distance((1.0 / n) * (double(i) * p + double(j) * q + double(n - i - j) * r)));
     }
     if (!mesh.triangles.empty() && other.inside(mesh.points[at(mesh.triangles[0][0])])) out.intersect = true;
   };
@@ -261,7 +263,8 @@ Embedding embedding(const TriangleMesh& surface, const TetMesh& volume) {
       ++outside;
       out.furthest = std::max(out.furthest, border.distance(p));
     }
-  out.share_outside = surface.points.empty() ? 0 : static_cast<double>(outside) / static_cast<double>(surface.points.size());
+  out.share_outside =
+      surface.points.empty() ? 0 : static_cast<double>(outside) / static_cast<double>(surface.points.size());
   return out;
 }
 

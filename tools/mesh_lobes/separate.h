@@ -9,8 +9,8 @@
 namespace insula::mesh_tool {
 
 // Moves vertices while tetrahedra have an angle below `target_deg`: interior vertices freely, boundary vertices never
-// outward and at most `boundary_shift` (mm) in all. Hill climbing with a fixed sequence of directions. Tetrahedra on the
-// boundary that stay below are removed when that leaves the boundary closed. Returns the smallest angle reached.
+// outward and at most `boundary_shift` (mm) in all. Hill climbing with a fixed sequence of directions. Tetrahedra on
+// the boundary that stay below are removed when that leaves the boundary closed. Returns the smallest angle reached.
 double improve_dihedral(TetMesh& mesh, double target_deg, double boundary_shift);
 
 // Pushes boundary vertices inward until samples (15 a triangle) of the boundaries of two different parts are

@@ -75,9 +75,15 @@ std::array<double, 12> read_affine(const std::vector<unsigned char>& b, bool swa
     const double qb = number(256), qc = number(260), qd = number(264);
     const double qa = std::sqrt(std::max(0.0, 1 - qb * qb - qc * qc - qd * qd));
     const double handed = number(76) < 0 ? -1 : 1;
-    const double r[9] = {qa * qa + qb * qb - qc * qc - qd * qd, 2 * (qb * qc - qa * qd), 2 * (qb * qd + qa * qc),
-                         2 * (qb * qc + qa * qd), qa * qa + qc * qc - qb * qb - qd * qd, 2 * (qc * qd - qa * qb),
-                         2 * (qb * qd - qa * qc), 2 * (qc * qd + qa * qb), qa * qa + qd * qd - qb * qb - qc * qc};
+    const double r[9] = {qa * qa + qb * qb - qc * qc - qd * qd,
+                         2 * (qb * qc - qa * qd),
+                         2 * (qb * qd + qa * qc),
+                         2 * (qb * qc + qa * qd),
+                         qa * qa + qc * qc - qb * qb - qd * qd,
+                         2 * (qc * qd - qa * qb),
+                         2 * (qb * qd - qa * qc),
+                         2 * (qc * qd + qa * qb),
+                         qa * qa + qd * qd - qb * qb - qc * qc};
     for (std::size_t i = 0; i < 3; ++i) {
       m[4 * i] = r[3 * i] * voxel[0];
       m[4 * i + 1] = r[3 * i + 1] * voxel[1];
@@ -126,7 +132,8 @@ NiftiVolume read_nifti(const std::string& path) {
   }
   if (count > (std::size_t{1} << 31)) fail(path, "has more than 2^31 voxels");
   for (int i = 4; i <= dims; ++i)
-    if (get<std::int16_t>(bytes, 40 + 2 * static_cast<std::size_t>(i), swap) > 1) fail(path, "holds more than one volume");
+    if (get<std::int16_t>(bytes, 40 + 2 * static_cast<std::size_t>(i), swap) > 1)
+      fail(path, "holds more than one volume");
   const double vox_offset = get<float>(bytes, 108, swap);
   const std::size_t offset = vox_offset >= 352 && vox_offset < 1e9 ? static_cast<std::size_t>(vox_offset) : 352;
   double slope = get<float>(bytes, 112, swap), intercept = get<float>(bytes, 116, swap);
@@ -137,9 +144,13 @@ NiftiVolume read_nifti(const std::string& path) {
   const auto copy = [&]<class T>(T) { copy_values<T>(volume, bytes, offset, swap, slope, intercept, path); };
   std::size_t width = 0;
   switch (type) {
-    case 2: case 256: width = 1; break;
-    case 4: case 512: width = 2; break;
-    case 8: case 16: case 768: width = 4; break;
+    case 2:
+    case 256: width = 1; break;
+    case 4:
+    case 512: width = 2; break;
+    case 8:
+    case 16:
+    case 768: width = 4; break;
     case 64: width = 8; break;
     default: fail(path, "has the unsupported data type " + std::to_string(type));
   }

@@ -38,7 +38,8 @@ void Clearance::add(const std::vector<Vec3>& vertices, const std::vector<std::ar
           const ClosestPair near = point_triangle(p, a, b, c);
           const double d = std::sqrt(near.distance2);
           const std::size_t i = std::size_t((z * n_[1] + y) * n_[0] + x);
-          const double before = std::abs(double(distance_[i])), square = std::abs((p - near.c).dot(normal)) / std::max(d, 1e-12);
+          const double before = std::abs(double(distance_[i])),
+                       square = std::abs((p - near.c).dot(normal)) / std::max(d, 1e-12);
           if (d > before + 1e-8 || (d > before - 1e-8 && square <= double(side_[i]))) continue;
           distance_[i] = float((p - near.c).dot(normal) < 0 ? -d : d);
           side_[i] = float(square);

@@ -7,10 +7,11 @@ Writes the two scripted motions of exercise 2 by operating in its scene:
 
 steady  steers the dissector to the nearest and outermost strand, turns the blade across it and sweeps it forth and
         back, with room to the vessel and the lobes measured on grids of distances, until no strand stands;
-rough   shoves the sac aside until strands tear, leans on the frontal lobe and presses the blade into the bleb until it bursts.
+rough   shoves the sac aside until strands tear, leans on the frontal lobe and presses the blade into the bleb until it
+bursts.
 
-Then each motion is played once more through both simulated arms, as `insula run` does it, and its outcome printed. The same
-scene gives the same files on the same processor (see docs/one-step.md on bits).
+Then each motion is played once more through both simulated arms, as `insula run` does it, and its outcome printed. The
+same scene gives the same files on the same processor (see docs/one-step.md on bits).
 */
 #include <fmt/format.h>
 
@@ -18,9 +19,9 @@ scene gives the same files on the same processor (see docs/one-step.md on bits).
 #include <cstdio>
 
 #include "core/base/input_error.h"
+#include "plugins/bleeding/bleeding_state.h"
 #include "tools/motions/dissection_play.h"
 #include "tools/motions/surgeon.h"
-#include "plugins/bleeding/bleeding_state.h"
 
 namespace insula {
 namespace {
@@ -34,8 +35,8 @@ class Trainer : public Surgeon {
 
   void steady(const fs::path& file) {
     const int left = divide({}, [this](const Sweep& w, int tries) {
-      std::printf("%6.2f s strand %2d  room vessel %5.2f others %5.2f mm  %d stand, tries %d\n", time(), w.strand, w.vessel / mm, w.others / mm,
-                  Strands(simulation_).left(), tries);
+      std::printf("%6.2f s strand %2d  room vessel %5.2f others %5.2f mm  %d stand, tries %d\n", time(), w.strand,
+                  w.vessel / mm, w.others / mm, Strands(simulation_).left(), tries);
     });
     if (left > 0) say_left();
     if (left > 0) throw InputError(fmt::format("{} strands are out of reach", left));
@@ -47,7 +48,8 @@ class Trainer : public Surgeon {
     for (const int i : out_of_reach()) {
       const StrandState& s = strands()[std::size_t(i)];
       const Vec3 m = ((s.a + s.b) / 2 - centre()) / mm;
-      std::printf("strand %2d  length %.1f  at %5.1f %5.1f %5.1f mm from the sac, depth %4.1f: OUT OF REACH\n", i, (s.a - s.b).norm() / mm, m.x(), m.y(), m.z(), -m.dot(outward()));
+      std::printf("strand %2d  length %.1f  at %5.1f %5.1f %5.1f mm from the sac, depth %4.1f: OUT OF REACH\n", i,
+                  (s.a - s.b).norm() / mm, m.x(), m.y(), m.z(), -m.dot(outward()));
     }
   }
 
@@ -57,7 +59,9 @@ class Trainer : public Surgeon {
     // The suction tube shoves the sac away from the frontal lobe: strands between them tear.
     const Vec3 aside = Vec3(0, -1, -0.6).normalized();
     const int before = Strands(simulation_).left();
-    press(0, left_shaft_, aside, [&] { return middle_of("sac"); }, 5 * mm, [&] { return Strands(simulation_).left() <= before - 4; });
+    press(
+        0, left_shaft_, aside, [&] { return middle_of("sac"); }, 5 * mm,
+        [&] { return Strands(simulation_).left() <= before - 4; });
     hands_.wait(0.3);
     hands_.move(0.7, left, right);
     // The dissector leans on the frontal lobe.
@@ -65,18 +69,24 @@ class Trainer : public Surgeon {
     if (!frontal) throw InputError("the scene has no frontal lobe");
     const MaterialPoint at = nearest(*frontal, centre_ + Vec3(4, 5, 0) * mm);
     double over = 0;
-    press(1, lean_, Vec3(-0.2, 1, 0.1).normalized(), [&] { return frontal->position(at); }, 10 * mm, [&] {
-      over = force(1, *frontal) > 0.24 ? over + 0.05 : 0;
-      return over > 0.2;
-    });
+    press(
+        1, lean_, Vec3(-0.2, 1, 0.1).normalized(), [&] { return frontal->position(at); }, 10 * mm,
+        [&] {
+          over = force(1, *frontal) > 0.24 ? over + 0.05 : 0;
+          return over > 0.2;
+        });
     hands_.wait(0.2);
     hands_.move(0.6, right);
     // And presses the bleb with the flat of the blade.
-    const Vec3 out = (middle_of("bleb") - middle_of("sac")).normalized(), shaft = (outward_ - 0.35 * Vec3::UnitY()).normalized();
-    press(1, shaft, -out, [&] { return middle_of("bleb"); }, 9 * mm, [&] {
-      const auto b = Bleedings(simulation_).now();
-      return std::any_of(b.begin(), b.end(), [](const BleedingState& x) { return x.open; });
-    }, shaft.cross(out));
+    const Vec3 out = (middle_of("bleb") - middle_of("sac")).normalized(),
+               shaft = (outward_ - 0.35 * Vec3::UnitY()).normalized();
+    press(
+        1, shaft, -out, [&] { return middle_of("bleb"); }, 9 * mm,
+        [&] {
+          const auto b = Bleedings(simulation_).now();
+          return std::any_of(b.begin(), b.end(), [](const BleedingState& x) { return x.open; });
+        },
+        shaft.cross(out));
     hands_.move(0.7, right);
     hands_.wait(1);
     write(file);
@@ -87,7 +97,8 @@ class Trainer : public Surgeon {
     for (std::size_t i = 0; i < strands().size(); ++i)
       if (const StrandState& s = strands()[i]; s.integrity >= 0) {
         const Vec3 a = (s.a - centre_) / mm, b = (s.b - centre_) / mm;
-        std::printf("strand %2zu stands: %.1f mm from (%.1f %.1f %.1f) to (%.1f %.1f %.1f) mm from the sac\n", i, (a - b).norm(), a.x(), a.y(), a.z(), b.x(), b.y(), b.z());
+        std::printf("strand %2zu stands: %.1f mm from (%.1f %.1f %.1f) to (%.1f %.1f %.1f) mm from the sac\n", i,
+                    (a - b).norm(), a.x(), a.y(), a.z(), b.x(), b.y(), b.z());
       }
   }
   /// Force of a hand's tool on a body, N.
@@ -100,10 +111,11 @@ class Trainer : public Surgeon {
     }
     return sum.norm();
   }
-  /// Leans with a tool on a place that gives way: the hand goes from 5 mm before it to `most` behind it, wherever it is by
-  /// then, until `enough`.
+  /// Leans with a tool on a place that gives way: the hand goes from 5 mm before it to `most` behind it, wherever it is
+  /// by then, until `enough`.
   template <class Place, class Enough>
-  void press(int hand, const Vec3& shaft, const Vec3& way, Place place, double most, Enough enough, const Vec3& across = Vec3::UnitZ()) {
+  void press(int hand, const Vec3& shaft, const Vec3& way, Place place, double most, Enough enough,
+             const Vec3& across = Vec3::UnitZ()) {
     const auto go_to = [&](double seconds, double depth) {
       Wish w[2] = {hands_.left(), hands_.right()};
       w[hand].pose = tool_pose(place() + depth * way, shaft, across);
@@ -119,8 +131,9 @@ class Trainer : public Surgeon {
       done = enough();
     }
     if (done) go_to(0.25, depth + 1.5 * mm);  // enough also where the arms follow a little differently
-    std::printf("%6.2f s pressed to %.1f mm: %s; up to %.3f N on the vessel, %.3f N on the frontal lobe, %d strands stand\n", hands_.time(), depth / mm,
-                done ? "done" : "as far as it goes", vessel, lobe, Strands(simulation_).left());
+    std::printf(
+        "%6.2f s pressed to %.1f mm: %s; up to %.3f N on the vessel, %.3f N on the frontal lobe, %d strands stand\n",
+        hands_.time(), depth / mm, done ? "done" : "as far as it goes", vessel, lobe, Strands(simulation_).left());
   }
   MaterialPoint nearest(const Body& body, const Vec3& at) const {
     MaterialPoint out;
@@ -131,7 +144,6 @@ class Trainer : public Surgeon {
           if (const double d = (body.position(p) - at).norm(); d < least) least = d, out = p;
     return out;
   }
-
 };
 
 }  // namespace

@@ -35,12 +35,14 @@ inline void play(const fs::path& scene, const fs::path& file) {
     for (const ToolReport& t : s->report().tools)
       if (t.hand >= 0) press[t.hand] = std::max(press[t.hand], t.contact_force);
     for (const Event& e : s->events())
-      if (e.kind == "rupture" || e.kind == "strand_torn") events += fmt::format("  {:.2f} s {} {} {:.3f}\n", e.time, e.kind, e.text, e.value);
+      if (e.kind == "rupture" || e.kind == "strand_torn")
+        events += fmt::format("  {:.2f} s {} {} {:.3f}\n", e.time, e.kind, e.text, e.value);
   }
-  std::printf("%s: %.1f s, %d of %d strands stand, largest contact force left %.3f N, right %.3f N\n%s", file.c_str(), motion.duration(), Strands(*s).left(),
-              Strands(*s).total(), press[0], press[1], events.c_str());
+  std::printf("%s: %.1f s, %d of %d strands stand, largest contact force left %.3f N, right %.3f N\n%s", file.c_str(),
+              motion.duration(), Strands(*s).left(), Strands(*s).total(), press[0], press[1], events.c_str());
   if (!s->exercise()) return;
-  for (const GoalState& g : s->exercise()->log().goals()) std::printf("  goal %s %s %.1f s\n", g.id.c_str(), g.done ? "reached at" : "open", g.time);
+  for (const GoalState& g : s->exercise()->log().goals())
+    std::printf("  goal %s %s %.1f s\n", g.id.c_str(), g.done ? "reached at" : "open", g.time);
   for (const FaultState& f : s->exercise()->log().faults()) std::printf("  fault %s %d\n", f.id.c_str(), f.count);
 }
 

@@ -24,8 +24,8 @@ void Hands::key() {
     Quat q = now_[h].pose.q;
     if (q.w() < 0) q.coeffs() *= -1;
     const Vec3& p = now_[h].pose.p;
-    rows_.push_back(fmt::format("{:.4f},{},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f},{},0", simulation_.time(), names[h], p.x(),
-                                p.y(), p.z(), q.w(), q.x(), q.y(), q.z(), int(now_[h].button1)));
+    rows_.push_back(fmt::format("{:.4f},{},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f},{:.5f},{},0", simulation_.time(),
+                                names[h], p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z(), int(now_[h].button1)));
   }
 }
 

@@ -16,9 +16,13 @@ constexpr double pulse = 0.1e-3;  // m, that a wall may come nearer with the nex
 }  // namespace
 
 Surgeon::Surgeon(Simulation& simulation)
-    : simulation_(simulation), hands_(simulation), artery_(find()), vessel_(centre_ - Vec3::Constant(11 * mm), centre_ + Vec3::Constant(11 * mm), 0.3 * mm),
+    : simulation_(simulation),
+      hands_(simulation),
+      artery_(find()),
+      vessel_(centre_ - Vec3::Constant(11 * mm), centre_ + Vec3::Constant(11 * mm), 0.3 * mm),
       others_(centre_ + Vec3(-13, -24, -24) * mm, centre_ + Vec3(42, 30, 28) * mm, 0.5 * mm),
-      planner_(simulation.instrument_of(1)->tool(), {centre_, outward_, lean_, &vessel_, &others_}, 0.6 * mm, 0.8 * mm) {
+      planner_(simulation.instrument_of(1)->tool(), {centre_, outward_, lean_, &vessel_, &others_}, 0.6 * mm,
+               0.8 * mm) {
   hands_.wait(0.1);
   look();
 }
@@ -26,7 +30,9 @@ Surgeon::Surgeon(Simulation& simulation)
 std::vector<int> Surgeon::out_of_reach() const {
   std::vector<int> out;
   for (std::size_t i = 0; i < strands().size(); ++i)
-    if (const Sweep s = planner_.best({strands()[i]}, {0}, centre_ + 8 * mm * outward_, true); s.strand < 0 || s.vessel < pulse) out.push_back(int(i));
+    if (const Sweep s = planner_.best({strands()[i]}, {0}, centre_ + 8 * mm * outward_, true);
+        s.strand < 0 || s.vessel < pulse)
+      out.push_back(int(i));
   return out;
 }
 
@@ -65,14 +71,16 @@ int Surgeon::divide(const Pace& pace, const std::function<void(const Sweep&, int
     const double way = (sweep.pose(-sweep.half).p - tip).norm() <= (sweep.pose(sweep.half).p - tip).norm() ? 1 : -1;
     go({sweep.pose(-way * sweep.half)}, pace);
     for (const int stroke : {1, -1, 1}) {
-      hands_.move(pace.stroke + pace.stroke_per_m * sweep.half, {sweep.pose(stroke * way * sweep.half)});  // more than parts it, should the arms lag
+      hands_.move(pace.stroke + pace.stroke_per_m * sweep.half,
+                  {sweep.pose(stroke * way * sweep.half)});  // more than parts it, should the arms lag
       if (pace.until_severed && strands()[strand].integrity < 0) break;
     }
     ++tries[strand];
     if (told) told(sweep, tries[strand]);
   }
   const Pose last = hands_.right().pose;
-  hands_.move(0.8, {tool_pose(last.p + 9 * mm * (last.q * Vec3::UnitZ()), last.q * Vec3::UnitZ(), last.q * Vec3::UnitY())});
+  hands_.move(0.8,
+              {tool_pose(last.p + 9 * mm * (last.q * Vec3::UnitZ()), last.q * Vec3::UnitZ(), last.q * Vec3::UnitY())});
   hands_.move(pace.enter, {left_home}, {right_home});
   return Strands(simulation_).left();
 }
@@ -101,7 +109,9 @@ const ShellBody* Surgeon::find() {
   throw InputError("the scene has no vessel");
 }
 
-Wish Surgeon::left_rest() const { return {tool_pose(centre_ + 9 * mm * outward_ + Vec3(0, -7, 2) * mm, left_shaft_, Vec3::UnitZ())}; }
+Wish Surgeon::left_rest() const {
+  return {tool_pose(centre_ + 9 * mm * outward_ + Vec3(0, -7, 2) * mm, left_shaft_, Vec3::UnitZ())};
+}
 
 void Surgeon::see(const Body& body, Clearance& grid) {
   for (Surface* s : simulation_.surfaces())
@@ -133,7 +143,8 @@ void Surgeon::go(const Wish& to, const Pace& pace) {
   const double enough = std::min({0.1 * mm, planner_.room(from), planner_.room(to.pose)}) - 0.02 * mm;
   double best = -1, most = -1;
   for (const double d : {0.0, 1.5 * mm, 3 * mm, 5 * mm, 8 * mm, 12 * mm}) {
-    const double room = std::min({planner_.room(from, back(from, d)), planner_.room(back(from, d), back(to.pose, d)), planner_.room(back(to.pose, d), to.pose)});
+    const double room = std::min({planner_.room(from, back(from, d)), planner_.room(back(from, d), back(to.pose, d)),
+                                  planner_.room(back(to.pose, d), to.pose)});
     if (room > most) most = room, best = d;
     if (room >= enough) break;
   }

@@ -20,7 +20,8 @@ SweepPlanner::SweepPlanner(const ToolModel& tool, const Field& field, double rea
   for (const ConvexPiece& p : tool.pieces)
     if (p.points.size() == 2) {  // a capsule of the shaft
       const int n = int(std::ceil((p.points[1] - p.points[0]).norm() / 1e-3));
-      for (int i = 0; i <= n; ++i) balls_.push_back({p.points[0] + double(i) / n * (p.points[1] - p.points[0]), p.radius});
+      for (int i = 0; i <= n; ++i)
+        balls_.push_back({p.points[0] + double(i) / n * (p.points[1] - p.points[0]), p.radius});
     }
 }
 
@@ -65,7 +66,8 @@ double SweepPlanner::cutting(const Sweep& sweep, const StrandState& strand) cons
   return travel / cut_length_;
 }
 
-Sweep SweepPlanner::best(const std::vector<StrandState>& strands, const std::vector<int>& tries, const Vec3& tip, bool thorough) const {
+Sweep SweepPlanner::best(const std::vector<StrandState>& strands, const std::vector<int>& tries, const Vec3& tip,
+                         bool thorough) const {
   // Shafts: the usual lean and rings around it.
   std::vector<Vec3> shafts{field_.lean};
   const Vec3 side = field_.lean.unitOrthogonal(), up = field_.lean.cross(side);
@@ -82,9 +84,12 @@ Sweep SweepPlanner::best(const std::vector<StrandState>& strands, const std::vec
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < strands.size(); ++i)
     if (strands[i].integrity >= 0) order.push_back(i);
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return ease(a) != ease(b) ? ease(a) > ease(b) : a < b; });
-  const std::vector<double> places = thorough ? std::vector<double>{0.5, 0.3, 0.7, 0.15, 0.85, 0.05, 0.95} : std::vector<double>{0.5, 0.35, 0.65, 0.2, 0.8};
-  const std::vector<double> depths = thorough ? std::vector<double>{0.2e-3, -0.15e-3, -0.35e-3, 0.7e-3, 1.4e-3} : std::vector<double>{0.2e-3, -0.15e-3, 0.7e-3, 1.4e-3};
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return ease(a) != ease(b) ? ease(a) > ease(b) : a < b; });
+  const std::vector<double> places = thorough ? std::vector<double>{0.5, 0.3, 0.7, 0.15, 0.85, 0.05, 0.95}
+                                              : std::vector<double>{0.5, 0.35, 0.65, 0.2, 0.8};
+  const std::vector<double> depths = thorough ? std::vector<double>{0.2e-3, -0.15e-3, -0.35e-3, 0.7e-3, 1.4e-3}
+                                              : std::vector<double>{0.2e-3, -0.15e-3, 0.7e-3, 1.4e-3};
   const double press = thorough ? 1.0e-3 : 0.5e-3;  // how far a lobe, which gives way, may be pushed in
   Sweep best;
   for (std::size_t n = 0; n < order.size() && (n < 8 || best.strand < 0); ++n) {
@@ -102,8 +107,10 @@ Sweep SweepPlanner::best(const std::vector<StrandState>& strands, const std::vec
               Sweep w;
               w.strand = int(i);
               w.shaft = shaft;
-              const double askew = end_on ? turn * std::numbers::pi / 4 : (turn == 2 ? -1 : turn) * std::numbers::pi / 6;
-              w.across = Eigen::AngleAxisd(askew, shaft) * (end_on ? shaft.unitOrthogonal() : Vec3(across.normalized()));
+              const double askew =
+                  end_on ? turn * std::numbers::pi / 4 : (turn == 2 ? -1 : turn) * std::numbers::pi / 6;
+              w.across =
+                  Eigen::AngleAxisd(askew, shaft) * (end_on ? shaft.unitOrthogonal() : Vec3(across.normalized()));
               w.across *= sense;
               // The blade is curved: at this height its edge lies a little off the tool's axis.
               const Vec3 flat = w.across.cross(shaft);
@@ -114,7 +121,8 @@ Sweep SweepPlanner::best(const std::vector<StrandState>& strands, const std::vec
               if (w.vessel < -0.1e-3 || w.others < -press) continue;
               // Room counts up to what is comfortable.
               double score = 2.5 * std::min(w.vessel, 0.5e-3) / 0.5e-3 + std::min(w.others, 0.3e-3) / 0.3e-3;
-              score += ease(i) - 4 * (1 - shaft.dot(field_.lean)) + (w.half > 2e-3 ? 0.5 : 0);  // a long stroke parts it for sure
+              score += ease(i) - 4 * (1 - shaft.dot(field_.lean)) +
+                       (w.half > 2e-3 ? 0.5 : 0);  // a long stroke parts it for sure
               if (score + 1.5 < best.score || cutting(w, s) < 1.5) continue;
               int more = 0;
               for (std::size_t k = 0; k < strands.size(); ++k)

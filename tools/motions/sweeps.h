@@ -17,15 +17,15 @@ struct Ball {
 };
 
 struct Field {
-  Vec3 centre, outward;        ///< the sac's middle, and the way to the surgeon
-  Vec3 lean;                   ///< usual direction of the shaft
+  Vec3 centre, outward;  ///< the sac's middle, and the way to the surgeon
+  Vec3 lean;             ///< usual direction of the shaft
   const Clearance *vessel, *others;
 };
 
 struct Sweep {
   int strand = -1;
-  Vec3 shaft, across, middle;  ///< the tip passes `middle` along `across`
-  double half = 0;             ///< to both sides, m
+  Vec3 shaft, across, middle;     ///< the tip passes `middle` along `across`
+  double half = 0;                ///< to both sides, m
   double vessel = 0, others = 0;  ///< least room on the way, m
   double score = -1e9;
   Pose pose(double offset) const { return tool_pose(middle + offset * across, shaft, across); }
@@ -34,9 +34,10 @@ struct Sweep {
 class SweepPlanner {
  public:
   SweepPlanner(const ToolModel& tool, const Field& field, double reach, double cut_length);
-  /// The best sweep through one of the strands that stand; tries: how often each was swept in vain. thorough: also steep
-  /// shafts, places near a strand's ends, blades turned askew and lobes pressed in a little more.
-  Sweep best(const std::vector<StrandState>& strands, const std::vector<int>& tries, const Vec3& tip, bool thorough = false) const;
+  /// The best sweep through one of the strands that stand; tries: how often each was swept in vain. thorough: also
+  /// steep shafts, places near a strand's ends, blades turned askew and lobes pressed in a little more.
+  Sweep best(const std::vector<StrandState>& strands, const std::vector<int>& tries, const Vec3& tip,
+             bool thorough = false) const;
   /// Least room of the whole tool at a pose, m.
   double room(const Pose& pose, double* vessel = nullptr, double* others = nullptr) const;
   /// Least room on the straight way between two poses, m.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The comparison of solvers: all of them on the same step, near the same answer; the borrowed ones keep the interface's promises.
+// The comparison of solvers: all of them on the same step, near the same answer; the borrowed ones keep the interface's
+// promises.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -23,7 +24,8 @@ TEST(BenchSolvers, EverySolverAgreesOnTheSameStep) {
   options.rows = 12;
   ASSERT_EQ(cmd_bench_solvers({registry, out, err}, options), 0) << err.str();
   const auto j = nlohmann::json::parse(out.str());
-  for (const char* rate : {"peak_f64", "peak_f32", "product_f64", "product_f32", "read"}) EXPECT_GT(j["machine"][rate].get<double>(), 1e6) << rate;
+  for (const char* rate : {"peak_f64", "peak_f32", "product_f64", "product_f32", "read"})
+    EXPECT_GT(j["machine"][rate].get<double>(), 1e6) << rate;
   ASSERT_FALSE(j["bodies"].empty());
   int rows = 0;
   for (const auto& body : j["bodies"]) {
@@ -35,7 +37,8 @@ TEST(BenchSolvers, EverySolverAgreesOnTheSameStep) {
       const double tolerance = name.find("single") != std::string::npos ? 1e-4 : 1e-11;
       EXPECT_LT(s["solve_error"].get<double>(), tolerance) << name;
       EXPECT_LT(s["w_error"].get<double>(), tolerance) << name;
-      for (const char* key : {"factor_ms", "solve_ms", "w_ms", "w_again_ms", "factor_flops", "solve_bytes", "factor_share_of_product", "solve_share_of_read"}) {
+      for (const char* key : {"factor_ms", "solve_ms", "w_ms", "w_again_ms", "factor_flops", "solve_bytes",
+                              "factor_share_of_product", "solve_share_of_read"}) {
         EXPECT_GT(s[key].get<double>(), 0) << name << ' ' << key;
         EXPECT_LT(s[key].get<double>(), 1e12) << name << ' ' << key;
       }

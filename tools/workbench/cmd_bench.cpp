@@ -24,7 +24,8 @@ double factor_ms(const Simulation& simulation) {
 }  // namespace
 
 int cmd_bench(const CommandContext& context, const BenchOptions& options) {
-  const OpenedRun opened = open_run(context, options.scene, options.motion, options.motion == "steady", options.threads);
+  const OpenedRun opened =
+      open_run(context, options.scene, options.motion, options.motion == "steady", options.threads);
   if (!opened.simulation) return 2;
   Simulation& simulation = *opened.simulation;
   const Motion& motion = opened.motion;
@@ -64,7 +65,8 @@ int cmd_bench(const CommandContext& context, const BenchOptions& options) {
     j["steps"] = options.steps;
     j["step_ms"] = {{"mean", mean(step)}, {"p50", percentile(step, 0.5)}, {"p95", percentile(step, 0.95)}};
     for (int s = 0; s < stage_count; ++s)
-      j["stage_ms"][stage_names()[std::size_t(s)]] = {{"p50", percentile(stage[std::size_t(s)], 0.5)}, {"p95", percentile(stage[std::size_t(s)], 0.95)}};
+      j["stage_ms"][stage_names()[std::size_t(s)]] = {{"p50", percentile(stage[std::size_t(s)], 0.5)},
+                                                      {"p95", percentile(stage[std::size_t(s)], 0.95)}};
     j["servo_ms_per_step"] = mean(haptic);
     j["rows"] = {{"mean", mean(rows)}, {"max", percentile(rows, 1.0)}};
     j["sweeps"] = {{"mean", mean(sweeps)}, {"max", percentile(sweeps, 1.0)}};
@@ -80,27 +82,32 @@ int cmd_bench(const CommandContext& context, const BenchOptions& options) {
     context.out << j.dump(2) << '\n';
     return 0;
   }
-  fmt::print(context.out, "{}  ({} kernels, {} threads, {} steps of {:.2f} ms)\n", options.scene.string(), kernels().name,
-             simulation.workers().threads(), options.steps, simulation.h() * 1000);
+  fmt::print(context.out, "{}  ({} kernels, {} threads, {} steps of {:.2f} ms)\n", options.scene.string(),
+             kernels().name, simulation.workers().threads(), options.steps, simulation.h() * 1000);
   for (const Body* b : simulation.bodies())
     if (const auto* soft = dynamic_cast<const DeformableBody*>(b))
       fmt::print(context.out, "  {:<12} {} nodes, factor of {} numbers and {:.1f} Mflop\n", soft->id, soft->nodes(),
                  soft->solver().cost().factor_entries, soft->solver().cost().factor_flops * 1e-6);
   fmt::print(context.out, "\n  {:<14}{:>9}{:>9}\n", "stage, ms", "p50", "p95");
   for (int s = 0; s < stage_count; ++s)
-    fmt::print(context.out, "  {:<14}{:>9.3f}{:>9.3f}\n", stage_names()[std::size_t(s)], percentile(stage[std::size_t(s)], 0.5),
-               percentile(stage[std::size_t(s)], 0.95));
+    fmt::print(context.out, "  {:<14}{:>9.3f}{:>9.3f}\n", stage_names()[std::size_t(s)],
+               percentile(stage[std::size_t(s)], 0.5), percentile(stage[std::size_t(s)], 0.95));
   fmt::print(context.out, "  {:<14}{:>9.3f}{:>9.3f}\n\n", "step", percentile(step, 0.5), percentile(step, 0.95));
   // With more threads factors are made side by side, and their sum says nothing about the step.
   if (simulation.workers().threads() == 1)
-    fmt::print(context.out, "  factor and W (build) {:.3f} ms, all else {:.3f}; means {:.3f} and {:.3f}\n", percentile(factor_and_w, 0.5),
-               percentile(all_else, 0.5), mean(factor_and_w), mean(all_else));
-  fmt::print(context.out, "  rows {:.0f} mean, {:.0f} max; sweeps {:.1f} mean, Newton steps {:.1f}; residual {:.1e} m at most\n", mean(rows), percentile(rows, 1.0),
-             mean(sweeps), mean(newton), percentile(residual, 1.0));
+    fmt::print(context.out, "  factor and W (build) {:.3f} ms, all else {:.3f}; means {:.3f} and {:.3f}\n",
+               percentile(factor_and_w, 0.5), percentile(all_else, 0.5), mean(factor_and_w), mean(all_else));
+  fmt::print(context.out,
+             "  rows {:.0f} mean, {:.0f} max; sweeps {:.1f} mean, Newton steps {:.1f}; residual {:.1e} m at most\n",
+             mean(rows), percentile(rows, 1.0), mean(sweeps), mean(newton), percentile(residual, 1.0));
   if (mean(iterations) > 0)
-    fmt::print(context.out, "  conjugate gradients: {:.1f} iterations mean, {:.0f} max; factor {:.1f} steps old, {:.0f} at most, {} in all; last defect {:.1e} m at most\n", mean(iterations),
-               percentile(iterations, 1.0), mean(age), percentile(age, 1.0), simulation.report().solver.factors, percentile(defect, 1.0));
-  fmt::print(context.out, "  servo of both hands: {:.3f} ms a step; real_time_factor of the engine alone {:.2f}\n", mean(haptic), factor);
+    fmt::print(context.out,
+               "  conjugate gradients: {:.1f} iterations mean, {:.0f} max; factor {:.1f} steps old, {:.0f} at most, {} "
+               "in all; last defect {:.1e} m at most\n",
+               mean(iterations), percentile(iterations, 1.0), mean(age), percentile(age, 1.0),
+               simulation.report().solver.factors, percentile(defect, 1.0));
+  fmt::print(context.out, "  servo of both hands: {:.3f} ms a step; real_time_factor of the engine alone {:.2f}\n",
+             mean(haptic), factor);
   return 0;
 }
 

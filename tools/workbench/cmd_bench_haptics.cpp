@@ -7,9 +7,9 @@
 
 #include "core/base/input_error.h"
 #include "core/params/param.h"
-#include "tools/workbench/haptic_truth.h"
 #include "engine/live/live_engine.h"
 #include "engine/live/publisher.h"
+#include "tools/workbench/haptic_truth.h"
 #include "tools/workbench/workbench.h"
 
 namespace insula {
@@ -23,10 +23,12 @@ struct Latency {
 Latency read_latency(std::string text) {
   const bool bare = text.find_first_not_of("0123456789.") == std::string::npos;
   if (bare) text += " s";  // read alike; what it counts is steps
-  else if (const auto unit = text.find_first_not_of("0123456789."); unit > 0 && text[unit] != ' ') text.insert(unit, " ");
+  else if (const auto unit = text.find_first_not_of("0123456789."); unit > 0 && text[unit] != ' ')
+    text.insert(unit, " ");
   std::string error;
   const auto value = parse_quantity(text, Duration::units(), Duration::name, error);
-  if (!value || *value < 0 || *value > (bare ? 3 : 0.2)) throw InputError("--latency: " + (value ? std::string("0 to 3 steps, or 0 to 200 ms") : error));
+  if (!value || *value < 0 || *value > (bare ? 3 : 0.2))
+    throw InputError("--latency: " + (value ? std::string("0 to 3 steps, or 0 to 200 ms") : error));
   return bare ? Latency{*value, 0} : Latency{0, *value};
 }
 
@@ -85,7 +87,8 @@ void measure(const CommandContext& context, const HapticBenchOptions& options, S
   fmt::print(context.out, "{}, {}: {:.2f} s\n", options.scene.string(), options.motion, duration);
   const ForceTrace reference = reference_forces(simulation, motion, duration);
   simulation.reset();
-  fmt::print(context.out, "  {:<6}{:<18}{:<7}{:>9}{:>9}{:>9}{:>11}{:>9}\n", "Hz", "rendering", "hand", "peak mN", "rms %", "worst %", "onset ms", "jump %");
+  fmt::print(context.out, "  {:<6}{:<18}{:<7}{:>9}{:>9}{:>9}{:>11}{:>9}\n", "Hz", "rendering", "hand", "peak mN",
+             "rms %", "worst %", "onset ms", "jump %");
   for (const double rate : options.rates) {
     const double step_s = options.fine ? 1e-3 : 1 / rate;
     auto engine = open(context, options, step_s);
@@ -105,12 +108,14 @@ void measure(const CommandContext& context, const HapticBenchOptions& options, S
       v.settings.latency_s = latency.at(1 / rate);
       v.settings.jitter = options.jitter;
       const ForceTrace rendered = replay(steps, motion, duration, v.settings);
-      if (!options.traces.empty()) write_traces(options.traces / fmt::format("{:.0f}_{}.csv", rate, v.name), reference, rendered);
+      if (!options.traces.empty())
+        write_traces(options.traces / fmt::format("{:.0f}_{}.csv", rate, v.name), reference, rendered);
       for (std::size_t hand = 0; hand < 2; ++hand) {
         const TruthOfHand t = compare(reference.force[hand], rendered.force[hand]);
         if (!t.counts()) continue;
-        fmt::print(context.out, "  {:<6.0f}{:<18}{:<7}{:>9.1f}{:>9.2f}{:>9.1f}{:>11.0f}{:>9.1f}\n", rate, v.name, hand ? "right" : "left", 1e3 * t.peak_N,
-                   100 * t.rms, 100 * t.worst, 1e3 * t.onset_s, 100 * rendered.jump[hand] / t.peak_N);
+        fmt::print(context.out, "  {:<6.0f}{:<18}{:<7}{:>9.1f}{:>9.2f}{:>9.1f}{:>11.0f}{:>9.1f}\n", rate, v.name,
+                   hand ? "right" : "left", 1e3 * t.peak_N, 100 * t.rms, 100 * t.worst, 1e3 * t.onset_s,
+                   100 * rendered.jump[hand] / t.peak_N);
       }
     }
     context.out.flush();

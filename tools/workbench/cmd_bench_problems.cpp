@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// insula bench --record and --problems: constraint problems of a scene as files, and how fast and how well they are solved.
+// insula bench --record and --problems: constraint problems of a scene as files, and how fast and how well they are
+// solved.
 #include <fmt/ostream.h>
 
 #include <chrono>
@@ -17,9 +18,12 @@
 namespace insula {
 namespace {
 
-double microseconds(std::chrono::steady_clock::duration d) { return std::chrono::duration<double, std::micro>(d).count(); }
+double microseconds(std::chrono::steady_clock::duration d) {
+  return std::chrono::duration<double, std::micro>(d).count();
+}
 
-// --- the recorded set --------------------------------------------------------------------------------------------------
+// --- the recorded set
+// --------------------------------------------------------------------------------------------------
 
 struct Method {
   const char* name;
@@ -55,7 +59,8 @@ Outcome solve_all(const std::vector<ConstraintProblem>& problems, const SolveSet
   return out;
 }
 
-// --- the rate of sweeps -------------------------------------------------------------------------------------------------
+// --- the rate of sweeps
+// -------------------------------------------------------------------------------------------------
 
 /// Dense, random, badly conditioned, so that every row goes on moving.
 ConstraintProblem dense_problem(int rows, LawKind law) {
@@ -107,7 +112,8 @@ double sweep_rate(int rows, LawKind law) {
 }  // namespace
 
 int cmd_record_problems(const CommandContext& context, const BenchOptions& options) {
-  const OpenedRun opened = open_run(context, options.scene, options.motion, options.motion == "steady", options.threads);
+  const OpenedRun opened =
+      open_run(context, options.scene, options.motion, options.motion == "steady", options.threads);
   if (!opened.simulation) return 2;
   std::error_code error;
   std::filesystem::create_directories(options.record, error);
@@ -129,7 +135,8 @@ int cmd_record_problems(const CommandContext& context, const BenchOptions& optio
       now[b.id].assign(at, at + b.rows());
       const auto known = last.find(b.id);
       for (int i = 0; i < b.rows(); ++i)
-        p.lambda[std::size_t(b.row + i)] = known != last.end() && int(known->second.size()) == b.rows() ? known->second[std::size_t(i)] : 0;
+        p.lambda[std::size_t(b.row + i)] =
+            known != last.end() && int(known->second.size()) == b.rows() ? known->second[std::size_t(i)] : 0;
     }
     last = std::move(now);
     if (k < first || (k - first) % options.every != 0 || p.rows == 0) continue;
@@ -162,18 +169,25 @@ int cmd_bench_problems(const CommandContext& context, const BenchOptions& option
                             {"sweeps, Newton", {150, tolerance, false, 20}},
                             {"conjugate, Newton", {150, tolerance, true, 20}},
                             {"Newton at once", {1, tolerance, false, 20}}};
-  fmt::print(context.out, "{} problems of {}, {:.0f} rows at the median, {:.0f} at most; {} kernels; to {:.0e} m\n\n", problems.size(), options.problems.string(),
-             percentile(rows, 0.5), percentile(rows, 1), kernels().name, tolerance);
-  fmt::print(context.out, "  {:<20}{:>27}{:>24}{:>15}{:>21}\n", "", "us a solve", "sweeps", "Newton steps", "residual, most");
-  fmt::print(context.out, "  {:<20}{:>9}{:>9}{:>9}{:>8}{:>8}{:>8}{:>15}{:>12}{:>9}{:>8}\n", "method", "p50", "p95", "max", "p50", "p95", "max", "max", "m", "N", "above");
+  fmt::print(context.out, "{} problems of {}, {:.0f} rows at the median, {:.0f} at most; {} kernels; to {:.0e} m\n\n",
+             problems.size(), options.problems.string(), percentile(rows, 0.5), percentile(rows, 1), kernels().name,
+             tolerance);
+  fmt::print(context.out, "  {:<20}{:>27}{:>24}{:>15}{:>21}\n", "", "us a solve", "sweeps", "Newton steps",
+             "residual, most");
+  fmt::print(context.out, "  {:<20}{:>9}{:>9}{:>9}{:>8}{:>8}{:>8}{:>15}{:>12}{:>9}{:>8}\n", "method", "p50", "p95",
+             "max", "p50", "p95", "max", "max", "m", "N", "above");
   for (const Method& m : methods) {
     const Outcome o = solve_all(problems, m.settings, 3);
-    fmt::print(context.out, "  {:<20}{:>9.1f}{:>9.1f}{:>9.1f}{:>8.0f}{:>8.0f}{:>8.0f}{:>15.0f}{:>12.1e}{:>9.1e}{:>8}\n", m.name, percentile(o.us, 0.5), percentile(o.us, 0.95),
-               percentile(o.us, 1), percentile(o.sweeps, 0.5), percentile(o.sweeps, 0.95), percentile(o.sweeps, 1), percentile(o.newton, 1), o.residual_m, o.residual_N, o.above);
+    fmt::print(context.out, "  {:<20}{:>9.1f}{:>9.1f}{:>9.1f}{:>8.0f}{:>8.0f}{:>8.0f}{:>15.0f}{:>12.1e}{:>9.1e}{:>8}\n",
+               m.name, percentile(o.us, 0.5), percentile(o.us, 0.95), percentile(o.us, 1), percentile(o.sweeps, 0.5),
+               percentile(o.sweeps, 0.95), percentile(o.sweeps, 1), percentile(o.newton, 1), o.residual_m, o.residual_N,
+               o.above);
   }
   fmt::print(context.out, "\n  {:<28}{:>10}{:>10}\n", "sweeps/ms, random, dense", "120 rows", "360 rows");
-  fmt::print(context.out, "  {:<28}{:>10.0f}{:>10.0f}\n", "contacts without friction", sweep_rate(120, LawKind::box), sweep_rate(360, LawKind::box));
-  fmt::print(context.out, "  {:<28}{:>10.0f}{:>10.0f}\n", "contacts with friction", sweep_rate(120, LawKind::friction), sweep_rate(360, LawKind::friction));
+  fmt::print(context.out, "  {:<28}{:>10.0f}{:>10.0f}\n", "contacts without friction", sweep_rate(120, LawKind::box),
+             sweep_rate(360, LawKind::box));
+  fmt::print(context.out, "  {:<28}{:>10.0f}{:>10.0f}\n", "contacts with friction", sweep_rate(120, LawKind::friction),
+             sweep_rate(360, LawKind::friction));
   return 0;
 }
 

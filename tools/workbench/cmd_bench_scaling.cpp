@@ -10,10 +10,10 @@
 
 #include "core/linalg/kernels.h"
 #include "core/mechanics/soft_body.h"
-#include "tools/workbench/workbench.h"
 #include "engine/reports/report_writer.h"
-#include "tools/workbench/scaling_scene.h"
 #include "engine/reports/svg_plot.h"
+#include "tools/workbench/scaling_scene.h"
+#include "tools/workbench/workbench.h"
 
 namespace insula {
 namespace {
@@ -21,9 +21,9 @@ namespace {
 /// One curve of a plot: a quantity at each size, and the power of the size that theory gives it.
 struct Quantity {
   std::string name, unit;
-  double theory;           ///< exponent; not finite: none
+  double theory;  ///< exponent; not finite: none
   std::string why;
-  std::string colour;      ///< empty: not drawn
+  std::string colour;  ///< empty: not drawn
   std::vector<double> value;
 };
 
@@ -33,7 +33,8 @@ struct Series {
   std::vector<Quantity> quantities;
 };
 
-/// Least squares of log(value) over log(size), from the size on at which costs that do not grow have faded: the upper half.
+/// Least squares of log(value) over log(size), from the size on at which costs that do not grow have faded: the upper
+/// half.
 double slope(const std::vector<double>& size, const std::vector<double>& value) {
   std::vector<std::pair<double, double>> points;
   for (std::size_t i = 0; i < size.size(); ++i)
@@ -98,59 +99,70 @@ void add(Series& to, double size, std::initializer_list<double> values) {
 constexpr double none = NAN;
 
 Series against_nodes(const CommandContext& context, const ScalingOptions& options) {
-  Series out{"Against nodes", "nodes", {}, {
-      {"elements", "ms", 1, "six tetrahedra a node", "#2e9e6b", {}},
-      {"factor flops", "Mflop", 2, "nested dissection in three dimensions", "", {}},
-      {"factor entries", "10^6", 4.0 / 3, "nested dissection in three dimensions", "", {}},
-      {"free motion", "ms", 2, "the factor; less while fronts are too small for full speed", "#1f6fb2", {}},
-      {"collision", "ms", 2.0 / 3, "surface", "#b0862a", {}},
-      {"build", "ms", 4.0 / 3, "entries of the factor that the rows reach", "#a03c78", {}},
-      {"correct", "ms", 4.0 / 3, "entries of the factor", "#d0532f", {}},
-      {"step", "ms", 2, "the factor", "#222222", {}}}};
+  Series out{"Against nodes",
+             "nodes",
+             {},
+             {{"elements", "ms", 1, "six tetrahedra a node", "#2e9e6b", {}},
+              {"factor flops", "Mflop", 2, "nested dissection in three dimensions", "", {}},
+              {"factor entries", "10^6", 4.0 / 3, "nested dissection in three dimensions", "", {}},
+              {"free motion", "ms", 2, "the factor; less while fronts are too small for full speed", "#1f6fb2", {}},
+              {"collision", "ms", 2.0 / 3, "surface", "#b0862a", {}},
+              {"build", "ms", 4.0 / 3, "entries of the factor that the rows reach", "#a03c78", {}},
+              {"correct", "ms", 4.0 / 3, "entries of the factor", "#d0532f", {}},
+              {"step", "ms", 2, "the factor", "#222222", {}}}};
   std::vector<int> cells{7, 9, 12, 16, 21, 27, 36};
   if (options.quick) cells.resize(4);
   for (int c : cells) {
     const auto s = brick_scene({c, 7, 7, 0}, context.registry, options.threads);
     const Measured m = measure(*s, c > 20 ? 1 : 5, 2);
-    add(out, m.nodes, {m.assembly, m.flops * 1e-6, m.entries * 1e-6, m.stage[stage_free_motion], m.stage[stage_collision], m.stage[stage_build], m.stage[stage_correct], m.step});
+    add(out, m.nodes,
+        {m.assembly, m.flops * 1e-6, m.entries * 1e-6, m.stage[stage_free_motion], m.stage[stage_collision],
+         m.stage[stage_build], m.stage[stage_correct], m.step});
     if (!options.json) fmt::print(context.err, "  {:.0f} nodes: {:.1f} ms a step\n", m.nodes, m.step);
   }
   return out;
 }
 
 Series against_rows(const CommandContext& context, const ScalingOptions& options) {
-  Series out{"Against rows", "rows", {}, {
-      {"collision", "ms", none, "the same surfaces", "#b0862a", {}},
-      {"build", "ms", 1, "what each row reaches of the factor; rows^2 from some 600 on", "#a03c78", {}},
-      {"sweeps", "", none, "", "", {}},
-      {"one sweep", "us", 2, "rows^2 from some 300 on; before, what a block costs", "", {}},
-      {"solve", "ms", 2, "sweeps by rows^2", "#1f6fb2", {}},
-      {"correct", "ms", none, "the factor read once, and one product a row", "#d0532f", {}},
-      {"step", "ms", none, "", "#222222", {}}}};
+  Series out{"Against rows",
+             "rows",
+             {},
+             {{"collision", "ms", none, "the same surfaces", "#b0862a", {}},
+              {"build", "ms", 1, "what each row reaches of the factor; rows^2 from some 600 on", "#a03c78", {}},
+              {"sweeps", "", none, "", "", {}},
+              {"one sweep", "us", 2, "rows^2 from some 300 on; before, what a block costs", "", {}},
+              {"solve", "ms", 2, "sweeps by rows^2", "#1f6fb2", {}},
+              {"correct", "ms", none, "the factor read once, and one product a row", "#d0532f", {}},
+              {"step", "ms", none, "", "#222222", {}}}};
   std::vector<int> contacts{3, 6, 12, 25, 50, 100, 200};
   if (options.quick) contacts.resize(4);
   for (int k : contacts) {
     const auto s = brick_scene({11, 10, 0, k}, context.registry, options.threads);
     const Measured m = measure(*s, 20, 2);
-    add(out, m.rows, {m.stage[stage_collision], m.stage[stage_build], m.sweeps, 1000 * m.stage[stage_solve] / std::max(1.0, m.sweeps), m.stage[stage_solve], m.stage[stage_correct], m.step});
+    add(out, m.rows,
+        {m.stage[stage_collision], m.stage[stage_build], m.sweeps,
+         1000 * m.stage[stage_solve] / std::max(1.0, m.sweeps), m.stage[stage_solve], m.stage[stage_correct], m.step});
     if (!options.json) fmt::print(context.err, "  {:.0f} rows: {:.2f} ms a step\n", m.rows, m.step);
   }
   return out;
 }
 
 Series against_strands(const CommandContext& context, const ScalingOptions& options) {
-  Series out{"Against strands", "strands", {}, {
-      {"collision", "ms", none, "blades near a strand: there is none here", "#b0862a", {}},
-      {"build", "ms", 1, "as rows", "#a03c78", {}},
-      {"solve", "ms", 2, "sweeps by rows^2", "#1f6fb2", {}},
-      {"correct", "ms", none, "the factor read once, and one product a row", "#d0532f", {}},
-      {"step", "ms", none, "", "#222222", {}}}};
+  Series out{"Against strands",
+             "strands",
+             {},
+             {{"collision", "ms", none, "blades near a strand: there is none here", "#b0862a", {}},
+              {"build", "ms", 1, "as rows", "#a03c78", {}},
+              {"solve", "ms", 2, "sweeps by rows^2", "#1f6fb2", {}},
+              {"correct", "ms", none, "the factor read once, and one product a row", "#d0532f", {}},
+              {"step", "ms", none, "", "#222222", {}}}};
   std::vector<double> density{0, 1, 3, 8, 20, 40, 62};
   if (options.quick) density.resize(4);
   for (double d : density) {
     const auto s = brick_scene({10, 10, d, 0}, context.registry, options.threads);
     const Measured m = measure(*s, 10, 2);
-    add(out, m.strands, {m.stage[stage_collision], m.stage[stage_build], m.stage[stage_solve], m.stage[stage_correct], m.step});
+    add(out, m.strands,
+        {m.stage[stage_collision], m.stage[stage_build], m.stage[stage_solve], m.stage[stage_correct], m.step});
     if (!options.json) fmt::print(context.err, "  {:.0f} strands: {:.2f} ms a step\n", m.strands, m.step);
   }
   return out;
@@ -162,7 +174,8 @@ void print(std::ostream& out, const Series& s) {
   fmt::print(out, "{:>9}{:>9}\n", "slope", "theory");
   for (const Quantity& q : s.quantities) {
     fmt::print(out, "  {:<20}", q.unit.empty() ? q.name : q.name + ", " + q.unit);
-    for (double v : q.value) fmt::print(out, "{:>9}", fmt::format("{:.{}f}", v, v < 0.1 ? 4 : v < 10 ? 2 : v < 1000 ? 1 : 0));
+    for (double v : q.value)
+      fmt::print(out, "{:>9}", fmt::format("{:.{}f}", v, v < 0.1 ? 4 : v < 10 ? 2 : v < 1000 ? 1 : 0));
     fmt::print(out, "{:>9}{:>9}  {}\n", std::isfinite(q.theory) ? fmt::format("{:.2f}", slope(s.size, q.value)) : "",
                std::isfinite(q.theory) ? fmt::format("{:.2f}", q.theory) : "", q.why);
   }
@@ -201,7 +214,10 @@ std::string picture(const std::vector<Series>& all) {
     inner += one;
     y += 260;
   }
-  return fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 760 {0}\" role=\"img\">\n<rect width=\"760\" height=\"{0}\" fill=\"#fff\"/>\n{1}</svg>\n", y, inner);
+  return fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 760 {0}\" role=\"img\">\n<rect width=\"760\" "
+      "height=\"{0}\" fill=\"#fff\"/>\n{1}</svg>\n",
+      y, inner);
 }
 
 }  // namespace

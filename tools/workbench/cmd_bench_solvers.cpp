@@ -85,7 +85,7 @@ Recorded record(const DeformableBody& body, int max_rows) {
 struct Measured {
   std::string name;
   double factor_ms = 1e300, solve_ms = 1e300, w_ms = 1e300;
-  double again_ms = 1e300;  ///< W of the same rows with the same factor
+  double again_ms = 1e300;              ///< W of the same rows with the same factor
   double solve_error = 0, w_error = 0;  ///< largest, over the largest value
   SolverCost cost;
 };
@@ -125,7 +125,8 @@ std::vector<Measured> measure(const Recorded& step, std::vector<std::unique_ptr<
         s.add_compliance(step.rows, w.data(), stride);
       };
       timed(out[i].factor_ms, [&] {
-        if (!s.factorise(a)) throw std::runtime_error(s.name() + " calls the matrix of \"" + step.body->id + "\" indefinite");
+        if (!s.factorise(a))
+          throw std::runtime_error(s.name() + " calls the matrix of \"" + step.body->id + "\" indefinite");
       });
       x = step.b;
       timed(out[i].solve_ms, [&] { s.solve(x.data()); });
@@ -163,36 +164,51 @@ bool is_single(const Measured& s) { return s.name.find("single") != std::string:
 
 nlohmann::json as_json(const Measured& s, const MachineRates& machine) {
   const double product = is_single(s) ? machine.product_f32 : machine.product_f64;
-  const double factor_rate = s.cost.factor_flops / (s.factor_ms * 1e-3), w_rate = s.cost.compliance_flops / (s.w_ms * 1e-3);
+  const double factor_rate = s.cost.factor_flops / (s.factor_ms * 1e-3),
+               w_rate = s.cost.compliance_flops / (s.w_ms * 1e-3);
   const double read = s.cost.factor_bytes / (s.solve_ms * 1e-3);
-  nlohmann::json j{{"solver", s.name}, {"factor_ms", s.factor_ms}, {"solve_ms", s.solve_ms}, {"w_ms", s.w_ms}, {"w_again_ms", s.again_ms},
-                   {"solve_error", s.solve_error}, {"w_error", s.w_error},
-                   {"factor_entries", s.cost.factor_entries}, {"factor_flops", s.cost.factor_flops}, {"w_flops", s.cost.compliance_flops}, {"solve_bytes", s.cost.factor_bytes},
-                   {"factor_share_of_product", factor_rate / product}, {"w_share_of_product", w_rate / product}, {"solve_share_of_read", read / machine.read}};
+  nlohmann::json j{{"solver", s.name},
+                   {"factor_ms", s.factor_ms},
+                   {"solve_ms", s.solve_ms},
+                   {"w_ms", s.w_ms},
+                   {"w_again_ms", s.again_ms},
+                   {"solve_error", s.solve_error},
+                   {"w_error", s.w_error},
+                   {"factor_entries", s.cost.factor_entries},
+                   {"factor_flops", s.cost.factor_flops},
+                   {"w_flops", s.cost.compliance_flops},
+                   {"solve_bytes", s.cost.factor_bytes},
+                   {"factor_share_of_product", factor_rate / product},
+                   {"w_share_of_product", w_rate / product},
+                   {"solve_share_of_read", read / machine.read}};
   return j;
 }
 
 void print(std::ostream& out, const Recorded& step, const std::vector<Measured>& all, const MachineRates& machine) {
   fmt::print(out, "\n{}: {} free nodes, {} rows\n", step.body->id, step.body->system().nodes(), step.rows.count());
-  fmt::print(out, "  {:<26}{:>10}{:>10}{:>10}{:>10}{:>11}{:>11}{:>10}{:>11}{:>7}{:>7}{:>7}\n", "solver", "factor ms", "solve ms", "W ms", "W again", "err solve", "err W", "entries",
-             "fac Mflop", "fac %", "W %", "read %");
+  fmt::print(out, "  {:<26}{:>10}{:>10}{:>10}{:>10}{:>11}{:>11}{:>10}{:>11}{:>7}{:>7}{:>7}\n", "solver", "factor ms",
+             "solve ms", "W ms", "W again", "err solve", "err W", "entries", "fac Mflop", "fac %", "W %", "read %");
   for (const Measured& s : all) {
     const nlohmann::json j = as_json(s, machine);
-    fmt::print(out, "  {:<26}{:>10.3f}{:>10.3f}{:>10.3f}{:>10.3f}{:>11.1e}{:>11.1e}{:>10}{:>11.1f}{:>7.0f}{:>7.0f}{:>7.0f}\n", s.name, s.factor_ms, s.solve_ms, s.w_ms, s.again_ms,
-               s.solve_error, s.w_error, s.cost.factor_entries, s.cost.factor_flops * 1e-6, 100 * j["factor_share_of_product"].get<double>(),
-               100 * j["w_share_of_product"].get<double>(), 100 * j["solve_share_of_read"].get<double>());
+    fmt::print(
+        out, "  {:<26}{:>10.3f}{:>10.3f}{:>10.3f}{:>10.3f}{:>11.1e}{:>11.1e}{:>10}{:>11.1f}{:>7.0f}{:>7.0f}{:>7.0f}\n",
+        s.name, s.factor_ms, s.solve_ms, s.w_ms, s.again_ms, s.solve_error, s.w_error, s.cost.factor_entries,
+        s.cost.factor_flops * 1e-6, 100 * j["factor_share_of_product"].get<double>(),
+        100 * j["w_share_of_product"].get<double>(), 100 * j["solve_share_of_read"].get<double>());
   }
   const Measured& ours = all.front();
   for (const Measured& s : all)
     if (&s != &ours)
-      fmt::print(out, "  {} over {}: factor {:.1f}, W {:.1f}, factor and W {:.1f}\n", s.name, ours.name, s.factor_ms / ours.factor_ms, s.w_ms / ours.w_ms,
+      fmt::print(out, "  {} over {}: factor {:.1f}, W {:.1f}, factor and W {:.1f}\n", s.name, ours.name,
+                 s.factor_ms / ours.factor_ms, s.w_ms / ours.w_ms,
                  (s.factor_ms + s.w_ms) / (ours.factor_ms + ours.w_ms));
 }
 
 }  // namespace
 
 int cmd_bench_solvers(const CommandContext& context, const BenchOptions& options) {
-  const OpenedRun opened = open_run(context, options.scene, options.motion, options.motion == "steady", options.threads);
+  const OpenedRun opened =
+      open_run(context, options.scene, options.motion, options.motion == "steady", options.threads);
   if (!opened.simulation) return 2;
   HeadlessRun run(*opened.simulation, opened.motion);
   const auto steps = std::max<std::int64_t>(5, std::int64_t(options.from / opened.simulation->h()));
@@ -204,14 +220,20 @@ int cmd_bench_solvers(const CommandContext& context, const BenchOptions& options
   j["time_s"] = opened.simulation->time();
   j["kernels"] = kernels().name;
   j["blas"] = blas_library();
-  j["machine"] = {{"peak_f64", machine.peak_f64}, {"peak_f32", machine.peak_f32}, {"product_f64", machine.product_f64}, {"product_f32", machine.product_f32}, {"read", machine.read}};
+  j["machine"] = {{"peak_f64", machine.peak_f64},
+                  {"peak_f32", machine.peak_f32},
+                  {"product_f64", machine.product_f64},
+                  {"product_f32", machine.product_f32},
+                  {"read", machine.read}};
   if (!options.json)
     fmt::print(context.out,
                "{} at {:.2f} s  ({} kernels, one thread; CHOLMOD on {})\n"
-               "this core, Gflop/s: peak {:.0f} (single {:.0f}), dense product of our kernels {:.0f} (single {:.0f}); reads {:.1f} GB/s\n"
+               "this core, Gflop/s: peak {:.0f} (single {:.0f}), dense product of our kernels {:.0f} (single {:.0f}); "
+               "reads {:.1f} GB/s\n"
                "%: of the rate of the dense product; of the rate of reading\n",
-               options.scene.string(), opened.simulation->time(), kernels().name, blas_library(), machine.peak_f64 * 1e-9, machine.peak_f32 * 1e-9,
-               machine.product_f64 * 1e-9, machine.product_f32 * 1e-9, machine.read * 1e-9);
+               options.scene.string(), opened.simulation->time(), kernels().name, blas_library(),
+               machine.peak_f64 * 1e-9, machine.peak_f32 * 1e-9, machine.product_f64 * 1e-9, machine.product_f32 * 1e-9,
+               machine.read * 1e-9);
   for (const Body* b : opened.simulation->bodies()) {
     const auto* body = dynamic_cast<const DeformableBody*>(b);
     if (!body || body->system().nodes() == 0) continue;

@@ -11,9 +11,9 @@
 #include "core/scene/loader.h"
 #include "core/sim/settings.h"
 #include "core/sim/simulation.h"
-#include "tools/workbench/workbench.h"
-#include "tools/workbench/cost_model.h"
 #include "engine/live/scene_devices.h"
+#include "tools/workbench/cost_model.h"
+#include "tools/workbench/workbench.h"
 
 namespace insula {
 namespace {
@@ -24,26 +24,31 @@ std::string cost_text(const std::string& file, Simulation& simulation, const Cos
   const SceneWork work = count_work(simulation);
   const int threads = simulation.workers().threads();
   const CostEstimate e = estimate(work, rates, threads);
-  std::string out = fmt::format("  needs about {:.{}f} ms a step of {:.1f} ms on {} thread{}, at {} rows of {}; most of it is {}\n", e.step_ms, e.step_ms < 10 ? 1 : 0,
-                                1000 * work.h, threads, threads == 1 ? "" : "s", work.expected_rows, work.max_rows, e.most);
+  std::string out =
+      fmt::format("  needs about {:.{}f} ms a step of {:.1f} ms on {} thread{}, at {} rows of {}; most of it is {}\n",
+                  e.step_ms, e.step_ms < 10 ? 1 : 0, 1000 * work.h, threads, threads == 1 ? "" : "s",
+                  work.expected_rows, work.max_rows, e.most);
   if (e.refactor_ms > 0.25 * e.step_ms)
     out += fmt::format("  and {:.1f} ms more in a step that makes a kept factor anew\n", e.refactor_ms);
   if (e.step_ms <= 1000 * work.h) return out;
-  out += fmt::format("{}: warning: too slow for this machine by a factor of {:.1f}: it would run slower than life\n", file, e.step_ms / (1000 * work.h));
+  out += fmt::format("{}: warning: too slow for this machine by a factor of {:.1f}: it would run slower than life\n",
+                     file, e.step_ms / (1000 * work.h));
   for (const std::string& a : e.advice) out += "  " + a + "\n";
   return out;
 }
 
 /// One scene: loaded, and put together as for a run, since some mistakes show only there. Returns the lines to print.
-std::string check_one(const std::filesystem::path& file, const Registry& registry, Diagnostics& diagnostics, std::optional<CostRates>& rates, bool settle) {
+std::string check_one(const std::filesystem::path& file, const Registry& registry, Diagnostics& diagnostics,
+                      std::optional<CostRates>& rates, bool settle) {
   auto loaded = load_scene(file, registry);
   diagnostics = std::move(loaded.diagnostics);
   if (!loaded.scene) return {};
   check_scene_devices(*loaded.scene, diagnostics);
   const auto& components = loaded.scene->components();
-  const auto bodies = std::count_if(components.begin(), components.end(), [](const Component* c) { return c->kind == Kind::body; });
-  std::string lines = fmt::format("{}: ok, {} components, {} bodies, content {:016x}\n", file.generic_string(), components.size(), bodies,
-                                  loaded.scene->content_hash());
+  const auto bodies =
+      std::count_if(components.begin(), components.end(), [](const Component* c) { return c->kind == Kind::body; });
+  std::string lines = fmt::format("{}: ok, {} components, {} bodies, content {:016x}\n", file.generic_string(),
+                                  components.size(), bodies, loaded.scene->content_hash());
   const bool deforms = !loaded.scene->all<DeformableBody>().empty();
   double settling = 0;
   for (SettleSettings* s : loaded.scene->all<SettleSettings>()) {
@@ -53,7 +58,8 @@ std::string check_one(const std::filesystem::path& file, const Registry& registr
   try {
     Simulation simulation(std::move(loaded.scene), diagnostics);
     if (settling > 0 && !settle) {
-      lines += fmt::format("  settles for {:.3g} s first; with --settle it does so, and the cost of a step is told\n", settling);
+      lines += fmt::format("  settles for {:.3g} s first; with --settle it does so, and the cost of a step is told\n",
+                           settling);
     } else if (deforms && diagnostics.ok()) {
       if (!rates) rates = measure_rates(registry);
       lines += cost_text(file.generic_string(), simulation, *rates);

@@ -69,7 +69,8 @@ SceneWork count_work(const Simulation& s) {
     k.nodes = body->nodes();
     k.h = s.h();
     if (const auto* soft = dynamic_cast<const SoftBody*>(body)) k.elements = int(soft->rest().tets.size());
-    if (const auto* shell = dynamic_cast<const ShellBody*>(body)) k.elements = int(shell->wall_triangles().size()), k.wall = true;
+    if (const auto* shell = dynamic_cast<const ShellBody*>(body))
+      k.elements = int(shell->wall_triangles().size()), k.wall = true;
     k.background = body->solver_kind.is("asynchronous");
     k.keeps_tangent = !k.background && body->tangent_tolerance() > 0;
     k.solver = body->solver().cost();
@@ -78,8 +79,11 @@ SceneWork count_work(const Simulation& s) {
     for (const auto& [which, n] : more.of_body) rows += which == body ? n : 0;
     k.rows = int(std::lround(rows));
     // What the last rows took, and for those to come the usual part of the factor that a row reaches.
-    const auto usual = [&](double m) { return 0.7 * (m * double(k.solver.factor_entries) + 0.3 * m * m * 3 * k.nodes); };
-    k.compliance_flops = k.solver.compliance_flops > 0 ? k.solver.compliance_flops + usual(rows) - usual(now) : usual(rows);
+    const auto usual = [&](double m) {
+      return 0.7 * (m * double(k.solver.factor_entries) + 0.3 * m * m * 3 * k.nodes);
+    };
+    k.compliance_flops =
+        k.solver.compliance_flops > 0 ? k.solver.compliance_flops + usual(rows) - usual(now) : usual(rows);
     w.bodies.push_back(std::move(k));
   }
 
@@ -114,35 +118,50 @@ struct Share {
 }  // namespace
 
 CostEstimate estimate(const SceneWork& w, const CostRates& r, int threads) {
-  // A triangle of a wall with its hinges, over a tetrahedron; how often a kept factor is made anew; iterations of a solve with one
-  // made in the background; a step over the best of several runs in a row, whose data lie in the caches; entries of a factor that a
-  // cache holds.
-  constexpr double wall_tangent = 3, wall_force = 3.2, anew = 0.05, iterations = 3, in_a_step = 1.25, cached = 1e6, newton_step = 2;
+  // A triangle of a wall with its hinges, over a tetrahedron; how often a kept factor is made anew; iterations of a
+  // solve with one made in the background; a step over the best of several runs in a row, whose data lie in the caches;
+  // entries of a factor that a cache holds.
+  constexpr double wall_tangent = 3, wall_force = 3.2, anew = 0.05, iterations = 3, in_a_step = 1.25, cached = 1e6,
+                   newton_step = 2;
   CostEstimate out;
   std::vector<double> free, correct, compliance;
   std::vector<Share> shares;
   double add = 0;
   for (const BodyWork& b : w.bodies) {
-    const double tangent = b.elements * r.tetrahedron * (b.wall ? wall_tangent : 1), force = b.elements * r.tetrahedron_force * (b.wall ? wall_force : 1);
-    const double factor = b.background ? 0 : b.solver.factor_flops * r.factor_flop + double(b.solver.factor_entries) * r.factor_entry;
+    const double tangent = b.elements * r.tetrahedron * (b.wall ? wall_tangent : 1),
+                 force = b.elements * r.tetrahedron_force * (b.wall ? wall_force : 1);
+    const double factor =
+        b.background ? 0 : b.solver.factor_flops * r.factor_flop + double(b.solver.factor_entries) * r.factor_entry;
     const double solve = double(b.solver.factor_entries) * r.solve_entry * (b.background ? 0.5 * iterations : 1);
     const double often = b.keeps_tangent ? anew : 1, forward = b.background ? solve : 0.5 * solve;
     free.push_back(in_a_step * (often * (tangent + factor) + (1 - often) * force + forward) + 12 * b.nodes * r.vertex);
     correct.push_back(b.background ? (b.rows > 0 ? 0.8 * solve : 0) : 0.5 * solve);
-    compliance.push_back(b.rows > 0 ? b.compliance_flops * r.compliance_flop + 1.5 * std::max(0.0, double(b.solver.factor_entries) - cached) * r.solve_entry : 0);
+    compliance.push_back(b.rows > 0 ? b.compliance_flops * r.compliance_flop +
+                                          1.5 * std::max(0.0, double(b.solver.factor_entries) - cached) * r.solve_entry
+                                    : 0);
     add += double(b.rows) * b.rows * r.compliance_row2;
     if (b.keeps_tangent) out.refactor_ms = std::max(out.refactor_ms, 1000 * (tangent + factor));
-    shares.push_back({1000 * often * factor, fmt::format("the factor of \"{}\" ({} nodes, {:.0f} Mflop)", b.id, b.nodes, b.solver.factor_flops * 1e-6),
-                      fmt::format("fewer nodes in \"{}\": half of them make its factor about four times cheaper; hold what lies far with <fixed>{}", b.id,
-                                  b.keeps_tangent ? "" : b.solver.factor_flops > 1e9 ? ", or have it made in the background with solver=\"asynchronous\"" : ", or keep the factor with tangent_tolerance=\"0.02\"")});
-    shares.push_back({1000 * (tangent * often + force * (1 - often)), fmt::format("the {} elements of \"{}\"", b.elements, b.id), fmt::format("fewer elements in \"{}\"", b.id)});
+    shares.push_back(
+        {1000 * often * factor,
+         fmt::format("the factor of \"{}\" ({} nodes, {:.0f} Mflop)", b.id, b.nodes, b.solver.factor_flops * 1e-6),
+         fmt::format("fewer nodes in \"{}\": half of them make its factor about four times cheaper; hold what lies far "
+                     "with <fixed>{}",
+                     b.id,
+                     b.keeps_tangent               ? ""
+                     : b.solver.factor_flops > 1e9 ? ", or have it made in the background with solver=\"asynchronous\""
+                                                   : ", or keep the factor with tangent_tolerance=\"0.02\"")});
+    shares.push_back({1000 * (tangent * often + force * (1 - often)),
+                      fmt::format("the {} elements of \"{}\"", b.elements, b.id),
+                      fmt::format("fewer elements in \"{}\"", b.id)});
     shares.push_back({1000 * compliance.back(), fmt::format("the compliance of {} rows on \"{}\"", b.rows, b.id),
                       "fewer rows: larger spacing, smaller max_contacts, patch, fewer strands"});
   }
-  const double surfaces = r.vertex * (0.8 * w.surface_vertices + 0.2 * w.surface_triangles + 0.25 * w.tissue_vertices + 500.0 * w.tool_pieces + 120.0 * w.wall_vertices + 550.0 * w.expected_rows);
+  const double surfaces = r.vertex * (0.8 * w.surface_vertices + 0.2 * w.surface_triangles + 0.25 * w.tissue_vertices +
+                                      500.0 * w.tool_pieces + 120.0 * w.wall_vertices + 550.0 * w.expected_rows);
   // Where Newton is allowed sweeps stall: one step of it, m^3 / 1.5 in small pieces, at the dense rate of the factor.
   const double rows2 = double(w.expected_rows) * w.expected_rows;
-  const double sweeps = w.expected_sweeps * rows2 * r.sweep_row2 + (w.newton ? newton_step * rows2 * w.expected_rows / 1.5 * r.compliance_flop : 0);
+  const double sweeps = w.expected_sweeps * rows2 * r.sweep_row2 +
+                        (w.newton ? newton_step * rows2 * w.expected_rows / 1.5 * r.compliance_flop : 0);
   const double row = 10 * r.vertex;  // what a row costs besides: built, read, told
   double all = 0;
   for (double c : compliance) all += c;
@@ -155,15 +174,19 @@ CostEstimate estimate(const SceneWork& w, const CostRates& r, int threads) {
   out.stage_ms[stage_publish] = 1000 * row * w.expected_rows;
   for (double ms : out.stage_ms) out.step_ms += ms;
 
-  shares.push_back({out.stage_ms[stage_collision], fmt::format("collision of surfaces with {} triangles", w.surface_triangles),
-                    "coarser surfaces for contact; contact=\"false\" on those for the picture; a larger tissue_spacing; smaller alarms"});
-  shares.push_back({out.stage_ms[stage_solve], fmt::format("{:.0f} sweeps over {} rows", w.expected_sweeps, w.expected_rows),
-                    "fewer rows: larger spacing, smaller max_contacts, patch, fewer strands; a smaller max_sweeps of <solver>"});
+  shares.push_back({out.stage_ms[stage_collision],
+                    fmt::format("collision of surfaces with {} triangles", w.surface_triangles),
+                    "coarser surfaces for contact; contact=\"false\" on those for the picture; a larger "
+                    "tissue_spacing; smaller alarms"});
+  shares.push_back(
+      {out.stage_ms[stage_solve], fmt::format("{:.0f} sweeps over {} rows", w.expected_sweeps, w.expected_rows),
+       "fewer rows: larger spacing, smaller max_contacts, patch, fewer strands; a smaller max_sweeps of <solver>"});
   std::stable_sort(shares.begin(), shares.end(), [](const Share& a, const Share& b) { return a.ms > b.ms; });
   out.most = shares.front().what;
   if (out.step_ms > 1000 * w.h)
     for (const Share& s : shares)
-      if (s.ms > 0.15 * out.step_ms && std::find(out.advice.begin(), out.advice.end(), s.advice) == out.advice.end()) out.advice.push_back(s.advice);
+      if (s.ms > 0.15 * out.step_ms && std::find(out.advice.begin(), out.advice.end(), s.advice) == out.advice.end())
+        out.advice.push_back(s.advice);
   return out;
 }
 

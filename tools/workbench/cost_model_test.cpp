@@ -8,9 +8,9 @@
 #include "core/mechanics/soft_body.h"
 #include "core/testing/example.h"
 #include "engine/live/headless.h"
-#include "tools/workbench/workbench.h"
-#include "tools/workbench/scaling_scene.h"
 #include "plugins/strand_springs/strand_set.h"
+#include "tools/workbench/scaling_scene.h"
+#include "tools/workbench/workbench.h"
 
 namespace insula {
 namespace {
@@ -94,7 +94,9 @@ TEST(CostModel, TellsWhatTakesMostAndWhatToDo) {
 
 TEST(CostModel, RatesArePositive) {
   const CostRates r = measure_rates(test::builtin());
-  for (double rate : {r.tetrahedron, r.tetrahedron_force, r.factor_flop, r.solve_entry, r.compliance_flop, r.compliance_row2, r.vertex, r.sweep_row2}) EXPECT_GT(rate, 0);
+  for (double rate : {r.tetrahedron, r.tetrahedron_force, r.factor_flop, r.solve_entry, r.compliance_flop,
+                      r.compliance_row2, r.vertex, r.sweep_row2})
+    EXPECT_GT(rate, 0);
   // Rates of dense products, whatever the machine, are of one order: none may be that of work that was skipped.
   EXPECT_GT(r.compliance_flop, 0.05 * r.factor_flop);
   EXPECT_LT(r.compliance_flop, 50 * r.factor_flop);

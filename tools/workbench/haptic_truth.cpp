@@ -10,27 +10,29 @@
 
 #include "core/base/input_error.h"
 #include "core/base/random.h"
-#include "engine/live/command_script.h"
 #include "core/haptics/condense.h"
-#include "engine/live/exchange_pause.h"
-#include "engine/live/publisher.h"
 #include "core/haptics/contact_frame_prediction.h"
 #include "core/haptics/haptic_update.h"
+#include "engine/live/command_script.h"
+#include "engine/live/exchange_pause.h"
+#include "engine/live/publisher.h"
 
 namespace insula {
 namespace {
 
 constexpr double tick_s = 1e-3;
 constexpr double rendered_N = 1e-6;
-constexpr double onset_share = 0.02;     // of the peak: from here on there is contact
+constexpr double onset_share = 0.02;  // of the peak: from here on there is contact
 constexpr double onset_least_N = 0.5e-3;
-constexpr double quiet_share = 0.25;     // of that threshold: from below it, a force that only creeps over the threshold is no onset
-constexpr int quiet_ticks = 50;          // without contact before an onset, and most that it takes
+constexpr double quiet_share =
+    0.25;  // of that threshold: from below it, a force that only creeps over the threshold is no onset
+constexpr int quiet_ticks = 50;  // without contact before an onset, and most that it takes
 
 /// Steps a simulation with the devices on the motion's path.
 class Driven {
  public:
-  Driven(Simulation& simulation, const Motion& motion) : simulation_(simulation), motion_(motion), script_(motion.commands()) {}
+  Driven(Simulation& simulation, const Motion& motion)
+      : simulation_(simulation), motion_(motion), script_(motion.commands()) {}
   void step() {
     const double end = simulation_.time() + simulation_.h();
     for (int hand = 0; hand < 2; ++hand) {
@@ -42,8 +44,10 @@ class Driven {
     simulation_.step();
     for (const Event& e : simulation_.events())  // or another tool than the motion's would be measured, unnoticed
       if (e.kind == "refused")
-        throw InputError(fmt::format("at {:.3f} s of the motion, with a step of {:.3g} ms, its command \"{}\" is refused: {}; give it at 0 s, before the hand has gone anywhere",
-                                     end - simulation_.h(), 1e3 * simulation_.h(), e.id, e.text));
+        throw InputError(
+            fmt::format("at {:.3f} s of the motion, with a step of {:.3g} ms, its command \"{}\" is refused: {}; give "
+                        "it at 0 s, before the hand has gone anywhere",
+                        end - simulation_.h(), 1e3 * simulation_.h(), e.id, e.text));
   }
   Vec3 force(int hand) const {
     const Instrument* tool = simulation_.instrument_of(hand);
@@ -62,12 +66,13 @@ void keep_diagonal(ConstraintProblem& p) {
       if (i != j) p.w[std::size_t(i) * std::size_t(p.stride) + std::size_t(j)] = 0;
 }
 
-/// What new problems change, told from what the servo changes by itself: another servo beside it, which takes each problem over at once,
-/// after a last tick with the old one.
+/// What new problems change, told from what the servo changes by itself: another servo beside it, which takes each
+/// problem over at once, after a last tick with the old one.
 class JumpMeter {
  public:
   explicit JumpMeter(ServoSettings settings) : own_((settings.force_crossfade.within_s = 0, settings)) {}
-  void tick(const RecordedStep* fresh, double age_s, const ServoInput& input, const ServoResult& rendered, ForceTrace& out) {
+  void tick(const RecordedStep* fresh, double age_s, const ServoInput& input, const ServoResult& rendered,
+            ForceTrace& out) {
     ServoResult now = own_.tick(input);
     const ServoResult went_on = now;
     if (fresh) {
@@ -100,7 +105,8 @@ ForceTrace reference_forces(Simulation& simulation, const Motion& motion, double
   return out;
 }
 
-std::vector<RecordedStep> record_steps(Simulation& simulation, const Motion& motion, double duration_s, double prediction_horizon_s) {
+std::vector<RecordedStep> record_steps(Simulation& simulation, const Motion& motion, double duration_s,
+                                       double prediction_horizon_s) {
   std::vector<RecordedStep> out;
   Driven driven(simulation, motion);
   ExchangePause pause;
@@ -116,14 +122,16 @@ std::vector<RecordedStep> record_steps(Simulation& simulation, const Motion& mot
     step.force = {driven.force(0), driven.force(1)};
     sent.step_s = simulation.h();
     sent.sim_time_s = simulation.time();
-    condense(prediction_horizon_s >= 0 ? turned(simulation, prediction_horizon_s) : simulation.problem(), Publisher::max_rows, sent.problem);
+    condense(prediction_horizon_s >= 0 ? turned(simulation, prediction_horizon_s) : simulation.problem(),
+             Publisher::max_rows, sent.problem);
     pause.apply(simulation, sent.problem);
     if (!encode_problem(sent, bytes) || !decode_problem(bytes, step.update, why)) out.pop_back();
   }
   return out;
 }
 
-ForceTrace replay(const std::vector<RecordedStep>& steps, const Motion& motion, double duration_s, const ReplaySettings& settings) {
+ForceTrace replay(const std::vector<RecordedStep>& steps, const Motion& motion, double duration_s,
+                  const ReplaySettings& settings) {
   ForceTrace out;
   Servo servo(settings.servo);
   JumpMeter jumps(settings.servo);
@@ -146,7 +154,8 @@ ForceTrace replay(const std::vector<RecordedStep>& steps, const Motion& motion, 
         bare = step.update.problem;
         keep_diagonal(bare);
       }
-      servo.set_problem(settings.rendering == Rendering::diagonal ? &bare : &step.update.problem, step.update.offset, t - step.pose_s);
+      servo.set_problem(settings.rendering == Rendering::diagonal ? &bare : &step.update.problem, step.update.offset,
+                        t - step.pose_s);
     }
     if (settings.rendering == Rendering::hindsight) {
       std::size_t after = 0;
@@ -181,7 +190,9 @@ ForceTrace replay(const std::vector<RecordedStep>& steps, const Motion& motion, 
 void write_traces(const std::filesystem::path& file, const ForceTrace& reference, const ForceTrace& rendered) {
   std::filesystem::create_directories(file.parent_path());
   std::ofstream out(file);
-  fmt::print(out, "time_s,left_x,left_y,left_z,right_x,right_y,right_z,servo_left_x,servo_left_y,servo_left_z,servo_right_x,servo_right_y,servo_right_z\n");
+  fmt::print(out,
+             "time_s,left_x,left_y,left_z,right_x,right_y,right_z,servo_left_x,servo_left_y,servo_left_z,servo_right_x,"
+             "servo_right_y,servo_right_z\n");
   for (std::size_t i = 0; i < rendered.force[0].size(); ++i) {
     fmt::print(out, "{:.3f}", tick_s * double(i + 1));
     for (const ForceTrace* t : {&reference, &rendered})
@@ -205,7 +216,8 @@ TruthOfHand compare(const std::vector<Vec3>& reference, const std::vector<Vec3>&
     out.worst = std::max(out.worst, error);
   }
   out.rms = std::sqrt(sum / double(std::max<std::size_t>(1, count)));
-  // Onsets of the reference, and when the rendered force crosses the same threshold, looked for from as long before as it was quiet.
+  // Onsets of the reference, and when the rendered force crosses the same threshold, looked for from as long before as
+  // it was quiet.
   const double threshold = std::max(onset_least_N, onset_share * out.peak_N);
   int quiet = quiet_ticks, rising = 0;
   for (std::size_t i = 0; i < n; ++i) {

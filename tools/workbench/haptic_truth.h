@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How true the servo's force is: against the full engine stepped at 1 kHz, on the same path of the devices.
 //
-// Both hands' devices go where a motion says, whatever the force, so that everything compared has the same input. The engine at
-// rate R steps with h = 1/R; its step n ends at n h with the devices where they are then. Its problem reaches the servo `latency`
-// later (one step, if the engine only just keeps up), and the servo solves it every millisecond until the next one.
+// Both hands' devices go where a motion says, whatever the force, so that everything compared has the same input. The
+// engine at rate R steps with h = 1/R; its step n ends at n h with the devices where they are then. Its problem reaches
+// the servo `latency` later (one step, if the engine only just keeps up), and the servo solves it every millisecond
+// until the next one.
 #pragma once
 #include <array>
 #include <filesystem>
@@ -19,7 +20,8 @@ namespace insula {
 /// Force on each hand at the end of every millisecond, N, scene frame.
 struct ForceTrace {
   std::array<std::vector<Vec3>, 2> force;
-  /// Largest change in a tick beyond what the servo's own problem would have changed in it, mid-contact, N: what new problems jump by.
+  /// Largest change in a tick beyond what the servo's own problem would have changed in it, mid-contact, N: what new
+  /// problems jump by.
   std::array<double, 2> jump{0, 0};
   void add(const Vec3& left, const Vec3& right) {
     force[0].push_back(left);
@@ -34,12 +36,14 @@ struct RecordedStep {
   std::array<Vec3, 2> force{Vec3::Zero(), Vec3::Zero()};
 };
 
-/// The engine stepped at 1 kHz over `duration_s` of the motion. Throws InputError, as record_steps does, when the engine refuses a command of
-/// the motion: what is measured would be something else.
+/// The engine stepped at 1 kHz over `duration_s` of the motion. Throws InputError, as record_steps does, when the
+/// engine refuses a command of the motion: what is measured would be something else.
 ForceTrace reference_forces(Simulation& simulation, const Motion& motion, double duration_s);
-/// Its problems at the rate of the simulation's own step, condensed, encoded and decoded as on the bus; with contacts turned to where tools
-/// are so long after the step (core/haptics/contact_frame_prediction.h), negative: as they were in it.
-std::vector<RecordedStep> record_steps(Simulation& simulation, const Motion& motion, double duration_s, double prediction_horizon_s = -1);
+/// Its problems at the rate of the simulation's own step, condensed, encoded and decoded as on the bus; with contacts
+/// turned to where tools are so long after the step (core/haptics/contact_frame_prediction.h), negative: as they were
+/// in it.
+std::vector<RecordedStep> record_steps(Simulation& simulation, const Motion& motion, double duration_s,
+                                       double prediction_horizon_s = -1);
 
 enum class Rendering { servo, held, diagonal, hindsight };
 
@@ -51,15 +55,17 @@ struct ReplaySettings {
   double jitter = 0;
 };
 
-/// What the hands are given every millisecond. `held`: the engine's force until the next; `diagonal`: the servo with the diagonal of
-/// W alone, each row for itself; `hindsight`: the engine's forces joined by straight lines, as one who knows the next could.
-ForceTrace replay(const std::vector<RecordedStep>& steps, const Motion& motion, double duration_s, const ReplaySettings& settings);
+/// What the hands are given every millisecond. `held`: the engine's force until the next; `diagonal`: the servo with
+/// the diagonal of W alone, each row for itself; `hindsight`: the engine's forces joined by straight lines, as one who
+/// knows the next could.
+ForceTrace replay(const std::vector<RecordedStep>& steps, const Motion& motion, double duration_s,
+                  const ReplaySettings& settings);
 
 struct TruthOfHand {
-  double peak_N = 0;       ///< of the reference
-  double rms = 0;          ///< of the error while either feels anything, over the peak
-  double worst = 0;        ///< largest error over the peak
-  double onset_s = 0;      ///< largest delay of a contact's onset, from nothing over 2 % of the peak; negative: early
+  double peak_N = 0;   ///< of the reference
+  double rms = 0;      ///< of the error while either feels anything, over the peak
+  double worst = 0;    ///< largest error over the peak
+  double onset_s = 0;  ///< largest delay of a contact's onset, from nothing over 2 % of the peak; negative: early
   int onsets = 0;
   bool counts() const { return peak_N > 2e-3; }  ///< there was something to feel
 };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The servo against the engine at 1 kHz, in short: a tap on the cortex of exercise 1; force cross-fade at 30 Hz with jitter; what is compared how.
+// The servo against the engine at 1 kHz, in short: a tap on the cortex of exercise 1; force cross-fade at 30 Hz with
+// jitter; what is compared how.
 #include "tools/workbench/haptic_truth.h"
 
 #include <gtest/gtest.h>
@@ -87,7 +88,8 @@ TEST(HapticTruthTurned, WhatIsHeldStillIsNotTurned) {
     return sum.head<3>();
   };
   const Vec3 as_in_the_step = push(-1), turned = push(3e-3);
-  std::printf("held still: %.1f mN, turned %.2f mN away\n", 1e3 * as_in_the_step.norm(), 1e3 * (turned - as_in_the_step).norm());
+  std::printf("held still: %.1f mN, turned %.2f mN away\n", 1e3 * as_in_the_step.norm(),
+              1e3 * (turned - as_in_the_step).norm());
   EXPECT_GT(as_in_the_step.norm(), 0.02);
   EXPECT_LT((turned - as_in_the_step).norm(), 0.005 * as_in_the_step.norm());
 }
@@ -100,17 +102,20 @@ TEST_F(HapticTruth, ANewProblemDoesNotJumpAt30HzWithJitter) {
   s.servo = ServoSettings::beyond_equation_7();
   EXPECT_LT(replay(problems, *motion_, tap_s, s).jump[1], 0.02 * truth(*reference_).peak_N);
   s.servo.force_crossfade.within_s = 0;
-  EXPECT_GT(replay(problems, *motion_, tap_s, s).jump[1], 0.03 * truth(*reference_).peak_N);  // there is something to hand over
+  EXPECT_GT(replay(problems, *motion_, tap_s, s).jump[1],
+            0.03 * truth(*reference_).peak_N);  // there is something to hand over
 }
 
 TEST_F(HapticTruth, LookingAheadChangesNoForce) {
   auto simulation = fissure(1.0 / 60);
   const auto without = record_steps(*simulation, *motion_, 0.4);
   const auto with = steps(60);
-  for (std::size_t n = 0; n < without.size(); ++n) EXPECT_NEAR((with[n].force[1] - without[n].force[1]).norm(), 0, 1e-4) << n;
+  for (std::size_t n = 0; n < without.size(); ++n)
+    EXPECT_NEAR((with[n].force[1] - without[n].force[1]).norm(), 0, 1e-4) << n;
 }
 
-/// Where a strand parts and where a clip comes up against a vessel, at 30 Hz, late and with jitter. The peak: of the engine's own force.
+/// Where a strand parts and where a clip comes up against a vessel, at 30 Hz, late and with jitter. The peak: of the
+/// engine's own force.
 void expect_no_jump(const char* scene, const char* motion_file, double until_s) {
   const auto simulation = load_simulation(source / "scenes/training" / scene, test::builtin(), 1, 1.0 / 30).simulation;
   ASSERT_TRUE(simulation);
@@ -162,7 +167,8 @@ TEST(HapticTruthCompare, ErrorsAndOnsets) {
 TEST(HapticTruthCommands, ARefusedOneIsAnErrorThatSaysWhatAndWhen) {
   test::SceneFolder folder;
   folder.write("motion.csv",
-               "time_s,hand,px_m,py_m,pz_m,qw,qx,qy,qz,button1,button2\n0,command,exchange,right nothing\n0,right,0,0,0,1,0,0,0,0,0\n1,right,0,0,0,1,0,0,0,0,0\n");
+               "time_s,hand,px_m,py_m,pz_m,qw,qx,qy,qz,button1,button2\n0,command,exchange,right "
+               "nothing\n0,right,0,0,0,1,0,0,0,0,0\n1,right,0,0,0,1,0,0,0,0,0\n");
   const Motion motion = load_motion(folder.path() / "motion.csv");
   auto simulation = fissure(1.0 / 30);
   ASSERT_TRUE(simulation);
@@ -170,7 +176,10 @@ TEST(HapticTruthCommands, ARefusedOneIsAnErrorThatSaysWhatAndWhen) {
     record_steps(*simulation, motion, 0.1);
     FAIL() << "nothing was said";
   } catch (const InputError& e) {
-    EXPECT_NE(std::string(e.what()).find("at 0.000 s of the motion, with a step of 33.3 ms, its command \"exchange\" is refused: no tool \"nothing\""), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find("at 0.000 s of the motion, with a step of 33.3 ms, its command \"exchange\" "
+                                         "is refused: no tool \"nothing\""),
+              std::string::npos)
+        << e.what();
   }
 }
 

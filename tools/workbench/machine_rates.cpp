@@ -43,6 +43,8 @@ double stream() {
 
 }  // namespace
 
-MachineRates measure_machine() { return {peak<double>(), peak<float>(), product<double>(), product<float>(), stream()}; }
+MachineRates measure_machine() {
+  return {peak<double>(), peak<float>(), product<double>(), product<float>(), stream()};
+}
 
 }  // namespace insula

@@ -35,31 +35,39 @@ struct CommandLine {
 void add_check(CommandLine& c) {
   auto* check = c.app.add_subcommand("check", "read scenes and report everything that is wrong with them");
   check->add_option("scene", c.files, "scene files")->required();
-  check->add_flag("--settle", c.settle, "let scenes settle that do so first: slower, and tells what a step of them costs");
+  check->add_flag("--settle", c.settle,
+                  "let scenes settle that do so first: slower, and tells what a step of them costs");
   check->callback([&c] { c.chosen = [&](const auto& x) { return insula::cmd_check(x, c.files, c.settle); }; });
 }
 
 void add_haptic_bench(CLI::App& bench, CommandLine& c) {
   auto& o = c.haptics;
-  auto* flag = bench.add_flag("--haptics", c.measure_haptics,
-                              "how far the servo's force is from that of the engine stepped at 1 kHz, devices on the motion's path");
-  insula::add_quantities<Frequency>(bench, "--rates", o.rates,
-                                    {.bare = "Hz", .min = "20 Hz", .max = "1 kHz", .doc = "with --haptics: the engine's rates"})
+  auto* flag = bench.add_flag(
+      "--haptics", c.measure_haptics,
+      "how far the servo's force is from that of the engine stepped at 1 kHz, devices on the motion's path");
+  insula::add_quantities<Frequency>(
+      bench, "--rates", o.rates,
+      {.bare = "Hz", .min = "20 Hz", .max = "1 kHz", .doc = "with --haptics: the engine's rates"})
       ->needs(flag);
   insula::add_quantity<Duration>(bench, "--duration", o.duration,
                                  seconds("with --haptics: simulated time; 0: the whole motion"))
       ->needs(flag);
-  bench.add_option("--latency", o.latency, "with --haptics: from poses to the problem's arrival, in steps (0.5) or as a time (3ms)")
+  bench
+      .add_option("--latency", o.latency,
+                  "with --haptics: from poses to the problem's arrival, in steps (0.5) or as a time (3ms)")
       ->capture_default_str()
       ->needs(flag);
   bench.add_option("--jitter", o.jitter, "with --haptics: and so much later still at most, in steps")
       ->check(CLI::Range(0.0, 3.0))
       ->needs(flag);
-  bench.add_flag("--fine", o.fine,
-                 "with --haptics: problems come at the rate, but from an engine that steps at 1 kHz: what is left is the servo's "
-                 "part of the error")
+  bench
+      .add_flag("--fine", o.fine,
+                "with --haptics: problems come at the rate, but from an engine that steps at 1 kHz: what is left is "
+                "the servo's "
+                "part of the error")
       ->needs(flag);
-  bench.add_flag("--ablation", o.ablation, "with --haptics: what goes beyond equation 7, one after the other")->needs(flag);
+  bench.add_flag("--ablation", o.ablation, "with --haptics: what goes beyond equation 7, one after the other")
+      ->needs(flag);
   bench.add_option("--traces", o.traces, "with --haptics: folder for the forces as CSV")->needs(flag);
 }
 
@@ -91,21 +99,27 @@ void add_bench(CommandLine& c) {
   auto& o = c.bench;
   auto* command = c.app.add_subcommand("bench", "where the time of a step goes");
   auto* scene = command->add_option("scene", o.scene, "scene file");
-  auto* scaling = command->add_flag("--scaling", c.measure_scaling,
-                                    "without a scene: the stages against nodes, rows and fibres, with their slopes; one thread "
-                                    "unless --threads says otherwise");
+  auto* scaling =
+      command->add_flag("--scaling", c.measure_scaling,
+                        "without a scene: the stages against nodes, rows and fibres, with their slopes; one thread "
+                        "unless --threads says otherwise");
   scaling->excludes(scene);
   command->add_flag("--quick", c.scaling.quick, "with --scaling: small sizes only")->needs(scaling);
-  command->add_option("--output", c.scaling.output, "with --scaling: folder for scaling.json and scaling.svg")->needs(scaling);
+  command->add_option("--output", c.scaling.output, "with --scaling: folder for scaling.json and scaling.svg")
+      ->needs(scaling);
   command->add_option("--steps", o.steps, "steps to measure")->check(at_least(1))->capture_default_str();
   insula::add_quantity<Duration>(*command, "--from", o.from, seconds("simulated time at which measuring begins"));
   add_motion(*command, o.motion);
   add_threads(*command, o.threads);
   command->add_flag("--json", o.json, "print JSON");
   command->add_flag("--solvers", o.solvers, "compare the solvers on the matrices and rows of the step at --from");
-  command->add_option("--rows", o.rows, "with --solvers: so many rows of each body at most; 0 takes all")->check(at_least(0));
-  auto* record = command->add_option("--record", o.record, "write the steps' constraint problems to this folder instead");
-  command->add_option("--every", o.every, "with --record: a problem of so many is written")->check(at_least(1))->needs(record);
+  command->add_option("--rows", o.rows, "with --solvers: so many rows of each body at most; 0 takes all")
+      ->check(at_least(0));
+  auto* record =
+      command->add_option("--record", o.record, "write the steps' constraint problems to this folder instead");
+  command->add_option("--every", o.every, "with --record: a problem of so many is written")
+      ->check(at_least(1))
+      ->needs(record);
   command->add_option("--problems", o.problems, "solve this folder's constraint problems instead of stepping a scene")
       ->excludes(scene);
   add_haptic_bench(*command, c);
@@ -117,7 +131,9 @@ void add_bench(CommandLine& c) {
 int main(int argc, char** argv) {
   CommandLine line;
   line.app.require_subcommand(1);
-  line.app.add_option("--plugin-path", line.plugin_paths, "folder of shared plugins, or one plugin (may be given more than once)")
+  line.app
+      .add_option("--plugin-path", line.plugin_paths,
+                  "folder of shared plugins, or one plugin (may be given more than once)")
       ->allow_extra_args(false);
   add_check(line);
   add_bench(line);

@@ -56,7 +56,8 @@ class ReferenceSolver : public BodySolver {
     h_.setZero(size_, m);
     for (int r = 0; r < m; ++r)
       for (int e = rows.start[std::size_t(r)]; e < rows.start[std::size_t(r) + 1]; ++e)
-        if (const int node = node_of_block[std::size_t(rows.block[std::size_t(e)])]; node >= 0) h_.block<3, 1>(3 * node, r) += rows.coeff[std::size_t(e)];
+        if (const int node = node_of_block[std::size_t(rows.block[std::size_t(e)])]; node >= 0)
+          h_.block<3, 1>(3 * node, r) += rows.coeff[std::size_t(e)];
     columns_ = m;
     w_.setZero(m, m);
   }
@@ -71,7 +72,9 @@ class ReferenceSolver : public BodySolver {
   }
   void add_compliance(const BodyRows& rows, double* w, int stride) override {
     for (int i = 0; i < columns_; ++i)
-      for (int j = 0; j < columns_; ++j) w[std::size_t(rows.row[std::size_t(i)]) * std::size_t(stride) + std::size_t(rows.row[std::size_t(j)])] += w_(i, j);
+      for (int j = 0; j < columns_; ++j)
+        w[std::size_t(rows.row[std::size_t(i)]) * std::size_t(stride) + std::size_t(rows.row[std::size_t(j)])] +=
+            w_(i, j);
   }
   void correct(const BodyRows& rows, const double* lambda, double* x) override {
     VecX l(columns_);
@@ -114,7 +117,9 @@ class OneThread {
 
  private:
   template <class F>
-  static F* find(const char* name) { return reinterpret_cast<F*>(::dlsym(RTLD_DEFAULT, name)); }
+  static F* find(const char* name) {
+    return reinterpret_cast<F*>(::dlsym(RTLD_DEFAULT, name));
+  }
   void (*set_)(int);
   int before_ = 1;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Solvers that others wrote, behind our interface: what ours is measured against and tested with. No exercise runs on them.
-// Both factorise in double precision and compute W by solving for all columns of H^T, as one would who has only the library.
+// Solvers that others wrote, behind our interface: what ours is measured against and tested with. No exercise runs on
+// them. Both factorise in double precision and compute W by solving for all columns of H^T, as one would who has only
+// the library.
 #pragma once
 #include <memory>
 

@@ -37,7 +37,8 @@ void write_brick(const fs::path& file, int cells, double low) {
   int number = 0;
   for (int i = 0; i < side; ++i)
     for (int j = 0; j < side; ++j)
-      for (int k = 0; k < side; ++k) out += fmt::format("{} {} {} {}\n", ++number, i * step - 15, j * step - 15, low + k * step);
+      for (int k = 0; k < side; ++k)
+        out += fmt::format("{} {} {} {}\n", ++number, i * step - 15, j * step - 15, low + k * step);
   out += fmt::format("$EndNodes\n$Elements\n{}\n", 6 * cells * cells * cells);
   const int stride[3] = {side * side, side, 1};
   constexpr int orders[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {1, 0, 2}, {2, 1, 0}};
@@ -46,7 +47,8 @@ void write_brick(const fs::path& file, int cells, double low) {
     for (int j = 0; j < cells; ++j)
       for (int k = 0; k < cells; ++k)
         for (int o = 0; o < 6; ++o) {
-          const int a = 1 + i * stride[0] + j * stride[1] + k, b = a + stride[orders[o][0]], c = b + stride[orders[o][1]], d = c + stride[orders[o][2]];
+          const int a = 1 + i * stride[0] + j * stride[1] + k, b = a + stride[orders[o][0]],
+                    c = b + stride[orders[o][1]], d = c + stride[orders[o][2]];
           out += fmt::format("{} 4 2 1 1 {} {} {} {}\n", ++number, a, o < 3 ? b : c, o < 3 ? c : b, d);
         }
   std::ofstream(file, std::ios::binary) << out << "$EndElements\n";
@@ -69,10 +71,15 @@ std::unique_ptr<Simulation> brick_scene(const Bricks& bricks, const Registry& re
       "<fixed region=\"beyond\" centre=\"0 0 {} mm\" normal=\"0 0 1\"/><surface id=\"upper_skin\"/></soft_body>\n",
       gap + 29.9);
   if (bricks.fibres > 0)
-    text += fmt::format("<strand_springs id=\"strands\" from=\"lower_skin\" to=\"upper_skin\" density=\"{} 1/cm2\" max_length=\"15 mm\" slack=\"0.9\"/>\n", bricks.fibres);
+    text += fmt::format(
+        "<strand_springs id=\"strands\" from=\"lower_skin\" to=\"upper_skin\" density=\"{} 1/cm2\" max_length=\"15 "
+        "mm\" slack=\"0.9\"/>\n",
+        bricks.fibres);
   if (lies)
-    text += fmt::format("<contact id=\"contact\" between=\"lower upper\" friction=\"0.3\" tissue_alarm=\"2 mm\" tissue_spacing=\"{} mm\" tissue_max_contacts=\"{}\"/>\n",
-                        bricks.contacts > 20 ? 0.5 : 4, bricks.contacts);
+    text += fmt::format(
+        "<contact id=\"contact\" between=\"lower upper\" friction=\"0.3\" tissue_alarm=\"2 mm\" tissue_spacing=\"{} "
+        "mm\" tissue_max_contacts=\"{}\"/>\n",
+        bricks.contacts > 20 ? 0.5 : 4, bricks.contacts);
   text += "</scene>\n";
   SimulationResult made = load_simulation_text(text, folder.path / "bricks.xml", registry, threads);
   if (!made.simulation) throw std::runtime_error("the scene of measurement is wrong:\n" + made.diagnostics.format());

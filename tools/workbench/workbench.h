@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The workbench's commands: what a scene costs (check), and where the time of a step goes (bench). They are a program of their
-// own, so that a trainee's session carries neither benchmarks nor the cost model.
+// The workbench's commands: what a scene costs (check), and where the time of a step goes (bench). They are a program
+// of their own, so that a trainee's session carries neither benchmarks nor the cost model.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -11,11 +11,12 @@
 namespace insula {
 
 /// Loads each scene; prints one line per good one to `out`, everything wrong to `err`. Of a scene that settles first
-/// (<settle>) only with `settle` is that done: then what is made after settling and contacts stand, and what a step costs is known.
+/// (<settle>) only with `settle` is that done: then what is made after settling and contacts stand, and what a step
+/// costs is known.
 int cmd_check(const CommandContext& context, const std::vector<std::filesystem::path>& files, bool settle = false);
 struct ScalingOptions {
   int threads = 1;
-  bool quick = false;            ///< small sizes only
+  bool quick = false;  ///< small sizes only
   bool json = false;
   std::filesystem::path output;  ///< folder for scaling.json and scaling.svg; empty: none
 };
@@ -26,11 +27,11 @@ struct BenchOptions {
   std::filesystem::path scene;
   std::string motion = "steady";
   int steps = 600;
-  double from = 0;   ///< simulated time at which measuring begins, s
+  double from = 0;  ///< simulated time at which measuring begins, s
   int threads = 0;
   bool json = false;
-  bool solvers = false;  ///< compare solvers instead
-  int rows = 0;          ///< of each body, for the comparison of solvers; 0: all of them
+  bool solvers = false;            ///< compare solvers instead
+  int rows = 0;                    ///< of each body, for the comparison of solvers; 0: all of them
   std::filesystem::path record;    ///< folder for the steps' constraint problems, in place of measuring
   int every = 10;                  ///< a problem of so many is written
   std::filesystem::path problems;  ///< folder of such problems, to be solved in place of a scene
@@ -41,18 +42,20 @@ int cmd_bench(const CommandContext& context, const BenchOptions& options);
 int cmd_record_problems(const CommandContext& context, const BenchOptions& options);
 /// Solves the problems of a folder by each method, and measures the rate of sweeps. Status 0 or 2.
 int cmd_bench_problems(const CommandContext& context, const BenchOptions& options);
-/// Takes every deformable body's matrix and rows of one step and compares solvers on them: time, error, share of the machine.
+/// Takes every deformable body's matrix and rows of one step and compares solvers on them: time, error, share of the
+/// machine.
 int cmd_bench_solvers(const CommandContext& context, const BenchOptions& options);
 
 struct HapticBenchOptions {
   std::filesystem::path scene;
-  std::string motion = "steady";   ///< id of a motion of the exercise, or a CSV file: where the devices go
+  std::string motion = "steady";           ///< id of a motion of the exercise, or a CSV file: where the devices go
   std::vector<double> rates{30, 60, 100};  ///< of the engine, Hz
-  double duration = 0;   ///< simulated seconds; 0: the whole motion
+  double duration = 0;                     ///< simulated seconds; 0: the whole motion
   std::string latency = "1";  ///< from the devices' poses to the arrival of the step's problem: "0.5" steps, or "3 ms"
-  double jitter = 0;     ///< and so much later still at most, in steps
-  bool ablation = false; ///< what goes beyond equation 7, one after the other
-  bool fine = false;     ///< the engine steps at 1 kHz whatever the rate, which tells the servo's part of the error from the step's
+  double jitter = 0;          ///< and so much later still at most, in steps
+  bool ablation = false;      ///< what goes beyond equation 7, one after the other
+  bool fine = false;  ///< the engine steps at 1 kHz whatever the rate, which tells the servo's part of the error from
+                      ///< the step's
   std::filesystem::path traces;  ///< folder for the forces as CSV; empty: none
   int threads = 0;
 };

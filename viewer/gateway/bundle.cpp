@@ -16,7 +16,8 @@ void collect_files(const nlohmann::json& json, std::set<std::string>& out, int d
   if (depth > 16) return;
   if (json.is_string()) {
     const auto& text = json.get_ref<const std::string&>();
-    if (text.size() < 256 && (text.ends_with(".bin") || text.ends_with(".svg") || text.ends_with(".json"))) out.insert(text);
+    if (text.size() < 256 && (text.ends_with(".bin") || text.ends_with(".svg") || text.ends_with(".json")))
+      out.insert(text);
   } else if (json.is_structured()) {
     for (const auto& item : json) collect_files(item, out, depth + 1);
   }

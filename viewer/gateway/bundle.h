@@ -10,8 +10,8 @@
 
 namespace insula::gateway {
 
-/// The bus names the folder, and anyone on the bus could name any folder: so only scene.json and what it lists is served,
-/// and only from within the folder.
+/// The bus names the folder, and anyone on the bus could name any folder: so only scene.json and what it lists is
+/// served, and only from within the folder.
 class Bundle {
  public:
   void set(std::int64_t session, const std::string& folder);

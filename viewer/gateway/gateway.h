@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The gateway: serves the viewer's page and the scene bundle over HTTP and joins pages to the bus over WebSockets. Owns no
-// state of the simulation.
+// The gateway: serves the viewer's page and the scene bundle over HTTP and joins pages to the bus over WebSockets. Owns
+// no state of the simulation.
 #pragma once
 #include <cstdint>
 #include <filesystem>

@@ -183,11 +183,26 @@ TEST_F(GatewayTest, ServesThePage) {
 TEST_F(GatewayTest, NothingOutsideIsServed) {
   put(channel::scene_info, scene_info(7, (root_ / "bundle").string()));
   ASSERT_TRUE(eventually([](const auto& h) { return h["session"] == 7; }));
-  for (const char* target :
-       {"/../secret", "/%2e%2e/secret", "/..%2fsecret", "/assets/../../secret", "/assets/%2e%2e/%2e%2e/secret", "//etc/passwd",
-        "/etc/passwd", "/bundle/../../etc/passwd", "/bundle/7/../secret", "/bundle/7/%2e%2e/secret", "/bundle/7/..%2fsecret",
-        "/bundle/7//etc/passwd", "/bundle/7/other.bin", "/bundle/8/scene.json", "/bundle/7", "/bundle/7/", "/bundle/",
-        "/bundle/%2e%2e/%2e%2e/etc/passwd", "/bundle/-7/scene.json", "/bundle/07/scene.json"})
+  for (const char* target : {"/../secret",
+                             "/%2e%2e/secret",
+                             "/..%2fsecret",
+                             "/assets/../../secret",
+                             "/assets/%2e%2e/%2e%2e/secret",
+                             "//etc/passwd",
+                             "/etc/passwd",
+                             "/bundle/../../etc/passwd",
+                             "/bundle/7/../secret",
+                             "/bundle/7/%2e%2e/secret",
+                             "/bundle/7/..%2fsecret",
+                             "/bundle/7//etc/passwd",
+                             "/bundle/7/other.bin",
+                             "/bundle/8/scene.json",
+                             "/bundle/7",
+                             "/bundle/7/",
+                             "/bundle/",
+                             "/bundle/%2e%2e/%2e%2e/etc/passwd",
+                             "/bundle/-7/scene.json",
+                             "/bundle/07/scene.json"})
     EXPECT_EQ(get(target).result_int(), 404u) << target;
 }
 
@@ -264,7 +279,8 @@ TEST_F(GatewayTest, PagesReachTheBus) {
 
 TEST_F(GatewayTest, GarbageFromAPageChangesNothing) {
   int seen = 0;
-  for (const auto channel : {channel::user_command, channel::hand_input, channel::haptic_problem, channel::render_frame})
+  for (const auto channel :
+       {channel::user_command, channel::hand_input, channel::haptic_problem, channel::render_frame})
     bus_.subscribe(channel, [&](Bytes) { ++seen; });
   WsPage page(gateway_->port());
   insula_lcm::hand_input_t input{};

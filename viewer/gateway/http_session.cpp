@@ -42,9 +42,8 @@ void HttpSession::read() {
   parser_->header_limit(header_limit);
   parser_->body_limit(0);
   stream_.expires_after(request_timeout);
-  http::async_read(stream_, in_, *parser_, [self = shared_from_this()](beast::error_code error, std::size_t) {
-    self->on_read(error);
-  });
+  http::async_read(stream_, in_, *parser_,
+                   [self = shared_from_this()](beast::error_code error, std::size_t) { self->on_read(error); });
 }
 
 void HttpSession::on_read(beast::error_code error) {

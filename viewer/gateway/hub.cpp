@@ -17,8 +17,8 @@ std::int64_t now_us() {
   return std::chrono::duration_cast<std::chrono::microseconds>(Clock::now().time_since_epoch()).count();
 }
 
-constexpr std::array<std::string_view, topics> channel_of{channel::scene_info, channel::sim_event, channel::render_frame,
-                                                          channel::device_state, channel::haptic_status};
+constexpr std::array<std::string_view, topics> channel_of{
+    channel::scene_info, channel::sim_event, channel::render_frame, channel::device_state, channel::haptic_status};
 
 }  // namespace
 
@@ -118,7 +118,8 @@ std::string Hub::health() const {
   j["dropped"] = dropped;
   j["from_pages"] = {{"accepted", page_accepted_}, {"refused", page_refused_}};
   for (std::size_t i = 0; i < topics; ++i)
-    j["channels"][std::string(channel_of[i])] = {{"received", counts_[i].received.load()}, {"refused", counts_[i].refused.load()}};
+    j["channels"][std::string(channel_of[i])] = {{"received", counts_[i].received.load()},
+                                                 {"refused", counts_[i].refused.load()}};
   return j.dump(1) + "\n";
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Between the bus and the clients: what came from the bus goes to every client's outbox; what a page says is checked and
-// goes to the bus.
+// Between the bus and the clients: what came from the bus goes to every client's outbox; what a page says is checked
+// and goes to the bus.
 #pragma once
 #include <array>
 #include <atomic>

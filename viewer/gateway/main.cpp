@@ -16,9 +16,11 @@ int main(int argc, char** argv) {
   insula::gateway::Options options;
   bool exact = false;
   app.add_option("--page", options.page, "folder with the built page (index.html)");
-  app.add_option("--port", options.port, "port to listen on; following ones are tried when it is busy; 0: any")->capture_default_str();
+  app.add_option("--port", options.port, "port to listen on; following ones are tried when it is busy; 0: any")
+      ->capture_default_str();
   app.add_flag("--exact-port", exact, "fail when the port is busy");
-  app.add_option("--listen", options.listen, "address to listen on; 0.0.0.0 lets other machines watch")->capture_default_str();
+  app.add_option("--listen", options.listen, "address to listen on; 0.0.0.0 lets other machines watch")
+      ->capture_default_str();
   app.add_option("--host", options.hosts,
                  "a name under which other machines' pages may ask for it; may be given several times");
   CLI11_PARSE(app, argc, argv);

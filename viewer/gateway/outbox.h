@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What waits to be sent to one client. Its size is bounded whatever the client does: of each kind of state only the newest
-// message is kept, of events (which happen once) the last few hundred.
+// What waits to be sent to one client. Its size is bounded whatever the client does: of each kind of state only the
+// newest message is kept, of events (which happen once) the last few hundred.
 #pragma once
 #include <array>
 #include <cstddef>

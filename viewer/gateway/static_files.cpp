@@ -94,7 +94,8 @@ std::string_view mime_type(const fs::path& file) {
 
 fs::path find_page() {
   std::vector<fs::path> candidates;
-  if (const char* named = std::getenv("INSULA_PAGE"); named != nullptr && *named != '\0') candidates.emplace_back(named);
+  if (const char* named = std::getenv("INSULA_PAGE"); named != nullptr && *named != '\0')
+    candidates.emplace_back(named);
   std::error_code error;
   const fs::path bin = fs::read_symlink("/proc/self/exe", error).parent_path();
   if (!error) {

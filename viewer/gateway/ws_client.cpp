@@ -41,9 +41,7 @@ void WsClient::start(const http::request<http::empty_body>& request) {
   });
 }
 
-void WsClient::read() {
-  ws_.async_read(in_, beast::bind_front_handler(&WsClient::on_read, shared_from_this()));
-}
+void WsClient::read() { ws_.async_read(in_, beast::bind_front_handler(&WsClient::on_read, shared_from_this())); }
 
 void WsClient::on_read(beast::error_code error, std::size_t) {
   if (error) {
@@ -54,8 +52,7 @@ void WsClient::on_read(beast::error_code error, std::size_t) {
   const auto data = in_.cdata();
   if (ws_.got_binary() && within_rate())
     hub_.from_page(Bytes(static_cast<const std::uint8_t*>(data.data()), data.size()), rights_);
-  else
-    hub_.refuse_from_page();
+  else hub_.refuse_from_page();
   in_.consume(in_.size());
   read();
 }

@@ -4,9 +4,9 @@
 
 #include "core/collision/colliders/contact_selection.h"
 #include "core/collision/colliders/self_collider.h"
-#include "core/collision/shapes/shapes_for_test.h"
 #include "core/collision/colliders/tissue_collider.h"
 #include "core/collision/colliders/tool_collider.h"
+#include "core/collision/shapes/shapes_for_test.h"
 #include "core/testing/count_allocations.h"
 
 namespace insula {
@@ -36,7 +36,8 @@ TEST(Detection, AllocatesNothing) {
     b.update(upper.vertices, down);
     found.clear();
     faces.clear();
-    const Pose start{Vec3(0.012 + 1e-4 * (i % 40), 0.001, 0.002 - 1e-4 * (i % 30)), from_rotation_vector(Vec3(0, 1.2, 0))};
+    const Pose start{Vec3(0.012 + 1e-4 * (i % 40), 0.001, 0.002 - 1e-4 * (i % 30)),
+                     from_rotation_vector(Vec3(0, 1.2, 0))};
     const Pose free = displaced(start, (Vec6() << 1e-3, 5e-4, -4e-3, 0.01, 0.02, 0).finished());
     const Pose expected = displaced(start, (Vec6() << 1e-3, 5e-4, -1e-4, 0, 0, 0).finished());
     tool.detect(a, start, free, {.expected = i % 2 ? &expected : nullptr}, found);
@@ -71,7 +72,8 @@ TEST(Detection, OfAWallAgainstItselfAllocatesNothing) {
     found.clear();
     collider.detect(mesh, settings, found, workers);
     seen += collider.opposite(mesh, 5, Vec3(0.3, 0.3, 0.4), -mesh.face_normal(5), 3e-3).triangle >= 0;
-    selection.select(found, {.spacing = 1.2e-3, .advantage = 1e-4, .max_contacts = 20, .max_per_piece = 4, .both_ends = true}, key);
+    selection.select(
+        found, {.spacing = 1.2e-3, .advantage = 1e-4, .max_contacts = 20, .max_per_piece = 4, .both_ends = true}, key);
     seen += long(found.size());
   }
   EXPECT_EQ(allocations - before, 0);

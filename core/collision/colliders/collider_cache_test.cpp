@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Colliders keep what they know from step to step. That must never show: through long smooth motions they find what a collider
-// finds that has to look everywhere in every step.
+// Colliders keep what they know from step to step. That must never show: through long smooth motions they find what a
+// collider finds that has to look everywhere in every step.
 //
-// The reference sees the same shapes 1 m off to one side and back, by turns: everything has moved far, so nothing it knows of
-// distances is good, while what it remembers of contacts stays. Places are multiples of 2^-40 m, so that shifting loses no bit.
+// The reference sees the same shapes 1 m off to one side and back, by turns: everything has moved far, so nothing it
+// knows of distances is good, while what it remembers of contacts stays. Places are multiples of 2^-40 m, so that
+// shifting loses no bit.
 #include <gtest/gtest.h>
 
 #include "core/collision/colliders/self_collider.h"
-#include "core/collision/shapes/shapes_for_test.h"
 #include "core/collision/colliders/tissue_collider.h"
+#include "core/collision/shapes/shapes_for_test.h"
 
 namespace insula {
 namespace {
@@ -71,7 +72,9 @@ void expect_same(const std::vector<Proximity>& a, const std::vector<Proximity>& 
     ASSERT_NEAR(a[i].gap, b[i].gap, 1e-12) << step;
     ASSERT_NEAR(a[i].start_gap, b[i].start_gap, 1e-12) << step;
     ASSERT_LT((a[i].point + shift - b[i].point).norm(), 1e-9) << step;
-    if (std::abs(a[i].gap) > 1e-6) { ASSERT_LT((a[i].normal - b[i].normal).norm(), 1e-6) << step; }
+    if (std::abs(a[i].gap) > 1e-6) {
+      ASSERT_LT((a[i].normal - b[i].normal).norm(), 1e-6) << step;
+    }
   }
 }
 
@@ -125,14 +128,17 @@ TEST(ColliderCache, OfAWallAgainstItselfNeverShows) {
 // A ball that rolls over a waving slab and dips into it.
 TEST(ColliderCache, OfTwoTissuesNeverShows) {
   for (const unsigned seed : {1u, 2u, 3u, 4u}) {
-    Twin ball(shapes::sphere(Vec3(0, 0, 4e-3), 4e-3, 3)), slab(shapes::box(Vec3(-0.012, -0.012, -6e-3), Vec3(0.012, 0.012, 0), 12));
+    Twin ball(shapes::sphere(Vec3(0, 0, 4e-3), 4e-3, 3)),
+        slab(shapes::box(Vec3(-0.012, -0.012, -6e-3), Vec3(0.012, 0.012, 0), 12));
     const auto samples = sample_vertices(ball.rest.vertices, ball.rest.triangles, 0.5e-3);
-    TissueCollider cached(samples, ball.rest.vertices, slab.mesh.triangle_count()), reference(samples, ball.rest.vertices, slab.mesh.triangle_count());
+    TissueCollider cached(samples, ball.rest.vertices, slab.mesh.triangle_count()),
+        reference(samples, ball.rest.vertices, slab.mesh.triangle_count());
     const Waves waves(seed, 0.1e-3, 12e-3), path(seed + 10, 1e-3, 1e3);
     int with = 0, without = 0, deep = 0;
     std::vector<Proximity> a, b;
     for (int step = 0; step < 400; ++step) {
-      const Vec3 shift = step % 2 ? Vec3(0, 1, 0) : Vec3(0, 0, 0), swept = path.at(Vec3::Zero(), step) + Vec3(0, 0, 1e-3 + 1.7e-3 * std::sin(0.02 * step));
+      const Vec3 shift = step % 2 ? Vec3(0, 1, 0) : Vec3(0, 0, 0),
+                 swept = path.at(Vec3::Zero(), step) + Vec3(0, 0, 1e-3 + 1.7e-3 * std::sin(0.02 * step));
       ball.move([&](const Vec3& x) { return Vec3(x + swept + waves.at(x, step)); }, shift);
       slab.move([&](const Vec3& x) { return Vec3(x + waves.at(x, -step)); }, shift);
       a.clear();

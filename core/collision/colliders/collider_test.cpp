@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "core/collision/colliders/contact_selection.h"
-#include "core/collision/shapes/shapes_for_test.h"
 #include "core/collision/colliders/tissue_collider.h"
 #include "core/collision/colliders/tool_collider.h"
+#include "core/collision/shapes/shapes_for_test.h"
 
 namespace insula {
 namespace {
@@ -22,15 +22,17 @@ struct Scene {
 };
 
 std::vector<ConvexPiece> ball(double radius) { return {{"ball", {Vec3::Zero()}, radius}}; }
-std::vector<ConvexPiece> rod(double length, double radius) { return {{"rod", {Vec3::Zero(), Vec3(0, 0, length)}, radius}}; }
+std::vector<ConvexPiece> rod(double length, double radius) {
+  return {{"rod", {Vec3::Zero(), Vec3(0, 0, length)}, radius}};
+}
 std::vector<ConvexPiece> blade() {
   ConvexPiece p{"blade", {}, 0};
   for (int i = 0; i < 8; ++i) p.points.push_back({i & 1 ? 2e-4 : -2e-4, i & 2 ? 4e-3 : -4e-3, i & 4 ? 0.03 : 0.0});
   return {p};
 }
 
-std::vector<Proximity> detect(const Scene& s, const std::vector<ConvexPiece>& pieces, const Pose& start, const Pose& free,
-                              const ToolContactSettings& settings = {}) {
+std::vector<Proximity> detect(const Scene& s, const std::vector<ConvexPiece>& pieces, const Pose& start,
+                              const Pose& free, const ToolContactSettings& settings = {}) {
   ToolCollider c(pieces, s.mesh.triangle_count());
   std::vector<Proximity> out;
   c.detect(s.mesh, start, free, settings, out);
@@ -63,7 +65,8 @@ TEST(ToolCollider, NoGhostNormalsAtInnerEdgesOfAPlane) {
   const Scene s(shapes::box(Vec3(-0.02, -0.02, -0.02), Vec3(0.02, 0.02, 0), 40));
   Random r(1);
   for (int k = 0; k < 200; ++k) {
-    const Pose at{Vec3(r.between(-0.01, 0.01), r.between(-0.01, 0.01), r.between(0.0011, 0.0018)), from_rotation_vector(r.in_box(0.1))};
+    const Pose at{Vec3(r.between(-0.01, 0.01), r.between(-0.01, 0.01), r.between(0.0011, 0.0018)),
+                  from_rotation_vector(r.in_box(0.1))};
     for (const auto& pieces : {ball(1e-3), rod(0.01, 1e-3), blade()})
       for (const auto& x : detect(s, pieces, at, at)) EXPECT_GT(x.normal.z(), 0.999);
   }
@@ -108,7 +111,9 @@ TEST(ToolCollider, ABladeThroughTheSurfaceIsPushedOutward) {
   ASSERT_FALSE(found.empty());
   EXPECT_LT(min_gap(found), -0.5e-3);
   for (const auto& x : found) {
-    if (x.gap < 0) { EXPECT_GT(x.normal.z(), 0.9); }
+    if (x.gap < 0) {
+      EXPECT_GT(x.normal.z(), 0.9);
+    }
     EXPECT_GE(x.start_gap, -1e-3 - 1e-15);
   }
 }
@@ -119,7 +124,8 @@ TEST(ToolCollider, ALongMoveMeetsTheSurfaceItWouldPassThrough) {
   for (int k = 0; k < 300; ++k) {
     const Quat turn = from_rotation_vector(r.in_box(1.5));
     const Pose start{Vec3(r.between(-0.01, 0.01), r.between(-0.01, 0.01), 0.0045), Quat::Identity()};
-    const Pose free{start.p + Vec3(r.between(-0.003, 0.003), r.between(-0.003, 0.003), -0.009), from_rotation_vector(r.in_box(0.1))};
+    const Pose free{start.p + Vec3(r.between(-0.003, 0.003), r.between(-0.003, 0.003), -0.009),
+                    from_rotation_vector(r.in_box(0.1))};
     (void)turn;
     for (const auto& pieces : {ball(1e-3), rod(0.01, 1e-3), blade()}) {
       const auto found = detect(plate, pieces, start, free);
@@ -202,7 +208,8 @@ TEST(TissueCollider, FacingBoxesHaveTheirGapAndOverlapsTheirDepth) {
   for (double gap : {0.3e-3, 0.0, -0.4e-3}) {
     const Scene a(shapes::box(Vec3(-0.01, -0.01, gap), Vec3(0.01, 0.01, 0.02), 10));
     const Scene b(shapes::box(Vec3(-0.02, -0.02, -0.02), Vec3(0.02, 0.02, 0), 13));
-    TissueCollider c(sample_vertices(a.shape.vertices, a.shape.triangles, 2e-3), a.shape.vertices, b.mesh.triangle_count());
+    TissueCollider c(sample_vertices(a.shape.vertices, a.shape.triangles, 2e-3), a.shape.vertices,
+                     b.mesh.triangle_count());
     std::vector<Proximity> out;
     c.detect(a.mesh, b.mesh, {}, out);
     int faces = 0;

@@ -51,7 +51,8 @@ void ContactSelection::select(std::vector<Proximity>& all, const SelectionSettin
       }
     order_.push_back({rank, i, known});
   }
-  std::sort(order_.begin(), order_.end(), [](const Order& a, const Order& b) { return a.rank != b.rank ? a.rank < b.rank : a.index < b.index; });
+  std::sort(order_.begin(), order_.end(),
+            [](const Order& a, const Order& b) { return a.rank != b.rank ? a.rank < b.rank : a.index < b.index; });
 
   kept_.clear();
   for (const Order& o : order_) {

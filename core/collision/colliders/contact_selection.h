@@ -15,7 +15,7 @@
 namespace insula {
 
 struct SelectionSettings {
-  double spacing = 2e-3;    ///< m
+  double spacing = 2e-3;      ///< m
   double advantage = 0.2e-3;  ///< m of gap that a contact of the last step may be farther and still win
   int max_contacts = 8;
   int max_per_piece = 4;

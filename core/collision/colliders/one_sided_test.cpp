@@ -9,7 +9,7 @@ namespace insula {
 namespace {
 
 constexpr double half_x = 1.5e-3, half_y = 1e-3, half_z = 0.5e-3;  // of a blade
-constexpr double lip = 0.2e-3;                                     // what a vertex is above the blade's back, or below its front
+constexpr double lip = 0.2e-3;  // what a vertex is above the blade's back, or below its front
 
 /// A row of vertices under a blade that stays where it is; one of them goes where it is sent.
 struct Row {
@@ -22,7 +22,8 @@ struct Row {
 
   static std::vector<ConvexPiece> blade() {
     ConvexPiece p{"blade", {}, 0};
-    for (int i = 0; i < 8; ++i) p.points.push_back({i & 1 ? half_x : -half_x, i & 2 ? half_y : -half_y, i & 4 ? half_z : -half_z});
+    for (int i = 0; i < 8; ++i)
+      p.points.push_back({i & 1 ? half_x : -half_x, i & 2 ? half_y : -half_y, i & 4 ? half_z : -half_z});
     return {p};
   }
   static std::vector<std::array<int, 3>> strip() {
@@ -87,7 +88,8 @@ TEST(OneSided, AVertexThatCameRoundTheEdgeGoesBackToTheFront) {
     if (one_sided) {
       // Through the whole blade to the place under it: its thickness and what it is above it.
       EXPECT_LT((c.normal.normalized() - Vec3::UnitZ()).norm(), 1e-9) << c.normal.transpose();
-      EXPECT_TRUE(test::held("normal at a retractor's edge", std::abs(c.normal.norm() - 1), 1, 1e-12)) << "rows count the force by it";
+      EXPECT_TRUE(test::held("normal at a retractor's edge", std::abs(c.normal.norm() - 1), 1, 1e-12))
+          << "rows count the force by it";
       EXPECT_LT(c.gap, -lip);
       EXPECT_GE(c.start_gap, -1e-3 - 1e-15) << "more than max_correction";
     } else {

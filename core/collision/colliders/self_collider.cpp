@@ -10,14 +10,14 @@
 namespace insula {
 namespace {
 
-constexpr double facing = 0.1;      ///< cosine by which two normals must oppose one another
-constexpr double along_wall = 0.92; ///< normals that agree by this at rest belong to one stretch of wall ...
-constexpr double bent = 0.8;        ///< ... those that agree by this need looking at only once the wall between them is bent
-constexpr double horizon = 0.5e-3;    ///< farther than needed, to know for how long nothing will come, m
-constexpr double skin = 0.4e-3;     ///< motion after which a list of partners is made anew, m
-constexpr double yields = 0.3;        ///< part of its turn that the normal of a pressing contact takes in a step
-constexpr double min_turn = 1e-3;    ///< a turn of less is none, rad
-constexpr int swings_for_good = 120;   ///< to and fro in two steps or in three: reached after one second or two
+constexpr double facing = 0.1;       ///< cosine by which two normals must oppose one another
+constexpr double along_wall = 0.92;  ///< normals that agree by this at rest belong to one stretch of wall ...
+constexpr double bent = 0.8;  ///< ... those that agree by this need looking at only once the wall between them is bent
+constexpr double horizon = 0.5e-3;         ///< farther than needed, to know for how long nothing will come, m
+constexpr double skin = 0.4e-3;            ///< motion after which a list of partners is made anew, m
+constexpr double yields = 0.3;             ///< part of its turn that the normal of a pressing contact takes in a step
+constexpr double min_turn = 1e-3;          ///< a turn of less is none, rad
+constexpr int swings_for_good = 120;       ///< to and fro in two steps or in three: reached after one second or two
 constexpr std::size_t longest_list = 192;  ///< partners of a sample; with more, the tree is asked in every step
 
 /// Where the ray from `from` along the unit vector `along` goes out through triangle pqr; -1 if it does not.
@@ -36,7 +36,8 @@ double exit_through(const Vec3& from, const Vec3& along, const Vec3& p, const Ve
 
 }  // namespace
 
-SelfCollider::SelfCollider(std::span<const Vec3> rest, std::span<const std::array<int, 3>> triangles, double spacing, double thickness)
+SelfCollider::SelfCollider(std::span<const Vec3> rest, std::span<const std::array<int, 3>> triangles, double spacing,
+                           double thickness)
     : samples_(sample_vertices(rest, triangles, spacing)), neighbour_(2 * thickness) {
   for (const auto& t : triangles) {
     const Vec3 &a = rest[std::size_t(t[0])], &b = rest[std::size_t(t[1])], &c = rest[std::size_t(t[2])];
@@ -79,11 +80,13 @@ void SelfCollider::reset() {
   for (auto& c : covered_) c.assign(samples_.size(), -1.0);
 }
 
-// A hard press on a sharp fold throws even a slow normal to and fro, the wall after it: force times change of normal, N/m, against the
-// wall's own stiffness. It is known by turning back again and again for a second or two, which neither a pulse nor a hand does.
+// A hard press on a sharp fold throws even a slow normal to and fro, the wall after it: force times change of normal,
+// N/m, against the wall's own stiffness. It is known by turning back again and again for a second or two, which neither
+// a pulse nor a hand does.
 double SelfCollider::Swing::share(const Vec3& wanted) {
   constexpr int back = 2, on = 1;
-  const bool turned_back = wanted.dot(turn) < 0 && wanted.squaredNorm() > min_turn * min_turn && turn.squaredNorm() > min_turn * min_turn;
+  const bool turned_back =
+      wanted.dot(turn) < 0 && wanted.squaredNorm() > min_turn * min_turn && turn.squaredNorm() > min_turn * min_turn;
   turn = wanted;
   if (count < swings_for_good) count = turned_back ? std::min(count + back, swings_for_good) : std::max(0, count - on);
   return count < swings_for_good ? yields : 0.1 * yields;
@@ -111,12 +114,17 @@ int SelfCollider::kind(std::size_t sample, int triangle) const {
   const double d2 = d.squaredNorm();
   if (d2 < neighbour_ * neighbour_ || normal_[sample].dot(face_normal_[std::size_t(triangle)]) > along_wall) return -1;
   const double leaves = normal_[sample].dot(d), ends = face_normal_[std::size_t(triangle)].dot(d);
-  const int side = leaves < 0 && ends > 0 && d2 < reach_[sample] * reach_[sample] ? inner : leaves > 0 && ends < 0 ? outer : -1;
-  if (side < 0 || d2 > neighbour_ * neighbour_ + extent2_[std::size_t(triangle)] + 2 * neighbour_ * std::sqrt(extent2_[std::size_t(triangle)])) return side;
+  const int side = leaves < 0 && ends > 0 && d2 < reach_[sample] * reach_[sample] ? inner
+                   : leaves > 0 && ends < 0                                       ? outer
+                                                                                  : -1;
+  if (side < 0 || d2 > neighbour_ * neighbour_ + extent2_[std::size_t(triangle)] +
+                           2 * neighbour_ * std::sqrt(extent2_[std::size_t(triangle)]))
+    return side;
   // A large triangle may be near although its middle is not.
   const auto& c = corners_[std::size_t(triangle)];
   const Vec3 w = closest_on_triangle(position_[sample], c[0], c[1], c[2]);
-  return (w[0] * c[0] + w[1] * c[1] + w[2] * c[2] - position_[sample]).squaredNorm() < neighbour_ * neighbour_ ? -1 : side;
+  return (w[0] * c[0] + w[1] * c[1] + w[2] * c[2] - position_[sample]).squaredNorm() < neighbour_ * neighbour_ ? -1
+                                                                                                               : side;
 }
 
 // Whether what has moved since the sample was last looked at may have brought a partner within range of it.
@@ -125,7 +133,8 @@ bool SelfCollider::may_be_near(const CollisionMesh& mesh, std::size_t sample, in
   const double went = mesh.moved(own_[sample]) + mesh.moved(partners);
   clear_[side][sample] -= went;
   covered_[side][sample] -= went;
-  return clear_[side][sample] <= range + std::min(mesh.free(samples_[sample]).norm() + mesh.may_move(partners), horizon);
+  return clear_[side][sample] <=
+         range + std::min(mesh.free(samples_[sample]).norm() + mesh.may_move(partners), horizon);
 }
 
 // All possible partners within `far`, and what may come there before the list is made anew.
@@ -144,7 +153,9 @@ void SelfCollider::list_partners(const CollisionMesh& mesh, std::size_t sample, 
     const double d = (w[0] * p + w[1] * q + w[2] * r - x).norm();
     if (d <= far + skin) list.push_back({d, tri});
   });
-  std::sort(list.begin(), list.end(), [](const Partner& a, const Partner& b) { return a.was != b.was ? a.was < b.was : a.triangle < b.triangle; });
+  std::sort(list.begin(), list.end(), [](const Partner& a, const Partner& b) {
+    return a.was != b.was ? a.was < b.was : a.triangle < b.triangle;
+  });
   covered_[side][sample] = list.size() > longest_list ? -1.0 : skin;
 }
 
@@ -226,8 +237,8 @@ void SelfCollider::near(const CollisionMesh& mesh, const SelfContactSettings& se
   } else {
     c.normal = free_side;
   }
-  // Outside, two vessels side by side and two that have crossed look alike: only what touched before can have crossed. And a
-  // crossing begins shallow: a fold of the wall that faces the wrong way is none.
+  // Outside, two vessels side by side and two that have crossed look alike: only what touched before can have crossed.
+  // And a crossing begins shallow: a fold of the wall that faces the wrong way is none.
   if (crossed && (distance > settings.max_depth || (side == outer && !was))) return;
   if (crossed && before != 2 && distance > settings.thickness + settings.alarm) return;
   c.gap = (crossed ? -distance : distance) - settings.thickness;
@@ -236,21 +247,21 @@ void SelfCollider::near(const CollisionMesh& mesh, const SelfContactSettings& se
   const double alarm = was ? 1.2 * settings.alarm : settings.alarm;
   if (c.gap > alarm && c.gap + approach > alarm) return;
   // On a fold the nearest place turns about with the slightest motion of the wall, which is so light there that its own
-  // answer would throw it to and fro, step by step. So the normal of what presses turns slowly; but not where walls are hard,
-  // whose gap is now a little above, now a little below zero.
+  // answer would throw it to and fro, step by step. So the normal of what presses turns slowly; but not where walls are
+  // hard, whose gap is now a little above, now a little below zero.
   Vec3& direction = direction_[side][sample];
   Swing& swing = swing_[side][sample];
   if (settings.normal_under_relaxation && was && c.gap < 0 && direction.dot(c.normal) > 0.5)
     c.normal = (direction + swing.share(c.normal - direction) * (c.normal - direction)).normalized();
-  else
-    swing = {};
+  else swing = {};
   direction = c.normal;
   close_[side][sample] = crossed ? 2 : 1;
   c.start_gap = std::max(c.gap, -settings.max_correction);
   out.push_back(c);
 }
 
-Opposite SelfCollider::opposite(const CollisionMesh& mesh, int triangle, const Vec3& bary, const Vec3& along, double far) const {
+Opposite SelfCollider::opposite(const CollisionMesh& mesh, int triangle, const Vec3& bary, const Vec3& along,
+                                double far) const {
   Opposite best;
   best.distance = far;
   const Vec3 from = mesh.point(triangle, bary);
@@ -264,7 +275,9 @@ Opposite SelfCollider::opposite(const CollisionMesh& mesh, int triangle, const V
       if (v == own[0] || v == own[1] || v == own[2]) return;
     // Inner by the rest shape, as for samples.
     const Vec3 d = face_position_[std::size_t(tri)] - face_position_[std::size_t(triangle)];
-    if (d.squaredNorm() < neighbour_ * neighbour_ || face_normal_[std::size_t(triangle)].dot(d) >= 0 || face_normal_[std::size_t(tri)].dot(d) <= 0) return;
+    if (d.squaredNorm() < neighbour_ * neighbour_ || face_normal_[std::size_t(triangle)].dot(d) >= 0 ||
+        face_normal_[std::size_t(tri)].dot(d) <= 0)
+      return;
     Vec3 w;
     const double s = exit_through(from, along, mesh.vertex(t[0]), mesh.vertex(t[1]), mesh.vertex(t[2]), w);
     if (s < 0 || s > best.distance || (s == best.distance && best.triangle >= 0 && tri > best.triangle)) return;
@@ -273,7 +286,8 @@ Opposite SelfCollider::opposite(const CollisionMesh& mesh, int triangle, const V
   return best;
 }
 
-void SelfCollider::detect(const CollisionMesh& mesh, const SelfContactSettings& settings, std::vector<Proximity>& out, Workers& workers) {
+void SelfCollider::detect(const CollisionMesh& mesh, const SelfContactSettings& settings, std::vector<Proximity>& out,
+                          Workers& workers) {
   if (mesh.tree().empty()) return;
   std::fill(outward_known_.begin(), outward_known_.end(), char(0));
   if (mesh.updates() - updates_ > 1) {  // motion in between that was not seen may have brought anything

@@ -21,18 +21,18 @@
 #include <vector>
 
 #include "core/base/workers.h"
-#include "core/collision/search/collision_mesh.h"
 #include "core/collision/contact_set.h"
+#include "core/collision/search/collision_mesh.h"
 
 namespace insula {
 
 struct SelfContactSettings {
-  double thickness = 0.3e-3;     ///< middle surfaces stay this far apart, m
-  double alarm = 0.5e-3;         ///< of the gap, m
+  double thickness = 0.3e-3;       ///< middle surfaces stay this far apart, m
+  double alarm = 0.5e-3;           ///< of the gap, m
   double max_correction = 0.3e-3;  ///< largest correction of an overlap in a step, m
-  double max_depth = 4e-3;       ///< a crossing deeper than this is ignored, m
+  double max_depth = 4e-3;         ///< a crossing deeper than this is ignored, m
   bool inner = true, outer = false;
-  bool normal_under_relaxation = false;     ///< normal under-relaxation while pressed, for walls that yield
+  bool normal_under_relaxation = false;  ///< normal under-relaxation while pressed, for walls that yield
 };
 
 /// The point across the lumen behind a point of the wall.
@@ -47,17 +47,19 @@ class SelfCollider {
   static constexpr int inner = 0, outer = 1;  ///< Proximity::side
 
   /// `thickness`: pairs nearer than twice this at rest are neighbours. Samples are `spacing` apart.
-  SelfCollider(std::span<const Vec3> rest, std::span<const std::array<int, 3>> triangles, double spacing, double thickness);
+  SelfCollider(std::span<const Vec3> rest, std::span<const std::array<int, 3>> triangles, double spacing,
+               double thickness);
   /// Appends at most one contact a sample and side, in an order that depends on the arguments alone, for any number of
   /// threads. Does not allocate while `out` has capacity.
-  void detect(const CollisionMesh& mesh, const SelfContactSettings& settings, std::vector<Proximity>& out, Workers& workers);
+  void detect(const CollisionMesh& mesh, const SelfContactSettings& settings, std::vector<Proximity>& out,
+              Workers& workers);
   /// From a point of the wall along a unit vector into the lumen, no farther than `far`.
   Opposite opposite(const CollisionMesh& mesh, int triangle, const Vec3& bary, const Vec3& along, double far) const;
   const std::vector<int>& samples() const { return samples_; }
   void reset();
 
  private:
-  static constexpr std::size_t piece = 64; ///< samples that one task looks at
+  static constexpr std::size_t piece = 64;  ///< samples that one task looks at
 
   struct Partner {
     double was;  ///< distance when the list was made, m
@@ -68,19 +70,21 @@ class SelfCollider {
   double lumen(const CollisionMesh& rest, int vertex) const;
   bool may_be_near(const CollisionMesh& mesh, std::size_t sample, int side, double range);
   void list_partners(const CollisionMesh& mesh, std::size_t sample, int side, double far);
-  void near(const CollisionMesh& mesh, const SelfContactSettings& settings, std::size_t sample, int side, std::vector<Proximity>& out);
+  void near(const CollisionMesh& mesh, const SelfContactSettings& settings, std::size_t sample, int side,
+            std::vector<Proximity>& out);
 
   std::vector<int> samples_;
-  std::vector<Vec3> position_, normal_;             ///< of the samples at rest
-  std::vector<double> reach_;                    ///< of the samples: longest distance to an inner partner at rest, m
-  std::vector<Vec3> face_position_, face_normal_;   ///< of the triangles at rest
-  std::vector<std::array<Vec3, 3>> corners_;     ///< of the triangles at rest
-  std::vector<double> extent2_;                  ///< of the triangles at rest: farthest corner from the middle, m2
-  std::vector<std::uint64_t> own_, partners_[2]; ///< of the samples: the mesh's regions of itself, of its possible partners of a side
-  std::vector<Vec3> outward_;                    ///< of the samples now; computed when first wanted
+  std::vector<Vec3> position_, normal_;            ///< of the samples at rest
+  std::vector<double> reach_;                      ///< of the samples: longest distance to an inner partner at rest, m
+  std::vector<Vec3> face_position_, face_normal_;  ///< of the triangles at rest
+  std::vector<std::array<Vec3, 3>> corners_;       ///< of the triangles at rest
+  std::vector<double> extent2_;                    ///< of the triangles at rest: farthest corner from the middle, m2
+  std::vector<std::uint64_t> own_,
+      partners_[2];            ///< of the samples: the mesh's regions of itself, of its possible partners of a side
+  std::vector<Vec3> outward_;  ///< of the samples now; computed when first wanted
   std::vector<char> outward_known_;
-  std::vector<char> close_[2];                   ///< 1: had a contact of this side in the last step, 2: had crossed; looked for farther
-  std::vector<Vec3> direction_[2];               ///< of the samples: normal of the last contact of this side
+  std::vector<char> close_[2];  ///< 1: had a contact of this side in the last step, 2: had crossed; looked for farther
+  std::vector<Vec3> direction_[2];  ///< of the samples: normal of the last contact of this side
   /// Of a sample that presses: how its normal goes to and fro.
   struct Swing {
     Vec3 turn = Vec3::Zero();  ///< that was last wanted
@@ -90,12 +94,12 @@ class SelfCollider {
     double share(const Vec3& wanted);
   };
   std::vector<Swing> swing_[2];
-  std::vector<double> clear_[2];                 ///< of the samples: no partner of this side is nearer, m
-  std::vector<std::vector<Partner>> lists_[2];   ///< of the samples: what may be a partner soon, nearest first ...
+  std::vector<double> clear_[2];                ///< of the samples: no partner of this side is nearer, m
+  std::vector<std::vector<Partner>> lists_[2];  ///< of the samples: what may be a partner soon, nearest first ...
   std::vector<double> covered_[2];  ///< ... as long as no more than this has moved; negative: must be made, m
-  long updates_ = 0;                             ///< of the mesh when last looked at
-  std::vector<std::vector<Proximity>> found_;    ///< of the tasks
-  double neighbour_ = 0;                         ///< m
+  long updates_ = 0;                ///< of the mesh when last looked at
+  std::vector<std::vector<Proximity>> found_;  ///< of the tasks
+  double neighbour_ = 0;                       ///< m
 };
 
 }  // namespace insula

@@ -53,8 +53,8 @@ TEST(SelfCollider, WallsPressedTogetherHaveTheExactGapAlsoWhenTheyHaveCrossed) {
   }
 }
 
-// The upper wall, pressed on the lower one, tilts at once: the normals of what presses follow by three tenths a look, those of
-// what only comes near are where the walls are.
+// The upper wall, pressed on the lower one, tilts at once: the normals of what presses follow by three tenths a look,
+// those of what only comes near are where the walls are.
 TEST(SelfCollider, NormalsOfWhatPressesTurnSlowly) {
   for (const double h : {0.2e-3, 0.5e-3}) {
     Flat f;
@@ -81,8 +81,8 @@ TEST(SelfCollider, NormalsOfWhatPressesTurnSlowly) {
   }
 }
 
-// The upper wall tilts to and fro at every look: the normals follow by three tenths of each turn for sixty looks, then by three hundredths,
-// until what presses lets go.
+// The upper wall tilts to and fro at every look: the normals follow by three tenths of each turn for sixty looks, then
+// by three hundredths, until what presses lets go.
 TEST(SelfCollider, NormalsThatSwingYieldATenth) {
   Flat f;
   f.height(0.2e-3);
@@ -128,7 +128,8 @@ TEST(SelfCollider, NormalsThatSwingYieldATenth) {
 }
 
 TEST(SelfCollider, NothingAtRestAndNothingFarOff) {
-  for (const TriMesh& m : {shapes::sphere(Vec3::Zero(), 2e-3, 3), shapes::sphere(Vec3::Zero(), 0.6e-3, 2), shapes::box(Vec3::Zero(), Vec3(4e-3, 4e-3, 4e-3), 6)}) {
+  for (const TriMesh& m : {shapes::sphere(Vec3::Zero(), 2e-3, 3), shapes::sphere(Vec3::Zero(), 0.6e-3, 2),
+                           shapes::box(Vec3::Zero(), Vec3(4e-3, 4e-3, 4e-3), 6)}) {
     CollisionMesh mesh;
     mesh.build(m.vertices, m.triangles);
     mesh.update(m.vertices, {});
@@ -219,13 +220,17 @@ TEST(SelfCollider, ACrossingBeginsShallow) {
     known.detect();
     known.height(-0.3e-3);  // seen to cross ...
     known.detect();
-    known.height(-depth);   // ... it may be deeper
+    known.height(-depth);  // ... it may be deeper
     EXPECT_EQ(crossed(fresh.detect()) > 30, depth < most) << depth;
-    if (depth > most) { EXPECT_EQ(crossed(fresh.detect()), 0) << depth; }
+    if (depth > most) {
+      EXPECT_EQ(crossed(fresh.detect()), 0) << depth;
+    }
     const auto found = known.detect();
     EXPECT_GT(crossed(found), 60) << depth;
     for (const Proximity& x : found)
-      if (std::abs(known.rest.vertices[std::size_t(x.vertex)].z()) > 0.99e-3) { EXPECT_NEAR(x.gap, -depth - thickness, 1e-12); }
+      if (std::abs(known.rest.vertices[std::size_t(x.vertex)].z()) > 0.99e-3) {
+        EXPECT_NEAR(x.gap, -depth - thickness, 1e-12);
+      }
   }
 }
 
@@ -255,7 +260,8 @@ TEST(SelfCollider, SelectionTakesAPairOnceWhicheverSideFoundIt) {
   auto found = f.detect();
   ContactSelection selection;
   std::uint64_t key = 0;
-  selection.select(found, {.spacing = 1.3e-3, .advantage = 0, .max_contacts = 100, .max_per_piece = 4, .both_ends = true}, key);
+  selection.select(
+      found, {.spacing = 1.3e-3, .advantage = 0, .max_contacts = 100, .max_per_piece = 4, .both_ends = true}, key);
   EXPECT_GE(found.size(), 20u);
   for (std::size_t i = 0; i < found.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) EXPECT_GE((found[i].point - found[j].point).norm(), 1.25e-3);

@@ -12,20 +12,24 @@
 
 namespace insula {
 
-std::vector<int> sample_vertices(std::span<const Vec3> rest, std::span<const std::array<int, 3>> triangles, double distance) {
+std::vector<int> sample_vertices(std::span<const Vec3> rest, std::span<const std::array<int, 3>> triangles,
+                                 double distance) {
   std::vector<char> used(rest.size(), 0);
   for (const auto& t : triangles)
     for (int v : t) used[std::size_t(v)] = 1;
   using Cell = std::array<long, 3>;
   struct Hash {
-    std::size_t operator()(const Cell& c) const { return std::size_t(c[0]) * 73856093u ^ std::size_t(c[1]) * 19349663u ^ std::size_t(c[2]) * 83492791u; }
+    std::size_t operator()(const Cell& c) const {
+      return std::size_t(c[0]) * 73856093u ^ std::size_t(c[1]) * 19349663u ^ std::size_t(c[2]) * 83492791u;
+    }
   };
   std::unordered_map<Cell, std::vector<int>, Hash> grid;  // asked, never walked through: its order shows nowhere
   std::vector<int> samples;
   for (int v = 0; v < int(rest.size()); ++v) {
     if (!used[std::size_t(v)]) continue;
     const Vec3& p = rest[std::size_t(v)];
-    const Cell c{long(std::floor(p[0] / distance)), long(std::floor(p[1] / distance)), long(std::floor(p[2] / distance))};
+    const Cell c{long(std::floor(p[0] / distance)), long(std::floor(p[1] / distance)),
+                 long(std::floor(p[2] / distance))};
     bool taken = false;
     constexpr long around[3] = {0, -1, 1};  // the likeliest cell first
     for (long i : around)
@@ -47,20 +51,25 @@ namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double surroundings = 2e-3;  ///< what is farther than this from a group need not be followed for a while, m
-constexpr double horizon = 2e-3;       ///< groups are looked at farther than needed, to know for how long nothing will come, m
+constexpr double horizon =
+    2e-3;  ///< groups are looked at farther than needed, to know for how long nothing will come, m
 constexpr double near_horizon = 5e-4;  ///< and samples
 constexpr double slow = 5e-5;          ///< what moves less in a step has the same nearest triangle for some steps, m
 
 // Coordinates of four points: x of all, y, z.
 std::array<Float4, 3> by_coordinate(const std::array<Float4, 4>& p) {
-  const Float4 xy01 = __builtin_shufflevector(p[0], p[1], 0, 4, 1, 5), xy23 = __builtin_shufflevector(p[2], p[3], 0, 4, 1, 5);
-  const Float4 z01 = __builtin_shufflevector(p[0], p[1], 2, 6, 3, 7), z23 = __builtin_shufflevector(p[2], p[3], 2, 6, 3, 7);
-  return {__builtin_shufflevector(xy01, xy23, 0, 1, 4, 5), __builtin_shufflevector(xy01, xy23, 2, 3, 6, 7), __builtin_shufflevector(z01, z23, 0, 1, 4, 5)};
+  const Float4 xy01 = __builtin_shufflevector(p[0], p[1], 0, 4, 1, 5),
+               xy23 = __builtin_shufflevector(p[2], p[3], 0, 4, 1, 5);
+  const Float4 z01 = __builtin_shufflevector(p[0], p[1], 2, 6, 3, 7),
+               z23 = __builtin_shufflevector(p[2], p[3], 2, 6, 3, 7);
+  return {__builtin_shufflevector(xy01, xy23, 0, 1, 4, 5), __builtin_shufflevector(xy01, xy23, 2, 3, 6, 7),
+          __builtin_shufflevector(z01, z23, 0, 1, 4, 5)};
 }
 
 }  // namespace
 
-TissueCollider::TissueCollider(std::vector<int> samples, std::span<const Vec3> rest, int triangles) : samples_(std::move(samples)) {
+TissueCollider::TissueCollider(std::vector<int> samples, std::span<const Vec3> rest, int triangles)
+    : samples_(std::move(samples)) {
   leaves_.reserve(std::size_t(triangles));
   packs_.reserve(std::size_t(triangles) / BoxPack::size + 1);
   corners_.reserve(std::size_t(triangles));
@@ -115,7 +124,8 @@ const FourTriangles& TissueCollider::corners_of(const CollisionMesh& b, std::siz
   cornered_.push_back(place);
   FourTriangles& c = corners_.emplace_back();
   std::array<const int*, 4> corner;
-  for (std::size_t lane = 0; lane < 4; ++lane) corner[lane] = b.triangle_at(place + int(std::min(lane, triangles.size() - 1))).data();
+  for (std::size_t lane = 0; lane < 4; ++lane)
+    corner[lane] = b.triangle_at(place + int(std::min(lane, triangles.size() - 1))).data();
   std::array<Float4, 3>* const to[3] = {&c.a, &c.b, &c.c};
   for (std::size_t k = 0; k < 3; ++k) {
     std::array<Float4, 4> x;
@@ -137,7 +147,8 @@ void TissueCollider::look_at_leaves(const CollisionMesh& b, const Vec3& x, const
   const Vec3 off = x - centre_;
   const float px = float(off[0]), py = float(off[1]), pz = float(off[2]);
   for (std::size_t k = 0; k < packs_.size(); ++k)
-    for (std::uint32_t near = kernels.boxes_near(packs_[k], at, rounded, float(limit2) * 1.000001f); near != 0; near &= near - 1) {
+    for (std::uint32_t near = kernels.boxes_near(packs_[k], at, rounded, float(limit2) * 1.000001f); near != 0;
+         near &= near - 1) {
       const std::size_t leaf = std::size_t(BoxPack::size) * k + std::size_t(std::countr_zero(near));
       const Float4 distance2 = corners_of(b, leaf).distance2(px, py, pz);
       for (std::size_t i = 0; i < leaves_[leaf].size(); ++i)
@@ -153,8 +164,10 @@ void TissueCollider::lessen(std::size_t first, std::size_t last, double swept, d
   }
 }
 
-// Which regions of b are near the group. Returns what those that it did not follow so far are no nearer than, which was `elsewhere`.
-double TissueCollider::look_around(Group& g, const CollisionMesh& a, const CollisionMesh& b, std::size_t first, std::size_t last, double may_come, double elsewhere) {
+// Which regions of b are near the group. Returns what those that it did not follow so far are no nearer than, which was
+// `elsewhere`.
+double TissueCollider::look_around(Group& g, const CollisionMesh& a, const CollisionMesh& b, std::size_t first,
+                                   std::size_t last, double may_come, double elsewhere) {
   Aabb here;
   for (std::size_t i = first; i < last; ++i) here.add(a.vertex(samples_[i]));
   double comes_in_sight = g.around = may_come + surroundings;
@@ -180,11 +193,13 @@ void TissueCollider::detect(const CollisionMesh& a, const CollisionMesh& b, cons
       for (std::size_t i = first; i < last; ++i) g.own |= a.region_of(samples_[i]);
     const double own = a.moved(g.own), went = own + b.moved(g.near);
     g.around -= own;
-    const double elsewhere = g.around - (b.travelled() - g.travelled), anyone = open_range + a.may_move(g.own) + b.farthest_free();
+    const double elsewhere = g.around - (b.travelled() - g.travelled),
+                 anyone = open_range + a.may_move(g.own) + b.farthest_free();
     g.clear -= went;
     g.went += went;
     if (!followed || elsewhere <= anyone) {
-      const double in_sight = look_around(g, a, b, first, last, anyone, elsewhere), at_least = followed ? in_sight : 0.0;
+      const double in_sight = look_around(g, a, b, first, last, anyone, elsewhere),
+                   at_least = followed ? in_sight : 0.0;
       lessen(first, last, g.went, at_least);
       g.clear = std::min(g.clear, at_least);
       g.went = 0;
@@ -194,7 +209,8 @@ void TissueCollider::detect(const CollisionMesh& a, const CollisionMesh& b, cons
     if (!g.deep && g.clear > may_come) continue;
     lessen(first, last, g.went, infinite);
     g.went = 0;
-    const bool had_any = std::any_of(known_.begin() + std::ptrdiff_t(first), known_.begin() + std::ptrdiff_t(last), [](const KnownNearest& k) { return k.triangle >= 0; });
+    const bool had_any = std::any_of(known_.begin() + std::ptrdiff_t(first), known_.begin() + std::ptrdiff_t(last),
+                                     [](const KnownNearest& k) { return k.triangle >= 0; });
     if (!g.deep && !had_any) {
       Aabb here;
       for (std::size_t i = first; i < last; ++i) here.add(a.vertex(samples_[i]));
@@ -205,9 +221,10 @@ void TissueCollider::detect(const CollisionMesh& a, const CollisionMesh& b, cons
         continue;
       }
     }
-    // Deep samples are looked for as far as they are pushed out. Those whose nearest triangle of the last step is that of this
-    // one are done; the leaves near all others are gathered once.
-    const double open_reach = may_come + near_horizon, deep_reach = std::max(may_come, settings.max_depth) + near_horizon;
+    // Deep samples are looked for as far as they are pushed out. Those whose nearest triangle of the last step is that
+    // of this one are done; the leaves near all others are gathered once.
+    const double open_reach = may_come + near_horizon,
+                 deep_reach = std::max(may_come, settings.max_depth) + near_horizon;
     const double margin = went < slow ? 4 * slow : 0;
     Aabb all;
     bool any_open = false;
@@ -253,7 +270,8 @@ void TissueCollider::detect(const CollisionMesh& a, const CollisionMesh& b, cons
       c.bary = best_bary;
       c.point = best_point;
       if (distance > 1e-6) {
-        if (!b.locally_closest(best, f, d / distance, 0, 0.05)) continue;  // beside a border, or past one that faces away
+        if (!b.locally_closest(best, f, d / distance, 0, 0.05))
+          continue;  // beside a border, or past one that faces away
         c.normal = (outside ? d : Vec3(-d)) / distance;
       } else {
         c.normal = outward;
@@ -265,7 +283,8 @@ void TissueCollider::detect(const CollisionMesh& a, const CollisionMesh& b, cons
       c.start_gap = std::max(c.gap, -settings.max_correction);
       out.push_back(c);
     }
-    g.deep = std::any_of(behind_.begin() + std::ptrdiff_t(first), behind_.begin() + std::ptrdiff_t(last), [](char x) { return x != 0; });
+    g.deep = std::any_of(behind_.begin() + std::ptrdiff_t(first), behind_.begin() + std::ptrdiff_t(last),
+                         [](char x) { return x != 0; });
     g.clear = *std::min_element(clear_.begin() + std::ptrdiff_t(first), clear_.begin() + std::ptrdiff_t(last));
   }
 }

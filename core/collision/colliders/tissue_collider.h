@@ -13,24 +13,25 @@
 #include <span>
 #include <vector>
 
-#include "core/collision/search/collision_mesh.h"
 #include "core/collision/contact_set.h"
+#include "core/collision/search/collision_mesh.h"
 #include "core/collision/search/facing_search.h"
-#include "core/collision/shapes/four_triangles.h"
 #include "core/collision/search/search_kernels.h"
+#include "core/collision/shapes/four_triangles.h"
 
 namespace insula {
 
 struct TissueContactSettings {
-  double alarm = 0.5e-3;        ///< m
-  double max_correction = 0.5e-3; ///< largest correction of an overlap in a step, m
-  double max_depth = 5e-3;      ///< a vertex this far behind the surface is no longer pushed out, m
-  double offset = 0;            ///< half the thicknesses of both walls, for middle surfaces of walls, m
+  double alarm = 0.5e-3;           ///< m
+  double max_correction = 0.5e-3;  ///< largest correction of an overlap in a step, m
+  double max_depth = 5e-3;         ///< a vertex this far behind the surface is no longer pushed out, m
+  double offset = 0;               ///< half the thicknesses of both walls, for middle surfaces of walls, m
 };
 
 /// A subset of the vertices of the surface. No two are closer than `distance`, and every used vertex is that close to
 /// one. In order of vertex number. Deterministic.
-std::vector<int> sample_vertices(std::span<const Vec3> rest, std::span<const std::array<int, 3>> triangles, double distance);
+std::vector<int> sample_vertices(std::span<const Vec3> rest, std::span<const std::array<int, 3>> triangles,
+                                 double distance);
 
 class TissueCollider {
  public:
@@ -38,7 +39,8 @@ class TissueCollider {
   TissueCollider(std::vector<int> samples, std::span<const Vec3> rest, int triangles);
   /// Appends one contact for each sample that has one, in the order of samples(). Keeps which samples were behind the
   /// surface, since they are searched deeper. Does not allocate while `out` has capacity.
-  void detect(const CollisionMesh& a, const CollisionMesh& b, const TissueContactSettings& settings, std::vector<Proximity>& out);
+  void detect(const CollisionMesh& a, const CollisionMesh& b, const TissueContactSettings& settings,
+              std::vector<Proximity>& out);
   const std::vector<int>& samples() const { return samples_; }
   void reset();
 
@@ -46,16 +48,18 @@ class TissueCollider {
   static constexpr std::size_t group = 16;  ///< samples that are excluded together
   std::vector<int> samples_;
   std::vector<char> behind_;
-  std::vector<double> clear_;     ///< of the samples: nothing of b is nearer than this, m
+  std::vector<double> clear_;  ///< of the samples: nothing of b is nearer than this, m
   struct Group {
-    double clear = 0;    ///< least of its samples', m
-    double went = 0;     ///< reduction of the samples' clear_ that is still due, m
-    std::uint64_t own = 0, near = 0;  ///< regions of its samples, and of all of b that is not farther away than `around`
-    double around = 0;   ///< m, less the samples' own way since, when ...
-    double travelled = 0;  ///< ... b had travelled this far
-    bool deep = true;    ///< has a sample behind the surface
+    double clear = 0;  ///< least of its samples', m
+    double went = 0;   ///< reduction of the samples' clear_ that is still due, m
+    std::uint64_t own = 0,
+                  near = 0;  ///< regions of its samples, and of all of b that is not farther away than `around`
+    double around = 0;       ///< m, less the samples' own way since, when ...
+    double travelled = 0;    ///< ... b had travelled this far
+    bool deep = true;        ///< has a sample behind the surface
   };
-  double look_around(Group& g, const CollisionMesh& a, const CollisionMesh& b, std::size_t first, std::size_t last, double may_come, double elsewhere);
+  double look_around(Group& g, const CollisionMesh& a, const CollisionMesh& b, std::size_t first, std::size_t last,
+                     double may_come, double elsewhere);
   void lessen(std::size_t first, std::size_t last, double swept, double at_least);
   std::vector<Group> groups_;
   std::array<long, 2> updates_{};  ///< of the meshes when last looked at
@@ -66,10 +70,11 @@ class TissueCollider {
   const FourTriangles& corners_of(const CollisionMesh& b, std::size_t leaf);
   std::vector<std::span<const int>> leaves_;  ///< triangles of the leaves near a group ...
   std::vector<BoxPack> packs_;                ///< ... and their boxes
-  std::vector<FourTriangles> corners_;        ///< corners of all leaves that a sample wanted in this step, about centre_
-  std::vector<int> cornered_;                 ///< the leaves that they are of, by the place of their first triangle in the tree's order
-  std::vector<int> corners_at_;               ///< of the leaf that begins at this place: index of corners_, -1: not wanted yet
-  bool gathering_ = false;                    ///< any in this step
+  std::vector<FourTriangles> corners_;  ///< corners of all leaves that a sample wanted in this step, about centre_
+  std::vector<int>
+      cornered_;  ///< the leaves that they are of, by the place of their first triangle in the tree's order
+  std::vector<int> corners_at_;  ///< of the leaf that begins at this place: index of corners_, -1: not wanted yet
+  bool gathering_ = false;       ///< any in this step
   Vec3 centre_ = Vec3::Zero();
   std::vector<KnownNearest> known_;  ///< of the samples: saves tests, does not change the result
   std::array<FacingSearch, group> search_;

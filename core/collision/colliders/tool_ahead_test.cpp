@@ -2,8 +2,8 @@
 // Contacts taken where a tool is expected at the end of the step: closed forms at the edge of a box.
 #include <gtest/gtest.h>
 
-#include "core/collision/shapes/shapes_for_test.h"
 #include "core/collision/colliders/tool_collider.h"
+#include "core/collision/shapes/shapes_for_test.h"
 
 namespace insula {
 namespace {
@@ -23,10 +23,12 @@ struct Edge {
   }
 };
 
-std::vector<Proximity> detect(const Edge& edge, const Vec3& start, const Vec3& free, const Pose& expected, ToolContactSettings settings = {}) {
+std::vector<Proximity> detect(const Edge& edge, const Vec3& start, const Vec3& free, const Pose& expected,
+                              ToolContactSettings settings = {}) {
   ToolCollider c({{"ball", {Vec3::Zero()}, radius}}, edge.mesh.triangle_count());
   std::vector<Proximity> out;
-  c.detect(edge.mesh, {start, Quat::Identity()}, {start, Quat::Identity()}, settings, out);  // now it knows that the ball is before the surface
+  c.detect(edge.mesh, {start, Quat::Identity()}, {start, Quat::Identity()}, settings,
+           out);  // now it knows that the ball is before the surface
   out.clear();
   settings.expected = &expected;
   c.detect(edge.mesh, {start, Quat::Identity()}, {free, Quat::Identity()}, settings, out);

@@ -14,17 +14,25 @@ struct ToolCollider::SweptPiece {
   const RoundedPiece& piece;
   int index;
   const Pose& start;
-  const Vec6& motion;  ///< of the tool
+  const Vec6& motion;      ///< of the tool
   double offset, horizon;  ///< how far ahead it is followed, in steps
   PlacedPiece first, last;
   std::optional<PlacedPiece> expected;  ///< at the step's end, if contacts are to be taken there
-  Vec3 velocity = Vec3::Zero(), to_end = Vec3::Zero();  ///< of its middle on the free way, and from the start to `expected`, m a step ...
-  double uneven = 0, uneven_to_end = 0;                 ///< ... by which that of any point differs at most
-  double beyond = 0, farthest = 0;  ///< what may be met on the free way is no farther than `beyond` from the swept box, and no point goes farther
+  Vec3 velocity = Vec3::Zero(),
+       to_end = Vec3::Zero();  ///< of its middle on the free way, and from the start to `expected`, m a step ...
+  double uneven = 0, uneven_to_end = 0;  ///< ... by which that of any point differs at most
+  double beyond = 0, farthest = 0;  ///< what may be met on the free way is no farther than `beyond` from the swept box,
+                                    ///< and no point goes farther
   Aabb box;
 
   SweptPiece(const RoundedPiece& r, int i, const Pose& from, const Vec6& by, const Pose& end, double ahead, double wall)
-      : piece(r), index(i), start(from), motion(by), offset(wall), horizon(ahead), first(r, i, from, from, 0, Vec3::Zero(), wall),
+      : piece(r),
+        index(i),
+        start(from),
+        motion(by),
+        offset(wall),
+        horizon(ahead),
+        first(r, i, from, from, 0, Vec3::Zero(), wall),
         last(r, i, from, end, ahead, Vec3::Zero(), wall) {}
 
   double radius() const { return first.radius; }
@@ -33,7 +41,9 @@ struct ToolCollider::SweptPiece {
     if (slid.isZero(0) && t == horizon) return last;
     return PlacedPiece(piece, index, start, motion, t, slid, offset);
   }
-  Vec3 velocity_of(const PlacedPiece& placed, const Vec3& local) const { return motion.head<3>() + motion.tail<3>().cross(placed.pose.q * local); }
+  Vec3 velocity_of(const PlacedPiece& placed, const Vec3& local) const {
+    return motion.head<3>() + motion.tail<3>().cross(placed.pose.q * local);
+  }
 
   void expect(const Pose& pose) {
     expected.emplace(piece, index, start, pose, 1, Vec3::Zero(), offset);
@@ -65,17 +75,19 @@ struct ToolCollider::SweptPiece {
     velocity = motion.head<3>() + motion.tail<3>().cross(centre - start.p);
     uneven = turn * (spread + turn * lever);
   }
-  // The box of a piece that lies askew is mostly empty: what counts is how far a leaf is from the segment the core lies about.
+  // The box of a piece that lies askew is mostly empty: what counts is how far a leaf is from the segment the core lies
+  // about.
   bool passes(const Aabb& leaf) const {
     const Vec3 middle = 0.5 * (leaf.low + leaf.high);
-    const double s = closest_on_segment(middle, first.axis0, first.axis1), most = first.bound + farthest + beyond + 0.5 * (leaf.high - leaf.low).norm();
+    const double s = closest_on_segment(middle, first.axis0, first.axis1),
+                 most = first.bound + farthest + beyond + 0.5 * (leaf.high - leaf.low).norm();
     return (first.axis0 + s * (first.axis1 - first.axis0) - middle).squaredNorm() <= most * most;
   }
 };
 
 /// How far a piece gets.
 struct ToolCollider::Reached {
-  double time = 0;      ///< it touches then, or the way ends
+  double time = 0;  ///< it touches then, or the way ends
   bool touches = false;
   bool at_end = false;  ///< its contacts of the start were taken at the step's end
 };
@@ -112,8 +124,10 @@ void ToolCollider::add(Proximity x, const ToolContactSettings& settings, std::ve
   out.push_back(x);
 }
 
-// The contacts of the start, just evaluated, to `out`: where the piece is now, or is expected at the step's end. Whether the latter.
-bool ToolCollider::take_contacts_of_start(const CollisionMesh& mesh, const SweptPiece& swept, const ToolContactSettings& settings, std::vector<Proximity>& out) {
+// The contacts of the start, just evaluated, to `out`: where the piece is now, or is expected at the step's end.
+// Whether the latter.
+bool ToolCollider::take_contacts_of_start(const CollisionMesh& mesh, const SweptPiece& swept,
+                                          const ToolContactSettings& settings, std::vector<Proximity>& out) {
   const bool ends = swept.expected && found_at_end(mesh, *swept.expected, settings);
   Vec3& side = side_[std::size_t(swept.index)];
   drop_wrong_exits(found_, side, settings.offset);
@@ -130,13 +144,15 @@ bool ToolCollider::take_contacts_of_start(const CollisionMesh& mesh, const Swept
   deep_[std::size_t(swept.index)] = deep;
   const bool at_end = ends && !deep;
   if (at_end) out.insert(out.end(), at_end_.begin(), at_end_.end());
-  else for (const Proximity& x : found_) add(x, settings, out);
+  else
+    for (const Proximity& x : found_) add(x, settings, out);
   if (least > -0.9 * swept.radius()) side = nearest;  // zero where nothing is near
   return at_end;
 }
 
 // Conservative advancement. Leaves the contacts of where the piece gets in found_.
-ToolCollider::Reached ToolCollider::advance(const CollisionMesh& mesh, const SweptPiece& swept, const ToolContactSettings& settings, double range,
+ToolCollider::Reached ToolCollider::advance(const CollisionMesh& mesh, const SweptPiece& swept,
+                                            const ToolContactSettings& settings, double range,
                                             std::vector<Proximity>& out) {
   Reached r;
   for (int iteration = 0; iteration < 64; ++iteration) {
@@ -164,7 +180,8 @@ ToolCollider::Reached ToolCollider::advance(const CollisionMesh& mesh, const Swe
 }
 
 // Along what is touched in found_ (out of it, if behind) by the motion that is left.
-void ToolCollider::slide_on(const CollisionMesh& mesh, const SweptPiece& swept, double t, const ToolContactSettings& settings, std::vector<Proximity>& out) {
+void ToolCollider::slide_on(const CollisionMesh& mesh, const SweptPiece& swept, double t,
+                            const ToolContactSettings& settings, std::vector<Proximity>& out) {
   const Proximity* touched = &found_[0];
   for (const Proximity& x : found_)
     if (x.gap < touched->gap) touched = &x;
@@ -190,8 +207,8 @@ void ToolCollider::add_those_on_free_side(const ToolContactSettings& settings, s
     if (x.start_gap >= -0.05 * settings.alarm) add(x, settings, out);
 }
 
-void ToolCollider::detect(const CollisionMesh& mesh, const Pose& start, const Pose& free, const ToolContactSettings& settings,
-                          std::vector<Proximity>& out) {
+void ToolCollider::detect(const CollisionMesh& mesh, const Pose& start, const Pose& free,
+                          const ToolContactSettings& settings, std::vector<Proximity>& out) {
   touch_time_ = 1;
   touching_piece_ = -1;
   if (mesh.tree().empty()) return;
@@ -217,7 +234,8 @@ void ToolCollider::detect(const CollisionMesh& mesh, const Pose& start, const Po
     }
     if (reached.time > 0) add_those_on_free_side(settings, out);
     // Where sliding leads to is known if the end is.
-    if (!reached.at_end && reached.touches && reached.time < 1 && !found_.empty()) slide_on(mesh, swept, reached.time, settings, out);
+    if (!reached.at_end && reached.touches && reached.time < 1 && !found_.empty())
+      slide_on(mesh, swept, reached.time, settings, out);
   }
 }
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A rigid tool of rounded convex pieces against a surface, looking ahead over the step.
 //
-// Geometry is taken at the start of the step and, when the free motion is larger than what is close, along it: tool pose
-// start -> free, surface x -> x + u. Each piece advances no faster than its distance to the surface allows (conservative
-// advancement; Mirtich 1996) until it touches or the step ends, so that a fast tool meets the surface it would have passed
-// through. Contacts are those within the alarm distance
+// Geometry is taken at the start of the step and, when the free motion is larger than what is close, along it: tool
+// pose start -> free, surface x -> x + u. Each piece advances no faster than its distance to the surface allows
+// (conservative advancement; Mirtich 1996) until it touches or the step ends, so that a fast tool meets the surface it
+// would have passed through. Contacts are those within the alarm distance
 //   - at the start,
 //   - where the piece first touches, or at the end of its free motion,
 //   - where it would be after sliding along what it touches by the rest of its motion.
@@ -23,25 +23,27 @@
 // negative gap and is pushed to the nearest point of the surface, as long as it is no deeper than max_depth. A core
 // that passes through a triangle is pushed along its normal.
 //
-// A hollow body pressed flat is thinner than a blade, and what is behind its one wall is soon nearest to the other. So each piece
-// remembers on which side of the surface it was when it was last outside, and never leaves towards the opposite one.
+// A hollow body pressed flat is thinner than a blade, and what is behind its one wall is soon nearest to the other. So
+// each piece remembers on which side of the surface it was when it was last outside, and never leaves towards the
+// opposite one.
 #pragma once
 #include <vector>
 
-#include "core/collision/search/collision_mesh.h"
 #include "core/collision/contact_set.h"
+#include "core/collision/search/collision_mesh.h"
 #include "core/model/tools/tool_model.h"
 
 namespace insula {
 
 struct ToolContactSettings {
-  double alarm = 1e-3;         ///< m
+  double alarm = 1e-3;           ///< m
   double max_correction = 1e-3;  ///< an overlap is undone by no more than this in a step, m
-  double collision_horizon = 0;       ///< in steps: the tool's motion is followed so far beyond the step
-  double max_depth = 5e-3;     ///< a core this far behind the surface is no longer pushed out, m
-  bool one_sided = false;        ///< vertices: those behind a blade that presses a body from the front go back to its front
-  double offset = 0;           ///< the surface is the middle of a wall of twice this thickness, m
-  const Pose* expected = nullptr;  ///< of the tool at the end of the step, scene frame; null: contacts of the start are taken at the start
+  double collision_horizon = 0;  ///< in steps: the tool's motion is followed so far beyond the step
+  double max_depth = 5e-3;       ///< a core this far behind the surface is no longer pushed out, m
+  bool one_sided = false;  ///< vertices: those behind a blade that presses a body from the front go back to its front
+  double offset = 0;       ///< the surface is the middle of a wall of twice this thickness, m
+  const Pose* expected =
+      nullptr;  ///< of the tool at the end of the step, scene frame; null: contacts of the start are taken at the start
 };
 
 /// A piece as used for collision: a core of at most 24 points, and a radius that is never 0. Flat blades are shrunk by
@@ -49,7 +51,7 @@ struct ToolContactSettings {
 /// core clear of the surface, and normals are well defined.
 struct RoundedPiece {
   static constexpr std::size_t max_core = 24;  ///< read_tool refuses more
-  std::vector<Vec3> core;  ///< tool frame
+  std::vector<Vec3> core;                      ///< tool frame
   double radius = 0;
   Vec3 axis0 = Vec3::Zero(), axis1 = Vec3::Zero();  ///< segment that the core lies about ...
   double bound = 0;                                 ///< ... within this distance
@@ -57,8 +59,8 @@ struct RoundedPiece {
 RoundedPiece rounded(const ConvexPiece& piece);
 struct PlacedPiece;
 
-/// One tool, one surface. Keeps which pieces overlapped last step (they are looked for deeper) and their sides; allocates in
-/// the constructor only, as long as `out` has capacity.
+/// One tool, one surface. Keeps which pieces overlapped last step (they are looked for deeper) and their sides;
+/// allocates in the constructor only, as long as `out` has capacity.
 class ToolCollider {
  public:
   ToolCollider(const std::vector<ConvexPiece>& pieces, int triangles);
@@ -78,12 +80,15 @@ class ToolCollider {
     double speed;   ///< bound on the relative motion over the whole step, m ...
     double to_end;  ///< ... and on that to where the piece is expected at its end
   };
-  struct SweptPiece;      // of a piece in the step
-  struct Reached;  // by it
+  struct SweptPiece;  // of a piece in the step
+  struct Reached;     // by it
   void list_candidates(const CollisionMesh& mesh, const SweptPiece& swept);
-  Reached advance(const CollisionMesh& mesh, const SweptPiece& swept, const ToolContactSettings& settings, double range, std::vector<Proximity>& out);
-  bool take_contacts_of_start(const CollisionMesh& mesh, const SweptPiece& swept, const ToolContactSettings& settings, std::vector<Proximity>& out);
-  void slide_on(const CollisionMesh& mesh, const SweptPiece& swept, double t, const ToolContactSettings& settings, std::vector<Proximity>& out);
+  Reached advance(const CollisionMesh& mesh, const SweptPiece& swept, const ToolContactSettings& settings, double range,
+                  std::vector<Proximity>& out);
+  bool take_contacts_of_start(const CollisionMesh& mesh, const SweptPiece& swept, const ToolContactSettings& settings,
+                              std::vector<Proximity>& out);
+  void slide_on(const CollisionMesh& mesh, const SweptPiece& swept, double t, const ToolContactSettings& settings,
+                std::vector<Proximity>& out);
   void add_those_on_free_side(const ToolContactSettings& settings, std::vector<Proximity>& out) const;
   static void add(Proximity x, const ToolContactSettings& settings, std::vector<Proximity>& out);
   // Contacts at a moment (tool_contacts.cpp).

@@ -48,8 +48,8 @@ bool above(const Vec3& q, const std::array<Vec3, 3>& t, const Vec3& n, Vec3& bar
 }  // namespace
 
 // Brings the candidates' bounds up to date (on the free way) and appends the contacts within `range`.
-void ToolCollider::evaluate(const CollisionMesh& mesh, const PlacedPiece& at, const ToolContactSettings& settings, double range,
-                            std::vector<Proximity>& found) {
+void ToolCollider::evaluate(const CollisionMesh& mesh, const PlacedPiece& at, const ToolContactSettings& settings,
+                            double range, std::vector<Proximity>& found) {
   const double t = at.time;
   const double slid = at.shift.norm();
   const Vec3 side = t == 0 && slid == 0 ? side_[std::size_t(at.piece)] : Vec3(Vec3::Zero());
@@ -61,7 +61,8 @@ void ToolCollider::evaluate(const CollisionMesh& mesh, const PlacedPiece& at, co
     const std::array<Vec3, 3> tri{mesh.vertex(v[0], t), mesh.vertex(v[1], t), mesh.vertex(v[2], t)};
     // Cheap bound first: sphere about the triangle, segment about the core.
     const Vec3 centre = (tri[0] + tri[1] + tri[2]) / 3;
-    const double reach2 = std::max({(tri[0] - centre).squaredNorm(), (tri[1] - centre).squaredNorm(), (tri[2] - centre).squaredNorm()});
+    const double reach2 =
+        std::max({(tri[0] - centre).squaredNorm(), (tri[1] - centre).squaredNorm(), (tri[2] - centre).squaredNorm()});
     const double s = closest_on_segment(centre, at.axis0, at.axis1);
     const double axis = (at.axis0 + s * (at.axis1 - at.axis0) - centre).norm();
     double clear = axis - std::sqrt(reach2) - at.bound - at.radius;
@@ -149,9 +150,10 @@ void ToolCollider::drop_wrong_exits(std::vector<Proximity>& found, const Vec3& s
   found.resize(kept);
 }
 
-// The contacts of a piece where it is expected at the end of the step, into at_end_, after those at its start. False where there are none, or
-// where it would be behind a wall.
-bool ToolCollider::found_at_end(const CollisionMesh& mesh, const PlacedPiece& expected, const ToolContactSettings& settings) {
+// The contacts of a piece where it is expected at the end of the step, into at_end_, after those at its start. False
+// where there are none, or where it would be behind a wall.
+bool ToolCollider::found_at_end(const CollisionMesh& mesh, const PlacedPiece& expected,
+                                const ToolContactSettings& settings) {
   at_end_.clear();
   evaluate(mesh, expected, settings, settings.alarm, at_end_);
   drop_wrong_exits(at_end_, side_[std::size_t(expected.piece)], settings.offset);

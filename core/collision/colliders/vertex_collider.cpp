@@ -10,7 +10,8 @@
 
 namespace insula {
 
-VertexCollider::VertexCollider(const std::vector<ConvexPiece>& pieces, const std::vector<std::array<int, 3>>& triangles, int vertices) {
+VertexCollider::VertexCollider(const std::vector<ConvexPiece>& pieces, const std::vector<std::array<int, 3>>& triangles,
+                               int vertices) {
   for (const ConvexPiece& p : pieces) {
     pieces_.push_back(rounded(p));
     boxes_.emplace_back();
@@ -32,7 +33,8 @@ void VertexCollider::reset() {
   side_.setZero();
 }
 
-VertexCollider::Near VertexCollider::nearest(const RoundedPiece& piece, const Pose& pose, const Vec3& x, double offset) const {
+VertexCollider::Near VertexCollider::nearest(const RoundedPiece& piece, const Pose& pose, const Vec3& x,
+                                             double offset) const {
   // In the frame of the pieces: one point is turned instead of the whole core.
   const Vec3 local = pose.q.conjugate() * (x - pose.p);
   Vec3 core = piece.core[0];
@@ -48,8 +50,8 @@ VertexCollider::Near VertexCollider::nearest(const RoundedPiece& piece, const Po
   return {distance - piece.radius - offset, distance > 1e-7 ? Vec3(pose.q * (d / distance)) : Vec3(Vec3::Zero())};
 }
 
-void VertexCollider::detect(const CollisionMesh& mesh, const Pose& start, const Pose& free, const ToolContactSettings& settings,
-                            std::vector<Proximity>& out) {
+void VertexCollider::detect(const CollisionMesh& mesh, const Pose& start, const Pose& free,
+                            const ToolContactSettings& settings, std::vector<Proximity>& out) {
   if (mesh.tree().empty()) return;
   const Vec6 motion = displacement(start, free);
   const double alarm = settings.alarm, turn = motion.tail<3>().norm();
@@ -84,7 +86,8 @@ void VertexCollider::detect(const CollisionMesh& mesh, const Pose& start, const 
     const double reach = std::max(alarm, 0.2 * alarm + speed);
     near_pieces_.clear();
     for (int i = 0; i < int(pieces_.size()); ++i) {
-      const double d = std::sqrt(boxes_[std::size_t(i)].distance2(local)) - pieces_[std::size_t(i)].radius - settings.offset;
+      const double d =
+          std::sqrt(boxes_[std::size_t(i)].distance2(local)) - pieces_[std::size_t(i)].radius - settings.offset;
       if (d <= reach) near_pieces_.push_back({i, d});
     }
     if (near_pieces_.empty()) {

@@ -13,15 +13,16 @@
 #include <array>
 #include <vector>
 
-#include "core/collision/search/collision_mesh.h"
-#include "core/collision/contact_set.h"
 #include "core/collision/colliders/tool_collider.h"
+#include "core/collision/contact_set.h"
+#include "core/collision/search/collision_mesh.h"
 
 namespace insula {
 
 class VertexCollider {
  public:
-  VertexCollider(const std::vector<ConvexPiece>& pieces, const std::vector<std::array<int, 3>>& triangles, int vertices);
+  VertexCollider(const std::vector<ConvexPiece>& pieces, const std::vector<std::array<int, 3>>& triangles,
+                 int vertices);
   /// Appends to `out` in order of vertices. Allocates in the constructor only, as long as `out` has capacity.
   void detect(const CollisionMesh& mesh, const Pose& start, const Pose& free, const ToolContactSettings& settings,
               std::vector<Proximity>& out);
@@ -40,13 +41,14 @@ class VertexCollider {
   };
 
   std::vector<RoundedPiece> pieces_;
-  std::vector<Aabb> boxes_;                      ///< of the pieces' cores
-  std::vector<std::array<int, 2>> triangle_of_;  ///< one triangle of each vertex, and the vertex's corner in it; -1: none
-  std::vector<Vec3> kept_out_;                   ///< per vertex: last normal, frame of the pieces; zero: none
-  Vec3 side_ = Vec3::Zero();                     ///< from most vertices that press to the core, frame of the pieces; up to unit length
-  std::vector<int> seen_;                        ///< vertices near the pieces in this step
+  std::vector<Aabb> boxes_;  ///< of the pieces' cores
+  std::vector<std::array<int, 2>>
+      triangle_of_;             ///< one triangle of each vertex, and the vertex's corner in it; -1: none
+  std::vector<Vec3> kept_out_;  ///< per vertex: last normal, frame of the pieces; zero: none
+  Vec3 side_ = Vec3::Zero();    ///< from most vertices that press to the core, frame of the pieces; up to unit length
+  std::vector<int> seen_;       ///< vertices near the pieces in this step
   std::vector<char> marked_;
-  std::vector<Candidate> near_pieces_;           ///< of one vertex
+  std::vector<Candidate> near_pieces_;  ///< of one vertex
 };
 
 }  // namespace insula

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pieces against the vertices of a thin wall: gaps in closed form, a sheet between closing jaws, a fast blade, the way back.
+// Pieces against the vertices of a thin wall: gaps in closed form, a sheet between closing jaws, a fast blade, the way
+// back.
 #include "core/collision/colliders/vertex_collider.h"
 
 #include <gtest/gtest.h>
@@ -40,7 +41,8 @@ constexpr double half_x = 1.5e-3, half_y = 1e-3, half_z = 0.5e-3;  // of a jaw
 
 std::vector<ConvexPiece> jaw() {
   ConvexPiece p{"jaw", {}, 0};
-  for (int i = 0; i < 8; ++i) p.points.push_back({i & 1 ? half_x : -half_x, i & 2 ? half_y : -half_y, i & 4 ? half_z : -half_z});
+  for (int i = 0; i < 8; ++i)
+    p.points.push_back({i & 1 ? half_x : -half_x, i & 2 ? half_y : -half_y, i & 4 ? half_z : -half_z});
   return {p};
 }
 Pose at(const Vec3& p) { return {p, Quat::Identity()}; }
@@ -70,7 +72,8 @@ TEST(VertexCollider, EveryVertexNearABallHasItsExactGapAndNoOtherHasOne) {
   for (const Proximity& c : found) {
     const Vec3& x = sheet.rest[std::size_t(c.vertex)];
     EXPECT_TRUE(seen.insert(c.vertex).second);
-    EXPECT_TRUE(test::held("gaps of vertices near a ball, m", std::abs(c.gap - ((x - centre).norm() - radius - wall)), 1, 1e-15));
+    EXPECT_TRUE(test::held("gaps of vertices near a ball, m", std::abs(c.gap - ((x - centre).norm() - radius - wall)),
+                           1, 1e-15));
     EXPECT_EQ(c.start_gap, c.gap);
     EXPECT_LT((c.normal - (centre - x).normalized()).norm(), 1e-12);
     EXPECT_LT((sheet.mesh.point(c.triangle, c.bary) - x).norm(), 1e-15);
@@ -81,7 +84,8 @@ TEST(VertexCollider, EveryVertexNearABallHasItsExactGapAndNoOtherHasOne) {
     if ((sheet.rest[std::size_t(v)] - centre).norm() - radius - wall <= alarm) expected.insert(v);
   EXPECT_EQ(seen, expected);
   EXPECT_GT(expected.size(), 20u);
-  EXPECT_TRUE(std::is_sorted(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.vertex < b.vertex; }));
+  EXPECT_TRUE(
+      std::is_sorted(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.vertex < b.vertex; }));
 }
 
 TEST(VertexCollider, ASheetBetweenClosingJawsIsHeldFromBothSides) {
@@ -100,13 +104,16 @@ TEST(VertexCollider, ASheetBetweenClosingJawsIsHeldFromBothSides) {
         const Vec3& x = sheet.rest[std::size_t(c.vertex)];
         EXPECT_TRUE(seen.insert(c.vertex).second);
         EXPECT_GT(up * c.normal.z(), 0) << face;
-        if (std::abs(x.x()) > half_x - 0.25e-3 || std::abs(x.y()) > half_y - 0.25e-3) continue;  // the jaw's edges are round
+        if (std::abs(x.x()) > half_x - 0.25e-3 || std::abs(x.y()) > half_y - 0.25e-3)
+          continue;  // the jaw's edges are round
         EXPECT_LT((c.normal - Vec3(0, 0, up)).norm(), 1e-6) << face;
         EXPECT_NEAR(c.gap, face - wall, 1e-9);
       }
       for (int v = 0; v < sheet.count(); ++v) {
         const Vec3& x = sheet.rest[std::size_t(v)];
-        if (std::abs(x.x()) < half_x - 0.25e-3 && std::abs(x.y()) < half_y - 0.25e-3) { EXPECT_TRUE(seen.count(v)) << face; }
+        if (std::abs(x.x()) < half_x - 0.25e-3 && std::abs(x.y()) < half_y - 0.25e-3) {
+          EXPECT_TRUE(seen.count(v)) << face;
+        }
       }
     }
   }
@@ -133,11 +140,15 @@ TEST(VertexCollider, AFastBladeMeetsTheSheetItWouldHavePassed) {
       const double cut = c.start_gap / -c.normal.dot(motion);
       EXPECT_GT(cut, 0);
       EXPECT_LT(cut, 1);
-      if (c.normal.z() > 1 - 1e-9) { EXPECT_NEAR(cut * swept, 1.5e-3 - wall, 1e-8); }
+      if (c.normal.z() > 1 - 1e-9) {
+        EXPECT_NEAR(cut * swept, 1.5e-3 - wall, 1e-8);
+      }
     }
     for (int v = 0; v < sheet.count(); ++v) {
       const Vec3 x = sheet.rest[std::size_t(v)] - from;
-      if (std::abs(x.x()) < half_x - 0.25e-3 && std::abs(x.y()) < half_y - 0.25e-3) { EXPECT_TRUE(seen.count(v)) << "passed vertex " << v; }
+      if (std::abs(x.x()) < half_x - 0.25e-3 && std::abs(x.y()) < half_y - 0.25e-3) {
+        EXPECT_TRUE(seen.count(v)) << "passed vertex " << v;
+      }
     }
   }
 }
@@ -152,7 +163,9 @@ TEST(VertexCollider, AFastSheetMeetsTheBladeAtRest) {
   ASSERT_GT(found.size(), 40u);
   for (const Proximity& c : found) {
     EXPECT_LT(end_gap(c, sheet, Vec3::Zero()), 0);
-    if (c.normal.z() > 1 - 1e-9) { EXPECT_NEAR(c.start_gap, 2e-3 - wall, 1e-8); }
+    if (c.normal.z() > 1 - 1e-9) {
+      EXPECT_NEAR(c.start_gap, 2e-3 - wall, 1e-8);
+    }
   }
 }
 
@@ -167,7 +180,8 @@ TEST(VertexCollider, WhatGoesAwayOrPassesBesideGivesNothing) {
   EXPECT_TRUE(found.empty());
 }
 
-// The jaw's core goes past a vertex that it kept out: the vertex is sent back to its side, whether inside the core or through it.
+// The jaw's core goes past a vertex that it kept out: the vertex is sent back to its side, whether inside the core or
+// through it.
 TEST(VertexCollider, AVertexInsideTheCoreGoesBackTheWayItCame) {
   Sheet sheet;
   VertexCollider collider(jaw(), sheet.triangles, sheet.count());
@@ -279,7 +293,8 @@ TEST(VertexCollider, SameInputSameBits) {
     std::vector<Proximity> found;
     for (int i = 0; i < 10; ++i) {
       const Pose start{Vec3(0, 0, half_z + 1e-3 - 0.1e-3 * i), from_rotation_vector(Vec3(0.02 * i, 0.1, 0))};
-      collider.detect(sheet.mesh, start, displaced(start, (Vec6() << 0, 0, -1e-3, 0.05, 0, 0.02).finished()), settings(), found);
+      collider.detect(sheet.mesh, start, displaced(start, (Vec6() << 0, 0, -1e-3, 0.05, 0, 0.02).finished()),
+                      settings(), found);
     }
     return found;
   };

@@ -116,7 +116,8 @@ double AabbTree::renew(std::size_t v) {
   box.widen();
   box.inflate(slack);
   for (int k = first_leaf_[v]; k < first_leaf_[v + 1]; ++k)
-    for (int i = leaf_of_[std::size_t(k)]; i >= 0 && !stale_[std::size_t(i)]; i = parent_[std::size_t(i)]) stale_[std::size_t(i)] = 1;
+    for (int i = leaf_of_[std::size_t(k)]; i >= 0 && !stale_[std::size_t(i)]; i = parent_[std::size_t(i)])
+      stale_[std::size_t(i)] = 1;
   return double(box.room_about(here));
 }
 

@@ -102,7 +102,7 @@ struct OuterBox {
 class AabbTree {
  public:
   static constexpr float slack = 2e-4f;  ///< m
-  static constexpr int leaf_size = 4;  ///< triangles at most in a leaf
+  static constexpr int leaf_size = 4;    ///< triangles at most in a leaf
 
   /// Median splits along the longest side; the same input gives the same tree.
   void build(std::span<const Vec3> rest, std::span<const std::array<int, 3>> triangles);
@@ -126,7 +126,9 @@ class AabbTree {
     Aabb wide = box;
     wide.inflate(within);
     const auto is_other = [&](const Node& n) { return (n.marks & ~known) != 0; };
-    const auto has_news = [&](const Node& n) { return (n.marks & ~found) != 0 || (is_other(n) && n.box.distance2(box) < other * other); };
+    const auto has_news = [&](const Node& n) {
+      return (n.marks & ~found) != 0 || (is_other(n) && n.box.distance2(box) < other * other);
+    };
     each_leaf(wide, has_news, [&](const Node& n) {
       found |= n.marks;
       if (is_other(n)) other = std::min(other, std::sqrt(n.box.distance2(box)));
@@ -164,7 +166,8 @@ class AabbTree {
   }
   template <class Visit>
   void overlapping(const Aabb& box, Visit&& visit) const {
-    overlapping(box, [](const Aabb&) { return true; }, visit);
+    overlapping(
+        box, [](const Aabb&) { return true; }, visit);
   }
 
   /// Whether any leaf's loose box overlaps `box`.
@@ -222,8 +225,12 @@ class AabbTree {
   };
   int build_node(int first, int count, std::span<const Vec3> centres, std::span<const std::array<int, 3>> triangles);
   void list_leaves_of_vertices(std::size_t vertices);
-  std::span<const int> triangles_of(const Node& leaf) const { return {order_.data() + leaf.first, std::size_t(leaf.count)}; }
-  std::span<const int> vertices_of(const Node& leaf) const { return {leaf_vertices_.data() + leaf.vertices, std::size_t(leaf.vertex_count)}; }
+  std::span<const int> triangles_of(const Node& leaf) const {
+    return {order_.data() + leaf.first, std::size_t(leaf.count)};
+  }
+  std::span<const int> vertices_of(const Node& leaf) const {
+    return {leaf_vertices_.data() + leaf.vertices, std::size_t(leaf.vertex_count)};
+  }
   Aabb tight(const Node& leaf) const;
   double renew(std::size_t vertex);
   /// visit(leaf) for leaves whose loose box overlaps `box`, until it returns true. Returns whether it did. Subtrees
@@ -245,16 +252,17 @@ class AabbTree {
   }
   template <class Visit>
   bool each_leaf(const Aabb& box, Visit&& visit) const {
-    return each_leaf(box, [](const Node&) { return true; }, visit);
+    return each_leaf(
+        box, [](const Node&) { return true; }, visit);
   }
 
   std::vector<Node> nodes_;
-  std::vector<int> order_;          ///< triangles in leaf order
-  std::vector<int> leaf_vertices_;  ///< each leaf's vertices, every one once
+  std::vector<int> order_;                 ///< triangles in leaf order
+  std::vector<int> leaf_vertices_;         ///< each leaf's vertices, every one once
   std::vector<int> first_leaf_, leaf_of_;  ///< each vertex's leaves: nodes
-  std::vector<OuterBox> ways_;      ///< each vertex's, loosely about its way from its position to the displaced one
-  std::vector<int> parent_;         ///< of the nodes, -1: the first
-  std::vector<char> stale_;         ///< nodes whose boxes must be updated, with all above them
+  std::vector<OuterBox> ways_;  ///< each vertex's, loosely about its way from its position to the displaced one
+  std::vector<int> parent_;     ///< of the nodes, -1: the first
+  std::vector<char> stale_;     ///< nodes whose boxes must be updated, with all above them
   std::span<const Vec3> positions_, displacements_;
 };
 

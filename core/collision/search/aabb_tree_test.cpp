@@ -40,16 +40,22 @@ TEST(AabbTree, QueriesEqualBruteForceAlsoAfterDeformation) {
       std::set<int> found;
       tree.overlapping(box, [&](int t) { EXPECT_TRUE(found.insert(t).second); });
       for (int t = 0; t < int(m.triangles.size()); ++t)
-        if (box_of(m, t).overlaps(box)) { EXPECT_TRUE(found.count(t)); }
+        if (box_of(m, t).overlaps(box)) {
+          EXPECT_TRUE(found.count(t));
+        }
       EXPECT_LT(found.size(), m.triangles.size());
 
       double best = 1e300, bound = 1e300;
       for (const auto& t : m.triangles)
-        best = std::min(best, point_triangle(at, m.vertices[std::size_t(t[0])], m.vertices[std::size_t(t[1])], m.vertices[std::size_t(t[2])]).distance2);
+        best = std::min(best, point_triangle(at, m.vertices[std::size_t(t[0])], m.vertices[std::size_t(t[1])],
+                                             m.vertices[std::size_t(t[2])])
+                                  .distance2);
       int visited = 0;
       tree.nearest(at, bound, [&](int i, double& limit) {
         const auto& t = m.triangles[std::size_t(i)];
-        limit = std::min(limit, point_triangle(at, m.vertices[std::size_t(t[0])], m.vertices[std::size_t(t[1])], m.vertices[std::size_t(t[2])]).distance2);
+        limit = std::min(limit, point_triangle(at, m.vertices[std::size_t(t[0])], m.vertices[std::size_t(t[1])],
+                                               m.vertices[std::size_t(t[2])])
+                                    .distance2);
         ++visited;
       });
       EXPECT_EQ(bound, best);

@@ -26,7 +26,8 @@ void CollisionMesh::build(std::span<const Vec3> rest, std::span<const std::array
   region_start_.assign(regions + 1, 0);
   in_region_.resize(rest.size());
   std::iota(in_region_.begin(), in_region_.end(), 0);
-  std::stable_sort(in_region_.begin(), in_region_.end(), [this](int a, int b) { return region_of_[std::size_t(a)] < region_of_[std::size_t(b)]; });
+  std::stable_sort(in_region_.begin(), in_region_.end(),
+                   [this](int a, int b) { return region_of_[std::size_t(a)] < region_of_[std::size_t(b)]; });
   for (int r : region_of_) ++region_start_[std::size_t(r) + 1];
   std::partial_sum(region_start_.begin(), region_start_.end(), region_start_.begin());
 
@@ -39,11 +40,13 @@ void CollisionMesh::build(std::span<const Vec3> rest, std::span<const std::array
   for (std::size_t i = 0; i < triangles_.size(); ++i)
     for (int v : triangles_[i]) ring_[std::size_t(fill[std::size_t(v)]++)] = int(i);
 
-  // Neighbours: directed edges sorted by their ends. An edge of more than two triangles joins the first two of opposite sense.
+  // Neighbours: directed edges sorted by their ends. An edge of more than two triangles joins the first two of opposite
+  // sense.
   std::vector<std::tuple<int, int, int>> edges;  // from, to, 3 * triangle + corner
   edges.reserve(triangles_.size() * 3);
   for (std::size_t i = 0; i < triangles_.size(); ++i)
-    for (int k = 0; k < 3; ++k) edges.emplace_back(triangles_[i][std::size_t(k)], triangles_[i][std::size_t((k + 1) % 3)], int(3 * i) + k);
+    for (int k = 0; k < 3; ++k)
+      edges.emplace_back(triangles_[i][std::size_t(k)], triangles_[i][std::size_t((k + 1) % 3)], int(3 * i) + k);
   std::sort(edges.begin(), edges.end());
   across_.assign(triangles_.size(), {-1, -1, -1});
   for (const auto& [a, b, at] : edges) {

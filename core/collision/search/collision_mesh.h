@@ -17,10 +17,10 @@ namespace insula {
 
 /// The surface point nearest to some point p.
 struct NearestPoint {
-  int triangle = -1;       ///< -1: none within the limit
+  int triangle = -1;  ///< -1: none within the limit
   Vec3 bary = Vec3::Zero(), point = Vec3::Zero();
   double distance = 0;
-  bool behind = false;     ///< p is behind the surface
+  bool behind = false;           ///< p is behind the surface
   Vec3 outward = Vec3::UnitZ();  ///< unit, along the line through p and the point, out of the surface
 };
 
@@ -57,9 +57,11 @@ class CollisionMesh {
   }
   /// Regions that may come within a distance of the box in this step, m. Lowers `other` to the distance of the nearest
   /// region that is not in `known`.
-  std::uint64_t regions_near(const Aabb& box, double within, std::uint64_t known, double& other) const { return tree_.marks_near(box, within, known, other); }
-  double moved(std::uint64_t mask) const { return most(motion_.moved, mask); }       ///< farthest in the last update, m
-  double may_move(std::uint64_t mask) const { return most(motion_.may_move, mask); } ///< and its free displacement, m
+  std::uint64_t regions_near(const Aabb& box, double within, std::uint64_t known, double& other) const {
+    return tree_.marks_near(box, within, known, other);
+  }
+  double moved(std::uint64_t mask) const { return most(motion_.moved, mask); }  ///< farthest in the last update, m
+  double may_move(std::uint64_t mask) const { return most(motion_.may_move, mask); }  ///< and its free displacement, m
   long updates() const { return updates_; }
 
   const AabbTree& tree() const { return tree_; }
@@ -86,9 +88,9 @@ class CollisionMesh {
     const auto& v = triangle(tri);
     return bary[0] * free(v[0]) + bary[1] * free(v[1]) + bary[2] * free(v[2]);
   }
-  Vec3 face_normal(int tri, double t = 0) const;    ///< unit
-  Vec3 vertex_normal(int v, double t = 0) const;    ///< unit, weighted by angle
-  Vec3 rough_normal(int v) const;                   ///< unit, weighted by area, at the start of the step
+  Vec3 face_normal(int tri, double t = 0) const;  ///< unit
+  Vec3 vertex_normal(int v, double t = 0) const;  ///< unit, weighted by angle
+  Vec3 rough_normal(int v) const;                 ///< unit, weighted by area, at the start of the step
   /// Outward unit normal of the feature: of a face, the mean of an edge's faces, or angle-weighted at a vertex. Let c
   /// be the surface point closest to p. The product of the normal with p - c has the sign of the distance of p
   /// (Baerentzen, Aanaes 2005).
@@ -104,8 +106,8 @@ class CollisionMesh {
   AabbTree tree_;
   std::vector<std::array<int, 3>> triangles_;
   std::vector<std::array<int, 3>> in_order_;  ///< triangles in the tree's order: neighbours are close in memory
-  std::vector<std::array<int, 3>> across_;  ///< neighbour across the edge that starts at each corner, -1 at a border
-  std::vector<int> ring_start_, ring_;      ///< triangles around each vertex
+  std::vector<std::array<int, 3>> across_;    ///< neighbour across the edge that starts at each corner, -1 at a border
+  std::vector<int> ring_start_, ring_;        ///< triangles around each vertex
   std::vector<Vec3> last_;  ///< positions of the update before; empty: motion is measured by the caller
   double travelled_ = 0, farthest_free_ = 0;
   void take(std::span<const Vec3> positions, std::span<const Vec3> free, const RegionMotion& motion);
@@ -115,7 +117,7 @@ class CollisionMesh {
     for (; mask != 0; mask &= mask - 1) m = std::max(m, of[std::size_t(std::countr_zero(mask))]);
     return m;
   }
-  std::vector<int> region_of_;  ///< of the vertices
+  std::vector<int> region_of_;                 ///< of the vertices
   std::vector<int> region_start_, in_region_;  ///< vertices of the regions
   RegionMotion motion_;
   PerRegion room_{};  ///< how far each region's vertices may move before one leaves its boxes in the tree, m

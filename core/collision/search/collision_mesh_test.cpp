@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A mesh whose motion is followed by region: its boxes hold it all the time, however it moves and whoever measures that.
+// A mesh whose motion is followed by region: its boxes hold it all the time, however it moves and whoever measures
+// that.
 #include "core/collision/search/collision_mesh.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +12,8 @@
 namespace insula {
 namespace {
 
-RegionMotion measured(const CollisionMesh& mesh, const std::vector<Vec3>& before, const std::vector<Vec3>& now, const std::vector<Vec3>& free) {
+RegionMotion measured(const CollisionMesh& mesh, const std::vector<Vec3>& before, const std::vector<Vec3>& now,
+                      const std::vector<Vec3>& free) {
   RegionMotion m;
   for (std::size_t v = 0; v < now.size(); ++v) {
     const std::size_t r = std::size_t(std::countr_zero(mesh.region_of(int(v))));
@@ -44,7 +46,8 @@ struct Sheet {
     before = now;
     for (std::size_t v = 0; v < now.size(); ++v) {
       const Vec3& x = rest.vertices[v];
-      const double wide = 1e-3 * std::sin(0.002 * step + 40 * x.x()), narrow = 2e-3 * std::sin(0.25 * step) * std::exp(-std::pow((x.y() + 0.2) / 3e-3, 2));
+      const double wide = 1e-3 * std::sin(0.002 * step + 40 * x.x()),
+                   narrow = 2e-3 * std::sin(0.25 * step) * std::exp(-std::pow((x.y() + 0.2) / 3e-3, 2));
       now[v] = x + Vec3(wide, -wide, narrow);
       free[v] = 1.3 * (now[v] - before[v]);
     }

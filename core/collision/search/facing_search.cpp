@@ -7,9 +7,13 @@
 namespace insula {
 namespace {
 
-bool has_corner(const std::array<int, 3>& triangle, int v) { return triangle[0] == v || triangle[1] == v || triangle[2] == v; }
+bool has_corner(const std::array<int, 3>& triangle, int v) {
+  return triangle[0] == v || triangle[1] == v || triangle[2] == v;
+}
 
-bool share_corner(const std::array<int, 3>& a, const std::array<int, 3>& b) { return has_corner(a, b[0]) || has_corner(a, b[1]) || has_corner(a, b[2]); }
+bool share_corner(const std::array<int, 3>& a, const std::array<int, 3>& b) {
+  return has_corner(a, b[0]) || has_corner(a, b[1]) || has_corner(a, b[2]);
+}
 
 }  // namespace
 

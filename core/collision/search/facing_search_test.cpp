@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is kept from step to step spares looks and changes nothing: the nearest facing triangle is that of a search of all.
+// What is kept from step to step spares looks and changes nothing: the nearest facing triangle is that of a search of
+// all.
 #include "core/collision/search/facing_search.h"
 
 #include <gtest/gtest.h>
@@ -27,13 +28,15 @@ TEST(FacingSearch, FollowsWhatASearchOfAllFinds) {
   for (int step = 0; step < 400; ++step) {
     double farthest[2] = {0, 0};
     for (std::size_t v = 0; v < now.size(); ++v) {
-      const Vec3 x = ball.vertices[v] + Vec3(3e-3 * std::sin(0.002 * step), 1e-3 * std::sin(0.003 * step), 1.5e-3 * std::sin(0.004 * step));
+      const Vec3 x = ball.vertices[v] + Vec3(3e-3 * std::sin(0.002 * step), 1e-3 * std::sin(0.003 * step),
+                                             1.5e-3 * std::sin(0.004 * step));
       farthest[0] = std::max(farthest[0], (x - now[v]).norm());
       now[v] = x;
     }
     for (std::size_t v = 0; v < under.size(); ++v) {
       const Vec3& rest = ground.vertices[v];
-      const Vec3 x = rest + 2e-4 * Vec3(0, std::sin(600 * rest.x() + 0.01 * step), std::sin(900 * rest.y() - 0.006 * step));
+      const Vec3 x =
+          rest + 2e-4 * Vec3(0, std::sin(600 * rest.x() + 0.01 * step), std::sin(900 * rest.y() - 0.006 * step));
       farthest[1] = std::max(farthest[1], (x - under[v]).norm());
       under[v] = x;
     }

@@ -16,7 +16,8 @@ std::uint32_t boxes_near(const BoxPack& pack, const std::array<float, 3>& x, flo
   for (int first = 0; first < BoxPack::size; first += W) {
     V d2{};
     for (std::size_t k = 0; k < 3; ++k) {
-      const V low = *reinterpret_cast<const V*>(pack.low[k].data() + first), high = *reinterpret_cast<const V*>(pack.high[k].data() + first);
+      const V low = *reinterpret_cast<const V*>(pack.low[k].data() + first),
+              high = *reinterpret_cast<const V*>(pack.high[k].data() + first);
       const V beyond = most(most(low - x[k], x[k] - high) - margin, V{});
       d2 += beyond * beyond;
     }

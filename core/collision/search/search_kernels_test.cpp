@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The look at packs of boxes, of every instruction set, against exact distances: none that is near is missed, and few others are
-// taken for near.
+// The look at packs of boxes, of every instruction set, against exact distances: none that is near is missed, and few
+// others are taken for near.
 #include "core/collision/search/search_kernels.h"
 
 #include <gtest/gtest.h>
@@ -34,7 +34,8 @@ TEST(SearchKernels, MissNoBoxThatIsNear) {
         for (std::size_t k = 0; k < 3; ++k) pack.low[k][i] = box[i].low[k], pack.high[k][i] = box[i].high[k];
       }
       const double limit = r.between(0, 0.003), margin = x.cwiseAbs().maxCoeff() * 1.2e-7;
-      const std::uint32_t found = kernels.boxes_near(pack, {float(x[0]), float(x[1]), float(x[2])}, float(margin), float(limit * limit) * 1.000001f);
+      const std::uint32_t found = kernels.boxes_near(pack, {float(x[0]), float(x[1]), float(x[2])}, float(margin),
+                                                     float(limit * limit) * 1.000001f);
       for (std::size_t i = 0; i < box.size(); ++i) {
         const double d = std::sqrt(box[i].distance2(x));
         const bool said = (found >> i & 1) != 0;

@@ -59,7 +59,8 @@ TEST(Closest, SegmentTriangleAgreesWithSamplingAndMeets) {
     const Vec3 a = r.in_box(1), b = r.in_box(1), c = r.in_box(1), p = r.in_box(1.5), q = r.in_box(1.5);
     const ClosestPair x = segment_triangle(p, q, a, b, c);
     double sampled = 1e300;
-    for (int i = 0; i <= 200; ++i) sampled = std::min(sampled, point_triangle(p + (q - p) * i / 200, a, b, c).distance2);
+    for (int i = 0; i <= 200; ++i)
+      sampled = std::min(sampled, point_triangle(p + (q - p) * i / 200, a, b, c).distance2);
     EXPECT_LE(x.distance2, sampled + 1e-12);
     EXPECT_GE(std::sqrt(x.distance2), std::sqrt(sampled) - 0.02);
     if (x.distance2 == 0) {
@@ -103,7 +104,9 @@ TEST(Hulls, BoxAgainstTriangleSatisfiesTheOptimalityCondition) {
     std::vector<Vec3> box;
     const Mat3 turn = from_rotation_vector(r.in_box(2)).toRotationMatrix();
     const Vec3 at = r.in_box(0.015), half(0.004, 0.002, 0.0003);
-    for (int i = 0; i < 8; ++i) box.push_back(at + turn * Vec3(i & 1 ? half[0] : -half[0], i & 2 ? half[1] : -half[1], i & 4 ? half[2] : -half[2]));
+    for (int i = 0; i < 8; ++i)
+      box.push_back(at +
+                    turn * Vec3(i & 1 ? half[0] : -half[0], i & 2 ? half[1] : -half[1], i & 4 ? half[2] : -half[2]));
     const std::array<Vec3, 3> tri{r.in_box(0.01), r.in_box(0.01), r.in_box(0.01)};
     const HullDistance d = hull_distance(box, tri);
     if (d.distance > 0) {

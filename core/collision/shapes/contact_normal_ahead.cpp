@@ -9,11 +9,12 @@
 
 namespace insula {
 
-std::optional<Vec3> contact_normal_ahead(const RoundedPiece& piece, const Pose& pose, const CollisionMesh& mesh, const std::function<Vec3(int)>& vertex,
-                                  const Vec3& about, double within, const Vec3& like) {
+std::optional<Vec3> contact_normal_ahead(const RoundedPiece& piece, const Pose& pose, const CollisionMesh& mesh,
+                                         const std::function<Vec3(int)>& vertex, const Vec3& about, double within,
+                                         const Vec3& like) {
   constexpr double touching_m = 1e-9, as_near_m = 0.1e-3;
   constexpr double slack = 0.05;  // a sine: the mesh knows its neighbours' places as they were expected
-  std::array<Vec3, 24> points;         // read_tool refuses more
+  std::array<Vec3, 24> points;    // read_tool refuses more
   for (std::size_t i = 0; i < piece.core.size(); ++i) points[i] = pose.apply(piece.core[i]);
   const std::span<const Vec3> core(points.data(), piece.core.size());
   Aabb box;
@@ -46,7 +47,8 @@ std::optional<Vec3> contact_normal_ahead(const RoundedPiece& piece, const Pose& 
   for (std::size_t i = 0; i < count; ++i) least = std::min(least, places[i].distance);
   std::optional<Vec3> out;
   for (std::size_t i = 0; i < count; ++i)
-    if (places[i].distance <= least + as_near_m && (!out || places[i].normal.dot(like) > out->dot(like))) out = places[i].normal;
+    if (places[i].distance <= least + as_near_m && (!out || places[i].normal.dot(like) > out->dot(like)))
+      out = places[i].normal;
   return out;
 }
 

@@ -4,8 +4,8 @@
 #include <functional>
 #include <optional>
 
-#include "core/collision/search/collision_mesh.h"
 #include "core/collision/colliders/tool_collider.h"
+#include "core/collision/search/collision_mesh.h"
 
 namespace insula {
 
@@ -14,7 +14,8 @@ namespace insula {
 /// most along `like` is taken. `vertex` gives the present positions of the surface's vertices, which are near those of
 /// the mesh. Returns nothing if there is no such point, or if the core is not in front of the surface there. Scene
 /// frame, m.
-std::optional<Vec3> contact_normal_ahead(const RoundedPiece& piece, const Pose& pose, const CollisionMesh& mesh, const std::function<Vec3(int)>& vertex,
-                                  const Vec3& about, double within, const Vec3& like);
+std::optional<Vec3> contact_normal_ahead(const RoundedPiece& piece, const Pose& pose, const CollisionMesh& mesh,
+                                         const std::function<Vec3(int)>& vertex, const Vec3& about, double within,
+                                         const Vec3& like);
 
 }  // namespace insula

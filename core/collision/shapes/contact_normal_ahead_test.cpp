@@ -16,14 +16,16 @@ struct Rig {
   CollisionMesh mesh;
   RoundedPiece ball = rounded({"ball", {Vec3::Zero()}, radius});
   Vec3 gone = Vec3::Zero();  ///< of the surface
-  explicit Rig(TriMesh surface = shapes::box(Vec3::Constant(-half), Vec3::Constant(half), 8)) : box(std::move(surface)) {
+  explicit Rig(TriMesh surface = shapes::box(Vec3::Constant(-half), Vec3::Constant(half), 8))
+      : box(std::move(surface)) {
     mesh.build(box.vertices, box.triangles);
     mesh.update(box.vertices, {});
   }
   std::optional<Vec3> nearest(const Vec3& centre, const Vec3& like = Vec3::Zero()) const {
     Pose pose;
     pose.p = centre;
-    return contact_normal_ahead(ball, pose, mesh, [&](int v) { return Vec3(box.vertices[std::size_t(v)] + gone); }, centre, 3 * radius, like);
+    return contact_normal_ahead(
+        ball, pose, mesh, [&](int v) { return Vec3(box.vertices[std::size_t(v)] + gone); }, centre, 3 * radius, like);
   }
 };
 
@@ -53,7 +55,8 @@ TEST(ContactNormalAhead, TheSurfaceIsWhereItHasGone) {
 
 // Two boxes side by side with a step between them: in its corner each contact keeps its own wall.
 TEST(ContactNormalAhead, InAGrooveEachContactKeepsItsWall) {
-  const Rig rig(shapes::joined(shapes::box(Vec3(-half, -half, -half), Vec3(0, half, half), 8), shapes::box(Vec3(0, -half, -half), Vec3(half, half, 0), 8)));
+  const Rig rig(shapes::joined(shapes::box(Vec3(-half, -half, -half), Vec3(0, half, half), 8),
+                               shapes::box(Vec3(0, -half, -half), Vec3(half, half, 0), 8)));
   const Vec3 corner(radius, 0.7e-3, radius);
   for (const Vec3& wall : {Vec3(Vec3::UnitX()), Vec3(Vec3::UnitZ())}) {
     const auto normal = rig.nearest(corner, wall);

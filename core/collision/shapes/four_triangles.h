@@ -18,7 +18,8 @@ struct FourTriangles {
     const Float4 to_edges = least(least(to_edge(ab, ap), to_edge(bc, bp)), to_edge(ca, cp));
     const V n = cross(ab, bc);
     const Float4 h = dot(n, ap), nn = dot(n, n);
-    const auto over = (dot(cross(n, ab), ap) >= 0) & (dot(cross(n, bc), bp) >= 0) & (dot(cross(n, ca), cp) >= 0) & (nn > 0);
+    const auto over =
+        (dot(cross(n, ab), ap) >= 0) & (dot(cross(n, bc), bp) >= 0) & (dot(cross(n, ca), cp) >= 0) & (nn > 0);
     const Float4 plane = h * h / (nn > 0 ? nn : Float4{} + 1);
     // A sliver's normal is mostly rounding; its sides are right.
     return over ? least(plane, to_edges) : to_edges;
@@ -34,7 +35,9 @@ struct FourTriangles {
   friend V operator-(const std::array<Float4, 3>& p, const V& q) { return {p[0] - q[0], p[1] - q[1], p[2] - q[2]}; }
   static Float4 least(Float4 p, Float4 q) { return p < q ? p : q; }
   static Float4 dot(const V& p, const V& q) { return p[0] * q[0] + p[1] * q[1] + p[2] * q[2]; }
-  static V cross(const V& p, const V& q) { return {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]}; }
+  static V cross(const V& p, const V& q) {
+    return {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
+  }
   static Float4 to_edge(const V& edge, const V& from) {
     constexpr Float4 one{1, 1, 1, 1};
     const Float4 s = dot(edge, from) / (dot(edge, edge) + 1e-30f);

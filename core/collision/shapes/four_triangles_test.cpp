@@ -35,7 +35,8 @@ TEST(FourTriangles, MissNoneThatIsWithin) {
     Corners c;
     const Vec3 middle = r.between(0, 1e-2) * r.direction();
     for (auto& t : c.corner) {
-      const double size = std::pow(10, -r.between(2.5, 4.5)), thin = std::pow(10, -r.between(0, 7)), along = r.between(-0.5, 1.5);
+      const double size = std::pow(10, -r.between(2.5, 4.5)), thin = std::pow(10, -r.between(0, 7)),
+                   along = r.between(-0.5, 1.5);
       const Vec3 e = size * r.direction(), f = along * e + thin * size * r.direction();
       const Vec3 at = middle + r.between(0, 2e-3) * r.direction();
       t = {at, at + e, trial % 50 == 0 ? at : Vec3(at + f)};
@@ -58,7 +59,10 @@ TEST(FourTriangles, MissNoneThatIsWithin) {
 TEST(FourTriangles, InsideOverTheEdgesAndAtTheCorners) {
   Corners c;
   c.corner.fill({Vec3(0, 0, 0), Vec3(2e-3, 0, 0), Vec3(0, 1e-3, 0)});
-  for (const auto& [p, distance] : {std::pair{Vec3(0.5e-3, 0.3e-3, -0.7e-3), 0.7e-3}, {Vec3(1e-3, -0.4e-3, 0.3e-3), 0.5e-3}, {Vec3(2.3e-3, -0.4e-3, 0), 0.5e-3}, {Vec3(-0.3e-3, 0.5e-3, 0.4e-3), 0.5e-3}}) {
+  for (const auto& [p, distance] : {std::pair{Vec3(0.5e-3, 0.3e-3, -0.7e-3), 0.7e-3},
+                                    {Vec3(1e-3, -0.4e-3, 0.3e-3), 0.5e-3},
+                                    {Vec3(2.3e-3, -0.4e-3, 0), 0.5e-3},
+                                    {Vec3(-0.3e-3, 0.5e-3, 0.4e-3), 0.5e-3}}) {
     const Float4 d2 = c.packed().distance2(float(p[0]), float(p[1]), float(p[2]));
     for (std::size_t lane = 0; lane < 4; ++lane) EXPECT_NEAR(std::sqrt(double(d2[lane])), distance, 1e-9);
   }

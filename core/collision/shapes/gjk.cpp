@@ -9,9 +9,9 @@ namespace {
 
 struct Simplex {
   int n = 0;
-  Vec3 w[4];      // a - b
+  Vec3 w[4];  // a - b
   int ia[4], ib[4];
-  double l[4];    // weights of the closest point
+  double l[4];  // weights of the closest point
 
   void keep(const int* which, const double* weight, int count) {
     Simplex s;

@@ -11,10 +11,10 @@
 namespace insula {
 
 struct HullDistance {
-  double distance = 0;            ///< 0 when the hulls meet
-  Vec3 a = Vec3::Zero();          ///< closest point of the first hull (a common point when they meet)
-  Vec3 b = Vec3::Zero();          ///< closest point of the second
-  int count = 0;                  ///< points of the second hull that b is made of
+  double distance = 0;    ///< 0 when the hulls meet
+  Vec3 a = Vec3::Zero();  ///< closest point of the first hull (a common point when they meet)
+  Vec3 b = Vec3::Zero();  ///< closest point of the second
+  int count = 0;          ///< points of the second hull that b is made of
   int index[4] = {0, 0, 0, 0};
   double weight[4] = {0, 0, 0, 0};
 };
@@ -23,6 +23,7 @@ struct HullDistance {
 /// of ordinary size. Stops after at most 64 iterations with the best pair found. For hulls farther apart than `limit`
 /// the search ends early. `distance` is then a bound between the limit and their distance, and the points are two of
 /// theirs.
-HullDistance hull_distance(std::span<const Vec3> a, std::span<const Vec3> b, double limit = std::numeric_limits<double>::infinity());
+HullDistance hull_distance(std::span<const Vec3> a, std::span<const Vec3> b,
+                           double limit = std::numeric_limits<double>::infinity());
 
 }  // namespace insula

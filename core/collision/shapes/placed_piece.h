@@ -20,10 +20,12 @@ struct PlacedPiece {
   double radius = 0, bound = 0;
   bool expected = false;  ///< at the expected end of the step, not on the free path
 
-  PlacedPiece(const RoundedPiece& r, int index, const Pose& s, const Vec6& motion, double t, const Vec3& slid, double offset)
+  PlacedPiece(const RoundedPiece& r, int index, const Pose& s, const Vec6& motion, double t, const Vec3& slid,
+              double offset)
       : PlacedPiece(r, index, s, t > 0 ? displaced(s, t * motion) : s, t, slid, offset) {}
   /// `there`: the start pose displaced by t of the motion.
-  PlacedPiece(const RoundedPiece& r, int index, const Pose& s, const Pose& there, double t, const Vec3& slid, double offset)
+  PlacedPiece(const RoundedPiece& r, int index, const Pose& s, const Pose& there, double t, const Vec3& slid,
+              double offset)
       : piece(index), time(t), shift(slid), start(s), pose(there) {
     pose.p += slid;
     const Mat3 rotation = pose.q.toRotationMatrix();

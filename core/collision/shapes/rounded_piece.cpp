@@ -2,8 +2,8 @@
 // Cores and radii of tool pieces, and tool against tool.
 #include <Eigen/Eigenvalues>
 
-#include "core/collision/shapes/gjk.h"
 #include "core/collision/colliders/tool_collider.h"
+#include "core/collision/shapes/gjk.h"
 
 namespace insula {
 

@@ -43,7 +43,8 @@ class GltfCheck {
   }
   /// Index into `name`'s list.
   std::size_t index(const Json& value, const char* name) const {
-    if (!value.is_number_unsigned() || value.get<std::uint64_t>() >= list(name).size()) bad(std::string("an index into ") + name);
+    if (!value.is_number_unsigned() || value.get<std::uint64_t>() >= list(name).size())
+      bad(std::string("an index into ") + name);
     return value.get<std::size_t>();
   }
 
@@ -51,25 +52,32 @@ class GltfCheck {
     for (const Json& view : list("bufferViews")) {
       if (!view.contains("buffer")) bad("a bufferView without buffer");
       const Json& buffer = list("buffers")[index(view["buffer"], "buffers")];
-      if (whole(view, "byteOffset", 0) + whole(view, "byteLength", 0) > whole(buffer, "byteLength", 0)) bad("a bufferView outside its buffer");
+      if (whole(view, "byteOffset", 0) + whole(view, "byteLength", 0) > whole(buffer, "byteLength", 0))
+        bad("a bufferView outside its buffer");
     }
   }
 
   void accessors() const {
     for (const Json& a : list("accessors")) {
       if (a.contains("sparse")) fail(file_, "has sparse accessors, which are not read");
-      if (!a.contains("bufferView") || !a.contains("componentType") || !a.contains("type") || !a["type"].is_string()) bad("an accessor");
+      if (!a.contains("bufferView") || !a.contains("componentType") || !a.contains("type") || !a["type"].is_string())
+        bad("an accessor");
       const Json& view = list("bufferViews")[index(a["bufferView"], "bufferViews")];
       const std::uint64_t component = whole(a, "componentType", 0);
-      const std::uint64_t bytes = component == 5120 || component == 5121 ? 1 : component == 5122 || component == 5123 ? 2 : component == 5125 || component == 5126 ? 4 : 0;
-      static constexpr std::pair<std::string_view, std::uint64_t> types[] = {{"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT2", 4}, {"MAT3", 9}, {"MAT4", 16}};
+      const std::uint64_t bytes = component == 5120 || component == 5121   ? 1
+                                  : component == 5122 || component == 5123 ? 2
+                                  : component == 5125 || component == 5126 ? 4
+                                                                           : 0;
+      static constexpr std::pair<std::string_view, std::uint64_t> types[] = {
+          {"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT2", 4}, {"MAT3", 9}, {"MAT4", 16}};
       std::uint64_t parts = 0;
       for (const auto& [name, n] : types)
         if (a["type"].get_ref<const std::string&>() == name) parts = n;
       if (bytes == 0 || parts == 0) bad("an accessor's type");
       const std::uint64_t count = whole(a, "count", 0), stride = std::max(whole(view, "byteStride", 0), bytes * parts);
       if (count == 0) bad("an accessor's count");
-      if (whole(a, "byteOffset", 0) + stride * (count - 1) + bytes * parts > whole(view, "byteLength", 0)) bad("an accessor outside its bufferView");
+      if (whole(a, "byteOffset", 0) + stride * (count - 1) + bytes * parts > whole(view, "byteLength", 0))
+        bad("an accessor outside its bufferView");
     }
   }
 
@@ -86,7 +94,9 @@ class GltfCheck {
         if (mode == 4) triangles_ += whole(a, "count", 0) / 3;
         else if (mode > 4) strips_ = true;
         if (p.contains("material")) index(p["material"], "materials");
-        if (p["attributes"].contains("POSITION") && list("accessors")[index(p["attributes"]["POSITION"], "accessors")]["type"] != "VEC3") bad("a primitive's positions");
+        if (p["attributes"].contains("POSITION") &&
+            list("accessors")[index(p["attributes"]["POSITION"], "accessors")]["type"] != "VEC3")
+          bad("a primitive's positions");
       }
     }
   }

@@ -14,13 +14,15 @@ constexpr int tet4 = 4;
 
 /// Nodes of a gmsh element type; 0 unknown.
 int nodes_of(std::int64_t type) {
-  static constexpr int table[] = {0, 2, 3, 4, 4, 8, 6, 5, 3, 6, 9, 10, 27, 18, 14, 1, 8, 20, 15, 13, 9, 10, 12, 15, 15, 21, 4, 5, 6, 20, 35, 56};
+  static constexpr int table[] = {0, 2,  3,  4,  4, 8,  6,  5,  3,  6,  9, 10, 27, 18, 14, 1,
+                                  8, 20, 15, 13, 9, 10, 12, 15, 15, 21, 4, 5,  6,  20, 35, 56};
   return type > 0 && type < std::int64_t(std::size(table)) ? table[type] : 0;
 }
 
 /// Volume elements that are no linear tetrahedra would leave holes: they are refused.
 bool other_volume(std::int64_t type) {
-  return (type >= 5 && type <= 7) || (type >= 11 && type <= 14) || (type >= 17 && type <= 19) || (type >= 29 && type <= 31);
+  return (type >= 5 && type <= 7) || (type >= 11 && type <= 14) || (type >= 17 && type <= 19) ||
+         (type >= 29 && type <= 31);
 }
 
 class GmshReader {
@@ -87,12 +89,17 @@ class GmshReader {
   }
 
   std::int64_t int32(const char* what) { return binary_ ? in_.binary<std::int32_t>(swap_, what) : in_.integer(what); }
-  std::int64_t size(const char* what) { return binary_ ? std::int64_t(in_.binary<std::uint64_t>(swap_, what)) : in_.integer(what); }
+  std::int64_t size(const char* what) {
+    return binary_ ? std::int64_t(in_.binary<std::uint64_t>(swap_, what)) : in_.integer(what);
+  }
   double real(const char* what) { return binary_ ? in_.binary<double>(swap_, what) : in_.number(what); }
-  std::size_t least(std::size_t binary_bytes, std::size_t text_bytes) const { return binary_ ? binary_bytes : text_bytes; }
+  std::size_t least(std::size_t binary_bytes, std::size_t text_bytes) const {
+    return binary_ ? binary_bytes : text_bytes;
+  }
 
   void add_node(std::int64_t tag, const Vec3& p) {
-    if (!place_.emplace(tag, std::int64_t(raw_.nodes.size())).second) in_.fail("node " + std::to_string(tag) + " stands there twice");
+    if (!place_.emplace(tag, std::int64_t(raw_.nodes.size())).second)
+      in_.fail("node " + std::to_string(tag) + " stands there twice");
     raw_.nodes.push_back(p);
     raw_.node_number.push_back(tag);
   }
@@ -114,7 +121,8 @@ class GmshReader {
 
   void nodes4() {
     if (binary_) in_.line();
-    const std::size_t blocks = in_.checked_count(size("the number of node blocks"), "the number of node blocks", least(20, 4));
+    const std::size_t blocks =
+        in_.checked_count(size("the number of node blocks"), "the number of node blocks", least(20, 4));
     for (int i = 0; i < 3; ++i) size("the range of node numbers");
     std::vector<std::int64_t> tags;
     for (std::size_t b = 0; b < blocks; ++b) {
@@ -122,7 +130,8 @@ class GmshReader {
       int32("a block's entity");
       const std::int64_t parametric = int32("a block's parametric mark");
       if (dim < 0 || dim > 3 || parametric < 0 || parametric > 1) in_.fail("has a malformed block of nodes");
-      const std::size_t n = in_.checked_count(size("a block's number of nodes"), "a block's number of nodes", least(32, 7));
+      const std::size_t n =
+          in_.checked_count(size("a block's number of nodes"), "a block's number of nodes", least(32, 7));
       tags.clear();
       for (std::size_t i = 0; i < n; ++i) tags.push_back(size("a node's number"));
       for (std::int64_t tag : tags) {
@@ -146,7 +155,8 @@ class GmshReader {
     if (binary_) {
       in_.line();
       for (std::size_t done = 0; done < n;) {
-        const std::int64_t type = int32("an element's type"), follow = int32("a count of elements"), tags = int32("a count of tags");
+        const std::int64_t type = int32("an element's type"), follow = int32("a count of elements"),
+                           tags = int32("a count of tags");
         const int nodes = checked_type(type);
         if (follow < 1 || std::uint64_t(follow) > n - done) in_.fail("has a malformed block of elements");
         if (tags < 0 || tags > 1000) in_.fail("has a malformed block of elements");
@@ -159,7 +169,8 @@ class GmshReader {
       }
     } else {
       for (std::size_t i = 0; i < n; ++i) {
-        const std::int64_t tag = int32("an element's number"), type = int32("an element's type"), tags = int32("a count of tags");
+        const std::int64_t tag = int32("an element's number"), type = int32("an element's type"),
+                           tags = int32("a count of tags");
         if (tags < 0 || tags > 1000) in_.fail("element " + std::to_string(tag) + " has a malformed count of tags");
         for (std::int64_t k = 0; k < tags; ++k) int32("an element's tag");
         element(type, tag, checked_type(type));
@@ -169,14 +180,16 @@ class GmshReader {
 
   void elements4() {
     if (binary_) in_.line();
-    const std::size_t blocks = in_.checked_count(size("the number of element blocks"), "the number of element blocks", least(20, 4));
+    const std::size_t blocks =
+        in_.checked_count(size("the number of element blocks"), "the number of element blocks", least(20, 4));
     for (int i = 0; i < 3; ++i) size("the range of element numbers");
     for (std::size_t b = 0; b < blocks; ++b) {
       int32("a block's dimension");
       int32("a block's entity");
       const std::int64_t type = int32("an element's type");
       const int nodes = checked_type(type);
-      const std::size_t n = in_.checked_count(size("a block's number of elements"), "a block's number of elements", least(16, 4));
+      const std::size_t n =
+          in_.checked_count(size("a block's number of elements"), "a block's number of elements", least(16, 4));
       for (std::size_t i = 0; i < n; ++i) element(type, size("an element's number"), nodes);
     }
   }

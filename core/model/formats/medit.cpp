@@ -33,7 +33,8 @@ RawTets read_medit(const std::filesystem::path& file, std::string_view bytes) {
   const std::string text = without_comments(bytes);
   ByteCursor in(file, text);
   RawTets raw;
-  if (in.word("MeshVersionFormatted") != "MeshVersionFormatted") in.fail("is no Medit file: it does not start with MeshVersionFormatted");
+  if (in.word("MeshVersionFormatted") != "MeshVersionFormatted")
+    in.fail("is no Medit file: it does not start with MeshVersionFormatted");
   in.integer("the version");
   bool vertices = false, tets = false, ended = false;
   std::string_view word = in.try_word();
@@ -71,7 +72,8 @@ RawTets read_medit(const std::filesystem::path& file, std::string_view bytes) {
       const bool volume = keyword == "Hexahedra" || keyword == "Prisms" || keyword == "Pyramids";
       std::string_view next = in.try_word();
       std::int64_t n = 0;
-      if (volume && parse_integer(next, n) && n > 0) in.fail("holds " + keyword + "; only tetrahedra can fill a volume here");
+      if (volume && parse_integer(next, n) && n > 0)
+        in.fail("holds " + keyword + "; only tetrahedra can fill a volume here");
       while (!next.empty() && !is_keyword(next)) next = in.try_word();
       word = next;
       continue;

@@ -11,10 +11,10 @@
 namespace insula::test_files {
 
 struct Format {
-  std::string name;                                     ///< "gmsh41_binary"
-  std::string file;                                     ///< file name with the right extension
+  std::string name;  ///< "gmsh41_binary"
+  std::string file;  ///< file name with the right extension
   std::function<std::string(const TetMesh&)> bytes;
-  bool number_from_one = false;                         ///< how it counts tetrahedra
+  bool number_from_one = false;  ///< how it counts tetrahedra
 };
 
 /// A box of 2 x 2 x 2 cubes of six tetrahedra each. Its inner node is moved, and its coordinates are no round numbers.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shared by the tests beside it: one mesh and one surface written in every format. Written from the formats' manuals, not
-// with the readers, so that a shared misunderstanding cannot hide.
+// Shared by the tests beside it: one mesh and one surface written in every format. Written from the formats' manuals,
+// not with the readers, so that a shared misunderstanding cannot hide.
 #include "core/model/formats/mesh_files_for_test.h"
 
 #include <zlib.h>
@@ -40,7 +40,8 @@ std::int64_t tag(std::size_t node) { return 10 + 2 * std::int64_t(node); }
 std::string gmsh22(const TetMesh& m, bool binary) {
   std::string s = std::string("$MeshFormat\n2.2 ") + (binary ? "1" : "0") + " 8\n";
   if (binary) put<std::int32_t>(s, 1), s += "\n";
-  s += "$EndMeshFormat\n$PhysicalNames\n1\n3 1 \"tissue\"\n$EndPhysicalNames\n$Nodes\n" + num(std::int64_t(m.nodes.size() + 1)) + "\n";
+  s += "$EndMeshFormat\n$PhysicalNames\n1\n3 1 \"tissue\"\n$EndPhysicalNames\n$Nodes\n" +
+       num(std::int64_t(m.nodes.size() + 1)) + "\n";
   const auto node = [&](std::int64_t t, const Vec3& p) {
     if (!binary) return void(s += num(t) + " " + line(p) + "\n");
     put<std::int32_t>(s, std::int32_t(t));
@@ -57,7 +58,8 @@ std::string gmsh22(const TetMesh& m, bool binary) {
     s += "1 2 2 7 7 " + num(tag(0)) + " " + num(tag(1)) + " " + num(tag(2)) + "\n";
   }
   for (std::size_t t = 0; t < m.tets.size(); ++t) {
-    if (binary) for (std::int32_t v : {int(t) + 2, 7, 7}) put<std::int32_t>(s, v);
+    if (binary)
+      for (std::int32_t v : {int(t) + 2, 7, 7}) put<std::int32_t>(s, v);
     else s += num(std::int64_t(t) + 2) + " 4 2 7 7";
     for (int i : m.tets[t])
       if (binary) put<std::int32_t>(s, std::int32_t(tag(std::size_t(i))));
@@ -71,10 +73,16 @@ std::string gmsh41(const TetMesh& m, bool binary, bool big = false) {
   std::string s = std::string("$MeshFormat\n4.1 ") + (binary ? "1" : "0") + " 8\n";
   if (binary) put<std::int32_t>(s, 1, big), s += "\n";
   s += "$EndMeshFormat\n";
-  const auto i32 = [&](std::int64_t v) { binary ? put<std::int32_t>(s, std::int32_t(v), big) : void(s += num(v) + " "); };
-  const auto u64 = [&](std::int64_t v) { binary ? put<std::uint64_t>(s, std::uint64_t(v), big) : void(s += num(v) + " "); };
+  const auto i32 = [&](std::int64_t v) {
+    binary ? put<std::int32_t>(s, std::int32_t(v), big) : void(s += num(v) + " ");
+  };
+  const auto u64 = [&](std::int64_t v) {
+    binary ? put<std::uint64_t>(s, std::uint64_t(v), big) : void(s += num(v) + " ");
+  };
   const auto real = [&](double v) { binary ? put<double>(s, v, big) : void(s += num(v) + " "); };
-  const auto end_line = [&] { if (!binary) s += "\n"; };
+  const auto end_line = [&] {
+    if (!binary) s += "\n";
+  };
   s += "$Entities\n";
   for (int i = 0; i < 4; ++i) u64(0);
   end_line();
@@ -119,10 +127,12 @@ std::string gmsh41(const TetMesh& m, bool binary, bool big = false) {
 }
 
 std::string vtk(const TetMesh& m, bool binary, bool version5) {
-  std::string s = std::string("# vtk DataFile Version ") + (version5 ? "5.1" : "3.0") + "\na box\n" + (binary ? "BINARY" : "ASCII") +
-                  "\nDATASET UNSTRUCTURED_GRID\n";
+  std::string s = std::string("# vtk DataFile Version ") + (version5 ? "5.1" : "3.0") + "\na box\n" +
+                  (binary ? "BINARY" : "ASCII") + "\nDATASET UNSTRUCTURED_GRID\n";
   const auto real = [&](double v) { binary ? put<double>(s, v, true) : void(s += num(v) + " "); };
-  const auto i32 = [&](std::int64_t v) { binary ? put<std::int32_t>(s, std::int32_t(v), true) : void(s += num(v) + " "); };
+  const auto i32 = [&](std::int64_t v) {
+    binary ? put<std::int32_t>(s, std::int32_t(v), true) : void(s += num(v) + " ");
+  };
   const auto i64 = [&](std::int64_t v) { binary ? put<std::int64_t>(s, v, true) : void(s += num(v) + " "); };
   s += "FIELD FieldData 1\nTIME 1 1 double\n";
   real(2.5);
@@ -153,7 +163,8 @@ std::string base64(const std::string& in) {
   std::string out;
   for (std::size_t i = 0; i < in.size(); i += 3) {
     unsigned bits = 0;
-    for (std::size_t k = 0; k < 3; ++k) bits = bits << 8 | (i + k < in.size() ? static_cast<unsigned char>(in[i + k]) : 0u);
+    for (std::size_t k = 0; k < 3; ++k)
+      bits = bits << 8 | (i + k < in.size() ? static_cast<unsigned char>(in[i + k]) : 0u);
     for (std::size_t k = 0; k < 4; ++k) out += i + k <= in.size() ? digits[bits >> (18 - 6 * k) & 63] : '=';
   }
   return out;
@@ -166,7 +177,9 @@ std::string vtu(const TetMesh& m, Coding coding) {
   const bool appended = coding == Coding::raw || coding == Coding::raw_zlib || coding == Coding::appended_base64;
   const bool header64 = coding == Coding::raw || coding == Coding::inline_zlib;
   std::string store;
-  const auto header = [&](std::string& to, std::uint64_t v) { header64 ? put<std::uint64_t>(to, v) : put<std::uint32_t>(to, std::uint32_t(v)); };
+  const auto header = [&](std::string& to, std::uint64_t v) {
+    header64 ? put<std::uint64_t>(to, v) : put<std::uint32_t>(to, std::uint32_t(v));
+  };
   const auto packed = [&](const std::string& raw) {
     std::string head, body;
     if (zlib) {  // blocks of 200 bytes
@@ -185,18 +198,22 @@ std::string vtu(const TetMesh& m, Coding coding) {
     header(head, raw.size());
     return coding == Coding::raw ? head + raw : base64(head + raw);
   };
-  const auto array = [&](const char* type, const std::string& name, int parts, const std::string& raw, const std::string& text) {
-    std::string s = std::string("<DataArray type=\"") + type + "\" Name=\"" + name + "\" NumberOfComponents=\"" + std::to_string(parts) + "\" format=\"";
+  const auto array = [&](const char* type, const std::string& name, int parts, const std::string& raw,
+                         const std::string& text) {
+    std::string s = std::string("<DataArray type=\"") + type + "\" Name=\"" + name + "\" NumberOfComponents=\"" +
+                    std::to_string(parts) + "\" format=\"";
     if (coding == Coding::ascii) return s + "ascii\">\n" + text + "\n</DataArray>\n";
     if (!appended) return s + "binary\">\n" + packed(raw) + "\n</DataArray>\n";
     s += "appended\" offset=\"" + std::to_string(store.size()) + "\"/>\n";
     store += packed(raw);
     return s;
   };
-  std::string s = std::string("<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\"") +
-                  (header64 ? " header_type=\"UInt64\"" : "") + (zlib ? " compressor=\"vtkZLibDataCompressor\"" : "") +
-                  ">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"" + std::to_string(m.nodes.size()) + "\" NumberOfCells=\"" +
-                  std::to_string(m.tets.size()) + "\">\n<PointData/><Points>\n";
+  std::string s =
+      std::string(
+          "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\"") +
+      (header64 ? " header_type=\"UInt64\"" : "") + (zlib ? " compressor=\"vtkZLibDataCompressor\"" : "") +
+      ">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"" + std::to_string(m.nodes.size()) + "\" NumberOfCells=\"" +
+      std::to_string(m.tets.size()) + "\">\n<PointData/><Points>\n";
   std::string x, xt, c, ct, o, ot, y, yt;
   for (const Vec3& p : m.nodes) {
     for (int k = 0; k < 3; ++k) put<double>(x, p[k]);
@@ -209,14 +226,17 @@ std::string vtu(const TetMesh& m, Coding coding) {
     put<std::uint8_t>(y, 10), yt += "10 ";
   }
   s += array("Float64", "Points", 3, x, xt) + "</Points>\n<Cells>\n" + array("Int32", "connectivity", 1, c, ct) +
-       array("Int64", "offsets", 1, o, ot) + array("UInt8", "types", 1, y, yt) + "</Cells>\n</Piece>\n</UnstructuredGrid>\n";
+       array("Int64", "offsets", 1, o, ot) + array("UInt8", "types", 1, y, yt) +
+       "</Cells>\n</Piece>\n</UnstructuredGrid>\n";
   if (appended)
-    s += std::string("<AppendedData encoding=\"") + (coding == Coding::appended_base64 ? "base64" : "raw") + "\">\n_" + store + "\n</AppendedData>\n";
+    s += std::string("<AppendedData encoding=\"") + (coding == Coding::appended_base64 ? "base64" : "raw") + "\">\n_" +
+         store + "\n</AppendedData>\n";
   return s + "</VTKFile>\n";
 }
 
 std::string medit(const TetMesh& m) {
-  std::string s = "MeshVersionFormatted 2\n# a comment\nDimension\n3\nVertices\n" + std::to_string(m.nodes.size()) + "\n";
+  std::string s =
+      "MeshVersionFormatted 2\n# a comment\nDimension\n3\nVertices\n" + std::to_string(m.nodes.size()) + "\n";
   for (const Vec3& p : m.nodes) s += line(p) + " 0\n";
   s += "Triangles\n1\n1 2 3 4\nTetrahedra\n" + std::to_string(m.tets.size()) + "\n";
   for (const auto& t : m.tets) {
@@ -251,23 +271,27 @@ std::string stl_ascii(const TriMesh& m) {
 std::string obj(const TriMesh& m) {
   std::string s = "# small\no part\n";
   for (const Vec3& v : m.vertices) s += "v " + line(v) + "\n";
-  for (const auto& t : m.triangles) s += "f " + std::to_string(t[0] + 1) + " " + std::to_string(t[1] + 1) + " " + std::to_string(t[2] + 1) + "\n";
+  for (const auto& t : m.triangles)
+    s += "f " + std::to_string(t[0] + 1) + " " + std::to_string(t[1] + 1) + " " + std::to_string(t[2] + 1) + "\n";
   return s;
 }
 
 std::string off(const TriMesh& m) {
   std::string s = "OFF\n" + std::to_string(m.vertices.size()) + " " + std::to_string(m.triangles.size()) + " 0\n";
   for (const Vec3& v : m.vertices) s += line(v) + "\n";
-  for (const auto& t : m.triangles) s += "3 " + std::to_string(t[0]) + " " + std::to_string(t[1]) + " " + std::to_string(t[2]) + "\n";
+  for (const auto& t : m.triangles)
+    s += "3 " + std::to_string(t[0]) + " " + std::to_string(t[1]) + " " + std::to_string(t[2]) + "\n";
   return s;
 }
 
 std::string ply(const TriMesh& m, bool binary) {
-  std::string s = std::string("ply\nformat ") + (binary ? "binary_little_endian" : "ascii") + " 1.0\nelement vertex " + std::to_string(m.vertices.size()) +
-                  "\nproperty float x\nproperty float y\nproperty float z\nelement face " + std::to_string(m.triangles.size()) +
-                  "\nproperty list uchar int vertex_indices\nend_header\n";
+  std::string s = std::string("ply\nformat ") + (binary ? "binary_little_endian" : "ascii") + " 1.0\nelement vertex " +
+                  std::to_string(m.vertices.size()) +
+                  "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
+                  std::to_string(m.triangles.size()) + "\nproperty list uchar int vertex_indices\nend_header\n";
   for (const Vec3& v : m.vertices) {
-    if (binary) for (int k = 0; k < 3; ++k) put<float>(s, float(v[k]));
+    if (binary)
+      for (int k = 0; k < 3; ++k) put<float>(s, float(v[k]));
     else s += line(v) + "\n";
   }
   for (const auto& t : m.triangles) {
@@ -292,10 +316,12 @@ std::string gltf_parts(const TriMesh& m, std::string& buffer) {
   const auto list = [](const Vec3& v) { return "[" + num(v.x()) + "," + num(v.y()) + "," + num(v.z()) + "]"; };
   return "\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}],"
          "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1}]}],"
-         "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":" + std::to_string(m.vertices.size()) +
-         ",\"type\":\"VEC3\",\"min\":" + list(low) + ",\"max\":" + list(high) + "},{\"bufferView\":1,\"componentType\":5125,\"count\":" +
-         std::to_string(3 * m.triangles.size()) + ",\"type\":\"SCALAR\"}],\"bufferViews\":[{\"buffer\":0,\"byteOffset\":0,\"byteLength\":" +
-         std::to_string(split) + "},{\"buffer\":0,\"byteOffset\":" + std::to_string(split) + ",\"byteLength\":" + std::to_string(buffer.size() - split) + "}]";
+         "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":" +
+         std::to_string(m.vertices.size()) + ",\"type\":\"VEC3\",\"min\":" + list(low) + ",\"max\":" + list(high) +
+         "},{\"bufferView\":1,\"componentType\":5125,\"count\":" + std::to_string(3 * m.triangles.size()) +
+         ",\"type\":\"SCALAR\"}],\"bufferViews\":[{\"buffer\":0,\"byteOffset\":0,\"byteLength\":" +
+         std::to_string(split) + "},{\"buffer\":0,\"byteOffset\":" + std::to_string(split) +
+         ",\"byteLength\":" + std::to_string(buffer.size() - split) + "}]";
 }
 
 std::string gltf(const TriMesh& m) {
@@ -375,9 +401,14 @@ TriMesh small_surface() {
 
 std::vector<SurfaceFormat> surface_formats() {
   const auto ply_with = [](bool binary) { return [=](const TriMesh& m) { return ply(m, binary); }; };
-  return {{"stl_binary", "s.stl", stl_binary},      {"stl_ascii", "s.stl", stl_ascii}, {"obj", "s.obj", obj, false},
-          {"ply_ascii", "s.ply", ply_with(false)},  {"ply_binary", "s.ply", ply_with(true)}, {"off", "s.off", off},
-          {"gltf", "s.gltf", gltf},                 {"glb", "s.glb", glb}};
+  return {{"stl_binary", "s.stl", stl_binary},
+          {"stl_ascii", "s.stl", stl_ascii},
+          {"obj", "s.obj", obj, false},
+          {"ply_ascii", "s.ply", ply_with(false)},
+          {"ply_binary", "s.ply", ply_with(true)},
+          {"off", "s.off", off},
+          {"gltf", "s.gltf", gltf},
+          {"glb", "s.glb", glb}};
 }
 
 TempFolder::TempFolder() {

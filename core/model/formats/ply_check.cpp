@@ -63,7 +63,8 @@ class PlyWalker {
       } else if (words[0] == "element" && words.size() == 3) {
         PlyElement e;
         e.name = std::string(words[1]);
-        if (!parse_integer(words[2], e.count) || e.count < 0) in_.fail("its header has a malformed count " + in_quotes(words[2]));
+        if (!parse_integer(words[2], e.count) || e.count < 0)
+          in_.fail("its header has a malformed count " + in_quotes(words[2]));
         elements_.push_back(e);
       } else if (words[0] == "property" && !elements_.empty() && words.size() == 3) {
         elements_.back().properties.push_back({std::string(words[2]), false, PlyType::u8, type(words[1])});
@@ -78,9 +79,9 @@ class PlyWalker {
 
   PlyType type(std::string_view w) const {
     static constexpr std::pair<std::string_view, PlyType> names[] = {
-        {"char", PlyType::i8},   {"int8", PlyType::i8},     {"uchar", PlyType::u8}, {"uint8", PlyType::u8},
+        {"char", PlyType::i8},   {"int8", PlyType::i8},     {"uchar", PlyType::u8},   {"uint8", PlyType::u8},
         {"short", PlyType::i16}, {"int16", PlyType::i16},   {"ushort", PlyType::u16}, {"uint16", PlyType::u16},
-        {"int", PlyType::i32},   {"int32", PlyType::i32},   {"uint", PlyType::u32}, {"uint32", PlyType::u32},
+        {"int", PlyType::i32},   {"int32", PlyType::i32},   {"uint", PlyType::u32},   {"uint32", PlyType::u32},
         {"float", PlyType::f32}, {"float32", PlyType::f32}, {"double", PlyType::f64}, {"float64", PlyType::f64}};
     for (const auto& [name, t] : names)
       if (name == w) return t;

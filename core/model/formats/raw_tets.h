@@ -14,9 +14,9 @@ namespace insula {
 /// The data as in the file, in the file's unit, unchecked.
 struct RawTets {
   std::vector<Vec3> nodes;
-  std::vector<std::int64_t> node_number;            ///< as the file counts or names them, for messages
-  std::vector<std::array<std::int64_t, 4>> tets;    ///< indices into `nodes`; any value may occur
-  std::vector<std::int64_t> tet_number;             ///< as the file counts or names them, for messages
+  std::vector<std::int64_t> node_number;          ///< as the file counts or names them, for messages
+  std::vector<std::array<std::int64_t, 4>> tets;  ///< indices into `nodes`; any value may occur
+  std::vector<std::int64_t> tet_number;           ///< as the file counts or names them, for messages
 };
 
 RawTets read_gmsh(const std::filesystem::path& file, std::string_view bytes);

@@ -23,7 +23,8 @@ std::size_t check_stl(const std::filesystem::path& file, std::string_view bytes)
     if (!solid) {
       if (n == 0) in.fail("holds no triangles");
       if (bytes.size() < 84 + 50 * std::size_t(n))
-        in.fail("ends early: it announces " + std::to_string(n) + " triangles and holds " + std::to_string((bytes.size() - 84) / 50));
+        in.fail("ends early: it announces " + std::to_string(n) + " triangles and holds " +
+                std::to_string((bytes.size() - 84) / 50));
       in.fail("is longer than the " + std::to_string(n) + " triangles it announces");
     }
   }
@@ -39,7 +40,8 @@ std::size_t check_glb(const std::filesystem::path& file, std::string_view bytes)
   if (in.bytes(4, "the mark glTF") != "glTF") in.fail("is no binary glTF file");
   in.binary<std::uint32_t>(!machine_is_little_endian, "the version");
   const auto length = in.binary<std::uint32_t>(!machine_is_little_endian, "the length");
-  if (length != bytes.size()) in.fail("ends early: it announces " + std::to_string(length) + " bytes and has " + std::to_string(bytes.size()));
+  if (length != bytes.size())
+    in.fail("ends early: it announces " + std::to_string(length) + " bytes and has " + std::to_string(bytes.size()));
   std::size_t triangles = 0;
   bool first = true;
   while (in.left() > 0) {
@@ -70,7 +72,8 @@ void check_off(const std::filesystem::path& file, std::string_view bytes) {
     if (n < 3) in.fail("face " + std::to_string(f) + " has fewer than three vertices");
     for (std::size_t k = 0; k < n; ++k) {
       const std::int64_t i = in.integer("a face's vertex");
-      if (i < 0 || std::uint64_t(i) >= vertices) in.fail("face " + std::to_string(f) + " names a vertex that does not exist");
+      if (i < 0 || std::uint64_t(i) >= vertices)
+        in.fail("face " + std::to_string(f) + " names a vertex that does not exist");
     }
     in.line();  // colours
   }
@@ -82,7 +85,7 @@ void check_off(const std::filesystem::path& file, std::string_view bytes) {
 std::size_t precheck_surface(const std::filesystem::path& file, std::string_view bytes) {
   const std::string kind = lower_extension(file);
   if (kind == ".stl") return check_stl(file, bytes);
-    if (kind == ".glb") return check_glb(file, bytes);
+  if (kind == ".glb") return check_glb(file, bytes);
   if (kind == ".gltf") return check_gltf(file, bytes);
   if (kind == ".ply") return check_ply(file, bytes), 0;
   if (kind == ".off") return check_off(file, bytes), 0;

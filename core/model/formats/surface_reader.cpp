@@ -26,7 +26,8 @@ namespace {
 /// Opens nothing outside the folder of the mesh file (buffers of glTF, materials of OBJ).
 class FolderIO : public Assimp::DefaultIOSystem {
  public:
-  explicit FolderIO(const std::filesystem::path& file) : folder_(std::filesystem::weakly_canonical(file).parent_path()) {}
+  explicit FolderIO(const std::filesystem::path& file)
+      : folder_(std::filesystem::weakly_canonical(file).parent_path()) {}
   bool Exists(const char* name) const override { return inside(name) && DefaultIOSystem::Exists(name); }
   Assimp::IOStream* Open(const char* name, const char* mode) override {
     if (!inside(name) || std::string_view(mode).find_first_of("wa+") != std::string_view::npos) return nullptr;
@@ -43,7 +44,8 @@ class FolderIO : public Assimp::DefaultIOSystem {
   std::filesystem::path folder_;
 };
 
-// assimp takes a first byte of binary data that is a line's end for one of the header's, unless that ends as on Windows.
+// assimp takes a first byte of binary data that is a line's end for one of the header's, unless that ends as on
+// Windows.
 std::string with_clear_end_of_header(std::string ply) {
   constexpr std::string_view end = "\nend_header\n";
   if (const auto at = ply.find(end); at != std::string::npos) ply.insert(at + end.size() - 1, 1, '\r');
@@ -52,7 +54,9 @@ std::string with_clear_end_of_header(std::string ply) {
 
 /// Of finite places without -0, so that equal ones have equal bits.
 struct VertexHash {
-  std::size_t operator()(const Vec3& p) const { return std::hash<std::string_view>{}({reinterpret_cast<const char*>(p.data()), 3 * sizeof(double)}); }
+  std::size_t operator()(const Vec3& p) const {
+    return std::hash<std::string_view>{}({reinterpret_cast<const char*>(p.data()), 3 * sizeof(double)});
+  }
 };
 
 /// Joins the triangles of all parts; equal vertices become one, in the order they are first used.
@@ -73,7 +77,8 @@ class Joiner {
         p[k] = Vec3(double(v.x), double(v.y), double(v.z)) * scale_ + Vec3::Zero();  // -0 becomes 0
         if (!p[k].allFinite()) fail(file_, "vertex " + std::to_string(i) + " is not finite");
       }
-      const double longest2 = std::max({(p[1] - p[0]).squaredNorm(), (p[2] - p[1]).squaredNorm(), (p[0] - p[2]).squaredNorm()});
+      const double longest2 =
+          std::max({(p[1] - p[0]).squaredNorm(), (p[2] - p[1]).squaredNorm(), (p[0] - p[2]).squaredNorm()});
       if (!((p[1] - p[0]).cross(p[2] - p[0]).norm() > 1e-12 * longest2)) continue;  // flat
       std::array<int, 3> t;
       for (int k = 0; k < 3; ++k) t[k] = vertex(p[k]);
@@ -119,7 +124,8 @@ TriMesh read_surface(const std::filesystem::path& file, double metres_per_unit) 
   std::size_t faces = 0;
   for (unsigned m = 0; m < scene->mNumMeshes; ++m) faces += scene->mMeshes[m]->mNumFaces;
   if (expected > 0 && faces < expected)  // assimp leaves triangles with bad indices out
-    fail(file, "announces " + std::to_string(expected) + " triangles, of which " + std::to_string(faces) + " can be read");
+    fail(file,
+         "announces " + std::to_string(expected) + " triangles, of which " + std::to_string(faces) + " can be read");
 
   Joiner joiner(file, metres_per_unit);
   struct Visit {

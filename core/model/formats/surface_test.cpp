@@ -53,7 +53,10 @@ TEST_P(EverySurface, GivesTheSameTriangles) {
   ASSERT_EQ(read.triangles.size(), 4u);
   for (std::size_t t = 0; t < 4; ++t)
     for (int k = 0; k < 3; ++k)
-      EXPECT_LT((read.vertices[std::size_t(read.triangles[t][k])] - 1e-3 * surface.vertices[std::size_t(surface.triangles[t][k])]).norm(), 1e-9)
+      EXPECT_LT((read.vertices[std::size_t(read.triangles[t][k])] -
+                 1e-3 * surface.vertices[std::size_t(surface.triangles[t][k])])
+                    .norm(),
+                1e-9)
           << "triangle " << t << " corner " << k;
   EXPECT_TRUE(closed(read));
   EXPECT_NEAR(volume(read), 4e-9, 1e-15);  // 2 x 3 / 2 x 4 / 3 mm3, positive: outward
@@ -123,7 +126,9 @@ TEST(SurfaceFile, BinaryPlyMayBeginWithAnyByte) {
     const float first = std::bit_cast<float>(0x3f800a00u | unsigned(byte));
     const std::array<float, 9> corners{first, 0, 0, 3, 0, 0, 0, 2, 0};
     const std::array<std::int32_t, 3> triangle{0, 1, 2};
-    std::string ply = "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
+    std::string ply =
+        "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float "
+        "z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
     ply.append(reinterpret_cast<const char*>(corners.data()), sizeof corners).push_back('\3');
     ply.append(reinterpret_cast<const char*>(triangle.data()), sizeof triangle);
     const TriMesh mesh = read_surface(folder.write("a.ply", ply), 1);
@@ -161,7 +166,9 @@ TEST(SurfaceFile, ReadsNothingOutsideItsFolder) {
     const std::string buffer = glb.substr(glb.size() - (4 * 3 * 4 + 4 * 3 * 4));
     folder.write("in/buffer.bin", buffer);
     folder.write("outer.bin", buffer);
-    const auto with = [&](const std::string& uri) { return folder.write("in/s.gltf", json.substr(0, begin) + uri + json.substr(end)); };
+    const auto with = [&](const std::string& uri) {
+      return folder.write("in/s.gltf", json.substr(0, begin) + uri + json.substr(end));
+    };
     EXPECT_EQ(error_of(with("buffer.bin")), "");
     EXPECT_NE(error_of(with("../outer.bin")), "");
     EXPECT_NE(error_of(with((folder.path() / "outer.bin").string())), "");

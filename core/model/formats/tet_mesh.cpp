@@ -26,8 +26,8 @@ void check_indices(const std::filesystem::path& file, const RawTets& raw) {
   for (std::size_t t = 0; t < raw.tets.size(); ++t)
     for (std::int64_t i : raw.tets[t])
       if (i < 0 || i >= n)
-        fail(file, "tetrahedron " + std::to_string(raw.tet_number[t]) + " names a node that does not exist (there are " +
-                       std::to_string(n) + " nodes)");
+        fail(file, "tetrahedron " + std::to_string(raw.tet_number[t]) +
+                       " names a node that does not exist (there are " + std::to_string(n) + " nodes)");
 }
 
 void check_shape(const std::filesystem::path& file, const RawTets& raw, const TetMesh& mesh) {
@@ -36,8 +36,7 @@ void check_shape(const std::filesystem::path& file, const RawTets& raw, const Te
     const auto& k = mesh.tets[t];
     double longest2 = 0;
     for (int i = 0; i < 4; ++i)
-      for (int j = 0; j < i; ++j)
-        longest2 = std::max(longest2, (mesh.nodes[k[i]] - mesh.nodes[k[j]]).squaredNorm());
+      for (int j = 0; j < i; ++j) longest2 = std::max(longest2, (mesh.nodes[k[i]] - mesh.nodes[k[j]]).squaredNorm());
     const Vec3& a = mesh.nodes[k[0]];
     const double volume6 = (mesh.nodes[k[1]] - a).cross(mesh.nodes[k[2]] - a).dot(mesh.nodes[k[3]] - a);
     const double limit = flat_limit * longest2 * std::sqrt(longest2);
@@ -48,8 +47,9 @@ void check_shape(const std::filesystem::path& file, const RawTets& raw, const Te
     }
   }
   if (inverted)
-    fail(file, "tetrahedron " + std::to_string(raw.tet_number[first_inverted]) + and_more(inverted - 1) +
-                   " is inverted: its fourth node must lie on the side to which the first three turn counter-clockwise");
+    fail(file,
+         "tetrahedron " + std::to_string(raw.tet_number[first_inverted]) + and_more(inverted - 1) +
+             " is inverted: its fourth node must lie on the side to which the first three turn counter-clockwise");
   if (flat) fail(file, "tetrahedron " + std::to_string(raw.tet_number[first_flat]) + and_more(flat - 1) + " is flat");
 }
 

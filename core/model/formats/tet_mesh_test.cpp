@@ -10,8 +10,8 @@
 #include <random>
 
 #include "core/base/input_error.h"
-#include "core/model/formats/raw_tets.h"
 #include "core/model/formats/mesh_files_for_test.h"
+#include "core/model/formats/raw_tets.h"
 
 namespace insula {
 namespace {
@@ -144,35 +144,56 @@ TEST(TetMeshFile, HostileCountsAllocateNothing) {
   EXPECT_NE(error_of(folder.write("a.msh", gmsh + "999999999999\n1 0 0 0\n")).find("ends early"), std::string::npos);
   EXPECT_NE(error_of(folder.write("b.msh", gmsh + "-3\n")).find("a count cannot be -3"), std::string::npos);
   const std::string vtk = "# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\n";
-  EXPECT_NE(error_of(folder.write("a.vtk", vtk + "POINTS 9000000000000000000 double\n0 0 0\n")).find("ends early"), std::string::npos);
-  EXPECT_NE(error_of(folder.write("a.vtk", vtk + "FIELD f 1\nname 1000 9000000000000000000 int\n0\n")).find("ends early"), std::string::npos);
-  EXPECT_NE(error_of(folder.write("a.mesh", "MeshVersionFormatted 1\nDimension 3\nVertices 88888888888\n1 1 1 0\n")).find("ends early"), std::string::npos);
+  EXPECT_NE(error_of(folder.write("a.vtk", vtk + "POINTS 9000000000000000000 double\n0 0 0\n")).find("ends early"),
+            std::string::npos);
+  EXPECT_NE(
+      error_of(folder.write("a.vtk", vtk + "FIELD f 1\nname 1000 9000000000000000000 int\n0\n")).find("ends early"),
+      std::string::npos);
+  EXPECT_NE(error_of(folder.write("a.mesh", "MeshVersionFormatted 1\nDimension 3\nVertices 88888888888\n1 1 1 0\n"))
+                .find("ends early"),
+            std::string::npos);
 }
 
 TEST(TetMeshFile, RefusesOtherVolumeElements) {
   const test_files::TempFolder folder;
-  const std::string gmsh = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n1\n1 0 0 0\n$EndNodes\n$Elements\n1\n1 5 0 1 1 1 1 1 1 1 1\n$EndElements\n";
+  const std::string gmsh =
+      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n1\n1 0 0 0\n$EndNodes\n$Elements\n1\n1 5 0 1 1 1 1 1 1 1 "
+      "1\n$EndElements\n";
   EXPECT_NE(error_of(folder.write("a.msh", gmsh)).find("only linear tetrahedra"), std::string::npos);
-  const std::string medit = "MeshVersionFormatted 1\nDimension 3\nVertices 1\n1 1 1 0\nHexahedra 1\n1 1 1 1 1 1 1 1 0\nEnd\n";
+  const std::string medit =
+      "MeshVersionFormatted 1\nDimension 3\nVertices 1\n1 1 1 0\nHexahedra 1\n1 1 1 1 1 1 1 1 0\nEnd\n";
   EXPECT_NE(error_of(folder.write("a.mesh", medit)).find("only tetrahedra"), std::string::npos);
-  const std::string vtk = "# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 1 float\n0 0 0\nCELLS 1 9\n8 0 0 0 0 0 0 0 0\nCELL_TYPES 1\n12\n";
+  const std::string vtk =
+      "# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 1 float\n0 0 0\nCELLS 1 9\n8 0 0 0 0 0 "
+      "0 0 0\nCELL_TYPES 1\n12\n";
   EXPECT_NE(error_of(folder.write("a.vtk", vtk)).find("only linear tetrahedra"), std::string::npos);
 }
 
 TEST(TetMeshFile, RefusesOldGmshAndHostileXml) {
   const test_files::TempFolder folder;
-  EXPECT_NE(error_of(folder.write("a.msh", "$MeshFormat\n4 0 8\n$EndMeshFormat\n")).find("save it as 2.2 or 4.1"), std::string::npos);
-  const std::string bomb = "<?xml version=\"1.0\"?><!DOCTYPE x [<!ENTITY a \"aaaa\">]><VTKFile type=\"UnstructuredGrid\">&a;</VTKFile>";
+  EXPECT_NE(error_of(folder.write("a.msh", "$MeshFormat\n4 0 8\n$EndMeshFormat\n")).find("save it as 2.2 or 4.1"),
+            std::string::npos);
+  const std::string bomb =
+      "<?xml version=\"1.0\"?><!DOCTYPE x [<!ENTITY a \"aaaa\">]><VTKFile type=\"UnstructuredGrid\">&a;</VTKFile>";
   EXPECT_NE(error_of(folder.write("a.vtu", bomb)).find("document type"), std::string::npos);
   std::string deep = "<VTKFile type=\"UnstructuredGrid\">";
   for (int i = 0; i < 100000; ++i) deep += "<a>";
   EXPECT_NE(error_of(folder.write("a.vtu", deep)).find("nested too deeply"), std::string::npos);
-  EXPECT_NE(error_of(folder.write("a.vtu", "<VTKFile type=\"UnstructuredGrid\" compressor=\"vtkLZ4DataCompressor\"/>")).find("compressor"), std::string::npos);
-  EXPECT_NE(error_of(folder.write("a.vtu", "<VTKFile type=\"UnstructuredGrid\" byte_order=\"MiddleEndian\"/>")).find("byte_order \"MiddleEndian\" is unknown"), std::string::npos);
-  EXPECT_NE(error_of(folder.write("a.vtu", "<VTKFile type=\"UnstructuredGrid\" header_type=\"Float32\"/>")).find("header_type \"Float32\" is unknown"), std::string::npos);
-  std::string within = "<VTKFile type=\"UnstructuredGrid\"><Piece NumberOfPoints=\"1\" NumberOfCells=\"0\"><Points><DataArray NumberOfComponents=\"3\" type=\"Float64\">0 0 0";
+  EXPECT_NE(error_of(folder.write("a.vtu", "<VTKFile type=\"UnstructuredGrid\" compressor=\"vtkLZ4DataCompressor\"/>"))
+                .find("compressor"),
+            std::string::npos);
+  EXPECT_NE(error_of(folder.write("a.vtu", "<VTKFile type=\"UnstructuredGrid\" byte_order=\"MiddleEndian\"/>"))
+                .find("byte_order \"MiddleEndian\" is unknown"),
+            std::string::npos);
+  EXPECT_NE(error_of(folder.write("a.vtu", "<VTKFile type=\"UnstructuredGrid\" header_type=\"Float32\"/>"))
+                .find("header_type \"Float32\" is unknown"),
+            std::string::npos);
+  std::string within =
+      "<VTKFile type=\"UnstructuredGrid\"><Piece NumberOfPoints=\"1\" NumberOfCells=\"0\"><Points><DataArray "
+      "NumberOfComponents=\"3\" type=\"Float64\">0 0 0";
   for (int i = 0; i < 9; ++i) within += "<Piece NumberOfPoints=\"1\" NumberOfCells=\"0\"/> 1 2 3";
-  EXPECT_NE(error_of(folder.write("a.vtu", within + "</DataArray></Points></Piece></VTKFile>")).find("a.vtu"), std::string::npos);
+  EXPECT_NE(error_of(folder.write("a.vtu", within + "</DataArray></Points></Piece></VTKFile>")).find("a.vtu"),
+            std::string::npos);
 }
 
 TEST(WriteVtu, IsReadBackBitForBit) {

@@ -45,7 +45,11 @@ void add_vtk_cells(const std::filesystem::path& file, const std::vector<std::int
     if (ends[c] < begin || std::uint64_t(ends[c]) > connectivity.size())
       fail(file, "cell " + std::to_string(number) + " has a malformed list of nodes");
     // Types of a fixed size: vertex, line, triangle, pixel, quad, tetrahedron. A cut-off "10" reads as "1".
-    const std::int64_t size = types[c] == 1 ? 1 : types[c] == 3 ? 2 : types[c] == 5 ? 3 : types[c] >= 8 && types[c] <= 10 ? 4 : 0;
+    const std::int64_t size = types[c] == 1                     ? 1
+                              : types[c] == 3                   ? 2
+                              : types[c] == 5                   ? 3
+                              : types[c] >= 8 && types[c] <= 10 ? 4
+                                                                : 0;
     if (types[c] < 0 || (size > 0 && ends[c] - begin != size))
       fail(file, "cell " + std::to_string(number) + " of VTK type " + std::to_string(types[c]) + " cannot have " +
                      std::to_string(ends[c] - begin) + " nodes");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// VTK legacy files, ASCII and binary (big-endian), unstructured grids of version 1 to 5.1 ("VTK File Formats", VTK manual).
+// VTK legacy files, ASCII and binary (big-endian), unstructured grids of version 1 to 5.1 ("VTK File Formats", VTK
+// manual).
 #include <string>
 
 #include "core/base/text.h"
@@ -13,10 +14,12 @@ class VtkReader {
   VtkReader(const std::filesystem::path& file, std::string_view bytes) : in_(file, bytes) {}
 
   RawTets read() {
-    if (in_.line().substr(0, 22) != "# vtk DataFile Version") in_.fail("is no legacy VTK file: its first line is wrong");
+    if (in_.line().substr(0, 22) != "# vtk DataFile Version")
+      in_.fail("is no legacy VTK file: its first line is wrong");
     in_.line();  // title
     const std::string_view coding = in_.word("ASCII or BINARY");
-    if (coding != "ASCII" && coding != "BINARY") in_.fail("its third line must be ASCII or BINARY, not " + in_quotes(coding));
+    if (coding != "ASCII" && coding != "BINARY")
+      in_.fail("its third line must be ASCII or BINARY, not " + in_quotes(coding));
     binary_ = coding == "BINARY";
     if (in_.word("DATASET") != "DATASET") in_.fail("has no DATASET");
     const std::string_view kind = in_.word("the kind of data set");
@@ -42,10 +45,11 @@ class VtkReader {
  private:
   VtkType type(std::string_view w) const {
     static constexpr std::pair<std::string_view, VtkType> names[] = {
-        {"float", VtkType::f32},  {"double", VtkType::f64},          {"int", VtkType::i32},
-        {"long", VtkType::i64},   {"unsigned_long", VtkType::u64},   {"vtktypeint64", VtkType::i64},
-        {"vtkIdType", VtkType::i64}, {"vtktypeint32", VtkType::i32}, {"unsigned_int", VtkType::u32},
-        {"short", VtkType::i16},  {"unsigned_short", VtkType::u16},  {"char", VtkType::i8}, {"unsigned_char", VtkType::u8}};
+        {"float", VtkType::f32},       {"double", VtkType::f64},         {"int", VtkType::i32},
+        {"long", VtkType::i64},        {"unsigned_long", VtkType::u64},  {"vtktypeint64", VtkType::i64},
+        {"vtkIdType", VtkType::i64},   {"vtktypeint32", VtkType::i32},   {"unsigned_int", VtkType::u32},
+        {"short", VtkType::i16},       {"unsigned_short", VtkType::u16}, {"char", VtkType::i8},
+        {"unsigned_char", VtkType::u8}};
     for (const auto& [name, t] : names)
       if (name == w) return t;
     in_.fail("uses an unknown type " + in_quotes(w));
@@ -56,7 +60,9 @@ class VtkReader {
   void begin_data() {
     if (binary_) in_.line();
   }
-  double real(VtkType t, const char* what) { return binary_ ? read_value(in_, t, machine_is_little_endian, what) : in_.number(what); }
+  double real(VtkType t, const char* what) {
+    return binary_ ? read_value(in_, t, machine_is_little_endian, what) : in_.number(what);
+  }
   std::int64_t whole(VtkType t, const char* what) {
     if (!binary_) return in_.integer(what);
     if (t == VtkType::i64) return in_.binary<std::int64_t>(machine_is_little_endian, what);
@@ -105,7 +111,8 @@ class VtkReader {
       for (std::int64_t k = 0; k < n; ++k) connectivity_.push_back(whole(VtkType::i32, "a cell's node"));
       ends_.push_back(std::int64_t(connectivity_.size()));
     }
-    if (used != b) in_.fail("its cells take " + std::to_string(used) + " numbers and not the announced " + std::to_string(b));
+    if (used != b)
+      in_.fail("its cells take " + std::to_string(used) + " numbers and not the announced " + std::to_string(b));
   }
 
   std::vector<std::int64_t> array(std::int64_t n, const char* what) {
@@ -133,7 +140,8 @@ class VtkReader {
       if (in_.word("an array's name") == "METADATA") metadata(), in_.word("an array's name");
       const std::int64_t parts = in_.integer("an array's components"), tuples = in_.integer("an array's size");
       const std::string_view name = in_.word("an array's type");
-      if (name == "string" || name == "bit" || name == "variant") in_.fail("a field array of type " + in_quotes(name) + " is not read");
+      if (name == "string" || name == "bit" || name == "variant")
+        in_.fail("a field array of type " + in_quotes(name) + " is not read");
       const VtkType t = type(name);
       begin_data();
       if (parts < 0 || parts > 1000) in_.fail("a field array has a malformed size");
@@ -156,6 +164,8 @@ class VtkReader {
 
 }  // namespace
 
-RawTets read_vtk_legacy(const std::filesystem::path& file, std::string_view bytes) { return VtkReader(file, bytes).read(); }
+RawTets read_vtk_legacy(const std::filesystem::path& file, std::string_view bytes) {
+  return VtkReader(file, bytes).read();
+}
 
 }  // namespace insula

@@ -15,7 +15,8 @@ namespace {
 /// Collects the arrays that are wanted; messages wait until expat has returned.
 class Parser {
  public:
-  Parser(const std::filesystem::path& file, std::string_view xml, const VtkXmlWanted& wanted, VtuFormat& format, std::vector<VtkXmlFile::Piece>& pieces)
+  Parser(const std::filesystem::path& file, std::string_view xml, const VtkXmlWanted& wanted, VtuFormat& format,
+         std::vector<VtkXmlFile::Piece>& pieces)
       : wanted_(wanted), format_(format), pieces_(pieces), parser_(XML_ParserCreate(nullptr), XML_ParserFree) {
     XML_SetUserData(parser_.get(), this);
     XML_SetElementHandler(parser_.get(), on_start, on_end);
@@ -26,7 +27,8 @@ class Parser {
       const std::string_view part = xml.substr(at, slice);
       const bool last = at + slice >= xml.size();
       if (XML_Parse(parser_.get(), part.data(), int(part.size()), last) != XML_STATUS_OK && error_.empty())
-        error_ = std::string("is no well-formed XML or ends early: ") + XML_ErrorString(XML_GetErrorCode(parser_.get())) + " in line " +
+        error_ = std::string("is no well-formed XML or ends early: ") +
+                 XML_ErrorString(XML_GetErrorCode(parser_.get())) + " in line " +
                  std::to_string(XML_GetCurrentLineNumber(parser_.get()));
     }
     if (error_.empty() && !root_) error_ = "is no VTK XML file";
@@ -47,18 +49,21 @@ class Parser {
     std::int64_t n = 0;
     const std::string text = attribute(list, name);
     if (text.empty() && !needed) return 0;
-    if (!parse_integer(text, n) || n < 0 || n > 1'000'000'000) stop("its " + name + " is malformed: " + in_quotes(text));
+    if (!parse_integer(text, n) || n < 0 || n > 1'000'000'000)
+      stop("its " + name + " is malformed: " + in_quotes(text));
     return n;
   }
 
   void root(const char** list) {
     root_ = true;
-    const std::string type = attribute(list, "type"), order = attribute(list, "byte_order"), header = attribute(list, "header_type"),
-                      compressor = attribute(list, "compressor");
+    const std::string type = attribute(list, "type"), order = attribute(list, "byte_order"),
+                      header = attribute(list, "header_type"), compressor = attribute(list, "compressor");
     if (type != wanted_.type) return stop("is of type " + in_quotes(type) + ", not " + wanted_.type);
-    if (!order.empty() && order != "LittleEndian" && order != "BigEndian") return stop("its byte_order " + in_quotes(order) + " is unknown");
+    if (!order.empty() && order != "LittleEndian" && order != "BigEndian")
+      return stop("its byte_order " + in_quotes(order) + " is unknown");
     if (!order.empty()) format_.swap = (order == "LittleEndian") != machine_is_little_endian;
-    if (!header.empty() && header != "UInt32" && header != "UInt64") return stop("its header_type " + in_quotes(header) + " is unknown");
+    if (!header.empty() && header != "UInt32" && header != "UInt64")
+      return stop("its header_type " + in_quotes(header) + " is unknown");
     format_.header64 = header == "UInt64";
     if (!compressor.empty() && compressor != "vtkZLibDataCompressor")
       return stop("its compressor " + in_quotes(compressor) + " is not read; use vtkZLibDataCompressor or none");
@@ -77,19 +82,24 @@ class Parser {
       if (array.name.empty()) array.name = "Points";
       if (attribute(list, "NumberOfComponents") != "3") return stop("its points do not have three components");
     } else {
-      const auto section = std::find_if(wanted_.sections.begin(), wanted_.sections.end(), [&](const auto& s) { return s.name == path_.back(); });
-      if (section == wanted_.sections.end() || std::find(section->arrays.begin(), section->arrays.end(), array.name) == section->arrays.end()) return;
+      const auto section = std::find_if(wanted_.sections.begin(), wanted_.sections.end(),
+                                        [&](const auto& s) { return s.name == path_.back(); });
+      if (section == wanted_.sections.end() ||
+          std::find(section->arrays.begin(), section->arrays.end(), array.name) == section->arrays.end())
+        return;
     }
     if (positions ? p.positions.has_value() : p.sections[path_.back()].arrays.contains(array.name))
       return stop("has the array " + in_quotes(array.name) + " twice");
     if (array.format.empty()) array.format = "ascii";
     if (array.format == "appended") {
       std::int64_t offset = 0;
-      if (!parse_integer(attribute(list, "offset"), offset) || offset < 0) return stop("the array " + in_quotes(array.name) + " has a malformed offset");
+      if (!parse_integer(attribute(list, "offset"), offset) || offset < 0)
+        return stop("the array " + in_quotes(array.name) + " has a malformed offset");
       array.offset = std::size_t(offset);
     }
     const std::string name = array.name;
-    current_ = positions ? &p.positions.emplace(std::move(array)) : &(p.sections[path_.back()].arrays[name] = std::move(array));
+    current_ = positions ? &p.positions.emplace(std::move(array))
+                         : &(p.sections[path_.back()].arrays[name] = std::move(array));
   }
   void start(std::string_view name, const char** list) {
     current_ = nullptr;  // an element inside of an array ends its text: a piece there would move the array
@@ -133,7 +143,8 @@ class Parser {
 
 }  // namespace
 
-VtkXmlFile::VtkXmlFile(const std::filesystem::path& file, std::string_view bytes, const VtkXmlWanted& wanted) : file_(file) {
+VtkXmlFile::VtkXmlFile(const std::filesystem::path& file, std::string_view bytes, const VtkXmlWanted& wanted)
+    : file_(file) {
   // Raw appended data are no XML: they are cut out, from their underscore on.
   std::string_view xml = bytes;
   std::string head;
@@ -157,12 +168,14 @@ std::vector<double> VtkXmlFile::positions(const Piece& piece) const {
   return vtu_numbers(file_, format_, *piece.positions, 3 * piece.points);
 }
 
-std::vector<std::int64_t> VtkXmlFile::whole(const Section& section, const std::string& array, std::int64_t expected) const {
+std::vector<std::int64_t> VtkXmlFile::whole(const Section& section, const std::string& array,
+                                            std::int64_t expected) const {
   const auto at = section.arrays.find(array);
   if (at == section.arrays.end()) fail(file_, "ends early: the array \"" + array + "\" is missing");
   std::vector<std::int64_t> out;
   for (const double v : vtu_numbers(file_, format_, at->second, expected)) {
-    if (!(std::abs(v) < 9e15) || v != std::floor(v)) fail(file_, "the array \"" + array + "\" holds a number that is not whole");
+    if (!(std::abs(v) < 9e15) || v != std::floor(v))
+      fail(file_, "the array \"" + array + "\" holds a number that is not whole");
     out.push_back(std::int64_t(v));
   }
   return out;

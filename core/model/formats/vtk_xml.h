@@ -17,12 +17,12 @@ namespace insula {
 /// The parts of a file that are read besides its points.
 struct VtkXmlWanted {
   struct Section {
-    std::string name;                  ///< element of a piece, such as "Cells"
-    std::string count;                 ///< attribute of the piece with its number of entries, such as "NumberOfCells"
-    bool needed = true;                ///< false: a piece without that attribute has no entries
-    std::vector<std::string> arrays;   ///< names of its data arrays; others are skipped
+    std::string name;                 ///< element of a piece, such as "Cells"
+    std::string count;                ///< attribute of the piece with its number of entries, such as "NumberOfCells"
+    bool needed = true;               ///< false: a piece without that attribute has no entries
+    std::vector<std::string> arrays;  ///< names of its data arrays; others are skipped
   };
-  std::string type;                    ///< of the root: "UnstructuredGrid", "PolyData"
+  std::string type;  ///< of the root: "UnstructuredGrid", "PolyData"
   std::vector<Section> sections;
 };
 

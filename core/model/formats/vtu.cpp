@@ -5,7 +5,8 @@
 namespace insula {
 
 RawTets read_vtu(const std::filesystem::path& file, std::string_view bytes) {
-  static const VtkXmlWanted wanted{"UnstructuredGrid", {{"Cells", "NumberOfCells", true, {"connectivity", "offsets", "types"}}}};
+  static const VtkXmlWanted wanted{"UnstructuredGrid",
+                                   {{"Cells", "NumberOfCells", true, {"connectivity", "offsets", "types"}}}};
   const VtkXmlFile in(file, bytes, wanted);
   RawTets raw;
   std::int64_t cells = 0;

@@ -73,10 +73,12 @@ class Stored {
 std::uint64_t header_number(const std::filesystem::path& file, const VtuFormat& format, Stored& stored) {
   const std::string raw = stored.take(format.header64 ? 8 : 4);
   ByteCursor in(file, raw);
-  return format.header64 ? in.binary<std::uint64_t>(format.swap, "a header") : in.binary<std::uint32_t>(format.swap, "a header");
+  return format.header64 ? in.binary<std::uint64_t>(format.swap, "a header")
+                         : in.binary<std::uint32_t>(format.swap, "a header");
 }
 
-std::string plain_bytes(const std::filesystem::path& file, const VtuFormat& format, const VtuArray& array, std::string_view source, bool base64) {
+std::string plain_bytes(const std::filesystem::path& file, const VtuFormat& format, const VtuArray& array,
+                        std::string_view source, bool base64) {
   Stored stored(file, array.name, source, base64);
   constexpr std::uint64_t too_many = std::uint64_t(1) << 40;
   if (!format.zlib) {
@@ -100,7 +102,9 @@ std::string plain_bytes(const std::filesystem::path& file, const VtuFormat& form
     const std::size_t at = out.size();
     out.resize(at + std::size_t(size));
     uLongf got = uLongf(size);
-    if (uncompress(reinterpret_cast<Bytef*>(out.data() + at), &got, reinterpret_cast<const Bytef*>(in.data()), uLong(in.size())) != Z_OK || got != size)
+    if (uncompress(reinterpret_cast<Bytef*>(out.data() + at), &got, reinterpret_cast<const Bytef*>(in.data()),
+                   uLong(in.size())) != Z_OK ||
+        got != size)
       fail(file, "the array " + in_quotes(array.name) + " does not unpack");
   }
   return out;
@@ -108,8 +112,8 @@ std::string plain_bytes(const std::filesystem::path& file, const VtuFormat& form
 
 VtkType type_of(const std::filesystem::path& file, const VtuArray& array) {
   static constexpr std::pair<std::string_view, VtkType> names[] = {
-      {"Int8", VtkType::i8},   {"UInt8", VtkType::u8},   {"Int16", VtkType::i16}, {"UInt16", VtkType::u16},
-      {"Int32", VtkType::i32}, {"UInt32", VtkType::u32}, {"Int64", VtkType::i64}, {"UInt64", VtkType::u64},
+      {"Int8", VtkType::i8},     {"UInt8", VtkType::u8},   {"Int16", VtkType::i16}, {"UInt16", VtkType::u16},
+      {"Int32", VtkType::i32},   {"UInt32", VtkType::u32}, {"Int64", VtkType::i64}, {"UInt64", VtkType::u64},
       {"Float32", VtkType::f32}, {"Float64", VtkType::f64}};
   for (const auto& [name, t] : names)
     if (name == array.type) return t;
@@ -118,14 +122,16 @@ VtkType type_of(const std::filesystem::path& file, const VtuArray& array) {
 
 }  // namespace
 
-std::vector<double> vtu_numbers(const std::filesystem::path& file, const VtuFormat& format, const VtuArray& array, std::int64_t expected) {
+std::vector<double> vtu_numbers(const std::filesystem::path& file, const VtuFormat& format, const VtuArray& array,
+                                std::int64_t expected) {
   const VtkType type = type_of(file, array);
   std::vector<double> out;
   if (array.format == "ascii") {
     ByteCursor in(file, array.text);
     for (std::string_view w = in.try_word(); !w.empty(); w = in.try_word()) {
       double v = 0;
-      if (!parse_double(w, v)) fail(file, "the array " + in_quotes(array.name) + " holds " + in_quotes(w) + ", which is no number");
+      if (!parse_double(w, v))
+        fail(file, "the array " + in_quotes(array.name) + " holds " + in_quotes(w) + ", which is no number");
       out.push_back(v);
     }
   } else {
@@ -133,7 +139,8 @@ std::vector<double> vtu_numbers(const std::filesystem::path& file, const VtuForm
     if (array.format == "binary") {
       bytes = plain_bytes(file, format, array, array.text, true);
     } else if (array.format == "appended") {
-      if (array.offset > format.appended.size()) fail(file, "ends early: the array " + in_quotes(array.name) + " is missing");
+      if (array.offset > format.appended.size())
+        fail(file, "ends early: the array " + in_quotes(array.name) + " is missing");
       bytes = plain_bytes(file, format, array, format.appended.substr(array.offset), !format.appended_raw);
     } else {
       fail(file, "the array " + in_quotes(array.name) + " has an unknown format " + in_quotes(array.format));
@@ -144,7 +151,8 @@ std::vector<double> vtu_numbers(const std::filesystem::path& file, const VtuForm
     for (std::size_t i = 0; i < n; ++i) out.push_back(read_value(in, type, format.swap, "a value"));
   }
   if (expected >= 0 && std::int64_t(out.size()) != expected)
-    fail(file, "the array " + in_quotes(array.name) + " holds " + std::to_string(out.size()) + " numbers and not " + std::to_string(expected));
+    fail(file, "the array " + in_quotes(array.name) + " holds " + std::to_string(out.size()) + " numbers and not " +
+                   std::to_string(expected));
   return out;
 }
 

@@ -20,8 +20,8 @@ struct VtuFormat {
 
 struct VtuArray {
   std::string name, type, format;
-  std::size_t offset = 0;   ///< into the appended data
-  std::string text;         ///< inline content
+  std::size_t offset = 0;  ///< into the appended data
+  std::string text;        ///< inline content
 };
 
 /// Integers and real numbers alike. `expected` is the count that the file announces (negative: any). Throws InputError.

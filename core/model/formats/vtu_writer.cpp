@@ -34,15 +34,16 @@ std::vector<double> flat(const std::vector<Vec3>& v) {
 }
 
 std::string array(const char* type, const char* name, int components, std::size_t offset) {
-  return std::string("        <DataArray type=\"") + type + "\" Name=\"" + name + "\" NumberOfComponents=\"" + std::to_string(components) +
-         "\" format=\"appended\" offset=\"" + std::to_string(offset) + "\"/>\n";
+  return std::string("        <DataArray type=\"") + type + "\" Name=\"" + name + "\" NumberOfComponents=\"" +
+         std::to_string(components) + "\" format=\"appended\" offset=\"" + std::to_string(offset) + "\"/>\n";
 }
 
 template <std::size_t corners>
-void write(const std::filesystem::path& file, const std::vector<Vec3>& nodes, const std::vector<std::array<int, corners>>& cells,
-           const std::vector<Vec3>& displacement) {
+void write(const std::filesystem::path& file, const std::vector<Vec3>& nodes,
+           const std::vector<std::array<int, corners>>& cells, const std::vector<Vec3>& displacement) {
   constexpr std::uint8_t vtk_type = corners == 4 ? 10 : 5;  // VTK_TETRA, VTK_TRIANGLE
-  if (!displacement.empty() && displacement.size() != nodes.size()) fail(file, "cannot be written: one displacement a node is needed");
+  if (!displacement.empty() && displacement.size() != nodes.size())
+    fail(file, "cannot be written: one displacement a node is needed");
   Appended data;
   std::vector<std::int64_t> connectivity, ends;
   for (const auto& t : cells) {
@@ -51,10 +52,11 @@ void write(const std::filesystem::path& file, const std::vector<Vec3>& nodes, co
   }
   std::string xml = "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"";
   xml += machine_is_little_endian ? "LittleEndian" : "BigEndian";
-  xml += "\" header_type=\"UInt64\">\n  <UnstructuredGrid>\n    <Piece NumberOfPoints=\"" + std::to_string(nodes.size()) +
-         "\" NumberOfCells=\"" + std::to_string(cells.size()) + "\">\n";
+  xml += "\" header_type=\"UInt64\">\n  <UnstructuredGrid>\n    <Piece NumberOfPoints=\"" +
+         std::to_string(nodes.size()) + "\" NumberOfCells=\"" + std::to_string(cells.size()) + "\">\n";
   if (!displacement.empty())
-    xml += "      <PointData Vectors=\"displacement\">\n" + array("Float64", "displacement", 3, data.add(flat(displacement))) + "      </PointData>\n";
+    xml += "      <PointData Vectors=\"displacement\">\n" +
+           array("Float64", "displacement", 3, data.add(flat(displacement))) + "      </PointData>\n";
   xml += "      <Points>\n" + array("Float64", "Points", 3, data.add(flat(nodes))) + "      </Points>\n      <Cells>\n";
   xml += array("Int64", "connectivity", 1, data.add(connectivity));
   xml += array("Int64", "offsets", 1, data.add(ends));
@@ -68,13 +70,13 @@ void write(const std::filesystem::path& file, const std::vector<Vec3>& nodes, co
 
 }  // namespace
 
-void write_vtu(const std::filesystem::path& file, const std::vector<Vec3>& nodes, const std::vector<std::array<int, 4>>& tets,
-               const std::vector<Vec3>& displacement) {
+void write_vtu(const std::filesystem::path& file, const std::vector<Vec3>& nodes,
+               const std::vector<std::array<int, 4>>& tets, const std::vector<Vec3>& displacement) {
   write(file, nodes, tets, displacement);
 }
 
-void write_vtu(const std::filesystem::path& file, const std::vector<Vec3>& nodes, const std::vector<std::array<int, 3>>& triangles,
-               const std::vector<Vec3>& displacement) {
+void write_vtu(const std::filesystem::path& file, const std::vector<Vec3>& nodes,
+               const std::vector<std::array<int, 3>>& triangles, const std::vector<Vec3>& displacement) {
   write(file, nodes, triangles, displacement);
 }
 

@@ -5,8 +5,8 @@
 
 #include "core/base/input_error.h"
 #include "core/model/geometry/box_tree.h"
-#include "core/model/mesh.h"
 #include "core/model/geometry/triangle_distance.h"
+#include "core/model/mesh.h"
 
 namespace insula {
 namespace {
@@ -21,7 +21,8 @@ using Weights = std::array<double, 4>;
 Weights barycentric(const TetMesh& mesh, int tet, const Vec3& p) {
   const auto& t = mesh.tets[std::size_t(tet)];
   const Vec3& a = mesh.nodes[std::size_t(t[0])];
-  const Vec3 b = mesh.nodes[std::size_t(t[1])] - a, c = mesh.nodes[std::size_t(t[2])] - a, d = mesh.nodes[std::size_t(t[3])] - a;
+  const Vec3 b = mesh.nodes[std::size_t(t[1])] - a, c = mesh.nodes[std::size_t(t[2])] - a,
+             d = mesh.nodes[std::size_t(t[3])] - a;
   const Vec3 r = p - a;
   const Vec3 cd = c.cross(d);
   const double volume6 = b.dot(cd);

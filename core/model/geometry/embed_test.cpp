@@ -6,14 +6,16 @@
 #include <random>
 
 #include "core/base/input_error.h"
-#include "core/model/geometry/box_tree.h"
 #include "core/model/formats/mesh_files_for_test.h"
+#include "core/model/geometry/box_tree.h"
 #include "core/model/geometry/triangle_distance.h"
 
 namespace insula {
 namespace {
 
-double uniform(std::mt19937& random, double low, double high) { return low + (high - low) * double(random()) / 4294967295.0; }
+double uniform(std::mt19937& random, double low, double high) {
+  return low + (high - low) * double(random()) / 4294967295.0;
+}
 Vec3 somewhere(std::mt19937& random, double low, double high) {
   const double x = uniform(random, low, high), y = uniform(random, low, high), z = uniform(random, low, high);
   return {x, y, z};
@@ -34,7 +36,9 @@ TEST(Boundary, IsClosedOutwardAndAroundTheVolume) {
     EXPECT_EQ(edges.count({edge.second, edge.first}), 1u);
   }
   for (const auto& t : mesh.tets)
-    volume6 += (mesh.nodes[t[1]] - mesh.nodes[t[0]]).cross(mesh.nodes[t[2]] - mesh.nodes[t[0]]).dot(mesh.nodes[t[3]] - mesh.nodes[t[0]]);
+    volume6 += (mesh.nodes[t[1]] - mesh.nodes[t[0]])
+                   .cross(mesh.nodes[t[2]] - mesh.nodes[t[0]])
+                   .dot(mesh.nodes[t[3]] - mesh.nodes[t[0]]);
   EXPECT_NEAR(surface6, volume6, 1e-12 * volume6);  // divergence theorem: only outward faces give it
 }
 
@@ -42,8 +46,10 @@ TEST(Embed, ReproducesLinearFieldsInsideAndJustOutside) {
   const TetMesh mesh = test_files::box_mesh();
   std::mt19937 random(3);
   std::vector<Vec3> points = mesh.nodes;  // corners too
-  for (int i = 0; i < 400; ++i) points.push_back(Vec3(uniform(random, 0.4, 2.1), uniform(random, -0.3, 1.4), uniform(random, 0.2, 2.5)));
-  for (int i = 0; i < 100; ++i) points.push_back(Vec3(uniform(random, 0.5, 2), uniform(random, -0.5, -0.34), uniform(random, 0.2, 2.5)));
+  for (int i = 0; i < 400; ++i)
+    points.push_back(Vec3(uniform(random, 0.4, 2.1), uniform(random, -0.3, 1.4), uniform(random, 0.2, 2.5)));
+  for (int i = 0; i < 100; ++i)
+    points.push_back(Vec3(uniform(random, 0.5, 2), uniform(random, -0.5, -0.34), uniform(random, 0.2, 2.5)));
   const Embedding e = embed(mesh, points);
   Mat3 a;
   a << 1.5, -0.2, 0.7, 0.1, 0.9, -1.1, 2.0, 0.3, -0.4;
@@ -104,9 +110,9 @@ TEST(Embed, OutsideDistanceIsExact) {
   TetMesh mesh;
   mesh.nodes = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   mesh.tets = {{0, 1, 2, 3}};
-  EXPECT_NEAR(embed(mesh, {{0.2, 0.2, -0.5}}).outside_m, 0.5, 1e-15);       // a face
-  EXPECT_NEAR(embed(mesh, {{0.5, -0.3, -0.4}}).outside_m, 0.5, 1e-15);      // an edge
-  EXPECT_NEAR(embed(mesh, {{1 + 0.3, 0, -0.4}}).outside_m, 0.5, 1e-15);     // a corner
+  EXPECT_NEAR(embed(mesh, {{0.2, 0.2, -0.5}}).outside_m, 0.5, 1e-15);    // a face
+  EXPECT_NEAR(embed(mesh, {{0.5, -0.3, -0.4}}).outside_m, 0.5, 1e-15);   // an edge
+  EXPECT_NEAR(embed(mesh, {{1 + 0.3, 0, -0.4}}).outside_m, 0.5, 1e-15);  // a corner
   EXPECT_THROW(embed(mesh, {{0, 0, std::nan("")}}), InputError);
   EXPECT_THROW(embed(TetMesh{}, {{0, 0, 0}}), InputError);
 }
@@ -136,7 +142,10 @@ TEST(BoxTree, FindsWhatASearchThroughAllFinds) {
       if (boxes[std::size_t(i)].contains(p)) holding.push_back(i);
     }
     EXPECT_EQ(tree.nearest(p, [&](int i) { return distance2(i, p); }), best);
-    tree.containing(p, [&](int i) { found.push_back(i); return false; });
+    tree.containing(p, [&](int i) {
+      found.push_back(i);
+      return false;
+    });
     std::sort(found.begin(), found.end());
     EXPECT_EQ(found, holding);
   }
@@ -146,11 +155,13 @@ TEST(BoxTree, FindsWhatASearchThroughAllFinds) {
 TEST(NearestOnTriangle, BeatsEverySampledPoint) {
   std::mt19937 random(13);
   for (int round = 0; round < 200; ++round) {
-    const Vec3 a = somewhere(random, -1, 1), b = somewhere(random, -1, 1), c = somewhere(random, -1, 1), p = somewhere(random, -2, 2);
+    const Vec3 a = somewhere(random, -1, 1), b = somewhere(random, -1, 1), c = somewhere(random, -1, 1),
+               p = somewhere(random, -2, 2);
     const double found = (nearest_on_triangle(p, a, b, c) - p).norm();
     double sampled = 1e9;
     for (int i = 0; i <= 40; ++i)
-      for (int j = 0; i + j <= 40; ++j) sampled = std::min(sampled, (a + i / 40.0 * (b - a) + j / 40.0 * (c - a) - p).norm());
+      for (int j = 0; i + j <= 40; ++j)
+        sampled = std::min(sampled, (a + i / 40.0 * (b - a) + j / 40.0 * (c - a) - p).norm());
     EXPECT_LE(found, sampled + 1e-12);
     EXPECT_GT(found, sampled - 0.15);
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The point of a triangle that is nearest to a point, by Voronoi regions (Ericson, Real-Time Collision Detection, 5.1.5).
+// The point of a triangle that is nearest to a point, by Voronoi regions (Ericson, Real-Time Collision
+// Detection, 5.1.5).
 #pragma once
 #include "core/base/math.h"
 

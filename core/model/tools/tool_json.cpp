@@ -34,9 +34,11 @@ void read_blade(const std::filesystem::path& file, const Json& blade, ToolModel&
     return;
   }
   const Json& edge = blade["edge"];
-  if (!edge.is_array() || edge.size() < 2 || edge.size() > 1000) fail(file, "blade.edge must be a list of two or more points");
+  if (!edge.is_array() || edge.size() < 2 || edge.size() > 1000)
+    fail(file, "blade.edge must be a list of two or more points");
   std::vector<Vec3> points;
-  for (std::size_t i = 0; i < edge.size(); ++i) points.push_back(point_mm(file, edge[i], "blade.edge[" + std::to_string(i) + "]"));
+  for (std::size_t i = 0; i < edge.size(); ++i)
+    points.push_back(point_mm(file, edge[i], "blade.edge[" + std::to_string(i) + "]"));
   if (!cuts) return;
   for (std::size_t i = 1; i < points.size(); ++i)
     if ((points[i] - points[i - 1]).norm() > 1e-9) tool.blade_edges.push_back({points[i - 1], points[i]});
@@ -47,10 +49,13 @@ void read_blade(const std::filesystem::path& file, const Json& blade, ToolModel&
 void read_rounding(const std::filesystem::path& file, const Json& rounding, ToolModel& tool) {
   if (!rounding.is_object()) fail(file, "rounding_mm must be an object");
   for (const auto& [name, value] : rounding.items()) {
-    const auto piece = std::find_if(tool.pieces.begin(), tool.pieces.end(), [&](const ConvexPiece& p) { return p.name == name; });
-    if (piece == tool.pieces.end()) fail(file, "rounding_mm names the collision " + in_quotes(name) + ", which the URDF lacks");
+    const auto piece =
+        std::find_if(tool.pieces.begin(), tool.pieces.end(), [&](const ConvexPiece& p) { return p.name == name; });
+    if (piece == tool.pieces.end())
+      fail(file, "rounding_mm names the collision " + in_quotes(name) + ", which the URDF lacks");
     const double radius = length_mm(file, value, "rounding_mm of " + in_quotes(name));
-    if (!(radius >= 0 && radius <= 0.1)) fail(file, "rounding_mm of " + in_quotes(name) + " must lie between 0 and 100");
+    if (!(radius >= 0 && radius <= 0.1))
+      fail(file, "rounding_mm of " + in_quotes(name) + " must lie between 0 and 100");
     piece->radius = radius;
   }
 }
@@ -80,7 +85,8 @@ void read_tool_json(const std::filesystem::path& file, ToolModel& tool) {
   if (json.contains("rounding_mm")) read_rounding(file, json["rounding_mm"], tool);
   tool.json_file = file;
   for (const auto& [key, value] : json.items())
-    if (key != "unit" && key != "tip" && key != "blade" && key != "rounding_mm") tool.sections.emplace(key, value.dump());
+    if (key != "unit" && key != "tip" && key != "blade" && key != "rounding_mm")
+      tool.sections.emplace(key, value.dump());
 }
 
 }  // namespace insula

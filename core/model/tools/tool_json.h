@@ -11,9 +11,9 @@
 
 namespace insula {
 
-/// Fills blade_edges (the segments of the polyline, only when it cuts), tip_inner_radius, the pieces' radii and sections;
-/// links, hinges and pieces are those already read from the URDF. A missing file is fine.
-/// Throws InputError: malformed, wrong unit, not finite, out of range.
+/// Fills blade_edges (the segments of the polyline, only when it cuts), tip_inner_radius, the pieces' radii and
+/// sections; links, hinges and pieces are those already read from the URDF. A missing file is fine. Throws InputError:
+/// malformed, wrong unit, not finite, out of range.
 void read_tool_json(const std::filesystem::path& file, ToolModel& tool);
 
 }  // namespace insula

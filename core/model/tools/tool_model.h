@@ -12,19 +12,20 @@
 
 namespace insula {
 
-/// All points within `radius` of the convex hull of `points` (tool frame, metres): 1 point a sphere, 2 a capsule, more a rounded hull.
+/// All points within `radius` of the convex hull of `points` (tool frame, metres): 1 point a sphere, 2 a capsule, more
+/// a rounded hull.
 struct ConvexPiece {
   std::string name;
   std::vector<Vec3> points;
   double radius = 0;
-  int link = 0;          ///< 0: the root; k > 0: turned about hinges[k-1]
+  int link = 0;  ///< 0: the root; k > 0: turned about hinges[k-1]
 };
 
 struct ToolPart {
   std::string name;
   std::string material;  ///< "steel", "polymer", ...
   std::array<double, 4> rgba{0.7, 0.7, 0.7, 1};
-  TriMesh mesh;          ///< tool frame, at opening 0
+  TriMesh mesh;  ///< tool frame, at opening 0
   int link = 0;
 };
 
@@ -37,17 +38,18 @@ struct Hinge {
 
 struct ToolModel {
   std::string name;
-  double mass = 0;                ///< kg, all links
-  Vec3 centre_of_mass = Vec3::Zero();  ///< at opening 0
-  Mat3 inertia = Mat3::Zero();    ///< kg m2 about the centre of mass, tool frame, at opening 0
-  std::vector<ConvexPiece> pieces;   ///< contact model
-  std::vector<ToolPart> parts;       ///< picture
-  std::vector<Hinge> hinges;         ///< of links 1, 2, ...; empty when the tool is rigid
-  double opening_min = 0, opening_max = 0;  ///< rad
+  double mass = 0;                               ///< kg, all links
+  Vec3 centre_of_mass = Vec3::Zero();            ///< at opening 0
+  Mat3 inertia = Mat3::Zero();                   ///< kg m2 about the centre of mass, tool frame, at opening 0
+  std::vector<ConvexPiece> pieces;               ///< contact model
+  std::vector<ToolPart> parts;                   ///< picture
+  std::vector<Hinge> hinges;                     ///< of links 1, 2, ...; empty when the tool is rigid
+  double opening_min = 0, opening_max = 0;       ///< rad
   std::vector<std::array<Vec3, 2>> blade_edges;  ///< cutting edges, empty when the tool does not cut
-  double tip_inner_radius = 0;       ///< suction opening, m
-  std::map<std::string, std::string> sections;  ///< of tool.json that are none of the above: JSON text by key, for plugins
-  std::filesystem::path json_file;   ///< tool.json, for messages about a section; empty: there is none
+  double tip_inner_radius = 0;                   ///< suction opening, m
+  std::map<std::string, std::string>
+      sections;                     ///< of tool.json that are none of the above: JSON text by key, for plugins
+  std::filesystem::path json_file;  ///< tool.json, for messages about a section; empty: there is none
 
   int link_count() const { return 1 + int(hinges.size()); }
   /// Where the points of a link go, tool frame to tool frame: the identity for the root and at opening 0.

@@ -29,7 +29,8 @@ class ToolReader {
     read_link(*model->root_link_);
     for (const urdf::Joint* joint : joints) {
       const auto child = model->links_.find(joint->child_link_name);
-      if (child == model->links_.end() || !child->second) fail(file_, "the link of the joint " + in_quotes(joint->name) + " is missing");
+      if (child == model->links_.end() || !child->second)
+        fail(file_, "the link of the joint " + in_quotes(joint->name) + " is missing");
       hinge(*joint);
       read_link(*child->second);
     }
@@ -41,8 +42,10 @@ class ToolReader {
 
  private:
   Pose pose(const urdf::Pose& p, const std::string& what) const {
-    Pose out{Vec3(p.position.x, p.position.y, p.position.z), Quat(p.rotation.w, p.rotation.x, p.rotation.y, p.rotation.z)};
-    if (!out.p.allFinite() || !out.q.coeffs().allFinite() || !(out.q.norm() > 0.5)) fail(file_, what + ": its origin is not finite");
+    Pose out{Vec3(p.position.x, p.position.y, p.position.z),
+             Quat(p.rotation.w, p.rotation.x, p.rotation.y, p.rotation.z)};
+    if (!out.p.allFinite() || !out.q.coeffs().allFinite() || !(out.q.norm() > 0.5))
+      fail(file_, what + ": its origin is not finite");
     out.q.normalize();
     return out;
   }
@@ -58,21 +61,26 @@ class ToolReader {
     for (const auto& [name, joint] : model.joints_) {
       if (!joint) continue;
       const std::string what = "the joint " + in_quotes(name);
-      if (joint->type != urdf::Joint::REVOLUTE) fail(file_, what + " is not revolute; the links of a tool are turned by revolute joints");
+      if (joint->type != urdf::Joint::REVOLUTE)
+        fail(file_, what + " is not revolute; the links of a tool are turned by revolute joints");
       if (joint->parent_link_name != model.root_link_->name)
-        fail(file_, what + " hangs on the link " + in_quotes(joint->parent_link_name) + "; every joint of a tool hangs on its root " + in_quotes(model.root_link_->name));
+        fail(file_, what + " hangs on the link " + in_quotes(joint->parent_link_name) +
+                        "; every joint of a tool hangs on its root " + in_quotes(model.root_link_->name));
       if (joint->mimic) {
         joints.push_back(joint.get());
         continue;
       }
       if (!joints.empty() && !joints.front()->mimic)
-        fail(file_, "the joints " + in_quotes(joints.front()->name) + " and " + in_quotes(name) + " are independent; one must <mimic> the other");
+        fail(file_, "the joints " + in_quotes(joints.front()->name) + " and " + in_quotes(name) +
+                        " are independent; one must <mimic> the other");
       joints.insert(joints.begin(), joint.get());
     }
     for (const urdf::Joint* joint : joints)
       if (joint->mimic && joint->mimic->joint_name != joints.front()->name)
-        fail(file_, "the joint " + in_quotes(joint->name) + " mimics " + in_quotes(joint->mimic->joint_name) + ", which is no independent joint of this tool");
-    if (!joints.empty() && joints.front()->mimic) fail(file_, "the joint " + in_quotes(joints.front()->name) + " mimics itself");
+        fail(file_, "the joint " + in_quotes(joint->name) + " mimics " + in_quotes(joint->mimic->joint_name) +
+                        ", which is no independent joint of this tool");
+    if (!joints.empty() && joints.front()->mimic)
+      fail(file_, "the joint " + in_quotes(joints.front()->name) + " mimics itself");
     return joints;
   }
 
@@ -88,10 +96,12 @@ class ToolReader {
       fail(file_, what + ": its limits must be finite, in order and within half a turn");
     if (joint.mimic) {
       h.multiplier = joint.mimic->multiplier;
-      if (!std::isfinite(h.multiplier) || h.multiplier == 0) fail(file_, what + ": the multiplier of its <mimic> must be finite and not zero");
+      if (!std::isfinite(h.multiplier) || h.multiplier == 0)
+        fail(file_, what + ": the multiplier of its <mimic> must be finite and not zero");
       if (joint.mimic->offset != 0) fail(file_, what + ": the offset of its <mimic> must be 0");
       const auto [least, most] = std::minmax({h.multiplier * tool_.opening_min, h.multiplier * tool_.opening_max});
-      if (least < lower - 1e-6 || most > upper + 1e-6) fail(file_, what + ": its limits are narrower than those of the joint it mimics");
+      if (least < lower - 1e-6 || most > upper + 1e-6)
+        fail(file_, what + ": its limits are narrower than those of the joint it mimics");
     } else {
       tool_.opening_min = lower;
       tool_.opening_max = upper;
@@ -113,7 +123,8 @@ class ToolReader {
 
   void inertia(const urdf::Link& link) {
     const std::string its = link_ == 0 ? "its " : "link " + in_quotes(link.name) + ": its ";
-    if (!link.inertial) fail(file_, (link_ == 0 ? std::string() : "link " + in_quotes(link.name) + " ") + "has no <inertial>");
+    if (!link.inertial)
+      fail(file_, (link_ == 0 ? std::string() : "link " + in_quotes(link.name) + " ") + "has no <inertial>");
     const urdf::Inertial& in = *link.inertial;
     if (!std::isfinite(in.mass) || !(in.mass > 0)) fail(file_, its + "mass must be positive and finite");
     const Pose at = in_tool(pose(in.origin, "<inertial>"));
@@ -152,8 +163,10 @@ class ToolReader {
     const std::filesystem::path folder = file_.has_parent_path() ? file_.parent_path() : std::filesystem::path(".");
     const std::filesystem::path mesh = folder / name;
     std::error_code error;
-    const auto relative = std::filesystem::weakly_canonical(mesh, error).lexically_relative(std::filesystem::weakly_canonical(folder, error));
-    if (error || relative.empty() || *relative.begin() == "..") fail(file_, what + ": the mesh " + in_quotes(name) + " lies outside this file's folder");
+    const auto relative = std::filesystem::weakly_canonical(mesh, error)
+                              .lexically_relative(std::filesystem::weakly_canonical(folder, error));
+    if (error || relative.empty() || *relative.begin() == "..")
+      fail(file_, what + ": the mesh " + in_quotes(name) + " lies outside this file's folder");
     return mesh;
   }
 
@@ -187,13 +200,16 @@ class ToolReader {
       }
       case urdf::Geometry::BOX: {
         const auto& d = static_cast<const urdf::Box&>(*c.geometry).dim;
-        piece.points = box_mesh({length(d.x, what + ": the size"), length(d.y, what + ": the size"), length(d.z, what + ": the size")}).vertices;
+        piece.points = box_mesh({length(d.x, what + ": the size"), length(d.y, what + ": the size"),
+                                 length(d.z, what + ": the size")})
+                           .vertices;
         break;
       }
       case urdf::Geometry::MESH: {
         piece.points = mesh(static_cast<const urdf::Mesh&>(*c.geometry), what).vertices;
         if (piece.points.size() > max_hull_points)
-          fail(file_, what + ": its hull has " + std::to_string(piece.points.size()) + " points; at most " + std::to_string(max_hull_points) + " are allowed");
+          fail(file_, what + ": its hull has " + std::to_string(piece.points.size()) + " points; at most " +
+                          std::to_string(max_hull_points) + " are allowed");
         break;
       }
     }
@@ -225,7 +241,8 @@ class ToolReader {
       }
       case urdf::Geometry::BOX: {
         const auto& d = static_cast<const urdf::Box&>(*v.geometry).dim;
-        part.mesh = box_mesh({length(d.x, what + ": the size"), length(d.y, what + ": the size"), length(d.z, what + ": the size")});
+        part.mesh = box_mesh(
+            {length(d.x, what + ": the size"), length(d.y, what + ": the size"), length(d.z, what + ": the size")});
         break;
       }
       case urdf::Geometry::MESH: part.mesh = mesh(static_cast<const urdf::Mesh&>(*v.geometry), what); break;
@@ -245,7 +262,7 @@ class ToolReader {
   std::filesystem::path file_;
   ToolModel tool_;
   std::vector<LinkInertia> links_;
-  Pose frame_;    ///< of the link that is being read, at opening 0
+  Pose frame_;  ///< of the link that is being read, at opening 0
   int link_ = 0;
 };
 

@@ -19,7 +19,9 @@ const std::string inertial =
     "<inertia ixx='2e-5' ixy='0' ixz='0' iyy='3e-5' iyz='0' izz='4e-5'/></inertial>";
 const std::string sphere = "<collision name='tip'><geometry><sphere radius='0.001'/></geometry></collision>";
 
-std::string urdf(const std::string& content) { return "<?xml version='1.0'?><robot name='probe'><link name='tool'>" + content + "</link></robot>"; }
+std::string urdf(const std::string& content) {
+  return "<?xml version='1.0'?><robot name='probe'><link name='tool'>" + content + "</link></robot>";
+}
 
 std::string surface(const char* name) {
   for (const auto& f : test_files::surface_formats())
@@ -53,15 +55,18 @@ TEST(Tool, IsReadWhole) {
   folder.write("parts/s.stl", surface("stl_binary"));
   folder.write("tool.json", R"({"unit": "mm", "tip": {"kind": "suction", "inner_radius_mm": 0.7},
       "blade": {"edge": [[0, 1, 2], [0, 0, 0], [0, -1, 2]], "cuts": true, "width_mm": 2}})");
-  const std::string text = urdf(
-      inertial +
-      "<visual name='shaft'><origin xyz='0 0 0.1' rpy='0 0 1.5707963267948966'/><geometry><mesh filename='parts/s.stl' scale='0.001 0.002 0.003'/></geometry>"
-      "<material name='steel_dark'><color rgba='0.1 0.2 0.3 1'/></material></visual>"
-      "<visual><geometry><sphere radius='0.002'/></geometry></visual>"
-      "<collision name='tip'><origin xyz='0 0 0.002'/><geometry><sphere radius='0.001'/></geometry></collision>"
-      "<collision name='shaft_1'><origin xyz='0 0 0.01' rpy='0 1.5707963267948966 0'/><geometry><cylinder radius='0.001' length='0.01'/></geometry></collision>"
-      "<collision name='blade'><geometry><mesh filename='package://probe/parts/s.stl' scale='0.001 0.001 0.001'/></geometry></collision>"
-      "<collision><geometry><box size='0.01 0.02 0.03'/></geometry></collision>");
+  const std::string text =
+      urdf(inertial +
+           "<visual name='shaft'><origin xyz='0 0 0.1' rpy='0 0 1.5707963267948966'/><geometry><mesh "
+           "filename='parts/s.stl' scale='0.001 0.002 0.003'/></geometry>"
+           "<material name='steel_dark'><color rgba='0.1 0.2 0.3 1'/></material></visual>"
+           "<visual><geometry><sphere radius='0.002'/></geometry></visual>"
+           "<collision name='tip'><origin xyz='0 0 0.002'/><geometry><sphere radius='0.001'/></geometry></collision>"
+           "<collision name='shaft_1'><origin xyz='0 0 0.01' rpy='0 1.5707963267948966 0'/><geometry><cylinder "
+           "radius='0.001' length='0.01'/></geometry></collision>"
+           "<collision name='blade'><geometry><mesh filename='package://probe/parts/s.stl' scale='0.001 0.001 "
+           "0.001'/></geometry></collision>"
+           "<collision><geometry><box size='0.01 0.02 0.03'/></geometry></collision>");
   const ToolModel tool = read_tool(folder.write("probe.urdf", text));
   EXPECT_EQ(tool.name, "probe");
   EXPECT_EQ(tool.mass, 0.02);
@@ -88,19 +93,22 @@ TEST(Tool, IsReadWhole) {
   EXPECT_NEAR(tool.parts[0].rgba[2], 0.3, 1e-6);
   Vec3 high = tool.parts[0].mesh.vertices[0];
   for (const Vec3& v : tool.parts[0].mesh.vertices) high = high.cwiseMax(v);
-  EXPECT_LT((high - Vec3(0, 0.002, 0.112)).norm(), 1e-9);  // scaled by axis, then turned by 90 degrees about z, then moved
+  EXPECT_LT((high - Vec3(0, 0.002, 0.112)).norm(),
+            1e-9);  // scaled by axis, then turned by 90 degrees about z, then moved
 }
 
 TEST(Tool, InertiaIsTurnedIntoTheToolFrame) {
   const TempFolder folder;
-  const ToolModel tool = read_tool(folder.write("probe.urdf", urdf(replaced(inertial, "rpy='0 0 0'", "rpy='0 0 1.5707963267948966'") + sphere)));
+  const ToolModel tool = read_tool(
+      folder.write("probe.urdf", urdf(replaced(inertial, "rpy='0 0 0'", "rpy='0 0 1.5707963267948966'") + sphere)));
   EXPECT_LT((tool.inertia - Vec3(3e-5, 2e-5, 4e-5).asDiagonal().toDenseMatrix()).norm(), 1e-15);
   EXPECT_EQ(tool.blade_edges.size(), 0u);  // no tool.json
 }
 
 TEST(Tool, RefusesBadMasses) {
   for (const char* bad : {"0", "-1", "nan", "inf", "heavy", ""})
-    expect_error(replaced(inertial, "mass value='0.02'", std::string("mass value='") + bad + "'") + sphere, "probe.urdf: ");
+    expect_error(replaced(inertial, "mass value='0.02'", std::string("mass value='") + bad + "'") + sphere,
+                 "probe.urdf: ");
   expect_error(sphere, "no <inertial>");
   expect_error(replaced(inertial, "<mass value='0.02'/>", "") + sphere, "valid URDF");
 }
@@ -116,36 +124,48 @@ TEST(Tool, RefusesBadInertia) {
 TEST(Tool, RefusesBadPieces) {
   expect_error(inertial, "no collision pieces");
   expect_error(inertial + "<collision><geometry><sphere radius='-1'/></geometry></collision>", "positive and finite");
-  expect_error(inertial + "<collision><geometry><cylinder radius='0.01' length='0.01'/></geometry></collision>", "use a sphere");
+  expect_error(inertial + "<collision><geometry><cylinder radius='0.01' length='0.01'/></geometry></collision>",
+               "use a sphere");
   expect_error(inertial + "<collision name='c'/>", "probe.urdf: ");
-  expect_error(inertial + "<collision><geometry><mesh filename='none.obj'/></geometry></collision>", "none.obj: no such file");
-  expect_error(inertial + "<collision><geometry><mesh filename='../none.obj'/></geometry></collision>", "outside this file's folder");
-  expect_error(inertial + "<collision><geometry><mesh filename='/none.obj'/></geometry></collision>", "relative to this file");
-  expect_error(inertial + "<collision><geometry><mesh filename='file:///none.obj'/></geometry></collision>", "relative to this file");
-  expect_error(inertial + sphere + "<visual><geometry><sphere radius='1'/></geometry><material name='m'><color rgba='2 0 0 1'/></material></visual>", "color");
+  expect_error(inertial + "<collision><geometry><mesh filename='none.obj'/></geometry></collision>",
+               "none.obj: no such file");
+  expect_error(inertial + "<collision><geometry><mesh filename='../none.obj'/></geometry></collision>",
+               "outside this file's folder");
+  expect_error(inertial + "<collision><geometry><mesh filename='/none.obj'/></geometry></collision>",
+               "relative to this file");
+  expect_error(inertial + "<collision><geometry><mesh filename='file:///none.obj'/></geometry></collision>",
+               "relative to this file");
+  expect_error(inertial + sphere +
+                   "<visual><geometry><sphere radius='1'/></geometry><material name='m'><color rgba='2 0 0 "
+                   "1'/></material></visual>",
+               "color");
 }
 
 TEST(Tool, RefusesHullsOfTooManyPoints) {
   const TempFolder folder;
   std::string obj;
   for (int i = 0; i < 25; ++i) obj += "v " + std::to_string(i) + " " + std::to_string(i * i) + " 1\n";
-  for (int i = 1; i < 24; ++i) obj += "f " + std::to_string(i) + " " + std::to_string(i + 1) + " " + std::to_string(i + 2) + "\n";
+  for (int i = 1; i < 24; ++i)
+    obj += "f " + std::to_string(i) + " " + std::to_string(i + 1) + " " + std::to_string(i + 2) + "\n";
   folder.write("many.obj", obj);
-  const std::string error = error_of(folder, urdf(inertial + "<collision><geometry><mesh filename='many.obj'/></geometry></collision>"));
+  const std::string error =
+      error_of(folder, urdf(inertial + "<collision><geometry><mesh filename='many.obj'/></geometry></collision>"));
   EXPECT_NE(error.find("25 points; at most 24"), std::string::npos) << error;
 }
 
 TEST(Tool, RefusesTruncatedMeshes) {
   const TempFolder folder;
   folder.write("s.stl", surface("stl_binary").substr(0, 150));
-  const std::string error = error_of(folder, urdf(inertial + "<collision><geometry><mesh filename='s.stl'/></geometry></collision>"));
+  const std::string error =
+      error_of(folder, urdf(inertial + "<collision><geometry><mesh filename='s.stl'/></geometry></collision>"));
   EXPECT_NE(error.find("s.stl: ends early"), std::string::npos) << error;
 }
 
 TEST(Tool, RefusesSymbolicLinksOutOfItsFolder) {
   const TempFolder folder;
   folder.write("s.stl", surface("stl_binary"));
-  folder.write("in/probe.urdf", urdf(inertial + "<collision><geometry><mesh filename='s.stl'/></geometry></collision>"));
+  folder.write("in/probe.urdf",
+               urdf(inertial + "<collision><geometry><mesh filename='s.stl'/></geometry></collision>"));
   std::filesystem::create_symlink(folder.path() / "s.stl", folder.path() / "in" / "s.stl");
   EXPECT_THROW(read_tool(folder.path() / "in" / "probe.urdf"), InputError);
 }
@@ -165,9 +185,11 @@ TEST(Tool, RefusesOtherXml) {
 }
 
 TEST(Tool, RefusesBadToolJson) {
-  for (const char* bad : {"", "{", "[]", R"({"unit": "cm"})", R"({"tip": 3})", R"({"tip": {"inner_radius_mm": -1}})", R"({"blade": {"cuts": 1}})",
-                          R"({"tip": {"inner_radius_mm": "1"}})", R"({"blade": {}})", R"({"blade": {"edge": [[0,0,0]]}})", R"({"blade": {"edge": [[0,0,0],[0,0]]}})",
-                          R"({"blade": {"edge": [[0,0,0],[0,0,0]]}})", R"({"blade": {"edge": [[0,0,0],[0,0,1e999]]}})"}) {
+  for (const char* bad :
+       {"", "{", "[]", R"({"unit": "cm"})", R"({"tip": 3})", R"({"tip": {"inner_radius_mm": -1}})",
+        R"({"blade": {"cuts": 1}})", R"({"tip": {"inner_radius_mm": "1"}})", R"({"blade": {}})",
+        R"({"blade": {"edge": [[0,0,0]]}})", R"({"blade": {"edge": [[0,0,0],[0,0]]}})",
+        R"({"blade": {"edge": [[0,0,0],[0,0,0]]}})", R"({"blade": {"edge": [[0,0,0],[0,0,1e999]]}})"}) {
     const TempFolder folder;
     folder.write("tool.json", bad);
     EXPECT_NE(error_of(folder, urdf(inertial + sphere)).find("tool.json: "), std::string::npos) << bad;

@@ -15,10 +15,12 @@
 namespace insula {
 namespace {
 
-/// Keeps what urdfdom would print, while it lives. console_bridge has one handler for the whole process, hence the lock.
+/// Keeps what urdfdom would print, while it lives. console_bridge has one handler for the whole process, hence the
+/// lock.
 class ConsoleCapture : public console_bridge::OutputHandler {
  public:
-  ConsoleCapture() : lock_(mutex()), level_(console_bridge::getLogLevel()), previous_(console_bridge::getOutputHandler()) {
+  ConsoleCapture()
+      : lock_(mutex()), level_(console_bridge::getLogLevel()), previous_(console_bridge::getOutputHandler()) {
     console_bridge::setLogLevel(console_bridge::CONSOLE_BRIDGE_LOG_ERROR);
     console_bridge::useOutputHandler(this);
   }
