@@ -8,8 +8,10 @@
 
 #define INSULA_STR2(x) #x
 #define INSULA_STR(x) INSULA_STR2(x)
-#define INSULA_ABI_STRING                                                                                      \
-  "insula headers " INSULA_HEADERS                                                                             \
-  " g++ " INSULA_STR(__GXX_ABI_VERSION) " libstdc++ " INSULA_STR(_GLIBCXX_USE_CXX11_ABI) " eigen " INSULA_STR( \
-      EIGEN_WORLD_VERSION) "." INSULA_STR(EIGEN_MAJOR_VERSION) "." INSULA_STR(EIGEN_MINOR_VERSION) " align"    \
-                                                                                                   " " INSULA_STR(EIGEN_MAX_ALIGN_BYTES)
+// clang-format off
+#define INSULA_ABI_STRING                                                                          \
+  "insula headers " INSULA_HEADERS                                                                 \
+  " g++ " INSULA_STR(__GXX_ABI_VERSION) " libstdc++ " INSULA_STR(_GLIBCXX_USE_CXX11_ABI)           \
+  " eigen " INSULA_STR(EIGEN_WORLD_VERSION) "." INSULA_STR(EIGEN_MAJOR_VERSION) "."                \
+  INSULA_STR(EIGEN_MINOR_VERSION) " align " INSULA_STR(EIGEN_MAX_ALIGN_BYTES)
+// clang-format on
