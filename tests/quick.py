@@ -15,8 +15,14 @@ import time
 
 BUDGET_S = 175
 # Folder of the changed file: program of tests, and where its test files are.
-PROGRAMS = (("core/", "core_tests"), ("plugins/", "plugin_tests"), ("haptic_server/", "servo_tests"), ("engine/", "engine_tests"),
-            ("viewer/gateway/", "gateway_tests"), ("lcm_types/", "core_tests"))
+PROGRAMS = (
+    ("core/", "core_tests"),
+    ("plugins/", "plugin_tests"),
+    ("haptic_server/", "servo_tests"),
+    ("engine/", "engine_tests"),
+    ("viewer/gateway/", "gateway_tests"),
+    ("lcm_types/", "core_tests"),
+)
 SUITE = re.compile(r"^(?:TYPED_)?TEST(?:_F|_P)?\(\s*(\w+)\s*,|^TYPED_TEST_SUITE\(\s*(\w+)", re.M)
 
 
@@ -151,11 +157,21 @@ def main():
     more_failed, left_out = run_programs(clock, source, build, programs)
     failed += more_failed
     if rest:
-        say("no unit test belongs to: " + " ".join(rest[:12]) + (" and %d more" % (len(rest) - 12) if len(rest) > 12 else ""))
+        say(
+            "no unit test belongs to: "
+            + " ".join(rest[:12])
+            + (" and %d more" % (len(rest) - 12) if len(rest) > 12 else "")
+        )
     for what in left_out:
         say("left out: " + what)
-    say("%s after %d s%s" % ("FAILED: " + ", ".join(failed) if failed else "passed", time.monotonic() - begin,
-                             "; ./insula test runs everything" if not failed else ""))
+    say(
+        "%s after %d s%s"
+        % (
+            "FAILED: " + ", ".join(failed) if failed else "passed",
+            time.monotonic() - begin,
+            "; ./insula test runs everything" if not failed else "",
+        )
+    )
     return 1 if failed or left_out else 0
 
 

@@ -78,7 +78,9 @@ class Session:
 
 def main():
     options = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    options.add_argument("--types", type=pathlib.Path, default=pathlib.Path("build/python"), help="folder of the generated types")
+    options.add_argument(
+        "--types", type=pathlib.Path, default=pathlib.Path("build/python"), help="folder of the generated types"
+    )
     options.add_argument("--seconds", type=float, default=5, help="how long forces are read")
     options.add_argument("--wait", type=float, default=30, help="how long to wait for a scene")
     given = options.parse_args()
@@ -114,7 +116,10 @@ def main():
     session.listen(given.seconds)
     for side, forces in zip(SIDES, session.forces):
         if forces:
-            print("%s hand: %d forces, mean %.3f N, largest %.3f N" % (side, len(forces), sum(forces) / len(forces), max(forces)))
+            print(
+                "%s hand: %d forces, mean %.3f N, largest %.3f N"
+                % (side, len(forces), sum(forces) / len(forces), max(forces))
+            )
         else:
             print("%s hand: no device" % side)
     return 0

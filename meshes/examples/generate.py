@@ -23,8 +23,10 @@ def even(order):
 def block(cells, low, high):
     """Nodes (mm) and tetrahedra (from 1) of a box of cells[0] x cells[1] x cells[2] cubes."""
     n = [c + 1 for c in cells]
-    nodes = [[low[a] + (high[a] - low[a]) * i[a] / cells[a] for a in range(3)]
-             for i in itertools.product(*(range(m) for m in n))]
+    nodes = [
+        [low[a] + (high[a] - low[a]) * i[a] / cells[a] for a in range(3)]
+        for i in itertools.product(*(range(m) for m in n))
+    ]
     number = lambda i: 1 + (i[0] * n[1] + i[1]) * n[2] + i[2]
     tets = []
     for corner in itertools.product(*(range(c) for c in cells)):
@@ -64,7 +66,9 @@ def tube(radius, length, around, along):
     for j in range(along + 1):
         for i in range(around):
             angle = 2 * math.pi * (i + 0.5 * (j % 2)) / around
-            lines.append("v %.6g %.6g %.6g" % (length * (j / along - 0.5), radius * math.cos(angle), radius * math.sin(angle)))
+            lines.append(
+                "v %.6g %.6g %.6g" % (length * (j / along - 0.5), radius * math.cos(angle), radius * math.sin(angle))
+            )
     for j in range(along):
         for i in range(around):
             a, b = 1 + j * around + i, 1 + j * around + (i + 1) % around
@@ -77,13 +81,24 @@ def tube(radius, length, around, along):
 
 
 def entry(name, text, **counts):
-    return dict(file=name, unit="mm", frame="the scene's", source="generated", licence="GPL-3.0-or-later",
-                sha256=hashlib.sha256(text.encode()).hexdigest(), rebuild="python3 meshes/examples/generate.py", **counts)
+    return dict(
+        file=name,
+        unit="mm",
+        frame="the scene's",
+        source="generated",
+        licence="GPL-3.0-or-later",
+        sha256=hashlib.sha256(text.encode()).hexdigest(),
+        rebuild="python3 meshes/examples/generate.py",
+        **counts
+    )
 
 
 def main():
     files, manifest = {}, []
-    for name, low, high in (("block.msh", (-10, -10, -20), (10, 10, 0)), ("block_upper.msh", (-10, -10, 2), (10, 10, 22))):
+    for name, low, high in (
+        ("block.msh", (-10, -10, -20), (10, 10, 0)),
+        ("block_upper.msh", (-10, -10, 2), (10, 10, 22)),
+    ):
         nodes, tets = block((4, 4, 4), low, high)
         files[name] = msh(nodes, tets)
         manifest.append(entry(name, files[name], nodes=len(nodes), tetrahedra=len(tets)))

@@ -53,7 +53,9 @@ def main():
         subprocess.run([insula, "schema", xsd], check=True, capture_output=True)
 
         def refused(*files):
-            done = subprocess.run(["xmllint", "--noout", "--schema", xsd, *files], capture_output=True, text=True, timeout=120)
+            done = subprocess.run(
+                ["xmllint", "--noout", "--schema", xsd, *files], capture_output=True, text=True, timeout=120
+            )
             return "" if done.returncode == 0 else done.stderr or "status %d" % done.returncode
 
         if why := refused(*scenes):
@@ -68,13 +70,20 @@ def main():
         # Each parameter and element that an editor offers says what it is.
         text = xsd.read_text(encoding="utf-8")
         named = len(re.findall(r'<xs:attribute name="(?!id|file|prefix|name|value|title)', text))
-        explained = len(re.findall(r'<xs:attribute name="(?!id|file|prefix|name|value|title)[^>]*>\s*<xs:annotation>', text))
-        print("%d scenes and parts valid by the schema, %d parameters offered, %d explained" % (len(scenes), named, explained))
+        explained = len(
+            re.findall(r'<xs:attribute name="(?!id|file|prefix|name|value|title)[^>]*>\s*<xs:annotation>', text)
+        )
+        print(
+            "%d scenes and parts valid by the schema, %d parameters offered, %d explained"
+            % (len(scenes), named, explained)
+        )
         if named < 100 or explained < named:
             failures += 1
             print("FAILED: parameters without an explanation")
         model = pathlib.Path(name) / "with_model.xml"
-        model.write_text('<?xml version="1.0"?>\n<?xml-model href="insula.xsd"?>\n<scene title="x"/>\n', encoding="utf-8")
+        model.write_text(
+            '<?xml version="1.0"?>\n<?xml-model href="insula.xsd"?>\n<scene title="x"/>\n', encoding="utf-8"
+        )
         if subprocess.run([insula, "check", model], capture_output=True).returncode != 0:
             failures += 1
             print("FAILED: the line that ties a scene to the schema is an error")

@@ -20,13 +20,21 @@ def step_of(text):
 
 def main():
     source, insula = pathlib.Path(sys.argv[1]), sys.argv[2]
-    texts = {s: s.read_text(encoding="utf-8") for s in sorted(source.glob("scenes/**/*.xml")) + sorted(source.glob("plugins/*/*.xml"))}
+    texts = {
+        s: s.read_text(encoding="utf-8")
+        for s in sorted(source.glob("scenes/**/*.xml")) + sorted(source.glob("plugins/*/*.xml"))
+    }
     scenes = [s for s, text in texts.items() if re.search(r"<scene[\s>/]", text)]
     failures = 0
     for scene in scenes:
         with tempfile.TemporaryDirectory() as folder:
             duration = STEPS * step_of(texts[scene]) + 1e-6
-            done = subprocess.run([insula, "run", scene, "--duration", str(duration), "--report", folder, "--quiet"], capture_output=True, text=True, timeout=600)
+            done = subprocess.run(
+                [insula, "run", scene, "--duration", str(duration), "--report", folder, "--quiet"],
+                capture_output=True,
+                text=True,
+                timeout=600,
+            )
             report = pathlib.Path(folder) / "report.json"
             steps = json.loads(report.read_text(encoding="utf-8"))["steps"] if report.exists() else 0
         if done.returncode != 0 or steps < STEPS:

@@ -15,7 +15,9 @@ def join(port):
     s = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     s.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     s.bind(("", port))
-    s.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, socket.inet_aton(GROUP) + struct.pack("=I", socket.INADDR_ANY))
+    s.setsockopt(
+        socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, socket.inet_aton(GROUP) + struct.pack("=I", socket.INADDR_ANY)
+    )
     return s
 
 
@@ -37,7 +39,9 @@ def works():
         except OSError:
             pass
         if attempt == 0 and os.geteuid() == 0:
-            subprocess.run("ip link set lo up multicast on && ip route add 224.0.0.0/4 dev lo", shell=True, capture_output=True)
+            subprocess.run(
+                "ip link set lo up multicast on && ip route add 224.0.0.0/4 dev lo", shell=True, capture_output=True
+            )
     return False
 
 
@@ -49,7 +53,7 @@ def heard(listener, channel, count, going, patience):
             continue
         data = listener.recv(65536)
         at = HEAD.get(data[:4])
-        if at and data[at:at + len(channel) + 1] == channel.encode() + b"\0":
+        if at and data[at : at + len(channel) + 1] == channel.encode() + b"\0":
             count -= 1
             if count <= 0:
                 return True

@@ -60,7 +60,9 @@ class Checker:
                 if re.match(r"[a-z]+:", target) or target.startswith("#"):
                     continue
                 self.count("links")
-                self.that((page.parent / target.split("#")[0]).exists(), (page, number), "link to %s leads nowhere" % target)
+                self.that(
+                    (page.parent / target.split("#")[0]).exists(), (page, number), "link to %s leads nowhere" % target
+                )
 
     def named_files(self, page, outside, promised):
         """`core/sim/simulation.cpp`: paths that begin with a folder of the project. What a page itself brings is fine."""
@@ -140,17 +142,21 @@ class Checker:
             return
         self.that(command in self.subcommands(), where, "insula has no command %s" % command)
         if command in self.subcommands():
-            own = "\n".join(l for l in self.script_usage if program == "./insula" and l.startswith("  ./insula %s " % command))
+            own = "\n".join(
+                l for l in self.script_usage if program == "./insula" and l.startswith("  ./insula %s " % command)
+            )
             self.options(where, words, self.help_of(self.insula, command) + own)
 
     # --- scenes -----------------------------------------------------------------------------------------------------
     def project(self, folder):
         """What scenes may name, as hard links where the file system allows it."""
+
         def put(a, b):
             try:
                 pathlib.Path(b).hardlink_to(a)
             except OSError:
                 shutil.copyfile(a, b)
+
         for name in ("meshes", "scenes", "plugins"):
             shutil.copytree(self.source / name, folder / name, copy_function=put)
 
@@ -184,7 +190,9 @@ class Checker:
                 words = shlex.split(block.value)
                 self.that(words[0] == "insula", (page, block.line), "output of an unknown program")
                 _, text = self.run(self.insula, *words[1:], cwd=folder)
-                self.that(text.strip() == block.text.strip(), (page, block.line), "`%s` prints:\n%s" % (block.value, text))
+                self.that(
+                    text.strip() == block.text.strip(), (page, block.line), "`%s` prints:\n%s" % (block.value, text)
+                )
 
     def page(self, page):
         blocks, outside = pages.read(page)
@@ -208,7 +216,9 @@ class Checker:
 
 def main():
     source = pathlib.Path(sys.argv[1]).resolve()
-    check = Checker(source, pathlib.Path(sys.argv[2]).resolve(), pathlib.Path(sys.argv[3]).resolve() if len(sys.argv) > 3 else None)
+    check = Checker(
+        source, pathlib.Path(sys.argv[2]).resolve(), pathlib.Path(sys.argv[3]).resolve() if len(sys.argv) > 3 else None
+    )
     if not check.subcommands():
         print("FAILED: %s --help lists no commands" % check.insula)
         return 1

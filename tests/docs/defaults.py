@@ -18,8 +18,19 @@ ROW = re.compile(r"^\| `(\w+)` \| [^|]* \| ([^|]*) \|", re.M)
 OPTION = re.compile(r"^\s+(?:-\w,)?--([\w-]+) [A-Z]+\S*(?: in \[[^\]]*\])?=(\S+)", re.M)
 MEMBER = re.compile(r"\b(?:double|float|int|std::u?int\d+_t) (\w+) = (-?[\d.']+(?:e-?\d+)?);")
 # What the end of a C++ name says of its unit.
-SUFFIXES = {"_N_s": "N/s", "_m_s": "m/s", "_rad_s": "rad/s", "_ms": "ms", "_us": "us", "_mm": "mm", "_rad": "rad",
-            "_Hz": "Hz", "_m": "m", "_s": "s", "_N": "N"}
+SUFFIXES = {
+    "_N_s": "N/s",
+    "_m_s": "m/s",
+    "_rad_s": "rad/s",
+    "_ms": "ms",
+    "_us": "us",
+    "_mm": "mm",
+    "_rad": "rad",
+    "_Hz": "Hz",
+    "_m": "m",
+    "_s": "s",
+    "_N": "N",
+}
 NUMBER = r"-?\d[\d,]*(?:\.\d+)?(?:e-?\d+)?"
 WORDS = {"million": 1e6}
 BEHIND = r",? (?:which is |is )?the default\b|,? by default\b|\s*\(default\)"  # what makes what is before it a default
@@ -51,13 +62,17 @@ class Declared:
         symbols = sorted(self.units, key=len, reverse=True)
         units = "|".join(re.escape(s) for s in symbols)
         self.value = r"`?(%s)(?:\s*(million))?(?:\s*(%s)(?![\w/]))?`?" % (NUMBER, units)
-        self.forms = [re.compile(f, re.I) for f in (
-            r"\bdefaults?(?: value)?(?: of (?:it )?(?:is|are)| is| are| of|:|,)?\s+" + self.value,
-            r"\bdefault of [^.;|]{1,60}? is " + self.value,
-            self.value + r"(?:%s|,? unless said otherwise)" % BEHIND,
-        )]
-        self.choice = re.compile(r"`(\w+)=\"([^\"]+)\"`(?:" + BEHIND + r")"
-                                 r"|\bdefault,? `(\w+)=\"([^\"]+)\"`|`([a-z]\w*)` \(default\)")
+        self.forms = [
+            re.compile(f, re.I)
+            for f in (
+                r"\bdefaults?(?: value)?(?: of (?:it )?(?:is|are)| is| are| of|:|,)?\s+" + self.value,
+                r"\bdefault of [^.;|]{1,60}? is " + self.value,
+                self.value + r"(?:%s|,? unless said otherwise)" % BEHIND,
+            )
+        ]
+        self.choice = re.compile(
+            r"`(\w+)=\"([^\"]+)\"`(?:" + BEHIND + r")" r"|\bdefault,? `(\w+)=\"([^\"]+)\"`|`([a-z]\w*)` \(default\)"
+        )
         self.parameters, self.others = {}, {}
         self.read_elements(insula)
         for program in filter(None, (insula, haptic_server)):

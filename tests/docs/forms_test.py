@@ -19,18 +19,25 @@ MOST_NEVER = 8  # commands; more is a manual that is not tried
 
 def main():
     source, build, ctest = pathlib.Path(sys.argv[1]).resolve(), sys.argv[2], sys.argv[3]
-    listed = subprocess.run([ctest, "--test-dir", build, "--show-only=json-v1"], capture_output=True, text=True, check=True).stdout
+    listed = subprocess.run(
+        [ctest, "--test-dir", build, "--show-only=json-v1"], capture_output=True, text=True, check=True
+    ).stdout
     tests = {t["name"] for t in json.loads(listed)["tests"]}
     failures = []
     used, never, commands = set(), set(), set()
     for page in pages.all_pages(source):
         name = page.relative_to(source)
         blocks = pages.read(page)[0]
-        if any(b.language == "sh" or b.language in snippets.READERS for b in blocks) and "docs_run.%s" % name not in tests:
+        if (
+            any(b.language == "sh" or b.language in snippets.READERS for b in blocks)
+            and "docs_run.%s" % name not in tests
+        ):
             failures.append("%s has no test docs_run.%s" % (name, name))
         for block in blocks:
             if block.language in ("bash", "shell", "console", "c++", "py"):
-                failures.append("%s:%d: ```%s is read by nothing; say sh, cpp or python" % (name, block.line, block.language))
+                failures.append(
+                    "%s:%d: ```%s is read by nothing; say sh, cpp or python" % (name, block.line, block.language)
+                )
             if not block.language and re.search(r"^\s*(\./insula |<\w+[ >]|sudo )", block.text, re.M):
                 failures.append("%s:%d: a block without a language holds what could be run" % (name, block.line))
         for _, command in (c for b in blocks if b.language == "sh" for c in pages.commands(b)):
@@ -55,7 +62,10 @@ def main():
         failures.append("only %d commands were found; are the pages read rightly?" % len(commands))
     for text in failures:
         print("FAILED: " + text)
-    print("%d commands, %d run by nothing, %d forms; %d failures" % (len(commands), len(never), len(forms.FORMS), len(failures)))
+    print(
+        "%d commands, %d run by nothing, %d forms; %d failures"
+        % (len(commands), len(never), len(forms.FORMS), len(failures))
+    )
     return 1 if failures else 0
 
 

@@ -13,7 +13,16 @@ import sys
 import tempfile
 import urllib.parse
 
-SECTIONS = ("Trainee", "Instructor", "Author", "Developer", "Haptics and safety", "Validation", "Performance", "Elements of scene files")
+SECTIONS = (
+    "Trainee",
+    "Instructor",
+    "Author",
+    "Developer",
+    "Haptics and safety",
+    "Validation",
+    "Performance",
+    "Elements of scene files",
+)
 
 
 def main():
@@ -25,7 +34,11 @@ def main():
     shutil.rmtree(out, ignore_errors=True)
     out.mkdir(parents=True)
     subprocess.run([insula, "docs", reference, "--plugins", source / "plugins"], check=True, capture_output=True)
-    done = subprocess.run([sys.executable, "-B", source / "tools/manual/build.py", source, reference, site], capture_output=True, text=True)
+    done = subprocess.run(
+        [sys.executable, "-B", source / "tools/manual/build.py", source, reference, site],
+        capture_output=True,
+        text=True,
+    )
     if done.returncode != 0:
         print("FAILED: " + done.stdout + done.stderr)
         return 1
@@ -41,7 +54,10 @@ def main():
     for name in SECTIONS:
         that(re.search(r">\s*%s\s*<" % name, front), "the front page has no section " + name)
     for page in (source / "docs").glob("*.md"):
-        that((site / ("index.html" if page.name == "README.md" else page.stem + ".html")).exists(), page.name + " is not in the site")
+        that(
+            (site / ("index.html" if page.name == "README.md" else page.stem + ".html")).exists(),
+            page.name + " is not in the site",
+        )
     for page in site.rglob("*.html"):
         if page.name == "404.html":  # its addresses begin at a server's root
             continue
@@ -56,25 +72,52 @@ def main():
     # Tables and lists came out as such.
     that("<table>" in (site / "exercises.html").read_text(encoding="utf-8"), "exercises.html has no table")
     index = (site / "search/index.js").read_text(encoding="utf-8")
-    places = len(json.loads(index[index.index("{"):index.rindex("}") + 1])["docs"])
+    places = len(json.loads(index[index.index("{") : index.rindex("}") + 1])["docs"])
     that(places > 300, "only %d places can be searched" % places)
     # What a person finds who opened the site from its folder, without a web server; from a page of a folder in it, too.
     chromium = os.environ.get("CHROMIUM", "/usr/bin/chromium")
-    for page, words, wanted in (("index.html", "rayleigh_stiffness", "reference/corotational_fem.html"), ("index.html", "warm start", "one-step.html"),
-                                ("reference/contact.html", "pia", "../tutorial-plugin.html"), ("trainee.html", "Sindou", "exercises.html"), ("trainee.html", "instruc", "instructor.html")):
+    for page, words, wanted in (
+        ("index.html", "rayleigh_stiffness", "reference/corotational_fem.html"),
+        ("index.html", "warm start", "one-step.html"),
+        ("reference/contact.html", "pia", "../tutorial-plugin.html"),
+        ("trainee.html", "Sindou", "exercises.html"),
+        ("trainee.html", "instruc", "instructor.html"),
+    ):
         if not os.path.exists(chromium):
             print("no Chromium here: nothing is searched")
             break
         address = (site / page).as_uri() + "?q=" + urllib.parse.quote(words)
         with tempfile.TemporaryDirectory() as profile:
-            done = subprocess.run([chromium, "--headless", "--no-sandbox", "--disable-gpu", "--user-data-dir=" + profile, "--virtual-time-budget=30000", "--dump-dom", address],
-                                  capture_output=True, text=True, timeout=120)
+            done = subprocess.run(
+                [
+                    chromium,
+                    "--headless",
+                    "--no-sandbox",
+                    "--disable-gpu",
+                    "--user-data-dir=" + profile,
+                    "--virtual-time-budget=30000",
+                    "--dump-dom",
+                    address,
+                ],
+                capture_output=True,
+                text=True,
+                timeout=120,
+            )
         results = done.stdout.split('id="mkdocs-search-results"')[-1].split("</div>")[0]
         found = [urllib.parse.urlsplit(a).path for a in re.findall(r'<a href="([^"]+)"', results)]
-        that(any(os.path.normpath(os.path.join(os.path.dirname(page), f)) == os.path.normpath(os.path.join(os.path.dirname(page), wanted)) for f in found[:10]),
-             "in %s a search for \"%s\" does not find %s but %s" % (page, words, wanted, found[:10]))
+        that(
+            any(
+                os.path.normpath(os.path.join(os.path.dirname(page), f))
+                == os.path.normpath(os.path.join(os.path.dirname(page), wanted))
+                for f in found[:10]
+            ),
+            "in %s a search for \"%s\" does not find %s but %s" % (page, words, wanted, found[:10]),
+        )
     that(links > 1000, "only %d links were found; is the site read rightly?" % links)
-    print("%d pages, %d links, %d places to search; %d failures" % (len(list(site.rglob("*.html"))), links, places, failures))
+    print(
+        "%d pages, %d links, %d places to search; %d failures"
+        % (len(list(site.rglob("*.html"))), links, places, failures)
+    )
     return 1 if failures else 0
 
 

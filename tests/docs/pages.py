@@ -17,7 +17,7 @@ MARK = re.compile(r"^\s*<!-- (file|bad|output|in|lines of): (.+?) -->\s*$")
 
 @dataclasses.dataclass
 class Block:
-    line: int       # of the fence
+    line: int  # of the fence
     language: str
     text: str
     role: str = ""  # file, bad, output, in, lines of, or nothing
@@ -64,4 +64,6 @@ def commands(block):
 
 def all_pages(source):
     """The pages in the order in which they are read: the front page first, the notes last."""
-    return [source / "README.md"] + sorted((source / "docs").glob("*.md")) + sorted((source / "docs/notes").glob("*.md"))
+    return (
+        [source / "README.md"] + sorted((source / "docs").glob("*.md")) + sorted((source / "docs/notes").glob("*.md"))
+    )

@@ -35,8 +35,12 @@ def make(source, build, folder):
 
 def environment(build, folder, url):
     out = {k: v for k, v in os.environ.items() if not k.startswith(("INSULA_", "DISPLAY", "WAYLAND"))}
-    out.update(HOME=str(folder / ".user/home"), XDG_RUNTIME_DIR=str(folder / ".user/run"), LCM_DEFAULT_URL=url,
-               PATH="%s:%s:/usr/bin:%s" % (build / "bin", build / "tests", os.environ["PATH"]))
+    out.update(
+        HOME=str(folder / ".user/home"),
+        XDG_RUNTIME_DIR=str(folder / ".user/run"),
+        LCM_DEFAULT_URL=url,
+        PATH="%s:%s:/usr/bin:%s" % (build / "bin", build / "tests", os.environ["PATH"]),
+    )
     out.pop("XDG_CONFIG_HOME", None)
     for library in ("libhd", "libdhd", "libspnav"):
         out["INSULA_" + library.upper()] = str(build / "tests" / ("stub_%s.so" % library))
@@ -51,7 +55,7 @@ def stl(source, scale):
     head, body = data.split(b"end_header\n", 1)
     counts = {line.split()[1]: int(line.split()[2]) for line in head.decode().split("\n") if line.startswith("element")}
     at = struct.unpack_from("<%df" % (3 * counts["vertex"]), body)
-    vertex = [tuple(scale * x for x in at[3 * i:3 * i + 3]) for i in range(counts["vertex"])]
+    vertex = [tuple(scale * x for x in at[3 * i : 3 * i + 3]) for i in range(counts["vertex"])]
     out = [b" " * 80, struct.pack("<I", counts["face"])]
     for i in range(counts["face"]):
         corners = struct.unpack_from("<3i", body, 12 * counts["vertex"] + 13 * i + 1)
@@ -67,7 +71,10 @@ def labels(source):
     size = [int((b - a) / cell) for a, b in zip(low, high)]
     voxels = bytearray(size[0] * size[1] * size[2])
     for p, r in balls:
-        ranges = [range(max(0, int((p[k] - r - low[k]) / cell)), min(size[k], int((p[k] + r - low[k]) / cell) + 2)) for k in range(3)]
+        ranges = [
+            range(max(0, int((p[k] - r - low[k]) / cell)), min(size[k], int((p[k] + r - low[k]) / cell) + 2))
+            for k in range(3)
+        ]
         for z in ranges[2]:
             for y in ranges[1]:
                 for x in ranges[0]:
@@ -79,7 +86,7 @@ def labels(source):
     struct.pack_into("<2h", head, 70, 2, 8)  # unsigned bytes
     struct.pack_into("<8f", head, 76, 1, cell, cell, cell, 1, 1, 1, 1)
     struct.pack_into("<f", head, 108, 352)
-    struct.pack_into("<B", head, 123, 2)     # mm
+    struct.pack_into("<B", head, 123, 2)  # mm
     struct.pack_into("<2h", head, 252, 0, 1)
     for k in range(3):
         row = [0.0, 0.0, 0.0, low[k]]
@@ -94,7 +101,9 @@ def arms():
     out = bytearray(4 * 240 + 8)
     for i, name in enumerate((b"Left Device", b"Right Device")):
         # name, model; plugged, serial, type, buttons, calibration; largest force, p, q, v, force, torque; frames, open
-        struct.pack_into("32s32s5i4x17dqi4x", out, 240 * i, name, b"Touch", 1, 1001 + i, 0, 0, 0, 3.3, 0, 0, 0, 1, *([0] * 12), 0, 0)
+        struct.pack_into(
+            "32s32s5i4x17dqi4x", out, 240 * i, name, b"Touch", 1, 1001 + i, 0, 0, 0, 3.3, 0, 0, 0, 1, *([0] * 12), 0, 0
+        )
     return bytes(out)
 
 

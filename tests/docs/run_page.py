@@ -19,8 +19,8 @@ import pages  # noqa: E402
 import project  # noqa: E402
 import snippets  # noqa: E402
 
-LONGEST = 300   # seconds by the clock, of any one command on a busy machine
-MESSAGES = 20   # of a session, until it counts as running
+LONGEST = 300  # seconds by the clock, of any one command on a busy machine
+MESSAGES = 20  # of a session, until it counts as running
 SKIPPED = 77
 
 
@@ -32,7 +32,13 @@ def seconds():
 def earlier(source, page):
     """What the pages before this one have run for it."""
     order = pages.all_pages(source)
-    said = {c for p in order[:order.index(page)] for b in pages.read(p)[0] if b.language == "sh" for _, c in pages.commands(b)}
+    said = {
+        c
+        for p in order[: order.index(page)]
+        for b in pages.read(p)[0]
+        if b.language == "sh"
+        for _, c in pages.commands(b)
+    }
     return {c for c in said if re.fullmatch(forms.ONCE, c)}
 
 
@@ -57,7 +63,15 @@ class Runner:
     def run(self, words, line, shown, prints=""):
         began = seconds()
         try:
-            done = subprocess.run(words, cwd=self.folder, env=self.environment, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=LONGEST)
+            done = subprocess.run(
+                words,
+                cwd=self.folder,
+                env=self.environment,
+                stdin=subprocess.DEVNULL,
+                capture_output=True,
+                text=True,
+                timeout=LONGEST,
+            )
         except subprocess.TimeoutExpired:
             return self.that(False, line, "`%s` does not end" % shown)
         said = done.stdout + done.stderr
@@ -75,7 +89,14 @@ class Runner:
         began = seconds()
         log = self.folder / ".user/log"
         with bus.join(self.port) as listener, open(log, "w+", encoding="utf-8") as out:
-            process = subprocess.Popen(words, cwd=self.folder, env=self.environment, stdin=subprocess.DEVNULL, stdout=out, stderr=subprocess.STDOUT)
+            process = subprocess.Popen(
+                words,
+                cwd=self.folder,
+                env=self.environment,
+                stdin=subprocess.DEVNULL,
+                stdout=out,
+                stderr=subprocess.STDOUT,
+            )
             try:
                 came = bus.heard(listener, form.channel, MESSAGES, lambda: process.poll() is None, LONGEST)
                 process.send_signal(signal.SIGINT)
@@ -89,7 +110,9 @@ class Runner:
         self.told(began, shown + "   until it runs")
         self.that(came, line, "`%s` sends no %s:\n%s" % (shown, form.channel, said[-4000:]))
         self.that(status == 0, line, "`%s` ends with status %s:\n%s" % (shown, status, said[-4000:]))
-        return self.that(re.search(form.prints, said), line, "`%s` does not print \"%s\":\n%s" % (shown, form.prints, said[-4000:]))
+        return self.that(
+            re.search(form.prints, said), line, "`%s` does not print \"%s\":\n%s" % (shown, form.prints, said[-4000:])
+        )
 
     def command(self, line, text):
         form = forms.form_of(text)
@@ -129,7 +152,10 @@ def main():
     with tempfile.TemporaryDirectory(prefix="insula_page_") as name:
         runner = Runner(source, build, page, pathlib.Path(name).resolve())
         runner.all()
-    print("%s: %d commands and snippets run, %.1f s of processor time; %d failures" % (runner.name, runner.done, seconds(), runner.failures))
+    print(
+        "%s: %d commands and snippets run, %.1f s of processor time; %d failures"
+        % (runner.name, runner.done, seconds(), runner.failures)
+    )
     return 1 if runner.failures else SKIPPED if runner.skipped else 0
 
 

@@ -18,11 +18,17 @@ def placed(runner, block):
 
 def scene(runner, block):
     if re.match(r"\s*(<\?xml[^>]*>\s*)?(<!--.*?-->\s*)?<part", block.text, re.S):
-        return runner.that(block.role == "file", block.line, "a part that no scene of the page includes: give it a name (<!-- file: PATH -->)")
+        return runner.that(
+            block.role == "file",
+            block.line,
+            "a part that no scene of the page includes: give it a name (<!-- file: PATH -->)",
+        )
     if not re.search(r"<scene[\s>/]", placed(runner, block)):
         return runner.that(False, block.line, "a part of a scene; say what it stands in (<!-- in: PATH -->)")
     if block.role == "file" and any(name in block.value for name in ("tether", "pia_membrane")):
-        return None  # an example of the page's own plugin, which its build checks (manual_plugin_scene, install_plugins)
+        return (
+            None  # an example of the page's own plugin, which its build checks (manual_plugin_scene, install_plugins)
+        )
     path = block.value if block.role == "file" else "scenes/cases/snippet_%d.xml" % block.line
     (runner.folder / path).write_text(placed(runner, block), encoding="utf-8")
     return runner.run(["insula", "check", path], block.line, "insula check " + path)
@@ -38,7 +44,7 @@ def compiled(runner, block):
     source.write_text(placed(runner, block), encoding="utf-8")
     words = [w for w in shlex.split(like["command"]) if w != like["file"] and not w.endswith("ccache")]
     at = words.index("-o")
-    words = words[:at] + words[at + 2:] + ["-fsyntax-only", str(source)]
+    words = words[:at] + words[at + 2 :] + ["-fsyntax-only", str(source)]
     words.remove("-c")
     for i, word in enumerate(words):  # folders are named from the build's
         if i > 0 and words[i - 1] in ("-I", "-isystem"):
@@ -71,9 +77,15 @@ def configured(runner, block):
         folder.mkdir()
         (folder / "CMakeLists.txt").write_text(placed(runner, block), encoding="utf-8")
         defines = ["-DINSULA_SOURCE_DIR=%s" % runner.source, "-DINSULA_BUILD_DIR=%s" % runner.build]
-        runner.run(["cmake", "-S", folder, "-B", folder / "build", "-G", "Ninja", *defines], block.line, "cmake of line %d" % block.line)
+        runner.run(
+            ["cmake", "-S", folder, "-B", folder / "build", "-G", "Ninja", *defines],
+            block.line,
+            "cmake of line %d" % block.line,
+        )
         return runner.run(["cmake", "--build", folder / "build"], block.line, "building what line %d says" % block.line)
-    runner.that(block.role == "lines of", block.line, "say what it stands in (<!-- in: PATH --> or <!-- lines of: PATH -->)")
+    runner.that(
+        block.role == "lines of", block.line, "say what it stands in (<!-- in: PATH --> or <!-- lines of: PATH -->)"
+    )
     there = (runner.folder / block.value).read_text(encoding="utf-8").split("\n") if block.value else []
     for line in block.text.strip().split("\n"):
         runner.that(line in there, block.line, "%s does not say: %s" % (block.value, line))

@@ -30,9 +30,17 @@ def main():
         that(library in needs, "insula does not depend on %s: %s" % (library, needs))
     needs = run("dpkg-deb", "-f", packages["insula-dev"], "Depends")
     that("insula (= " in needs and "libeigen3-dev" in needs, "insula-dev depends on " + needs)
-    for name in ("bin/insula", "bin/haptic_server", "bin/gateway", "share/insula/scenes/training/1_sylvian_fissure.xml", "share/insula/docs/README.md",
-                 "share/insula/meshes/examples/block.msh", "include/insula/core/registry/registry.h", "include/insula/insula_headers.h",
-                 "lib/cmake/Insula/InsulaConfig.cmake"):
+    for name in (
+        "bin/insula",
+        "bin/haptic_server",
+        "bin/gateway",
+        "share/insula/scenes/training/1_sylvian_fissure.xml",
+        "share/insula/docs/README.md",
+        "share/insula/meshes/examples/block.msh",
+        "include/insula/core/registry/registry.h",
+        "include/insula/insula_headers.h",
+        "lib/cmake/Insula/InsulaConfig.cmake",
+    ):
         that((root / "usr" / name).exists(), "usr/%s is in no package" % name)
     insula = root / "usr/bin/insula"
     run(insula, "check", root / "usr/share/insula/plugins/clip/example.xml")

@@ -18,7 +18,10 @@ import pages  # noqa: E402
 from steps import fail, run, that  # noqa: E402
 
 KINDS = ("constraint", "force", "support", "instrument", "exercise")
-TUTORIALS = {"pia_membrane": ("force", ("docs/tutorial-plugin.md", "docs/tutorial-plugin-test.md")), "suture": ("constraint", ("docs/tutorial-channels.md",))}
+TUTORIALS = {
+    "pia_membrane": ("force", ("docs/tutorial-plugin.md", "docs/tutorial-plugin-test.md")),
+    "suture": ("constraint", ("docs/tutorial-channels.md",)),
+}
 
 
 def installed_page(prefix):
@@ -27,7 +30,9 @@ def installed_page(prefix):
     if not page.exists():
         print("the page is not built: not looked at")
         return
-    gateway = subprocess.Popen([prefix / "bin/gateway", "--port", "18700"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    gateway = subprocess.Popen(
+        [prefix / "bin/gateway", "--port", "18700"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+    )
     try:
         for line in gateway.stdout:
             if "serving " in line:
@@ -48,8 +53,18 @@ def tutorial(source, insula, folder, plugin):
         for block in pages.read(source / page)[0]:
             if block.role == "file":
                 wanted[block.value] = block.text
-    that(set(wanted) == {"%s/%s" % (plugin, f) for f in (plugin + ".cpp", plugin + "_test.cpp", "example.xml")}, "the tutorial prints %s" % sorted(wanted))
-    begin = [line for page in tutorial_pages for block in pages.read(source / page)[0] if block.language == "sh" for line in block.text.split("\n") if "new-plugin" in line]
+    that(
+        set(wanted) == {"%s/%s" % (plugin, f) for f in (plugin + ".cpp", plugin + "_test.cpp", "example.xml")},
+        "the tutorial prints %s" % sorted(wanted),
+    )
+    begin = [
+        line
+        for page in tutorial_pages
+        for block in pages.read(source / page)[0]
+        if block.language == "sh"
+        for line in block.text.split("\n")
+        if "new-plugin" in line
+    ]
     that(begin == ["insula new-plugin %s --kind %s" % (plugin, kind)], "the tutorial begins with %s" % begin)
     run(insula, *begin[0].split()[1:], cwd=folder)
     for name, text in wanted.items():
@@ -65,9 +80,14 @@ def step_data_of_the_suture(insula, folder, library):
     run(insula, "--plugin-path", library, "run", folder / "suture/example.xml", "--duration", "1", "--report", report)
     data = json.loads((report / "report.json").read_text())
     tension = data["channels"]["stay.tension"]
-    that(tension["unit"] == "N" and 0 <= tension["min"] <= tension["mean"] <= tension["max"] and tension["max"] > 0.1, "tension: %s" % tension)
+    that(
+        tension["unit"] == "N" and 0 <= tension["min"] <= tension["mean"] <= tension["max"] and tension["max"] > 0.1,
+        "tension: %s" % tension,
+    )
     curve = data["series"]["channels"]["stay.tension"]
-    that(len(curve) == len(data["series"]["time_s"]) and abs(curve[-1] - tension["last"]) < 1e-6, "its curve is another")
+    that(
+        len(curve) == len(data["series"]["time_s"]) and abs(curve[-1] - tension["last"]) < 1e-6, "its curve is another"
+    )
     that([f["count"] for f in data["exercise"]["faults"] if f["id"] == "tight"] == [1], "its fault is not counted once")
     that("stay: tension" in (report / "report.html").read_text(), "the report has no curve of it")
 
@@ -92,14 +112,30 @@ def main():
         names.append(plugin)
     run(insula, "new-plugin", "contact", "--kind", "force", cwd=folder, status=2)
     run(insula, "new-plugin", names[0], "--kind", "force", cwd=folder, status=2)
-    that("\"Contact\" is no name" in run(insula, "new-plugin", "Contact", "--kind", "force", cwd=folder, status=2), "a bad name is not named")
+    that(
+        "\"Contact\" is no name" in run(insula, "new-plugin", "Contact", "--kind", "force", cwd=folder, status=2),
+        "a bad name is not named",
+    )
 
-    (folder / "CMakeLists.txt").write_text("cmake_minimum_required(VERSION 3.25)\nproject(all_plugins LANGUAGES CXX)\nenable_testing()\n" +
-                                           "".join("add_subdirectory(%s)\n" % n for n in names))
+    (folder / "CMakeLists.txt").write_text(
+        "cmake_minimum_required(VERSION 3.25)\nproject(all_plugins LANGUAGES CXX)\nenable_testing()\n"
+        + "".join("add_subdirectory(%s)\n" % n for n in names)
+    )
     out = folder / "build"
     launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
-    run(cmake, "-S", folder, "-B", out, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_PREFIX_PATH=%s" % prefix,
-        "-DCMAKE_CXX_FLAGS=-Werror", *launcher)
+    run(
+        cmake,
+        "-S",
+        folder,
+        "-B",
+        out,
+        "-G",
+        "Ninja",
+        "-DCMAKE_BUILD_TYPE=Release",
+        "-DCMAKE_PREFIX_PATH=%s" % prefix,
+        "-DCMAKE_CXX_FLAGS=-Werror",
+        *launcher
+    )
     run(cmake, "--build", out)
     ctest = pathlib.Path(cmake).with_name("ctest")
     said = run(ctest, "--test-dir", out, "--output-on-failure", "-j", str(os.cpu_count()))

@@ -38,8 +38,11 @@ def dihedral_angles(p):
         n = cross(sub(p[j], p[i]), sub(p[k], p[i]))
         length = math.sqrt(dot(n, n))
         normals.append((n[0] / length, n[1] / length, n[2] / length))
-    return [math.degrees(math.acos(max(-1.0, min(1.0, -dot(normals[a], normals[b])))))
-            for a in range(4) for b in range(a + 1, 4)]
+    return [
+        math.degrees(math.acos(max(-1.0, min(1.0, -dot(normals[a], normals[b])))))
+        for a in range(4)
+        for b in range(a + 1, 4)
+    ]
 
 
 def closed(triangles):
@@ -90,7 +93,10 @@ def check_tets(check, name, points, tets):
     check.that(smallest >= MIN_DIHEDRAL_DEG, "%s: smallest dihedral angle %.2f deg" % (name, smallest))
     skin = boundary(tets)
     check.that(closed(skin), name + ": its boundary is not a closed manifold")
-    print("%s: %d nodes, %d tetrahedra, dihedral angles %.2f to %.2f deg" % (name, len(points), len(tets), smallest, largest))
+    print(
+        "%s: %d nodes, %d tetrahedra, dihedral angles %.2f to %.2f deg"
+        % (name, len(points), len(tets), smallest, largest)
+    )
 
 
 def check_surface(check, name, points, triangles):
@@ -126,18 +132,29 @@ def main():
     check.that(listed == present, "manifest and folder differ: %s" % sorted(listed ^ present))
     surfaces = {}
     for name, entry in entries.items():
-        check.that(all(isinstance(entry.get(f), str) and entry[f] for f in FIELDS), name + ": a field of the manifest is missing")
+        check.that(
+            all(isinstance(entry.get(f), str) and entry[f] for f in FIELDS),
+            name + ": a field of the manifest is missing",
+        )
         check.that(entry["unit"] == "mm", name + ": unit is not mm")
         check.that(entry["licence"] == "BSD-3-Clause", name + ": licence")
         check.that(re.fullmatch("[0-9a-f]{64}", entry["sha256"]) is not None, name + ": sha256 is malformed")
-        check.that(hashlib.sha256((folder / name).read_bytes()).hexdigest() == entry["sha256"], name + ": checksum differs")
+        check.that(
+            hashlib.sha256((folder / name).read_bytes()).hexdigest() == entry["sha256"], name + ": checksum differs"
+        )
         if name.endswith(".msh"):
             points, tets = mesh_files.read_msh(folder / name)
-            check.that((len(points), len(tets)) == (entry["nodes"], entry["tetrahedra"]), name + ": counts differ from the manifest")
+            check.that(
+                (len(points), len(tets)) == (entry["nodes"], entry["tetrahedra"]),
+                name + ": counts differ from the manifest",
+            )
             check_tets(check, name, points, tets)
         elif name.endswith(".ply"):
             points, triangles = mesh_files.read_ply(folder / name)
-            check.that((len(points), len(triangles)) == (entry["nodes"], entry["triangles"]), name + ": counts differ from the manifest")
+            check.that(
+                (len(points), len(triangles)) == (entry["nodes"], entry["triangles"]),
+                name + ": counts differ from the manifest",
+            )
             check_surface(check, name, points, triangles)
             surfaces[name] = [p for p in points if all(math.isfinite(c) for c in p)]
     for name, low, high in (("frontal.msh", 480, 620), ("temporal.msh", 280, 380)):
@@ -145,10 +162,12 @@ def main():
     large = entries["frontal_large.msh"]["nodes"] + entries["temporal_large.msh"]["nodes"]
     check.that(large >= 10000, "the large pair has %d nodes" % large)
     for name in ("frontal_surface.ply", "temporal_surface.ply"):
-        check.that(10000 <= entries[name]["triangles"] <= 14000, "%s: %d triangles" % (name, entries[name]["triangles"]))
+        check.that(
+            10000 <= entries[name]["triangles"] <= 14000, "%s: %d triangles" % (name, entries[name]["triangles"])
+        )
     names = sorted(surfaces)
     for i, a in enumerate(names):
-        for b in names[i + 1:]:
+        for b in names[i + 1 :]:
             gap = vertex_gap(surfaces[a], surfaces[b])
             check.that(gap >= 0.5, "%s and %s come within %.2f mm" % (a, b, gap))
             print("%s - %s: points at least %.2f mm apart" % (a, b, gap))

@@ -15,11 +15,11 @@ def _sections(data):
         if start < 0:
             return out
         line_end = data.index(b"\n", start)
-        name = data[start + 1:line_end].strip().decode()
+        name = data[start + 1 : line_end].strip().decode()
         end = data.find(b"$End" + name.encode(), line_end)
         if end < 0:
             raise MeshError("section $%s has no end" % name)
-        out[name] = data[line_end + 1:end]
+        out[name] = data[line_end + 1 : end]
         at = end + 4 + len(name)
 
 
@@ -39,16 +39,16 @@ def read_msh(path):
 def _read_v2(sections):
     lines = sections["Nodes"].decode().split("\n")
     number, points = {}, []
-    for line in lines[1:int(lines[0]) + 1]:
+    for line in lines[1 : int(lines[0]) + 1]:
         tag, x, y, z = line.split()
         number[int(tag)] = len(points)
         points.append((float(x), float(y), float(z)))
     lines = sections["Elements"].decode().split("\n")
     tets = []
-    for line in lines[1:int(lines[0]) + 1]:
+    for line in lines[1 : int(lines[0]) + 1]:
         values = [int(v) for v in line.split()]
         if values[1] == 4:
-            tets.append(tuple(number[v] for v in values[3 + values[2]:]))
+            tets.append(tuple(number[v] for v in values[3 + values[2] :]))
     return points, tets
 
 
@@ -116,7 +116,16 @@ def read_ply(path):
     header = data[:end].decode().split("\n")
     if header[0] != "ply" or not header[1].startswith("format binary_little_endian"):
         raise MeshError("not a binary little-endian PLY")
-    codes = {"float": "f", "float32": "f", "double": "d", "uchar": "B", "uint8": "B", "int": "i", "int32": "i", "uint": "I"}
+    codes = {
+        "float": "f",
+        "float32": "f",
+        "double": "d",
+        "uchar": "B",
+        "uint8": "B",
+        "int": "i",
+        "int32": "i",
+        "uint": "I",
+    }
     element, counts, row, face = None, {}, "<", None
     names = []
     for line in header:

@@ -48,9 +48,16 @@ def environment(build):
     made = subprocess.run([sys.executable, "-m", "venv", str(folder)], capture_output=True, text=True)
     if made.returncode != 0:
         sys.exit("error: no virtual environment (package python3-venv):\n" + made.stdout + made.stderr)
-    got = subprocess.run([python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "lcm"], capture_output=True, text=True)
+    got = subprocess.run(
+        [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "lcm"],
+        capture_output=True,
+        text=True,
+    )
     if got.returncode != 0:
-        if re.search(r"NewConnectionError|ConnectionError|Temporary failure|timed out|No matching distribution|ProxyError|SSLError", got.stdout + got.stderr):
+        if re.search(
+            r"NewConnectionError|ConnectionError|Temporary failure|timed out|No matching distribution|ProxyError|SSLError",
+            got.stdout + got.stderr,
+        ):
             shutil.rmtree(folder, ignore_errors=True)
             skip("PyPI cannot be reached, so there is no package lcm:\n" + got.stderr[-500:])
         sys.exit("error: pip install lcm:\n" + got.stdout + got.stderr)
@@ -59,13 +66,17 @@ def environment(build):
 
 def multicast(python, url):
     """Whether LCM messages come back here; as root, a missing route is added."""
-    probe = "import lcm,sys\nb=lcm.LCM(sys.argv[1])\ns=[]\nb.subscribe('P',lambda c,d:s.append(d))\n" \
-            "for i in range(50):\n  b.publish('P',b'x')\n  b.handle_timeout(20)\n  if s: sys.exit(0)\nsys.exit(1)"
+    probe = (
+        "import lcm,sys\nb=lcm.LCM(sys.argv[1])\ns=[]\nb.subscribe('P',lambda c,d:s.append(d))\n"
+        "for i in range(50):\n  b.publish('P',b'x')\n  b.handle_timeout(20)\n  if s: sys.exit(0)\nsys.exit(1)"
+    )
     for attempt in range(2):
         if subprocess.run([python, "-c", probe, url], capture_output=True, timeout=60).returncode == 0:
             return True
         if attempt == 0 and os.geteuid() == 0:
-            subprocess.run("ip link set lo up multicast on && ip route add 224.0.0.0/4 dev lo", shell=True, capture_output=True)
+            subprocess.run(
+                "ip link set lo up multicast on && ip route add 224.0.0.0/4 dev lo", shell=True, capture_output=True
+            )
     return False
 
 
@@ -78,12 +89,21 @@ def main():
     if not multicast(python, url):
         skip("no multicast on this machine")
     types = build / "python"
-    subprocess.run([lcm_gen, "-p", "--ppath", str(types)] + [str(f) for f in sorted((source / "lcm_types").glob("*.lcm"))], check=True)
+    subprocess.run(
+        [lcm_gen, "-p", "--ppath", str(types)] + [str(f) for f in sorted((source / "lcm_types").glob("*.lcm"))],
+        check=True,
+    )
 
     insula = str(build / "bin" / "insula")
     with tempfile.TemporaryDirectory(prefix="insula_python_") as name:
         folder = pathlib.Path(name)
-        for part in ("examples", "instruments/retractor", "instruments/dissector", "instruments/clip_applier", "clips/straight"):
+        for part in (
+            "examples",
+            "instruments/retractor",
+            "instruments/dissector",
+            "instruments/clip_applier",
+            "clips/straight",
+        ):
             if (source / "meshes" / part).is_dir():
                 shutil.copytree(source / "meshes" / part, folder / "meshes" / part)
         elements = subprocess.run([insula, "list"], capture_output=True, text=True, check=True).stdout
@@ -91,13 +111,45 @@ def main():
         (folder / "scene.xml").write_text(SCENE % (CLIP if clips else ""), encoding="utf-8")
         env = dict(os.environ, LCM_DEFAULT_URL=url, XDG_RUNTIME_DIR=name)
         logs = [open(folder / n, "w+") for n in ("engine.log", "server.log")]
-        processes = [subprocess.Popen([insula, "engine", "scene.xml", "--motion", "none"], cwd=name, env=env, stdout=logs[0], stderr=subprocess.STDOUT),
-                     subprocess.Popen([str(build / "bin" / "haptic_server")], cwd=name, env=env, stdout=logs[1], stderr=subprocess.STDOUT)]
+        processes = [
+            subprocess.Popen(
+                [insula, "engine", "scene.xml", "--motion", "none"],
+                cwd=name,
+                env=env,
+                stdout=logs[0],
+                stderr=subprocess.STDOUT,
+            ),
+            subprocess.Popen(
+                [str(build / "bin" / "haptic_server")], cwd=name, env=env, stdout=logs[1], stderr=subprocess.STDOUT
+            ),
+        ]
         try:
-            run = subprocess.run([python, str(source / "examples/python/exchange_and_forces.py"), "--types", str(types), "--seconds", "2", "--wait", "90"],
-                                 env=env, capture_output=True, text=True, timeout=240)
-            spied = [subprocess.run([python, str(source / "examples/python/spy.py"), "--types", str(types), "--seconds", "2.5"] + more,
-                                    env=env, capture_output=True, text=True, timeout=60) for more in ([], ["--show", "HAPTIC_STATUS"])]
+            run = subprocess.run(
+                [
+                    python,
+                    str(source / "examples/python/exchange_and_forces.py"),
+                    "--types",
+                    str(types),
+                    "--seconds",
+                    "2",
+                    "--wait",
+                    "90",
+                ],
+                env=env,
+                capture_output=True,
+                text=True,
+                timeout=240,
+            )
+            spied = [
+                subprocess.run(
+                    [python, str(source / "examples/python/spy.py"), "--types", str(types), "--seconds", "2.5"] + more,
+                    env=env,
+                    capture_output=True,
+                    text=True,
+                    timeout=60,
+                )
+                for more in ([], ["--show", "HAPTIC_STATUS"])
+            ]
             alive = [p.poll() is None for p in processes]
         finally:
             for p in processes:
@@ -105,14 +157,24 @@ def main():
             status = [p.wait(60) for p in processes]
         said = "".join(log.seek(0) * "" + log.read() for log in logs)
     print(run.stdout, run.stderr, said, sep="\n")
-    expected = [r"^scene: Two hands$", r"^left hand: left_dissector taken up$", r"^left hand: left_spatula taken up$", r"^right hand: right_spatula taken up$"]
+    expected = [
+        r"^scene: Two hands$",
+        r"^left hand: left_dissector taken up$",
+        r"^left hand: left_spatula taken up$",
+        r"^right hand: right_spatula taken up$",
+    ]
     if clips:
         expected += [r"^right hand: applier taken up$", r"^applier: straight loaded$"]
     for side in ("left", "right"):
         expected.append(r"^%s hand: [1-9]\d+ forces, mean \d+\.\d+ N, largest \d+\.\d+ N$" % side)
     missing = [e for e in expected if not re.search(e, run.stdout, re.M)]
-    for spy, lines in zip(spied, ([r"^%s +[1-9]\d* +\d+\.\d$" % c for c in ("DEVICE_STATE", "HAPTIC_PROBLEM", "RENDER_FRAME")],
-                                  [r"^HAPTIC_STATUS$", r"^  fresh_forces_per_s +\[", r"^  lateness_count +\[\d+, .*\]$"])):
+    for spy, lines in zip(
+        spied,
+        (
+            [r"^%s +[1-9]\d* +\d+\.\d$" % c for c in ("DEVICE_STATE", "HAPTIC_PROBLEM", "RENDER_FRAME")],
+            [r"^HAPTIC_STATUS$", r"^  fresh_forces_per_s +\[", r"^  lateness_count +\[\d+, .*\]$"],
+        ),
+    ):
         assert spy.returncode == 0, spy.stderr
         missing += [e for e in lines if not re.search(e, spy.stdout, re.M)]
     assert run.returncode == 0, run.returncode

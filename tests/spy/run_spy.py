@@ -23,27 +23,60 @@ WATCHED_S = 4
 
 def main():
     source, build = (pathlib.Path(a).resolve() for a in sys.argv[1:3])
-    missing = [p for p in NEEDED if not shutil.which(p)] + [j for j in ("lcm", "jchart2d") if not pathlib.Path(f"/usr/share/java/{j}.jar").exists()]
+    missing = [p for p in NEEDED if not shutil.which(p)] + [
+        j for j in ("lcm", "jchart2d") if not pathlib.Path(f"/usr/share/java/{j}.jar").exists()
+    ]
     if missing or not bus.works():
         print("skipped:", ", ".join(missing) + " not here" if missing else "no multicast")
         sys.exit(SKIPPED)
-    written = {name for f in (source / "lcm_types").glob("*.lcm") for name in re.findall(r"^struct (\w+)", f.read_text(encoding="utf-8"), re.M)}
+    written = {
+        name
+        for f in (source / "lcm_types").glob("*.lcm")
+        for name in re.findall(r"^struct (\w+)", f.read_text(encoding="utf-8"), re.M)
+    }
     port = bus.free_port()
     with tempfile.TemporaryDirectory(prefix="insula_spy_") as folder:
         read, write = os.pipe()
-        screen = subprocess.Popen(["Xvfb", "-displayfd", str(write), "-screen", "0", "800x600x24"], pass_fds=[write], stderr=subprocess.DEVNULL)
+        screen = subprocess.Popen(
+            ["Xvfb", "-displayfd", str(write), "-screen", "0", "800x600x24"],
+            pass_fds=[write],
+            stderr=subprocess.DEVNULL,
+        )
         os.close(write)  # or nothing would ever be read of a screen that does not open
-        env = dict(os.environ, DISPLAY=":" + os.read(read, 16).decode().strip(), LCM_DEFAULT_URL=f"udpm://239.255.76.67:{port}?ttl=0", XDG_RUNTIME_DIR=folder)
+        env = dict(
+            os.environ,
+            DISPLAY=":" + os.read(read, 16).decode().strip(),
+            LCM_DEFAULT_URL=f"udpm://239.255.76.67:{port}?ttl=0",
+            XDG_RUNTIME_DIR=folder,
+        )
         log = open(pathlib.Path(folder) / "spy.log", "w+")
-        engine = subprocess.Popen([str(build / "bin/insula"), "engine", str(source / "scenes/training/1_sylvian_fissure.xml"), "--motion", "none"],
-                                  cwd=folder, env=env, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        spy = subprocess.Popen([str(source / "tools/spy/spy.sh"), str(pathlib.Path(folder) / "java")], env=env, stdout=log, stderr=subprocess.STDOUT)
+        engine = subprocess.Popen(
+            [
+                str(build / "bin/insula"),
+                "engine",
+                str(source / "scenes/training/1_sylvian_fissure.xml"),
+                "--motion",
+                "none",
+            ],
+            cwd=folder,
+            env=env,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
+        spy = subprocess.Popen(
+            [str(source / "tools/spy/spy.sh"), str(pathlib.Path(folder) / "java")],
+            env=env,
+            stdout=log,
+            stderr=subprocess.STDOUT,
+        )
         try:
             with bus.join(port) as listener:
                 sent = bus.heard(listener, "RENDER_FRAME", 20, lambda: engine.poll() is None, 60)
             end = time.monotonic() + 60
             said = ""
-            while time.monotonic() < end and spy.poll() is None and "plugins" not in said:  # the last that it says before its window
+            while (
+                time.monotonic() < end and spy.poll() is None and "plugins" not in said
+            ):  # the last that it says before its window
                 time.sleep(0.2)
                 log.seek(0)
                 said = log.read()

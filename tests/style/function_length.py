@@ -33,12 +33,12 @@ def head_before(code, brace):
             if depth < 0:
                 return None  # inside an argument list: a lambda or an initialiser
         elif depth == 0 and c in ";{}":
-            if c == "}" and re.match(r"\s*,", code[at + 1:brace]):
+            if c == "}" and re.match(r"\s*,", code[at + 1 : brace]):
                 at -= 1  # a braced initialiser of a member
                 continue
             break
         at -= 1
-    return code[at + 1:brace]
+    return code[at + 1 : brace]
 
 
 def function_name(head):
@@ -47,7 +47,7 @@ def function_name(head):
     head = re.sub(r"^\s*#.*$", "", head, flags=re.M)
     if NOT_FUNCTIONS.match(re.sub(r"^\s*template\s*<[^{]*?>\s*(?=class|struct)", "", head)) or "(" not in head:
         return None
-    before = head[:head.index("(")]
+    before = head[: head.index("(")]
     if "=" in before.replace("operator=", "").replace("==", "") or CONTROL.search(before):
         return None
     found = re.search(r"([~\w:]+|operator\s*\S+)\s*$", before)
@@ -56,7 +56,7 @@ def function_name(head):
     if found[1].startswith("INSULA_") and found[1] != "INSULA_PLUGIN":
         return None  # a macro that repeats a block of declarations
     if found[1] in ("TEST", "TEST_F", "TEST_P", "TYPED_TEST"):
-        return found[1] + head[head.index("("):].strip().replace("\n", " ")
+        return found[1] + head[head.index("(") :].strip().replace("\n", " ")
     return found[1]
 
 
@@ -83,6 +83,7 @@ def functions(text):
 def reasoned(lines, first):
     """Whether the comment above a function, or one in its first two lines, gives the reason."""
     at = first - 1
+
     def part_of_head(line):
         return line.strip() and not line.strip().startswith("//") and not line.rstrip().endswith(("}", ";"))
 
@@ -90,7 +91,7 @@ def reasoned(lines, first):
         at -= 1
     while at > 0 and lines[at - 1].strip().startswith("//"):
         at -= 1
-    return any(REASON in line for line in lines[at:first + 2])
+    return any(REASON in line for line in lines[at : first + 2])
 
 
 def long_functions(source):

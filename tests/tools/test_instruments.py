@@ -56,6 +56,7 @@ def components(mesh):
             parent[i] = parent[parent[i]]
             i = parent[i]
         return i
+
     for a, b, c in mesh.faces:
         parent[find(b)] = find(a)
         parent[find(c)] = find(a)
@@ -139,8 +140,13 @@ NAMES = [row["name"] for row in TABLE["instruments"]]
 class Generated(unittest.TestCase):
     def same_tree(self, fresh, shipped):
         def tree(top):
-            return sorted(os.path.relpath(os.path.join(d, f), top) for d, _, files in os.walk(top) for f in files
-                          if not f.endswith(".md"))
+            return sorted(
+                os.path.relpath(os.path.join(d, f), top)
+                for d, _, files in os.walk(top)
+                for f in files
+                if not f.endswith(".md")
+            )
+
         self.assertEqual(tree(fresh), tree(shipped))
         for file in tree(fresh):
             self.assertEqual(read_bytes(os.path.join(fresh, file)), read_bytes(os.path.join(shipped, file)), file)
@@ -217,8 +223,11 @@ class Urdf(unittest.TestCase):
             self.assertTrue(0.010 <= mass <= 0.040, f"{name}: {mass} kg")
             t = {k: float(v) for k, v in tool.link.find("inertial/inertia").attrib.items()}
             minor = t["ixx"] * t["iyy"] - t["ixy"] ** 2
-            det = (t["ixx"] * (t["iyy"] * t["izz"] - t["iyz"] ** 2) - t["ixy"] * (t["ixy"] * t["izz"] - t["iyz"] * t["ixz"])
-                   + t["ixz"] * (t["ixy"] * t["iyz"] - t["iyy"] * t["ixz"]))
+            det = (
+                t["ixx"] * (t["iyy"] * t["izz"] - t["iyz"] ** 2)
+                - t["ixy"] * (t["ixy"] * t["izz"] - t["iyz"] * t["ixz"])
+                + t["ixz"] * (t["ixy"] * t["iyz"] - t["iyy"] * t["ixz"])
+            )
             self.assertTrue(t["ixx"] > 0.0 and minor > 0.0 and det > 0.0, f"{name}: inertia is not positive definite")
             # The triangle inequality of principal moments, on the diagonal.
             diagonal = sorted((t["ixx"], t["iyy"], t["izz"]))
@@ -260,8 +269,12 @@ class Urdf(unittest.TestCase):
             tool = Instrument(name)
             pieces = tool.pieces()
             self.assertLessEqual(len(pieces), 8)
-            points = [p for f in tool.mesh_files("visual") for p in read_obj(os.path.join(tool.folder, f))[0].vertices
-                      if p[2] <= 20.0]
+            points = [
+                p
+                for f in tool.mesh_files("visual")
+                for p in read_obj(os.path.join(tool.folder, f))[0].vertices
+                if p[2] <= 20.0
+            ]
             self.assertGreater(len(points), 30)
             worst = max(min(distance(p) for distance in pieces) for p in points)
             self.assertLess(worst, 0.5, f"{name}: {worst:.2f} mm of the tip stick out of the contact model")
@@ -319,7 +332,7 @@ class Generator(unittest.TestCase):
         volume, first, second = box.second_moments()
         self.assertAlmostEqual(volume, 4.0 * math.pi, delta=1e-4)
         self.assertAlmostEqual(first[2] / volume, 2.0, delta=1e-6)
-        self.assertAlmostEqual(second[2][2], math.pi * 4.0 ** 3 / 3.0, delta=1e-3)
+        self.assertAlmostEqual(second[2][2], math.pi * 4.0**3 / 3.0, delta=1e-3)
         self.assertAlmostEqual(second[0][0], math.pi / 4.0 * 4.0, delta=1e-4)
 
     def test_spine_arc_has_its_length(self):

@@ -62,9 +62,16 @@ class Clip:
         """The window of two half rings: arcs of radius R about the line, led in by fillets."""
         wx, wy = self.par["ring"]
         radius, fillet, start = 0.5 * diameter + wx, self.par["ring_fillet"], self._offset(wx)
-        return {"diameter": diameter, "wx": wx, "wy": wy, "radius": radius, "fillet": fillet, "start": start,
-                "half_length": math.sqrt((radius + fillet) ** 2 - (start + fillet) ** 2),
-                "middle": self.par["leg_length"] + math.sqrt((radius + fillet) ** 2 - (start + fillet) ** 2)}
+        return {
+            "diameter": diameter,
+            "wx": wx,
+            "wy": wy,
+            "radius": radius,
+            "fillet": fillet,
+            "start": start,
+            "half_length": math.sqrt((radius + fillet) ** 2 - (start + fillet) ** 2),
+            "middle": self.par["leg_length"] + math.sqrt((radius + fillet) ** 2 - (start + fillet) ** 2),
+        }
 
     def _window_path(self, steps):
         """(s, offset) from one end of the window to the other."""
@@ -106,7 +113,11 @@ class Clip:
         teeth = max(2, min(most, round(self.blade_length / 0.7)))
         # The tip is rounded over `dome`; the clamping face stays flat to its end.
         dome = min(0.8 * par["width"][1], 0.3 * self.blade_length)
-        count = 2 * teeth if fine else max(4, math.ceil(math.degrees(self.line.turn_between(self.blade_start, self.line.length)) / 12.0))
+        count = (
+            2 * teeth
+            if fine
+            else max(4, math.ceil(math.degrees(self.line.turn_between(self.blade_start, self.line.length)) / 12.0))
+        )
         for k in range(1, count + 1):
             s = self.blade_start + (self.blade_length - dome) * k / count
             wx, wy = self.blade_size(s)
@@ -123,7 +134,9 @@ class Clip:
     def rings(self, fine=True):
         """{"body", "jaw_left", "jaw_right"}: rings of points of the coil and of each jaw; left is the jaw at -x."""
         nodes = self.nodes(fine)
-        out = {"body": wire_rings(self.coil_points(14 if fine and self.window else 20), self.par["wire"], (0.0, 1.0, 0.0))}
+        out = {
+            "body": wire_rings(self.coil_points(14 if fine and self.window else 20), self.par["wire"], (0.0, 1.0, 0.0))
+        }
         for name, side in (("jaw_left", -1.0), ("jaw_right", 1.0)):
             out[name] = jaw_rings(self.line, nodes, side)[0]
         return {k: [moved(r, self.shift) for r in v] for k, v in out.items()}
@@ -161,10 +174,18 @@ class Clip:
             if self.window:
                 rows += [(f"{name}_ring_{i + 1}", "capsule", x, 0.0) for i, x in enumerate(self._ring_capsules(side))]
             if self.row.get("shank"):
-                rows += [(f"{name}_shank_{i + 1}", "hull", x, self.par["rounding"]) for i, x in enumerate(self._hulls(
-                    side, self.blade_start - sum(x[0] for x in self.row["shank"]), self.blade_start, False))]
-            rows += [(f"{name}_blade_{i + 1}", "hull", x, self.par["rounding"]) for i, x in enumerate(self._hulls(
-                side, self.blade_start, self.line.length, True))]
+                rows += [
+                    (f"{name}_shank_{i + 1}", "hull", x, self.par["rounding"])
+                    for i, x in enumerate(
+                        self._hulls(
+                            side, self.blade_start - sum(x[0] for x in self.row["shank"]), self.blade_start, False
+                        )
+                    )
+                ]
+            rows += [
+                (f"{name}_blade_{i + 1}", "hull", x, self.par["rounding"])
+                for i, x in enumerate(self._hulls(side, self.blade_start, self.line.length, True))
+            ]
             out[name] = rows
         return out
 
@@ -220,7 +241,11 @@ class Clip:
                 if blade and s > b - dome + 1e-9:
                     wy = r + 0.3 * (wy - r)  # inside the rounded tip
                 inner, outer = 0.5 * self.par["gap"] + r, 0.5 * self.par["gap"] + max(2.0 * wx - r, r + 0.02)
-                points += [combine(p, (1.0, outwards), (side * x, n), (y, across)) for x in (inner, outer) for y in (wy - r, r - wy)]
+                points += [
+                    combine(p, (1.0, outwards), (side * x, n), (y, across))
+                    for x in (inner, outer)
+                    for y in (wy - r, r - wy)
+                ]
             out.append(self._hull(points))
         return out
 

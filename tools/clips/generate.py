@@ -24,7 +24,9 @@ from clip import Clip  # noqa: E402
 from mesh import number, obj_text  # noqa: E402
 from vec import lerp, mul, norm, sub, unit  # noqa: E402
 
-_spec = importlib.util.spec_from_file_location("instruments_generate", os.path.join(ROOT, "tools", "instruments", "generate.py"))
+_spec = importlib.util.spec_from_file_location(
+    "instruments_generate", os.path.join(ROOT, "tools", "instruments", "generate.py")
+)
 instruments = importlib.util.module_from_spec(_spec)
 _spec.loader.exec_module(instruments)
 
@@ -39,13 +41,20 @@ def link_text(name, clip, part, file, material, rgba, mass, centre, tensor, piec
     base = (0.0, 0.0, 0.0) if part == "body" else mul(clip.hinge, 1e-3)
     at = instruments.vector_text(mul(base, -1.0))
     t = tensor
-    out = [f'  <link name="{name}">', "    <inertial>",
-           f'      <origin xyz="{instruments.vector_text(sub(centre, base))}" rpy="0 0 0"/>', f'      <mass value="{mass:.6e}"/>',
-           f'      <inertia ixx="{t[0][0]:.6e}" ixy="{t[0][1]:.6e}" ixz="{t[0][2]:.6e}" iyy="{t[1][1]:.6e}" '
-           f'iyz="{t[1][2]:.6e}" izz="{t[2][2]:.6e}"/>', "    </inertial>",
-           f'    <visual name="{part}">', f'      <origin xyz="{at}" rpy="0 0 0"/>',
-           f'      <geometry><mesh filename="{file}" {SCALE}/></geometry>',
-           f'      <material name="{material}"><color rgba="{" ".join(number(x) for x in rgba)}"/></material>', "    </visual>"]
+    out = [
+        f'  <link name="{name}">',
+        "    <inertial>",
+        f'      <origin xyz="{instruments.vector_text(sub(centre, base))}" rpy="0 0 0"/>',
+        f'      <mass value="{mass:.6e}"/>',
+        f'      <inertia ixx="{t[0][0]:.6e}" ixy="{t[0][1]:.6e}" ixz="{t[0][2]:.6e}" iyy="{t[1][1]:.6e}" '
+        f'iyz="{t[1][2]:.6e}" izz="{t[2][2]:.6e}"/>',
+        "    </inertial>",
+        f'    <visual name="{part}">',
+        f'      <origin xyz="{at}" rpy="0 0 0"/>',
+        f'      <geometry><mesh filename="{file}" {SCALE}/></geometry>',
+        f'      <material name="{material}"><color rgba="{" ".join(number(x) for x in rgba)}"/></material>',
+        "    </visual>",
+    ]
     for piece, kind, data, _ in pieces:
         out.append(f'    <collision name="{piece}">')
         if kind == "capsule":
@@ -53,10 +62,15 @@ def link_text(name, clip, part, file, material, rgba, mass, centre, tensor, piec
             d = unit(sub(q, p))
             pitch, yaw = math.acos(max(-1.0, min(1.0, d[2]))), math.atan2(d[1], d[0])
             xyz = instruments.vector_text(sub(mul(lerp(p, q, 0.5), 1e-3), base))
-            out += [f'      <origin xyz="{xyz}" rpy="{instruments.vector_text((0.0, pitch, yaw))}"/>',
-                    f'      <geometry><cylinder radius="{number(r * 1e-3, 7)}" length="{number((norm(sub(q, p)) + 2.0 * r) * 1e-3, 7)}"/></geometry>']
+            out += [
+                f'      <origin xyz="{xyz}" rpy="{instruments.vector_text((0.0, pitch, yaw))}"/>',
+                f'      <geometry><cylinder radius="{number(r * 1e-3, 7)}" length="{number((norm(sub(q, p)) + 2.0 * r) * 1e-3, 7)}"/></geometry>',
+            ]
         else:
-            out += [f'      <origin xyz="{at}" rpy="0 0 0"/>', f'      <geometry><mesh filename="{clip.row["name"]}_{piece}.obj" {SCALE}/></geometry>']
+            out += [
+                f'      <origin xyz="{at}" rpy="0 0 0"/>',
+                f'      <geometry><mesh filename="{clip.row["name"]}_{piece}.obj" {SCALE}/></geometry>',
+            ]
         out.append("    </collision>")
     return out + ["  </link>"]
 
@@ -64,9 +78,14 @@ def link_text(name, clip, part, file, material, rgba, mass, centre, tensor, piec
 def joint_text(name, child, clip, mimic):
     upper = number(clip.opening_max, 6)
     limits = f'lower="-{upper}" upper="0"' if mimic else f'lower="0" upper="{upper}"'
-    out = [f'  <joint name="{name}" type="revolute">', '    <parent link="body"/>', f'    <child link="{child}"/>',
-           f'    <origin xyz="{instruments.vector_text(mul(clip.hinge, 1e-3))}" rpy="0 0 0"/>', '    <axis xyz="0 1 0"/>',
-           f'    <limit {limits} effort="1" velocity="10"/>']
+    out = [
+        f'  <joint name="{name}" type="revolute">',
+        '    <parent link="body"/>',
+        f'    <child link="{child}"/>',
+        f'    <origin xyz="{instruments.vector_text(mul(clip.hinge, 1e-3))}" rpy="0 0 0"/>',
+        '    <axis xyz="0 1 0"/>',
+        f'    <limit {limits} effort="1" velocity="10"/>',
+    ]
     if mimic:
         out.append('    <mimic joint="opening" multiplier="-1" offset="0"/>')
     return out + ["  </joint>"]
@@ -75,15 +94,28 @@ def joint_text(name, child, clip, mimic):
 def clip_block(clip):
     line = [instruments.rounded(p) for p in clip.clamping_line()]
     par = clip.par
-    out = {"kind": par["kind"], "shape": clip.row["shape"], "blade_length_mm": round(clip.blade_length, 4),
-           "blade_width_mm": par["width"][0], "opening_mm": round(clip.opening, 4), "closing_force_N": round(clip.force, 4),
-           "force_slope_N_per_m": round(clip.slope, 3), "reference_mm": round(clip.reference, 4), "friction": par["friction"],
-           "blade_from": line[0], "blade_to": line[-1], "blade_line": line,
-           "grip": {"position": instruments.rounded(clip.hinge), "shaft": [0, 0, 1], "flat": [1, 0, 0]}}
+    out = {
+        "kind": par["kind"],
+        "shape": clip.row["shape"],
+        "blade_length_mm": round(clip.blade_length, 4),
+        "blade_width_mm": par["width"][0],
+        "opening_mm": round(clip.opening, 4),
+        "closing_force_N": round(clip.force, 4),
+        "force_slope_N_per_m": round(clip.slope, 3),
+        "reference_mm": round(clip.reference, 4),
+        "friction": par["friction"],
+        "blade_from": line[0],
+        "blade_to": line[-1],
+        "blade_line": line,
+        "grip": {"position": instruments.rounded(clip.hinge), "shaft": [0, 0, 1], "flat": [1, 0, 0]},
+    }
     if clip.window:
         centre = clip.line.frame(clip.window["middle"])[0]
-        out["fenestration"] = {"centre": instruments.rounded(tuple(a + b for a, b in zip(centre, clip.shift))), "axis": [0, 1, 0],
-                               "diameter_mm": clip.window["diameter"]}
+        out["fenestration"] = {
+            "centre": instruments.rounded(tuple(a + b for a, b in zip(centre, clip.shift))),
+            "axis": [0, 1, 0],
+            "diameter_mm": clip.window["diameter"],
+        }
     return out
 
 
@@ -104,36 +136,71 @@ def build(row, table):
                 files[f"{name}_{piece}.obj"] = (obj_text(data, piece, head), len(data.faces))
         m, centre, tensor = instruments.inertia([({"material": material}, mesh)], materials)
         mass += m
-        links += link_text(part, clip, part, file, material, materials[material]["rgba"], m, centre, tensor, pieces[part])
-    urdf = ['<?xml version="1.0"?>', f"<!-- SPDX-License-Identifier: {instruments.LICENCE} -->", f"<!-- {title}; {SOURCE}. -->",
-            f'<robot name="{name}">'] + links
-    urdf += joint_text("opening", "jaw_left", clip, False) + joint_text("opening_mirrored", "jaw_right", clip, True) + ["</robot>"]
+        links += link_text(
+            part, clip, part, file, material, materials[material]["rgba"], m, centre, tensor, pieces[part]
+        )
+    urdf = [
+        '<?xml version="1.0"?>',
+        f"<!-- SPDX-License-Identifier: {instruments.LICENCE} -->",
+        f"<!-- {title}; {SOURCE}. -->",
+        f'<robot name="{name}">',
+    ] + links
+    urdf += (
+        joint_text("opening", "jaw_left", clip, False)
+        + joint_text("opening_mirrored", "jaw_right", clip, True)
+        + ["</robot>"]
+    )
     files[f"{name}.urdf"] = ("\n".join(urdf) + "\n", None)
     rounding = {piece: r for rows in pieces.values() for piece, kind, _, r in rows if kind == "hull"}
     block = clip_block(clip)
-    tool = {"name": name, "title": title, "unit": "mm", "frame": FRAME, "tip": {"kind": "clip"},
-            "length_mm": round(clip.whole_length(), 3), "mass_kg": round(mass, 10), "grip": block["grip"]["position"],
-            "rounding_mm": rounding, "clip": block}
+    tool = {
+        "name": name,
+        "title": title,
+        "unit": "mm",
+        "frame": FRAME,
+        "tip": {"kind": "clip"},
+        "length_mm": round(clip.whole_length(), 3),
+        "mass_kg": round(mass, 10),
+        "grip": block["grip"]["position"],
+        "rounding_mm": rounding,
+        "clip": block,
+    }
     files["tool.json"] = (json.dumps(tool, indent=1) + "\n", None)
     colours = {part: materials[par["coil_material"] if part == "body" else par["material"]]["rgba"] for part in meshes}
     files["picture.svg"] = (picture.svg(clip, colours, title), None)
-    entry = {"name": name, "title": title, "menu": row.get("menu", False), "urdf": f"{name}/{name}.urdf", "picture": f"{name}/picture.svg",
-             "length_mm": tool["length_mm"], "mass_g": round(1e3 * mass, 4)}
-    entry.update({k: block[k] for k in ("kind", "shape", "blade_length_mm", "opening_mm", "closing_force_N", "friction")})
+    entry = {
+        "name": name,
+        "title": title,
+        "menu": row.get("menu", False),
+        "urdf": f"{name}/{name}.urdf",
+        "picture": f"{name}/picture.svg",
+        "length_mm": tool["length_mm"],
+        "mass_g": round(1e3 * mass, 4),
+    }
+    entry.update(
+        {k: block[k] for k in ("kind", "shape", "blade_length_mm", "opening_mm", "closing_force_N", "friction")}
+    )
     if clip.window:
         entry["fenestration_mm"] = clip.window["diameter"]
     return files, entry
 
 
 def readme(catalogue):
-    out = ["# Aneurysm clips", "",
-           "`python3 tools/clips/generate.py` generates the clips from the table `tools/clips/clips.json`. A new clip",
-           "is a new row. The licence is GPL-3.0-or-later. The checksums are in `manifest.json`. `catalogue.json` lists",
-           "all clips with their pictures. [The manual](../../docs/clips.md) tells how a clip is described.", "",
-           "| clip | kind | blade mm | opening mm | force N | whole mm | g |", "|---|---|---|---|---|---|---|"]
+    out = [
+        "# Aneurysm clips",
+        "",
+        "`python3 tools/clips/generate.py` generates the clips from the table `tools/clips/clips.json`. A new clip",
+        "is a new row. The licence is GPL-3.0-or-later. The checksums are in `manifest.json`. `catalogue.json` lists",
+        "all clips with their pictures. [The manual](../../docs/clips.md) tells how a clip is described.",
+        "",
+        "| clip | kind | blade mm | opening mm | force N | whole mm | g |",
+        "|---|---|---|---|---|---|---|",
+    ]
     for e in catalogue:
-        out.append(f'| {e["name"]} | {e["kind"]} | {e["blade_length_mm"]:.3g} | {e["opening_mm"]:.1f} | {e["closing_force_N"]:.2f} '
-                   f'| {e["length_mm"]:.1f} | {e["mass_g"]:.3f} |')
+        out.append(
+            f'| {e["name"]} | {e["kind"]} | {e["blade_length_mm"]:.3g} | {e["opening_mm"]:.1f} | {e["closing_force_N"]:.2f} '
+            f'| {e["length_mm"]:.1f} | {e["mass_g"]:.3f} |'
+        )
     return "\n".join(out) + "\n"
 
 
@@ -154,9 +221,16 @@ def main(argv=None):
         files, entry = build(row, table)
         for name in sorted(files):
             text, triangles = files[name]
-            put(f'{row["name"]}/{name}', text, triangles, "m" if name.endswith(".urdf") else "px" if name.endswith(".svg") else "mm")
+            put(
+                f'{row["name"]}/{name}',
+                text,
+                triangles,
+                "m" if name.endswith(".urdf") else "px" if name.endswith(".svg") else "mm",
+            )
         catalogue.append(entry)
-        largest = max(largest, sum(t for n, (_, t) in files.items() if t and n.endswith(("_body.obj", "_left.obj", "_right.obj"))))
+        largest = max(
+            largest, sum(t for n, (_, t) in files.items() if t and n.endswith(("_body.obj", "_left.obj", "_right.obj")))
+        )
     put("catalogue.json", json.dumps(catalogue, indent=1) + "\n")
     instruments.write(os.path.join(args.out, "manifest.json"), json.dumps(manifest, indent=1) + "\n")
     instruments.write(os.path.join(args.out, "README.md"), readme(catalogue))

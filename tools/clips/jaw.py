@@ -100,8 +100,12 @@ def wire_rings(points, radius, axis):
         t = unit(sub(points[min(i + 1, len(points) - 1)], points[max(i - 1, 0)]))
         b = unit(combine(axis, (-dot(axis, t), t)))
         n = cross(b, t)
-        rings.append([combine(p, (radius * math.cos(v), n), (radius * math.sin(v), b))
-                      for v in (math.pi / 8.0 + k * math.pi / 4.0 for k in range(8))])
+        rings.append(
+            [
+                combine(p, (radius * math.cos(v), n), (radius * math.sin(v), b))
+                for v in (math.pi / 8.0 + k * math.pi / 4.0 for k in range(8))
+            ]
+        )
     return rings
 
 
@@ -110,8 +114,10 @@ def bar_mesh(rings):
     mesh = Mesh()
     rows = [[mesh.vertex(p) for p in ring] for ring in rings]
     count = len(rows[0])
-    ends = [mesh.vertex(mul((sum(p[0] for p in r), sum(p[1] for p in r), sum(p[2] for p in r)), 1.0 / count))
-            for r in (rings[0], rings[-1])]
+    ends = [
+        mesh.vertex(mul((sum(p[0] for p in r), sum(p[1] for p in r), sum(p[2] for p in r)), 1.0 / count))
+        for r in (rings[0], rings[-1])
+    ]
     for k in range(count):
         j = (k + 1) % count
         mesh.faces.append((ends[0], rows[0][j], rows[0][k]))

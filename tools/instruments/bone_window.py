@@ -90,8 +90,12 @@ class Window:
             return height(self.c, x, y)
         ex, ey = x / r, y / r
         x0, y0 = ex * FLATTEN_FROM, ey * FLATTEN_FROM
-        slope = (self.c[1] * ex + self.c[2] * ey
-                 + 2.0 * (self.c[3] * x0 * ex + self.c[5] * y0 * ey) + self.c[4] * (x0 * ey + y0 * ex))
+        slope = (
+            self.c[1] * ex
+            + self.c[2] * ey
+            + 2.0 * (self.c[3] * x0 * ex + self.c[5] * y0 * ey)
+            + self.c[4] * (x0 * ey + y0 * ex)
+        )
         # A gentle slope common to all directions, so that no side of the drape drops out of sight.
         far = r - FLATTEN_FROM
         blend = 1.0 - math.exp(-far / 14.0)
@@ -155,10 +159,12 @@ def bone(window):
         for h in heights:
             d = b["flare"] * h / thick
             over = max(0.0, h - (thick - b["bevel"])) / b["bevel"]
-            d += b["bevel"] * (over ** 1.6) + (0.3 * (1.0 - h / 0.5) if h < 0.5 else 0.0)
+            d += b["bevel"] * (over**1.6) + (0.3 * (1.0 - h / 0.5) if h < 0.5 else 0.0)
             arc = theta * rim
             grain = fractal(21, arc * 1.1, h * 1.3)
-            inside = smoothstep(b["inner_table"] - 0.2, b["inner_table"] + 0.3, h) * (1.0 - smoothstep(top - 0.3, top + 0.2, h))
+            inside = smoothstep(b["inner_table"] - 0.2, b["inner_table"] + 0.3, h) * (
+                1.0 - smoothstep(top - 0.3, top + 0.2, h)
+            )
             pore = smoothstep(0.15, 0.75, grain) * inside
             d += 0.55 * pore + 0.10 * inside + 0.06 * value_noise(23, arc * 0.7, h)
             colour = lerp(lerp(IVORY, DIPLOE, 0.85 * inside), MARROW, pore)
@@ -171,10 +177,16 @@ def bone(window):
             tone = lerp(OUTER, (0.80, 0.62, 0.50), stain)
             out.append((r, thick + 0.16 * fractal(33, 0.30 * x, 0.30 * y) * smoothstep(0.0, 1.5, d), tone))
         # Outer side and inner table, out of sight: coarse.
-        out += [(rim + edge + b["width"], thick - 1.0, OUTER), (rim + edge + b["width"], 1.0, IVORY),
-                (rim + edge + b["width"] - 1.0, 0.0, IVORY), (rim + 14.0, 0.0, IVORY), (rim + 6.0, 0.0, IVORY),
-                (rim + 2.0, 0.0, IVORY)]
+        out += [
+            (rim + edge + b["width"], thick - 1.0, OUTER),
+            (rim + edge + b["width"], 1.0, IVORY),
+            (rim + edge + b["width"] - 1.0, 0.0, IVORY),
+            (rim + 14.0, 0.0, IVORY),
+            (rim + 6.0, 0.0, IVORY),
+            (rim + 2.0, 0.0, IVORY),
+        ]
         return out
+
     return ring_mesh(window, 240, loop)
 
 
@@ -186,8 +198,12 @@ def smooth_path(points, per_leg):
         p0, p1, p2, p3 = pts[i - 1], pts[i], pts[i + 1], pts[i + 2]
         for k in range(per_leg):
             t = k / per_leg
-            out.append(tuple(0.5 * (2 * b + (c - a) * t + (2 * a - 5 * b + 4 * c - d) * t * t + (3 * b - a - 3 * c + d) * t ** 3)
-                             for a, b, c, d in zip(p0, p1, p2, p3)))
+            out.append(
+                tuple(
+                    0.5 * (2 * b + (c - a) * t + (2 * a - 5 * b + 4 * c - d) * t * t + (3 * b - a - 3 * c + d) * t**3)
+                    for a, b, c, d in zip(p0, p1, p2, p3)
+                )
+            )
     out.append(points[-1])
     s = [0.0]
     for p, q in zip(out, out[1:]):
@@ -211,9 +227,21 @@ def dura(window):
     thick, half = b["thickness"], u["thickness"] / 2.0
     edge = b["flare"] + b["bevel"]
     under = -0.25 - half
-    path, s = smooth_path([(8.0, under), (1.5, under), (-u["strip"], under + 0.1), (-u["strip"] - 0.5, 1.6),
-                           (-0.5, 0.55 * thick), (0.2, thick + 0.2), (edge + 0.2, thick + 1.25), (edge + 3.0, thick + 0.85),
-                           (edge + 7.0, thick + 0.85), (edge + u["flap_length"], thick + 0.8)], 8)
+    path, s = smooth_path(
+        [
+            (8.0, under),
+            (1.5, under),
+            (-u["strip"], under + 0.1),
+            (-u["strip"] - 0.5, 1.6),
+            (-0.5, 0.55 * thick),
+            (0.2, thick + 0.2),
+            (edge + 0.2, thick + 1.25),
+            (edge + 3.0, thick + 0.85),
+            (edge + 7.0, thick + 0.85),
+            (edge + u["flap_length"], thick + 0.8),
+        ],
+        8,
+    )
     short = 8.0 + u["strip"] + 0.2
     rows = 22
 
@@ -221,7 +249,11 @@ def dura(window):
         rim = window.rim(theta)
         turn = (theta - math.radians(u["flap_angle_deg"]) + math.pi) % (2.0 * math.pi) - math.pi
         flap = 1.0 - smoothstep(0.50, 1.0, abs(turn) / math.radians(u["flap_half_width_deg"]))
-        length = short + (s[-1] - short) * flap * (0.94 + 0.06 * ring_noise(41, theta, 16)) + 0.35 * ring_noise(42, theta, 22)
+        length = (
+            short
+            + (s[-1] - short) * flap * (0.94 + 0.06 * ring_noise(41, theta, 16))
+            + 0.35 * ring_noise(42, theta, 22)
+        )
         length = min(length, s[-1])
         upper, lower = [], []
         for k in range(rows + 1):
@@ -229,7 +261,7 @@ def dura(window):
             (d, h), (td, th) = along(path, s, at)
             # Folds run from the rim to the flap's free edge and grow towards it.
             fold = 0.5 * (1.0 + math.sin(26.0 * theta + 1.5 * ring_noise(43, theta, 5)))
-            h += flap * 0.9 * smoothstep(16.0, 26.0, at) * fold ** 2
+            h += flap * 0.9 * smoothstep(16.0, 26.0, at) * fold**2
             free = math.sqrt(clamp01((length - at) / (2.0 * half))) if k == rows else 1.0
             # Branches of the meningeal artery over the sheet.
             vein = min(abs(turn - 0.22 - 0.012 * at - 0.05 * math.sin(0.5 * at)), abs(turn + 0.35 + 0.016 * at)) * rim
@@ -241,6 +273,7 @@ def dura(window):
             upper.append((rim + d - w * th, h + w * td, colour))
             lower.append((rim + d + w * th, h - w * td, colour))
         return upper + lower[::-1]
+
     return ring_mesh(window, 200, loop)
 
 
@@ -252,10 +285,23 @@ def skin_edge(window, theta):
 def skin(window):
     k, base = window.par["skin"], window.par["bone"]["thickness"] + 0.25
     thick = k["thickness"]
-    profile = [(0.6, 0.0, GALEA), (0.0, 0.5, GALEA), (-0.3, 1.2, FAT), (-0.4, 2.2, FAT), (-0.3, 3.2, FAT),
-               (0.0, thick - 1.3, (0.78, 0.42, 0.33)), (0.5, thick - 0.5, SKIN), (1.3, thick - 0.1, SKIN), (2.4, thick + 0.1, SKIN),
-               (4.5, thick, SKIN), (8.0, thick, SKIN), (14.0, thick, SKIN), (k["width"], thick - 0.5, SKIN),
-               (k["width"], 0.0, GALEA), (9.0, 0.0, GALEA)]
+    profile = [
+        (0.6, 0.0, GALEA),
+        (0.0, 0.5, GALEA),
+        (-0.3, 1.2, FAT),
+        (-0.4, 2.2, FAT),
+        (-0.3, 3.2, FAT),
+        (0.0, thick - 1.3, (0.78, 0.42, 0.33)),
+        (0.5, thick - 0.5, SKIN),
+        (1.3, thick - 0.1, SKIN),
+        (2.4, thick + 0.1, SKIN),
+        (4.5, thick, SKIN),
+        (8.0, thick, SKIN),
+        (14.0, thick, SKIN),
+        (k["width"], thick - 0.5, SKIN),
+        (k["width"], 0.0, GALEA),
+        (9.0, 0.0, GALEA),
+    ]
 
     def loop(theta):
         r0, out = skin_edge(window, theta), []
@@ -264,6 +310,7 @@ def skin(window):
             tone = 0.07 * fractal(54, 0.8 * theta * r0, d + h)
             out.append((r0 + d - 0.35 * lump, base + h, tuple(clamp01(c + tone) for c in colour)))
         return out
+
     return ring_mesh(window, 180, loop)
 
 
@@ -274,7 +321,28 @@ def drape(window):
 
     def loop(theta):
         r0 = skin_edge(window, theta) + d["overlap"] + 0.5 * ring_noise(61, theta, 12)
-        steps = [0.0, 0.25, 0.7, 1.4, 2.2, 3.0, 3.4, 4.5, 7.0, 10.0, 13.5, 17.0, 21.0, 25.0, 30.0, 35.0, 41.0, 48.0, 56.0, 65.0]
+        steps = [
+            0.0,
+            0.25,
+            0.7,
+            1.4,
+            2.2,
+            3.0,
+            3.4,
+            4.5,
+            7.0,
+            10.0,
+            13.5,
+            17.0,
+            21.0,
+            25.0,
+            30.0,
+            35.0,
+            41.0,
+            48.0,
+            56.0,
+            65.0,
+        ]
         last = max(d["outer_radius"] - r0, 70.0)
         steps = steps + [65.0 + (last - 65.0) * k / 6.0 for k in range(1, 7)]
         upper, lower = [], []
@@ -293,6 +361,7 @@ def drape(window):
             if i in (0, 8, 16, len(steps) - 1):
                 lower.append((r, h, colour))
         return upper + lower[::-1]
+
     return ring_mesh(window, 180, loop)
 
 
@@ -307,10 +376,21 @@ def main(argv=None):
     for name, build in (("bone", bone), ("drape", drape), ("dura", dura), ("skin", skin)):
         mesh = build(window)
         mesh.check_closed(name)
-        text = obj_text(mesh, name, [f"SPDX-License-Identifier: {LICENCE}", f'Unit: mm, frame: {par["frame"]}. {SOURCE}.'], 50.0)
+        text = obj_text(
+            mesh, name, [f"SPDX-License-Identifier: {LICENCE}", f'Unit: mm, frame: {par["frame"]}. {SOURCE}.'], 50.0
+        )
         write(os.path.join(args.out, name + ".obj"), text)
-        manifest.append(manifest_entry(name + ".obj", text, len(mesh.faces), par["frame"], SOURCE,
-                                       "python3 tools/instruments/bone_window.py", "mm"))
+        manifest.append(
+            manifest_entry(
+                name + ".obj",
+                text,
+                len(mesh.faces),
+                par["frame"],
+                SOURCE,
+                "python3 tools/instruments/bone_window.py",
+                "mm",
+            )
+        )
         print(f"{name}: {len(mesh.faces)} triangles")
     write(os.path.join(args.out, "manifest.json"), json.dumps(manifest, indent=2) + "\n")
     return 0

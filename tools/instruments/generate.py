@@ -94,6 +94,7 @@ def contact_pieces(row, spines):
 
             def flip(p):
                 return tuple(-x if i == axis else x for i, x in enumerate(p))
+
             data = item[1].mirrored(axis) if item[0] == "hull" else (flip(item[1][0]), flip(item[1][1]), item[1][2])
             out.append((piece["name"] + "_mirrored", item[0], data))
     return out
@@ -123,16 +124,28 @@ def vector_text(v, digits=7):
 
 def urdf_text(row, materials, mass, centre, tensor, visuals, pieces):
     t = tensor
-    out = ['<?xml version="1.0"?>', f"<!-- SPDX-License-Identifier: {LICENCE} -->", f'<!-- {row["title"]}; {SOURCE}. -->',
-           f'<robot name="{row["name"]}">', '  <link name="tool">', "    <inertial>",
-           f'      <origin xyz="{vector_text(centre)}" rpy="0 0 0"/>', f'      <mass value="{number(mass, 7)}"/>',
-           f'      <inertia ixx="{t[0][0]:.6e}" ixy="{t[0][1]:.6e}" ixz="{t[0][2]:.6e}" iyy="{t[1][1]:.6e}" '
-           f'iyz="{t[1][2]:.6e}" izz="{t[2][2]:.6e}"/>', "    </inertial>"]
+    out = [
+        '<?xml version="1.0"?>',
+        f"<!-- SPDX-License-Identifier: {LICENCE} -->",
+        f'<!-- {row["title"]}; {SOURCE}. -->',
+        f'<robot name="{row["name"]}">',
+        '  <link name="tool">',
+        "    <inertial>",
+        f'      <origin xyz="{vector_text(centre)}" rpy="0 0 0"/>',
+        f'      <mass value="{number(mass, 7)}"/>',
+        f'      <inertia ixx="{t[0][0]:.6e}" ixy="{t[0][1]:.6e}" ixz="{t[0][2]:.6e}" iyy="{t[1][1]:.6e}" '
+        f'iyz="{t[1][2]:.6e}" izz="{t[2][2]:.6e}"/>',
+        "    </inertial>",
+    ]
     for material, file in visuals:
         rgba = " ".join(number(x) for x in materials[material]["rgba"])
-        out += [f'    <visual name="{material}">', '      <origin xyz="0 0 0" rpy="0 0 0"/>',
-                f'      <geometry><mesh filename="{file}" scale="0.001 0.001 0.001"/></geometry>',
-                f'      <material name="{material}"><color rgba="{rgba}"/></material>', "    </visual>"]
+        out += [
+            f'    <visual name="{material}">',
+            '      <origin xyz="0 0 0" rpy="0 0 0"/>',
+            f'      <geometry><mesh filename="{file}" scale="0.001 0.001 0.001"/></geometry>',
+            f'      <material name="{material}"><color rgba="{rgba}"/></material>',
+            "    </visual>",
+        ]
     for name, kind, data in pieces:
         out.append(f'    <collision name="{name}">')
         if kind == "capsule":
@@ -140,11 +153,15 @@ def urdf_text(row, materials, mass, centre, tensor, visuals, pieces):
             d = unit(sub(q, p))
             pitch, yaw = math.acos(max(-1.0, min(1.0, d[2]))), math.atan2(d[1], d[0])
             length = norm(sub(q, p)) + 2.0 * r
-            out += [f'      <origin xyz="{vector_text(mul(lerp(p, q, 0.5), 1e-3))}" rpy="{vector_text((0.0, pitch, yaw))}"/>',
-                    f'      <geometry><cylinder radius="{number(r * 1e-3, 7)}" length="{number(length * 1e-3, 7)}"/></geometry>']
+            out += [
+                f'      <origin xyz="{vector_text(mul(lerp(p, q, 0.5), 1e-3))}" rpy="{vector_text((0.0, pitch, yaw))}"/>',
+                f'      <geometry><cylinder radius="{number(r * 1e-3, 7)}" length="{number(length * 1e-3, 7)}"/></geometry>',
+            ]
         else:
-            out += ['      <origin xyz="0 0 0" rpy="0 0 0"/>',
-                    f'      <geometry><mesh filename="{row["name"]}_{name}.obj" scale="0.001 0.001 0.001"/></geometry>']
+            out += [
+                '      <origin xyz="0 0 0" rpy="0 0 0"/>',
+                f'      <geometry><mesh filename="{row["name"]}_{name}.obj" scale="0.001 0.001 0.001"/></geometry>',
+            ]
         out.append("    </collision>")
     return "\n".join(out + ["  </link>", "</robot>"]) + "\n"
 
@@ -156,10 +173,22 @@ def rounded(p):
 def tool_json(row, spines, mass):
     """Facts the simulator needs that URDF cannot say: lengths in mm, in the tool frame."""
     main = spines["main"]
-    last = max(x[0] for part in row["parts"] if part["spine"] == "main" and "stations" in part and part["shape"] == "bar"
-               for x in part["stations"])
-    out = {"name": row["name"], "title": row["title"], "unit": "mm", "frame": FRAME, "tip": row["tip"],
-           "length_mm": round(last, 3), "mass_kg": round(mass, 6), "grip": rounded(main.frame(row["grip_s"])[0])}
+    last = max(
+        x[0]
+        for part in row["parts"]
+        if part["spine"] == "main" and "stations" in part and part["shape"] == "bar"
+        for x in part["stations"]
+    )
+    out = {
+        "name": row["name"],
+        "title": row["title"],
+        "unit": "mm",
+        "frame": FRAME,
+        "tip": row["tip"],
+        "length_mm": round(last, 3),
+        "mass_kg": round(mass, 6),
+        "grip": rounded(main.frame(row["grip_s"])[0]),
+    }
     if "blade" in row:
         spec = row["blade"]
         spine, part = spines[spec.get("spine", "main")], row["parts"][spec["part"]]
@@ -172,9 +201,13 @@ def tool_json(row, spines, mass):
             side.append((p, b, half_extents(spine, part, s)[1]))
         edge = [combine(p, (w, b)) for p, b, w in side[::-1]] + [spine.frame(spec["from"])[0]]
         edge += [combine(p, (-w, b)) for p, b, w in side]
-        out["blade"] = {"edge": [rounded(p) for p in edge], "width_mm": spec["width_mm"],
-                        "thickness_mm": spec["thickness_mm"], "length_mm": spec["to"] - spec["from"],
-                        "cuts": spec.get("cuts", True)}
+        out["blade"] = {
+            "edge": [rounded(p) for p in edge],
+            "width_mm": spec["width_mm"],
+            "thickness_mm": spec["thickness_mm"],
+            "length_mm": spec["to"] - spec["from"],
+            "cuts": spec.get("cuts", True),
+        }
     return json.dumps(out, indent=2) + "\n"
 
 
@@ -204,8 +237,14 @@ def build(row, materials):
 
 
 def manifest_entry(file, text, triangles, frame, source, rebuild, unit):
-    entry = {"file": file, "unit": unit, "frame": frame, "source": source, "licence": LICENCE,
-             "sha256": hashlib.sha256(text.encode()).hexdigest()}
+    entry = {
+        "file": file,
+        "unit": unit,
+        "frame": frame,
+        "source": source,
+        "licence": LICENCE,
+        "sha256": hashlib.sha256(text.encode()).hexdigest(),
+    }
     if triangles is not None:
         entry["triangles"] = triangles
     entry["rebuild"] = rebuild
@@ -231,8 +270,17 @@ def main(argv=None):
         for name in sorted(files):
             text, triangles = files[name]
             write(os.path.join(args.out, row["name"], name), text)
-            manifest.append(manifest_entry(f'{row["name"]}/{name}', text, triangles, FRAME, SOURCE,
-                                           "python3 tools/instruments/generate.py", "m" if name.endswith(".urdf") else "mm"))
+            manifest.append(
+                manifest_entry(
+                    f'{row["name"]}/{name}',
+                    text,
+                    triangles,
+                    FRAME,
+                    SOURCE,
+                    "python3 tools/instruments/generate.py",
+                    "m" if name.endswith(".urdf") else "mm",
+                )
+            )
         total = sum(t for _, t in files.values() if t)
         mass = json.loads(files["tool.json"][0])["mass_kg"]
         print(f'{row["name"]}: {len(files)} files, {total} triangles, {1000.0 * mass:.1f} g')

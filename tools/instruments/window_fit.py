@@ -27,9 +27,24 @@ FIT_RADIUS = 29.0
 
 def ply_vertices(path):
     """Vertex positions of a PLY file (ascii or binary little endian, float or double coordinates)."""
-    sizes = {"char": "b", "int8": "b", "uchar": "B", "uint8": "B", "short": "h", "int16": "h", "ushort": "H", "uint16": "H",
-             "int": "i", "int32": "i", "uint": "I", "uint32": "I", "float": "f", "float32": "f", "double": "d",
-             "float64": "d"}
+    sizes = {
+        "char": "b",
+        "int8": "b",
+        "uchar": "B",
+        "uint8": "B",
+        "short": "h",
+        "int16": "h",
+        "ushort": "H",
+        "uint16": "H",
+        "int": "i",
+        "int32": "i",
+        "uint": "I",
+        "uint32": "I",
+        "float": "f",
+        "float32": "f",
+        "double": "d",
+        "float64": "d",
+    }
     with open(path, "rb") as f:
         data = f.read()
     end = data.index(b"end_header") + len(b"end_header")
@@ -51,7 +66,7 @@ def ply_vertices(path):
     at = [names.index(k) for k in "xyz"]
     if binary:
         size = struct.calcsize(code)
-        rows = struct.iter_unpack(code, data[end:end + size * count])
+        rows = struct.iter_unpack(code, data[end : end + size * count])
     else:
         rows = ([float(x) for x in line.split()] for line in data[end:].decode("ascii").split("\n")[:count])
     return [tuple(float(r[k]) for k in at) for r in rows]
@@ -131,7 +146,9 @@ def main(argv=None):
         lines.append(line)
     with open(args.parameters, "w", encoding="utf-8", newline="\n") as f:
         f.write("\n".join(lines))
-    print(f"inner table {lift:.2f} mm above the fitted envelope, least clearance under the bone {nearest + lift:.2f} mm")
+    print(
+        f"inner table {lift:.2f} mm above the fitted envelope, least clearance under the bone {nearest + lift:.2f} mm"
+    )
     return 0
 
 

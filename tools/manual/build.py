@@ -17,15 +17,34 @@ LINK = re.compile(r"(!?\[[^\]]*\]\()([^)\s#]+)(#[^)\s]*)?(\))")
 ROW = re.compile(r"^\| (\[[^|]+) \| ([^|]+) \|", re.M)
 PAGE = re.compile(r"\[([^\]]+)\]\(([\w-]+\.md)\)")
 FENCE = re.compile(r"^\s*```")
-SECTIONS = ("Trainee", "Instructor", "Author", "Developer", "Haptics and safety", "Validation", "Performance", "Machines and packages")
+SECTIONS = (
+    "Trainee",
+    "Instructor",
+    "Author",
+    "Developer",
+    "Haptics and safety",
+    "Validation",
+    "Performance",
+    "Machines and packages",
+)
 
 
 def section(page, whom):
     """The section of a page: by its name where it is about one thing, else by the first whom it is for."""
-    for part, names in (("Haptics and safety", ("haptic", "feel", "devices")), ("Validation", ("validation",)), ("Performance", ("performance", "solvers"))):
+    for part, names in (
+        ("Haptics and safety", ("haptic", "feel", "devices")),
+        ("Validation", ("validation",)),
+        ("Performance", ("performance", "solvers")),
+    ):
         if page.startswith(names):
             return part
-    for word, part in (("trainee", "Trainee"), ("instructor", "Instructor"), ("author", "Author"), ("developer", "Developer"), ("reviewer", "Validation")):
+    for word, part in (
+        ("trainee", "Trainee"),
+        ("instructor", "Instructor"),
+        ("author", "Author"),
+        ("developer", "Developer"),
+        ("reviewer", "Validation"),
+    ):
         if whom.strip().startswith(word):
             return part
     return "Machines and packages"
@@ -62,7 +81,9 @@ class Site:
             if re.match(r"[a-z]+:", m[2]) or not target.is_relative_to(self.source):
                 return m[0]
             if not target.is_file():
-                return m[0][1:m[0].index("]")] if target.is_dir() else m[0]  # a folder is named, not shown; MkDocs tells of the rest
+                return (
+                    m[0][1 : m[0].index("]")] if target.is_dir() else m[0]
+                )  # a folder is named, not shown; MkDocs tells of the rest
             return m[1] + os.path.relpath(self.place(target), to.parent) + (m[3] or "") + m[4]
 
         lines, code, table = [], False, False
@@ -89,7 +110,9 @@ class Site:
                 title = (self.source / "docs" / page).read_text(encoding="utf-8").split("\n")[0].lstrip("# ")
                 groups["Developer"].append((title, page))
                 listed.add(page)
-        missing = sorted(p.name for p in (self.source / "docs").glob("*.md") if p.name != "README.md" and p.name not in listed)
+        missing = sorted(
+            p.name for p in (self.source / "docs").glob("*.md") if p.name != "README.md" and p.name not in listed
+        )
         if missing:
             sys.exit("error: docs/README.md lists no %s: add a row to its table" % ", ".join(missing))
         out = ["nav:", "  - Contents: index.md"]
@@ -100,14 +123,21 @@ class Site:
             out += ["      - \"%s\": %s" % entry for entry in groups[name]]
         out.append("  - Elements of scene files:")
         out.append("      - All elements: reference/index.md")
-        out += ["      - %s: reference/%s" % (p.stem, p.name) for p in sorted(self.reference.glob("*.md")) if p.name != "README.md"]
+        out += [
+            "      - %s: reference/%s" % (p.stem, p.name)
+            for p in sorted(self.reference.glob("*.md"))
+            if p.name != "README.md"
+        ]
         return "\n".join(out) + "\n"
 
 
 def search(source, out):
     """The search of MkDocs needs a web server; ours works from a folder, with the same index as a script."""
     index = (out / "search/search_index.json").read_text(encoding="utf-8")
-    (out / "search/index.js").write_text("window.manual_index = " + index.replace("\u2028", "\\u2028").replace("\u2029", "\\u2029") + ";\n", encoding="utf-8")
+    (out / "search/index.js").write_text(
+        "window.manual_index = " + index.replace("\u2028", "\\u2028").replace("\u2029", "\\u2029") + ";\n",
+        encoding="utf-8",
+    )
     shutil.copyfile(source / "tools/manual/search.js", out / "search/main.js")
     (out / "search/worker.js").unlink()
     (out / "search/search_index.json").unlink()
@@ -126,12 +156,25 @@ def main():
             site.place(page)
         for page in reference.glob("*.md"):
             text = page.read_text(encoding="utf-8")
-            site.write(pathlib.PurePosixPath("reference") / ("index.md" if page.name == "README.md" else page.name), text)
+            site.write(
+                pathlib.PurePosixPath("reference") / ("index.md" if page.name == "README.md" else page.name), text
+            )
         config = (source / "tools/manual/mkdocs.yml").read_text(encoding="utf-8")
-        (root / "mkdocs.yml").write_text(config + "docs_dir: %s\nsite_dir: %s\n" % (root / "pages", out) + site.nav(), encoding="utf-8")
-        done = subprocess.run(["mkdocs", "build", "--strict", "--clean", "-f", root / "mkdocs.yml"], capture_output=True, text=True)
+        (root / "mkdocs.yml").write_text(
+            config + "docs_dir: %s\nsite_dir: %s\n" % (root / "pages", out) + site.nav(), encoding="utf-8"
+        )
+        done = subprocess.run(
+            ["mkdocs", "build", "--strict", "--clean", "-f", root / "mkdocs.yml"], capture_output=True, text=True
+        )
         if done.returncode != 0:
-            sys.exit("error: the manual cannot be built:\n" + "\n".join(l for l in (done.stdout + done.stderr).replace(str(root / "pages") + "/", "").split("\n") if not l.startswith("INFO")))
+            sys.exit(
+                "error: the manual cannot be built:\n"
+                + "\n".join(
+                    l
+                    for l in (done.stdout + done.stderr).replace(str(root / "pages") + "/", "").split("\n")
+                    if not l.startswith("INFO")
+                )
+            )
     search(source, out)
     print("%s: %d pages; open %s" % (out, len(list(out.rglob("*.html"))), out / "index.html"))
     return 0

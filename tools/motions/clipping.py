@@ -18,7 +18,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 CASE = "anterior_superior"
-OUT_OF_FIELD = 32.0   # mm along the applier's shaft
+OUT_OF_FIELD = 32.0  # mm along the applier's shaft
 VIEW = (0.93, 0.25, 0.27)  # towards the surgeon
 
 
@@ -48,8 +48,12 @@ def quaternion(x, y, z):
     """w x y z of the rotation whose columns are x, y, z."""
     m = [[x[i], y[i], z[i]] for i in range(3)]
     t = m[0][0] + m[1][1] + m[2][2]
-    q = [math.sqrt(max(0.0, 1 + t)), math.sqrt(max(0.0, 1 + 2 * m[0][0] - t)),
-         math.sqrt(max(0.0, 1 + 2 * m[1][1] - t)), math.sqrt(max(0.0, 1 + 2 * m[2][2] - t))]
+    q = [
+        math.sqrt(max(0.0, 1 + t)),
+        math.sqrt(max(0.0, 1 + 2 * m[0][0] - t)),
+        math.sqrt(max(0.0, 1 + 2 * m[1][1] - t)),
+        math.sqrt(max(0.0, 1 + 2 * m[2][2] - t)),
+    ]
     q[1] = math.copysign(q[1], m[2][1] - m[1][2])
     q[2] = math.copysign(q[2], m[0][2] - m[2][0])
     q[3] = math.copysign(q[3], m[1][0] - m[0][1])
@@ -87,8 +91,16 @@ class Hand:
 
     def key(self, seconds, position, q, button1=0, button2=0):
         self.t = round(self.t + seconds, 4)
-        self.rows.append((self.t, f"{self.t:g},{self.side}," + ",".join(f"{v / 1000:.6f}" for v in position) + "," +
-                          ",".join(f"{v:.6f}" for v in q) + f",{button1},{button2}"))
+        self.rows.append(
+            (
+                self.t,
+                f"{self.t:g},{self.side},"
+                + ",".join(f"{v / 1000:.6f}" for v in position)
+                + ","
+                + ",".join(f"{v:.6f}" for v in q)
+                + f",{button1},{button2}",
+            )
+        )
 
 
 class Script:
@@ -100,7 +112,9 @@ class Script:
 
     def write(self, path):
         rows = sorted(self.left.rows + self.right.rows + self.commands, key=lambda r: r[0])
-        path.write_text("time_s,hand,px_m,py_m,pz_m,qw,qx,qy,qz,button1,button2\n" + "\n".join(r[1] for r in rows) + "\n")
+        path.write_text(
+            "time_s,hand,px_m,py_m,pz_m,qw,qx,qy,qz,button1,button2\n" + "\n".join(r[1] for r in rows) + "\n"
+        )
 
 
 def place_clip(hand, pose, approach=2.5, close=1.6, wait=0.6, open_at=OUT_OF_FIELD):

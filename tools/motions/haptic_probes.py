@@ -26,13 +26,61 @@ OUTPUT = course.ROOT / "scenes" / "haptics"
 KEY_INTERVAL = 0.005  # s
 
 # seconds, along, depth, lift (mm, see sylvian_fissure.py)
-TAP = [(0.0, -8, -5, 10), (0.3, -8, 0.6, 10), (0.1, -8, 0.6, 10), (0.2, -8, -3, 10), (0.25, -8, 1.0, 10), (0.1, -8, 1.0, 10), (0.2, -8, -3, 10), (0.2, -8, 0.6, 10), (0.2, -8, -5, 10)]
-DRAG = [(0.0, -8, -5, 8), (0.35, -8, 0.5, 8), (0.1, -8, 0.5, 8), (0.3, -8, 0.5, 10), (0.1, -8, 0.5, 10), (0.25, -8, 0.5, 8), (0.25, -7, 0.5, 9.5), (0.25, -8, 0.5, 8), (0.3, -8, -5, 8)]
-SQUEEZE_LEFT = [(0.0, -8, -5, 10), (0.4, -8, 0.5, 10), (0.35, -6.5, 1.2, 10), (0.3, -6.5, 1.2, 10), (0.3, -8, 0.5, 10), (0.3, -8, -5, 10)]
-SQUEEZE_RIGHT = [(0.0, 9, -5, 10), (0.5, 9, 0.5, 10), (0.3, 7.5, 1.2, 10), (0.25, 7.5, 1.2, 10), (0.3, 9, 0.5, 10), (0.3, 9, -5, 10)]
+TAP = [
+    (0.0, -8, -5, 10),
+    (0.3, -8, 0.6, 10),
+    (0.1, -8, 0.6, 10),
+    (0.2, -8, -3, 10),
+    (0.25, -8, 1.0, 10),
+    (0.1, -8, 1.0, 10),
+    (0.2, -8, -3, 10),
+    (0.2, -8, 0.6, 10),
+    (0.2, -8, -5, 10),
+]
+DRAG = [
+    (0.0, -8, -5, 8),
+    (0.35, -8, 0.5, 8),
+    (0.1, -8, 0.5, 8),
+    (0.3, -8, 0.5, 10),
+    (0.1, -8, 0.5, 10),
+    (0.25, -8, 0.5, 8),
+    (0.25, -7, 0.5, 9.5),
+    (0.25, -8, 0.5, 8),
+    (0.3, -8, -5, 8),
+]
+SQUEEZE_LEFT = [
+    (0.0, -8, -5, 10),
+    (0.4, -8, 0.5, 10),
+    (0.35, -6.5, 1.2, 10),
+    (0.3, -6.5, 1.2, 10),
+    (0.3, -8, 0.5, 10),
+    (0.3, -8, -5, 10),
+]
+SQUEEZE_RIGHT = [
+    (0.0, 9, -5, 10),
+    (0.5, 9, 0.5, 10),
+    (0.3, 7.5, 1.2, 10),
+    (0.25, 7.5, 1.2, 10),
+    (0.3, 9, 0.5, 10),
+    (0.3, 9, -5, 10),
+]
 # The left hand takes hold of the temporal lobe (button 1) and draws it down, the right one divides what is stretched.
-STRAND_LEFT = [(0.0, 4, -4, -6, 0), (0.5, 4, 2.8, -6, 0), (0.2, 4, 3.0, -6, 1), (0.6, 4, 2.4, -8, 1), (0.8, 4, 2.4, -8, 1), (0.4, 4, 2.6, -7, 1)]
-STRAND_RIGHT = [(0.0, 13, -5, 0.5, 0), (0.5, 13, -5, 0.5, 0), (0.5, 11, 1.5, -0.7, 0), (0.8, -3, 1.5, -0.9, 0), (0.1, -3, 1.5, -0.9, 0), (0.3, -3, -6, -0.7, 0)]
+STRAND_LEFT = [
+    (0.0, 4, -4, -6, 0),
+    (0.5, 4, 2.8, -6, 0),
+    (0.2, 4, 3.0, -6, 1),
+    (0.6, 4, 2.4, -8, 1),
+    (0.8, 4, 2.4, -8, 1),
+    (0.4, 4, 2.6, -7, 1),
+]
+STRAND_RIGHT = [
+    (0.0, 13, -5, 0.5, 0),
+    (0.5, 13, -5, 0.5, 0),
+    (0.5, 11, 1.5, -0.7, 0),
+    (0.8, -3, 1.5, -0.9, 0),
+    (0.1, -3, 1.5, -0.9, 0),
+    (0.3, -3, -6, -0.7, 0),
+]
 
 
 def ease(s):
@@ -89,14 +137,24 @@ def lobes(folder):
 
     for name, rows in (("tap", TAP), ("drag", DRAG)):
         write(folder / (name + ".csv"), {"right": (right_q, go(rows), never)})
-    write(folder / "strand.csv", {"left": (left_q, go([r[:4] for r in STRAND_LEFT]), held(STRAND_LEFT)),
-                                  "right": (right_q, go([r[:4] for r in STRAND_RIGHT]), never)})
-    write(folder / "squeeze.csv", {"left": (left_q, go(SQUEEZE_LEFT), never), "right": (right_q, go(SQUEEZE_RIGHT), never)})
+    write(
+        folder / "strand.csv",
+        {
+            "left": (left_q, go([r[:4] for r in STRAND_LEFT]), held(STRAND_LEFT)),
+            "right": (right_q, go([r[:4] for r in STRAND_RIGHT]), never),
+        },
+    )
+    write(
+        folder / "squeeze.csv",
+        {"left": (left_q, go(SQUEEZE_LEFT), never), "right": (right_q, go(SQUEEZE_RIGHT), never)},
+    )
 
 
 def artery(folder):
     """Along a stretch of the inferior branch, on the side that looks at the surgeon."""
-    vessel = json.loads((course.ROOT / "meshes" / "arteries" / "anterior_superior" / "vessel.json").read_text(encoding="utf-8"))
+    vessel = json.loads(
+        (course.ROOT / "meshes" / "arteries" / "anterior_superior" / "vessel.json").read_text(encoding="utf-8")
+    )
     line = next(c for c in vessel["centrelines"] if c["name"] == "inferior")
     start, end = (add(line["points"][k], unit(TOWARDS), line["radius"][k]) for k in STRETCH)
     shaft = unit(SHAFT)
@@ -106,11 +164,23 @@ def artery(folder):
         s, off = at
         return add(add(start, add(end, start, -1.0), s), unit(TOWARDS), off)
 
-    rows = [(0.0, 0, 8), (0.2, 0, 8), (0.8, 0, -PRESS), (0.3, 0, -PRESS), (0.8, 1, -PRESS), (0.7, 1, -PRESS), (0.3, 1, 8)]
-    write(folder / "artery.csv", {"right": (orientation(shaft, flat), moves(rows, place), never)}, [(0.0, "exchange,right stylus")])
+    rows = [
+        (0.0, 0, 8),
+        (0.2, 0, 8),
+        (0.8, 0, -PRESS),
+        (0.3, 0, -PRESS),
+        (0.8, 1, -PRESS),
+        (0.7, 1, -PRESS),
+        (0.3, 1, 8),
+    ]
+    write(
+        folder / "artery.csv",
+        {"right": (orientation(shaft, flat), moves(rows, place), never)},
+        [(0.0, "exchange,right stylus")],
+    )
 
 
-STRETCH = (8, 15)         # points of the branch's centreline
+STRETCH = (8, 15)  # points of the branch's centreline
 TOWARDS = [0.93, 0.22, 0.28]  # the surgeon
 SHAFT = [0.80, 0.55, 0.24]
 PRESS = 0.3  # mm into the middle of the wall as it lies
@@ -124,7 +194,11 @@ def clip(folder):
     q = [float(x) for x in rows[0][5:9]]
     half = [(a + b) / 2 for a, b in zip(far, near)]
     keys = [(0.0, half), (0.1, half), (0.4, half), (1.65, near), (1.85, near), (2.6, near)]
-    write(folder / "clip.csv", {"right": (q, keys, lambda t: (int(0.1 <= t < 1.85), 0))}, [(0.02, "ask,applier load angled")])
+    write(
+        folder / "clip.csv",
+        {"right": (q, keys, lambda t: (int(0.1 <= t < 1.85), 0))},
+        [(0.02, "ask,applier load angled")],
+    )
 
 
 def main():

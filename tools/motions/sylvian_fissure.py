@@ -20,8 +20,8 @@ FISSURE = ROOT / "meshes" / "lobes" / "fissure.json"
 OUTPUT = ROOT / "scenes" / "training"
 NAME = "1_sylvian_fissure"
 
-MIDDLE_Y = 4.0          # mm: `along` is 0 where the superficial line passes this y
-KEY_INTERVAL = 0.05     # s
+MIDDLE_Y = 4.0  # mm: `along` is 0 where the superficial line passes this y
+KEY_INTERVAL = 0.05  # s
 # The lips overhang: so much (mm) above the straight way inwards lies the middle of the gap, at these depths, by `along`.
 RISE_DEPTHS = [0.0, 3.0, 5.5, 8.0, 11.0]
 GAP_RISE = [
@@ -34,7 +34,7 @@ GAP_RISE = [
 ]
 
 # Shafts lean out of the microscope's line of sight: the left hand works from behind, the right one from the front.
-LEFT_LEAN = {"front": -32.0, "up": -14.0}    # degrees from straight outwards
+LEFT_LEAN = {"front": -32.0, "up": -14.0}  # degrees from straight outwards
 RIGHT_LEAN = {"front": 20.0, "up": 4.0}
 
 # Each row: seconds, along, depth, lift, suction button, what the hand does.
@@ -158,7 +158,7 @@ class Fissure:
         # Arc length of the superficial line from the middle.
         middle = add(line[k - 1][0], add(line[k][0], line[k - 1][0], -1.0), f)
         self.marks = [(0.0, middle)]
-        for points, sign in ((line[k:], 1.0), (line[k - 1::-1], -1.0)):
+        for points, sign in ((line[k:], 1.0), (line[k - 1 :: -1], -1.0)):
             at, last = 0.0, middle
             for p, _ in points:
                 at += sign * math.dist(p, last)
@@ -229,9 +229,11 @@ def keys(fissure, rows, rotation):
 def write(path, fissure, left, right):
     left_q = orientation(fissure.direction(LEFT_LEAN), add([-0.8 * x for x in fissure.front], fissure.up, 0.6))
     right_q = orientation(fissure.direction(RIGHT_LEAN), fissure.up)
-    rows = [(t, hand, p, q, b)
-            for hand, moves, rotation in (("left", left, left_q), ("right", right, right_q))
-            for t, p, q, b in keys(fissure, moves, rotation)]
+    rows = [
+        (t, hand, p, q, b)
+        for hand, moves, rotation in (("left", left, left_q), ("right", right, right_q))
+        for t, p, q, b in keys(fissure, moves, rotation)
+    ]
     rows.sort(key=lambda r: (round(r[0], 4), r[1]))
     with open(path, "w", encoding="ascii", newline="\n") as f:
         f.write("time_s,hand,px_m,py_m,pz_m,qw,qx,qy,qz,button1,button2\n")
