@@ -18,9 +18,9 @@ class ShellBody final : public DeformableBody {
 
   Param<File> wall{this,
                    {.name = "wall",
-                    .formerly = "vessel",
                     .fallback = "",
-                    .doc = "JSON file: wall surface with its regions, caps and centrelines"}};
+                    .doc = "JSON file: wall surface with its regions, caps and centrelines",
+                    .formerly = "vessel"}};
   Param<File> mesh{this, {.name = "mesh", .fallback = "", .doc = "plain surface file instead of that"}};
   Param<LengthUnit> mesh_unit{this,
                               {.name = "mesh_unit", .fallback = "mm", .doc = "unit of length of the surface file"}};
