@@ -85,12 +85,12 @@ void RowBench::add_ways(std::vector<RowData*>& by_row) const {
   for (Body* b : simulation_.bodies()) expected.push_back(by_row.empty() ? VecX() : expected_motion(*b));
   for (RowData* r : by_row)
     for (std::size_t b = 0; b < expected.size(); ++b)
-      if (r->h[b].size() > 0) r->way += r->h[b].dot(expected[b]);
+      if (r->h[b].size() > 0) r->swept += r->h[b].dot(expected[b]);
   for (const Block& b : blocks) {
     double way2 = 0;
     for (int k = 0; k < b.rows(); ++k)
-      way2 += by_row[std::size_t(b.row + k)]->way * by_row[std::size_t(b.row + k)]->way;
-    for (int k = 0; k < b.rows(); ++k) by_row[std::size_t(b.row + k)]->way = std::sqrt(way2);
+      way2 += by_row[std::size_t(b.row + k)]->swept * by_row[std::size_t(b.row + k)]->swept;
+    for (int k = 0; k < b.rows(); ++k) by_row[std::size_t(b.row + k)]->swept = std::sqrt(way2);
   }
 }
 
