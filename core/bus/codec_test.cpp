@@ -242,9 +242,9 @@ TEST(Plausible, RenderFrame) {
   expect_refused<T>("nan node", [](T& m) { m.body[0].x_m[2][1] = NAN; });
   expect_refused<T>("body twice", [](T& m) { m.body[1].index = 0; });
   expect_refused<T>("nodes", [](T& m) { m.body[1].nodes = 4; });
-  expect_refused<T>("points", [](T& m) { m.strand_points = 3; });
-  expect_refused<T>("integrity", [](T& m) { m.strand_integrity[0] = 1.5f; });
-  expect_refused<T>("tension", [](T& m) { m.strand_tension_N[0] = NAN; });
+  expect_refused<T>("channel", [](T& m) { m.channel[0] = INFINITY; });
+  expect_refused<T>("drawable twice", [](T& m) { m.drawable[1].index = 0; });
+  expect_refused<T>("drawable", [](T& m) { m.drawable[0].data[3] = NAN; });
   expect_refused<T>("json", [](T& m) { m.hud_json = "{"; });
   for (const int s : {-1, 3, 127}) expect_refused<T>("state", [s](T& m) { m.tool[0].state = std::int8_t(s); });
   for (const float o : {4.f, -4.f, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()})
@@ -285,7 +285,7 @@ TEST(Codec, EmptyFrameIntoAUsedObject) {
   insula_lcm::render_frame_t used = sample<insula_lcm::render_frame_t>(), empty{};
   std::string why;
   ASSERT_TRUE(decode(encoded(empty), used, why)) << why;
-  EXPECT_TRUE(used.strand_integrity.empty());
+  EXPECT_TRUE(used.drawable.empty());
   EXPECT_TRUE(used.contact_x_m.empty());
 }
 

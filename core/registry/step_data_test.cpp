@@ -56,7 +56,8 @@ TEST(Channel, OfAGroupIsNamedByIt) {
 TEST(Channel, RefusesAWrongDeclaration) {
   EXPECT_NE(refusal([](Component* c) { Channel<Force> x(c, {.name = "a.b", .doc = "d"}); }).find("dots"),
             std::string::npos);
-  EXPECT_NE(refusal([](Component* c) { Channel<Force> x(c, {.name = "a"}); }).find("doc"), std::string::npos);
+  EXPECT_NE(refusal([](Component* c) { Channel<Force> x(c, {.name = "a", .doc = ""}); }).find("doc"),
+            std::string::npos);
   EXPECT_NE(refusal([](Component* c) { Channel<Force> x(c, {.name = "a", .doc = "d", .max = "3 mm"}); }).find("mm"),
             std::string::npos);
   EXPECT_NE(refusal([](Component* c) {
@@ -67,7 +68,8 @@ TEST(Channel, RefusesAWrongDeclaration) {
               Channel<Force> x(c, {.name = "a", .doc = "d", .min = "2 N", .max = "1 N"});
             }).find("minimum"),
             std::string::npos);
-  EXPECT_NE(refusal([](Component* c) { Points x(c, {.name = "a", .doc = "d"}); }).find("material"), std::string::npos);
+  EXPECT_NE(refusal([](Component* c) { Points x(c, {.name = "a", .doc = "d", .material = ""}); }).find("material"),
+            std::string::npos);
   EXPECT_NE(refusal([](Component* c) {
               Polylines x(c, {.name = "a", .doc = "d", .material = "m", .radius = "0 mm"});
             }).find("radius"),

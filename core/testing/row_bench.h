@@ -17,7 +17,7 @@ struct RowData {
   int offset = 0;        ///< row within its block
   double violation = 0;  ///< at the start of the step, m
   double rate = 0;       ///< that the component itself declared, m/s
-  double swept = 0;        ///< of the block's place in the free motion, m
+  double swept = 0;      ///< of the block's place in the free motion, m
   std::vector<VecX> h;   ///< one piece a body, blocks() * 3 long
 
   /// Whether the violation says how the law acts: friction's tangents and the rows of patches go by their motion.

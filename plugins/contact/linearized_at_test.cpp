@@ -71,7 +71,7 @@ TEST(ContactTurned, FollowsAnEdgeAsTheToolGoesOn) {
   Bench b(test_tool_urdf(radius), block(), upright, R"(friction="1e-9" linearized_at="end")");
   ASSERT_TRUE(b.tool);
   b.move_to({edge + 1.5 * radius * around(0.45 * std::numbers::pi), b.tool->home_pose().q});
-  std::vector<Contact::FramePrediction> turns;
+  std::vector<ContactFrame> frames;
   Vec3 before = Vec3::Zero();
   for (int i = -4; i < 8; ++i) {
     Pose at = device(0.45 * std::numbers::pi - std::max(0, i) * 8 * std::numbers::pi / 180);
@@ -80,12 +80,12 @@ TEST(ContactTurned, FollowsAnEdgeAsTheToolGoesOn) {
     const Contact::Pair& pair = b.contact->pairs()[0];
     const Vec3 now = pair.tool_a->link_pose(pair.link_a).p;
     if (i >= 1) {
-      turns.clear();
-      b.contact->predict_frames(0.5, turns);
-      ASSERT_EQ(turns.size(), 1u) << i;
+      frames.clear();
+      b.contact->predict_frames(0.5, frames);
+      ASSERT_EQ(frames.size(), 1u) << i;
       for (const double steps : {0.5, 1.5}) {
         const Vec3 expected = (now + steps * (now - before) - edge).normalized();
-        EXPECT_NEAR(((steps < 1 ? turns[0].to : turns[0].later) - expected).norm(), 0, 1e-9) << i;
+        EXPECT_NEAR(((steps < 1 ? frames[0].ahead : frames[0].later) - expected).norm(), 0, 1e-9) << i;
       }
     }
     before = now;

@@ -171,7 +171,7 @@ TEST(StrandSprings, ResistsWithCutForceAndPartsAfterCutLength) {
     figure.law("law", n * 0.1, severed_at >= 0 ? 0 : std::min(n * 1e-4 * 300, 0.045) * 1e3);
     if (severed_at >= 0) {
       EXPECT_LT(t.knife->hand_force().norm(), 1e-12) << "a severed strand resists, step " << n;
-      EXPECT_EQ(t.s->report().strands_left, 0);
+      EXPECT_EQ(t.strands->strands_left(), 0);
       continue;
     }
     const double force = n * 1e-4 * 300 < 0.045 ? n * 1e-4 * 300 : 0.045;
