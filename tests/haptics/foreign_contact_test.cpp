@@ -116,7 +116,7 @@ TEST_F(ForeignContact, ItsFramesArePredicted) {
   ASSERT_EQ(p.tools.size(), 1u);
   const Vec3 direction = p.tools[0].jacobian.row(contact_->row()).head<3>().transpose();
   EXPECT_LT((direction - frames[0].ahead).norm(), 1e-12);
-  const auto& turn = p.blocks[0].turn;
+  const auto& turn = p.blocks[0].frame_rotation;
   const Vec3 by{double(turn[0]), double(turn[1]), double(turn[2])};
   EXPECT_LT((from_rotation_vector(by) * frames[0].ahead - frames[0].later).norm(), 1e-6);
 }
