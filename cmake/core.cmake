@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The rooms of core/. Each folder is a target that names the rooms it may use. insula_core is all of them in one library.
+# The rooms of core/. Each folder is a target that names the rooms it may use. insula_core is all of them in one
+# library.
 #
 # A room is linked by itself against the rooms that it names, with nothing left undefined. So a use that is not
 # declared here does not link, and neither does a circle. tests/rooms/ checks the includes, which no linker sees.
@@ -52,7 +53,8 @@ function(insula_room name)  # insula_room(NAME USES room... LIBS library...)
   add_library(insula_link_${name} SHARED ${objects})
   target_link_libraries(insula_link_${name} PRIVATE ${used} ${R_LIBS} Eigen3::Eigen)
   target_link_options(insula_link_${name} PRIVATE LINKER:-z,defs)
-  set_target_properties(insula_link_${name} PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/rooms LINKER_LANGUAGE CXX)
+  set_target_properties(insula_link_${name} PROPERTIES
+    LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/rooms LINKER_LANGUAGE CXX)
   set(insula_core_objects ${insula_core_objects} ${objects} PARENT_SCOPE)
   set(insula_core_sources ${insula_core_sources} ${sources} PARENT_SCOPE)
   string(REPLACE ";" "," uses "${R_USES}")
@@ -67,7 +69,8 @@ insula_room(registry USES base params LIBS spdlog::spdlog ${CMAKE_DL_LIBS})
 insula_room(scene USES base params registry xml LIBS fmt::fmt)
 insula_room(linalg USES base LIBS ${CHOLMOD_LIBRARY} Threads::Threads)
 insula_room(constraint USES base linalg LIBS fmt::fmt)
-insula_room(model USES base xml LIBS EXPAT::EXPAT PkgConfig::ASSIMP PkgConfig::URDFDOM nlohmann_json::nlohmann_json ZLIB::ZLIB fmt::fmt)
+insula_room(model USES base xml
+  LIBS EXPAT::EXPAT PkgConfig::ASSIMP PkgConfig::URDFDOM nlohmann_json::nlohmann_json ZLIB::ZLIB fmt::fmt)
 insula_room(collision USES base linalg model)
 insula_room(mechanics USES base params registry linalg constraint model collision LIBS fmt::fmt)
 insula_room(sim USES base params registry scene linalg constraint collision mechanics LIBS fmt::fmt spdlog::spdlog)

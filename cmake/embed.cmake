@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# insula_embed(OUTPUT NAMESPACE FILE name [FILE name ...]): a source with a table of files' texts, so that a program holds them
-# wherever it is installed. FILE is read when CMake runs, and again whenever it changes.
+# insula_embed(OUTPUT NAMESPACE FILE name [FILE name ...]): a source with a table of files' texts, so that a program
+# holds them wherever it is installed. FILE is read when CMake runs, and again whenever it changes.
 function(insula_embed output function)
-  set(text "// generated: texts of files\n#include \"engine/authoring/embedded.h\"\nnamespace insula {\nstd::span<const EmbeddedFile> ${function}() {\n  static constexpr EmbeddedFile files[] = {\n")
+  string(CONCAT text
+    "// generated: texts of files\n#include \"engine/authoring/embedded.h\"\nnamespace insula {\n"
+    "std::span<const EmbeddedFile> ${function}() {\n  static constexpr EmbeddedFile files[] = {\n")
   set(rest ${ARGN})
   while(rest)
     list(POP_FRONT rest file name)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# cmake -DFOLDER=core -DOUTPUT=insula_headers.h -P headers_hash.cmake: a hash of all headers that a plugin may include. A
-# shared plugin carries the hash it was built with, so nobody has to remember to raise a number when a header changes.
+# cmake -DFOLDER=core -DOUTPUT=insula_headers.h -P headers_hash.cmake: a hash of all headers that a plugin may include.
+# A shared plugin carries the hash it was built with, so nobody has to remember to raise a number when a header changes.
 file(GLOB_RECURSE headers RELATIVE ${FOLDER} ${FOLDER}/*.h)
 list(FILTER headers EXCLUDE REGEX "^testing/|^bus/|_for_test\\.h$")
 list(SORT headers)
@@ -11,4 +11,5 @@ foreach(h ${headers})
 endforeach()
 string(SHA256 hash "${all}")
 string(SUBSTRING ${hash} 0 12 hash)
-file(CONFIGURE OUTPUT ${OUTPUT} CONTENT "// generated: hash of the core's headers\n#pragma once\n#define INSULA_HEADERS \"${hash}\"\n")
+file(CONFIGURE OUTPUT ${OUTPUT}
+  CONTENT "// generated: hash of the core's headers\n#pragma once\n#define INSULA_HEADERS \"${hash}\"\n")

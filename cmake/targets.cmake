@@ -32,16 +32,17 @@ target_include_directories(insula_lcm SYSTEM INTERFACE ${lcm_dir} ${LCM_INCLUDE}
 target_link_libraries(insula_lcm INTERFACE ${LCM_LIBRARY})
 add_dependencies(insula_lcm insula_lcm_headers)
 
-# --- hash of the headers that plugins include: part of the ABI string (core/registry/abi.h) ----------------------------
+# --- hash of the headers that plugins include: part of the ABI string (core/registry/abi.h) ---------------------------
 set(abi_header ${CMAKE_BINARY_DIR}/generated/abi/insula_headers.h)
 file(GLOB_RECURSE abi_inputs CONFIGURE_DEPENDS core/*.h)
 add_custom_command(OUTPUT ${abi_header}
-  COMMAND ${CMAKE_COMMAND} -DFOLDER=${PROJECT_SOURCE_DIR}/core -DOUTPUT=${abi_header} -P ${PROJECT_SOURCE_DIR}/cmake/headers_hash.cmake
+  COMMAND ${CMAKE_COMMAND} -DFOLDER=${PROJECT_SOURCE_DIR}/core -DOUTPUT=${abi_header}
+          -P ${PROJECT_SOURCE_DIR}/cmake/headers_hash.cmake
   DEPENDS ${abi_inputs} cmake/headers_hash.cmake COMMENT "hash of the headers")
 add_custom_target(insula_headers_hash DEPENDS ${abi_header})
 include_directories(${CMAKE_BINARY_DIR}/generated/abi)
 
-# --- core: its rooms, and all of them in one library --------------------------------------------------------------------
+# --- core: its rooms, and all of them in one library -----------------------------------------------------------------
 include(cmake/core.cmake)
 
 # --- bus -------------------------------------------------------------------------------------------------------------
@@ -52,12 +53,12 @@ if(bus_src)
   add_dependencies(insula_bus insula_lcm_headers)
 endif()
 
-# --- the haptic problem on its way from the engine to the servo -----------------------------------------------------------
+# --- the haptic problem on its way from the engine to the servo ------------------------------------------------------
 insula_glob(haptics_src core/haptics/*.cpp)
 add_library(insula_haptics STATIC ${haptics_src})
 target_link_libraries(insula_haptics PUBLIC insula_bus)
 
-# --- plugins: plugins/<name>/<name>.cpp, listed in a generated function ------------------------------------------------
+# --- plugins: plugins/<name>/<name>.cpp, listed in a generated function ----------------------------------------------
 file(GLOB plugin_dirs CONFIGURE_DEPENDS plugins/*)
 set(plugin_names)
 set(plugin_src)
@@ -75,11 +76,15 @@ foreach(d ${plugin_dirs})
   endif()
 endforeach()
 list(SORT plugin_names)
-set(plugin_list "// generated: every plugin built in\n#include \"core/registry/registry.h\"\nnamespace insula { class Registry; void register_core(Registry&); }\n")
+string(CONCAT plugin_list
+  "// generated: every plugin built in\n#include \"core/registry/registry.h\"\n"
+  "namespace insula { class Registry; void register_core(Registry&); }\n")
 foreach(n ${plugin_names})
   string(APPEND plugin_list "void insula_register_${n}(insula::Registry&);\n")
 endforeach()
-string(APPEND plugin_list "void insula::register_builtin(insula::Registry& r) {\n  r.set_current_plugin(\"core\");\n  insula::register_core(r);\n")
+string(APPEND plugin_list
+  "void insula::register_builtin(insula::Registry& r) {\n"
+  "  r.set_current_plugin(\"core\");\n  insula::register_core(r);\n")
 foreach(n ${plugin_names})
   string(APPEND plugin_list "  r.set_current_plugin(\"${n}\");\n  insula_register_${n}(r);\n")
 endforeach()
@@ -88,7 +93,7 @@ file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/generated/plugin_list.cpp CONTENT "${p
 add_library(insula_plugins STATIC ${CMAKE_BINARY_DIR}/generated/plugin_list.cpp ${plugin_src} ${plugin_kernels})
 target_link_libraries(insula_plugins PUBLIC insula_core)
 
-# --- haptic servo (library), programs ----------------------------------------------------------------------------------
+# --- haptic servo (library), programs --------------------------------------------------------------------------------
 function(insula_program target dir)
   insula_glob(src ${dir}/*.cpp)
   if(src)
@@ -133,7 +138,8 @@ add_library(insula_workbench_lib STATIC ${workbench_src})
 target_link_libraries(insula_workbench_lib PUBLIC insula_engine)
 add_executable(insula_workbench tools/workbench/main.cpp)
 target_link_libraries(insula_workbench PRIVATE insula_workbench_lib CLI11::CLI11)
-target_link_options(insula_workbench PRIVATE LINKER:--whole-archive $<TARGET_FILE:insula_core> LINKER:--no-whole-archive)
+target_link_options(insula_workbench PRIVATE
+  LINKER:--whole-archive $<TARGET_FILE:insula_core> LINKER:--no-whole-archive)
 set_target_properties(insula_workbench PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin ENABLE_EXPORTS ON)
 if(EXISTS ${PROJECT_SOURCE_DIR}/haptic_server/main.cpp)
   add_executable(haptic_server haptic_server/main.cpp)
@@ -153,7 +159,8 @@ endif()
 
 include(cmake/tests.cmake)
 include(cmake/install.cmake)
-# The artery generator and the case builder are quick to compile and are built wherever CGAL is; the slow tools only when asked for.
+# The artery generator and the case builder are quick to compile and are built wherever CGAL is; the slow tools only
+# when asked for.
 find_package(CGAL QUIET)
 if(CGAL_FOUND)
   add_subdirectory(tools/artery)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# --- tests: one binary a folder; plugin tests beside their plugins -----------------------------------------------------
+# --- tests: one binary a folder; plugin tests beside their plugins ---------------------------------------------------
 # With BUILD_TESTING=OFF there are none, and GoogleTest is not needed.
 set(INSULA_TEST_DEFS INSULA_SOURCE_DIR="${PROJECT_SOURCE_DIR}" INSULA_BINARY_DIR="${CMAKE_BINARY_DIR}")
 function(insula_test target)  # insula_test(name SOURCES ... LIBS ... [SERIAL])

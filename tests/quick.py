@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """quick.py SOURCE BUILD [--since COMMIT]: builds and runs the unit tests of what has changed, in three minutes at most.
 
-What has changed: files that differ from the last commit, and new ones. With none, what the last commits changed since the
-branch left the main branch, or the last commit itself. It prints which files it found, which tests it runs, and what it left out.
+What has changed: files that differ from the last commit, and new ones. With none, what the last commits changed since
+the branch left the main branch, or the last commit itself. It prints which files it found, which tests it runs, and
+what it left out.
 """
 import os
 import pathlib

@@ -44,5 +44,6 @@ int main(int argc, char** argv) {
 
   add_test(NAME ${name}.tests COMMAND ${name}_test)
   add_test(NAME ${name}.check COMMAND Insula::insula --plugin-path $<TARGET_FILE:${name}> check ${P_FOLDER}/example.xml)
-  add_test(NAME ${name}.run COMMAND Insula::insula --plugin-path $<TARGET_FILE:${name}> run ${P_FOLDER}/example.xml --duration 2 --quiet)
+  add_test(NAME ${name}.run
+    COMMAND Insula::insula --plugin-path $<TARGET_FILE:${name}> run ${P_FOLDER}/example.xml --duration 2 --quiet)
 endfunction()

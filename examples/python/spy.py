@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Lists each second what goes over the bus: channels, messages a second, kilobytes a second. With --show CHANNEL, prints that
-channel's messages field by field.
+"""Lists each second what goes over the bus: channels, messages a second, kilobytes a second. With --show CHANNEL,
+prints that channel's messages field by field.
 
     ./insula python-types build/python
     python3 -m venv venv && venv/bin/pip install lcm

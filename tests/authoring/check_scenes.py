@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""check_scenes.py SOURCE INSULA: every shipped scene and example is clean and quick to check, and valid by the schema that
-editors complete from; what the schema must refuse it refuses.
+"""check_scenes.py SOURCE INSULA: every shipped scene and example is clean and quick to check, and valid by the schema
+that editors complete from; what the schema must refuse it refuses.
 """
 import pathlib
 import re
@@ -11,8 +11,8 @@ import subprocess
 import sys
 import tempfile
 
-# Of processor time: a machine with other things to do takes longer by the clock. The scenes themselves take well under a
-# second on an idle one; three times that is a change to look at.
+# Of processor time: a machine with other things to do takes longer by the clock. The scenes themselves take well under
+# a second on an idle one; three times that is a change to look at.
 MOST_SECONDS = 3.0
 
 BAD = {

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""run_scenes.py SOURCE INSULA: every shipped scene, example and case runs a hundred steps and stays finite, in its exercise's own
-hands where it has some.
+"""run_scenes.py SOURCE INSULA: every shipped scene, example and case runs a hundred steps and stays finite, in its
+exercise's own hands where it has some.
 """
 import json
 import pathlib

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Holds the manual against the project: links, files, scenes, printed messages, commands, names of tests, stated defaults.
+"""Holds the manual against the project: links, files, scenes, printed messages, commands, names of tests, stated
+defaults.
 
     check_docs.py SOURCE_FOLDER INSULA_PROGRAM [HAPTIC_SERVER_PROGRAM]
 """
@@ -65,7 +66,7 @@ class Checker:
                 )
 
     def named_files(self, page, outside, promised):
-        """`core/sim/simulation.cpp`: paths that begin with a folder of the project. What a page itself brings is fine."""
+        """`core/sim/simulation.cpp`: paths that begin with a folder of the project. What a page brings is fine."""
         for number, line in outside:
             for code in CODE.findall(line):
                 name = code.strip()

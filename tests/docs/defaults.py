@@ -4,9 +4,9 @@ C++ headers.
 
 A page states a default where a sentence or a row of a table has a number beside the word "default", such as
     `alarm` (default 1 mm)      the default of `alarm` is 1 mm      `alarm` is 1 mm by default
-or a choice: `contact_geometry="triangles"` (default). The name is the last one in a code span before the number, else the first one
-behind it. Where the same text names an element (`<contact>`), its parameter is meant. Otherwise any declaration of that
-name may agree.
+or a choice: `contact_geometry="triangles"` (default). The name is the last one in a code span before the number, else
+the first one behind it. Where the same text names an element (`<contact>`), its parameter is meant. Otherwise any
+declaration of that name may agree.
 """
 import math
 import pathlib

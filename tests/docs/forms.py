@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How the test runs a command of the manual that it does not run as it stands. First entry that fits a command counts; every
-entry must fit some command, and every test that is named must exist (forms_test.py).
+"""How the test runs a command of the manual that it does not run as it stands. First entry that fits a command counts;
+every entry must fit some command, and every test that is named must exist (forms_test.py).
 
 A command that no entry fits runs as it stands.
 """
@@ -8,7 +8,10 @@ import dataclasses
 import re
 
 # What runs on the first page that says it, since nothing later on a page goes on with what it leaves.
-ONCE = r"\./insula (play|run|view|bench|check|describe|list|docs|schema|devices|help|python-types)\b.*|build/release/bin/haptic_server .*"
+ONCE = (
+    r"\./insula (play|run|view|bench|check|describe|list|docs|schema|devices|help|python-types)\b.*"
+    r"|build/release/bin/haptic_server .*"
+)
 
 # What the pages' commands need, made by project.py in the folder they run in.
 FIXTURES = {
@@ -22,7 +25,8 @@ FIXTURES = {
 
 @dataclasses.dataclass
 class Shorter:
-    """Runs for real, with a bound or a stand-in: `pattern` is replaced by `by`. `prints`: what must be found in what it says."""
+    """Runs for real, with a bound or a stand-in: `pattern` is replaced by `by`. `prints`: what must be found in what it
+    says."""
 
     pattern: str
     by: str
@@ -35,7 +39,8 @@ class Shorter:
 
 @dataclasses.dataclass
 class UntilCtrlC:
-    """Runs for real until it has sent some messages of a channel, then gets a Ctrl-C. What it needs beside what is written is `more`."""
+    """Runs for real until it has sent some messages of a channel, then gets a Ctrl-C. What it needs beside what is
+    written is `more`."""
 
     pattern: str
     channel: str
@@ -80,7 +85,8 @@ FORMS = (
     ),
     Never(
         r"tools/mesh_lobes/rebuild\.sh",
-        "needs the head of Debian's mricron-data and minutes; the test meshes_shipped holds what it made to its checksums",
+        "needs the head of Debian's mricron-data and minutes; "
+        "the test meshes_shipped holds what it made to its checksums",
     ),
     Never(
         r"build/mesh_lobes/insula_mesh_volume .*",

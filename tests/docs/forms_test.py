@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""forms_test.py SOURCE BUILD CTEST: the table of forms.py against the pages and ctest's tests: every entry fits a command and is the
-first that does, every test that it names exists, every page with something to run has its test, and what nothing runs is little.
+"""forms_test.py SOURCE BUILD CTEST: the table of forms.py against the pages and ctest's tests: every entry fits a
+command and is the first that does, every test that it names exists, every page with something to run has its test, and
+what nothing runs is little.
 """
 import json
 import pathlib

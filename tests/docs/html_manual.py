@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""html_manual.py SOURCE INSULA OUT: the manual as a site: it builds without a warning, its parts are there, its links lead somewhere,
-and the search finds pages and parameters.
+"""html_manual.py SOURCE INSULA OUT: the manual as a site: it builds without a warning, its parts are there, its links
+lead somewhere, and the search finds pages and parameters.
 """
 import json
 import os

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A copy of the project in which the manual's commands run, with what they are run on; nothing of the real one is written to."""
+"""A copy of the project in which the manual's commands run, with what they are run on; nothing of the real one is
+written to."""
 import gzip
 import json
 import os
@@ -48,7 +49,7 @@ def environment(build, folder, url):
     return out
 
 
-# --- fixtures -----------------------------------------------------------------------------------------------------------
+# --- fixtures ---------------------------------------------------------------------------------------------------------
 def stl(source, scale):
     """The wall of a shipped artery, which is closed, as binary STL."""
     data = (source / "meshes/arteries/anterior_superior/wall.ply").read_bytes()

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""run_page.py SOURCE BUILD PAGE: runs a page of the manual from its first line to its last in a copy of the project: files are put
-where it says, commands run as they stand or as forms.py says. Then its snippets go through what reads them.
+"""run_page.py SOURCE BUILD PAGE: runs a page of the manual from its first line to its last in a copy of the project:
+files are put where it says, commands run as they stand or as forms.py says. Then its snippets go through what reads
+them.
 """
 import os
 import pathlib

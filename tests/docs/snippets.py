@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Snippets of the manual through what reads them: scenes through `insula check`, C++ through the compiler, Python and JSON through
-theirs. One that is only a part of something names the file of the project that it stands in (<!-- in: PATH -->).
+"""Snippets of the manual through what reads them: scenes through `insula check`, C++ through the compiler, Python and
+JSON through theirs. One that is only a part of something names the file of the project that it stands in (<!-- in: PATH
+-->).
 """
 import json
 import re

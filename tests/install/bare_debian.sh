@@ -7,8 +7,8 @@
 #   --ccache DIR   a compiler cache that is mounted into the root, so that a second run is quick
 #   --mirror URL   where the packages come from (default: http://deb.debian.org/debian)
 #   --keep         the root stays at the end; a later run with a STEP goes on in it
-# It needs root, debootstrap, git and a way to the package mirror and to npm's registry. Its root is BARE_DEBIAN_ROOT, or
-# /var/tmp/insula-SUITE. It prints each step, its status and its time. Exit status 0: every step passed.
+# It needs root, debootstrap, git and a way to the package mirror and to npm's registry. Its root is BARE_DEBIAN_ROOT,
+# or /var/tmp/insula-SUITE. It prints each step, its status and its time. Exit status 0: every step passed.
 set -uo pipefail
 source_tree=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 play_seconds=60
@@ -38,16 +38,24 @@ log=$root.log
 # Mounts live in a mount namespace of their own and end with the command.
 in_root() {
   local certificates=${NODE_EXTRA_CA_CERTS:-}
-  env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root TERM=dumb LANG=C.UTF-8 http_proxy="${http_proxy:-}" https_proxy="${https_proxy:-}" \
+  env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root TERM=dumb LANG=C.UTF-8 \
+    http_proxy="${http_proxy:-}" https_proxy="${https_proxy:-}" \
     ROOT="$root" CACHE="$cache" CERTIFICATES="$certificates" \
     unshare --mount --pid --fork --kill-child /bin/bash -c '
       set -e
       mount -t proc proc "$ROOT/proc"
       mount --rbind /dev "$ROOT/dev"
       [ -f /etc/resolv.conf ] && cp -L /etc/resolv.conf "$ROOT/etc/resolv.conf"
-      if [ -n "$CACHE" ]; then mkdir -p "$CACHE" "$ROOT/ccache"; mount --bind "$CACHE" "$ROOT/ccache"; export CCACHE_DIR=/ccache CCACHE_BASEDIR=/insula; fi
+      if [ -n "$CACHE" ]; then
+        mkdir -p "$CACHE" "$ROOT/ccache"
+        mount --bind "$CACHE" "$ROOT/ccache"
+        export CCACHE_DIR=/ccache CCACHE_BASEDIR=/insula
+      fi
       # A network whose proxy signs with a certificate of its own is known to npm by this file.
-      if [ -n "$CERTIFICATES" ]; then cp -L "$CERTIFICATES" "$ROOT/etc/extra-certificates.crt"; export NODE_EXTRA_CA_CERTS=/etc/extra-certificates.crt npm_config_cafile=/etc/extra-certificates.crt; fi
+      if [ -n "$CERTIFICATES" ]; then
+        cp -L "$CERTIFICATES" "$ROOT/etc/extra-certificates.crt"
+        export NODE_EXTRA_CA_CERTS=/etc/extra-certificates.crt npm_config_cafile=/etc/extra-certificates.crt
+      fi
       exec chroot "$ROOT" /bin/bash -c "$1"' in_root "$1"
 }
 
@@ -77,7 +85,8 @@ run_step() {
     build) in_root "cd /insula && ./insula build" ;;
     test) in_root "cd /insula && ./insula test" ;;
   esac >>"$log" 2>&1 || status=$?
-  printf '   %s after %d s\n' "$([ $status = 0 ] && echo passed || echo "FAILED with status $status")" $((SECONDS - began))
+  printf '   %s after %d s\n' \
+    "$([ $status = 0 ] && echo passed || echo "FAILED with status $status")" $((SECONDS - began))
   [ $status = 0 ] || { tail -n 40 "$log"; printf '   the whole log is %s\n' "$log"; }
   return $status
 }

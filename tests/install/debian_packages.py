@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""debian_packages.py BUILD CMAKE: makes the Debian packages and looks into them: what they hold, what they depend on, and
-whether the program and the CMake package work from where they unpack.
+"""debian_packages.py BUILD CMAKE: makes the Debian packages and looks into them: what they hold, what they depend on,
+and whether the program and the CMake package work from where they unpack.
 """
 import pathlib
 import shutil

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""plugins_out_of_tree.py SOURCE BUILD CMAKE: installs Insula into a folder of its own and, with nothing but that, builds and
-tests a plugin of each kind as `insula new-plugin` writes it, and the plugin of the manual's tutorial as it is printed there.
+"""plugins_out_of_tree.py SOURCE BUILD CMAKE: installs Insula into a folder of its own and, with nothing but that,
+builds and tests a plugin of each kind as `insula new-plugin` writes it, and the plugin of the manual's tutorial as it
+is printed there.
 """
 import json
 import os

@@ -22,9 +22,12 @@ SCENE = """<scene title="Two hands">
     <fixed region="beyond" centre="0 0 -19 mm" normal="0 0 -1"/>
     <surface/>
   </soft_body>
-  <retractor id="left_spatula" model="meshes/instruments/retractor/retractor.urdf" hand="left" home="-5 0 3 mm" shaft="0 0 1" flat="1 0 0"/>
-  <dissector id="left_dissector" model="meshes/instruments/dissector/dissector.urdf" hand="left" home="-5 0 3 mm" shaft="0 0 1" flat="1 0 0"/>
-  <retractor id="right_spatula" model="meshes/instruments/retractor/retractor.urdf" hand="right" home="5 0 3 mm" shaft="0 0 1" flat="1 0 0"/>
+  <retractor id="left_spatula" model="meshes/instruments/retractor/retractor.urdf" hand="left"
+             home="-5 0 3 mm" shaft="0 0 1" flat="1 0 0"/>
+  <dissector id="left_dissector" model="meshes/instruments/dissector/dissector.urdf" hand="left"
+             home="-5 0 3 mm" shaft="0 0 1" flat="1 0 0"/>
+  <retractor id="right_spatula" model="meshes/instruments/retractor/retractor.urdf" hand="right"
+             home="5 0 3 mm" shaft="0 0 1" flat="1 0 0"/>
   %s
 </scene>
 """
@@ -55,7 +58,8 @@ def environment(build):
     )
     if got.returncode != 0:
         if re.search(
-            r"NewConnectionError|ConnectionError|Temporary failure|timed out|No matching distribution|ProxyError|SSLError",
+            r"NewConnectionError|ConnectionError|Temporary failure|timed out|No matching distribution"
+            r"|ProxyError|SSLError",
             got.stdout + got.stderr,
         ):
             shutil.rmtree(folder, ignore_errors=True)

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Checks that a folder includes only from folders that it may use.
 
-The rooms of core/ are declared in cmake/core.cmake, which writes them to rooms.txt ("name:used,used"). The other folders
-are declared here. Tests and their helpers (*_test.cpp, *_for_test.h) may include anything.
+The rooms of core/ are declared in cmake/core.cmake, which writes them to rooms.txt ("name:used,used"). The other
+folders are declared here. Tests and their helpers (*_test.cpp, *_for_test.h) may include anything.
 
     includes.py SOURCE_FOLDER ROOMS_FILE
 """
@@ -11,7 +11,8 @@ import pathlib
 import re
 import sys
 
-# Folder -> folders it may include from, besides itself. "core" stands for all rooms of core/ but bus, haptics and testing.
+# Folder -> folders it may include from, besides itself. "core" stands for all rooms of core/ but bus, haptics and
+# testing.
 FOLDERS = {
     "core/bus": {"core"},
     "core/haptics": {"core", "core/bus"},

@@ -3,9 +3,8 @@
 """function_length.py SOURCE [--list]: no function of the C++ sources is over 60 lines without a reason.
 
 A function's lines run from the line of its opening brace to the line of its closing brace. A longer function passes
-when the comment above it says why, with the words "Long because". KNOWN names the long functions that wait to be split, with
-their lines: none may grow, and one that has become short must leave the table. --list prints the table anew.
-"""
+when the comment above it says why, with the words "Long because". KNOWN names the long functions that wait to be split,
+with their lines: none may grow, and one that has become short must leave the table. --list prints the table anew. """
 import json
 import pathlib
 import re

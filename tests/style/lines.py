@@ -44,7 +44,8 @@ def main():
     for path in tracked(source, *ENDINGS):
         for number, fault in faults(path, path.read_text(encoding="utf-8")):
             wrong.append("%s:%d: %s" % (path.relative_to(source).as_posix(), number, fault))
-    print("\n".join(wrong[:100]))
+    for fault in wrong[:100]:
+        print(fault)
     if len(wrong) > 100:
         print("and %d more" % (len(wrong) - 100))
     return 1 if wrong else 0

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A clip from a row of the table: coil, two crossed legs, window, shank and blades, with its contact pieces.
 
-Everything here is in the tool frame: origin at the tip of the closed blades, +z to the applier, +x across the clamping faces.
-The legs cross between coil and blades, so pressing them together opens the jaws about the coil's middle.
+Everything here is in the tool frame: origin at the tip of the closed blades, +z to the applier, +x across the clamping
+faces. The legs cross between coil and blades, so pressing them together opens the jaws about the coil's middle.
 """
 import math
 
@@ -84,7 +84,8 @@ class Clip:
         return [(w["middle"] + s, y) for s, y in out]
 
     def leg(self, f):
-        """Node of a leg at the fraction f of the way from the coil to the blade's root: it starts beyond the other side."""
+        """Node of a leg at the fraction f of the way from the coil to the blade's root: it starts beyond the other
+        side."""
         par = self.par
         wx, wy = par["ring"] if self.window else self.blade_size(0.0)
         radius, wire, end = par["coil_radius"], par["wire"], self._offset(wx)
@@ -142,8 +143,8 @@ class Clip:
         return {k: [moved(r, self.shift) for r in v] for k, v in out.items()}
 
     def coil_points(self, steps):
-        """One turn and a half, from where the leg of the left jaw ends to that of the right one, and on into the legs, so that
-        no gap shows when they turn."""
+        """One turn and a half, from where the leg of the left jaw ends to that of the right one, and on into the legs,
+        so that no gap shows when they turn."""
         par, out, more = self.par, [], self.opening_max
         for k in range(steps + 1):
             v = mix(-more, 3.0 * math.pi + more, k / steps)

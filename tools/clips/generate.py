@@ -4,9 +4,10 @@
 
     generate.py [--table FILE] [--out DIR]
 
-Frame of every clip: origin at the tip of the closed blades, +z from the tip to the hinge and the applier, +x normal of the
-clamping faces; the hinge axis is parallel to y. Meshes are in millimetres, in that frame with the blades closed; the URDF is
-in metres and kilograms and has the coil as its root and two jaws. The same table always gives the same bytes.
+Frame of every clip: origin at the tip of the closed blades, +z from the tip to the hinge and the applier, +x normal of
+the clamping faces; the hinge axis is parallel to y. Meshes are in millimetres, in that frame with the blades closed;
+the URDF is in metres and kilograms and has the coil as its root and two jaws. The same table always gives the same
+bytes.
 """
 import argparse
 import importlib.util
@@ -64,7 +65,8 @@ def link_text(name, clip, part, file, material, rgba, mass, centre, tensor, piec
             xyz = instruments.vector_text(sub(mul(lerp(p, q, 0.5), 1e-3), base))
             out += [
                 f'      <origin xyz="{xyz}" rpy="{instruments.vector_text((0.0, pitch, yaw))}"/>',
-                f'      <geometry><cylinder radius="{number(r * 1e-3, 7)}" length="{number((norm(sub(q, p)) + 2.0 * r) * 1e-3, 7)}"/></geometry>',
+                f'      <geometry><cylinder radius="{number(r * 1e-3, 7)}"'
+                f' length="{number((norm(sub(q, p)) + 2.0 * r) * 1e-3, 7)}"/></geometry>',
             ]
         else:
             out += [
@@ -198,8 +200,8 @@ def readme(catalogue):
     ]
     for e in catalogue:
         out.append(
-            f'| {e["name"]} | {e["kind"]} | {e["blade_length_mm"]:.3g} | {e["opening_mm"]:.1f} | {e["closing_force_N"]:.2f} '
-            f'| {e["length_mm"]:.1f} | {e["mass_g"]:.3f} |'
+            f'| {e["name"]} | {e["kind"]} | {e["blade_length_mm"]:.3g} | {e["opening_mm"]:.1f} '
+            f'| {e["closing_force_N"]:.2f} | {e["length_mm"]:.1f} | {e["mass_g"]:.3f} |'
         )
     return "\n".join(out) + "\n"
 

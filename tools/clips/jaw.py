@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Building blocks of clips: the line that the closed blades follow, sections, and bars swept through rings. Lengths in mm.
+"""Building blocks of clips: the line that the closed blades follow, sections, and bars swept through rings. Lengths in
+mm.
 
 Body frame: the hinge axis is the y axis, the applier lies at +z, the jaws point to -z and part along x.
 """
@@ -18,9 +19,9 @@ def turned(v, axis, angle):
 class Line:
     """A chain of straight pieces and arcs from the hinge to the tip, in the surface where the closed jaws meet.
 
-    A piece is [length, turn_deg] or [length, turn_deg, "side"]. A positive turn bends towards +y within the clamping plane;
-    a "side" turn bends the clamping surface itself, towards +x. `frame(s)` gives (point, tangent t, normal n of the clamping
-    surface, binormal b = t x n).
+    A piece is [length, turn_deg] or [length, turn_deg, "side"]. A positive turn bends towards +y within the clamping
+    plane; a "side" turn bends the clamping surface itself, towards +x. `frame(s)` gives (point, tangent t, normal n of
+    the clamping surface, binormal b = t x n).
     """
 
     def __init__(self, pieces):
@@ -60,8 +61,8 @@ class Line:
 
 
 class Node:
-    """One ring of a jaw: at `s` along the line, its centre `o` off the clamping surface and `u` sideways, its half extents
-    (wx across the surface, wy along it), and how far it is from a round wire (0) to a flat-faced blade (1)."""
+    """One ring of a jaw: at `s` along the line, its centre `o` off the clamping surface and `u` sideways, its half
+    extents (wx across the surface, wy along it), and how far it is from a round wire (0) to a flat-faced blade (1)."""
 
     def __init__(self, s, o, u, wx, wy, flat, notch=0.0):
         self.s, self.o, self.u, self.wx, self.wy, self.flat, self.notch = s, o, u, wx, wy, flat, notch

@@ -9,7 +9,7 @@ OPEN = 0.4  # of the full opening
 
 
 def _axes(azimuth_deg, tilt_deg):
-    """Screen axes (right, up, towards the eye): the clip lies with its tip to the left and is turned about its length."""
+    """Screen axes (right, up, towards the eye): the clip lies with its tip to the left, turned about its length."""
     a, e = math.radians(azimuth_deg), math.radians(tilt_deg)
     eye = unit((math.cos(a) * math.cos(e), math.sin(a) * math.cos(e), math.sin(e)))
     right = unit(sub((0.0, 0.0, 1.0), mul(eye, eye[2])))
@@ -64,8 +64,9 @@ def svg(clip, colours, title):
     scale = min((WIDTH - 2.0 * MARGIN) / (max(xs) - min(xs)), (HEIGHT - 2.0 * MARGIN) / (max(ys) - min(ys)), LARGEST)
     x0, y0 = 0.5 * (WIDTH - scale * (max(xs) + min(xs))), 0.5 * (HEIGHT + scale * (max(ys) + min(ys)))
     out = [
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH:.0f} {HEIGHT:.0f}" width="{WIDTH:.0f}" height="{HEIGHT:.0f}" '
-        f'stroke-width=".4" stroke-linejoin="round"><!-- SPDX-License-Identifier: GPL-3.0-or-later --><title>{title}</title>'
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH:.0f} {HEIGHT:.0f}" '
+        f'width="{WIDTH:.0f}" height="{HEIGHT:.0f}" stroke-width=".4" stroke-linejoin="round">'
+        f"<!-- SPDX-License-Identifier: GPL-3.0-or-later --><title>{title}</title>"
     ]
     for _, colour, points in faces:
         path = "L".join(f"{_text(x0 + scale * x)} {_text(y0 - scale * y)}" for x, y in points)

@@ -5,8 +5,8 @@
     bone_window.py [--parameters FILE] [--out DIR]
 
 Each piece is a closed ring around the opening: a loop of cross-section points (d, h) carried around the rim, where d is
-the distance outward from the rim and h the height above the bone's inner table, both in mm. Vertex colours tell the bone
-tables from the spongy layer between them. The same parameters always give the same bytes.
+the distance outward from the rim and h the height above the bone's inner table, both in mm. Vertex colours tell the
+bone tables from the spongy layer between them. The same parameters always give the same bytes.
 """
 import argparse
 import json

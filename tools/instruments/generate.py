@@ -154,8 +154,10 @@ def urdf_text(row, materials, mass, centre, tensor, visuals, pieces):
             pitch, yaw = math.acos(max(-1.0, min(1.0, d[2]))), math.atan2(d[1], d[0])
             length = norm(sub(q, p)) + 2.0 * r
             out += [
-                f'      <origin xyz="{vector_text(mul(lerp(p, q, 0.5), 1e-3))}" rpy="{vector_text((0.0, pitch, yaw))}"/>',
-                f'      <geometry><cylinder radius="{number(r * 1e-3, 7)}" length="{number(length * 1e-3, 7)}"/></geometry>',
+                f'      <origin xyz="{vector_text(mul(lerp(p, q, 0.5), 1e-3))}"'
+                f' rpy="{vector_text((0.0, pitch, yaw))}"/>',
+                f'      <geometry><cylinder radius="{number(r * 1e-3, 7)}"'
+                f' length="{number(length * 1e-3, 7)}"/></geometry>',
             ]
         else:
             out += [

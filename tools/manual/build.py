@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """build.py SOURCE REFERENCE OUT: the manual and the generated reference as one HTML site with a search, by MkDocs.
 
-Pages come from docs/, from what they link to in the project, and from REFERENCE (what `insula docs` wrote). Their order comes from
-the table of docs/README.md, so that a page is listed in one place; its section follows from whom the table says it is for.
+Pages come from docs/, from what they link to in the project, and from REFERENCE (what `insula docs` wrote). Their order
+comes from the table of docs/README.md, so that a page is listed in one place; its section follows from whom the table
+says it is for.
 """
 import os
 import pathlib

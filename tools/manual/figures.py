@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""figures.py BUILD [--check]: the pictures of docs/validation.md, each from a run of the test that holds the law: the law is a line, what
-the simulation gave are the points. Laws that hold at a single place have no line to draw: a picture a section shows the errors that their tests
-met, beside what is allowed. With --check nothing is written: pictures that the tests no longer give are told, and so are laws without any.
+"""figures.py BUILD [--check]: the pictures of docs/validation.md, each from a run of the test that holds the law: the
+law is a line, what the simulation gave are the points. Laws that hold at a single place have no line to draw: a picture
+a section shows the errors that their tests met, beside what is allowed. With --check nothing is written: pictures that
+the tests no longer give are told, and so are laws without any.
 
-A test keeps what it finds when INSULA_FIGURES names a folder (tests/figures/figure.h), and errors as its properties (core/testing/held.h).
+A test keeps what it finds when INSULA_FIGURES names a folder (tests/figures/figure.h), and errors as its properties
+(core/testing/held.h).
 """
 import json
 import math
@@ -50,55 +52,65 @@ ERRORS = {  # section of the page: (picture, {program: tests that keep errors})
         "errors_elasticity",
         {
             "physics_tests": "PatchTest.*:Cantilever.IsFrameIndifferent:Bar.Poisson*",
-            "plugin_tests": "ElementBatch.FindsTheRotation*:ElementBatch.Inverted*:CorotationalFem.BothTangents*:CorotationalFem.MassIs*",
+            "plugin_tests": "ElementBatch.FindsTheRotation*:ElementBatch.Inverted*:CorotationalFem.BothTangents*:"
+            "CorotationalFem.MassIs*",
         },
     ),
     "Membrane": (
         "errors_membrane",
         {
-            "plugin_tests": "Membrane.PatchTest:Membrane.Uniaxial*:Membrane.RigidMotion*:Membrane.EachRegion*:Membrane.EnergyIsBounded*:Bending.Quadratic*:Bending.StepOf*:Laplace.Prism*:Laplace.Icosahedron*:"
+            "plugin_tests": "Membrane.PatchTest:Membrane.Uniaxial*:Membrane.RigidMotion*:Membrane.EachRegion*:"
+            "Membrane.EnergyIsBounded*:Bending.Quadratic*:Bending.StepOf*:Laplace.Prism*:Laplace.Icosahedron*:"
             "PinchedCylinder.*:AnchorSprings.DrawBack*"
         },
     ),
     "Time integration": (
         "errors_integration",
         {
-            "physics_tests": "ImplicitEuler.RigidTranslation*:ImplicitEuler.FreeBody*:ImplicitEuler.Compliance*:Asynchronous.ForcesAre*",
+            "physics_tests": "ImplicitEuler.RigidTranslation*:ImplicitEuler.FreeBody*:ImplicitEuler.Compliance*:"
+            "Asynchronous.ForcesAre*",
             "core_tests": "Direct/*.SolvesAs*:Direct/*.ComplianceAnd*:AsynchronousSolver.CorrectionKnows*",
         },
     ),
     "Constraint solver": (
         "errors_solver",
         {
-            "physics_tests": "LocalContact.IsTheSolution*:Solver.RandomProblems*:Solver.ConvergesToThe*:Solver.ResultDoesNot*:Solver.KnownAnswer:Solver.ConjugateDirectionsSolve*",
+            "physics_tests": "LocalContact.IsTheSolution*:Solver.RandomProblems*:Solver.ConvergesToThe*:"
+            "Solver.ResultDoesNot*:Solver.KnownAnswer:Solver.ConjugateDirectionsSolve*",
             "core_tests": "Disc.IsTheSolution*",
         },
     ),
     "Contact, strands, suction, tools": (
         "errors_contact",
         {
-            "plugin_tests": "Contact.SignoriniHolds*:Contact.ForcesOnBoth*:StrandSprings.TwoBodies*:Retractor.TheHandCarries*:FixedRegion.FixedNodesStay:ContactLimits.ForceOfALayerIs*"
+            "plugin_tests": "Contact.SignoriniHolds*:Contact.ForcesOnBoth*:StrandSprings.TwoBodies*:"
+            "Retractor.TheHandCarries*:FixedRegion.FixedNodesStay:ContactLimits.ForceOfALayerIs*"
         },
     ),
     "Contracts": ("errors_contracts", {"physics_tests": "Elements/EveryElement.*"}),
     "Pressure and flow": (
         "errors_flow",
         {
-            "plugin_tests": "Chambers.AddUp*:Pressure.Balances*:Pressure.SphereOf*:Pressure.FillsAt*:Pressure.Sealed*:Pressure.RowsAre*:Prestress.Imaged*:Prestress.Without*:Section.Cuts*:BloodFlow.Network*:"
-            "BloodFlow.SplitsThe*:BloodFlow.ClipOn*:BloodFlow.TearBleeds*:BloodFlow.TornSac*:BloodFlow.PulsatesWithout*:Bleeding.TearsWhen*:Bleeding.AWallThat*"
+            "plugin_tests": "Chambers.AddUp*:Pressure.Balances*:Pressure.SphereOf*:Pressure.FillsAt*:Pressure.Sealed*:"
+            "Pressure.RowsAre*:Prestress.Imaged*:Prestress.Without*:Section.Cuts*:BloodFlow.Network*:"
+            "BloodFlow.SplitsThe*:BloodFlow.ClipOn*:BloodFlow.TearBleeds*:BloodFlow.TornSac*:"
+            "BloodFlow.PulsatesWithout*:Bleeding.TearsWhen*:Bleeding.AWallThat*"
         },
     ),
     "Clips and thin walls": (
         "errors_clips",
         {
-            "plugin_tests": "Clip.MomentumIs*:Clip.FallsBy*:Clip.HoldsAnd*:ClipApplier.TheHandFeels*:ClipApplier.Released*:ContactLimits.ForceOfALayerIs*:SelfContact.AWallThat*",
-            "core_tests": "Clip.EveryShipped*:VertexCollider.EveryVertex*:SelfCollider.WallsPressed*:OneSided.AVertexThat*",
+            "plugin_tests": "Clip.MomentumIs*:Clip.FallsBy*:Clip.HoldsAnd*:ClipApplier.TheHandFeels*:"
+            "ClipApplier.Released*:ContactLimits.ForceOfALayerIs*:SelfContact.AWallThat*",
+            "core_tests": "Clip.EveryShipped*:VertexCollider.EveryVertex*:SelfCollider.WallsPressed*:"
+            "OneSided.AVertexThat*",
         },
     ),
     "Haptics": (
         "errors_haptics",
         {
-            "servo_tests": "Servo.ForceEquals*:SafetyGate.RampsOut*:SafetyGate.RampsIn*:SafetyGate.Garbage*:ArmModel.RestsForce*:ArmModel.EnergyNever*",
+            "servo_tests": "Servo.ForceEquals*:SafetyGate.RampsOut*:SafetyGate.RampsIn*:SafetyGate.Garbage*:"
+            "ArmModel.RestsForce*:ArmModel.EnergyNever*",
             "device_tests": "StreamedDevice.PowerIs*",
         },
     ),
@@ -163,7 +175,8 @@ def svg(figure):
     x = lambda v: LEFT + (v - low[0]) / (high[0] - low[0]) * (WIDTH - LEFT - RIGHT)  # noqa: E731
     y = lambda v: HEIGHT - BOTTOM - (v - low[1]) / (high[1] - low[1]) * (HEIGHT - TOP - BOTTOM)  # noqa: E731
     out = [
-        '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 %d %d" width="%d" height="%d" role="img" font-family="sans-serif" font-size="11" fill="#222">'
+        '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 %d %d" width="%d" height="%d" role="img" '
+        'font-family="sans-serif" font-size="11" fill="#222">'
         % (WIDTH, HEIGHT, WIDTH, HEIGHT),
         '<rect width="%d" height="%d" fill="#fff"/>' % (WIDTH, HEIGHT),
         text(WIDTH / 2, 16, figure["title"], more=' font-size="12"'),
@@ -217,7 +230,8 @@ def errors_svg(title, laws):
         WIDTH - left - RIGHT
     )  # noqa: E731
     out = [
-        '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 %d %d" width="%d" height="%d" role="img" font-family="sans-serif" font-size="11" fill="#222">'
+        '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 %d %d" width="%d" height="%d" role="img" '
+        'font-family="sans-serif" font-size="11" fill="#222">'
         % (WIDTH, height, WIDTH, height),
         '<rect width="%d" height="%d" fill="#fff"/>' % (WIDTH, height),
         text(WIDTH / 2, 16, title, more=' font-size="12"'),
@@ -241,7 +255,8 @@ def errors_svg(title, laws):
 
 
 def run(build, folder):
-    """Runs the tests; {picture: {law: (greatest error met, allowed)}} of what they keep of errors. Files in the folder have the rest."""
+    """Runs the tests; {picture: {law: (greatest error met, allowed)}} of what they keep of errors. Files in the folder
+    have the rest."""
     errors = {}
     jobs = [
         (p, ":".join(sorted(t for q, t in FIGURES.values() if q == p)), None)

@@ -24,7 +24,8 @@ COMMON = {
     "frame": "MNI, right-anterior-superior (+x right, +y anterior, +z superior)",
     "source": "Colin27 head (ch2better.nii.gz) and AAL labels (aal.nii.gz) of Debian's package mricron-data",
     "licence": "BSD-3-Clause",
-    "attribution": "MRIcron templates, copyright 2006-2010 Chris Rorden; BSD-3-clause as stated by Debian's mricron-data",
+    "attribution": "MRIcron templates, copyright 2006-2010 Chris Rorden; "
+    "BSD-3-clause as stated by Debian's mricron-data",
     "rebuild": "tools/mesh_lobes/rebuild.sh",
 }
 

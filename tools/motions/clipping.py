@@ -6,10 +6,11 @@
 
 3_clipping_steady       an angled clip across the neck, released, the field left
 3_clipping_careless     a straight clip across the inferior branch: the branch closes
-4_rupture_steady        the dome ruptures; suction; temporary clip on the parent artery; neck clipped; temporary clip removed
+4_rupture_steady        the dome ruptures; suction; temporary clip on the parent artery; neck clipped; temporary clip
+                        removed
 4_rupture_late          the same rupture, but nobody clips
-A clip's place is given by where its blades' middle is, where they point to and in which direction they close; the applier's
-pose follows from the clip's own grip. The same input gives the same bytes.
+A clip's place is given by where its blades' middle is, where they point to and in which direction they close; the
+applier's pose follows from the clip's own grip. The same input gives the same bytes.
 """
 import json
 import math
@@ -118,7 +119,8 @@ class Script:
 
 
 def place_clip(hand, pose, approach=2.5, close=1.6, wait=0.6, open_at=OUT_OF_FIELD):
-    """From outside the field: go in, open the blades `open_at` mm before the place, let the spring close, let go, draw back."""
+    """From outside the field: go in, open the blades `open_at` mm before the place, let the spring close, let go, draw
+    back."""
     position, q, shaft = pose
     outside = add(position, shaft, OUT_OF_FIELD)
     opened = add(position, shaft, open_at)
@@ -182,7 +184,7 @@ class Field:
         return clip.applier_pose(middle, [-v for v in outward], cross(up, outward))
 
     def branch(self, clip, name, share, past, square=1.0):
-        """Blades across a branch, tips `past` beyond its axis; square 1: at right angles, 0: along the line of sight."""
+        """Blades across a branch, tips `past` beyond its axis; square 1: at right angles, 0: along the view."""
         point, along = self.on_line(name, share)
         outward = unit(add([square * v for v in across(self.view, along)], self.view, 1 - square))
         middle = add(point, outward, -past)

@@ -22,7 +22,8 @@ NAME = "1_sylvian_fissure"
 
 MIDDLE_Y = 4.0  # mm: `along` is 0 where the superficial line passes this y
 KEY_INTERVAL = 0.05  # s
-# The lips overhang: so much (mm) above the straight way inwards lies the middle of the gap, at these depths, by `along`.
+# The lips overhang: so much (mm) above the straight way inwards lies the middle of the gap, at these depths, by
+# `along`.
 RISE_DEPTHS = [0.0, 3.0, 5.5, 8.0, 11.0]
 GAP_RISE = [
     (-14.0, [0.0, 0.0, 0.0, 0.0, 0.0]),
@@ -138,7 +139,8 @@ def table(rows, x):
 
 
 class Fissure:
-    """Places in the fissure's terms to the scene's frame (mm). Axes are those of the middle: the hands' moves stay straight."""
+    """Places in the fissure's terms to the scene's frame (mm). Axes are those of the middle: the hands' moves stay
+    straight."""
 
     def __init__(self, path):
         stations = json.loads(path.read_text(encoding="utf-8"))["stations"]

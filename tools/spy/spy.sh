@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# LCM's own window onto the bus, lcm-spy, with Insula's message types. Debian's starter asks for an option that no Java of Debian 12 knows.
+# LCM's own window onto the bus, lcm-spy, with Insula's message types. Debian's starter asks for an option that no Java
+# of Debian 12 knows.
 #
 #   spy.sh FOLDER     where the types are built when lcm_types/ has changed
 set -euo pipefail

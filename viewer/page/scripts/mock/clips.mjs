@@ -105,4 +105,6 @@ function make(name, title, kind, bladeMm, force, hinge, parts, picture) {
 }
 
 const drawing = (name) =>
-  `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 160 96"><path d="M20 44h90M20 52h90" stroke="${name.startsWith('temporary') ? '#d8a83c' : '#9aa0a8'}" stroke-width="6"/><circle cx="122" cy="48" r="14" fill="none" stroke="#9aa0a8" stroke-width="6"/></svg>`;
+  `<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 160 96"><path d="M20 44h90M20 52h90" ` +
+  `stroke="${name.startsWith('temporary') ? '#d8a83c' : '#9aa0a8'}" stroke-width="6"/>` +
+  `<circle cx="122" cy="48" r="14" fill="none" stroke="#9aa0a8" stroke-width="6"/></svg>`;
