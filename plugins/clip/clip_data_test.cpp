@@ -7,8 +7,8 @@
 #include <sstream>
 
 #include "core/base/input_error.h"
-#include "core/model/formats/mesh_files_for_test.h"
 #include "core/testing/held.h"
+#include "core/testing/temp_folder.h"
 #include "plugins/clip/clip_data.h"
 
 namespace insula {

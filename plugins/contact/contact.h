@@ -54,14 +54,14 @@ class Contact final : public Constraint, public StatesLaw {
        .max = "100 mm",
        .doc = "a tool that touches a wall (a surface with a thickness) goes on by no more than this in a step; the "
               "rest of the hand's motion follows in the next ones",
-       .formerly = "max_step_displacement"}};
+       .formerly = "max_push"}};
   Param<Length> tissue_max_step_displacement{this,
                                              {.name = "tissue_max_step_displacement",
                                               .fallback = "1.5 mm",
                                               .min = "0.05 mm",
                                               .max = "100 mm",
                                               .doc = "the same for a soft body",
-                                              .formerly = "tissue_max_step_displacement"}};
+                                              .formerly = "tissue_push"}};
   Param<Choice> contact_geometry{
       this,
       {.name = "contact_geometry",
@@ -79,7 +79,7 @@ class Contact final : public Constraint, public StatesLaw {
        .doc = "by triangles: where the normals and places of a tool that presses are taken: at the start of the step; "
               "or where tool and surface are expected at its end, which is nearer to the truth where a tool slides "
               "over what turns, and for long steps most",
-       .formerly = "linearized_at"}};
+       .formerly = "taken_at"}};
   Param<Length> patch{
       this,
       {.name = "patch",

@@ -70,7 +70,7 @@ class CorotationalFem final : public ForceModel {
        .min = "0",
        .max = "0.9",
        .doc = "principal stretch below which an element stiffens; 0: only once it is inverted",
-       .formerly = "barrier_stretch"}};
+       .formerly = "least_stretch"}};
   Param<Scalar> stiffening{this,
                            {.name = "stiffening",
                             .fallback = "30",

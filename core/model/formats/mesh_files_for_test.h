@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/model/mesh.h"
+#include "core/testing/temp_folder.h"
 
 namespace insula::test_files {
 
@@ -29,19 +30,5 @@ struct SurfaceFormat {
   bool truncation_shows = true;  ///< false for OBJ, whose text may end anywhere
 };
 std::vector<SurfaceFormat> surface_formats();
-
-/// A folder that is removed at the end.
-class TempFolder {
- public:
-  TempFolder();
-  ~TempFolder();
-  TempFolder(const TempFolder&) = delete;
-  TempFolder& operator=(const TempFolder&) = delete;
-  std::filesystem::path path() const { return path_; }
-  std::filesystem::path write(const std::string& name, const std::string& bytes) const;
-
- private:
-  std::filesystem::path path_;
-};
 
 }  // namespace insula::test_files

@@ -411,24 +411,4 @@ std::vector<SurfaceFormat> surface_formats() {
           {"glb", "s.glb", glb}};
 }
 
-TempFolder::TempFolder() {
-  std::random_device random;
-  do {
-    path_ = std::filesystem::temp_directory_path() / ("insula_test_" + std::to_string(random()));
-  } while (!std::filesystem::create_directory(path_));
-}
-
-TempFolder::~TempFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
-}
-
-std::filesystem::path TempFolder::write(const std::string& name, const std::string& bytes) const {
-  std::filesystem::create_directories((path_ / name).parent_path());
-  std::filesystem::remove(path_ / name);  // some file systems flush a file that is cut to nothing and written again
-  std::ofstream out(path_ / name, std::ios::binary | std::ios::trunc);
-  out << bytes;
-  return path_ / name;
-}
-
 }  // namespace insula::test_files
