@@ -77,7 +77,7 @@ class BundleOfAScene : public testing::Test {
 
 TEST_F(BundleOfAScene, NamesWhatTheSceneHolds) {
   const Json j = written();
-  EXPECT_EQ(j.at("version"), 2);
+  EXPECT_EQ(j.at("version"), 3);
   EXPECT_EQ(j.at("session"), 42);
   EXPECT_EQ(j.at("title"), "Two <blocks>");
   EXPECT_NEAR(j.at("view").at("fov_deg").get<double>(), 25, 1e-12);
