@@ -299,7 +299,7 @@ TEST(Contact, WrongElementsAreRefused) {
     return r.diagnostics.format();
   };
   EXPECT_NE(message("a").find("two names or more"), std::string::npos);
-  EXPECT_NE(message("a a").find("named twice"), std::string::npos);
+  EXPECT_NE(message("a a").find("is listed twice"), std::string::npos);
   EXPECT_NE(message("a b").find("none of these can move"), std::string::npos);
   EXPECT_NE(message("a bare").find("has no surface"), std::string::npos);
 }

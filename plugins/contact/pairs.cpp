@@ -87,8 +87,6 @@ void Contact::connect(PrepareContext& context, Simulation& simulation) {
                  "patch); or set friction=\"0\"");
   if (all.size() < 2) return error(context, between, "between: contact needs two names or more");
   for (std::size_t i = 0; i < all.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j)
-      if (all[i] == all[j]) return error(context, between, "between: \"" + all[i]->id + "\" is named twice");
     if (dynamic_cast<RigidBody*>(all[i])) continue;
     const auto surfaces = all[i]->children_of<Surface>();
     if (std::none_of(surfaces.begin(), surfaces.end(), [](const Surface* s) { return s->contact(); }))
