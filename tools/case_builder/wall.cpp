@@ -171,7 +171,7 @@ void run_wall(const CaseFolder& folder, const Options& o, Progress& progress) {
 }
 
 Vessel read_wall(const fs::path& folder) {
-  const WallModel m = read_wall(folder / "vessel.json");
+  const WallModel m = insula::read_wall(folder / "vessel.json");
   Vessel v;
   v.wall.mesh = m.wall;
   for (Vec3& p : v.wall.mesh.vertices) p *= 1000;
