@@ -8,15 +8,14 @@
 namespace insula {
 namespace {
 
-class @Name @Rule : public ::testing::Test {
+class @Name@Rule : public ::testing::Test {
  protected:
   void SetUp() override {
     folder.write("meshes/pen.urdf", test::test_tool_urdf(0.001));
     folder.write("meshes/tool.json", test::test_tool_json(0, 0));
     s = test::load_text(R"(<scene time_step="20 ms">
   <dissector id="probe" model="meshes/pen.urdf" hand="right" home="0 0 0 mm" shaft="0 0 1" flat="1 0 0" sharp="never"/>
-  <exercise id="e" title="t"><@name@ id="steady" at="10 0 0 mm" distance="1 mm" hold="100 ms"/></exercise></scene>)",
-                        folder.path() / "scene.xml");
+  <exercise id="e" title="t"><@name@ id="steady" at="10 0 0 mm" distance="1 mm" hold="100 ms"/></exercise></scene>)", folder.path() / "scene.xml");
     ASSERT_TRUE(s && s->exercise());
   }
   void hold_at(double x, int steps) {
@@ -33,7 +32,7 @@ class @Name @Rule : public ::testing::Test {
   std::unique_ptr<Simulation> s;
 };
 
-TEST_F(@Name @Rule, IsReachedAfterTheHoldTime) {
+TEST_F(@Name@Rule, IsReachedAfterTheHoldTime) {
   hold_at(0.0095, 4);  // 80 ms
   EXPECT_FALSE(reached());
   hold_at(0.0095, 1);
@@ -41,7 +40,7 @@ TEST_F(@Name @Rule, IsReachedAfterTheHoldTime) {
   EXPECT_EQ(faults(), 0);
 }
 
-TEST_F(@Name @Rule, LeavingTooSoonIsAFault) {
+TEST_F(@Name@Rule, LeavingTooSoonIsAFault) {
   hold_at(0.0095, 2);
   hold_at(0.02, 3);
   EXPECT_FALSE(reached());

@@ -8,7 +8,7 @@
 namespace insula {
 namespace {
 
-TEST(@Name @, EnergyOfAnEvenStretch) {
+TEST(@Name@, EnergyOfAnEvenStretch) {
   test::SceneFolder folder;
   folder.write("meshes/tet.msh", test::gmsh_text(test::single_tet(0.01)));
   auto s = test::load_text(R"(<scene>

@@ -9,7 +9,7 @@
 namespace insula {
 namespace {
 
-TEST(@Name @, HoldsWhatLiesWithinItsBall) {
+TEST(@Name@, HoldsWhatLiesWithinItsBall) {
   test::SceneFolder folder;
   folder.write("meshes/tet.msh", test::gmsh_text(test::single_tet(0.01)));
   auto s = test::load_text(R"(<scene gravity="0 0 -9.81 m/s2">
