@@ -6,8 +6,8 @@ A spring from the vertex of a surface nearest to `at` (at rest) to an anchor tha
 
     delta = |x - anchor| - length,   delta + lambda / k = 0
 */
-#include "core/mechanics/constraint.h"
 #include "core/constraint/stated_law.h"
+#include "core/mechanics/constraint.h"
 #include "core/mechanics/surface.h"
 #include "core/registry/registry.h"
 
@@ -20,7 +20,8 @@ class @Name@ final : public Constraint, public StatesLaw {
   Param<Vec<Length>> at{this, {.name = "at", .doc = "the vertex nearest to this place at rest is tied"}};
   Param<Vec<Length>> anchor{this, {.name = "anchor", .doc = "other end"}};
   Param<Length> length{this, {.name = "length", .min = "0.1 mm", .max = "1 m", .doc = "length without force"}};
-  Param<Stiffness> stiffness{this, {.name = "stiffness", .fallback = "20 N/m", .min = "0.1 N/m", .max = "10 kN/m", .doc = "of the spring"}};
+  Param<Stiffness> stiffness{
+      this, {.name = "stiffness", .fallback = "20 N/m", .min = "0.1 N/m", .max = "10 kN/m", .doc = "of the spring"}};
 
   // Once, when all components are there: find what the rows need every step, and report what does not fit.
   void connect(PrepareContext& context, Simulation&) override {
@@ -29,7 +30,8 @@ class @Name@ final : public Constraint, public StatesLaw {
     for (std::size_t i = 1; i < vertices.size(); ++i)
       if ((vertices[i] - at()).squaredNorm() < (vertices[best] - at()).squaredNorm()) best = i;
     end_ = surface->points()[best];
-    if ((vertices[best] - anchor()).norm() < 1e-6) error(context, anchor, "lies on the surface: the spring has no direction");
+    if ((vertices[best] - anchor()).norm() < 1e-6)
+      error(context, anchor, "lies on the surface: the spring has no direction");
   }
 
   // Every step: rows, with their violation at its start (m) and the direction that each end moves it along.
@@ -58,6 +60,4 @@ class @Name@ final : public Constraint, public StatesLaw {
 }  // namespace
 }  // namespace insula
 
-INSULA_PLUGIN(@name@) {
-  registry.add<insula::@Name@>("@name@", insula::Kind::constraint, "@doc@");
-}
+INSULA_PLUGIN(@name@) { registry.add<insula::@Name@>("@name@", insula::Kind::constraint, "@doc@"); }

@@ -14,7 +14,8 @@ double force(const std::string& length) {
   folder.write("meshes/tet.msh", test::gmsh_text(test::single_tet(0.01)));
   auto s = test::load_text(R"(<scene>
   <soft_body id="b" mesh="meshes/tet.msh" mesh_unit="m"><corotational_fem/><fixed/><surface id="skin"/></soft_body>
-  <@name@ surface="skin" at="0 0 10 mm" anchor="0 0 30 mm" stiffness="40 N/m" length=")" + length + "\"/></scene>",
+  <@name@ surface="skin" at="0 0 10 mm" anchor="0 0 30 mm" stiffness="40 N/m" length=")" +
+                               length + "\"/></scene>",
                            folder.path() / "scene.xml");
   if (!s) return 0;
   s->step();

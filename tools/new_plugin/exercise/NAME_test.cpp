@@ -15,7 +15,8 @@ class @Name@Rule : public ::testing::Test {
     folder.write("meshes/tool.json", test::test_tool_json(0, 0));
     s = test::load_text(R"(<scene time_step="20 ms">
   <dissector id="probe" model="meshes/pen.urdf" hand="right" home="0 0 0 mm" shaft="0 0 1" flat="1 0 0" sharp="never"/>
-  <exercise id="e" title="t"><@name@ id="steady" at="10 0 0 mm" distance="1 mm" hold="100 ms"/></exercise></scene>)", folder.path() / "scene.xml");
+  <exercise id="e" title="t"><@name@ id="steady" at="10 0 0 mm" distance="1 mm" hold="100 ms"/></exercise></scene>)",
+                        folder.path() / "scene.xml");
     ASSERT_TRUE(s && s->exercise());
   }
   void hold_at(double x, int steps) {

@@ -6,7 +6,8 @@ A spring along every edge of a soft body's tetrahedra, without force at the edge
 
     E = k/2 (l - L)^2,   f = -k (l - L) n,   df/dx = -k [n n^T + (1 - L/l) (I - n n^T)]
 
-For the step's tangent 1 - L/l is taken as zero where the edge is shorter than at rest: it is then positive semidefinite.
+For the step's tangent 1 - L/l is taken as zero where the edge is shorter than at rest: it is then positive
+semidefinite.
 */
 #include <algorithm>
 
@@ -18,7 +19,8 @@ namespace {
 
 class @Name@ final : public ForceModel {
  public:
-  Param<Stiffness> stiffness{this, {.name = "stiffness", .fallback = "1 N/m", .min = "0 N/m", .max = "10 kN/m", .doc = "of each edge"}};
+  Param<Stiffness> stiffness{
+      this, {.name = "stiffness", .fallback = "1 N/m", .min = "0 N/m", .max = "10 kN/m", .doc = "of each edge"}};
 
   // Once: the elements, from the body's rest shape.
   void attach(PrepareContext& context, DeformableBody& body) override {
@@ -31,7 +33,8 @@ class @Name@ final : public ForceModel {
     std::sort(pairs.begin(), pairs.end());
     pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
     edges_.clear();
-    for (const auto& [i, j] : pairs) edges_.push_back({i, j, (soft->rest().nodes[std::size_t(i)] - soft->rest().nodes[std::size_t(j)]).norm()});
+    for (const auto& [i, j] : pairs)
+      edges_.push_back({i, j, (soft->rest().nodes[std::size_t(i)] - soft->rest().nodes[std::size_t(j)]).norm()});
   }
 
   // Once: which 3x3 blocks of the body's matrix it fills, and where they are.
@@ -76,7 +79,7 @@ class @Name@ final : public ForceModel {
  private:
   struct Edge {
     int i, j;
-    double rest;  // m
+    double rest;                    // m
     int ii = -1, jj = -1, ij = -1;  // blocks of the matrix; -1: a node is held
   };
   static Eigen::Map<const Vec3> at(const double* x, int node) { return Eigen::Map<const Vec3>(x + 3 * node); }
@@ -86,6 +89,4 @@ class @Name@ final : public ForceModel {
 }  // namespace
 }  // namespace insula
 
-INSULA_PLUGIN(@name@) {
-  registry.add<insula::@Name@>("@name@", insula::Kind::force_model, "@doc@");
-}
+INSULA_PLUGIN(@name@) { registry.add<insula::@Name@>("@name@", insula::Kind::force_model, "@doc@"); }

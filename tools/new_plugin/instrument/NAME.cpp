@@ -2,8 +2,9 @@
 /*
 # @name@
 
-A probe that marks places: while the device's first button is held, an event "@name@" tells where the tip is, first at once and
-then each time that it has gone on by `spacing`. The tool itself, its coupling to the hand and its contacts are the base class's.
+A probe that marks places: while the device's first button is held, an event "@name@" tells where the tip is, first at
+once and then each time that it has gone on by `spacing`. The tool itself, its coupling to the hand and its contacts are
+the base class's.
 */
 #include <cstdio>
 
@@ -16,7 +17,12 @@ namespace {
 
 class @Name@ final : public Instrument {
  public:
-  Param<Length> spacing{this, {.name = "spacing", .fallback = "1 mm", .min = "0.01 mm", .max = "100 mm", .doc = "least distance between two marks of one line"}};
+  Param<Length> spacing{this,
+                        {.name = "spacing",
+                         .fallback = "1 mm",
+                         .min = "0.01 mm",
+                         .max = "100 mm",
+                         .doc = "least distance between two marks of one line"}};
 
   // After the step's motion: the only place where an instrument tells events.
   void finish(const StepContext& context, const ConstraintSolution&) override {
@@ -56,6 +62,4 @@ class @Name@ final : public Instrument {
 }  // namespace
 }  // namespace insula
 
-INSULA_PLUGIN(@name@) {
-  registry.add<insula::@Name@>("@name@", insula::Kind::instrument, "@doc@");
-}
+INSULA_PLUGIN(@name@) { registry.add<insula::@Name@>("@name@", insula::Kind::instrument, "@doc@"); }

@@ -15,8 +15,9 @@ int marks(bool button, double way, int steps) {
   test::SceneFolder folder;
   folder.write("meshes/pen.urdf", test::test_tool_urdf(0.001));
   folder.write("meshes/tool.json", test::test_tool_json(0, 0));
-  auto s = test::load_text(R"(<scene><@name@ id="pen" model="meshes/pen.urdf" hand="right" home="0 0 0 mm" shaft="0 0 1" flat="1 0 0" spacing="1 mm"/></scene>)",
-                           folder.path() / "scene.xml");
+  auto s = test::load_text(
+      R"(<scene><@name@ id="pen" model="meshes/pen.urdf" hand="right" home="0 0 0 mm" shaft="0 0 1" flat="1 0 0" spacing="1 mm"/></scene>)",
+      folder.path() / "scene.xml");
   if (!s) return -1;
   int count = 0;
   for (int i = 0; i < steps; ++i) {
@@ -27,7 +28,8 @@ int marks(bool button, double way, int steps) {
     hand.button1 = button;
     s->set_hand(1, hand);
     s->step();
-    count += int(std::count_if(s->events().begin(), s->events().end(), [](const Event& e) { return e.kind == "@name@"; }));
+    count +=
+        int(std::count_if(s->events().begin(), s->events().end(), [](const Event& e) { return e.kind == "@name@"; }));
   }
   return count;
 }

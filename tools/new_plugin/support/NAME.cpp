@@ -13,7 +13,8 @@ namespace {
 class @Name@ final : public Support {
  public:
   Param<Vec<Length>> centre{this, {.name = "centre", .doc = "centre of the ball"}};
-  Param<Length> radius{this, {.name = "radius", .fallback = "5 mm", .min = "0.1 mm", .max = "1 m", .doc = "of the ball"}};
+  Param<Length> radius{this,
+                       {.name = "radius", .fallback = "5 mm", .min = "0.1 mm", .max = "1 m", .doc = "of the ball"}};
 
   // Once, when the body's nodes are known: mark the nodes that are fixed.
   void fix(PrepareContext& context, const std::vector<Vec3>& rest, std::vector<char>& held) override {
@@ -30,6 +31,4 @@ class @Name@ final : public Support {
 }  // namespace
 }  // namespace insula
 
-INSULA_PLUGIN(@name@) {
-  registry.add<insula::@Name@>("@name@", insula::Kind::support, "@doc@");
-}
+INSULA_PLUGIN(@name@) { registry.add<insula::@Name@>("@name@", insula::Kind::support, "@doc@"); }
