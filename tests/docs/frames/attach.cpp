@@ -11,6 +11,6 @@ class MyWall : public ForceModel {
   void attach(PrepareContext& context, DeformableBody& body) override;
 };
 
-@SNIPPET @
+@SNIPPET@
 
 }  // namespace insula

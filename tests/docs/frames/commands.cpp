@@ -9,9 +9,9 @@ namespace insula {
 
 class Pump : public Constraint {
  public:
-  @SNIPPET @
+@SNIPPET@
 
-      private:
+ private:
   double rate_ = 0;  // beats/min
 };
 
