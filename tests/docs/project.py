@@ -10,7 +10,7 @@ import struct
 
 COPIED = ("docs", "examples", "lcm_types", "meshes", "plugins", "scenes", "tools")
 # `./insula` without its building and installing: what is run is built already, and the rest of the script is as it is.
-BUILT = "packages() { :; }\nconfigure() { :; }\ncompile() { :; }\nbuild_page() { :; }\n\n"
+BUILT = "packages() { :; }\nconfigure() { :; }\ncompile() { :; }\ncompile_configured() { :; }\nbuild_page() { :; }\n\n"
 WORDS = 'case "${1:-help}" in'
 
 

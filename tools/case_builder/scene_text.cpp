@@ -50,7 +50,7 @@ std::string artery_part(const SceneFacts& f) {
       "<!-- The vessel of the case {}: wall, blood, pulse. Thickness and modulus of each region are proposals. {} "
       "-->\n<part>\n",
       f.name, training_only);
-  s += "  <shell_body id=\"artery\" tangent_tolerance=\"0.1\" vessel=\"artery/vessel.json\">\n";
+  s += "  <shell_body id=\"artery\" tangent_tolerance=\"0.1\" wall=\"artery/vessel.json\">\n";
   for (std::size_t i = 0; i < f.walls.size(); ++i)
     s += fmt::format(
         "    <membrane id=\"wall_{}\" regions=\"{}\" thickness=\"{:g} mm\" young=\"{:g} MPa\" added_mass=\"1 "
