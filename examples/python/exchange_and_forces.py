@@ -101,7 +101,7 @@ def main():
             print("%s hand: %s %s" % (hand["hand"], wanted, "taken up" if done else "refused: " + text))
 
     # Whoever has the command "load" is taken up and gets a clip; the first on the tray is as good as any.
-    clips = [t for t in tools if t.get("clip") and t["hand"] == "none"]
+    clips = [t for t in tools if t["kind"] == "clip" and t["hand"] == "none"]
     appliers = [c["id"] for c in bundle["commands"] if any(x["name"] == "load" for x in c["commands"])]
     if clips and appliers:
         applier = next(t for t in tools if t["id"] == appliers[0])

@@ -26,10 +26,8 @@ def scene(runner, block):
         )
     if not re.search(r"<scene[\s>/]", placed(runner, block)):
         return runner.that(False, block.line, "a part of a scene; say what it stands in (<!-- in: PATH -->)")
-    if block.role == "file" and any(name in block.value for name in ("tether", "pia_membrane")):
-        return (
-            None  # an example of the page's own plugin, which its build checks (manual_plugin_scene, install_plugins)
-        )
+    if block.role == "file" and any(name in block.value for name in ("tether", "pia_membrane", "suture/")):
+        return None  # an example of the page's own plugin: its build checks it (manual_plugin_scene, install_plugins)
     path = block.value if block.role == "file" else "scenes/cases/snippet_%d.xml" % block.line
     (runner.folder / path).write_text(placed(runner, block), encoding="utf-8")
     return runner.run(["insula", "check", path], block.line, "insula check " + path)
