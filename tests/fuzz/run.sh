@@ -16,11 +16,13 @@ flags="-std=c++20 -O1 -g1 -fno-omit-frame-pointer"
 flags="$flags -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined"
 flags="$flags -I$source_dir -I$2/generated/abi -isystem /usr/include/eigen3 -DFMT_HEADER_ONLY"
 sources=$(ls "$source_dir"/core/base/*.cpp "$source_dir"/core/params/*.cpp "$source_dir"/core/registry/*.cpp \
-  "$source_dir"/core/scene/*.cpp "$source_dir"/core/xml/*.cpp "$source_dir"/tests/fuzz/loader_fuzz.cpp | grep -v '_test\.cpp$')
+  "$source_dir"/core/scene/*.cpp "$source_dir"/core/xml/*.cpp \
+  "$source_dir"/tests/fuzz/loader_fuzz.cpp | grep -v '_test\.cpp$')
 target=$build_dir/loader_fuzz
 
 if [ ! -x "$target" ] || [ -n "$(find "$source_dir/core/base" "$source_dir/core/params" "$source_dir/core/registry" \
-    "$source_dir/core/scene" "$source_dir/core/xml" "$source_dir/tests/fuzz" -newer "$target" \( -name '*.h' -o -name '*.cpp' \) | \
+    "$source_dir/core/scene" "$source_dir/core/xml" \
+    "$source_dir/tests/fuzz" -newer "$target" \( -name '*.h' -o -name '*.cpp' \) | \
     head -1)" ]; then
   echo "building the fuzz target"
   if ! echo 'extern "C" int LLVMFuzzerTestOneInput(const unsigned char*, unsigned long) { return 0; }' |
