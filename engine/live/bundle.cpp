@@ -12,8 +12,8 @@
 #include "core/mechanics/shell_body.h"
 #include "core/sim/settings.h"
 #include "engine/authoring/inventory.h"
-#include "engine/bundle_step_data.h"
-#include "engine/bundle_writer.h"
+#include "engine/live/bundle_step_data.h"
+#include "engine/live/bundle_writer.h"
 #include "engine/live/frame.h"
 
 namespace insula {

@@ -10,7 +10,7 @@
 
 #include "core/sim/exercise.h"
 #include "core/sim/report.h"
-#include "engine/channel_record.h"
+#include "engine/reports/channel_record.h"
 #include "engine/reports/run_outcome.h"
 
 namespace insula {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Channels, drawables and materials as JSON.
-#include "engine/bundle_step_data.h"
+#include "engine/live/bundle_step_data.h"
 
 namespace insula {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Channels of a run, gathered and written down.
-#include "engine/channel_record.h"
+#include "engine/reports/channel_record.h"
 
 #include <fmt/format.h>
 

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/sim/simulation.h"
-#include "engine/bundle_writer.h"
+#include "engine/live/bundle_writer.h"
 
 namespace insula {
 
