@@ -2,19 +2,15 @@
 // The program `insula`: one subcommand each for what can be done with scenes.
 #include <CLI/CLI.hpp>
 
-#include <algorithm>
-#include <functional>
-#include <iostream>
 #include <string_view>
 
 #include "core/params/option.h"
-#include "core/registry/registry.h"
 #include "engine/authoring/new_plugin.h"
 #include "engine/command_line/commands.h"
 #include "engine/command_line/common_options.h"
-#include "engine/command_line/load_plugins.h"
 #include "engine/command_line/play.h"
 #include "engine/command_line/run.h"
+#include "engine/command_line/run_command_line.h"
 #include "engine/command_line/tool_program.h"
 
 namespace {
@@ -24,15 +20,14 @@ namespace fs = std::filesystem;
 using insula::add_motion;
 using insula::add_seed;
 using insula::add_threads;
-using insula::CommandContext;
 using insula::Duration;
 using insula::Force;
 using insula::seconds;
 
 /// What the options of all commands are read into, and the command that was chosen.
-struct CommandLine {
-  CLI::App app{"Insula: aneurysm surgery with two-handed haptics", "insula"};
-  std::vector<fs::path> plugin_paths;
+struct Options : insula::CommandLine {
+  Options() : CommandLine("Insula: aneurysm surgery with two-handed haptics", "insula") {}
+
   std::string element;
   fs::path output, folder, plugin_folder;
   bool no_browser = false, no_reload = false, list_only = false;
@@ -42,11 +37,10 @@ struct CommandLine {
   insula::EngineOptions engine;
   insula::ReplayOptions replay;
   insula::PlayOptions play;
-  std::function<int(const CommandContext&)> chosen;
 };
 
 /// list, describe, schema, docs: what needs no simulation.
-void add_scene_commands(CommandLine& c) {
+void add_scene_commands(Options& c) {
   auto* list = c.app.add_subcommand("list", "all elements a scene may hold");
   list->callback([&c] { c.chosen = [](const auto& x) { return insula::cmd_list(x); }; });
 
@@ -64,7 +58,7 @@ void add_scene_commands(CommandLine& c) {
   docs->callback([&c] { c.chosen = [&](const auto& x) { return insula::cmd_docs(x, c.folder, c.plugin_folder); }; });
 }
 
-void add_new_plugin(CommandLine& c) {
+void add_new_plugin(Options& c) {
   auto& o = c.new_plugin;
   auto* command =
       c.app.add_subcommand("new-plugin", "begin a plugin: a folder with source, test, example and build file");
@@ -74,7 +68,7 @@ void add_new_plugin(CommandLine& c) {
   command->callback([&c] { c.chosen = [&](const auto& x) { return insula::cmd_new_plugin(x, c.new_plugin); }; });
 }
 
-void add_devices(CommandLine& c) {
+void add_devices(Options& c) {
   auto& o = c.devices;
   auto* command = c.app.add_subcommand("devices", "what there is for the hands, what is missing and how to get it");
   auto* show = command->add_option("--show", o.show, "this device's live pose, buttons and force, until Ctrl-C");
@@ -98,7 +92,7 @@ void add_devices(CommandLine& c) {
   command->callback([&c] { c.chosen = [&](const auto& x) { return insula::cmd_devices(x, c.devices); }; });
 }
 
-void add_run(CommandLine& c) {
+void add_run(Options& c) {
   auto& o = c.run;
   auto* command = c.app.add_subcommand("run", "a scene from start to end without devices or viewer, with a report");
   command->add_option("scene", o.scene, "scene file")->required();
@@ -113,7 +107,7 @@ void add_run(CommandLine& c) {
   command->callback([&c] { c.chosen = [&](const auto& x) { return insula::cmd_run(x, c.run); }; });
 }
 
-void add_engine(CommandLine& c) {
+void add_engine(Options& c) {
   auto& o = c.engine;
   auto* command = c.app.add_subcommand("engine", "the engine process of a session, over the bus");
   command->add_option("scene", o.scene, "scene file")->required();
@@ -133,7 +127,7 @@ void add_engine(CommandLine& c) {
   command->callback([&c] { c.chosen = [&](const auto& x) { return insula::cmd_engine(x, c.engine); }; });
 }
 
-void add_replay(CommandLine& c) {
+void add_replay(Options& c) {
   auto& o = c.replay;
   auto* command = c.app.add_subcommand("replay", "a log of lcm-logger onto the bus, for viewers");
   command->add_option("log", o.log, "log of a session")->required();
@@ -145,7 +139,7 @@ void add_replay(CommandLine& c) {
 }
 
 /// What play and view share.
-void add_viewer_options(CLI::App& command, CommandLine& c) {
+void add_viewer_options(CLI::App& command, Options& c) {
   auto& o = c.play;
   command.add_option("--port", o.port, "port of the viewer; following ones are tried when it is busy")
       ->capture_default_str();
@@ -157,7 +151,7 @@ void add_viewer_options(CLI::App& command, CommandLine& c) {
   command.add_flag("--no-browser", c.no_browser, "open no browser");
 }
 
-void add_play(CommandLine& c) {
+void add_play(Options& c) {
   auto& o = c.play;
   auto* command = c.app.add_subcommand("play", "engine, haptic server and viewer together, until Ctrl-C");
   command->add_option("scene", o.scene, "scene file (default: the first training exercise)");
@@ -182,7 +176,7 @@ void add_play(CommandLine& c) {
   });
 }
 
-void add_view(CommandLine& c) {
+void add_view(Options& c) {
   auto* command = c.app.add_subcommand(
       "view", "a scene to be looked at: what is in it by name, with units and sizes; time stands still");
   command->add_option("scene", c.play.scene, "scene file")->required();
@@ -200,7 +194,7 @@ void add_view(CommandLine& c) {
 }
 
 /// Programs of their own, which read what follows themselves.
-void add_tool_programs(CommandLine& c) {
+void add_tool_programs(Options& c) {
   struct ToolProgram {
     const char *command, *doc, *program, *when_missing;
   };
@@ -226,12 +220,7 @@ void add_tool_programs(CommandLine& c) {
   }
 }
 
-void add_commands(CommandLine& c) {
-  c.app.require_subcommand(1);
-  c.app
-      .add_option("--plugin-path", c.plugin_paths,
-                  "folder of shared plugins, or one plugin (may be given more than once)")
-      ->allow_extra_args(false);
+void add_commands(Options& c) {
   add_scene_commands(c);
   add_new_plugin(c);
   add_devices(c);
@@ -246,22 +235,7 @@ void add_commands(CommandLine& c) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CommandLine line;
-  add_commands(line);
-  try {
-    std::vector<std::string> words = insula::command_words(argc, argv);
-    std::reverse(words.begin(), words.end());  // as CLI11 takes them
-    line.app.parse(std::move(words));
-  } catch (const CLI::ParseError& e) {
-    const int status = line.app.exit(e);
-    return status == 0 ? 0 : 2;
-  }
-  try {
-    insula::Registry registry;
-    if (const int status = insula::load_plugins(registry, line.plugin_paths, std::cerr)) return status;
-    return line.chosen({registry, std::cout, std::cerr});
-  } catch (const std::exception& e) {
-    std::cerr << "error: " << e.what() << '\n';
-    return 1;
-  }
+  Options options;
+  add_commands(options);
+  return insula::run_command_line(options, argc, argv);
 }

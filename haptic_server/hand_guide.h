@@ -21,7 +21,6 @@ class HandGuide {
   void place(const Pose& pose) noexcept;
   /// A viewer takes the hand over until the next place().
   void take_over(const HandSample& wish) noexcept;
-  bool taken_over() const { return taken_over_; }
   /// One tick; `wish` is what the script (or home) asks for and counts while no viewer has taken over.
   const HandGoal& advance(double dt, const HandSample& wish) noexcept;
   const HandGoal& goal() const { return goal_; }

@@ -60,7 +60,6 @@ TEST(HandGuide, AViewerTakesOverUntilPlaced) {
   EXPECT_TRUE(guide.goal().button2);
   EXPECT_FALSE(guide.goal().stops);
   guide.place(Pose());
-  EXPECT_FALSE(guide.taken_over());
   for (int k = 0; k < 1000; ++k) guide.advance(dt, script);
   EXPECT_EQ(guide.goal().pose.p, script.pose.p);
 }

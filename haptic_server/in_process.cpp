@@ -45,9 +45,10 @@ void InProcessHaptics::reset() {
   }
 }
 
-void InProcessHaptics::set_problem(const ConstraintProblem& problem) {
+void InProcessHaptics::set_problem(const ConstraintProblem& problem, const std::array<bool, 2>& left_out) {
   const std::size_t next = 1 - current_;
   problem_[next] = problem;
+  std::erase_if(problem_[next].tools, [&](const ToolTerms& t) { return left_out[t.hand == 1 ? 1 : 0]; });
   servo_.set_problem(&problem_[next]);
   current_ = next;
   problem_time_ = time_;

@@ -49,8 +49,8 @@ class InProcessHaptics {
 
   /// Back to the start of the motion, arms at rest, counters at zero.
   void reset();
-  /// The newest problem; copied.
-  void set_problem(const ConstraintProblem& problem);
+  /// The newest problem; copied, but for the tools of the hands in `left_out`.
+  void set_problem(const ConstraintProblem& problem, const std::array<bool, 2>& left_out = {});
   /// One servo tick that ends at simulated time t (s), later than the last one. The first tick after reset takes 1 ms.
   void tick(double t);
   /// n ticks of dt from the last tick's time on.

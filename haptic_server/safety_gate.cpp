@@ -11,12 +11,11 @@ namespace {
 bool finite(const Vec3& v) { return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z()); }
 
 /// Shortens v to at most `limit`; stableNorm, since squaring 1e200 overflows.
-bool shorten(Vec3& v, double limit) {
+void shorten(Vec3& v, double limit) {
   const double length = v.stableNorm();
-  if (length <= limit) return false;
+  if (length <= limit) return;
   if (!(length < 1e300)) v.setZero();
   else v *= limit / length;
-  return true;
 }
 
 double usable(double limit) { return std::isfinite(limit) && limit > 0 ? limit : 0; }
@@ -58,7 +57,7 @@ void SafetyGate::apply(double dt, bool live, const Vec3& force_N, const Vec3& to
   if (live) {
     gain_ = std::min(1.0, gain_ + dt / ramp_in_s_);
     Vec3 f = force_N, t = torque_Nm;
-    if (shorten(f, force_.limit)) ++clamped_;
+    shorten(f, force_.limit);
     shorten(t, torque_.limit);
     force_.step(dt, gain_ * f);
     torque_.step(dt, gain_ * t);

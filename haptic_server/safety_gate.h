@@ -30,7 +30,6 @@ class SafetyGate {
   /// Inputs that were not finite.
   std::int64_t refused() const { return refused_; }
   /// Ticks at which the force was shortened to the device's limit.
-  std::int64_t clamped() const { return clamped_; }
 
   static constexpr double longest_tick_s = 0.005;
   /// A problem older than this is no live source.
@@ -49,7 +48,7 @@ class SafetyGate {
   double gain_ = 0;
   double fade_ = 0;  ///< what is left of `held`, 1 to 0
   bool live_ = false;
-  std::int64_t refused_ = 0, clamped_ = 0;
+  std::int64_t refused_ = 0;
 };
 
 }  // namespace insula

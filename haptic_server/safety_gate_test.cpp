@@ -89,7 +89,6 @@ TEST(SafetyGate, GarbageNeverGetsThrough) {
   EXPECT_TRUE(test::held("garbage beyond its change of force, N", max_change, 1, 1e-12));
   EXPECT_GT(pushed, 10'000);  // it was not simply shut
   EXPECT_GT(gate.refused(), 0);
-  EXPECT_GT(gate.clamped(), 0);
 }
 
 TEST(SafetyGate, RampsInOverAQuarterSecond) {

@@ -250,17 +250,15 @@ void Condenser::eliminate(const ConstraintProblem& full, ConstraintProblem& smal
       small.w[c * std::size_t(small.stride) + i] = small.w[i * std::size_t(small.stride) + c];
 }
 
-void Condenser::operator()(const ConstraintProblem& full, int max_rows, ConstraintProblem& small) {
-  if (full.rows <= max_rows) {
-    small = full;
-    return;
-  }
+const ConstraintProblem& Condenser::operator()(const ConstraintProblem& full, int max_rows, ConstraintProblem& small) {
+  if (full.rows <= max_rows) return full;
   find_tool_coupled_rows(full);
   find_states(full);
   make_groups(full);
   choose(full, max_rows, small);
   copy_kept(full, small);
   if (!eliminated_.empty() && !kept_.empty()) eliminate(full, small);
+  return small;
 }
 
 }  // namespace insula

@@ -7,7 +7,8 @@
 
 namespace insula {
 
-/// Copies `full` into `small` where it has at most most_rows rows. Otherwise each block has one of three fates:
+/// Returns `full` itself where it has at most max_rows rows. Otherwise it writes `small` and returns that; each block
+/// then has one of three fates:
 ///   kept        those that touch a tool or what it carries, then those that are coupled to them and may soon change
 ///   their state, in their order eliminated  what no tool touches, in a state in which its law is a linear equation
 ///   delta_E + C lambda_E = 0: pressure, springs,
@@ -25,7 +26,7 @@ namespace insula {
 /// tools' Jacobians change theirs.
 class Condenser {
  public:
-  void operator()(const ConstraintProblem& full, int max_rows, ConstraintProblem& small);
+  const ConstraintProblem& operator()(const ConstraintProblem& full, int max_rows, ConstraintProblem& small);
 
   /// Beyond this, the least coupled are held: the cost grows with the cube.
   static constexpr int max_eliminated = 400;

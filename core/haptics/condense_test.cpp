@@ -40,13 +40,14 @@ ConstraintProblem make(int n, int tool_coupled) {
   return p;
 }
 
-TEST(Condense, SmallProblemsAreCopied) {
+TEST(Condense, SmallProblemsAreNotCopied) {
   const ConstraintProblem full = make(12, 3);
   ConstraintProblem small;
-  Condenser()(full, 12, small);
-  EXPECT_EQ(small.rows, 12);
-  EXPECT_EQ(small.w, full.w);
-  EXPECT_EQ(small.lambda, full.lambda);
+  Condenser condense;
+  EXPECT_EQ(&condense(full, 12, small), &full);
+  EXPECT_EQ(small.rows, 0);
+  EXPECT_EQ(&condense(full, 11, small), &small);
+  EXPECT_EQ(small.rows, 11);
 }
 
 TEST(Condense, KeepsTheToolCoupledRowsAndTheirSolution) {

@@ -38,6 +38,27 @@ void write_matrix(ByteWriter& w, const Mat6& m) {
     for (int j = 0; j < 6; ++j) w.f64(m(i, j));
 }
 
+void write_rows(ByteWriter& w, const ConstraintProblem& p) {
+  w.i32(p.rows);
+  w.i32(p.rows * (p.rows + 1) / 2);
+  for (int i = 0; i < p.rows; ++i)
+    for (int j = 0; j <= i; ++j) w.f32(float(p.w_at(i, j)));
+  for_each_field(row_fields, [&]<class Field>(const Field& f, std::size_t) {
+    for (int i = 0; i < p.rows; ++i) w.number(typename Field::Wire((p.*f.values)[std::size_t(i)]));
+  });
+}
+
+void write_tool(ByteWriter& w, const ToolTerms& tool, const Pose& offset) {
+  w.i8(std::int8_t(tool.hand));
+  write_pose(w, tool.device);
+  for (int i = 0; i < 3; ++i) w.f64(tool.swept_displacement[i]);
+  write_pose(w, tool.free);
+  write_matrix(w, tool.gain);
+  write_matrix(w, tool.compliance);
+  write_matrix(w, tool.stiffness);
+  write_pose(w, offset);
+}
+
 Pose read_pose(const std::uint8_t* at) {
   double v[7];
   wire::load_doubles(at, 7, v);
@@ -91,45 +112,32 @@ void read_all(const ProblemLayout& l, HapticUpdate& into) {
 
 }  // namespace
 
-bool encode_problem(const HapticUpdate& update, std::vector<std::uint8_t>& out) {
+bool encode_problem(const ProblemStamp& stamp, const ConstraintProblem& p, const std::array<bool, 2>& left_out,
+                    std::vector<std::uint8_t>& out) {
   ByteWriter w(out);
-  const ConstraintProblem& p = update.problem;
   if (!has_wire_form(p)) return false;
+  const auto stays = [&](const ToolTerms& t) { return t.hand < 0 || t.hand > 1 || !left_out[std::size_t(t.hand)]; };
+  const auto tools = int(std::count_if(p.tools.begin(), p.tools.end(), stays));
   w.i64(insula_lcm::haptic_problem_t::getHash());
-  w.i64(update.session);
-  w.i64(update.sequence);
-  w.i64(update.time_us);
-  w.i64(update.pose_time_us);
-  w.f64(update.step_s);
-  w.f64(update.sim_time_s);
-  w.i32(p.rows);
-  w.i32(p.rows * (p.rows + 1) / 2);
-  for (int i = 0; i < p.rows; ++i)
-    for (int j = 0; j <= i; ++j) w.f32(float(p.w_at(i, j)));
-  for_each_field(row_fields, [&]<class Field>(const Field& f, std::size_t) {
-    for (int i = 0; i < p.rows; ++i) w.number(typename Field::Wire((p.*f.values)[std::size_t(i)]));
-  });
+  w.i64(stamp.session);
+  w.i64(stamp.sequence);
+  w.i64(stamp.time_us);
+  w.i64(stamp.pose_time_us);
+  w.f64(stamp.step_s);
+  w.f64(stamp.sim_time_s);
+  write_rows(w, p);
   w.f64(p.prediction_horizon_steps);
   w.i32(int(p.blocks.size()));
   for_each_field(block_fields, [&](const auto& f, std::size_t) {
     for (const Block& b : p.blocks)
       for (std::size_t k = 0; k < f.count; ++k) w.number(f.get(b, k));
   });
-  w.i8(std::int8_t(p.tools.size()));
-  for (std::size_t t = 0; t < p.tools.size(); ++t) {
-    const ToolTerms& tool = p.tools[t];
-    w.i8(std::int8_t(tool.hand));
-    write_pose(w, tool.device);
-    for (int i = 0; i < 3; ++i) w.f64(tool.swept_displacement[i]);
-    write_pose(w, tool.free);
-    write_matrix(w, tool.gain);
-    write_matrix(w, tool.compliance);
-    write_matrix(w, tool.stiffness);
-    write_pose(w, update.offset[t]);
-  }
-  w.i32(int(p.tools.size()) * p.rows * 6);
+  w.i8(std::int8_t(tools));
+  for (std::size_t t = 0; t < p.tools.size(); ++t)
+    if (stays(p.tools[t])) write_tool(w, p.tools[t], stamp.offset[t]);
+  w.i32(tools * p.rows * 6);
   for (const ToolTerms& tool : p.tools)
-    for (int i = 0; i < p.rows; ++i)
+    for (int i = 0; i < p.rows && stays(tool); ++i)
       for (int c = 0; c < 6; ++c) w.f32(float(tool.jacobian(i, c)));
   w.i32(0);
   seal_problem(out);

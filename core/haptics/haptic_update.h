@@ -15,23 +15,32 @@ namespace insula {
 inline constexpr int max_problem_rows = 240;
 inline constexpr int max_problem_tools = 2;
 
-struct HapticUpdate {
+/// What a message says besides the problem.
+struct ProblemStamp {
   std::int64_t session = 0;       ///< engine run, microseconds of its start
   std::int64_t sequence = 0;      ///< counts up by one each step
   std::int64_t time_us = 0;       ///< CLOCK_MONOTONIC when the step ended
   std::int64_t pose_time_us = 0;  ///< CLOCK_MONOTONIC of the device poses the step was made with; 0: not known
   double step_s = 0;              ///< time step h, also the problem's own
   double sim_time_s = 0;          ///< simulated time at the end of the step
-  ConstraintProblem problem;
   /// Tool frame relative to the device's pose, per entry of problem.tools; identity unless calibrated.
   std::array<Pose, max_problem_tools> offset;
+};
+
+struct HapticUpdate : ProblemStamp {
+  ConstraintProblem problem;
 };
 
 /// Writes the message into `out`, which keeps its capacity. W, Jacobians, friction, compliance, rate and retardation
 /// time travel as float32, W as its lower triangle. False, with `out` empty, when the problem has no wire form: more
 /// than 240 rows or 2 tools, or vectors that do not match `rows`. The last four bytes are a checksum: UDP checks
 /// nothing on a loopback interface, and a bit that flips in the mantissa of a number leaves it plausible.
-bool encode_problem(const HapticUpdate& update, std::vector<std::uint8_t>& out);
+/// The tool of a hand in `left_out` (0 left, 1 right) is not in the message.
+bool encode_problem(const ProblemStamp& stamp, const ConstraintProblem& problem, const std::array<bool, 2>& left_out,
+                    std::vector<std::uint8_t>& out);
+inline bool encode_problem(const HapticUpdate& update, std::vector<std::uint8_t>& out) {
+  return encode_problem(update, update.problem, {}, out);
+}
 
 /// Gives changed bytes of a message the checksum that belongs to them (tests of what is behind it).
 void seal_problem(std::vector<std::uint8_t>& message);

@@ -28,10 +28,60 @@ inline Mat6 random_symmetric(std::mt19937& random, double scale) {
   return scale * (a * a.transpose());
 }
 
+/// Random numbers of a problem, one after the other.
+struct ProblemRandom {
+  std::mt19937 bits;
+  std::normal_distribution<double> normal{};
+  double operator()() { return normal(bits); }
+};
+
+/// Box blocks, and a friction block at every second place until there are `contacts` of them; with their lambda.
+inline void add_blocks(ConstraintProblem& p, int boxes, int contacts, ProblemRandom& random) {
+  int row = 0;
+  for (int k = 0, all = boxes + contacts; k < all; ++k) {
+    Block b;
+    b.id = 0xfedc000000000000u + std::uint64_t(1000 + k * 7);
+    b.row = row;
+    b.owner = 3 * k - 1;
+    b.role = BlockRole(k % (int(BlockRole::last) + 1));
+    for (float& by : b.frame_rotation) by = float(0.1 * random());
+    if (k % 2 == 1 && contacts > 0) {
+      --contacts;
+      b.law = LawKind::friction;
+      b.friction = double(0.3f);
+      p.lambda[std::size_t(row)] = 0.5;
+      p.lambda[std::size_t(row + 1)] = 0.1;
+      p.lambda[std::size_t(row + 2)] = -0.1;
+    } else {
+      b.compliance = double(0.02f);
+      if (k % 4 == 0) b.upper = 0;
+      p.lambda[std::size_t(row)] = -std::abs(random());
+    }
+    p.blocks.push_back(b);
+    row += b.rows();
+    if (row >= p.rows) break;
+  }
+}
+
+inline ToolTerms random_tool(int hand, int rows, ProblemRandom& random) {
+  ToolTerms tool;
+  tool.hand = hand;
+  tool.device = random_pose(random.bits);
+  const double x = random(), y = random(), z = random();
+  tool.swept_displacement = 0.01 * Vec3(x, y, z);
+  tool.free = random_pose(random.bits);
+  tool.gain = random_symmetric(random.bits, 0.01);
+  tool.gain(0, 5) += 0.5;  // a gain need not be symmetric
+  tool.compliance = random_symmetric(random.bits, 1e-3);
+  tool.stiffness = random_symmetric(random.bits, 100);
+  tool.jacobian.resize(rows, 6);
+  for (int i = 0; i < rows * 6; ++i) tool.jacobian.data()[i] = double(float(random()));
+  return tool;
+}
+
 /// A valid problem with friction and box blocks, float32 values where the wire has float32.
 inline HapticUpdate make_update(unsigned seed, int boxes = 4, int contacts = 3, int tools = 2) {
-  std::mt19937 random(seed);
-  std::normal_distribution<double> normal;
+  ProblemRandom random{std::mt19937(seed)};
   HapticUpdate u;
   u.session = 1234567890123;
   u.sequence = 77;
@@ -44,55 +94,20 @@ inline HapticUpdate make_update(unsigned seed, int boxes = 4, int contacts = 3, 
   p.resize(n);
   for (int i = 0; i < n; ++i)
     for (int j = 0; j <= i; ++j) {
-      const double w = double(float(i == j ? 1e-3 + std::abs(normal(random)) * 1e-3 : normal(random) * 1e-5));
+      const double w = double(float(i == j ? 1e-3 + std::abs(random()) * 1e-3 : random() * 1e-5));
       p.w[std::size_t(i * p.stride + j)] = p.w[std::size_t(j * p.stride + i)] = w;
     }
-  for (int i = 0; i < n; ++i) p.delta_free[std::size_t(i)] = normal(random) * 1e-3;
+  for (int i = 0; i < n; ++i) p.delta_free[std::size_t(i)] = random() * 1e-3;
   p.step_s = u.step_s;
   p.prediction_horizon_steps = 0.375;
   for (int i = 0; i < n; ++i) {
-    p.rate[std::size_t(i)] = double(float(normal(random) * 1e-2));
+    p.rate[std::size_t(i)] = double(float(random() * 1e-2));
     p.retardation_time[std::size_t(i)] = double(float(0.01 * (i % 3)));
   }
-  int row = 0;
-  for (int k = 0; k < boxes + contacts; ++k) {
-    Block b;
-    b.id = 0xfedc000000000000u + std::uint64_t(1000 + k * 7);
-    b.row = row;
-    b.owner = 3 * k - 1;
-    b.role = BlockRole(k % (int(BlockRole::last) + 1));
-    for (float& by : b.frame_rotation) by = float(0.1 * normal(random));
-    if (k % 2 == 1 && contacts > 0) {
-      --contacts;
-      ++boxes;  // keeps k's bound
-      b.law = LawKind::friction;
-      b.friction = double(0.3f);
-      p.lambda[std::size_t(row)] = 0.5;
-      p.lambda[std::size_t(row + 1)] = 0.1;
-      p.lambda[std::size_t(row + 2)] = -0.1;
-    } else {
-      b.compliance = double(0.02f);
-      if (k % 4 == 0) b.upper = 0;
-      p.lambda[std::size_t(row)] = -std::abs(normal(random));
-    }
-    p.blocks.push_back(b);
-    row += b.rows();
-    if (row >= n) break;
-  }
+  add_blocks(p, boxes, contacts, random);
   for (int t = 0; t < tools; ++t) {
-    ToolTerms tool;
-    tool.hand = 1 - t;
-    tool.device = random_pose(random);
-    tool.swept_displacement = 0.01 * Vec3(normal(random), normal(random), normal(random));
-    tool.free = random_pose(random);
-    tool.gain = random_symmetric(random, 0.01);
-    tool.gain(0, 5) += 0.5;  // a gain need not be symmetric
-    tool.compliance = random_symmetric(random, 1e-3);
-    tool.stiffness = random_symmetric(random, 100);
-    tool.jacobian.resize(n, 6);
-    for (int i = 0; i < n * 6; ++i) tool.jacobian.data()[i] = double(float(normal(random)));
-    p.tools.push_back(tool);
-    u.offset[std::size_t(t)] = random_pose(random);
+    p.tools.push_back(random_tool(1 - t, n, random));
+    u.offset[std::size_t(t)] = random_pose(random.bits);
   }
   return u;
 }

@@ -49,6 +49,21 @@ TEST(HapticUpdate, BytesAreThoseOfTheGeneratedClass) {
   EXPECT_EQ(back.offset[1].p.z(), message.tool[1].offset_p_m[2]);
 }
 
+TEST(HapticUpdate, AToolThatIsLeftOutIsNotInTheMessage) {
+  const HapticUpdate all = make_update(7);
+  ASSERT_EQ(all.problem.tools.size(), 2u);
+  for (std::size_t t = 0; t < 2; ++t) {
+    std::array<bool, 2> left_out{};
+    left_out[std::size_t(all.problem.tools[t].hand)] = true;
+    HapticUpdate rest = all;
+    rest.problem.tools.erase(rest.problem.tools.begin() + std::ptrdiff_t(t));
+    if (t == 0) rest.offset[0] = rest.offset[1];
+    Buffer out;
+    ASSERT_TRUE(encode_problem(all, all.problem, left_out, out));
+    EXPECT_EQ(out, encoded(rest));
+  }
+}
+
 TEST(HapticUpdate, WidestProblemFits) {
   HapticUpdate boxes_only = make_update(9, 240, 0, 2);
   EXPECT_EQ(boxes_only.problem.rows, max_problem_rows);

@@ -119,11 +119,26 @@ void AsynchronousSolver::solve(double* x) {
   status_.residual_m = refine(b_.data(), x, tolerance_);
 }
 
-void AsynchronousSolver::begin_motion(const VecX& load, const VecX& guess) {
+bool AsynchronousSolver::begin_motion(const BlockMatrix* a, const VecX& load, const VecX& guess) {
+  if (a && !factorise(*a)) return false;
   for (std::size_t i = 0; i < b_.size(); ++i) b_[i] = load[long(i)] + lagged_[i];
   free_ = guess;
   status_.residual_m = refine(b_.data(), free_.data(), early * tolerance_);
   left_ = r_;
+  return true;
+}
+
+void AsynchronousSolver::end_motion(const BodyRows& rows, const double* lambda, VecX& x) {
+  x = free_;
+  const std::vector<double>& correction = correct(rows, lambda);
+  x += Eigen::Map<const VecX>(correction.data(), long(correction.size()));
+}
+
+void AsynchronousSolver::add_rows_of(const double* x, const BodyRows& rows, double* delta) const {
+  for (int i = 0; i < rows.count(); ++i)
+    for (int e = rows.start[std::size_t(i)]; e < rows.start[std::size_t(i) + 1]; ++e)
+      if (const int node = (*nodes_of_block_)[std::size_t(rows.block[std::size_t(e)])]; node >= 0)
+        delta[rows.row[std::size_t(i)]] += rows.coeff[std::size_t(e)].dot(Eigen::Map<const Vec3>(x + 3 * node));
 }
 
 void AsynchronousSolver::begin_compliance(const BodyRows& rows, const std::vector<int>& node_of_block) {
@@ -204,7 +219,7 @@ void AsynchronousSolver::keep_rows() {
 }
 
 // From what the last lambda gave, if there was one, by the compliance of what changed; then with the step's own matrix.
-void AsynchronousSolver::correct(const BodyRows& rows, const double* lambda, double* x) {
+const std::vector<double>& AsynchronousSolver::correct(const BodyRows& rows, const double* lambda) {
   const std::size_t m = std::size_t(rows.count()), n = b_.size();
   bool moved = !corrected_;
   change_.assign(std::size_t(rotated_rows_.count()), 0.0);
@@ -238,7 +253,7 @@ void AsynchronousSolver::correct(const BodyRows& rows, const double* lambda, dou
     lacks_ = refine(b_.data(), last_x_.data(), tolerance_);
   }
   status_.residual_m = lacks_;
-  std::copy(last_x_.begin(), last_x_.end(), x);
+  return last_x_;
 }
 
 void AsynchronousSolver::reset() {

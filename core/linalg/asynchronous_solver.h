@@ -13,36 +13,35 @@
 // solution is then moved by exactly that displacement.
 #pragma once
 #include "core/linalg/background_factor.h"
-#include "core/linalg/body_solver.h"
+#include "core/linalg/inexact_solver.h"
 
 namespace insula {
 
-class AsynchronousSolver final : public BodySolver {
+class AsynchronousSolver final : public InexactSolver {
  public:
   explicit AsynchronousSolver(double tolerance);  ///< m
 
-  std::string name() const override { return "asynchronous"; }
   void analyse(const BlockMatrix& a) override;
   /// Takes the step's matrix, which must not change until the next call. The first matrix is factorised at once. Later
   /// ones are factorised in the background, when the number of iterations has grown. False: the first matrix was not
   /// positive definite.
   bool factorise(const BlockMatrix& a) override;
-  bool wants_rotations() const override { return true; }
   void set_rotations(const std::vector<Mat3>& rotation) override;
   void solve(double* x) override;
-  void begin_motion(const VecX& load, const VecX& guess) override;
+  bool begin_motion(const BlockMatrix* a, const VecX& load, const VecX& guess) override;
   void unforced_motion(const VecX& load, VecX& x) override { refine(load.data(), x.data(), early * tolerance_); }
+  void add_free_motion(const BodyRows& rows, double* delta) const override { add_rows_of(free_.data(), rows, delta); }
+  void end_motion(const BodyRows& rows, const double* lambda, VecX& x) override;
   void begin_compliance(const BodyRows& rows, const std::vector<int>& node_of_block) override;
   int compliance_parts(ComplianceAct act) const override { return front_->full.compliance_parts(act); }
   void compliance_part(ComplianceAct act, int part) override { front_->full.compliance_part(act, part); }
   void add_compliance(const BodyRows& rows, double* w, int stride) override;
   void subtract_lagged(const BodyRows& rows, double* delta) const override;
-  void correct(const BodyRows& rows, const double* lambda, double* x) override;
-  bool exact() const override { return false; }
+  const std::vector<double>& correct(const BodyRows& rows, const double* lambda) override;
+  void add_correction(const BodyRows& rows, double* delta) const override { add_rows_of(last_x_.data(), rows, delta); }
   void reset() override;
   void set_deterministic(bool yes) override { deterministic_ = yes; }
   SolverStatus status() const override { return status_; }
-  int rows_reused() const override { return front_->full.rows_reused(); }
   SolverCost cost() const override { return front_->full.cost(); }
 
   /// A requested factor is put in place this many steps later when waiting is allowed. This is about the time that a
@@ -53,6 +52,7 @@ class AsynchronousSolver final : public BodySolver {
   static constexpr int max_iterations = 12;
 
  private:
+  void add_rows_of(const double* x, const BodyRows& rows, double* delta) const;  ///< delta += H x, by row number
   void keep_rows();
   void precondition(const double* r, double* z);
   double refine(const double* b, double* x, double tolerance);  ///< what is left, m
@@ -61,6 +61,7 @@ class AsynchronousSolver final : public BodySolver {
   void take();
 
   double tolerance_;
+  VecX free_;  ///< the free motion, natural order, m
   const BlockMatrix* a_ = nullptr;
   std::unique_ptr<StaleFactor> front_;
   BackgroundFactor background_;

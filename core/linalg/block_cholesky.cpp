@@ -141,21 +141,13 @@ void MultifrontalCholesky<Real>::solve(double* x) {
 }
 
 template <class Real>
-void MultifrontalCholesky<Real>::begin_motion(const VecX& load, const VecX&) {
+bool MultifrontalCholesky<Real>::begin_motion(const BlockMatrix* a, const VecX& load, const VecX&) {
   [[maybe_unused]] const FlushSubnormals<Real> flush;
-  e_.permute(load.data(), load_.data());
-  forward(load_.data());
-  loaded_ = true;
-}
-
-template <class Real>
-bool MultifrontalCholesky<Real>::factorise_and_begin(const BlockMatrix& a, const VecX& load, const VecX&) {
-  [[maybe_unused]] const FlushSubnormals<Real> flush;
-  ++factor_number_;
+  if (a) ++factor_number_;
   loaded_ = true;
   e_.permute(load.data(), load_.data());
   for (const Front& f : e_.front) {
-    if (!factorise(a, f)) return false;
+    if (a && !factorise(*a, f)) return false;
     forward(f, load_.data());
   }
   return true;

@@ -16,24 +16,19 @@ namespace insula {
 template <class Real>
 class MultifrontalCholesky final : public BodySolver {
  public:
-  std::string name() const override { return sizeof(Real) == 4 ? "direct, single precision" : "direct"; }
   void analyse(const BlockMatrix& a) override;
   bool factorise(const BlockMatrix& a) override;
   void solve(double* x) override;
-  void begin_motion(const VecX& load, const VecX& guess) override;
-  /// The load is substituted front by front, while each front is in the cache.
-  bool factorise_and_begin(const BlockMatrix& a, const VecX& load, const VecX& guess) override;
+  /// With a new matrix the load is substituted front by front, while each front is in the cache.
+  bool begin_motion(const BlockMatrix* a, const VecX& load, const VecX& guess) override;
   void unforced_motion(const VecX& load, VecX& x) override;
-  void add_free_motion(const BodyRows& rows, const std::vector<int>& node_of_block, double* delta) const override;
+  void add_free_motion(const BodyRows& rows, double* delta) const override;
   void end_motion(const BodyRows& rows, const double* lambda, VecX& x) override;
   void begin_compliance(const BodyRows& rows, const std::vector<int>& node_of_block) override;
   int compliance_parts(ComplianceAct act) const override;
   void compliance_part(ComplianceAct act, int part) override;
   void add_compliance(const BodyRows& rows, double* w, int stride) override;
-  void correct(const BodyRows& rows, const double* lambda, double* x) override;
-  int rows_reused() const override { return reused_; }
   SolverCost cost() const override;
-  int supernodes() const { return int(e_.front.size()); }
 
   const Elimination& elimination() const { return e_; }
   const Real* panels() const { return panel_.data(); }
@@ -97,6 +92,5 @@ class MultifrontalCholesky final : public BodySolver {
 
 extern template class MultifrontalCholesky<double>;
 extern template class MultifrontalCholesky<float>;
-using BlockCholesky = MultifrontalCholesky<double>;
 
 }  // namespace insula

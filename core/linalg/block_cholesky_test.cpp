@@ -105,7 +105,9 @@ TYPED_TEST(Direct, ComplianceAndCorrection) {
         EXPECT_TRUE(test::held(sizeof(TypeParam) == 8 ? "H A^-1 H^T" : "H A^-1 H^T, single precision",
                                std::abs(w[std::size_t(i * stride + j)] - expected(i, j)), 1, this->tolerance));
     VecX lambda = VecX::LinSpaced(m, 1, 2), x(p.dense.rows());
-    c.correct(p.rows, lambda.data(), x.data());
+    const VecX none = VecX::Zero(p.dense.rows());
+    ASSERT_TRUE(c.begin_motion(nullptr, none, none));
+    c.end_motion(p.rows, lambda.data(), x);
     EXPECT_LT((x - p.dense.ldlt().solve(p.h.transpose() * lambda)).template lpNorm<Eigen::Infinity>(), this->tolerance);
   }
 }
@@ -152,18 +154,51 @@ TYPED_TEST(Direct, SaysWhenAPivotIsLost) {
   EXPECT_TRUE(c.factorise(a));
 }
 
+/// Adds some rows of `from` to `to`.
+void choose(const BodyRows& from, const std::vector<int>& rows, BodyRows& to) {
+  for (int r : rows) {
+    to.open(to.count());
+    for (int e = from.start[std::size_t(r)]; e < from.start[std::size_t(r) + 1]; ++e)
+      to.add(from.block[std::size_t(e)], from.coeff[std::size_t(e)]);
+  }
+}
+
+/// H of the rows, whose blocks are nodes of the matrix.
+MatX dense_rows(const BodyRows& rows, long unknowns) {
+  MatX h = MatX::Zero(rows.count(), unknowns);
+  for (int r = 0; r < rows.count(); ++r)
+    for (int e = rows.start[std::size_t(r)]; e < rows.start[std::size_t(r) + 1]; ++e)
+      h.block<1, 3>(r, 3 * rows.block[std::size_t(e)]) += rows.coeff[std::size_t(e)].transpose();
+  return h;
+}
+
+/// What must hold of the two halves of a motion under this load and these rows.
+template <class Real>
+void expect_motion(MultifrontalCholesky<Real>& solver, const Problem& p, const BodyRows& rows, const VecX& load,
+                   const VecX& lambda, double tolerance) {
+  const int m = rows.count();
+  const MatX h = dense_rows(rows, p.dense.rows());
+  const auto dense = p.dense.ldlt();
+  const VecX free = dense.solve(load), moved = dense.solve(load + h.transpose() * lambda.head(m));
+  VecX delta = VecX::Constant(80, 2.0), motion;
+  solver.unforced_motion(load, motion);
+  EXPECT_LT((motion - free).template lpNorm<Eigen::Infinity>(), tolerance);
+  solver.add_free_motion(rows, delta.data());
+  if (m > 0) {
+    EXPECT_TRUE(test::held(sizeof(Real) == 8 ? "H A^-1 f" : "H A^-1 f, single precision",
+                           (delta.head(m) - h * free - VecX::Constant(m, 2.0)).template lpNorm<Eigen::Infinity>(), 1,
+                           tolerance));
+  }
+  solver.end_motion(rows, lambda.data(), motion);
+  EXPECT_TRUE(test::held(sizeof(Real) == 8 ? "A^-1 (f + H^T l)" : "A^-1 (f + H^T l), single precision",
+                         (motion - moved).template lpNorm<Eigen::Infinity>(), 1, tolerance));
+}
+
 // Rows come, stay, change their place, change their entries and go while the factor stays, then the factor is made
 // anew: W is to the bit what a solver gives that sees these rows for the first time. The load is another in every step,
 // and both halves of the motion are those of dense algebra.
 TYPED_TEST(Direct, RowsThatStayAreNotSolvedAgain) {
   Problem p = make(6, 6, 5, 70, 11), other = make(6, 6, 5, 70, 12);
-  const auto choose = [](const BodyRows& from, const std::vector<int>& rows, BodyRows& to) {
-    for (int r : rows) {
-      to.open(to.count());
-      for (int e = from.start[std::size_t(r)]; e < from.start[std::size_t(r) + 1]; ++e)
-        to.add(from.block[std::size_t(e)], from.coeff[std::size_t(e)]);
-    }
-  };
   std::vector<int> none, all, odd, turned, most;
   for (int r = 0; r < 70; ++r) {
     all.push_back(r);
@@ -190,43 +225,22 @@ TYPED_TEST(Direct, RowsThatStayAreNotSolvedAgain) {
       choose(other.rows, act.fresh, rows);
       const int m = rows.count(), stride = 80;
       std::vector<double> w(80 * 80, 0.0), expected(w);
-      c.begin_motion(VecX::LinSpaced(p.dense.rows(), -1, m + 1), VecX());
+      const VecX load = VecX::LinSpaced(p.dense.rows(), -1, m + 1), guess = VecX::Zero(load.size());
+      ASSERT_TRUE(c.begin_motion(nullptr, load, guess));
       c.compute_compliance(rows, p.identity);
       c.add_compliance(rows, w.data(), stride);
-      EXPECT_EQ(c.rows_reused(), act.reused);
+      EXPECT_EQ(c.cost().rows_reused, act.reused);
       MultifrontalCholesky<TypeParam> fresh;
       fresh.analyse(p.a);
-      const VecX load = VecX::LinSpaced(p.dense.rows(), -1, m + 1), guess = VecX::Zero(load.size());
-      ASSERT_TRUE(fresh.factorise_and_begin(p.a, load, guess));
+      ASSERT_TRUE(fresh.begin_motion(&p.a, load, guess));
       fresh.compute_compliance(rows, p.identity);
       fresh.add_compliance(rows, expected.data(), stride);
-      EXPECT_EQ(fresh.rows_reused(), 0);
+      EXPECT_EQ(fresh.cost().rows_reused, 0);
       EXPECT_EQ(w, expected) << m << " rows";
-      VecX lambda = VecX::LinSpaced(std::max(m, 1), 1, 2), x(p.dense.rows()), y(x);
-      c.correct(rows, lambda.data(), x.data());
-      fresh.correct(rows, lambda.data(), y.data());
-      EXPECT_LT((x - y).template lpNorm<Eigen::Infinity>(), this->tolerance);
+      const VecX lambda = VecX::LinSpaced(std::max(m, 1), 1, 2);
 
-      MatX h = MatX::Zero(m, p.dense.rows());
-      for (int r = 0; r < m; ++r)
-        for (int e = rows.start[std::size_t(r)]; e < rows.start[std::size_t(r) + 1]; ++e)
-          h.block<1, 3>(r, 3 * rows.block[std::size_t(e)]) += rows.coeff[std::size_t(e)].transpose();
-      const auto dense = p.dense.ldlt();
-      const VecX free = dense.solve(load), moved = dense.solve(load + h.transpose() * lambda.head(m));
-      for (MultifrontalCholesky<TypeParam>* solver : {&c, &fresh}) {
-        VecX delta = VecX::Constant(80, 2.0), motion;
-        solver->unforced_motion(load, motion);
-        EXPECT_LT((motion - free).template lpNorm<Eigen::Infinity>(), 4 * this->tolerance);
-        solver->add_free_motion(rows, p.identity, delta.data());
-        if (m > 0) {
-          EXPECT_TRUE(test::held(sizeof(TypeParam) == 8 ? "H A^-1 f" : "H A^-1 f, single precision",
-                                 (delta.head(m) - h * free - VecX::Constant(m, 2.0)).template lpNorm<Eigen::Infinity>(),
-                                 1, 4 * this->tolerance));
-        }
-        solver->end_motion(rows, lambda.data(), motion);
-        EXPECT_TRUE(test::held(sizeof(TypeParam) == 8 ? "A^-1 (f + H^T l)" : "A^-1 (f + H^T l), single precision",
-                               (motion - moved).template lpNorm<Eigen::Infinity>(), 1, 4 * this->tolerance));
-      }
+      for (MultifrontalCholesky<TypeParam>* solver : {&c, &fresh})
+        expect_motion(*solver, p, rows, load, lambda, 4 * this->tolerance);
     }
     p.dense(3 * 17, 3 * 17) += 1;
   }

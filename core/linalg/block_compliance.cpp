@@ -258,7 +258,7 @@ void MultifrontalCholesky<Real>::load_columns(int group, int from, int to) {
 }
 
 template <class Real>
-void MultifrontalCholesky<Real>::add_free_motion(const BodyRows& rows, const std::vector<int>&, double* delta) const {
+void MultifrontalCholesky<Real>::add_free_motion(const BodyRows& rows, double* delta) const {
   if (columns_ == 0 || e_.nodes == 0 || !loaded_) return;
   for (std::size_t c = 0; c < std::size_t(ldy_); ++c)
     if (order_[c] >= 0) delta[rows.row[std::size_t(order_[c])]] -= double(of_load_[c]);
@@ -312,15 +312,6 @@ void MultifrontalCholesky<Real>::combine(const BodyRows& rows, const double* lam
     }
 }
 
-template <class Real>
-void MultifrontalCholesky<Real>::correct(const BodyRows& rows, const double* lambda, double* x) {
-  [[maybe_unused]] const FlushSubnormals<Real> flush;
-  std::fill_n(x_.data(), 3 * e_.nodes, Real(0));
-  combine(rows, lambda, x_.data());
-  if (columns_ > 0) backward(x_.data());
-  e_.restore(x_.data(), x);
-}
-
 // Each front solves its own rows of Y, takes them off those below, multiplies them with themselves.
 template <class Real>
 SolverCost MultifrontalCholesky<Real>::cost() const {
@@ -328,6 +319,7 @@ SolverCost MultifrontalCholesky<Real>::cost() const {
   c.factor_entries = e_.entries;
   c.factor_flops = e_.flops;
   c.factor_bytes = 2.0 * sizeof(Real) * double(e_.entries);
+  c.rows_reused = reused_;
   for (std::size_t i = 0; compliance_parts(ComplianceAct::forward) > 0 && i < e_.front.size(); ++i) {
     const double fresh = std::max(0, active_[0][i].end - active_[0][i].begin),
                  known = std::max(0, active_[1][i].end - active_[1][i].begin);
@@ -337,22 +329,21 @@ SolverCost MultifrontalCholesky<Real>::cost() const {
   return c;
 }
 
-#define INSULA_COMPLIANCE_OF(Real)                                                                                    \
-  template void MultifrontalCholesky<Real>::begin_compliance(const BodyRows&, const std::vector<int>&);               \
-  template void MultifrontalCholesky<Real>::arrange();                                                                \
-  template void MultifrontalCholesky<Real>::clear_fresh();                                                            \
-  template void MultifrontalCholesky<Real>::copy_known();                                                             \
-  template void MultifrontalCholesky<Real>::share_out();                                                              \
-  template int MultifrontalCholesky<Real>::compliance_parts(ComplianceAct) const;                                     \
-  template void MultifrontalCholesky<Real>::compliance_part(ComplianceAct, int);                                      \
-  template void MultifrontalCholesky<Real>::forward_columns(int, int);                                                \
-  template void MultifrontalCholesky<Real>::product_columns(int, int);                                                \
-  template void MultifrontalCholesky<Real>::load_columns(int, int, int);                                              \
-  template void MultifrontalCholesky<Real>::add_free_motion(const BodyRows&, const std::vector<int>&, double*) const; \
-  template void MultifrontalCholesky<Real>::copy_known_products();                                                    \
-  template void MultifrontalCholesky<Real>::add_compliance(const BodyRows&, double*, int);                            \
-  template void MultifrontalCholesky<Real>::combine(const BodyRows&, const double*, Real*) const;                     \
-  template void MultifrontalCholesky<Real>::correct(const BodyRows&, const double*, double*);                         \
+#define INSULA_COMPLIANCE_OF(Real)                                                                      \
+  template void MultifrontalCholesky<Real>::begin_compliance(const BodyRows&, const std::vector<int>&); \
+  template void MultifrontalCholesky<Real>::arrange();                                                  \
+  template void MultifrontalCholesky<Real>::clear_fresh();                                              \
+  template void MultifrontalCholesky<Real>::copy_known();                                               \
+  template void MultifrontalCholesky<Real>::share_out();                                                \
+  template int MultifrontalCholesky<Real>::compliance_parts(ComplianceAct) const;                       \
+  template void MultifrontalCholesky<Real>::compliance_part(ComplianceAct, int);                        \
+  template void MultifrontalCholesky<Real>::forward_columns(int, int);                                  \
+  template void MultifrontalCholesky<Real>::product_columns(int, int);                                  \
+  template void MultifrontalCholesky<Real>::load_columns(int, int, int);                                \
+  template void MultifrontalCholesky<Real>::add_free_motion(const BodyRows&, double*) const;            \
+  template void MultifrontalCholesky<Real>::copy_known_products();                                      \
+  template void MultifrontalCholesky<Real>::add_compliance(const BodyRows&, double*, int);              \
+  template void MultifrontalCholesky<Real>::combine(const BodyRows&, const double*, Real*) const;       \
   template SolverCost MultifrontalCholesky<Real>::cost() const
 INSULA_COMPLIANCE_OF(double);
 INSULA_COMPLIANCE_OF(float);

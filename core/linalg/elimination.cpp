@@ -57,10 +57,99 @@ Supernodes analyse_graph(const BlockMatrix& a) {
   return out;
 }
 
+int padded(int n, int lanes) { return (n + lanes - 1) & -lanes; }
+
+/// Rows, place in the panels and cost of each front.
+void set_fronts(Elimination& e, const Supernodes& sn, int lanes) {
+  const int count = int(sn.super.size()) - 1;
+  e.front.resize(std::size_t(count));
+  e.front_of.assign(std::size_t(e.nodes), 0);
+  for (int s = 0; s < count; ++s) {
+    Front& f = e.front[std::size_t(s)];
+    f.first = sn.super[std::size_t(s)];
+    f.own = sn.super[std::size_t(s) + 1] - f.first;
+    f.row_begin = sn.row_start[std::size_t(s)];
+    f.rows = sn.row_start[std::size_t(s) + 1] - f.row_begin;
+    f.lda = padded(3 * f.rows, lanes);
+    f.panel = e.panel_size;
+    e.panel_size += long(f.lda) * 3 * f.own;
+    for (int k = 0; k < f.own; ++k) e.front_of[std::size_t(f.first + k)] = s;
+    const double n = 3.0 * f.own, m = 3.0 * f.rows;
+    e.entries += std::int64_t(n * m - n * (n - 1) / 2);
+    e.flops += n * n * n / 3 + n * n * (m - n) + n * (m - n) * (m - n);
+  }
+}
+
+/// Parents, and where a child's rows stand in its parent.
+void link_parents(Elimination& e) {
+  for (std::size_t s = 0; s < e.front.size(); ++s) {
+    Front& f = e.front[s];
+    if (f.rows == f.own) continue;
+    f.parent = e.front_of[std::size_t(e.row_node[std::size_t(f.row_begin + f.own)])];
+    Front& p = e.front[std::size_t(f.parent)];
+    p.children.push_back(int(s));
+    f.map_begin = int(e.map.size());
+    int at = 0;
+    for (int r = f.own; r < f.rows; ++r) {
+      const int node = e.row_node[std::size_t(f.row_begin + r)];
+      while (e.row_node[std::size_t(p.row_begin + at)] != node) ++at;
+      e.map.push_back(at);
+    }
+  }
+}
+
+/// Update matrices live from their front to their parent: first-fit in one arena.
+void place_updates(Elimination& e, int lanes) {
+  struct Interval {
+    long begin, end;
+  };
+  std::vector<Interval> used;
+  for (Front& f : e.front) {
+    const int below = 3 * (f.rows - f.own);
+    if (below > 0) {
+      f.ldu = padded(below, lanes);
+      const long size = long(f.ldu) * padded(below, lanes) + 64;
+      std::sort(used.begin(), used.end(), [](auto& x, auto& y) { return x.begin < y.begin; });
+      long at = 0;
+      for (const Interval& i : used) {
+        if (i.begin - at >= size) break;
+        at = std::max(at, i.end);
+      }
+      f.update = at;
+      used.push_back({at, at + size});
+      e.arena_size = std::max(e.arena_size, at + size);
+    }
+    for (int c : f.children) {
+      const long at = e.front[std::size_t(c)].update;
+      used.erase(std::find_if(used.begin(), used.end(), [at](auto& i) { return i.begin == at; }));
+    }
+  }
+}
+
+/// Where each block of A goes.
+void set_scatter(Elimination& e, const BlockMatrix& a) {
+  std::vector<std::vector<Elimination::Scatter>> by_front(e.front.size());
+  for (int j = 0; j < e.nodes; ++j)
+    for (int slot = a.column_start(j); slot < (j + 1 < e.nodes ? a.column_start(j + 1) : a.slots()); ++slot) {
+      int pr = e.permuted[std::size_t(a.row(slot))], pc = e.permuted[std::size_t(j)];
+      const bool transpose = pr < pc;
+      if (transpose) std::swap(pr, pc);
+      const std::size_t s = std::size_t(e.front_of[std::size_t(pc)]);
+      const Front& f = e.front[s];
+      const auto begin = e.row_node.begin() + f.row_begin;
+      const int local = int(std::lower_bound(begin, begin + f.rows, pr) - begin);
+      by_front[s].push_back({slot, f.panel + long(3 * (pc - f.first)) * f.lda + 3 * local, transpose});
+    }
+  for (std::size_t s = 0; s < e.front.size(); ++s) {
+    e.front[s].scatter_begin = int(e.scatter.size());
+    e.scatter.insert(e.scatter.end(), by_front[s].begin(), by_front[s].end());
+    e.front[s].scatter_end = int(e.scatter.size());
+  }
+}
+
 }  // namespace
 
 void Elimination::analyse(const BlockMatrix& a, int lanes) {
-  const auto pad = [lanes](int n) { return (n + lanes - 1) & -lanes; };
   nodes = a.nodes();
   front.clear();
   scatter.clear();
@@ -77,89 +166,10 @@ void Elimination::analyse(const BlockMatrix& a, int lanes) {
   row_scalar.resize(3 * row_node.size());
   for (std::size_t r = 0; r < row_node.size(); ++r)
     for (int k = 0; k < 3; ++k) row_scalar[3 * r + std::size_t(k)] = 3 * row_node[r] + k;
-
-  const int count = int(sn.super.size()) - 1;
-  front.resize(std::size_t(count));
-  front_of.assign(std::size_t(nodes), 0);
-  long panel = 0;
-  for (int s = 0; s < count; ++s) {
-    Front& f = front[std::size_t(s)];
-    f.first = sn.super[std::size_t(s)];
-    f.own = sn.super[std::size_t(s) + 1] - f.first;
-    f.row_begin = sn.row_start[std::size_t(s)];
-    f.rows = sn.row_start[std::size_t(s) + 1] - f.row_begin;
-    f.lda = pad(3 * f.rows);
-    f.panel = panel;
-    panel += long(f.lda) * 3 * f.own;
-    for (int k = 0; k < f.own; ++k) front_of[std::size_t(f.first + k)] = s;
-    const double n = 3.0 * f.own, m = 3.0 * f.rows;
-    entries += std::int64_t(n * m - n * (n - 1) / 2);
-    flops += n * n * n / 3 + n * n * (m - n) + n * (m - n) * (m - n);
-  }
-  // Parents and where a child's rows stand in its parent.
-  for (int s = 0; s < count; ++s) {
-    Front& f = front[std::size_t(s)];
-    if (f.rows == f.own) continue;
-    f.parent = front_of[std::size_t(row_node[std::size_t(f.row_begin + f.own)])];
-    Front& p = front[std::size_t(f.parent)];
-    p.children.push_back(s);
-    f.map_begin = int(map.size());
-    int at = 0;
-    for (int r = f.own; r < f.rows; ++r) {
-      const int node = row_node[std::size_t(f.row_begin + r)];
-      while (row_node[std::size_t(p.row_begin + at)] != node) ++at;
-      map.push_back(at);
-    }
-  }
-  // Update matrices live from their front to their parent: first-fit in one arena.
-  struct Interval {
-    long begin, end;
-  };
-  std::vector<Interval> used;
-  long arena = 0;
-  for (int s = 0; s < count; ++s) {
-    Front& f = front[std::size_t(s)];
-    const int below = 3 * (f.rows - f.own);
-    if (below > 0) {
-      f.ldu = pad(below);
-      const long size = long(f.ldu) * pad(below) + 64;
-      std::sort(used.begin(), used.end(), [](auto& x, auto& y) { return x.begin < y.begin; });
-      long at = 0;
-      for (const Interval& i : used) {
-        if (i.begin - at >= size) break;
-        at = std::max(at, i.end);
-      }
-      f.update = at;
-      used.push_back({at, at + size});
-      arena = std::max(arena, at + size);
-    }
-    for (int c : f.children) {
-      const long at = front[std::size_t(c)].update;
-      used.erase(std::find_if(used.begin(), used.end(), [at](auto& i) { return i.begin == at; }));
-    }
-  }
-  panel_size = panel;
-  arena_size = arena;
-
-  // Where each block of A goes.
-  std::vector<std::vector<Scatter>> by_front(static_cast<std::size_t>(count));
-  for (int j = 0; j < nodes; ++j)
-    for (int slot = a.column_start(j); slot < (j + 1 < nodes ? a.column_start(j + 1) : a.slots()); ++slot) {
-      int pr = permuted[std::size_t(a.row(slot))], pc = permuted[std::size_t(j)];
-      const bool transpose = pr < pc;
-      if (transpose) std::swap(pr, pc);
-      const int s = front_of[std::size_t(pc)];
-      const Front& f = front[std::size_t(s)];
-      const auto begin = row_node.begin() + f.row_begin;
-      const int local = int(std::lower_bound(begin, begin + f.rows, pr) - begin);
-      by_front[std::size_t(s)].push_back({slot, f.panel + long(3 * (pc - f.first)) * f.lda + 3 * local, transpose});
-    }
-  for (int s = 0; s < count; ++s) {
-    Front& f = front[std::size_t(s)];
-    f.scatter_begin = int(scatter.size());
-    scatter.insert(scatter.end(), by_front[std::size_t(s)].begin(), by_front[std::size_t(s)].end());
-    f.scatter_end = int(scatter.size());
-  }
+  set_fronts(*this, sn, lanes);
+  link_parents(*this);
+  place_updates(*this, lanes);
+  set_scatter(*this, a);
 }
 
 }  // namespace insula

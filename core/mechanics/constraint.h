@@ -8,6 +8,7 @@
 #include "core/constraint/cost_estimate.h"
 #include "core/constraint/problem.h"
 #include "core/mechanics/body.h"
+#include "core/mechanics/step_context.h"
 #include "core/registry/component.h"
 
 namespace insula {

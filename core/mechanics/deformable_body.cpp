@@ -15,6 +15,7 @@
 namespace insula {
 
 void DeformableBody::start_at_rest() {
+  set_blocks(nodes());
   q_.resize(3 * nodes());
   for (int i = 0; i < nodes(); ++i) q_.segment<3>(3 * i) = rest_nodes()[std::size_t(i)];
   v_ = VecX::Zero(3 * nodes());
@@ -69,7 +70,7 @@ void DeformableBody::connect(PrepareContext& context) {
   solver_->analyse(a_);
   start_retardation_times();
   force_ = VecX::Zero(3 * nodes());
-  packed_ = packed_v_ = damped_load_ = guess_ = response_ = load_ = unforced_ = VecX::Zero(3 * free_count_);
+  packed_ = packed_v_ = damped_load_ = guess_ = load_ = unforced_ = VecX::Zero(3 * free_count_);
   turn_.assign(std::size_t(free_count_), Quat::Identity());
   rotation_.assign(std::size_t(free_count_), Mat3::Identity());
   around_ = rotation_;
@@ -148,33 +149,20 @@ void DeformableBody::free_motion(const StepContext& context) {
     if (const int b = free_[std::size_t(i)]; b >= 0) {
       load_.segment<3>(3 * b) =
           force_.segment<3>(3 * i) + mass_[std::size_t(i)] * (context.gravity + v_.segment<3>(3 * i) / h);
-      if (!solver_->exact()) guess_.segment<3>(3 * b) = h * v_.segment<3>(3 * i);
+      if (solver_->inexact()) guess_.segment<3>(3 * b) = h * v_.segment<3>(3 * i);
     }
   if (!damped_.empty()) load_ += damped_load_;
   if (fresh) factorise(h);
-  else solver_->begin_motion(load_, guess_);
+  else solver_->begin_motion(nullptr, load_, guess_);
   // Who asked in the last step will ask again: now bodies work side by side.
   const bool asked = unforced_is_ == Unforced::asked;
   unforced_is_ = asked ? Unforced::known : Unforced::unknown;
   if (asked) solver_->unforced_motion(load_, unforced_);
 }
 
-void DeformableBody::compute_compliance(const BodyRows& r) { solver_->compute_compliance(r, free_); }
-void DeformableBody::begin_compliance(const BodyRows& r) { solver_->begin_compliance(r, free_); }
-int DeformableBody::compliance_parts(ComplianceAct act) const { return solver_->compliance_parts(act); }
-void DeformableBody::compliance_part(ComplianceAct act, int part) { solver_->compliance_part(act, part); }
-void DeformableBody::add_compliance(const BodyRows& r, double* w, int stride) { solver_->add_compliance(r, w, stride); }
-
-void DeformableBody::subtract_lagged(const BodyRows& r, double* delta) const { solver_->subtract_lagged(r, delta); }
-void DeformableBody::apply_compliance(const BodyRows& r, const double* lambda) {
-  solver_->correct(r, lambda, response_.data());
-}
-
-void DeformableBody::add_applied_compliance(const BodyRows& r, double* delta) const {
-  for (int i = 0; i < r.count(); ++i)
-    for (int e = r.start[std::size_t(i)]; e < r.start[std::size_t(i) + 1]; ++e)
-      if (const int b = free_[std::size_t(r.block[std::size_t(e)])]; b >= 0)
-        delta[r.row[std::size_t(i)]] += r.coeff[std::size_t(e)].dot(response_.segment<3>(3 * b));
+void DeformableBody::add_response(const BodyRows& r, double* w, int stride, double* delta_free) {
+  solver_->add_compliance(r, w, stride);
+  solver_->add_free_motion(r, delta_free);
 }
 
 void DeformableBody::apply(const StepContext& context, const BodyRows& r, const double* lambda) {
@@ -210,7 +198,7 @@ void DeformableBody::reset() {
   unforced_.setZero();
   unforced_is_ = Unforced::unknown;
   for (Quat& t : turn_) t.setIdentity();
-  solver_->reset();
+  if (InexactSolver* s = solver_->inexact()) s->reset();
   for (ForceModel* f : forces_) f->reset();
 }
 

@@ -7,13 +7,15 @@
 #include <memory>
 
 #include "core/linalg/body_solver.h"
-#include "core/mechanics/body.h"
+#include "core/mechanics/dynamic_body.h"
 #include "core/mechanics/force_model.h"
 
 namespace insula {
 
-class DeformableBody : public Body {
+class DeformableBody : public DynamicBody {
  public:
+  DeformableBody() : DynamicBody(0) {}
+
   /// The tangent may be older than the force: the equilibrium is the same, and so is the order of the time integration.
   Param<Scalar> tangent_tolerance{
       this,
@@ -44,7 +46,8 @@ class DeformableBody : public Body {
   virtual const std::vector<Vec3>& rest_nodes() const = 0;
   /// Nodes that the topology itself holds (a shell's caps); supports hold more. Default: none.
   virtual void fix_own_nodes(std::vector<char>&) const {}
-  void connect(PrepareContext& context) override;
+  /// Once, after this body and everything it owns are prepared: topology, masses, symbolic factorisation.
+  void connect(PrepareContext& context);
 
   int nodes() const { return int(rest_nodes().size()); }
   const VecX& q() const { return q_; }  ///< 3 values a node, m
@@ -56,7 +59,7 @@ class DeformableBody : public Body {
   const std::vector<char>& fixed() const { return fixed_; }
   const std::vector<int>& free_of_node() const { return free_; }  ///< node -> block of the system matrix, -1 when fixed
   const std::vector<ForceModel*>& forces() const { return forces_; }
-  const BodySolver& solver() const { return *solver_; }
+  SolverCost solver_cost() const { return solver_->cost(); }
   const BlockMatrix& system() const { return a_; }  ///< as it was last assembled
   /// Steps whose matrix was not positive definite; they were solved with more mass (see step()).
   int indefinite_steps() const { return indefinite_; }
@@ -74,25 +77,15 @@ class DeformableBody : public Body {
   /// first step.
   double prestress(const VecX& load);
 
-  int blocks() const override { return nodes(); }
   Vec3 position(const MaterialPoint& p) const override;
   Vec3 expected_displacement(const MaterialPoint& p) const override;
   Vec3 unforced_displacement(const MaterialPoint& p) const override;
   bool can_move(const MaterialPoint& p) const override;
   void add_row(BodyRows& rows, const MaterialPoint& p, const Vec3& d) const override;
   void free_motion(const StepContext& context) override;
-  void compute_compliance(const BodyRows& rows) override;
-  void begin_compliance(const BodyRows& rows) override;
-  int compliance_parts(ComplianceAct act) const override;
-  void compliance_part(ComplianceAct act, int part) override;
-  void add_compliance(const BodyRows& rows, double* w, int stride) override;
-  void add_free_motion(const BodyRows& r, double* delta) const override { solver_->add_free_motion(r, free_, delta); }
-  bool exact() const override { return solver_->exact(); }
-  void subtract_lagged(const BodyRows& rows, double* delta) const override;
-  void apply_compliance(const BodyRows& rows, const double* lambda) override;
-  void add_applied_compliance(const BodyRows& rows, double* delta) const override;
-  void set_deterministic(bool yes) override { solver_->set_deterministic(yes); }
-  SolverStatus solver_status() const override { return solver_->status(); }
+  BodySolver* solver() override { return solver_.get(); }
+  void begin_compliance(const BodyRows& r) override { solver_->begin_compliance(r, free_); }
+  void add_response(const BodyRows& rows, double* w, int stride, double* delta_free) override;
   void apply(const StepContext& context, const BodyRows& rows, const double* lambda) override;
   void add_rate(const BodyRows& rows, double* rate) const override;
   void finish(const StepContext& context, const ConstraintSolution& solution) override;
@@ -118,7 +111,7 @@ class DeformableBody : public Body {
   enum class Unforced { unknown, known, asked };
   mutable Unforced unforced_is_ = Unforced::unknown;
   double factor_ms_ = 0;
-  VecX guess_, response_;   ///< of solvers that are not exact: the last step's displacement, what lambda does
+  VecX guess_;              ///< of solvers that are not exact: the last step's displacement
   std::vector<Quat> turn_;  ///< rotation of each free node's neighbourhood from rest
   std::vector<Mat3> rotation_, around_;
   BlockMatrix a_;

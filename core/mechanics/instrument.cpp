@@ -106,7 +106,7 @@ void Instrument::free_motion(const StepContext& context) {
   free_pose_ = displaced(pose_, free_dq_);
 }
 
-void Instrument::add_compliance(const BodyRows& r, double* w, int stride) {
+void Instrument::add_response(const BodyRows& r, double* w, int stride, double* delta_free) {
   const int m = r.count();
   auto row = [&](int i) {
     Vec6 j = Vec6::Zero();
@@ -123,12 +123,10 @@ void Instrument::add_compliance(const BodyRows& r, double* w, int stride) {
       if (a != b) w[b * std::size_t(stride) + a] += v;
     }
   }
-}
-
-void Instrument::add_free_motion(const BodyRows& r, double* delta) const {
-  for (int i = 0; i < r.count(); ++i)
+  for (int i = 0; i < m; ++i)
     for (int e = r.start[std::size_t(i)]; e < r.start[std::size_t(i) + 1]; ++e)
-      delta[r.row[std::size_t(i)]] += r.coeff[std::size_t(e)].dot(free_dq_.segment<3>(3 * r.block[std::size_t(e)]));
+      delta_free[r.row[std::size_t(i)]] +=
+          r.coeff[std::size_t(e)].dot(free_dq_.segment<3>(3 * r.block[std::size_t(e)]));
 }
 
 void Instrument::apply(const StepContext& context, const BodyRows& r, const double* lambda) {

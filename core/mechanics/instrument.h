@@ -55,6 +55,7 @@ class Instrument : public RigidBody {
                     .max = "1 kg",
                     .doc = "mass that the coupling moves; 0: the tool follows the hand without lag"}};
 
+  Instrument() : RigidBody(2) {}  ///< degrees of freedom: translation, rotation
   void prepare(PrepareContext& context) override;
   /// Once: whether it begins in its hand or on the tray.
   void start_in_hand(bool yes) { active_ = in_hand_at_start_ = yes; }
@@ -95,13 +96,11 @@ class Instrument : public RigidBody {
   const std::vector<ConvexPiece>& link_pieces(int) const override { return tool_.pieces; }
   Pose link_pose(int) const override { return pose_; }
   Pose link_free_pose(int) const override { return free_pose_; }
-  int blocks() const override { return 2; }
   Vec3 position(const MaterialPoint& p) const override { return pose_.apply(p.local); }
   Vec3 free_displacement(const MaterialPoint& p) const override;
   void add_row(BodyRows& rows, const MaterialPoint& p, const Vec3& d) const override;
   void free_motion(const StepContext& context) override;
-  void add_compliance(const BodyRows& rows, double* w, int stride) override;
-  void add_free_motion(const BodyRows& rows, double* delta) const override;
+  void add_response(const BodyRows& rows, double* w, int stride, double* delta_free) override;
   void apply(const StepContext& context, const BodyRows& rows, const double* lambda) override;
   void reset() override;
   double energy() const override;

@@ -18,9 +18,9 @@ void DeformableBody::start_retardation_times() {
   double slowest = 0;
   for (const ForceModel* f : forces_) slowest = std::max(slowest, f->stiffness_damping());
   retardation_time_.assign(std::size_t(nodes()), slowest);
-  retardation_times_known_ = !solver_->exact() || std::all_of(forces_.begin(), forces_.end(), [&](const ForceModel* f) {
-    return f->stiffness_damping() == slowest;
-  });
+  retardation_times_known_ =
+      solver_->inexact() || std::all_of(forces_.begin(), forces_.end(),
+                                        [&](const ForceModel* f) { return f->stiffness_damping() == slowest; });
 }
 
 // With the factor of a_ at hand. Places are told apart as well as some dozens of unit loads can.

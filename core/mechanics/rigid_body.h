@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/mechanics/body.h"
+#include "core/mechanics/dynamic_body.h"
 #include "core/model/tools/tool_model.h"
 
 namespace insula {
@@ -18,8 +18,10 @@ struct BodyProperty {
   std::string text;  ///< for people: "9 mm"
 };
 
-class RigidBody : public Body {
+class RigidBody : public DynamicBody {
  public:
+  using DynamicBody::DynamicBody;
+
   /// What lists of tools show of it, and words by which they sort it ("temporary").
   virtual std::vector<BodyProperty> properties() const { return {}; }
   virtual std::vector<std::string> tags() const { return {}; }

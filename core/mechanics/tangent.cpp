@@ -3,13 +3,14 @@
 #include <chrono>
 
 #include "core/base/nearest_rotation.h"
+#include "core/linalg/inexact_solver.h"
 #include "core/mechanics/deformable_body.h"
 
 namespace insula {
 
 // Whether the factor at hand still serves: no pair of neighbours has turned or stretched much since it was made.
 bool DeformableBody::tangent_is_good(double h) const {
-  if (factor_h_ != h || tangent_tolerance() <= 0 || !solver_->exact()) return false;
+  if (factor_h_ != h || tangent_tolerance() <= 0 || solver_->inexact()) return false;
   const double limit = tangent_tolerance() * tangent_tolerance();
   for (const Neighbours& n : neighbours_) {
     const Vec3 now = q_.segment<3>(3 * n.i) - q_.segment<3>(3 * n.j);
@@ -35,9 +36,9 @@ void DeformableBody::find_rotations() {
 
 // A but for inertia, and the force that goes with it.
 void DeformableBody::assemble(double h) {
-  if (solver_->wants_rotations()) {
+  if (InexactSolver* s = solver_->inexact()) {
     find_rotations();
-    solver_->set_rotations(rotation_);
+    s->set_rotations(rotation_);
   }
   a_.set_zero();
   for (ForceModel* f : forces_) f->linearise(q_.data(), force_.data(), &a_, h, Tangent::system);
@@ -72,11 +73,11 @@ void DeformableBody::factorise(double h) {
     // An indefinite matrix (force models promise not to make one) is met with ten times the inertia, as often as
     // needed.
     const auto begin = std::chrono::steady_clock::now();
-    const bool good = solver_->factorise_and_begin(a_, load_, guess_);
+    const bool good = solver_->begin_motion(&a_, load_, guess_);
     factor_ms_ += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
     if (good && !retardation_times_known_) {  // once
       find_retardation_times(h);
-      solver_->begin_motion(load_, guess_);
+      solver_->begin_motion(nullptr, load_, guess_);
     }
     if (good || attempt == 12) break;
     ++indefinite_;

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "core/scene/place_text.h"
+
 namespace insula {
 namespace {
 
@@ -55,7 +57,6 @@ std::unique_ptr<Scene> SceneBuilder::build(const std::filesystem::path& file) {
   scene_->order = order_++;
   scene_->file_ = file;
   scene_->root_folder_ = tree_.root_folder;
-  scene_->base_folder_ = root.part->path.parent_path();
   part_of_[scene_.get()] = root.part;
   read_id(root, *scene_);
   read_params(root, *scene_);
@@ -126,17 +127,8 @@ void SceneBuilder::unknown_element(const Element& element, const Component& pare
 }
 
 void SceneBuilder::misplaced(const Element& element, const ComponentInfo& info, const Component& parent) {
-  std::vector<std::string> places;
-  for (const Kind kind : info.parents) {
-    if (kind == Kind::scene) {
-      places.push_back("directly in <scene>");
-      continue;
-    }
-    std::vector<std::string> names;
-    for (const auto* other : registry_.all())
-      if (other->kind == kind) names.push_back("<" + other->element + ">");
-    places.push_back("in " + with_article(kind_name(kind)) + (names.empty() ? "" : " (" + quoted_list(names) + ")"));
-  }
+  const auto in_brackets = [](const auto& names) { return " (" + quoted_list(names) + ")"; };
+  const std::vector<std::string> places = place_texts(registry_, info, in_brackets);
   diagnostics_.error(element.pos,
                      "<" + element.name + "> may not stand in <" + parent.element + ">" +
                          (places.empty() ? "; it is the root of a scene" : "; it belongs " + joined(places, " or ")));

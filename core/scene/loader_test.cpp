@@ -250,7 +250,6 @@ TEST_F(Loader, TheRootFolderIsTheOneWithMeshes) {
   const auto r = load_scene(folder_ / "scenes/training/s.xml", registry_);
   ASSERT_TRUE(r.ok()) << messages(r);
   EXPECT_EQ(r.scene->root_folder(), fs::canonical(folder_));
-  EXPECT_EQ(r.scene->base_folder(), fs::canonical(folder_ / "scenes/training"));
 }
 
 TEST_F(Loader, ContentHashSeesEveryFile) {

@@ -61,8 +61,7 @@ class Scene final : public Component {
   /// Those of the registry, then those of the scene's <material> elements.
   const std::vector<Material>& materials() const { return materials_; }
 
-  const std::filesystem::path& file() const { return file_; }                ///< as it was given to the loader
-  const std::filesystem::path& base_folder() const { return base_folder_; }  ///< folder of the scene file, absolute
+  const std::filesystem::path& file() const { return file_; }  ///< as it was given to the loader
   const std::filesystem::path& root_folder() const {
     return root_folder_;
   }  ///< nothing outside may be named by a scene
@@ -74,7 +73,7 @@ class Scene final : public Component {
   std::vector<Component*> in_order_;
   std::map<std::string, Component*, std::less<>> by_id_;
   std::vector<Material> materials_;
-  std::filesystem::path file_, base_folder_, root_folder_;
+  std::filesystem::path file_, root_folder_;
   unsigned long long content_hash_ = 0;
 };
 

@@ -11,21 +11,27 @@
 
 #include "core/base/workers.h"
 #include "core/constraint/problem.h"
-#include "core/mechanics/body.h"
+#include "core/mechanics/dynamic_body.h"
 
 namespace insula {
+
+class InexactSolver;
 
 class DefectCorrection {
  public:
   /// When the problem's W is complete: sets delta_free to the first bracket.
-  void begin(ConstraintProblem& problem, const std::vector<Body*>& bodies);
+  void begin(ConstraintProblem& problem, const std::vector<DynamicBody*>& bodies);
   /// Whether there is a body that knows its compliance only nearly.
   bool needed() const { return !bodies_.empty(); }
   /// Sets problem.delta_free to the bracket for lambda; returns the largest change of a row since the last pass, m.
   double pass(ConstraintProblem& problem, const double* lambda, Workers& workers);
 
  private:
-  std::vector<Body*> bodies_;
+  struct Inexact {
+    InexactSolver* solver;
+    const BodyRows* rows;
+  };
+  std::vector<Inexact> bodies_;
   std::vector<double> w_, free_, before_;
 };
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/constraint/solve.h"
-#include "core/linalg/body_solver.h"
+#include "core/linalg/inexact_solver.h"
 #include "core/sim/events.h"
 
 namespace insula {

@@ -6,6 +6,8 @@
 #include <chrono>
 #include <cmath>
 
+#include "core/linalg/inexact_solver.h"
+
 namespace insula {
 namespace {
 
@@ -53,49 +55,72 @@ void Simulation::step() {
   for (Event& e : commanded_) sink_.emit(std::move(e));
   commanded_.clear();
   StageClock clock(report_);
-
-  workers_.run(int(heavy_first_.size()), [this](int i) {
-    if (Body* b = heavy_first_[std::size_t(i)]; b->active()) b->free_motion(context_);
-  });
+  move_freely();
   clock.done(stage_free_motion);
+  detect();
+  clock.done(stage_collision);
+  build();
+  compute_compliance();
+  clock.done(stage_build);
+  solve_rows();
+  clock.done(stage_solve);
+  correct_motion();
+  clock.done(stage_correct);
+  context_.time += context_.h;
+  ++context_.step;
+  make_report();
+  clock.done(stage_publish);
+  report_.step_ms = clock.total();
+}
 
+void Simulation::move_freely() {
+  workers_.run(int(heavy_first_.size()), [this](int i) {
+    if (DynamicBody* b = heavy_first_[std::size_t(i)]; b->active()) b->free_motion(context_);
+  });
+}
+
+void Simulation::detect() {
   workers_.run(int(surfaces_.size()), [this](int i) { surfaces_[std::size_t(i)]->update_collision(); });
   for (Constraint* c : constraints_) c->detect(context_);
-  clock.done(stage_collision);
+}
 
+void Simulation::build() {
   builder_->clear();
   for (Constraint* c : constraints_) {
     builder_->set_owner(*c);
     c->build(context_, *builder_);
   }
-  for (Body* b : bodies_)
+  for (DynamicBody* b : dynamic_bodies_)
     if (b->active()) {
       builder_->set_owner(*b);
       b->build(context_, *builder_);
     }
   builder_->finish();
+}
+
+void Simulation::compute_compliance() {
   workers_.run(int(heavy_first_.size()), [this](int i) {
-    Body* b = heavy_first_[std::size_t(i)];
+    DynamicBody* b = heavy_first_[std::size_t(i)];
     b->begin_compliance(b->rows);
   });
   for (const ComplianceAct act : compliance_acts) {
     parts_.clear();
-    for (Body* b : heavy_first_)
-      for (int p = 0; p < b->compliance_parts(act); ++p) parts_.emplace_back(b, p);
+    for (DynamicBody* b : heavy_first_)
+      if (BodySolver* s = b->solver())
+        for (int p = 0; p < s->compliance_parts(act); ++p) parts_.emplace_back(s, p);
     workers_.run(int(parts_.size()),
                  [&](int i) { parts_[std::size_t(i)].first->compliance_part(act, parts_[std::size_t(i)].second); });
   }
-  for (Body* b : bodies_) {
-    b->add_compliance(b->rows, problem_.w.data(), problem_.stride);
-    b->add_free_motion(b->rows, problem_.delta_free.data());
-  }
-  clock.done(stage_build);
+  for (DynamicBody* b : dynamic_bodies_)
+    b->add_response(b->rows, problem_.w.data(), problem_.stride, problem_.delta_free.data());
+}
 
+void Simulation::solve_rows() {
   warm_start();
   workspace_.reserve(problem_.rows, solve_settings_.max_newton > 0);
   workspace_.lambda.assign(problem_.lambda.begin(), problem_.lambda.end());
   solve_settings_.newton_soon = newton_soon_ > 0;
-  defect_.begin(problem_, bodies_);
+  defect_.begin(problem_, dynamic_bodies_);
   report_.solve = solve(problem_, problem_.delta_free, solve_settings_, workspace_);
   for (int pass = 0; defect_.needed() && pass < max_passes; ++pass) {
     report_.defect_m = defect_.pass(problem_, workspace_.lambda.data(), workers_);
@@ -107,8 +132,9 @@ void Simulation::step() {
   problem_.lambda.assign(workspace_.lambda.begin(), workspace_.lambda.end());
   if (newton_soon_ > 0) --newton_soon_;
   else if (report_.solve.stalled) newton_soon_ = steps_with_newton_soon;
-  clock.done(stage_solve);
+}
 
+void Simulation::correct_motion() {
   // The haptic problem wants the tools' terms of this step, before they move.
   std::size_t hands = 0;
   for (Instrument* i : instruments_)
@@ -118,24 +144,17 @@ void Simulation::step() {
   for (Instrument* i : instruments_)
     if (i->hand_index() >= 0 && i->active()) i->fill_terms(problem_.tools[hands++], problem_.rows);
   workers_.run(int(heavy_first_.size()), [this](int i) {
-    Body* b = heavy_first_[std::size_t(i)];
+    DynamicBody* b = heavy_first_[std::size_t(i)];
     if (b->active()) b->apply(context_, b->rows, workspace_.lambda.data());
   });
   problem_.step_s = context_.h;
-  for (const Body* b : bodies_)
+  for (const DynamicBody* b : dynamic_bodies_)
     if (b->active()) b->add_rate(b->rows, problem_.rate.data());
   const ConstraintSolution solution{problem_, workspace_.lambda.data(), workspace_.delta.data()};
   for (Constraint* c : constraints_) c->finish(context_, solution);
-  for (Body* b : bodies_)
+  for (DynamicBody* b : dynamic_bodies_)
     if (b->active()) b->finish(context_, solution);
   remember_solution();
-  clock.done(stage_correct);
-
-  context_.time += context_.h;
-  ++context_.step;
-  make_report();
-  clock.done(stage_publish);
-  report_.step_ms = clock.total();
 }
 
 void Simulation::warm_start() {
@@ -170,9 +189,11 @@ void Simulation::make_report() {
   r.step = context_.step;
   r.rows = problem_.rows;
   r.finite = std::isfinite(r.solve.residual_N);
-  for (const Body* b : bodies_) {
+  for (DynamicBody* b : dynamic_bodies_) {
     r.finite = r.finite && b->finite();
-    const SolverStatus s = b->solver_status();
+    InexactSolver* inexact = b->solver() ? b->solver()->inexact() : nullptr;
+    if (!inexact) continue;
+    const SolverStatus s = inexact->status();
     r.solver.age = std::max(r.solver.age, s.age);
     r.solver.iterations = std::max(r.solver.iterations, s.iterations);
     r.solver.residual_m = std::max(r.solver.residual_m, s.residual_m);

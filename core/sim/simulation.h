@@ -98,7 +98,13 @@ class Simulation {
   std::string exchange(std::string_view argument);
   std::string ask(std::string_view argument);
   void settle(Diagnostics& diagnostics);
+  void move_freely();
+  void detect();
+  void build();
+  void compute_compliance();
   void warm_start();
+  void solve_rows();
+  void correct_motion();
   void remember_solution();
   void collect_step_data();
   void publish();
@@ -107,7 +113,8 @@ class Simulation {
   std::unique_ptr<Scene> scene_;
   Workers workers_;
   std::vector<Body*> bodies_;
-  std::vector<Body*> heavy_first_;  ///< the same, by degrees of freedom: evens out the threads
+  std::vector<DynamicBody*> dynamic_bodies_;  ///< those of them that move
+  std::vector<DynamicBody*> heavy_first_;     ///< the same, by degrees of freedom: evens out the threads
   std::vector<Instrument*> instruments_;
   std::vector<Surface*> surfaces_;
   std::vector<Constraint*> constraints_;
@@ -132,7 +139,7 @@ class Simulation {
   std::vector<Remembered> remembered_;
   std::vector<Event> commanded_;  ///< between the last step and the next
   double settle_time_ = 0;
-  std::vector<std::pair<Body*, int>> parts_;  ///< of the bodies' compliance, in this step
+  std::vector<std::pair<BodySolver*, int>> parts_;  ///< of the bodies' compliance, in this step
   StepReport report_;
   ChannelTable channel_table_;
   std::vector<DrawableEntry> drawables_;

@@ -5,6 +5,8 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "core/linalg/inexact_solver.h"
+#include "core/mechanics/deformable_body.h"
 #include "core/scene/loader.h"
 #include "core/sim/simulation.h"
 
@@ -14,6 +16,7 @@ Simulation::Simulation(std::unique_ptr<Scene> scene, Diagnostics& diagnostics, i
     : scene_(std::move(scene)), workers_(threads) {
   PrepareContext prepare{diagnostics, scene_->time_step()};
   bodies_ = scene_->all<Body>();
+  dynamic_bodies_ = scene_->all<DynamicBody>();
   instruments_ = scene_->all<Instrument>();
   surfaces_ = scene_->all<Surface>();
   constraints_ = scene_->all<Constraint>();
@@ -34,7 +37,7 @@ Simulation::Simulation(std::unique_ptr<Scene> scene, Diagnostics& diagnostics, i
     full[std::size_t(hand)] = true;
   }
   if (auto s = scene_->all<SettleSettings>(); !s.empty()) settle_time_ = s.front()->time();
-  for (Body* b : bodies_) b->connect(prepare);
+  for (DeformableBody* b : scene_->all<DeformableBody>()) b->connect(prepare);
   if (diagnostics.ok()) {
     for (Constraint* c : constraints_) c->connect(prepare, *this);
     for (Instrument* i : instruments_) i->join(prepare, *this);
@@ -49,9 +52,9 @@ Simulation::Simulation(std::unique_ptr<Scene> scene, Diagnostics& diagnostics, i
       complications_->draw(0, *this);
     }
   }
-  heavy_first_ = bodies_;
+  heavy_first_ = dynamic_bodies_;
   std::stable_sort(heavy_first_.begin(), heavy_first_.end(),
-                   [](Body* a, Body* b) { return a->blocks() > b->blocks(); });
+                   [](DynamicBody* a, DynamicBody* b) { return a->blocks() > b->blocks(); });
   parts_.reserve(8 * bodies_.size());
   builder_ = std::make_unique<ConstraintBuilder>(problem_, bodies_);
   context_.h = scene_->time_step();
@@ -89,7 +92,7 @@ void Simulation::set_hand(int hand, const HandState& state) {
 }
 
 void Simulation::reset() {
-  for (Body* b : bodies_) b->reset();
+  for (DynamicBody* b : dynamic_bodies_) b->reset();
   for (Surface* s : surfaces_) s->update();
   for (Constraint* c : constraints_) c->reset();
   if (exercise_) exercise_->reset();
@@ -117,12 +120,13 @@ void Simulation::reset() {
 
 double Simulation::energy() const {
   double sum = 0;
-  for (const Body* b : bodies_) sum += b->energy();
+  for (const DynamicBody* b : dynamic_bodies_) sum += b->energy();
   return sum;
 }
 
 void Simulation::set_deterministic(bool yes) {
-  for (Body* b : bodies_) b->set_deterministic(yes);
+  for (DynamicBody* b : dynamic_bodies_)
+    if (InexactSolver* s = b->solver() ? b->solver()->inexact() : nullptr) s->set_deterministic(yes);
 }
 
 void Simulation::draw_complications(std::uint64_t seed) {
@@ -153,7 +157,7 @@ void Simulation::settle(Diagnostics& diagnostics) {
 
 std::uint64_t Simulation::state_hash() const {
   std::vector<double> state;
-  for (Body* b : bodies_) b->append_state(state);
+  for (DynamicBody* b : dynamic_bodies_) b->append_state(state);
   for (Constraint* c : constraints_) c->append_state(state);
   std::uint64_t hash = 14695981039346656037ull;
   for (double d : state) {

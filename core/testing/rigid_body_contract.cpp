@@ -25,9 +25,9 @@ void check_link(Findings& findings, RigidBody& tool, int link) {
   tool.add_row(rows, p, d);
   VecX h = VecX::Zero(3 * tool.blocks());
   for (std::size_t e = 0; e < rows.block.size(); ++e) h.segment<3>(3 * rows.block[e]) += rows.coeff[e];
-  double free = 0;
-  tool.compute_compliance(rows);
-  tool.add_free_motion(rows, &free);
+  double w = 0, free = 0;
+  tool.begin_compliance(rows);
+  tool.add_response(rows, &w, 1, &free);
   findings.expect(std::abs(free - d.dot(tool.free_displacement(p))) <= 1e-12,
                   "H dq of the free motion is not the point's free displacement");
   for (int k = 0; k < 3 * tool.blocks(); ++k) {

@@ -6,6 +6,7 @@
 
 #include "core/base/text.h"
 #include "core/params/number.h"
+#include "core/scene/place_text.h"
 
 namespace insula {
 
@@ -54,18 +55,7 @@ std::vector<const ComponentInfo*> children_of_kind(const Registry& registry, Kin
 
 std::string place_text(const Registry& registry, const ComponentInfo& info) {
   if (info.kind == Kind::scene) return "the root of a scene file";
-  std::vector<std::string> places;
-  for (const Kind kind : info.parents) {
-    if (kind == Kind::scene) {
-      places.push_back("directly in <scene>");
-      continue;
-    }
-    std::vector<std::string> names;
-    for (const auto* other : registry.all())
-      if (other->kind == kind) names.push_back("<" + other->element + ">");
-    places.push_back("in " + with_article(kind_name(kind)) + (names.empty() ? "" : ": " + joined(names)));
-  }
-  return joined(places, "; ");
+  return joined(place_texts(registry, info, [](const auto& names) { return ": " + joined(names); }), "; ");
 }
 
 }  // namespace insula

@@ -15,8 +15,9 @@ class ExchangePause {
   /// Longer than the 50 ms in which a gate lets a force go to zero, by a step or two.
   static constexpr double pause_s = 0.09;
 
-  /// After a step: takes the tools of hands that exchanged theirs a moment ago out of the problem.
-  void apply(const Simulation& simulation, ConstraintProblem& problem) {
+  /// After a step: the hands (0 left, 1 right) that exchanged their tools a moment ago.
+  std::array<bool, 2> hands(const Simulation& simulation) {
+    std::array<bool, 2> out{};
     for (int h = 0; h < 2; ++h) {
       Hand& hand = hands_[std::size_t(h)];
       const Instrument* tool = simulation.instrument_of(h);
@@ -24,10 +25,10 @@ class ExchangePause {
       if (simulation.time() < last_) hand = {};
       if (hand.tool && tool != hand.tool) hand.since = simulation.time();
       hand.tool = tool;
-      if (simulation.time() >= hand.since + pause_s) continue;
-      std::erase_if(problem.tools, [h](const ToolTerms& t) { return t.hand == h; });
+      out[std::size_t(h)] = simulation.time() < hand.since + pause_s;
     }
     last_ = simulation.time();
+    return out;
   }
 
  private:

@@ -74,7 +74,6 @@ struct RenderedForce {
 RenderedForce rendered_force(Simulation& simulation, const Motion& motion, bool with_pause) {
   simulation.reset();
   InProcessHaptics haptics(motion, {});
-  ConstraintProblem problem;
   ExchangePause pause;
   Vec3 last = Vec3::Zero();
   RenderedForce rendered;
@@ -96,9 +95,7 @@ RenderedForce rendered_force(Simulation& simulation, const Motion& motion, bool 
     }
     simulation.set_hand(1, {true, haptics.hand(1).device, false, false});
     simulation.step();
-    problem = simulation.problem();
-    if (with_pause) pause.apply(simulation, problem);
-    haptics.set_problem(problem);
+    haptics.set_problem(simulation.problem(), with_pause ? pause.hands(simulation) : std::array<bool, 2>{});
   }
   return rendered;
 }

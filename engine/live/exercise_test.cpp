@@ -11,8 +11,8 @@
 #include <sstream>
 
 #include "core/registry/registry.h"
+#include "core/sim/channel_sum.h"
 #include "engine/live/headless.h"
-#include "plugins/strand_springs/strand_set.h"
 
 namespace insula {
 namespace {
@@ -81,8 +81,8 @@ Outcome perform(const std::string& id) {
       out.cut += e.kind == "strand_cut";
     }
   }
-  out.strands = Strands(s).total();
-  out.left = Strands(s).left();
+  out.strands = int(channel_sum(s, "total"));
+  out.left = int(channel_sum(s, "standing"));
   const ExerciseLog& log = s.exercise()->log();
   out.state = log.state();
   for (const FaultState& f : log.faults()) out.faults[f.id] = f.count;

@@ -34,9 +34,7 @@ void HeadlessRun::step() {
   haptic_ms_ = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
   script_.advance(simulation_);
   simulation_.step();
-  condense_(simulation_.problem(), 240, condensed_);
-  pause_.apply(simulation_, condensed_);
-  haptics_.set_problem(condensed_);
+  haptics_.set_problem(condense_(simulation_.problem(), 240, condensed_), pause_.hands(simulation_));
 }
 
 void HeadlessRun::reset() {

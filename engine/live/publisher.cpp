@@ -39,16 +39,17 @@ void Publisher::info(const std::string& state, const std::string& message) {
 }
 
 void Publisher::step(const Simulation& simulation, std::int64_t pose_time_us) {
-  update_.session = session_;
-  update_.sequence = ++sequence_;
-  update_.time_us = monotonic_us();
-  update_.pose_time_us = pose_time_us;
-  update_.step_s = simulation.h();
-  update_.sim_time_s = simulation.time();
+  stamp_.session = session_;
+  stamp_.sequence = ++sequence_;
+  stamp_.time_us = monotonic_us();
+  stamp_.pose_time_us = pose_time_us;
+  stamp_.step_s = simulation.h();
+  stamp_.sim_time_s = simulation.time();
   const double until_rendered_s = std::min(1e-3 * simulation.report().step_ms, simulation.h());  // about
-  condense_(turn_(simulation, until_rendered_s), max_rows, update_.problem);
-  pause_.apply(simulation, update_.problem);
-  if (!encode_problem(update_, scratch_) || !bus_.publish(channel::haptic_problem, scratch_)) ++failed_;
+  const ConstraintProblem& problem = condense_(turn_(simulation, until_rendered_s), max_rows, condensed_);
+  if (!encode_problem(stamp_, problem, pause_.hands(simulation), scratch_) ||
+      !bus_.publish(channel::haptic_problem, scratch_))
+    ++failed_;
   frame(simulation, false);
   events(simulation.events());
 }

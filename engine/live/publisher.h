@@ -46,9 +46,10 @@ class Publisher {
   std::int64_t session_, sequence_ = 0, event_sequence_ = 0, frame_sequence_ = 0, last_info_us_ = 0, failed_ = 0;
   insula_lcm::scene_info_t info_;
   insula_lcm::render_frame_t frame_;
-  HapticUpdate update_;
+  ProblemStamp stamp_;
   ContactFramePrediction turn_;
   Condenser condense_;
+  ConstraintProblem condensed_;
   ExchangePause pause_;
   std::vector<std::uint8_t> scratch_;
 };

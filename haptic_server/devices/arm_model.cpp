@@ -48,7 +48,6 @@ void ArmModel::place(const Pose& pose, const Vec3& centre, const Vec3& extent) {
   force_.setZero();
   torque_.setZero();
   time_ = 0;
-  at_stop_ = false;
 }
 
 void ArmModel::set_load(const Vec3& force_N, const Vec3& torque_Nm) {
@@ -78,7 +77,6 @@ void ArmModel::step(double dt) {
   w_ = (j * w_ + dt * (kr * turn + cr * goal_.w + torque_)) / (j + dt * cr + dt * dt * kr);
   pose_.q = (from_rotation_vector(dt * w_) * pose_.q).normalized();
 
-  at_stop_ = false;
   if (goal_.stops) stop_at_walls();
 }
 
@@ -88,7 +86,6 @@ void ArmModel::stop_at_walls() {
     if (inside == pose_.p[i]) continue;
     pose_.p[i] = inside;
     v_[i] = 0;  // the stop is dead, it does not throw back
-    at_stop_ = true;
   }
 }
 

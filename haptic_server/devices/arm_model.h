@@ -46,7 +46,6 @@ class ArmModel {
   const Vec3& v() const { return v_; }
   const Vec3& w() const { return w_; }
   const HandGoal& goal() const { return goal_; }
-  bool at_stop() const { return at_stop_; }
   /// Kinetic energy and energy of the hand's springs towards the goal, J.
   double energy() const;
   const ArmParameters& parameters() const { return p_; }
@@ -61,7 +60,6 @@ class ArmModel {
   Vec3 force_ = Vec3::Zero(), torque_ = Vec3::Zero();
   Vec3 low_ = Vec3::Constant(-1e9), high_ = Vec3::Constant(1e9);
   double time_ = 0;
-  bool at_stop_ = false;
 };
 
 /// Position and velocity from a quantised encoder: alpha-beta tracker (g-h filter). Follows a constant velocity without

@@ -42,7 +42,9 @@ the default tear hides the field in about ten seconds.
 namespace insula {
 namespace {
 
-constexpr double full_jet = 1e-6;  // m3/s: a rate that is drawn as the strongest jet
+constexpr double stopped_below = 0.05;  // rate, over that of the rupture, below which bleeding counts as stopped
+constexpr double stopped_after_s = 2;   // time that it must stay below
+constexpr double full_jet = 1e-6;       // m3/s: a rate that is drawn as the strongest jet
 
 }  // namespace
 
@@ -183,16 +185,16 @@ void Bleeding::fill(double h, double blood) {
 
 void Bleeding::tell(const StepContext& context) {
   first_rate_ = std::max(first_rate_, rate_);
-  if (rate_ < stopped_below() * first_rate_) {
+  if (rate_ < stopped_below * first_rate_) {
     low_for_ += context.h;
-    if (!stopped_ && low_for_ > stopped_after()) {
+    if (!stopped_ && low_for_ > stopped_after_s) {
       stopped_ = true;
       emit(context, stopped, "", lost_);
     }
     return;
   }
   // Hysteresis: what only trickles again has not begun anew.
-  if (stopped_ && rate_ < 2 * stopped_below() * first_rate_) return;
+  if (stopped_ && rate_ < 2 * stopped_below * first_rate_) return;
   low_for_ = 0;
   if (stopped_) emit(context, again, "", rate_);
   stopped_ = false;

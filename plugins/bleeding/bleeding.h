@@ -68,15 +68,6 @@ class Bleeding final : public Constraint, public BleedingSource {
                               .min = "0",
                               .max = "1",
                               .doc = "share of that which it takes with its vent open"}};
-  Param<Scalar> stopped_below{this,
-                              {.name = "stopped_below",
-                               .fallback = "0.05",
-                               .min = "0.001",
-                               .max = "0.5",
-                               .doc = "rate, over that of the rupture, below which bleeding counts as stopped"}};
-  Param<Duration> stopped_after{
-      this,
-      {.name = "stopped_after", .fallback = "2 s", .min = "0 s", .max = "60 s", .doc = "time that it must stay below"}};
 
   Channel<FlowRate> bleeding_rate{this,
                                   {.name = "rate",
@@ -141,8 +132,6 @@ class Bleeding final : public Constraint, public BleedingSource {
   double height() const { return bowl_.height(volume_); }  ///< m
   /// Forces on the region in the last step, N: the sum over contacts and ties, and the part of instruments with an
   /// edge.
-  double force_on_region() const { return force_; }
-  double sharp_force_on_region() const { return sharp_; }
 
  private:
   void measure_forces(const ConstraintSolution& solution);

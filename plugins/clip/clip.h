@@ -116,6 +116,7 @@ class Clip final : public RigidBody, public ClipSource, public StatesLaw {
                              .shown = Shown::none,
                              .digits = 0}};
 
+  Clip() : RigidBody(3) {}  ///< degrees of freedom: translation, rotation, (opening, 0, 0)
   void prepare(PrepareContext& context) override;
 
   const ToolModel& tool() const override { return tool_; }
@@ -157,14 +158,12 @@ class Clip final : public RigidBody, public ClipSource, public StatesLaw {
   const std::vector<ConvexPiece>& link_pieces(int link) const override { return pieces_[std::size_t(link)]; }
   Pose link_pose(int link) const override;
   Pose link_free_pose(int link) const override;
-  int blocks() const override { return 3; }
   Vec3 position(const MaterialPoint& p) const override { return pose_.p + arm(p); }
   Vec3 free_displacement(const MaterialPoint& p) const override;
   void add_row(BodyRows& rows, const MaterialPoint& p, const Vec3& d) const override;
   void free_motion(const StepContext& context) override;
-  void add_free_motion(const BodyRows& rows, double* delta) const override;
-  void compute_compliance(const BodyRows& rows) override;
-  void add_compliance(const BodyRows& rows, double* w, int stride) override;
+  void begin_compliance(const BodyRows& rows) override;
+  void add_response(const BodyRows& rows, double* w, int stride, double* delta_free) override;
   void apply(const StepContext& context, const BodyRows& rows, const double* lambda) override;
   void add_rate(const BodyRows& rows, double* rate) const override;
   void build(const StepContext& context, ConstraintBuilder& builder) override;

@@ -84,7 +84,7 @@ void Clip::add_row(BodyRows& out, const MaterialPoint& p, const Vec3& d) const {
   if (p.link > 0) out.add(2, Vec3(turning(p.link, a, d), 0, 0));
 }
 
-void Clip::compute_compliance(const BodyRows& r) {
+void Clip::begin_compliance(const BodyRows& r) {
   const std::size_t m = std::size_t(r.count());
   jacobian_.resize(m);
   answer_.resize(m);
@@ -100,7 +100,7 @@ void Clip::compute_compliance(const BodyRows& r) {
   }
 }
 
-void Clip::add_compliance(const BodyRows& r, double* w, int stride) {
+void Clip::add_response(const BodyRows& r, double* w, int stride, double* delta_free) {
   for (std::size_t i = 0; i < jacobian_.size(); ++i)
     for (std::size_t j = 0; j <= i; ++j) {
       const double v = answer_[i].dot(jacobian_[j]);
@@ -108,12 +108,9 @@ void Clip::add_compliance(const BodyRows& r, double* w, int stride) {
       w[a * std::size_t(stride) + b] += v;
       if (a != b) w[b * std::size_t(stride) + a] += v;
     }
-}
-
-void Clip::add_free_motion(const BodyRows& r, double* delta) const {
   Vec7 free;
   free << free_shift_ - free_turn_.cross(to_centre_), free_turn_, free_opening_;
-  for (std::size_t i = 0; i < jacobian_.size(); ++i) delta[r.row[i]] += jacobian_[i].dot(free);
+  for (std::size_t i = 0; i < jacobian_.size(); ++i) delta_free[r.row[i]] += jacobian_[i].dot(free);
 }
 
 void Clip::apply(const StepContext& context, const BodyRows& r, const double* lambda) {

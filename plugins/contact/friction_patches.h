@@ -14,7 +14,7 @@
 #include <span>
 #include <vector>
 
-#include "core/collision/contact_set.h"
+#include "core/collision/proximity.h"
 #include "core/mechanics/constraint.h"
 
 namespace insula {

@@ -11,6 +11,7 @@
 #include "core/base/random.h"
 #include "core/mechanics/shell_body.h"
 #include "core/testing/example.h"
+#include "core/testing/single_body.h"
 
 namespace insula::test {
 
@@ -20,26 +21,15 @@ struct Wall {
   std::string regions = {};
 };
 
-class HoldNodes final : public Support {
- public:
-  std::function<bool(const Vec3&)> where;
-  void fix(PrepareContext&, const std::vector<Vec3>& rest, std::vector<char>& fixed) override {
-    for (std::size_t i = 0; i < rest.size(); ++i) fixed[i] = fixed[i] || where(rest[i]);
-  }
-};
-
 inline void add_membrane(ShellBody& body, const Wall& w) {
   auto m = builtin().create("membrane");
-  const auto set = [&](const char* name, double value) {
-    dynamic_cast<QuantityParam&>(*m->find_param(name)).set(value);
-  };
-  set("thickness", w.thickness);
-  set("young", w.young);
-  set("poisson", w.poisson);
-  set("density", w.density);
-  set("added_mass", w.added_mass);
-  set("mass_damping", w.mass_damping);
-  set("stiffness_damping", w.stiffness_damping);
+  set_quantity(*m, "thickness", w.thickness);
+  set_quantity(*m, "young", w.young);
+  set_quantity(*m, "poisson", w.poisson);
+  set_quantity(*m, "density", w.density);
+  set_quantity(*m, "added_mass", w.added_mass);
+  set_quantity(*m, "mass_damping", w.mass_damping);
+  set_quantity(*m, "stiffness_damping", w.stiffness_damping);
   dynamic_cast<Param<std::string>&>(*m->find_param("regions")).set(w.regions);
   // A linear problem is then solved in one step.
   m->find_param("tangent")->assign("patches", {});
@@ -48,45 +38,12 @@ inline void add_membrane(ShellBody& body, const Wall& w) {
   body.children.push_back(std::move(m));
 }
 
-/// Returns the reported messages; empty when all is well.
-inline std::string finish(ShellBody& body, std::function<bool(const Vec3&)> fixed = nullptr) {
-  if (fixed) {
-    auto support = std::make_unique<HoldNodes>();
-    support->where = std::move(fixed);
-    support->parent = &body;
-    body.children.push_back(std::move(support));
-  }
-  Diagnostics diagnostics;
-  PrepareContext context{diagnostics, 0.01};
-  body.prepare(context);
-  if (diagnostics.ok()) body.connect(context);
-  return diagnostics.format();
-}
-
 inline std::unique_ptr<ShellBody> shell(TriMesh mesh, const Wall& w, std::function<bool(const Vec3&)> fixed = nullptr) {
   auto body = std::make_unique<ShellBody>();
   body->set_mesh(std::move(mesh));
   add_membrane(*body, w);
   if (const std::string wrong = finish(*body, std::move(fixed)); !wrong.empty()) throw std::runtime_error(wrong);
   return body;
-}
-
-inline void step(DeformableBody& body, double h, const Vec3& gravity = Vec3::Zero()) {
-  StepContext context;
-  context.h = h;
-  context.gravity = gravity;
-  body.rows.clear();
-  body.free_motion(context);
-  body.apply(context, body.rows, nullptr);
-}
-
-/// Newton steps of the static problem. A load that follows the wall may be updated before each step.
-inline void settle(DeformableBody& body, int steps, const std::function<void()>& load = nullptr) {
-  for (int i = 0; i < steps; ++i) {
-    if (load) load();
-    body.v().setZero();
-    step(body, 1e6);
-  }
 }
 
 /// Elastic force on the nodes at positions x.

@@ -109,7 +109,6 @@ class BloodPressure final : public Constraint, public StatesLaw {
   double arterial(double h) const;         ///< pressure of the arteries at the end of the coming step, Pa
   double phase() const { return phase_; }  ///< of the heart, 0..1, 0 the start of systole
   double beat_share(double h) const { return h * rate_; }                         ///< share of a beat that a step lasts
-  double area_scale() const { return area_; }                                     ///< A_ref, m2
   double pressure(int chamber) const { return pressure_[std::size_t(chamber)]; }  ///< on its wall in the last step, Pa
   double volume(int chamber) const { return chambers_.volume(chamber, on->q()); }  ///< now, m3
   double rest_volume(int chamber) const { return rest_volume_[std::size_t(chamber)]; }

@@ -62,6 +62,16 @@ class Patient {
   Bleedings bleedings_;
 };
 
+/// The parameter by which rules tell a bleeding from none.
+struct StoppedRate : Param<FlowRate> {
+  explicit StoppedRate(ParamSet* owner)
+      : Param(owner, {.name = "rate",
+                      .fallback = "1 ml/min",
+                      .min = "0 ml/min",
+                      .max = "1000 ml/min",
+                      .doc = "bleeding that counts as none"}) {}
+};
+
 /// Whether blood runs, over the beats.
 class Running {
  public:
@@ -99,12 +109,7 @@ class FaultRupture final : public ExerciseRule {
 class GoalBleedingStopped final : public ExerciseRule {
  public:
   Param<std::string> text{this, {.name = "text", .fallback = "Stop the bleeding", .doc = "what the trainee is to do"}};
-  Param<FlowRate> rate{this,
-                       {.name = "rate",
-                        .fallback = "1 ml/min",
-                        .min = "0 ml/min",
-                        .max = "1000 ml/min",
-                        .doc = "bleeding that counts as none"}};
+  StoppedRate rate{this};
   Param<Duration> hold{
       this, {.name = "hold", .fallback = "2 s", .min = "0 s", .max = "600 s", .doc = "how long it must stand"}};
   void declare(PrepareContext&, const Simulation& simulation, ExerciseLog& log) override {
@@ -144,12 +149,7 @@ class TimerRupture final : public ExerciseRule {
                          .min = "1 s",
                          .max = "7200 s",
                          .doc = "time until the exercise has failed"}};
-  Param<FlowRate> rate{this,
-                       {.name = "rate",
-                        .fallback = "1 ml/min",
-                        .min = "0 ml/min",
-                        .max = "1000 ml/min",
-                        .doc = "bleeding that counts as none"}};
+  StoppedRate rate{this};
   void declare(PrepareContext&, const Simulation& simulation, ExerciseLog& log) override {
     patient_ = Patient(simulation);
     timer_ = log.add_timer(id, text(), limit());
@@ -219,12 +219,7 @@ class GoalTemporaryRemoved final : public ExerciseRule {
  public:
   Param<std::string> text{
       this, {.name = "text", .fallback = "Remove the temporary clip", .doc = "what the trainee is to do"}};
-  Param<FlowRate> rate{this,
-                       {.name = "rate",
-                        .fallback = "1 ml/min",
-                        .min = "0 ml/min",
-                        .max = "1000 ml/min",
-                        .doc = "bleeding that counts as none"}};
+  StoppedRate rate{this};
   void declare(PrepareContext&, const Simulation& simulation, ExerciseLog& log) override {
     patient_ = Patient(simulation);
     goal_ = log.add_goal(id, text());

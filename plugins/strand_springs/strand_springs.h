@@ -121,7 +121,6 @@ class StrandSprings final : public Constraint, public StrandSet, public StatesLa
   int count() const { return int(strands_.size()); }
   int strands_left() const;
   double integrity(int i) const { return 1 - strands_[std::size_t(i)].damage; }
-  double strand_tension(int i) const { return strands_[std::size_t(i)].tension; }
   int strand_count() const override { return count(); }
   StrandState strand(int i) const override;
 

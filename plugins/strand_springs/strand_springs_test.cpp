@@ -93,7 +93,7 @@ TEST(StrandSprings, PullsAsTheDiscretisedLawSays) {
           figure.law(curve, n, u * 1e3);
           figure.run(curve, n, (t.height("mass") - a) * 1e3);
         }
-        ASSERT_NEAR(t.strands->strand_tension(0), tension, 1e-9 * k * gap) << "step " << n << " slack " << slack;
+        ASSERT_NEAR(t.strands->strand(0).tension, tension, 1e-9 * k * gap) << "step " << n << " slack " << slack;
       }
       if (slack > 1 && !both) {
         EXPECT_EQ(u, 0);
@@ -119,12 +119,12 @@ TEST(StrandSprings, TwoBodiesInEquilibrium) {
   t.strands->add_strand(t.apex("second"), t.apex("mass"));
   for (int n = 0; n < 1500; ++n) t.s->step();
   const double expected = (1 - 0.7) * gap / (1 / 20.0 + 1 / spring + 1 / (2 * spring));
-  EXPECT_TRUE(test::held("strand in series with two springs", std::abs(t.strands->strand_tension(0) - expected),
+  EXPECT_TRUE(test::held("strand in series with two springs", std::abs(t.strands->strand(0).tension - expected),
                          expected, 1e-6));
   EXPECT_NEAR(t.height("mass") - a, expected / spring, 1e-6 * expected / spring);
   EXPECT_NEAR(a + gap - t.height("second"), expected / (2 * spring), 1e-6 * expected / spring);
   const double length = t.height("second") - t.height("mass");
-  EXPECT_NEAR(t.strands->strand_tension(0), 20 * (length - 0.7 * gap), 1e-6 * expected);
+  EXPECT_NEAR(t.strands->strand(0).tension, 20 * (length - 0.7 * gap), 1e-6 * expected);
 }
 
 /// A strand along z between two fixed points, and a blade whose edge lies across it, 0.45 mm off, to be moved along -x.
@@ -186,7 +186,7 @@ TEST(StrandSprings, ResistsWithCutForceAndPartsAfterCutLength) {
     } else {
       EXPECT_EQ(t.strands->strands_left(), 1);
       EXPECT_NEAR(t.strands->integrity(0), 1 - travel / 0.0003, 1e-9) << "step " << n;
-      EXPECT_NEAR(t.strands->strand_tension(0), 30 * (1 - damage) * 0.1 * 0.01, 1e-9)
+      EXPECT_NEAR(t.strands->strand(0).tension, 30 * (1 - damage) * 0.1 * 0.01, 1e-9)
           << "stiffness falls with the wear";
       EXPECT_TRUE(t.s->events().empty());
     }

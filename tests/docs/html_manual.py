@@ -13,20 +13,12 @@ import sys
 import tempfile
 import urllib.parse
 
-SECTIONS = (
-    "Trainee",
-    "Instructor",
-    "Author",
-    "Developer",
-    "Haptics and safety",
-    "Validation",
-    "Performance",
-    "Elements of scene files",
-)
-
-
 def main():
     source, insula, out = pathlib.Path(sys.argv[1]).resolve(), sys.argv[2], pathlib.Path(sys.argv[3]).resolve()
+    sys.dont_write_bytecode = True
+    sys.path.insert(0, str(source / "tools/manual"))
+    from build import ELEMENTS, SECTIONS
+
     if not shutil.which("mkdocs"):
         print("mkdocs is not installed: skipped")
         return 77
@@ -51,7 +43,7 @@ def main():
             print("FAILED: " + text)
 
     front = (site / "index.html").read_text(encoding="utf-8")
-    for name in SECTIONS:
+    for name in SECTIONS + (ELEMENTS,):
         that(re.search(r">\s*%s\s*<" % name, front), "the front page has no section " + name)
     for page in (source / "docs").glob("*.md"):
         that(

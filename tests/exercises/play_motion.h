@@ -7,9 +7,9 @@
 #include <map>
 
 #include "core/registry/registry.h"
+#include "core/sim/channel_sum.h"
 #include "engine/live/headless.h"
 #include "plugins/blood_flow/vessel_state.h"
-#include "plugins/strand_springs/strand_set.h"
 
 namespace insula::test {
 
@@ -57,8 +57,8 @@ inline Played play_motion(const std::filesystem::path& scene, const std::string&
           << "hand " << h << " did not follow its motion to the end";
     }
   out.ran = true;
-  out.strands = Strands(s).total();
-  out.left = Strands(s).left();
+  out.strands = int(channel_sum(s, "total"));
+  out.left = int(channel_sum(s, "standing"));
   const ExerciseLog& log = s.exercise()->log();
   out.state = log.state();
   out.end = log.end_time();

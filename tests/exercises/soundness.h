@@ -12,7 +12,6 @@
 #include "core/mechanics/shell_body.h"
 #include "core/mechanics/soft_body.h"
 #include "core/sim/simulation.h"
-#include "plugins/clip/clip.h"
 #include "plugins/contact/contact.h"
 
 namespace insula::test {
@@ -113,7 +112,7 @@ class DepthGauge {
     }
     Worst out;
     for (const Contact::Pair* p : pairs_) {
-      if (!p->active() || (dynamic_cast<const Clip*>(p->tool_a) != nullptr) != clips) continue;
+      if (!p->active() || p->tool_a->implant() != clips) continue;
       const Closed& m = *meshes_.at(p->b);
       const Pose pose = p->tool_a->link_pose(p->link_a);
       for (const RoundedPiece& piece : p->pieces_a) {

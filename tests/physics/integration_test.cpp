@@ -190,15 +190,15 @@ TEST(ImplicitEuler, ComplianceAndCorrectionAgree) {
     directions.push_back(d);
   }
   body->free_motion(context);
-  body->compute_compliance(body->rows);
+  body->begin_compliance(body->rows);
+  body->solver()->compute_parts();
   const int stride = 16;
   std::vector<double> w(std::size_t(rows * stride), 0.0);
-  body->add_compliance(body->rows, w.data(), stride);
   std::vector<double> free(rows, 0.0), lambda(rows);
+  body->add_response(body->rows, w.data(), stride, free.data());
   for (int r = 0; r < rows; ++r) {
     lambda[std::size_t(r)] = random.uniform(-0.01, 0.01);
   }
-  body->add_free_motion(body->rows, free.data());
   body->apply(context, body->rows, lambda.data());
   for (int r = 0; r < rows; ++r) {
     double expected = free[std::size_t(r)];

@@ -8,6 +8,7 @@
 #include "core/mechanics/soft_body.h"
 #include "core/testing/block_mesh.h"
 #include "core/testing/example.h"
+#include "core/testing/single_body.h"
 
 namespace insula::test {
 
@@ -16,60 +17,22 @@ struct Material {
   const char* tangent = "rotated";
 };
 
-class HoldWhere final : public Support {
- public:
-  std::function<bool(const Vec3&)> where;
-  void fix(PrepareContext&, const std::vector<Vec3>& rest, std::vector<char>& fixed) override {
-    for (std::size_t i = 0; i < rest.size(); ++i) fixed[i] = fixed[i] || where(rest[i]);
-  }
-};
-
-/// Nodes for which `held` is true do not move.
+/// Nodes for which `fixed` is true do not move.
 inline std::unique_ptr<SoftBody> soft_body(TetMesh mesh, const Material& m,
                                            std::function<bool(const Vec3&)> fixed = nullptr) {
   auto body = std::make_unique<SoftBody>();
   body->set_mesh(std::move(mesh));
   auto fem = builtin().create("corotational_fem");
-  const auto set = [&](const char* name, double value) {
-    dynamic_cast<QuantityParam&>(*fem->find_param(name)).set(value);
-  };
-  set("young", m.young);
-  set("poisson", m.poisson);
-  set("density", m.density);
-  set("rayleigh_mass", m.rayleigh_mass);
-  set("rayleigh_stiffness", m.rayleigh_stiffness);
+  set_quantity(*fem, "young", m.young);
+  set_quantity(*fem, "poisson", m.poisson);
+  set_quantity(*fem, "density", m.density);
+  set_quantity(*fem, "rayleigh_mass", m.rayleigh_mass);
+  set_quantity(*fem, "rayleigh_stiffness", m.rayleigh_stiffness);
   dynamic_cast<Param<Choice>&>(*fem->find_param("tangent")).set(m.tangent);
   fem->parent = body.get();
   body->children.push_back(std::move(fem));
-  if (fixed) {
-    auto support = std::make_unique<HoldWhere>();
-    support->where = std::move(fixed);
-    support->parent = body.get();
-    body->children.push_back(std::move(support));
-  }
-  Diagnostics diagnostics;
-  PrepareContext context{diagnostics, 0.01};
-  body->prepare(context);
-  body->connect(context);
-  if (!diagnostics.ok()) throw std::runtime_error(diagnostics.format());
+  if (const std::string wrong = finish(*body, std::move(fixed)); !wrong.empty()) throw std::runtime_error(wrong);
   return body;
-}
-
-inline void step(SoftBody& body, double h, const Vec3& gravity = Vec3::Zero()) {
-  StepContext context;
-  context.h = h;
-  context.gravity = gravity;
-  body.rows.clear();
-  body.free_motion(context);
-  body.apply(context, body.rows, nullptr);
-}
-
-/// Newton steps of the static problem: implicit Euler with a step so long that inertia vanishes.
-inline void settle(SoftBody& body, int steps) {
-  for (int i = 0; i < steps; ++i) {
-    body.v().setZero();
-    step(body, 1e6);
-  }
 }
 
 /// A force (N) spread evenly over the boundary triangles whose corners all satisfy `where` (rest positions).

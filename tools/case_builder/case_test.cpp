@@ -9,8 +9,8 @@
 #include "core/base/input_error.h"
 #include "core/model/formats/file_bytes.h"
 #include "core/registry/registry.h"
+#include "core/sim/channel_sum.h"
 #include "engine/live/headless.h"
-#include "plugins/strand_springs/strand_set.h"
 #include "tools/case_builder/commands.h"
 #include "tools/case_builder/intake.h"
 #include "tools/case_builder/report.h"
@@ -68,7 +68,7 @@ Played play(const fs::path& scene, double longest) {
     out.finite = out.finite && s.report().finite;
   }
   out.state = s.exercise()->log().state(), out.end = s.time();
-  out.strands = Strands(s).total(), out.left = Strands(s).left();
+  out.strands = int(channel_sum(s, "total")), out.left = int(channel_sum(s, "standing"));
   for (const MeasureState& m : s.exercise()->log().measures()) out.measures[m.id] = m.value;
   for (const FaultState& f : s.exercise()->log().faults()) out.faults[f.id] = f.count;
   return out;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tools/case_builder/opening_play.h"
+#include "core/sim/channel_sum.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +8,6 @@
 #include "core/registry/registry.h"
 #include "core/sim/simulation.h"
 #include "engine/live/headless.h"
-#include "plugins/strand_springs/strand_set.h"
 
 namespace insula::case_builder {
 namespace {
@@ -30,7 +30,7 @@ std::string complaint(const fs::path& scene, Progress& progress) {
   }
   std::string out;
   if (s.exercise()->log().state() != ExerciseState::done)
-    out = fmt::format("{} of {} strands stand at the end", Strands(s).left(), Strands(s).total());
+    out = fmt::format("{:.0f} of {:.0f} strands stand at the end", channel_sum(s, "standing"), channel_sum(s, "total"));
   for (const FaultState& f : s.exercise()->log().faults())
     if (f.count > 0) out += fmt::format("{}{} x \"{}\"", out.empty() ? "" : ", ", f.count, f.text);
   return out;

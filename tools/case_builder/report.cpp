@@ -9,11 +9,11 @@
 
 #include "core/base/input_error.h"
 #include "core/mechanics/deformable_body.h"
+#include "core/mechanics/rigid_body.h"
 #include "core/mechanics/shell_body.h"
 #include "core/registry/registry.h"
 #include "core/sim/simulation.h"
 #include "engine/live/headless.h"
-#include "plugins/clip/clip.h"
 #include "tools/case_builder/intake.h"
 #include "tools/case_builder/picture.h"
 #include "tools/case_builder/place.h"
@@ -109,8 +109,12 @@ std::pair<double, double> median_and_most(std::vector<double> times) {
 
 bool clip_touches_vessel(const StepReport& r) {
   return std::any_of(r.contacts.begin(), r.contacts.end(), [](const ContactPoint& c) {
+    const auto is_clip = [](const Body* b) {
+      const auto* rigid = dynamic_cast<const RigidBody*>(b);
+      return rigid && rigid->implant();
+    };
     const bool vessel = dynamic_cast<const ShellBody*>(c.a) || dynamic_cast<const ShellBody*>(c.b);
-    return vessel && (dynamic_cast<const Clip*>(c.a) || dynamic_cast<const Clip*>(c.b));
+    return vessel && (is_clip(c.a) || is_clip(c.b));
   });
 }
 

@@ -28,6 +28,7 @@ SECTIONS = (
     "Performance",
     "Machines and packages",
 )
+ELEMENTS = "Elements of scene files"  # the section of the generated reference
 
 
 def section(page, whom):
@@ -122,7 +123,7 @@ class Site:
                 sys.exit("error: no page of docs/README.md is for section \"%s\"" % name)
             out.append("  - %s:" % name)
             out += ["      - \"%s\": %s" % entry for entry in groups[name]]
-        out.append("  - Elements of scene files:")
+        out.append("  - %s:" % ELEMENTS)
         out.append("      - All elements: reference/index.md")
         out += [
             "      - %s: reference/%s" % (p.stem, p.name)

@@ -8,8 +8,8 @@
 
 #include "core/base/input_error.h"
 #include "core/registry/registry.h"
+#include "core/sim/channel_sum.h"
 #include "engine/live/headless.h"
-#include "plugins/strand_springs/strand_set.h"
 
 namespace insula {
 
@@ -38,8 +38,9 @@ inline void play(const fs::path& scene, const fs::path& file) {
       if (e.kind == "rupture" || e.kind == "strand_torn")
         events += fmt::format("  {:.2f} s {} {} {:.3f}\n", e.time, e.kind, e.text, e.value);
   }
-  std::printf("%s: %.1f s, %d of %d strands stand, largest contact force left %.3f N, right %.3f N\n%s", file.c_str(),
-              motion.duration(), Strands(*s).left(), Strands(*s).total(), press[0], press[1], events.c_str());
+  std::printf("%s: %.1f s, %.0f of %.0f strands stand, largest contact force left %.3f N, right %.3f N\n%s",
+              file.c_str(), motion.duration(), channel_sum(*s, "standing"), channel_sum(*s, "total"), press[0],
+              press[1], events.c_str());
   if (!s->exercise()) return;
   for (const GoalState& g : s->exercise()->log().goals())
     std::printf("  goal %s %s %.1f s\n", g.id.c_str(), g.done ? "reached at" : "open", g.time);

@@ -87,7 +87,7 @@ int cmd_bench(const CommandContext& context, const BenchOptions& options) {
   for (const Body* b : simulation.bodies())
     if (const auto* soft = dynamic_cast<const DeformableBody*>(b))
       fmt::print(context.out, "  {:<12} {} nodes, factor of {} numbers and {:.1f} Mflop\n", soft->id, soft->nodes(),
-                 soft->solver().cost().factor_entries, soft->solver().cost().factor_flops * 1e-6);
+                 soft->solver_cost().factor_entries, soft->solver_cost().factor_flops * 1e-6);
   fmt::print(context.out, "\n  {:<14}{:>9}{:>9}\n", "stage, ms", "p50", "p95");
   for (int s = 0; s < stage_count; ++s)
     fmt::print(context.out, "  {:<14}{:>9.3f}{:>9.3f}\n", stage_names()[std::size_t(s)],

@@ -76,8 +76,8 @@ Measured measure(Simulation& s, int warm_up, double seconds) {
   if (s.channels().find("strands.standing")) m.strands = s.channel("strands.standing");
   auto* body = const_cast<SoftBody*>(s.scene().find_as<SoftBody>("lower"));
   m.nodes = body->nodes();
-  m.flops = body->solver().cost().factor_flops;
-  m.entries = double(body->solver().cost().factor_entries);
+  m.flops = body->solver_cost().factor_flops;
+  m.entries = double(body->solver_cost().factor_entries);
   // Elements by themselves, into a copy of the matrix.
   BlockMatrix a = body->system();
   std::vector<double> force(3 * std::size_t(body->nodes())), assembly;

@@ -26,7 +26,7 @@ struct Recorded {
 };
 
 // x with A x = b to the last digit: refined with residuals in extended precision.
-VecX refined(BodySolver& solver, const BlockMatrix& a, const VecX& b) {
+VecX refined(ComplianceSolver& solver, const BlockMatrix& a, const VecX& b) {
   using Long = Eigen::Matrix<long double, 3, 1>;
   VecX x = VecX::Zero(b.size());
   Eigen::Matrix<long double, Eigen::Dynamic, 1> r(b.size()), sum = x.cast<long double>();
@@ -82,6 +82,11 @@ Recorded record(const DeformableBody& body, int max_rows) {
   return out;
 }
 
+struct NamedSolver {
+  std::string name;
+  std::unique_ptr<ComplianceSolver> solver;
+};
+
 struct Measured {
   std::string name;
   double factor_ms = 1e300, solve_ms = 1e300, w_ms = 1e300;
@@ -98,7 +103,7 @@ double milliseconds(F&& f) {
 }
 
 // In rounds, all solvers in each round: what disturbs the machine disturbs them all. The fastest run counts.
-std::vector<Measured> measure(const Recorded& step, std::vector<std::unique_ptr<BodySolver>> solvers) {
+std::vector<Measured> measure(const Recorded& step, const std::vector<NamedSolver>& solvers) {
   constexpr double budget_ms = 1000;  // of each solver
   constexpr int least = 3, most = 300;
   const BlockMatrix& a = step.body->system();
@@ -108,13 +113,13 @@ std::vector<Measured> measure(const Recorded& step, std::vector<std::unique_ptr<
   VecX x;
   std::vector<double> w(std::size_t(stride) * std::size_t(stride)), spent(solvers.size(), 0.0);
   for (std::size_t i = 0; i < solvers.size(); ++i) {
-    out[i].name = solvers[i]->name();
-    solvers[i]->analyse(a);
+    out[i].name = solvers[i].name;
+    solvers[i].solver->analyse(a);
   }
   for (int k = 0; k < most; ++k)
     for (std::size_t i = 0; i < solvers.size(); ++i) {
       if (k >= least && spent[i] > budget_ms) continue;
-      BodySolver& s = *solvers[i];
+      ComplianceSolver& s = *solvers[i].solver;
       const auto timed = [&](double& best, auto&& f) {
         const double ms = milliseconds(f);
         spent[i] += ms;
@@ -126,7 +131,7 @@ std::vector<Measured> measure(const Recorded& step, std::vector<std::unique_ptr<
       };
       timed(out[i].factor_ms, [&] {
         if (!s.factorise(a))
-          throw std::runtime_error(s.name() + " calls the matrix of \"" + step.body->id + "\" indefinite");
+          throw std::runtime_error(solvers[i].name + " calls the matrix of \"" + step.body->id + "\" indefinite");
       });
       x = step.b;
       timed(out[i].solve_ms, [&] { s.solve(x.data()); });
@@ -135,7 +140,7 @@ std::vector<Measured> measure(const Recorded& step, std::vector<std::unique_ptr<
       timed(out[i].again_ms, compliance);
     }
   for (std::size_t i = 0; i < solvers.size(); ++i) {
-    BodySolver& s = *solvers[i];
+    ComplianceSolver& s = *solvers[i].solver;
     x = step.b;
     s.solve(x.data());
     out[i].solve_error = (x - step.x).cwiseAbs().maxCoeff() / step.x.cwiseAbs().maxCoeff();
@@ -151,12 +156,12 @@ std::vector<Measured> measure(const Recorded& step, std::vector<std::unique_ptr<
   return out;
 }
 
-std::vector<std::unique_ptr<BodySolver>> all_solvers() {
-  std::vector<std::unique_ptr<BodySolver>> out;
-  out.push_back(make_direct_solver(false));
-  out.push_back(make_direct_solver(true));
-  out.push_back(make_cholmod_solver());
-  out.push_back(make_eigen_solver());
+std::vector<NamedSolver> all_solvers() {
+  std::vector<NamedSolver> out;
+  out.push_back({"direct", make_direct_solver(false)});
+  out.push_back({"direct, single precision", make_direct_solver(true)});
+  out.push_back({"CHOLMOD", make_cholmod_solver()});
+  out.push_back({"Eigen LDLT", make_eigen_solver()});
   return out;
 }
 

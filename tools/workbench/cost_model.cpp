@@ -73,7 +73,7 @@ SceneWork count_work(const Simulation& s) {
       k.elements = int(shell->wall_triangles().size()), k.wall = true;
     k.background = body->solver_kind.is("asynchronous");
     k.keeps_tangent = !k.background && body->tangent_tolerance() > 0;
-    k.solver = body->solver().cost();
+    k.solver = body->solver_cost();
     const int now = body->rows.count();
     double rows = now;
     for (const auto& [which, n] : more.of_body) rows += which == body ? n : 0;

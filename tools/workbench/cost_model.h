@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/linalg/body_solver.h"
+#include "core/linalg/compliance_solver.h"
 #include "core/sim/report.h"
 #include "core/sim/simulation.h"
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The cost model's counts against the real ones, and what it makes of them. No times: those are the machine's.
 #include "tools/workbench/cost_model.h"
+#include "core/sim/channel_sum.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +9,6 @@
 #include "core/mechanics/soft_body.h"
 #include "core/testing/example.h"
 #include "engine/live/headless.h"
-#include "plugins/strand_springs/strand_set.h"
 #include "tools/workbench/scaling_scene.h"
 #include "tools/workbench/workbench.h"
 
@@ -25,7 +25,7 @@ TEST(CostModel, CountsAreTheRealOnes) {
   EXPECT_EQ(w.bodies[0].elements, 6 * 6 * 6 * 6);
   EXPECT_EQ(w.bodies[1].nodes, 5 * 5 * 5);
   EXPECT_EQ(w.surface_vertices, (343 - 125) + (125 - 27));
-  EXPECT_EQ(w.standing_rows, Strands(*s).left());
+  EXPECT_EQ(w.standing_rows, int(channel_sum(*s, "standing")));
   EXPECT_EQ(w.expected_rows, w.standing_rows);
   std::size_t i = 0;
   for (const char* name : {"lower", "upper"}) {

@@ -112,7 +112,8 @@ std::vector<RecordedStep> record_steps(Simulation& simulation, const Motion& mot
   ExchangePause pause;
   Condenser condense;
   ContactFramePrediction turned;
-  HapticUpdate sent;
+  ProblemStamp stamp;
+  ConstraintProblem condensed;
   std::vector<std::uint8_t> bytes;
   std::string why;
   while (simulation.time() < duration_s) {
@@ -120,12 +121,13 @@ std::vector<RecordedStep> record_steps(Simulation& simulation, const Motion& mot
     RecordedStep& step = out.emplace_back();
     step.pose_s = simulation.time();
     step.force = {driven.force(0), driven.force(1)};
-    sent.step_s = simulation.h();
-    sent.sim_time_s = simulation.time();
-    condense(prediction_horizon_s >= 0 ? turned(simulation, prediction_horizon_s) : simulation.problem(),
-             Publisher::max_rows, sent.problem);
-    pause.apply(simulation, sent.problem);
-    if (!encode_problem(sent, bytes) || !decode_problem(bytes, step.update, why)) out.pop_back();
+    stamp.step_s = simulation.h();
+    stamp.sim_time_s = simulation.time();
+    const ConstraintProblem& sent =
+        condense(prediction_horizon_s >= 0 ? turned(simulation, prediction_horizon_s) : simulation.problem(),
+                 Publisher::max_rows, condensed);
+    if (!encode_problem(stamp, sent, pause.hands(simulation), bytes) || !decode_problem(bytes, step.update, why))
+      out.pop_back();
   }
   return out;
 }

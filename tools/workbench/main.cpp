@@ -2,12 +2,8 @@
 // The program `insula_workbench`: scenes checked and measured. `insula check` and `insula bench` hand over to it.
 #include <CLI/CLI.hpp>
 
-#include <algorithm>
-#include <functional>
-#include <iostream>
-
 #include "engine/command_line/common_options.h"
-#include "engine/command_line/load_plugins.h"
+#include "engine/command_line/run_command_line.h"
 #include "tools/workbench/workbench.h"
 
 namespace {
@@ -16,23 +12,22 @@ namespace fs = std::filesystem;
 using insula::add_motion;
 using insula::add_threads;
 using insula::at_least;
-using insula::CommandContext;
 using insula::Duration;
 using insula::Frequency;
 using insula::seconds;
 
 /// What the options are read into, and the command that was chosen.
-struct CommandLine {
-  CLI::App app{"Insula: scenes checked and measured", "insula"};
-  std::vector<fs::path> plugin_paths, files;
+struct Options : insula::CommandLine {
+  Options() : CommandLine("Insula: scenes checked and measured", "insula") {}
+
+  std::vector<fs::path> files;
   bool settle = false, measure_scaling = false, measure_haptics = false;
   insula::BenchOptions bench;
   insula::ScalingOptions scaling;
   insula::HapticBenchOptions haptics;
-  std::function<int(const CommandContext&)> chosen;
 };
 
-void add_check(CommandLine& c) {
+void add_check(Options& c) {
   auto* check = c.app.add_subcommand("check", "read scenes and report everything that is wrong with them");
   check->add_option("scene", c.files, "scene files")->required();
   check->add_flag("--settle", c.settle,
@@ -40,7 +35,7 @@ void add_check(CommandLine& c) {
   check->callback([&c] { c.chosen = [&](const auto& x) { return insula::cmd_check(x, c.files, c.settle); }; });
 }
 
-void add_haptic_bench(CLI::App& bench, CommandLine& c) {
+void add_haptic_bench(CLI::App& bench, Options& c) {
   auto& o = c.haptics;
   auto* flag = bench.add_flag(
       "--haptics", c.measure_haptics,
@@ -72,7 +67,7 @@ void add_haptic_bench(CLI::App& bench, CommandLine& c) {
 }
 
 /// The benchmark that the options ask for.
-void choose_bench(CommandLine& c) {
+void choose_bench(Options& c) {
   if (c.measure_scaling) {
     c.scaling.threads = c.bench.threads > 0 ? c.bench.threads : 1;
     c.scaling.json = c.bench.json;
@@ -95,7 +90,7 @@ void choose_bench(CommandLine& c) {
   }
 }
 
-void add_bench(CommandLine& c) {
+void add_bench(Options& c) {
   auto& o = c.bench;
   auto* command = c.app.add_subcommand("bench", "where the time of a step goes");
   auto* scene = command->add_option("scene", o.scene, "scene file");
@@ -129,27 +124,8 @@ void add_bench(CommandLine& c) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CommandLine line;
-  line.app.require_subcommand(1);
-  line.app
-      .add_option("--plugin-path", line.plugin_paths,
-                  "folder of shared plugins, or one plugin (may be given more than once)")
-      ->allow_extra_args(false);
-  add_check(line);
-  add_bench(line);
-  try {
-    std::vector<std::string> words = insula::command_words(argc, argv);
-    std::reverse(words.begin(), words.end());  // as CLI11 takes them
-    line.app.parse(std::move(words));
-  } catch (const CLI::ParseError& e) {
-    return line.app.exit(e) == 0 ? 0 : 2;
-  }
-  try {
-    insula::Registry registry;
-    if (const int status = insula::load_plugins(registry, line.plugin_paths, std::cerr)) return status;
-    return line.chosen({registry, std::cout, std::cerr});
-  } catch (const std::exception& e) {
-    std::cerr << "error: " << e.what() << '\n';
-    return 1;
-  }
+  Options options;
+  add_check(options);
+  add_bench(options);
+  return insula::run_command_line(options, argc, argv);
 }

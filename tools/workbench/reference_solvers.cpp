@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// CHOLMOD and Eigen as body solvers.
+// CHOLMOD and Eigen as solvers of one body.
 #include "tools/workbench/reference_solvers.h"
 
 #include <cholmod.h>
@@ -44,7 +44,7 @@ class Expanded {
 };
 
 /// Everything but the factor: H^T as a dense matrix, X = A^-1 H^T, W = H X.
-class ReferenceSolver : public BodySolver {
+class ReferenceSolver : public ComplianceSolver {
  public:
   void solve(double* x) override {
     one_ = Eigen::Map<VecX>(x, size_);
@@ -75,11 +75,6 @@ class ReferenceSolver : public BodySolver {
       for (int j = 0; j < columns_; ++j)
         w[std::size_t(rows.row[std::size_t(i)]) * std::size_t(stride) + std::size_t(rows.row[std::size_t(j)])] +=
             w_(i, j);
-  }
-  void correct(const BodyRows& rows, const double* lambda, double* x) override {
-    VecX l(columns_);
-    for (int r = 0; r < columns_; ++r) l[r] = lambda[rows.row[std::size_t(r)]];
-    Eigen::Map<VecX>(x, size_) = columns_ > 0 ? VecX(solved_ * l) : VecX(VecX::Zero(size_));
   }
   SolverCost cost() const override {
     SolverCost c;
@@ -141,7 +136,6 @@ class CholmodSolver final : public ReferenceSolver {
   CholmodSolver(const CholmodSolver&) = delete;
   CholmodSolver& operator=(const CholmodSolver&) = delete;
 
-  std::string name() const override { return "CHOLMOD"; }
   void analyse(const BlockMatrix& a) override {
     release();
     size_ = 3 * a.nodes();
@@ -199,7 +193,6 @@ class CholmodSolver final : public ReferenceSolver {
 
 class EigenSolver final : public ReferenceSolver {
  public:
-  std::string name() const override { return "Eigen LDLT"; }
   void analyse(const BlockMatrix& a) override {
     size_ = 3 * a.nodes();
     factor_.analyzePattern(expanded_.pattern(a));
@@ -228,8 +221,8 @@ class EigenSolver final : public ReferenceSolver {
 
 }  // namespace
 
-std::unique_ptr<BodySolver> make_cholmod_solver() { return std::make_unique<CholmodSolver>(); }
-std::unique_ptr<BodySolver> make_eigen_solver() { return std::make_unique<EigenSolver>(); }
+std::unique_ptr<ComplianceSolver> make_cholmod_solver() { return std::make_unique<CholmodSolver>(); }
+std::unique_ptr<ComplianceSolver> make_eigen_solver() { return std::make_unique<EigenSolver>(); }
 
 std::string blas_library() {
   Dl_info info{};

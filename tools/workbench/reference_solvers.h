@@ -5,14 +5,14 @@
 #pragma once
 #include <memory>
 
-#include "core/linalg/body_solver.h"
+#include "core/linalg/compliance_solver.h"
 
 namespace insula {
 
 /// CHOLMOD's supernodal LL^T with its own choice of ordering, on one thread whatever OpenMP would like.
-std::unique_ptr<BodySolver> make_cholmod_solver();
+std::unique_ptr<ComplianceSolver> make_cholmod_solver();
 /// Eigen's SimplicialLDLT with AMD.
-std::unique_ptr<BodySolver> make_eigen_solver();
+std::unique_ptr<ComplianceSolver> make_eigen_solver();
 /// The BLAS that CHOLMOD calls here: file and folder.
 std::string blas_library();
 

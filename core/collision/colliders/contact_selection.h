@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/collision/contact_set.h"
+#include "core/collision/proximity.h"
 
 namespace insula {
 

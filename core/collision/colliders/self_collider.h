@@ -21,7 +21,7 @@
 #include <vector>
 
 #include "core/base/workers.h"
-#include "core/collision/contact_set.h"
+#include "core/collision/proximity.h"
 #include "core/collision/search/collision_mesh.h"
 
 namespace insula {

@@ -13,7 +13,7 @@
 #include <span>
 #include <vector>
 
-#include "core/collision/contact_set.h"
+#include "core/collision/proximity.h"
 #include "core/collision/search/collision_mesh.h"
 #include "core/collision/search/facing_search.h"
 #include "core/collision/search/search_kernels.h"

@@ -29,7 +29,7 @@
 #pragma once
 #include <vector>
 
-#include "core/collision/contact_set.h"
+#include "core/collision/proximity.h"
 #include "core/collision/search/collision_mesh.h"
 #include "core/model/tools/tool_model.h"
 

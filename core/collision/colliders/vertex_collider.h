@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "core/collision/colliders/tool_collider.h"
-#include "core/collision/contact_set.h"
+#include "core/collision/proximity.h"
 #include "core/collision/search/collision_mesh.h"
 
 namespace insula {

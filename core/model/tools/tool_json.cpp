@@ -3,27 +3,14 @@
 #include "core/model/tools/tool_json.h"
 
 #include <algorithm>
-#include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "core/base/text.h"
-#include "core/model/formats/file_bytes.h"
+#include "core/model/formats/json_length.h"
 
 namespace insula {
 namespace {
 
 using Json = nlohmann::json;
-constexpr double mm = 1e-3;
-
-double length_mm(const std::filesystem::path& file, const Json& value, const std::string& what) {
-  if (!value.is_number() || !std::isfinite(value.get<double>())) fail(file, what + " must be a number (mm)");
-  return value.get<double>() * mm;
-}
-
-Vec3 point_mm(const std::filesystem::path& file, const Json& value, const std::string& what) {
-  if (!value.is_array() || value.size() != 3) fail(file, what + " must be three numbers (mm)");
-  return {length_mm(file, value[0], what), length_mm(file, value[1], what), length_mm(file, value[2], what)};
-}
 
 void read_blade(const std::filesystem::path& file, const Json& blade, ToolModel& tool) {
   if (!blade.is_object()) fail(file, "blade must be an object");

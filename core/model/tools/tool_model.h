@@ -51,7 +51,6 @@ struct ToolModel {
       sections;                     ///< of tool.json that are none of the above: JSON text by key, for plugins
   std::filesystem::path json_file;  ///< tool.json, for messages about a section; empty: there is none
 
-  int link_count() const { return 1 + int(hinges.size()); }
   /// Where the points of a link go, tool frame to tool frame: the identity for the root and at opening 0.
   Pose link_pose(int link, double opening) const;
 };

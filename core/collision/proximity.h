@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The result of collision detection as plain data: points where two shapes are, or come within the step, closer than
-// the alarm distance. Shape a is pushed along +normal, shape b along -normal. Scene frame, m.
+// What collision detection finds, as plain data: a point where two shapes are, or come within the step, closer than the
+// alarm distance. Shape a is pushed along +normal, shape b along -normal. Scene frame, m.
 #pragma once
 #include <cstdint>
-#include <vector>
 
 #include "core/base/math.h"
 
@@ -26,10 +25,6 @@ struct Proximity {
   double time = 0;              ///< that moment: 0 start, 1 end of the free motion
   std::uint64_t key = 0;        ///< stable from step to step while the contact lasts; given by ContactSelection
   Vec3 tangent = Vec3::Zero();  ///< unit, perpendicular to the normal, turning as little as it can; given likewise
-};
-
-struct ContactSet {
-  std::vector<Proximity> contacts;
 };
 
 }  // namespace insula
