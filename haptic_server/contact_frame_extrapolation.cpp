@@ -50,16 +50,16 @@ void ContactFrameExtrapolation::extrapolate(const std::array<Vec6, 2>& moved) no
     const double share =
         std::clamp(moved[t].head<3>().dot(swept_displacement) / square - problem_->prediction_horizon_steps, -max_share,
                    max_share);
-    for (const FrameRotation& turn : rotations_[t]) {
-      const Vec3 by = share * turn.by;
-      for (int k = turn.row; k < turn.row + 3; ++k) {
+    for (const FrameRotation& rotation : rotations_[t]) {
+      const Vec3 by = share * rotation.by;
+      for (int k = rotation.row; k < rotation.row + 3; ++k) {
         Vec3 d = direction(problem_->tools[t], k);
         const double size = d.norm();
         const Vec3 moment = problem_->tools[t].jacobian.row(k).tail<3>().transpose();
-        Vec3 turned = d + by.cross(d) + 0.5 * by.cross(by.cross(d));
-        turned *= size / turned.norm();
-        const Vec3 now = moment + turn.arm.cross(turned - d);
-        jacobian_[t].row(k) << turned.transpose(), now.transpose();
+        Vec3 rotated = d + by.cross(d) + 0.5 * by.cross(by.cross(d));
+        rotated *= size / rotated.norm();
+        const Vec3 now = moment + rotation.arm.cross(rotated - d);
+        jacobian_[t].row(k) << rotated.transpose(), now.transpose();
       }
     }
   }

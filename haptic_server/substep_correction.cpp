@@ -114,14 +114,14 @@ const ConstraintProblem& SubstepCorrection::next(double dt, const std::array<Vec
   first_ = false;
   if (settings_.extrapolate_frames) extrapolation_.extrapolate(moved);
   for (std::size_t t = 0; t < tools(); ++t) {
-    const Vec6 turned = settings_.extrapolate_frames ? Vec6(push(t, known_) - push_[t]) : Vec6(Vec6::Zero());
-    push_[t] += turned;
+    const Vec6 push_change = settings_.extrapolate_frames ? Vec6(push(t, known_) - push_[t]) : Vec6(Vec6::Zero());
+    push_[t] += push_change;
     if (grasped_[t].any) {
       went_[t] = grasping_[t].free_displacement(moved[t]) + give(t) * push_[t];
       continue;
     }
     const Vec6 free = p.tools[t].gain * moved[t];
-    went_[t] = free - moved_[t] + give(t) * turned;
+    went_[t] = free - moved_[t] + give(t) * push_change;
     moved_[t] = free;
   }
   for (std::size_t i = 0; i < n; ++i) {

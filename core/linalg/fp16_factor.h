@@ -18,8 +18,8 @@ class Fp16Factor {
   void round();
   /// x := A^-1 x, 3 nodes values in natural order.
   void solve(double* x);
-  /// x := A^-1 H^T lambda of the factor's last compliance rows, as its correct(), except for the rounding of the 16-bit
-  /// half.
+  /// x := A^-1 H^T lambda for the factor's last compliance rows. It is MultifrontalCholesky::correct() except for the
+  /// rounding of its 16-bit part.
   void correct(const BodyRows& rows, const double* lambda, double* x);
 
  private:

@@ -47,7 +47,7 @@ class Publisher {
   insula_lcm::scene_info_t info_;
   insula_lcm::render_frame_t frame_;
   HapticUpdate update_;
-  ContactFramePrediction turn_;
+  ContactFramePrediction predict_frames_;
   Condenser condense_;
   ExchangePause pause_;
   std::vector<std::uint8_t> scratch_;

@@ -49,9 +49,9 @@ void Contact::limit_motion(ConstraintBuilder& builder, const Pair& p) const {
   for (const Vec3& place : {r.axis0, r.axis1, third}) {
     const MaterialPoint point = p.tool_a->link_point(p.link_a, place);
     const Vec3 u = p.tool_a->free_displacement(point);
-    const double way = u.norm(), allowed = touch * way + most;
+    const double distance = u.norm(), allowed = touch * distance + most;
     ++count;
-    if (way <= allowed) continue;
+    if (distance <= allowed) continue;
     Block block;
     block.id = row_id(*this, std::uint64_t(1) << 43 | std::uint64_t(&p - pairs_.data()) << 16 |
                                  std::uint64_t(piece) << 2 | std::uint64_t(count));
@@ -60,7 +60,7 @@ void Contact::limit_motion(ConstraintBuilder& builder, const Pair& p) const {
     const int row = builder.add(block);
     builder.violation(row, allowed);
     builder.moves(row, most / servo_step_s);
-    builder.point(row, point, -u / way);
+    builder.point(row, point, -u / distance);
   }
 }
 

@@ -11,7 +11,7 @@ void Contact::predict_frames(double steps, std::vector<ContactFrame>& out) const
   for (const Pair& p : pairs_) {
     if (!p.tool_collider || !p.active()) continue;
     const Pose now = p.tool_a->link_pose(p.link_a);
-    const Vec6 way = displacement(p.start, now);
+    const Vec6 motion = displacement(p.start, now);
     const auto vertex = [&](double after, int v) -> Vec3 {
       const Vec3& start = p.b->positions()[std::size_t(v)];
       if (p.b->body().blocks() == 0) return start;
@@ -23,7 +23,7 @@ void Contact::predict_frames(double steps, std::vector<ContactFrame>& out) const
                                   pose.apply(x.local), spacing(), x.normal);
     };
     const auto nearest_after = [&](const Proximity& x, double after) {
-      return nearest(x, displaced(now, after * way), [&](int v) { return vertex(after, v); });
+      return nearest(x, displaced(now, after * motion), [&](int v) { return vertex(after, v); });
     };
     for (std::size_t i = 0; i < p.forces.size(); ++i) {
       const Proximity& x = p.contacts[i];

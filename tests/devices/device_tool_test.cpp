@@ -122,9 +122,9 @@ TEST_F(DeviceTool, WaysThatCannotBeAreRefused) {
   testing::Random random(3);
   for (int k = 0; k < 200; ++k) {  // any way a device can stand, moved by a hand that is no ruler
     const Mat3 turn = from_rotation_vector(random.vector(2)).toRotationMatrix();
-    Mat3 ways = 0.05 * turn;  // columns: the person's axes in the device's frame
-    for (int i = 0; i < 3; ++i) ways.col(i) += random.vector(0.008);
-    const DeviceCalibration c = fit(ways.col(0), ways.col(1), ways.col(2));
+    Mat3 strokes = 0.05 * turn;  // columns: the person's axes in the device's frame
+    for (int i = 0; i < 3; ++i) strokes.col(i) += random.vector(0.008);
+    const DeviceCalibration c = fit(strokes.col(0), strokes.col(1), strokes.col(2));
     ASSERT_EQ(calibration_error(c), "");
     ASSERT_LT(rotation_vector(Quat(c.axes * turn)).norm(), 0.25);
   }

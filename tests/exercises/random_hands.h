@@ -30,14 +30,14 @@ class StrokeWriter {
   StrokeWriter(Motion& motion, int hand, const Pose& start) : motion_(motion), hand_(hand), pose_(start) { key(); }
 
   void stroke(const Pose& target, double speed, double spin) {
-    const Vec6 way = displacement(pose_, target);
-    const double length = way.head<3>().norm(), angle = way.tail<3>().norm();
+    const Vec6 motion = displacement(pose_, target);
+    const double length = motion.head<3>().norm(), angle = motion.tail<3>().norm();
     const double duration = std::max({15.0 / 8 * length / speed, 15.0 / 8 * angle / spin, 0.02});
     const int n = std::max(2, int(std::ceil(duration / 0.01)));
     const Pose from = pose_;
     for (int i = 1; i <= n; ++i) {
       const double x = double(i) / n;
-      pose_ = displaced(from, x * x * x * (10 - 15 * x + 6 * x * x) * way);
+      pose_ = displaced(from, x * x * x * (10 - 15 * x + 6 * x * x) * motion);
       time_ += duration / n;
       key();
     }

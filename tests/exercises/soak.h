@@ -223,9 +223,9 @@ class RandomCampaign {
       if (const auto* i = dynamic_cast<const Instrument*>(b); i && i->active() && i->hand_index() >= 0)
         out.astray.most((i->pose().p - i->device().p).norm(), i->id);
       if (const auto* d = dynamic_cast<const DeformableBody*>(b)) {
-        const VecX way = d->q() - start[n++];
+        const VecX displacement = d->q() - start[n++];
         for (int i = 0; i < d->nodes(); ++i)
-          out.moved.most(way.segment<3>(3 * i).norm(), d->id + " " + std::to_string(i));
+          out.moved.most(displacement.segment<3>(3 * i).norm(), d->id + " " + std::to_string(i));
       }
     }
     out.seconds = s.time();

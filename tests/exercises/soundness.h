@@ -125,9 +125,9 @@ class DepthGauge {
         for (std::size_t a = 0; a < piece.core.size(); ++a) {
           look(piece.core[a]);
           for (std::size_t b = 0; b < a; ++b) {
-            const Vec3 way = piece.core[a] - piece.core[b];
-            const int n = int(std::ceil(way.norm() / 0.8e-3));
-            for (int i = 1; i < n; ++i) look(piece.core[b] + double(i) / n * way);
+            const Vec3 edge = piece.core[a] - piece.core[b];
+            const int n = int(std::ceil(edge.norm() / 0.8e-3));
+            for (int i = 1; i < n; ++i) look(piece.core[b] + double(i) / n * edge);
           }
         }
       }

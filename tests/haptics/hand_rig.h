@@ -82,9 +82,9 @@ inline Pressed press(const Press& press, const Person& person) {
     HandGoal goal;
     goal.pose = home;
     // When the gate has faded forces in: there within a third of a second, at the speed of a tap.
-    const double way = std::clamp((t - begin) / arrival, 0.0, 1.0);
-    goal.pose.p.z() += way * (top - press.depth_m - home.p.z());
-    goal.v.z() = way > 0 && way < 1 ? (top - press.depth_m - home.p.z()) / arrival : 0;
+    const double part = std::clamp((t - begin) / arrival, 0.0, 1.0);
+    goal.pose.p.z() += part * (top - press.depth_m - home.p.z());
+    goal.v.z() = part > 0 && part < 1 ? (top - press.depth_m - home.p.z()) / arrival : 0;
     if (t > begin) {
       goal.pose.p.x() += press.slide_m_s * (t - begin);
       goal.v.x() = press.slide_m_s;

@@ -111,7 +111,7 @@ std::vector<RecordedStep> record_steps(Simulation& simulation, const Motion& mot
   Driven driven(simulation, motion);
   ExchangePause pause;
   Condenser condense;
-  ContactFramePrediction turned;
+  ContactFramePrediction predict;
   HapticUpdate sent;
   std::vector<std::uint8_t> bytes;
   std::string why;
@@ -122,7 +122,7 @@ std::vector<RecordedStep> record_steps(Simulation& simulation, const Motion& mot
     step.force = {driven.force(0), driven.force(1)};
     sent.step_s = simulation.h();
     sent.sim_time_s = simulation.time();
-    condense(prediction_horizon_s >= 0 ? turned(simulation, prediction_horizon_s) : simulation.problem(),
+    condense(prediction_horizon_s >= 0 ? predict(simulation, prediction_horizon_s) : simulation.problem(),
              Publisher::max_rows, sent.problem);
     pause.apply(simulation, sent.problem);
     if (!encode_problem(sent, bytes) || !decode_problem(bytes, step.update, why)) out.pop_back();

@@ -10,7 +10,7 @@ namespace insula {
 void AabbTree::build(std::span<const Vec3> rest, std::span<const std::array<int, 3>> triangles) {
   nodes_.clear();
   leaf_vertices_.clear();
-  ways_.clear();
+  path_boxes_.clear();
   stale_.clear();
   first_leaf_.clear();
   order_.resize(triangles.size());
@@ -23,7 +23,7 @@ void AabbTree::build(std::span<const Vec3> rest, std::span<const std::array<int,
   nodes_.reserve(triangles.size());
   build_node(0, int(triangles.size()), centres, triangles);
   list_leaves_of_vertices(rest.size());
-  ways_.resize(rest.size());
+  path_boxes_.resize(rest.size());
   stale_.assign(nodes_.size(), 0);
   parent_.assign(nodes_.size(), -1);
   for (std::size_t i = 0; i < nodes_.size(); ++i)
@@ -109,7 +109,7 @@ void AabbTree::look_at(std::span<const Vec3> positions, std::span<const Vec3> di
 double AabbTree::renew(std::size_t v) {
   const Vec3& p = positions_[v];
   const Float4 here = rounded(p), there = displacements_.empty() ? here : rounded(p + displacements_[v]);
-  OuterBox& box = ways_[v];
+  OuterBox& box = path_boxes_[v];
   const float inside = box.room_about(here);
   if (inside > 0.5f * slack && box.room_about(there) >= 0) return double(inside);
   box = {here < there ? here : there, here > there ? here : there};
@@ -146,7 +146,7 @@ void AabbTree::close() {
       n.box.add(nodes_[std::size_t(n.first)].box);
     } else {
       n.box = {};
-      for (int v : vertices_of(n)) n.box.add(ways_[std::size_t(v)]);
+      for (int v : vertices_of(n)) n.box.add(path_boxes_[std::size_t(v)]);
     }
   }
 }
