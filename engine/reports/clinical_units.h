@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Units that clinicians read, for pages and reports; inside everything is SI.
+// Clinical units for pages and reports. The program itself uses SI.
 #pragma once
 
 namespace insula {

@@ -90,9 +90,9 @@ void Contact::search(const Search& what) {
   TissueContactSettings settings;
   settings.alarm = tissue_alarm();
   settings.offset = 0.5 * (p.a->thickness() + p.b->thickness());
-  auto& out = what.other_way ? p.other_way : p.contacts;
+  auto& out = what.reverse ? p.reverse : p.contacts;
   out.clear();
-  if (what.other_way) p.b_on_a->detect(p.b->collision(), p.a->collision(), settings, out);
+  if (what.reverse) p.b_on_a->detect(p.b->collision(), p.a->collision(), settings, out);
   else p.a_on_b->detect(p.a->collision(), p.b->collision(), settings, out);
 }
 
@@ -114,7 +114,7 @@ void Contact::detect(const StepContext& context) {
       choice.spacing = tissue_spacing();
       choice.advantage = 0.5 * tissue_alarm();
       choice.max_contacts = tissue_max_contacts();
-      for (Proximity& x : p.other_way) {
+      for (Proximity& x : p.reverse) {
         x.side = 1;
         p.contacts.push_back(x);
       }

@@ -73,7 +73,7 @@ void Contact::add_pairs(Simulation& simulation, Body* a, Body* b) {
       p.b_on_a = std::make_unique<TissueCollider>(sample_vertices(sb->rest().vertices, sb->triangles(), distance),
                                                   sb->rest().vertices, p.a->collision().triangle_count());
       p.contacts.reserve(p.a_on_b->samples().size() + p.b_on_a->samples().size());
-      p.other_way.reserve(p.b_on_a->samples().size());
+      p.reverse.reserve(p.b_on_a->samples().size());
       pairs_.push_back(std::move(p));
     }
   }
@@ -101,8 +101,8 @@ void Contact::connect(PrepareContext& context, Simulation& simulation) {
     }
   for (Pair& p : pairs_) {
     const std::size_t most = std::size_t(p.tool_a ? max_contacts() : tissue_max_contacts());
-    p.selection.reserve(p.contacts.capacity() + p.other_way.capacity(), most);
-    p.contacts.reserve(p.contacts.capacity() + p.other_way.capacity());
+    p.selection.reserve(p.contacts.capacity() + p.reverse.capacity(), most);
+    p.contacts.reserve(p.contacts.capacity() + p.reverse.capacity());
     p.rows.reserve(most);
     if (p.vertex_collider && patch() > 0 && friction() > 0)
       p.patches = std::make_unique<FrictionPatches>(patch(), most);
