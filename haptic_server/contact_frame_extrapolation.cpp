@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What turns, and by how much.
+// Finds the contacts to rotate, and rotates their rows.
 #include "haptic_server/contact_frame_extrapolation.h"
 
 #include <algorithm>
@@ -8,11 +8,11 @@ namespace insula {
 namespace {
 
 constexpr double max_share = 1.5;
-constexpr double min_swept_displacement_m = 5e-5;  // a hand that rests turns nothing
+constexpr double min_swept_displacement_m = 5e-5;  // the hand is at rest: nothing is rotated
 
 Vec3 direction(const ToolTerms& t, int row) { return t.jacobian.row(row).head<3>().transpose(); }
 
-/// Where a contact's three rows, which are orthonormal, take hold of the tool, from its origin.
+/// Contact point of three orthonormal rows, relative to the tool's origin, m.
 Vec3 arm_of(const ToolTerms& t, int row) {
   Vec3 arm = Vec3::Zero();
   for (int k = row; k < row + 3; ++k) arm += 0.5 * direction(t, k).cross(Vec3(t.jacobian.row(k).tail<3>()));

@@ -96,7 +96,7 @@ void Elimination::analyse(const BlockMatrix& a, int lanes) {
     entries += std::int64_t(n * m - n * (n - 1) / 2);
     flops += n * n * n / 3 + n * n * (m - n) + n * (m - n) * (m - n);
   }
-  // Parents and where a child's rows stand in its parent.
+  // Parents, and the positions of a child's rows in its parent.
   for (int s = 0; s < count; ++s) {
     Front& f = front[std::size_t(s)];
     if (f.rows == f.own) continue;
@@ -111,7 +111,7 @@ void Elimination::analyse(const BlockMatrix& a, int lanes) {
       map.push_back(at);
     }
   }
-  // Update matrices live from their front to their parent: first-fit in one arena.
+  // Update matrices exist from their front to their parent. They are placed first-fit in one arena.
   struct Interval {
     long begin, end;
   };
@@ -141,7 +141,7 @@ void Elimination::analyse(const BlockMatrix& a, int lanes) {
   panel_size = panel;
   arena_size = arena;
 
-  // Where each block of A goes.
+  // Target of each block of A.
   std::vector<std::vector<Scatter>> by_front(static_cast<std::size_t>(count));
   for (int j = 0; j < nodes; ++j)
     for (int slot = a.column_start(j); slot < (j + 1 < nodes ? a.column_start(j + 1) : a.slots()); ++slot) {

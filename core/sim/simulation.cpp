@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The step. What comes before the first one and between runs: simulation_setup.cpp.
+// The step. The start and the reset are in simulation_setup.cpp.
 #include "core/sim/simulation.h"
 
 #include <algorithm>
@@ -27,8 +27,9 @@ class StageClock {
   Time start_, last_;
 };
 
-constexpr int steps_with_newton_soon = 15;  ///< after one whose sweeps stalled; then they are tried again
-constexpr int max_passes = 3;               ///< of defect correction
+constexpr int steps_with_newton_soon =
+    15;  ///< number of steps with early Newton steps after one whose sweeps stalled; then sweeps are tried again
+constexpr int max_passes = 3;  ///< of defect correction
 
 }  // namespace
 
@@ -109,7 +110,7 @@ void Simulation::step() {
   else if (report_.solve.stalled) newton_soon_ = steps_with_newton_soon;
   clock.done(stage_solve);
 
-  // The haptic problem wants the tools' terms of this step, before they move.
+  // The haptic problem needs the tools' terms of this step before the tools move.
   std::size_t hands = 0;
   for (Instrument* i : instruments_)
     if (i->hand_index() >= 0 && i->active()) ++hands;

@@ -45,7 +45,7 @@ void Publisher::step(const Simulation& simulation, std::int64_t pose_time_us) {
   update_.pose_time_us = pose_time_us;
   update_.step_s = simulation.h();
   update_.sim_time_s = simulation.time();
-  const double until_rendered_s = std::min(1e-3 * simulation.report().step_ms, simulation.h());  // about
+  const double until_rendered_s = std::min(1e-3 * simulation.report().step_ms, simulation.h());  // approximately
   condense_(predict_frames_(simulation, until_rendered_s), max_rows, update_.problem);
   pause_.apply(simulation, update_.problem);
   if (!encode_problem(update_, scratch_) || !bus_.publish(channel::haptic_problem, scratch_)) ++failed_;

@@ -42,7 +42,7 @@ the default tear hides the field in about ten seconds.
 namespace insula {
 namespace {
 
-constexpr double full_jet = 1e-6;  // m3/s: a rate that is drawn as the strongest jet
+constexpr double full_jet = 1e-6;  // m3/s: rate that is drawn as the strongest jet
 
 }  // namespace
 
@@ -191,7 +191,7 @@ void Bleeding::tell(const StepContext& context) {
     }
     return;
   }
-  // Hysteresis: what only trickles again has not begun anew.
+  // Hysteresis: a small flow does not count as renewed bleeding.
   if (stopped_ && rate_ < 2 * stopped_below() * first_rate_) return;
   low_for_ = 0;
   if (stopped_) emit(context, again, "", rate_);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which pairs of bodies and tools a <contact> looks after, and with what: found once, when the scene is put together.
+// The pairs of bodies and tools of a <contact>, and their colliders. They are determined once, at the start of the
+// scene.
 #include <algorithm>
 
 #include "core/sim/simulation.h"
@@ -7,7 +8,7 @@
 
 namespace insula {
 
-// Whether this element looks after the pair that several may name.
+// Whether this element handles a pair that several elements may name.
 bool Contact::owns(Simulation& simulation, const Body* a, const Body* b) const {
   const auto names = [](const Contact& c, const Body* body) {
     return std::find(c.between().begin(), c.between().end(), body) != c.between().end();
@@ -108,7 +109,7 @@ void Contact::connect(PrepareContext& context, Simulation& simulation) {
       p.patches = std::make_unique<FrictionPatches>(patch(), most);
     p.forces.reserve(most);
   }
-  // Surfaces against surfaces take longest: first, so that threads end together.
+  // Pairs of surfaces take longest, so they come first, and threads end together.
   workers_ = &simulation.workers();
   for (const bool surfaces : {true, false})
     for (int i = 0; i < int(pairs_.size()); ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Building and refitting the box tree.
+// Construction and refit of the box tree.
 #include "core/collision/search/aabb_tree.h"
 
 #include <algorithm>
@@ -53,7 +53,7 @@ int AabbTree::build_node(int first, int count, std::span<const Vec3> centres,
   for (int k = 0; k < count; ++k) box.add(centres[std::size_t(order_[std::size_t(first + k)])]);
   int axis = 0;
   (box.high - box.low).maxCoeff(&axis);
-  // Equal centres are told apart by their number: the split does not depend on the library's algorithm.
+  // Equal centres are ordered by their number, so the split does not depend on the library's algorithm.
   const auto begin = order_.begin() + first;
   const int half = count / 2;
   std::nth_element(begin, begin + half, begin + count, [&](int a, int b) {
@@ -105,7 +105,7 @@ void AabbTree::look_at(std::span<const Vec3> positions, std::span<const Vec3> di
   displacements_ = displacements;
 }
 
-// What has used up half of its slack gets all of it, as one that is out.
+// A vertex that has used half of its slack gets a new box, as one that has left its box.
 double AabbTree::renew(std::size_t v) {
   const Vec3& p = positions_[v];
   const Float4 here = rounded(p), there = displacements_.empty() ? here : rounded(p + displacements_[v]);
