@@ -81,7 +81,7 @@ TEST(ContactFrameExtrapolation, NothingTurnsThatIsNotSaidToTurn) {
   ConstraintProblem still = problem;
   still.blocks[0].frame_rotation = {};
   EXPECT_TRUE(stays(still)) << "no turn is known";
-  EXPECT_TRUE(stays(problem, {GraspedBody{.any = true}, GraspedBody{}})) << "of what a tool carries";
+  EXPECT_TRUE(stays(problem, {GraspedBody{.any = true}, GraspedBody{}})) << "of a grasped body";
   ConstraintProblem rests = problem;
   rests.tools[0].swept_displacement.setZero();
   EXPECT_TRUE(stays(rests)) << "the hand rests";

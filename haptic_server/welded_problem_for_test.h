@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A problem with a tool that carries a clip, for the servo's tests.
+// A problem with a tool that grasps a clip, for the servo's tests.
 #pragma once
 #include "haptic_server/problem_for_test.h"
 
 namespace insula::testing {
 
-/// A tool at the origin, a clip in it that is touched by `contacts` at `reach` below, six rows between them after as
-/// many of the tool's own.
+/// A tool at the origin that grasps a clip. The clip has `contacts` contacts at the distance `reach` below. Six rows
+/// between them follow the `own` rows of the tool.
 inline ConstraintProblem with_clip(int contacts, int own, std::uint64_t seed) {
   constexpr double step_s = 1.0 / 60, mass_kg = 0.03, inertia = 1.2e-5, lever = 5e-3, reach = 0.01;
   Random random(seed);

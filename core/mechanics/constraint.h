@@ -33,7 +33,7 @@ class ConstraintBuilder {
   /// The same for a point of a surface's triangle.
   void surface_point(int row, const Surface& s, int triangle, const Vec3& bary, const Vec3& d);
   /// Sets the rate (m/s) at which the row's violation changes by itself between steps. A limit on the motion of a step
-  /// grows with the length of the step in this way.
+  /// then grows with the length of the step.
   void moves(int row, double rate) {
     rate_[std::size_t(row)] += rate;
     retardation_time_[std::size_t(row)] = lasting;

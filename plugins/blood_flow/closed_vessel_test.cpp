@@ -162,7 +162,7 @@ TEST(BloodFlow, TornSacThatIsCutOffComesToThePressureOutside) {
       const double hole = 0.6 * area * std::sqrt(2 / (1060 * std::max(std::abs(before), 10.0)));
       t.run(1);
       const double now = t.pressure->pressure(3);
-      // Orifice law, implicit, whichever way it flows.
+      // Orifice law, implicit, in both directions of flow.
       ASSERT_NEAR(t.flow->tear_flow(3), hole * now, 1e-12 * std::abs(hole * now) + 1e-24);
       ASSERT_NEAR(t.pressure->fluid(3) - fluid, -h * hole * now, 1e-9 * std::abs(h * hole * now) + 1e-20);
       // The sac yields as its springs do: implicit Euler of C dp/dt = -Q.

@@ -123,7 +123,7 @@ inline Motion random_motion(const Simulation& s, std::uint64_t seed, std::uint64
     }
     w.buttons(false, false);
     w.hold(0.05);
-    // Out along the shaft, as the way in may be round a corner.
+    // Out along the shaft, since the path in may be around a corner.
     Pose out = w.pose();
     out.p += out.q * Vec3(0, 0, 40e-3);
     w.stroke(out, 0.15, settings.max_spin);

@@ -78,7 +78,7 @@ class Snapshot {
   std::vector<std::pair<std::size_t, std::string>> names_;  ///< where each begins
 };
 
-/// Sets the hands directly: no arm that gives way, trembles or limits the speed. A hand without a motion stays at home.
+/// Sets the hands directly: no arm that yields, trembles or limits the speed. A hand without a motion stays at home.
 class Hands {
  public:
   explicit Hands(const Motion& motion) : motion_(motion), script_(motion.commands()) {}

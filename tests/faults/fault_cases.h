@@ -16,7 +16,7 @@ struct FaultCase {
   const char* name;
   const char* cause;
   const char* promise;
-  LinkFaults link{};  ///< both ways, while it lasts
+  LinkFaults link{};  ///< in both directions, while the fault lasts
   void (*set)(FaultRig&, bool on) = nullptr;
   double lasts_s = 0.6;
   double zero_after_s = -1;  ///< forces exactly 0 from so long after its begin to its end; negative: not promised

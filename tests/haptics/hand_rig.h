@@ -114,7 +114,7 @@ inline Pressed press(const Press& press, const Person& person) {
     const ServoHand& hand = r.hand[1];
     if (fresh) held = hand.force;
     const Vec3 wanted = press.held ? held : hand.force;
-    // What the last tick's force has done on this tick's way.
+    // Work of the last tick's force over this tick's displacement.
     energy += gate.force().dot(device.arm().pose().p - before);
     observer.observe(gate.force(), reading.pose.p);
     gate.apply(dt, r.solved && hand.valid, wanted, Vec3::Zero());

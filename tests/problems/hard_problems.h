@@ -107,8 +107,8 @@ struct Jaws {
   double tangent() const { return -std::min(shear / jaw, mu * normal()); }
 };
 
-/// Contacts with friction that share few ways to yield: W of rank `rank`, and a little on its diagonal that makes the
-/// answer one.
+/// Contacts with friction that share few degrees of freedom: W of rank `rank`, and a little on its diagonal that makes
+/// the answer one.
 inline ConstraintProblem crowded(Random& random, int contacts, int rank, double own) {
   const int n = 3 * contacts;
   const MatX h = random_matrix(random, n, rank);

@@ -32,7 +32,7 @@ struct Condition {
   std::array<double, 12> weight{};
   int count = 0;
   Vec3 direction;
-  double least = 0;  ///< of way . u
+  double least = 0;  ///< of direction . u
 };
 
 class ElasticLobe {
@@ -188,7 +188,7 @@ std::vector<double> distances(const Solid& own, const Solid& other) {
   return out;
 }
 
-/// The rigid floor gives way where the wall stands in it, smoothly all round.
+/// The rigid floor is lowered where the wall intersects it, with a smooth transition.
 double draw_back(Solid& floor, const Solid& wall, double gap) {
   const TriMesh m = floor.mesh();
   std::vector<std::vector<int>> next(m.vertices.size());

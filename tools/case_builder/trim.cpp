@@ -21,7 +21,7 @@ double away(const TriMesh& m, const Vec3& p) {
   return least;
 }
 
-/// Way along the lines from the point nearest to `from` to each point of each line, mm.
+/// Distance along the lines from the point nearest to `from` to each point of each line, mm.
 std::vector<std::vector<double>> distances(const std::vector<artery::NamedCurve>& lines, const Vec3& from) {
   std::vector<std::vector<double>> out;
   std::size_t line = 0, point = 0;

@@ -57,7 +57,7 @@ int Surgeon::divide(const Pace& pace, const std::function<void(const Sweep&, int
       if (!withdrawn) add_tool(*simulation_.instrument_of(0));
       sweep = planner_.best(strands(), tries, hands_.right().pose.p, true);
     }
-    if (sweep.strand < 0 && !withdrawn) {  // perhaps the suction tube stands in the way
+    if (sweep.strand < 0 && !withdrawn) {  // perhaps the suction tube is in the path
       const Pose at = hands_.left().pose;
       hands_.move(0.8, {Pose{at.p + 25 * mm * (at.q * Vec3::UnitZ()), at.q}}, hands_.right());
       withdrawn = true;

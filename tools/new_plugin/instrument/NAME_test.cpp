@@ -10,7 +10,7 @@
 namespace insula {
 namespace {
 
-/// Marks made while the hand goes `way` m sideways in so many steps.
+/// Marks made while the hand moves sideways by `distance` m in `steps` steps.
 int marks(bool button, double distance, int steps) {
   test::SceneFolder folder;
   folder.write("meshes/pen.urdf", test::test_tool_urdf(0.001));
