@@ -55,7 +55,7 @@ class Condenser {
   void eliminate(const ConstraintProblem& full, ConstraintProblem& small);
 
   std::vector<char> tool_coupled_;  ///< by row of the full problem
-  std::vector<char> is_weld_;       ///< by row: between a tool and what it carries
+  std::vector<char> is_weld_;       ///< by row: between a tool and the body that it grasps
   std::vector<Fate> fate_;          ///< linear: could be eliminated, until chosen
   std::vector<double> margin_m_;    ///< by block: how far it is from another state; negative: it has no other
   AlignedVector<double> delta_m_, factor_, weights_;

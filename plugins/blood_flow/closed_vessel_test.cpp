@@ -109,9 +109,9 @@ TEST(BloodFlow, TearBleedsByTheOrificeLaw) {
   EXPECT_LT(t.flow->tear_flow(3), 0.01 * q) << "a closed neck stops it";
 }
 
-/// What a chamber of a wall of springs yields, m3/Pa, in steps whose pressures are each `ratio` of the one before: g .
-/// u with k u = g + load / ratio H u, since the load of a step, Pa, is that on the shape of the step before. H u =
-/// d(dV/dq) along u is exact by differences, V being a cubic of q.
+/// Compliance of a chamber with a wall of springs, m3/Pa, in steps whose pressures are each `ratio` of the one before.
+/// It is g . u with k u = g + load / ratio H u, since a step's load, Pa, acts on the shape of the step before. V is a
+/// cubic of q, so differences give H u = d(dV/dq) along u exactly.
 double yields(const Bifurcation& t, int chamber, double load, double ratio) {
   const Chambers& all = t.pressure->chambers();
   const auto& nodes = all.nodes(chamber);
