@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Extrapolation of contact directions between steps.  A step fixes its normals, but they rotate when a tool slides over
-// a lobe, or when a lobe yields under it. The engine has predicted them for the time at which the problem arrives. It
-// also gives each one's rotation while the tool moves on by its displacement of a step (Block::frame_rotation,
-// core/haptics/contact_frame_prediction.h). Rows are rotated about their contact point on the tool, in proportion to
-// the motion of the hand:
+// Extrapolation of contact directions between steps.
+//
+// A step fixes its normals, but they rotate when a tool slides over a lobe, or when a lobe yields under it. The engine
+// has predicted them for the time at which the problem arrives. It also gives each one's rotation r while the tool
+// moves on by its displacement in a step (Block::frame_rotation, core/haptics/contact_frame_prediction.h). Rows are
+// rotated about their contact point on the tool, in proportion to the motion of the hand:
 //   d(s) = exp(s r) d,   moment(s) = arm x d(s)
-// s = displacement of the device since the problem's poses over its displacement in the step, less the
-//       problem's prediction_horizon_steps;  r = Block::frame_rotation
+//   s    = displacement of the device since the problem's poses, over its displacement in the step, less the problem's
+//          prediction_horizon_steps
 #pragma once
 #include <array>
 #include <vector>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Friction of one contact, and of a patch of contacts. One contact with Coulomb friction is solved exactly: Signorini's
-// condition on the normal, lambda_t <= mu lambda_n with the tangential force opposite to the slip.
+// condition on the normal, |lambda_t| <= mu lambda_n with the tangential force opposite to the slip.
 //   sticking   lambda = -W^-1 q, if inside the cone
 //   sliding    delta_n = 0, delta_t = -s lambda_t with s > 0 and |lambda_t| = mu lambda_n: with the normal eliminated
 //              (S + s I) lambda_t = b, S the 2x2 Schur complement; one scalar equation for s, bracketed Newton.
@@ -94,8 +94,8 @@ inline void solve_contact(const LocalContact& c, double mu, double* out) {
   out[2] = vy * t1 + vx * t2;
 }
 
-/// Coulomb friction of given strength: lambda <= bound, opposite to the slip w lambda + q, with w symmetric 2x2. Writes
-/// two numbers, N.
+/// Coulomb friction of given strength: |lambda| <= bound, opposite to the slip w lambda + q, with w symmetric 2x2.
+/// Writes two numbers, N.
 inline void solve_disc(double w11, double w12, double w22, double q1, double q2, double bound, double* out) {
   out[0] = out[1] = 0;
   if (!(bound > 0) || !(w11 + w22 > 0)) return;
@@ -104,8 +104,8 @@ inline void solve_disc(double w11, double w12, double w22, double q1, double q2,
   const double e1 = eigen.high, e2 = std::max(eigen.low, 1e-12 * eigen.high);
   const double g1 = -(vx * q1 + vy * q2), g2 = -(-vy * q1 + vx * q2);  // in the eigenbasis
   double t1 = g1 / e1, t2 = g2 / e2, size = std::sqrt(t1 * t1 + t2 * t2);
-  // (w + s) lambda = -q with lambda = bound. 1/ lambda is nearly linear in s, so Newton's method converges from below
-  // in a few steps.
+  // (w + s) lambda = -q with |lambda| = bound. 1/|lambda| is nearly linear in s, so Newton's method converges from
+  // below in a few steps.
   double s = 0;
   for (int k = 0; k < 60 && size > bound * (1 + 1e-15); ++k) {
     const double slope = -(t1 * t1 / (e1 + s) + t2 * t2 / (e2 + s)) / size;  // d|lambda|/ds

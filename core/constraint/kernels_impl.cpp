@@ -96,7 +96,7 @@ inline Three next_friction(const SweepData& data, int k, LocalBlock& b, const do
   return {normal, (b.vx * p1 - b.vy * p2) * scale, (b.vy * p1 + b.vx * p2) * scale};
 }
 
-// The same for friction of a given strength:  (S + s)^-1 g  = bound.
+// The same for friction of a given strength: |(S + s)^-1 g| = bound.
 inline Three next_patch(const SweepData& data, int k, LocalBlock& b, const double* lambda, const double* delta) {
   const long s = data.stride;
   const int r = b.row;

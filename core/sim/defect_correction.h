@@ -2,8 +2,8 @@
 // Defect correction (Stetter 1978) for bodies whose compliance is approximate. With W in the problem and V the true
 // matrix,
 //     V lambda + delta_free = W lambda + (delta_free + (V - W) lambda_k)   at lambda = lambda_k,
-// so the problem is solved again with the bracket in place of delta_free. Each pass reduces the error by the factor \
-// W^-1 (V - W)\ , and the fixed point is the exact step. If the free motion contains the last step's forces
+// so the problem is solved again with the bracket in place of delta_free. Each pass reduces the error by the factor
+// |W^-1 (V - W)|, and the fixed point is the exact step. If the free motion contains the last step's forces
 // (BodySolver::begin_motion), the first bracket subtracts their effect as W gives it, and the true motion gives the
 // rest. The problem for the hands has the same bracket, so the servo begins at the solution of the step.
 #pragma once

@@ -140,8 +140,8 @@ void expect_no_jump(const char* scene, const char* motion_file, double until_s) 
   EXPECT_GT(most, 0.1);  // there is something to hand over
 }
 
-TEST(HapticHandOver, WhereStrandsPart) { expect_no_jump("1_sylvian_fissure.xml", "strand.csv", 2.5); }
-TEST(HapticHandOver, WhereAClipComesUpAgainstAVessel) { expect_no_jump("3_clipping.xml", "clip.csv", 2.6); }
+TEST(HapticCrossfade, WhereStrandsPart) { expect_no_jump("1_sylvian_fissure.xml", "strand.csv", 2.5); }
+TEST(HapticCrossfade, WhereAClipComesUpAgainstAVessel) { expect_no_jump("3_clipping.xml", "clip.csv", 2.6); }
 
 TEST(HapticTruthCompare, ErrorsAndOnsets) {
   std::vector<Vec3> reference(200, Vec3::Zero()), rendered = reference;
