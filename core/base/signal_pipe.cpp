@@ -20,8 +20,7 @@ static_assert(std::atomic<int>::is_always_lock_free);
 void on_signal(int signal) {
   const int before = errno;
   const auto byte = static_cast<unsigned char>(signal);
-  [[maybe_unused]] const auto written =
-      write(write_end.load(), &byte, 1);  // if the pipe is full, enough signals are waiting
+  [[maybe_unused]] const auto written = write(write_end.load(), &byte, 1);  // if it is full, enough signals are waiting
   errno = before;
 }
 

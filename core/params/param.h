@@ -30,8 +30,7 @@ struct ParamSpec {
   std::string_view max = {};
   std::vector<std::string_view> choices = {};  ///< for Param<Choice>
   std::string_view doc;                        ///< one line
-  std::string_view formerly =
-      {};  ///< its name in older scenes; a scene that still uses it gets a message with the new name
+  std::string_view formerly = {};              ///< name in older scenes, which get a message with the new one
 };
 
 /// Base of every parameter, with the data for list, describe, schema and docs.

@@ -42,11 +42,10 @@ struct ChannelSpec {
   std::string_view min = {};  ///< expected range, written with units; empty: open
   std::string_view max = {};
   Shown shown = Shown::curve;
-  std::string_view display =
-      {};          ///< unit in which it is shown, one of the quantity's; "%" for a plain number; empty: SI
-  int digits = 2;  ///< decimals in that unit
-  Band good = {};  ///< shown in green inside
-  Band high = {};  ///< shown in amber inside; in red outside of both bands
+  std::string_view display = {};  ///< unit shown, one of the quantity's; "%" for a plain number; empty: SI
+  int digits = 2;                 ///< decimals in that unit
+  Band good = {};                 ///< shown in green inside
+  Band high = {};                 ///< shown in amber inside; in red outside of both bands
   Role role = Role::none;
 };
 

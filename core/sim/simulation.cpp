@@ -27,9 +27,8 @@ class StageClock {
   Time start_, last_;
 };
 
-constexpr int steps_with_newton_soon =
-    15;  ///< number of steps with early Newton steps after one whose sweeps stalled; then sweeps are tried again
-constexpr int max_passes = 3;  ///< of defect correction
+constexpr int steps_with_newton_soon = 15;  ///< steps with early Newton after a stall; then sweeps are tried again
+constexpr int max_passes = 3;               ///< of defect correction
 
 }  // namespace
 

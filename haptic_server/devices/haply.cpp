@@ -16,8 +16,7 @@ using namespace std::chrono_literals;
 using Steady = std::chrono::steady_clock;
 
 constexpr auto retry = 500ms;
-constexpr auto patience =
-    1000ms;  // of one exchange; the device counts as lost after StreamedDevice::stale_after_s already
+constexpr auto patience = 1000ms;  // of one exchange; a lost device is reported before that
 
 }  // namespace
 

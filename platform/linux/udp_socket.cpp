@@ -121,8 +121,7 @@ const char* UdpReceiver::open(const UdpmAddress& address) {
   if (!set_option(socket_, SOL_SOCKET, SO_REUSEADDR, on)) return "SO_REUSEADDR";
   if (!set_option(socket_, IPPROTO_IP, IP_MULTICAST_ALL, off)) return "IP_MULTICAST_ALL";
   if (bytes > 0) set_option(socket_, SOL_SOCKET, SO_RCVBUF, bytes);  // the kernel may grant less
-  const sockaddr_in group =
-      socket_address(address);  // bound to the group, so datagrams to a single host are not received
+  const sockaddr_in group = socket_address(address);                 // datagrams to a single host are not received
   if (::bind(socket_, reinterpret_cast<const sockaddr*>(&group), sizeof group) != 0) return "bind";
   return join(address, filtered) ? nullptr : "IP_ADD_MEMBERSHIP";
 }

@@ -9,8 +9,7 @@
 namespace insula {
 namespace {
 
-constexpr double collapsed =
-    0.1;  ///< share of its area at rest below which the gradient of a triangle's angle is bounded
+constexpr double collapsed = 0.1;  ///< share of the rest area below which the angle's gradient is bounded
 constexpr int held = -1;
 
 /// Square root of the bending stiffness on (k11, k22, 2 k12) with the directions `free` (columns) given up to no

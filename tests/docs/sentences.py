@@ -5,7 +5,8 @@
     sentences.py [--json] [--headers] [--long] [PATH...]
 
 The pages are README.md, CONTRIBUTING.md, all of docs/, and each README.md below scenes/ and meshes/. With --headers the
-comments of C++ sources and message types are counted too, an entry for each file. PATH limits the count to files and folders; with it, --headers counts the sources under those paths.
+comments of C++ sources and message types are counted too, an entry for each file. PATH limits the count to files and
+folders; with it, --headers counts the sources under those paths.
 
 A page's mean may be at most 20 words a sentence, and no sentence may have more than 40. The mean of a source counts
 from five sentences on. The exit status is 1 above a limit. --json prints {page: {"sentences", "mean", "max",

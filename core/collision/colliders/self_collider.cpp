@@ -12,14 +12,12 @@ namespace {
 
 constexpr double facing = 0.1;       ///< normals of a pair must be opposed by this cosine
 constexpr double along_wall = 0.92;  ///< normals that agree by this cosine at rest belong to one part of the wall ...
-constexpr double bent = 0.8;  ///< ... those that agree by this are tested only when the wall between them is bent
-constexpr double horizon =
-    0.5e-3;  ///< the search goes farther than needed by this, so that its result is valid for some steps, m
-constexpr double skin = 0.4e-3;  ///< motion after which a list of partners is made again, m
-constexpr double yields = 0.3;   ///< part of the wanted rotation that the normal of a pressing contact takes in a step
-constexpr double min_turn = 1e-3;  ///< smaller rotations are ignored, rad
-constexpr int swings_for_good =
-    120;  ///< oscillations with a period of two or three steps reach this after one or two seconds
+constexpr double bent = 0.8;        ///< ... those that agree by this are tested only when the wall between them is bent
+constexpr double horizon = 0.5e-3;  ///< the search goes farther by this, to be valid for some steps, m
+constexpr double skin = 0.4e-3;     ///< motion after which a list of partners is made again, m
+constexpr double yields = 0.3;  ///< part of the wanted rotation that the normal of a pressing contact takes in a step
+constexpr double min_turn = 1e-3;          ///< smaller rotations are ignored, rad
+constexpr int swings_for_good = 120;       ///< reached after one or two seconds of oscillation
 constexpr std::size_t longest_list = 192;  ///< partners of a sample; with more, the tree is searched in every step
 
 /// Where the ray from `from` along the unit vector `along` goes out through triangle pqr; -1 if it does not.
@@ -249,9 +247,8 @@ void SelfCollider::near(const CollisionMesh& mesh, const SelfContactSettings& se
   // An existing contact is kept a little longer, so that rows do not flicker while nothing moves.
   const double alarm = was ? 1.2 * settings.alarm : settings.alarm;
   if (c.gap > alarm && c.gap + approach > alarm) return;
-  // On a fold, the smallest motion of the wall changes the direction to the nearest point. The wall is so light there
-  // that its response would oscillate from step to step. So the normal of a pressing contact changes slowly. This does
-  // not apply to hard walls, whose gap changes its sign all the time.
+  // On a fold, the smallest motion of the wall changes the direction to the nearest point, and so light a wall would
+  // oscillate. So the normal of a pressing contact changes slowly, except for hard walls, whose gap changes its sign.
   Vec3& direction = direction_[side][sample];
   Swing& swing = swing_[side][sample];
   if (settings.normal_under_relaxation && was && c.gap < 0 && direction.dot(c.normal) > 0.5)

@@ -50,13 +50,11 @@ std::vector<int> sample_vertices(std::span<const Vec3> rest, std::span<const std
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-constexpr double surroundings =
-    2e-3;  ///< triangles farther than this from a group need not be followed for some steps, m
+constexpr double surroundings = 2e-3;  ///< farther triangles need not be followed by a group for some steps, m
 constexpr double horizon =
     2e-3;  ///< groups search farther than needed by this, so that the result is valid for some steps, m
 constexpr double near_horizon = 5e-4;  ///< the same for samples
-constexpr double slow =
-    5e-5;  ///< samples that move less than this in a step keep their nearest triangle for some steps, m
+constexpr double slow = 5e-5;          ///< samples that move less keep their nearest triangle for some steps, m
 
 // Coordinates of four points: x of all, y, z.
 std::array<Float4, 3> by_coordinate(const std::array<Float4, 4>& p) {
@@ -264,8 +262,7 @@ void TissueCollider::detect(const CollisionMesh& a, const CollisionMesh& b, cons
       const Vec3 d = x - best_point;
       const double distance = d.norm();
       const bool outside = d.dot(outward) >= 0;
-      // The sample is behind the triangle that faces it, but may be outside of a fold that does not face it. The
-      // nearest of all triangles decides.
+      // Behind the triangle that faces it, but perhaps outside of a fold: the nearest of all triangles decides.
       if (!outside && (distance > settings.max_depth || !b.nearest(x, 0, distance).behind)) continue;
       Proximity c;
       c.vertex = v;

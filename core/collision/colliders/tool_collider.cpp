@@ -19,8 +19,7 @@ struct ToolCollider::SweptPiece {
   PlacedPiece first, last;
   std::optional<PlacedPiece> expected;  ///< at the step's end, if contacts are linearised there
   Vec3 velocity = Vec3::Zero(),
-       to_end =
-           Vec3::Zero();  ///< displacement of its middle in the free motion, and from the start to `expected`, m ...
+       to_end = Vec3::Zero();            ///< displacement of its middle in the free motion, and to `expected`, m ...
   double uneven = 0, uneven_to_end = 0;  ///< ... and the largest difference to that of any point
   double beyond = 0, farthest = 0;       ///< candidates in the free motion are within `beyond` of the swept box, and no
                                          ///< point moves farther than `farthest`

@@ -110,8 +110,7 @@ void ToolCollider::evaluate(const CollisionMesh& mesh, const PlacedPiece& at, co
     if (under || mesh.locally_closest(k.triangle, f, d, t, 1e-6)) {
       const bool outside = d.dot(mesh.pseudo_normal(k.triangle, f, t)) >= 0;
       if (outside && clear <= settings.alarm) emit(n.bary, n.c, d, clear);
-      // The core is behind this triangle, but may be in front of another one. The nearest of all triangles decides, and
-      // gives the direction out.
+      // The core may be in front of another triangle. The nearest of all decides and gives the direction out.
       if (!outside && n.distance <= settings.max_depth) {
         NearestPoint e = mesh.nearest(n.p, t, n.distance);
         if (e.behind && e.outward.dot(side) < -0.2) e = mesh.nearest(n.p, t, settings.max_depth, &side);

@@ -163,14 +163,12 @@ void VertexCollider::detect(const CollisionMesh& mesh, const Pose& start, const 
     c.local = pose.q.conjugate() * (c.point - pose.p);
     c.start_gap = c.gap;
     if (when > 0) c.start_gap += c.normal.dot(start.apply(c.local) - x0);
-    if (when > 0 && c.start_gap < 0)
-      continue;  // it comes from the other side of a moving wall; the next step handles it
+    if (when > 0 && c.start_gap < 0) continue;  // it comes from the other side of a moving wall: left to the next step
     c.start_gap = std::max(c.start_gap, -settings.max_correction);
     out.push_back(c);
   }
   seen_.clear();
-  // The side from which most vertices press. It is determined when the blade reaches the body, and later contacts do
-  // not change it.
+  // The side from which most vertices press. It is determined when the blade reaches the body, and stays.
   if (side_.norm() < 0.95 && !pressed.isZero(0)) side_ = (0.9 * side_ + 0.1 * pressed.normalized()).eval();
 }
 
