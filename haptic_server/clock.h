@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where the servo gets its time from: the machine's monotonic clock, or a test.
+// The servo's source of time: the machine's monotonic clock, or a test.
 #pragma once
 #include <time.h>
 
@@ -24,7 +24,7 @@ class MonotonicClock final : public Clock {
   }
 };
 
-/// Stands still until told.
+/// A clock that advances only by advance_ns().
 class ManualClock final : public Clock {
  public:
   explicit ManualClock(std::int64_t start_ns = 0) : now_(start_ns) {}

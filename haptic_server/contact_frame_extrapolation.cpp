@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What turns, and by how much.
+// Finds the contacts to rotate, and rotates their rows.
 #include "haptic_server/contact_frame_extrapolation.h"
 
 #include <algorithm>
@@ -8,11 +8,11 @@ namespace insula {
 namespace {
 
 constexpr double max_share = 1.5;
-constexpr double min_swept_displacement_m = 5e-5;  // a hand that rests turns nothing
+constexpr double min_swept_displacement_m = 5e-5;  // the hand is at rest: nothing is rotated
 
 Vec3 direction(const ToolTerms& t, int row) { return t.jacobian.row(row).head<3>().transpose(); }
 
-/// Where a contact's three rows, which are orthonormal, take hold of the tool, from its origin.
+/// Contact point of three orthonormal rows, relative to the tool's origin, m.
 Vec3 arm_of(const ToolTerms& t, int row) {
   Vec3 arm = Vec3::Zero();
   for (int k = row; k < row + 3; ++k) arm += 0.5 * direction(t, k).cross(Vec3(t.jacobian.row(k).tail<3>()));
@@ -50,16 +50,16 @@ void ContactFrameExtrapolation::extrapolate(const std::array<Vec6, 2>& moved) no
     const double share =
         std::clamp(moved[t].head<3>().dot(swept_displacement) / square - problem_->prediction_horizon_steps, -max_share,
                    max_share);
-    for (const FrameRotation& turn : rotations_[t]) {
-      const Vec3 by = share * turn.by;
-      for (int k = turn.row; k < turn.row + 3; ++k) {
+    for (const FrameRotation& rotation : rotations_[t]) {
+      const Vec3 by = share * rotation.by;
+      for (int k = rotation.row; k < rotation.row + 3; ++k) {
         Vec3 d = direction(problem_->tools[t], k);
         const double size = d.norm();
         const Vec3 moment = problem_->tools[t].jacobian.row(k).tail<3>().transpose();
-        Vec3 turned = d + by.cross(d) + 0.5 * by.cross(by.cross(d));
-        turned *= size / turned.norm();
-        const Vec3 now = moment + turn.arm.cross(turned - d);
-        jacobian_[t].row(k) << turned.transpose(), now.transpose();
+        Vec3 rotated = d + by.cross(d) + 0.5 * by.cross(by.cross(d));
+        rotated *= size / rotated.norm();
+        const Vec3 now = moment + rotation.arm.cross(rotated - d);
+        jacobian_[t].row(k) << rotated.transpose(), now.transpose();
       }
     }
   }

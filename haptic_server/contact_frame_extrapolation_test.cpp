@@ -20,7 +20,7 @@ Vec3 normal_at(double angle) { return from_rotation_vector(angle * axis) * up; }
 
 /// A tool that has gone by `angle` round a hard ball, pressed on it by `deep`; a contact of three rows at `reach` from
 /// its origin, in the directions that it has after `turned` more steps of step_rad.
-ConstraintProblem on_ball(double angle, double deep = 0, double turned = 0) {
+ConstraintProblem on_ball(double angle, double deep = 0, double steps_ahead = 0) {
   ConstraintProblem p;
   p.resize(3);
   p.step_s = 0.02;
@@ -29,14 +29,14 @@ ConstraintProblem on_ball(double angle, double deep = 0, double turned = 0) {
   ToolTerms t = testing::held_tool(1, device, 3);
   t.swept_displacement = device.p - (ball_m - deep) * normal_at(angle - step_rad);
   t.gain.setIdentity();
-  const Vec3 n = normal_at(angle + turned * step_rad), along = axis.cross(n),
+  const Vec3 n = normal_at(angle + steps_ahead * step_rad), along = axis.cross(n),
              directions[3] = {n, along, n.cross(along)};
   for (int k = 0; k < 3; ++k) t.jacobian.row(k) << directions[k].transpose(), reach.cross(directions[k]).transpose();
   const MatX w = t.jacobian * t.compliance * t.jacobian.transpose();
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) p.w[std::size_t(i * p.stride + j)] = w(i, j);
   p.delta_free[0] = -deep;
-  p.prediction_horizon_steps = turned;
+  p.prediction_horizon_steps = steps_ahead;
   p.blocks.push_back({.id = 7, .law = LawKind::friction});
   for (int k = 0; k < 3; ++k) p.blocks[0].frame_rotation[std::size_t(k)] = float(step_rad * axis[k]);
   p.tools.push_back(t);
@@ -51,8 +51,8 @@ std::array<Vec6, 2> gone(const ConstraintProblem& from, double share) {
 }
 
 TEST(ContactFrameExtrapolation, TurnAboutTheirContactPointAsFarAsTheToolGoes) {
-  for (const double turned : {0.0, 0.4}) {
-    const ConstraintProblem problem = on_ball(step_rad, 0, turned);
+  for (const double steps_ahead : {0.0, 0.4}) {
+    const ConstraintProblem problem = on_ball(step_rad, 0, steps_ahead);
     ContactFrameExtrapolation rows(servo_max_rows);
     rows.begin(problem, {});
     for (const double share : {0.0, 0.4, 1.0, -0.5}) {
@@ -81,7 +81,7 @@ TEST(ContactFrameExtrapolation, NothingTurnsThatIsNotSaidToTurn) {
   ConstraintProblem still = problem;
   still.blocks[0].frame_rotation = {};
   EXPECT_TRUE(stays(still)) << "no turn is known";
-  EXPECT_TRUE(stays(problem, {GraspedBody{.any = true}, GraspedBody{}})) << "of what a tool carries";
+  EXPECT_TRUE(stays(problem, {GraspedBody{.any = true}, GraspedBody{}})) << "of a grasped body";
   ConstraintProblem rests = problem;
   rests.tools[0].swept_displacement.setZero();
   EXPECT_TRUE(stays(rests)) << "the hand rests";
@@ -91,22 +91,22 @@ TEST(ContactFrameExtrapolation, NothingTurnsThatIsNotSaidToTurn) {
 TEST(ContactFrameExtrapolation, TheForceRoundABallKeepsToItsNormal) {
   constexpr double deep = 1e-3;
   double off[2];
-  for (const bool turn : {false, true}) {
+  for (const bool extrapolated : {false, true}) {
     ServoSettings settings = ServoSettings::beyond_equation_7();
     settings.force_crossfade.within_s = 0;
-    settings.substep.extrapolate_frames = turn;
+    settings.substep.extrapolate_frames = extrapolated;
     Servo servo(settings);
     const ConstraintProblem problem = on_ball(step_rad, deep);
     servo.set_problem(&problem, {}, 1e-3);
     ServoInput in;
     in.connected[1] = true;
-    off[turn] = 0;
+    off[extrapolated] = 0;
     for (int k = 1; k <= 20; ++k) {
       const double angle = step_rad * (1 + k / 20.0);
       in.device[1].p = (ball_m - deep) * normal_at(angle);
       const Vec3 force = servo.tick(in).hand[1].force;
       ASSERT_GT(force.norm(), 0.1);
-      off[turn] = std::max(off[turn], force.normalized().cross(normal_at(angle)).norm());
+      off[extrapolated] = std::max(off[extrapolated], force.normalized().cross(normal_at(angle)).norm());
     }
   }
   EXPECT_GT(off[0], 0.9 * step_rad);

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From one problem's force to the next one's: what the old problem said last stays, and what it differs by from the new
-// one fades.
+// Cross-fade from one problem's force to the next one's. The difference between the old and the new force fades out.
 //
-//   force = force of the new problem + gap        gap = old - new at the tick at which the new one came
+//   force = force of the new problem + gap        gap = old - new at the first tick of the new problem
 //
-// The gap goes in a straight line: within `within_s`, but by no more a second than `share_per_s` of the largest force
-// felt lately. So a step's news come as a slope that is lost among the hand's own changes, and large ones take longer.
-// Where the new problem's force comes by itself towards what is felt, that is as much less to hand over; or gaps would
-// add up where each problem strays alike.
+// The gap decreases linearly within `within_s`, but per second by at most `share_per_s` of the largest recent force. A
+// new problem then appears as a slope that is small beside the hand's own changes, and larger gaps take longer. If the
+// new problem's force itself moves towards the rendered force, the gap is reduced by that amount. Otherwise gaps would
+// accumulate when each problem deviates in the same direction.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -17,14 +16,14 @@
 namespace insula {
 
 struct ForceCrossfadeSettings {
-  double within_s = 0;      ///< 0: a new problem takes over at once
+  double within_s = 0;      ///< 0: the new problem's force applies at once
   double share_per_s = 10;  ///< of the peak: 1 % a millisecond
-  double min_N_s = 0.2;     ///< however small the peak; 0.2 mN a millisecond is what no hand tells
-  double peak_lasts_s = 5;  ///< time constant with which a peak is forgotten
-  double lever_m = 0.1;     ///< a torque counts as this force: about from the grip to the tip
+  double min_N_s = 0.2;     ///< lower bound of the slope for small peaks; 0.2 mN a millisecond is imperceptible
+  double peak_lasts_s = 5;  ///< time constant with which the peak decays
+  double lever_m = 0.1;     ///< torque over this lever counts as force: about the distance from grip to tip
 };
 
-/// One hand's. Force and torque of each tick in, what is felt out; nothing is allocated.
+/// Cross-fade of one hand. Takes force and torque of each tick, and returns the rendered ones. Allocates nothing.
 class ForceCrossfade {
  public:
   Vec6 operator()(const ForceCrossfadeSettings& s, bool fresh_problem, const Vec6& now, double dt_s) {
@@ -42,7 +41,7 @@ class ForceCrossfade {
     active_ = true;
     return last_;
   }
-  /// Nothing is felt, so there is nothing to hand over; the peak stays.
+  /// Called while no force is rendered, so there is nothing to cross-fade. The peak stays.
   void lost() {
     active_ = false;
     gap_.setZero();

@@ -21,7 +21,7 @@ struct Hand {
   ForceCrossfade over;
   double last = 0;
   double tick(double force, bool fresh = false) { return last = over(settings, fresh, push(force), tick_s)[2]; }
-  /// Ticks until what is felt is the problem's force; the largest change on the way.
+  /// Ticks until the rendered force is the problem's force, and the largest change until then.
   int settle(double force, double& most) {
     for (int k = 1; k < 1000; ++k) {
       const double before = last;

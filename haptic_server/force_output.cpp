@@ -8,7 +8,7 @@
 namespace insula {
 namespace {
 
-constexpr double over = 5;  ///< a transient is over after so many of its decay times
+constexpr double over = 5;  ///< a transient ends after this many decay times
 
 bool finite(const Vec3& v) { return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z()); }
 
@@ -36,8 +36,8 @@ Vec3 ForceOutput::apply(const DeviceProfile& device, double dt, const Vec3& forc
   }
   Vec3 out = settings_.force_scale * force_N;
   if (device.weight_N > 0) out += device.weight_N * up;
-  // Along the way the hand goes, and nothing at rest: no more than a share of what the arm takes, so that the arm never
-  // drives itself.
+  // Acts along the motion of the hand, and is zero at rest. It is only a share of the arm's friction, so that the arm
+  // never drives itself.
   const double speed = v.norm();
   if (device.friction_N > 0 && speed > 0 && finite(v))
     out += settings_.friction_share * device.friction_N * std::min(1.0, speed / slow_m_s) / speed * v;
@@ -64,7 +64,7 @@ double hardness(const ConstraintProblem& p, int hand, const std::vector<double>&
   for (const ToolTerms& tool : p.tools) {
     if (tool.hand != hand) continue;
     for (const Block& b : p.blocks) {
-      // Contacts press with their first row; what only pulls, or joins, is no wall.
+      // Contacts press with their first row. Rows that only pull, or connect, do not count.
       if (b.law == LawKind::patch || (b.law == LawKind::box && b.lower < 0)) continue;
       const std::size_t r = std::size_t(b.row);
       if (r >= lambda.size() || !(lambda[r] > max_N)) continue;
@@ -81,9 +81,9 @@ double hardness(const ConstraintProblem& p, int hand, const std::vector<double>&
 }
 
 Transient impact_transient(double speed_m_s, double hardness) {
-  constexpr double per_speed = 6;  // N s/m: some 0.3 N for a brisk tap on bone
+  constexpr double per_speed = 6;  // N s/m: about 0.3 N for a quick tap on bone
   const double hard =
-      std::max(0.0, 2 * hardness - 1);  // what gives way as much as the tool is held, or more, does not knock
+      std::max(0.0, 2 * hardness - 1);  // tissue at least as compliant as the coupling causes no transient
   return {std::clamp(per_speed * speed_m_s * hard, 0.0, 0.5), 220, 0.008};
 }
 

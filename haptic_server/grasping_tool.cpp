@@ -8,8 +8,8 @@
 namespace insula {
 namespace {
 
-constexpr double calm = 3;           // 2: as fast as can be without swinging
-constexpr double farthest_m = 5e-3;  // from the step's end: another tool, or another place
+constexpr double calm = 3;           // 2 is critical damping, without oscillation
+constexpr double farthest_m = 5e-3;  // largest distance from the step's end; beyond it is another tool or position
 
 }  // namespace
 

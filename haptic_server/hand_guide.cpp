@@ -25,7 +25,7 @@ const HandGoal& HandGuide::advance(double dt, const HandSample& wish) noexcept {
   HandSample target = taken_over_ ? viewer_ : wish;
   goal_.button1 = target.button1;
   goal_.button2 = target.button2;
-  goal_.stops = !taken_over_;  // a mouse reaches everywhere
+  goal_.stops = !taken_over_;  // a mouse is not limited
   if (taken_over_) {
     smooth_ = displaced(smooth_, (dt / (settings_.smoothing_s + dt)) * displacement(smooth_, viewer_.pose));
     target.pose = smooth_;
@@ -49,7 +49,8 @@ void MotionClock::step_arrived(double sim_time, double step_s) noexcept {
 double MotionClock::advance(double dt) noexcept {
   if (!(dt > 0)) return time_;
   target_ = std::min(target_ + dt, end_);
-  // Own pace plus a pull of 50 ms towards the steps' time; a lag of more than a quarter second is not worth walking.
+  // Runs at real time with a correction towards the steps' time (time constant 50 ms). A lag of more than a quarter
+  // second is skipped.
   if (target_ - time_ > 0.25) time_ = target_;
   const double pulled = time_ + dt + (target_ - time_ - dt) * std::min(1.0, dt / 0.05);
   time_ = std::max(time_, std::min(pulled, end_));

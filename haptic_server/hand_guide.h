@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where a simulated hand wants to be: at home, along the scripted motion, or where a viewer points.
+// Goal of a simulated hand: its home, the scripted motion, or a viewer's pose.
 #pragma once
 #include "core/sim/motion.h"
 #include "haptic_server/devices/device.h"
@@ -7,21 +7,21 @@
 namespace insula {
 
 struct GuideSettings {
-  double max_speed_m_s = 0.3;  ///< however far the wish jumps, the goal moves no faster
+  double max_speed_m_s = 0.3;  ///< largest speed of the goal, for any jump of the input
   double max_spin_rad_s = 6;
-  double smoothing_s = 0.025;  ///< first-order filter on the viewer's poses, which come at 60 Hz at best
+  double smoothing_s = 0.025;  ///< first-order filter on the viewer's poses, which arrive at 60 Hz at most
 };
 
-/// Turns wishes of any source into a goal that moves steadily, with its velocity. Neither allocates nor throws.
+/// Converts poses of any source to a goal that moves steadily, with its velocity. Neither allocates nor throws.
 class HandGuide {
  public:
   explicit HandGuide(const GuideSettings& settings = {}) : settings_(settings) {}
 
-  /// Goal at rest at `pose`; forgets the viewer's wish.
+  /// Puts the goal at rest at `pose`, and drops the viewer's pose.
   void place(const Pose& pose) noexcept;
   /// A viewer takes the hand over until the next place().
   void take_over(const HandSample& wish) noexcept;
-  /// One tick; `wish` is what the script (or home) asks for and counts while no viewer has taken over.
+  /// One tick. `wish` is the pose of the script (or home), which is used while no viewer has taken over.
   const HandGoal& advance(double dt, const HandSample& wish) noexcept;
   const HandGoal& goal() const { return goal_; }
 
@@ -33,8 +33,8 @@ class HandGuide {
   bool taken_over_ = false;
 };
 
-/// Follows simulated time, which arrives in steps with the problems, smoothly at the servo's rate: runs on by itself
-/// between two steps, at most one step ahead, and never backwards.
+/// Interpolates simulated time, which arrives in steps with the problems, at the servo's rate. It runs on between two
+/// steps, at most one step ahead, and never backwards.
 class MotionClock {
  public:
   void reset(double sim_time) noexcept { time_ = target_ = end_ = sim_time; }
@@ -46,9 +46,8 @@ class MotionClock {
   double time_ = 0, target_ = 0, end_ = 0;
 };
 
-/// Centre and edge lengths of an arm's reach in the scene. The person who sets up a device lays its reach over the
-/// field: around home, or over the scripted motion's box with the longest edge of the reach along the longest edge of
-/// the box.
+/// Centre and edge lengths of an arm's reach in the scene. The reach is around home, or covers the scripted motion's
+/// box with its longest edge along the longest edge of the box.
 void lay_workspace(const Motion* motion, int hand, const Vec3& home, const Vec3& workspace, Vec3& centre, Vec3& extent);
 
 }  // namespace insula

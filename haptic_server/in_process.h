@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Both haptic arms inside the engine's process, in simulated time: the same servo, gate and arms as the haptic server,
-// without threads and clocks, so that a run gives the same bits every time.
+// without threads and clocks. A run gives the same bits every time.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -19,14 +19,14 @@ struct HandHome {
   Pose pose;
 };
 
-/// Use, each engine step of length h:
+/// Use in each engine step of length h:
 ///   haptics.set_problem(problem of the step that ended at time T)
 ///   for k = 1..n: haptics.tick(T + k h / n)                          n = about h / 1 ms
 ///   hand(i).device, button1, button2 -> instruments of the next step
 class InProcessHaptics {
  public:
   struct Hand {
-    bool present = false;  ///< placed; follows the motion when that has keys for the hand
+    bool present = false;  ///< placed; follows the motion if that has keys for the hand
     Pose device;           ///< as the device reports it, scene frame
     Vec3 v = Vec3::Zero();
     bool button1 = false;
@@ -34,22 +34,22 @@ class InProcessHaptics {
     Vec3 force = Vec3::Zero();      ///< sent to the device at the last tick, N
     Vec3 torque = Vec3::Zero();     ///< N m
     double max_force_N = 0;         ///< since the start
-    std::int64_t fresh_forces = 0;  ///< forces from a new solve that differ from the one before
-    double touching_s = 0;          ///< time with a force to feel; in free air there is none, new or old
+    std::int64_t fresh_forces = 0;  ///< number of forces from a new solve that differ from the one before
+    double touching_s = 0;          ///< time with a force; in free air there is none
   };
 
-  /// Hands that the motion does not move stay at `home`; without a home they are absent. The motion's hands begin at
-  /// its start.
+  /// Hands that the motion does not move stay at `home`, or are absent without a home. The others begin at the motion's
+  /// start.
   using Home = HandHome;
   explicit InProcessHaptics(const Motion& motion, const std::array<Home, 2>& home = {},
                             const ServoSettings& settings = {});
-  /// The same with other arms (tests, other devices' limits).
+  /// The same with other arms, for tests and other devices' limits.
   InProcessHaptics(const Motion& motion, const std::array<Home, 2>& home, const ServoSettings& settings,
                    const std::array<ArmParameters, 2>& arms);
 
-  /// Back to the start of the motion, arms at rest, counters at zero.
+  /// Returns to the start of the motion, with arms at rest and counters at zero.
   void reset();
-  /// The newest problem; copied, but for the tools of the hands in `left_out`.
+  /// Copies the newest problem, except for the tools of the hands in `left_out`.
   void set_problem(const ConstraintProblem& problem, const std::array<bool, 2>& left_out = {});
   /// One servo tick that ends at simulated time t (s), later than the last one. The first tick after reset takes 1 ms.
   void tick(double t);
@@ -59,9 +59,9 @@ class InProcessHaptics {
   const Hand& hand(int i) const { return hands_[std::size_t(i)]; }
   double time() const { return time_; }
   std::int64_t ticks() const { return ticks_; }
-  /// Of the last tick.
+  /// Result of the last tick.
   const ServoResult& last() const { return last_; }
-  /// Fresh forces per simulated second of touch, the lesser of the hands that touched anything; 0 when none did.
+  /// Fresh forces per simulated second of contact: the smaller value of the hands that had contact; 0 if none had.
   double fresh_forces_per_s() const;
 
  private:

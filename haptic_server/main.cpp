@@ -23,14 +23,14 @@ using namespace insula;
 using namespace std::chrono_literals;
 using Steady = std::chrono::steady_clock;
 
-std::atomic<bool> asked_to_stop{false};  // the one thing a signal handler may touch
+std::atomic<bool> asked_to_stop{false};  // the only variable that a signal handler may change
 
 void on_signal(int) { asked_to_stop.store(true); }
 
 struct Arguments {
   std::string left = "simulated", right = "simulated", motion;
   double duration_s = 0;
-  double spin_us = -1;  ///< negative: as LoopSettings chooses
+  double spin_us = -1;  ///< negative: the default of LoopSettings
   bool status = false;
   LoopSettings loop;
 };
@@ -74,7 +74,7 @@ int serve(const Arguments& a) {
   if (!grant.advice.empty()) spdlog::warn("{}", grant.advice);
 
   const MonotonicClock clock;
-  // Started first: the gate in front of a device takes its limits from what the device says of itself.
+  // Devices start first, since the gate takes its limits from the device's own data.
   for (Device* d : device) d->start();
   HapticServer server(*bus, std::move(devices), clock, std::move(options));
   spdlog::info("haptic server: left {}, right {}, {:.0f} Hz, {}", a.left, a.right, a.loop.rate_hz,
@@ -110,7 +110,7 @@ int serve(const Arguments& a) {
     next = std::max(next + 4ms, now);
   }
 
-  // Forces to zero first; the gate needs at most 50 ms for it.
+  // Forces fade to zero first. The gate needs at most 50 ms for this.
   server.begin_stop();
   const auto patience = Steady::now() + 300ms;
   std::this_thread::sleep_for(5ms);

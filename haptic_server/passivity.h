@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a hand has got out of the simulation, in joules (passivity observer; Hannaford and Ryu, "Time-domain passivity
-// control of haptic interfaces", 2002). A passive world gives back no more than was put in; a sampled, delayed one can,
-// and then it buzzes. Only observed: the controller that belongs to it, damping by what was given too much, made walls
-// softer here instead of stiffer, as it trembles with the encoder (docs/haptics-and-safety.md).
+// Energy that a hand has received from the simulation, J (passivity observer; Hannaford and Ryu, "Time-domain passivity
+// control of haptic interfaces", 2002). A passive world returns no more energy than it was given. A sampled and delayed
+// one can, and then it vibrates. There is only the observer. The passivity controller made walls softer, since it
+// oscillates with the encoder's resolution (docs/haptics-and-safety.md).
 #pragma once
 #include "core/base/math.h"
 
@@ -10,14 +10,14 @@ namespace insula {
 
 class PassivityObserver {
  public:
-  /// Each tick: the force that was on the hand since the last one, and where the device is now. In free air the count
-  /// begins anew.
+  /// Called in each tick with the force on the hand since the last one, and the present position of the device. In free
+  /// air the sum starts again.
   void observe(const Vec3& force_N, const Vec3& device_m) noexcept;
   void reset() noexcept { *this = {}; }
 
   double given() const {
     return given_;
-  }  ///< to the hand since it touched, less what the hand put in, J; negative: it put in more
+  }  ///< energy to the hand since contact began, less that from the hand, J; negative: the hand gave more
   double most() const { return max_given_; }  ///< largest so far, J
 
  private:

@@ -23,7 +23,7 @@ double in_and_out(int late) {
 }
 
 TEST(PassivityObserver, CountsWhatALateSpringGives) {
-  // Each tick's force does its work over the tick's way.
+  // Each tick's force does its work over the tick's displacement.
   const double step2 = 0.02 * dt * 0.02 * dt;
   const auto by_hand = [&](int late) {
     double sum = 0;

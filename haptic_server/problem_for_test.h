@@ -43,9 +43,9 @@ inline ToolTerms held_tool(int hand, const Pose& device, int rows) {
   return t;
 }
 
-/// Two tools, each with a virtual coupling of 300 N/m and 0.3 N m/rad and a rigid-body compliance, in `contacts`
-/// frictional contacts, `strands` compliant rows and `patches` of three contacts that share a friction force, with soft
-/// bodies behind. W = H C H^T (tools) + a soft part, so it is what an engine would build.
+/// Two tools, each with a virtual coupling of 300 N/m and 0.3 N m/rad and a rigid-body compliance. They have `contacts`
+/// frictional contacts, `strands` compliant rows and `patches` of three contacts with a common friction force, on soft
+/// bodies. W = H C H^T (tools) + a soft part, as an engine builds it.
 inline ConstraintProblem two_tool_problem(int contacts, int strands, std::uint64_t seed = 1, int patches = 0) {
   Random random(seed);
   ConstraintProblem p;
@@ -144,7 +144,7 @@ inline ConstraintProblem two_tool_problem(int contacts, int strands, std::uint64
   return p;
 }
 
-/// The engine's side: solves tightly and stores lambda in the problem.
+/// The engine's part: solves accurately and stores lambda in the problem.
 inline void solve_as_engine(ConstraintProblem& p) {
   SolveWorkspace ws;
   ws.reserve(p.rows);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A haptic server between an engine and a viewer played by the test, on an in-process bus, with a clock the test turns.
+// A haptic server between an engine and a viewer, both simulated by the test, on an in-process bus with a manual clock.
 #pragma once
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -25,7 +25,7 @@ struct TestDirectory {
   ~TestDirectory() { std::filesystem::remove_all(path); }
 };
 
-/// An engine that sends problems from where it last saw the devices, and a viewer; the test turns the clock.
+/// An engine that sends problems for the last known device poses, and a viewer. The test advances the clock.
 struct Rig {
   std::shared_ptr<MemHub> hub = std::make_shared<MemHub>();
   MemBus server_bus{hub}, engine_bus{hub};
@@ -116,8 +116,8 @@ struct Rig {
     ASSERT_TRUE(engine_bus.publish(channel::haptic_problem, bytes));
   }
 
-  /// Runs the servo for so many milliseconds; the engine steps every 16, DEVICE_STATE goes out every 4. The slew limit
-  /// is checked at every tick of every test.
+  /// Runs the servo for so many milliseconds. The engine steps every 16 ms, and DEVICE_STATE is sent every 4 ms. The
+  /// slew limit is checked at every tick of every test.
   void run(int milliseconds) {
     for (int k = 0; k < milliseconds; ++k, ++tick_count) {
       if (tick_count % 16 == 0 && engine_alive) {

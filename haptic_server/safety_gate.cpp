@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Limits, ramps and slew of the forces sent to a device.
+// Limits, fades and slew of the forces sent to a device.
 #include "haptic_server/safety_gate.h"
 
 #include <algorithm>
@@ -35,10 +35,10 @@ void SafetyGate::Channel::step(double dt, const Vec3& wanted) {
   shorten(target, limit);
   const Vec3 change = target - out;
   const double length = change.norm();
-  // A ramp as steep as the limit must end at its end, not a rounding error before it.
+  // A ramp with the limit's slope must reach its end exactly, without a rounding error.
   if (length <= slew * dt * (1 + 1e-12)) out = target;
   else if (length > 0) out += change * (slew * dt / length);
-  // Rounding must not carry the sum past the limit.
+  // Rounding must not move the sum beyond the limit.
   shorten(out, limit);
 }
 
@@ -64,7 +64,7 @@ void SafetyGate::apply(double dt, bool live, const Vec3& force_N, const Vec3& to
   } else {
     gain_ = std::max(0.0, gain_ - dt / ramp_out_s_);
     fade_ = std::max(0.0, fade_ - dt / ramp_out_s_);
-    // Fifty ticks of 1/50 must end at nothing, not at a rounding error.
+    // Fifty ticks of 1/50 must end at zero exactly, without a rounding error.
     if (fade_ < 1e-9) fade_ = 0;
     force_.step(dt, fade_ * force_.held);
     torque_.step(dt, fade_ * torque_.held);

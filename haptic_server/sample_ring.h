@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Fixed queue from one writing to one reading thread, without locks; when full, new samples are dropped and counted.
+// Fixed queue from one writing to one reading thread, without locks. If it is full, new samples are dropped and
+// counted.
 #pragma once
 #include <array>
 #include <atomic>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reading the scene's motion, homes and view.
+// Reads the scene's motion, homes and view.
 #include "haptic_server/scene_setup.h"
 
 #include <cmath>
@@ -72,7 +72,7 @@ SceneSetup read_scene_setup(std::int64_t session, const std::string& motion_file
 }
 
 void SetupExchange::give(std::unique_ptr<const SceneSetup> setup) {
-  // Once the servo uses the newest, nobody can reach the others any more.
+  // When the servo uses the newest setup, the others are no longer in use.
   if (!owned_.empty() && in_use_.load(std::memory_order_acquire) == owned_.back().get())
     owned_.erase(owned_.begin(), owned_.end() - 1);
   owned_.push_back(std::move(setup));

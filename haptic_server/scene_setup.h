@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the server needs of the running scene besides its problems: the scripted motion and where the hands are at home.
+// Data of the running scene for the server besides the problems: the scripted motion and the hands' home poses.
 #pragma once
 #include <array>
 #include <atomic>
@@ -18,22 +18,22 @@ struct SceneSetup {
   Motion motion;  ///< empty: none
   std::array<bool, 2> has_home{false, false};
   std::array<Pose, 2> home;
-  /// Axes of the person at the screen (x right, y away, z up) in the scene: those of the microscope's picture.
+  /// Axes of the person at the screen (x right, y away, z up) in the scene: those of the microscope's image.
   Quat person_to_scene = Quat::Identity();
   double force_scale = 1;
-  std::string problem;  ///< why motion or homes could not be read, empty when fine
+  std::string problem;  ///< reason why motion or homes could not be read; empty: none
 };
 
-/// Reads the motion (`motion_file`, empty: none), the homes and the view from `bundle`/scene.json. Never throws: what
-/// cannot be read is left out and said in `problem`.
+/// Reads the motion (`motion_file`, empty: none), the homes and the view from `bundle`/scene.json. Never throws. Parts
+/// that cannot be read are left out and reported in `problem`.
 SceneSetup read_scene_setup(std::int64_t session, const std::string& motion_file, const std::filesystem::path& bundle);
 
-/// Hands setups from one thread to the servo without locks; the old ones are freed on the giving side.
+/// Passes setups from one thread to the servo without locks. The giving thread frees old ones.
 class SetupExchange {
  public:
-  /// Giving thread.
+  /// Called by the giving thread.
   void give(std::unique_ptr<const SceneSetup> setup);
-  /// Servo thread: the newest, or nullptr; stays valid until the next take().
+  /// Called by the servo thread: the newest setup, or nullptr. It is valid until the next take().
   const SceneSetup* take() noexcept {
     const SceneSetup* s = next_.load(std::memory_order_acquire);
     in_use_.store(s, std::memory_order_release);

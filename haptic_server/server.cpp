@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The servo thread's side of the haptic server.
+// The part of the haptic server that runs in the servo thread.
 #include "haptic_server/server.h"
 #include "core/haptics/haptic_update.h"
 
@@ -10,23 +10,23 @@ namespace insula {
 namespace {
 
 constexpr double longest_arm_step_s = 0.02;
-constexpr double longest_age_s = 0.2;  // of a problem, for how its tissue goes on
-/// Simulated time up to which a scene counts as just begun.
+constexpr double longest_age_s = 0.2;  // largest age of a problem for which tissue is extrapolated
+/// Simulated time up to which a scene counts as just started.
 constexpr double beginning_s = 0.25;
 
 bool finite(const Pose& pose) {
   return pose.p.allFinite() && pose.q.coeffs().allFinite() && std::abs(pose.q.squaredNorm() - 1) < 1e-3;
 }
 
-/// What DEVICE_STATE may say. Anything else counts as a device that is gone: one hand's broken reading must not make
-/// the engine refuse the message that carries the other hand's.
+/// Whether a reading is valid for DEVICE_STATE. A device with an invalid reading counts as disconnected. One hand's
+/// error must not make the engine refuse the message, which also has the other hand's reading.
 bool sound(const DeviceReading& r) {
   const double q[4] = {r.pose.q.w(), r.pose.q.x(), r.pose.q.y(), r.pose.q.z()};
   return within(r.pose.p.data(), 3, limits::position_m) && unit_quaternion(q) &&
          within(r.v.data(), 3, limits::speed_m_s) && within(r.w.data(), 3, limits::spin_rad_s);
 }
 
-/// The device pose that the problem was built with; false when it has no tool of this hand.
+/// The device pose for which the problem was built. False if it has no tool of this hand.
 bool device_in_problem(const HapticUpdate& update, int hand, Pose& pose) {
   for (std::size_t t = 0; t < update.problem.tools.size() && t < 2; ++t) {
     const ToolTerms& tool = update.problem.tools[t];
@@ -64,7 +64,7 @@ const Motion* HapticServer::motion() const noexcept {
 
 void HapticServer::take_problem(std::int64_t now) noexcept {
   if (!problems_.pending()) return;
-  servo_.set_problem(nullptr);  // keeps the solution; the old problem's memory goes back to the receiving thread
+  servo_.set_problem(nullptr);  // keeps the solution; the receiving thread may use the old problem's memory again
   problems_.update();
   const Received& r = problems_.front();
   const HapticUpdate& u = r.update;
@@ -117,7 +117,7 @@ void HapticServer::place_hands(std::int64_t now) noexcept {
     if (script && !script->has(int(i))) script = nullptr;
     Pose start = hand.home.pose;
     if (script) start = script->at(int(i), motion_clock_.time()).pose;
-    // A real arm is where its person holds it: only its frame is laid, and that at the same place every time.
+    // A real arm stays where its user holds it. Only its frame is placed, always at the same position.
     if (!fresh_start_ && in_problem && hand.device->simulated()) start = here;
     if (!finite(start)) continue;
     Vec3 centre, extent;
@@ -133,13 +133,13 @@ bool HapticServer::live(const ServoHand& hand, std::int64_t now) const noexcept 
   if (stopping_.load(std::memory_order_relaxed) || !last_.solved || !hand.valid) return false;
   const Received& r = problems_.front();
   const std::int64_t stale_ns = std::int64_t(SafetyGate::stale_after_s * 1e9);
-  // By arrival and by the engine's own stamp: a queue that drains late must not pass for a living engine. What arrived
-  // in the future says that the clock went back, and nothing of how old it is.
+  // The age counts from arrival and from the engine's own time stamp, so that a delayed queue does not count as a live
+  // engine. An arrival in the future means that the clock went back, and the age is unknown.
   const std::int64_t age = now - r.receive_ns;
   return age >= 0 && age <= stale_ns && now - r.update.time_us * 1000 <= stale_ns;
 }
 
-// What becomes of the servo's force on the way to the gate, and what knocks.
+// Computes the output force from the servo's force, with transients, for the gate.
 Vec3 HapticServer::force_output(std::size_t i, double dt, bool alive) noexcept {
   Hand& hand = hands_[i];
   const Vec3& force = last_.hand[i].force;
@@ -190,7 +190,7 @@ void HapticServer::tick(std::int64_t due_ns, std::int64_t missed) noexcept {
     }
     hand.reading = hand.device->read();
     if (!sound(hand.reading)) hand.reading = DeviceReading{};
-    // An arm that waits for its place is at no place at all.
+    // An arm that waits for its frame has no valid pose.
     if (!hand.placed) hand.reading.connected = false;
     input.device[i] = hand.reading.pose;
     input.connected[i] = hand.reading.connected;
@@ -231,7 +231,7 @@ void HapticServer::leave_snapshot(std::int64_t now) noexcept {
     s.reading[i] = hands_[i].reading;
     s.force[i] = hands_[i].gate.force();
     s.torque[i] = hands_[i].gate.torque();
-    // While a tool is exchanged the problem has none for its hand: that is not out of range.
+    // While a tool is exchanged, the problem has none for its hand. This is not out of range.
     Pose none;
     s.in_range[i] = !last_.solved || !hands_[i].reading.connected || last_.hand[i].valid ||
                     !device_in_problem(problems_.front().update, int(i), none);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The haptic server without its threads: messages in, ticks, messages out, each for a thread of its own.
+// The haptic server without its threads: receiving, ticks and publishing, each for a thread of its own.
 #pragma once
 #include <array>
 #include <atomic>
@@ -30,23 +30,23 @@ namespace insula {
 struct ServerOptions {
   ServoSettings servo = ServoSettings::beyond_equation_7();
   double period_s = 1e-3;
-  /// Instead of the scene's motion: this one (may be empty: none).
+  /// A motion in place of the scene's (empty motion: none).
   std::optional<Motion> motion;
-  bool realtime = false;  ///< what HAPTIC_STATUS says about the servo's scheduling
-  std::string advice;     ///< shown in HAPTIC_STATUS when nothing more urgent is to be said
+  bool realtime = false;  ///< scheduling of the servo for HAPTIC_STATUS
+  std::string advice;     ///< shown in HAPTIC_STATUS if there is nothing more urgent
 };
 
-/// Three threads meet here without locks: `receive` in one, `tick` in the servo thread, `publish_*` in a third.
+/// Three threads work here without locks: `receive` in one, `tick` in the servo thread, `publish_*` in a third.
 /// Messages: in HAPTIC_PROBLEM, SCENE_INFO, SIM_EVENT, HAND_INPUT; out DEVICE_STATE, HAPTIC_STATUS.
 ///
-/// A new engine (session) or a simulated time that goes back puts simulated arms at the start of the motion (or at
-/// home) and hands them back to the script. A server that comes into a running scene starts its arms where the engine
-/// has the tools and walks to the motion from there.
+/// A new engine (session), or a simulated time that goes back, puts simulated arms at the start of the motion or at
+/// home, under control of the script. A server that joins a running scene starts its arms at the engine's tool poses
+/// and moves to the motion from there.
 class HapticServer {
  public:
   HapticServer(Bus& bus, std::array<DeviceChoice, 2> devices, const Clock& clock, ServerOptions options = {});
 
-  /// Receiving thread: handles what has arrived, waiting at most timeout_ms for a first message.
+  /// Receiving thread: handles the messages that have arrived. Waits at most timeout_ms for a first one.
   int receive(int timeout_ms);
 
   /// Servo thread: one tick, due at `due_ns` of the clock; `missed` ticks were skipped before it.
@@ -54,23 +54,23 @@ class HapticServer {
 
   /// Publishing thread: the newest DEVICE_STATE, if there was a tick since the last one.
   bool publish_state();
-  /// Publishing thread, once a second: HAPTIC_STATUS over the time since the last call.
+  /// Publishing thread, once a second: HAPTIC_STATUS for the time since the last call.
   const insula_lcm::haptic_status_t& publish_status();
-  /// Publishing thread, often enough (every 100 ms): takes the ticks' samples over.
+  /// Publishing thread, at least every 100 ms: collects the samples of the ticks.
   void collect();
 
-  /// Any thread: from now on forces go to zero, and stay there.
+  /// Any thread: from now on forces fade to zero and stay there.
   void begin_stop() { stopping_.store(true, std::memory_order_relaxed); }
   /// Any thread: the last forces sent were zero.
   bool quiet() const { return quiet_.load(std::memory_order_relaxed); }
 
-  /// Servo thread, or after it has ended.
+  /// Servo thread, or any thread after its end.
   const Vec3& force(int hand) const { return hands_[std::size_t(hand)].gate.force(); }
   const DeviceReading& reading(int hand) const { return hands_[std::size_t(hand)].reading; }
   const ServoResult& last() const { return last_; }
   std::int64_t messages_refused() const { return refused_.load(std::memory_order_relaxed); }
 
-  /// After this time without SCENE_INFO of a session its arms start without it.
+  /// After this time without a session's SCENE_INFO, its arms start without it.
   static constexpr double setup_patience_s = 1.3;
 
  private:
@@ -90,13 +90,12 @@ class HapticServer {
     ForceOutput force_output;
     Onset onset;
     PassivityObserver energy;
-    int severed_seen = 0, shut_seen = 0;  ///< of this hand's knocks
+    int severed_seen = 0, shut_seen = 0;  ///< numbers of events that already had a transient of this hand
     HandGuide guide;
     DeviceReading reading;
     HandSample home;
     bool placed = false;
-    bool to_be_laid =
-        true;  ///< since the session began anew; a real arm keeps the frame it has until the new one is known
+    bool to_be_laid = true;  ///< since the start of the session; a real arm keeps its frame until the new one is known
     std::int64_t wishes_seen = 0;
     Vec3 last_force = Vec3::Zero();
   };
@@ -148,7 +147,7 @@ class HapticServer {
   SetupExchange setups_;
   std::atomic<std::int64_t> received_{0}, refused_{0}, missed_{0};
   std::atomic<bool> stopping_{false}, quiet_{true};
-  /// Events that a hand's tool made, counted: strands severed, clips shut.
+  /// Number of events of a hand's tool that have a transient.
   std::array<std::atomic<int>, 2> severed_{}, shut_{};
   Remark remark_;
 
@@ -166,7 +165,7 @@ class HapticServer {
   StatusCollector collector_;
   insula_lcm::haptic_status_t status_{};
   insula_lcm::device_state_t state_{};
-  std::int64_t missed_now_ = 0;  ///< ticks, since the status before
+  std::int64_t missed_now_ = 0;  ///< missed ticks since the last status
   std::int64_t status_start_ns_ = 0, status_sequence_ = 0, state_sequence_ = 0;
   std::vector<std::uint8_t> scratch_;
 };

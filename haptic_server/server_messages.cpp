@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The haptic server's messages: what comes in on the receiving thread, what goes out on the publishing thread.
+// The haptic server's messages: incoming ones on the receiving thread, outgoing ones on the publishing thread.
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace insula {
 namespace {
 
-/// A step that ended this far in the future was stamped by another clock.
+/// A step that ended this far in the future has the time stamp of another clock.
 constexpr std::int64_t future_us = 20'000;
 
 void copy3(const Vec3& from, double* to) { std::copy_n(from.data(), 3, to); }
@@ -21,7 +21,7 @@ void copy3(const Vec3& from, double* to) { std::copy_n(from.data(), 3, to); }
 int HapticServer::receive(int timeout_ms) { return bus_.poll(timeout_ms); }
 
 void HapticServer::refuse(const std::string& channel, const std::string& why) {
-  // Said once per power of ten: a flood of garbage must not become a flood of lines.
+  // Reported once for each power of ten, so that many invalid messages do not give many lines.
   const std::int64_t n = refused_.fetch_add(1, std::memory_order_relaxed) + 1;
   if (n == 1 || n == 10 || n == 100 || n % 1000 == 0)
     spdlog::warn("{}: message refused ({} in all): {}", channel, n, why);
@@ -43,7 +43,7 @@ void HapticServer::on_problem(Bytes bytes) {
 void HapticServer::on_scene(Bytes bytes) {
   if (!decode(bytes, scene_info_, why_)) return refuse("SCENE_INFO", why_);
   const auto& info = scene_info_;
-  // Until a scene runs its bundle may not be complete.
+  // The bundle may be incomplete until the scene runs.
   const std::string key = std::to_string(info.session) + "\n" + info.motion + "\n" + info.bundle + "\n" +
                           (info.state == "loading" || info.state == "error" ? info.state : "ready");
   if (key == setup_key_ || info.state == "error") return;
@@ -75,7 +75,7 @@ void HapticServer::on_event(Bytes bytes) {
   if (event_.session != order_.session()) return;
   const bool severed = event_.kind == "strand_cut" || event_.kind == "strand_torn";
   if (!severed && event_.kind != "clip_shut") return;
-  // A strand that tears under no blade is felt by whoever pulls.
+  // A strand that tears without a blade gives a transient to both hands.
   for (std::size_t i = 0; i < 2; ++i)
     if (event_.hand < 0 || std::size_t(event_.hand) == i)
       (severed ? severed_ : shut_)[i].fetch_add(1, std::memory_order_relaxed);

@@ -41,7 +41,7 @@ Servo::Servo(const ServoSettings& settings)
       weld_elimination_(settings.substep.eliminate_welds ? servo_max_rows : 0),
       substep_(settings.substep, servo_max_rows) {
   workspace_.reserve(servo_max_rows, settings.newton_unknowns > 0);
-  kernels();  // chosen here once and not at the first tick
+  kernels();  // chosen here once instead of at the first tick
   delta_free_.assign(servo_max_rows, 0.0);
   last_lambda_.assign(servo_max_rows, 0.0);
   known_.resize(servo_max_rows);
@@ -70,7 +70,7 @@ void Servo::force_crossfade(ServoResult& result, double dt) noexcept {
 }
 
 void Servo::remember_solution() noexcept {
-  if (!problem_) return;  // keeps the solution of the problem before
+  if (!problem_) return;  // keeps the solution of the last problem
   known_count_ = 0;
   for (const Block& b : problem_->blocks) known_[known_count_++] = {b.id, b.row, b.law};
   std::sort(known_.begin(), known_.begin() + std::ptrdiff_t(known_count_),
@@ -79,7 +79,7 @@ void Servo::remember_solution() noexcept {
 }
 
 void Servo::set_problem(const ConstraintProblem* problem, const std::array<Pose, 2>& offset, double age_s) noexcept {
-  // The old problem's memory may be rewritten after this call, so all that is needed of it is copied now.
+  // The old problem's memory may change after this call, so the necessary parts are copied now.
   remember_solution();
   const bool fits = problem && problem->rows <= servo_max_rows && problem->blocks.size() <= std::size_t(servo_max_rows);
   problem_ = fits ? problem : nullptr;
@@ -126,14 +126,14 @@ ServoResult Servo::tick(const ServoInput& input) noexcept {
     in_range[t] = finite(d) && d.head<3>().norm() <= settings_.max_displacement_m &&
                   d.tail<3>().norm() <= settings_.max_rotation_rad;
     if (!in_range[t]) {
-      device[t] = tool.device;  // the other hand goes on
+      device[t] = tool.device;  // the other hand continues
       continue;
     }
     moved[t] = d;
     if (!in_ticks) add_product(tool.jacobian, tool.gain * d, delta_free_, n);
   }
 
-  if (n > 0 || in_ticks) {  // without rows a tool that carries something still moves
+  if (n > 0 || in_ticks) {  // without rows, a grasping tool still moves
     SolveSettings s;
     s.tolerance_m = settings_.tolerance_m;
     s.conjugate = settings_.conjugate;
@@ -164,11 +164,11 @@ ServoResult Servo::tick(const ServoInput& input) noexcept {
     hand.valid = in_range[t] && input.connected[index] && finite(wrench);
     if (!hand.valid) continue;
     hand.force = wrench.head<3>();
-    // The wrench acts at the tool's frame; the hand holds the device's.
+    // The wrench acts at the tool's frame, but the hand holds the device's frame.
     hand.torque = wrench.tail<3>() + (device[t].p - input.device[index].p).cross(hand.force);
   }
 
-  // A solution that is not finite must not poison the warm starts to come.
+  // A solution that is not finite must not be used for warm starts.
   bool good = true;
   for (int i = 0; i < n; ++i) good = good && std::isfinite(workspace_.lambda[std::size_t(i)]);
   if (!good) {

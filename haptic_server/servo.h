@@ -16,21 +16,21 @@ inline constexpr int servo_max_rows = 240;
 
 struct ServoSettings {
   int max_sweeps = 50;
-  /// Sweeps times rows squared stays below this, so that a tick keeps to its millisecond whatever the rows.
+  /// Bound of sweeps times rows squared, so that a tick stays within its millisecond for any number of rows.
   double max_operations = 1.2e6;
   double tolerance_m = 1e-9;
-  bool conjugate = false;  ///< sweeps go on along conjugate directions (core/constraint/solve.h)
-  /// Where a few sweeps leave more than the tolerance, one Newton step of as many unknowns at most
-  /// (core/constraint/newton.h): 0.4 ms for 200 on the machine of docs/haptic-truth.md; 0: sweeps alone.
+  bool conjugate = false;  ///< sweeps use conjugate directions (core/constraint/solve.h)
+  /// If a few sweeps do not reach the tolerance, one Newton step with at most this many unknowns follows
+  /// (core/constraint/newton.h). 200 unknowns take 0.4 ms on the machine of docs/haptic-truth.md. 0: only sweeps.
   int newton_unknowns = 0;
-  /// A device further than this from the pose the problem was built with is outside the linearisation: no force.
+  /// A device farther than this from the problem's pose is outside the linearisation and gets no force.
   double max_displacement_m = 0.03;
   double max_rotation_rad = 0.8;
-  /// What goes beyond equation 7; nothing of it is on by default.
+  /// Corrections beyond equation 7, all off by default.
   SubstepCorrectionSettings substep;
-  /// How a new problem takes over from the force of the old one; at once by default.
+  /// Cross-fade to the force of a new problem; off by default.
   ForceCrossfadeSettings force_crossfade;
-  /// All of it, as measured in docs/haptic-truth.md.
+  /// All corrections, with the settings of docs/haptic-truth.md.
   static ServoSettings beyond_equation_7() {
     ServoSettings s;
     s.substep = {.substep_compliance = true,
@@ -46,14 +46,14 @@ struct ServoSettings {
   }
 };
 
-/// Device poses at the tick; a hand that is not connected is taken to rest where the problem has it.
+/// Device poses at the tick; a hand that is not connected counts as at rest at the problem's pose.
 struct ServoInput {
   std::array<Pose, 2> device;
   std::array<bool, 2> connected{false, false};
   double dt_s = 1e-3;  ///< since the last tick
 };
 
-/// One hand's outcome. Force and torque (about the device's origin) act on the hand, scene frame.
+/// Result for one hand. Force and torque (about the device's origin) act on the hand, scene frame.
 struct ServoHand {
   bool valid = false;  ///< a tool of this hand is in the problem, everything is finite and in range
   Vec3 force = Vec3::Zero();
@@ -62,13 +62,13 @@ struct ServoHand {
 };
 
 struct ServoResult {
-  bool solved = false;  ///< there was a problem and it was solved at this tick
+  bool solved = false;  ///< there was a problem, and this tick has solved it
   std::array<ServoHand, 2> hand;
   SolveStats stats;
   int rows = 0;
 };
 
-/// The servo's whole state is its last solution; tick reads nothing but its arguments and that.
+/// The servo's state is its last solution. tick uses only this and its arguments.
 ///   d_t         = displacement(device pose of the problem, device pose now)        6 components, tool by tool
 ///   delta_free' = delta_free + sum_t H_t G_t d_t
 ///   lambda      = solve(problem with delta_free', warm start)
@@ -81,20 +81,19 @@ class Servo {
   Servo(const Servo&) = delete;
   Servo& operator=(const Servo&) = delete;
 
-  /// The problem to solve from now on; must stay as it is until the next call. nullptr: none.
-  /// offset: tool frame relative to the device's pose, tool by tool in the problem's order (tool = device * offset).
-  /// The warm start comes from the last solution by block id; a block that is new starts from the problem's lambda.
-  /// A problem of more than servo_max_rows rows counts as none.
-  /// age_s: time since its device poses; what goes beyond equation 7 needs it.
+  /// Sets the problem to solve, which must not change until the next call; nullptr: none. offset: tool frame relative
+  /// to the device's pose, tool by tool in the problem's order (tool = device * offset). The warm start comes from the
+  /// last solution by block id. A new block starts from the problem's lambda. A problem with more than servo_max_rows
+  /// rows counts as none. age_s: time since its device poses, used by the corrections beyond equation 7.
   void set_problem(const ConstraintProblem* problem, const std::array<Pose, 2>& offset = {}, double age_s = 0) noexcept;
-  /// The problem that is solved: the one that was set, or that without the rows of what a tool carries.
+  /// The problem that is solved: the one that was set, or the same without the weld rows of grasped bodies.
   const ConstraintProblem* problem() const { return problem_; }
 
   ServoResult tick(const ServoInput& input) noexcept;
 
   /// Solution of the last tick (or the warm start, before it); the first problem()->rows values count.
   const std::vector<double>& lambda() const { return workspace_.lambda; }
-  /// Forgets the last solution: the next problem starts from its own lambda.
+  /// Drops the last solution. The next problem starts from its own lambda.
   void reset() noexcept;
 
  private:

@@ -23,7 +23,7 @@ bool make_realtime(int priority) {
 }
 
 bool lock_memory() {
-  // Under a limit, pages locked in future would make ordinary allocations fail.
+  // With a limit, locking of future pages would make ordinary allocations fail.
   rlimit limit{};
   const bool unlimited = getrlimit(RLIMIT_MEMLOCK, &limit) == 0 && limit.rlim_cur == RLIM_INFINITY;
   if (unlimited || geteuid() == 0) {

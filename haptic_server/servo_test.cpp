@@ -23,7 +23,7 @@ ServoInput still(const ConstraintProblem& p) {
   return in;
 }
 
-/// Force and torque on the hand by matrices of any size and a solve of its own: an independent way to equation 7.
+/// Force and torque on the hand by matrices of any size and a separate solve, as an independent form of equation 7.
 Vec6 wrench_by_hand(const ConstraintProblem& p, const ServoInput& in, int hand) {
   ConstraintProblem shifted = p;
   VecX free = Eigen::Map<const VecX>(p.delta_free.data(), p.rows);

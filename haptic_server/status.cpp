@@ -70,7 +70,7 @@ std::string budget_advice(const insula_lcm::haptic_status_t& s, double period_us
   if (share > 0.01) return fmt::format("{:.0f} % of the servo's ticks were missed: {}", 100 * share, cure);
   if (s.lateness_us_p99 > 0.5 * period_us)
     return fmt::format("ticks begin up to {:.0f} us late: {}", s.lateness_us_p99, cure);
-  constexpr double much_mJ = 1;  // what an encoder's steps give a loose hand stays below
+  constexpr double much_mJ = 1;  // a loose hand gets less than this from the encoder's resolution
   for (std::size_t i = 0; i < 2; ++i)
     if (s.given_mJ[i] > much_mJ)
       return fmt::format(

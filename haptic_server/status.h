@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From ticks to the figures of HAPTIC_STATUS.
+// Statistics of the ticks for HAPTIC_STATUS.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace insula {
 
-/// What one tick leaves for the statistics; small, it crosses threads by the thousand.
+/// Data of one tick for the statistics. It is small, since thousands of them pass between threads.
 struct TickSample {
   float lateness_us = 0;
   float solve_us = 0;
@@ -17,8 +17,8 @@ struct TickSample {
   std::int16_t sweeps = 0;
   std::int16_t rows = 0;
   bool solved = false;
-  /// Per hand: came from a new solve of a recent problem and differs, in any bit, from the tick before. Where nothing
-  /// is touched the force itself is next to nothing and so is the difference.
+  /// For each hand: whether the force is from a new solve of a recent problem and differs in any bit from the tick
+  /// before. Without contact, the force and the difference are nearly zero.
   std::array<bool, 2> fresh{false, false};
   std::array<float, 2> given_J{};  ///< PassivityObserver::given()
 };
@@ -26,11 +26,11 @@ struct TickSample {
 /// Upper bounds of HAPTIC_STATUS.lateness_count's entries, us; the last entry has none.
 inline constexpr std::array<float, 11> lateness_bounds_us{10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000};
 
-/// What to do about a servo that does not keep to its time, in one line; empty when it does. period_us: of its ticks;
-/// missed: since the status before.
+/// Advice about a servo that exceeds its time, in one line; empty if it does not. period_us: of its ticks; missed:
+/// ticks since the last status.
 std::string budget_advice(const insula_lcm::haptic_status_t& status, double period_us, std::int64_t missed);
 
-/// Collects a period (a second) of samples. One thread.
+/// Collects the samples of a period (a second), in one thread.
 class StatusCollector {
  public:
   void add(const TickSample& sample);

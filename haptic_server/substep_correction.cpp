@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rows from tick to tick.
+// Correction of rows from tick to tick.
 #include "haptic_server/substep_correction.h"
 
 #include <algorithm>
@@ -8,8 +8,8 @@
 namespace insula {
 namespace {
 
-constexpr double shortest_s = 1e-5;  // a tick of no length would leave tissue no compliance
-constexpr double same_length = 0.1;  // ticks that differ by less share a W
+constexpr double shortest_s = 1e-5;  // a tick of zero length would make tissue rigid
+constexpr double same_length = 0.1;  // ticks whose lengths differ by less share a W
 
 }  // namespace
 
@@ -27,7 +27,7 @@ void SubstepCorrection::begin(const ConstraintProblem& p, const std::array<Grasp
   step_ = &p;
   grasped_ = grasped;
   const std::size_t n = std::size_t(p.rows);
-  tick_.resize(p.rows);  // within its capacity, and so are the blocks
+  tick_.resize(p.rows);  // within its capacity, as the blocks
   tick_.blocks.assign(p.blocks.begin(), p.blocks.end());
   std::copy_n(p.lambda.begin(), n, known_.begin());
   std::fill_n(slips_.begin(), n, char(0));
@@ -71,7 +71,7 @@ Vec6 SubstepCorrection::push(std::size_t tool, std::span<const double> lambda) c
   return sum;
 }
 
-// What the tools give in dt, and as much of the rest as tissue yields in it.
+// Compliance of the tools in dt, and the share of the other compliance that acts within dt.
 void SubstepCorrection::scale_compliance(double dt) noexcept {
   const ConstraintProblem& p = *step_;
   const std::size_t n = std::size_t(p.rows), stride = std::size_t(tick_.stride);
@@ -114,14 +114,14 @@ const ConstraintProblem& SubstepCorrection::next(double dt, const std::array<Vec
   first_ = false;
   if (settings_.extrapolate_frames) extrapolation_.extrapolate(moved);
   for (std::size_t t = 0; t < tools(); ++t) {
-    const Vec6 turned = settings_.extrapolate_frames ? Vec6(push(t, known_) - push_[t]) : Vec6(Vec6::Zero());
-    push_[t] += turned;
+    const Vec6 push_change = settings_.extrapolate_frames ? Vec6(push(t, known_) - push_[t]) : Vec6(Vec6::Zero());
+    push_[t] += push_change;
     if (grasped_[t].any) {
       went_[t] = grasping_[t].free_displacement(moved[t]) + give(t) * push_[t];
       continue;
     }
     const Vec6 free = p.tools[t].gain * moved[t];
-    went_[t] = free - moved_[t] + give(t) * turned;
+    went_[t] = free - moved_[t] + give(t) * push_change;
     moved_[t] = free;
   }
   for (std::size_t i = 0; i < n; ++i) {
@@ -141,7 +141,7 @@ const ConstraintProblem& SubstepCorrection::next(double dt, const std::array<Vec
 
 void SubstepCorrection::solved(std::span<const double> lambda, std::span<const double> delta) noexcept {
   const ConstraintProblem& p = *step_;
-  // What the tools did: their free way and what the change of force makes them yield.
+  // Displacement of the tools: their free displacement, and that by the change of force.
   std::array<Vec6, 2> swept = went_;
   for (std::size_t t = 0; t < tools(); ++t) {
     const Vec6 now = push(t, lambda);

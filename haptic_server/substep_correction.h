@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How tissue answers within a tick, when all that is known is how it answered over a whole step.
+// Response of tissue within a tick, computed from its response over a whole step.
 //
-// A step of length h solves (M/h^2 + C/h + K) dq = ..., so its W is what tissue yields in that time. Tissue is viscous,
-// C = beta K: in a tick of dt it yields less, and it goes on moving as it did. Without inertia, implicit Euler over dt
-// is exactly, row by row,
+// A step of length h solves (M/h^2 + C/h + K) dq = ..., so its W is the compliance of tissue over that time. Tissue is
+// viscous, C = beta K. In a tick of dt it yields less, and it continues its motion. Without inertia, implicit Euler
+// over dt is exactly, row by row,
 //   du          = a dt u' + s W_tissue (lambda - lambda of the tick before),   a = beta / (beta + dt)
 //   s           = dt / (beta + dt) * (h + beta) / h                            1 for dt = h, or where nothing is
 //   viscous delta       = delta of the tick before + H_tool d(tool) + du + W_tool (lambda - ...)
-// with u' the rate of the row's gap by all that is no hand's tool. The first tick of a problem starts from the end of
-// its step.
+// with u' the rate of the row's gap due to everything except the hands' tools. The first tick of a problem starts from
+// the end of its step.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -24,46 +24,46 @@ namespace insula {
 
 struct SubstepCorrectionSettings {
   bool substep_compliance = false;  ///< W of the tick instead of that of the step
-  bool extrapolate_tissue = false;  ///< tissue goes on at its rate
-  bool incremental_slip = false;    ///< friction opposes the slip of the tick, not that since the step began
-  bool eliminate_welds = false;     ///< what a tool carries is one with it, and its inertia that of a tick
-  bool extrapolate_frames = false;  ///< directions of contact go on turning with the tool
+  bool extrapolate_tissue = false;  ///< tissue continues at its rate
+  bool incremental_slip = false;    ///< friction opposes the slip of the tick instead of that since the step began
+  bool eliminate_welds = false;     ///< a grasped body is one with its tool, with the inertia for a tick
+  bool extrapolate_frames = false;  ///< contact directions continue to rotate with the tool
   bool any() const {
     return substep_compliance || extrapolate_tissue || incremental_slip || eliminate_welds || extrapolate_frames;
   }
 };
 
-/// State of the rows between ticks. Allocates in its constructor only.
+/// State of the rows between ticks. Allocates only in its constructor.
 class SubstepCorrection {
  public:
   SubstepCorrection(const SubstepCorrectionSettings& settings, int max_rows);
 
-  /// A problem that the servo's last solution has nothing to do with: from the end of its step, `age_s` ago.
+  /// Starts a problem from the end of its step, `age_s` ago, without the servo's last solution.
   void begin(const ConstraintProblem& problem, const std::array<GraspedBody, 2>& grasped, double age_s) noexcept;
-  /// The next problem has nothing to do with the one before: what a tool carries begins where it is in that one.
+  /// Makes the next problem independent of the last one. Grasped bodies begin at their poses in that problem.
   void reset() noexcept {
     for (GraspingTool& tool : grasping_) tool.lose();
   }
   /// The problem of the next tick, `dt_s` after the last one; the first one covers the problem's age instead. `moved`:
-  /// of the devices since the problem's poses, tool by tool.
+  /// displacement of the devices since the problem's poses, tool by tool.
   const ConstraintProblem& next(double dt_s, const std::array<Vec6, 2>& moved) noexcept;
-  /// Its solution.
+  /// Takes the solution of that problem.
   void solved(std::span<const double> lambda, std::span<const double> delta) noexcept;
-  /// The tool if it carries something, as it is after the tick.
+  /// The tool after the tick if it grasps a body, else null.
   const GraspingTool* grasping(std::size_t tool) const { return grasped_[tool].any ? &grasping_[tool] : nullptr; }
-  /// The tool's rows as they are in this tick.
+  /// The present rows of the tool in this tick.
   const ContactFrameExtrapolation::Jacobian& jacobian(std::size_t tool) const { return extrapolation_.jacobian(tool); }
 
  private:
   void find_tool_coupled_rows() noexcept;
   void scale_compliance(double dt) noexcept;
   Vec6 push(std::size_t tool, std::span<const double> lambda) const noexcept;
-  /// A tool's answer in the tick.
+  /// A tool's compliance in the tick.
   const Mat6& give(std::size_t tool) const {
     return grasped_[tool].any ? grasping_[tool].give() : step_->tools[tool].compliance;
   }
   std::size_t tools() const { return std::min<std::size_t>(step_->tools.size(), 2); }
-  /// Of the row's gap, at the start of the tick.
+  /// The row's gap at the start of the tick.
   double start(std::size_t i) const { return settings_.incremental_slip && slips_[i] ? 0.0 : gap_[i]; }
 
   SubstepCorrectionSettings settings_;
@@ -72,13 +72,13 @@ class SubstepCorrection {
   ConstraintProblem tick_;  ///< W and delta_free of the tick
   std::vector<double> gap_, rate_, known_, share_;
   std::vector<char> slips_;           ///< tangent rows
-  std::vector<int> tool_coupled_;     ///< rows that a tool has a part in
+  std::vector<int> tool_coupled_;     ///< rows in which a tool has a part
   std::array<Vec6, 2> moved_, went_;  ///< of the free tools, since the problem and in the tick
   std::array<Vec6, 2> push_;          ///< H_tool^T known
   std::array<GraspedBody, 2> grasped_;
   std::array<GraspingTool, 2> grasping_;
   double age_ = 0, dt_ = 0, compliance_dt_ = 0;
-  bool first_ = true, second_ = false;  ///< the next tick is, of its problem
+  bool first_ = true, second_ = false;  ///< whether the next tick is the first or second of its problem
 };
 
 }  // namespace insula

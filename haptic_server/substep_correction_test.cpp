@@ -152,16 +152,16 @@ TEST(SubstepCorrection, FrictionTurnsRoundWithTheHand) {
   Servo since_step(plain), by_tick(in_time());
   since_step.set_problem(&p);
   by_tick.set_problem(&p);
-  Vec3 old, turned;
+  Vec3 old, reversed;
   for (int k = 1; k <= 25; ++k) {
     ServoInput in = at(0);
     in.device[1].p.x() = -2e-5 * k;
     old = since_step.tick(in).hand[1].force;
-    turned = by_tick.tick(in).hand[1].force;
+    reversed = by_tick.tick(in).hand[1].force;
   }
   EXPECT_LT(old.x(), 0);
-  EXPECT_GT(turned.x(), 0);
-  EXPECT_NEAR(std::abs(turned.x()), 0.2 * turned.z(), 1e-9);
+  EXPECT_GT(reversed.x(), 0);
+  EXPECT_NEAR(std::abs(reversed.x()), 0.2 * reversed.z(), 1e-9);
 }
 
 TEST(SubstepCorrection, ARateThatLastsGoesOn) {

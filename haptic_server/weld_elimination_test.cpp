@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a tool carries: elimination changes no force, and inertia is that of a tick.
+// Grasped bodies: elimination changes no force, and inertia is that of a tick.
 #include "core/haptics/weld_elimination.h"
 
 #include <gtest/gtest.h>

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A problem with a tool that carries a clip, for the servo's tests.
+// A problem with a tool that grasps a clip, for the servo's tests.
 #pragma once
 #include "haptic_server/problem_for_test.h"
 
 namespace insula::testing {
 
-/// A tool at the origin, a clip in it that is touched by `contacts` at `reach` below, six rows between them after as
-/// many of the tool's own.
+/// A tool at the origin that grasps a clip. The clip has `contacts` contacts at the distance `reach` below. Six rows
+/// between them follow the `own` rows of the tool.
 inline ConstraintProblem with_clip(int contacts, int own, std::uint64_t seed) {
-  constexpr double step_s = 1.0 / 60, mass_kg = 0.03, turning = 1.2e-5, lever = 5e-3, reach = 0.01;
+  constexpr double step_s = 1.0 / 60, mass_kg = 0.03, inertia = 1.2e-5, lever = 5e-3, reach = 0.01;
   Random random(seed);
   const int n = own + 6 + contacts;
   ConstraintProblem p;
@@ -23,7 +23,7 @@ inline ConstraintProblem with_clip(int contacts, int own, std::uint64_t seed) {
   Eigen::Matrix<double, Eigen::Dynamic, 6> clip = Eigen::Matrix<double, Eigen::Dynamic, 6>::Zero(n, 6);
   Mat6 give = Mat6::Zero();
   give.diagonal().head<3>().setConstant(step_s * step_s / mass_kg);
-  give.diagonal().tail<3>().setConstant(step_s * step_s / turning);
+  give.diagonal().tail<3>().setConstant(step_s * step_s / inertia);
   for (int k = 0; k < 6; ++k) {
     clip(own + k, k) = k < 3 ? 1 : lever;
     t.jacobian.row(own + k) = -clip.row(own + k);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Collecting and printing errors; finding the name somebody meant.
+// Collection and output of errors; search for the name that was meant.
 #include "core/base/diagnostic.h"
 
 #include <algorithm>
@@ -86,7 +86,7 @@ std::string nearest_name(std::string_view word, const std::vector<std::string>& 
     if (std::max(c.size(), word.size()) - std::min(c.size(), word.size()) >= best_distance)
       continue;  // so far apart at least
     const std::size_t d = edit_distance(word, c);
-    // A suggestion that shares nothing with what was written helps nobody.
+    // A suggestion that shares nothing with the written name is useless.
     if (d < best_distance && d < std::max(word.size(), c.size())) {
       best = c;
       best_distance = d;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Errors as data. Everything wrong with a scene is collected and shown together, with its position in the file.
+// Errors as data. All errors of a scene are collected and shown together, with its position in the file.
 #pragma once
 #include <string>
 #include <string_view>
@@ -39,7 +39,7 @@ class Diagnostics {
   int errors_ = 0;
 };
 
-/// The candidate nearest to `word` by edit distance, or empty when none is near enough to suggest.
+/// The candidate nearest to `word` by edit distance, or empty if none is near enough.
 std::string nearest_name(std::string_view word, const std::vector<std::string>& candidates);
 
 }  // namespace insula

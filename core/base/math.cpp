@@ -7,7 +7,7 @@
 namespace insula {
 
 Vec3 rotation_vector(const Quat& q) {
-  // The double cover is resolved towards the short way round.
+  // Of q and -q, the one with the smaller rotation angle is used.
   const double sign = q.w() < 0 ? -1.0 : 1.0;
   const Vec3 v = sign * q.vec();
   const double s = v.norm();

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The few linear-algebra names used everywhere. All quantities are in SI units and in the scene frame unless stated
-// otherwise.
+// Common names of linear algebra. All quantities are in SI units and in the scene frame unless stated otherwise.
 #pragma once
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -36,7 +35,7 @@ Vec3 rotation_vector(const Quat& q);
 Quat from_rotation_vector(const Vec3& r);
 /// Six-component displacement (metres, then rotation vector in the scene frame) that takes pose a to pose b.
 Vec6 displacement(const Pose& a, const Pose& b);
-/// The pose reached from a by that displacement.
+/// The pose that is reached from a by that displacement.
 Pose displaced(const Pose& a, const Vec6& d);
 
 }  // namespace insula

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The rotation nearest to a matrix, followed from step to step (Mueller, Bender, Chentanez, Macklin 2016, "A robust
-// method to extract the rotational part of deformations"). R turns by sum r_i x a_i / |sum r_i . a_i| until its columns
-// r_i are parallel to those of the matrix, a_i.
+// method to extract the rotational part of deformations"). R is rotated by sum r_i x a_i / |sum r_i . a_i| until its
+// columns r_i are parallel to those of the matrix, a_i.
 #pragma once
 #include <cmath>
 
@@ -9,7 +9,7 @@
 
 namespace insula {
 
-/// Turns the guess q to the nearest rotation and returns it as a matrix. Never fails. A remaining error after a few
+/// Rotates the guess q to the nearest rotation and returns it as a matrix. Never fails. A remaining error after a few
 /// iterations is removed in the next step.
 inline Mat3 nearest_rotation(const Mat3& a, Quat& q) {
   constexpr double enough = 1e-5;  // rad
@@ -24,8 +24,8 @@ inline Mat3 nearest_rotation(const Mat3& a, Quat& q) {
     const double size = std::abs(along);
     if (!(size > 0)) break;
     const Vec3 turn = moment / size;
-    // Half the turn's tangent replaces its sine. The difference is negligible for a small turn. For a large one the
-    // next iteration corrects it.
+    // The tangent of half the angle replaces its sine. The difference is negligible for a small angle. For a large one
+    // the next iteration corrects it.
     q = (Quat(1, 0.5 * turn.x(), 0.5 * turn.y(), 0.5 * turn.z()) * q).normalized();
     r = q.toRotationMatrix();
     if (turn.squaredNorm() < enough * enough) break;

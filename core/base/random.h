@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A small random generator with the same numbers on every machine and with every library.
+// A small random generator that gives the same numbers on every machine and with every library.
 #pragma once
 #include <cstdint>
 

@@ -14,13 +14,13 @@
 namespace insula {
 namespace {
 
-std::atomic<int> write_end{-1};  // a signal handler has no other way to it
+std::atomic<int> write_end{-1};  // the signal handler has no other access to the pipe
 static_assert(std::atomic<int>::is_always_lock_free);
 
 void on_signal(int signal) {
   const int before = errno;
   const auto byte = static_cast<unsigned char>(signal);
-  [[maybe_unused]] const auto written = write(write_end.load(), &byte, 1);  // full: signals enough are waiting
+  [[maybe_unused]] const auto written = write(write_end.load(), &byte, 1);  // if it is full, enough signals are waiting
   errno = before;
 }
 

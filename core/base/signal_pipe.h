@@ -9,9 +9,9 @@
 
 namespace insula {
 
-/// While it lives, the given signals are written into its pipe and have no other effect. Unlike a blocked signal with
-/// sigwait or signalfd, this does not depend on the masks of threads that libraries start while loading. Only one may
-/// exist per process, since signal handlers belong to the process. A second one throws std::logic_error.
+/// While an object exists, the given signals are written into its pipe and have no other effect. Unlike a blocked
+/// signal with sigwait or signalfd, this does not depend on the masks of threads that libraries start while loading.
+/// Only one may exist per process, since signal handlers belong to the process. A second one throws std::logic_error.
 class SignalPipe {
  public:
   explicit SignalPipe(std::initializer_list<int> signals);
@@ -19,7 +19,7 @@ class SignalPipe {
   SignalPipe(const SignalPipe&) = delete;
   SignalPipe& operator=(const SignalPipe&) = delete;
 
-  int descriptor() const { return ends_[0]; }  ///< readable when a signal has come
+  int descriptor() const { return ends_[0]; }  ///< readable when a signal has arrived
   /// The next signal that has arrived; 0: none. Never waits.
   int next() const;
   /// Waits for a signal, at most timeout_ms (-1: without limit); 0: none came.

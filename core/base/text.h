@@ -20,7 +20,7 @@ std::string in_quotes(std::string_view text);
 std::string with_article(std::string_view noun);
 /// "a, b, c".
 std::string joined(const std::vector<std::string>& items, std::string_view separator = ", ");
-/// Offset of the first byte that is no part of well-formed UTF-8 (RFC 3629), or npos.
+/// Offset of the first byte that is not part of well-formed UTF-8 (RFC 3629), or npos.
 std::size_t find_invalid_utf8(std::string_view text);
 
 /// 64-bit FNV-1a hash (Fowler, Noll, Vo), which can be fed piece by piece.

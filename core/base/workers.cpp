@@ -18,8 +18,8 @@ Workers::~Workers() {
   for (std::thread& t : threads_) t.join();
 }
 
-// Takes indices of the ticket's loop until none is left. A piece that was taken keeps the loop open, so call_ and task_
-// hold; a ticket of a loop that is over, or being set up, cannot be taken any more.
+// Takes indices of the ticket's loop until none is left. A taken index keeps the loop open, so call_ and task_ stay
+// valid. Indices of a loop that has ended, or is being set up, cannot be taken.
 void Workers::work(std::uint64_t ticket) {
   const std::uint64_t round = ticket >> 32;
   for (;;) {
@@ -38,7 +38,7 @@ void Workers::run_raw(int count, Call call, void* task) {
     return;
   }
   const std::uint64_t round = (ticket_ >> 32) + 1;
-  ticket_ = (round << 32) | closed;  // late comers of the last loop find it shut before anything changes
+  ticket_ = (round << 32) | closed;  // late threads of the last loop find it closed before anything changes
   count_ = count;
   done_ = 0;
   call_ = call;

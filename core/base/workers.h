@@ -13,7 +13,7 @@ namespace insula {
 
 class Workers {
  public:
-  /// Total number of threads, including the caller's. 0: as many as the machine has cores, at most 8.
+  /// Total number of threads, including the caller's. 0: the number of the machine's cores, at most 8.
   explicit Workers(int threads = 0);
   ~Workers();
   Workers(const Workers&) = delete;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which of the messages on a channel counts: the newest of the sender that started last.
+// Selects the valid messages of a channel: the newest ones of the sender that started last.
 #pragma once
 #include <cstdint>
 
@@ -7,18 +7,18 @@ namespace insula {
 
 class ArrivalOrder {
  public:
-  /// After this silence a sender that started earlier, or an earlier number, is believed: with the gate's ramp-in,
-  /// feeling is back within a second.
+  /// After this silence a sender that started earlier, or an earlier number, is accepted. With the gate's ramp-in,
+  /// forces are back within a second.
   static constexpr std::int64_t silence_ns = 500'000'000;
-  /// Numbers lost in one go that need no explanation.
+  /// Largest jump of the sequence number that is accepted at once.
   static constexpr std::int64_t far = 1000;
 
-  /// Whether a message that arrives now counts; then it is the newest. False: out of order, doubled, or of a sender
-  /// that was replaced. A later sender, or a number far ahead, is believed when it goes on: one damaged message must
-  /// not shut out all that are whole.
+  /// Whether a message that arrives now is valid. It is then the newest. False: out of order, repeated, or from a
+  /// sender that was replaced. A later sender, or a number far ahead, is accepted with its second message. One damaged
+  /// message then cannot block all others.
   bool take(std::int64_t session, std::int64_t sequence, std::int64_t now_ns) {
     const Place place{session, sequence};
-    // A clock that went back says nothing of how long it was silent.
+    // If the clock went back, the length of the silence is unknown.
     const bool silence = now_ns_ == 0 || now_ns - now_ns_ > silence_ns || now_ns < now_ns_;
     if (!silence && !follows(newest_, place)) {
       if (session < newest_.session || (session == newest_.session && sequence <= newest_.sequence)) return false;
@@ -31,7 +31,7 @@ class ArrivalOrder {
     return true;
   }
 
-  std::int64_t session() const { return newest_.session; }  ///< of the sender that counts; -1: none yet
+  std::int64_t session() const { return newest_.session; }  ///< of the accepted sender; -1: none yet
 
  private:
   struct Place {

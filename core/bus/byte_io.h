@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Big-endian reading and writing with bounds: the numbers of LCM's wire format.
+// Reading and writing of big-endian numbers with bounds checks, for LCM's wire format.
 #pragma once
 #include <bit>
 #include <cstdint>
@@ -42,7 +42,7 @@ inline float load_float(const std::uint8_t* p) { return std::bit_cast<float>(loa
 }  // namespace wire
 static_assert(std::endian::native == std::endian::little, "wire:: swaps bytes");
 
-/// Walks over a message; after the first read past the end every read gives zero and ok() is false.
+/// Reads a message from front to back. After the first read past the end, every read gives zero and ok() is false.
 class ByteReader {
  public:
   explicit ByteReader(Bytes bytes) : bytes_(bytes) {}
@@ -78,7 +78,7 @@ class ByteReader {
     return p != nullptr ? std::int8_t(*p) : std::int8_t(0);
   }
   double f64() { return std::bit_cast<double>(i64()); }
-  /// A string: length with the final NUL, characters, NUL. Fails when that form is broken.
+  /// A string: length with the final NUL, characters, NUL. Fails if the form is wrong.
   bool skip_string() {
     const std::int32_t length = i32();
     const std::uint8_t* p = length < 1 ? nullptr : take(std::size_t(length));

@@ -19,8 +19,8 @@ inline constexpr std::string_view hand_input = "HAND_INPUT";          ///< hand_
 
 namespace insula {
 
-/// Larger messages are refused by every decoder. LCM loses messages over about 120 KB with a stock kernel's socket
-/// buffers: senders stay below that where they can.
+/// Larger messages are refused by every decoder. LCM loses messages over about 120 KB with the default socket buffers
+/// of the kernel. Senders stay below that if possible.
 inline constexpr std::size_t max_message_bytes = 512 * 1024;
 
 }  // namespace insula

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Messages <-> bytes. Decoders take anything at all: garbage, truncated or hostile bytes give `false` and a reason,
-// never an exception, a read out of bounds or a large allocation, and leave the target as it was or (generated types)
-// unused.
+// Conversion between messages and bytes. Decoders accept any input. Garbage, truncated or hostile bytes give `false`
+// and a reason, never an exception, a read out of bounds or a large allocation. The target then stays as it was or, for
+// generated types, must not be used.
 //
 //   insula_lcm::scene_info_t info;            std::vector<std::uint8_t> bytes;  std::string why;
 //   encode(info, bytes);                      // false when counts and vector sizes disagree
@@ -28,8 +28,8 @@
 
 namespace insula {
 
-/// Whether the bytes have the structure of the type: fingerprint, counts that fit, whole strings, no byte too few or
-/// too many. Reads every count before anything is allocated.
+/// Whether the bytes have the structure of the type: fingerprint, valid counts, complete strings, exact length. Checks
+/// every count before anything is allocated.
 bool well_formed(const insula_lcm::device_state_t*, Bytes bytes);
 bool well_formed(const insula_lcm::hand_input_t*, Bytes bytes);
 bool well_formed(const insula_lcm::haptic_status_t*, Bytes bytes);
@@ -38,12 +38,12 @@ bool well_formed(const insula_lcm::scene_info_t*, Bytes bytes);
 bool well_formed(const insula_lcm::sim_event_t*, Bytes bytes);
 bool well_formed(const insula_lcm::user_command_t*, Bytes bytes);
 
-/// The generated decoder leaves a vector of a reused object alone when the new count is 0; this empties it.
+/// Empties vectors whose new count is 0, which the generated decoder leaves unchanged in a reused object.
 void drop_stale(insula_lcm::render_frame_t& message);
 template <class Message>
 void drop_stale(Message&) {}
 
-/// The bytes of a message; `out` keeps its capacity. False when its counts and vector sizes disagree.
+/// Writes the bytes of a message to `out`, which keeps its capacity. False when its counts and vector sizes disagree.
 template <class Message>
 bool encode(const Message& message, std::vector<std::uint8_t>& out) {
   out.clear();
@@ -52,7 +52,7 @@ bool encode(const Message& message, std::vector<std::uint8_t>& out) {
   return message.encode(out.data(), 0, int(out.size())) == int(out.size());
 }
 
-/// Decodes and validates. `into` is touched only when the structure is right; use it only when this returns true.
+/// Decodes and validates. `into` changes only if the structure is valid. Use it only if this returns true.
 template <class Message>
 bool decode(Bytes bytes, Message& into, std::string& why) {
   if (bytes.size() > max_message_bytes) {

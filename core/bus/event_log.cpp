@@ -16,7 +16,7 @@ namespace {
 constexpr std::uint32_t mark = 0xEDA1DA01;
 constexpr std::size_t head_bytes = 28;
 constexpr int max_name = 63;                   // LCM_MAX_CHANNEL_NAME_LENGTH
-constexpr int max_message = 64 * 1024 * 1024;  // other programs may share the bus; ours are far smaller
+constexpr int max_message = 64 * 1024 * 1024;  // other programs may share the bus; our messages are far smaller
 
 }  // namespace
 

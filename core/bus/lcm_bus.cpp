@@ -80,7 +80,7 @@ bool LcmBus::publish(std::string_view channel, Bytes message) {
     fail(fmt::format("cannot send {} bytes on channel {} ({}) over", message.size(), channel, why));
     return false;
   }
-  // A passing failure (a route gone and back) is over. What is wrong with the receiver stays.
+  // A temporary failure of sending is over. An error of the receiver stays.
   if (!receiver_ || receiver_->error().empty()) good_.store(true, std::memory_order_relaxed);
   return true;
 }
@@ -92,7 +92,7 @@ void LcmBus::subscribe(std::string_view channel, Handler handler) {
     handlers_[std::string(channel)].push_back(std::move(handler));
   }
   if (receiver_) return;
-  std::lock_guard lock(send_mutex_);  // publish looks at receiver_
+  std::lock_guard lock(send_mutex_);  // publish reads receiver_
   receiver_ = std::make_unique<UdpReceiver>(address_);
   if (!receiver_->error().empty()) return fail(fmt::format("cannot receive ({}) over", receiver_->error()));
   thread_ = std::thread([this] { receive(); });

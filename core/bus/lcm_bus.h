@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The bus between processes: LCM's protocol over UDP multicast, received only from this machine and with every size
-// checked. LCM's own library does neither (docs/notes/bus-transport.md), so it is not used here; its tools are
+// checked. LCM's own library does neither (docs/notes/bus-transport.md), so it is not used here. LCM's tools remain
 // compatible.
 #pragma once
 #include <atomic>
@@ -26,10 +26,10 @@ std::string lcm_url_from_environment();
 
 class LcmBus final : public Bus {
  public:
-  /// What may wait for poll(); beyond either bound the oldest messages go.
+  /// Bounds of the messages that wait for poll(). Beyond either bound the oldest messages are dropped.
   static constexpr std::size_t max_waiting = 4096, max_waiting_bytes = 64u << 20;
 
-  /// A udpm URL; "" is that of lcm_url_from_environment(). Check good().
+  /// `url`: a udpm URL; "" means that of lcm_url_from_environment(). Check good().
   explicit LcmBus(std::string_view url = {});
   ~LcmBus() override;
   LcmBus(const LcmBus&) = delete;
@@ -42,12 +42,12 @@ class LcmBus final : public Bus {
   std::string error() const override;
 
   const std::string& url() const { return url_; }
-  /// Datagrams of this machine that were malformed, so far.
+  /// Number of malformed datagrams of this machine so far.
   std::uint64_t refused() const { return refused_.load(std::memory_order_relaxed); }
 
  private:
   struct Message {
-    const std::string* channel;  // a key of handlers_, which never loses one
+    const std::string* channel;  // a key of handlers_, which is never erased
     std::vector<std::uint8_t> bytes;
   };
   void fail(const std::string& what);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A bus inside one process: endpoints on one hub, messages delivered in the order they were published.
+// A bus inside one process. Its endpoints share a hub. Messages arrive in the order in which they were published.
 #pragma once
 #include <condition_variable>
 #include <cstdint>
@@ -16,16 +16,16 @@ namespace insula {
 
 class MemBus;
 
-/// What the endpoints have in common. Thread-safe.
+/// The common part of the endpoints. Thread-safe.
 class MemHub {
  public:
-  /// Messages waiting in one endpoint; the oldest goes when it is full.
+  /// Largest number of waiting messages of an endpoint; beyond it the oldest is dropped.
   static constexpr std::size_t capacity = 4096;
 
  private:
   friend class MemBus;
   std::mutex mutex_;
-  std::vector<MemBus*> endpoints_;  // in order of creation: the order of delivery
+  std::vector<MemBus*> endpoints_;  // in order of creation, which is the order of delivery
 };
 
 class MemBus final : public Bus {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Damaged messages for the decoder tests: seeded, so that a failure can be repeated.
+// Damaged messages for the decoder tests, from a seed, so that a failure can be repeated.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -13,8 +13,8 @@ class Mutator {
  public:
   explicit Mutator(std::uint32_t seed) : random_(seed) {}
 
-  /// One to four hurts of a copy of `original`; the fingerprint (first 8 bytes) is mostly left alone so that the
-  /// decoder gets past it.
+  /// A copy of `original` with one to four errors. The fingerprint (first 8 bytes) mostly stays, so that the decoder
+  /// accepts it.
   std::vector<std::uint8_t> operator()(const std::vector<std::uint8_t>& original) {
     std::vector<std::uint8_t> bytes = original;
     const int hurts = 1 + int(below(4));

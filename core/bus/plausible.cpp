@@ -112,7 +112,7 @@ bool plausible(const insula_lcm::render_frame_t& m, std::string& why) {
       if (!within(x.data(), 3, limits::position_m)) return fail(why, "node position out of range");
   }
   if (m.channels > 100'000 || m.drawables > 4096) return fail(why, "too many channels or drawables");
-  for (float v : m.channel)  // NaN: not known now
+  for (float v : m.channel)  // NaN: unknown value
     if (std::isinf(v)) return fail(why, "channel is not finite");
   for (std::size_t i = 0; i < m.drawable.size(); ++i) {
     const auto& d = m.drawable[i];
@@ -170,7 +170,7 @@ bool plausible(const insula_lcm::user_command_t& m, std::string& why) {
   if (m.command.empty() || !word_ok(m.command, 64)) return fail(why, "command is no short word");
   if (!word_ok(m.sender, 64)) return fail(why, "sender is no short word");
   if (!text_ok(m.argument, path_text)) return fail(why, "argument too long");
-  // What a component or a person is asked goes into logs and onto screens.
+  // Arguments of commands go into logs and onto screens.
   if (std::any_of(m.argument.begin(), m.argument.end(),
                   [](char c) { return (c >= 0 && c < 0x20 && c != '\t') || c == 0x7f; }))
     return fail(why, "argument holds control characters");

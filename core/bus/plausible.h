@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a message may say, beyond its structure: finite numbers, unit quaternions, known hands, magnitudes of an
-// operating table. A message that is not plausible is dropped whole.
+// Checks of a message's content beyond its structure: finite numbers, unit quaternions, known hands, realistic
+// magnitudes. A message that is not plausible is dropped.
 #pragma once
 #include <insula_lcm/device_state_t.hpp>
 #include <insula_lcm/hand_input_t.hpp>
@@ -13,7 +13,7 @@
 
 namespace insula {
 
-/// False with the reason in `why`, which is left alone otherwise.
+/// False with the reason in `why`, which otherwise stays unchanged.
 bool plausible(const insula_lcm::device_state_t& message, std::string& why);
 bool plausible(const insula_lcm::hand_input_t& message, std::string& why);
 bool plausible(const insula_lcm::haptic_status_t& message, std::string& why);
@@ -37,7 +37,7 @@ inline constexpr double unit_tolerance = 1e-4;  ///< of a quaternion's norm
 inline constexpr double force_N = 1e4;
 inline constexpr double speed_m_s = 1e3;  ///< of a device
 inline constexpr double spin_rad_s = 1e5;
-inline constexpr double opening_rad = 3.2;  ///< of an articulated tool, either way
+inline constexpr double opening_rad = 3.2;  ///< of an articulated tool, in either direction
 }  // namespace limits
 
 /// |v_i| <= most for all; false for NaN.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cutting and assembling of LCM's datagrams.
+// Splitting and assembly of LCM's datagrams.
 #include "core/bus/udpm_packet.h"
 
 #include <algorithm>
@@ -99,7 +99,7 @@ bool Assembler::add_fragment(std::uint64_t sender, Bytes datagram, Received& out
   if (partial == nullptr) return refuse();
   const bool follows = partial->sequence == sequence && partial->fragments == fragments &&
                        partial->next_fragment == number && partial->payload.size() == size && partial->filled == offset;
-  if (!follows || rest.size() > size - partial->filled) {  // filled <= size always: the difference cannot wrap
+  if (!follows || rest.size() > size - partial->filled) {  // filled <= size always holds, so the difference cannot wrap
     partial->next_fragment = partial->fragments = 0;
     return refuse();
   }
@@ -126,7 +126,7 @@ Assembler::Partial* Assembler::begin(std::uint64_t sender, Bytes datagram, Bytes
   if (place == partials_.end() && partials_.size() < max_senders) {
     partials_.emplace_back();
     place = partials_.end() - 1;
-  } else if (place == partials_.end()) {  // the sender that was silent for longest gives way
+  } else if (place == partials_.end()) {  // replaces the sender that was silent for longest
     const auto longer_silent = [](const Partial& a, const Partial& b) { return a.last_used < b.last_used; };
     place = std::min_element(partials_.begin(), partials_.end(), longer_silent);
   }

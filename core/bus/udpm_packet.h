@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The datagrams of LCM's UDP protocol: how a message is cut into datagrams, and how it is put together again. Every
-// size and offset of a received datagram is checked before it is used. Source: LCM, "UDP Multicast Protocol
-// Description". All numbers are big-endian. A short message is: "LC02", sequence number, channel name with a zero byte,
-// payload. A fragment is: "LC03", sequence number, payload size, offset, fragment number, count of fragments; the first
-// fragment then has the channel name with a zero byte; a piece of the payload follows.
+// The datagrams of LCM's UDP protocol: how a message is split into datagrams and reassembled. Every size and offset of
+// a received datagram is checked before it is used. Source: LCM, "UDP Multicast Protocol Description". All numbers are
+// big-endian. A short message is: "LC02", sequence number, channel name with a zero byte, payload. A fragment is:
+// "LC03", sequence number, payload size, offset, fragment number, count of fragments; the first fragment then has the
+// channel name with a zero byte; a piece of the payload follows.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -19,7 +19,7 @@ namespace insula::udpm {
 inline constexpr std::size_t max_datagram_bytes = 65'507;  ///< the largest UDP payload over IPv4
 inline constexpr std::size_t max_name_bytes = 63;          ///< of a channel, without its zero byte
 
-/// One datagram of a message: a header of ours and a piece of the sender's bytes, which are not copied.
+/// One datagram of a message: its header, and a piece of the sender's bytes, which are not copied.
 struct Datagram {
   std::array<std::uint8_t, 20 + max_name_bytes + 1> head;
   std::size_t head_bytes = 0;
@@ -27,7 +27,7 @@ struct Datagram {
 };
 
 /// Calls `send` for each datagram of a message, in order, until it returns false. Returns whether all were sent. The
-/// channel's name must have 1 to most_name_bytes characters and the message at most max_message_bytes.
+/// channel's name must have 1 to max_name_bytes characters and the message at most max_message_bytes.
 bool cut(std::string_view channel, Bytes message, std::uint32_t sequence,
          const std::function<bool(const Datagram&)>& send);
 
@@ -37,15 +37,15 @@ struct Received {
   Bytes message;
 };
 
-/// Puts messages together. Fragments of one message must come in order, as they do on one machine; a message with a gap
-/// is dropped whole. Memory is bounded by most_senders messages.
+/// Reassembles messages. Fragments of one message must come in order, as they do on one machine. A message with a gap
+/// is dropped. Memory is bounded by max_senders messages.
 class Assembler {
  public:
   static constexpr std::size_t max_senders = 16;
 
-  /// Takes one datagram. `sender` tells senders apart (address and port). True when `out` is a whole message now.
+  /// Takes one datagram. `sender` tells senders apart (address and port). True if `out` is now a complete message.
   bool add(std::uint64_t sender, Bytes datagram, Received& out);
-  /// Datagrams that were malformed or did not fit, so far.
+  /// Number of malformed or unexpected datagrams so far.
   std::uint64_t refused() const { return refused_; }
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Memory that begins on a cache line: a vector load that spans two lines costs twice.
+// Memory that begins on a cache line, since a vector load that spans two lines costs twice as much.
 #pragma once
 #include <cstddef>
 #include <new>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A block of rows and its law. Without Eigen: the sweep's kernels are compiled once per instruction set.
+// A block of rows and its law. It does not include Eigen, since the sweep's kernels are compiled once per instruction
+// set.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -9,7 +10,7 @@ namespace insula {
 
 inline constexpr double infinite = std::numeric_limits<double>::infinity();
 
-/// What relates delta and lambda on a block of rows.
+/// Law that relates delta and lambda on a block of rows.
 enum class LawKind : std::uint8_t {
   box,       ///< one row: lambda in [lower, upper]; inside the bounds delta + compliance * lambda = 0.
              ///< bilateral: c = 0, no bounds; compliant: c > 0; contact without friction: c = 0, [0, inf);
@@ -19,7 +20,7 @@ enum class LawKind : std::uint8_t {
           ///< the sum of their lambda, opposing slip (many contacts close together, one friction force)
 };
 
-/// What a block of rows stands for. The solver does not look at it; whoever reads a problem may.
+/// What a block of rows stands for. The solver does not use it. Readers of a problem may.
 enum class BlockRole : std::uint8_t {
   other,     ///< none of the roles below
   contact,   ///< two surfaces that may not overlap
@@ -42,9 +43,9 @@ struct Block {
   double lower = -infinite;  ///< N, box only
   double upper = infinite;   ///< N, box only
   double friction = 0;       ///< Coulomb coefficient, friction and patch blocks only
-  int normals = 0;           ///< of the blocks before this one, patch only
-  /// For who asks between steps: rotation vector, rad, by which a friction block's directions turn about their place
-  /// while the tool goes on by a step's way.
+  int normals = 0;           ///< number of one-row blocks before this one that share the patch, patch only
+  /// For use between steps: rotation vector, rad, of a friction block's directions about its contact point while the
+  /// tool moves on by its displacement in the step.
   std::array<float, 3> frame_rotation{};
   bool operator==(const Block&) const = default;
   int rows() const { return law == LawKind::friction ? 3 : law == LawKind::patch ? 2 : 1; }

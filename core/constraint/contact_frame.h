@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How the frame of a contact turns after the step in which its rows were built.
+// Prediction of a contact's frame after the step in which its rows were built.
 #pragma once
 #include "core/base/math.h"
 
@@ -10,7 +10,7 @@ struct ContactFrame {
   int row;       ///< first of the contact's three rows: normal, tangent, normal x tangent
   Vec3 normal;   ///< of the rows in the problem of the step
   Vec3 tangent;  ///< of the second row
-  Vec3 ahead;    ///< the normal after the requested time, if tool and surface go on as in the step
+  Vec3 ahead;    ///< the normal after the requested time, if tool and surface move on as in the step
   Vec3 later;    ///< the normal one step after that
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a constraint will cost in a step, as counts that do not depend on the machine. tools/workbench/cost_model.h
-// turns them into times.
+// Expected cost of a constraint in a step, as counts that do not depend on the machine. tools/workbench/cost_model.h
+// converts them to times.
 #pragma once
 #include <vector>
 
@@ -10,9 +10,9 @@ class Body;
 class RigidBody;
 class Surface;
 
-/// Rows that come when a tool or an implant is at work on a body.
+/// Rows that are added while a tool or an implant works on a body.
 struct RowEstimate {
-  const RigidBody* tool;  ///< whose work brings them
+  const RigidBody* tool;  ///< the tool or implant
   const Body* body;       ///< the other body
   double expected;        ///< rows in ordinary use; 0: none are expected from this pair
   double most;            ///< rows at the limit
@@ -21,7 +21,7 @@ struct RowEstimate {
 /// Filled by Constraint::estimate_cost(); every constraint adds to what is there.
 struct CostCounts {
   std::vector<RowEstimate> rows;
-  std::vector<const Surface*> searched;  ///< surfaces whose search trees are brought up to date, with repetitions
+  std::vector<const Surface*> searched;  ///< surfaces whose search trees are updated, with repetitions
   int tissue_vertices = 0;               ///< over pairs of surfaces that may touch, the vertices of both
   int tool_pieces = 0;                   ///< over pairs of an active tool and a surface, the tool's convex pieces
   int self_vertices = 0;                 ///< vertices of surfaces that may touch themselves

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Panels of 16 columns; what lies right of a panel takes its 16 rows at once.
+// Panels of 16 columns. The columns right of a panel are updated with its 16 rows at once.
 #include "core/constraint/dense_lu.h"
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr int panel = 16;
 
-// One panel of columns, all rows below its first; whole rows are exchanged.
+// Factorises one panel of columns with all rows below its first. Whole rows are exchanged.
 bool factor_panel(double* a, int n, long s, int first, int end, int* pivots, double least) {
   for (int k = first; k < end; ++k) {
     int best = k;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Friction of one contact, and of a patch of contacts.
-//
-// One contact with Coulomb friction, solved exactly: Signorini on the normal, |lambda_t| <= mu lambda_n with the
-// tangential force opposite to the slip.
+// Friction of one contact, and of a patch of contacts. One contact with Coulomb friction is solved exactly: Signorini's
+// condition on the normal, |lambda_t| <= mu lambda_n with the tangential force opposite to the slip.
 //   sticking   lambda = -W^-1 q, if inside the cone
 //   sliding    delta_n = 0, delta_t = -s lambda_t with s > 0 and |lambda_t| = mu lambda_n: with the normal eliminated
 //              (S + s I) lambda_t = b, S the 2x2 Schur complement; one scalar equation for s, bracketed Newton.
@@ -17,7 +15,7 @@ struct LocalContact {
   double qn, q1, q2;                    ///< delta with lambda of this contact at zero, m
 };
 
-/// Eigenvalues, and the unit eigenvector of the larger, of a symmetric 2x2.
+/// Eigenvalues of a symmetric 2x2 matrix, and the unit eigenvector of the larger one.
 struct Eigen2 {
   double high, low, vx = 1, vy = 0;
   Eigen2(double a11, double a12, double a22) {
@@ -41,11 +39,11 @@ inline void solve_contact(const LocalContact& c, double mu, double* out) {
     out[0] = -c.qn / c.wnn;
     return;
   }
-  // Normal eliminated: S lambda_t = b sticks.
+  // The normal is eliminated: S lambda_t = b holds in sticking.
   const double i = 1.0 / c.wnn;
   const double s11 = c.w11 - c.wn1 * c.wn1 * i, s12 = c.w12 - c.wn1 * c.wn2 * i, s22 = c.w22 - c.wn2 * c.wn2 * i;
   const double b1 = -c.q1 + c.wn1 * c.qn * i, b2 = -c.q2 + c.wn2 * c.qn * i;
-  // Eigenvalues and -vectors of S: every lambda_t(s) is then two divisions.
+  // With the eigenvalues and eigenvectors of S, each lambda_t(s) costs two divisions.
   const Eigen2 eigen(s11, s12, s22);
   const double vx = eigen.vx, vy = eigen.vy;
   const double least = 1e-12 * (std::abs(eigen.high) + c.wnn);
@@ -84,7 +82,7 @@ inline void solve_contact(const LocalContact& c, double mu, double* out) {
       else high = s;
       if (std::abs(step) <= 1e-15 * (s + e2) || f == 0) break;
     }
-    // On the cone to the last bit that matters.
+    // Onto the cone, to the last significant bit.
     if (size > 0 && n > 0) {
       const double scale = mu * n / size;
       t1 *= scale;
@@ -96,8 +94,8 @@ inline void solve_contact(const LocalContact& c, double mu, double* out) {
   out[2] = vy * t1 + vx * t2;
 }
 
-/// Coulomb friction of given strength: |lambda| <= bound opposing the slip w lambda + q, w symmetric 2x2. Writes two
-/// newtons.
+/// Coulomb friction of given strength: |lambda| <= bound, opposite to the slip w lambda + q, with w symmetric 2x2.
+/// Writes two numbers, N.
 inline void solve_disc(double w11, double w12, double w22, double q1, double q2, double bound, double* out) {
   out[0] = out[1] = 0;
   if (!(bound > 0) || !(w11 + w22 > 0)) return;
@@ -106,8 +104,8 @@ inline void solve_disc(double w11, double w12, double w22, double q1, double q2,
   const double e1 = eigen.high, e2 = std::max(eigen.low, 1e-12 * eigen.high);
   const double g1 = -(vx * q1 + vy * q2), g2 = -(-vy * q1 + vx * q2);  // in the eigenbasis
   double t1 = g1 / e1, t2 = g2 / e2, size = std::sqrt(t1 * t1 + t2 * t2);
-  // (w + s) lambda = -q with |lambda| = bound: 1/|lambda| is nearly straight in s, so Newton comes from below in a few
-  // steps.
+  // (w + s) lambda = -q with |lambda| = bound. 1/|lambda| is nearly linear in s, so Newton's method converges from
+  // below in a few steps.
   double s = 0;
   for (int k = 0; k < 60 && size > bound * (1 + 1e-15); ++k) {
     const double slope = -(t1 * t1 / (e1 + s) + t2 * t2 / (e2 + s)) / size;  // d|lambda|/ds

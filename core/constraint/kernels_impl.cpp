@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The sweep, compiled once per instruction set: KERNEL_NAME, KERNEL_BYTES a vector. Nothing inline from elsewhere is
-// used here: it would be compiled for this instruction set and might be linked into the rest.
+// The sweep, compiled once per instruction set: KERNEL_NAME, KERNEL_BYTES a vector. It uses no inline functions of
+// other files, since these would be compiled for this instruction set and could be linked into other code.
 #include "core/constraint/sweep_kernels.h"
 
 namespace insula::KERNEL_NAME {
@@ -11,7 +11,7 @@ typedef double V __attribute__((vector_size(W * 8), aligned(8)));
 
 inline V load(const double* p) { return *reinterpret_cast<const V*>(p); }
 inline void store(double* p, V v) { *reinterpret_cast<V*>(p) = v; }
-inline double above(double least, double x) { return x < least ? least : x; }  // lets NaN through, as below
+inline double above(double least, double x) { return x < least ? least : x; }  // passes NaN through, as below
 inline double below(double most, double x) { return x > most ? most : x; }
 inline double size(double x) { return __builtin_fabs(x); }
 inline double larger(double a, double b) { return a > b ? a : b; }
@@ -20,13 +20,13 @@ inline double larger(double a, double b) { return a > b ? a : b; }
 
 struct Move {
   double d[3];
-  int rows;  // 0: nothing moves
+  int rows;  // 0: no change
 };
 
 inline Move move_box(const LocalBlock& b, double* lambda, double delta) {
   const double l = *lambda, low = b.lower - l, high = b.upper - l;
   const double d = below(high, above(low, -b.compliance * l * b.inverse[0] - delta * b.inverse[0]));
-  *lambda = d == low ? b.lower : d == high ? b.upper : l + d;  // the bounds to the last bit
+  *lambda = d == low ? b.lower : d == high ? b.upper : l + d;  // the bounds exactly
   return {{d, 0, 0}, d != 0 ? 1 : 0};
 }
 
@@ -34,7 +34,8 @@ struct Three {
   double n, t1, t2;
 };
 
-// What the fast ways below do not cover. Leaves a start for the next slip, from (S + s) lambda_t = g.
+// Solution for cases that the fast formulas below do not cover. Stores a start for the next slip, from (S + s) lambda_t
+// = g.
 __attribute__((noinline)) Three exact(const SweepData& data, int k, LocalBlock& b, const double* lambda,
                                       const double* delta, double g1, double g2) {
   double out[3] = {0, 0, 0};
@@ -47,16 +48,17 @@ __attribute__((noinline)) Three exact(const SweepData& data, int k, LocalBlock& 
 }
 
 // Slip: |lambda_t| = mu lambda_n with (S + s) lambda_t = g and lambda_n = a0 + (a1 d2 + a2 d1) / (d1 d2), d = e + s.
-// Times d1 d2, squared, this is a polynomial in s. Newton from the last sweep's s, most often one step: its error is
-// the square of what s moves by, which vanishes with the sweeps, and the result is put on the cone.
-constexpr double slip_step = 0.03;  // relative to d2: further than that and one more step is made
+// Multiplied by d1 d2 and squared, this is a polynomial in s. Newton's method starts from the last sweep's s and mostly
+// needs one step. Its error is the square of the change of s, which vanishes with the sweeps. The result is projected
+// onto the cone.
+constexpr double slip_step = 0.03;  // relative to d2: a larger step is followed by another one
 
 inline Three next_friction(const SweepData& data, int k, LocalBlock& b, const double* lambda, const double* delta) {
   const long s = data.stride;
   const int r = b.row;
   const double* w = data.w + r * s + r;
   const double l0 = lambda[r], l1 = lambda[r + 1], l2 = lambda[r + 2];
-  // W lambda of the block itself: known before delta is.
+  // W lambda of the block itself, which is known before delta is.
   const double w0 = w[0] * l0 + w[1] * l1 + w[2] * l2, w1 = w[1] * l0 + w[s + 1] * l1 + w[s + 2] * l2,
                w2 = w[2] * l0 + w[s + 2] * l1 + w[2 * s + 2] * l2;
   const double i = b.inverse_normal, c1 = b.m1 * i, c2 = b.m2 * i;
@@ -88,13 +90,13 @@ inline Three next_friction(const SweepData& data, int k, LocalBlock& b, const do
   const double p1 = g1 * e2, p2 = g2 * e1, area = e1 * e2, length2 = p1 * p1 + p2 * p2;
   const double normal = -i * (qn * area + b.m1 * p1 + b.m2 * p2) / area,
                scale = b.friction * normal / __builtin_sqrt(length2);
-  // A slow fall of f may end elsewhere: the right place has lambda_n > 0 and is nearly on the cone already.
+  // Newton's method may find another root. At the right one lambda_n > 0, and the result is nearly on the cone.
   if (!(normal > 0 && size(scale * area - 1) < 1e-2)) return exact(data, k, b, lambda, delta, g1, g2);
   b.slip = slip;
   return {normal, (b.vx * p1 - b.vy * p2) * scale, (b.vy * p1 + b.vx * p2) * scale};
 }
 
-// The same for friction of given strength: |(S + s)^-1 g| = bound.
+// The same for friction of a given strength: |(S + s)^-1 g| = bound.
 inline Three next_patch(const SweepData& data, int k, LocalBlock& b, const double* lambda, const double* delta) {
   const long s = data.stride;
   const int r = b.row;
@@ -190,7 +192,7 @@ double sweep(const SweepData& data, double* lambda, double* delta) {
 }
 
 void combine(double* y, const double* a, long stride, const double* c, int rows, int n) {
-  constexpr int group = W < 4 ? 4 : W;  // rows taken together: as many as registers allow
+  constexpr int group = W < 4 ? 4 : W;  // rows processed together: as many as registers allow
   const double* row[group];
   double d[group];
   int count = 0;

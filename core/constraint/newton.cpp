@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The linear system of the pieces, and its solution.
+// The linear system of the laws' pieces, and its solution.
 #include "core/constraint/newton.h"
 
 #include <algorithm>
@@ -70,7 +70,7 @@ class Pieces {
     return std::hypot(slip[0], slip[1]) / std::hypot(force[0], force[1]);
   }
 
-  // y along v, across the direction u of the force.
+  // The unknown y along v, perpendicular to the direction u of the force.
   void across(int row, double u0, double u1, double rate) {
     NewtonUnknown& y = m_.unknowns.emplace_back();
     y.count = y.tests = 2;

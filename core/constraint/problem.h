@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The constraint problem of one step as a value: everything `solve` needs and nothing else.
+// The constraint problem of one step as a value: all that `solve` needs.
 //   delta = W lambda + delta_free          delta in metres (or rad), lambda in newtons (or N m)
 // The same value is solved by the engine once a step and by the haptic server every millisecond
 // (Dequidt, Coevoet, Thines, Duriez 2015, equations 5 to 7).
@@ -12,21 +12,21 @@
 
 namespace insula {
 
-/// How a hand-held tool's free pose follows the device and how the tool yields.
+/// How the free pose of a hand-held tool follows the device, and the compliance of the tool.
 struct ToolCoupling {
-  int hand = 0;                            ///< 0 left, 1 right
-  Pose device;                             ///< device pose (with the tool's offset applied) the problem was built with
-  Vec3 swept_displacement = Vec3::Zero();  ///< of the device in the step, to `device`
+  int hand = 0;  ///< 0 left, 1 right
+  Pose device;   ///< device pose for which the problem was built, with the tool's offset applied
+  Vec3 swept_displacement = Vec3::Zero();  ///< displacement of the device in the step that ended at `device`, m
   Pose free;                               ///< the tool's free pose at the end of the step
   Mat6 gain = Mat6::Identity();            ///< d(free displacement)/d(device displacement)
   Mat6 compliance = Mat6::Zero();          ///< A_tool^-1, (m, rad) per (N, N m)
   Mat6 stiffness = Mat6::Zero();  ///< coupling spring; force on the hand = stiffness * displacement(device, tool)
 };
 
-/// A hand-held tool in the problem, and the rows that it has a part in.
+/// A hand-held tool in the problem, with its part in the rows.
 struct ToolTerms : ToolCoupling {
   Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor> jacobian;  ///< H_tool, rows x 6
-  ToolCoupling& coupling() { return *this; }                           ///< all but the Jacobian
+  ToolCoupling& coupling() { return *this; }                           ///< everything except the Jacobian
 };
 
 struct ConstraintProblem {
@@ -35,18 +35,19 @@ struct ConstraintProblem {
   AlignedVector<double> w;         ///< W, symmetric, rows x stride, row-major; padding is zero
   std::vector<double> delta_free;  ///< rows
   std::vector<double> lambda;      ///< warm start, rows
-  // How the answer goes on after the step, for who asks between steps (the servo).
-  double step_s = 0;  ///< length h of the step that W is of; 0: unknown
-  double prediction_horizon_steps =
-      0;  ///< contacts' directions are those so many steps after the poses, the tools going on as in the step
-  std::vector<double> rate;  ///< rows: of delta at the end of the step, from all that is no hand's tool, m/s
+  // Extrapolation of the solution after the step, for use between steps (in the servo).
+  double step_s = 0;                    ///< length h of the step for which W holds; 0: unknown
+  double prediction_horizon_steps = 0;  ///< time from the poses to the moment for which the contacts' directions hold,
+                                        ///< in steps; the tools move on as in the step
   std::vector<double>
-      retardation_time;          ///< rows: time constant of what the row lies on, viscous over elastic, s; 0: none
+      rate;  ///< rows: rate of delta at the end of the step due to everything except the hands' tools, m/s
+  std::vector<double>
+      retardation_time;  ///< rows: time constant of the tissue under the row, viscous over elastic modulus, s; 0: none
   std::vector<Block> blocks;     ///< in row order, covering every row once
   std::vector<ToolTerms> tools;  ///< at most two
 
   double w_at(int i, int j) const { return w[std::size_t(i) * stride + j]; }
-  /// Sets the size and zeroes W and what each row has; keeps capacity.
+  /// Sets the number of rows, and zeroes W and all values of rows. Keeps capacity.
   void resize(int n);
 };
 

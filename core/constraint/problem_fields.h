@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The fields of a constraint problem that have a value a row or a value a block, listed once. The list drives resizing,
-// the copies of chosen rows, encoding, decoding and the check of ranges. A new field is a member of ConstraintProblem
-// or Block, a line here and a line at the same place of lcm_types/haptic_problem.lcm.
+// The fields of a constraint problem that have a value for each row or each block, listed once. The list drives
+// resizing, the copies of chosen rows, encoding, decoding and the check of ranges. A new field is a member of
+// ConstraintProblem or Block, a line here, and a line at the same position of lcm_types/haptic_problem.lcm.
 #pragma once
 #include <array>
 #include <cmath>
@@ -12,7 +12,7 @@
 
 namespace insula {
 
-/// Values that a message may hold: finite or within closed bounds. `reason` is told when a value is refused.
+/// Values that a message may hold: finite or within closed bounds. `reason` is reported when a value is refused.
 struct FieldRange {
   double least, most;
   const char* reason;
@@ -24,7 +24,7 @@ constexpr FieldRange below(double bound, const char* reason) {
 }
 inline constexpr FieldRange any_value{-infinite, infinite, ""};
 
-/// A number a row. Wire: its type in a message.
+/// A number for each row. Wire: its type in a message.
 template <class WireType>
 struct RowField {
   using Wire = WireType;
@@ -32,7 +32,7 @@ struct RowField {
   FieldRange range;
 };
 
-/// A number (or `count` numbers) a block.
+/// A number (or `count` numbers) for each block.
 template <class WireType, class MemberType>
 struct BlockField {
   using Wire = WireType;
@@ -92,12 +92,12 @@ constexpr void for_each_field(const Fields& fields, F&& f) {
       fields);
 }
 
-/// Row `d` of `to` has what row `s` of `from` has, but for W and the tools' Jacobians.
+/// Copies row `s` of `from` to row `d` of `to`, except for W and the tools' Jacobians.
 inline void copy_row(const ConstraintProblem& from, std::size_t s, ConstraintProblem& to, std::size_t d) {
   for_each_field(row_fields, [&](const auto& f, std::size_t) { (to.*f.values)[d] = (from.*f.values)[s]; });
 }
 
-/// What a problem has once.
+/// Copies the values that a problem has once.
 inline void copy_scalars(const ConstraintProblem& from, ConstraintProblem& to) {
   to.step_s = from.step_s;
   to.prediction_horizon_steps = from.prediction_horizon_steps;

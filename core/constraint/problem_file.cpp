@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reading checks everything before it is used: a bad file is an error with its reason, never a wrong solve.
+// Reading checks everything before it is used. A bad file is an error with its reason.
 #include "core/constraint/problem_file.h"
 
 #include <fmt/core.h>
@@ -42,7 +42,7 @@ void put(std::ofstream& out, T value) {
   out.write(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
-constexpr double most = 1e12;  // of any number in a sound problem
+constexpr double most = 1e12;  // largest number in a sound problem
 bool usable(double x) { return std::abs(x) < most; }
 bool bound(double x) { return usable(x) || std::isinf(x); }
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A constraint problem as a file: what `solve` needs, without the tools' terms. For benchmarks and regression tests of
-// the solver.
+// A constraint problem as a file, without the tools' terms, for benchmarks and regression tests of the solver.
 //
 //   8 bytes "INSULAP1"; int32 rows, blocks
 //   a block: uint64 id; int32 law (0 box, 1 friction, 2 patch), normals; float64 compliance, lower, upper, friction
@@ -23,7 +22,7 @@ ConstraintProblem read_problem(const std::filesystem::path& file);
 /// Names of the problems in a folder (*.problem), sorted. Throws InputError when there is no such folder.
 std::vector<std::filesystem::path> problem_files(const std::filesystem::path& folder);
 
-/// Why a problem cannot be solved as it stands; empty: it can.
+/// Reason why a problem is not sound; empty if it is.
 std::string unsound(const ConstraintProblem& problem);
 
 }  // namespace insula

@@ -5,7 +5,7 @@
 // On request lambda is extrapolated between sweeps along a conjugate direction (nonsmooth nonlinear conjugate
 // gradients; Silcowitz, Niebe, Erleben 2010). With g the change of lambda in a sweep:
 //   beta = |g_k|^2 / |g_k-1|^2,   p_k = beta p_k-1 + g_k,   lambda += beta p_k-1
-// The direction starts anew when beta > 1. A stiff clip on a thin wall takes a tenth of the sweeps. W p follows from
+// The direction starts again if beta > 1. A stiff clip on a thin wall needs a tenth of the sweeps. W p follows from
 // the deltas before and after a sweep, so it costs no product with W. The last operation on lambda is always a sweep,
 // which keeps every law.
 #include "core/constraint/solve.h"
@@ -35,7 +35,7 @@ void full_delta(const ConstraintProblem& p, std::span<const double> free, const 
 
 namespace {
 
-// Moves lambda and delta along the conjugate direction after a sweep; returns the sweep's size.
+// Moves lambda and delta along the conjugate direction after a sweep. Returns the size of the sweep's change.
 double carry_on(const ConstraintProblem& p, SolveWorkspace& ws, double last_norm) {
   const std::size_t n = std::size_t(p.rows), diagonal = std::size_t(p.stride) + 1;
   double norm = 0;
@@ -75,7 +75,8 @@ void measure_residual(const ConstraintProblem& p, const double* lambda, const do
   }
 }
 
-// Whether sweeps will not reach the tolerance: what they move shrinks too slowly, from one window of them to the next.
+// Forecasts that sweeps will not reach the tolerance, if their changes decrease too slowly from one window of sweeps to
+// the next.
 class Forecast {
  public:
   Forecast(const SolveSettings& s) : settings_(s) {}
@@ -88,7 +89,7 @@ class Forecast {
     last_ = max_moved_;
     max_moved_ = 0;
     if (share <= 0) return false;
-    if (share >= 1) return sweeps >= 4 * window;  // at first a warm start may have far to go
+    if (share >= 1) return sweeps >= 4 * window;  // at first a warm start may be far from the solution
     return sweeps + window * std::log(settings_.tolerance_m / last_) / std::log(share) > 2.0 * settings_.max_sweeps;
   }
 
@@ -98,7 +99,7 @@ class Forecast {
   double max_moved_ = 0, last_ = 0;
 };
 
-// Sweeps until one moves less than the tolerance, or there have been enough of them, or they are forecast to stall.
+// Sweeps until the change is below the tolerance, the number of sweeps is reached, or a stall is forecast.
 void sweep_on(const ConstraintProblem& p, const SolveSettings& settings, const SweepData& data, SolveWorkspace& ws,
               SolveStats& stats) {
   const int n = p.rows;
@@ -107,7 +108,7 @@ void sweep_on(const ConstraintProblem& p, const SolveSettings& settings, const S
   Forecast forecast(settings);
   for (std::vector<double>* v : {&ws.before, &ws.before_delta, &ws.along, &ws.along_delta})
     v->assign(std::size_t(n), 0.0);
-  double last_norm = 0;  // of the sweep before, 0: no direction yet
+  double last_norm = 0;  // of the last sweep, 0: no direction yet
   while (stats.sweeps < settings.max_sweeps) {
     if (settings.conjugate) {
       std::copy_n(lambda, n, ws.before.data());
@@ -121,7 +122,7 @@ void sweep_on(const ConstraintProblem& p, const SolveSettings& settings, const S
   }
 }
 
-// Some sweeps more; lambda stays what it was if its residual was smaller.
+// Makes some more sweeps. Keeps the old lambda if its residual was smaller.
 void sweep_more(const ConstraintProblem& p, std::span<const double> free, SolveSettings settings, int count,
                 bool conjugate, const SweepData& data, SolveWorkspace& ws, SolveStats& stats) {
   NewtonMemory& m = ws.newton;
@@ -138,11 +139,11 @@ void sweep_more(const ConstraintProblem& p, std::span<const double> free, SolveS
   else ws.lambda.assign(m.trial.begin(), m.trial.end());
 }
 
-constexpr double shortest_step = 0.1;  // of a Newton step that is tried
-constexpr int smoothing = 3;           // sweeps after it
+constexpr double shortest_step = 0.1;  // smallest fraction of a Newton step that is tried
+constexpr int smoothing = 3;           // sweeps after a Newton step
 constexpr double min_proximal = 1e-11, max_proximal = 1;
 
-// Newton from the sweeps' result, which stays what it is unless something better is found.
+// Newton's method from the sweeps' result, which is kept unless a better one is found.
 void newton_on(const ConstraintProblem& p, std::span<const double> free, const SolveSettings& settings,
                const SweepData& data, SolveWorkspace& ws, SolveStats& stats) {
   const auto sweep = sweep_kernels().sweep;
@@ -154,7 +155,7 @@ void newton_on(const ConstraintProblem& p, std::span<const double> free, const S
     bool better = false;
     full_delta(p, free, ws.lambda.data(), ws.current);
     if (newton_target(p, free, ws.lambda.data(), ws.current.data(), proximal, settings.newton_unknowns, m)) {
-      m.base.assign(m.trial.begin(), m.trial.end());  // where a whole step leads
+      m.base.assign(m.trial.begin(), m.trial.end());  // the result of a full step
       for (double step = 1; step > shortest_step && !better; step *= 0.4) {
         for (std::size_t i = 0; i < n; ++i) m.trial[i] = ws.lambda[i] + step * (m.base[i] - ws.lambda[i]);
         put_into_bounds(p, m.trial.data());
@@ -174,7 +175,7 @@ void newton_on(const ConstraintProblem& p, std::span<const double> free, const S
     proximal = better ? std::max(min_proximal, 0.1 * proximal) : 100 * proximal;
     if (better) continue;
     if (settings.newton_sweeps <= 0) return;
-    if (proximal > max_proximal) proximal = min_proximal;  // sweeps have moved on meanwhile
+    if (proximal > max_proximal) proximal = min_proximal;  // sweeps have changed lambda meanwhile
     sweep_more(p, free, settings, settings.newton_sweeps, true, data, ws, stats);
   }
 }
@@ -193,7 +194,7 @@ SolveStats solve(const ConstraintProblem& p, std::span<const double> free, const
   const SweepData data = ws.sweep.set_up(p);
   sweep_on(p, settings, data, ws, stats);
 
-  // Residual on a delta computed afresh: what each law would still move.
+  // Residual for a new delta: the change that each law would still make.
   const auto finish = [&] {
     full_delta(p, free, ws.lambda.data(), ws.current);
     measure_residual(p, ws.lambda.data(), ws.current.data(), stats);
@@ -205,7 +206,7 @@ SolveStats solve(const ConstraintProblem& p, std::span<const double> free, const
     newton_on(p, free, settings, data, ws, stats);
     finish();
     if (stats.residual_m > settings.tolerance_m &&
-        sweeps < settings.max_sweeps) {  // the forecast was wrong: the sweeps that are left
+        sweeps < settings.max_sweeps) {  // the forecast was wrong: the remaining sweeps
       sweep_more(p, free, settings, settings.max_sweeps - sweeps, settings.conjugate, data, ws, stats);
       finish();
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The mixed nonlinear complementarity problem: block Gauss-Seidel, and nonsmooth Newton where that stalls. Pure and
-// bounded: the result depends on the arguments alone, work is at most max_sweeps sweeps and max_newton Newton steps,
-// and nothing is allocated once the workspace has its size.
+// Solver of the mixed nonlinear complementarity problem: block Gauss-Seidel, and nonsmooth Newton where that stalls. It
+// is pure and bounded. The result depends only on the arguments, and the work is at most max_sweeps sweeps and
+// max_newton Newton steps. It allocates nothing once the workspace has its size.
 #pragma once
 #include <limits>
 #include <span>
@@ -17,30 +17,31 @@ struct SolveSettings {
   int max_sweeps = 200;
   /// Stop when no lambda of a sweep would move its row by more than this (metres): |W_ii * change| <= tolerance.
   double tolerance_m = 1e-9;
-  /// Carry lambda on along conjugate directions between sweeps: for stiff stacks, such as jaws on a thin wall.
+  /// Extrapolates lambda along conjugate directions between sweeps. This helps in stiff stacks, such as jaws on a thin
+  /// wall.
   bool conjugate = false;
-  /// Most Newton steps, made when sweeps would end above the tolerance; 0: sweeps alone. One step costs as much as rows
-  /// / 3 sweeps.
+  /// Largest number of Newton steps, which are made when sweeps would end above the tolerance; 0: only sweeps. One step
+  /// costs as much as rows / 3 sweeps.
   int max_newton = 0;
-  bool newton_soon = false;  ///< after a few sweeps already, for one who knows that they stall
-  int newton_unknowns =
-      std::numeric_limits<int>::max();  ///< rows that neither separate nor lie at a bound: no step is made with more
+  bool newton_soon = false;  ///< start Newton after a few sweeps, for problems that are known to stall
+  int newton_unknowns = std::numeric_limits<int>::max();  ///< largest number of rows that neither separate nor lie at a
+                                                          ///< bound in a Newton step
   int newton_sweeps =
-      32;  ///< conjugate ones, to come to another place after a step that led nowhere; 0: no further step then
+      32;  ///< conjugate sweeps before another attempt, after a step without success; 0: no further attempt
 };
 
 enum class SolveMethod : std::uint8_t { sweeps, newton };
 
 struct SolveStats {
   int sweeps = 0;
-  double residual_m = 0;  ///< largest violation of a law over all rows, metres (natural map scaled by 1/W_ii)
+  double residual_m = 0;  ///< largest violation of a law over all rows, m (natural map scaled by 1/W_ii)
   double residual_N = 0;  ///< the same in newtons
   bool stalled = false;   ///< sweeps did not reach the tolerance, and Newton was asked for
-  int newton_steps = 0;   ///< tried, beside the sweeps
-  SolveMethod method = SolveMethod::sweeps;  ///< newton: the result is better than what sweeps alone had come to
+  int newton_steps = 0;   ///< number of steps tried, in addition to the sweeps
+  SolveMethod method = SolveMethod::sweeps;  ///< newton: the result is better than that of the sweeps alone
 };
 
-/// Everything solve writes. One per caller; grows in reserve() only.
+/// All memory that solve writes. Each caller has one. It grows only in reserve().
 struct SolveWorkspace {
   std::vector<double> lambda;                                    ///< in: warm start, out: solution; N
   std::vector<double> delta;                                     ///< out: W lambda + delta_free, m

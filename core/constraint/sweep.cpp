@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Local solutions, exact, and what a sweep wants to know of each block beforehand.
+// Exact local solutions, and the data of each block that a sweep needs.
 #include "core/constraint/sweep.h"
 
 #include <algorithm>
@@ -41,7 +41,7 @@ void local_solution(const ConstraintProblem& p, const Block& b, const double* la
   c.w11 = w[s + 1];
   c.w12 = w[s + 2];
   c.w22 = w[2 * s + 2];
-  // Violation with this block's own lambda taken out.
+  // Violation without this block's own lambda.
   const double l0 = lambda[r], l1 = lambda[r + 1], l2 = lambda[r + 2];
   c.qn = delta[r] - (w[0] * l0 + w[1] * l1 + w[2] * l2);
   c.q1 = delta[r + 1] - (w[s] * l0 + w[s + 1] * l1 + w[s + 2] * l2);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a sweep needs of a problem, set up once a solve.
+// Data of a problem that sweeps need, set up once in each solve.
 #pragma once
 #include <vector>
 
@@ -8,17 +8,17 @@
 
 namespace insula {
 
-/// Of the same instruction set as kernels().
+/// The kernels for the same instruction set as kernels().
 const SweepKernels& sweep_kernels();
 
-/// What a sweep needs beside the problem; nothing is allocated in set_up() after reserve().
+/// Data of sweeps beside the problem. set_up() allocates nothing after reserve().
 struct SweepMemory {
   std::vector<LocalBlock> blocks;
   void reserve(int rows) { blocks.reserve(std::size_t(rows)); }
   SweepData set_up(const ConstraintProblem& problem);
 };
 
-/// The block's lambda that satisfies its law while the other blocks keep theirs; delta belongs to lambda.
+/// The block's lambda that satisfies its law while the other blocks keep theirs. `delta` is that of `lambda`.
 void local_solution(const ConstraintProblem& problem, const Block& block, const double* lambda, const double* delta,
                     double* out);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One sweep of block Gauss-Seidel, the solver's inner loop, compiled once per instruction set.
-// A row that moves by d changes delta = W lambda + delta_free by its column of W, which is its row: one stream, at
-// once. Panels that fetch only one half of W were slower at every size up to 360 rows: fewer bytes, more to wait for.
+// One sweep of block Gauss-Seidel, the solver's inner loop, compiled once per instruction set. When a row's lambda
+// changes, delta = W lambda + delta_free changes by its column of W. W is symmetric, so this is its row, which is read
+// as one stream.
 #pragma once
 #include "core/constraint/block.h"
 
@@ -9,7 +9,7 @@ namespace insula {
 
 struct ConstraintProblem;
 
-/// What a local solution needs of its block, computed once a solve.
+/// Data of a block for its local solution, computed once in each solve.
 struct LocalBlock {
   int row = 0;
   LawKind law = LawKind::box;
@@ -21,8 +21,8 @@ struct LocalBlock {
   double high = 0, low = 0;  ///< its eigenvalues
   double m1 = 0, m2 = 0;     ///< coupling of normal and tangents in the eigenbasis
   double inverse_normal = 0;  ///< 1 / (W_nn + compliance)
-  double slip = -1;  ///< |delta_t| / |lambda_t| of the last local solution that slipped, m/N: where the next search
-                     ///< begins; -1: none
+  double slip = -1;  ///< |delta_t| / |lambda_t| of the last local solution that slipped, m/N, where the next search
+                     ///< begins; -1: none begins; -1: none
 };
 
 struct SweepData {
@@ -31,15 +31,15 @@ struct SweepData {
   long stride;
   LocalBlock* blocks;
   int block_count;
-  /// Exact solution of one block, for what the fast ways do not cover. Writes rows() newtons.
+  /// Exact solution of one block, for cases that the fast formulas do not cover. Writes rows() numbers, N.
   void (*exact)(const ConstraintProblem& problem, int block, const double* lambda, const double* delta, double* out);
 };
 
 struct SweepKernels {
-  /// Gives each block in turn the lambda of its law; lambda and delta (both padded to the stride) are kept current.
-  /// Returns the largest |change of lambda| times W_ii, m.
+  /// Gives each block in order the lambda of its law. Updates lambda and delta, both padded to the stride. Returns the
+  /// largest |change of lambda| times W_ii, m.
   double (*sweep)(const SweepData& data, double* lambda, double* delta);
-  /// y[0..n) += sum over k of c[k] a[k stride + 0..n), n a multiple of 8; rows whose c is 0 are not read.
+  /// y[0..n) += sum over k of c[k] a[k stride + 0..n), with n a multiple of 8; rows whose c is 0 are not read.
   void (*combine)(double* y, const double* a, long stride, const double* c, int rows, int n);
 };
 

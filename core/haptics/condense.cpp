@@ -26,7 +26,7 @@ void Condenser::find_tool_coupled_rows(const ConstraintProblem& full) {
   for (std::size_t t = 0; t < std::min<std::size_t>(full.tools.size(), 2); ++t) {
     for (int r = 0; r < full.rows; ++r)
       if (!full.tools[t].jacobian.row(r).isZero(0)) tool_coupled_[std::size_t(r)] = 1;
-    // What a carried clip touches is touched by the tool: the servo makes the two one
+    // Contacts of a grasped body count as contacts of the tool, since the servo merges the two
     // (core/haptics/weld_elimination.h).
     const int weld = first_weld_row(full, t);
     for (int r = 0; weld >= 0 && r < full.rows; ++r)
@@ -36,7 +36,7 @@ void Condenser::find_tool_coupled_rows(const ConstraintProblem& full) {
   }
 }
 
-/// Marks the block's rows that are linear where they are; returns its margin.
+/// Marks the block's rows that are linear in their present state. Returns its margin.
 double Condenser::state(const ConstraintProblem& full, const Block& b) {
   const double* lambda = full.lambda.data() + b.row;
   const double* delta = delta_m_.data() + b.row;
@@ -63,10 +63,10 @@ double Condenser::state(const ConstraintProblem& full, const Block& b) {
     margin_m = pressed_N * w(0);
   } else {
     for (int i = 1; i <= b.normals; ++i) pressed_N += std::max(0.0, *(lambda - i));
-    if (pressed_N <= near_bound_N(0)) return infinite;  // its contacts say when
+    if (pressed_N <= near_bound_N(0)) return infinite;  // its contacts determine this
   }
   const double left_N = b.friction * pressed_N - std::hypot(lambda[tangent], lambda[tangent + 1]);
-  if (left_N <= 1e-6 * b.friction * pressed_N) {  // linear across the slip alone
+  if (left_N <= 1e-6 * b.friction * pressed_N) {  // linear only across the slip
     if (b.friction > 0) fate[tangent] = Fate::slips;
     return 0;
   }
@@ -92,8 +92,8 @@ void Condenser::make_groups(const ConstraintProblem& full) {
       double coupling = 0;
       for (int c = 0; c < full.rows; ++c)
         if (tool_coupled_[std::size_t(c)]) coupling = std::max(coupling, std::abs(full.w_at(r, c)));
-      // How far the tools' rows would move if this row's force went; for rows that nobody touches, if it changed by a
-      // newton, and the more so the sooner it may do what its linear equation does not say.
+      // Motion of the tools' rows if this row's force vanished. For rows without a tool: if it changed by a newton,
+      // with a larger weight for rows that may soon leave their linear state.
       g.rank = std::max(
           g.rank, is_weld_[std::size_t(r)] ? infinite : (std::abs(full.lambda[std::size_t(r)]) + 1e-6) * coupling);
       if (!tool_coupled_[std::size_t(r)]) g.rank = std::max(g.rank, coupling / (std::abs(margin_m_[b]) + 1e-6));
@@ -127,7 +127,7 @@ void Condenser::choose(const ConstraintProblem& full, int max_rows, ConstraintPr
     rows += groups_[g].rows;
     for (int b = groups_[g].first; b <= groups_[g].last; ++b) chosen_.push_back(b);
   }
-  // Laws without bounds come last in the order and first here: they are the exact ones.
+  // Laws without bounds are last in the order and first here, since their elimination is exact.
   eliminated_.clear();
   for (std::size_t last = groups_.size(); last-- > g;)
     for (int b = groups_[last].first; b <= groups_[last].last && !groups_[last].tool_coupled; ++b)
@@ -165,7 +165,7 @@ void Condenser::add_eliminated(const ConstraintProblem& full, const Block& b) {
   }
 }
 
-/// As if all the others were held.
+/// Copies the kept rows as if all others were held.
 void Condenser::copy_kept(const ConstraintProblem& full, ConstraintProblem& small) const {
   const std::size_t rows = kept_.size();
   small.resize(int(rows));
@@ -214,14 +214,14 @@ void Condenser::eliminate(const ConstraintProblem& full, ConstraintProblem& smal
     row(j)[r_at] = d.free;
     row(j)[j] += d.compliance;
   }
-  // Rows of U, one from those above it; W_EK and r go along and become Y and z.
+  // Computes each row of U from those above it. W_EK and r become Y and z in the same pass.
   for (std::size_t j = 0; j < n; ++j) {
     const long from = long(j / 8 * 8);
     const double whole = row(j)[j];
     for (std::size_t i = 0; i < j; ++i) weights_[i] = -row(i)[j];
     combine(row(j) + from, factor_.data() + from, width, weights_.data(), int(j), int(width - from));
     const double pivot = row(j)[j];
-    const double scale = pivot > 1e-10 * whole ? 1 / std::sqrt(pivot) : 0;  // hangs on the others: held
+    const double scale = pivot > 1e-10 * whole ? 1 / std::sqrt(pivot) : 0;  // depends on the others: held
     for (long c = long(j); c < width; ++c) row(j)[c] *= scale;
   }
   for (std::size_t j = 0; j < n; ++j) {
@@ -237,8 +237,8 @@ void Condenser::eliminate(const ConstraintProblem& full, ConstraintProblem& smal
     for (std::size_t j = 0; j < n; ++j) weights_[j] = -row(j)[kept_at + long(i)];
     combine(w + from, factor_.data() + kept_at + from, width, weights_.data(), int(n), int(small.stride - from));
   }
-  // What hangs on the eliminated rows alone moves with nothing else: rounding must not make it soft, or of negative
-  // stiffness.
+  // A row that depends only on the eliminated rows has no compliance of its own. Rounding must not give it a small or
+  // negative one.
   for (std::size_t i = 0; i < k; ++i) {
     double* w = small.w.data() + i * std::size_t(small.stride);
     if (w[i] > 1e-10 * full.w_at(kept_[i], kept_[i])) continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the tools feel of a problem, for tests that hold a condensed one against the whole.
+// Forces of a problem on the hands, for tests that compare a condensed problem with the full one.
 #pragma once
 #include <array>
 
@@ -9,7 +9,7 @@ namespace insula::testing {
 
 using Wrenches = std::array<Vec6, 2>;
 
-/// On the hands by equation 7 with the devices moved by d, tool by tool.
+/// Wrenches on the hands by equation 7 with the devices displaced by d, tool by tool.
 inline Wrenches hand_wrenches(const ConstraintProblem& p, const Wrenches& d, const SolveSettings& settings) {
   std::vector<double> free = p.delta_free;
   for (std::size_t t = 0; t < p.tools.size(); ++t) {

@@ -56,7 +56,7 @@ TEST(Condense, KeepsTheToolCoupledRowsAndTheirSolution) {
   Condenser()(full, 20, small);
   ASSERT_EQ(small.rows, 20);
   ASSERT_EQ(small.blocks.size(), 20u);
-  for (int i = 0; i < 7; ++i) {  // felt rows come along, in their order
+  for (int i = 0; i < 7; ++i) {  // tool-coupled rows are kept, in their order
     EXPECT_EQ(small.blocks[std::size_t(i)].id, std::uint64_t(100 + i));
     EXPECT_EQ(small.blocks[std::size_t(i)].row, i);
     EXPECT_TRUE(small.tools[0].jacobian.row(i) == full.tools[0].jacobian.row(i));

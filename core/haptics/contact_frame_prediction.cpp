@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rotation of blocks, and the solution of what comes out.
+// Rotation of blocks, and the solution of the rotated problem.
 #include "core/haptics/contact_frame_prediction.h"
 
 #include <algorithm>
@@ -11,9 +11,9 @@ namespace {
 
 constexpr double min_turn = 1e-6;
 constexpr double max_later =
-    0.2;  // rad in a step; more is an edge of the surface, and nobody knows when the tool gets over it
+    0.2;  // rad in a step; more is an edge of the surface, which the tool passes at an unknown time
 
-/// The new directions in terms of the old ones: normal and tangents turn together by the smallest rotation.
+/// The new directions in terms of the old ones: normal and tangents are rotated together by the smallest rotation.
 Mat3 rotation(const Vec3& normal, const Vec3& tangent, const Vec3& to) {
   const Mat3 turn = Quat::FromTwoVectors(normal, to).toRotationMatrix();
   Mat3 old;
@@ -21,7 +21,7 @@ Mat3 rotation(const Vec3& normal, const Vec3& tangent, const Vec3& to) {
   return old * turn.transpose() * old.transpose();
 }
 
-/// As a block has it.
+/// Rotation vector in the form of a block.
 std::array<float, 3> rotation_vector(const Vec3& from, const Vec3& to) {
   const Eigen::AngleAxisd turn(Quat::FromTwoVectors(from, to));
   if (turn.angle() > max_later) return {};
@@ -74,7 +74,7 @@ const ConstraintProblem& ContactFramePrediction::operator()(const Simulation& si
   for (const ContactFrame& f : frames_) {
     const double gap = delta_m_[std::size_t(f.row)];
     rotate_contact_rows(p, f.row, rotation(f.normal, f.tangent, f.ahead), delta_m_);
-    delta_m_[std::size_t(f.row)] = gap;  // what pressed presses
+    delta_m_[std::size_t(f.row)] = gap;  // a pressing contact keeps its gap
   }
   work_.assign(std::size_t(p.stride), 0.0);
   sweep_kernels().combine(work_.data(), p.w.data(), p.stride, p.lambda.data(), p.rows, p.stride);

@@ -1,28 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contacts of tools in the directions they have by the end of the step, and soon after it, for the servo.
+// Prediction of the frames of tool contacts at the end of the step, and soon after it, for the servo.
 //
-// A step takes its normals from where tools and surfaces are when it begins. By the time the problem reaches the servo
-// they are a step and more behind, and over an edge of the surface that is another normal. The three rows of a contact
-// with friction are the three directions of space at one place, so the problem in other directions follows exactly,
-// block by block, from a rotation Q of each:
-//   H' = Q H,   W' = Q W Q^T,   delta' = Q delta, of contacts that press with the gap as it was,   rate' = Q rate
-// and lambda' solves it. The engine's own step is what it was.
+// A step takes its normals at its start. When the problem reaches the servo, they are more than a step old. Beyond an
+// edge of the surface the normal is then another one. The three rows of a contact with friction are the three
+// directions of space at one point. The problem in other directions follows exactly from a rotation Q of each block:
+//   H' = Q H,   W' = Q W Q^T,   rate' = Q rate,   delta' = Q delta; the gap of pressing contacts stays
+// lambda' is its solution. The engine's own step does not change.
 //
-// How far each will have turned another step later goes with the block, and the servo turns it on as the tool goes.
+// Each block also gets its predicted rotation over one more step. The servo continues this rotation with the tool.
 #pragma once
 #include "core/constraint/solve.h"
 #include "core/sim/simulation.h"
 
 namespace insula {
 
-/// Turns the three rows of a contact that begin at `row` by q. `delta_m`: of the problem at its lambda; turned
-/// likewise.
+/// Rotates the three rows of a contact that begin at `row` by q. `delta_m`: delta of the problem at its lambda, m; it
+/// is rotated too.
 void rotate_contact_rows(ConstraintProblem& problem, int row, const Mat3& q, std::span<double> delta_m);
 
 class ContactFramePrediction {
  public:
-  /// The problem of the simulation's last step, its rows turned to where tools are `ahead_s` after it if they go on as
-  /// in it; the simulation's own where nothing presses. Until the next call or step.
+  /// The problem of the simulation's last step with its contact frames `ahead_s` (s) after the step, if the tools move
+  /// on as in the step. It is the simulation's own problem if no contact presses. Valid until the next call or step.
   const ConstraintProblem& operator()(const Simulation& simulation, double ahead_s);
 
  private:

@@ -66,18 +66,18 @@ TEST(ContactFramePrediction, OtherTangentsChangeNoForce) {
 }
 
 /// The largest turn that blocks tell while a ball is led about the edge of a plate by `degrees` a step.
-double max_turn_about_an_edge(double degrees) {
+double max_rotation_about_an_edge(double degrees) {
   using namespace test;
   constexpr double pressed = 0.05e-3;
   const Vec3 edge(0.05, 0.003, 0);
   Bench b(test_tool_urdf(radius), ground(), upright, R"(friction="1e-9" linearized_at="end")");
   if (!b.tool) return -1;
-  ContactFramePrediction turned;
+  ContactFramePrediction predict;
   double most = 0;
   for (int i = -4; i < 4; ++i) {
     const double angle = (80 - std::max(0, i) * degrees) * std::numbers::pi / 180;
     b.move_to({edge + (radius - pressed) * Vec3(std::cos(angle), 0, std::sin(angle)), b.tool->home_pose().q});
-    for (const Block& block : turned(*b.s, 0.5 * b.s->h()).blocks)
+    for (const Block& block : predict(*b.s, 0.5 * b.s->h()).blocks)
       if (i >= 2)
         most = std::max(most, std::hypot(double(block.frame_rotation[0]), double(block.frame_rotation[1]),
                                          double(block.frame_rotation[2])));
@@ -86,8 +86,8 @@ double max_turn_about_an_edge(double degrees) {
 }
 
 TEST(ContactFramePrediction, BlocksTellHowFarTheyTurnNextUnlessItIsOverAnEdge) {
-  EXPECT_NEAR(max_turn_about_an_edge(8), 8 * std::numbers::pi / 180, 0.01);
-  EXPECT_EQ(max_turn_about_an_edge(16), 0);
+  EXPECT_NEAR(max_rotation_about_an_edge(8), 8 * std::numbers::pi / 180, 0.01);
+  EXPECT_EQ(max_rotation_about_an_edge(16), 0);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The parts of a haptic_problem_t message.
+// The layout of a haptic_problem_t message.
 #include "core/haptics/haptic_layout.h"
 
 #include <zlib.h>

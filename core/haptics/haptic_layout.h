@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where each part of a haptic_problem_t message lies, and whether what lies there may be believed. Nothing is copied
-// and nothing written.
+// Positions of the parts of a haptic_problem_t message, and checks of their content. Nothing is copied or written.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -13,7 +12,7 @@
 namespace insula::wire {
 
 inline constexpr std::size_t pose_bytes = 7 * 8, matrix_bytes = 36 * 8;
-// A tool: hand, device pose and way, free pose, three matrices, offset.
+// A tool: hand, device pose and displacement, free pose, three matrices, offset.
 inline constexpr std::size_t swept_displacement_at = 1 + pose_bytes, free_at = swept_displacement_at + 3 * 8,
                              matrices_at = free_at + pose_bytes;
 inline constexpr std::size_t offset_at = matrices_at + 3 * matrix_bytes, tool_bytes = offset_at + pose_bytes;
@@ -56,14 +55,14 @@ struct ProblemLayout {
 
 static_assert(std::get<1>(row_fields).values == &ConstraintProblem::lambda);
 
-/// Of a message without its last four bytes.
+/// Layout of a message without its last four bytes.
 std::uint32_t problem_checksum(Bytes bytes);
 
-/// Structure: the kind of message, sizes that agree with each other and with its length, the checksum. False with the
-/// reason in `why`.
+/// Structure: the kind of message, sizes that agree with each other and with its length, and the checksum. False with
+/// the reason in `why`.
 bool find_parts(Bytes bytes, ProblemLayout& layout, const char*& why);
 
-/// Content: every number finite and of plausible magnitude, and what decode_problem() promises beyond that.
+/// Content: every number is finite and of plausible magnitude, with the other guarantees of decode_problem().
 bool plausible_problem(const ProblemLayout& layout, const char*& why);
 
 }  // namespace insula::wire

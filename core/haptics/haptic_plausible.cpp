@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What of a haptic_problem_t is believed: magnitudes, laws, blocks, tools.
+// Checks of a haptic_problem_t: magnitudes, laws, blocks, tools.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -39,7 +39,7 @@ bool matrix_ok(const ProblemLayout& l, const char*& why) {
   return bad == nullptr;
 }
 
-/// A solver stops at a tolerance and friction is rounded to float32 on the way.
+/// A solver stops at a tolerance, and friction is rounded to float32 in the message.
 double slack(double bound) { return 1e-6 + 1e-4 * std::abs(bound); }
 
 bool lambda_in_law(const ProblemLayout& l, const Block& b) {
@@ -66,7 +66,7 @@ bool patch_ok(const ProblemLayout& l, const Block& b, int index) {
   return true;
 }
 
-/// Every number of a block lies in its range.
+/// Every number of a block is in its range.
 bool block_ok(const ProblemLayout& l, int block, const char*& why) {
   const char* bad = nullptr;
   for_each_field(block_fields, [&](const auto& f, std::size_t index) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Flat encoder and decoder of haptic_problem_t. The decoder validates the bytes in place first and writes only then.
+// Flat encoder and decoder of haptic_problem_t. The decoder first validates the bytes in place, and writes only after
+// that.
 #include "core/haptics/haptic_update.h"
 
 #include <algorithm>

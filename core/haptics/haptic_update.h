@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One step's constraint problem on its way from the engine to the haptic server: haptic_problem_t's wire format,
-// written and read directly so that nothing is allocated once the buffers have their size.
+// Transport of a step's constraint problem from the engine to the haptic server. haptic_problem_t is written and read
+// directly, so that nothing is allocated once the buffers have their size.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -32,9 +32,9 @@ struct HapticUpdate : ProblemStamp {
 };
 
 /// Writes the message into `out`, which keeps its capacity. W, Jacobians, friction, compliance, rate and retardation
-/// time travel as float32, W as its lower triangle. False, with `out` empty, when the problem has no wire form: more
-/// than 240 rows or 2 tools, or vectors that do not match `rows`. The last four bytes are a checksum: UDP checks
-/// nothing on a loopback interface, and a bit that flips in the mantissa of a number leaves it plausible.
+/// time travel as float32, W as its lower triangle. False, with `out` empty, if the problem cannot be sent: more than
+/// 240 rows or 2 tools, or vectors that do not match `rows`. The last four bytes are a checksum, since UDP checks
+/// nothing on a loopback interface, and a number with a flipped bit in its mantissa is still plausible.
 /// The tool of a hand in `left_out` (0 left, 1 right) is not in the message.
 bool encode_problem(const ProblemStamp& stamp, const ConstraintProblem& problem, const std::array<bool, 2>& left_out,
                     std::vector<std::uint8_t>& out);
@@ -42,7 +42,7 @@ inline bool encode_problem(const HapticUpdate& update, std::vector<std::uint8_t>
   return encode_problem(update, update.problem, {}, out);
 }
 
-/// Gives changed bytes of a message the checksum that belongs to them (tests of what is behind it).
+/// Writes the checksum of a changed message, for tests of the checks after it.
 void seal_problem(std::vector<std::uint8_t>& message);
 
 /// Reads a message and validates it:
@@ -52,10 +52,10 @@ void seal_problem(std::vector<std::uint8_t>& message);
 /// - Blocks cover all rows once, in order, with unique ids, known laws, lower <= upper, friction in [0, 10] and
 ///   compliance >= 0.
 /// - lambda satisfies the bounds of its law; |rate| < 1000 m/s; retardation time in [0, 100] s.
-/// - Directions turn by 1 rad a step at most about any axis.
+/// - Directions rotate by at most 1 rad in a step about any axis.
 /// - There are at most two tools, with distinct hands, unit quaternions, and symmetric compliance and stiffness with a
 ///   non-negative diagonal.
-/// On failure `into` is untouched and `why` holds the reason. Allocates only when `into` must grow, its Jacobians
+/// On failure `into` does not change, and `why` has the reason. Allocates only when `into` must grow, its Jacobians
 /// change size, or the message is refused.
 bool decode_problem(Bytes bytes, HapticUpdate& into, std::string& why);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Haptic problems for tests of their wire format, and what must hold of any that is accepted.
+// Haptic problems for tests of their wire format, and the properties of every accepted one.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -79,7 +79,7 @@ inline ToolTerms random_tool(int hand, int rows, ProblemRandom& random) {
   return tool;
 }
 
-/// A valid problem with friction and box blocks, float32 values where the wire has float32.
+/// A valid problem with friction and box blocks, with float32 values where the message has float32.
 inline HapticUpdate make_update(unsigned seed, int boxes = 4, int contacts = 3, int tools = 2) {
   ProblemRandom random{std::mt19937(seed)};
   HapticUpdate u;

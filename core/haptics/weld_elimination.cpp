@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Elimination of the rows between a tool and what it carries.
+// Elimination of the rows between a tool and the body that it grasps.
 #include "core/haptics/weld_elimination.h"
 
 #include <Eigen/Cholesky>
@@ -12,7 +12,7 @@
 namespace insula {
 namespace {
 
-constexpr double nothing = 1e-6;  // of a row's compliance; W comes in single precision
+constexpr double nothing = 1e-6;  // of a row's compliance, since W is in single precision
 
 std::size_t tools_of(const ConstraintProblem& p) { return std::min<std::size_t>(p.tools.size(), 2); }
 
@@ -51,7 +51,7 @@ Mat6 rows_of(const ToolTerms& t, int first) {
   return out;
 }
 
-// A row between the tool and what it carries: nothing can move it any more, and its force is within.
+// Disables a row between the tool and the body that it grasps. It cannot move any more, and its force is internal.
 void silence(ConstraintProblem& p, std::size_t tool, int row) {
   const std::size_t stride = std::size_t(p.stride), r = std::size_t(row);
   for (std::size_t i = 0; i < std::size_t(p.rows); ++i) p.w[i * stride + r] = p.w[r * stride + i] = 0;
@@ -92,7 +92,7 @@ const ConstraintProblem& WeldElimination::eliminate(const ConstraintProblem& pro
   return *last;
 }
 
-// Everything but the six rows as it is. Jacobians have room for all rows there may be, whatever the problem's.
+// Copies everything except the six rows. Jacobians have room for the largest number of rows.
 void WeldElimination::copy_rest(const ConstraintProblem& from, int first, ConstraintProblem& to) noexcept {
   to.resize(from.rows - weld_rows);  // within its capacity
   copy_scalars(from, to);
@@ -143,7 +143,7 @@ bool WeldElimination::reduce(const ConstraintProblem& from, std::size_t tool, in
     const std::size_t d = std::size_t(i);
     for (int k = 0; k < 6; ++k) body_[d][k] = from.w_at(s, first + k) - w_tools(from, s, first + k);
     tool_[d] = t.jacobian.row(s).transpose();
-    const Vec6 share = p * body_[d];  // of the clip's way, by its six rows
+    const Vec6 share = p * body_[d];  // of the grasped body's displacement by its six rows
     both_[d] = tool_[d] - h_joint.transpose() * share;
     now.jacobian.row(i) = both_[d].transpose();
     to.rate[d] -= share.dot(rate_joint);
@@ -151,13 +151,13 @@ bool WeldElimination::reduce(const ConstraintProblem& from, std::size_t tool, in
   }
   for (int i = 0; i < n; ++i) {
     const int s = i < first ? i : i + weld_rows;
-    const Vec6 by_tool = t.compliance * tool_[std::size_t(i)], by_clip = p * body_[std::size_t(i)],
+    const Vec6 by_tool = t.compliance * tool_[std::size_t(i)], by_grasped = p * body_[std::size_t(i)],
                by_both = give * both_[std::size_t(i)];
     double delta = from.delta_free[std::size_t(s)], delta_now = 0;
     for (int j = 0; j < from.rows; ++j) delta += from.w_at(s, j) * from.lambda[std::size_t(j)];
     for (int j = 0; j < n; ++j) {
       const std::size_t c = std::size_t(j);
-      double w = from.w_at(s, j < first ? j : j + weld_rows) - by_tool.dot(tool_[c]) - by_clip.dot(body_[c]);
+      double w = from.w_at(s, j < first ? j : j + weld_rows) - by_tool.dot(tool_[c]) - by_grasped.dot(body_[c]);
       w += by_both.dot(both_[c]);
       to.w[std::size_t(i) * std::size_t(to.stride) + c] = w;
       delta_now += w * to.lambda[c];

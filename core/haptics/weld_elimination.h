@@ -2,14 +2,15 @@
 // Elimination of a weld: a rigid body that a tool grasps becomes one body with the tool.
 //
 // The engine has the grasped body as a body of its own, with a numerical inertia far above its true one. Six weld rows
-// J without bounds tie it to the tool. Between steps this is bad twice. The six stiff rows carry all contacts of the
-// grasped body and keep the sweeps from converging. And the inertia acts as a spring to the last position (80 N/m at 60
-// Hz). The rows are therefore eliminated exactly, and the mass becomes the tool's. With H the tool's Jacobian, A its
-// matrix, B = W - H A^-1 H^T between the other rows and J (the grasped body alone), and P = B_JJ^-1:
+// J without bounds tie it to the tool. Between steps this has two disadvantages. All contacts of the grasped body act
+// through the six stiff rows, which slows the convergence of the sweeps. The inertia acts as a spring to the last
+// position (80 N/m at 60 Hz). The rows are therefore eliminated exactly, and the mass becomes the tool's. With H the
+// tool's Jacobian, A its matrix, B = W - H A^-1 H^T between the other rows and J (the grasped body alone), and P =
+// B_JJ^-1:
 //   H'  = H - B P H_J               the contacts of the grasped body are now contacts of the tool
 //   A'  = A + H_J^T P H_J           mass over step squared, of both
 //   W'  = W - H A^-1 H^T - B P B^T + H' A'^-1 H'^T
-//   v   = -H_J^-1 rate_J            of the tool, as the grasped body's
+//   v   = -H_J^-1 rate_J            of the tool, equal to that of the grasped body
 // delta_free, gain and the free pose of the tool change such that forces and poses stay the same for all device poses.
 #pragma once
 #include <array>
@@ -18,22 +19,22 @@
 
 namespace insula {
 
-/// What a tool of the problem carries.
+/// The body that a tool of the problem grasps.
 struct GraspedBody {
   bool any = false;
   Vec6 velocity = Vec6::Zero();  ///< of the tool's frame at the end of the step, m/s and rad/s
 };
 
 inline constexpr int weld_rows = 6;
-/// First of the six rows (BlockRole::weld, one owner) by which the tool carries a rigid body that nothing else holds;
-/// -1: it carries none.
+/// First of the six rows (BlockRole::weld, one owner) by which the tool grasps a rigid body without other support; -1:
+/// none.
 int first_weld_row(const ConstraintProblem& problem, std::size_t tool);
 
-/// Allocates in its constructor only.
+/// Allocates only in its constructor.
 class WeldElimination {
  public:
   explicit WeldElimination(int max_rows);
-  /// The problem without such rows: `problem` itself where there are none; else one that stays until the next call.
+  /// The problem without weld rows: `problem` itself if there are none, or else one that is valid until the next call.
   const ConstraintProblem& eliminate(const ConstraintProblem& problem) noexcept;
   const std::array<GraspedBody, 2>& grasped() const { return grasped_; }
 
@@ -43,7 +44,7 @@ class WeldElimination {
 
   std::array<ConstraintProblem, 2> reduced_;
   Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>
-      spare_;                             ///< memory of the second tool's Jacobian while there is none
+      spare_;                             ///< memory of the second tool's Jacobian while there is only one
   std::vector<Vec6> body_, tool_, both_;  ///< by row: B, H, H'
   std::array<GraspedBody, 2> grasped_;
 };

@@ -9,8 +9,8 @@ namespace insula {
 namespace {
 
 constexpr double hardly =
-    0.02;  ///< a row whose entries have changed by less than this part of the largest is kept as it was
-constexpr double poor = 0.05;  ///< a factor that leaves more than this of an error in each iteration is replaced
+    0.02;  ///< a row keeps its compliance if its entries changed by less than this part of the largest one
+constexpr double poor = 0.05;  ///< a factor that reduces the error by less than this in an iteration is replaced
 
 double largest(const std::vector<double>& x) {
   double out = 0;
@@ -57,7 +57,7 @@ bool AsynchronousSolver::factorise(const BlockMatrix& a) {
     ++status_.age;
     take();
     if (status_.iterations > enough_iterations || seen_ > poor) ask();
-    quality_ = std::min(1.0, 2 * quality_);  // what was true a step ago is less so now
+    quality_ = std::min(1.0, 2 * quality_);  // the estimate of an earlier step is less reliable
   }
   status_.iterations = 0;
   status_.residual_m = 0;
@@ -76,8 +76,8 @@ void AsynchronousSolver::precondition(const double* r, double* z) {
     Eigen::Map<Vec3>(z + 3 * i) = (since_[i] * Eigen::Map<Vec3>(z + 3 * i)).eval();
 }
 
-// Preconditioned conjugate gradients from x. What an iteration leaves is told from how much the last ones left: to look
-// would cost as much as another.
+// Preconditioned conjugate gradients from x. The remaining error is estimated from the reduction in the last
+// iterations, since its computation would cost as much as another iteration.
 double AsynchronousSolver::refine(const double* b, double* x, double tolerance) {
   const std::size_t n = r_.size();
   std::fill(ap_.begin(), ap_.end(), 0.0);
@@ -91,7 +91,7 @@ double AsynchronousSolver::refine(const double* b, double* x, double tolerance) 
     size = largest(z_);
     if (k > 0 && last > 0) {
       seen_ = size / last;
-      quality_ = std::max(seen_, 0.25 * quality_);  // one lucky iteration is no promise
+      quality_ = std::max(seen_, 0.25 * quality_);  // one good iteration is not reliable
     }
     const double rz = product(r_, z_), beta = k > 0 ? rz / before : 0;
     before = rz;
@@ -162,8 +162,8 @@ void AsynchronousSolver::begin_compliance(const BodyRows& rows, const std::vecto
   s_.resize(all * all);
 }
 
-// The lagged forces as a row whose lambda is -1: what they do is taken off with the same compliance that lambda adds it
-// with.
+// Adds the lagged forces as a row whose lambda is -1. Their effect is then subtracted with the same compliance with
+// which lambda adds it.
 void AsynchronousSolver::add_lagged_row(const std::vector<int>& node_of_block) {
   if (block_of_node_.empty()) {
     block_of_node_.resize(lagged_.size() / 3);
@@ -194,8 +194,8 @@ void AsynchronousSolver::subtract_lagged(const BodyRows& rows, double* delta) co
   for (std::size_t i = 0; i < m; ++i) delta[rows.row[i]] -= s_[i * all + m];
 }
 
-// Rows turn a little in every step, and one that is the same to the bit costs nothing. Compliance is not exact here
-// anyway.
+// Rows rotate a little in every step, and a row with the same bits costs nothing. So rows with small changes are kept,
+// since the compliance is approximate anyway.
 void AsynchronousSolver::keep_rows() {
   const BodyRows& old = rows_before_;
   for (int i = 0; i < rotated_rows_.count(); ++i) {
@@ -218,7 +218,8 @@ void AsynchronousSolver::keep_rows() {
   }
 }
 
-// From what the last lambda gave, if there was one, by the compliance of what changed; then with the step's own matrix.
+// Starts from the result of the last lambda, if there is one, plus the approximate compliance of the change. Then
+// solves with the step's own matrix.
 const std::vector<double>& AsynchronousSolver::correct(const BodyRows& rows, const double* lambda) {
   const std::size_t m = std::size_t(rows.count()), n = b_.size();
   bool moved = !corrected_;
@@ -240,7 +241,7 @@ const std::vector<double>& AsynchronousSolver::correct(const BodyRows& rows, con
     for (std::size_t i = 0; i < since_.size(); ++i)
       Eigen::Map<Vec3>(difference_.data() + 3 * i) = (since_[i] * Eigen::Map<Vec3>(difference_.data() + 3 * i)).eval();
     for (std::size_t i = 0; i < n; ++i) last_x_[i] += difference_[i];
-    // A change is as good as the factor knows it, and its rows, which may be off by `hardly`.
+    // The error of a change is that of the factor, and of its rows, which may differ by `hardly`.
     lacks_ += largest(difference_) * std::max(quality_, hardly);
     std::fill(given_.begin(), given_.end(), 0.0);
     for (std::size_t i = 0; i < m; ++i)

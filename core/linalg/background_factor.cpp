@@ -37,7 +37,7 @@ bool BackgroundFactor::idle() {
 
 void BackgroundFactor::ask(const BlockMatrix& a) {
   if (!idle()) return;
-  matrix_ = a;  // same pattern: nothing is allocated
+  matrix_ = a;  // same pattern, so nothing is allocated
   {
     std::lock_guard lock(mutex_);
     state_ = State::asked;
@@ -64,7 +64,7 @@ void BackgroundFactor::drop() {
 }
 
 void BackgroundFactor::work() {
-  // Beside the step and the servo, not before them.
+  // Runs beside the step and the servo with a lower priority.
   setpriority(PRIO_PROCESS, id_t(syscall(SYS_gettid)), 10);
   std::unique_lock lock(mutex_);
   for (;;) {

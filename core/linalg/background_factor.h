@@ -10,7 +10,7 @@
 
 namespace insula {
 
-/// A factor for compliance, and a copy of its numbers in 16 bits for approximate solves.
+/// A factor for compliance, and a 16-bit copy of its numbers for approximate solves.
 struct StaleFactor {
   explicit StaleFactor(const BlockMatrix& a);
   /// Another factor for matrices of the same pattern, without its symbolic work.

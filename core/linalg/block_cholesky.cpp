@@ -85,8 +85,8 @@ void MultifrontalCholesky<Real>::add_child(const Front& f, const Front& child) {
   }
 }
 
-// A pivot that is what rounding left of its diagonal entry says that A is not positive definite in this precision. So
-// does one that is no number or too large for one.
+// A pivot as small as the rounding error of its diagonal entry shows that A is not positive definite in this precision.
+// So does a pivot that is not finite.
 template <class Real>
 bool MultifrontalCholesky<Real>::pivots_are_good(const BlockMatrix& a, const Front& f) const {
   constexpr double least = 16 * double(std::numeric_limits<Real>::epsilon());
@@ -100,7 +100,7 @@ bool MultifrontalCholesky<Real>::pivots_are_good(const BlockMatrix& a, const Fro
   return true;
 }
 
-// Both ways gather a front's part of x once, so that its columns run over memory in order.
+// Both substitutions gather a front's part of x once, so that its columns are read in the order of memory.
 template <class Real>
 void MultifrontalCholesky<Real>::forward(const Front& f, Real* x) {
   Real* t = gathered_.data();

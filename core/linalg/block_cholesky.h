@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Direct solver of one body's system matrix: multifrontal supernodal Cholesky A = P^T L L^T P on 3x3 blocks. It also
 // gives the compliance H A^-1 H^T of sparse rows, by forward substitution on the rows that the elimination tree
-// reaches. The factor and all that is computed with it is in Real. The outer matrix, vectors and compliance are in
+// reaches. The factor and everything computed with it has type Real. The outer matrix, vectors and compliance are in
 // double. After analyse(), nothing is allocated unless the number of rows exceeds all earlier ones.
 #pragma once
 #include <array>
@@ -36,9 +36,9 @@ class MultifrontalCholesky final : public BodySolver {
   void combine(const BodyRows& rows, const double* lambda, Real* x) const;
 
  private:
-  static constexpr int min_part = 32;  ///< columns that are worth a part
+  static constexpr int min_part = 32;  ///< smallest number of columns of a part
   static constexpr int lanes =
-      64 / int(sizeof(Real));       ///< of the widest vector; what leading dimensions are multiples of
+      64 / int(sizeof(Real));       ///< of the widest vector; leading dimensions are multiples of it
   static constexpr int slack = 64;  ///< kernels read whole vectors
 
   bool factorise(const BlockMatrix& a, const Front& f);
@@ -49,13 +49,13 @@ class MultifrontalCholesky final : public BodySolver {
   void backward(Real* x);
 
   Elimination e_;
-  std::vector<Real> panel_, update_, x_, gathered_;  ///< gathered_: what one front needs of a vector
-  std::vector<Real> inverse_;                        ///< one over each number of L's diagonal, permuted order
+  std::vector<Real> panel_, update_, x_, gathered_;  ///< gathered_: the part of a vector that one front needs
+  std::vector<Real> inverse_;                        ///< reciprocals of L's diagonal, permuted order
   std::vector<Real> load_;                           ///< of the step's motion: L^-1 P load
   bool loaded_ = false;
 
-  // Rows of the last begin_compliance(). `order_` gives the row of each column of Y (-1: a column of zeros): fresh ones
-  // up to fresh_, then known ones.
+  // Rows of the last begin_compliance(). `order_` gives the row of each column of Y (-1: a column of zeros). New rows
+  // come first, up to fresh_; then those known from before.
   struct Columns {
     int begin, end;
   };
@@ -71,23 +71,24 @@ class MultifrontalCholesky final : public BodySolver {
   std::vector<Real> of_load_;                    ///< of each column: minus Y^T load_
   mutable std::vector<Real> lambda_, products_;  ///< scratch of combine()
   std::vector<int> order_, begin_;
-  std::array<std::vector<Columns>, 2> active_;  ///< fresh, known; of each front
+  std::array<std::vector<Columns>, 2> active_;  ///< new rows, known rows; for each front
   RowEntries entries_;
   long ldy_ = 0, fresh_ = 0;
   int columns_ = 0;
-  std::array<std::vector<int>, 2> part_begin_;  ///< of each act: the fresh columns of a part, then the end of the last
-  std::vector<double> work_;                    ///< of an act: flops of each vector of columns
+  std::array<std::vector<int>, 2>
+      part_begin_;            ///< of each act: first new column of each part, then the end of the last part
+  std::vector<double> work_;  ///< of an act: flops of each vector of columns
 
-  // The rows before, as long as the factor is theirs.
+  // Rows of the call before, valid as long as the factor is the same.
   std::int64_t factor_number_ = 0, rows_factor_ = -1;
   RowEntries before_;
   std::vector<Real> old_y_, old_s_;
   std::vector<int> old_order_, old_column_, known_,
-      from_;  ///< known_: the row's number among the rows before, -1; from_: scratch
+      from_;  ///< known_: the row's number among the earlier rows, or -1; from_: scratch
   std::array<std::vector<Columns>, 2> old_active_;
   long old_ldy_ = 0;
   int reused_ = 0;
-  bool unchanged_ = false;  ///< all rows are those before
+  bool unchanged_ = false;  ///< all rows are the earlier ones
 };
 
 extern template class MultifrontalCholesky<double>;

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The Delassus operator of one body: Y = L^-1 P H^T on the reach of the rows, W = Y^T Y.
-// Rows are sorted by the first column they touch. In a postordered tree the descendants of a supernode are one range
-// of columns, so the rows active there are (nearly) one range too: only that range is solved and multiplied.
-// While the factor stays, rows that stay keep their column of Y, and W among themselves; they stand in a range of their
-// own behind the fresh ones.
+// The Delassus operator of one body: Y = L^-1 P H^T on the reach of the rows, W = Y^T Y. Rows are sorted by their first
+// column. In a postordered tree the descendants of a supernode are one range of columns. The rows active there are
+// therefore (nearly) one range too, and only that range is solved and multiplied. While the factor is the same,
+// unchanged rows keep their columns of Y, and their block of W. They form a range of their own after the new rows.
 #include <algorithm>
 #include <cstring>
 
@@ -13,7 +12,7 @@
 
 namespace insula {
 
-// Which rows are known, which fresh; Y = P H^T of the fresh ones.
+// Finds the known and the new rows, and sets Y = P H^T for the new ones.
 template <class Real>
 void MultifrontalCholesky<Real>::begin_compliance(const BodyRows& rows, const std::vector<int>& node_of_block) {
   const int m = rows.count();
@@ -64,7 +63,7 @@ void MultifrontalCholesky<Real>::begin_compliance(const BodyRows& rows, const st
   share_out();
 }
 
-// Gives every row its column, fresh ones first, and every front its active columns: those of its own entries and of its
+// Gives every row its column, new rows first, and every front its active columns: those of its own entries and of its
 // children.
 template <class Real>
 void MultifrontalCholesky<Real>::arrange() {
@@ -123,7 +122,7 @@ void MultifrontalCholesky<Real>::clear_fresh() {
                     sizeof(Real) * std::size_t(a.end - a.begin));
 }
 
-// Columns of Y that are known, out of the last Y. What was not active in it is zero.
+// Copies the known columns from the last Y. Entries that were not active there are zero.
 template <class Real>
 void MultifrontalCholesky<Real>::copy_known() {
   for (std::size_t f = 0; f < e_.front.size(); ++f) {
@@ -144,8 +143,8 @@ void MultifrontalCholesky<Real>::copy_known() {
   }
 }
 
-// Parts of equal work. Every part of the forward act reads the whole factor: one that does not fit the caches is read
-// no more often than needed.
+// Divides the columns into parts of equal work. Every part of the forward act reads the whole factor, so a factor
+// larger than the caches gets as few parts as possible.
 template <class Real>
 void MultifrontalCholesky<Real>::share_out() {
   constexpr std::size_t cached = std::size_t(2) << 20;
@@ -184,7 +183,7 @@ int MultifrontalCholesky<Real>::compliance_parts(ComplianceAct act) const {
   if (columns_ == 0 || e_.nodes == 0) return 0;
   const int parts = unchanged_ ? 0 : std::max(0, int(part_begin_[std::size_t(act)].size()) - 1);
   return act == ComplianceAct::product ? std::max(1, parts)
-                                       : parts;  // what is known is copied by the first; the load is never known
+                                       : parts;  // the first part copies what is known; the load is never known
 }
 
 template <class Real>
@@ -202,7 +201,7 @@ void MultifrontalCholesky<Real>::compliance_part(ComplianceAct act, int part) {
   else product_columns(from, to);
 }
 
-// Forward substitution, front by front: columns know nothing of each other.
+// Forward substitution, front by front. Columns are independent.
 template <class Real>
 void MultifrontalCholesky<Real>::forward_columns(int from, int to) {
   const KernelsOf<Real>& k = kernels_of<Real>();
@@ -220,7 +219,7 @@ void MultifrontalCholesky<Real>::forward_columns(int from, int to) {
   }
 }
 
-// W = Y^T Y: fresh columns with those from them on, and with the known ones.
+// W = Y^T Y: products of new columns with later new ones and with all known ones.
 template <class Real>
 void MultifrontalCholesky<Real>::product_columns(int from, int to) {
   const KernelsOf<Real>& k = kernels_of<Real>();
@@ -241,7 +240,7 @@ void MultifrontalCholesky<Real>::product_columns(int from, int to) {
   }
 }
 
-// What the load does to the rows: Y^T L^-1 P load, of columns of one group.
+// Effect of the load on the rows, Y^T L^-1 P load, for the columns of one group.
 template <class Real>
 void MultifrontalCholesky<Real>::load_columns(int group, int from, int to) {
   if (!loaded_) return;
@@ -312,7 +311,6 @@ void MultifrontalCholesky<Real>::combine(const BodyRows& rows, const double* lam
     }
 }
 
-// Each front solves its own rows of Y, takes them off those below, multiplies them with themselves.
 template <class Real>
 SolverCost MultifrontalCholesky<Real>::cost() const {
   SolverCost c;

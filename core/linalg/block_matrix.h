@@ -10,7 +10,7 @@
 
 namespace insula {
 
-/// A block was asked for that the pattern does not have.
+/// The requested block is not in the pattern.
 struct UndeclaredCoupling : std::logic_error {
   UndeclaredCoupling(int i, int j) : std::logic_error("block not in the pattern of the matrix"), row(i), column(j) {}
   int row, column;
@@ -34,7 +34,7 @@ class BlockMatrix {
   void set_zero() { std::fill(value_.begin(), value_.end(), 0.0); }
   double* block(int slot) { return value_.data() + 9 * std::size_t(slot); }  ///< column-major 3x3
   const double* block(int slot) const { return value_.data() + 9 * std::size_t(slot); }
-  /// A += scale * other, of the same pattern.
+  /// A += scale * other, which must have the same pattern.
   void add_scaled(const BlockMatrix& other, double scale) {
     for (std::size_t k = 0; k < value_.size(); ++k) value_[k] += scale * other.value_[k];
   }

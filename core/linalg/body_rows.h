@@ -9,7 +9,7 @@ namespace insula {
 
 struct BodyRows {
   std::vector<int> row;     ///< number of each stored row in the whole problem, ascending
-  std::vector<int> start;   ///< first entry of each stored row; one more at the end
+  std::vector<int> start;   ///< first entry of each stored row, and the end of the last row
   std::vector<int> block;   ///< 3-block of degrees of freedom of each entry
   std::vector<Vec3> coeff;  ///< entry: derivative of the row with respect to that block
 
@@ -20,7 +20,7 @@ struct BodyRows {
     block.clear();
     coeff.clear();
   }
-  /// Opens row r unless it is the last one already. Rows come in ascending order.
+  /// Opens row r, unless it is already the last one. Rows come in ascending order.
   void open(int r) {
     if (!row.empty() && row.back() == r) return;
     row.push_back(r);

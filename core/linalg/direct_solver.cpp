@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The direct solver in the precision asked for.
+// The direct solver in the requested precision.
 #include "core/linalg/direct_solver.h"
 
 #include "core/linalg/block_cholesky.h"

@@ -17,7 +17,7 @@ struct Front {
   int own = 0;        ///< own nodes (columns)
   int rows = 0;       ///< nodes in all (own + below)
   int row_begin = 0;  ///< into Elimination::row_node
-  int lda = 0;        ///< of the panel, scalars
+  int lda = 0;        ///< of the panel, in scalars
   long panel = 0;     ///< offset among all panels, scalars
   long update = -1;   ///< offset in the arena of update matrices, of the below x below matrix
   int ldu = 0;
@@ -36,8 +36,8 @@ struct Elimination {
   int nodes = 0;
   std::vector<Front> front;  ///< in postorder
   std::vector<int> row_node, map;
-  std::vector<int> row_scalar;          ///< row_node, three scalars each
-  std::vector<int> permuted, natural;   ///< natural node -> permuted node, and back
+  std::vector<int> row_scalar;          ///< row_node with three scalars for each node
+  std::vector<int> permuted, natural;   ///< natural node -> permuted node, and the inverse
   std::vector<int> front_of;            ///< permuted node -> front
   std::vector<Scatter> scatter;         ///< front by front
   long panel_size = 0, arena_size = 0;  ///< scalars
@@ -47,7 +47,7 @@ struct Elimination {
   /// Leading dimensions become multiples of `lanes` scalars, a power of two.
   void analyse(const BlockMatrix& a, int lanes);
 
-  /// Reorders 3 nodes values each: natural order to permuted, and back.
+  /// Reorder 3 * nodes values: natural order to permuted order, and back.
   template <class Real>
   void permute(const double* natural_order, Real* permuted_order) const {
     for (int p = 0; p < nodes; ++p)

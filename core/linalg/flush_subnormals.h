@@ -10,7 +10,7 @@
 namespace insula {
 
 template <class Real>
-struct FlushSubnormals {};  // double precision has room enough
+struct FlushSubnormals {};  // the range of double precision suffices
 
 #if defined(__x86_64__)
 template <>

@@ -18,8 +18,8 @@ class Fp16Factor {
   void round();
   /// x := A^-1 x, 3 nodes values in natural order.
   void solve(double* x);
-  /// x := A^-1 H^T lambda of the factor's last compliance rows. Its first half has the factor's precision, the second
-  /// 16 bits.
+  /// x := A^-1 H^T lambda for the factor's last compliance rows. The first half has the factor's precision, the second
+  /// half 16 bits.
   void correct(const BodyRows& rows, const double* lambda, double* x);
 
  private:

@@ -14,7 +14,7 @@ using Half = std::uint16_t;  ///< bits of an IEEE binary16
 inline constexpr int half_columns = 6;
 inline constexpr int half_lanes = 16;
 
-/// How many columns of `own` the stream combines from column c on.
+/// Number of columns that the stream combines from column c on, of `own` columns.
 constexpr int half_columns_from(int c, int own) { return c + half_columns <= own ? half_columns : 3; }
 
 /// Number of stream entries of `columns` columns from `first` on, for a front with that many rows.
@@ -26,8 +26,8 @@ constexpr long half_block_size(int rows, int first, int columns) {
 struct Fp16Kernels {
   /// The nearest 16-bit floats. Values that are too large become the largest one.
   void (*to_half)(Half* out, const float* in, long n);
-  /// t[0..own) := L11^-1 t[0..own), t[own..rows) -= L21 t[0..own). Up to half_lanes numbers of t past its end become
-  /// garbage. Returns the stream's end.
+  /// t[0..own) := L11^-1 t[0..own), t[own..rows) -= L21 t[0..own). Up to half_lanes numbers past the end of t are
+  /// overwritten. Returns the stream's end.
   const Half* (*forward)(float* t, const Half* stream, int own, int rows);
   /// t[0..own) := L11^-T (t[0..own) - L21^T t[own..rows)), from the stream's end. The half_lanes numbers past the end
   /// of t must be zero. Returns the stream's begin.

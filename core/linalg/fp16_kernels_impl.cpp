@@ -26,7 +26,8 @@ inline float widened_one(Half h) { return _cvtsh_ss(h); }
 inline V widened(const Half* p) { return V(_mm256_cvtph_ps(_mm_loadu_si128(reinterpret_cast<const __m128i*>(p)))); }
 inline float widened_one(Half h) { return _cvtsh_ss(h); }
 #else
-// Exponent and fraction moved to their places, then 2^112 for the difference of the exponents' biases.
+// Exponent and fraction are shifted to their positions, then multiplied by 2^112 for the difference of the exponents'
+// biases.
 inline V widened(const Half* p) {
   typedef unsigned U __attribute__((vector_size(KERNEL_BYTES)));
   U u;

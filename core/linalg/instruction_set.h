@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Loops that are compiled once per instruction set (cmake/core.cmake) come as one table a set; here the set is chosen,
-// once.
+// Loops that are compiled once per instruction set (cmake/core.cmake) have one table for each set. The set is chosen
+// here, once per run.
 #pragma once
 #include <array>
 
@@ -12,7 +12,7 @@ bool processor_has(InstructionSet set);
 /// The best set of the processor. INSULA_KERNELS=sse2|avx2|avx512 in the environment selects a lower one.
 InstructionSet chosen_instruction_set();
 
-/// A table for each set, in the order of InstructionSet.
+/// A table for each instruction set, in the order of InstructionSet.
 template <class Table>
 struct TablesOf {
   std::array<const Table*, 3> table;
@@ -21,7 +21,7 @@ struct TablesOf {
 
 }  // namespace insula
 
-/// In namespace insula: declares the tables `name` of the sets, and every_name(), which lists them all.
+/// In namespace insula: declares the tables `name` of all sets, and every_name(), which lists them.
 #if defined(__x86_64__)
 #define INSULA_TABLES(Table, name) \
   namespace sse2 {                 \

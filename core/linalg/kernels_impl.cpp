@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Compiled once per instruction set: KERNEL_NAME, KERNEL_BYTES (of a vector), KERNEL_NV x KERNEL_NR the register tile.
-// Every kernel for double and float: only the number of lanes differs.
+// Contains every kernel for double and float. Only the number of lanes differs.
 #include <cmath>
 #include <cstring>
 
@@ -144,8 +144,8 @@ void rows_sub(T* y, long ldy, const int* index, int rows, const T* l, int ldl, c
   }
 }
 
-// The rows of a panel below its diagonal block d of w columns, a vector at a time; of the last vector only what belongs
-// to the panel is stored, since the next column begins behind it.
+// The rows of a panel below its diagonal block d of w columns, one vector at a time. Only the part of the last vector
+// that belongs to the panel is stored, since the next column follows.
 template <int fixed, class T>
 inline __attribute__((always_inline)) void solve_below(T* d, int lda, int n, const T* inv, int width = 0) {
   const int w = fixed > 0 ? fixed : width;
@@ -170,7 +170,7 @@ int cholesky_panel(T* a, int lda, int rows, int cols, T* inverse) {
     T* d = a + j + long(j) * lda;  // diagonal block
     if (j > 0) gemm<false>(d, lda, a + j, lda, a + j, lda, rows - j, w, j, false);
     T* inv = inverse + j;
-    for (int c = 0; c < w; ++c) {  // diagonal block, small: column by column
+    for (int c = 0; c < w; ++c) {  // diagonal block, small, so column by column
       T p = d[c + long(c) * lda];
       for (int k = 0; k < c; ++k) p -= d[c + long(k) * lda] * d[c + long(k) * lda];
       if (!(p > 0)) return j + c;
@@ -215,7 +215,7 @@ void lower_solve_rows(const T* l, int ldl, const T* inverse, int cols, T* x, lon
   }
 }
 
-// The sum of a vector's n numbers: the upper half on the lower one, again and again.
+// The sum of a vector's n numbers: the upper half is added to the lower one repeatedly.
 template <class T, int n, class Vec>
 inline __attribute__((always_inline)) T total(Vec v) {
   if constexpr (n == 1) {
@@ -273,8 +273,8 @@ void columns_sub(T* y, const T* a, long lda, const T* x, int m, int n) {
   for (; c < n; ++c) take_columns<1>(y, a + c * lda, lda, x + c, m);
 }
 
-// Substitution with n columns of a front from column `first` on. What each number found changes is taken off at once,
-// so that the next waits for one product, not for a sum.
+// Substitution with n columns of a front from column `first` on. The effect of each result is subtracted at once, so
+// that the next one waits for one product instead of a sum.
 template <int n, class T>
 inline __attribute__((always_inline)) void forward_columns(const T* l, long lda, const T* inverse, T* t, int rows) {
   T x[n];
@@ -302,7 +302,7 @@ inline __attribute__((always_inline)) void backward_columns(const T* l, long lda
   for (int c = 0; c < n; ++c) t[c] = x[c];
 }
 
-// Columns come in threes, the scalars of a node.
+// Columns come in threes, one for each scalar of a node.
 template <class T>
 void front_forward(const T* l, int lda, const T* inverse, T* t, int own, int rows) {
   int c = 0;
@@ -318,7 +318,7 @@ void front_backward(const T* l, int lda, const T* inverse, T* t, int own, int ro
 
 template <class T>
 T multiply_add(long n) {
-  constexpr int chains = NV * NR;  // what the registers of every set hold
+  constexpr int chains = NV * NR;  // as many as the registers of every set hold
   V<T> acc[chains], a = V<T>{} + T(0.999), b = V<T>{} + T(1e-3);
   for (int q = 0; q < chains; ++q) acc[q] = V<T>{} + T(q);
   for (long i = 0; i < n * 24 / chains; ++i)
@@ -329,7 +329,7 @@ T multiply_add(long n) {
   return sum;
 }
 
-// One number at a time: three are no vector, and what bounds this is memory.
+// One number at a time, since three numbers are not a vector, and memory bandwidth is the bound.
 void block_product(int nodes, const int* start, const int* row, const double* block, const double* x, double* y) {
   for (int j = 0; j < nodes; ++j) {
     const double x0 = x[3L * j], x1 = x[3L * j + 1], x2 = x[3L * j + 2];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The true lanes of a comparison as the bits of a number, for loops compiled once per instruction set. Compilers read
-// the lanes one by one where the processor has one instruction for it.
+// The true lanes of a comparison as the bits of a number, for loops compiled once per instruction set. Without it,
+// compilers read the lanes one by one although the processor has a single instruction.
 #pragma once
 #if defined(__SSE2__)
 #include <immintrin.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rows known by their entries.
+// Rows identified by their entries.
 #include "core/linalg/row_entries.h"
 
 #include <algorithm>
@@ -47,7 +47,7 @@ bool RowEntries::equal(int mine, const RowEntries& other, int r) const {
                     std::memcmp(coeff[a].data(), other.coeff[b].data(), n * sizeof(Vec3)) == 0);
 }
 
-// The same place first: of rows that are alike each then is itself.
+// The same position is tested first, so that equal rows keep their order.
 int RowEntries::find(const RowEntries& other, int r) const {
   if (r < count() && equal(r, other, r)) return r;
   const std::uint64_t h = other.hash_[std::size_t(r)];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The entries of a body's rows in the solver's own numbering, and the correspondence of the rows of two sets. Rows have
-// no name here, so they are identified by their entries, bit by bit.
+// The entries of a body's rows in the solver's numbering, and the correspondence of the rows of two sets. Rows are
+// identified by their entries, bit by bit, since they have no id here.
 #pragma once
 #include <cstdint>
 #include <utility>
@@ -11,7 +11,7 @@
 namespace insula {
 
 struct RowEntries {
-  std::vector<int> start;  ///< first entry of each row; one more at the end
+  std::vector<int> start;  ///< first entry of each row, and the end of the last row
   std::vector<int> node;   ///< permuted; fixed nodes are left out
   std::vector<Vec3> coeff;
 

@@ -26,7 +26,7 @@ void BarycentricEmbedding::build(std::span<const MaterialPoint> points, std::spa
     const MaterialPoint& p = points[std::size_t(v)];
     EmbeddedVertex embedded{{}, p.node, v, std::countr_zero(mesh.region_of(v))};
     for (std::size_t k = 0; k < 4; ++k) {
-      // What it is not embedded in has no weight; any node will do.
+      // Unused entries have weight zero, so any node serves.
       if (int(k) >= p.count) embedded.node[k] = p.node[0];
       else embedded.weight[k] = float(p.weight[k]);
     }
@@ -56,7 +56,7 @@ void BarycentricEmbedding::place(const DeformableBody& body, Vec3* positions, Ve
 
 template <int nodes>
 void BarycentricEmbedding::place_on(double step, Vec3* positions, Vec3* expected, RegionMotion& motion) const {
-  std::array<Pair, CollisionMesh::regions> farthest2{};  // moved, and way
+  std::array<Pair, CollisionMesh::regions> farthest2{};  // moved, displacement
   const bool offset = !offset_.empty();
   for (std::size_t i = 0; i < vertices_.size(); ++i) {
     const EmbeddedVertex& p = vertices_[i];

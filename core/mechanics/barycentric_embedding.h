@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Vertices of a surface that are embedded in the nodes of a deformable body, laid out to be placed in every step: one
-// pass gives positions, expected displacements and how far each region went. The bits are those of Body::position() and
-// Body::expected_displacement(). What bounds the pass is memory, so weights are such that single precision holds them.
+// Vertices of a surface that are embedded in the nodes of a deformable body. One pass in each step gives positions,
+// expected displacements and the motion of each region. The bits are those of Body::position() and
+// Body::expected_displacement(). Memory bandwidth bounds the pass, so the weights are exact in single precision.
 #pragma once
 #include <array>
 #include <span>
@@ -12,16 +12,17 @@
 
 namespace insula {
 
-/// Weights of sum 1, each within 2 of 0, as multiples of 2^-22: as floats they are the same, and their sum stays 1 to
-/// the last bit. A point 5 mm from its nodes moves by a nanometre at most.
+/// Rounds weights of sum 1, each within 2 of 0, to multiples of 2^-22. They are then exact as floats, and their sum is
+/// exactly 1. A point 5 mm from its nodes moves by at most a nanometre.
 std::array<double, 4> embedding_weights(const std::array<double, 4>& weight);
 
 class BarycentricEmbedding {
  public:
-  /// Those that `which` numbers, all of one body, their weights made by embedding_weights(); `mesh` knows their
-  /// regions.
+  /// Embeds the points with the indices `which`, all of one body, whose weights come from embedding_weights(). `mesh`
+  /// gives their regions.
   void build(std::span<const MaterialPoint> points, std::span<const int> which, const CollisionMesh& mesh);
-  /// `positions` holds those of the last call, from which motion.moved is measured. Writes the numbered vertices only.
+  /// `positions` holds the result of the last call, from which motion.moved is measured. Writes only the chosen
+  /// vertices.
   void place(const DeformableBody& body, Vec3* positions, Vec3* expected, RegionMotion& motion);
 
  private:
@@ -38,9 +39,9 @@ class BarycentricEmbedding {
   template <int nodes>
   void place_on(double step, Vec3* positions, Vec3* expected, RegionMotion& motion) const;
 
-  int max_nodes_ = 0;  ///< nodes that a vertex is embedded in
+  int max_nodes_ = 0;  ///< largest number of nodes that a vertex is embedded in
   std::vector<EmbeddedVertex> vertices_;
-  std::vector<Vec3> offset_;  ///< from the weighted nodes; empty: none has any
+  std::vector<Vec3> offset_;  ///< from the weighted sum of nodes, m; empty: all are zero
   std::vector<Node> nodes_;
 };
 

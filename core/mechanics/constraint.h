@@ -15,8 +15,8 @@ namespace insula {
 
 class Surface;
 
-/// Where constraints put their rows. For every row: delta_free = violation at the start of the step + H dq_free, the
-/// second term added by the bodies with W (Body::add_free_motion).
+/// Collects the rows of all constraints. For every row, delta_free = violation at the start of the step + H dq_free.
+/// The bodies add the second term together with W (Body::add_free_motion).
 class ConstraintBuilder {
  public:
   ConstraintBuilder(ConstraintProblem& problem, const std::vector<Body*>& bodies)
@@ -24,17 +24,17 @@ class ConstraintBuilder {
 
   /// Blocks added from now on belong to this component. The simulation calls it before each build().
   void set_owner(const Component& c) { owner_ = c.order; }
-  /// Adds a block of one row (box) or three (friction); `block.row` and `block.owner` are filled in. Returns the first
+  /// Adds a block of one row (box) or three (friction), and fills in `block.row` and `block.owner`. Returns the first
   /// row.
   int add(Block block);
   /// Violation of a row at the start of the step, metres (for contact: the gap).
   void violation(int row, double value) { delta_[std::size_t(row)] += value; }
-  /// H(row) += d . d(point). Rows in ascending order.
+  /// H(row) += d . d(point). Rows come in ascending order.
   void point(int row, const MaterialPoint& p, const Vec3& d);
   /// The same for a point of a surface's triangle.
   void surface_point(int row, const Surface& s, int triangle, const Vec3& bary, const Vec3& d);
-  /// A row that moves by itself between the steps, at this rate (m/s): what a plugin allows a step is more for a longer
-  /// one.
+  /// Sets the rate (m/s) at which the row's violation changes by itself between steps. A limit on the motion of a step
+  /// then grows with the length of the step.
   void moves(int row, double rate) {
     rate_[std::size_t(row)] += rate;
     retardation_time_[std::size_t(row)] = lasting;
@@ -48,7 +48,7 @@ class ConstraintBuilder {
  private:
   ConstraintProblem& problem_;
   const std::vector<Body*>& bodies_;
-  static constexpr double lasting = 10;  ///< s: a rate that does not die away
+  static constexpr double lasting = 10;  ///< s: time constant of a rate that does not decay
   std::vector<double> delta_, rate_, retardation_time_;
   std::vector<Block> blocks_;
   int owner_ = -1;
@@ -61,11 +61,11 @@ struct ConstraintSolution {
   const double* delta;   ///< m, W lambda + delta_free
 };
 
-/// Unique row ids: `order` of the component in the document, then a key of its own choice (44 bits).
+/// Unique id of a row: the component's `order` in the document, and a key of the component's choice (44 bits).
 inline std::uint64_t row_id(const Component& c, std::uint64_t key) {
   return (std::uint64_t(c.order) << 44) ^ (key & ((std::uint64_t(1) << 44) - 1));
 }
-/// The `order` that an id was made with.
+/// The `order` from which an id was made.
 inline int owner_of(std::uint64_t id) { return int(id >> 44); }
 
 class Simulation;
@@ -75,24 +75,25 @@ class Constraint : public Component {
  public:
   static constexpr std::string_view kind_name = "constraint";
 
-  /// Once, after every component is prepared: generate what spans bodies. May report errors.
+  /// Called once, after all components are prepared. Creates what connects bodies. May report errors.
   virtual void connect(PrepareContext&, Simulation&) {}
-  /// Once the scene has settled (<settle>), before the exercise begins; again after every reset. May report errors.
+  /// Called when the scene has settled (<settle>), before the exercise begins, and again after every reset. May report
+  /// errors.
   virtual void settled(PrepareContext&) {}
-  /// Stage 2, collision: find what is close. Tools' free motion is known. Default: nothing.
+  /// Stage 2, collision: finds what is close. The free motion of tools is known. Default: nothing.
   virtual void detect(const StepContext&) {}
-  /// Stage 3: add rows.
+  /// Stage 3: adds rows.
   virtual void build(const StepContext& context, ConstraintBuilder& builder) = 0;
-  /// Whether build ever adds a row; false: it acts between the steps alone (a flow network, a source).
+  /// Whether build() ever adds a row. False if it acts only between the steps (a flow network, a source).
   virtual bool adds_rows() const { return true; }
-  /// After stage 5: read own lambda, wear, break, emit events.
+  /// After stage 5: reads its lambda, changes its state (wear, failure) and emits events.
   virtual void finish(const StepContext&, const ConstraintSolution&) {}
   /// Stage 6: adds its contacts to the report.
   virtual void report(StepReport&) const {}
-  /// After a step: appends the frames that its loaded friction contacts will have `steps` steps later.
-  /// Each is of a block with LawKind::friction of the last step; others are ignored. Default: none turn.
+  /// After a step: appends the frames that its loaded friction contacts will have `steps` steps later. Each belongs to
+  /// a block with LawKind::friction of the last step; others are ignored. Default: none are predicted.
   virtual void predict_frames(double /*steps*/, std::vector<ContactFrame>&) const {}
-  /// After a step: adds what its search and its rows cost. Default: the rows of the last step and no search.
+  /// After a step: adds the cost of its search and its rows. Default: the rows of the last step and no search.
   virtual void estimate_cost(CostCounts&) const {}
   virtual void reset() {}
   virtual void append_state(std::vector<double>&) const {}

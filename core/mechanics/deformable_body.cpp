@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Stepping of a deformable body. How its matrix is made and kept: tangent.cpp; its prestress: prestress.cpp.
+// Stepping of a deformable body. Its matrix is in tangent.cpp, its prestress in prestress.cpp.
 #include "core/mechanics/deformable_body.h"
 
 #include <fmt/format.h>
@@ -60,7 +60,7 @@ void DeformableBody::connect(PrepareContext& context) {
   }
   for (std::size_t i = 0; i < n; ++i)
     if (!fixed_[i] && !(mass_[i] > 0)) {
-      // A force model that said what is wrong with it has given no mass; once is enough.
+      // A force model with a reported error has given no mass, so there is no second message.
       if (context.diagnostics.errors() == errors_before)
         error(context, "node " + std::to_string(i) + " has no mass; a force model with a density is needed");
       return;
@@ -76,7 +76,7 @@ void DeformableBody::connect(PrepareContext& context) {
   around_ = rotation_;
 }
 
-/// Adds the model's couplings to `pairs`. Those that name no node of this body are reported and left out.
+/// Adds the model's couplings to `pairs`. Couplings with invalid nodes are reported and left out.
 void DeformableBody::check_couplings(PrepareContext& context, const ForceModel& model,
                                      std::vector<std::pair<int, int>>& pairs) const {
   std::vector<std::pair<int, int>> own;
@@ -154,7 +154,7 @@ void DeformableBody::free_motion(const StepContext& context) {
   if (!damped_.empty()) load_ += damped_load_;
   if (fresh) factorise(h);
   else solver_->begin_motion(nullptr, load_, guess_);
-  // Who asked in the last step will ask again: now bodies work side by side.
+  // A caller of the last step will ask again. It is computed now, while bodies are processed in parallel.
   const bool asked = unforced_is_ == Unforced::asked;
   unforced_is_ = asked ? Unforced::known : Unforced::unknown;
   if (asked) solver_->unforced_motion(load_, unforced_);

@@ -16,7 +16,8 @@ class DeformableBody : public DynamicBody {
  public:
   DeformableBody() : DynamicBody(0) {}
 
-  /// The tangent may be older than the force: the equilibrium is the same, and so is the order of the time integration.
+  /// The tangent may be older than the force. This changes neither the equilibrium nor the order of the time
+  /// integration.
   Param<Scalar> tangent_tolerance{
       this,
       {.name = "tangent_tolerance",
@@ -44,7 +45,7 @@ class DeformableBody : public DynamicBody {
 
   /// Rest positions of the nodes, scene frame, m. Known after prepare().
   virtual const std::vector<Vec3>& rest_nodes() const = 0;
-  /// Nodes that the topology itself holds (a shell's caps); supports hold more. Default: none.
+  /// Nodes that the topology itself fixes (a shell's caps), in addition to supports. Default: none.
   virtual void fix_own_nodes(std::vector<char>&) const {}
   /// Once, after this body and everything it owns are prepared: topology, masses, symbolic factorisation.
   void connect(PrepareContext& context);
@@ -54,27 +55,27 @@ class DeformableBody : public DynamicBody {
   const VecX& v() const { return v_; }  ///< m/s
   VecX& q() { return q_; }
   VecX& v() { return v_; }
-  double step_length() const { return step_; }  ///< of the step that is on, s
+  double step_length() const { return step_; }  ///< of the current step, s
   const std::vector<double>& node_mass() const { return mass_; }
   const std::vector<char>& fixed() const { return fixed_; }
   const std::vector<int>& free_of_node() const { return free_; }  ///< node -> block of the system matrix, -1 when fixed
   const std::vector<ForceModel*>& forces() const { return forces_; }
   SolverCost solver_cost() const { return solver_->cost(); }
-  const BlockMatrix& system() const { return a_; }  ///< as it was last assembled
-  /// Steps whose matrix was not positive definite; they were solved with more mass (see step()).
+  const BlockMatrix& system() const { return a_; }  ///< as last assembled
+  /// Steps whose matrix was not positive definite; these were solved with more mass.
   int indefinite_steps() const { return indefinite_; }
-  /// Steps that made and factorised the system matrix anew.
+  /// Steps that assembled and factorised the system matrix anew.
   int factorisations() const { return factorisations_; }
   double factor_ms() const {
     return factor_ms_;
-  }  ///< of the last step; 0: the factor was kept, or is made in the background
+  }  ///< of the last step; 0: the factor was kept, or is computed in the background
   /// External force for the next steps, 3 values a node, N (tests, loads).
   VecX external;
-  /// Force of what fills the body, renewed by a constraint between the steps, 3 values a node, N.
+  /// Force of the fluid that fills the body, set by a constraint between the steps, 3 values a node, N.
   VecX filling;
   /// Prestrains the force models so that they balance `load` (3 values a node, N) in the rest configuration. Returns
-  /// what is left, over |load|, on the free nodes: 1 when no force model takes a prestrain. After connect(), before the
-  /// first step.
+  /// the remaining imbalance on the free nodes over |load|, which is 1 when no force model takes a prestrain. Call it
+  /// after connect() and before the first step.
   double prestress(const VecX& load);
 
   Vec3 position(const MaterialPoint& p) const override;
@@ -96,7 +97,7 @@ class DeformableBody : public DynamicBody {
   void append_state(std::vector<double>& out) const override;
 
  protected:
-  /// Sizes q and v and puts the nodes at rest: the last act of a subclass' prepare().
+  /// Sizes q and v and puts the nodes at rest. A subclass calls it at the end of prepare().
   void start_at_rest();
 
  private:
@@ -106,8 +107,8 @@ class DeformableBody : public DynamicBody {
   int free_count_ = 0;
   std::vector<double> mass_, damping_;
   VecX q_, v_, force_, packed_;
-  VecX load_;              ///< of the step's motion
-  mutable VecX unforced_;  ///< motion under it, as someone asks for it
+  VecX load_;              ///< of the step's motion, N
+  mutable VecX unforced_;  ///< motion under load_ without row forces; computed when first requested
   enum class Unforced { unknown, known, asked };
   mutable Unforced unforced_is_ = Unforced::unknown;
   double factor_ms_ = 0;
@@ -117,11 +118,11 @@ class DeformableBody : public DynamicBody {
   BlockMatrix a_;
   std::unique_ptr<BodySolver> solver_;
   int indefinite_ = 0;
-  double step_ = 0;                       ///< of the step that is on, s
-  std::vector<double> retardation_time_;  ///< of each node's place, s
+  double step_ = 0;                       ///< of the current step, s
+  std::vector<double> retardation_time_;  ///< at each node, s
   bool retardation_times_known_ = false;
 
-  std::vector<ForceModel*> damped_;  ///< those with a damping of their own
+  std::vector<ForceModel*> damped_;  ///< those with has_damping()
   BlockMatrix damping_matrix_;       ///< D as it was last assembled; no nodes if there is none
   VecX packed_v_, damped_load_;      ///< of the free nodes
 
@@ -139,7 +140,7 @@ class DeformableBody : public DynamicBody {
     double distance2;  ///< at rest, m2
   };
   std::vector<Neighbours> neighbours_;  ///< watched for changes of shape
-  VecX factor_q_;                       ///< where the tangent was taken
+  VecX factor_q_;                       ///< configuration in which the tangent was computed
   double factor_h_ = 0;                 ///< 0: there is no factor yet
   int factorisations_ = 0;
 };

@@ -23,53 +23,54 @@ class ForceModel : public Component {
  public:
   static constexpr std::string_view kind_name = "force model";
 
-  /// Once, when the body's rest shape is known; may report errors, also that the body is not of its topology.
+  /// Called once, when the body's rest shape is known. May report errors, for example that the body has another
+  /// topology.
   virtual void attach(PrepareContext&, DeformableBody&) {}
-  /// Pairs of nodes of the body that this tangent and the damping couple. What bind() asks for must be among them.
+  /// Pairs of nodes of the body that this tangent and the damping couple. They include all blocks that bind() uses.
   virtual void couplings(std::vector<std::pair<int, int>>& pairs, Tangent which) const = 0;
-  /// Once, when the matrix pattern is known. free_of_node: node -> block of `a`, -1 when fixed.
+  /// Called once, when the matrix pattern is known. free_of_node: node -> block of `a`, -1 when fixed.
   virtual void bind(const BlockMatrix& a, const std::vector<int>& free_of_node) = 0;
-  /// Lumped mass (kg) and Rayleigh mass damping (kg/s), one value a node; added to what is there.
+  /// Lumped mass (kg) and Rayleigh mass damping (kg/s), one value a node. Both are added to the present values.
   virtual void add_mass(std::vector<double>&, std::vector<double>&) const {}
-  /// force (3 values a node, N) += -dE/dx at positions x (m). If `stiffness` is not null: its blocks +=
-  /// (1 + stiffness_damping()/h) * d2E/dx2 as `tangent` says.
+  /// force (3 values a node, N) += -dE/dx at positions x (m). If `stiffness` is not null: its blocks += (1 +
+  /// stiffness_damping()/h) * d2E/dx2, in the form that `tangent` selects.
   virtual void linearise(const double* x, double* force, BlockMatrix* stiffness, double h, Tangent tangent) = 0;
   /// Whether the model has a force that depends on velocity besides stiffness_damping(). Constant after attach().
   virtual bool has_damping() const { return false; }
-  /// Only if has_damping(). force (3 values a node, N) += the force at positions x (m) and velocities v (m/s) that is
-  /// not in linearise(). If `damping` is not null: its blocks += C = -d(force)/dv, N s/m, symmetric and positive
-  /// semidefinite. `damping` has the pattern of the matrix of bind(). h: the step, s; a law with internal variables
-  /// integrates them implicitly over it. The step solves (M/h^2 + C/h + K) dq = f + C v + M v/h.
+  /// Called only if has_damping(). force (3 values a node, N) += the force at positions x (m) and velocities v (m/s)
+  /// that is not in linearise(). If `damping` is not null: its blocks += C = -d(force)/dv, N s/m, symmetric and
+  /// positive semidefinite. `damping` has the pattern of the matrix of bind(). h: the step, s; a law with internal
+  /// variables integrates them implicitly over it. The step solves (M/h^2 + C/h + K) dq = f + C v + M v/h.
   virtual void linearise_damping(const double* /*x*/, const double* /*v*/, double* /*force*/, BlockMatrix* /*damping*/,
                                  double /*h*/) {}
-  /// J
+  /// Energy at positions x, J.
   virtual double energy(const double* x) = 0;
   /// Moves the stress-free configuration by u (3 values a node, m) while the rest configuration stays: the linear
-  /// strain of u at rest is taken from the strain, in force, tangent and energy alike. Adds up over calls; reset()
-  /// keeps it. Between connect and the first step. False when the model has no stress-free configuration of its own to
-  /// move (springs to the surroundings) and does nothing.
+  /// strain of u at rest is subtracted from the strain, in force, tangent and energy alike. Calls add up, and reset()
+  /// keeps the result. Called between connect and the first step. Returns false, and does nothing, if the model has no
+  /// stress-free configuration of its own (springs to the surroundings).
   virtual bool prestrain(const double*) { return false; }
   /// Rayleigh stiffness damping, s.
   virtual double stiffness_damping() const { return 0; }
-  /// Thickness of the wall that it is in a region of a shell, m; 0: it is no wall there. For the picture.
+  /// Thickness of the wall that the model represents in a region of a shell, m; 0: none. Used for drawing.
   virtual double wall_thickness(int /*region*/) const { return 0; }
-  /// Whether the body acts on itself alone: no force in rigid motion, forces and moments add up to nothing.
+  /// Whether all forces are internal: no force in rigid motion, and forces and moments sum to zero.
   virtual bool internal() const { return true; }
-  /// After stage 5, once a step, at the body's new positions x (m): the only place where the law may change for good
-  /// (tear, yield, wear) and where events may be told. True when it has changed: the next step then makes a new
-  /// tangent.
+  /// Called after stage 5 of each step, at the body's new positions x (m). Only here may the law change permanently
+  /// (tear, yield, wear) and may events be emitted. Returns true if the law has changed; the next step then computes a
+  /// new tangent.
   virtual bool finish(const StepContext&, const double* /*x*/) { return false; }
-  /// Back to what it was before the first step; undoes what finish() did.
+  /// Restores the state before the first step, so it undoes all changes of finish().
   virtual void reset() {}
-  /// What finish() has changed, for the state's hash.
+  /// Appends the state that finish() has changed, for the state's hash.
   virtual void append_state(std::vector<double>&) const {}
 };
 
-/// Base of every support plugin: says which nodes of the body that owns it are held.
+/// Base of every support plugin: selects the fixed nodes of the body that owns it.
 class Support : public Component {
  public:
   static constexpr std::string_view kind_name = "support";
-  /// Sets held[i] for the nodes it holds. Rest positions in metres, scene frame.
+  /// Sets fixed[i] for the nodes that it fixes. Rest positions in metres, scene frame.
   virtual void fix(PrepareContext&, const std::vector<Vec3>& rest, std::vector<char>& fixed) = 0;
 };
 

@@ -80,7 +80,7 @@ void Instrument::free_motion(const StepContext& context) {
   Vec6 b = stiffness_ * displacement(pose_, device_) +
            (coupling_time() / h) * stiffness_ * displacement(last_device_, device_);
   if (mass() > 0) {
-    // Inertia of the model, scaled to the mass asked for, about the tip.
+    // Inertia of the model about the tip, scaled to the mass of the parameter.
     const double m = mass(), scale = m / tool_.mass;
     const Mat3 r = pose_.q.toRotationMatrix();
     const Vec3 c = r * tool_.centre_of_mass;
@@ -135,7 +135,7 @@ void Instrument::apply(const StepContext& context, const BodyRows& r, const doub
     for (int e = r.start[std::size_t(i)]; e < r.start[std::size_t(i) + 1]; ++e)
       f.segment<3>(3 * r.block[std::size_t(e)]) += lambda[r.row[std::size_t(i)]] * r.coeff[std::size_t(e)];
   const Vec6 correction = compliance_ * f;
-  // The correction is applied to the free pose: the same composition as the haptic loop's.
+  // The correction is applied to the free pose, as in the haptic loop.
   const Pose before = pose_;
   pose_ = displaced(free_pose_, correction);
   velocity_ = displacement(before, pose_) / context.h;

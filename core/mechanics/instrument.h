@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A hand-held tool: a rigid body tied to the device pose by a 6-DoF spring and damper (virtual coupling), with its own
-// 6x6 system matrix. Instrument plugins add what their tip does.
+// A hand-held tool: a rigid body tied to the device pose by a 6-DoF spring and damper (virtual coupling; Colgate,
+// Stanley, Brown 1995). It has its own 6x6 system matrix. Instrument plugins add the function of their tip.
 #pragma once
 #include "core/mechanics/constraint.h"
 #include "core/mechanics/rigid_body.h"
 
 namespace insula {
 
-/// What a hand asks for during a step.
+/// State of a hand during a step.
 struct HandState {
   bool present = false;
   Pose device;  ///< at the end of the step, scene frame
@@ -57,7 +57,7 @@ class Instrument : public RigidBody {
 
   Instrument() : RigidBody(2) {}  ///< degrees of freedom: translation, rotation
   void prepare(PrepareContext& context) override;
-  /// Once: whether it begins in its hand or on the tray.
+  /// Called once: whether the tool begins in its hand or on the tray.
   void start_in_hand(bool yes) { active_ = in_hand_at_start_ = yes; }
   int hand_index() const { return hand.is("right") ? 1 : hand.is("left") ? 0 : -1; }  ///< -1: held by an arm
   const ToolModel& tool() const override { return tool_; }
@@ -67,30 +67,30 @@ class Instrument : public RigidBody {
   const HandState& state() const { return hand_state_; }
   Pose home_pose() const;
   void set_hand(const HandState& s) { hand_state_ = s; }
-  /// In its hand (or on its arm); false: on the tray, out of the step.
+  /// Whether it is in its hand (or on its arm). False: it is on the tray and takes no part in the step.
   bool active() const override { return active_; }
-  /// Tool exchange: into the hand, which is at `device`; or onto the tray.
+  /// Tool exchange: takes it into the hand, which is at `device`, or lays it on the tray.
   virtual void take_up(const Pose& device);
   virtual void lay_down();
-  /// Whether its hand may lay it down now; the reason why not, empty when it may.
+  /// Reason why the hand may not lay it down now; empty if it may.
   virtual std::string why_kept() const { return {}; }
-  /// Puts the tool somewhere at once; velocity and history stay (tests, replays).
+  /// Moves the tool to a pose at once. Velocity and history stay (for tests and replays).
   void place(const Pose& pose, double = 0) override { pose_ = pose; }
 
   /// Coupling force and torque on the hand at the end of the step: stiffness * displacement(device, tool).
   const Vec6& hand_force() const { return hand_force_; }
-  /// Terms of the haptic problem (jacobian is filled from `rows`).
+  /// Fills the terms of the haptic problem. The Jacobian comes from the rows of the last step.
   void fill_terms(ToolTerms& terms, int problem_rows) const;
 
-  /// Where a table-mounted arm (hand="none") holds the tool at this time, s.
+  /// Pose at which a table-mounted arm (hand="none") holds the tool at this time, s.
   virtual Pose arm_pose(double) const { return home_pose(); }
 
-  /// Cutting edges in the scene frame are active (default: whenever the tool has edges).
+  /// Whether its cutting edges cut now. Default: whenever the tool has edges.
   virtual bool cutting() const { return !tool_.blade_edges.empty(); }
-  /// 0..1 for the picture: suction on, blade at work.
+  /// Activity between 0 and 1 for drawing: suction on, blade at work.
   virtual double activity() const { return 0; }
-  /// Once, after every component is connected: what its own effect (suction pull, ...) acts on. Its rows come by
-  /// build().
+  /// Called once, after all components are connected. Finds what its effect (suction, ...) acts on. Its rows are added
+  /// in build().
   virtual void join(PrepareContext&, Simulation&) {}
 
   const std::vector<ConvexPiece>& link_pieces(int) const override { return tool_.pieces; }
@@ -105,7 +105,7 @@ class Instrument : public RigidBody {
   void reset() override;
   double energy() const override;
   void append_state(std::vector<double>& out) const override;
-  MaterialPoint point(const Vec3& scene_position) const;  ///< the tool's point now at that place
+  MaterialPoint point(const Vec3& scene_position) const;  ///< point of the tool that is at that position now
 
  private:
   ToolModel tool_;
@@ -114,7 +114,7 @@ class Instrument : public RigidBody {
   Pose pose_, device_, last_device_, free_pose_;
   Vec6 velocity_ = Vec6::Zero(), free_dq_ = Vec6::Zero(), hand_force_ = Vec6::Zero();
   Mat6 compliance_ = Mat6::Zero(), gain_ = Mat6::Identity(), stiffness_ = Mat6::Zero();
-  Mat6 inertia_ = Mat6::Zero();  ///< about the tip, of this step
+  Mat6 inertia_ = Mat6::Zero();  ///< about the tip, in this step, kg and kg m2
 };
 
 }  // namespace insula

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An obstacle holds surfaces and nothing that would act on degrees of freedom.
+// An obstacle has surfaces and no degrees of freedom.
 #include "core/mechanics/obstacle.h"
 
 #include "core/mechanics/force_model.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Something that never moves: bone, the floor of the fissure. It has surfaces and no degrees of freedom.
+// A body that never moves: bone, the floor of the fissure. It has surfaces and no degrees of freedom.
 #pragma once
 #include "core/mechanics/body.h"
 

@@ -36,9 +36,9 @@ double balance(const Unbalanced& unbalanced, const Prestrain& prestrain, const P
 }  // namespace
 
 // At rest the force of the prestrained models is linear in the displacement u that leads to their stress-free
-// configuration, f = f0 + K u: K u = -(load + f0) by conjugate gradients. K is known by its products only; the
-// preconditioner is the step's tangent of the models that take part, with what inertia a step of a second leaves, so
-// that a body no one holds is no exception.
+// configuration, f = f0 + K u: K u = -(load + f0) by conjugate gradients. Only products with K are available. The
+// preconditioner is the step's tangent of these models with the inertia of a step of one second, so that it is also
+// regular for a body without fixed nodes.
 double DeformableBody::prestress(const VecX& load) {
   constexpr double slow = 1;  // s
   VecX rest(3 * nodes());

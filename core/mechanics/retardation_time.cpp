@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// In what time a deformable body follows a force, place by place: each of its force models has a time of its own,
-// viscous over elastic, and a unit load strains all of them, each by its share.
+// Retardation time of a deformable body at each position. Each of its force models has a time of its own, viscous over
+// elastic, and a unit load strains all of them.
 //
-// With A = M/h^2 + sum_j (1 + T_j/h) K_j and x = A^-1 f what the unit load f does in a step, it is the energies' mean
+// With A = M/h^2 + sum_j (1 + T_j/h) K_j and x = A^-1 f the displacement by the unit load f in a step, it is the mean
+// weighted with the energies,
 //   T = sum_j T_j x^T K_j x / sum_j x^T K_j x,
-// which is what the place's compliance W = f^T x tells by itself where inertia is nothing: T = -W' / (W + W'/h), W' =
-// dW/d(1/h).
+// which without inertia also follows from the compliance W = f^T x alone: T = -W' / (W + W'/h), W' = dW/d(1/h).
 #include <algorithm>
 
 #include "core/collision/search/vertex_groups.h"
@@ -13,7 +13,7 @@
 
 namespace insula {
 
-// That of the slowest: all there is to know where all are alike, and where the solver could only tell roughly.
+// Starts with the largest time of the models. This is the result if all are equal, or if the solver is not exact.
 void DeformableBody::start_retardation_times() {
   double slowest = 0;
   for (const ForceModel* f : forces_) slowest = std::max(slowest, f->stiffness_damping());
@@ -23,7 +23,7 @@ void DeformableBody::start_retardation_times() {
                                         [&](const ForceModel* f) { return f->stiffness_damping() == slowest; });
 }
 
-// With the factor of a_ at hand. Places are told apart as well as some dozens of unit loads can.
+// Uses the factor of a_. The spatial resolution is that of some dozens of unit loads.
 void DeformableBody::find_retardation_times(double h) {
   constexpr int unit_loads = 64;
   retardation_times_known_ = true;

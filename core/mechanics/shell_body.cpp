@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reading a shell's surface and telling its wall from its caps.
+// Reads a shell's surface and separates its wall from its caps.
 #include "core/mechanics/shell_body.h"
 
 #include <algorithm>

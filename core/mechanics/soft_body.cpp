@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reading a soft body's mesh.
+// Reads a soft body's mesh.
 #include "core/mechanics/soft_body.h"
 
 #include "core/base/input_error.h"

@@ -15,7 +15,7 @@ class SoftBody final : public DeformableBody {
   const std::vector<Vec3>& rest_nodes() const override { return rest_.nodes; }
 
   const TetMesh& rest() const { return rest_; }
-  /// In place of a file, before prepare(): for tests and generated bodies.
+  /// Sets the mesh in place of a file, before prepare(), for tests and generated bodies.
   void set_mesh(TetMesh m) {
     rest_ = std::move(m);
     given_ = true;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What every stage of a step may know.
+// Data that every stage of a step may use.
 #pragma once
 #include <cstdint>
 
@@ -14,7 +14,7 @@ struct StepContext {
   double time = 0;      ///< simulated time at the start of the step, s
   std::int64_t step = 0;
   double collision_horizon_s =
-      0;  ///< beyond the step: what tools would meet in it is in the problem already, for the servo
+      0;  ///< time beyond the step for which the problem already contains the contacts of tools, for the servo
   Vec3 gravity = Vec3::Zero();
   EventSink* events = nullptr;
 };

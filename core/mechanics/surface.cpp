@@ -45,7 +45,7 @@ void Surface::prepare(PrepareContext& context) {
   if (soft) {
     if (soft->rest().tets.empty()) return;  // its own error is reported
     const Embedding e = embed(soft->rest(), rest_.vertices);
-    // Points far from the tetrahedra would be flung about by extrapolation: more likely the wrong unit or frame.
+    // Extrapolation would move points far from the tetrahedra too much. The unit or frame is probably wrong.
     if (e.outside_m > 0.005)
       return error(context, mesh,
                    "the surface reaches " + std::to_string(e.outside_m * 1000) +
@@ -64,8 +64,8 @@ void Surface::prepare(PrepareContext& context) {
   expected_.assign(positions_.size(), Vec3::Zero());
 }
 
-// A vertex follows the nearest triangle of the wall and keeps its distance to it; a surface of the body's own is its
-// nodes.
+// A vertex follows the nearest triangle of the wall and keeps its distance to it; the vertices of the body's own
+// surface are its nodes.
 bool Surface::attach_to_shell(const ShellBody& shell) {
   const TriMesh& wall = shell.rest();
   if (mesh.empty()) {
@@ -138,7 +138,7 @@ void Surface::will_collide() {
 
 void Surface::add_row(BodyRows& rows, int triangle, const Vec3& bary, const Vec3& d) const {
   if (body_->blocks() == 0) return;
-  // The three vertices often share nodes: merging them keeps rows short.
+  // The three vertices often share nodes, so merging them keeps rows short.
   std::array<int, 12> node;
   std::array<double, 12> weight;
   int count = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A surface that moves with its body, for contact and for the picture: a fine triangle mesh embedded in tetrahedra,
-// riding on a shell's wall, or rigid on an obstacle.
+// A surface that moves with its body, for contact and for drawing: a fine triangle mesh embedded in tetrahedra,
+// attached to a shell's wall, or fixed to an obstacle.
 #pragma once
 #include <array>
 #include <memory>
@@ -42,33 +42,35 @@ class Surface : public Component {
 
   Body& body() const { return *body_; }
   const TriMesh& rest() const { return rest_; }                         ///< rest shape, scene frame
-  const std::vector<MaterialPoint>& points() const { return points_; }  ///< one a vertex
+  const std::vector<MaterialPoint>& points() const { return points_; }  ///< one for each vertex
   const std::vector<Vec3>& positions() const {
     return positions_;
-  }  ///< at the start of the step; look_ahead() and update() refresh
-  const std::vector<Vec3>& expected_displacements() const { return expected_; }  ///< what collision looks ahead along
+  }  ///< at the start of the step; update() and update_collision() refresh them
+  const std::vector<Vec3>& expected_displacements() const {
+    return expected_;
+  }  ///< in the free motion, for collision detection, m
   const std::vector<std::array<int, 3>>& triangles() const { return rest_.triangles; }
 
   /// Recomputes positions() from the body's q.
   void update();
-  /// After free motion: positions(), but of what is for the picture alone, and expected_displacements() and
-  /// collision(), if anything looks for contacts.
+  /// Called after the free motion. Updates positions(), expected_displacements() and collision(), if the surface takes
+  /// part in contact.
   void update_collision();
-  /// Called in connect() of what looks for contacts: from then on the step keeps collision() up to date.
+  /// Called in connect() by components that detect contacts. From then on the step keeps collision() up to date.
   void will_collide();
   const CollisionMesh& collision() const { return *collision_; }
-  /// The material point of a triangle at barycentric coordinates; up to twelve nodes, merged and sorted.
-  /// Adds direction d of it to the open row of the body.
+  /// The material point of a triangle at barycentric coordinates depends on up to twelve nodes, merged and sorted.
+  /// Adds direction d of this point to the open row of the body.
   void add_row(BodyRows& rows, int triangle, const Vec3& bary, const Vec3& d) const;
 
  private:
   bool attach_to_shell(const ShellBody& shell);
   Body* body_ = nullptr;
-  std::unique_ptr<CollisionMesh> collision_;  ///< one for all that touches the surface
+  std::unique_ptr<CollisionMesh> collision_;  ///< shared by all components that detect contacts with the surface
   TriMesh rest_;
   std::vector<MaterialPoint> points_;
-  std::vector<int> moving_;                          ///< the vertices that the step places
-  std::unique_ptr<BarycentricEmbedding> embedding_;  ///< those, on a deformable body
+  std::vector<int> moving_;                          ///< vertices that the step moves
+  std::unique_ptr<BarycentricEmbedding> embedding_;  ///< of these vertices, on a deformable body
   RegionMotion motion_;
   std::vector<Vec3> positions_, expected_;
 };

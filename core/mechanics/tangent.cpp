@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The system matrix of a deformable body and its factor: made, and kept while it serves.
+// The system matrix of a deformable body and its factor, which are kept as long as they are accurate enough.
 #include <chrono>
 
 #include "core/base/nearest_rotation.h"
@@ -8,7 +8,8 @@
 
 namespace insula {
 
-// Whether the factor at hand still serves: no pair of neighbours has turned or stretched much since it was made.
+// Whether the present factor is accurate enough: no pair of neighbours has rotated or stretched much since it was
+// computed.
 bool DeformableBody::tangent_is_good(double h) const {
   if (factor_h_ != h || tangent_tolerance() <= 0 || solver_->inexact()) return false;
   const double limit = tangent_tolerance() * tangent_tolerance();
@@ -20,7 +21,7 @@ bool DeformableBody::tangent_is_good(double h) const {
   return true;
 }
 
-// Of each free node: that which turns its neighbours at rest into its neighbours now, best in the least squares.
+// Rotation of each free node's neighbours from rest to their present positions, by least squares.
 void DeformableBody::find_rotations() {
   for (int j = 0; j < free_count_; ++j) around_[std::size_t(j)].setZero();
   const auto add = [&](int i, int j) {
@@ -34,7 +35,7 @@ void DeformableBody::find_rotations() {
     rotation_[std::size_t(j)] = nearest_rotation(around_[std::size_t(j)], turn_[std::size_t(j)]);
 }
 
-// A but for inertia, and the force that goes with it.
+// Assembles A without inertia, and the force.
 void DeformableBody::assemble(double h) {
   if (InexactSolver* s = solver_->inexact()) {
     find_rotations();
@@ -44,7 +45,7 @@ void DeformableBody::assemble(double h) {
   for (ForceModel* f : forces_) f->linearise(q_.data(), force_.data(), &a_, h, Tangent::system);
 }
 
-// Forces that depend on velocity, and D v in damped_load_. D is taken when A is; both stay together.
+// Forces that depend on velocity, and D v in damped_load_. D is assembled together with A.
 void DeformableBody::add_damping(double h, bool fresh) {
   if (fresh) damping_matrix_.set_zero();
   for (ForceModel* f : damped_)
@@ -56,7 +57,7 @@ void DeformableBody::add_damping(double h, bool fresh) {
   damping_matrix_.add_product(packed_v_.data(), damped_load_.data());
 }
 
-// With inertia; begins the motion under load_.
+// Factorises A with inertia, and begins the motion under load_.
 void DeformableBody::factorise(double h) {
   double extra = 1;
   for (int attempt = 0;; ++attempt) {
@@ -70,8 +71,8 @@ void DeformableBody::factorise(double h) {
       d[4] += add;
       d[8] += add;
     }
-    // An indefinite matrix (force models promise not to make one) is met with ten times the inertia, as often as
-    // needed.
+    // If the matrix is indefinite, although force models must not cause this, its inertia is multiplied by ten until it
+    // is not.
     const auto begin = std::chrono::steady_clock::now();
     const bool good = solver_->begin_motion(&a_, load_, guess_);
     factor_ms_ += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reading numbers and units strictly.
+// Strict reading of numbers and units.
 #include "core/params/number.h"
 
 #include <fmt/format.h>
@@ -24,7 +24,7 @@ std::string not_a_number(std::string_view text) {
 /// The value of the first `n` characters, which number_length has approved.
 std::optional<double> convert(std::string_view text, std::size_t n, std::string& error) {
   std::string_view digits = text.substr(0, n);
-  if (digits.front() == '+') digits.remove_prefix(1);  // from_chars knows no plus sign
+  if (digits.front() == '+') digits.remove_prefix(1);  // from_chars does not accept a plus sign
   double value = 0;
   const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (code == std::errc::result_out_of_range) {
@@ -68,7 +68,7 @@ std::string unit_list(std::span<const Unit> units) {
 
 std::string written(double si, const Unit* unit) {
   const double value = unit ? si / unit->to_si : si;
-  // Six digits hide the rounding of the factor; "1e+09" is no way to talk to people.
+  // Six digits hide the rounding of the factor. Large whole numbers are written without an exponent.
   const bool whole = std::abs(value) >= 1e5 && std::abs(value) < 1e15;
   std::string text = whole ? fmt::format("{:.0f}", value) : fmt::format("{:.6g}", value);
   if (unit) text += " " + std::string(unit->symbol);
@@ -127,7 +127,7 @@ std::optional<ParsedQuantity> read_quantity(std::string_view text, std::span<con
   const std::string symbol = single_blanks(tail);
   const Unit* unit = find_unit(units, symbol);
   if (!symbol.empty() && !unit) {
-    // What touches the digits may be a mistyped number ("12O0", "0,5", "0x1p3", "1.2.3") rather than a unit.
+    // Text that touches the digits may be a mistyped number ("12O0", "0,5", "0x1p3", "1.2.3") rather than a unit.
     std::string_view touching = tail.substr(0, tail.find_first_of(" \t\r\n"));
     const bool has_digit = touching.find_first_of("0123456789,.") != std::string_view::npos;
     const bool known = is_known_unit(symbol) || is_known_unit(touching);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Options of the command line with units, read as a scene's values are: --duration 5s, --rate "100 Hz".
+// Command-line options with units, read as a scene's values: --duration 5s, --rate "100 Hz".
 //
 //   double duration = 0;
 //   add_quantity<Duration>(app, "--duration", duration, {.bare = "s", .min = "0 s", .doc = "simulated time"});
 //
-// A bare number counts in the unit `bare`, and so does the value that is stored.
+// A bare number has the unit `bare`. The stored value has this unit too.
 #pragma once
 #include <optional>
 #include <span>
@@ -23,19 +23,19 @@ struct QuantityOption {
   std::string doc;            ///< one line for --help
 };
 
-/// The value of an option's text in the unit `option.bare`. None, and the reason in `error`, when the text is no such
-/// quantity or lies outside of the range. Throws std::logic_error when the option's own unit or range cannot be read.
+/// The value of an option's text in the unit `option.bare`. Returns nothing, with the reason in `error`, if the text is
+/// not such a quantity or is out of range. Throws std::logic_error if the unit or range of the declaration is invalid.
 std::optional<double> read_option(std::string_view text, std::span<const Unit> units, std::string_view quantity,
                                   const QuantityOption& option, std::string& error);
 
-/// What --help says of an option with a unit: its text and the unit of a bare number.
+/// Text of --help for an option with a unit: its doc and the unit of a bare number.
 std::string option_doc(const QuantityOption& option);
 
-/// The words of a command line after the program's name. A unit that stands as a word of its own behind an option's
-/// number joins it: `--rate 100 Hz` is `--rate "100 Hz"`.
+/// The words of a command line after the program's name. A separate word that is the unit of an option's number is
+/// joined to it: `--rate 100 Hz` is `--rate "100 Hz"`.
 std::vector<std::string> command_words(int argc, const char* const* argv);
 
-/// Why a whole number is not at least `least`; empty when it is. For CLI11's check().
+/// Error text if a whole number is below `least`; empty otherwise. For CLI11's check().
 std::string below(std::string_view text, int least);
 
 /// Adds an option with a unit to a CLI::App (a template, so that this header does not need CLI11). Returns the

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reading and checking the value of each kind of parameter.
+// Reads and checks the value of each kind of parameter.
 #include "core/params/param.h"
 
 #include <algorithm>
@@ -24,7 +24,7 @@ std::string out_of_range(std::string_view text, const std::optional<double>& min
   return shown(text) + " is above the allowed maximum " + written(*max, unit);
 }
 
-/// Takes `value` into [min, max] when it lies outside by no more than the rounding of its unit's factor.
+/// Moves `value` into [min, max] if it is outside by at most the rounding of its unit's factor.
 bool within(double& value, const std::optional<double>& min, const std::optional<double>& max) {
   const auto slack = [](double bound) { return 1e-12 * std::abs(bound); };
   if (min && value < *min - slack(*min)) return false;

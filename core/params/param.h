@@ -30,10 +30,10 @@ struct ParamSpec {
   std::string_view max = {};
   std::vector<std::string_view> choices = {};  ///< for Param<Choice>
   std::string_view doc;                        ///< one line
-  std::string_view formerly = {};  ///< its name in older scenes; whoever still writes that is told the new one
+  std::string_view formerly = {};              ///< name in older scenes, which get a message with the new one
 };
 
-/// Base of every parameter: what list, describe, schema and docs read.
+/// Base of every parameter, with the data for list, describe, schema and docs.
 class ParamBase {
  public:
   ParamBase(ParamSet* owner, ParamSpec spec);

@@ -11,7 +11,7 @@ class ParamBase;
 class ParamSet {
  public:
   ParamSet() = default;
-  virtual ~ParamSet() = default;  ///< polymorphic, so that a reference finds its target's type
+  virtual ~ParamSet() = default;  ///< polymorphic, so that references can check the type of their targets
   ParamSet(const ParamSet&) = delete;
   ParamSet& operator=(const ParamSet&) = delete;
 

@@ -10,7 +10,7 @@ namespace insula {
 struct Unit {
   std::string_view symbol;
   double to_si;        ///< SI value = written value * to_si
-  bool listed = true;  ///< false: read, but not offered in messages (other spellings, rare units)
+  bool listed = true;  ///< false: accepted, but not offered in messages (other spellings, rare units)
 };
 
 /// Each quantity is a tag type. `name` is its name in messages, `si` its SI symbol, and `units()` the allowed units.

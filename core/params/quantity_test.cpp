@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every unit of every quantity, and every way to write a number wrongly.
+// Every unit of every quantity, and every form of a wrong number.
 #include "core/params/quantity.h"
 
 #include <gtest/gtest.h>

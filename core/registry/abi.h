@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The string that decides whether a shared plugin and this program fit together. Include this only where the string is
-// used, since the generated header changes with every header of the core.
+// The string that decides whether a shared plugin and this program are compatible. Include this only where the string
+// is used, since the generated header changes with every header of the core.
 #pragma once
 #include <Eigen/Core>
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A component's channels: named numbers that it publishes each step, declared as parameters are. The frame, the report,
-// the instructor's curves, the rules and the reference pages read channels and nothing else of a component.
+// the instructor's curves, the rules and the reference pages read only these.
 //
 //   class Suture final : public Constraint {
 //     Channel<Force> tension{this, {.name = "tension", .doc = "of the thread", .min = "0 N", .max = "5 N"}};
 //     void publish() override { tension.set(pull_); }
 //   };
 //
-// Values are SI. A value that is not known now is NaN, which is also the value before the first `publish`.
+// Values are SI. An unknown value is NaN. This is also the value before the first `publish`.
 #pragma once
 #include <array>
 #include <limits>
@@ -23,15 +23,15 @@ namespace insula {
 
 class Component;
 
-/// Where people see a channel: nowhere, as a curve, or among the vital signs (and as a curve).
+/// Where the page shows a channel: nowhere, as a curve, or among the vital signs and as a curve.
 enum class Shown { none, curve, vital };
 std::string_view shown_name(Shown shown);
 
-/// What a picture of the channel's subject does with it: nothing; shade the region of the group's name by it (0..1);
-/// beat with it as its phase (0..1).
+/// How the channel changes the drawing of its subject: not at all, as the shade of the region with the group's name
+/// (0..1), or as the phase of its pulse (0..1).
 enum class Role { none, shade, pulse };
 
-/// From and to, written with units; an empty bound is open. Both empty: no band.
+/// A range with bounds written with units. An empty bound is open. If both are empty, there is no band.
 struct Band {
   std::string_view from = {}, to = {};
 };
@@ -42,21 +42,22 @@ struct ChannelSpec {
   std::string_view min = {};  ///< expected range, written with units; empty: open
   std::string_view max = {};
   Shown shown = Shown::curve;
-  std::string_view display = {};  ///< unit that people read, one of the quantity's; "%" for a plain number; empty: SI
-  int digits = 2;                 ///< behind the point, in that unit
-  Band good = {};                 ///< shown green inside
-  Band high = {};                 ///< shown amber inside; outside of both: red
+  std::string_view display = {};  ///< unit shown, one of the quantity's; "%" for a plain number; empty: SI
+  int digits = 2;                 ///< decimals in that unit
+  Band good = {};                 ///< shown in green inside
+  Band high = {};                 ///< shown in amber inside; in red outside of both bands
   Role role = Role::none;
 };
 
-/// Base of every channel: what frame, report and reference read.
+/// Base of every channel, with the data for frame, report and reference.
 class ChannelBase {
  public:
   struct Quantity {
     std::string_view name, si;
     std::span<const Unit> units;
   };
-  /// Throws std::logic_error for a wrong declaration. `single`: one channel; else one for each name of declare().
+  /// Throws std::logic_error for a wrong declaration. `single`: one channel. Otherwise there is one for each name of
+  /// declare().
   ChannelBase(Component* owner, ChannelSpec spec, Quantity quantity, int size, bool single);
   ChannelBase(const ChannelBase&) = delete;
   ChannelBase& operator=(const ChannelBase&) = delete;
@@ -65,12 +66,12 @@ class ChannelBase {
   const Quantity& quantity() const { return quantity_; }
   int size() const { return size_; }  ///< numbers of a value: 1, or 3 for a vector
   bool single() const { return single_; }
-  /// The things it belongs to; one with an empty name for a single channel.
+  /// Names of the group's items. A single channel has one item with an empty name.
   const std::vector<std::string>& groups() const { return groups_; }
-  /// "flow", or "superior.flow" of the group "superior".
+  /// "flow", or "superior.flow" for the item "superior" of a group.
   std::string name(std::size_t item) const;
   const double* values(std::size_t item) const { return values_.data() + item * std::size_t(size_); }
-  /// The body that the numbers are about, for its picture; null: none in particular.
+  /// The body that the numbers describe, for its drawing; null: none.
   const Component* subject() const { return subject_; }
   void set_subject(const Component* body) { subject_ = body; }
   /// Makes every value unknown.
@@ -78,13 +79,13 @@ class ChannelBase {
 
   std::optional<double> min() const { return min_; }  ///< SI
   std::optional<double> max() const { return max_; }
-  void set_max(double si) { max_ = si; }  ///< for what is only known once the scene is there, such as a count
+  void set_max(double si) { max_ = si; }  ///< for bounds that are known only after loading, such as a count
   using Bounds = std::array<std::optional<double>, 2>;
   const Bounds& good() const { return good_; }  ///< SI
   const Bounds& high() const { return high_; }
-  std::string_view display_unit() const;           ///< as people read it, may be empty
+  std::string_view display_unit() const;           ///< as shown; may be empty
   double display_scale() const { return scale_; }  ///< shown number = SI value * scale
-  /// A value as people read it, with its unit.
+  /// A value as it is shown, with its unit.
   std::string text(double si) const;
 
  protected:
@@ -105,7 +106,7 @@ class ChannelBase {
   const Component* subject_ = nullptr;
 };
 
-/// One number a step.
+/// One number for each step.
 template <class Q>
 class Channel : public ChannelBase {
  public:
@@ -115,7 +116,7 @@ class Channel : public ChannelBase {
   double operator()() const { return at(0); }
 };
 
-/// Three numbers a step, scene frame.
+/// Three numbers for each step, scene frame.
 template <class Q>
 class Channel<Vec<Q>> : public ChannelBase {
  public:
@@ -127,8 +128,8 @@ class Channel<Vec<Q>> : public ChannelBase {
   Vec3 operator()() const { return {at(0), at(1), at(2)}; }
 };
 
-/// The same number of several like things, such as the branches of a network. Their names are known once the component
-/// is connected: declare() them there, at the latest in connect().
+/// The same number for several similar things, such as the branches of a network. Their names are declared by
+/// declare(), in connect() at the latest.
 template <class Q>
 class ChannelGroup : public ChannelBase {
  public:

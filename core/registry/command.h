@@ -10,7 +10,7 @@ namespace insula {
 struct CommandInfo {
   std::string name;         ///< "rupture", "set_systolic"
   std::string doc;          ///< one line, for the instructor
-  std::string argument;     ///< "" none; else its name with unit: "pressure_mmHg", "text"
+  std::string argument;     ///< empty: none; else its name with unit: "pressure_mmHg", "text"
   double min = 0, max = 0;  ///< range of a numeric argument; both 0: no number
 };
 

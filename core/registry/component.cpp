@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What all components share.
+// Common part of all components.
 #include "core/registry/component.h"
 
 #include "core/base/text.h"
@@ -31,7 +31,7 @@ void Component::error(PrepareContext& context, std::string text) const {
 }
 
 void Component::error(PrepareContext& context, const ParamBase& param, std::string text) const {
-  // Readers name the file they failed on by its full path; the author knows it as written.
+  // Readers report the full path of a file. The author knows the path as written.
   if (const auto* file = dynamic_cast<const Param<File>*>(&param); file && !file->empty()) {
     const std::string path = (*file)().string() + ": ";
     if (text.starts_with(path)) text.replace(0, path.size(), in_quotes(param.text()) + ": ");

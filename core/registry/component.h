@@ -23,15 +23,15 @@ enum class Kind {
   body,           ///< soft_body, obstacle: q, v, mass
   surface,        ///< collision and picture surface owned by a body
   force_model,    ///< force, stiffness, energy of the body that owns it
-  support,        ///< holds degrees of freedom of the body that owns it
+  support,        ///< fixes degrees of freedom of the body that owns it
   constraint,     ///< adds rows to the constraint problem
   instrument,     ///< a hand-held tool
   exercise,       ///< goals, faults, motions
   exercise_rule,  ///< owned by an exercise
   motion,         ///< scripted two-hand motion, owned by an exercise
-  complications,  ///< what may go wrong by chance: at most one directly under the scene
-  complication,   ///< one of them
-  material,       ///< the look of things by name
+  complications,  ///< random complications: at most one directly under the scene
+  complication,   ///< one of these
+  material,       ///< appearance by name
 };
 std::string_view kind_name(Kind kind);  ///< "force model", "exercise rule", ...
 
@@ -46,18 +46,18 @@ class Component : public ParamSet {
   static constexpr std::string_view kind_name = "component";
   Component() = default;
 
-  /// Second phase of loading: parameters, references and children are available. Read files, check what spans several
-  /// parameters, and build the rest state. Report errors through the context; never throw for bad input. Called in
-  /// document order, bodies first, children after their parent.
+  /// Second phase of loading: parameters, references and children are available. Reads files, checks relations of
+  /// several parameters, and builds the rest state. Reports errors through the context, and never throws for bad input.
+  /// Called in document order, bodies first, children after their parent.
   virtual void prepare(PrepareContext&) {}
 
-  /// At the end of each step, at the start and after a reset: gives its channels and drawables their present values.
-  /// Must not allocate once it has seen its largest state.
+  /// Sets the present values of channels and drawables. Called at the start, at the end of each step and after a reset.
+  /// Must not allocate once it has had its largest state.
   virtual void publish() {}
 
-  /// What it can be asked for while the scene runs.
+  /// Commands that it accepts while the scene runs.
   virtual std::vector<CommandInfo> commands() const { return {}; }
-  /// Carries out a command between two steps. Returns the reason for a refusal; empty when done. Bad arguments are
+  /// Executes a command between two steps. Returns the reason for a refusal; empty when done. Bad arguments are
   /// refused, never clamped.
   virtual std::string run_command(std::string_view, std::string_view) { return "unknown command"; }
 
@@ -65,11 +65,11 @@ class Component : public ParamSet {
   const std::vector<DrawableBase*>& drawables() const { return drawables_; }   ///< in order of declaration
   const std::vector<EventKind*>& event_kinds() const { return event_kinds_; }  ///< in order of declaration
 
-  std::string id;       ///< as written, or the element name with its ordinal when none was given ("contact#1")
+  std::string id;       ///< as written, or the element name with its number if none was given ("contact#1")
   std::string element;  ///< element name
   Kind kind = Kind::scene;
   SourcePos pos;  ///< of the start tag
-  int order = 0;  ///< document position over all files, unique: the order of everything that must be reproducible
+  int order = 0;  ///< document position over all files, unique; everything reproducible follows this order
   Component* parent = nullptr;
   std::vector<std::unique_ptr<Component>> children;
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A component's drawables: what a picture shows of it, declared as parameters are and filled in `publish`.
+// A component's drawables: what the page draws of it. They are declared as parameters are, and filled in `publish`.
 //
 //   Polylines thread{this, {.name = "thread", .doc = "the thread", .material = "silk", .radius = "0.1 mm"}};
 //   void publish() override { thread.resize(1); thread.set(0, 0, a, 1); thread.set(0, 1, b, 1); }
 //
-// Positions are in the scene frame, metres. Every element carries a value whose meaning the declaration states.
+// Positions are in the scene frame, metres. Every element has a value. The declaration states its meaning.
 #pragma once
 #include <array>
 #include <string>
@@ -24,15 +24,15 @@ struct DrawableSpec {
   std::string_view name;
   std::string_view doc;                 ///< one line
   std::string_view material;            ///< name of a material of the registry or the scene
-  std::string_view value = {};          ///< what the value says, one line; empty: it is not used
+  std::string_view value = {};          ///< meaning of the value, one line; empty: it is not used
   std::string_view unit = {};           ///< SI unit of the value
   std::string_view radius = "0.15 mm";  ///< of points and polylines, a length with its unit
   int points_per_line = 2;              ///< of polylines
-  std::string_view text = "{}";         ///< of labels; {} stands for the value
-  std::string_view rate_channel = {};   ///< own channel that says how fast a fluid moves; may be empty
+  std::string_view text = "{}";         ///< of labels; {} is replaced by the value
+  std::string_view rate_channel = {};   ///< own channel with the speed of a fluid; may be empty
 };
 
-/// Base of every drawable: what frames and bundles read.
+/// Base of every drawable, with the data for frames and bundles.
 class DrawableBase {
  public:
   /// Throws std::logic_error for a wrong declaration.
@@ -43,7 +43,7 @@ class DrawableBase {
 
   const DrawableSpec& spec() const { return spec_; }
   DrawableKind kind() const { return kind_; }
-  /// Its material: that of the declaration, or what prepare() put in its place.
+  /// Its material: that of the declaration, unless prepare() has replaced it.
   const std::string& material() const { return material_; }
   void set_material(std::string name) { material_ = std::move(name); }
   double radius() const { return radius_; }  ///< m
@@ -87,11 +87,11 @@ class Polylines final : public DrawableBase {
   }
 };
 
-/// A surface of fixed triangles with vertices that move.
+/// A surface of fixed triangles whose vertices move.
 class Patch final : public DrawableBase {
  public:
   Patch(Component* owner, DrawableSpec spec) : DrawableBase(owner, spec, DrawableKind::patch) {}
-  /// Once, at the latest in connect(). Throws std::logic_error when a triangle names no vertex.
+  /// Called once, in connect() at the latest. Throws std::logic_error if a triangle has an invalid vertex.
   void set_triangles(std::vector<std::array<int, 3>> triangles, std::size_t vertices);
   const std::vector<std::array<int, 3>>& triangles() const { return triangles_; }
   void set(std::size_t vertex, const Vec3& p, double value) { put(4 * vertex, p, value); }
@@ -100,7 +100,7 @@ class Patch final : public DrawableBase {
   std::vector<std::array<int, 3>> triangles_;
 };
 
-/// A round level area, such as the surface of a fluid.
+/// A round plane area, such as the surface of a fluid.
 class Plane final : public DrawableBase {
  public:
   Plane(Component* owner, DrawableSpec spec) : DrawableBase(owner, spec, DrawableKind::plane) { resize_elements(1); }
@@ -112,14 +112,14 @@ class Plane final : public DrawableBase {
   }
 };
 
-/// Words at a place.
+/// Text at a position.
 class Label final : public DrawableBase {
  public:
   Label(Component* owner, DrawableSpec spec) : DrawableBase(owner, spec, DrawableKind::label) { resize_elements(1); }
   void set(const Vec3& p, double value) { put(0, p, value); }
 };
 
-/// Rigid parts, each with a mesh in its own frame. The last part's mesh serves the links beyond.
+/// Rigid parts, each with a mesh in its own frame. Further links use the last part's mesh.
 class Links final : public DrawableBase {
  public:
   struct Part {
@@ -127,7 +127,7 @@ class Links final : public DrawableBase {
     std::vector<std::array<int, 3>> triangles;
   };
   Links(Component* owner, DrawableSpec spec) : DrawableBase(owner, spec, DrawableKind::links) {}
-  /// Once, at the latest in connect().
+  /// Called once, in connect() at the latest.
   void set_parts(std::vector<Part> parts) { parts_ = std::move(parts); }
   const std::vector<Part>& parts() const { return parts_; }
   void resize(std::size_t n) { resize_elements(n); }

@@ -12,8 +12,8 @@ class Component;
 struct EventSpec {
   std::string_view name;
   std::string_view doc;         ///< one line
-  std::string_view value = {};  ///< what Event::value says, with its unit; empty: nothing
-  bool bad = false;             ///< reports show it as something that should not happen
+  std::string_view value = {};  ///< meaning of Event::value, with its unit; empty: none
+  bool bad = false;             ///< reports show it as undesired
   bool listed = true;           ///< false: too frequent for the report's list
 };
 

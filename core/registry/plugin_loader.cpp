@@ -32,8 +32,8 @@ std::string load_plugin(Registry& registry, const std::filesystem::path& so) {
   if (!std::filesystem::exists(so, ec)) return name + ": no such file";
   if (!std::filesystem::is_regular_file(so, ec)) return name + ": is not a file";
   if (!is_elf(so)) return name + ": is not a shared library";
-  // An absolute path keeps dlopen from searching the system's folders. The library stays loaded for the life of the
-  // process: components it created keep pointing into it.
+  // An absolute path keeps dlopen from searching the system's folders. The library stays loaded until the process ends,
+  // since its components refer to its code.
   const auto absolute = std::filesystem::absolute(so, ec);
   void* handle = dlopen(absolute.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (!handle) {
@@ -53,7 +53,7 @@ std::string load_plugin(Registry& registry, const std::filesystem::path& so) {
   if (std::strcmp(abi(), abi_string()) != 0)
     return refuse("was built for another Insula: plugin \"" + std::string(abi()) + "\", program \"" + abi_string() +
                   "\"; build the plugin again with this program's headers and compiler");
-  // Registered into a copy first, so that a plugin that fails half-way leaves nothing behind.
+  // Registers into a copy first, so that a plugin that fails leaves no elements.
   Registry extended = registry;
   extended.set_current_plugin(plugin_name());
   try {

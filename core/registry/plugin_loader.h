@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where shared plugins are searched. registry.h declares `load_plugin` itself.
+// Folders in which shared plugins are searched. registry.h declares `load_plugin` itself.
 #pragma once
 #include <filesystem>
 #include <vector>

@@ -47,7 +47,8 @@ void Registry::add_info(ComponentInfo info) {
     throw std::logic_error("<" + info.element + "> of plugin " + info.plugin + " is already registered by " +
                            other->plugin);
   if (info.parents.empty()) info.parents = usual_parents(info.kind);
-  // A wrong declaration is a mistake of the programmer: found here, not when an author first writes the element.
+  // A wrong declaration is an error of the programmer. It is found here instead of when an author first uses the
+  // element.
   try {
     const auto probe = info.create();
     for (ParamBase* p : probe->params()) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The elements that exist. Plugins add themselves by an explicit function. Nothing registers as a side effect of
-// linking.
+// All elements. Plugins register themselves in an explicit function. Nothing registers as a side effect of linking.
 #pragma once
 #include <filesystem>
 #include <functional>
@@ -22,8 +21,8 @@ struct ComponentInfo {
   std::string element;  ///< unique element name
   Kind kind = Kind::constraint;
   std::string doc;            ///< one line
-  std::vector<Kind> parents;  ///< kinds of component it may stand in
-  std::string plugin;         ///< folder name of the plugin that brought it, or "core"
+  std::vector<Kind> parents;  ///< kinds of component that may contain it
+  std::string plugin;         ///< folder name of the plugin that registered it, or "core"
   std::function<std::unique_ptr<Component>()> create;
 };
 
@@ -38,7 +37,7 @@ class Registry {
   }
   void add_info(ComponentInfo info);
 
-  /// Adds a look that scenes may name. Throws std::logic_error when the name is taken.
+  /// Adds a material that scenes may name. Throws std::logic_error when the name is taken.
   void add_material(Material material);
   const std::vector<Material>& materials() const { return materials_; }  ///< in order of registration
 
@@ -54,14 +53,14 @@ class Registry {
   std::string current_plugin_ = "core";
 };
 
-/// Registers the elements of core and of every plugin built in, in alphabetical order.
+/// Registers the elements of core and of every built-in plugin, in alphabetical order.
 void register_builtin(Registry& registry);
 
 /// Loads a shared plugin. Checks its ABI string before any other call. Returns the error text, empty when loaded.
 std::string load_plugin(Registry& registry, const std::filesystem::path& so);
 
 /// ABI identity: the headers' text, compiler, C++ library, Eigen alignment. A plugin and a program with equal strings
-/// fit.
+/// are compatible.
 const char* abi_string();
 
 }  // namespace insula

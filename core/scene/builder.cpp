@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Elements to components: names, places, parameters, ids.
+// Converts elements to components: names, parents, parameters, ids.
 #include "core/scene/builder.h"
 
 #include <algorithm>
@@ -188,7 +188,7 @@ void SceneBuilder::read_params(const Element& element, Component& component) {
   if (!element.broken_attributes.empty()) failed_.insert(&component);
   for (const ParamBase* p : component.params()) {
     if (!p->required() || p->given()) continue;
-    // A mistyped name has been reported as such; saying that the right one is missing would be the same news twice.
+    // A mistyped name has already been reported. A message that the right one is missing would repeat it.
     if (std::find(suggested.begin(), suggested.end(), p->name()) != suggested.end()) continue;
     report(component, element.pos,
            "<" + component.element + "> needs parameter \"" + p->name() + "\" (" + p->type_name() + ": " +

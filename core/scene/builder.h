@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Second half of loading. The expanded tree becomes components, ids are resolved, files are found, and everything is
+// Second phase of loading. The expanded tree becomes components, ids are resolved, files are found, and everything is
 // prepared.
 #pragma once
 #include <map>
@@ -32,11 +32,11 @@ class SceneBuilder {
 
   void resolve_references(Component& component);
   void unresolved(const RefParamBase& ref, const std::string& id);
-  /// The component with the id `id` in that part of the scene, with the prefixes of its includes.
+  /// The component with this id in that part of the scene, with the prefixes of its includes.
   Component* lookup(const ScenePart& part, const std::string& id, bool& lost) const;
   void find_files(Component& component);
 
-  /// Gathers the materials and checks every name of one.
+  /// Collects the materials and checks every reference to one.
   void join_materials();
 
   void prepare_all();
@@ -52,8 +52,8 @@ class SceneBuilder {
   std::map<const Component*, const ScenePart*> part_of_;
   std::set<const Component*> failed_, prepared_;
   std::map<std::string, int> ordinals_;
-  std::map<std::string, const Component*, std::less<>> only_ones_;  ///< of what may stand only once in a scene
-  std::set<std::string> lost_ids_;  ///< of elements that could not be built: naming them is no second mistake
+  std::map<std::string, const Component*, std::less<>> only_ones_;  ///< of elements that are allowed once in a scene
+  std::set<std::string> lost_ids_;  ///< of elements that could not be built; a reference to them is not another error
   int order_ = 0;
 };
 

@@ -49,7 +49,7 @@ void SceneBuilder::unresolved(const RefParamBase& ref, const std::string& id) {
   if (!tree_.suggestions.afford(2 * scene_->in_order_.size())) return diagnostics_.error(ref.pos(), missing);
   std::vector<std::string> fitting, all;
   for (const Component* c : scene_->in_order_) {
-    if (c->id.find('#') != std::string::npos) continue;  // a made-up id is no help
+    if (c->id.find('#') != std::string::npos) continue;  // a generated id is no help
     all.push_back(c->id);
     if (kind_name(c->kind) == ref.ref_kind() || c->element == ref.ref_kind()) fitting.push_back(c->id);
   }
@@ -82,7 +82,7 @@ void SceneBuilder::find_files(Component& component) {
 
 void SceneBuilder::prepare_all() {
   prepare(*scene_);
-  // Bodies first: what acts on them may ask for their meshes.
+  // Bodies come first, since other components may use their meshes.
   for (Component* c : scene_->in_order_)
     if (c->kind == Kind::body) prepare_tree(*c);
   for (Component* c : scene_->in_order_)
@@ -96,7 +96,7 @@ void SceneBuilder::prepare_tree(Component& component) {
 
 void SceneBuilder::prepare(Component& component) {
   prepared_.insert(&component);
-  // What stands on something broken would only report consequences.
+  // Components that depend on a broken one would only report consequences.
   if (component.parent && component.parent != scene_.get() && failed_.contains(component.parent))
     failed_.insert(&component);
   for (ParamBase* p : component.params()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The materials of a scene, and every name of one checked.
+// The materials of a scene, and the check of every reference to one.
 #include <algorithm>
 
 #include "core/scene/builder.h"
@@ -16,7 +16,7 @@ void SceneBuilder::join_materials() {
     if (element->id.find('#') != std::string::npos)
       report(*c, c->pos, "a <material> needs an id, by which others refer to it");
     const auto known = std::find_if(all.begin(), all.end(), [&](const Material& m) { return m.name == element->id; });
-    if (known != all.end()) *known = element->material();  // the scene's own look of it
+    if (known != all.end()) *known = element->material();  // replaced by the scene's own material
     else all.push_back(element->material());
   }
   std::vector<std::string> names;

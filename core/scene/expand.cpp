@@ -112,7 +112,7 @@ class Expander {
     e.children = std::move(children);
   }
 
-  /// The value could not be made out, which has been reported; the loader must not complain that it is missing.
+  /// The value has an error that was reported. The loader must not report that it is missing.
   static bool drop(Element& e, Attribute& a) {
     e.broken_attributes.push_back(a.name);
     return true;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From a scene file to checked components: the order of the steps, and the last line of defence.
+// From a scene file to checked components: the order of the steps, and the handling of unexpected exceptions.
 #include "core/scene/loader.h"
 
 #include <fmt/format.h>
@@ -18,7 +18,7 @@ constexpr std::size_t max_shown = 100;
 
 std::string counted(std::size_t n, const char* what) { return fmt::format("{} more {}{}", n, what, n == 1 ? "" : "s"); }
 
-/// In order of position; the first hundred, and how many more there are. Errors go before warnings.
+/// Keeps the first hundred messages in order of position, and the number of others. Errors have priority over warnings.
 Diagnostics tidy(Diagnostics all) {
   all.sort_by_position();
   if (all.all().size() <= max_shown) return all;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // From a scene file to checked components.
 //
-// All errors are found and reported together, in order of file and position. A scene is returned only if there is none.
-// No exception leaves these functions, whatever the file contains.
+// All errors are found and reported together, in order of file and position. A scene is returned only if there are
+// none. No exception leaves these functions, whatever the file contains.
 #pragma once
 #include <filesystem>
 #include <memory>
@@ -21,7 +21,7 @@ struct LoadResult {
   bool ok() const { return scene != nullptr; }
 };
 
-/// time_step_s replaces the scene's own step, for comparisons; 0: as written.
+/// time_step_s replaces the scene's own step, for comparisons; 0: the scene's own.
 LoadResult load_scene(const std::filesystem::path& file, const Registry& registry, double time_step_s = 0);
 
 /// The same for a text. Relative paths in it are read from the folder of `virtual_path`, which need not exist.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `<material id="silk" style="fibre" colour="0.9 0.9 0.8"/>`: a look that surfaces and drawables of this scene may
+// `<material id="silk" style="fibre" colour="0.9 0.9 0.8"/>`: a material that surfaces and drawables of this scene may
 // name.
 #pragma once
 #include "core/registry/component.h"

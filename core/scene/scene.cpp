@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Looking up components of a scene.
+// Look-up of components of a scene.
 #include "core/scene/scene.h"
 
 #include "core/registry/registry.h"

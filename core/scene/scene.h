@@ -58,13 +58,11 @@ class Scene final : public Component {
     return dynamic_cast<T*>(find(wanted));
   }
 
-  /// Those of the registry, then those of the scene's <material> elements.
+  /// The materials of the registry, then those of the scene's <material> elements.
   const std::vector<Material>& materials() const { return materials_; }
 
-  const std::filesystem::path& file() const { return file_; }  ///< as it was given to the loader
-  const std::filesystem::path& root_folder() const {
-    return root_folder_;
-  }  ///< nothing outside may be named by a scene
+  const std::filesystem::path& file() const { return file_; }                ///< as it was given to the loader
+  const std::filesystem::path& root_folder() const { return root_folder_; }  ///< a scene may name no file outside of it
   /// FNV-1a over the scene file, the included files and every file that a parameter names, in the order read.
   unsigned long long content_hash() const { return content_hash_; }
 

@@ -61,7 +61,7 @@ bool Variables::expand(Definition& d, const SourcePos& pos) {
   ++depth_;
   const bool ok = replace(d.value, *d.scope, d.value_pos);
   --depth_;
-  d.state = Definition::State::done;  // a failure has been reported once; what is left stands as it is
+  d.state = Definition::State::done;  // a failure is reported once; the text then stays as it is
   return ok;
 }
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Commands between two steps: tool exchange, what components offer, messages.
+// Commands between two steps: tool exchange, commands of components, messages.
 #include "core/base/text.h"
 #include "core/sim/simulation.h"
 
 namespace insula {
 namespace {
 
-// The first word of `text`, which is left with the rest.
+// Removes the first word from `text` and returns it.
 std::string_view take_word(std::string_view& text) {
   const auto blank = [](char c) { return c == ' ' || c == '\t'; };
   while (!text.empty() && blank(text.front())) text.remove_prefix(1);
@@ -53,7 +53,7 @@ std::string Simulation::exchange(std::string_view argument) {
   Instrument* held = instrument_of(hand);
   Pose device = wanted->home_pose();
   if (held) {
-    // A tool that touches something is drawn out first: its successor would start inside of it.
+    // A tool in contact cannot be exchanged, since its successor would start inside the tissue.
     for (const ContactPoint& c : report_.contacts)
       if ((c.a == held || c.b == held) && c.normal_force > 0)
         return "draw the instrument out of the field before you exchange it";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The draw, and what is due.
+// The random draw, and the start of complications that are due.
 #include "core/sim/complications.h"
 
 #include <algorithm>
@@ -48,7 +48,7 @@ void Complications::draw(std::uint64_t wanted, const Simulation& simulation) {
   drawn_from_ = wanted != 0 ? wanted : std::uint64_t(seed() != 0 ? seed() : simulation.scene().seed());
   drawn_.clear();
   for (const Complication* c : list_) {
-    // A stream of its own from its name: adding another complication leaves this one's draw alone.
+    // The name gives each complication a stream of its own, so another complication does not change its draw.
     Fnv1a name;
     name.add(c->id);
     Random random(drawn_from_, name.value() >> 1);
@@ -56,8 +56,8 @@ void Complications::draw(std::uint64_t wanted, const Simulation& simulation) {
     d.id = c->id;
     d.command = c->command();
     d.probability = c->probability();
-    // uniform() is below 1: probability 1 always happens, 0 never. Both numbers are drawn, so that a changed
-    // probability moves no time.
+    // uniform() is below 1, so probability 1 always happens and 0 never does. Both numbers are drawn, so that a changed
+    // probability does not change the time.
     d.happens = random.uniform() < c->probability();
     d.time = random.uniform(c->from(), c->to());
     drawn_.push_back(std::move(d));

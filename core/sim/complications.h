@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Complications drawn by chance: which of them happen in this run, and when. The draw is made from a seed alone, so
-// that a report that states the seed states the run.
+// Random complications: which of them happen in this run, and when. The draw depends only on a seed, so the seed in a
+// report identifies the run.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -29,17 +29,18 @@ class Complication final : public Component {
   void prepare(PrepareContext& context) override;
 };
 
-/// What the seed made of one complication.
+/// The result of the draw for one complication.
 struct DrawnComplication {
   std::string id, command;
   double probability = 0;
   bool happens = false;
-  double time = 0;  ///< s; drawn whether it happens or not
+  double time = 0;  ///< s; drawn even if it does not happen
   bool begun = false;
-  std::string refused;  ///< why it could not be done when its time came; empty: done, or not begun
+  std::string refused;  ///< reason why it was refused at its time; empty: done, or not begun
 };
 
-/// `<complications>`: owns them. Each draws from a stream of its own, so that one more changes none of the others.
+/// `<complications>`: owns them. Each has a random stream of its own, so an additional complication does not change the
+/// others.
 class Complications final : public Component {
  public:
   static constexpr std::string_view kind_name = "list of complications";
@@ -53,9 +54,9 @@ class Complications final : public Component {
   void prepare(PrepareContext& context) override;
   /// Checks that the commands exist.
   void connect(PrepareContext& context, const Simulation& simulation);
-  /// Draws anew; 0 takes the seed of the element, or of the scene.
+  /// Draws again from `seed`; 0 means the seed of the element, or of the scene.
   void draw(std::uint64_t seed, const Simulation& simulation);
-  /// Does what is due at the start of the coming step.
+  /// Starts what is due at the start of the coming step.
   void act(Simulation& simulation);
   std::uint64_t drawn_from() const { return drawn_from_; }
   const std::vector<DrawnComplication>& drawn() const { return drawn_; }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Puts right what W lacks where a body knows its compliance only nearly. With W the one in the problem and V the true
-// one,
+// Defect correction (Stetter 1978) for bodies whose compliance is approximate. With W in the problem and V the true
+// matrix,
 //     V lambda + delta_free = W lambda + (delta_free + (V - W) lambda_k)   at lambda = lambda_k,
-// so the problem is solved again with the bracket in place of delta_free. Each pass makes the error smaller by |W^-1 (V
-// - W)|; its fixed point is the exact step. Where free motion is that under the last step's forces
-// (BodySolver::begin_motion), the first bracket takes off what W knows of them, and the true motion tells the rest. The
-// problem that the hands get has the same bracket: the servo begins at the step's own solution.
+// so the problem is solved again with the bracket in place of delta_free. Each pass reduces the error by the factor
+// |W^-1 (V - W)|, and the fixed point is the exact step. If the free motion contains the last step's forces
+// (BodySolver::begin_motion), the first bracket subtracts their effect as W gives it, and the true motion gives the
+// rest. The problem for the hands has the same bracket, so the servo begins at the solution of the step.
 #pragma once
 #include <vector>
 
@@ -19,11 +19,11 @@ class InexactSolver;
 
 class DefectCorrection {
  public:
-  /// When the problem's W is complete: sets delta_free to the first bracket.
+  /// Called when the problem's W is complete: sets delta_free to the first bracket.
   void begin(ConstraintProblem& problem, const std::vector<DynamicBody*>& bodies);
-  /// Whether there is a body that knows its compliance only nearly.
+  /// Whether the compliance of any body is approximate.
   bool needed() const { return !bodies_.empty(); }
-  /// Sets problem.delta_free to the bracket for lambda; returns the largest change of a row since the last pass, m.
+  /// Sets problem.delta_free to the bracket for lambda. Returns the largest change of a row since the last pass, m.
   double pass(ConstraintProblem& problem, const double* lambda, Workers& workers);
 
  private:

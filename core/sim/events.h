@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Things that happen once, in the order they happened.
+// Things that happen once, in the order in which they happened.
 #pragma once
 #include <string>
 #include <vector>
@@ -10,9 +10,9 @@ struct Event {
   std::string kind;  ///< "goal", "fault", "message", "end", "reset", "warning", or one that a component declares
   std::string id;    ///< of the component, goal or fault
   std::string text;  ///< for the trainee
-  double value = 0;  ///< SI, as the kind says
+  double value = 0;  ///< SI; its meaning depends on the kind
   double time = 0;   ///< simulated time, s
-  int hand = -1;     ///< whose tool did it: 0 left, 1 right; -1: none's, or not known
+  int hand = -1;     ///< hand whose tool caused it: 0 left, 1 right; -1: none or not known
 };
 
 class EventSink {

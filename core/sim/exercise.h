@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An exercise: goals, faults and an end, kept by rules that read the step's report and write nothing else.
+// An exercise: goals, faults and an end. Rules read the step's report and write only these.
 #pragma once
 #include <string>
 #include <vector>
@@ -24,7 +24,7 @@ struct FaultState {
   double last_time = -1;
 };
 
-/// A clock shown to the trainee: how long something has lasted.
+/// A clock shown to the trainee.
 struct TimerState {
   std::string id, text;
   double limit = 0;    ///< s; 0: none
@@ -33,7 +33,7 @@ struct TimerState {
   double longest = 0;  ///< largest elapsed so far, s
 };
 
-/// A figure of merit as it is now: neck remnant, narrowing of a branch, ...
+/// The present value of a measure: neck remnant, narrowing of a branch, ...
 struct MeasureState {
   std::string id, text, unit;
   bool known = false;  ///< has a value
@@ -43,7 +43,7 @@ struct MeasureState {
 
 enum class ExerciseState { running, done, failed };
 
-/// What rules write: goals reached, faults made, messages, the end.
+/// Output of rules: goals reached, faults made, messages, the end.
 class ExerciseLog {
  public:
   int add_goal(std::string id, std::string text, bool required = true);
@@ -51,7 +51,7 @@ class ExerciseLog {
   int add_timer(std::string id, std::string text, double limit_s);
   int add_measure(std::string id, std::string text, std::string unit);
   void goal(int index, double time);
-  /// What was reached is so no more (what was done was undone). Only while the exercise runs: an end stays.
+  /// Takes back a goal whose condition no longer holds. Only while the exercise runs: an end is final.
   void goal_lost(int index, double time);
   void fault(int index, double time, double value);
   void timer(int index, double elapsed_s, bool running);
@@ -82,7 +82,7 @@ class ExerciseLog {
 class ExerciseRule : public Component {
  public:
   static constexpr std::string_view kind_name = "exercise rule";
-  /// Once: find what it watches, declare goals and faults.
+  /// Called once: finds what the rule watches, declares goals and faults.
   virtual void declare(PrepareContext&, const Simulation&, ExerciseLog&) = 0;
   virtual void observe(const StepReport& report, ExerciseLog& log) = 0;
   virtual void reset() {}

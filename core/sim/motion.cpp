@@ -20,8 +20,8 @@ constexpr std::string_view header = "time_s,hand,px_m,py_m,pz_m,qw,qx,qy,qz,butt
 constexpr std::array<std::string_view, 11> columns = {"time_s", "hand", "px_m", "py_m",    "pz_m",   "qw",
                                                       "qx",     "qy",   "qz",   "button1", "button2"};
 constexpr std::uintmax_t largest_file = 64u << 20;
-constexpr double farthest_m = 1.0;             // a hand further from the scene's origin is a unit mistake
-constexpr double quaternion_tolerance = 1e-3;  // what rounding to four digits leaves
+constexpr double farthest_m = 1.0;             // a hand farther from the scene's origin indicates a wrong unit
+constexpr double quaternion_tolerance = 1e-3;  // error of rounding to four digits
 
 struct Reader {
   std::string_view name;
@@ -54,7 +54,7 @@ std::string_view stripped(std::string_view s) {
   return s;
 }
 
-constexpr std::size_t longest_argument = 400;  // bytes, as Simulation::command takes it
+constexpr std::size_t longest_argument = 400;  // bytes, as in Simulation::command
 constexpr std::array<std::string_view, 3> verbs = {"exchange", "ask", "message"};
 
 /// The text of a field that may stand in quotes.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Scripted motions: interpolation against closed forms, and every way a file can be wrong.
+// Scripted motions: interpolation against closed forms, and every error of a file.
 #include "core/sim/motion.h"
 
 #include <gtest/gtest.h>

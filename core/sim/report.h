@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What one step did, as plain data: read by exercise rules, the recorder, the publisher and the report writer.
+// The result of one step as plain data, for exercise rules, the recorder, the publisher and the report writer.
 #pragma once
 #include <array>
 #include <string>
@@ -40,16 +40,15 @@ struct StepReport {
   std::int64_t step = 0;
   int rows = 0;
   SolveStats solve;
-  SolverStatus solver;  ///< of the bodies' solvers: the worst, and all factors taken into use
-  double defect_m =
-      0;  ///< largest change of a row that the last pass of defect correction made, m; 0: every body is exact
+  SolverStatus solver;  ///< of the bodies' solvers: the worst status, and the number of all factors
+  double defect_m = 0;  ///< largest change of a row in the last pass of defect correction, m; 0: every body is exact
   std::vector<ContactPoint> contacts;
   std::vector<ToolReport> tools;
   const ChannelTable* channel_table = nullptr;  ///< of the simulation; null: there are no channels
   std::vector<double> channels;                 ///< SI, in the order of the table; NaN: not known now
   std::array<double, stage_count> stage_ms{};
   double step_ms = 0;
-  std::vector<Event> events;  ///< of this step, before the exercise speaks
+  std::vector<Event> events;  ///< of this step, without those of the exercise
   bool finite = true;
   void clear();
 };

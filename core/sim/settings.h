@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Scene-wide settings: the nonlinear solver, settling, devices, and the first look at the field.
+// Scene-wide settings: the nonlinear solver, settling, devices, and the first view of the field.
 #pragma once
 #include "core/registry/component.h"
 
@@ -42,7 +42,7 @@ class SettleSettings final : public Component {
        .doc = "simulated time before the exercise begins, in which arms take their places and tissue comes to rest"}};
 };
 
-/// Read by whoever starts the haptic server: the engine itself knows no devices.
+/// Read by the program that starts the haptic server. The engine itself has no devices.
 class DeviceSettings final : public Component {
  public:
   static constexpr std::string_view kind_name = "settings";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The step. What comes before the first one and between runs: simulation_setup.cpp.
+// The step. The start and the reset are in simulation_setup.cpp.
 #include "core/sim/simulation.h"
 
 #include <algorithm>
@@ -29,7 +29,7 @@ class StageClock {
   Time start_, last_;
 };
 
-constexpr int steps_with_newton_soon = 15;  ///< after one whose sweeps stalled; then they are tried again
+constexpr int steps_with_newton_soon = 15;  ///< steps with early Newton after a stall; then sweeps are tried again
 constexpr int max_passes = 3;               ///< of defect correction
 
 }  // namespace
@@ -135,7 +135,7 @@ void Simulation::solve_rows() {
 }
 
 void Simulation::correct_motion() {
-  // The haptic problem wants the tools' terms of this step, before they move.
+  // The haptic problem needs the tools' terms of this step before the tools move.
   std::size_t hands = 0;
   for (Instrument* i : instruments_)
     if (i->hand_index() >= 0 && i->active()) ++hands;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Everything of one run: the scene's bodies and constraints, stepped. Several may live in one program.
+// All state of one run: the scene's bodies and constraints, and the step. Several may exist in one program.
 //
 // One step: free motion per body (parallel) -> collision -> rows -> W = sum_b H_b A_b^-1 H_b^T (parallel) -> solve ->
 // corrective motion (parallel) -> report -> exercise. Order everywhere is document order, so the same scene and the
@@ -30,32 +30,32 @@ class Registry;
 
 class Simulation {
  public:
-  /// Connects the scene's components; what does not fit is reported. threads: 0 takes the machine's.
+  /// Connects the scene's components and reports errors. threads: number of threads; 0: as many as the machine has
+  /// cores.
   Simulation(std::unique_ptr<Scene> scene, Diagnostics& diagnostics, int threads = 0);
   ~Simulation();
 
-  /// What a hand asks for at the end of the coming step (0 left, 1 right).
+  /// Sets the state of a hand for the end of the coming step (0 left, 1 right).
   void set_hand(int hand, const HandState& state);
   void step();
-  /// What a viewer, a script or a complication asks for between two steps:
+  /// A command of a viewer, a script or a complication between two steps:
   ///   exchange  "right applier"               the hand lays down its tool and takes that one
   ///   ask       "pump fail", "artery_pressure set_systolic 160"   a command of a component (Component::commands)
   ///   message   "text"                        said to the trainee
-  /// Returns why it was not done; empty when done. What was done, and what was refused, becomes an event.
+  /// Returns the reason for a refusal; empty when done. Both results become an event.
   std::string command(std::string_view verb, std::string_view argument);
-  /// An event of the coming step.
+  /// Adds an event to the coming step.
   void announce(Event event) { commanded_.push_back(std::move(event)); }
-  /// Takes away what the coming step would announce: for who cannot wait for it, as while paused.
+  /// Removes and returns the events that the coming step would announce, for use while the run is paused.
   std::vector<Event> take_announced() { return std::exchange(commanded_, {}); }
-  /// Draws the scene's complications anew from that seed, now and after every reset; 0: from the scene's own.
+  /// Draws the scene's complications again from that seed, now and after every reset; 0: from the scene's own seed.
   void draw_complications(std::uint64_t seed);
-  /// Whether a step may wait for what works in the background (default: the same input gives the same bits) or is never
-  /// late.
+  /// Whether a step waits for background work, so that the same input gives the same bits (default), or never waits.
   void set_deterministic(bool yes);
-  /// Tools' contacts of so long after a step are in its problem already, as the servo needs them before the next one
-  /// arrives; 0, the default: those of the step and within the alarm distance alone.
+  /// Time after a step for which its problem already contains the contacts of tools, s. The servo needs them before the
+  /// next problem arrives. 0 (default): only contacts of the step and within the alarm distance.
   void set_collision_horizon(double seconds) { context_.collision_horizon_s = seconds; }
-  /// Back to the start, to the same bits.
+  /// Returns to the start, with the same bits.
   void reset();
 
   const Scene& scene() const { return *scene_; }
@@ -63,7 +63,7 @@ class Simulation {
   double time() const { return context_.time; }
   std::int64_t steps() const { return context_.step; }
   const StepReport& report() const { return report_; }
-  /// The last step's problem with its solution as warm start: what the haptic server gets.
+  /// The last step's problem with its solution as warm start, as the haptic server gets it.
   const ConstraintProblem& problem() const { return problem_; }
   const std::vector<Body*>& bodies() const { return bodies_; }  ///< instruments included, document order
   const std::vector<Instrument*>& instruments() const { return instruments_; }
@@ -71,9 +71,9 @@ class Simulation {
   const std::vector<Constraint*>& constraints() const { return constraints_; }
   /// All channels of the scene; their values of the last step are in report().channels.
   const ChannelTable& channels() const { return channel_table_; }
-  /// The value of a scalar channel as published last, SI. Throws std::out_of_range when the scene has none of that id.
+  /// The value of a scalar channel as published last, SI. Throws std::out_of_range if the scene has no such channel.
   double channel(std::string_view id) const;
-  /// All drawables of the scene in document order, with the component of each.
+  /// All drawables of the scene in document order, with their components.
   struct DrawableEntry {
     const Component* component;
     const DrawableBase* drawable;
@@ -84,14 +84,14 @@ class Simulation {
   const ViewSettings* view() const { return view_; }
   const SolveSettings& solve_settings() const {
     return solve_settings_;
-  }                                           ///< as the scene's <solver> says, else the defaults
-  Instrument* instrument_of(int hand) const;  ///< the one in that hand now; null when there is none
+  }                                           ///< from the scene's <solver>, else the defaults
+  Instrument* instrument_of(int hand) const;  ///< the one in that hand now; null if there is none
   Workers& workers() { return workers_; }
-  /// Events of the last step: constraints' first, then the exercise's.
+  /// Events of the last step: those of constraints first, then those of the exercise.
   const std::vector<Event>& events() const { return events_; }
   /// FNV-1a over the bits of every body's and constraint's state.
   std::uint64_t state_hash() const;
-  /// Kinetic and elastic energy of all bodies, J. No step needs it, so it is computed when asked for.
+  /// Kinetic and elastic energy of all bodies, J. It is computed on request, since no step needs it.
   double energy() const;
 
  private:

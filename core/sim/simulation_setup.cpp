@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A simulation is put together, settled, asked, and put back to its start.
+// Construction, settling, queries and reset of a simulation.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -111,7 +111,7 @@ void Simulation::reset() {
   events_.clear();
   sink_.clear();
   if (settle_time_ > 0) {
-    Diagnostics none;  // the same as at the start, where they were reported
+    Diagnostics none;  // the same messages as at the start, where they were reported
     settle(none);
   }
   for (const ChannelEntry& e : channel_table_.entries()) const_cast<ChannelBase*>(e.channel)->reset();
@@ -134,7 +134,7 @@ void Simulation::draw_complications(std::uint64_t seed) {
   if (complications_) complications_->draw(seed, *this);
 }
 
-// The exercise sees nothing of it, and time is negative until it begins.
+// The exercise does not observe these steps. Time is negative until it begins.
 void Simulation::settle(Diagnostics& diagnostics) {
   const int n = int(std::ceil(settle_time_ / context_.h - 1e-9));
   Exercise* const exercise = exercise_;

@@ -13,7 +13,7 @@ namespace insula::test {
 /// diagonal. Node (i, j, k) has number (i (cells[1] + 1) + j) (cells[2] + 1) + k.
 TetMesh block_mesh(const std::array<int, 3>& cells, const Vec3& low, const Vec3& high);
 
-/// One tetrahedron with its fourth node over the first three: (0 0 0), (a 0 0), (0 a 0), (0 0 a); shifted by `at`.
+/// One tetrahedron with its fourth node above the first three: (0 0 0), (a 0 0), (0 a 0), (0 0 a); shifted by `at`.
 TetMesh single_tet(double a, const Vec3& at = Vec3::Zero());
 
 /// gmsh 2.2 ASCII, all digits, in metres.
@@ -22,7 +22,7 @@ std::string gmsh_text(const TetMesh& mesh);
 /// OBJ text of a surface in metres.
 std::string obj_text(const TriMesh& mesh);
 
-/// A folder with a `meshes` folder in it, removed in the end: scenes written there may name its meshes.
+/// A temporary folder with a `meshes` folder in it. Scenes written there may name its meshes.
 class SceneFolder {
  public:
   SceneFolder();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Allocation functions of a test program: they count, and on demand their addresses ascend or descend.
+// Allocation functions of a test program. They count, and on request their addresses ascend or descend.
 #include "core/testing/count_allocations.h"
 
 #include <cstddef>
@@ -11,7 +11,7 @@ std::atomic<long> allocations{0};
 
 namespace {
 
-/// Memory that is handed out once, from both of its ends. The system backs only the pages that are used.
+/// Memory that is given out once, from both of its ends. The system provides only the pages that are used.
 struct Arena {
   static constexpr std::size_t size = std::size_t(1) << 30;
   enum Mode { off, up, down };

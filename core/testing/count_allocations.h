@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Counts what a test program allocates. A program that uses this header has counting allocation functions
+// Counts the allocations of a test program. A program that uses this header has counting allocation functions
 // (count_allocations.cpp).
 #pragma once
 #include <atomic>
@@ -9,8 +9,8 @@ extern std::atomic<long> allocations;
 
 namespace insula::test {
 
-/// While one lives, each new allocation lies above, or below, the one before it. What depends on the order of pointers
-/// comes out otherwise in the one than in the other. One at a time.
+/// While an object exists, the address of each new allocation is above, or below, that of the one before. Results that
+/// depend on the order of pointers then differ. Only one may exist at a time.
 class OrderedHeap {
  public:
   enum Order { ascending, descending };

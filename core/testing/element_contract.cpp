@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which contracts an element is held to follows from its kind.
+// The kind of an element determines its contracts.
 #include <gtest/gtest.h>
 
 #include "core/testing/contracts.h"

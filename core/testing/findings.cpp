@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Broken laws, collected and told once each.
+// Violated laws, collected and reported once each.
 #include "core/testing/findings.h"
 
 #include <fmt/format.h>

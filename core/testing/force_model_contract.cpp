@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contract of force models: energy, force, stiffness and, of those that act within the body, invariance under rigid
-// motion.
+// Contract of force models: energy, force, stiffness and, for internal forces, invariance under rigid motion.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -16,7 +15,7 @@
 namespace insula::test {
 namespace {
 
-/// The model bound to a matrix of its own in which no node is held.
+/// The model, bound to a separate matrix without fixed nodes.
 struct Bench {
   DeformableBody& body;
   ForceModel& model;
@@ -43,7 +42,7 @@ struct Bench {
     model.linearise(x.data(), f.data(), &matrix, h, which);
     return dense();
   }
-  /// Of the force that depends on velocity; C if it is asked for.
+  /// Force that depends on velocity, and C if it is requested.
   VecX damping_force(const VecX& x, const VecX& v, double h, MatX* damping = nullptr) {
     VecX f = VecX::Zero(n);
     matrix.set_zero();
@@ -166,7 +165,7 @@ void check_prestrain(Findings& findings, Bench& b, const VecX& rest, double refe
   findings.within("prestrains add up", (b.force(rest) - before).lpNorm<Eigen::Infinity>(), reference, 1e-10);
 }
 
-/// What a run changes for good in a model shows in its state, and reset() takes it back.
+/// Lasting changes of a model in a run are in its state, and reset() undoes them.
 void check_memory(Findings& findings, const std::filesystem::path& scene, const std::string& id) {
   auto s = load(scene);
   ASSERT_TRUE(s);
@@ -202,7 +201,7 @@ VecX random_vector(Random& random, int n, double scale) {
   return d;
 }
 
-/// Damping of the model's own, in a state without a history.
+/// Damping of the model's own, in a state without history.
 void check_damping(Findings& findings, Bench& b, const VecX& x, std::uint64_t seed) {
   constexpr double h = 0.01;
   Random random(seed);

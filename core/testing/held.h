@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Laws that hold to a tolerance. What was found is kept as a property of the running test (gtest's
-// --gtest_output=json), so that the manual's pictures can show it beside what is allowed.
+// Laws that hold to a tolerance. The result is kept as a property of the running test (gtest's --gtest_output=json), so
+// that the manual's figures can show it beside the tolerance.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -11,8 +11,7 @@
 
 namespace insula::test {
 
-/// Whether error <= tolerance * size; the greatest error / size that the test meets under this law is kept with the
-/// tolerance.
+/// Whether error <= tolerance * size. The largest error / size of the test under this law is kept with the tolerance.
 inline ::testing::AssertionResult held(const std::string& law, double error, double size, double tolerance) {
   const double found = error == 0 ? 0 : error / size;
   double most = found;

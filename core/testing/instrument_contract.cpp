@@ -27,7 +27,7 @@ HandState hand_at(const Pose& pose) {
 void check_follows(Findings& findings, Simulation& s, Instrument& tool) {
   s.reset();
   const int hand = tool.hand_index();
-  // Out of reach of everything: away along the shaft, held there until it rests, then a free move.
+  // Moves the tool away from all bodies along its shaft, waits until it rests, then moves it freely.
   Vec6 d;
   d << 0.2 * tool.shaft().normalized(), Vec3(0.1, -0.2, 0.05);
   const Pose away = displaced(tool.home_pose(), d);
@@ -35,7 +35,7 @@ void check_follows(Findings& findings, Simulation& s, Instrument& tool) {
   for (int i = 0; i < 200; ++i) s.step();
   if (!findings.expect(displacement(away, tool.pose()).norm() < 1e-9, "it does not come to rest at the hand")) return;
   findings.expect(tool.hand_force().norm() < 1e-6, "the hand feels a force without a displacement");
-  if (tool.mass() > 0) return;  // inertia lags by intention
+  if (tool.mass() > 0) return;  // inertia causes a lag by intention
   Vec6 m;
   m << 0.001, -0.002, 0.0015, 0.02, 0.01, -0.03;
   const Pose next = displaced(away, m);
@@ -46,7 +46,7 @@ void check_follows(Findings& findings, Simulation& s, Instrument& tool) {
                   "the tool that touches nothing is not where the hand is");
 }
 
-// The gain of the haptic loop says where the free tool goes for another device pose.
+// The gain of the haptic loop predicts the free tool for another device pose.
 void check_terms(Findings& findings, const std::filesystem::path& scene, const std::string& id, int steps) {
   auto a = load(scene), b = load(scene);
   ASSERT_TRUE(a && b);
@@ -81,7 +81,7 @@ void check_terms(Findings& findings, const std::filesystem::path& scene, const s
                   "the haptic terms have another stiffness than the coupling");
   findings.expect(terms->jacobian.rows() == a->problem().rows, "the tool's Jacobian has not the problem's rows");
   const Pose predicted = displaced(terms->free, terms->gain * displacement(terms->device, moved.device));
-  // Rotations of 1e-4 rad: second order is 1e-8.
+  // For rotations of 1e-4 rad, the second-order error is 1e-8.
   findings.expect(displacement(predicted, other->free_pose()).norm() < 1e-7 * (1 + terms->gain.norm()),
                   "the gain does not predict the free tool for another device pose");
   findings.at("");
@@ -108,7 +108,7 @@ void check_instrument(const std::filesystem::path& scene, const std::string& ele
                       "the hand's force is not stiffness times displacement");
       findings.expect(tool->activity() >= 0 && tool->activity() <= 1, "its activity is not within 0 and 1");
     }
-    if (tool->hand_index() < 0) {  // an arm holds it: the hands' script must not carry it away
+    if (tool->hand_index() < 0) {  // held by an arm, so the hands' script does not move it
       findings.expect(displacement(tool->home_pose(), tool->device()).norm() < 1e-12,
                       "the hands carry away what an arm holds");
       continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The stated law on sampled states.
+// Checks the stated law on sampled states.
 #include "core/testing/law_contract.h"
 
 #include <fmt/format.h>
@@ -69,7 +69,7 @@ class Probe {
     restore_();
     return out;
   }
-  // Positive forces make the violation grow.
+  // Positive forces increase the violation.
   void compare(double rows, double stated, double compliance, const std::string& place) {
     const double allowed = 1e-5 * std::max(std::abs(rows), std::abs(stated)) + 1e-8;
     if (std::abs(rows - stated) <= allowed) return;
@@ -107,7 +107,7 @@ void check_potential(Findings& findings, Simulation& s, Component& c, const RowM
   }
 }
 
-/// Translation of one whole body by this vector; nothing where the body cannot be moved.
+/// Translation of one whole body by this vector; nothing if the body cannot be moved.
 std::optional<std::vector<VecX>> shifted(const Simulation& s, std::size_t body, const Vec3& by) {
   std::vector<VecX> dq = no_motion(s);
   if (dynamic_cast<const DeformableBody*>(s.bodies()[body])) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Part of the contract of rows: what a component states about its law against the rows that it builds.
+// Part of the contract of rows: compares the law that a component states with the rows that it builds.
 #pragma once
 #include <cstdint>
 
@@ -8,12 +8,12 @@
 
 namespace insula::test {
 
-/// Whether the rows keep things apart, by what the component states: then their direction may turn with an open gap.
+/// Whether the component states a unilateral law. The direction of its rows may then change with an open gap.
 bool is_unilateral(const Component& c, const RowData& row);
 
-/// Moves the bodies along rows, through the place where the law begins to act, and compares the rows' force with the
-/// stated law's. Bodies that a unilateral law holds apart are moved far apart: nothing may act then. The bodies are
-/// brought back.
+/// Moves the bodies along rows, through the point where the law begins to act, and compares the rows' force with that
+/// of the stated law. Bodies with a unilateral law are also moved far apart, where no force may act. The bodies then
+/// return.
 void check_stated_law(Findings& findings, Simulation& s, Component& c, std::uint64_t seed);
 
 }  // namespace insula::test

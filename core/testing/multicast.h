@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A bus of its own for a test with real processes.
+// A separate bus for a test with real processes.
 #pragma once
 #include <netinet/in.h>
 #include <sys/socket.h>
@@ -25,7 +25,7 @@ inline int free_udp_port() {
 
 inline std::string own_bus_url() { return "udpm://239.255.76.67:" + std::to_string(free_udp_port()) + "?ttl=0"; }
 
-/// Whether messages of the bus come back on this machine.
+/// Whether messages of the bus return on this machine.
 inline bool multicast_works() {
   LcmBus bus(own_bus_url());
   int seen = 0;
@@ -38,7 +38,7 @@ inline bool multicast_works() {
   return seen > 0;
 }
 
-/// Whether LCM's own library and tools have the multicast route they need; as root, a missing route is added.
+/// Whether LCM's own library and tools have the multicast route that they need. As root, this adds a missing route.
 inline bool lcm_tools_work() {
   const auto has_route = [] {
     const int probe = ::socket(AF_INET, SOCK_DGRAM, 0);

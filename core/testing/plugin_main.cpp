@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contracts for what a shared plugin brings, beside the tests that its author wrote.
+// Contracts for the elements of a shared plugin, in addition to its author's tests.
 #include "core/testing/plugin_main.h"
 
 #include <gtest/gtest.h>

@@ -43,7 +43,7 @@ RowMap RowBench::rows(double time) {
     f->update();
     f->update_collision();
   }
-  ++context_.step;  // what is refreshed once a step is refreshed now
+  ++context_.step;  // data that are updated once a step are updated now
   context_.time = simulation_.time() + time;
   builder_.clear();
   if (auto* c = dynamic_cast<Constraint*>(&component_)) {
@@ -71,7 +71,7 @@ RowMap RowBench::rows(double time) {
         by_row[std::size_t(rows.row[std::size_t(i)])]->h[b].segment<3>(3 * rows.block[std::size_t(e)]) +=
             rows.coeff[std::size_t(e)];
   }
-  // What the builder has is the violation alone; H dq_free comes with the compliance.
+  // The builder has only the violation. H dq_free is added with the compliance.
   for (std::size_t r = 0; r < by_row.size(); ++r) {
     by_row[r]->violation = problem_.delta_free[r];
     by_row[r]->rate = problem_.rate[r];
@@ -106,7 +106,7 @@ VecX RowBench::expected_motion(Body& body) const {
       dq.segment<3>(3 * i) = soft->expected_displacement(p);
     }
   } else if (auto* tool = dynamic_cast<RigidBody*>(&body)) {
-    // Translation from the tip; the rotation from two points a metre off.
+    // The translation follows from the tip, the rotation from two points at a distance of a metre.
     const Pose pose = tool->link_pose(0);
     const auto at = [&](const Vec3& offset) {
       return tool->free_displacement(tool->link_point(0, pose.q.conjugate() * offset));
@@ -114,7 +114,7 @@ VecX RowBench::expected_motion(Body& body) const {
     const Vec3 t = at(Vec3::Zero()), x = at(Vec3::UnitX()) - t, y = at(Vec3::UnitY()) - t;
     dq.head<6>() << t, Vec3(y.z(), -x.z(), x.y());
     if (tool->blocks() < 3) return dq;
-    // The opening from a point of the first jaw, along the direction in which it turns.
+    // The opening follows from a point of the first jaw, along the direction in which it rotates.
     const MaterialPoint p = tool->link_point(1, Vec3::Zero());
     Vec3 turn;
     for (int k = 0; k < 3; ++k) {

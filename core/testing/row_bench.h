@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The rows of one component, built at any state of the bodies, outside a step. For the contracts.
+// The rows of one component, built at any state of the bodies outside a step, for the contracts.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -16,18 +16,17 @@ struct RowData {
   Block block;
   int offset = 0;        ///< row within its block
   double violation = 0;  ///< at the start of the step, m
-  double rate = 0;       ///< that the component itself declared, m/s
-  double swept = 0;      ///< of the block's place in the free motion, m
-  std::vector<VecX> h;   ///< one piece a body, blocks() * 3 long
+  double rate = 0;       ///< as the component declared it, m/s
+  double swept = 0;      ///< displacement of the block's point in the free motion, m
+  std::vector<VecX> h;   ///< one vector for each body, blocks() * 3 long
 
-  /// Whether the violation says how the law acts: friction's tangents and the rows of patches go by their motion.
+  /// Whether the law depends on the violation. Tangents of friction and rows of patches depend on the motion.
   bool positional() const { return block.law == LawKind::box || (block.law == LawKind::friction && offset == 0); }
   /// Whether the law is more than "delta = 0".
   bool has_law() const;
   double lower() const { return block.law == LawKind::box ? block.lower : 0.0; }
   double upper() const { return block.law == LawKind::box ? block.upper : infinite; }
-  /// Energy that the row's law holds at its violation, J: the largest -(lambda delta + c lambda^2 / 2) within the
-  /// bounds.
+  /// Energy of the row's law at its violation, J: the largest -(lambda delta + c lambda^2 / 2) within the bounds.
   double potential() const;
 };
 
@@ -38,7 +37,7 @@ std::string name_of(const RowKey& key, const RowData& row);  ///< "row 0 of key 
 class RowBench {
  public:
   RowBench(Simulation& s, Component& c);
-  /// Builds at the bodies' present state. time: s from now.
+  /// Builds at the bodies' present state. `time`: from now, s.
   RowMap rows(double time = 0);
   std::vector<Block> blocks;  ///< of the last rows()
 
@@ -53,12 +52,12 @@ class RowBench {
   StepContext context_;
 };
 
-/// Moves every body along dq (one vector a body, blocks() * 3 long), once.
+/// Moves every body along dq (one vector for each body, blocks() * 3 long), once.
 void move(Simulation& s, const std::vector<VecX>& dq, double scale);
 /// No motion, to be filled in.
 std::vector<VecX> no_motion(const Simulation& s);
 
-/// Brings the bodies back to where they were when it was made.
+/// Returns the bodies to their state at the object's construction.
 class Restore {
  public:
   explicit Restore(Simulation& s);
@@ -67,7 +66,7 @@ class Restore {
  private:
   Simulation& s_;
   std::vector<VecX> q_;
-  std::vector<std::pair<Pose, double>> pose_;  ///< with the opening
+  std::vector<std::pair<Pose, double>> pose_;  ///< with the opening, rad
 };
 
 }  // namespace insula::test

@@ -19,18 +19,18 @@
 namespace insula::test {
 namespace {
 
-// A contact's normal is fixed over a step; where it is no direction of least distance (an edge, a corner) an open gap
-// turns with it, and so does the way to a contact that was found along the free motion. The error is at most the gap
-// over this radius of curvature ...
+// A contact's normal is fixed over a step. If it is not a direction of least distance (at an edge or a corner), an open
+// gap rotates with it. So does the displacement to a contact that was found in the free motion. The error is at most
+// the gap over this radius of curvature ...
 constexpr double min_radius = 0.02;  // m
-// ... and a row is compared where that is no more than this share of it.
+// ... and a row is compared if that is at most this share.
 constexpr double max_turning = 0.02;
 // A tool's piece whose gap is closed still touches at this distance from its core
 // (core/collision/shapes/rounded_piece.cpp).
 constexpr double rounding = 2e-4;  // m
 
 struct Compared {
-  std::set<RowKey> rows;    ///< had a violation to compare
+  std::set<RowKey> rows;    ///< rows with a violation to compare
   bool unilateral = false;  ///< there were such rows ...
   bool tight = false;       ///< ... and one of them was compared at a small gap
 };
@@ -40,7 +40,7 @@ class Derivatives {
   Derivatives(Findings& f, Simulation& s, Component& c, std::uint64_t seed)
       : findings_(f), s_(s), c_(c), bench_(s, c), random_(seed) {}
 
-  /// Where the bodies are; then again with each of a few open gaps closed.
+  /// Checks the present positions, then each of a few open gaps after it is closed.
   void check(Compared& compared) {
     const Restore restore(s_);
     const RowMap base = bench_.rows();
@@ -61,8 +61,8 @@ class Derivatives {
  private:
   static double turning(const RowData& row) { return (std::abs(row.violation) + row.swept) / min_radius; }
 
-  /// Brings the gap to a hundredth of a millimetre by moving one body as a whole along the row, again and again.
-  /// Nothing where no body can be moved so, or where the row goes away.
+  /// Reduces the gap to a hundredth of a millimetre by repeated motion of one whole body along the row. Returns nothing
+  /// if no body can be moved in this manner, or if the row vanishes.
   std::optional<RowMap> close(const RowKey& key, const RowData& row) {
     double gap = row.violation;
     RowMap now = {{key, row}};
@@ -83,7 +83,7 @@ class Derivatives {
     return now;
   }
 
-  /// Of a deformable body as a whole along the row, such that the violation grows as fast.
+  /// Translation of a whole deformable body along the row, such that the violation grows at the same rate.
   std::optional<std::vector<VecX>> whole_body(const RowData& row) const {
     for (std::size_t b = 0; b < s_.bodies().size(); ++b) {
       if (!dynamic_cast<DeformableBody*>(s_.bodies()[b])) continue;
@@ -97,7 +97,7 @@ class Derivatives {
     return {};
   }
 
-  /// arm: of the contact's place about the body's, m; an open gap has its own besides.
+  /// arm: distance of the contact point from that of the body, m, in addition to an open gap.
   void at(const RowMap& base, Compared& compared, int trials, double arm) {
     arm_ = arm;
     const Restore restore(s_);
@@ -113,7 +113,7 @@ class Derivatives {
       for (const auto& [key, row] : base) {
         const auto p = plus.find(key), m = minus.find(key);
         if (p == plus.end() || m == minus.end() || !row.positional()) continue;
-        // A row on motion alone: its violation is zero wherever the bodies are (differences here are of 1e-7 m).
+        // A row that depends only on motion: its violation is zero at all positions (differences here are 1e-7 m).
         if (std::max({std::abs(row.violation), std::abs(p->second.violation), std::abs(m->second.violation)}) < 1e-12)
           continue;
         compare(key, row, dq, (p->second.violation - row.violation) / e, (row.violation - m->second.violation) / e,
@@ -144,8 +144,8 @@ class Derivatives {
         scale += row.h[b].cwiseAbs().dot(dq[b].cwiseAbs());
       }
     double found = 0.5 * (forward + backward);
-    // A flat piece may lie on two places at once: their least distance has a kink there, and any slope between the two
-    // one-sided ones is its derivative.
+    // A flat piece may rest on two points at once. The smallest distance then has a kink, and any slope between the two
+    // one-sided ones is valid.
     if (unilateral) found = std::clamp(slope, std::min(forward, backward), std::max(forward, backward));
     const double turned = unilateral ? (turning(row) + arm_ / min_radius) * scale : 0.0;
     findings_.within("row = derivative of its violation", std::max(0.0, std::abs(found - slope) - turned), scale, 1e-5,
@@ -162,7 +162,7 @@ class Derivatives {
   double arm_ = 0;
 };
 
-/// What a unit lambda on a row does to all bodies together.
+/// Effect of a unit lambda of a row on all bodies together.
 struct Together {
   Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
   double size = 0, arm = 0;
@@ -183,7 +183,7 @@ struct Together {
   }
 };
 
-/// Only where every body that a row joins can move.
+/// Only if every body of a row can move.
 void check_balance(Findings& findings, Simulation& s, Component& c) {
   RowBench bench(s, c);
   for (const auto& [key, row] : bench.rows()) {
@@ -191,7 +191,7 @@ void check_balance(Findings& findings, Simulation& s, Component& c) {
     for (std::size_t b = 0; b < s.bodies().size(); ++b) sum.add(s.bodies()[b], row.h[b]);
     if (sum.bodies < 2) continue;  // pushes against something that never moves
     findings.within("action = reaction", sum.force.norm(), sum.size, 1e-12, name_of(key, row));
-    // A contact acts on two points: an open gap between two surfaces has an arm of that length.
+    // A contact acts on two points, so an open gap between two surfaces is an arm of that length.
     const double open = is_unilateral(c, row) ? std::abs(row.violation) + 5e-4 : 0.0;
     const double allowed = sum.size * (1e-12 * sum.arm + open);
     findings.expect(sum.moment.norm() < allowed, "action and reaction turn the whole: they must act along one line",
@@ -232,7 +232,8 @@ bool check_block(Findings& findings, const ConstraintProblem& p, const Block& b)
   return true;
 }
 
-/// Ids of the component's rows, and that they are its own and stand once. False when the rows make no sense.
+/// Collects the ids of the component's rows, and checks that they are its own and unique. False if the rows are not
+/// valid.
 bool check_blocks(Findings& findings, const Simulation& s, const Component& c, std::set<std::uint64_t>& own) {
   std::set<std::uint64_t> ids;
   for (const Block& b : s.problem().blocks) {
@@ -255,7 +256,7 @@ void check_own_ids(Findings& findings, Simulation& s, Component& c) {
                     fmt::format("id {}", b.id));
 }
 
-/// A row that moves by itself says at what rate.
+/// A row that moves by itself declares its rate.
 void check_rates(Findings& findings, Simulation& s, Component& c) {
   RowBench bench(s, c);
   const double dt = 1e-3;
@@ -271,7 +272,7 @@ void check_rates(Findings& findings, Simulation& s, Component& c) {
   bench.rows();
 }
 
-/// Laws of rows that the two have in common, where the bodies are at the same places.
+/// Compares the laws of common rows at equal positions of the bodies.
 bool same_laws(const RowMap& a, const RowMap& b, std::string& what) {
   const auto near = [](double x, double y) {
     return x == y || std::abs(x - y) <= 1e-9 * std::max(std::abs(x), std::abs(y));
@@ -296,7 +297,7 @@ std::vector<double> state_of(const Component& c) {
   return out;
 }
 
-/// What a run leaves behind in a component shows in its state, and reset() takes it back.
+/// Lasting changes of a component in a run are in its state, and reset() undoes them.
 void check_memory(Findings& findings, const std::filesystem::path& scene, const std::string& id) {
   auto s = load(scene);
   ASSERT_TRUE(s);
@@ -307,7 +308,7 @@ void check_memory(Findings& findings, const std::filesystem::path& scene, const 
   const Restore start(*s);
   RowBench bench(*s, *c);
   RowMap first = bench.rows();
-  if (stated->law().kind == StatedLaw::Kind::unilateral) return;  // its rows go by the bodies' motion, too
+  if (stated->law().kind == StatedLaw::Kind::unilateral) return;  // its rows also depend on the bodies' motion
   s->reset();
   const std::vector<double> before = state_of(*c);
   std::string what;
@@ -327,7 +328,7 @@ void check_memory(Findings& findings, const std::filesystem::path& scene, const 
   findings.expect(same_laws(first, bench.rows(), what), "after reset() its rows are not those of the start", what);
 }
 
-/// At rest the ids stay. A constraint that says it adds none keeps to that.
+/// At rest the ids stay. A constraint that declares no rows adds none.
 void check_ends(Findings& findings, Simulation& s, Component& c, const std::set<std::uint64_t>& before, bool seen) {
   run_script(s, 1);
   std::set<std::uint64_t> after;

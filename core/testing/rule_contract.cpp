@@ -14,7 +14,7 @@
 namespace insula::test {
 namespace {
 
-/// All that rules have written, as text.
+/// All output of the rules, as text.
 std::string written(const ExerciseLog& log) {
   std::string out;
   for (const GoalState& g : log.goals()) out += fmt::format("goal {} {} {}\n", g.id, g.done, g.time);
@@ -65,7 +65,7 @@ void check_exercise_rule(const std::filesystem::path& scene, const std::string& 
     run_script(*without, 1);
     first.push_back(written(with->exercise()->log()));
     check_log(findings, with->exercise()->log());
-    // Document positions shift, so row ids do; the state must not.
+    // Document positions change, and row ids with them. The state must not.
     if (!findings.expect(with->state_hash() == without->state_hash(),
                          "the exercise changes the simulation's state: rules only read", fmt::format("step {}", i)))
       return;

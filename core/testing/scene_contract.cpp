@@ -41,7 +41,7 @@ bool check_finite(Findings& findings, const Simulation& s) {
   return good;
 }
 
-/// Everything of a step's problem that does not depend on W: ids, laws and their order, violations, solution.
+/// The parts of a step's problem that do not depend on W: ids, laws and their order, violations, solution.
 struct ProblemBits {
   std::vector<Block> blocks;
   std::vector<double> numbers;
@@ -60,7 +60,7 @@ struct Bits {
   explicit Bits(const Simulation& s) : state(s.state_hash()), problem(s) {}
 };
 
-/// One line for what differs first. False when something does.
+/// One line for the first difference. False if there is one.
 bool compare(Findings& findings, const Bits& a, const Bits& b, const std::string& what, const std::string& step) {
   if (!findings.expect(a.problem.blocks == b.problem.blocks, what + " has other rows: other ids, laws or order", step))
     return false;
@@ -81,7 +81,7 @@ void check_example(const std::filesystem::path& scene) {
     if (!check_finite(findings, *s)) return;
     const double e = total_energy(*s);
     most = std::max(most, std::abs(e));
-    if (i == n) still = e;  // the first step of hands at rest: nothing puts energy in any more
+    if (i == n) still = e;  // the first step with hands at rest, after which no energy is added
     if (i > n)
       findings.expect(e <= still + 0.01 * most + 1e-15, "energy grows while the hands are still",
                       fmt::format("{:.4g} J, at first {:.4g} J", e, still));
@@ -89,7 +89,7 @@ void check_example(const std::filesystem::path& scene) {
 }
 
 void check_deterministic(const std::filesystem::path& scene) {
-  const auto load_in = [&](OrderedHeap::Order order) {  // what goes by the order of pointers comes out otherwise
+  const auto load_in = [&](OrderedHeap::Order order) {  // results that depend on the order of pointers differ
     const OrderedHeap heap(order);
     return load(scene, 1);
   };
@@ -121,7 +121,7 @@ void check_allocations(const std::filesystem::path& scene) {
   auto s = load(scene, 2);
   ASSERT_TRUE(s);
   Findings findings(name_of(scene));
-  run_script(*s, 80);  // to see the largest problem; buffers that alternate see it twice
+  run_script(*s, 80);  // reaches the largest problem; alternating buffers reach it twice
   s->reset();
   for (int i = 0; i < 70; ++i) {
     drive(*s);

@@ -10,7 +10,7 @@
 namespace insula::test {
 namespace {
 
-/// Poses the body and brings the surface along.
+/// Sets the body's configuration and updates the surface.
 void put(Surface& surface, DeformableBody& body, const VecX& q) {
   body.q() = q;
   surface.update();
@@ -59,7 +59,7 @@ void check_rows_of(Findings& findings, Surface& surface, DeformableBody& body, c
   put(surface, body, rest);
 }
 
-/// The step places all in one go, to the bits of each point by itself, and sees how far they went.
+/// The step computes all positions at once, with the bits of each single point, and measures their motion.
 void check_step(Findings& findings, Simulation& s, Surface& surface, DeformableBody& body, const VecX& rest,
                 const VecX& q) {
   s.step();
@@ -83,7 +83,7 @@ void check_step(Findings& findings, Simulation& s, Surface& surface, DeformableB
                   "it does not know how far it moved");
   findings.expect(std::abs(surface.collision().farthest_free() - farthest_free) <= 1e-12 && farthest_free > 0,
                   "it does not know how far its free motion goes");
-  s.reset();  // the step moved the others too
+  s.reset();  // the step moved the other surfaces too
   for (Surface* other : s.surfaces()) other->update();
 }
 
@@ -103,7 +103,7 @@ void check_surfaces(const std::filesystem::path& scene) {
                       "a vertex starts elsewhere than at rest", fmt::format("vertex {}", i));
     auto* body = dynamic_cast<DeformableBody*>(&surface->body());
     if (!body || (dynamic_cast<ShellBody*>(body) && !surface->mesh.empty()))
-      continue;  // a picture beside the wall keeps its distance
+      continue;  // an image beside the wall keeps its distance
     const VecX rest = body->q(), q = deformed(*body, 0.2, 3);
     check_rigid_motion(findings, *surface, *body);
     check_rows_of(findings, *surface, *body, q);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A folder of a test's own, which goes with it.
+// A temporary folder for one test.
 #pragma once
 #include <filesystem>
 #include <fstream>
@@ -8,7 +8,7 @@
 
 namespace insula::test_files {
 
-/// A folder that is removed at the end.
+/// A folder that is removed by the destructor.
 class TempFolder {
  public:
   TempFolder() {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Scene files read with expat; positions of attributes found by scanning the raw start tag.
+// Reads scene files with expat. Positions of attributes are found by a scan of the raw start tag.
 #include "core/xml/document.h"
 
 #include <expat.h>
@@ -32,9 +32,9 @@ class Reader {
     XML_SetCharacterDataHandler(parser_, &Reader::characters);
     XML_SetStartDoctypeDeclHandler(parser_, &Reader::doctype);
     XML_SetXmlDeclHandler(parser_, &Reader::declaration);
-    // A fixed salt: the order of attributes never depends on it, and runs stay repeatable.
+    // The salt is fixed, so that runs are repeatable. The order of attributes does not depend on it.
     XML_SetHashSalt(parser_, 0x1d5u);
-    // One piece: expat then reads in place, and no token is scanned twice.
+    // The text is one piece, so expat reads in place and scans no token twice.
     if (XML_Parse(parser_, text_.data(), static_cast<int>(text_.size()), XML_TRUE) != XML_STATUS_OK) {
       if (!stopped_) report_syntax_error();
       return nullptr;
@@ -70,7 +70,7 @@ class Reader {
   }
   static void doctype(void* data, const char*, const char*, const char*, int) {
     auto& r = self(data);
-    // The handler is called somewhere behind "<!DOCTYPE": show its beginning.
+    // The handler is called at some point after "<!DOCTYPE", so the position of its beginning is found.
     const std::size_t at = r.text_.rfind("<!DOCTYPE", r.offset());
     r.stop(at == std::string_view::npos ? r.offset() : at, "document types are not allowed in scene files");
   }
@@ -90,9 +90,9 @@ class Reader {
     const auto first = std::find_if_not(text.begin(), text.end(), is_blank);
     if (first == text.end()) return;
     Element* parent = open_.empty() ? nullptr : open_.back();
-    if (parent == complained_about_) return;  // once an element is enough
+    if (parent == complained_about_) return;  // one message for each element
     complained_about_ = parent;
-    // Runs of plain text are handed over as they stand in the file; entities are single characters.
+    // Plain text comes as it is in the file; entities come as single characters.
     const std::size_t at = offset() + static_cast<std::size_t>(first - text.begin());
     const std::string_view word = split_blanks(text.substr(static_cast<std::size_t>(first - text.begin()))).front();
     diagnostics_.error(place(at), "text " + in_quotes(word) + " may not stand here; values are written as attributes");
@@ -116,7 +116,7 @@ class Reader {
     open_.push_back(added);
   }
 
-  /// expat has approved the tag; this finds where each attribute stands. Both see them in the order written.
+  /// Finds the position of each attribute of a tag that expat has accepted. Both read them in the written order.
   void scan_attributes(Element& element, std::size_t at, const char** attributes) {
     std::size_t i = at + 1 + element.name.size();
     const auto skip_blanks = [&] {
@@ -146,7 +146,7 @@ class Reader {
     }
   }
 
-  /// Where the first entity behind `at` stands that XML does not know of itself.
+  /// Position of the first entity after `at` that is not predefined in XML.
   std::size_t unknown_entity(std::size_t at) const {
     for (std::size_t i = text_.find('&', at); i != std::string_view::npos; i = text_.find('&', i + 1)) {
       const std::string_view rest = text_.substr(i + 1);
@@ -157,7 +157,7 @@ class Reader {
     return at;
   }
 
-  /// What usually lies behind a character that may not stand there.
+  /// The usual cause of an invalid character.
   std::string hint(std::size_t at) const {
     const char here = at < text_.size() ? text_[at] : ' ', before = at > 0 && at <= text_.size() ? text_[at - 1] : ' ';
     if (before == '&' || here == '&') return "write \"&amp;\" for an ampersand";
@@ -228,7 +228,7 @@ class Reader {
   bool stopped_ = false;
 };
 
-/// Names the encoding of a text that cannot be UTF-8, by its byte order mark or by where its zero bytes stand.
+/// Names the encoding of a text that cannot be UTF-8, by its byte order mark or by the positions of its zero bytes.
 std::string foreign_encoding(std::string_view text) {
   const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 1u; };
   if ((byte(0) == 0xFF && byte(1) == 0xFE && byte(2) == 0 && byte(3) == 0) ||

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A scene file as a tree of elements. Everything keeps its line and column for messages.
-// The file is read with expat: UTF-8 only, and no document types (hence no own entities). Nesting and sizes are
-// limited, so a hostile file costs milliseconds and no recursion.
+// A scene file as a tree of elements. Everything keeps its line and column for messages. The file is read with expat:
+// only UTF-8, and no document types (hence no entities of its own). Nesting and sizes are limited, so a hostile file
+// costs only milliseconds and no recursion.
 #pragma once
 #include <memory>
 #include <string>
@@ -44,14 +44,14 @@ struct Element {
 };
 
 struct Document {
-  std::unique_ptr<Element> root;  ///< null when the text is no well-formed document
+  std::unique_ptr<Element> root;  ///< null if the text is not a well-formed document
 };
 
 /// Reads `text`. Messages use `file` as its name. Columns count characters, not bytes; a byte order mark is skipped.
 Document parse_document(std::string_view text, const std::string& file, Diagnostics& diagnostics,
                         const DocumentLimits& limits = {});
 
-/// Reads a whole file of at most `limit` bytes. Returns the error text, empty when it was read.
+/// Reads a whole file of at most `limit` bytes. Returns the error text; empty when it was read.
 std::string read_text_file(const std::string& path, std::size_t limit, std::string& text);
 
 }  // namespace insula

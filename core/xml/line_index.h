@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Byte offset of a text -> line and column in characters.
+// Conversion of a byte offset of a text to line and column in characters.
 #pragma once
 #include <string_view>
 
 namespace insula {
 
-/// Going forward through the whole text costs its length once. Going back starts again at the beginning of a line.
+/// Forward moves through the whole text cost its length once. A backward move starts again at the beginning of the
+/// text.
 class LineIndex {
  public:
   explicit LineIndex(std::string_view text) : text_(text) {}

@@ -26,7 +26,7 @@ std::string cell(std::string_view text) {
 
 std::string code(std::string_view text) { return text.empty() ? "-" : "`" + std::string(text) + "`"; }
 
-/// The element with its required parameters, as one would begin to write it.
+/// The element with its required parameters, as a start for an author.
 std::string skeleton(const ComponentInfo& info, const Component& component) {
   std::string out = "<" + info.element;
   for (const ParamBase* p : component.params())

@@ -42,7 +42,7 @@ std::string class_name(std::string_view name) {
   return out;
 }
 
-/// Why the name does not serve; empty when it does.
+/// Reason why the name is not valid; empty if it is.
 std::string name_error(const Registry& registry, const std::string& name) {
   const auto small = [](char c) { return c >= 'a' && c <= 'z'; };
   const bool good =
@@ -56,7 +56,7 @@ std::string name_error(const Registry& registry, const std::string& name) {
     if (info->element == name || info->plugin == name)
       return fmt::format("\"{}\" is taken by {}; choose another name", name,
                          info->plugin == "core" ? "the core" : "plugin " + info->plugin);
-  // Words that CMake or the base classes keep for themselves.
+  // Words that CMake or the base classes reserve.
   for (const std::string_view word :
        {"all", "clean", "constraint", "force_model", "help", "insula", "install", "instrument", "exercise_rule",
         "package", "part", "include", "variable", "test", "body", "support"})
@@ -72,7 +72,7 @@ std::string filled(std::string_view text, const std::vector<std::pair<std::strin
   return out;
 }
 
-/// Where a file of the table goes below the new folder; empty: this kind has no use for it.
+/// Path of a file of the table in the new folder; empty: this kind does not need it.
 fs::path place_of(std::string_view file, const KindText& kind, const std::string& name) {
   const std::size_t slash = file.find('/');
   const std::string_view part = file.substr(0, slash), rest = file.substr(slash + 1);
@@ -83,8 +83,7 @@ fs::path place_of(std::string_view file, const KindText& kind, const std::string
   return filled(rest, {{"NAME", name}});
 }
 
-/// What CMake must be told to find Insula: nothing of an installation in /usr, the folder of a build or of another
-/// prefix.
+/// Hint that CMake needs to find Insula: none for an installation in /usr, else the folder of the build or prefix.
 std::string where_insula_is() {
   std::error_code ec;
   const fs::path above = installed_plugin_folder().parent_path().parent_path().parent_path();

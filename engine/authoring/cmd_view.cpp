@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// insula view SCENE --list; the picture is insula play with an engine that stands still.
+// insula view SCENE --list. Without --list, insula play shows the scene with a stopped engine.
 #include <fmt/format.h>
 
 #include <ostream>

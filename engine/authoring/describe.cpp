@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Words for what a component declares.
+// Descriptions of what a component declares.
 #include "engine/authoring/describe.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Words for what a component declares, shared by list, describe, schema and docs.
+// Descriptions of what a component declares, shared by list, describe, schema and docs.
 #pragma once
 #include <string>
 #include <vector>
@@ -14,9 +14,9 @@ std::string allowed_text(const ParamBase& param);
 std::string default_text(const ParamBase& param);
 /// "directly in <scene>", "in a body: <obstacle>, <soft_body>".
 std::string place_text(const Registry& registry, const ComponentInfo& info);
-/// Elements that may stand in a component of that kind, by kind and name.
+/// Elements that may be children of a component of that kind, ordered by kind and name.
 std::vector<const ComponentInfo*> children_of_kind(const Registry& registry, Kind parent);
-/// Name of a channel as declared: "<name>.flow" stands for one of each name of a group.
+/// Name of a channel as declared: "<name>.flow" for one channel of each name of a group.
 std::string channel_name(const ChannelBase& channel);
 /// "pressure in mmHg, 0 mmHg to 300 mmHg", "force in N, three numbers".
 std::string channel_text(const ChannelBase& channel);

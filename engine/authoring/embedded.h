@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Texts of files that the program carries with it (cmake/embed.cmake).
+// Texts of files that are embedded in the program (cmake/embed.cmake).
 #pragma once
 #include <span>
 #include <string_view>
@@ -11,7 +11,7 @@ struct EmbeddedFile {
   std::string_view text;
 };
 
-/// What `insula new-plugin` writes: files of each kind, and those of "common" that each kind gets or may get.
+/// Templates of `insula new-plugin`: the files of each kind, and those of "common", which each kind gets or may get.
 std::span<const EmbeddedFile> new_plugin_files();
 
 }  // namespace insula

@@ -12,7 +12,7 @@
 namespace insula {
 namespace {
 
-constexpr std::size_t max_lines = 3000, max_points = 3000;  // of one item: enough to be recognised
+constexpr std::size_t max_lines = 3000, max_points = 3000;  // of one item; enough to recognise it
 
 std::string mm(double metres) { return fmt::format("{:.{}f}", 1000 * metres, metres < 0.01 ? 2 : 1); }
 
@@ -29,7 +29,7 @@ Eigen::AlignedBox3d box_of(const Points& points) {
   return box;
 }
 
-/// Every so manieth pair of points, so that not more than `most` are left.
+/// A regular selection of pairs of points, at most `most`.
 std::vector<Vec3> thinned(const std::vector<Vec3>& all, std::size_t points_each, std::size_t most) {
   const std::size_t n = all.size() / points_each, step = std::max<std::size_t>(1, (n + most - 1) / most);
   std::vector<Vec3> out;
@@ -219,7 +219,7 @@ class Taker {
         for (const std::string& id : refs->ids()) out += (out.empty() ? "joins " : ", ") + id;
     return out;
   }
-  // Of several contacts that name a pair the one with the fewest names decides, then the later one.
+  // If several contacts name a pair, the one with the fewest names applies, and among equals the last one.
   void pairs() {
     std::vector<const Constraint*> lists;
     for (const Constraint* c : simulation_.constraints())

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The inventory as the page reads it.
+// The inventory in the form that the page reads.
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Hundredths of a millimetre are enough for a highlight.
+/// A resolution of 0.01 mm is enough for a highlight.
 Json flat(const std::vector<Vec3>& points) {
   Json out = Json::array();
   for (const Vec3& p : points)

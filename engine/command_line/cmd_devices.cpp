@@ -12,7 +12,7 @@
 namespace insula {
 namespace {
 
-std::atomic<bool> asked_to_stop{false};  // the one thing a signal handler may touch
+std::atomic<bool> asked_to_stop{false};  // the only variable that a signal handler may change
 
 void on_signal(int) { asked_to_stop.store(true); }
 
@@ -20,7 +20,7 @@ void on_signal(int) { asked_to_stop.store(true); }
 
 int cmd_devices(const CommandContext& context, const DevicesOptions& given) {
   if (given.show.empty() && given.calibrate.empty() && given.test_force.empty()) return list_devices(context.out);
-  // A device that pushes is let go gently, whatever ends the program.
+  // The force of a device fades out gently, whatever ends the program.
   struct sigaction action {};
   action.sa_handler = on_signal;
   for (const int s : {SIGINT, SIGTERM, SIGHUP}) sigaction(s, &action, nullptr);

@@ -28,8 +28,8 @@ fs::path own_program() {
   return fs::read_symlink("/proc/self/exe", error);
 }
 
-/// Loads the scene and lets it go again: the engine loads its own. Returns false when it has errors, which are printed.
-/// Fills in the devices that the scene names where the command line does not.
+/// Loads the scene only for a check, since the engine loads it again. Returns false if it has errors, which are
+/// printed. Takes the scene's devices if the command line gives none.
 bool scene_ok(const CommandContext& context, PlayOptions& options) {
   LoadResult result = load_scene(options.scene, context.registry);
   if (result.scene) check_scene_devices(*result.scene, result.diagnostics);
@@ -62,7 +62,7 @@ bool scene_ok(const CommandContext& context, PlayOptions& options) {
   return true;
 }
 
-/// Opens and uses the bus once, so that a machine without multicast hears of it from one place.
+/// Opens and uses the bus once, so that a machine without multicast gives one message.
 bool bus_ok(const CommandContext& context) {
   const auto bus = make_bus();
   if (bus->good()) bus->subscribe("SCENE_INFO", [](Bytes) {});
@@ -77,7 +77,8 @@ bool has_display() {
   return false;
 }
 
-/// Starts xdg-open and forgets it: forked twice, so that it is nobody's child here and lives on.
+/// Starts xdg-open independently of this process. It forks twice, so that xdg-open is not a child of this process and
+/// continues after it.
 void open_browser(const std::string& url) {
   const char* address = url.c_str();
   const pid_t pid = fork();
@@ -94,7 +95,8 @@ void open_browser(const std::string& url) {
   if (pid > 0) waitpid(pid, nullptr, 0);
 }
 
-/// Where the engine writes what the viewer needs. An engine that is killed leaves its files: they go with the session.
+/// Folder in which the engine writes the viewer's files. A killed engine leaves its files there, and they are removed
+/// with the session.
 class BundleFolder {
  public:
   BundleFolder() {
@@ -162,7 +164,7 @@ ChildSpec gateway_child(const PlayOptions& options, const fs::path& folder, cons
     print("insula: viewer at " + url);
     const std::size_t colon = url.rfind(':');
     if (first && colon != std::string::npos) {
-      // A gateway that comes back must be where the pages look for it.
+      // A restarted gateway must use the port that the pages know.
       self.command = command(std::atoi(url.c_str() + colon + 1));
       self.command.emplace_back("--exact-port");
       if (browser && has_display()) open_browser(url);
@@ -181,7 +183,7 @@ fs::path default_scene() {
   const fs::path bin = own_program().parent_path();
   for (const fs::path& root : {fs::path("."), bin / "../../..", bin / "../share/insula"})
     if (fs::is_regular_file(root / scene, error)) return (root / scene).lexically_normal();
-  return scene;  // the loader says that it is missing
+  return scene;  // the loader reports that it is missing
 }
 
 int cmd_play(const CommandContext& context, const PlayOptions& given) {
@@ -209,7 +211,7 @@ int cmd_play(const CommandContext& context, const PlayOptions& given) {
   if (options.reload) settings.look = [&] { reload.look(*running); };
   Supervisor supervisor(settings, print);
   running = &supervisor;
-  // The viewer first: it is up while the engine still loads.
+  // The viewer starts first, so that it is available while the engine loads.
   supervisor.add(gateway_child(options, folder, print));
   if (!options.view) supervisor.add(haptic_child(options, folder));
   supervisor.add(engine);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A recorded session onto the bus again, for viewers: what people saw, and nothing that a hand could feel.
+// Sends a recorded session to the bus for viewers, without any message that could move a hand.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,14 +20,14 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-/// Haptic problems, hands' inputs and commands stay in the log: a device or an engine may be on the bus.
+/// Haptic problems, hands' inputs and commands are not sent, since a device or an engine may be on the bus.
 bool for_viewers(std::string_view name) {
   constexpr std::array shown{channel::render_frame, channel::scene_info, channel::sim_event, channel::haptic_status,
                              channel::device_state};
   return std::find(shown.begin(), shown.end(), name) != shown.end();
 }
 
-/// A log that was moved brings its bundles along in the folder beside it.
+/// The bundles of a moved log are in the folder beside it.
 void find_bundle(const fs::path& log, std::vector<std::uint8_t>& message) {
   auto info = decode<insula_lcm::scene_info_t>(message);
   std::error_code error;

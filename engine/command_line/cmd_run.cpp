@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// insula run: a scene from start to end, and what became of it.
+// insula run: runs a scene from start to end and reports the result.
 #include <fmt/ostream.h>
 
 #include <cmath>

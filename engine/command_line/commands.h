@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The commands of the program `insula` that need no running simulation. Each returns the exit status: 0 well, 1 the
-// system's fault (a file that cannot be written), 2 the input's.
+// The commands of the program `insula` that need no running simulation. Each returns the exit status: 0 success, 1 an
+// error of the system (a file that cannot be written), 2 an error of the input.
 #pragma once
 #include <filesystem>
 #include <iosfwd>
@@ -17,13 +17,14 @@ struct CommandContext {
   std::ostream& err;
 };
 
-/// All elements by kind, one line each.
+/// Lists all elements by kind, one line each.
 int cmd_list(const CommandContext& context);
-/// One element: where it stands, its parameters.
+/// Describes one element: its parents and its parameters.
 int cmd_describe(const CommandContext& context, const std::string& element);
-/// The XML schema (XSD 1.0) for editors, to a file, or to `out` when the path is empty or "-".
+/// Writes the XML schema (XSD 1.0) for editors to a file, or to `out` if the path is empty or "-".
 int cmd_schema(const CommandContext& context, const std::filesystem::path& file);
-/// A Markdown page per element and an index into a folder. With `plugin_folder`, a plugin's example.xml is shown.
+/// Writes a Markdown page for each element and an index into a folder. With `plugin_folder`, pages show the plugins'
+/// example.xml.
 int cmd_docs(const CommandContext& context, const std::filesystem::path& folder,
              const std::filesystem::path& plugin_folder = {});
 
@@ -33,7 +34,7 @@ struct DevicesOptions {
   double seconds = 0, newtons = 1, scale = 1;
   bool assume_yes = false;
 };
-/// Lists what is plugged in and what is missing; shows a device live, calibrates it, tries its force.
+/// Lists connected devices and what others need; shows a device live, calibrates it, or tests its force.
 int cmd_devices(const CommandContext& context, const DevicesOptions& options);
 
 }  // namespace insula

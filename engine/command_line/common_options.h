@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Options that several commands have.
+// Options shared by several commands.
 #pragma once
 #include <CLI/CLI.hpp>
 

@@ -12,16 +12,16 @@ namespace insula {
 
 struct RunOptions {
   std::filesystem::path scene;
-  std::string motion = "none";          ///< id of a motion of the exercise, CSV file, or none
-  double duration = 0;                  ///< simulated seconds; 0: the motion and one second more, or 10 s without one
-  std::filesystem::path report;         ///< folder for report.json and report.html; empty: none
+  std::string motion = "none";   ///< id of a motion of the exercise, CSV file, or none
+  double duration = 0;           ///< simulated seconds; 0: the motion and one more second, or 10 s without a motion
+  std::filesystem::path report;  ///< folder for report.json and report.html; empty: none
   std::filesystem::path export_folder;  ///< folder for the bodies' final nodes as .vtu; empty: none
   int threads = 0;
   std::uint64_t seed = 0;  ///< of the complications; 0: the scene's
   bool quiet = false;
 };
-/// Runs a scene headless and deterministic with both hands inside the process. Status 0, or 2 for bad input, 1 when the
-/// simulation left the range of numbers or a file could not be written.
+/// Runs a scene headless and deterministic with both hands inside the process. Status 0; 2 for bad input; 1 if the
+/// simulation became infinite or a file could not be written.
 int cmd_run(const CommandContext& context, const RunOptions& options);
 
 struct EngineOptions {
@@ -32,14 +32,14 @@ struct EngineOptions {
   bool unthrottled = false;
   int threads = 0;
   std::uint64_t seed = 0;
-  bool keep_bundle = false;      ///< for a replay
-  bool still = false;            ///< to be looked at (insula view)
-  bool standby = false;          ///< loads, prints standby_line, and waits for SIGUSR1 before it speaks on the bus
-  std::filesystem::path notice;  ///< file whose text viewers are shown while it is not empty
+  bool keep_bundle = false;      ///< keep the bundle for a replay
+  bool still = false;            ///< only show the scene (insula view)
+  bool standby = false;          ///< load, print standby_line, and wait for SIGUSR1 before anything is sent on the bus
+  std::filesystem::path notice;  ///< file whose text viewers show while it is not empty
   std::filesystem::path report;  ///< folder for the session's reports; empty: none
 };
 inline constexpr const char* standby_line = "insula engine stands by";
-/// The engine process of a session; talks over the bus of LCM_DEFAULT_URL until SIGINT or SIGTERM.
+/// The engine process of a session. It uses the bus of LCM_DEFAULT_URL until SIGINT or SIGTERM.
 int cmd_engine(const CommandContext& context, const EngineOptions& options);
 
 struct ReplayOptions {
@@ -47,7 +47,7 @@ struct ReplayOptions {
   double speed = 1;
   bool loop = false;
 };
-/// Plays what viewers show of a recorded session onto the bus.
+/// Sends those messages of a recorded session to the bus that viewers show.
 int cmd_replay(const CommandContext& context, const ReplayOptions& options);
 
 }  // namespace insula

@@ -24,7 +24,7 @@ using Json = nlohmann::ordered_json;
 
 Json list(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
-/// The scene's view, or one that holds all its surfaces.
+/// The scene's view, or one that shows all its surfaces.
 Json view_of(const Simulation& simulation) {
   if (const ViewSettings* v = simulation.view())
     return {{"eye", list(v->eye())},
@@ -55,7 +55,7 @@ Json exercise_of(const Exercise& exercise) {
           {"faults", faults},  {"timers", timers},          {"measures", measures}};
 }
 
-/// The region of each vertex: that of the wall's vertex it follows most closely at rest.
+/// The region of each vertex: that of the nearest vertex of the wall at rest.
 std::vector<std::uint32_t> vertex_regions(const Surface& surface, const ShellBody& shell) {
   std::vector<std::uint32_t> out;
   for (std::size_t i = 0; i < surface.points().size(); ++i) {
@@ -75,7 +75,7 @@ std::vector<std::uint32_t> vertex_regions(const Surface& surface, const ShellBod
   return out;
 }
 
-/// Regions of a wall, how thick it is in each, and the channels that its picture follows.
+/// Regions of a wall, its thickness in each, and the channels for its drawing.
 void add_wall(Json& to, const ShellBody& shell, const ChannelTable& channels) {
   const std::vector<std::string>& regions = shell.model().regions;
   to["regions"] = regions;
@@ -128,7 +128,7 @@ Json tool_json(const BundleWriter& writer, const RigidBody& body, std::size_t in
   return out;
 }
 
-/// A hand with all its tools, in order; at home where its first one is.
+/// A hand with all its tools in order. Its home is that of the first tool.
 Json hands_json(const Simulation& simulation) {
   Json out = Json::array();
   for (int h = 0; h < 2; ++h) {
@@ -151,7 +151,7 @@ Json hands_json(const Simulation& simulation) {
   return out;
 }
 
-/// What may be asked of whom, for pages and scripts.
+/// The commands of all components, for pages and scripts.
 Json commands_json(const Scene& scene) {
   Json out = Json::array();
   for (const Component* c : scene.components()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The viewer's scene bundle: everything about a scene that does not move, as docs/scene-bundle.md describes it.
+// The viewer's scene bundle: the static data of a scene (docs/scene-bundle.md).
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -8,9 +8,9 @@
 
 namespace insula {
 
-/// Writes scene.json and its binary files into `dir`, which is created. scene.json comes last and whole, so that a
-/// reader who sees it can read everything. Throws InputError when it cannot be written. With `inventory`,
-/// inventory.json is beside it: what is in the scene by name, for a scene that is to be looked at.
+/// Writes scene.json and its binary files into `dir`, which is created. scene.json is written last and at once, so a
+/// reader that finds it can read everything. Throws InputError if it cannot be written. `with_inventory`: also writes
+/// inventory.json, for `insula view`.
 void write_bundle(const Simulation& simulation, const std::filesystem::path& dir, std::int64_t session,
                   bool with_inventory = false);
 

@@ -12,7 +12,7 @@ Json or_null(const std::optional<double>& v) { return v ? Json(*v) : Json(); }
 bool given(const ChannelBase::Bounds& b) { return b[0] || b[1]; }
 
 Json bounds_json(const ChannelBase::Bounds& b) {
-  Json out = Json::array();  // never a copy of its only element
+  Json out = Json::array();  // avoids a copy of its only element
   out.push_back(or_null(b[0]));
   out.push_back(or_null(b[1]));
   return out;

@@ -17,7 +17,7 @@ class BundleWriter {
  public:
   explicit BundleWriter(const std::filesystem::path& dir) : dir_(dir) {}
 
-  /// positions, indices and counts of a mesh; `name` begins its files' names.
+  /// positions, indices and counts of a mesh; `name` is the prefix of its files' names.
   void mesh(nlohmann::ordered_json& to, const std::string& name, const std::vector<Vec3>& vertices,
             const std::vector<std::array<int, 3>>& triangles) const {
     to["vertices"] = vertices.size();
@@ -38,7 +38,7 @@ class BundleWriter {
     return file(name, flat);
   }
 
-  /// Four nodes and weights a vertex; vertices with fewer nodes repeat the first with weight 0.
+  /// Four nodes and weights for each vertex. Vertices with fewer nodes repeat the first one with weight 0.
   void skin(nlohmann::ordered_json& to, const std::string& name, const Surface& surface) const {
     std::vector<std::uint32_t> nodes;
     std::vector<float> weights;
@@ -51,7 +51,7 @@ class BundleWriter {
     to["skin_weights"] = file(name + "_weights.bin", weights);
   }
 
-  /// A picture beside a tool's URDF; false when it has none.
+  /// Copies the picture beside a tool's URDF. False if there is none.
   bool picture(const std::filesystem::path& urdf, const std::string& name) const {
     const std::filesystem::path from = urdf.parent_path() / "picture.svg";
     std::error_code error;

@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t longest_line = 16 * 1024;
 
-/// In the child, between fork and exec: nothing that allocates or locks.
+/// Runs in the child between fork and exec, so it must not allocate or lock.
 [[noreturn]] void become(char* const* arguments, int output, pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (getppid() != parent) _exit(1);  // the parent died before prctl
@@ -73,7 +73,7 @@ std::string ChildProcess::start(const std::vector<std::string>& command) {
   for (const std::string& a : command) arguments.push_back(const_cast<char*>(a.c_str()));
   arguments.push_back(nullptr);
   const pid_t parent = getpid();
-  // Blocked over the fork: the parent's handlers must not run in the child.
+  // Signals are blocked during the fork, since the parent's handlers must not run in the child.
   sigset_t all, before;
   sigfillset(&all);
   sigprocmask(SIG_SETMASK, &all, &before);
@@ -98,7 +98,7 @@ void ChildProcess::read_lines(const Line& line) {
   while (output_ >= 0) {
     const ssize_t n = read(output_, buffer, sizeof buffer);
     if (n < 0 && errno == EINTR) continue;
-    if (n < 0) break;  // nothing more for now
+    if (n < 0) break;  // no more data now
     if (n == 0) {
       close_output();
       break;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A child process whose output comes back line by line, and which does not outlive its parent.
+// A child process whose output is read line by line. It does not outlive its parent.
 #pragma once
 #include <sys/types.h>
 
@@ -22,23 +22,23 @@ class ChildProcess {
   using Line = std::function<void(std::string_view)>;
 
   ChildProcess() = default;
-  ~ChildProcess();  ///< kills what still runs
+  ~ChildProcess();  ///< kills a process that still runs
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
-  ChildProcess& operator=(ChildProcess&& other) noexcept;  ///< kills what still runs here
+  ChildProcess& operator=(ChildProcess&& other) noexcept;  ///< kills a process that still runs here
 
-  /// Starts command[0] with its arguments, in a process group of its own (a terminal's Ctrl-C reaches the parent alone)
-  /// and with SIGTERM on the parent's death. Returns the error text, empty when started; a program that cannot be
+  /// Starts command[0] with its arguments, in a process group of its own (a terminal's Ctrl-C reaches only the parent)
+  /// and with SIGTERM on the parent's death. Returns the error text; empty when started. A program that cannot be
   /// executed ends with status 127.
   std::string start(const std::vector<std::string>& command);
   bool running() const { return pid_ > 0; }
   pid_t pid() const { return pid_; }
   int output() const { return output_; }  ///< descriptor to wait on, -1 when closed
-  /// Passes on the whole lines that have come. Never waits.
+  /// Passes on the complete lines that have arrived. Never waits.
   void read_lines(const Line& line);
-  /// How it ended, once; nothing while it runs. Never waits.
+  /// How it ended, once; nothing while it still runs. Never waits.
   std::optional<ChildExit> reap();
-  /// After reap: the rest of its output, a last unfinished line included.
+  /// After reap(): passes on the rest of its output, with a last unfinished line.
   void finish_output(const Line& line);
   void send(int signal) const;
 

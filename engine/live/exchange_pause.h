@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a hand feels while its tool is exchanged: nothing, and then the new tool gently. The two tools have different
-// couplings, and the new one may come up against what the old one never touched. So the hand's tool is left out of the
-// haptic problem for a while: the safety gate takes that for a lost source, lets the force go to zero, and fades it in
-// again when the tool is back.
+// Pause of a hand's force while its tool is exchanged. The two tools have different couplings, and the new one may
+// touch something that the old one did not. So the hand's tool is removed from the haptic problem for a while. The
+// safety gate treats this as a lost source: the force fades to zero, and in again when the tool is back.
 #pragma once
 #include <array>
 
@@ -12,7 +11,7 @@ namespace insula {
 
 class ExchangePause {
  public:
-  /// Longer than the 50 ms in which a gate lets a force go to zero, by a step or two.
+  /// One or two steps longer than the 50 ms in which a gate fades a force to zero.
   static constexpr double pause_s = 0.09;
 
   /// After a step: the hands (0 left, 1 right) that exchanged their tools a moment ago.
@@ -21,7 +20,7 @@ class ExchangePause {
     for (int h = 0; h < 2; ++h) {
       Hand& hand = hands_[std::size_t(h)];
       const Instrument* tool = simulation.instrument_of(h);
-      // A reset puts the first tools back; its hands begin anew and need no pause.
+      // A reset restores the first tools. Its hands need no pause.
       if (simulation.time() < last_) hand = {};
       if (hand.tool && tool != hand.tool) hand.since = simulation.time();
       hand.tool = tool;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Notices that files have been saved, by looking at them: editors write in place, rename, or write twice, and folders
-// may be on any file system.
+// Detects saved files by polling, since editors write in place, rename, or write twice, and folders may be on any file
+// system.
 #pragma once
 #include <chrono>
 #include <cstdint>
@@ -12,13 +12,12 @@ namespace insula {
 class FileWatch {
  public:
   using Clock = std::chrono::steady_clock;
-  /// quiet: so long nothing must change after a change before it counts: a file that is still being written is left
-  /// alone.
+  /// `quiet`: time without another change after which a change counts, so that a file is not read while it is written.
   explicit FileWatch(std::chrono::milliseconds quiet) : quiet_(quiet) {}
 
-  /// Watches these from now on. What was saved before the call and not yet reported counts as seen.
+  /// Watches these from now on. Changes before the call that were not reported are dropped.
   void set(std::vector<std::filesystem::path> files);
-  /// True once after each change that is followed by quiet.
+  /// True once after each change, when it has been followed by `quiet`.
   bool saved(Clock::time_point now);
 
  private:

@@ -64,7 +64,7 @@ void fill_step_data(const Simulation& simulation, insula_lcm::render_frame_t& f)
   }
 }
 
-// Contacts shown at most: a picture needs no more, and frames stay small.
+// Largest number of shown contacts, so that frames stay small.
 constexpr std::size_t max_contacts = 120;
 
 }  // namespace
@@ -97,7 +97,7 @@ void fill_frame(const Simulation& simulation, insula_lcm::render_frame_t& f) {
     to.nodes = bodies[b]->nodes();
     to.x_m.resize(std::size_t(to.nodes));
     for (int i = 0; i < to.nodes; ++i) put(to.x_m, std::size_t(i), bodies[b]->q().segment<3>(3 * i));
-    // The largest force any one tool puts on the body.
+    // The largest force of any single tool on the body.
     for (const Instrument* tool : simulation.instruments()) {
       Vec3 sum = Vec3::Zero();
       for (const ContactPoint& c : r.contacts) {

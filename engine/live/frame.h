@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the viewers get of a step.
+// The content of a frame for the viewers.
 #pragma once
 #include <insula_lcm/render_frame_t.hpp>
 
@@ -9,13 +9,15 @@ namespace insula {
 
 class DeformableBody;
 
-/// The bodies of frames and bundles: deformable bodies in document order; a body's place here is its `index` there.
+/// The bodies of frames and bundles: deformable bodies in document order. A body's position in the list is its `index`
+/// there.
 std::vector<const DeformableBody*> picture_bodies(const Simulation& simulation);
 
 /// The tools of frames and bundles: instruments in document order, then all other rigid bodies in document order.
 std::vector<const RigidBody*> picture_tools(const Simulation& simulation);
 
-/// Fills a frame from the simulation's last step; keeps the capacity of its vectors. Header fields are the caller's.
+/// Fills a frame from the simulation's last step; keeps the capacity of its vectors. The caller fills the header
+/// fields.
 void fill_frame(const Simulation& simulation, insula_lcm::render_frame_t& frame);
 
 }  // namespace insula

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Lock-step of servo and engine.
+// Servo and engine in lock-step.
 #include "engine/live/headless.h"
 
 #include <chrono>

@@ -15,12 +15,13 @@ namespace insula {
 
 class HeadlessRun {
  public:
-  /// Hands follow the motion, whose commands are done at their times; a hand it does not move stays at its tool's home.
+  /// Hands follow the motion, and its commands are executed at their times. A hand that it does not move stays at its
+  /// tool's home.
   HeadlessRun(Simulation& simulation, const Motion& motion);
 
-  /// The servo's ticks up to the end of the coming step, then the step with the hands as they then are.
+  /// Runs the servo's ticks up to the end of the coming step, then the step with the hands' poses at that time.
   void step();
-  /// Simulation and hands back to the start.
+  /// Returns simulation and hands to the start.
   void reset();
   const InProcessHaptics& haptics() const { return haptics_; }
   Simulation& simulation() { return simulation_; }
@@ -36,13 +37,13 @@ class HeadlessRun {
   ExchangePause pause_;
 };
 
-/// A scene and a motion of it, ready to run.
+/// A scene and one of its motions, ready to run.
 struct OpenedRun {
-  std::unique_ptr<Simulation> simulation;  ///< null when something is wrong; it was said on `err`
+  std::unique_ptr<Simulation> simulation;  ///< null after an error, which was printed on `err`
   Motion motion;
 };
-/// Loads a scene and the motion named by id or file (see find_motion). `optional`: an id the scene lacks means no
-/// motion.
+/// Loads a scene and the motion named by id or file (see find_motion). `optional`: an id that the scene does not have
+/// means no motion.
 OpenedRun open_run(const CommandContext& context, const std::filesystem::path& scene, const std::string& motion,
                    bool optional, int threads);
 

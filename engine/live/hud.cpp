@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The state beside the picture, as JSON.
+// The state beside the image, as JSON.
 #include "engine/live/hud.h"
 
 #include <cmath>
@@ -10,7 +10,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// With so many digits behind the point: a frame a sixtieth of a second has no room for sixteen.
+/// Rounds to so many decimals, so that frames stay small.
 Json rounded(double v, double digits) {
   const double scale = std::pow(10.0, digits);
   const double r = std::round(v * scale) / scale;

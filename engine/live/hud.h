@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What stands beside the picture: goals, faults, clocks, figures and who holds what.
+// Data shown beside the image: goals, faults, clocks, measures and the tools of the hands.
 #pragma once
 #include <string>
 
@@ -7,7 +7,8 @@
 
 namespace insula {
 
-/// The hud_json of render_frame_t, of the last step; the same keys with and without an exercise (docs/scripting.md).
+/// The hud_json of render_frame_t for the last step. It has the same keys with and without an exercise
+/// (docs/scripting.md).
 std::string hud_json(const Simulation& simulation);
 
 }  // namespace insula

@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Publishes a channel in all ways and a drawable of as many lines as wanted.
+/// Publishes a channel of every display and a drawable of any number of lines.
 class Patient final : public Constraint {
  public:
   Channel<Pressure> pressure{this, {.name = "pressure", .doc = "for tests", .display = "mmHg"}};

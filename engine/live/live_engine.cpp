@@ -28,7 +28,7 @@ namespace {
 // A device state older than this no longer moves a tool.
 constexpr std::int64_t stale_us = 200'000;
 constexpr double settle_s = 0.3;
-// Requests taken between two steps; more is a script gone wild.
+// Largest number of requests between two steps; more indicate an error in a script.
 constexpr std::size_t max_requested = 100;
 
 struct Inputs {
@@ -74,7 +74,7 @@ struct Inputs {
     });
   }
 
-  /// Whether the arms do what the motion says: simulated ones that nobody has taken over.
+  /// Whether the arms follow the motion: simulated arms that no person has taken over.
   bool follows(const Motion& motion) const {
     if (driven) return false;
     if (!motion.has(0) && !motion.has(1)) return true;
@@ -84,10 +84,10 @@ struct Inputs {
     return true;
   }
 
-  /// Stamp of the poses that the step is made with, CLOCK_MONOTONIC; 0: none.
+  /// Sets the hands of the step, and returns the time stamp of their poses, CLOCK_MONOTONIC, us; 0: none.
   std::int64_t apply(Simulation& simulation) const {
     if (monotonic_us() - received_us > stale_us) return 0;
-    // Until the haptic server has seen this session its hands are still where the last one left them.
+    // Until the haptic server knows this session, its hands are still at their poses in the last one.
     if (simulation.time() < settle_s) return 0;
     for (const auto& h : devices.hand) {
       if (!h.connected || h.hand < 0 || h.hand > 1) continue;
@@ -140,7 +140,7 @@ int run_live(const LiveOptions& options, const Registry& registry, Bus& bus, con
   if (!said.empty()) std::fputs(said.c_str(), stderr);
   if (!loaded.simulation) return 2;
   Simulation& simulation = *loaded.simulation;
-  simulation.set_deterministic(false);  // hands are on it: no step is late for a factor's sake
+  simulation.set_deterministic(false);  // persons move the hands, so no step waits for a factor
   simulation.set_collision_horizon(Publisher::collision_horizon_steps * simulation.h());
   if (options.seed != 0) simulation.draw_complications(options.seed);
   fs::path motion;
@@ -149,7 +149,7 @@ int run_live(const LiveOptions& options, const Registry& registry, Bus& bus, con
     motion = find_motion(simulation, options.motion);
     if (!motion.empty()) script = load_motion(motion);
   } catch (const InputError& e) {
-    // A scene without the default motion is played by hand.
+    // A scene without the default motion is played by a person.
     if (options.motion != "steady") {
       std::fprintf(stderr, "error: %s\n", e.what());
       return 2;
@@ -193,7 +193,7 @@ int run_live(const LiveOptions& options, const Registry& registry, Bus& bus, con
     }
     inputs.asked.clear();
     if (inputs.pause || options.still) {
-      const std::vector<Event> announced = simulation.take_announced();  // no step will
+      const std::vector<Event> announced = simulation.take_announced();  // no step will publish them
       publisher.events(announced);
       reports.note(announced);
       publisher.paused_frame(simulation);
@@ -218,7 +218,7 @@ int run_live(const LiveOptions& options, const Registry& registry, Bus& bus, con
     if (options.unthrottled && !inputs.pause) continue;
     next += period;
     const auto now = Clock::now();
-    if (now > next + 2 * period) {  // far behind: time is dropped, not caught up
+    if (now > next + 2 * period) {  // far behind: time is dropped and not made up for
       ++late;
       next = now;
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A text for the viewers that another process leaves in a file: the errors of a scene that has been saved.
+// A text for the viewers that another process writes to a file: the errors of a saved scene.
 #pragma once
 #include <chrono>
 #include <filesystem>
@@ -9,11 +9,11 @@ namespace insula {
 
 class Notice {
  public:
-  /// Longer texts are cut at a line's end; the message that carries it stays small.
+  /// Longer texts are cut at the end of a line, so that the message stays small.
   static constexpr std::size_t max_bytes = 8 * 1024;
   explicit Notice(std::filesystem::path file) : file_(std::move(file)) {}
 
-  /// What the file says now, looked at every quarter of a second; empty without a file.
+  /// The present text of the file, read every quarter of a second; empty without a file.
   const std::string& text();
 
  private:
@@ -23,7 +23,7 @@ class Notice {
   std::filesystem::file_time_type read_{};
 };
 
-/// Leaves a text there, whole or not at all. Returns whether it could be written.
+/// Writes a text to the file, completely or not at all. Returns whether it could be written.
 bool leave_notice(const std::filesystem::path& file, const std::string& text);
 
 }  // namespace insula

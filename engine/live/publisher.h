@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sends what a step made: the haptic problem, the picture, events, and once a second what runs.
+// Sends the results of a step: the haptic problem, the frame, events, and once a second the scene's state.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -20,22 +20,22 @@ std::int64_t monotonic_us();
 
 class Publisher {
  public:
-  /// 200 rows of W in float32 are 80 KB: with the rest a message stays under the 120 KB that stock kernels carry.
+  /// 200 rows of W in float32 are 80 KB. With the other fields, a message stays below 120 KB, which a default kernel
+  /// transmits.
   static constexpr int max_rows = 200;
-  /// Of Simulation::look_ahead, for who publishes: until the next problem reaches the servo.
+  /// Horizon for Simulation::set_collision_horizon(), in steps: the time until the next problem reaches the servo.
   static constexpr double collision_horizon_steps = 2;
 
   Publisher(Bus& bus, std::int64_t session, const std::filesystem::path& scene, const std::filesystem::path& bundle,
             const std::filesystem::path& motion, const std::string& title);
 
-  /// After a step: problem, frame, events. pose_time_us: stamp of the devices' poses that the step was made with, 0:
-  /// none.
+  /// After a step: problem, frame, events. pose_time_us: time stamp of the devices' poses in the step; 0: none.
   void step(const Simulation& simulation, std::int64_t pose_time_us = 0);
   /// Events that belong to no step.
   void events(const std::vector<Event>& events);
-  /// The frame alone, while paused.
+  /// Sends only the frame, while paused.
   void paused_frame(const Simulation& simulation);
-  /// Repeats the scene's state when a second has passed since the last time, or at once when it changed.
+  /// Repeats the scene's state once a second, or at once when it has changed.
   void info(const std::string& state, const std::string& message = "");
   std::int64_t failed() const { return failed_; }
 
@@ -47,7 +47,7 @@ class Publisher {
   insula_lcm::scene_info_t info_;
   insula_lcm::render_frame_t frame_;
   ProblemStamp stamp_;
-  ContactFramePrediction turn_;
+  ContactFramePrediction predict_frames_;
   Condenser condense_;
   ConstraintProblem condensed_;
   ExchangePause pause_;

@@ -8,12 +8,12 @@
 
 namespace insula {
 
-/// Adds an error for each device of <devices> that is none.
+/// Adds an error for each unknown device of <devices>.
 void check_scene_devices(const Scene& scene, Diagnostics& diagnostics);
-/// Of a hand (0 left, 1 right), as for --left and --right; empty where the scene does not say.
+/// Device of a hand (0 left, 1 right), in the form of --left and --right; empty if the scene has none.
 std::string scene_device(const Scene& scene, int hand);
-/// Why these devices can never work on this machine (a word that is no device, a library that is not installed); empty:
-/// they can, or may yet.
+/// Reason why these devices cannot work on this machine (an unknown device, a library that is not installed); empty if
+/// they can, or may later.
 std::string device_obstacle(const std::string& wishes);
 
 }  // namespace insula

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Files are found by their look in the expanded tree, so that a scene need not be right to be watched.
+// Files are found by their form in the expanded tree, so that a scene with errors can be watched too.
 #include "engine/live/scene_files.h"
 
 #include <algorithm>
@@ -63,7 +63,7 @@ std::vector<fs::path> scene_files(const fs::path& scene) {
   if (read_text_file(main.string(), DocumentLimits{}.file_bytes, text).empty()) {
     Diagnostics unused;
     Finder finder(out);
-    // As written, for the names of files to include that are not there; expanded, for all others.
+    // The text as written gives the names of missing files in includes. The expanded tree gives all others.
     if (const Document document = parse_document(text, main.string(), unused); document.root)
       for (const auto& child : document.root->children)
         if (const Attribute* file = child->name == "include" ? child->find("file") : nullptr)

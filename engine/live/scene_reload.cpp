@@ -13,7 +13,7 @@
 namespace insula {
 namespace {
 
-// Editors that write a file in two goes are done by then; an author does not wait for it.
+// Long enough for editors that write a file twice, and short enough for an author.
 constexpr std::chrono::milliseconds quiet{300}, every{100};
 
 }  // namespace
@@ -45,7 +45,7 @@ void SceneReload::look(Supervisor& supervisor) {
   next_ = now + every;
   if (watch_.saved(now)) {
     waiting_ = true;
-    watch_.set(files());  // what it names may have changed
+    watch_.set(files());  // the scene may name other files now
     print_("insula: the scene was saved; loading it");
   }
   if (!waiting_) return;

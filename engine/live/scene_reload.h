@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A session follows its scene's files: when one is saved, a second engine loads the scene beside the first and takes
-// over when it is ready. When it has errors the first goes on, and viewers are shown what is wrong.
+// Reloads a session's scene when one of its files is saved. A second engine loads the scene beside the first one and
+// takes over when it is ready. If the scene has errors, the first engine continues, and viewers show the errors.
 #pragma once
 #include <filesystem>
 #include <functional>
@@ -16,11 +16,11 @@ namespace insula {
 class SceneReload {
  public:
   using Print = std::function<void(std::string_view)>;
-  /// command: the engine with --standby. plugins: libraries, or folders of them, that are watched too. notice: where
-  /// the engines look for the text that viewers are shown; empty: nowhere.
+  /// command: the engine with --standby. plugins: libraries, or folders of them, that are also watched. notice: file
+  /// from which the engines read the text for viewers; empty: none.
   SceneReload(std::filesystem::path scene, std::vector<std::filesystem::path> plugins, std::vector<std::string> command,
               std::filesystem::path notice, Print print);
-  /// To be called again and again.
+  /// Must be called repeatedly.
   void look(Supervisor& supervisor);
 
  private:
@@ -34,7 +34,7 @@ class SceneReload {
   Print print_;
   FileWatch watch_;
   FileWatch::Clock::time_point next_{};
-  bool waiting_ = false;  ///< for an offer to be made
+  bool waiting_ = false;  ///< an offer could not be made yet
 };
 
 }  // namespace insula

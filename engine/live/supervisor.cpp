@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One loop over signals, output and due restarts.
+// One loop for signals, output and due restarts.
 #include "engine/live/supervisor.h"
 
 #include <fmt/format.h>
@@ -29,10 +29,10 @@ struct Supervisor::Child {
     Offer offer;
     ChildProcess process;
     std::vector<std::string> lines;
-    bool ready = false, asked = false;  // has said so; the running one has been asked to end
+    bool ready = false, asked = false;  // has printed ready_line; the running one was asked to end
     Clock::time_point kill_at{};
   };
-  std::unique_ptr<Next> next;  // what may take its place
+  std::unique_ptr<Next> next;  // the process that may replace it
 };
 
 Supervisor::Supervisor(SupervisorSettings settings, Print print) : settings_(settings), print_(std::move(print)) {}
@@ -71,7 +71,7 @@ void Supervisor::collect_offer(Child& child) {
   if (const auto exit = next.process.reap()) {
     next.process.finish_output(line);
     const auto gone = std::move(child.next);
-    if (gone->asked && !child.process.running()) child.due = Clock::now();  // the old one has made way already
+    if (gone->asked && !child.process.running()) child.due = Clock::now();  // the old one has already ended
     if (!ending_ && gone->offer.refused) gone->offer.refused(gone->lines, *exit);
     return;
   }
@@ -170,7 +170,7 @@ int Supervisor::wait_ms() const {
   if (!ending_ && settings_.look) consider(Clock::now() + seconds(settings_.look_s));
   for (const auto& child : children_)
     if (child->next) consider(Clock::now() + std::chrono::milliseconds(50));
-  if (!next) return 1000;  // a safety net; signals wake us
+  if (!next) return 1000;  // a limit for safety; signals end the wait
   const auto ms = std::chrono::ceil<std::chrono::milliseconds>(*next - Clock::now()).count();
   return int(std::clamp<std::int64_t>(ms, 0, 1000));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Keeps the processes of a session alive: starts them, passes on what they print, brings back whichever dies, ends all
+// Supervises the processes of a session: starts them, passes on their output, restarts any that dies, and ends all
 // together.
 #pragma once
 #include <chrono>
@@ -14,22 +14,22 @@
 namespace insula {
 
 struct SupervisorSettings {
-  double first_wait_s = 0.2;  ///< before a dead child is started again; doubles while it keeps dying young
+  double first_wait_s = 0.2;  ///< before a dead child is started again; doubles while it keeps dying early
   double longest_wait_s = 2;
-  double settled_s = 5;             ///< a child that lived so long starts over with first_wait_s
+  double settled_s = 5;             ///< a child that lived this long starts over with first_wait_s
   double patience_s = 3;            ///< from SIGTERM to SIGKILL when ending
-  double duration_s = 0;            ///< end by itself after so long; 0: never
-  std::function<void()> look = {};  ///< called again and again while the session runs, every look_s
+  double duration_s = 0;            ///< ends by itself after this time; 0: never
+  std::function<void()> look = {};  ///< called every look_s while the session runs
   double look_s = 0.1;
 };
 
 struct ChildSpec {
   std::string name;
   std::vector<std::string> command;  ///< program (a path) and arguments
-  bool ends_session = false;         ///< when it ends with status 0, everything ends
-  bool waits_for_offer = false;      ///< when it has run and says later that its input is bad (status 2), it stays away
-                                     ///< until there is another offer
-  /// Sees each line of output; may change the command for the next start. Returns false to keep the line from being
+  bool ends_session = false;         ///< if it ends with status 0, the session ends
+  bool waits_for_offer = false;  ///< if it has run before and ends because of bad input (status 2), it stays away until
+                                 ///< there is another offer
+  /// Gets each line of output, and may change the command for the next start. Returns false if the line shall not be
   /// shown.
   std::function<bool(ChildSpec&, std::string_view)> on_line;
 };
@@ -41,21 +41,21 @@ class Supervisor {
   ~Supervisor();
 
   void add(ChildSpec spec);
-  /// Another command for a child that has been added. It is started beside the running one. It takes over when it has
-  /// printed the line `ready_line`. The old process is then ended, and the new one gets SIGUSR1 once the old one is
-  /// gone. If the new process ends earlier, the old one continues, and `refused` gets what the new one printed. A
-  /// second offer replaces a first one that is not ready.
+  /// Another command for a child. It is started beside the running one. It takes over when it has printed the line
+  /// `ready_line`. The old process is then ended, and the new one gets SIGUSR1 once the old one is gone. If the new
+  /// process ends earlier, the old one continues, and `refused` gets what the new one printed. A second offer replaces
+  /// a first one that is not ready.
   struct Offer {
     std::vector<std::string> command;
     std::string ready_line;
     std::function<void(const std::vector<std::string>& lines, const ChildExit& exit)> refused;
     std::function<void()> taken;
   };
-  /// False while an earlier offer is just taking over: to be made again a moment later.
+  /// False while an earlier offer is taking over. The caller then repeats it a moment later.
   bool offer(const std::string& name, Offer offer);
-  /// Until SIGINT, SIGTERM or SIGHUP, the duration, or a child that ends the session. Status 0; 2 when a child says
-  /// that its input is bad (status 2); 1 when a program cannot be run or refuses its arguments (status 100 and more).
-  /// Must be called on the main thread: children die with the thread that started them.
+  /// Runs until SIGINT, SIGTERM or SIGHUP, the end of the duration, or the exit of a child that ends the session.
+  /// Status 0; 2 if a child reports bad input (status 2); 1 if a program cannot be run or refuses its arguments (status
+  /// 100 and more). Must be called on the main thread, since children die with the thread that started them.
   int run();
 
  private:

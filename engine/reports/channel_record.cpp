@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Channels of a run, gathered and written down.
+// Channels of a run, collected and written.
 #include "engine/reports/channel_record.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How much of what a hand was sent it can have felt through an arm with friction of its own.
+// Share of the forces on a hand that exceeds the friction of known arms.
 #pragma once
 #include <array>
 
@@ -9,13 +9,13 @@
 namespace insula {
 
 struct PerceptibleForces {
-  double touching_s = 0;  ///< with more than touch_N on the hand
-  double median_N = 0;    ///< of that time
+  double touching_s = 0;  ///< time with more than touch_N on the hand
+  double median_N = 0;    ///< in that time
   double largest_N = 0;
   struct Above {
-    double time_share = 0;   ///< of the time in touch with more force than the friction
-    double range_share = 0;  ///< of the range up to the largest force that lies above it
-    double scale = 0;        ///< force_scale that brings half of the time in touch above it; 0: nothing was touched
+    double time_share = 0;   ///< share of the time in contact with more force than the friction
+    double range_share = 0;  ///< share of the range up to the largest force that exceeds the friction
+    double scale = 0;        ///< force_scale that brings half of the time in contact above the friction; 0: no contact
   };
   std::array<Above, known_frictions.size()> above{};  ///< in the order of known_frictions
 

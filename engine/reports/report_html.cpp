@@ -11,7 +11,7 @@
 namespace insula {
 namespace {
 
-constexpr std::size_t max_moments = 700;  // about one a pixel
+constexpr std::size_t max_moments = 700;  // about one for each pixel
 constexpr const char* left_colour = "#1f6fb2";
 constexpr const char* right_colour = "#c2410c";
 constexpr const char* goal_colour = "#15803d";
@@ -106,7 +106,7 @@ std::string events_part(const RunRecorder& recorder, const RunSummary& summary) 
   std::size_t shown = 0, more = 0;
   for (const auto& e : recorder.events()) {
     if (among(summary.unlisted_events, e.kind) || e.kind == "command" || e.kind == "refused")
-      continue;  // shown elsewhere
+      continue;  // shown in another place
     if (++shown > 200) {
       ++more;
       continue;
@@ -144,7 +144,7 @@ std::string stage_table(const RunRecorder& recorder) {
   return out + "</tbody></table>\n";
 }
 
-/// A plot for each kind of channel of a component, with a curve for each group; what never changed is left out.
+/// A plot for each kind of channel of a component, with a curve for each group. Constant channels are left out.
 std::string channel_plots(const RunRecorder& recorder, const RunSeries& s, const std::vector<PlotMark>& marks) {
   static constexpr const char* colours[] = {"#1f6fb2", "#c2410c", "#15803d", "#9333ea",
                                             "#d4a017", "#4b5563", "#dc2626", "#0891b2"};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Collects what the steps of a run did; report.json.
+// Collects the results of a run's steps; report.json.
 #include "engine/reports/report_writer.h"
 
 #include <fmt/format.h>
@@ -118,7 +118,7 @@ void write(const std::filesystem::path& file, const std::string& text) {
         fmt::format("{}: cannot be written{}", file.string(), errno ? fmt::format(": {}", std::strerror(errno)) : ""));
 }
 
-/// `b` follows `a`.
+/// Merges `b`, the next sample, into `a`.
 void join(RunRecorder::Sample& a, const RunRecorder::Sample& b) {
   const auto larger = [](auto& x, auto y) { x = std::max(x, y); };
   a.time_s = b.time_s;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Collects what the steps of a run did and writes it down: report.json for programs, report.html for people.
+// Collects the results of a run's steps and writes report.json for programs and report.html for people.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -17,7 +17,7 @@ namespace insula {
 
 class Simulation;
 
-/// An exercise as it stood when the report was made.
+/// Copy of an exercise at the time of the report.
 struct ExerciseOutcome {
   explicit ExerciseOutcome(const Exercise& exercise)
       : id(exercise.id), title(exercise.title()), text(exercise.text()), log(exercise.log()) {}
@@ -25,27 +25,27 @@ struct ExerciseOutcome {
   ExerciseLog log;
 };
 
-/// What is known of a run as a whole; holds copies, so that a report may be written while the simulation goes on.
+/// Data of a run as a whole. It holds copies, so a report may be written while the simulation continues.
 struct RunSummary {
-  /// Title, state hash, exercise and complications as they are now.
+  /// Takes title, state hash, and the present exercise and complications.
   void take(const Simulation& simulation);
 
   std::string title;                    ///< of the scene
   std::string scene, motion;            ///< as named on the command line
-  std::string began;                    ///< local date and time of a session that people play; empty: not said
+  std::string began;                    ///< local date and time of a live session; empty: none
   double wall_seconds = 0;              ///< of all steps
-  double fresh_forces_per_s = 0;        ///< distinct fresh forces a simulated second of touch
+  double fresh_forces_per_s = 0;        ///< number of distinct fresh forces per simulated second of contact
   std::array<double, 2> max_force_N{};  ///< on the hands: left, right
   std::uint64_t state_hash = 0;
-  std::optional<ExerciseOutcome> exercise;            ///< none when the scene has none
-  std::optional<ComplicationsOutcome> complications;  ///< the same
+  std::optional<ExerciseOutcome> exercise;            ///< none if the scene has none
+  std::optional<ComplicationsOutcome> complications;  ///< likewise
   std::vector<std::string> bad_events;                ///< kinds that components declare as bad
-  std::vector<std::string> unlisted_events;           ///< kinds that the report's list leaves out
+  std::vector<std::string> unlisted_events;           ///< kinds that are left out of the report's list
 };
 
 class RunRecorder {
  public:
-  /// Of one step, or of some that follow each other: the largest value of each, the time of the last.
+  /// Sample of one step, or of several consecutive steps: the largest value of each quantity, and the last time.
   struct Sample {
     float time_s = 0;
     std::int32_t steps = 1;
@@ -59,22 +59,22 @@ class RunRecorder {
     std::int32_t rows = 0, contacts = 0, sweeps = 0;
   };
 
-  /// Every step of half an hour at 60 Hz, in 11 MB that are taken at the start. A longer run takes no more: neighbours
-  /// are joined whenever it is full, and from then on a sample stands for twice as many steps.
+  /// Every step of half an hour at 60 Hz, in 11 MB that are allocated at the start. A longer run needs no more memory.
+  /// When it is full, neighbours are merged, and from then on a sample covers twice as many steps.
   static constexpr std::size_t max_samples = 120'000;
-  /// most: samples at most, even and at least 2.
+  /// `most`: largest number of samples, even and at least 2.
   explicit RunRecorder(std::size_t most = max_samples);
 
-  /// After a step: its report, its events (the exercise's included), the force on each hand (N; left, right) and the
-  /// energy of all bodies.
+  /// Called after a step with its report, its events (with those of the exercise), the force on each hand (N; left,
+  /// right) and the energy of all bodies, J.
   void record(const StepReport& report, const std::vector<Event>& events, const std::array<double, 2>& hand_force_N,
               double energy_J);
-  /// Events that belong to no step, as while paused.
+  /// Takes events that belong to no step, for example while paused.
   void note(const std::vector<Event>& events);
   void clear();
 
   std::int64_t steps() const { return steps_; }
-  /// Steps that a sample stands for (the last one for so many at most).
+  /// Number of steps that a sample covers. The last one may cover fewer.
   int steps_per_sample() const { return per_sample_; }
   const std::vector<Sample>& samples() const { return samples_; }
   /// The first events of the run, 5,000 at most.
@@ -98,7 +98,7 @@ class RunRecorder {
   RunOutcome outcome_;
 };
 
-/// Steps gathered for a plot: at most `most` moments, each the largest value of its steps (channels: the last).
+/// Series for a plot: at most `most` points, each with the largest value of its steps (for channels, the last).
 struct RunSeries {
   std::vector<double> time_s, step_ms, residual_N, rows, contacts, sweeps, energy_J;
   std::vector<std::vector<double>> channels;  ///< by curve of the record, SI
@@ -107,15 +107,15 @@ struct RunSeries {
 };
 RunSeries series_of(const RunRecorder& recorder, std::size_t most);
 
-/// Names of the stages as reports call them.
+/// Names of the stages in reports.
 const std::array<const char*, stage_count>& stage_names();
 
-/// The value below which the given share of `values` lies (nearest rank); 0 when there are none.
+/// The percentile of `values` for the given share, by nearest rank; 0 if there are none.
 double percentile(std::vector<double> values, double share);
 
 std::string report_json(const RunRecorder& recorder, const RunSummary& summary);
 std::string report_html(const RunRecorder& recorder, const RunSummary& summary);
-/// Writes report.json and report.html into `dir`, which is created. Throws InputError when it cannot.
+/// Writes report.json and report.html into `dir`, which is created. Throws InputError if it cannot.
 void write_report(const std::filesystem::path& dir, const RunRecorder& recorder, const RunSummary& summary);
 
 }  // namespace insula

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Commands and complications of a run, for programs and people.
+// Commands and complications of a run, in both reports.
 #include "engine/reports/run_outcome.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What was asked for in a run, and the complications that were drawn. Part of both reports.
+// The commands of a run, and its random complications. Both reports contain them.
 #pragma once
 #include <nlohmann/json.hpp>
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace insula {
 
-/// The complications as they stood when the report was made.
+/// Copy of the complications at the time of the report.
 struct ComplicationsOutcome {
   explicit ComplicationsOutcome(const Complications& c) : seed(c.drawn_from()), drawn(c.drawn()) {}
   std::uint64_t seed;
@@ -21,18 +21,18 @@ class RunOutcome {
  public:
   struct Asked {
     double time = 0;
-    std::string verb, text;  ///< its argument, or why it was refused
+    std::string verb, text;  ///< its argument, or the reason for a refusal
     bool done = true;
   };
 
-  /// What was asked for, among the events of a step or between two.
+  /// Takes the commands among the events of a step or between two steps.
   void note(const std::vector<Event>& events);
 
   const std::vector<Asked>& asked() const { return asked_; }  ///< the first 1,000
 
   /// Adds "commands" to a report.
   void add_to(nlohmann::ordered_json& json) const;
-  /// The same as sections of a page; empty when there is nothing to tell.
+  /// The same as sections of a page; empty if there are none.
   std::string html() const;
 
  private:

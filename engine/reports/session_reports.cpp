@@ -35,7 +35,7 @@ SessionReports::SessionReports(fs::path root, fs::path scene, std::string motion
       motion_(std::move(motion)),
       recorder_(root_.empty() ? 0 : RunRecorder::max_samples) {
   if (root_.empty()) return;
-  // Said now, not after an hour's work.
+  // Reported at the start instead of after an hour of work.
   std::error_code error;
   fs::create_directories(root_, error);
   if (!error && ::access(root_.c_str(), W_OK | X_OK) != 0) error.assign(errno, std::generic_category());
@@ -87,7 +87,7 @@ void SessionReports::end_run(const Simulation& simulation) {
   written_ = false;
 }
 
-/// Of the hands that touched anything the lesser, as in a run.
+/// The smaller value of the hands that had contact, as in a run.
 double SessionReports::fresh_forces_per_s() const {
   double least = 0;
   for (std::size_t i = 0; i < 2; ++i) {
@@ -110,7 +110,7 @@ void SessionReports::write(const Simulation& simulation) {
   const auto failed = [](const std::exception& e) {
     spdlog::error("a report was not written: {}. The session goes on", e.what());
   };
-  if (writing_.valid()) writing_.wait();  // folders come in the order of the runs
+  if (writing_.valid()) writing_.wait();  // folders are created in the order of the runs
   try {
     writing_ = std::async(std::launch::async, [root = root_, name = std::move(name), recorder = std::move(recorder_),
                                                summary = summary_, failed] {
@@ -122,7 +122,7 @@ void SessionReports::write(const Simulation& simulation) {
         failed(e);
       }
     });
-  } catch (const std::system_error& e) {  // no thread to be had
+  } catch (const std::system_error& e) {  // no thread is available
     failed(e);
   }
 }

@@ -37,7 +37,7 @@ Axis y_axis(const Plot& plot) {
     return axis;
   }
   if (plot.log_y) {
-    // Eight decades at most: what lies below is drawn at the foot.
+    // At most eight decades. Smaller values are drawn at the lower edge.
     axis.low = std::pow(10, std::floor(std::log10(std::max(low, 1e-8 * high))));
     axis.high = std::pow(10, std::ceil(std::log10(high)));
     if (axis.high <= axis.low) axis.high = 10 * axis.low;
@@ -83,7 +83,7 @@ void line(std::string& to, double x1, double y1, double x2, double y2, const std
 
 std::string escaped(std::string_view raw) {
   std::string out;
-  // Bytes that are no UTF-8 would make the whole document unreadable.
+  // Bytes that are not UTF-8 would make the whole document unreadable.
   const bool utf8 = find_invalid_utf8(raw) == std::string_view::npos;
   for (char c : raw) {
     const auto u = static_cast<unsigned char>(c);

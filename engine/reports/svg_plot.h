@@ -10,7 +10,7 @@ namespace insula {
 struct PlotCurve {
   std::string name;
   std::string colour;     ///< "#1f6fb2"
-  std::vector<double> y;  ///< one value an x; values that are not finite break the line
+  std::vector<double> y;  ///< one value for each x; values that are not finite break the line
   std::string dash;       ///< SVG dash pattern, empty: solid
 };
 
@@ -29,13 +29,13 @@ struct Plot {
   std::vector<PlotCurve> curves;
   std::vector<PlotMark> marks;
   bool log_y = false;  ///< decades; values that are not positive break the line
-  bool log_x = false;  ///< x is positive throughout
+  bool log_x = false;  ///< all x must be positive
 };
 
 /// Dark on white, 760 wide; well-formed XML.
 std::string svg(const Plot& plot);
 
-/// Text as it may stand in XML and HTML.
+/// Text escaped for XML and HTML.
 std::string escaped(std::string_view text);
 
 /// Round numbers that cover [low, high]: about `count` steps of 1, 2 or 5 times a power of ten.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Calibration by four places.
+// Calibration from four positions.
 #include "haptic_server/device_tool/calibrate.h"
 
 #include <fmt/format.h>
@@ -16,10 +16,10 @@ namespace insula {
 namespace {
 
 constexpr double min_stroke_m = 0.02;
-constexpr double largest_error_rad = 0.44;  // 25 degrees: a hand is no ruler
+constexpr double largest_error_rad = 0.44;  // 25 degrees, since a hand is not exact
 constexpr double steady_s = 0.3, steady_m = 0.003;
 
-/// The device's mean place over a moment in which it is held still.
+/// The device's mean pose over a short time at rest.
 Pose held_pose(DeviceSession& session) {
   Vec3 sum = Vec3::Zero(), low = Vec3::Constant(1e9), high = -low;
   Quat q = Quat::Identity();
@@ -44,15 +44,15 @@ Pose held_pose(DeviceSession& session) {
 DeviceCalibration fit_calibration(const Pose& rest, const Vec3& right, const Vec3& away, const Vec3& up, double scale) {
   const std::array<Vec3, 3> to{right, away, up};
   const std::array<const char*, 3> name{"right", "away", "up"};
-  Mat3 ways;  // row i: where the person's axis i points in the device's frame
+  Mat3 strokes;  // row i: direction of the person's axis i in the device's frame
   for (std::size_t i = 0; i < 3; ++i) {
     const Vec3 stroke = to[i] - rest.p;
     if (!(stroke.norm() >= min_stroke_m))
       throw InputError(fmt::format("the way {} was {:.0f} mm, less than {:.0f} mm", name[i], 1e3 * stroke.norm(),
                                    1e3 * min_stroke_m));
-    ways.row(Eigen::Index(i)) = stroke.normalized();
+    strokes.row(Eigen::Index(i)) = stroke.normalized();
   }
-  const Eigen::JacobiSVD<Mat3> svd(ways, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::JacobiSVD<Mat3> svd(strokes, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Mat3 sign = Mat3::Identity();
   sign(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
   DeviceCalibration c;
@@ -60,7 +60,7 @@ DeviceCalibration fit_calibration(const Pose& rest, const Vec3& right, const Vec
   c.rest = rest;
   c.scale = scale;
   for (Eigen::Index i = 0; i < 3; ++i) {
-    const double off = std::acos(std::clamp(c.axes.row(i).dot(ways.row(i)), -1.0, 1.0));
+    const double off = std::acos(std::clamp(c.axes.row(i).dot(strokes.row(i)), -1.0, 1.0));
     if (off > largest_error_rad)
       throw InputError(fmt::format(
           "the ways do not stand at right angles, or one was mistaken for another ({} is off by {:.0f} degrees)",
@@ -72,7 +72,7 @@ DeviceCalibration fit_calibration(const Pose& rest, const Vec3& right, const Vec
 
 int calibrate_device(const DeviceToolOptions& options) {
   std::ostream& out = *options.out;
-  // What is to be replaced, and may be broken, must not stand in the way.
+  // The old calibration may be invalid and must not prevent a new one.
   DeviceSession session(options, false);
   if (!session.streamed()) {
     out << session.profile().name << " needs no calibration: it moves a simulated arm\n";

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The calibration that belongs to four places of a device.
+// Calibration from four positions of a device.
 #pragma once
 #include "haptic_server/devices/calibration.h"
 
 namespace insula {
 
-/// `right`, `away`, `up`: where the device was after the hand had moved so from `rest`; device's frame, metres. Fits a
-/// rotation to all three. Throws InputError for a way shorter than 2 cm, or ways that do not stand at right angles.
+/// `right`, `away`, `up`: positions of the device after the hand has moved in that direction from `rest`; device's
+/// frame, m. Fits a rotation to all three displacements. Throws InputError if one is shorter than 2 cm, or if they are
+/// not at right angles.
 DeviceCalibration fit_calibration(const Pose& rest, const Vec3& right, const Vec3& away, const Vec3& up, double scale);
 
 }  // namespace insula

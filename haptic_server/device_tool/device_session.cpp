@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The servo of a device alone.
+// The servo of a single device.
 #include "haptic_server/device_tool/device_session.h"
 
 #include <poll.h>
@@ -18,7 +18,7 @@ namespace {
 using namespace std::chrono_literals;
 using Steady = std::chrono::steady_clock;
 
-/// A force that nobody expects: slower than in an exercise.
+/// The force is unexpected, so it changes more slowly than in an exercise.
 constexpr double gentle_ramp_s = 1, gentle_slew_N_s = 5;
 
 }  // namespace
@@ -96,7 +96,7 @@ bool DeviceSession::wait_for_device(double seconds) const {
 DeviceSession::Answer DeviceSession::ask(const std::string& text) {
   *options_.out << text << std::endl;
   const auto end = Steady::now() + std::chrono::duration<double>(options_.patience_s);
-  bool was_pressed = true;  // a button that is held is no answer
+  bool was_pressed = true;  // a button that is already held is not an answer
   auto gone_since = Steady::now();
   while (Steady::now() < end) {
     if (told_to_stop()) return Answer::stopped;
@@ -112,7 +112,7 @@ DeviceSession::Answer DeviceSession::ask(const std::string& text) {
     }
     char c = 0;
     if (::read(options_.input, &c, 1) != 1) {
-      options_.input = -1;  // closed: the button is left
+      options_.input = -1;  // closed: only the button remains
       continue;
     }
     if (c == '\n') return Answer::yes;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A device alone with a servo thread of its own, without engine and bus; its forces go through the safety gate as ever.
+// A single device with its own servo thread, without engine and bus. Its forces pass the safety gate as always.
 #pragma once
 #include <atomic>
 #include <memory>
@@ -16,7 +16,7 @@ namespace insula {
 
 class DeviceSession {
  public:
-  /// Starts the device. Throws InputError. `calibrated` false: with the maker's axes, whatever is kept for it.
+  /// Starts the device. Throws InputError. `calibrated` false: with the maker's axes, without a stored calibration.
   explicit DeviceSession(const DeviceToolOptions& options, bool calibrated = true);
   ~DeviceSession();
 
@@ -26,17 +26,17 @@ class DeviceSession {
     Vec3 force = Vec3::Zero();
   };
   State state() const;
-  /// Scene axes; zero ends the push as the gate ends a lost source.
+  /// Sets the force, scene axes. Zero fades it out as the gate does for a lost source.
   void push(const Vec3& force_N);
-  /// Sleeps; false when it was told to stop.
+  /// Sleeps. False if a stop was requested.
   bool wait(double seconds) const;
-  /// False after `seconds` without the device, or when told to stop.
+  /// False after `seconds` without the device, or if a stop was requested.
   bool wait_for_device(double seconds) const;
   enum class Answer { yes, no_answer, lost, stopped };
-  /// Enter, or the device's first button pressed anew.
+  /// Waits for Enter, or for a new press of the device's first button.
   Answer ask(const std::string& text);
 
-  const std::string& name() const { return name_; }  ///< under which it is calibrated
+  const std::string& name() const { return name_; }  ///< name of its calibration
   const DeviceProfile& profile() const { return choice_.device->profile(); }
   std::string remark() const { return choice_.device->remark(); }
   bool streamed() const { return streamed_ != nullptr; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Listing devices, showing one live, trying its force.
+// Lists devices, shows one live, tests its force.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace insula {
 namespace {
 
-/// The test ends when the arm runs away from the hand.
+/// The test ends if the arm moves too far or too fast.
 constexpr double farthest_m = 0.08, fastest_m_s = 0.6;
 constexpr double push_s = 1.5, pause_s = 0.5;
 

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double two_pi = 6.283185307179586;
 
-/// Sum of two sines with amplitude `a` in all; starts at 0 so that a placed arm is at rest.
+/// Sum of two sines with a total amplitude `a`. It starts at 0, so that a placed arm is at rest.
 double tremor(double t, double a, int axis, int seed) {
   const double slow = 8.3 + 0.37 * axis + 0.11 * seed;
   const double fast = 11.1 + 0.29 * axis + 0.07 * seed;
@@ -65,7 +65,7 @@ void ArmModel::step(double dt) {
   const double m = p_.arm_mass_kg + p_.hand_mass_kg, k = p_.hand_stiffness_N_m, c = p_.hand_damping_Ns_m;
   Vec3 momentum = m * v_ + dt * (k * (x_goal - pose_.p) + c * goal_.v + force_);
   if (p_.arm_friction_N > 0) {
-    // Coulomb friction takes at most what is there: it holds, it never drives.
+    // Coulomb friction removes at most the present momentum. It never drives the arm.
     const double size = momentum.norm(), most = p_.arm_friction_N * dt;
     momentum *= size > most ? 1 - most / size : 0;
   }
@@ -85,7 +85,7 @@ void ArmModel::stop_at_walls() {
     const double inside = std::clamp(pose_.p[i], low_[i], high_[i]);
     if (inside == pose_.p[i]) continue;
     pose_.p[i] = inside;
-    v_[i] = 0;  // the stop is dead, it does not throw back
+    v_[i] = 0;  // an inelastic stop
   }
 }
 

@@ -1,33 +1,33 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A simulated haptic arm held by a simulated hand: what stands in for device and person when there is neither.
+// A simulated haptic arm held by a simulated hand, for use without device and person.
 #pragma once
 #include "haptic_server/devices/device.h"
 
 namespace insula {
 
-/// Arm and hand as one rigid body that a spring and damper tie to where the person wants the hand:
+/// Arm and hand as one rigid body that a spring and damper tie to the goal of the hand:
 ///   m v'  = k (x_goal - x) + c (v_goal - v) + F          m = apparent mass of the arm + mass of the hand
 ///   J w'  = k_r r(q -> q_goal) + c_r (w_goal - w) + T    r: rotation vector
-/// Pushed with a constant force F it comes to rest F / k away from its goal.
+/// Under a constant force F it comes to rest at a distance F / k from its goal.
 struct ArmParameters {
   DeviceProfile profile;
   double arm_mass_kg = 0.045;  ///< apparent mass at the tip
   double arm_friction_N = 0;   ///< Coulomb friction of the arm, backdrive
-  double hand_mass_kg = 0.08;  ///< hand and fingers that move along
+  double hand_mass_kg = 0.08;  ///< hand and fingers that move with it
   double hand_stiffness_N_m = 400;
   double hand_damping_Ns_m = 10;  ///< ratio 0.7 with the masses above
   double inertia_kgm2 = 1e-4;
   double hand_stiffness_Nm_rad = 1.0;
   double hand_damping_Nms_rad = 0.014;
-  /// Physiological tremor of a resting hand: two incommensurate frequencies in the 8 to 12 Hz band on each axis.
-  /// Amplitudes.
+  /// Amplitudes of the physiological tremor of a resting hand: two incommensurate frequencies between 8 and 12 Hz on
+  /// each axis.
   double tremor_m = 0;
   double tremor_rad = 0;
-  int tremor_seed = 0;  ///< shifts the phases, so that two hands differ
+  int tremor_seed = 0;  ///< sets the phases, so that two hands differ
 };
 
 /// The limits of a Phantom Omni (maker's data sheet): 160 x 120 x 70 mm, 3.3 N, 0.055 mm, 45 g, 0.26 N backdrive
-/// friction, forces in three axes and no torques. Friction is left out here and can be set in ArmParameters.
+/// friction, forces in three axes and no torques. Friction is not included here and can be set in ArmParameters.
 DeviceProfile omni_profile();
 
 /// State and integration. Deterministic: the same calls give the same bits.
@@ -35,11 +35,12 @@ class ArmModel {
  public:
   explicit ArmModel(const ArmParameters& parameters) : p_(parameters) {}
 
-  /// At rest at `pose`, which is also the goal; the mechanical stops form a box around `centre` with edges `extent`.
+  /// Puts the arm at rest at `pose`, which is also the goal. The mechanical stops form a box around `centre` with edges
+  /// `extent`.
   void place(const Pose& pose, const Vec3& centre, const Vec3& extent);
   void set_goal(const HandGoal& goal) { goal_ = goal; }
   void set_load(const Vec3& force_N, const Vec3& torque_Nm);
-  /// One step by implicit Euler on spring and damper (stable for any dt > 0), load explicit.
+  /// One step of implicit Euler for spring and damper (stable for any dt > 0), with an explicit load.
   void step(double dt);
 
   const Pose& pose() const { return pose_; }
@@ -62,8 +63,8 @@ class ArmModel {
   double time_ = 0;
 };
 
-/// Position and velocity from a quantised encoder: alpha-beta tracker (g-h filter). Follows a constant velocity without
-/// lag and interpolates between counts, as a device's driver does before a velocity can be taken.
+/// Position and velocity from a quantised encoder by an alpha-beta tracker (g-h filter). It follows a constant velocity
+/// without lag and interpolates between counts, as a device's driver does to obtain a velocity.
 class EncoderTracker {
  public:
   void reset(const Vec3& x);
@@ -73,7 +74,7 @@ class EncoderTracker {
 
  private:
   static constexpr double alpha = 0.4;
-  static constexpr double beta = alpha * alpha / (2 - alpha);  // critically damped choice (Benedict and Bordner 1962)
+  static constexpr double beta = alpha * alpha / (2 - alpha);  // critically damped (Benedict and Bordner 1962)
   Vec3 x_ = Vec3::Zero(), v_ = Vec3::Zero();
 };
 

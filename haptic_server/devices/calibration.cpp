@@ -94,7 +94,7 @@ fs::path save_calibration(const std::string& device, const DeviceCalibration& c)
   std::ofstream out(part);
   out << json.dump(2) << '\n';
   out.close();
-  // Renamed when whole: a full disk must not leave half a calibration.
+  // Renamed only when complete, so that a full disk does not leave an incomplete calibration.
   if (out) fs::rename(part, file, error);
   if (!out || error) throw InputError(file.string() + ": cannot be written");
   return file;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a driver's own thread and the servo hand each other, in the device's frame.
+// Data exchanged between a driver's thread and the servo, in the device's frame.
 #pragma once
 #include <cmath>
 #include <cstdint>
@@ -15,12 +15,12 @@ struct DeviceSample {
   Pose pose;
   Vec3 v = Vec3::Zero();
   Vec3 w = Vec3::Zero();
-  bool has_w = false;  ///< w was measured; otherwise it is taken from the poses
+  bool has_w = false;  ///< w was measured; otherwise it is computed from the poses
   bool button1 = false;
   bool button2 = false;
 };
 
-/// What the device is asked for, in its own frame.
+/// The force and torque for the device, in its own frame.
 struct DeviceForce {
   std::int64_t time_ns = 0;
   Vec3 force_N = Vec3::Zero();

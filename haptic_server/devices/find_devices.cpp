@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What each library and service says is plugged in.
+// Asks each library and service for its connected devices.
 #include "haptic_server/devices/find_devices.h"
 
 #include <fmt/format.h>
@@ -24,7 +24,7 @@ namespace {
 
 std::string text_of(const char* text) { return text != nullptr ? text : ""; }
 
-/// Names that the maker's setup program has given: NAME.config in its folder. The library itself cannot list them.
+/// Names from the maker's setup program: NAME.config in its folder. The library itself cannot list them.
 std::set<std::string> touch_names() {
   std::set<std::string> names;
   std::vector<fs::path> folders;
@@ -130,7 +130,7 @@ DeviceSearch find_spacemouse() {
   }
   char name[128] = "";
   const int length = api->device_name != nullptr ? api->device_name(name, int(sizeof name)) : 0;
-  // A daemon too old to tell, or one that has no device: -1 or an empty name.
+  // An old daemon, or one without a device, returns -1 or an empty name.
   if (api->device_name == nullptr) found.devices.push_back({"", "whatever spacenavd has"});
   else if (length > 0) found.devices.push_back({"", std::string(name, ::strnlen(name, sizeof name))});
   api->close();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Looking for devices of each kind. Not while a device of that kind is in use by this process.
+// Search for devices of each kind. Must not be called while this process uses a device of that kind.
 #pragma once
 #include "haptic_server/devices/device_kinds.h"
 

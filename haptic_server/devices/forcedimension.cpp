@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Opening, one exchange with the device, losing and finding again.
+// Opening, one exchange with the device, and recovery after a loss.
 #include "haptic_server/devices/forcedimension.h"
 
 #include <spdlog/spdlog.h>
@@ -23,7 +23,7 @@ struct DataSheet {
   Vec3 workspace_m;
 };
 
-/// Continuous limits by the maker's data sheets; for a model not known here a gentle guess.
+/// Continuous limits from the maker's data sheets, or low limits for an unknown model.
 DataSheet data_sheet(int type) {
   switch (type) {
     case dhd::omega3:
@@ -42,7 +42,7 @@ DataSheet data_sheet(int type) {
   }
 }
 
-/// No hand is pushed with more than this, whatever its device could do: the forces of this surgery stay far below.
+/// Largest force on a hand for any device. The forces of this surgery are far smaller.
 constexpr double force_limit_N = 10;
 
 }  // namespace
@@ -180,7 +180,7 @@ void ForceDimensionDevice::serve() {
       spdlog::warn("{}", text);
       continue;
     }
-    // A call that waited for the bus has used up its millisecond already.
+    // A call that waited for the bus has already used its millisecond.
     next = std::max(next + 1ms, Steady::now() - 1ms);
     std::this_thread::sleep_until(next);
   }

@@ -11,14 +11,15 @@
 
 namespace insula {
 
-/// Calls into the library wait for the device's bus, so a thread of the driver's own makes them, a thousand times a
+/// Calls of the library wait for the device's bus, so the driver makes them in its own thread, a thousand times a
 /// second. Force Dimension frame: x to the person, y right, z up; metres.
 class ForceDimensionDevice final : public StreamedDevice {
  public:
-  /// `which`: a serial number, "#0", "#1"... in the library's order, or empty: the first one that no other hand has.
+  /// `which`: a serial number, "#0", "#1"... in the library's order, or empty: the first one that is not in use by the
+  /// other hand.
   explicit ForceDimensionDevice(const std::string& which, DeviceCalibration calibration = default_calibration());
   ~ForceDimensionDevice() override;
-  /// Throws InputError when the library is missing. A missing device is waited for.
+  /// Throws InputError when the library is missing. Waits for a missing device in the background.
   void start() override;
   void stop() override;
 

@@ -51,11 +51,11 @@ struct Api {
   bool (*has_active_wrist)(char id);
   int (*angular_velocity)(double* x, double* y, double* z, char id);
 
-  /// Devices that a hand of this process has open: "the first free one" must not be the other hand's.
+  /// Devices that a hand of this process has open: the first free one must not be that of the other hand.
   std::mutex open_mutex;
   std::set<int> open;
 
-  /// Shared by all devices of the process while any of them lives. Its library may be missing: ask library.loaded().
+  /// Shared by all devices of the process while any of them exists. Its library may be missing: check library.loaded().
   static std::shared_ptr<Api> shared();
 };
 

@@ -19,7 +19,7 @@ constexpr auto period = 4ms;
 constexpr std::uint32_t init_game_controller = 0x2000;  // SDL_INIT_GAMECONTROLLER
 constexpr double dead_zone = 0.12;
 
-/// From a stick's counts to -1..1: nothing in the dead zone, fine in the middle.
+/// Maps a stick's counts to -1..1, with a dead zone and a fine resolution in the middle.
 double deflection(std::int16_t counts) {
   const double x = std::max(-1.0, counts / 32767.0), beyond = std::abs(x) - dead_zone;
   if (beyond <= 0) return 0;
@@ -48,7 +48,7 @@ sdl::Api::Api() : library("INSULA_LIBSDL2", {"libSDL2-2.0.so.0", "libSDL2.so"}) 
   library.find(serial, "SDL_GameControllerGetSerial", false);
   library.find(update, "SDL_GameControllerUpdate");
   if (!library.loaded()) return;
-  // Without these SDL would take Ctrl-C for itself, and listen only while a window of its own has the focus.
+  // Without these, SDL would handle Ctrl-C itself, and read only while a window of its own has the focus.
   set_hint("SDL_NO_SIGNAL_HANDLERS", "1");
   set_hint("SDL_JOYSTICK_ALLOW_BACKGROUND_EVENTS", "1");
   ready = init(init_game_controller) == 0;
@@ -89,7 +89,7 @@ bool GamepadDevice::open() {
   std::lock_guard lock(api_->mutex);
   api_->update();
   const bool numbered = which_.starts_with('#');
-  int number = -1;  // among the gamepads, so that "#1" is the second one whatever else is plugged in
+  int number = -1;  // among the gamepads, so that "#1" is the second one for any other connected devices
   for (int i = 0; i < api_->count(); ++i) {
     if (!api_->is_controller(i)) continue;
     ++number;
@@ -141,7 +141,7 @@ void GamepadDevice::serve() {
     {
       std::lock_guard lock(api_->mutex);
       api_->update();
-      api_->flush_events(0, 0xFFFF);  // nobody else reads them
+      api_->flush_events(0, 0xFFFF);  // no other code reads them
       there = api_->attached(pad_) != 0;
       if (there) {
         const auto axis = [&](sdl::Axis x) { return deflection(api_->axis(pad_, x)); };

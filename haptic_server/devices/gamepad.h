@@ -45,7 +45,7 @@ struct Api {
   bool ready = false;
 
   std::mutex mutex;              ///< around every call: SDL keeps one list of all gamepads
-  std::set<std::int32_t> taken;  ///< instances that a hand has
+  std::set<std::int32_t> taken;  ///< instances in use by a hand
 
   static std::shared_ptr<Api> shared();
 };
@@ -54,14 +54,14 @@ const char* how_to_get();
 
 }  // namespace sdl
 
-/// Left stick: right and away. Triggers: down and up. Right stick: turn about up and about right. Shoulders: roll. A,
-/// B: the buttons.
+/// Left stick: right and away. Triggers: down and up. Right stick: rotation about up and about right. Shoulders: roll.
+/// A, B: the buttons.
 class GamepadDevice final : public RateDevice {
  public:
-  /// `which`: a name or serial number, "#0", "#1"..., or empty: the first one that no other hand has.
+  /// `which`: a name or serial number, "#0", "#1"..., or empty: the first one that is not in use by the other hand.
   GamepadDevice(std::string which, int hand, const DeviceCalibration& calibration = {});
   ~GamepadDevice() override;
-  /// Throws InputError when SDL2 is missing. A missing gamepad is waited for.
+  /// Throws InputError when SDL2 is missing. Waits for a missing gamepad in the background.
   void start() override;
   void stop() override;
 

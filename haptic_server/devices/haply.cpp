@@ -16,7 +16,7 @@ using namespace std::chrono_literals;
 using Steady = std::chrono::steady_clock;
 
 constexpr auto retry = 500ms;
-constexpr auto patience = 1000ms;  // of one exchange; the hand is told after StreamedDevice::stale_after_s already
+constexpr auto patience = 1000ms;  // of one exchange; a lost device is reported before that
 
 }  // namespace
 
@@ -28,7 +28,7 @@ HaplyDevice::HaplyDevice(const std::string& which, int hand, DeviceCalibration c
   arm_id_ = which.substr(0, plus);
   if (plus != std::string::npos) grip_id_ = which.substr(plus + 1);
   profile_.name = "haply";
-  // Insula's own limit, well below the arm's; its service has further limits of its own.
+  // Insula's own limit, well below the arm's. The service has further limits.
   profile_.max_force_N = 4;
   profile_.max_slew_N_s = 80;
   profile_.resolution_m = 5e-5;
@@ -102,7 +102,7 @@ const HaplyGrip* HaplyDevice::choose_grip(const HaplyState& state, const HaplyAr
       if (grip.id == grip_id_) return &grip;
     return nullptr;
   }
-  // As many grips as arms: in the same order; a single one belongs to a single arm.
+  // With as many grips as arms, they correspond in order.
   for (std::size_t i = 0; i < state.arms.size() && i < state.grips.size(); ++i)
     if (state.arms[i].id == arm.id) return &state.grips[i];
   return nullptr;
@@ -120,7 +120,7 @@ void HaplyDevice::deliver(const HaplyArm& arm, const HaplyGrip* grip) {
 }
 
 void HaplyDevice::session(WebSocketClient& service) {
-  std::string id;  // of the arm, from the first message on: only that one tells the handedness
+  std::string id;  // of the arm, from the first message, the only one with the handedness
   bool named_vector = false, introduce = true;
   HaplyState state;
   std::string_view text;
@@ -144,7 +144,7 @@ void HaplyDevice::session(WebSocketClient& service) {
         lost();
         say(title_ + (arm == nullptr ? ": the Haply service has no such arm; is it plugged in and switched on?"
                                      : ": the arm is not ready; follow Haply Hub"));
-        // A new inventory is sent to a new connection only.
+        // Only a new connection gets a new inventory.
         if (arm == nullptr) return;
       } else if (arm->p_m) {
         say("");

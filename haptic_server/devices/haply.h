@@ -12,18 +12,18 @@ namespace insula {
 
 class WebSocketClient;
 
-/// Talks JSON over a WebSocket from a thread of its own: each force is answered with the state of all arms and grips.
-/// Haply frame: right-handed, x right, y away from the person, z up; metres.
+/// Exchanges JSON over a WebSocket in its own thread. The service answers each force with the state of all arms and
+/// grips. Haply frame: right-handed, x right, y away from the person, z up; metres.
 class HaplyDevice final : public StreamedDevice {
  public:
   /// `which`: empty, the arm's id, or "arm+grip". Empty: the arm that is configured for this hand (0 left, 1 right),
   /// else the first for the left and the last for the right hand.
   HaplyDevice(const std::string& which, int hand, DeviceCalibration calibration = default_calibration());
   ~HaplyDevice() override;
-  /// A missing service or arm is waited for.
+  /// Waits for a missing service or arm in the background.
   void start() override;
   void stop() override;
-  /// Messages of the service that could not be read.
+  /// Number of messages of the service that could not be read.
   std::int64_t messages_refused() const { return messages_refused_.load(std::memory_order_relaxed); }
 
   static DeviceCalibration default_calibration();

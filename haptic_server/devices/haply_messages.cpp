@@ -48,7 +48,7 @@ std::optional<Quat> quaternion(const Json* j) {
 std::string word(const Json* j) {
   if (j == nullptr || !j->is_string()) return {};
   const std::string& s = j->get_ref<const std::string&>();
-  // Ids go back into commands: no quotes, no control characters.
+  // Ids are used in commands, so quotes and control characters are refused.
   if (s.empty() || s.size() > longest_id) return {};
   for (const char c : s)
     if (c < ' ' || c == '"' || c == '\\' || c == 127) return {};

@@ -10,7 +10,7 @@
 
 namespace insula {
 
-/// An arm as one message has it; what the message does not say is empty.
+/// An arm in one message. Fields that the message does not contain are empty.
 struct HaplyArm {
   std::string id;
   std::string handedness;  ///< "left", "right"; only in the first message
@@ -27,17 +27,17 @@ struct HaplyGrip {
 };
 
 struct HaplyState {
-  bool named_vector = false;  ///< the service is one that calls a force's numbers "vector"
+  bool named_vector = false;  ///< the service uses the name "vector" for a force's numbers
   std::vector<HaplyArm> arms;
   std::vector<HaplyGrip> grips;
 };
 
-/// False, with the reason, for anything that is not such a message; then `state` means nothing. Never throws. A number
-/// that is missing, no number or not finite leaves its vector empty; nothing is guessed.
+/// False, with the reason, for any other message; `state` is then not valid. Never throws. A vector stays empty if a
+/// number of it is missing, not a number or not finite.
 bool parse_haply(std::string_view text, HaplyState& state, std::string& why);
 
-/// The command of one tick: the service answers each with one state. Forces in the service's axes, N. `introduce`: with
-/// the name under which the session shows in Haply's own programs.
+/// The command of one tick. The service answers each with one state. Forces are in the service's axes, N. `introduce`:
+/// adds the session's name for Haply's own programs.
 std::string haply_force(const std::string& arm, const Vec3& force_N, bool named_vector, bool introduce);
 
 }  // namespace insula

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Backdrive friction of arms by their makers' data sheets: what a force must exceed to be felt as it is.
+// Backdrive friction of arms from their makers' data sheets. A force must exceed it to be perceptible.
 #pragma once
 #include <array>
 

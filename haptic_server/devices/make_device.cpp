@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reading wishes, choosing among them.
+// Reads the requested devices and chooses among them.
 #include "haptic_server/devices/make_device.h"
 
 #include <algorithm>
@@ -37,8 +37,8 @@ std::vector<std::string> device_kinds() {
 ArmParameters simulated_arm(int hand) {
   ArmParameters p;
   p.profile = omni_profile();
-  // Physiological tremor, tens of micrometres; more than half a count of the encoders, so that a held arm never reads
-  // as dead.
+  // Physiological tremor, tens of micrometres; more than half a count of the encoders, so that a held arm does not
+  // appear frozen.
   p.tremor_m = 40e-6;
   p.tremor_rad = 0.3e-3;
   p.tremor_seed = hand;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From the words that choose a device to the device.
+// Creates a device from the words of an option.
 #pragma once
 #include <memory>
 #include <string>
@@ -10,11 +10,11 @@
 
 namespace insula {
 
-/// Who moves the hand of a device.
+/// Source of a hand's motion.
 enum class HandSource {
-  person,            ///< a real device: nobody here
-  motion_or_viewer,  ///< the scene's scripted motion until a viewer takes the hand over
-  viewer,            ///< poses from the viewer only
+  person,            ///< a real device: a person
+  motion_or_viewer,  ///< the scene's scripted motion, until a viewer takes the hand over
+  viewer,            ///< only poses from the viewer
 };
 
 struct DeviceChoice {
@@ -22,31 +22,31 @@ struct DeviceChoice {
   HandSource source = HandSource::person;
 };
 
-/// One wish: "touch", or "touch:Left Device" for a certain one.
+/// One requested device: "touch", or "touch:Left Device" for a certain one.
 struct DeviceWish {
   std::string kind;
   std::string which;
 
-  /// As it is written.
+  /// The text that names it.
   std::string text() const { return which.empty() ? kind : kind + ":" + which; }
-  /// What its calibration is kept under: a device without a name of its own is called after the hand that it serves.
+  /// Name of its calibration. A device without a name of its own gets the name of its hand.
   std::string calibration_name(int hand) const {
     return which.empty() ? kind + (hand == 0 ? " left" : " right") : text();
   }
 };
 
-/// Reads "KIND[:WHICH][, KIND[:WHICH]]...", best first. Which one goes to the next comma; quotes around it are taken
-/// off. Throws InputError that lists the kinds when one is unknown.
+/// Reads "KIND[:WHICH][, KIND[:WHICH]]...", best first. WHICH ends at the next comma, and quotes around it are removed.
+/// Throws InputError with a list of the kinds if one is unknown.
 std::vector<DeviceWish> parse_device_wishes(std::string_view text);
 
-/// Names that a wish may begin with, for help texts.
+/// The kinds of devices, for help texts.
 std::vector<std::string> device_kinds();
-/// hand: 0 left, 1 right. Of several wishes the first that is plugged in, else the last; a single one is taken as it is
-/// and waited for. Reads the device's calibration. Throws InputError.
+/// hand: 0 left, 1 right. Takes the first device that is connected, or else the last one. A single device is taken even
+/// if it is not connected. Reads the device's calibration. Throws InputError.
 DeviceChoice make_device(std::string_view wishes, int hand);
-/// The wish that make_device takes.
+/// The device that make_device takes.
 DeviceWish choose_device(const std::vector<DeviceWish>& wishes);
-/// An Omni in a slightly trembling hand, as `simulated` is.
+/// The arm of the device `simulated`: an Omni in a slightly trembling hand.
 ArmParameters simulated_arm(int hand);
 
 }  // namespace insula

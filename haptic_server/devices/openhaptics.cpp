@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Opening, one scheduler frame, losing and finding again.
+// Opening, one scheduler frame, and recovery after a loss.
 #include "haptic_server/devices/openhaptics.h"
 
 #include <spdlog/spdlog.h>
@@ -20,10 +20,10 @@ using namespace std::chrono_literals;
 
 constexpr auto retry = 500ms;
 constexpr int calibration_check_frames = 200;
-/// No hand is pushed with more than this, whatever its device could do: the forces of this surgery stay far below.
+/// Largest force on a hand for any device. The forces of this surgery are far smaller.
 constexpr double force_limit_N = 10;
 
-/// A model's friction and mass by its maker's data sheet (Omni and Touch are one design).
+/// A model's friction and mass from its maker's data sheet (Omni and Touch are one design).
 void add_data_sheet(const std::string& model, DeviceProfile& profile) {
   profile.resolution_m = 55e-6;
   profile.workspace_m = Vec3(0.160, 0.120, 0.070);
@@ -59,7 +59,7 @@ void OpenHapticsDevice::start() {
   api_ = hd::Api::shared();
   if (!api_->library.loaded()) throw InputError("touch: " + api_->library.error() + "; " + hd::how_to_get());
   stopping_ = false;
-  // Once here, so that the profile is complete when start returns.
+  // The first attempt is made here, so that the profile is complete when start returns.
   if (!open()) spdlog::warn("{}", remark());
   profile_fixed_ = true;
   keeper_ = std::thread([this] { look_after(); });
@@ -117,7 +117,8 @@ void OpenHapticsDevice::close() {
   if (handle_ == hd::invalid_handle) return;
   leave_ = true;
   for (int i = 0; i < 200 && running_; ++i) std::this_thread::sleep_for(1ms);
-  // Where the scheduler no longer calls: taken off it, so that it cannot begin again with what is about to go.
+  // If the scheduler no longer calls, the callback is removed, so that it cannot run again while this object is
+  // destroyed.
   if (running_) api_->unschedule(scheduled_);
   running_ = false;
   api_->leave_scheduler();
@@ -147,7 +148,7 @@ void OpenHapticsDevice::look_after() {
 hd::CallbackCode OpenHapticsDevice::call_back(void* self) { return static_cast<OpenHapticsDevice*>(self)->frame(); }
 
 bool OpenHapticsDevice::device_lost() {
-  // Errors of forces (warm motors, too fast) are the device's own protection: it goes on by itself.
+  // Errors of forces (warm motors, too high speed) are the device's own protection. The device continues by itself.
   bool gone = false;
   for (int i = 0; i < 16; ++i) {
     const hd::ErrorInfo e = api_->get_error();
@@ -183,7 +184,7 @@ hd::CallbackCode OpenHapticsDevice::frame() {
   api_->get_doubles(hd::current_velocity, v.data());
   api_->get_integers(hd::current_buttons, &buttons);
   const DeviceForce f = wanted();
-  // Uncalibrated encoders mean forces in the wrong place.
+  // Uncalibrated encoders would give forces at a wrong position.
   const Vec3 force = leave || !calibrated_ ? Vec3(Vec3::Zero()) : f.force_N;
   api_->set_doubles(hd::current_force, force.data());
   api_->end_frame(handle_);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Phantom Omni, Touch and their relatives through OpenHaptics.
+// Phantom Omni, Touch and related arms through OpenHaptics.
 #pragma once
 #include <array>
 #include <atomic>
@@ -12,15 +12,15 @@
 
 namespace insula {
 
-/// The library's scheduler calls back a thousand times a second and is the driver's thread for samples and forces. A
-/// thread of the driver's own opens the device and opens it again when it was lost; that may take its time. OpenHaptics
-/// frame: x right, y up, z to the person; millimetres.
+/// The library's scheduler calls back a thousand times a second and exchanges samples and forces. The driver's own
+/// thread opens the device, and opens it again after a loss, which may take long. OpenHaptics frame: x right, y up, z
+/// to the person; millimetres.
 class OpenHapticsDevice final : public StreamedDevice {
  public:
-  /// `name`: as given to the arm by the maker's setup program; empty: the default device.
+  /// `name`: given to the arm in the maker's setup program; empty: the default device.
   explicit OpenHapticsDevice(std::string name, DeviceCalibration calibration = default_calibration());
   ~OpenHapticsDevice() override;
-  /// Throws InputError when the library is missing. A missing device is waited for.
+  /// Throws InputError when the library is missing. Waits for a missing device in the background.
   void start() override;
   void stop() override;
 
@@ -42,13 +42,13 @@ class OpenHapticsDevice final : public StreamedDevice {
   std::thread keeper_;
   std::atomic<bool> stopping_{false};
   bool profile_fixed_ = false;
-  std::atomic<bool> leave_{false};    ///< the callback is to end
+  std::atomic<bool> leave_{false};    ///< requests the end of the callback
   std::atomic<bool> running_{false};  ///< the callback is scheduled and has not ended
   std::atomic<unsigned int> error_{0};
   hd::Handle handle_ = hd::invalid_handle;
   hd::SchedulerHandle scheduled_ = 0;
 
-  /// What the device says of itself in its first frame, where it is surely the current one.
+  /// Properties that the device reports in its first frame, in which it is certainly the current device.
   struct Facts {
     double max_force_N = 0;
     std::array<double, 6> box_mm{};
@@ -57,7 +57,7 @@ class OpenHapticsDevice final : public StreamedDevice {
   };
   Facts facts_;
   std::atomic<bool> facts_known_{false};
-  // The callback's own.
+  // Used only by the callback.
   bool calibrated_ = false;
   int frames_ = 0;
 };

@@ -46,7 +46,7 @@ inline constexpr Enum calibration_needs_update = 0x5001;        // HD_CALIBRATIO
 inline constexpr Enum calibration_needs_manual_input = 0x5002;  // HD_CALIBRATION_NEEDS_MANUAL_INPUT
 inline constexpr int button_1 = 1 << 0, button_2 = 1 << 1;      // HD_DEVICE_BUTTON_1, HD_DEVICE_BUTTON_2
 
-/// One a process: the library itself has one scheduler for all devices.
+/// One for each process, since the library has one scheduler for all devices.
 struct Api {
   Api();
 
@@ -74,7 +74,7 @@ struct Api {
   void use_scheduler();
   void leave_scheduler();
 
-  /// Shared by all devices of the process while any of them lives. Its library may be missing: ask library.loaded().
+  /// Shared by all devices of the process while any of them exists. Its library may be missing: check library.loaded().
   static std::shared_ptr<Api> shared();
 
  private:
@@ -82,7 +82,7 @@ struct Api {
   int users_ = 0;
 };
 
-/// The library has to be installed by its user; says how.
+/// Instructions to install the library.
 const char* how_to_get();
 
 }  // namespace insula::hd

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From deflections to the goal of a simulated hand.
+// Converts deflections to the goal of a simulated hand.
 #include "haptic_server/devices/rate_device.h"
 
 #include <algorithm>
@@ -12,7 +12,7 @@ ArmParameters arm_named(const std::string& name, int hand) {
   ArmParameters p;
   p.profile = omni_profile();
   p.profile.name = name;
-  // As `simulated`: a resting hand never reads as dead.
+  // As for `simulated`: a resting hand does not appear frozen.
   p.tremor_m = 40e-6;
   p.tremor_rad = 0.3e-3;
   p.tremor_seed = hand;
@@ -67,7 +67,8 @@ void RateDevice::advance(double dt) noexcept {
   Pose goal = displaced(before, swept);
   Vec3 from_home = goal.p - placed_at_.p;
   shorten(from_home, settings_.reach_m);
-  // Where tissue or a stop holds the hand back the goal waits: a person who feels nothing would press ever harder.
+  // If tissue or a stop holds the hand back, the goal waits, since a person without force feedback would press harder
+  // and harder.
   Vec6 ahead = displacement(arm, {placed_at_.p + from_home, goal.q});
   Vec3 step = ahead.head<3>(), turned = ahead.tail<3>();
   shorten(step, settings_.leash_m);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Devices that a person deflects (SpaceMouse, gamepad): the deflection is a velocity of the simulated hand, which moves
-// the simulated arm as the mouse does. Nothing is felt.
+// the simulated arm as the mouse does. They give no force.
 #pragma once
 #include <atomic>
 #include <string>
@@ -26,8 +26,8 @@ struct RateSample {
 struct RateSettings {
   double speed_m_s = 0.06;  ///< at full deflection
   double spin_rad_s = 1.2;
-  double reach_m = 0.10;   ///< the goal stays within this of where the hand was placed
-  double leash_m = 0.008;  ///< the goal runs no farther ahead of the hand: 400 N/m then press with 3.2 N
+  double reach_m = 0.10;   ///< the goal stays within this distance of the hand's initial position
+  double leash_m = 0.008;  ///< largest distance of the goal from the hand: 400 N/m then press with 3.2 N
   double leash_rad = 0.5;
 };
 
@@ -49,7 +49,7 @@ class RateDevice : public Device {
   RateDevice(const std::string& name, int hand, const DeviceCalibration& calibration,
              const RateSettings& settings = {});
 
-  /// The driver's thread, at least every 20 ms while the device is there. What cannot be true is dropped.
+  /// Called by the driver's thread, at least every 20 ms while the device is connected. Drops implausible samples.
   void deliver(RateSample sample) noexcept;
   void lost() noexcept;
   void set_remark(const std::string& text) { remark_.set(text); }

@@ -5,8 +5,8 @@
 
 namespace insula {
 
-/// What a person should know of a device or server, written by one thread and read by others; never by the servo's,
-/// since it locks.
+/// A message about a device or server for its user. One thread writes it and others read it. The servo's thread must
+/// not, since it locks.
 class Remark {
  public:
   void set(const std::string& text) {

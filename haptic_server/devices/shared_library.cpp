@@ -20,7 +20,7 @@ SharedLibrary::SharedLibrary(const char* variable, const std::vector<std::string
       return;
     }
     const char* why = dlerror();
-    // The first name is the usual one: what is said about it helps most.
+    // The first name is the usual one, so its message helps most.
     if (error_.empty()) error_ = why != nullptr ? why : name + " cannot be loaded";
   }
 }

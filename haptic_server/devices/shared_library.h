@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A maker's library, opened when it is needed: Insula builds and runs without any of them.
+// A maker's library, opened when it is needed. Insula builds and runs without any of them.
 #pragma once
 #include <memory>
 #include <mutex>
@@ -10,20 +10,19 @@ namespace insula {
 
 class SharedLibrary {
  public:
-  /// Tries the file in the environment variable `variable` (alone, where it is set), else each name in turn.
+  /// Tries only the file in the environment variable `variable` if it is set, or else each name in order.
   SharedLibrary(const char* variable, const std::vector<std::string>& names);
-  /// Never unloaded: makers' libraries leave threads and exit handlers behind.
+  /// Never unloads it, since makers' libraries leave threads and exit handlers behind.
   ~SharedLibrary() = default;
   SharedLibrary(const SharedLibrary&) = delete;
   SharedLibrary& operator=(const SharedLibrary&) = delete;
 
   bool loaded() const { return handle_ != nullptr; }
   const std::string& name() const { return name_; }
-  /// Why it was not loaded, or which function was missing.
+  /// Reason why it was not loaded, or the name of a missing function.
   const std::string& error() const { return error_; }
 
-  /// Finds a function. Where there is none, the library counts as not loaded from then on; `required` false forgives
-  /// that.
+  /// Finds a function. If a required function is missing, the library counts as not loaded from then on.
   template <class Function>
   void find(Function*& function, const char* symbol, bool required = true) {
     function = reinterpret_cast<Function*>(address(symbol, required));
@@ -36,7 +35,7 @@ class SharedLibrary {
   std::string name_, error_;
 };
 
-/// One for all who use it at a time: made by the first, gone with the last.
+/// One object for all users at a time. The first creates it, and it is destroyed with the last.
 template <class T>
 std::shared_ptr<T> shared_while_used() {
   static std::mutex mutex;

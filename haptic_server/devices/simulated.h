@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The simulated arm as a device: quantised position, tracked velocity, limits of the arm it stands in for.
+// The simulated arm as a device, with quantised position, tracked velocity, and the limits of a real arm.
 #pragma once
 #include "haptic_server/devices/arm_model.h"
 

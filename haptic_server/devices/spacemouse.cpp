@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Listening to the daemon.
+// Receives the daemon's events.
 #include "haptic_server/devices/spacemouse.h"
 
 #include <poll.h>
@@ -17,7 +17,7 @@ using namespace std::chrono_literals;
 
 constexpr auto retry = 500ms;
 constexpr double full_counts = 350;
-/// A deflected cap sends events all the time: after this silence its last one is not believed.
+/// A deflected cap sends events all the time. After this silence its last event is dropped.
 constexpr double silence_s = 0.5;
 constexpr unsigned int motion_button_device = 0x01 | 0x02 | 0x04;  // SPNAV_EVMASK_MOTION, _BUTTON, _DEV
 
@@ -89,7 +89,7 @@ bool SpaceMouseDevice::listen() {
     any = true;
     take(event);
   }
-  // Readable and yet nothing to read: the daemon has ended.
+  // Readable without data: the daemon has ended.
   if (ready > 0 && !any) return false;
   if (double(MonotonicClock().now_ns() - moved_ns_) * 1e-9 > silence_s) sample_.v = sample_.w = Vec3::Zero();
   if (device_there_) deliver(sample_);

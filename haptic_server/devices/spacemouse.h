@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// 3Dconnexion's SpaceMouse and its relatives through libspnav and the daemon spacenavd.
+// 3Dconnexion's SpaceMouse and related devices through libspnav and the daemon spacenavd.
 #pragma once
 #include <atomic>
 #include <memory>
@@ -16,7 +16,7 @@ namespace spnav {
 enum EventType { motion = 1, button = 2, device = 3 };  // SPNAV_EVENT_MOTION, _BUTTON, _DEV
 inline constexpr int device_removed = 1;                // SPNAV_DEV_RM
 
-/// spnav_event, a union of int structures; room for every kind of event of libspnav 1.x.
+/// spnav_event, a union of int structures; large enough for every kind of event of libspnav 1.x.
 union Event {
   int type;
   struct {
@@ -42,7 +42,7 @@ struct Api {
   int (*poll_event)(Event*);
   int (*event_mask)(unsigned int);  // newer releases only
   int (*device_name)(char*, int);   // newer releases only
-  std::atomic<bool> in_use{false};  ///< one connection a process, and all devices speak through it
+  std::atomic<bool> in_use{false};  ///< one connection for each process, which all devices share
 
   static std::shared_ptr<Api> shared();
 };
@@ -56,8 +56,8 @@ class SpaceMouseDevice final : public RateDevice {
  public:
   SpaceMouseDevice(int hand, const DeviceCalibration& calibration = {});
   ~SpaceMouseDevice() override;
-  /// Throws InputError when the library is missing or the other hand has the SpaceMouse already: the daemon merges all
-  /// that are plugged in. A missing daemon or device is waited for.
+  /// Throws InputError when the library is missing or the other hand already uses the SpaceMouse, since the daemon
+  /// merges all connected ones. Waits for a missing daemon or device in the background.
   void start() override;
   void stop() override;
 

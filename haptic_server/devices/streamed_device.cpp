@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Samples to poses of the scene, forces to the device's axes.
+// Converts samples to poses of the scene, and forces to the device's axes.
 #include "haptic_server/devices/streamed_device.h"
 
 #include <algorithm>
@@ -20,7 +20,7 @@ void shorten(Vec3& v, double limit) {
 DeviceSample StreamedDevice::raw() noexcept {
   samples_.update();
   DeviceSample s = samples_.front();
-  // A sample may be newer than the time asked for here, never by much.
+  // A sample may be slightly newer than the time read here.
   if (clock_.now_ns() - s.time_ns > ns(stale_after_s)) s.valid = false;
   return s;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What all drivers of real arms share: samples come from a thread of their own, forces go back to it, and the servo
+// Common base of all drivers of real arms. Samples come from the driver's thread, forces go back to it, and the servo
 // waits for neither.
 #pragma once
 #include <atomic>
@@ -14,7 +14,7 @@
 
 namespace insula {
 
-/// read, write, face and place are the servo thread's; deliver, lost and wanted the driver's thread's (one of them).
+/// The servo thread calls read, write, face and place. One driver thread calls deliver, lost and wanted.
 class StreamedDevice : public Device {
  public:
   const DeviceProfile& profile() const override { return profile_; }
@@ -25,31 +25,32 @@ class StreamedDevice : public Device {
   std::string remark() const override { return remark_.text(); }
 
   const DeviceCalibration& calibration() const { return calibration_; }
-  /// The newest sample as the device measured it, for a calibration; the servo thread's, like read.
+  /// The newest sample as the device measured it, for a calibration. Called by the servo thread.
   DeviceSample raw() noexcept;
-  /// Samples that could not be true.
+  /// Number of implausible samples.
   std::int64_t refused() const { return refused_.load(std::memory_order_relaxed); }
 
-  /// Without a sample for this long the device counts as gone.
+  /// A device without a sample for this time counts as disconnected.
   static constexpr double stale_after_s = 0.05;
-  /// A servo that has been silent for longer fades the force out; at stale_after_s it is zero. When the servo is back,
-  /// so is the force, within another stale_after_s: a stall must not end in a step.
+  /// If the servo is silent for longer, the force fades out and is zero at stale_after_s. When the servo is back, the
+  /// force fades in within another stale_after_s, so that a stall does not end in a jump.
   static constexpr double silent_after_s = 0.02;
 
  protected:
   explicit StreamedDevice(DeviceCalibration calibration) : calibration_(std::move(calibration)) {}
 
-  /// A measurement: what cannot be true is dropped and counted.
+  /// Takes a measurement. Drops and counts implausible ones.
   void deliver(DeviceSample sample) noexcept;
-  /// The device is gone: the next read says so.
+  /// Called when the device is disconnected. The next read reports it.
   void lost() noexcept;
-  /// What to send now, within the limits of the device that is connected.
+  /// The force to send now, within the limits of the connected device.
   DeviceForce wanted() noexcept;
-  /// Limits of the connected device, where they are below the profile's (another one may have been plugged in).
+  /// Sets the limits of the connected device if they are below the profile's, since another device may be connected
+  /// now.
   void limit(double force_N, double torque_Nm);
   void set_remark(const std::string& text) { remark_.set(text); }
 
-  DeviceProfile profile_;  ///< complete when start() returns, the same from then on
+  DeviceProfile profile_;  ///< complete when start() returns, constant from then on
 
  private:
   DeviceCalibration calibration_;
@@ -60,7 +61,7 @@ class StreamedDevice : public Device {
   Quat person_to_scene_ = Quat::Identity();
   Pose home_;
   DeviceSample last_;
-  double fade_ = 1;  ///< what a servo that falls silent leaves of the force
+  double fade_ = 1;  ///< factor of the force while the servo is silent
   std::int64_t wanted_ns_ = 0;
   MonotonicClock clock_;
   Remark remark_;

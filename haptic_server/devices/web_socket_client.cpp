@@ -38,7 +38,7 @@ struct WebSocketClient::Connection {
   websocket::stream<beast::tcp_stream> stream{context};
   beast::flat_buffer buffer;
 
-  /// Runs `start(handler)` to its end; false where it fails or takes longer.
+  /// Runs `start(handler)` to its end. False if it fails or takes longer than the limit.
   template <class Start>
   bool run(std::chrono::milliseconds patience, std::string& error, Start start) {
     std::optional<beast::error_code> result;
@@ -47,7 +47,7 @@ struct WebSocketClient::Connection {
     context.run_for(patience);
     if (!result) {
       error = "no answer in time";
-      // The operation still holds references into this frame: it has to end first.
+      // The operation still has references into this frame, so it has to end first.
       beast::error_code ignored;
       stream.next_layer().socket().close(ignored);
       context.restart();

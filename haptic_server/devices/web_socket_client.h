@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A WebSocket client for one thread, in which nothing waits longer than it is told to.
+// A WebSocket client for one thread. All waits have a limit.
 #pragma once
 #include <chrono>
 #include <memory>
@@ -13,10 +13,10 @@ class WebSocketClient {
   WebSocketClient();
   ~WebSocketClient();
 
-  /// "ws://host:port/path". False, with error(), when there is no connection in time or the URL is none.
+  /// "ws://host:port/path". False, with error(), if there is no connection in time or the URL is malformed.
   bool connect(const std::string& url, std::chrono::milliseconds patience);
   bool connected() const;
-  /// Both close the connection when they fail. `text` stays as it is until the next receive.
+  /// Both close the connection if they fail. `text` is valid until the next receive.
   bool send(const std::string& text, std::chrono::milliseconds patience);
   bool receive(std::string_view& text, std::chrono::milliseconds patience);
   void close();

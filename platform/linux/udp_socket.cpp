@@ -37,8 +37,8 @@ bool set_option(int socket, int level, int name, const T& value) {
   return ::setsockopt(socket, level, name, &value, sizeof value) == 0;
 }
 
-/// Lets through what came over the loopback interface, and copies that the kernel made of this machine's own multicast
-/// datagrams (PACKET_LOOPBACK, which no network device can set). Everything else is dropped before it is queued.
+/// Accepts datagrams of the loopback interface, and the kernel's copies of this machine's own multicast datagrams
+/// (PACKET_LOOPBACK, which no network device can set). Everything else is dropped before it is queued.
 bool accept_this_machine_only(int socket) {
   constexpr auto ancillary = [](int field) { return std::uint32_t(SKF_AD_OFF + field); };
   std::array<sock_filter, 6> code{{
@@ -115,13 +115,13 @@ const char* UdpReceiver::open(const UdpmAddress& address) {
   wake_write_ = pipe[1];
   socket_ = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   if (socket_ < 0) return "socket";
-  // The filter comes before the port and the group: not one datagram of another machine may slip in.
+  // The filter is set before the port and the group, so that no datagram of another machine is queued.
   const bool filtered = accept_this_machine_only(socket_);
   const int on = 1, off = 0, bytes = address.receive_buffer_bytes;
   if (!set_option(socket_, SOL_SOCKET, SO_REUSEADDR, on)) return "SO_REUSEADDR";
   if (!set_option(socket_, IPPROTO_IP, IP_MULTICAST_ALL, off)) return "IP_MULTICAST_ALL";
   if (bytes > 0) set_option(socket_, SOL_SOCKET, SO_RCVBUF, bytes);  // the kernel may grant less
-  const sockaddr_in group = socket_address(address);  // bound to the group: datagrams sent to one host do not come here
+  const sockaddr_in group = socket_address(address);                 // datagrams to a single host are not received
   if (::bind(socket_, reinterpret_cast<const sockaddr*>(&group), sizeof group) != 0) return "bind";
   return join(address, filtered) ? nullptr : "IP_ADD_MEMBERSHIP";
 }
@@ -135,9 +135,10 @@ UdpReceiver::~UdpReceiver() {
 bool UdpReceiver::join(const UdpmAddress& address, bool filtered) {
   ip_mreqn by{};
   by.imr_multiaddr = socket_address(address).sin_addr;
-  if (filtered) set_option(socket_, IPPROTO_IP, IP_ADD_MEMBERSHIP, by);  // fails where there is no route
+  if (filtered) set_option(socket_, IPPROTO_IP, IP_ADD_MEMBERSHIP, by);  // fails if there is no route
   by.imr_ifindex = int(loopback_index());
-  return set_option(socket_, IPPROTO_IP, IP_ADD_MEMBERSHIP, by) || errno == EADDRINUSE;  // the route may be loopback's
+  return set_option(socket_, IPPROTO_IP, IP_ADD_MEMBERSHIP, by) ||
+         errno == EADDRINUSE;  // the route may be that of the loopback interface
 }
 
 std::size_t UdpReceiver::receive(std::span<std::uint8_t> buffer, std::uint64_t& sender) {

@@ -193,7 +193,7 @@ void Bleeding::tell(const StepContext& context) {
     }
     return;
   }
-  // Hysteresis: what only trickles again has not begun anew.
+  // Hysteresis: a small flow does not count as renewed bleeding.
   if (stopped_ && rate_ < 2 * stopped_below * first_rate_) return;
   low_for_ = 0;
   if (stopped_) emit(context, again, "", rate_);

@@ -15,7 +15,7 @@ namespace insula {
 struct Bowl {
   double radius = 0.015, depth = 0.02;  ///< m
   double capacity() const;              ///< m3, to the rim
-  double height(double volume) const;   ///< of the blood's surface over the bottom, m
+  double height(double volume) const;   ///< of the blood's surface above the bottom, m
   double volume(double height) const;
 };
 
@@ -130,15 +130,15 @@ class Bleeding final : public Constraint, public BleedingSource {
   double rate() const { return rate_; }                    ///< of blood out of the tear, m3/s; 0 while it flows back
   double volume() const { return volume_; }                ///< in the field, m3
   double height() const { return bowl_.height(volume_); }  ///< m
-  /// Forces on the region in the last step, N: the sum over contacts and ties, and the part of instruments with an
-  /// edge.
+  /// Forces on the region in the last step, N: the sum over contacts and couplings, and the share of instruments with
+  /// an edge.
 
  private:
   void measure_forces(const ConstraintSolution& solution);
   void tear(const StepContext& context, const char* why, double value);
-  /// Blood out of the tear, m3/s, when `out` of any fluid leaves it. Negative: back out of the pool.
+  /// Blood out of the tear, m3/s, for a flow `out` of any fluid. Negative: blood flows back from the pool.
   double blood_of(double h, double out);
-  double tear_height() const;  ///< over the bottom of the field, m
+  double tear_height() const;  ///< above the bottom of the field, m
   void fill(double h, double blood);
   void tell(const StepContext& context);
   void emit(const StepContext& context, const EventKind& what, const char* text, double value) const;
@@ -146,15 +146,15 @@ class Bleeding final : public Constraint, public BleedingSource {
   Bowl bowl_;
   Vec3 up_ = Vec3::UnitZ();
   int chamber_ = -1;
-  std::vector<char> zone_;                          ///< one a node
+  std::vector<char> zone_;                          ///< one for each node
   std::vector<std::array<int, 3>> zone_triangles_;  ///< of the wall, all corners in the zone
   double now_ = 0;                                  ///< simulated time at the end of the last step, s
   std::vector<Instrument*> instruments_;
   std::vector<Instrument*> suctions_;
-  std::vector<double> row_force_;  ///< three a row: force on the region
+  std::vector<double> row_force_;  ///< three for each row: force on the region
   // State.
   bool open_ = false, asked_ = false, stopped_ = false;
-  double other_ = 0;  ///< fluid in the sac that is no blood: it came in while no pool stood over the tear, m3
+  double other_ = 0;  ///< fluid in the sac that is not blood: it entered while there was no pool above the tear, m3
   double rate_ = 0, lost_ = 0, volume_ = 0, since_ = -1, first_rate_ = 0, low_for_ = 0, force_ = 0, sharp_ = 0;
 };
 

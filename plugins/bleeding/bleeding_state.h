@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bleedings as rules and tools see them: a reference that this family of plugins shares. Pictures, reports and the
-// general rules need none of it; they read channels and drawables.
+// State of bleedings for rules and tools of this family of plugins. The page, reports and general rules do not need it.
+// They read channels and drawables.
 #pragma once
 #include <vector>
 
@@ -11,9 +11,9 @@ namespace insula {
 /// Blood outside the vessels.
 struct BleedingState {
   bool open = false;  ///< there is a tear
-  double rate = 0;    ///< of blood out of the tear, m3/s, of this moment; 0 while it flows back
-  double lost = 0;    ///< m3 since the tear, less what flowed back
-  double height = 0;  ///< of the blood over the bottom of the field, m; 0: dry
+  double rate = 0;    ///< present flow of blood out of the tear, m3/s; 0 while it flows back
+  double lost = 0;    ///< m3 since the tear, less the volume that flowed back
+  double height = 0;  ///< of the blood above the bottom of the field, m; 0: dry
   double since = -1;  ///< simulated time of the rupture, s; -1: none yet
 };
 
@@ -21,7 +21,7 @@ struct BleedingState {
 class BleedingSource {
  public:
   virtual ~BleedingSource() = default;
-  virtual BleedingState bleeding() const = 0;  ///< as it is now
+  virtual BleedingState bleeding() const = 0;  ///< present state
 };
 
 /// All bleedings of a scene in document order.
@@ -29,7 +29,7 @@ class Bleedings {
  public:
   Bleedings() = default;
   explicit Bleedings(const Simulation& simulation) : sources_(simulation.scene().all<BleedingSource>()) {}
-  /// As they are now; allocates the first time alone.
+  /// Present states. Allocates only the first time.
   const std::vector<BleedingState>& now() {
     states_.clear();
     for (const BleedingSource* s : sources_) states_.push_back(s->bleeding());

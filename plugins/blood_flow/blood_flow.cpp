@@ -37,8 +37,8 @@ Sources: Murray 1926; Westerhof et al. 1969 (lumped arterial networks); orifice 
 namespace insula {
 namespace {
 
-constexpr double collateral_delay = 3;  // s, of the dye on its way round
-constexpr double min_drop = 10;         // Pa, over a tear in its linear law
+constexpr double collateral_delay = 3;  // s, of the dye through collateral vessels
+constexpr double min_drop = 10;         // Pa, across a tear in its linear law
 
 VecX rest_shape(const ShellBody& body) {
   VecX q(3 * body.nodes());
@@ -155,7 +155,7 @@ void BloodFlow::settle(const StepContext& context, const double* pressure, const
   }
   for (int k = first - 1; k >= 0; --k)
     solved_[std::size_t(k)] = mesh_.pressure(k, solved_.data(), pressure_[std::size_t(node_at_[std::size_t(k)])]);
-  // Beds were open or shut by the pressure of the step before.
+  // The pressure of the last step decides whether beds are open.
   for (Outlet& o : outlets_) {
     const double before = pressure_[std::size_t(o.node)];
     o.flow = before > venous() ? o.bed * (solved_[std::size_t(place_[std::size_t(o.node)])] - venous()) : 0;
@@ -182,7 +182,7 @@ void BloodFlow::carry_dye(const StepContext& context) {
   for (const Branch& b : graph_.branches) {
     const Stretch& s = graph_.stretches[std::size_t(b.stretch)];
     if (!s.dead_end) continue;
-    // What passes by the sac, over the same at rest.
+    // Flow past the sac over the same flow at rest.
     double passing = 0, at_rest = 0;
     for (std::size_t k = 0; k < graph_.branches.size(); ++k) {
       const Branch& other = graph_.branches[k];

@@ -152,8 +152,8 @@ class BloodFlow final : public Constraint, public ChamberFeed, public VesselSour
   void set_tear(int chamber, double area) { tear_area_[std::size_t(chamber)] = area; }
   double tear_flow(int chamber) const {
     return tear_flow_[std::size_t(chamber)];
-  }                                                                              ///< m3/s out of it, of the last step
-  bool sealed(int chamber) const { return sealed_[std::size_t(chamber)] != 0; }  ///< cut off from every opening
+  }                                                                              ///< m3/s out of it, in the last step
+  bool sealed(int chamber) const { return sealed_[std::size_t(chamber)] != 0; }  ///< cut off from all openings
   const VesselGraph& graph() const { return graph_; }
   double node_pressure(int node) const { return pressure_[std::size_t(node)]; }  ///< Pa
   double arterial_flow() const { return arterial_flow_; }                        ///< through the inlet, m3/s
@@ -181,13 +181,14 @@ class BloodFlow final : public Constraint, public ChamberFeed, public VesselSour
   int inlet_node_ = -1;
   double upstream_ = 0;
   std::vector<Outlet> outlets_;
-  std::vector<int> chamber_node_, place_, node_at_;  ///< place of a node in the elimination, chambers last; and back
-  std::vector<int> main_stretch_;                    ///< of a chamber
+  std::vector<int> chamber_node_, place_,
+      node_at_;                    ///< position of a node in the elimination, chambers last; and the inverse
+  std::vector<int> main_stretch_;  ///< of each chamber
   std::vector<double> reference_, rest_pressure_, rest_flow_;
   StarMesh mesh_;
 
   // State.
-  std::vector<double> pressure_;  ///< of every node, Pa
+  std::vector<double> pressure_;  ///< of all nodes, Pa
   std::vector<double> yielding_, tear_area_, tear_flow_;
   std::vector<char> sealed_;
   std::vector<double> mean_flow_, beat_flow_;

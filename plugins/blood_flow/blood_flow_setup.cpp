@@ -105,7 +105,7 @@ bool BloodFlow::set_beds(PrepareContext& context) {
     o.collateral = collateral() * o.rest_flow / (mean - venous());
     o.bed = (o.rest_flow + o.collateral * (mean - p)) / (p - venous());
   }
-  // The shape's own pressures: the same network at the pressure of imaging.
+  // Pressures in the imaged shape: the same network at the pressure of imaging.
   set_links(mesh_);
   const double imaged = blood_pressure->imaged_pressure();
   mesh_.ground(at(inlet_node_), upstream_, imaged);

@@ -109,9 +109,9 @@ TEST(BloodFlow, TearBleedsByTheOrificeLaw) {
   EXPECT_LT(t.flow->tear_flow(3), 0.01 * q) << "a closed neck stops it";
 }
 
-/// What a chamber of a wall of springs yields, m3/Pa, in steps whose pressures are each `ratio` of the one before: g .
-/// u with k u = g + load / ratio H u, since the load of a step, Pa, is that on the shape of the step before. H u =
-/// d(dV/dq) along u is exact by differences, V being a cubic of q.
+/// Compliance of a chamber with a wall of springs, m3/Pa, in steps whose pressures are each `ratio` of the one before.
+/// It is g . u with k u = g + load / ratio H u, since a step's load, Pa, acts on the shape of the step before. V is a
+/// cubic of q, so differences give H u = d(dV/dq) along u exactly.
 double yields(const Bifurcation& t, int chamber, double load, double ratio) {
   const Chambers& all = t.pressure->chambers();
   const auto& nodes = all.nodes(chamber);
@@ -162,7 +162,7 @@ TEST(BloodFlow, TornSacThatIsCutOffComesToThePressureOutside) {
       const double hole = 0.6 * area * std::sqrt(2 / (1060 * std::max(std::abs(before), 10.0)));
       t.run(1);
       const double now = t.pressure->pressure(3);
-      // Orifice law, implicit, whichever way it flows.
+      // Orifice law, implicit, in both directions of flow.
       ASSERT_NEAR(t.flow->tear_flow(3), hole * now, 1e-12 * std::abs(hole * now) + 1e-24);
       ASSERT_NEAR(t.pressure->fluid(3) - fluid, -h * hole * now, 1e-9 * std::abs(h * hole * now) + 1e-20);
       // The sac yields as its springs do: implicit Euler of C dp/dt = -Q.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Dye from node to node in the direction of falling pressure.
+// Transport of the dye between nodes in the direction of falling pressure.
 #include "plugins/blood_flow/dye.h"
 
 #include <algorithm>
@@ -41,7 +41,7 @@ void DyeTransport::step(VesselGraph& graph, double h, const std::vector<double>&
     double c = node_[up];
     const double q = std::abs(b.flow);
     if (s.dead_end) {
-      // The sac mixes: as much leaves as enters, what leaves is too little to be seen downstream.
+      // The sac mixes. As much leaves as enters, and its effect downstream is negligible.
       const double k = volume[std::size_t(b.stretch)] > 0
                            ? h * (exchange[std::size_t(b.stretch)] + (forward ? q : 0)) / volume[std::size_t(b.stretch)]
                            : 0;

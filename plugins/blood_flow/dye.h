@@ -10,18 +10,19 @@
 namespace insula {
 
 /// Concentration of arterial blood, 0..1, `t` (s) after injection into a vein. It is a gamma variate that arrives after
-/// 2 s and peaks at 7 s. A tenth of it is left after 20 s.
+/// 2 s and peaks at 7 s. A tenth of it remains after 20 s.
 double arterial_dye(double t);
 
 class DyeTransport {
  public:
   void prepare(const VesselGraph& graph);
-  /// inflow and inflow_dye: what enters each node from outside the graph, m3/s, and m3/s times concentration.
+  /// inflow and inflow_dye: flow into each node from outside the graph, m3/s, and that flow times concentration.
   void step(VesselGraph& graph, double h, const std::vector<double>& pressure, const std::vector<double>& inflow,
             const std::vector<double>& inflow_dye);
-  /// Exchange of a dead end with its junction, m3/s, one a stretch. It models the mixing in a sac without net inflow.
+  /// Exchange of a dead end with its junction, m3/s, one for each stretch. It models the mixing in a sac without net
+  /// inflow.
   std::vector<double> exchange;
-  /// Volume of the mixed cell of a dead end, m3, one a stretch.
+  /// Volume of the mixed cell of a dead end, m3, one for each stretch.
   std::vector<double> volume;
   static double mean(const Stretch& s);  ///< over the blood of a stretch
   void reset(VesselGraph& graph);

@@ -15,7 +15,7 @@ struct Vessel : TestScene {
   BloodFlow* flow = nullptr;
   void load_vessel(const TestVessel& v, const std::string& pressure_attributes, const std::string& flow_attributes) {
     v.write(folder);
-    // The network first: the order of elements does not matter.
+    // The network comes first, since the order of elements does not matter.
     load(fmt::format(R"(<scene time_step="10 ms"><solver tolerance="1e-14 m" max_sweeps="2000"/>
   <shell_body id="artery" wall="meshes/vessel.json"><test_wall stiffness="2000 N/m"/></shell_body>
   <blood_flow id="flow" pressure="p" {}/><pressure id="p" on="artery" {}/></scene>)",

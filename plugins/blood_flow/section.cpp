@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cutting a wall by a plane.
+// Sections of a wall by a plane.
 #include "plugins/blood_flow/section.h"
 
 #include <algorithm>
@@ -43,7 +43,7 @@ Section cut(const std::vector<Vec3>& nodes, const std::vector<std::array<int, 3>
     const double d = n.dot(nodes[std::size_t(i)] - at);
     return d == 0 ? 1e-15 : d;
   };
-  // From crossed edge to crossed edge, along each triangle in the direction that keeps the upper side at the left.
+  // Goes from crossed edge to crossed edge. The direction in each triangle keeps the upper side on the left.
   using Edge = std::pair<int, int>;
   std::map<Edge, Edge> next;
   for (const auto& t : triangles) {

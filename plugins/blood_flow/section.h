@@ -27,8 +27,8 @@ struct Section {
   Lumen lumen(const VecX& q, double thickness) const;
 };
 
-/// The loop in which the plane cuts the triangles that goes around `at`, the smallest if there are several. Empty when
-/// there is none or when it is open.
+/// The loop around `at` in which the plane cuts the triangles, or the smallest one if there are several. Empty if there
+/// is none or if it is open.
 Section cut(const std::vector<Vec3>& nodes, const std::vector<std::array<int, 3>>& triangles, const Vec3& at,
             const Vec3& normal);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Centrelines to stations, nodes and branches.
+// Stations, nodes and branches from centrelines.
 #include "plugins/blood_flow/vessel_graph.h"
 
 #include <algorithm>
@@ -36,7 +36,7 @@ void VesselGraph::add_stations(Stretch& s, const WallModel::Centreline& line, co
     const double w = (at - along[k]) / (along[k + 1] - along[k]);
     const Vec3 p = (1 - w) * line.points[k] + w * line.points[k + 1];
     const double r = (1 - w) * line.radius[k] + w * line.radius[k + 1];
-    // The direction over a station's length to either side: centrelines may have points closer than that.
+    // The direction is taken over a station's length to both sides, since centrelines may have closer points.
     const auto point = [&](double t) -> Vec3 {
       t = std::clamp(t, 0.0, along.back());
       std::size_t j = std::size_t(std::upper_bound(along.begin(), along.end(), t) - along.begin());
@@ -48,7 +48,7 @@ void VesselGraph::add_stations(Stretch& s, const WallModel::Centreline& line, co
     station.length = length;
     station.section = cut(vertices, wall, p, point(at + length) - point(at - length));
     station.rest = station.section.lumen(rest, thickness);
-    // Where vessels join, the plane may cut more than this one.
+    // At a junction the plane may cut more vessels than this one.
     const double inner = std::max(r - 0.5 * thickness, 0.3 * r), own = std::numbers::pi * inner * inner;
     if (station.section.corners.empty() || !(station.rest.area > 0) || (station.rest.area > 4 * own && !s.dead_end)) {
       station.section.corners.clear();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The centrelines of a vessel as a graph of stretches. Each stretch has stations about every `spacing` with a
-// cross-section of the wall. The node in its middle is where its chamber stores blood.
+// The centrelines of a vessel as a graph of stretches. Each stretch has stations at distances of about `spacing`, with
+// a cross-section of the wall. Its chamber stores blood at the node in its middle.
 #pragma once
 #include <string>
 #include <vector>
@@ -11,12 +11,12 @@
 namespace insula {
 
 struct Station {
-  Section section;    ///< no corners: no section could be cut, and the lumen stays that of the centreline
-  double length = 0;  ///< of the stretch it stands for, m
+  Section section;    ///< no corners: the wall could not be cut, and the lumen stays that of the centreline
+  double length = 0;  ///< of its part of the stretch, m
   Lumen rest;         ///< lumen at rest
   Lumen now;
   bool open = true;
-  double resistance = 0;  ///< Pa s/m3, of its stretch
+  double resistance = 0;  ///< Pa s/m3, of its part
   double dye = 0;
 };
 
@@ -33,22 +33,22 @@ struct Stretch {
   std::string_view name, region;
   std::vector<Station> stations;
   int from = -1, to = -1, middle = -1;  ///< nodes
-  bool dead_end = false;                ///< leads from `from` to nowhere: a sac; its middle is the widest station
-  double narrowest = 1;                 ///< lumen over that at rest, the minimum of its stations
+  bool dead_end = false;                ///< leads from `from` to no other end: a sac; its middle is the widest station
+  double narrowest = 1;                 ///< smallest ratio of a station's lumen to that at rest
 };
 
 struct VesselGraph {
   struct Node {
     std::string name;  ///< of the junction or cap; empty in the middle of a stretch
     Vec3 place = Vec3::Zero();
-    int cap = -1;  ///< index of the cap it lies in
+    int cap = -1;  ///< index of the cap that contains it, or -1
   };
   std::vector<Node> nodes;
-  std::vector<Stretch> stretches;  ///< as the model's centrelines
-  std::vector<Branch> branches;    ///< two a stretch, one for a dead end
+  std::vector<Stretch> stretches;  ///< in the order of the model's centrelines
+  std::vector<Branch> branches;    ///< two for each stretch, one for a dead end
 
-  /// Ends that no other centreline and no cap shares become dead ends. A part without a cap is joined to the nearest
-  /// junction or middle of the rest. Returns what is wrong, or an empty text.
+  /// An end that no other centreline and no cap shares becomes a dead end. A part without a cap is joined to the
+  /// nearest junction or middle of the rest. Returns the error text, or an empty text.
   std::string build(const WallModel& model, const std::vector<std::array<int, 3>>& wall, double thickness,
                     double spacing);
   /// Cross-sections and conductances on the current wall. A section below `closed_below` of its lumen at rest is

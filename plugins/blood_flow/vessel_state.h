@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The stretches of a network of vessels as rules and tools see them: a reference that this family of plugins shares.
-// Pictures, reports and the general rules need none of it; they read channels.
+// State of the stretches of a vessel network for rules and tools of this family of plugins. The page, reports and
+// general rules do not need it. They read channels.
 #pragma once
 #include <string_view>
 #include <vector>
@@ -9,12 +9,12 @@
 
 namespace insula {
 
-/// A stretch of vessel, or the sac, as the blood sees it.
+/// State of a stretch of a vessel, or of the sac.
 struct VesselState {
-  std::string_view id;      ///< of the network element: "superior", "sac"; lives as long as the simulation
-  double pressure = 0;      ///< Pa, of this moment
+  std::string_view id;      ///< of the network element: "superior", "sac"; valid as long as the simulation
+  double pressure = 0;      ///< present value, Pa
   double flow = 0;          ///< m3/s, mean of the last heartbeat
-  double flow_at_rest = 0;  ///< m3/s, the same before anything was touched
+  double flow_at_rest = 0;  ///< m3/s, the same before any tool touched the vessel
   double lumen = 1;         ///< narrowest cross-section over its own at rest
   double dye = 0;           ///< concentration of indocyanine green, 0..1
 };
@@ -23,7 +23,7 @@ struct VesselState {
 class VesselSource {
  public:
   virtual ~VesselSource() = default;
-  virtual void append_vessels(std::vector<VesselState>& out) const = 0;  ///< as they are now
+  virtual void append_vessels(std::vector<VesselState>& out) const = 0;  ///< present states
 };
 
 /// All stretches of a scene in document order.
@@ -31,7 +31,7 @@ class Vessels {
  public:
   Vessels() = default;
   explicit Vessels(const Simulation& simulation) : sources_(simulation.scene().all<VesselSource>()) {}
-  /// As they are now; allocates the first time alone.
+  /// Present states. Allocates only the first time.
   const std::vector<VesselState>& now() {
     states_.clear();
     for (const VesselSource* s : sources_) s->append_vessels(states_);

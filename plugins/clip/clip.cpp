@@ -160,7 +160,7 @@ void Clip::build(const StepContext&, ConstraintBuilder& builder) {
   };
   held_open_ = held_opening() > 0;
   stop_row_ = stop(0, 1, min_opening());
-  // Only what pulls the jaws apart can bring them here.
+  // Only a force that opens the jaws can bring them here.
   limit_row_ = opening_ + std::max(0.0, free_opening_) > 0.8 * tool_.opening_max ? stop(1, -1, tool_.opening_max) : -1;
 }
 

@@ -132,24 +132,24 @@ class Clip final : public RigidBody, public ClipSource, public StatesLaw {
   double force() const { return force_; }  ///< of each blade on what is between them, at the middle of the blades, N
   double stop_force() const {
     return stop_force_;
-  }  ///< of what keeps the jaws from closing further (each other, an applier), there, N
-  bool touched() const { return touched_; }                ///< something but its applier pushed it in the last step
-  bool in_field() const { return !holder_ && in_field_; }  ///< let go
+  }  ///< force that keeps the jaws from closing further (of each other, or of an applier), at the same point, N
+  bool touched() const { return touched_; }  ///< whether something other than its applier pushed it in the last step
+  bool in_field() const { return !holder_ && in_field_; }  ///< released
   ClipApplier* holder() const { return holder_; }
   Vec3 momentum() const { return added_mass() * velocity_; }  ///< kg m/s
   const Vec3& spin() const { return spin_; }                  ///< angular momentum about the centre of mass, kg m2/s
   /// Moment of the spring that closes each jaw, N m.
   double torque(double opening) const;
-  /// Force and moment about the centre of mass in the next steps, scene frame (tests, loads).
+  /// Force and moment about the centre of mass in the next steps, scene frame, N and N m (for tests).
   Vec6 external = Vec6::Zero();
 
-  /// Once: the applier that has it at the start.
+  /// Called once with the applier that holds it at the start.
   void start_in(ClipApplier* applier);
   void load(ClipApplier& applier, const Pose& pose);  ///< from the tray into an applier
   void take(ClipApplier& applier) { holder_ = &applier; }
   void let_go();
   void to_tray();
-  /// Moves it to a pose at once (tests, replays).
+  /// Moves it to a pose at once (for tests and replays).
   void place(const Pose& pose, double opening) override;
 
   bool active() const override;
@@ -191,15 +191,15 @@ class Clip final : public RigidBody, public ClipSource, public StatesLaw {
   double lever() const {
     return 2 * data_.reference;
   }                             ///< d(gap at the middle of the blades)/d(opening) when closed, m
-  double held_opening() const;  ///< below which an applier does not let the jaws go, 0: none does
+  double held_opening() const;  ///< opening below which an applier does not let the jaws close; 0: none
   double min_opening() const {
     return std::max(held_opening(), soonest_);
-  }  ///< below which nothing closes them in this step
+  }  ///< opening below which the jaws cannot close in this step
 
   ToolModel tool_;
   ClipData data_;
-  std::vector<std::vector<ConvexPiece>> pieces_;  ///< per link
-  std::vector<Pose> turned_;                      ///< per link: tool frame to tool frame, at the present opening
+  std::vector<std::vector<ConvexPiece>> pieces_;  ///< for each link
+  std::vector<Pose> turned_;                      ///< for each link: tool frame to tool frame, at the present opening
   ClipApplier *holder_ = nullptr, *start_holder_ = nullptr;
   bool in_field_ = false, touched_ = false, held_open_ = false;
   int applications_ = 0;
@@ -211,8 +211,8 @@ class Clip final : public RigidBody, public ClipSource, public StatesLaw {
   Vec3 to_centre_ = Vec3::Zero();                              ///< from the tip to the centre of mass
   Vec3 free_shift_ = Vec3::Zero(), free_turn_ = Vec3::Zero();  ///< of the centre of mass
   double free_opening_ = 0;                                    ///< displacement, rad
-  double soonest_ = 0;                                         ///< opening that the fastest jaws would reach, rad
-  Mat3 moments_ = Mat3::Zero(), give_ = Mat3::Zero();          ///< inertia; rotation per moment
+  double soonest_ = 0;                                 ///< opening that the jaws would reach at the largest speed, rad
+  Mat3 moments_ = Mat3::Zero(), give_ = Mat3::Zero();  ///< inertia; rotation over moment
   double give_shift_ = 0, give_opening_ = 0;
   Mat7 compliance_ = Mat7::Zero();
   std::vector<Vec7> jacobian_, answer_;

@@ -37,7 +37,7 @@ constexpr double lever = 5e-3;  // m
 Pose compose(const Pose& a, const Pose& b) { return {a.apply(b.p), (a.q * b.q).normalized()}; }
 Pose inverse(const Pose& a) { return {-(a.q.conjugate() * a.p), a.q.conjugate()}; }
 
-/// A clip's pose in the frame of an applier that holds it properly; `turned`: by its other side.
+/// A clip's pose in the frame of an applier that holds it properly. `turned`: it is held by its other side.
 Pose held_properly(const Clip& clip, bool turned) {
   const Pose half{Vec3::Zero(), turned ? Quat(0, 0, 0, 1) : Quat::Identity()};
   return compose(half, inverse(clip.data().grip));
@@ -122,7 +122,8 @@ void ClipApplier::free_motion(const StepContext& context) {
 
 void ClipApplier::join_rows(ConstraintBuilder& builder) const {
   const Mat3 axes = pose().q.toRotationMatrix();
-  // Both ends act at the clip's grip: no net moment, and the exact derivative as the axes turn with the applier.
+  // Both ends act at the clip's grip. So there is no net moment, and the derivative is exact while the axes rotate with
+  // the applier.
   const Pose& in_clip = clip_->data().grip;
   const Vec3 at = clip_->grip().p;
   const Pose wanted = compose(target_, in_clip);  // of the grip, in the applier's frame
@@ -143,7 +144,7 @@ void ClipApplier::join_rows(ConstraintBuilder& builder) const {
   }
   const Vec3 turn = rotation_vector(clip_->pose().q * (pose().q * target_.q).conjugate());
   for (int k = 0; k < 3; ++k) {
-    // A moment about axis k is a pair of forces along one of the others.
+    // A moment about axis k is a pair of forces along another axis.
     const Vec3 arm = 0.5 * lever * axes.col((k + 1) % 3), d = axes.col((k + 2) % 3);
     const int row = add(3 + k);
     builder.violation(row, lever * axes.col(k).dot(turn));
@@ -159,7 +160,7 @@ void ClipApplier::build(const StepContext&, ConstraintBuilder& builder) {
 void ClipApplier::finish(const StepContext& context, const ConstraintSolution& solution) {
   touched_ = touched_by_others(*this, solution, order, order);
   held_for_ += context.h;
-  // The button acts from the next step on: bodies move in parallel, and nothing changes hands meanwhile.
+  // The button acts from the next step on, since bodies move in parallel, and the holder must not change meanwhile.
   if (state().button2 && !button2_) {
     const std::string why = clip_ ? release() : take();
     if (!why.empty()) say(warning, id, why);

@@ -47,9 +47,11 @@ class ClipApplier final : public Instrument {
 
   void join(PrepareContext& context, Simulation& simulation) override;
   Clip* clip() const { return clip_; }
-  double held_opening() const { return held_opening_; }  ///< below which it does not let its clip's jaws close, rad
-  const Pose& clip_pose() const { return target_; }      ///< of its clip in its own frame at the end of this step
-  Pose clip_home(const Clip& clip) const;                ///< of a loaded clip at the applier's home
+  double held_opening() const {
+    return held_opening_;
+  }                                                  ///< opening below which it does not let its clip's jaws close, rad
+  const Pose& clip_pose() const { return target_; }  ///< of its clip's frame at the end of this step
+  Pose clip_home(const Clip& clip) const;            ///< of a loaded clip at the applier's home
 
   bool cutting() const override { return false; }
   double activity() const override;
@@ -74,8 +76,9 @@ class ClipApplier final : public Instrument {
   void join_rows(ConstraintBuilder& builder) const;
 
   Clip *clip_ = nullptr, *start_clip_ = nullptr;
-  Pose taken_, nominal_, target_;  ///< of the clip in the applier's frame: when taken, at rest, at the end of the step
-  double held_for_ = 0;            ///< s
+  Pose taken_, nominal_,
+      target_;           ///< of the clip in the applier's frame: when grasped, at rest, at the end of the step
+  double held_for_ = 0;  ///< s
   double held_opening_ = 0;
   bool button2_ = false, touched_ = false;
   std::vector<Event> said_;

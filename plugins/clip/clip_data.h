@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The section "clip" of a tool.json: what makes a tool with two jaws an aneurysm clip.
+// The section "clip" of a tool.json: the data of an aneurysm clip with two jaws.
 //   "clip": {"kind": "permanent", "shape": "straight", "blade_length_mm": 9, "blade_width_mm": 1.2,
-//   "closing_force_N": 1.7,
-//            "force_slope_N_per_m": 350, "reference_mm": 11, "friction": 0.3, "blade_from": [x,y,z], "blade_to":
-//            [x,y,z], "blade_line": [[x,y,z], ...], "grip": {"position": [x,y,z], "shaft": [x,y,z], "flat": [x,y,z]},
+//            "closing_force_N": 1.7, "force_slope_N_per_m": 350, "reference_mm": 11, "friction": 0.3,
+//            "blade_from": [x,y,z], "blade_to": [x,y,z], "blade_line": [[x,y,z], ...],
+//            "grip": {"position": [x,y,z], "shaft": [x,y,z], "flat": [x,y,z]},
 //            "fenestration": {"centre": [x,y,z], "axis": [x,y,z], "diameter_mm": 5}}
-// blade_line and fenestration may be missing.
+// blade_line and fenestration are optional.
 #pragma once
 #include <optional>
 #include <string>
@@ -22,7 +22,7 @@ struct Fenestration {
   double radius = 0;          ///< m
 };
 
-/// What makes a tool an aneurysm clip: two jaws that a spring presses together. Tool frame, at opening 0, SI units.
+/// Data of an aneurysm clip: two jaws that a spring presses together. Tool frame, at opening 0, SI units.
 struct ClipData {
   std::string kind;              ///< "permanent", "temporary", "mini", "mini_temporary"
   std::string shape;             ///< "straight", "curved", ...
@@ -45,7 +45,8 @@ struct ClipData {
   double torque(double opening) const;
 };
 
-/// None when the tool's tool.json has no "clip". Throws InputError: malformed, not finite, out of range, not two jaws.
+/// Returns nothing if the tool's tool.json has no "clip". Throws InputError: malformed, not finite, out of range, not
+/// two jaws.
 std::optional<ClipData> read_clip_data(const ToolModel& tool);
 
 }  // namespace insula

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The clip's equation of motion. Degrees of freedom as the rows see them: translation of the tip (the frame's origin),
-// rotation vector, (opening, 0, 0). Inside, translation is that of the centre of mass, where it is decoupled from
-// rotation:
+// The clip's equation of motion. Degrees of freedom of the rows: translation of the tip (the frame's origin), rotation
+// vector, (opening, 0, 0). Internally, translation is that of the centre of mass, where it is decoupled from rotation:
 //   m (1/h^2 + drag/h) dc = f + m v/h,   J (1/h^2 + drag/h) dr = t + L/h,   (I (1/h^2 + drag/h) + (1 + hinge_time/h) 2
 //   dT/do) do = -2 T + I w/h
-// and L = J dr/h is carried on, not the angular velocity: J turns with the body, the angular momentum does not.
+// The state is L = J dr/h instead of the angular velocity, since J rotates with the body and the angular momentum does
+// not.
 #include <Eigen/LU>
 #include <cmath>
 
@@ -48,9 +48,8 @@ Pose Clip::link_pose(int link) const {
   return {pose_.apply(t.p), pose_.q * t.q};
 }
 
-// Where collision looks ahead to: with the applier that holds it; jaws no further closed than their stop, and hardly
-// faster than in the last step, for without what is between them they would be shut at once. The rows know the free
-// motion proper.
+// Pose for the collision horizon: that of the applier that holds it. The jaws close at most to their stop, and hardly
+// faster than in the last step, since without contact they would shut at once. The rows use the exact free motion.
 Pose Clip::link_free_pose(int link) const {
   const double least = min_opening();
   const double change = std::max(free_opening_, std::min(0.0, last_change_) - 0.02);

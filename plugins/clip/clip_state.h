@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Clips as rules and tools see them: a reference that this family of plugins shares. Pictures, reports and the general
-// rules need none of it; they read channels.
+// State of clips for rules and tools of this family of plugins. The page, reports and general rules do not need it.
+// They read channels.
 #pragma once
 #include <vector>
 
@@ -10,7 +10,7 @@ namespace insula {
 
 struct ClipState {
   const Body* clip = nullptr;
-  const Body* holder = nullptr;  ///< the applier that holds it, null: released or on the tray
+  const Body* holder = nullptr;  ///< the applier that holds it; null: released or on the tray
   bool on_tray = true;
   bool temporary = false;
   double opening = 0;                                        ///< rad
@@ -18,14 +18,14 @@ struct ClipState {
   double gap = 0;                                            ///< between the blades at their middle, m
   Vec3 blade_root = Vec3::Zero(), blade_tip = Vec3::Zero();  ///< line midway between the blades, scene frame, m
   double blade_width = 0;                                    ///< m
-  int applications = 0;                                      ///< times it was released in the field
+  int applications = 0;                                      ///< number of times it was released in the field
 };
 
 /// A component that is a clip.
 class ClipSource {
  public:
   virtual ~ClipSource() = default;
-  virtual ClipState clip_state() const = 0;  ///< as it is now
+  virtual ClipState clip_state() const = 0;  ///< present state
 };
 
 /// All clips of a scene in document order.
@@ -33,7 +33,7 @@ class Clips {
  public:
   Clips() = default;
   explicit Clips(const Simulation& simulation) : sources_(simulation.scene().all<ClipSource>()) {}
-  /// As they are now; allocates the first time alone.
+  /// Present states. Allocates only the first time.
   const std::vector<ClipState>& now() {
     states_.clear();
     for (const ClipSource* s : sources_) states_.push_back(s->clip_state());

@@ -102,9 +102,9 @@ TEST(Clip, FallsByItsTrueWeightAndTheFluidTakesItsMotion) {
   EXPECT_TRUE(test::held("terminal speed of a clip", std::abs(v - 0.00014 * 9.81 / (2 * 0.03)), v, 1e-6));
 }
 
-// Pulled across the blades, which hold a hard strip by friction on both faces: 2 mu N, less what keeps the wedge of the
-// blades (half angle o) from being squeezed off: each face bears P/2 across and N tan(o) along, so P = 2 N sqrt(mu^2 -
-// tan(o)^2).
+// A hard strip is pulled across the blades, which hold it by friction on both faces, 2 mu N. A part of this keeps the
+// strip in the wedge of the blades (half angle o): each face has the force P/2 across and N tan(o) along. So
+// P = 2 N sqrt(mu^2 - tan(o)^2).
 TEST(Clip, HoldsAndSlipsAtTwiceTheFriction) {
   constexpr double mu = 0.3;
   for (const double pull : {0.98, 1.02}) {

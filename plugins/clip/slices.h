@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A blade cut into short pieces. Contact uses the corners of a piece and its nearest point. With one long blade, a
-// vessel between the corners would be held at one point on each side and rock about it.
+// Division of a blade into short pieces. Contact uses the corners of a piece and its nearest point. One long blade
+// would hold a vessel between its corners at only one point on each side, and the vessel would rock about it.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -14,7 +14,7 @@ namespace insula {
 /// Appends the piece in slices of about a millimetre across its longest extent. A short piece stays whole.
 inline void add_slices(const ConvexPiece& piece, std::vector<ConvexPiece>& out) {
   constexpr double length = 1.2e-3;  // m
-  constexpr int corners = 8;         // of a section: 16 a slice, 24 are allowed
+  constexpr int corners = 8;         // of a section: 16 for each slice, 24 are allowed
   Vec3 from = Vec3::Zero(), along = Vec3::Zero();
   for (const Vec3& a : piece.points)
     for (const Vec3& b : piece.points)
@@ -30,8 +30,8 @@ inline void add_slices(const ConvexPiece& piece, std::vector<ConvexPiece>& out) 
   }
   along /= whole;
   const Vec3 x = along.unitOrthogonal(), y = along.cross(x);
-  // The section at s is the hull of where the lines between any two points pass it; its farthest points in a few
-  // directions.
+  // The section at s is the hull of the points at which lines between any two points pass s, reduced to its farthest
+  // points in a few directions.
   const auto section = [&](double s, std::vector<Vec3>& into) {
     std::vector<Vec3> points;
     for (const Vec3& a : piece.points)
@@ -53,7 +53,7 @@ inline void add_slices(const ConvexPiece& piece, std::vector<ConvexPiece>& out) 
     ConvexPiece slice = piece;
     slice.name += "_" + std::to_string(i + 1);
     slice.points.clear();
-    // The ends keep their own points: a blade's tip is no flat section.
+    // The ends keep their own points, since a blade's tip is not a flat section.
     section(whole * i / n, slice.points);
     section(whole * (i + 1) / n, slice.points);
     for (const Vec3& p : piece.points) {

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether rows of other components push a body: tissue in the jaws, bone at the shaft.
+// Detects whether rows of other components push a body: tissue in the jaws, bone at the shaft.
 #pragma once
 #include "core/mechanics/constraint.h"
 
 namespace insula {
 
-/// Any force in this step on `body` by a row that belongs to neither of the components at these document positions.
+/// Whether a row that belongs to neither of the components `own` and `other` (document positions) pushes `body` in this
+/// step.
 inline bool touched_by_others(const Body& body, const ConstraintSolution& solution, int own, int other) {
   std::size_t block = 0;
   const auto& blocks = solution.problem.blocks;

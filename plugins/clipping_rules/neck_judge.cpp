@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Grading a remnant.
+// Grades a remnant.
 #include "plugins/clipping_rules/neck_judge.h"
 
 #include <algorithm>
@@ -69,8 +69,7 @@ NeckJudgement NeckJudge::judge(const std::vector<ClipState>& clips, bool sealed)
     ++out.clips;
     out.gap = std::min(out.gap, c.gap);
     const Vec3 along = (c.blade_tip - c.blade_root).normalized();
-    // Where the wall between the blades was at rest; the blades nearest to the sac's base decide how much of it is
-    // left.
+    // Rest position of the wall between the blades. The blades nearest to the sac's base determine the remnant.
     double sum = 0, share = 0;
     for (const Patch& p : held_)
       if (distance_to_segment(at(p.node), c.blade_root, c.blade_tip) < 0.5 * c.blade_width + 0.3e-3) {
@@ -100,7 +99,7 @@ NeckJudgement NeckJudge::judge(const std::vector<ClipState>& clips, bool sealed)
     if (p.height > 0 && p.height < height) out.sac_open += p.area / sac_area_;
   std::size_t lobe = 0;
   for (const Patch& p : bleb_) lobe += p.height < height;
-  constexpr double trace = 0.1;  // of ring or sac: below it nothing is left
+  constexpr double trace = 0.1;  // share of ring or sac below which there is no remnant
   if (!sealed) {
     out.sac_open = 1;
     out.grade = 5;

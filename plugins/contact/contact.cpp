@@ -51,7 +51,7 @@ solve).
 
 namespace insula {
 
-// A tool that presses is as far off its free pose at the end of the step as it was at the end of the last one.
+// A pressing tool is expected to keep its offset from its free pose of the last step.
 void Contact::expect(Pair& p, const Pose& free) const {
   p.expected.reset();
   if (!p.tool_collider || !linearized_at.is("end")) return;
@@ -90,31 +90,31 @@ void Contact::search(const Search& what) {
   TissueContactSettings settings;
   settings.alarm = tissue_alarm();
   settings.offset = 0.5 * (p.a->thickness() + p.b->thickness());
-  auto& out = what.other_way ? p.other_way : p.contacts;
+  auto& out = what.reverse ? p.reverse : p.contacts;
   out.clear();
-  if (what.other_way) p.b_on_a->detect(p.b->collision(), p.a->collision(), settings, out);
+  if (what.reverse) p.b_on_a->detect(p.b->collision(), p.a->collision(), settings, out);
   else p.a_on_b->detect(p.a->collision(), p.b->collision(), settings, out);
 }
 
 void Contact::detect(const StepContext& context) {
   collision_horizon_ = context.collision_horizon_s / context.h;
   workers_->run(int(searches_.size()), [this](int i) { search(searches_[std::size_t(i)]); });
-  // Names are given in the order of the pairs, for any number of threads.
+  // Keys are given in the order of the pairs, for any number of threads.
   for (Pair& p : pairs_) {
     SelectionSettings choice;
     if (p.tool_a) {
       choice.spacing =
-          p.vertex_collider && p.b->thickness() > 0 ? 0.0 : spacing();  // a wall's vertices are all kept out
+          p.vertex_collider && p.b->thickness() > 0 ? 0.0 : spacing();  // all of a wall's vertices are kept out
       choice.advantage = 0.2 * alarm();
       choice.max_contacts = max_contacts();
-      // A jaw is one piece and may use all; of several pieces none takes more than half.
+      // A jaw is one piece and may use all contacts. Of several pieces, each gets at most half.
       choice.max_per_piece =
           p.single_piece() || p.vertex_collider ? max_contacts() : std::max(2, (max_contacts() + 1) / 2);
     } else {
       choice.spacing = tissue_spacing();
       choice.advantage = 0.5 * tissue_alarm();
       choice.max_contacts = tissue_max_contacts();
-      for (Proximity& x : p.other_way) {
+      for (Proximity& x : p.reverse) {
         x.side = 1;
         p.contacts.push_back(x);
       }
@@ -128,7 +128,7 @@ double Contact::max_contact_force(const Pair& p) const {
   return most > 0 ? most : infinite;
 }
 
-// d of the relative displacement a - b at the contact.
+// Adds direction d of the relative displacement a - b at the contact.
 void Contact::add_row(ConstraintBuilder& builder, int row, const Pair& p, const Proximity& x, const Vec3& d) const {
   if (p.tool_a) {
     builder.point(row, p.tool_a->link_point(p.link_a, x.local), d);

@@ -160,14 +160,13 @@ class Contact final : public Constraint, public StatesLaw {
     std::unique_ptr<TissueCollider> a_on_b, b_on_a;
     ContactSelection selection;
     std::vector<Proximity> contacts;
-    std::vector<Proximity> other_way;          ///< of b's vertices on a, before selection
+    std::vector<Proximity> reverse;            ///< of b's vertices on a, before selection
     std::unique_ptr<FrictionPatches> patches;  ///< one friction force for neighbouring contacts, or null
-    Pose start;                                ///< of the tool, in the step last detected
-    std::optional<Pose> free;                  ///< of its free motion, in the same step
-    std::optional<Pose>
-        expected;              ///< at the end of that step, of a tool that presses and whose contacts are taken there
-    std::vector<int> rows;     ///< first row of each contact
-    std::vector<Vec3> forces;  ///< along (normal, tangent, other tangent), N
+    Pose start;                                ///< of the tool, at the start of the last detected step
+    std::optional<Pose> free;                  ///< of its free motion in the same step
+    std::optional<Pose> expected;  ///< at the end of that step, for a pressing tool whose contacts are linearised there
+    std::vector<int> rows;         ///< first row of each contact
+    std::vector<Vec3> forces;      ///< along (normal, tangent, other tangent), N
     bool active() const { return (!tool_a || tool_a->active()) && (!tool_b || tool_b->active()); }
     bool single_piece() const {
       return tool_a && tool_a->link_pieces(link_a).size() == 1 && (!tool_b || tool_b->link_pieces(link_b).size() == 1);
@@ -178,10 +177,10 @@ class Contact final : public Constraint, public StatesLaw {
   const std::vector<Pair>& pairs() const { return pairs_; }
 
  private:
-  /// The work of one thread at a time: a pair, or for two surfaces one direction of it.
+  /// The work of one thread at a time: a pair, or one direction of a pair of surfaces.
   struct Search {
     int pair;
-    bool other_way;
+    bool reverse;
   };
   bool owns(Simulation& simulation, const Body* a, const Body* b) const;
   void search(const Search& what);
@@ -199,7 +198,7 @@ class Contact final : public Constraint, public StatesLaw {
   std::vector<Search> searches_;
   Workers* workers_ = nullptr;
   std::uint64_t next_key_ = 0;
-  double collision_horizon_ = 0;  ///< of this step, in steps
+  double collision_horizon_ = 0;  ///< in this step, in steps
 };
 
 }  // namespace insula

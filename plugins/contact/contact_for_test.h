@@ -11,7 +11,7 @@
 
 namespace insula::test {
 
-// A tool whose pieces are balls at the corners of a square of `half` around the tip: a block on four feet.
+// A tool whose pieces are balls at the corners of a square of half-width `half` around the tip: a block on four feet.
 inline std::string feet_urdf(double half, double radius) {
   std::string s = R"(<robot name="feet"><link name="tool"><inertial><mass value="0.02"/>
 <inertia ixx="1e-6" iyy="1e-6" izz="1e-6" ixy="0" ixz="0" iyz="0"/></inertial>)";

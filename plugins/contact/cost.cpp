@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a <contact> costs in a step: the surfaces that it searches and the rows that tools at work bring.
+// Cost of a <contact> in a step: the surfaces that it searches, and the rows of tools at work.
 #include <algorithm>
 
 #include "plugins/contact/contact.h"
@@ -22,7 +22,7 @@ void Contact::estimate_cost(CostCounts& out) const {
     if (!p.tool_a->implant())
       out.rows.push_back({p.tool_a, p.body_b(), std::min(rows * usual, limit), limit * (vertices ? 2 : 1)});
     else if (vertices && p.tool_a->links() > 1 && p.link_a > 0)
-      out.rows.push_back({p.tool_a, p.body_b(), limit, limit});  // its jaws grip, its coil does not
+      out.rows.push_back({p.tool_a, p.body_b(), limit, limit});  // its jaws grip, but its coil does not
   }
 }
 

@@ -11,10 +11,10 @@
 namespace insula {
 namespace {
 
-constexpr double max_creep = 0.1e-3;  ///< a hold that is farther off than this is given up, m
+constexpr double max_creep = 0.1e-3;  ///< a sticking patch with a larger offset is released, m
 
-// Cell of the grid (its planes half a cell off the tool's own, where faces may lie) and the direction, of six, that the
-// normal is nearest to, both in the tool's frame.
+// Cell of the grid, and the nearest of six directions to the normal, both in the tool's frame. The grid's planes are
+// half a cell off the tool's own planes, where faces may be.
 std::uint32_t name_of(const Vec3& place, const Vec3& normal, double size) {
   std::uint32_t name = 0;
   for (int k = 0; k < 3; ++k) name = name << 8 | (std::uint32_t(int(std::floor(place[k] / size + 0.5)) + 128) & 0xff);
@@ -79,8 +79,8 @@ void FrictionPatches::sort(std::span<const Proximity> contacts, const Pose& tool
       else sum += m.weight, ++fresh;
       normal += contacts[std::size_t(m.contact)].normal;
     }
-    // What bore nothing has a small share, so that a new patch has a slip. Those that hold keep their shares, and
-    // newcomers get small ones.
+    // Contacts without force get a small share, so that a new patch has a slip. Sticking contacts keep their shares,
+    // and new ones get small shares.
     const double n = double(last - first), least = 0.1 * sum / n + 1e-9, new_share = kept > 0 ? 0.1 / n : 0;
     const double scale =
         kept > 0 && fresh == 0 && kept > 1 - 1e-12 ? 1 : 1 / (kept > 0 ? kept + fresh * new_share : sum + n * least);
@@ -106,7 +106,7 @@ void FrictionPatches::finish(std::span<const Proximity> contacts, const Constrai
     const Vec3 friction = solution.lambda[p.row] * p.tangent[0] + solution.lambda[p.row + 1] * p.tangent[1];
     double pressed_in_all = 0;
     for (int i = p.first; i < p.first + p.count; ++i) pressed_in_all += solution.lambda[members_[std::size_t(i)].row];
-    // Slipping gives the hold up; members_ is in order of names.
+    // A slipping patch is released. members_ is in order of names.
     const bool holds = friction.norm() < (1 - 1e-6) * mu * pressed_in_all && p.crept.norm() < max_creep;
     held_.push_back({p.name, holds, p.crept, Vec3::Zero(), 0});
     for (int i = p.first; i < p.first + p.count; ++i) {

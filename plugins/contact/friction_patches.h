@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One friction force for contacts that lie close together on a blade.
+// One friction force for neighbouring contacts on a blade.
 //
-// A patch holds the contacts that lie in one cell of a grid on the tool and face one way. This does not depend on how
-// contacts come and go. The slip of a patch is the mean slip of its contacts. The weights are the contacts' forces in
-// the step before the patch began to stick. The friction is spread over the contacts by the same weights, so it does
-// work only on the slip of the patch. It is bounded by mu times the sum of their normal forces.
+// A patch has the contacts in one cell of a grid on the tool that have similar normals. This does not depend on which
+// contacts appear and vanish. The slip of a patch is the mean slip of its contacts. The weights are the contacts'
+// forces in the step before the patch began to stick. The friction is spread over the contacts by the same weights, so
+// it does work only on the slip of the patch. It is bounded by mu times the sum of their normal forces.
 //
-// A sticking patch sums the mean slip that the steps' linearisation lets pass, and takes it back. It keeps its contacts
-// and their weights, whatever their forces are meanwhile. If the weights followed the pulse, each contact would move a
-// little further in every beat. Without these two rules, a clip on a pulsing neck creeps by a micrometre a beat.
+// A sticking patch sums the mean slip that remains because of the steps' linearisation, and reverses it. It keeps its
+// contacts and their weights, independent of their forces meanwhile. If the weights followed the pulse, each contact
+// would move a little further in every beat. Without these two rules, a clip on a pulsing neck creeps by a micrometre
+// in each beat.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -25,17 +26,17 @@ class FrictionPatches {
   FrictionPatches(double size, std::size_t room);
 
   struct Member {
-    std::uint32_t patch;  ///< name of its patch
+    std::uint32_t patch;  ///< id of its patch
     int contact;          ///< index
     double weight;        ///< of its slip in the slip of the patch; weights of a patch sum to one
     int row;              ///< of its normal row
-    bool stays;           ///< the patch stuck in the last step, with this contact in it
+    bool stays;           ///< the patch stuck in the last step, with this contact
   };
   struct Patch {
     std::uint32_t name;
     int first, count;  ///< of members()
     Vec3 tangent[2];   ///< scene frame, unit
-    Vec3 crept;        ///< mean slip of the tool on the surface since it began to stick, tool frame, m
+    Vec3 crept;        ///< mean slip of the tool on the surface since the patch began to stick, tool frame, m
     int row = -1;      ///< its first tangent row
   };
   /// Sorts contacts into patches. `tool`: pose of the frame of Proximity::local. Does not allocate.
@@ -62,8 +63,8 @@ class FrictionPatches {
     std::uint32_t name;
     bool holds;
     Vec3 crept;         ///< tool frame, m
-    Vec3 slip;          ///< of its contacts since then, by weight
-    double weight = 0;  ///< of those that still exist
+    Vec3 slip;          ///< of its contacts since then, weighted
+    double weight = 0;  ///< of the contacts that still exist
   };
   const Known* known(std::uint64_t key) const;
   Held* held(std::uint32_t name);

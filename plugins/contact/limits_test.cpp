@@ -173,12 +173,12 @@ TEST(ContactLimits, AFastToolGoesOnInTissueByNoMoreThanTissuePush) {
       double farthest = 0;
       for (int i = 0; i < 8; ++i) {
         const Vec3 before = tool->pose().p,
-                   way = (state.device.p - before).normalized();  // without mass the free tool is with the hand
+                   direction = (state.device.p - before).normalized();  // without mass the free tool is with the hand
         const bool touches = !s->report().contacts.empty() && s->report().contacts[0].normal_force > 0;
         s->set_hand(1, state);
         s->step();
         ASSERT_TRUE(s->report().finite);
-        if (touches) farthest = std::max(farthest, (tool->pose().p - before).dot(way));
+        if (touches) farthest = std::max(farthest, (tool->pose().p - before).dot(direction));
       }
       EXPECT_GT((tool->pose().p - from).norm(), std::min(3 * push, 2e-3)) << "it goes on in the steps that follow";
       if (push < 0.01) {

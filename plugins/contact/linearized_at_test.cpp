@@ -37,7 +37,7 @@ std::vector<Vec3> led_about_the_edge(const std::string& linearized_at) {
   return out;
 }
 
-TEST(ContactTakenAt, TheEndFollowsAnEdgeAsTheLawSays) {
+TEST(ContactLinearizedAt, TheEndFollowsAnEdgeAsTheLawSays) {
   const auto forces = led_about_the_edge("end");
   ASSERT_EQ(forces.size(), 10u);
   // The normal is that of the expected place, the device's with the push of the step before; the row then says n . (x -
@@ -51,7 +51,7 @@ TEST(ContactTakenAt, TheEndFollowsAnEdgeAsTheLawSays) {
   }
 }
 
-TEST(ContactTakenAt, TheEndIsManyTimesNearerToTheTruthThanTheStart) {
+TEST(ContactLinearizedAt, TheEndIsManyTimesNearerToTheTruthThanTheStart) {
   std::array<double, 2> worst{0, 0};
   for (const int end : {0, 1}) {
     const auto forces = led_about_the_edge(end ? "end" : "start");
@@ -67,7 +67,7 @@ TEST(ContactTakenAt, TheEndIsManyTimesNearerToTheTruthThanTheStart) {
 }
 
 // Where the ball will be nearest to the edge, half a step on and a step later, if it goes on as it did.
-TEST(ContactTurned, FollowsAnEdgeAsTheToolGoesOn) {
+TEST(ContactLinearizedAtEnd, FollowsAnEdgeAsTheToolGoesOn) {
   Bench b(test_tool_urdf(radius), block(), upright, R"(friction="1e-9" linearized_at="end")");
   ASSERT_TRUE(b.tool);
   b.move_to({edge + 1.5 * radius * around(0.45 * std::numbers::pi), b.tool->home_pose().q});
@@ -93,7 +93,7 @@ TEST(ContactTurned, FollowsAnEdgeAsTheToolGoesOn) {
 }
 
 // In one step from the top to the side: what is felt is the side alone.
-TEST(ContactTakenAt, OverAnEdgeTheNewFaceIsFeltInTheStepThatGetsThere) {
+TEST(ContactLinearizedAt, OverAnEdgeTheNewFaceIsFeltInTheStepThatGetsThere) {
   for (const bool end : {false, true}) {
     Bench b(test_tool_urdf(radius), block(), upright,
             fmt::format(R"(friction="0" linearized_at="{}")", end ? "end" : "start"));
@@ -110,7 +110,7 @@ TEST(ContactTakenAt, OverAnEdgeTheNewFaceIsFeltInTheStepThatGetsThere) {
   }
 }
 
-TEST(ContactTakenAt, ResetLeadsBackToTheSameBits) {
+TEST(ContactLinearizedAt, ResetLeadsBackToTheSameBits) {
   SceneFolder folder;
   auto s = soft_bench(folder, R"(<contact between="pad top left right" friction="0.3" linearized_at="end"/>)");
   ASSERT_TRUE(s);

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How far a tool may go on a wall or in tissue in one step.
+// Limit of a tool's motion at a wall or in tissue in one step.
 #include "core/collision/shapes/closest.h"
 #include "plugins/contact/contact.h"
 
 namespace insula {
 namespace {
-constexpr double servo_step_s = 1e-3;  // who goes on in such steps is allowed as much in each
+constexpr double servo_step_s = 1e-3;  // clients with such short steps get the same limit in each of them
 }
 
-// Tissue answers linearly over a step, while its true motion is not: a far push would turn a thin wall or the elements
-// of a lobe inside out, a far slide would leave the places that contact looked at. So a tool that touches goes on by no
-// more than max_step_displacement (a wall) or tissue_max_step_displacement: three rows along the free motion of three
-// places of the touching piece.
+// Tissue responds linearly over a step, but its true motion is nonlinear. A large push would invert a thin wall or the
+// elements of a lobe, and a large slide would leave the region of the detected contacts. So a tool in contact moves by
+// at most max_step_displacement (a wall) or tissue_max_step_displacement. Three rows limit the free motion of three
+// points of the touching piece.
 void Contact::limit_motion(ConstraintBuilder& builder, const Pair& p) const {
   if (!p.tool_a || !p.b || !p.active() || p.b->body().blocks() == 0) return;
   const double most = p.b->thickness() > 0 ? max_step_displacement() : tissue_max_step_displacement();
@@ -21,7 +21,7 @@ void Contact::limit_motion(ConstraintBuilder& builder, const Pair& p) const {
     piece = p.tool_collider->touching_piece();
     touch = p.tool_collider->touch_time();
   } else {
-    // A contact found on the free way, or one that is closed and goes on closing.
+    // A contact found in the free motion, or a closed one that continues to close.
     for (const Proximity& x : p.contacts) {
       if (x.time == 0) {
         if (x.gap > 0.1 * alarm()) continue;
@@ -49,9 +49,9 @@ void Contact::limit_motion(ConstraintBuilder& builder, const Pair& p) const {
   for (const Vec3& place : {r.axis0, r.axis1, third}) {
     const MaterialPoint point = p.tool_a->link_point(p.link_a, place);
     const Vec3 u = p.tool_a->free_displacement(point);
-    const double way = u.norm(), allowed = touch * way + most;
+    const double distance = u.norm(), allowed = touch * distance + most;
     ++count;
-    if (way <= allowed) continue;
+    if (distance <= allowed) continue;
     Block block;
     block.id = row_id(*this, std::uint64_t(1) << 43 | std::uint64_t(&p - pairs_.data()) << 16 |
                                  std::uint64_t(piece) << 2 | std::uint64_t(count));
@@ -60,7 +60,7 @@ void Contact::limit_motion(ConstraintBuilder& builder, const Pair& p) const {
     const int row = builder.add(block);
     builder.violation(row, allowed);
     builder.moves(row, most / servo_step_s);
-    builder.point(row, point, -u / way);
+    builder.point(row, point, -u / distance);
   }
 }
 

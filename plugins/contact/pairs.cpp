@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which pairs of bodies and tools a <contact> looks after, and with what: found once, when the scene is put together.
+// The pairs of bodies and tools of a <contact>, and their colliders. They are determined once, at the start of the
+// scene.
 #include <algorithm>
 
 #include "core/sim/simulation.h"
@@ -7,7 +8,7 @@
 
 namespace insula {
 
-// Whether this element looks after the pair that several may name.
+// Whether this element handles a pair that several elements may name.
 bool Contact::owns(Simulation& simulation, const Body* a, const Body* b) const {
   const auto names = [](const Contact& c, const Body* body) {
     return std::find(c.between().begin(), c.between().end(), body) != c.between().end();
@@ -73,7 +74,7 @@ void Contact::add_pairs(Simulation& simulation, Body* a, Body* b) {
       p.b_on_a = std::make_unique<TissueCollider>(sample_vertices(sb->rest().vertices, sb->triangles(), distance),
                                                   sb->rest().vertices, p.a->collision().triangle_count());
       p.contacts.reserve(p.a_on_b->samples().size() + p.b_on_a->samples().size());
-      p.other_way.reserve(p.b_on_a->samples().size());
+      p.reverse.reserve(p.b_on_a->samples().size());
       pairs_.push_back(std::move(p));
     }
   }
@@ -101,14 +102,14 @@ void Contact::connect(PrepareContext& context, Simulation& simulation) {
     }
   for (Pair& p : pairs_) {
     const std::size_t most = std::size_t(p.tool_a ? max_contacts() : tissue_max_contacts());
-    p.selection.reserve(p.contacts.capacity() + p.other_way.capacity(), most);
-    p.contacts.reserve(p.contacts.capacity() + p.other_way.capacity());
+    p.selection.reserve(p.contacts.capacity() + p.reverse.capacity(), most);
+    p.contacts.reserve(p.contacts.capacity() + p.reverse.capacity());
     p.rows.reserve(most);
     if (p.vertex_collider && patch() > 0 && friction() > 0)
       p.patches = std::make_unique<FrictionPatches>(patch(), most);
     p.forces.reserve(most);
   }
-  // Surfaces against surfaces take longest: first, so that threads end together.
+  // Pairs of surfaces take longest, so they come first, and threads end together.
   workers_ = &simulation.workers();
   for (const bool surfaces : {true, false})
     for (int i = 0; i < int(pairs_.size()); ++i) {

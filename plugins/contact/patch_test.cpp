@@ -183,9 +183,9 @@ TEST(Patch, AHoldUnderAPulsatingForceDoesNotCreep) {
     hold(0.1, 1.3 * mu * 1.2 * force);
     hold(4, 0.8 * mu * least);
     const auto first = b.places();
-    const auto [way, both] = slid(old, first);
+    const auto [slip, both] = slid(old, first);
     EXPECT_GE(both, 4);
-    EXPECT_GT(way.head<2>().norm(), 20e-6) << "it did not slide, or went back to the old place";
+    EXPECT_GT(slip.head<2>().norm(), 20e-6) << "it did not slide, or went back to the old place";
     hold(seconds, 0.8 * mu * least);
     const auto [crept, kept] = slid(first, b.places());
     EXPECT_GE(kept, 9);

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Directions of contacts after the step. A step's normals are those of its start; they are found anew where tools and
-// surfaces have come.
+// Prediction of contact frames after the step. A step's normals are those of its start. They are computed again at the
+// later positions of tools and surfaces.
 #include "core/collision/shapes/contact_normal_ahead.h"
 #include "plugins/contact/contact.h"
 
 namespace insula {
 
 void Contact::predict_frames(double steps, std::vector<ContactFrame>& out) const {
-  if (!(friction() > 0)) return;  // a single row knows no other direction
+  if (!(friction() > 0)) return;  // a single row has no other direction
   for (const Pair& p : pairs_) {
     if (!p.tool_collider || !p.active()) continue;
     const Pose now = p.tool_a->link_pose(p.link_a);
-    const Vec6 way = displacement(p.start, now);
+    const Vec6 motion = displacement(p.start, now);
     const auto vertex = [&](double after, int v) -> Vec3 {
       const Vec3& start = p.b->positions()[std::size_t(v)];
       if (p.b->body().blocks() == 0) return start;
@@ -23,14 +23,15 @@ void Contact::predict_frames(double steps, std::vector<ContactFrame>& out) const
                                   pose.apply(x.local), spacing(), x.normal);
     };
     const auto nearest_after = [&](const Proximity& x, double after) {
-      return nearest(x, displaced(now, after * way), [&](int v) { return vertex(after, v); });
+      return nearest(x, displaced(now, after * motion), [&](int v) { return vertex(after, v); });
     };
     for (std::size_t i = 0; i < p.forces.size(); ++i) {
       const Proximity& x = p.contacts[i];
       if (!(p.forces[i][0] > 0)) continue;
       const auto normal = nearest_after(x, steps);
       if (!normal) continue;
-      // As far as the nearest place has turned: what rests is not turned, even if it touches by another place.
+      // Rotates the normal as far as the direction to the nearest point has rotated. A resting contact is not rotated,
+      // even if its point changes.
       Vec3 to = *normal;
       if (x.time == 0 || (x.time == 1 && p.expected)) {
         const auto taken =

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The compression barrier of one element at a time: energy sum of k/2 (s0 - s)^2 over the principal stretches s < s0.
+// The compression barrier of one element. Its energy density is the sum of k/2 (s0 - s)^2 over the principal stretches
+// s < s0.
 #pragma once
 #include "core/base/math.h"
 #include "core/linalg/block_matrix.h"
@@ -23,7 +24,7 @@ inline Vec3 rest_gradient(const ElementBatch& e, int l, int node) {
   return -(b(0) + b(1) + b(2));
 }
 
-/// Adds the element's force, and its tangent if `stiffness` is given. `positive`: without negative eigenvalues.
+/// Adds the element's force, and its tangent if `stiffness` is given. `positive`: sets negative eigenvalues to zero.
 void stiffen(const ElementBatch& e, const ElementWork& work, int lane, const BarrierLaw& law, double* force,
              BlockMatrix* stiffness, double scale, bool positive);
 double barrier_energy(const ElementBatch& e, const ElementWork& work, int lane, const BarrierLaw& law);

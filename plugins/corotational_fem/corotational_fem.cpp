@@ -165,7 +165,7 @@ void CorotationalFem::add_mass(std::vector<double>& mass, std::vector<double>& d
 }
 
 ElementMaterial CorotationalFem::material() const {
-  // No principal stretch is less than 1 - |e|: spares nearly every element the eigenvalues.
+  // No principal stretch is below 1 - |e|. So nearly all elements need no eigenvalues.
   const double far = stiffening() > 0 ? 1 - barrier_stretch() : std::numeric_limits<double>::infinity();
   return {young() / (2 * (1 + poisson())), young() * poisson() / ((1 + poisson()) * (1 - 2 * poisson())), far * far};
 }

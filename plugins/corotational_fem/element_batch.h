@@ -39,7 +39,7 @@ struct ElementKernels {
   unsigned (*rotate)(const ElementBatch& batch, const double* x, ElementWork& work);
   /// Stretch, and force += -dE/dx. Returns the lanes in which the barrier may act.
   unsigned (*force)(const ElementBatch& batch, const ElementMaterial& m, ElementWork& work, double* force);
-  /// values (3x3 blocks, column-major) += scale d2E/dx2: Hooke's law in the turned frame and the spin of the element.
+  /// values (3x3 blocks, column-major) += scale d2E/dx2: Hooke's law in the rotated frame and the spin of the element.
   void (*stiffness)(const ElementBatch& batch, const ElementMaterial& m, const ElementWork& work, double scale,
                     SpinTerm spin, double* values);
   /// Stretch, and each lane's energy in work.out[0]. Returns the lanes in which the barrier may act.

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Compiled once per instruction set: KERNEL_NAME, KERNEL_BYTES (of a vector). The formulas stand in
-// corotational_fem.cpp.
+// Compiled once per instruction set: KERNEL_NAME, KERNEL_BYTES (of a vector). The formulas are in corotational_fem.cpp.
 #include <utility>
 
 #include "core/linalg/lane_bits.h"
@@ -29,8 +28,8 @@ unsigned rotate(const ElementBatch& e, const double* x, ElementWork& work) {
         for (int c = 0; c < 3; ++c) p[3 * k + c][i] = x[3 * e.node[k][l + i] + c];
     for (int k = 0; k < 3; ++k)
       for (int c = 0; c < 3; ++c) {
-        const V d =
-            load(p[3 * k + 3 + c]) - load(p[c]);  // differences first: what is far from the origin must not lose digits
+        const V d = load(p[3 * k + 3 + c]) -
+                    load(p[c]);  // differences first, so that accuracy does not depend on the distance from the origin
         for (int j = 0; j < 3; ++j) f[3 * c + j] += d * load(e.b[k][j] + l);
       }
     V q[4], r[9];
@@ -106,7 +105,7 @@ unsigned energy(const ElementBatch& b, const ElementMaterial& m, ElementWork& wo
   return out;
 }
 
-// One rotation of Jacobi's method on a symmetric matrix: makes `off` zero; p and q are the entries beside it.
+// One rotation of Jacobi's method on a symmetric matrix makes `off` zero. p and q are the entries beside it.
 inline void turn(V& low, V& high, V& off, V& p, V& q, V* from, V* to) {
   const V apart = high - low, size = root(apart * apart + 4 * off * off);
   const V under = apart < 0 ? apart - size : apart + size;
@@ -125,8 +124,8 @@ inline void turn(V& low, V& high, V& off, V& p, V& q, V* from, V* to) {
   }
 }
 
-// How the spin of the element resists, R (2 mu I - k (tr(S) I - S)^-1) R^T with k = 2 (2 mu - lambda tr e), symmetric;
-// with `positive` its negative eigenvalues are zero.
+// Stiffness of the element's spin, R (2 mu I - k (tr(S) I - S)^-1) R^T with k = 2 (2 mu - lambda tr e), symmetric. With
+// `positive`, negative eigenvalues are set to zero.
 inline void spin_of(const ElementMaterial& m, const ElementWork& work, int l, bool positive, V g[6]) {
   V s[6], r[9];
   for (int k = 0; k < 6; ++k) s[k] = load(work.s[k] + l);
@@ -185,7 +184,7 @@ inline void transpose(V* v) {
     for (int i = 0; i < 4; ++i) exchange<4>(v[i], v[i + 4], lanes);
 }
 
-// Adds a block of nine of each lane where it belongs.
+// Adds a block of nine numbers of each lane to its target.
 inline void add_blocks(V v[9], const int* slot, int count, double* values) {
   double last[W];
   store(last, v[8]);

@@ -25,7 +25,7 @@ static inline void matrix_of(const V q[4], V r[9]) {
 
 /// Newton's method for the rotation that makes A = R^T F symmetric. With S = sym(A) and w the axial vector of A - A^T,
 /// one step rotates R by (tr(S) I - S)^-1 w. The tangent of half the angle is half of that vector. The convergence is
-/// cubic: an error d becomes one of the order d^3. Converged lanes stay as they are. Where S is no maximum of tr(R^T
+/// cubic: an error d becomes one of the order d^3. Converged lanes stay as they are. If S is not a maximum of tr(R^T
 /// F), or the angle is large, the lane fails and the caller uses singular values.
 template <class V, class M = decltype(V{} == V{})>
 static inline M rotation_by_newton(const V f[9], V q[4], V r[9]) {

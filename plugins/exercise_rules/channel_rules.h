@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the two rules on a channel share: its name, a comparison, a limit with a unit, and how long it must last.
+// Common part of the two rules on a channel: its name, a comparison and a limit with a unit.
 #pragma once
 #include <string>
 
@@ -13,16 +13,16 @@ class ChannelWatch {
  public:
   enum class Comparison { above, below };
 
-  /// False when something is wrong, which is reported.
+  /// False if there is an error, which is reported.
   bool connect(PrepareContext& context, const Simulation& simulation, const Component& rule,
                const Param<std::string>& channel, const Param<std::string>& limit);
-  /// The channel now: the length of a vector. NaN: not known.
+  /// The present value of the channel, or the length of a vector. NaN: not known.
   double value(const StepReport& report) const;
-  /// Whether it is beyond the limit; a value that is not known never is.
+  /// Whether the value is beyond the limit. An unknown value is not.
   bool beyond(double value, Comparison comparison) const {
     return comparison == Comparison::above ? value > limit_ : value < limit_;
   }
-  /// Whether it is back by a tenth of the limit, from where a fault may count again.
+  /// Whether the value is back within the limit by a tenth of it. A fault may then count again.
   bool back(double value, Comparison comparison) const;
 
  private:

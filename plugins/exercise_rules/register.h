@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The elements of this plugin that stand in files of their own.
+// The elements of this plugin that have files of their own.
 #pragma once
 #include "core/registry/registry.h"
 

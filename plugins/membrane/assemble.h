@@ -14,7 +14,7 @@ struct PatchRows {
   alignas(64) double spread[patch_nodes][3][8];  ///< b0 b0 b0 b1 b1 b1 b2 b2
 };
 
-/// values: 3x3 blocks, column-major. slot: of (0,0) (1,0) (1,1) ..., negative where nothing is stored.
+/// values: 3x3 blocks, column-major. slot: of (0,0) (1,0) (1,1) ..., negative if nothing is stored.
 void add_patch(PatchRows& rows, int nodes, const int* slot, double* values);
 
 }  // namespace insula

@@ -9,7 +9,7 @@
 namespace insula {
 namespace {
 
-constexpr double collapsed = 0.1;  ///< part of its area at rest below which a triangle's angle gradient is bounded
+constexpr double collapsed = 0.1;  ///< share of the rest area below which the angle's gradient is bounded
 constexpr int held = -1;
 
 /// Square root of the bending stiffness on (k11, k22, 2 k12) with the directions `free` (columns) given up to no
@@ -23,7 +23,7 @@ Mat3 root_of_stiffness(const StretchTriangles::Material& m, const Eigen::Matrix<
     k -= kf * (free.transpose() * kf).completeOrthogonalDecomposition().pseudoInverse() * kf.transpose();
   }
   const Eigen::SelfAdjointEigenSolver<Mat3> eigen(k);
-  // What the elimination leaves of rounding is no stiffness.
+  // Rounding errors of the elimination do not count as stiffness.
   const Vec3 root = eigen.eigenvalues().unaryExpr([](double v) { return v > 1e-12 ? std::sqrt(v) : 0.0; });
   return std::sqrt(d) * (root.asDiagonal() * eigen.eigenvectors().transpose());
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bending of a wall: Morley's plate element whose slopes across edges are interpolated from the hinges' angles
+// Bending of a wall: Morley's plate element. Its slopes across edges are interpolated from the hinges' angles
 // (slope.h).
 //
 //   curvature of a triangle  kappa = 1/A sum over its edges  l sigma nu nu^T,  nu the edge's in-plane normal at rest
@@ -39,7 +39,7 @@ class BendPatches {
   double energy(const double* x);
   /// Changes the rest angles by those of the displacement u from rest. Both arguments have 3 values a node, m.
   void prestrain(const double* rest, const double* u);
-  /// Forgets the number of full turns of each hinge.
+  /// Resets the number of full turns of each hinge.
   void reset() { angle_ = start_angle_; }
 
  private:
@@ -48,8 +48,8 @@ class BendPatches {
   struct Patch {
     int hinges = 0, nodes = 0;
     int hinge[max_hinges];
-    unsigned char local[max_hinges][4];  // the hinge's nodes among the patch's
-    double c[max_hinges][3];             // sqrt(A D) times what the angle gives to the curvature
+    unsigned char local[max_hinges][4];  // the hinge's nodes as indices of the patch's nodes
+    double c[max_hinges][3];             // sqrt(A D) times the factor from the angle to the curvature
     int node[max_nodes];                 // in the order of the matrix once bound
     int first_slot = 0;                  // of its blocks (0,0) (1,0) (1,1) ...
   };
@@ -64,10 +64,9 @@ class BendPatches {
   std::vector<HingeBatch> batches_;     // of the hinges, in order
   std::vector<double> step_stiffness_;  // of each hinge, N m
   std::vector<double> start_angle_;     // in the rest configuration
-  std::vector<double> rest_angle_;      // of the stress-free configuration: another one where there is a prestrain
+  std::vector<double> rest_angle_;      // of the stress-free configuration, which differs with a prestrain
   std::vector<double> angle_, energy_angle_, moment_, gradient_;
-  std::vector<std::array<int, 10>>
-      hinge_slot_;  // lower triangle of the hinge's blocks; ~slot where stored the other way round
+  std::vector<std::array<int, 10>> hinge_slot_;  // lower triangle of the hinge's blocks; ~slot if stored transposed
   std::vector<Patch> patches_;
   std::vector<int> slots_;
   PatchRows rows_{};  // work of assemble()

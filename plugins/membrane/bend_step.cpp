@@ -10,7 +10,7 @@ namespace insula {
 
 using FourAnywhere = double __attribute__((vector_size(32), aligned(8), may_alias));
 
-// Angles nearest to those that `angle` holds.
+// Angles nearest to the values in `angle`.
 void BendPatches::find_angles(const double* x, std::vector<double>& angle, double* gradient) const {
   const WallKernels& kernels = wall_kernels();
   for (std::size_t i = 0; i < batches_.size(); ++i)
@@ -49,7 +49,7 @@ void BendPatches::linearise(const double* x, double* force, BlockMatrix* stiffne
   if (stiffness && which == Tangent::exact) add_curvature_of_hinges(x, *stiffness, scale);
 }
 
-// K = B^T B with B = sum c_h grad(angle_h)^T, 3 rows: the part of the second derivative that is never negative.
+// K = B^T B with B = sum c_h grad(angle_h)^T, 3 rows: the positive semidefinite part of the second derivative.
 void BendPatches::assemble(const Patch& p, double root, BlockMatrix& stiffness) {
   std::memset(rows_.row, 0, sizeof rows_.row);
   for (int i = 0; i < p.hinges; ++i) {

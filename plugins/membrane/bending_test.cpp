@@ -149,7 +149,7 @@ struct Elastica {
 
 TEST(Bending, ElasticaAtLargeRotation) {
   test::Figure figure("elastica", "A strip under a load at its end: the elastica", "P L^2 / (E I)",
-                      "way of the end over the length");
+                      "displacement of the end over the length");
   for (double load = 0.1; load <= 10.05; load += 0.1)
     figure.law("down", load, Elastica::under(load).down), figure.law("back", load, Elastica::under(load).back);
   const double length = 0.05, width = 0.005;

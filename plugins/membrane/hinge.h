@@ -13,9 +13,9 @@ struct WallHinge {
       0, 0};  ///< squared doubled areas below which a triangle counts as collapsed (its gradient is bounded), m4
 };
 
-/// Angle by which the second triangle is turned from the plane of the first, rad in (-pi, pi]. It is positive where the
-/// apexes rise along the normals. Its gradient (12 values, 1/m) goes into `gradient` if that is not null. At the apexes
-/// the gradient is |e| N / |N|^2 with N the doubled area vector. At the edge's ends it is such that rigid motion has no
+/// Angle of the second triangle from the plane of the first, rad in (-pi, pi]. It is positive where the apexes rise
+/// along the normals. Its gradient (12 values, 1/m) goes into `gradient` if that is not null. At the apexes the
+/// gradient is |e| N / |N|^2 with N the doubled area vector. At the edge's ends it is such that rigid motion has no
 /// effect.
 double hinge_angle(const double* x, const WallHinge& hinge, double* gradient);
 

@@ -128,7 +128,7 @@ bool Membrane::choose_regions(PrepareContext& context, const ShellBody& shell) {
   return good;
 }
 
-/// By the last membrane of the shell: no triangle twice, none without.
+/// Called by the last membrane of the shell: every triangle has exactly one membrane.
 void Membrane::check_cover(PrepareContext& context, const ShellBody& shell) const {
   const std::vector<std::string>& names = shell.model().regions;
   const auto all = shell.children_of<Membrane>();

@@ -63,7 +63,8 @@ inline void press(ShellBody& body, double p, const VecX& x) {
   }
 }
 
-/// How a rectangle is meshed: all diagonals one way, criss-cross, or all one way with perturbed nodes (not Delaunay).
+/// How a rectangle is meshed: all diagonals in one direction, criss-cross, or all in one direction with perturbed nodes
+/// (not Delaunay).
 enum class Cut { one_way, criss_cross, shaken };
 
 /// Parameters (u, v) in [0, 1]^2 on an nu x nv grid, mapped by `place`. `shake` is in parts of a cell; rims stay

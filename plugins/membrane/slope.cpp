@@ -10,13 +10,13 @@ namespace {
 
 using Vec2 = Eigen::Vector2d;
 
-/// Hinges farther out than the edge's own are used less readily by this factor.
+/// Weight of the outer hinges relative to the edge's own hinge.
 constexpr double outer = 0.3;
-/// Combinations of quadratics that the hinges tell apart less well than this, relative to the best, are given up.
+/// Combinations of quadratics with a smaller singular value than this, relative to the largest, are dropped.
 constexpr double min_singular = 0.02;
 
-/// Where the apex of a triangle lies in a plane that holds its edge (p, q) at (p2, q2), on the left of p2 to q2 or the
-/// right.
+/// Position of a triangle's apex in a plane in which its edge (p, q) is at (p2, q2). The apex is on the left of p2 to
+/// q2 or on the right.
 Vec2 unfold(const Vec3& p, const Vec3& q, const Vec3& apex, const Vec2& p2, const Vec2& q2, double side) {
   const Vec3 e = q - p, a = apex - p;
   const double length = e.norm(), along = e.dot(a) / length, across = e.cross(a).norm() / length;
@@ -24,7 +24,7 @@ Vec2 unfold(const Vec3& p, const Vec3& q, const Vec3& apex, const Vec2& p2, cons
   return p2 + along * d + side * across * Vec2(-d.y(), d.x());
 }
 
-/// By how much a deflection rises at the apex over the plane's value on the edge, over the apex's height.
+/// Rise of a deflection at the apex above the plane's value on the edge, over the apex's height.
 double rise(const double edge1, const double edge2, const double at_apex, const Vec2& p, const Vec2& q,
             const Vec2& apex) {
   const Vec2 e = q - p, a = apex - p;
@@ -47,7 +47,7 @@ Vec3 jump(const Vec2& p, const Vec2& q, const Vec2& a, const Vec2& b) {
 SlopeWeights slope_weights(const WallTopology& wall, const std::vector<Vec3>& rest, int hinge) {
   const WallHinge& h = wall.hinges[std::size_t(hinge)];
   const auto at = [&](int node) -> const Vec3& { return rest[std::size_t(node)]; };
-  // Lengths in units of the edge; the middle of the edge is the origin. The first triangle lies on the left.
+  // Lengths in units of the edge; the middle of the edge is the origin. The first triangle is on the left.
   const double length = (at(h.node[1]) - at(h.node[0])).norm();
   const Vec2 p(-0.5 * length, 0), q(0.5 * length, 0);
   const Vec2 a = unfold(at(h.node[0]), at(h.node[1]), at(h.node[2]), p, q, 1) / length;
@@ -75,7 +75,7 @@ SlopeWeights slope_weights(const WallTopology& wall, const std::vector<Vec3>& re
       m.col(w.count++) = jump(from2, to2, flat[(k + 2) % 3], apex2);
     }
   }
-  // What the slope is relative to the first triangle: zero at the middle of the edge for each of the quadratics.
+  // The slope relative to the first triangle is zero at the middle of the edge for each of the quadratics.
   const Vec3 fp = quadratics(p1), fq = quadratics(q1), fa = quadratics(a);
   Vec3 wanted;
   for (int k = 0; k < 3; ++k) wanted[k] = rise(fp[k], fq[k], fa[k], p1, q1, a);

@@ -68,7 +68,7 @@ void StretchTriangles::couplings(std::vector<std::pair<int, int>>& pairs) const 
       for (int j = 0; j < i; ++j) pairs.emplace_back(t.node[i], t.node[j]);
 }
 
-// Nodes go into the order of the matrix, so no block is stored the other way round. A turned normal changes nothing.
+// Nodes are in the order of the matrix, so no block is stored transposed. The sign of the normal has no effect.
 void StretchTriangles::bind(const BlockMatrix& a, const std::vector<int>& free_of_node) {
   for (Triangle& t : triangles_) {
     int order[3] = {0, 1, 2};
@@ -183,7 +183,7 @@ double StretchTriangles::energy(const double* x) const {
   for (const Triangle& t : triangles_) {
     const StretchOf<double> s = stretch_at(x, t.node, t.b);
     const double strain = s.trace - 2 + t.pre[0] + t.pre[2];
-    // |e|^2 = tr C - 2 tr S + 2, written without its cancellation: |S - I|^2 with S = (C + det I) / tr S.
+    // |e|^2 = tr C - 2 tr S + 2, in a form without cancellation: |S - I|^2 with S = (C + det I) / tr S.
     const double e00 = (s.c00 + s.det) / s.trace - 1 + t.pre[0], e01 = s.c01 / s.trace + t.pre[1],
                  e11 = (s.c11 + s.det) / s.trace - 1 + t.pre[2];
     sum += t.mu * (e00 * e00 + 2 * e01 * e01 + e11 * e11) + 0.5 * t.lambda * strain * strain;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Stretch of a wall: linear plane-stress triangles in a frame that turns with each of them.
+// Stretch of a wall: linear plane-stress triangles, each in a frame that rotates with it.
 //
 //   F = sum x_i b_i^T (3 x 2) = R S,   e = S - I,   energy per area  t (mu |e|^2 + lambda/2 tr(e)^2)
 //   mu = E / (2 (1 + nu)),   lambda = E nu / (1 - nu^2)   (plane stress)
 //   G = 2 mu I + (lambda tr e - 2 mu) S^-1,   force on node i = -A t F G b_i
 //
 // Let g_i = R b_i, n the normal and p_i = n x g_i. Then the exact second derivative, divided by A t, is
-//   mu (g_i.g_j) (I - n n^T) + mu g_j g_i^T + lambda g_i g_j^T      Hooke's law in the turned frame
+//   mu (g_i.g_j) (I - n n^T) + mu g_j g_i^T + lambda g_i g_j^T      Hooke's law in the rotated frame
 //   + (mu + lambda) tr e / (2 + tr e) p_i p_j^T                      spin in the plane
 //   + (b_i^T G b_j) n n^T                                            tension against deflection
 // The last two terms are the geometric stiffness. The step's tangent keeps their part under tension. Negative
@@ -46,7 +46,7 @@ class StretchTriangles {
  private:
   struct Triangle {
     int node[3];        // in the order of the matrix once bound
-    int slot[6];        // (0,0) (1,0) (1,1) (2,0) (2,1) (2,2); -1 where a node is held
+    int slot[6];        // (0,0) (1,0) (1,1) (2,0) (2,1) (2,2); -1 if a node is fixed
     double b[3][2];     // rest gradients of the shape functions, 1/m
     double mu, lambda;  // times area and thickness, N m
     double pre[3];      // e0: 00, 01, 11

@@ -5,7 +5,7 @@
 
 namespace insula {
 
-/// A triangle compressed below this part of its area keeps the direction of its stress.
+/// A triangle that is compressed below this share of its area keeps the direction of its stress.
 inline constexpr double min_area = 1e-3;
 
 template <class V>
@@ -17,7 +17,7 @@ struct StretchOf {
 };
 
 /// u, v: the triangle's second and third corner from the first, m. b: rest gradients of all three, of which the last
-/// two are used, 1/m. Differences keep their digits far from the origin.
+/// two are used, 1/m. Differences stay accurate far from the origin.
 template <class V>
 static inline StretchOf<V> stretch_of(const V (&u)[3], const V (&v)[3], const V (&b)[3][2]) {
   StretchOf<V> s;

@@ -23,8 +23,8 @@ struct alignas(64) TriangleBatch {
 };
 
 struct WallKernels {
-  /// Angles of a batch's hinges, rad. Each is the multiple nearest to the value that `angle` holds. With `gradient` (16
-  /// values a hinge, each node's three padded to four) also their gradients, 1/m.
+  /// Angles of a batch's hinges, rad. Each is the multiple nearest to the value that `angle` holds. Also writes their
+  /// gradients, 1/m, if `gradient` is given (16 values for each hinge, three for each node padded to four).
   void (*hinges)(const HingeBatch& batch, const double* x, double* angle, double* gradient);
   /// force += -dE/dx of the triangles' stretch.
   void (*stretch)(const TriangleBatch& batch, const double* x, double* force);

@@ -18,7 +18,7 @@ struct WallTopology {
   std::vector<std::array<Side, 2>> sides;    ///< of each hinge
   std::vector<std::array<int, 3>> hinge_of;  ///< of each edge of a triangle; -1 on a free rim
 
-  /// Returns what is wrong with the wall; empty when it is a surface.
+  /// Returns the error text; empty if the wall is a surface.
   std::string build(const std::vector<Vec3>& nodes, const std::vector<std::array<int, 3>>& wall);
 };
 

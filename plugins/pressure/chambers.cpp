@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Parting a closed surface into chambers.
+// Division of a closed surface into chambers.
 #include "plugins/pressure/chambers.h"
 
 #include <algorithm>
@@ -34,7 +34,7 @@ void Chambers::assign(const ShellBody& body, const std::vector<std::vector<std::
     of[t] = chamber_of_region[std::size_t(region[t])];
     if (of[t] >= 0) front.push_back(int(t));
   }
-  // What belongs to none is taken ring by ring from its edges; the lower chamber first.
+  // Triangles without a chamber are assigned ring by ring from their edges. The lower chamber comes first.
   const auto edges = edges_of(triangles);
   while (!front.empty()) {
     std::map<int, int> next;
@@ -78,7 +78,7 @@ void Chambers::build(const ShellBody& body, const std::vector<std::vector<std::s
     c.area += 0.5 * (y - x).cross(z - x).norm();
   }
   add_borders(mesh.triangles, of, mesh.vertices.size());
-  // Node numbers become places in the chamber's own list.
+  // Node numbers become indices in the chamber's own list.
   for (Chamber& c : chambers_) {
     for (const auto& b : c.border) c.nodes.insert(c.nodes.end(), b.begin(), b.end());
     std::sort(c.nodes.begin(), c.nodes.end());
@@ -95,7 +95,7 @@ void Chambers::build(const ShellBody& body, const std::vector<std::vector<std::s
 
 void Chambers::add_borders(const std::vector<std::array<int, 3>>& triangles, const std::vector<int>& of,
                            std::size_t node_count) {
-  // Borders that touch are one: a single apex closes every chamber there, also where three meet.
+  // Borders that touch are merged. A single apex then closes every chamber there, even if three meet.
   std::vector<int> parent(node_count);
   std::iota(parent.begin(), parent.end(), 0);
   const auto root = [&](int v) {

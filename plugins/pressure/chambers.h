@@ -21,13 +21,13 @@ class Chambers {
 
   int count() const { return int(chambers_.size()); }
   const std::string& name(int c) const { return chambers_[std::size_t(c)].name; }
-  int find(std::string_view name) const;                                       ///< -1 when there is none
+  int find(std::string_view name) const;                                       ///< -1 if there is none
   int of_region(int region) const { return of_region_[std::size_t(region)]; }  ///< the chamber of most of its triangles
   double area(int c) const { return chambers_[std::size_t(c)].area; }          ///< of its wall and caps at rest, m2
   const std::vector<int>& nodes(int c) const { return chambers_[std::size_t(c)].nodes; }
 
   double volume(int c, const VecX& q) const;  ///< m3
-  /// d volume / d node, m2, one a node of nodes(c). `out` is resized.
+  /// d volume / d node, m2, one for each node of nodes(c). `out` is resized.
   void gradient(int c, const VecX& q, std::vector<Vec3>& out) const;
 
  private:
@@ -37,7 +37,7 @@ class Chambers {
     std::vector<int> nodes;                     ///< ascending
     std::vector<std::array<int, 3>> triangles;  ///< indices into `nodes`
     struct Cone {
-      int a, b, border;  ///< edge as the cone's outward triangle (apex, a, b) has it
+      int a, b, border;  ///< edge as in the cone's outward triangle (apex, a, b)
     };
     std::vector<Cone> cones;
     std::vector<std::vector<int>> border;  ///< of each border: its nodes, indices into `nodes`
@@ -48,7 +48,7 @@ class Chambers {
 
   std::vector<Chamber> chambers_;
   std::vector<int> of_region_;
-  Vec3 origin_ = Vec3::Zero();  ///< near the vessel: keeps the digits of the volumes
+  Vec3 origin_ = Vec3::Zero();  ///< near the vessel, for the accuracy of the volumes
 };
 
 }  // namespace insula

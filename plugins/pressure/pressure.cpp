@@ -87,7 +87,7 @@ void BloodPressure::reset() {
   fill();
 }
 
-/// Puts the pressure of the last step into the coming free motion.
+/// Adds the pressure of the last step to the coming free motion.
 void BloodPressure::fill() {
   on->filling.setZero();
   for (int c = 0; c < chambers_.count(); ++c) {
@@ -151,7 +151,7 @@ void BloodPressure::build(const StepContext& context, ConstraintBuilder& builder
       violation = (violation - context.h * r.conductance * r.feed) / area_;
       block.compliance = context.h * r.conductance / (area_ * area_);
     } else {
-      if (!yields_[std::size_t(k)]) continue;  // pushes on nothing that could move
+      if (!yields_[std::size_t(k)]) continue;  // has no node that can move
       violation = volume_[std::size_t(k)] / area_;
       block.lower = block.upper = (arterial(context.h) - pressure(k)) * area_;
     }
@@ -211,12 +211,12 @@ void BloodPressure::finish_feed(const StepContext& context, const ConstraintSolu
       wall += mesh_.share(k, j) * at(volume_, j);
       node += mesh_.share(k, j) * at(at_node_, j);
     }
-    at(volume_, k) = wall;  // the step's volumes are done with: pressures from here on
+    at(volume_, k) = wall;  // the volumes of the step are no longer needed; pressures from here on
     at(at_node_, k) = node;
   }
   for (int k = n - 1; k >= 0; --k)
     for (int j = k + 1; j < n; ++j) at(flow_, j) -= mesh_.share(k, j) * at(flow_, k);
-  // How chambers yield: A^2 L W L^T, the diagonal.
+  // Compliance of the chambers: A^2 L W L^T, diagonal.
   const auto w = [&](int i, int j) -> double& { return yielding_[std::size_t(i * n + j)]; };
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j)
@@ -249,7 +249,7 @@ void BloodPressure::append_state(std::vector<double>& out) const {
   out.insert(out.end(), fluid_.begin(), fluid_.end());
 }
 
-// The pressure that is added in the step does work on the volume; a feed stores what the chambers hold too much.
+// The change of pressure in the step does work on the volume. A feed stores the energy of the chambers' excess volume.
 StatedLaw BloodPressure::law() const {
   const int n = chambers_.count();
   double energy = 0;

@@ -13,16 +13,16 @@
 
 namespace insula {
 
-/// What feeds the chambers when the pressure is not prescribed: a network of vessels.
+/// Source of the chambers' blood when the pressure is not prescribed: a network of vessels.
 class ChamberFeed {
  public:
   virtual ~ChamberFeed() = default;
-  /// Pressure of a chamber at which the shape was imaged, Pa.
+  /// Pressure of a chamber in the imaged shape, Pa.
   virtual double reference(int chamber) const = 0;
-  /// The network of this step as the chambers see it: one node each, everything else eliminated. May be called
+  /// The network of this step reduced to one node for each chamber; all other nodes are eliminated. May be called
   /// repeatedly.
   virtual void reduce(const StepContext& context, StarMesh& chambers) = 0;
-  /// After the step: pressure at each chamber's node of the network (Pa), and how much the chamber yields (m3/Pa).
+  /// After the step: pressure at each chamber's node of the network (Pa), and the compliance of the chamber (m3/Pa).
   virtual void settle(const StepContext& context, const double* pressure, const double* yielding) = 0;
 };
 
@@ -95,26 +95,26 @@ class BloodPressure final : public Constraint, public StatesLaw {
                                            .display = "mmHg",
                                            .digits = 0}};
 
-  /// Makes the chambers, if they are not made yet; false when something is wrong with them.
+  /// Creates the chambers if they do not exist yet. False if they have an error.
   bool ready(PrepareContext& context);
-  /// Before the first step: the network that feeds the chambers.
+  /// Called before the first step with the network that feeds the chambers.
   void set_feed(ChamberFeed* feed);
   bool fed() const { return feed_ != nullptr; }
 
   const Chambers& chambers() const { return chambers_; }
   double wave_mean() const {
     return diastolic() + (systolic() - diastolic()) * wave_.mean();
-  }                                                                                       ///< of a beat as declared, Pa
+  }  ///< of a beat with the declared parameters, Pa
   double imaged_pressure() const { return imaged_at() > 0 ? imaged_at() : wave_mean(); }  ///< of the arteries, Pa
   double arterial(double h) const;         ///< pressure of the arteries at the end of the coming step, Pa
   double phase() const { return phase_; }  ///< of the heart, 0..1, 0 the start of systole
-  double beat_share(double h) const { return h * rate_; }                         ///< share of a beat that a step lasts
-  double pressure(int chamber) const { return pressure_[std::size_t(chamber)]; }  ///< on its wall in the last step, Pa
+  double beat_share(double h) const { return h * rate_; }                          ///< number of beats in a step
+  double pressure(int chamber) const { return pressure_[std::size_t(chamber)]; }   ///< on its wall in the last step, Pa
   double volume(int chamber) const { return chambers_.volume(chamber, on->q()); }  ///< now, m3
   double rest_volume(int chamber) const { return rest_volume_[std::size_t(chamber)]; }
   double fluid(int chamber) const {
     return fluid_[std::size_t(chamber)];
-  }  ///< volume of blood by the network's account, m3
+  }  ///< volume of blood according to the network, m3
 
   void prepare(PrepareContext& context) override;
   void connect(PrepareContext& context, Simulation& simulation) override;
@@ -144,7 +144,7 @@ class BloodPressure final : public Constraint, public StatesLaw {
   bool connected_ = false, good_ = false, prestressed_ = false;
   double area_ = 1;
   std::vector<double> rest_volume_;
-  std::vector<char> yields_;  ///< has a node that is not held
+  std::vector<char> yields_;  ///< has a node that is not fixed
 
   // State.
   double phase_ = 0, systolic_now_ = 0, diastolic_now_ = 0, rate_ = 0;
@@ -155,12 +155,12 @@ class BloodPressure final : public Constraint, public StatesLaw {
   double h_ = 0;  ///< its length, s
   struct Row {
     int row = -1;
-    double conductance = 0;  ///< that its law uses, m3/(s Pa)
-    double feed = 0;         ///< pressure over that of the last step that would let nothing flow, Pa
+    double conductance = 0;  ///< conductance in its law, m3/(s Pa)
+    double feed = 0;         ///< pressure above that of the last step at which there is no flow, Pa
   };
   std::vector<Row> rows_;
   StarMesh mesh_;
-  std::vector<double> mix_;  ///< mix_[k n + j]: part of chamber j in row k
+  std::vector<double> mix_;  ///< mix_[k n + j]: share of chamber j in row k
   std::vector<std::vector<Vec3>> gradient_;
   std::vector<Vec3> row_gradient_;
   std::vector<int> row_nodes_;

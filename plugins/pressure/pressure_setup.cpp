@@ -24,7 +24,7 @@ std::vector<std::string> words(std::string_view text) {
 bool BloodPressure::read_groups(PrepareContext& context, std::vector<std::vector<std::string>>& groups) const {
   const WallModel& model = on->model();
   if (regions().find_first_not_of(" \t\r\n") == std::string::npos) {
-    // A region with a centreline is a stretch of vessel (or the sac); what has none belongs to its neighbours.
+    // A region with a centreline is a stretch of vessel, or the sac. Other regions belong to their neighbours.
     for (const std::string& r : model.regions)
       if (std::any_of(model.centrelines.begin(), model.centrelines.end(), [&](const auto& c) { return c.region == r; }))
         groups.push_back({r});
@@ -117,8 +117,8 @@ bool BloodPressure::make_chambers(PrepareContext& context) {
   return true;
 }
 
-/// A shell without a wall that could be tensed, on springs alone, keeps the image's pressure out of its account. Where
-/// a network feeds the chambers, each has a reference of its own: what a second call adds is the difference alone.
+/// A shell without a wall that can be prestressed, on springs alone, does not count the pressure of imaging. If a
+/// network feeds the chambers, each has a reference of its own, and a second call adds only the difference.
 void BloodPressure::prestress_wall(PrepareContext* context) {
   if (!prestress()) return;
   constexpr double good = 1e-8;
@@ -130,7 +130,7 @@ void BloodPressure::prestress_wall(PrepareContext* context) {
       load.segment<3>(3 * chambers_.nodes(c)[i]) += reference(c) * gradient_[std::size_t(c)][i];
   }
   const double left = on->prestress(load);
-  prestressed_ = prestressed_ || left < good;  // what a second call leaves is a part of a small difference
+  prestressed_ = prestressed_ || left < good;  // the imbalance of a second call is part of a small difference
   if (!prestressed_ && left < 1 && context)
     error(*context, prestress,
           "no tension of " + in_quotes(on->id) +

@@ -43,7 +43,7 @@ struct Sac : test::TestScene {
   }
 };
 
-/// A sac on a stalk: a ball drawn out below, curved both ways there.
+/// A sac on a stalk: a ball drawn out below, where it is curved in both directions.
 TriMesh pear() {
   TriMesh m = test::ball(Vec3::Zero(), radius, 3);
   for (Vec3& v : m.vertices)

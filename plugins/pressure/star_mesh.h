@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A network of conductances, solved by star-mesh transformation. Node k with links g_kj is replaced by links g_ki g_kj
 // / S_k between its neighbours, with S_k the sum of all its links. This is Gaussian elimination without a subtraction.
-// Conductances may thus span any number of orders of magnitude, and a sealed sac keeps its digits beside an open
-// artery.
-// Sources: Rosen 1924 (star-mesh); Grassmann, Taksar, Heyman 1985 (elimination without cancellation).
+// Conductances may therefore differ by any number of orders of magnitude, and a sealed sac stays accurate beside an
+// open artery. Sources: Rosen 1924 (star-mesh); Grassmann, Taksar, Heyman 1985 (elimination without cancellation).
 #pragma once
 #include <vector>
 
@@ -20,13 +19,15 @@ class StarMesh {
 
   double link(int i, int j) const { return g_[std::size_t(i * n_ + j)]; }
   double ground(int i) const { return ground_[std::size_t(i)]; }
-  double current(int i) const { return current_[std::size_t(i)]; }  ///< source of a node, with that of eliminated ones
+  double current(int i) const {
+    return current_[std::size_t(i)];
+  }  ///< source of a node, with the sources of eliminated ones
 
   /// Nodes are eliminated in ascending order. Afterwards link(k, j), j > k, are the links of node k at its elimination.
   void eliminate(int k);
   double pivot(int k) const { return pivot_[std::size_t(k)]; }  ///< sum of all links of node k when it was eliminated
   double share(int k, int j) const { return pivot(k) > 0 ? link(k, j) / pivot(k) : 0; }
-  /// The pressure of an eliminated node from those of the later ones; `floating` when nothing is linked to it.
+  /// The pressure of an eliminated node from those of the later ones, or `floating` if it has no links.
   double pressure(int k, const double* p, double floating) const;
 
  private:

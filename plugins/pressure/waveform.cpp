@@ -32,7 +32,7 @@ double series(double phase, int order) {
   return sum;
 }
 
-// Phase of the extreme: the best of a grid, refined by Newton's method on the derivative.
+// Phase of the extreme value: the best of a grid, refined by Newton's method on the derivative.
 double extreme(double sign) {
   constexpr int n = 720;
   int best = 0;

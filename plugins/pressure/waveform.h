@@ -4,12 +4,12 @@
 
 namespace insula {
 
-/// Six harmonics, scaled so that the minimum is 0 (at phase 0, the start of systole) and the maximum 1.
+/// Six harmonics, scaled so that the minimum is 0 (at phase 0, the start of systole) and the maximum is 1.
 class PulseWave {
  public:
   PulseWave();
   double value(double phase) const;      ///< 0..1; periodic with period 1
-  double mean() const { return mean_; }  ///< over a beat, exactly: the constant term
+  double mean() const { return mean_; }  ///< mean of a beat: exactly the constant term
   double peak() const { return peak_; }  ///< phase of the greatest value
 
  private:

@@ -100,7 +100,7 @@ class PronySolid final : public ForceModel {
     /// Sum of a vector at the nodes times the gradients: F of positions, dF/dt of velocities.
     Mat3 gradient(const double* x) const;
     void add_force(const Mat3& f, const Mat3& s, double* force) const;
-    /// Adds the matrix of Hooke's law at F to the blocks, and that of a stress in a body that turns.
+    /// Adds the matrix of Hooke's law at F to the blocks, and the geometric stiffness of a stress.
     void add_matrix(const Mat3& f, const Moduli& law, const Mat3& stress, BlockMatrix& a) const;
   };
   Moduli moduli(double young_modulus) const {
@@ -185,7 +185,7 @@ void PronySolid::linearise(const double* x, double* force, BlockMatrix* stiffnes
     Mat3 s = law.stress(green_strain(f));
     e.add_force(f, s, force);
     if (!stiffness) continue;
-    if (which == Tangent::system) {  // pressure in a body that turns would make the matrix indefinite
+    if (which == Tangent::system) {  // compressive stress would make the matrix indefinite
       const Eigen::SelfAdjointEigenSolver<Mat3> parts(s);
       s = parts.eigenvectors() * parts.eigenvalues().cwiseMax(0).asDiagonal() * parts.eigenvectors().transpose();
     }

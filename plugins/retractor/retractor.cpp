@@ -36,7 +36,7 @@ class Retractor final : public Instrument {
   Pose arm_pose(double time) const override {
     Pose p = home_pose();
     const double left = std::clamp((-rest() - time) / approach_time(), 0.0, 1.0);
-    // Gently at both ends.
+    // Smooth at both ends.
     p.p += left * left * (3 - 2 * left) * approach();
     return p;
   }

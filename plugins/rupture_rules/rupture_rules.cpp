@@ -34,7 +34,7 @@ namespace {
 
 bool released(const ClipState& c) { return !c.on_tray && !c.holder; }
 
-/// What these rules look at: the clips and bleedings of the scene, as they are now.
+/// Input of these rules: the present clips and bleedings of the scene.
 class Patient {
  public:
   Patient() = default;
@@ -62,7 +62,7 @@ class Patient {
   Bleedings bleedings_;
 };
 
-/// The parameter by which rules tell a bleeding from none.
+/// The flow below which rules count no bleeding.
 struct StoppedRate : Param<FlowRate> {
   explicit StoppedRate(ParamSet* owner)
       : Param(owner, {.name = "rate",
@@ -72,7 +72,7 @@ struct StoppedRate : Param<FlowRate> {
                       .doc = "bleeding that counts as none"}) {}
 };
 
-/// Whether blood runs, over the beats.
+/// Whether blood flows, averaged over beats.
 class Running {
  public:
   bool observe(double h, double now, double rate) {

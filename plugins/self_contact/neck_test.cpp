@@ -39,7 +39,7 @@ std::set<std::uint64_t> ids(const Simulation& s) {
 }
 
 TEST(SelfContactNeck, RowsOfAClippedNeckKeepTheirNamesAtRest) {
-  // Neck of vessel.json: the clip comes within its plane, along what is left there of the way of approach.
+  // Neck of vessel.json: the clip comes within its plane, along the component of the approach in that plane.
   const Vec3 centre(48.2289, 15.2891, -8.7169), normal = Vec3(0.682702, 0.160636, 0.712821).normalized();
   const Vec3 shaft = Vec3(0.678615, 0.222318, -0.700041).normalized(), flat = normal.cross(shaft).normalized();
   const Vec3 tip = centre + 0.4 * normal - 2.6 * shaft;

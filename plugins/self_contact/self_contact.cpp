@@ -74,7 +74,7 @@ void SelfContact::detect(const StepContext&) {
   selection_.select(contacts_, choice, next_key_);
 }
 
-// In build(), when every <contact> has found its own.
+// Called in build(), when every <contact> has found its contacts.
 void SelfContact::find_supports() {
   supports_.clear();
   if (sides.is("outer")) return;
@@ -83,7 +83,7 @@ void SelfContact::find_supports() {
     for (const Contact::Pair& p : c->pairs()) {
       if (!p.tool_a || !p.b || p.b != &*on) continue;
       const double far = thickness() + alarm() + 2 * c->max_step_displacement();
-      // By key, not by gap: what supports whom must not change while nothing moves.
+      // Ordered by key instead of gap, so that supports do not change while nothing moves.
       pressed_.clear();
       for (const Proximity& x : p.contacts) pressed_.emplace_back(x.key, &x);
       std::sort(pressed_.begin(), pressed_.end());
@@ -92,7 +92,7 @@ void SelfContact::find_supports() {
         if (int(supports_.size()) >= max_supports()) return;
         const Opposite o = collider_->opposite(on->collision(), x.triangle, x.bary, -x.normal, far);
         if (o.triangle < 0) continue;
-        // Two jaws name the same pair from both sides.
+        // Two jaws give the same pair from both sides.
         const Vec3 here = on->collision().point(x.triangle, x.bary), there = on->collision().point(o.triangle, o.bary);
         bool known = false;
         for (const Support& s : supports_) {

@@ -83,12 +83,12 @@ class SelfContact final : public Constraint, public StatesLaw {
   const std::vector<Vec3>& forces() const { return forces_; }  ///< along (normal, tangent, other tangent), N
 
  private:
-  /// Largest correction of overlapping walls in a step, m. Yielding walls separate by their own force, which is bounded
-  /// already.
+  /// Largest correction of overlapping walls in a step, m. Walls with a contact stiffness separate by a force that is
+  /// already bounded.
   double max_correction() const { return (contact_stiffness() > 0 ? 1.0 : 0.3) * thickness(); }
   void add_row(ConstraintBuilder& builder, int row, const Proximity& x, const Vec3& d) const;
 
-  /// Two points of the wall, one behind the other along the direction in which a tool presses.
+  /// Two points of the wall that lie behind each other in the direction in which a tool presses.
   struct Support {
     int triangle, behind;
     Vec3 bary, behind_bary, normal;
@@ -101,7 +101,7 @@ class SelfContact final : public Constraint, public StatesLaw {
 
   std::vector<const Contact*> touches_;
   std::vector<Support> supports_;
-  std::vector<std::pair<std::uint64_t, const Proximity*>> pressed_;  ///< a tool's contacts by key
+  std::vector<std::pair<std::uint64_t, const Proximity*>> pressed_;  ///< contacts of a tool, by key
   Workers* workers_ = nullptr;
   std::unique_ptr<SelfCollider> collider_;
   ContactSelection selection_;

@@ -60,7 +60,7 @@ std::unique_ptr<Simulation> trough(test::SceneFolder& folder, bool two_walls, co
   return std::move(loaded.simulation);
 }
 
-// Across the gap, but not down in the corner, where the way along the floor is hardly longer than the strand.
+// Across the gap, but not down in the corner, where the path along the floor is hardly longer than the strand.
 TEST(StrandSprings, OneSurfaceIsTiedToItselfAcrossAGap) {
   test::SceneFolder folder;
   const auto s = trough(folder, true, "");

@@ -16,7 +16,7 @@ NearestVertices::NearestVertices(const std::vector<Vec3>& vertices, double cell)
     low_ = low_.cwiseMin(v);
     high = high.cwiseMax(v);
   }
-  // A grid finer than a million cubes helps nobody.
+  // A grid of more than a million cubes has no advantage.
   cell_ = std::max(cell, (high - low_).maxCoeff() / 100);
   for (int k = 0; k < 3; ++k) n_[k] = int((high[k] - low_[k]) / cell_) + 1;
   std::vector<int> of(vertices.size());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Small geometry for strands: vertices within reach, paths along a surface and normals.
+// Geometry for strands: vertices within reach, paths along a surface, and normals.
 #pragma once
 #include <vector>
 
@@ -11,7 +11,7 @@ namespace insula {
 class NearestVertices {
  public:
   NearestVertices(const std::vector<Vec3>& vertices, double cell);
-  /// Indices of the vertices within r of p, ascending; r at most the cell size.
+  /// Indices of the vertices within r of p, ascending. r must be at most the cell size.
   void within(const Vec3& p, double r, std::vector<int>& out) const;
 
  private:
@@ -26,14 +26,14 @@ class NearestVertices {
 class SurfacePaths {
  public:
   explicit SurfacePaths(const TriMesh& mesh);
-  /// Whether a path of at most `limit`, m, leads from a to b. The paths of the last a are kept.
+  /// Whether there is a path of at most `limit`, m, from a to b. The paths of the last a are kept.
   bool connected(int a, int b, double limit);
 
  private:
   void walk(int a, double limit);
   const TriMesh& mesh_;
   std::vector<int> start_, neighbour_;
-  std::vector<double> length_;  ///< from `at_`, infinite where farther than `limit_`
+  std::vector<double> length_;  ///< from `at_`, infinite if farther than `limit_`
   std::vector<int> touched_;
   int at_ = -1;
   double limit_ = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sets of arachnoid strands as rules and tools see them: a reference that this family of plugins shares. Pictures,
-// reports and the general rules need none of it; they read channels and drawables.
+// State of arachnoid strands for rules and tools of this family of plugins. The page, reports and general rules do not
+// need it. They read channels and drawables.
 #pragma once
 #include <vector>
 
@@ -19,7 +19,7 @@ class StrandSet {
  public:
   virtual ~StrandSet() = default;
   virtual int strand_count() const = 0;
-  virtual StrandState strand(int i) const = 0;  ///< as it is now
+  virtual StrandState strand(int i) const = 0;  ///< present state
 };
 
 /// All sets of a scene in document order.
@@ -27,7 +27,7 @@ class Strands {
  public:
   Strands() = default;
   explicit Strands(const Simulation& simulation) : sets_(simulation.scene().all<StrandSet>()) {}
-  /// The strands of all sets as they are now; allocates while their number grows.
+  /// The present strands of all sets. Allocates while their number grows.
   const std::vector<StrandState>& now() {
     states_.clear();
     for (const StrandSet* set : sets_)

@@ -66,7 +66,7 @@ void StrandSprings::generate(PrepareContext& context) {
   constexpr double detour = 3;
   SurfacePaths paths(mesh);
   std::vector<int> found;
-  // Partners a strand from vertex v may have: facing, in reach, not much farther than the nearest.
+  // Possible partners for a strand from vertex v: facing, in reach, not much farther than the nearest.
   auto partners = [&](int v) {
     const Vec3& p = mesh.vertices[std::size_t(v)];
     nearest.within(p, max_length(), found);
@@ -108,7 +108,7 @@ void StrandSprings::generate(PrepareContext& context) {
   const int wanted = int(std::lround(density() * area));
   Random random{std::uint64_t(seed())};
   std::vector<std::pair<int, int>> pairs;
-  for (int i = 0; i < wanted; ++i) {  // systematic sampling over the area: even, yet not regular
+  for (int i = 0; i < wanted; ++i) {  // systematic sampling over the area: even, but not regular
     const double at = (i + random.uniform()) / wanted * area;
     const std::size_t t = std::size_t(std::upper_bound(until.begin(), until.end(), at) - until.begin());
     const int v = mesh.triangles[std::size_t(triangle[std::min(t, triangle.size() - 1)])][random.below(3)];
@@ -157,7 +157,7 @@ void StrandSprings::detect(const StepContext&) {
         if (distance > best) continue;
         best = distance;
         s.blade = blade.tool;
-        s.blade_point = blade.tool->point(on_strand);  // the same place as the strand's side: no net moment
+        s.blade_point = blade.tool->point(on_strand);  // the same point as on the strand: no net moment
         s.along = u;
       }
     }
@@ -168,7 +168,7 @@ void StrandSprings::detect(const StepContext&) {
                   s.along * s.b.body->unforced_displacement(s.b);
     motion -= motion.dot(axis) * axis;
     if (motion.norm() > 1e-9) s.push = motion.normalized();
-    else if (s.push.norm() < 0.5) s.blade = nullptr;  // never moved: nothing to resist
+    else if (s.push.norm() < 0.5) s.blade = nullptr;  // without motion there is no resistance
   }
 }
 
@@ -184,8 +184,8 @@ void StrandSprings::build(const StepContext&, ConstraintBuilder& builder) {
       const Vec3 u = d / length;
       const double longer =
           std::max(0.0, u.dot(s.a.body->expected_displacement(s.a) - s.b.body->expected_displacement(s.b)));
-      // A strand that is slack by more than half a millimetre, and will be if all goes on, cannot become taut within a
-      // step's correction.
+      // A strand that is slack by more than half a millimetre, now and after the expected motion, cannot become taut
+      // within a step's correction.
       if (load_direction.is("both") || length + longer > s.rest - 0.0005) {
         Block block;
         block.id = row_id(*this, key);
@@ -237,7 +237,7 @@ void StrandSprings::finish(const StepContext& context, const ConstraintSolution&
     } else {
       s.push.setZero();
     }
-    // Under a blade a taut strand is cut: pulling it tight first is how it is done.
+    // A taut strand under a blade counts as cut, since surgeons tighten a strand before they cut it.
     if (strength() > 0 && s.tension > strength() * (1 - s.damage)) part(context, s, s.blade ? cut : torn, s.tension);
   }
 }

@@ -132,14 +132,14 @@ class StrandSprings final : public Constraint, public StrandSet, public StatesLa
     bool severed = false;
     double tension = 0;  ///< N
     int row = -1;
-    // The blade that touches it in this step.
+    // The blade that touches the strand in this step.
     int blade_row = -1;
     Instrument* blade = nullptr;
     MaterialPoint blade_point;
     double along = 0;  ///< 0 at a, 1 at b
     Vec3 push = Vec3::Zero();
   };
-  /// Cutting edges in the scene frame and a ball about them.
+  /// Cutting edges in the scene frame, and a ball around them.
   struct Blade {
     Instrument* tool = nullptr;
     bool cutting = false;

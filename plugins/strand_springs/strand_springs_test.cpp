@@ -162,8 +162,8 @@ TEST(StrandSprings, ResistsWithCutForceAndPartsAfterCutLength) {
   ASSERT_TRUE(t.strands && t.knife);
   double travel = 0;
   int severed_at = -1;
-  test::Figure figure("cut", "A blade drawn over a strand: 45 mN at most, until it parts", "the hand's way, mm",
-                      "force on the hand, mN");
+  test::Figure figure("cut", "A blade drawn over a strand: 45 mN at most, until it parts",
+                      "displacement of the hand, mm", "force on the hand, mN");
   for (int n = 1; n <= 10; ++n) {
     const double before = t.knife->pose().p.x(), damage = 1 - t.strands->integrity(0);
     t.move(0.00045 - n * 1e-4);

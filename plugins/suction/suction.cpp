@@ -89,7 +89,7 @@ class Suction final : public Instrument, public StatesLaw {
     }
   }
 
-  // Rigid holds that give way at their limit: limit times displacement.
+  // Rigid holds that slip at their limit: limit times displacement.
   StatedLaw law() const override {
     if (!held_.body) return StatedLaw::potential(0);
     const Vec3 d = (pose().q.conjugate() * (held_.body->position(held_) - pose().p)).cwiseAbs();

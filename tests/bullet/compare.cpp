@@ -61,7 +61,7 @@ void compare(const char* name, int kind) {
   if (sum < 0) fmt::print("never\n");
 }
 
-/// Cores that meet: how far EPA's way out is from the line between the middles, which tool against tool uses.
+/// Cores that meet: angle between EPA's direction out and the line between the middles, which tool against tool uses.
 void compare_depths() {
   Random random(9);
   int meeting = 0;

@@ -2,9 +2,9 @@
 // Bullet as the independent judge of our distances: 100,000 random pairs, a sphere, a capsule or a rounded hull against
 // a triangle or a hull.
 //
-// Each answer is also held to the conditions of optimality, which need no second program: its points are of the two
-// shapes, so that the true distance is no greater; and a plane across their line parts the shapes by as much, so that
-// it is no smaller. Bullet's GJK stops too early on about one pair in 2,500 (up to a quarter of a millimetre off). Its
+// Each answer must also satisfy the conditions of optimality, which need no second program. Its points belong to the
+// two shapes, so the true distance is not greater. A plane across their line separates the shapes by as much, so it is
+// not smaller. Bullet's GJK stops too early on about one pair in 2,500 (up to a quarter of a millimetre off). Its
 // answer then breaks those conditions and it is asked again from other starts.
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Random convex pairs as collision meets them, and Bullet's answer for them.
+// Random convex pairs as in collision detection, and Bullet's answer for them.
 #pragma once
 #include <BulletCollision/CollisionShapes/btConvexHullShape.h>
 #include <BulletCollision/NarrowPhaseCollision/btGjkEpa2.h>
@@ -29,7 +29,7 @@ inline Vec3 any(Random& random, double size) {
   return size * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
 }
 
-/// Points about a middle: a box of random extents, flat ones and long ones among them.
+/// Points around a middle, in a box of random extents, which may be flat or long.
 inline std::vector<Vec3> cloud(Random& random, int count, double size, const Vec3& middle) {
   const Vec3 extent = size * Vec3(random.uniform(0.05, 1), random.uniform(0.05, 1), random.uniform(0.05, 1));
   const Quat turn = from_rotation_vector(any(random, 3));
@@ -80,7 +80,7 @@ inline Answer distance(const btConvexHullShape& a, const btConvexHullShape& b, c
   return out;
 }
 
-/// Depth by EPA and the direction that parts them, from b to a; false where EPA gives up.
+/// Depth by EPA and the direction of separation, from b to a. False if EPA fails.
 inline bool depth(const btConvexHullShape& a, const btConvexHullShape& b, const btVector3& guess, double& out,
                   Vec3& direction) {
   const btTransform here = btTransform::getIdentity();
@@ -91,8 +91,8 @@ inline bool depth(const btConvexHullShape& a, const btConvexHullShape& b, const 
   return true;
 }
 
-/// How far the pair is apart along a unit direction from b to a, m: no pair is closer than that along any, and one
-/// along the best.
+/// Separation of the pair along a unit direction from b to a, m. It is a lower bound of the distance, which the best
+/// direction attains.
 inline double apart(const Pair& p, const Vec3& n) {
   double low = n.dot(p.a[0]), high = n.dot(p.b[0]);
   for (const Vec3& x : p.a) low = std::min(low, n.dot(x));

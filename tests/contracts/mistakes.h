@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Plugins that are right but for one mistake, by name.
+// Plugins with exactly one mistake each, by name.
 #pragma once
 #include "core/registry/registry.h"
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two scripted hands for the tests of reproducibility: slow loops about home with the button pressed now and then.
+// Two scripted hands for the tests of reproducibility: slow loops around home, with the button pressed at times.
 #pragma once
 #include "core/sim/simulation.h"
 
 namespace insula {
 
-/// Hands for the coming step; polynomials of the step number alone, so no library function has a say in them.
+/// Hands for the coming step; polynomials of the step number, so that no library function has an influence.
 inline void script_hands(Simulation& simulation) {
   const int n = int(simulation.steps() % 120);
   const double t = n / 120.0, wave = 16 * t * t * (1 - t) * (1 - t), sway = 20 * t * (t - 0.5) * (1 - t);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A table with stand-ins of devices on it, a folder for calibrations, and somebody who calls a device as the servo
-// does.
+// A bench with stand-ins of devices, a folder for calibrations, and a caller that uses a device as the servo does.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -17,7 +16,7 @@ namespace insula::testing {
 
 using namespace std::chrono_literals;
 
-/// Patience of every wait: far more than anything takes, so that only what never comes fails.
+/// Limit of every wait. It is far longer than any normal delay.
 template <class Condition>
 bool wait_for(Condition condition, std::chrono::milliseconds patience = 20s) {
   const auto end = std::chrono::steady_clock::now() + patience;
@@ -33,7 +32,7 @@ class DeviceBench : public ::testing::Test {
  protected:
   DeviceBench() {
     std::filesystem::create_directories(folder);
-    // The stubs of this process map the file once: every test works on the same one.
+    // The stubs of this process map the file once, so every test works on the same one.
     static StubBoard* const mapped = [this] {
       const std::string file =
           (std::filesystem::temp_directory_path() / ("insula_board_" + std::to_string(::getpid()))).string();

@@ -72,7 +72,8 @@ TEST_F(DeviceTool, ShowsADeviceLive) {
 
 TEST_F(DeviceTool, CalibratesByFourPlaces) {
   std::filesystem::create_directories(calibration_folder());
-  std::ofstream(calibration_file("touch:Left Device")) << "broken";  // what is to be replaced does not stand in the way
+  std::ofstream(calibration_file("touch:Left Device"))
+      << "broken";  // an old calibration that is invalid does not prevent a new one
   int status = -1;
   std::thread tool([&] {
     try {
@@ -120,11 +121,11 @@ TEST_F(DeviceTool, WaysThatCannotBeAreRefused) {
   EXPECT_THROW(fit({-0.05, 0, 0}, {0, 0.05, 0}, {0, 0, 0.05}), InputError);  // left taken for right: a mirror
   EXPECT_THROW(fit({0.05, 0, 0}, {std::nan(""), 0, 0}, {0, 0, 0.05}), InputError);
   testing::Random random(3);
-  for (int k = 0; k < 200; ++k) {  // any way a device can stand, moved by a hand that is no ruler
+  for (int k = 0; k < 200; ++k) {  // any orientation of a device, moved by an inexact hand
     const Mat3 turn = from_rotation_vector(random.vector(2)).toRotationMatrix();
-    Mat3 ways = 0.05 * turn;  // columns: the person's axes in the device's frame
-    for (int i = 0; i < 3; ++i) ways.col(i) += random.vector(0.008);
-    const DeviceCalibration c = fit(ways.col(0), ways.col(1), ways.col(2));
+    Mat3 strokes = 0.05 * turn;  // columns: the person's axes in the device's frame
+    for (int i = 0; i < 3; ++i) strokes.col(i) += random.vector(0.008);
+    const DeviceCalibration c = fit(strokes.col(0), strokes.col(1), strokes.col(2));
     ASSERT_EQ(calibration_error(c), "");
     ASSERT_LT(rotation_vector(Quat(c.axes * turn)).norm(), 0.25);
   }

@@ -87,7 +87,7 @@ TEST(HaplyMessages, AMillionDamagedOnesGiveNothingThatCannotBe) {
     }
     for (const HaplyGrip& grip : s.grips) ASSERT_TRUE(!grip.q || std::abs(grip.q->norm() - 1) < 1e-9) << text;
   }
-  EXPECT_GT(read, 10'000);  // enough of them were damaged in a way that still reads
+  EXPECT_GT(read, 10'000);  // enough of the damaged messages are still readable
 }
 
 }  // namespace

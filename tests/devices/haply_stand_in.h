@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A stand-in for the Haply Inverse Service: an inventory to whoever connects, then one state for each message.
+// A stand-in for the Haply Inverse Service: it sends an inventory to each client, then one state for each message.
 #pragma once
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
@@ -45,12 +45,12 @@ class HaplyStandIn {
     std::lock_guard lock(mutex_);
     change(arms_[i]);
   }
-  /// Answers with this instead of states; empty: states again.
+  /// Answers with this text in place of states; empty: with states again.
   void answer(const std::string& text) {
     std::lock_guard lock(mutex_);
     answer_ = text;
   }
-  /// Messages that were no command as the service knows them.
+  /// Number of messages that were not a command of the service.
   long misunderstood() const { return misunderstood_; }
   std::string introduced_as() const {
     std::lock_guard lock(mutex_);

@@ -51,7 +51,7 @@ TEST_F(SpaceMouse, StaysInReachAndWaitsWhereItIsHeldBack) {
   device.place(Pose(), Vec3::Zero(), Vec3::Constant(10));
   put(arm(0).p, 35000, 0, 0);  // more than there is
   double fastest = 0;
-  for (int k = 0; k < 400; ++k) {  // pushes against a wall that gives way by 2 mm only
+  for (int k = 0; k < 400; ++k) {  // pushes against a wall that yields by only 2 mm
     device.write(Vec3(std::min(0.0, -1600 * (device.read().pose.p.x() - 0.002)), 0, 0), Vec3::Zero());
     device.advance(1e-3);
     fastest = std::max(fastest, device.read().v.norm());

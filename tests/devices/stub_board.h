@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the stub libraries show as plugged in: a file that the test and the stubs, in whatever process, map into memory.
+// The devices that the stub libraries show as connected, in a file that the test and the stubs of all processes map
+// into memory.
 #pragma once
 #include <fcntl.h>
 #include <sys/mman.h>
@@ -11,8 +12,7 @@
 
 namespace insula::testing {
 
-/// One arm, in the frame and units of its library (mm for libHD, m for libdhd). Zero-filled is a valid state: not
-/// there.
+/// One arm, in the frame and units of its library (mm for libHD, m for libdhd). Zeros are a valid state: not connected.
 struct StubArm {
   char name[32];
   char model[32];
@@ -36,7 +36,7 @@ inline StubBoard* map_board(const char* file) {
   return memory == MAP_FAILED ? nullptr : static_cast<StubBoard*>(memory);
 }
 
-/// The board of this process, by INSULA_STUB_BOARD; for the stubs.
+/// The board of this process, given by INSULA_STUB_BOARD, for the stubs.
 inline StubBoard& board() {
   static StubBoard* const mapped = [] {
     const char* file = std::getenv("INSULA_STUB_BOARD");

@@ -5,8 +5,8 @@
     sentences.py [--json] [--headers] [--long] [PATH...]
 
 The pages are README.md, CONTRIBUTING.md, all of docs/, and each README.md below scenes/ and meshes/. With --headers the
-comments of the C++ sources are counted too, an entry a file: all comments of a header, the comment at the top of a .cpp
-file. PATH limits the count to files and folders; with it, --headers counts the sources under those paths.
+comments of C++ sources and message types are counted too, an entry for each file. PATH limits the count to files and
+folders; with it, --headers counts the sources under those paths.
 
 A page's mean may be at most 20 words a sentence, and no sentence may have more than 40. The mean of a source counts
 from five sentences on. The exit status is 1 above a limit. --json prints {page: {"sentences", "mean", "max",
@@ -32,7 +32,8 @@ import pages  # noqa: E402
 LARGEST_MEAN = 20.0
 LONGEST = 40
 FEW = 5  # a source with fewer sentences has no mean to speak of
-SOURCES = ("core", "plugins", "haptic_server", "engine", "viewer/gateway", "tools", "tests")
+SOURCES = ("core", "plugins", "haptic_server", "engine", "lcm_types", "platform", "viewer/gateway", "tools", "tests")
+SUFFIXES = (".h", ".cpp", ".lcm")
 ITEM = re.compile(r"^\s*([-*+]|\d+[.)])\s+")
 # A full stop after these does not end a sentence.
 ABBREVIATION = re.compile(r"\b(?:e\.g|i\.e|et al|vs|cf|approx|resp|eqs?|figs?|pp|sec)\.$", re.I)
@@ -110,7 +111,7 @@ def of_page(path):
 
 
 def comments(path):
-    """The comments of a C++ file as Markdown lines: all of a header, the one at the top of a .cpp file."""
+    """The comments of a C++ file or a message type as Markdown lines."""
     out, block, code = [], False, False
     for line in path.read_text(encoding="utf-8", errors="replace").split("\n"):
         if block:
@@ -126,15 +127,13 @@ def comments(path):
             out.append(re.sub(r"^\s*/\*+!?|\*/.*", "", line))
             block = "*/" not in line
         else:
-            if line.strip() and path.suffix == ".cpp" and (out or not line.startswith("#")):
-                break  # the top comment is over
             trailing = re.search(r"[;,{})]\s*//[/!]?<?\s?(.*)$", line)
             if trailing and code and out and re.match(r"\s{20,}//", line):
                 out.append(trailing[1])
             else:
                 out += ["", trailing[1]] if trailing else [""]
         code = not comment
-    # A comment beside code that goes on in the next lines keeps its paragraph; fences in a top comment are left out.
+    # A comment beside code that continues in the next lines keeps its paragraph. Fences in comments are left out.
     kept, fence = [], False
     for line in out:
         if re.match(r"\s*```", line):
@@ -165,7 +164,7 @@ def files_of(source, paths, headers):
     markdown += [p for folder in ("meshes", "scenes") for p in sorted((source / folder).rglob("README.md"))]
     out = [(p, of_page) for p in markdown if p.exists() and taken(p)]
     for folder in SOURCES if headers else ():
-        found = sorted(p for p in (source / folder).rglob("*") if p.suffix in (".h", ".cpp"))
+        found = sorted(p for p in (source / folder).rglob("*") if p.suffix in SUFFIXES)
         out += [(p, comments) for p in found if taken(p)]
     return out
 

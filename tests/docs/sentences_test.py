@@ -44,7 +44,8 @@ The top comment of a plugin.
     code = here;
 */
 #include <x>
-// Not counted here.
+// A later comment is counted too.
+int y;
 """
 
 
@@ -73,7 +74,7 @@ def main():
         words, (entry, long) = counts("page.md", "word " * 40 + "\n\n" + "word " * 41, sentences.of_page)
         equal((entry["max"], entry["mean"], [n for n, _ in long]), (41, 40.5, [41]), "the limit")
         equal(counts("a.h", HEADER, sentences.comments)[0], [3, 4, 6, 3], "words of a header's comments")
-        equal(counts("a.cpp", SOURCE, sentences.comments)[0], [6], "words of a source's top comment")
+        equal(counts("a.cpp", SOURCE, sentences.comments)[0], [6, 6], "words of a source's comments")
     print("%d failures" % failures)
     return 1 if failures else 0
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Plays a scripted motion of an exercise headless, as `insula run` does, and sums up what came of it.
+// Plays a scripted motion of an exercise headless, as `insula run` does, and sums up the result.
 #pragma once
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two hands that do as they please: smooth random motions about an exercise's field, fast and slow, turning, buttons
-// pressed, tools exchanged, clips loaded and let go; at the end both draw back along their shafts and rest at home.
-// Motion k of a seed is the same however many were made before it.
+// Two hands with random motions around an exercise's field. The motions are smooth, fast and slow, with rotations,
+// buttons, exchanges of tools, and clips that are loaded and released. At the end both hands draw back along their
+// shafts and rest at home. Motion k of a seed does not depend on earlier motions.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -23,21 +23,21 @@ struct RandomHandsSettings {
   double max_tilt = 0.6;                     ///< from the orientation at home, rad
 };
 
-/// Strung together from strokes with the smoothest speed that starts and ends at rest (minimum jerk: its peak is 15/8
-/// of its mean).
+/// A sequence of strokes with the smoothest speed that starts and ends at rest (minimum jerk: its peak is 15/8 of its
+/// mean).
 class StrokeWriter {
  public:
   StrokeWriter(Motion& motion, int hand, const Pose& start) : motion_(motion), hand_(hand), pose_(start) { key(); }
 
   void stroke(const Pose& target, double speed, double spin) {
-    const Vec6 way = displacement(pose_, target);
-    const double length = way.head<3>().norm(), angle = way.tail<3>().norm();
+    const Vec6 motion = displacement(pose_, target);
+    const double length = motion.head<3>().norm(), angle = motion.tail<3>().norm();
     const double duration = std::max({15.0 / 8 * length / speed, 15.0 / 8 * angle / spin, 0.02});
     const int n = std::max(2, int(std::ceil(duration / 0.01)));
     const Pose from = pose_;
     for (int i = 1; i <= n; ++i) {
       const double x = double(i) / n;
-      pose_ = displaced(from, x * x * x * (10 - 15 * x + 6 * x * x) * way);
+      pose_ = displaced(from, x * x * x * (10 - 15 * x + 6 * x * x) * motion);
       time_ += duration / n;
       key();
     }
@@ -69,7 +69,8 @@ inline Vec3 random_direction(Random& r) {
   return {s * std::cos(a), s * std::sin(a), z};
 }
 
-/// What a hand's owner asks for meanwhile: more often at the start, where it is still outside and not refused.
+/// Random commands of a hand. They are more frequent at the start, when the hand is still outside and they are not
+/// refused.
 inline void random_commands(Motion& motion, const Simulation& s, int hand, Random& r, double busy) {
   std::vector<const Instrument*> tools;
   for (const Instrument* i : s.instruments())
@@ -115,7 +116,7 @@ inline Motion random_motion(const Simulation& s, std::uint64_t seed, std::uint64
       for (int c = 0; c < 3; ++c) target.p[c] = middle[c] + r.uniform(-settings.half_box, settings.half_box);
       if (r.uniform() < 0.2) target.p = 0.5 * (target.p + home.p);
       target.q = from_rotation_vector(r.uniform(0, settings.max_tilt) * random_direction(r)) * home.q;
-      // Slow and fast strokes alike.
+      // Slow and fast strokes are equally frequent.
       const double speed = settings.min_speed * std::pow(settings.max_speed / settings.min_speed, r.uniform());
       w.buttons(r.uniform() < 0.35 ? !w.one() : w.one(), r.uniform() < 0.35 ? !w.two() : w.two());
       w.stroke(target, std::max(speed, 1.5 * (target.p - w.pose().p).norm()), settings.max_spin);
@@ -123,7 +124,7 @@ inline Motion random_motion(const Simulation& s, std::uint64_t seed, std::uint64
     }
     w.buttons(false, false);
     w.hold(0.05);
-    // Out along the shaft, as the way in may be round a corner.
+    // Out along the shaft, since the path in may be around a corner.
     Pose out = w.pose();
     out.p += out.q * Vec3(0, 0, 40e-3);
     w.stroke(out, 0.15, settings.max_spin);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a long run of an exercise did, as data: left alone, and under random hands.
+// Result of a long run of an exercise as data: left alone, and under random hands.
 #pragma once
 #include <cstdio>
 #include <ctime>
@@ -34,7 +34,7 @@ inline SimulationResult open_exercise(const std::filesystem::path& scene) {
   return load_simulation(scene, registry, 1);
 }
 
-/// Where everything is that can be seen or touched.
+/// Positions of everything that can be seen or touched.
 class Snapshot {
  public:
   void take(const Simulation& s) {
@@ -78,7 +78,7 @@ class Snapshot {
   std::vector<std::pair<std::size_t, std::string>> names_;  ///< where each begins
 };
 
-/// Sets the hands directly: no arm that gives way, trembles or limits the speed. A hand without a motion stays at home.
+/// Sets the hands directly: no arm that yields, trembles or limits the speed. A hand without a motion stays at home.
 class Hands {
  public:
   explicit Hands(const Motion& motion) : motion_(motion), script_(motion.commands()) {}
@@ -100,7 +100,7 @@ class Hands {
   CommandScript script_;
 };
 
-/// The part of a motion up to t: hands stay where they then are.
+/// The part of a motion up to t. After that, hands stay at their poses.
 inline Motion until(const Motion& motion, double t) {
   Motion out;
   for (int hand = 0; hand < 2; ++hand)
@@ -111,7 +111,7 @@ inline Motion until(const Motion& motion, double t) {
   return out;
 }
 
-/// Leaves complications to a seed by which none comes later than t.
+/// Draws complications with a seed for which none comes later than t.
 inline void no_complication_after(Simulation& s, double t) {
   if (!s.complications()) return;
   for (std::uint64_t seed = 1; seed < 10000; ++seed) {
@@ -193,10 +193,10 @@ class RandomCampaign {
   }
   bool opened() const { return loaded_.simulation != nullptr; }
   const Diagnostics& diagnostics() const { return loaded_.diagnostics; }
-  /// Before any hand moved.
+  /// The state before any hand moved.
   const ElementState& settled() const { return settled_; }
 
-  /// Motion k of the seed, from the start of the exercise. `trace`: says every quarter of a second how it stands.
+  /// Motion k of the seed, from the start of the exercise. `trace`: prints the state every quarter of a second.
   Soak run(std::uint64_t seed, std::uint64_t k, const RandomHandsSettings& settings, bool trace = false) {
     Soak out;
     const std::clock_t begin = std::clock();
@@ -223,9 +223,9 @@ class RandomCampaign {
       if (const auto* i = dynamic_cast<const Instrument*>(b); i && i->active() && i->hand_index() >= 0)
         out.astray.most((i->pose().p - i->device().p).norm(), i->id);
       if (const auto* d = dynamic_cast<const DeformableBody*>(b)) {
-        const VecX way = d->q() - start[n++];
+        const VecX displacement = d->q() - start[n++];
         for (int i = 0; i < d->nodes(); ++i)
-          out.moved.most(way.segment<3>(3 * i).norm(), d->id + " " + std::to_string(i));
+          out.moved.most(displacement.segment<3>(3 * i).norm(), d->id + " " + std::to_string(i));
       }
     }
     out.seconds = s.time();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether what a simulation holds is sound: elements inverted or collapsed, tools inside of bodies, numbers that are
-// none.
+// Whether the state of a simulation is sound: elements inverted or collapsed, tools inside of bodies, numbers that are
+// not finite.
 #pragma once
 #include <cmath>
 #include <map>
@@ -16,7 +16,7 @@
 
 namespace insula::test {
 
-/// A worst value and whose it is.
+/// The worst value, and the object that has it.
 struct Worst {
   double value = 0;
   std::string whose = "-";
@@ -34,7 +34,7 @@ struct Worst {
   }
 };
 
-/// Of all bodies; 1 where there is none of a kind.
+/// State of all bodies; 1 if there is none of a kind.
 struct ElementState {
   int inverted = 0;      ///< tetrahedra
   Worst volume{1, "-"};  ///< least volume of a tetrahedron over its volume at rest
@@ -90,7 +90,7 @@ inline bool all_finite(const Simulation& s) {
   return true;
 }
 
-/// How deep tools and clips stand in the surfaces that contact keeps them out of.
+/// Depth of tools and clips in the surfaces with which they have contact.
 class DepthGauge {
  public:
   explicit DepthGauge(const Simulation& s) {
@@ -104,7 +104,7 @@ class DepthGauge {
         }
     }
   }
-  /// Deepest point of a core (the piece less its rounding) behind a surface, m; of the tools or of the clips.
+  /// Largest depth of a core (the piece without its rounding) behind a surface, m, for the tools or the clips.
   Worst deepest(bool clips) {
     for (auto& [surface, m] : meshes_) {
       surface->update();
@@ -120,13 +120,13 @@ class DepthGauge {
           const double depth = m.depth(pose.apply(local));
           if (depth > out.value) out.most(depth, p->tool_a->id + " in " + p->b->id);
         };
-        // A flat blade may be pierced between its corners: all lines between them are looked at.
+        // A flat blade may be pierced between its corners, so all lines between them are tested.
         for (std::size_t a = 0; a < piece.core.size(); ++a) {
           look(piece.core[a]);
           for (std::size_t b = 0; b < a; ++b) {
-            const Vec3 way = piece.core[a] - piece.core[b];
-            const int n = int(std::ceil(way.norm() / 0.8e-3));
-            for (int i = 1; i < n; ++i) look(piece.core[b] + double(i) / n * way);
+            const Vec3 edge = piece.core[a] - piece.core[b];
+            const int n = int(std::ceil(edge.norm() / 0.8e-3));
+            for (int i = 1; i < n; ++i) look(piece.core[b] + double(i) / n * edge);
           }
         }
       }
@@ -142,7 +142,7 @@ class DepthGauge {
     double depth(const Vec3& p) const {
       const NearestPoint e = mesh.nearest(p, 0, 15e-3);
       if (e.triangle < 0 || !e.behind) return 0;
-      // Beyond the border of an open surface there is neither before nor behind.
+      // Beyond the border of an open surface, front and back are undefined.
       const TriangleFeature f = feature_of(e.bary);
       const auto& t = mesh.triangle(e.triangle);
       const int a = t[std::size_t(f.corner)], b = t[std::size_t((f.corner + 1) % 3)];

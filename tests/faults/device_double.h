@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A real arm as the haptic server sees one: held by a person who presses into tissue and draws along it, fails when
-// told to, and remembers whether what was written to it kept to its profile.
+// A real arm for the haptic server. A person holds it, presses into tissue and draws along it. It fails on request, and
+// it records whether the forces kept to its profile.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -59,7 +59,7 @@ class DeviceDouble final : public Device {
     arm_.set_load(force_N, torque_Nm);
   }
 
-  /// Time passes for the arm and the person, under the force written last.
+  /// Advances the arm and the person under the last force.
   void live(double dt) {
     time_ += dt;
     arm_.set_goal(goal());

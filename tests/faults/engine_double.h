@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What an engine sends while two plates press on soft tissue: built from the DEVICE_STATE that reached it, 60 times a
+// Messages of an engine while two plates press on soft tissue. They follow the received DEVICE_STATE, 60 times a
 // second.
 #pragma once
 #include <functional>
@@ -34,7 +34,7 @@ class EngineDouble {
   std::int64_t sequence = 0;
   std::int64_t stamp_off_us = 0;  ///< its clock against the server's
 
-  /// Once a millisecond.
+  /// Called once a millisecond.
   void live() {
     link.poll(0);
     ++milliseconds_;

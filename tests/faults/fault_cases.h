@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every fault of the campaign, once: what happens, what the manual promises of it, and what the test holds it to. The
-// table in docs/haptics-and-safety.md is this one, word for word.
+// Every fault of the campaign: what happens, what the manual promises, and what the test requires. The table in
+// docs/haptics-and-safety.md is this one, word for word.
 #pragma once
 #include <cmath>
 #include <string_view>
@@ -10,13 +10,13 @@
 
 namespace insula::testing {
 
-/// In all of them: forces and torques finite, within the device's limit and slew at every tick, and as if nothing had
-/// happened a second after the cause has ended.
+/// In all cases, forces and torques are finite and within the device's limit and slew at every tick. A second after the
+/// end of the cause they are those of a run without the fault.
 struct FaultCase {
   const char* name;
   const char* cause;
   const char* promise;
-  LinkFaults link{};  ///< both ways, while it lasts
+  LinkFaults link{};  ///< in both directions, while the fault lasts
   void (*set)(FaultRig&, bool on) = nullptr;
   double lasts_s = 0.6;
   double zero_after_s = -1;  ///< forces exactly 0 from so long after its begin to its end; negative: not promised
@@ -26,10 +26,10 @@ struct FaultCase {
 
 inline void PrintTo(const FaultCase& fault, std::ostream* out) { *out << fault.cause; }
 
-/// 50 ms until a problem is too old, 50 ms to ramp out, and the tick at which that is seen.
+/// 50 ms until a problem is too old, 50 ms of fade-out, and the tick that detects it.
 inline constexpr double untrusted_s = 0.102;
 inline constexpr const char* to_zero = "0 within 102 ms";
-/// The gate's ramp alone.
+/// Only the gate's fade-out.
 inline constexpr double ramp_s = 0.052;
 
 namespace fault {
@@ -62,7 +62,7 @@ inline void clock_back(FaultRig& rig, bool on) {
 }
 inline void sequence_back(FaultRig& rig, bool on) { rig.engine().sequence += on ? -1000 : 1000; }
 inline void sequence_ahead(FaultRig& rig, bool on) {
-  // One message alone; the engine then counts on as before.
+  // Only one message. The engine then continues its numbers.
   if (!on) return;
   rig.engine().spoil = [&rig](HapticUpdate& u) {
     u.sequence += 1'000'000'000'000;
@@ -74,7 +74,7 @@ inline void second_engine(FaultRig& rig, bool on) {
   else rig.engines.pop_back();
 }
 inline void replayed(FaultRig& rig, bool on) {
-  // What an engine of another day said, 300 a second, into the session that runs.
+  // Messages of an older engine, 300 a second, in the running session.
   static constexpr auto again = [](FaultRig& r) {
     HapticUpdate u;
     Buffer bytes;

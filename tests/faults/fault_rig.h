@@ -67,7 +67,7 @@ class FaultRig {
     engines.push_back(std::make_unique<EngineDouble>(
         *engine_buses_.back(), clock, first_session + std::int64_t(engines.size()), seed_ + engines.size()));
   }
-  /// Both ways.
+  /// In both directions.
   void set_link(const LinkFaults& faults) {
     for (const auto& e : engines) e->link.faults = faults;
     server_link_.faults = faults;

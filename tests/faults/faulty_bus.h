@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A bus that treats what is sent through it badly: loses, delays, doubles, damages, holds up. Seeded, on a clock of the
-// caller's, so that a failure can be repeated.
+// A bus that loses, delays, duplicates, damages or holds messages. It uses a seed and the caller's clock, so that a
+// failure can be repeated.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -26,7 +26,7 @@ struct LinkFaults {
   bool hold = false;  ///< nothing passes; all of it comes at once when this is over
 };
 
-/// Decorates the sending side of `inner`. One thread.
+/// Decorates the sending side of `inner`. For one thread.
 class FaultyBus final : public Bus {
  public:
   FaultyBus(Bus& inner, const Clock& clock, std::uint64_t seed) : inner_(inner), clock_(clock), random_(seed) {}
@@ -55,7 +55,7 @@ class FaultyBus final : public Bus {
   bool good() const override { return inner_.good(); }
   std::string error() const override { return inner_.error(); }
 
-  /// Sends on what is due, in the order in which it is.
+  /// Sends the messages that are due, in order.
   void deliver() {
     if (faults.hold) return;
     const auto first_not = std::stable_partition(waiting_.begin(), waiting_.end(),

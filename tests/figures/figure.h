@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a test of a law has found, beside the law, for the pictures of docs/validation.md.
+// Results of a test of a law beside the law, for the figures of docs/validation.md.
 #pragma once
 #include <cstdlib>
 #include <filesystem>
@@ -31,7 +31,7 @@ class Figure {
   ~Figure() {
     if (!folder_.empty()) std::ofstream(folder_ / (name_ + ".json")) << json_ << "\n";
   }
-  /// One more point of a curve, in the units that the labels of the axes name.
+  /// Adds a point of a curve, in the units of the axes' labels.
   void law(const std::string& curve, double x, double y) { add("law", curve, x, y); }
   void run(const std::string& curve, double x, double y) { add("run", curve, x, y); }
 

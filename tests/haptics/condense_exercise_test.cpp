@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Problems of a whole exercise, cut down: what a hand feels of them, a step's way on, against the whole ones.
+// Problems of a whole exercise, condensed: the hands' forces after another step's displacement, compared with those of
+// the full problems.
 #include <gtest/gtest.h>
 
 #include <algorithm>

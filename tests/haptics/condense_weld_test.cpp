@@ -51,8 +51,8 @@ ConstraintProblem clip_among_others(std::uint64_t seed) {
   return p;
 }
 
-// However many rows there are, what a carried clip touches is no part of its mass, nor does it hold its force.
-TEST(CondenseCarried, WhatACarriedClipTouchesIsKept) {
+// For any number of rows, the contacts of a grasped clip are neither part of its mass nor held.
+TEST(CondenseWeld, ContactsOfAGraspedClipAreKept) {
   const ConstraintProblem full = clip_among_others(21);
   ASSERT_EQ(first_weld_row(full, 0), 4);
   ConstraintProblem small;
@@ -84,7 +84,7 @@ TEST(CondenseCarried, WhatACarriedClipTouchesIsKept) {
     most = std::max(most, a.norm());
     apart = std::max(apart, (a - b).norm());
   }
-  std::printf("a carried clip among rows that are cut: %.2e N of %.2e N\n", apart, most);
+  std::printf("a grasped clip among rows that are condensed: %.2e N of %.2e N\n", apart, most);
   EXPECT_GT(most, 0.01);
   EXPECT_LT(apart, 0.02 * most);
 }

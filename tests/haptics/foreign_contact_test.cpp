@@ -41,9 +41,9 @@ class RollerContact final : public Constraint {
   void finish(const StepContext&, const ConstraintSolution& solution) override { pressed_ = solution.lambda[row_] > 0; }
   void predict_frames(double steps, std::vector<ContactFrame>& out) const override {
     if (!pressed_) return;
-    const Vec3 now = tool->position(point()), way = now - start_;
-    out.push_back(
-        {row_ + wrong_row, normal(start_), Vec3::UnitY(), normal(now + steps * way), normal(now + (steps + 1) * way)});
+    const Vec3 now = tool->position(point()), moved = now - start_;
+    out.push_back({row_ + wrong_row, normal(start_), Vec3::UnitY(), normal(now + steps * moved),
+                   normal(now + (steps + 1) * moved)});
   }
   void estimate_cost(CostCounts& out) const override {
     out.tool_pieces += 2;
@@ -109,24 +109,24 @@ TEST_F(ForeignContact, ItsFramesArePredicted) {
   contact_->predict_frames(ahead, frames);
   ASSERT_EQ(frames.size(), 1u);
   ASSERT_GT(frames[0].normal.cross(frames[0].ahead).norm(), 0.02) << "nothing turns";
-  ContactFramePrediction turned;
-  const ConstraintProblem& p = turned(*s_, ahead * s_->h());
+  ContactFramePrediction predict;
+  const ConstraintProblem& p = predict(*s_, ahead * s_->h());
   ASSERT_NE(&p, &s_->problem());
   EXPECT_DOUBLE_EQ(p.prediction_horizon_steps, ahead);
   ASSERT_EQ(p.tools.size(), 1u);
   const Vec3 direction = p.tools[0].jacobian.row(contact_->row()).head<3>().transpose();
   EXPECT_LT((direction - frames[0].ahead).norm(), 1e-12);
-  const auto& turn = p.blocks[0].frame_rotation;
-  const Vec3 by{double(turn[0]), double(turn[1]), double(turn[2])};
+  const auto& rotation = p.blocks[0].frame_rotation;
+  const Vec3 by{double(rotation[0]), double(rotation[1]), double(rotation[2])};
   EXPECT_LT((from_rotation_vector(by) * frames[0].ahead - frames[0].later).norm(), 1e-6);
 }
 
 TEST_F(ForeignContact, FramesOfNoBlockOfItsAreLeftOut) {
   roll(8);
-  ContactFramePrediction turned;
+  ContactFramePrediction predict;
   for (const int wrong : {1, 2, 3, 1000, -1}) {
     contact_->wrong_row = wrong;
-    EXPECT_EQ(&turned(*s_, 0.005), &s_->problem());
+    EXPECT_EQ(&predict(*s_, 0.005), &s_->problem());
   }
 }
 

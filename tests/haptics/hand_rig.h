@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A person's arm against something hard, in simulated time: engine at its rate, servo at 1 kHz, gate, encoder, arm and
-// hand. What the servo makes may be held between problems (as solvers without a haptic loop do), for comparison.
+// hand. For comparison, the servo's force may be held between problems, as by solvers without a haptic loop.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -18,8 +18,8 @@ namespace insula::test {
 /// Device and hand together, as one mass on the person's spring and damper.
 struct Person {
   double mass_kg = 0.125, damping_Ns_m = 10, stiffness_N_m = 400;
-  /// Of the device: a tenth of what the best arms have. Without any, an encoder's steps alone keep a tool on a wall
-  /// trembling, by less than a step; friction above stiffness x step / 2, here 14 mN, ends it (Abbott and Okamura
+  /// Friction of the device: a tenth of that of the best arms. Without friction, an encoder's steps keep a tool on a
+  /// wall trembling by less than a step. Friction above stiffness x step / 2, here 14 mN, ends this (Abbott and Okamura
   /// 2005).
   double friction_N = 0.02;
 };
@@ -81,10 +81,10 @@ inline Pressed press(const Press& press, const Person& person) {
     const double t = k * dt;
     HandGoal goal;
     goal.pose = home;
-    // When the gate has faded forces in: there within a third of a second, at the speed of a tap.
-    const double way = std::clamp((t - begin) / arrival, 0.0, 1.0);
-    goal.pose.p.z() += way * (top - press.depth_m - home.p.z());
-    goal.v.z() = way > 0 && way < 1 ? (top - press.depth_m - home.p.z()) / arrival : 0;
+    // After the gate has faded forces in, the hand arrives within a third of a second, at the speed of a tap.
+    const double part = std::clamp((t - begin) / arrival, 0.0, 1.0);
+    goal.pose.p.z() += part * (top - press.depth_m - home.p.z());
+    goal.v.z() = part > 0 && part < 1 ? (top - press.depth_m - home.p.z()) / arrival : 0;
     if (t > begin) {
       goal.pose.p.x() += press.slide_m_s * (t - begin);
       goal.v.x() = press.slide_m_s;
@@ -114,7 +114,7 @@ inline Pressed press(const Press& press, const Person& person) {
     const ServoHand& hand = r.hand[1];
     if (fresh) held = hand.force;
     const Vec3 wanted = press.held ? held : hand.force;
-    // What the last tick's force has done on this tick's way.
+    // Work of the last tick's force over this tick's displacement.
     energy += gate.force().dot(device.arm().pose().p - before);
     observer.observe(gate.force(), reading.pose.p);
     gate.apply(dt, r.solved && hand.valid, wanted, Vec3::Zero());

@@ -37,9 +37,9 @@ std::vector<double> on_the_dome(double rate_per_min, const ServoSettings& settin
   const double beat = 60 / rate_per_min;
   for (int step = 0; s->time() < 5 * beat; ++step) {
     // In within a second, then still.
-    const double way = std::min(1.0, s->time() / 1.0) * 0.4e-3;
+    const double distance = std::min(1.0, s->time() / 1.0) * 0.4e-3;
     Pose now = device;
-    now.p -= way * out;
+    now.p -= distance * out;
     s->set_hand(1, {true, now, false, false});
     s->step();
     ConstraintProblem& latest = problem[std::size_t(step % 2)];

@@ -15,7 +15,7 @@ namespace {
 
 bool soak() { return std::getenv("INSULA_SOAK") != nullptr; }
 
-/// Tools that meet a wall without giving way themselves: the coupling is what the hand feels.
+/// Rigid tools against a wall, so that the hand feels only the coupling.
 constexpr double stiffest_N_m = 500;
 /// What a hand may have had out of its arrival at the wall, however long it then stays, J: a tenth of a newton's way of
 /// a tenth of a millimetre.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Random constraint problems and how far a solution is from the laws.
+// Random constraint problems, and the distance of a solution from the laws.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -32,7 +32,7 @@ inline double contact_error(const Vec3& delta, const Vec3& lambda, double mu, do
 }
 
 /// Contacts, patches, fibres, holds and links among a few bodies of several degrees of freedom: W = H A^-1 H^T plus a
-/// little on the diagonal, so that the solution is one.
+/// small diagonal, so that the solution is unique.
 inline ConstraintProblem random_problem(Random& random, double friction) {
   ConstraintProblem p;
   int rows = 0;
@@ -101,7 +101,7 @@ inline ConstraintProblem random_problem(Random& random, double friction) {
   return p;
 }
 
-/// The same for a patch whose contacts bear `pressed` together.
+/// The same for a patch whose contacts have the total normal force `bound` / mu.
 inline double patch_error(const Eigen::Vector2d& slip, const Eigen::Vector2d& f, double bound, double length,
                           double force) {
   double error = (f.norm() - bound) / force;
@@ -149,7 +149,7 @@ inline SolveStats solve_to(const ConstraintProblem& p, SolveWorkspace& ws, int s
   return solve(p, p.delta_free, {sweeps, tolerance, conjugate}, ws);
 }
 
-/// No law's bounds are left, to rounding.
+/// All laws are within their bounds, up to rounding.
 inline void expect_bounds(const ConstraintProblem& p, const std::vector<double>& lambda) {
   for (const Block& b : p.blocks) {
     const double* l = lambda.data() + b.row;

@@ -87,7 +87,7 @@ TEST(Solver, ResultDoesNotDependOnTheWarmStart) {
     cold.lambda.assign(std::size_t(p.rows), 0.0);
     for (int i = 0; i < p.rows; ++i) warm.lambda.push_back(random.uniform(-3, 3));
     solve_to(p, cold, 500000, 1e-14, trial % 2 == 1);
-    solve_to(p, warm, 500000, 1e-14, trial % 4 > 1);  // both ways, and one against the other
+    solve_to(p, warm, 500000, 1e-14, trial % 4 > 1);  // both, and one against the other
     double force = 1e-300;
     for (double l : cold.lambda) force = std::max(force, std::abs(l));
     for (int i = 0; i < p.rows; ++i)

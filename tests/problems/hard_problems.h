@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Problems that block Gauss-Seidel finds hard, with answers in closed form where there are some.
+// Difficult problems for block Gauss-Seidel, with solutions in closed form if there are any.
 #pragma once
 #include "tests/physics/random_problem.h"
 
@@ -61,8 +61,8 @@ struct Slab {
   }
 };
 
-/// `light` bodies of mass 1 in a column on the ground, one of mass `ratio` on top, gravity 1: contact k bears what is
-/// above it.
+/// `light` bodies of mass 1 in a column on the ground, one of mass `ratio` on top, gravity 1: contact k bears the
+/// weight above it.
 struct Column {
   int light;
   double ratio;
@@ -82,7 +82,7 @@ struct Column {
 };
 
 /// Two jaws, each of compliance `jaw`, close by `close` each on a chain of `nodes` light nodes of compliance 1 and
-/// shear by `shear`: the same force goes through the whole chain.
+/// shear it by `shear`. The force is the same in the whole chain.
 struct Jaws {
   int nodes;
   double jaw, close, shear, mu;
@@ -107,8 +107,8 @@ struct Jaws {
   double tangent() const { return -std::min(shear / jaw, mu * normal()); }
 };
 
-/// Contacts with friction that share few ways to yield: W of rank `rank`, and a little on its diagonal that makes the
-/// answer one.
+/// Contacts with friction that share few degrees of freedom: W of rank `rank`, and a little on its diagonal that makes
+/// the answer one.
 inline ConstraintProblem crowded(Random& random, int contacts, int rank, double own) {
   const int n = 3 * contacts;
   const MatX h = random_matrix(random, n, rank);

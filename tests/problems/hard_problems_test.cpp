@@ -31,7 +31,7 @@ TEST(HardProblems, JawsOnAStack) {
       for (const auto& m : methods) {
         SCOPED_TRACE(m.name);
         SolveSettings fine = m.settings;
-        fine.tolerance_m = 1e-13;  // a small residual is a large error in the way that yields least
+        fine.tolerance_m = 1e-13;  // a small residual is a large error in the most rigid direction
         SolveWorkspace ws;
         const SolveStats s = solve_cold(p, fine, ws);
         EXPECT_LE(s.residual_m, fine.tolerance_m);
@@ -114,7 +114,7 @@ TEST(HardProblems, RedundantContactsStickAndSlip) {
   }
 }
 
-// 120 contacts with friction, 360 rows: to the laws' own accuracy, and the same answer whichever way.
+// 120 contacts with friction, 360 rows: to the laws' own accuracy, and the same answer by each method.
 TEST(HardProblems, ThreeHundredAndSixtyRows) {
   Random random(3);
   const ConstraintProblem p = crowded(random, 120, 90, 0.01);

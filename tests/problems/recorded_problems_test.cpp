@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Problems recorded from the four exercises: each way of solving them comes to the tolerance, and all to the same
-// motion.
+// Problems recorded from the four exercises: each method comes to the tolerance, and all to the same motion.
 #include <gtest/gtest.h>
 
 #include <algorithm>

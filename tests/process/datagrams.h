@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Datagrams that no well-meant sender makes, and a plain socket to send them to the bus.
+// Malformed datagrams, and a plain socket that sends them to the bus.
 #pragma once
 #include <arpa/inet.h>
 #include <netinet/in.h>
@@ -56,7 +56,7 @@ struct FragmentHead {
   std::uint16_t number, fragments;
 };
 
-/// A fragment of LCM's protocol, with whatever the head says; a channel's name follows in the first one.
+/// A fragment of LCM's protocol with any head. A channel's name follows in the first one.
 inline Buffer fragment(const FragmentHead& head, std::string_view name, std::size_t bytes) {
   Buffer out;
   append32(out, 0x4C433033);
@@ -69,7 +69,7 @@ inline Buffer fragment(const FragmentHead& head, std::string_view name, std::siz
   return out;
 }
 
-/// A whole short message of LCM's protocol.
+/// A complete short message of LCM's protocol.
 inline Buffer short_datagram(std::string_view channel, const Buffer& message) {
   Buffer out;
   append32(out, 0x4C433032);
@@ -79,7 +79,7 @@ inline Buffer short_datagram(std::string_view channel, const Buffer& message) {
   return out;
 }
 
-/// Random malformed datagrams of the bus, the same for the same seed. Numbers are taken from where mistakes live.
+/// Random malformed datagrams of the bus, the same for the same seed. Numbers are typical values of errors.
 class MalformedDatagrams {
  public:
   explicit MalformedDatagrams(unsigned seed) : random_(seed) {}

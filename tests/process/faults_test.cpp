@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Faults of the campaign with real processes over LCM: loss, damage, delay on the way; processes that stop and go on;
-// two engines. Times are not judged finely here, a machine under test is busy: tests/faults does that on a clock of its
-// own.
+// Faults of the campaign with real processes over LCM: loss, damage and delay of messages; processes that stop and
+// continue; two engines. Times are not judged finely here, a machine under test is busy: tests/faults does that on a
+// clock of its own.
 #include <gtest/gtest.h>
 #include <signal.h>
 

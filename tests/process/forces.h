@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What holds of all forces that a real haptic server sends.
+// Properties of all forces that a real haptic server sends.
 #pragma once
 #include "tests/process/watcher.h"
 
@@ -8,14 +8,14 @@ namespace insula::testing {
 /// The simulated arm's largest change of force (haptic_server's profile of a Phantom Omni): all of it within 50 ms.
 inline constexpr double slew_N_s = 66;
 
-/// Over everything seen: within one life of the server no two samples differ by more than the limit allows in the time
-/// between them, and each life starts from nothing.
+/// For all samples: within one run of the server no two samples differ by more than the limit for the time between
+/// them, and each run starts at zero.
 inline void expect_slew_limit(const std::vector<Sample>& samples) {
   int steps = 0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const Sample& b = samples[i];
     if (i == 0 || samples[i - 1].session != b.session) {
-      // The first sample of a life may be some ticks old.
+      // The first sample of a run may be some ticks old.
       for (const Vec3& f : b.force) EXPECT_LE(i == 0 ? 0.0 : f.norm(), slew_N_s * 0.1);
       continue;
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What tests of a running session begin and end with.
+// Start and end of tests of a running session.
 #pragma once
 #include <memory>
 
@@ -8,8 +8,7 @@
 
 namespace insula::testing {
 
-/// A session that runs when the test begins; when it ends, all forces that were seen must have kept the gate's limit of
-/// change.
+/// A session that runs when the test begins. At its end, all observed forces must have kept the gate's slew limit.
 class LiveSession : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -28,7 +27,7 @@ class LiveSession : public ::testing::Test {
   }
 
   fs::path reports() const { return session_->folder() / "reports"; }
-  /// Folders of reports of this session, each whole.
+  /// Number of complete report folders of this session.
   int reports_written() const {
     int n = 0;
     std::error_code none;

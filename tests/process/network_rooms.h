@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two network namespaces joined by a cable: this machine and another one, both made by the test.
+// Two network namespaces with a virtual cable: this machine and another one, both created by the test.
 #pragma once
 #include <fcntl.h>
 #include <sched.h>
@@ -11,7 +11,7 @@
 namespace insula::testing {
 
 /// `machine` (10.231.7.1) and `stranger` (10.231.7.2), each with its own loopback interface and its multicast route
-/// over the cable. They go with this object, which must be destroyed by the thread that made it.
+/// over the cable. They are removed with this object, which must be destroyed by the thread that created it.
 class NetworkRooms {
  public:
   NetworkRooms() : home_(::open("/proc/thread-self/ns/net", O_RDONLY | O_CLOEXEC)) {
@@ -22,7 +22,7 @@ class NetworkRooms {
     for (const std::string& on : {on_m, on_s})
       ready_ = ready_ && run(on + "link set lo up") && run(on + "link set cable0 up") &&
                run(on + "route add 224.0.0.0/4 dev cable0");
-    // A stranger who takes this machine's address gets as far as he can.
+    // A sender with this machine's address as source is let through as far as possible.
     for (const char* setting : {"all.accept_local=1", "all.rp_filter=0", "cable0.rp_filter=0"})
       ready_ = ready_ && run("ip netns exec " + m + " sysctl -qw net.ipv4.conf." + setting);
   }
@@ -38,7 +38,7 @@ class NetworkRooms {
   bool ready() const { return ready_; }
   static constexpr const char *machine_address = "10.231.7.1", *stranger_address = "10.231.7.2";
 
-  /// What the calling thread opens and starts from here on belongs to that namespace.
+  /// From now on, sockets and processes of the calling thread belong to that namespace.
   bool enter_machine() const { return enter(machine()); }
   bool enter_stranger() const { return enter(stranger()); }
   void leave() const { ::setns(home_, CLONE_NEWNET); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A page at a gateway, without its picture.
+// A page at a gateway, without drawing.
 #pragma once
 #include <atomic>
 #include <boost/asio/connect.hpp>
@@ -18,7 +18,7 @@
 
 namespace insula::testing {
 
-/// A page: counts the frames it gets, on a thread of its own; comes back when the connection ends.
+/// A page that counts its frames in a thread of its own, and reconnects when the connection ends.
 class Page {
  public:
   /// port: of the gateway on this machine, asked for at each connection.
@@ -26,7 +26,7 @@ class Page {
   explicit Page(const PlaySession& session) : Page([&session] { return session.port(); }) {}
   ~Page() {
     stop_ = true;
-    // Where nothing is sent any more, a read would wait for ever.
+    // Without further messages, a read would wait forever.
     if (const int s = socket_; s >= 0) ::shutdown(s, SHUT_RDWR);
     thread_.join();
   }

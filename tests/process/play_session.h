@@ -37,7 +37,7 @@ class PlaySession {
     std::ofstream(folder_ / "press.xml") << scene_text;
     url_ = own_bus_url();
     ::setenv("LCM_DEFAULT_URL", url_.c_str(), 1);
-    // Also when the supervisor is killed and cannot clean up: what it leaves goes with the folder.
+    // If the supervisor is killed and cannot clean up, its files are removed with the folder.
     ::setenv("XDG_RUNTIME_DIR", folder_.c_str(), 1);
     ::unsetenv("DISPLAY");
     ::unsetenv("WAYLAND_DISPLAY");
@@ -59,12 +59,12 @@ class PlaySession {
         process_.read_lines([this](std::string_view line) { on_line(std::string(line)); });
         std::this_thread::sleep_for(5ms);
       }
-      // Its last words, written just before it ended.
+      // Its last output, written just before it ended.
       if (process_.output() >= 0) process_.read_lines([this](std::string_view line) { on_line(std::string(line)); });
     });
     return error;
   }
-  /// Ctrl-C; returns how it ended.
+  /// Sends Ctrl-C and returns how it ended.
   ChildExit end() {
     ChildExit result = last_exit_;
     if (process_.running()) {
@@ -94,7 +94,7 @@ class PlaySession {
     std::lock_guard lock(mutex_);
     return port_;
   }
-  /// How often a line with this text was printed.
+  /// Number of printed lines that contain this text.
   int count(std::string_view text) const {
     std::lock_guard lock(mutex_);
     int n = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Between an engine's bus and a haptic server's: what passes can be treated badly. Two LCM addresses, one thread.
+// A relay with faults between an engine's bus and a haptic server's bus. Two LCM addresses, one thread.
 #pragma once
 #include <atomic>
 #include <memory>

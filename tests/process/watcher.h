@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Somebody who watches a session's bus, asks for commands, and presses with both hands.
+// An observer of a session's bus that also sends commands and presses with both hands.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ namespace insula::testing {
 
 using namespace std::chrono_literals;
 
-/// Patience of every wait: far more than anything takes, so that only what never comes fails.
+/// Limit of every wait. It is far longer than any normal delay.
 inline constexpr auto patience = 90s;
 
 template <class Condition>
@@ -45,7 +45,7 @@ struct Sample {
   std::array<Vec3, 2> force, position;
 };
 
-/// Collects what the processes say.
+/// Collects the messages of the processes.
 class Watcher {
  public:
   explicit Watcher(const std::string& url) : bus_(url), out_(url) {
@@ -122,7 +122,7 @@ class Watcher {
     m.argument = argument;
     publish(out_, channel::user_command, m, scratch_);
   }
-  /// Asks again and again until an event of that kind says so; messages may be lost.
+  /// Repeats the command until an event of that kind arrives, since messages may be lost.
   bool asked(const std::string& command, const std::string& argument, const std::string& kind) {
     const std::size_t seen = events().size();
     return wait_for([&] {
@@ -140,7 +140,7 @@ class Watcher {
     return s ? std::max(s->force[0].norm(), s->force[1].norm()) : 0;
   }
 
-  /// Lowers both hands half a millimetre at a time until each feels at least `wanted` newtons.
+  /// Lowers both hands in steps of half a millimetre until each has a force of at least `wanted` newtons.
   bool press(double wanted) {
     if (!wait_for([&] { return last().has_value(); })) return false;
     std::array<Vec3, 2> at = last()->position;

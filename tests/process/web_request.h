@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An HTTP request sent as it is written, so that its fields can say anything.
+// An HTTP request that is sent unchanged, so that its fields can have any content.
 #pragma once
 #include <algorithm>
 #include <boost/asio/buffer.hpp>
@@ -40,7 +40,7 @@ inline std::string get_request(const std::string& target, const std::string& fie
   return "GET " + target + " HTTP/1.1\r\n" + fields + "\r\n";
 }
 
-/// A request for a WebSocket; more fields than these are given whole, each with its line end.
+/// A request for a WebSocket. Additional fields are given completely, each with its line end.
 inline std::string upgrade_request(const std::string& fields, const std::string& target = "/ws") {
   return get_request(target,
                      "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"

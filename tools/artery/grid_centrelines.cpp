@@ -82,7 +82,7 @@ struct Paths {
   InnerGrid grid;
   std::vector<int> cell;    ///< one a cap
   std::vector<int> before;  ///< one a cell
-  int lost = -1;            ///< a cap to which no way leads; -1: none
+  int lost = -1;            ///< a cap to which no path leads; -1: none
 };
 
 Paths find_paths(const Surface& surface, const WallPoints& wall, int across_longest) {

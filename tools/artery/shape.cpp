@@ -46,7 +46,7 @@ Shape::Shape(const CaseSpec& spec) : axis_(spec.projection) {
   dome_height_ = spec.dome_height;
   a_ = 0.5 * spec.width;
   double funnel = neck_radius_;
-  for (int i = 0; i < 12; ++i) {  // smooth joints widen the neck a little: the funnel gives way
+  for (int i = 0; i < 12; ++i) {  // smooth joints widen the neck a little, so the funnel is corrected
     place_sac(funnel);
     const double excess = 0.5 * neck_section_diameter() - neck_radius_;
     funnel = std::min(funnel - excess, 0.995 * a_);

@@ -12,7 +12,7 @@ namespace insula::case_builder {
 
 namespace fs = std::filesystem;
 
-/// Something found out on the way. A repair says what was changed; a problem says what to do.
+/// A finding during the work. A repair says what was changed; a problem says what to do.
 struct Note {
   enum class Kind { fact, repair, problem };
   Kind kind = Kind::fact;

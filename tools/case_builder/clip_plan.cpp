@@ -161,8 +161,8 @@ ApplierPose plan_temporary(const artery::Vessel& v, const Solid& floor, const Cl
   for (std::size_t k = 0; k < c.size(); ++k)
     if ((c.points[k] - v.neck->centre).norm() < (c.points[near] - v.neck->centre).norm()) near = k;
   std::size_t at = near;
-  double way = 0;
-  while (at > 2 && way < 0.5 * v.neck->diameter + 2) way += (c.points[at] - c.points[at - 1]).norm(), --at;
+  double distance = 0;
+  while (at > 2 && distance < 0.5 * v.neck->diameter + 2) distance += (c.points[at] - c.points[at - 1]).norm(), --at;
   const Vec3 along = c.tangent(at), square = across(to_surgeon, along);
   const Vec3 outward = (0.4 * square + 0.6 * to_surgeon).normalized();
   // Pressed flat the parent is half its perimeter wide; the tips go past its far edge where the floor lets them.

@@ -22,14 +22,14 @@ std::vector<ClipShape> read_clips(const fs::path& project);
 
 /// A pose of the applier that holds a clip.
 struct ApplierPose {
-  Vec3 tip, flat, shaft;  ///< flat: the way in which the blades close (+x); unit
+  Vec3 tip, flat, shaft;  ///< flat: direction in which the blades close (+x); unit
 };
 ApplierPose applier_pose(const ClipShape& clip, const Vec3& middle, const Vec3& inward, const Vec3& closing);
 
 /// The neck in its own plane.
 struct NeckSize {
   double perimeter = 0;          ///< mm
-  double along = 0, across = 0;  ///< extents along the blades and in the way they close, mm
+  double along = 0, across = 0;  ///< extents along the blades and in their closing direction, mm
 };
 NeckSize neck_size(const artery::Vessel& vessel, const Vec3& along);
 

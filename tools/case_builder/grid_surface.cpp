@@ -131,19 +131,19 @@ std::vector<Plane> border_ends(const mesh_tool::NiftiVolume& v, const std::funct
       if (patch.size() < 9) continue;
       double at[3];
       at[axis] = layer, at[u] = si / double(patch.size()), at[w] = sj / double(patch.size());
-      Vec3 p, way;
+      Vec3 p, outward;
       for (int r = 0; r < 3; ++r) {
         p[r] = v.to_world[std::size_t(4 * r + 3)];
         for (int a = 0; a < 3; ++a) p[r] += v.to_world[std::size_t(4 * r + a)] * at[a];
-        way[r] = (face % 2 ? 1 : -1) * v.to_world[std::size_t(4 * r + axis)];
+        outward[r] = (face % 2 ? 1 : -1) * v.to_world[std::size_t(4 * r + axis)];
       }
-      way.normalize();
-      p -= inset * way;
+      outward.normalize();
+      p -= inset * outward;
       // A speck that was left out also meets the border: only ends of the surface that was kept count.
       double near = 1e300;
       for (const Vec3& q : surface.vertices) near = std::min(near, (q - p).norm());
       const double wide = std::sqrt(double(patch.size()) / 3.14159) * inset;
-      if (near < 1.5 * wide + inset) out.push_back({p.x(), p.y(), p.z(), way.x(), way.y(), way.z()});
+      if (near < 1.5 * wide + inset) out.push_back({p.x(), p.y(), p.z(), outward.x(), outward.y(), outward.z()});
     }
   }
   return out;

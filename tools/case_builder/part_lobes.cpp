@@ -5,8 +5,8 @@ Parts a lobe as a retractor would: the elastic shape at rest that keeps clear of
     min 1/2 u^T K u   with   C u >= d          u: displacement of the tetrahedra's nodes, mm; fixed nodes stay
 
 K is that of linear elasticity (only its ratios matter). Rows of C are points of the lobe that are too near to
-something, each along the way out; they are found anew a few times as the lobe moves. Through K^-1 C^T the conditions
-meet in W = C K^-1 C^T, solved by projected Gauss-Seidel like a step's contacts.
+something, each along the direction out; they are found anew a few times as the lobe moves. Through K^-1 C^T the
+conditions meet in W = C K^-1 C^T, solved by projected Gauss-Seidel like a step's contacts.
 */
 #include <fmt/format.h>
 #include <Eigen/SparseCholesky>
@@ -31,8 +31,8 @@ struct Condition {
   std::array<int, 12> node{};
   std::array<double, 12> weight{};
   int count = 0;
-  Vec3 way;
-  double least = 0;  ///< of way . u
+  Vec3 direction;
+  double least = 0;  ///< of direction . u
 };
 
 class ElasticLobe {
@@ -71,7 +71,7 @@ class ElasticLobe {
       d[r] = c.least;
       for (int k = 0; k < c.count; ++k)
         if (const int f = of_[std::size_t(c.node[std::size_t(k)])]; f >= 0)
-          ct.block<3, 1>(3 * f, r) += c.weight[std::size_t(k)] * c.way;
+          ct.block<3, 1>(3 * f, r) += c.weight[std::size_t(k)] * c.direction;
     }
     const Eigen::MatrixXd back = factor_.solve(ct), w = ct.transpose() * back;
     VecX lambda = VecX::Zero(n);
@@ -114,9 +114,10 @@ class ElasticLobe {
     return least;
   }
   /// A condition on a surface point, a mix of up to three vertices.
-  Condition condition(const std::array<int, 3>& vertices, const Vec3& bary, const Vec3& way, double missing) const {
+  Condition condition(const std::array<int, 3>& vertices, const Vec3& bary, const Vec3& direction,
+                      double missing) const {
     Condition c;
-    c.way = way;
+    c.direction = direction;
     for (std::size_t k = 0; k < 3; ++k) {
       if (bary[Eigen::Index(k)] < 1e-9) continue;
       const Lobe::EmbeddedVertex& r = lobe_.embedded_vertices[std::size_t(vertices[k])];
@@ -124,7 +125,7 @@ class ElasticLobe {
         c.node[std::size_t(c.count)] = r.node[j],
         c.weight[std::size_t(c.count++)] = bary[Eigen::Index(k)] * r.weight[j];
     }
-    c.least = missing + way.dot(at(c));
+    c.least = missing + direction.dot(at(c));
     return c;
   }
 
@@ -187,7 +188,7 @@ std::vector<double> distances(const Solid& own, const Solid& other) {
   return out;
 }
 
-/// The rigid floor gives way where the wall stands in it, smoothly all round.
+/// The rigid floor is lowered where the wall intersects it, with a smooth transition.
 double draw_back(Solid& floor, const Solid& wall, double gap) {
   const TriMesh m = floor.mesh();
   std::vector<std::vector<int>> next(m.vertices.size());

@@ -14,7 +14,7 @@ struct Nearest {
   double distance = 0;  ///< negative behind the surface
   int triangle = -1;
   Vec3 bary = Vec3::Zero();
-  Vec3 outward = Vec3::UnitZ();  ///< unit: the way on which the distance grows
+  Vec3 outward = Vec3::UnitZ();  ///< unit: direction in which the distance grows
 };
 
 class Solid {

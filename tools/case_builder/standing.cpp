@@ -47,7 +47,7 @@ double deepest(const TriMesh& points, const std::vector<Solid>& solids) {
   return out;
 }
 
-/// Whether a triangle of the mesh crosses the way from a to b (Moeller, Trumbore 1997).
+/// Whether a triangle of the mesh crosses the segment from a to b (Moeller, Trumbore 1997).
 bool crossed(const Vec3& a, const Vec3& b, const TriMesh& mesh) {
   const Vec3 d = b - a;
   for (const auto& t : mesh.triangles) {

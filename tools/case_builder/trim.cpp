@@ -21,8 +21,8 @@ double away(const TriMesh& m, const Vec3& p) {
   return least;
 }
 
-/// Way along the lines from the point nearest to `from` to each point of each line, mm.
-std::vector<std::vector<double>> ways(const std::vector<artery::NamedCurve>& lines, const Vec3& from) {
+/// Distance along the lines from the point nearest to `from` to each point of each line, mm.
+std::vector<std::vector<double>> distances(const std::vector<artery::NamedCurve>& lines, const Vec3& from) {
   std::vector<std::vector<double>> out;
   std::size_t line = 0, point = 0;
   double least = std::numeric_limits<double>::infinity();
@@ -35,17 +35,18 @@ std::vector<std::vector<double>> ways(const std::vector<artery::NamedCurve>& lin
   std::map<std::string, double> joint;
   for (std::size_t pass = 0; pass <= lines.size(); ++pass)
     for (std::size_t l = 0; l < lines.size(); ++l) {
-      auto& way = out[l];
+      auto& distance = out[l];
       const auto& p = lines[l].curve.points;
       const auto meet = [&](const std::string& name, double& end) {
         const auto [at, fresh] = joint.emplace(name, end);
         if (!fresh) at->second = end = std::min(at->second, end);
       };
-      meet(lines[l].from, way.front()), meet(lines[l].to, way.back());
-      for (std::size_t k = 1; k < p.size(); ++k) way[k] = std::min(way[k], way[k - 1] + (p[k] - p[k - 1]).norm());
+      meet(lines[l].from, distance.front()), meet(lines[l].to, distance.back());
+      for (std::size_t k = 1; k < p.size(); ++k)
+        distance[k] = std::min(distance[k], distance[k - 1] + (p[k] - p[k - 1]).norm());
       for (std::size_t k = p.size() - 1; k > 0; --k)
-        way[k - 1] = std::min(way[k - 1], way[k] + (p[k] - p[k - 1]).norm());
-      meet(lines[l].from, way.front()), meet(lines[l].to, way.back());
+        distance[k - 1] = std::min(distance[k - 1], distance[k] + (p[k] - p[k - 1]).norm());
+      meet(lines[l].from, distance.front()), meet(lines[l].to, distance.back());
     }
   return out;
 }
@@ -58,21 +59,23 @@ artery::Surface trimmed(const artery::Surface& surface, const std::vector<artery
   std::vector<artery::NamedCurve> lines;
   for (const auto& l : all)
     if (l.name != "sac") lines.push_back(l);
-  const auto way = ways(lines, neck);
+  const auto distance = distances(lines, neck);
   for (std::size_t l = 0; l < lines.size(); ++l) {
     const auto& c = lines[l].curve;
     for (std::size_t k = 0; k + 1 < c.size(); ++k) {
-      const bool out = way[l][k] < keep && way[l][k + 1] >= keep, in = way[l][k] >= keep && way[l][k + 1] < keep;
+      const bool out = distance[l][k] < keep && distance[l][k + 1] >= keep,
+                 in = distance[l][k] >= keep && distance[l][k + 1] < keep;
       if (!out && !in) continue;
-      const double end = out ? way[l].back() : way[l].front();
+      const double end = out ? distance[l].back() : distance[l].front();
       if (end < keep + 2 * c.radius[k]) continue;  // its own end is hardly farther
       // A section so near to a fork is not of this line alone.
       const bool forks = (out ? lines[l].from : lines[l].to).starts_with("bifurcation");
-      const double inner = out ? way[l].front() : way[l].back(),
+      const double inner = out ? distance[l].front() : distance[l].back(),
                    free = forks ? past_fork * (out ? c.radius.front() : c.radius.back()) : 0;
       std::size_t first = k;
-      while (first > 0 && first + 1 < c.size() && way[l][first] - inner < free) first = out ? first + 1 : first - 1;
-      if (end < way[l][first] + 2 * c.radius[first]) continue;
+      while (first > 0 && first + 1 < c.size() && distance[l][first] - inner < free)
+        first = out ? first + 1 : first - 1;
+      if (end < distance[l][first] + 2 * c.radius[first]) continue;
       bool done = false;
       std::string why;
       for (std::size_t farther = 0; farther < 8 && !done; ++farther) {
@@ -90,7 +93,7 @@ artery::Surface trimmed(const artery::Surface& surface, const std::vector<artery
           done = true;
           notes.push_back({Note::Kind::repair,
                            fmt::format("{} was cut off {:.1f} mm from the neck ({:.1f} mm of it left out).",
-                                       lines[l].name, way[l][at], end - way[l][at]),
+                                       lines[l].name, distance[l][at], end - distance[l][at]),
                            "The fissure has room for short stretches only; --keep MM keeps more."});
         } catch (const InputError& e) {
           why = e.what();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Describes the cleft between two parts: its superficial opening as a polyline, its depth, and the way out.
+// Describes the cleft between two parts: its superficial opening as a polyline, its depth, and the direction out.
 #pragma once
 
 #include <string>

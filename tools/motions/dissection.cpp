@@ -114,11 +114,11 @@ class Trainer : public Surgeon {
   /// Leans with a tool on a place that gives way: the hand goes from 5 mm before it to `most` behind it, wherever it is
   /// by then, until `enough`.
   template <class Place, class Enough>
-  void press(int hand, const Vec3& shaft, const Vec3& way, Place place, double most, Enough enough,
+  void press(int hand, const Vec3& shaft, const Vec3& direction, Place place, double most, Enough enough,
              const Vec3& across = Vec3::UnitZ()) {
     const auto go_to = [&](double seconds, double depth) {
       Wish w[2] = {hands_.left(), hands_.right()};
-      w[hand].pose = tool_pose(place() + depth * way, shaft, across);
+      w[hand].pose = tool_pose(place() + depth * direction, shaft, across);
       hands_.move(seconds, w[0], w[1]);
     };
     double depth = -5 * mm, vessel = 0, lobe = 0;

@@ -57,7 +57,7 @@ int Surgeon::divide(const Pace& pace, const std::function<void(const Sweep&, int
       if (!withdrawn) add_tool(*simulation_.instrument_of(0));
       sweep = planner_.best(strands(), tries, hands_.right().pose.p, true);
     }
-    if (sweep.strand < 0 && !withdrawn) {  // perhaps the suction tube stands in the way
+    if (sweep.strand < 0 && !withdrawn) {  // perhaps the suction tube is in the path
       const Pose at = hands_.left().pose;
       hands_.move(0.8, {Pose{at.p + 25 * mm * (at.q * Vec3::UnitZ()), at.q}}, hands_.right());
       withdrawn = true;
@@ -68,11 +68,11 @@ int Surgeon::divide(const Pace& pace, const std::function<void(const Sweep&, int
     if (sweep.strand < 0) break;
     const std::size_t strand = std::size_t(sweep.strand);
     const Vec3 tip = hands_.right().pose.p;
-    const double way = (sweep.pose(-sweep.half).p - tip).norm() <= (sweep.pose(sweep.half).p - tip).norm() ? 1 : -1;
-    go({sweep.pose(-way * sweep.half)}, pace);
+    const double sense = (sweep.pose(-sweep.half).p - tip).norm() <= (sweep.pose(sweep.half).p - tip).norm() ? 1 : -1;
+    go({sweep.pose(-sense * sweep.half)}, pace);
     for (const int stroke : {1, -1, 1}) {
       hands_.move(pace.stroke + pace.stroke_per_m * sweep.half,
-                  {sweep.pose(stroke * way * sweep.half)});  // more than parts it, should the arms lag
+                  {sweep.pose(stroke * sense * sweep.half)});  // more than parts it, should the arms lag
       if (pace.until_severed && strands()[strand].integrity < 0) break;
     }
     ++tries[strand];

@@ -14,7 +14,7 @@ namespace insula {
 struct Pace {
   double stroke = 0.25, stroke_per_m = 110;  ///< s, and s/m of half a stroke
   double travel = 0.016, turn = 2.2;         ///< m/s, rad/s
-  double at_least = 0.3;                     ///< s, of a way between strokes
+  double at_least = 0.3;                     ///< s, of a path between strokes
   double enter = 2.2;                        ///< s, from outside of the field and back
   bool until_severed = false;                ///< no more strokes than part the strand; else three in any case
 };

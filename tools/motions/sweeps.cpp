@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Search over shaft directions, depths and senses, scored by room, by what else is cut, and by the way to go.
+// Search over shaft directions, depths and senses, scored by room, by what else is cut, and by the length of the path.
 #include "tools/motions/sweeps.h"
 
 #include <algorithm>
@@ -90,7 +90,7 @@ Sweep SweepPlanner::best(const std::vector<StrandState>& strands, const std::vec
                                               : std::vector<double>{0.5, 0.35, 0.65, 0.2, 0.8};
   const std::vector<double> depths = thorough ? std::vector<double>{0.2e-3, -0.15e-3, -0.35e-3, 0.7e-3, 1.4e-3}
                                               : std::vector<double>{0.2e-3, -0.15e-3, 0.7e-3, 1.4e-3};
-  const double press = thorough ? 1.0e-3 : 0.5e-3;  // how far a lobe, which gives way, may be pushed in
+  const double press = thorough ? 1.0e-3 : 0.5e-3;  // depth by which a yielding lobe may be pushed in
   Sweep best;
   for (std::size_t n = 0; n < order.size() && (n < 8 || best.strand < 0); ++n) {
     const std::size_t i = order[n];

@@ -17,7 +17,7 @@ struct Ball {
 };
 
 struct Field {
-  Vec3 centre, outward;  ///< the sac's middle, and the way to the surgeon
+  Vec3 centre, outward;  ///< the sac's middle, and the direction to the surgeon
   Vec3 lean;             ///< usual direction of the shaft
   const Clearance *vessel, *others;
 };
@@ -26,7 +26,7 @@ struct Sweep {
   int strand = -1;
   Vec3 shaft, across, middle;     ///< the tip passes `middle` along `across`
   double half = 0;                ///< to both sides, m
-  double vessel = 0, others = 0;  ///< least room on the way, m
+  double vessel = 0, others = 0;  ///< smallest clearance on the path, m
   double score = -1e9;
   Pose pose(double offset) const { return tool_pose(middle + offset * across, shaft, across); }
 };
@@ -40,7 +40,7 @@ class SweepPlanner {
              bool thorough = false) const;
   /// Least room of the whole tool at a pose, m.
   double room(const Pose& pose, double* vessel = nullptr, double* others = nullptr) const;
-  /// Least room on the straight way between two poses, m.
+  /// Smallest clearance on the straight path between two poses, m.
   double room(const Pose& from, const Pose& to) const;
 
  private:

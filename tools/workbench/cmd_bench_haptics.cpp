@@ -35,7 +35,7 @@ Latency read_latency(std::string text) {
 struct Variant {
   const char* name;
   ReplaySettings settings;
-  bool turned = true;  ///< contacts turned by the engine to where they are when the problem arrives
+  bool predicted = true;  ///< contacts turned by the engine to where they are when the problem arrives
 };
 
 std::vector<Variant> variants(bool ablation) {
@@ -100,11 +100,11 @@ void measure(const CommandContext& context, const HapticBenchOptions& options, S
       if (options.fine) steps = every(std::size_t(std::lround(1e3 / rate)), steps);
       return steps;
     };
-    const auto turned = record(latency.at(1 / rate));
+    const auto predicted = record(latency.at(1 / rate));
     const auto plain = record(-1);
     engine.reset();
     for (Variant& v : variants(options.ablation)) {
-      const auto& steps = v.turned ? turned : plain;
+      const auto& steps = v.predicted ? predicted : plain;
       v.settings.latency_s = latency.at(1 / rate);
       v.settings.jitter = options.jitter;
       const ForceTrace rendered = replay(steps, motion, duration, v.settings);

@@ -118,9 +118,9 @@ struct Share {
 }  // namespace
 
 CostEstimate estimate(const SceneWork& w, const CostRates& r, int threads) {
-  // A triangle of a wall with its hinges, over a tetrahedron; how often a kept factor is made anew; iterations of a
-  // solve with one made in the background; a step over the best of several runs in a row, whose data lie in the caches;
-  // entries of a factor that a cache holds.
+  // wall_tangent, wall_force: cost of a wall triangle with its hinges over a tetrahedron. anew: share of steps that
+  // renew a kept factor. iterations: of a solve with a background factor. in_a_step: time in a step over that of the
+  // best of several runs in a row, with data in the caches. cached: entries of a factor that a cache holds.
   constexpr double wall_tangent = 3, wall_force = 3.2, anew = 0.05, iterations = 3, in_a_step = 1.25, cached = 1e6,
                    newton_step = 2;
   CostEstimate out;

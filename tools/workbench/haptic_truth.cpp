@@ -111,7 +111,7 @@ std::vector<RecordedStep> record_steps(Simulation& simulation, const Motion& mot
   Driven driven(simulation, motion);
   ExchangePause pause;
   Condenser condense;
-  ContactFramePrediction turned;
+  ContactFramePrediction predict;
   ProblemStamp stamp;
   ConstraintProblem condensed;
   std::vector<std::uint8_t> bytes;
@@ -124,7 +124,7 @@ std::vector<RecordedStep> record_steps(Simulation& simulation, const Motion& mot
     stamp.step_s = simulation.h();
     stamp.sim_time_s = simulation.time();
     const ConstraintProblem& sent =
-        condense(prediction_horizon_s >= 0 ? turned(simulation, prediction_horizon_s) : simulation.problem(),
+        condense(prediction_horizon_s >= 0 ? predict(simulation, prediction_horizon_s) : simulation.problem(),
                  Publisher::max_rows, condensed);
     if (!encode_problem(stamp, sent, pause.hands(simulation), bytes) || !decode_problem(bytes, step.update, why))
       out.pop_back();

@@ -69,13 +69,13 @@ TEST_F(HapticTruth, ContactsTurnedByTheEngineAreTruerAt30Hz) {
   s.latency_s = 3e-3;
   s.servo = ServoSettings::beyond_equation_7();
   const double as_in_the_step = truth(replay(steps(30), *motion_, tap_s, s)).rms;
-  const double turned = truth(replay(steps(30, s.latency_s), *motion_, tap_s, s)).rms;
-  std::printf("a tap at 30 Hz: %.4f, turned %.4f\n", as_in_the_step, turned);
-  EXPECT_LT(turned, 0.8 * as_in_the_step);
+  const double predicted = truth(replay(steps(30, s.latency_s), *motion_, tap_s, s)).rms;
+  std::printf("a tap at 30 Hz: %.4f, turned %.4f\n", as_in_the_step, predicted);
+  EXPECT_LT(predicted, 0.8 * as_in_the_step);
 }
 
 // A blade touches by several places at once: held still, each keeps its own direction.
-TEST(HapticTruthTurned, WhatIsHeldStillIsNotTurned) {
+TEST(HapticTruthPredicted, FramesOfWhatIsHeldStillAreNotRotated) {
   constexpr double still_s = 0.44;  // pressed on from 0.35 to 0.45 s
   const Motion drag = load_motion(source / "scenes/haptics/drag.csv");
   auto simulation = fissure(1.0 / 60);
@@ -87,11 +87,11 @@ TEST(HapticTruthTurned, WhatIsHeldStillIsNotTurned) {
       for (int i = 0; i < p.rows; ++i) sum += p.lambda[std::size_t(i)] * tool.jacobian.row(i).transpose();
     return sum.head<3>();
   };
-  const Vec3 as_in_the_step = push(-1), turned = push(3e-3);
+  const Vec3 as_in_the_step = push(-1), predicted = push(3e-3);
   std::printf("held still: %.1f mN, turned %.2f mN away\n", 1e3 * as_in_the_step.norm(),
-              1e3 * (turned - as_in_the_step).norm());
+              1e3 * (predicted - as_in_the_step).norm());
   EXPECT_GT(as_in_the_step.norm(), 0.02);
-  EXPECT_LT((turned - as_in_the_step).norm(), 0.005 * as_in_the_step.norm());
+  EXPECT_LT((predicted - as_in_the_step).norm(), 0.005 * as_in_the_step.norm());
 }
 
 TEST_F(HapticTruth, ANewProblemDoesNotJumpAt30HzWithJitter) {
@@ -140,8 +140,8 @@ void expect_no_jump(const char* scene, const char* motion_file, double until_s) 
   EXPECT_GT(most, 0.1);  // there is something to hand over
 }
 
-TEST(HapticHandOver, WhereStrandsPart) { expect_no_jump("1_sylvian_fissure.xml", "strand.csv", 2.5); }
-TEST(HapticHandOver, WhereAClipComesUpAgainstAVessel) { expect_no_jump("3_clipping.xml", "clip.csv", 2.6); }
+TEST(HapticCrossfade, WhereStrandsPart) { expect_no_jump("1_sylvian_fissure.xml", "strand.csv", 2.5); }
+TEST(HapticCrossfade, WhereAClipComesUpAgainstAVessel) { expect_no_jump("3_clipping.xml", "clip.csv", 2.6); }
 
 TEST(HapticTruthCompare, ErrorsAndOnsets) {
   std::vector<Vec3> reference(200, Vec3::Zero()), rendered = reference;

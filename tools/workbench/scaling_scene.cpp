@@ -29,7 +29,7 @@ struct Folder {
   }
 };
 
-/// gmsh 2.2, mm. The diagonals of all cubes run the same way, so neighbours fit.
+/// gmsh 2.2, mm. The diagonals of all cubes have the same direction, so neighbours fit.
 void write_brick(const fs::path& file, int cells, double low) {
   const int side = cells + 1;
   std::string out = fmt::format("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{}\n", side * side * side);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Who may ask the gateway for what: the names it answers to, and what a page of each role may send.
+// Access to the gateway: the host names that it accepts, and the messages that a page of each role may send.
 #pragma once
 #include <boost/asio/ip/address.hpp>
 #include <string>
@@ -12,12 +12,11 @@ namespace insula::gateway {
 /// without brackets, in its usual form. Empty when the text is malformed.
 std::string host_name(std::string_view host);
 
-/// The names the gateway answers to: those of the loopback interface, the address a connection reached, and the names
-/// that were given. A name that a foreign DNS server lets point to this machine is none of them, so pages of that name
-/// are refused (DNS rebinding).
+/// The accepted host names: those of the loopback interface, the local address of a connection, and the given names. If
+/// a foreign DNS server maps another name to this machine, pages of that name are refused (DNS rebinding).
 class AllowedHosts {
  public:
-  /// Whether a text can be given: a name or an address, without a scheme.
+  /// Whether a text is a valid name or address, without a scheme.
   static bool is_name(const std::string& given);
   explicit AllowedHosts(const std::vector<std::string>& given);
 
@@ -28,11 +27,11 @@ class AllowedHosts {
   std::vector<std::string> given_;
 };
 
-/// What a page may do. It chooses its role when it connects ("/ws?role=observer"); this keeps order in a training room
-/// and is no lock.
+/// Role of a page. The page chooses it when it connects ("/ws?role=observer"). This keeps order in a training room but
+/// is not a security measure.
 enum class Role { trainee, instructor, observer };
 
-/// The role in the query of a request target: trainee when there is none. An unknown role is an observer.
+/// The role in the query of a request target, or trainee if there is none. An unknown role is an observer.
 Role role_of(std::string_view target);
 
 struct Rights {
@@ -40,8 +39,8 @@ struct Rights {
   bool commands = false;  ///< may send USER_COMMAND
 };
 
-/// Trainees move hands and give commands, instructors give commands, observers only watch. Hands are moved only by
-/// pages on this machine: `here` says whether the page is one.
+/// Trainees move hands and give commands, instructors give commands, observers only watch. Only pages on this machine
+/// may move hands. `here`: whether the page is on this machine.
 Rights rights_of(Role role, bool here);
 
 }  // namespace insula::gateway

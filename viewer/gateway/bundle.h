@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The scene bundle being shown (docs/scene-bundle.md): which of its files may be served.
+// The files of the present scene bundle (docs/scene-bundle.md) that may be served.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -10,8 +10,8 @@
 
 namespace insula::gateway {
 
-/// The bus names the folder, and anyone on the bus could name any folder: so only scene.json and what it lists is
-/// served, and only from within the folder.
+/// The bus gives the folder, and any sender on the bus could give any folder. So only scene.json and the files that it
+/// lists are served, and only from within the folder.
 class Bundle {
  public:
   void set(std::int64_t session, const std::string& folder);

@@ -11,7 +11,7 @@
 
 namespace insula::gateway {
 
-/// Shared by all clients a message goes to.
+/// Shared by all clients that get the message.
 using Message = std::shared_ptr<const std::vector<std::uint8_t>>;
 
 inline Message frame(std::string_view channel, Bytes payload) {
@@ -24,7 +24,7 @@ inline Message frame(std::string_view channel, Bytes payload) {
 }
 
 struct Unframed {
-  std::string_view channel;  // both point into the bytes given
+  std::string_view channel;  // both point into the given bytes
   Bytes payload;
 };
 

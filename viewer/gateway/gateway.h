@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The gateway: serves the viewer's page and the scene bundle over HTTP and joins pages to the bus over WebSockets. Owns
-// no state of the simulation.
+// The gateway: serves the viewer's page and the scene bundle over HTTP, and connects pages to the bus over WebSockets.
+// It has no state of the simulation.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -13,25 +13,25 @@
 namespace insula::gateway {
 
 struct Options {
-  std::string listen = "127.0.0.1";  ///< address to listen on; 0.0.0.0 lets other machines in
+  std::string listen = "127.0.0.1";  ///< address to listen on; 0.0.0.0 admits other machines
   std::uint16_t port = 8080;         ///< 0: any free one
-  int more_ports = 20;               ///< so many following ports are tried when this one is busy
-  std::vector<std::string> hosts;    ///< names, besides its addresses, under which pages may ask for it
+  int more_ports = 20;               ///< number of following ports that are tried if this one is busy
+  std::vector<std::string> hosts;    ///< names, besides its addresses, by which pages may address it
   std::filesystem::path page;        ///< folder with index.html; empty: a note instead of the page
 };
 
 class Gateway {
  public:
-  /// The bus must outlive the gateway, which is the only one to poll it.
+  /// The bus must outlive the gateway. Only the gateway may poll it.
   Gateway(Bus& bus, Options options);
   ~Gateway();  ///< stops
   Gateway(const Gateway&) = delete;
   Gateway& operator=(const Gateway&) = delete;
 
-  /// Opens the port and starts a bus thread and a network thread. Returns the error text, empty when started.
+  /// Opens the port and starts a bus thread and a network thread. Returns the error text; empty when started.
   std::string start();
   void stop();
-  std::uint16_t port() const;  ///< the one it got
+  std::uint16_t port() const;  ///< the port in use
   std::string url() const;     ///< for a browser on this machine
 
  private:

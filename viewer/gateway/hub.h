@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Between the bus and the clients: what came from the bus goes to every client's outbox; what a page says is checked
-// and goes to the bus.
+// Connects the bus and the clients. Messages of the bus go to every client's outbox. Messages of a page are checked and
+// go to the bus.
 #pragma once
 #include <array>
 #include <atomic>
@@ -24,7 +24,7 @@
 
 namespace insula::gateway {
 
-/// A connected page, as the hub sees it. Called on the network thread.
+/// A connected page for the hub. Called on the network thread.
 class Client {
  public:
   virtual ~Client() = default;
@@ -38,16 +38,16 @@ class Hub {
   using Post = std::function<void(std::function<void()>)>;
   Hub(Bus& bus, Post on_network_thread);
 
-  /// Waits up to timeout_ms for messages and passes them on. Called by the bus thread alone.
+  /// Waits up to timeout_ms for messages and passes them on. Called only by the bus thread.
   void poll(int timeout_ms);
 
-  // The rest is called on the network thread alone.
+  // The rest is called only on the network thread.
   void join(const std::shared_ptr<Client>& client);  ///< gets the last SCENE_INFO at once
   void leave(const Client* client);
-  /// A page's message. Anything but a whole, plausible USER_COMMAND or HAND_INPUT that the page has a right to is
-  /// counted and dropped.
+  /// Handles a page's message. Only a valid, plausible USER_COMMAND or HAND_INPUT for which the page has the right is
+  /// passed on. Others are counted and dropped.
   bool from_page(Bytes framed, Rights rights);
-  /// Counts a page's message dropped before it was looked at (text, too many a second).
+  /// Counts a page's message that was dropped before it was checked (text, too many per second).
   void refuse_from_page() { ++page_refused_; }
   std::string health() const;  ///< JSON
   Bundle& bundle() { return bundle_; }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What waits to be sent to one client. Its size is bounded whatever the client does: of each kind of state only the
-// newest message is kept, of events (which happen once) the last few hundred.
+// Messages that wait to be sent to one client. Its size is bounded for any client: only the newest message of each kind
+// of state is kept, and the last few hundred events.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -33,7 +33,7 @@ class Outbox {
     slot = std::move(message);
   }
 
-  /// The most urgent message, or null. Topics take turns below the first two, so that none starves.
+  /// The most urgent message, or null. The topics after the first two alternate, so that each is sent.
   Message take() {
     if (Message m = std::move(newest_[std::size_t(Topic::scene_info)])) return m;
     if (!events_.empty()) {
@@ -49,7 +49,9 @@ class Outbox {
     return nullptr;
   }
 
-  std::uint64_t dropped() const { return dropped_; }  ///< messages a newer one replaced before they were sent
+  std::uint64_t dropped() const {
+    return dropped_;
+  }  ///< number of messages that a newer one replaced before they were sent
 
   /// Bytes held, for the tests.
   std::size_t bytes() const {

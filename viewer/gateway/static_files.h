@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From a URL to a file that may be served, or nothing.
+// Maps a URL to a file that may be served.
 #pragma once
 #include <filesystem>
 #include <optional>
@@ -9,9 +9,9 @@
 
 namespace insula::gateway {
 
-/// The parts of a request target's path, percent-decoded, without query and fragment. Nothing for anything odd: not
-/// starting with "/", bad escapes, control characters, backslashes, "." or ".." parts (however written). A trailing
-/// slash gives an empty last part.
+/// The parts of a request target's path, percent-decoded, without query and fragment. Returns nothing for a path that
+/// does not start with "/", or that has bad escapes, control characters, backslashes, or "." or ".." parts in any
+/// encoding. A trailing slash gives an empty last part.
 std::optional<std::vector<std::string>> split_target(std::string_view target);
 
 /// The regular file root/parts..., which must lie within root after symbolic links are resolved.
@@ -21,8 +21,8 @@ std::optional<std::filesystem::path> file_below(const std::filesystem::path& roo
 /// Content type by file extension.
 std::string_view mime_type(const std::filesystem::path& file);
 
-/// The page's folder: INSULA_PAGE, else beside the executable in a build or installation tree, else where the sources
-/// were when this was built. Empty when there is none with an index.html.
+/// The page's folder: INSULA_PAGE, or else beside the executable in a build or installation tree, or else in the source
+/// folder of the build. Empty if none has an index.html.
 std::filesystem::path find_page();
 
 }  // namespace insula::gateway

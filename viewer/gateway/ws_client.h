@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One page on a WebSocket: an outbox with one write in flight, and a reader that hands messages to the hub.
+// One page on a WebSocket: an outbox with one write in flight, and a reader that passes messages to the hub.
 #pragma once
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
@@ -18,7 +18,7 @@ namespace http = beast::http;
 class WsClient final : public Client, public std::enable_shared_from_this<WsClient> {
  public:
   WsClient(beast::tcp_stream&& stream, Hub& hub, Rights rights);
-  /// Answers the upgrade request and starts to talk. The client lives until its connection ends.
+  /// Answers the upgrade request and starts the exchange. The client exists until its connection ends.
   void start(const http::request<http::empty_body>& request);
 
   void send(Topic topic, const Message& message) override;
@@ -37,7 +37,7 @@ class WsClient final : public Client, public std::enable_shared_from_this<WsClie
   Outbox outbox_;
   Message in_flight_;
   bool open_ = false;
-  double allowance_ = 0;  // messages the page may still send now
+  double allowance_ = 0;  // number of messages that the page may still send now
   std::chrono::steady_clock::time_point allowance_at_{};
 };
 

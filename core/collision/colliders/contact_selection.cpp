@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Choosing and naming contacts.
+// Selection of contacts and their keys.
 #include "core/collision/colliders/contact_selection.h"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ Vec3 tangent_to(const Vec3& n, const Vec3& wish) {
     t -= n.dot(t) * n;
   }
   t.normalize();
-  t -= n.dot(t) * n;  // perpendicular to the last bit that matters
+  t -= n.dot(t) * n;  // perpendicular to the last significant bit
   return t.normalized();
 }
 
@@ -59,14 +59,14 @@ void ContactSelection::select(std::vector<Proximity>& all, const SelectionSettin
     if (int(kept_.size()) >= settings.max_contacts) break;
     const Proximity& x = all[std::size_t(o.index)];
     bool keep = true;
-    // A wall's contacts stand still; those at the limit of the spacing must not flicker.
+    // A wall's contacts do not move, and those at the limit of the spacing must not flicker.
     const double apart2 = settings.both_ends && o.known ? 0.81 * spacing2 : spacing2;
     int of_piece = 0;
     for (const Proximity& k : kept_) {
       if (k.piece == x.piece && x.piece >= 0) ++of_piece;
       constexpr double cos40 = 0.766;
       const double cosine = k.normal.dot(x.normal);
-      // Tissue finds the same place from both sides, with opposite normals.
+      // Tissue finds the same contact from both sides, with opposite normals.
       bool alike = x.vertex >= 0 && k.side != x.side ? cosine < -cos40 : cosine > cos40;
       if (settings.both_ends && alike) {
         alike = k.side == x.side && (other_end(k) - other_end(x)).squaredNorm() < apart2;

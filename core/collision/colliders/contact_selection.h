@@ -19,7 +19,7 @@ struct SelectionSettings {
   double advantage = 0.2e-3;  ///< m of gap that a contact of the last step may be farther and still win
   int max_contacts = 8;
   int max_per_piece = 4;
-  bool both_ends = false;  ///< a surface with itself: two contacts are alike if both ends are near, in either order
+  bool both_ends = false;  ///< surface against itself: two contacts are alike if both ends are near, in either order
 };
 
 class ContactSelection {
@@ -28,7 +28,7 @@ class ContactSelection {
   /// new contact. Allocates only to grow.
   void select(std::vector<Proximity>& all, const SelectionSettings& settings, std::uint64_t& next_key);
   void reset() { last_.clear(); }
-  /// Makes room: proximities before and contacts after a selection.
+  /// Reserves memory for so many proximities before a selection and contacts after it.
   void reserve(std::size_t before, std::size_t after);
 
  private:
@@ -48,7 +48,8 @@ class ContactSelection {
   std::vector<Proximity> kept_;
 };
 
-/// A unit vector perpendicular to n, as near to `wish` as possible. A fixed choice where wish is parallel to n or zero.
+/// A unit vector perpendicular to n, as near to `wish` as possible. If `wish` is zero or parallel to n, the choice is
+/// fixed.
 Vec3 tangent_to(const Vec3& n, const Vec3& wish);
 
 }  // namespace insula

@@ -10,15 +10,15 @@
 namespace insula {
 namespace {
 
-constexpr double facing = 0.1;       ///< cosine by which two normals must oppose one another
-constexpr double along_wall = 0.92;  ///< normals that agree by this at rest belong to one stretch of wall ...
-constexpr double bent = 0.8;  ///< ... those that agree by this need looking at only once the wall between them is bent
-constexpr double horizon = 0.5e-3;         ///< farther than needed, to know for how long nothing will come, m
-constexpr double skin = 0.4e-3;            ///< motion after which a list of partners is made anew, m
-constexpr double yields = 0.3;             ///< part of its turn that the normal of a pressing contact takes in a step
-constexpr double min_turn = 1e-3;          ///< a turn of less is none, rad
-constexpr int swings_for_good = 120;       ///< to and fro in two steps or in three: reached after one second or two
-constexpr std::size_t longest_list = 192;  ///< partners of a sample; with more, the tree is asked in every step
+constexpr double facing = 0.1;       ///< normals of a pair must be opposed by this cosine
+constexpr double along_wall = 0.92;  ///< normals that agree by this cosine at rest belong to one part of the wall ...
+constexpr double bent = 0.8;        ///< ... those that agree by this are tested only when the wall between them is bent
+constexpr double horizon = 0.5e-3;  ///< the search goes farther by this, to be valid for some steps, m
+constexpr double skin = 0.4e-3;     ///< motion after which a list of partners is made again, m
+constexpr double yields = 0.3;  ///< part of the wanted rotation that the normal of a pressing contact takes in a step
+constexpr double min_turn = 1e-3;          ///< smaller rotations are ignored, rad
+constexpr int swings_for_good = 120;       ///< reached after one or two seconds of oscillation
+constexpr std::size_t longest_list = 192;  ///< partners of a sample; with more, the tree is searched in every step
 
 /// Where the ray from `from` along the unit vector `along` goes out through triangle pqr; -1 if it does not.
 double exit_through(const Vec3& from, const Vec3& along, const Vec3& p, const Vec3& q, const Vec3& r, Vec3& bary) {
@@ -28,7 +28,7 @@ double exit_through(const Vec3& from, const Vec3& along, const Vec3& p, const Ve
   const double t = n.dot(p - from) / rate;
   const Vec3 x = from + t * along;
   const Vec3 w(n.dot((r - q).cross(x - q)), n.dot((p - r).cross(x - r)), n.dot((q - p).cross(x - p)));
-  // A ray through an edge or a vertex must not slip between the triangles there.
+  // A ray through an edge or a vertex must not pass between the triangles there.
   if (w.minCoeff() < -1e-9 * n.squaredNorm()) return -1;
   bary = w.cwiseMax(0.0) / w.cwiseMax(0.0).sum();
   return t;
@@ -80,9 +80,9 @@ void SelfCollider::reset() {
   for (auto& c : covered_) c.assign(samples_.size(), -1.0);
 }
 
-// A hard press on a sharp fold throws even a slow normal to and fro, the wall after it: force times change of normal,
-// N/m, against the wall's own stiffness. It is known by turning back again and again for a second or two, which neither
-// a pulse nor a hand does.
+// A large force on a sharp fold makes even a slow normal oscillate, and the wall with it: force times change of normal,
+// N/m, acts against the wall's own stiffness. Such an oscillation reverses in every few steps for a second or two. A
+// pulse or a hand does not cause this.
 double SelfCollider::Swing::share(const Vec3& wanted) {
   constexpr int back = 2, on = 1;
   const bool turned_back =
@@ -92,7 +92,7 @@ double SelfCollider::Swing::share(const Vec3& wanted) {
   return count < swings_for_good ? yields : 0.1 * yields;
 }
 
-// From a vertex straight inward to the opposite wall; 0 if there is none.
+// Distance from a vertex inward along the normal to the opposite wall, m; 0 if there is none.
 double SelfCollider::lumen(const CollisionMesh& rest, int vertex) const {
   const Vec3 from = rest.vertex(vertex), along = -rest.vertex_normal(vertex);
   double least = 1e300;
@@ -127,7 +127,7 @@ int SelfCollider::kind(std::size_t sample, int triangle) const {
                                                                                                                : side;
 }
 
-// Whether what has moved since the sample was last looked at may have brought a partner within range of it.
+// Whether motion since the last test of the sample may have brought a partner within range.
 bool SelfCollider::may_be_near(const CollisionMesh& mesh, std::size_t sample, int side, double range) {
   const std::uint64_t partners = partners_[side][sample];
   const double went = mesh.moved(own_[sample]) + mesh.moved(partners);
@@ -137,7 +137,7 @@ bool SelfCollider::may_be_near(const CollisionMesh& mesh, std::size_t sample, in
          range + std::min(mesh.free(samples_[sample]).norm() + mesh.may_move(partners), horizon);
 }
 
-// All possible partners within `far`, and what may come there before the list is made anew.
+// Lists all possible partners within `far`, and those that may come there before the list is made again.
 void SelfCollider::list_partners(const CollisionMesh& mesh, std::size_t sample, int side, double far) {
   auto& list = lists_[side][sample];
   list.clear();
@@ -164,7 +164,7 @@ void SelfCollider::near(const CollisionMesh& mesh, const SelfContactSettings& se
   const int v = samples_[sample];
   const int before = close_[side][sample];
   const bool was = before != 0;
-  // What touched is looked for farther, what has crossed as deep as crossings are undone.
+  // Samples with a contact search farther. Samples that have crossed search as deep as crossings are corrected.
   const double range = (was ? 1.2 * settings.alarm + horizon : settings.alarm) + settings.thickness;
   const double reach = before == 2 ? std::max(range, settings.max_depth) : range;
   if (!may_be_near(mesh, sample, side, range) && !was) return;
@@ -182,7 +182,7 @@ void SelfCollider::near(const CollisionMesh& mesh, const SelfContactSettings& se
     const Vec3 p = mesh.vertex(t[0]), q = mesh.vertex(t[1]), r = mesh.vertex(t[2]);
     const Vec3 n = (q - p).cross(r - p);
     const double h = n.dot(x - p), nn = n.squaredNorm();
-    if (h * h > limit2 * nn) return;  // its plane is farther than the best
+    if (h * h > limit2 * nn) return;  // its plane is farther than the best triangle
     const double agree = outward_[sample].dot(n) / std::sqrt(nn);
     if (agree > 0.5 && normal_[sample].dot(face_normal_[std::size_t(tri)]) > bent) return;
     const Vec3 w = closest_on_triangle(x, p, q, r);
@@ -190,7 +190,7 @@ void SelfCollider::near(const CollisionMesh& mesh, const SelfContactSettings& se
     const double d2 = (x - c).squaredNorm();
     any2 = std::min(any2, d2);
     if (agree > -facing || d2 > limit2 || (d2 == limit2 && best >= 0 && tri > best)) return;
-    // Beside it rather than over it: something nearer was no partner.
+    // The sample is beside the triangle, and a nearer triangle was not a partner.
     const double over = n.dot(x - c);
     if (d2 > 1e-12 && over * over < 0.36 * d2 * nn) return;
     limit2 = d2;
@@ -198,14 +198,14 @@ void SelfCollider::near(const CollisionMesh& mesh, const SelfContactSettings& se
     bary = w;
     point = c;
   };
-  // What the free motion may bring is within the horizon.
+  // Partners that the free motion may bring are within the horizon.
   const double far = settings.thickness + 1.2 * settings.alarm + horizon;
   if (reach <= far && covered_[side][sample] < 0) list_partners(mesh, sample, side, far);
   if (reach <= far && covered_[side][sample] >= 0) {
     const double went = skin - covered_[side][sample];
     for (const Partner& p : lists_[side][sample]) {
       const double at_least = std::max(0.0, p.was - went);
-      if (at_least * at_least > least2) {  // nor does any after it
+      if (at_least * at_least > least2) {  // nor does any later one
         any2 = std::min(any2, at_least * at_least);
         break;
       }
@@ -237,18 +237,18 @@ void SelfCollider::near(const CollisionMesh& mesh, const SelfContactSettings& se
   } else {
     c.normal = free_side;
   }
-  // Outside, two vessels side by side and two that have crossed look alike: only what touched before can have crossed.
-  // And a crossing begins shallow: a fold of the wall that faces the wrong way is none.
+  // On the outside, two neighbouring vessels and two that have crossed look alike, so only samples that touched before
+  // can have crossed. A crossing begins with a small depth. A fold of the wall that faces the other direction is not a
+  // crossing.
   if (crossed && (distance > settings.max_depth || (side == outer && !was))) return;
   if (crossed && before != 2 && distance > settings.thickness + settings.alarm) return;
   c.gap = (crossed ? -distance : distance) - settings.thickness;
   const double approach = c.normal.dot(mesh.free(v) - mesh.free_at(best, bary));
-  // What had a contact keeps it a little longer, lest rows come and go while nothing moves.
+  // An existing contact is kept a little longer, so that rows do not flicker while nothing moves.
   const double alarm = was ? 1.2 * settings.alarm : settings.alarm;
   if (c.gap > alarm && c.gap + approach > alarm) return;
-  // On a fold the nearest place turns about with the slightest motion of the wall, which is so light there that its own
-  // answer would throw it to and fro, step by step. So the normal of what presses turns slowly; but not where walls are
-  // hard, whose gap is now a little above, now a little below zero.
+  // On a fold, the smallest motion of the wall changes the direction to the nearest point, and so light a wall would
+  // oscillate. So the normal of a pressing contact changes slowly, except for hard walls, whose gap changes its sign.
   Vec3& direction = direction_[side][sample];
   Swing& swing = swing_[side][sample];
   if (settings.normal_under_relaxation && was && c.gap < 0 && direction.dot(c.normal) > 0.5)
@@ -273,7 +273,7 @@ Opposite SelfCollider::opposite(const CollisionMesh& mesh, int triangle, const V
     const auto& t = mesh.triangle(tri);
     for (int v : t)
       if (v == own[0] || v == own[1] || v == own[2]) return;
-    // Inner by the rest shape, as for samples.
+    // Inner according to the rest shape, as for samples.
     const Vec3 d = face_position_[std::size_t(tri)] - face_position_[std::size_t(triangle)];
     if (d.squaredNorm() < neighbour_ * neighbour_ || face_normal_[std::size_t(triangle)].dot(d) >= 0 ||
         face_normal_[std::size_t(tri)].dot(d) <= 0)
@@ -290,7 +290,7 @@ void SelfCollider::detect(const CollisionMesh& mesh, const SelfContactSettings& 
                           Workers& workers) {
   if (mesh.tree().empty()) return;
   std::fill(outward_known_.begin(), outward_known_.end(), char(0));
-  if (mesh.updates() - updates_ > 1) {  // motion in between that was not seen may have brought anything
+  if (mesh.updates() - updates_ > 1) {  // unknown motion in between may have brought any partner
     for (auto& c : clear_) std::fill(c.begin(), c.end(), 0.0);
     for (auto& c : covered_) std::fill(c.begin(), c.end(), -1.0);
   }

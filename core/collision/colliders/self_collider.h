@@ -13,7 +13,7 @@
 // possible partners until motion may have added to them.
 //
 // The geometry is that of the start of the step. Where a tool presses on the wall, opposite() finds the point behind
-// that point. A thin wall yields between its supports, so each push needs a support of its own.
+// that point. A thin wall yields between its supports, so each contact of a tool needs a support of its own.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -30,9 +30,9 @@ struct SelfContactSettings {
   double thickness = 0.3e-3;       ///< middle surfaces stay this far apart, m
   double alarm = 0.5e-3;           ///< of the gap, m
   double max_correction = 0.3e-3;  ///< largest correction of an overlap in a step, m
-  double max_depth = 4e-3;         ///< a crossing deeper than this is ignored, m
+  double max_depth = 4e-3;         ///< crossings deeper than this are ignored, m
   bool inner = true, outer = false;
-  bool normal_under_relaxation = false;  ///< normal under-relaxation while pressed, for walls that yield
+  bool normal_under_relaxation = false;  ///< whether normals of pressing contacts change slowly, for walls that yield
 };
 
 /// The point across the lumen behind a point of the wall.
@@ -53,7 +53,8 @@ class SelfCollider {
   /// threads. Does not allocate while `out` has capacity.
   void detect(const CollisionMesh& mesh, const SelfContactSettings& settings, std::vector<Proximity>& out,
               Workers& workers);
-  /// From a point of the wall along a unit vector into the lumen, no farther than `far`.
+  /// Point of the wall that is met first from a point of it along the unit vector `along`, which leads into the lumen.
+  /// The search ends at the distance `far`, m.
   Opposite opposite(const CollisionMesh& mesh, int triangle, const Vec3& bary, const Vec3& along, double far) const;
   const std::vector<int>& samples() const { return samples_; }
   void reset();
@@ -83,21 +84,22 @@ class SelfCollider {
       partners_[2];            ///< of the samples: the mesh's regions of itself, of its possible partners of a side
   std::vector<Vec3> outward_;  ///< of the samples now; computed when first wanted
   std::vector<char> outward_known_;
-  std::vector<char> close_[2];  ///< 1: had a contact of this side in the last step, 2: had crossed; looked for farther
+  std::vector<char>
+      close_[2];  ///< 1: had a contact of this side in the last step, 2: had crossed; its search reaches farther
   std::vector<Vec3> direction_[2];  ///< of the samples: normal of the last contact of this side
-  /// Of a sample that presses: how its normal goes to and fro.
+  /// Oscillation of the normal of a sample that presses.
   struct Swing {
-    Vec3 turn = Vec3::Zero();  ///< that was last wanted
-    int count = 0;             ///< of turns that took back the one before, of late
+    Vec3 turn = Vec3::Zero();  ///< rotation vector that was last wanted, rad
+    int count = 0;             ///< how often of late a rotation undid the one before
     /// The fraction of the wanted rotation that the normal takes in this step. It is reduced once the normal has swung
     /// for long, until the pressing ends.
     double share(const Vec3& wanted);
   };
   std::vector<Swing> swing_[2];
-  std::vector<double> clear_[2];                ///< of the samples: no partner of this side is nearer, m
-  std::vector<std::vector<Partner>> lists_[2];  ///< of the samples: what may be a partner soon, nearest first ...
-  std::vector<double> covered_[2];  ///< ... as long as no more than this has moved; negative: must be made, m
-  long updates_ = 0;                ///< of the mesh when last looked at
+  std::vector<double> clear_[2];  ///< of the samples: lower bound of the distance to partners of this side, m
+  std::vector<std::vector<Partner>> lists_[2];  ///< of the samples: possible partners, nearest first ...
+  std::vector<double> covered_[2];  ///< ... valid while the motion is at most this, m; negative: must be made again
+  long updates_ = 0;                ///< of the mesh at the last detection
   std::vector<std::vector<Proximity>> found_;  ///< of the tasks
   double neighbour_ = 0;                       ///< m
 };

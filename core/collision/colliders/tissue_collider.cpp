@@ -23,7 +23,7 @@ std::vector<int> sample_vertices(std::span<const Vec3> rest, std::span<const std
       return std::size_t(c[0]) * 73856093u ^ std::size_t(c[1]) * 19349663u ^ std::size_t(c[2]) * 83492791u;
     }
   };
-  std::unordered_map<Cell, std::vector<int>, Hash> grid;  // asked, never walked through: its order shows nowhere
+  std::unordered_map<Cell, std::vector<int>, Hash> grid;  // only looked up, never iterated, so its order has no effect
   std::vector<int> samples;
   for (int v = 0; v < int(rest.size()); ++v) {
     if (!used[std::size_t(v)]) continue;
@@ -31,7 +31,7 @@ std::vector<int> sample_vertices(std::span<const Vec3> rest, std::span<const std
     const Cell c{long(std::floor(p[0] / distance)), long(std::floor(p[1] / distance)),
                  long(std::floor(p[2] / distance))};
     bool taken = false;
-    constexpr long around[3] = {0, -1, 1};  // the likeliest cell first
+    constexpr long around[3] = {0, -1, 1};  // the most likely cell first
     for (long i : around)
       for (long j : around)
         for (long k : around) {
@@ -50,11 +50,11 @@ std::vector<int> sample_vertices(std::span<const Vec3> rest, std::span<const std
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-constexpr double surroundings = 2e-3;  ///< what is farther than this from a group need not be followed for a while, m
+constexpr double surroundings = 2e-3;  ///< farther triangles need not be followed by a group for some steps, m
 constexpr double horizon =
-    2e-3;  ///< groups are looked at farther than needed, to know for how long nothing will come, m
-constexpr double near_horizon = 5e-4;  ///< and samples
-constexpr double slow = 5e-5;          ///< what moves less in a step has the same nearest triangle for some steps, m
+    2e-3;  ///< groups search farther than needed by this, so that the result is valid for some steps, m
+constexpr double near_horizon = 5e-4;  ///< the same for samples
+constexpr double slow = 5e-5;          ///< samples that move less keep their nearest triangle for some steps, m
 
 // Coordinates of four points: x of all, y, z.
 std::array<Float4, 3> by_coordinate(const std::array<Float4, 4>& p) {
@@ -87,7 +87,7 @@ void TissueCollider::reset() {
   groups_.assign((samples_.size() + group - 1) / group, {});
 }
 
-// What is kept of leaves in single precision is about the middle of the surface: a few cm.
+// Single-precision data of leaves are relative to the middle of the surface, so they are at most a few cm.
 void TissueCollider::begin_gathering(const AabbTree& tree) {
   gathering_ = true;
   for (int place : cornered_) corners_at_[std::size_t(place)] = -1;
@@ -97,7 +97,7 @@ void TissueCollider::begin_gathering(const AabbTree& tree) {
   centre_ = 0.5 * (all.low + all.high);
 }
 
-// The leaves that any sample of a group may want, their boxes beside each other.
+// Collects the leaves that any sample of a group may need, with their boxes side by side.
 void TissueCollider::gather_leaves(const AabbTree& tree, const Aabb& all) {
   if (!gathering_) begin_gathering(tree);
   leaves_.clear();
@@ -112,7 +112,7 @@ void TissueCollider::gather_leaves(const AabbTree& tree, const Aabb& all) {
     leaves_.push_back(triangles);
   });
   for (std::size_t lane = leaves_.size() % BoxPack::size; lane != 0; lane = (lane + 1) % BoxPack::size)
-    for (auto& row : packs_.back().low) row[lane] = 1e15f;  // nothing is near it
+    for (auto& row : packs_.back().low) row[lane] = 1e15f;  // no sample is near it
 }
 
 const FourTriangles& TissueCollider::corners_of(const CollisionMesh& b, std::size_t leaf) {
@@ -156,7 +156,7 @@ void TissueCollider::look_at_leaves(const CollisionMesh& b, const Vec3& x, const
     }
 }
 
-// What is known of samples after motion, when what is not known of is no nearer than `at_least`.
+// Updates the bounds of samples after motion. Unknown triangles are no nearer than `at_least`.
 void TissueCollider::lessen(std::size_t first, std::size_t last, double swept, double at_least) {
   for (std::size_t i = first; i < last; ++i) {
     clear_[i] = std::min(clear_[i] - swept, at_least);
@@ -164,7 +164,7 @@ void TissueCollider::lessen(std::size_t first, std::size_t last, double swept, d
   }
 }
 
-// Which regions of b are near the group. Returns what those that it did not follow so far are no nearer than, which was
+// Finds the regions of b near the group. Returns the new lower bound of the distance to all other regions, which was
 // `elsewhere`.
 double TissueCollider::look_around(Group& g, const CollisionMesh& a, const CollisionMesh& b, std::size_t first,
                                    std::size_t last, double may_come, double elsewhere) {
@@ -179,7 +179,7 @@ double TissueCollider::look_around(Group& g, const CollisionMesh& a, const Colli
 void TissueCollider::detect(const CollisionMesh& a, const CollisionMesh& b, const TissueContactSettings& settings,
                             std::vector<Proximity>& out) {
   if (b.tree().empty()) return;
-  // Motion in between that was not seen may have brought anything.
+  // Unknown motion in between may have brought any triangle near.
   const bool followed = a.updates() - updates_[0] <= 1 && b.updates() - updates_[1] <= 1;
   updates_ = {a.updates(), b.updates()};
   gathering_ = false;
@@ -188,7 +188,7 @@ void TissueCollider::detect(const CollisionMesh& a, const CollisionMesh& b, cons
   for (std::size_t first = 0; first < samples_.size(); first += group) {
     const std::size_t last = std::min(first + group, samples_.size());
     Group& g = groups_[first / group];
-    // What cannot have come near since it was last looked at needs no look.
+    // Groups to which nothing can have come near since the last test need no test.
     if (g.own == 0)
       for (std::size_t i = first; i < last; ++i) g.own |= a.region_of(samples_[i]);
     const double own = a.moved(g.own), went = own + b.moved(g.near);
@@ -221,8 +221,8 @@ void TissueCollider::detect(const CollisionMesh& a, const CollisionMesh& b, cons
         continue;
       }
     }
-    // Deep samples are looked for as far as they are pushed out. Those whose nearest triangle of the last step is that
-    // of this one are done; the leaves near all others are gathered once.
+    // Deep samples search as far as they are pushed out. Samples with the same nearest triangle as in the last step are
+    // done. The leaves near all others are gathered once.
     const double open_reach = may_come + near_horizon,
                  deep_reach = std::max(may_come, settings.max_depth) + near_horizon;
     const double margin = went < slow ? 4 * slow : 0;
@@ -262,7 +262,7 @@ void TissueCollider::detect(const CollisionMesh& a, const CollisionMesh& b, cons
       const Vec3 d = x - best_point;
       const double distance = d.norm();
       const bool outside = d.dot(outward) >= 0;
-      // Behind what faces it, but perhaps outside of a fold that does not: the nearest of all tells.
+      // Behind the triangle that faces it, but perhaps outside of a fold: the nearest of all triangles decides.
       if (!outside && (distance > settings.max_depth || !b.nearest(x, 0, distance).behind)) continue;
       Proximity c;
       c.vertex = v;
@@ -271,7 +271,7 @@ void TissueCollider::detect(const CollisionMesh& a, const CollisionMesh& b, cons
       c.point = best_point;
       if (distance > 1e-6) {
         if (!b.locally_closest(best, f, d / distance, 0, 0.05))
-          continue;  // beside a border, or past one that faces away
+          continue;  // beside a border, or beyond a triangle that faces away
         c.normal = (outside ? d : Vec3(-d)) / distance;
       } else {
         c.normal = outward;

@@ -24,7 +24,7 @@ namespace insula {
 struct TissueContactSettings {
   double alarm = 0.5e-3;           ///< m
   double max_correction = 0.5e-3;  ///< largest correction of an overlap in a step, m
-  double max_depth = 5e-3;         ///< a vertex this far behind the surface is no longer pushed out, m
+  double max_depth = 5e-3;         ///< vertices farther behind the surface are not pushed out, m
   double offset = 0;               ///< half the thicknesses of both walls, for middle surfaces of walls, m
 };
 
@@ -37,8 +37,8 @@ class TissueCollider {
  public:
   /// Samples in an order of neighbourhoods, by the rest shape. `triangles`: the number of triangles of b.
   TissueCollider(std::vector<int> samples, std::span<const Vec3> rest, int triangles);
-  /// Appends one contact for each sample that has one, in the order of samples(). Keeps which samples were behind the
-  /// surface, since they are searched deeper. Does not allocate while `out` has capacity.
+  /// Appends one contact for each sample that has one, in the order of samples(). Remembers the samples behind the
+  /// surface, since their search reaches deeper. Does not allocate while `out` has capacity.
   void detect(const CollisionMesh& a, const CollisionMesh& b, const TissueContactSettings& settings,
               std::vector<Proximity>& out);
   const std::vector<int>& samples() const { return samples_; }
@@ -48,13 +48,13 @@ class TissueCollider {
   static constexpr std::size_t group = 16;  ///< samples that are excluded together
   std::vector<int> samples_;
   std::vector<char> behind_;
-  std::vector<double> clear_;  ///< of the samples: nothing of b is nearer than this, m
+  std::vector<double> clear_;  ///< of the samples: lower bound of the distance to b, m
   struct Group {
-    double clear = 0;  ///< least of its samples', m
+    double clear = 0;  ///< smallest of its samples' clear_, m
     double went = 0;   ///< reduction of the samples' clear_ that is still due, m
     std::uint64_t own = 0,
                   near = 0;  ///< regions of its samples, and of all of b that is not farther away than `around`
-    double around = 0;       ///< m, less the samples' own way since, when ...
+    double around = 0;       ///< m, reduced by the samples' own motion since ...
     double travelled = 0;    ///< ... b had travelled this far
     bool deep = true;        ///< has a sample behind the surface
   };
@@ -62,7 +62,7 @@ class TissueCollider {
                      double may_come, double elsewhere);
   void lessen(std::size_t first, std::size_t last, double swept, double at_least);
   std::vector<Group> groups_;
-  std::array<long, 2> updates_{};  ///< of the meshes when last looked at
+  std::array<long, 2> updates_{};  ///< of the meshes at the last detection
   void begin_gathering(const AabbTree& tree);
   void gather_leaves(const AabbTree& tree, const Aabb& all);
   template <class Look>
@@ -71,14 +71,14 @@ class TissueCollider {
   std::vector<std::span<const int>> leaves_;  ///< triangles of the leaves near a group ...
   std::vector<BoxPack> packs_;                ///< ... and their boxes
   std::vector<FourTriangles> corners_;  ///< corners of all leaves that a sample wanted in this step, about centre_
-  std::vector<int>
-      cornered_;  ///< the leaves that they are of, by the place of their first triangle in the tree's order
-  std::vector<int> corners_at_;  ///< of the leaf that begins at this place: index of corners_, -1: not wanted yet
-  bool gathering_ = false;       ///< any in this step
+  std::vector<int> cornered_;  ///< the leaves that these corners belong to, by the position of their first triangle in
+                               ///< the tree's order
+  std::vector<int> corners_at_;  ///< of the leaf that begins at this position: index of corners_, -1: not computed yet
+  bool gathering_ = false;       ///< whether any leaf was gathered in this step
   Vec3 centre_ = Vec3::Zero();
-  std::vector<KnownNearest> known_;  ///< of the samples: saves tests, does not change the result
+  std::vector<KnownNearest> known_;  ///< of the samples: reduces tests, does not change the result
   std::array<FacingSearch, group> search_;
-  std::array<bool, group> looked_{}, settled_{};  ///< of these
+  std::array<bool, group> looked_{}, settled_{};  ///< of the samples of a group
   FacingSearch::Seen seen_;
 };
 

@@ -12,7 +12,7 @@ using shapes::Random;
 
 constexpr double radius = 1e-3;
 
-/// The corner of the quadrant x, z < 0 along y, every vertex about to move by `way` in the step.
+/// The corner of the quadrant x, z < 0 along y, every vertex with the free displacement `displacement`.
 struct Edge {
   TriMesh shape = shapes::box(Vec3(-0.02, -0.02, -0.02), Vec3(0, 0.02, 0), 16);
   std::vector<Vec3> free;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tool against surface, piece by piece: what it may meet, how far it gets (conservative advancement), where it slides.
+// Tool against surface, piece by piece: candidates, conservative advancement, sliding.
 #include "core/collision/colliders/tool_collider.h"
 
 #include <cmath>
@@ -9,20 +9,20 @@
 
 namespace insula {
 
-/// How a piece goes in the step.
+/// Motion of a piece in the step.
 struct ToolCollider::SweptPiece {
   const RoundedPiece& piece;
   int index;
   const Pose& start;
   const Vec6& motion;      ///< of the tool
-  double offset, horizon;  ///< how far ahead it is followed, in steps
+  double offset, horizon;  ///< the motion is followed this far, in steps
   PlacedPiece first, last;
-  std::optional<PlacedPiece> expected;  ///< at the step's end, if contacts are to be taken there
+  std::optional<PlacedPiece> expected;  ///< at the step's end, if contacts are linearised there
   Vec3 velocity = Vec3::Zero(),
-       to_end = Vec3::Zero();  ///< of its middle on the free way, and from the start to `expected`, m a step ...
-  double uneven = 0, uneven_to_end = 0;  ///< ... by which that of any point differs at most
-  double beyond = 0, farthest = 0;  ///< what may be met on the free way is no farther than `beyond` from the swept box,
-                                    ///< and no point goes farther
+       to_end = Vec3::Zero();            ///< displacement of its middle in the free motion, and to `expected`, m ...
+  double uneven = 0, uneven_to_end = 0;  ///< ... and the largest difference to that of any point
+  double beyond = 0, farthest = 0;       ///< candidates in the free motion are within `beyond` of the swept box, and no
+                                         ///< point moves farther than `farthest`
   Aabb box;
 
   SweptPiece(const RoundedPiece& r, int i, const Pose& from, const Vec6& by, const Pose& end, double ahead, double wall)
@@ -56,7 +56,8 @@ struct ToolCollider::SweptPiece {
       uneven_to_end = std::max(uneven_to_end, (gone(i) - to_end).norm());
     }
   }
-  /// Everything that may come within `range`. A slid pose leaves the swept box by half its motion at most.
+  /// Sets the box of all that may come within `range`. A pose after sliding leaves the swept box by at most half its
+  /// motion.
   void sweep(double range) {
     Vec3 centre = Vec3::Zero();
     for (int i = 0; i < first.count; ++i) centre += first.points[std::size_t(i)];
@@ -75,8 +76,7 @@ struct ToolCollider::SweptPiece {
     velocity = motion.head<3>() + motion.tail<3>().cross(centre - start.p);
     uneven = turn * (spread + turn * lever);
   }
-  // The box of a piece that lies askew is mostly empty: what counts is how far a leaf is from the segment the core lies
-  // about.
+  // The box of an oblique piece is mostly empty. So the distance of a leaf from the segment in the core decides.
   bool passes(const Aabb& leaf) const {
     const Vec3 middle = 0.5 * (leaf.low + leaf.high);
     const double s = closest_on_segment(middle, first.axis0, first.axis1),
@@ -85,9 +85,9 @@ struct ToolCollider::SweptPiece {
   }
 };
 
-/// How far a piece gets.
+/// Result of the advance of a piece.
 struct ToolCollider::Reached {
-  double time = 0;  ///< it touches then, or the way ends
+  double time = 0;  ///< time of touch, or the end of the motion
   bool touches = false;
   bool at_end = false;  ///< its contacts of the start were taken at the step's end
 };
@@ -118,14 +118,14 @@ void ToolCollider::list_candidates(const CollisionMesh& mesh, const SweptPiece& 
   });
 }
 
-// An overlap is undone by no more than max_correction in a step.
+// An overlap is reduced by at most max_correction in a step.
 void ToolCollider::add(Proximity x, const ToolContactSettings& settings, std::vector<Proximity>& out) {
   x.start_gap = std::max(x.start_gap, -settings.max_correction);
   out.push_back(x);
 }
 
-// The contacts of the start, just evaluated, to `out`: where the piece is now, or is expected at the step's end.
-// Whether the latter.
+// Adds the contacts of the start to `out`: those at the present pose, which were just evaluated, or those at the
+// expected pose at the step's end. Returns whether the latter.
 bool ToolCollider::take_contacts_of_start(const CollisionMesh& mesh, const SweptPiece& swept,
                                           const ToolContactSettings& settings, std::vector<Proximity>& out) {
   const bool ends = swept.expected && found_at_end(mesh, *swept.expected, settings);
@@ -146,11 +146,11 @@ bool ToolCollider::take_contacts_of_start(const CollisionMesh& mesh, const Swept
   if (at_end) out.insert(out.end(), at_end_.begin(), at_end_.end());
   else
     for (const Proximity& x : found_) add(x, settings, out);
-  if (least > -0.9 * swept.radius()) side = nearest;  // zero where nothing is near
+  if (least > -0.9 * swept.radius()) side = nearest;  // zero if nothing is near
   return at_end;
 }
 
-// Conservative advancement. Leaves the contacts of where the piece gets in found_.
+// Conservative advancement. The contacts at the reached pose remain in found_.
 ToolCollider::Reached ToolCollider::advance(const CollisionMesh& mesh, const SweptPiece& swept,
                                             const ToolContactSettings& settings, double range,
                                             std::vector<Proximity>& out) {
@@ -166,7 +166,7 @@ ToolCollider::Reached ToolCollider::advance(const CollisionMesh& mesh, const Swe
       r.touches = r.touches || (x.gap <= 0.1 * settings.alarm && x.normal.dot(v) < 0);
     }
     if (r.touches || r.time >= swept.horizon) break;
-    // How long nothing can be met.
+    // Time in which nothing can be touched.
     double next = swept.horizon, fastest = 0;
     for (const Candidate& k : candidates_) {
       if (!(k.speed > 0)) continue;
@@ -179,7 +179,7 @@ ToolCollider::Reached ToolCollider::advance(const CollisionMesh& mesh, const Swe
   return r;
 }
 
-// Along what is touched in found_ (out of it, if behind) by the motion that is left.
+// Slides along the contacts in found_ (out of the surface, if behind it) by the remaining motion.
 void ToolCollider::slide_on(const CollisionMesh& mesh, const SweptPiece& swept, double t,
                             const ToolContactSettings& settings, std::vector<Proximity>& out) {
   const Proximity* touched = &found_[0];
@@ -233,7 +233,7 @@ void ToolCollider::detect(const CollisionMesh& mesh, const Pose& start, const Po
       touching_piece_ = index;
     }
     if (reached.time > 0) add_those_on_free_side(settings, out);
-    // Where sliding leads to is known if the end is.
+    // If contacts were taken at the end, the result of sliding is already known.
     if (!reached.at_end && reached.touches && reached.time < 1 && !found_.empty())
       slide_on(mesh, swept, reached.time, settings, out);
   }

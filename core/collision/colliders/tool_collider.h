@@ -1,31 +1,31 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A rigid tool of rounded convex pieces against a surface, looking ahead over the step.
 //
-// Geometry is taken at the start of the step and, when the free motion is larger than what is close, along it: tool
-// pose start -> free, surface x -> x + u. Each piece advances no faster than its distance to the surface allows
-// (conservative advancement; Mirtich 1996) until it touches or the step ends, so that a fast tool meets the surface it
-// would have passed through. Contacts are those within the alarm distance
+// Geometry is that of the start of the step. If the free motion is larger than the distance of what is near, geometry
+// along it is used too: tool pose start -> free, surface x -> x + u. Each piece advances no faster than its distance to
+// the surface allows (conservative advancement; Mirtich 1996), until it touches or the step ends. A fast tool therefore
+// meets the surface that it would have passed through. Contacts are those within the alarm distance
 //   - at the start,
 //   - where the piece first touches, or at the end of its free motion,
 //   - where it would be after sliding along what it touches by the rest of its motion.
 // A contact found later in the step is used only if the tool starts on its free side. Its start_gap is measured between
 // the same material points along the same normal. So start_gap + H dq is the gap at the end of the step.
 //
-// A step that takes its normals from its start lags on a surface that turns. `expected` is the expected pose of the
+// The normals of a step's start lag behind on a surface that rotates. `expected` is the expected pose of the
 // tool at the end of the step. With it, a piece takes its contacts of the start, and of sliding, at that pose and on
 // the surface where its motion leads it. Normals and contact points are then those of the end, and start_gap + H dq is
-// the gap there, exactly if both move as expected. A piece keeps the contacts of the start if it is behind the surface,
-// would be behind a wall, or would be away.
+// the gap there. This is exact if both move as expected. A piece keeps the contacts of the start if it is behind the
+// surface, would be behind a wall, or would be away.
 //
-// One triangle gives a contact only where the distance is smallest among its neighbours too, so there are no ghost
-// contacts at inner edges. Corners of the core that stand right above the triangle are added, since a flat or long
-// piece lies on several points. The outward normals of the surface tell the sides. A core behind the surface has a
-// negative gap and is pushed to the nearest point of the surface, as long as it is no deeper than max_depth. A core
-// that passes through a triangle is pushed along its normal.
+// One triangle gives a contact only where the distance is also smallest among its neighbours, so inner edges give no
+// ghost contacts. Corners of the core that are right above the triangle are added, since a flat or long piece lies on
+// several points. The outward normals of the surface tell the sides. A core behind the surface has a negative gap and
+// is pushed to the nearest point of the surface, as long as it is no deeper than max_depth. A core that passes through
+// a triangle is pushed along its normal.
 //
-// A hollow body pressed flat is thinner than a blade, and what is behind its one wall is soon nearest to the other. So
-// each piece remembers on which side of the surface it was when it was last outside, and never leaves towards the
-// opposite one.
+// A hollow body that is pressed flat is thinner than a blade. What is behind its one wall is soon nearest to the other
+// wall. So each piece remembers the side of the surface on which it was last outside, and never leaves towards the
+// opposite side.
 #pragma once
 #include <vector>
 
@@ -37,10 +37,10 @@ namespace insula {
 
 struct ToolContactSettings {
   double alarm = 1e-3;           ///< m
-  double max_correction = 1e-3;  ///< an overlap is undone by no more than this in a step, m
-  double collision_horizon = 0;  ///< in steps: the tool's motion is followed so far beyond the step
-  double max_depth = 5e-3;       ///< a core this far behind the surface is no longer pushed out, m
-  bool one_sided = false;  ///< vertices: those behind a blade that presses a body from the front go back to its front
+  double max_correction = 1e-3;  ///< an overlap is reduced by at most this in a step, m
+  double collision_horizon = 0;  ///< in steps: the tool's motion is followed this far beyond the step
+  double max_depth = 5e-3;       ///< cores farther behind the surface are not pushed out, m
+  bool one_sided = false;  ///< vertices: those behind a blade that presses a body from the front return to its front
   double offset = 0;       ///< the surface is the middle of a wall of twice this thickness, m
   const Pose* expected =
       nullptr;  ///< of the tool at the end of the step, scene frame; null: contacts of the start are taken at the start
@@ -59,8 +59,8 @@ struct RoundedPiece {
 RoundedPiece rounded(const ConvexPiece& piece);
 struct PlacedPiece;
 
-/// One tool, one surface. Keeps which pieces overlapped last step (they are looked for deeper) and their sides;
-/// allocates in the constructor only, as long as `out` has capacity.
+/// One tool and one surface. Remembers which pieces overlapped in the last step, since their search reaches deeper, and
+/// their sides. Allocates only in the constructor, as long as `out` has capacity.
 class ToolCollider {
  public:
   ToolCollider(const std::vector<ConvexPiece>& pieces, int triangles);
@@ -68,7 +68,8 @@ class ToolCollider {
   void detect(const CollisionMesh& mesh, const Pose& start, const Pose& free, const ToolContactSettings& settings,
               std::vector<Proximity>& out);
   void reset();
-  /// When in the last detect's step a piece first touched on its free way, moving inward; 1: none did.
+  /// Time in the last detect's step at which a piece first touched while it moved inward in its free motion; 1: none
+  /// did.
   double touch_time() const { return touch_time_; }
   int touching_piece() const { return touching_piece_; }  ///< the first to touch, -1: none
 
@@ -81,7 +82,7 @@ class ToolCollider {
     double to_end;  ///< ... and on that to where the piece is expected at its end
   };
   struct SweptPiece;  // of a piece in the step
-  struct Reached;     // by it
+  struct Reached;     // what it reached
   void list_candidates(const CollisionMesh& mesh, const SweptPiece& swept);
   Reached advance(const CollisionMesh& mesh, const SweptPiece& swept, const ToolContactSettings& settings, double range,
                   std::vector<Proximity>& out);
@@ -98,7 +99,7 @@ class ToolCollider {
   void drop_wrong_exits(std::vector<Proximity>& found, const Vec3& side, double offset) const;
 
   std::vector<RoundedPiece> pieces_;
-  std::vector<char> deep_;  ///< per piece
+  std::vector<char> deep_;  ///< per piece: overlapped in the last step
   std::vector<Vec3> side_;  ///< per piece: surface normal where it was last near and outside; zero: none known
   double touch_time_ = 1;
   int touching_piece_ = -1;
@@ -106,8 +107,8 @@ class ToolCollider {
   std::vector<Proximity> found_, at_end_;
 };
 
-/// Two tools: one contact a pair of pieces that is, or may come in this step, within the alarm distance. A pair whose
-/// cores meet is pushed apart along the line between their middles.
+/// Two tools: one contact for each pair of pieces that is within the alarm distance, or may come within it in this
+/// step. Pieces whose cores meet are pushed apart along the line between their middles.
 void detect_tools(const std::vector<RoundedPiece>& a, const Pose& a_start, const Pose& a_free,
                   const std::vector<RoundedPiece>& b, const Pose& b_start, const Pose& b_free,
                   const ToolContactSettings& settings, std::vector<Proximity>& out);

@@ -14,7 +14,7 @@ struct Narrow {
   Vec3 p, c, bary;
 };
 
-// Exact if no farther than `limit`, else no more than the distance.
+// Exact up to `limit`. Beyond, the result is a lower bound of the distance.
 Narrow closest(std::span<const Vec3> core, const std::array<Vec3, 3>& tri, double limit) {
   Narrow r;
   if (core.size() <= 2) {
@@ -47,7 +47,7 @@ bool above(const Vec3& q, const std::array<Vec3, 3>& t, const Vec3& n, Vec3& bar
 
 }  // namespace
 
-// Brings the candidates' bounds up to date (on the free way) and appends the contacts within `range`.
+// Updates the candidates' bounds (in the free motion) and appends the contacts within `range`.
 void ToolCollider::evaluate(const CollisionMesh& mesh, const PlacedPiece& at, const ToolContactSettings& settings,
                             double range, std::vector<Proximity>& found) {
   const double t = at.time;
@@ -59,7 +59,7 @@ void ToolCollider::evaluate(const CollisionMesh& mesh, const PlacedPiece& at, co
     if (k.clear - (at.expected ? k.to_end : k.speed * std::abs(t - k.time)) - slid > range) continue;
     const auto& v = mesh.triangle(k.triangle);
     const std::array<Vec3, 3> tri{mesh.vertex(v[0], t), mesh.vertex(v[1], t), mesh.vertex(v[2], t)};
-    // Cheap bound first: sphere about the triangle, segment about the core.
+    // First a cheap bound: sphere around the triangle, segment in the core.
     const Vec3 centre = (tri[0] + tri[1] + tri[2]) / 3;
     const double reach2 =
         std::max({(tri[0] - centre).squaredNorm(), (tri[1] - centre).squaredNorm(), (tri[2] - centre).squaredNorm()});
@@ -97,7 +97,7 @@ void ToolCollider::evaluate(const CollisionMesh& mesh, const PlacedPiece& at, co
       found.push_back(x);
     };
     if (n.distance < 1e-9) {
-      // The core goes through this triangle: out along its normal, as deep as the core reaches.
+      // The core intersects this triangle and is pushed out along its normal by the core's depth.
       double deepest = 0;
       for (const Vec3& q : core) deepest = std::max(deepest, face.dot(tri[0] - q));
       emit(n.bary, n.c, face, -at.radius - std::min(deepest, settings.max_correction));
@@ -105,12 +105,12 @@ void ToolCollider::evaluate(const CollisionMesh& mesh, const PlacedPiece& at, co
     }
     const Vec3 d = (n.p - n.c) / n.distance;
     const TriangleFeature f = feature_of(n.bary);
-    // A thin wall is wavy under a flat tool: all that lies under it counts, not only its crests.
+    // A thin wall is wavy under a flat tool. All of it under the tool counts, not only its crests.
     const bool under = settings.offset > 0 && d.dot(face) > 0.8;
     if (under || mesh.locally_closest(k.triangle, f, d, t, 1e-6)) {
       const bool outside = d.dot(mesh.pseudo_normal(k.triangle, f, t)) >= 0;
       if (outside && clear <= settings.alarm) emit(n.bary, n.c, d, clear);
-      // Behind this triangle, but perhaps before another one: only the nearest of all tells, and it is the way out.
+      // The core may be in front of another triangle. The nearest of all decides and gives the direction out.
       if (!outside && n.distance <= settings.max_depth) {
         NearestPoint e = mesh.nearest(n.p, t, n.distance);
         if (e.behind && e.outward.dot(side) < -0.2) e = mesh.nearest(n.p, t, settings.max_depth, &side);
@@ -132,7 +132,8 @@ void ToolCollider::evaluate(const CollisionMesh& mesh, const PlacedPiece& at, co
   }
 }
 
-// Behind the surface the way out is the nearest one on the piece's own side: contacts of opposite walls are dropped.
+// A piece behind the surface leaves through the nearest triangle on its own side. Contacts of opposite walls are
+// dropped.
 void ToolCollider::drop_wrong_exits(std::vector<Proximity>& found, const Vec3& side, double offset) const {
   const auto behind = [&](const Proximity& x) { return x.gap < -pieces_[std::size_t(x.piece)].radius - offset; };
   Vec3 out = Vec3::Zero();
@@ -150,8 +151,8 @@ void ToolCollider::drop_wrong_exits(std::vector<Proximity>& found, const Vec3& s
   found.resize(kept);
 }
 
-// The contacts of a piece where it is expected at the end of the step, into at_end_, after those at its start. False
-// where there are none, or where it would be behind a wall.
+// Writes the contacts of a piece at its expected pose at the end of the step into at_end_. False if there are none, or
+// if it would be behind a wall.
 bool ToolCollider::found_at_end(const CollisionMesh& mesh, const PlacedPiece& expected,
                                 const ToolContactSettings& settings) {
   at_end_.clear();

@@ -35,7 +35,7 @@ void VertexCollider::reset() {
 
 VertexCollider::Near VertexCollider::nearest(const RoundedPiece& piece, const Pose& pose, const Vec3& x,
                                              double offset) const {
-  // In the frame of the pieces: one point is turned instead of the whole core.
+  // In the frame of the pieces, one point is rotated instead of the whole core.
   const Vec3 local = pose.q.conjugate() * (x - pose.p);
   Vec3 core = piece.core[0];
   if (piece.core.size() == 2) {
@@ -55,7 +55,7 @@ void VertexCollider::detect(const CollisionMesh& mesh, const Pose& start, const 
   if (mesh.tree().empty()) return;
   const Vec6 motion = displacement(start, free);
   const double alarm = settings.alarm, turn = motion.tail<3>().norm();
-  // Vertices that any piece may come near to.
+  // Vertices that any piece may approach.
   for (const RoundedPiece& p : pieces_) {
     Aabb box;
     double lever = 0;
@@ -81,7 +81,7 @@ void VertexCollider::detect(const CollisionMesh& mesh, const Pose& start, const 
     marked_[std::size_t(v)] = 0;
     Vec3& memory = kept_out_[std::size_t(v)];
     const Vec3 x0 = mesh.vertex(v), u = mesh.free(v), local = to_local * (x0 - start.p);
-    // What no piece is near to, nor comes near to, is passed by.
+    // Vertices that no piece is near to, or comes near to, are skipped.
     const double speed = (motion.head<3>() - u).norm() + turn * (local.norm() + u.norm());
     const double reach = std::max(alarm, 0.2 * alarm + speed);
     near_pieces_.clear();
@@ -109,7 +109,7 @@ void VertexCollider::detect(const CollisionMesh& mesh, const Pose& start, const 
     }
     if (near.clear > alarm) {
       memory.setZero();
-      // Not near now; perhaps on the way.
+      // Not near at the start, but perhaps during the motion.
       double first = 1;
       int met = -1;
       Near at_touch{};
@@ -134,13 +134,13 @@ void VertexCollider::detect(const CollisionMesh& mesh, const Pose& start, const 
       near = at_touch;
       when = first;
     } else if (near.normal.isZero(0) || near.normal.dot(before) < -0.2) {
-      // Inside the core, or on the piece's other side: back the way it came.
+      // A vertex inside the core, or on the piece's other side, is pushed back in the opposite direction.
       if (before.isZero(0)) continue;
       near.clear = -std::abs(near.clear + 2 * (pieces_[std::size_t(best)].radius + settings.offset));
       near.normal = before;
     } else {
       memory = start.q.conjugate() * near.normal;
-      // Come from behind: the body wraps about the blade's edge.
+      // The vertex came from behind: the body wraps around the blade's edge.
       if (settings.one_sided && !side_.isZero(0) && memory.dot(side_) < -0.7) {
         memory = side_.normalized();
         near.clear = -(near.clear + 2 * (pieces_[std::size_t(best)].radius + settings.offset));
@@ -163,12 +163,12 @@ void VertexCollider::detect(const CollisionMesh& mesh, const Pose& start, const 
     c.local = pose.q.conjugate() * (c.point - pose.p);
     c.start_gap = c.gap;
     if (when > 0) c.start_gap += c.normal.dot(start.apply(c.local) - x0);
-    if (when > 0 && c.start_gap < 0) continue;  // it comes from the other side of a moving wall: the next step sees it
+    if (when > 0 && c.start_gap < 0) continue;  // it comes from the other side of a moving wall: left to the next step
     c.start_gap = std::max(c.start_gap, -settings.max_correction);
     out.push_back(c);
   }
   seen_.clear();
-  // The side that most press from, learned as the blade comes to the body; what happens later does not change it.
+  // The side from which most vertices press. It is determined when the blade reaches the body, and stays.
   if (side_.norm() < 0.95 && !pressed.isZero(0)) side_ = (0.9 * side_ + 0.1 * pressed.normalized()).eval();
 }
 

@@ -8,7 +8,7 @@
 //
 // A vertex within the alarm distance at the start gives a contact there. A vertex that the free motion would bring in
 // gives it at the moment of touch (conservative advancement; Mirtich 1996). A vertex remembers the direction in which
-// it is kept out. If a thin piece has passed through it nevertheless, it goes back the same way.
+// it is kept out. If a thin piece has passed through it nevertheless, it is pushed back in the opposite direction.
 #pragma once
 #include <array>
 #include <vector>
@@ -23,7 +23,7 @@ class VertexCollider {
  public:
   VertexCollider(const std::vector<ConvexPiece>& pieces, const std::vector<std::array<int, 3>>& triangles,
                  int vertices);
-  /// Appends to `out` in order of vertices. Allocates in the constructor only, as long as `out` has capacity.
+  /// Appends to `out` in order of vertices. Allocates only in the constructor, as long as `out` has capacity.
   void detect(const CollisionMesh& mesh, const Pose& start, const Pose& free, const ToolContactSettings& settings,
               std::vector<Proximity>& out);
   void reset();
@@ -45,7 +45,8 @@ class VertexCollider {
   std::vector<std::array<int, 2>>
       triangle_of_;             ///< one triangle of each vertex, and the vertex's corner in it; -1: none
   std::vector<Vec3> kept_out_;  ///< per vertex: last normal, frame of the pieces; zero: none
-  Vec3 side_ = Vec3::Zero();    ///< from most vertices that press to the core, frame of the pieces; up to unit length
+  Vec3 side_ = Vec3::Zero();    ///< mean direction from the pressing vertices to the core, frame of the pieces; at most
+                                ///< of unit length
   std::vector<int> seen_;       ///< vertices near the pieces in this step
   std::vector<char> marked_;
   std::vector<Candidate> near_pieces_;  ///< of one vertex

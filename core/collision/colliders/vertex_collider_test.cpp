@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pieces against the vertices of a thin wall: gaps in closed form, a sheet between closing jaws, a fast blade, the way
-// back.
+// Pieces against the vertices of a thin wall: gaps in closed form, a sheet between closing jaws, a fast blade, the
+// direction back.
 #include "core/collision/colliders/vertex_collider.h"
 
 #include <gtest/gtest.h>

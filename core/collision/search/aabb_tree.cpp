@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Building and refitting the box tree.
+// Construction and refit of the box tree.
 #include "core/collision/search/aabb_tree.h"
 
 #include <algorithm>
@@ -10,7 +10,7 @@ namespace insula {
 void AabbTree::build(std::span<const Vec3> rest, std::span<const std::array<int, 3>> triangles) {
   nodes_.clear();
   leaf_vertices_.clear();
-  ways_.clear();
+  path_boxes_.clear();
   stale_.clear();
   first_leaf_.clear();
   order_.resize(triangles.size());
@@ -23,7 +23,7 @@ void AabbTree::build(std::span<const Vec3> rest, std::span<const std::array<int,
   nodes_.reserve(triangles.size());
   build_node(0, int(triangles.size()), centres, triangles);
   list_leaves_of_vertices(rest.size());
-  ways_.resize(rest.size());
+  path_boxes_.resize(rest.size());
   stale_.assign(nodes_.size(), 0);
   parent_.assign(nodes_.size(), -1);
   for (std::size_t i = 0; i < nodes_.size(); ++i)
@@ -53,7 +53,7 @@ int AabbTree::build_node(int first, int count, std::span<const Vec3> centres,
   for (int k = 0; k < count; ++k) box.add(centres[std::size_t(order_[std::size_t(first + k)])]);
   int axis = 0;
   (box.high - box.low).maxCoeff(&axis);
-  // Equal centres are told apart by their number: the split does not depend on the library's algorithm.
+  // Equal centres are ordered by their number, so the split does not depend on the library's algorithm.
   const auto begin = order_.begin() + first;
   const int half = count / 2;
   std::nth_element(begin, begin + half, begin + count, [&](int a, int b) {
@@ -105,11 +105,11 @@ void AabbTree::look_at(std::span<const Vec3> positions, std::span<const Vec3> di
   displacements_ = displacements;
 }
 
-// What has used up half of its slack gets all of it, as one that is out.
+// A vertex that has used half of its slack gets a new box, as one that has left its box.
 double AabbTree::renew(std::size_t v) {
   const Vec3& p = positions_[v];
   const Float4 here = rounded(p), there = displacements_.empty() ? here : rounded(p + displacements_[v]);
-  OuterBox& box = ways_[v];
+  OuterBox& box = path_boxes_[v];
   const float inside = box.room_about(here);
   if (inside > 0.5f * slack && box.room_about(there) >= 0) return double(inside);
   box = {here < there ? here : there, here > there ? here : there};
@@ -146,7 +146,7 @@ void AabbTree::close() {
       n.box.add(nodes_[std::size_t(n.first)].box);
     } else {
       n.box = {};
-      for (int v : vertices_of(n)) n.box.add(ways_[std::size_t(v)]);
+      for (int v : vertices_of(n)) n.box.add(path_boxes_[std::size_t(v)]);
     }
   }
 }

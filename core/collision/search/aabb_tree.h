@@ -62,7 +62,7 @@ struct OuterBox {
     r.widen();
     return r;
   }
-  /// A margin above the rounding error of the conversion.
+  /// Adds a margin above the rounding error of the conversion.
   void widen() {
     low -= rounding(low);
     high += rounding(high);
@@ -75,8 +75,8 @@ struct OuterBox {
     low = low < o.low ? low : o.low;
     high = high > o.high ? high : o.high;
   }
-  /// A lower bound of the distance that the rounded point may move before it leaves the box. Negative: it may be
-  /// outside.
+  /// A lower bound of the distance that the rounded point may move before it leaves the box. If it is negative, the
+  /// point may be outside.
   float room_about(Float4 point) const {
     const Float4 below = point - low, above = high - point, m = (below < above ? below : above) - rounding(point);
     return std::min(std::min(m[0], m[1]), m[2]);
@@ -106,13 +106,13 @@ class AabbTree {
 
   /// Median splits along the longest side; the same input gives the same tree.
   void build(std::span<const Vec3> rest, std::span<const std::array<int, 3>> triangles);
-  /// Boxes of the triangles at `positions` joined with those at positions + displacements (may be empty). The arrays
-  /// must exist until the next refit.
+  /// Each triangle's box holds the triangle at `positions` and at positions + displacements (which may be empty). The
+  /// arrays must exist until the next refit.
   void refit(std::span<const Vec3> positions, std::span<const Vec3> displacements);
-  /// The same in parts, for a caller that knows which vertices may have left their boxes. look_at() gives the positions
-  /// of vertices from now on, renew() takes the vertices to check, and close() ends the refit. renew() returns the
-  /// smallest distance of their positions to the sides of their boxes, m. A vertex whose displacement stays within it
-  /// needs no renewal.
+  /// The same refit in parts, for a caller that knows which vertices may have left their boxes. look_at() gives the
+  /// positions of vertices from now on, renew() takes the vertices to check, and close() ends the refit. renew()
+  /// returns the smallest distance of their positions to the sides of their boxes, m. A vertex whose displacement stays
+  /// within it needs no renewal.
   void look_at(std::span<const Vec3> positions, std::span<const Vec3> displacements);
   double renew(std::span<const int> vertices);
   void close();
@@ -217,7 +217,7 @@ class AabbTree {
  private:
   struct Node {
     OuterBox box;
-    int first = 0;  ///< leaf: first index in order_; inner node: right child (the left one is the next node)
+    int first = 0;  ///< leaf: first index in order_; inner node: right child (the left child is the next node)
     int count = 0;  ///< triangles, 0 for an inner node
     int skip = 0;   ///< the node after this subtree
     int vertices = 0, vertex_count = 0;  ///< leaf: its vertices in leaf_vertices_
@@ -258,11 +258,12 @@ class AabbTree {
 
   std::vector<Node> nodes_;
   std::vector<int> order_;                 ///< triangles in leaf order
-  std::vector<int> leaf_vertices_;         ///< each leaf's vertices, every one once
-  std::vector<int> first_leaf_, leaf_of_;  ///< each vertex's leaves: nodes
-  std::vector<OuterBox> ways_;  ///< each vertex's, loosely about its way from its position to the displaced one
-  std::vector<int> parent_;     ///< of the nodes, -1: the first
-  std::vector<char> stale_;     ///< nodes whose boxes must be updated, with all above them
+  std::vector<int> leaf_vertices_;         ///< each leaf's vertices, each vertex once
+  std::vector<int> first_leaf_, leaf_of_;  ///< each vertex's leaves, as nodes
+  std::vector<OuterBox>
+      path_boxes_;           ///< of the vertices: loose box of the path from the position to the displaced position
+  std::vector<int> parent_;  ///< of the nodes; -1: the root
+  std::vector<char> stale_;  ///< nodes whose boxes must be updated, with all their ancestors
   std::span<const Vec3> positions_, displacements_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Neighbourhoods and normals of a collision surface.
+// Adjacency and normals of a collision surface.
 #include "core/collision/search/collision_mesh.h"
 
 #include <algorithm>
@@ -62,7 +62,7 @@ void CollisionMesh::keep_positions() {
 
 void CollisionMesh::update(std::span<const Vec3> positions, std::span<const Vec3> free) {
   if (last_.size() != positions.size()) {
-    // Where it was is not known. As an update that no one has seen: who keeps what it knows of distances starts anew.
+    // The earlier positions are unknown. This counts as an additional update, so users of stored distances drop them.
     last_.assign(positions.begin(), positions.end());
     room_.fill(0);
     ++updates_;
@@ -86,7 +86,7 @@ void CollisionMesh::update(std::span<const Vec3> positions, std::span<const Vec3
 }
 
 void CollisionMesh::take(std::span<const Vec3> positions, std::span<const Vec3> free, const RegionMotion& motion) {
-  constexpr double rounding = 1e-9;  // m, more than thousands of sums of motions have lost
+  constexpr double rounding = 1e-9;  // m, more than the rounding error of thousands of sums of motions
   positions_ = positions;
   free_ = free;
   motion_ = motion;
@@ -152,7 +152,7 @@ bool CollisionMesh::locally_closest(int tri, const TriangleFeature& f, const Vec
   if (f.kind == FeatureKind::face) return true;
   if (f.kind == FeatureKind::edge) {
     const int other = across_[std::size_t(tri)][std::size_t(f.corner)];
-    if (other < 0) {  // the border of a sheet: only what stands above it, not beside it
+    if (other < 0) {  // the border of a sheet: only points above it count, not beside it
       return std::abs(d.dot(face_normal(tri, t))) > 0.98;
     }
     const auto& v = triangle(tri);
@@ -168,13 +168,13 @@ bool CollisionMesh::locally_closest(int tri, const TriangleFeature& f, const Vec
     const int c = r[0] == v ? 0 : r[1] == v ? 1 : 2;
     const Vec3 e = vertex(r[std::size_t((c + 1) % 3)], t) - x, g = vertex(r[std::size_t((c + 2) % 3)], t) - x;
     if (d.dot(e) > slack * e.norm() || d.dot(g) > slack * g.norm()) return false;
-    // Steepest step inside the triangle, where that lies between its sides.
+    // Steepest direction inside the triangle, if it lies between its sides.
     const Vec3 n = e.cross(g);
     const double nn = n.squaredNorm();
     if (!(nn > 0)) continue;
     const Vec3 p = d - n * (n.dot(d) / nn);
     if (n.dot(e.cross(p)) > 0 && n.dot(p.cross(g)) > 0 && p.norm() > slack) return false;
-    // Beside a border nothing pushes back.
+    // Beside a border there is no contact.
     if (across_[std::size_t(ring_[std::size_t(k)])][std::size_t(c)] < 0 ||
         across_[std::size_t(ring_[std::size_t(k)])][std::size_t((c + 2) % 3)] < 0) {
       if (std::abs(d.dot(n)) < 0.98 * std::sqrt(nn)) return false;

@@ -24,7 +24,7 @@ struct NearestPoint {
   Vec3 outward = Vec3::UnitZ();  ///< unit, along the line through p and the point, out of the surface
 };
 
-/// Largest displacement of the vertices of each region of a mesh since the update before, and in the free motion, m.
+/// Largest displacement of the vertices of each region of a mesh, since the last update and in the free motion, m.
 struct RegionMotion {
   std::array<double, 64> moved{}, may_move{};
 };
@@ -39,7 +39,8 @@ class CollisionMesh {
   void update(std::span<const Vec3> positions, std::span<const Vec3> free);
   /// The same with motion that has already been measured since the last update.
   void update(std::span<const Vec3> positions, std::span<const Vec3> free, const RegionMotion& motion);
-  /// Call before positions are changed in another way. The next update then measures from the present positions.
+  /// Call it before positions are changed by anything but the step. The next update then measures from the present
+  /// positions.
   void keep_positions();
 
   /// Sum over all updates of the largest displacement of a vertex, m. Between two updates no vertex moved farther than
@@ -60,8 +61,8 @@ class CollisionMesh {
   std::uint64_t regions_near(const Aabb& box, double within, std::uint64_t known, double& other) const {
     return tree_.marks_near(box, within, known, other);
   }
-  double moved(std::uint64_t mask) const { return most(motion_.moved, mask); }  ///< farthest in the last update, m
-  double may_move(std::uint64_t mask) const { return most(motion_.may_move, mask); }  ///< and its free displacement, m
+  double moved(std::uint64_t mask) const { return most(motion_.moved, mask); }        ///< largest in the last update, m
+  double may_move(std::uint64_t mask) const { return most(motion_.may_move, mask); }  ///< largest free displacement, m
   long updates() const { return updates_; }
 
   const AabbTree& tree() const { return tree_; }
@@ -95,11 +96,12 @@ class CollisionMesh {
   /// be the surface point closest to p. The product of the normal with p - c has the sign of the distance of p
   /// (Baerentzen, Aanaes 2005).
   Vec3 pseudo_normal(int tri, const TriangleFeature& f, double t = 0) const;
-  /// Whether c is also closest on the neighbouring triangles. c is closest to something in direction d (unit, from c)
-  /// on this triangle. No step from c into a neighbour may lead along d by more than `slack` (a sine).
+  /// Whether c is also closest on the neighbouring triangles. c is the point of this triangle that is closest to
+  /// something in direction d (unit, from c). No step from c into a neighbour may lead along d by more than `slack` (a
+  /// sine).
   bool locally_closest(int tri, const TriangleFeature& f, const Vec3& d, double t, double slack) const;
-  /// Nearest point of the surface at time t, if no farther than `limit`. With `side`, only among the triangles that
-  /// face that side.
+  /// Nearest point of the surface at time t, if it is no farther than `limit`. With `side`, only triangles that face
+  /// that side count.
   NearestPoint nearest(const Vec3& p, double t, double limit, const Vec3* side = nullptr) const;
 
  private:
@@ -108,7 +110,7 @@ class CollisionMesh {
   std::vector<std::array<int, 3>> in_order_;  ///< triangles in the tree's order: neighbours are close in memory
   std::vector<std::array<int, 3>> across_;    ///< neighbour across the edge that starts at each corner, -1 at a border
   std::vector<int> ring_start_, ring_;        ///< triangles around each vertex
-  std::vector<Vec3> last_;  ///< positions of the update before; empty: motion is measured by the caller
+  std::vector<Vec3> last_;                    ///< positions of the last update; empty: the caller measures motion
   double travelled_ = 0, farthest_free_ = 0;
   void take(std::span<const Vec3> positions, std::span<const Vec3> free, const RegionMotion& motion);
   using PerRegion = std::array<double, regions>;

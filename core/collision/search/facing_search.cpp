@@ -63,7 +63,7 @@ bool FacingSearch::follow(KnownNearest& known, double sure, Seen& seen) {
   const auto& home = b_->triangle(known.home);
   for (int c = 0; c < 3; ++c)
     for (int t : b_->triangles_around(home[std::size_t(c)])) {
-      if (t == known.triangle) continue;  // looked at already
+      if (t == known.triangle) continue;  // already tested
       if ((c > 0 && has_corner(b_->triangle(t), home[0])) || (c > 1 && has_corner(b_->triangle(t), home[1]))) continue;
       look(t, seen);
     }

@@ -14,12 +14,12 @@ namespace insula {
 
 /// What is known of a vertex from earlier steps. Distances must be reduced by all motion.
 struct KnownNearest {
-  int triangle = -1;  ///< nearest in the last step
+  int triangle = -1;  ///< the nearest in the last step
   int home = -1;      ///< the triangle whose neighbours are treated apart from all others
-  double beside = 0;  ///< no triangle but the nearest is closer than this, m ...
-  double beyond = 0;  ///< ... and none that shares no corner with `home`
+  double beside = 0;  ///< no triangle except the nearest is closer than this, m ...
+  double beyond = 0;  ///< ... and no triangle without a corner of `home` is closer than this
 
-  /// Records motion of up to `way`. Unknown triangles are no nearer than `at_least`.
+  /// Records motion of up to `swept`, m. Unknown triangles are no nearer than `at_least`, m.
   void lessen(double swept, double at_least) {
     beside = std::min(beside - swept, at_least);
     beyond = std::min(beyond - swept, at_least);

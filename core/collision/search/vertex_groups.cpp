@@ -20,7 +20,7 @@ void order_by_position(int* first, int* last, std::span<const Vec3> rest, std::p
     return x != y ? x < y : a < b;
   });
   const std::ptrdiff_t groups = (last - first + group - 1) / group;
-  int* middle = first + groups / 2 * group;  // whole groups to the left
+  int* middle = first + groups / 2 * group;  // whole groups on the left
   order_by_position(first, middle, rest, group);
   order_by_position(middle, last, rest, group);
 }

@@ -9,7 +9,7 @@
 
 namespace insula {
 
-/// Orders vertex indices so that every `group` consecutive ones are neighbours: halves by the longest side.
+/// Orders vertex indices so that every `group` consecutive ones are neighbours. It halves along the longest side.
 void order_by_position(int* first, int* last, std::span<const Vec3> rest, std::ptrdiff_t group);
 
 /// The group of each vertex position, 0 to groups - 1; groups have similar sizes.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every triangle about a place against a piece's core.
+// Tests every triangle around a point against a piece's core.
 #include "core/collision/shapes/contact_normal_ahead.h"
 
 #include <array>
@@ -13,7 +13,7 @@ std::optional<Vec3> contact_normal_ahead(const RoundedPiece& piece, const Pose& 
                                          const std::function<Vec3(int)>& vertex, const Vec3& about, double within,
                                          const Vec3& like) {
   constexpr double touching_m = 1e-9, as_near_m = 0.1e-3;
-  constexpr double slack = 0.05;  // a sine: the mesh knows its neighbours' places as they were expected
+  constexpr double slack = 0.05;  // a sine: the mesh has the expected positions of the neighbours
   std::array<Vec3, 24> points;    // read_tool refuses more
   for (std::size_t i = 0; i < piece.core.size(); ++i) points[i] = pose.apply(piece.core[i]);
   const std::span<const Vec3> core(points.data(), piece.core.size());
@@ -24,7 +24,7 @@ std::optional<Vec3> contact_normal_ahead(const RoundedPiece& piece, const Pose& 
     double distance;
     Vec3 normal;
   };
-  std::array<Place, 64> places;  // where it is nearer than about them
+  std::array<Place, 64> places;  // points nearer than their surroundings
   std::size_t count = 0;
   double least = std::numeric_limits<double>::infinity();
   mesh.tree().overlapping(box, [&](int tri) {
@@ -33,7 +33,7 @@ std::optional<Vec3> contact_normal_ahead(const RoundedPiece& piece, const Pose& 
     const HullDistance d = hull_distance(core, corners);
     if ((d.b - about).squaredNorm() > within * within || count == places.size()) return;
     if (d.distance < touching_m) {
-      least = 0;  // the core goes through the surface: there is no direction
+      least = 0;  // the core intersects the surface: there is no direction
       return;
     }
     Vec3 bary = Vec3::Zero();

@@ -9,9 +9,9 @@
 
 namespace insula {
 
-/// Of the surface's points no farther than `within` from `about`, takes the one nearest to the piece's core at this
-/// pose. Returns the unit vector from it to the core. If several points are equally near, as in a groove, the vector
-/// most along `like` is taken. `vertex` gives the present positions of the surface's vertices, which are near those of
+/// Of the surface's points that are at most `within` from `about`, takes the one nearest to the piece's core at this
+/// pose. Returns the unit vector from it to the core. If several points are equally near, as in a groove, takes the
+/// vector most along `like`. `vertex` gives the present positions of the surface's vertices, which are near those of
 /// the mesh. Returns nothing if there is no such point, or if the core is not in front of the surface there. Scene
 /// frame, m.
 std::optional<Vec3> contact_normal_ahead(const RoundedPiece& piece, const Pose& pose, const CollisionMesh& mesh,

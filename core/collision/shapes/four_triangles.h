@@ -21,10 +21,10 @@ struct FourTriangles {
     const auto over =
         (dot(cross(n, ab), ap) >= 0) & (dot(cross(n, bc), bp) >= 0) & (dot(cross(n, ca), cp) >= 0) & (nn > 0);
     const Float4 plane = h * h / (nn > 0 ? nn : Float4{} + 1);
-    // A sliver's normal is mostly rounding; its sides are right.
+    // The normal of a sliver is mostly rounding error, so its edges are used too.
     return over ? least(plane, to_edges) : to_edges;
   }
-  /// Whether the exact squared distance may be at most limit2. The error of distance2() is at most a 5000th and 0.3 um.
+  /// Whether the exact squared distance may be at most limit2. The error of distance2() is at most 0.02 % and 0.3 um.
   static bool may_be_within(float distance2, double limit2) { return double(distance2) <= limit2 * 1.001 + 1e-13; }
 
  private:

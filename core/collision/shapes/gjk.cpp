@@ -32,7 +32,7 @@ struct Simplex {
   }
 };
 
-// Reduces the simplex to the face that holds the point closest to the origin; false when the origin is inside.
+// Reduces the simplex to the face that holds the point closest to the origin; false if the origin is inside.
 bool reduce(Simplex& s) {
   if (s.n == 1) {
     s.l[0] = 1;
@@ -82,7 +82,7 @@ HullDistance hull_distance(std::span<const Vec3> a, std::span<const Vec3> b, dou
   s.l[0] = 1;
   Vec3 v = s.w[0];
   bool meet = false;
-  double apart = 0;  // a plane across v keeps them so far apart
+  double apart = 0;  // lower bound of the distance, from a plane perpendicular to v
   for (int iteration = 0; iteration < 64; ++iteration) {
     const double vv = v.squaredNorm();
     if (vv < 1e-24) {  // a picometre

@@ -12,13 +12,13 @@ namespace insula {
 struct PlacedPiece {
   int piece = 0;
   double time = 0;
-  Vec3 shift = Vec3::Zero();  // slid by this from the free path
-  Pose start, pose;           // pose: at `time`, shift included
+  Vec3 shift = Vec3::Zero();  // displacement from the free path by sliding, m
+  Pose start, pose;           // pose: at `time`, with the shift
   std::array<Vec3, RoundedPiece::max_core> points;
   int count = 0;
   Vec3 axis0, axis1;
   double radius = 0, bound = 0;
-  bool expected = false;  ///< at the expected end of the step, not on the free path
+  bool expected = false;  ///< at the expected end of the step instead of on the free path
 
   PlacedPiece(const RoundedPiece& r, int index, const Pose& s, const Vec6& motion, double t, const Vec3& slid,
               double offset)

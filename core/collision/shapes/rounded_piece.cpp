@@ -49,7 +49,7 @@ RoundedPiece rounded(const ConvexPiece& piece) {
     }
   }
   r.radius = std::max(r.radius, min_radius);
-  // A segment along the longest axis, as short as the other two extents allow.
+  // A segment along the longest axis, shortened by the other two extents.
   const Vec3 middle = 0.5 * (low + high);
   Vec3 end0 = middle, end1 = middle;
   end0[0] = low[0];
@@ -103,7 +103,7 @@ void detect_tools(const std::vector<RoundedPiece>& a, const Pose& a_start, const
       c.start_gap = std::max(gap, -settings.max_correction);
       c.local = a_start.q.conjugate() * (c.point - a_start.p);
       c.other_local = b_start.q.conjugate() * (c.point - b_start.p);
-      // Far pairs only if the free motion brings them together.
+      // Distant pairs count only if the free motion brings them together.
       const Vec3 va = da.head<3>() + da.tail<3>().cross(c.point - a_start.p);
       const Vec3 vb = db.head<3>() + db.tail<3>().cross(c.point - b_start.p);
       if (gap > settings.alarm && gap + n.dot(va - vb) > settings.alarm) continue;

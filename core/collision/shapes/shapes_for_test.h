@@ -10,7 +10,7 @@
 
 namespace insula::shapes {
 
-/// Axis-aligned box, each side divided into n x n squares of two triangles, outward.
+/// Axis-aligned box. Each side has n x n squares of two triangles, which face outward.
 inline TriMesh box(const Vec3& low, const Vec3& high, int n) {
   TriMesh m;
   std::map<std::array<int, 3>, int> number;

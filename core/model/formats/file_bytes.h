@@ -37,7 +37,7 @@ class ByteCursor {
 
   /// The next word between blanks, empty at the end.
   std::string_view try_word();
-  /// The next word; `what` names it in the message when there is none.
+  /// The next word; `what` is its name in the message if there is none.
   std::string_view word(const char* what);
   /// The rest of the line, without its end.
   std::string_view line();
@@ -72,7 +72,8 @@ class ByteCursor {
   std::size_t at_ = 0;
 };
 
-/// The whole word as a number (also "nan" and "inf", which the mesh check then refuses by name); false when it is none.
+/// Reads the whole word as a number, also "nan" and "inf", which the mesh check refuses by name. False if it is not a
+/// number.
 bool parse_double(std::string_view word, double& value);
 bool parse_integer(std::string_view word, std::int64_t& value);
 

@@ -7,7 +7,7 @@
 namespace insula {
 
 /// Throws InputError: malformed JSON, indices out of range, a node that is its own ancestor, views outside their
-/// buffers. Returns the number of triangles that the meshes announce, 0 if there are strips or fans.
+/// buffers. Returns the number of triangles that the meshes announce, or 0 if there are strips or fans.
 std::size_t check_gltf(const std::filesystem::path& file, std::string_view json);
 
 }  // namespace insula

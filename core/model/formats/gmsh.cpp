@@ -19,7 +19,7 @@ int nodes_of(std::int64_t type) {
   return type > 0 && type < std::int64_t(std::size(table)) ? table[type] : 0;
 }
 
-/// Volume elements that are no linear tetrahedra would leave holes: they are refused.
+/// Volume elements other than linear tetrahedra would leave holes, so they are refused.
 bool other_volume(std::int64_t type) {
   return (type >= 5 && type <= 7) || (type >= 11 && type <= 14) || (type >= 17 && type <= 19) ||
          (type >= 29 && type <= 31);
@@ -214,7 +214,7 @@ class GmshReader {
 
   ByteCursor in_;
   RawTets raw_;
-  std::unordered_map<std::int64_t, std::int64_t> place_;  // only looked up, never walked
+  std::unordered_map<std::int64_t, std::int64_t> place_;  // only looked up, never iterated
   bool version4_ = false, binary_ = false, swap_ = false;
 };
 

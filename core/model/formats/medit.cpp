@@ -68,7 +68,7 @@ RawTets read_medit(const std::filesystem::path& file, std::string_view bytes) {
       ended = true;
       break;
     } else if (is_keyword(keyword)) {
-      // Of no use here, except that other volume elements would leave holes.
+      // Not used here, but other volume elements would leave holes.
       const bool volume = keyword == "Hexahedra" || keyword == "Prisms" || keyword == "Pyramids";
       std::string_view next = in.try_word();
       std::int64_t n = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For tests: one small tetrahedral mesh and one surface, written in every format and encoding that is read.
+// One small tetrahedral mesh and one surface for tests, in every format and encoding that is read.
 #pragma once
 #include <filesystem>
 #include <functional>

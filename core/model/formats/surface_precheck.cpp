@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Checks of a surface file's bytes before assimp sees them.
+// Checks of a surface file's bytes before assimp reads them.
 #include "core/model/formats/surface_precheck.h"
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace insula {
 namespace {
 
-// STL: binary when the size is what the count at byte 80 says; otherwise ASCII, which ends with "endsolid".
+// STL: binary if the size agrees with the count at byte 80. Otherwise it is ASCII, which ends with "endsolid".
 std::size_t check_stl(const std::filesystem::path& file, std::string_view bytes) {
   ByteCursor in(file, bytes);
   const bool solid = trim(bytes.substr(0, std::min<std::size_t>(bytes.size(), 80))).substr(0, 5) == "solid";

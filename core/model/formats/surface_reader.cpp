@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Triangle surfaces through assimp, with the checks that assimp leaves out.
+// Reads triangle surfaces through assimp, with the checks that assimp omits.
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
@@ -20,7 +20,7 @@
 namespace insula {
 namespace {
 
-// A reference, so that a static library brings the handler along.
+// A reference, so that a static library includes the handler.
 [[maybe_unused]] void (*const volatile assertion_handler)(const char*, const char*, int) = Assimp::aiAssertViolation;
 
 /// Opens nothing outside the folder of the mesh file (buffers of glTF, materials of OBJ).
@@ -44,15 +44,15 @@ class FolderIO : public Assimp::DefaultIOSystem {
   std::filesystem::path folder_;
 };
 
-// assimp takes a first byte of binary data that is a line's end for one of the header's, unless that ends as on
-// Windows.
+// If the first byte of binary data is a line end, assimp reads it as part of the header, unless the header has Windows
+// line ends.
 std::string with_clear_end_of_header(std::string ply) {
   constexpr std::string_view end = "\nend_header\n";
   if (const auto at = ply.find(end); at != std::string::npos) ply.insert(at + end.size() - 1, 1, '\r');
   return ply;
 }
 
-/// Of finite places without -0, so that equal ones have equal bits.
+/// Hash of finite positions without -0, so that equal ones have equal bits.
 struct VertexHash {
   std::size_t operator()(const Vec3& p) const {
     return std::hash<std::string_view>{}({reinterpret_cast<const char*>(p.data()), 3 * sizeof(double)});
@@ -96,7 +96,7 @@ class Joiner {
   std::filesystem::path file_;
   double scale_;
   TriMesh mesh_;
-  std::unordered_map<Vec3, int, VertexHash> places_;  // asked, never walked through: its order shows nowhere
+  std::unordered_map<Vec3, int, VertexHash> places_;  // only looked up, never iterated, so its order has no effect
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reading a tetrahedral mesh: the reader by file name, then the checks that all formats share.
+// Reads a tetrahedral mesh: selects the reader by file name, then makes the checks of all formats.
 #include <algorithm>
 #include <cmath>
 
@@ -42,7 +42,7 @@ void check_shape(const std::filesystem::path& file, const RawTets& raw, const Te
     const double limit = flat_limit * longest2 * std::sqrt(longest2);
     if (volume6 < -limit) {
       ++inverted, first_inverted = t;
-    } else if (!(volume6 > limit)) {  // also catches coordinates so large that the volume is no number
+    } else if (!(volume6 > limit)) {  // also finds coordinates so large that the volume is not finite
       ++flat, first_flat = t;
     }
   }
@@ -106,7 +106,7 @@ TetMesh tet_mesh_from_bytes(const std::filesystem::path& file, std::string_view 
 
 TetMesh read_tet_mesh(const std::filesystem::path& file, double metres_per_unit) {
   check_unit(file, metres_per_unit);
-  reader_for(file);  // a wrong kind of file is said before a missing one is looked for
+  reader_for(file);  // an unknown kind of file is reported before a missing file
   return tet_mesh_from_bytes(file, read_file_bytes(file), metres_per_unit);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What .vtk and .vtu share: cells as connectivity, offsets and types, turned into tetrahedra.
+// Common part of .vtk and .vtu: cells as connectivity, offsets and types, and their conversion to tetrahedra.
 #include "core/model/formats/vtk_cells.h"
 
 namespace insula {
@@ -62,7 +62,7 @@ void add_vtk_cells(const std::filesystem::path& file, const std::vector<std::int
       raw.tets.push_back(tet);
       raw.tet_number.push_back(number);
     } else if (types[c] > 10 && types[c] != 21 && types[c] != 22 && types[c] != 23 && types[c] != 28) {
-      // 21..23 and 28 are curves and faces of second order; what else is above 10 fills volume and would leave holes.
+      // 21..23 and 28 are curves and faces of second order; all other types above 10 are volumes and would leave holes.
       fail(file, "cell " + std::to_string(number) + " has VTK type " + std::to_string(types[c]) +
                      "; only linear tetrahedra (type 10) can fill a volume here");
     }

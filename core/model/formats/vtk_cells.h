@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The common part of .vtk and .vtu: cells as connectivity, offsets and types, turned into tetrahedra.
+// The common part of .vtk and .vtu: cells as connectivity, offsets and types, and their conversion to tetrahedra.
 #pragma once
 #include <string_view>
 

@@ -12,7 +12,7 @@
 namespace insula {
 namespace {
 
-/// Collects the arrays that are wanted; messages wait until expat has returned.
+/// Collects the wanted arrays. Errors are reported after expat has returned.
 class Parser {
  public:
   Parser(const std::filesystem::path& file, std::string_view xml, const VtkXmlWanted& wanted, VtuFormat& format,
@@ -145,7 +145,7 @@ class Parser {
 
 VtkXmlFile::VtkXmlFile(const std::filesystem::path& file, std::string_view bytes, const VtkXmlWanted& wanted)
     : file_(file) {
-  // Raw appended data are no XML: they are cut out, from their underscore on.
+  // Raw appended data are not XML, so they are removed from their underscore on.
   std::string_view xml = bytes;
   std::string head;
   const std::size_t appended = bytes.find("<AppendedData");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // VTK XML files of any type ("VTK XML Formats", VTK documentation). A reader names the arrays and sections that it
-// wants. It gets their numbers piece by piece, in whatever way they are stored.
+// wants. It gets their numbers piece by piece, for every encoding.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -35,7 +35,7 @@ class VtkXmlFile {
   struct Piece {
     std::int64_t points = 0;
     std::optional<VtuArray> positions;
-    std::map<std::string, Section> sections;  ///< all that are wanted
+    std::map<std::string, Section> sections;  ///< all wanted sections
   };
 
   /// Reads the structure; `bytes` must outlive this object. Throws InputError: another type, malformed, truncated, an

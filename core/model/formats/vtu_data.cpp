@@ -96,7 +96,7 @@ std::string plain_bytes(const std::filesystem::path& file, const VtuFormat& form
   for (std::uint64_t b = 0; b < blocks; ++b) {
     const std::uint64_t size = b + 1 == blocks && last_size > 0 ? last_size : block_size;
     if (packed[b] > source.size()) stored.ends_early();
-    // Deflate packs at most 1032 to 1: more is a lie, and nothing is allocated for it.
+    // Deflate compresses by at most 1032 to 1. A larger size is wrong, and nothing is allocated for it.
     if (size > 1040 * packed[b] + 64) fail(file, "the array " + in_quotes(array.name) + " is malformed");
     const std::string in = stored.take(std::size_t(packed[b]));
     const std::size_t at = out.size();

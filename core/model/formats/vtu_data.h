@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The numbers of one DataArray of a VTK XML file, in whatever way they are stored.
+// The numbers of one DataArray of a VTK XML file, for every encoding.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -24,7 +24,7 @@ struct VtuArray {
   std::string text;        ///< inline content
 };
 
-/// Integers and real numbers alike. `expected` is the count that the file announces (negative: any). Throws InputError.
+/// Reads integers and real numbers. `expected` is the count that the file announces (negative: any). Throws InputError.
 std::vector<double> vtu_numbers(const std::filesystem::path& file, const VtuFormat& format, const VtuArray& array,
                                 std::int64_t expected);
 

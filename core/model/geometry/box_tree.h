@@ -57,7 +57,7 @@ class BoxTree {
       }
       const double l = nodes_[std::size_t(node.left)].box.squaredExteriorDistance(p);
       const double r = nodes_[std::size_t(node.right)].box.squaredExteriorDistance(p);
-      stack.push_back(l <= r ? node.right : node.left);  // the nearer one is walked first
+      stack.push_back(l <= r ? node.right : node.left);  // the nearer child is visited first
       stack.push_back(l <= r ? node.left : node.right);
     }
     return best;

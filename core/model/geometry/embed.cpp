@@ -32,7 +32,7 @@ Weights barycentric(const TetMesh& mesh, int tet, const Vec3& p) {
 
 double least(const Weights& w) { return std::min({w[0], w[1], w[2], w[3]}); }
 
-/// Draws `w` towards the weights `near` of the nearest point until it is within the limit; the sum stays 1.
+/// Moves `w` towards the weights `near` of the nearest point until it is within the limit; the sum stays 1.
 Weights drawn_in(const Weights& near, const Weights& w) {
   double s = 1;
   for (int i = 0; i < 4; ++i) {
@@ -98,7 +98,7 @@ Embedding embed(const TetMesh& mesh, const std::vector<Vec3>& points) {
       const Weights w = barycentric(mesh, tet, p);
       const double l = least(w);
       if (l > best_least || (l == best_least && tet < best)) best = tet, weights = w, best_least = l;
-      return l > 0;  // strictly inside: no other tetrahedron of a valid mesh can hold it
+      return l > 0;  // strictly inside: no other tetrahedron of a valid mesh can contain it
     });
     if (best < 0) {
       const int k = boundary.nearest(p, [&](int item) { return (nearest_on(item, p) - p).squaredNorm(); });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What URDF cannot say about a tool: cutting edge, suction opening, what plugins want, in tool.json beside the URDF.
+// Reads tool.json: properties of a tool that URDF does not have.
 #include "core/model/tools/tool_json.h"
 
 #include <algorithm>

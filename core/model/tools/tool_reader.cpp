@@ -140,7 +140,7 @@ class ToolReader {
     links_.push_back({in.mass, at.p, 0.5 * (turned + turned.transpose())});
   }
 
-  /// Written as corrections to the first link, so that a rigid tool keeps its numbers to the last bit.
+  /// Computed as corrections to the first link, so that a rigid tool keeps its exact numbers.
   void combine_inertias() {
     for (const LinkInertia& l : links_) tool_.mass += l.mass;
     Vec3 shift = Vec3::Zero();
@@ -152,7 +152,7 @@ class ToolReader {
     }
   }
 
-  /// Beside the URDF; "package://NAME/" stands for that folder.
+  /// Relative to the URDF. "package://NAME/" means that folder.
   std::filesystem::path resolved(std::string name, const std::string& what) const {
     if (name.rfind("package://", 0) == 0) {
       const std::size_t slash = name.find('/', 10);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A URDF file parsed by urdfdom, with what it only prints turned into an InputError.
+// A URDF file parsed by urdfdom, with its printed messages as an InputError.
 #include "core/model/tools/urdf_text.h"
 
 #include <console_bridge/console.h>
@@ -15,8 +15,7 @@
 namespace insula {
 namespace {
 
-/// Keeps what urdfdom would print, while it lives. console_bridge has one handler for the whole process, hence the
-/// lock.
+/// Keeps the messages of urdfdom while it exists. console_bridge has one handler for the whole process, hence the lock.
 class ConsoleCapture : public console_bridge::OutputHandler {
  public:
   ConsoleCapture()
@@ -49,7 +48,7 @@ class ConsoleCapture : public console_bridge::OutputHandler {
 
 urdf::ModelInterfaceSharedPtr parse_urdf(const std::filesystem::path& file) {
   const std::string text = read_file_bytes(file, 1u << 20);
-  // urdfdom's own XML parser recurses and says little about where; so the text is first read by ours.
+  // urdfdom's XML parser is recursive and gives no good positions, so the text is first read by our parser.
   Diagnostics diagnostics;
   parse_document(text, file.string(), diagnostics);
   if (!diagnostics.ok()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// On a body that cannot give way the force is minus stiffness times stretch, to either side.
+// On a rigid body the force is minus stiffness times stretch, to either side.
 #include <gtest/gtest.h>
 
 #include "core/testing/block_mesh.h"

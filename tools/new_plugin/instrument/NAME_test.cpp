@@ -10,8 +10,8 @@
 namespace insula {
 namespace {
 
-/// Marks made while the hand goes `way` m sideways in so many steps.
-int marks(bool button, double way, int steps) {
+/// Marks made while the hand moves sideways by `distance` m in `steps` steps.
+int marks(bool button, double distance, int steps) {
   test::SceneFolder folder;
   folder.write("meshes/pen.urdf", test::test_tool_urdf(0.001));
   folder.write("meshes/tool.json", test::test_tool_json(0, 0));
@@ -24,7 +24,7 @@ int marks(bool button, double way, int steps) {
     HandState hand;
     hand.present = true;
     hand.device = s->instrument_of(1)->home_pose();
-    hand.device.p.x() += way * i / (steps - 1);
+    hand.device.p.x() += distance * i / (steps - 1);
     hand.button1 = button;
     s->set_hand(1, hand);
     s->step();
@@ -34,9 +34,9 @@ int marks(bool button, double way, int steps) {
   return count;
 }
 
-TEST(@Name@, MarksOnceWhileItRests) { EXPECT_EQ(marks(true, 0, 10), 1); }
-TEST(@Name@, MarksEachSpacing) { EXPECT_EQ(marks(true, 0.0041, 83), 5); }
-TEST(@Name@, MarksNothingWithoutTheButton) { EXPECT_EQ(marks(false, 0.005, 20), 0); }
+TEST(@Name @, MarksOnceWhileItRests) { EXPECT_EQ(marks(true, 0, 10), 1); }
+TEST(@Name @, MarksEachSpacing) { EXPECT_EQ(marks(true, 0.0041, 83), 5); }
+TEST(@Name @, MarksNothingWithoutTheButton) { EXPECT_EQ(marks(false, 0.005, 20), 0); }
 
 }  // namespace
 }  // namespace insula

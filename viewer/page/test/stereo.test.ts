@@ -12,8 +12,8 @@ function eyes() {
   const middle = new THREE.PerspectiveCamera(20, aspect, 0.05, 1);
   middle.position.set(0.3, -0.2, 0.5);
   middle.up.set(0, 0, 1);
-  const way = new THREE.Vector3(-0.6, 0.5, -0.7).normalize();
-  middle.lookAt(middle.position.clone().add(way));
+  const direction = new THREE.Vector3(-0.6, 0.5, -0.7).normalize();
+  middle.lookAt(middle.position.clone().add(direction));
   middle.updateMatrixWorld();
   middle.updateProjectionMatrix();
   const pair = ([-1, 1] as const).map((side) => {
@@ -23,7 +23,7 @@ function eyes() {
   });
   const right = new THREE.Vector3().setFromMatrixColumn(middle.matrixWorld, 0);
   const at = (depth: number, across = 0) =>
-    middle.position.clone().addScaledVector(way, depth).addScaledVector(right, across);
+    middle.position.clone().addScaledVector(direction, depth).addScaledVector(right, across);
   return { middle, left: pair[0]!, right: pair[1]!, at };
 }
 
