@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the servo needs of a haptic device. SI units, scene frame: a driver applies its own calibration.
 #pragma once
+#include <chrono>
 #include <string>
 
 #include "core/base/math.h"
@@ -43,6 +44,9 @@ struct HandGoal {
   bool button2 = false;
   bool stops = true;  ///< the arm's mechanical stops count
 };
+
+/// Between two tries to find a device that is gone.
+inline constexpr auto reopen_after = std::chrono::milliseconds(500);
 
 /// One arm. start/stop may block and may throw; read, write, guide, place and advance run in the servo thread: they
 /// must neither allocate, block nor throw. The force passed to write has gone through the safety gate.

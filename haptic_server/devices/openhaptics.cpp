@@ -18,7 +18,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto retry = 500ms;
 constexpr int calibration_check_frames = 200;
 /// No hand is pushed with more than this, whatever its device could do: the forces of this surgery stay far below.
 constexpr double force_limit_N = 10;
@@ -136,7 +135,7 @@ void OpenHapticsDevice::look_after() {
       spdlog::warn("{}", remark());
     }
     if (handle_ == hd::invalid_handle) {
-      for (auto waited = 0ms; waited < retry && !stopping_; waited += 20ms) std::this_thread::sleep_for(20ms);
+      for (auto waited = 0ms; waited < reopen_after && !stopping_; waited += 20ms) std::this_thread::sleep_for(20ms);
       if (!stopping_ && open()) spdlog::info("{} is there", title());
       continue;
     }

@@ -13,7 +13,7 @@ namespace {
 constexpr double facing = 0.1;       ///< cosine by which two normals must oppose one another
 constexpr double along_wall = 0.92;  ///< normals that agree by this at rest belong to one stretch of wall ...
 constexpr double bent = 0.8;  ///< ... those that agree by this need looking at only once the wall between them is bent
-constexpr double horizon = 0.5e-3;         ///< farther than needed, to know for how long nothing will come, m
+constexpr double look_ahead = 0.5e-3;      ///< farther than needed, to know for how long nothing will come, m
 constexpr double skin = 0.4e-3;            ///< motion after which a list of partners is made anew, m
 constexpr double yields = 0.3;             ///< part of its turn that the normal of a pressing contact takes in a step
 constexpr double min_turn = 1e-3;          ///< a turn of less is none, rad
@@ -134,7 +134,7 @@ bool SelfCollider::may_be_near(const CollisionMesh& mesh, std::size_t sample, in
   clear_[side][sample] -= went;
   covered_[side][sample] -= went;
   return clear_[side][sample] <=
-         range + std::min(mesh.free(samples_[sample]).norm() + mesh.may_move(partners), horizon);
+         range + std::min(mesh.free(samples_[sample]).norm() + mesh.may_move(partners), look_ahead);
 }
 
 // All possible partners within `far`, and what may come there before the list is made anew.
@@ -165,12 +165,12 @@ void SelfCollider::near(const CollisionMesh& mesh, const SelfContactSettings& se
   const int before = close_[side][sample];
   const bool was = before != 0;
   // What touched is looked for farther, what has crossed as deep as crossings are undone.
-  const double range = (was ? 1.2 * settings.alarm + horizon : settings.alarm) + settings.thickness;
+  const double range = (was ? 1.2 * settings.alarm + look_ahead : settings.alarm) + settings.thickness;
   const double reach = before == 2 ? std::max(range, settings.max_depth) : range;
   if (!may_be_near(mesh, sample, side, range) && !was) return;
   close_[side][sample] = 0;
   const Vec3 x = mesh.vertex(v);
-  double least2 = 1e300, any2 = (range + horizon) * (range + horizon);
+  double least2 = 1e300, any2 = (range + look_ahead) * (range + look_ahead);
   int best = -1;
   Vec3 bary = Vec3::Zero(), point = Vec3::Zero();
   if (!outward_known_[sample]) {
@@ -199,7 +199,7 @@ void SelfCollider::near(const CollisionMesh& mesh, const SelfContactSettings& se
     point = c;
   };
   // What the free motion may bring is within the horizon.
-  const double far = settings.thickness + 1.2 * settings.alarm + horizon;
+  const double far = settings.thickness + 1.2 * settings.alarm + look_ahead;
   if (reach <= far && covered_[side][sample] < 0) list_partners(mesh, sample, side, far);
   if (reach <= far && covered_[side][sample] >= 0) {
     const double went = skin - covered_[side][sample];
