@@ -20,6 +20,8 @@ function(insula_kernels out)  # insula_kernels(OUT name FILE...)
       KERNEL_NAME=${set} KERNEL_BYTES=${bytes} KERNEL_NV=${nv} KERNEL_NR=${nr})
     target_compile_options(kernels_${name}_${set} PRIVATE
       -O3 -ffp-contract=fast -fno-math-errno -Wall -Wextra -Wno-psabi -fno-sanitize=all ${ARGN})
+    # Each kernel file alone: with products contracted, the bits depend on what is inlined together.
+    set_target_properties(kernels_${name}_${set} PROPERTIES UNITY_BUILD OFF)
     list(APPEND objects $<TARGET_OBJECTS:kernels_${name}_${set}>)
   endmacro()
   one_set(sse2 16 2 4)

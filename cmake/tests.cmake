@@ -8,6 +8,8 @@ function(insula_test target)  # insula_test(name SOURCES ... LIBS ... [SERIAL])
     add_executable(${target} ${T_SOURCES})
     target_link_libraries(${target} PRIVATE ${T_LIBS} GTest::gtest_main)
     target_compile_definitions(${target} PRIVATE ${INSULA_TEST_DEFS})
+    # What is tested is optimised in its own library.
+    target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
     set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
     gtest_discover_tests(${target} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} DISCOVERY_TIMEOUT 60
       PROPERTIES TIMEOUT 600 RUN_SERIAL $<BOOL:${T_SERIAL}>)
@@ -19,6 +21,8 @@ endif()
 include(GoogleTest)
 insula_glob(testing_src core/testing/*.cpp)
 if(testing_src)
+  # It replaces operator new: only in programs that count allocations.
+  set_source_files_properties(core/testing/count_allocations.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   add_library(insula_testing STATIC ${testing_src})
   target_link_libraries(insula_testing PUBLIC insula_plugins GTest::gtest)
 endif()

@@ -13,20 +13,20 @@
 namespace insula {
 namespace {
 
-constexpr double dt = 1e-3;
+constexpr double tick = 1e-3;
 const Vec3 up = Vec3::UnitZ(), still = Vec3::Zero();
 
 TEST(ForceOutput, WithoutAnythingDeclaredTheForceGoesThroughAsItIs) {
   ForceOutput force_output;
   const Vec3 f(0.1, -0.2, 0.05);
-  EXPECT_EQ(force_output.apply(DeviceProfile{}, dt, f, Vec3(0.1, 0, 0), up, true), f);
-  EXPECT_EQ(force_output.apply(DeviceProfile{}, dt, f, still, up, false), f);
+  EXPECT_EQ(force_output.apply(DeviceProfile{}, tick, f, Vec3(0.1, 0, 0), up, true), f);
+  EXPECT_EQ(force_output.apply(DeviceProfile{}, tick, f, still, up, false), f);
 }
 
 TEST(ForceOutput, ScalesByWhatTheSceneDeclares) {
   ForceOutput force_output;
   force_output.set({3, 0.8, true});
-  EXPECT_EQ(force_output.apply(DeviceProfile{}, dt, Vec3(0.1, 0, 0), still, up, true), Vec3(3 * 0.1, 0, 0));
+  EXPECT_EQ(force_output.apply(DeviceProfile{}, tick, Vec3(0.1, 0, 0), still, up, true), Vec3(3 * 0.1, 0, 0));
 }
 
 TEST(ForceOutput, TakesOffAShareOfTheDevicesFrictionAlongTheMotion) {
@@ -34,12 +34,13 @@ TEST(ForceOutput, TakesOffAShareOfTheDevicesFrictionAlongTheMotion) {
   DeviceProfile device;
   device.friction_N = 0.26;
   const Vec3 fast = Vec3(3, 0, 4).normalized() * 0.05;
-  EXPECT_LT((force_output.apply(device, dt, still, fast, up, true) - 0.8 * 0.26 * Vec3(0.6, 0, 0.8)).norm(), 1e-15);
-  EXPECT_LT((force_output.apply(device, dt, still, 0.1 * fast, up, true) - 0.5 * 0.8 * 0.26 * Vec3(0.6, 0, 0.8)).norm(),
-            1e-15)
+  EXPECT_LT((force_output.apply(device, tick, still, fast, up, true) - 0.8 * 0.26 * Vec3(0.6, 0, 0.8)).norm(), 1e-15);
+  EXPECT_LT(
+      (force_output.apply(device, tick, still, 0.1 * fast, up, true) - 0.5 * 0.8 * 0.26 * Vec3(0.6, 0, 0.8)).norm(),
+      1e-15)
       << "at half of the slow speed, half";
-  EXPECT_EQ(force_output.apply(device, dt, still, still, up, true), still);
-  EXPECT_EQ(force_output.apply(device, dt, still, Vec3(std::nan(""), 0, 0), up, true), still);
+  EXPECT_EQ(force_output.apply(device, tick, still, still, up, true), still);
+  EXPECT_EQ(force_output.apply(device, tick, still, Vec3(std::nan(""), 0, 0), up, true), still);
 }
 
 /// With the device's friction still on it, a compensated arm that was pushed comes to rest: what is taken off never
@@ -53,13 +54,13 @@ TEST(ForceOutput, ACompensatedArmStillComesToRest) {
   arm.place({}, Vec3::Zero(), Vec3::Constant(10));
   ForceOutput force_output;
   arm.set_load(Vec3(2, 0, 0), Vec3::Zero());
-  for (int i = 0; i < 30; ++i) arm.step(dt);
+  for (int i = 0; i < 30; ++i) arm.step(tick);
   const double thrown = arm.v().norm();
   ASSERT_GT(thrown, 0.1);
   double energy = arm.energy();
   for (int i = 0; i < 3000; ++i) {
-    arm.set_load(force_output.apply(p.profile, dt, still, arm.v(), up, true), Vec3::Zero());
-    arm.step(dt);
+    arm.set_load(force_output.apply(p.profile, tick, still, arm.v(), up, true), Vec3::Zero());
+    arm.step(tick);
     ASSERT_LE(arm.energy(), energy);
     energy = arm.energy();
   }
@@ -71,18 +72,18 @@ TEST(ForceOutput, CarriesTheArmsWeight) {
   DeviceProfile device;
   device.weight_N = 0.7;
   const Vec3 scene_up = Vec3(1, 2, 2) / 3;
-  EXPECT_LT((force_output.apply(device, dt, still, still, scene_up, true) - 0.7 * scene_up).norm(), 1e-15);
+  EXPECT_LT((force_output.apply(device, tick, still, still, scene_up, true) - 0.7 * scene_up).norm(), 1e-15);
 }
 
 TEST(ForceOutput, AKnockIsADampedSineAndEnds) {
   ForceOutput force_output;
   force_output.start_transient(Vec3(0, 2, 0), severing_transient);
   for (int i = 0; i < 200; ++i) {
-    const double t = i * dt, want = t < 5 * severing_transient.decay_s
-                                        ? severing_transient.amplitude_N * std::exp(-t / severing_transient.decay_s) *
-                                              std::sin(2 * std::numbers::pi * severing_transient.frequency_Hz * t)
-                                        : 0;
-    const Vec3 f = force_output.apply(DeviceProfile{}, dt, still, still, up, true);
+    const double t = i * tick, want = t < 5 * severing_transient.decay_s
+                                          ? severing_transient.amplitude_N * std::exp(-t / severing_transient.decay_s) *
+                                                std::sin(2 * std::numbers::pi * severing_transient.frequency_Hz * t)
+                                          : 0;
+    const Vec3 f = force_output.apply(DeviceProfile{}, tick, still, still, up, true);
     ASSERT_NEAR(f.y(), want, 1e-12) << i;
     ASSERT_EQ(f.x(), 0);
   }
@@ -91,26 +92,26 @@ TEST(ForceOutput, AKnockIsADampedSineAndEnds) {
 TEST(ForceOutput, AStrongerKnockTakesOverAndALostSourceSilencesIt) {
   ForceOutput force_output;
   force_output.start_transient(Vec3::UnitX(), latching_transient);
-  force_output.apply(DeviceProfile{}, dt, still, still, up, true);
+  force_output.apply(DeviceProfile{}, tick, still, still, up, true);
   force_output.start_transient(Vec3::UnitY(), severing_transient);  // weaker: not heard
-  EXPECT_EQ(force_output.apply(DeviceProfile{}, dt, still, still, up, true).y(), 0);
-  EXPECT_EQ(force_output.apply(DeviceProfile{}, dt, still, still, up, false), still);
-  EXPECT_EQ(force_output.apply(DeviceProfile{}, dt, still, still, up, true), still) << "it does not come back";
+  EXPECT_EQ(force_output.apply(DeviceProfile{}, tick, still, still, up, true).y(), 0);
+  EXPECT_EQ(force_output.apply(DeviceProfile{}, tick, still, still, up, false), still);
+  EXPECT_EQ(force_output.apply(DeviceProfile{}, tick, still, still, up, true), still) << "it does not come back";
   force_output.start_transient(Vec3(std::nan(""), 0, 0), latching_transient);
   force_output.start_transient(still, latching_transient);
-  force_output.apply(DeviceProfile{}, dt, still, still, up, true);
-  EXPECT_EQ(force_output.apply(DeviceProfile{}, dt, still, still, up, true), still);
+  force_output.apply(DeviceProfile{}, tick, still, still, up, true);
+  EXPECT_EQ(force_output.apply(DeviceProfile{}, tick, still, still, up, true), still);
 }
 
 TEST(Onset, OnlyAfterSomeTimeOutOfTouch) {
   Onset onset;
-  EXPECT_FALSE(onset.met(dt, 0));
-  EXPECT_TRUE(onset.met(dt, 0.1));
-  EXPECT_FALSE(onset.met(dt, 0.1));
-  for (int i = 0; i < 20; ++i) EXPECT_FALSE(onset.met(dt, 0)) << "a chattering contact";
-  EXPECT_FALSE(onset.met(dt, 0.1));
-  for (int i = 0; i < 60; ++i) onset.met(dt, 0);
-  EXPECT_TRUE(onset.met(dt, 0.1));
+  EXPECT_FALSE(onset.met(tick, 0));
+  EXPECT_TRUE(onset.met(tick, 0.1));
+  EXPECT_FALSE(onset.met(tick, 0.1));
+  for (int i = 0; i < 20; ++i) EXPECT_FALSE(onset.met(tick, 0)) << "a chattering contact";
+  EXPECT_FALSE(onset.met(tick, 0.1));
+  for (int i = 0; i < 60; ++i) onset.met(tick, 0);
+  EXPECT_TRUE(onset.met(tick, 0.1));
 }
 
 TEST(ForceOutput, AWallKnocksAndTissueDoesNot) {

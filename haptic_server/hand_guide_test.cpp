@@ -10,16 +10,16 @@
 namespace insula {
 namespace {
 
-constexpr double dt = 1e-3;
+constexpr double guide_tick = 1e-3;
 
 TEST(HandGuide, FollowsAScriptWithItsVelocity) {
   HandGuide guide;
   guide.place(Pose());
   HandSample wish;
   for (int k = 1; k <= 100; ++k) {
-    wish.pose.p.x() = 0.05 * dt * k;
+    wish.pose.p.x() = 0.05 * guide_tick * k;
     wish.button1 = k > 50;
-    const HandGoal& g = guide.advance(dt, wish);
+    const HandGoal& g = guide.advance(guide_tick, wish);
     EXPECT_EQ(g.pose.p, wish.pose.p);
     EXPECT_NEAR(g.v.x(), 0.05, 1e-9);
     EXPECT_EQ(g.button1, k > 50);
@@ -37,14 +37,14 @@ TEST(HandGuide, WalksWhereTheWishJumps) {
   Pose last;
   int ticks = 0;
   for (; ticks < 1000; ++ticks) {
-    const HandGoal& g = guide.advance(dt, wish);
+    const HandGoal& g = guide.advance(guide_tick, wish);
     const Vec6 d = displacement(last, g.pose);
-    ASSERT_LE(d.head<3>().norm(), s.max_speed_m_s * dt * (1 + 1e-9));
-    ASSERT_LE(d.tail<3>().norm(), s.max_spin_rad_s * dt * (1 + 1e-9));
+    ASSERT_LE(d.head<3>().norm(), s.max_speed_m_s * guide_tick * (1 + 1e-9));
+    ASSERT_LE(d.tail<3>().norm(), s.max_spin_rad_s * guide_tick * (1 + 1e-9));
     last = g.pose;
     if ((g.pose.p - wish.pose.p).norm() == 0 && displacement(g.pose, wish.pose).tail<3>().norm() == 0) break;
   }
-  EXPECT_NEAR(ticks, 2 / s.max_spin_rad_s / dt, 2);  // the turn takes longest
+  EXPECT_NEAR(ticks, 2 / s.max_spin_rad_s / guide_tick, 2);  // the turn takes longest
 }
 
 TEST(HandGuide, AViewerTakesOverUntilPlaced) {
@@ -55,12 +55,12 @@ TEST(HandGuide, AViewerTakesOverUntilPlaced) {
   viewer.button2 = true;
   script.pose.p = Vec3(-0.01, 0, 0);
   guide.take_over(viewer);
-  for (int k = 0; k < 1000; ++k) guide.advance(dt, script);  // held although no new pose comes
+  for (int k = 0; k < 1000; ++k) guide.advance(guide_tick, script);  // held although no new pose comes
   EXPECT_NEAR((guide.goal().pose.p - viewer.pose.p).norm(), 0, 1e-9);
   EXPECT_TRUE(guide.goal().button2);
   EXPECT_FALSE(guide.goal().stops);
   guide.place(Pose());
-  for (int k = 0; k < 1000; ++k) guide.advance(dt, script);
+  for (int k = 0; k < 1000; ++k) guide.advance(guide_tick, script);
   EXPECT_EQ(guide.goal().pose.p, script.pose.p);
 }
 
@@ -71,10 +71,10 @@ TEST(HandGuide, SmoothsSixtyPosesASecond) {
   for (int k = 0; k < 1000; ++k) {
     if (k % 16 == 0) {
       HandSample s;
-      s.pose.p.x() = 0.05 * dt * k;  // steps of 0.8 mm
+      s.pose.p.x() = 0.05 * guide_tick * k;  // steps of 0.8 mm
       guide.take_over(s);
     }
-    guide.advance(dt, HandSample{});
+    guide.advance(guide_tick, HandSample{});
     if (k > 200) fastest = std::max(fastest, guide.goal().v.x());
   }
   EXPECT_LT(fastest, 0.08);  // a raw step would be 0.3 m/s, the limit
@@ -85,13 +85,13 @@ TEST(MotionClock, FollowsStepsSmoothly) {
   clock.reset(0);
   double last = 0, slowest = 1, fastest = 0;
   for (int k = 0; k < 2000; ++k) {
-    if (k % 17 == 0) clock.step_arrived(k * dt, 17 * dt);
-    const double t = clock.advance(dt);
+    if (k % 17 == 0) clock.step_arrived(k * guide_tick, 17 * guide_tick);
+    const double t = clock.advance(guide_tick);
     ASSERT_GE(t, last);
     if (k > 500) {
-      slowest = std::min(slowest, (t - last) / dt);
-      fastest = std::max(fastest, (t - last) / dt);
-      ASSERT_NEAR(t, (k + 1) * dt, 2e-3);
+      slowest = std::min(slowest, (t - last) / guide_tick);
+      fastest = std::max(fastest, (t - last) / guide_tick);
+      ASSERT_NEAR(t, (k + 1) * guide_tick, 2e-3);
     }
     last = t;
   }
@@ -103,15 +103,15 @@ TEST(MotionClock, StopsWithTheEngineAndFollowsASlowOne) {
   MotionClock clock;
   clock.reset(0);
   for (int k = 0; k < 500; ++k) {
-    if (k % 17 == 0) clock.step_arrived(k * dt, 17 * dt);
-    clock.advance(dt);
+    if (k % 17 == 0) clock.step_arrived(k * guide_tick, 17 * guide_tick);
+    clock.advance(guide_tick);
   }
-  for (int k = 0; k < 1000; ++k) clock.advance(dt);  // no more steps
-  EXPECT_LE(clock.time(), 0.5 + 17 * dt + 1e-9);
+  for (int k = 0; k < 1000; ++k) clock.advance(guide_tick);  // no more steps
+  EXPECT_LE(clock.time(), 0.5 + 17 * guide_tick + 1e-9);
   clock.reset(0);
   for (int k = 0; k < 4000; ++k) {  // at half speed
-    if (k % 34 == 0) clock.step_arrived(0.5 * k * dt, 17 * dt);
-    clock.advance(dt);
+    if (k % 34 == 0) clock.step_arrived(0.5 * k * guide_tick, 17 * guide_tick);
+    clock.advance(guide_tick);
   }
   EXPECT_NEAR(clock.time(), 2.0, 0.02);
 }

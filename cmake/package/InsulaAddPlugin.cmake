@@ -3,6 +3,7 @@
 #   target NAME        NAME.so, a shared plugin; `cmake --install` puts it into the plugin folder of the prefix
 #   target NAME_test   loads NAME.so and runs the author's tests and the contracts of each element, on example.xml
 #   tests              NAME.tests, NAME.check and NAME.run (the program with the plugin, on the example)
+# An Insula that was built without tests has no contracts: then there are no NAME_test and no NAME.tests.
 function(insula_add_plugin name)
   cmake_parse_arguments(P "" "FOLDER" "" ${ARGN})
   if(NOT P_FOLDER)
@@ -26,6 +27,14 @@ function(insula_add_plugin name)
   set_target_properties(${name} PROPERTIES PREFIX "" CXX_VISIBILITY_PRESET hidden)
   install(TARGETS ${name} LIBRARY DESTINATION lib/insula/plugins)
 
+  add_test(NAME ${name}.check COMMAND Insula::insula --plugin-path $<TARGET_FILE:${name}> check ${P_FOLDER}/example.xml)
+  add_test(NAME ${name}.run
+    COMMAND Insula::insula --plugin-path $<TARGET_FILE:${name}> run ${P_FOLDER}/example.xml --duration 2 --quiet)
+  if(NOT TARGET Insula::plugin_testing)
+    message(STATUS "Insula was built without tests: ${name} has no program of tests")
+    return()
+  endif()
+
   # A shared plugin takes the core from the program that loads it: the test program must hold all of the core, too.
   set(main ${CMAKE_CURRENT_BINARY_DIR}/${name}_test_main.cpp)
   file(CONFIGURE OUTPUT ${main}.in CONTENT "#include \"core/testing/plugin_main.h\"
@@ -43,7 +52,4 @@ int main(int argc, char** argv) {
   add_dependencies(${name}_test ${name})
 
   add_test(NAME ${name}.tests COMMAND ${name}_test)
-  add_test(NAME ${name}.check COMMAND Insula::insula --plugin-path $<TARGET_FILE:${name}> check ${P_FOLDER}/example.xml)
-  add_test(NAME ${name}.run
-    COMMAND Insula::insula --plugin-path $<TARGET_FILE:${name}> run ${P_FOLDER}/example.xml --duration 2 --quiet)
 endfunction()

@@ -15,7 +15,7 @@ namespace insula {
 namespace {
 
 using Json = nlohmann::json;
-constexpr double mm = 1e-3;
+constexpr double metres_per_mm = 1e-3;
 constexpr double largest_mm = 1e4;
 
 /// wall.ply keeps its numbering of vertices, which vessel.json refers to; read_surface() would merge and renumber them.
@@ -57,9 +57,9 @@ class WallPly {
       for (std::size_t k = 0; k < scalars.size(); k += 2) {
         const double x = value(scalars[k], ascii, swap);
         const std::string& name = scalars[k + 1];
-        if (name.size() == 1 && name[0] >= 'x' && name[0] <= 'z') p[name[0] - 'x'] = x * mm;
+        if (name.size() == 1 && name[0] >= 'x' && name[0] <= 'z') p[name[0] - 'x'] = x * metres_per_mm;
       }
-      if (!p.allFinite() || p.cwiseAbs().maxCoeff() > largest_mm * mm)
+      if (!p.allFinite() || p.cwiseAbs().maxCoeff() > largest_mm * metres_per_mm)
         in_.fail("vertex " + std::to_string(v) + " is not finite or too far away");
       mesh.vertices.push_back(p);
     }
@@ -164,7 +164,7 @@ class VesselReader {
   }
   double length(const Json& json, const std::string& what) const {
     if (!json.is_number() || !(std::abs(json.get<double>()) <= largest_mm)) bad(what + " must be a number (mm)");
-    return json.get<double>() * mm;
+    return json.get<double>() * metres_per_mm;
   }
   double positive(const Json& json, const std::string& what) const {
     const double v = length(json, what);
@@ -247,7 +247,7 @@ class VesselReader {
   void read_neck(const Json& json, const Json& neck) {
     out_.has_neck = true;
     out_.neck_centre = point(member(neck, "centre", "neck."), "neck.centre");
-    const Vec3 normal = point(member(neck, "normal", "neck."), "neck.normal") / mm;
+    const Vec3 normal = point(member(neck, "normal", "neck."), "neck.normal") / metres_per_mm;
     if (!(std::abs(normal.norm() - 1) < 1e-3)) bad("neck.normal must have length 1");
     out_.neck_normal = normal.normalized();
     out_.neck_diameter = positive(member(neck, "diameter", "neck."), "neck.diameter");

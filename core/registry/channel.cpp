@@ -12,7 +12,7 @@
 namespace insula {
 namespace {
 
-[[noreturn]] void bad_declaration(std::string_view channel, const std::string& why) {
+[[noreturn]] void bad_channel(std::string_view channel, const std::string& why) {
   throw std::logic_error("channel \"" + std::string(channel) + "\" is declared wrongly: " + why);
 }
 
@@ -20,7 +20,7 @@ std::optional<double> bound(const ChannelSpec& spec, std::string_view text, cons
   if (text.empty()) return std::nullopt;
   std::string error;
   const auto value = parse_quantity(text, quantity.units, quantity.name, error);
-  if (!value) bad_declaration(spec.name, error);
+  if (!value) bad_channel(spec.name, error);
   return value;
 }
 
@@ -32,15 +32,15 @@ std::string_view shown_name(Shown shown) {
 
 ChannelBase::ChannelBase(Component* owner, ChannelSpec spec, Quantity quantity, int size, bool single)
     : spec_(spec), quantity_(quantity), size_(size), single_(single) {
-  if (!owner) bad_declaration(spec_.name, "it has no owner");
+  if (!owner) bad_channel(spec_.name, "it has no owner");
   if (spec_.name.empty() || spec_.name.find_first_of(". \t") != std::string_view::npos)
-    bad_declaration(spec_.name, "it needs a name without dots and blanks");
-  if (spec_.doc.empty()) bad_declaration(spec_.name, "it has no doc");
+    bad_channel(spec_.name, "it needs a name without dots and blanks");
+  if (spec_.doc.empty()) bad_channel(spec_.name, "it has no doc");
   for (const ChannelBase* other : owner->channels())
-    if (other->spec().name == spec_.name) bad_declaration(spec_.name, "the component has it twice");
+    if (other->spec().name == spec_.name) bad_channel(spec_.name, "the component has it twice");
   min_ = bound(spec_, spec_.min, quantity_);
   max_ = bound(spec_, spec_.max, quantity_);
-  if (min_ && max_ && *min_ > *max_) bad_declaration(spec_.name, "its minimum is above its maximum");
+  if (min_ && max_ && *min_ > *max_) bad_channel(spec_.name, "its minimum is above its maximum");
   good_ = {bound(spec_, spec_.good.from, quantity_), bound(spec_, spec_.good.to, quantity_)};
   high_ = {bound(spec_, spec_.high.from, quantity_), bound(spec_, spec_.high.to, quantity_)};
   if (spec_.display == "%" && quantity_.units.empty()) {
@@ -49,8 +49,7 @@ ChannelBase::ChannelBase(Component* owner, ChannelSpec spec, Quantity quantity, 
     const auto unit = std::find_if(quantity_.units.begin(), quantity_.units.end(),
                                    [&](const Unit& u) { return u.symbol == spec_.display; });
     if (unit == quantity_.units.end())
-      bad_declaration(spec_.name,
-                      "\"" + std::string(spec_.display) + "\" is no unit of " + std::string(quantity_.name));
+      bad_channel(spec_.name, "\"" + std::string(spec_.display) + "\" is no unit of " + std::string(quantity_.name));
     scale_ = 1 / unit->to_si;
   }
   if (single_) set_groups({""});

@@ -9,7 +9,7 @@
 namespace insula {
 namespace {
 
-[[noreturn]] void bad_declaration(std::string_view drawable, const std::string& why) {
+[[noreturn]] void bad_drawable(std::string_view drawable, const std::string& why) {
   throw std::logic_error("drawable \"" + std::string(drawable) + "\" is declared wrongly: " + why);
 }
 
@@ -29,18 +29,18 @@ std::string_view drawable_kind_name(DrawableKind kind) {
 
 DrawableBase::DrawableBase(Component* owner, DrawableSpec spec, DrawableKind kind)
     : spec_(spec), kind_(kind), material_(spec.material) {
-  if (!owner) bad_declaration(spec_.name, "it has no owner");
+  if (!owner) bad_drawable(spec_.name, "it has no owner");
   if (spec_.name.empty() || spec_.name.find_first_of(". \t") != std::string_view::npos)
-    bad_declaration(spec_.name, "it needs a name without dots and blanks");
-  if (spec_.doc.empty()) bad_declaration(spec_.name, "it has no doc");
-  if (spec_.material.empty()) bad_declaration(spec_.name, "it has no material");
-  if (spec_.points_per_line < 2) bad_declaration(spec_.name, "a line has two points or more");
+    bad_drawable(spec_.name, "it needs a name without dots and blanks");
+  if (spec_.doc.empty()) bad_drawable(spec_.name, "it has no doc");
+  if (spec_.material.empty()) bad_drawable(spec_.name, "it has no material");
+  if (spec_.points_per_line < 2) bad_drawable(spec_.name, "a line has two points or more");
   for (const DrawableBase* other : owner->drawables())
-    if (other->spec().name == spec_.name) bad_declaration(spec_.name, "the component has it twice");
+    if (other->spec().name == spec_.name) bad_drawable(spec_.name, "the component has it twice");
   std::string error;
   const auto radius = parse_quantity(spec_.radius, Length::units(), Length::name, error);
   if (!radius || !(*radius > 0))
-    bad_declaration(spec_.name, "its radius: " + (radius ? std::string("must be positive") : error));
+    bad_drawable(spec_.name, "its radius: " + (radius ? std::string("must be positive") : error));
   radius_ = *radius;
   owner->drawables_.push_back(this);
 }

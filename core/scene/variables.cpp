@@ -10,7 +10,7 @@ namespace insula {
 namespace {
 constexpr int max_depth = 32;
 constexpr std::size_t max_variables = 1000;
-constexpr std::size_t max_bytes = 64u << 10;
+constexpr std::size_t max_value_bytes = 64u << 10;
 
 bool is_name_char(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
@@ -105,7 +105,7 @@ bool Variables::replace(std::string& text, const Scope& scope, const SourcePos& 
     }
     if (!expand(*it->second, pos)) return false;
     out += it->second->value;
-    if (out.size() > max_bytes || it->second->value.size() > budget_) {
+    if (out.size() > max_value_bytes || it->second->value.size() > budget_) {
       diagnostics_.error(pos, "the value is too long after its variables are replaced");
       return false;
     }

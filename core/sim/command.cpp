@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Commands between two steps: tool exchange, commands of components, messages.
 #include "core/base/text.h"
+#include "core/sim/motion.h"
 #include "core/sim/simulation.h"
 
 namespace insula {
@@ -17,8 +18,6 @@ std::string_view take_word(std::string_view& text) {
   while (!text.empty() && blank(text.front())) text.remove_prefix(1);
   return word;
 }
-
-constexpr std::size_t longest_argument = 400;
 
 }  // namespace
 

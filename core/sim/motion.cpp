@@ -54,7 +54,6 @@ std::string_view stripped(std::string_view s) {
   return s;
 }
 
-constexpr std::size_t longest_argument = 400;  // bytes, as in Simulation::command
 constexpr std::array<std::string_view, 3> verbs = {"exchange", "ask", "message"};
 
 /// The text of a field that may stand in quotes.

@@ -18,6 +18,9 @@ struct HandSample {
   bool button2 = false;
 };
 
+/// Most bytes of a command's argument, from a motion or from people.
+inline constexpr std::size_t longest_argument = 400;
+
 /// A command at one moment of a motion: Simulation::command(verb, argument).
 struct MotionCommand {
   double time_s = 0;

@@ -20,9 +20,10 @@ namespace {
 struct KindText {
   std::string_view kind, name, doc;
 };
-constexpr std::array<KindText, 5> kinds{{
+constexpr std::array<KindText, 6> kinds{{
     {"constraint", "constraint", "a spring from a surface to a place that never moves"},
     {"force", "force model", "springs along the edges of a soft body"},
+    {"body", "rigid body", "a rigid body on a spring, with a stop below"},
     {"support", "support", "holds the nodes within a ball"},
     {"instrument", "instrument", "a probe that marks places while the button is held"},
     {"exercise", "rule of exercises", "reached when a tip has stayed at a place"},

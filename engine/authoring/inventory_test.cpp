@@ -11,7 +11,7 @@
 namespace insula {
 namespace {
 
-const std::filesystem::path source = INSULA_SOURCE_DIR;
+const std::filesystem::path project = INSULA_SOURCE_DIR;
 
 const InventoryItem* find(const std::vector<InventoryItem>& items, const std::string& group, const std::string& name) {
   for (const InventoryItem& i : items)
@@ -26,7 +26,7 @@ std::string value(const InventoryItem& item, const std::string& name) {
 }
 
 TEST(Inventory, OfTheRulesExample) {
-  const auto s = test::load(source / "plugins/exercise_rules/example.xml");
+  const auto s = test::load(project / "plugins/exercise_rules/example.xml");
   ASSERT_TRUE(s);
   const auto items = inventory(*s);
   const auto* lower = find(items, "body", "lower");
@@ -57,7 +57,7 @@ TEST(Inventory, OfTheRulesExample) {
 }
 
 TEST(Inventory, RegionsOfAVesselHaveTheirAreas) {
-  const auto s = test::load(source / "plugins/membrane/example.xml");
+  const auto s = test::load(project / "plugins/membrane/example.xml");
   ASSERT_TRUE(s);
   double sum = 0, wall = 0;
   for (const InventoryItem& i : inventory(*s))
@@ -74,7 +74,7 @@ TEST(Inventory, RegionsOfAVesselHaveTheirAreas) {
 
 TEST(Inventory, ListNamesEverything) {
   std::ostringstream out, err;
-  EXPECT_EQ(cmd_view_list({test::builtin(), out, err}, source / "plugins/exercise_rules/example.xml"), 0) << err.str();
+  EXPECT_EQ(cmd_view_list({test::builtin(), out, err}, project / "plugins/exercise_rules/example.xml"), 0) << err.str();
   for (const char* text : {"body:", "anchor:", "contact pair:", " mm"})
     EXPECT_NE(out.str().find(text), std::string::npos) << text << "\n" << out.str();
   EXPECT_EQ(cmd_view_list({test::builtin(), out, err}, "nowhere.xml"), 2);

@@ -8,17 +8,17 @@
 namespace insula {
 namespace {
 
-using Json = nlohmann::json;
+using SortedJson = nlohmann::json;
 
 /// Rounds to so many decimals, so that frames stay small.
-Json rounded(double v, double digits) {
+SortedJson rounded(double v, double digits) {
   const double scale = std::pow(10.0, digits);
   const double r = std::round(v * scale) / scale;
-  return std::isfinite(r) ? Json(r) : Json();
+  return std::isfinite(r) ? SortedJson(r) : SortedJson();
 }
 
-void add_exercise(Json& j, const Exercise* exercise, double time) {
-  for (const char* key : {"goals", "faults", "timers", "measures"}) j[key] = Json::array();
+void add_exercise(SortedJson& j, const Exercise* exercise, double time) {
+  for (const char* key : {"goals", "faults", "timers", "measures"}) j[key] = SortedJson::array();
   j["message"] = "";
   j["state"] = "running";
   j["elapsed_s"] = rounded(time, 3);
@@ -35,7 +35,7 @@ void add_exercise(Json& j, const Exercise* exercise, double time) {
   for (const MeasureState& m : log.measures())
     j["measures"].push_back({{"id", m.id},
                              {"text", m.text},
-                             {"value", m.known ? rounded(m.value, 3) : Json()},
+                             {"value", m.known ? rounded(m.value, 3) : SortedJson()},
                              {"unit", m.unit},
                              {"good", m.good}});
   j["message"] = log.last_message();
@@ -49,13 +49,13 @@ void add_exercise(Json& j, const Exercise* exercise, double time) {
 
 std::string hud_json(const Simulation& simulation) {
   const StepReport& r = simulation.report();
-  Json j;
+  SortedJson j;
   add_exercise(j, simulation.exercise(), r.time);
-  j["hands"] = Json::array();
+  j["hands"] = SortedJson::array();
   for (int h = 0; h < 2; ++h)
     if (const Instrument* i = simulation.instrument_of(h))
       j["hands"].push_back({{"hand", h == 0 ? "left" : "right"}, {"tool", i->id}});
-  return j.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return j.dump(-1, ' ', false, SortedJson::error_handler_t::replace);
 }
 
 }  // namespace insula

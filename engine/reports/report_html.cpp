@@ -11,7 +11,7 @@
 namespace insula {
 namespace {
 
-constexpr std::size_t max_moments = 700;  // about one for each pixel
+constexpr std::size_t plotted_moments = 700;  // about one for each pixel
 constexpr const char* left_colour = "#1f6fb2";
 constexpr const char* right_colour = "#c2410c";
 constexpr const char* goal_colour = "#15803d";
@@ -26,19 +26,6 @@ td.n, th.n { text-align: right; font-variant-numeric: tabular-nums; white-space:
 code { font-size: .9em; overflow-wrap: anywhere; }
 @media print { body { margin: 0; max-width: none; font-size: 11pt; } svg, table { break-inside: avoid; } h2 { break-after: avoid; } }
 )";
-
-template <class Get>
-std::vector<double> column(const RunRecorder& recorder, Get get) {
-  std::vector<double> out;
-  for (const auto& s : recorder.samples()) out.push_back(double(get(s)));
-  return out;
-}
-double largest(const std::vector<double>& v) { return v.empty() ? 0 : *std::max_element(v.begin(), v.end()); }
-double mean(const std::vector<double>& v) {
-  double sum = 0;
-  for (double x : v) sum += x;
-  return v.empty() ? 0 : sum / double(v.size());
-}
 
 std::string row(const std::string& name, const std::string& value) {
   return fmt::format("<tr><td>{}</td><td class=\"n\">{}</td></tr>\n", escaped(name), escaped(value));
@@ -175,7 +162,7 @@ std::string channel_plots(const RunRecorder& recorder, const RunSeries& s, const
 }
 
 std::string plots(const RunRecorder& recorder) {
-  const RunSeries s = series_of(recorder, max_moments);
+  const RunSeries s = series_of(recorder, plotted_moments);
   std::vector<PlotMark> marks;
   for (const auto& e : recorder.events()) {
     if (marks.size() >= 300) break;

@@ -22,21 +22,6 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t max_events = 5000;
 constexpr std::size_t max_moments = 2000;
 
-template <class Get>
-std::vector<double> column(const RunRecorder& recorder, Get get) {
-  std::vector<double> out;
-  out.reserve(recorder.samples().size());
-  for (const auto& s : recorder.samples()) out.push_back(double(get(s)));
-  return out;
-}
-
-double mean(const std::vector<double>& v) {
-  double sum = 0;
-  for (double x : v) sum += x;
-  return v.empty() ? 0 : sum / double(v.size());
-}
-double largest(const std::vector<double>& v) { return v.empty() ? 0 : *std::max_element(v.begin(), v.end()); }
-
 Json mean_max(const std::vector<double>& v) { return {{"mean", mean(v)}, {"max", largest(v)}}; }
 
 Json exercise_json(const std::optional<ExerciseOutcome>& exercise) {
@@ -213,6 +198,13 @@ const std::array<const char*, stage_count>& stage_names() {
                                                               "solve",       "correct",   "publish"};
   return names;
 }
+
+double mean(const std::vector<double>& v) {
+  double sum = 0;
+  for (double x : v) sum += x;
+  return v.empty() ? 0 : sum / double(v.size());
+}
+double largest(const std::vector<double>& v) { return v.empty() ? 0 : *std::max_element(v.begin(), v.end()); }
 
 double percentile(std::vector<double> values, double share) {
   if (values.empty()) return 0;

@@ -112,6 +112,18 @@ const std::array<const char*, stage_count>& stage_names();
 
 /// The percentile of `values` for the given share, by nearest rank; 0 if there are none.
 double percentile(std::vector<double> values, double share);
+/// 0 when there are none.
+double largest(const std::vector<double>& values);
+double mean(const std::vector<double>& values);
+
+/// What `get` returns for each sample.
+template <class Get>
+std::vector<double> column(const RunRecorder& recorder, Get get) {
+  std::vector<double> out;
+  out.reserve(recorder.samples().size());
+  for (const auto& s : recorder.samples()) out.push_back(double(get(s)));
+  return out;
+}
 
 std::string report_json(const RunRecorder& recorder, const RunSummary& summary);
 std::string report_html(const RunRecorder& recorder, const RunSummary& summary);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The servo's interface to a haptic device. SI units, scene frame. A driver applies its own calibration.
 #pragma once
+#include <chrono>
 #include <string>
 
 #include "core/base/math.h"
@@ -43,6 +44,9 @@ struct HandGoal {
   bool button2 = false;
   bool stops = true;  ///< whether the arm's mechanical stops act
 };
+
+/// Time between two attempts to find a device that is gone.
+inline constexpr auto reopen_after = std::chrono::milliseconds(500);
 
 /// One arm. start and stop may block and throw. read, write, guide, place and advance run in the servo thread and must
 /// not allocate, block or throw. The force passed to write has passed the safety gate.

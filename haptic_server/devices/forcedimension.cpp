@@ -16,8 +16,6 @@ namespace {
 using namespace std::chrono_literals;
 using Steady = std::chrono::steady_clock;
 
-constexpr auto retry = 500ms;
-
 struct DataSheet {
   double force_N, torque_Nm, resolution_m;
   Vec3 workspace_m;
@@ -166,7 +164,7 @@ void ForceDimensionDevice::serve() {
   auto next = Steady::now();
   while (!stopping_) {
     if (id_ < 0) {
-      for (auto waited = 0ms; waited < retry && !stopping_; waited += 20ms) std::this_thread::sleep_for(20ms);
+      for (auto waited = 0ms; waited < reopen_after && !stopping_; waited += 20ms) std::this_thread::sleep_for(20ms);
       if (!stopping_ && open()) spdlog::info("{} is there", title_);
       next = Steady::now();
       continue;

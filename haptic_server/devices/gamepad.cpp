@@ -14,7 +14,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto retry = 500ms;
 constexpr auto period = 4ms;
 constexpr std::uint32_t init_game_controller = 0x2000;  // SDL_INIT_GAMECONTROLLER
 constexpr double dead_zone = 0.12;
@@ -134,7 +133,7 @@ void GamepadDevice::serve() {
         set_remark("gamepad" + (which_.empty() ? std::string() : ":" + which_) + " is not there; plug it in");
         spdlog::warn("{}", remark());
       }
-      for (auto waited = 0ms; waited < retry && !stopping_; waited += 20ms) std::this_thread::sleep_for(20ms);
+      for (auto waited = 0ms; waited < reopen_after && !stopping_; waited += 20ms) std::this_thread::sleep_for(20ms);
       continue;
     }
     bool there = false;

@@ -15,7 +15,6 @@ namespace {
 using namespace std::chrono_literals;
 using Steady = std::chrono::steady_clock;
 
-constexpr auto retry = 500ms;
 constexpr auto patience = 1000ms;  // of one exchange; a lost device is reported before that
 
 }  // namespace
@@ -80,7 +79,7 @@ void HaplyDevice::serve() {
     }
     lost();
     tried_ = true;
-    for (auto waited = 0ms; waited < retry && !stopping_; waited += 20ms) std::this_thread::sleep_for(20ms);
+    for (auto waited = 0ms; waited < reopen_after && !stopping_; waited += 20ms) std::this_thread::sleep_for(20ms);
   }
 }
 

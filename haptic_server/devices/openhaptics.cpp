@@ -18,7 +18,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto retry = 500ms;
 constexpr int calibration_check_frames = 200;
 /// Largest force on a hand for any device. The forces of this surgery are far smaller.
 constexpr double force_limit_N = 10;
@@ -137,7 +136,7 @@ void OpenHapticsDevice::look_after() {
       spdlog::warn("{}", remark());
     }
     if (handle_ == hd::invalid_handle) {
-      for (auto waited = 0ms; waited < retry && !stopping_; waited += 20ms) std::this_thread::sleep_for(20ms);
+      for (auto waited = 0ms; waited < reopen_after && !stopping_; waited += 20ms) std::this_thread::sleep_for(20ms);
       if (!stopping_ && open()) spdlog::info("{} is there", title());
       continue;
     }

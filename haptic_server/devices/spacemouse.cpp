@@ -15,7 +15,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto retry = 500ms;
 constexpr double full_counts = 350;
 /// A deflected cap sends events all the time. After this silence its last event is dropped.
 constexpr double silence_s = 0.5;
@@ -114,7 +113,7 @@ void SpaceMouseDevice::serve() {
                    spnav::how_to_get());
         spdlog::warn("{}", remark());
       }
-      for (auto waited = 0ms; waited < retry && !stopping_; waited += 20ms) std::this_thread::sleep_for(20ms);
+      for (auto waited = 0ms; waited < reopen_after && !stopping_; waited += 20ms) std::this_thread::sleep_for(20ms);
       continue;
     }
     if (!listen()) {

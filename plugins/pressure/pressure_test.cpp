@@ -11,7 +11,7 @@
 namespace insula {
 namespace {
 
-constexpr double mmHg = 133.322387415;
+using test::mmHg;
 
 TEST(PulseWave, RunsFromZeroToOneWithTheMeanItSays) {
   const PulseWave wave;

@@ -10,7 +10,7 @@
 namespace insula {
 namespace {
 
-constexpr double mmHg = 133.322387415;
+using test::mmHg;
 constexpr double radius = 0.004, young = 0.9e6, thickness = 2e-4, poisson = 0.45;
 
 /// What feeds the single chamber of a shell: a stiff source whose pressure a test sets.

@@ -19,6 +19,8 @@
 
 namespace insula::test {
 
+inline constexpr double mmHg = 133.322387415;  ///< Pa
+
 /// A spring from every node to its anchor, the rest position unless a test moves it. The mass is so small that a step
 /// is static.
 class TestWall final : public ForceModel {

@@ -13,11 +13,11 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846, radius = 0.0005, vacuum = 15000, limit = vacuum * pi * radius * radius;
 
-struct Bed {
+struct SuctionBed {
   test::SceneFolder folder;
   std::unique_ptr<Simulation> s;
   Instrument* tube = nullptr;
-  explicit Bed(double height = 0.0005) {
+  explicit SuctionBed(double height = 0.0005) {
     folder.write("meshes/block.msh",
                  test::gmsh_text(test::block_mesh({2, 2, 2}, Vec3(-0.01, -0.01, -0.02), Vec3(0.01, 0.01, 0))));
     folder.write("meshes/tube/tube.urdf", test::test_tool_urdf(0.0008));
@@ -53,7 +53,7 @@ struct Bed {
 };
 
 TEST(Suction, HoldsUpToPressureTimesAreaAndLetsGo) {
-  Bed t;
+  SuctionBed t;
   ASSERT_TRUE(t.tube);
   ASSERT_LT(t.tissue().norm(), 1e-12);
   double most = 0;
@@ -95,7 +95,7 @@ TEST(Suction, HoldsUpToPressureTimesAreaAndLetsGo) {
 }
 
 TEST(Suction, HoldsAcrossUpToGrip) {
-  Bed t;
+  SuctionBed t;
   ASSERT_TRUE(t.tube);
   for (int n = 0; n < 30; ++n) t.hold(Vec3(0, 0, 0.0002), true);
   double most = 0;
@@ -110,7 +110,7 @@ TEST(Suction, HoldsAcrossUpToGrip) {
 }
 
 TEST(Suction, OnlyWhileTheButtonIsHeld) {
-  Bed t;
+  SuctionBed t;
   ASSERT_TRUE(t.tube);
   Vec3 f;
   t.hold(Vec3(0, 0, 0.0005), false);
@@ -124,7 +124,7 @@ TEST(Suction, OnlyWhileTheButtonIsHeld) {
 }
 
 TEST(Suction, TakesOnlyWhatIsWithinCapture) {
-  Bed t(0.002);
+  SuctionBed t(0.002);
   ASSERT_TRUE(t.tube);
   Vec3 f;
   t.hold(Vec3(0, 0, 0.002), true);

@@ -38,7 +38,7 @@ def compiled(runner, block):
     if block.role == "file":
         return None  # tether and pia_membrane: built and tested (manual_plugin_tests, install_plugins)
     commands = json.loads((runner.build / "compile_commands.json").read_text(encoding="utf-8"))
-    like = next(c for c in commands if c["file"].endswith("plugins/strand_springs/strand_springs.cpp"))
+    like = next(c for c in commands if "insula_plugins.dir/" in c["command"])
     source = runner.folder / ("snippet_%d.cpp" % block.line)
     source.write_text(placed(runner, block), encoding="utf-8")
     words = [w for w in shlex.split(like["command"]) if w != like["file"] and not w.endswith("ccache")]

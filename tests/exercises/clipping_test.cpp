@@ -5,10 +5,11 @@
 namespace insula {
 namespace {
 
-const std::filesystem::path scene = std::filesystem::path(INSULA_SOURCE_DIR) / "scenes/training/3_clipping.xml";
+const std::filesystem::path clipping_scene =
+    std::filesystem::path(INSULA_SOURCE_DIR) / "scenes/training/3_clipping.xml";
 
 TEST(Clipping, AnAngledClipClosesTheNeckAndSparesTheBranches) {
-  test::Played o = test::play_motion(scene, "steady");
+  test::Played o = test::play_motion(clipping_scene, "steady");
   ASSERT_TRUE(o.ran);
   EXPECT_TRUE(o.finite);
   EXPECT_EQ(o.state, ExerciseState::done);
@@ -24,7 +25,7 @@ TEST(Clipping, AnAngledClipClosesTheNeckAndSparesTheBranches) {
 }
 
 TEST(Clipping, AClipAcrossABranchIsAFault) {
-  test::Played o = test::play_motion(scene, "careless");
+  test::Played o = test::play_motion(clipping_scene, "careless");
   ASSERT_TRUE(o.ran);
   EXPECT_TRUE(o.finite);
   EXPECT_EQ(o.state, ExerciseState::running);

@@ -5,11 +5,11 @@
 namespace insula {
 namespace {
 
-const std::filesystem::path scene =
+const std::filesystem::path dissection_scene =
     std::filesystem::path(INSULA_SOURCE_DIR) / "scenes/training/2_aneurysm_dissection.xml";
 
 TEST(AneurysmDissection, SteadyHandsDivideTheStrandsWithoutAFault) {
-  test::Played o = test::play_motion(scene, "steady");
+  test::Played o = test::play_motion(dissection_scene, "steady");
   ASSERT_TRUE(o.ran);
   EXPECT_TRUE(o.finite);
   EXPECT_GE(o.strands, 30);
@@ -26,7 +26,7 @@ TEST(AneurysmDissection, SteadyHandsDivideTheStrandsWithoutAFault) {
 }
 
 TEST(AneurysmDissection, RoughHandsTearPressAndRupture) {
-  test::Played o = test::play_motion(scene, "rough");
+  test::Played o = test::play_motion(dissection_scene, "rough");
   ASSERT_TRUE(o.ran);
   EXPECT_TRUE(o.finite);
   EXPECT_GE(o.faults["torn"], 1);

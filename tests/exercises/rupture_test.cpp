@@ -5,10 +5,10 @@
 namespace insula {
 namespace {
 
-const std::filesystem::path scene = std::filesystem::path(INSULA_SOURCE_DIR) / "scenes/training/4_rupture.xml";
+const std::filesystem::path rupture_scene = std::filesystem::path(INSULA_SOURCE_DIR) / "scenes/training/4_rupture.xml";
 
 TEST(Rupture, MasteredWithTemporaryAndFinalClip) {
-  test::Played o = test::play_motion(scene, "steady");
+  test::Played o = test::play_motion(rupture_scene, "steady");
   ASSERT_TRUE(o.ran);
   EXPECT_TRUE(o.finite);
   EXPECT_EQ(o.state, ExerciseState::done);
@@ -28,7 +28,7 @@ TEST(Rupture, MasteredWithTemporaryAndFinalClip) {
 }
 
 TEST(Rupture, TimeRunsOutWhenNobodyClips) {
-  test::Played o = test::play_motion(scene, "late");
+  test::Played o = test::play_motion(rupture_scene, "late");
   ASSERT_TRUE(o.ran);
   EXPECT_TRUE(o.finite);
   EXPECT_EQ(o.state, ExerciseState::failed);

@@ -11,7 +11,7 @@
 namespace insula {
 namespace {
 
-constexpr double tolerance = 1e-8;  // m
+constexpr double solved_to = 1e-8;  // m
 
 struct Solved {
   SolveStats stats;
@@ -47,9 +47,9 @@ TEST(RecordedProblems, EachMethodSolvesThem) {
   const struct {
     const char* name;
     SolveSettings settings;
-  } methods[] = {{"sweeps, Newton", {150, tolerance, false, 20}},
-                 {"conjugate, Newton", {150, tolerance, true, 20}},
-                 {"Newton at once", {1, tolerance, false, 20}}};
+  } methods[] = {{"sweeps, Newton", {150, solved_to, false, 20}},
+                 {"conjugate, Newton", {150, solved_to, true, 20}},
+                 {"Newton at once", {1, solved_to, false, 20}}};
   for (const auto& m : methods) {
     std::vector<int> sweeps, newton;
     double worst_N = 0;
@@ -57,9 +57,9 @@ TEST(RecordedProblems, EachMethodSolvesThem) {
     for (const auto& file : files) {
       const ConstraintProblem p = read_problem(file);
       const Solved s = solved(p, m.settings);
-      unsolved += !(s.stats.residual_m <= tolerance);
+      unsolved += !(s.stats.residual_m <= solved_to);
       at_the_cap += s.stats.newton_steps >= m.settings.max_newton;
-      EXPECT_LE(s.stats.residual_m, 100 * tolerance) << m.name << ": " << file.filename();
+      EXPECT_LE(s.stats.residual_m, 100 * solved_to) << m.name << ": " << file.filename();
       EXPECT_LE(s.stats.sweeps, 2 * 150 + 20 * (9 + 32)) << m.name << ": " << file.filename();
       test::expect_bounds(p, s.lambda);
       worst_N = std::max(worst_N, s.stats.residual_N);

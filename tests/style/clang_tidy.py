@@ -8,6 +8,7 @@ files at most, so that the time stays small, and says which ones it left out.
 """
 import json
 import pathlib
+import re
 import shlex
 import shutil
 import subprocess
@@ -39,6 +40,19 @@ def command_without_precompiled(entry):
     return out
 
 
+def by_source(entries):
+    """The compile command of each source. One entry may compile several, each of which it includes."""
+    out = {}
+    for entry in entries:
+        unity = pathlib.Path(entry["file"])
+        if unity.parent.name != "Unity":
+            out[entry["file"]] = entry
+            continue
+        for source in re.findall(r'^#include "(.*)"', unity.read_text(), re.M):
+            out[source] = dict(entry, file=source, command=entry["command"].replace(entry["file"], source))
+    return out
+
+
 def main():
     source, build = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
     tool = shutil.which("clang-tidy-14") or shutil.which("clang-tidy")
@@ -46,7 +60,7 @@ def main():
     if not tool or not database.exists():
         print("no clang-tidy or no compile_commands.json here: skipped")
         return 77
-    commands = {e["file"]: e for e in json.loads(database.read_text())}
+    commands = by_source(json.loads(database.read_text()))
     files = [f for f in (sys.argv[3:] or changed(source)) if str(source / f) in commands]
     for f in files[MOST:]:
         print("left out: " + f)

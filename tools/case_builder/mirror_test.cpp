@@ -39,7 +39,7 @@ std::string said(const std::vector<std::string>& words, int& status) {
 }
 
 /// Of a case, but for what was asked for and the report, which holds measured times.
-std::map<std::string, std::string> files_of(const fs::path& folder) {
+std::map<std::string, std::string> texts_of(const fs::path& folder) {
   std::map<std::string, std::string> out;
   for (const auto& f : fs::recursive_directory_iterator(folder))
     if (f.is_regular_file() && f.path().filename() != "report.html" && f.path().filename() != "case.json" &&
@@ -112,7 +112,7 @@ TEST(Mirror, MessagesSayThatTheirPositionsAreMirrored) {
 
 /// Both folders hold the same files, byte for byte.
 void expect_same(const fs::path& right, const fs::path& left, std::size_t least) {
-  const auto twin = files_of(right), files = files_of(left);
+  const auto twin = texts_of(right), files = texts_of(left);
   EXPECT_GE(twin.size(), least);
   EXPECT_EQ(files.size(), twin.size());
   for (const auto& [file, text] : files) {

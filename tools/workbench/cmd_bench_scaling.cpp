@@ -48,13 +48,13 @@ double slope(const std::vector<double>& size, const std::vector<double>& value) 
   return xx > 0 ? xy / xx : std::nan("");
 }
 
-struct Measured {
+struct MeasuredSteps {
   std::array<double, stage_count> stage{};
   double step = 0, rows = 0, sweeps = 0, strands = 0, nodes = 0, assembly = 0, flops = 0, entries = 0;
 };
 
 /// Medians over some steps.
-Measured measure(Simulation& s, int warm_up, double seconds) {
+MeasuredSteps measure(Simulation& s, int warm_up, double seconds) {
   using Clock = std::chrono::steady_clock;
   for (int i = 0; i < warm_up; ++i) s.step();
   std::array<std::vector<double>, stage_count> stage;
@@ -68,7 +68,7 @@ Measured measure(Simulation& s, int warm_up, double seconds) {
     rows.push_back(r.rows);
     sweeps.push_back(r.solve.sweeps);
   }
-  Measured m;
+  MeasuredSteps m;
   for (std::size_t k = 0; k < stage_count; ++k) m.stage[k] = percentile(stage[k], 0.5);
   m.step = percentile(step, 0.5);
   m.rows = percentile(rows, 0.5);
@@ -114,7 +114,7 @@ Series against_nodes(const CommandContext& context, const ScalingOptions& option
   if (options.quick) cells.resize(4);
   for (int c : cells) {
     const auto s = brick_scene({c, 7, 7, 0}, context.registry, options.threads);
-    const Measured m = measure(*s, c > 20 ? 1 : 5, 2);
+    const MeasuredSteps m = measure(*s, c > 20 ? 1 : 5, 2);
     add(out, m.nodes,
         {m.assembly, m.flops * 1e-6, m.entries * 1e-6, m.stage[stage_free_motion], m.stage[stage_collision],
          m.stage[stage_build], m.stage[stage_correct], m.step});
@@ -138,7 +138,7 @@ Series against_rows(const CommandContext& context, const ScalingOptions& options
   if (options.quick) contacts.resize(4);
   for (int k : contacts) {
     const auto s = brick_scene({11, 10, 0, k}, context.registry, options.threads);
-    const Measured m = measure(*s, 20, 2);
+    const MeasuredSteps m = measure(*s, 20, 2);
     add(out, m.rows,
         {m.stage[stage_collision], m.stage[stage_build], m.sweeps,
          1000 * m.stage[stage_solve] / std::max(1.0, m.sweeps), m.stage[stage_solve], m.stage[stage_correct], m.step});
@@ -160,7 +160,7 @@ Series against_strands(const CommandContext& context, const ScalingOptions& opti
   if (options.quick) density.resize(4);
   for (double d : density) {
     const auto s = brick_scene({10, 10, d, 0}, context.registry, options.threads);
-    const Measured m = measure(*s, 10, 2);
+    const MeasuredSteps m = measure(*s, 10, 2);
     add(out, m.strands,
         {m.stage[stage_collision], m.stage[stage_build], m.stage[stage_solve], m.stage[stage_correct], m.step});
     if (!options.json) fmt::print(context.err, "  {:.0f} strands: {:.2f} ms a step\n", m.strands, m.step);

@@ -13,7 +13,7 @@ namespace {
 constexpr double facing = 0.1;       ///< normals of a pair must be opposed by this cosine
 constexpr double along_wall = 0.92;  ///< normals that agree by this cosine at rest belong to one part of the wall ...
 constexpr double bent = 0.8;        ///< ... those that agree by this are tested only when the wall between them is bent
-constexpr double horizon = 0.5e-3;  ///< the search goes farther by this, to be valid for some steps, m
+constexpr double look_ahead = 0.5e-3;  ///< the search goes farther by this, to be valid for some steps, m
 constexpr double skin = 0.4e-3;     ///< motion after which a list of partners is made again, m
 constexpr double yields = 0.3;  ///< part of the wanted rotation that the normal of a pressing contact takes in a step
 constexpr double min_turn = 1e-3;          ///< smaller rotations are ignored, rad
@@ -134,7 +134,7 @@ bool SelfCollider::may_be_near(const CollisionMesh& mesh, std::size_t sample, in
   clear_[side][sample] -= went;
   covered_[side][sample] -= went;
   return clear_[side][sample] <=
-         range + std::min(mesh.free(samples_[sample]).norm() + mesh.may_move(partners), horizon);
+         range + std::min(mesh.free(samples_[sample]).norm() + mesh.may_move(partners), look_ahead);
 }
 
 // Lists all possible partners within `far`, and those that may come there before the list is made again.
@@ -165,12 +165,12 @@ void SelfCollider::near(const CollisionMesh& mesh, const SelfContactSettings& se
   const int before = close_[side][sample];
   const bool was = before != 0;
   // Samples with a contact search farther. Samples that have crossed search as deep as crossings are corrected.
-  const double range = (was ? 1.2 * settings.alarm + horizon : settings.alarm) + settings.thickness;
+  const double range = (was ? 1.2 * settings.alarm + look_ahead : settings.alarm) + settings.thickness;
   const double reach = before == 2 ? std::max(range, settings.max_depth) : range;
   if (!may_be_near(mesh, sample, side, range) && !was) return;
   close_[side][sample] = 0;
   const Vec3 x = mesh.vertex(v);
-  double least2 = 1e300, any2 = (range + horizon) * (range + horizon);
+  double least2 = 1e300, any2 = (range + look_ahead) * (range + look_ahead);
   int best = -1;
   Vec3 bary = Vec3::Zero(), point = Vec3::Zero();
   if (!outward_known_[sample]) {
@@ -199,7 +199,7 @@ void SelfCollider::near(const CollisionMesh& mesh, const SelfContactSettings& se
     point = c;
   };
   // Partners that the free motion may bring are within the horizon.
-  const double far = settings.thickness + 1.2 * settings.alarm + horizon;
+  const double far = settings.thickness + 1.2 * settings.alarm + look_ahead;
   if (reach <= far && covered_[side][sample] < 0) list_partners(mesh, sample, side, far);
   if (reach <= far && covered_[side][sample] >= 0) {
     const double went = skin - covered_[side][sample];

@@ -38,7 +38,7 @@ int outside(const CollisionMesh& mesh) {
   return n;
 }
 
-struct Sheet {
+struct SquareSheet {
   TriMesh rest = shapes::sphere(Vec3(0.1, -0.2, 0.3), 0.02, 4);
   std::vector<Vec3> now = rest.vertices, before = now, free{now.size(), Vec3::Zero()};
   // Micrometres a step in most places, half a millimetre in some.
@@ -55,7 +55,7 @@ struct Sheet {
 };
 
 TEST(CollisionMesh, BoxesHoldWhatMovesInTheirRoom) {
-  Sheet s;
+  SquareSheet s;
   CollisionMesh told, measures;
   told.build(s.rest.vertices, s.rest.triangles);
   measures.build(s.rest.vertices, s.rest.triangles);
@@ -76,7 +76,7 @@ TEST(CollisionMesh, BoxesHoldWhatMovesInTheirRoom) {
 }
 
 TEST(CollisionMesh, NoticesAJumpThatWasNotMeasured) {
-  Sheet s;
+  SquareSheet s;
   CollisionMesh mesh;
   mesh.build(s.rest.vertices, s.rest.triangles);
   for (int step = 0; step < 10; ++step) {
