@@ -54,6 +54,23 @@ try {
     'every clip has its picture',
   );
   await page.keyboard.press('Enter');
+  await page.waitForFunction(
+    () => document.querySelector('.toast.refused')?.textContent.includes('take it up first'),
+    null,
+    patience,
+  );
+  assert.equal(await textOf(`[data-choice=${clip}] .badge`), '');
+  check('a clip asked for while its applier lies on the tray is refused');
+
+  await page.keyboard.press('t');
+  await page.waitForFunction(
+    () => document.querySelector('[data-tool=right_clip_applier]')?.getAttribute('aria-pressed') === 'true',
+    null,
+    patience,
+  );
+  mock.state.commands.length = 0;
+  await page.keyboard.press('l');
+  await page.keyboard.press('Enter');
   await sent(`ask right_clip_applier load ${clip}`);
   await page.waitForFunction(
     (c) =>
