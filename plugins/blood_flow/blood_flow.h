@@ -111,7 +111,7 @@ class BloodFlow final : public Constraint, public ChamberFeed, public VesselSour
       {.name = "flow", .doc = "mean of the last heartbeat", .shown = Shown::vital, .display = "ml/min", .digits = 0}};
   ChannelGroup<Scalar> flow_share{this,
                                   {.name = "flow_share",
-                                   .doc = "flow over that at rest",
+                                   .doc = "flow over that at rest; not of a dead end, such as a sac",
                                    .min = "0",
                                    .shown = Shown::vital,
                                    .display = "%",
@@ -184,6 +184,7 @@ class BloodFlow final : public Constraint, public ChamberFeed, public VesselSour
   std::vector<int> chamber_node_, place_, node_at_;  ///< place of a node in the elimination, chambers last; and back
   std::vector<int> main_stretch_;                    ///< of a chamber
   std::vector<double> reference_, rest_pressure_, rest_flow_;
+  std::vector<std::size_t> passed_;  ///< stretches that are no dead ends: those of flow_share
   StarMesh mesh_;
 
   // State.

@@ -120,6 +120,13 @@ try {
   );
   assert.match(await textOf('[data-channel="bleeding.rate"] .value'), /^\d+ mL\/min$/);
   assert.ok(Number(await textOf('[data-channel="flow.parent.pressure"]')) > 20);
+  await page.setViewportSize({ width: 1280, height: 720 });
+  const room = await page.evaluate(() => {
+    const column = document.querySelector('.column.left');
+    return { wanted: column.scrollHeight, there: column.clientHeight };
+  });
+  await page.setViewportSize({ width: 480, height: 320 });
+  assert.ok(room.wanted <= room.there, `the monitor is cut off: ${JSON.stringify(room)}`);
   theatre.height = 0.009;
   await pictures(6);
   await freeze();
