@@ -87,7 +87,7 @@ class Bleeding final : public Constraint, public BleedingSource {
                          .display = "mm",
                          .digits = 1}};
   Channel<Duration> since{
-      this, {.name = "since", .doc = "time since the rupture", .min = "0 s", .shown = Shown::vital, .digits = 0}};
+      this, {.name = "since", .doc = "time since the rupture", .min = "0 s", .shown = Shown::none, .digits = 0}};
   Channel<Scalar> is_open{this,
                           {.name = "open",
                            .doc = "1 while there is a tear, else 0",

@@ -229,16 +229,27 @@ void BloodFlow::publish() {
     const Stretch& s = graph_.stretches[i];
     stretch_pressure.set(i, pressure_[std::size_t(s.middle)]);
     stretch_flow.set(i, mean_flow_[i]);
-    flow_share.set(i, rest_flow_[i] != 0 ? mean_flow_[i] / rest_flow_[i] : std::numeric_limits<double>::quiet_NaN());
     lumen.set(i, s.narrowest);
     dye.set(i, std::clamp(DyeTransport::mean(s), 0.0, 1.0));
+  }
+  for (std::size_t k = 0; k < passed_.size(); ++k) {
+    const std::size_t i = passed_[k];
+    flow_share.set(k, rest_flow_[i] != 0 ? mean_flow_[i] / rest_flow_[i] : std::numeric_limits<double>::quiet_NaN());
   }
 }
 
 void BloodFlow::declare_channels() {
-  std::vector<std::string> names;
-  for (const Stretch& s : graph_.stretches) names.emplace_back(s.name);
-  for (auto* group : {&flow_share, &lumen, &dye}) group->declare(names);
+  std::vector<std::string> names, passed;
+  passed_.clear();
+  for (std::size_t i = 0; i < graph_.stretches.size(); ++i) {
+    const Stretch& s = graph_.stretches[i];
+    names.emplace_back(s.name);
+    if (s.dead_end) continue;
+    passed_.push_back(i);
+    passed.emplace_back(s.name);
+  }
+  flow_share.declare(passed);
+  for (auto* group : {&lumen, &dye}) group->declare(names);
   stretch_pressure.declare(names);
   dye.set_subject(blood_pressure->on.get());
   stretch_flow.declare(names);

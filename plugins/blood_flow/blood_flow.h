@@ -111,7 +111,7 @@ class BloodFlow final : public Constraint, public ChamberFeed, public VesselSour
       {.name = "flow", .doc = "mean of the last heartbeat", .shown = Shown::vital, .display = "ml/min", .digits = 0}};
   ChannelGroup<Scalar> flow_share{this,
                                   {.name = "flow_share",
-                                   .doc = "flow over that at rest",
+                                   .doc = "flow over that at rest; not of a dead end, such as a sac",
                                    .min = "0",
                                    .shown = Shown::vital,
                                    .display = "%",
@@ -185,6 +185,7 @@ class BloodFlow final : public Constraint, public ChamberFeed, public VesselSour
       node_at_;                    ///< position of a node in the elimination, chambers last; and the inverse
   std::vector<int> main_stretch_;  ///< of each chamber
   std::vector<double> reference_, rest_pressure_, rest_flow_;
+  std::vector<std::size_t> passed_;  ///< stretches that are no dead ends: those of flow_share
   StarMesh mesh_;
 
   // State.

@@ -293,7 +293,7 @@ StatedLaw StrandSprings::law() const {
 }  // namespace insula
 
 INSULA_PLUGIN(strand_springs) {
-  registry.add_material({"arachnoid", "fibre", {0.93, 0.90, 0.84, 0.8}, 0.35, 0, 0.5});
+  registry.add_material({"arachnoid", "fibre", {0.906, 0.876, 0.849, 0.78}, 0.35, 0, 0.5});
   registry.add<insula::StrandSprings>("strand_springs", insula::Kind::constraint,
                                       "arachnoid strands between two surfaces");
 }

@@ -163,6 +163,8 @@ function commandsOf(json: Json): types.CommandGroup[] {
 
 /** "left_suction" -> "left suction". */
 export const spoken = (id: string): string => id.replace(/_/g, ' ');
+/** With a capital letter at its beginning. */
+export const sentence = (text: string): string => text.slice(0, 1).toUpperCase() + text.slice(1);
 
 async function get(url: string): Promise<Response> {
   const r = await fetch(url, { cache: 'no-store' });

@@ -7,7 +7,7 @@ import { creased } from './geometry';
 import { linkPose } from './link_pose';
 import type { FieldUniforms } from './materials/field';
 import { solidMaterial } from './materials/solid';
-import { type MaterialData, materialOf } from './step_data/declarations';
+import type { MaterialData } from './step_data/declarations';
 
 const ghostFromM = 0.004;
 /**
@@ -58,12 +58,11 @@ export class Tool {
       const geometry = new THREE.BufferGeometry();
       geometry.setAttribute('position', new THREE.BufferAttribute(shape.positions, 3));
       geometry.setAttribute('normal', new THREE.BufferAttribute(shape.normals, 3));
-      const { roughness, metalness } = materialOf(materials, part.material);
+      const declared = materials.get(part.material);
       const material = solidMaterial(part.material, {
         field,
         rgba: part.rgba,
-        roughness,
-        metalness,
+        ...(declared ? { roughness: declared.roughness, metalness: declared.metalness } : {}),
         forward: this.forward,
       });
       // Metal lives from its reflections: it gets the room brighter than tissue does.

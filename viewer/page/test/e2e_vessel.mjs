@@ -54,6 +54,23 @@ try {
     'every clip has its picture',
   );
   await page.keyboard.press('Enter');
+  await page.waitForFunction(
+    () => document.querySelector('.toast.refused')?.textContent.includes('take it up first'),
+    null,
+    patience,
+  );
+  assert.equal(await textOf(`[data-choice=${clip}] .badge`), '');
+  check('a clip asked for while its applier lies on the tray is refused');
+
+  await page.keyboard.press('t');
+  await page.waitForFunction(
+    () => document.querySelector('[data-tool=right_clip_applier]')?.getAttribute('aria-pressed') === 'true',
+    null,
+    patience,
+  );
+  mock.state.commands.length = 0;
+  await page.keyboard.press('l');
+  await page.keyboard.press('Enter');
   await sent(`ask right_clip_applier load ${clip}`);
   await page.waitForFunction(
     (c) =>
@@ -103,6 +120,13 @@ try {
   );
   assert.match(await textOf('[data-channel="bleeding.rate"] .value'), /^\d+ mL\/min$/);
   assert.ok(Number(await textOf('[data-channel="flow.parent.pressure"]')) > 20);
+  await page.setViewportSize({ width: 1280, height: 720 });
+  const room = await page.evaluate(() => {
+    const column = document.querySelector('.column.left');
+    return { wanted: column.scrollHeight, there: column.clientHeight };
+  });
+  await page.setViewportSize({ width: 480, height: 320 });
+  assert.ok(room.wanted <= room.there, `the monitor is cut off: ${JSON.stringify(room)}`);
   theatre.height = 0.009;
   await pictures(6);
   await freeze();

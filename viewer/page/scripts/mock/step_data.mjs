@@ -15,7 +15,7 @@ export const materials = {
   insula: { style: 'tissue', rgba: [0.71, 0.45, 0.38, 1] },
   vessel: { style: 'wall', rgba: [0.6, 0.2, 0.17, 1] },
   bone: { style: 'solid', rgba: [0.73, 0.65, 0.52, 1] },
-  arachnoid: { style: 'fibre', rgba: [0.8, 0.74, 0.69, 1] },
+  arachnoid: { style: 'fibre', rgba: [0.91, 0.88, 0.85, 0.78], roughness: 0.35 },
   blood: { style: 'fluid', rgba: [0.4, 0.02, 0.02, 1] },
   nylon: { style: 'hologram', rgba: [0.1, 0.9, 0.2, 1], roughness: 0.4 },
   pane: { style: 'glass', rgba: [0.6, 0.8, 1, 1], roughness: 0.05 },

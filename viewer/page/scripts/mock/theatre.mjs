@@ -75,7 +75,6 @@ export class Theatre {
     if (command === 'message') return argument ? '' : 'a message needs text';
     if (command === 'exchange') {
       if (!handTools[a]?.includes(b)) return `no tool "${b}" for the ${a} hand`;
-      if (this.inHand[a] === 'right_clip_applier' && this.loaded && b !== this.inHand[a]) this.loaded = null;
       this.inHand[a] = b;
       return '';
     }
@@ -83,6 +82,7 @@ export class Theatre {
     const text = rest.join(' ');
     if (a === 'right_clip_applier' && b === 'load') {
       if (!this.clips.includes(text)) return `no clip "${text}"`;
+      if (this.inHand.right !== a) return 'the applier lies on the tray; take it up first';
       if (this.free.includes(text)) return `"${text}" is in the field`;
       this.loaded = text;
       this.say('clip_loaded', text, '');

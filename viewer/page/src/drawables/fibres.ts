@@ -45,7 +45,7 @@ export class Fibres implements Drawn {
     this.radiusM = context.declared.radiusM;
     this.buildTube();
     this.allocate(context.declared.count);
-    this.root = new THREE.Mesh(this.geometry, fibreMaterial(context.field));
+    this.root = new THREE.Mesh(this.geometry, fibreMaterial(context.field, context.material));
     this.root.frustumCulled = false;
     this.root.receiveShadow = true;
     this.root.renderOrder = 2;

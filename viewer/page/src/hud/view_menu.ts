@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How the field is looked at: quality, stereo and its angle, infrared, headset.
-import { spoken } from '../bundle';
+import { sentence, spoken } from '../bundle';
 import type { CommandData } from '../bundle_types';
 import { levels } from '../quality';
 import { angleRangeDeg, stereoModes, type StereoMode } from '../stereo';
@@ -95,7 +95,7 @@ export class ViewMenu {
         const button = el(
           'button',
           { title: `${command.doc}${k === 0 ? ' (J)' : ''}`, 'data-glow': command.name },
-          spoken(command.name),
+          sentence(spoken(command.name)),
         );
         button.onclick = () => {
           this.actions.run(ask(id, command.name));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The patient's monitor: the pulse, with a soft beep if wanted, and the channels that a scene shows as vital signs.
-// Channels of a group are a row of a table with the names as columns; the others are lines of their own.
+// Channels of a group are a row of a table with the names as columns. The others follow their component's name, and a
+// number among them that is not known takes no room.
 import type { Bundle } from '../bundle_types';
 import { spoken } from '../bundle';
 import {
@@ -23,6 +24,8 @@ interface Cell {
   /** What takes the colour of the channel's bands. */
   row: HTMLElement;
   write: (c: ChannelData, value: number | null) => string;
+  /** Whether it goes while its number is not known. */
+  mayHide: boolean;
 }
 
 /** Of a component's channels: lines without a group, and groups with their columns' names. */
@@ -47,7 +50,9 @@ export class Vitals {
   private readonly beat = el('span', { class: 'beat', title: 'heartbeat' }, '♥');
   private readonly rate = el('span', { class: 'rate' });
   private readonly sound = el('button', { title: 'beep with the heart (M)', 'aria-pressed': 'false' }, '♪');
-  private readonly head = el('header', {}, el('span', {}, this.beat, this.rate), this.sound);
+  /** Numbers of the component that beats. */
+  private readonly beside = el('span', { class: 'beside' });
+  private readonly head = el('header', {}, el('span', {}, this.beat, this.rate), this.beside, this.sound);
   private readonly parts = el('div');
   private components: { id: string; root: HTMLElement; cells: Cell[] }[] = [];
   private pulseChannel = '';
@@ -70,8 +75,10 @@ export class Vitals {
     this.beats = [];
     this.pulseChannel = bundle.bodies.find((b) => b.pulseChannel !== '')?.pulseChannel ?? '';
     const vital = byComponent(bundle.channels.filter((c) => c.shown === 'vital'));
-    this.components = [...vital].map(([id, channels]) => this.makeComponent(id, channels));
-    this.parts.replaceChildren(...this.components.map((c) => c.root));
+    const beating = bundle.channels.find((c) => c.id === this.pulseChannel)?.component;
+    this.components = [...vital].map(([id, channels]) => this.makeComponent(id, channels, id !== beating));
+    this.beside.replaceChildren(...this.components.filter((c) => c.id === beating).map((c) => c.root));
+    this.parts.replaceChildren(...this.components.filter((c) => c.id !== beating).map((c) => c.root));
     this.head.hidden = this.pulseChannel === '';
     this.root.hidden = this.components.length === 0 && this.pulseChannel === '';
   }
@@ -111,20 +118,22 @@ export class Vitals {
   private makeComponent(
     id: string,
     channels: readonly ChannelData[],
+    named: boolean,
   ): { id: string; root: HTMLElement; cells: Cell[] } {
     const { lines, columns, rows } = tableOf(channels);
     const cells: Cell[] = [];
-    const table = el('table');
+    const heading = named ? [el('h2', {}, spoken(id))] : [];
+    const parts: HTMLElement[] = [];
+    if (lines.length > 0)
+      parts.push(el('div', { class: 'lines' }, ...heading, ...lines.map((c) => makeLine(c, cells))));
     if (rows.length > 0) {
       const unitOf = (k: number) => rows.map((r) => r.cells[k]).find((c) => c)?.display.unit ?? '';
-      table.append(
-        el('tr', { class: 'units' }, el('th'), ...columns.map((name, k) => el('td', {}, el('b', {}, name), unitOf(k)))),
-      );
+      const names = columns.map((name, k) => el('td', {}, el('b', {}, name), unitOf(k)));
+      const corner = el('th', {}, ...(lines.length > 0 ? [] : heading));
+      const body = rows.map((r) => makeRow(r.group, r.cells, cells));
+      parts.push(el('table', {}, el('tr', { class: 'units' }, corner, ...names), ...body));
     }
-    for (const r of rows) table.append(makeRow(r.group, r.cells, cells));
-    const singles = lines.map((c) => makeLine(c, cells));
-    const root = el('div', { class: 'component', 'data-component': id }, el('h2', {}, spoken(id)), ...singles, table);
-    return { id, root, cells };
+    return { id, root: el('div', { class: 'component', 'data-component': id }, ...parts), cells };
   }
 }
 
@@ -133,10 +142,10 @@ function makeRow(group: string, channels: readonly (ChannelData | null)[], cells
   for (const channel of channels) {
     const text = el('span');
     const bar = channel && isShare(channel) ? el('i') : null;
-    const place = el('td', channel ? { title: channel.doc, 'data-channel': channel.id } : {}, text);
-    if (bar) place.append(el('span', { class: 'line' }, bar));
+    const place = el('td', channel ? { title: channel.doc, 'data-channel': channel.id } : {});
+    place.append(...(bar ? [el('span', { class: 'line' }, bar)] : []), text);
     row.append(place);
-    if (channel) cells.push({ channel, text, bar, row: place, write: numberText });
+    if (channel) cells.push({ channel, text, bar, row: place, write: numberText, mayHide: false });
   }
   return row;
 }
@@ -151,12 +160,13 @@ function makeLine(channel: ChannelData, cells: Cell[]): HTMLElement {
     text,
   );
   if (bar) row.append(el('span', { class: 'line' }, bar));
-  cells.push({ channel, text, bar, row, write: channelText });
+  cells.push({ channel, text, bar, row, write: channelText, mayHide: true });
   return row;
 }
 
-function showCell({ channel, text, bar, row, write }: Cell, channels: Channels): void {
+function showCell({ channel, text, bar, row, write, mayHide }: Cell, channels: Channels): void {
   const value = channels.value(channel);
+  row.hidden = mayHide && value === null;
   setText(text, write(channel, value));
   if (bar) bar.style.width = `${100 * barShare(channel, value)}%`;
   row.dataset.level = level(channel, value);

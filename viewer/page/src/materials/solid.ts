@@ -137,7 +137,8 @@ function plainRecipe(o: SolidOptions): Recipe {
 }
 
 export function solidMaterial(name: string, o: SolidOptions): THREE.MeshPhysicalMaterial {
-  const recipe = recipes[name] ?? plainRecipe(o);
+  // What nothing declares is metal, as instruments are.
+  const recipe = recipes[name] ?? (o.roughness === undefined ? recipes.steel! : plainRecipe(o));
   const m = new THREE.MeshPhysicalMaterial(recipe.base);
   if ((name === 'polymer' || !recipes[name]) && o.rgba)
     m.color.setRGB(o.rgba[0]!, o.rgba[1]!, o.rgba[2]!, THREE.SRGBColorSpace);
