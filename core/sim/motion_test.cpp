@@ -19,7 +19,7 @@ namespace {
 
 const std::string head = "time_s,hand,px_m,py_m,pz_m,qw,qx,qy,qz,button1,button2\n";
 
-std::string error_of(const std::string& text) {
+std::string motion_error(const std::string& text) {
   try {
     parse_motion(text, "m.csv");
   } catch (const InputError& e) {
@@ -88,7 +88,7 @@ TEST(Motion, SaysFileLineAndWhatIsWrong) {
       {head + good + good, "m.csv:3: error: time_s of the left hand must rise"},
   };
   for (const auto& [text, expected] : bad)
-    EXPECT_NE(error_of(text).find(expected), std::string::npos) << error_of(text);
+    EXPECT_NE(motion_error(text).find(expected), std::string::npos) << motion_error(text);
 }
 
 TEST(Motion, HoldsCommandsInTheOrderOfTheirTimes) {
@@ -140,7 +140,7 @@ TEST(Motion, RefusesBadCommands) {
       {"nan,command,ask,a b\n", "m.csv:2: error: time_s must be finite"},
   };
   for (const auto& [text, expected] : bad)
-    EXPECT_NE(error_of(head + text).find(expected), std::string::npos) << error_of(head + text);
+    EXPECT_NE(motion_error(head + text).find(expected), std::string::npos) << motion_error(head + text);
 }
 
 TEST(Motion, ReadsFilesAndNamesMissingOnes) {

@@ -49,7 +49,7 @@ RowMap RowBench::rows(double time) {
   if (auto* c = dynamic_cast<Constraint*>(&component_)) {
     c->detect(context_);
     c->build(context_, builder_);
-  } else if (auto* b = dynamic_cast<Body*>(&component_)) {
+  } else if (auto* b = dynamic_cast<DynamicBody*>(&component_)) {
     b->build(context_, builder_);
   }
   builder_.finish();

@@ -293,7 +293,7 @@ bool same_laws(const RowMap& a, const RowMap& b, std::string& what) {
 std::vector<double> state_of(const Component& c) {
   std::vector<double> out;
   if (const auto* constraint = dynamic_cast<const Constraint*>(&c)) constraint->append_state(out);
-  if (const auto* body = dynamic_cast<const Body*>(&c)) body->append_state(out);
+  if (const auto* body = dynamic_cast<const DynamicBody*>(&c)) body->append_state(out);
   return out;
 }
 

@@ -12,9 +12,9 @@ namespace {
 
 constexpr double facing = 0.1;       ///< normals of a pair must be opposed by this cosine
 constexpr double along_wall = 0.92;  ///< normals that agree by this cosine at rest belong to one part of the wall ...
-constexpr double bent = 0.8;        ///< ... those that agree by this are tested only when the wall between them is bent
+constexpr double bent = 0.8;  ///< ... those that agree by this are tested only when the wall between them is bent
 constexpr double look_ahead = 0.5e-3;  ///< the search goes farther by this, to be valid for some steps, m
-constexpr double skin = 0.4e-3;     ///< motion after which a list of partners is made again, m
+constexpr double skin = 0.4e-3;        ///< motion after which a list of partners is made again, m
 constexpr double yields = 0.3;  ///< part of the wanted rotation that the normal of a pressing contact takes in a step
 constexpr double min_turn = 1e-3;          ///< smaller rotations are ignored, rad
 constexpr int swings_for_good = 120;       ///< reached after one or two seconds of oscillation

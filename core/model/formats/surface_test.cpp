@@ -17,7 +17,7 @@ namespace {
 
 using test_files::SurfaceFormat;
 
-std::string error_of(const std::filesystem::path& file) {
+std::string surface_error(const std::filesystem::path& file) {
   try {
     read_surface(file, 1);
   } catch (const InputError& e) {
@@ -69,7 +69,7 @@ TEST_P(EverySurface, RefusesTruncation) {
   // The last number of a text may lose digits unseen; so may a binary STL's last attribute when it happens to be blank.
   if (GetParam().file == "s.stl" && GetParam().name == "stl_binary") kept = bytes.size();
   for (std::size_t n = 0; n < kept; ++n) {
-    const std::string error = error_of(folder_.write(GetParam().file, bytes.substr(0, n)));
+    const std::string error = surface_error(folder_.write(GetParam().file, bytes.substr(0, n)));
     if (GetParam().truncation_shows) {
       ASSERT_NE(error, "") << "cut after " << n << " of " << bytes.size() << " bytes";
     }
@@ -95,7 +95,7 @@ TEST_P(EverySurface, SurvivesDamage) {
 TEST_P(EverySurface, RefusesWhatIsNotFinite) {
   TriMesh surface = test_files::small_surface();
   surface.vertices[3].y() = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_NE(error_of(folder_.write(GetParam().file, GetParam().bytes(surface))), "");
+  EXPECT_NE(surface_error(folder_.write(GetParam().file, GetParam().bytes(surface))), "");
 }
 
 TEST_P(EverySurface, RefusesIndicesOutOfRange) {
@@ -103,7 +103,7 @@ TEST_P(EverySurface, RefusesIndicesOutOfRange) {
   TriMesh surface = test_files::small_surface();
   const auto good = surface.vertices;
   surface.triangles[2][1] = 77;
-  EXPECT_NE(error_of(folder_.write(GetParam().file, GetParam().bytes(surface))), "");
+  EXPECT_NE(surface_error(folder_.write(GetParam().file, GetParam().bytes(surface))), "");
 }
 
 INSTANTIATE_TEST_SUITE_P(Formats, EverySurface, testing::ValuesIn(test_files::surface_formats()),
@@ -146,10 +146,10 @@ TEST(SurfaceFile, SplitsQuads) {
 
 TEST(SurfaceFile, RefusesOtherFiles) {
   const test_files::TempFolder folder;
-  EXPECT_NE(error_of(folder.path() / "none.stl").find("no such file"), std::string::npos);
-  EXPECT_NE(error_of(folder.write("a.txt", "x")).find("use .stl"), std::string::npos);
-  EXPECT_NE(error_of(folder.write("a.obj", "v 0 0 0\n")), "");
-  EXPECT_NE(error_of(folder.write("a.obj", "no mesh at all")), "");
+  EXPECT_NE(surface_error(folder.path() / "none.stl").find("no such file"), std::string::npos);
+  EXPECT_NE(surface_error(folder.write("a.txt", "x")).find("use .stl"), std::string::npos);
+  EXPECT_NE(surface_error(folder.write("a.obj", "v 0 0 0\n")), "");
+  EXPECT_NE(surface_error(folder.write("a.obj", "no mesh at all")), "");
 }
 
 TEST(SurfaceFile, ReadsNothingOutsideItsFolder) {
@@ -169,9 +169,9 @@ TEST(SurfaceFile, ReadsNothingOutsideItsFolder) {
     const auto with = [&](const std::string& uri) {
       return folder.write("in/s.gltf", json.substr(0, begin) + uri + json.substr(end));
     };
-    EXPECT_EQ(error_of(with("buffer.bin")), "");
-    EXPECT_NE(error_of(with("../outer.bin")), "");
-    EXPECT_NE(error_of(with((folder.path() / "outer.bin").string())), "");
+    EXPECT_EQ(surface_error(with("buffer.bin")), "");
+    EXPECT_NE(surface_error(with("../outer.bin")), "");
+    EXPECT_NE(surface_error(with((folder.path() / "outer.bin").string())), "");
   }
 }
 

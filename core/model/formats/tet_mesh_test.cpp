@@ -18,7 +18,7 @@ namespace {
 
 using test_files::Format;
 
-std::string error_of(const std::filesystem::path& file, double unit = 1) {
+std::string mesh_error(const std::filesystem::path& file, double unit = 1) {
   try {
     read_tet_mesh(file, unit);
   } catch (const InputError& e) {
@@ -122,12 +122,12 @@ INSTANTIATE_TEST_SUITE_P(Formats, EveryFormat, testing::ValuesIn(test_files::for
 
 TEST(TetMeshFile, RefusesOtherFiles) {
   const test_files::TempFolder folder;
-  EXPECT_NE(error_of(folder.path() / "none.msh").find("no such file"), std::string::npos);
-  EXPECT_NE(error_of(folder.path()).find("no known tetrahedral mesh"), std::string::npos);
-  EXPECT_NE(error_of(folder.write("m.xyz", "x")).find("use .msh"), std::string::npos);
-  EXPECT_NE(error_of(folder.write("m.msh", "")).find("is empty"), std::string::npos);
+  EXPECT_NE(mesh_error(folder.path() / "none.msh").find("no such file"), std::string::npos);
+  EXPECT_NE(mesh_error(folder.path()).find("no known tetrahedral mesh"), std::string::npos);
+  EXPECT_NE(mesh_error(folder.write("m.xyz", "x")).find("use .msh"), std::string::npos);
+  EXPECT_NE(mesh_error(folder.write("m.msh", "")).find("is empty"), std::string::npos);
   std::filesystem::create_directory(folder.path() / "d.vtu");
-  EXPECT_NE(error_of(folder.path() / "d.vtu").find("is not a file"), std::string::npos);
+  EXPECT_NE(mesh_error(folder.path() / "d.vtu").find("is not a file"), std::string::npos);
 }
 
 TEST(TetMeshFile, RefusesAnUnusableUnit) {
@@ -135,21 +135,21 @@ TEST(TetMeshFile, RefusesAnUnusableUnit) {
   const auto format = test_files::formats()[0];
   const auto file = folder.write(format.file, format.bytes(test_files::box_mesh()));
   for (double unit : {0.0, -1.0, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()})
-    EXPECT_NE(error_of(file, unit).find("unit of length"), std::string::npos);
+    EXPECT_NE(mesh_error(file, unit).find("unit of length"), std::string::npos);
 }
 
 TEST(TetMeshFile, HostileCountsAllocateNothing) {
   const test_files::TempFolder folder;
   const std::string gmsh = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n";
-  EXPECT_NE(error_of(folder.write("a.msh", gmsh + "999999999999\n1 0 0 0\n")).find("ends early"), std::string::npos);
-  EXPECT_NE(error_of(folder.write("b.msh", gmsh + "-3\n")).find("a count cannot be -3"), std::string::npos);
+  EXPECT_NE(mesh_error(folder.write("a.msh", gmsh + "999999999999\n1 0 0 0\n")).find("ends early"), std::string::npos);
+  EXPECT_NE(mesh_error(folder.write("b.msh", gmsh + "-3\n")).find("a count cannot be -3"), std::string::npos);
   const std::string vtk = "# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\n";
-  EXPECT_NE(error_of(folder.write("a.vtk", vtk + "POINTS 9000000000000000000 double\n0 0 0\n")).find("ends early"),
+  EXPECT_NE(mesh_error(folder.write("a.vtk", vtk + "POINTS 9000000000000000000 double\n0 0 0\n")).find("ends early"),
             std::string::npos);
   EXPECT_NE(
-      error_of(folder.write("a.vtk", vtk + "FIELD f 1\nname 1000 9000000000000000000 int\n0\n")).find("ends early"),
+      mesh_error(folder.write("a.vtk", vtk + "FIELD f 1\nname 1000 9000000000000000000 int\n0\n")).find("ends early"),
       std::string::npos);
-  EXPECT_NE(error_of(folder.write("a.mesh", "MeshVersionFormatted 1\nDimension 3\nVertices 88888888888\n1 1 1 0\n"))
+  EXPECT_NE(mesh_error(folder.write("a.mesh", "MeshVersionFormatted 1\nDimension 3\nVertices 88888888888\n1 1 1 0\n"))
                 .find("ends early"),
             std::string::npos);
 }
@@ -159,40 +159,41 @@ TEST(TetMeshFile, RefusesOtherVolumeElements) {
   const std::string gmsh =
       "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n1\n1 0 0 0\n$EndNodes\n$Elements\n1\n1 5 0 1 1 1 1 1 1 1 "
       "1\n$EndElements\n";
-  EXPECT_NE(error_of(folder.write("a.msh", gmsh)).find("only linear tetrahedra"), std::string::npos);
+  EXPECT_NE(mesh_error(folder.write("a.msh", gmsh)).find("only linear tetrahedra"), std::string::npos);
   const std::string medit =
       "MeshVersionFormatted 1\nDimension 3\nVertices 1\n1 1 1 0\nHexahedra 1\n1 1 1 1 1 1 1 1 0\nEnd\n";
-  EXPECT_NE(error_of(folder.write("a.mesh", medit)).find("only tetrahedra"), std::string::npos);
+  EXPECT_NE(mesh_error(folder.write("a.mesh", medit)).find("only tetrahedra"), std::string::npos);
   const std::string vtk =
       "# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 1 float\n0 0 0\nCELLS 1 9\n8 0 0 0 0 0 "
       "0 0 0\nCELL_TYPES 1\n12\n";
-  EXPECT_NE(error_of(folder.write("a.vtk", vtk)).find("only linear tetrahedra"), std::string::npos);
+  EXPECT_NE(mesh_error(folder.write("a.vtk", vtk)).find("only linear tetrahedra"), std::string::npos);
 }
 
 TEST(TetMeshFile, RefusesOldGmshAndHostileXml) {
   const test_files::TempFolder folder;
-  EXPECT_NE(error_of(folder.write("a.msh", "$MeshFormat\n4 0 8\n$EndMeshFormat\n")).find("save it as 2.2 or 4.1"),
+  EXPECT_NE(mesh_error(folder.write("a.msh", "$MeshFormat\n4 0 8\n$EndMeshFormat\n")).find("save it as 2.2 or 4.1"),
             std::string::npos);
   const std::string bomb =
       "<?xml version=\"1.0\"?><!DOCTYPE x [<!ENTITY a \"aaaa\">]><VTKFile type=\"UnstructuredGrid\">&a;</VTKFile>";
-  EXPECT_NE(error_of(folder.write("a.vtu", bomb)).find("document type"), std::string::npos);
+  EXPECT_NE(mesh_error(folder.write("a.vtu", bomb)).find("document type"), std::string::npos);
   std::string deep = "<VTKFile type=\"UnstructuredGrid\">";
   for (int i = 0; i < 100000; ++i) deep += "<a>";
-  EXPECT_NE(error_of(folder.write("a.vtu", deep)).find("nested too deeply"), std::string::npos);
-  EXPECT_NE(error_of(folder.write("a.vtu", "<VTKFile type=\"UnstructuredGrid\" compressor=\"vtkLZ4DataCompressor\"/>"))
-                .find("compressor"),
-            std::string::npos);
-  EXPECT_NE(error_of(folder.write("a.vtu", "<VTKFile type=\"UnstructuredGrid\" byte_order=\"MiddleEndian\"/>"))
+  EXPECT_NE(mesh_error(folder.write("a.vtu", deep)).find("nested too deeply"), std::string::npos);
+  EXPECT_NE(
+      mesh_error(folder.write("a.vtu", "<VTKFile type=\"UnstructuredGrid\" compressor=\"vtkLZ4DataCompressor\"/>"))
+          .find("compressor"),
+      std::string::npos);
+  EXPECT_NE(mesh_error(folder.write("a.vtu", "<VTKFile type=\"UnstructuredGrid\" byte_order=\"MiddleEndian\"/>"))
                 .find("byte_order \"MiddleEndian\" is unknown"),
             std::string::npos);
-  EXPECT_NE(error_of(folder.write("a.vtu", "<VTKFile type=\"UnstructuredGrid\" header_type=\"Float32\"/>"))
+  EXPECT_NE(mesh_error(folder.write("a.vtu", "<VTKFile type=\"UnstructuredGrid\" header_type=\"Float32\"/>"))
                 .find("header_type \"Float32\" is unknown"),
             std::string::npos);
   std::string within =
       "<VTKFile type=\"UnstructuredGrid\"><Piece NumberOfPoints=\"1\" NumberOfCells=\"0\"><Points><DataArray "
       "NumberOfComponents=\"3\" type=\"Float64\">0 0 0";
   for (int i = 0; i < 9; ++i) within += "<Piece NumberOfPoints=\"1\" NumberOfCells=\"0\"/> 1 2 3";
-  EXPECT_NE(error_of(folder.write("a.vtu", within + "</DataArray></Points></Piece></VTKFile>")).find("a.vtu"),
+  EXPECT_NE(mesh_error(folder.write("a.vtu", within + "</DataArray></Points></Piece></VTKFile>")).find("a.vtu"),
             std::string::npos);
 }
 

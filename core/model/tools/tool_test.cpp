@@ -29,7 +29,7 @@ std::string surface(const char* name) {
   return "";
 }
 
-std::string error_of(const TempFolder& folder, const std::string& text) {
+std::string tool_error(const TempFolder& folder, const std::string& text) {
   try {
     read_tool(folder.write("probe.urdf", text));
   } catch (const InputError& e) {
@@ -40,7 +40,7 @@ std::string error_of(const TempFolder& folder, const std::string& text) {
 
 void expect_error(const std::string& content, const std::string& part) {
   const TempFolder folder;
-  const std::string error = error_of(folder, urdf(content));
+  const std::string error = tool_error(folder, urdf(content));
   EXPECT_NE(error.find(part), std::string::npos) << "expected: " << part << "\ngot: " << error;
 }
 
@@ -149,7 +149,7 @@ TEST(Tool, RefusesHullsOfTooManyPoints) {
     obj += "f " + std::to_string(i) + " " + std::to_string(i + 1) + " " + std::to_string(i + 2) + "\n";
   folder.write("many.obj", obj);
   const std::string error =
-      error_of(folder, urdf(inertial + "<collision><geometry><mesh filename='many.obj'/></geometry></collision>"));
+      tool_error(folder, urdf(inertial + "<collision><geometry><mesh filename='many.obj'/></geometry></collision>"));
   EXPECT_NE(error.find("25 points; at most 24"), std::string::npos) << error;
 }
 
@@ -157,7 +157,7 @@ TEST(Tool, RefusesTruncatedMeshes) {
   const TempFolder folder;
   folder.write("s.stl", surface("stl_binary").substr(0, 150));
   const std::string error =
-      error_of(folder, urdf(inertial + "<collision><geometry><mesh filename='s.stl'/></geometry></collision>"));
+      tool_error(folder, urdf(inertial + "<collision><geometry><mesh filename='s.stl'/></geometry></collision>"));
   EXPECT_NE(error.find("s.stl: ends early"), std::string::npos) << error;
 }
 
@@ -172,16 +172,16 @@ TEST(Tool, RefusesSymbolicLinksOutOfItsFolder) {
 
 TEST(Tool, RefusesOtherXml) {
   const TempFolder folder;
-  EXPECT_NE(error_of(folder, "<robot name='a'><link"), "");
-  EXPECT_NE(error_of(folder, "no xml"), "");
-  EXPECT_NE(error_of(folder, "<scene/>"), "");
-  EXPECT_NE(error_of(folder, "<!DOCTYPE r [<!ENTITY a 'b'>]><robot name='&a;'/>"), "");
-  EXPECT_NE(error_of(folder, "<robot name='a'><link name='l'/><link name='m'/></robot>"), "");
+  EXPECT_NE(tool_error(folder, "<robot name='a'><link"), "");
+  EXPECT_NE(tool_error(folder, "no xml"), "");
+  EXPECT_NE(tool_error(folder, "<scene/>"), "");
+  EXPECT_NE(tool_error(folder, "<!DOCTYPE r [<!ENTITY a 'b'>]><robot name='&a;'/>"), "");
+  EXPECT_NE(tool_error(folder, "<robot name='a'><link name='l'/><link name='m'/></robot>"), "");
   std::string deep;
   for (int i = 0; i < 100000; ++i) deep += "<a>";
-  EXPECT_NE(error_of(folder, deep), "");
+  EXPECT_NE(tool_error(folder, deep), "");
   const std::string text = urdf(inertial + sphere);
-  for (std::size_t n = 0; n < text.size(); ++n) EXPECT_NE(error_of(folder, text.substr(0, n)), "") << n;
+  for (std::size_t n = 0; n < text.size(); ++n) EXPECT_NE(tool_error(folder, text.substr(0, n)), "") << n;
 }
 
 TEST(Tool, RefusesBadToolJson) {
@@ -192,7 +192,7 @@ TEST(Tool, RefusesBadToolJson) {
         R"({"blade": {"edge": [[0,0,0],[0,0,0]]}})", R"({"blade": {"edge": [[0,0,0],[0,0,1e999]]}})"}) {
     const TempFolder folder;
     folder.write("tool.json", bad);
-    EXPECT_NE(error_of(folder, urdf(inertial + sphere)).find("tool.json: "), std::string::npos) << bad;
+    EXPECT_NE(tool_error(folder, urdf(inertial + sphere)).find("tool.json: "), std::string::npos) << bad;
   }
   const TempFolder folder;
   folder.write("tool.json", R"({"blade": {"edge": [[0,0,0],[0,0,5]], "cuts": false}})");

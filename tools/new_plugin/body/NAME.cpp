@@ -23,13 +23,13 @@ class @Name@ final : public RigidBody, public StatesLaw {
   Param<File> model{this, {.name = "model", .doc = "URDF of the body, without joints; its mass is the body's"}};
   Param<Vec<Length>> home{this, {.name = "home", .doc = "origin of the model where the spring is without force"}};
   Param<Stiffness> spring{
-      this, {.name = "spring", .fallback = "100 N/m", .min = "0.1 N/m", .max = "10 kN/m", .doc = "against translation"}};
+      this, {.name = "spring", .fallback = "100 N/m", .min = "0.1 N/m", .max = "10 kN/m", .doc = "of translation"}};
   Param<AngularStiffness> angular_spring{this,
                                          {.name = "angular_spring",
                                           .fallback = "0.1 N m/rad",
                                           .min = "0.001 N m/rad",
                                           .max = "10 N m/rad",
-                                          .doc = "against rotation"}};
+                                          .doc = "of rotation"}};
   Param<Length> gyration{
       this, {.name = "gyration", .fallback = "10 mm", .min = "0.1 mm", .max = "1 m", .doc = "radius of gyration"}};
   Param<Duration> damping_time{this,
