@@ -124,6 +124,7 @@ class StrandSprings final : public Constraint, public StrandSet, public StatesLa
   double strand_tension(int i) const { return strands_[std::size_t(i)].tension; }
   int strand_count() const override { return count(); }
   StrandState strand(int i) const override;
+  bool severed(int i) const override { return strands_[std::size_t(i)].severed; }
 
  private:
   struct Strand {
