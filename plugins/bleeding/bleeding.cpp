@@ -78,10 +78,13 @@ void Bleeding::connect(PrepareContext& context, Simulation& simulation) {
                      (near.empty() ? "" : "; did you mean " + in_quotes(near) + "?"));
   }
   zone_.assign(std::size_t(on->nodes()), 0);
-  bool any = false;
-  for (std::size_t v = 0; v < zone_.size(); ++v)
-    if (on->model().vertex_region[v] == r) zone_[v] = any = true;
-  if (!any) return error(context, region, "region " + in_quotes(region()) + " has no vertices");
+  zone_nodes_.clear();
+  for (std::size_t v = 0; v < zone_.size(); ++v) {
+    if (on->model().vertex_region[v] != r) continue;
+    zone_[v] = true;
+    zone_nodes_.push_back(int(v));
+  }
+  if (zone_nodes_.empty()) return error(context, region, "region " + in_quotes(region()) + " has no vertices");
   for (const auto& t : on->wall_triangles())
     if (zone_[std::size_t(t[0])] && zone_[std::size_t(t[1])] && zone_[std::size_t(t[2])]) zone_triangles_.push_back(t);
   jet.resize(1);
@@ -162,10 +165,8 @@ double Bleeding::blood_of(double h, double out) {
 
 double Bleeding::tear_height() const {
   double sum = 0;
-  int n = 0;
-  for (std::size_t v = 0; v < zone_.size(); ++v)
-    if (zone_[v]) sum += (Eigen::Map<const Vec3>(on->q().data() + 3 * v) - origin()).dot(up_), ++n;
-  return sum / n;
+  for (const int v : zone_nodes_) sum += (Eigen::Map<const Vec3>(on->q().data() + 3 * v) - origin()).dot(up_);
+  return sum / double(zone_nodes_.size());
 }
 
 void Bleeding::fill(double h, double blood) {
@@ -209,11 +210,9 @@ void Bleeding::publish() {
   pool.set(origin() + height() * up_, up_, height() > 0 ? radius() : 0, height());  // radius 0: dry
   Vec3 place = Vec3::Zero(), outward = Vec3::Zero();
   const auto at = [&](int node) -> Vec3 { return Eigen::Map<const Vec3>(on->q().data() + 3 * node); };
-  int n = 0;
-  for (std::size_t v = 0; v < zone_.size(); ++v)
-    if (zone_[v]) place += at(int(v)), ++n;
+  for (const int v : zone_nodes_) place += at(v);
   for (const auto& t : zone_triangles_) outward += (at(t[1]) - at(t[0])).cross(at(t[2]) - at(t[0]));
-  if (n > 0) place /= n;
+  if (!zone_nodes_.empty()) place /= double(zone_nodes_.size());
   const double length = outward.norm();
   const Vec3 direction = length > 0 ? Vec3(outward / length) : up_;
   const double strength = std::min(1.0, rate_ / full_jet);

@@ -147,6 +147,7 @@ class Bleeding final : public Constraint, public BleedingSource {
   Vec3 up_ = Vec3::UnitZ();
   int chamber_ = -1;
   std::vector<char> zone_;                          ///< one for each node
+  std::vector<int> zone_nodes_;                     ///< nodes of the zone
   std::vector<std::array<int, 3>> zone_triangles_;  ///< of the wall, all corners in the zone
   double now_ = 0;                                  ///< simulated time at the end of the last step, s
   std::vector<Instrument*> instruments_;

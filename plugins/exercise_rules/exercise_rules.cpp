@@ -172,18 +172,18 @@ class FaultOrder final : public ExerciseRule {
     fault_ = log.add_fault(id, text());
   }
   void observe(const StepReport& r, ExerciseLog& log) override {
-    const std::vector<StrandState>& strands = strands_.now();
-    if (depth_.size() != strands.size()) {  // first step: depths at the start
+    const std::vector<char>& now = strands_.severed();
+    if (depth_.size() != now.size()) {  // first step: depths at the start
       depth_.clear();
-      for (const StrandState& s : strands) depth_.push_back(0.5 * (s.a + s.b).dot(inward().normalized()));
-      severed_.assign(strands.size(), 0);
+      for (const StrandState& s : strands_.now()) depth_.push_back(0.5 * (s.a + s.b).dot(inward().normalized()));
+      severed_.assign(now.size(), 0);
     }
-    for (std::size_t i = 0; i < strands.size(); ++i) {
-      if (severed_[i] || strands[i].integrity >= 0) continue;
+    for (std::size_t i = 0; i < now.size(); ++i) {
+      if (severed_[i] || !now[i]) continue;
       severed_[i] = 1;
       int before = 0;
-      for (std::size_t k = 0; k < strands.size(); ++k)
-        before += !severed_[k] && strands[k].integrity >= 0 && depth_[k] < depth_[i] - margin();
+      for (std::size_t k = 0; k < now.size(); ++k)
+        before += !severed_[k] && !now[k] && depth_[k] < depth_[i] - margin();
       if (before > allowed()) log.fault(fault_, r.time, before);
     }
   }

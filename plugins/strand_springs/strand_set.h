@@ -20,6 +20,8 @@ class StrandSet {
   virtual ~StrandSet() = default;
   virtual int strand_count() const = 0;
   virtual StrandState strand(int i) const = 0;  ///< present state
+  /// Whether a strand is severed, without its end points, which cost more.
+  virtual bool severed(int i) const { return strand(i).integrity < 0; }
 };
 
 /// All sets of a scene in document order.
@@ -42,13 +44,21 @@ class Strands {
   int left() const {
     int n = 0;
     for (const StrandSet* set : sets_)
-      for (int i = 0; i < set->strand_count(); ++i) n += set->strand(i).integrity >= 0;
+      for (int i = 0; i < set->strand_count(); ++i) n += !set->severed(i);
     return n;
+  }
+  /// One a strand, in the order of now(); allocates while their number grows.
+  const std::vector<char>& severed() {
+    severed_.clear();
+    for (const StrandSet* set : sets_)
+      for (int i = 0; i < set->strand_count(); ++i) severed_.push_back(set->severed(i));
+    return severed_;
   }
 
  private:
   std::vector<StrandSet*> sets_;
   std::vector<StrandState> states_;
+  std::vector<char> severed_;
 };
 
 }  // namespace insula

@@ -123,6 +123,7 @@ class StrandSprings final : public Constraint, public StrandSet, public StatesLa
   double integrity(int i) const { return 1 - strands_[std::size_t(i)].damage; }
   int strand_count() const override { return count(); }
   StrandState strand(int i) const override;
+  bool severed(int i) const override { return strands_[std::size_t(i)].severed; }
 
  private:
   struct Strand {
