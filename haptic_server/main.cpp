@@ -46,52 +46,39 @@ void print_status(const insula_lcm::haptic_status_t& s) {
   std::fflush(stdout);
 }
 
-int serve(const Arguments& a) {
-  std::unique_ptr<Bus> bus = make_bus();
-  if (!bus->good()) {
-    spdlog::error("{}", bus->error());
-    return 1;
-  }
-  ServerOptions options;
-  options.period_s = 1 / a.loop.rate_hz;
+/// Fewer unknowns for the servo's Newton steps where this machine cannot make them within a tick.
+void fit_newton_steps(ServerOptions& options) {
   int& unknowns = options.servo.newton_unknowns;
   constexpr double newton_share = 0.4;  // of a tick; sweeps and the rest take another third
-  if (const int most = unknowns_within(newton_share * options.period_s, unknowns, factorisation_time(unknowns));
-      most < unknowns) {
-    spdlog::info(
-        "this machine makes Newton steps of {} unknowns within a tick, not {}: with more rows forces end less exactly",
-        most, unknowns);
-    unknowns = most;
-  }
+  const int most = unknowns_within(newton_share * options.period_s, unknowns, factorisation_time(unknowns));
+  if (most >= unknowns) return;
+  spdlog::info(
+      "this machine makes Newton steps of {} unknowns within a tick, not {}: with more rows forces end less exactly",
+      most, unknowns);
+  unknowns = most;
+}
+
+ServerOptions server_options(const Arguments& a) {
+  ServerOptions options;
+  options.period_s = 1 / a.loop.rate_hz;
+  fit_newton_steps(options);
   if (a.motion == "none") options.motion = Motion();
   else if (!a.motion.empty()) options.motion = load_motion(a.motion);
-  std::array<DeviceChoice, 2> devices{make_device(a.left, 0), make_device(a.right, 1)};
-  const std::array<Device*, 2> device{devices[0].device.get(), devices[1].device.get()};
+  return options;
+}
 
-  const RealtimeGrant grant = probe_realtime(a.loop.priority);
-  options.realtime = grant.scheduler;
-  options.advice = grant.advice;
-  if (!grant.advice.empty()) spdlog::warn("{}", grant.advice);
-
-  const MonotonicClock clock;
-  // Devices start first, since the gate takes its limits from the device's own data.
-  for (Device* d : device) d->start();
-  HapticServer server(*bus, std::move(devices), clock, std::move(options));
-  spdlog::info("haptic server: left {}, right {}, {:.0f} Hz, {}", a.left, a.right, a.loop.rate_hz,
-               grant.scheduler ? "real-time" : "without real-time scheduling");
-
-  std::atomic<bool> run{true};
-  std::thread receiver([&] {
-    while (run.load()) {
-      try {
-        server.receive(50);
-      } catch (const std::exception& e) {  // a message must not end the server
-        spdlog::warn("{}", e.what());
-      }
+void receive_until_stopped(HapticServer& server, const std::atomic<bool>& run) {
+  while (run.load()) {
+    try {
+      server.receive(50);
+    } catch (const std::exception& e) {  // a message must not end the server
+      spdlog::warn("{}", e.what());
     }
-  });
-  std::thread servo([&] { run_servo(server, a.loop, run); });
+  }
+}
 
+/// States every 4 ms and a status each second, until the time is over or a signal comes.
+void publish_until_asked_to_stop(HapticServer& server, const Bus& bus, const Arguments& a) {
   const auto start = Steady::now();
   auto next_status = start + 1s;
   bool bus_was_good = true;
@@ -102,15 +89,17 @@ int serve(const Arguments& a) {
     if (now >= next_status) {
       const auto& status = server.publish_status();
       if (a.status) print_status(status);
-      if (bus->good() != bus_was_good && !bus->good()) spdlog::warn("{}", bus->error());
-      bus_was_good = bus->good();
+      if (bus.good() != bus_was_good && !bus.good()) spdlog::warn("{}", bus.error());
+      bus_was_good = bus.good();
       next_status = std::max(next_status + 1s, now);
     }
     if (a.duration_s > 0 && now - start >= std::chrono::duration<double>(a.duration_s)) break;
     next = std::max(next + 4ms, now);
   }
+}
 
-  // Forces fade to zero first. The gate needs at most 50 ms for this.
+/// Brings the forces to zero; the gate needs at most 50 ms for it.
+void fade_out(HapticServer& server) {
   server.begin_stop();
   const auto patience = Steady::now() + 300ms;
   std::this_thread::sleep_for(5ms);
@@ -118,6 +107,35 @@ int serve(const Arguments& a) {
     server.publish_state();
     std::this_thread::sleep_for(4ms);
   }
+}
+
+int serve(const Arguments& a) {
+  std::unique_ptr<Bus> bus = make_bus();
+  if (!bus->good()) {
+    spdlog::error("{}", bus->error());
+    return 1;
+  }
+  ServerOptions options = server_options(a);
+  std::array<DeviceChoice, 2> devices{make_device(a.left, 0), make_device(a.right, 1)};
+  const std::array<Device*, 2> device{devices[0].device.get(), devices[1].device.get()};
+
+  const RealtimeGrant grant = probe_realtime(a.loop.priority);
+  options.realtime = grant.scheduler;
+  options.advice = grant.advice;
+  if (!grant.advice.empty()) spdlog::warn("{}", grant.advice);
+
+  const MonotonicClock clock;
+  // Started first: the gate in front of a device takes its limits from what the device says of itself.
+  for (Device* d : device) d->start();
+  HapticServer server(*bus, std::move(devices), clock, std::move(options));
+  spdlog::info("haptic server: left {}, right {}, {:.0f} Hz, {}", a.left, a.right, a.loop.rate_hz,
+               grant.scheduler ? "real-time" : "without real-time scheduling");
+
+  std::atomic<bool> run{true};
+  std::thread receiver([&] { receive_until_stopped(server, run); });
+  std::thread servo([&] { run_servo(server, a.loop, run); });
+  publish_until_asked_to_stop(server, *bus, a);
+  fade_out(server);
   run = false;
   servo.join();
   receiver.join();

@@ -43,41 +43,33 @@ inline ToolTerms held_tool(int hand, const Pose& device, int rows) {
   return t;
 }
 
-/// Two tools, each with a virtual coupling of 300 N/m and 0.3 N m/rad and a rigid-body compliance. They have `contacts`
-/// frictional contacts, `strands` compliant rows and `patches` of three contacts with a common friction force, on soft
-/// bodies. W = H C H^T (tools) + a soft part, as an engine builds it.
-inline ConstraintProblem two_tool_problem(int contacts, int strands, std::uint64_t seed = 1, int patches = 0) {
-  Random random(seed);
-  ConstraintProblem p;
-  const int n = 3 * contacts + strands + 5 * patches;
-  p.resize(n);
-  for (int hand = 0; hand < 2; ++hand) {
-    ToolTerms t;
-    t.hand = hand;
-    t.device.p = Vec3(hand ? 0.02 : -0.02, 0.01, 0.03);
-    t.device.q = from_rotation_vector(Vec3(0.1, hand ? -0.3 : 0.2, 0.4));
-    t.free = displaced(t.device, (Vec6() << 2e-4, -1e-4, 3e-4, 0.002, 0.001, -0.003).finished());
-    t.stiffness.setZero();
-    t.stiffness.diagonal() << 300, 300, 300, 0.3, 0.3, 0.3;
-    Mat6 a = t.stiffness * 1.12;  // coupling, its damping and the tool's inertia
-    a.diagonal().array() += Eigen::Array<double, 6, 1>(20, 20, 20, 0.01, 0.01, 0.01);
-    t.compliance = a.inverse();
-    t.gain = t.compliance * (t.stiffness * 1.12);
-    t.jacobian.setZero(n, 6);
-    p.tools.push_back(t);
-  }
-  MatX soft(n, n);
-  for (int i = 0; i < n; ++i)
-    for (int j = 0; j < n; ++j) soft(i, j) = random.next();
-  MatX w = 1e-3 / n * (soft * soft.transpose()) + 1e-3 * MatX::Identity(n, n);
-  for (int i = 0; i < n; ++i) {
-    const int hand = (i / 3) % 2;
-    const Vec3 d = random.vector(1).normalized();
-    const Vec3 arm = random.vector(0.01);
-    p.tools[std::size_t(hand)].jacobian.row(i) << d.transpose(), arm.cross(d).transpose();
-  }
-  // Frictional blocks have orthonormal directions at one point.
-  for (int c = 0; c < contacts; ++c) {
+/// How many rows of each kind a two-tool problem has, in this order.
+struct TwoToolRows {
+  int contacts, strands, patches;
+  int total() const { return 3 * contacts + strands + 5 * patches; }
+  int first_of_strand(int s) const { return 3 * contacts + s; }
+  int first_of_patch(int c) const { return 3 * contacts + strands + 5 * c; }
+};
+
+inline ToolTerms coupled_tool(int hand, int rows) {
+  ToolTerms t;
+  t.hand = hand;
+  t.device.p = Vec3(hand ? 0.02 : -0.02, 0.01, 0.03);
+  t.device.q = from_rotation_vector(Vec3(0.1, hand ? -0.3 : 0.2, 0.4));
+  t.free = displaced(t.device, (Vec6() << 2e-4, -1e-4, 3e-4, 0.002, 0.001, -0.003).finished());
+  t.stiffness.setZero();
+  t.stiffness.diagonal() << 300, 300, 300, 0.3, 0.3, 0.3;
+  Mat6 a = t.stiffness * 1.12;  // coupling, its damping and the tool's inertia
+  a.diagonal().array() += Eigen::Array<double, 6, 1>(20, 20, 20, 0.01, 0.01, 0.01);
+  t.compliance = a.inverse();
+  t.gain = t.compliance * (t.stiffness * 1.12);
+  t.jacobian.setZero(rows, 6);
+  return t;
+}
+
+/// Frictional blocks have orthonormal directions at one point.
+inline void set_contact_jacobians(ConstraintProblem& p, const TwoToolRows& rows, Random& random) {
+  for (int c = 0; c < rows.contacts; ++c) {
     const int hand = c % 2;
     const Vec3 normal = random.vector(1).normalized();
     const Vec3 t1 = normal.unitOrthogonal();
@@ -89,8 +81,12 @@ inline ConstraintProblem two_tool_problem(int contacts, int strands, std::uint64
       h.row(3 * c + k) << axes[k].transpose(), arm.cross(axes[k]).transpose();
     }
   }
-  for (int c = 0; c < patches; ++c) {
-    const int hand = c % 2, row = 3 * contacts + strands + 5 * c;
+}
+
+/// Three normals in one direction, and the two tangents of their mean.
+inline void set_patch_jacobians(ConstraintProblem& p, const TwoToolRows& rows, Random& random) {
+  for (int c = 0; c < rows.patches; ++c) {
+    const int hand = c % 2, row = rows.first_of_patch(c);
     const Vec3 normal = random.vector(1).normalized(), t1 = normal.unitOrthogonal(), t2 = normal.cross(t1);
     auto& h = p.tools[std::size_t(hand)].jacobian;
     h.middleRows(row, 5).setZero();
@@ -104,43 +100,67 @@ inline ConstraintProblem two_tool_problem(int contacts, int strands, std::uint64
       }
     }
   }
+}
+
+/// Contacts and patches begin half a millimetre deeper than the rest.
+inline void add_two_tool_blocks(ConstraintProblem& p, const TwoToolRows& rows) {
+  const auto add = [&](std::uint64_t id, int row) -> Block& {
+    Block& b = p.blocks.emplace_back();
+    b.id = id;
+    b.row = row;
+    return b;
+  };
+  for (int c = 0; c < rows.contacts; ++c) {
+    Block& b = add(1000 + std::uint64_t(c), 3 * c);
+    b.law = LawKind::friction;
+    b.friction = 0.3;
+    p.delta_free[std::size_t(3 * c)] -= 5e-4;
+  }
+  for (int s = 0; s < rows.strands; ++s) {
+    Block& b = add(5000 + std::uint64_t(s), rows.first_of_strand(s));
+    b.compliance = 1 / 150.0;
+    b.upper = 0;
+  }
+  for (int c = 0; c < rows.patches; ++c) {
+    const int row = rows.first_of_patch(c);
+    for (int k = 0; k < 3; ++k) {
+      add(9000 + std::uint64_t(4 * c + k), row + k).lower = 0;
+      p.delta_free[std::size_t(row + k)] -= 5e-4;
+    }
+    Block& b = add(9000 + std::uint64_t(4 * c + 3), row + 3);
+    b.law = LawKind::patch;
+    b.friction = 0.3;
+    b.normals = 3;
+  }
+}
+
+/// Two tools, each with a virtual coupling of 300 N/m and 0.3 N m/rad and a rigid-body compliance, in `contacts`
+/// frictional contacts, `strands` compliant rows and `patches` of three contacts that share a friction force, with soft
+/// bodies behind. W = H C H^T (tools) + a soft part, so it is what an engine would build.
+inline ConstraintProblem two_tool_problem(int contacts, int strands, std::uint64_t seed = 1, int patches = 0) {
+  Random random(seed);
+  ConstraintProblem p;
+  const TwoToolRows rows{contacts, strands, patches};
+  const int n = rows.total();
+  p.resize(n);
+  for (int hand = 0; hand < 2; ++hand) p.tools.push_back(coupled_tool(hand, n));
+  MatX soft(n, n);
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) soft(i, j) = random.next();
+  MatX w = 1e-3 / n * (soft * soft.transpose()) + 1e-3 * MatX::Identity(n, n);
+  for (int i = 0; i < n; ++i) {
+    const int hand = (i / 3) % 2;
+    const Vec3 d = random.vector(1).normalized();
+    const Vec3 arm = random.vector(0.01);
+    p.tools[std::size_t(hand)].jacobian.row(i) << d.transpose(), arm.cross(d).transpose();
+  }
+  set_contact_jacobians(p, rows, random);
+  set_patch_jacobians(p, rows, random);
   for (const ToolTerms& t : p.tools) w += t.jacobian * t.compliance * t.jacobian.transpose();
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j) p.w[std::size_t(i) * p.stride + j] = w(i, j);
   for (int i = 0; i < n; ++i) p.delta_free[std::size_t(i)] = 1e-3 * random.next();
-  for (int c = 0; c < contacts; ++c) {
-    Block b;
-    b.id = 1000 + std::uint64_t(c);
-    b.row = 3 * c;
-    b.law = LawKind::friction;
-    b.friction = 0.3;
-    p.delta_free[std::size_t(3 * c)] -= 5e-4;
-    p.blocks.push_back(b);
-  }
-  for (int s = 0; s < strands; ++s) {
-    Block b;
-    b.id = 5000 + std::uint64_t(s);
-    b.row = 3 * contacts + s;
-    b.compliance = 1 / 150.0;
-    b.upper = 0;
-    p.blocks.push_back(b);
-  }
-  for (int c = 0; c < patches; ++c) {
-    for (int k = 0; k < 4; ++k) {
-      Block b;
-      b.id = 9000 + std::uint64_t(4 * c + k);
-      b.row = 3 * contacts + strands + 5 * c + k;
-      if (k < 3) {
-        b.lower = 0;
-        p.delta_free[std::size_t(b.row)] -= 5e-4;
-      } else {
-        b.law = LawKind::patch;
-        b.friction = 0.3;
-        b.normals = 3;
-      }
-      p.blocks.push_back(b);
-    }
-  }
+  add_two_tool_blocks(p, rows);
   return p;
 }
 

@@ -102,79 +102,86 @@ void Servo::set_problem(const ConstraintProblem* problem, const std::array<Pose,
   }
 }
 
+void Servo::place_devices(const ServoInput& input, TickHands& hands) noexcept {
+  const ConstraintProblem& p = *problem_;
+  std::copy_n(p.delta_free.begin(), p.rows, delta_free_.begin());
+  for (std::size_t t = 0; t < tool_count(); ++t) {
+    const ToolTerms& tool = p.tools[t];
+    hands.device[t] = tool.device;
+    const std::size_t hand = std::size_t(tool.hand & 1);
+    if (!input.connected[hand]) continue;
+    hands.device[t].p = input.device[hand].apply(offset_[t].p);
+    hands.device[t].q = input.device[hand].q * offset_[t].q;
+    const Vec6 d = displacement(tool.device, hands.device[t]);
+    hands.in_range[t] = finite(d) && d.head<3>().norm() <= settings_.max_displacement_m &&
+                        d.tail<3>().norm() <= settings_.max_rotation_rad;
+    if (!hands.in_range[t]) {
+      hands.device[t] = tool.device;  // the other hand goes on
+      continue;
+    }
+    hands.moved[t] = d;
+    if (!settings_.substep.any()) add_product(tool.jacobian, tool.gain * d, delta_free_, p.rows);
+  }
+}
+
+SolveStats Servo::solve_tick(const ServoInput& input, const TickHands& hands) noexcept {
+  const int n = problem_->rows;
+  SolveSettings s;
+  s.tolerance_m = settings_.tolerance_m;
+  s.conjugate = settings_.conjugate;
+  s.max_newton = settings_.newton_unknowns > 0 ? 1 : 0;
+  s.newton_soon = true;
+  s.newton_unknowns = settings_.newton_unknowns;
+  s.newton_sweeps = 0;
+  s.max_sweeps =
+      int(std::clamp(settings_.max_operations / std::max(1.0, double(n) * n), 1.0, double(settings_.max_sweeps)));
+  if (!settings_.substep.any())
+    return solve(*problem_, std::span<const double>(delta_free_.data(), std::size_t(n)), s, workspace_);
+  const ConstraintProblem& tick = substep_.next(input.dt_s, hands.moved);
+  const SolveStats stats = solve(tick, tick.delta_free, s, workspace_);
+  substep_.solved(workspace_.lambda, workspace_.delta);
+  return stats;
+}
+
+void Servo::find_forces(const ServoInput& input, const TickHands& hands, ServoResult& result) const noexcept {
+  const bool in_ticks = settings_.substep.any();
+  for (std::size_t t = 0; t < tool_count(); ++t) {
+    const ToolTerms& tool = problem_->tools[t];
+    const std::size_t index = std::size_t(tool.hand & 1);
+    ServoHand& hand = result.hand[index];
+    const Vec6 push =
+        transposed_product(in_ticks ? substep_.jacobian(t) : tool.jacobian, workspace_.lambda, problem_->rows);
+    if (const GraspingTool* grasping = in_ticks ? substep_.grasping(t) : nullptr) hand.tool = grasping->pose();
+    else hand.tool = displaced(tool.free, tool.gain * hands.moved[t] + tool.compliance * push);
+    const Vec6 wrench = tool.stiffness * displacement(hands.device[t], hand.tool);
+    hand.valid = hands.in_range[t] && input.connected[index] && finite(wrench);
+    if (!hand.valid) continue;
+    hand.force = wrench.head<3>();
+    // The wrench acts at the tool's frame; the hand holds the device's.
+    hand.torque = wrench.tail<3>() + (hands.device[t].p - input.device[index].p).cross(hand.force);
+  }
+}
+
+// A solution that is not finite must not poison the warm starts to come.
+void Servo::drop_solution_that_is_not_finite(ServoResult& result) noexcept {
+  bool good = true;
+  for (int i = 0; i < problem_->rows; ++i) good = good && std::isfinite(workspace_.lambda[std::size_t(i)]);
+  if (good) return;
+  std::fill_n(workspace_.lambda.begin(), problem_->rows, 0.0);
+  for (ServoHand& hand : result.hand) hand.valid = false;
+}
+
 ServoResult Servo::tick(const ServoInput& input) noexcept {
   ServoResult result;
   if (!problem_) return result;
-  const ConstraintProblem& p = *problem_;
-  const int n = p.rows;
-  const bool in_ticks = settings_.substep.any();
-  result.rows = n;
-
-  std::array<Vec6, 2> moved{Vec6::Zero(), Vec6::Zero()};  // of the devices
-  std::array<Pose, 2> device;                             // with the tool's offset applied
-  std::array<bool, 2> in_range{true, true};
-  const std::size_t tools = std::min<std::size_t>(p.tools.size(), 2);
-  std::copy_n(p.delta_free.begin(), n, delta_free_.begin());
-  for (std::size_t t = 0; t < tools; ++t) {
-    const ToolTerms& tool = p.tools[t];
-    device[t] = tool.device;
-    const std::size_t hand = std::size_t(tool.hand & 1);
-    if (!input.connected[hand]) continue;
-    device[t].p = input.device[hand].apply(offset_[t].p);
-    device[t].q = input.device[hand].q * offset_[t].q;
-    const Vec6 d = displacement(tool.device, device[t]);
-    in_range[t] = finite(d) && d.head<3>().norm() <= settings_.max_displacement_m &&
-                  d.tail<3>().norm() <= settings_.max_rotation_rad;
-    if (!in_range[t]) {
-      device[t] = tool.device;  // the other hand continues
-      continue;
-    }
-    moved[t] = d;
-    if (!in_ticks) add_product(tool.jacobian, tool.gain * d, delta_free_, n);
-  }
-
-  if (n > 0 || in_ticks) {  // without rows, a grasping tool still moves
-    SolveSettings s;
-    s.tolerance_m = settings_.tolerance_m;
-    s.conjugate = settings_.conjugate;
-    s.max_newton = settings_.newton_unknowns > 0 ? 1 : 0;
-    s.newton_soon = true;
-    s.newton_unknowns = settings_.newton_unknowns;
-    s.newton_sweeps = 0;
-    s.max_sweeps =
-        int(std::clamp(settings_.max_operations / std::max(1.0, double(n) * n), 1.0, double(settings_.max_sweeps)));
-    if (in_ticks) {
-      const ConstraintProblem& tick = substep_.next(input.dt_s, moved);
-      result.stats = solve(tick, tick.delta_free, s, workspace_);
-      substep_.solved(workspace_.lambda, workspace_.delta);
-    } else {
-      result.stats = solve(p, std::span<const double>(delta_free_.data(), std::size_t(n)), s, workspace_);
-    }
-  }
+  result.rows = problem_->rows;
+  TickHands hands;
+  place_devices(input, hands);
+  // Without rows a tool that carries something still moves.
+  if (problem_->rows > 0 || settings_.substep.any()) result.stats = solve_tick(input, hands);
   result.solved = true;
-
-  for (std::size_t t = 0; t < tools; ++t) {
-    const ToolTerms& tool = p.tools[t];
-    const std::size_t index = std::size_t(tool.hand & 1);
-    ServoHand& hand = result.hand[index];
-    const Vec6 push = transposed_product(in_ticks ? substep_.jacobian(t) : tool.jacobian, workspace_.lambda, n);
-    if (const GraspingTool* grasping = in_ticks ? substep_.grasping(t) : nullptr) hand.tool = grasping->pose();
-    else hand.tool = displaced(tool.free, tool.gain * moved[t] + tool.compliance * push);
-    const Vec6 wrench = tool.stiffness * displacement(device[t], hand.tool);
-    hand.valid = in_range[t] && input.connected[index] && finite(wrench);
-    if (!hand.valid) continue;
-    hand.force = wrench.head<3>();
-    // The wrench acts at the tool's frame, but the hand holds the device's frame.
-    hand.torque = wrench.tail<3>() + (device[t].p - input.device[index].p).cross(hand.force);
-  }
-
-  // A solution that is not finite must not be used for warm starts.
-  bool good = true;
-  for (int i = 0; i < n; ++i) good = good && std::isfinite(workspace_.lambda[std::size_t(i)]);
-  if (!good) {
-    std::fill_n(workspace_.lambda.begin(), n, 0.0);
-    for (ServoHand& hand : result.hand) hand.valid = false;
-  }
+  find_forces(input, hands, result);
+  drop_solution_that_is_not_finite(result);
   if (settings_.force_crossfade.within_s > 0) force_crossfade(result, input.dt_s);
   return result;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One tick of the haptic loop for both hands in one problem (Dequidt, Coevoet, Thines, Duriez 2015, equation 7).
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -102,7 +103,18 @@ class Servo {
     int row;
     LawKind law;
   };
+  /// The devices at a tick, tool by tool.
+  struct TickHands {
+    std::array<Vec6, 2> moved{Vec6::Zero(), Vec6::Zero()};  ///< since the problem's poses
+    std::array<Pose, 2> device;                             ///< with the tool's offset applied
+    std::array<bool, 2> in_range{true, true};
+  };
   void remember_solution() noexcept;
+  std::size_t tool_count() const noexcept { return std::min<std::size_t>(problem_->tools.size(), 2); }
+  void place_devices(const ServoInput& input, TickHands& hands) noexcept;
+  SolveStats solve_tick(const ServoInput& input, const TickHands& hands) noexcept;
+  void find_forces(const ServoInput& input, const TickHands& hands, ServoResult& result) const noexcept;
+  void drop_solution_that_is_not_finite(ServoResult& result) noexcept;
 
   ServoSettings settings_;
   const ConstraintProblem* problem_ = nullptr;

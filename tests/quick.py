@@ -15,7 +15,7 @@ import sys
 import time
 
 BUDGET_S = 175
-# Folder of the changed file: program of tests, and where its test files are.
+# Folder of the changed file, and the program that holds its tests. The test files lie in the same folder.
 PROGRAMS = (
     ("core/", "core_tests"),
     ("plugins/", "plugin_tests"),
@@ -23,6 +23,16 @@ PROGRAMS = (
     ("engine/", "engine_tests"),
     ("viewer/gateway/", "gateway_tests"),
     ("lcm_types/", "core_tests"),
+    ("tools/workbench/", "workbench_tests"),
+    ("tools/artery/", "artery_tool_tests"),
+    ("tools/case_builder/", "case_builder_tests"),
+    ("tests/artery/", "artery_mesh_tests"),
+    ("tests/contracts/", "contract_tests"),
+    ("tests/devices/", "device_tests"),
+    ("tests/exercises/", "exercise_tests"),
+    ("tests/faults/", "fault_tests"),
+    ("tests/problems/", "problem_tests"),
+    ("tests/docs/", "manual_plugin_tests"),
 )
 SUITE = re.compile(r"^(?:TYPED_)?TEST(?:_F|_P)?\(\s*(\w+)\s*,|^TYPED_TEST_SUITE\(\s*(\w+)", re.M)
 
@@ -54,32 +64,46 @@ def suites(files):
     return names
 
 
-def test_files(source, path):
-    """The test files that are nearest to a changed file: itself, its namesake, else all of its folder."""
+def test_files(source, path, top):
+    """The test files that are nearest to a changed file: itself, its namesakes, all of its folder, else of the folder
+    above, up to the folder `top`."""
     file = source / path
-    folder = file.parent
     if file.name.endswith("_test.cpp"):
         return [file] if file.exists() else []
-    namesakes = sorted(folder.glob(file.stem + "*_test.cpp"))
-    return namesakes or sorted(folder.glob("*_test.cpp"))
+    namesakes = sorted(file.parent.glob(file.stem + "*_test.cpp"))
+    if namesakes:
+        return namesakes
+    folder = file.parent
+    while True:
+        found = sorted(folder.glob("*_test.cpp"))
+        if found or folder == source / top or folder == source:
+            return found
+        folder = folder.parent
+
+
+def home_of(path):
+    """(folder, program) that a changed file belongs to; (None, None) if there is no program of tests for it."""
+    for folder, program in PROGRAMS:
+        if path.startswith(folder):
+            return folder, program
+    match = re.match(r"tests/(\w+)/", path)
+    return ("tests/%s/" % match[1], match[1] + "_tests") if match else (None, None)
 
 
 def plan(source, files):
     """(program -> names of suites, files without unit tests)."""
     programs, rest = {}, []
     for path in files:
-        home = next((program for folder, program in PROGRAMS if path.startswith(folder)), None)
-        match = re.match(r"tests/(\w+)/.*\.(?:cpp|h)$", path)
+        top, program = home_of(path)
         if path.startswith("lcm_types/"):
             found = sorted((source / "core/bus").glob("*_test.cpp"))
-        elif home and path.endswith((".cpp", ".h", ".xml")):
-            found = test_files(source, path)
-        elif match:
-            home, found = match[1] + "_tests", sorted((source / "tests" / match[1]).glob("*_test.cpp"))
+        elif program and path.endswith((".cpp", ".h", ".xml")):
+            found = test_files(source, path, top)
         else:
             found = []
-        if home and found:
-            programs.setdefault(home, set()).update(suites(found))
+        names = suites(found)
+        if names:
+            programs.setdefault(program, set()).update(names)
         else:
             rest.append(path)
     return programs, rest
@@ -133,6 +157,54 @@ def run_programs(clock, source, build, programs):
     return failed, left_out
 
 
+class Outcome:
+    def __init__(self):
+        self.failed, self.left_out = [], []
+
+    def take(self, what, status, good=(0,)):
+        """Notes the exit status of a check; None: there was no time for it."""
+        if status is None:
+            self.left_out.append(what + " (no time left)")
+        elif status not in good:
+            self.failed.append(what)
+
+
+def style(clock, source, outcome):
+    for script in ("function_length.py", "lines.py", "clang_format.py"):
+        path = source / "tests/style" / script
+        outcome.take("tests/style/" + script, clock.run([sys.executable, "-B", path, source]), (0, 77))
+
+
+def page(clock, source, outcome):
+    folder = source / "viewer/page"
+    if not (folder / "node_modules").exists():
+        say("viewer/page: npm ci")
+        status = clock.run(["npm", "ci", "--no-audit", "--no-fund", "--silent"], cwd=folder)
+        if status != 0:
+            return outcome.take("viewer/page: npm ci", status)
+    say("viewer/page: npm test")
+    outcome.take("viewer/page", clock.run(["npm", "test", "--silent"], cwd=folder))
+
+
+def tidy(clock, source, build, outcome):
+    say("clang-tidy on changed sources")
+    path = source / "tests/style/clang_tidy.py"
+    outcome.take("clang-tidy", clock.run([sys.executable, "-B", path, source, build, "--changed"]), (0, 77))
+
+
+def report(outcome, rest, seconds):
+    if rest:
+        more = " and %d more" % (len(rest) - 12) if len(rest) > 12 else ""
+        say("no unit test belongs to: " + " ".join(rest[:12]) + more)
+    for what in outcome.left_out:
+        say("left out: " + what)
+    if outcome.failed:
+        say("FAILED: %s after %d s" % (", ".join(outcome.failed), seconds))
+    else:
+        say("passed after %d s; ./insula test runs everything" % seconds)
+    return 1 if outcome.failed or outcome.left_out else 0
+
+
 def main():
     source, build = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
     since = sys.argv[sys.argv.index("--since") + 1] if "--since" in sys.argv else None
@@ -140,40 +212,22 @@ def main():
     files, how = changed_files(source, since)
     say("%d files %s" % (len(files), how))
     programs, rest = plan(source, files)
-    failed, left_out = [], []
-    for script in ("function_length.py", "lines.py", "clang_format.py"):
-        if clock.run([sys.executable, "-B", source / "tests/style" / script, source]) not in (0, 77, None):
-            failed.append("tests/style/" + script)
+    outcome = Outcome()
+    style(clock, source, outcome)
     if any(f.startswith("viewer/page/") for f in files):
-        say("viewer/page: npm test")
-        if clock.run(["npm", "test", "--silent"], cwd=source / "viewer/page") != 0:
-            failed.append("viewer/page")
+        page(clock, source, outcome)
         rest = [f for f in rest if not f.startswith("viewer/page/")]
     scenes = [f for f in files if f.startswith("scenes/") and f.endswith(".xml") and (source / f).exists()]
     if scenes and (build / "bin/insula").exists():
         say("insula check " + " ".join(scenes))
-        if clock.run([build / "bin/insula", "check", *scenes], cwd=source) != 0:
-            failed.append("insula check")
+        outcome.take("insula check", clock.run([build / "bin/insula", "check", *scenes], cwd=source))
         rest = [f for f in rest if f not in scenes]
-    more_failed, left_out = run_programs(clock, source, build, programs)
-    failed += more_failed
-    if rest:
-        say(
-            "no unit test belongs to: "
-            + " ".join(rest[:12])
-            + (" and %d more" % (len(rest) - 12) if len(rest) > 12 else "")
-        )
-    for what in left_out:
-        say("left out: " + what)
-    say(
-        "%s after %d s%s"
-        % (
-            "FAILED: " + ", ".join(failed) if failed else "passed",
-            time.monotonic() - begin,
-            "; ./insula test runs everything" if not failed else "",
-        )
-    )
-    return 1 if failed or left_out else 0
+    failed, left_out = run_programs(clock, source, build, programs)
+    outcome.failed += failed
+    outcome.left_out += left_out
+    if any(f.endswith(".cpp") for f in files):
+        tidy(clock, source, build, outcome)
+    return report(outcome, rest, time.monotonic() - begin)
 
 
 if __name__ == "__main__":

@@ -31,6 +31,80 @@ struct Eigen2 {
   }
 };
 
+/// A contact with its normal eliminated, in the eigenbasis of the Schur complement S: each lambda_t(s) is two
+/// divisions.
+class SlidingContact {
+ public:
+  SlidingContact(const LocalContact& c, double mu) : mu_(mu), i_(1.0 / c.wnn), qn_(c.qn) {
+    const double s11 = c.w11 - c.wn1 * c.wn1 * i_, s12 = c.w12 - c.wn1 * c.wn2 * i_, s22 = c.w22 - c.wn2 * c.wn2 * i_;
+    const double b1 = -c.q1 + c.wn1 * c.qn * i_, b2 = -c.q2 + c.wn2 * c.qn * i_;
+    const Eigen2 eigen(s11, s12, s22);
+    vx_ = eigen.vx;
+    vy_ = eigen.vy;
+    const double least = 1e-12 * (std::abs(eigen.high) + c.wnn);
+    e1_ = std::max(eigen.high, least);
+    e2_ = std::max(eigen.low, least);
+    g1_ = vx_ * b1 + vy_ * b2;
+    g2_ = -vy_ * b1 + vx_ * b2;
+    m1_ = vx_ * c.wn1 + vy_ * c.wn2;
+    m2_ = -vy_ * c.wn1 + vx_ * c.wn2;
+  }
+  bool sticks() {
+    excess(0);
+    return size_ <= mu_ * n_;
+  }
+  /// Finds the s that puts the force on the cone: a bracket, then Newton within it.
+  void slide() {
+    double low = 0, high = e1_;  // excess(low) > 0
+    for (int k = 0; k < 60 && excess(high) > 0; ++k) {
+      low = high;
+      high *= 4;
+    }
+    double s = high, f = excess(s);
+    for (int k = 0; k < 60; ++k) {
+      // d|t|/ds and dn/ds
+      const double d1 = -t1_ / (e1_ + s), d2 = -t2_ / (e2_ + s);
+      const double df = (size_ > 0 ? (t1_ * d1 + t2_ * d2) / size_ : 0) + mu_ * i_ * (m1_ * d1 + m2_ * d2);
+      double next = df != 0 ? s - f / df : 0.5 * (low + high);
+      if (!(next > low && next < high)) next = 0.5 * (low + high);
+      const double step = next - s;
+      s = next;
+      f = excess(s);
+      if (f > 0) low = s;
+      else high = s;
+      if (std::abs(step) <= 1e-15 * (s + e2_) || f == 0) break;
+    }
+    // On the cone to the last bit that matters.
+    if (size_ > 0 && n_ > 0) {
+      const double scale = mu_ * n_ / size_;
+      t1_ *= scale;
+      t2_ *= scale;
+    }
+  }
+  void write(double* out) const {
+    out[0] = n_;
+    out[1] = vx_ * t1_ - vy_ * t2_;
+    out[2] = vy_ * t1_ + vx_ * t2_;
+  }
+
+ private:
+  /// Sets the force that belongs to s. Returns how far it lies outside of the cone, N.
+  double excess(double s) {
+    t1_ = g1_ / (e1_ + s);
+    t2_ = g2_ / (e2_ + s);
+    n_ = (-qn_ - m1_ * t1_ - m2_ * t2_) * i_;
+    size_ = std::sqrt(t1_ * t1_ + t2_ * t2_);
+    return size_ - mu_ * n_;
+  }
+
+  double mu_, i_, qn_;
+  double vx_, vy_;                             ///< eigenvector of the larger eigenvalue
+  double e1_, e2_;                             ///< eigenvalues of S
+  double g1_, g2_;                             ///< right side of S lambda_t = b, in the eigenbasis
+  double m1_, m2_;                             ///< coupling to the normal, in the eigenbasis
+  double t1_ = 0, t2_ = 0, n_ = 0, size_ = 0;  ///< tangential force in the eigenbasis, normal force, |t|, N
+};
+
 /// Writes (normal, tangent, tangent) in newtons.
 inline void solve_contact(const LocalContact& c, double mu, double* out) {
   out[0] = out[1] = out[2] = 0;
@@ -39,59 +113,9 @@ inline void solve_contact(const LocalContact& c, double mu, double* out) {
     out[0] = -c.qn / c.wnn;
     return;
   }
-  // The normal is eliminated: S lambda_t = b holds in sticking.
-  const double i = 1.0 / c.wnn;
-  const double s11 = c.w11 - c.wn1 * c.wn1 * i, s12 = c.w12 - c.wn1 * c.wn2 * i, s22 = c.w22 - c.wn2 * c.wn2 * i;
-  const double b1 = -c.q1 + c.wn1 * c.qn * i, b2 = -c.q2 + c.wn2 * c.qn * i;
-  // With the eigenvalues and eigenvectors of S, each lambda_t(s) costs two divisions.
-  const Eigen2 eigen(s11, s12, s22);
-  const double vx = eigen.vx, vy = eigen.vy;
-  const double least = 1e-12 * (std::abs(eigen.high) + c.wnn);
-  const double e1 = std::max(eigen.high, least), e2 = std::max(eigen.low, least);
-  const double g1 = vx * b1 + vy * b2, g2 = -vy * b1 + vx * b2;              // b in the eigenbasis
-  const double m1 = vx * c.wn1 + vy * c.wn2, m2 = -vy * c.wn1 + vx * c.wn2;  // normal coupling in the eigenbasis
-  double s = 0, t1 = g1 / e1, t2 = g2 / e2;
-  auto normal = [&] { return (-c.qn - m1 * t1 - m2 * t2) * i; };
-  double n = normal();
-  double size = std::sqrt(t1 * t1 + t2 * t2);
-  if (!(size <= mu * n)) {
-    double low = 0, high = e1;  // f(low) > 0
-    auto excess = [&](double at) {
-      t1 = g1 / (e1 + at);
-      t2 = g2 / (e2 + at);
-      n = normal();
-      size = std::sqrt(t1 * t1 + t2 * t2);
-      return size - mu * n;
-    };
-    for (int k = 0; k < 60 && excess(high) > 0; ++k) {
-      low = high;
-      high *= 4;
-    }
-    s = high;
-    double f = excess(s);
-    for (int k = 0; k < 60; ++k) {
-      // d|t|/ds and dn/ds
-      const double d1 = -t1 / (e1 + s), d2 = -t2 / (e2 + s);
-      const double df = (size > 0 ? (t1 * d1 + t2 * d2) / size : 0) + mu * i * (m1 * d1 + m2 * d2);
-      double next = df != 0 ? s - f / df : 0.5 * (low + high);
-      if (!(next > low && next < high)) next = 0.5 * (low + high);
-      const double step = next - s;
-      s = next;
-      f = excess(s);
-      if (f > 0) low = s;
-      else high = s;
-      if (std::abs(step) <= 1e-15 * (s + e2) || f == 0) break;
-    }
-    // Onto the cone, to the last significant bit.
-    if (size > 0 && n > 0) {
-      const double scale = mu * n / size;
-      t1 *= scale;
-      t2 *= scale;
-    }
-  }
-  out[0] = n;
-  out[1] = vx * t1 - vy * t2;
-  out[2] = vy * t1 + vx * t2;
+  SlidingContact contact(c, mu);
+  if (!contact.sticks()) contact.slide();
+  contact.write(out);
 }
 
 /// Coulomb friction of given strength: |lambda| <= bound, opposite to the slip w lambda + q, with w symmetric 2x2.

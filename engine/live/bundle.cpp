@@ -164,17 +164,12 @@ Json commands_json(const Scene& scene) {
   return out;
 }
 
-}  // namespace
-
-void write_bundle(const Simulation& simulation, const fs::path& dir, std::int64_t session, bool with_inventory) {
-  std::error_code error;
-  fs::create_directories(dir, error);
-  if (error) throw InputError(dir.string() + ": cannot be created: " + error.message());
-  const BundleWriter writer(dir);
+/// Title, text, view and force scale: what stands at the top of a bundle.
+Json head_json(const Simulation& simulation, std::int64_t session) {
+  const Exercise* exercise = simulation.exercise();
   Json json;
   json["version"] = 3;
   json["session"] = session;
-  const Exercise* exercise = simulation.exercise();
   json["title"] = !simulation.scene().title().empty() ? simulation.scene().title()
                   : exercise                          ? exercise->title()
                                                       : simulation.scene().file().stem().string();
@@ -182,7 +177,11 @@ void write_bundle(const Simulation& simulation, const fs::path& dir, std::int64_
   json["view"] = view_of(simulation);
   if (const auto devices = simulation.scene().all<DeviceSettings>(); !devices.empty())
     json["force_scale"] = devices.front()->force_scale();
+  return json;
+}
 
+/// Bodies with their surfaces into "bodies", surfaces that never move into "static".
+void add_bodies(Json& json, const BundleWriter& writer, const Simulation& simulation) {
   const auto bodies = picture_bodies(simulation);
   json["bodies"] = Json::array();
   for (std::size_t b = 0; b < bodies.size(); ++b) {
@@ -203,16 +202,40 @@ void write_bundle(const Simulation& simulation, const fs::path& dir, std::int64_
     const auto at = std::find(bodies.begin(), bodies.end(), dynamic_cast<const DeformableBody*>(&surface.body()));
     if (at == bodies.end()) {
       json["static"].push_back(entry);
-    } else {
-      writer.skin(entry, name, surface);
-      if (const auto* shell = dynamic_cast<const ShellBody*>(*at)) {
-        entry["regions"] = shell->model().regions;
-        entry["vertex_region"] = writer.file(name + "_regions.bin", vertex_regions(surface, *shell));
-      }
-      json["bodies"][std::size_t(at - bodies.begin())]["surfaces"].push_back(entry);
+      continue;
     }
+    writer.skin(entry, name, surface);
+    if (const auto* shell = dynamic_cast<const ShellBody*>(*at)) {
+      entry["regions"] = shell->model().regions;
+      entry["vertex_region"] = writer.file(name + "_regions.bin", vertex_regions(surface, *shell));
+    }
+    json["bodies"][std::size_t(at - bodies.begin())]["surfaces"].push_back(entry);
   }
+}
 
+/// Writes beside the file and renames, so that a reader sees all of it or nothing.
+void write_whole(const Json& json, const fs::path& whole) {
+  const fs::path part = whole.string() + ".part";
+  {
+    std::ofstream out(part, std::ios::binary | std::ios::trunc);
+    out << json.dump(1, ' ', false, Json::error_handler_t::replace) << '\n';
+    out.close();
+    if (!out) throw InputError(part.string() + ": cannot be written");
+  }
+  std::error_code error;
+  fs::rename(part, whole, error);
+  if (error) throw InputError(whole.string() + ": cannot be written: " + error.message());
+}
+
+}  // namespace
+
+void write_bundle(const Simulation& simulation, const fs::path& dir, std::int64_t session, bool with_inventory) {
+  std::error_code error;
+  fs::create_directories(dir, error);
+  if (error) throw InputError(dir.string() + ": cannot be created: " + error.message());
+  const BundleWriter writer(dir);
+  Json json = head_json(simulation, session);
+  add_bodies(json, writer, simulation);
   json["tools"] = Json::array();
   const auto tools = picture_tools(simulation);
   for (std::size_t i = 0; i < tools.size(); ++i) json["tools"].push_back(tool_json(writer, *tools[i], i));
@@ -221,21 +244,13 @@ void write_bundle(const Simulation& simulation, const fs::path& dir, std::int64_
   json["channels"] = channels_json(simulation.channels());
   json["drawables"] = drawables_json(writer, simulation);
   json["materials"] = materials_json(simulation.scene().materials());
+  const Exercise* exercise = simulation.exercise();
   if (exercise && !with_inventory) json["exercise"] = exercise_of(*exercise);
   if (with_inventory) {
     write_inventory(inventory(simulation), dir / "inventory.json");
     json["inventory"] = "inventory.json";
   }
-
-  const fs::path whole = dir / "scene.json", part = dir / "scene.json.part";
-  {
-    std::ofstream out(part, std::ios::binary | std::ios::trunc);
-    out << json.dump(1, ' ', false, Json::error_handler_t::replace) << '\n';
-    out.close();
-    if (!out) throw InputError(part.string() + ": cannot be written");
-  }
-  fs::rename(part, whole, error);
-  if (error) throw InputError(whole.string() + ": cannot be written: " + error.message());
+  write_whole(json, dir / "scene.json");
 }
 
 }  // namespace insula

@@ -134,6 +134,142 @@ fs::path find_motion(const Simulation& simulation, const std::string& wanted) {
   throw InputError(text);
 }
 
+namespace {
+
+/// The file of the wanted motion, and what it holds; false where the person named one that is not there.
+bool load_motion_of(const Simulation& simulation, const std::string& wanted, fs::path& file, Motion& motion) {
+  try {
+    file = find_motion(simulation, wanted);
+    if (!file.empty()) motion = load_motion(file);
+  } catch (const InputError& e) {
+    // A scene without the default motion is played by hand.
+    if (wanted != "steady") {
+      std::fprintf(stderr, "error: %s\n", e.what());
+      return false;
+    }
+  }
+  return true;
+}
+
+/// Keeps the loop at the pace of simulated time.
+class Pace {
+ public:
+  using Clock = std::chrono::steady_clock;
+  explicit Pace(double period_s)
+      : period_(std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(period_s))) {}
+
+  /// Takes messages until the next step is due. Far behind, time is dropped and not caught up.
+  void wait(Bus& bus) {
+    next_ += period_;
+    const auto now = Clock::now();
+    if (now > next_ + 2 * period_) {
+      ++dropped_;
+      next_ = now;
+    }
+    while (Clock::now() < next_) {
+      const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(next_ - Clock::now()).count();
+      if (left > 1) bus.poll(int(left) - 1);
+      else std::this_thread::sleep_until(next_);
+    }
+  }
+  std::int64_t dropped() const { return dropped_; }
+  double seconds() const { return std::chrono::duration<double>(Clock::now() - began_).count(); }
+
+ private:
+  Clock::duration period_;
+  Clock::time_point began_ = Clock::now(), next_ = began_;
+  std::int64_t dropped_ = 0;
+};
+
+/// One session: the simulation, what comes in and what goes out.
+class LiveSession {
+ public:
+  LiveSession(Simulation& simulation, const LiveOptions& options, Bus& bus, const Motion& script, Publisher& publisher,
+              SessionReports& reports)
+      : simulation_(simulation),
+        options_(options),
+        bus_(bus),
+        script_(script),
+        publisher_(publisher),
+        reports_(reports),
+        commands_(script.commands()),
+        notice_(options.notice) {
+    inputs_.subscribe(bus, reports);
+  }
+
+  void run(const std::atomic<bool>& stop, Pace& pace) {
+    const auto over = [&] { return options_.duration > 0 && !(simulation_.time() < options_.duration - 1e-9); };
+    while (!stop && !inputs_.quit && !over()) {
+      while (bus_.poll(0) > 0) {
+      }
+      take_requests();
+      if (inputs_.pause || options_.still) stand_still();
+      else if (!step()) continue;
+      if (!options_.unthrottled || inputs_.pause) pace.wait(bus_);
+    }
+  }
+
+ private:
+  void start_again() {
+    simulation_.reset();
+    commands_.reset();
+  }
+
+  void take_requests() {
+    if (inputs_.reset) {
+      inputs_.reset = false;
+      inputs_.driven = false;  // the haptic server gives the hands back to the motion
+      reports_.end_run(simulation_);
+      start_again();
+      spdlog::info("reset");
+    }
+    for (const auto& [verb, argument] : inputs_.asked) {
+      const std::string why = simulation_.command(verb, argument);
+      if (!why.empty()) spdlog::info("{} \"{}\" refused: {}", verb, shown(argument), why);
+    }
+    inputs_.asked.clear();
+  }
+
+  void stand_still() {
+    const std::vector<Event> announced = simulation_.take_announced();  // no step will
+    publisher_.events(announced);
+    reports_.note(announced);
+    publisher_.paused_frame(simulation_);
+    publisher_.info("paused", notice_.text());
+  }
+
+  /// False if the simulation left the range of numbers; it has started again then.
+  bool step() {
+    const std::int64_t posed = inputs_.apply(simulation_);
+    const bool follows = inputs_.follows(script_);
+    commands_.advance(simulation_, follows);
+    simulation_.step();
+    if (!simulation_.report().finite) {
+      reports_.step(simulation_, posed > 0, follows);
+      reports_.end_run(simulation_);
+      spdlog::error("the simulation left the range of numbers at {:.3f} s; it starts again", simulation_.time());
+      start_again();
+      return false;
+    }
+    publisher_.step(simulation_, posed);
+    publisher_.info("running", notice_.text());
+    reports_.step(simulation_, posed > 0, follows);
+    return true;
+  }
+
+  Simulation& simulation_;
+  const LiveOptions& options_;
+  Bus& bus_;
+  const Motion& script_;
+  Publisher& publisher_;
+  SessionReports& reports_;
+  CommandScript commands_;
+  Notice notice_;
+  Inputs inputs_;
+};
+
+}  // namespace
+
 int run_live(const LiveOptions& options, const Registry& registry, Bus& bus, const std::atomic<bool>& stop) {
   SimulationResult loaded = load_simulation(options.scene, registry, options.threads);
   const std::string said = loaded.diagnostics.format();
@@ -145,16 +281,7 @@ int run_live(const LiveOptions& options, const Registry& registry, Bus& bus, con
   if (options.seed != 0) simulation.draw_complications(options.seed);
   fs::path motion;
   Motion script;
-  try {
-    motion = find_motion(simulation, options.motion);
-    if (!motion.empty()) script = load_motion(motion);
-  } catch (const InputError& e) {
-    // A scene without the default motion is played by a person.
-    if (options.motion != "steady") {
-      std::fprintf(stderr, "error: %s\n", e.what());
-      return 2;
-    }
-  }
+  if (!load_motion_of(simulation, options.motion, motion, script)) return 2;
   if (options.take_over && !options.take_over()) return 0;
   const std::int64_t session = monotonic_us();
   const fs::path bundle = bundle_folder(options.bundle_root, session);
@@ -163,77 +290,19 @@ int run_live(const LiveOptions& options, const Registry& registry, Bus& bus, con
       simulation.scene().title().empty() ? options.scene.stem().string() : simulation.scene().title();
   Publisher publisher(bus, session, options.scene, bundle, motion, title);
   SessionReports reports(options.report, options.scene, motion.empty() ? "" : options.motion);
-  Inputs inputs;
-  inputs.subscribe(bus, reports);
-  CommandScript commands(script.commands());
-  Notice notice(options.notice);
+  LiveSession live(simulation, options, bus, script, publisher, reports);
   spdlog::info("\"{}\" runs: {} bodies, {} constraints, step {:.2f} ms", title, simulation.bodies().size(),
                simulation.constraints().size(), simulation.h() * 1000);
   publisher.info("running");
 
-  using Clock = std::chrono::steady_clock;
-  const auto period = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(simulation.h()));
-  auto next = Clock::now();
-  const auto began = next;
-  std::int64_t late = 0;
-  while (!stop && !inputs.quit && (options.duration <= 0 || simulation.time() < options.duration - 1e-9)) {
-    while (bus.poll(0) > 0) {
-    }
-    if (inputs.reset) {
-      inputs.reset = false;
-      inputs.driven = false;  // the haptic server gives the hands back to the motion
-      commands.reset();
-      reports.end_run(simulation);
-      simulation.reset();
-      spdlog::info("reset");
-    }
-    for (const auto& [verb, argument] : inputs.asked) {
-      const std::string why = simulation.command(verb, argument);
-      if (!why.empty()) spdlog::info("{} \"{}\" refused: {}", verb, shown(argument), why);
-    }
-    inputs.asked.clear();
-    if (inputs.pause || options.still) {
-      const std::vector<Event> announced = simulation.take_announced();  // no step will publish them
-      publisher.events(announced);
-      reports.note(announced);
-      publisher.paused_frame(simulation);
-      publisher.info("paused", notice.text());
-    } else {
-      const std::int64_t posed = inputs.apply(simulation);
-      const bool follows = inputs.follows(script);
-      commands.advance(simulation, follows);
-      simulation.step();
-      if (!simulation.report().finite) {
-        reports.step(simulation, posed > 0, follows);
-        reports.end_run(simulation);
-        spdlog::error("the simulation left the range of numbers at {:.3f} s; it starts again", simulation.time());
-        simulation.reset();
-        commands.reset();
-        continue;
-      }
-      publisher.step(simulation, posed);
-      publisher.info("running", notice.text());
-      reports.step(simulation, posed > 0, follows);
-    }
-    if (options.unthrottled && !inputs.pause) continue;
-    next += period;
-    const auto now = Clock::now();
-    if (now > next + 2 * period) {  // far behind: time is dropped and not made up for
-      ++late;
-      next = now;
-    }
-    while (Clock::now() < next) {
-      const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(next - Clock::now()).count();
-      if (left > 1) bus.poll(int(left) - 1);
-      else std::this_thread::sleep_until(next);
-    }
-  }
+  Pace pace(simulation.h());
+  live.run(stop, pace);
   publisher.info("ended");
   reports.end_run(simulation);
-  const double wall = std::chrono::duration<double>(Clock::now() - began).count();
+  const double wall = pace.seconds();
   spdlog::info(
       "ended after {:.2f} s simulated in {:.2f} s (real_time_factor {:.2f}), {} steps dropped, {} messages not sent",
-      simulation.time(), wall, wall > 0 ? simulation.time() / wall : 0, late, publisher.failed());
+      simulation.time(), wall, wall > 0 ? simulation.time() / wall : 0, pace.dropped(), publisher.failed());
   std::error_code ignored;
   if (!options.keep_bundle) fs::remove_all(bundle, ignored);
   return 0;

@@ -109,7 +109,9 @@ std::vector<double> nice_ticks(double low, double high, int count) {
   return out;
 }
 
-std::string svg(const Plot& plot) {
+namespace {
+
+Axis x_axis(const Plot& plot) {
   Axis x{0, 1, left, width - right, plot.log_x};
   if (plot.log_x) x.low = 1, x.high = 10;
   if (!plot.x.empty()) {
@@ -117,12 +119,11 @@ std::string svg(const Plot& plot) {
     x.high = *std::max_element(plot.x.begin(), plot.x.end());
     if (!(x.high > x.low)) x.high = plot.log_x ? 10 * x.low : x.low + 1;
   }
-  const Axis y = y_axis(plot);
-  std::string out = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" role=\"img\" font-family=\"sans-serif\" "
-      "font-size=\"11\" fill=\"#222\">\n"
-      "<title>{2}</title>\n<rect width=\"{0}\" height=\"{1}\" fill=\"#fff\"/>\n",
-      width, height, escaped(plot.title));
+  return x;
+}
+
+/// Title, grid, axes with their numbers and labels.
+void add_frame(std::string& out, const Plot& plot, const Axis& x, const Axis& y) {
   text(out, left, 18, "start", "font-size=\"13\" font-weight=\"bold\"", plot.title);
   for (double v : ticks_of(y, 5)) {
     line(out, left, y.map(v), width - right, y.map(v), "stroke=\"#e3e3e3\"");
@@ -138,7 +139,9 @@ std::string svg(const Plot& plot) {
   text(out, (left + width - right) / 2, height - 8, "middle", "", plot.x_label);
   out += fmt::format("<text transform=\"translate(14 {:.1f}) rotate(-90)\" text-anchor=\"middle\">{}</text>\n",
                      (top + height - bottom) / 2, escaped(plot.y_label));
+}
 
+void add_marks(std::string& out, const Plot& plot, const Axis& x) {
   for (const auto& m : plot.marks) {
     if (m.x < x.low || m.x > x.high) continue;
     out += fmt::format("<g><title>{}</title>", escaped(m.text));
@@ -146,32 +149,52 @@ std::string svg(const Plot& plot) {
          fmt::format("stroke=\"{}\" stroke-width=\"1\" stroke-dasharray=\"2 3\"", escaped(m.colour)));
     out += "</g>\n";
   }
+}
+
+std::string dash_of(const PlotCurve& c) {
+  return c.dash.empty() ? "" : fmt::format(" stroke-dasharray=\"{}\"", escaped(c.dash));
+}
+
+void add_legend(std::string& out, const Plot& plot) {
   double legend = width - right;
   for (auto c = plot.curves.rbegin(); c != plot.curves.rend(); ++c) {
     legend -= 7.0 * double(c->name.size()) + 8;
     text(out, legend, 18, "start", "", c->name);
-    const std::string dash = c->dash.empty() ? "" : fmt::format(" stroke-dasharray=\"{}\"", escaped(c->dash));
     line(out, legend - 22, 14, legend - 4, 14,
-         fmt::format("stroke=\"{}\" stroke-width=\"2\"{}", escaped(c->colour), dash));
+         fmt::format("stroke=\"{}\" stroke-width=\"2\"{}", escaped(c->colour), dash_of(*c)));
     legend -= 32;
   }
-  for (const auto& c : plot.curves) {
-    const std::string dash = c.dash.empty() ? "" : fmt::format(" stroke-dasharray=\"{}\"", escaped(c.dash));
-    std::string path;
-    bool pen = false;
-    for (std::size_t i = 0; i < std::min(c.y.size(), plot.x.size()); ++i) {
-      if (!y.shows(c.y[i]) || !std::isfinite(plot.x[i])) {
-        pen = false;
-        continue;
-      }
-      path += fmt::format("{}{:.1f} {:.1f}", pen ? " L" : path.empty() ? "M" : " M", x.map(plot.x[i]), y.map(c.y[i]));
-      pen = true;
+}
+
+void add_curve(std::string& out, const Plot& plot, const PlotCurve& c, const Axis& x, const Axis& y) {
+  std::string path;
+  bool pen = false;
+  for (std::size_t i = 0; i < std::min(c.y.size(), plot.x.size()); ++i) {
+    if (!y.shows(c.y[i]) || !std::isfinite(plot.x[i])) {
+      pen = false;
+      continue;
     }
-    if (!path.empty())
-      out +=
-          fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.4\" stroke-linejoin=\"round\"{}/>\n",
-                      path, escaped(c.colour), dash);
+    path += fmt::format("{}{:.1f} {:.1f}", pen ? " L" : path.empty() ? "M" : " M", x.map(plot.x[i]), y.map(c.y[i]));
+    pen = true;
   }
+  if (path.empty()) return;
+  out += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.4\" stroke-linejoin=\"round\"{}/>\n",
+                     path, escaped(c.colour), dash_of(c));
+}
+
+}  // namespace
+
+std::string svg(const Plot& plot) {
+  const Axis x = x_axis(plot), y = y_axis(plot);
+  std::string out = fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" role=\"img\" font-family=\"sans-serif\" "
+      "font-size=\"11\" fill=\"#222\">\n"
+      "<title>{2}</title>\n<rect width=\"{0}\" height=\"{1}\" fill=\"#fff\"/>\n",
+      width, height, escaped(plot.title));
+  add_frame(out, plot, x, y);
+  add_marks(out, plot, x);
+  add_legend(out, plot);
+  for (const auto& c : plot.curves) add_curve(out, plot, c, x, y);
   return out + "</svg>\n";
 }
 

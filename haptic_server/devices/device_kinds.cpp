@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The table of kinds. A new driver is one entry here.
+// The tables of kinds. A new driver is one entry in one of them.
 #include "haptic_server/devices/device_kinds.h"
 
 #include "haptic_server/devices/find_devices.h"
@@ -15,9 +15,15 @@ namespace {
 
 DeviceSearch always() { return {{}, {{"", "always there"}}, false}; }
 
-std::vector<DeviceKind> table() {
-  using Calibration = const DeviceCalibration&;
-  using Which = const std::string&;
+using Calibration = const DeviceCalibration&;
+using Which = const std::string&;
+
+template <class Arm, class... Arguments>
+DeviceChoice moved_by_a_person(Arguments&&... arguments) {
+  return {std::make_unique<Arm>(std::forward<Arguments>(arguments)...), HandSource::person};
+}
+
+std::vector<DeviceKind> simulated_kinds() {
   return {
       {.name = "simulated",
        .summary = "a simulated arm, moved by the scene's motion until a viewer takes it over",
@@ -39,6 +45,12 @@ std::vector<DeviceKind> table() {
              p.profile.name = "mouse";
              return DeviceChoice{std::make_unique<SimulatedDevice>(p), HandSource::viewer};
            }},
+  };
+}
+
+/// Arms that give forces to the hand.
+std::vector<DeviceKind> force_kinds() {
+  return {
       {.name = "touch",
        .summary = "Phantom Omni, Touch, Touch X, Premium (OpenHaptics)",
        .force = true,
@@ -46,10 +58,7 @@ std::vector<DeviceKind> table() {
        .how_to_get = hd::how_to_get(),
        .calibration = OpenHapticsDevice::default_calibration(),
        .search = find_touch,
-       .make =
-           [](Which which, int, Calibration c) {
-             return DeviceChoice{std::make_unique<OpenHapticsDevice>(which, c), HandSource::person};
-           }},
+       .make = [](Which which, int, Calibration c) { return moved_by_a_person<OpenHapticsDevice>(which, c); }},
       {.name = "forcedimension",
        .summary = "omega, delta, sigma, Falcon (Force Dimension's SDK)",
        .force = true,
@@ -57,10 +66,7 @@ std::vector<DeviceKind> table() {
        .how_to_get = dhd::how_to_get(),
        .calibration = ForceDimensionDevice::default_calibration(),
        .search = find_forcedimension,
-       .make =
-           [](Which which, int, Calibration c) {
-             return DeviceChoice{std::make_unique<ForceDimensionDevice>(which, c), HandSource::person};
-           }},
+       .make = [](Which which, int, Calibration c) { return moved_by_a_person<ForceDimensionDevice>(which, c); }},
       {.name = "haply",
        .summary = "Haply Inverse3 with Verse Grip (the Haply Inverse Service)",
        .force = true,
@@ -68,31 +74,35 @@ std::vector<DeviceKind> table() {
        .how_to_get = how_to_get_haply(),
        .calibration = HaplyDevice::default_calibration(),
        .search = find_haply,
-       .make =
-           [](Which which, int hand, Calibration c) {
-             return DeviceChoice{std::make_unique<HaplyDevice>(which, hand, c), HandSource::person};
-           }},
+       .make = [](Which which, int hand, Calibration c) { return moved_by_a_person<HaplyDevice>(which, hand, c); }},
+  };
+}
+
+/// Devices that only move a simulated arm.
+std::vector<DeviceKind> input_kinds() {
+  return {
       {.name = "spacemouse",
        .summary = "3Dconnexion SpaceMouse (spacenavd): moves a simulated arm, nothing is felt",
        .real = true,
        .how_to_get = spnav::how_to_get(),
        .calibration = {},
        .search = find_spacemouse,
-       .make =
-           [](Which, int hand, Calibration c) {
-             return DeviceChoice{std::make_unique<SpaceMouseDevice>(hand, c), HandSource::person};
-           }},
+       .make = [](Which, int hand, Calibration c) { return moved_by_a_person<SpaceMouseDevice>(hand, c); }},
       {.name = "gamepad",
        .summary = "a gamepad (SDL2): moves a simulated arm, nothing is felt",
        .real = true,
        .how_to_get = sdl::how_to_get(),
        .calibration = {},
        .search = find_gamepads,
-       .make =
-           [](Which which, int hand, Calibration c) {
-             return DeviceChoice{std::make_unique<GamepadDevice>(which, hand, c), HandSource::person};
-           }},
+       .make = [](Which which, int hand, Calibration c) { return moved_by_a_person<GamepadDevice>(which, hand, c); }},
   };
+}
+
+std::vector<DeviceKind> table() {
+  std::vector<DeviceKind> out;
+  for (auto* kinds : {simulated_kinds, force_kinds, input_kinds})
+    for (DeviceKind& kind : kinds()) out.push_back(std::move(kind));
+  return out;
 }
 
 }  // namespace

@@ -129,6 +129,60 @@ TEST(Contact, AFastToolNeverEndsInsideAPlate) {
   }
 }
 
+/// Nodes and tools of all bodies as they stand at the start of a step, body by body.
+struct StartOfStep {
+  std::vector<VecX> q;
+  std::vector<Pose> pose;
+  explicit StartOfStep(const Simulation& s) {
+    for (const Body* b : s.bodies()) {
+      const auto* soft = dynamic_cast<const SoftBody*>(b);
+      const auto* tool = dynamic_cast<const Instrument*>(b);
+      q.push_back(soft ? soft->q() : VecX());
+      pose.push_back(tool ? tool->pose() : Pose());
+    }
+  }
+};
+
+/// What the three rows of a contact do to all bodies together.
+struct Balance {
+  Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
+  double size = 0;  ///< of the forces, all added up, N
+};
+
+void add_entry(Balance& to, const StartOfStep& start, std::size_t body, int at, const Vec3& f) {
+  const VecX& q = start.q[body];
+  if (q.size() > 0) to.moment += Vec3(q.segment<3>(3 * at)).cross(f);
+  else if (at == 0) to.moment += start.pose[body].p.cross(f);
+  else to.moment += f;
+  if (q.size() > 0 || at == 0) {
+    to.force += f;
+    to.size += f.norm();
+  }
+}
+
+Balance balance_of(const Simulation& s, const StartOfStep& start, int row) {
+  const ConstraintProblem& p = s.problem();
+  Balance out;
+  for (std::size_t b = 0; b < s.bodies().size(); ++b) {
+    const BodyRows& rows = s.bodies()[b]->rows;
+    for (int r = 0; r < rows.count(); ++r) {
+      if (rows.row[std::size_t(r)] < row || rows.row[std::size_t(r)] > row + 2) continue;
+      for (int e = rows.start[std::size_t(r)]; e < rows.start[std::size_t(r) + 1]; ++e)
+        add_entry(out, start, b, rows.block[std::size_t(e)],
+                  p.lambda[std::size_t(rows.row[std::size_t(r)])] * rows.coeff[std::size_t(e)]);
+    }
+  }
+  return out;
+}
+
+/// Both sides act at one place, that of the contact's moment: apart at the start by what lies between (and, for tissue,
+/// by the gap, along which the normal force has no arm).
+Vec3 arm_between_sides(const Contact::Pair& pair, const Proximity& x, const StartOfStep& start) {
+  if (!pair.tool_a) return x.gap * x.normal;
+  if (pair.tool_b) return Vec3::Zero();
+  return start.pose[std::size_t(pair.tool_a->index)].apply(x.local) - pair.b->collision().point(x.triangle, x.bary);
+}
+
 TEST(Contact, ForcesOnBothSidesAddUpToNothing) {
   SceneFolder folder;
   auto s = soft_bench(folder, R"(<contact between="left right pad top" friction="0.3"/>)");
@@ -137,54 +191,20 @@ TEST(Contact, ForcesOnBothSidesAddUpToNothing) {
   int tool_rows = 0, tissue_rows = 0, exact = 0;
   for (int i = 0; i < 90; ++i) {
     press(*s, i);
-    // Nodes and tool as they stand at the start of the step.
-    std::vector<VecX> q;
-    std::vector<Pose> pose;
-    for (const Body* b : s->bodies()) {
-      const auto* soft = dynamic_cast<const SoftBody*>(b);
-      const auto* tool = dynamic_cast<const Instrument*>(b);
-      q.push_back(soft ? soft->q() : VecX());
-      pose.push_back(tool ? tool->pose() : Pose());
-    }
+    const StartOfStep start(*s);
     s->step();
     const ConstraintProblem& p = s->problem();
     for (const Contact::Pair& pair : contact->pairs())
       for (std::size_t k = 0; k < pair.rows.size(); ++k) {
         const int row = pair.rows[k];
         if (p.lambda[std::size_t(row)] <= 0) continue;
-        Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
-        double size = 0;
-        for (std::size_t b = 0; b < s->bodies().size(); ++b) {
-          const BodyRows& rows = s->bodies()[b]->rows;
-          for (int r = 0; r < rows.count(); ++r) {
-            if (rows.row[std::size_t(r)] < row || rows.row[std::size_t(r)] > row + 2) continue;
-            for (int e = rows.start[std::size_t(r)]; e < rows.start[std::size_t(r) + 1]; ++e) {
-              const Vec3 f = p.lambda[std::size_t(rows.row[std::size_t(r)])] * rows.coeff[std::size_t(e)];
-              const int at = rows.block[std::size_t(e)];
-              if (q[b].size() > 0) moment += Vec3(q[b].segment<3>(3 * at)).cross(f);
-              else if (at == 0) moment += pose[b].p.cross(f);
-              else moment += f;
-              if (q[b].size() > 0 || at == 0) {
-                force += f;
-                size += f.norm();
-              }
-            }
-          }
-        }
-        EXPECT_TRUE(test::held("action = reaction of contacts", force.norm(), size, 1e-12));
-        // Both sides act at one place, that of the contact's moment: apart at the start by what lies between (and, for
-        // tissue, by the gap, along which the normal force has no arm).
+        const Balance sum = balance_of(*s, start, row);
+        EXPECT_TRUE(test::held("action = reaction of contacts", sum.force.norm(), sum.size, 1e-12));
         const Proximity& x = pair.contacts[k];
-        Vec3 arm = Vec3::Zero();
-        if (pair.tool_a) {
-          const Pose& start = pose[std::size_t(pair.tool_a->index)];
-          if (!pair.tool_b) arm = start.apply(x.local) - pair.b->collision().point(x.triangle, x.bary);
-        } else {
-          arm = x.gap * x.normal;
-        }
+        const Vec3 arm = arm_between_sides(pair, x, start);
         const Vec3 turn = arm.cross(p.lambda[std::size_t(row)] * x.normal + p.lambda[std::size_t(row) + 1] * x.tangent +
                                     p.lambda[std::size_t(row) + 2] * x.normal.cross(x.tangent));
-        EXPECT_LT((moment - turn).norm(), 1e-12 * size) << "row " << row;
+        EXPECT_LT((sum.moment - turn).norm(), 1e-12 * sum.size) << "row " << row;
         (pair.tool_a ? tool_rows : tissue_rows) += 1;
         exact += arm.norm() < 1e-15;
       }

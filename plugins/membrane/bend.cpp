@@ -30,56 +30,77 @@ Mat3 root_of_stiffness(const StretchTriangles::Material& m, const Eigen::Matrix<
 
 }  // namespace
 
-void BendPatches::build(const WallTopology& wall, const std::vector<Vec3>& rest,
-                        const std::vector<const StretchTriangles::Material*>& material) {
-  std::vector<SlopeWeights> slopes(wall.hinges.size());
-  std::vector<int> number(wall.hinges.size(), -1);  // of the hinges that patches here use
-  hinges_.clear();
-  patches_.clear();
-  for (std::size_t t = 0; t < wall.triangles.size(); ++t) {
-    if (!material[t]) continue;
-    const auto& v = wall.triangles[t];
-    const Vec3 x0 = rest[std::size_t(v[0])], e1 = (rest[std::size_t(v[1])] - x0).normalized();
-    const Vec3 doubled = (rest[std::size_t(v[1])] - x0).cross(rest[std::size_t(v[2])] - x0),
+// The patches of the wall's triangles, and the hinges that they use.
+class BendPatches::Maker {
+ public:
+  Maker(BendPatches& to, const WallTopology& wall, const std::vector<Vec3>& rest)
+      : to_(to), wall_(wall), rest_(rest), slopes_(wall.hinges.size()), number_(wall.hinges.size(), -1) {}
+
+  void add(std::size_t t, const StretchTriangles::Material& material) {
+    const auto& v = wall_.triangles[t];
+    const Vec3 x0 = rest_[std::size_t(v[0])], e1 = (rest_[std::size_t(v[1])] - x0).normalized();
+    const Vec3 doubled = (rest_[std::size_t(v[1])] - x0).cross(rest_[std::size_t(v[2])] - x0),
                e2 = doubled.normalized().cross(e1);
     const double area = 0.5 * doubled.norm();
     Patch p;
     double curvature[max_hinges][3] = {};
     Eigen::Matrix<double, 3, Eigen::Dynamic> free(3, 0);
     for (int k = 0; k < 3; ++k) {
-      const Vec3 along = rest[std::size_t(v[std::size_t((k + 1) % 3)])] - rest[std::size_t(v[std::size_t(k)])];
+      const Vec3 along = rest_[std::size_t(v[std::size_t((k + 1) % 3)])] - rest_[std::size_t(v[std::size_t(k)])];
       const double length = along.norm(), nx = along.dot(e2) / length, ny = -along.dot(e1) / length;
       const Vec3 bend = length / area * Vec3(nx * nx, ny * ny, 2 * nx * ny);
-      const int h = wall.hinge_of[t][std::size_t(k)];
+      const int h = wall_.hinge_of[t][std::size_t(k)];
       if (h < 0) {
         free.conservativeResize(3, free.cols() + 1);
         free.col(free.cols() - 1) = bend;
-        continue;
-      }
-      SlopeWeights& s = slopes[std::size_t(h)];
-      if (s.count == 0) s = slope_weights(wall, rest, h);
-      const bool first = wall.sides[std::size_t(h)][0].triangle == int(t);
-      for (int i = 0; i < s.count; ++i) {
-        const double weight = first ? s.weight[i] : (i == 0 ? 1 - s.weight[i] : -s.weight[i]);
-        int& local = number[std::size_t(s.hinge[i])];
-        if (local < 0) {
-          local = int(hinges_.size());
-          hinges_.push_back(wall.hinges[std::size_t(s.hinge[i])]);
-        }
-        int at = 0;
-        while (at < p.hinges && p.hinge[at] != local) ++at;
-        if (at == p.hinges) p.hinge[p.hinges++] = local;
-        for (int c = 0; c < 3; ++c) curvature[at][c] += weight * bend[c];
+      } else {
+        add_slope(p, curvature, h, wall_.sides[std::size_t(h)][0].triangle == int(t), bend);
       }
     }
-    const Mat3 root = std::sqrt(area) * root_of_stiffness(*material[t], free);
+    set_coupling(p, curvature, std::sqrt(area) * root_of_stiffness(material, free));
+    if (p.hinges > 0) to_.patches_.push_back(p);
+  }
+
+ private:
+  /// What the slope across hinge h gives to the curvature of a patch on its first or second side.
+  void add_slope(Patch& p, double (*curvature)[3], int h, bool first, const Vec3& bend) {
+    SlopeWeights& s = slopes_[std::size_t(h)];
+    if (s.count == 0) s = slope_weights(wall_, rest_, h);
+    for (int i = 0; i < s.count; ++i) {
+      const double weight = first ? s.weight[i] : (i == 0 ? 1 - s.weight[i] : -s.weight[i]);
+      const int local = local_hinge(s.hinge[i]);
+      int at = 0;
+      while (at < p.hinges && p.hinge[at] != local) ++at;
+      if (at == p.hinges) p.hinge[p.hinges++] = local;
+      for (int c = 0; c < 3; ++c) curvature[at][c] += weight * bend[c];
+    }
+  }
+
+  int local_hinge(int of_wall) {
+    int& local = number_[std::size_t(of_wall)];
+    if (local < 0) {
+      local = int(to_.hinges_.size());
+      to_.hinges_.push_back(wall_.hinges[std::size_t(of_wall)]);
+    }
+    return local;
+  }
+
+  void set_coupling(Patch& p, const double (*curvature)[3], const Mat3& root) const {
     for (int i = 0; i < p.hinges; ++i) {
       Eigen::Map<Vec3>(p.c[i]) = root * Vec3(curvature[i][0], curvature[i][1], curvature[i][2]);
-      for (int n : hinges_[std::size_t(p.hinge[i])].node)
+      for (int n : to_.hinges_[std::size_t(p.hinge[i])].node)
         if (std::find(p.node, p.node + p.nodes, n) == p.node + p.nodes) p.node[p.nodes++] = n;
     }
-    if (p.hinges > 0) patches_.push_back(p);
   }
+
+  BendPatches& to_;
+  const WallTopology& wall_;
+  const std::vector<Vec3>& rest_;
+  std::vector<SlopeWeights> slopes_;
+  std::vector<int> number_;  ///< of the hinges that patches here use
+};
+
+void BendPatches::find_step_stiffness() {
   constexpr double share = 0.6;  // of Gershgorin's bound
   step_stiffness_.assign(hinges_.size(), 0.0);
   for (const Patch& p : patches_)
@@ -87,6 +108,9 @@ void BendPatches::build(const WallTopology& wall, const std::vector<Vec3>& rest,
       for (int j = 0; j < p.hinges; ++j)
         step_stiffness_[std::size_t(p.hinge[i])] +=
             share * std::abs(Eigen::Map<const Vec3>(p.c[i]).dot(Eigen::Map<const Vec3>(p.c[j])));
+}
+
+void BendPatches::make_batches(const std::vector<Vec3>& rest) {
   for (WallHinge& hinge : hinges_)
     for (int s = 0; s < 2; ++s) {
       const auto at = [&](int k) -> const Vec3& { return rest[std::size_t(hinge.node[k])]; };
@@ -102,6 +126,17 @@ void BendPatches::build(const WallTopology& wall, const std::vector<Vec3>& rest,
       for (int s = 0; s < 2; ++s) b.least[s][l] = hinge.least[s];
     }
   }
+}
+
+void BendPatches::build(const WallTopology& wall, const std::vector<Vec3>& rest,
+                        const std::vector<const StretchTriangles::Material*>& material) {
+  hinges_.clear();
+  patches_.clear();
+  Maker maker(*this, wall, rest);
+  for (std::size_t t = 0; t < wall.triangles.size(); ++t)
+    if (material[t]) maker.add(t, *material[t]);
+  find_step_stiffness();
+  make_batches(rest);
   rest_angle_.assign(hinges_.size(), 0.0);
   if (!rest.empty()) find_angles(rest.front().data(), rest_angle_, nullptr);
   start_angle_ = energy_angle_ = rest_angle_;

@@ -58,43 +58,76 @@ void StrandSprings::settled(PrepareContext& context) {
   generate(context);
 }
 
-void StrandSprings::generate(PrepareContext& context) {
-  const TriMesh mesh{from->positions(), from->triangles()}, other{to->positions(), to->triangles()};
-  const std::vector<Vec3> normals = vertex_normals(mesh), other_normals = vertex_normals(other);
-  const NearestVertices nearest(other.vertices, max_length());
-  const bool within = from.get() == to.get();
-  constexpr double detour = 3;
-  SurfacePaths paths(mesh);
-  std::vector<int> found;
-  // Possible partners for a strand from vertex v: facing, in reach, not much farther than the nearest.
-  auto partners = [&](int v) {
-    const Vec3& p = mesh.vertices[std::size_t(v)];
-    nearest.within(p, max_length(), found);
-    double least = max_length();
+namespace {
+
+/// Which vertices of two surfaces a strand may join.
+class StrandPartners {
+ public:
+  StrandPartners(const TriMesh& from, const TriMesh& to, bool within, double max_length)
+      : mesh_(from),
+        other_(to),
+        within_(within),
+        max_length_(max_length),
+        normals_(vertex_normals(from)),
+        other_normals_(vertex_normals(to)),
+        nearest_(to.vertices, max_length),
+        paths_(from) {}
+
+  /// Partners that a strand from vertex v may have: facing, in reach, not much farther than the nearest.
+  std::vector<int> of(int v) {
+    const Vec3& p = mesh_.vertices[std::size_t(v)];
+    nearest_.within(p, max_length_, found_);
+    double least = max_length_;
     std::vector<int> out;
     for (int pass = 0; pass < 2; ++pass)
-      for (int o : found) {
-        const Vec3 d = other.vertices[std::size_t(o)] - p;
+      for (int o : found_) {
+        const Vec3 d = other_.vertices[std::size_t(o)] - p;
         const double length = d.norm();
-        if (length < 1e-6 || d.dot(normals[std::size_t(v)]) < 0.2 * length ||
-            d.dot(other_normals[std::size_t(o)]) > -0.2 * length)
+        if (length < 1e-6 || d.dot(normals_[std::size_t(v)]) < 0.2 * length ||
+            d.dot(other_normals_[std::size_t(o)]) > -0.2 * length)
           continue;
-        if (within && paths.connected(v, o, detour * max_length()) && paths.connected(v, o, detour * length)) continue;
+        if (within_ && near_along_surface(v, o, length)) continue;
         if (pass == 0) least = std::min(least, length);
-        else if (length <= std::min(max_length(), 1.7 * least)) out.push_back(o);
+        else if (length <= std::min(max_length_, 1.7 * least)) out.push_back(o);
       }
     return out;
-  };
-  // Area that faces the other surface within reach, triangle by triangle.
-  std::vector<double> until;
+  }
+
+ private:
+  bool near_along_surface(int v, int o, double length) {
+    constexpr double detour = 3;
+    return paths_.connected(v, o, detour * max_length_) && paths_.connected(v, o, detour * length);
+  }
+
+  const TriMesh &mesh_, &other_;
+  bool within_;
+  double max_length_;
+  std::vector<Vec3> normals_, other_normals_;
+  NearestVertices nearest_;
+  SurfacePaths paths_;
+  std::vector<int> found_;
+};
+
+/// The area that faces the other surface within reach, triangle by triangle.
+struct FacingArea {
+  std::vector<double> until;  ///< the area of the triangles so far, m2
   std::vector<int> triangle;
+  double total() const { return until.empty() ? 0 : until.back(); }
+  int triangle_at(double area) const {
+    const std::size_t t = std::size_t(std::upper_bound(until.begin(), until.end(), area) - until.begin());
+    return triangle[std::min(t, triangle.size() - 1)];
+  }
+};
+
+FacingArea facing_area(const TriMesh& mesh, StrandPartners& partners, const Vec3& centre, double radius) {
+  FacingArea out;
   double area = 0;
   std::vector<signed char> faces(mesh.vertices.size(), -1);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     bool all = true;
     for (int v : mesh.triangles[t]) {
       if (faces[std::size_t(v)] < 0)
-        faces[std::size_t(v)] = (mesh.vertices[std::size_t(v)] - centre()).norm() <= radius() && !partners(v).empty();
+        faces[std::size_t(v)] = (mesh.vertices[std::size_t(v)] - centre).norm() <= radius && !partners.of(v).empty();
       all = all && faces[std::size_t(v)] == 1;
     }
     if (!all) continue;
@@ -102,17 +135,26 @@ void StrandSprings::generate(PrepareContext& context) {
     const Vec3 &a = mesh.vertices[std::size_t(tri[0])], &b = mesh.vertices[std::size_t(tri[1])],
                &c = mesh.vertices[std::size_t(tri[2])];
     area += 0.5 * (b - a).cross(c - a).norm();
-    until.push_back(area);
-    triangle.push_back(int(t));
+    out.until.push_back(area);
+    out.triangle.push_back(int(t));
   }
-  const int wanted = int(std::lround(density() * area));
+  return out;
+}
+
+}  // namespace
+
+void StrandSprings::generate(PrepareContext& context) {
+  const TriMesh mesh{from->positions(), from->triangles()}, other{to->positions(), to->triangles()};
+  const bool within = from.get() == to.get();
+  StrandPartners partners(mesh, other, within, max_length());
+  const FacingArea area = facing_area(mesh, partners, centre(), radius());
+  const int wanted = int(std::lround(density() * area.total()));
   Random random{std::uint64_t(seed())};
   std::vector<std::pair<int, int>> pairs;
-  for (int i = 0; i < wanted; ++i) {  // systematic sampling over the area: even, but not regular
-    const double at = (i + random.uniform()) / wanted * area;
-    const std::size_t t = std::size_t(std::upper_bound(until.begin(), until.end(), at) - until.begin());
-    const int v = mesh.triangles[std::size_t(triangle[std::min(t, triangle.size() - 1)])][random.below(3)];
-    const std::vector<int> choice = partners(v);
+  for (int i = 0; i < wanted; ++i) {  // systematic sampling over the area: even, yet not regular
+    const int t = area.triangle_at((i + random.uniform()) / wanted * area.total());
+    const int v = mesh.triangles[std::size_t(t)][random.below(3)];
+    const std::vector<int> choice = partners.of(v);
     const std::pair<int, int> pair{v, choice[random.below(std::uint32_t(choice.size()))]};
     const bool known = std::any_of(pairs.begin(), pairs.end(), [&](const auto& p) {
       return p == pair || (within && p.first == pair.second && p.second == pair.first);

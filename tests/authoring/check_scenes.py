@@ -23,15 +23,10 @@ BAD = {
 }
 
 
-def main():
-    source, insula = pathlib.Path(sys.argv[1]), sys.argv[2]
+def check_each(insula, scenes):
+    """Each scene is clean and quick to check; the number of failures."""
     failures, slowest = 0, (0.0, "")
-    scenes = sorted(source.glob("scenes/**/*.xml")) + sorted(source.glob("plugins/*/*.xml"))
-    whole = [s for s in scenes if re.search(r"<scene[\s>/]", s.read_text(encoding="utf-8"))]
-    if len(whole) < 20:
-        print("FAILED: only %d scenes were found" % len(whole))
-        return 1
-    for scene in whole:
+    for scene in scenes:
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
         done = subprocess.run([insula, "check", scene], capture_output=True, text=True, timeout=120)
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -43,50 +38,63 @@ def main():
         if done.returncode != 0 or "warning" in rest or took > MOST_SECONDS:
             failures += 1
             print("FAILED: %s: status %d, %.2f s\n%s" % (scene, done.returncode, took, said))
-    print("%d scenes checked; the slowest took %.2f s of processor time: %s" % ((len(whole),) + slowest))
+    print("%d scenes checked; the slowest took %.2f s of processor time: %s" % ((len(scenes),) + slowest))
+    return failures
 
+
+def refused(xsd, *files):
+    """What the schema says against the files; empty: nothing."""
+    done = subprocess.run(["xmllint", "--noout", "--schema", xsd, *files], capture_output=True, text=True, timeout=120)
+    return "" if done.returncode == 0 else done.stderr or "status %d" % done.returncode
+
+
+def explanations(xsd, scenes):
+    """Each parameter and element that an editor offers says what it is."""
+    text = xsd.read_text(encoding="utf-8")
+    attribute = r'<xs:attribute name="(?!id|file|prefix|name|value|title)'
+    named = len(re.findall(attribute, text))
+    explained = len(re.findall(attribute + r'[^>]*>\s*<xs:annotation>', text))
+    print(
+        "%d scenes and parts valid by the schema, %d parameters offered, %d explained" % (len(scenes), named, explained)
+    )
+    if named < 100 or explained < named:
+        return ["parameters without an explanation"]
+    return []
+
+
+def check_schema(insula, scenes, folder):
+    """The schema takes the scenes and refuses what is wrong; the texts of the failures."""
+    xsd = folder / "insula.xsd"
+    subprocess.run([insula, "schema", xsd], check=True, capture_output=True)
+    failures = [why] if (why := refused(xsd, *scenes)) else []
+    for what, text in BAD.items():
+        file = folder / "bad.xml"
+        file.write_text(text, encoding="utf-8")
+        if not refused(xsd, file) or subprocess.run([insula, "check", file], capture_output=True).returncode != 2:
+            failures.append("%s is not refused by both" % what)
+    failures += explanations(xsd, scenes)
+    model = folder / "with_model.xml"
+    model.write_text('<?xml version="1.0"?>\n<?xml-model href="insula.xsd"?>\n<scene title="x"/>\n', encoding="utf-8")
+    if subprocess.run([insula, "check", model], capture_output=True).returncode != 0:
+        failures.append("the line that ties a scene to the schema is an error")
+    return failures
+
+
+def main():
+    source, insula = pathlib.Path(sys.argv[1]), sys.argv[2]
+    scenes = sorted(source.glob("scenes/**/*.xml")) + sorted(source.glob("plugins/*/*.xml"))
+    whole = [s for s in scenes if re.search(r"<scene[\s>/]", s.read_text(encoding="utf-8"))]
+    if len(whole) < 20:
+        print("FAILED: only %d scenes were found" % len(whole))
+        return 1
+    failures = check_each(insula, whole)
     if not shutil.which("xmllint"):
         print("xmllint (package libxml2-utils) is not installed: the schema is not tried")
         return 1 if failures else 0
     with tempfile.TemporaryDirectory() as name:
-        xsd = pathlib.Path(name) / "insula.xsd"
-        subprocess.run([insula, "schema", xsd], check=True, capture_output=True)
-
-        def refused(*files):
-            done = subprocess.run(
-                ["xmllint", "--noout", "--schema", xsd, *files], capture_output=True, text=True, timeout=120
-            )
-            return "" if done.returncode == 0 else done.stderr or "status %d" % done.returncode
-
-        if why := refused(*scenes):
+        for failure in check_schema(insula, scenes, pathlib.Path(name)):
             failures += 1
-            print("FAILED: " + why)
-        for what, text in BAD.items():
-            file = pathlib.Path(name) / "bad.xml"
-            file.write_text(text, encoding="utf-8")
-            if not refused(file) or subprocess.run([insula, "check", file], capture_output=True).returncode != 2:
-                failures += 1
-                print("FAILED: %s is not refused by both" % what)
-        # Each parameter and element that an editor offers says what it is.
-        text = xsd.read_text(encoding="utf-8")
-        named = len(re.findall(r'<xs:attribute name="(?!id|file|prefix|name|value|title)', text))
-        explained = len(
-            re.findall(r'<xs:attribute name="(?!id|file|prefix|name|value|title)[^>]*>\s*<xs:annotation>', text)
-        )
-        print(
-            "%d scenes and parts valid by the schema, %d parameters offered, %d explained"
-            % (len(scenes), named, explained)
-        )
-        if named < 100 or explained < named:
-            failures += 1
-            print("FAILED: parameters without an explanation")
-        model = pathlib.Path(name) / "with_model.xml"
-        model.write_text(
-            '<?xml version="1.0"?>\n<?xml-model href="insula.xsd"?>\n<scene title="x"/>\n', encoding="utf-8"
-        )
-        if subprocess.run([insula, "check", model], capture_output=True).returncode != 0:
-            failures += 1
-            print("FAILED: the line that ties a scene to the schema is an error")
+            print("FAILED: " + failure)
     return 1 if failures else 0
 
 

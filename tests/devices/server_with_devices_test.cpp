@@ -91,6 +91,67 @@ TEST_F(ServerWithDevices, ADriverThatTellsNonsenseIsLostAlone) {
   EXPECT_TRUE(rig.server->reading(0).connected);
 }
 
+/// The real program as a process of its own, with an engine's problems and scenes sent to it over the bus.
+class ProgramOnTheBus {
+ public:
+  ProgramOnTheBus(const std::string& url, const char* left, const char* right)
+      : server_(started(left, right)), bus_(url) {
+    bus_.subscribe(channel::device_state, [this](Bytes b) {
+      std::string why;
+      std::lock_guard lock(mutex_);
+      engine_.state_seen = decode(b, engine_.state, why) || engine_.state_seen;
+    });
+  }
+  /// Sends steps until the condition holds; false if it never did.
+  bool until(const std::function<bool()>& condition) {
+    const auto step_and_look = [&] {
+      send_step();
+      const auto next = std::chrono::steady_clock::now() + std::chrono::milliseconds(16);
+      while (std::chrono::steady_clock::now() < next) bus_.poll(4);
+      return condition();
+    };
+    return testing::wait_for(step_and_look, std::chrono::seconds(60));
+  }
+  /// Asks it to end; its exit status, -1 if it did not end by itself.
+  int end() {
+    ::kill(server_, SIGTERM);
+    int status = -1;
+    if (::waitpid(server_, &status, 0) != server_) return -1;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  const insula_lcm::hand_state_t& hand(int h) const { return engine_.state.hand[std::size_t(h)]; }
+  bool both_connected() const { return engine_.state_seen && hand(0).connected && hand(1).connected; }
+
+ private:
+  static pid_t started(const char* left, const char* right) {
+    const pid_t server = ::fork();
+    if (server != 0) return server;
+    const std::string program = INSULA_BINARY_DIR "/bin/haptic_server";
+    ::execl(program.c_str(), "haptic_server", "--left", left, "--right", right, static_cast<char*>(nullptr));
+    ::_exit(127);
+  }
+  void send_step() {
+    engine_.clock.advance_ns(MonotonicClock().now_ns() - engine_.clock.now_ns());
+    engine_.sim_time += 0.016;
+    if (step_++ % 30 == 0) {
+      insula_lcm::scene_info_t info;
+      info.session = engine_.session;
+      info.time_us = engine_.clock.now_ns() / 1000;
+      info.scene = "test.xml";
+      info.state = "running";
+      bus_.publish(channel::scene_info, engine_.encoded(info));
+    }
+    EXPECT_TRUE(encode_problem(engine_.update(), engine_.bytes));
+    bus_.publish(channel::haptic_problem, engine_.bytes);
+  }
+
+  pid_t server_;
+  testing::Rig engine_;  ///< only its problems are used
+  LcmBus bus_;
+  std::mutex mutex_;
+  int step_ = 0;
+};
+
 TEST_F(ServerWithDevices, TheRealProgramOverTheBus) {
   if (!testing::multicast_works()) GTEST_SKIP() << "no multicast on this machine";
   const std::string bus_url = testing::own_bus_url();
@@ -99,57 +160,17 @@ TEST_F(ServerWithDevices, TheRealProgramOverTheBus) {
   std::filesystem::create_directories(folder + "/config");
   std::ofstream(folder + "/config/Left Device.config") << "";
   // The wished-for 049D is not plugged in: the left hand takes the Touch.
-  const pid_t server = ::fork();
-  if (server == 0) {
-    const std::string program = INSULA_BINARY_DIR "/bin/haptic_server";
-    ::execl(program.c_str(), "haptic_server", "--left", "haply:049D, touch:Left Device", "--right", "haply:04BA",
-            static_cast<char*>(nullptr));
-    ::_exit(127);
-  }
-  testing::Rig engine;  // only its problems are used
-  LcmBus bus(bus_url);
-  std::mutex mutex;
-  bus.subscribe(channel::device_state, [&](Bytes b) {
-    std::string why;
-    std::lock_guard lock(mutex);
-    engine.state_seen = decode(b, engine.state, why) || engine.state_seen;
-  });
-  int step = 0;
-  const auto until = [&](const std::function<bool()>& condition) {
-    return testing::wait_for(
-        [&] {
-          engine.clock.advance_ns(MonotonicClock().now_ns() - engine.clock.now_ns());
-          engine.sim_time += 0.016;
-          if (step++ % 30 == 0) {
-            insula_lcm::scene_info_t info;
-            info.session = engine.session;
-            info.time_us = engine.clock.now_ns() / 1000;
-            info.scene = "test.xml";
-            info.state = "running";
-            bus.publish(channel::scene_info, engine.encoded(info));
-          }
-          EXPECT_TRUE(encode_problem(engine.update(), engine.bytes));
-          bus.publish(channel::haptic_problem, engine.bytes);
-          const auto next = std::chrono::steady_clock::now() + std::chrono::milliseconds(16);
-          while (std::chrono::steady_clock::now() < next) bus.poll(4);
-          return condition();
-        },
-        std::chrono::seconds(60));
-  };
-  EXPECT_TRUE(
-      until([&] { return engine.state_seen && engine.state.hand[0].connected && engine.state.hand[1].connected; }));
-  EXPECT_EQ(engine.state.hand[0].device, "touch");
+  ProgramOnTheBus program(bus_url, "haply:049D, touch:Left Device", "haply:04BA");
+  EXPECT_TRUE(program.until([&] { return program.both_connected(); }));
+  EXPECT_EQ(program.hand(0).device, "touch");
   press();
-  EXPECT_TRUE(until([&] { return left_force() > 0.6 && right_force() > 0.6; }));
+  EXPECT_TRUE(program.until([&] { return left_force() > 0.6 && right_force() > 0.6; }));
   arm(0).plugged = 0;
-  EXPECT_TRUE(until([&] { return !engine.state.hand[0].connected && engine.state.hand[0].force_N[2] == 0; }));
+  EXPECT_TRUE(program.until([&] { return !program.hand(0).connected && program.hand(0).force_N[2] == 0; }));
   EXPECT_GT(right_force(), 0.6);
   arm(0).plugged = 1;
-  EXPECT_TRUE(until([&] { return engine.state.hand[0].connected && left_force() > 0.6; }));
-  ::kill(server, SIGTERM);
-  int status = -1;
-  EXPECT_EQ(::waitpid(server, &status, 0), server);
-  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
+  EXPECT_TRUE(program.until([&] { return program.hand(0).connected && left_force() > 0.6; }));
+  EXPECT_EQ(program.end(), 0);
   EXPECT_EQ(left_force(), 0);
   EXPECT_EQ(right_force(), 0);
   EXPECT_EQ(arm(0).open, 0);

@@ -13,103 +13,106 @@ import sys
 import tempfile
 import urllib.parse
 
-def main():
-    source, insula, out = pathlib.Path(sys.argv[1]).resolve(), sys.argv[2], pathlib.Path(sys.argv[3]).resolve()
-    sys.dont_write_bytecode = True
-    sys.path.insert(0, str(source / "tools/manual"))
-    from build import ELEMENTS, SECTIONS
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools/manual"))
+from build import ELEMENTS, SECTIONS  # noqa: E402
 
-    if not shutil.which("mkdocs"):
-        print("mkdocs is not installed: skipped")
-        return 77
+# Page, words that a person looks for there, and the page that must be among the first that are found.
+SEARCHES = (
+    ("index.html", "rayleigh_stiffness", "reference/corotational_fem.html"),
+    ("index.html", "warm start", "one-step.html"),
+    ("reference/contact.html", "pia", "../tutorial-plugin.html"),
+    ("trainee.html", "Sindou", "exercises.html"),
+    ("trainee.html", "instruc", "instructor.html"),
+)
+
+
+def make_site(source, insula, out):
+    """Builds the site into `out`; what went wrong, or empty."""
     reference, site = out / "reference", out / "html"
     shutil.rmtree(out, ignore_errors=True)
     out.mkdir(parents=True)
     subprocess.run([insula, "docs", reference, "--plugins", source / "plugins"], check=True, capture_output=True)
-    done = subprocess.run(
-        [sys.executable, "-B", source / "tools/manual/build.py", source, reference, site],
-        capture_output=True,
-        text=True,
-    )
-    if done.returncode != 0:
-        print("FAILED: " + done.stdout + done.stderr)
-        return 1
-    failures, links = 0, 0
+    command = [sys.executable, "-B", source / "tools/manual/build.py", source, reference, site]
+    done = subprocess.run(command, capture_output=True, text=True)
+    return done.stdout + done.stderr if done.returncode != 0 else ""
 
-    def that(ok, text):
-        nonlocal failures
-        if not ok:
-            failures += 1
-            print("FAILED: " + text)
 
+def missing_parts(source, site):
+    """What is not in the site, in words."""
     front = (site / "index.html").read_text(encoding="utf-8")
     for name in SECTIONS + (ELEMENTS,):
-        that(re.search(r">\s*%s\s*<" % name, front), "the front page has no section " + name)
+        if not re.search(r">\s*%s\s*<" % name, front):
+            yield "the front page has no section " + name
     for page in (source / "docs").glob("*.md"):
-        that(
-            (site / ("index.html" if page.name == "README.md" else page.stem + ".html")).exists(),
-            page.name + " is not in the site",
-        )
+        if not (site / ("index.html" if page.name == "README.md" else page.stem + ".html")).exists():
+            yield page.name + " is not in the site"
+    # Tables and lists came out as such.
+    if "<table>" not in (site / "exercises.html").read_text(encoding="utf-8"):
+        yield "exercises.html has no table"
+
+
+def links_of(site):
+    """(page, address, file) of each link within the site."""
     for page in site.rglob("*.html"):
         if page.name == "404.html":  # its addresses begin at a server's root
             continue
-        text = page.read_text(encoding="utf-8")
-        for target in re.findall(r'(?:href|src)="([^"]+)"', text):
+        for target in re.findall(r'(?:href|src)="([^"]+)"', page.read_text(encoding="utf-8")):
             address = urllib.parse.urlsplit(target)
-            if address.scheme or address.netloc or not address.path:
-                continue
-            links += 1
-            file = (page.parent / urllib.parse.unquote(address.path)).resolve()
-            that(file.exists(), "%s links to %s, which is not there" % (page.relative_to(site), target))
-    # Tables and lists came out as such.
-    that("<table>" in (site / "exercises.html").read_text(encoding="utf-8"), "exercises.html has no table")
+            if not address.scheme and not address.netloc and address.path:
+                yield page, target, (page.parent / urllib.parse.unquote(address.path)).resolve()
+
+
+def search(chromium, site, page, words):
+    """The first pages that a person finds who opened the site from its folder, without a web server."""
+    address = (site / page).as_uri() + "?q=" + urllib.parse.quote(words)
+    with tempfile.TemporaryDirectory() as profile:
+        command = [chromium, "--headless", "--no-sandbox", "--disable-gpu", "--user-data-dir=" + profile]
+        command += ["--virtual-time-budget=30000", "--dump-dom", address]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    results = done.stdout.split('id="mkdocs-search-results"')[-1].split("</div>")[0]
+    return [urllib.parse.urlsplit(a).path for a in re.findall(r'<a href="([^"]+)"', results)][:10]
+
+
+def failed_searches(site):
+    """Searches that do not find what they must, in words; from a page of a folder in the site, too."""
+    chromium = os.environ.get("CHROMIUM", "/usr/bin/chromium")
+    if not os.path.exists(chromium):
+        print("no Chromium here: nothing is searched")
+        return
+    for page, words, wanted in SEARCHES:
+        def whole(path):
+            return os.path.normpath(os.path.join(os.path.dirname(page), path))
+
+        found = search(chromium, site, page, words)
+        if whole(wanted) not in [whole(f) for f in found]:
+            yield "in %s a search for \"%s\" does not find %s but %s" % (page, words, wanted, found)
+
+
+def main():
+    source, insula, out = pathlib.Path(sys.argv[1]).resolve(), sys.argv[2], pathlib.Path(sys.argv[3]).resolve()
+    if not shutil.which("mkdocs"):
+        print("mkdocs is not installed: skipped")
+        return 77
+    if why := make_site(source, insula, out):
+        print("FAILED: " + why)
+        return 1
+    site = out / "html"
+    failures = list(missing_parts(source, site))
+    links = list(links_of(site))
+    failures += ["%s links to %s, which is not there" % (page.relative_to(site), target)
+                 for page, target, file in links if not file.exists()]
     index = (site / "search/index.js").read_text(encoding="utf-8")
     places = len(json.loads(index[index.index("{") : index.rindex("}") + 1])["docs"])
-    that(places > 300, "only %d places can be searched" % places)
-    # What a person finds who opened the site from its folder, without a web server; from a page of a folder in it, too.
-    chromium = os.environ.get("CHROMIUM", "/usr/bin/chromium")
-    for page, words, wanted in (
-        ("index.html", "rayleigh_stiffness", "reference/corotational_fem.html"),
-        ("index.html", "warm start", "one-step.html"),
-        ("reference/contact.html", "pia", "../tutorial-plugin.html"),
-        ("trainee.html", "Sindou", "exercises.html"),
-        ("trainee.html", "instruc", "instructor.html"),
-    ):
-        if not os.path.exists(chromium):
-            print("no Chromium here: nothing is searched")
-            break
-        address = (site / page).as_uri() + "?q=" + urllib.parse.quote(words)
-        with tempfile.TemporaryDirectory() as profile:
-            done = subprocess.run(
-                [
-                    chromium,
-                    "--headless",
-                    "--no-sandbox",
-                    "--disable-gpu",
-                    "--user-data-dir=" + profile,
-                    "--virtual-time-budget=30000",
-                    "--dump-dom",
-                    address,
-                ],
-                capture_output=True,
-                text=True,
-                timeout=120,
-            )
-        results = done.stdout.split('id="mkdocs-search-results"')[-1].split("</div>")[0]
-        found = [urllib.parse.urlsplit(a).path for a in re.findall(r'<a href="([^"]+)"', results)]
-        that(
-            any(
-                os.path.normpath(os.path.join(os.path.dirname(page), f))
-                == os.path.normpath(os.path.join(os.path.dirname(page), wanted))
-                for f in found[:10]
-            ),
-            "in %s a search for \"%s\" does not find %s but %s" % (page, words, wanted, found[:10]),
-        )
-    that(links > 1000, "only %d links were found; is the site read rightly?" % links)
-    print(
-        "%d pages, %d links, %d places to search; %d failures"
-        % (len(list(site.rglob("*.html"))), links, places, failures)
-    )
+    if places <= 300:
+        failures.append("only %d places can be searched" % places)
+    failures += failed_searches(site)
+    if len(links) <= 1000:
+        failures.append("only %d links were found; is the site read rightly?" % len(links))
+    for failure in failures:
+        print("FAILED: " + failure)
+    pages = len(list(site.rglob("*.html")))
+    print("%d pages, %d links, %d places to search; %d failures" % (pages, len(links), places, len(failures)))
     return 1 if failures else 0
 
 

@@ -68,6 +68,58 @@ TEST_P(Stability, LeftAloneNothingMoves) {
   EXPECT_LT(o.tool.value, max_depth) << o.tool.whose;
 }
 
+/// What is unsound after one random motion; empty: nothing.
+std::string fault_of(const Soak& o) {
+  std::string why;
+  if (!o.finite) why += " a number that is none;";
+  if (o.rest.inverted > 0)
+    why += " " + std::to_string(o.rest.inverted) + " inverted, first at " + std::to_string(o.first_inverted) + " s;";
+  if (!(o.rest.volume.value > collapsed))
+    why += " " + o.rest.volume.whose + " has " + std::to_string(o.rest.volume.value) + " of its volume;";
+  if (!(o.rest.area.value > collapsed))
+    why += " " + o.rest.area.whose + " has " + std::to_string(o.rest.area.value) + " of its area;";
+  const auto depth = [](const test::Worst& w) { return " " + w.whose + " " + std::to_string(1e3 * w.value) + " mm"; };
+  if (!(o.tool.value < max_depth)) why += depth(o.tool) + ";";
+  if (!(o.clip.value < max_depth)) why += depth(o.clip) + ";";
+  if (!(o.astray.value < 1e-3)) why += depth(o.astray) + " from its hand;";
+  return why;
+}
+
+void print_motion(const Soak& o, const std::string& why) {
+  std::printf(
+      "  %.2f s: %s inverted at most %d, least volume %.3f, area %.3f, inside %.3f; at rest volume %.3f, area "
+      "%.3f, inside %.3f, moved %.2f mm (%s), tool %.3f mm (%s), clip %.3f mm (%s); %.1f s of computing\n",
+      o.seconds, why.empty() ? "sound;" : why.c_str(), o.ever.inverted, o.ever.volume.value, o.ever.area.value,
+      o.ever.inside.value, o.rest.volume.value, o.rest.area.value, o.rest.inside.value, 1e3 * o.moved.value,
+      o.moved.whose.c_str(), 1e3 * o.tool.value, o.tool.whose.c_str(), 1e3 * o.clip.value, o.clip.whose.c_str(),
+      o.cpu_s);
+  std::fflush(stdout);
+}
+
+void print_campaign(const Exercise& e, std::uint64_t count, int failed, const Soak& worst) {
+  std::printf(
+      "%s in random hands: %llu motions (%.0f s), %d unsound, %s, inverted at rest %d (at most %d), least volume %.3f "
+      "(%s), area %.3f (%s), tool %.3f mm deep (%s), clip %.3f mm (%s), astray %.3f mm (%s); %.1f s of computing\n",
+      e.name, (unsigned long long)count, worst.seconds, failed, worst.finite ? "finite" : "NOT FINITE",
+      worst.rest.inverted, worst.ever.inverted, worst.rest.volume.value, worst.rest.volume.whose.c_str(),
+      worst.rest.area.value, worst.rest.area.whose.c_str(), 1e3 * worst.tool.value, worst.tool.whose.c_str(),
+      1e3 * worst.clip.value, worst.clip.whose.c_str(), 1e3 * worst.astray.value, worst.astray.whose.c_str(),
+      worst.cpu_s);
+}
+
+void keep_worst(Soak& worst, const Soak& o) {
+  worst.finite = worst.finite && o.finite;
+  worst.rest.inverted = std::max(worst.rest.inverted, o.rest.inverted);
+  worst.ever.inverted = std::max(worst.ever.inverted, o.ever.inverted);
+  worst.rest.volume.least(o.rest.volume.value, o.rest.volume.whose);
+  worst.rest.area.least(o.rest.area.value, o.rest.area.whose);
+  worst.tool.most(o.tool.value, o.tool.whose);
+  worst.clip.most(o.clip.value, o.clip.whose);
+  worst.astray.most(o.astray.value, o.astray.whose);
+  worst.seconds += o.seconds;
+  worst.cpu_s += o.cpu_s;
+}
+
 TEST_P(Stability, RandomHandsBreakNothing) {
   const Exercise& e = GetParam();
   const auto seed = std::uint64_t(number("INSULA_SOAK_SEED", 1));
@@ -89,48 +141,13 @@ TEST_P(Stability, RandomHandsBreakNothing) {
       std::printf("%s, seed %llu, motion %llu ...\n", e.name, (unsigned long long)seed, (unsigned long long)k),
           std::fflush(stdout);
     const Soak o = campaign.run(seed, k, hands, trace);
-    std::string why;
-    if (!o.finite) why += " a number that is none;";
-    if (o.rest.inverted > 0)
-      why += " " + std::to_string(o.rest.inverted) + " inverted, first at " + std::to_string(o.first_inverted) + " s;";
-    if (!(o.rest.volume.value > collapsed))
-      why += " " + o.rest.volume.whose + " has " + std::to_string(o.rest.volume.value) + " of its volume;";
-    if (!(o.rest.area.value > collapsed))
-      why += " " + o.rest.area.whose + " has " + std::to_string(o.rest.area.value) + " of its area;";
-    if (!(o.tool.value < max_depth)) why += " " + o.tool.whose + " " + std::to_string(1e3 * o.tool.value) + " mm;";
-    if (!(o.clip.value < max_depth)) why += " " + o.clip.whose + " " + std::to_string(1e3 * o.clip.value) + " mm;";
-    if (!(o.astray.value < 1e-3))
-      why += " " + o.astray.whose + " " + std::to_string(1e3 * o.astray.value) + " mm from its hand;";
+    const std::string why = fault_of(o);
     failed += !why.empty();
     EXPECT_EQ(why, "") << e.name << ", seed " << seed << ", motion " << k;
-    if (all_of_it() || !why.empty())
-      std::printf(
-          "  %.2f s: %s inverted at most %d, least volume %.3f, area %.3f, inside %.3f; at rest volume %.3f, area "
-          "%.3f, inside %.3f, moved %.2f mm (%s), tool %.3f mm (%s), clip %.3f mm (%s); %.1f s of computing\n",
-          o.seconds, why.empty() ? "sound;" : why.c_str(), o.ever.inverted, o.ever.volume.value, o.ever.area.value,
-          o.ever.inside.value, o.rest.volume.value, o.rest.area.value, o.rest.inside.value, 1e3 * o.moved.value,
-          o.moved.whose.c_str(), 1e3 * o.tool.value, o.tool.whose.c_str(), 1e3 * o.clip.value, o.clip.whose.c_str(),
-          o.cpu_s),
-          std::fflush(stdout);
-    worst.finite = worst.finite && o.finite;
-    worst.rest.inverted = std::max(worst.rest.inverted, o.rest.inverted);
-    worst.ever.inverted = std::max(worst.ever.inverted, o.ever.inverted);
-    worst.rest.volume.least(o.rest.volume.value, o.rest.volume.whose);
-    worst.rest.area.least(o.rest.area.value, o.rest.area.whose);
-    worst.tool.most(o.tool.value, o.tool.whose);
-    worst.clip.most(o.clip.value, o.clip.whose);
-    worst.astray.most(o.astray.value, o.astray.whose);
-    worst.seconds += o.seconds;
-    worst.cpu_s += o.cpu_s;
+    if (all_of_it() || !why.empty()) print_motion(o, why);
+    keep_worst(worst, o);
   }
-  std::printf(
-      "%s in random hands: %llu motions (%.0f s), %d unsound, %s, inverted at rest %d (at most %d), least volume %.3f "
-      "(%s), area %.3f (%s), tool %.3f mm deep (%s), clip %.3f mm (%s), astray %.3f mm (%s); %.1f s of computing\n",
-      e.name, (unsigned long long)count, worst.seconds, failed, worst.finite ? "finite" : "NOT FINITE",
-      worst.rest.inverted, worst.ever.inverted, worst.rest.volume.value, worst.rest.volume.whose.c_str(),
-      worst.rest.area.value, worst.rest.area.whose.c_str(), 1e3 * worst.tool.value, worst.tool.whose.c_str(),
-      1e3 * worst.clip.value, worst.clip.whose.c_str(), 1e3 * worst.astray.value, worst.astray.whose.c_str(),
-      worst.cpu_s);
+  print_campaign(e, count, failed, worst);
 }
 
 INSTANTIATE_TEST_SUITE_P(Exercises, Stability, testing::ValuesIn(exercises),

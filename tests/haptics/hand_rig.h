@@ -46,94 +46,137 @@ struct Pressed {
   double at = 0;                           ///< mean height at the end, m
 };
 
-inline Pressed press(const Press& press, const Person& person) {
-  constexpr double top = -20.2e-3, begin = 0.5, arrival = 0.3;
-  const std::string text = "<scene title=\"plate\" time_step=\"" + std::to_string(1000 / press.engine_Hz) + R"( ms">
+inline std::string plate_scene(const Press& press) {
+  return "<scene title=\"plate\" time_step=\"" + std::to_string(1000 / press.engine_Hz) + R"( ms">
     <obstacle id="plate"><surface id="top" mesh="../../meshes/examples/plate.obj" mesh_unit="mm"/></obstacle>
     <dissector id="tool" hand="right" sharp="never" model="../../meshes/instruments/dissector/dissector.urdf" home="0 0 -19 mm" shaft="0 0 1" flat="1 0 0" coupling=")" +
-                           std::to_string(press.coupling_N_m) + R"( N/m"/>
+         std::to_string(press.coupling_N_m) + R"( N/m"/>
     <contact between="plate tool" friction="0.1" spacing="1 mm" max_contacts="10"/></scene>)";
-  Pressed out;
-  const auto s = load_text(text, std::filesystem::path(INSULA_SOURCE_DIR) / "plugins/contact/plate.xml");
-  if (!s) return out;
-  s->set_collision_horizon(2 * s->h());
+}
+
+inline ArmParameters arm_of(const Person& person) {
   ArmParameters p = simulated_arm(1);
   p.tremor_m = p.tremor_rad = 0;
   p.arm_friction_N = person.friction_N;
   p.hand_mass_kg = person.mass_kg - p.arm_mass_kg;
   p.hand_damping_Ns_m = person.damping_Ns_m;
   p.hand_stiffness_N_m = person.stiffness_N_m;
-  SimulatedDevice device(p);
-  SafetyGate gate(p.profile);
+  return p;
+}
+
+constexpr double press_begin = 0.5, press_arrival = 0.3;  ///< s
+
+/// Where the person wants the hand at time t. When the gate has faded forces in: there within a third of a second, at
+/// the speed of a tap.
+inline HandGoal goal_at(double t, const Press& press, const Pose& home) {
+  constexpr double top = -20.2e-3;
+  HandGoal goal;
+  goal.pose = home;
+  const double part = std::clamp((t - press_begin) / press_arrival, 0.0, 1.0);
+  goal.pose.p.z() += part * (top - press.depth_m - home.p.z());
+  goal.v.z() = part > 0 && part < 1 ? (top - press.depth_m - home.p.z()) / press_arrival : 0;
+  if (t > press_begin) {
+    goal.pose.p.x() += press.slide_m_s * (t - press_begin);
+    goal.v.x() = press.slide_m_s;
+  }
+  goal.stops = false;
+  return goal;
+}
+
+/// The engine at its rate: gives the servo its problems, at once or a step late.
+class PressEngine {
+ public:
+  PressEngine(Simulation& s, const Press& press) : s_(s), press_(press), next_step_(1 / press.engine_Hz) {}
+  /// Whether a problem was made at this time.
+  bool advance(double t, const Pose& device, Servo& servo) {
+    if (t + 1e-9 < next_step_) return false;
+    const double h = 1 / press_.engine_Hz;
+    next_step_ += h;
+    s_.set_hand(1, {true, device, false, false});
+    s_.step();
+    const std::size_t made = (newest_ + 1) % problem_.size(), older = newest_;
+    problem_[made] = s_.problem();
+    newest_ = made;
+    if (!press_.late) servo.set_problem(&problem_[made]);
+    else if (s_.steps() > 1) servo.set_problem(&problem_[older], {}, h);
+    return true;
+  }
+
+ private:
+  Simulation& s_;
+  const Press& press_;
+  double next_step_;
+  std::array<ConstraintProblem, 3> problem_;
+  std::size_t newest_ = 0;
+};
+
+/// Speeds, heights and force of the first and the last second of contact.
+class PressRecord {
+ public:
+  explicit PressRecord(int ticks) : ticks_(ticks) {}
+  void add(int tick, double t, double speed, double z, double force) {
+    if (t >= press_begin + press_arrival && t < press_begin + press_arrival + 1)
+      first2_ += speed * speed, ++first_count_;
+    if (tick < ticks_ - 1000) return;
+    last2_ += speed * speed, ++last_count_;
+    low_ = std::min(low_, z), high_ = std::max(high_, z);
+    force_ += force / 1000;
+    at_ += z / 1000;
+  }
+  void write(Pressed& out) const {
+    out.first_speed = std::sqrt(first2_ / std::max(1, first_count_));
+    out.last_speed = std::sqrt(last2_ / std::max(1, last_count_));
+    out.swing = high_ - low_;
+    out.force = force_;
+    out.at = at_;
+  }
+
+ private:
+  int ticks_, first_count_ = 0, last_count_ = 0;
+  double first2_ = 0, last2_ = 0, low_ = 1e9, high_ = -1e9, force_ = 0, at_ = 0;
+};
+
+inline Pressed press(const Press& press, const Person& person) {
+  Pressed out;
+  const auto s = load_text(plate_scene(press), std::filesystem::path(INSULA_SOURCE_DIR) / "plugins/contact/plate.xml");
+  if (!s) return out;
+  s->set_collision_horizon(2 * s->h());
+  const ArmParameters arm = arm_of(person);
+  SimulatedDevice device(arm);
+  SafetyGate gate(arm.profile);
   Servo servo(press.servo);
   PassivityObserver observer;
   const Pose home = s->instrument_of(1)->home_pose();
   device.place(home, home.p, Vec3::Constant(1));
-  std::array<ConstraintProblem, 3> problem;
-  std::size_t newest = 0;
+  PressEngine engine(*s, press);
   Vec3 held = Vec3::Zero();
   const int ticks = int(std::lround(press.seconds * 1000));
-  const double dt = 1e-3, h = 1 / press.engine_Hz;
-  double next_step = h, energy = 0, low = 1e9, high = -1e9;
-  double first2 = 0, last2 = 0;
-  int first_count = 0, last_count = 0;
+  const double dt = 1e-3;
+  PressRecord record(ticks);
   for (int k = 0; k < ticks; ++k) {
     const double t = k * dt;
-    HandGoal goal;
-    goal.pose = home;
-    // After the gate has faded forces in, the hand arrives within a third of a second, at the speed of a tap.
-    const double part = std::clamp((t - begin) / arrival, 0.0, 1.0);
-    goal.pose.p.z() += part * (top - press.depth_m - home.p.z());
-    goal.v.z() = part > 0 && part < 1 ? (top - press.depth_m - home.p.z()) / arrival : 0;
-    if (t > begin) {
-      goal.pose.p.x() += press.slide_m_s * (t - begin);
-      goal.v.x() = press.slide_m_s;
-    }
-    goal.stops = false;
-    device.guide(goal);
-    const double z_before = device.arm().pose().p.z();
+    device.guide(goal_at(t, press, home));
     const Vec3 before = device.arm().pose().p;
     device.advance(dt);
     const DeviceReading reading = device.read();
     ServoInput input;
     input.device[1] = reading.pose;
     input.connected[1] = true;
-    bool fresh = false;
-    if (t + 1e-9 >= next_step) {
-      next_step += h;
-      s->set_hand(1, {true, reading.pose, false, false});
-      s->step();
-      const std::size_t made = (newest + 1) % problem.size(), older = newest;
-      problem[made] = s->problem();
-      newest = made;
-      if (!press.late) servo.set_problem(&problem[made]);
-      else if (s->steps() > 1) servo.set_problem(&problem[older], {}, h);
-      fresh = true;
-    }
+    const bool fresh = engine.advance(t, reading.pose, servo);
     const ServoResult r = servo.tick(input);
     const ServoHand& hand = r.hand[1];
     if (fresh) held = hand.force;
-    const Vec3 wanted = press.held ? held : hand.force;
-    // Work of the last tick's force over this tick's displacement.
-    energy += gate.force().dot(device.arm().pose().p - before);
+    const Vec3 moved = device.arm().pose().p - before;
+    // What the last tick's force has done on the motion of this tick.
+    out.last_energy += gate.force().dot(moved);
     observer.observe(gate.force(), reading.pose.p);
-    gate.apply(dt, r.solved && hand.valid, wanted, Vec3::Zero());
+    gate.apply(dt, r.solved && hand.valid, press.held ? held : hand.force, Vec3::Zero());
     device.write(gate.force(), Vec3::Zero());
-    out.max_energy = std::max(out.max_energy, energy);
-    const double speed = (device.arm().pose().p.z() - z_before) / dt;
-    if (t >= begin + arrival && t < begin + arrival + 1) first2 += speed * speed, ++first_count;
-    if (k >= ticks - 1000) {
-      last2 += speed * speed, ++last_count;
-      low = std::min(low, device.arm().pose().p.z()), high = std::max(high, device.arm().pose().p.z());
-      out.force += gate.force().z() / 1000;
-      out.at += device.arm().pose().p.z() / 1000;
-    }
+    out.max_energy = std::max(out.max_energy, out.last_energy);
+    record.add(k, t, moved.z() / dt, device.arm().pose().p.z(), gate.force().z());
   }
   out.observed = observer.most();
-  out.last_energy = energy;
-  out.first_speed = std::sqrt(first2 / std::max(1, first_count));
-  out.last_speed = std::sqrt(last2 / std::max(1, last_count));
-  out.swing = high - low;
+  record.write(out);
   return out;
 }
 

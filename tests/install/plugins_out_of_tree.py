@@ -93,6 +93,58 @@ def step_data_of_the_suture(insula, folder, library):
     that("stay: tension" in (report / "report.html").read_text(), "the report has no curve of it")
 
 
+def write_plugins(source, insula, folder):
+    """A plugin of each kind, and those of the tutorials; their names."""
+    names = []
+    for kind in KINDS:
+        names.append("my_%s_1" % kind)
+        run(insula, "new-plugin", names[-1], "--kind", kind, cwd=folder)
+    for plugin in TUTORIALS:
+        tutorial(source, insula, folder, plugin)
+        names.append(plugin)
+    return names
+
+
+def refused_names(insula, folder, existing):
+    run(insula, "new-plugin", "contact", "--kind", "force", cwd=folder, status=2)
+    run(insula, "new-plugin", existing, "--kind", "force", cwd=folder, status=2)
+    that(
+        "\"Contact\" is no name" in run(insula, "new-plugin", "Contact", "--kind", "force", cwd=folder, status=2),
+        "a bad name is not named",
+    )
+
+
+def build_and_test(cmake, prefix, folder, names):
+    """Builds all plugins as one project and runs their tests; the build folder."""
+    (folder / "CMakeLists.txt").write_text(
+        "cmake_minimum_required(VERSION 3.25)\nproject(all_plugins LANGUAGES CXX)\nenable_testing()\n"
+        + "".join("add_subdirectory(%s)\n" % n for n in names)
+    )
+    out = folder / "build"
+    settings = ["-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_PREFIX_PATH=%s" % prefix, "-DCMAKE_CXX_FLAGS=-Werror"]
+    settings += ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
+    run(cmake, "-S", folder, "-B", out, "-G", "Ninja", *settings)
+    run(cmake, "--build", out)
+    ctest = pathlib.Path(cmake).with_name("ctest")
+    said = run(ctest, "--test-dir", out, "--output-on-failure", "-j", str(os.cpu_count()))
+    that("100% tests passed" in said and "out of %d" % (3 * len(names)) in said, said)
+    for name in names:  # author's tests and contracts both ran
+        listed = run(out / name / (name + "_test"))
+        ran = int(re.search(r"(\d+) tests from 2 test suites ran", listed)[1])
+        that(ran >= 5 and "Contract.OfElement_" + name in listed, "%s: %d tests ran" % (name, ran))
+    return out
+
+
+def stale_library(insula, prefix, file):
+    """A library of other headers is refused: the same one with another hash in it."""
+    library = (prefix / "lib/insula/plugins/pia_membrane.so").read_bytes()
+    stale = re.sub(rb"insula headers [0-9a-f]{12}", b"insula headers 000000000000", library)
+    that(stale != library, "the library does not carry the hash of the headers")
+    file.write_bytes(stale)
+    said = run(insula, "--plugin-path", file, "list", status=2)
+    that("was built for another Insula" in said and "build the plugin again" in said, said)
+
+
 def main():
     source, build, cmake = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), sys.argv[3]
     work = build / "tests/installed"
@@ -103,61 +155,15 @@ def main():
     insula = prefix / "bin/insula"
     run(insula, "check", prefix / "share/insula/plugins/contact/example.xml")
     installed_page(prefix)
-
-    names = []
-    for kind in KINDS:
-        names.append("my_%s_1" % kind)
-        run(insula, "new-plugin", names[-1], "--kind", kind, cwd=folder)
-    for plugin in TUTORIALS:
-        tutorial(source, insula, folder, plugin)
-        names.append(plugin)
-    run(insula, "new-plugin", "contact", "--kind", "force", cwd=folder, status=2)
-    run(insula, "new-plugin", names[0], "--kind", "force", cwd=folder, status=2)
-    that(
-        "\"Contact\" is no name" in run(insula, "new-plugin", "Contact", "--kind", "force", cwd=folder, status=2),
-        "a bad name is not named",
-    )
-
-    (folder / "CMakeLists.txt").write_text(
-        "cmake_minimum_required(VERSION 3.25)\nproject(all_plugins LANGUAGES CXX)\nenable_testing()\n"
-        + "".join("add_subdirectory(%s)\n" % n for n in names)
-    )
-    out = folder / "build"
-    launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
-    run(
-        cmake,
-        "-S",
-        folder,
-        "-B",
-        out,
-        "-G",
-        "Ninja",
-        "-DCMAKE_BUILD_TYPE=Release",
-        "-DCMAKE_PREFIX_PATH=%s" % prefix,
-        "-DCMAKE_CXX_FLAGS=-Werror",
-        *launcher
-    )
-    run(cmake, "--build", out)
-    ctest = pathlib.Path(cmake).with_name("ctest")
-    said = run(ctest, "--test-dir", out, "--output-on-failure", "-j", str(os.cpu_count()))
-    that("100% tests passed" in said and "out of %d" % (3 * len(names)) in said, said)
-    for name in names:  # author's tests and contracts both ran
-        listed = run(out / name / (name + "_test"))
-        ran = int(re.search(r"(\d+) tests from 2 test suites ran", listed)[1])
-        that(ran >= 5 and "Contract.OfElement_" + name in listed, "%s: %d tests ran" % (name, ran))
-
+    names = write_plugins(source, insula, folder)
+    refused_names(insula, folder, names[0])
+    out = build_and_test(cmake, prefix, folder, names)
     step_data_of_the_suture(insula, folder, out / "suture/suture.so")
     run(cmake, "--install", out, "--prefix", prefix)
     known = run(insula, "list")
     for name in names:
         that(re.search(r"^\s*%s\s" % name, known, re.M), "%s is installed and not listed" % name)
-    # A library of other headers: the same one with another hash in it.
-    library = (prefix / "lib/insula/plugins/pia_membrane.so").read_bytes()
-    stale = re.sub(rb"insula headers [0-9a-f]{12}", b"insula headers 000000000000", library)
-    that(stale != library, "the library does not carry the hash of the headers")
-    (work / "old.so").write_bytes(stale)
-    said = run(insula, "--plugin-path", work / "old.so", "list", status=2)
-    that("was built for another Insula" in said and "build the plugin again" in said, said)
+    stale_library(insula, prefix, work / "old.so")
     return 0
 
 

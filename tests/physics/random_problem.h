@@ -31,60 +31,70 @@ inline double contact_error(const Vec3& delta, const Vec3& lambda, double mu, do
   return error;
 }
 
-/// Contacts, patches, fibres, holds and links among a few bodies of several degrees of freedom: W = H A^-1 H^T plus a
-/// small diagonal, so that the solution is unique.
-inline ConstraintProblem random_problem(Random& random, double friction) {
-  ConstraintProblem p;
-  int rows = 0;
-  const int blocks = 2 + int(random.below(9));
-  std::vector<Block> made;
-  std::vector<int> with;  // the block whose bodies it shares
-  const auto add = [&](Block b, int same) {
-    b.id = std::uint64_t(100 + made.size());
-    b.row = rows;
-    rows += b.rows();
-    with.push_back(same);
-    made.push_back(b);
-  };
-  for (int i = 0; i < blocks; ++i) {
+/// The blocks of a random problem, one after the other.
+class RandomBlocks {
+ public:
+  RandomBlocks(Random& random, double friction) : random_(random), friction_(friction) {}
+
+  void add() {
     Block b;
-    const int self = int(made.size());
-    switch (random.below(7)) {
-      case 0: break;                                         // bilateral
-      case 1: b.compliance = random.uniform(0.1, 2); break;  // two-sided spring
+    const int self = int(blocks.size());
+    switch (random_.below(7)) {
+      case 0: break;                                          // bilateral
+      case 1: b.compliance = random_.uniform(0.1, 2); break;  // two-sided spring
       case 2:
-        b.compliance = random.uniform(0.1, 2);
+        b.compliance = random_.uniform(0.1, 2);
         b.upper = 0;
         break;                     // fibre
       case 3: b.lower = 0; break;  // contact without friction
       case 4:
-        b.upper = random.uniform(0.1, 1);
+        b.upper = random_.uniform(0.1, 1);
         b.lower = -b.upper;
-        break;   // plastic hold
-      case 5: {  // contacts that share a friction force
-        const int normals = 1 + int(random.below(4));
-        Block contact;
-        contact.lower = 0;
-        if (random.below(3) == 0) contact.compliance = random.uniform(0.1, 1);
-        for (int k = 0; k < normals; ++k) add(contact, self);
-        b.law = LawKind::patch;
-        b.friction = friction * random.uniform(0.1, 1);
-        b.normals = normals;
-        break;
-      }
-      default: b.law = LawKind::friction; b.friction = friction * random.uniform(0.1, 1);
+        break;  // plastic hold
+      case 5: b = patch(self); break;
+      default: b.law = LawKind::friction; b.friction = friction_ * random_.uniform(0.1, 1);
     }
-    add(b, self);
+    append(b, self);
   }
-  p.resize(rows);
-  p.blocks = made;
-  // Each row acts on two of the bodies: sparse coupling as in a scene.
+
+  int rows = 0;
+  std::vector<Block> blocks;
+  std::vector<int> with;  ///< the block whose bodies it shares
+
+ private:
+  /// Contacts that share a friction force; returns its block.
+  Block patch(int self) {
+    const int normals = 1 + int(random_.below(4));
+    Block contact;
+    contact.lower = 0;
+    if (random_.below(3) == 0) contact.compliance = random_.uniform(0.1, 1);
+    for (int k = 0; k < normals; ++k) append(contact, self);
+    Block b;
+    b.law = LawKind::patch;
+    b.friction = friction_ * random_.uniform(0.1, 1);
+    b.normals = normals;
+    return b;
+  }
+  void append(Block b, int same) {
+    b.id = std::uint64_t(100 + blocks.size());
+    b.row = rows;
+    rows += b.rows();
+    with.push_back(same);
+    blocks.push_back(b);
+  }
+
+  Random& random_;
+  double friction_;
+};
+
+/// Each row acts on two of the bodies: sparse coupling as in a scene.
+inline MatX random_jacobian(Random& random, const RandomBlocks& made) {
   const int bodies = 3 + int(random.below(4)), dof = 6;
-  MatX h = MatX::Zero(rows, bodies * dof);
+  MatX h = MatX::Zero(made.rows, bodies * dof);
   int one = 0, two = 0;
-  for (std::size_t i = 0; i < made.size(); ++i) {
-    const Block& b = made[i];
-    if (with[i] == int(i)) {
+  for (std::size_t i = 0; i < made.blocks.size(); ++i) {
+    const Block& b = made.blocks[i];
+    if (made.with[i] == int(i)) {
       one = int(random.below(std::uint32_t(bodies)));
       two = int(random.below(std::uint32_t(bodies)));
     }
@@ -93,9 +103,22 @@ inline ConstraintProblem random_problem(Random& random, double friction) {
       if (two != one) h.row(b.row + k).segment(two * dof, dof) -= random_matrix(random, 1, dof);
     }
   }
-  const MatX w = h * h.transpose() + 0.05 * MatX::Identity(rows, rows);
-  for (int i = 0; i < rows; ++i) {
-    for (int j = 0; j < rows; ++j) p.w[std::size_t(i * p.stride + j)] = 0.5 * (w(i, j) + w(j, i));
+  return h;
+}
+
+/// Contacts, patches, fibres, holds and links among a few bodies of several degrees of freedom: W = H A^-1 H^T plus a
+/// little on the diagonal, so that the solution is one.
+inline ConstraintProblem random_problem(Random& random, double friction) {
+  ConstraintProblem p;
+  const int blocks = 2 + int(random.below(9));
+  RandomBlocks made(random, friction);
+  for (int i = 0; i < blocks; ++i) made.add();
+  p.resize(made.rows);
+  p.blocks = made.blocks;
+  const MatX h = random_jacobian(random, made);
+  const MatX w = h * h.transpose() + 0.05 * MatX::Identity(made.rows, made.rows);
+  for (int i = 0; i < made.rows; ++i) {
+    for (int j = 0; j < made.rows; ++j) p.w[std::size_t(i * p.stride + j)] = 0.5 * (w(i, j) + w(j, i));
     p.delta_free[std::size_t(i)] = random.uniform(-1, 1);
   }
   return p;

@@ -84,83 +84,57 @@ def multicast(python, url):
     return False
 
 
-def main():
-    source, build, lcm_gen = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), sys.argv[3]
-    python = environment(build)
+def free_bus():
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as s:
         s.bind(("", 0))
-        url = "udpm://239.255.76.67:%d?ttl=0" % s.getsockname()[1]
-    if not multicast(python, url):
-        skip("no multicast on this machine")
-    types = build / "python"
-    subprocess.run(
-        [lcm_gen, "-p", "--ppath", str(types)] + [str(f) for f in sorted((source / "lcm_types").glob("*.lcm"))],
-        check=True,
-    )
+        return "udpm://239.255.76.67:%d?ttl=0" % s.getsockname()[1]
 
-    insula = str(build / "bin" / "insula")
-    with tempfile.TemporaryDirectory(prefix="insula_python_") as name:
-        folder = pathlib.Path(name)
-        for part in (
-            "examples",
-            "instruments/retractor",
-            "instruments/dissector",
-            "instruments/clip_applier",
-            "clips/straight",
-        ):
-            if (source / "meshes" / part).is_dir():
-                shutil.copytree(source / "meshes" / part, folder / "meshes" / part)
-        elements = subprocess.run([insula, "list"], capture_output=True, text=True, check=True).stdout
-        clips = "clip_applier" in elements and (folder / "meshes/clips/straight").is_dir()
-        (folder / "scene.xml").write_text(SCENE % (CLIP if clips else ""), encoding="utf-8")
-        env = dict(os.environ, LCM_DEFAULT_URL=url, XDG_RUNTIME_DIR=name)
-        logs = [open(folder / n, "w+") for n in ("engine.log", "server.log")]
-        processes = [
-            subprocess.Popen(
-                [insula, "engine", "scene.xml", "--motion", "none"],
-                cwd=name,
-                env=env,
-                stdout=logs[0],
-                stderr=subprocess.STDOUT,
-            ),
-            subprocess.Popen(
-                [str(build / "bin" / "haptic_server")], cwd=name, env=env, stdout=logs[1], stderr=subprocess.STDOUT
-            ),
+
+def make_scene(source, insula, folder):
+    """The scene with what it needs; whether it has clips."""
+    tools = ["instruments/" + t for t in ("retractor", "dissector", "clip_applier")]
+    for part in ["examples", "clips/straight"] + tools:
+        if (source / "meshes" / part).is_dir():
+            shutil.copytree(source / "meshes" / part, folder / "meshes" / part)
+    elements = subprocess.run([insula, "list"], capture_output=True, text=True, check=True).stdout
+    clips = "clip_applier" in elements and (folder / "meshes/clips/straight").is_dir()
+    (folder / "scene.xml").write_text(SCENE % (CLIP if clips else ""), encoding="utf-8")
+    return clips
+
+
+class Programs:
+    """Engine and haptic server in a folder; as a context they end with it."""
+
+    def __init__(self, build, folder, env):
+        self.logs = [open(folder / n, "w+") for n in ("engine.log", "server.log")]
+        commands = [
+            [str(build / "bin/insula"), "engine", "scene.xml", "--motion", "none"],
+            [str(build / "bin/haptic_server")],
         ]
-        try:
-            run = subprocess.run(
-                [
-                    python,
-                    str(source / "examples/python/exchange_and_forces.py"),
-                    "--types",
-                    str(types),
-                    "--seconds",
-                    "2",
-                    "--wait",
-                    "90",
-                ],
-                env=env,
-                capture_output=True,
-                text=True,
-                timeout=240,
-            )
-            spied = [
-                subprocess.run(
-                    [python, str(source / "examples/python/spy.py"), "--types", str(types), "--seconds", "2.5"] + more,
-                    env=env,
-                    capture_output=True,
-                    text=True,
-                    timeout=60,
-                )
-                for more in ([], ["--show", "HAPTIC_STATUS"])
-            ]
-            alive = [p.poll() is None for p in processes]
-        finally:
-            for p in processes:
-                p.send_signal(signal.SIGINT)
-            status = [p.wait(60) for p in processes]
-        said = "".join(log.seek(0) * "" + log.read() for log in logs)
-    print(run.stdout, run.stderr, said, sep="\n")
+        self.processes = [
+            subprocess.Popen(c, cwd=folder, env=env, stdout=log, stderr=subprocess.STDOUT)
+            for c, log in zip(commands, self.logs)
+        ]
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.alive = [p.poll() is None for p in self.processes]
+        for p in self.processes:
+            p.send_signal(signal.SIGINT)
+        self.status = [p.wait(60) for p in self.processes]
+
+    def said(self):
+        return "".join(log.seek(0) * "" + log.read() for log in self.logs)
+
+
+def run_script(python, source, name, types, env, *more, timeout=60):
+    command = [python, str(source / "examples/python" / name), "--types", str(types), *more]
+    return subprocess.run(command, env=env, capture_output=True, text=True, timeout=timeout)
+
+
+def expected_of_the_example(clips):
     expected = [
         r"^scene: Two hands$",
         r"^left hand: left_dissector taken up$",
@@ -171,21 +145,47 @@ def main():
         expected += [r"^right hand: applier taken up$", r"^applier: straight loaded$"]
     for side in ("left", "right"):
         expected.append(r"^%s hand: [1-9]\d+ forces, mean \d+\.\d+ N, largest \d+\.\d+ N$" % side)
-    missing = [e for e in expected if not re.search(e, run.stdout, re.M)]
-    for spy, lines in zip(
-        spied,
-        (
-            [r"^%s +[1-9]\d* +\d+\.\d$" % c for c in ("DEVICE_STATE", "HAPTIC_PROBLEM", "RENDER_FRAME")],
-            [r"^HAPTIC_STATUS$", r"^  fresh_forces_per_s +\[", r"^  lateness_count +\[\d+, .*\]$"],
-        ),
-    ):
+    return expected
+
+
+# More arguments of spy.py, and what it prints with them.
+SPIED = (
+    ([], [r"^%s +[1-9]\d* +\d+\.\d$" % c for c in ("DEVICE_STATE", "HAPTIC_PROBLEM", "RENDER_FRAME")]),
+    (
+        ["--show", "HAPTIC_STATUS"],
+        [r"^HAPTIC_STATUS$", r"^  fresh_forces_per_s +\[", r"^  lateness_count +\[\d+, .*\]$"],
+    ),
+)
+
+
+def main():
+    source, build, lcm_gen = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), sys.argv[3]
+    python = environment(build)
+    url = free_bus()
+    if not multicast(python, url):
+        skip("no multicast on this machine")
+    types = build / "python"
+    messages = [str(f) for f in sorted((source / "lcm_types").glob("*.lcm"))]
+    subprocess.run([lcm_gen, "-p", "--ppath", str(types), *messages], check=True)
+    with tempfile.TemporaryDirectory(prefix="insula_python_") as name:
+        folder = pathlib.Path(name)
+        clips = make_scene(source, str(build / "bin/insula"), folder)
+        env = dict(os.environ, LCM_DEFAULT_URL=url, XDG_RUNTIME_DIR=name)
+        with Programs(build, folder, env) as programs:
+            times = ["--seconds", "2", "--wait", "90"]
+            run = run_script(python, source, "exchange_and_forces.py", types, env, *times, timeout=240)
+            spied = [run_script(python, source, "spy.py", types, env, "--seconds", "2.5", *m) for m, _ in SPIED]
+        said = programs.said()
+    print(run.stdout, run.stderr, said, sep="\n")
+    missing = [e for e in expected_of_the_example(clips) if not re.search(e, run.stdout, re.M)]
+    for spy, (_, lines) in zip(spied, SPIED):
         assert spy.returncode == 0, spy.stderr
         missing += [e for e in lines if not re.search(e, spy.stdout, re.M)]
     assert run.returncode == 0, run.returncode
     assert not missing, missing
     assert "refused" not in run.stdout
-    assert all(alive), "a process ended by itself"
-    assert status == [0, 0], status
+    assert all(programs.alive), "a process ended by itself"
+    assert programs.status == [0, 0], programs.status
     print("the example does what it says" + ("" if clips else " (no clips in this build)"))
 
 

@@ -21,14 +21,43 @@ NEEDED = ("java", "javac", "jar", "lcm-gen", "Xvfb")
 WATCHED_S = 4
 
 
-def main():
-    source, build = (pathlib.Path(a).resolve() for a in sys.argv[1:3])
+def skip_where_something_is_missing():
     missing = [p for p in NEEDED if not shutil.which(p)] + [
         j for j in ("lcm", "jchart2d") if not pathlib.Path(f"/usr/share/java/{j}.jar").exists()
     ]
     if missing or not bus.works():
         print("skipped:", ", ".join(missing) + " not here" if missing else "no multicast")
         sys.exit(SKIPPED)
+
+
+def open_screen():
+    """A screen of its own; its process and its name."""
+    read, write = os.pipe()
+    screen = subprocess.Popen(
+        ["Xvfb", "-displayfd", str(write), "-screen", "0", "800x600x24"], pass_fds=[write], stderr=subprocess.DEVNULL
+    )
+    os.close(write)  # or nothing would ever be read of a screen that does not open
+    return screen, ":" + os.read(read, 16).decode().strip()
+
+
+def text_of(log):
+    log.seek(0)
+    return log.read()
+
+
+def watch(spy, log):
+    """Waits for the window and a little longer; whether the spy still runs, and what it said."""
+    end = time.monotonic() + 60
+    # The plugins are the last that it tells before its window.
+    while time.monotonic() < end and spy.poll() is None and "plugins" not in text_of(log):
+        time.sleep(0.2)
+    time.sleep(WATCHED_S)
+    return spy.poll() is None, text_of(log)
+
+
+def main():
+    source, build = (pathlib.Path(a).resolve() for a in sys.argv[1:3])
+    skip_where_something_is_missing()
     written = {
         name
         for f in (source / "lcm_types").glob("*.lcm")
@@ -36,54 +65,24 @@ def main():
     }
     port = bus.free_port()
     with tempfile.TemporaryDirectory(prefix="insula_spy_") as folder:
-        read, write = os.pipe()
-        screen = subprocess.Popen(
-            ["Xvfb", "-displayfd", str(write), "-screen", "0", "800x600x24"],
-            pass_fds=[write],
-            stderr=subprocess.DEVNULL,
-        )
-        os.close(write)  # or nothing would ever be read of a screen that does not open
-        env = dict(
-            os.environ,
-            DISPLAY=":" + os.read(read, 16).decode().strip(),
-            LCM_DEFAULT_URL=f"udpm://239.255.76.67:{port}?ttl=0",
-            XDG_RUNTIME_DIR=folder,
-        )
+        screen, display = open_screen()
+        bus_url = f"udpm://239.255.76.67:{port}?ttl=0"
+        env = dict(os.environ, DISPLAY=display, LCM_DEFAULT_URL=bus_url, XDG_RUNTIME_DIR=folder)
         log = open(pathlib.Path(folder) / "spy.log", "w+")
+        scene = str(source / "scenes/training/1_sylvian_fissure.xml")
         engine = subprocess.Popen(
-            [
-                str(build / "bin/insula"),
-                "engine",
-                str(source / "scenes/training/1_sylvian_fissure.xml"),
-                "--motion",
-                "none",
-            ],
+            [str(build / "bin/insula"), "engine", scene, "--motion", "none"],
             cwd=folder,
             env=env,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
         )
-        spy = subprocess.Popen(
-            [str(source / "tools/spy/spy.sh"), str(pathlib.Path(folder) / "java")],
-            env=env,
-            stdout=log,
-            stderr=subprocess.STDOUT,
-        )
+        command = [str(source / "tools/spy/spy.sh"), str(pathlib.Path(folder) / "java")]
+        spy = subprocess.Popen(command, env=env, stdout=log, stderr=subprocess.STDOUT)
         try:
             with bus.join(port) as listener:
                 sent = bus.heard(listener, "RENDER_FRAME", 20, lambda: engine.poll() is None, 60)
-            end = time.monotonic() + 60
-            said = ""
-            while (
-                time.monotonic() < end and spy.poll() is None and "plugins" not in said
-            ):  # the last that it says before its window
-                time.sleep(0.2)
-                log.seek(0)
-                said = log.read()
-            time.sleep(WATCHED_S)
-            alive = spy.poll() is None
-            log.seek(0)
-            said = log.read()
+            alive, said = watch(spy, log)
         finally:
             for p in (spy, engine, screen):
                 p.terminate()

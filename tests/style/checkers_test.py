@@ -3,6 +3,7 @@
 """The checkers of this folder see what they are for."""
 import pathlib
 import sys
+import tempfile
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
@@ -36,14 +37,25 @@ class Functions(unittest.TestCase):
         self.assertIn(("TEST(Suite, Name)", 9, 15), found)
         self.assertFalse([f for f in found if f[0] in ("if", "f", "two")])
 
-    def test_length_and_reason(self):
+    def long_ones(self, comment, ending=".cpp"):
+        """The functions over the limit in a source with one function of 72 lines below this comment."""
         body = "".join("  step();\n" for _ in range(70))
-        text = "// Does much.\nvoid much() {\n" + body + "}\n"
-        name, first, last = function_length.functions(text)[0]
-        self.assertEqual((name, last - first + 1), ("much", 72))
-        self.assertFalse(function_length.reasoned(text.split("\n"), first))
-        text = "// Long because its steps share all of their state.\n" + text
-        self.assertTrue(function_length.reasoned(text.split("\n"), function_length.functions(text)[0][1]))
+        text = comment + ("def much():\n" + body + "\n" if ending == ".py" else "void much() {\n" + body + "}\n")
+        with tempfile.NamedTemporaryFile("w", suffix=ending) as file:
+            file.write(text.replace("step();", "step()") if ending == ".py" else text)
+            file.flush()
+            return [(name, length) for name, _, length in function_length.long_functions(pathlib.Path(file.name))]
+
+    def test_length_and_reason(self):
+        self.assertEqual(self.long_ones("// Does much.\n"), [("much", 72)])
+        self.assertEqual(self.long_ones("// Long because its steps share all of their state.\n"), [])
+        self.assertEqual(self.long_ones("/// Does much. Long because its steps share their state.\n"), [])
+        self.assertEqual(self.long_ones("// Long because of this.\n\n"), [("much", 72)])
+        self.assertEqual(self.long_ones("// It is too Long because it grew.\n"), [("much", 72)])
+
+    def test_python(self):
+        self.assertEqual(self.long_ones("# Does much.\n", ".py"), [("much", 71)])
+        self.assertEqual(self.long_ones("# Long because its steps share all of their state.\n", ".py"), [])
 
     def test_code_only_keeps_places(self):
         self.assertEqual(len(code_only(CODE)), len(CODE))

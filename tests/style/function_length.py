@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""function_length.py SOURCE [--list]: no function of the C++ sources is over 60 lines without a reason.
+"""function_length.py SOURCE: no function of the C++ and Python sources is over 60 lines without a reason.
 
-A function's lines run from the line of its opening brace to the line of its closing brace. A longer function passes
-when the comment above it says why, with the words "Long because". KNOWN names the long functions that wait to be split,
-with their lines: none may grow, and one that has become short must leave the table. --list prints the table anew. """
-import json
+A function's lines run from the line of its opening brace, in Python from its def, to its last line. A longer function
+passes when the comment directly above it has a sentence that begins with "Long because". ESLint has the same limit for
+TypeScript (viewer/page/eslint.config.js).
+"""
+import ast
 import pathlib
 import re
 import sys
@@ -14,8 +15,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 from sources import code_only, tracked  # noqa: E402
 
 LIMIT = 60
-REASON = "Long because"
-KNOWN = pathlib.Path(__file__).with_name("long_functions.json")
+REASON = re.compile(r"^\s*(?:///?<?|#)\s*(?:.*[.:;]\s+)?Long because \w+")
 NOT_FUNCTIONS = re.compile(r"^\s*(?:inline\s+)?(?:namespace|class|struct|union|enum|extern\s+\"\")")
 CONTROL = re.compile(r"\b(?:if|for|while|switch|catch|else|do|try)\b")
 
@@ -60,7 +60,7 @@ def function_name(head):
 
 
 def functions(text):
-    """(name, first line, last line) of each function of a source, lambdas within counted to it."""
+    """(name, first line, last line) of each function of a C++ source, lambdas within counted to it."""
     code = code_only(text)
     line_of, line = [], 1
     for c in code:
@@ -79,51 +79,53 @@ def functions(text):
     return out
 
 
+def python_functions(text):
+    """(name, first line, last line) of each function of a Python source, those within it counted to it."""
+    out = []
+
+    def visit(node):
+        for child in ast.iter_child_nodes(node):
+            if isinstance(child, (ast.FunctionDef, ast.AsyncFunctionDef)):
+                out.append((child.name, child.lineno, child.end_lineno))
+            else:
+                visit(child)
+
+    visit(ast.parse(text))
+    return out
+
+
 def reasoned(lines, first):
-    """Whether the comment above a function, or one in its first two lines, gives the reason."""
+    """Whether the comment directly above the function that begins in line `first` gives the reason."""
     at = first - 1
 
     def part_of_head(line):
-        return line.strip() and not line.strip().startswith("//") and not line.rstrip().endswith(("}", ";"))
+        return line.strip() and not line.strip().startswith(("//", "# ")) and not line.rstrip().endswith(("}", ";"))
 
     while at > 0 and part_of_head(lines[at - 1]):
         at -= 1
-    while at > 0 and lines[at - 1].strip().startswith("//"):
+    end = at
+    while at > 0 and lines[at - 1].strip().startswith(("//", "# ")):
         at -= 1
-    return any(REASON in line for line in lines[at : first + 2])
+    return any(REASON.match(line) for line in lines[at:end])
 
 
-def long_functions(source):
-    out = {}
-    for path in tracked(source, ".cpp", ".h"):
-        text = path.read_text(encoding="utf-8")
-        lines = text.split("\n")
-        for name, first, last in functions(text):
-            length = last - first + 1
-            if length > LIMIT and not reasoned(lines, first):
-                out["%s: %s" % (path.relative_to(source).as_posix(), name)] = (length, first)
-    return out
+def long_functions(path):
+    """(name, first line, lines) of the functions of a file that are over the limit without a reason."""
+    text = path.read_text(encoding="utf-8")
+    found = python_functions(text) if path.suffix == ".py" else functions(text)
+    lines = text.split("\n")
+    return [(name, first, last - first + 1) for name, first, last in found
+            if last - first >= LIMIT and not reasoned(lines, first)]
 
 
 def main():
     source = pathlib.Path(sys.argv[1]).resolve()
-    found = long_functions(source)
-    if "--list" in sys.argv:
-        print(json.dumps({k: v[0] for k, v in sorted(found.items())}, indent=2))
-        return 0
-    known = json.loads(KNOWN.read_text(encoding="utf-8"))
-    # Files move: a function is known by its name, wherever its file is.
-    limits = {k.split(": ", 1)[1]: v for k, v in known.items()}
-    wrong = []
-    for key, (length, first) in sorted(found.items()):
-        path, name = key.split(": ", 1)
-        allowed = limits.get(name, 0)
-        if length > allowed:
-            wrong.append("%s:%d: %s has %d lines; %d are allowed" % (path, first, name, length, max(LIMIT, allowed)))
-    present = {k.split(": ", 1)[1] for k in found}
-    for name in sorted(set(limits) - present):
-        wrong.append("long_functions.json: %s is short now; take it out" % name)
-    print("\n".join(wrong))
+    wrong = 0
+    for path in tracked(source, ".cpp", ".h", ".py"):
+        for name, first, length in long_functions(path):
+            wrong += 1
+            print("%s:%d: %s has %d lines; %d are allowed"
+                  % (path.relative_to(source).as_posix(), first, name, length, LIMIT))
     return 1 if wrong else 0
 
 

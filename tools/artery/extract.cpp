@@ -78,71 +78,99 @@ TriMesh extract(const std::function<double(const Vec3&)>& value, const Vec3& low
   return out;
 }
 
-void cut_and_close(Surface& surface, const CapPlane& cap, double reach) {
-  TriMesh& m = surface.mesh;
-  const int label = int(surface.caps.size());
-  std::vector<double> over(m.vertices.size());
-  std::vector<char> near(m.vertices.size());
-  for (std::size_t v = 0; v < over.size(); ++v) {
-    over[v] = (m.vertices[v] - cap.centre).dot(cap.normal);
-    if (std::abs(over[v]) < 1e-9) over[v] = 1e-9;
-    near[v] = (m.vertices[v] - cap.centre).norm() < reach;
+namespace {
+
+/// A surface that is cut at a cap's plane, near the cap.
+class CutSurface {
+ public:
+  CutSurface(Surface& surface, const CapPlane& cap, double reach)
+      : surface_(surface), m_(surface.mesh), cap_(cap), over_(m_.vertices.size()), near_(m_.vertices.size()) {
+    for (std::size_t v = 0; v < over_.size(); ++v) {
+      over_[v] = (m_.vertices[v] - cap.centre).dot(cap.normal);
+      if (std::abs(over_[v]) < 1e-9) over_[v] = 1e-9;
+      near_[v] = (m_.vertices[v] - cap.centre).norm() < reach;
+    }
   }
-  std::map<std::pair<int, int>, int> made;
-  const auto crossing = [&](int a, int b) {
-    const auto [at, fresh] = made.emplace(std::minmax(a, b), int(m.vertices.size()));
+
+  void cut() {
+    for (std::size_t t = 0; t < m_.triangles.size(); ++t) {
+      int beyond = 0;
+      bool all_near = true;
+      for (const int v : m_.triangles[t])
+        beyond += over_[std::size_t(v)] > 0, all_near = all_near && near_[std::size_t(v)];
+      if (beyond == 0 || !all_near) keep(m_.triangles[t], surface_.patch[t]);
+      else if (beyond < 3) split(t);
+    }
+    if (rim_.empty()) throw std::runtime_error("the plane of " + cap_.name + " meets no vessel");
+  }
+
+  /// Closes the rim with a fan about its middle.
+  void close() {
+    const int label = int(surface_.caps.size());
+    Vec3 centre = Vec3::Zero();
+    for (const auto& [a, b] : rim_) centre += m_.vertices[std::size_t(a)] / double(rim_.size());
+    const int hub = int(m_.vertices.size());
+    m_.vertices.push_back(centre);
+    std::size_t count = 0;
+    for (int v = rim_.begin()->first; count < rim_.size(); ++count) {
+      const auto at = rim_.find(v);
+      if (at == rim_.end()) throw std::runtime_error("the rim of " + cap_.name + " is not closed");
+      keep({v, at->second, hub}, label);
+      v = at->second;
+      if (v == rim_.begin()->first) break;
+    }
+    if (count + 1 != rim_.size()) throw std::runtime_error("the plane of " + cap_.name + " cuts more than one vessel");
+    m_.triangles = std::move(kept_);
+    surface_.patch = std::move(patch_);
+    surface_.caps.push_back(cap_);
+  }
+
+ private:
+  void keep(const std::array<int, 3>& t, int patch) { kept_.push_back(t), patch_.push_back(patch); }
+  int crossing(int a, int b) {
+    const auto [at, fresh] = made_.emplace(std::minmax(a, b), int(m_.vertices.size()));
     if (fresh) {
-      const double w = over[std::size_t(a)] / (over[std::size_t(a)] - over[std::size_t(b)]);
-      m.vertices.push_back((1 - w) * m.vertices[std::size_t(a)] + w * m.vertices[std::size_t(b)]);
+      const double w = over_[std::size_t(a)] / (over_[std::size_t(a)] - over_[std::size_t(b)]);
+      m_.vertices.push_back((1 - w) * m_.vertices[std::size_t(a)] + w * m_.vertices[std::size_t(b)]);
     }
     return at->second;
-  };
-  std::vector<std::array<int, 3>> kept;
-  std::vector<int> patch;
-  std::map<int, int> next;  // rim edges, against the wall's direction
-  for (std::size_t t = 0; t < m.triangles.size(); ++t) {
-    const auto tri = m.triangles[t];
-    int beyond = 0;
-    bool all_near = true;
-    for (const int v : tri) beyond += over[std::size_t(v)] > 0, all_near = all_near && near[std::size_t(v)];
-    if (beyond == 0 || !all_near) {
-      kept.push_back(tri), patch.push_back(surface.patch[t]);
-      continue;
-    }
-    if (beyond == 3) continue;
+  }
+  void split(std::size_t t) {
+    const auto tri = m_.triangles[t];
     std::vector<int> polygon, rim;
     for (std::size_t k = 0; k < 3; ++k) {
       const int a = tri[k], b = tri[(k + 1) % 3];
-      if (over[std::size_t(a)] < 0) polygon.push_back(a);
-      if ((over[std::size_t(a)] < 0) != (over[std::size_t(b)] < 0)) {
+      if (over_[std::size_t(a)] < 0) polygon.push_back(a);
+      if ((over_[std::size_t(a)] < 0) != (over_[std::size_t(b)] < 0)) {
         const int x = crossing(a, b);
         polygon.push_back(x);
-        if (over[std::size_t(a)] < 0) rim.insert(rim.begin(), x);
+        if (over_[std::size_t(a)] < 0) rim.insert(rim.begin(), x);
         else rim.push_back(x);
       }
     }
     for (std::size_t k = 1; k + 1 < polygon.size(); ++k)
-      kept.push_back({polygon[0], polygon[k], polygon[k + 1]}), patch.push_back(surface.patch[t]);
-    next[rim[1]] = rim[0];  // the wall runs rim[0] -> rim[1]
+      keep({polygon[0], polygon[k], polygon[k + 1]}, surface_.patch[t]);
+    rim_[rim[1]] = rim[0];  // the wall runs rim[0] -> rim[1]
   }
-  if (next.empty()) throw std::runtime_error("the plane of " + cap.name + " meets no vessel");
-  Vec3 centre = Vec3::Zero();
-  for (const auto& [a, b] : next) centre += m.vertices[std::size_t(a)] / double(next.size());
-  const int hub = int(m.vertices.size());
-  m.vertices.push_back(centre);
-  std::size_t count = 0;
-  for (int v = next.begin()->first; count < next.size(); ++count) {
-    const auto at = next.find(v);
-    if (at == next.end()) throw std::runtime_error("the rim of " + cap.name + " is not closed");
-    kept.push_back({v, at->second, hub}), patch.push_back(label);
-    v = at->second;
-    if (v == next.begin()->first) break;
-  }
-  if (count + 1 != next.size()) throw std::runtime_error("the plane of " + cap.name + " cuts more than one vessel");
-  m.triangles = std::move(kept);
-  surface.patch = std::move(patch);
-  surface.caps.push_back(cap);
-  number_by_use(m);
+
+  Surface& surface_;
+  TriMesh& m_;
+  const CapPlane& cap_;
+  std::vector<double> over_;  ///< of the vertices: height over the plane
+  std::vector<char> near_;    ///< of the vertices
+  std::map<std::pair<int, int>, int> made_;
+  std::vector<std::array<int, 3>> kept_;
+  std::vector<int> patch_;
+  std::map<int, int> rim_;  ///< its edges, against the wall's direction
+};
+
+}  // namespace
+
+void cut_and_close(Surface& surface, const CapPlane& cap, double reach) {
+  CutSurface cut(surface, cap, reach);
+  cut.cut();
+  cut.close();
+  number_by_use(surface.mesh);
 }
 
 void number_by_use(TriMesh& mesh) {

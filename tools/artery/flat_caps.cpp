@@ -18,121 +18,163 @@ constexpr double rim_width = 0.35;          // times the cap's radius: within it
 constexpr int sectors = 8, min_turned = 7;  // in all directions but one ...
 constexpr double max_cosine = 0.7;          // ... by 45 degrees on average
 
-}  // namespace
+/// A closed surface by triangles: areas, normals, neighbours.
+struct Facets {
+  const TriMesh& m;
+  std::vector<Vec3> normal;
+  std::vector<double> area;
+  std::vector<std::array<int, 3>> beside;  ///< across the edge from corner k to the next
+  double whole = 0;                        ///< area
 
-Surface with_flat_caps(const TriMesh& m) {
-  const std::size_t n = m.triangles.size();
-  std::map<std::pair<int, int>, int> left;  // triangle to the left of a directed edge
-  std::vector<Vec3> normal(n);
-  std::vector<double> area(n);
-  double whole = 0;
-  for (std::size_t t = 0; t < n; ++t) {
-    const auto& tri = m.triangles[t];
-    const Vec3 &a = m.vertices[std::size_t(tri[0])], &b = m.vertices[std::size_t(tri[1])],
-               &c = m.vertices[std::size_t(tri[2])];
-    const Vec3 twice = (b - a).cross(c - a);
-    area[t] = 0.5 * twice.norm(), normal[t] = twice.normalized(), whole += area[t];
-    for (std::size_t k = 0; k < 3; ++k)
-      if (!left.emplace(std::pair(tri[k], tri[(k + 1) % 3]), int(t)).second)
-        throw std::runtime_error("the surface is no manifold");
+  explicit Facets(const TriMesh& mesh)
+      : m(mesh), normal(mesh.triangles.size()), area(mesh.triangles.size()), beside(mesh.triangles.size()) {
+    std::map<std::pair<int, int>, int> left;  // triangle to the left of a directed edge
+    for (std::size_t t = 0; t < normal.size(); ++t) {
+      const auto& tri = m.triangles[t];
+      const Vec3 &a = m.vertices[std::size_t(tri[0])], &b = m.vertices[std::size_t(tri[1])],
+                 &c = m.vertices[std::size_t(tri[2])];
+      const Vec3 twice = (b - a).cross(c - a);
+      area[t] = 0.5 * twice.norm(), normal[t] = twice.normalized(), whole += area[t];
+      for (std::size_t k = 0; k < 3; ++k)
+        if (!left.emplace(std::pair(tri[k], tri[(k + 1) % 3]), int(t)).second)
+          throw std::runtime_error("the surface is no manifold");
+    }
+    for (const auto& [edge, t] : left)
+      if (!left.count({edge.second, edge.first})) throw std::runtime_error("the surface is not closed");
+    for (std::size_t t = 0; t < beside.size(); ++t)
+      for (std::size_t k = 0; k < 3; ++k) beside[t][k] = left.at({m.triangles[t][(k + 1) % 3], m.triangles[t][k]});
   }
-  for (const auto& [edge, t] : left)
-    if (!left.count({edge.second, edge.first})) throw std::runtime_error("the surface is not closed");
-
-  struct Found {
-    std::vector<int> triangles;
-    CapPlane plane;
-  };
-  std::vector<std::array<int, 3>> beside(n);
-  for (std::size_t t = 0; t < n; ++t)
-    for (std::size_t k = 0; k < 3; ++k) beside[t][k] = left.at({m.triangles[t][(k + 1) % 3], m.triangles[t][k]});
-  const auto across = [&](std::size_t t, std::size_t k) { return std::size_t(beside[t][k]); };
-  const auto middle = [&](std::size_t t) -> Vec3 {
+  std::size_t count() const { return area.size(); }
+  std::size_t across(std::size_t t, std::size_t k) const { return std::size_t(beside[t][k]); }
+  Vec3 middle(std::size_t t) const {
     const auto& tri = m.triangles[t];
     return (m.vertices[std::size_t(tri[0])] + m.vertices[std::size_t(tri[1])] + m.vertices[std::size_t(tri[2])]) / 3;
-  };
-  std::vector<char> taken(n);
-  std::vector<int> mark(n, -1), ring_mark(n, -1);
-  int marks = 0;
-  const auto grow = [&](std::size_t seed, const Vec3& towards) {
-    Found cap;
+  }
+  /// All triangles, the flattest places first.
+  std::vector<std::size_t> flattest_first() const {
+    std::vector<std::pair<double, int>> seeds;
+    for (std::size_t t = 0; t < count(); ++t) {
+      double bend = 0;
+      for (std::size_t k = 0; k < 3; ++k) bend = std::max(bend, 1 - normal[t].dot(normal[across(t, k)]));
+      seeds.emplace_back(bend, int(t));
+    }
+    std::sort(seeds.begin(), seeds.end());
+    std::vector<std::size_t> out;
+    for (const auto& [bend, t] : seeds) out.push_back(std::size_t(t));
+    return out;
+  }
+};
+
+struct FlatCap {
+  std::vector<int> triangles;
+  CapPlane plane;
+};
+
+/// Grows flat patches and tells which of them are caps.
+class CapFinder {
+ public:
+  explicit CapFinder(const Facets& f) : f_(f), taken_(f.count()), mark_(f.count(), -1), ring_mark_(f.count(), -1) {}
+
+  std::vector<FlatCap> find() {
+    std::vector<FlatCap> found;
+    for (const std::size_t seed : f_.flattest_first()) {
+      if (taken_[seed]) continue;
+      FlatCap cap = grow(seed, f_.normal[seed]);
+      if (!large(cap)) continue;
+      cap = grow(seed, cap.plane.normal);
+      if (!large(cap) || !surface_turns_away(cap)) continue;
+      for (const int t : cap.triangles) taken_[std::size_t(t)] = 1;
+      found.push_back(std::move(cap));
+    }
+    return found;
+  }
+
+ private:
+  /// The triangles that hang together with the seed and face `towards`.
+  FlatCap grow(std::size_t seed, const Vec3& towards) {
+    FlatCap cap;
     cap.triangles = {int(seed)};
-    mark[seed] = ++marks;
+    mark_[seed] = ++marks_;
     Vec3 sum = Vec3::Zero(), centre = Vec3::Zero();
     double total = 0;
     for (std::size_t i = 0; i < cap.triangles.size(); ++i) {
       const auto t = std::size_t(cap.triangles[i]);
-      total += area[t], sum += area[t] * normal[t], centre += area[t] * middle(t);
+      total += f_.area[t], sum += f_.area[t] * f_.normal[t], centre += f_.area[t] * f_.middle(t);
       for (std::size_t k = 0; k < 3; ++k) {
-        const std::size_t next = across(t, k);
-        if (mark[next] == marks || taken[next] ||
-            normal[next].dot(towards) < std::cos(flat_deg * std::numbers::pi / 180))
+        const std::size_t next = f_.across(t, k);
+        if (mark_[next] == marks_ || taken_[next] ||
+            f_.normal[next].dot(towards) < std::cos(flat_deg * std::numbers::pi / 180))
           continue;
-        mark[next] = marks;
+        mark_[next] = marks_;
         cap.triangles.push_back(int(next));
       }
     }
     cap.plane = {"", centre / total, sum.normalized(), std::sqrt(total / std::numbers::pi)};
     return cap;
-  };
-
-  std::vector<std::pair<double, int>> seeds;  // the flattest places first
-  for (std::size_t t = 0; t < n; ++t) {
-    double bend = 0;
-    for (std::size_t k = 0; k < 3; ++k) bend = std::max(bend, 1 - normal[t].dot(normal[across(t, k)]));
-    seeds.emplace_back(bend, int(t));
   }
-  std::sort(seeds.begin(), seeds.end());
-  std::vector<Found> found;
-  std::vector<char> refused(n);
-  for (const auto& [bend, first] : seeds) {
-    const auto seed = std::size_t(first);
-    if (taken[seed] || refused[seed]) continue;
-    Found cap = grow(seed, normal[seed]);
-    const auto large = [&] { return std::numbers::pi * cap.plane.radius * cap.plane.radius >= min_area_share * whole; };
-    if (large()) cap = grow(seed, cap.plane.normal);
-    const double r = cap.plane.radius, total = std::numbers::pi * r * r;
-    // The ring of triangles about it, each with the place on the rim it was reached from.
-    double rim = 0, ring_area[sectors] = {}, ring_cosine[sectors] = {};
+
+  bool large(const FlatCap& cap) const {
+    return std::numbers::pi * cap.plane.radius * cap.plane.radius >= min_area_share * f_.whole;
+  }
+
+  /// Adds a triangle to the ring about the cap that was grown last, with the place on the rim it was reached from.
+  void reach(std::size_t t, const Vec3& from, double radius) {
+    if (mark_[t] == marks_ || ring_mark_[t] == marks_ || (f_.middle(t) - from).norm() > rim_width * radius) return;
+    ring_mark_[t] = marks_;
+    ring_.emplace_back(int(t), from);
+  }
+
+  /// The first triangles of the ring; returns the length of the rim.
+  double begin_ring(const FlatCap& cap) {
+    ring_.clear();
+    double rim = 0;
+    for (const int t : cap.triangles)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto& tri = f_.m.triangles[std::size_t(t)];
+        const Vec3 &a = f_.m.vertices[std::size_t(tri[k])], &b = f_.m.vertices[std::size_t(tri[(k + 1) % 3])];
+        if (mark_[f_.across(std::size_t(t), k)] == marks_) continue;
+        rim += (b - a).norm();
+        reach(f_.across(std::size_t(t), k), 0.5 * (a + b), cap.plane.radius);
+      }
+    return rim;
+  }
+
+  /// Whether the cap that was grown last is round and the surface turns away from it nearly all round.
+  bool surface_turns_away(const FlatCap& cap) {
+    const double rim = begin_ring(cap);
+    double ring_area[sectors] = {}, ring_cosine[sectors] = {};
     const Vec3 e1 = cap.plane.normal.unitOrthogonal(), e2 = cap.plane.normal.cross(e1);
-    std::vector<std::pair<int, Vec3>> ring;
-    const auto reach = [&](std::size_t t, const Vec3& from) {
-      if (mark[t] == marks || ring_mark[t] == marks || (middle(t) - from).norm() > rim_width * r) return;
-      ring_mark[t] = marks;
-      ring.emplace_back(int(t), from);
-    };
-    if (large())
-      for (const int t : cap.triangles)
-        for (std::size_t k = 0; k < 3; ++k) {
-          const Vec3 &a = m.vertices[std::size_t(m.triangles[std::size_t(t)][k])],
-                     &b = m.vertices[std::size_t(m.triangles[std::size_t(t)][(k + 1) % 3])];
-          if (mark[across(std::size_t(t), k)] == marks) continue;
-          rim += (b - a).norm();
-          reach(across(std::size_t(t), k), 0.5 * (a + b));
-        }
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-      const auto [t, from] = ring[i];
-      const Vec3 d = middle(std::size_t(t)) - cap.plane.centre;
+    for (std::size_t i = 0; i < ring_.size(); ++i) {
+      const auto [t, from] = ring_[i];
+      const Vec3 d = f_.middle(std::size_t(t)) - cap.plane.centre;
       const int sector =
           std::clamp(int((std::atan2(d.dot(e2), d.dot(e1)) / std::numbers::pi + 1) / 2 * sectors), 0, sectors - 1);
-      ring_area[sector] += area[std::size_t(t)],
-          ring_cosine[sector] += area[std::size_t(t)] * normal[std::size_t(t)].dot(cap.plane.normal);
-      for (std::size_t k = 0; k < 3; ++k) reach(across(std::size_t(t), k), from);
+      ring_area[sector] += f_.area[std::size_t(t)],
+          ring_cosine[sector] += f_.area[std::size_t(t)] * f_.normal[std::size_t(t)].dot(cap.plane.normal);
+      for (std::size_t k = 0; k < 3; ++k) reach(f_.across(std::size_t(t), k), from, cap.plane.radius);
     }
     int turned = 0;
     for (int i = 0; i < sectors; ++i) turned += ring_cosine[i] < max_cosine * ring_area[i];
-    const bool good = large() && turned >= min_turned && 4 * std::numbers::pi * total > min_roundness * rim * rim;
-    if (!good) {
-      refused[seed] = 1;
-      continue;
-    }
-    for (const int t : cap.triangles) taken[std::size_t(t)] = 1;
-    found.push_back(std::move(cap));
+    const double total = std::numbers::pi * cap.plane.radius * cap.plane.radius;
+    return turned >= min_turned && 4 * std::numbers::pi * total > min_roundness * rim * rim;
   }
+
+  const Facets& f_;
+  std::vector<char> taken_;
+  std::vector<int> mark_, ring_mark_;  ///< of the triangles: the last patch they belong to, or to whose ring
+  int marks_ = 0;
+  std::vector<std::pair<int, Vec3>> ring_;
+};
+
+}  // namespace
+
+Surface with_flat_caps(const TriMesh& m) {
+  const Facets facets(m);
+  std::vector<FlatCap> found = CapFinder(facets).find();
   std::stable_sort(found.begin(), found.end(),
-                   [](const Found& a, const Found& b) { return a.plane.radius > b.plane.radius; });
-  Surface out{m, std::vector<int>(n, -1), {}};
-  for (const Found& f : found) {
+                   [](const FlatCap& a, const FlatCap& b) { return a.plane.radius > b.plane.radius; });
+  Surface out{m, std::vector<int>(m.triangles.size(), -1), {}};
+  for (const FlatCap& f : found) {
     for (const int t : f.triangles) out.patch[std::size_t(t)] = int(out.caps.size());
     out.caps.push_back(f.plane);
   }

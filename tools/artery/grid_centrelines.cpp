@@ -140,9 +140,8 @@ Paths find_paths(const Surface& surface, const WallPoints& wall, int across_long
   return out;
 }
 
-}  // namespace
-
-std::vector<NamedCurve> grid_centrelines(const Surface& surface, const WallPoints& wall) {
+/// With a finer grid where a coarser one loses a cap.
+Paths paths_to_all_caps(const Surface& surface, const WallPoints& wall) {
   Box box;
   for (const Vec3& p : surface.mesh.vertices) box.extend(p);
   const double flatness = box.sizes().prod() / std::pow(box.sizes().maxCoeff(), 3);
@@ -152,58 +151,83 @@ std::vector<NamedCurve> grid_centrelines(const Surface& surface, const WallPoint
     found = find_paths(surface, wall, across);
     if (found->lost < 0) break;
   }
-  const Paths& paths = *found;
-  if (paths.lost >= 0) {
-    const CapPlane& cap = surface.caps[std::size_t(paths.lost)];
+  if (found->lost >= 0) {
+    const CapPlane& cap = surface.caps[std::size_t(found->lost)];
     throw InputError(fmt::format(
         "no way leads from the inlet to {} at ({:.1f}, {:.1f}, {:.1f}), {:.2f} mm across: the vessel is too thin on "
         "the way for a grid of {:.2g} mm. Cut it off before it gets so thin (--cut), or leave out what lies far away",
-        cap.name, cap.centre.x(), cap.centre.y(), cap.centre.z(), 2 * cap.radius, paths.grid.step));
+        cap.name, cap.centre.x(), cap.centre.y(), cap.centre.z(), 2 * cap.radius, found->grid.step));
   }
-  const InnerGrid& grid = paths.grid;
-  const std::vector<int>& before = paths.before;
-  const int start = paths.cell[0];
+  return std::move(*found);
+}
 
-  // The union of the paths is a tree: it is walked from the inlet, fork by fork.
-  std::map<int, std::set<int>> after;
-  std::map<int, std::size_t> outlet;
-  for (std::size_t c = 1; c < surface.caps.size(); ++c) {
-    int v = paths.cell[c];
-    outlet[v] = c;
-    for (; before[std::size_t(v)] >= 0; v = before[std::size_t(v)]) after[before[std::size_t(v)]].insert(v);
+/// The union of the paths, a tree of cells; it is walked from the inlet, fork by fork.
+class PathTree {
+ public:
+  PathTree(const Surface& surface, const WallPoints& wall, const Paths& paths)
+      : surface_(surface), wall_(wall), grid_(paths.grid), start_(paths.cell[0]) {
+    for (std::size_t c = 1; c < surface.caps.size(); ++c) {
+      int v = paths.cell[c];
+      outlet_[v] = c;
+      for (; paths.before[std::size_t(v)] >= 0; v = paths.before[std::size_t(v)])
+        after_[paths.before[std::size_t(v)]].insert(v);
+    }
   }
+  std::vector<NamedCurve> curves() {
+    todo_ = {{start_, *after_.at(start_).begin(), surface_.caps[0].name}};
+    std::vector<NamedCurve> out;
+    while (!todo_.empty()) {
+      const Walk w = todo_.back();
+      todo_.pop_back();
+      out.push_back(walk(w, out.empty()));
+    }
+    return out;
+  }
+
+ private:
   struct Walk {
     int from, next;
     std::string name;
   };
-  std::vector<NamedCurve> out;
-  std::vector<Walk> todo{{start, *after.at(start).begin(), surface.caps[0].name}};
-  int forks = 0, trunks = 0, branches = 0;
-  while (!todo.empty()) {
-    const Walk w = todo.back();
-    todo.pop_back();
+  /// To the next fork or to an outlet.
+  NamedCurve walk(const Walk& w, bool first) {
     std::vector<Vec3> points;
-    if (w.from == start) points.push_back(surface.caps[0].centre);
-    points.push_back(grid.point(w.from));
+    if (w.from == start_) points.push_back(surface_.caps[0].centre);
+    points.push_back(grid_.point(w.from));
     int v = w.next;
-    points.push_back(grid.point(v));
-    while (!outlet.count(v) && after.at(v).size() == 1) v = *after.at(v).begin(), points.push_back(grid.point(v));
+    points.push_back(grid_.point(v));
+    while (!outlet_.count(v) && after_.at(v).size() == 1) v = *after_.at(v).begin(), points.push_back(grid_.point(v));
     NamedCurve c;
     c.from = w.name;
-    if (outlet.count(v)) {
-      c.to = surface.caps[outlet[v]].name;
-      points.push_back(surface.caps[outlet[v]].centre);
-      c.name = out.empty() ? "parent" : "branch_" + std::to_string(++branches);
+    if (outlet_.count(v)) {
+      c.to = surface_.caps[outlet_[v]].name;
+      points.push_back(surface_.caps[outlet_[v]].centre);
+      c.name = first ? "parent" : "branch_" + std::to_string(++branches_);
     } else {
-      c.to = forks++ == 0 ? "bifurcation" : "bifurcation_" + std::to_string(forks);
-      c.name = out.empty() ? "parent" : "trunk_" + std::to_string(++trunks);
-      for (auto next = after.at(v).rbegin(); next != after.at(v).rend(); ++next) todo.push_back({v, *next, c.to});
+      c.to = forks_++ == 0 ? "bifurcation" : "bifurcation_" + std::to_string(forks_);
+      c.name = first ? "parent" : "trunk_" + std::to_string(++trunks_);
+      for (auto next = after_.at(v).rbegin(); next != after_.at(v).rend(); ++next) todo_.push_back({v, *next, c.to});
     }
     c.region = c.name;
-    c.curve = smoothed(points, wall, 2 * grid.step);
-    out.push_back(std::move(c));
+    c.curve = smoothed(points, wall_, 2 * grid_.step);
+    return c;
   }
-  return out;
+
+  const Surface& surface_;
+  const WallPoints& wall_;
+  const InnerGrid& grid_;
+  int start_;
+  std::map<int, std::set<int>> after_;
+  std::map<int, std::size_t> outlet_;
+  std::vector<Walk> todo_;
+  int forks_ = 0, trunks_ = 0, branches_ = 0;
+};
+
+}  // namespace
+
+std::vector<NamedCurve> grid_centrelines(const Surface& surface, const WallPoints& wall) {
+  const Paths paths = paths_to_all_caps(surface, wall);
+  return PathTree(surface, wall, paths).curves();
 }
 
 }  // namespace insula::artery

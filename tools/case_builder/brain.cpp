@@ -137,6 +137,67 @@ Placement brain_motion(const CaseFolder& folder) {
   return p;
 }
 
+namespace {
+
+/// Surfaces of the three lobes that keep clear of one another.
+std::vector<mesh_tool::TriangleMesh> surfaces_of(const mesh_tool::PartFields& fields) {
+  std::vector<mesh_tool::TriangleMesh> surfaces;
+  for (std::size_t a = 0; a < 3; ++a)
+    surfaces.push_back(mesh_surface(fields.grid, fields.fine[a], growing(fields, a, edge[a], focus), edge_error));
+  for (std::size_t a = 0; a < 3; ++a)
+    for (std::size_t b = a + 1; b < 3; ++b)
+      if (clearance(surfaces[a], surfaces[b]).intersect)
+        throw InputError(
+            fmt::format("--brain: the surfaces of {} and {} run through each other", lobe_names[a], lobe_names[b]));
+  return surfaces;
+}
+
+/// Writes the lobes' files; returns what there is to say of each.
+Json write_lobes(const CaseFolder& folder, const std::vector<mesh_tool::TriangleMesh>& surfaces,
+                 const std::vector<mesh_tool::TetMesh>& meshes) {
+  fs::create_directories(folder.brain());
+  Json out = Json::array();
+  for (std::size_t a = 0; a < 3; ++a) {
+    const std::string name = lobe_names[a];
+    write_ply(folder.brain() / (name + "_surface.ply"), as_mesh(surfaces[a]), "unit mm; of the case's own brain");
+    Json one{{"name", name},
+             {"triangles", surfaces[a].triangles.size()},
+             {"volume_mm3", rounded(signed_volume(surfaces[a]))}};
+    if (a < 2) {
+      write_msh((folder.brain() / (name + ".msh")).string(), meshes[a], mesh_tool::MshFormat::v2_ascii);
+      one["nodes"] = meshes[a].points.size(), one["tetrahedra"] = meshes[a].tets.size(),
+      one["least_angle_deg"] = rounded(dihedral_range(meshes[a]).min_deg);
+    }
+    out.push_back(one);
+  }
+  return out;
+}
+
+/// Meshes the brain and writes its files.
+Json mesh_brain(BrainLabels& given, const CaseFolder& folder, const fs::path& project, const Options& o,
+                std::vector<Note>& notes, Progress& progress) {
+  const mesh_tool::FieldOptions f = field_options();
+  Json json;
+  progress.step("borders of the lobes");
+  mesh_tool::PartFields fields = build_part_fields(given.volume, nullptr, given.parts, f);
+  Placement motion;
+  if (!o.brain_in_place && given.own_fissure) motion = settle_in(given, fields, project, notes);
+  json["rotation"] = Json::array();
+  for (int k = 0; k < 9; ++k) json["rotation"].push_back(rounded(motion.rotation(k / 3, k % 3)));
+  json["shift_mm"] = to_json(motion.shift);
+  progress.step("surfaces");
+  const std::vector<mesh_tool::TriangleMesh> surfaces = surfaces_of(fields);
+  progress.step("tetrahedra");
+  const std::vector<mesh_tool::TetMesh> meshes = lobes_of(fields, f.coarse_gap, o.brain_nodes, notes);
+  if (clearance(boundary_mesh(meshes[0]), boundary_mesh(meshes[1])).intersect)
+    throw InputError(
+        "--brain: the tetrahedra of the two lobes run through each other; allow more nodes with --brain-nodes");
+  json["lobes"] = write_lobes(folder, surfaces, meshes);
+  return json;
+}
+
+}  // namespace
+
 void run_brain(const CaseFolder& folder, const fs::path& project, const Options& o, Progress& progress) {
   std::error_code ignored;
   fs::remove_all(folder.brain(), ignored);
@@ -147,45 +208,9 @@ void run_brain(const CaseFolder& folder, const fs::path& project, const Options&
   progress.step("reading the brain");
   std::vector<Note> notes;
   BrainLabels given = read_brain(o, project, notes);
-  const mesh_tool::FieldOptions f = field_options();
   Json json;
   try {
-    progress.step("borders of the lobes");
-    mesh_tool::PartFields fields = build_part_fields(given.volume, nullptr, given.parts, f);
-    Placement motion;
-    if (!o.brain_in_place && given.own_fissure) motion = settle_in(given, fields, project, notes);
-    json["rotation"] = Json::array();
-    for (int k = 0; k < 9; ++k) json["rotation"].push_back(rounded(motion.rotation(k / 3, k % 3)));
-    json["shift_mm"] = to_json(motion.shift);
-    progress.step("surfaces");
-    std::vector<mesh_tool::TriangleMesh> surfaces;
-    for (std::size_t a = 0; a < 3; ++a)
-      surfaces.push_back(mesh_surface(fields.grid, fields.fine[a], growing(fields, a, edge[a], focus), edge_error));
-    for (std::size_t a = 0; a < 3; ++a)
-      for (std::size_t b = a + 1; b < 3; ++b)
-        if (clearance(surfaces[a], surfaces[b]).intersect)
-          throw InputError(
-              fmt::format("--brain: the surfaces of {} and {} run through each other", lobe_names[a], lobe_names[b]));
-    progress.step("tetrahedra");
-    const std::vector<mesh_tool::TetMesh> meshes = lobes_of(fields, f.coarse_gap, o.brain_nodes, notes);
-    if (clearance(boundary_mesh(meshes[0]), boundary_mesh(meshes[1])).intersect)
-      throw InputError(
-          "--brain: the tetrahedra of the two lobes run through each other; allow more nodes with --brain-nodes");
-    fs::create_directories(folder.brain());
-    json["lobes"] = Json::array();
-    for (std::size_t a = 0; a < 3; ++a) {
-      const std::string name = lobe_names[a];
-      write_ply(folder.brain() / (name + "_surface.ply"), as_mesh(surfaces[a]), "unit mm; of the case's own brain");
-      Json one{{"name", name},
-               {"triangles", surfaces[a].triangles.size()},
-               {"volume_mm3", rounded(signed_volume(surfaces[a]))}};
-      if (a < 2) {
-        write_msh((folder.brain() / (name + ".msh")).string(), meshes[a], mesh_tool::MshFormat::v2_ascii);
-        one["nodes"] = meshes[a].points.size(), one["tetrahedra"] = meshes[a].tets.size(),
-        one["least_angle_deg"] = rounded(dihedral_range(meshes[a]).min_deg);
-      }
-      json["lobes"].push_back(one);
-    }
+    json = mesh_brain(given, folder, project, o, notes, progress);
   } catch (const InputError&) {
     throw;
   } catch (const std::exception& e) {  // the mesh generator's own

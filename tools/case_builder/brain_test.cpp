@@ -105,7 +105,7 @@ TEST_F(OwnBrain, WhatCannotBeIsRefusedWithWhatToDo) {
       with(1, test::scaled(block(1), 1e3))
           .find("no part of a brain is (usual: 15 to 250 mm); as if its numbers were in um: give --brain-unit um"),
       std::string::npos);
-  EXPECT_NE(with(1, test::scaled(block(1), 1e6)).find("give the millimetres of its unit, --brain-unit-mm 1e-06"),
+  EXPECT_NE(with(1, test::scaled(block(1), 1e6)).find("give its unit as a length, --brain-unit \"1e-06 mm\""),
             std::string::npos);
   TriMesh open = block(1);
   open.triangles.resize(10);

@@ -161,14 +161,14 @@ TEST(MadeCase, GivesTheSameFilesTwiceAndStagesCanBeDoneAgainAlone) {
   ASSERT_EQ(command({"wall", made.path.string()}, &said), 0) << said;
   ASSERT_EQ(command({"place", made.path.string()}, &said), 0) << said;
   EXPECT_EQ(first, files_of(made.path));
-  ASSERT_EQ(command({"wall", made.path.string(), "--neck", "0", "0", "2.2", "0", "0", "1"}, &said), 0) << said;
+  ASSERT_EQ(command({"wall", made.path.string(), "--neck", "0 0 2.2 mm 0 0 1"}, &said), 0) << said;
   const artery::Vessel v = read_wall(made.wall());
   EXPECT_NEAR(v.neck->centre.z(), 2.2, 0.05);
   EXPECT_NEAR(v.neck->normal.z(), 1, 1e-6);
   EXPECT_NEAR(v.neck->diameter, 2 * std::sqrt(2.4 * 2.4 - 1.4 * 1.4), 0.5);  // a section of the ball
   EXPECT_NEAR(double(v.wall.mesh.vertices.size()), 900, 200);
   std::string why;
-  EXPECT_EQ(command({"wall", made.path.string(), "--neck", "0", "0", "0", "1", "0", "0"}, &why), 2);
+  EXPECT_EQ(command({"wall", made.path.string(), "--neck", "0", "0", "0", "mm", "1", "0", "0"}, &why), 2);
   EXPECT_NE(why.find("an opening lies on its dome side"), std::string::npos) << why;
   EXPECT_EQ(command({"place", folder.path().string()}, &why), 2);
   EXPECT_NE(why.find("is no case"), std::string::npos);

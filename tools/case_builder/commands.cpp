@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <functional>
 #include <optional>
 
 #include "core/base/input_error.h"
@@ -12,6 +13,7 @@
 #include "tools/case_builder/project.h"
 #include "tools/case_builder/report.h"
 #include "tools/case_builder/scenes.h"
+#include "tools/case_builder/unit_options.h"
 #include "tools/case_builder/wall.h"
 
 namespace insula::case_builder {
@@ -25,30 +27,77 @@ struct Line {
   bool on = false;
 };
 
-template <std::size_t N>
-void numbers(CLI::App* app, const std::string& name, std::optional<std::array<double, N>>& to,
-             const std::string& text) {
-  app->add_option_function<std::vector<double>>(
-         name,
-         [&to](const std::vector<double>& v) {
-           std::array<double, N> a;
-           std::copy(v.begin(), v.end(), a.begin());
-           to = a;
-         },
-         text)
-      ->expected(int(N));
+// Options whose values have a unit; joined_values() puts their words together.
+const std::vector<std::string> with_unit = {"--seed",  "--rebuild", "--cut",  "--neck", "--neck-points",
+                                            "--inlet", "--keep",    "--bleb", "--gap",  "--spin",
+                                            "--lift",  "--slide",   "--turn", "--unit", "--brain-unit"};
+
+/// A length or an angle; `take` gets it in the unit option.bare.
+template <class Q>
+void quantity(CLI::App* app, const std::string& name, std::function<void(double)> take, const QuantityOption& option) {
+  const auto read = [option](const std::string& text, std::string& error) {
+    return read_with_unit(text, Q::units(), Q::name, option, error);
+  };
+  const auto check = [read](const std::string& text) {
+    std::string error;
+    read(text, error);
+    return error;
+  };
+  const auto set = [read, take](const std::string& text) {
+    std::string error;
+    if (const auto value = read(text, error)) take(*value);
+  };
+  app->add_option_function<std::string>(name, set, option.doc)->type_name("QUANTITY")->check(check);
 }
 
-double mm_of(const std::string& unit) {
-  return unit == "m" ? 1000 : unit == "cm" ? 10 : unit == "um" ? 0.001 : unit == "inch" ? 25.4 : 1;
+/// A point, a plane or two points; `take` gets their numbers, lengths in mm.
+CLI::Option* shape(CLI::App* app, const std::string& name, Shape what,
+                   std::function<void(const std::vector<std::vector<double>>&)> take, const std::string& text) {
+  const auto check = [what](const std::string& given) {
+    std::string error;
+    read_shape(given, what, error);
+    return error;
+  };
+  const auto set = [what, take](const std::vector<std::string>& given) {
+    std::vector<std::vector<double>> all;
+    std::string error;
+    for (const std::string& one : given)
+      if (auto numbers = read_shape(one, what, error)) all.push_back(std::move(*numbers));
+    take(all);
+  };
+  return app->add_option_function<std::vector<std::string>>(name, set, text)
+      ->expected(1)
+      ->type_name("\"" + std::string(pattern(what)) + "\"")
+      ->check(check);
+}
+
+template <std::size_t N>
+void shape_to(CLI::App* app, const std::string& name, Shape what, std::optional<std::array<double, N>>& to,
+              const std::string& text) {
+  const auto take = [&to](const std::vector<std::vector<double>>& all) {
+    std::array<double, N> a;
+    std::copy(all.back().begin(), all.back().end(), a.begin());
+    to = a;
+  };
+  shape(app, name, what, take, text);
+}
+
+void file_unit(CLI::App* app, const std::string& name, std::optional<double>& mm, const std::string& text) {
+  const auto check = [](const std::string& given) {
+    std::string error;
+    read_file_unit(given, error);
+    return error;
+  };
+  const auto set = [&mm](const std::string& given) {
+    std::string error;
+    mm = read_file_unit(given, error);
+  };
+  app->add_option_function<std::string>(name, set, text)->type_name("UNIT")->check(check);
 }
 
 void intake_options(CLI::App* app, Options& o) {
-  app->add_option_function<std::string>(
-         "--unit", [&o](const std::string& u) { o.unit_mm = mm_of(u); },
-         "unit of a surface file (default: mm; glTF: m)")
-      ->check(CLI::IsMember({"m", "cm", "mm", "um", "inch"}));
-  app->add_option("--unit-mm", o.unit_mm, "the same in millimetres a unit")->check(CLI::Range(1e-9, 1e9));
+  file_unit(app, "--unit", o.unit_mm,
+            "unit of a surface file: m, cm, mm, um, inch or a length such as \"0.35 mm\" (default: mm; glTF: m)");
   app->add_flag("--mirror,!--no-mirror", o.mirror,
                 "the input, vessel and brain, is of the left side: mirror it at x = 0; positions given here stay those "
                 "of your files");
@@ -56,31 +105,34 @@ void intake_options(CLI::App* app, Options& o) {
   app->add_option("--label", o.label, "volumes: the vessel's label");
   app->add_option("--threshold", o.threshold, "volumes: grey value from which on it is vessel");
   app->add_option("--smooth", o.smoothing, "volumes: smoothing of the border, in voxels")->check(CLI::Range(0.0, 5.0));
-  numbers<3>(app, "--seed", o.seed, "a point, mm: the piece nearest to it is the vessel");
+  shape_to(app, "--seed", Shape::point, o.seed, "a point: the piece nearest to it is the vessel");
   app->add_flag("--keep-largest", o.keep_largest, "of several pieces take the largest, however large the others are");
-  app->add_option("--rebuild", o.rebuild, "make the surface anew from a grid of this spacing, mm")
-      ->check(CLI::Range(0.03, 2.0));
-  app->add_option_function<std::vector<double>>(
-         "--cut",
-         [&o](const std::vector<double>& v) {
-           if (v.size() % 6 != 0)
-             throw CLI::ValidationError("--cut", "needs six numbers: a point and the direction of what goes");
-           o.cuts.clear();
-           for (std::size_t k = 0; k < v.size(); k += 6)
-             o.cuts.push_back({v[k], v[k + 1], v[k + 2], v[k + 3], v[k + 4], v[k + 5]});
-         },
-         "X Y Z NX NY NZ: cut the vessel across at the point, what lies in the direction goes; may be given again")
-      ->expected(6, 6 * 32);
+  quantity<Length>(
+      app, "--rebuild", [&o](double mm) { o.rebuild = mm; },
+      {.bare = "mm", .min = "0.03 mm", .max = "2 mm", .doc = "make the surface anew from a grid of this spacing"});
+  const auto take_cuts = [&o](const std::vector<std::vector<double>>& all) {
+    o.cuts.clear();
+    for (const std::vector<double>& v : all) o.cuts.push_back({v[0], v[1], v[2], v[3], v[4], v[5]});
+  };
+  shape(app, "--cut", Shape::plane, take_cuts,
+        "cut the vessel across at the point, what lies in the direction goes; may be given again")
+      ->take_all();
 }
 
 void wall_options(CLI::App* app, Options& o) {
-  numbers<6>(app, "--neck", o.neck, "X Y Z NX NY NZ: plane of the neck, the normal towards the dome");
-  numbers<6>(app, "--neck-points", o.neck_points, "two points on opposite sides of the neck, X Y Z X Y Z");
-  numbers<3>(app, "--inlet", o.inlet, "a point near the opening where blood comes in (default: the widest)");
-  app->add_option("--keep", o.keep, "mm of vessel kept along each centreline from the neck; 0: all")
-      ->check(CLI::Range(0.0, 200.0));
+  shape_to(app, "--neck", Shape::plane, o.neck, "plane of the neck: a point and the direction towards the dome");
+  shape_to(app, "--neck-points", Shape::two_points, o.neck_points, "two points on opposite sides of the neck");
+  shape_to(app, "--inlet", Shape::point, o.inlet,
+           "a point near the opening where blood comes in (default: the widest)");
+  quantity<Length>(app, "--keep", [&o](double mm) { o.keep = mm; },
+                   {.bare = "mm",
+                    .min = "0 mm",
+                    .max = "200 mm",
+                    .doc = "length of vessel kept along each centreline from the neck; 0 mm: all"});
   app->add_option("--vertices", o.vertices, "of the wall, about")->check(CLI::Range(400, 6000));
-  app->add_option("--bleb", o.bleb, "radius of the weak spot at the dome, mm; 0: none")->check(CLI::Range(0.0, 4.0));
+  quantity<Length>(
+      app, "--bleb", [&o](double mm) { o.bleb = mm; },
+      {.bare = "mm", .min = "0 mm", .max = "4 mm", .doc = "radius of the weak spot at the dome; 0 mm: none"});
 }
 
 void brain_options(CLI::App* app, Options& o) {
@@ -93,11 +145,8 @@ void brain_options(CLI::App* app, Options& o) {
          "--lobe", [&o](const std::vector<std::string>& v) { o.lobe_labels = v; },
          "NAME=LABELS of that volume, such as frontal=2,4,10-16")
       ->take_all();
-  app->add_option_function<std::string>(
-         "--brain-unit", [&o](const std::string& u) { o.brain_unit_mm = mm_of(u); },
-         "unit of the brain's surfaces (default: mm; glTF: m)")
-      ->check(CLI::IsMember({"m", "cm", "mm", "um", "inch"}));
-  app->add_option("--brain-unit-mm", o.brain_unit_mm, "the same in millimetres a unit")->check(CLI::Range(1e-9, 1e9));
+  file_unit(app, "--brain-unit", o.brain_unit_mm,
+            "unit of the brain's surfaces, as --unit has it (default: mm; glTF: m)");
   app->add_flag("--brain-in-place", o.brain_in_place,
                 "do not move the brain so that its fissure lies where the arms and the microscope stand");
   app->add_option("--brain-nodes", o.brain_nodes, "of both lobes' tetrahedra, at most")->check(CLI::Range(200, 20000));
@@ -107,21 +156,28 @@ void place_options(CLI::App* app, Options& o) {
   app->add_flag("--in-place", o.in_place, "the input lies in the frame of the lobes (MNI, mm) already");
   app->add_option("--lobes", o.lobes, "folder with lobes of your own, named as in meshes/lobes, in its frame (MNI, mm)")
       ->check(CLI::ExistingDirectory);
-  app->add_option("--gap", o.gap, "room between wall and lobes, mm")->check(CLI::Range(0.1, 2.0));
-  app->add_option_function<double>(
-         "--spin", [&o](double d) { o.spin = d, o.keep_spin = true; },
-         "turn about the sac's axis, degrees (default: the one with the most room)")
-      ->check(CLI::Range(-360.0, 360.0));
+  quantity<Length>(app, "--gap", [&o](double mm) { o.gap = mm; },
+                   {.bare = "mm", .min = "0.1 mm", .max = "2 mm", .doc = "room between wall and lobes"});
+  quantity<Angle>(app, "--spin", [&o](double degrees) { o.spin = degrees, o.keep_spin = true; },
+                  {.bare = "deg",
+                   .min = "-360 deg",
+                   .max = "360 deg",
+                   .doc = "turn about the sac's axis (default: the one with the most room)"});
 }
 
 void scene_options(CLI::App* app, Options& o) {
   app->add_option("--clip", o.clip, "clip for the neck, of meshes/clips (default: chosen)");
-  app->add_option("--lift", o.lift, "of the blades over the neck's plane, mm")->check(CLI::Range(-10.0, 10.0));
-  app->add_option("--slide", o.slide, "of the blades' middle beyond the neck's, mm")->check(CLI::Range(-15.0, 15.0));
+  quantity<Length>(app, "--lift", [&o](double mm) { o.lift = mm; },
+                   {.bare = "mm", .min = "-10 mm", .max = "10 mm", .doc = "of the blades over the neck's plane"});
+  quantity<Length>(app, "--slide", [&o](double mm) { o.slide = mm; },
+                   {.bare = "mm", .min = "-15 mm", .max = "15 mm", .doc = "of the blades' middle beyond the neck's"});
   app->add_flag("--rehearse,!--no-rehearse", o.rehearse,
                 "operate in exercise 2 once and keep the hands' motion (default); else it has none, which is quicker");
-  app->add_option("--turn", o.turn, "of the blades about the dome's axis from the surgeon's side, degrees")
-      ->check(CLI::Range(-180.0, 180.0));
+  quantity<Angle>(app, "--turn", [&o](double degrees) { o.turn = degrees; },
+                  {.bare = "deg",
+                   .min = "-180 deg",
+                   .max = "180 deg",
+                   .doc = "of the blades about the dome's axis from the surgeon's side"});
 }
 
 /// 0: parsed; else the exit status, help or complaint already said.
@@ -149,7 +205,8 @@ int parse(const std::vector<std::string>& arguments, Line& line, Options& o, std
     again->add_flag("--on", line.on, "and all stages after it");
     again->callback([&line, stage] { line.stage = stage; });
   }
-  std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());
+  const std::vector<std::string> words = joined_values(arguments, with_unit);
+  std::vector<std::string> reversed(words.rbegin(), words.rend());
   try {
     app.parse(reversed);
   } catch (const CLI::CallForHelp&) {

@@ -100,6 +100,64 @@ class Cutter {
   std::map<Edge, int> left_;
 };
 
+/// The surface before the plane, with its new rim.
+class Remains {
+ public:
+  Remains(const artery::Surface& s, const Cutter& cutter) : s_(s), cutter_(cutter), to_(s.caps.size(), -1) {
+    out.mesh.vertices = s.mesh.vertices;
+  }
+  artery::Surface out;
+  std::vector<Edge> rim;  ///< against the wall's direction
+
+  void keep(std::size_t t) { add(s_.mesh.triangles[t], s_.patch[t]); }
+  void cut(std::size_t t) {
+    const auto tri = s_.mesh.triangles[t];
+    std::vector<int> polygon;
+    int leaves = -1, enters = -1;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int a = tri[k], b = tri[(k + 1) % 3];
+      if (!cutter_.beyond(a)) polygon.push_back(a);
+      if (cutter_.beyond(a) == cutter_.beyond(b)) continue;
+      const int x = crossing(a, b);
+      polygon.push_back(x);
+      (cutter_.beyond(a) ? enters : leaves) = x;
+    }
+    for (std::size_t k = 1; k + 1 < polygon.size(); ++k) add({polygon[0], polygon[k], polygon[k + 1]}, s_.patch[t]);
+    rim.emplace_back(enters, leaves);  // the wall runs leaves -> enters
+  }
+  /// Closes the rim with a fan about `centre`; returns its area along n, mm2.
+  double close(const Vec3& centre, const Vec3& n) {
+    const int hub = int(out.mesh.vertices.size()), cap = int(out.caps.size());
+    out.mesh.vertices.push_back(centre);
+    double size = 0;
+    for (const auto& [a, b] : rim) {
+      size +=
+          0.5 * (out.mesh.vertices[std::size_t(a)] - centre).cross(out.mesh.vertices[std::size_t(b)] - centre).dot(n);
+      out.mesh.triangles.push_back({a, b, hub});
+      out.patch.push_back(cap);
+    }
+    return size;
+  }
+
+ private:
+  void add(const std::array<int, 3>& t, int patch) {
+    if (patch >= 0 && to_[std::size_t(patch)] < 0)
+      to_[std::size_t(patch)] = int(out.caps.size()), out.caps.push_back(s_.caps[std::size_t(patch)]);
+    out.mesh.triangles.push_back(t);
+    out.patch.push_back(patch < 0 ? -1 : to_[std::size_t(patch)]);
+  }
+  int crossing(int a, int b) {
+    const auto [at, fresh] = made_.emplace(std::minmax(a, b), int(out.mesh.vertices.size()));
+    if (fresh) out.mesh.vertices.push_back(cutter_.crossing(a, b));
+    return at->second;
+  }
+
+  const artery::Surface& s_;
+  const Cutter& cutter_;
+  std::vector<int> to_;  ///< new number of each cap, -1: not there yet
+  std::map<Edge, int> made_;
+};
+
 }  // namespace
 
 void cut_off(artery::Surface& s, const Vec3& point, const Vec3& normal, const std::string& name) {
@@ -115,58 +173,18 @@ void cut_off(artery::Surface& s, const Vec3& point, const Vec3& normal, const st
   if (!cutter.far_side(ring, far))
     throw InputError("the plane at " + where +
                      " does not part the vessel in two; move it along the vessel, to where that is a single tube");
-
-  artery::Surface out;
-  out.mesh.vertices = s.mesh.vertices;
   std::vector<char> in_ring(s.patch.size());
   for (const int t : ring.triangles) in_ring[std::size_t(t)] = 1;
-  std::vector<int> to(s.caps.size(), -1);
-  const auto add = [&](const std::array<int, 3>& t, int patch) {
-    if (patch >= 0 && to[std::size_t(patch)] < 0)
-      to[std::size_t(patch)] = int(out.caps.size()), out.caps.push_back(s.caps[std::size_t(patch)]);
-    out.mesh.triangles.push_back(t);
-    out.patch.push_back(patch < 0 ? -1 : to[std::size_t(patch)]);
-  };
-  std::map<Edge, int> made;
-  const auto crossing = [&](int a, int b) {
-    const auto [at, fresh] = made.emplace(std::minmax(a, b), int(out.mesh.vertices.size()));
-    if (fresh) out.mesh.vertices.push_back(cutter.crossing(a, b));
-    return at->second;
-  };
-  std::vector<Edge> rim;  // against the wall's direction
+  Remains remains(s, cutter);
   for (std::size_t t = 0; t < s.patch.size(); ++t) {
-    const auto tri = s.mesh.triangles[t];
     if (far[t]) continue;
-    if (!in_ring[t]) {
-      add(tri, s.patch[t]);
-      continue;
-    }
-    std::vector<int> polygon;
-    int leaves = -1, enters = -1;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const int a = tri[k], b = tri[(k + 1) % 3];
-      if (!cutter.beyond(a)) polygon.push_back(a);
-      if (cutter.beyond(a) == cutter.beyond(b)) continue;
-      const int x = crossing(a, b);
-      polygon.push_back(x);
-      (cutter.beyond(a) ? enters : leaves) = x;
-    }
-    for (std::size_t k = 1; k + 1 < polygon.size(); ++k) add({polygon[0], polygon[k], polygon[k + 1]}, s.patch[t]);
-    rim.emplace_back(enters, leaves);  // the wall runs leaves -> enters
+    if (in_ring[t]) remains.cut(t);
+    else remains.keep(t);
   }
-  const int hub = int(out.mesh.vertices.size()), cap = int(out.caps.size());
-  out.mesh.vertices.push_back(ring.centre);
-  double size = 0;
-  for (const auto& [a, b] : rim) {
-    size +=
-        0.5 *
-        (out.mesh.vertices[std::size_t(a)] - ring.centre).cross(out.mesh.vertices[std::size_t(b)] - ring.centre).dot(n);
-    out.mesh.triangles.push_back({a, b, hub});
-    out.patch.push_back(cap);
-  }
+  const double size = remains.close(ring.centre, n);
   if (!(size > 0)) throw InputError("the plane at " + where + " meets the vessel too flatly to cut it");
-  out.caps.push_back({name, ring.centre, n, std::sqrt(size / std::numbers::pi)});
-  s = std::move(out);
+  remains.out.caps.push_back({name, ring.centre, n, std::sqrt(size / std::numbers::pi)});
+  s = std::move(remains.out);
   artery::number_by_use(s.mesh);
 }
 

@@ -47,6 +47,84 @@ bool leave_out(SceneFacts& f, const std::string& text, std::vector<Note>& notes)
   return false;
 }
 
+/// The exercise with strands, loaded, and the hands that can divide them.
+struct LoadedExercise {
+  SimulationResult loaded;
+  std::unique_ptr<Surgeon> surgeon;
+};
+
+/// Chooses strands until there are neither too many nor too few and all can be reached. Strands are spun between
+/// surfaces as they lie once settled, so each choice is looked at in the running scene.
+class StrandChoice {
+ public:
+  StrandChoice(SceneFacts& f, const CaseFolder& folder, const Registry& registry, std::vector<Note>& notes)
+      : f_(f), folder_(folder), registry_(registry), notes_(notes) {}
+
+  LoadedExercise choose() {
+    LoadedExercise now;
+    for (;;) {
+      if (!load(now) || made_other_number(now)) continue;
+      const int hidden = int(now.surgeon->out_of_reach().size());
+      if (hidden == 0 || moved_ == max_steps) {
+        tell(int(now.surgeon->strands().size()), hidden);
+        return now;
+      }
+      f_.strand_shift = step_outward * ++moved_;
+    }
+  }
+
+ private:
+  /// False if a kind of strands was left out, for which there is no place.
+  bool load(LoadedExercise& to) {
+    write_exercises(f_, folder_);
+    to.surgeon.reset();
+    to.loaded = load_simulation(exercise_files(folder_)[1], registry_, 1);
+    if (to.loaded.simulation) {
+      to.surgeon = std::make_unique<Surgeon>(*to.loaded.simulation);
+      return true;
+    }
+    const std::string text = to.loaded.diagnostics.format();
+    if (!leave_out(f_, text, notes_) || f_.strand_sets.empty())
+      throw InputError("the exercise with strands does not load:\n" + text);
+    return false;
+  }
+  /// Thinned out; and, once, made up for where the move outward has left few.
+  bool made_other_number(const LoadedExercise& now) {
+    const int count = int(now.surgeon->strands().size());
+    const bool many = count > max_strands && f_.strand_share == 1,
+               few = moved_ > 0 && count > 0 && count < max_strands / 2 && f_.strand_share < 1 && !made_up_;
+    if (!many && !few) return false;
+    f_.strand_share = std::min(1.0, f_.strand_share * (many ? max_strands : 2 * max_strands / 3) / count);
+    made_up_ = made_up_ || few;
+    return true;
+  }
+  void tell(int count, int hidden) {
+    notes_.push_back({Note::Kind::fact, fmt::format("{} strands tie the aneurysm down.", count), ""});
+    if (hidden > 0)
+      notes_.push_back({Note::Kind::problem, fmt::format("{} of them are out of the dissector's reach.", hidden),
+                        "Give the strands another ball in 2_aneurysm_dissection.xml, nearer to the surgeon."});
+  }
+
+  SceneFacts& f_;
+  const CaseFolder& folder_;
+  const Registry& registry_;
+  std::vector<Note>& notes_;
+  int moved_ = 0;  ///< outward, steps
+  bool made_up_ = false;
+};
+
+/// Divides the strands with scripted hands and writes their motion. Returns how many are left standing.
+int divide_strands(Surgeon& surgeon, const fs::path& motion, Progress& progress) {
+  const int count = int(surgeon.strands().size());
+  const int standing = surgeon.divide(pace, [&](const Sweep&, int) {
+    const int left = int(std::count_if(surgeon.strands().begin(), surgeon.strands().end(),
+                                       [](const StrandState& s) { return s.integrity >= 0; }));
+    progress.share(1 - double(left) / std::max(1, count));
+  });
+  surgeon.write(motion);
+  return standing;
+}
+
 }  // namespace
 
 void spin_strands(SceneFacts& f, const CaseFolder& folder, bool rehearse, std::vector<Note>& notes,
@@ -54,56 +132,17 @@ void spin_strands(SceneFacts& f, const CaseFolder& folder, bool rehearse, std::v
   progress.step("spinning strands");
   Registry registry;
   register_builtin(registry);
-  const fs::path scene = exercise_files(folder)[1], motion = folder.path / "2_aneurysm_dissection_steady.csv";
+  const fs::path motion = folder.path / "2_aneurysm_dissection_steady.csv";
   std::error_code ignored;
   fs::remove(motion, ignored);
   f.strand_sets = {"frontal", "temporal", "branches"};
   f.rehearsed = false;
-  // Strands are spun between surfaces as they lie once settled, so each choice is looked at in the running scene.
-  SimulationResult loaded;
-  std::unique_ptr<Surgeon> surgeon;
-  bool made_up = false;
-  for (int moved = 0;;) {
-    write_exercises(f, folder);
-    surgeon.reset();
-    loaded = load_simulation(scene, registry, 1);
-    if (!loaded.simulation) {
-      const std::string text = loaded.diagnostics.format();
-      if (!leave_out(f, text, notes) || f.strand_sets.empty())
-        throw InputError("the exercise with strands does not load:\n" + text);
-      continue;
-    }
-    surgeon = std::make_unique<Surgeon>(*loaded.simulation);
-    const int count = int(surgeon->strands().size());
-    // Thinned out; and, once, made up for where the move outward has left few.
-    const bool many = count > max_strands && f.strand_share == 1,
-               few = moved > 0 && count > 0 && count < max_strands / 2 && f.strand_share < 1 && !made_up;
-    if (many || few) {
-      f.strand_share = std::min(1.0, f.strand_share * (many ? max_strands : 2 * max_strands / 3) / count);
-      made_up = made_up || few;
-      continue;
-    }
-    const int hidden = int(surgeon->out_of_reach().size());
-    if (hidden == 0 || moved == max_steps) {
-      notes.push_back({Note::Kind::fact, fmt::format("{} strands tie the aneurysm down.", count), ""});
-      if (hidden > 0)
-        notes.push_back({Note::Kind::problem, fmt::format("{} of them are out of the dissector's reach.", hidden),
-                         "Give the strands another ball in 2_aneurysm_dissection.xml, nearer to the surgeon."});
-      break;
-    }
-    f.strand_shift = step_outward * ++moved;
-  }
+  const LoadedExercise exercise = StrandChoice(f, folder, registry, notes).choose();
   if (!rehearse) return;
 
   progress.step("rehearsing the dissection");
-  const int count = int(surgeon->strands().size());
-  int left = count;
-  const int standing = surgeon->divide(pace, [&](const Sweep&, int) {
-    left = int(std::count_if(surgeon->strands().begin(), surgeon->strands().end(),
-                             [](const StrandState& s) { return s.integrity >= 0; }));
-    progress.share(1 - double(left) / std::max(1, count));
-  });
-  surgeon->write(motion);
+  const int count = int(exercise.surgeon->strands().size());
+  const int standing = divide_strands(*exercise.surgeon, motion, progress);
   f.rehearsed = true;
   write_exercises(f, folder);
   if (standing > 0)

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -160,100 +161,134 @@ std::string labels_there(const mesh_tool::NiftiVolume& v) {
   return out.empty() ? "it holds nothing but 0" : "there are: " + out;
 }
 
+/// A volume, and what counts as vessel in it.
+class VesselVolume {
+ public:
+  VesselVolume(const std::filesystem::path& file, const mesh_tool::NiftiVolume& v, const Options& o)
+      : file_(file), v_(v), o_(o) {
+    for (std::size_t a = 0; a < 3; ++a)
+      voxel_[a] = std::sqrt(v.to_world[a] * v.to_world[a] + v.to_world[4 + a] * v.to_world[4 + a] +
+                            v.to_world[8 + a] * v.to_world[8 + a]);
+    check_voxels();
+    for (const float x : v.value) {
+      if (!std::isfinite(x)) fail(file, "holds a value that is not finite");
+      least_ = std::min(least_, x), most_ = std::max(most_, x);
+    }
+    if (!o.label && !o.threshold) ask_for_level();
+    level_ = o.label ? *o.label : *o.threshold;
+  }
+  bool is_vessel(float x) const { return o_.label ? x == float(level_) : double(x) >= level_; }
+  double fine() const { return *std::min_element(voxel_.begin(), voxel_.end()); }
+  double coarse() const { return *std::max_element(voxel_.begin(), voxel_.end()); }
+
+  /// Cubes of the finest side over the box of the vessel, a few voxels wider: beyond the volume there is none, so that
+  /// vessels which leave it end flat.
+  Grid grid(std::vector<Note>& notes) const {
+    const auto [from, to] = box();
+    Grid grid;
+    grid.spacing = fine();
+    double nodes = 1;
+    for (int a = 0; a < 3; ++a)
+      grid.origin[std::size_t(a)] = from[a],
+      nodes *= grid.size[std::size_t(a)] = int(std::ceil((to[a] - from[a]) / grid.spacing)) + 1;
+    if (nodes > max_nodes)
+      fail(file_, "the vessel fills too large a box; cut out the region around the aneurysm first");
+    if (coarse() > 1.05 * fine())
+      notes.push_back({Note::Kind::repair,
+                       fmt::format("Voxels of {:.3g} x {:.3g} x {:.3g} mm were brought to cubes of {:.3g} mm.",
+                                   voxel_[0], voxel_[1], voxel_[2], fine()),
+                       ""});
+    return grid;
+  }
+
+  /// The grid's nodes in the vessel.
+  Mask sampled(const Grid& grid) const {
+    Mask mask(grid.count(), 0);
+    std::size_t n = 0;
+    for (int k = 0; k < grid.size[2]; ++k)
+      for (int j = 0; j < grid.size[1]; ++j)
+        for (int i = 0; i < grid.size[0]; ++i, ++n) {
+          const auto p = grid.point(i, j, k);
+          if (o_.label) mask[n] = is_vessel(v_.nearest(p)) && v_.nearest(p) != 0;
+          else mask[n] = float(v_.linear(p) - level_) >= 0;
+        }
+    return mask;
+  }
+
+ private:
+  void check_voxels() const {
+    if (o_.any_size || (fine() >= 0.02 && coarse() <= 2)) return;
+    fail(file_, fmt::format("its voxels are {:.4g} x {:.4g} x {:.4g} mm; for an artery of 3 mm 0.05 to 1 mm are usual. "
+                            "Is the unit in its header right? --any-size takes it all the same",
+                            voxel_[0], voxel_[1], voxel_[2]));
+  }
+  [[noreturn]] void ask_for_level() const {
+    bool whole = true;
+    std::map<float, int> labels;
+    for (const float x : v_.value) {
+      whole = whole && x == std::floor(x);
+      if (labels.size() < 9) labels[x] = 1;
+    }
+    fail(file_,
+         whole && labels.size() < 9
+             ? "say which label is the vessel, --label N; " + labels_there(v_)
+             : fmt::format("say from which grey value on it is vessel, --threshold N; values run from {:g} to {:g}",
+                           least_, most_));
+  }
+  /// The corners of the vessel's box in the world, three voxels wider.
+  std::pair<Vec3, Vec3> box() const {
+    int low[3] = {1 << 30, 1 << 30, 1 << 30}, high[3] = {-1, -1, -1};
+    for (int k = 0; k < v_.size[2]; ++k)
+      for (int j = 0; j < v_.size[1]; ++j)
+        for (int i = 0; i < v_.size[0]; ++i)
+          if (is_vessel(v_.at(i, j, k))) {
+            const int at[3] = {i, j, k};
+            for (int a = 0; a < 3; ++a) low[a] = std::min(low[a], at[a]), high[a] = std::max(high[a], at[a]);
+          }
+    if (high[0] < 0)
+      fail(file_, o_.label ? fmt::format("has no voxel of label {}; {}", *o_.label, labels_there(v_))
+                           : fmt::format("nothing reaches the threshold {:g}; values run from {:g} to {:g}", level_,
+                                         least_, most_));
+    Vec3 from = Vec3::Constant(1e300), to = -from;
+    for (int c = 0; c < 8; ++c) {
+      double at[3];
+      for (int a = 0; a < 3; ++a) at[a] = c >> a & 1 ? high[a] + 3.0 : low[a] - 3.0;
+      Vec3 p;
+      for (int r = 0; r < 3; ++r)
+        p[r] = v_.to_world[std::size_t(4 * r)] * at[0] + v_.to_world[std::size_t(4 * r + 1)] * at[1] +
+               v_.to_world[std::size_t(4 * r + 2)] * at[2] + v_.to_world[std::size_t(4 * r + 3)];
+      from = from.cwiseMin(p), to = to.cwiseMax(p);
+    }
+    return {from, to};
+  }
+
+  const std::filesystem::path& file_;
+  const mesh_tool::NiftiVolume& v_;
+  const Options& o_;
+  std::array<double, 3> voxel_{};  ///< sides, mm
+  float least_ = 1e30f, most_ = -1e30f;
+  double level_ = 0;
+};
+
 }  // namespace
 
 TriMesh surface_of_volume(const std::filesystem::path& file, const mesh_tool::NiftiVolume& v, const Options& o,
                           std::vector<Note>& notes, std::vector<Plane>& ends) {
-  double voxel[3];
-  for (std::size_t a = 0; a < 3; ++a)
-    voxel[a] = std::sqrt(v.to_world[a] * v.to_world[a] + v.to_world[4 + a] * v.to_world[4 + a] +
-                         v.to_world[8 + a] * v.to_world[8 + a]);
-  const double fine = std::min({voxel[0], voxel[1], voxel[2]}), coarse = std::max({voxel[0], voxel[1], voxel[2]});
-  if (!o.any_size && (fine < 0.02 || coarse > 2))
-    fail(file, fmt::format("its voxels are {:.4g} x {:.4g} x {:.4g} mm; for an artery of 3 mm 0.05 to 1 mm are usual. "
-                           "Is the unit in its header right? --any-size takes it all the same",
-                           voxel[0], voxel[1], voxel[2]));
-  float least = 1e30f, most = -1e30f;
-  for (const float x : v.value) {
-    if (!std::isfinite(x)) fail(file, "holds a value that is not finite");
-    least = std::min(least, x), most = std::max(most, x);
-  }
-  if (!o.label && !o.threshold) {
-    bool whole = true;
-    std::map<float, int> labels;
-    for (const float x : v.value) {
-      whole = whole && x == std::floor(x);
-      if (labels.size() < 9) labels[x] = 1;
-    }
-    fail(file,
-         whole && labels.size() < 9
-             ? "say which label is the vessel, --label N; " + labels_there(v)
-             : fmt::format("say from which grey value on it is vessel, --threshold N; values run from {:g} to {:g}",
-                           least, most));
-  }
-  const double level = o.label ? *o.label : *o.threshold;
-  const auto is_vessel = [&](float x) { return o.label ? x == float(level) : double(x) >= level; };
-  // The box of the vessel in the volume, a few voxels wider: beyond the volume there is none, so that vessels which
-  // leave it end flat.
-  int low[3] = {1 << 30, 1 << 30, 1 << 30}, high[3] = {-1, -1, -1};
-  for (int k = 0; k < v.size[2]; ++k)
-    for (int j = 0; j < v.size[1]; ++j)
-      for (int i = 0; i < v.size[0]; ++i)
-        if (is_vessel(v.at(i, j, k))) {
-          const int at[3] = {i, j, k};
-          for (int a = 0; a < 3; ++a) low[a] = std::min(low[a], at[a]), high[a] = std::max(high[a], at[a]);
-        }
-  if (high[0] < 0)
-    fail(file,
-         o.label ? fmt::format("has no voxel of label {}; {}", *o.label, labels_there(v))
-                 : fmt::format("nothing reaches the threshold {:g}; values run from {:g} to {:g}", level, least, most));
-  Vec3 from = Vec3::Constant(1e300), to = -from;
-  for (int c = 0; c < 8; ++c) {
-    double at[3];
-    for (int a = 0; a < 3; ++a) at[a] = c >> a & 1 ? high[a] + 3.0 : low[a] - 3.0;
-    Vec3 p;
-    for (int r = 0; r < 3; ++r)
-      p[r] = v.to_world[std::size_t(4 * r)] * at[0] + v.to_world[std::size_t(4 * r + 1)] * at[1] +
-             v.to_world[std::size_t(4 * r + 2)] * at[2] + v.to_world[std::size_t(4 * r + 3)];
-    from = from.cwiseMin(p), to = to.cwiseMax(p);
-  }
-  Grid grid;
-  grid.spacing = fine;
-  double nodes = 1;
-  for (int a = 0; a < 3; ++a)
-    grid.origin[std::size_t(a)] = from[a],
-    nodes *= grid.size[std::size_t(a)] = int(std::ceil((to[a] - from[a]) / fine)) + 1;
-  if (nodes > max_nodes) fail(file, "the vessel fills too large a box; cut out the region around the aneurysm first");
-  if (coarse > 1.05 * fine)
-    notes.push_back({Note::Kind::repair,
-                     fmt::format("Voxels of {:.3g} x {:.3g} x {:.3g} mm were brought to cubes of {:.3g} mm.", voxel[0],
-                                 voxel[1], voxel[2], fine),
-                     ""});
-  Mask mask(grid.count(), 0);
-  Field grey(o.label ? 0 : grid.count());
-  std::size_t n = 0;
-  for (int k = 0; k < grid.size[2]; ++k)
-    for (int j = 0; j < grid.size[1]; ++j)
-      for (int i = 0; i < grid.size[0]; ++i, ++n) {
-        const auto p = grid.point(i, j, k);
-        if (o.label) {
-          mask[n] = is_vessel(v.nearest(p)) && v.nearest(p) != 0;
-        } else {
-          grey[n] = float(v.linear(p) - level);
-          mask[n] = grey[n] >= 0;
-        }
-      }
-  mask = vessel_part(grid, mask, o, notes);
+  const VesselVolume vessel(file, v, o);
+  const Grid grid = vessel.grid(notes);
+  const Mask mask = vessel_part(grid, vessel.sampled(grid), o, notes);
   const Mask solid = mesh_tool::fill_holes(grid, mask);
   if (solid != mask) notes.push_back({Note::Kind::repair, "Voids inside of the vessel were filled.", ""});
   Field inside = mesh_tool::signed_distance(grid, solid);
+  const double coarse = vessel.coarse();
   mesh_tool::smooth(grid, inside, std::max(0.01, o.smoothing * coarse));
   notes.push_back({Note::Kind::fact,
                    fmt::format("The surface was taken from voxels of {:.3g} mm, its border smoothed over {:.2g} mm.",
-                               fine, o.smoothing * coarse),
+                               vessel.fine(), o.smoothing * coarse),
                    ""});
   TriMesh out = evened(zero_set(grid, inside));
-  ends = border_ends(v, is_vessel, out, 1.2 * coarse);
+  ends = border_ends(
+      v, [&](float x) { return vessel.is_vessel(x); }, out, 1.2 * coarse);
   if (!ends.empty())
     notes.push_back({Note::Kind::repair,
                      fmt::format("The vessel leaves the volume at {} place{}; it was cut straight there.", ends.size(),

@@ -73,7 +73,7 @@ void tidy(TriMesh& m, const std::string& what, const Options& o, std::vector<Not
     throw InputError(
         fmt::format("{}: {} edge{} to three or more triangles (the first at {}): walls meet there inside of the "
                     "vessel. Mend it in the program that made it, or make the surface "
-                    "anew from a grid with --rebuild 0.2",
+                    "anew from a grid with --rebuild \"0.2 mm\"",
                     what, bad.count, bad.count == 1 ? " belongs" : "s belong", place(bad.first)));
   Pieces pieces = pieces_of(m);
   if (pieces.area.size() > 1) {
@@ -89,7 +89,7 @@ void tidy(TriMesh& m, const std::string& what, const Options& o, std::vector<Not
     } else if (pieces.area[0] < 0.9 * whole && !o.keep_largest) {
       throw InputError(
           fmt::format("{}: is in {} pieces; the largest has {:.0f} % of the area, the next {:.0f} %. Name a point on "
-                      "the wanted one with --seed X Y Z, or take the largest with --keep-largest",
+                      "the wanted one with --seed \"X Y Z mm\", or take the largest with --keep-largest",
                       what, pieces.area.size(), 100 * pieces.area[0] / whole, 100 * pieces.area[1] / whole));
     }
     notes.push_back(
@@ -130,64 +130,52 @@ void check_inside(artery::Surface& s, const std::string& what, std::vector<Note>
                     what, 2 * thick, extent_of(s.mesh)));
 }
 
-}  // namespace
-
-Intake mended(TriMesh m, const std::string& what, const Options& o, std::vector<Note> notes) {
-  Intake out;
-  out.facts["triangles_given"] = m.triangles.size();
-  if (m.triangles.empty()) throw InputError(what + ": holds no triangles");
-  const auto remake = [&](double spacing, const char* why) {
-    m = rebuilt(m, spacing);
-    notes.push_back(
-        {Note::Kind::repair, fmt::format("The surface was made anew from a grid of {:.3g} mm{}.", spacing, why), ""});
-  };
-  if (o.rebuild) remake(*o.rebuild, ", as asked for");
+/// A surface of far more triangles than its shape needs is made anew; its ends stay.
+void thin_out(artery::Surface& s, const std::string& what, const Options& o, std::vector<Note>& notes) {
+  if (s.mesh.triangles.size() <= many_triangles) return;
+  const std::vector<artery::CapPlane> caps = s.caps;
+  const double spacing = std::clamp(std::sqrt(area(s.mesh) / 20000), 0.08, 0.4);
+  const std::size_t before = s.mesh.triangles.size();
+  TriMesh m = rebuilt(s.mesh, spacing);
   tidy(m, what, o, notes);
-  artery::Surface s = closed_surface(m, notes);
-  check_inside(s, what, notes);
-  if (s.mesh.triangles.size() > many_triangles) {
-    const std::vector<artery::CapPlane> caps = s.caps;
-    const double spacing = std::clamp(std::sqrt(area(s.mesh) / 20000), 0.08, 0.4);
-    const std::size_t before = s.mesh.triangles.size();
-    m = rebuilt(s.mesh, spacing);
-    tidy(m, what, o, notes);
-    s = artery::Surface{m, std::vector<int>(m.triangles.size(), -1), {}};
-    for (const artery::CapPlane& cap : caps) cut_off(s, cap.centre - spacing * cap.normal, cap.normal, cap.name);
-    notes.push_back({Note::Kind::repair,
-                     fmt::format("The surface had {} triangles, far more than its shape needs; it was made anew from a "
-                                 "grid of {:.2g} mm: {} triangles.",
-                                 before, spacing, s.mesh.triangles.size()),
-                     ""});
-  }
+  s = artery::Surface{m, std::vector<int>(m.triangles.size(), -1), {}};
+  for (const artery::CapPlane& cap : caps) cut_off(s, cap.centre - spacing * cap.normal, cap.normal, cap.name);
+  notes.push_back({Note::Kind::repair,
+                   fmt::format("The surface had {} triangles, far more than its shape needs; it was made anew from a "
+                               "grid of {:.2g} mm: {} triangles.",
+                               before, spacing, s.mesh.triangles.size()),
+                   ""});
+}
+
+void make_cuts(artery::Surface& s, const Options& o) {
   for (std::size_t c = 0; c < o.cuts.size(); ++c) {
     const Plane& p = o.cuts[c];
     if (std::hypot(p[3], p[4], p[5]) < 1e-9) throw InputError("--cut: the normal has no length");
     cut_off(s, Vec3(p[0], p[1], p[2]), Vec3(p[3], p[4], p[5]), fmt::format("cut_{}", c + 1));
   }
+}
+
+/// Ends that were closed flat already. Returns by what the openings were found.
+const char* add_flat_ends(artery::Surface& s) {
   const artery::Surface found = artery::with_flat_caps(s.mesh);
   if (s.caps.empty()) {
     s = found;
-    out.facts["openings_found_by"] = "flat ends of a closed surface";
-  } else {
-    // Some ends may have been closed already.
-    for (std::size_t c = 0; c < found.caps.size(); ++c) {
-      std::vector<std::size_t> mine;
-      bool taken = false;
-      for (std::size_t t = 0; t < found.patch.size(); ++t)
-        if (found.patch[t] == int(c)) mine.push_back(t), taken = taken || s.patch[t] >= 0;
-      if (taken) continue;
-      for (const std::size_t t : mine) s.patch[t] = int(s.caps.size());
-      s.caps.push_back(found.caps[c]);
-    }
-    out.facts["openings_found_by"] = "borders and cuts";
+    return "flat ends of a closed surface";
   }
-  if (s.caps.size() < 2)
-    throw InputError(
-        fmt::format("{}: has {} opening{}; a vessel needs an inlet and an outlet. Ends must be open, or cut straight "
-                    "and closed flat; where they are rounded, cut them with --cut X Y Z NX NY NZ "
-                    "(a point in the vessel and the direction of what is to go), once an end",
-                    what, s.caps.size(), ending(int(s.caps.size()))));
-  // By calibre, from the widest down.
+  for (std::size_t c = 0; c < found.caps.size(); ++c) {
+    std::vector<std::size_t> mine;
+    bool taken = false;
+    for (std::size_t t = 0; t < found.patch.size(); ++t)
+      if (found.patch[t] == int(c)) mine.push_back(t), taken = taken || s.patch[t] >= 0;
+    if (taken) continue;
+    for (const std::size_t t : mine) s.patch[t] = int(s.caps.size());
+    s.caps.push_back(found.caps[c]);
+  }
+  return "borders and cuts";
+}
+
+/// Orders the openings by calibre, from the widest down, and names them so.
+Json name_openings(artery::Surface& s) {
   std::vector<int> order(s.caps.size()), rank(s.caps.size());
   for (std::size_t c = 0; c < order.size(); ++c) order[c] = int(c);
   std::stable_sort(order.begin(), order.end(),
@@ -205,10 +193,11 @@ Intake mended(TriMesh m, const std::string& what, const Options& o, std::vector<
                         {"normal", to_json(s.caps[c].normal)},
                         {"calibre_mm", rounded(2 * s.caps[c].radius)}});
   }
-  if (!o.any_size)
-    if (const std::string why = check_calibre(2 * s.caps[0].radius, o.unit_mm.value_or(1)); !why.empty())
-      throw InputError(what + ": " + why + "; --any-size takes it all the same");
-  const artery::Quality q = artery::quality(s.mesh);
+  return openings;
+}
+
+/// Handles are refused; a surface that runs through itself is told.
+void check_shape(const artery::Quality& q, const std::string& what, std::vector<Note>& notes) {
   if (q.euler != 2)
     throw InputError(
         fmt::format("{}: has {} handle{}: two branches touch and have grown together, or a hole runs through the wall. "
@@ -218,7 +207,38 @@ Intake mended(TriMesh m, const std::string& what, const Options& o, std::vector<
   if (q.self_intersecting)
     notes.push_back({Note::Kind::problem, "The given surface runs through itself.",
                      "The wall is made of new triangles, which are checked again; if they are found wanting, make the "
-                     "surface anew from a grid with --rebuild 0.2."});
+                     "surface anew from a grid with --rebuild \"0.2 mm\"."});
+}
+
+}  // namespace
+
+Intake mended(TriMesh m, const std::string& what, const Options& o, std::vector<Note> notes) {
+  Intake out;
+  out.facts["triangles_given"] = m.triangles.size();
+  if (m.triangles.empty()) throw InputError(what + ": holds no triangles");
+  if (o.rebuild) {
+    m = rebuilt(m, *o.rebuild);
+    notes.push_back({Note::Kind::repair,
+                     fmt::format("The surface was made anew from a grid of {:.3g} mm, as asked for.", *o.rebuild), ""});
+  }
+  tidy(m, what, o, notes);
+  artery::Surface s = closed_surface(m, notes);
+  check_inside(s, what, notes);
+  thin_out(s, what, o, notes);
+  make_cuts(s, o);
+  out.facts["openings_found_by"] = add_flat_ends(s);
+  if (s.caps.size() < 2)
+    throw InputError(
+        fmt::format("{}: has {} opening{}; a vessel needs an inlet and an outlet. Ends must be open, or cut straight "
+                    "and closed flat; where they are rounded, cut them with --cut \"X Y Z mm NX NY NZ\" "
+                    "(a point in the vessel and the direction of what is to go), once an end",
+                    what, s.caps.size(), ending(int(s.caps.size()))));
+  const Json openings = name_openings(s);
+  if (!o.any_size)
+    if (const std::string why = check_calibre(2 * s.caps[0].radius, o.unit_mm.value_or(1)); !why.empty())
+      throw InputError(what + ": " + why + "; --any-size takes it all the same");
+  const artery::Quality q = artery::quality(s.mesh);
+  check_shape(q, what, notes);
   out.facts["openings"] = openings;
   out.facts["triangles"] = s.mesh.triangles.size();
   out.facts["extent_mm"] = rounded(extent_of(s.mesh));

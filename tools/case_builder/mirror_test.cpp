@@ -154,25 +154,12 @@ TEST(MirroredCase, IsTheCaseOfItsTwinAndPassesItsCheck) {
     const bool is_left = side[0] == 'l';
     const std::string in = std::string(side) + "_files/vessel.stl";
     folder.write(in, test::stl_text(is_left ? left_of(vessel) : vessel));
-    std::vector<std::string> words{"new",
-                                   "own",
-                                   path(in),
-                                   "--out",
-                                   path(side),
-                                   "--vertices",
-                                   "900",
-                                   "--no-rehearse",
-                                   "--neck",
-                                   is_left ? "-0.1" : "0.1",
-                                   "0",
-                                   "2.2",
-                                   is_left ? "-0.05" : "0.05",
-                                   "0",
-                                   "1",
-                                   "--inlet",
-                                   is_left ? "-8" : "8",
-                                   "0",
-                                   "0"};
+    std::vector<std::string> words{"new",      "own",
+                                   path(in),   "--out",
+                                   path(side), "--vertices",
+                                   "900",      "--no-rehearse",
+                                   "--neck",   is_left ? "-0.1 0 2.2 mm -0.05 0 1" : "0.1 0 2.2 mm 0.05 0 1",
+                                   "--inlet",  is_left ? "-8 0 0 mm" : "8 0 0 mm"};
     if (is_left) words.push_back("--mirror");
     int status = 0;
     const std::string text = said(words, status);

@@ -106,7 +106,7 @@ artery::Surface closed_surface(const TriMesh& mesh, std::vector<Note>& notes) {
           fmt::format("the surface has a hole of {:.1f} mm around at {} that is neither a round, flat end of a vessel "
                       "nor small: close it in the program that "
                       "made the surface, cut the vessel straight before it, or make the surface anew from a grid with "
-                      "--rebuild 0.2 after closing it",
+                      "--rebuild \"0.2 mm\" after closing it",
                       b.perimeter, place(b.centre)));
     }
   }

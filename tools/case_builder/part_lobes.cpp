@@ -225,71 +225,103 @@ double draw_back(Solid& floor, const Solid& wall, double gap) {
   return most;
 }
 
+/// The insula, drawn back from the wall where it must be.
+Room clear_floor(Solid& floor, TriMesh& insula, const Solid& wall, double gap) {
+  Room out{"insula", room(floor, wall) - wall_half, 0, 0};
+  if (out.before < gap) {
+    out.moved = draw_back(floor, wall, gap + wall_half);
+    insula = floor.mesh();
+  }
+  out.after = room(floor, wall) - wall_half;
+  return out;
+}
+
+/// The two lobes as they are parted.
+class PartedLobes {
+ public:
+  PartedLobes(Fissure& fissure, const Solid& wall, const Solid& floor, double wanted)
+      : fissure_(fissure), wall_(wall), floor_(floor), wanted_(wanted + 0.05) {
+    for (Lobe& l : fissure.lobes) {
+      solid_.emplace_back(l.surface), lobe_.emplace_back(l);
+      rooms.push_back({l.name, room(solid_.back(), wall) - wall_half, 0, 0});
+    }
+    for (std::size_t i = 0; i < 2; ++i)
+      to_floor_.push_back(distances(solid_[i], floor)), to_other_.push_back(distances(solid_[i], solid_[1 - i]));
+  }
+  std::vector<Room> rooms;
+
+  void part(Progress& progress) {
+    for (int round = 0; round < rounds; ++round) {
+      progress.share(double(round) / rounds);
+      for (std::size_t i = 0; i < 2; ++i) {
+        lobe_[i].solve(conditions(i));
+        rooms[i].moved = lobe_[i].write_back();
+        solid_[i].move(fissure_.lobes[i].surface.vertices);
+      }
+    }
+  }
+  void judge(std::vector<Note>& notes) {
+    for (std::size_t i = 0; i < 2; ++i) {
+      rooms[i].after = room(solid_[i], wall_) - wall_half;
+      const double least = lobe_[i].min_volume();
+      if (least < 0.15)
+        notes.push_back(
+            {Note::Kind::problem,
+             fmt::format("The {} lobe had to be parted so far that an element has {:.0f} % of its volume left.",
+                         rooms[i].what, 100 * least),
+             "Keep less of the vessel (--keep), or turn it (--spin), so that it needs less room."});
+    }
+  }
+
+ private:
+  /// What lobe i must keep clear of as it lies now.
+  std::vector<Condition> conditions(std::size_t i) const {
+    std::vector<Condition> out;
+    keep_from(lobe_[i], solid_[i], wall_, wanted_, nullptr, out);
+    for (const Vec3& p : wall_.mesh().vertices)
+      if (const Nearest n = solid_[i].nearest(p, deepest); n.found && n.distance < wanted_ + margin)
+        out.push_back(lobe_[i].condition(solid_[i].mesh().triangles[std::size_t(n.triangle)], n.bary, -n.outward,
+                                         wanted_ - n.distance));
+    keep_from(lobe_[i], solid_[i], floor_, 0.3, &to_floor_[i], out);
+    keep_from(lobe_[i], solid_[i], solid_[1 - i], 0.6, &to_other_[i], out);
+    return out;
+  }
+
+  Fissure& fissure_;
+  const Solid &wall_, &floor_;
+  double wanted_;
+  std::vector<Solid> solid_;
+  std::deque<ElasticLobe> lobe_;  // they cannot be moved
+  std::vector<std::vector<double>> to_floor_, to_other_;
+};
+
+void tell_room(const Room& r, std::vector<Note>& notes) {
+  if (r.moved > 0.01)
+    notes.push_back(
+        {Note::Kind::repair,
+         fmt::format(
+             "The {} was parted by up to {:.1f} mm, so that it keeps {:.2f} mm from the wall (before: {:.2f} mm).",
+             r.what, r.moved, r.after, r.before),
+         ""});
+  if (r.after < 0.05)
+    notes.push_back({Note::Kind::problem,
+                     fmt::format("The {} still overlaps the wall or touches it ({:.2f} mm).", r.what, r.after),
+                     "Keep less of the vessel (--keep), or turn it (--spin)."});
+}
+
 }  // namespace
 
 std::vector<Room> part_lobes(Fissure& fissure, const TriMesh& wall_mesh, double gap, std::vector<Note>& notes,
                              Progress& progress) {
   const Solid wall(wall_mesh);
-  const double wanted = gap + wall_half;
-  std::vector<Room> out;
   Solid floor(fissure.insula);
-  Room floor_room{"insula", room(floor, wall) - wall_half, 0, 0};
-  if (floor_room.before < gap) {
-    floor_room.moved = draw_back(floor, wall, wanted);
-    fissure.insula = floor.mesh();
-  }
-  floor_room.after = room(floor, wall) - wall_half;
-
-  std::vector<Solid> solid;
-  std::deque<ElasticLobe> lobe;  // they cannot be moved
-  for (Lobe& l : fissure.lobes) {
-    solid.emplace_back(l.surface), lobe.emplace_back(l);
-    out.push_back({l.name, room(solid.back(), wall) - wall_half, 0, 0});
-  }
-  std::vector<std::vector<double>> to_floor, to_other;
-  for (std::size_t i = 0; i < 2; ++i)
-    to_floor.push_back(distances(solid[i], floor)), to_other.push_back(distances(solid[i], solid[1 - i]));
-  if (out[0].before < gap || out[1].before < gap || floor_room.moved > 0)
-    for (int round = 0; round < rounds; ++round) {
-      progress.share(double(round) / rounds);
-      for (std::size_t i = 0; i < 2; ++i) {
-        std::vector<Condition> conditions;
-        keep_from(lobe[i], solid[i], wall, wanted + 0.05, nullptr, conditions);
-        for (const Vec3& p : wall.mesh().vertices)
-          if (const Nearest n = solid[i].nearest(p, deepest); n.found && n.distance < wanted + 0.05 + margin)
-            conditions.push_back(lobe[i].condition(solid[i].mesh().triangles[std::size_t(n.triangle)], n.bary,
-                                                   -n.outward, wanted + 0.05 - n.distance));
-        keep_from(lobe[i], solid[i], floor, 0.3, &to_floor[i], conditions);
-        keep_from(lobe[i], solid[i], solid[1 - i], 0.6, &to_other[i], conditions);
-        lobe[i].solve(conditions);
-        out[i].moved = lobe[i].write_back();
-        solid[i].move(fissure.lobes[i].surface.vertices);
-      }
-    }
-  for (std::size_t i = 0; i < 2; ++i) {
-    out[i].after = room(solid[i], wall) - wall_half;
-    const double least = lobe[i].min_volume();
-    if (least < 0.15)
-      notes.push_back(
-          {Note::Kind::problem,
-           fmt::format("The {} lobe had to be parted so far that an element has {:.0f} % of its volume left.",
-                       out[i].what, 100 * least),
-           "Keep less of the vessel (--keep), or turn it (--spin), so that it needs less room."});
-  }
+  const Room floor_room = clear_floor(floor, fissure.insula, wall, gap);
+  PartedLobes lobes(fissure, wall, floor, gap + wall_half);
+  if (lobes.rooms[0].before < gap || lobes.rooms[1].before < gap || floor_room.moved > 0) lobes.part(progress);
+  lobes.judge(notes);
+  std::vector<Room> out = lobes.rooms;
   out.push_back(floor_room);
-  for (const Room& r : out) {
-    if (r.moved > 0.01)
-      notes.push_back(
-          {Note::Kind::repair,
-           fmt::format(
-               "The {} was parted by up to {:.1f} mm, so that it keeps {:.2f} mm from the wall (before: {:.2f} mm).",
-               r.what, r.moved, r.after, r.before),
-           ""});
-    if (r.after < 0.05)
-      notes.push_back({Note::Kind::problem,
-                       fmt::format("The {} still overlaps the wall or touches it ({:.2f} mm).", r.what, r.after),
-                       "Keep less of the vessel (--keep), or turn it (--spin)."});
-  }
+  for (const Room& r : out) tell_room(r, notes);
   return out;
 }
 

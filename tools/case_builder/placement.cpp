@@ -31,12 +31,8 @@ struct Turn {
   Vec3 shift = Vec3::Zero();
 };
 
-}  // namespace
-
-Placement find_placement(const artery::Vessel& v, const Fissure& fissure, const Options& o, Progress& progress) {
-  if (o.in_place) return {};
-  if (!v.neck) throw InputError("a vessel without a neck has no place");
-  // Where the parent leads when it comes to the neck.
+/// The frame of the vessel's neck and of where the parent leads as it comes to the neck, brought to the shipped one.
+Mat3 base_rotation(const artery::Vessel& v) {
   const auto& parent = v.centrelines.front().curve;
   std::size_t near = 0;
   for (std::size_t k = 0; k < parent.size(); ++k)
@@ -44,45 +40,63 @@ Placement find_placement(const artery::Vessel& v, const Fissure& fissure, const 
   const std::size_t back = near > parent.size() / 3 ? near - parent.size() / 3 : 0;
   const Vec3 arrives =
       near > back ? Vec3((parent.points[near] - parent.points[back]).normalized()) : parent.tangent(near);
-  const Mat3 base = frame(way_of_sac, way_of_parent) * frame(v.neck->normal, arrives).transpose();
+  return frame(way_of_sac, way_of_parent) * frame(v.neck->normal, arrives).transpose();
+}
 
-  const Vec3 low = place_of_neck - Vec3::Constant(reach + 4), high = place_of_neck + Vec3::Constant(reach + 4);
+/// What a place costs.
+class PlaceCost {
+ public:
+  const double wanted_spin;  ///< rad
+  PlaceCost(const artery::Vessel& v, const Fissure& fissure, const Options& o)
+      : wanted_spin(o.spin * std::numbers::pi / 180), base_(base_rotation(v)), o_(o) {
+    const Vec3 low = place_of_neck - Vec3::Constant(reach + 4), high = place_of_neck + Vec3::Constant(reach + 4);
+    const auto add = [&](const TriMesh& mesh, double weight) {
+      obstacles_.push_back({DistanceGrid(Solid(mesh), low, high, 0.8, limit), weight});
+    };
+    for (const Lobe& lobe : fissure.lobes) add(lobe.surface, 1);
+    add(fissure.insula, 6);
+    add(fissure.retractors, 6);
+    const auto& all = v.wall.mesh.vertices;
+    for (std::size_t i = 0; i < all.size(); i += std::max<std::size_t>(1, all.size() / 350))
+      samples_.push_back(all[i] - v.neck->centre);
+  }
+  Mat3 rotation(const Turn& t) const {
+    const Vec3 u = way_of_sac.unitOrthogonal(), w = way_of_sac.cross(u);
+    return turn(t.tilt_a, u) * turn(t.tilt_b, w) * turn(t.spin, way_of_sac) * base_;
+  }
+  double operator()(const Turn& t) const {
+    const Mat3 r = rotation(t);
+    double sum = 0;
+    for (const Vec3& s : samples_) {
+      const Vec3 p = r * s + place_of_neck + t.shift;
+      for (const Obstacle& ob : obstacles_)
+        if (const double in = o_.gap + wall_half - ob.grid.at(p); in > 0) sum += ob.weight * in * in;
+    }
+    const double away = std::remainder(t.spin - wanted_spin, 2 * std::numbers::pi);
+    return sum / double(samples_.size()) + 0.25 * (t.tilt_a * t.tilt_a + t.tilt_b * t.tilt_b) +
+           0.01 * t.shift.squaredNorm() + (o_.keep_spin ? 50 : 0.01) * away * away;
+  }
+
+ private:
   struct Obstacle {
     DistanceGrid grid;
     double weight;
   };
-  std::vector<Obstacle> obstacles;
-  progress.step("distances in the fissure");
-  for (const Lobe& lobe : fissure.lobes)
-    obstacles.push_back({DistanceGrid(Solid(lobe.surface), low, high, 0.8, limit), 1});
-  obstacles.push_back({DistanceGrid(Solid(fissure.insula), low, high, 0.8, limit), 6});
-  obstacles.push_back({DistanceGrid(Solid(fissure.retractors), low, high, 0.8, limit), 6});
+  Mat3 base_;
+  const Options& o_;
+  std::vector<Obstacle> obstacles_;
+  std::vector<Vec3> samples_;  ///< vertices of the wall, from the neck
+};
 
-  progress.step("looking for the place");
-  std::vector<Vec3> samples;
-  const auto& all = v.wall.mesh.vertices;
-  for (std::size_t i = 0; i < all.size(); i += std::max<std::size_t>(1, all.size() / 350))
-    samples.push_back(all[i] - v.neck->centre);
-  const Vec3 u = way_of_sac.unitOrthogonal(), w = way_of_sac.cross(u);
-  const auto rotation = [&](const Turn& t) -> Mat3 {
-    return turn(t.tilt_a, u) * turn(t.tilt_b, w) * turn(t.spin, way_of_sac) * base;
-  };
-  const double wanted_spin = o.spin * std::numbers::pi / 180;
-  const auto cost = [&](const Turn& t) {
-    const Mat3 r = rotation(t);
-    double sum = 0;
-    for (const Vec3& s : samples) {
-      const Vec3 p = r * s + place_of_neck + t.shift;
-      for (const Obstacle& ob : obstacles)
-        if (const double in = o.gap + wall_half - ob.grid.at(p); in > 0) sum += ob.weight * in * in;
-    }
-    const double away = std::remainder(t.spin - wanted_spin, 2 * std::numbers::pi);
-    return sum / double(samples.size()) + 0.25 * (t.tilt_a * t.tilt_a + t.tilt_b * t.tilt_b) +
-           0.01 * t.shift.squaredNorm() + (o.keep_spin ? 50 : 0.01) * away * away;
-  };
-  Turn best;
-  double least = 1e300;
-  const int spins = o.keep_spin ? 1 : 24;
+struct BestTurn {
+  Turn turn;
+  double cost = 1e300;
+};
+
+/// The best of an even choice of turns and shifts.
+BestTurn coarse_search(const PlaceCost& cost, bool keep_spin, Progress& progress) {
+  BestTurn best;
+  const int spins = keep_spin ? 1 : 24;
   for (int i = 0; i < spins; ++i) {
     progress.share(double(i) / spins);
     for (const double a : {-0.35, 0.0, 0.35})
@@ -90,27 +104,44 @@ Placement find_placement(const artery::Vessel& v, const Fissure& fissure, const 
         for (const double x : {-1.5, 1.0})
           for (const double y : {-1.5, 1.0})
             for (const double z : {-1.5, 1.0}) {
-              const Turn t{wanted_spin + 2 * std::numbers::pi * i / 24, a, b, Vec3(x, y, z)};
-              if (const double c = cost(t); c < least) least = c, best = t;
+              const Turn t{cost.wanted_spin + 2 * std::numbers::pi * i / 24, a, b, Vec3(x, y, z)};
+              if (const double c = cost(t); c < best.cost) best = {t, c};
             }
   }
+  return best;
+}
+
+/// From there downhill, with ever smaller steps along each coordinate.
+void refine(const PlaceCost& cost, BestTurn& best) {
   for (double step = 1; step > 0.04; step *= 0.5)
     for (bool moved = true; moved;) {
       moved = false;
       for (int k = 0; k < 12; ++k) {
-        Turn t = best;
+        Turn t = best.turn;
         const double d = (k % 2 ? -1 : 1) * step;
         if (k / 2 == 0) t.spin += 0.15 * d;
         else if (k / 2 == 1) t.tilt_a += 0.15 * d;
         else if (k / 2 == 2) t.tilt_b += 0.15 * d;
         else t.shift[k / 2 - 3] += 0.7 * d;
         if (t.shift.norm() > 4 || std::hypot(t.tilt_a, t.tilt_b) > 0.7) continue;
-        if (const double c = cost(t); c < least - 1e-12) least = c, best = t, moved = true;
+        if (const double c = cost(t); c < best.cost - 1e-12) best = {t, c}, moved = true;
       }
     }
+}
+
+}  // namespace
+
+Placement find_placement(const artery::Vessel& v, const Fissure& fissure, const Options& o, Progress& progress) {
+  if (o.in_place) return {};
+  if (!v.neck) throw InputError("a vessel without a neck has no place");
+  progress.step("distances in the fissure");
+  const PlaceCost cost(v, fissure, o);
+  progress.step("looking for the place");
+  BestTurn best = coarse_search(cost, o.keep_spin, progress);
+  refine(cost, best);
   Placement p;
-  p.rotation = rotation(best);
-  p.shift = place_of_neck + best.shift - p.rotation * v.neck->centre;
+  p.rotation = cost.rotation(best.turn);
+  p.shift = place_of_neck + best.turn.shift - p.rotation * v.neck->centre;
   return p;
 }
 

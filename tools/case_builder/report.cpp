@@ -96,10 +96,6 @@ std::string pictures(const artery::Vessel& v, const CaseFolder& folder) {
   return s;
 }
 
-}  // namespace
-
-namespace {
-
 /// Median and 95th percentile.
 std::pair<double, double> median_and_most(std::vector<double> times) {
   if (times.empty()) return {0, 0};
@@ -175,36 +171,29 @@ MeasuredScene measure_scene(const fs::path& scene, int steps) {
   return out;
 }
 
-void run_report(const CaseFolder& folder, const Options& options, Progress& progress) {
-  progress.stage("report", 7);
-  progress.step("reading the case");
-  const Intake in = read_intake(folder);
-  const artery::Vessel v = read_wall(folder.artery());
-  if (!v.neck) throw InputError("the vessel has no neck; do the stage wall again");
-  const Json wall = read_json(folder.wall() / "notes.json"), place = read_json(folder.path / "place.json"),
-             scenes = read_json(folder.path / "scenes.json");
-  const artery::Quality q = artery::quality(v.wall.mesh);
-  const auto size = [&](const char* name) {
-    const auto at = v.dimensions.find(name);
-    return at == v.dimensions.end() ? 0.0 : at->second;
-  };
+namespace {
 
-  std::string s =
-      "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>" + escaped(folder.name) +
-      "</title><style>body{font:15px/1.45 sans-serif;max-width:1100px;margin:2em auto;padding:0 "
-      "1em;color:#222}table{border-collapse:collapse;width:100%;margin:.6em 0 1.6em}"
-      "td{border-bottom:1px solid #ddd;padding:.3em .6em;vertical-align:top}.bad td:first-child{border-left:5px solid "
-      "#d33}.mended td:first-child{border-left:5px solid #e8a317}"
-      ".good td:first-child{border-left:5px solid #2a2}.fact td:first-child{border-left:5px solid "
-      "#99b}.row{display:flex;flex-wrap:wrap;gap:12px}figure{margin:0}figcaption{font-size:13px;color:#555}</style>\n";
-  s += fmt::format(
-      "<h1>Case {}</h1><p><b>For training only, never for the care of patients.</b> Red: a problem, with what to do. "
-      "Yellow: something that was mended. Green: as it should be.</p>\n",
-      escaped(folder.name));
-  s += pictures(v, folder);
+std::string head_of(const CaseFolder& folder) {
+  return "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>" + escaped(folder.name) +
+         "</title><style>body{font:15px/1.45 sans-serif;max-width:1100px;margin:2em auto;padding:0 "
+         "1em;color:#222}table{border-collapse:collapse;width:100%;margin:.6em 0 1.6em}"
+         "td{border-bottom:1px solid #ddd;padding:.3em .6em;vertical-align:top}.bad td:first-child{border-left:5px "
+         "solid #d33}.mended td:first-child{border-left:5px solid #e8a317}"
+         ".good td:first-child{border-left:5px solid #2a2}.fact td:first-child{border-left:5px solid "
+         "#99b}.row{display:flex;flex-wrap:wrap;gap:12px}figure{margin:0}figcaption{font-size:13px;color:#555}"
+         "</style>\n" +
+         fmt::format(
+             "<h1>Case {}</h1><p><b>For training only, never for the care of patients.</b> Red: a problem, with what "
+             "to do. Yellow: something that was mended. Green: as it should be.</p>\n",
+             escaped(folder.name));
+}
 
-  s += "<h2>The input</h2><table>";
-  s += row("file", fmt::format("{} ({})", in.facts.value("file", ""), in.facts.value("kind", "")), "fact");
+std::string section(const std::string& title, const std::string& rows) {
+  return "<h2>" + title + "</h2><table>" + rows + "</table>\n";
+}
+
+std::string input_section(const Intake& in, const Options& options) {
+  std::string s = row("file", fmt::format("{} ({})", in.facts.value("file", ""), in.facts.value("kind", "")), "fact");
   if (options.mirror)
     s += row("side",
              "left, mirrored at x = 0: what is left here is right in the patient, and positions in the case's files "
@@ -218,24 +207,24 @@ void run_report(const CaseFolder& folder, const Options& options, Progress& prog
   for (const Json& o : in.facts.at("openings"))
     openings += fmt::format("{}{:.2f} mm", openings.empty() ? "" : ", ", o.at("calibre_mm").get<double>());
   s += row("openings, from the widest", openings, "good");
+  const bool crossed = in.facts.value("self_intersecting", false);
   s += row("given triangles",
            fmt::format("{} given, {} after mending, least angle {:.1f} degrees{}", in.facts.value("triangles_given", 0),
                        in.facts.value("triangles", 0), in.facts.value("least_angle_deg", 0.0),
-                       in.facts.value("self_intersecting", false) ? ", it runs through itself"
-                                                                  : ", it does not run through itself"),
-           in.facts.value("self_intersecting", false) ? "bad" : "good",
-           in.facts.value("self_intersecting", false)
-               ? "Make it anew from a grid: insula case intake FOLDER INPUT --rebuild 0.2 --on"
-               : "");
-  s += note_rows(in.notes) + "</table>\n";
+                       crossed ? ", it runs through itself" : ", it does not run through itself"),
+           crossed ? "bad" : "good",
+           crossed ? "Make it anew from a grid: insula case intake FOLDER INPUT --rebuild \"0.2 mm\" --on" : "");
+  return section("The input", s + note_rows(in.notes));
+}
 
-  s += "<h2>The wall</h2><table>";
+std::string mesh_rows(const artery::Vessel& v) {
+  const artery::Quality q = artery::quality(v.wall.mesh);
   const int vertices = int(v.wall.mesh.vertices.size());
-  s += row("vertices, triangles", fmt::format("{}, {}", vertices, v.wall.mesh.triangles.size()),
-           vertices <= 2000 ? "good" : "bad",
-           vertices <= 2000
-               ? "up to 2,000 are stepped in real time"
-               : "More than real time allows on most machines: insula case wall FOLDER --vertices 1650 --on");
+  std::string s = row(
+      "vertices, triangles", fmt::format("{}, {}", vertices, v.wall.mesh.triangles.size()),
+      vertices <= 2000 ? "good" : "bad",
+      vertices <= 2000 ? "up to 2,000 are stepped in real time"
+                       : "More than real time allows on most machines: insula case wall FOLDER --vertices 1650 --on");
   s += row("worst angle",
            fmt::format("{:.1f} degrees (mean of the least ones {:.1f})", q.min_angle_deg, q.mean_min_angle_deg),
            q.min_angle_deg >= 20 ? "good" : "bad",
@@ -243,15 +232,21 @@ void run_report(const CaseFolder& folder, const Options& options, Progress& prog
   s += row("holes, handles, pieces",
            fmt::format("{}, {} pieces, Euler number {}", q.closed ? "closed" : "OPEN", q.components, q.euler),
            q.closed && q.components == 1 && q.euler == 2 ? "good" : "bad");
-  s += row("self-intersections", q.self_intersecting ? "there are some" : "none", q.self_intersecting ? "bad" : "good",
-           q.self_intersecting ? "insula case intake FOLDER INPUT --rebuild 0.2 --on" : "");
+  return s + row("self-intersections", q.self_intersecting ? "there are some" : "none",
+                 q.self_intersecting ? "bad" : "good",
+                 q.self_intersecting ? "insula case intake FOLDER INPUT --rebuild \"0.2 mm\" --on" : "");
+}
+
+std::string wall_section(const artery::Vessel& v, const Json& wall) {
+  std::string s = mesh_rows(v);
   const double neck = v.neck->diameter;
-  s +=
-      row("neck", fmt::format("{:.2f} mm (circle of equal area), in the frame of the input see wall/vessel.json", neck),
-          neck > 1.5 && neck < 9 ? "good" : "bad", "Not there? insula case wall FOLDER --neck X Y Z NX NY NZ --on");
+  s += row(
+      "neck", fmt::format("{:.2f} mm (circle of equal area), in the frame of the input see wall/vessel.json", neck),
+      neck > 1.5 && neck < 9 ? "good" : "bad", "Not there? insula case wall FOLDER --neck \"X Y Z mm NX NY NZ\" --on");
+  const auto width = v.dimensions.find("sac_width");
   s += row("dome",
-           fmt::format("{:.2f} mm high, {:.2f} mm wide, dome to neck {:.2f}", v.dome_height, size("sac_width"),
-                       v.dome_height / neck),
+           fmt::format("{:.2f} mm high, {:.2f} mm wide, dome to neck {:.2f}", v.dome_height,
+                       width == v.dimensions.end() ? 0.0 : width->second, v.dome_height / neck),
            v.dome_height > 1 ? "good" : "bad",
            v.dome_height / neck < 1.2 ? "A broad neck: expect that one clip leaves a part of it." : "");
   for (const Json& w : wall.at("walls"))
@@ -259,38 +254,78 @@ void run_report(const CaseFolder& folder, const Options& options, Progress& prog
         row("wall of " + w.at("regions").get<std::string>(),
             fmt::format("{:g} mm thick, {:g} MPa", w.at("thickness_mm").get<double>(), w.at("young_MPa").get<double>()),
             "fact", "A proposal; change it in artery.xml.");
-  s += note_rows(notes_from_json(wall.at("notes"))) + "</table>\n";
+  return section("The wall", s + note_rows(notes_from_json(wall.at("notes"))));
+}
 
-  if (fs::exists(folder.path / "brain.json")) {
-    const Json brain = read_json(folder.path / "brain.json");
-    s += "<h2>The brain</h2><table>";
-    for (const Json& l : brain.at("lobes")) {
-      const bool meshed = l.contains("nodes");
-      const double least = l.value("least_angle_deg", 90.0);
-      s += row(l.at("name"),
-               fmt::format("{}{} triangles, {:.0f} mm3 about the fissure",
-                           meshed ? fmt::format("{} nodes, {} tetrahedra, least angle {:.1f} degrees, ",
-                                                l.value("nodes", 0), l.value("tetrahedra", 0), least)
-                                  : "",
-                           l.value("triangles", 0), l.value("volume_mm3", 0.0)),
-               least >= 5 ? "good" : "bad",
-               least >= 5 ? "" : "Slivers: give a smoother surface or segmentation, or more nodes (--brain-nodes).");
-    }
-    s += note_rows(notes_from_json(brain.at("notes"))) + "</table>\n";
+std::string brain_section(const Json& brain) {
+  std::string s;
+  for (const Json& l : brain.at("lobes")) {
+    const bool meshed = l.contains("nodes");
+    const double least = l.value("least_angle_deg", 90.0);
+    s += row(l.at("name"),
+             fmt::format("{}{} triangles, {:.0f} mm3 about the fissure",
+                         meshed ? fmt::format("{} nodes, {} tetrahedra, least angle {:.1f} degrees, ",
+                                              l.value("nodes", 0), l.value("tetrahedra", 0), least)
+                                : "",
+                         l.value("triangles", 0), l.value("volume_mm3", 0.0)),
+             least >= 5 ? "good" : "bad",
+             least >= 5 ? "" : "Slivers: give a smoother surface or segmentation, or more nodes (--brain-nodes).");
   }
-  s += "<h2>In the fissure</h2><table>";
+  return section("The brain", s + note_rows(notes_from_json(brain.at("notes"))));
+}
+
+std::string fissure_section(const Json& place) {
+  std::string s;
   for (const Json& r : place.at("rooms")) {
     const double after = r.at("after_mm");
     s += row("room to the " + r.at("what").get<std::string>(),
              fmt::format("{:.2f} mm (before parting {:.2f} mm)", after, r.at("before_mm").get<double>()),
              after > 0 ? "good" : "bad",
-             after > 0 ? "" : "insula case place FOLDER --spin DEGREES --on, or keep less of the vessel");
+             after > 0 ? "" : "insula case place FOLDER --spin \"45 deg\" --on, or keep less of the vessel");
   }
-  s += note_rows(notes_from_json(place.at("notes"))) + "</table>\n";
+  return section("In the fissure", s + note_rows(notes_from_json(place.at("notes"))));
+}
 
-  s += "<h2>The exercises, run on this machine</h2><table>";
+/// What running an exercise with still hands shows.
+std::string measured_rows(const MeasuredScene& m) {
+  if (!m.message.empty())
+    return row(m.file, m.message, "bad", "Mend the scene, or make the scenes again: insula case scenes FOLDER");
+  const bool fast = m.step_ms <= m.budget_ms;
+  std::string s = row(
+      m.file,
+      fmt::format("{} nodes, {} rows; hands still, a step takes {:.1f} ms (95 %: {:.1f} ms) of {:.1f} ms{}", m.nodes,
+                  m.rows, m.step_ms, m.max_ms, m.budget_ms, m.finite ? "" : "; it LEFT THE RANGE OF NUMBERS"),
+      fast && m.finite ? "good" : "bad",
+      fast ? ""
+           : "Slower than life here: fewer vertices (insula case wall FOLDER --vertices 1200 --on), or a faster "
+             "machine.");
+  for (const Note& n : judged(m.standing)) {
+    const bool good = n.kind != Note::Kind::problem;
+    s += row(m.file + ", as it begins", n.text, good ? "good" : "bad", n.advice);
+  }
+  return s;
+}
+
+std::string clipping_row(const fs::path& clipping, double budget) {
+  const std::string what = clipping.filename().string() + ", scripted hands";
+  const MeasuredMotion m = measure_motion(clipping, 12);
+  if (m.steps == 0)
+    return row(what, "the clip never touches the vessel", "bad",
+               "Choose another clip or place: insula case scenes FOLDER --clip NAME --lift \"1 mm\" --slide \"1 mm\" "
+               "--turn \"10 deg\"");
+  return row(what,
+             fmt::format("{} steps with the clip at the vessel, up to {} rows; a step takes {:.1f} ms (95 %: {:.1f} "
+                         "ms) of {:.1f} ms",
+                         m.steps, m.rows, m.step_ms, m.max_ms, budget),
+             m.step_ms <= budget ? "good" : "bad",
+             m.step_ms <= budget ? ""
+                                 : "Slower than life while it is clipped: fewer vertices (insula case wall FOLDER "
+                                   "--vertices 1200 --on), or a faster machine.");
+}
+
+std::string exercise_section(const CaseFolder& folder, const Json& scenes, Progress& progress) {
   const Json clip = scenes.at("clip");
-  s +=
+  std::string s =
       row("clip for the neck",
           fmt::format("{}: blades of {:g} mm, {:.1f} mm wanted; the applier comes {:.0f} degrees off the line of sight",
                       clip.at("name").get<std::string>(), clip.at("blade_mm").get<double>(),
@@ -300,41 +335,29 @@ void run_report(const CaseFolder& folder, const Options& options, Progress& prog
   for (const fs::path& file : exercise_files(folder)) {
     progress.step("running " + file.filename().string());
     const MeasuredScene m = measure_scene(file, 60);
-    if (!m.message.empty()) {
-      s += row(m.file, m.message, "bad", "Mend the scene, or make the scenes again: insula case scenes FOLDER");
-      continue;
-    }
-    budget = m.budget_ms;
-    const bool fast = m.step_ms <= m.budget_ms;
-    s += row(
-        m.file,
-        fmt::format("{} nodes, {} rows; hands still, a step takes {:.1f} ms (95 %: {:.1f} ms) of {:.1f} ms{}", m.nodes,
-                    m.rows, m.step_ms, m.max_ms, m.budget_ms, m.finite ? "" : "; it LEFT THE RANGE OF NUMBERS"),
-        fast && m.finite ? "good" : "bad",
-        fast ? ""
-             : "Slower than life here: fewer vertices (insula case wall FOLDER --vertices 1200 --on), or a faster "
-               "machine.");
-    for (const Note& n : judged(m.standing)) {
-      const bool good = n.kind != Note::Kind::problem;
-      s += row(m.file + ", as it begins", n.text, good ? "good" : "bad", n.advice);
-    }
+    s += measured_rows(m);
+    if (m.message.empty()) budget = m.budget_ms;
   }
   progress.step("playing the clipping");
-  const fs::path clipping = exercise_files(folder)[2];
-  if (const MeasuredMotion m = measure_motion(clipping, 12); m.steps > 0)
-    s += row(clipping.filename().string() + ", scripted hands",
-             fmt::format("{} steps with the clip at the vessel, up to {} rows; a step takes {:.1f} ms (95 %: {:.1f} "
-                         "ms) of {:.1f} ms",
-                         m.steps, m.rows, m.step_ms, m.max_ms, budget),
-             m.step_ms <= budget ? "good" : "bad",
-             m.step_ms <= budget ? ""
-                                 : "Slower than life while it is clipped: fewer vertices (insula case wall FOLDER "
-                                   "--vertices 1200 --on), or a faster machine.");
-  else
-    s += row(clipping.filename().string() + ", scripted hands", "the clip never touches the vessel", "bad",
-             "Choose another clip or place: insula case scenes FOLDER --clip NAME --lift MM --slide MM --turn DEGREES");
-  s += note_rows(notes_from_json(scenes.at("notes"))) + "</table></html>\n";
-  write_text(folder.path / "report.html", s);
+  s += clipping_row(exercise_files(folder)[2], budget);
+  return section("The exercises, run on this machine", s + note_rows(notes_from_json(scenes.at("notes"))));
+}
+
+}  // namespace
+
+void run_report(const CaseFolder& folder, const Options& options, Progress& progress) {
+  progress.stage("report", 7);
+  progress.step("reading the case");
+  const Intake in = read_intake(folder);
+  const artery::Vessel v = read_wall(folder.artery());
+  if (!v.neck) throw InputError("the vessel has no neck; do the stage wall again");
+  const Json wall = read_json(folder.wall() / "notes.json"), place = read_json(folder.path / "place.json"),
+             scenes = read_json(folder.path / "scenes.json");
+  std::string s = head_of(folder) + pictures(v, folder) + input_section(in, options) + wall_section(v, wall);
+  if (fs::exists(folder.path / "brain.json")) s += brain_section(read_json(folder.path / "brain.json"));
+  s += fissure_section(place);
+  s += exercise_section(folder, scenes, progress);
+  write_text(folder.path / "report.html", s + "</html>\n");
   progress.finish();
 }
 

@@ -131,115 +131,135 @@ std::string strands(const SceneFacts& f, const std::string& kind) {
                            : 14);
 }
 
-std::string exercise(const SceneFacts& f, int number) {
-  std::string s = head;
-  const auto open = [&](const char* comment, const char* title) {
-    s += fmt::format("<!-- {} {} -->\n<scene title=\"{}: {}\" time_step=\"16.6667 ms\">\n", comment, training_only,
-                     f.name, title);
-  };
+namespace {
+
+std::string opened(const SceneFacts& f, const char* comment, const char* title) {
+  return fmt::format("{}<!-- {} {} -->\n<scene title=\"{}: {}\" time_step=\"16.6667 ms\">\n", head, comment,
+                     training_only, f.name, title);
+}
+
+std::string opening_exercise(const SceneFacts& f) {
+  std::string s =
+      opened(f, "Exercise 1: open the Sylvian fissure over the case's vessel.", "opening the Sylvian fissure");
+  s += fissure(f, "fissure.xml");
+  s += "  <view eye=\"357 66 -25 mm\" target=\"65 6 1 mm\" up=\"0 0 1\" field_of_view=\"12 deg\"/>\n  <solver "
+       "max_sweeps=\"80\" tolerance=\"1e-7 m\"/>\n\n";
+  s += fmt::format(
+      "  <!-- The vessel lies below: seen through the opened lips, not touched yet. -->\n  <obstacle "
+      "id=\"artery\">\n    <surface id=\"artery_wall\" mesh=\"artery/picture.ply\" mesh_unit=\"mm\" "
+      "material=\"vessel\" contact=\"false\"/>\n  </obstacle>\n");
+  s += tool(f, "suction", "left_suction", "left", "suction",
+            "home=\"95.3 -6.4 7.4 mm\" shaft=\"0.912 -0.346 0.220\" flat=\"-0.08 -0.495 0.865\" coupling=\"250 N/m\"");
+  s += tool(f, "dissector", "right_dissector", "right", "dissector",
+            "home=\"82.6 25 10.3 mm\" shaft=\"0.825 0.552 0.120\" flat=\"-0.297 0.372 0.879\" coupling=\"250 N/m\"");
+  s += "  <strand_springs id=\"arachnoid\" from=\"frontal_surface\" to=\"temporal_surface\" density=\"42 1/cm2\" "
+       "max_length=\"4.5 mm\" centre=\"66 3.5 5 mm\" radius=\"10.5 mm\" seed=\"7\"\n"
+       "    stiffness=\"6 N/m\" slack=\"1.1\" strength=\"0.02 N\" cut_force=\"0.015 N\" cut_length=\"0.8 mm\" "
+       "reach=\"0.6 mm\"/>\n"
+       "  <contact id=\"lobes\" between=\"frontal temporal\" friction=\"0\" tissue_alarm=\"0.8 mm\" "
+       "tissue_spacing=\"2 mm\" tissue_max_contacts=\"40\"/>\n"
+       "  <contact id=\"tools\" between=\"frontal temporal insula left_suction right_dissector\" friction=\"0.1\" "
+       "spacing=\"1 mm\" max_contacts=\"10\"/>\n\n"
+       "  <exercise id=\"sylvian_fissure\" title=\"Opening the Sylvian fissure\" text=\"Take hold of the temporal "
+       "lobe with the suction tube and draw it down a little. Divide the strands with the dissector's edge, first at "
+       "the surface, then deeper.\">\n"
+       "    <goal_opening id=\"open\" text=\"Part the lips of the fissure by 5 mm and hold them\" "
+       "a=\"frontal_surface\" b=\"temporal_surface\" at=\"67 5 4 mm\" distance=\"5 mm\" hold=\"2 s\"/>\n"
+       "    <goal_strands id=\"divide\" text=\"Divide all arachnoid strands\" fraction=\"1\"/>\n"
+       "    <fault_force id=\"force\" text=\"Too much force on the brain: ease off\" on=\"frontal temporal\" "
+       "limit=\"0.2 N\" grace=\"100 ms\"/>\n"
+       "    <fault_torn id=\"torn\" text=\"A strand tore: cut it before you draw the lobe further\"/>\n"
+       "    <fault_order id=\"order\" text=\"Too deep too early: divide the strands at the surface first\" "
+       "inward=\"-0.946 -0.236 -0.220\" margin=\"5 mm\" allowed=\"6\"/>\n"
+       "    <time_limit id=\"time\" text=\"Ten minutes are over\" limit=\"600 s\"/>\n";
+  if (f.opened) s += "    <motion id=\"steady\" file=\"1_sylvian_fissure_steady.csv\"/>\n";
+  s += "  </exercise>\n</scene>\n";
+  return s;
+}
+
+std::string dissection_exercise(const SceneFacts& f) {
+  std::string s = opened(f, "Exercise 2: free the aneurysm of its strands.", "dissection of the aneurysm");
+  s += fissure(f, "retracted_fissure.xml");
+  s += "  <include file=\"artery.xml\"/>\n";
+  s += fmt::format(
+      "  <view eye=\"329 86 72 mm\" target=\"{}\" up=\"0 0 1\" field_of_view=\"9 deg\"/>\n  <settle time=\"3 s\"/>\n "
+      " <solver max_sweeps=\"80\" tolerance=\"1e-7 m\"/>\n\n",
+      point(f.neck + Vec3(2.5, 0, 1)));
+  s += tool(f, "suction", "left_suction", "left", "suction",
+            "home=\"98 -4 8 mm\" shaft=\"0.87 -0.42 0.26\" flat=\"0 0 1\" coupling=\"250 N/m\"");
+  s += tool(f, "dissector", "right_stylus", "right", "dissector",
+            "home=\"92 44 12 mm\" shaft=\"0.80 0.55 0.24\" flat=\"0 0 1\" coupling=\"250 N/m\"");
+  s += "  <contact id=\"bed\" between=\"artery frontal temporal insula\" friction=\"0\" tissue_alarm=\"0.3 mm\" "
+       "tissue_spacing=\"1.5 mm\" tissue_max_contacts=\"12\" tissue_max_force=\"0.05 N\"/>\n"
+       "  <contact id=\"tools\" between=\"artery frontal temporal insula left_suction right_stylus\" "
+       "friction=\"0.1\" spacing=\"1 mm\" max_contacts=\"10\"/>\n";
+  s += fmt::format(
+      "  <bleeding id=\"bleeding\" on=\"artery\" flow=\"flow\" region=\"{}\" force=\"0.3 N\" sharp_force=\"0.08 N\" "
+      "origin=\"{}\" up=\"0.93 0.22 0.28\" radius=\"12 mm\" depth=\"25 mm\"/>\n",
+      f.bleb ? "bleb" : "sac", point(f.neck - 5 * to_surgeon));
+  for (const std::string& kind : f.strand_sets) s += strands(f, kind);
+  s += "\n  <exercise id=\"aneurysm_dissection\" title=\"Dissection of the aneurysm\" text=\"Divide all strands with "
+       "the dissector's edge: turn the blade across each and sweep it slowly, the outermost first. Keep off the "
+       "dome, and pull on nothing.\">\n"
+       "    <goal_strands id=\"divide\" text=\"Divide all strands around the aneurysm\" fraction=\"1\"/>\n"
+       "    <fault_force id=\"vessel_force\" text=\"Too much force on the vessel: ease off\" on=\"artery\" "
+       "limit=\"0.15 N\" grace=\"100 ms\"/>\n"
+       "    <fault_force id=\"brain_force\" text=\"Too much force on the brain: ease off\" on=\"frontal temporal\" "
+       "limit=\"0.2 N\" grace=\"100 ms\"/>\n"
+       "    <fault_torn id=\"torn\" text=\"A strand tore: divide it with the edge instead\"/>\n"
+       "    <fault_rupture id=\"rupture\" text=\"The aneurysm has ruptured\" fails=\"true\"/>\n"
+       "    <time_limit id=\"time\" text=\"Ten minutes are over\" limit=\"600 s\"/>\n";
+  if (f.rehearsed) s += "    <motion id=\"steady\" file=\"2_aneurysm_dissection_steady.csv\"/>\n";
+  s += "  </exercise>\n</scene>\n";
+  return s;
+}
+
+std::string clipping_exercise(const SceneFacts& f) {
   const std::string clipping_text = fmt::format(
       "Load the applier with {} or another clip. Hold button 1 to open the blades, bring them over the dome, across "
       "its neck, tips just past it, and let them close; button 2 lets the clip go, and takes it back if it lies badly.",
       f.clips.front());
-  if (number == 1) {
-    open("Exercise 1: open the Sylvian fissure over the case's vessel.", "opening the Sylvian fissure");
-    s += fissure(f, "fissure.xml");
-    s += "  <view eye=\"357 66 -25 mm\" target=\"65 6 1 mm\" up=\"0 0 1\" field_of_view=\"12 deg\"/>\n  <solver "
-         "max_sweeps=\"80\" tolerance=\"1e-7 m\"/>\n\n";
-    s += fmt::format(
-        "  <!-- The vessel lies below: seen through the opened lips, not touched yet. -->\n  <obstacle "
-        "id=\"artery\">\n    <surface id=\"artery_wall\" mesh=\"artery/picture.ply\" mesh_unit=\"mm\" "
-        "material=\"vessel\" contact=\"false\"/>\n  </obstacle>\n");
-    s +=
-        tool(f, "suction", "left_suction", "left", "suction",
-             "home=\"95.3 -6.4 7.4 mm\" shaft=\"0.912 -0.346 0.220\" flat=\"-0.08 -0.495 0.865\" coupling=\"250 N/m\"");
-    s += tool(f, "dissector", "right_dissector", "right", "dissector",
-              "home=\"82.6 25 10.3 mm\" shaft=\"0.825 0.552 0.120\" flat=\"-0.297 0.372 0.879\" coupling=\"250 N/m\"");
-    s += "  <strand_springs id=\"arachnoid\" from=\"frontal_surface\" to=\"temporal_surface\" density=\"42 1/cm2\" "
-         "max_length=\"4.5 mm\" centre=\"66 3.5 5 mm\" radius=\"10.5 mm\" seed=\"7\"\n"
-         "    stiffness=\"6 N/m\" slack=\"1.1\" strength=\"0.02 N\" cut_force=\"0.015 N\" cut_length=\"0.8 mm\" "
-         "reach=\"0.6 mm\"/>\n"
-         "  <contact id=\"lobes\" between=\"frontal temporal\" friction=\"0\" tissue_alarm=\"0.8 mm\" "
-         "tissue_spacing=\"2 mm\" tissue_max_contacts=\"40\"/>\n"
-         "  <contact id=\"tools\" between=\"frontal temporal insula left_suction right_dissector\" friction=\"0.1\" "
-         "spacing=\"1 mm\" max_contacts=\"10\"/>\n\n"
-         "  <exercise id=\"sylvian_fissure\" title=\"Opening the Sylvian fissure\" text=\"Take hold of the temporal "
-         "lobe with the suction tube and draw it down a little. Divide the strands with the dissector's edge, first at "
-         "the surface, then deeper.\">\n"
-         "    <goal_opening id=\"open\" text=\"Part the lips of the fissure by 5 mm and hold them\" "
-         "a=\"frontal_surface\" b=\"temporal_surface\" at=\"67 5 4 mm\" distance=\"5 mm\" hold=\"2 s\"/>\n"
-         "    <goal_strands id=\"divide\" text=\"Divide all arachnoid strands\" fraction=\"1\"/>\n"
-         "    <fault_force id=\"force\" text=\"Too much force on the brain: ease off\" on=\"frontal temporal\" "
-         "limit=\"0.2 N\" grace=\"100 ms\"/>\n"
-         "    <fault_torn id=\"torn\" text=\"A strand tore: cut it before you draw the lobe further\"/>\n"
-         "    <fault_order id=\"order\" text=\"Too deep too early: divide the strands at the surface first\" "
-         "inward=\"-0.946 -0.236 -0.220\" margin=\"5 mm\" allowed=\"6\"/>\n"
-         "    <time_limit id=\"time\" text=\"Ten minutes are over\" limit=\"600 s\"/>\n";
-    if (f.opened) s += "    <motion id=\"steady\" file=\"1_sylvian_fissure_steady.csv\"/>\n";
-    s += "  </exercise>\n</scene>\n";
-  } else if (number == 2) {
-    open("Exercise 2: free the aneurysm of its strands.", "dissection of the aneurysm");
-    s += fissure(f, "retracted_fissure.xml");
-    s += "  <include file=\"artery.xml\"/>\n";
-    s += fmt::format(
-        "  <view eye=\"329 86 72 mm\" target=\"{}\" up=\"0 0 1\" field_of_view=\"9 deg\"/>\n  <settle time=\"3 s\"/>\n "
-        " <solver max_sweeps=\"80\" tolerance=\"1e-7 m\"/>\n\n",
-        point(f.neck + Vec3(2.5, 0, 1)));
-    s += tool(f, "suction", "left_suction", "left", "suction",
-              "home=\"98 -4 8 mm\" shaft=\"0.87 -0.42 0.26\" flat=\"0 0 1\" coupling=\"250 N/m\"");
-    s += tool(f, "dissector", "right_stylus", "right", "dissector",
-              "home=\"92 44 12 mm\" shaft=\"0.80 0.55 0.24\" flat=\"0 0 1\" coupling=\"250 N/m\"");
-    s += "  <contact id=\"bed\" between=\"artery frontal temporal insula\" friction=\"0\" tissue_alarm=\"0.3 mm\" "
-         "tissue_spacing=\"1.5 mm\" tissue_max_contacts=\"12\" tissue_max_force=\"0.05 N\"/>\n"
-         "  <contact id=\"tools\" between=\"artery frontal temporal insula left_suction right_stylus\" "
-         "friction=\"0.1\" spacing=\"1 mm\" max_contacts=\"10\"/>\n";
-    s += fmt::format(
-        "  <bleeding id=\"bleeding\" on=\"artery\" flow=\"flow\" region=\"{}\" force=\"0.3 N\" sharp_force=\"0.08 N\" "
-        "origin=\"{}\" up=\"0.93 0.22 0.28\" radius=\"12 mm\" depth=\"25 mm\"/>\n",
-        f.bleb ? "bleb" : "sac", point(f.neck - 5 * to_surgeon));
-    for (const std::string& kind : f.strand_sets) s += strands(f, kind);
-    s += "\n  <exercise id=\"aneurysm_dissection\" title=\"Dissection of the aneurysm\" text=\"Divide all strands with "
-         "the dissector's edge: turn the blade across each and sweep it slowly, the outermost first. Keep off the "
-         "dome, and pull on nothing.\">\n"
-         "    <goal_strands id=\"divide\" text=\"Divide all strands around the aneurysm\" fraction=\"1\"/>\n"
-         "    <fault_force id=\"vessel_force\" text=\"Too much force on the vessel: ease off\" on=\"artery\" "
-         "limit=\"0.15 N\" grace=\"100 ms\"/>\n"
-         "    <fault_force id=\"brain_force\" text=\"Too much force on the brain: ease off\" on=\"frontal temporal\" "
-         "limit=\"0.2 N\" grace=\"100 ms\"/>\n"
-         "    <fault_torn id=\"torn\" text=\"A strand tore: divide it with the edge instead\"/>\n"
-         "    <fault_rupture id=\"rupture\" text=\"The aneurysm has ruptured\" fails=\"true\"/>\n"
-         "    <time_limit id=\"time\" text=\"Ten minutes are over\" limit=\"600 s\"/>\n";
-    if (f.rehearsed) s += "    <motion id=\"steady\" file=\"2_aneurysm_dissection_steady.csv\"/>\n";
-    s += "  </exercise>\n</scene>\n";
-  } else if (number == 3) {
-    open("Exercise 3: clip the aneurysm.", "clipping");
-    s += "  <include file=\"field.xml\"/>\n\n";
-    s += fmt::format("  <exercise id=\"clipping\" title=\"Clipping\" text=\"{}\">\n", clipping_text);
-    s += judged(f, "3 s");
-    s += "    <fault_rupture id=\"rupture\" text=\"The dome has ruptured\"/>\n"
-         "    <fault_force id=\"force\" text=\"Too much force on the artery\" on=\"artery\" limit=\"1 N\" grace=\"200 "
-         "ms\"/>\n"
-         "    <time_limit id=\"time\" text=\"Fifteen minutes are over\" limit=\"900 s\"/>\n"
-         "    <motion id=\"steady\" file=\"3_clipping_steady.csv\"/>\n  </exercise>\n</scene>\n";
-  } else {
-    open("Exercise 4: the dome ruptures.", "rupture");
-    s += "  <include file=\"field.xml\"/>\n\n  <complications id=\"chance\">\n    <complication "
-         "id=\"rupture_by_itself\" command=\"bleeding rupture\" probability=\"1\" from=\"8 s\" to=\"40 s\"/>\n"
-         "    <complication id=\"pressure_rises\" command=\"heart set_systolic 150\" probability=\"0.3\" from=\"20 s\" "
-         "to=\"120 s\"/>\n  </complications>\n\n"
-         "  <exercise id=\"rupture\" title=\"Rupture\" text=\"The dome bleeds. Hold the field dry with the suction "
-         "tube, put a temporary clip across the parent artery, then close the neck with a permanent clip, and take the "
-         "temporary clip off within three minutes.\">\n"
-         "    <goal_bleeding_stopped id=\"stop\" text=\"Stop the bleeding\" rate=\"4 ml/min\" hold=\"2 s\"/>\n";
-    s += judged(f, "2 s");
-    s += "    <goal_temporary_removed id=\"removed\" text=\"Take the temporary clip off\" rate=\"4 ml/min\"/>\n"
-         "    <timer_rupture id=\"since_rupture\" text=\"Since the rupture\" limit=\"300 s\" rate=\"4 ml/min\"/>\n"
-         "    <timer_temporary_clip id=\"occlusion\" text=\"Temporary clip\" limit=\"180 s\"/>\n"
-         "    <fault_force id=\"force\" text=\"Too much force on the artery\" on=\"artery\" limit=\"1 N\" grace=\"200 "
-         "ms\"/>\n"
-         "    <motion id=\"steady\" file=\"4_rupture_steady.csv\"/>\n  </exercise>\n</scene>\n";
-  }
+  std::string s = opened(f, "Exercise 3: clip the aneurysm.", "clipping");
+  s += "  <include file=\"field.xml\"/>\n\n";
+  s += fmt::format("  <exercise id=\"clipping\" title=\"Clipping\" text=\"{}\">\n", clipping_text);
+  s += judged(f, "3 s");
+  s += "    <fault_rupture id=\"rupture\" text=\"The dome has ruptured\"/>\n"
+       "    <fault_force id=\"force\" text=\"Too much force on the artery\" on=\"artery\" limit=\"1 N\" grace=\"200 "
+       "ms\"/>\n"
+       "    <time_limit id=\"time\" text=\"Fifteen minutes are over\" limit=\"900 s\"/>\n"
+       "    <motion id=\"steady\" file=\"3_clipping_steady.csv\"/>\n  </exercise>\n</scene>\n";
   return s;
+}
+
+std::string rupture_exercise(const SceneFacts& f) {
+  std::string s = opened(f, "Exercise 4: the dome ruptures.", "rupture");
+  s += "  <include file=\"field.xml\"/>\n\n  <complications id=\"chance\">\n    <complication "
+       "id=\"rupture_by_itself\" command=\"bleeding rupture\" probability=\"1\" from=\"8 s\" to=\"40 s\"/>\n"
+       "    <complication id=\"pressure_rises\" command=\"heart set_systolic 150\" probability=\"0.3\" from=\"20 s\" "
+       "to=\"120 s\"/>\n  </complications>\n\n"
+       "  <exercise id=\"rupture\" title=\"Rupture\" text=\"The dome bleeds. Hold the field dry with the suction "
+       "tube, put a temporary clip across the parent artery, then close the neck with a permanent clip, and take the "
+       "temporary clip off within three minutes.\">\n"
+       "    <goal_bleeding_stopped id=\"stop\" text=\"Stop the bleeding\" rate=\"4 ml/min\" hold=\"2 s\"/>\n";
+  s += judged(f, "2 s");
+  s += "    <goal_temporary_removed id=\"removed\" text=\"Take the temporary clip off\" rate=\"4 ml/min\"/>\n"
+       "    <timer_rupture id=\"since_rupture\" text=\"Since the rupture\" limit=\"300 s\" rate=\"4 ml/min\"/>\n"
+       "    <timer_temporary_clip id=\"occlusion\" text=\"Temporary clip\" limit=\"180 s\"/>\n"
+       "    <fault_force id=\"force\" text=\"Too much force on the artery\" on=\"artery\" limit=\"1 N\" grace=\"200 "
+       "ms\"/>\n"
+       "    <motion id=\"steady\" file=\"4_rupture_steady.csv\"/>\n  </exercise>\n</scene>\n";
+  return s;
+}
+
+}  // namespace
+
+std::string exercise(const SceneFacts& f, int number) {
+  switch (number) {
+    case 1: return opening_exercise(f);
+    case 2: return dissection_exercise(f);
+    case 3: return clipping_exercise(f);
+    default: return rupture_exercise(f);
+  }
 }
 
 }  // namespace insula::case_builder

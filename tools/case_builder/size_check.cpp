@@ -31,7 +31,7 @@ std::string advice(double size, double mm_per_unit, const Usual& usual) {
   if (best) return fmt::format("; as if its numbers were in {0}: give {1} {0}", best->name, usual.option);
   const double factor = std::pow(10.0, std::round(std::log10(usual.size / size)));
   if (factor != 1)
-    return fmt::format("; as if it were {:g} times too {}: scale it, or give the millimetres of its unit, {}-mm {:g}",
+    return fmt::format("; as if it were {:g} times too {}: scale it, or give its unit as a length, {} \"{:g} mm\"",
                        factor < 1 ? 1 / factor : factor, factor < 1 ? "large" : "small", usual.option,
                        mm_per_unit * factor);
   return "";

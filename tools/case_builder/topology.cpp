@@ -214,7 +214,7 @@ std::vector<std::vector<int>> border_loops(const TriMesh& m) {
     }
     if (v != loop.front())
       throw InputError(
-          "the border of the surface is not made of closed lines; make it anew from a grid with --rebuild 0.2");
+          "the border of the surface is not made of closed lines; make it anew from a grid with --rebuild \"0.2 mm\"");
   }
   return out;
 }

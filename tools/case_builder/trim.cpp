@@ -94,7 +94,7 @@ artery::Surface trimmed(const artery::Surface& surface, const std::vector<artery
           notes.push_back({Note::Kind::repair,
                            fmt::format("{} was cut off {:.1f} mm from the neck ({:.1f} mm of it left out).",
                                        lines[l].name, distance[l][at], end - distance[l][at]),
-                           "The fissure has room for short stretches only; --keep MM keeps more."});
+                           "The fissure has room for short stretches only; --keep keeps more."});
         } catch (const InputError& e) {
           why = e.what();
         }

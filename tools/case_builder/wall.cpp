@@ -66,7 +66,8 @@ Vessel made(const artery::Surface& s, const artery::ImportOptions& options) {
 void check_sound(const Vessel& v) {
   const artery::Quality q = artery::quality(v.wall.mesh);
   if (!q.closed || q.components != 1)
-    throw InputError("the wall that was made is not closed; make the surface anew from a grid with --rebuild 0.2");
+    throw InputError(
+        "the wall that was made is not closed; make the surface anew from a grid with --rebuild \"0.2 mm\"");
   if (q.euler != 2)
     throw InputError(
         "the wall has a hole through it (branches that have grown together); part them in the program that made the "
@@ -74,7 +75,7 @@ void check_sound(const Vessel& v) {
   if (q.self_intersecting)
     throw InputError(
         "the wall runs through itself: parts of the vessel are closer than its triangles are long. Give it more "
-        "vertices (--vertices 2500), or make the surface anew from a grid with --rebuild 0.2");
+        "vertices (--vertices 2500), or make the surface anew from a grid with --rebuild \"0.2 mm\"");
 }
 
 }  // namespace
@@ -96,7 +97,7 @@ Vessel make_wall(const artery::Surface& surface, const Options& o, std::vector<N
   if (!v.neck)
     throw InputError(
         "no sac was found: nothing of the wall bulges out of the vessels by half of their radius. If there is an "
-        "aneurysm, give its neck: --neck X Y Z NX NY NZ (a point in the neck and the direction to the dome)");
+        "aneurysm, give its neck: --neck \"X Y Z mm NX NY NZ\" (a point in the neck and the direction to the dome)");
   const bool given = options.neck.has_value();
   if (o.keep > 0) {
     progress.step("cutting the ends");
@@ -128,7 +129,7 @@ Vessel make_wall(const artery::Surface& surface, const Options& o, std::vector<N
       {Note::Kind::fact,
        given ? "The neck is where it was asked for."
              : "Neck and sac are a proposal: the narrowest section near the border of what bulges out of the vessels.",
-       given ? "" : "Look at the pictures; move the neck with --neck X Y Z NX NY NZ or --neck-points."});
+       given ? "" : "Look at the pictures; move the neck with --neck \"X Y Z mm NX NY NZ\" or --neck-points."});
   return v;
 }
 

@@ -121,16 +121,17 @@ def clip_block(clip):
     return out
 
 
-def build(row, table):
-    """({file name: (text, triangles or None)}, row of the catalogue) of one clip."""
-    clip = Clip(row, table["families"][row["family"]])
-    name, par, materials = row["name"], clip.par, table["materials"]
-    title = f'{row["label"]}, blade {clip.blade_length:.3g} mm, {clip.force:.2g} N'
-    head = [f"SPDX-License-Identifier: {instruments.LICENCE}", f"{title}. Unit: mm. {SOURCE}."]
+def part_material(par, part):
+    return par["coil_material"] if part == "body" else par["material"]
+
+
+def build_parts(clip, head, materials):
+    """({file name: (text, triangles)}, lines of the links, mass in kg) of a clip's parts."""
     meshes, pieces, files, links, mass = clip.meshes(), clip.pieces(), {}, [], 0.0
+    name = clip.row["name"]
     for part, mesh in meshes.items():
         mesh.check_closed(f"{name}: {part}")
-        material = par["coil_material"] if part == "body" else par["material"]
+        material = part_material(clip.par, part)
         file = f"{name}_{part}.obj"
         files[file] = (obj_text(mesh, part, head), len(mesh.faces))
         for piece, kind, data, _ in pieces[part]:
@@ -141,22 +142,28 @@ def build(row, table):
         links += link_text(
             part, clip, part, file, material, materials[material]["rgba"], m, centre, tensor, pieces[part]
         )
-    urdf = [
+    return files, links, mass
+
+
+def urdf_text(clip, title, links):
+    lines = [
         '<?xml version="1.0"?>',
         f"<!-- SPDX-License-Identifier: {instruments.LICENCE} -->",
         f"<!-- {title}; {SOURCE}. -->",
-        f'<robot name="{name}">',
-    ] + links
-    urdf += (
-        joint_text("opening", "jaw_left", clip, False)
-        + joint_text("opening_mirrored", "jaw_right", clip, True)
-        + ["</robot>"]
-    )
-    files[f"{name}.urdf"] = ("\n".join(urdf) + "\n", None)
-    rounding = {piece: r for rows in pieces.values() for piece, kind, _, r in rows if kind == "hull"}
+        f'<robot name="{clip.row["name"]}">',
+        *links,
+        *joint_text("opening", "jaw_left", clip, False),
+        *joint_text("opening_mirrored", "jaw_right", clip, True),
+        "</robot>",
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def tool_block(clip, title, mass):
+    """What tool.json says of a clip."""
     block = clip_block(clip)
-    tool = {
-        "name": name,
+    return {
+        "name": clip.row["name"],
         "title": title,
         "unit": "mm",
         "frame": FRAME,
@@ -164,16 +171,17 @@ def build(row, table):
         "length_mm": round(clip.whole_length(), 3),
         "mass_kg": round(mass, 10),
         "grip": block["grip"]["position"],
-        "rounding_mm": rounding,
+        "rounding_mm": {piece: r for rows in clip.pieces().values() for piece, kind, _, r in rows if kind == "hull"},
         "clip": block,
     }
-    files["tool.json"] = (json.dumps(tool, indent=1) + "\n", None)
-    colours = {part: materials[par["coil_material"] if part == "body" else par["material"]]["rgba"] for part in meshes}
-    files["picture.svg"] = (picture.svg(clip, colours, title), None)
+
+
+def catalogue_entry(clip, tool, mass):
+    name, block = tool["name"], tool["clip"]
     entry = {
         "name": name,
-        "title": title,
-        "menu": row.get("menu", False),
+        "title": tool["title"],
+        "menu": clip.row.get("menu", False),
         "urdf": f"{name}/{name}.urdf",
         "picture": f"{name}/picture.svg",
         "length_mm": tool["length_mm"],
@@ -184,7 +192,22 @@ def build(row, table):
     )
     if clip.window:
         entry["fenestration_mm"] = clip.window["diameter"]
-    return files, entry
+    return entry
+
+
+def build(row, table):
+    """({file name: (text, triangles or None)}, row of the catalogue) of one clip."""
+    clip = Clip(row, table["families"][row["family"]])
+    materials = table["materials"]
+    title = f'{row["label"]}, blade {clip.blade_length:.3g} mm, {clip.force:.2g} N'
+    head = [f"SPDX-License-Identifier: {instruments.LICENCE}", f"{title}. Unit: mm. {SOURCE}."]
+    files, links, mass = build_parts(clip, head, materials)
+    files[f'{row["name"]}.urdf'] = (urdf_text(clip, title, links), None)
+    tool = tool_block(clip, title, mass)
+    files["tool.json"] = (json.dumps(tool, indent=1) + "\n", None)
+    colours = {part: materials[part_material(clip.par, part)]["rgba"] for part in clip.meshes()}
+    files["picture.svg"] = (picture.svg(clip, colours, title), None)
+    return files, catalogue_entry(clip, tool, mass)
 
 
 def readme(catalogue):

@@ -30,16 +30,11 @@ void relax(std::vector<Vec3>& line) {
   for (std::size_t i = 1; i + 1 < line.size(); ++i) line[i] = 0.25 * (old[i - 1] + 2.0 * old[i] + old[i + 1]);
 }
 
-}  // namespace
-
-Cleft describe_cleft(const PartFields& fields, std::size_t a, std::size_t b, const FieldOptions& options,
-                     const Vec3& view, double width, double step, double rim) {
+/// Points of the grid as far from the one part as from the other, in a cleft no wider than `width`.
+std::vector<Vec3> mid_surface(const PartFields& fields, const Mask& in_a, const Mask& in_b, const FieldOptions& options,
+                              double width, double rim) {
   const Grid& grid = fields.grid;
-  const std::size_t n = grid.count();
-  Mask in_a(n), in_b(n);
-  for (std::size_t i = 0; i < n; ++i) in_a[i] = fields.fine[a][i] > 0, in_b[i] = fields.fine[b][i] > 0;
   const Field to_a = distance_to(grid, in_a), to_b = distance_to(grid, in_b);
-  const Vec3 up = unit(view);
   std::vector<Vec3> mid;
   for (int k = 0; k < grid.size[2]; ++k)
     for (int j = 0; j < grid.size[1]; ++j)
@@ -52,11 +47,11 @@ Cleft describe_cleft(const PartFields& fields, std::size_t a, std::size_t b, con
         mid.push_back(p);
       }
   if (mid.size() < 20) throw std::runtime_error("no cleft found between the two parts");
+  return mid;
+}
 
-  // Long axis: principal direction of the mid-surface across the view (power iteration on the 3x3 covariance).
-  Vec3 mean{};
-  for (const Vec3& p : mid) mean = mean + p;
-  mean = (1.0 / static_cast<double>(mid.size())) * mean;
+/// Principal direction of the mid-surface across the view (power iteration on the 3x3 covariance).
+Vec3 long_axis(const std::vector<Vec3>& mid, const Vec3& mean, const Vec3& up) {
   Vec3 axis = unit(cross(up, {0.1, 0.2, 1}));
   for (int iteration = 0; iteration < 100; ++iteration) {
     Vec3 next{};
@@ -67,9 +62,21 @@ Cleft describe_cleft(const PartFields& fields, std::size_t a, std::size_t b, con
     }
     axis = unit(next);
   }
+  return axis;
+}
+
+struct Edges {
+  std::vector<Vec3> top, floor;  ///< of the cleft, station by station
+};
+
+Edges edges_of(const std::vector<Vec3>& mid, const Vec3& up, double step) {
+  Vec3 mean{};
+  for (const Vec3& p : mid) mean = mean + p;
+  mean = (1.0 / static_cast<double>(mid.size())) * mean;
+  const Vec3 axis = long_axis(mid, mean, up);
   std::map<long, std::vector<Vec3>> bins;
   for (const Vec3& p : mid) bins[std::lround(dot(p - mean, axis) / step)].push_back(p);
-  std::vector<Vec3> top, floor;
+  Edges out;
   for (auto& [key, points] : bins) {
     if (points.size() < 20) continue;
     // Means over the highest and lowest twentieth, not single points: less noise.
@@ -78,13 +85,35 @@ Cleft describe_cleft(const PartFields& fields, std::size_t a, std::size_t b, con
     const std::size_t share = std::max<std::size_t>(3, points.size() / 20);
     Vec3 high{}, low{};
     for (std::size_t i = 0; i < share; ++i) high = high + points[i], low = low + points[points.size() - 1 - i];
-    top.push_back((1.0 / static_cast<double>(share)) * high);
-    floor.push_back((1.0 / static_cast<double>(share)) * low);
+    out.top.push_back((1.0 / static_cast<double>(share)) * high);
+    out.floor.push_back((1.0 / static_cast<double>(share)) * low);
   }
-  if (top.size() < 2) throw std::runtime_error("the cleft between the two parts is too short");
-  relax(top);
-  relax(floor);
+  if (out.top.size() < 2) throw std::runtime_error("the cleft between the two parts is too short");
+  relax(out.top);
+  relax(out.floor);
+  return out;
+}
 
+/// Way out of the smoothed tissue at a point.
+Vec3 way_out(const Grid& grid, const Field& tissue, const Vec3& p) {
+  Vec3 slope{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    Vec3 plus = p, minus = p;
+    plus[c] += 1, minus[c] -= 1;
+    slope[c] = sample(grid, tissue, minus) - sample(grid, tissue, plus);
+  }
+  return unit(slope);
+}
+
+}  // namespace
+
+Cleft describe_cleft(const PartFields& fields, std::size_t a, std::size_t b, const FieldOptions& options,
+                     const Vec3& view, double width, double step, double rim) {
+  const Grid& grid = fields.grid;
+  const std::size_t n = grid.count();
+  Mask in_a(n), in_b(n);
+  for (std::size_t i = 0; i < n; ++i) in_a[i] = fields.fine[a][i] > 0, in_b[i] = fields.fine[b][i] > 0;
+  const auto [top, floor] = edges_of(mid_surface(fields, in_a, in_b, options, width, rim), unit(view), step);
   Cleft cleft;
   Field tissue(n);
   for (std::size_t i = 0; i < n; ++i) tissue[i] = in_a[i] || in_b[i] ? 1.0f : 0.0f;
@@ -94,13 +123,7 @@ Cleft describe_cleft(const PartFields& fields, std::size_t a, std::size_t b, con
     cleft.stations.push_back({top[i], floor[i], unit(d), norm(d)});
     cleft.centre = cleft.centre + top[i];
     if (i) cleft.length += norm(top[i] - top[i - 1]);
-    Vec3 slope{};
-    for (std::size_t c = 0; c < 3; ++c) {
-      Vec3 plus = top[i], minus = top[i];
-      plus[c] += 1, minus[c] -= 1;
-      slope[c] = sample(grid, tissue, minus) - sample(grid, tissue, plus);
-    }
-    cleft.outward = cleft.outward + unit(slope);
+    cleft.outward = cleft.outward + way_out(grid, tissue, top[i]);
   }
   cleft.centre = (1.0 / static_cast<double>(top.size())) * cleft.centre;
   cleft.outward = unit(cleft.outward);

@@ -75,6 +75,7 @@ struct Job {
   std::string labels, intensity;
   std::vector<Part> parts;
   FieldOptions fields;
+  bool has_tissue = false;  ///< the intensity at which tissue begins was given
   Sizes focus{2, 20}, cell{4, 9}, cell_error{0.5, 1.5}, edge{1, 3};
   double edge_error = 0.1, focus_radius = -1;
   Vec3 focus_point{}, view{1, 0, 0};
@@ -95,9 +96,91 @@ std::pair<std::string, std::string> split(const std::string& text, const std::st
   return {text.substr(0, at), text.substr(at + 1)};
 }
 
+/// One option as it stands on the command line.
+struct Given {
+  std::string option, value;
+  double one() const { return numbers(value, 1, option)[0]; }
+  double length() const {
+    const double v = one();
+    if (v < 0) throw std::runtime_error(option + " must not be negative");
+    return v;
+  }
+  Sizes sizes(const std::string& text) const {
+    const auto v = numbers(text, 2, option);
+    if (!(v[0] > 0 && v[1] >= v[0])) throw std::runtime_error(option + " takes NEAR,FAR with 0 < NEAR <= FAR");
+    return {v[0], v[1]};
+  }
+  std::pair<std::string, std::string> named() const { return split(value, option); }
+};
+
+void add_part(Job& job, const Given& g) {
+  const auto [name, list] = g.named();
+  for (const Part& p : job.parts)
+    if (p.name == name) throw std::runtime_error("--part: '" + name + "' is given twice");
+  try {
+    job.parts.push_back({name, label_list(list)});
+  } catch (const std::runtime_error& e) {
+    throw std::runtime_error("--part " + name + ": " + e.what());
+  }
+}
+
+void set_region(Job& job, const Given& g) {
+  const auto v = numbers(g.value, 4, g.option);
+  job.fields.centre = {v[0], v[1], v[2]};
+  job.fields.radius = v[3];
+  if (!(v[3] > 0)) throw std::runtime_error("--roi: the radius must be positive");
+}
+
+void set_focus_point(Job& job, const Given& g) {
+  const auto v = numbers(g.value, 4, g.option);
+  job.focus_point = {v[0], v[1], v[2]};
+  job.focus_radius = v[3];
+}
+
+void set_view(Job& job, const Given& g) {
+  const auto v = numbers(g.value, 3, g.option);
+  job.view = {v[0], v[1], v[2]};
+}
+
+void set_tissue(Job& job, const Given& g) {
+  job.fields.tissue = g.one();
+  job.has_tissue = true;
+}
+
+using Setter = void (*)(Job&, const Given&);
+const std::map<std::string, Setter> setters = {
+    {"--labels", [](Job& j, const Given& g) { j.labels = g.value; }},
+    {"--intensity", [](Job& j, const Given& g) { j.intensity = g.value; }},
+    {"--part", add_part},
+    {"--tissue", set_tissue},
+    {"--tissue-slope", [](Job& j, const Given& g) { j.fields.tissue_slope = g.one(); }},
+    {"--roi", set_region},
+    {"--spacing", [](Job& j, const Given& g) { j.fields.spacing = g.one(); }},
+    {"--gap", [](Job& j, const Given& g) { j.fields.gap = g.length(); }},
+    {"--smooth", [](Job& j, const Given& g) { j.fields.smoothing = g.length(); }},
+    {"--border-smooth", [](Job& j, const Given& g) { j.fields.border_smoothing = g.length(); }},
+    {"--close", [](Job& j, const Given& g) { j.fields.fine_closing = g.length(); }},
+    {"--open", [](Job& j, const Given& g) { j.fields.fine_opening = g.length(); }},
+    {"--coarse-close", [](Job& j, const Given& g) { j.fields.coarse_closing = g.length(); }},
+    {"--coarse-smooth", [](Job& j, const Given& g) { j.fields.coarse_smoothing = g.length(); }},
+    {"--coarse-outset", [](Job& j, const Given& g) { j.fields.coarse_outset = g.length(); }},
+    {"--coarse-gap", [](Job& j, const Given& g) { j.fields.coarse_gap = g.length(); }},
+    {"--focus", [](Job& j, const Given& g) { j.focus = g.sizes(g.value); }},
+    {"--focus-point", set_focus_point},
+    {"--cell", [](Job& j, const Given& g) { j.cell = g.sizes(g.value); }},
+    {"--cell-error", [](Job& j, const Given& g) { j.cell_error = g.sizes(g.value); }},
+    {"--edge", [](Job& j, const Given& g) { j.edge = g.sizes(g.value); }},
+    {"--edge-error", [](Job& j, const Given& g) { j.edge_error = g.one(); }},
+    {"--edge-of", [](Job& j, const Given& g) { j.edge_of[g.named().first] = g.sizes(g.named().second); }},
+    {"--cell-of", [](Job& j, const Given& g) { j.cell_of[g.named().first] = g.sizes(g.named().second); }},
+    {"--tet", [](Job& j, const Given& g) { j.tets.push_back(g.named()); }},
+    {"--surface", [](Job& j, const Given& g) { j.surfaces.push_back(g.named()); }},
+    {"--cleft", [](Job& j, const Given& g) { j.clefts.push_back(g.named()); }},
+    {"--view", set_view},
+};
+
 Job parse(int argc, char** argv) {
   Job job;
-  bool has_tissue = false;
   for (int i = 1; i < argc; ++i) {
     const std::string option = argv[i];
     if (option == "--help" || option == "-h") {
@@ -105,72 +188,13 @@ Job parse(int argc, char** argv) {
       std::exit(0);
     }
     if (i + 1 >= argc) throw std::runtime_error(option + ": unknown option or missing value (see --help)");
-    const std::string value = argv[++i];
-    const auto one = [&] { return numbers(value, 1, option)[0]; };
-    const auto length = [&] {
-      const double v = one();
-      if (v < 0) throw std::runtime_error(option + " must not be negative");
-      return v;
-    };
-    const auto two = [&](const std::string& text) {
-      const auto v = numbers(text, 2, option);
-      if (!(v[0] > 0 && v[1] >= v[0])) throw std::runtime_error(option + " takes NEAR,FAR with 0 < NEAR <= FAR");
-      return Sizes{v[0], v[1]};
-    };
-    if (option == "--labels") job.labels = value;
-    else if (option == "--intensity") job.intensity = value;
-    else if (option == "--part") {
-      const auto [name, list] = split(value, option);
-      for (const Part& p : job.parts)
-        if (p.name == name) throw std::runtime_error("--part: '" + name + "' is given twice");
-      try {
-        job.parts.push_back({name, label_list(list)});
-      } catch (const std::runtime_error& e) {
-        throw std::runtime_error("--part " + name + ": " + e.what());
-      }
-    } else if (option == "--tissue") job.fields.tissue = one(), has_tissue = true;
-    else if (option == "--tissue-slope") job.fields.tissue_slope = one();
-    else if (option == "--roi") {
-      const auto v = numbers(value, 4, option);
-      job.fields.centre = {v[0], v[1], v[2]};
-      job.fields.radius = v[3];
-      if (!(v[3] > 0)) throw std::runtime_error("--roi: the radius must be positive");
-    } else if (option == "--spacing") job.fields.spacing = one();
-    else if (option == "--gap") job.fields.gap = length();
-    else if (option == "--smooth") job.fields.smoothing = length();
-    else if (option == "--border-smooth") job.fields.border_smoothing = length();
-    else if (option == "--close") job.fields.fine_closing = length();
-    else if (option == "--open") job.fields.fine_opening = length();
-    else if (option == "--coarse-close") job.fields.coarse_closing = length();
-    else if (option == "--coarse-smooth") job.fields.coarse_smoothing = length();
-    else if (option == "--coarse-outset") job.fields.coarse_outset = length();
-    else if (option == "--coarse-gap") job.fields.coarse_gap = length();
-    else if (option == "--focus") job.focus = two(value);
-    else if (option == "--focus-point") {
-      const auto v = numbers(value, 4, option);
-      job.focus_point = {v[0], v[1], v[2]};
-      job.focus_radius = v[3];
-    } else if (option == "--cell") job.cell = two(value);
-    else if (option == "--cell-error") job.cell_error = two(value);
-    else if (option == "--edge") job.edge = two(value);
-    else if (option == "--edge-error") job.edge_error = one();
-    else if (option == "--edge-of") {
-      const auto [name, list] = split(value, option);
-      job.edge_of[name] = two(list);
-    } else if (option == "--cell-of") {
-      const auto [name, list] = split(value, option);
-      job.cell_of[name] = two(list);
-    } else if (option == "--tet") job.tets.push_back(split(value, option));
-    else if (option == "--surface") job.surfaces.push_back(split(value, option));
-    else if (option == "--cleft") job.clefts.push_back(split(value, option));
-    else if (option == "--view") {
-      const auto v = numbers(value, 3, option);
-      job.view = {v[0], v[1], v[2]};
-    } else throw std::runtime_error(option + ": unknown option (see --help)");
+    const auto setter = setters.find(option);
+    if (setter == setters.end()) throw std::runtime_error(option + ": unknown option (see --help)");
+    setter->second(job, {option, argv[++i]});
   }
   if (job.labels.empty() || job.parts.empty())
     throw std::runtime_error("--labels and at least one --part are needed (see --help)");
-  if (!job.intensity.empty() && !has_tissue) throw std::runtime_error("--intensity needs --tissue");
+  if (!job.intensity.empty() && !job.has_tissue) throw std::runtime_error("--intensity needs --tissue");
   if (!(job.fields.spacing > 0) || !(job.fields.tissue_slope > 0) || !(job.edge_error > 0))
     throw std::runtime_error("--spacing, --tissue-slope and --edge-error must be positive");
   for (const auto* list : {&job.tets, &job.surfaces})

@@ -79,6 +79,88 @@ std::vector<unsigned char> make_seeds(const Grid& grid, const std::vector<unsign
   return seeds;
 }
 
+/// The tissue of a head, and to which part each node of the grid belongs.
+struct Tissue {
+  Field level;                       ///< positive inside
+  std::vector<unsigned char> owner;  ///< number of the part and one, 0: none
+  Field region;                      ///< positive in the region of interest
+};
+
+/// A level from the intensity (sharper than a voxel), or from the labels alone.
+Tissue find_tissue(const Grid& grid, const NiftiVolume& labels, const NiftiVolume* intensity,
+                   const std::vector<Part>& parts, const FieldOptions& options) {
+  const std::size_t n = grid.count();
+  const auto classes = classify(grid, labels, parts);
+  Tissue out{Field(n), {}, Field(n, 1e3f)};
+  Field cost(n, 1.0f);
+  if (intensity) {
+    for_nodes(grid, [&](std::size_t i, const Vec3& p) { out.level[i] = intensity->linear(p); });
+    for (std::size_t i = 0; i < n; ++i) {
+      const double above = (static_cast<double>(out.level[i]) - options.tissue) / options.tissue_slope;
+      // Dark sulci cost up to 40 times the way through tissue: borders between parts settle in them.
+      cost[i] = static_cast<float>(1 + 40 * (1 - smoothstep((above + 0.3) / 1.0)));
+      out.level[i] = static_cast<float>(std::clamp(above, -3.0, 3.0));
+    }
+  } else {
+    Mask any(n);
+    for (std::size_t i = 0; i < n; ++i) any[i] = classes[i] != 0;
+    out.level = signed_distance(grid, any);
+  }
+  const int class_count = static_cast<int>(parts.size()) + 1;
+  out.owner = grow(grid, make_seeds(grid, classes, class_count, out.level, options.seed_depth), cost);
+  if (options.radius > 0)
+    for_nodes(grid, [&](std::size_t i, const Vec3& p) {
+      out.region[i] = static_cast<float>(options.radius - norm(p - options.centre));
+    });
+  return out;
+}
+
+/// Takes islands off a level and fills its cavities; returns what is kept.
+Mask cleaned(const Grid& grid, Field& level) {
+  Mask mask(grid.count());
+  for (std::size_t i = 0; i < mask.size(); ++i) mask[i] = level[i] > 0;
+  Mask kept = fill_holes(grid, largest_component(grid, mask));
+  for (std::size_t i = 0; i < mask.size(); ++i) {
+    if (mask[i] && !kept[i]) level[i] = -0.25f;  // an island
+    if (!mask[i] && kept[i]) level[i] = 0.25f;   // a cavity
+  }
+  return kept;
+}
+
+/// Small sulci and holes are closed on the tissue `mask`, then the part is cut out, cleaned and smoothed.
+Field fine_level(const Grid& grid, const Tissue& tissue, const Mask& mask, const Field& own,
+                 const FieldOptions& options) {
+  const std::size_t n = grid.count();
+  const float slack = 0.3f;  // mm; a plain surface is left as it is by closing and opening
+  const float half_gap = static_cast<float>(options.gap / 2);
+  const Field closed = closing_level(grid, mask, options.fine_closing);
+  Field fine(n);
+  for (std::size_t i = 0; i < n; ++i)
+    fine[i] =
+        std::min({std::max(tissue.level[i], std::min(closed[i] - slack, 0.5f)), own[i] - half_gap, tissue.region[i]});
+  smooth(grid, fine, options.smoothing);
+  // Opening: the closing of the complement, read backwards. What it takes, the components clean up later.
+  Mask outside(n);
+  for (std::size_t i = 0; i < n; ++i) outside[i] = !(fine[i] > 0);
+  const Field opened = closing_level(grid, outside, options.fine_opening);
+  if (options.fine_opening > 0)
+    for (std::size_t i = 0; i < n; ++i) fine[i] = std::min(fine[i], std::max(slack - opened[i], -0.5f));
+  smooth(grid, fine, options.smoothing / 2);
+  return fine;
+}
+
+/// The shape for tetrahedra: coarser, a little outside of the fine one.
+Field coarse_level(const Grid& grid, const Tissue& tissue, const Mask& fine, const Field& own,
+                   const FieldOptions& options) {
+  Field coarse = closing_level(grid, fine, options.coarse_closing);
+  smooth(grid, coarse, options.coarse_smoothing);
+  const float outset = static_cast<float>(options.coarse_outset), apart = static_cast<float>(options.coarse_gap);
+  for (std::size_t i = 0; i < coarse.size(); ++i)
+    coarse[i] = std::min({coarse[i] + outset, own[i] - apart, tissue.region[i] + outset});
+  cleaned(grid, coarse);
+  return coarse;
+}
+
 }  // namespace
 
 PartFields build_part_fields(const NiftiVolume& labels, const NiftiVolume* intensity, const std::vector<Part>& parts,
@@ -88,83 +170,23 @@ PartFields build_part_fields(const NiftiVolume& labels, const NiftiVolume* inten
   out.grid = make_grid(labels, options);
   const Grid& grid = out.grid;
   const std::size_t n = grid.count();
-  const int class_count = static_cast<int>(parts.size()) + 1;
-  const auto classes = classify(grid, labels, parts);
-
-  // Tissue: a level from the intensity (sharper than a voxel), or from the labels alone.
-  Field tissue(n), cost(n, 1.0f);
-  if (intensity) {
-    for_nodes(grid, [&](std::size_t i, const Vec3& p) { tissue[i] = intensity->linear(p); });
-    for (std::size_t i = 0; i < n; ++i) {
-      const double above = (static_cast<double>(tissue[i]) - options.tissue) / options.tissue_slope;
-      // Dark sulci cost up to 40 times the way through tissue: borders between parts settle in them.
-      cost[i] = static_cast<float>(1 + 40 * (1 - smoothstep((above + 0.3) / 1.0)));
-      tissue[i] = static_cast<float>(std::clamp(above, -3.0, 3.0));
-    }
-  } else {
-    Mask any(n);
-    for (std::size_t i = 0; i < n; ++i) any[i] = classes[i] != 0;
-    tissue = signed_distance(grid, any);
-  }
-  const auto owner = grow(grid, make_seeds(grid, classes, class_count, tissue, options.seed_depth), cost);
-
-  Field region(n, 1e3f);
-  if (options.radius > 0)
-    for_nodes(grid, [&](std::size_t i, const Vec3& p) {
-      region[i] = static_cast<float>(options.radius - norm(p - options.centre));
-    });
-
+  const Tissue tissue = find_tissue(grid, labels, intensity, parts, options);
   std::vector<Field> own(parts.size());
   std::vector<Mask> masks(parts.size());
   Mask mask(n);
-  const float slack = 0.3f;  // mm; a plain surface is left as it is by closing and opening
-  const float half_gap = static_cast<float>(options.gap / 2);
   for (std::size_t a = 0; a < parts.size(); ++a) {
-    for (std::size_t i = 0; i < n; ++i) mask[i] = owner[i] == a + 1;
+    for (std::size_t i = 0; i < n; ++i) mask[i] = tissue.owner[i] == a + 1;
     own[a] = signed_distance(grid, mask);
     smooth(grid, own[a], options.border_smoothing);
-
-    // Small sulci and holes are closed on the tissue, then the part is cut out, cleaned and smoothed.
-    for (std::size_t i = 0; i < n; ++i) mask[i] = mask[i] && tissue[i] > 0;
-    const Field closed = closing_level(grid, mask, options.fine_closing);
-    Field fine(n);
-    for (std::size_t i = 0; i < n; ++i)
-      fine[i] = std::min({std::max(tissue[i], std::min(closed[i] - slack, 0.5f)), own[a][i] - half_gap, region[i]});
-    smooth(grid, fine, options.smoothing);
-    // Opening: the closing of the complement, read backwards. What it takes, the components clean up below.
-    Mask outside(n);
-    for (std::size_t i = 0; i < n; ++i) outside[i] = !(fine[i] > 0);
-    const Field opened = closing_level(grid, outside, options.fine_opening);
-    if (options.fine_opening > 0)
-      for (std::size_t i = 0; i < n; ++i) fine[i] = std::min(fine[i], std::max(slack - opened[i], -0.5f));
-    smooth(grid, fine, options.smoothing / 2);
-    for (std::size_t i = 0; i < n; ++i) mask[i] = fine[i] > 0;
-    const Mask kept = fill_holes(grid, largest_component(grid, mask));
-    bool empty = true;
-    for (std::size_t i = 0; i < n; ++i) {
-      if (mask[i] && !kept[i]) fine[i] = -0.25f;  // an island
-      if (!mask[i] && kept[i]) fine[i] = 0.25f;   // a cavity
-      empty = empty && !kept[i];
-    }
-    if (empty) throw std::runtime_error("part " + parts[a].name + " is empty in the region of interest");
-    masks[a] = kept;
+    for (std::size_t i = 0; i < n; ++i) mask[i] = mask[i] && tissue.level[i] > 0;
+    Field fine = fine_level(grid, tissue, mask, own[a], options);
+    masks[a] = cleaned(grid, fine);
+    if (std::none_of(masks[a].begin(), masks[a].end(), [](unsigned char c) { return c != 0; }))
+      throw std::runtime_error("part " + parts[a].name + " is empty in the region of interest");
     out.fine.push_back(std::move(fine));
   }
-
   for (std::size_t a = 0; a < parts.size(); ++a) {
-    Field coarse = closing_level(grid, masks[a], options.coarse_closing);
-    smooth(grid, coarse, options.coarse_smoothing);
-    const float outset = static_cast<float>(options.coarse_outset), apart = static_cast<float>(options.coarse_gap);
-    for (std::size_t i = 0; i < n; ++i)
-      coarse[i] = std::min({coarse[i] + outset, own[a][i] - apart, region[i] + outset});
-    for (std::size_t i = 0; i < n; ++i) mask[i] = coarse[i] > 0;
-    const Mask kept = fill_holes(grid, largest_component(grid, mask));
-    for (std::size_t i = 0; i < n; ++i) {
-      if (mask[i] && !kept[i]) coarse[i] = -0.25f;
-      if (!mask[i] && kept[i]) coarse[i] = 0.25f;
-    }
-    out.coarse.push_back(std::move(coarse));
-
+    out.coarse.push_back(coarse_level(grid, tissue, masks[a], own[a], options));
     for (std::size_t i = 0; i < n; ++i) {
       mask[i] = 0;
       for (std::size_t b = 0; b < parts.size(); ++b) mask[i] = mask[i] || (b != a && masks[b][i]);

@@ -88,67 +88,99 @@ struct Sequence {
 
 TriangleMesh boundary_mesh(const TetMesh& mesh) { return {mesh.points, boundary_triangles(mesh)}; }
 
-double improve_dihedral(TetMesh& mesh, double target_deg, double boundary_shift) {
-  const std::vector<Vec3> start = mesh.points;
-  Sequence sequence;
-  std::vector<std::vector<std::size_t>> star(mesh.points.size());
+namespace {
+
+std::vector<std::size_t> tets_below(const TetMesh& mesh, double angle_deg) {
+  std::vector<std::size_t> bad;
   for (std::size_t i = 0; i < mesh.tets.size(); ++i)
-    for (const int v : mesh.tets[i]) star[at(v)].push_back(i);
-  const auto border = boundary_triangles(mesh);
-  const auto normals = vertex_normals(mesh.points.size(), mesh.points, border);
-  std::vector<char> on_border(mesh.points.size(), 0);
-  for (const Triangle& t : border)
-    for (const int v : t) on_border[at(v)] = 1;
-  const auto star_angle = [&](int v) {
-    double least = 180;
-    for (const std::size_t i : star[at(v)]) least = std::min(least, min_angle(mesh, mesh.tets[i]));
-    return least;
-  };
-  for (int round = 0; round < 60; ++round) {
-    std::vector<std::size_t> bad;
+    if (min_angle(mesh, mesh.tets[i]) < angle_deg) bad.push_back(i);
+  return bad;
+}
+
+/// Moves points by chance as long as the least angle around them grows. Points of the boundary go inward only.
+class PointMover {
+ public:
+  PointMover(TetMesh& mesh, const std::vector<Triangle>& border, double boundary_shift)
+      : mesh_(mesh),
+        boundary_shift_(boundary_shift),
+        start_(mesh.points),
+        star_(mesh.points.size()),
+        normals_(vertex_normals(mesh.points.size(), mesh.points, border)),
+        on_border_(mesh.points.size(), 0) {
     for (std::size_t i = 0; i < mesh.tets.size(); ++i)
-      if (min_angle(mesh, mesh.tets[i]) < target_deg) bad.push_back(i);
+      for (const int v : mesh.tets[i]) star_[at(v)].push_back(i);
+    for (const Triangle& t : border)
+      for (const int v : t) on_border_[at(v)] = 1;
+  }
+  /// Tries to widen the angles of a tetrahedron.
+  void mend(std::size_t tet) {
+    for (const int v : mesh_.tets[tet]) {
+      double size = 1e30;
+      for (const int w : mesh_.tets[tet])
+        if (w != v) size = std::min(size, norm(mesh_.points[at(w)] - mesh_.points[at(v)]));
+      double best = star_angle(v);
+      for (int trial = 0; trial < 24; ++trial) best = try_move(v, size * 0.4 / (1 + trial % 6), best);
+    }
+  }
+
+ private:
+  double star_angle(int v) const {
+    double least = 180;
+    for (const std::size_t i : star_[at(v)]) least = std::min(least, min_angle(mesh_, mesh_.tets[i]));
+    return least;
+  }
+  /// Returns the least angle about v after it, which is no less than `best`.
+  double try_move(int v, double scale, double best) {
+    const Vec3 old = mesh_.points[at(v)];
+    Vec3 move{};
+    for (double& c : move) c = scale * sequence_.next();
+    if (on_border_[at(v)]) {
+      const double outward = dot(move, normals_[at(v)]);
+      if (outward > 0) move = move - outward * normals_[at(v)];
+      if (norm(old + move - start_[at(v)]) > boundary_shift_) return best;
+    }
+    mesh_.points[at(v)] = old + move;
+    const double angle = star_angle(v);
+    if (angle > best) return angle;
+    mesh_.points[at(v)] = old;
+    return best;
+  }
+
+  TetMesh& mesh_;
+  double boundary_shift_;
+  std::vector<Vec3> start_;
+  std::vector<std::vector<std::size_t>> star_;
+  std::vector<Vec3> normals_;
+  std::vector<char> on_border_;
+  Sequence sequence_;
+};
+
+/// Takes away one tetrahedron at the boundary whose angles are too small; false if none may go.
+bool remove_one(TetMesh& mesh, double angle_deg, std::size_t border_size) {
+  for (const std::size_t i : tets_below(mesh, angle_deg)) {
+    TetMesh trial = mesh;
+    trial.tets.erase(trial.tets.begin() + static_cast<std::ptrdiff_t>(i));
+    if (boundary_triangles(trial).size() > border_size + 8 || !is_closed(boundary_triangles(trial))) continue;
+    if (boundary_triangles(trial).size() > boundary_triangles(mesh).size() + 1) continue;  // an interior cell
+    mesh = std::move(trial);
+    return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+double improve_dihedral(TetMesh& mesh, double target_deg, double boundary_shift) {
+  const auto border = boundary_triangles(mesh);
+  PointMover mover(mesh, border, boundary_shift);
+  for (int round = 0; round < 60; ++round) {
+    const std::vector<std::size_t> bad = tets_below(mesh, target_deg);
     if (bad.empty()) break;
-    for (const std::size_t i : bad)
-      for (const int v : mesh.tets[i]) {
-        double size = 1e30;
-        for (const int w : mesh.tets[i])
-          if (w != v) size = std::min(size, norm(mesh.points[at(w)] - mesh.points[at(v)]));
-        double best = star_angle(v);
-        for (int trial = 0; trial < 24; ++trial) {
-          const Vec3 old = mesh.points[at(v)];
-          const double scale = size * 0.4 / (1 + trial % 6);
-          Vec3 move{};
-          for (double& c : move) c = scale * sequence.next();
-          if (on_border[at(v)]) {
-            const double outward = dot(move, normals[at(v)]);
-            if (outward > 0) move = move - outward * normals[at(v)];
-            if (norm(old + move - start[at(v)]) > boundary_shift) continue;
-          }
-          mesh.points[at(v)] = old + move;
-          const double angle = star_angle(v);
-          if (angle > best) best = angle;
-          else mesh.points[at(v)] = old;
-        }
-      }
+    for (const std::size_t i : bad) mover.mend(i);
   }
   // What cannot be mended may be taken away at the boundary.
-  for (int round = 0; round < 20; ++round) {
-    std::vector<std::size_t> bad;
-    for (std::size_t i = 0; i < mesh.tets.size(); ++i)
-      if (min_angle(mesh, mesh.tets[i]) < std::min(target_deg, 10.5)) bad.push_back(i);
-    bool removed = false;
-    for (const std::size_t i : bad) {
-      TetMesh trial = mesh;
-      trial.tets.erase(trial.tets.begin() + static_cast<std::ptrdiff_t>(i));
-      if (boundary_triangles(trial).size() > border.size() + 8 || !is_closed(boundary_triangles(trial))) continue;
-      if (boundary_triangles(trial).size() > boundary_triangles(mesh).size() + 1) continue;  // an interior cell
-      mesh = std::move(trial);
-      removed = true;
-      break;
-    }
-    if (!removed) break;
-  }
+  for (int round = 0; round < 20; ++round)
+    if (!remove_one(mesh, std::min(target_deg, 10.5), border.size())) break;
   drop_unused_points(mesh);
   return dihedral_range(mesh).min_deg;
 }

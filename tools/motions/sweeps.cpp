@@ -66,73 +66,91 @@ double SweepPlanner::cutting(const Sweep& sweep, const StrandState& strand) cons
   return travel / cut_length_;
 }
 
-Sweep SweepPlanner::best(const std::vector<StrandState>& strands, const std::vector<int>& tries, const Vec3& tip,
-                         bool thorough) const {
-  // Shafts: the usual lean and rings around it.
-  std::vector<Vec3> shafts{field_.lean};
+// The usual lean and rings around it.
+std::vector<Vec3> SweepPlanner::shafts(bool thorough) const {
+  std::vector<Vec3> out{field_.lean};
   const Vec3 side = field_.lean.unitOrthogonal(), up = field_.lean.cross(side);
   for (const double tilt : thorough ? std::vector<double>{12, 24, 36, 48} : std::vector<double>{12, 24})
     for (int k = 0; k < 6; ++k) {
       const double t = tilt * std::numbers::pi / 180, a = (k + tilt / 24) * std::numbers::pi / 3;
-      shafts.push_back(std::cos(t) * field_.lean + std::sin(t) * (std::cos(a) * side + std::sin(a) * up));
+      out.push_back(std::cos(t) * field_.lean + std::sin(t) * (std::cos(a) * side + std::sin(a) * up));
     }
-  // What would be next if there were room everywhere: near the surgeon, near the tip, not yet tried.
-  const auto ease = [&](std::size_t i) {
+  return out;
+}
+
+// What would be next if there were room everywhere: near the surgeon, near the tip, not yet tried. By strand.
+std::vector<double> SweepPlanner::ease(const std::vector<StrandState>& strands, const std::vector<int>& tries,
+                                       const Vec3& tip) const {
+  std::vector<double> out;
+  for (std::size_t i = 0; i < strands.size(); ++i) {
     const Vec3 middle = (strands[i].a + strands[i].b) / 2;
-    return (middle - field_.centre).dot(field_.outward) / 2e-3 - (middle - tip).norm() / 4e-3 - 1.5 * tries[i];
-  };
+    out.push_back((middle - field_.centre).dot(field_.outward) / 2e-3 - (middle - tip).norm() / 4e-3 - 1.5 * tries[i]);
+  }
+  return out;
+}
+
+// The candidates' sweeps through one strand with one shaft, and the best of them and of the one before.
+void SweepPlanner::try_shaft(const Search& search, std::size_t i, const Vec3& shaft, Sweep& best) const {
+  const StrandState& s = search.strands[i];
+  const Vec3 across = (s.b - s.a).normalized().cross(shaft);
+  const bool end_on = across.norm() < 0.35;
+  for (int turn = 0; turn < (end_on ? 4 : search.thorough ? 3 : 1); ++turn)
+    for (const double along : search.places)
+      for (const double depth : search.depths)
+        for (const double signed_half : {2.2e-3, -2.2e-3, 1.6e-3, -1.6e-3}) {
+          Sweep w;
+          w.strand = int(i);
+          w.shaft = shaft;
+          const double askew = end_on ? turn * std::numbers::pi / 4 : (turn == 2 ? -1 : turn) * std::numbers::pi / 6;
+          w.across = Eigen::AngleAxisd(askew, shaft) * (end_on ? shaft.unitOrthogonal() : Vec3(across.normalized()));
+          w.across *= signed_half > 0 ? 1 : -1;
+          // The blade is curved: at this height its edge lies a little off the tool's axis.
+          const Vec3 flat = w.across.cross(shaft);
+          w.middle = s.a + along * (s.b - s.a) - depth * shaft + 0.15e-3 * flat;
+          w.half = std::abs(signed_half);
+          judge(search, w, best);
+        }
+}
+
+// Takes a sweep as the best if there is room for it and it scores more.
+void SweepPlanner::judge(const Search& search, Sweep& w, Sweep& best) const {
+  w.vessel = w.others = Clearance::band;
+  for (int k = -3; k <= 3; ++k) room(w.pose(k * w.half / 3), &w.vessel, &w.others);
+  if (w.vessel < -0.1e-3 || w.others < -search.press) return;
+  const std::size_t i = std::size_t(w.strand);
+  // Room counts up to what is comfortable.
+  double score = 2.5 * std::min(w.vessel, 0.5e-3) / 0.5e-3 + std::min(w.others, 0.3e-3) / 0.3e-3;
+  score += search.ease[i] - 4 * (1 - w.shaft.dot(field_.lean)) +
+           (w.half > 2e-3 ? 0.5 : 0);  // a long stroke parts it for sure
+  if (score + 1.5 < best.score || cutting(w, search.strands[i]) < 1.5) return;
+  int more = 0;
+  for (std::size_t k = 0; k < search.strands.size(); ++k) {
+    const StrandState& other = search.strands[k];
+    if (k != i && other.integrity >= 0 && ((other.a + other.b) / 2 - w.middle).norm() < 4e-3)
+      more += cutting(w, other) > 1.5;
+  }
+  w.score = score + 0.5 * std::min(more, 3);
+  if (w.score > best.score) best = w;
+}
+
+Sweep SweepPlanner::best(const std::vector<StrandState>& strands, const std::vector<int>& tries, const Vec3& tip,
+                         bool thorough) const {
+  Search search{strands, ease(strands, tries, tip), thorough};
+  if (thorough) {
+    search.places = {0.5, 0.3, 0.7, 0.15, 0.85, 0.05, 0.95};
+    search.depths = {0.2e-3, -0.15e-3, -0.35e-3, 0.7e-3, 1.4e-3};
+    search.press = 1.0e-3;
+  }
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < strands.size(); ++i)
     if (strands[i].integrity >= 0) order.push_back(i);
-  std::sort(order.begin(), order.end(),
-            [&](std::size_t a, std::size_t b) { return ease(a) != ease(b) ? ease(a) > ease(b) : a < b; });
-  const std::vector<double> places = thorough ? std::vector<double>{0.5, 0.3, 0.7, 0.15, 0.85, 0.05, 0.95}
-                                              : std::vector<double>{0.5, 0.35, 0.65, 0.2, 0.8};
-  const std::vector<double> depths = thorough ? std::vector<double>{0.2e-3, -0.15e-3, -0.35e-3, 0.7e-3, 1.4e-3}
-                                              : std::vector<double>{0.2e-3, -0.15e-3, 0.7e-3, 1.4e-3};
-  const double press = thorough ? 1.0e-3 : 0.5e-3;  // depth by which a yielding lobe may be pushed in
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return search.ease[a] != search.ease[b] ? search.ease[a] > search.ease[b] : a < b;
+  });
+  const std::vector<Vec3> all_shafts = shafts(thorough);
   Sweep best;
-  for (std::size_t n = 0; n < order.size() && (n < 8 || best.strand < 0); ++n) {
-    const std::size_t i = order[n];
-    const StrandState& s = strands[i];
-    const Vec3 axis = (s.b - s.a).normalized();
-    for (const Vec3& shaft : shafts) {
-      const Vec3 across = axis.cross(shaft);
-      const bool end_on = across.norm() < 0.35;
-      for (int turn = 0; turn < (end_on ? 4 : thorough ? 3 : 1); ++turn)
-        for (const double along : places)
-          for (const double depth : depths)
-            for (const double signed_half : {2.2e-3, -2.2e-3, 1.6e-3, -1.6e-3}) {
-              const int sense = signed_half > 0 ? 1 : -1;
-              Sweep w;
-              w.strand = int(i);
-              w.shaft = shaft;
-              const double askew =
-                  end_on ? turn * std::numbers::pi / 4 : (turn == 2 ? -1 : turn) * std::numbers::pi / 6;
-              w.across =
-                  Eigen::AngleAxisd(askew, shaft) * (end_on ? shaft.unitOrthogonal() : Vec3(across.normalized()));
-              w.across *= sense;
-              // The blade is curved: at this height its edge lies a little off the tool's axis.
-              const Vec3 flat = w.across.cross(shaft);
-              w.middle = s.a + along * (s.b - s.a) - depth * shaft + 0.15e-3 * flat;
-              w.half = std::abs(signed_half);
-              w.vessel = w.others = Clearance::band;
-              for (int k = -3; k <= 3; ++k) room(w.pose(k * w.half / 3), &w.vessel, &w.others);
-              if (w.vessel < -0.1e-3 || w.others < -press) continue;
-              // Room counts up to what is comfortable.
-              double score = 2.5 * std::min(w.vessel, 0.5e-3) / 0.5e-3 + std::min(w.others, 0.3e-3) / 0.3e-3;
-              score += ease(i) - 4 * (1 - shaft.dot(field_.lean)) +
-                       (w.half > 2e-3 ? 0.5 : 0);  // a long stroke parts it for sure
-              if (score + 1.5 < best.score || cutting(w, s) < 1.5) continue;
-              int more = 0;
-              for (std::size_t k = 0; k < strands.size(); ++k)
-                if (k != i && strands[k].integrity >= 0 && ((strands[k].a + strands[k].b) / 2 - w.middle).norm() < 4e-3)
-                  more += cutting(w, strands[k]) > 1.5;
-              w.score = score + 0.5 * std::min(more, 3);
-              if (w.score > best.score) best = w;
-            }
-    }
-  }
+  for (std::size_t n = 0; n < order.size() && (n < 8 || best.strand < 0); ++n)
+    for (const Vec3& shaft : all_shafts) try_shaft(search, order[n], shaft, best);
   return best;
 }
 

@@ -46,6 +46,21 @@ class SweepPlanner {
  private:
   /// How far the blade travels through a strand in a sweep, over what parts it.
   double cutting(const Sweep& sweep, const StrandState& strand) const;
+  /// What one search for the best sweep tries.
+  struct Search {
+    const std::vector<StrandState>& strands;
+    std::vector<double> ease;  ///< of the strands
+    bool thorough;
+    std::vector<double> places = {0.5, 0.35, 0.65, 0.2, 0.8};         ///< along a strand
+    std::vector<double> depths = {0.2e-3, -0.15e-3, 0.7e-3, 1.4e-3};  ///< of the tip past it, m
+    double press = 0.5e-3;  ///< how far a lobe, which gives way, may be pushed in, m
+  };
+  std::vector<Vec3> shafts(bool thorough) const;
+  std::vector<double> ease(const std::vector<StrandState>& strands, const std::vector<int>& tries,
+                           const Vec3& tip) const;
+  void try_shaft(const Search& search, std::size_t strand, const Vec3& shaft, Sweep& best) const;
+  void judge(const Search& search, Sweep& sweep, Sweep& best) const;
+
   std::vector<Ball> balls_;
   std::vector<std::array<Vec3, 2>> edges_;
   Field field_;

@@ -115,34 +115,43 @@ struct Share {
   std::string what, advice;
 };
 
-}  // namespace
+/// Seconds of each stage, body by body, and what takes them.
+class BodyCosts {
+ public:
+  explicit BodyCosts(const CostRates& rates) : r_(rates) {}
 
-CostEstimate estimate(const SceneWork& w, const CostRates& r, int threads) {
-  // wall_tangent, wall_force: cost of a wall triangle with its hinges over a tetrahedron. anew: share of steps that
-  // renew a kept factor. iterations: of a solve with a background factor. in_a_step: time in a step over that of the
-  // best of several runs in a row, with data in the caches. cached: entries of a factor that a cache holds.
-  constexpr double wall_tangent = 3, wall_force = 3.2, anew = 0.05, iterations = 3, in_a_step = 1.25, cached = 1e6,
-                   newton_step = 2;
-  CostEstimate out;
-  std::vector<double> free, correct, compliance;
-  std::vector<Share> shares;
-  double add = 0;
-  for (const BodyWork& b : w.bodies) {
-    const double tangent = b.elements * r.tetrahedron * (b.wall ? wall_tangent : 1),
-                 force = b.elements * r.tetrahedron_force * (b.wall ? wall_force : 1);
+  void add(const BodyWork& b) {
+    const double tangent = b.elements * r_.tetrahedron * (b.wall ? wall_tangent : 1),
+                 force = b.elements * r_.tetrahedron_force * (b.wall ? wall_force : 1);
     const double factor =
-        b.background ? 0 : b.solver.factor_flops * r.factor_flop + double(b.solver.factor_entries) * r.factor_entry;
-    const double solve = double(b.solver.factor_entries) * r.solve_entry * (b.background ? 0.5 * iterations : 1);
+        b.background ? 0 : b.solver.factor_flops * r_.factor_flop + double(b.solver.factor_entries) * r_.factor_entry;
+    const double solve = double(b.solver.factor_entries) * r_.solve_entry * (b.background ? 0.5 * iterations : 1);
     const double often = b.keeps_tangent ? anew : 1, forward = b.background ? solve : 0.5 * solve;
-    free.push_back(in_a_step * (often * (tangent + factor) + (1 - often) * force + forward) + 12 * b.nodes * r.vertex);
+    free.push_back(in_a_step * (often * (tangent + factor) + (1 - often) * force + forward) + 12 * b.nodes * r_.vertex);
     correct.push_back(b.background ? (b.rows > 0 ? 0.8 * solve : 0) : 0.5 * solve);
-    compliance.push_back(b.rows > 0 ? b.compliance_flops * r.compliance_flop +
-                                          1.5 * std::max(0.0, double(b.solver.factor_entries) - cached) * r.solve_entry
+    compliance.push_back(b.rows > 0 ? b.compliance_flops * r_.compliance_flop +
+                                          1.5 * std::max(0.0, double(b.solver.factor_entries) - cached) * r_.solve_entry
                                     : 0);
-    add += double(b.rows) * b.rows * r.compliance_row2;
-    if (b.keeps_tangent) out.refactor_ms = std::max(out.refactor_ms, 1000 * (tangent + factor));
+    rows2 += double(b.rows) * b.rows * r_.compliance_row2;
+    if (b.keeps_tangent) refactor_ms = std::max(refactor_ms, 1000 * (tangent + factor));
+    add_shares(b, 1000 * often * factor, 1000 * (tangent * often + force * (1 - often)));
+  }
+
+  std::vector<double> free, correct, compliance;
+  double rows2 = 0;  ///< adding up of W
+  double refactor_ms = 0;
+  std::vector<Share> shares;
+
+ private:
+  // A triangle of a wall with its hinges, over a tetrahedron; how often a kept factor is made anew; iterations of a
+  // solve with one made in the background; a step over the best of several runs in a row, whose data lie in the caches;
+  // entries of a factor that a cache holds.
+  static constexpr double wall_tangent = 3, wall_force = 3.2, anew = 0.05, iterations = 3, in_a_step = 1.25,
+                          cached = 1e6;
+
+  void add_shares(const BodyWork& b, double factor_ms, double elements_ms) {
     shares.push_back(
-        {1000 * often * factor,
+        {factor_ms,
          fmt::format("the factor of \"{}\" ({} nodes, {:.0f} Mflop)", b.id, b.nodes, b.solver.factor_flops * 1e-6),
          fmt::format("fewer nodes in \"{}\": half of them make its factor about four times cheaper; hold what lies far "
                      "with <fixed>{}",
@@ -150,12 +159,17 @@ CostEstimate estimate(const SceneWork& w, const CostRates& r, int threads) {
                      b.keeps_tangent               ? ""
                      : b.solver.factor_flops > 1e9 ? ", or have it made in the background with solver=\"asynchronous\""
                                                    : ", or keep the factor with tangent_tolerance=\"0.02\"")});
-    shares.push_back({1000 * (tangent * often + force * (1 - often)),
-                      fmt::format("the {} elements of \"{}\"", b.elements, b.id),
+    shares.push_back({elements_ms, fmt::format("the {} elements of \"{}\"", b.elements, b.id),
                       fmt::format("fewer elements in \"{}\"", b.id)});
     shares.push_back({1000 * compliance.back(), fmt::format("the compliance of {} rows on \"{}\"", b.rows, b.id),
                       "fewer rows: larger spacing, smaller max_contacts, patch, fewer strands"});
   }
+
+  const CostRates& r_;
+};
+
+void set_stages(CostEstimate& out, const SceneWork& w, const CostRates& r, const BodyCosts& bodies, int threads) {
+  constexpr double newton_step = 2;
   const double surfaces = r.vertex * (0.8 * w.surface_vertices + 0.2 * w.surface_triangles + 0.25 * w.tissue_vertices +
                                       500.0 * w.tool_pieces + 120.0 * w.wall_vertices + 550.0 * w.expected_rows);
   // Where Newton is allowed sweeps stall: one step of it, m^3 / 1.5 in small pieces, at the dense rate of the factor.
@@ -164,16 +178,26 @@ CostEstimate estimate(const SceneWork& w, const CostRates& r, int threads) {
                         (w.newton ? newton_step * rows2 * w.expected_rows / 1.5 * r.compliance_flop : 0);
   const double row = 10 * r.vertex;  // what a row costs besides: built, read, told
   double all = 0;
-  for (double c : compliance) all += c;
+  for (double c : bodies.compliance) all += c;
   // Parts of a body's compliance are shared too: threads are even, but for what one thread adds up.
-  out.stage_ms[stage_free_motion] = 1000 * on_threads(free, threads);
+  out.stage_ms[stage_free_motion] = 1000 * on_threads(bodies.free, threads);
   out.stage_ms[stage_collision] = 1000 * surfaces / std::max(1.0, 0.85 * threads);
-  out.stage_ms[stage_build] = 1000 * (all / std::max(1, threads) + add + row * w.expected_rows);
+  out.stage_ms[stage_build] = 1000 * (all / std::max(1, threads) + bodies.rows2 + row * w.expected_rows);
   out.stage_ms[stage_solve] = 1000 * sweeps;
-  out.stage_ms[stage_correct] = 1000 * (on_threads(correct, threads) + row * w.expected_rows);
+  out.stage_ms[stage_correct] = 1000 * (on_threads(bodies.correct, threads) + row * w.expected_rows);
   out.stage_ms[stage_publish] = 1000 * row * w.expected_rows;
   for (double ms : out.stage_ms) out.step_ms += ms;
+}
 
+}  // namespace
+
+CostEstimate estimate(const SceneWork& w, const CostRates& r, int threads) {
+  BodyCosts bodies(r);
+  for (const BodyWork& b : w.bodies) bodies.add(b);
+  CostEstimate out;
+  out.refactor_ms = std::max(out.refactor_ms, bodies.refactor_ms);
+  set_stages(out, w, r, bodies, threads);
+  std::vector<Share> shares = std::move(bodies.shares);
   shares.push_back({out.stage_ms[stage_collision],
                     fmt::format("collision of surfaces with {} triangles", w.surface_triangles),
                     "coarser surfaces for contact; contact=\"false\" on those for the picture; a larger "

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What this machine needs for one of each: the code that steps run, timed on two bricks.
 #include <algorithm>
+#include <memory>
+#include <vector>
 
 #include "core/linalg/direct_solver.h"
 #include "core/mechanics/soft_body.h"
@@ -9,68 +11,91 @@
 #include "tools/workbench/shortest.h"
 
 namespace insula {
-CostRates measure_rates(const Registry& registry) {
-  CostRates r;
-  // A small body and a middle one: their factors tell flops from entries. Each of them is small enough that all of this
-  // is a part of what an author waits for.
-  const auto s = brick_scene({10, 6, 0, 40}, registry, 1);
-  auto& lower = *const_cast<SoftBody*>(s->scene().find_as<SoftBody>("lower"));
-  auto& upper = *const_cast<SoftBody*>(s->scene().find_as<SoftBody>("upper"));
+namespace {
+
+/// Seconds of a sweep over the square of the rows, in the first steps of a scene.
+double sweep_rate(Simulation& s) {
   double solve = 1e9;
   for (int i = 0; i < 4; ++i) {
-    s->step();
-    const StepReport& now = s->report();
+    s.step();
+    const StepReport& now = s.report();
     if (i > 0 && now.solve.sweeps > 0)
       solve = std::min(solve, now.stage_ms[stage_solve] * 1e-3 / (now.solve.sweeps * double(now.rows) * now.rows));
   }
-  const SceneWork work = count_work(*s);
-  r.vertex = shortest(6,
-                      [&] {
-                        for (Surface* f : s->surfaces()) f->update_collision();
-                      }) /
-             std::max(1, work.surface_vertices);
-  r.sweep_row2 = solve < 1e9 ? solve : 1e-9;
+  return solve < 1e9 ? solve : 1e-9;
+}
 
-  BlockMatrix a = lower.system();
-  std::vector<double> force(3 * std::size_t(lower.nodes()));
-  const double tets = double(lower.rest().tets.size());
-  ForceModel& model = *lower.forces().front();
-  r.tetrahedron =
-      shortest(4, [&] { model.linearise(lower.q().data(), force.data(), &a, s->h(), Tangent::system); }) / tets;
+void measure_elements(SoftBody& body, double h, CostRates& r) {
+  BlockMatrix a = body.system();
+  std::vector<double> force(3 * std::size_t(body.nodes()));
+  const double tets = double(body.rest().tets.size());
+  ForceModel& model = *body.forces().front();
+  r.tetrahedron = shortest(4, [&] { model.linearise(body.q().data(), force.data(), &a, h, Tangent::system); }) / tets;
   r.tetrahedron_force =
-      shortest(4, [&] { model.linearise(lower.q().data(), force.data(), nullptr, s->h(), Tangent::system); }) / tets;
+      shortest(4, [&] { model.linearise(body.q().data(), force.data(), nullptr, h, Tangent::system); }) / tets;
+}
 
-  struct Factor {
-    double seconds, flops, entries;
-  } factor[2];
-  for (int k = 0; k < 2; ++k) {
-    const SoftBody& body = k == 0 ? upper : lower;
-    const auto solver = make_direct_solver(false);
+struct FactorCost {
+  double seconds = 1e9, flops = 0, entries = 0;
+};
+
+/// A factor of a body's matrix, and what making it cost.
+struct MeasuredFactor {
+  std::unique_ptr<BodySolver> solver = make_direct_solver(false);
+  FactorCost cost;
+  double compliance = 1e9;  ///< of the body's rows with this factor, s
+
+  MeasuredFactor(const SoftBody& body, int runs, bool with_compliance) {
     solver->analyse(body.system());
-    factor[k] = {1e9, solver->cost().factor_flops, double(solver->cost().factor_entries)};
-    double compliance = 1e9;
-    for (int i = 0; i < (k == 0 ? 8 : 4); ++i) {
-      factor[k].seconds = std::min(factor[k].seconds, shortest(1, [&] { solver->factorise(body.system()); }));
-      if (k == 1)
-        compliance = std::min(compliance, shortest(1, [&] {
-                                solver->compute_compliance(body.rows, body.free_of_node());
-                              }));  // with a factor of its own: else rows keep what they have
+    cost.flops = solver->cost().factor_flops;
+    cost.entries = double(solver->cost().factor_entries);
+    for (int i = 0; i < runs; ++i) {
+      cost.seconds = std::min(cost.seconds, shortest(1, [&] { solver->factorise(body.system()); }));
+      if (!with_compliance) continue;
+      // With a factor of its own: else rows keep what they have.
+      const auto compute = [&] { solver->compute_compliance(body.rows, body.free_of_node()); };
+      compliance = std::min(compliance, shortest(1, compute));
     }
-    if (k == 0) continue;
-    std::vector<double> x(3 * std::size_t(body.nodes()), 1.0);
-    r.solve_entry = shortest(6, [&] { solver->solve(x.data()); }) / factor[k].entries;
-    const BodyWork& b = work.bodies.front();
-    r.compliance_flop = compliance / std::max(1.0, b.compliance_flops);
-    std::vector<double> w(std::size_t(work.standing_rows + 8) * std::size_t(work.standing_rows + 8));
-    r.compliance_row2 = shortest(4, [&] { solver->add_compliance(body.rows, w.data(), work.standing_rows + 8); }) /
-                        std::max(1.0, double(body.rows.count()) * body.rows.count());
   }
-  const double det = factor[0].flops * factor[1].entries - factor[1].flops * factor[0].entries;
-  r.factor_flop = (factor[0].seconds * factor[1].entries - factor[1].seconds * factor[0].entries) / det;
-  r.factor_entry = (factor[0].flops * factor[1].seconds - factor[1].flops * factor[0].seconds) / det;
+};
+
+void measure_rows(const SoftBody& body, const SceneWork& work, const MeasuredFactor& factor, CostRates& r) {
+  std::vector<double> x(3 * std::size_t(body.nodes()), 1.0);
+  r.solve_entry = shortest(6, [&] { factor.solver->solve(x.data()); }) / factor.cost.entries;
+  r.compliance_flop = factor.compliance / std::max(1.0, work.bodies.front().compliance_flops);
+  const int side = work.standing_rows + 8;
+  std::vector<double> w(std::size_t(side) * std::size_t(side));
+  r.compliance_row2 = shortest(4, [&] { factor.solver->add_compliance(body.rows, w.data(), side); }) /
+                      std::max(1.0, double(body.rows.count()) * body.rows.count());
+}
+
+/// Tells flops from entries by two factors of different sizes.
+void set_factor_rates(const FactorCost& a, const FactorCost& b, CostRates& r) {
+  const double det = a.flops * b.entries - b.flops * a.entries;
+  r.factor_flop = (a.seconds * b.entries - b.seconds * a.entries) / det;
+  r.factor_entry = (a.flops * b.seconds - b.flops * a.seconds) / det;
   // Noise may give one of them a senseless sign: then all is flops.
-  if (!(r.factor_flop > 0) || !(r.factor_entry >= 0))
-    r.factor_flop = factor[1].seconds / factor[1].flops, r.factor_entry = 0;
+  if (!(r.factor_flop > 0) || !(r.factor_entry >= 0)) r.factor_flop = b.seconds / b.flops, r.factor_entry = 0;
+}
+
+}  // namespace
+
+CostRates measure_rates(const Registry& registry) {
+  CostRates r;
+  // A small body and a middle one. Each of them is small enough that all of this is a part of what an author waits for.
+  const auto s = brick_scene({10, 6, 0, 40}, registry, 1);
+  auto& lower = *const_cast<SoftBody*>(s->scene().find_as<SoftBody>("lower"));
+  auto& upper = *const_cast<SoftBody*>(s->scene().find_as<SoftBody>("upper"));
+  r.sweep_row2 = sweep_rate(*s);
+  const SceneWork work = count_work(*s);
+  const auto update = [&] {
+    for (Surface* f : s->surfaces()) f->update_collision();
+  };
+  r.vertex = shortest(6, update) / std::max(1, work.surface_vertices);
+  measure_elements(lower, s->h(), r);
+  const MeasuredFactor small(upper, 8, false), middle(lower, 4, true);
+  measure_rows(lower, work, middle, r);
+  set_factor_rates(small.cost, middle.cost, r);
   return r;
 }
 

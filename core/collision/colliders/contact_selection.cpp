@@ -22,6 +22,21 @@ Vec3 tangent_to(const Vec3& n, const Vec3& wish) {
 
 namespace {
 Vec3 other_end(const Proximity& x) { return x.point + x.gap * x.normal; }
+
+// Whether a kept contact k, which is better, makes x superfluous: they are alike and near one another.
+bool stands_for(const Proximity& k, const Proximity& x, double apart2, bool both_ends) {
+  constexpr double cos40 = 0.766;
+  const double cosine = k.normal.dot(x.normal);
+  // Tissue finds the same place from both sides, with opposite normals.
+  bool alike = x.vertex >= 0 && k.side != x.side ? cosine < -cos40 : cosine > cos40;
+  if (both_ends && alike) {
+    alike = k.side == x.side && (other_end(k) - other_end(x)).squaredNorm() < apart2;
+  } else if (both_ends && cosine < -cos40 && k.side == x.side) {
+    if ((k.point - other_end(x)).squaredNorm() < apart2 && (other_end(k) - x.point).squaredNorm() < apart2) return true;
+  }
+  return alike && (k.point - x.point).squaredNorm() < apart2;
+}
+
 }  // namespace
 
 void ContactSelection::reserve(std::size_t before, std::size_t after) {
@@ -31,20 +46,21 @@ void ContactSelection::reserve(std::size_t before, std::size_t after) {
   next_.reserve(after);
 }
 
-void ContactSelection::select(std::vector<Proximity>& all, const SelectionSettings& settings, std::uint64_t& next_key) {
+bool ContactSelection::same(const Known& k, const Proximity& x, double spacing2) {
+  if (x.vertex >= 0) return k.vertex == x.vertex && k.side == x.side;
+  return k.piece == x.piece && k.other_piece == x.other_piece && (k.local - x.local).squaredNorm() < spacing2;
+}
+
+// By gap, with the advantage of those that had a contact in the last step.
+void ContactSelection::rank(const std::vector<Proximity>& all, const SelectionSettings& settings) {
   const double spacing2 = settings.spacing * settings.spacing;
-  for (Known& k : last_) k.taken = false;
-  const auto same = [&](const Known& k, const Proximity& x) {
-    if (x.vertex >= 0) return k.vertex == x.vertex && k.side == x.side;
-    return k.piece == x.piece && k.other_piece == x.other_piece && (k.local - x.local).squaredNorm() < spacing2;
-  };
   order_.clear();
   for (int i = 0; i < int(all.size()); ++i) {
     const Proximity& x = all[std::size_t(i)];
     double rank = x.gap;
     bool known = false;
     for (const Known& k : last_)
-      if (same(k, x)) {
+      if (same(k, x, spacing2)) {
         known = true;
         rank -= settings.advantage * (x.vertex >= 0 ? 1 : 1 - std::sqrt((k.local - x.local).squaredNorm() / spacing2));
         break;
@@ -53,7 +69,11 @@ void ContactSelection::select(std::vector<Proximity>& all, const SelectionSettin
   }
   std::sort(order_.begin(), order_.end(),
             [](const Order& a, const Order& b) { return a.rank != b.rank ? a.rank < b.rank : a.index < b.index; });
+}
 
+// Takes proximities into kept_, best first.
+void ContactSelection::choose(const std::vector<Proximity>& all, const SelectionSettings& settings) {
+  const double spacing2 = settings.spacing * settings.spacing;
   kept_.clear();
   for (const Order& o : order_) {
     if (int(kept_.size()) >= settings.max_contacts) break;
@@ -64,32 +84,23 @@ void ContactSelection::select(std::vector<Proximity>& all, const SelectionSettin
     int of_piece = 0;
     for (const Proximity& k : kept_) {
       if (k.piece == x.piece && x.piece >= 0) ++of_piece;
-      constexpr double cos40 = 0.766;
-      const double cosine = k.normal.dot(x.normal);
-      // Tissue finds the same contact from both sides, with opposite normals.
-      bool alike = x.vertex >= 0 && k.side != x.side ? cosine < -cos40 : cosine > cos40;
-      if (settings.both_ends && alike) {
-        alike = k.side == x.side && (other_end(k) - other_end(x)).squaredNorm() < apart2;
-      } else if (settings.both_ends && cosine < -cos40 && k.side == x.side) {
-        if ((k.point - other_end(x)).squaredNorm() < apart2 && (other_end(k) - x.point).squaredNorm() < apart2) {
-          keep = false;
-          break;
-        }
-      }
-      if (alike && (k.point - x.point).squaredNorm() < apart2) {
+      if (stands_for(k, x, apart2, settings.both_ends)) {
         keep = false;
         break;
       }
     }
     if (keep && (x.piece < 0 || of_piece < settings.max_per_piece)) kept_.push_back(x);
   }
+}
 
+// Keys and tangents of what was kept: those of the last step where they go on.
+void ContactSelection::identify(double spacing2, std::uint64_t& next_key) {
   next_.clear();
   for (Proximity& x : kept_) {
     Known* match = nullptr;
     double least = 1e300;
     for (Known& k : last_) {
-      if (k.taken || !same(k, x)) continue;
+      if (k.taken || !same(k, x, spacing2)) continue;
       const double d = x.vertex >= 0 ? 0 : (k.local - x.local).squaredNorm();
       if (d < least) {
         least = d;
@@ -102,6 +113,13 @@ void ContactSelection::select(std::vector<Proximity>& all, const SelectionSettin
     next_.push_back({x.piece, x.other_piece, x.vertex, x.side, x.local, x.tangent, x.key, false});
   }
   last_.swap(next_);
+}
+
+void ContactSelection::select(std::vector<Proximity>& all, const SelectionSettings& settings, std::uint64_t& next_key) {
+  for (Known& k : last_) k.taken = false;
+  rank(all, settings);
+  choose(all, settings);
+  identify(settings.spacing * settings.spacing, next_key);
   all.assign(kept_.begin(), kept_.end());
 }
 

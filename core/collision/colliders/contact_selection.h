@@ -43,6 +43,11 @@ class ContactSelection {
     int index;
     bool known;
   };
+  static bool same(const Known& k, const Proximity& x, double spacing2);
+  void rank(const std::vector<Proximity>& all, const SelectionSettings& settings);
+  void choose(const std::vector<Proximity>& all, const SelectionSettings& settings);
+  void identify(double spacing2, std::uint64_t& next_key);
+
   std::vector<Known> last_, next_;
   std::vector<Order> order_;
   std::vector<Proximity> kept_;

@@ -176,6 +176,120 @@ double TissueCollider::look_around(Group& g, const CollisionMesh& a, const Colli
   return std::max(elsewhere, comes_in_sight);
 }
 
+// Brings what is known of a group up to date with what has moved. Returns how much that was, m.
+double TissueCollider::follow(const Step& step, Group& g, std::size_t first, std::size_t last) {
+  const CollisionMesh &a = step.a, &b = step.b;
+  if (g.own == 0)
+    for (std::size_t i = first; i < last; ++i) g.own |= a.region_of(samples_[i]);
+  const double own = a.moved(g.own), went = own + b.moved(g.near);
+  g.around -= own;
+  const double elsewhere = g.around - (b.travelled() - g.travelled),
+               anyone = step.open_range + a.may_move(g.own) + b.farthest_free();
+  g.clear -= went;
+  g.went += went;
+  if (!step.followed || elsewhere <= anyone) {
+    const double in_sight = look_around(g, a, b, first, last, anyone, elsewhere),
+                 at_least = step.followed ? in_sight : 0.0;
+    lessen(first, last, g.went, at_least);
+    g.clear = std::min(g.clear, at_least);
+    g.went = 0;
+  }
+  return went;
+}
+
+// Whether any sample of a group must be looked at: what cannot have come near since it was last looked at needs no
+// look.
+bool TissueCollider::needs_a_look(const Step& step, Group& g, std::size_t first, std::size_t last, double may_come) {
+  if (!g.deep && g.clear > may_come) return false;
+  lessen(first, last, g.went, infinite);
+  g.went = 0;
+  const bool had_any = std::any_of(known_.begin() + std::ptrdiff_t(first), known_.begin() + std::ptrdiff_t(last),
+                                   [](const KnownNearest& k) { return k.triangle >= 0; });
+  if (g.deep || had_any) return true;
+  Aabb here;
+  for (std::size_t i = first; i < last; ++i) here.add(step.a.vertex(samples_[i]));
+  here.inflate(may_come + horizon);
+  if (step.b.tree().any_overlapping(here)) return true;
+  std::fill(clear_.begin() + std::ptrdiff_t(first), clear_.begin() + std::ptrdiff_t(last), may_come + horizon);
+  g.clear = may_come + horizon;
+  return false;
+}
+
+// Begins the searches of a group's samples. Deep samples are looked for as far as they are pushed out. Those whose
+// nearest triangle of the last step is that of this one are done; the leaves near all others are gathered once.
+void TissueCollider::begin_searches(const Step& step, std::size_t first, std::size_t last, double may_come,
+                                    double margin) {
+  const double open_reach = may_come + near_horizon,
+               deep_reach = std::max(may_come, step.settings.max_depth) + near_horizon;
+  Aabb all;
+  bool any_open = false;
+  for (std::size_t i = first; i < last; ++i) {
+    const std::size_t k = i - first;
+    looked_[k] = behind_[i] || clear_[i] <= may_come;
+    if (!looked_[k]) continue;
+    FacingSearch& search = search_[k];
+    search.begin(step.a, samples_[i], step.b, behind_[i] ? deep_reach : open_reach, margin);
+    settled_[k] = search.follow(known_[i], behind_[i] ? -1.0 : step.farthest, seen_);
+    if (settled_[k]) continue;
+    Aabb here;
+    here.add(search.x());
+    here.inflate(std::sqrt(search.limit2()));
+    all.add(here);
+    any_open = true;
+  }
+  if (any_open) gather_leaves(step.b.tree(), all);
+}
+
+// The contact of a sample with the nearest triangle of its search; false if it has none.
+bool TissueCollider::contact_of(const Step& step, std::size_t sample, const FacingSearch& search, Proximity& c) {
+  const CollisionMesh& b = step.b;
+  const int best = search.nearest(), v = samples_[sample];
+  if (best < 0) return false;
+  const Vec3 x = search.x(), u = step.a.free(v), best_bary = search.bary(), best_point = search.point();
+  const TriangleFeature f = feature_of(best_bary);
+  const Vec3 outward = b.pseudo_normal(best, f);
+  const Vec3 d = x - best_point;
+  const double distance = d.norm();
+  const bool outside = d.dot(outward) >= 0;
+  // Behind what faces it, but perhaps outside of a fold that does not: the nearest of all tells.
+  if (!outside && (distance > step.settings.max_depth || !b.nearest(x, 0, distance).behind)) return false;
+  c.vertex = v;
+  c.triangle = best;
+  c.bary = best_bary;
+  c.point = best_point;
+  if (distance > 1e-6) {
+    // Beside a border, or past one that faces away.
+    if (!b.locally_closest(best, f, d / distance, 0, 0.05)) return false;
+    c.normal = (outside ? d : Vec3(-d)) / distance;
+  } else {
+    c.normal = outward;
+  }
+  c.gap = (outside ? distance : -distance) - step.settings.offset;
+  const double approach = c.normal.dot(u - b.free_at(best, best_bary));
+  if (c.gap > step.settings.alarm && c.gap + approach > step.settings.alarm) return false;
+  behind_[sample] = !outside;
+  c.start_gap = std::max(c.gap, -step.settings.max_correction);
+  return true;
+}
+
+// Ends the searches of a group's samples and appends their contacts.
+void TissueCollider::end_searches(const Step& step, std::size_t first, std::size_t last, std::vector<Proximity>& out) {
+  for (std::size_t i = first; i < last; ++i) {
+    const std::size_t k = i - first;
+    if (!looked_[k]) continue;
+    FacingSearch& search = search_[k];
+    if (!settled_[k]) {
+      seen_.clear();
+      look_at_leaves(step.b, search.x(), search.limit2(), [&](int t) { search.look(t, seen_); });
+      search.settle(known_[i], seen_);
+    }
+    behind_[i] = 0;
+    clear_[i] = search.clear();
+    Proximity c;
+    if (contact_of(step, i, search, c)) out.push_back(c);
+  }
+}
+
 void TissueCollider::detect(const CollisionMesh& a, const CollisionMesh& b, const TissueContactSettings& settings,
                             std::vector<Proximity>& out) {
   if (b.tree().empty()) return;
@@ -184,105 +298,16 @@ void TissueCollider::detect(const CollisionMesh& a, const CollisionMesh& b, cons
   updates_ = {a.updates(), b.updates()};
   gathering_ = false;
   const double open_range = settings.alarm + settings.offset;
-  const double farthest = open_range + a.farthest_free() + b.farthest_free();
+  const Step step{a, b, settings, followed, open_range, open_range + a.farthest_free() + b.farthest_free()};
   for (std::size_t first = 0; first < samples_.size(); first += group) {
     const std::size_t last = std::min(first + group, samples_.size());
     Group& g = groups_[first / group];
-    // Groups to which nothing can have come near since the last test need no test.
-    if (g.own == 0)
-      for (std::size_t i = first; i < last; ++i) g.own |= a.region_of(samples_[i]);
-    const double own = a.moved(g.own), went = own + b.moved(g.near);
-    g.around -= own;
-    const double elsewhere = g.around - (b.travelled() - g.travelled),
-                 anyone = open_range + a.may_move(g.own) + b.farthest_free();
-    g.clear -= went;
-    g.went += went;
-    if (!followed || elsewhere <= anyone) {
-      const double in_sight = look_around(g, a, b, first, last, anyone, elsewhere),
-                   at_least = followed ? in_sight : 0.0;
-      lessen(first, last, g.went, at_least);
-      g.clear = std::min(g.clear, at_least);
-      g.went = 0;
-    }
+    const double went = follow(step, g, first, last);
     if (g.near == 0 && !g.deep) continue;
     const double may_come = open_range + a.may_move(g.own) + b.may_move(g.near);
-    if (!g.deep && g.clear > may_come) continue;
-    lessen(first, last, g.went, infinite);
-    g.went = 0;
-    const bool had_any = std::any_of(known_.begin() + std::ptrdiff_t(first), known_.begin() + std::ptrdiff_t(last),
-                                     [](const KnownNearest& k) { return k.triangle >= 0; });
-    if (!g.deep && !had_any) {
-      Aabb here;
-      for (std::size_t i = first; i < last; ++i) here.add(a.vertex(samples_[i]));
-      here.inflate(may_come + horizon);
-      if (!b.tree().any_overlapping(here)) {
-        std::fill(clear_.begin() + std::ptrdiff_t(first), clear_.begin() + std::ptrdiff_t(last), may_come + horizon);
-        g.clear = may_come + horizon;
-        continue;
-      }
-    }
-    // Deep samples search as far as they are pushed out. Samples with the same nearest triangle as in the last step are
-    // done. The leaves near all others are gathered once.
-    const double open_reach = may_come + near_horizon,
-                 deep_reach = std::max(may_come, settings.max_depth) + near_horizon;
-    const double margin = went < slow ? 4 * slow : 0;
-    Aabb all;
-    bool any_open = false;
-    for (std::size_t i = first; i < last; ++i) {
-      const std::size_t k = i - first;
-      looked_[k] = behind_[i] || clear_[i] <= may_come;
-      if (!looked_[k]) continue;
-      FacingSearch& search = search_[k];
-      search.begin(a, samples_[i], b, behind_[i] ? deep_reach : open_reach, margin);
-      settled_[k] = search.follow(known_[i], behind_[i] ? -1.0 : farthest, seen_);
-      if (settled_[k]) continue;
-      Aabb here;
-      here.add(search.x());
-      here.inflate(std::sqrt(search.limit2()));
-      all.add(here);
-      any_open = true;
-    }
-    if (any_open) gather_leaves(b.tree(), all);
-    for (std::size_t i = first; i < last; ++i) {
-      const std::size_t k = i - first;
-      if (!looked_[k]) continue;
-      FacingSearch& search = search_[k];
-      if (!settled_[k]) {
-        seen_.clear();
-        look_at_leaves(b, search.x(), search.limit2(), [&](int t) { search.look(t, seen_); });
-        search.settle(known_[i], seen_);
-      }
-      behind_[i] = 0;
-      clear_[i] = search.clear();
-      const int best = search.nearest(), v = samples_[i];
-      if (best < 0) continue;
-      const Vec3 x = search.x(), u = a.free(v), best_bary = search.bary(), best_point = search.point();
-      const TriangleFeature f = feature_of(best_bary);
-      const Vec3 outward = b.pseudo_normal(best, f);
-      const Vec3 d = x - best_point;
-      const double distance = d.norm();
-      const bool outside = d.dot(outward) >= 0;
-      // Behind the triangle that faces it, but perhaps outside of a fold: the nearest of all triangles decides.
-      if (!outside && (distance > settings.max_depth || !b.nearest(x, 0, distance).behind)) continue;
-      Proximity c;
-      c.vertex = v;
-      c.triangle = best;
-      c.bary = best_bary;
-      c.point = best_point;
-      if (distance > 1e-6) {
-        if (!b.locally_closest(best, f, d / distance, 0, 0.05))
-          continue;  // beside a border, or beyond a triangle that faces away
-        c.normal = (outside ? d : Vec3(-d)) / distance;
-      } else {
-        c.normal = outward;
-      }
-      c.gap = (outside ? distance : -distance) - settings.offset;
-      const double approach = c.normal.dot(u - b.free_at(best, best_bary));
-      if (c.gap > settings.alarm && c.gap + approach > settings.alarm) continue;
-      behind_[i] = !outside;
-      c.start_gap = std::max(c.gap, -settings.max_correction);
-      out.push_back(c);
-    }
+    if (!needs_a_look(step, g, first, last, may_come)) continue;
+    begin_searches(step, first, last, may_come, went < slow ? 4 * slow : 0);
+    end_searches(step, first, last, out);
     g.deep = std::any_of(behind_.begin() + std::ptrdiff_t(first), behind_.begin() + std::ptrdiff_t(last),
                          [](char x) { return x != 0; });
     g.clear = *std::min_element(clear_.begin() + std::ptrdiff_t(first), clear_.begin() + std::ptrdiff_t(last));

@@ -58,6 +58,19 @@ class TissueCollider {
     double travelled = 0;    ///< ... b had travelled this far
     bool deep = true;        ///< has a sample behind the surface
   };
+  /// What a step gives to all groups.
+  struct Step {
+    const CollisionMesh &a, &b;
+    const TissueContactSettings& settings;
+    bool followed;      ///< all motion of both surfaces has been seen
+    double open_range;  ///< of contacts before any motion, m
+    double farthest;    ///< the same with the free motion of both surfaces, m
+  };
+  double follow(const Step& step, Group& g, std::size_t first, std::size_t last);
+  bool needs_a_look(const Step& step, Group& g, std::size_t first, std::size_t last, double may_come);
+  void begin_searches(const Step& step, std::size_t first, std::size_t last, double may_come, double margin);
+  void end_searches(const Step& step, std::size_t first, std::size_t last, std::vector<Proximity>& out);
+  bool contact_of(const Step& step, std::size_t sample, const FacingSearch& search, Proximity& c);
   double look_around(Group& g, const CollisionMesh& a, const CollisionMesh& b, std::size_t first, std::size_t last,
                      double may_come, double elsewhere);
   void lessen(std::size_t first, std::size_t last, double swept, double at_least);

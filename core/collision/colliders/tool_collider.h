@@ -27,6 +27,8 @@
 // wall. So each piece remembers the side of the surface on which it was last outside, and never leaves towards the
 // opposite side.
 #pragma once
+#include <array>
+#include <span>
 #include <vector>
 
 #include "core/collision/proximity.h"
@@ -93,6 +95,11 @@ class ToolCollider {
   void add_those_on_free_side(const ToolContactSettings& settings, std::vector<Proximity>& out) const;
   static void add(Proximity x, const ToolContactSettings& settings, std::vector<Proximity>& out);
   // Contacts at a moment (tool_contacts.cpp).
+  struct Narrow;
+  struct ContactsOfTriangle;
+  static Narrow closest(std::span<const Vec3> core, const std::array<Vec3, 3>& tri, double limit);
+  static bool within_range(Candidate& k, const PlacedPiece& at, const std::array<Vec3, 3>& tri, double range,
+                           Narrow& n);
   void evaluate(const CollisionMesh& mesh, const PlacedPiece& at, const ToolContactSettings& settings, double range,
                 std::vector<Proximity>& found);
   bool found_at_end(const CollisionMesh& mesh, const PlacedPiece& expected, const ToolContactSettings& settings);

@@ -7,15 +7,15 @@
 #include "core/collision/shapes/placed_piece.h"
 
 namespace insula {
-namespace {
 
-struct Narrow {
+/// Closest points of a piece's core and a triangle.
+struct ToolCollider::Narrow {
   double distance = 0;  ///< of the core, unsigned
   Vec3 p, c, bary;
 };
 
-// Exact up to `limit`. Beyond, the result is a lower bound of the distance.
-Narrow closest(std::span<const Vec3> core, const std::array<Vec3, 3>& tri, double limit) {
+// Exact if no farther than `limit`, else no more than the distance.
+ToolCollider::Narrow ToolCollider::closest(std::span<const Vec3> core, const std::array<Vec3, 3>& tri, double limit) {
   Narrow r;
   if (core.size() <= 2) {
     const ClosestPair q = core.size() == 1 ? point_triangle(core[0], tri[0], tri[1], tri[2])
@@ -35,6 +35,8 @@ Narrow closest(std::span<const Vec3> core, const std::array<Vec3, 3>& tri, doubl
   return r;
 }
 
+namespace {
+
 bool above(const Vec3& q, const std::array<Vec3, 3>& t, const Vec3& n, Vec3& bary) {
   const Vec3 w(n.dot((t[2] - t[1]).cross(q - t[1])), n.dot((t[0] - t[2]).cross(q - t[2])),
                n.dot((t[1] - t[0]).cross(q - t[0])));
@@ -47,88 +49,107 @@ bool above(const Vec3& q, const std::array<Vec3, 3>& t, const Vec3& n, Vec3& bar
 
 }  // namespace
 
-// Updates the candidates' bounds (in the free motion) and appends the contacts within `range`.
+/// Appends the contacts of a placed piece with one triangle.
+struct ToolCollider::ContactsOfTriangle {
+  const CollisionMesh& mesh;
+  const PlacedPiece& at;
+  const ToolContactSettings& settings;
+  int triangle;
+  const std::array<Vec3, 3>& tri;
+  Vec3 face;  ///< its normal
+  std::vector<Proximity>& found;
+
+  void add(int on, const Vec3& bary, const Vec3& c, const Vec3& normal, double gap) const {
+    Proximity x;
+    x.piece = at.piece;
+    x.triangle = on;
+    x.time = at.time;
+    x.bary = bary;
+    x.point = c;
+    x.normal = normal;
+    x.gap = gap;
+    x.local = at.pose.q.conjugate() * (c - at.pose.p);
+    x.start_gap = gap;
+    if (at.time > 0 || at.shift.norm() > 0)
+      x.start_gap += normal.dot(at.start.apply(x.local) - mesh.point(triangle, bary));
+    found.push_back(x);
+  }
+
+  /// The core goes through this triangle: out along its normal, as deep as the core reaches.
+  void add_through(const Narrow& n) const {
+    double deepest = 0;
+    for (const Vec3& q : at.core()) deepest = std::max(deepest, face.dot(tri[0] - q));
+    add(triangle, n.bary, n.c, face, -at.radius - std::min(deepest, settings.max_correction));
+  }
+
+  void add_nearest(const Narrow& n, const Vec3& side) const {
+    const double t = at.time, clear = n.distance - at.radius;
+    const Vec3 d = (n.p - n.c) / n.distance;
+    const TriangleFeature f = feature_of(n.bary);
+    // A thin wall is wavy under a flat tool: all that lies under it counts, not only its crests.
+    const bool under = settings.offset > 0 && d.dot(face) > 0.8;
+    if (!under && !mesh.locally_closest(triangle, f, d, t, 1e-6)) return;
+    const bool outside = d.dot(mesh.pseudo_normal(triangle, f, t)) >= 0;
+    if (outside && clear <= settings.alarm) add(triangle, n.bary, n.c, d, clear);
+    if (outside || n.distance > settings.max_depth) return;
+    // Behind this triangle, but perhaps before another one: only the nearest of all tells, and it is the way out.
+    NearestPoint e = mesh.nearest(n.p, t, n.distance);
+    if (e.behind && e.outward.dot(side) < -0.2) e = mesh.nearest(n.p, t, settings.max_depth, &side);
+    if (e.triangle >= 0 && e.behind) add(e.triangle, e.bary, e.point, e.outward, -e.distance - at.radius);
+  }
+
+  /// The corners of the core that stand right above the triangle.
+  void add_corners() const {
+    for (const Vec3& q : at.core()) {
+      const double h = face.dot(q - tri[0]);
+      if (h <= 0 || h - at.radius > settings.alarm) continue;
+      Vec3 bary;
+      if (above(q, tri, face, bary)) add(triangle, bary, q - h * face, face, h - at.radius);
+    }
+  }
+};
+
+// Brings a candidate's bounds up to date with where the piece is. False if it is out of range.
+bool ToolCollider::within_range(Candidate& k, const PlacedPiece& at, const std::array<Vec3, 3>& tri, double range,
+                                Narrow& n) {
+  const bool on_path = at.shift.norm() == 0 && !at.expected;
+  // Cheap bound first: sphere about the triangle, segment about the core.
+  const Vec3 centre = (tri[0] + tri[1] + tri[2]) / 3;
+  const double reach2 =
+      std::max({(tri[0] - centre).squaredNorm(), (tri[1] - centre).squaredNorm(), (tri[2] - centre).squaredNorm()});
+  const double s = closest_on_segment(centre, at.axis0, at.axis1);
+  const double axis = (at.axis0 + s * (at.axis1 - at.axis0) - centre).norm();
+  double clear = axis - std::sqrt(reach2) - at.bound - at.radius;
+  if (clear <= range) {
+    n = closest(at.core(), tri, at.radius + range);
+    clear = n.distance - at.radius;
+  }
+  if (on_path) {
+    k.clear = clear;
+    k.time = at.time;
+  }
+  return clear <= range;
+}
+
+// Brings the candidates' bounds up to date (on the free way) and appends the contacts within `range`.
 void ToolCollider::evaluate(const CollisionMesh& mesh, const PlacedPiece& at, const ToolContactSettings& settings,
                             double range, std::vector<Proximity>& found) {
   const double t = at.time;
   const double slid = at.shift.norm();
   const Vec3 side = t == 0 && slid == 0 ? side_[std::size_t(at.piece)] : Vec3(Vec3::Zero());
-  const auto core = at.core();
-  const bool on_path = slid == 0 && !at.expected;
   for (Candidate& k : candidates_) {
     if (k.clear - (at.expected ? k.to_end : k.speed * std::abs(t - k.time)) - slid > range) continue;
     const auto& v = mesh.triangle(k.triangle);
     const std::array<Vec3, 3> tri{mesh.vertex(v[0], t), mesh.vertex(v[1], t), mesh.vertex(v[2], t)};
-    // First a cheap bound: sphere around the triangle, segment in the core.
-    const Vec3 centre = (tri[0] + tri[1] + tri[2]) / 3;
-    const double reach2 =
-        std::max({(tri[0] - centre).squaredNorm(), (tri[1] - centre).squaredNorm(), (tri[2] - centre).squaredNorm()});
-    const double s = closest_on_segment(centre, at.axis0, at.axis1);
-    const double axis = (at.axis0 + s * (at.axis1 - at.axis0) - centre).norm();
-    double clear = axis - std::sqrt(reach2) - at.bound - at.radius;
-    if (clear > range) {
-      if (on_path) {
-        k.clear = clear;
-        k.time = t;
-      }
-      continue;
-    }
-    const Narrow n = closest(core, tri, at.radius + range);
-    clear = n.distance - at.radius;
-    if (on_path) {
-      k.clear = clear;
-      k.time = t;
-    }
-    if (clear > range) continue;
-    const Vec3 face = mesh.face_normal(k.triangle, t);
-
-    Proximity x;
-    x.piece = at.piece;
-    x.triangle = k.triangle;
-    x.time = t;
-    const auto emit = [&](const Vec3& bary, const Vec3& c, const Vec3& normal, double gap) {
-      x.bary = bary;
-      x.point = c;
-      x.normal = normal;
-      x.gap = gap;
-      x.local = at.pose.q.conjugate() * (c - at.pose.p);
-      x.start_gap = gap;
-      if (t > 0 || slid > 0) x.start_gap += normal.dot(at.start.apply(x.local) - mesh.point(k.triangle, bary));
-      found.push_back(x);
-    };
+    Narrow n;
+    if (!within_range(k, at, tri, range, n)) continue;
+    const ContactsOfTriangle contacts{mesh, at, settings, k.triangle, tri, mesh.face_normal(k.triangle, t), found};
     if (n.distance < 1e-9) {
-      // The core intersects this triangle and is pushed out along its normal by the core's depth.
-      double deepest = 0;
-      for (const Vec3& q : core) deepest = std::max(deepest, face.dot(tri[0] - q));
-      emit(n.bary, n.c, face, -at.radius - std::min(deepest, settings.max_correction));
+      contacts.add_through(n);
       continue;
     }
-    const Vec3 d = (n.p - n.c) / n.distance;
-    const TriangleFeature f = feature_of(n.bary);
-    // A thin wall is wavy under a flat tool. All of it under the tool counts, not only its crests.
-    const bool under = settings.offset > 0 && d.dot(face) > 0.8;
-    if (under || mesh.locally_closest(k.triangle, f, d, t, 1e-6)) {
-      const bool outside = d.dot(mesh.pseudo_normal(k.triangle, f, t)) >= 0;
-      if (outside && clear <= settings.alarm) emit(n.bary, n.c, d, clear);
-      // The core may be in front of another triangle. The nearest of all decides and gives the direction out.
-      if (!outside && n.distance <= settings.max_depth) {
-        NearestPoint e = mesh.nearest(n.p, t, n.distance);
-        if (e.behind && e.outward.dot(side) < -0.2) e = mesh.nearest(n.p, t, settings.max_depth, &side);
-        if (e.triangle >= 0 && e.behind) {
-          x.triangle = e.triangle;
-          emit(e.bary, e.point, e.outward, -e.distance - at.radius);
-          x.triangle = k.triangle;
-        }
-      }
-    }
-    if (at.count < 2 || clear > settings.alarm) continue;
-    for (int i = 0; i < at.count; ++i) {
-      const Vec3& q = at.points[std::size_t(i)];
-      const double h = face.dot(q - tri[0]);
-      if (h <= 0 || h - at.radius > settings.alarm) continue;
-      Vec3 bary;
-      if (above(q, tri, face, bary)) emit(bary, q - h * face, face, h - at.radius);
-    }
+    contacts.add_nearest(n, side);
+    if (at.count >= 2 && n.distance - at.radius <= settings.alarm) contacts.add_corners();
   }
 }
 

@@ -50,23 +50,19 @@ VertexCollider::Near VertexCollider::nearest(const RoundedPiece& piece, const Po
   return {distance - piece.radius - offset, distance > 1e-7 ? Vec3(pose.q * (d / distance)) : Vec3(Vec3::Zero())};
 }
 
-void VertexCollider::detect(const CollisionMesh& mesh, const Pose& start, const Pose& free,
-                            const ToolContactSettings& settings, std::vector<Proximity>& out) {
-  if (mesh.tree().empty()) return;
-  const Vec6 motion = displacement(start, free);
-  const double alarm = settings.alarm, turn = motion.tail<3>().norm();
-  // Vertices that any piece may approach.
+// Vertices that any piece may come near to, into seen_.
+void VertexCollider::list_vertices(const Step& step) {
   for (const RoundedPiece& p : pieces_) {
     Aabb box;
     double lever = 0;
     for (const Vec3& c : p.core) {
-      box.add(start.apply(c));
-      box.add(free.apply(c));
+      box.add(step.start.apply(c));
+      box.add(step.free.apply(c));
       lever = std::max(lever, c.norm());
     }
-    box.inflate(p.radius + settings.offset + alarm + turn * turn * lever);
-    mesh.tree().overlapping(box, [&](int t) {
-      for (int v : mesh.triangle(t)) {
+    box.inflate(p.radius + step.settings.offset + step.settings.alarm + step.turn * step.turn * lever);
+    step.mesh.tree().overlapping(box, [&](int t) {
+      for (int v : step.mesh.triangle(t)) {
         if (marked_[std::size_t(v)]) continue;
         marked_[std::size_t(v)] = 1;
         seen_.push_back(v);
@@ -74,98 +70,133 @@ void VertexCollider::detect(const CollisionMesh& mesh, const Pose& start, const 
     });
   }
   std::sort(seen_.begin(), seen_.end());
+  for (const int v : seen_) marked_[std::size_t(v)] = 0;
+}
+
+// Pieces that are near to a vertex or may come near, into near_pieces_. Returns whether there are any.
+bool VertexCollider::list_pieces(const Step& step, const Vec3& local, double speed) {
+  const double alarm = step.settings.alarm, reach = std::max(alarm, 0.2 * alarm + speed);
+  near_pieces_.clear();
+  for (int i = 0; i < int(pieces_.size()); ++i) {
+    const double d =
+        std::sqrt(boxes_[std::size_t(i)].distance2(local)) - pieces_[std::size_t(i)].radius - step.settings.offset;
+    if (d <= reach) near_pieces_.push_back({i, d});
+  }
+  return !near_pieces_.empty();
+}
+
+// The nearest piece at the start of the step.
+VertexCollider::Touch VertexCollider::nearest_at_start(const Step& step, const Vec3& x0) const {
+  Touch best;
+  for (const auto& [i, at_least] : near_pieces_) {
+    if (at_least > std::min(step.settings.alarm, best.near.clear)) continue;
+    const Near n = nearest(pieces_[std::size_t(i)], step.start, x0, step.settings.offset);
+    if (n.clear < best.near.clear) {
+      best.near = n;
+      best.piece = i;
+    }
+  }
+  return best;
+}
+
+// The piece that a vertex meets first on the free way; piece -1 if it meets none.
+VertexCollider::Touch VertexCollider::first_on_the_way(const Step& step, const Vec3& x0, const Vec3& u,
+                                                       double speed) const {
+  const double alarm = step.settings.alarm;
+  Touch first;
+  first.when = 1;
+  for (const auto& [i, at_least] : near_pieces_) {
+    if (at_least > 0.2 * alarm + speed) continue;
+    double t = 0;
+    for (int k = 0; k < 32 && t < first.when; ++k) {
+      const Pose pose = t > 0 ? displaced(step.start, t * step.motion) : step.start;
+      const Near n = nearest(pieces_[std::size_t(i)], pose, x0 + t * u, step.settings.offset);
+      if (n.clear <= 0.2 * alarm) {
+        first = {i, n, t};
+        break;
+      }
+      if (!(speed > 0)) break;
+      t += std::max(n.clear, 0.1 * alarm) / speed;
+    }
+  }
+  if (first.near.normal.isZero(0)) first.piece = -1;
+  return first;
+}
+
+// Where a vertex touches, with the side that it remembers. False if it touches nothing that can push it.
+bool VertexCollider::touch_of(const Step& step, const Vec3& x0, const Vec3& u, double speed, Vec3& memory,
+                              Touch& touch) const {
+  const bool one_sided = step.settings.one_sided && !side_.isZero(0);
+  if (one_sided && memory.dot(side_) < -0.7) memory = side_.normalized();
+  const Vec3 before = step.start.q * memory;
+  touch = nearest_at_start(step, x0);
+  if (touch.near.clear > step.settings.alarm) {
+    memory.setZero();
+    touch = first_on_the_way(step, x0, u, speed);  // not near now; perhaps on the way
+    return touch.piece >= 0;
+  }
+  Near& near = touch.near;
+  const double through = 2 * (pieces_[std::size_t(touch.piece)].radius + step.settings.offset);
+  if (near.normal.isZero(0) || near.normal.dot(before) < -0.2) {
+    // Inside the core, or on the piece's other side: back the way it came.
+    if (before.isZero(0)) return false;
+    near.clear = -std::abs(near.clear + through);
+    near.normal = before;
+    return true;
+  }
+  memory = step.start.q.conjugate() * near.normal;
+  // Come from behind: the body wraps about the blade's edge.
+  if (one_sided && memory.dot(side_) < -0.7) {
+    memory = side_.normalized();
+    near.clear = -(near.clear + through);
+    near.normal = step.start.q * memory;
+  }
+  return true;
+}
+
+void VertexCollider::add_contact(const Step& step, int v, const Touch& touch, std::vector<Proximity>& out) const {
+  const auto& own = triangle_of_[std::size_t(v)];
+  if (own[0] < 0) return;
+  const Vec3 x0 = step.mesh.vertex(v);
+  Proximity c;
+  c.piece = touch.piece;
+  c.vertex = v;
+  c.triangle = own[0];
+  c.bary[own[1]] = 1;
+  c.time = touch.when;
+  c.normal = touch.near.normal;
+  c.gap = touch.near.clear;
+  c.point = x0 + touch.when * step.mesh.free(v);
+  const Pose pose = touch.when > 0 ? displaced(step.start, touch.when * step.motion) : step.start;
+  c.local = pose.q.conjugate() * (c.point - pose.p);
+  c.start_gap = c.gap;
+  if (touch.when > 0) c.start_gap += c.normal.dot(step.start.apply(c.local) - x0);
+  // It comes from the other side of a moving wall: the next step sees it.
+  if (touch.when > 0 && c.start_gap < 0) return;
+  c.start_gap = std::max(c.start_gap, -step.settings.max_correction);
+  out.push_back(c);
+}
+
+void VertexCollider::detect(const CollisionMesh& mesh, const Pose& start, const Pose& free,
+                            const ToolContactSettings& settings, std::vector<Proximity>& out) {
+  if (mesh.tree().empty()) return;
+  const Vec6 motion = displacement(start, free);
+  const Step step{mesh, start, free, settings, motion, motion.tail<3>().norm()};
+  list_vertices(step);
   Vec3 pressed = Vec3::Zero();
   const Mat3 to_local = start.q.toRotationMatrix().transpose();
-
   for (const int v : seen_) {
-    marked_[std::size_t(v)] = 0;
     Vec3& memory = kept_out_[std::size_t(v)];
     const Vec3 x0 = mesh.vertex(v), u = mesh.free(v), local = to_local * (x0 - start.p);
-    // Vertices that no piece is near to, or comes near to, are skipped.
-    const double speed = (motion.head<3>() - u).norm() + turn * (local.norm() + u.norm());
-    const double reach = std::max(alarm, 0.2 * alarm + speed);
-    near_pieces_.clear();
-    for (int i = 0; i < int(pieces_.size()); ++i) {
-      const double d =
-          std::sqrt(boxes_[std::size_t(i)].distance2(local)) - pieces_[std::size_t(i)].radius - settings.offset;
-      if (d <= reach) near_pieces_.push_back({i, d});
-    }
-    if (near_pieces_.empty()) {
-      memory.setZero();
+    const double speed = (motion.head<3>() - u).norm() + step.turn * (local.norm() + u.norm());
+    if (!list_pieces(step, local, speed)) {
+      memory.setZero();  // what no piece is near to, nor comes near to, is passed by
       continue;
     }
-    if (settings.one_sided && !side_.isZero(0) && memory.dot(side_) < -0.7) memory = side_.normalized();
-    const Vec3 before = start.q * memory;
-    int best = -1;
-    Near near{1e300, Vec3::Zero()};
-    double when = 0;
-    for (const auto& [i, at_least] : near_pieces_) {
-      if (at_least > std::min(alarm, near.clear)) continue;
-      const Near n = nearest(pieces_[std::size_t(i)], start, x0, settings.offset);
-      if (n.clear < near.clear) {
-        near = n;
-        best = i;
-      }
-    }
-    if (near.clear > alarm) {
-      memory.setZero();
-      // Not near at the start, but perhaps during the motion.
-      double first = 1;
-      int met = -1;
-      Near at_touch{};
-      for (const auto& [i, at_least] : near_pieces_) {
-        if (at_least > 0.2 * alarm + speed) continue;
-        double t = 0;
-        for (int k = 0; k < 32 && t < first; ++k) {
-          const Pose pose = t > 0 ? displaced(start, t * motion) : start;
-          const Near n = nearest(pieces_[std::size_t(i)], pose, x0 + t * u, settings.offset);
-          if (n.clear <= 0.2 * alarm) {
-            first = t;
-            met = i;
-            at_touch = n;
-            break;
-          }
-          if (!(speed > 0)) break;
-          t += std::max(n.clear, 0.1 * alarm) / speed;
-        }
-      }
-      if (met < 0 || at_touch.normal.isZero(0)) continue;
-      best = met;
-      near = at_touch;
-      when = first;
-    } else if (near.normal.isZero(0) || near.normal.dot(before) < -0.2) {
-      // A vertex inside the core, or on the piece's other side, is pushed back in the opposite direction.
-      if (before.isZero(0)) continue;
-      near.clear = -std::abs(near.clear + 2 * (pieces_[std::size_t(best)].radius + settings.offset));
-      near.normal = before;
-    } else {
-      memory = start.q.conjugate() * near.normal;
-      // The vertex came from behind: the body wraps around the blade's edge.
-      if (settings.one_sided && !side_.isZero(0) && memory.dot(side_) < -0.7) {
-        memory = side_.normalized();
-        near.clear = -(near.clear + 2 * (pieces_[std::size_t(best)].radius + settings.offset));
-        near.normal = start.q * memory;
-      }
-    }
-    if (near.clear < 0.1 * alarm) pressed += memory;
-    const auto& own = triangle_of_[std::size_t(v)];
-    if (own[0] < 0) continue;
-    Proximity c;
-    c.piece = best;
-    c.vertex = v;
-    c.triangle = own[0];
-    c.bary[own[1]] = 1;
-    c.time = when;
-    c.normal = near.normal;
-    c.gap = near.clear;
-    c.point = x0 + when * u;
-    const Pose pose = when > 0 ? displaced(start, when * motion) : start;
-    c.local = pose.q.conjugate() * (c.point - pose.p);
-    c.start_gap = c.gap;
-    if (when > 0) c.start_gap += c.normal.dot(start.apply(c.local) - x0);
-    if (when > 0 && c.start_gap < 0) continue;  // it comes from the other side of a moving wall: left to the next step
-    c.start_gap = std::max(c.start_gap, -settings.max_correction);
-    out.push_back(c);
+    Touch touch;
+    if (!touch_of(step, x0, u, speed, memory, touch)) continue;
+    if (touch.near.clear < 0.1 * settings.alarm) pressed += memory;
+    add_contact(step, v, touch, out);
   }
   seen_.clear();
   // The side from which most vertices press. It is determined when the blade reaches the body, and stays.

@@ -2,6 +2,8 @@
 // GJK with the closest point of each simplex found by checking its faces, which also holds for flat simplices.
 #include "core/collision/shapes/gjk.h"
 
+#include <array>
+
 #include "core/collision/shapes/closest.h"
 
 namespace insula {
@@ -24,6 +26,17 @@ struct Simplex {
       ++s.n;
     }
     *this = s;
+  }
+  bool has(int of_a, int of_b) const {
+    bool known = false;
+    for (int k = 0; k < n; ++k) known = known || (ia[k] == of_a && ib[k] == of_b);
+    return known;
+  }
+  void add(const Vec3& difference, int of_a, int of_b) {
+    w[n] = difference;
+    ia[n] = of_a;
+    ib[n] = of_b;
+    ++n;
   }
   Vec3 point() const {
     Vec3 v = Vec3::Zero();
@@ -72,6 +85,35 @@ bool reduce(Simplex& s) {
   return true;
 }
 
+// The vertices of the hulls that reach farthest towards one another along v.
+std::array<int, 2> support(std::span<const Vec3> a, std::span<const Vec3> b, const Vec3& v) {
+  int ia = 0, ib = 0;
+  double low = v.dot(a[0]), high = v.dot(b[0]);
+  for (int i = 1; i < int(a.size()); ++i)
+    if (const double d = v.dot(a[i]); d < low) {
+      low = d;
+      ia = i;
+    }
+  for (int i = 1; i < int(b.size()); ++i)
+    if (const double d = v.dot(b[i]); d > high) {
+      high = d;
+      ib = i;
+    }
+  return {ia, ib};
+}
+
+HullDistance closest_points(const Simplex& s, std::span<const Vec3> a, std::span<const Vec3> b) {
+  HullDistance r;
+  for (int k = 0; k < s.n; ++k) {
+    r.a += s.l[k] * a[s.ia[k]];
+    r.b += s.l[k] * b[s.ib[k]];
+    r.index[k] = s.ib[k];
+    r.weight[k] = s.l[k];
+  }
+  r.count = s.n;
+  return r;
+}
+
 }  // namespace
 
 HullDistance hull_distance(std::span<const Vec3> a, std::span<const Vec3> b, double limit) {
@@ -89,18 +131,7 @@ HullDistance hull_distance(std::span<const Vec3> a, std::span<const Vec3> b, dou
       meet = true;
       break;
     }
-    int ia = 0, ib = 0;
-    double low = v.dot(a[0]), high = v.dot(b[0]);
-    for (int i = 1; i < int(a.size()); ++i)
-      if (const double d = v.dot(a[i]); d < low) {
-        low = d;
-        ia = i;
-      }
-    for (int i = 1; i < int(b.size()); ++i)
-      if (const double d = v.dot(b[i]); d > high) {
-        high = d;
-        ib = i;
-      }
+    const auto [ia, ib] = support(a, b, v);
     const Vec3 w = a[ia] - b[ib];
     const double along = v.dot(w);
     if (vv - along <= 1e-13 * vv) break;
@@ -108,14 +139,9 @@ HullDistance hull_distance(std::span<const Vec3> a, std::span<const Vec3> b, dou
       apart = along / std::sqrt(vv);
       break;
     }
-    bool known = false;
-    for (int k = 0; k < s.n; ++k) known = known || (s.ia[k] == ia && s.ib[k] == ib);
-    if (known) break;
+    if (s.has(ia, ib)) break;
     const Simplex before = s;
-    s.w[s.n] = w;
-    s.ia[s.n] = ia;
-    s.ib[s.n] = ib;
-    ++s.n;
+    s.add(w, ia, ib);
     if (!reduce(s)) {
       meet = true;
       s = before;
@@ -128,14 +154,7 @@ HullDistance hull_distance(std::span<const Vec3> a, std::span<const Vec3> b, dou
     }
     v = next;
   }
-  HullDistance r;
-  for (int k = 0; k < s.n; ++k) {
-    r.a += s.l[k] * a[s.ia[k]];
-    r.b += s.l[k] * b[s.ib[k]];
-    r.index[k] = s.ib[k];
-    r.weight[k] = s.l[k];
-  }
-  r.count = s.n;
+  HullDistance r = closest_points(s, a, b);
   r.distance = meet ? 0 : apart > 0 ? apart : v.norm();
   return r;
 }

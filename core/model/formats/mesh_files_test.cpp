@@ -172,17 +172,40 @@ std::string base64(const std::string& in) {
 
 enum class Coding { ascii, inline_base64, inline_zlib, raw, raw_zlib, appended_base64 };
 
-std::string vtu(const TetMesh& m, Coding coding) {
-  const bool zlib = coding == Coding::inline_zlib || coding == Coding::raw_zlib;
-  const bool appended = coding == Coding::raw || coding == Coding::raw_zlib || coding == Coding::appended_base64;
-  const bool header64 = coding == Coding::raw || coding == Coding::inline_zlib;
-  std::string store;
-  const auto header = [&](std::string& to, std::uint64_t v) {
-    header64 ? put<std::uint64_t>(to, v) : put<std::uint32_t>(to, std::uint32_t(v));
-  };
-  const auto packed = [&](const std::string& raw) {
+/// The data arrays of a VTK XML file in one coding.
+class VtuArrays {
+ public:
+  explicit VtuArrays(Coding coding) : coding_(coding) {}
+  bool zlib() const { return coding_ == Coding::inline_zlib || coding_ == Coding::raw_zlib; }
+  bool appended() const {
+    return coding_ == Coding::raw || coding_ == Coding::raw_zlib || coding_ == Coding::appended_base64;
+  }
+  bool header64() const { return coding_ == Coding::raw || coding_ == Coding::inline_zlib; }
+
+  /// The array's element; its content goes to the appended section where the coding has one.
+  std::string array(const char* type, const std::string& name, int parts, const std::string& raw,
+                    const std::string& text) {
+    std::string s = std::string("<DataArray type=\"") + type + "\" Name=\"" + name + "\" NumberOfComponents=\"" +
+                    std::to_string(parts) + "\" format=\"";
+    if (coding_ == Coding::ascii) return s + "ascii\">\n" + text + "\n</DataArray>\n";
+    if (!appended()) return s + "binary\">\n" + packed(raw) + "\n</DataArray>\n";
+    s += "appended\" offset=\"" + std::to_string(store_.size()) + "\"/>\n";
+    store_ += packed(raw);
+    return s;
+  }
+  std::string appended_section() const {
+    if (!appended()) return "";
+    return std::string("<AppendedData encoding=\"") + (coding_ == Coding::appended_base64 ? "base64" : "raw") +
+           "\">\n_" + store_ + "\n</AppendedData>\n";
+  }
+
+ private:
+  void header(std::string& to, std::uint64_t v) const {
+    header64() ? put<std::uint64_t>(to, v) : put<std::uint32_t>(to, std::uint32_t(v));
+  }
+  std::string packed(const std::string& raw) const {
     std::string head, body;
-    if (zlib) {  // blocks of 200 bytes
+    if (zlib()) {  // blocks of 200 bytes
       const std::size_t block = 200, blocks = (raw.size() + block - 1) / block;
       header(head, blocks), header(head, block), header(head, raw.size() % block);
       for (std::size_t b = 0; b < blocks; ++b) {
@@ -193,25 +216,23 @@ std::string vtu(const TetMesh& m, Coding coding) {
         header(head, n);
         body += z.substr(0, n);
       }
-      return coding == Coding::inline_zlib ? base64(head) + base64(body) : head + body;
+      return coding_ == Coding::inline_zlib ? base64(head) + base64(body) : head + body;
     }
     header(head, raw.size());
-    return coding == Coding::raw ? head + raw : base64(head + raw);
-  };
-  const auto array = [&](const char* type, const std::string& name, int parts, const std::string& raw,
-                         const std::string& text) {
-    std::string s = std::string("<DataArray type=\"") + type + "\" Name=\"" + name + "\" NumberOfComponents=\"" +
-                    std::to_string(parts) + "\" format=\"";
-    if (coding == Coding::ascii) return s + "ascii\">\n" + text + "\n</DataArray>\n";
-    if (!appended) return s + "binary\">\n" + packed(raw) + "\n</DataArray>\n";
-    s += "appended\" offset=\"" + std::to_string(store.size()) + "\"/>\n";
-    store += packed(raw);
-    return s;
-  };
+    return coding_ == Coding::raw ? head + raw : base64(head + raw);
+  }
+
+  Coding coding_;
+  std::string store_;  ///< of the appended section
+};
+
+std::string vtu(const TetMesh& m, Coding coding) {
+  VtuArrays arrays(coding);
   std::string s =
       std::string(
           "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\"") +
-      (header64 ? " header_type=\"UInt64\"" : "") + (zlib ? " compressor=\"vtkZLibDataCompressor\"" : "") +
+      (arrays.header64() ? " header_type=\"UInt64\"" : "") +
+      (arrays.zlib() ? " compressor=\"vtkZLibDataCompressor\"" : "") +
       ">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"" + std::to_string(m.nodes.size()) + "\" NumberOfCells=\"" +
       std::to_string(m.tets.size()) + "\">\n<PointData/><Points>\n";
   std::string x, xt, c, ct, o, ot, y, yt;
@@ -225,13 +246,11 @@ std::string vtu(const TetMesh& m, Coding coding) {
     put<std::int64_t>(o, end += 4), ot += std::to_string(end) + " ";
     put<std::uint8_t>(y, 10), yt += "10 ";
   }
-  s += array("Float64", "Points", 3, x, xt) + "</Points>\n<Cells>\n" + array("Int32", "connectivity", 1, c, ct) +
-       array("Int64", "offsets", 1, o, ot) + array("UInt8", "types", 1, y, yt) +
-       "</Cells>\n</Piece>\n</UnstructuredGrid>\n";
-  if (appended)
-    s += std::string("<AppendedData encoding=\"") + (coding == Coding::appended_base64 ? "base64" : "raw") + "\">\n_" +
-         store + "\n</AppendedData>\n";
-  return s + "</VTKFile>\n";
+  s += arrays.array("Float64", "Points", 3, x, xt) + "</Points>\n<Cells>\n";
+  s += arrays.array("Int32", "connectivity", 1, c, ct);
+  s += arrays.array("Int64", "offsets", 1, o, ot);
+  s += arrays.array("UInt8", "types", 1, y, yt) + "</Cells>\n</Piece>\n</UnstructuredGrid>\n";
+  return s + arrays.appended_section() + "</VTKFile>\n";
 }
 
 std::string medit(const TetMesh& m) {

@@ -2,6 +2,7 @@
 // Embedding of points in a tetrahedral mesh by barycentric coordinates.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/base/input_error.h"
 #include "core/model/geometry/box_tree.h"
@@ -46,64 +47,91 @@ Weights drawn_in(const Weights& near, const Weights& w) {
   return out;
 }
 
-}  // namespace
+const Vec3& node(const TetMesh& mesh, int i) { return mesh.nodes[std::size_t(i)]; }
 
-Embedding embed(const TetMesh& mesh, const std::vector<Vec3>& points) {
-  if (mesh.tets.empty()) throw InputError("points cannot be embedded in a mesh without tetrahedra");
-  const auto node = [&](int i) -> const Vec3& { return mesh.nodes[std::size_t(i)]; };
-
+BoxTree tree_of_tetrahedra(const TetMesh& mesh) {
   std::vector<Box> boxes;
   boxes.reserve(mesh.tets.size());
   for (const auto& t : mesh.tets) {
     Box box;
-    for (int i : t) box.extend(node(i));
+    for (int i : t) box.extend(node(mesh, i));
     const Vec3 margin = Vec3::Constant(1e-9 * box.diagonal().norm());
     boxes.emplace_back(box.min() - margin, box.max() + margin);
   }
-  const BoxTree tets(boxes);
+  return BoxTree(boxes);
+}
 
-  // The boundary, each triangle with the tetrahedron it belongs to; boundary_triangles keeps the order of tetrahedra.
-  const auto triangles = boundary_triangles(mesh);
-  std::vector<int> owner;
-  owner.reserve(triangles.size());
-  boxes.clear();
-  std::size_t t = 0;
-  for (const auto& triangle : triangles) {
-    const auto holds = [&](std::size_t tet) {
-      return std::all_of(triangle.begin(), triangle.end(), [&](int i) {
-        return std::find(mesh.tets[tet].begin(), mesh.tets[tet].end(), i) != mesh.tets[tet].end();
-      });
-    };
-    while (!holds(t)) ++t;
-    owner.push_back(int(t));
-    Box box;
-    for (int i : triangle) box.extend(node(i));
-    boxes.push_back(box);
+/// The boundary's triangles, each with the tetrahedron it belongs to.
+class Boundary {
+ public:
+  explicit Boundary(const TetMesh& mesh) : mesh_(mesh), triangles_(boundary_triangles(mesh)) {
+    // boundary_triangles keeps the order of tetrahedra.
+    owner_.reserve(triangles_.size());
+    std::vector<Box> boxes;
+    boxes.reserve(triangles_.size());
+    std::size_t t = 0;
+    for (const auto& triangle : triangles_) {
+      while (!holds(t, triangle)) ++t;
+      owner_.push_back(int(t));
+      Box box;
+      for (int i : triangle) box.extend(node(mesh, i));
+      boxes.push_back(box);
+    }
+    tree_.emplace(boxes);
   }
-  const BoxTree boundary(boxes);
-  const auto nearest_on = [&](int k, const Vec3& p) {
-    const auto& f = triangles[std::size_t(k)];
-    return nearest_on_triangle(p, node(f[0]), node(f[1]), node(f[2]));
-  };
+  /// The triangle nearest to p.
+  int nearest(const Vec3& p) const {
+    return tree_->nearest(p, [&](int item) { return (nearest_on(item, p) - p).squaredNorm(); });
+  }
+  Vec3 nearest_on(int triangle, const Vec3& p) const {
+    const auto& f = triangles_[std::size_t(triangle)];
+    return nearest_on_triangle(p, node(mesh_, f[0]), node(mesh_, f[1]), node(mesh_, f[2]));
+  }
+  int owner(int triangle) const { return owner_[std::size_t(triangle)]; }
 
+ private:
+  bool holds(std::size_t tet, const std::array<int, 3>& triangle) const {
+    return std::all_of(triangle.begin(), triangle.end(), [&](int i) {
+      return std::find(mesh_.tets[tet].begin(), mesh_.tets[tet].end(), i) != mesh_.tets[tet].end();
+    });
+  }
+
+  const TetMesh& mesh_;
+  std::vector<std::array<int, 3>> triangles_;
+  std::vector<int> owner_;
+  std::optional<BoxTree> tree_;
+};
+
+/// The tetrahedron that holds p, and p's weights in it; -1 outside of all.
+int tetrahedron_at(const TetMesh& mesh, const BoxTree& tets, const Vec3& p, Weights& weights) {
+  int best = -1;
+  double best_least = -inside_tolerance;
+  tets.containing(p, [&](int tet) {
+    const Weights w = barycentric(mesh, tet, p);
+    const double l = least(w);
+    if (l > best_least || (l == best_least && tet < best)) best = tet, weights = w, best_least = l;
+    return l > 0;  // strictly inside: no other tetrahedron of a valid mesh can hold it
+  });
+  return best;
+}
+
+}  // namespace
+
+Embedding embed(const TetMesh& mesh, const std::vector<Vec3>& points) {
+  if (mesh.tets.empty()) throw InputError("points cannot be embedded in a mesh without tetrahedra");
+  const BoxTree tets = tree_of_tetrahedra(mesh);
+  const Boundary boundary(mesh);
   Embedding out;
   out.nodes.reserve(points.size());
   out.weights.reserve(points.size());
   for (const Vec3& p : points) {
     if (!p.allFinite()) throw InputError("a point to embed is not finite");
-    int best = -1;
     Weights weights{};
-    double best_least = -inside_tolerance;
-    tets.containing(p, [&](int tet) {
-      const Weights w = barycentric(mesh, tet, p);
-      const double l = least(w);
-      if (l > best_least || (l == best_least && tet < best)) best = tet, weights = w, best_least = l;
-      return l > 0;  // strictly inside: no other tetrahedron of a valid mesh can contain it
-    });
+    int best = tetrahedron_at(mesh, tets, p, weights);
     if (best < 0) {
-      const int k = boundary.nearest(p, [&](int item) { return (nearest_on(item, p) - p).squaredNorm(); });
-      const Vec3 foot = nearest_on(k, p);
-      best = owner[std::size_t(k)];
+      const int k = boundary.nearest(p);
+      const Vec3 foot = boundary.nearest_on(k, p);
+      best = boundary.owner(k);
       weights = drawn_in(barycentric(mesh, best, foot), barycentric(mesh, best, p));
       out.outside_m = std::max(out.outside_m, (p - foot).norm());
     }
