@@ -277,7 +277,7 @@ void SelfCollider::near(const CollisionMesh& mesh, const SelfContactSettings& se
     outward_[sample] = mesh.rough_normal(v);
     outward_known_[sample] = 1;
   }
-  Search search{*this, mesh, sample, mesh.vertex(v), (range + look_ahead) * (range + horizon)};
+  Search search{*this, mesh, sample, mesh.vertex(v), (range + look_ahead) * (range + look_ahead)};
   // What the free motion may bring is within the search range.
   look_at_partners(search, side, reach, settings.thickness + 1.2 * settings.alarm + look_ahead);
   clear_[side][sample] = was ? 0.0 : std::sqrt(search.any2);
