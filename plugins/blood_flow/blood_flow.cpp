@@ -219,7 +219,7 @@ void BloodFlow::append_vessels(std::vector<VesselState>& out) const {
     v.flow = mean_flow_[i];
     v.flow_at_rest = rest_flow_[i];
     v.lumen = s.narrowest;
-    v.dye = std::clamp(DyeTransport::mean(s), 0.0, 1.0);
+    v.dye = dye(i);  // as published
     out.push_back(v);
   }
 }

@@ -1,8 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""clang_tidy.py SOURCE BUILD --changed | --headers | --all | FILE...: the checks of .clang-tidy.
+"""clang_tidy.py SOURCE BUILD --headers | --all | FILE...: the checks of .clang-tidy.
 
---changed  the sources that differ from the main branch, at most MOST of them; it says which ones it leaves out.
 --headers  all headers in one run: a file that includes each of them. The test suite runs it.
 --all      every source. It takes several seconds a file; CONTRIBUTING.md says when to run it.
 
@@ -20,21 +19,11 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 from sources import tracked  # noqa: E402
 
-MOST = 4
 ROOMS = ("core/", "engine/", "haptic_server/", "platform/", "plugins/", "viewer/gateway/")
 # Sources for instruction sets and types of GCC that clang does not know, and headers that only they include.
 NOT_FOR_CLANG = ("core/linalg/fp16_kernels_impl.cpp", "core/linalg/instruction_set.cpp")
 # What one command for all headers takes from the commands of the sources.
 FLAGS_WITH_VALUE = ("-I", "-isystem", "-D")
-
-
-def changed(source):
-    def git(*words):
-        done = subprocess.run(["git", "-C", source, "-c", "safe.directory=*", *words], capture_output=True, text=True)
-        return done.stdout.split("\n") if done.returncode == 0 else []
-
-    base = next((b[0] for b in (git("merge-base", "HEAD", m) for m in ("origin/main", "main")) if b and b[0]), "HEAD")
-    return [f for f in git("diff", "--name-only", base) if f.endswith(".cpp")]
 
 
 def command_without_precompiled(entry):
@@ -89,13 +78,8 @@ def file_of_headers(source, folder, entries):
     return {"directory": entries[0]["directory"], "file": str(file), "command": shlex.join(command)}
 
 
-def chosen(source, how, known):
+def chosen(how, known):
     """The files to look at, by what the command line says."""
-    if how == ["--changed"]:
-        files = [f for f in changed(source) if f in known]
-        for f in files[MOST:]:
-            print("left out: " + f)
-        return files[:MOST]
     if how == ["--all"]:
         return sorted(known)
     return [f for f in how if f in known]
@@ -121,7 +105,7 @@ def main():
     else:
         entries = [
             dict(known[f], command=shlex.join(command_without_precompiled(known[f])))
-            for f in chosen(source, how, known)
+            for f in chosen(how, known)
         ]
     (folder / "compile_commands.json").write_text(json.dumps(entries))
     wrong = 0
