@@ -8,9 +8,9 @@ function(insula_test target)  # insula_test(name SOURCES ... LIBS ... [SERIAL])
     add_executable(${target} ${T_SOURCES})
     target_link_libraries(${target} PRIVATE ${T_LIBS} GTest::gtest_main)
     target_compile_definitions(${target} PRIVATE ${INSULA_TEST_DEFS})
-    # What is tested is optimised in its own library.
+    # What is tested is optimised in its own library. A test file is compiled alone, since tests reuse short names.
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
-    set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests)
+    set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests UNITY_BUILD OFF)
     gtest_discover_tests(${target} WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} DISCOVERY_TIMEOUT 60
       PROPERTIES TIMEOUT 600 RUN_SERIAL $<BOOL:${T_SERIAL}>)
   endif()
