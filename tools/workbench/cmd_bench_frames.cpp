@@ -37,7 +37,8 @@ FrameCosts measure(HeadlessRun& run, Simulation& simulation, Bus& bus, int steps
     const auto began = std::chrono::steady_clock::now();
     fill_frame(simulation, frame);
     publish(bus, channel::render_frame, frame, scratch);
-    costs.frame_us.push_back(std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - began).count());
+    costs.frame_us.push_back(
+        std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - began).count());
     costs.bytes.push_back(double(scratch.size()));
   }
   return costs;
