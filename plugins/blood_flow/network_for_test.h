@@ -7,7 +7,7 @@
 
 namespace insula::test {
 
-inline constexpr double mmHg = 133.322387415, ml_min = 1e-6 / 60;
+inline constexpr double ml_min = 1e-6 / 60;  ///< m3/s
 inline const std::string steady = R"(systolic="93 mmHg" diastolic="93 mmHg" heart_rate="60 1/min")";
 
 struct Vessel : TestScene {

@@ -128,8 +128,8 @@ TEST(Determinism, UnrelatedComponentsDoNotMatter) {
   }
   for (const char* id : {"block", "other"}) {
     std::vector<double> x, y;
-    one->scene().find_as<Body>(id)->append_state(x);
-    two->scene().find_as<Body>(id)->append_state(y);
+    one->scene().find_as<DynamicBody>(id)->append_state(x);
+    two->scene().find_as<DynamicBody>(id)->append_state(y);
     EXPECT_EQ(x, y) << id;
   }
 }

@@ -49,7 +49,7 @@ std::vector<int> sample_vertices(std::span<const Vec3> rest, std::span<const std
 
 namespace {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr double unlimited = std::numeric_limits<double>::infinity();
 constexpr double surroundings = 2e-3;  ///< farther triangles need not be followed by a group for some steps, m
 constexpr double horizon =
     2e-3;  ///< groups search farther than needed by this, so that the result is valid for some steps, m
@@ -201,7 +201,7 @@ double TissueCollider::follow(const Step& step, Group& g, std::size_t first, std
 // look.
 bool TissueCollider::needs_a_look(const Step& step, Group& g, std::size_t first, std::size_t last, double may_come) {
   if (!g.deep && g.clear > may_come) return false;
-  lessen(first, last, g.went, infinite);
+  lessen(first, last, g.went, unlimited);
   g.went = 0;
   const bool had_any = std::any_of(known_.begin() + std::ptrdiff_t(first), known_.begin() + std::ptrdiff_t(last),
                                    [](const KnownNearest& k) { return k.triangle >= 0; });
