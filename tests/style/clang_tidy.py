@@ -22,9 +22,9 @@ from sources import tracked  # noqa: E402
 
 MOST = 4
 ROOMS = ("core/", "engine/", "haptic_server/", "platform/", "plugins/", "viewer/gateway/")
-# Sources for instruction sets and types of GCC that clang does not know, and headers that only they include.
+# Sources for instruction sets and types of GCC that clang does not support, and headers that only they include.
 NOT_FOR_CLANG = ("core/linalg/fp16_kernels_impl.cpp", "core/linalg/instruction_set.cpp")
-# What one command for all headers takes from the commands of the sources.
+# Flags that the one command for all headers takes from the commands of the sources.
 FLAGS_WITH_VALUE = ("-I", "-isystem", "-D")
 
 
@@ -65,7 +65,7 @@ def by_source(entries):
 
 
 def shared_flags(entries):
-    """Folders of headers and definitions of all commands, each once."""
+    """The header folders and the definitions of all commands, without duplicates."""
     out = []
     for entry in entries:
         words = command_without_precompiled(entry)
@@ -79,7 +79,7 @@ def shared_flags(entries):
 
 
 def file_of_headers(source, folder, entries):
-    """Writes the file that includes all headers; its entry of compile_commands.json."""
+    """Writes the file that includes all headers. Returns its entry for compile_commands.json."""
     headers = [p.relative_to(source).as_posix() for p in tracked(source, ".h")]
     headers = [h for h in headers if h.startswith(ROOMS) and not h.endswith(("_for_test.h", "_impl.h"))]
     headers = [h for h in headers if not h.startswith("core/testing/")]
@@ -90,7 +90,7 @@ def file_of_headers(source, folder, entries):
 
 
 def chosen(source, how, known):
-    """The files to look at, by what the command line says."""
+    """The files to check, as the command line selects them."""
     if how == ["--changed"]:
         files = [f for f in changed(source) if f in known]
         for f in files[MOST:]:
@@ -128,7 +128,7 @@ def main():
     for entry in entries:
         command = [tool, "--quiet", "--warnings-as-errors=*", "-p", folder, entry["file"]]
         done = subprocess.run(command, capture_output=True, text=True)
-        print("%s: %s" % (entry["file"], "well" if done.returncode == 0 else "\n" + done.stdout), flush=True)
+        print("%s: %s" % (entry["file"], "passed" if done.returncode == 0 else "\n" + done.stdout), flush=True)
         wrong += done.returncode != 0
     return 1 if wrong else 0
 
