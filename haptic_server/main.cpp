@@ -46,7 +46,7 @@ void print_status(const insula_lcm::haptic_status_t& s) {
   std::fflush(stdout);
 }
 
-/// Fewer unknowns for the servo's Newton steps where this machine cannot make them within a tick.
+/// Reduces the unknowns of the servo's Newton steps if this machine cannot compute them within a tick.
 void fit_newton_steps(ServerOptions& options) {
   int& unknowns = options.servo.newton_unknowns;
   constexpr double newton_share = 0.4;  // of a tick; sweeps and the rest take another third
@@ -77,7 +77,7 @@ void receive_until_stopped(HapticServer& server, const std::atomic<bool>& run) {
   }
 }
 
-/// States every 4 ms and a status each second, until the time is over or a signal comes.
+/// Publishes states every 4 ms and a status each second, until the time is over or a signal comes.
 void publish_until_asked_to_stop(HapticServer& server, const Bus& bus, const Arguments& a) {
   const auto start = Steady::now();
   auto next_status = start + 1s;
@@ -98,7 +98,7 @@ void publish_until_asked_to_stop(HapticServer& server, const Bus& bus, const Arg
   }
 }
 
-/// Brings the forces to zero; the gate needs at most 50 ms for it.
+/// Fades the forces to zero. The gate needs at most 50 ms for this.
 void fade_out(HapticServer& server) {
   server.begin_stop();
   const auto patience = Steady::now() + 300ms;
@@ -125,7 +125,7 @@ int serve(const Arguments& a) {
   if (!grant.advice.empty()) spdlog::warn("{}", grant.advice);
 
   const MonotonicClock clock;
-  // Started first: the gate in front of a device takes its limits from what the device says of itself.
+  // Devices start first, since the gate takes its limits from the device's own data.
   for (Device* d : device) d->start();
   HapticServer server(*bus, std::move(devices), clock, std::move(options));
   spdlog::info("haptic server: left {}, right {}, {:.0f} Hz, {}", a.left, a.right, a.loop.rate_hz,

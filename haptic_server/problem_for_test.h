@@ -43,7 +43,7 @@ inline ToolTerms held_tool(int hand, const Pose& device, int rows) {
   return t;
 }
 
-/// How many rows of each kind a two-tool problem has, in this order.
+/// Numbers of contacts, strands and patches in a two-tool problem. Their rows have this order.
 struct TwoToolRows {
   int contacts, strands, patches;
   int total() const { return 3 * contacts + strands + 5 * patches; }
@@ -67,7 +67,7 @@ inline ToolTerms coupled_tool(int hand, int rows) {
   return t;
 }
 
-/// Frictional blocks have orthonormal directions at one point.
+/// Sets Jacobians of frictional contacts: orthonormal directions at one point.
 inline void set_contact_jacobians(ConstraintProblem& p, const TwoToolRows& rows, Random& random) {
   for (int c = 0; c < rows.contacts; ++c) {
     const int hand = c % 2;
@@ -83,7 +83,7 @@ inline void set_contact_jacobians(ConstraintProblem& p, const TwoToolRows& rows,
   }
 }
 
-/// Three normals in one direction, and the two tangents of their mean.
+/// Sets Jacobians of patches: three normals in one direction, and the two tangents of their mean.
 inline void set_patch_jacobians(ConstraintProblem& p, const TwoToolRows& rows, Random& random) {
   for (int c = 0; c < rows.patches; ++c) {
     const int hand = c % 2, row = rows.first_of_patch(c);
@@ -102,7 +102,7 @@ inline void set_patch_jacobians(ConstraintProblem& p, const TwoToolRows& rows, R
   }
 }
 
-/// Contacts and patches begin half a millimetre deeper than the rest.
+/// Adds the blocks. The gaps of contacts and patches are half a millimetre smaller than those of other rows.
 inline void add_two_tool_blocks(ConstraintProblem& p, const TwoToolRows& rows) {
   const auto add = [&](std::uint64_t id, int row) -> Block& {
     Block& b = p.blocks.emplace_back();
@@ -134,9 +134,9 @@ inline void add_two_tool_blocks(ConstraintProblem& p, const TwoToolRows& rows) {
   }
 }
 
-/// Two tools, each with a virtual coupling of 300 N/m and 0.3 N m/rad and a rigid-body compliance, in `contacts`
-/// frictional contacts, `strands` compliant rows and `patches` of three contacts that share a friction force, with soft
-/// bodies behind. W = H C H^T (tools) + a soft part, so it is what an engine would build.
+/// Two tools, each with a virtual coupling of 300 N/m and 0.3 N m/rad and a rigid-body compliance. They have `contacts`
+/// frictional contacts, `strands` compliant rows and `patches` of three contacts with a common friction force, on soft
+/// bodies. W = H C H^T (tools) + a soft part, as an engine builds it.
 inline ConstraintProblem two_tool_problem(int contacts, int strands, std::uint64_t seed = 1, int patches = 0) {
   Random random(seed);
   ConstraintProblem p;

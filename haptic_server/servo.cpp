@@ -116,7 +116,7 @@ void Servo::place_devices(const ServoInput& input, TickHands& hands) noexcept {
     hands.in_range[t] = finite(d) && d.head<3>().norm() <= settings_.max_displacement_m &&
                         d.tail<3>().norm() <= settings_.max_rotation_rad;
     if (!hands.in_range[t]) {
-      hands.device[t] = tool.device;  // the other hand goes on
+      hands.device[t] = tool.device;  // the other hand continues
       continue;
     }
     hands.moved[t] = d;
@@ -162,7 +162,7 @@ void Servo::find_forces(const ServoInput& input, const TickHands& hands, ServoRe
   }
 }
 
-// A solution that is not finite must not poison the warm starts to come.
+// A solution that is not finite must not be used for warm starts.
 void Servo::drop_solution_that_is_not_finite(ServoResult& result) noexcept {
   bool good = true;
   for (int i = 0; i < problem_->rows; ++i) good = good && std::isfinite(workspace_.lambda[std::size_t(i)]);
@@ -177,7 +177,7 @@ ServoResult Servo::tick(const ServoInput& input) noexcept {
   result.rows = problem_->rows;
   TickHands hands;
   place_devices(input, hands);
-  // Without rows a tool that carries something still moves.
+  // Without rows, a grasping tool still moves.
   if (problem_->rows > 0 || settings_.substep.any()) result.stats = solve_tick(input, hands);
   result.solved = true;
   find_forces(input, hands, result);

@@ -103,10 +103,10 @@ class Servo {
     int row;
     LawKind law;
   };
-  /// The devices at a tick, tool by tool.
+  /// Poses of the devices at a tick, tool by tool.
   struct TickHands {
-    std::array<Vec6, 2> moved{Vec6::Zero(), Vec6::Zero()};  ///< since the problem's poses
-    std::array<Pose, 2> device;                             ///< with the tool's offset applied
+    std::array<Vec6, 2> moved{Vec6::Zero(), Vec6::Zero()};  ///< displacement since the problem's poses
+    std::array<Pose, 2> device;                             ///< poses with the tool's offset applied
     std::array<bool, 2> in_range{true, true};
   };
   void remember_solution() noexcept;

@@ -15,7 +15,7 @@ import sys
 import time
 
 BUDGET_S = 175
-# Folder of the changed file, and the program that holds its tests. The test files lie in the same folder.
+# Folder of the changed file, and the program that contains its tests. The test files lie in the same folder.
 PROGRAMS = (
     ("core/", "core_tests"),
     ("plugins/", "plugin_tests"),
@@ -65,7 +65,7 @@ def suites(files):
 
 
 def test_files(source, path, top):
-    """The test files that are nearest to a changed file: itself, its namesakes, all of its folder, else of the folder
+    """The test files of a changed file: itself, files of the same name, those of its folder, or else of the next folder
     above, up to the folder `top`."""
     file = source / path
     if file.name.endswith("_test.cpp"):
@@ -82,7 +82,7 @@ def test_files(source, path, top):
 
 
 def home_of(path):
-    """(folder, program) that a changed file belongs to; (None, None) if there is no program of tests for it."""
+    """(folder, test program) of a changed file; (None, None) if there is no test program for it."""
     for folder, program in PROGRAMS:
         if path.startswith(folder):
             return folder, program
@@ -162,7 +162,7 @@ class Outcome:
         self.failed, self.left_out = [], []
 
     def take(self, what, status, good=(0,)):
-        """Notes the exit status of a check; None: there was no time for it."""
+        """Records the exit status of a check; None: there was no time for it."""
         if status is None:
             self.left_out.append(what + " (no time left)")
         elif status not in good:
@@ -197,7 +197,7 @@ def tidy(clock, source, build, files, outcome):
 def report(outcome, rest, seconds):
     if rest:
         more = " and %d more" % (len(rest) - 12) if len(rest) > 12 else ""
-        say("no unit test belongs to: " + " ".join(rest[:12]) + more)
+        say("no unit test exists for: " + " ".join(rest[:12]) + more)
     for what in outcome.left_out:
         say("left out: " + what)
     if outcome.failed:

@@ -31,7 +31,7 @@ struct Eigen2 {
   }
 };
 
-/// A contact with its normal eliminated, in the eigenbasis of the Schur complement S: each lambda_t(s) is two
+/// A contact with its normal eliminated, in the eigenbasis of the Schur complement S. There, each lambda_t(s) costs two
 /// divisions.
 class SlidingContact {
  public:
@@ -53,7 +53,7 @@ class SlidingContact {
     excess(0);
     return size_ <= mu_ * n_;
   }
-  /// Finds the s that puts the force on the cone: a bracket, then Newton within it.
+  /// Finds the s that puts the force on the cone, by Newton's method within a bracket.
   void slide() {
     double low = 0, high = e1_;  // excess(low) > 0
     for (int k = 0; k < 60 && excess(high) > 0; ++k) {
@@ -88,7 +88,7 @@ class SlidingContact {
   }
 
  private:
-  /// Sets the force that belongs to s. Returns how far it lies outside of the cone, N.
+  /// Sets the force for s. Returns its distance outside of the cone, N.
   double excess(double s) {
     t1_ = g1_ / (e1_ + s);
     t2_ = g2_ / (e2_ + s);
@@ -98,17 +98,17 @@ class SlidingContact {
   }
 
   double mu_, i_, qn_;
-  double vx_, vy_;                             ///< eigenvector of the larger eigenvalue
+  double vx_, vy_;                             ///< unit eigenvector of the larger eigenvalue
   double e1_, e2_;                             ///< eigenvalues of S
   double g1_, g2_;                             ///< right side of S lambda_t = b, in the eigenbasis
   double m1_, m2_;                             ///< coupling to the normal, in the eigenbasis
   double t1_ = 0, t2_ = 0, n_ = 0, size_ = 0;  ///< tangential force in the eigenbasis, normal force, |t|, N
 };
 
-/// Writes (normal, tangent, tangent) in newtons.
+/// Writes the force as (normal, tangent, tangent), N.
 inline void solve_contact(const LocalContact& c, double mu, double* out) {
   out[0] = out[1] = out[2] = 0;
-  if (c.qn >= 0 || !(c.wnn > 0)) return;  // separates
+  if (c.qn >= 0 || !(c.wnn > 0)) return;  // the contact separates
   if (mu <= 0) {
     out[0] = -c.qn / c.wnn;
     return;

@@ -164,7 +164,7 @@ Json commands_json(const Scene& scene) {
   return out;
 }
 
-/// Title, text, view and force scale: what stands at the top of a bundle.
+/// Writes the top of a bundle: title, text, view and force scale.
 Json head_json(const Simulation& simulation, std::int64_t session) {
   const Exercise* exercise = simulation.exercise();
   Json json;
@@ -180,7 +180,7 @@ Json head_json(const Simulation& simulation, std::int64_t session) {
   return json;
 }
 
-/// Bodies with their surfaces into "bodies", surfaces that never move into "static".
+/// Writes bodies with their surfaces to "bodies", and surfaces that never move to "static".
 void add_bodies(Json& json, const BundleWriter& writer, const Simulation& simulation) {
   const auto bodies = picture_bodies(simulation);
   json["bodies"] = Json::array();
@@ -213,7 +213,7 @@ void add_bodies(Json& json, const BundleWriter& writer, const Simulation& simula
   }
 }
 
-/// Writes beside the file and renames, so that a reader sees all of it or nothing.
+/// Writes a temporary file and renames it, so that a reader sees all of it or nothing.
 void write_whole(const Json& json, const fs::path& whole) {
   const fs::path part = whole.string() + ".part";
   {

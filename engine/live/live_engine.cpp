@@ -136,13 +136,13 @@ fs::path find_motion(const Simulation& simulation, const std::string& wanted) {
 
 namespace {
 
-/// The file of the wanted motion, and what it holds; false where the person named one that is not there.
+/// Finds and reads the file of the wanted motion. False if the file that the person named cannot be read.
 bool load_motion_of(const Simulation& simulation, const std::string& wanted, fs::path& file, Motion& motion) {
   try {
     file = find_motion(simulation, wanted);
     if (!file.empty()) motion = load_motion(file);
   } catch (const InputError& e) {
-    // A scene without the default motion is played by hand.
+    // A scene without the default motion is played by a person.
     if (wanted != "steady") {
       std::fprintf(stderr, "error: %s\n", e.what());
       return false;
@@ -151,14 +151,14 @@ bool load_motion_of(const Simulation& simulation, const std::string& wanted, fs:
   return true;
 }
 
-/// Keeps the loop at the pace of simulated time.
+/// Keeps the loop in step with simulated time.
 class Pace {
  public:
   using Clock = std::chrono::steady_clock;
   explicit Pace(double period_s)
       : period_(std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(period_s))) {}
 
-  /// Takes messages until the next step is due. Far behind, time is dropped and not caught up.
+  /// Takes messages until the next step is due. If the loop is far behind, time is dropped and not made up for.
   void wait(Bus& bus) {
     next_ += period_;
     const auto now = Clock::now();
@@ -181,7 +181,7 @@ class Pace {
   std::int64_t dropped_ = 0;
 };
 
-/// One session: the simulation, what comes in and what goes out.
+/// One session: the simulation, its inputs and its outputs.
 class LiveSession {
  public:
   LiveSession(Simulation& simulation, const LiveOptions& options, Bus& bus, const Motion& script, Publisher& publisher,
@@ -218,7 +218,7 @@ class LiveSession {
   void take_requests() {
     if (inputs_.reset) {
       inputs_.reset = false;
-      inputs_.driven = false;  // the haptic server gives the hands back to the motion
+      inputs_.driven = false;  // the haptic server returned the hands to the motion
       reports_.end_run(simulation_);
       start_again();
       spdlog::info("reset");
@@ -231,14 +231,14 @@ class LiveSession {
   }
 
   void stand_still() {
-    const std::vector<Event> announced = simulation_.take_announced();  // no step will
+    const std::vector<Event> announced = simulation_.take_announced();  // no step will publish them
     publisher_.events(announced);
     reports_.note(announced);
     publisher_.paused_frame(simulation_);
     publisher_.info("paused", notice_.text());
   }
 
-  /// False if the simulation left the range of numbers; it has started again then.
+  /// False if a value of the simulation became non-finite. The simulation has then started again.
   bool step() {
     const std::int64_t posed = inputs_.apply(simulation_);
     const bool follows = inputs_.follows(script_);

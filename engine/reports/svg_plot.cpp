@@ -122,7 +122,7 @@ Axis x_axis(const Plot& plot) {
   return x;
 }
 
-/// Title, grid, axes with their numbers and labels.
+/// Draws the title, the grid, and the axes with their numbers and labels.
 void add_frame(std::string& out, const Plot& plot, const Axis& x, const Axis& y) {
   text(out, left, 18, "start", "font-size=\"13\" font-weight=\"bold\"", plot.title);
   for (double v : ticks_of(y, 5)) {

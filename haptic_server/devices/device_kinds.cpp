@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The tables of kinds. A new driver is one entry in one of them.
+// The tables of kinds. A new driver needs one entry in one of them.
 #include "haptic_server/devices/device_kinds.h"
 
 #include "haptic_server/devices/find_devices.h"
@@ -48,7 +48,7 @@ std::vector<DeviceKind> simulated_kinds() {
   };
 }
 
-/// Arms that give forces to the hand.
+/// Arms that apply forces to the hand.
 std::vector<DeviceKind> force_kinds() {
   return {
       {.name = "touch",
@@ -78,7 +78,7 @@ std::vector<DeviceKind> force_kinds() {
   };
 }
 
-/// Devices that only move a simulated arm.
+/// Devices without force output. They only move a simulated arm.
 std::vector<DeviceKind> input_kinds() {
   return {
       {.name = "spacemouse",

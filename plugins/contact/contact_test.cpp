@@ -129,7 +129,7 @@ TEST(Contact, AFastToolNeverEndsInsideAPlate) {
   }
 }
 
-/// Nodes and tools of all bodies as they stand at the start of a step, body by body.
+/// Nodes and tool poses of all bodies at the start of a step, body by body.
 struct StartOfStep {
   std::vector<VecX> q;
   std::vector<Pose> pose;
@@ -143,10 +143,10 @@ struct StartOfStep {
   }
 };
 
-/// What the three rows of a contact do to all bodies together.
+/// Sum of the forces and moments that the three rows of a contact apply to all bodies.
 struct Balance {
   Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
-  double size = 0;  ///< of the forces, all added up, N
+  double size = 0;  ///< sum of the sizes of all forces, N
 };
 
 void add_entry(Balance& to, const StartOfStep& start, std::size_t body, int at, const Vec3& f) {
@@ -175,8 +175,9 @@ Balance balance_of(const Simulation& s, const StartOfStep& start, int row) {
   return out;
 }
 
-/// Both sides act at one place, that of the contact's moment: apart at the start by what lies between (and, for tissue,
-/// by the gap, along which the normal force has no arm).
+/// Vector between the points on which the two sides of a contact act. At the time of the contact both act at one point.
+/// At the start of the step, the motion until then separates them. Tissue points are also separated by the gap, but the
+/// normal force along it has no moment.
 Vec3 arm_between_sides(const Contact::Pair& pair, const Proximity& x, const StartOfStep& start) {
   if (!pair.tool_a) return x.gap * x.normal;
   if (pair.tool_b) return Vec3::Zero();

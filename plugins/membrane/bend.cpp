@@ -30,7 +30,7 @@ Mat3 root_of_stiffness(const StretchTriangles::Material& m, const Eigen::Matrix<
 
 }  // namespace
 
-// The patches of the wall's triangles, and the hinges that they use.
+// Builds the patches of the wall's triangles, and lists the hinges that they use.
 class BendPatches::Maker {
  public:
   Maker(BendPatches& to, const WallTopology& wall, const std::vector<Vec3>& rest)
@@ -62,7 +62,7 @@ class BendPatches::Maker {
   }
 
  private:
-  /// What the slope across hinge h gives to the curvature of a patch on its first or second side.
+  /// Adds the contribution of the slope across hinge h to the curvature of a patch on its first or second side.
   void add_slope(Patch& p, double (*curvature)[3], int h, bool first, const Vec3& bend) {
     SlopeWeights& s = slopes_[std::size_t(h)];
     if (s.count == 0) s = slope_weights(wall_, rest_, h);
@@ -97,7 +97,7 @@ class BendPatches::Maker {
   const WallTopology& wall_;
   const std::vector<Vec3>& rest_;
   std::vector<SlopeWeights> slopes_;
-  std::vector<int> number_;  ///< of the hinges that patches here use
+  std::vector<int> number_;  ///< index in hinges_ of each hinge of the wall, -1: not used
 };
 
 void BendPatches::find_step_stiffness() {

@@ -53,7 +53,7 @@ class BendPatches {
     int node[max_nodes];                 // in the order of the matrix once bound
     int first_slot = 0;                  // of its blocks (0,0) (1,0) (1,1) ...
   };
-  class Maker;  // of patches
+  class Maker;  // builds the patches
   void find_step_stiffness();
   void make_batches(const std::vector<Vec3>& rest);
   void residual(const Patch& p, const std::vector<double>& angle, double r[3]) const;

@@ -60,7 +60,7 @@ void StrandSprings::settled(PrepareContext& context) {
 
 namespace {
 
-/// Which vertices of two surfaces a strand may join.
+/// The pairs of vertices of two surfaces that a strand may join.
 class StrandPartners {
  public:
   StrandPartners(const TriMesh& from, const TriMesh& to, bool within, double max_length)
@@ -73,7 +73,7 @@ class StrandPartners {
         nearest_(to.vertices, max_length),
         paths_(from) {}
 
-  /// Partners that a strand from vertex v may have: facing, in reach, not much farther than the nearest.
+  /// Possible partners for a strand from vertex v: facing, in reach, not much farther than the nearest.
   std::vector<int> of(int v) {
     const Vec3& p = mesh_.vertices[std::size_t(v)];
     nearest_.within(p, max_length_, found_);
@@ -108,9 +108,9 @@ class StrandPartners {
   std::vector<int> found_;
 };
 
-/// The area that faces the other surface within reach, triangle by triangle.
+/// The area that faces the other surface within reach, summed triangle by triangle.
 struct FacingArea {
-  std::vector<double> until;  ///< the area of the triangles so far, m2
+  std::vector<double> until;  ///< area of the triangles up to and including this one, m2
   std::vector<int> triangle;
   double total() const { return until.empty() ? 0 : until.back(); }
   int triangle_at(double area) const {

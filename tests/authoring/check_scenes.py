@@ -24,7 +24,7 @@ BAD = {
 
 
 def check_each(insula, scenes):
-    """Each scene is clean and quick to check; the number of failures."""
+    """Checks that each scene has no diagnostics and takes little time. Returns the number of failures."""
     failures, slowest = 0, (0.0, "")
     for scene in scenes:
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -43,13 +43,13 @@ def check_each(insula, scenes):
 
 
 def refused(xsd, *files):
-    """What the schema says against the files; empty: nothing."""
+    """Validates the files with the schema. Returns the schema's errors, or an empty text."""
     done = subprocess.run(["xmllint", "--noout", "--schema", xsd, *files], capture_output=True, text=True, timeout=120)
     return "" if done.returncode == 0 else done.stderr or "status %d" % done.returncode
 
 
 def explanations(xsd, scenes):
-    """Each parameter and element that an editor offers says what it is."""
+    """Checks that each parameter and element that an editor offers has an explanation."""
     text = xsd.read_text(encoding="utf-8")
     attribute = r'<xs:attribute name="(?!id|file|prefix|name|value|title)'
     named = len(re.findall(attribute, text))
@@ -63,7 +63,7 @@ def explanations(xsd, scenes):
 
 
 def check_schema(insula, scenes, folder):
-    """The schema takes the scenes and refuses what is wrong; the texts of the failures."""
+    """Checks that the schema accepts the scenes and rejects wrong ones. Returns the texts of the failures."""
     xsd = folder / "insula.xsd"
     subprocess.run([insula, "schema", xsd], check=True, capture_output=True)
     failures = [why] if (why := refused(xsd, *scenes)) else []
@@ -71,12 +71,12 @@ def check_schema(insula, scenes, folder):
         file = folder / "bad.xml"
         file.write_text(text, encoding="utf-8")
         if not refused(xsd, file) or subprocess.run([insula, "check", file], capture_output=True).returncode != 2:
-            failures.append("%s is not refused by both" % what)
+            failures.append("%s is not rejected by both" % what)
     failures += explanations(xsd, scenes)
     model = folder / "with_model.xml"
     model.write_text('<?xml version="1.0"?>\n<?xml-model href="insula.xsd"?>\n<scene title="x"/>\n', encoding="utf-8")
     if subprocess.run([insula, "check", model], capture_output=True).returncode != 0:
-        failures.append("the line that ties a scene to the schema is an error")
+        failures.append("the line that links a scene to the schema is an error")
     return failures
 
 

@@ -91,7 +91,7 @@ TEST_F(ServerWithDevices, ADriverThatTellsNonsenseIsLostAlone) {
   EXPECT_TRUE(rig.server->reading(0).connected);
 }
 
-/// The real program as a process of its own, with an engine's problems and scenes sent to it over the bus.
+/// The real program in its own process. It gets an engine's problems and scenes over the bus.
 class ProgramOnTheBus {
  public:
   ProgramOnTheBus(const std::string& url, const char* left, const char* right)
@@ -102,7 +102,7 @@ class ProgramOnTheBus {
       engine_.state_seen = decode(b, engine_.state, why) || engine_.state_seen;
     });
   }
-  /// Sends steps until the condition holds; false if it never did.
+  /// Sends steps until the condition holds. False if it does not hold in time.
   bool until(const std::function<bool()>& condition) {
     const auto step_and_look = [&] {
       send_step();
@@ -112,7 +112,7 @@ class ProgramOnTheBus {
     };
     return testing::wait_for(step_and_look, std::chrono::seconds(60));
   }
-  /// Asks it to end; its exit status, -1 if it did not end by itself.
+  /// Asks the program to end. Returns its exit status, or -1 if it did not end by itself.
   int end() {
     ::kill(server_, SIGTERM);
     int status = -1;
@@ -146,7 +146,7 @@ class ProgramOnTheBus {
   }
 
   pid_t server_;
-  testing::Rig engine_;  ///< only its problems are used
+  testing::Rig engine_;  ///< source of the problems
   LcmBus bus_;
   std::mutex mutex_;
   int step_ = 0;

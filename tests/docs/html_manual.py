@@ -17,7 +17,7 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools/manual"))
 from build import ELEMENTS, SECTIONS  # noqa: E402
 
-# Page, words that a person looks for there, and the page that must be among the first that are found.
+# Page on which the search starts, words of the search, and the page that must be among the first results.
 SEARCHES = (
     ("index.html", "rayleigh_stiffness", "reference/corotational_fem.html"),
     ("index.html", "warm start", "one-step.html"),
@@ -28,7 +28,7 @@ SEARCHES = (
 
 
 def make_site(source, insula, out):
-    """Builds the site into `out`; what went wrong, or empty."""
+    """Builds the site into `out`. Returns the error text, or an empty text."""
     reference, site = out / "reference", out / "html"
     shutil.rmtree(out, ignore_errors=True)
     out.mkdir(parents=True)
@@ -39,7 +39,7 @@ def make_site(source, insula, out):
 
 
 def missing_parts(source, site):
-    """What is not in the site, in words."""
+    """Texts of the parts that the site lacks."""
     front = (site / "index.html").read_text(encoding="utf-8")
     for name in SECTIONS + (ELEMENTS,):
         if not re.search(r">\s*%s\s*<" % name, front):
@@ -47,13 +47,13 @@ def missing_parts(source, site):
     for page in (source / "docs").glob("*.md"):
         if not (site / ("index.html" if page.name == "README.md" else page.stem + ".html")).exists():
             yield page.name + " is not in the site"
-    # Tables and lists came out as such.
+    # Tables must be HTML tables.
     if "<table>" not in (site / "exercises.html").read_text(encoding="utf-8"):
         yield "exercises.html has no table"
 
 
 def links_of(site):
-    """(page, address, file) of each link within the site."""
+    """Yields (page, address, file) for each link within the site."""
     for page in site.rglob("*.html"):
         if page.name == "404.html":  # its addresses begin at a server's root
             continue
@@ -64,7 +64,7 @@ def links_of(site):
 
 
 def search(chromium, site, page, words):
-    """The first pages that a person finds who opened the site from its folder, without a web server."""
+    """The first results of a search in a site that is opened from its folder, without a web server."""
     address = (site / page).as_uri() + "?q=" + urllib.parse.quote(words)
     with tempfile.TemporaryDirectory() as profile:
         command = [chromium, "--headless", "--no-sandbox", "--disable-gpu", "--user-data-dir=" + profile]
@@ -75,10 +75,10 @@ def search(chromium, site, page, words):
 
 
 def failed_searches(site):
-    """Searches that do not find what they must, in words; from a page of a folder in the site, too."""
+    """Texts of the searches that fail. One search starts from a page in a subfolder of the site."""
     chromium = os.environ.get("CHROMIUM", "/usr/bin/chromium")
     if not os.path.exists(chromium):
-        print("no Chromium here: nothing is searched")
+        print("Chromium is not installed: searches are skipped")
         return
     for page, words, wanted in SEARCHES:
         def whole(path):
@@ -105,14 +105,14 @@ def main():
     index = (site / "search/index.js").read_text(encoding="utf-8")
     places = len(json.loads(index[index.index("{") : index.rindex("}") + 1])["docs"])
     if places <= 300:
-        failures.append("only %d places can be searched" % places)
+        failures.append("only %d entries can be searched" % places)
     failures += failed_searches(site)
     if len(links) <= 1000:
-        failures.append("only %d links were found; is the site read rightly?" % len(links))
+        failures.append("only %d links were found; the site may be read wrongly" % len(links))
     for failure in failures:
         print("FAILED: " + failure)
     pages = len(list(site.rglob("*.html")))
-    print("%d pages, %d links, %d places to search; %d failures" % (pages, len(links), places, len(failures)))
+    print("%d pages, %d links, %d entries to search; %d failures" % (pages, len(links), places, len(failures)))
     return 1 if failures else 0
 
 

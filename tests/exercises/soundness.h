@@ -84,7 +84,8 @@ inline ElementState look_at_elements(const Simulation& s) {
 
 inline bool all_finite(const Simulation& s) {
   std::vector<double> state;
-  for (const Body* b : s.bodies()) b->append_state(state);
+  for (const Body* b : s.bodies())
+    if (const auto* moving = dynamic_cast<const DynamicBody*>(b)) moving->append_state(state);
   for (double d : state)
     if (!std::isfinite(d)) return false;
   return true;

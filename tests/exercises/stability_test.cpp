@@ -68,10 +68,10 @@ TEST_P(Stability, LeftAloneNothingMoves) {
   EXPECT_LT(o.tool.value, max_depth) << o.tool.whose;
 }
 
-/// What is unsound after one random motion; empty: nothing.
+/// Description of the faults after one random motion; empty if there are none.
 std::string fault_of(const Soak& o) {
   std::string why;
-  if (!o.finite) why += " a number that is none;";
+  if (!o.finite) why += " a number that is not finite;";
   if (o.rest.inverted > 0)
     why += " " + std::to_string(o.rest.inverted) + " inverted, first at " + std::to_string(o.first_inverted) + " s;";
   if (!(o.rest.volume.value > collapsed))

@@ -66,8 +66,8 @@ inline ArmParameters arm_of(const Person& person) {
 
 constexpr double press_begin = 0.5, press_arrival = 0.3;  ///< s
 
-/// Where the person wants the hand at time t. When the gate has faded forces in: there within a third of a second, at
-/// the speed of a tap.
+/// The pose that the person wants at time t. After the gate has faded forces in, the hand arrives within a third of a
+/// second, at the speed of a tap.
 inline HandGoal goal_at(double t, const Press& press, const Pose& home) {
   constexpr double top = -20.2e-3;
   HandGoal goal;
@@ -83,11 +83,11 @@ inline HandGoal goal_at(double t, const Press& press, const Pose& home) {
   return goal;
 }
 
-/// The engine at its rate: gives the servo its problems, at once or a step late.
+/// The engine at its rate. It gives the servo its problems, immediately or a step late.
 class PressEngine {
  public:
   PressEngine(Simulation& s, const Press& press) : s_(s), press_(press), next_step_(1 / press.engine_Hz) {}
-  /// Whether a problem was made at this time.
+  /// Makes a step if one is due. Returns whether it made a problem.
   bool advance(double t, const Pose& device, Servo& servo) {
     if (t + 1e-9 < next_step_) return false;
     const double h = 1 / press_.engine_Hz;
@@ -110,7 +110,7 @@ class PressEngine {
   std::size_t newest_ = 0;
 };
 
-/// Speeds, heights and force of the first and the last second of contact.
+/// Records speeds, heights and force in the first and in the last second of contact.
 class PressRecord {
  public:
   explicit PressRecord(int ticks) : ticks_(ticks) {}

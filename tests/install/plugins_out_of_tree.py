@@ -29,7 +29,7 @@ def installed_page(prefix):
     """The gateway of the prefix serves the page of the prefix."""
     page = prefix / "share/insula/page/index.html"
     if not page.exists():
-        print("the page is not built: not looked at")
+        print("the page is not built: not checked")
         return
     gateway = subprocess.Popen(
         [prefix / "bin/gateway", "--port", "18700"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
@@ -94,7 +94,7 @@ def step_data_of_the_suture(insula, folder, library):
 
 
 def write_plugins(source, insula, folder):
-    """A plugin of each kind, and those of the tutorials; their names."""
+    """Writes a plugin of each kind and those of the tutorials. Returns their names."""
     names = []
     for kind in KINDS:
         names.append("my_%s_1" % kind)
@@ -115,7 +115,7 @@ def refused_names(insula, folder, existing):
 
 
 def build_and_test(cmake, prefix, folder, names):
-    """Builds all plugins as one project and runs their tests; the build folder."""
+    """Builds all plugins as one project and runs their tests. Returns the build folder."""
     (folder / "CMakeLists.txt").write_text(
         "cmake_minimum_required(VERSION 3.25)\nproject(all_plugins LANGUAGES CXX)\nenable_testing()\n"
         + "".join("add_subdirectory(%s)\n" % n for n in names)
@@ -136,10 +136,10 @@ def build_and_test(cmake, prefix, folder, names):
 
 
 def stale_library(insula, prefix, file):
-    """A library of other headers is refused: the same one with another hash in it."""
+    """Checks that a library with another hash of the headers is rejected."""
     library = (prefix / "lib/insula/plugins/pia_membrane.so").read_bytes()
     stale = re.sub(rb"insula headers [0-9a-f]{12}", b"insula headers 000000000000", library)
-    that(stale != library, "the library does not carry the hash of the headers")
+    that(stale != library, "the library does not contain the hash of the headers")
     file.write_bytes(stale)
     said = run(insula, "--plugin-path", file, "list", status=2)
     that("was built for another Insula" in said and "build the plugin again" in said, said)

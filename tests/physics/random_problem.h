@@ -25,13 +25,13 @@ inline double contact_error(const Vec3& delta, const Vec3& lambda, double mu, do
   error = std::max(error, std::min(std::abs(delta[0]) / length, std::abs(lambda[0]) / force));
   const Eigen::Vector2d slip = delta.tail<2>(), f = lambda.tail<2>();
   error = std::max(error, (f.norm() - mu * lambda[0]) / force);            // cone
-  if (lambda[0] > 1e-12 * force && slip.norm() > 1e-9 * length && mu > 0)  // slips: on the cone, opposing
+  if (lambda[0] > 1e-12 * force && slip.norm() > 1e-9 * length && mu > 0)  // slips: on the cone, opposite to the slip
     error = std::max({error, std::abs(f.norm() - mu * lambda[0]) / force,
                       (f + mu * lambda[0] * slip / slip.norm()).norm() / force * std::min(1.0, slip.norm() / length)});
   return error;
 }
 
-/// The blocks of a random problem, one after the other.
+/// Makes the blocks of a random problem, one after the other.
 class RandomBlocks {
  public:
   RandomBlocks(Random& random, double friction) : random_(random), friction_(friction) {}
@@ -59,10 +59,10 @@ class RandomBlocks {
 
   int rows = 0;
   std::vector<Block> blocks;
-  std::vector<int> with;  ///< the block whose bodies it shares
+  std::vector<int> with;  ///< of each block: the block whose bodies it shares
 
  private:
-  /// Contacts that share a friction force; returns its block.
+  /// Adds contacts that share a friction force. Returns the block of this force.
   Block patch(int self) {
     const int normals = 1 + int(random_.below(4));
     Block contact;
@@ -87,7 +87,7 @@ class RandomBlocks {
   double friction_;
 };
 
-/// Each row acts on two of the bodies: sparse coupling as in a scene.
+/// Random Jacobian in which each row acts on two of the bodies, so the coupling is sparse as in a scene.
 inline MatX random_jacobian(Random& random, const RandomBlocks& made) {
   const int bodies = 3 + int(random.below(4)), dof = 6;
   MatX h = MatX::Zero(made.rows, bodies * dof);
@@ -107,7 +107,7 @@ inline MatX random_jacobian(Random& random, const RandomBlocks& made) {
 }
 
 /// Contacts, patches, fibres, holds and links among a few bodies of several degrees of freedom: W = H A^-1 H^T plus a
-/// little on the diagonal, so that the solution is one.
+/// small diagonal, so that the solution is unique.
 inline ConstraintProblem random_problem(Random& random, double friction) {
   ConstraintProblem p;
   const int blocks = 2 + int(random.below(9));

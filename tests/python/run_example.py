@@ -91,7 +91,7 @@ def free_bus():
 
 
 def make_scene(source, insula, folder):
-    """The scene with what it needs; whether it has clips."""
+    """Writes the scene with its files. Returns whether it has clips."""
     tools = ["instruments/" + t for t in ("retractor", "dissector", "clip_applier")]
     for part in ["examples", "clips/straight"] + tools:
         if (source / "meshes" / part).is_dir():
@@ -103,7 +103,7 @@ def make_scene(source, insula, folder):
 
 
 class Programs:
-    """Engine and haptic server in a folder; as a context they end with it."""
+    """Engine and haptic server that run in a folder. As a context manager, it ends both."""
 
     def __init__(self, build, folder, env):
         self.logs = [open(folder / n, "w+") for n in ("engine.log", "server.log")]
@@ -148,7 +148,7 @@ def expected_of_the_example(clips):
     return expected
 
 
-# More arguments of spy.py, and what it prints with them.
+# Additional arguments of spy.py, and patterns of its output with them.
 SPIED = (
     ([], [r"^%s +[1-9]\d* +\d+\.\d$" % c for c in ("DEVICE_STATE", "HAPTIC_PROBLEM", "RENDER_FRAME")]),
     (

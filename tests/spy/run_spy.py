@@ -21,22 +21,22 @@ NEEDED = ("java", "javac", "jar", "lcm-gen", "Xvfb")
 WATCHED_S = 4
 
 
-def skip_where_something_is_missing():
+def skip_if_a_program_is_missing():
     missing = [p for p in NEEDED if not shutil.which(p)] + [
         j for j in ("lcm", "jchart2d") if not pathlib.Path(f"/usr/share/java/{j}.jar").exists()
     ]
     if missing or not bus.works():
-        print("skipped:", ", ".join(missing) + " not here" if missing else "no multicast")
+        print("skipped:", ", ".join(missing) + " not installed" if missing else "no multicast")
         sys.exit(SKIPPED)
 
 
 def open_screen():
-    """A screen of its own; its process and its name."""
+    """Starts a virtual screen. Returns its process and its name."""
     read, write = os.pipe()
     screen = subprocess.Popen(
         ["Xvfb", "-displayfd", str(write), "-screen", "0", "800x600x24"], pass_fds=[write], stderr=subprocess.DEVNULL
     )
-    os.close(write)  # or nothing would ever be read of a screen that does not open
+    os.close(write)  # otherwise the read below would wait forever if the screen does not open
     return screen, ":" + os.read(read, 16).decode().strip()
 
 
@@ -46,9 +46,9 @@ def text_of(log):
 
 
 def watch(spy, log):
-    """Waits for the window and a little longer; whether the spy still runs, and what it said."""
+    """Waits for the window and a little longer. Returns whether the spy still runs, and its output."""
     end = time.monotonic() + 60
-    # The plugins are the last that it tells before its window.
+    # The spy lists the plugins last, just before its window opens.
     while time.monotonic() < end and spy.poll() is None and "plugins" not in text_of(log):
         time.sleep(0.2)
     time.sleep(WATCHED_S)
@@ -57,7 +57,7 @@ def watch(spy, log):
 
 def main():
     source, build = (pathlib.Path(a).resolve() for a in sys.argv[1:3])
-    skip_where_something_is_missing()
+    skip_if_a_program_is_missing()
     written = {
         name
         for f in (source / "lcm_types").glob("*.lcm")

@@ -38,7 +38,7 @@ class Functions(unittest.TestCase):
         self.assertFalse([f for f in found if f[0] in ("if", "f", "two")])
 
     def long_ones(self, comment, ending=".cpp"):
-        """The functions over the limit in a source with one function of 72 lines below this comment."""
+        """The functions over the limit in a source with this comment above one function of 72 lines."""
         body = "".join("  step();\n" for _ in range(70))
         text = comment + ("def much():\n" + body + "\n" if ending == ".py" else "void much() {\n" + body + "}\n")
         with tempfile.NamedTemporaryFile("w", suffix=ending) as file:

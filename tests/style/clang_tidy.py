@@ -20,9 +20,9 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 from sources import tracked  # noqa: E402
 
 ROOMS = ("core/", "engine/", "haptic_server/", "platform/", "plugins/", "viewer/gateway/")
-# Sources for instruction sets and types of GCC that clang does not know, and headers that only they include.
+# Sources for instruction sets and types of GCC that clang does not support, and headers that only they include.
 NOT_FOR_CLANG = ("core/linalg/fp16_kernels_impl.cpp", "core/linalg/instruction_set.cpp")
-# What one command for all headers takes from the commands of the sources.
+# Flags that the one command for all headers takes from the commands of the sources.
 FLAGS_WITH_VALUE = ("-I", "-isystem", "-D")
 
 
@@ -54,7 +54,7 @@ def by_source(entries):
 
 
 def shared_flags(entries):
-    """Folders of headers and definitions of all commands, each once."""
+    """The header folders and the definitions of all commands, without duplicates."""
     out = []
     for entry in entries:
         words = command_without_precompiled(entry)
@@ -68,7 +68,7 @@ def shared_flags(entries):
 
 
 def file_of_headers(source, folder, entries):
-    """Writes the file that includes all headers; its entry of compile_commands.json."""
+    """Writes the file that includes all headers. Returns its entry for compile_commands.json."""
     headers = [p.relative_to(source).as_posix() for p in tracked(source, ".h")]
     headers = [h for h in headers if h.startswith(ROOMS) and not h.endswith(("_for_test.h", "_impl.h"))]
     headers = [h for h in headers if not h.startswith("core/testing/")]
@@ -79,7 +79,7 @@ def file_of_headers(source, folder, entries):
 
 
 def chosen(how, known):
-    """The files to look at, by what the command line says."""
+    """The files to check, as the command line selects them."""
     if how == ["--all"]:
         return sorted(known)
     return [f for f in how if f in known]
@@ -112,7 +112,7 @@ def main():
     for entry in entries:
         command = [tool, "--quiet", "--warnings-as-errors=*", "-p", folder, entry["file"]]
         done = subprocess.run(command, capture_output=True, text=True)
-        print("%s: %s" % (entry["file"], "well" if done.returncode == 0 else "\n" + done.stdout), flush=True)
+        print("%s: %s" % (entry["file"], "passed" if done.returncode == 0 else "\n" + done.stdout), flush=True)
         wrong += done.returncode != 0
     return 1 if wrong else 0
 

@@ -60,7 +60,7 @@ def function_name(head):
 
 
 def functions(text):
-    """(name, first line, last line) of each function of a C++ source, lambdas within counted to it."""
+    """(name, first line, last line) of each function of a C++ source, with the lambdas in it."""
     code = code_only(text)
     line_of, line = [], 1
     for c in code:
@@ -80,7 +80,7 @@ def functions(text):
 
 
 def python_functions(text):
-    """(name, first line, last line) of each function of a Python source, those within it counted to it."""
+    """(name, first line, last line) of each function of a Python source, with the functions in it."""
     out = []
 
     def visit(node):

@@ -80,7 +80,7 @@ TriMesh extract(const std::function<double(const Vec3&)>& value, const Vec3& low
 
 namespace {
 
-/// A surface that is cut at a cap's plane, near the cap.
+/// Cuts a surface at a cap's plane, near the cap.
 class CutSurface {
  public:
   CutSurface(Surface& surface, const CapPlane& cap, double reach)
@@ -104,7 +104,7 @@ class CutSurface {
     if (rim_.empty()) throw std::runtime_error("the plane of " + cap_.name + " meets no vessel");
   }
 
-  /// Closes the rim with a fan about its middle.
+  /// Closes the rim with a fan of triangles around its centre.
   void close() {
     const int label = int(surface_.caps.size());
     Vec3 centre = Vec3::Zero();
@@ -150,18 +150,18 @@ class CutSurface {
     }
     for (std::size_t k = 1; k + 1 < polygon.size(); ++k)
       keep({polygon[0], polygon[k], polygon[k + 1]}, surface_.patch[t]);
-    rim_[rim[1]] = rim[0];  // the wall runs rim[0] -> rim[1]
+    rim_[rim[1]] = rim[0];  // the wall's edge is rim[0] -> rim[1]
   }
 
   Surface& surface_;
   TriMesh& m_;
   const CapPlane& cap_;
-  std::vector<double> over_;  ///< of the vertices: height over the plane
-  std::vector<char> near_;    ///< of the vertices
+  std::vector<double> over_;  ///< signed height of each vertex over the plane
+  std::vector<char> near_;    ///< of each vertex: whether it is near the cap
   std::map<std::pair<int, int>, int> made_;
   std::vector<std::array<int, 3>> kept_;
   std::vector<int> patch_;
-  std::map<int, int> rim_;  ///< its edges, against the wall's direction
+  std::map<int, int> rim_;  ///< edges of the rim, opposite to the wall's direction
 };
 
 }  // namespace

@@ -15,16 +15,16 @@ constexpr double flat_deg = 20;             // what a label volume's smoothed su
 constexpr double min_area_share = 0.003;    // of the whole surface
 constexpr double min_roundness = 0.5;       // 4 pi area / perimeter^2: 1 for a circle, 0.5 for an ellipse of 1 to 3.6
 constexpr double rim_width = 0.35;          // times the cap's radius: within it the surface must have turned away
-constexpr int sectors = 8, min_turned = 7;  // in all directions but one ...
-constexpr double max_cosine = 0.7;          // ... by 45 degrees on average
+constexpr int sectors = 8, min_turned = 7;  // the surface bends away in all sectors but one
+constexpr double max_cosine = 0.7;          // cosine of 45 degrees, the smallest mean angle of a sector
 
-/// A closed surface by triangles: areas, normals, neighbours.
+/// Triangles of a closed surface: areas, normals, neighbours.
 struct Facets {
   const TriMesh& m;
   std::vector<Vec3> normal;
   std::vector<double> area;
-  std::vector<std::array<int, 3>> beside;  ///< across the edge from corner k to the next
-  double whole = 0;                        ///< area
+  std::vector<std::array<int, 3>> beside;  ///< neighbour across the edge from corner k to the next
+  double whole = 0;                        ///< area of the surface
 
   explicit Facets(const TriMesh& mesh)
       : m(mesh), normal(mesh.triangles.size()), area(mesh.triangles.size()), beside(mesh.triangles.size()) {
@@ -50,7 +50,7 @@ struct Facets {
     const auto& tri = m.triangles[t];
     return (m.vertices[std::size_t(tri[0])] + m.vertices[std::size_t(tri[1])] + m.vertices[std::size_t(tri[2])]) / 3;
   }
-  /// All triangles, the flattest places first.
+  /// All triangles, those in the flattest regions first.
   std::vector<std::size_t> flattest_first() const {
     std::vector<std::pair<double, int>> seeds;
     for (std::size_t t = 0; t < count(); ++t) {
@@ -70,7 +70,7 @@ struct FlatCap {
   CapPlane plane;
 };
 
-/// Grows flat patches and tells which of them are caps.
+/// Grows flat patches and decides which of them are caps.
 class CapFinder {
  public:
   explicit CapFinder(const Facets& f) : f_(f), taken_(f.count()), mark_(f.count(), -1), ring_mark_(f.count(), -1) {}
@@ -90,7 +90,7 @@ class CapFinder {
   }
 
  private:
-  /// The triangles that hang together with the seed and face `towards`.
+  /// The triangles that are connected with the seed and face `towards`.
   FlatCap grow(std::size_t seed, const Vec3& towards) {
     FlatCap cap;
     cap.triangles = {int(seed)};
@@ -117,14 +117,15 @@ class CapFinder {
     return std::numbers::pi * cap.plane.radius * cap.plane.radius >= min_area_share * f_.whole;
   }
 
-  /// Adds a triangle to the ring about the cap that was grown last, with the place on the rim it was reached from.
+  /// Adds a triangle to the ring around the cap that was grown last. `from` is the point of the rim from which it was
+  /// reached.
   void reach(std::size_t t, const Vec3& from, double radius) {
     if (mark_[t] == marks_ || ring_mark_[t] == marks_ || (f_.middle(t) - from).norm() > rim_width * radius) return;
     ring_mark_[t] = marks_;
     ring_.emplace_back(int(t), from);
   }
 
-  /// The first triangles of the ring; returns the length of the rim.
+  /// Adds the first triangles of the ring. Returns the length of the rim.
   double begin_ring(const FlatCap& cap) {
     ring_.clear();
     double rim = 0;
@@ -139,7 +140,7 @@ class CapFinder {
     return rim;
   }
 
-  /// Whether the cap that was grown last is round and the surface turns away from it nearly all round.
+  /// Whether the cap that was grown last is round, and the surface bends away from it in nearly all directions.
   bool surface_turns_away(const FlatCap& cap) {
     const double rim = begin_ring(cap);
     double ring_area[sectors] = {}, ring_cosine[sectors] = {};
@@ -161,7 +162,7 @@ class CapFinder {
 
   const Facets& f_;
   std::vector<char> taken_;
-  std::vector<int> mark_, ring_mark_;  ///< of the triangles: the last patch they belong to, or to whose ring
+  std::vector<int> mark_, ring_mark_;  ///< of each triangle: the last patch that has it in the patch or its ring
   int marks_ = 0;
   std::vector<std::pair<int, Vec3>> ring_;
 };

@@ -140,7 +140,7 @@ Paths find_paths(const Surface& surface, const WallPoints& wall, int across_long
   return out;
 }
 
-/// With a finer grid where a coarser one loses a cap.
+/// Finds the paths. If a coarse grid loses a cap, a finer grid is used.
 Paths paths_to_all_caps(const Surface& surface, const WallPoints& wall) {
   Box box;
   for (const Vec3& p : surface.mesh.vertices) box.extend(p);
@@ -161,7 +161,7 @@ Paths paths_to_all_caps(const Surface& surface, const WallPoints& wall) {
   return std::move(*found);
 }
 
-/// The union of the paths, a tree of cells; it is walked from the inlet, fork by fork.
+/// The union of the paths, a tree of cells. It is traversed from the inlet, fork by fork.
 class PathTree {
  public:
   PathTree(const Surface& surface, const WallPoints& wall, const Paths& paths)
@@ -189,7 +189,7 @@ class PathTree {
     int from, next;
     std::string name;
   };
-  /// To the next fork or to an outlet.
+  /// Follows the tree to the next fork or to an outlet.
   NamedCurve walk(const Walk& w, bool first) {
     std::vector<Vec3> points;
     if (w.from == start_) points.push_back(surface_.caps[0].centre);

@@ -139,7 +139,7 @@ Placement brain_motion(const CaseFolder& folder) {
 
 namespace {
 
-/// Surfaces of the three lobes that keep clear of one another.
+/// Makes the surfaces of the three lobes. Throws if two of them intersect.
 std::vector<mesh_tool::TriangleMesh> surfaces_of(const mesh_tool::PartFields& fields) {
   std::vector<mesh_tool::TriangleMesh> surfaces;
   for (std::size_t a = 0; a < 3; ++a)
@@ -152,7 +152,7 @@ std::vector<mesh_tool::TriangleMesh> surfaces_of(const mesh_tool::PartFields& fi
   return surfaces;
 }
 
-/// Writes the lobes' files; returns what there is to say of each.
+/// Writes the lobes' files. Returns the data of each lobe for the report.
 Json write_lobes(const CaseFolder& folder, const std::vector<mesh_tool::TriangleMesh>& surfaces,
                  const std::vector<mesh_tool::TetMesh>& meshes) {
   fs::create_directories(folder.brain());

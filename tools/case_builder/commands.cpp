@@ -27,7 +27,7 @@ struct Line {
   bool on = false;
 };
 
-// Options whose values have a unit; joined_values() puts their words together.
+// Options whose values have a unit. joined_values() joins the words of such a value.
 const std::vector<std::string> with_unit = {"--seed",  "--rebuild", "--cut",  "--neck", "--neck-points",
                                             "--inlet", "--keep",    "--bleb", "--gap",  "--spin",
                                             "--lift",  "--slide",   "--turn", "--unit", "--brain-unit"};

@@ -69,8 +69,8 @@ class Cutter {
     }
     return out;
   }
-  /// Triangles that hang together without those of the ring, from its far side; false when they reach its near side
-  /// too.
+  /// Triangles that are connected with the far side of the ring without its triangles; false if they reach its near
+  /// side too.
   bool far_side(const Ring& ring, std::vector<char>& far) const {
     std::vector<char> in_ring(m_.triangles.size());
     for (const int t : ring.triangles) in_ring[std::size_t(t)] = 1;
@@ -100,14 +100,14 @@ class Cutter {
   std::map<Edge, int> left_;
 };
 
-/// The surface before the plane, with its new rim.
+/// The part of the surface in front of the plane, with its new rim.
 class Remains {
  public:
   Remains(const artery::Surface& s, const Cutter& cutter) : s_(s), cutter_(cutter), to_(s.caps.size(), -1) {
     out.mesh.vertices = s.mesh.vertices;
   }
   artery::Surface out;
-  std::vector<Edge> rim;  ///< against the wall's direction
+  std::vector<Edge> rim;  ///< edges opposite to the wall's direction
 
   void keep(std::size_t t) { add(s_.mesh.triangles[t], s_.patch[t]); }
   void cut(std::size_t t) {
@@ -123,9 +123,9 @@ class Remains {
       (cutter_.beyond(a) ? enters : leaves) = x;
     }
     for (std::size_t k = 1; k + 1 < polygon.size(); ++k) add({polygon[0], polygon[k], polygon[k + 1]}, s_.patch[t]);
-    rim.emplace_back(enters, leaves);  // the wall runs leaves -> enters
+    rim.emplace_back(enters, leaves);  // the wall's edge is leaves -> enters
   }
-  /// Closes the rim with a fan about `centre`; returns its area along n, mm2.
+  /// Closes the rim with a fan of triangles around `centre`. Returns the fan's area along n, mm2.
   double close(const Vec3& centre, const Vec3& n) {
     const int hub = int(out.mesh.vertices.size()), cap = int(out.caps.size());
     out.mesh.vertices.push_back(centre);
@@ -154,7 +154,7 @@ class Remains {
 
   const artery::Surface& s_;
   const Cutter& cutter_;
-  std::vector<int> to_;  ///< new number of each cap, -1: not there yet
+  std::vector<int> to_;  ///< new number of each cap, -1: none yet
   std::map<Edge, int> made_;
 };
 

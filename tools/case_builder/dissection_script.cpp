@@ -34,7 +34,7 @@ void write_exercises(const SceneFacts& f, const CaseFolder& folder) {
 /// Leaves out a kind of strand for which there is no place. False: that was not what is wrong.
 bool leave_out(SceneFacts& f, const std::string& text, std::vector<Note>& notes) {
   for (std::size_t i = 0; i < f.strand_sets.size(); ++i) {
-    // Only messages about a strand element's own place concern a kind: its line is that of the element.
+    // Only messages with the line of a strand element concern its set of strands.
     std::string before = exercise(f, 2);
     before.resize(before.find("id=\"to_" + f.strand_sets[i]));
     const auto line = 1 + std::count(before.begin(), before.end(), '\n');
@@ -47,14 +47,14 @@ bool leave_out(SceneFacts& f, const std::string& text, std::vector<Note>& notes)
   return false;
 }
 
-/// The exercise with strands, loaded, and the hands that can divide them.
+/// The loaded exercise with strands, and the scripted hands that can divide them.
 struct LoadedExercise {
   SimulationResult loaded;
   std::unique_ptr<Surgeon> surgeon;
 };
 
-/// Chooses strands until there are neither too many nor too few and all can be reached. Strands are spun between
-/// surfaces as they lie once settled, so each choice is looked at in the running scene.
+/// Chooses the strands so that their number is suitable and the hands reach all of them. Strands join the surfaces in
+/// their settled state, so each choice is tested in the running scene.
 class StrandChoice {
  public:
   StrandChoice(SceneFacts& f, const CaseFolder& folder, const Registry& registry, std::vector<Note>& notes)
@@ -63,7 +63,7 @@ class StrandChoice {
   LoadedExercise choose() {
     LoadedExercise now;
     for (;;) {
-      if (!load(now) || made_other_number(now)) continue;
+      if (!load(now) || changed_number(now)) continue;
       const int hidden = int(now.surgeon->out_of_reach().size());
       if (hidden == 0 || moved_ == max_steps) {
         tell(int(now.surgeon->strands().size()), hidden);
@@ -74,7 +74,7 @@ class StrandChoice {
   }
 
  private:
-  /// False if a kind of strands was left out, for which there is no place.
+  /// Loads the exercise. False if one set of strands did not fit and was left out.
   bool load(LoadedExercise& to) {
     write_exercises(f_, folder_);
     to.surgeon.reset();
@@ -88,8 +88,8 @@ class StrandChoice {
       throw InputError("the exercise with strands does not load:\n" + text);
     return false;
   }
-  /// Thinned out; and, once, made up for where the move outward has left few.
-  bool made_other_number(const LoadedExercise& now) {
+  /// Reduces the share of strands if there are too many. Increases it once if the move outward has left too few.
+  bool changed_number(const LoadedExercise& now) {
     const int count = int(now.surgeon->strands().size());
     const bool many = count > max_strands && f_.strand_share == 1,
                few = moved_ > 0 && count > 0 && count < max_strands / 2 && f_.strand_share < 1 && !made_up_;
@@ -109,11 +109,11 @@ class StrandChoice {
   const CaseFolder& folder_;
   const Registry& registry_;
   std::vector<Note>& notes_;
-  int moved_ = 0;  ///< outward, steps
+  int moved_ = 0;  ///< number of steps outward
   bool made_up_ = false;
 };
 
-/// Divides the strands with scripted hands and writes their motion. Returns how many are left standing.
+/// Divides the strands with scripted hands and writes their motion. Returns how many strands remain.
 int divide_strands(Surgeon& surgeon, const fs::path& motion, Progress& progress) {
   const int count = int(surgeon.strands().size());
   const int standing = surgeon.divide(pace, [&](const Sweep&, int) {

@@ -161,7 +161,7 @@ std::string labels_there(const mesh_tool::NiftiVolume& v) {
   return out.empty() ? "it holds nothing but 0" : "there are: " + out;
 }
 
-/// A volume, and what counts as vessel in it.
+/// A volume, and the rule which of its voxels belong to the vessel.
 class VesselVolume {
  public:
   VesselVolume(const std::filesystem::path& file, const mesh_tool::NiftiVolume& v, const Options& o)
@@ -181,8 +181,8 @@ class VesselVolume {
   double fine() const { return *std::min_element(voxel_.begin(), voxel_.end()); }
   double coarse() const { return *std::max_element(voxel_.begin(), voxel_.end()); }
 
-  /// Cubes of the finest side over the box of the vessel, a few voxels wider: beyond the volume there is none, so that
-  /// vessels which leave it end flat.
+  /// A grid of cubes with the smallest side of a voxel. It covers the box of the vessel and some voxels more. Nodes
+  /// outside of the volume are not vessel, so vessels that leave the volume end flat.
   Grid grid(std::vector<Note>& notes) const {
     const auto [from, to] = box();
     Grid grid;
@@ -201,7 +201,7 @@ class VesselVolume {
     return grid;
   }
 
-  /// The grid's nodes in the vessel.
+  /// Marks the grid's nodes in the vessel.
   Mask sampled(const Grid& grid) const {
     Mask mask(grid.count(), 0);
     std::size_t n = 0;
@@ -235,7 +235,7 @@ class VesselVolume {
              : fmt::format("say from which grey value on it is vessel, --threshold N; values run from {:g} to {:g}",
                            least_, most_));
   }
-  /// The corners of the vessel's box in the world, three voxels wider.
+  /// Two opposite corners of the vessel's box in world coordinates, with a margin of three voxels.
   std::pair<Vec3, Vec3> box() const {
     int low[3] = {1 << 30, 1 << 30, 1 << 30}, high[3] = {-1, -1, -1};
     for (int k = 0; k < v_.size[2]; ++k)
@@ -265,7 +265,7 @@ class VesselVolume {
   const std::filesystem::path& file_;
   const mesh_tool::NiftiVolume& v_;
   const Options& o_;
-  std::array<double, 3> voxel_{};  ///< sides, mm
+  std::array<double, 3> voxel_{};  ///< sides of a voxel, mm
   float least_ = 1e30f, most_ = -1e30f;
   double level_ = 0;
 };

@@ -130,7 +130,7 @@ void check_inside(artery::Surface& s, const std::string& what, std::vector<Note>
                     what, 2 * thick, extent_of(s.mesh)));
 }
 
-/// A surface of far more triangles than its shape needs is made anew; its ends stay.
+/// Remeshes a surface that has far more triangles than its shape needs. Its ends do not change.
 void thin_out(artery::Surface& s, const std::string& what, const Options& o, std::vector<Note>& notes) {
   if (s.mesh.triangles.size() <= many_triangles) return;
   const std::vector<artery::CapPlane> caps = s.caps;
@@ -155,7 +155,7 @@ void make_cuts(artery::Surface& s, const Options& o) {
   }
 }
 
-/// Ends that were closed flat already. Returns by what the openings were found.
+/// Finds the ends that are already closed flat. Returns how the openings were found, in words.
 const char* add_flat_ends(artery::Surface& s) {
   const artery::Surface found = artery::with_flat_caps(s.mesh);
   if (s.caps.empty()) {
@@ -174,7 +174,7 @@ const char* add_flat_ends(artery::Surface& s) {
   return "borders and cuts";
 }
 
-/// Orders the openings by calibre, from the widest down, and names them so.
+/// Sorts the openings by calibre, the widest first, and names them in this order.
 Json name_openings(artery::Surface& s) {
   std::vector<int> order(s.caps.size()), rank(s.caps.size());
   for (std::size_t c = 0; c < order.size(); ++c) order[c] = int(c);
@@ -196,7 +196,7 @@ Json name_openings(artery::Surface& s) {
   return openings;
 }
 
-/// Handles are refused; a surface that runs through itself is told.
+/// Throws if the surface has handles. Adds a note if the surface intersects itself.
 void check_shape(const artery::Quality& q, const std::string& what, std::vector<Note>& notes) {
   if (q.euler != 2)
     throw InputError(

@@ -189,7 +189,7 @@ std::vector<double> distances(const Solid& own, const Solid& other) {
 }
 
 /// The rigid floor is lowered where the wall intersects it, with a smooth transition.
-double draw_back(Solid& floor, const Solid& wall, double gap) {
+double lower_floor(Solid& floor, const Solid& wall, double gap) {
   const TriMesh m = floor.mesh();
   std::vector<std::vector<int>> next(m.vertices.size());
   for (const auto& t : m.triangles)
@@ -225,18 +225,18 @@ double draw_back(Solid& floor, const Solid& wall, double gap) {
   return most;
 }
 
-/// The insula, drawn back from the wall where it must be.
+/// Lowers the insula where the wall needs clearance.
 Room clear_floor(Solid& floor, TriMesh& insula, const Solid& wall, double gap) {
   Room out{"insula", room(floor, wall) - wall_half, 0, 0};
   if (out.before < gap) {
-    out.moved = draw_back(floor, wall, gap + wall_half);
+    out.moved = lower_floor(floor, wall, gap + wall_half);
     insula = floor.mesh();
   }
   out.after = room(floor, wall) - wall_half;
   return out;
 }
 
-/// The two lobes as they are parted.
+/// The two lobes while they are moved apart.
 class PartedLobes {
  public:
   PartedLobes(Fissure& fissure, const Solid& wall, const Solid& floor, double wanted)
@@ -274,7 +274,7 @@ class PartedLobes {
   }
 
  private:
-  /// What lobe i must keep clear of as it lies now.
+  /// The clearance conditions of lobe i in its present shape.
   std::vector<Condition> conditions(std::size_t i) const {
     std::vector<Condition> out;
     keep_from(lobe_[i], solid_[i], wall_, wanted_, nullptr, out);
@@ -291,7 +291,7 @@ class PartedLobes {
   const Solid &wall_, &floor_;
   double wanted_;
   std::vector<Solid> solid_;
-  std::deque<ElasticLobe> lobe_;  // they cannot be moved
+  std::deque<ElasticLobe> lobe_;  // ElasticLobe is not movable
   std::vector<std::vector<double>> to_floor_, to_other_;
 };
 

@@ -11,7 +11,7 @@
 namespace insula::case_builder {
 namespace {
 
-constexpr double reach = 12;  // mm, of the turns about the neck's place that are looked at
+constexpr double reach = 12;  // mm, around the neck's position: the region in which rotations are tested
 constexpr double limit = 4;   // mm, beyond which distances do not matter
 constexpr double wall_half = 0.15;
 
@@ -31,7 +31,7 @@ struct Turn {
   Vec3 shift = Vec3::Zero();
 };
 
-/// The frame of the vessel's neck and of where the parent leads as it comes to the neck, brought to the shipped one.
+/// Rotation of the frame of the neck's normal and the parent's direction at the neck onto that of the shipped case.
 Mat3 base_rotation(const artery::Vessel& v) {
   const auto& parent = v.centrelines.front().curve;
   std::size_t near = 0;
@@ -43,11 +43,11 @@ Mat3 base_rotation(const artery::Vessel& v) {
   return frame(way_of_sac, way_of_parent) * frame(v.neck->normal, arrives).transpose();
 }
 
-/// What a place costs.
-class PlaceCost {
+/// Cost of a placement of the vessel in the fissure.
+class PlacementCost {
  public:
   const double wanted_spin;  ///< rad
-  PlaceCost(const artery::Vessel& v, const Fissure& fissure, const Options& o)
+  PlacementCost(const artery::Vessel& v, const Fissure& fissure, const Options& o)
       : wanted_spin(o.spin * std::numbers::pi / 180), base_(base_rotation(v)), o_(o) {
     const Vec3 low = place_of_neck - Vec3::Constant(reach + 4), high = place_of_neck + Vec3::Constant(reach + 4);
     const auto add = [&](const TriMesh& mesh, double weight) {
@@ -85,7 +85,7 @@ class PlaceCost {
   Mat3 base_;
   const Options& o_;
   std::vector<Obstacle> obstacles_;
-  std::vector<Vec3> samples_;  ///< vertices of the wall, from the neck
+  std::vector<Vec3> samples_;  ///< vertices of the wall relative to the neck's centre, mm
 };
 
 struct BestTurn {
@@ -93,8 +93,8 @@ struct BestTurn {
   double cost = 1e300;
 };
 
-/// The best of an even choice of turns and shifts.
-BestTurn coarse_search(const PlaceCost& cost, bool keep_spin, Progress& progress) {
+/// The best of a regular set of rotations and shifts.
+BestTurn coarse_search(const PlacementCost& cost, bool keep_spin, Progress& progress) {
   BestTurn best;
   const int spins = keep_spin ? 1 : 24;
   for (int i = 0; i < spins; ++i) {
@@ -111,8 +111,8 @@ BestTurn coarse_search(const PlaceCost& cost, bool keep_spin, Progress& progress
   return best;
 }
 
-/// From there downhill, with ever smaller steps along each coordinate.
-void refine(const PlaceCost& cost, BestTurn& best) {
+/// Descends from `best` with smaller and smaller steps along each coordinate.
+void refine(const PlacementCost& cost, BestTurn& best) {
   for (double step = 1; step > 0.04; step *= 0.5)
     for (bool moved = true; moved;) {
       moved = false;
@@ -135,7 +135,7 @@ Placement find_placement(const artery::Vessel& v, const Fissure& fissure, const 
   if (o.in_place) return {};
   if (!v.neck) throw InputError("a vessel without a neck has no place");
   progress.step("distances in the fissure");
-  const PlaceCost cost(v, fissure, o);
+  const PlacementCost cost(v, fissure, o);
   progress.step("looking for the place");
   BestTurn best = coarse_search(cost, o.keep_spin, progress);
   refine(cost, best);

@@ -286,7 +286,7 @@ std::string fissure_section(const Json& place) {
   return section("In the fissure", s + note_rows(notes_from_json(place.at("notes"))));
 }
 
-/// What running an exercise with still hands shows.
+/// The table row with the measurements of an exercise that ran without motion of the hands.
 std::string measured_rows(const MeasuredScene& m) {
   if (!m.message.empty())
     return row(m.file, m.message, "bad", "Mend the scene, or make the scenes again: insula case scenes FOLDER");

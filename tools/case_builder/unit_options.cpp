@@ -16,7 +16,7 @@ bool is_number_with_unit(std::string_view word) {
   return n > 0 && n < word.size() && is_known_unit(word.substr(n));
 }
 
-/// Numbers and units apart, whether blanks stand between them or not.
+/// Splits a text into numbers and units, with or without blanks between them.
 std::vector<std::string> parts_of(std::string_view text) {
   std::vector<std::string> out;
   while (!(text = trim(text)).empty()) {
@@ -34,7 +34,7 @@ const Unit* length_unit(std::string_view symbol) {
   return nullptr;
 }
 
-/// Takes three numbers, and a unit if they are a position, from the front of the parts. False: they are not there.
+/// Removes three numbers from the front of the parts, and a unit if they are a position. False if they are missing.
 bool take_vector(std::span<const std::string>& parts, bool position, std::vector<double>& out) {
   if (parts.size() < 3) return false;
   std::array<double, 3> v{};
@@ -56,7 +56,7 @@ bool take_vector(std::span<const std::string>& parts, bool position, std::vector
   return true;
 }
 
-/// The text with "mm" behind each position, when it is numbers only, and as many as the shape has; else empty.
+/// The text with "mm" after each position, if it has only numbers and as many as the shape has; else empty.
 std::string with_units(std::span<const std::string> parts, Shape shape) {
   if (parts.size() != number_count(shape) || !std::all_of(parts.begin(), parts.end(), is_number)) return "";
   std::string out;
@@ -113,7 +113,7 @@ std::optional<double> read_file_unit(std::string_view text, std::string& error) 
 
 std::vector<std::string> joined_values(const std::vector<std::string>& words, const std::vector<std::string>& options) {
   std::vector<std::string> out;
-  bool of_option = false, has_value = false;  // behind one of the options, and behind the first word of its value
+  bool of_option = false, has_value = false;  // after one of the options; after the first word of its value
   for (const std::string& word : words) {
     const bool number_or_unit = is_number(word) || is_number_with_unit(word) || is_known_unit(word);
     if (of_option && has_value && number_or_unit) {

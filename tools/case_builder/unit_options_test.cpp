@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Options with units: what is read, and what each error tells to write.
+// Options with units: their values, and the advice of each error message.
 #include "tools/case_builder/unit_options.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ TEST(UnitOptions, PointsAndPlanesAreReadInMillimetres) {
   EXPECT_EQ(read_shape("1 2 3 mm 4 5 6 mm", Shape::two_points, error), Numbers({1, 2, 3, 4, 5, 6}));
 }
 
-TEST(UnitOptions, AShapeWithoutUnitsIsToldWithThem) {
+TEST(UnitOptions, ErrorForAShapeWithoutUnitsShowsTheUnits) {
   const auto error_of = [](const char* text, Shape shape) {
     std::string error;
     EXPECT_FALSE(read_shape(text, shape, error)) << text;

@@ -126,7 +126,7 @@ def part_material(par, part):
 
 
 def build_parts(clip, head, materials):
-    """({file name: (text, triangles)}, lines of the links, mass in kg) of a clip's parts."""
+    """Makes the parts of a clip: ({file name: (text, triangles)}, lines of the links, mass in kg)."""
     meshes, pieces, files, links, mass = clip.meshes(), clip.pieces(), {}, [], 0.0
     name = clip.row["name"]
     for part, mesh in meshes.items():
@@ -160,7 +160,7 @@ def urdf_text(clip, title, links):
 
 
 def tool_block(clip, title, mass):
-    """What tool.json says of a clip."""
+    """The contents of tool.json for a clip."""
     block = clip_block(clip)
     return {
         "name": clip.row["name"],
@@ -196,7 +196,7 @@ def catalogue_entry(clip, tool, mass):
 
 
 def build(row, table):
-    """({file name: (text, triangles or None)}, row of the catalogue) of one clip."""
+    """Makes one clip: ({file name: (text, triangles or None)}, row of the catalogue)."""
     clip = Clip(row, table["families"][row["family"]])
     materials = table["materials"]
     title = f'{row["label"]}, blade {clip.blade_length:.3g} mm, {clip.force:.2g} N'

@@ -30,7 +30,7 @@ void relax(std::vector<Vec3>& line) {
   for (std::size_t i = 1; i + 1 < line.size(); ++i) line[i] = 0.25 * (old[i - 1] + 2.0 * old[i] + old[i + 1]);
 }
 
-/// Points of the grid as far from the one part as from the other, in a cleft no wider than `width`.
+/// Points of the grid at equal distances from both parts, in a cleft no wider than `width`.
 std::vector<Vec3> mid_surface(const PartFields& fields, const Mask& in_a, const Mask& in_b, const FieldOptions& options,
                               double width, double rim) {
   const Grid& grid = fields.grid;
@@ -50,7 +50,7 @@ std::vector<Vec3> mid_surface(const PartFields& fields, const Mask& in_a, const 
   return mid;
 }
 
-/// Principal direction of the mid-surface across the view (power iteration on the 3x3 covariance).
+/// Principal direction of the mid-surface perpendicular to the view (power iteration on the 3x3 covariance).
 Vec3 long_axis(const std::vector<Vec3>& mid, const Vec3& mean, const Vec3& up) {
   Vec3 axis = unit(cross(up, {0.1, 0.2, 1}));
   for (int iteration = 0; iteration < 100; ++iteration) {
@@ -66,7 +66,7 @@ Vec3 long_axis(const std::vector<Vec3>& mid, const Vec3& mean, const Vec3& up) {
 }
 
 struct Edges {
-  std::vector<Vec3> top, floor;  ///< of the cleft, station by station
+  std::vector<Vec3> top, floor;  ///< upper and lower edge of the cleft, station by station
 };
 
 Edges edges_of(const std::vector<Vec3>& mid, const Vec3& up, double step) {
@@ -94,7 +94,7 @@ Edges edges_of(const std::vector<Vec3>& mid, const Vec3& up, double step) {
   return out;
 }
 
-/// Way out of the smoothed tissue at a point.
+/// Direction out of the smoothed tissue at a point, unit.
 Vec3 way_out(const Grid& grid, const Field& tissue, const Vec3& p) {
   Vec3 slope{};
   for (std::size_t c = 0; c < 3; ++c) {

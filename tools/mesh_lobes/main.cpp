@@ -75,7 +75,7 @@ struct Job {
   std::string labels, intensity;
   std::vector<Part> parts;
   FieldOptions fields;
-  bool has_tissue = false;  ///< the intensity at which tissue begins was given
+  bool has_tissue = false;  ///< whether the intensity threshold of tissue was given
   Sizes focus{2, 20}, cell{4, 9}, cell_error{0.5, 1.5}, edge{1, 3};
   double edge_error = 0.1, focus_radius = -1;
   Vec3 focus_point{}, view{1, 0, 0};
@@ -96,7 +96,7 @@ std::pair<std::string, std::string> split(const std::string& text, const std::st
   return {text.substr(0, at), text.substr(at + 1)};
 }
 
-/// One option as it stands on the command line.
+/// One option of the command line, with its value.
 struct Given {
   std::string option, value;
   double one() const { return numbers(value, 1, option)[0]; }

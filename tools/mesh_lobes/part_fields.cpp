@@ -79,14 +79,14 @@ std::vector<unsigned char> make_seeds(const Grid& grid, const std::vector<unsign
   return seeds;
 }
 
-/// The tissue of a head, and to which part each node of the grid belongs.
+/// The tissue of a head, and the part of each node of the grid.
 struct Tissue {
   Field level;                       ///< positive inside
-  std::vector<unsigned char> owner;  ///< number of the part and one, 0: none
+  std::vector<unsigned char> owner;  ///< number of the part plus one; 0: none
   Field region;                      ///< positive in the region of interest
 };
 
-/// A level from the intensity (sharper than a voxel), or from the labels alone.
+/// Computes the level from the intensity (with sub-voxel resolution), or from the labels alone.
 Tissue find_tissue(const Grid& grid, const NiftiVolume& labels, const NiftiVolume* intensity,
                    const std::vector<Part>& parts, const FieldOptions& options) {
   const std::size_t n = grid.count();
@@ -97,7 +97,7 @@ Tissue find_tissue(const Grid& grid, const NiftiVolume& labels, const NiftiVolum
     for_nodes(grid, [&](std::size_t i, const Vec3& p) { out.level[i] = intensity->linear(p); });
     for (std::size_t i = 0; i < n; ++i) {
       const double above = (static_cast<double>(out.level[i]) - options.tissue) / options.tissue_slope;
-      // Dark sulci cost up to 40 times the way through tissue: borders between parts settle in them.
+      // A path through dark sulci costs up to 40 times a path through tissue, so borders between parts lie in them.
       cost[i] = static_cast<float>(1 + 40 * (1 - smoothstep((above + 0.3) / 1.0)));
       out.level[i] = static_cast<float>(std::clamp(above, -3.0, 3.0));
     }
@@ -115,7 +115,7 @@ Tissue find_tissue(const Grid& grid, const NiftiVolume& labels, const NiftiVolum
   return out;
 }
 
-/// Takes islands off a level and fills its cavities; returns what is kept.
+/// Removes islands from a level and fills its cavities. Returns the mask of the result.
 Mask cleaned(const Grid& grid, Field& level) {
   Mask mask(grid.count());
   for (std::size_t i = 0; i < mask.size(); ++i) mask[i] = level[i] > 0;
@@ -127,11 +127,11 @@ Mask cleaned(const Grid& grid, Field& level) {
   return kept;
 }
 
-/// Small sulci and holes are closed on the tissue `mask`, then the part is cut out, cleaned and smoothed.
+/// Closes small sulci and holes of the tissue `mask`. Then cuts out, cleans and smooths the part.
 Field fine_level(const Grid& grid, const Tissue& tissue, const Mask& mask, const Field& own,
                  const FieldOptions& options) {
   const std::size_t n = grid.count();
-  const float slack = 0.3f;  // mm; a plain surface is left as it is by closing and opening
+  const float slack = 0.3f;  // mm; closing and opening do not change a flat surface
   const float half_gap = static_cast<float>(options.gap / 2);
   const Field closed = closing_level(grid, mask, options.fine_closing);
   Field fine(n);
@@ -139,7 +139,8 @@ Field fine_level(const Grid& grid, const Tissue& tissue, const Mask& mask, const
     fine[i] =
         std::min({std::max(tissue.level[i], std::min(closed[i] - slack, 0.5f)), own[i] - half_gap, tissue.region[i]});
   smooth(grid, fine, options.smoothing);
-  // Opening: the closing of the complement, read backwards. What it takes, the components clean up later.
+  // Opening is the closing of the complement with opposite sign. Pieces that it separates are removed later as
+  // components.
   Mask outside(n);
   for (std::size_t i = 0; i < n; ++i) outside[i] = !(fine[i] > 0);
   const Field opened = closing_level(grid, outside, options.fine_opening);
@@ -149,7 +150,7 @@ Field fine_level(const Grid& grid, const Tissue& tissue, const Mask& mask, const
   return fine;
 }
 
-/// The shape for tetrahedra: coarser, a little outside of the fine one.
+/// The level for tetrahedra: coarser, and slightly outside of the fine level.
 Field coarse_level(const Grid& grid, const Tissue& tissue, const Mask& fine, const Field& own,
                    const FieldOptions& options) {
   Field coarse = closing_level(grid, fine, options.coarse_closing);

@@ -97,7 +97,8 @@ std::vector<std::size_t> tets_below(const TetMesh& mesh, double angle_deg) {
   return bad;
 }
 
-/// Moves points by chance as long as the least angle around them grows. Points of the boundary go inward only.
+/// Moves points at random and keeps each move that increases the smallest angle around the point. Points of the
+/// boundary only move inward.
 class PointMover {
  public:
   PointMover(TetMesh& mesh, const std::vector<Triangle>& border, double boundary_shift)
@@ -112,7 +113,7 @@ class PointMover {
     for (const Triangle& t : border)
       for (const int v : t) on_border_[at(v)] = 1;
   }
-  /// Tries to widen the angles of a tetrahedron.
+  /// Tries to increase the angles of a tetrahedron.
   void mend(std::size_t tet) {
     for (const int v : mesh_.tets[tet]) {
       double size = 1e30;
@@ -129,7 +130,7 @@ class PointMover {
     for (const std::size_t i : star_[at(v)]) least = std::min(least, min_angle(mesh_, mesh_.tets[i]));
     return least;
   }
-  /// Returns the least angle about v after it, which is no less than `best`.
+  /// Tries one random move of v. Returns the smallest angle around v afterwards, which is at least `best`.
   double try_move(int v, double scale, double best) {
     const Vec3 old = mesh_.points[at(v)];
     Vec3 move{};
@@ -155,7 +156,7 @@ class PointMover {
   Sequence sequence_;
 };
 
-/// Takes away one tetrahedron at the boundary whose angles are too small; false if none may go.
+/// Removes one tetrahedron at the boundary whose angles are too small. False if none can be removed.
 bool remove_one(TetMesh& mesh, double angle_deg, std::size_t border_size) {
   for (const std::size_t i : tets_below(mesh, angle_deg)) {
     TetMesh trial = mesh;

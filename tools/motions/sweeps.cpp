@@ -61,12 +61,12 @@ double SweepPlanner::cutting(const Sweep& sweep, const StrandState& strand) cons
       closest_segments(strand.a, strand.b, e0, e1, s, t);
       least = std::min(least, (strand.a + s * (strand.b - strand.a) - e0 - t * (e1 - e0)).norm());
     }
-    if (least < 0.75 * reach_) travel += share * step;  // not counting on the last quarter of the reach
+    if (least < 0.75 * reach_) travel += share * step;  // the last quarter of the reach is a margin
   }
   return travel / cut_length_;
 }
 
-// The usual lean and rings around it.
+// Candidate directions of the shaft: the usual lean, and rings of directions around it.
 std::vector<Vec3> SweepPlanner::shafts(bool thorough) const {
   std::vector<Vec3> out{field_.lean};
   const Vec3 side = field_.lean.unitOrthogonal(), up = field_.lean.cross(side);
@@ -78,9 +78,9 @@ std::vector<Vec3> SweepPlanner::shafts(bool thorough) const {
   return out;
 }
 
-// What would be next if there were room everywhere: near the surgeon, near the tip, not yet tried. By strand.
-std::vector<double> SweepPlanner::ease(const std::vector<StrandState>& strands, const std::vector<int>& tries,
-                                       const Vec3& tip) const {
+// Scores each strand without regard to obstacles. Strands near the surgeon, near the tip and with few tries score high.
+std::vector<double> SweepPlanner::reachability(const std::vector<StrandState>& strands, const std::vector<int>& tries,
+                                               const Vec3& tip) const {
   std::vector<double> out;
   for (std::size_t i = 0; i < strands.size(); ++i) {
     const Vec3 middle = (strands[i].a + strands[i].b) / 2;
@@ -89,13 +89,13 @@ std::vector<double> SweepPlanner::ease(const std::vector<StrandState>& strands, 
   return out;
 }
 
-// The candidates' sweeps through one strand with one shaft, and the best of them and of the one before.
+// Judges all candidate sweeps through one strand with one shaft, and updates the best sweep.
 void SweepPlanner::try_shaft(const Search& search, std::size_t i, const Vec3& shaft, Sweep& best) const {
   const StrandState& s = search.strands[i];
   const Vec3 across = (s.b - s.a).normalized().cross(shaft);
   const bool end_on = across.norm() < 0.35;
   for (int turn = 0; turn < (end_on ? 4 : search.thorough ? 3 : 1); ++turn)
-    for (const double along : search.places)
+    for (const double along : search.positions)
       for (const double depth : search.depths)
         for (const double signed_half : {2.2e-3, -2.2e-3, 1.6e-3, -1.6e-3}) {
           Sweep w;
@@ -104,7 +104,7 @@ void SweepPlanner::try_shaft(const Search& search, std::size_t i, const Vec3& sh
           const double askew = end_on ? turn * std::numbers::pi / 4 : (turn == 2 ? -1 : turn) * std::numbers::pi / 6;
           w.across = Eigen::AngleAxisd(askew, shaft) * (end_on ? shaft.unitOrthogonal() : Vec3(across.normalized()));
           w.across *= signed_half > 0 ? 1 : -1;
-          // The blade is curved: at this height its edge lies a little off the tool's axis.
+          // The blade is curved, so at this height its edge is slightly beside the tool's axis.
           const Vec3 flat = w.across.cross(shaft);
           w.middle = s.a + along * (s.b - s.a) - depth * shaft + 0.15e-3 * flat;
           w.half = std::abs(signed_half);
@@ -112,16 +112,16 @@ void SweepPlanner::try_shaft(const Search& search, std::size_t i, const Vec3& sh
         }
 }
 
-// Takes a sweep as the best if there is room for it and it scores more.
+// Keeps a sweep as the best if its clearance suffices and its score is higher.
 void SweepPlanner::judge(const Search& search, Sweep& w, Sweep& best) const {
   w.vessel = w.others = Clearance::band;
   for (int k = -3; k <= 3; ++k) room(w.pose(k * w.half / 3), &w.vessel, &w.others);
   if (w.vessel < -0.1e-3 || w.others < -search.press) return;
   const std::size_t i = std::size_t(w.strand);
-  // Room counts up to what is comfortable.
+  // Clearance above a comfortable value adds no score.
   double score = 2.5 * std::min(w.vessel, 0.5e-3) / 0.5e-3 + std::min(w.others, 0.3e-3) / 0.3e-3;
-  score += search.ease[i] - 4 * (1 - w.shaft.dot(field_.lean)) +
-           (w.half > 2e-3 ? 0.5 : 0);  // a long stroke parts it for sure
+  score += search.reachability[i] - 4 * (1 - w.shaft.dot(field_.lean)) +
+           (w.half > 2e-3 ? 0.5 : 0);  // a long stroke divides the strand reliably
   if (score + 1.5 < best.score || cutting(w, search.strands[i]) < 1.5) return;
   int more = 0;
   for (std::size_t k = 0; k < search.strands.size(); ++k) {
@@ -135,9 +135,9 @@ void SweepPlanner::judge(const Search& search, Sweep& w, Sweep& best) const {
 
 Sweep SweepPlanner::best(const std::vector<StrandState>& strands, const std::vector<int>& tries, const Vec3& tip,
                          bool thorough) const {
-  Search search{strands, ease(strands, tries, tip), thorough};
+  Search search{strands, reachability(strands, tries, tip), thorough};
   if (thorough) {
-    search.places = {0.5, 0.3, 0.7, 0.15, 0.85, 0.05, 0.95};
+    search.positions = {0.5, 0.3, 0.7, 0.15, 0.85, 0.05, 0.95};
     search.depths = {0.2e-3, -0.15e-3, -0.35e-3, 0.7e-3, 1.4e-3};
     search.press = 1.0e-3;
   }
@@ -145,7 +145,7 @@ Sweep SweepPlanner::best(const std::vector<StrandState>& strands, const std::vec
   for (std::size_t i = 0; i < strands.size(); ++i)
     if (strands[i].integrity >= 0) order.push_back(i);
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return search.ease[a] != search.ease[b] ? search.ease[a] > search.ease[b] : a < b;
+    return search.reachability[a] != search.reachability[b] ? search.reachability[a] > search.reachability[b] : a < b;
   });
   const std::vector<Vec3> all_shafts = shafts(thorough);
   Sweep best;

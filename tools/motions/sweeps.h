@@ -34,30 +34,30 @@ struct Sweep {
 class SweepPlanner {
  public:
   SweepPlanner(const ToolModel& tool, const Field& field, double reach, double cut_length);
-  /// The best sweep through one of the strands that stand; tries: how often each was swept in vain. thorough: also
-  /// steep shafts, places near a strand's ends, blades turned askew and lobes pressed in a little more.
+  /// Finds the best sweep through one of the undivided strands. tries: number of failed sweeps of each strand.
+  /// thorough: also tests steep shafts, positions near a strand's ends, oblique blades and more pressure on lobes.
   Sweep best(const std::vector<StrandState>& strands, const std::vector<int>& tries, const Vec3& tip,
              bool thorough = false) const;
-  /// Least room of the whole tool at a pose, m.
+  /// Smallest clearance of the whole tool at a pose, m.
   double room(const Pose& pose, double* vessel = nullptr, double* others = nullptr) const;
   /// Smallest clearance on the straight path between two poses, m.
   double room(const Pose& from, const Pose& to) const;
 
  private:
-  /// How far the blade travels through a strand in a sweep, over what parts it.
+  /// Path of the blade through a strand in a sweep, over the path that divides it.
   double cutting(const Sweep& sweep, const StrandState& strand) const;
-  /// What one search for the best sweep tries.
+  /// Input and candidates of one search for the best sweep.
   struct Search {
     const std::vector<StrandState>& strands;
-    std::vector<double> ease;  ///< of the strands
+    std::vector<double> reachability;  ///< score of each strand without regard to obstacles
     bool thorough;
-    std::vector<double> places = {0.5, 0.35, 0.65, 0.2, 0.8};         ///< along a strand
-    std::vector<double> depths = {0.2e-3, -0.15e-3, 0.7e-3, 1.4e-3};  ///< of the tip past it, m
-    double press = 0.5e-3;  ///< how far a lobe, which gives way, may be pushed in, m
+    std::vector<double> positions = {0.5, 0.35, 0.65, 0.2, 0.8};      ///< along a strand, as a share of its length
+    std::vector<double> depths = {0.2e-3, -0.15e-3, 0.7e-3, 1.4e-3};  ///< depths of the tip beyond the strand, m
+    double press = 0.5e-3;  ///< depth by which a yielding lobe may be pushed in, m
   };
   std::vector<Vec3> shafts(bool thorough) const;
-  std::vector<double> ease(const std::vector<StrandState>& strands, const std::vector<int>& tries,
-                           const Vec3& tip) const;
+  std::vector<double> reachability(const std::vector<StrandState>& strands, const std::vector<int>& tries,
+                                   const Vec3& tip) const;
   void try_shaft(const Search& search, std::size_t strand, const Vec3& shaft, Sweep& best) const;
   void judge(const Search& search, Sweep& sweep, Sweep& best) const;
 

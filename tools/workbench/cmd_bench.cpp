@@ -27,7 +27,7 @@ double mean(const std::vector<double>& v) {
   return v.empty() ? 0.0 : sum / double(v.size());
 }
 
-/// What the steps of a run took and did, one value a step.
+/// Times and figures of the steps of a run, one value for each step.
 struct BenchRecord {
   std::array<std::vector<double>, stage_count> stage;
   std::vector<double> step, haptic, rows, sweeps, newton, residual, iterations, age, defect, factor_and_w, all_else;

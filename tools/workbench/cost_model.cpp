@@ -78,7 +78,7 @@ SceneWork count_work(const Simulation& s) {
     double rows = now;
     for (const auto& [which, n] : more.of_body) rows += which == body ? n : 0;
     k.rows = int(std::lround(rows));
-    // What the last rows took, and for those to come the usual part of the factor that a row reaches.
+    // The flops of the last rows. For expected rows, it is the usual part of the factor that a row reaches.
     const auto usual = [&](double m) {
       return 0.7 * (m * double(k.solver.factor_entries) + 0.3 * m * m * 3 * k.nodes);
     };
@@ -115,7 +115,7 @@ struct Share {
   std::string what, advice;
 };
 
-/// Seconds of each stage, body by body, and what takes them.
+/// Time of each stage for each body, s, and the largest shares of it.
 class BodyCosts {
  public:
   explicit BodyCosts(const CostRates& rates) : r_(rates) {}
@@ -126,7 +126,7 @@ class BodyCosts {
     const double factor =
         b.background ? 0 : b.solver.factor_flops * r_.factor_flop + double(b.solver.factor_entries) * r_.factor_entry;
     const double solve = double(b.solver.factor_entries) * r_.solve_entry * (b.background ? 0.5 * iterations : 1);
-    const double often = b.keeps_tangent ? anew : 1, forward = b.background ? solve : 0.5 * solve;
+    const double often = b.keeps_tangent ? renewals : 1, forward = b.background ? solve : 0.5 * solve;
     free.push_back(in_a_step * (often * (tangent + factor) + (1 - often) * force + forward) + 12 * b.nodes * r_.vertex);
     correct.push_back(b.background ? (b.rows > 0 ? 0.8 * solve : 0) : 0.5 * solve);
     compliance.push_back(b.rows > 0 ? b.compliance_flops * r_.compliance_flop +
@@ -138,15 +138,15 @@ class BodyCosts {
   }
 
   std::vector<double> free, correct, compliance;
-  double rows2 = 0;  ///< adding up of W
+  double rows2 = 0;  ///< time to add up W, s
   double refactor_ms = 0;
   std::vector<Share> shares;
 
  private:
-  // A triangle of a wall with its hinges, over a tetrahedron; how often a kept factor is made anew; iterations of a
-  // solve with one made in the background; a step over the best of several runs in a row, whose data lie in the caches;
-  // entries of a factor that a cache holds.
-  static constexpr double wall_tangent = 3, wall_force = 3.2, anew = 0.05, iterations = 3, in_a_step = 1.25,
+  // wall_tangent, wall_force: cost of a wall triangle with its hinges over a tetrahedron. renewals: share of steps that
+  // renew a kept factor. iterations: of a solve with a background factor. in_a_step: time in a step over that of the
+  // best of several runs in a row, with data in the caches. cached: entries of a factor that a cache holds.
+  static constexpr double wall_tangent = 3, wall_force = 3.2, renewals = 0.05, iterations = 3, in_a_step = 1.25,
                           cached = 1e6;
 
   void add_shares(const BodyWork& b, double factor_ms, double elements_ms) {
@@ -172,14 +172,15 @@ void set_stages(CostEstimate& out, const SceneWork& w, const CostRates& r, const
   constexpr double newton_step = 2;
   const double surfaces = r.vertex * (0.8 * w.surface_vertices + 0.2 * w.surface_triangles + 0.25 * w.tissue_vertices +
                                       500.0 * w.tool_pieces + 120.0 * w.wall_vertices + 550.0 * w.expected_rows);
-  // Where Newton is allowed sweeps stall: one step of it, m^3 / 1.5 in small pieces, at the dense rate of the factor.
+  // Newton steps are used where sweeps stall. One step costs m^3 / 1.5 flops in small parts, at the dense rate of the
+  // factor.
   const double rows2 = double(w.expected_rows) * w.expected_rows;
   const double sweeps = w.expected_sweeps * rows2 * r.sweep_row2 +
                         (w.newton ? newton_step * rows2 * w.expected_rows / 1.5 * r.compliance_flop : 0);
-  const double row = 10 * r.vertex;  // what a row costs besides: built, read, told
+  const double row = 10 * r.vertex;  // other costs of a row: to build, read and publish it
   double all = 0;
   for (double c : bodies.compliance) all += c;
-  // Parts of a body's compliance are shared too: threads are even, but for what one thread adds up.
+  // Threads also share parts of a body's compliance. So all have equal work, except for the sum by one thread.
   out.stage_ms[stage_free_motion] = 1000 * on_threads(bodies.free, threads);
   out.stage_ms[stage_collision] = 1000 * surfaces / std::max(1.0, 0.85 * threads);
   out.stage_ms[stage_build] = 1000 * (all / std::max(1, threads) + bodies.rows2 + row * w.expected_rows);

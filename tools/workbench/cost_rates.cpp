@@ -13,7 +13,7 @@
 namespace insula {
 namespace {
 
-/// Seconds of a sweep over the square of the rows, in the first steps of a scene.
+/// Time of a sweep over the square of the number of rows, s, from the first steps of a scene.
 double sweep_rate(Simulation& s) {
   double solve = 1e9;
   for (int i = 0; i < 4; ++i) {
@@ -39,11 +39,11 @@ struct FactorCost {
   double seconds = 1e9, flops = 0, entries = 0;
 };
 
-/// A factor of a body's matrix, and what making it cost.
+/// A factor of a body's matrix, and its cost.
 struct MeasuredFactor {
   std::unique_ptr<BodySolver> solver = make_direct_solver(false);
   FactorCost cost;
-  double compliance = 1e9;  ///< of the body's rows with this factor, s
+  double compliance = 1e9;  ///< time for the compliance of the body's rows with this factor, s
 
   MeasuredFactor(const SoftBody& body, int runs, bool with_compliance) {
     solver->analyse(body.system());
@@ -52,7 +52,7 @@ struct MeasuredFactor {
     for (int i = 0; i < runs; ++i) {
       cost.seconds = std::min(cost.seconds, shortest(1, [&] { solver->factorise(body.system()); }));
       if (!with_compliance) continue;
-      // With a factor of its own: else rows keep what they have.
+      // Each run uses a new factor, since rows otherwise keep their compliance.
       const auto compute = [&] { solver->compute_compliance(body.rows, body.free_of_node()); };
       compliance = std::min(compliance, shortest(1, compute));
     }
@@ -69,12 +69,12 @@ void measure_rows(const SoftBody& body, const SceneWork& work, const MeasuredFac
                       std::max(1.0, double(body.rows.count()) * body.rows.count());
 }
 
-/// Tells flops from entries by two factors of different sizes.
+/// Separates the cost of flops from that of entries, with two factors of different sizes.
 void set_factor_rates(const FactorCost& a, const FactorCost& b, CostRates& r) {
   const double det = a.flops * b.entries - b.flops * a.entries;
   r.factor_flop = (a.seconds * b.entries - b.seconds * a.entries) / det;
   r.factor_entry = (a.flops * b.seconds - b.flops * a.seconds) / det;
-  // Noise may give one of them a senseless sign: then all is flops.
+  // Noise may give one rate a meaningless sign. Then all of the cost counts as flops.
   if (!(r.factor_flop > 0) || !(r.factor_entry >= 0)) r.factor_flop = b.seconds / b.flops, r.factor_entry = 0;
 }
 
@@ -82,7 +82,7 @@ void set_factor_rates(const FactorCost& a, const FactorCost& b, CostRates& r) {
 
 CostRates measure_rates(const Registry& registry) {
   CostRates r;
-  // A small body and a middle one. Each of them is small enough that all of this is a part of what an author waits for.
+  // A small body and a medium one. Both are so small that the measurement is a small part of an author's waiting time.
   const auto s = brick_scene({10, 6, 0, 40}, registry, 1);
   auto& lower = *const_cast<SoftBody*>(s->scene().find_as<SoftBody>("lower"));
   auto& upper = *const_cast<SoftBody*>(s->scene().find_as<SoftBody>("upper"));

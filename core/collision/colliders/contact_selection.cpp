@@ -23,11 +23,11 @@ Vec3 tangent_to(const Vec3& n, const Vec3& wish) {
 namespace {
 Vec3 other_end(const Proximity& x) { return x.point + x.gap * x.normal; }
 
-// Whether a kept contact k, which is better, makes x superfluous: they are alike and near one another.
-bool stands_for(const Proximity& k, const Proximity& x, double apart2, bool both_ends) {
+// Whether a kept contact k makes x redundant: the two are alike and near one another.
+bool makes_redundant(const Proximity& k, const Proximity& x, double apart2, bool both_ends) {
   constexpr double cos40 = 0.766;
   const double cosine = k.normal.dot(x.normal);
-  // Tissue finds the same place from both sides, with opposite normals.
+  // Tissue finds the same contact from both sides, with opposite normals.
   bool alike = x.vertex >= 0 && k.side != x.side ? cosine < -cos40 : cosine > cos40;
   if (both_ends && alike) {
     alike = k.side == x.side && (other_end(k) - other_end(x)).squaredNorm() < apart2;
@@ -51,7 +51,7 @@ bool ContactSelection::same(const Known& k, const Proximity& x, double spacing2)
   return k.piece == x.piece && k.other_piece == x.other_piece && (k.local - x.local).squaredNorm() < spacing2;
 }
 
-// By gap, with the advantage of those that had a contact in the last step.
+// Sorts by gap. Contacts of the last step get an advantage.
 void ContactSelection::rank(const std::vector<Proximity>& all, const SelectionSettings& settings) {
   const double spacing2 = settings.spacing * settings.spacing;
   order_.clear();
@@ -71,7 +71,7 @@ void ContactSelection::rank(const std::vector<Proximity>& all, const SelectionSe
             [](const Order& a, const Order& b) { return a.rank != b.rank ? a.rank < b.rank : a.index < b.index; });
 }
 
-// Takes proximities into kept_, best first.
+// Copies proximities to kept_, the best ones first.
 void ContactSelection::choose(const std::vector<Proximity>& all, const SelectionSettings& settings) {
   const double spacing2 = settings.spacing * settings.spacing;
   kept_.clear();
@@ -84,7 +84,7 @@ void ContactSelection::choose(const std::vector<Proximity>& all, const Selection
     int of_piece = 0;
     for (const Proximity& k : kept_) {
       if (k.piece == x.piece && x.piece >= 0) ++of_piece;
-      if (stands_for(k, x, apart2, settings.both_ends)) {
+      if (makes_redundant(k, x, apart2, settings.both_ends)) {
         keep = false;
         break;
       }
@@ -93,7 +93,7 @@ void ContactSelection::choose(const std::vector<Proximity>& all, const Selection
   }
 }
 
-// Keys and tangents of what was kept: those of the last step where they go on.
+// Sets keys and tangents of the kept contacts. A contact that continues has those of the last step.
 void ContactSelection::identify(double spacing2, std::uint64_t& next_key) {
   next_.clear();
   for (Proximity& x : kept_) {

@@ -159,7 +159,7 @@ void SelfCollider::list_partners(const CollisionMesh& mesh, std::size_t sample, 
   covered_[side][sample] = list.size() > longest_list ? -1.0 : skin;
 }
 
-// The nearest partner of a sample, and how near anything is that is no partner.
+// Search for the nearest partner of a sample. It also finds the distance to triangles that are not partners.
 struct SelfCollider::Search {
   const SelfCollider& of;
   const CollisionMesh& mesh;
@@ -170,12 +170,12 @@ struct SelfCollider::Search {
   int best = -1;
   Vec3 bary = Vec3::Zero(), point = Vec3::Zero();
 
-  void look(int tri, double& limit2) {
+  void test(int tri, double& limit2) {
     const auto& t = mesh.triangle(tri);
     const Vec3 p = mesh.vertex(t[0]), q = mesh.vertex(t[1]), r = mesh.vertex(t[2]);
     const Vec3 n = (q - p).cross(r - p);
     const double h = n.dot(x - p), nn = n.squaredNorm();
-    if (h * h > limit2 * nn) return;  // its plane is farther than the best
+    if (h * h > limit2 * nn) return;  // its plane is farther than the best triangle
     const double agree = of.outward_[sample].dot(n) / std::sqrt(nn);
     if (agree > 0.5 && of.normal_[sample].dot(of.face_normal_[std::size_t(tri)]) > bent) return;
     const Vec3 w = closest_on_triangle(x, p, q, r);
@@ -193,19 +193,19 @@ struct SelfCollider::Search {
   }
 };
 
-// Looks at what may be a partner within `reach`: at the list of partners where it covers that, else at the tree.
-void SelfCollider::look_at_partners(Search& search, int side, double reach, double far) {
+// Tests all possible partners within `reach`. It uses the list of partners if this covers `reach`, else the tree.
+void SelfCollider::test_partners(Search& search, int side, double reach, double far) {
   const std::size_t sample = search.sample;
   if (reach <= far && covered_[side][sample] < 0) list_partners(search.mesh, sample, side, far);
   if (reach <= far && covered_[side][sample] >= 0) {
     const double went = skin - covered_[side][sample];
     for (const Partner& p : lists_[side][sample]) {
       const double at_least = std::max(0.0, p.was - went);
-      if (at_least * at_least > search.least2) {  // nor does any after it
+      if (at_least * at_least > search.least2) {  // nor does any later one
         search.any2 = std::min(search.any2, at_least * at_least);
         break;
       }
-      search.look(p.triangle, search.least2);
+      search.test(p.triangle, search.least2);
     }
     return;
   }
@@ -213,12 +213,12 @@ void SelfCollider::look_at_partners(Search& search, int side, double reach, doub
   box.add(search.x);
   box.inflate(std::max(reach, far));
   search.mesh.tree().nearest(search.x, &box, search.least2, [&](int tri, double& limit2) {
-    if (kind(sample, tri) == side) search.look(tri, limit2);
+    if (kind(sample, tri) == side) search.test(tri, limit2);
   });
 }
 
-// The contact of a sample with its nearest partner: 0 if it has none, 1 if it has one, 2 if it has crossed. `before` is
-// that of the last step.
+// Finds the contact of a sample with its nearest partner. Returns 0 without a contact, 1 with one, 2 if the sample has
+// crossed. `before` is the result of the last step.
 int SelfCollider::contact_with(const Search& nearest, const SelfContactSettings& settings, int side, int before,
                                Proximity& c) const {
   const CollisionMesh& mesh = nearest.mesh;
@@ -239,22 +239,22 @@ int SelfCollider::contact_with(const Search& nearest, const SelfContactSettings&
   } else {
     c.normal = free_side;
   }
-  // Outside, two vessels side by side and two that have crossed look alike: only what touched before can have crossed.
-  // And a crossing begins shallow: a fold of the wall that faces the wrong way is none.
+  // On the outside, two neighbouring vessels and two that have crossed look alike, so only samples that touched before
+  // can have crossed. A crossing begins with a small depth. A fold of the wall that faces the other direction is not a
+  // crossing.
   if (crossed && (distance > settings.max_depth || (side == outer && !was))) return 0;
   if (crossed && before != 2 && distance > settings.thickness + settings.alarm) return 0;
   c.gap = (crossed ? -distance : distance) - settings.thickness;
   const double approach = c.normal.dot(mesh.free(v) - mesh.free_at(nearest.best, nearest.bary));
-  // What had a contact keeps it a little longer, lest rows come and go while nothing moves.
+  // An existing contact is kept a little longer, so that rows do not flicker while nothing moves.
   const double alarm = was ? 1.2 * settings.alarm : settings.alarm;
   if (c.gap > alarm && c.gap + approach > alarm) return 0;
   return crossed ? 2 : 1;
 }
 
-// On a fold the nearest place turns about with the slightest motion of the wall, which is so light there that its own
-// answer would throw it to and fro, step by step. So the normal of what presses turns slowly; but not where walls are
-// hard, whose gap is now a little above, now a little below zero.
-void SelfCollider::slow_normal(Proximity& c, std::size_t sample, bool may_slow) {
+// On a fold, the smallest motion of the wall changes the direction to the nearest point, and so light a wall would
+// oscillate. So the normal of a pressing contact changes slowly, except for hard walls, whose gap changes its sign.
+void SelfCollider::under_relax_normal(Proximity& c, std::size_t sample, bool may_slow) {
   Vec3& direction = direction_[c.side][sample];
   Swing& swing = swing_[c.side][sample];
   if (may_slow && c.gap < 0 && direction.dot(c.normal) > 0.5)
@@ -268,7 +268,7 @@ void SelfCollider::near(const CollisionMesh& mesh, const SelfContactSettings& se
   const int v = samples_[sample];
   const int before = close_[side][sample];
   const bool was = before != 0;
-  // What touched is looked for farther, what has crossed as deep as crossings are undone.
+  // Samples with a contact search farther. Samples that have crossed search as deep as crossings are corrected.
   const double range = (was ? 1.2 * settings.alarm + look_ahead : settings.alarm) + settings.thickness;
   const double reach = before == 2 ? std::max(range, settings.max_depth) : range;
   if (!may_be_near(mesh, sample, side, range) && !was) return;
@@ -279,13 +279,13 @@ void SelfCollider::near(const CollisionMesh& mesh, const SelfContactSettings& se
   }
   Search search{*this, mesh, sample, mesh.vertex(v), (range + look_ahead) * (range + look_ahead)};
   // What the free motion may bring is within the search range.
-  look_at_partners(search, side, reach, settings.thickness + 1.2 * settings.alarm + look_ahead);
+  test_partners(search, side, reach, settings.thickness + 1.2 * settings.alarm + look_ahead);
   clear_[side][sample] = was ? 0.0 : std::sqrt(search.any2);
   if (search.best < 0) return;
   Proximity c;
   const int state = contact_with(search, settings, side, before, c);
   if (state == 0) return;
-  slow_normal(c, sample, settings.normal_under_relaxation && was);
+  under_relax_normal(c, sample, settings.normal_under_relaxation && was);
   close_[side][sample] = char(state);
   c.start_gap = std::max(c.gap, -settings.max_correction);
   out.push_back(c);

@@ -71,11 +71,11 @@ class SelfCollider {
   double lumen(const CollisionMesh& rest, int vertex) const;
   bool may_be_near(const CollisionMesh& mesh, std::size_t sample, int side, double range);
   void list_partners(const CollisionMesh& mesh, std::size_t sample, int side, double far);
-  struct Search;  // for the nearest partner of a sample
-  void look_at_partners(Search& search, int side, double reach, double far);
+  struct Search;  // search for the nearest partner of a sample
+  void test_partners(Search& search, int side, double reach, double far);
   int contact_with(const Search& nearest, const SelfContactSettings& settings, int side, int before,
                    Proximity& c) const;
-  void slow_normal(Proximity& c, std::size_t sample, bool may_slow);
+  void under_relax_normal(Proximity& c, std::size_t sample, bool may_slow);
   void near(const CollisionMesh& mesh, const SelfContactSettings& settings, std::size_t sample, int side,
             std::vector<Proximity>& out);
 

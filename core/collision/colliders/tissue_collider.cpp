@@ -140,7 +140,7 @@ const FourTriangles& TissueCollider::corners_of(const CollisionMesh& b, std::siz
 
 // look(triangle) for every triangle that may be nearer to x than sqrt(limit2), which `look` lowers.
 template <class Look>
-void TissueCollider::look_at_leaves(const CollisionMesh& b, const Vec3& x, const double& limit2, Look&& look) {
+void TissueCollider::test_leaves(const CollisionMesh& b, const Vec3& x, const double& limit2, Look&& look) {
   const SearchKernels& kernels = search_kernels();
   const std::array<float, 3> at{float(x[0]), float(x[1]), float(x[2])};
   const float rounded = float(x.cwiseAbs().maxCoeff()) * 1.2e-7f;
@@ -166,17 +166,17 @@ void TissueCollider::lessen(std::size_t first, std::size_t last, double swept, d
 
 // Finds the regions of b near the group. Returns the new lower bound of the distance to all other regions, which was
 // `elsewhere`.
-double TissueCollider::look_around(Group& g, const CollisionMesh& a, const CollisionMesh& b, std::size_t first,
-                                   std::size_t last, double may_come, double elsewhere) {
+double TissueCollider::find_near_regions(Group& g, const CollisionMesh& a, const CollisionMesh& b, std::size_t first,
+                                         std::size_t last, double may_come, double elsewhere) {
   Aabb here;
   for (std::size_t i = first; i < last; ++i) here.add(a.vertex(samples_[i]));
-  double comes_in_sight = g.around = may_come + surroundings;
-  g.near = b.regions_near(here, g.around, g.near, comes_in_sight);
+  double new_bound = g.around = may_come + surroundings;
+  g.near = b.regions_near(here, g.around, g.near, new_bound);
   g.travelled = b.travelled();
-  return std::max(elsewhere, comes_in_sight);
+  return std::max(elsewhere, new_bound);
 }
 
-// Brings what is known of a group up to date with what has moved. Returns how much that was, m.
+// Updates the known bounds of a group by the motion since the last step. Returns this motion, m.
 double TissueCollider::follow(const Step& step, Group& g, std::size_t first, std::size_t last) {
   const CollisionMesh &a = step.a, &b = step.b;
   if (g.own == 0)
@@ -188,8 +188,8 @@ double TissueCollider::follow(const Step& step, Group& g, std::size_t first, std
   g.clear -= went;
   g.went += went;
   if (!step.followed || elsewhere <= anyone) {
-    const double in_sight = look_around(g, a, b, first, last, anyone, elsewhere),
-                 at_least = step.followed ? in_sight : 0.0;
+    const double bound = find_near_regions(g, a, b, first, last, anyone, elsewhere),
+                 at_least = step.followed ? bound : 0.0;
     lessen(first, last, g.went, at_least);
     g.clear = std::min(g.clear, at_least);
     g.went = 0;
@@ -197,9 +197,9 @@ double TissueCollider::follow(const Step& step, Group& g, std::size_t first, std
   return went;
 }
 
-// Whether any sample of a group must be looked at: what cannot have come near since it was last looked at needs no
-// look.
-bool TissueCollider::needs_a_look(const Step& step, Group& g, std::size_t first, std::size_t last, double may_come) {
+// Whether the samples of a group must be searched. A group needs no search if nothing can have come near since the last
+// one.
+bool TissueCollider::needs_search(const Step& step, Group& g, std::size_t first, std::size_t last, double may_come) {
   if (!g.deep && g.clear > may_come) return false;
   lessen(first, last, g.went, unlimited);
   g.went = 0;
@@ -215,8 +215,8 @@ bool TissueCollider::needs_a_look(const Step& step, Group& g, std::size_t first,
   return false;
 }
 
-// Begins the searches of a group's samples. Deep samples are looked for as far as they are pushed out. Those whose
-// nearest triangle of the last step is that of this one are done; the leaves near all others are gathered once.
+// Begins the searches of a group's samples. Deep samples search as far as they are pushed out. Samples with the same
+// nearest triangle as in the last step are done. The leaves near all others are gathered once.
 void TissueCollider::begin_searches(const Step& step, std::size_t first, std::size_t last, double may_come,
                                     double margin) {
   const double open_reach = may_come + near_horizon,
@@ -225,8 +225,8 @@ void TissueCollider::begin_searches(const Step& step, std::size_t first, std::si
   bool any_open = false;
   for (std::size_t i = first; i < last; ++i) {
     const std::size_t k = i - first;
-    looked_[k] = behind_[i] || clear_[i] <= may_come;
-    if (!looked_[k]) continue;
+    searched_[k] = behind_[i] || clear_[i] <= may_come;
+    if (!searched_[k]) continue;
     FacingSearch& search = search_[k];
     search.begin(step.a, samples_[i], step.b, behind_[i] ? deep_reach : open_reach, margin);
     settled_[k] = search.follow(known_[i], behind_[i] ? -1.0 : step.farthest, seen_);
@@ -240,7 +240,7 @@ void TissueCollider::begin_searches(const Step& step, std::size_t first, std::si
   if (any_open) gather_leaves(step.b.tree(), all);
 }
 
-// The contact of a sample with the nearest triangle of its search; false if it has none.
+// Computes the contact of a sample with the nearest triangle of its search. False if it has none.
 bool TissueCollider::contact_of(const Step& step, std::size_t sample, const FacingSearch& search, Proximity& c) {
   const CollisionMesh& b = step.b;
   const int best = search.nearest(), v = samples_[sample];
@@ -251,14 +251,14 @@ bool TissueCollider::contact_of(const Step& step, std::size_t sample, const Faci
   const Vec3 d = x - best_point;
   const double distance = d.norm();
   const bool outside = d.dot(outward) >= 0;
-  // Behind what faces it, but perhaps outside of a fold that does not: the nearest of all tells.
+  // Behind the triangle that faces it, but perhaps outside of a fold: the nearest of all triangles decides.
   if (!outside && (distance > step.settings.max_depth || !b.nearest(x, 0, distance).behind)) return false;
   c.vertex = v;
   c.triangle = best;
   c.bary = best_bary;
   c.point = best_point;
   if (distance > 1e-6) {
-    // Beside a border, or past one that faces away.
+    // The sample is beside a border, or beyond a triangle that faces away.
     if (!b.locally_closest(best, f, d / distance, 0, 0.05)) return false;
     c.normal = (outside ? d : Vec3(-d)) / distance;
   } else {
@@ -272,15 +272,15 @@ bool TissueCollider::contact_of(const Step& step, std::size_t sample, const Faci
   return true;
 }
 
-// Ends the searches of a group's samples and appends their contacts.
+// Completes the searches of a group's samples and appends their contacts.
 void TissueCollider::end_searches(const Step& step, std::size_t first, std::size_t last, std::vector<Proximity>& out) {
   for (std::size_t i = first; i < last; ++i) {
     const std::size_t k = i - first;
-    if (!looked_[k]) continue;
+    if (!searched_[k]) continue;
     FacingSearch& search = search_[k];
     if (!settled_[k]) {
       seen_.clear();
-      look_at_leaves(step.b, search.x(), search.limit2(), [&](int t) { search.look(t, seen_); });
+      test_leaves(step.b, search.x(), search.limit2(), [&](int t) { search.look(t, seen_); });
       search.settle(known_[i], seen_);
     }
     behind_[i] = 0;
@@ -305,7 +305,7 @@ void TissueCollider::detect(const CollisionMesh& a, const CollisionMesh& b, cons
     const double went = follow(step, g, first, last);
     if (g.near == 0 && !g.deep) continue;
     const double may_come = open_range + a.may_move(g.own) + b.may_move(g.near);
-    if (!needs_a_look(step, g, first, last, may_come)) continue;
+    if (!needs_search(step, g, first, last, may_come)) continue;
     begin_searches(step, first, last, may_come, went < slow ? 4 * slow : 0);
     end_searches(step, first, last, out);
     g.deep = std::any_of(behind_.begin() + std::ptrdiff_t(first), behind_.begin() + std::ptrdiff_t(last),

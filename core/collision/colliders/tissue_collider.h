@@ -58,28 +58,28 @@ class TissueCollider {
     double travelled = 0;    ///< ... b had travelled this far
     bool deep = true;        ///< has a sample behind the surface
   };
-  /// What a step gives to all groups.
+  /// Data of a step that all groups use.
   struct Step {
     const CollisionMesh &a, &b;
     const TissueContactSettings& settings;
-    bool followed;      ///< all motion of both surfaces has been seen
-    double open_range;  ///< of contacts before any motion, m
-    double farthest;    ///< the same with the free motion of both surfaces, m
+    bool followed;      ///< all motion of both surfaces is known
+    double open_range;  ///< largest distance of contacts without motion, m
+    double farthest;    ///< the same plus the free motion of both surfaces, m
   };
   double follow(const Step& step, Group& g, std::size_t first, std::size_t last);
-  bool needs_a_look(const Step& step, Group& g, std::size_t first, std::size_t last, double may_come);
+  bool needs_search(const Step& step, Group& g, std::size_t first, std::size_t last, double may_come);
   void begin_searches(const Step& step, std::size_t first, std::size_t last, double may_come, double margin);
   void end_searches(const Step& step, std::size_t first, std::size_t last, std::vector<Proximity>& out);
   bool contact_of(const Step& step, std::size_t sample, const FacingSearch& search, Proximity& c);
-  double look_around(Group& g, const CollisionMesh& a, const CollisionMesh& b, std::size_t first, std::size_t last,
-                     double may_come, double elsewhere);
+  double find_near_regions(Group& g, const CollisionMesh& a, const CollisionMesh& b, std::size_t first,
+                           std::size_t last, double may_come, double elsewhere);
   void lessen(std::size_t first, std::size_t last, double swept, double at_least);
   std::vector<Group> groups_;
   std::array<long, 2> updates_{};  ///< of the meshes at the last detection
   void begin_gathering(const AabbTree& tree);
   void gather_leaves(const AabbTree& tree, const Aabb& all);
   template <class Look>
-  void look_at_leaves(const CollisionMesh& b, const Vec3& x, const double& limit2, Look&& look);
+  void test_leaves(const CollisionMesh& b, const Vec3& x, const double& limit2, Look&& look);
   const FourTriangles& corners_of(const CollisionMesh& b, std::size_t leaf);
   std::vector<std::span<const int>> leaves_;  ///< triangles of the leaves near a group ...
   std::vector<BoxPack> packs_;                ///< ... and their boxes
@@ -91,7 +91,7 @@ class TissueCollider {
   Vec3 centre_ = Vec3::Zero();
   std::vector<KnownNearest> known_;  ///< of the samples: reduces tests, does not change the result
   std::array<FacingSearch, group> search_;
-  std::array<bool, group> looked_{}, settled_{};  ///< of the samples of a group
+  std::array<bool, group> searched_{}, settled_{};  ///< of the samples of a group
   FacingSearch::Seen seen_;
 };
 

@@ -8,7 +8,7 @@
 
 namespace insula {
 
-/// Closest points of a piece's core and a triangle.
+/// Closest points of a piece's core and of a triangle.
 struct ToolCollider::Narrow {
   double distance = 0;  ///< of the core, unsigned
   Vec3 p, c, bary;
@@ -56,7 +56,7 @@ struct ToolCollider::ContactsOfTriangle {
   const ToolContactSettings& settings;
   int triangle;
   const std::array<Vec3, 3>& tri;
-  Vec3 face;  ///< its normal
+  Vec3 face;  ///< unit normal of the triangle
   std::vector<Proximity>& found;
 
   void add(int on, const Vec3& bary, const Vec3& c, const Vec3& normal, double gap) const {
@@ -75,8 +75,8 @@ struct ToolCollider::ContactsOfTriangle {
     found.push_back(x);
   }
 
-  /// The core goes through this triangle: out along its normal, as deep as the core reaches.
-  void add_through(const Narrow& n) const {
+  /// Adds the contact of a core that intersects this triangle. It is pushed out along the normal by the core's depth.
+  void add_intersecting(const Narrow& n) const {
     double deepest = 0;
     for (const Vec3& q : at.core()) deepest = std::max(deepest, face.dot(tri[0] - q));
     add(triangle, n.bary, n.c, face, -at.radius - std::min(deepest, settings.max_correction));
@@ -86,19 +86,19 @@ struct ToolCollider::ContactsOfTriangle {
     const double t = at.time, clear = n.distance - at.radius;
     const Vec3 d = (n.p - n.c) / n.distance;
     const TriangleFeature f = feature_of(n.bary);
-    // A thin wall is wavy under a flat tool: all that lies under it counts, not only its crests.
+    // A thin wall is wavy under a flat tool. All of it under the tool counts, not only its crests.
     const bool under = settings.offset > 0 && d.dot(face) > 0.8;
     if (!under && !mesh.locally_closest(triangle, f, d, t, 1e-6)) return;
     const bool outside = d.dot(mesh.pseudo_normal(triangle, f, t)) >= 0;
     if (outside && clear <= settings.alarm) add(triangle, n.bary, n.c, d, clear);
     if (outside || n.distance > settings.max_depth) return;
-    // Behind this triangle, but perhaps before another one: only the nearest of all tells, and it is the way out.
+    // The core may be in front of another triangle. The nearest of all decides and gives the direction out.
     NearestPoint e = mesh.nearest(n.p, t, n.distance);
     if (e.behind && e.outward.dot(side) < -0.2) e = mesh.nearest(n.p, t, settings.max_depth, &side);
     if (e.triangle >= 0 && e.behind) add(e.triangle, e.bary, e.point, e.outward, -e.distance - at.radius);
   }
 
-  /// The corners of the core that stand right above the triangle.
+  /// Adds the corners of the core that are right above the triangle.
   void add_corners() const {
     for (const Vec3& q : at.core()) {
       const double h = face.dot(q - tri[0]);
@@ -109,11 +109,11 @@ struct ToolCollider::ContactsOfTriangle {
   }
 };
 
-// Brings a candidate's bounds up to date with where the piece is. False if it is out of range.
+// Updates a candidate's bounds for the pose of the piece. False if it is out of range.
 bool ToolCollider::within_range(Candidate& k, const PlacedPiece& at, const std::array<Vec3, 3>& tri, double range,
                                 Narrow& n) {
   const bool on_path = at.shift.norm() == 0 && !at.expected;
-  // Cheap bound first: sphere about the triangle, segment about the core.
+  // First a cheap bound: sphere around the triangle, segment in the core.
   const Vec3 centre = (tri[0] + tri[1] + tri[2]) / 3;
   const double reach2 =
       std::max({(tri[0] - centre).squaredNorm(), (tri[1] - centre).squaredNorm(), (tri[2] - centre).squaredNorm()});
@@ -131,7 +131,7 @@ bool ToolCollider::within_range(Candidate& k, const PlacedPiece& at, const std::
   return clear <= range;
 }
 
-// Brings the candidates' bounds up to date (on the free way) and appends the contacts within `range`.
+// Updates the candidates' bounds (in the free motion) and appends the contacts within `range`.
 void ToolCollider::evaluate(const CollisionMesh& mesh, const PlacedPiece& at, const ToolContactSettings& settings,
                             double range, std::vector<Proximity>& found) {
   const double t = at.time;
@@ -145,7 +145,7 @@ void ToolCollider::evaluate(const CollisionMesh& mesh, const PlacedPiece& at, co
     if (!within_range(k, at, tri, range, n)) continue;
     const ContactsOfTriangle contacts{mesh, at, settings, k.triangle, tri, mesh.face_normal(k.triangle, t), found};
     if (n.distance < 1e-9) {
-      contacts.add_through(n);
+      contacts.add_intersecting(n);
       continue;
     }
     contacts.add_nearest(n, side);

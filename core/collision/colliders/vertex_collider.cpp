@@ -50,7 +50,7 @@ VertexCollider::Near VertexCollider::nearest(const RoundedPiece& piece, const Po
   return {distance - piece.radius - offset, distance > 1e-7 ? Vec3(pose.q * (d / distance)) : Vec3(Vec3::Zero())};
 }
 
-// Vertices that any piece may come near to, into seen_.
+// Lists in seen_ the vertices that any piece may approach.
 void VertexCollider::list_vertices(const Step& step) {
   for (const RoundedPiece& p : pieces_) {
     Aabb box;
@@ -73,7 +73,7 @@ void VertexCollider::list_vertices(const Step& step) {
   for (const int v : seen_) marked_[std::size_t(v)] = 0;
 }
 
-// Pieces that are near to a vertex or may come near, into near_pieces_. Returns whether there are any.
+// Lists in near_pieces_ the pieces that are near a vertex or may come near it. Returns whether there are any.
 bool VertexCollider::list_pieces(const Step& step, const Vec3& local, double speed) {
   const double alarm = step.settings.alarm, reach = std::max(alarm, 0.2 * alarm + speed);
   near_pieces_.clear();
@@ -85,7 +85,7 @@ bool VertexCollider::list_pieces(const Step& step, const Vec3& local, double spe
   return !near_pieces_.empty();
 }
 
-// The nearest piece at the start of the step.
+// Finds the nearest piece at the start of the step.
 VertexCollider::Touch VertexCollider::nearest_at_start(const Step& step, const Vec3& x0) const {
   Touch best;
   for (const auto& [i, at_least] : near_pieces_) {
@@ -99,9 +99,9 @@ VertexCollider::Touch VertexCollider::nearest_at_start(const Step& step, const V
   return best;
 }
 
-// The piece that a vertex meets first on the free way; piece -1 if it meets none.
-VertexCollider::Touch VertexCollider::first_on_the_way(const Step& step, const Vec3& x0, const Vec3& u,
-                                                       double speed) const {
+// Finds the piece that a vertex meets first in the free motion; piece -1 if it meets none.
+VertexCollider::Touch VertexCollider::first_contact_on_path(const Step& step, const Vec3& x0, const Vec3& u,
+                                                            double speed) const {
   const double alarm = step.settings.alarm;
   Touch first;
   first.when = 1;
@@ -123,7 +123,7 @@ VertexCollider::Touch VertexCollider::first_on_the_way(const Step& step, const V
   return first;
 }
 
-// Where a vertex touches, with the side that it remembers. False if it touches nothing that can push it.
+// Finds the contact of a vertex, and updates the side that the vertex remembers. False if no piece pushes it.
 bool VertexCollider::touch_of(const Step& step, const Vec3& x0, const Vec3& u, double speed, Vec3& memory,
                               Touch& touch) const {
   const bool one_sided = step.settings.one_sided && !side_.isZero(0);
@@ -132,20 +132,20 @@ bool VertexCollider::touch_of(const Step& step, const Vec3& x0, const Vec3& u, d
   touch = nearest_at_start(step, x0);
   if (touch.near.clear > step.settings.alarm) {
     memory.setZero();
-    touch = first_on_the_way(step, x0, u, speed);  // not near now; perhaps on the way
+    touch = first_contact_on_path(step, x0, u, speed);  // not near at the start, but perhaps during the motion
     return touch.piece >= 0;
   }
   Near& near = touch.near;
   const double through = 2 * (pieces_[std::size_t(touch.piece)].radius + step.settings.offset);
   if (near.normal.isZero(0) || near.normal.dot(before) < -0.2) {
-    // Inside the core, or on the piece's other side: back the way it came.
+    // A vertex inside the core, or on the piece's other side, is pushed back in the opposite direction.
     if (before.isZero(0)) return false;
     near.clear = -std::abs(near.clear + through);
     near.normal = before;
     return true;
   }
   memory = step.start.q.conjugate() * near.normal;
-  // Come from behind: the body wraps about the blade's edge.
+  // The vertex came from behind: the body wraps around the blade's edge.
   if (one_sided && memory.dot(side_) < -0.7) {
     memory = side_.normalized();
     near.clear = -(near.clear + through);
@@ -171,7 +171,7 @@ void VertexCollider::add_contact(const Step& step, int v, const Touch& touch, st
   c.local = pose.q.conjugate() * (c.point - pose.p);
   c.start_gap = c.gap;
   if (touch.when > 0) c.start_gap += c.normal.dot(step.start.apply(c.local) - x0);
-  // It comes from the other side of a moving wall: the next step sees it.
+  // A vertex that comes from the other side of a moving wall is left to the next step.
   if (touch.when > 0 && c.start_gap < 0) return;
   c.start_gap = std::max(c.start_gap, -step.settings.max_correction);
   out.push_back(c);
@@ -190,7 +190,7 @@ void VertexCollider::detect(const CollisionMesh& mesh, const Pose& start, const 
     const Vec3 x0 = mesh.vertex(v), u = mesh.free(v), local = to_local * (x0 - start.p);
     const double speed = (motion.head<3>() - u).norm() + step.turn * (local.norm() + u.norm());
     if (!list_pieces(step, local, speed)) {
-      memory.setZero();  // what no piece is near to, nor comes near to, is passed by
+      memory.setZero();  // vertices that no piece approaches are skipped
       continue;
     }
     Touch touch;

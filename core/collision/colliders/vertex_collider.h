@@ -40,15 +40,15 @@ class VertexCollider {
     double at_least;  ///< lower bound of the result of nearest(), m
   };
 
-  /// What a step gives to all vertices.
+  /// Data of a step that all vertices use.
   struct Step {
     const CollisionMesh& mesh;
     const Pose &start, &free;
     const ToolContactSettings& settings;
-    const Vec6& motion;  ///< from start to free
-    double turn;         ///< its angle, rad
+    const Vec6& motion;  ///< displacement from start to free
+    double turn;         ///< angle of the motion, rad
   };
-  /// The piece that touches a vertex, and when in the step.
+  /// The piece that touches a vertex, and the time of the contact as a share of the step.
   struct Touch {
     int piece = -1;
     Near near{1e300, Vec3::Zero()};
@@ -57,7 +57,7 @@ class VertexCollider {
   void list_vertices(const Step& step);
   bool list_pieces(const Step& step, const Vec3& local, double speed);
   Touch nearest_at_start(const Step& step, const Vec3& x0) const;
-  Touch first_on_the_way(const Step& step, const Vec3& x0, const Vec3& u, double speed) const;
+  Touch first_contact_on_path(const Step& step, const Vec3& x0, const Vec3& u, double speed) const;
   bool touch_of(const Step& step, const Vec3& x0, const Vec3& u, double speed, Vec3& memory, Touch& touch) const;
   void add_contact(const Step& step, int v, const Touch& touch, std::vector<Proximity>& out) const;
 

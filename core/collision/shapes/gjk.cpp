@@ -85,7 +85,7 @@ bool reduce(Simplex& s) {
   return true;
 }
 
-// The vertices of the hulls that reach farthest towards one another along v.
+// Support points along v: the vertices of the two hulls that are farthest in the direction of the other hull.
 std::array<int, 2> support(std::span<const Vec3> a, std::span<const Vec3> b, const Vec3& v) {
   int ia = 0, ib = 0;
   double low = v.dot(a[0]), high = v.dot(b[0]);

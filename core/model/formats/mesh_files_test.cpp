@@ -172,7 +172,7 @@ std::string base64(const std::string& in) {
 
 enum class Coding { ascii, inline_base64, inline_zlib, raw, raw_zlib, appended_base64 };
 
-/// The data arrays of a VTK XML file in one coding.
+/// Writes the data arrays of a VTK XML file in one coding.
 class VtuArrays {
  public:
   explicit VtuArrays(Coding coding) : coding_(coding) {}
@@ -182,7 +182,7 @@ class VtuArrays {
   }
   bool header64() const { return coding_ == Coding::raw || coding_ == Coding::inline_zlib; }
 
-  /// The array's element; its content goes to the appended section where the coding has one.
+  /// Returns the array's element. With an appended coding, the content goes to the appended section.
   std::string array(const char* type, const std::string& name, int parts, const std::string& raw,
                     const std::string& text) {
     std::string s = std::string("<DataArray type=\"") + type + "\" Name=\"" + name + "\" NumberOfComponents=\"" +
@@ -223,7 +223,7 @@ class VtuArrays {
   }
 
   Coding coding_;
-  std::string store_;  ///< of the appended section
+  std::string store_;  ///< content of the appended section
 };
 
 std::string vtu(const TetMesh& m, Coding coding) {

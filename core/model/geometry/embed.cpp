@@ -61,11 +61,11 @@ BoxTree tree_of_tetrahedra(const TetMesh& mesh) {
   return BoxTree(boxes);
 }
 
-/// The boundary's triangles, each with the tetrahedron it belongs to.
+/// The boundary's triangles, each with its tetrahedron.
 class Boundary {
  public:
   explicit Boundary(const TetMesh& mesh) : mesh_(mesh), triangles_(boundary_triangles(mesh)) {
-    // boundary_triangles keeps the order of tetrahedra.
+    // boundary_triangles() keeps the order of tetrahedra.
     owner_.reserve(triangles_.size());
     std::vector<Box> boxes;
     boxes.reserve(triangles_.size());
@@ -79,7 +79,7 @@ class Boundary {
     }
     tree_.emplace(boxes);
   }
-  /// The triangle nearest to p.
+  /// Finds the triangle nearest to p.
   int nearest(const Vec3& p) const {
     return tree_->nearest(p, [&](int item) { return (nearest_on(item, p) - p).squaredNorm(); });
   }
@@ -102,7 +102,7 @@ class Boundary {
   std::optional<BoxTree> tree_;
 };
 
-/// The tetrahedron that holds p, and p's weights in it; -1 outside of all.
+/// Finds the tetrahedron that contains p, and p's weights in it; -1 if p is outside of all.
 int tetrahedron_at(const TetMesh& mesh, const BoxTree& tets, const Vec3& p, Weights& weights) {
   int best = -1;
   double best_least = -inside_tolerance;
@@ -110,7 +110,7 @@ int tetrahedron_at(const TetMesh& mesh, const BoxTree& tets, const Vec3& p, Weig
     const Weights w = barycentric(mesh, tet, p);
     const double l = least(w);
     if (l > best_least || (l == best_least && tet < best)) best = tet, weights = w, best_least = l;
-    return l > 0;  // strictly inside: no other tetrahedron of a valid mesh can hold it
+    return l > 0;  // strictly inside: no other tetrahedron of a valid mesh can contain it
   });
   return best;
 }
