@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the step of a body needs of the solver of its system A dq = f. Another solver, or one for another processor, is
-// inserted here. A body owns one solver and knows only this interface. Constraints and collision do not know it.
+// The interface of the solver of a body's system A dq = f. A new solver, or one for another processor, implements it.
+// A body owns one solver and uses only this interface. Constraints and collision do not use it.
 //
 // A step's motion A^-1 (f + H^T lambda) is computed in two halves, with W and lambda between them. The free motion is
 // normally used only through the rows. A direct solver that is not asked for it goes through its factor once in each
@@ -22,8 +22,8 @@ class BodySolver : public ComplianceSolver {
   /// x := A^-1 load, about as accurate as the free motion. An inexact solver begins at x and leaves the lagged forces
   /// out. Call it after begin_motion() of that load.
   virtual void unforced_motion(const VecX& load, VecX& x) = 0;
-  /// Adds H dq of the free motion to delta, by row number. The rows are those of the last begin_compliance(), whose
-  /// acts must be done.
+  /// Adds H dq of the free motion to delta, by row number. The rows are those of the last begin_compliance(), and its
+  /// acts must be finished.
   virtual void add_free_motion(const BodyRows& rows, double* delta) const = 0;
   /// Second half: x := A^-1 (load + H^T lambda), natural order. The rows are those of the last begin_compliance();
   /// lambda is indexed by row number. Without rows it is the free motion.

@@ -35,17 +35,17 @@ class Body : public Component {
   int blocks() const { return blocks_; }  ///< number of 3-blocks of degrees of freedom; 0: it never moves
   /// Position at the start of the step (current q), scene frame.
   virtual Vec3 position(const MaterialPoint& p) const = 0;
-  /// What collision looks ahead along over the step, scene frame. For tools it is the free motion's. For tissue it is
-  /// the last step's displacement: what is held springs back in its free motion, step after step, and goes nowhere.
+  /// Displacement over the step that collision expects, scene frame, m. For tools it is that of the free motion. For
+  /// tissue it is the last step's displacement, since held tissue springs back in its free motion at every step.
   virtual Vec3 expected_displacement(const MaterialPoint& p) const = 0;
-  /// Displacement over the step without any row's force, linearised, scene frame. Valid after free_motion(). What it
-  /// costs tissue: a solve, when first asked in a step; not to be asked by two threads.
+  /// Displacement over the step without constraint forces, linearised, scene frame, m. Valid after free_motion().
+  /// Tissue solves for it at the first call in a step. Two threads must not call it at once.
   virtual Vec3 unforced_displacement(const MaterialPoint& p) const { return expected_displacement(p); }
-  /// Whether the point ever moves; what is held does not.
+  /// Whether the point can move. A fixed node cannot.
   virtual bool can_move(const MaterialPoint&) const { return blocks_ > 0; }
   /// The point's row entries for a direction d: adds d . d(point)/d(q) to the open row.
   virtual void add_row(BodyRows& rows, const MaterialPoint& p, const Vec3& d) const = 0;
-  /// In what time its shape follows a force there, viscous over elastic modulus, s. After the first free motion.
+  /// Retardation time at the point: viscous over elastic modulus, s. Valid after the first free motion.
   virtual double retardation_time(const MaterialPoint&) const { return 0; }
 
  protected:
