@@ -20,6 +20,8 @@ namespace {
 
 class @Name@ final : public RigidBody, public StatesLaw {
  public:
+  @Name@() : RigidBody(2) {}  ///< blocks of degrees of freedom: translation of the origin, rotation vector
+
   Param<File> model{this, {.name = "model", .doc = "URDF of the body, without joints; its mass is the body's"}};
   Param<Vec<Length>> home{this, {.name = "home", .doc = "origin of the model where the spring is without force"}};
   Param<Stiffness> spring{
@@ -52,15 +54,13 @@ class @Name@ final : public RigidBody, public StatesLaw {
     reset();
   }
 
-  // What contact and the picture ask for.
+  // For contact and the picture.
   const ToolModel& tool() const override { return tool_; }
   const std::vector<ConvexPiece>& link_pieces(int) const override { return tool_.pieces; }
   Pose link_pose(int) const override { return pose_; }
   Pose link_free_pose(int) const override { return free_pose_; }
   void place(const Pose& pose, double) override { pose_ = pose; }
 
-  // Degrees of freedom: translation of the origin, rotation vector.
-  int blocks() const override { return 2; }
   Vec3 position(const MaterialPoint& p) const override { return pose_.apply(p.local); }
   Vec3 free_displacement(const MaterialPoint& p) const override {
     return free_.head<3>() + free_.tail<3>().cross(pose_.q * p.local);
@@ -70,7 +70,7 @@ class @Name@ final : public RigidBody, public StatesLaw {
     out.add(1, (pose_.q * p.local).cross(d));
   }
 
-  // Every step: A, and the motion that no row disturbs.
+  // Every step: A, and the motion without row forces.
   void free_motion(const StepContext& context) override {
     const double h = context.h;
     const Vec6 m = masses(), k = stiffnesses();
@@ -83,22 +83,21 @@ class @Name@ final : public RigidBody, public StatesLaw {
   }
 
   // H A^-1 H^T of the rows that touch it, and H times the free motion.
-  void compute_compliance(const BodyRows& r) override {
+  void begin_compliance(const BodyRows& r) override {
     jacobian_.assign(std::size_t(r.count()), Vec6::Zero());
     for (std::size_t i = 0; i < jacobian_.size(); ++i)
       for (int e = r.start[i]; e < r.start[i + 1]; ++e)
         jacobian_[i].segment<3>(3 * r.block[std::size_t(e)]) += r.coeff[std::size_t(e)];
   }
-  void add_compliance(const BodyRows& r, double* w, int stride) override {
-    for (std::size_t i = 0; i < jacobian_.size(); ++i)
+  void add_response(const BodyRows& r, double* w, int stride, double* delta_free) override {
+    for (std::size_t i = 0; i < jacobian_.size(); ++i) {
+      delta_free[r.row[i]] += jacobian_[i].dot(free_);
       for (std::size_t j = 0; j < jacobian_.size(); ++j)
         w[r.row[i] * stride + r.row[j]] += jacobian_[i].dot(compliance_.cwiseProduct(jacobian_[j]));
-  }
-  void add_free_motion(const BodyRows& r, double* delta) const override {
-    for (std::size_t i = 0; i < jacobian_.size(); ++i) delta[r.row[i]] += jacobian_[i].dot(free_);
+    }
   }
 
-  // After the solve: the motion under the rows' forces.
+  // After the solve: the motion with the row forces.
   void apply(const StepContext& context, const BodyRows& r, const double* lambda) override {
     Vec6 pushed = Vec6::Zero();
     for (std::size_t i = 0; i < jacobian_.size(); ++i) pushed += lambda[r.row[i]] * jacobian_[i];
@@ -120,7 +119,7 @@ class @Name@ final : public RigidBody, public StatesLaw {
     builder.violation(row, pose_.p.z() - lowest());
     builder.point(row, link_point(0, Vec3::Zero()), Vec3::UnitZ());
   }
-  // What the row must do, said once more as an energy: the stop is rigid. No step reads it.
+  // The law of the row as an energy, for the contract's test: the stop is rigid.
   StatedLaw law() const override { return StatedLaw::potential(pose_.p.z() < lowest() ? infinite : 0); }
 
   void reset() override {

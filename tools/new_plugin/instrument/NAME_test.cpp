@@ -34,9 +34,9 @@ int marks(bool button, double distance, int steps) {
   return count;
 }
 
-TEST(@Name @, MarksOnceWhileItRests) { EXPECT_EQ(marks(true, 0, 10), 1); }
-TEST(@Name @, MarksEachSpacing) { EXPECT_EQ(marks(true, 0.0041, 83), 5); }
-TEST(@Name @, MarksNothingWithoutTheButton) { EXPECT_EQ(marks(false, 0.005, 20), 0); }
+TEST(@Name@, MarksOnceWhileItRests) { EXPECT_EQ(marks(true, 0, 10), 1); }
+TEST(@Name@, MarksEachSpacing) { EXPECT_EQ(marks(true, 0.0041, 83), 5); }
+TEST(@Name@, MarksNothingWithoutTheButton) { EXPECT_EQ(marks(false, 0.005, 20), 0); }
 
 }  // namespace
 }  // namespace insula
