@@ -32,8 +32,6 @@ class Reader {
     XML_SetCharacterDataHandler(parser_, &Reader::characters);
     XML_SetStartDoctypeDeclHandler(parser_, &Reader::doctype);
     XML_SetXmlDeclHandler(parser_, &Reader::declaration);
-    // The salt is fixed, so that runs are repeatable. The order of attributes does not depend on it.
-    XML_SetHashSalt(parser_, 0x1d5u);
     // The text is one piece, so expat reads in place and scans no token twice.
     if (XML_Parse(parser_, text_.data(), static_cast<int>(text_.size()), XML_TRUE) != XML_STATUS_OK) {
       if (!stopped_) report_syntax_error();
@@ -50,7 +48,11 @@ class Reader {
     return {file_, lines_.line(), lines_.column()};
   }
   std::size_t offset() const {
+#if XML_MAJOR_VERSION > 2 || XML_MINOR_VERSION >= 9  // the older function is deprecated there
+    const auto at = XML_GetCurrentByteIndex64(parser_);
+#else
     const auto at = XML_GetCurrentByteIndex(parser_);
+#endif
     return at < 0 ? text_.size() : static_cast<std::size_t>(at);
   }
   void stop(std::size_t at, std::string text) {
