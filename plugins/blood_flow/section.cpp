@@ -52,7 +52,7 @@ Section cut(const std::vector<Vec3>& nodes, const std::vector<std::array<int, 3>
       const int a = t[k], b = t[(k + 1) % 3];
       const bool up_a = side(a) > 0, up_b = side(b) > 0;
       if (up_a == up_b) continue;
-      (up_a ? out : in) = {std::min(a, b), std::max(a, b)};
+      (up_a ? out : in) = std::minmax({a, b});
     }
     if (in.first >= 0) next[in] = out;
   }
