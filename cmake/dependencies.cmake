@@ -15,6 +15,9 @@ find_package(Boost REQUIRED)
 find_package(ZLIB REQUIRED)
 pkg_check_modules(ASSIMP REQUIRED IMPORTED_TARGET assimp)
 pkg_check_modules(URDFDOM REQUIRED IMPORTED_TARGET urdfdom)
+# Messages of urdfdom are captured through its console_bridge, which newer packages do not link by themselves.
+find_library(CONSOLE_BRIDGE_LIBRARY console_bridge REQUIRED)
+target_link_libraries(PkgConfig::URDFDOM INTERFACE ${CONSOLE_BRIDGE_LIBRARY})
 # Not by pkg-config: lcm.pc asks for glib's development files, which nothing here needs.
 find_library(LCM_LIBRARY lcm REQUIRED)
 find_path(LCM_INCLUDE lcm/lcm.h REQUIRED)

@@ -33,7 +33,11 @@ class LevelDomain : public BaseDomain {
  public:
   template <class Function>
   LevelDomain(Function f, const CGAL::Bbox_3& box, CGAL::Random& random, Vec3 deepest)
+#if CGAL_VERSION_NR >= 1060000000
+      : BaseDomain(f, box, CGAL::parameters::relative_error_bound(1e-5).p_rng(&random)),
+#else
       : BaseDomain(f, box, 1e-5, CGAL::Null_subdomain_index(), &random),
+#endif
         deepest_(deepest),
         reach_(box.xmax() - box.xmin() + box.ymax() - box.ymin() + box.zmax() - box.zmin()) {}
 
