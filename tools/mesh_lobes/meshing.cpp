@@ -39,7 +39,8 @@ class LevelDomain : public BaseDomain {
       : BaseDomain(f, box, 1e-5, CGAL::Null_subdomain_index(), &random),
 #endif
         deepest_(deepest),
-        reach_(box.xmax() - box.xmin() + box.ymax() - box.ymin() + box.zmax() - box.zmin()) {}
+        reach_(box.xmax() - box.xmin() + box.ymax() - box.ymin() + box.zmax() - box.zmin()) {
+  }
 
   struct Construct_initial_points {
     const LevelDomain& domain;
