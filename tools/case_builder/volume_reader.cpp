@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The only file that includes ITK. Its readers are used one by one, without factories and image templates, which keeps
-// this quick to compile.
+// this quick to compile. It includes no Eigen, since ITK may bring another version of it.
 #include "tools/case_builder/volume_reader.h"
 
 #include <itkGDCMImageIO.h>
@@ -9,7 +9,6 @@
 #include <itkNiftiImageIO.h>
 #include <zlib.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -64,18 +63,26 @@ std::vector<float> voxels(const fs::path& file, itk::ImageIOBase& io) {
   return out;
 }
 
-/// Index to right-anterior-superior millimetres from what ITK gives, which is left-posterior-superior.
-void place(mesh_tool::NiftiVolume& v, const fs::path& file, const Eigen::Vector3d& origin,
-           const Eigen::Matrix3d& axes) {
-  if (!(std::abs(axes.determinant()) > 1e-12) || !axes.allFinite() || !origin.allFinite())
+/// Position of the first voxel and steps along the three axes of a volume, mm.
+struct Placement {
+  mesh_tool::Vec3 origin{};
+  std::array<mesh_tool::Vec3, 3> axis{};
+};
+
+/// Sets the map from indices to right-anterior-superior millimetres. ITK gives left-posterior-superior ones.
+void place(mesh_tool::NiftiVolume& v, const fs::path& file, Placement p) {
+  for (mesh_tool::Vec3* x : {&p.origin, &p.axis[0], &p.axis[1], &p.axis[2]}) (*x)[0] *= -1, (*x)[1] *= -1;
+  const auto& [a, b, c] = p.axis;
+  const double volume = dot(a, cross(b, c));
+  if (!(std::abs(volume) > 1e-12) || !std::isfinite(volume) || !std::isfinite(norm(p.origin)))
     fail(file, "its axes or spacing span no volume");
-  const Eigen::Vector3d flip(-1, -1, 1);
-  const Eigen::Matrix3d m = flip.asDiagonal() * axes, inverse = m.inverse();
-  const Eigen::Vector3d o = flip.cwiseProduct(origin), back = -inverse * o;
-  for (int r = 0; r < 3; ++r) {
-    for (int c = 0; c < 3; ++c)
-      v.to_world[std::size_t(4 * r + c)] = m(r, c), v.from_world[std::size_t(4 * r + c)] = inverse(r, c);
-    v.to_world[std::size_t(4 * r + 3)] = o[r], v.from_world[std::size_t(4 * r + 3)] = back[r];
+  // Rows of the inverse matrix.
+  const std::array<mesh_tool::Vec3, 3> inverse{1 / volume * cross(b, c), 1 / volume * cross(c, a),
+                                               1 / volume * cross(a, b)};
+  for (std::size_t r = 0; r < 3; ++r) {
+    for (std::size_t k = 0; k < 3; ++k) v.to_world[4 * r + k] = p.axis[k][r], v.from_world[4 * r + k] = inverse[r][k];
+    v.to_world[4 * r + 3] = p.origin[r];
+    v.from_world[4 * r + 3] = -dot(inverse[r], p.origin);
   }
 }
 
@@ -115,14 +122,13 @@ mesh_tool::NiftiVolume read_file(const fs::path& file, itk::ImageIOBase& io) {
   const std::size_t count = std::size_t(v.size[0]) * std::size_t(v.size[1]) * std::size_t(v.size[2]);
   if (v.value.size() < count) fail(file, "ends early: it holds fewer voxels than its header says");
   v.value.resize(count);
-  Eigen::Matrix3d axes;
-  Eigen::Vector3d origin;
+  Placement placement;
   for (unsigned a = 0; a < 3; ++a) {
     const std::vector<double> d = io.GetDirection(a);
-    for (unsigned r = 0; r < 3; ++r) axes(r, a) = d[r] * io.GetSpacing(a);
-    origin[a] = io.GetOrigin(a);
+    for (unsigned r = 0; r < 3; ++r) placement.axis[a][r] = d[r] * io.GetSpacing(a);
+    placement.origin[a] = io.GetOrigin(a);
   }
-  place(v, file, origin, axes);
+  place(v, file, placement);
   return v;
 }
 
@@ -142,8 +148,8 @@ mesh_tool::NiftiVolume read_series(const fs::path& folder) {
   }
   const std::vector<std::string> files = names->GetFileNames(series[0]);
   mesh_tool::NiftiVolume v;
-  std::vector<Eigen::Vector3d> origins;
-  Eigen::Matrix3d axes;
+  std::vector<mesh_tool::Vec3> origins;
+  Placement placement;
   for (std::size_t k = 0; k < files.size(); ++k) {
     auto io = itk::GDCMImageIO::New();
     read_header(files[k], *io);
@@ -160,22 +166,23 @@ mesh_tool::NiftiVolume read_series(const fs::path& folder) {
     io->SetIORegion(region);
     const std::vector<float> slice = voxels(files[k], *io);
     v.value.insert(v.value.end(), slice.begin(), slice.begin() + std::ptrdiff_t(size[0]) * size[1]);
-    origins.emplace_back(io->GetOrigin(0), io->GetOrigin(1), io->GetOrigin(2));
+    origins.push_back({io->GetOrigin(0), io->GetOrigin(1), io->GetOrigin(2)});
     for (unsigned a = 0; a < 2; ++a)
-      for (unsigned r = 0; r < 3; ++r) axes(r, a) = io->GetDirection(a)[r] * io->GetSpacing(a);
+      for (unsigned r = 0; r < 3; ++r) placement.axis[a][r] = io->GetDirection(a)[r] * io->GetSpacing(a);
   }
   for (std::size_t k = 1; k < origins.size(); ++k)
     for (std::size_t l = 0; l < k; ++l)  // GDCM leaves them in any order then
-      if ((origins[k] - origins[l]).norm() < 1e-4)
+      if (norm(origins[k] - origins[l]) < 1e-4)
         fail(folder, "two of its slices lie at the same place (" + fs::path(files[l]).filename().string() + " and " +
                          fs::path(files[k]).filename().string() + "): leave one out");
-  const Eigen::Vector3d between = (origins.back() - origins.front()) / double(origins.size() - 1);
+  const mesh_tool::Vec3 between = 1 / double(origins.size() - 1) * (origins.back() - origins.front());
   for (std::size_t k = 1; k < origins.size(); ++k)
-    if ((origins[k] - origins[k - 1] - between).norm() > 0.1 * between.norm() + 1e-3)
+    if (norm(origins[k] - origins[k - 1] - between) > 0.1 * norm(between) + 1e-3)
       fail(folder, "its slices do not stand at even distances (between " + fs::path(files[k - 1]).filename().string() +
                        " and " + fs::path(files[k]).filename().string() + "): is one missing?");
-  axes.col(2) = between;
-  place(v, folder, origins.front(), axes);
+  placement.origin = origins.front();
+  placement.axis[2] = between;
+  place(v, folder, placement);
   return v;
 }
 
