@@ -23,6 +23,7 @@ namespace insula::case_builder {
 namespace {
 
 namespace fs = std::filesystem;
+using mesh_tool::operator-, mesh_tool::operator*, mesh_tool::dot, mesh_tool::cross, mesh_tool::norm;
 constexpr double max_voxels = 1e9;
 
 bool ends_with(const std::string& text, const std::string& end) {
