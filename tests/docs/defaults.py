@@ -15,7 +15,7 @@ import subprocess
 import tempfile
 
 ROW = re.compile(r"^\| `(\w+)` \| [^|]* \| ([^|]*) \|", re.M)
-OPTION = re.compile(r"^\s+(?:-\w,)?--([\w-]+) [A-Z]+\S*(?: in \[[^\]]*\])?=(\S+)", re.M)
+OPTION = re.compile(r"^\s+(?:-\w,)?--([\w-]+) [A-Z]+\S*(?: in \[[^\]]*\])?(?:=| \[)([^\s\]]+)", re.M)
 MEMBER = re.compile(r"\b(?:double|float|int|std::u?int\d+_t) (\w+) = (-?[\d.']+(?:e-?\d+)?);")
 # What the end of a C++ name says of its unit.
 SUFFIXES = {

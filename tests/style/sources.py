@@ -5,7 +5,7 @@ import re
 import subprocess
 
 # Folders of files that generators write.
-GENERATED = ("meshes/", "build/", "viewer/page/node_modules/", "viewer/page/dist/")
+GENERATED = ("meshes/", "build/", "viewer/page/node_modules/", "viewer/page/dist/", "viewer/page/src/lcm.ts")
 _TOKEN = re.compile(r"""
     //[^\n]* | /\*.*?\*/                           # comments
   | R"(?P<mark>[^(\s]{0,16})\(.*?\)(?P=mark)"      # raw literals

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The manual's search, in the page itself: it takes the place of MkDocs' own, which fetches its index and starts a worker. A page
 // that was opened from a folder (file://) may do neither; scripts it may load from anywhere. `?q=WORDS` searches at once.
-(function () {
+// Some of MkDocs' templates load this script before the search's own elements.
+function offerSearch() {
   'use strict';
   const input = document.getElementById('mkdocs-search-query');
   const list = document.getElementById('mkdocs-search-results');
@@ -78,4 +79,6 @@
     input.value = words;
     search();
   }
-})();
+}
+if (document.readyState === 'loading') document.addEventListener('DOMContentLoaded', offerSearch);
+else offerSearch();

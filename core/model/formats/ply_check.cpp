@@ -2,6 +2,8 @@
 // Walks a PLY file (Turk, "The PLY Polygon File Format") and checks that everything its header announces is there.
 #include "core/model/formats/ply_check.h"
 
+#include <array>
+#include <bit>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -28,10 +30,17 @@ struct PlyElement {
 
 class PlyWalker {
  public:
-  PlyWalker(const std::filesystem::path& file, std::string_view bytes) : in_(file, bytes) {}
+  PlyWalker(const std::filesystem::path& file, std::string_view bytes) : bytes_(bytes), in_(file, bytes) {}
 
-  void walk() {
+  /// `opposite`: receives the file in the opposite byte order, if it is binary.
+  void walk(std::string* opposite = nullptr) {
     header();
+    if (opposite && !ascii_) {
+      opposite_ = opposite;
+      *opposite = bytes_.substr(0, bytes_.size() - in_.left());
+      const std::string_view now = swap_ != machine_is_little_endian ? "little" : "big";
+      opposite->replace(opposite->find(now), now.size(), now == "big" ? "little" : "big");
+    }
     std::int64_t vertices = 0, faces = 0;
     for (const auto& e : elements_) {
       if (e.name == "vertex") vertices = e.count;
@@ -88,18 +97,29 @@ class PlyWalker {
     in_.fail("its header names an unknown type " + in_quotes(w));
   }
 
+  template <class T>
+  double binary(const char* what) {
+    const T v = in_.binary<T>(swap_, what);
+    if (opposite_) {
+      const auto native = std::bit_cast<std::array<char, sizeof(T)>>(v);
+      if (swap_) opposite_->append(native.begin(), native.end());
+      else opposite_->append(native.rbegin(), native.rend());
+    }
+    return double(v);
+  }
+
   double value(PlyType t) {
     constexpr const char* what = "a value that its header announces";
     if (ascii_) return in_.number(what);
     switch (t) {
-      case PlyType::i8: return in_.binary<std::int8_t>(swap_, what);
-      case PlyType::u8: return in_.binary<std::uint8_t>(swap_, what);
-      case PlyType::i16: return in_.binary<std::int16_t>(swap_, what);
-      case PlyType::u16: return in_.binary<std::uint16_t>(swap_, what);
-      case PlyType::i32: return in_.binary<std::int32_t>(swap_, what);
-      case PlyType::u32: return in_.binary<std::uint32_t>(swap_, what);
-      case PlyType::f32: return double(in_.binary<float>(swap_, what));
-      case PlyType::f64: return in_.binary<double>(swap_, what);
+      case PlyType::i8: return binary<std::int8_t>(what);
+      case PlyType::u8: return binary<std::uint8_t>(what);
+      case PlyType::i16: return binary<std::int16_t>(what);
+      case PlyType::u16: return binary<std::uint16_t>(what);
+      case PlyType::i32: return binary<std::int32_t>(what);
+      case PlyType::u32: return binary<std::uint32_t>(what);
+      case PlyType::f32: return binary<float>(what);
+      case PlyType::f64: return binary<double>(what);
     }
     return 0;
   }
@@ -122,7 +142,9 @@ class PlyWalker {
     }
   }
 
+  std::string_view bytes_;
   ByteCursor in_;
+  std::string* opposite_ = nullptr;
   std::vector<PlyElement> elements_;
   bool ascii_ = true, swap_ = false, formatted_ = false;
 };
@@ -130,5 +152,19 @@ class PlyWalker {
 }  // namespace
 
 void check_ply(const std::filesystem::path& file, std::string_view bytes) { PlyWalker(file, bytes).walk(); }
+
+bool begins_with_line_end(std::string_view ply) {
+  constexpr std::string_view end = "\nend_header";
+  const std::size_t at = ply.find(end);
+  if (at == std::string_view::npos || ply.substr(0, at).find("format binary") == std::string_view::npos) return false;
+  const std::size_t line = ply.find('\n', at + end.size());
+  return line + 1 < ply.size() && (ply[line + 1] == '\n' || ply[line + 1] == '\r');
+}
+
+std::string with_opposite_byte_order(const std::filesystem::path& file, std::string_view bytes) {
+  std::string out;
+  PlyWalker(file, bytes).walk(&out);
+  return out;
+}
 
 }  // namespace insula

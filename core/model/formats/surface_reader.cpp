@@ -14,6 +14,7 @@
 #include "core/base/text.h"
 #include "core/model/formats/assimp_assert.h"
 #include "core/model/formats/file_bytes.h"
+#include "core/model/formats/ply_check.h"
 #include "core/model/formats/raw_tets.h"
 #include "core/model/formats/surface_precheck.h"
 
@@ -43,14 +44,6 @@ class FolderIO : public Assimp::DefaultIOSystem {
   }
   std::filesystem::path folder_;
 };
-
-// If the first byte of binary data is a line end, assimp reads it as part of the header, unless the header has Windows
-// line ends.
-std::string with_clear_end_of_header(std::string ply) {
-  constexpr std::string_view end = "\nend_header\n";
-  if (const auto at = ply.find(end); at != std::string::npos) ply.insert(at + end.size() - 1, 1, '\r');
-  return ply;
-}
 
 /// Hash of finite positions without -0, so that equal ones have equal bits.
 struct VertexHash {
@@ -111,8 +104,8 @@ TriMesh read_surface(const std::filesystem::path& file, double metres_per_unit) 
   const aiScene* scene = nullptr;
   try {
     if (lower_extension(file) == ".ply") {
-      const std::string ply = with_clear_end_of_header(std::move(bytes));
-      scene = importer.ReadFileFromMemory(ply.data(), ply.size(), aiProcess_Triangulate, "ply");
+      if (begins_with_line_end(bytes)) bytes = with_opposite_byte_order(file, bytes);
+      scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), aiProcess_Triangulate, "ply");
     } else {
       scene = importer.ReadFile(std::filesystem::absolute(file).string(), aiProcess_Triangulate);
     }
