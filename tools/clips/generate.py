@@ -41,7 +41,9 @@ def link_text(name, clip, part, file, material, rgba, mass, centre, tensor, piec
     """A <link>; its frame is the tool's for the body, and lies at the hinge for a jaw."""
     base = (0.0, 0.0, 0.0) if part == "body" else mul(clip.hinge, 1e-3)
     at = instruments.vector_text(mul(base, -1.0))
-    t = tensor
+    # Below the accuracy of the sums, the digits depend on the machine.
+    noise = 1e-9 * max(tensor[i][i] for i in range(3))
+    t = [[x if abs(x) > noise else 0.0 for x in row] for row in tensor]
     out = [
         f'  <link name="{name}">',
         "    <inertial>",
