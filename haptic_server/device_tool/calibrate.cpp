@@ -48,7 +48,7 @@ DeviceCalibration fit_calibration(const Pose& rest, const Vec3& right, const Vec
   for (std::size_t i = 0; i < 3; ++i) {
     const Vec3 stroke = to[i] - rest.p;
     if (!(stroke.norm() >= min_stroke_m))
-      throw InputError(fmt::format("the way {} was {:.0f} mm, less than {:.0f} mm", name[i], 1e3 * stroke.norm(),
+      throw InputError(fmt::format("the movement {} was {:.0f} mm, less than {:.0f} mm", name[i], 1e3 * stroke.norm(),
                                    1e3 * min_stroke_m));
     strokes.row(Eigen::Index(i)) = stroke.normalized();
   }
@@ -62,9 +62,9 @@ DeviceCalibration fit_calibration(const Pose& rest, const Vec3& right, const Vec
   for (Eigen::Index i = 0; i < 3; ++i) {
     const double off = std::acos(std::clamp(c.axes.row(i).dot(strokes.row(i)), -1.0, 1.0));
     if (off > largest_error_rad)
-      throw InputError(fmt::format(
-          "the ways do not stand at right angles, or one was mistaken for another ({} is off by {:.0f} degrees)",
-          name[std::size_t(i)], off * 180 / 3.14159265358979));
+      throw InputError(
+          fmt::format("the movements are not at right angles, or two were exchanged ({} is off by {:.0f} degrees)",
+                      name[std::size_t(i)], off * 180 / 3.14159265358979));
   }
   if (const std::string why = calibration_error(c); !why.empty()) throw InputError(why);
   return c;

@@ -6,8 +6,8 @@
 
 #include "core/linalg/kernels.h"
 #include "core/mechanics/deformable_body.h"
-#include "engine/live/headless.h"
 #include "engine/reports/report_writer.h"
+#include "tools/workbench/measured_run.h"
 #include "tools/workbench/workbench.h"
 
 namespace insula {
@@ -116,13 +116,11 @@ void print_table(std::ostream& out, const BenchRecord& r, Simulation& simulation
 }  // namespace
 
 int cmd_bench(const CommandContext& context, const BenchOptions& options) {
-  const OpenedRun opened =
-      open_run(context, options.scene, options.motion, options.motion == "steady", options.threads);
+  const OpenedRun opened = open_for_measuring(context, options);
   if (!opened.simulation) return 2;
   Simulation& simulation = *opened.simulation;
   HeadlessRun run(simulation, opened.motion);
-  const auto warm_up = std::max<std::int64_t>(5, std::int64_t(options.from / simulation.h()));
-  for (std::int64_t k = 0; k < warm_up; ++k) run.step();
+  warm_up(run, options, simulation.h());
   BenchRecord record;
   for (int k = 0; k < options.steps; ++k) {
     run.step();

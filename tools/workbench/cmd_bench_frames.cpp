@@ -11,8 +11,8 @@
 #include "core/bus/codec.h"
 #include "core/bus/lcm_bus.h"
 #include "engine/live/frame.h"
-#include "engine/live/headless.h"
 #include "engine/reports/report_writer.h"
+#include "tools/workbench/measured_run.h"
 #include "tools/workbench/workbench.h"
 
 namespace insula {
@@ -47,14 +47,12 @@ FrameCosts measure(HeadlessRun& run, Simulation& simulation, Bus& bus, int steps
 }  // namespace
 
 int cmd_bench_frames(const CommandContext& context, const BenchOptions& options) {
-  const OpenedRun opened =
-      open_run(context, options.scene, options.motion, options.motion == "steady", options.threads);
+  const OpenedRun opened = open_for_measuring(context, options);
   if (!opened.simulation) return 2;
   Simulation& simulation = *opened.simulation;
   LcmBus bus(bench_url);
   HeadlessRun run(simulation, opened.motion);
-  const auto warm_up = std::max<std::int64_t>(5, std::int64_t(options.from / simulation.h()));
-  for (std::int64_t k = 0; k < warm_up; ++k) run.step();
+  warm_up(run, options, simulation.h());
   const FrameCosts costs = measure(run, simulation, bus, options.steps);
   if (!bus.good()) {
     context.err << "error: " << bus.error() << '\n';

@@ -11,8 +11,8 @@
 #include "core/constraint/problem_file.h"
 #include "core/constraint/solve.h"
 #include "core/linalg/kernels.h"
-#include "engine/live/headless.h"
 #include "engine/reports/report_writer.h"
+#include "tools/workbench/measured_run.h"
 #include "tools/workbench/workbench.h"
 
 namespace insula {
@@ -112,8 +112,7 @@ double sweep_rate(int rows, LawKind law) {
 }  // namespace
 
 int cmd_record_problems(const CommandContext& context, const BenchOptions& options) {
-  const OpenedRun opened =
-      open_run(context, options.scene, options.motion, options.motion == "steady", options.threads);
+  const OpenedRun opened = open_for_measuring(context, options);
   if (!opened.simulation) return 2;
   std::error_code error;
   std::filesystem::create_directories(options.record, error);

@@ -8,8 +8,8 @@
 #include "core/linalg/direct_solver.h"
 #include "core/linalg/kernels.h"
 #include "core/mechanics/deformable_body.h"
-#include "engine/live/headless.h"
 #include "tools/workbench/machine_rates.h"
+#include "tools/workbench/measured_run.h"
 #include "tools/workbench/reference_solvers.h"
 #include "tools/workbench/workbench.h"
 
@@ -212,12 +212,10 @@ void print(std::ostream& out, const Recorded& step, const std::vector<Measured>&
 }  // namespace
 
 int cmd_bench_solvers(const CommandContext& context, const BenchOptions& options) {
-  const OpenedRun opened =
-      open_run(context, options.scene, options.motion, options.motion == "steady", options.threads);
+  const OpenedRun opened = open_for_measuring(context, options);
   if (!opened.simulation) return 2;
   HeadlessRun run(*opened.simulation, opened.motion);
-  const auto steps = std::max<std::int64_t>(5, std::int64_t(options.from / opened.simulation->h()));
-  for (std::int64_t k = 0; k < steps; ++k) run.step();
+  warm_up(run, options, opened.simulation->h());
 
   const MachineRates machine = measure_machine();
   nlohmann::json j;
