@@ -70,8 +70,7 @@ struct ToolCollider::ContactsOfTriangle {
     x.gap = gap;
     x.local = at.pose.q.conjugate() * (c - at.pose.p);
     x.start_gap = gap;
-    if (at.time > 0 || at.shift.norm() > 0)
-      x.start_gap += normal.dot(at.start.apply(x.local) - mesh.point(triangle, bary));
+    if (at.time > 0 || at.shift.norm() > 0) x.start_gap += normal.dot(at.start.apply(x.local) - mesh.point(on, bary));
     found.push_back(x);
   }
 
