@@ -113,8 +113,11 @@ class Mesh:
 
 
 def number(x, digits=3):
-    """Fixed notation without a negative zero: the same value always gives the same text."""
-    text = f"{x:.{digits}f}"
+    """Fixed notation without a negative zero: the same value always gives the same text.
+
+    Rounding first to nine digits keeps the last bits of the machine's sines away from a tie.
+    """
+    text = f"{round(x, 9):.{digits}f}"
     return text[1:] if text.startswith("-") and float(text) == 0.0 else text
 
 
