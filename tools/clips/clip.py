@@ -107,18 +107,15 @@ class Clip:
             out.append(Node(par["leg_length"] + 2.0 * w["half_length"], w["start"], 0.0, w["wx"], w["wy"], 1.0))
         s = out[-1].s
         for piece in self.row.get("shank", []):
-            count = max(1, math.ceil(abs(piece[1]) / (18.0 if fine else 25.0)))
+            count = max(1, math.ceil(abs(piece[1]) / (18.0 if fine else 25.0) - 1e-9))
             out += [Node(s + piece[0] * k / count, self._offset(wx0), 0.0, wx0, wy0, 1.0) for k in range(1, count + 1)]
             s += piece[0]
         most = par["teeth"] - (4 if self.window else 0)  # the window takes its share of the triangles
         teeth = max(2, min(most, round(self.blade_length / 0.7)))
         # The tip is rounded over `dome`; the clamping face stays flat to its end.
         dome = min(0.8 * par["width"][1], 0.3 * self.blade_length)
-        count = (
-            2 * teeth
-            if fine
-            else max(4, math.ceil(math.degrees(self.line.turn_between(self.blade_start, self.line.length)) / 12.0))
-        )
+        bend = math.degrees(self.line.turn_between(self.blade_start, self.line.length))
+        count = 2 * teeth if fine else max(4, math.ceil(bend / 12.0 - 1e-9))
         for k in range(1, count + 1):
             s = self.blade_start + (self.blade_length - dome) * k / count
             wx, wy = self.blade_size(s)
@@ -163,7 +160,7 @@ class Clip:
     def clamping_line(self):
         """Points from the root to the tip, closer where it bends."""
         a, b = self.blade_start, self.line.length
-        count = max(1, math.ceil(math.degrees(self.line.turn_between(a, b)) / 5.0))
+        count = max(1, math.ceil(math.degrees(self.line.turn_between(a, b)) / 5.0 - 1e-9))
         return [add(self.line.frame(mix(a, b, k / count))[0], self.shift) for k in range(count + 1)]
 
     # --- contact model ----------------------------------------------------------------------------------------------
@@ -225,7 +222,7 @@ class Clip:
     def _hulls(self, side, a, b, blade):
         """Cores of rounded pieces along the line, more where it bends, 4 at most."""
         turn = math.degrees(self.line.turn_between(a, b))
-        count = max(2, min(4, math.ceil(turn / 9.0))) if blade else max(1, min(4, math.ceil(turn / 30.0)))
+        count = max(2, min(4, math.ceil(turn / 9.0 - 1e-9))) if blade else max(1, min(4, math.ceil(turn / 30.0 - 1e-9)))
         r, dome = self.par["rounding"], min(0.8 * self.par["width"][1], 0.3 * self.blade_length)
         last, out = b - r if blade else b, []
         for k in range(count):

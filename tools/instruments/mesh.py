@@ -22,7 +22,7 @@ class Mesh:
     def quad(self, a, b, c, d):
         """Split along the shorter diagonal, so that bent strips shade evenly."""
         v = self.vertices
-        if norm(sub(v[a], v[c])) <= norm(sub(v[b], v[d])):
+        if norm(sub(v[a], v[c])) <= norm(sub(v[b], v[d])) + 1e-9:  # a tie is not decided by the last bits
             self.faces += [(a, b, c), (a, c, d)]
         else:
             self.faces += [(a, b, d), (b, c, d)]
