@@ -184,6 +184,8 @@ ClipState Clip::clip_state() const {
   s.gap = data_.gap(opening_);
   s.blade_root = pose_.apply(data_.blade_line.front());
   s.blade_tip = pose_.apply(data_.blade_line.back());
+  s.pose = pose_;
+  s.blade_line = data_.blade_line;
   s.blade_width = data_.blade_width;
   s.applications = applications_;
   return s;

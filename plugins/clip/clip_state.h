@@ -2,6 +2,7 @@
 // State of clips for rules and tools of this family of plugins. The page, reports and general rules do not need it.
 // They read channels.
 #pragma once
+#include <span>
 #include <vector>
 
 #include "core/sim/simulation.h"
@@ -17,6 +18,9 @@ struct ClipState {
   double force = 0;                                          ///< of the blades on what is between them, N
   double gap = 0;                                            ///< between the blades at their middle, m
   Vec3 blade_root = Vec3::Zero(), blade_tip = Vec3::Zero();  ///< line midway between the blades, scene frame, m
+  Pose pose;                                                 ///< of the clip's frame
+  std::span<const Vec3> blade_line;                          ///< from root to tip, clip's frame, m; empty: straight
+  Vec3 normal = Vec3::UnitX();                               ///< unit, of the clamping faces, clip's frame
   double blade_width = 0;                                    ///< m
   int applications = 0;                                      ///< number of times it was released in the field
 };

@@ -4,18 +4,24 @@
 
 Judges a clipped aneurysm. `goal_clipped` measures in every step
 
-- the remnant as a Sindou grade (0 nothing left ... 5 more than three quarters of the sac),
-- flow and narrowing of each branch, in percent of the values at rest,
+- the remnant as a Sindou grade (`grade`: 0 nothing left ... 5 more than three quarters of the sac), and the share of
+the neck above which it stands (`remnant_pct`),
+- flow and narrowing of each branch, in percent of the values at rest (`superior_flow_pct`, `superior_stenosis_pct`),
 - how far the blades' tips reach past the neck, the slit between the blades, and how often a clip was released.
 
 The goal is reached when released clips have held the neck shut, with every branch open, for `hold`. It is lost again
 when the clip is taken back, or when an instructor asks for another placement (`ask_again`). It must then be reached
-with a new release.
+with a new release. While a released clip lies on the neck and the goal is not reached, a message says what is missing.
+
+`fault_slipped` counts shut blades that move on the vessel by more than `limit`, because they hold too little of it or
+because the applier pulls at them. Motion of the whole neck, by pulse and by other tools, does not count.
 
 `fault_stenosis` counts a branch whose flow falls below `limit` for longer than `grace` while no temporary clip is on.
 
 Sources: Sindou, Acevedo, Turjman 1998 (grades); neck_judge.h describes the geometry.
 */
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "core/base/text.h"
@@ -74,7 +80,7 @@ class GoalClipped final : public ExerciseRule {
                           .doc = "least flow of a branch over its flow at rest"}};
   Param<Scalar> sealed{this,
                        {.name = "sealed",
-                        .fallback = "0.05",
+                        .fallback = "0.02",
                         .min = "0",
                         .max = "1",
                         .doc = "narrowest cross-section of the sac over that at rest below which it counts as closed"}};
@@ -90,15 +96,7 @@ class GoalClipped final : public ExerciseRule {
       return error(context, on, "needs a shell_body with a vessel that has a neck and a region \"sac\"");
     vessel_names(context, *this, sac, *vessel);
     branch_names_ = vessel_names(context, *this, branches, *vessel);
-    remnant_ = log.add_measure(id + "_remnant", "Remnant (Sindou grade)", "");
-    neck_ = log.add_measure(id + "_neck", "Neck remnant", "%");
-    past_ = log.add_measure(id + "_tip", "Blade tip past the neck", "mm");
-    slit_ = log.add_measure(id + "_slit", "Slit between the blades", "mm");
-    count_ = log.add_measure(id + "_applications", "Clip applications", "");
-    for (const std::string& b : branch_names_) {
-      flow_.push_back(log.add_measure(id + "_flow_" + b, "Flow of the " + b + " branch", "%"));
-      narrow_.push_back(log.add_measure(id + "_stenosis_" + b, "Stenosis of the " + b + " branch", "%"));
-    }
+    declare_measures(log);
     reset();
   }
 
@@ -125,18 +123,22 @@ class GoalClipped final : public ExerciseRule {
     const VesselState* s = find(vessels, sac());
     const bool shut = s && s->lumen < sealed();
     const NeckJudgement j = judge_.judge(clips, shut);
+    Missing missing;
+    missing.shut = !shut;
+    missing.remnant = shut && j.grade > max_grade();
     bool open = true;
     for (std::size_t i = 0; i < branch_names_.size(); ++i) {
       const VesselState* b = find(vessels, branch_names_[i]);
       if (!b) continue;
-      const double flow = flow_percent(*b), stenosis = 100 * (1 - std::min(1.0, b->lumen));
+      const double flow = std::max(0.0, flow_percent(*b)), stenosis = 100 * (1 - std::min(1.0, b->lumen));
       log.measure(flow_[i], flow, flow >= 100 * min_flow() ? 1 : -1);
+      if (flow < 100 * min_flow() && missing.branch < 0) missing.branch = int(i), missing.flow = flow;
       log.measure(narrow_[i], stenosis, stenosis < 30 ? 1 : stenosis < 50 ? 0 : -1);
       open = open && flow >= 100 * min_flow();
     }
     log.measure(count_, applications, applications <= 2 ? 1 : applications <= 4 ? 0 : -1);
     if (j.clips > 0) {
-      log.measure(remnant_, j.grade, j.grade <= max_grade() ? 1 : j.grade <= 2 ? 0 : -1);
+      log.measure(grade_, j.grade, j.grade <= max_grade() ? 1 : j.grade <= 2 ? 0 : -1);
       log.measure(neck_, 100 * j.neck_open, j.neck_open < 0.1 ? 1 : j.neck_open < 0.5 ? 0 : -1);
       log.measure(past_, 1000 * j.tip_past_neck, j.tip_past_neck > 0 && j.tip_past_neck < 0.004 ? 1 : -1);
       log.measure(slit_, 1000 * j.gap, j.gap < 0.0012 ? 1 : -1);
@@ -145,19 +147,73 @@ class GoalClipped final : public ExerciseRule {
     held_ = good ? held_ + r.h : 0;
     if (good && held_ >= hold()) log.goal(goal_, r.time);
     if (!good && log.goals()[std::size_t(goal_)].done) log.goal_lost(goal_, r.time);
+    if (j.clips == 0 || good) missing = {};
+    say(missing, j, r, log);
   }
   void reset() override {
     held_ = 0;
     asked_ = false;
     min_applications_ = 1;
+    said_ = {};
+    unchanged_ = 0;
   }
 
  private:
+  /// What keeps a clip on the neck from reaching the goal.
+  struct Missing {
+    bool shut = false, remnant = false;
+    int branch = -1;  ///< the first branch with too little flow
+    double flow = 0;  ///< of that, %
+    bool any() const { return shut || remnant || branch >= 0; }
+    bool same(const Missing& o) const { return shut == o.shut && remnant == o.remnant && branch == o.branch; }
+  };
+
+  void declare_measures(ExerciseLog& log) {
+    // Only a second goal of this kind needs its own id in the names.
+    const auto name = [&](const std::string& what) {
+      for (const MeasureState& m : log.measures())
+        if (m.id == what) return id + "_" + what;
+      return what;
+    };
+    grade_ = log.add_measure(name("grade"), "Remnant (Sindou grade)", "");
+    neck_ = log.add_measure(name("remnant_pct"), "Neck remnant", "%");
+    past_ = log.add_measure(name("tip_mm"), "Blade tip past the neck", "mm");
+    slit_ = log.add_measure(name("slit_mm"), "Slit between the blades", "mm");
+    count_ = log.add_measure(name("applications"), "Clip applications", "");
+    for (const std::string& b : branch_names_) {
+      flow_.push_back(log.add_measure(name(b + "_flow_pct"), "Flow of the " + b + " branch", "%"));
+      narrow_.push_back(log.add_measure(name(b + "_stenosis_pct"), "Stenosis of the " + b + " branch", "%"));
+    }
+  }
+
+  /// Says once what is missing, when that has not changed for a second.
+  void say(const Missing& missing, const NeckJudgement& j, const StepReport& r, ExerciseLog& log) {
+    constexpr double steady_s = 1;
+    unchanged_ = missing.same(seen_) ? unchanged_ + r.h : 0;
+    seen_ = missing;
+    if (unchanged_ < steady_s || missing.same(said_)) return;
+    said_ = missing;
+    if (!missing.any()) return;
+    std::string what;
+    if (missing.shut && j.tip_past_neck < 0)
+      what = fmt::format("Blood still enters the aneurysm: the tips end {:.1f} mm before the far side of the neck.",
+                         -1000 * j.tip_past_neck);
+    else if (missing.shut) what = "Blood still enters the aneurysm.";
+    else if (missing.remnant)
+      what = fmt::format("A remnant stands above {:.0f} % of the neck (grade {}).", 100 * j.neck_open, j.grade);
+    if (missing.branch >= 0)
+      what += fmt::format("{}The {} branch flows at {:.0f} %.", what.empty() ? "" : " ",
+                          branch_names_[std::size_t(missing.branch)], missing.flow);
+    log.message(what, r.time);
+  }
+
   Clips clips_;
   Vessels vessels_;
   NeckJudge judge_;
   std::vector<std::string> branch_names_;
-  int goal_ = 0, remnant_ = 0, neck_ = 0, past_ = 0, slit_ = 0, count_ = 0;
+  int goal_ = 0, grade_ = 0, neck_ = 0, past_ = 0, slit_ = 0, count_ = 0;
+  Missing seen_, said_;
+  double unchanged_ = 0;  ///< time for which the same has been missing, s
   std::vector<int> flow_, narrow_;
   double held_ = 0;
   bool asked_ = false;
@@ -218,6 +274,71 @@ class FaultStenosis final : public ExerciseRule {
   std::vector<char> armed_;
 };
 
+class FaultSlipped final : public ExerciseRule {
+ public:
+  Param<std::string> text{
+      this, {.name = "text", .fallback = "A shut clip has slipped on the vessel", .doc = "what the trainee is told"}};
+  Ref<Body> on{this, {.name = "on", .doc = "the artery, a shell_body made from a vessel"}};
+  Param<Length> limit{this,
+                      {.name = "limit",
+                       .fallback = "1.5 mm",
+                       .min = "0.1 mm",
+                       .max = "50 mm",
+                       .doc = "motion of the blades' middle relative to the neck that is not yet slipping"}};
+  Param<Duration> grace{this,
+                        {.name = "grace",
+                         .fallback = "0.5 s",
+                         .min = "0 s",
+                         .max = "60 s",
+                         .doc = "from the closing of the blades, and from the release, to the position that counts"}};
+
+  void declare(PrepareContext& context, const Simulation& simulation, ExerciseLog& log) override {
+    clips_ = Clips(simulation);
+    fault_ = log.add_fault(id, text());
+    const auto* vessel = dynamic_cast<const ShellBody*>(&*on);
+    if (!vessel || !judge_.attach(*vessel))
+      return error(context, on, "needs a shell_body with a vessel that has a neck and a region \"sac\"");
+    shut_.resize(clips_.now().size());
+    reset();
+  }
+  void observe(const StepReport& r, ExerciseLog& log) override {
+    constexpr double open_slit = 1.2e-3, holding = 0.05;  // m, N
+    const std::vector<ClipState>& clips = clips_.now();
+    const Vec3 neck = judge_.neck();
+    for (std::size_t i = 0; i < clips.size(); ++i) {
+      const ClipState& c = clips[i];
+      Shut& at = shut_[i];
+      if (c.on_tray || c.gap > open_slit || (c.force < holding && at.since < grace())) {
+        at = {};
+        continue;
+      }
+      const Vec3 middle = 0.5 * (c.blade_root + c.blade_tip) - neck;
+      if (bool(c.holder) != at.held) at = {.held = bool(c.holder), .slipped = at.slipped};
+      if (at.since < grace()) {
+        at.since += r.h;
+        at.middle = middle;
+      } else if (!at.slipped && (middle - at.middle).norm() > limit()) {
+        at.slipped = true;
+        log.fault(fault_, r.time, 1000 * (middle - at.middle).norm());
+      }
+    }
+  }
+  void reset() override { std::fill(shut_.begin(), shut_.end(), Shut{}); }
+
+ private:
+  /// A clip whose blades hold something.
+  struct Shut {
+    double since = 0;            ///< s
+    Vec3 middle = Vec3::Zero();  ///< of the blades from the neck's middle, m
+    bool held = false;           ///< by an applier
+    bool slipped = false;
+  };
+  Clips clips_;
+  NeckJudge judge_;
+  std::vector<Shut> shut_;
+  int fault_ = 0;
+};
+
 }  // namespace
 }  // namespace insula
 
@@ -225,5 +346,6 @@ INSULA_PLUGIN(clipping_rules) {
   using namespace insula;
   registry.add<GoalClipped>("goal_clipped", Kind::exercise_rule,
                             "reached when clips hold the neck shut and the branches stay open");
+  registry.add<FaultSlipped>("fault_slipped", Kind::exercise_rule, "counts shut clips that slip on the vessel");
   registry.add<FaultStenosis>("fault_stenosis", Kind::exercise_rule, "counts branches closed by a misplaced clip");
 }

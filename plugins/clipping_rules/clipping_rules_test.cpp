@@ -69,6 +69,7 @@ class ClippingRules : public ::testing::Test {
     c.applications = 1;
     c.gap = 0.6e-3;
     c.blade_width = 1.3e-3;
+    c.normal = up.cross(across);
     const double radius = 0.5 * artery->model().neck_diameter;
     c.blade_tip = centre + height * up + (radius + past) * across;
     c.blade_root = centre + height * up - (radius + 3e-3) * across;
@@ -123,17 +124,38 @@ TEST_F(ClippingRules, GradesOfSindou) {
   pinch(1.5e-3);
   EXPECT_EQ(judge(clip(0)).grade, 0) << "flush with the neck";
   EXPECT_EQ(judge(clip(0), false).grade, 5) << "blood still passes";
-  // A clip that reaches the neck's middle only closes half of it.
+  // Blood passes tips that end within the neck, and fills the whole dome.
   const NeckJudgement half = judge(clip(0, -0.5 * artery->model().neck_diameter));
-  EXPECT_EQ(half.grade, 1);
-  EXPECT_GT(half.neck_open, 0.1);
-  EXPECT_LT(half.neck_open, 0.5);
-  EXPECT_EQ(judge(clip(0, -1.1 * artery->model().neck_diameter)).grade, 2);
+  EXPECT_EQ(half.grade, 5);
+  EXPECT_EQ(half.neck_open, 1);
+  pinch(6e-3);
   EXPECT_EQ(judge(clip(2.4e-3)).grade, 4);
+  EXPECT_EQ(judge(clip(2.4e-3)).neck_open, 1);
   EXPECT_EQ(judge(clip(4.8e-3)).grade, 5);
 }
 
+TEST_F(ClippingRules, OpenBladesHoldNothing) {
+  // The wall is not drawn together: it lies farther from the slit's middle than a closed wall.
+  EXPECT_EQ(judge(clip(0)).grade, 5);
+  EXPECT_GT(judge(clip(0)).sac_open, 0.9);
+}
+
+TEST_F(ClippingRules, ASecondClipClosesWhatTheFirstLeaves) {
+  pinch(1.5e-3);
+  const double radius = 0.5 * artery->model().neck_diameter;
+  ClipState near = clip(0, -radius), far = clip(0);
+  far.blade_root = centre - 0.2 * radius * across;
+  NeckJudge j;
+  ASSERT_TRUE(j.attach(*artery));
+  EXPECT_EQ(j.judge({near}, true).grade, 5);
+  EXPECT_EQ(j.judge({far}, true).grade, 5);
+  const NeckJudgement both = j.judge({near, far}, true);
+  EXPECT_EQ(both.clips, 2);
+  EXPECT_EQ(both.grade, 0);
+}
+
 TEST_F(ClippingRules, MoreOfTheSacIsLeftTheHigherTheClip) {
+  pinch(9e-3);
   double last = -1;
   for (double h = 0; h < 4e-3; h += 0.5e-3) {
     const double open = judge(clip(h)).sac_open;
@@ -162,13 +184,13 @@ TEST_F(ClippingRules, GoalNeedsASealedNeckAndOpenBranches) {
   network->vessels[1].flow = 0.5e-6;
   show(1);
   EXPECT_FALSE(log().goals()[0].done) << "a branch is narrowed";
-  EXPECT_NEAR(measure("clip_flow_superior"), 50, 1e-12);
+  EXPECT_NEAR(measure("superior_flow_pct"), 50, 1e-12);
   network->vessels[1].flow = 0.9e-6;
   show(0.4);
   EXPECT_FALSE(log().goals()[0].done) << "not long enough";
   show(0.2);
   EXPECT_TRUE(log().goals()[0].done);
-  EXPECT_EQ(measure("clip_remnant"), 0);
+  EXPECT_EQ(measure("grade"), 0);
 }
 
 TEST_F(ClippingRules, AnotherPlacementCanBeAskedFor) {
@@ -181,6 +203,51 @@ TEST_F(ClippingRules, AnotherPlacementCanBeAskedFor) {
   in_field->applications = 2;
   show(1);
   EXPECT_TRUE(log().goals()[0].done);
+}
+
+TEST_F(ClippingRules, WhatIsMissingIsSaidOnce) {
+  pinch(6e-3);
+  *in_field = clip(2.4e-3);
+  network->vessels[3].lumen = 0;
+  network->vessels[2].flow = 0.7e-6;
+  show(0.9);
+  EXPECT_EQ(log().last_message(), "") << "it may still settle";
+  show(0.5);
+  EXPECT_EQ(log().last_message(),
+            "A remnant stands above 100 % of the neck (grade 4). The inferior branch flows at 70 %.");
+  network->vessels[2].flow = 1e-6;
+  network->vessels[3].lumen = 0.3;
+  show(1.5);
+  EXPECT_EQ(log().last_message(), "Blood still enters the aneurysm.");
+}
+
+TEST_F(ClippingRules, AClipThatMovesOnTheNeckHasSlipped) {
+  const auto slips = [&] { return log().faults()[1].count; };
+  *in_field = clip(0);
+  in_field->force = 1.8;
+  show(0.3);
+  in_field->blade_root += 2e-3 * up;
+  in_field->blade_tip += 2e-3 * up;
+  show(0.5);
+  EXPECT_EQ(slips(), 0) << "the applier has only just let go";
+  for (int i = 0; i < artery->nodes(); ++i) artery->q().segment<3>(3 * i) += 3e-3 * up;
+  in_field->blade_root += 3e-3 * up;
+  in_field->blade_tip += 3e-3 * up;
+  show(0.5);
+  EXPECT_EQ(slips(), 0) << "the clip moves with the whole vessel";
+  in_field->blade_root += 1.6e-3 * across;
+  in_field->blade_tip += 1.6e-3 * across;
+  show(0.5);
+  EXPECT_EQ(slips(), 1);
+  show(2);
+  EXPECT_EQ(slips(), 1) << "one fault for each time it shuts";
+  in_field->gap = 5e-3;
+  show(0.2);
+  in_field->gap = 0.6e-3;
+  show(1);
+  in_field->blade_tip += 4e-3 * across;
+  show(0.2);
+  EXPECT_EQ(slips(), 2);
 }
 
 TEST_F(ClippingRules, AClosedBranchIsOneFault) {

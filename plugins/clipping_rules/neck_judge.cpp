@@ -3,114 +3,101 @@
 #include "plugins/clipping_rules/neck_judge.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/collision/shapes/closest.h"
 
 namespace insula {
-namespace {
-
-constexpr double ring_half_width = 0.5e-3;
-
-double distance_to_segment(const Vec3& x, const Vec3& a, const Vec3& b) {
-  return (x - a - closest_on_segment(x, a, b) * (b - a)).norm();
-}
-
-}  // namespace
 
 bool NeckJudge::attach(const ShellBody& vessel) {
   vessel_ = &vessel;
-  const WallModel& m = vessel.model();
-  const int sac = vessel.region("sac"), bleb = vessel.region("bleb"), neck = vessel.region("neck");
-  if (!(m.neck_diameter > 0) || sac < 0) return false;
-  up_ = m.neck_normal;
-  std::vector<double> area(m.wall.vertices.size(), 0.0);
-  for (const auto& t : m.wall.triangles) {
-    const Vec3 &a = m.wall.vertices[std::size_t(t[0])], &b = m.wall.vertices[std::size_t(t[1])],
-               &c = m.wall.vertices[std::size_t(t[2])];
-    for (int v : t) area[std::size_t(v)] += (b - a).cross(c - a).norm() / 6;
-  }
-  ring_.clear();
-  sac_.clear();
-  bleb_.clear();
-  held_.clear();
-  ring_area_ = sac_area_ = 0;
-  for (int i = 0; i < int(area.size()); ++i) {
-    const Vec3 d = m.wall.vertices[std::size_t(i)] - m.neck_centre;
-    const double height = d.dot(up_), beside = (d - height * up_).norm();
-    if (std::abs(height) < ring_half_width && beside < m.neck_diameter) {
-      ring_.push_back({i, area[std::size_t(i)], height});
-      ring_area_ += area[std::size_t(i)];
+  if (!remnant_.attach(vessel.model())) return false;
+  const auto& all = remnant_.vertices();
+  rim_.clear();
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (std::abs(all[i].height) < SacRemnant::rim_half_width) rim_.push_back(int(i));
+  rim_height_ = 0;
+  for (int i : rim_) rim_height_ += all[std::size_t(i)].height / double(rim_.size());
+  held_.assign(all.size(), 0);
+  height_.assign(all.size(), 0);
+  return !rim_.empty();
+}
+
+bool NeckJudge::on_neck(const ClipState& c, const Vec3& neck) const {
+  if (c.on_tray || c.holder || c.temporary) return false;
+  const Vec3 along = c.blade_tip - c.blade_root;
+  return (neck - c.blade_root - closest_on_segment(neck, c.blade_root, c.blade_tip) * along).norm() < near_neck;
+}
+
+/// Whether a point lies between the closed blades: beside the clamping line by no more than half the blade's width, and
+/// not farther from the line in the direction in which the blades close than closed walls are.
+bool NeckJudge::between(const ClipState& c, const Vec3& point) const {
+  const Vec3 x = c.pose.q.conjugate() * (point - c.pose.p);
+  const std::array<Vec3, 2> straight{c.pose.q.conjugate() * (c.blade_root - c.pose.p),
+                                     c.pose.q.conjugate() * (c.blade_tip - c.pose.p)};
+  const std::span<const Vec3> line = c.blade_line.empty() ? std::span<const Vec3>(straight) : c.blade_line;
+  double nearest = 1e300;
+  Vec3 offset = Vec3::Zero();
+  for (std::size_t k = 0; k + 1 < line.size(); ++k) {
+    const Vec3 a = line[k], along = line[k + 1] - a;
+    double t = (x - a).dot(along) / along.squaredNorm();
+    const double most = k + 2 == line.size() ? 1 + beyond_tip / along.norm() : 1;
+    t = std::clamp(t, 0.0, most);
+    const Vec3 d = x - a - t * along;
+    if (d.squaredNorm() < nearest) {
+      nearest = d.squaredNorm();
+      offset = d;
     }
-    const int r = m.vertex_region[std::size_t(i)];
-    if (r == sac || r == bleb) {
-      sac_.push_back({i, area[std::size_t(i)], height});
-      sac_area_ += area[std::size_t(i)];
-    }
-    if (r == bleb) bleb_.push_back({i, area[std::size_t(i)], height});
-    if (r == sac || r == bleb || r == neck) held_.push_back({i, area[std::size_t(i)], height});
   }
-  return ring_area_ > 0 && sac_area_ > 0;
+  const double across = offset.dot(c.normal);
+  return std::abs(across) <= half_slit && (offset - across * c.normal).norm() <= 0.5 * c.blade_width;
+}
+
+Vec3 NeckJudge::neck() const {
+  Vec3 centre = Vec3::Zero();
+  for (int i : rim_)
+    centre += vessel_->q().segment<3>(3 * remnant_.vertices()[std::size_t(i)].node) / double(rim_.size());
+  return centre;
 }
 
 NeckJudgement NeckJudge::judge(const std::vector<ClipState>& clips, bool sealed) const {
   NeckJudgement out;
-  const auto at = [this](int node) -> Vec3 { return vessel_->q().segment<3>(3 * node); };
-  Vec3 centre = Vec3::Zero();
-  for (const Patch& p : ring_) centre += p.area / ring_area_ * at(p.node);
-  const auto on_neck = [&](const ClipState& c) {
-    return !c.on_tray && !c.holder && !c.temporary &&
-           distance_to_segment(centre, c.blade_root, c.blade_tip) < near_neck;
-  };
-  double height = -1e9, far = -1e9;
+  const auto& all = remnant_.vertices();
+  const auto at = [&](int i) -> Vec3 { return vessel_->q().segment<3>(3 * all[std::size_t(i)].node); };
+  const Vec3 centre = neck();
+  std::fill(held_.begin(), held_.end(), char(0));
+  double past = -1e9;
   out.gap = 1e9;
   for (const ClipState& c : clips) {
-    if (!on_neck(c)) continue;
+    if (!on_neck(c, centre)) continue;
     ++out.clips;
     out.gap = std::min(out.gap, c.gap);
     const Vec3 along = (c.blade_tip - c.blade_root).normalized();
-    // Rest position of the wall between the blades. The blades nearest to the sac's base determine the remnant.
-    double sum = 0, share = 0;
-    for (const Patch& p : held_)
-      if (distance_to_segment(at(p.node), c.blade_root, c.blade_tip) < 0.5 * c.blade_width + 0.3e-3) {
-        sum += p.area * p.height;
-        share += p.area;
-      }
-    const double h = share > 0 ? sum / share - 0.5 * c.blade_width : 1e9;
-    height = out.clips == 1 ? h : std::min(height, h);
-    double reach = -1e9;
-    for (const Patch& p : ring_) reach = std::max(reach, along.dot(at(p.node)));
-    far = std::max(far, along.dot(c.blade_tip) - reach);
+    double far = -1e9;
+    for (int i : rim_) far = std::max(far, along.dot(at(i)));
+    past = std::max(past, along.dot(c.blade_tip) - far);
+    for (std::size_t i = 0; i < all.size(); ++i) held_[i] = held_[i] || between(c, at(int(i)));
   }
   if (out.clips == 0) {
     out.gap = 0;
     return out;
   }
-  out.tip_past_neck = far;
-  out.neck_open = out.sac_open = 0;
-  for (const Patch& p : ring_) {
-    bool closed = false;
-    for (const ClipState& c : clips)
-      closed = closed || (on_neck(c) &&
-                          distance_to_segment(at(p.node), c.blade_root, c.blade_tip) < 0.5 * c.blade_width + margin);
-    if (!closed) out.neck_open += p.area / ring_area_;
-  }
-  for (const Patch& p : sac_)
-    if (p.height > 0 && p.height < height) out.sac_open += p.area / sac_area_;
-  std::size_t lobe = 0;
-  for (const Patch& p : bleb_) lobe += p.height < height;
-  constexpr double trace = 0.1;  // share of ring or sac below which there is no remnant
-  if (!sealed) {
-    out.sac_open = 1;
-    out.grade = 5;
-  } else if (out.sac_open >= 0.75) {
-    out.grade = 5;
-  } else if (out.sac_open > trace) {
-    out.grade = !bleb_.empty() && 2 * lobe > bleb_.size() && out.sac_open < 0.5 ? 3 : 4;
-  } else {
-    out.grade = out.neck_open > 0.5 ? 2 : out.neck_open > trace ? 1 : 0;
-  }
+  out.tip_past_neck = past;
+  const Vec3& up = vessel_->model().neck_normal;
+  for (std::size_t i = 0; i < all.size(); ++i) height_[i] = (at(int(i)) - centre).dot(up) + rim_height_;
+  const SacRemnant::Open open = remnant_.measure(held_, height_, margin);
+  out.neck_open = open.neck;
+  out.sac_open = sealed ? open.sac : 1;
+  out.grade = sealed ? grade(open) : 5;
   return out;
+}
+
+int NeckJudge::grade(const SacRemnant::Open& open) {
+  constexpr double trace = 0.1;  // share of neck or sac below which there is no remnant
+  if (open.sac >= 0.75) return 5;
+  if (open.sac > 2 * trace) return open.bleb > 0.5 && open.sac < 0.5 ? 3 : 4;
+  return open.neck > 0.5 ? 2 : open.neck > trace ? 1 : 0;
 }
 
 }  // namespace insula

@@ -1,25 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The remnant of a clipped aneurysm, computed from the shape of the wall and the line of the blades.
+// The remnant of a clipped aneurysm, computed from the shape of the wall and the blades.
 //
 // Sindou, Acevedo, Turjman 1998 grade the remnant: I less than half of the neck, II more than half of the neck, III a
 // lobe of the sac, IV less than three quarters of the sac, V more. Here 0 means that there is no remnant.
-// - neck: the ring of wall vertices at the neck plane. A vertex is left open when it is farther from the blades than
-//   half their width and `margin`.
-// - sac: the share of the sac's wall that lies between the neck and the blades. A clipped dome leans to any side. The
-//   rest position of the wall that the blades hold therefore decides this.
-// - lobe: the bleb lies on the near side of the blades while most of the sac does not.
+// - A vertex of the wall is held when it lies between the blades of a closed clip.
+// - sac_remnant.h says what blood still reaches. The share of the neck counts what rises above `margin`.
+// - lobe: blood reaches most of the bleb, but not most of the sac.
 #pragma once
 #include <vector>
 
 #include "core/mechanics/shell_body.h"
 #include "plugins/clip/clip_state.h"
+#include "plugins/clipping_rules/sac_remnant.h"
 
 namespace insula {
 
 struct NeckJudgement {
   int grade = 5;         ///< 0..5
-  double neck_open = 1;  ///< share of the neck ring that remains open
-  double sac_open = 1;   ///< share of the sac's wall that remains
+  double neck_open = 1;  ///< share of the neck's circumference above which a remnant is left
+  double sac_open = 1;   ///< share of the sac's wall that blood reaches
   double tip_past_neck =
       0;           ///< distance of the blades' tips beyond the far side of the neck, m; negative: they do not reach it
   double gap = 0;  ///< slit between the blades that close best, m
@@ -28,25 +27,27 @@ struct NeckJudgement {
 
 class NeckJudge {
  public:
-  double margin = 0.6e-3;   ///< m
-  double near_neck = 6e-3;  ///< a clip whose blades are farther from the neck does not count, m
+  double margin = 0.5e-3;       ///< height of a remnant that does not count, as angiography does not show it, m
+  double near_neck = 6e-3;      ///< a clip whose blades are farther from the neck does not count, m
+  double beyond_tip = 0.75e-3;  ///< the fold of the wall just beyond the tips is closed too, m
+  double half_slit = 0.5e-3;    ///< a vertex farther than this from the middle of the slit is not closed, m
 
   /// False if the vessel has no aneurysm (no neck, or no region "sac").
   bool attach(const ShellBody& vessel);
   /// `sealed`: no blood passes the neck. Allocates nothing and has no side effects.
+  Vec3 neck() const;  ///< present middle of the rim at the neck's plane, scene frame, m
   NeckJudgement judge(const std::vector<ClipState>& clips, bool sealed) const;
 
  private:
-  struct Patch {
-    int node;
-    double area;    ///< at rest, m2
-    double height;  ///< at rest, above the neck plane, m
-  };
+  bool on_neck(const ClipState& clip, const Vec3& neck) const;
+  bool between(const ClipState& clip, const Vec3& point) const;
+  static int grade(const SacRemnant::Open& open);
   const ShellBody* vessel_ = nullptr;
-  std::vector<Patch> ring_, sac_;
-  std::vector<Patch> bleb_, held_;  ///< held_: all that blades may hold, with the neck
-  double ring_area_ = 0, sac_area_ = 0;
-  Vec3 up_ = Vec3::UnitZ();  ///< towards the dome
+  SacRemnant remnant_;
+  std::vector<int> rim_;   ///< indices of the remnant's vertices at the neck's plane
+  double rim_height_ = 0;  ///< of the rim's middle above the neck's plane at rest, m
+  mutable std::vector<char> held_;
+  mutable std::vector<double> height_;
 };
 
 }  // namespace insula

@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Exercise 3 with both scripted motions.
+// Exercise 3 with its scripted motions: the good one in each shipped case, and each mistake.
 #include "tests/exercises/play_motion.h"
 
 namespace insula {
 namespace {
 
-const std::filesystem::path clipping_scene =
-    std::filesystem::path(INSULA_SOURCE_DIR) / "scenes/training/3_clipping.xml";
+const std::filesystem::path scenes = std::filesystem::path(INSULA_SOURCE_DIR) / "scenes";
+const std::filesystem::path clipping_scene = scenes / "training/3_clipping.xml";
 
-TEST(Clipping, AnAngledClipClosesTheNeckAndSparesTheBranches) {
-  test::Played o = test::play_motion(clipping_scene, "steady");
+class ShippedCase : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Clipping, ShippedCase,
+                         testing::Values("training/3_clipping.xml", "cases/clipping_narrow_neck.xml"),
+                         [](const auto& one) { return std::filesystem::path(one.param).stem().string(); });
+
+TEST_P(ShippedCase, AnAngledClipClosesTheNeckAndSparesTheBranches) {
+  test::Played o = test::play_motion(scenes / GetParam(), "steady");
   ASSERT_TRUE(o.ran);
   EXPECT_TRUE(o.finite);
   EXPECT_EQ(o.state, ExerciseState::done);
@@ -18,10 +23,12 @@ TEST(Clipping, AnAngledClipClosesTheNeckAndSparesTheBranches) {
   EXPECT_EQ(o.events["clip_released"], 1);
   EXPECT_EQ(o.events["rupture"], 0);
   for (const auto& [id, count] : o.faults) EXPECT_EQ(count, 0) << id;
-  EXPECT_LE(o.measures["clip_remnant"], 2);
-  EXPECT_GT(o.measures["clip_flow_superior"], 90);
-  EXPECT_GT(o.measures["clip_flow_inferior"], 90);
-  EXPECT_LT(o.measures["clip_slit"], 1.0);
+  EXPECT_EQ(o.measures["grade"], 0);
+  EXPECT_LT(o.measures["remnant_pct"], 10);
+  EXPECT_GT(o.measures["superior_flow_pct"], 90);
+  EXPECT_GT(o.measures["inferior_flow_pct"], 90);
+  EXPECT_GT(o.measures["tip_mm"], 0.5);
+  EXPECT_LT(o.measures["slit_mm"], 1.0);
 }
 
 TEST(Clipping, AClipAcrossABranchIsAFault) {
@@ -31,8 +38,42 @@ TEST(Clipping, AClipAcrossABranchIsAFault) {
   EXPECT_EQ(o.state, ExerciseState::running);
   EXPECT_LT(o.goals["clip"], 0);
   EXPECT_EQ(o.faults["stenosis"], 1);
-  EXPECT_LT(o.measures["clip_flow_inferior"], 50);
-  EXPECT_GT(o.measures["clip_stenosis_inferior"], 50);
+  EXPECT_LT(o.measures["inferior_flow_pct"], 50);
+  EXPECT_GT(o.measures["inferior_stenosis_pct"], 50);
+}
+
+TEST(Clipping, AClipTooHighLeavesARemnant) {
+  test::Played o = test::play_motion(clipping_scene, "too_high");
+  ASSERT_TRUE(o.ran);
+  EXPECT_LT(o.goals["clip"], 0);
+  EXPECT_GE(o.measures["grade"], 2);
+  EXPECT_GT(o.measures["remnant_pct"], 50);
+  EXPECT_GT(o.measures["superior_flow_pct"], 90);
+  EXPECT_GT(o.measures["inferior_flow_pct"], 90);
+}
+
+TEST(Clipping, AClipTooShortLetsBloodIn) {
+  test::Played o = test::play_motion(clipping_scene, "too_short");
+  ASSERT_TRUE(o.ran);
+  EXPECT_LT(o.goals["clip"], 0);
+  EXPECT_EQ(o.measures["grade"], 5);
+  EXPECT_LT(o.measures["tip_mm"], 0);
+}
+
+TEST(Clipping, AShutClipThatIsPulledSlipsOff) {
+  test::Played o = test::play_motion(clipping_scene, "slipping");
+  ASSERT_TRUE(o.ran);
+  EXPECT_LT(o.goals["clip"], 0);
+  EXPECT_EQ(o.faults["slipped"], 1);
+  EXPECT_EQ(o.events["clip_released"], 0);
+}
+
+TEST(Clipping, ATurnedClipClosesOnAPerforator) {
+  test::Played o = test::play_motion(clipping_scene, "perforator_caught");
+  ASSERT_TRUE(o.ran);
+  EXPECT_LT(o.goals["clip"], 0);
+  EXPECT_EQ(o.events["perforator_shut"], 1);
+  EXPECT_EQ(o.faults["perforator_shut"], 1);
 }
 
 }  // namespace

@@ -22,8 +22,8 @@ TEST(Rupture, MasteredWithTemporaryAndFinalClip) {
   EXPECT_LT(o.longest["since_rupture"], 300);
   EXPECT_EQ(o.faults["occlusion_over"], 0);
   EXPECT_EQ(o.faults["stenosis"], 0);
-  EXPECT_GT(o.measures["clip_flow_superior"], 75);
-  EXPECT_GT(o.measures["clip_flow_inferior"], 75);
+  EXPECT_GT(o.measures["superior_flow_pct"], 75);
+  EXPECT_GT(o.measures["inferior_flow_pct"], 75);
   EXPECT_GT(o.min_pressure, -40) << "Pa: the torn sac that a clip cuts off comes to the pressure outside";
 }
 

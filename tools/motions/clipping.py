@@ -6,9 +6,14 @@
 
 3_clipping_steady       an angled clip across the neck, released, the field left
 3_clipping_careless     a straight clip across the inferior branch: the branch closes
+3_clipping_too_high     an angled clip across the middle of the dome: half of the sac remains
+3_clipping_too_short    a mini clip whose tips end within the neck: blood still enters
+3_clipping_slipping     the applier pulls at the shut clip, which slips off the neck
+3_clipping_perforator   blades turned across the superior branch: they close on the perforator behind it too
 4_rupture_steady        the dome ruptures; suction; temporary clip on the parent artery; neck clipped; temporary clip
                         removed
 4_rupture_late          the same rupture, but nobody clips
+clipping_*_steady       the same as 3_clipping_steady for the other arteries, in OUTPUT_FOLDER/../cases
 A clip's place is given by where its blades' middle is, where they point to and in which direction they close; the
 applier's pose follows from the clip's own grip. The same input gives the same bytes.
 """
@@ -19,6 +24,15 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 CASE = "anterior_superior"
+# Where the blades of an angled clip lie across the neck of each artery. The wall moves with the blades, so these are
+# poses of the hand and not of the closed clip. They lie amid the placements that leave no remnant.
+#   lift, slide, side: of the blades' middle along the dome's axis, from the surgeon inward, and along the closing, mm
+#   turn, pitch: about the dome's axis, and of the tips towards it, degrees
+#   press: how much deeper the hand is while the blades close, mm
+NECK = {
+    "anterior_superior": dict(lift=-0.9, slide=1.2, turn=19, pitch=2, side=0.3, press=0.4),
+    "narrow_neck": dict(lift=-1.0, slide=1.2, turn=-10, pitch=3, side=0, press=0.4),
+}
 OUT_OF_FIELD = 32.0  # mm along the applier's shaft
 VIEW = (0.93, 0.25, 0.27)  # towards the surgeon
 
@@ -43,6 +57,13 @@ def unit(a):
 def across(a, n):
     """The part of a perpendicular to n, unit."""
     return unit(add(a, n, -dot(a, n)))
+
+
+def turned(v, axis, degrees):
+    """v turned about a unit axis."""
+    a = math.radians(degrees)
+    k = dot(axis, v) * (1 - math.cos(a))
+    return add([math.cos(a) * x + k * y for x, y in zip(v, axis)], cross(axis, v), math.sin(a))
 
 
 def quaternion(x, y, z):
@@ -118,10 +139,11 @@ class Script:
         )
 
 
-def place_clip(hand, pose, approach=2.5, close=1.6, wait=0.6, open_at=OUT_OF_FIELD):
-    """From outside the field: go in, open the blades `open_at` mm before the place, let the spring close, let go, draw
-    back."""
+def place_clip(hand, pose, press=(0, 0, 0), approach=2.5, close=1.6, wait=0.6, open_at=OUT_OF_FIELD):
+    """From outside the field: go in, open the blades `open_at` mm before the place, let the spring close while the hand
+    moves by `press`, move back, let go, leave."""
     position, q, shaft = pose
+    pressed = add(position, press)
     outside = add(position, shaft, OUT_OF_FIELD)
     opened = add(position, shaft, open_at)
     near = add(position, shaft, 3)
@@ -134,7 +156,10 @@ def place_clip(hand, pose, approach=2.5, close=1.6, wait=0.6, open_at=OUT_OF_FIE
     hand.key(0.8, position, q, 1)
     hand.key(0.3, position, q, 1)
     hand.key(0.02, position, q)
-    hand.key(close, position, q)
+    hand.key(0.25, pressed, q)
+    hand.key(0.75, pressed, q)
+    hand.key(0.3, position, q)
+    hand.key(close - 1.3, position, q)
     hand.key(0.02, position, q, 0, 1)
     hand.key(0.2, position, q, 0, 1)
     hand.key(0.02, position, q)
@@ -164,6 +189,7 @@ def take_clip(hand, pose, approach=2.5):
 
 class Field:
     def __init__(self, case):
+        self.case = case
         self.vessel = json.loads((ROOT / "meshes/arteries" / case / "vessel.json").read_text())
         self.view = unit(VIEW)
 
@@ -176,12 +202,36 @@ class Field:
         k = min(len(points) - 2, max(1, int(share * (len(points) - 1))))
         return points[k], unit(add(points[k + 1], points[k - 1], -1))
 
-    def neck(self, clip, lift, slide):
-        """Blades across the neck: they come from the surgeon's side, perpendicular to the dome's axis."""
+    def neck(self, clip, lift, slide, turn=0.0, pitch=0.0, side=0.0):
+        """Blades across the neck: they come from the surgeon's side. NECK says what the arguments mean."""
         up = unit(self.vessel["neck"]["normal"])
-        outward = across(self.view, up)
-        middle = add(add(self.vessel["neck"]["centre"], up, lift), outward, -slide)
-        return clip.applier_pose(middle, [-v for v in outward], cross(up, outward))
+        outward = turned(across(self.view, up), up, turn)
+        closing = cross(up, outward)
+        middle = add(add(add(self.vessel["neck"]["centre"], up, lift), outward, -slide), closing, side)
+        return clip.applier_pose(middle, turned([-v for v in outward], closing, pitch), closing)
+
+    def clip_neck(self, hand):
+        """The angled clip of the tray across the neck, well placed."""
+        place = dict(NECK[self.case])
+        depth = place.pop("press")
+        press = [-depth * v for v in unit(self.vessel["neck"]["normal"])]
+        place_clip(hand, self.neck(Clip("angled"), **place), press)
+
+    def pull_shut_clip(self, hand):
+        """The angled clip well placed, and pulled away before the applier lets it go or opens it."""
+        place = {k: v for k, v in NECK[self.case].items() if k != "press"}
+        position, q, shaft = self.neck(Clip("angled"), **place)
+        outside = add(position, shaft, OUT_OF_FIELD)
+        hand.key(0.3, outside, q)
+        hand.key(0.05, outside, q, 1)
+        hand.key(0.5, outside, q, 1)
+        hand.key(2.5, add(position, shaft, 3), q, 1)
+        hand.key(0.8, position, q, 1)
+        hand.key(0.3, position, q, 1)
+        hand.key(0.02, position, q)
+        hand.key(1.6, position, q)
+        hand.key(1.5, add(position, shaft, 8), q)
+        hand.key(1.0, outside, q)
 
     def branch(self, clip, name, share, past, square=1.0):
         """Blades across a branch, tips `past` beyond its axis; square 1: at right angles, 0: along the view."""
@@ -201,19 +251,33 @@ def suction_poses(field):
     return add(low, shaft, 28), low, q
 
 
+def one_clip(path, clip, place, wait=8):
+    """A script of one clip: loaded, placed by `place`, then `wait` seconds outside the field."""
+    script = Script()
+    script.command(0.1, "ask", "applier load " + clip)
+    place(script.right)
+    script.right.key(wait, steady_outside(script), last_q(script))
+    script.write(path)
+
+
 def exercise_3(folder):
     field = Field(CASE)
-    steady = Script()
-    steady.command(0.1, "ask", "applier load angled")
-    place_clip(steady.right, field.neck(Clip("angled"), -1.9, 2.3))
-    steady.right.key(8, steady_outside(steady), last_q(steady))
-    steady.write(folder / "3_clipping_steady.csv")
+    one_clip(folder / "3_clipping_steady.csv", "angled", field.clip_neck)
 
-    careless = Script()
-    careless.command(0.1, "ask", "applier load straight")
-    place_clip(careless.right, field.branch(Clip("straight"), "inferior", 0.45, 1.8))
-    careless.right.key(12, steady_outside(careless), last_q(careless))
-    careless.write(folder / "3_clipping_careless.csv")
+    def at(pose):
+        return lambda hand: place_clip(hand, pose)
+
+    across_branch = field.branch(Clip("straight"), "inferior", 0.45, 1.8)
+    one_clip(folder / "3_clipping_careless.csv", "straight", at(across_branch), 12)
+    one_clip(folder / "3_clipping_too_high.csv", "angled", at(field.neck(Clip("angled"), 1.6, 1.8, 19)), 4)
+    one_clip(folder / "3_clipping_too_short.csv", "mini", at(field.neck(Clip("mini"), 0.2, -0.6, 19)), 4)
+    one_clip(folder / "3_clipping_slipping.csv", "angled", field.pull_shut_clip, 2)
+    beside = field.neck(Clip("angled"), -0.9, 2.2, -45, 2, 1.5)
+    one_clip(folder / "3_clipping_perforator.csv", "angled", at(beside), 4)
+    cases = folder.parent / "cases"
+    for case in NECK:
+        if case != CASE and cases.is_dir():
+            one_clip(cases / f"clipping_{case}_steady.csv", "angled", Field(case).clip_neck)
 
 
 def steady_outside(script):
@@ -244,7 +308,7 @@ def exercise_4(folder):
     script.right.key(0.8, away, last_q(script))
     script.command(round(script.right.t + 0.2, 3), "ask", "applier load angled")
     script.right.key(0.5, away, last_q(script))
-    place_clip(script.right, field.neck(Clip("angled"), -1.9, 2.3))
+    field.clip_neck(script.right)
     take_clip(script.right, temporary)
     script.right.key(8, steady_outside(script), last_q(script))
     suction(script, script.right.t - 10)
@@ -253,7 +317,7 @@ def exercise_4(folder):
     late = Script()
     late.command(1, "ask", "bleeding rupture")
     suction(late, 12)
-    pose = field.neck(Clip("angled"), -1.9, 2.3)
+    pose = field.neck(Clip("angled"), -0.9, 1.5)
     late.right.key(0, add(pose[0], pose[2], OUT_OF_FIELD), pose[1])
     late.right.key(301, add(pose[0], pose[2], OUT_OF_FIELD), pose[1])
     late.write(folder / "4_rupture_late.csv")
