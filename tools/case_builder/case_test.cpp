@@ -98,8 +98,19 @@ TEST_P(RealCase, BecomesACaseWhoseExercisesTheMotionsMadeForItFinish) {
   const Played c = play(made.path / "3_clipping.xml", 15);
   ASSERT_TRUE(c.loaded);
   EXPECT_TRUE(c.finite);
-  EXPECT_EQ(c.state, ExerciseState::done);
-  EXPECT_LE(c.measures.at("grade"), 2);
+  // A neck wider than the blades cannot be shut by one clip. The case says so, and its motion must not pass.
+  const bool blades_reach = c.measures.at("tip_mm") > 0;
+  bool said_too_short = false;
+  const Json written = read_json(made.path / "scenes.json");
+  for (const Json& note : written.at("notes"))
+    said_too_short = said_too_short || note.value("advice", std::string()).starts_with("Expect a remnant");
+  EXPECT_NE(blades_reach, said_too_short);
+  EXPECT_EQ(c.state, blades_reach ? ExerciseState::done : ExerciseState::running);
+  if (blades_reach) {
+    EXPECT_LE(c.measures.at("grade"), 2);
+  } else {
+    EXPECT_EQ(c.measures.at("grade"), 5);
+  }
   EXPECT_LT(c.measures.at("slit_mm"), 1.2);
   for (const auto& [id, count] : c.faults) EXPECT_EQ(count, 0) << id;
   for (const auto& [id, value] : c.measures)
@@ -118,8 +129,10 @@ TEST_P(RealCase, BecomesACaseWhoseExercisesTheMotionsMadeForItFinish) {
   const Played r = play(made.path / "4_rupture.xml", 40);
   ASSERT_TRUE(r.loaded);
   EXPECT_TRUE(r.finite);
-  EXPECT_EQ(r.state, ExerciseState::done);
-  EXPECT_LE(r.measures.at("grade"), 2);
+  EXPECT_EQ(r.state, blades_reach ? ExerciseState::done : ExerciseState::running);
+  if (blades_reach) {
+    EXPECT_LE(r.measures.at("grade"), 2);
+  }
   for (const auto& [id, count] : r.faults) EXPECT_EQ(count, 0) << id;
 }
 
