@@ -18,10 +18,10 @@ TEST(Clipping, AnAngledClipClosesTheNeckAndSparesTheBranches) {
   EXPECT_EQ(o.events["clip_released"], 1);
   EXPECT_EQ(o.events["rupture"], 0);
   for (const auto& [id, count] : o.faults) EXPECT_EQ(count, 0) << id;
-  EXPECT_LE(o.measures["clip_remnant"], 2);
-  EXPECT_GT(o.measures["clip_flow_superior"], 90);
-  EXPECT_GT(o.measures["clip_flow_inferior"], 90);
-  EXPECT_LT(o.measures["clip_slit"], 1.0);
+  EXPECT_LE(o.measures["grade"], 2);
+  EXPECT_GT(o.measures["superior.flow_pct"], 90);
+  EXPECT_GT(o.measures["inferior.flow_pct"], 90);
+  EXPECT_LT(o.measures["slit"], 1.0);
 }
 
 TEST(Clipping, AClipAcrossABranchIsAFault) {
@@ -31,8 +31,8 @@ TEST(Clipping, AClipAcrossABranchIsAFault) {
   EXPECT_EQ(o.state, ExerciseState::running);
   EXPECT_LT(o.goals["clip"], 0);
   EXPECT_EQ(o.faults["stenosis"], 1);
-  EXPECT_LT(o.measures["clip_flow_inferior"], 50);
-  EXPECT_GT(o.measures["clip_stenosis_inferior"], 50);
+  EXPECT_LT(o.measures["inferior.flow_pct"], 50);
+  EXPECT_GT(o.measures["inferior.stenosis_pct"], 50);
 }
 
 }  // namespace
