@@ -98,9 +98,10 @@ Outcome perform(const std::string& id, int hand = -1) {
   for (const GoalState& g : log.goals()) out.goals[g.id] = g.done ? g.time : -1;
   for (int h = 0; h < 2; ++h) out.device[h] = run.haptics().hand(h).device.p;
   for (int h = 0; h < 2; ++h)
-    if (motion.has(h))
+    if (motion.has(h)) {
       EXPECT_LT((out.device[h] - motion.at(h, 1e9).pose.p).norm(), 0.001)
           << "hand " << h << " did not follow its motion to the end";
+    }
   return out;
 }
 
