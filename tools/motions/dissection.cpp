@@ -81,12 +81,12 @@ class Trainer : public Surgeon {
     const MaterialPoint at = nearest(*frontal, centre_ + Vec3(4, 5, 0) * mm);
     over = 0;
     press(
-        1, outward_, Vec3(-0.3, 1, 0.1).normalized(), [&] { return frontal->position(at); }, 12 * mm,
+        1, outward_, Vec3(-0.3, 0.6, 0.8).normalized(), [&] { return frontal->position(at); }, 16 * mm,
         [&] {
           over = force(1, *frontal) > 0.24 ? over + 0.05 : 0;
           return over > 0.2;
         });
-    hands_.wait(0.2);
+    hands_.wait(0.4);
     hands_.move(0.6, right);
     // And presses the bleb with the flat of the blade.
     const Vec3 out = (middle_of("bleb") - middle_of("sac")).normalized(),
