@@ -69,6 +69,13 @@ void ChannelBase::set_groups(std::vector<std::string> names) {
 
 void ChannelBase::reset() { std::fill(values_.begin(), values_.end(), std::numeric_limits<double>::quiet_NaN()); }
 
+int ChannelBase::judged(double si) const {
+  const auto some = [](const Bounds& b) { return b[0] || b[1]; };
+  const auto within = [&](const Bounds& b) { return some(b) && (!b[0] || si >= *b[0]) && (!b[1] || si <= *b[1]); };
+  if (within(good_)) return 1;
+  return within(high_) || (!some(good_) && !some(high_)) ? 0 : -1;
+}
+
 std::string_view ChannelBase::display_unit() const { return spec_.display.empty() ? quantity_.si : spec_.display; }
 
 std::string ChannelBase::text(double si) const {

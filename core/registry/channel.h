@@ -47,6 +47,7 @@ struct ChannelSpec {
   Band good = {};                 ///< shown in green inside
   Band high = {};                 ///< shown in amber inside; in red outside of both bands
   Role role = Role::none;
+  bool measure = false;  ///< a measure of the exercise: the report, the page and the end of a session show it
 };
 
 /// Base of every channel, with the data for frame, report and reference.
@@ -83,6 +84,13 @@ class ChannelBase {
   using Bounds = std::array<std::optional<double>, 2>;
   const Bounds& good() const { return good_; }  ///< SI
   const Bounds& high() const { return high_; }
+  /// Bands that are known only after loading, such as a parameter's limit, SI.
+  void set_bands(const Bounds& good, const Bounds& high = {}) {
+    good_ = good;
+    high_ = high;
+  }
+  /// 1 within the good band, 0 within the high band or without bands, -1 outside of both.
+  int judged(double si) const;
   std::string_view display_unit() const;           ///< as shown; may be empty
   double display_scale() const { return scale_; }  ///< shown number = SI value * scale
   /// A value as it is shown, with its unit.

@@ -7,7 +7,8 @@
 namespace insula {
 
 struct Event {
-  std::string kind;  ///< "goal", "fault", "message", "end", "reset", "warning", or one that a component declares
+  /// "goal", "goal_lost", "fault", "message", "end", "reopened", "reset", "warning", or one that a component declares
+  std::string kind;
   std::string id;    ///< of the component, goal or fault
   std::string text;  ///< for the trainee
   double value = 0;  ///< SI; its meaning depends on the kind

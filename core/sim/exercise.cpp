@@ -6,7 +6,9 @@
 #include <cmath>
 
 #include "core/base/input_error.h"
+#include "core/sim/channel_table.h"
 #include "core/sim/motion.h"
+#include "core/sim/simulation.h"
 
 namespace insula {
 
@@ -25,8 +27,9 @@ int ExerciseLog::add_timer(std::string id, std::string text, double limit_s) {
   return int(timers_.size()) - 1;
 }
 
-int ExerciseLog::add_measure(std::string id, std::string text, std::string unit) {
-  measures_.push_back({std::move(id), std::move(text), std::move(unit), false, 0, 0});
+int ExerciseLog::add_measure(std::string id, std::string text, std::string unit,
+                             const std::array<std::optional<double>, 2>& band) {
+  measures_.push_back({std::move(id), std::move(text), std::move(unit), false, 0, 0, band});
   return int(measures_.size()) - 1;
 }
 
@@ -87,6 +90,13 @@ void ExerciseLog::fail(std::string why, double time) {
   events.emit({"end", "failed", std::move(why), 0, time});
 }
 
+void ExerciseLog::reopen(double time) {
+  if (state_ != ExerciseState::done) return;
+  state_ = ExerciseState::running;
+  end_time_ = -1;
+  events.emit({"reopened", "", "The exercise goes on", 0, time});
+}
+
 void ExerciseLog::reset() {
   for (GoalState& g : goals_) {
     g.done = false;
@@ -119,13 +129,42 @@ void MotionEntry::prepare(PrepareContext& context) {
   }
 }
 
+std::string measure_id(const ChannelBase& channel, std::size_t item) {
+  return channel.name(item) + (channel.display_unit() == "%" ? "_pct" : "");
+}
+
 void Exercise::connect(PrepareContext& context, const Simulation& simulation) {
   rules_ = children_of<ExerciseRule>();
   for (ExerciseRule* r : rules_) r->declare(context, simulation, log_);
+  add_measures(simulation);
+}
+
+void Exercise::add_measures(const Simulation& simulation) {
+  const auto& entries = simulation.channels().entries();
+  const auto is_measure = [](const ChannelEntry& e) { return e.channel->spec().measure && e.size() == 1; };
+  for (const ChannelEntry& e : entries) {
+    if (!is_measure(e)) continue;
+    const ChannelBase& c = *e.channel;
+    std::string name = measure_id(c, e.item), text(c.spec().doc);
+    const auto same = std::count_if(entries.begin(), entries.end(), [&](const ChannelEntry& other) {
+      return is_measure(other) && measure_id(*other.channel, other.item) == name;
+    });
+    if (same > 1) name = e.component->id + "." + name;
+    if (!c.single()) text += ": " + e.group();
+    ChannelBase::Bounds band = c.good();
+    for (auto& bound : band)
+      if (bound) *bound *= c.display_scale();
+    measured_.push_back({&e, log_.add_measure(std::move(name), std::move(text), std::string(c.display_unit()), band)});
+  }
 }
 
 void Exercise::observe(const StepReport& report) {
   for (ExerciseRule* r : rules_) r->observe(report, log_);
+  for (const Measured& m : measured_) {
+    const ChannelBase& c = *m.entry->channel;
+    const double si = *c.values(m.entry->item);
+    log_.measure(m.index, si * c.display_scale(), c.judged(si));
+  }
 }
 
 void Exercise::reset() {

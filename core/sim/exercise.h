@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // An exercise: goals, faults and an end. Rules read the step's report and write only these.
 #pragma once
+#include <array>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/registry/component.h"
@@ -10,6 +13,7 @@
 namespace insula {
 
 class Simulation;
+struct ChannelEntry;
 
 struct GoalState {
   std::string id, text;
@@ -39,6 +43,8 @@ struct MeasureState {
   bool known = false;  ///< has a value
   double value = 0;    ///< in `unit`
   int good = 0;        ///< 1 good, 0 neutral, -1 bad
+  /// From and to of the values that are good, in `unit`; none: open. Both none: nothing is said of good and bad.
+  std::array<std::optional<double>, 2> band{};
 };
 
 enum class ExerciseState { running, done, failed };
@@ -49,15 +55,18 @@ class ExerciseLog {
   int add_goal(std::string id, std::string text, bool required = true);
   int add_fault(std::string id, std::string text);
   int add_timer(std::string id, std::string text, double limit_s);
-  int add_measure(std::string id, std::string text, std::string unit);
+  int add_measure(std::string id, std::string text, std::string unit,
+                  const std::array<std::optional<double>, 2>& band = {});
   void goal(int index, double time);
-  /// Takes back a goal whose condition no longer holds. Only while the exercise runs: an end is final.
+  /// Takes back a goal whose condition no longer holds. Only while the exercise runs. See reopen() for later.
   void goal_lost(int index, double time);
   void fault(int index, double time, double value);
   void timer(int index, double elapsed_s, bool running);
   void measure(int index, double value, int good);
   void message(std::string text, double time);
   void fail(std::string why, double time);
+  /// Takes back an end by success: the exercise runs again. For what an instructor asks for after the end.
+  void reopen(double time);
   void reset();
 
   const std::vector<GoalState>& goals() const { return goals_; }
@@ -79,6 +88,8 @@ class ExerciseLog {
   double end_time_ = -1;
 };
 
+/// A rule declares its measures as channels with `measure = true`, and sets them in observe(). A group of channels is
+/// declared in prepare(). The exercise takes the measures of all components into its log.
 class ExerciseRule : public Component {
  public:
   static constexpr std::string_view kind_name = "exercise rule";
@@ -96,6 +107,9 @@ class MotionEntry final : public Component {
   void prepare(PrepareContext& context) override;
 };
 
+/// Id of the measure that a channel is: its name, with "_pct" for percentages: "grade", "superior.flow_pct".
+std::string measure_id(const ChannelBase& channel, std::size_t item);
+
 class Exercise final : public Component {
  public:
   static constexpr std::string_view kind_name = "exercise";
@@ -110,7 +124,14 @@ class Exercise final : public Component {
   std::vector<MotionEntry*> motions() const { return children_of<MotionEntry>(); }
 
  private:
+  /// A channel that is a measure, and its number in the log.
+  struct Measured {
+    const ChannelEntry* entry;
+    int index;
+  };
+  void add_measures(const Simulation& simulation);
   std::vector<ExerciseRule*> rules_;
+  std::vector<Measured> measured_;
   ExerciseLog log_;
 };
 

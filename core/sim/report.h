@@ -8,6 +8,7 @@
 #include "core/constraint/solve.h"
 #include "core/linalg/inexact_solver.h"
 #include "core/sim/events.h"
+#include "core/sim/structure_forces.h"
 
 namespace insula {
 
@@ -31,7 +32,7 @@ struct ToolReport {
   const Body* tool = nullptr;
   int hand = 0;
   Vec6 hand_force = Vec6::Zero();  ///< coupling force and torque on the hand
-  double contact_force = 0;        ///< norm of the sum of its contact forces, N
+  double contact_force = 0;        ///< norm of the sum of the contact forces on it and on all that it holds, N
 };
 
 struct StepReport {
@@ -44,6 +45,7 @@ struct StepReport {
   double defect_m = 0;  ///< largest change of a row in the last pass of defect correction, m; 0: every body is exact
   std::vector<ContactPoint> contacts;
   std::vector<ToolReport> tools;
+  std::vector<StructureForce> structures;       ///< forces of the hands on all structures, document order
   const ChannelTable* channel_table = nullptr;  ///< of the simulation; null: there are no channels
   std::vector<double> channels;                 ///< SI, in the order of the table; NaN: not known now
   std::array<double, stage_count> stage_ms{};

@@ -37,6 +37,7 @@ constexpr int max_passes = 3;               ///< of defect correction
 void StepReport::clear() {
   contacts.clear();
   tools.clear();
+  for (StructureForce& s : structures) s.of_hand = {Vec3::Zero(), Vec3::Zero()};
   events.clear();
   rows = 0;
   solve = {};
@@ -182,6 +183,26 @@ void Simulation::publish() {
   channel_table_.read(report_.channels);
 }
 
+void Simulation::report_tool(const Instrument& tool) {
+  ToolReport t;
+  t.tool = &tool;
+  t.hand = tool.hand_index();
+  t.hand_force = tool.hand_force();
+  const auto carries = [&](const Body* body) {
+    if (body == &tool) return true;
+    const auto* rigid = dynamic_cast<const RigidBody*>(body);
+    return rigid && rigid->held_by() == &tool;
+  };
+  Vec3 sum = Vec3::Zero();
+  for (const ContactPoint& c : report_.contacts) {
+    const bool a = carries(c.a), b = carries(c.b);
+    if (a == b) continue;
+    sum += (a ? 1.0 : -1.0) * (c.normal_force * c.normal + c.tangent_force);
+  }
+  t.contact_force = sum.norm();
+  report_.tools.push_back(t);
+}
+
 void Simulation::make_report() {
   StepReport& r = report_;
   r.time = context_.time;
@@ -200,26 +221,16 @@ void Simulation::make_report() {
     r.solver.factors += s.factors;
   }
   for (Constraint* c : constraints_) c->report(r);
+  structure_forces_->read(problem_, r.contacts, r.structures);
   publish();
-  for (Instrument* i : instruments_) {
-    if (!i->active()) continue;
-    ToolReport t;
-    t.tool = i;
-    t.hand = i->hand_index();
-    t.hand_force = i->hand_force();
-    Vec3 sum = Vec3::Zero();
-    for (const ContactPoint& c : r.contacts) {
-      if (c.a == i) sum += c.normal_force * c.normal + c.tangent_force;
-      if (c.b == i) sum -= c.normal_force * c.normal + c.tangent_force;
-    }
-    t.contact_force = sum.norm();
-    r.tools.push_back(t);
-  }
+  for (Instrument* i : instruments_)
+    if (i->active()) report_tool(*i);
   r.events = sink_.events();
   events_ = sink_.events();
   if (exercise_) {
     exercise_->log().events.clear();
     exercise_->observe(r);
+    channel_table_.read(r.channels);  // with the measures that rules have set
     const auto& said = exercise_->log().events.events();
     events_.insert(events_.end(), said.begin(), said.end());
   }

@@ -23,6 +23,7 @@
 #include "core/sim/exercise.h"
 #include "core/sim/report.h"
 #include "core/sim/settings.h"
+#include "core/sim/structure_forces.h"
 
 namespace insula {
 
@@ -109,6 +110,7 @@ class Simulation {
   void collect_step_data();
   void publish();
   void make_report();
+  void report_tool(const Instrument& tool);
 
   std::unique_ptr<Scene> scene_;
   Workers workers_;
@@ -141,6 +143,7 @@ class Simulation {
   double settle_time_ = 0;
   std::vector<std::pair<BodySolver*, int>> parts_;  ///< of the bodies' compliance, in this step
   StepReport report_;
+  std::unique_ptr<StructureForces> structure_forces_;
   ChannelTable channel_table_;
   std::vector<DrawableEntry> drawables_;
   std::vector<Component*> publishers_;  ///< what declares channels or drawables, document order

@@ -21,6 +21,8 @@ Simulation::Simulation(std::unique_ptr<Scene> scene, Diagnostics& diagnostics, i
   surfaces_ = scene_->all<Surface>();
   constraints_ = scene_->all<Constraint>();
   for (std::size_t i = 0; i < bodies_.size(); ++i) bodies_[i]->index = int(i);
+  structure_forces_ = std::make_unique<StructureForces>(bodies_);
+  report_.structures = structure_forces_->none();
   if (auto s = scene_->all<SolverSettings>(); !s.empty()) {
     solve_settings_.max_sweeps = s.front()->max_sweeps();
     solve_settings_.tolerance_m = s.front()->tolerance();

@@ -37,6 +37,7 @@ std::string channel_text(const ChannelBase& channel) {
   if (!min.empty() && !max.empty()) out += ", " + min + " to " + max;
   else if (!min.empty()) out += ", at least " + min;
   else if (!max.empty()) out += ", at most " + max;
+  if (channel.spec().measure) out += ", measure of the exercise";
   return channel.size() == 3 ? out + ", three numbers" : out;
 }
 

@@ -42,6 +42,13 @@ Json view_of(const Simulation& simulation) {
           {"fov_deg", 30}};
 }
 
+/// From and to of the good values, null: open.
+Json band_of(const MeasureState& m) {
+  Json out = Json::array();
+  for (const auto& bound : m.band) out.push_back(bound ? Json(*bound) : Json());
+  return out;
+}
+
 Json exercise_of(const Exercise& exercise) {
   Json goals = Json::array(), faults = Json::array();
   for (const GoalState& g : exercise.log().goals()) goals.push_back({{"id", g.id}, {"text", g.text}});
@@ -50,7 +57,7 @@ Json exercise_of(const Exercise& exercise) {
   for (const TimerState& t : exercise.log().timers())
     timers.push_back({{"id", t.id}, {"text", t.text}, {"limit_s", t.limit}});
   for (const MeasureState& m : exercise.log().measures())
-    measures.push_back({{"id", m.id}, {"text", m.text}, {"unit", m.unit}});
+    measures.push_back({{"id", m.id}, {"text", m.text}, {"unit", m.unit}, {"band", band_of(m)}});
   return {{"id", exercise.id}, {"title", exercise.title()}, {"text", exercise.text()}, {"goals", goals},
           {"faults", faults},  {"timers", timers},          {"measures", measures}};
 }

@@ -97,15 +97,8 @@ void fill_frame(const Simulation& simulation, insula_lcm::render_frame_t& f) {
     to.nodes = bodies[b]->nodes();
     to.x_m.resize(std::size_t(to.nodes));
     for (int i = 0; i < to.nodes; ++i) put(to.x_m, std::size_t(i), bodies[b]->q().segment<3>(3 * i));
-    // The largest force of any single tool on the body.
-    for (const Instrument* tool : simulation.instruments()) {
-      Vec3 sum = Vec3::Zero();
-      for (const ContactPoint& c : r.contacts) {
-        if (c.a == tool && c.b == bodies[b]) sum -= c.normal_force * c.normal + c.tangent_force;
-        if (c.b == tool && c.a == bodies[b]) sum += c.normal_force * c.normal + c.tangent_force;
-      }
-      f.body_force_N[b] = std::max(f.body_force_N[b], sum.norm());
-    }
+    for (const StructureForce& s : r.structures)
+      if (s.body == bodies[b]) f.body_force_N[b] = s.largest();
   }
   fill_step_data(simulation, f);
   const auto tools = picture_tools(simulation);

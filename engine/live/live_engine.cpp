@@ -28,6 +28,10 @@ namespace {
 // A device state older than this no longer moves a tool.
 constexpr std::int64_t stale_us = 200'000;
 constexpr double settle_s = 0.3;
+// Longest time for which the first steps wait for scripted hands, s: without any haptic server, and with one.
+constexpr double server_patience_s = 0.5, hands_patience_s = 3;
+// A scripted hand within this distance and angle of its motion follows it.
+constexpr double near_m = 1e-3, near_rad = 0.1;
 // Largest number of requests between two steps; more indicate an error in a script.
 constexpr std::size_t max_requested = 100;
 
@@ -84,11 +88,28 @@ struct Inputs {
     return true;
   }
 
+  /// Whether the hands that the motion moves are where it has them at this time.
+  bool at(const Motion& motion, double time) const {
+    if (!follows(motion)) return false;
+    for (int hand = 0; hand < 2; ++hand) {
+      if (!motion.has(hand)) continue;
+      const Pose wanted = motion.at(hand, time).pose;
+      const auto here = std::find_if(devices.hand.begin(), devices.hand.end(), [&](const auto& h) {
+        const Vec3 p(h.p_m[0], h.p_m[1], h.p_m[2]);
+        const Quat q(h.q[0], h.q[1], h.q[2], h.q[3]);
+        return h.hand == hand && (p - wanted.p).norm() < near_m && q.angularDistance(wanted.q) < near_rad;
+      });
+      if (here == devices.hand.end()) return false;
+    }
+    return true;
+  }
+
   /// Sets the hands of the step, and returns the time stamp of their poses, CLOCK_MONOTONIC, us; 0: none.
-  std::int64_t apply(Simulation& simulation) const {
+  /// ready: scripted hands are known to belong to this run.
+  std::int64_t apply(Simulation& simulation, bool ready) const {
     if (monotonic_us() - received_us > stale_us) return 0;
     // Until the haptic server knows this session, its hands are still at their poses in the last one.
-    if (simulation.time() < settle_s) return 0;
+    if (!ready && simulation.time() < settle_s) return 0;
     for (const auto& h : devices.hand) {
       if (!h.connected || h.hand < 0 || h.hand > 1) continue;
       HandState s;
@@ -203,9 +224,10 @@ class LiveSession {
       while (bus_.poll(0) > 0) {
       }
       take_requests();
+      const bool waits = !inputs_.pause && !options_.still && wait_for_hands();
       if (inputs_.pause || options_.still) stand_still();
-      else if (!step()) continue;
-      if (!options_.unthrottled || inputs_.pause) pace.wait(bus_);
+      else if (!waits && !step()) continue;
+      if (!options_.unthrottled || inputs_.pause || waits) pace.wait(bus_);
     }
   }
 
@@ -213,6 +235,24 @@ class LiveSession {
   void start_again() {
     simulation_.reset();
     commands_.reset();
+    ready_ = over_ = false;
+    waiting_since_us_ = 0;
+  }
+
+  /// After the first step: whether the run waits until the scripted hands are at their motion. So a motion starts at
+  /// the same step in every session, as it does in a run without processes. Repeats the problem meanwhile, since the
+  /// haptic server places the hands by it.
+  bool wait_for_hands() {
+    if (over_ || simulation_.steps() == 0) return false;
+    const std::int64_t now = monotonic_us();
+    if (waiting_since_us_ == 0) waiting_since_us_ = now;
+    const double waited_s = 1e-6 * double(now - waiting_since_us_);
+    ready_ = (script_.has(0) || script_.has(1)) && inputs_.at(script_, simulation_.time());
+    const bool hopeless = (!script_.has(0) && !script_.has(1)) || inputs_.driven || waited_s > hands_patience_s ||
+                          (inputs_.received_us == 0 && waited_s > server_patience_s);
+    over_ = ready_ || hopeless;
+    if (!over_) publisher_.again(simulation_);
+    return !over_;
   }
 
   void take_requests() {
@@ -240,7 +280,7 @@ class LiveSession {
 
   /// False if a value of the simulation became non-finite. The simulation has then started again.
   bool step() {
-    const std::int64_t posed = inputs_.apply(simulation_);
+    const std::int64_t posed = inputs_.apply(simulation_, ready_);
     const bool follows = inputs_.follows(script_);
     commands_.advance(simulation_, follows);
     simulation_.step();
@@ -266,6 +306,9 @@ class LiveSession {
   CommandScript commands_;
   Notice notice_;
   Inputs inputs_;
+  bool ready_ = false;  ///< the scripted hands are at their motion
+  bool over_ = false;   ///< the wait for them
+  std::int64_t waiting_since_us_ = 0;
 };
 
 }  // namespace

@@ -39,6 +39,11 @@ void Publisher::info(const std::string& state, const std::string& message) {
 }
 
 void Publisher::step(const Simulation& simulation, std::int64_t pose_time_us) {
+  again(simulation, pose_time_us);
+  events(simulation.events());
+}
+
+void Publisher::again(const Simulation& simulation, std::int64_t pose_time_us) {
   stamp_.session = session_;
   stamp_.sequence = ++sequence_;
   stamp_.time_us = monotonic_us();
@@ -51,7 +56,6 @@ void Publisher::step(const Simulation& simulation, std::int64_t pose_time_us) {
       !bus_.publish(channel::haptic_problem, scratch_))
     ++failed_;
   frame(simulation, false);
-  events(simulation.events());
 }
 
 void Publisher::events(const std::vector<Event>& events) {

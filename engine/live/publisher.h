@@ -31,6 +31,8 @@ class Publisher {
 
   /// After a step: problem, frame, events. pose_time_us: time stamp of the devices' poses in the step; 0: none.
   void step(const Simulation& simulation, std::int64_t pose_time_us = 0);
+  /// Problem and frame of the last step once more, while the run waits.
+  void again(const Simulation& simulation, std::int64_t pose_time_us = 0);
   /// Events that belong to no step.
   void events(const std::vector<Event>& events);
   /// Sends only the frame, while paused.

@@ -234,7 +234,7 @@ std::string report_html(const RunRecorder& recorder, const RunSummary& summary) 
   if (!recorder.finite())
     out += "<p class=\"bad\">The simulation lost its numbers (not finite): nothing below can be relied upon.</p>\n";
   if (summary.exercise) out += exercise_part(*summary.exercise);
-  out += recorder.channels().html() + recorder.outcome().html();
+  out += recorder.forces().html() + recorder.channels().html() + recorder.outcome().html();
   if (summary.complications) out += complications_html(*summary.complications);
   out += "<h2>The run</h2>\n<table><tbody>\n";
   if (!summary.scene.empty()) out += row("scene", summary.scene);

@@ -26,6 +26,7 @@ Json mean_max(const std::vector<double>& v) { return {{"mean", mean(v)}, {"max",
 
 Json exercise_json(const std::optional<ExerciseOutcome>& exercise) {
   Json goals = Json::array(), faults = Json::array(), timers = Json::array(), measures = Json::array();
+  const auto bound = [](const std::optional<double>& b) { return b ? Json(*b) : Json(); };
   Json out;
   if (exercise) {
     for (const auto& g : exercise->log.goals())
@@ -47,6 +48,7 @@ Json exercise_json(const std::optional<ExerciseOutcome>& exercise) {
                           {"value", m.known ? Json(m.value) : Json()},
                           {"unit", m.unit},
                           {"good", m.good},
+                          {"band", {bound(m.band[0]), bound(m.band[1])}},
                           {"text", m.text}});
     static constexpr const char* states[] = {"running", "done", "failed"};
     out["id"] = exercise->id;
@@ -143,6 +145,7 @@ void RunRecorder::record(const StepReport& r, const std::vector<Event>& events,
   s.sweeps = r.solve.sweeps;
   if (r.channel_table && !channels_.begun()) channels_.begin(*r.channel_table, max_samples_);
   channels_.observe(r.channels);
+  forces_.observe(r);
   add(s, r.channels);
   note(events);
   finite_ = finite_ && r.finite;
@@ -281,6 +284,7 @@ std::string report_json(const RunRecorder& recorder, const RunSummary& summary) 
                       {"right", perceptible_json(perceptible_forces(recorder, 1))}}}};
   json["exercise"] = exercise_json(summary.exercise);
   if (summary.complications) json["complications"] = complications_json(*summary.complications);
+  json["force_on"] = recorder.forces().json();
   json["channels"] = recorder.channels().json();
   recorder.outcome().add_to(json);
   json["finite"] = recorder.finite();

@@ -11,6 +11,7 @@
 #include "core/sim/exercise.h"
 #include "core/sim/report.h"
 #include "engine/reports/channel_record.h"
+#include "engine/reports/force_record.h"
 #include "engine/reports/run_outcome.h"
 
 namespace insula {
@@ -52,7 +53,7 @@ class RunRecorder {
     std::array<float, stage_count> stage_ms{};
     float step_ms = 0;
     std::array<float, 2> hand_force_N{};  ///< sent to the hand
-    std::array<float, 2> tool_force_N{};  ///< of all contacts of the hand's tool
+    std::array<float, 2> tool_force_N{};  ///< of all contacts of the hand's tool and of what it holds
     float residual_N = 0;
     float residual_m = 0;
     float energy_J = 0;
@@ -81,6 +82,7 @@ class RunRecorder {
   const std::vector<Event>& events() const { return events_; }
   std::int64_t events_left_out() const { return events_left_out_; }
   const ChannelRecord& channels() const { return channels_; }  ///< its curves have one sample for each of samples()
+  const ForceRecord& forces() const { return forces_; }
   bool finite() const { return finite_; }
   const RunOutcome& outcome() const { return outcome_; }
 
@@ -94,6 +96,7 @@ class RunRecorder {
   std::vector<Event> events_;
   std::int64_t events_left_out_ = 0;
   ChannelRecord channels_;
+  ForceRecord forces_;
   bool finite_ = true;
   RunOutcome outcome_;
 };

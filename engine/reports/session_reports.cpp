@@ -62,6 +62,9 @@ void SessionReports::hear(const insula_lcm::haptic_status_t& status) {
 }
 
 void SessionReports::step(const Simulation& simulation, bool touched, bool followed) {
+  const Exercise* exercise = simulation.exercise();
+  // An instructor asked for more after the end: a new report begins.
+  if (written_ && exercise && exercise->log().state() == ExerciseState::running) begin();
   if (root_.empty() || written_) return;
   if (recorder_.steps() == 0) began_ = std::time(nullptr);
   const std::array<double, 2> force = touched ? hands_.largest_N : std::array<double, 2>{};
@@ -70,7 +73,6 @@ void SessionReports::step(const Simulation& simulation, bool touched, bool follo
   for (std::size_t i = 0; i < 2; ++i) summary_.max_force_N[i] = std::max(summary_.max_force_N[i], force[i]);
   summary_.wall_seconds += simulation.report().step_ms / 1000;
   followed_ = followed;
-  const Exercise* exercise = simulation.exercise();
   if (exercise && exercise->log().state() != ExerciseState::running) write(simulation);
 }
 
@@ -81,6 +83,10 @@ void SessionReports::note(const std::vector<Event>& events) {
 void SessionReports::end_run(const Simulation& simulation) {
   if (root_.empty()) return;
   if (!written_ && recorder_.steps() > 0) write(simulation);
+  begin();
+}
+
+void SessionReports::begin() {
   recorder_.clear();
   summary_ = {};
   hands_ = {};

@@ -42,6 +42,7 @@ class SessionReports {
   void end_run(const Simulation& simulation);
 
  private:
+  void begin();
   void write(const Simulation& simulation);
   double fresh_forces_per_s() const;
 

@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-/// Its goal is reached after so many seconds.
+/// Its goal is reached after so many seconds, and `again` asks for so many more.
 class ReachedAt final : public ExerciseRule {
  public:
   Param<Duration> at{this, {.name = "at", .doc = "for tests"}};
@@ -33,11 +33,28 @@ class ReachedAt final : public ExerciseRule {
     goal_ = log.add_goal("there", "Be there");
   }
   void observe(const StepReport& report, ExerciseLog& log) override {
-    if (report.time > at() - 1e-9) log.goal(goal_, report.time);
+    if (asked_) {
+      asked_ = false;
+      from_ = report.time;
+      log.reopen(report.time);
+      log.goal_lost(goal_, report.time);
+    }
+    if (report.time > from_ + at() - 1e-9) log.goal(goal_, report.time);
+  }
+  std::vector<CommandInfo> commands() const override { return {{"again", "for tests", "", 0, 0}}; }
+  std::string run_command(std::string_view, std::string_view) override {
+    asked_ = true;
+    return {};
+  }
+  void reset() override {
+    asked_ = false;
+    from_ = 0;
   }
 
  private:
   int goal_ = 0;
+  bool asked_ = false;
+  double from_ = 0;  ///< s
 };
 
 class SessionReportsTest : public testing::Test {
@@ -136,6 +153,18 @@ TEST_F(SessionReportsTest, EndsWithTheExercise) {
   EXPECT_EQ(all[0].at("exercise").at("goals").at(0).at("done"), true);
   EXPECT_EQ(all[0].at("events").back().at("kind"), "end");
   EXPECT_EQ(all[0].at("began").get<std::string>().size(), 19u);
+}
+
+TEST_F(SessionReportsTest, AReopenedExerciseHasAnotherReport) {
+  on_step_ = [this](int step) {
+    if (step == 40) ask("ask", "r again");
+  };
+  ASSERT_EQ(play(1, 0.2), 0);
+  const auto all = reports();
+  ASSERT_EQ(all.size(), 2u);
+  for (const Json& report : all) EXPECT_EQ(report.at("exercise").at("state"), "done");
+  EXPECT_EQ(all[1].at("steps"), 21) << "from the request to the second end";
+  EXPECT_EQ(all[1].at("events").at(1).at("kind"), "reopened");
 }
 
 TEST_F(SessionReportsTest, AResetBeginsAnotherAndTheEndOfTheSessionTheLast) {

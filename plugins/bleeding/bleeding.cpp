@@ -181,6 +181,7 @@ void Bleeding::fill(double h, double blood) {
     if (high >= bowl_.height(volume_) || (tip - high * up_).norm() > radius()) continue;
     most += h * suction_rate() * std::max(idle_suction(), s->activity());
   }
+  sucked_rate_ = std::min(std::max(0.0, volume_), most) / h;
   volume_ = std::min(std::max(0.0, volume_ - most), bowl_.capacity());
 }
 
@@ -205,6 +206,7 @@ void Bleeding::publish() {
   bleeding_rate.set(rate_);
   lost.set(lost_);
   level.set(height());
+  sucked.set(sucked_rate_);
   since.set(since_ >= 0 ? now_ - since_ : std::numeric_limits<double>::quiet_NaN());
   is_open.set(open_);
   pool.set(origin() + height() * up_, up_, height() > 0 ? radius() : 0, height());  // radius 0: dry
@@ -222,7 +224,7 @@ void Bleeding::publish() {
 
 void Bleeding::reset() {
   open_ = asked_ = stopped_ = false;
-  rate_ = lost_ = volume_ = other_ = first_rate_ = low_for_ = force_ = sharp_ = 0;
+  rate_ = lost_ = sucked_rate_ = volume_ = other_ = first_rate_ = low_for_ = force_ = sharp_ = 0;
   since_ = -1;
   now_ = 0;
 }

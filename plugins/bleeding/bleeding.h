@@ -86,6 +86,13 @@ class Bleeding final : public Constraint, public BleedingSource {
                          .min = "0 m",
                          .display = "mm",
                          .digits = 1}};
+  Channel<FlowRate> sucked{this,
+                           {.name = "sucked",
+                            .doc = "blood that suction tubes take out of the field",
+                            .min = "0 ml/min",
+                            .shown = Shown::none,
+                            .display = "ml/min",
+                            .digits = 0}};
   Channel<Duration> since{
       this, {.name = "since", .doc = "time since the rupture", .min = "0 s", .shown = Shown::none, .digits = 0}};
   Channel<Scalar> is_open{this,
@@ -156,7 +163,8 @@ class Bleeding final : public Constraint, public BleedingSource {
   // State.
   bool open_ = false, asked_ = false, stopped_ = false;
   double other_ = 0;  ///< fluid in the sac that is not blood: it entered while there was no pool above the tear, m3
-  double rate_ = 0, lost_ = 0, volume_ = 0, since_ = -1, first_rate_ = 0, low_for_ = 0, force_ = 0, sharp_ = 0;
+  double rate_ = 0, lost_ = 0, sucked_rate_ = 0, volume_ = 0, since_ = -1, first_rate_ = 0, low_for_ = 0, force_ = 0,
+         sharp_ = 0;
 };
 
 }  // namespace insula

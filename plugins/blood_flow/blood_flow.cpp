@@ -234,7 +234,9 @@ void BloodFlow::publish() {
   }
   for (std::size_t k = 0; k < passed_.size(); ++k) {
     const std::size_t i = passed_[k];
-    flow_share.set(k, rest_flow_[i] != 0 ? mean_flow_[i] / rest_flow_[i] : std::numeric_limits<double>::quiet_NaN());
+    // The share is a claim to a person: flow back counts as none. The channel `flow` has the sign.
+    flow_share.set(k, rest_flow_[i] != 0 ? std::max(0.0, mean_flow_[i] / rest_flow_[i])
+                                         : std::numeric_limits<double>::quiet_NaN());
   }
 }
 

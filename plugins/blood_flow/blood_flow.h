@@ -111,7 +111,7 @@ class BloodFlow final : public Constraint, public ChamberFeed, public VesselSour
       {.name = "flow", .doc = "mean of the last heartbeat", .shown = Shown::vital, .display = "ml/min", .digits = 0}};
   ChannelGroup<Scalar> flow_share{this,
                                   {.name = "flow_share",
-                                   .doc = "flow over that at rest; not of a dead end, such as a sac",
+                                   .doc = "flow over that at rest, 0 for flow back; not of a dead end, such as a sac",
                                    .min = "0",
                                    .shown = Shown::vital,
                                    .display = "%",

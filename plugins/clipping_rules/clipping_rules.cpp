@@ -23,6 +23,7 @@ Sources: Sindou, Acevedo, Turjman 1998 (grades); neck_judge.h describes the geom
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "core/base/text.h"
 #include "core/registry/registry.h"
@@ -40,7 +41,8 @@ const VesselState* find(const std::vector<VesselState>& vessels, std::string_vie
   return nullptr;
 }
 
-double flow_percent(const VesselState& v) { return v.flow_at_rest != 0 ? 100 * v.flow / v.flow_at_rest : 100; }
+/// Flow over that at rest, as a claim to a person: flow back through a closed branch counts as none.
+double flow_share(const VesselState& v) { return v.flow_at_rest != 0 ? std::max(0.0, v.flow / v.flow_at_rest) : 1; }
 
 /// The names in `text`, each checked to be a centreline of the vessel.
 std::vector<std::string> vessel_names(PrepareContext& context, const Component& rule, const Param<std::string>& param,
@@ -87,6 +89,80 @@ class GoalClipped final : public ExerciseRule {
   Param<Duration> hold{
       this, {.name = "hold", .fallback = "3 s", .min = "0 s", .max = "600 s", .doc = "how long it must hold"}};
 
+  Channel<Scalar> grade{this,
+                        {.name = "grade",
+                         .doc = "Remnant (Sindou grade)",
+                         .min = "0",
+                         .max = "5",
+                         .shown = Shown::none,
+                         .digits = 0,
+                         .high = {.to = "2"},
+                         .measure = true}};
+  Channel<Scalar> remnant{this,
+                          {.name = "remnant",
+                           .doc = "Neck remnant",
+                           .min = "0",
+                           .max = "1",
+                           .shown = Shown::none,
+                           .display = "%",
+                           .digits = 0,
+                           .good = {.to = "0.1"},
+                           .high = {.to = "0.5"},
+                           .measure = true}};
+  Channel<Length> tip_past_neck{this,
+                                {.name = "tip_past_neck",
+                                 .doc = "Blade tip past the neck",
+                                 .shown = Shown::none,
+                                 .display = "mm",
+                                 .digits = 1,
+                                 .good = {.from = "0 mm", .to = "4 mm"},
+                                 .measure = true}};
+  Channel<Length> slit{this,
+                       {.name = "slit",
+                        .doc = "Slit between the blades",
+                        .min = "0 mm",
+                        .shown = Shown::none,
+                        .display = "mm",
+                        .digits = 1,
+                        .good = {.to = "1.2 mm"},
+                        .measure = true}};
+  Channel<Scalar> applications_now{this,
+                                   {.name = "applications",
+                                    .doc = "Clip applications",
+                                    .min = "0",
+                                    .shown = Shown::none,
+                                    .digits = 0,
+                                    .good = {.to = "2"},
+                                    .high = {.to = "4"},
+                                    .measure = true}};
+  ChannelGroup<Scalar> flow{this,
+                            {.name = "flow",
+                             .doc = "Flow over that at rest",
+                             .min = "0",
+                             .shown = Shown::none,
+                             .display = "%",
+                             .digits = 0,
+                             .measure = true}};
+  ChannelGroup<Scalar> stenosis{this,
+                                {.name = "stenosis",
+                                 .doc = "Stenosis",
+                                 .min = "0",
+                                 .max = "1",
+                                 .shown = Shown::none,
+                                 .display = "%",
+                                 .digits = 0,
+                                 .good = {.to = "0.3"},
+                                 .high = {.to = "0.5"},
+                                 .measure = true}};
+
+  void prepare(PrepareContext&) override {
+    std::vector<std::string> names;
+    for (std::string_view word : split_blanks(branches())) names.emplace_back(word);
+    flow.declare(names);
+    stenosis.declare(std::move(names));
+    grade.set_bands({std::nullopt, double(max_grade())}, grade.high());
+    flow.set_bands({min_flow(), std::nullopt});
+  }
   void declare(PrepareContext& context, const Simulation& simulation, ExerciseLog& log) override {
     clips_ = Clips(simulation);
     vessels_ = Vessels(simulation);
@@ -96,7 +172,6 @@ class GoalClipped final : public ExerciseRule {
       return error(context, on, "needs a shell_body with a vessel that has a neck and a region \"sac\"");
     vessel_names(context, *this, sac, *vessel);
     branch_names_ = vessel_names(context, *this, branches, *vessel);
-    declare_measures(log);
     reset();
   }
 
@@ -104,6 +179,7 @@ class GoalClipped final : public ExerciseRule {
     return {{"ask_again", "Ask for another placement of the clip", "", 0, 0}};
   }
   std::string run_command(std::string_view, std::string_view) override {
+    if (failed_) return "the exercise has failed; reset it first";
     asked_ = true;
     return {};
   }
@@ -117,6 +193,7 @@ class GoalClipped final : public ExerciseRule {
     if (asked_) {
       asked_ = false;
       min_applications_ = applications + 1;
+      log.reopen(r.time);
       log.goal_lost(goal_, r.time);
       log.message("Take the clip back and place it again", r.time);
     }
@@ -130,29 +207,24 @@ class GoalClipped final : public ExerciseRule {
     for (std::size_t i = 0; i < branch_names_.size(); ++i) {
       const VesselState* b = find(vessels, branch_names_[i]);
       if (!b) continue;
-      const double flow = std::max(0.0, flow_percent(*b)), stenosis = 100 * (1 - std::min(1.0, b->lumen));
-      log.measure(flow_[i], flow, flow >= 100 * min_flow() ? 1 : -1);
-      if (flow < 100 * min_flow() && missing.branch < 0) missing.branch = int(i), missing.flow = flow;
-      log.measure(narrow_[i], stenosis, stenosis < 30 ? 1 : stenosis < 50 ? 0 : -1);
-      open = open && flow >= 100 * min_flow();
+      flow.set(i, flow_share(*b));
+      stenosis.set(i, 1 - std::clamp(b->lumen, 0.0, 1.0));
+      if (flow(i) < min_flow() && missing.branch < 0) missing.branch = int(i), missing.flow = 100 * flow(i);
+      open = open && flow(i) >= min_flow();
     }
-    log.measure(count_, applications, applications <= 2 ? 1 : applications <= 4 ? 0 : -1);
-    if (j.clips > 0) {
-      log.measure(grade_, j.grade, j.grade <= max_grade() ? 1 : j.grade <= 2 ? 0 : -1);
-      log.measure(neck_, 100 * j.neck_open, j.neck_open < 0.1 ? 1 : j.neck_open < 0.5 ? 0 : -1);
-      log.measure(past_, 1000 * j.tip_past_neck, j.tip_past_neck > 0 && j.tip_past_neck < 0.004 ? 1 : -1);
-      log.measure(slit_, 1000 * j.gap, j.gap < 0.0012 ? 1 : -1);
-    }
+    applications_now.set(applications);
+    if (applications > 0 || j.clips > 0) show(j);
     const bool good = j.clips > 0 && shut && j.grade <= max_grade() && open && applications >= min_applications_;
     held_ = good ? held_ + r.h : 0;
     if (good && held_ >= hold()) log.goal(goal_, r.time);
     if (!good && log.goals()[std::size_t(goal_)].done) log.goal_lost(goal_, r.time);
     if (j.clips == 0 || good) missing = {};
     say(missing, j, r, log);
+    failed_ = log.state() == ExerciseState::failed;
   }
   void reset() override {
     held_ = 0;
-    asked_ = false;
+    asked_ = failed_ = false;
     min_applications_ = 1;
     said_ = {};
     unchanged_ = 0;
@@ -167,24 +239,6 @@ class GoalClipped final : public ExerciseRule {
     bool any() const { return shut || remnant || branch >= 0; }
     bool same(const Missing& o) const { return shut == o.shut && remnant == o.remnant && branch == o.branch; }
   };
-
-  void declare_measures(ExerciseLog& log) {
-    // Only a second goal of this kind needs its own id in the names.
-    const auto name = [&](const std::string& what) {
-      for (const MeasureState& m : log.measures())
-        if (m.id == what) return id + "_" + what;
-      return what;
-    };
-    grade_ = log.add_measure(name("grade"), "Remnant (Sindou grade)", "");
-    neck_ = log.add_measure(name("remnant_pct"), "Neck remnant", "%");
-    past_ = log.add_measure(name("tip_mm"), "Blade tip past the neck", "mm");
-    slit_ = log.add_measure(name("slit_mm"), "Slit between the blades", "mm");
-    count_ = log.add_measure(name("applications"), "Clip applications", "");
-    for (const std::string& b : branch_names_) {
-      flow_.push_back(log.add_measure(name(b + "_flow_pct"), "Flow of the " + b + " branch", "%"));
-      narrow_.push_back(log.add_measure(name(b + "_stenosis_pct"), "Stenosis of the " + b + " branch", "%"));
-    }
-  }
 
   /// Says once what is missing, when that has not changed for a second.
   void say(const Missing& missing, const NeckJudgement& j, const StepReport& r, ExerciseLog& log) {
@@ -207,16 +261,23 @@ class GoalClipped final : public ExerciseRule {
     log.message(what, r.time);
   }
 
+  void show(const NeckJudgement& j) {
+    const double unknown = std::numeric_limits<double>::quiet_NaN();
+    grade.set(j.grade);
+    remnant.set(j.neck_open);
+    tip_past_neck.set(j.clips > 0 ? j.tip_past_neck : unknown);
+    slit.set(j.clips > 0 ? j.gap : unknown);
+  }
+
   Clips clips_;
   Vessels vessels_;
   NeckJudge judge_;
   std::vector<std::string> branch_names_;
-  int goal_ = 0, grade_ = 0, neck_ = 0, past_ = 0, slit_ = 0, count_ = 0;
+  int goal_ = 0;
   Missing seen_, said_;
   double unchanged_ = 0;  ///< time for which the same has been missing, s
-  std::vector<int> flow_, narrow_;
   double held_ = 0;
-  bool asked_ = false;
+  bool asked_ = false, failed_ = false;
   int min_applications_ = 1;
 };
 
@@ -251,11 +312,11 @@ class FaultStenosis final : public ExerciseRule {
     for (const ClipState& c : clips_.now()) temporary = temporary || (c.temporary && !c.on_tray && !c.holder);
     for (std::size_t i = 0; i < names_.size(); ++i) {
       const VesselState* b = find(vessels, names_[i]);
-      const bool low = b && !temporary && flow_percent(*b) < 100 * limit();
+      const bool low = b && !temporary && flow_share(*b) < limit();
       below_[i] = low ? below_[i] + r.h : 0;
       if (low && below_[i] > grace() && armed_[i]) {
         armed_[i] = 0;
-        log.fault(fault_, r.time, flow_percent(*b));
+        log.fault(fault_, r.time, 100 * flow_share(*b));
       }
       if (!low) armed_[i] = 1;
     }

@@ -184,13 +184,14 @@ TEST_F(ClippingRules, GoalNeedsASealedNeckAndOpenBranches) {
   network->vessels[1].flow = 0.5e-6;
   show(1);
   EXPECT_FALSE(log().goals()[0].done) << "a branch is narrowed";
-  EXPECT_NEAR(measure("superior_flow_pct"), 50, 1e-12);
+  EXPECT_NEAR(measure("superior.flow_pct"), 50, 1e-12);
   network->vessels[1].flow = 0.9e-6;
   show(0.4);
   EXPECT_FALSE(log().goals()[0].done) << "not long enough";
   show(0.2);
   EXPECT_TRUE(log().goals()[0].done);
   EXPECT_EQ(measure("grade"), 0);
+  EXPECT_LT(measure("remnant_pct"), 10);
 }
 
 TEST_F(ClippingRules, AnotherPlacementCanBeAskedFor) {
@@ -248,6 +249,37 @@ TEST_F(ClippingRules, AClipThatMovesOnTheNeckHasSlipped) {
   in_field->blade_tip += 4e-3 * across;
   show(0.2);
   EXPECT_EQ(slips(), 2);
+}
+
+// An instructor asks after the end: the exercise goes on, and a new placement ends it again.
+TEST_F(ClippingRules, AnotherPlacementCanBeAskedForAfterTheEnd) {
+  pinch(1.5e-3);
+  *in_field = clip(0);
+  network->vessels[3].lumen = 0;
+  show(2);
+  ASSERT_EQ(log().state(), ExerciseState::done);
+  EXPECT_TRUE(s->command("ask", "clip ask_again").empty());
+  show(2);
+  EXPECT_EQ(log().state(), ExerciseState::running);
+  EXPECT_FALSE(log().goals()[0].done) << "the same placement does not count again";
+  in_field->on_tray = true;
+  show(0.2);
+  EXPECT_EQ(measure("grade"), 5) << "a clip that was taken back leaves the whole sac";
+  in_field->on_tray = false;
+  in_field->applications = 2;
+  show(1);
+  EXPECT_EQ(log().state(), ExerciseState::done);
+}
+
+TEST_F(ClippingRules, NobodyIsToldOfANegativeFlow) {
+  network->vessels[1].flow = -0.016e-6;
+  show(0.1);
+  EXPECT_EQ(measure("superior.flow_pct"), 0);
+  for (const MeasureState& m : log().measures())
+    if (m.id == "superior.flow_pct") {
+      EXPECT_EQ(m.good, -1);
+      EXPECT_NEAR(m.band[0].value(), 75, 1e-9) << "from min_flow";
+    }
 }
 
 TEST_F(ClippingRules, AClosedBranchIsOneFault) {

@@ -5,13 +5,15 @@
 Goals, faults and the clock of training exercises. Rules read the report of each step, channels, and the positions of
 surfaces; they write to the exercise's log alone.
 
-A force fault counts once each time a tool presses a body harder than the limit for longer than the grace time. It can
-count again when the force has fallen below nine tenths of the limit. An order fault counts a strand that was severed
+A force fault counts once each time a hand presses or pulls a body harder than the limit for longer than the grace time.
+The force of a hand is that of its tool and of all that the tool holds, such as a clip. It can count again when the
+force has fallen below nine tenths of the limit. An order fault counts a strand that was severed
 while more than the allowed number of strands nearer to the surface remained.
 */
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/text.h"
 #include "core/registry/registry.h"
 #include "core/sim/exercise.h"
 #include "core/sim/simulation.h"
@@ -32,12 +34,24 @@ class GoalStrands final : public ExerciseRule {
                           .max = "1",
                           .doc = "share of all strands that must be parted"}};
 
+  Channel<Scalar> divided{this,
+                          {.name = "divided",
+                           .doc = "Strands divided",
+                           .min = "0",
+                           .max = "1",
+                           .shown = Shown::none,
+                           .display = "%",
+                           .digits = 0,
+                           .measure = true}};
+
+  void prepare(PrepareContext&) override { divided.set_bands({fraction(), std::nullopt}, {0.0, std::nullopt}); }
   void declare(PrepareContext&, const Simulation& simulation, ExerciseLog& log) override {
     strands_ = Strands(simulation);
     goal_ = log.add_goal(id, text());
   }
   void observe(const StepReport& r, ExerciseLog& log) override {
     const int total = strands_.total(), severed = total - strands_.left();
+    if (total > 0) divided.set(double(severed) / total);
     if (total > 0 && severed >= fraction() * total - 1e-9) log.goal(goal_, r.time);
   }
 
@@ -62,6 +76,16 @@ class GoalOpening final : public ExerciseRule {
   Param<Duration> hold{
       this, {.name = "hold", .fallback = "1 s", .min = "0 s", .max = "600 s", .doc = "how long they must stay open"}};
 
+  Channel<Length> opening{this,
+                          {.name = "opening",
+                           .doc = "Largest distance of the lips",
+                           .min = "0 mm",
+                           .shown = Shown::none,
+                           .display = "mm",
+                           .digits = 1,
+                           .measure = true}};
+
+  void prepare(PrepareContext&) override { opening.set_bands({distance(), std::nullopt}, {0.0, std::nullopt}); }
   void declare(PrepareContext&, const Simulation&, ExerciseLog& log) override {
     goal_ = log.add_goal(id, text());
     va_ = nearest(*a);
@@ -69,10 +93,12 @@ class GoalOpening final : public ExerciseRule {
   }
   void observe(const StepReport& r, ExerciseLog& log) override {
     const double d = (a->body().position(a->points()[va_]) - b->body().position(b->points()[vb_])).norm();
+    widest_ = std::max(widest_, d);
+    opening.set(widest_);
     open_ = d >= distance() ? open_ + r.h : 0;
     if (open_ >= hold()) log.goal(goal_, r.time);
   }
-  void reset() override { open_ = 0; }
+  void reset() override { open_ = widest_ = 0; }
 
  private:
   std::size_t nearest(const Surface& s) const {
@@ -83,47 +109,49 @@ class GoalOpening final : public ExerciseRule {
   }
   int goal_ = 0;
   std::size_t va_ = 0, vb_ = 0;
-  double open_ = 0;
+  double open_ = 0, widest_ = 0;
 };
 
 class FaultForce final : public ExerciseRule {
  public:
   Param<std::string> text{
       this, {.name = "text", .fallback = "Too much force on the brain", .doc = "what the trainee is told"}};
-  RefList<Body> on{this, {.name = "on", .doc = "bodies that must be spared"}};
+  RefList<Body> on{this, {.name = "on", .doc = "tissue, floor or bone that must be spared"}};
   Param<Force> limit{this,
                      {.name = "limit",
                       .fallback = "0.3 N",
                       .min = "0.001 N",
                       .max = "20 N",
-                      .doc = "largest force of one tool on one body"}};
+                      .doc = "largest force of one hand, with its tool and all that it holds, on one body"}};
   Param<Duration> grace{
       this, {.name = "grace", .fallback = "100 ms", .min = "0 s", .max = "10 s", .doc = "shorter peaks are forgiven"}};
 
-  void declare(PrepareContext&, const Simulation& simulation, ExerciseLog& log) override {
+  void declare(PrepareContext& context, const Simulation& simulation, ExerciseLog& log) override {
     fault_ = log.add_fault(id, text());
-    tools_ = simulation.instruments();
+    const auto& structures = simulation.report().structures;
+    structure_.clear();
+    for (const Body* body : on()) {
+      const auto found =
+          std::find_if(structures.begin(), structures.end(), [&](const StructureForce& s) { return s.body == body; });
+      if (found == structures.end())
+        return error(context, on, in_quotes(body->id) + " is a tool or an implant, not tissue, floor or bone");
+      structure_.push_back(std::size_t(found - structures.begin()));
+    }
     reset();
   }
   void observe(const StepReport& r, ExerciseLog& log) override {
-    std::size_t k = 0;
-    for (const Body* body : on())
-      for (const Body* tool : tools_) {
-        Vec3 sum = Vec3::Zero();
-        for (const ContactPoint& c : r.contacts)
-          if ((c.a == tool && c.b == body) || (c.b == tool && c.a == body))
-            sum += (c.a == tool ? 1.0 : -1.0) * (c.normal_force * c.normal + c.tangent_force);
-        const double f = sum.norm();
-        Watch& w = watch_[k++];
-        w.above = f > limit() ? w.above + r.h : 0;
-        if (w.above > grace() && w.armed) {
-          w.armed = false;
-          log.fault(fault_, r.time, f);
-        }
-        if (f < 0.9 * limit()) w.armed = true;
+    for (std::size_t k = 0; k < watch_.size(); ++k) {
+      const double f = r.structures[structure_[k / 2]].of_hand[k % 2].norm();
+      Watch& w = watch_[k];
+      w.above = f > limit() ? w.above + r.h : 0;
+      if (w.above > grace() && w.armed) {
+        w.armed = false;
+        log.fault(fault_, r.time, f);
       }
+      if (f < 0.9 * limit()) w.armed = true;
+    }
   }
-  void reset() override { watch_.assign(on().size() * tools_.size(), {}); }
+  void reset() override { watch_.assign(2 * structure_.size(), {}); }
 
  private:
   struct Watch {
@@ -131,8 +159,8 @@ class FaultForce final : public ExerciseRule {
     bool armed = true;
   };
   int fault_ = 0;
-  std::vector<Instrument*> tools_;
-  std::vector<Watch> watch_;
+  std::vector<std::size_t> structure_;  ///< among those of the report
+  std::vector<Watch> watch_;            ///< of each structure: left hand, right hand
 };
 
 class FaultTorn final : public ExerciseRule {
@@ -218,5 +246,6 @@ INSULA_PLUGIN(exercise_rules) {
   registry.add<FaultTorn>("fault_torn", Kind::exercise_rule, "counts strands torn by pulling");
   registry.add<FaultOrder>("fault_order", Kind::exercise_rule, "counts strands cut in the depth before the surface");
   register_channel_rules(registry);
+  register_two_hands_rule(registry);
   registry.add<TimeLimit>("time_limit", Kind::exercise_rule, "ends the exercise when the time is over");
 }

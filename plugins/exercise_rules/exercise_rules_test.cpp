@@ -22,6 +22,7 @@ class FakeStrands final : public Constraint, public StrandSet {
   std::vector<StrandState> strands;
   Channel<Scalar> standing{this, {.name = "standing", .doc = "for tests"}};
   Channel<Force> tension{this, {.name = "tension", .doc = "for tests"}};
+  EventKind cut{this, {.name = "strand_cut", .doc = "for tests"}};
 };
 
 /// The example scene with strands of the test; its exercise is shown reports instead of steps.
@@ -48,6 +49,7 @@ class Rules : public ::testing::Test {
     upper = s->scene().find_as<SoftBody>("upper");
     ASSERT_TRUE(knife && lower && upper);
     report.h = 0.05;
+    report.structures = s->report().structures;
   }
   void show() {
     report.time += report.h;
@@ -59,20 +61,23 @@ class Rules : public ::testing::Test {
       if (g.id == id) return g;
     throw std::runtime_error("no goal " + id);
   }
+  const MeasureState& measure(const std::string& id) {
+    for (const MeasureState& m : s->exercise()->log().measures())
+      if (m.id == id) return m;
+    throw std::runtime_error("no measure " + id);
+  }
   int faults(const std::string& id) {
     for (const FaultState& f : s->exercise()->log().faults())
       if (f.id == id) return f.count;
     throw std::runtime_error("no fault " + id);
   }
   int all_faults() { return faults("force") + faults("torn") + faults("order"); }
-  /// The knife and a body push each other with this force on the body.
-  ContactPoint press(const Body* body, double newtons, bool knife_first = true) {
-    ContactPoint c;
-    c.a = knife_first ? static_cast<const Body*>(knife) : body;
-    c.b = knife_first ? body : static_cast<const Body*>(knife);
-    c.normal = Vec3::UnitZ();
-    c.normal_force = newtons;
-    return c;
+  /// The hands push a body with these forces, and nothing else.
+  void push(const Body* body, double right_N, double left_N = 0) {
+    for (StructureForce& f : report.structures) {
+      const bool pushed = f.body == body;
+      f.of_hand = {Vec3(0, pushed ? left_N : 0, 0), Vec3(0, 0, pushed ? right_N : 0)};
+    }
   }
   /// Strands along x, the first nearest to the surface (inward is -x), 3 mm apart.
   void strands(int n) {
@@ -110,8 +115,11 @@ TEST_F(Rules, StrandsGoalWantsItsFraction) {
   part({0});
   show();
   EXPECT_FALSE(goal("divide").done) << "a quarter is not half";
+  EXPECT_NEAR(measure("divided_pct").value, 25, 1e-12);
+  EXPECT_EQ(measure("divided_pct").good, 0) << "not yet, but nothing is wrong";
   part({1});
   show();
+  EXPECT_EQ(measure("divided_pct").good, 1);
   EXPECT_TRUE(goal("divide").done);
   EXPECT_DOUBLE_EQ(goal("divide").time, report.time);
   EXPECT_EQ(s->exercise()->log().state(), ExerciseState::running) << "the other goal is still open";
@@ -141,13 +149,15 @@ TEST_F(Rules, OpeningMustBeHeldWithoutABreak) {
   EXPECT_FALSE(goal("open").done) << "the time counts afresh after a break";
   for (int i = 0; i < 2; ++i) show();
   EXPECT_TRUE(goal("open").done);
+  EXPECT_NEAR(measure("opening").value, 6.2, 0.05) << "the largest so far, mm";
+  EXPECT_EQ(measure("opening").good, 1);
 }
 
 TEST_F(Rules, ForceCountsAfterTheGraceAndOncePerPush) {
-  report.contacts = {press(lower, 0.29)};
+  push(lower, 0.29);
   for (int i = 0; i < 20; ++i) show();
   EXPECT_EQ(faults("force"), 0) << "below the limit";
-  report.contacts = {press(lower, 0.31)};
+  push(lower, 0.31);
   for (int i = 0; i < 2; ++i) show();
   EXPECT_EQ(faults("force"), 0) << "no longer than the grace";
   show();
@@ -156,41 +166,66 @@ TEST_F(Rules, ForceCountsAfterTheGraceAndOncePerPush) {
   EXPECT_NEAR(s->exercise()->log().events.events()[0].value, 0.31, 1e-12);
   for (int i = 0; i < 20; ++i) show();
   EXPECT_EQ(faults("force"), 1) << "one push, one fault";
-  report.contacts = {press(lower, 0.28)};  // not below nine tenths: the same push
+  push(lower, 0.28);  // not below nine tenths: the same push
   show();
-  report.contacts = {press(lower, 0.31)};
+  push(lower, 0.31);
   for (int i = 0; i < 4; ++i) show();
   EXPECT_EQ(faults("force"), 1);
-  report.contacts = {press(lower, 0.2)};
+  push(lower, 0.2);
   show();
-  report.contacts = {press(lower, 0.31)};
+  push(lower, 0.31);
   for (int i = 0; i < 4; ++i) show();
   EXPECT_EQ(faults("force"), 2);
 }
 
-TEST_F(Rules, ForceIsTheSumOfOneToolsContactsOnOneBody) {
-  report.contacts = {press(lower, 0.2), press(upper, 0.2)};
+TEST_F(Rules, ForceIsThatOfOneHandOnOneBody) {
+  push(lower, 0.2, 0.2);
   for (int i = 0; i < 5; ++i) show();
-  EXPECT_EQ(faults("force"), 0) << "two bodies, each below the limit";
-  report.contacts = {press(lower, 0.2), press(lower, -0.2)};
+  EXPECT_EQ(faults("force"), 0) << "two hands, each below the limit";
+  push(upper, 0, 0.31);
   for (int i = 0; i < 5; ++i) show();
-  EXPECT_EQ(faults("force"), 0) << "opposite forces cancel";
-  report.contacts = {press(lower, 0.2), press(lower, -0.2, false)};  // the same force, told from the body's side
+  EXPECT_EQ(faults("force"), 1) << "the left hand counts as the right one";
+  push(nullptr, 0);
+  report.contacts = {ContactPoint{lower, upper, Vec3::Zero(), Vec3::UnitZ(), 0, 5, Vec3::Zero()}};
   for (int i = 0; i < 5; ++i) show();
-  EXPECT_EQ(faults("force"), 1);
-  ContactPoint rub = press(upper, 0.25);
-  rub.tangent_force = Vec3(0.25, 0, 0);
-  report.contacts = {rub};
-  for (int i = 0; i < 5; ++i) show();
-  EXPECT_EQ(faults("force"), 2) << "friction counts too";
-  ContactPoint tissue;
-  tissue.a = lower;
-  tissue.b = upper;
-  tissue.normal = Vec3::UnitZ();
-  tissue.normal_force = 5;
-  report.contacts = {tissue};
-  for (int i = 0; i < 5; ++i) show();
-  EXPECT_EQ(faults("force"), 2) << "tissue on tissue is nobody's fault";
+  EXPECT_EQ(faults("force"), 1) << "tissue on tissue is nobody's fault";
+}
+
+TEST_F(Rules, TwoHandsMustWorkTogether) {
+  const auto cut = [&](int hand, int times = 1) {
+    report.events.assign(std::size_t(times), {"strand_cut", "strands", "", 0.03, 1, hand});
+    show();
+    report.events.clear();
+  };
+  const auto rest = [&] {
+    push(lower, 0);
+    for (int i = 0; i < 10; ++i) show();  // as long as a pause is forgiven
+  };
+  cut(1, 10);
+  EXPECT_FALSE(goal("together").done) << "nobody holds tissue";
+  push(lower, 0.1);
+  cut(1, 10);
+  EXPECT_FALSE(goal("together").done) << "the cutting hand itself presses";
+  rest();
+  push(lower, 0, 0.1);
+  cut(0, 10);
+  EXPECT_FALSE(goal("together").done) << "the hand that holds is the one that cuts";
+  rest();
+  push(lower, 0, 0.01);
+  cut(1, 10);
+  EXPECT_FALSE(goal("together").done) << "a touch is no hold";
+  push(lower, 0, 0.1);
+  cut(1);
+  EXPECT_FALSE(goal("together").done) << "one of two";
+  rest();
+  cut(1);
+  EXPECT_FALSE(goal("together").done) << "let go half a second ago";
+  push(lower, 0, 0.1);
+  show();
+  push(lower, 0);
+  show();
+  cut(1);
+  EXPECT_TRUE(goal("together").done) << "a short pause is forgiven";
 }
 
 TEST_F(Rules, TornStrandsCountAndCutOnesDoNot) {
@@ -241,7 +276,7 @@ TEST_F(Rules, TimeLimitEndsTheExercise) {
   report.time = 60.0;
   show();
   EXPECT_EQ(s->exercise()->log().state(), ExerciseState::failed);
-  report.contacts = {press(lower, 1)};
+  push(lower, 1);
   for (int i = 0; i < 5; ++i) show();
   EXPECT_EQ(faults("force"), 0) << "nothing counts after the end";
 }
@@ -250,6 +285,8 @@ TEST_F(Rules, AllGoalsReachedIsTheEnd) {
   strands(2);
   part({0, 1});
   for (int i = 0; i < upper->nodes(); ++i) upper->q()[3 * i + 2] += 0.01;
+  push(lower, 0, 0.1);
+  report.events.assign(2, {"strand_cut", "strands", "", 0.03, 1, 1});
   for (int i = 0; i < 6; ++i) show();
   EXPECT_EQ(s->exercise()->log().state(), ExerciseState::done);
   EXPECT_NEAR(s->exercise()->log().end_time(), goal("open").time, 1e-12);
@@ -259,7 +296,7 @@ TEST_F(Rules, ResetForgetsEverything) {
   strands(5);
   show();
   part({4});
-  report.contacts = {press(lower, 0.31)};
+  push(lower, 0.31);
   report.events = {{"strand_torn", "strands", "", 0.05, 1}};
   for (int i = 0; i < 3; ++i) show();
   ASSERT_GE(faults("force"), 1);
@@ -268,10 +305,22 @@ TEST_F(Rules, ResetForgetsEverything) {
   s->reset();
   EXPECT_EQ(all_faults(), 0);
   report.events.clear();
-  report.contacts = {press(lower, 0.31)};
+  push(lower, 0.31);
   strands(5);
   for (int i = 0; i < 2; ++i) show();
   EXPECT_EQ(all_faults(), 0) << "the time of a push before the reset must not count";
+}
+
+TEST(RulesOfAScene, TwoHandsNeedAnEventAndOneSignOfTheOther) {
+  const auto messages = [](const std::string& attributes) {
+    return load_simulation_text(R"(<scene><obstacle id="floor"/><exercise id="e" title="t"><goal_two_hands id="g" )" +
+                                    attributes + "/></exercise></scene>",
+                                example, test::builtin())
+        .diagnostics.format();
+  };
+  EXPECT_NE(messages(R"(event="strand_cut" on="floor")").find("no component of the scene has the event"),
+            std::string::npos);
+  EXPECT_NE(messages(R"(event="strand_cut")").find(R"(needs either "on" or "channel")"), std::string::npos);
 }
 
 TEST(RulesOfAScene, ZeroDirectionIsAnError) {

@@ -6,5 +6,6 @@
 namespace insula {
 
 void register_channel_rules(Registry& registry);
+void register_two_hands_rule(Registry& registry);
 
 }  // namespace insula

@@ -51,6 +51,7 @@ TEST(Retractor, TheHandCarriesTheContactForce) {
     const Vec3 f = t.contact_force();
     EXPECT_TRUE(test::held("the hand carries the contact, N", (t.spatula->hand_force().head<3>() - f).norm(), 1, 1e-9))
         << "step " << n;
+    EXPECT_LT((t.s->report().structures.at(0).of_hand[0] + f).norm(), 1e-9);
     most = std::max(most, f.z());
   }
   EXPECT_GT(most, 0.01) << "it never pressed";
@@ -67,6 +68,7 @@ TEST(Retractor, AnArmHoldsItAtHomeWhateverTheHandsDo) {
   const Vec3 f = t.contact_force(), moved = t.spatula->pose().p - t.spatula->home_pose().p;
   EXPECT_GT(f.z(), 0.005);
   EXPECT_LT((moved - f / 500).norm(), 1e-3 * moved.norm());
+  EXPECT_EQ(t.s->report().structures.at(0).largest(), 0) << "no hand presses";
 }
 
 }  // namespace

@@ -78,6 +78,9 @@ TEST(Suction, HoldsUpToPressureTimesAreaAndLetsGo) {
     EXPECT_LE(f.tail<2>().lpNorm<Eigen::Infinity>(), 0.6 * limit * (1 + 1e-12));
     // The hand feels what the rows carry, and is drawn towards the tissue.
     EXPECT_NEAR(t.tube->hand_force().head<3>().norm(), f.norm(), 1e-12);
+    // The pull counts as the hand's force on the tissue.
+    const StructureForce& on = t.s->report().structures.at(0);
+    EXPECT_LT((on.of_hand[std::size_t(t.tube->hand_index())] + t.tube->hand_force().head<3>()).norm(), 1e-12);
     if (n > 20) {
       EXPECT_LT(t.tube->hand_force()[2], 0);
     }

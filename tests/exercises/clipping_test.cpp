@@ -25,10 +25,10 @@ TEST_P(ShippedCase, AnAngledClipClosesTheNeckAndSparesTheBranches) {
   for (const auto& [id, count] : o.faults) EXPECT_EQ(count, 0) << id;
   EXPECT_EQ(o.measures["grade"], 0);
   EXPECT_LT(o.measures["remnant_pct"], 10);
-  EXPECT_GT(o.measures["superior_flow_pct"], 90);
-  EXPECT_GT(o.measures["inferior_flow_pct"], 90);
-  EXPECT_GT(o.measures["tip_mm"], 0.5);
-  EXPECT_LT(o.measures["slit_mm"], 1.0);
+  EXPECT_GT(o.measures["superior.flow_pct"], 90);
+  EXPECT_GT(o.measures["inferior.flow_pct"], 90);
+  EXPECT_GT(o.measures["tip_past_neck"], 0.5);
+  EXPECT_LT(o.measures["slit"], 1.0);
 }
 
 TEST(Clipping, AClipAcrossABranchIsAFault) {
@@ -38,8 +38,8 @@ TEST(Clipping, AClipAcrossABranchIsAFault) {
   EXPECT_EQ(o.state, ExerciseState::running);
   EXPECT_LT(o.goals["clip"], 0);
   EXPECT_EQ(o.faults["stenosis"], 1);
-  EXPECT_LT(o.measures["inferior_flow_pct"], 50);
-  EXPECT_GT(o.measures["inferior_stenosis_pct"], 50);
+  EXPECT_LT(o.measures["inferior.flow_pct"], 50);
+  EXPECT_GT(o.measures["inferior.stenosis_pct"], 50);
 }
 
 TEST(Clipping, AClipTooHighLeavesARemnant) {
@@ -48,8 +48,8 @@ TEST(Clipping, AClipTooHighLeavesARemnant) {
   EXPECT_LT(o.goals["clip"], 0);
   EXPECT_GE(o.measures["grade"], 2);
   EXPECT_GT(o.measures["remnant_pct"], 50);
-  EXPECT_GT(o.measures["superior_flow_pct"], 90);
-  EXPECT_GT(o.measures["inferior_flow_pct"], 90);
+  EXPECT_GT(o.measures["superior.flow_pct"], 90);
+  EXPECT_GT(o.measures["inferior.flow_pct"], 90);
 }
 
 TEST(Clipping, AClipTooShortLetsBloodIn) {
@@ -57,7 +57,7 @@ TEST(Clipping, AClipTooShortLetsBloodIn) {
   ASSERT_TRUE(o.ran);
   EXPECT_LT(o.goals["clip"], 0);
   EXPECT_EQ(o.measures["grade"], 5);
-  EXPECT_LT(o.measures["tip_mm"], 0);
+  EXPECT_LT(o.measures["tip_past_neck"], 0);
 }
 
 TEST(Clipping, AShutClipThatIsPulledSlipsOff) {

@@ -17,7 +17,7 @@ TEST(AneurysmDissection, SteadyHandsDivideTheStrandsWithoutAFault) {
   EXPECT_EQ(o.left, 0);
   EXPECT_EQ(o.events["strand_cut"], o.strands);
   EXPECT_EQ(o.events["strand_torn"], 0);
-  ASSERT_EQ(o.faults.size(), 4u);
+  ASSERT_EQ(o.faults.size(), 5u);
   for (const auto& [id, count] : o.faults) EXPECT_EQ(count, 0) << id;
   ASSERT_EQ(o.goals.size(), 1u);
   EXPECT_GT(o.goals["divide"], 0);

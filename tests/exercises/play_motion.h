@@ -27,8 +27,8 @@ struct Played {
   double max_force[2] = {0, 0};  ///< of each hand's tool on what it touches, N
 };
 
-/// The motion with this id in the scene's exercise.
-inline Played play_motion(const std::filesystem::path& scene, const std::string& id) {
+/// The motion with this id in the scene's exercise. hand: only that hand's part of it, with all commands; -1: both.
+inline Played play_motion(const std::filesystem::path& scene, const std::string& id, int hand = -1) {
   Played out;
   Registry registry;
   register_builtin(registry);
@@ -40,6 +40,12 @@ inline Played play_motion(const std::filesystem::path& scene, const std::string&
   for (const MotionEntry* m : s.exercise()->motions())
     if (m->id == id) motion = load_motion(m->file());
   EXPECT_FALSE(motion.empty()) << "motion " << id;
+  if (hand >= 0) {
+    Motion part;
+    for (const Motion::Key& key : motion.keys(hand)) part.add(hand, key);
+    for (const MotionCommand& command : motion.commands()) part.add(command);
+    motion = std::move(part);
+  }
   HeadlessRun run(s, motion);
   Vessels vessels(s);
   out.duration = motion.duration();

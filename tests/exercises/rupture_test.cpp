@@ -16,15 +16,24 @@ TEST(Rupture, MasteredWithTemporaryAndFinalClip) {
   EXPECT_EQ(o.events["clip_released"], 2);
   EXPECT_EQ(o.events["clip_taken"], 1);
   EXPECT_GT(o.goals["stop"], 0);
+  EXPECT_GT(o.goals["together"], 0);
   EXPECT_GT(o.goals["removed"], o.goals["stop"] - 1e-9);
   EXPECT_GT(o.longest["occlusion"], 5);
   EXPECT_LT(o.longest["occlusion"], 180);
   EXPECT_LT(o.longest["since_rupture"], 300);
   EXPECT_EQ(o.faults["occlusion_over"], 0);
   EXPECT_EQ(o.faults["stenosis"], 0);
-  EXPECT_GT(o.measures["superior_flow_pct"], 75);
-  EXPECT_GT(o.measures["inferior_flow_pct"], 75);
+  EXPECT_GT(o.measures["superior.flow_pct"], 75);
+  EXPECT_GT(o.measures["inferior.flow_pct"], 75);
   EXPECT_GT(o.min_pressure, -40) << "Pa: the torn sac that a clip cuts off comes to the pressure outside";
+}
+
+TEST(Rupture, OneHandAloneDoesNotMasterIt) {
+  test::Played o = test::play_motion(rupture_scene, "steady", 1);
+  ASSERT_TRUE(o.ran);
+  EXPECT_GT(o.goals["stop"], 0) << "the clips stop the bleeding all the same";
+  EXPECT_LT(o.goals["together"], 0) << "nobody sucked while a clip closed";
+  EXPECT_EQ(o.state, ExerciseState::running);
 }
 
 TEST(Rupture, TimeRunsOutWhenNobodyClips) {

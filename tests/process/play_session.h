@@ -49,9 +49,10 @@ class PlaySession {
   PlaySession(const PlaySession&) = delete;
   PlaySession& operator=(const PlaySession&) = delete;
 
-  std::string start(const std::vector<std::string>& more = {}) {
+  /// scene: in place of the small one.
+  std::string start(const std::vector<std::string>& more = {}, const fs::path& scene = {}) {
     std::vector<std::string> command{std::string(INSULA_BINARY_DIR) + "/bin/insula", "play",
-                                     (folder_ / "press.xml").string(), "--port", "0"};
+                                     (scene.empty() ? folder_ / "press.xml" : scene).string(), "--port", "0"};
     command.insert(command.end(), more.begin(), more.end());
     const std::string error = process_.start(command);
     reader_ = std::thread([this] {

@@ -33,6 +33,26 @@ std::string tool(const SceneFacts& f, const char* element, const char* id, const
                      f.assets.meshes, model, model, rest);
 }
 
+/// What the structures bear, as in the exercises of the project. `vessel`: with the artery.
+std::string limits(const SceneFacts& f, bool vessel) {
+  std::string s;
+  if (vessel) s += fmt::format("    <include file=\"{}/vessel_limits.xml\"/>\n", f.assets.parts);
+  return s + fmt::format("    <include file=\"{}/brain_limits.xml\"/>\n", f.assets.parts);
+}
+
+/// The weak spot: the bleb, or the sac as a whole, whose wall is thicker.
+std::string weak_spot(const SceneFacts& f, const char* up, int radius_mm, int depth_mm) {
+  std::string s = fmt::format(
+      "  <include file=\"{}/bleb.xml\">\n    <variable name=\"blood_bottom\" value=\"{}\"/>\n"
+      "    <variable name=\"blood_up\" value=\"{}\"/>\n    <variable name=\"blood_radius\" value=\"{} mm\"/>\n"
+      "    <variable name=\"blood_depth\" value=\"{} mm\"/>\n",
+      f.assets.parts, point(f.neck - 5 * to_surgeon), up, radius_mm, depth_mm);
+  if (!f.bleb)
+    s += "    <variable name=\"bleb_region\" value=\"sac\"/>\n    <variable name=\"bleb_force\" value=\"1.5 N\"/>\n"
+         "    <variable name=\"bleb_sharp_force\" value=\"0.15 N\"/>\n";
+  return s + "  </include>\n";
+}
+
 std::string judged(const SceneFacts& f, const char* hold) {
   return fmt::format(
       "    <goal_clipped id=\"clip\" text=\"Close the neck and keep the branches open\" on=\"artery\" branches=\"{0}\" "
@@ -91,13 +111,10 @@ std::string field_part(const SceneFacts& f) {
                 .c_str());
   s += tool(f, "dissector", "stylus", "right", "dissector",
             "home=\"92 26 1 mm\" shaft=\"0.93 0.25 0.27\" flat=\"0 0 1\" coupling=\"250 N/m\"");
-  s += fmt::format(
-      "\n  <bleeding id=\"bleeding\" on=\"artery\" flow=\"flow\" region=\"{}\" origin=\"{}\" up=\"0.93 0.25 0.27\" "
-      "radius=\"16 mm\" depth=\"20 mm\" force=\"1.5 N\"/>\n",
-      f.bleb ? "bleb" : "sac", point(f.neck - 5 * to_surgeon));
+  s += "\n" + weak_spot(f, "0.93 0.25 0.27", 16, 20);
   s += "  <contact id=\"bed\" between=\"artery frontal temporal insula\" friction=\"0\" tissue_alarm=\"0.3 mm\" "
        "tissue_spacing=\"1.5 mm\" tissue_max_contacts=\"12\" tissue_max_force=\"0.05 N\"/>\n"
-       "  <contact id=\"tools\" between=\"artery frontal temporal insula suction probe applier stylus\" "
+       "  <contact id=\"tools\" between=\"artery frontal temporal insula window suction probe applier stylus\" "
        "friction=\"0.1\" spacing=\"1 mm\" max_contacts=\"10\" max_correction=\"0.2 mm\"/>\n";
   s += fmt::format(
       "  <contact id=\"blades\" between=\"artery {}\" friction=\"0.35\" contact_geometry=\"vertices\" patch=\"2.5 mm\" "
@@ -158,7 +175,8 @@ std::string opening_exercise(const SceneFacts& f) {
        "reach=\"0.6 mm\"/>\n"
        "  <contact id=\"lobes\" between=\"frontal temporal\" friction=\"0\" tissue_alarm=\"0.8 mm\" "
        "tissue_spacing=\"2 mm\" tissue_max_contacts=\"40\"/>\n"
-       "  <contact id=\"tools\" between=\"frontal temporal insula left_suction right_dissector\" friction=\"0.1\" "
+       "  <contact id=\"tools\" between=\"frontal temporal insula window left_suction right_dissector\" "
+       "friction=\"0.1\" "
        "spacing=\"1 mm\" max_contacts=\"10\"/>\n\n"
        "  <exercise id=\"sylvian_fissure\" title=\"Opening the Sylvian fissure\" text=\"Take hold of the temporal "
        "lobe with the suction tube and draw it down a little. Divide the strands with the dissector's edge, first at "
@@ -166,8 +184,9 @@ std::string opening_exercise(const SceneFacts& f) {
        "    <goal_opening id=\"open\" text=\"Part the lips of the fissure by 5 mm and hold them\" "
        "a=\"frontal_surface\" b=\"temporal_surface\" at=\"67 5 4 mm\" distance=\"5 mm\" hold=\"2 s\"/>\n"
        "    <goal_strands id=\"divide\" text=\"Divide all arachnoid strands\" fraction=\"1\"/>\n"
-       "    <fault_force id=\"force\" text=\"Too much force on the brain: ease off\" on=\"frontal temporal\" "
-       "limit=\"0.2 N\" grace=\"100 ms\"/>\n"
+       "    <goal_two_hands id=\"together\" text=\"Divide strands while the suction tube holds a lip aside\" "
+       "event=\"strand_cut\" count=\"10\" on=\"frontal temporal\" force=\"0.02 N\"/>\n" +
+       limits(f, false) +
        "    <fault_torn id=\"torn\" text=\"A strand tore: cut it before you draw the lobe further\"/>\n"
        "    <fault_order id=\"order\" text=\"Too deep too early: divide the strands at the surface first\" "
        "inward=\"-0.946 -0.236 -0.220\" margin=\"5 mm\" allowed=\"6\"/>\n"
@@ -191,21 +210,15 @@ std::string dissection_exercise(const SceneFacts& f) {
             "home=\"92 44 12 mm\" shaft=\"0.80 0.55 0.24\" flat=\"0 0 1\" coupling=\"250 N/m\"");
   s += "  <contact id=\"bed\" between=\"artery frontal temporal insula\" friction=\"0\" tissue_alarm=\"0.3 mm\" "
        "tissue_spacing=\"1.5 mm\" tissue_max_contacts=\"12\" tissue_max_force=\"0.05 N\"/>\n"
-       "  <contact id=\"tools\" between=\"artery frontal temporal insula left_suction right_stylus\" "
+       "  <contact id=\"tools\" between=\"artery frontal temporal insula window left_suction right_stylus\" "
        "friction=\"0.1\" spacing=\"1 mm\" max_contacts=\"10\"/>\n";
-  s += fmt::format(
-      "  <bleeding id=\"bleeding\" on=\"artery\" flow=\"flow\" region=\"{}\" force=\"0.3 N\" sharp_force=\"0.08 N\" "
-      "origin=\"{}\" up=\"0.93 0.22 0.28\" radius=\"12 mm\" depth=\"25 mm\"/>\n",
-      f.bleb ? "bleb" : "sac", point(f.neck - 5 * to_surgeon));
+  s += weak_spot(f, "0.93 0.22 0.28", 12, 25);
   for (const std::string& kind : f.strand_sets) s += strands(f, kind);
   s += "\n  <exercise id=\"aneurysm_dissection\" title=\"Dissection of the aneurysm\" text=\"Divide all strands with "
        "the dissector's edge: turn the blade across each and sweep it slowly, the outermost first. Keep off the "
        "dome, and pull on nothing.\">\n"
-       "    <goal_strands id=\"divide\" text=\"Divide all strands around the aneurysm\" fraction=\"1\"/>\n"
-       "    <fault_force id=\"vessel_force\" text=\"Too much force on the vessel: ease off\" on=\"artery\" "
-       "limit=\"0.15 N\" grace=\"100 ms\"/>\n"
-       "    <fault_force id=\"brain_force\" text=\"Too much force on the brain: ease off\" on=\"frontal temporal\" "
-       "limit=\"0.2 N\" grace=\"100 ms\"/>\n"
+       "    <goal_strands id=\"divide\" text=\"Divide all strands around the aneurysm\" fraction=\"1\"/>\n" +
+       limits(f, true) +
        "    <fault_torn id=\"torn\" text=\"A strand tore: divide it with the edge instead\"/>\n"
        "    <fault_rupture id=\"rupture\" text=\"The aneurysm has ruptured\" fails=\"true\"/>\n"
        "    <time_limit id=\"time\" text=\"Ten minutes are over\" limit=\"600 s\"/>\n";
@@ -223,9 +236,7 @@ std::string clipping_exercise(const SceneFacts& f) {
   s += "  <include file=\"field.xml\"/>\n\n";
   s += fmt::format("  <exercise id=\"clipping\" title=\"Clipping\" text=\"{}\">\n", clipping_text);
   s += judged(f, "3 s");
-  s += "    <fault_rupture id=\"rupture\" text=\"The dome has ruptured\"/>\n"
-       "    <fault_force id=\"force\" text=\"Too much force on the artery\" on=\"artery\" limit=\"1 N\" grace=\"200 "
-       "ms\"/>\n"
+  s += "    <fault_rupture id=\"rupture\" text=\"The dome has ruptured\"/>\n" + limits(f, true) +
        "    <time_limit id=\"time\" text=\"Fifteen minutes are over\" limit=\"900 s\"/>\n"
        "    <motion id=\"steady\" file=\"3_clipping_steady.csv\"/>\n  </exercise>\n</scene>\n";
   return s;
@@ -240,14 +251,14 @@ std::string rupture_exercise(const SceneFacts& f) {
        "  <exercise id=\"rupture\" title=\"Rupture\" text=\"The dome bleeds. Hold the field dry with the suction "
        "tube, put a temporary clip across the parent artery, then close the neck with a permanent clip, and take the "
        "temporary clip off within three minutes.\">\n"
-       "    <goal_bleeding_stopped id=\"stop\" text=\"Stop the bleeding\" rate=\"4 ml/min\" hold=\"2 s\"/>\n";
+       "    <goal_bleeding_stopped id=\"stop\" text=\"Stop the bleeding\" rate=\"4 ml/min\" hold=\"2 s\"/>\n"
+       "    <goal_two_hands id=\"together\" text=\"Suck the blood away while the other hand closes a clip\" "
+       "event=\"clip_shut\" channel=\"bleeding.sucked\" limit=\"10 ml/min\"/>\n";
   s += judged(f, "2 s");
   s += "    <goal_temporary_removed id=\"removed\" text=\"Take the temporary clip off\" rate=\"4 ml/min\"/>\n"
        "    <timer_rupture id=\"since_rupture\" text=\"Since the rupture\" limit=\"300 s\" rate=\"4 ml/min\"/>\n"
-       "    <timer_temporary_clip id=\"occlusion\" text=\"Temporary clip\" limit=\"180 s\"/>\n"
-       "    <fault_force id=\"force\" text=\"Too much force on the artery\" on=\"artery\" limit=\"1 N\" grace=\"200 "
-       "ms\"/>\n"
-       "    <motion id=\"steady\" file=\"4_rupture_steady.csv\"/>\n  </exercise>\n</scene>\n";
+       "    <timer_temporary_clip id=\"occlusion\" text=\"Temporary clip\" limit=\"180 s\"/>\n" +
+       limits(f, true) + "    <motion id=\"steady\" file=\"4_rupture_steady.csv\"/>\n  </exercise>\n</scene>\n";
   return s;
 }
 

@@ -62,20 +62,31 @@ class Trainer : public Surgeon {
     press(
         0, left_shaft_, aside, [&] { return middle_of("sac"); }, 5 * mm,
         [&] { return Strands(simulation_).left() <= before - 4; });
+    hands_.wait(0.2);
+    hands_.move(0.7, left, right);
+    // Then it leans on the parent artery.
+    double over = 0;
+    press(
+        0, left_shaft_, -left_shaft_, [&] { return middle_of("parent"); }, 12 * mm,
+        [&] {
+          over = force(0, *artery_) > 0.5 ? over + 0.05 : 0;
+          return over > 0.15;
+        });
+    hands_.wait(0.4);
     hands_.wait(0.3);
     hands_.move(0.7, left, right);
     // The dissector leans on the frontal lobe.
     const Body* frontal = simulation_.scene().find_as<Body>("frontal");
     if (!frontal) throw InputError("the scene has no frontal lobe");
     const MaterialPoint at = nearest(*frontal, centre_ + Vec3(4, 5, 0) * mm);
-    double over = 0;
+    over = 0;
     press(
-        1, lean_, Vec3(-0.2, 1, 0.1).normalized(), [&] { return frontal->position(at); }, 10 * mm,
+        1, outward_, Vec3(-0.3, 0.6, 0.8).normalized(), [&] { return frontal->position(at); }, 16 * mm,
         [&] {
           over = force(1, *frontal) > 0.24 ? over + 0.05 : 0;
           return over > 0.2;
         });
-    hands_.wait(0.2);
+    hands_.wait(0.4);
     hands_.move(0.6, right);
     // And presses the bleb with the flat of the blade.
     const Vec3 out = (middle_of("bleb") - middle_of("sac")).normalized(),
@@ -101,15 +112,11 @@ class Trainer : public Surgeon {
                     (a - b).norm(), a.x(), a.y(), a.z(), b.x(), b.y(), b.z());
       }
   }
-  /// Force of a hand's tool on a body, N.
+  /// Force of a hand on a body, N.
   double force(int hand, const Body& body) const {
-    const Body* tool = simulation_.instrument_of(hand);
-    Vec3 sum = Vec3::Zero();
-    for (const ContactPoint& c : simulation_.report().contacts) {
-      const double sign = c.a == tool && c.b == &body ? 1 : c.b == tool && c.a == &body ? -1 : 0;
-      sum += sign * (c.normal_force * c.normal + c.tangent_force);
-    }
-    return sum.norm();
+    for (const StructureForce& f : simulation_.report().structures)
+      if (f.body == &body) return f.of_hand[std::size_t(hand)].norm();
+    return 0;
   }
   /// Leans with a tool on a place that gives way: the hand goes from 5 mm before it to `most` behind it, wherever it is
   /// by then, until `enough`.

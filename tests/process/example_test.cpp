@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The example of an exercise ends live, with all its processes and in real time, as it ends headless.
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "tests/process/play_session.h"
+
+namespace insula::testing {
+namespace {
+
+using Json = nlohmann::json;
+
+/// The first report in a folder or in one of its subfolders; null while there is none.
+Json report_below(const fs::path& folder) {
+  std::error_code none;
+  for (const auto& entry : fs::recursive_directory_iterator(folder, none))
+    if (entry.path().filename() == "report.html" && fs::is_regular_file(entry.path().parent_path() / "report.json")) {
+      std::ifstream in(entry.path().parent_path() / "report.json");
+      return Json::parse(in, nullptr, false);
+    }
+  return {};
+}
+
+void expect_same_end(const Json& live, const Json& headless) {
+  EXPECT_EQ(live.at("state"), headless.at("state"));
+  ASSERT_EQ(live.at("goals").size(), headless.at("goals").size());
+  for (std::size_t i = 0; i < live.at("goals").size(); ++i) {
+    const Json &a = live.at("goals")[i], &b = headless.at("goals")[i];
+    EXPECT_EQ(a.at("id"), b.at("id"));
+    EXPECT_EQ(a.at("done"), b.at("done")) << a.at("id");
+    if (a.at("done") && b.at("done")) {
+      EXPECT_NEAR(a.at("time_s").get<double>(), b.at("time_s").get<double>(), 2) << a.at("id");
+    }
+  }
+  ASSERT_EQ(live.at("faults").size(), headless.at("faults").size());
+  for (std::size_t i = 0; i < live.at("faults").size(); ++i)
+    EXPECT_EQ(live.at("faults")[i].at("count"), headless.at("faults")[i].at("count")) << live.at("faults")[i].at("id");
+  ASSERT_EQ(live.at("measures").size(), headless.at("measures").size());
+  EXPECT_GE(live.at("measures").size(), 2u);
+  for (std::size_t i = 0; i < live.at("measures").size(); ++i) {
+    const Json &a = live.at("measures")[i], &b = headless.at("measures")[i];
+    const double value = b.at("value").get<double>();
+    EXPECT_NEAR(a.at("value").get<double>(), value, 0.05 * std::abs(value)) << a.at("id");
+  }
+}
+
+TEST(Example, EndsLiveAsItDoesHeadless) {
+  if (!multicast_works()) GTEST_SKIP() << "no multicast on this machine";
+  const fs::path scene = fs::path(INSULA_SOURCE_DIR) / "scenes/training/1_sylvian_fissure.xml";
+  PlaySession session;
+  ASSERT_EQ(session.start({"--report", (session.folder() / "live").string(), "--motion", "steady"}, scene), "");
+  const std::string run = std::string(INSULA_BINARY_DIR) + "/bin/insula run " + scene.string() +
+                          " --motion steady --quiet --report " + (session.folder() / "headless").string() +
+                          " > /dev/null";
+  ASSERT_EQ(std::system(run.c_str()), 0);
+  const Json headless = report_below(session.folder() / "headless");
+  ASSERT_TRUE(headless.is_object());
+  Json live;
+  const auto ended = [&] {
+    live = report_below(session.folder() / "live");
+    return live.is_object();
+  };
+  for (int k = 0; k < 20 && !wait_for(ended); ++k) {
+  }
+  ASSERT_TRUE(live.is_object()) << "no report of the live example\n" << session.log();
+  expect_same_end(live.at("exercise"), headless.at("exercise"));
+  EXPECT_EQ(live.at("motion"), "steady");
+}
+
+}  // namespace
+}  // namespace insula::testing

@@ -1,0 +1,11 @@
+import { chromium } from 'playwright-core';
+const [out, url, wait, size = '1100x700'] = process.argv.slice(2);
+const [width, height] = size.split('x').map(Number);
+const b = await chromium.launch({ executablePath: '/usr/bin/chromium', args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist'] });
+const p = await b.newPage({ viewport: { width, height } });
+await p.goto(url, { timeout: 120000 });
+await p.waitForTimeout(Number(wait) * 1000);
+for (const k of (process.argv[6] || '').split(',').filter(Boolean)) await p.keyboard.press(k);
+if (process.argv[6]) await p.waitForTimeout(6000);
+await p.screenshot({ path: out, timeout: 300000 });
+await b.close();
