@@ -39,14 +39,14 @@ class HandsReady : public ::testing::Test {
   }
   ~HandsReady() override { fs::remove_all(folder_); }
 
-  void hand_at(double x_m) {
+  void hand_at(double x_m, const char* device = "simulated") {
     insula_lcm::device_state_t m{};
     m.session = 1;
     m.sequence = ++sequence_;
     m.time_us = 1000 + sequence_;
     m.hand.resize(1);
     m.hands = 1;
-    m.hand[0].device = "simulated";
+    m.hand[0].device = device;
     m.hand[0].connected = true;
     m.hand[0].q[0] = 1;
     m.hand[0].p_m[0] = x_m;
@@ -90,6 +90,12 @@ TEST_F(HandsReady, NobodyIsWaitedForWithoutAServer) {
 }
 
 TEST_F(HandsReady, APersonsArmIsNotWaitedFor) {
+  on_problem_ = [this](int) { hand_at(0.5, "haply"); };
+  run(0.2);
+  EXPECT_LT(waited(), 5);
+}
+
+TEST_F(HandsReady, APersonWhoMovesAHandIsNotWaitedFor) {
   on_problem_ = [this](int n) {
     insula_lcm::hand_input_t m{};
     m.q[0] = 1;

@@ -88,6 +88,12 @@ struct Inputs {
     return true;
   }
 
+  /// Whether a person's arm has the place of a scripted hand.
+  bool persons_arm(const Motion& motion) const {
+    return std::any_of(devices.hand.begin(), devices.hand.end(),
+                       [&](const auto& h) { return motion.has(h.hand) && h.connected && h.device != "simulated"; });
+  }
+
   /// Whether the hands that the motion moves are where it has them at this time.
   bool at(const Motion& motion, double time) const {
     if (!follows(motion)) return false;
@@ -248,8 +254,8 @@ class LiveSession {
     if (waiting_since_us_ == 0) waiting_since_us_ = now;
     const double waited_s = 1e-6 * double(now - waiting_since_us_);
     ready_ = (script_.has(0) || script_.has(1)) && inputs_.at(script_, simulation_.time());
-    const bool hopeless = (!script_.has(0) && !script_.has(1)) || inputs_.driven || waited_s > hands_patience_s ||
-                          (inputs_.received_us == 0 && waited_s > server_patience_s);
+    const bool hopeless = (!script_.has(0) && !script_.has(1)) || inputs_.driven || inputs_.persons_arm(script_) ||
+                          waited_s > hands_patience_s || (inputs_.received_us == 0 && waited_s > server_patience_s);
     over_ = ready_ || hopeless;
     if (!over_) publisher_.again(simulation_);
     return !over_;
