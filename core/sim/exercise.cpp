@@ -16,8 +16,16 @@ int ExerciseLog::add_goal(std::string id, std::string text, bool required) {
 }
 
 int ExerciseLog::add_fault(std::string id, std::string text) {
-  faults_.push_back({std::move(id), std::move(text), 0, -1});
+  FaultState& fault = faults_.emplace_back();
+  fault.id = std::move(id);
+  fault.text = std::move(text);
+  fault.times.reserve(FaultState::most_times);
   return int(faults_.size()) - 1;
+}
+
+void ExerciseLog::advise(std::size_t first, const std::string& advice) {
+  for (std::size_t i = first; i < faults_.size(); ++i)
+    if (faults_[i].advice.empty()) faults_[i].advice = advice;
 }
 
 int ExerciseLog::add_timer(std::string id, std::string text, double limit_s) {
@@ -25,8 +33,8 @@ int ExerciseLog::add_timer(std::string id, std::string text, double limit_s) {
   return int(timers_.size()) - 1;
 }
 
-int ExerciseLog::add_measure(std::string id, std::string text, std::string unit) {
-  measures_.push_back({std::move(id), std::move(text), std::move(unit), false, 0, 0});
+int ExerciseLog::add_measure(std::string id, std::string text, std::string unit, std::string limit) {
+  measures_.push_back({std::move(id), std::move(text), std::move(unit), false, 0, 0, std::move(limit)});
   return int(measures_.size()) - 1;
 }
 
@@ -70,6 +78,7 @@ void ExerciseLog::fault(int index, double time, double value) {
   FaultState& f = faults_[std::size_t(index)];
   ++f.count;
   f.last_time = time;
+  if (f.times.size() < FaultState::most_times) f.times.push_back(time);
   message_ = f.text;
   events.emit({"fault", f.id, f.text, value, time});
 }
@@ -95,6 +104,7 @@ void ExerciseLog::reset() {
   for (FaultState& f : faults_) {
     f.count = 0;
     f.last_time = -1;
+    f.times.clear();
   }
   for (TimerState& t : timers_) {
     t.elapsed = t.longest = 0;
@@ -121,7 +131,11 @@ void MotionEntry::prepare(PrepareContext& context) {
 
 void Exercise::connect(PrepareContext& context, const Simulation& simulation) {
   rules_ = children_of<ExerciseRule>();
-  for (ExerciseRule* r : rules_) r->declare(context, simulation, log_);
+  for (ExerciseRule* r : rules_) {
+    const std::size_t first = log_.faults().size();
+    r->declare(context, simulation, log_);
+    log_.advise(first, r->advice());
+  }
 }
 
 void Exercise::observe(const StepReport& report) {
