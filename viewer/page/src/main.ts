@@ -15,7 +15,7 @@ import type { UserCommand } from './hud/commands';
 import { Hud } from './hud/hud';
 import { firstControl } from './hud/focus';
 import './hud/styles';
-import { timeLeftText } from './hud/timers';
+import { headsetLines } from './hud/timers';
 import type { HapticStatus, SceneInfo } from './lcm';
 import { Highlight, middle } from './inventory';
 import { parseOptions } from './options';
@@ -49,7 +49,6 @@ let haptic: HapticStatus | null = null;
 const heard = { haptic: 0, info: 0, frame: -1e9 };
 let watch = new QualityWatch(options.quality);
 let loadError = '';
-let frozen = false;
 let spokenTo = '';
 
 const hudRoot = document.getElementById('hud')!;
@@ -59,9 +58,9 @@ const link = new Connection(socketUrl(location.href, options.role), {
   frame: (m) => {
     if (!world || world.bundle.session !== m.session.toString()) return;
     heard.frame = performance.now();
-    if (frozen) return;
+    if (status.frozen) return;
     playback.push(m, performance.now());
-    if (options.freezeAtS !== null && m.sim_time_s >= options.freezeAtS) frozen = status.frozen = true;
+    if (options.freezeAtS !== null && m.sim_time_s >= options.freezeAtS) status.frozen = true;
   },
   scene: (m) => {
     info = m;
@@ -228,11 +227,6 @@ function applyQuality(): void {
   world?.setCheap(level.name === 'low');
 }
 
-function headsetLines(): string[] {
-  const timers = (reading.state?.timers ?? []).filter((t) => t.running).map((t) => `${t.text} ${timeLeftText(t)}`);
-  return ['For training only. Not for patient care.', timers.join('     '), spokenTo];
-}
-
 const pace = new Pace((fps, seconds) => {
   status.fps = fps;
   // A hidden tab draws rarely by design; loading stalls are no sign of a slow machine either.
@@ -253,7 +247,8 @@ function draw(now: number): void {
     axes: scope.axes(),
   });
   const angle = THREE.MathUtils.degToRad(modes.angleDeg);
-  if (presenting) headset.render(scene, scope.camera, scope.distance, angle, headsetLines());
+  if (presenting)
+    headset.render(scene, scope.camera, scope.distance, angle, headsetLines(reading.state?.timers ?? [], spokenTo));
   else stage.render(modes.stereo, angle);
   status.presenting = presenting;
   status.triangles = stage.triangles;

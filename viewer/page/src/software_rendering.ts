@@ -8,8 +8,8 @@ export function adviceFor(renderer: string): string {
   const name = software.exec(renderer)?.[0];
   if (!name) return '';
   return (
-    `This browser draws by software (${name}), so pictures are slow. Turn hardware acceleration on in its settings, ` +
-    'or use a machine with a graphics card. Until then choose the quality "Low" and a small window.'
+    `Pictures are slow: this browser draws by software (${name}). Turn on hardware acceleration in its settings, ` +
+    'or choose the quality Low and a small window.'
   );
 }
 

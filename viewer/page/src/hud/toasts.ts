@@ -14,17 +14,17 @@ export class Toasts {
 
   /** read: called when the trainee has said that it was understood. */
   instruct(text: string, read: () => void): void {
-    this.stay('Instructor', text, read);
+    this.stay('instruction', 'Instructor', text, read);
   }
 
   /** About this machine; once. */
   advise(text: string): void {
-    this.stay('Advice', text, () => undefined);
+    this.stay('advice', 'Advice', text, () => undefined);
   }
 
-  private stay(who: string, text: string, read: () => void): void {
+  private stay(kind: string, who: string, text: string, read: () => void): void {
     const close = el('button', { 'aria-label': 'understood' }, '✓ Read');
-    const line = el('div', { class: 'toast instruction' }, el('b', {}, who), el('span', {}, text), close);
+    const line = el('div', { class: `toast ${kind}` }, el('b', {}, who), el('span', {}, text), close);
     close.onclick = () => {
       line.remove();
       read();
