@@ -17,6 +17,7 @@ with a new release.
 Sources: Sindou, Acevedo, Turjman 1998 (grades); neck_judge.h describes the geometry.
 */
 #include <algorithm>
+#include <cmath>
 
 #include "core/base/text.h"
 #include "core/registry/registry.h"
@@ -90,14 +91,15 @@ class GoalClipped final : public ExerciseRule {
       return error(context, on, "needs a shell_body with a vessel that has a neck and a region \"sac\"");
     vessel_names(context, *this, sac, *vessel);
     branch_names_ = vessel_names(context, *this, branches, *vessel);
-    remnant_ = log.add_measure(id + "_remnant", "Remnant (Sindou grade)", "");
-    neck_ = log.add_measure(id + "_neck", "Neck remnant", "%");
-    past_ = log.add_measure(id + "_tip", "Blade tip past the neck", "mm");
-    slit_ = log.add_measure(id + "_slit", "Slit between the blades", "mm");
-    count_ = log.add_measure(id + "_applications", "Clip applications", "");
+    remnant_ = log.add_measure(id + "_remnant", "Remnant (Sindou grade)", "", "at most " + std::to_string(max_grade()));
+    neck_ = log.add_measure(id + "_neck", "Neck remnant", "%", "below 10 %");
+    past_ = log.add_measure(id + "_tip", "Blade tip past the neck", "mm", "between 0 and 4 mm");
+    slit_ = log.add_measure(id + "_slit", "Slit between the blades", "mm", "below 1.2 mm");
+    count_ = log.add_measure(id + "_applications", "Clip applications", "", "at most 2");
+    const std::string least_flow = "at least " + std::to_string(int(std::lround(100 * min_flow()))) + " %";
     for (const std::string& b : branch_names_) {
-      flow_.push_back(log.add_measure(id + "_flow_" + b, "Flow of the " + b + " branch", "%"));
-      narrow_.push_back(log.add_measure(id + "_stenosis_" + b, "Stenosis of the " + b + " branch", "%"));
+      flow_.push_back(log.add_measure(id + "_flow_" + b, "Flow of the " + b + " branch", "%", least_flow));
+      narrow_.push_back(log.add_measure(id + "_stenosis_" + b, "Stenosis of the " + b + " branch", "%", "below 30 %"));
     }
     reset();
   }
