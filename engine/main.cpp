@@ -30,7 +30,7 @@ struct Options : insula::CommandLine {
 
   std::string element;
   fs::path output, folder, plugin_folder;
-  bool no_browser = false, no_reload = false, list_only = false;
+  bool no_browser = false, no_reload = false, no_report = false, list_only = false;
   insula::NewPluginOptions new_plugin;
   insula::DevicesOptions devices;
   insula::RunOptions run;
@@ -123,6 +123,8 @@ void add_engine(Options& c) {
   command->add_option("--notice", o.notice, "file whose text viewers are shown while it is not empty");
   command->add_option("--report", o.report,
                       "folder for reports of the session, each in a folder of its own named by date and time");
+  command->add_option("--mode", o.mode, "how the session begins (default: a demonstration if there is a motion)")
+      ->check(CLI::IsMember({"waiting", "demonstration", "practice", "test"}));
   command->add_flag("--keep-bundle", o.keep_bundle, "leave the bundle where it is at the end, for a replay");
   command->callback([&c] { c.chosen = [&](const auto& x) { return insula::cmd_engine(x, c.engine); }; });
 }
@@ -165,12 +167,18 @@ void add_play(Options& c) {
   add_seed(*command, o.seed);
   command->add_option("--keep-bundle", o.keep_bundle,
                       "folder in which the viewer's scene bundles stay, for a replay of a log");
+  command->add_option("--mode", o.mode, "begin at once in this mode (default: chosen on the page)")
+      ->check(CLI::IsMember({"demonstration", "practice", "test"}));
   command->add_option("--report", o.report,
-                      "folder for reports of the session, each in a folder of its own named by date and time");
+                      "folder for reports of the session, each in a folder of its own named by date and time (default: "
+                      "insula-reports in the home folder)");
+  command->add_flag("--no-report", c.no_report, "write no reports");
   command->add_flag("--no-reload", c.no_reload, "do not load the scene again when one of its files is saved");
   command->callback([&c] {
     c.play.browser = !c.no_browser;
     c.play.reload = !c.no_reload;
+    if (c.no_report) c.play.report.clear();
+    else if (c.play.report.empty()) c.play.report = insula::default_report_folder();
     c.play.plugin_paths = c.plugin_paths;
     c.chosen = [&](const auto& x) { return insula::cmd_play(x, c.play); };
   });

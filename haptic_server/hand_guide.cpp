@@ -11,17 +11,56 @@ namespace insula {
 void HandGuide::place(const Pose& pose) noexcept {
   goal_ = HandGoal{};
   goal_.pose = smooth_ = pose;
-  taken_over_ = false;
+  stale_ = stale_ || taken_over_;
+  taken_over_ = returning_ = false;
 }
 
 void HandGuide::take_over(const HandSample& wish) noexcept {
+  silent_s_ = 0;
+  if (stale_) return;
   viewer_ = wish;
   if (!taken_over_) smooth_ = goal_.pose;
   taken_over_ = true;
+  returning_ = false;
+}
+
+void HandGuide::release() noexcept {
+  stale_ = false;
+  if (!taken_over_) return;
+  taken_over_ = false;
+  returning_ = true;
+  returning_s_ = 0;
+}
+
+void HandGuide::move_towards(const Pose& target, double dt, double most_m, double most_rad) noexcept {
+  Vec6 swept = displacement(goal_.pose, target);
+  const double far = swept.head<3>().norm(), turn = swept.tail<3>().norm();
+  const bool slowed = far > most_m || turn > most_rad;
+  if (far > most_m) swept.head<3>() *= most_m / far;
+  if (turn > most_rad) swept.tail<3>() *= most_rad / turn;
+  goal_.v = swept.head<3>() / dt;
+  goal_.w = swept.tail<3>() / dt;
+  goal_.pose = slowed ? displaced(goal_.pose, swept) : target;
+  returning_ = returning_ && slowed;
+}
+
+void HandGuide::glide_back(double dt, const HandSample& wish) noexcept {
+  returning_s_ += dt;
+  const double pace = std::min(1.0, returning_s_ / settings_.return_ramp_s);
+  goal_.button1 = goal_.button2 = false;
+  goal_.stops = false;
+  move_towards(wish.pose, dt, pace * settings_.return_speed_m_s * dt, pace * settings_.return_spin_rad_s * dt);
 }
 
 const HandGoal& HandGuide::advance(double dt, const HandSample& wish) noexcept {
   if (!(dt > 0)) return goal_;
+  silent_s_ += dt;
+  if (silent_s_ > settings_.fresh_after_s) stale_ = false;
+  if (taken_over_ && silent_s_ > settings_.lost_after_s) release();
+  if (returning_) {
+    glide_back(dt, wish);
+    return goal_;
+  }
   HandSample target = taken_over_ ? viewer_ : wish;
   goal_.button1 = target.button1;
   goal_.button2 = target.button2;
@@ -30,14 +69,7 @@ const HandGoal& HandGuide::advance(double dt, const HandSample& wish) noexcept {
     smooth_ = displaced(smooth_, (dt / (settings_.smoothing_s + dt)) * displacement(smooth_, viewer_.pose));
     target.pose = smooth_;
   }
-  Vec6 swept = displacement(goal_.pose, target.pose);
-  const double far = swept.head<3>().norm(), turn = swept.tail<3>().norm();
-  const bool slowed = far > settings_.max_speed_m_s * dt || turn > settings_.max_spin_rad_s * dt;
-  if (far > settings_.max_speed_m_s * dt) swept.head<3>() *= settings_.max_speed_m_s * dt / far;
-  if (turn > settings_.max_spin_rad_s * dt) swept.tail<3>() *= settings_.max_spin_rad_s * dt / turn;
-  goal_.v = swept.head<3>() / dt;
-  goal_.w = swept.tail<3>() / dt;
-  goal_.pose = slowed ? displaced(goal_.pose, swept) : target.pose;
+  move_towards(target.pose, dt, settings_.max_speed_m_s * dt, settings_.max_spin_rad_s * dt);
   return goal_;
 }
 

@@ -54,14 +54,79 @@ TEST(HandGuide, AViewerTakesOverUntilPlaced) {
   viewer.pose.p = Vec3(0.01, 0, 0);
   viewer.button2 = true;
   script.pose.p = Vec3(-0.01, 0, 0);
-  guide.take_over(viewer);
-  for (int k = 0; k < 1000; ++k) guide.advance(guide_tick, script);  // held although no new pose comes
+  for (int k = 0; k < 1000; ++k) {
+    if (k % 50 == 0) guide.take_over(viewer);
+    guide.advance(guide_tick, script);
+  }
   EXPECT_NEAR((guide.goal().pose.p - viewer.pose.p).norm(), 0, 1e-9);
   EXPECT_TRUE(guide.goal().button2);
   EXPECT_FALSE(guide.goal().stops);
   guide.place(Pose());
-  for (int k = 0; k < 1000; ++k) guide.advance(guide_tick, script);
+  for (int k = 0; k < 1000; ++k) {
+    if (k % 50 == 0) guide.take_over(viewer);  // the same stream goes on and is not heard
+    guide.advance(guide_tick, script);
+  }
   EXPECT_EQ(guide.goal().pose.p, script.pose.p);
+  EXPECT_FALSE(guide.goal().button2);
+  for (int k = 0; k < 200; ++k) guide.advance(guide_tick, script);  // a pause
+  guide.take_over(viewer);
+  EXPECT_TRUE(guide.advance(guide_tick, script).button2);
+}
+
+/// Runs until the goal has come to rest. Checks that nothing jumps, and returns the number of ticks.
+int ticks_of_the_way_back(HandGuide& guide, const HandSample& script, const GuideSettings& s) {
+  Pose last = guide.goal().pose;
+  Vec3 v = Vec3::Zero();
+  for (int k = 0; k < 20000; ++k) {
+    const HandGoal& g = guide.advance(guide_tick, script);
+    if (g.stops) return k;
+    const Vec6 d = displacement(last, g.pose);
+    EXPECT_LE(d.head<3>().norm(), s.return_speed_m_s * guide_tick * (1 + 1e-9));
+    EXPECT_LE(d.tail<3>().norm(), s.return_spin_rad_s * guide_tick * (1 + 1e-9));
+    // It gathers speed over the ramp; only the arrival may stop it at once.
+    if (k > 0 && (g.pose.p - script.pose.p).norm() > 1e-9) {
+      EXPECT_LE((g.v - v).norm(), s.return_speed_m_s * guide_tick / s.return_ramp_s * (1 + 1e-6));
+    }
+    EXPECT_FALSE(g.button1 || g.button2);
+    last = g.pose;
+    v = g.v;
+  }
+  return 20000;
+}
+
+TEST(HandGuide, AReleasedHandGlidesBackWithItsButtonsOff) {
+  const GuideSettings s;
+  HandGuide guide(s);
+  guide.place(Pose());
+  HandSample viewer, script;
+  viewer.pose.p = Vec3(0.02, 0, 0);
+  viewer.button1 = viewer.button2 = true;
+  script.pose.p = Vec3(0, 0, 0.03);
+  for (int k = 0; k < 500; ++k) {
+    guide.take_over(viewer);
+    guide.advance(guide_tick, script);
+  }
+  guide.release();
+  const int ticks = ticks_of_the_way_back(guide, script, s);
+  // The way at full speed, and half of the ramp.
+  const double way = Vec3(0.02, 0, 0.03).norm();
+  EXPECT_NEAR(ticks * guide_tick, way / s.return_speed_m_s + 0.5 * s.return_ramp_s, 0.01);
+  EXPECT_EQ(guide.goal().pose.p, script.pose.p);
+}
+
+TEST(HandGuide, AHandIsReleasedWhenItsViewerIsLost) {
+  const GuideSettings s;
+  HandGuide guide(s);
+  guide.place(Pose());
+  HandSample viewer;
+  viewer.pose.p = Vec3(0.02, 0, 0);
+  viewer.button1 = true;
+  guide.take_over(viewer);
+  int ticks = 0;
+  while (guide.advance(guide_tick, HandSample{}).button1 && ticks < 5000) ++ticks;
+  EXPECT_NEAR(ticks * guide_tick, s.lost_after_s, 2 * guide_tick);
+  EXPECT_LT(ticks_of_the_way_back(guide, HandSample{}, s), 5000);
+  EXPECT_EQ(guide.goal().pose.p, Vec3(Vec3::Zero()));
 }
 
 TEST(HandGuide, SmoothsSixtyPosesASecond) {

@@ -38,6 +38,8 @@ struct Rig {
   std::int64_t session = 100, sequence = 0;
   double sim_time = 0;
   bool engine_alive = true;
+  bool viewer_holds = false;  ///< the viewer sends `input` every 16 ms
+  insula_lcm::hand_input_t input{};
   Pose tool[2];
   std::vector<std::uint8_t> bytes;
   Vec3 last_force[2] = {Vec3::Zero(), Vec3::Zero()};
@@ -124,6 +126,7 @@ struct Rig {
         sim_time += 0.016;
         send_problem();
       }
+      if (tick_count % 16 == 8 && viewer_holds) engine_bus.publish(channel::hand_input, encoded(input));
       server->receive(0);
       clock.advance_ns(ms);
       server->tick(clock.now_ns());

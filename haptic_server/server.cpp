@@ -55,6 +55,7 @@ HapticServer::HapticServer(Bus& bus, std::array<DeviceChoice, 2> devices, const 
   bus_.subscribe(channel::scene_info, [this](Bytes b) { on_scene(b); });
   bus_.subscribe(channel::hand_input, [this](Bytes b) { on_input(b); });
   bus_.subscribe(channel::sim_event, [this](Bytes b) { on_event(b); });
+  bus_.subscribe(channel::user_command, [this](Bytes b) { on_command(b); });
 }
 
 const Motion* HapticServer::motion() const noexcept {
@@ -95,7 +96,9 @@ void HapticServer::take_wishes() noexcept {
     Hand& hand = hands_[i];
     if (wish.count == hand.wishes_seen) continue;
     hand.wishes_seen = wish.count;
-    if (hand.placed && hand.source != HandSource::person) hand.guide.take_over(wish.sample);
+    if (!hand.placed || hand.source == HandSource::person) continue;
+    if (wish.released) hand.guide.release();
+    else hand.guide.take_over(wish.sample);
   }
 }
 

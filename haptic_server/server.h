@@ -37,7 +37,7 @@ struct ServerOptions {
 };
 
 /// Three threads work here without locks: `receive` in one, `tick` in the servo thread, `publish_*` in a third.
-/// Messages: in HAPTIC_PROBLEM, SCENE_INFO, SIM_EVENT, HAND_INPUT; out DEVICE_STATE, HAPTIC_STATUS.
+/// Messages: in HAPTIC_PROBLEM, SCENE_INFO, SIM_EVENT, HAND_INPUT, USER_COMMAND; out DEVICE_STATE, HAPTIC_STATUS.
 ///
 /// A new engine (session), or a simulated time that goes back, puts simulated arms at the start of the motion or at
 /// home, under control of the script. A server that joins a running scene starts its arms at the engine's tool poses
@@ -80,6 +80,7 @@ class HapticServer {
   };
   struct Wish {
     HandSample sample;
+    bool released = false;  ///< the viewer has let the hand go
     std::int64_t count = 0;
   };
   struct Hand {
@@ -113,6 +114,7 @@ class HapticServer {
   void on_scene(Bytes bytes);
   void on_input(Bytes bytes);
   void on_event(Bytes bytes);
+  void on_command(Bytes bytes);
   void refuse(const std::string& channel, const std::string& why);
   // Servo thread.
   void take_problem(std::int64_t now) noexcept;
@@ -137,6 +139,7 @@ class HapticServer {
   insula_lcm::scene_info_t scene_info_;
   insula_lcm::hand_input_t hand_input_;
   insula_lcm::sim_event_t event_;
+  insula_lcm::user_command_t command_;
   std::string why_;
 
   // Across threads.

@@ -65,7 +65,21 @@ void HapticServer::on_input(Bytes bytes) {
   wish.sample.pose.q = Quat(m.q[0], m.q[1], m.q[2], m.q[3]).normalized();
   wish.sample.button1 = m.button1 != 0;
   wish.sample.button2 = m.button2 != 0;
+  wish.released = false;
   ++wish.count;
+  inputs_.back() = wishes_;
+  inputs_.publish();
+}
+
+void HapticServer::on_command(Bytes bytes) {
+  if (!decode(bytes, command_, why_)) return refuse("USER_COMMAND", why_);
+  if (command_.command != "release") return;
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (command_.argument != (i == 0 ? "right" : "left")) {  // without an argument: both hands
+      wishes_[i].released = true;
+      ++wishes_[i].count;
+    }
+  }
   inputs_.back() = wishes_;
   inputs_.publish();
 }

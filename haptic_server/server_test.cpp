@@ -125,20 +125,56 @@ TEST(Server, AResetStartsTheMotionAgainAndEndsATakeover) {
   rig.write_motion();
   rig.send_scene();
   rig.run(500);
-  insula_lcm::hand_input_t input{};
-  input.hand = 0;
-  input.p_m[0] = -0.03;
-  input.p_m[2] = 0.02;
-  input.q[0] = 1;
-  input.button2 = 1;
-  rig.engine_bus.publish(channel::hand_input, rig.encoded(input));
+  rig.input.p_m[0] = -0.03;
+  rig.input.p_m[2] = 0.02;
+  rig.input.q[0] = 1;
+  rig.input.button2 = 1;
+  rig.viewer_holds = true;
   rig.run(1000);
   EXPECT_NEAR((rig.server->reading(0).pose.p - Vec3(-0.03, 0, 0.02)).norm(), 0, 2e-4);
   EXPECT_TRUE(rig.server->reading(0).button2);
   rig.sim_time = 0;
-  rig.run(40);
+  rig.run(40);  // the viewer has not heard of the reset yet, and still sends
   EXPECT_NEAR(rig.server->reading(0).pose.p.z(), 0.01, 2e-3);
   EXPECT_FALSE(rig.server->reading(0).button2);
+}
+
+TEST(Server, AHandIsGivenBackOnReleaseAndWhenTheViewerIsLost) {
+  for (const bool released : {true, false}) {
+    Rig rig;
+    rig.send_scene();
+    rig.run(1500);
+    const Vec3 home = rig.server->reading(1).pose.p;
+    rig.input.hand = 1;
+    rig.input.q[0] = 1;
+    rig.input.button1 = 1;
+    rig.input.p_m[0] = 0.02;
+    rig.input.p_m[2] = -0.004;  // in the tissue
+    rig.viewer_holds = true;
+    rig.run(1000);
+    EXPECT_TRUE(rig.server->reading(1).button1);
+    EXPECT_GT(rig.server->force(1).norm(), 0.4);
+    rig.viewer_holds = false;
+    if (released) {
+      insula_lcm::user_command_t command;
+      command.command = "release";
+      command.argument = "left";
+      rig.engine_bus.publish(channel::user_command, rig.encoded(command));
+      rig.run(2);
+      EXPECT_TRUE(rig.server->reading(1).button1) << "the other hand was released";
+      command.argument = "right";
+      rig.engine_bus.publish(channel::user_command, rig.encoded(command));
+    } else {
+      rig.run(280);
+      EXPECT_TRUE(rig.server->reading(1).button1);
+      rig.run(40);
+    }
+    rig.run(2);
+    EXPECT_FALSE(rig.server->reading(1).button1);
+    rig.run(2000);
+    EXPECT_NEAR((rig.server->reading(1).pose.p - home).norm(), 0, 2e-4);
+    EXPECT_LT(rig.server->force(1).norm(), 0.05);
+  }
 }
 
 TEST(Server, AServerThatComesLateStartsWhereTheToolsAre) {
@@ -203,11 +239,9 @@ TEST(Server, AMouseFollowsTheViewerAndNotTheScript) {
   rig.send_scene();
   rig.run(1500);
   EXPECT_NEAR((rig.server->reading(0).pose.p - Vec3(-0.02, 0, 0.002)).norm(), 0, 2e-4);
-  insula_lcm::hand_input_t input{};
-  input.hand = 0;
-  input.p_m[2] = 0.03;
-  input.q[0] = 1;
-  rig.engine_bus.publish(channel::hand_input, rig.encoded(input));
+  rig.input.p_m[2] = 0.03;
+  rig.input.q[0] = 1;
+  rig.viewer_holds = true;
   rig.run(1000);
   EXPECT_NEAR((rig.server->reading(0).pose.p - Vec3(0, 0, 0.03)).norm(), 0, 2e-4);
   EXPECT_EQ(rig.state.hand[0].device, "mouse");

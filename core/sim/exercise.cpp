@@ -2,6 +2,8 @@
 // Book-keeping of an exercise.
 #include "core/sim/exercise.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -18,8 +20,16 @@ int ExerciseLog::add_goal(std::string id, std::string text, bool required) {
 }
 
 int ExerciseLog::add_fault(std::string id, std::string text) {
-  faults_.push_back({std::move(id), std::move(text), 0, -1});
+  FaultState& fault = faults_.emplace_back();
+  fault.id = std::move(id);
+  fault.text = std::move(text);
+  fault.times.reserve(FaultState::most_times);
   return int(faults_.size()) - 1;
+}
+
+void ExerciseLog::advise(std::size_t first, const std::string& advice) {
+  for (std::size_t i = first; i < faults_.size(); ++i)
+    if (faults_[i].advice.empty()) faults_[i].advice = advice;
 }
 
 int ExerciseLog::add_timer(std::string id, std::string text, double limit_s) {
@@ -27,9 +37,24 @@ int ExerciseLog::add_timer(std::string id, std::string text, double limit_s) {
   return int(timers_.size()) - 1;
 }
 
+namespace {
+
+/// The good values of a measure as text: "at most 10 %".
+std::string limit_text(const MeasureState& m) {
+  const auto& [from, to] = m.band;
+  const std::string unit = m.unit.empty() ? "" : " " + m.unit;
+  if (from && to) return fmt::format("{:g} to {:g}{}", *from, *to, unit);
+  if (from) return fmt::format("at least {:g}{}", *from, unit);
+  if (to) return fmt::format("at most {:g}{}", *to, unit);
+  return {};
+}
+
+}  // namespace
+
 int ExerciseLog::add_measure(std::string id, std::string text, std::string unit,
                              const std::array<std::optional<double>, 2>& band) {
-  measures_.push_back({std::move(id), std::move(text), std::move(unit), false, 0, 0, band});
+  measures_.push_back({std::move(id), std::move(text), std::move(unit), false, 0, 0, band, {}});
+  measures_.back().limit = limit_text(measures_.back());
   return int(measures_.size()) - 1;
 }
 
@@ -73,6 +98,7 @@ void ExerciseLog::fault(int index, double time, double value) {
   FaultState& f = faults_[std::size_t(index)];
   ++f.count;
   f.last_time = time;
+  if (f.times.size() < FaultState::most_times) f.times.push_back(time);
   message_ = f.text;
   events.emit({"fault", f.id, f.text, value, time});
 }
@@ -105,6 +131,7 @@ void ExerciseLog::reset() {
   for (FaultState& f : faults_) {
     f.count = 0;
     f.last_time = -1;
+    f.times.clear();
   }
   for (TimerState& t : timers_) {
     t.elapsed = t.longest = 0;
@@ -135,7 +162,11 @@ std::string measure_id(const ChannelBase& channel, std::size_t item) {
 
 void Exercise::connect(PrepareContext& context, const Simulation& simulation) {
   rules_ = children_of<ExerciseRule>();
-  for (ExerciseRule* r : rules_) r->declare(context, simulation, log_);
+  for (ExerciseRule* r : rules_) {
+    const std::size_t first = log_.faults().size();
+    r->declare(context, simulation, log_);
+    log_.advise(first, r->advice());
+  }
   add_measures(simulation);
 }
 

@@ -23,9 +23,13 @@ struct GoalState {
 };
 
 struct FaultState {
+  /// Number of times that are kept of each fault.
+  static constexpr std::size_t most_times = 20;
   std::string id, text;
+  std::string advice;  ///< what the trainee should do instead; empty: the text says it
   int count = 0;
   double last_time = -1;
+  std::vector<double> times;  ///< simulated time of the first most_times faults, s
 };
 
 /// A clock shown to the trainee.
@@ -45,6 +49,7 @@ struct MeasureState {
   int good = 0;        ///< 1 good, 0 neutral, -1 bad
   /// From and to of the values that are good, in `unit`; none: open. Both none: nothing is said of good and bad.
   std::array<std::optional<double>, 2> band{};
+  std::string limit;  ///< the values that are good, as text: "below 10 %"; empty: not stated
 };
 
 enum class ExerciseState { running, done, failed };
@@ -54,6 +59,8 @@ class ExerciseLog {
  public:
   int add_goal(std::string id, std::string text, bool required = true);
   int add_fault(std::string id, std::string text);
+  /// Sets the advice of all faults from index `first` on that have none.
+  void advise(std::size_t first, const std::string& advice);
   int add_timer(std::string id, std::string text, double limit_s);
   int add_measure(std::string id, std::string text, std::string unit,
                   const std::array<std::optional<double>, 2>& band = {});
@@ -93,6 +100,10 @@ class ExerciseLog {
 class ExerciseRule : public Component {
  public:
   static constexpr std::string_view kind_name = "exercise rule";
+  Param<std::string> advice{this,
+                            {.name = "advice",
+                             .fallback = "",
+                             .doc = "what the trainee should do after a fault of this rule, shown at the end"}};
   /// Called once: finds what the rule watches, declares goals and faults.
   virtual void declare(PrepareContext&, const Simulation&, ExerciseLog&) = 0;
   virtual void observe(const StepReport& report, ExerciseLog& log) = 0;
@@ -104,6 +115,10 @@ class MotionEntry final : public Component {
  public:
   static constexpr std::string_view kind_name = "motion";
   Param<File> file{this, {.name = "file", .doc = "CSV of the motion: rows of hand poses and of commands"}};
+  Param<bool> guide{this,
+                    {.name = "guide",
+                     .fallback = "false",
+                     .doc = "whether pages show its poses as targets while a trainee practises"}};
   void prepare(PrepareContext& context) override;
 };
 

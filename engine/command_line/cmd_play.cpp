@@ -11,11 +11,13 @@
 #include <ostream>
 
 #include "core/bus/bus.h"
+#include "core/bus/lcm_bus.h"
 #include "core/scene/loader.h"
 #include "core/sim/exercise.h"
 #include "engine/command_line/play.h"
 #include "engine/live/scene_devices.h"
 #include "engine/live/scene_reload.h"
+#include "engine/live/session_lock.h"
 #include "engine/live/supervisor.h"
 
 namespace fs = std::filesystem;
@@ -62,14 +64,26 @@ bool scene_ok(const CommandContext& context, PlayOptions& options) {
   return true;
 }
 
-/// Opens and uses the bus once, so that a machine without multicast gives one message.
-bool bus_ok(const CommandContext& context) {
-  const auto bus = make_bus();
-  if (bus->good()) bus->subscribe("SCENE_INFO", [](Bytes) {});
-  if (bus->good()) return true;
-  context.err << "error: " << bus->error() << '\n';
-  return false;
-}
+/// Whether the bus can be used and no other session does. It listens from its construction on.
+class BusCheck {
+ public:
+  BusCheck() : bus_(make_bus()), engines_(*bus_) {}
+
+  /// A machine without multicast gives one message.
+  bool free(const CommandContext& context, SessionLock& lock) {
+    if (!bus_->good()) {
+      context.err << "error: " << bus_->error() << '\n';
+      return false;
+    }
+    if (lock.take() && !engines_.heard()) return true;
+    context.err << second_session_advice(lcm_url_from_environment(), lock.viewer());
+    return false;
+  }
+
+ private:
+  std::unique_ptr<Bus> bus_;
+  EngineListener engines_;
+};
 
 bool has_display() {
   for (const char* name : {"DISPLAY", "WAYLAND_DISPLAY"})
@@ -100,10 +114,7 @@ void open_browser(const std::string& url) {
 class BundleFolder {
  public:
   BundleFolder() {
-    const char* runtime = std::getenv("XDG_RUNTIME_DIR");
-    std::error_code error;
-    const bool usable = runtime != nullptr && *runtime != '\0' && fs::is_directory(runtime, error);
-    std::string name = ((usable ? fs::path(runtime) : fs::temp_directory_path(error)) / "insula-XXXXXX").string();
+    std::string name = (runtime_folder() / "insula-XXXXXX").string();
     if (mkdtemp(name.data()) != nullptr) path_ = name;
   }
   ~BundleFolder() {
@@ -118,6 +129,13 @@ class BundleFolder {
   fs::path path_;
 };
 
+/// A motion that is named on the command line is shown at once.
+std::string mode_of(const PlayOptions& options) {
+  if (!options.mode.empty()) return options.mode;
+  if (options.motion.empty()) return std::string(name_of(SessionMode::waiting));
+  return std::string(name_of(options.motion == "none" ? SessionMode::practice : SessionMode::demonstration));
+}
+
 ChildSpec engine_child(const PlayOptions& options, const fs::path& program, const fs::path& bundles) {
   ChildSpec engine;
   engine.name = "engine";
@@ -127,6 +145,7 @@ ChildSpec engine_child(const PlayOptions& options, const fs::path& program, cons
     engine.command.insert(engine.command.end(), {"--plugin-path", path.string()});
   engine.command.insert(engine.command.end(), {"engine", options.scene.string()});
   if (!options.motion.empty()) engine.command.insert(engine.command.end(), {"--motion", options.motion});
+  if (!options.view) engine.command.insert(engine.command.end(), {"--mode", mode_of(options)});
   if (options.seed != 0) engine.command.insert(engine.command.end(), {"--seed", std::to_string(options.seed)});
   if (!options.keep_bundle.empty())
     engine.command.insert(engine.command.end(), {"--bundle-dir", options.keep_bundle.string(), "--keep-bundle"});
@@ -147,7 +166,8 @@ ChildSpec haptic_child(const PlayOptions& options, const fs::path& folder) {
   return server;
 }
 
-ChildSpec gateway_child(const PlayOptions& options, const fs::path& folder, const Supervisor::Print& print) {
+ChildSpec gateway_child(const PlayOptions& options, const fs::path& folder, const SessionLock& lock,
+                        const Supervisor::Print& print) {
   ChildSpec gateway;
   gateway.name = "gateway";
   const auto command = [program = (folder / "gateway").string(), listen = options.listen,
@@ -157,11 +177,14 @@ ChildSpec gateway_child(const PlayOptions& options, const fs::path& folder, cons
     return line;
   };
   gateway.command = command(options.port);
-  gateway.on_line = [=, first = true, browser = options.browser](ChildSpec& self, std::string_view line) mutable {
+  gateway.on_line = [=, &lock, first = true, browser = options.browser, view = options.view](
+                        ChildSpec& self, std::string_view line) mutable {
     constexpr std::string_view serving = "serving ";
     if (!line.starts_with(serving)) return true;
     const std::string url(line.substr(serving.size()));
     print("insula: viewer at " + url);
+    if (!view) print("insula: the instructor's page is " + url + "?role=instructor");
+    lock.announce(url);
     const std::size_t colon = url.rfind(':');
     if (first && colon != std::string::npos) {
       // A restarted gateway must use the port that the pages know.
@@ -186,11 +209,18 @@ fs::path default_scene() {
   return scene;  // the loader reports that it is missing
 }
 
+fs::path default_report_folder() {
+  const char* home = std::getenv("HOME");
+  return fs::absolute(home != nullptr && *home != '\0' ? fs::path(home) : fs::path(".")) / "insula-reports";
+}
+
 int cmd_play(const CommandContext& context, const PlayOptions& given) {
   PlayOptions options = given;
   if (options.scene.empty()) options.scene = default_scene();
+  BusCheck bus;
   if (!scene_ok(context, options)) return 2;
-  if (!bus_ok(context)) return 1;
+  SessionLock lock(runtime_folder(), lcm_url_from_environment());
+  if (!bus.free(context, lock)) return 1;
   const fs::path program = own_program(), folder = program.parent_path();
   for (const char* name : {"haptic_server", "gateway"})
     if (::access((folder / name).c_str(), X_OK) != 0) {
@@ -212,7 +242,7 @@ int cmd_play(const CommandContext& context, const PlayOptions& given) {
   Supervisor supervisor(settings, print);
   running = &supervisor;
   // The viewer starts first, so that it is available while the engine loads.
-  supervisor.add(gateway_child(options, folder, print));
+  supervisor.add(gateway_child(options, folder, lock, print));
   if (!options.view) supervisor.add(haptic_child(options, folder));
   supervisor.add(engine);
   return supervisor.run();

@@ -14,6 +14,7 @@ namespace insula {
 struct PlayOptions {
   std::filesystem::path scene;       ///< empty: the first training exercise
   std::string motion;                ///< id, CSV file or "none" for simulated hands; empty: the engine's default
+  std::string mode;                  ///< name of the SessionMode in which it begins; empty: chosen on the page
   std::string left, right;           ///< devices; empty: those of the scene, else the haptic server's default
   int port = 8080;                   ///< the viewer's; if it is busy, the next ones are tried
   std::vector<std::string> hosts;    ///< names by which pages of other machines may address the viewer
@@ -34,6 +35,9 @@ int cmd_play(const CommandContext& context, const PlayOptions& options);
 
 /// Lists the inventory of a scene. Status 0, or 2 if the scene has errors.
 int cmd_view_list(const CommandContext& context, const std::filesystem::path& scene);
+
+/// Folder of the reports if none is given: insula-reports in the home folder, or in the current one.
+std::filesystem::path default_report_folder();
 
 /// The scene that is played if none is given. It is beside the program's installation or sources, or below the current
 /// folder.

@@ -37,6 +37,7 @@ struct EngineOptions {
   bool standby = false;          ///< load, print standby_line, and wait for SIGUSR1 before anything is sent on the bus
   std::filesystem::path notice;  ///< file whose text viewers show while it is not empty
   std::filesystem::path report;  ///< folder for the session's reports; empty: none
+  std::string mode;  ///< name of the SessionMode in which it begins; empty: a demonstration if there is a motion
 };
 inline constexpr const char* standby_line = "insula engine stands by";
 /// The engine process of a session. It uses the bus of LCM_DEFAULT_URL until SIGINT or SIGTERM.

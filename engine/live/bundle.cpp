@@ -7,6 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <optional>
 
 #include "core/base/input_error.h"
 #include "core/mechanics/shell_body.h"
@@ -15,6 +16,7 @@
 #include "engine/live/bundle_step_data.h"
 #include "engine/live/bundle_writer.h"
 #include "engine/live/frame.h"
+#include "engine/live/motion_guide.h"
 
 namespace insula {
 namespace {
@@ -49,7 +51,26 @@ Json band_of(const MeasureState& m) {
   return out;
 }
 
-Json exercise_of(const Exercise& exercise) {
+/// Targets of the motions that the exercise offers as a guide.
+Json guide_of(const Exercise& exercise, const Simulation& simulation) {
+  Json out = Json::array();
+  for (const MotionEntry* motion : exercise.motions()) {
+    if (!motion->guide()) continue;
+    for (const GuidePose& g : guide_poses(load_motion(motion->file()), simulation)) {
+      const Quat& q = g.sample.pose.q;
+      out.push_back({{"hand", g.hand == 0 ? "left" : "right"},
+                     {"tool", g.tool},
+                     {"time_s", g.time_s},
+                     {"p_m", list(g.sample.pose.p)},
+                     {"q", {q.w(), q.x(), q.y(), q.z()}},
+                     {"button1", g.sample.button1},
+                     {"button2", g.sample.button2}});
+    }
+  }
+  return out;
+}
+
+Json exercise_of(const Exercise& exercise, const Simulation& simulation) {
   Json goals = Json::array(), faults = Json::array();
   for (const GoalState& g : exercise.log().goals()) goals.push_back({{"id", g.id}, {"text", g.text}});
   for (const FaultState& f : exercise.log().faults()) faults.push_back({{"id", f.id}, {"text", f.text}});
@@ -58,8 +79,11 @@ Json exercise_of(const Exercise& exercise) {
     timers.push_back({{"id", t.id}, {"text", t.text}, {"limit_s", t.limit}});
   for (const MeasureState& m : exercise.log().measures())
     measures.push_back({{"id", m.id}, {"text", m.text}, {"unit", m.unit}, {"band", band_of(m)}});
-  return {{"id", exercise.id}, {"title", exercise.title()}, {"text", exercise.text()}, {"goals", goals},
-          {"faults", faults},  {"timers", timers},          {"measures", measures}};
+  Json motions = Json::array();
+  for (const MotionEntry* m : exercise.motions()) motions.push_back(m->id);
+  return {{"id", exercise.id},    {"title", exercise.title()}, {"text", exercise.text()},
+          {"goals", goals},       {"faults", faults},          {"timers", timers},
+          {"measures", measures}, {"motions", motions},        {"guide", guide_of(exercise, simulation)}};
 }
 
 /// The region of each vertex: that of the nearest vertex of the wall at rest.
@@ -158,14 +182,25 @@ Json hands_json(const Simulation& simulation) {
   return out;
 }
 
+/// What a command "set_NAME" has set at the start, in the command's unit: the value of the component's parameter NAME.
+/// Its range and the command's are the same range in two units, and so give the factor. None if there is no such pair.
+std::optional<double> start_value(const Component& component, const CommandInfo& command) {
+  if (!command.name.starts_with("set_") || command.min == 0) return std::nullopt;
+  const auto* param = dynamic_cast<const QuantityParam*>(component.find_param(command.name.substr(4)));
+  if (!param || !param->min() || *param->min() == 0) return std::nullopt;
+  return (*param)() * command.min / *param->min();
+}
+
 /// The commands of all components, for pages and scripts.
 Json commands_json(const Scene& scene) {
   Json out = Json::array();
   for (const Component* c : scene.components()) {
     Json commands = Json::array();
-    for (const CommandInfo& info : c->commands())
+    for (const CommandInfo& info : c->commands()) {
       commands.push_back(
           {{"name", info.name}, {"doc", info.doc}, {"argument", info.argument}, {"min", info.min}, {"max", info.max}});
+      if (const auto start = start_value(*c, info)) commands.back()["start"] = *start;
+    }
     if (!commands.empty()) out.push_back({{"id", c->id}, {"element", c->element}, {"commands", commands}});
   }
   return out;
@@ -252,7 +287,7 @@ void write_bundle(const Simulation& simulation, const fs::path& dir, std::int64_
   json["drawables"] = drawables_json(writer, simulation);
   json["materials"] = materials_json(simulation.scene().materials());
   const Exercise* exercise = simulation.exercise();
-  if (exercise && !with_inventory) json["exercise"] = exercise_of(*exercise);
+  if (exercise && !with_inventory) json["exercise"] = exercise_of(*exercise, simulation);
   if (with_inventory) {
     write_inventory(inventory(simulation), dir / "inventory.json");
     json["inventory"] = "inventory.json";

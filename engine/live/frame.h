@@ -4,6 +4,7 @@
 #include <insula_lcm/render_frame_t.hpp>
 
 #include "core/sim/simulation.h"
+#include "engine/live/session_mode.h"
 
 namespace insula {
 
@@ -18,6 +19,6 @@ std::vector<const RigidBody*> picture_tools(const Simulation& simulation);
 
 /// Fills a frame from the simulation's last step; keeps the capacity of its vectors. The caller fills the header
 /// fields.
-void fill_frame(const Simulation& simulation, insula_lcm::render_frame_t& frame);
+void fill_frame(const Simulation& simulation, insula_lcm::render_frame_t& frame, const SessionNote& note = {});
 
 }  // namespace insula

@@ -25,7 +25,12 @@ void add_exercise(SortedJson& j, const Exercise* exercise, double time) {
   if (!exercise) return;
   const ExerciseLog& log = exercise->log();
   for (const GoalState& g : log.goals()) j["goals"].push_back({{"id", g.id}, {"text", g.text}, {"done", g.done}});
-  for (const FaultState& f : log.faults()) j["faults"].push_back({{"id", f.id}, {"text", f.text}, {"count", f.count}});
+  for (const FaultState& f : log.faults()) {
+    SortedJson times = SortedJson::array();
+    for (const double t : f.times) times.push_back(rounded(t, 1));
+    j["faults"].push_back(
+        {{"id", f.id}, {"text", f.text}, {"count", f.count}, {"times_s", times}, {"advice", f.advice}});
+  }
   for (const TimerState& t : log.timers())
     j["timers"].push_back({{"id", t.id},
                            {"text", t.text},
@@ -37,7 +42,8 @@ void add_exercise(SortedJson& j, const Exercise* exercise, double time) {
                              {"text", m.text},
                              {"value", m.known ? rounded(m.value, 3) : SortedJson()},
                              {"unit", m.unit},
-                             {"good", m.good}});
+                             {"good", m.good},
+                             {"limit", m.limit}});
   j["message"] = log.last_message();
   j["state"] = log.state() == ExerciseState::running ? "running"
                : log.state() == ExerciseState::done  ? "done"
@@ -47,10 +53,12 @@ void add_exercise(SortedJson& j, const Exercise* exercise, double time) {
 
 }  // namespace
 
-std::string hud_json(const Simulation& simulation) {
+std::string hud_json(const Simulation& simulation, const SessionNote& note) {
   const StepReport& r = simulation.report();
   SortedJson j;
   add_exercise(j, simulation.exercise(), r.time);
+  j["mode"] = name_of(note.mode);
+  j["report"] = note.report;
   j["hands"] = SortedJson::array();
   for (int h = 0; h < 2; ++h)
     if (const Instrument* i = simulation.instrument_of(h))

@@ -4,11 +4,12 @@
 #include <string>
 
 #include "core/sim/simulation.h"
+#include "engine/live/session_mode.h"
 
 namespace insula {
 
 /// The hud_json of render_frame_t for the last step. It has the same keys with and without an exercise
 /// (docs/scripting.md).
-std::string hud_json(const Simulation& simulation);
+std::string hud_json(const Simulation& simulation, const SessionNote& note = {});
 
 }  // namespace insula

@@ -46,14 +46,16 @@ class Clocks final : public ExerciseRule {
     goal = log.add_goal("g", "Close the neck");
     log.add_goal("other", "Something else");
     clock = log.add_timer("clip", "Temporary clip", 180);
-    neck = log.add_measure("neck", "Neck remnant", "%");
+    fault = log.add_fault("f", "Too fast");
+    neck = log.add_measure("neck", "Neck remnant", "%", {std::nullopt, 10.0});
     log.add_measure("unknown", "Unknown", "mm");
   }
   void observe(const StepReport& r, ExerciseLog& log) override {
     log.timer(clock, 2 * r.time, true);
     log.measure(neck, 12.5, -1);
+    log.fault(fault, r.time, 0);
   }
-  int goal = 0, clock = 0, neck = 0;
+  int goal = 0, clock = 0, neck = 0, fault = 0;
 };
 
 Registry registry() {
@@ -80,6 +82,26 @@ TEST(Hud, TellsOfTheExercise) {
   EXPECT_EQ(j.at("state"), "running");
 }
 
+TEST(Hud, TellsOfTheSessionAndOfEachFault) {
+  const Registry r = registry();
+  auto loaded = load_simulation_text(
+      R"(<scene time_step="10 ms"><patient/><exercise id="e" title="E"><clocks advice="Go slower"/></exercise></scene>)",
+      "/s.xml", r, 1);
+  ASSERT_TRUE(loaded.simulation) << loaded.diagnostics.format();
+  for (int k = 0; k < 40; ++k) loaded.simulation->step();
+  const Json j = Json::parse(hud_json(*loaded.simulation, {SessionMode::demonstration, "/r/report.html"}));
+  EXPECT_EQ(j.at("mode"), "demonstration");
+  EXPECT_EQ(j.at("report"), "/r/report.html");
+  const Json& fault = j.at("faults").at(0);
+  EXPECT_EQ(fault.at("advice"), "Go slower");
+  EXPECT_EQ(fault.at("count"), 40);
+  ASSERT_EQ(fault.at("times_s").size(), FaultState::most_times);
+  EXPECT_EQ(fault.at("times_s").at(9), 0.1);
+  EXPECT_EQ(j.at("measures").at(0).at("limit"), "at most 10 %");
+  loaded.simulation->reset();
+  EXPECT_TRUE(Json::parse(hud_json(*loaded.simulation)).at("faults").at(0).at("times_s").empty());
+}
+
 TEST(Hud, HasTheSameKeysWithoutAnExercise) {
   const Registry r = registry();
   auto loaded = load_simulation_text("<scene/>", "/s.xml", r, 1);
@@ -87,8 +109,8 @@ TEST(Hud, HasTheSameKeysWithoutAnExercise) {
   loaded.simulation->step();
   const Json j = Json::parse(hud_json(*loaded.simulation));
   for (const char* key : {"goals", "faults", "timers", "measures", "hands"}) EXPECT_TRUE(j.at(key).is_array()) << key;
-  for (const char* key : {"message", "state", "elapsed_s"}) EXPECT_TRUE(j.contains(key)) << key;
-  EXPECT_EQ(j.size(), 8u);
+  for (const char* key : {"message", "state", "elapsed_s", "mode", "report"}) EXPECT_TRUE(j.contains(key)) << key;
+  EXPECT_EQ(j.size(), 10u);
 }
 
 TEST(Frame, CarriesChannelsAndDrawables) {

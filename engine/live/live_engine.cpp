@@ -19,6 +19,7 @@
 #include "engine/live/command_script.h"
 #include "engine/live/notice.h"
 #include "engine/live/publisher.h"
+#include "engine/live/session_mode.h"
 #include "engine/reports/session_reports.h"
 
 namespace insula {
@@ -41,6 +42,8 @@ struct Inputs {
   std::int64_t received_us = 0;
   bool pause = false, reset = false, quit = false;
   bool driven = false;                                     ///< a person has moved a hand since the start
+  std::optional<std::string> begin;                        ///< argument of the last "begin"
+  std::vector<std::string> read;                           ///< messages that the trainee has read
   std::vector<std::pair<std::string, std::string>> asked;  ///< command and argument, in order of arrival
 
   void subscribe(Bus& bus, SessionReports& reports) {
@@ -72,7 +75,11 @@ struct Inputs {
       else if (m.command == "resume") pause = false;
       else if (m.command == "reset") reset = true;
       else if (m.command == "quit") quit = true;
-      else if (m.command == "exchange" || m.command == "ask" || m.command == "message") {
+      else if (m.command == "begin") begin = m.argument;
+      else if (m.command == "release") return;  // the haptic server's
+      else if (m.command == "read") {
+        if (read.size() < max_requested) read.push_back(m.argument);
+      } else if (m.command == "exchange" || m.command == "ask" || m.command == "message") {
         if (asked.size() < max_requested) asked.emplace_back(m.command, m.argument);
       } else spdlog::info("unknown command \"{}\" ignored", m.command.substr(0, 40));
     });
@@ -178,6 +185,13 @@ bool load_motion_of(const Simulation& simulation, const std::string& wanted, fs:
   return true;
 }
 
+/// How a session begins that the command line says nothing of, or whose scene has nothing to choose.
+SessionMode first_mode(const LiveOptions& options, const Simulation& simulation, const Motion& motion) {
+  const SessionMode usual = motion.empty() ? SessionMode::practice : SessionMode::demonstration;
+  const SessionMode mode = options.mode.value_or(usual);
+  return mode == SessionMode::waiting && !simulation.exercise() ? usual : mode;
+}
+
 /// Keeps the loop in step with simulated time.
 class Pace {
  public:
@@ -211,17 +225,18 @@ class Pace {
 /// One session: the simulation, its inputs and its outputs.
 class LiveSession {
  public:
-  LiveSession(Simulation& simulation, const LiveOptions& options, Bus& bus, const Motion& script, Publisher& publisher,
-              SessionReports& reports)
+  LiveSession(Simulation& simulation, const LiveOptions& options, Bus& bus, fs::path motion, const Motion& script,
+              Publisher& publisher, SessionReports& reports)
       : simulation_(simulation),
         options_(options),
         bus_(bus),
+        motion_(std::move(motion)),
         script_(script),
         publisher_(publisher),
         reports_(reports),
-        commands_(script.commands()),
         notice_(options.notice) {
     inputs_.subscribe(bus, reports);
+    set_mode(first_mode(options, simulation, script));
   }
 
   void run(const std::atomic<bool>& stop, Pace& pace) {
@@ -230,10 +245,11 @@ class LiveSession {
       while (bus_.poll(0) > 0) {
       }
       take_requests();
-      const bool waits = !inputs_.pause && !options_.still && wait_for_hands();
-      if (inputs_.pause || options_.still) stand_still();
+      publisher_.note({mode_, reports_.last_report()});
+      const bool waits = !stands() && wait_for_hands();
+      if (stands()) stand_still();
       else if (!waits && !step()) continue;
-      if (!options_.unthrottled || inputs_.pause || waits) pace.wait(bus_);
+      if (!options_.unthrottled || stands() || waits) pace.wait(bus_);
     }
   }
 
@@ -254,14 +270,47 @@ class LiveSession {
     if (waiting_since_us_ == 0) waiting_since_us_ = now;
     const double waited_s = 1e-6 * double(now - waiting_since_us_);
     ready_ = (script_.has(0) || script_.has(1)) && inputs_.at(script_, simulation_.time());
-    const bool hopeless = (!script_.has(0) && !script_.has(1)) || inputs_.driven || inputs_.persons_arm(script_) ||
-                          waited_s > hands_patience_s || (inputs_.received_us == 0 && waited_s > server_patience_s);
+    const bool hopeless = mode_ != SessionMode::demonstration || (!script_.has(0) && !script_.has(1)) ||
+                          inputs_.driven || inputs_.persons_arm(script_) || waited_s > hands_patience_s ||
+                          (inputs_.received_us == 0 && waited_s > server_patience_s);
     over_ = ready_ || hopeless;
     if (!over_) publisher_.again(simulation_);
     return !over_;
   }
 
+  bool stands() const { return inputs_.pause || options_.still || mode_ == SessionMode::waiting; }
+
+  /// Only a demonstration moves simulated hands by the motion.
+  void set_mode(SessionMode mode) {
+    mode_ = mode;
+    const bool shows = mode == SessionMode::demonstration;
+    commands_ = CommandScript(shows ? script_.commands() : std::vector<MotionCommand>{});
+    reports_.set_mode(mode);
+    publisher_.follow(shows ? motion_ : fs::path());
+  }
+
+  /// "demonstration", "practice" or "test": the exercise starts again in that mode.
+  void begin(const std::string& name) {
+    const std::optional<SessionMode> mode = session_mode(name);
+    if (!mode || *mode == SessionMode::waiting || (*mode == SessionMode::demonstration && script_.empty())) {
+      publisher_.events(
+          {{"refused", "begin", "This scene has no " + shown(name) + " to begin", 0, simulation_.time()}});
+      return;
+    }
+    inputs_.pause = inputs_.driven = false;
+    reports_.end_run(simulation_);
+    start_again();
+    set_mode(*mode);
+    // The haptic server reads the motion before it hears of the start.
+    publisher_.info("running", notice_.text());
+    spdlog::info("{} begins", name_of(*mode));
+  }
+
   void take_requests() {
+    if (inputs_.begin) {
+      begin(*inputs_.begin);
+      inputs_.begin.reset();
+    }
     if (inputs_.reset) {
       inputs_.reset = false;
       inputs_.driven = false;  // the haptic server returned the hands to the motion
@@ -269,6 +318,7 @@ class LiveSession {
       start_again();
       spdlog::info("reset");
     }
+    pass_on_receipts();
     for (const auto& [verb, argument] : inputs_.asked) {
       const std::string why = simulation_.command(verb, argument);
       if (!why.empty()) spdlog::info("{} \"{}\" refused: {}", verb, shown(argument), why);
@@ -284,10 +334,20 @@ class LiveSession {
     publisher_.info("paused", notice_.text());
   }
 
+  /// The instructor sees that a message has been read.
+  void pass_on_receipts() {
+    std::vector<Event> receipts;
+    for (const std::string& text : inputs_.read) receipts.push_back({"read", "message", text, 0, simulation_.time()});
+    inputs_.read.clear();
+    if (receipts.empty()) return;
+    publisher_.events(receipts);
+    reports_.note(receipts);
+  }
+
   /// False if a value of the simulation became non-finite. The simulation has then started again.
   bool step() {
     const std::int64_t posed = inputs_.apply(simulation_, ready_);
-    const bool follows = inputs_.follows(script_);
+    const bool follows = mode_ == SessionMode::demonstration && inputs_.follows(script_);
     commands_.advance(simulation_, follows);
     simulation_.step();
     if (!simulation_.report().finite) {
@@ -306,7 +366,9 @@ class LiveSession {
   Simulation& simulation_;
   const LiveOptions& options_;
   Bus& bus_;
+  fs::path motion_;
   const Motion& script_;
+  SessionMode mode_ = SessionMode::practice;
   Publisher& publisher_;
   SessionReports& reports_;
   CommandScript commands_;
@@ -337,9 +399,9 @@ int run_live(const LiveOptions& options, const Registry& registry, Bus& bus, con
   write_bundle(simulation, bundle, session, options.still);
   const std::string title =
       simulation.scene().title().empty() ? options.scene.stem().string() : simulation.scene().title();
-  Publisher publisher(bus, session, options.scene, bundle, motion, title);
+  Publisher publisher(bus, session, options.scene, bundle, {}, title);
   SessionReports reports(options.report, options.scene, motion.empty() ? "" : options.motion);
-  LiveSession live(simulation, options, bus, script, publisher, reports);
+  LiveSession live(simulation, options, bus, motion, script, publisher, reports);
   spdlog::info("\"{}\" runs: {} bodies, {} constraints, step {:.2f} ms", title, simulation.bodies().size(),
                simulation.constraints().size(), simulation.h() * 1000);
   publisher.info("running");

@@ -4,11 +4,13 @@
 #include <atomic>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "core/bus/bus.h"
 #include "core/registry/registry.h"
 #include "core/sim/simulation.h"
+#include "engine/live/session_mode.h"
 
 namespace insula {
 
@@ -24,6 +26,9 @@ struct LiveOptions {
   bool still = false;            ///< only show the scene: time stands still, the bundle has the inventory
   std::filesystem::path notice;  ///< file whose text viewers show over the image while it is not empty; none: nothing
   std::filesystem::path report;  ///< folder for the session's reports (session_reports.h); empty: none
+  /// How the session begins. None: as a demonstration if there is a motion, else as practice. A scene without an
+  /// exercise never waits.
+  std::optional<SessionMode> mode;
   /// Called once when the scene is loaded and settled, before anything is sent. It may wait. False: end without a
   /// message.
   std::function<bool()> take_over;

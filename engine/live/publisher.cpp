@@ -38,6 +38,11 @@ void Publisher::info(const std::string& state, const std::string& message) {
   if (!publish(bus_, channel::scene_info, info_, scratch_)) ++failed_;
 }
 
+void Publisher::follow(const std::filesystem::path& motion) {
+  info_.motion = motion.string();
+  last_info_us_ = 0;
+}
+
 void Publisher::step(const Simulation& simulation, std::int64_t pose_time_us) {
   again(simulation, pose_time_us);
   events(simulation.events());
@@ -77,7 +82,7 @@ void Publisher::events(const std::vector<Event>& events) {
 void Publisher::paused_frame(const Simulation& simulation) { frame(simulation, true); }
 
 void Publisher::frame(const Simulation& simulation, bool paused) {
-  fill_frame(simulation, frame_);
+  fill_frame(simulation, frame_, note_);
   frame_.session = session_;
   frame_.sequence = ++frame_sequence_;
   frame_.time_us = monotonic_us();

@@ -12,6 +12,7 @@
 #include "core/haptics/haptic_update.h"
 #include "core/sim/simulation.h"
 #include "engine/live/exchange_pause.h"
+#include "engine/live/session_mode.h"
 
 namespace insula {
 
@@ -39,6 +40,10 @@ class Publisher {
   void paused_frame(const Simulation& simulation);
   /// Repeats the scene's state once a second, or at once when it has changed.
   void info(const std::string& state, const std::string& message = "");
+  /// The motion that simulated hands follow from now on; empty: none. Sent at once with the next info().
+  void follow(const std::filesystem::path& motion);
+  /// What frames say of the session from now on.
+  void note(SessionNote note) { note_ = std::move(note); }
   std::int64_t failed() const { return failed_; }
 
  private:
@@ -47,6 +52,7 @@ class Publisher {
   Bus& bus_;
   std::int64_t session_, sequence_ = 0, event_sequence_ = 0, frame_sequence_ = 0, last_info_us_ = 0, failed_ = 0;
   insula_lcm::scene_info_t info_;
+  SessionNote note_;
   insula_lcm::render_frame_t frame_;
   ProblemStamp stamp_;
   ContactFramePrediction predict_frames_;

@@ -31,58 +31,87 @@ std::string row(const std::string& name, const std::string& value) {
   return fmt::format("<tr><td>{}</td><td class=\"n\">{}</td></tr>\n", escaped(name), escaped(value));
 }
 
+std::string state_part(const ExerciseLog& log) {
+  switch (log.state()) {
+    case ExerciseState::running: return "<p>The run ended before the exercise did.</p>\n";
+    case ExerciseState::done: return fmt::format("<p class=\"good\">✓ Completed after {:.1f} s.</p>\n", log.end_time());
+    case ExerciseState::failed:
+      return fmt::format("<p class=\"bad\">✗ Failed after {:.1f} s: {}</p>\n", log.end_time(),
+                         escaped(log.last_message()));
+  }
+  return {};
+}
+
+std::string goals_part(const ExerciseLog& log) {
+  if (log.goals().empty()) return {};
+  std::string out =
+      "<table><thead><tr><th>Goal</th><th>Reached</th><th class=\"n\">Time (s)</th></tr></thead><tbody>\n";
+  for (const auto& g : log.goals())
+    out += fmt::format("<tr><td>{}{}</td><td class=\"{}\">{}</td><td class=\"n\">{}</td></tr>\n", escaped(g.text),
+                       g.required ? "" : " <span class=\"quiet\">(optional)</span>", g.done ? "good" : "bad",
+                       g.done ? "✓ yes" : "✗ no", g.done ? fmt::format("{:.1f}", g.time) : "");
+  return out + "</tbody></table>\n";
+}
+
+/// "12.3, 40.1 and 3 more".
+std::string times_text(const FaultState& fault) {
+  std::string out;
+  for (const double t : fault.times) out += fmt::format("{}{:.1f}", out.empty() ? "" : ", ", t);
+  const std::size_t more = std::size_t(fault.count) - std::min(fault.times.size(), std::size_t(fault.count));
+  return more > 0 ? fmt::format("{} and {} more", out, more) : out;
+}
+
+std::string faults_part(const ExerciseLog& log) {
+  if (log.faults().empty()) return {};
+  std::string out =
+      "<table><thead><tr><th>Fault</th><th class=\"n\">Count</th><th>At (s)</th><th>What to "
+      "do</th></tr></thead><tbody>\n";
+  for (const auto& f : log.faults())
+    out += fmt::format("<tr><td>{}</td><td class=\"n {}\">{} {}</td><td>{}</td><td>{}</td></tr>\n", escaped(f.text),
+                       f.count ? "bad" : "good", f.count ? "✗" : "✓", f.count, times_text(f),
+                       f.count ? escaped(f.advice) : "");
+  return out + "</tbody></table>\n";
+}
+
+std::string measures_part(const ExerciseLog& log) {
+  if (log.measures().empty()) return {};
+  std::string out =
+      "<table><thead><tr><th>Measure</th><th class=\"n\">At the end</th><th>Good "
+      "is</th><th></th></tr></thead><tbody>\n";
+  for (const auto& m : log.measures())
+    out += fmt::format("<tr><td>{}</td><td class=\"n {}\">{}</td><td>{}</td><td class=\"{}\">{}</td></tr>\n",
+                       escaped(m.text),
+                       m.good > 0   ? "good"
+                       : m.good < 0 ? "bad"
+                                    : "",
+                       m.known ? escaped(fmt::format("{:.3g} {}", m.value, m.unit)) : "", escaped(m.limit),
+                       m.good > 0   ? "good"
+                       : m.good < 0 ? "bad"
+                                    : "",
+                       !m.known     ? ""
+                       : m.good > 0 ? "✓"
+                       : m.good < 0 ? "✗"
+                                    : "");
+  return out + "</tbody></table>\n";
+}
+
+std::string clocks_part(const ExerciseLog& log) {
+  if (log.timers().empty()) return {};
+  std::string out =
+      "<table><thead><tr><th>Clock</th><th class=\"n\">Longest (s)</th><th class=\"n\">Limit "
+      "(s)</th></tr></thead><tbody>\n";
+  for (const auto& t : log.timers())
+    out += fmt::format("<tr><td>{}</td><td class=\"n {}\">{:.1f}</td><td class=\"n\">{}</td></tr>\n", escaped(t.text),
+                       t.limit > 0 && t.longest > t.limit ? "bad" : "", t.longest,
+                       t.limit > 0 ? fmt::format("{:.0f}", t.limit) : "");
+  return out + "</tbody></table>\n";
+}
+
 std::string exercise_part(const ExerciseOutcome& exercise) {
   const ExerciseLog& log = exercise.log;
   std::string out = fmt::format("<h2>Exercise: {}</h2>\n", escaped(exercise.title));
   if (!exercise.text.empty()) out += fmt::format("<p class=\"quiet\">{}</p>\n", escaped(exercise.text));
-  switch (log.state()) {
-    case ExerciseState::running: out += "<p>The run ended before the exercise did.</p>\n"; break;
-    case ExerciseState::done:
-      out += fmt::format("<p class=\"good\">Completed after {:.1f} s.</p>\n", log.end_time());
-      break;
-    case ExerciseState::failed:
-      out +=
-          fmt::format("<p class=\"bad\">Failed after {:.1f} s: {}</p>\n", log.end_time(), escaped(log.last_message()));
-      break;
-  }
-  if (!log.goals().empty()) {
-    out += "<table><thead><tr><th>Goal</th><th>Reached</th><th class=\"n\">Time (s)</th></tr></thead><tbody>\n";
-    for (const auto& g : log.goals())
-      out += fmt::format("<tr><td>{}{}</td><td class=\"{}\">{}</td><td class=\"n\">{}</td></tr>\n", escaped(g.text),
-                         g.required ? "" : " <span class=\"quiet\">(optional)</span>", g.done ? "good" : "bad",
-                         g.done ? "yes" : "no", g.done ? fmt::format("{:.1f}", g.time) : "");
-    out += "</tbody></table>\n";
-  }
-  if (!log.faults().empty()) {
-    out +=
-        "<table><thead><tr><th>Fault</th><th class=\"n\">Count</th><th class=\"n\">Last at "
-        "(s)</th></tr></thead><tbody>\n";
-    for (const auto& f : log.faults())
-      out += fmt::format("<tr><td>{}</td><td class=\"n {}\">{}</td><td class=\"n\">{}</td></tr>\n", escaped(f.text),
-                         f.count ? "bad" : "good", f.count, f.count ? fmt::format("{:.1f}", f.last_time) : "");
-    out += "</tbody></table>\n";
-  }
-  if (!log.measures().empty()) {
-    out += "<table><thead><tr><th>Measure</th><th class=\"n\">At the end</th></tr></thead><tbody>\n";
-    for (const auto& m : log.measures())
-      out += fmt::format("<tr><td>{}</td><td class=\"n {}\">{}</td></tr>\n", escaped(m.text),
-                         m.good > 0   ? "good"
-                         : m.good < 0 ? "bad"
-                                      : "",
-                         m.known ? escaped(fmt::format("{:.3g} {}", m.value, m.unit)) : "");
-    out += "</tbody></table>\n";
-  }
-  if (!log.timers().empty()) {
-    out +=
-        "<table><thead><tr><th>Clock</th><th class=\"n\">Longest (s)</th><th class=\"n\">Limit "
-        "(s)</th></tr></thead><tbody>\n";
-    for (const auto& t : log.timers())
-      out += fmt::format("<tr><td>{}</td><td class=\"n {}\">{:.1f}</td><td class=\"n\">{}</td></tr>\n", escaped(t.text),
-                         t.limit > 0 && t.longest > t.limit ? "bad" : "", t.longest,
-                         t.limit > 0 ? fmt::format("{:.0f}", t.limit) : "");
-    out += "</tbody></table>\n";
-  }
-  return out;
+  return out + state_part(log) + goals_part(log) + faults_part(log) + measures_part(log) + clocks_part(log);
 }
 
 std::string events_part(const RunRecorder& recorder, const RunSummary& summary) {
@@ -161,7 +190,7 @@ std::string channel_plots(const RunRecorder& recorder, const RunSeries& s, const
   return out.empty() ? out : "<h2>Channels</h2>\n" + out;
 }
 
-std::string plots(const RunRecorder& recorder) {
+std::string force_plots(const RunRecorder& recorder) {
   const RunSeries s = series_of(recorder, plotted_moments);
   std::vector<PlotMark> marks;
   for (const auto& e : recorder.events()) {
@@ -185,8 +214,12 @@ std::string plots(const RunRecorder& recorder) {
               {{"left", left_colour, s.tool_force_N[0], ""}, {"right", right_colour, s.tool_force_N[1], ""}},
               marks,
               false});
-  out += channel_plots(recorder, s, marks);
-  out += "<h2>Constraints</h2>\n";
+  return out + channel_plots(recorder, s, marks);
+}
+
+std::string technical_plots(const RunRecorder& recorder) {
+  const RunSeries s = series_of(recorder, plotted_moments);
+  std::string out = "<h2>Constraints</h2>\n";
   out += svg({"Rows, contacts and sweeps",
               "time (s)",
               "count",
@@ -216,38 +249,32 @@ std::string plots(const RunRecorder& recorder) {
   return out + stage_table(recorder);
 }
 
-}  // namespace
-
-std::string report_html(const RunRecorder& recorder, const RunSummary& summary) {
-  using S = RunRecorder::Sample;
-  const auto& samples = recorder.samples();
-  const double sim = samples.empty() ? 0 : double(samples.back().time_s);
-  const auto rows = column(recorder, [](const S& s) { return s.rows; });
-  const auto residual = column(recorder, [](const S& s) { return s.residual_N; });
-  std::string out =
+/// The head of a page, up to the notice that it is for training only.
+std::string page_head(const RunSummary& summary, const char* what) {
+  const std::string title = escaped(summary.title.empty() ? "Run" : summary.title);
+  return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\" xmlns=\"http://www.w3.org/1999/xhtml\">\n<head>\n<meta charset=\"utf-8\"/>\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n";
-  out += fmt::format("<title>{0}: report</title>\n<style>{1}</style>\n</head>\n<body>\n<h1>{0}</h1>\n",
-                     escaped(summary.title.empty() ? "Run" : summary.title), style);
-  out += "<p class=\"notice\">For training only. Not a medical device, and no measure of fitness to operate.</p>\n";
-  if (!summary.began.empty()) out += fmt::format("<p class=\"quiet\">Begun {}</p>\n", escaped(summary.began));
-  if (!recorder.finite())
-    out += "<p class=\"bad\">The simulation lost its numbers (not finite): nothing below can be relied upon.</p>\n";
-  if (summary.exercise) out += exercise_part(*summary.exercise);
-  out += recorder.forces().html() + recorder.channels().html() + recorder.outcome().html();
-  if (summary.complications) out += complications_html(*summary.complications);
-  out += "<h2>The run</h2>\n<table><tbody>\n";
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n<title>{0}: {1}</title>\n"
+      "<style>{2}</style>\n</head>\n<body>\n<h1>{0}</h1>\n"
+      "<p class=\"notice\">For training only. Not a medical device, and no measure of fitness to operate.</p>\n",
+      title, what, style);
+}
+
+/// Whose result this is.
+std::string mode_part(const RunSummary& summary) {
+  if (summary.mode == "demonstration")
+    return "<p class=\"bad\">Demonstration by the simulator: this result is no trainee's.</p>\n";
+  if (summary.mode == "practice") return "<p>Practice, with targets shown.</p>\n";
+  if (summary.mode == "test") return "<p>Test, without help.</p>\n";
+  return {};
+}
+
+/// How large the run's forces were, and how long it took.
+std::string run_part(const RunRecorder& recorder, const RunSummary& summary, double sim_s) {
+  std::string out = "<h2>The run</h2>\n<table><tbody>\n";
   if (!summary.scene.empty()) out += row("scene", summary.scene);
   if (!summary.motion.empty()) out += row("motion", summary.motion);
-  out += row("steps", fmt::format("{}", recorder.steps()));
-  if (recorder.steps_per_sample() > 1)
-    out += row("gathered for what follows, each with its largest values",
-               fmt::format("{} steps", recorder.steps_per_sample()));
-  out += row("simulated time", fmt::format("{:.3f} s", sim));
-  out += row("wall time of the steps", fmt::format("{:.3f} s", summary.wall_seconds));
-  out +=
-      row("simulated over wall time", fmt::format("{:.2f}", summary.wall_seconds > 0 ? sim / summary.wall_seconds : 0));
-  out += row("fresh forces", fmt::format("{:.0f} per second of touch", summary.fresh_forces_per_s));
+  out += row("simulated time", fmt::format("{:.3f} s", sim_s));
   out += row("largest force on the left hand", fmt::format("{:.3f} N", summary.max_force_N[0]));
   out += row("largest force on the right hand", fmt::format("{:.3f} N", summary.max_force_N[1]));
   const PerceptibleForces left = perceptible_forces(recorder, 0), right = perceptible_forces(recorder, 1);
@@ -256,13 +283,53 @@ std::string report_html(const RunRecorder& recorder, const RunSummary& summary) 
         fmt::format("time in touch above the friction of {} ({:.2f} N)", known_frictions[d].devices,
                     known_frictions[d].friction_N),
         fmt::format("left {:.0f} %, right {:.0f} %", 100 * left.above[d].time_share, 100 * right.above[d].time_share));
+  return out + "</tbody></table>\n";
+}
+
+double simulated_seconds(const RunRecorder& recorder) {
+  return recorder.samples().empty() ? 0 : double(recorder.samples().back().time_s);
+}
+
+}  // namespace
+
+std::string report_html(const RunRecorder& recorder, const RunSummary& summary) {
+  std::string out = page_head(summary, "report");
+  if (!summary.began.empty()) out += fmt::format("<p class=\"quiet\">Begun {}</p>\n", escaped(summary.began));
+  out += mode_part(summary);
+  if (!recorder.finite())
+    out += "<p class=\"bad\">The simulation lost its numbers (not finite): nothing below can be relied upon.</p>\n";
+  if (summary.exercise) out += exercise_part(*summary.exercise);
+  out += recorder.forces().html() + recorder.channels().html() + recorder.outcome().html();
+  if (summary.complications) out += complications_html(*summary.complications);
+  out += run_part(recorder, summary, simulated_seconds(recorder));
+  out += force_plots(recorder) + events_part(recorder, summary);
+  out +=
+      "<p class=\"quiet\"><a href=\"technical.html\">Times of steps and solver, for those who look after the "
+      "machine</a></p>\n";
+  return out + "</body>\n</html>\n";
+}
+
+std::string technical_html(const RunRecorder& recorder, const RunSummary& summary) {
+  using S = RunRecorder::Sample;
+  const double sim_s = simulated_seconds(recorder);
+  const auto rows = column(recorder, [](const S& s) { return s.rows; });
+  const auto residual = column(recorder, [](const S& s) { return s.residual_N; });
+  std::string out = page_head(summary, "technical page") + "<table><tbody>\n";
+  out += row("steps", fmt::format("{}", recorder.steps()));
+  if (recorder.steps_per_sample() > 1)
+    out += row("gathered for what follows, each with its largest values",
+               fmt::format("{} steps", recorder.steps_per_sample()));
+  out += row("simulated time", fmt::format("{:.3f} s", sim_s));
+  out += row("wall time of the steps", fmt::format("{:.3f} s", summary.wall_seconds));
+  out += row("simulated over wall time",
+             fmt::format("{:.2f}", summary.wall_seconds > 0 ? sim_s / summary.wall_seconds : 0));
+  out += row("fresh forces", fmt::format("{:.0f} per second of touch", summary.fresh_forces_per_s));
   out += row("constraint rows, mean and largest", fmt::format("{:.0f}, {:.0f}", mean(rows), largest(rows)));
   out += row("residual, median and largest",
              fmt::format("{:.2g} N, {:.2g} N", percentile(residual, 0.5), largest(residual)));
   out += fmt::format("<tr><td>state hash</td><td class=\"n\"><code>{:016x}</code></td></tr>\n</tbody></table>\n",
                      summary.state_hash);
-  out += plots(recorder) + events_part(recorder, summary);
-  return out + "</body>\n</html>\n";
+  return out + technical_plots(recorder) + "<p><a href=\"report.html\">The report</a></p>\n</body>\n</html>\n";
 }
 
 }  // namespace insula

@@ -35,7 +35,9 @@ Json exercise_json(const std::optional<ExerciseOutcome>& exercise) {
                        {"time_s", g.done ? Json(g.time) : Json()},
                        {"required", g.required},
                        {"text", g.text}});
-    for (const auto& f : exercise->log.faults()) faults.push_back({{"id", f.id}, {"count", f.count}, {"text", f.text}});
+    for (const auto& f : exercise->log.faults())
+      faults.push_back(
+          {{"id", f.id}, {"count", f.count}, {"times_s", f.times}, {"text", f.text}, {"advice", f.advice}});
     for (const auto& t : exercise->log.timers())
       timers.push_back({{"id", t.id},
                         {"elapsed_s", t.elapsed},
@@ -49,6 +51,7 @@ Json exercise_json(const std::optional<ExerciseOutcome>& exercise) {
                           {"unit", m.unit},
                           {"good", m.good},
                           {"band", {bound(m.band[0]), bound(m.band[1])}},
+                          {"limit", m.limit},
                           {"text", m.text}});
     static constexpr const char* states[] = {"running", "done", "failed"};
     out["id"] = exercise->id;
@@ -258,6 +261,7 @@ std::string report_json(const RunRecorder& recorder, const RunSummary& summary) 
   json["title"] = summary.title;
   json["scene"] = summary.scene;
   json["motion"] = summary.motion;
+  if (!summary.mode.empty()) json["mode"] = summary.mode;
   if (!summary.began.empty()) json["began"] = summary.began;
   json["steps"] = recorder.steps();
   json["steps_per_sample"] = recorder.steps_per_sample();
@@ -304,6 +308,7 @@ void write_report(const std::filesystem::path& dir, const RunRecorder& recorder,
   if (error) throw InputError(dir.string() + ": cannot be created: " + error.message());
   write(dir / "report.json", report_json(recorder, summary));
   write(dir / "report.html", report_html(recorder, summary));
+  write(dir / "technical.html", technical_html(recorder, summary));
 }
 
 }  // namespace insula

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Collects the results of a run's steps and writes report.json for programs and report.html for people.
+// Collects the results of a run's steps and writes report.json for programs, report.html for people and
+// technical.html for those who look after the machine.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -33,6 +34,7 @@ struct RunSummary {
 
   std::string title;                    ///< of the scene
   std::string scene, motion;            ///< as named on the command line
+  std::string mode;                     ///< name of a SessionMode; empty: not a live session
   std::string began;                    ///< local date and time of a live session; empty: none
   double wall_seconds = 0;              ///< of all steps
   double fresh_forces_per_s = 0;        ///< number of distinct fresh forces per simulated second of contact
@@ -130,7 +132,9 @@ std::vector<double> column(const RunRecorder& recorder, Get get) {
 
 std::string report_json(const RunRecorder& recorder, const RunSummary& summary);
 std::string report_html(const RunRecorder& recorder, const RunSummary& summary);
-/// Writes report.json and report.html into `dir`, which is created. Throws InputError if it cannot.
+/// The page for those who look after the machine: times of steps, rows, residuals.
+std::string technical_html(const RunRecorder& recorder, const RunSummary& summary);
+/// Writes report.json, report.html and technical.html into `dir`, which is created. Throws InputError if it cannot.
 void write_report(const std::filesystem::path& dir, const RunRecorder& recorder, const RunSummary& summary);
 
 }  // namespace insula

@@ -271,12 +271,22 @@ TEST(ReportJson, IsJsonEvenWhenTheSimulationIsNot) {
 TEST(ReportHtml, IsWellFormedAndSaysWhatItMust) {
   Exercise exercise;
   fill(exercise);
-  const std::string html = report_html(hundred_steps(), summary(&exercise));
+  RunSummary s = summary(&exercise);
+  s.mode = "demonstration";
+  const std::string html = report_html(hundred_steps(), s);
   EXPECT_EQ(xml_error(html), "");
-  for (const char* part : {"For training only", "A &lt;title&gt; &amp; more", "Force on the hands", "g: left",
-                           "Rows, contacts and sweeps", "Residual of the solver", "Stages", "force (N)",
-                           "wall time (ms)", "Open it", "Too much &lt;force&gt;", "fedcba9876543210", "@media print"})
+  for (const char* part :
+       {"For training only", "A &lt;title&gt; &amp; more", "Force on the hands", "g: left", "force (N)", "Open it",
+        "Too much &lt;force&gt;", "this result is no trainee's", "technical.html", "@media print"})
     EXPECT_NE(html.find(part), std::string::npos) << part;
+  // The machine's numbers have a page of their own.
+  const std::string technical = technical_html(hundred_steps(), s);
+  EXPECT_EQ(xml_error(technical), "");
+  for (const char* part :
+       {"Rows, contacts and sweeps", "Residual of the solver", "Stages", "wall time (ms)", "fedcba9876543210"}) {
+    EXPECT_NE(technical.find(part), std::string::npos) << part;
+    EXPECT_EQ(html.find(part), std::string::npos) << part;
+  }
   // Self-contained: nothing is fetched.
   for (const char* part : {"<script", "src=", "<link", "url("}) EXPECT_EQ(html.find(part), std::string::npos) << part;
 }
@@ -331,7 +341,7 @@ TEST(RunRecorder, ALongRunTakesNoMoreSamplesAndLosesNoPeak) {
   EXPECT_EQ(left, 3);
   EXPECT_EQ(right, 2);
   EXPECT_EQ(Json::parse(report_json(recorder, summary(nullptr))).at("steps"), steps);
-  EXPECT_NE(report_html(recorder, summary(nullptr)).find("16 steps"), std::string::npos);
+  EXPECT_NE(technical_html(recorder, summary(nullptr)).find("16 steps"), std::string::npos);
 }
 
 TEST(RunRecorder, LimitsItsEvents) {

@@ -91,6 +91,14 @@ void SessionReports::begin() {
   summary_ = {};
   hands_ = {};
   written_ = false;
+  std::lock_guard lock(done_->mutex);
+  done_->path.clear();
+  ++done_->pass;
+}
+
+std::string SessionReports::last_report() const {
+  std::lock_guard lock(done_->mutex);
+  return done_->path;
 }
 
 /// The smaller value of the hands that had contact, as in a run.
@@ -109,6 +117,7 @@ void SessionReports::write(const Simulation& simulation) {
   summary_.take(simulation);
   summary_.scene = scene_.string();
   summary_.motion = followed_ ? motion_ : "";
+  summary_.mode = name_of(mode_);
   summary_.fresh_forces_per_s = fresh_forces_per_s();
   const std::tm began = fmt::localtime(began_);
   summary_.began = fmt::format("{:%Y-%m-%d %H:%M:%S}", began);
@@ -119,11 +128,14 @@ void SessionReports::write(const Simulation& simulation) {
   if (writing_.valid()) writing_.wait();  // folders are created in the order of the runs
   try {
     writing_ = std::async(std::launch::async, [root = root_, name = std::move(name), recorder = std::move(recorder_),
-                                               summary = summary_, failed] {
+                                               summary = summary_, failed, done = done_, pass = done_->pass] {
       try {
         const fs::path folder = new_report_folder(root, name);
         write_report(folder, recorder, summary);
-        spdlog::info("report: {}", (folder / "report.html").string());
+        const fs::path page = fs::absolute(folder / "report.html");
+        spdlog::info("report: {}", page.string());
+        std::lock_guard lock(done->mutex);
+        if (done->pass == pass) done->path = page.string();
       } catch (const std::exception& e) {
         failed(e);
       }

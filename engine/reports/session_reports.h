@@ -9,9 +9,12 @@
 #include <future>
 #include <insula_lcm/device_state_t.hpp>
 #include <insula_lcm/haptic_status_t.hpp>
+#include <memory>
+#include <mutex>
 #include <string>
 
 #include "core/sim/simulation.h"
+#include "engine/live/session_mode.h"
 #include "engine/reports/report_writer.h"
 
 namespace insula {
@@ -40,9 +43,20 @@ class SessionReports {
   void note(const std::vector<Event>& events);
   /// Called before a reset and at the end of the session. Writes a report if there is none yet, then begins a new one.
   void end_run(const Simulation& simulation);
+  /// Of the passes that begin from now on.
+  void set_mode(SessionMode mode) { mode_ = mode; }
+  /// Absolute path of the report of this pass; empty until it is written.
+  std::string last_report() const;
 
  private:
   void begin();
+  /// The path, shared with the thread that writes.
+  struct Written {
+    std::mutex mutex;
+    std::string path;
+    std::int64_t pass = 0;
+  };
+
   void write(const Simulation& simulation);
   double fresh_forces_per_s() const;
 
@@ -57,6 +71,8 @@ class SessionReports {
   RunRecorder recorder_;
   RunSummary summary_;
   Hands hands_;
+  std::shared_ptr<Written> done_ = std::make_shared<Written>();
+  SessionMode mode_ = SessionMode::practice;
   std::time_t began_ = 0;
   bool written_ = false, followed_ = false;
   std::future<void> writing_;  // the destructor waits for it

@@ -39,6 +39,7 @@ class PlaySession {
     ::setenv("LCM_DEFAULT_URL", url_.c_str(), 1);
     // If the supervisor is killed and cannot clean up, its files are removed with the folder.
     ::setenv("XDG_RUNTIME_DIR", folder_.c_str(), 1);
+    ::setenv("HOME", folder_.c_str(), 1);  // reports that no test asks for
     ::unsetenv("DISPLAY");
     ::unsetenv("WAYLAND_DISPLAY");
   }

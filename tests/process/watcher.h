@@ -148,9 +148,10 @@ class Watcher {
       bool enough = true;
       const auto now = last();
       for (int hand = 0; hand < 2; ++hand) {
-        if (now->force[hand].norm() >= wanted) continue;
-        enough = false;
-        if (step % 4 == 0 && at[hand].z() > -0.02) at[hand].z() -= 0.0005;
+        const bool light = now->force[hand].norm() < wanted;
+        enough = enough && !light;
+        if (light && step % 4 == 0 && at[hand].z() > -0.02) at[hand].z() -= 0.0005;
+        // A hand without news of its viewer would be given back.
         insula_lcm::hand_input_t m{};
         m.time_us = now_us();
         m.hand = std::int8_t(hand);

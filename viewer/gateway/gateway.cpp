@@ -30,6 +30,7 @@ struct Gateway::Impl {
   asio::io_context io{1};
   tcp::acceptor acceptor{io};
   asio::steady_timer retry{io};
+  asio::steady_timer repeat{io};
   Hub hub;
   std::atomic<bool> stopping{false};
   std::thread network, bus_thread;
@@ -37,6 +38,7 @@ struct Gateway::Impl {
 
   std::string open();
   void accept();
+  void repeat_hands();
 };
 
 std::string Gateway::Impl::open() {
@@ -79,6 +81,15 @@ void Gateway::Impl::accept() {
   });
 }
 
+void Gateway::Impl::repeat_hands() {
+  repeat.expires_after(Hub::repeat_period);
+  repeat.async_wait([this](boost::system::error_code error) {
+    if (error || stopping) return;
+    hub.repeat_hands(std::chrono::steady_clock::now());
+    repeat_hands();
+  });
+}
+
 Gateway::Gateway(Bus& bus, Options options) : impl_(std::make_unique<Impl>(bus, std::move(options))) {}
 
 Gateway::~Gateway() { stop(); }
@@ -86,6 +97,7 @@ Gateway::~Gateway() { stop(); }
 std::string Gateway::start() {
   if (std::string error = impl_->open(); !error.empty()) return error;
   impl_->accept();
+  impl_->repeat_hands();
   impl_->network = std::thread([this] { impl_->io.run(); });
   impl_->bus_thread = std::thread([this] {
     while (!impl_->stopping) impl_->hub.poll(50);

@@ -19,6 +19,7 @@
 #include "core/bus/codec.h"
 #include "core/bus/mem_bus.h"
 #include "viewer/gateway/framing.h"
+#include "viewer/gateway/hub.h"
 
 namespace fs = std::filesystem;
 namespace beast = boost::beast;
@@ -172,6 +173,14 @@ TEST_F(GatewayTest, ServesThePage) {
   EXPECT_EQ(asset.body(), "let a");
   EXPECT_EQ(asset[http::field::content_type], "text/javascript; charset=utf-8");
   EXPECT_NE(asset[http::field::cache_control].find("immutable"), beast::string_view::npos);
+  // A compressed copy goes to browsers that unpack it, under the name and type of what it is a copy of.
+  write("page/assets/app-1a2b.js.gz", "packed");
+  const Response packed = get("/assets/app-1a2b.js", http::verb::get, {{"Accept-Encoding", "br, gzip;q=0.8"}});
+  EXPECT_EQ(packed.body(), "packed");
+  EXPECT_EQ(packed[http::field::content_encoding], "gzip");
+  EXPECT_EQ(packed[http::field::content_type], "text/javascript; charset=utf-8");
+  EXPECT_EQ(get("/assets/app-1a2b.js", http::verb::get, {{"Accept-Encoding", "gzip;q=0"}}).body(), "let a");
+  EXPECT_EQ(get("/assets/app-1a2b.js").body(), "let a");
   EXPECT_EQ(get("/none.html").result_int(), 404u);
   EXPECT_EQ(get("/assets/").result_int(), 404u);
   const Response head = get("/index.html", http::verb::head);
@@ -275,6 +284,43 @@ TEST_F(GatewayTest, PagesReachTheBus) {
   EXPECT_GT(commands[0].time_us, 0);  // stamped here
   ASSERT_EQ(inputs.size(), 1u);
   EXPECT_EQ(inputs[0].p_m[2], 0.03);
+}
+
+TEST_F(GatewayTest, ABusyPagesHandIsRepeatedUntilItIsReleasedOrThePageIsGone) {
+  int inputs = 0;
+  bus_.subscribe(channel::hand_input, [&](Bytes) { ++inputs; });
+  const auto heard_within = [&](std::chrono::milliseconds time) {
+    const int before = inputs;
+    const auto end = std::chrono::steady_clock::now() + time;
+    while (std::chrono::steady_clock::now() < end) bus_.poll(10);
+    return inputs - before;
+  };
+  const auto quiet_soon = [&] {
+    for (int k = 0; k < 50; ++k)
+      if (heard_within(4 * Hub::repeat_period) == 0) return true;
+    return false;
+  };
+  insula_lcm::hand_input_t input{};
+  input.hand = 1;
+  input.q[0] = 1;
+  insula_lcm::user_command_t release{};
+  release.command = "release";
+  {
+    WsPage page(gateway_->port());
+    page.send(channel::hand_input, input);
+    for (int k = 0; k < 200 && inputs < 4; ++k) heard_within(Hub::repeat_period);
+    EXPECT_GE(inputs, 4) << "one pose was sent; the others are repeated";
+    release.argument = "left";
+    page.send(channel::user_command, release);
+    release.argument = "right";
+    page.send(channel::user_command, release);
+    EXPECT_TRUE(quiet_soon());
+    const int before = inputs;
+    page.send(channel::hand_input, input);
+    for (int k = 0; k < 200 && inputs < before + 2; ++k) heard_within(Hub::repeat_period);
+    EXPECT_GE(inputs, before + 2);
+  }
+  EXPECT_TRUE(quiet_soon()) << "the page is gone";
 }
 
 TEST_F(GatewayTest, GarbageFromAPageChangesNothing) {

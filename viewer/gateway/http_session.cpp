@@ -18,6 +18,8 @@ constexpr std::string_view not_built =
     "<!doctype html><meta charset=utf-8><title>Insula</title><p>The viewer's page is not built. "
     "Run <code>npm ci &amp;&amp; npm run build</code> in <code>viewer/page</code>, then start again.</p>\n";
 
+namespace fs = std::filesystem;
+
 std::string_view view(beast::string_view s) { return {s.data(), s.size()}; }
 
 /// A page of another site may open a WebSocket to this one: browsers send its origin, which must be ours. The port may
@@ -95,7 +97,12 @@ void HttpSession::answer(const Request& request) {
   if (file) {
     // Built assets carry a hash in their name; everything else must be asked for again.
     const bool hashed = parts->front() == "assets";
-    return send_file(request, *file, hashed ? "public, max-age=31536000, immutable" : "no-cache");
+    const std::string_view caching = hashed ? "public, max-age=31536000, immutable" : "no-cache";
+    // The build leaves a compressed copy beside each large text.
+    const std::string copy = file->string() + ".gz";
+    std::error_code error;
+    const bool packed = accepts_gzip(view(request[http::field::accept_encoding])) && fs::is_regular_file(copy, error);
+    return send_file(request, packed ? fs::path(copy) : *file, caching, packed);
   }
   if (page_.empty() && *parts == std::vector<std::string>{"index.html"})
     return send_text(request, http::status::service_unavailable, "text/html; charset=utf-8", std::string(not_built));
@@ -117,13 +124,16 @@ void HttpSession::send_text(const Request& request, http::status status, std::st
   send(std::move(response));
 }
 
-void HttpSession::send_file(const Request& request, const std::filesystem::path& file, std::string_view caching) {
+/// `packed`: the file is compressed (name.gz), and the browser unpacks it.
+void HttpSession::send_file(const Request& request, const std::filesystem::path& file, std::string_view caching,
+                            bool packed) {
   http::file_body::value_type body;
   beast::error_code error;
   body.open(file.c_str(), beast::file_mode::scan, error);
   if (error) return send_text(request, http::status::not_found, "text/plain", "not found\n");
   const auto set_head = [&](auto& response) {
-    const auto type = mime_type(file);
+    const auto type = mime_type(packed ? file.parent_path() / file.stem() : file);
+    if (packed) response.set(http::field::content_encoding, "gzip");
     response.set(http::field::content_type, beast::string_view(type.data(), type.size()));
     response.set(http::field::cache_control, beast::string_view(caching.data(), caching.size()));
     response.set("X-Content-Type-Options", "nosniff");

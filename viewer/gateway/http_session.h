@@ -29,7 +29,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   void upgrade(const Request& request);
   void answer(const Request& request);
   void send_text(const Request& request, http::status status, std::string_view type, std::string body);
-  void send_file(const Request& request, const std::filesystem::path& file, std::string_view caching);
+  void send_file(const Request& request, const std::filesystem::path& file, std::string_view caching,
+                 bool packed = false);
   template <class Response>
   void send(Response&& response);
   void close();

@@ -76,27 +76,54 @@ void Hub::join(const std::shared_ptr<Client>& client) {
 }
 
 void Hub::leave(const Client* client) {
+  for (HeldHand& held : held_)
+    if (held.page == client) held.page = nullptr;
   const auto found = std::find_if(clients_.begin(), clients_.end(), [&](const auto& c) { return c.get() == client; });
   if (found == clients_.end()) return;
   dropped_by_left_ += (*found)->dropped();
   clients_.erase(found);
 }
 
-template <class T>
-bool Hub::republish(std::string_view channel, Bytes payload) {
-  auto message = decode<T>(payload);
+bool Hub::command_from_page(Bytes payload) {
+  auto message = decode<insula_lcm::user_command_t>(payload);
   if (!message) return false;
+  for (std::size_t i = 0; i < held_.size(); ++i)
+    if (message->command == "reset" || message->command == "begin" ||
+        (message->command == "release" && message->argument != (i == 0 ? "right" : "left")))
+      held_[i].page = nullptr;
   message->time_us = now_us();  // a browser's clock means nothing here
-  return publish(bus_, channel, *message, scratch_);
+  return publish(bus_, channel::user_command, *message, scratch_);
 }
 
-bool Hub::from_page(Bytes framed, Rights rights) {
+bool Hub::hand_from_page(Bytes payload, const Client* page) {
+  auto message = decode<insula_lcm::hand_input_t>(payload);
+  if (!message) return false;
+  message->time_us = now_us();
+  HeldHand& held = held_[message->hand == 1 ? 1 : 0];
+  held.page = page;
+  held.input = *message;
+  held.asked = held.sent = Clock::now();
+  return publish(bus_, channel::hand_input, *message, scratch_);
+}
+
+void Hub::repeat_hands(Clock::time_point now) {
+  for (HeldHand& held : held_) {
+    if (!held.page || now - held.sent < repeat_period) continue;
+    if (now - held.asked > longest_busy) {
+      held.page = nullptr;
+      continue;
+    }
+    held.sent = now;
+    held.input.time_us = now_us();
+    publish(bus_, channel::hand_input, held.input, scratch_);
+  }
+}
+
+bool Hub::from_page(Bytes framed, Rights rights, const Client* page) {
   bool ok = false;
   if (const auto parts = unframe(framed)) {
-    if (parts->channel == channel::user_command && rights.commands)
-      ok = republish<insula_lcm::user_command_t>(channel::user_command, parts->payload);
-    else if (parts->channel == channel::hand_input && rights.hands)
-      ok = republish<insula_lcm::hand_input_t>(channel::hand_input, parts->payload);
+    if (parts->channel == channel::user_command && rights.commands) ok = command_from_page(parts->payload);
+    else if (parts->channel == channel::hand_input && rights.hands) ok = hand_from_page(parts->payload, page);
   }
   ++(ok ? page_accepted_ : page_refused_);
   return ok;

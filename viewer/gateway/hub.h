@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <functional>
 #include <insula_lcm/device_state_t.hpp>
+#include <insula_lcm/hand_input_t.hpp>
 #include <insula_lcm/haptic_status_t.hpp>
 #include <insula_lcm/render_frame_t.hpp>
 #include <insula_lcm/scene_info_t.hpp>
@@ -46,7 +47,11 @@ class Hub {
   void leave(const Client* client);
   /// Handles a page's message. Only a valid, plausible USER_COMMAND or HAND_INPUT for which the page has the right is
   /// passed on. Others are counted and dropped.
-  bool from_page(Bytes framed, Rights rights);
+  bool from_page(Bytes framed, Rights rights, const Client* page = nullptr);
+  /// Called every repeat_period. Sends the last pose of each hand again whose page is connected but busy, for example
+  /// with drawing. The haptic server otherwise takes such a page for lost. A page that is silent for longest_busy is.
+  void repeat_hands(std::chrono::steady_clock::time_point now);
+  static constexpr std::chrono::milliseconds repeat_period{50}, longest_busy{1500};
   /// Counts a page's message that was dropped before it was checked (text, too many per second).
   void refuse_from_page() { ++page_refused_; }
   std::string health() const;  ///< JSON
@@ -56,8 +61,8 @@ class Hub {
   template <class T>
   void forward(std::string_view channel, Topic topic, T& scratch);
   void broadcast(Topic topic, const Message& message);
-  template <class T>
-  bool republish(std::string_view channel, Bytes payload);
+  bool command_from_page(Bytes payload);
+  bool hand_from_page(Bytes payload, const Client* page);
 
   Bus& bus_;
   Post post_;
@@ -83,6 +88,13 @@ class Hub {
   std::int64_t session_ = 0;
   std::string state_;
   Bundle bundle_;
+  /// The last pose that a page asked for, by hand.
+  struct HeldHand {
+    const Client* page = nullptr;  ///< none: nobody holds it
+    insula_lcm::hand_input_t input{};
+    std::chrono::steady_clock::time_point asked{}, sent{};
+  };
+  std::array<HeldHand, 2> held_{};
   std::vector<std::uint8_t> scratch_;
   std::uint64_t page_accepted_ = 0, page_refused_ = 0, clients_ever_ = 0, sent_ = 0, dropped_by_left_ = 0;
   std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();

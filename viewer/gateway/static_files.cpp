@@ -92,6 +92,20 @@ std::string_view mime_type(const fs::path& file) {
   return "application/octet-stream";
 }
 
+bool accepts_gzip(std::string_view header) {
+  while (!header.empty()) {
+    const std::size_t end = header.find(',');
+    std::string part;
+    for (const char c : header.substr(0, end))
+      if (c != ' ' && c != '\t') part += c;
+    if (part == "gzip") return true;
+    if (part.starts_with("gzip;q=")) return std::atof(part.c_str() + 7) > 0;
+    if (end == std::string_view::npos) return false;
+    header.remove_prefix(end + 1);
+  }
+  return false;
+}
+
 fs::path find_page() {
   std::vector<fs::path> candidates;
   if (const char* named = std::getenv("INSULA_PAGE"); named != nullptr && *named != '\0')

@@ -21,6 +21,9 @@ std::optional<std::filesystem::path> file_below(const std::filesystem::path& roo
 /// Content type by file extension.
 std::string_view mime_type(const std::filesystem::path& file);
 
+/// Whether an Accept-Encoding header admits gzip: it names gzip, and not with the weight 0.
+bool accepts_gzip(std::string_view header);
+
 /// The page's folder: INSULA_PAGE, or else beside the executable in a build or installation tree, or else in the source
 /// folder of the build. Empty if none has an index.html.
 std::filesystem::path find_page();

@@ -51,7 +51,7 @@ void WsClient::on_read(beast::error_code error, std::size_t) {
   }
   const auto data = in_.cdata();
   if (ws_.got_binary() && within_rate())
-    hub_.from_page(Bytes(static_cast<const std::uint8_t*>(data.data()), data.size()), rights_);
+    hub_.from_page(Bytes(static_cast<const std::uint8_t*>(data.data()), data.size()), rights_, this);
   else hub_.refuse_from_page();
   in_.consume(in_.size());
   read();

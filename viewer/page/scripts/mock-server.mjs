@@ -53,10 +53,13 @@ function receive(lcm, state, data) {
     state.commands.push(c.argument ? `${c.command} ${c.argument}` : c.command);
     if (c.command === 'pause') state.paused = true;
     if (c.command === 'resume') state.paused = false;
-    if (c.command === 'reset') {
+    if (c.command === 'begin') Object.assign(state, { mode: c.argument, paused: false });
+    if (c.command === 'release') state.held[c.argument === 'left' ? 0 : 1] = null;
+    if (c.command === 'reset' || c.command === 'begin') {
       state.time = 0;
       state.held = [null, null];
       state.theatre.reset();
+      state.theatre.say('reset', '', '');
     }
     if (['exchange', 'ask', 'message'].includes(c.command)) state.theatre.run(c.command, c.argument);
   } else if (name === 'HAND_INPUT') {
@@ -82,13 +85,14 @@ function play(scene, lcm, state, sockets, sceneInfo) {
     const now = performance.now();
     const dt = (now - last) / 1000;
     last = now;
+    if (state.mode === 'waiting') state.paused = true;
     if (!state.paused) state.time += dt;
     if (!state.paused) theatre.step(state.time, dt);
     const at = { session: state.session, sequence: state.sequence, sim_time_s: state.time, value: 0 };
     for (const said of theatre.said.splice(0))
       broadcast('SIM_EVENT', lcm.sim_event_t.encode(Object.assign(lcm.sim_event_t.make(), said, at)));
     if (sockets.clients.size === 0) return;
-    const f = makeFrame(scene, lcm, state.time, state.held, theatre, state.malformed);
+    const f = makeFrame(scene, lcm, state.time, state.held, theatre, state);
     if (!state.held[0]) state.lastTool = [...f.tool[0].p_m];
     const { session, paused } = state;
     Object.assign(f, { session, paused, sequence: state.sequence++, time_us: BigInt(Math.round(now * 1000)) });
@@ -103,12 +107,13 @@ function play(scene, lcm, state, sockets, sceneInfo) {
   }, 1000 / 60);
 }
 
-/** samples: one drawable of each kind beside the usual ones. */
+/** samples: one drawable of each kind beside the usual ones. mode: of the session; "waiting" asks the page for one. */
 export async function startMock({
   port = 8080,
   startS = 0,
   script = {},
   samples = false,
+  mode = '',
   dist = join(here, '../dist'),
   meshes = join(here, '../../../meshes'),
 } = {}) {
@@ -119,7 +124,15 @@ export async function startMock({
     script,
   );
   const state = { theatre, session: BigInt(Date.now()) * 1000n, time: startS, paused: false, sequence: 0n };
-  Object.assign(state, { held: [null, null], commands: [], inputs: 0, malformed: false });
+  Object.assign(state, {
+    held: [null, null],
+    commands: [],
+    inputs: 0,
+    malformed: false,
+    mode,
+    outcome: '',
+    report: '',
+  });
   const server = serve(scene, state, dist);
   const sockets = new WebSocketServer({ server, path: '/ws' });
   const sceneInfo = () => ({

@@ -15,7 +15,7 @@ export interface Liveness {
   built: boolean;
   frames: number;
   paused: boolean;
-  /** The scene is looked at, not played. */
+  /** The scene is looked at, not played, or waits for a choice that is on the screen. */
   still: boolean;
 }
 

@@ -68,8 +68,27 @@ export async function loadBundle(base: string, session: string): Promise<types.B
     drawables: await drawablesOf(files, json),
     materials: parseMaterials(json.materials),
     static: await Promise.all(list(json.static).map((s) => surfaceOf(files, s))),
-    exercise: json.exercise ?? null,
+    exercise: json.exercise ? exerciseOf(json.exercise) : null,
     inventory: json.inventory ? parseInventory(await files.json(json.inventory)) : null,
+  };
+}
+
+function exerciseOf(e: Json): types.ExerciseData {
+  return {
+    id: e.id ?? '',
+    title: e.title ?? '',
+    text: e.text ?? '',
+    goals: list(e.goals) as types.ExerciseData['goals'],
+    faults: list(e.faults) as types.ExerciseData['faults'],
+    motions: Array.isArray(e.motions) ? e.motions.map(String) : [],
+    guide: list(e.guide).map((g) => ({
+      hand: g.hand === 'left' ? 'left' : 'right',
+      tool: g.tool ?? '',
+      p: g.p_m,
+      q: g.q,
+      button1: g.button1 === true,
+      button2: g.button2 === true,
+    })),
   };
 }
 
@@ -157,6 +176,7 @@ function commandsOf(json: Json): types.CommandGroup[] {
       argument: String(c.argument ?? ''),
       min: Number(c.min ?? 0),
       max: Number(c.max ?? 0),
+      start: typeof c.start === 'number' ? c.start : null,
     })),
   }));
 }

@@ -78,6 +78,8 @@ export interface CommandData {
   argument: string;
   min: number;
   max: number;
+  /** What it has set at the start, in its unit; null: not said. */
+  start: number | null;
 }
 
 export interface CommandGroup {
@@ -92,6 +94,21 @@ export interface ExerciseData {
   text: string;
   goals: { id: string; text: string }[];
   faults: { id: string; text: string }[];
+  /** Names of the motions that can be shown. */
+  motions: string[];
+  /** Poses of an example, as targets for who practises. */
+  guide: GuidePose[];
+}
+
+/** A pose of the example for one hand; button1, button2: whether they are pressed from there on. */
+export interface GuidePose {
+  hand: 'left' | 'right';
+  tool: string;
+  p: [number, number, number];
+  /** w x y z */
+  q: [number, number, number, number];
+  button1: boolean;
+  button2: boolean;
 }
 
 export interface ViewData {

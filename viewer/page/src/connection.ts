@@ -12,6 +12,14 @@ export interface Handlers {
   state(open: boolean): void;
 }
 
+/** The gateway takes from a page what its role may send. */
+export function socketUrl(page: string, role: string): string {
+  const url = new URL('ws', page);
+  url.protocol = url.protocol === 'https:' ? 'wss:' : 'ws:';
+  url.search = `?role=${role}`;
+  return url.href;
+}
+
 const firstPauseMs = 250;
 const longestPauseMs = 4000;
 

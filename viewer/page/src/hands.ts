@@ -1,14 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Mouse, keyboard and touch as two hands: one is active at a time; a hand is the user's from the first drag or
-// movement key until it is released, and only then its pose is sent, 60 times a second.
+// movement key until it is released, and only then its pose is sent, 60 times a second. A button whose key is held
+// while the user goes to the other hand stays on, latched.
 import * as THREE from 'three';
 import type { Microscope } from './camera';
 import type { Connection } from './connection';
-import { HandPose } from './hand_pose';
+import { TwoFingers } from './gestures';
+import { type Button, HandPose } from './hand_pose';
+import { isControl, isTyping, keyOf } from './keyboard';
 
 export interface ToolPoses {
   /** Present pose of the tool held by a hand, or null. */
   toolPose(hand: number): { p: THREE.Vector3; q: THREE.Quaternion } | null;
+}
+
+/** buttons: of the hand, 1 and 2. */
+export interface HandState {
+  taken: boolean;
+  buttons: { on: boolean; latched: boolean }[];
 }
 
 export interface HandActions {
@@ -16,6 +25,8 @@ export interface HandActions {
   togglePause(): void;
   toggleHelp(): void;
   nextTool(hand: number, step: 1 | -1): void;
+  /** The user wants to leave the field for the controls. */
+  leaveField(): void;
   changed(): void;
 }
 
@@ -23,28 +34,24 @@ const keyboardMPerS = 0.012;
 const keyboardRadPerS = 0.9;
 const wheelM = 0.0008;
 const sendPeriodMs = 1000 / 60;
-const moving = new Set([
-  'KeyW',
-  'KeyS',
-  'KeyA',
-  'KeyD',
-  'KeyQ',
-  'KeyE',
-  'KeyR',
-  'KeyF',
-  'ArrowLeft',
-  'ArrowRight',
-  'ArrowUp',
-  'ArrowDown',
-]);
+/** A finger's way across the picture is coarser than a wheel's click. */
+const touchDepthMPerPx = 0.00006;
+const touchSwingRadPerPx = 0.004;
+const arrows = new Set(['arrowleft', 'arrowright', 'arrowup', 'arrowdown']);
+const moving = new Set(['w', 's', 'a', 'd', 'q', 'e', 'r', 'f', ...arrows]);
+const buttonOf: Record<string, Button> = { space: 1, b: 2 };
+const sideOf = (hand: number): string => (hand === 0 ? 'left' : 'right');
 
 export class Hands {
   readonly hands = [new HandPose(), new HandPose()];
   active = 1;
-  private readonly keys = new Set<string>();
+  /** What each held key means; a key keeps its meaning until it goes up, whatever else is pressed meanwhile. */
+  private readonly keys = new Map<string, string>();
+  /** Held keys that press a button, with the hand they press it for. */
+  private readonly pressing = new Map<string, { hand: HandPose; button: Button }>();
   private readonly pointers = new Map<number, { x: number; y: number; button: number; dragged: boolean }>();
+  private readonly fingers = new TwoFingers();
   private lastSentMs = 0;
-  private pinch = 0;
 
   constructor(
     private readonly canvas: HTMLCanvasElement,
@@ -63,32 +70,65 @@ export class Hands {
     window.addEventListener('keydown', (e) => this.key(e, true));
     window.addEventListener('keyup', (e) => this.key(e, false));
     window.addEventListener('blur', () => this.letGo());
+    // Nobody sees the field of a hidden page.
+    document.addEventListener('visibilitychange', () => {
+      if (document.visibilityState === 'hidden') this.releaseAll();
+    });
   }
 
   setActive(hand: number): void {
-    const old = this.hands[this.active]!;
-    old.button1 = old.button2 = false;
+    if (hand !== this.active) {
+      this.hands[this.active]!.latchHeld();
+      this.pressing.clear();
+    }
     this.active = hand;
     this.actions.changed();
   }
 
+  /** Gives a hand back: its buttons are off, and it glides to where the arm, the motion or its home is. */
   release(hand: number): void {
-    this.hands[hand]!.release();
+    const h = this.hands[hand]!;
+    if (h.taken) this.link.sendCommand('release', sideOf(hand));
+    h.release();
     this.actions.changed();
   }
 
   releaseAll(): void {
-    this.hands.forEach((h) => h.release());
+    this.hands.forEach((_, hand) => this.release(hand));
+    this.pressing.clear();
+  }
+
+  /** Buttons of the screen, for touch: on while a finger is on them. */
+  press(button: Button, on: boolean): void {
+    if (on && !this.take()) return;
+    this.hands[this.active]!.hold(button, on);
     this.actions.changed();
   }
 
-  /** Buttons of the screen, for touch. */
-  press(button: 1 | 2, on: boolean): void {
-    if (on && !this.take()) return;
-    const h = this.hands[this.active]!;
-    if (button === 1) h.button1 = on;
-    else h.button2 = on;
+  /** Latches a hand's button, or lets it go. */
+  toggleLatch(hand: number, button: Button): void {
+    if (!this.take(hand)) return;
+    const h = this.hands[hand]!;
+    h.latch(button, !h.on(button));
     this.actions.changed();
+  }
+
+  /** What panels show of each hand. */
+  view(): HandState[] {
+    return this.hands.map((h) => ({
+      taken: h.taken,
+      buttons: ([1, 2] as const).map((b) => ({ on: h.on(b), latched: h.latched(b) })),
+    }));
+  }
+
+  /** Hands keep their own time: a slow picture must not make them slow. */
+  start(): void {
+    let last = performance.now();
+    setInterval(() => {
+      const now = performance.now();
+      this.update(Math.min(0.1, (now - last) / 1000), now);
+      last = now;
+    }, sendPeriodMs);
   }
 
   /** Held keys move the hand; poses go out at 60 Hz at most. */
@@ -108,11 +148,11 @@ export class Hands {
     });
   }
 
-  private take(): boolean {
+  private take(hand = this.active): boolean {
     if (!this.mayDrive) return false;
-    const h = this.hands[this.active]!;
+    const h = this.hands[hand]!;
     if (h.taken) return true;
-    const pose = this.tools.toolPose(this.active);
+    const pose = this.tools.toolPose(hand);
     if (!pose) return false;
     h.take(pose.p, pose.q);
     this.actions.changed();
@@ -124,22 +164,22 @@ export class Hands {
   }
 
   private applyKeys(dt: number): void {
-    const on = (code: string) => (this.keys.has(code) ? 1 : 0);
-    if (![...this.keys].some((k) => moving.has(k)) || !this.take()) return;
+    const down = new Set(this.keys.values());
+    const on = (key: string) => (down.has(key) ? 1 : 0);
+    if (![...down].some((k) => moving.has(k)) || !this.take()) return;
     const { x, y, z } = this.scope.axes();
-    const fine = on('ShiftLeft') || on('ShiftRight') ? 0.3 : 1;
+    const fine = on('shift') ? 0.3 : 1;
     const s = keyboardMPerS * fine * dt;
     const by = new THREE.Vector3()
-      .addScaledVector(z, (on('KeyS') - on('KeyW')) * s)
-      .addScaledVector(x, (on('ArrowRight') - on('ArrowLeft')) * s)
-      .addScaledVector(y, (on('ArrowUp') - on('ArrowDown')) * s);
+      .addScaledVector(z, (on('s') - on('w')) * s)
+      .addScaledVector(x, (on('arrowright') - on('arrowleft')) * s)
+      .addScaledVector(y, (on('arrowup') - on('arrowdown')) * s);
     this.shift(by);
     const h = this.hands[this.active]!;
     const a = keyboardRadPerS * fine * dt;
-    const along = new THREE.Vector3(0, 0, 1).applyQuaternion(h.q);
-    h.turn(along, (on('KeyE') - on('KeyQ')) * a);
-    h.turn(y, (on('KeyD') - on('KeyA')) * a);
-    h.turn(x, (on('KeyF') - on('KeyR')) * a);
+    h.turn(h.shaft(), (on('e') - on('q')) * a);
+    h.turn(y, (on('d') - on('a')) * a);
+    h.turn(x, (on('f') - on('r')) * a);
   }
 
   private down(e: PointerEvent): void {
@@ -147,7 +187,7 @@ export class Hands {
     this.canvas.setPointerCapture(e.pointerId);
     this.pointers.set(e.pointerId, { x: e.clientX, y: e.clientY, button: e.button, dragged: false });
     if (e.button === 1) e.preventDefault();
-    this.pinch = 0;
+    this.fingers.clear();
   }
 
   private move(e: PointerEvent): void {
@@ -161,16 +201,28 @@ export class Hands {
     p.x = e.clientX;
     p.y = e.clientY;
     const height = this.canvas.clientHeight;
-    if (this.pointers.size >= 2) {
-      // Two fingers: pinch zooms, sliding together turns the microscope.
-      const [a, b] = [...this.pointers.values()];
-      const d = Math.hypot(a!.x - b!.x, a!.y - b!.y);
-      if (this.pinch > 0 && d > 0) this.scope.zoom(this.pinch / d);
-      this.pinch = d;
-      this.scope.orbit(dx / 2, dy / 2);
-    } else if (p.button === 2) this.scope.orbit(dx, dy);
+    if (this.pointers.size >= 3) this.scope.orbit(dx / 3, dy / 3);
+    else if (this.pointers.size === 2) this.gesture();
+    else if (p.button === 2) this.scope.orbit(dx, dy);
     else if (p.button === 1) this.scope.pan(dx, dy, height);
     else if (p.button === 0) this.drag(dx, dy, height, e.shiftKey);
+  }
+
+  private gesture(): void {
+    const [a, b] = [...this.pointers.values()];
+    const step = this.fingers.move(a!, b!);
+    if (!step) return;
+    if (step.kind === 'zoom') {
+      this.scope.zoom(1 / Math.max(0.2, step.by));
+      return;
+    }
+    if (!this.take()) return;
+    const h = this.hands[this.active]!;
+    const { y, z } = this.scope.axes();
+    if (step.kind === 'depth') this.shift(z.multiplyScalar(step.by * touchDepthMPerPx));
+    else if (step.kind === 'swing') h.turn(y, step.by * touchSwingRadPerPx);
+    // Clockwise on the screen is a negative turn about the axis to the viewer.
+    else h.turn(h.shaft().dot(z) >= 0 ? h.shaft() : h.shaft().negate(), -step.by);
   }
 
   private drag(dx: number, dy: number, height: number, fine: boolean): void {
@@ -184,7 +236,7 @@ export class Hands {
 
   private up(e: PointerEvent): void {
     this.pointers.delete(e.pointerId);
-    this.pinch = 0;
+    this.fingers.clear();
   }
 
   private wheel(e: WheelEvent): void {
@@ -195,65 +247,76 @@ export class Hands {
   }
 
   private key(e: KeyboardEvent, down: boolean): void {
-    if (
-      e.target instanceof HTMLSelectElement ||
-      e.target instanceof HTMLInputElement ||
-      e.ctrlKey ||
-      e.metaKey ||
-      e.altKey
-    )
-      return;
-    if (moving.has(e.code) || e.code.startsWith('Shift')) {
-      if (down) this.keys.add(e.code);
-      else this.keys.delete(e.code);
-      if (!e.code.startsWith('Shift')) e.preventDefault();
+    if (!down) return this.keyUp(e.code);
+    const key = keyOf(e);
+    if (isTyping(e.target) || e.ctrlKey || e.metaKey || e.altKey) return;
+    if (isControl(e.target) && (key === 'space' || key === 'enter' || key === 'tab' || arrows.has(key))) return;
+    if (moving.has(key) || key === 'shift') {
+      this.keys.set(e.code, key);
+      if (key !== 'shift') e.preventDefault();
       return;
     }
-    if (e.code === 'Space' || e.code === 'KeyB') {
+    const button = buttonOf[key];
+    if (button) {
       e.preventDefault();
-      if (!e.repeat) this.press(e.code === 'Space' ? 1 : 2, down);
+      if (!e.repeat) this.pressKey(e.code, button);
       return;
     }
-    if (!down || e.repeat) return;
-    switch (e.code) {
-      case 'Tab':
-        e.preventDefault();
-        this.setActive(1 - this.active);
-        break;
-      case 'Digit1':
-        this.setActive(0);
-        break;
-      case 'Digit2':
-        this.setActive(1);
-        break;
-      case 'KeyG':
-        this.release(this.active);
-        break;
-      case 'KeyV':
-        this.scope.reset();
-        break;
-      case 'KeyC': {
-        const t = this.tools.toolPose(this.active);
-        if (t) this.scope.focus(t.p);
-        break;
-      }
-      case 'KeyP':
-        this.actions.togglePause();
-        break;
-      case 'KeyT':
-        this.actions.nextTool(this.active, e.shiftKey ? -1 : 1);
-        break;
-      case 'KeyH':
-      case 'Slash':
-        this.actions.toggleHelp();
-        break;
-    }
+    if (e.repeat) return;
+    // Shift and Tab, and Escape, lead out of the field to the controls.
+    if (key === 'tab' && !e.shiftKey) {
+      e.preventDefault();
+      this.setActive(1 - this.active);
+    } else if (key === 'escape' && !isControl(e.target)) this.actions.leaveField();
+    else this.command(key, e.shiftKey);
   }
 
+  private keyUp(code: string): void {
+    this.keys.delete(code);
+    const pressed = this.pressing.get(code);
+    if (!pressed) return;
+    this.pressing.delete(code);
+    pressed.hand.hold(pressed.button, false);
+    this.actions.changed();
+  }
+
+  /** The key of a latched button lets it go. */
+  private pressKey(code: string, button: Button): void {
+    if (!this.take()) return;
+    const hand = this.hands[this.active]!;
+    if (hand.latched(button)) hand.latch(button, false);
+    else {
+      hand.hold(button, true);
+      this.pressing.set(code, { hand, button });
+    }
+    this.actions.changed();
+  }
+
+  private command(key: string, shift: boolean): void {
+    const focus = () => {
+      const t = this.tools.toolPose(this.active);
+      if (t) this.scope.focus(t.p);
+    };
+    const commands: Record<string, () => void> = {
+      '1': () => this.setActive(0),
+      '2': () => this.setActive(1),
+      g: () => this.release(this.active),
+      v: () => this.scope.reset(),
+      c: focus,
+      p: () => this.actions.togglePause(),
+      t: () => this.actions.nextTool(this.active, shift ? -1 : 1),
+      h: () => this.actions.toggleHelp(),
+      '?': () => this.actions.toggleHelp(),
+    };
+    commands[key]?.();
+  }
+
+  /** The window has lost the keys: what they held is let go, what is latched stays. */
   private letGo(): void {
     this.keys.clear();
+    this.pressing.clear();
     this.pointers.clear();
-    for (const h of this.hands) h.button1 = h.button2 = false;
+    for (const h of this.hands) h.letGoHeld();
     this.actions.changed();
   }
 }

@@ -4,25 +4,27 @@ import * as THREE from 'three';
 import { bannerText } from './banner';
 import { loadBundle } from './bundle';
 import type { Bundle } from './bundle_types';
-import { Connection } from './connection';
+import { Connection, socketUrl } from './connection';
+import { Expected } from './expected';
 import { Graphics } from './graphics';
+import { Guiding } from './guiding';
 import { toolInHand } from './hand_tool';
 import { Hands } from './hands';
 import { Headset } from './headset';
 import type { UserCommand } from './hud/commands';
 import { Hud } from './hud/hud';
-import './hud/hud.css';
-import './hud/hands.css';
-import './hud/panels.css';
-import './hud/vitals.css';
-import './hud/instructor.css';
-import { timeLeftText } from './hud/timers';
+import { firstControl } from './hud/focus';
+import './hud/styles';
+import { headsetLines } from './hud/timers';
 import type { HapticStatus, SceneInfo } from './lcm';
 import { Highlight, middle } from './inventory';
 import { parseOptions } from './options';
+import { Pace } from './pace';
 import { Playback } from './playback';
 import { levels, QualityWatch } from './quality';
+import { listenForShortcuts } from './shortcuts';
 import { silent } from './silence';
+import { softwareAdvice } from './software_rendering';
 import { Stage } from './stage';
 import { status } from './status';
 import { Reading } from './step_data/reading';
@@ -36,6 +38,8 @@ const stage = new Stage(document.getElementById('view') as HTMLCanvasElement);
 const { canvas, scene, scope } = stage;
 const highlight = new Highlight();
 scene.add(highlight.root);
+const guiding = new Guiding();
+scene.add(guiding.root);
 const playback = new Playback();
 const reading = new Reading();
 let world: World | null = null;
@@ -45,22 +49,18 @@ let haptic: HapticStatus | null = null;
 const heard = { haptic: 0, info: 0, frame: -1e9 };
 let watch = new QualityWatch(options.quality);
 let loadError = '';
-let frozen = false;
 let spokenTo = '';
 
 const hudRoot = document.getElementById('hud')!;
 hudRoot.hidden = !options.hud;
-const wsUrl = new URL('ws', location.href);
-wsUrl.protocol = wsUrl.protocol === 'https:' ? 'wss:' : 'ws:';
-wsUrl.search = `?role=${options.role}`; // the gateway takes from a page what its role may send
 
-const link = new Connection(wsUrl.href, {
+const link = new Connection(socketUrl(location.href, options.role), {
   frame: (m) => {
     if (!world || world.bundle.session !== m.session.toString()) return;
     heard.frame = performance.now();
-    if (frozen) return;
+    if (status.frozen) return;
     playback.push(m, performance.now());
-    if (options.freezeAtS !== null && m.sim_time_s >= options.freezeAtS) frozen = status.frozen = true;
+    if (options.freezeAtS !== null && m.sim_time_s >= options.freezeAtS) status.frozen = true;
   },
   scene: (m) => {
     info = m;
@@ -69,6 +69,8 @@ const link = new Connection(wsUrl.href, {
   },
   event: (m) => {
     if (m.kind === 'message') spokenTo = m.text;
+    // The hands are at home again; what the mouse held before is not taken back there.
+    if (m.kind === 'reset' && !ownReset.met(performance.now())) letHandsGo();
     hud.showEvent(m, performance.now());
   },
   haptic: (m) => {
@@ -84,11 +86,17 @@ const link = new Connection(wsUrl.href, {
   },
 });
 
+const ownReset = new Expected();
 const run = (c: UserCommand) => {
+  if (c.command === 'reset' || c.command === 'begin') {
+    letHandsGo();
+    ownReset.expect(performance.now());
+  }
   if (mayCommand) link.sendCommand(c.command, c.argument);
 };
 const hud = new Hud(
   hudRoot,
+  canvas,
   {
     run,
     stereo: (mode) => modes.setStereo(mode, true),
@@ -101,6 +109,8 @@ const hud = new Hud(
     chooseHand: (h) => hands.setActive(h),
     releaseHand: (h) => hands.release(h),
     button: (b, on) => hands.press(b, on),
+    toggleLatch: (h, b) => hands.toggleLatch(h, b),
+    stepGuide: (by) => guiding.step(hands.active, by),
     chooseItem: (item) => {
       highlight.show(item);
       const at = item && middle(item);
@@ -142,28 +152,30 @@ const hands: Hands = new Hands(
     togglePause: () => run({ command: playback.latest?.paused ? 'resume' : 'pause', argument: '' }),
     toggleHelp: () => hud.toggleHelp(),
     nextTool: (hand, step) => hud.nextTool(hand, step),
+    leaveField: () => firstControl(hudRoot)?.focus(),
     changed: () => {
       status.taken = hands.hands.map((h) => h.taken);
+      status.buttons = hands.hands.map((h) => [h.button1, h.button2]);
       status.active = hands.active;
     },
   },
   mayDrive,
 );
 
-const shortcuts: Record<string, () => void> = {
-  KeyL: () => hud.toolList.toggle(),
-  KeyI: () => modes.setInfrared(!modes.infrared),
-  KeyJ: () => hud.view.askGlow(),
-  KeyO: () => modes.nextStereo(),
-  KeyM: () => hud.vitals.toggleSound(),
-  BracketLeft: () => modes.setAngle(modes.angleDeg - 0.5),
-  BracketRight: () => modes.setAngle(modes.angleDeg + 0.5),
-};
+function letHandsGo(): void {
+  hands.releaseAll();
+  guiding.restart();
+}
 
-window.addEventListener('keydown', (e) => {
-  const typing = e.target instanceof HTMLInputElement || e.target instanceof HTMLSelectElement;
-  if (e.repeat || e.ctrlKey || e.metaKey || e.altKey || typing) return;
-  shortcuts[e.code]?.();
+listenForShortcuts({
+  l: () => hud.toolList.toggle(),
+  i: () => modes.setInfrared(!modes.infrared),
+  j: () => hud.view.askGlow(),
+  o: () => modes.nextStereo(),
+  m: () => hud.vitals.toggleSound(),
+  n: (shift) => guiding.step(hands.active, shift ? -1 : 1),
+  '[': () => modes.setAngle(modes.angleDeg - 0.5),
+  ']': () => modes.setAngle(modes.angleDeg + 0.5),
 });
 
 function build(bundle: Bundle): void {
@@ -192,6 +204,7 @@ async function follow(m: SceneInfo): Promise<void> {
     const bundle = await loadBundle(new URL(`bundle/${session}/`, location.href).href, session);
     playback.clear();
     hands.releaseAll();
+    guiding.begin(bundle);
     scope.setHome(bundle.view);
     build(bundle);
     reading.begin(bundle);
@@ -214,38 +227,28 @@ function applyQuality(): void {
   world?.setCheap(level.name === 'low');
 }
 
-function headsetLines(): string[] {
-  const timers = (reading.state?.timers ?? []).filter((t) => t.running).map((t) => `${t.text} ${timeLeftText(t)}`);
-  return ['For training only. Not for patient care.', timers.join('     '), spokenTo];
-}
-
-const pace = { last: performance.now(), counted: 0, from: performance.now() };
-
-/** Counts pictures; once a second the quality follows their rate. */
-function countPicture(now: number): void {
-  if (!graphics.lost) {
-    pace.counted++;
-    status.pictures++;
-  }
-  if (now - pace.from <= 1000) return;
-  const seconds = (now - pace.from) / 1000;
-  status.fps = pace.counted / seconds;
-  pace.counted = 0;
-  pace.from = now;
+const pace = new Pace((fps, seconds) => {
+  status.fps = fps;
   // A hidden tab draws rarely by design; loading stalls are no sign of a slow machine either.
   const counts = status.ready && document.visibilityState === 'visible' && !graphics.lost;
-  if (counts && watch.observe(status.fps, seconds)) applyQuality();
-}
+  if (counts && watch.observe(fps, seconds)) applyQuality();
+});
 
 function draw(now: number): void {
-  const pictureMs = Math.max(0, now - pace.last);
-  pace.last = now;
+  const pictureMs = pace.begin(now);
   const presenting = headset.presenting;
   stage.update(Math.min(0.1, pictureMs / 1000), modes.stereo, presenting);
   reading.read(playback.latest);
   world?.update(playback, now, reading.channels);
+  status.target = guiding.update({
+    frame: playback.latest,
+    bundle: world?.bundle ?? null,
+    hand: mayDrive && reading.state?.mode === 'practice' ? hands.active : -1,
+    axes: scope.axes(),
+  });
   const angle = THREE.MathUtils.degToRad(modes.angleDeg);
-  if (presenting) headset.render(scene, scope.camera, scope.distance, angle, headsetLines());
+  if (presenting)
+    headset.render(scene, scope.camera, scope.distance, angle, headsetLines(reading.state?.timers ?? [], spokenTo));
   else stage.render(modes.stereo, angle);
   status.presenting = presenting;
   status.triangles = stage.triangles;
@@ -254,7 +257,8 @@ function draw(now: number): void {
   status.refused = link.refused;
   status.problems = [...(reading.problem ? [reading.problem] : []), ...(world?.problems ?? [])];
   status.ready = world !== null && playback.frames > 0;
-  countPicture(now);
+  if (!graphics.lost) status.pictures++;
+  pace.count(now, !graphics.lost);
   if (options.hud) showHud(now, (heardMs, limitMs) => silent(now, heardMs, limitMs, pictureMs));
 }
 
@@ -262,7 +266,16 @@ function showHud(now: number, quiet: (heardMs: number, limitMs: number) => boole
   const frame = playback.latest;
   const { channels, state } = reading;
   const active = mayDrive ? hands.active : -1;
-  if (frame && world) hud.showFrame({ frame, channels, state, active, taken: hands.hands.map((h) => h.taken) });
+  if (frame && world)
+    hud.showFrame({
+      frame,
+      channels,
+      state,
+      active,
+      hands: hands.view(),
+      guide: guiding.view,
+      ready: status.ready,
+    });
   const freshHaptic = quiet(heard.haptic, 3000) ? null : haptic;
   hud.showMachine(quiet(heard.frame, 2500) ? null : frame, freshHaptic, status.fps, status.quality);
   const alive = link.open && !quiet(heard.frame, 1000);
@@ -278,7 +291,7 @@ function showHud(now: number, quiet: (heardMs: number, limitMs: number) => boole
       built: world !== null,
       frames: playback.frames,
       paused: frame?.paused ?? false,
-      still: world?.bundle.inventory != null,
+      still: world?.bundle.inventory != null || hud.session.open,
     }),
   );
   hud.showNotice(info && info.state !== 'error' ? info.message : '');
@@ -286,15 +299,10 @@ function showHud(now: number, quiet: (heardMs: number, limitMs: number) => boole
   hud.tick(now);
 }
 
-// Hands keep their own time: a slow picture must not make them slow.
-let handsLast = performance.now();
-setInterval(() => {
-  const now = performance.now();
-  hands.update(Math.min(0.1, (now - handsLast) / 1000), now);
-  handsLast = now;
-}, 1000 / 60);
-
+hands.start();
 applyQuality();
 modes.tell();
+canvas.focus({ preventScroll: true });
+hud.advise(softwareAdvice(stage.renderer.getContext()));
 // three's own loop: it goes on in a headset, where the window's stands still.
 stage.renderer.setAnimationLoop(draw);

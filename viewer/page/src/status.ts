@@ -21,5 +21,12 @@ export const status = {
   infrared: false,
   presenting: false,
   graphics_lost: false,
+  /** By hand: whether its buttons are on. */
+  buttons: [
+    [false, false],
+    [false, false],
+  ],
+  /** Of the active hand's target: which, and how far; null: none is shown. */
+  target: null as { at: number; of: number; distance_m: number; angle_rad: number } | null,
 };
 (window as unknown as { __insula: typeof status }).__insula = status;

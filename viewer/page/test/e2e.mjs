@@ -5,7 +5,7 @@
 // browser, skipped.
 import assert from 'node:assert/strict';
 import { startMock } from '../scripts/mock-server.mjs';
-import { check, launch, look, patience, waitFor } from './browser.mjs';
+import { check, click, launch, look, patience, waitFor } from './browser.mjs';
 
 let mock = await startMock({ port: 0, startS: 3 });
 const port = Number(new URL(mock.url).port);
@@ -31,6 +31,11 @@ try {
   );
   assert.equal((await status()).refused, 0);
   check('frames and pictures go on');
+
+  assert.match(await page.textContent('.toast.advice'), /software.*hardware acceleration/i);
+  await click(page, '.toast.advice button');
+  await page.waitForFunction(() => !document.querySelector('.toast.advice'), null, patience);
+  check('it says that pictures are drawn by software and what to do, until that has been read');
 
   const clip = { x: 140, y: 60, width: 200, height: 200 };
   const seen = await look(page, clip);
@@ -115,9 +120,63 @@ try {
   await waitFor('button 1', () => mock.state.held[0].button1);
   await page.keyboard.up('Space');
   await waitFor('button 1 up', () => !mock.state.held[0].button1);
+  // While the key is held, Tab leads to the other hand and leaves the button on.
+  await page.keyboard.down('Space');
+  await waitFor('button 1', () => mock.state.held[0].button1);
+  await page.keyboard.press('Tab');
+  await page.waitForFunction(() => window.__insula.active === 1, null, patience);
+  await page.keyboard.up('Space');
+  await page.keyboard.down('ArrowLeft');
+  await waitFor('the other hand', () => mock.state.held[1] !== null);
+  await page.keyboard.up('ArrowLeft');
+  await page.keyboard.down('Space');
+  await waitFor('both buttons', () => mock.state.held[0].button1 && mock.state.held[1].button1);
+  await page.keyboard.up('Space');
+  await waitFor('the second button off', () => !mock.state.held[1].button1);
+  assert.ok(mock.state.held[0].button1, 'the first one is latched');
+  await page.waitForFunction(
+    () => document.querySelectorAll('.hand')[0].querySelector('[data-latch="1"]').textContent.includes('held'),
+    null,
+    patience,
+  );
+  await page.keyboard.press('1');
+  await page.keyboard.press('Space');
+  await waitFor('the latch let go', () => !mock.state.held[0].button1);
+  check('a button stays latched while one mouse works with the other hand, is shown, and is let go by its key');
+
   await page.keyboard.press('g');
-  await page.waitForFunction(() => !window.__insula.taken[0], null, patience);
-  check('mouse and keys drive a hand, without a jump, until it is released');
+  await waitFor('the release', () => mock.state.commands.includes('release left'));
+  await page.waitForFunction(() => !window.__insula.taken[0] && window.__insula.taken[1], null, patience);
+  await click(page, '.controls .timed:nth-child(2)');
+  await page.waitForSelector('.dialog.question:not([hidden])', patience);
+  assert.ok(!mock.state.commands.includes('reset'), 'it asks first');
+  await page.keyboard.press('Escape');
+  await page.waitForFunction(() => document.querySelector('.dialog.question').hidden, null, patience);
+  assert.ok(!mock.state.commands.includes('reset'));
+  await click(page, '.controls .timed:nth-child(2)');
+  await click(page, '[data-answer=reset]');
+  await waitFor('reset', () => mock.state.commands.includes('reset'));
+  await page.waitForFunction(() => !window.__insula.taken[1], null, patience);
+  check('mouse and keys drive a hand, without a jump, until it is released; Reset asks, and lets both go');
+
+  await page.keyboard.press('Escape');
+  assert.ok(
+    await page.evaluate(() => document.activeElement.closest('#hud') !== null),
+    'Escape leads from the field to the controls',
+  );
+  const active = (await status()).active;
+  await page.keyboard.press('Tab');
+  assert.equal((await status()).active, active, 'and there Tab goes from control to control');
+  await page.keyboard.press('h');
+  await page.waitForSelector('.dialog.help:not([hidden])', patience);
+  const helpFits = await page.evaluate(() => {
+    const box = document.querySelector('.dialog.help').getBoundingClientRect();
+    return box.top >= 0 && box.bottom <= innerHeight && box.left >= 0 && box.right <= innerWidth;
+  });
+  assert.ok(helpFits, 'help lies within the window');
+  await page.keyboard.press('Escape');
+  await page.waitForFunction(() => document.querySelector('.dialog.help').hidden, null, patience);
+  check('keyboard users leave the field, and help fits, scrolls and closes');
 
   away = true;
   const session = (await status()).session;

@@ -112,7 +112,7 @@ describe('timers', () => {
 });
 
 describe('commands', () => {
-  const systolic = { name: 'set_systolic', doc: '', argument: 'pressure_mmHg', min: 60, max: 220 };
+  const systolic = { name: 'set_systolic', doc: '', argument: 'pressure_mmHg', min: 60, max: 220, start: 120 };
   it('read as the engine reads them', () => {
     expect(exchange('right', 'applier')).toEqual({ command: 'exchange', argument: 'right applier' });
     expect(ask('applier', 'load', 'clip_mini')).toEqual({ command: 'ask', argument: 'applier load clip_mini' });

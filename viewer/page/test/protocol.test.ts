@@ -58,11 +58,12 @@ describe('options', () => {
 describe('hud text', () => {
   it('reads the exercise state', () => {
     const s = parseHud(
-      '{"goals":[{"id":"a","text":"A","done":true}],"faults":[{"id":"f","count":2}],' +
-        '"state":"running","elapsed_s":61.25}',
+      '{"goals":[{"id":"a","text":"A","done":true}],"faults":[{"id":"f","count":2,"times_s":[1.5,null]}],' +
+        '"state":"running","elapsed_s":61.25,"mode":"test","report":"/r/report.html"}',
     )!;
     expect(s.goals).toEqual([{ id: 'a', text: 'A', done: true }]);
-    expect(s.faults).toEqual([{ id: 'f', text: 'f', count: 2 }]);
+    expect(s.faults).toEqual([{ id: 'f', text: 'f', count: 2, timesS: [1.5], advice: '' }]);
+    expect([s.mode, s.report]).toEqual(['test', '/r/report.html']);
     expect([s.elapsedS, s.message]).toEqual([61.25, '']);
   });
 

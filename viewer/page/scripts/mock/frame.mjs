@@ -44,7 +44,14 @@ function fibresAt(scene, moved, time) {
  * `held` are poses asked for by a page, `theatre` knows what geometry does not. malformed: drawables that no page can
  * draw.
  */
-export function makeFrame(scene, lcm, time, held, theatre, malformed = false) {
+export function makeFrame(
+  scene,
+  lcm,
+  time,
+  held,
+  theatre,
+  { malformed = false, mode = '', outcome = '', report = '' } = {},
+) {
   const { bodies, artery } = scene;
   const spread = 0.0085 * ramp(time, 1.5, 14) + 0.0004 * Math.sin(time * 6.3);
   const moved = bodies.map((b) => moveLobe(scene, b, time, spread));
@@ -74,9 +81,14 @@ export function makeFrame(scene, lcm, time, held, theatre, malformed = false) {
   f.body_force_N = Float64Array.from([0.1, 0.08, 0]);
   f.hud_json = JSON.stringify({
     goals: scene.goals.map((g, k) => ({ ...g, done: [left < n * 0.7, left < n * 0.3, left < n * 0.1][k] })),
-    faults: scene.faults.map((x, k) => ({ ...x, count: k === 0 && time > 10 ? 1 : 0 })),
+    faults: scene.faults.map((x, k) => ({
+      ...x,
+      ...(k === 0 && time > 10 ? { count: 1, times_s: [10], advice: 'Hold more gently' } : { count: 0 }),
+    })),
     message: '',
-    state: left < n * 0.1 && theatre.placedAt !== null ? 'done' : 'running',
+    state: outcome || (left < n * 0.1 && theatre.placedAt !== null ? 'done' : 'running'),
+    mode,
+    report,
     elapsed_s: time,
     ...theatre.hud(),
   });

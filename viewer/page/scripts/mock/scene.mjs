@@ -25,6 +25,11 @@ const exercise = {
   text: 'Retract with the suction in the left hand; cut the strands from the surface to the depth with the right.',
   goals,
   faults,
+  motions: ['steady'],
+  guide: [
+    { hand: 'right', tool: 'right_dissector', p_m: [0.02, 0.01, 0.02], q: [1, 0, 0, 0], button1: false },
+    { hand: 'right', tool: 'right_dissector', p_m: [0.02, 0.01, 0], q: [1, 0, 0, 0], button1: true },
+  ],
 };
 
 /** Files of the bundle by name. */

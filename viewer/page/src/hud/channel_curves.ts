@@ -78,7 +78,6 @@ export class ChannelCurves {
       if (box.checked) this.ticked.add(channel);
       else this.ticked.delete(channel);
       this.arrange();
-      box.blur();
     };
     const text = el('span', { class: 'value' }, '–');
     this.values.push({ channel, text });

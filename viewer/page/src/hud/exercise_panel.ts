@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is to be done: title, text, goals, timers and measures, faults.
+// What is to be done, what presses most first: clocks, goals, faults, measures, and the text last.
 import type { Bundle } from '../bundle_types';
 import { el, setText } from './dom';
 import { Progress } from './progress';
+import { modeTitles } from './session_panel';
 import { clockText, type HudState } from './state';
 
 export class ExercisePanel {
   readonly root: HTMLElement;
   private readonly title = el('h1', {}, 'Insula');
   private readonly clock = el('span', { class: 'clock' }, '0:00.0');
+  private readonly mode = el('span', { class: 'mode' });
   private readonly text = el('p', { class: 'text' });
   private readonly goals = el('ul', { class: 'goals' });
   private readonly faults = el('ul', { class: 'faults' });
@@ -21,10 +23,12 @@ export class ExercisePanel {
       'section',
       { class: 'panel exercise' },
       head,
-      this.text,
+      this.mode,
+      this.progress.clocks,
       this.goals,
-      this.progress.root,
       this.faults,
+      this.progress.root,
+      this.text,
     );
   }
 
@@ -41,6 +45,9 @@ export class ExercisePanel {
   }
 
   showState(s: HudState): void {
+    setText(this.mode, modeTitles[s.mode] ?? '');
+    this.mode.hidden = !modeTitles[s.mode];
+    this.mode.dataset.mode = s.mode;
     this.showLists(s.goals, s.faults);
     this.progress.show(s.timers, s.measures);
   }
@@ -52,6 +59,6 @@ export class ExercisePanel {
     this.shown = key;
     this.goals.replaceChildren(...goals.map((g) => el('li', { class: g.done ? 'done' : '' }, g.text)));
     const made = faults.filter((f) => f.count > 0);
-    this.faults.replaceChildren(...made.map((f) => el('li', {}, el('b', {}, String(f.count)), f.text)));
+    this.faults.replaceChildren(...made.map((f) => el('li', {}, el('b', {}, `✗ ${f.count}`), ` ${f.text}`)));
   }
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One hand: its force, whether the mouse drives it, and its tools.
+// One hand: its force with a word for how much that is, whether the mouse drives it, its buttons, and its tools.
 import { el, setText } from './dom';
+import type { Button } from '../hand_pose';
+import type { HandState } from '../hands';
 import { forceBar, forceLevel } from './state';
 import { Tray } from './tray';
 import type { UserCommand } from './commands';
@@ -9,15 +11,18 @@ export interface HandActions {
   run(command: UserCommand): void;
   chooseHand(hand: number): void;
   releaseHand(hand: number): void;
+  toggleLatch(hand: number, button: Button): void;
 }
 
-export interface HandView {
+export interface HandView extends HandState {
   /** N; null: the hand has no tool. */
   force: number | null;
   kind: string;
   active: boolean;
-  taken: boolean;
 }
+
+/** Not by colour alone. */
+const levelWords = { good: 'gentle', high: 'high', too_much: 'too much' };
 
 export class HandPanel {
   readonly root = el('div', { class: 'hand' });
@@ -25,27 +30,43 @@ export class HandPanel {
   private readonly name = el('span', { class: 'name' });
   private readonly tag = el('span', { class: 'tag' });
   private readonly number = el('span', { class: 'force' }, '–');
+  private readonly level = el('span', { class: 'level' });
   private readonly fill = el('i');
+  private readonly giveBack = el('button', { class: 'give-back', title: 'give the hand back (G)' }, 'Give back');
+  private readonly latches: HTMLButtonElement[];
 
   constructor(hand: number, actions: HandActions, mayDrive: boolean) {
     this.tray = new Tray((c) => actions.run(c), mayDrive);
     setText(this.name, hand === 0 ? 'Left' : 'Right');
     const head = el('button', { class: 'choose', title: 'drive this hand' }, this.name, this.tag);
     head.onclick = () => actions.chooseHand(hand);
-    this.tag.onclick = (e) => {
-      if (!this.root.classList.contains('taken')) return;
-      e.stopPropagation();
-      actions.releaseHand(hand);
-    };
-    this.root.append(head, el('div', { class: 'bar' }, this.fill), this.number, this.tray.root);
+    this.giveBack.onclick = () => actions.releaseHand(hand);
+    this.latches = ([1, 2] as const).map((b) => {
+      const button = el('button', { class: 'latch', 'aria-pressed': 'false', 'data-latch': String(b) });
+      button.onclick = () => actions.toggleLatch(hand, b);
+      return button;
+    });
+    const held = el('div', { class: 'held' }, ...this.latches, this.giveBack);
+    held.hidden = !mayDrive;
+    const force = el('span', { class: 'force-text' }, this.level, this.number);
+    this.root.append(head, el('div', { class: 'bar' }, this.fill), force, held, this.tray.root);
   }
 
-  show({ force, kind, active, taken }: HandView): void {
+  show({ force, kind, active, taken, buttons }: HandView): void {
     this.root.classList.toggle('active', active);
     this.root.classList.toggle('taken', taken);
-    setText(this.tag, taken ? 'mouse ✕' : kind);
+    setText(this.tag, taken ? `${kind}, yours` : kind);
+    this.giveBack.hidden = !taken;
+    this.latches.forEach((latch, k) => {
+      const b = buttons[k] ?? { on: false, latched: false };
+      latch.setAttribute('aria-pressed', String(b.on));
+      latch.title = b.on ? `let button ${k + 1} go` : `hold button ${k + 1} until it is let go`;
+      setText(latch, `${b.latched ? '🔒' : b.on ? '●' : '○'} ${k + 1}${b.latched ? ' held' : ''}`);
+    });
     setText(this.number, force === null ? '–' : `${force.toFixed(2)} N`);
     this.fill.style.width = `${force === null ? 0 : forceBar(force) * 100}%`;
-    this.root.dataset.level = force === null ? 'good' : forceLevel(force);
+    const level = force === null ? 'good' : forceLevel(force);
+    this.root.dataset.level = level;
+    setText(this.level, force === null || force < 0.005 ? '' : levelWords[level]);
   }
 }

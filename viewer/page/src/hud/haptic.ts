@@ -40,6 +40,7 @@ export class HapticPanel {
   );
   private readonly advice = el('b', { class: 'advice' });
   private shown: HapticStatus | null | undefined;
+  private stood = false;
 
   constructor() {
     this.root.append(
@@ -49,9 +50,11 @@ export class HapticPanel {
     );
   }
 
-  show(s: HapticStatus | null): void {
-    if (s === this.shown) return;
+  /** stands: time stands still on purpose; that no problems come then is no alarm. */
+  show(s: HapticStatus | null, stands: boolean): void {
+    if (s === this.shown && stands === this.stood) return;
     this.shown = s;
+    this.stood = stands;
     setText(this.text, hapticText(s));
     const counts = s ? [...s.lateness_count] : [];
     const heights = barHeights(counts);
@@ -59,6 +62,6 @@ export class HapticPanel {
       bar.style.height = `${(100 * (heights[k] ?? 0)).toFixed(0)}%`;
       bar.title = barTitle(counts, k);
     });
-    setText(this.advice, s?.note ?? '');
+    setText(this.advice, stands ? '' : (s?.note ?? ''));
   }
 }

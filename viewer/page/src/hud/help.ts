@@ -1,21 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The help overlay: every key and mouse action.
+// The help overlay: every key and mouse action. It scrolls, and closes by button or key.
+import { Dialog } from './dialog';
 import { el } from './dom';
 
 const rows: [string, string][] = [
-  ['Tab, 1, 2', 'choose the left or the right hand'],
+  ['Tab, 1, 2', 'choose the left or the right hand; a button whose key you hold meanwhile stays on, latched'],
   ['left drag, arrow keys', 'move the tool in the picture plane (Shift: finer)'],
   ['Shift + wheel, W / S', 'push the tool deeper, draw it back'],
   ['Q / E', 'roll the tool about its shaft'],
   ['A / D, R / F', 'swing the tool left and right, up and down about its tip'],
-  ['Space', 'button 1: act with the tool'],
+  ['Space', 'button 1: act with the tool; lets a latched button go'],
   ['B', 'button 2: let go of what the tool holds, take it back'],
   ['T, Shift + T', 'next, previous tool of the active hand'],
   ['L', 'choose what the tool takes up (arrow keys or 1-9, Enter)'],
   ['I, J', 'infrared picture; inject the dye'],
   ['O, [ ]', 'stereo: off, side by side, red-cyan; less, more depth'],
   ['M', 'beep with the heart'],
-  ['G', 'release the hand (back to device or script)'],
+  ['G', 'give the hand back: its buttons go off and it glides home'],
+  ['N, Shift + N', 'next, previous target while you practise'],
   ['right drag', 'turn the microscope'],
   ['middle drag', 'move the field of view'],
   ['wheel', 'zoom'],
@@ -23,17 +25,35 @@ const rows: [string, string][] = [
   ['V', 'microscope back to its first view'],
   ['P', 'pause, resume'],
   ['H or ?', 'this help'],
-  ['touch', 'one finger moves the tool, two turn and zoom'],
+  ['Esc, Shift + Tab', 'leave the field for the controls; Esc closes a list or this help'],
+  ['one finger, pen', 'move the tool in the picture plane'],
+  ['two fingers', 'slide down or up: deeper or back; turn: roll; slide sideways: swing; pinch: zoom'],
+  ['three fingers', 'turn the microscope'],
 ];
 
-export function makeHelp(): HTMLElement {
-  const table = el('table', {}, ...rows.map(([k, t]) => el('tr', {}, el('th', {}, k), el('td', {}, t))));
-  const panel = el(
-    'div',
-    { class: 'panel help', role: 'dialog', 'aria-label': 'Help' },
-    el('h2', {}, 'Mouse and keyboard'),
-    table,
-  );
-  panel.hidden = true;
-  return panel;
+export class Help {
+  private readonly dialog: Dialog;
+
+  constructor(field: () => HTMLElement | null) {
+    this.dialog = new Dialog('help', field);
+  }
+
+  get root(): HTMLElement {
+    return this.dialog.root;
+  }
+
+  toggle(): void {
+    if (this.dialog.open) {
+      this.dialog.close();
+      return;
+    }
+    const table = el('table', {}, ...rows.map(([k, t]) => el('tr', {}, el('th', {}, k), el('td', {}, t))));
+    const close = { name: 'close', text: 'Close', run: () => undefined };
+    this.dialog.show(
+      'Mouse, keyboard and touch',
+      [el('div', { class: 'scrolls', tabindex: '0' }, table)],
+      [close],
+      () => undefined,
+    );
+  }
 }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The head-up display around the field: exercise on the left, hands on the right, machine room at the bottom.
+// The head-up display around the field: the patient and the exercise on the left, hands on the right, machine room at
+// the bottom. On a narrow screen the panels are folded away behind tabs.
 import type { Bundle } from '../bundle_types';
 import { toolInHand } from '../hand_tool';
+import type { HandState } from '../hands';
 import type { InventoryItem } from '../inventory';
 import type { HapticStatus, RenderFrame, SimEvent } from '../lcm';
 import type { Role } from '../options';
@@ -9,13 +11,17 @@ import type { Channels } from '../step_data/channels';
 import { glowCommands } from './commands';
 import { el, setText } from './dom';
 import { ExercisePanel } from './exercise_panel';
+import { returnFocusToField } from './focus';
+import { GuidePanel, type GuideView } from './guide_panel';
 import { type HandActions, HandPanel } from './hand_panel';
 import { HapticPanel } from './haptic';
-import { makeHelp } from './help';
+import { Help } from './help';
 import { InstructorPanel } from './instructor';
 import { InventoryPanel } from './inventory_panel';
 import { NoticePanel } from './notice';
+import { SessionPanel } from './session_panel';
 import type { HudState } from './state';
+import { Tabs } from './tabs';
 import { Toasts } from './toasts';
 import { ToolList } from './tool_list';
 import { short } from './tray';
@@ -26,6 +32,8 @@ export interface HudActions extends ViewActions, HandActions {
   button(button: 1 | 2, on: boolean): void;
   /** Of a scene that is looked at: highlights it; null: nothing. */
   chooseItem(item: InventoryItem | null): void;
+  /** To another target of the guide. */
+  stepGuide(by: 1 | -1): void;
 }
 
 export interface FrameView {
@@ -35,19 +43,26 @@ export interface FrameView {
   state: HudState | null;
   /** Hand that mouse and keyboard drive; -1: none. */
   active: number;
-  taken: boolean[];
+  /** Left, right. */
+  hands: HandState[];
+  /** Of the active hand; null: no target is shown. */
+  guide: GuideView | null;
+  /** A picture of the scene is there. */
+  ready: boolean;
 }
 
 const side = (hand: number): 'left' | 'right' => (hand === 0 ? 'left' : 'right');
 
 export class Hud {
-  readonly help = makeHelp();
+  readonly session: SessionPanel;
+  private readonly help: Help;
   readonly view: ViewMenu;
   readonly vitals = new Vitals();
   readonly toolList: ToolList;
   private readonly exercise = new ExercisePanel();
   private readonly toasts = new Toasts();
   private readonly instructor: InstructorPanel | null;
+  private readonly guide: GuidePanel;
   private readonly inventory: InventoryPanel;
   private readonly notice = new NoticePanel('The saved scene has errors. What runs is the scene before.');
   private readonly problems = new NoticePanel('Data from the engine cannot be shown.');
@@ -64,11 +79,19 @@ export class Hud {
 
   constructor(
     private readonly root: HTMLElement,
-    actions: HudActions,
+    field: HTMLElement,
+    private readonly actions: HudActions,
     private readonly role: Role,
     quality: string,
   ) {
     const mayDrive = role === 'trainee';
+    this.help = new Help(() => field);
+    this.session = new SessionPanel(
+      (c) => actions.run(c),
+      role,
+      () => field,
+    );
+    this.guide = new GuidePanel((by) => actions.stepGuide(by));
     this.hands = [0, 1].map((h) => new HandPanel(h, actions, mayDrive));
     this.toolList = new ToolList((c) => actions.run(c), mayDrive);
     this.view = new ViewMenu(actions);
@@ -83,20 +106,28 @@ export class Hud {
       this.toolList.root,
       this.makeControls(actions),
       this.view.root,
-      ...(mayDrive ? [makeTouch(actions)] : []),
     );
     const warning = el('span', { class: 'warn' }, 'For training only. Not for patient care.');
     const notices = el('div', { class: 'notices' }, this.notice.root, this.problems.root);
+    const left = el('div', { class: 'column left' }, this.vitals.root, this.exercise.root, this.inventory.root);
+    const right = el('div', { class: 'column right' }, handsPanel, ...(this.instructor ? [this.instructor.root] : []));
+    const tabs = new Tabs(root, [
+      { name: 'left', text: 'Patient and exercise' },
+      { name: 'right', text: role === 'instructor' ? 'Commands' : 'Hands and tools' },
+    ]);
     root.append(
-      el('div', { class: 'column left' }, this.inventory.root, this.exercise.root, this.vitals.root),
-      el('div', { class: 'column right' }, handsPanel, ...(this.instructor ? [this.instructor.root] : [])),
+      left,
+      right,
+      el('div', { class: 'under' }, this.guide.root, ...(mayDrive ? [makeTouch(actions)] : []), tabs.root),
       el('footer', {}, warning, this.haptic.root, this.machine, this.link),
-      ...[this.message, this.banner, this.toasts.root, notices, this.help],
+      ...[this.message, this.banner, this.toasts.root, notices],
+      ...[...this.session.roots, this.help.root],
     );
+    returnFocusToField(root, field);
   }
 
   toggleHelp(): void {
-    this.help.hidden = !this.help.hidden;
+    this.help.toggle();
   }
 
   /** Asks for the next tool of a hand. */
@@ -110,6 +141,7 @@ export class Hud {
     this.root.dataset.look = bundle.inventory ? 'view' : 'play';
     this.inventory.showScene(bundle.title, bundle.inventory);
     this.exercise.showScene(bundle);
+    this.session.showScene(bundle);
     this.vitals.showScene(bundle);
     this.toolList.showScene(bundle);
     this.instructor?.showScene(bundle);
@@ -118,16 +150,18 @@ export class Hud {
     this.view.showGlow(shines, bundle.inventory || this.role === 'observer' ? [] : glowCommands(bundle));
   }
 
-  showFrame({ frame, channels, state, active, taken }: FrameView): void {
+  showFrame({ frame, channels, state, active, hands, guide, ready }: FrameView): void {
     if (state && state !== this.state) this.showState(state);
+    if (state && !this.bundle?.inventory) this.session.show(state, ready);
     this.state = state;
+    this.guide.show(guide);
     this.exercise.showClock(state?.elapsedS ?? frame.sim_time_s);
     const forces = this.hands.map((panel, hand) => {
       const tool = this.bundle ? toolInHand(frame, this.bundle, hand) : null;
       const data = this.bundle?.tools.find((t) => t.index === tool?.index);
       const force = tool ? Math.hypot(tool.force_N[0]!, tool.force_N[1]!, tool.force_N[2]!) : null;
       const kind = data ? short(data, side(hand)) : '';
-      panel.show({ force, kind, active: hand === active, taken: taken[hand]! });
+      panel.show({ force, kind, active: hand === active, ...hands[hand]! });
       panel.tray.show(data?.id ?? '');
       return force;
     });
@@ -143,18 +177,21 @@ export class Hud {
   showEvent(e: SimEvent, nowMs: number): void {
     this.instructor?.addEvent(e.sim_time_s, e.kind, e.id, e.text);
     // What chance or the instructor brings, the trainee sees in the field and not in words.
-    if (e.kind === 'command' || e.kind === 'complication') return;
+    if (e.kind === 'command' || e.kind === 'complication' || e.kind === 'read') return;
     if (e.kind === 'refused') {
       if (this.role !== 'observer') this.toasts.refuse(e.text, nowMs);
     } else if (e.kind === 'message' && e.id === 'message') {
-      if (this.role !== 'instructor') this.toasts.instruct(e.text, nowMs);
+      const read = () => {
+        if (this.role === 'trainee') this.actions.run({ command: 'read', argument: e.text });
+      };
+      if (this.role !== 'instructor') this.toasts.instruct(e.text, read);
     } else if (e.text) this.say(e.text, e.kind, nowMs);
   }
 
   showMachine(f: RenderFrame | null, haptic: HapticStatus | null, fps: number, quality: string): void {
     const parts: string[] = [];
     if (f) parts.push(`step ${f.step_ms.toFixed(1)} / ${f.step_period_ms.toFixed(1)} ms`, `${f.rows} rows`);
-    this.haptic.show(haptic);
+    this.haptic.show(haptic, f?.paused ?? false);
     parts.push(`${fps.toFixed(0)} fps ${quality}`);
     setText(this.machine, parts.join('   '));
     this.machine.classList.toggle('slow', !!f && f.step_ms > f.step_period_ms);
@@ -180,6 +217,11 @@ export class Hud {
     this.problems.show(lines.join('\n'));
   }
 
+  /** Something about this machine that its user should know; '': nothing. */
+  advise(text: string): void {
+    if (text !== '') this.toasts.advise(text);
+  }
+
   refuse(why: string, nowMs: number): void {
     this.toasts.refuse(why, nowMs);
   }
@@ -193,7 +235,7 @@ export class Hud {
   }
 
   private say(text: string, kind: string, nowMs: number): void {
-    setText(this.message, text);
+    setText(this.message, `${kind === 'goal' ? '✓ ' : kind === 'fault' ? '✗ ' : ''}${text}`);
     this.message.dataset.kind = kind;
     this.message.classList.add('on');
     this.messageUntil = nowMs + 3500;
@@ -208,7 +250,7 @@ export class Hud {
   private showState(s: HudState): void {
     this.exercise.showState(s);
     if (s.state === 'done' || s.state === 'failed') {
-      setText(this.message, s.message || (s.state === 'done' ? 'Exercise complete' : 'Exercise failed'));
+      setText(this.message, s.state === 'done' ? '✓ Exercise complete' : `✗ ${s.message || 'Exercise failed'}`);
       this.message.dataset.kind = s.state === 'done' ? 'goal' : 'fault';
       this.message.classList.add('on');
       this.messageUntil = 0;
@@ -219,17 +261,13 @@ export class Hud {
     const ask = (button: HTMLButtonElement, command: () => string) => {
       button.onclick = () => {
         actions.run({ command: command(), argument: '' });
-        button.blur();
       };
     };
     ask(this.pause, () => (this.pause.dataset.paused ? 'resume' : 'pause'));
-    const reset = el('button', { class: 'timed' }, 'Reset');
-    ask(reset, () => 'reset');
-    const help = el('button', { title: 'H' }, 'Help');
-    help.onclick = () => {
-      this.toggleHelp();
-      help.blur();
-    };
+    const reset = el('button', { class: 'timed', 'aria-haspopup': 'dialog' }, 'Reset');
+    reset.onclick = () => this.session.askReset();
+    const help = el('button', { title: 'H', 'aria-haspopup': 'dialog' }, 'Help');
+    help.onclick = () => this.toggleHelp();
     return el('div', { class: 'controls' }, ...(this.role === 'observer' ? [] : [this.pause, reset]), help);
   }
 }

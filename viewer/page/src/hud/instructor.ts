@@ -16,6 +16,8 @@ export class InstructorPanel {
   private readonly forces = new TimeChart('forces of the hands over ten seconds', 'N', ['left', 'right']);
   private readonly curves = new ChannelCurves();
   private readonly commands = el('div', { class: 'commands' });
+  /** By component and command, what sets a slider to a value that has been set, by whomever. */
+  private readonly sliders = new Map<string, { start: number; set: (value: number) => void }>();
   private readonly log = el('ol', { class: 'log', 'aria-label': 'events' });
 
   constructor(private readonly run: (c: UserCommand) => void) {
@@ -32,23 +34,23 @@ export class InstructorPanel {
       const c = message(text.value);
       if (c) this.run(c);
       text.value = '';
-      text.blur();
-      send.blur();
     };
     this.root.append(
-      el('h2', {}, 'Forces'),
-      this.forces.root,
+      // What an emergency needs comes first.
+      this.commands,
       el('h2', {}, 'Trainee'),
       form,
-      this.commands,
       el('h2', {}, 'Events'),
       this.log,
+      el('h2', {}, 'Forces'),
+      this.forces.root,
       el('h2', {}, 'Channels'),
       this.curves.root,
     );
   }
 
   showScene(bundle: Bundle): void {
+    this.sliders.clear();
     this.curves.showScene(bundle.channels);
     this.commands.replaceChildren(
       ...sceneCommands(bundle).flatMap((g) => [
@@ -67,6 +69,11 @@ export class InstructorPanel {
   }
 
   addEvent(timeS: number, kind: string, id: string, text: string): void {
+    if (kind === 'command' && id === 'ask') {
+      const [component, command, value] = text.split(' ');
+      this.sliders.get(`${component} ${command}`)?.set(Number(value));
+    }
+    if (kind === 'reset') for (const s of this.sliders.values()) s.set(s.start);
     const line = el(
       'li',
       { 'data-kind': kind },
@@ -81,23 +88,27 @@ export class InstructorPanel {
   private makeCommand(id: string, c: CommandData): HTMLElement {
     const go = el('button', { title: c.doc, 'data-ask': `${id} ${c.name}` }, spoken(c.name));
     if (takesNumber(c)) {
-      const middle = (c.min + c.max) / 2;
+      const start = c.start ?? (c.min + c.max) / 2;
       const slider = el('input', {
         type: 'range',
         min: String(c.min),
         max: String(c.max),
         step: String(stepOf(c)),
-        value: String(middle),
+        value: String(start),
         'aria-label': `${c.name} ${c.argument}`,
       });
-      const shown = el('output', {}, label(middle, c));
+      const shown = el('output', {}, label(start, c));
       slider.oninput = () => {
         shown.textContent = label(Number(slider.value), c);
       };
-      slider.onchange = () => slider.blur();
+      const set = (value: number) => {
+        if (!Number.isFinite(value) || slider === document.activeElement) return;
+        slider.value = String(value);
+        shown.textContent = label(value, c);
+      };
+      this.sliders.set(`${id} ${c.name}`, { start, set });
       go.onclick = () => {
         this.run(ask(id, c.name, numberArgument(Number(slider.value), c)));
-        go.blur();
       };
       return el('div', { class: 'ask' }, go, slider, shown);
     }
@@ -106,14 +117,12 @@ export class InstructorPanel {
       go.onclick = () => {
         this.run(ask(id, c.name, text.value));
         text.value = '';
-        go.blur();
       };
       return el('div', { class: 'ask' }, go, text);
     }
     go.classList.add('wide');
     go.onclick = () => {
       this.run(ask(id, c.name));
-      go.blur();
     };
     return go;
   }

@@ -14,6 +14,7 @@ export function valueText(value: number, unit: string): string {
 
 export class Progress {
   readonly root = el('div', { class: 'progress' });
+  readonly clocks = el('div', { class: 'clocks' });
   private readonly timers = new Map<string, { row: HTMLElement; time: HTMLElement; bar: HTMLElement }>();
   private readonly measures = new Map<string, { row: HTMLElement; value: HTMLElement }>();
 
@@ -21,6 +22,7 @@ export class Progress {
     this.timers.clear();
     this.measures.clear();
     this.root.replaceChildren();
+    this.clocks.replaceChildren();
   }
 
   show(timers: readonly TimerView[], measures: readonly MeasureView[]): void {
@@ -41,7 +43,7 @@ export class Progress {
           ),
         };
         this.timers.set(t.id, w);
-        this.root.append(w.row);
+        this.clocks.append(w.row);
       }
       setText(w.time, timeLeftText(t));
       w.bar.style.width = `${usedShare(t) * 100}%`;
@@ -58,7 +60,8 @@ export class Progress {
         this.measures.set(m.id, w);
         this.root.append(w.row);
       }
-      setText(w.value, valueText(m.value, m.unit));
+      setText(w.value, `${m.good > 0 ? '✓ ' : m.good < 0 ? '✗ ' : ''}${valueText(m.value, m.unit)}`);
+      w.row.title = m.limit ? `good is ${m.limit}` : '';
       w.row.dataset.good = String(m.good);
       w.row.hidden = !Number.isFinite(m.value);
     }

@@ -16,13 +16,29 @@ export interface MeasureView {
   unit: string;
   /** 1 good, 0 neutral, -1 bad. */
   good: number;
+  /** Which values are good, in words; '': not said. */
+  limit: string;
+}
+
+export interface FaultView {
+  id: string;
+  text: string;
+  count: number;
+  /** When it was made, seconds; of the first ones. */
+  timesS: number[];
+  /** What to do instead; '': not said. */
+  advice: string;
 }
 
 export interface HudState {
   goals: { id: string; text: string; done: boolean }[];
-  faults: { id: string; text: string; count: number }[];
+  faults: FaultView[];
   message: string;
   state: string;
+  /** What the session is for: waiting, demonstration, practice, test; '': not said. */
+  mode: string;
+  /** Path of the report; '': none yet. */
+  report: string;
   elapsedS: number | null;
   timers: TimerView[];
   measures: MeasureView[];
@@ -46,9 +62,17 @@ export function parseHud(json: string): HudState | null {
   if (!isObject(j)) return null;
   return {
     goals: list(j.goals).map((g) => ({ id: text(g.id), text: text(g.text ?? g.id), done: g.done === true })),
-    faults: list(j.faults).map((f) => ({ id: text(f.id), text: text(f.text ?? f.id), count: finite(f.count) ?? 0 })),
+    faults: list(j.faults).map((f) => ({
+      id: text(f.id),
+      text: text(f.text ?? f.id),
+      count: finite(f.count) ?? 0,
+      timesS: Array.isArray(f.times_s) ? f.times_s.filter((t) => typeof t === 'number') : [],
+      advice: text(f.advice),
+    })),
     message: text(j.message),
     state: text(j.state),
+    mode: text(j.mode),
+    report: text(j.report),
     elapsedS: finite(j.elapsed_s),
     timers: list(j.timers).map((t) => ({
       id: text(t.id),
@@ -63,6 +87,7 @@ export function parseHud(json: string): HudState | null {
       value: finite(m.value) ?? NaN,
       unit: text(m.unit),
       good: Math.sign(finite(m.good) ?? 0),
+      limit: text(m.limit),
     })),
     hands: list(j.hands).map((h) => ({ hand: text(h.hand), tool: text(h.tool) })),
   };

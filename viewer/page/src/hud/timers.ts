@@ -23,4 +23,10 @@ export function usedShare(t: Pick<TimerView, 'elapsedS' | 'limitS'>): number {
   return t.limitS > 0 ? Math.max(0, Math.min(1, t.elapsedS / t.limitS)) : 0;
 }
 
+/** What a headset shows below the field: the note, running clocks, and what was said last. */
+export function headsetLines(timers: readonly TimerView[], said: string): string[] {
+  const running = timers.filter((t) => t.running).map((t) => `${t.text} ${timeLeftText(t)}`);
+  return ['For training only. Not for patient care.', running.join('     '), said];
+}
+
 const minutes = (seconds: number): string => `${Math.floor(seconds / 60)}:${String(seconds % 60).padStart(2, '0')}`;

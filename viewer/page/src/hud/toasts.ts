@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What must be noticed: refusals in passing, and the instructor's words, which stay until they are read.
+// What must be noticed: refusals in passing, and the instructor's words and advice, which stay until they are read.
 import { el } from './dom';
 
 const refusalMs = 4500;
-const instructionMs = 15000;
 
 export class Toasts {
   readonly root = el('div', { class: 'toasts', role: 'status' });
@@ -13,11 +12,24 @@ export class Toasts {
     this.add(el('div', { class: 'toast refused' }, why), nowMs + refusalMs);
   }
 
-  instruct(text: string, nowMs: number): void {
-    const close = el('button', { 'aria-label': 'understood' }, '✓');
-    const line = el('div', { class: 'toast instruction' }, el('b', {}, 'Instructor'), el('span', {}, text), close);
-    close.onclick = () => line.remove();
-    this.add(line, nowMs + instructionMs);
+  /** read: called when the trainee has said that it was understood. */
+  instruct(text: string, read: () => void): void {
+    this.stay('instruction', 'Instructor', text, read);
+  }
+
+  /** About this machine; once. */
+  advise(text: string): void {
+    this.stay('advice', 'Advice', text, () => undefined);
+  }
+
+  private stay(kind: string, who: string, text: string, read: () => void): void {
+    const close = el('button', { 'aria-label': 'understood' }, '✓ Read');
+    const line = el('div', { class: `toast ${kind}` }, el('b', {}, who), el('span', {}, text), close);
+    close.onclick = () => {
+      line.remove();
+      read();
+    };
+    this.add(line, Infinity);
   }
 
   tick(nowMs: number): void {
@@ -39,6 +51,8 @@ export class Toasts {
     }
     this.shown.push({ line, until });
     this.root.append(line);
-    while (this.root.childElementCount > 4) this.root.firstElementChild!.remove();
+    // What has not been read is never pushed out.
+    const passing = [...this.root.querySelectorAll('.refused')];
+    while (passing.length > 3) passing.shift()!.remove();
   }
 }

@@ -28,7 +28,6 @@ export class Tray {
       );
       button.onclick = () => {
         this.run(exchange(hand!.hand, tool.id));
-        button.blur();
       };
       return { tool, button };
     });

@@ -50,22 +50,17 @@ export class ViewMenu {
     );
     this.quality.onchange = () => {
       actions.quality(this.quality.value);
-      this.quality.blur();
     };
     this.stereo.append(...stereoModes.map((m) => el('option', { value: m }, stereoNames[m])));
     this.stereo.onchange = () => {
       actions.stereo(this.stereo.value as StereoMode);
-      this.stereo.blur();
     };
     this.angle.oninput = () => actions.angle(Number(this.angle.value));
-    this.angle.onchange = () => this.angle.blur();
     this.infrared.onclick = () => {
       actions.infrared(this.infrared.getAttribute('aria-pressed') !== 'true');
-      this.infrared.blur();
     };
     this.enter.onclick = () => {
       actions.stereo('xr');
-      this.enter.blur();
     };
     this.root.append(this.quality, this.stereo, this.angle, this.enter, this.infrared, this.glow);
     this.showStereo('off', 5, false, false);
@@ -99,7 +94,6 @@ export class ViewMenu {
         );
         button.onclick = () => {
           this.actions.run(ask(id, command.name));
-          button.blur();
         };
         return button;
       }),

@@ -64,7 +64,6 @@ export class Vitals {
   constructor() {
     this.sound.onclick = () => {
       this.toggleSound();
-      this.sound.blur();
     };
     this.root.append(this.head, this.parts);
     this.root.hidden = true;

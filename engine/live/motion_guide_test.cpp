@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Targets of a motion: its turns and its buttons, and nothing that lies on the way between them.
+#include "engine/live/motion_guide.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core/registry/registry.h"
+
+namespace insula {
+namespace {
+
+std::unique_ptr<Simulation> empty_scene() {
+  Registry registry;
+  register_builtin(registry);
+  return std::move(load_simulation_text("<scene/>", "/s.xml", registry, 1).simulation);
+}
+
+void add(Motion& m, double t, Vec3 p, double roll = 0, bool button1 = false) {
+  m.add(1, {t, {{p, from_rotation_vector(Vec3(0, 0, roll))}, button1, false}});
+}
+
+TEST(MotionGuide, KeepsCornersTurnsAndButtons) {
+  const auto simulation = empty_scene();
+  Motion m;
+  // 40 mm along x, a pause, 30 mm along y with half a turn in its second half, then the button.
+  for (int k = 0; k <= 40; ++k) add(m, 0.1 * k, Vec3(0.001 * k, 0, 0));
+  add(m, 6, Vec3(0.04, 0, 0));
+  for (int k = 1; k <= 30; ++k)
+    add(m, 6 + 0.1 * k, Vec3(0.04, 0.001 * k, 0), k <= 15 ? 0 : (k - 15) * std::numbers::pi / 60);
+  add(m, 9.5, Vec3(0.04, 0.03, 0), std::numbers::pi / 4, true);
+  const auto poses = guide_poses(m, *simulation);
+  ASSERT_GE(poses.size(), 4u);
+  ASSERT_LE(poses.size(), 8u);
+  EXPECT_EQ(poses.front().time_s, 0);
+  EXPECT_TRUE(poses.back().sample.button1);
+  double nearest_corner = 1;
+  for (const GuidePose& p : poses) {
+    EXPECT_EQ(p.hand, 1);
+    nearest_corner = std::min(nearest_corner, (p.sample.pose.p - Vec3(0.04, 0, 0)).norm());
+  }
+  EXPECT_LT(nearest_corner, 0.0035);
+}
+
+TEST(MotionGuide, ALongMotionHasABoundedNumberOfTargets) {
+  const auto simulation = empty_scene();
+  Motion m;
+  for (int k = 0; k < 600; ++k) add(m, 0.05 * k, Vec3(0.02 * (k % 2), 1e-6 * k, 0));
+  EXPECT_LE(guide_poses(m, *simulation).size(), 200u);
+  EXPECT_TRUE(guide_poses(Motion(), *simulation).empty());
+}
+
+}  // namespace
+}  // namespace insula

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The next pose of the example for each hand, and how far the tool is from it: where to move, and how to turn the
+// wrist. Nothing here knows an exercise; the poses come with the scene (docs/scene-bundle.md).
+import * as THREE from 'three';
+import type { Bundle, GuidePose } from './bundle_types';
+
+/** A pose counts as reached within these. */
+const nearM = 0.003;
+const nearRad = THREE.MathUtils.degToRad(15);
+/** Later poses that may be reached at once, if no button changes on the way. */
+const skipped = 12;
+
+interface Target {
+  tool: string;
+  p: THREE.Vector3;
+  q: THREE.Quaternion;
+  button1: boolean;
+  button2: boolean;
+}
+
+export interface Axes {
+  x: THREE.Vector3;
+  y: THREE.Vector3;
+  z: THREE.Vector3;
+}
+
+export interface Offset {
+  distanceM: number;
+  /** In the picture: to the right, up, to the viewer; metres. */
+  right: number;
+  up: number;
+  out: number;
+  /** Turns still to be made, radians: about the shaft, about the picture's upright axis, about its level axis. */
+  roll: number;
+  turn: number;
+  tilt: number;
+  angleRad: number;
+}
+
+/** What is between a tool's pose and its target. */
+export function offsetOf(p: THREE.Vector3, q: THREE.Quaternion, target: Pick<Target, 'p' | 'q'>, axes: Axes): Offset {
+  const d = target.p.clone().sub(p);
+  const turn = target.q.clone().multiply(q.clone().invert());
+  if (turn.w < 0) turn.set(-turn.x, -turn.y, -turn.z, -turn.w);
+  const sine = Math.hypot(turn.x, turn.y, turn.z);
+  const angleRad = 2 * Math.atan2(sine, turn.w);
+  const vector = new THREE.Vector3(turn.x, turn.y, turn.z).multiplyScalar(sine > 1e-9 ? angleRad / sine : 2);
+  const shaft = new THREE.Vector3(0, 0, 1).applyQuaternion(q);
+  const roll = vector.dot(shaft);
+  const rest = vector.clone().addScaledVector(shaft, -roll);
+  return {
+    distanceM: d.length(),
+    right: d.dot(axes.x),
+    up: d.dot(axes.y),
+    out: d.dot(axes.z),
+    roll,
+    turn: rest.dot(axes.y),
+    tilt: rest.dot(axes.x),
+    angleRad,
+  };
+}
+
+const reached = (p: THREE.Vector3, q: THREE.Quaternion, t: Target): boolean =>
+  p.distanceTo(t.p) < nearM && 2 * Math.acos(Math.min(1, Math.abs(q.dot(t.q)))) < nearRad;
+
+const sameButtons = (a: Target, b: Target): boolean => a.button1 === b.button1 && a.button2 === b.button2;
+
+const targetOf = (g: GuidePose): Target => ({
+  tool: g.tool,
+  p: new THREE.Vector3(...g.p),
+  q: new THREE.Quaternion(g.q[1], g.q[2], g.q[3], g.q[0]),
+  button1: g.button1,
+  button2: g.button2,
+});
+
+export class Guide {
+  private targets: Target[][] = [[], []];
+  private at = [0, 0];
+
+  begin(bundle: Bundle): void {
+    const poses = bundle.exercise?.guide ?? [];
+    this.targets = [
+      poses.filter((g) => g.hand === 'left').map(targetOf),
+      poses.filter((g) => g.hand === 'right').map(targetOf),
+    ];
+    this.restart();
+  }
+
+  restart(): void {
+    this.at = [0, 0];
+  }
+
+  /** What the hand is to reach next, and which of how many; null: nothing. */
+  target(hand: number): { target: Target; at: number; of: number } | null {
+    const list = this.targets[hand] ?? [];
+    const at = this.at[hand] ?? 0;
+    return list[at] ? { target: list[at], at, of: list.length } : null;
+  }
+
+  /** To another target, by hand. */
+  step(hand: number, by: 1 | -1): void {
+    const last = (this.targets[hand]?.length ?? 1) - 1;
+    this.at[hand] = Math.max(0, Math.min(last, (this.at[hand] ?? 0) + by));
+  }
+
+  /** Goes on when the tool is where it should be with its buttons as they should be, or is at a later pose. */
+  follow(hand: number, p: THREE.Vector3, q: THREE.Quaternion, buttons: { button1: boolean; button2: boolean }): void {
+    const list = this.targets[hand] ?? [];
+    const from = this.at[hand] ?? 0;
+    for (let k = from; k < Math.min(list.length - 1, from + skipped); k++) {
+      const t = list[k]!;
+      if (!sameButtons(t, list[from]!)) return;
+      const done = t.button1 === buttons.button1 && t.button2 === buttons.button2;
+      if (done && reached(p, q, t)) {
+        this.at[hand] = k + 1;
+        return;
+      }
+    }
+  }
+}

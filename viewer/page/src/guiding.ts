@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Puts the guide together: what the active hand is to reach next, its ghost in the field, and what its panel says.
+import * as THREE from 'three';
+import type { Bundle } from './bundle_types';
+import { Guide, offsetOf, type Axes } from './guide';
+import { toolInHand } from './hand_tool';
+import type { GuideView } from './hud/guide_panel';
+import type { RenderFrame } from './lcm';
+import { TargetGhost } from './target_ghost';
+
+/** A tool at its target needs no ghost. */
+const ghostFromM = 0.0015;
+const ghostFromRad = 0.12;
+
+export interface GuidingInput {
+  frame: RenderFrame | null;
+  bundle: Bundle | null;
+  /** The hand that is guided; -1: none. */
+  hand: number;
+  axes: Axes;
+}
+
+type TargetStatus = { at: number; of: number; distance_m: number; angle_rad: number } | null;
+
+export class Guiding {
+  readonly root: THREE.Group;
+  view: GuideView | null = null;
+  private readonly guide = new Guide();
+  private readonly ghost = new TargetGhost();
+
+  constructor() {
+    this.root = this.ghost.root;
+  }
+
+  begin(bundle: Bundle): void {
+    this.guide.begin(bundle);
+    this.ghost.begin(bundle);
+    this.view = null;
+  }
+
+  restart(): void {
+    this.guide.restart();
+  }
+
+  step(hand: number, by: 1 | -1): void {
+    this.guide.step(hand, by);
+  }
+
+  update({ frame, bundle, hand, axes }: GuidingInput): TargetStatus {
+    this.view = null;
+    this.ghost.hide();
+    const held = frame && bundle && hand >= 0 ? toolInHand(frame, bundle, hand) : null;
+    if (!frame || !bundle || !held) return null;
+    const p = new THREE.Vector3(...held.p_m);
+    const q = new THREE.Quaternion(held.q[1], held.q[2], held.q[3], held.q[0]);
+    const buttons = { button1: held.button1 !== 0, button2: held.button2 !== 0 };
+    const id = bundle.tools.find((t) => t.index === held.index)?.id ?? '';
+    if (this.guide.target(hand)?.target.tool === id) this.guide.follow(hand, p, q, buttons);
+    const next = this.guide.target(hand);
+    if (!next) return null;
+    const { target, at, of } = next;
+    const offset = offsetOf(p, q, target, axes);
+    this.view = { at, of, offset, todo: '' };
+    if (target.tool !== id) {
+      const tool = bundle.tools.find((t) => t.id === target.tool);
+      this.view.todo = `Take up the ${tool?.title ?? target.tool}`;
+    } else {
+      this.view.todo = buttonsToDo(target, buttons);
+      if (offset.distanceM > ghostFromM || offset.angleRad > ghostFromRad)
+        this.ghost.show(frame, held, target.p, target.q);
+    }
+    return { at, of, distance_m: offset.distanceM, angle_rad: offset.angleRad };
+  }
+}
+
+interface Buttons {
+  button1: boolean;
+  button2: boolean;
+}
+
+/** What to do with the buttons on the way to a target, and at it. */
+export function buttonsToDo(target: Buttons, now: Buttons): string {
+  const parts = ([1, 2] as const).flatMap((b) => {
+    const [wanted, is] = b === 1 ? [target.button1, now.button1] : [target.button2, now.button2];
+    if (wanted === is) return [];
+    return [wanted ? `hold button ${b} (${b === 1 ? 'Space' : 'B'})` : `let button ${b} go`];
+  });
+  const text = parts.join(', ');
+  return text === '' ? '' : `At the target: ${text}`;
+}

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The wrist guide: how far the tool is from its target, where to move it, how to turn it and with which key.
+import type { Offset } from '../guide';
+import { el, setText } from './dom';
+
+export interface GuideView {
+  /** Which target, of how many. */
+  at: number;
+  of: number;
+  offset: Offset;
+  /** What the hand shall do that is no movement: "take up the applier", "hold button 1"; '': nothing. */
+  todo: string;
+}
+
+const nearM = 0.003;
+const nearRad = (15 * Math.PI) / 180;
+
+interface Direction {
+  value: number;
+  near: number;
+  positive: string;
+  negative: string;
+  text: (size: number) => string;
+}
+
+const mm = (m: number): string => `${(1000 * m).toFixed(1)} mm`;
+const degrees = (rad: number): string => `${Math.round((rad * 180) / Math.PI)}°`;
+
+/** What is still to be done, the largest first; nothing that is near enough. */
+export function directions(o: Offset): string[] {
+  const parts: Direction[] = [
+    { value: o.out, near: nearM / 2, positive: '⊙ back (S)', negative: '⊗ deeper (W)', text: mm },
+    { value: o.right, near: nearM / 2, positive: '→ right', negative: '← left', text: mm },
+    { value: o.up, near: nearM / 2, positive: '↑ up', negative: '↓ down', text: mm },
+    { value: o.roll, near: nearRad / 2, positive: '↻ roll (E)', negative: '↺ roll (Q)', text: degrees },
+    { value: o.turn, near: nearRad / 2, positive: '⤴ swing (D)', negative: '⤵ swing (A)', text: degrees },
+    { value: o.tilt, near: nearRad / 2, positive: '⤒ tilt (F)', negative: '⤓ tilt (R)', text: degrees },
+  ];
+  return parts
+    .filter((d) => Math.abs(d.value) > d.near)
+    .sort((a, b) => Math.abs(b.value) / b.near - Math.abs(a.value) / a.near)
+    .map((d) => `${d.value > 0 ? d.positive : d.negative} ${d.text(Math.abs(d.value))}`);
+}
+
+export class GuidePanel {
+  readonly root = el('section', { class: 'panel guide', 'aria-label': 'target' });
+  private readonly title = el('b');
+  private readonly todo = el('p', { class: 'todo' });
+  private readonly list = el('ul');
+  private shown = '';
+
+  constructor(step: (by: 1 | -1) => void) {
+    const back = el('button', { title: 'previous target (Shift + N)' }, '◀');
+    const next = el('button', { title: 'next target (N)' }, '▶');
+    back.onclick = () => step(-1);
+    next.onclick = () => step(1);
+    this.root.append(el('header', {}, this.title, el('span', {}, back, next)), this.todo, this.list);
+    this.root.hidden = true;
+  }
+
+  /** null: there is no target. */
+  show(view: GuideView | null): void {
+    this.root.hidden = view === null;
+    if (!view) return;
+    const { offset, at, of, todo } = view;
+    const near = offset.distanceM < nearM && offset.angleRad < nearRad;
+    setText(this.title, `Target ${at + 1} of ${of}: ${mm(offset.distanceM)}, ${degrees(offset.angleRad)}`);
+    setText(this.todo, todo || (near ? '✓ there' : ''));
+    this.root.dataset.near = String(near);
+    const lines = directions(offset).slice(0, 4);
+    const key = lines.join('\n');
+    if (key === this.shown) return;
+    this.shown = key;
+    this.list.replaceChildren(...lines.map((l) => el('li', {}, l)));
+  }
+}

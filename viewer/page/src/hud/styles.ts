@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The styles of the panels, in the order in which they override each other.
+import './hud.css';
+import './hands.css';
+import './panels.css';
+import './vitals.css';
+import './instructor.css';
+import './dialogs.css';
+import './narrow.css';

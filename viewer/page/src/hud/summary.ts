@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a trainee reads at the end: goals reached, each fault with its times and what to do, measures beside their
+// limits, clocks, and where the report is. Good and bad have a sign and a word beside their colour.
+import { el } from './dom';
+import { valueText } from './progress';
+import type { FaultView, HudState, MeasureView } from './state';
+import { clockText } from './state';
+
+const yes = '✓';
+const no = '✗';
+
+/** "0:12.3, 0:40.1 and 3 more". */
+export function timesText(fault: Pick<FaultView, 'count' | 'timesS'>): string {
+  const shown = fault.timesS.map(clockText).join(', ');
+  const more = fault.count - fault.timesS.length;
+  return more > 0 && shown !== '' ? `${shown} and ${more} more` : shown;
+}
+
+export function verdict(m: Pick<MeasureView, 'good'>): string {
+  return m.good > 0 ? `${yes} good` : m.good < 0 ? `${no} not good` : '';
+}
+
+const part = (title: string, rows: HTMLElement[]): HTMLElement[] =>
+  rows.length > 0 ? [el('h3', {}, title), el('ul', { class: 'summary-list' }, ...rows)] : [];
+
+function whose(mode: string): HTMLElement[] {
+  const texts: Record<string, string> = {
+    demonstration: 'This was a demonstration. Its result is not yours.',
+    practice: 'This was practice, with targets.',
+    test: 'This was a test, without help.',
+  };
+  return texts[mode] ? [el('p', { class: 'whose', 'data-mode': mode }, texts[mode])] : [];
+}
+
+function faultRow(f: FaultView): HTMLElement {
+  const times = timesText(f);
+  return el(
+    'li',
+    { 'data-good': '-1' },
+    el('b', {}, `${no} ${f.text}`),
+    el('span', {}, ` ${f.count} time${f.count === 1 ? '' : 's'}${times ? `, at ${times}` : ''}`),
+    ...(f.advice ? [el('p', { class: 'advice' }, f.advice)] : []),
+  );
+}
+
+function measureRow(m: MeasureView): HTMLElement {
+  const limit = m.limit ? `; good is ${m.limit}` : '';
+  return el(
+    'li',
+    { 'data-good': String(m.good) },
+    el('b', {}, m.text),
+    el('span', {}, ` ${valueText(m.value, m.unit)}${limit} `),
+    el('em', {}, verdict(m)),
+  );
+}
+
+export function summaryOf(s: HudState): HTMLElement[] {
+  const made = s.faults.filter((f) => f.count > 0);
+  const clocks = s.timers.filter((t) => t.elapsedS > 0 && t.limitS > 0);
+  return [
+    ...whose(s.mode),
+    ...(s.message && s.state === 'failed' ? [el('p', { class: 'bad' }, s.message)] : []),
+    el('p', {}, s.elapsedS === null ? '' : `Time: ${clockText(s.elapsedS)}`),
+    ...part(
+      'Goals',
+      s.goals.map((g) =>
+        el('li', { 'data-good': g.done ? '1' : '-1' }, `${g.done ? `${yes} reached` : `${no} not reached`}: ${g.text}`),
+      ),
+    ),
+    ...part('Faults', made.length > 0 ? made.map(faultRow) : [el('li', { 'data-good': '1' }, `${yes} none`)]),
+    ...part('Measures', s.measures.filter((m) => Number.isFinite(m.value)).map(measureRow)),
+    ...part(
+      'Clocks',
+      clocks.map((t) =>
+        el(
+          'li',
+          { 'data-good': t.elapsedS <= t.limitS ? '1' : '-1' },
+          `${t.elapsedS <= t.limitS ? yes : no} ${t.text}: ${clockText(t.elapsedS)} of ${clockText(t.limitS)}`,
+        ),
+      ),
+    ),
+    ...(s.report ? [el('p', { class: 'where' }, 'Report: ', el('code', {}, s.report))] : []),
+  ];
+}

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Hands on a flat screen: latches, keys by their labels, two fingers, and the way to a target.
+import * as THREE from 'three';
+import { describe, expect, it } from 'vitest';
+import { TwoFingers } from '../src/gestures';
+import { Guide, offsetOf } from '../src/guide';
+import { buttonsToDo } from '../src/guiding';
+import { HandPose } from '../src/hand_pose';
+import { directions } from '../src/hud/guide_panel';
+import { timesText, verdict } from '../src/hud/summary';
+import { keyOf } from '../src/keyboard';
+import { adviceFor } from '../src/software_rendering';
+import type { Bundle, GuidePose } from '../src/bundle_types';
+
+describe('a latch', () => {
+  it('keeps what is held when the keys go to the other hand, and lets go on purpose only', () => {
+    const h = new HandPose();
+    h.hold(1, true);
+    h.latchHeld();
+    expect([h.button1, h.latched(1), h.button2]).toEqual([true, true, false]);
+    h.hold(1, false); // the key goes up over there
+    h.letGoHeld(); // the window loses the keys
+    expect(h.button1).toBe(true);
+    h.latch(1, false);
+    expect(h.button1).toBe(false);
+    h.latch(2, true);
+    h.release();
+    expect([h.button2, h.taken]).toEqual([false, false]);
+  });
+});
+
+describe('keys', () => {
+  it('are those that stand on the keyboard', () => {
+    expect(keyOf({ key: 'a', code: 'KeyQ' })).toBe('a'); // AZERTY
+    expect(keyOf({ key: 'Y', code: 'KeyZ' })).toBe('y'); // QWERTZ with Shift
+    expect(keyOf({ key: '[', code: 'Digit8' })).toBe('[');
+    expect(keyOf({ key: '?', code: 'Minus' })).toBe('?');
+    expect(keyOf({ key: ' ', code: 'Space' })).toBe('space');
+    expect(keyOf({ key: 'ArrowLeft', code: 'ArrowLeft' })).toBe('arrowleft');
+  });
+  it('are those of the place where there are no Latin letters or no plain digits', () => {
+    expect(keyOf({ key: 'п', code: 'KeyG' })).toBe('g');
+    expect(keyOf({ key: '&', code: 'Digit1' })).toBe('1');
+    expect(keyOf({ key: 'Enter', code: 'Enter' })).toBe('enter');
+  });
+});
+
+describe('two fingers', () => {
+  const steps = (way: [number, number, number, number][]) => {
+    const f = new TwoFingers();
+    return way.map(([ax, ay, bx, by]) => f.move({ x: ax, y: ay }, { x: bx, y: by })).filter((s) => s !== null);
+  };
+  it('keep to what they began', () => {
+    const depth = steps([
+      [0, 0, 100, 0],
+      [0, 20, 100, 20],
+      [0, 50, 160, 50],
+    ]);
+    expect(depth.map((s) => s.kind)).toEqual(['depth', 'depth']);
+    expect(depth[1]!.by).toBe(30);
+  });
+  it('turn, zoom and swing', () => {
+    const roll = steps([
+      [0, 0, 100, 0],
+      [0, 0, Math.cos(0.3) * 100, Math.sin(0.3) * 100],
+    ]);
+    expect(roll).toEqual([{ kind: 'roll', by: expect.closeTo(0.3, 9) as number }]);
+    const zoom = steps([
+      [0, 0, 100, 0],
+      [-50, 0, 150, 0],
+    ]);
+    expect(zoom).toEqual([{ kind: 'zoom', by: 2 }]);
+    const swing = steps([
+      [0, 0, 100, 0],
+      [25, 0, 125, 0],
+    ]);
+    expect(swing[0]!.kind).toBe('swing');
+  });
+});
+
+describe('the guide', () => {
+  const axes = { x: new THREE.Vector3(1, 0, 0), y: new THREE.Vector3(0, 1, 0), z: new THREE.Vector3(0, 0, 1) };
+  const pose = (p: [number, number, number], button1 = false): GuidePose => ({
+    hand: 'right',
+    tool: 'applier',
+    p,
+    q: [1, 0, 0, 0],
+    button1,
+    button2: false,
+  });
+  const none = { button1: false, button2: false };
+  const at = (x: number) => new THREE.Vector3(x, 0, 0);
+  const q = new THREE.Quaternion();
+
+  it('says how far it is, and what the wrist must do', () => {
+    const target = {
+      p: new THREE.Vector3(0.01, -0.02, 0.004),
+      q: new THREE.Quaternion().setFromAxisAngle(new THREE.Vector3(0, 0, 1), 0.8),
+    };
+    const o = offsetOf(at(0), q, target, axes);
+    expect(o.right).toBeCloseTo(0.01, 12);
+    expect(o.up).toBeCloseTo(-0.02, 12);
+    expect(o.out).toBeCloseTo(0.004, 12);
+    expect([o.roll, o.turn, o.tilt]).toEqual([0.8, 0, 0].map((x) => expect.closeTo(x, 9) as number));
+    expect(directions(o)[0]).toBe('↓ down 20.0 mm');
+    expect(directions(o)).toContain('↻ roll (E) 46°');
+    // Carrying the turns out leads to the target.
+    const turned = q.clone().premultiply(new THREE.Quaternion().setFromAxisAngle(axes.z, o.roll));
+    expect(turned.angleTo(target.q)).toBeCloseTo(0, 6);
+  });
+
+  it('goes on when a pose is reached with its buttons, and skips what lies on the way', () => {
+    const guide = new Guide();
+    const poses = [pose([0, 0, 0]), pose([0.02, 0, 0]), pose([0.04, 0, 0]), pose([0.04, 0, 0], true)];
+    guide.begin({ exercise: { guide: poses } } as unknown as Bundle);
+    expect(guide.target(0)).toBeNull();
+    guide.follow(1, at(0.01), q, none);
+    expect(guide.target(1)!.at).toBe(0);
+    guide.follow(1, at(0.021), q, none);
+    expect(guide.target(1)!.at).toBe(2);
+    guide.follow(1, at(0.04), q, none);
+    expect(guide.target(1)!.at).toBe(3);
+    expect(buttonsToDo(guide.target(1)!.target, none)).toBe('At the target: hold button 1 (Space)');
+    const wrong = new THREE.Quaternion().setFromAxisAngle(axes.z, 0.5);
+    guide.restart();
+    guide.follow(1, at(0), wrong, none);
+    expect(guide.target(1)!.at).toBe(0);
+    guide.step(1, 1);
+    guide.step(1, 1);
+    guide.step(1, -1);
+    expect(guide.target(1)!.at).toBe(1);
+  });
+});
+
+describe('words', () => {
+  it('stand beside colours', () => {
+    expect([1, 0, -1].map((good) => verdict({ good }))).toEqual(['✓ good', '', '✗ not good']);
+    expect(timesText({ count: 3, timesS: [1.5, 61] })).toBe('0:01.5, 1:01.0 and 1 more');
+    expect(timesText({ count: 2, timesS: [] })).toBe('');
+  });
+  it('name software rendering', () => {
+    expect(adviceFor('ANGLE (Google, Vulkan 1.3.0 (SwiftShader Device), SwiftShader driver)')).toContain('SwiftShader');
+    expect(adviceFor('NVIDIA GeForce RTX 3060/PCIe/SSE2')).toBe('');
+  });
+});
