@@ -150,7 +150,9 @@ const hands: Hands = new Hands(
   mayDrive,
 );
 
+let depthShown = options.depth;
 const shortcuts: Record<string, () => void> = {
+  KeyU: () => (depthShown = !depthShown),
   KeyL: () => hud.toolList.toggle(),
   KeyI: () => modes.setInfrared(!modes.infrared),
   KeyJ: () => hud.view.askGlow(),
@@ -243,12 +245,15 @@ function draw(now: number): void {
   const presenting = headset.presenting;
   stage.update(Math.min(0.1, pictureMs / 1000), modes.stereo, presenting);
   reading.read(playback.latest);
-  world?.update(playback, now, reading.channels);
+  world?.update(playback, now, reading.channels, scope.axes().x.multiplyScalar(scope.metresPerPixel(scope.distance, 100)));
+  world?.showDepth(depthShown);
+  status.tip_mm = world?.tipDistancesM.map((d) => (d === null ? null : 1000 * d)) ?? [];
   const angle = THREE.MathUtils.degToRad(modes.angleDeg);
   if (presenting) headset.render(scene, scope.camera, scope.distance, angle, headsetLines());
   else stage.render(modes.stereo, angle);
   status.presenting = presenting;
   status.triangles = stage.triangles;
+  status.calls = stage.calls;
   status.graphics_lost = graphics.lost;
   status.frames = playback.frames;
   status.refused = link.refused;

@@ -14,6 +14,7 @@ const rows: [string, string][] = [
   ['L', 'choose what the tool takes up (arrow keys or 1-9, Enter)'],
   ['I, J', 'infrared picture; inject the dye'],
   ['O, [ ]', 'stereo: off, side by side, red-cyan; less, more depth'],
+  ['U', 'depth: plumb line from the tip to the tissue, on or off'],
   ['M', 'beep with the heart'],
   ['G', 'release the hand (back to device or script)'],
   ['right drag', 'turn the microscope'],
