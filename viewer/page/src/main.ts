@@ -245,9 +245,9 @@ function draw(now: number): void {
   const presenting = headset.presenting;
   stage.update(Math.min(0.1, pictureMs / 1000), modes.stereo, presenting);
   reading.read(playback.latest);
-  world?.update(playback, now, reading.channels, scope.axes().x.multiplyScalar(scope.metresPerPixel(scope.distance, 100)));
+  world?.update(playback, now, reading.channels, scope.percentRight());
   world?.showDepth(depthShown);
-  status.tip_mm = world?.tipDistancesM.map((d) => (d === null ? null : 1000 * d)) ?? [];
+  status.tip_mm = world?.tipDistancesMm ?? [];
   const angle = THREE.MathUtils.degToRad(modes.angleDeg);
   if (presenting) headset.render(scene, scope.camera, scope.distance, angle, headsetLines());
   else stage.render(modes.stereo, angle);

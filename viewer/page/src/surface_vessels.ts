@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pial vessels: arteries and veins grown over a tissue surface at load as branching random walks that are drawn into the
-// sulci, and made into half-sunk tubes.
+// Pial vessels: arteries and veins grown over a tissue surface at load as branching random walks that are drawn into
+// the sulci, and made into half-sunk tubes.
 import { makeRandom } from './random';
 import type { Shading, Tissue } from './occlusion';
 import { PointGrid } from './spatial';
@@ -119,7 +119,7 @@ class Grower {
     const vessel: Vessel = { kind, points: [], normals: [], radii: [] };
     const branches = this.walk(vessel, shoot);
     const reached = vessel.points.length;
-    if (reached < (depth === 0 ? 14 : 7)) return null;
+    if (reached < (depth === 0 ? 22 : 7)) return null;
     // Cut short by a neighbour or an edge: the taper follows the length that was reached.
     const thick = radius * Math.min(1, depth === 0 ? 1 : 0.45 + reached / 60);
     vessel.radii = vessel.radii.map(
@@ -160,7 +160,7 @@ class Grower {
       bend = 0.86 * bend + (random() - 0.5) * (kind === 'artery' ? 0.34 : 0.22);
       d = turn(d, n, bend * 0.42);
       // Trunks run along the sulci, branches leave them.
-      const pull = depth === 0 ? 0.7 : 0.12;
+      const pull = depth === 0 ? 0.28 : 0.08;
       d = unit(d.map((v, k) => v + pull * foot.downhill[k]!));
       sinceBranch++;
       if (depth < 4 && sinceBranch > 6 && s < steps - 6 && random() < 0.12) {

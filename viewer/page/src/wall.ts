@@ -9,7 +9,7 @@ import { regionCapacity, wallMaterial } from './materials/wall';
 import { nearestKnown, wallThinness } from './regions';
 import { setSkinAttributes, type SkinTexture } from './skin_shader';
 import type { Channels } from './step_data/channels';
-import { bendEnds } from './wall_ends';
+import { bendEnds, endShare } from './wall_ends';
 
 /** A channel as a share of its largest value. */
 function share(channels: Channels, id: string): number {
@@ -60,7 +60,9 @@ export class Wall {
     const wall = new Float32Array(n * 2);
     // It lies in a gap that was baked shut: that darkness counts by half.
     for (let i = 0; i < n; i++) {
-      wall[i * 2] = 0.5 + 0.5 * openness[i]!;
+      // Where it goes into the tissue no light follows.
+      const sunk = Math.max(0, ...body.ends.map((end) => endShare(surface.positions, 3 * i, end)));
+      wall[i * 2] = (0.5 + 0.5 * openness[i]!) * (1 - 0.85 * sunk);
       wall[i * 2 + 1] = thin[i]!;
     }
     const normals = smoothNormals(positions, surface.indices);

@@ -33,6 +33,16 @@ export function endShift(end: EndData, tissues: readonly Float32Array[], away: V
   return [0, 1, 2].map((k) => down[k]! * depth + end.outward[k]! * 1.5 * end.radiusM) as Vector;
 }
 
+/** 0 along a vessel ... 1 at the cap of one of its ends. */
+export function endShare(place: ArrayLike<number>, at: number, end: EndData): number {
+  const bent = bentRadii * end.radiusM;
+  const from = [0, 1, 2].map((k) => place[at + k]! - end.centreM[k]!) as Vector;
+  const behind = -dot(from, end.outward);
+  const beside = Math.hypot(...[0, 1, 2].map((k) => from[k]! + behind * end.outward[k]!));
+  if (behind > bent || behind < -end.radiusM || beside > 2.2 * end.radiusM) return 0;
+  return 1 - Math.max(0, behind) / bent;
+}
+
 /** A copy of `positions` whose ends are bent by their shifts, smoothly from nothing to the whole. */
 export function bendEnds(
   positions: Float32Array,
@@ -41,13 +51,8 @@ export function bendEnds(
 ): Float32Array<ArrayBuffer> {
   const out = Float32Array.from(positions);
   ends.forEach((end, e) => {
-    const bent = bentRadii * end.radiusM;
     for (let v = 0; v < out.length; v += 3) {
-      const from = [0, 1, 2].map((k) => positions[v + k]! - end.centreM[k]!) as Vector;
-      const behind = -dot(from, end.outward);
-      const beside = Math.hypot(...[0, 1, 2].map((k) => from[k]! + behind * end.outward[k]!));
-      if (behind > bent || behind < -end.radiusM || beside > 2.2 * end.radiusM) continue;
-      const share = 1 - Math.max(0, behind) / bent;
+      const share = endShare(positions, v, end);
       for (let k = 0; k < 3; k++) out[v + k] = out[v + k]! + shifts[e]![k]! * share * share;
     }
   });

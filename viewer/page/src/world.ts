@@ -50,9 +50,9 @@ export class World {
     this.cuesShown = shown;
   }
 
-  /** Distance of the tip of each hand's tool from the tissue, m; null: none, or too far. */
-  get tipDistancesM(): (number | null)[] {
-    return this.cues.map((c) => c.distanceM);
+  /** Distance of the tip of each hand's tool from the tissue, mm; null: none, or too far. */
+  get tipDistancesMm(): (number | null)[] {
+    return this.cues.map((c) => c.distanceM).map((d) => (d === null ? null : 1000 * d));
   }
 
   /** Simpler shaders and fewer drops for slow machines. */

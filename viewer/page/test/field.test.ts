@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the field's picture is made of, on shapes whose answer is known: which fibres share a membrane, where vessels end,
-// how far a tip is from the tissue, when a wall hangs empty.
+// What the field's picture is made of, on shapes whose answer is known: which fibres share a membrane, where vessels
+// end, how far a tip is from the tissue, when a wall hangs empty.
 import * as THREE from 'three';
 import { describe, expect, it } from 'vitest';
 import { distanceText } from '../src/depth_cue';

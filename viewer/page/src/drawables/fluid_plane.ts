@@ -32,7 +32,7 @@ export class FluidPlane implements Drawn {
     this.root.renderOrder = 3;
     this.root.visible = false;
     this.root.frustumCulled = false;
-    if (context.firstFluid) this.field.setFluid(this.look);
+    if (context.veils) this.field.setFluid(this.look);
   }
 
   update(data: Float32Array, { dt }: Moment): void {
@@ -45,14 +45,14 @@ export class FluidPlane implements Drawn {
     this.root.visible = wet;
     this.set(wet, dt);
     if (up) this.root.position.addScaledVector(up, this.level! - wanted!);
-    if (this.context.firstFluid) this.veil(up, wet ? data[6]! : 0, dt);
+    if (this.context.veils) this.veil(up, wet ? data[6]! : 0, dt);
   }
 
   dispose(): void {
     this.root.removeFromParent();
     this.root.geometry.dispose();
     (this.root.material as THREE.Material).dispose();
-    if (this.context.firstFluid) this.field.fluidPlane.value.w = this.field.stainLevel.value = dryLevel;
+    if (this.context.veils) this.field.fluidPlane.value.w = this.field.stainLevel.value = dryLevel;
   }
 
   /** What flows stays liquid; what stands sets; a dry field begins anew. */

@@ -129,13 +129,8 @@ class Jet {
   }
 
   private makeMaterial(colour: THREE.Color): THREE.MeshPhysicalMaterial {
-    const m = new THREE.MeshPhysicalMaterial({
-      color: colour,
-      roughness: 0.4,
-      clearcoat: 0.6,
-      clearcoatRoughness: 0.25,
-      envMapIntensity: 0.4,
-    });
+    const gloss = { roughness: 0.4, clearcoat: 0.6, clearcoatRoughness: 0.25, envMapIntensity: 0.4 };
+    const m = new THREE.MeshPhysicalMaterial({ color: colour, ...gloss });
     m.onBeforeCompile = (shader) => {
       injectVeil(shader, this.field);
       Object.assign(shader.uniforms, {

@@ -73,7 +73,8 @@ const colour = /* glsl */ `#include <color_fragment>
         thick *= mix(1.0, 1.8, smoothstep(0.30, 0.5, abs(film.y - 0.5)));
         thick *= 1.0 - 0.75 * v_sheet.z;
         thick = mix(thick, 0.30 + 0.2 * cloud.x, v_sheet.w);
-        diffuseColor.rgb = mix(diffuseColor.rgb, vec3(0.72, 0.44, 0.40), 0.45 * smoothstep(0.36, 0.5, abs(film.y - 0.5)));
+        float attached = smoothstep(0.36, 0.5, abs(film.y - 0.5));
+        diffuseColor.rgb = mix(diffuseColor.rgb, vec3(0.72, 0.44, 0.40), 0.45 * attached);
         diffuseColor.rgb = mix(diffuseColor.rgb, vec3(0.86, 0.83, 0.80), 0.35 * v_drawn * line);
         diffuseColor.a = clamp(diffuseColor.a * thick, 0.0, 0.92);`;
 

@@ -144,7 +144,8 @@ const engravings: Record<Engraving, string> = {
   serrated: `
     float tooth = 0.5 + 0.5 * sin(p.z * 15.7);
     float near = 1.0 - smoothstep(0.08, 0.22, fwidth(p.z));
-    diffuseColor.rgb *= 1.0 - 0.45 * near * smoothstep(0.35, 0.9, tooth) * smoothstep(0.5, 0.8, abs(v_object_normal.x));`,
+    float face = smoothstep(0.5, 0.8, abs(v_object_normal.x));
+    diffuseColor.rgb *= 1.0 - 0.45 * near * face * smoothstep(0.35, 0.9, tooth);`,
 };
 
 export interface SolidOptions {
@@ -199,7 +200,10 @@ export function solidMaterial(name: string, o: SolidOptions): THREE.MeshPhysical
         '#include <common>',
         `#include <common>\n${noiseGlsl}\n${varyings} uniform vec3 field_axis; uniform mat3 normalMatrix;`,
       )
-      .replace('#include <color_fragment>', `#include <color_fragment>\nvec3 p = v_object;\n{${recipe.colour}${engravings[o.engraving ?? 'none']}}`)
+      .replace(
+        '#include <color_fragment>',
+        `#include <color_fragment>\nvec3 p = v_object;\n{${recipe.colour}${engravings[o.engraving ?? 'none']}}`,
+      )
       .replace(
         '#include <normal_fragment_maps>',
         `#include <normal_fragment_maps>\nnormal = bump(normal, normalMatrix * (${recipe.relief}));`,

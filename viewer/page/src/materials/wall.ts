@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The style "wall" of hollow organs: wet, pinkish, with fine vessels and yellow plaques in its coat; where it is thin the
-// dark fluid inside shows through and swirls. What hangs empty is pale, dark in its folds, and dull. In the infrared
-// picture a wall shines with the value of its region.
+// The style "wall" of hollow organs: wet, pinkish, with fine vessels and yellow plaques in its coat; where it is thin
+// the dark fluid inside shows through and swirls. What hangs empty is pale, dark in its folds, and dull. In the
+// infrared picture a wall shines with the value of its region.
 import * as THREE from 'three';
 import { injectSkinning, type SkinTexture } from '../skin_shader';
 import { fluorescenceGlsl, type FieldUniforms, injectVeil } from './field';
@@ -45,7 +45,8 @@ const wallColour = /* glsl */ `#include <color_fragment>
         blood = mix(blood, vec3(0.036, 0.008, 0.016), 0.85 * stale);
         // An empty wall lies in folds, pale on their crests.
         float crease = noise(v_rest * vec3(0.9, 1.6, 1.2) + 3.0 * broad.yzw).x;
-        coat = mix(coat, mix(vec3(0.33, 0.17, 0.16), vec3(0.48, 0.30, 0.27), smoothstep(-0.4, 0.6, crease)), 0.75 * stale);
+        vec3 drained = mix(vec3(0.33, 0.17, 0.16), vec3(0.48, 0.30, 0.27), smoothstep(-0.4, 0.6, crease));
+        coat = mix(coat, drained, 0.75 * stale);
         // The path through blood is longest in the middle, the wall looks thickest at the edge.
         float through = thin * mix(0.55, 1.0, smoothstep(0.1, 0.9, facing));
         // Plaque: pale, opaque islands in the thin wall.
@@ -66,6 +67,26 @@ const wallLight = /* glsl */ `#include <lights_fragment_end>
         reflectedLight.indirectSpecular *= v_wall.x;
         clearcoatSpecularIndirect *= v_wall.x * v_wall.x;
         clearcoatSpecularDirect *= mix(0.15, 1.0, v_wall.x);`;
+
+const wallVaryings = /* glsl */ `#include <project_vertex>
+        int r = int(region + 0.5);
+        v_wall = wall; v_glow = region_value[r]; v_full = region_full[r]; v_rest = position * 1000.0;
+        v_place = (modelMatrix * vec4(transformed, 1.0)).xyz;`;
+
+const wallNormal = /* glsl */ `#include <normal_fragment_maps>
+        vec3 folds = noise(v_rest * vec3(0.9, 1.6, 1.2) + 3.0 * broad.yzw).yzw;
+        vec3 relief = (0.13 * middle.yzw) * (1.0 - 0.6 * v_wall.y) + 0.55 * folds * (1.0 - v_full);
+        normal = bump(normal, normalMatrix * relief);`;
+
+const wallGloss = /* glsl */ `#include <lights_physical_fragment>
+        // What hangs empty dries and dulls.
+        material.clearcoat *= mix(0.25, 1.0, v_full);
+        material.clearcoatRoughness = mix(0.5, material.clearcoatRoughness, v_full);
+        material.roughness = mix(0.85, material.roughness, v_full);`;
+
+const wallFilm = /* glsl */ `#include <clearcoat_normal_fragment_maps>
+        vec3 wave = 0.05 * broad.yzw + 0.035 * middle.yzw + 0.4 * folds * (1.0 - v_full);
+        clearcoatNormal = bump(clearcoatNormal, normalMatrix * wave);`;
 
 const wallDeclarations = /* glsl */ `#include <common>
         ${noiseGlsl}
@@ -109,36 +130,13 @@ export function wallMaterial(
         uniform float region_full[${regionCapacity}];
         varying vec2 v_wall; varying float v_glow, v_full; varying vec3 v_rest, v_place;`,
       )
-      .replace(
-        '#include <project_vertex>',
-        `#include <project_vertex>
-        v_wall = wall; v_glow = region_value[int(region + 0.5)]; v_full = region_full[int(region + 0.5)]; v_rest = position * 1000.0;
-        v_place = (modelMatrix * vec4(transformed, 1.0)).xyz;`,
-      );
+      .replace('#include <project_vertex>', wallVaryings);
     shader.fragmentShader = shader.fragmentShader
       .replace('#include <common>', wallDeclarations)
       .replace('#include <color_fragment>', wallColour)
-      .replace(
-        '#include <normal_fragment_maps>',
-        `#include <normal_fragment_maps>
-        vec3 folds = noise(v_rest * vec3(0.9, 1.6, 1.2) + 3.0 * broad.yzw).yzw;
-        vec3 relief = (0.13 * middle.yzw) * (1.0 - 0.6 * v_wall.y) + 0.55 * folds * (1.0 - v_full);
-        normal = bump(normal, normalMatrix * relief);`,
-      )
-      .replace(
-        '#include <lights_physical_fragment>',
-        `#include <lights_physical_fragment>
-        // What hangs empty dries and dulls.
-        material.clearcoat *= mix(0.25, 1.0, v_full);
-        material.clearcoatRoughness = mix(0.5, material.clearcoatRoughness, v_full);
-        material.roughness = mix(0.85, material.roughness, v_full);`,
-      )
-      .replace(
-        '#include <clearcoat_normal_fragment_maps>',
-        `#include <clearcoat_normal_fragment_maps>
-        vec3 wave = 0.05 * broad.yzw + 0.035 * middle.yzw + 0.4 * folds * (1.0 - v_full);
-        clearcoatNormal = bump(clearcoatNormal, normalMatrix * wave);`,
-      )
+      .replace('#include <normal_fragment_maps>', wallNormal)
+      .replace('#include <lights_physical_fragment>', wallGloss)
+      .replace('#include <clearcoat_normal_fragment_maps>', wallFilm)
       .replace('#include <lights_fragment_end>', wallLight);
   };
   m.customProgramCacheKey = () => `wall_${skin ? 'skinned' : 'static'}`;
