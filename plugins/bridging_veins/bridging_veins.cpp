@@ -147,7 +147,7 @@ void BridgingVeins::append_state(std::vector<double>& out) const {
 }  // namespace insula
 
 INSULA_PLUGIN(bridging_veins) {
-  registry.add_material({"vein", "wall", {0.20, 0.07, 0.13, 1}, 0.4, 0, 0.2});
+  registry.add_material({"vein", "wall", {0.22, 0.08, 0.20, 1}, 0.4, 0, 0.2});
   registry.add<insula::BridgingVeins>("bridging_veins", insula::Kind::constraint,
                                       "veins between two surfaces, which must be kept and bleed when they part");
 }

@@ -4,6 +4,7 @@
 import * as THREE from 'three';
 import { describe, expect, it } from 'vitest';
 import { distanceText } from '../src/depth_cue';
+import { smoothLines } from '../src/drawables/tubes';
 import { neighbours, spanM } from '../src/drawables/web';
 import { NodeField } from '../src/skinning';
 import { TissueProbe } from '../src/tissue_probe';
@@ -33,6 +34,17 @@ describe('membranes', () => {
     expect(neighbours(grid, (i) => i !== 4, 9).flat()).not.toContain(4);
     expect(neighbours(upright([[0, 0], [0.99 * spanM, 0]]), () => true, 2)).toHaveLength(1); // prettier-ignore
     expect(neighbours(upright([[0, 0], [1.01 * spanM, 0]]), () => true, 2)).toHaveLength(0); // prettier-ignore
+  });
+});
+
+describe('smooth lines', () => {
+  it('go through the points, and are straight where these are', () => {
+    const straight = Float32Array.from([0, 0, 0, 7, 1, 2, 0, 7, 2, 4, 0, 7]);
+    const fine = smoothLines(straight, 3);
+    expect(fine).toHaveLength(4 * 9);
+    for (let q = 0; q < 9; q++) expect(fine[4 * q + 1]).toBeCloseTo(2 * fine[4 * q]!, 6);
+    expect([...fine.slice(16, 20)]).toEqual([1, 2, 0, 7]);
+    expect([...fine.slice(32)]).toEqual([2, 4, 0, 7]);
   });
 });
 
