@@ -16,10 +16,10 @@ magnitude of the force that it puts on the region:
 The tear is an opening of `tear_area` in the network of <blood_flow>. Its rate therefore follows the pressure, and a
 clip on the parent or across the neck stops it. If the wall draws inward, fluid over the tear flows back. This fluid
 is blood of the pool, if there is any. Otherwise it is cerebrospinal fluid or air, which leaves first again. Blood
-rises as a level surface that hides the field. With V the volume in the field and `tear` negative while blood flows
-back,
+rises as a level surface in a paraboloid and hides the field. With V the volume in the field and `tear` negative while
+blood flows back,
 
-    dV/dt = tear - suction - drain,      height = depth sqrt(V / V_full),   V_full = pi radius^2 depth / 2   (a paraboloid)
+    dV/dt = tear - suction - drain,   height = depth sqrt(V / V_full),   V_full = pi radius^2 depth / 2
 
 Blood above the rim runs off. If its tip is below the surface, a suction tube takes `suction_rate` while its button is
 held. Otherwise it takes `idle_suction` of that rate. Cotton patties and irrigation take `drain` all the time.

@@ -9,12 +9,12 @@ namespace insula {
 
 /// The field as a bowl, a paraboloid of `radius` at the height `depth`. Its area grows with height as fluid fills it.
 struct Bowl {
-  double radius = 0.015, depth = 0.02;   ///< m
-  Vec3 origin = Vec3::Zero();            ///< bottom, scene frame, m
-  Vec3 up = Vec3::UnitZ();               ///< unit, against gravity
-  double capacity() const;               ///< m3, to the rim
-  double height(double volume) const;    ///< of the fluid's surface above the bottom, m
-  double volume(double height) const;    ///< m3
+  double radius = 0.015, depth = 0.02;  ///< m
+  Vec3 origin = Vec3::Zero();           ///< bottom, scene frame, m
+  Vec3 up = Vec3::UnitZ();              ///< unit, against gravity
+  double capacity() const;              ///< m3, to the rim
+  double height(double volume) const;   ///< of the fluid's surface above the bottom, m
+  double volume(double height) const;   ///< m3
   double height_of(const Vec3& p) const { return (p - origin).dot(up); }  ///< of a point above the bottom, m
 };
 

@@ -29,8 +29,8 @@ less. They are thin against those: a few tenths of a newton.
 namespace insula {
 namespace {
 
-constexpr double full_jet = 1e-6;   // m3/s: a rate that is drawn as the strongest jet
-constexpr double stump = 0.0008;    // m, of a parted vein beyond the lip
+constexpr double full_jet = 1e-6;    // m3/s: a rate that is drawn as the strongest jet
+constexpr double stump = 0.0008;     // m, of a parted vein beyond the lip
 constexpr double most_arch = 0.002;  // m, that a slack vein stands out of the gap
 
 }  // namespace

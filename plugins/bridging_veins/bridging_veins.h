@@ -17,9 +17,12 @@ class BridgingVeins final : public StrandSprings {
                        .min = "1 mm",
                        .max = "50 mm",
                        .doc = "of each vein that is drawn on either surface before it bridges the gap"}};
-  Param<FlowRate> bleeding_rate{
-      this,
-      {.name = "bleeding_rate", .fallback = "4 ml/min", .min = "0 ml/min", .max = "200 ml/min", .doc = "of a parted vein"}};
+  Param<FlowRate> bleeding_rate{this,
+                                {.name = "bleeding_rate",
+                                 .fallback = "4 ml/min",
+                                 .min = "0 ml/min",
+                                 .max = "200 ml/min",
+                                 .doc = "of a parted vein"}};
   Param<Vec<Length>> origin{this, {.name = "origin", .doc = "bottom of the field that the blood fills"}};
   Param<Vec<Scalar>> up{this, {.name = "up", .fallback = "0 0 1", .doc = "out of the field, against gravity"}};
   Param<Length> bowl_radius{
@@ -45,7 +48,8 @@ class BridgingVeins final : public StrandSprings {
                          .doc = "that cotton patties and irrigation take, whatever the hands do"}};
 
   Channel<Scalar> parted{
-      this, {.name = "parted", .doc = "veins that have been cut or torn", .min = "0", .shown = Shown::vital, .digits = 0}};
+      this,
+      {.name = "parted", .doc = "veins that have been cut or torn", .min = "0", .shown = Shown::vital, .digits = 0}};
   Channel<FlowRate> rate{this,
                          {.name = "rate",
                           .doc = "blood out of parted veins",
@@ -75,9 +79,11 @@ class BridgingVeins final : public StrandSprings {
               .value = "height over the bottom of the field",
               .unit = "m",
               .rate_channel = "rate"}};
-  EventKind vein_parted{
-      this,
-      {.name = "vein_parted", .doc = "a bridging vein was cut or torn", .value = "force of the blade or tension, N", .bad = true}};
+  EventKind vein_parted{this,
+                        {.name = "vein_parted",
+                         .doc = "a bridging vein was cut or torn",
+                         .value = "force of the blade or tension, N",
+                         .bad = true}};
 
   void prepare(PrepareContext& context) override;
   void connect(PrepareContext& context, Simulation& simulation) override;
