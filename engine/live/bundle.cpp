@@ -106,22 +106,48 @@ std::vector<std::uint32_t> vertex_regions(const Surface& surface, const ShellBod
   return out;
 }
 
-/// Regions of a wall, its thickness in each, and the channels for its drawing.
+/// Where the vessel goes on beyond the model: the centre of each cap, its outward unit normal, and its radius.
+Json ends_of(const ShellBody& shell) {
+  Json out = Json::array();
+  const std::vector<Vec3>& x = shell.model().wall.vertices;
+  for (const WallModel::Cap& cap : shell.model().caps) {
+    Vec3 moment = Vec3::Zero(), normal = Vec3::Zero();
+    double area = 0;
+    for (const int t : cap.triangles) {
+      const auto& [a, b, c] = shell.model().wall.triangles[std::size_t(t)];
+      const Vec3 n = 0.5 * (x[std::size_t(b)] - x[std::size_t(a)]).cross(x[std::size_t(c)] - x[std::size_t(a)]);
+      moment += n.norm() / 3 * (x[std::size_t(a)] + x[std::size_t(b)] + x[std::size_t(c)]);
+      normal += n;
+      area += n.norm();
+    }
+    if (!(area > 0) || !(normal.norm() > 0)) continue;
+    const Vec3 centre = moment / area, outward = normal.normalized();
+    out.push_back(
+        {{"centre_m", list(centre)}, {"outward", list(outward)}, {"radius_m", std::sqrt(area / std::numbers::pi)}});
+  }
+  return out;
+}
+
+/// Regions of a wall, its thickness in each, its ends, and the channels for its drawing.
 void add_wall(Json& to, const ShellBody& shell, const ChannelTable& channels) {
   const std::vector<std::string>& regions = shell.model().regions;
   to["regions"] = regions;
+  to["ends"] = ends_of(shell);
   to["region_thickness_m"] = Json::object();
   for (std::size_t r = 0; r < regions.size(); ++r)
     for (const ForceModel* f : shell.children_of<ForceModel>())
       if (const double thickness = f->wall_thickness(int(r)); thickness > 0)
         to["region_thickness_m"][regions[r]] = thickness;
-  Json shades = Json::object();
+  Json shades = Json::object(), pressures = Json::object();
   for (const ChannelEntry& e : channels.entries()) {
     if (e.channel->subject() != &shell) continue;
     if (e.channel->spec().role == Role::pulse) to["pulse_channel"] = e.id;
-    if (e.channel->spec().role == Role::shade && shell.region(e.group()) >= 0) shades[e.group()] = e.id;
+    if (shell.region(e.group()) < 0) continue;
+    if (e.channel->spec().role == Role::shade) shades[e.group()] = e.id;
+    // The first one in the order of the document.
+    if (e.channel->quantity().name == Pressure::name && !pressures.contains(e.group())) pressures[e.group()] = e.id;
   }
-  to["region_value"] = {{"channel_of_region", shades}};
+  to["region_value"] = {{"channel_of_region", shades}, {"pressure_of_region", pressures}};
 }
 
 std::string title_of(const std::string& name) {

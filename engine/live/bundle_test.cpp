@@ -197,6 +197,15 @@ TEST_F(BundleOfAScene, TellsOfVesselsAndArticulatedTools) {
   EXPECT_EQ(body.at("nodes"), shell->nodes());
   EXPECT_EQ(body.at("regions"), Json(shell->model().regions));
   EXPECT_TRUE(body.at("region_value").at("channel_of_region").empty()) << "no blood flows in this scene";
+  EXPECT_TRUE(body.at("region_value").at("pressure_of_region").empty()) << "nothing presses in this scene";
+  ASSERT_EQ(body.at("ends").size(), shell->model().caps.size());
+  for (const Json& end : body.at("ends")) {
+    EXPECT_NEAR(std::hypot(end.at("outward")[0].get<double>(), end.at("outward")[1].get<double>(),
+                           end.at("outward")[2].get<double>()),
+                1, 1e-12);
+    EXPECT_GT(end.at("radius_m").get<double>(), 0.0005);
+    EXPECT_LT(end.at("radius_m").get<double>(), 0.0025);
+  }
   ASSERT_EQ(body.at("surfaces").size(), 2u);
   for (std::size_t k = 0; k < 2; ++k) {
     const Json& s = body.at("surfaces").at(k);

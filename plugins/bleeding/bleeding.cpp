@@ -16,13 +16,13 @@ magnitude of the force that it puts on the region:
 The tear is an opening of `tear_area` in the network of <blood_flow>. Its rate therefore follows the pressure, and a
 clip on the parent or across the neck stops it. If the wall draws inward, fluid over the tear flows back. This fluid
 is blood of the pool, if there is any. Otherwise it is cerebrospinal fluid or air, which leaves first again. Blood
-rises as a level surface that hides the field. With V the volume in the field and `tear` negative while blood flows
-back,
+rises as a level surface in a paraboloid and hides the field. With V the volume in the field and `tear` negative while
+blood flows back,
 
-    dV/dt = tear - suction,      height = depth sqrt(V / V_full),   V_full = pi radius^2 depth / 2   (a paraboloid)
+    dV/dt = tear - suction - drain,   height = depth sqrt(V / V_full),   V_full = pi radius^2 depth / 2
 
 Blood above the rim runs off. If its tip is below the surface, a suction tube takes `suction_rate` while its button is
-held. Otherwise it takes `idle_suction` of that rate.
+held. Otherwise it takes `idle_suction` of that rate. Cotton patties and irrigation take `drain` all the time.
 
 The flow of the middle cerebral artery is 120-170 mL/min, and a microsurgical field holds 5-15 mL. Without suction,
 the default tear hides the field in about ten seconds.
@@ -32,7 +32,6 @@ the default tear hides the field in about ten seconds.
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "core/base/text.h"
 #include "core/registry/registry.h"
@@ -48,17 +47,9 @@ constexpr double full_jet = 1e-6;       // m3/s: a rate that is drawn as the str
 
 }  // namespace
 
-double Bowl::capacity() const { return 0.5 * std::numbers::pi * radius * radius * depth; }
-double Bowl::height(double v) const { return v > 0 ? depth * std::sqrt(std::min(1.0, v / capacity())) : 0; }
-double Bowl::volume(double h) const {
-  const double x = std::clamp(h / depth, 0.0, 1.0);
-  return capacity() * x * x;
-}
-
 void Bleeding::prepare(PrepareContext& context) {
   if (up().norm() < 1e-9) return error(context, up, "must be a direction");
-  up_ = up().normalized();
-  bowl_ = {radius(), depth()};
+  bowl_ = {radius(), depth(), origin(), up().normalized()};
   if (sharp_force() > force())
     error(context, sharp_force, "is above force; a sharp instrument tears more easily than a blunt one");
 }
@@ -90,8 +81,7 @@ void Bleeding::connect(PrepareContext& context, Simulation& simulation) {
   jet.resize(1);
   chamber_ = pressure.chambers().of_region(r);
   instruments_ = simulation.instruments();
-  for (Instrument* i : instruments_)
-    if (i->element == "suction") suctions_.push_back(i);
+  suctions_ = suction_tubes(instruments_);
 }
 
 void Bleeding::measure_forces(const ConstraintSolution& solution) {
@@ -165,7 +155,7 @@ double Bleeding::blood_of(double h, double out) {
 
 double Bleeding::tear_height() const {
   double sum = 0;
-  for (const int v : zone_nodes_) sum += (Eigen::Map<const Vec3>(on->q().data() + 3 * v) - origin()).dot(up_);
+  for (const int v : zone_nodes_) sum += bowl_.height_of(Eigen::Map<const Vec3>(on->q().data() + 3 * v));
   return sum / double(zone_nodes_.size());
 }
 
@@ -173,15 +163,9 @@ void Bleeding::fill(double h, double blood) {
   rate_ = std::max(0.0, blood);
   lost_ += h * blood;
   volume_ += h * blood;
-  double most = 0;
-  for (const Instrument* s : suctions_) {
-    if (!s->active()) continue;
-    const Vec3 tip = s->pose().p - origin();
-    const double high = tip.dot(up_);
-    if (high >= bowl_.height(volume_) || (tip - high * up_).norm() > radius()) continue;
-    most += h * suction_rate() * std::max(idle_suction(), s->activity());
-  }
-  sucked_rate_ = std::min(std::max(0.0, volume_), most) / h;
+  const double taken = suction_takes(bowl_, volume_, suctions_, {suction_rate(), idle_suction()}, h);
+  sucked_rate_ = std::min(std::max(0.0, volume_), taken) / h;
+  const double most = taken + h * drain();
   volume_ = std::min(std::max(0.0, volume_ - most), bowl_.capacity());
 }
 
@@ -209,14 +193,14 @@ void Bleeding::publish() {
   sucked.set(sucked_rate_);
   since.set(since_ >= 0 ? now_ - since_ : std::numeric_limits<double>::quiet_NaN());
   is_open.set(open_);
-  pool.set(origin() + height() * up_, up_, height() > 0 ? radius() : 0, height());  // radius 0: dry
+  pool.set(origin() + height() * bowl_.up, bowl_.up, height() > 0 ? radius() : 0, height());  // radius 0: dry
   Vec3 place = Vec3::Zero(), outward = Vec3::Zero();
   const auto at = [&](int node) -> Vec3 { return Eigen::Map<const Vec3>(on->q().data() + 3 * node); };
   for (const int v : zone_nodes_) place += at(v);
   for (const auto& t : zone_triangles_) outward += (at(t[1]) - at(t[0])).cross(at(t[2]) - at(t[0]));
   if (!zone_nodes_.empty()) place /= double(zone_nodes_.size());
   const double length = outward.norm();
-  const Vec3 direction = length > 0 ? Vec3(outward / length) : up_;
+  const Vec3 direction = length > 0 ? Vec3(outward / length) : bowl_.up;
   const double strength = std::min(1.0, rate_ / full_jet);
   jet.set(0, 0, place, strength);
   jet.set(0, 1, place + 0.01 * direction, strength);

@@ -7,17 +7,10 @@
 
 #include "core/mechanics/instrument.h"
 #include "plugins/bleeding/bleeding_state.h"
+#include "plugins/bleeding/bowl.h"
 #include "plugins/blood_flow/blood_flow.h"
 
 namespace insula {
-
-/// The field as a bowl, a paraboloid of `radius` at the height `depth`. Its area grows with height as blood fills it.
-struct Bowl {
-  double radius = 0.015, depth = 0.02;  ///< m
-  double capacity() const;              ///< m3, to the rim
-  double height(double volume) const;   ///< of the blood's surface above the bottom, m
-  double volume(double height) const;
-};
 
 class Bleeding final : public Constraint, public BleedingSource {
  public:
@@ -68,6 +61,12 @@ class Bleeding final : public Constraint, public BleedingSource {
                               .min = "0",
                               .max = "1",
                               .doc = "share of that which it takes with its vent open"}};
+  Param<FlowRate> drain{this,
+                        {.name = "drain",
+                         .fallback = "0 ml/min",
+                         .min = "0 ml/min",
+                         .max = "500 ml/min",
+                         .doc = "that cotton patties and irrigation take, whatever the hands do"}};
 
   Channel<FlowRate> bleeding_rate{this,
                                   {.name = "rate",
@@ -151,7 +150,6 @@ class Bleeding final : public Constraint, public BleedingSource {
   void emit(const StepContext& context, const EventKind& what, const char* text, double value) const;
 
   Bowl bowl_;
-  Vec3 up_ = Vec3::UnitZ();
   int chamber_ = -1;
   std::vector<char> zone_;                          ///< one for each node
   std::vector<int> zone_nodes_;                     ///< nodes of the zone

@@ -83,6 +83,7 @@ void BloodPressure::reset() {
   for (int c = 0; c < chambers_.count(); ++c) names.push_back(chambers_.name(c));
   chamber_pressure.declare(std::move(names));
   heart_phase.set_subject(on.get());
+  chamber_pressure.set_subject(on.get());
   for (int c = 0; c < int(pressure_.size()); ++c) pressure_[std::size_t(c)] = reference(c);
   fill();
 }

@@ -161,7 +161,10 @@ void StrandSprings::generate(PrepareContext& context) {
     });
     if (!known) pairs.push_back(pair);
   }
-  for (auto [v, o] : pairs) add_strand(from->points()[std::size_t(v)], to->points()[std::size_t(o)]);
+  for (auto [v, o] : pairs) {
+    add_strand(from->points()[std::size_t(v)], to->points()[std::size_t(o)]);
+    spun(v, o);
+  }
   if (strands_.empty() && density() > 0)
     error(context, "no strand fits: the surfaces are nowhere closer than max_length within the ball");
 }

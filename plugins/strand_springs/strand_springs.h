@@ -12,7 +12,7 @@
 
 namespace insula {
 
-class StrandSprings final : public Constraint, public StrandSet, public StatesLaw {
+class StrandSprings : public Constraint, public StrandSet, public StatesLaw {
  public:
   Ref<Surface> from{this, {.name = "from", .fallback = "", .doc = "surface where the strands start"}};
   Ref<Surface> to{this, {.name = "to", .fallback = "", .doc = "surface where they end"}};
@@ -125,7 +125,7 @@ class StrandSprings final : public Constraint, public StrandSet, public StatesLa
   StrandState strand(int i) const override;
   bool severed(int i) const override { return strands_[std::size_t(i)].severed; }
 
- private:
+ protected:
   struct Strand {
     MaterialPoint a, b;
     double rest = 0;    ///< length without tension, m
@@ -140,6 +140,13 @@ class StrandSprings final : public Constraint, public StrandSet, public StatesLa
     double along = 0;  ///< 0 at a, 1 at b
     Vec3 push = Vec3::Zero();
   };
+  /// A strand has been spun between two vertices of `from` and `to`.
+  virtual void spun(int /*from_vertex*/, int /*to_vertex*/) {}
+  /// A strand has parted: its state, and the event.
+  virtual void part(const StepContext& context, Strand& s, const EventKind& what, double value);
+  const std::vector<Strand>& strands() const { return strands_; }
+
+ private:
   /// Cutting edges in the scene frame, and a ball around them.
   struct Blade {
     Instrument* tool = nullptr;
@@ -150,7 +157,6 @@ class StrandSprings final : public Constraint, public StrandSet, public StatesLa
     void place();
   };
   void generate(PrepareContext& context);
-  void part(const StepContext& context, Strand& s, const EventKind& what, double value);
 
   std::vector<Strand> strands_;
   std::vector<Blade> blades_;  ///< of all instruments

@@ -112,7 +112,9 @@ async function bodyOf(files: Files, b: Json): Promise<types.BodyData> {
     rest: await files.floats(b.rest, b.nodes * 3),
     surfaces: await Promise.all(surfaces),
     channelOfRegion: b.region_value?.channel_of_region ?? {},
+    pressureOfRegion: b.region_value?.pressure_of_region ?? {},
     regionThicknessM: b.region_thickness_m ?? {},
+    ends: list(b.ends).map((e) => ({ centreM: e.centre_m, outward: e.outward, radiusM: e.radius_m })),
     pulseChannel: b.pulse_channel ?? '',
   };
 }

@@ -21,6 +21,13 @@ export interface SkinnedSurface extends SurfaceData {
   vertexRegion: Uint32Array | null;
 }
 
+/** A cap: its centre, m, its outward unit normal, and its radius, m. */
+export interface EndData {
+  centreM: [number, number, number];
+  outward: [number, number, number];
+  radiusM: number;
+}
+
 export interface BodyData {
   index: number;
   id: string;
@@ -29,7 +36,11 @@ export interface BodyData {
   surfaces: SkinnedSurface[];
   /** Channel whose value a region shows in the infrared picture. */
   channelOfRegion: Record<string, string>;
+  /** Channel with the pressure of the fluid inside a region. */
+  pressureOfRegion: Record<string, string>;
   regionThicknessM: Record<string, number>;
+  /** Where a hollow organ goes on beyond its model. */
+  ends: EndData[];
   /** Channel with the phase of its pulse, 0..1; "": none. */
   pulseChannel: string;
 }

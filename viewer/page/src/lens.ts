@@ -74,6 +74,7 @@ export class Eyepiece {
 export class Lens {
   /** Of the last picture, shadows included. */
   triangles = 0;
+  calls = 0;
   private readonly eyes = [new Eyepiece(false), new Eyepiece(false)];
   private readonly scene = new THREE.Scene();
   private readonly flat = new THREE.OrthographicCamera(-1, 1, 1, -1, 0, 1);
@@ -103,12 +104,14 @@ export class Lens {
       this.seenBy = camera;
       this.eyes[0]!.take(this.renderer, scene, camera, focus, size, this.settings.samples);
       this.triangles = this.renderer.info.render.triangles;
+      this.calls = this.renderer.info.render.calls;
       this.show(0, new THREE.Matrix3(), 0);
       return;
     }
     const each = mode === 'sbs' ? new THREE.Vector2(Math.max(1, Math.floor(size.x / 2)), size.y) : size;
     takeBoth(this.renderer, scene, camera, focus, angleRad, each, this.settings.samples, this.eyes);
     this.triangles = 2 * this.renderer.info.render.triangles;
+    this.calls = 2 * this.renderer.info.render.calls;
     this.seenBy = this.eyes[1]!.camera;
     const wide = size.x / this.renderer.getPixelRatio();
     const high = size.y / this.renderer.getPixelRatio();

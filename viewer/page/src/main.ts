@@ -167,7 +167,12 @@ function letHandsGo(): void {
   guiding.restart();
 }
 
+let depthShown = options.depth;
+
 listenForShortcuts({
+  u: () => {
+    depthShown = !depthShown;
+  },
   l: () => hud.toolList.toggle(),
   i: () => modes.setInfrared(!modes.infrared),
   j: () => hud.view.askGlow(),
@@ -239,7 +244,9 @@ function draw(now: number): void {
   const presenting = headset.presenting;
   stage.update(Math.min(0.1, pictureMs / 1000), modes.stereo, presenting);
   reading.read(playback.latest);
-  world?.update(playback, now, reading.channels);
+  world?.update(playback, now, reading.channels, scope.percentRight());
+  world?.showDepth(depthShown);
+  status.tip_mm = world?.tipDistancesMm ?? [];
   status.target = guiding.update({
     frame: playback.latest,
     bundle: world?.bundle ?? null,
@@ -252,6 +259,7 @@ function draw(now: number): void {
   else stage.render(modes.stereo, angle);
   status.presenting = presenting;
   status.triangles = stage.triangles;
+  status.calls = stage.calls;
   status.graphics_lost = graphics.lost;
   status.frames = playback.frames;
   status.refused = link.refused;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the address line may ask for: ?role= ?quality= ?nohud ?t= ?stereo= ?angle= ?icg
+// What the address line may ask for: ?role= ?quality= ?nohud ?t= ?stereo= ?angle= ?icg ?nodepth
 
 import { clampAngle, type StereoMode, usualAngleDeg } from './stereo';
 
@@ -22,6 +22,8 @@ export interface Options {
   angleDeg: number;
   /** Begins with the indocyanine-green picture. */
   infrared: boolean;
+  /** Plumb lines from tips to tissue. */
+  depth: boolean;
 }
 
 export function parseOptions(search: string): Options {
@@ -39,5 +41,6 @@ export function parseOptions(search: string): Options {
     stereo: stereo === 'sbs' || stereo === 'anaglyph' || stereo === 'xr' ? stereo : 'off',
     angleDeg: angle !== null && angle !== '' ? clampAngle(Number(angle)) : usualAngleDeg,
     infrared: q.has('icg'),
+    depth: !q.has('nodepth'),
   };
 }

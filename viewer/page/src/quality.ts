@@ -13,7 +13,7 @@ export interface Level {
 }
 
 export const levels: Level[] = [
-  { name: 'low', pixelRatio: 0.6, shadowSize: 0, lens: { occlusion: false, depthOfField: false, samples: 0 } },
+  { name: 'low', pixelRatio: 0.6, shadowSize: 512, lens: { occlusion: false, depthOfField: false, samples: 0 } },
   { name: 'medium', pixelRatio: 0.85, shadowSize: 1024, lens: { occlusion: false, depthOfField: false, samples: 2 } },
   { name: 'high', pixelRatio: 1.25, shadowSize: 2048, lens: { occlusion: true, depthOfField: false, samples: 4 } },
   { name: 'ultra', pixelRatio: 2, shadowSize: 4096, lens: { occlusion: true, depthOfField: true, samples: 4 } },

@@ -13,8 +13,10 @@ import { barycentric, NodeField, shellTriangles } from './skinning';
 import { setSkinAttributes, SkinTexture, skinnedDepthMaterial } from './skin_shader';
 import { PointGrid } from './spatial';
 import { type MaterialData, materialOf } from './step_data/declarations';
+import { TissueProbe } from './tissue_probe';
 import { growVessels, makeTubes, vesselStyleOf } from './surface_vessels';
 import { Wall } from './wall';
+import { endShift } from './wall_ends';
 
 interface Plan {
   surface: SurfaceData;
@@ -34,8 +36,13 @@ export interface SceneryOptions {
 export class Scenery {
   readonly root = new THREE.Group();
   readonly walls: Wall[] = [];
+  /** Of all wet surfaces, for distances from tools. */
+  readonly probes: TissueProbe[];
   private readonly skins: { index: number; skin: SkinTexture }[] = [];
   private readonly owned: { dispose(): void }[] = [];
+  private readonly casters: THREE.Mesh[] = [];
+  /** What ends of vessels lead into: tissue that stands still. */
+  private readonly bed: Float32Array[];
 
   constructor(
     bundle: Bundle,
@@ -50,8 +57,10 @@ export class Scenery {
         material: materialOf(bundle.materials, surface.material),
         tissue: asTissue(surface),
       });
+    this.bed = plans.filter((p) => p.material.style === 'tissue' && !p.moving).map((p) => p.surface.positions);
     // Solids cast no baked darkness: only wet surfaces are dark where they face each other.
     const wet = plans.filter((p) => p.material.style === 'tissue' || (p.moving && p.material.style === 'wall'));
+    this.probes = wet.map(probeOf);
     const shading = bakeShading(wet.map((p) => p.tissue));
     for (const p of plans) this.addPlan(p, shading[wet.indexOf(p)] ?? null);
   }
@@ -62,6 +71,11 @@ export class Scenery {
       const x = nodes(index);
       if (x && x.length === skin.field.rest.length) skin.update(x);
     }
+  }
+
+  /** On slow machines only tools cast shadows: those tell where a tip is. */
+  setCheap(cheap: boolean): void {
+    for (const mesh of this.casters) mesh.castShadow = !cheap;
   }
 
   dispose(): void {
@@ -101,6 +115,7 @@ export class Scenery {
   ): void {
     const mesh = new THREE.Mesh(geometry, material);
     mesh.castShadow = casts;
+    if (casts) this.casters.push(mesh);
     mesh.receiveShadow = true;
     if (skin) {
       mesh.customDepthMaterial = skinnedDepthMaterial(skin);
@@ -135,19 +150,16 @@ export class Scenery {
   private addStillWall(p: Plan): void {
     const geometry = smoothGeometry(p);
     const n = p.surface.positions.length / 3;
-    geometry.setAttribute(
-      'vessel',
-      new THREE.BufferAttribute(
-        new Float32Array(n * 2).map((_, i) => i % 2),
-        2,
-      ),
-    );
+    const plain = new Float32Array(n * 3).map((_, i) => (i % 3 === 0 ? 0 : 1));
+    geometry.setAttribute('vessel', new THREE.BufferAttribute(plain, 3));
     this.add(geometry, vesselMaterial(null, this.options.field), true, null);
   }
 
   private addMovingWall(p: Plan, shading: Shading): void {
     const { skinned, body, skin } = p.moving!;
-    const wall = new Wall(skinned, body, skin, shading.openness, this.options.field);
+    const down = this.options.fieldAxis.clone().negate().toArray();
+    const shifts = body.ends.map((end) => endShift(end, this.bed, down));
+    const wall = new Wall(skinned, body, skin, shading.openness, this.options.field, shifts);
     this.walls.push(wall);
     this.add(wall.geometry, wall.material, true, skin);
   }
@@ -177,7 +189,9 @@ export class Scenery {
       return Math.max(0, grid.nearest(f[0]!, f[1]!, f[2]!, 0.004));
     });
     const lit = Float32Array.from(near, (v) => Math.min(1, shading.openness[v]! * 1.15));
-    geometry.setAttribute('vessel', new THREE.BufferAttribute(interleave(tubes.kind, lit), 2));
+    const vessel = new Float32Array(3 * n);
+    for (let i = 0; i < n; i++) vessel.set([tubes.kind[i]!, lit[i]!, tubes.calibre[i]!], 3 * i);
+    geometry.setAttribute('vessel', new THREE.BufferAttribute(vessel, 3));
     if (p.moving) skinTubes(geometry, tubes.positions, near, p.moving.skinned, p.moving.body.rest);
     const skin = p.moving?.skin ?? null;
     this.add(geometry, vesselMaterial(skin, this.options.field), false, skin);
@@ -222,6 +236,11 @@ function interleave(a: ArrayLike<number>, b: ArrayLike<number>): Float32Array {
     out[i * 2 + 1] = b[i]!;
   }
   return out;
+}
+
+function probeOf(p: Plan): TissueProbe {
+  const moving = p.moving && { surface: p.moving.skinned, field: p.moving.skin.field };
+  return new TissueProbe(p.surface.positions, p.tissue.normals, moving);
 }
 
 function asTissue(s: SurfaceData): Tissue {

@@ -29,6 +29,11 @@ export class Stage {
     return this.lens.triangles;
   }
 
+  /** Draw calls of the last picture, shadows included. */
+  get calls(): number {
+    return this.lens.calls;
+  }
+
   /** The room that metal mirrors, anew. */
   light(up: THREE.Vector3): THREE.Texture {
     const old = this.scene.environment;

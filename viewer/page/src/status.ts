@@ -17,6 +17,10 @@ export const status = {
   taken: [false, false],
   active: 1,
   triangles: 0,
+  /** Draw calls of the last picture, shadows included. */
+  calls: 0,
+  /** Of each hand's tip from the tissue; null: no cue. */
+  tip_mm: [] as (number | null)[],
   stereo: 'off',
   infrared: false,
   presenting: false,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pial vessels: arteries and veins grown over a tissue surface at load as branching random walks, and made into
-// half-sunk tubes.
+// Pial vessels: arteries and veins grown over a tissue surface at load as branching random walks that are drawn into
+// the sulci, and made into half-sunk tubes.
 import { makeRandom } from './random';
 import type { Shading, Tissue } from './occlusion';
 import { PointGrid } from './spatial';
@@ -31,21 +31,31 @@ const styles: Record<string, VesselStyle> = {
 export const vesselStyleOf = (material: string): VesselStyle => styles[material] ?? styles.cortex!;
 
 const stepM = 0.0006;
+/** Of a trunk that is drawn as thick as any, m. */
+const thickestM = 0.0006;
 
 /** Walks over a point-sampled surface; each step is projected onto the local average plane, so paths are smooth. */
 class Walker {
   private readonly grid: PointGrid;
-  constructor(private readonly t: Tissue) {
+  constructor(
+    private readonly t: Tissue,
+    private readonly convexity: Float32Array,
+  ) {
     this.grid = new PointGrid(t.positions, 0.0015);
   }
 
-  /** Foot point and normal near q, or null off the mesh. */
-  project(q: number[]): { x: number[]; n: number[] } | null {
+  /**
+   * Foot point and normal near q, or null off the mesh; `downhill`: tangent towards the nearest fold, as long as the
+   * surface's convexity falls over a millimetre.
+   */
+  project(q: number[]): { x: number[]; n: number[]; downhill: number[] } | null {
     let w = 0;
     let planes = 0;
     const c = [0, 0, 0];
     const n = [0, 0, 0];
     let near = Infinity;
+    let level = 0;
+    const rise = [0, 0, 0];
     this.grid.near(q[0]!, q[1]!, q[2]!, 0.0022, (i, d2) => {
       const g = Math.exp(-d2 / 0.7e-6);
       const v = i * 3;
@@ -55,7 +65,9 @@ class Walker {
       for (let k = 0; k < 3; k++) {
         c[k] = c[k]! + g * this.t.positions[i * 3 + k]!;
         n[k] = n[k]! + g * this.t.normals[i * 3 + k]!;
+        rise[k] = rise[k]! + g * this.convexity[i]! * (this.t.positions[v + k]! - q[k]!);
       }
+      level += g * this.convexity[i]!;
     });
     if (!(w > 0) || near > 1.4e-6) return null;
     const l = Math.hypot(n[0]!, n[1]!, n[2]!);
@@ -68,7 +80,11 @@ class Walker {
     // The mean point lies below a bulging surface, the mean of the tangent planes as far above it: halfway is right.
     const below = (q[0]! - c[0]!) * n[0]! + (q[1]! - c[1]!) * n[1]! + (q[2]! - c[2]!) * n[2]!;
     const h = 0.5 * (below + planes / w);
-    return { x: [q[0]! - h * n[0]!, q[1]! - h * n[1]!, q[2]! - h * n[2]!], n };
+    // Covariance of convexity and place over that of place: its slope.
+    const slope = rise.map((r, k) => -(r / w - (level / w) * (c[k]! - q[k]!)) / 0.35e-6 / 1000);
+    const out = slope[0]! * n[0]! + slope[1]! * n[1]! + slope[2]! * n[2]!;
+    const downhill = slope.map((x, k) => x - out * n[k]!);
+    return { x: [q[0]! - h * n[0]!, q[1]! - h * n[1]!, q[2]! - h * n[2]!], n, downhill };
   }
 }
 
@@ -92,9 +108,10 @@ class Grower {
 
   constructor(
     tissue: Tissue,
+    convexity: Float32Array,
     private readonly random: () => number,
   ) {
-    this.walker = new Walker(tissue);
+    this.walker = new Walker(tissue, convexity);
   }
 
   grow(shoot: Shoot): Vessel | null {
@@ -102,7 +119,7 @@ class Grower {
     const vessel: Vessel = { kind, points: [], normals: [], radii: [] };
     const branches = this.walk(vessel, shoot);
     const reached = vessel.points.length;
-    if (reached < (depth === 0 ? 14 : 7)) return null;
+    if (reached < (depth === 0 ? 22 : 7)) return null;
     // Cut short by a neighbour or an edge: the taper follows the length that was reached.
     const thick = radius * Math.min(1, depth === 0 ? 1 : 0.45 + reached / 60);
     vessel.radii = vessel.radii.map(
@@ -142,6 +159,9 @@ class Grower {
       // Meander: a slowly changing turn about the normal.
       bend = 0.86 * bend + (random() - 0.5) * (kind === 'artery' ? 0.34 : 0.22);
       d = turn(d, n, bend * 0.42);
+      // Trunks run along the sulci, branches leave them.
+      const pull = depth === 0 ? 0.28 : 0.08;
+      d = unit(d.map((v, k) => v + pull * foot.downhill[k]!));
       sinceBranch++;
       if (depth < 4 && sinceBranch > 6 && s < steps - 6 && random() < 0.12) {
         sinceBranch = 0;
@@ -183,7 +203,7 @@ function seedsOf(tissue: Tissue, shading: Shading, density: number, random: () =
 
 export function growVessels(tissue: Tissue, shading: Shading, style: VesselStyle, seed: number): Vessel[] {
   const random = makeRandom(seed);
-  const grower = new Grower(tissue, random);
+  const grower = new Grower(tissue, shading.convexity, random);
   for (const v of seedsOf(tissue, shading, style.densityM2, random)) {
     const n = [...tissue.normals.subarray(v * 3, v * 3 + 3)];
     const around = random() * Math.PI * 2;
@@ -221,12 +241,14 @@ export interface TubeData {
   indices: number[];
   /** 0 artery, 1 vein. */
   kind: number[];
+  /** 0 capillary ... 1 the thickest trunk. */
+  calibre: number[];
   /** Surface point below each vertex, for shading and skinning. */
   foot: number[];
 }
 
 export function makeTubes(vessels: Vessel[]): TubeData {
-  const out: TubeData = { positions: [], normals: [], indices: [], kind: [], foot: [] };
+  const out: TubeData = { positions: [], normals: [], indices: [], kind: [], calibre: [], foot: [] };
   for (const v of vessels) {
     const points = smoothPath(v.points);
     const sides = Math.max(...v.radii) > 0.0003 ? 8 : 5;
@@ -252,6 +274,7 @@ export function makeTubes(vessels: Vessel[]): TubeData {
           out.foot.push(points[i]![j]!);
         }
         out.kind.push(v.kind === 'vein' ? 1 : 0);
+        out.calibre.push(Math.min(1, r / thickestM));
         if (i + 1 < points.length) {
           const p00 = base + i * sides + k;
           const p01 = base + i * sides + ((k + 1) % sides);

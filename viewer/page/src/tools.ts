@@ -64,6 +64,7 @@ export class Tool {
         rgba: part.rgba,
         ...(declared ? { roughness: declared.roughness, metalness: declared.metalness } : {}),
         forward: this.forward,
+        engraving: this.inHand ? (part.link === 0 ? 'graduated' : 'none') : part.link > 0 ? 'serrated' : 'none',
       });
       // Metal lives from its reflections: it gets the room brighter than tissue does.
       material.envMap = environment;
@@ -99,6 +100,15 @@ export class Tool {
     this.ghost.position.copy(device);
     this.ghost.quaternion.copy(q);
     this.ghostMaterial.opacity = Math.min(0.16, (gap - ghostFromM) * 12);
+  }
+
+  /** What of it may touch first, scene frame: its tip, or the tips of its jaws. */
+  tips(): THREE.Vector3[] {
+    // Closed jaws meet at the tool's origin.
+    const jaws = this.links.length > 1 ? this.links.slice(1) : this.links;
+    return jaws.map((l) =>
+      new THREE.Vector3().applyMatrix4(l.matrix).applyQuaternion(this.group.quaternion).add(this.group.position),
+    );
   }
 
   hide(): void {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A deforming surface of the style "wall": its mesh with regions, how thin each is, and the value each shows.
+// A deforming surface of the style "wall": its mesh with regions, how thin each is, the value each shows, and how well
+// each is filled.
 import * as THREE from 'three';
 import type { BodyData, SkinnedSurface } from './bundle_types';
 import { smoothNormals } from './geometry';
@@ -8,6 +9,7 @@ import { regionCapacity, wallMaterial } from './materials/wall';
 import { nearestKnown, wallThinness } from './regions';
 import { setSkinAttributes, type SkinTexture } from './skin_shader';
 import type { Channels } from './step_data/channels';
+import { bendEnds, endShare } from './wall_ends';
 
 /** A channel as a share of its largest value. */
 function share(channels: Channels, id: string): number {
@@ -15,12 +17,25 @@ function share(channels: Channels, id: string): number {
   return Math.max(0, Math.min(1, value / (channels.find(id)?.max || 1)));
 }
 
+/** Pressures, Pa, at which a wall hangs empty and at which it is round. */
+const emptyPa = 300;
+const roundPa = 5000;
+
+/** 0 of a wall that hangs empty ... 1 of a round one, by the pressure inside; unknown: round. */
+export function fullness(pressurePa: number | null): number {
+  if (pressurePa === null || !Number.isFinite(pressurePa)) return 1;
+  const t = Math.max(0, Math.min(1, (pressurePa - emptyPa) / (roundPa - emptyPa)));
+  return t * t * (3 - 2 * t);
+}
+
 export class Wall {
   readonly geometry = new THREE.BufferGeometry();
   readonly material: THREE.MeshPhysicalMaterial;
   /** Channel of each region; null: it has none of its own. */
   private readonly channelOf: (string | null)[];
+  private readonly pressureOf: (string | null)[];
   private readonly shown = { value: new Float32Array(regionCapacity) };
+  private readonly filling = { value: new Float32Array(regionCapacity).fill(1) };
 
   constructor(
     surface: SkinnedSurface,
@@ -28,8 +43,11 @@ export class Wall {
     skin: SkinTexture,
     openness: Float32Array,
     field: FieldUniforms,
+    /** Where each end of the body bends to. */
+    endShifts: [number, number, number][],
   ) {
     const n = surface.positions.length / 3;
+    const positions = bendEnds(surface.positions, body.ends, endShifts);
     const regions = surface.regions.slice(0, regionCapacity);
     this.channelOf = regions.map((r) => body.channelOfRegion[r] ?? null);
     const given = surface.vertexRegion ?? new Uint32Array(n);
@@ -42,18 +60,21 @@ export class Wall {
     const wall = new Float32Array(n * 2);
     // It lies in a gap that was baked shut: that darkness counts by half.
     for (let i = 0; i < n; i++) {
-      wall[i * 2] = 0.5 + 0.5 * openness[i]!;
+      // Where it goes into the tissue no light follows.
+      const sunk = Math.max(0, ...body.ends.map((end) => endShare(surface.positions, 3 * i, end)));
+      wall[i * 2] = (0.5 + 0.5 * openness[i]!) * (1 - 0.85 * sunk);
       wall[i * 2 + 1] = thin[i]!;
     }
-    const normals = smoothNormals(surface.positions, surface.indices);
+    const normals = smoothNormals(positions, surface.indices);
     const shownRegion = Float32Array.from(region, (r) => Math.min(r, regionCapacity - 1));
-    this.geometry.setAttribute('position', new THREE.BufferAttribute(surface.positions, 3));
+    this.geometry.setAttribute('position', new THREE.BufferAttribute(positions, 3));
     this.geometry.setAttribute('normal', new THREE.BufferAttribute(normals, 3));
     this.geometry.setAttribute('wall', new THREE.BufferAttribute(wall, 2));
     this.geometry.setAttribute('region', new THREE.BufferAttribute(shownRegion, 1));
     this.geometry.setIndex(new THREE.BufferAttribute(surface.indices, 1));
     setSkinAttributes(this.geometry, surface.skinNodes, surface.skinWeights, body.rest);
-    this.material = wallMaterial(skin, field, this.shown);
+    this.pressureOf = regions.map((r) => body.pressureOfRegion[r] ?? null);
+    this.material = wallMaterial(skin, field, this.shown, this.filling);
   }
 
   /** Values move from frame to frame; the picture follows within a fifth of a second. */
@@ -61,6 +82,12 @@ export class Wall {
     this.channelOf.forEach((id, r) => {
       const before = this.shown.value[r]!;
       this.shown.value[r] = before + ((id === null ? 0 : share(channels, id)) - before) * (1 - Math.exp(-dt * 5));
+    });
+    // The colour of blood that stays behind changes more slowly than its pressure.
+    this.pressureOf.forEach((id, r) => {
+      const before = this.filling.value[r]!;
+      const wanted = id === null ? 1 : fullness(channels.value(id));
+      this.filling.value[r] = before + (wanted - before) * (1 - Math.exp(-dt * 1.2));
     });
   }
 

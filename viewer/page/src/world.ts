@@ -2,6 +2,7 @@
 // Everything drawn of one session: built from a bundle, moved by frames, thrown away when the session changes.
 import * as THREE from 'three';
 import type { Bundle } from './bundle_types';
+import { DepthCue } from './depth_cue';
 import { DrawableSet } from './drawables/drawable_set';
 import type { RenderFrame } from './lcm';
 import { FieldUniforms } from './materials/field';
@@ -22,6 +23,8 @@ export class World {
   private readonly pulseChannel: string;
   private readonly pressed = Array.from({ length: pressedCount }, () => new THREE.Vector4());
   private infrared = false;
+  private readonly cues = [new DepthCue(), new DepthCue()];
+  private cuesShown = true;
   private lastMs = -1;
 
   constructor(
@@ -34,12 +37,22 @@ export class World {
     for (const t of this.tools) t.addTo(this.root);
     this.drawables = new DrawableSet(bundle, this.field, environment);
     this.pulseChannel = bundle.bodies.find((b) => b.pulseChannel !== '')?.pulseChannel ?? '';
-    this.root.add(this.scenery.root, this.drawables.root);
+    this.root.add(this.scenery.root, this.drawables.root, ...this.cues.map((c) => c.root));
   }
 
   /** The infrared camera's picture instead of the eye's. */
   setInfrared(on: boolean): void {
     this.infrared = on;
+  }
+
+  /** Plumb lines from the tips of the tools in the hands to the tissue. */
+  showDepth(shown: boolean): void {
+    this.cuesShown = shown;
+  }
+
+  /** Distance of the tip of each hand's tool from the tissue, mm; null: none, or too far. */
+  get tipDistancesMm(): (number | null)[] {
+    return this.cues.map((c) => c.distanceM).map((d) => (d === null ? null : 1000 * d));
   }
 
   /** Simpler shaders and fewer drops for slow machines. */
@@ -54,9 +67,11 @@ export class World {
       m.needsUpdate = true;
     });
     this.drawables.setCheap(cheap);
+    this.scenery.setCheap(cheap);
   }
 
-  update(playback: Playback, nowMs: number, channels: Channels): void {
+  /** `right`: to the right in the picture, as long as a hundredth of the picture is high at its focus. */
+  update(playback: Playback, nowMs: number, channels: Channels, right: THREE.Vector3): void {
     const frame = playback.latest;
     if (!frame) return;
     const dt = this.lastMs < 0 ? 0 : Math.min(1, (nowMs - this.lastMs) / 1000);
@@ -67,13 +82,26 @@ export class World {
     this.updateLight(channels, frame.sim_time_s, dt);
     this.problems = this.drawables.update(playback, t, { dt, seconds: nowMs / 1000 });
     for (const tool of this.tools) moveTool(tool, playback, t);
+    this.cues.forEach((cue, hand) => {
+      const tips = this.cuesShown ? this.leadingTips(frame, hand) : [];
+      cue.update(tips, this.scenery.probes, nowMs / 1000, right);
+    });
   }
 
   dispose(): void {
     this.root.removeFromParent();
     this.scenery.dispose();
     this.drawables.dispose();
+    for (const c of this.cues) c.dispose();
     for (const t of this.tools) t.dispose();
+  }
+
+  /** Of the hand's tool, or of what that tool holds, which reaches farther. */
+  private leadingTips(frame: RenderFrame, hand: number): THREE.Vector3[] {
+    const inHand = frame.tool.filter((t) => t.hand === hand && t.state === held);
+    const tools = inHand.map((t) => this.tools.find((d) => d.data.index === t.index)).filter((t) => t !== undefined);
+    const leading = tools.find((t) => t.data.hand === 'none') ?? tools[0];
+    return leading?.tips() ?? [];
   }
 
   /** Pulse, what shines, and the change between the two pictures. */

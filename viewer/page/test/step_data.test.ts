@@ -252,7 +252,7 @@ describe('shapes', () => {
       metalness: 0,
       translucency: 1,
     };
-    expect(fluidLook('blood', m).absorb).toEqual([850, 5200, 4600]);
+    expect(fluidLook('blood', m).absorb).toEqual([1500, 8200, 7400]);
     const clear = fluidLook('saline', m);
     const milky = fluidLook('milk', { ...m, translucency: 0 });
     expect(clear.absorb[0]).toBeLessThan(10);

@@ -4,21 +4,25 @@ import * as THREE from 'three';
 import type { Bundle } from '../bundle_types';
 import type { FieldUniforms } from '../materials/field';
 import type { Playback } from '../playback';
-import { DataError, type DrawableData, materialOf } from '../step_data/declarations';
+import { DataError, type DrawableData, type MaterialData, materialOf } from '../step_data/declarations';
 import type { Drawn, Moment } from './drawn';
 import { makeDrawn } from './make';
+
+const isPool = (d: DrawableData, m: MaterialData): boolean => d.kind === 'plane' && m.style === 'fluid';
 
 export class DrawableSet {
   readonly root = new THREE.Group();
   private readonly all: { declared: DrawableData; drawn: Drawn }[] = [];
 
   constructor(bundle: Bundle, field: FieldUniforms, environment: THREE.Texture | null) {
-    let fluids = 0;
+    const materialFor = (d: DrawableData) => materialOf(bundle.materials, d.material);
+    const pools = bundle.drawables.map((d) => d.declared).filter((d) => isPool(d, materialFor(d)));
+    // What lies below is veiled once, by the fluid that hides most.
+    const clearness = (d: DrawableData) => materialFor(d).translucency;
+    const veiling = pools.reduce<DrawableData | null>((a, d) => (a && clearness(a) <= clearness(d) ? a : d), null);
     for (const { declared, meshes } of bundle.drawables) {
-      const material = materialOf(bundle.materials, declared.material);
-      const pool = declared.kind === 'plane' && material.style === 'fluid';
-      const firstFluid = pool && fluids++ === 0;
-      this.all.push({ declared, drawn: makeDrawn({ declared, material, meshes, field, environment, firstFluid }) });
+      const context = { declared, material: materialFor(declared), meshes, field, environment };
+      this.all.push({ declared, drawn: makeDrawn({ ...context, veils: declared === veiling }) });
     }
     // Pools first: jets ask how deep they lie below the surface.
     this.all.sort((a, b) => Number(b.declared.kind === 'plane') - Number(a.declared.kind === 'plane'));

@@ -32,6 +32,6 @@ export interface DrawableContext {
   meshes: Meshes[];
   field: FieldUniforms;
   environment: THREE.Texture | null;
-  /** The first plane of fluid lies over everything in the field; further ones only show their surface. */
-  firstFluid: boolean;
+  /** Of planes of fluid one lies over everything in the field; further ones only show their surface. */
+  veils: boolean;
 }

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Polylines of the style "fibre": each a small bundle of tapered fibres that fans out at its attachments, waves when
 // slack, straightens and reddens when drawn out, thins as its value falls from 1 to 0, and recoils when it is below 0
-// (parted). Fine cross filaments tie neighbours into a web.
+// (parted). Fine cross filaments and membranes (sheets.ts) tie neighbours into a web.
 import * as THREE from 'three';
 import { makeRandom } from '../random';
 import type { DrawableContext, Drawn, Moment } from './drawn';
 import { fadeS, fibreMaterial } from './fibre_material';
+import { type FibreStates, Sheets } from './sheets';
 
 const fibresPerLine = 3;
 const ringsPerHalf = 9;
@@ -25,7 +26,9 @@ interface Fibre {
 }
 
 export class Fibres implements Drawn {
-  readonly root: THREE.Mesh;
+  readonly root = new THREE.Group();
+  private readonly bundle: THREE.Mesh;
+  private readonly sheets: Sheets;
   private readonly geometry = new THREE.InstancedBufferGeometry();
   private readonly radiusM: number;
   private fibres: Fibre[] = [];
@@ -45,10 +48,12 @@ export class Fibres implements Drawn {
     this.radiusM = context.declared.radiusM;
     this.buildTube();
     this.allocate(context.declared.count);
-    this.root = new THREE.Mesh(this.geometry, fibreMaterial(context.field, context.material));
-    this.root.frustumCulled = false;
-    this.root.receiveShadow = true;
-    this.root.renderOrder = 2;
+    this.bundle = new THREE.Mesh(this.geometry, fibreMaterial(context.field, context.material));
+    this.bundle.frustumCulled = false;
+    this.bundle.receiveShadow = true;
+    this.bundle.renderOrder = 2;
+    this.sheets = new Sheets(context);
+    this.root.add(this.sheets.mesh, this.bundle);
   }
 
   update(data: Float32Array, { seconds }: Moment): void {
@@ -58,7 +63,9 @@ export class Fibres implements Drawn {
     if (!this.webbed && n > 0) {
       this.webbed = true;
       this.weave(n);
+      this.sheets.weave(this.states(seconds), n);
     }
+    this.sheets.update(this.states(seconds), n);
     let out = 0;
     this.fibres.forEach((f, index) => {
       if (f.a >= n || f.b >= n) return;
@@ -99,7 +106,7 @@ export class Fibres implements Drawn {
     const now = this.length(f.a);
     const tension = own && severed < 0 ? Math.max(0, now - straightAt * rest) * tightening : 0;
     const whole = Math.max(0, Math.min(this.whole[f.a]!, this.whole[f.b]!));
-    const loose = own ? Math.sqrt(Math.max(0, rest * rest - now * now)) * 0.38 : 0.0002;
+    const loose = own ? this.sag(f.a) : 0.0002;
     this.state.array.set([f.radius, whole, tension, severed], out * 4);
     this.slack.array.set([loose, (index * 0.6180339887) % 1], out * 2);
   }
@@ -120,7 +127,7 @@ export class Fibres implements Drawn {
           b: i,
           ta: 0,
           tb: 1,
-          radius: this.radiusM * (k === 0 ? 0.75 : 0.28 + 0.22 * random()),
+          radius: this.radiusM * (k === 0 ? 0.5 : 0.2 + 0.16 * random()),
         });
     // A web has two filaments a line at most.
     const capacity = count * (fibresPerLine + 2);
@@ -135,11 +142,22 @@ export class Fibres implements Drawn {
   dispose(): void {
     this.root.removeFromParent();
     this.geometry.dispose();
-    (this.root.material as THREE.Material).dispose();
+    (this.bundle.material as THREE.Material).dispose();
+    this.sheets.dispose();
   }
 
   private age(i: number, time: number): number {
     return this.whole[i]! >= 0 ? -1 : time - this.partedAt[i]!;
+  }
+
+  /** What hangs through of a line that is shorter than at the start, m. */
+  private sag(i: number): number {
+    const now = this.length(i);
+    return Math.sqrt(Math.max(0, this.restLength[i]! ** 2 - now * now)) * 0.38;
+  }
+
+  private states(seconds: number): FibreStates {
+    return { ends: this.ends, whole: this.whole, age: (i) => this.age(i, seconds), sag: (i) => this.sag(i) };
   }
 
   private along(i: number, t: number, k: number): number {
@@ -170,7 +188,7 @@ export class Fibres implements Drawn {
           b: j,
           ta: 0.15 + 0.7 * random(),
           tb: 0.15 + 0.7 * random(),
-          radius: this.radiusM * 0.28,
+          radius: this.radiusM * 0.2,
         });
       }
     }

@@ -3,11 +3,13 @@
 import * as THREE from 'three';
 import { dryLevel, type FieldUniforms } from '../materials/field';
 import { fluidMaterial } from '../materials/fluid';
-import { fluidLook } from '../materials/fluid_look';
+import { type FluidLook, fluidLook } from '../materials/fluid_look';
 import type { DrawableContext, Drawn, Moment } from './drawn';
 import { placeDisc } from './shapes';
 
 const stainFadeS = 40;
+/** A pool that nothing stirs sets in this time, s. */
+const setS = 45;
 /** Shallower pools are a film that nobody sees. */
 const leastM = 2e-5;
 
@@ -17,14 +19,20 @@ export class FluidPlane implements Drawn {
   /** Where the pool was first seen: levels are counted from there. */
   private bottom: THREE.Vector3 | null = null;
   private level: number | null = null;
+  private readonly look: FluidLook;
+  private readonly clotted = { value: 0 };
 
   constructor(private readonly context: DrawableContext) {
     this.field = context.field;
-    this.root = new THREE.Mesh(new THREE.CircleGeometry(1, 64), fluidMaterial(context.field, context.environment));
+    this.look = fluidLook(context.declared.material, context.material);
+    const murk = 1 - context.material.translucency;
+    const surface = { body: this.look.scatter, murk, clotted: this.clotted };
+    const material = fluidMaterial(context.field, context.environment, surface);
+    this.root = new THREE.Mesh(new THREE.CircleGeometry(1, 64), material);
     this.root.renderOrder = 3;
     this.root.visible = false;
     this.root.frustumCulled = false;
-    if (context.firstFluid) this.field.setFluid(fluidLook(context.declared.material, context.material));
+    if (context.veils) this.field.setFluid(this.look);
   }
 
   update(data: Float32Array, { dt }: Moment): void {
@@ -35,15 +43,23 @@ export class FluidPlane implements Drawn {
     const wanted = up ? this.root.position.clone().sub(this.bottom!).dot(up) : null;
     this.level = wanted === null || this.level === null ? wanted : glide(this.level, wanted, 12 * dt);
     this.root.visible = wet;
+    this.set(wet, dt);
     if (up) this.root.position.addScaledVector(up, this.level! - wanted!);
-    if (this.context.firstFluid) this.veil(up, wet ? data[6]! : 0, dt);
+    if (this.context.veils) this.veil(up, wet ? data[6]! : 0, dt);
   }
 
   dispose(): void {
     this.root.removeFromParent();
     this.root.geometry.dispose();
     (this.root.material as THREE.Material).dispose();
-    if (this.context.firstFluid) this.field.fluidPlane.value.w = this.field.stainLevel.value = dryLevel;
+    if (this.context.veils) this.field.fluidPlane.value.w = this.field.stainLevel.value = dryLevel;
+  }
+
+  /** What flows stays liquid; what stands sets; a dry field begins anew. */
+  private set(wet: boolean, dt: number): void {
+    const stirred = this.field.spring.value.w > 0.02;
+    const rate = stirred ? 0.25 / setS : 1 / setS;
+    this.clotted.value = wet ? Math.min(1, this.clotted.value + rate * this.look.clots * dt) : 0;
   }
 
   private veil(up: THREE.Vector3 | null, radius: number, dt: number): void {

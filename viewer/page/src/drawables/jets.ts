@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Jets of fluid, one a line: from its first point towards its last, as strong as its value (0..1). Drops on ballistic
-// paths, so close at their start that they are a jet. Where a drop is follows from its number and the time alone.
+// paths: a smooth column at their start, which necks, breaks up into drops of unlike size and scatters, as a free jet
+// does (Rayleigh and Plateau). Where a drop is follows from its number and the time alone.
 import * as THREE from 'three';
 import { type FieldUniforms, injectVeil } from '../materials/field';
 import { fluidLook } from '../materials/fluid_look';
 import type { DrawableContext, Drawn } from './drawn';
 
-const drops = 150;
+const drops = 190;
 const cheapDrops = 60;
 const lifeS = 0.16;
 
@@ -128,13 +129,8 @@ class Jet {
   }
 
   private makeMaterial(colour: THREE.Color): THREE.MeshPhysicalMaterial {
-    const m = new THREE.MeshPhysicalMaterial({
-      color: colour,
-      roughness: 0.4,
-      clearcoat: 0.6,
-      clearcoatRoughness: 0.25,
-      envMapIntensity: 0.4,
-    });
+    const gloss = { roughness: 0.4, clearcoat: 0.6, clearcoatRoughness: 0.25, envMapIntensity: 0.4 };
+    const m = new THREE.MeshPhysicalMaterial({ color: colour, ...gloss });
     m.onBeforeCompile = (shader) => {
       injectVeil(shader, this.field);
       Object.assign(shader.uniforms, {
@@ -162,14 +158,20 @@ class Jet {
           // The pressure when the drop left.
           float push = 0.55 + 0.55 * pulse * exp(-age * 6.0);
           vec3 side = vec3(chance(lot), chance(lot + 3.3), chance(lot + 7.7)) - 0.5;
-          vec3 v = velocity * push * (0.9 + 0.2 * chance(lot + 1.7));
-          v += side * length(velocity) * 0.14 * chance(lot + 5.0);
+          float share = age / ${lifeS.toFixed(2)};
+          // The column holds together over its first fifth; then every drop goes its own way.
+          float broken = smoothstep(0.16, 0.5, share);
+          vec3 v = velocity * push * (1.0 + (0.24 * chance(lot + 1.7) - 0.12) * broken);
+          v += side * length(velocity) * (0.05 + 0.42 * chance(lot + 5.0) * chance(lot + 2.1)) * broken;
           vec3 now = v + gravity * age;
           vec3 run = normalize(now);
           float strong = clamp((length(velocity) - 0.04) / 0.36, 0.0, 1.0);
-          float size = 0.00026 * (0.35 + 0.65 * strong) * (1.0 - 0.45 * age / ${lifeS.toFixed(2)});
-          size *= 0.65 + 0.7 * chance(lot + 9.1);
-          float stretch = 1.0 + 7.0 * exp(-age * 18.0);
+          float size = 0.00027 * (0.35 + 0.65 * strong);
+          float luck = chance(lot + 9.1);
+          // The column pinches before it breaks: then few large drops and many small ones are left.
+          float neck = 0.82 + 0.18 * sin(share * 60.0 - seconds * 40.0);
+          size *= mix(0.75 * neck, 0.22 + 1.05 * luck * luck * luck, broken) * (1.0 - 0.3 * share);
+          float stretch = 1.0 + mix(4.5, 1.2 * (1.0 - luck), broken);
           vec3 objectNormal = normalize(normal - run * dot(normal, run) * (1.0 - 1.0 / stretch));`,
         )
         .replace(

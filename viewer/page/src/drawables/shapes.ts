@@ -2,6 +2,7 @@
 // Triangle patches, planes, labels and rigid links, drawn plainly.
 import * as THREE from 'three';
 import { creased } from '../geometry';
+import { TextSprite } from '../text_sprite';
 import type { DrawableContext, Drawn } from './drawn';
 import { lookOf, moving } from './look';
 
@@ -80,15 +81,11 @@ const labelHeightM = 0.0035;
 
 export class Label implements Drawn {
   readonly root: THREE.Sprite;
-  private readonly paper = document.createElement('canvas');
-  private readonly writing = new THREE.CanvasTexture(this.paper);
-  private readonly material = new THREE.SpriteMaterial({ map: this.writing, depthTest: false, toneMapped: false });
-  private written: string | null = null;
+  private readonly text: TextSprite;
 
   constructor(private readonly context: DrawableContext) {
-    this.root = new THREE.Sprite(this.material);
-    this.root.renderOrder = 900;
-    this.root.center.set(0.5, -0.2);
+    this.text = new TextSprite(labelHeightM, context.material.rgba.slice(0, 3));
+    this.root = this.text.sprite;
   }
 
   update(data: Float32Array): void {
@@ -96,32 +93,11 @@ export class Label implements Drawn {
     if (!this.root.visible) return;
     this.root.position.fromArray(data, 0);
     const { declared } = this.context;
-    this.write(labelText(declared.text, data[3]!, declared.value.unit));
+    this.text.write(labelText(declared.text, data[3]!, declared.value.unit));
   }
 
   dispose(): void {
-    this.root.removeFromParent();
-    this.writing.dispose();
-    this.material.dispose();
-  }
-
-  private write(text: string): void {
-    if (text === this.written) return;
-    this.written = text;
-    const c = this.paper.getContext('2d')!;
-    const font = '44px sans-serif';
-    c.font = font;
-    this.paper.width = Math.ceil(c.measureText(text).width) + 32;
-    this.paper.height = 64;
-    c.font = font;
-    c.fillStyle = 'rgba(12, 15, 18, 0.7)';
-    c.fillRect(0, 0, this.paper.width, this.paper.height);
-    const [r, g, b] = this.context.material.rgba.map((x) => Math.round(255 * x));
-    c.fillStyle = `rgb(${r} ${g} ${b})`;
-    c.fillText(text, 16, 47);
-    this.root.scale.set((labelHeightM * this.paper.width) / this.paper.height, labelHeightM, 1);
-    this.writing.dispose();
-    this.writing.needsUpdate = true;
+    this.text.dispose();
   }
 }
 

@@ -60,7 +60,33 @@ export class Points implements Drawn {
   }
 }
 
-/** Lines with a value below 0 are gone. */
+/** Curves of vessels are smooth: so many pieces between two points. */
+const pieces = 4;
+
+/**
+ * Lines of `each` points on smooth curves through them (Catmull and Rom), four numbers a point as in frames; values are
+ * those of the point before.
+ */
+export function smoothLines(data: Float32Array, each: number): Float32Array {
+  const fine = (each - 1) * pieces + 1;
+  const lines = data.length / (4 * each);
+  const out = new Float32Array(4 * fine * lines);
+  for (let l = 0; l < lines; l++)
+    for (let q = 0; q < fine; q++) {
+      const p = Math.min(each - 2, Math.floor(q / pieces));
+      const t = q / pieces - p;
+      const at = (k: number, j: number) => data[4 * (l * each + Math.max(0, Math.min(each - 1, p + k))) + j]!;
+      for (let j = 0; j < 3; j++) {
+        const [a, b, c, d] = [at(-1, j), at(0, j), at(1, j), at(2, j)];
+        out[4 * (l * fine + q) + j] =
+          b + 0.5 * t * (c - a + t * (2 * a - 5 * b + 4 * c - d + t * (3 * (b - c) + d - a)));
+      }
+      out[4 * (l * fine + q) + 3] = at(0, 3);
+    }
+  return out;
+}
+
+/** Lines with a value below 0 are gone. Those of the style "wall" are smooth and thin out at their first point. */
 export class Polylines implements Drawn {
   readonly root: THREE.Mesh;
   private readonly geometry = new THREE.BufferGeometry();
@@ -73,8 +99,11 @@ export class Polylines implements Drawn {
     this.root = moving(new THREE.Mesh(this.geometry, this.material));
   }
 
-  update(data: Float32Array): void {
-    const each = this.context.declared.pointsPerLine;
+  update(given: Float32Array): void {
+    const points = this.context.declared.pointsPerLine;
+    const vessel = this.context.material.style === 'wall' && points > 2;
+    const data = vessel ? smoothLines(given, points) : given;
+    const each = vessel ? (points - 1) * pieces + 1 : points;
     const lines = data.length / (4 * each);
     if (lines !== this.lines) this.allocate(lines, each);
     const position = this.geometry.attributes.position!;
@@ -89,7 +118,8 @@ export class Polylines implements Drawn {
         const at = l * each + p;
         rings.turn(data, l * each, p, each);
         tint(this.context, data[4 * at + 3]!, shade);
-        const radius = gone ? 0 : this.context.declared.radiusM;
+        const thin = vessel ? Math.min(1, 0.25 + (1.5 * p) / each) : 1;
+        const radius = gone ? 0 : thin * this.context.declared.radiusM;
         for (let s = 0; s < sides; s++) {
           const v = at * sides + s;
           const m = rings.direction(s);

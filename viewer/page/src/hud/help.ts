@@ -15,6 +15,7 @@ const rows: [string, string][] = [
   ['L', 'choose what the tool takes up (arrow keys or 1-9, Enter)'],
   ['I, J', 'infrared picture; inject the dye'],
   ['O, [ ]', 'stereo: off, side by side, red-cyan; less, more depth'],
+  ['U', 'depth: plumb line from the tip to the tissue, on or off'],
   ['M', 'beep with the heart'],
   ['G', 'give the hand back: its buttons go off and it glides home'],
   ['N, Shift + N', 'next, previous target while you practise'],

@@ -13,15 +13,18 @@ export interface FluidLook {
   stain: Triple;
   /** Of drops in the air. */
   drop: Triple;
+  /** 0..1: how much of a still pool sets. */
+  clots: number;
 }
 
-/** Whole blood lets red through for a millimetre or two, green and blue for a fraction of one. */
+/** Its cells scatter: whole blood hides what lies a millimetre deep, and throws back red light alone. */
 const named: Record<string, FluidLook> = {
   blood: {
-    absorb: [850, 5200, 4600],
-    scatter: [0.094, 0.0022, 0.002],
+    absorb: [1500, 8200, 7400],
+    scatter: [0.115, 0.0032, 0.003],
     stain: [0.8, 0.4, 0.36],
     drop: [0.1441, 0.0015, 0.0015],
+    clots: 1,
   },
 };
 
@@ -40,5 +43,6 @@ export function fluidLook(name: string, m: MaterialData): FluidLook {
     scatter: colour.map((c) => 0.3 * c * clear) as Triple,
     stain: hue.map((h) => 1 - 0.6 * (1 - h) * clear) as Triple,
     drop: colour,
+    clots: 0,
   };
 }

@@ -15,9 +15,14 @@ interface Recipe {
   metal?: number;
 }
 
-/** Lamps in metal end below white, and differences between dim parts of the reflection are kept. */
+/**
+ * Lamps in metal end below white, and differences between dim parts of the reflection are kept. What turns away mirrors
+ * the dark behind the lamps: that edge is what tells metal from plastic.
+ */
 const rollOff = (share: number) => `
+  float turned = 1.0 - saturate(dot(normalize(vViewPosition), normal));
   vec3 shine = ${share.toFixed(2)} * (0.04 * reflectedLight.directSpecular + reflectedLight.indirectSpecular);
+  shine *= mix(1.12, 0.30, turned * turned);
   reflectedLight.directSpecular = vec3(0.0);
   reflectedLight.indirectSpecular = shine / (1.0 + 1.2 * max(shine.r, max(shine.g, shine.b)));`;
 
@@ -80,8 +85,9 @@ const recipes: Record<string, Recipe> = {
   steel: {
     base: { color: '#d3d6da', metalness: 1, roughness: 0.22, envMapIntensity: 1.25 },
     colour: 'diffuseColor.rgb *= 0.97 + 0.05 * noise(p * 0.6).x;',
-    relief: '0.06 * noise(p * 0.11).yzw + 0.012 * noise(p * vec3(6.0, 6.0, 0.4)).yzw',
-    metal: 0.5,
+    // Brushed along the shaft.
+    relief: '0.05 * noise(p * 0.11).yzw + 0.03 * noise(p * vec3(13.0, 13.0, 0.3)).yzw',
+    metal: 0.6,
   },
   steel_dark: {
     base: { color: '#85888e', metalness: 1, roughness: 0.36, envMapIntensity: 1.2 },
@@ -95,6 +101,16 @@ const recipes: Record<string, Recipe> = {
     colour: 'diffuseColor.rgb *= 0.96 + 0.07 * noise(p * 1.2).x;',
     relief: '0.025 * noise(p * vec3(6.0, 6.0, 1.5)).yzw',
     metal: 0.8,
+  },
+  // A cottonoid: felt that has soaked up what lies around it.
+  cotton: {
+    base: { color: '#cfc4b6', roughness: 0.95, clearcoat: 0.35, clearcoatRoughness: 0.55 },
+    colour: `
+      vec4 a = noise(p * 0.5), b = noise(p * 2.4);
+      diffuseColor.rgb *= 0.9 + 0.12 * a.x + 0.10 * b.x;
+      float soaked = smoothstep(-0.1, 0.7, a.x + 0.3 * b.x);
+      diffuseColor.rgb = mix(diffuseColor.rgb, vec3(0.42, 0.09, 0.07), 0.55 * soaked);`,
+    relief: '0.35 * noise(p * 1.6).yzw + 0.35 * noise(p * 4.2).yzw',
   },
   polymer: {
     base: { color: '#20242b', roughness: 0.5, clearcoat: 0.25, clearcoatRoughness: 0.4 },
@@ -111,6 +127,27 @@ const recipes: Record<string, Recipe> = {
 
 export const solidNames = Object.keys(recipes);
 
+/** What is cut into an instrument, along its own z axis from its tip. */
+export type Engraving = 'none' | 'graduated' | 'serrated';
+
+/** GLSL: may change diffuseColor; p is the position in millimetres. */
+const engravings: Record<Engraving, string> = {
+  none: '',
+  // A ring each 5 mm, a double one each 10 mm: the shaft is the ruler.
+  graduated: `
+    float width = max(0.16, 0.6 * fwidth(p.z));
+    float five = abs(mod(p.z + 2.5, 5.0) - 2.5), second = abs(mod(p.z - 0.7 + 5.0, 10.0) - 5.0);
+    float ring = max(1.0 - smoothstep(width, 1.6 * width, five), 1.0 - smoothstep(width, 1.6 * width, second));
+    ring *= step(2.5, p.z) * (1.0 - step(42.0, p.z));
+    diffuseColor.rgb = mix(diffuseColor.rgb, vec3(0.03), 0.85 * ring);`,
+  // Teeth of a jaw, finer than a pixel from afar.
+  serrated: `
+    float tooth = 0.5 + 0.5 * sin(p.z * 15.7);
+    float near = 1.0 - smoothstep(0.08, 0.22, fwidth(p.z));
+    float face = smoothstep(0.5, 0.8, abs(v_object_normal.x));
+    diffuseColor.rgb *= 1.0 - 0.45 * near * face * smoothstep(0.35, 0.9, tooth);`,
+};
+
 export interface SolidOptions {
   field: FieldUniforms;
   /** Of a material that has no texture here; else a polymer's colour. */
@@ -122,6 +159,7 @@ export interface SolidOptions {
   /** So much nearer to the eye, m, when it is decided what hides what. */
   forward?: { value: number };
   skin?: SkinTexture | null;
+  engraving?: Engraving;
 }
 
 /** A material that only its declaration describes. */
@@ -162,7 +200,10 @@ export function solidMaterial(name: string, o: SolidOptions): THREE.MeshPhysical
         '#include <common>',
         `#include <common>\n${noiseGlsl}\n${varyings} uniform vec3 field_axis; uniform mat3 normalMatrix;`,
       )
-      .replace('#include <color_fragment>', `#include <color_fragment>\nvec3 p = v_object;\n{${recipe.colour}}`)
+      .replace(
+        '#include <color_fragment>',
+        `#include <color_fragment>\nvec3 p = v_object;\n{${recipe.colour}${engravings[o.engraving ?? 'none']}}`,
+      )
       .replace(
         '#include <normal_fragment_maps>',
         `#include <normal_fragment_maps>\nnormal = bump(normal, normalMatrix * (${recipe.relief}));`,
@@ -174,7 +215,7 @@ export function solidMaterial(name: string, o: SolidOptions): THREE.MeshPhysical
       );
   };
   m.customProgramCacheKey = () =>
-    `solid_${recipes[name] ? name : `plain_${recipe.metal ?? 0}`}_${o.skin ? 'skinned' : ''}`;
+    `solid_${recipes[name] ? name : `plain_${recipe.metal ?? 0}`}_${o.skin ? 'skinned' : ''}_${o.engraving ?? ''}`;
   return m;
 }
 

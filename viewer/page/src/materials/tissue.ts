@@ -53,10 +53,11 @@ const tissueDeclarations = /* glsl */ `#include <common>
         varying vec2 v_shading;
         varying vec3 v_rest, v_place;
         uniform vec4 pressed[${pressedCount}];
-        // Network of thin lines where warped noise crosses zero; width in noise units.
-        float network(vec3 p, vec3 warp, float width) {
-          float n = noise(p + warp).x;
-          return 1.0 - smoothstep(0.0, width, abs(n));
+        // Network of thin lines where warped noise crosses zero; width in noise units. Slope of its ridges in yzw.
+        vec4 network(vec3 p, vec3 warp, float width) {
+          vec4 n = noise(p + warp);
+          float h = 1.0 - smoothstep(0.0, width, abs(n.x));
+          return vec4(h, -sign(n.x) * n.yzw * 4.0 * h * (1.0 - h));
         }`;
 
 const tissueColour = /* glsl */ `#include <color_fragment>
@@ -73,9 +74,19 @@ const tissueColour = /* glsl */ `#include <color_fragment>
         tint = mix(tint, tint * vec3(1.08, 0.86, 0.80), smoothstep(0.0, 0.7, noise(v_rest * 0.3 + 7.3).x));
         // Capillaries: a coarse and a fine net, patchy.
         float patches = smoothstep(-0.1, 0.5, noise(v_rest * 0.33 + 5.7).x);
-        float net = 0.45 * network(v_rest * 0.34, warp, 0.055) * smoothstep(-0.25, 0.35, noise(v_rest * 0.21 + 3.1).x)
+        vec4 net = 0.45 * network(v_rest * 0.34, warp, 0.055) * smoothstep(-0.25, 0.35, noise(v_rest * 0.21 + 3.1).x)
           + 0.55 * network(v_rest * 0.95 + 11.0, warp * 0.7, 0.11) * patches;
-        tint = mix(tint, capillary, clamp(net, 0.0, 1.0) * 0.62 * amounts.x);
+        #ifndef CHEAP
+        // The finest net that a microscope resolves: the pia looks velvety, not painted.
+        net += 0.30 * network(v_rest * 2.3 + 5.0, middle.yzw * 0.6, 0.16) * smoothstep(-0.35, 0.3, coarse.x);
+        vec4 grain = noise(v_rest * 7.3);
+        tint *= 1.0 + 0.045 * grain.x;
+        #else
+        vec4 grain = vec4(0.0);
+        #endif
+        tint = mix(tint, capillary, clamp(net.x, 0.0, 1.0) * 0.62 * amounts.x);
+        // Vessels stand out of the pia, gyri undulate between the sulci.
+        vec3 ridges = net.yzw * amounts.x;
         float haze = amounts.y * 0.30 * smoothstep(0.1, 0.9, fold) * smoothstep(-0.3, 0.6, middle.x) * openness;
         tint = mix(tint, vec3(0.86, 0.78, 0.74), haze);
         // Pressed tissue blanches, with a flushed ring around.
@@ -93,7 +104,8 @@ const tissueColour = /* glsl */ `#include <color_fragment>
 
 const tissueFilm = /* glsl */ `#include <clearcoat_normal_fragment_maps>
         // The fluid film evens out the finest relief.
-        clearcoatNormal = bump(clearcoatNormal, normalMatrix * (0.13 * middle.yzw + 0.06 * fine.yzw));`;
+        vec3 film = 0.10 * coarse.yzw + 0.15 * middle.yzw + 0.11 * fine.yzw + 0.07 * grain.yzw + 0.16 * ridges;
+        clearcoatNormal = bump(clearcoatNormal, normalMatrix * film);`;
 
 const tissueLight = /* glsl */ `#include <lights_fragment_end>
         // Light scattered below the surface comes out redder where the surface turns away.
@@ -151,26 +163,36 @@ export function tissueMaterial(
       .replace(
         '#include <normal_fragment_maps>',
         `#include <normal_fragment_maps>
-        vec3 ripple = normalMatrix * (0.16 * middle.yzw + 0.13 * fine.yzw + 0.05 * noise(v_rest * 5.3).yzw);
-        normal = bump(normal, ripple);`,
+        vec3 relief = 0.20 * coarse.yzw + 0.18 * middle.yzw + 0.15 * fine.yzw + 0.09 * grain.yzw + 0.30 * ridges;
+        normal = bump(normal, normalMatrix * relief);`,
       )
       .replace('#include <clearcoat_normal_fragment_maps>', tissueFilm)
       .replace(
         '#include <lights_physical_fragment>',
         `#include <lights_physical_fragment>
-        material.clearcoatRoughness = clamp(0.19 + 0.10 * coarse.x + 0.03 * fine.x, 0.08, 1.0);`,
+        material.clearcoatRoughness = clamp(0.21 + 0.10 * coarse.x + 0.04 * fine.x, 0.08, 1.0);
+        // The film is thick in the folds and thin on the crowns.
+        material.clearcoat *= mix(0.62, 1.0, fold);`,
       )
       .replace('#include <lights_fragment_end>', tissueLight);
   };
+  m.userData.has_cheap = true;
   m.customProgramCacheKey = () => `tissue_${skin ? 'skinned' : 'static'}`;
   return m;
 }
 
 const vesselColour = /* glsl */ `#include <color_fragment>
         vec4 blood = noise(v_rest * 0.8);
-        vec3 artery = vec3(0.30, 0.020, 0.017), vein = vec3(0.105, 0.014, 0.030);
+        // Thin ones are paler, thick arteries have a whitish coat, thick veins are dark and bluish.
+        float thick = v_vessel.z;
+        vec3 artery = mix(vec3(0.36, 0.055, 0.042), vec3(0.27, 0.030, 0.026), thick);
+        vec3 vein = mix(vec3(0.20, 0.030, 0.042), vec3(0.060, 0.012, 0.034), thick);
         float edge = saturate(dot(normalize(vViewPosition), normalize(vNormal)));
-        diffuseColor.rgb = mix(artery, vein, v_vessel.x) * (0.9 + 0.2 * blood.x) * mix(0.5, 1.25, edge);
+        // The column of blood shows through the middle of the wall, the wall itself at its sides.
+        vec3 coat = mix(vec3(0.46, 0.15, 0.12), vec3(0.20, 0.06, 0.09), v_vessel.x);
+        vec3 column = mix(artery, vein, v_vessel.x) * (0.85 + 0.35 * blood.x);
+        float side = smoothstep(0.75, 0.25, edge) * mix(0.25, 0.6, thick);
+        diffuseColor.rgb = mix(column, coat, side) * mix(0.6, 1.15, edge);
         diffuseColor.rgb *= mix(0.35, 1.0, v_vessel.y);`;
 
 /** Small vessels on the brain: wet, dark at the edges as blood absorbs more along the longer path. */
@@ -191,7 +213,7 @@ export function vesselMaterial(skin: SkinTexture | null, field: FieldUniforms): 
     shader.vertexShader = shader.vertexShader
       .replace(
         '#include <common>',
-        '#include <common>\nattribute vec2 vessel; varying vec2 v_vessel; varying vec3 v_rest;',
+        '#include <common>\nattribute vec3 vessel; varying vec3 v_vessel; varying vec3 v_rest;',
       )
       .replace(
         '#include <project_vertex>',
@@ -201,7 +223,7 @@ export function vesselMaterial(skin: SkinTexture | null, field: FieldUniforms): 
       .replace(
         '#include <common>',
         `#include <common>\n${noiseGlsl}\n${fluorescenceGlsl}
-        uniform float far_glow; varying vec2 v_vessel; varying vec3 v_rest; uniform mat3 normalMatrix;`,
+        uniform float far_glow; varying vec3 v_vessel; varying vec3 v_rest; uniform mat3 normalMatrix;`,
       )
       .replace('#include <color_fragment>', vesselColour)
       .replace(
