@@ -168,7 +168,7 @@ function letHandsGo(): void {
 }
 
 listenForShortcuts({
-  l: () => hud.toolList.toggle(),
+  l: () => hud.toggleToolList(),
   i: () => modes.setInfrared(!modes.infrared),
   j: () => hud.view.askGlow(),
   o: () => modes.nextStereo(),
