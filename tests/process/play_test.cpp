@@ -193,6 +193,27 @@ TEST_F(Play, GarbageOnEveryChannelChangesNothing) {
   EXPECT_TRUE(wait_for([&] { return watcher_->status().messages_refused >= 100; }));
 }
 
+TEST_F(Play, ASecondSessionOnTheBusStopsAndSaysHowToJoin) {
+  ChildProcess second;
+  ASSERT_EQ(second.start({std::string(INSULA_BINARY_DIR) + "/bin/insula", "play",
+                          (session_->folder() / "press.xml").string(), "--port", "0"}),
+            "");
+  std::string said;
+  std::optional<ChildExit> exit;
+  const auto read = [&] { second.read_lines([&](std::string_view line) { said += std::string(line) + "\n"; }); };
+  ASSERT_TRUE(wait_for([&] {
+    read();
+    return (exit = second.reap()).has_value();
+  }));
+  read();
+  EXPECT_EQ(exit->status, 1) << said;
+  EXPECT_NE(said.find("a session runs on this bus already"), std::string::npos) << said;
+  EXPECT_NE(said.find(":" + std::to_string(session_->port()) + "/"), std::string::npos) << said;
+  EXPECT_EQ(said.find("started (pid"), std::string::npos) << said;
+  const std::size_t frames = watcher_->frames_now();
+  EXPECT_TRUE(wait_for([&] { return watcher_->frames_now() > frames + 20; })) << "the first one was disturbed";
+}
+
 TEST_F(Play, InterruptEndsAllProcesses) {
   std::vector<pid_t> pids;
   for (const char* name : {"engine", "haptic_server", "gateway"}) pids.push_back(session_->pid(name));

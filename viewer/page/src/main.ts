@@ -173,7 +173,7 @@ listenForShortcuts({
   u: () => {
     depthShown = !depthShown;
   },
-  l: () => hud.toolList.toggle(),
+  l: () => hud.toggleToolList(),
   i: () => modes.setInfrared(!modes.infrared),
   j: () => hud.view.askGlow(),
   o: () => modes.nextStereo(),

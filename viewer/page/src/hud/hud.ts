@@ -63,6 +63,7 @@ export class Hud {
   private readonly toasts = new Toasts();
   private readonly instructor: InstructorPanel | null;
   private readonly guide: GuidePanel;
+  private readonly tabs: Tabs;
   private readonly inventory: InventoryPanel;
   private readonly notice = new NoticePanel('The saved scene has errors. What runs is the scene before.');
   private readonly problems = new NoticePanel('Data from the engine cannot be shown.');
@@ -111,14 +112,14 @@ export class Hud {
     const notices = el('div', { class: 'notices' }, this.notice.root, this.problems.root);
     const left = el('div', { class: 'column left' }, this.vitals.root, this.exercise.root, this.inventory.root);
     const right = el('div', { class: 'column right' }, handsPanel, ...(this.instructor ? [this.instructor.root] : []));
-    const tabs = new Tabs(root, [
+    this.tabs = new Tabs(root, [
       { name: 'left', text: 'Patient and exercise' },
       { name: 'right', text: role === 'instructor' ? 'Commands' : 'Hands and tools' },
     ]);
     root.append(
       left,
       right,
-      el('div', { class: 'under' }, this.guide.root, ...(mayDrive ? [makeTouch(actions)] : []), tabs.root),
+      el('div', { class: 'under' }, this.guide.root, ...(mayDrive ? [makeTouch(actions)] : []), this.tabs.root),
       el('footer', {}, warning, this.haptic.root, this.machine, this.link),
       ...[this.message, this.banner, this.toasts.root, notices],
       ...[...this.session.roots, this.help.root],
@@ -128,6 +129,12 @@ export class Hud {
 
   toggleHelp(): void {
     this.help.toggle();
+  }
+
+  /** On a narrow screen its column is opened first. */
+  toggleToolList(): void {
+    this.tabs.open('right');
+    this.toolList.toggle();
   }
 
   /** Asks for the next tool of a hand. */
