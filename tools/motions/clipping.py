@@ -7,7 +7,7 @@
 3_clipping_steady       an angled clip across the neck, released, the field left
 3_clipping_careless     a straight clip across the inferior branch: the branch closes
 3_clipping_too_high     an angled clip across the middle of the dome: half of the sac remains
-3_clipping_too_short    a mini clip whose tips end within the neck: blood still enters
+3_clipping_too_short    a clip whose tips end within the neck: blood still enters
 3_clipping_slipping     the applier pulls at the shut clip, which slips off the neck
 3_clipping_perforator   blades turned across the superior branch: they close on the perforator behind it too
 4_rupture_steady        the dome ruptures; suction; temporary clip on the parent artery; neck clipped; temporary clip
@@ -28,11 +28,13 @@ CASE = "anterior_superior"
 # poses of the hand and not of the closed clip. They lie amid the placements that leave no remnant.
 #   lift, slide, side: of the blades' middle along the dome's axis, from the surgeon inward, and along the closing, mm
 #   turn, pitch: about the dome's axis, and of the tips towards it, degrees
-#   press: how much deeper the hand is while the blades close, mm
+#   press, push: how much deeper and farther inward the hand is while the blades close, mm
 NECK = {
-    "anterior_superior": dict(lift=-0.9, slide=1.2, turn=19, pitch=2, side=0.3, press=0.4),
-    "narrow_neck": dict(lift=-1.0, slide=1.2, turn=-10, pitch=3, side=0, press=0.4),
+    "anterior_superior": dict(lift=-0.4, slide=0.3, turn=6, pitch=6, side=0.3, press=0.3, push=0.15),
+    "narrow_neck": dict(lift=-0.6, slide=0.3, turn=-25, pitch=3, side=0, press=0.4, push=0.1),
 }
+# The same for a dome that has torn and lies slack: the blades reach deeper.
+SLACK = dict(lift=-0.9, slide=1.2, turn=19, pitch=2, side=0.3, press=0.4, push=0.0)
 OUT_OF_FIELD = 32.0  # mm along the applier's shaft
 VIEW = (0.93, 0.25, 0.27)  # towards the surgeon
 
@@ -210,16 +212,18 @@ class Field:
         middle = add(add(add(self.vessel["neck"]["centre"], up, lift), outward, -slide), closing, side)
         return clip.applier_pose(middle, turned([-v for v in outward], closing, pitch), closing)
 
-    def clip_neck(self, hand):
+    def clip_neck(self, hand, place=None):
         """The angled clip of the tray across the neck, well placed."""
-        place = dict(NECK[self.case])
-        depth = place.pop("press")
-        press = [-depth * v for v in unit(self.vessel["neck"]["normal"])]
-        place_clip(hand, self.neck(Clip("angled"), **place), press)
+        place = dict(place or NECK[self.case])
+        depth, push = place.pop("press"), place.pop("push")
+        up = unit(self.vessel["neck"]["normal"])
+        outward = turned(across(self.view, up), up, place["turn"])
+        motion = add([-depth * v for v in up], outward, -push)
+        place_clip(hand, self.neck(Clip("angled"), **place), motion)
 
     def pull_shut_clip(self, hand):
         """The angled clip well placed, and pulled away before the applier lets it go or opens it."""
-        place = {k: v for k, v in NECK[self.case].items() if k != "press"}
+        place = {k: v for k, v in NECK[self.case].items() if k not in ("press", "push")}
         position, q, shaft = self.neck(Clip("angled"), **place)
         outside = add(position, shaft, OUT_OF_FIELD)
         hand.key(0.3, outside, q)
@@ -269,8 +273,8 @@ def exercise_3(folder):
 
     across_branch = field.branch(Clip("straight"), "inferior", 0.45, 1.8)
     one_clip(folder / "3_clipping_careless.csv", "straight", at(across_branch), 12)
-    one_clip(folder / "3_clipping_too_high.csv", "angled", at(field.neck(Clip("angled"), 1.6, 1.8, 19)), 4)
-    one_clip(folder / "3_clipping_too_short.csv", "mini", at(field.neck(Clip("mini"), 0.2, -0.6, 19)), 4)
+    one_clip(folder / "3_clipping_too_high.csv", "angled", at(field.neck(Clip("angled"), 1.6, 1.8, 6)), 4)
+    one_clip(folder / "3_clipping_too_short.csv", "angled", at(field.neck(Clip("angled"), 0, -2.2, 6, 6, 0.3)), 4)
     one_clip(folder / "3_clipping_slipping.csv", "angled", field.pull_shut_clip, 2)
     beside = field.neck(Clip("angled"), -0.9, 2.2, -45, 2, 1.5)
     one_clip(folder / "3_clipping_perforator.csv", "angled", at(beside), 4)
@@ -308,7 +312,7 @@ def exercise_4(folder):
     script.right.key(0.8, away, last_q(script))
     script.command(round(script.right.t + 0.2, 3), "ask", "applier load angled")
     script.right.key(0.5, away, last_q(script))
-    field.clip_neck(script.right)
+    field.clip_neck(script.right, SLACK)
     take_clip(script.right, temporary)
     script.right.key(8, steady_outside(script), last_q(script))
     suction(script, script.right.t - 10)

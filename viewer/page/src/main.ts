@@ -26,7 +26,7 @@ import { listenForShortcuts } from './shortcuts';
 import { silent } from './silence';
 import { softwareAdvice } from './software_rendering';
 import { Stage } from './stage';
-import { status } from './status';
+import { status, tellPicture } from './status';
 import { Reading } from './step_data/reading';
 import { ViewModes } from './view_modes';
 import { quaternion, vector, World } from './world';
@@ -167,12 +167,8 @@ function letHandsGo(): void {
   guiding.restart();
 }
 
-let depthShown = options.depth;
-
 listenForShortcuts({
-  u: () => {
-    depthShown = !depthShown;
-  },
+  u: () => modes.toggleDepth(),
   l: () => hud.toggleToolList(),
   i: () => modes.setInfrared(!modes.infrared),
   j: () => hud.view.askGlow(),
@@ -245,7 +241,7 @@ function draw(now: number): void {
   stage.update(Math.min(0.1, pictureMs / 1000), modes.stereo, presenting);
   reading.read(playback.latest);
   world?.update(playback, now, reading.channels, scope.percentRight());
-  world?.showDepth(depthShown);
+  world?.showDepth(modes.depth);
   status.tip_mm = world?.tipDistancesMm ?? [];
   status.target = guiding.update({
     frame: playback.latest,
@@ -257,12 +253,7 @@ function draw(now: number): void {
   if (presenting)
     headset.render(scene, scope.camera, scope.distance, angle, headsetLines(reading.state?.timers ?? [], spokenTo));
   else stage.render(modes.stereo, angle);
-  status.presenting = presenting;
-  status.triangles = stage.triangles;
-  status.calls = stage.calls;
-  status.graphics_lost = graphics.lost;
-  status.frames = playback.frames;
-  status.refused = link.refused;
+  tellPicture({ presenting, stage, graphics, frames: playback.frames, refused: link.refused });
   status.problems = [...(reading.problem ? [reading.problem] : []), ...(world?.problems ?? [])];
   status.ready = world !== null && playback.frames > 0;
   if (!graphics.lost) status.pictures++;

@@ -34,3 +34,19 @@ export const status = {
   target: null as { at: number; of: number; distance_m: number; angle_rad: number } | null,
 };
 (window as unknown as { __insula: typeof status }).__insula = status;
+
+/** Of one picture. */
+export function tellPicture(picture: {
+  presenting: boolean;
+  stage: { triangles: number; calls: number };
+  graphics: { lost: boolean };
+  frames: number;
+  refused: number;
+}): void {
+  status.presenting = picture.presenting;
+  status.triangles = picture.stage.triangles;
+  status.calls = picture.stage.calls;
+  status.graphics_lost = picture.graphics.lost;
+  status.frames = picture.frames;
+  status.refused = picture.refused;
+}

@@ -14,16 +14,19 @@ export class ViewModes {
   stereo: StereoMode;
   angleDeg: number;
   infrared: boolean;
+  /** Whether the depth of the tips is drawn. */
+  depth: boolean;
   private headsetFound = false;
 
   constructor(
-    options: { stereo: StereoMode; angleDeg: number; infrared: boolean },
+    options: { stereo: StereoMode; angleDeg: number; infrared: boolean; depth: boolean },
     private readonly headset: Headset,
     private readonly out: ViewOutputs,
   ) {
     this.stereo = options.stereo;
     this.angleDeg = options.angleDeg;
     this.infrared = options.infrared;
+    this.depth = options.depth;
     void headset.supported.then((yes) => {
       this.headsetFound = yes;
       this.tell();
@@ -38,6 +41,10 @@ export class ViewModes {
   setInfrared(on: boolean): void {
     this.infrared = on;
     this.tell();
+  }
+
+  toggleDepth(): void {
+    this.depth = !this.depth;
   }
 
   setAngle(deg: number): void {
