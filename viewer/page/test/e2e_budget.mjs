@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a picture costs, against the budget of a mid-range laptop's graphics (docs/performance.md): triangles and draw
+// What a picture costs, against the budget of a mid-range laptop's graphics (docs/trainee.md): triangles and draw
 // calls as the renderer counts them, and the bytes of all textures, targets and buffers as they are asked of WebGL.
 import assert from 'node:assert/strict';
 import { startMock } from '../scripts/mock-server.mjs';
