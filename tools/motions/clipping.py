@@ -30,7 +30,7 @@ CASE = "anterior_superior"
 #   turn, pitch: about the dome's axis, and of the tips towards it, degrees
 #   press, push: how much deeper and farther inward the hand is while the blades close, mm
 NECK = {
-    "anterior_superior": dict(lift=-0.4, slide=0.3, turn=6, pitch=6, side=0.3, press=0.3, push=0.15),
+    "anterior_superior": dict(lift=-0.4, slide=0.3, turn=6, pitch=6, side=0.3, press=0.3, push=0.1),
     "narrow_neck": dict(lift=-0.6, slide=0.3, turn=-25, pitch=3, side=0, press=0.4, push=0.1),
 }
 # The same for a dome that has torn and lies slack: the blades reach deeper.
