@@ -142,30 +142,55 @@ class Watcher {
 
   /// Lowers both hands in steps of half a millimetre until each has a force of at least `wanted` newtons.
   bool press(double wanted) {
+    if (holding_.joinable()) {
+      holding_ = {};
+      std::this_thread::sleep_for(600ms);  // a stream of poses from before a new session is not taken up
+    }
     if (!wait_for([&] { return last().has_value(); })) return false;
     std::array<Vec3, 2> at = last()->position;
     for (int step = 0; step < 600; ++step) {
       bool enough = true;
       const auto now = last();
-      for (int hand = 0; hand < 2; ++hand) {
+      for (std::size_t hand = 0; hand < 2; ++hand) {
         const bool light = now->force[hand].norm() < wanted;
         enough = enough && !light;
         if (light && step % 4 == 0 && at[hand].z() > -0.02) at[hand].z() -= 0.0005;
-        // A hand without news of its viewer would be given back.
-        insula_lcm::hand_input_t m{};
-        m.time_us = now_us();
-        m.hand = std::int8_t(hand);
-        for (int i = 0; i < 3; ++i) m.p_m[i] = at[hand][i];
-        for (int i = 0; i < 4; ++i) m.q[i] = quaternion_[hand][i];
-        publish(out_, channel::hand_input, m, scratch_);
       }
-      if (enough) return true;
+      send(at, turns());
+      if (enough) {
+        hold(at);
+        return true;
+      }
       std::this_thread::sleep_for(17ms);
     }
     return false;
   }
 
  private:
+  using Turns = std::array<std::array<double, 4>, 2>;
+  Turns turns() const {
+    std::lock_guard lock(mutex_);
+    return quaternion_;
+  }
+  void send(const std::array<Vec3, 2>& at, const Turns& turned) {
+    for (std::size_t hand = 0; hand < 2; ++hand) {
+      insula_lcm::hand_input_t m{};
+      m.time_us = now_us();
+      m.hand = std::int8_t(hand);
+      for (int i = 0; i < 3; ++i) m.p_m[i] = at[hand][i];
+      for (int i = 0; i < 4; ++i) m.q[i] = turned[hand][std::size_t(i)];
+      publish(out_, channel::hand_input, m, scratch_);
+    }
+  }
+  /// Keeps the hands there: a hand without news of its viewer would be given back.
+  void hold(const std::array<Vec3, 2>& at) {
+    holding_ = std::jthread([this, at, turned = turns()](const std::stop_token& stop) {
+      while (!stop.stop_requested()) {
+        send(at, turned);
+        std::this_thread::sleep_for(50ms);
+      }
+    });
+  }
   void on_device(Bytes b) {
     const auto m = decode<insula_lcm::device_state_t>(b);
     if (!m || m->hands != 2) return;
@@ -191,6 +216,7 @@ class Watcher {
   insula_lcm::haptic_status_t status_{};
   std::array<std::array<double, 4>, 2> quaternion_{};
   std::vector<std::uint8_t> scratch_;
+  std::jthread holding_;  ///< ends first
 };
 
 }  // namespace insula::testing
