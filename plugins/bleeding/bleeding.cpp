@@ -43,7 +43,6 @@ namespace {
 
 constexpr double stopped_below = 0.05;  // rate, over that of the rupture, below which bleeding counts as stopped
 constexpr double stopped_after_s = 2;   // time that it must stay below
-constexpr double full_jet = 1e-6;       // m3/s: a rate that is drawn as the strongest jet
 
 }  // namespace
 

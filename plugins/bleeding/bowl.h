@@ -18,6 +18,8 @@ struct Bowl {
   double height_of(const Vec3& p) const { return (p - origin).dot(up); }  ///< of a point above the bottom, m
 };
 
+constexpr double full_jet = 1e-6;  ///< m3/s: a rate of bleeding that is drawn as the strongest jet
+
 /// How much suction tubes take from a bowl.
 struct SuctionRates {
   double working = 0;  ///< m3/s of a tube whose button is held, tip in the fluid

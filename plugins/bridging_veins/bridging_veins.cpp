@@ -29,9 +29,8 @@ less. They are thin against those: a few tenths of a newton.
 namespace insula {
 namespace {
 
-constexpr double full_vein_jet = 1e-6;  // m3/s: a rate that is drawn as the strongest jet
-constexpr double stump = 0.0008;        // m, of a parted vein beyond the lip
-constexpr double most_arch = 0.002;     // m, that a slack vein stands out of the gap
+constexpr double stump = 0.0008;     // m, of a parted vein beyond the lip
+constexpr double most_arch = 0.002;  // m, that a slack vein stands out of the gap
 
 }  // namespace
 
@@ -119,7 +118,7 @@ void BridgingVeins::publish() {
     draw(2 * i, courses_[i][0], s, true);
     draw(2 * i + 1, courses_[i][1], s, false);
     // Each stump gives half of what the vein bleeds.
-    const double strength = s.severed ? std::min(1.0, 0.5 * bleeding_rate() / full_vein_jet) : 0;
+    const double strength = s.severed ? std::min(1.0, 0.5 * bleeding_rate() / full_jet) : 0;
     for (const MaterialPoint* p : {&s.a, &s.b}) {
       const std::size_t line = 2 * i + (p == &s.b);
       const Vec3 at = p->body->position(*p);

@@ -2,6 +2,7 @@
 // State of clips for rules and tools of this family of plugins. The page, reports and general rules do not need it.
 // They read channels.
 #pragma once
+#include <array>
 #include <span>
 #include <vector>
 
@@ -22,7 +23,15 @@ struct ClipState {
   std::span<const Vec3> blade_line;                          ///< from root to tip, clip's frame, m; empty: straight
   Vec3 normal = Vec3::UnitX();                               ///< unit, of the clamping faces, clip's frame
   double blade_width = 0;                                    ///< m
-  int applications = 0;                                      ///< number of times it was released in the field
+  /// A point of the scene in the clip's frame, m.
+  Vec3 local(const Vec3& p) const { return pose.q.conjugate() * (p - pose.p); }
+  /// The clamping line from root to tip, clip's frame, m. `ends` holds it if it is straight.
+  std::span<const Vec3> clamping_line(std::array<Vec3, 2>& ends) const {
+    if (!blade_line.empty()) return blade_line;
+    ends = {local(blade_root), local(blade_tip)};
+    return ends;
+  }
+  int applications = 0;  ///< number of times it was released in the field
 };
 
 /// A component that is a clip.

@@ -33,10 +33,9 @@ bool NeckJudge::on_neck(const ClipState& c, const Vec3& neck) const {
 /// Whether a point lies between the closed blades: beside the clamping line by no more than half the blade's width, and
 /// not farther from the line in the direction in which the blades close than closed walls are.
 bool NeckJudge::between(const ClipState& c, const Vec3& point) const {
-  const Vec3 x = c.pose.q.conjugate() * (point - c.pose.p);
-  const std::array<Vec3, 2> straight{c.pose.q.conjugate() * (c.blade_root - c.pose.p),
-                                     c.pose.q.conjugate() * (c.blade_tip - c.pose.p)};
-  const std::span<const Vec3> line = c.blade_line.empty() ? std::span<const Vec3>(straight) : c.blade_line;
+  const Vec3 x = c.local(point);
+  std::array<Vec3, 2> ends;
+  const std::span<const Vec3> line = c.clamping_line(ends);
   double nearest = 1e300;
   Vec3 offset = Vec3::Zero();
   for (std::size_t k = 0; k + 1 < line.size(); ++k) {

@@ -116,7 +116,7 @@ void Perforator::catch_between_blades() {
     for (std::size_t c = 0; c < clips.size() && held_by < 0; ++c) {
       const ClipState& clip = clips[c];
       if (clip.on_tray) continue;
-      const Vec3 x = clip.pose.q.conjugate() * (at_[i] - clip.pose.p);
+      const Vec3 x = clip.local(at_[i]);
       const double half_slit = 0.5 * clip.gap, across = across_blades(clip, x);
       if (!std::isfinite(across)) continue;
       const bool was = holder_[i] == int(c);
@@ -133,9 +133,8 @@ void Perforator::catch_between_blades() {
 /// Distance of a point from the middle of the slit along the blades' normal, in the clip's frame, m. Infinite for a
 /// point beside the blades.
 double Perforator::across_blades(const ClipState& clip, const Vec3& x) const {
-  const std::array<Vec3, 2> straight{clip.pose.q.conjugate() * (clip.blade_root - clip.pose.p),
-                                     clip.pose.q.conjugate() * (clip.blade_tip - clip.pose.p)};
-  const std::span<const Vec3> line = clip.blade_line.empty() ? std::span<const Vec3>(straight) : clip.blade_line;
+  std::array<Vec3, 2> ends;
+  const std::span<const Vec3> line = clip.clamping_line(ends);
   double least = std::numeric_limits<double>::infinity(), across = least;
   for (std::size_t k = 0; k + 1 < line.size(); ++k) {
     const Vec3 along = line[k + 1] - line[k];
