@@ -81,6 +81,7 @@ void BloodPressure::reset() {
   pressure_.resize(rest_volume_.size());
   std::vector<std::string> names;
   for (int c = 0; c < chambers_.count(); ++c) names.push_back(chambers_.name(c));
+  chamber_volume.declare(names);
   chamber_pressure.declare(std::move(names));
   heart_phase.set_subject(on.get());
   chamber_pressure.set_subject(on.get());
@@ -240,7 +241,10 @@ void BloodPressure::finish_feed(const StepContext& context, const ConstraintSolu
 void BloodPressure::publish() {
   heart_phase.set(phase_);
   arterial_now.set(arterial(0));
-  for (std::size_t c = 0; c < pressure_.size(); ++c) chamber_pressure.set(c, pressure_[c]);
+  for (std::size_t c = 0; c < pressure_.size(); ++c) {
+    chamber_pressure.set(c, pressure_[c]);
+    chamber_volume.set(c, volume(int(c)) / rest_volume_[c]);
+  }
 }
 
 void BloodPressure::append_state(std::vector<double>& out) const {

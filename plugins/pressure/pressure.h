@@ -94,6 +94,13 @@ class BloodPressure final : public Constraint, public StatesLaw {
                                            .shown = Shown::none,
                                            .display = "mmHg",
                                            .digits = 0}};
+  ChannelGroup<Scalar> chamber_volume{this,
+                                      {.name = "volume_share",
+                                       .doc = "volume inside the wall of a chamber over that of the imaged shape",
+                                       .min = "0",
+                                       .shown = Shown::none,
+                                       .display = "%",
+                                       .digits = 0}};
 
   /// Creates the chambers if they do not exist yet. False if they have an error.
   bool ready(PrepareContext& context);

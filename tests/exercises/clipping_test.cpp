@@ -29,6 +29,9 @@ TEST_P(ShippedCase, AnAngledClipClosesTheNeckAndSparesTheBranches) {
   EXPECT_GT(o.measures["inferior.flow_pct"], 90);
   EXPECT_GT(o.measures["tip_past_neck"], 0.2);
   EXPECT_LT(o.measures["slit"], 1.0);
+  EXPECT_LT(o.channels["heart.sac.pressure"], 1000) << "Pa: the dome is soft";
+  EXPECT_LT(o.channels["heart.sac.volume_share"], 0.6) << "the dome has shrunk";
+  EXPECT_GT(o.channels["heart.superior.volume_share"], 0.95) << "a branch has not";
 }
 
 TEST(Clipping, AClipAcrossABranchIsAFault) {
@@ -58,6 +61,19 @@ TEST(Clipping, AClipTooShortLetsBloodIn) {
   EXPECT_LT(o.goals["clip"], 0);
   EXPECT_EQ(o.measures["grade"], 5);
   EXPECT_LT(o.measures["tip_past_neck"], 0);
+}
+
+TEST(Clipping, AShortClipMovedAlongTheNeckClosesIt) {
+  test::Played o = test::play_motion(clipping_scene, "replaced");
+  ASSERT_TRUE(o.ran);
+  EXPECT_EQ(o.state, ExerciseState::done);
+  EXPECT_EQ(o.events["clip_taken"], 1);
+  EXPECT_EQ(o.measures["applications"], 2);
+  EXPECT_EQ(o.measures["grade"], 0);
+  EXPECT_LT(o.measures["remnant_pct"], 10);
+  EXPECT_GT(o.measures["superior.flow_pct"], 90);
+  EXPECT_GT(o.measures["inferior.flow_pct"], 90);
+  for (const auto& [id, count] : o.faults) EXPECT_EQ(count, 0) << id;
 }
 
 TEST(Clipping, AShutClipThatIsPulledSlipsOff) {

@@ -19,6 +19,7 @@ struct Played {
   std::map<std::string, double> goals;        ///< time, -1 when open
   std::map<std::string, double> measures;     ///< at the end, in their units
   std::map<std::string, double> longest;      ///< of each timer, s
+  std::map<std::string, double> channels;     ///< last values of scalar channels, SI
   ExerciseState state = ExerciseState::running;
   double end = -1;      ///< of the exercise, s
   double duration = 0;  ///< of the motion, s
@@ -65,6 +66,8 @@ inline Played play_motion(const std::filesystem::path& scene, const std::string&
   out.ran = true;
   out.strands = int(channel_sum(s, "total"));
   out.left = int(channel_sum(s, "standing"));
+  for (const ChannelEntry& e : s.channels().entries())
+    if (e.size() == 1) out.channels[e.id] = *e.channel->values(e.item);
   const ExerciseLog& log = s.exercise()->log();
   out.state = log.state();
   out.end = log.end_time();

@@ -24,7 +24,7 @@ const Exercise exercises[] = {
     {"Fissure", "1_sylvian_fissure.xml", {"", 0, 0.5, 5}, {"", 0, 1.5, 600}, 6},
     {"Dissection", "2_aneurysm_dissection.xml", {"", 0, 0.5, 3}, {"", 0, 1.5, 600}, 1},
     {"Clipping", "3_clipping.xml", {"steady", 7.8, 8, 2}, {"steady", 9.3, 40, 600}, 1},
-    {"Rupture", "4_rupture.xml", {"steady", 30.3, 5, 2}, {"steady", 30.3, 10, 600}, 1},
+    {"Rupture", "4_rupture.xml", {"steady", 30.3, 8, 2}, {"steady", 30.3, 40, 600}, 1},
 };
 void PrintTo(const Exercise& e, std::ostream* out) { *out << e.file; }
 

@@ -8,6 +8,7 @@
 3_clipping_careless     a straight clip across the inferior branch: the branch closes
 3_clipping_too_high     an angled clip across the middle of the dome: half of the sac remains
 3_clipping_too_short    a clip whose tips end within the neck: blood still enters
+3_clipping_replaced     the same clip, taken back, opened, moved along the neck and closed again: the neck is shut
 3_clipping_slipping     the applier pulls at the shut clip, which slips off the neck
 3_clipping_perforator   blades turned across the superior branch: they close on the perforator behind it too
 4_rupture_steady        the dome ruptures; suction; temporary clip on the parent artery; neck clipped; temporary clip
@@ -33,8 +34,9 @@ NECK = {
     "anterior_superior": dict(lift=-0.4, slide=0.3, turn=6, pitch=6, side=0.3, press=0.3, push=0.1),
     "narrow_neck": dict(lift=-0.6, slide=0.3, turn=-25, pitch=3, side=0, press=0.4, push=0.1),
 }
-# The same for a dome that has torn and lies slack: the blades reach deeper.
-SLACK = dict(lift=-0.9, slide=1.2, turn=19, pitch=2, side=0.3, press=0.4, push=0.0)
+# Tips within the neck, and where the same clip goes when it is moved. The wall then lies differently than at first.
+TOO_SHORT = dict(lift=0, slide=-2.2, turn=6, pitch=6, side=0.3)
+MOVED = dict(lift=-0.2, slide=0.8, turn=6, pitch=6, side=0.3, press=0.3, push=0.1)
 OUT_OF_FIELD = 32.0  # mm along the applier's shaft
 VIEW = (0.93, 0.25, 0.27)  # towards the surgeon
 
@@ -145,7 +147,6 @@ def place_clip(hand, pose, press=(0, 0, 0), approach=2.5, close=1.6, wait=0.6, o
     """From outside the field: go in, open the blades `open_at` mm before the place, let the spring close while the hand
     moves by `press`, move back, let go, leave."""
     position, q, shaft = pose
-    pressed = add(position, press)
     outside = add(position, shaft, OUT_OF_FIELD)
     opened = add(position, shaft, open_at)
     near = add(position, shaft, 3)
@@ -155,6 +156,14 @@ def place_clip(hand, pose, press=(0, 0, 0), approach=2.5, close=1.6, wait=0.6, o
     hand.key(0.05, opened, q, 1)
     hand.key(0.5, opened, q, 1)
     hand.key(approach if open_at == OUT_OF_FIELD else 0.6, near, q, 1)
+    close_clip(hand, pose, press, close, wait)
+
+
+def close_clip(hand, pose, press=(0, 0, 0), close=1.6, wait=0.6):
+    """With an open clip near its place: go there, let the spring close while the hand moves by `press`, move back, let
+    go, leave."""
+    position, q, shaft = pose
+    pressed = add(position, press)
     hand.key(0.8, position, q, 1)
     hand.key(0.3, position, q, 1)
     hand.key(0.02, position, q)
@@ -167,14 +176,13 @@ def place_clip(hand, pose, press=(0, 0, 0), approach=2.5, close=1.6, wait=0.6, o
     hand.key(0.02, position, q)
     hand.key(wait, position, q)
     hand.key(0.8, add(position, shaft, 4), q)
-    hand.key(1.5, outside, q)
+    hand.key(1.5, add(position, shaft, OUT_OF_FIELD), q)
 
 
-def take_clip(hand, pose, approach=2.5):
-    """Back onto a clip in the field: grip it, open, draw out."""
+def open_where_it_lies(hand, pose, approach=2.5):
+    """Back onto a clip in the field: grip it and open it."""
     position, q, shaft = pose
-    outside = add(position, shaft, OUT_OF_FIELD)
-    hand.key(0.3, outside, q)
+    hand.key(0.3, add(position, shaft, OUT_OF_FIELD), q)
     hand.key(approach, add(position, shaft, 2), q)
     hand.key(0.6, position, q)
     hand.key(0.3, position, q)
@@ -184,6 +192,13 @@ def take_clip(hand, pose, approach=2.5):
     hand.key(0.4, position, q)
     hand.key(0.02, position, q, 1)
     hand.key(0.5, position, q, 1)
+
+
+def take_clip(hand, pose):
+    """Back onto a clip in the field: grip it, open, draw out."""
+    position, q, shaft = pose
+    outside = add(position, shaft, OUT_OF_FIELD)
+    open_where_it_lies(hand, pose)
     hand.key(0.8, add(position, shaft, 6), q, 1)
     hand.key(1.2, outside, q, 1)
     hand.key(0.02, outside, q)
@@ -212,14 +227,25 @@ class Field:
         middle = add(add(add(self.vessel["neck"]["centre"], up, lift), outward, -slide), closing, side)
         return clip.applier_pose(middle, turned([-v for v in outward], closing, pitch), closing)
 
-    def clip_neck(self, hand, place=None):
-        """The angled clip of the tray across the neck, well placed."""
-        place = dict(place or NECK[self.case])
+    def placement(self, place):
+        """Pose of the applier with the angled clip across the neck, and the hand's motion while the blades close."""
+        place = dict(place)
         depth, push = place.pop("press"), place.pop("push")
         up = unit(self.vessel["neck"]["normal"])
         outward = turned(across(self.view, up), up, place["turn"])
         motion = add([-depth * v for v in up], outward, -push)
-        place_clip(hand, self.neck(Clip("angled"), **place), motion)
+        return self.neck(Clip("angled"), **place), motion
+
+    def clip_neck(self, hand, place=None):
+        """The angled clip of the tray across the neck, well placed."""
+        place_clip(hand, *self.placement(place or NECK[self.case]))
+
+    def move_along_neck(self, hand):
+        """The angled clip with its tips within the neck; then taken back, moved inward and closed again."""
+        short = self.neck(Clip("angled"), **TOO_SHORT)
+        place_clip(hand, short)
+        open_where_it_lies(hand, short)
+        close_clip(hand, *self.placement(MOVED))
 
     def pull_shut_clip(self, hand):
         """The angled clip well placed, and pulled away before the applier lets it go or opens it."""
@@ -274,7 +300,8 @@ def exercise_3(folder):
     across_branch = field.branch(Clip("straight"), "inferior", 0.45, 1.8)
     one_clip(folder / "3_clipping_careless.csv", "straight", at(across_branch), 12)
     one_clip(folder / "3_clipping_too_high.csv", "angled", at(field.neck(Clip("angled"), 1.6, 1.8, 6)), 4)
-    one_clip(folder / "3_clipping_too_short.csv", "angled", at(field.neck(Clip("angled"), 0, -2.2, 6, 6, 0.3)), 4)
+    one_clip(folder / "3_clipping_too_short.csv", "angled", at(field.neck(Clip("angled"), **TOO_SHORT)), 4)
+    one_clip(folder / "3_clipping_replaced.csv", "angled", field.move_along_neck, 4)
     one_clip(folder / "3_clipping_slipping.csv", "angled", field.pull_shut_clip, 2)
     beside = field.neck(Clip("angled"), -0.9, 2.2, -45, 2, 1.5)
     one_clip(folder / "3_clipping_perforator.csv", "angled", at(beside), 4)
@@ -306,16 +333,16 @@ def exercise_4(folder):
     script = Script()
     script.command(1, "ask", "bleeding rupture")
     script.command(0.1, "ask", "applier load temporary_straight")
-    temporary = field.branch(Clip("temporary_straight"), "parent", 0.78, 2.4, 0.25)
+    temporary = field.branch(Clip("temporary_straight"), "parent", 0.4, 0.8, 0.1)
     place_clip(script.right, temporary, approach=2.0, open_at=9)
     away = add(steady_outside(script), field.view, 30)
     script.right.key(0.8, away, last_q(script))
     script.command(round(script.right.t + 0.2, 3), "ask", "applier load angled")
     script.right.key(0.5, away, last_q(script))
-    field.clip_neck(script.right, SLACK)
+    field.clip_neck(script.right, dict(NECK[CASE], lift=-0.5))  # a torn dome is slack: a little deeper
     take_clip(script.right, temporary)
     script.right.key(8, steady_outside(script), last_q(script))
-    suction(script, script.right.t - 10)
+    suction(script, script.right.t - 14)
     script.write(folder / "4_rupture_steady.csv")
 
     late = Script()

@@ -14,6 +14,7 @@
 #include "core/base/text.h"
 #include "core/model/formats/assimp_assert.h"
 #include "core/model/formats/file_bytes.h"
+#include "core/model/formats/library_leaks.h"
 #include "core/model/formats/ply_check.h"
 #include "core/model/formats/raw_tets.h"
 #include "core/model/formats/surface_precheck.h"
@@ -103,6 +104,7 @@ TriMesh read_surface(const std::filesystem::path& file, double metres_per_unit) 
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
   const aiScene* scene = nullptr;
   try {
+    const LibraryLeaks not_ours;
     if (lower_extension(file) == ".ply") {
       if (begins_with_line_end(bytes)) bytes = with_opposite_byte_order(file, bytes);
       scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), aiProcess_Triangulate, "ply");
