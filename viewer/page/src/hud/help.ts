@@ -50,11 +50,6 @@ export class Help {
     }
     const table = el('table', {}, ...rows.map(([k, t]) => el('tr', {}, el('th', {}, k), el('td', {}, t))));
     const close = { name: 'close', text: 'Close', run: () => undefined };
-    this.dialog.show(
-      'Mouse, keyboard and touch',
-      [el('div', { class: 'scrolls', tabindex: '0' }, table)],
-      [close],
-      () => undefined,
-    );
+    this.dialog.show('Mouse, keyboard and touch', [table], [close], () => undefined);
   }
 }
