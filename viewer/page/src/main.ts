@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Puts the page together: connection, scene, microscope, hands, HUD, and the loop that draws.
 import * as THREE from 'three';
-import { bannerText } from './banner';
 import { loadBundle } from './bundle';
 import type { Bundle } from './bundle_types';
 import { Connection, socketUrl } from './connection';
@@ -14,6 +13,7 @@ import { Headset } from './headset';
 import type { UserCommand } from './hud/commands';
 import { Hud } from './hud/hud';
 import { firstControl } from './hud/focus';
+import { showHud } from './show_hud';
 import './hud/styles';
 import { headsetLines } from './hud/timers';
 import type { HapticStatus, SceneInfo } from './lcm';
@@ -102,6 +102,7 @@ const hud = new Hud(
     stereo: (mode) => modes.setStereo(mode, true),
     angle: (deg) => modes.setAngle(deg),
     infrared: (on) => modes.setInfrared(on),
+    nextRuler: () => modes.nextRuler(),
     quality: (name) => {
       watch = new QualityWatch(name === '' ? null : (name as 'low'));
       applyQuality();
@@ -132,6 +133,7 @@ const modes: ViewModes = new ViewModes(options, headset, {
     hudRoot.dataset.stereo = status.stereo = mode;
     hud.view.showStereo(mode, angle, found, presenting);
   },
+  ruler: (mode) => hud.view.showRuler(mode),
   refuse: (why) => hud.refuse(why, performance.now()),
 });
 
@@ -169,6 +171,7 @@ function letHandsGo(): void {
 
 listenForShortcuts({
   u: () => modes.toggleDepth(),
+  k: () => modes.nextRuler(),
   l: () => hud.toggleToolList(),
   i: () => modes.setInfrared(!modes.infrared),
   j: () => hud.view.askGlow(),
@@ -240,9 +243,11 @@ function draw(now: number): void {
   const presenting = headset.presenting;
   stage.update(Math.min(0.1, pictureMs / 1000), modes.stereo, presenting);
   reading.read(playback.latest);
-  world?.update(playback, now, reading.channels, scope.percentRight());
-  world?.showDepth(modes.depth);
-  status.tip_mm = world?.tipDistancesMm ?? [];
+  if (world) {
+    world.cues.choice = { plumb: modes.depth, ruler: modes.ruler, hand: hands.active };
+    world.update(playback, now, reading.channels, scope.sight);
+    Object.assign(status, world.cues.told);
+  }
   status.target = guiding.update({
     frame: playback.latest,
     bundle: world?.bundle ?? null,
@@ -258,44 +263,12 @@ function draw(now: number): void {
   status.ready = world !== null && playback.frames > 0;
   if (!graphics.lost) status.pictures++;
   pace.count(now, !graphics.lost);
-  if (options.hud) showHud(now, (heardMs, limitMs) => silent(now, heardMs, limitMs, pictureMs));
-}
-
-function showHud(now: number, quiet: (heardMs: number, limitMs: number) => boolean): void {
-  const frame = playback.latest;
-  const { channels, state } = reading;
+  if (!options.hud) return;
+  const quiet = (heardMs: number, limitMs: number) => silent(now, heardMs, limitMs, pictureMs);
   const active = mayDrive ? hands.active : -1;
-  if (frame && world)
-    hud.showFrame({
-      frame,
-      channels,
-      state,
-      active,
-      hands: hands.view(),
-      guide: guiding.view,
-      ready: status.ready,
-    });
-  const freshHaptic = quiet(heard.haptic, 3000) ? null : haptic;
-  hud.showMachine(quiet(heard.frame, 2500) ? null : frame, freshHaptic, status.fps, status.quality);
-  const alive = link.open && !quiet(heard.frame, 1000);
-  hud.showLink(link.open ? (alive ? 'connected' : 'gateway only') : 'disconnected', alive);
-  hud.showBanner(
-    bannerText({
-      graphics: graphics.lost ? graphics.notice(now) : '',
-      connected: link.open,
-      info,
-      infoQuiet: quiet(heard.info, 4000),
-      framesQuiet: quiet(heard.frame, 2500),
-      loadError,
-      built: world !== null,
-      frames: playback.frames,
-      paused: frame?.paused ?? false,
-      still: world?.bundle.inventory != null || hud.session.open,
-    }),
-  );
-  hud.showNotice(info && info.state !== 'error' ? info.message : '');
-  hud.showProblems(status.problems);
-  hud.tick(now);
+  const picture = { world, frame: playback.latest, reading, active, hands: hands.view(), guide: guiding.view };
+  const graphicsLost = graphics.lost ? graphics.notice(now) : '';
+  showHud(hud, picture, { link, info, haptic, heard, loadError, graphicsLost, frames: playback.frames }, now, quiet);
 }
 
 hands.start();

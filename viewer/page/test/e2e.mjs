@@ -47,6 +47,16 @@ try {
       `reddish ${(100 * seen.red).toFixed(0)} %)`,
   );
 
+  const depth = () => page.textContent('.hand.active .depth');
+  await waitFor('the distance of the tip in words', async () => /tip (\d+\.\d mm|contact)/.test(await depth()));
+  await page.keyboard.press('k');
+  await page.waitForFunction(() => window.__insula.ruler_mm !== null, null, patience);
+  await waitFor('the ruler and the gauge in words', async () => /ruler .* mm · tips .* apart/.test(await depth()));
+  await page.keyboard.press('k');
+  await page.keyboard.press('k');
+  await page.waitForFunction(() => window.__insula.ruler_mm === null, null, patience);
+  check('at the lowest quality the depth of the tip is shown, and a key puts the ruler there and takes it away');
+
   // The first pictures are brighter, while strands lie over the tissue: what comes back is held against one without
   // them.
   let settled = seen;

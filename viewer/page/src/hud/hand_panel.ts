@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One hand: its force with a word for how much that is, whether the mouse drives it, its buttons, and its tools.
 import { el, setText } from './dom';
+import { distanceText } from '../depth_cue';
 import type { Button } from '../hand_pose';
 import type { HandState } from '../hands';
 import { forceBar, forceLevel } from './state';
@@ -14,10 +15,35 @@ export interface HandActions {
   toggleLatch(hand: number, button: Button): void;
 }
 
+/** Of the tips in the field, mm; null: not shown, or too far. */
+export interface DepthView {
+  tip_mm: (number | null)[];
+  ruler_mm: number | null;
+  apart_mm: number | null;
+}
+
+/** "tip 3.5 mm · tips 5.2 mm apart"; what belongs to the ruler stands at the active hand. */
+export function depthText(
+  { tip_mm: tips, ruler_mm: ruler, apart_mm: apart }: DepthView,
+  hand: number,
+  active: number,
+): string {
+  const tip = tips[hand] ?? null;
+  return [
+    tip === null ? '' : `tip ${distanceText(tip / 1000)}`,
+    hand !== active || ruler === null ? '' : `ruler ${ruler.toFixed(1)} mm`,
+    hand !== active || apart === null ? '' : `tips ${apart.toFixed(1)} mm apart`,
+  ]
+    .filter((t) => t !== '')
+    .join(' · ');
+}
+
 export interface HandView extends HandState {
   /** N; null: the hand has no tool. */
   force: number | null;
   kind: string;
+  /** How far its tip is from what; '': nothing is known. */
+  depth: string;
   active: boolean;
 }
 
@@ -33,6 +59,7 @@ export class HandPanel {
   private readonly level = el('span', { class: 'level' });
   private readonly fill = el('i');
   private readonly giveBack = el('button', { class: 'give-back', title: 'give the hand back (G)' }, 'Give back');
+  private readonly depth = el('div', { class: 'depth' });
   private readonly latches: HTMLButtonElement[];
 
   constructor(hand: number, actions: HandActions, mayDrive: boolean) {
@@ -49,14 +76,15 @@ export class HandPanel {
     const held = el('div', { class: 'held' }, ...this.latches, this.giveBack);
     held.hidden = !mayDrive;
     const force = el('span', { class: 'force-text' }, this.level, this.number);
-    this.root.append(head, el('div', { class: 'bar' }, this.fill), force, held, this.tray.root);
+    this.root.append(head, el('div', { class: 'bar' }, this.fill), force, held, this.depth, this.tray.root);
   }
 
-  show({ force, kind, active, taken, buttons }: HandView): void {
+  show({ force, kind, depth, active, taken, buttons }: HandView): void {
     this.root.classList.toggle('active', active);
     this.root.classList.toggle('taken', taken);
     setText(this.tag, taken ? `${kind}, yours` : kind);
     this.giveBack.hidden = !taken;
+    setText(this.depth, depth);
     this.latches.forEach((latch, k) => {
       const b = buttons[k] ?? { on: false, latched: false };
       latch.setAttribute('aria-pressed', String(b.on));

@@ -16,6 +16,7 @@ const rows: [string, string][] = [
   ['I, J', 'infrared picture; inject the dye'],
   ['O, [ ]', 'stereo: off, side by side, red-cyan; less, more depth'],
   ['U', 'depth: plumb line from the tip to the tissue, on or off'],
+  ['K', 'ruler from the tip to the tissue: along the tool, along the line of sight, off'],
   ['M', 'beep with the heart'],
   ['G', 'give the hand back: its buttons go off and it glides home'],
   ['N, Shift + N', 'next, previous target while you practise'],

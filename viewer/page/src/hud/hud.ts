@@ -13,7 +13,7 @@ import { el, setText } from './dom';
 import { ExercisePanel } from './exercise_panel';
 import { returnFocusToField } from './focus';
 import { GuidePanel, type GuideView } from './guide_panel';
-import { type HandActions, HandPanel } from './hand_panel';
+import { type DepthView, depthText, type HandActions, HandPanel } from './hand_panel';
 import { HapticPanel } from './haptic';
 import { Help } from './help';
 import { InstructorPanel } from './instructor';
@@ -47,6 +47,7 @@ export interface FrameView {
   hands: HandState[];
   /** Of the active hand; null: no target is shown. */
   guide: GuideView | null;
+  depth: DepthView;
   /** A picture of the scene is there. */
   ready: boolean;
 }
@@ -157,7 +158,7 @@ export class Hud {
     this.view.showGlow(shines, bundle.inventory || this.role === 'observer' ? [] : glowCommands(bundle));
   }
 
-  showFrame({ frame, channels, state, active, hands, guide, ready }: FrameView): void {
+  showFrame({ frame, channels, state, active, hands, guide, depth, ready }: FrameView): void {
     if (state && state !== this.state) this.showState(state);
     if (state && !this.bundle?.inventory) this.session.show(state, ready);
     this.state = state;
@@ -168,7 +169,7 @@ export class Hud {
       const data = this.bundle?.tools.find((t) => t.index === tool?.index);
       const force = tool ? Math.hypot(tool.force_N[0]!, tool.force_N[1]!, tool.force_N[2]!) : null;
       const kind = data ? short(data, side(hand)) : '';
-      panel.show({ force, kind, active: hand === active, ...hands[hand]! });
+      panel.show({ force, kind, depth: depthText(depth, hand, active), active: hand === active, ...hands[hand]! });
       panel.tray.show(data?.id ?? '');
       return force;
     });
