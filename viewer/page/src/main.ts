@@ -7,6 +7,8 @@ import { Connection, socketUrl } from './connection';
 import { Expected } from './expected';
 import { Graphics } from './graphics';
 import { Guiding } from './guiding';
+import { HandKeys } from './hand_keys';
+import { HandPointers } from './hand_pointers';
 import { toolInHand } from './hand_tool';
 import { Hands } from './hands';
 import { Headset } from './headset';
@@ -111,7 +113,9 @@ const hud = new Hud(
     releaseHand: (h) => hands.release(h),
     button: (b, on) => hands.press(b, on),
     toggleLatch: (h, b) => hands.toggleLatch(h, b),
+    holdHere: (h) => hands.holdHere(h),
     stepGuide: (by) => guiding.step(hands.active, by),
+    turnToTarget: () => hands.toggleAssist(),
     chooseItem: (item) => {
       highlight.show(item);
       const at = item && middle(item);
@@ -137,32 +141,41 @@ const modes: ViewModes = new ViewModes(options, headset, {
   refuse: (why) => hud.refuse(why, performance.now()),
 });
 
-const hands: Hands = new Hands(
-  canvas,
-  scope,
-  link,
-  {
-    toolPose: (hand) => {
-      const t = playback.latest && world ? toolInHand(playback.latest, world.bundle, hand) : null;
-      return t ? { p: vector(t.p_m), q: quaternion(t.q) } : null;
+const toolPose = (hand: number) => {
+  const t = playback.latest && world ? toolInHand(playback.latest, world.bundle, hand) : null;
+  return t ? { p: vector(t.p_m), q: quaternion(t.q) } : null;
+};
+const tellHands = () => {
+  status.taken = hands.hands.map((h) => h.taken);
+  status.buttons = hands.hands.map((h) => [h.button1, h.button2]);
+  status.active = hands.active;
+};
+const wanted = (hand: number) => guiding.wanted(hand);
+const hands: Hands = new Hands(scope, link, { toolPose, wanted }, tellHands, mayDrive);
+new HandPointers(canvas, scope, hands, (x, y) => {
+  if (world) stage.focusAt(x, y);
+});
+new HandKeys(hands, {
+  changed: tellHands,
+  leaveField: () => firstControl(hudRoot)?.focus(),
+  commands: {
+    '1': () => hands.setActive(0),
+    '2': () => hands.setActive(1),
+    g: () => hands.release(hands.active),
+    x: () => hands.holdHere(),
+    y: () => hands.toggleAssist(),
+    z: () => hud.undoExchange(hands.active),
+    v: () => scope.reset(),
+    c: () => {
+      const t = toolPose(hands.active);
+      if (t) scope.focus(t.p);
     },
+    p: () => run({ command: playback.latest?.paused ? 'resume' : 'pause', argument: '' }),
+    t: (shift) => hud.nextTool(hands.active, shift ? -1 : 1),
+    h: () => hud.toggleHelp(),
+    '?': () => hud.toggleHelp(),
   },
-  {
-    focusAt: (x, y) => {
-      if (world) stage.focusAt(x, y);
-    },
-    togglePause: () => run({ command: playback.latest?.paused ? 'resume' : 'pause', argument: '' }),
-    toggleHelp: () => hud.toggleHelp(),
-    nextTool: (hand, step) => hud.nextTool(hand, step),
-    leaveField: () => firstControl(hudRoot)?.focus(),
-    changed: () => {
-      status.taken = hands.hands.map((h) => h.taken);
-      status.buttons = hands.hands.map((h) => [h.button1, h.button2]);
-      status.active = hands.active;
-    },
-  },
-  mayDrive,
-);
+});
 
 function letHandsGo(): void {
   hands.releaseAll();
@@ -266,7 +279,15 @@ function draw(now: number): void {
   if (!options.hud) return;
   const quiet = (heardMs: number, limitMs: number) => silent(now, heardMs, limitMs, pictureMs);
   const active = mayDrive ? hands.active : -1;
-  const picture = { world, frame: playback.latest, reading, active, hands: hands.view(), guide: guiding.view };
+  const picture = {
+    world,
+    frame: playback.latest,
+    reading,
+    active,
+    hands: hands.view(),
+    guide: guiding.view,
+    assisted: hands.assisted,
+  };
   const graphicsLost = graphics.lost ? graphics.notice(now) : '';
   showHud(hud, picture, { link, info, haptic, heard, loadError, graphicsLost, frames: playback.frames }, now, quiet);
 }

@@ -17,6 +17,8 @@ export interface Picture {
   active: number;
   hands: HandState[];
   guide: GuideView | null;
+  /** The hand whose wrist is being turned to its target; -1: none. */
+  assisted: number;
 }
 
 export interface Streams {
@@ -35,14 +37,15 @@ export interface Streams {
 /** quiet: whether a stream that was last heard then has been silent for so long. */
 export function showHud(
   hud: Hud,
-  { world, frame, reading, active, hands, guide }: Picture,
+  { world, frame, reading, active, hands, guide, assisted }: Picture,
   { link, info, haptic, heard, loadError, graphicsLost, frames }: Streams,
   now: number,
   quiet: (heardMs: number, limitMs: number) => boolean,
 ): void {
   const { channels, state } = reading;
+  const assists = active >= 0 && assisted === active;
   if (frame && world)
-    hud.showFrame({ frame, channels, state, active, hands, guide, depth: status, ready: status.ready });
+    hud.showFrame({ frame, channels, state, active, hands, guide, assists, depth: status, ready: status.ready });
   const freshHaptic = quiet(heard.haptic, 3000) ? null : haptic;
   hud.showMachine(quiet(heard.frame, 2500) ? null : frame, freshHaptic, status.fps, status.quality);
   const alive = link.open && !quiet(heard.frame, 1000);

@@ -154,6 +154,35 @@ try {
   await waitFor('the latch let go', () => !mock.state.held[0].button1);
   check('a button stays latched while one mouse works with the other hand, is shown, and is let go by its key');
 
+  // The left hand is held where it is by one key, and the right one is taken.
+  await page.keyboard.press('x');
+  await page.waitForFunction(() => window.__insula.active === 1, null, patience);
+  await waitFor('the hold', async () => /holds/.test(await page.textContent('.hand:nth-child(1) .hold')));
+  const stays = [...mock.state.held[0].p_m];
+  await page.keyboard.down('ArrowUp');
+  const level = mock.state.held[1].p_m;
+  await waitFor('the right hand', () => Math.hypot(...mock.state.held[1].p_m.map((x, i) => x - level[i])) > 1e-4);
+  await page.keyboard.up('ArrowUp');
+  assert.deepEqual([...mock.state.held[0].p_m], stays);
+  await page.keyboard.press('1');
+  await waitFor('the end of the hold', async () => /Hold/.test(await page.textContent('.hand:nth-child(1) .hold')));
+  assert.deepEqual([...mock.state.held[0].p_m], stays, 'no jump');
+  check('a hand is held where it is while the other one works, and taken over again without a jump');
+
+  await page.keyboard.press('2');
+  await page.keyboard.press('t');
+  await page.waitForSelector('.tray [data-tool=right_clip_applier][aria-pressed=true]', {
+    state: 'attached',
+    timeout: 60_000,
+  });
+  await page.keyboard.press('z');
+  await page.waitForSelector('.tray [data-tool=right_dissector][aria-pressed=true]', {
+    state: 'attached',
+    timeout: 60_000,
+  });
+  check('an exchange of tools is undone by one key');
+  await page.keyboard.press('1');
+
   await page.keyboard.press('g');
   await waitFor('the release', () => mock.state.commands.includes('release left'));
   await page.waitForFunction(() => !window.__insula.taken[0] && window.__insula.taken[1], null, patience);

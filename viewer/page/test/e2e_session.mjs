@@ -28,6 +28,11 @@ try {
   await page.keyboard.press('n');
   await page.waitForFunction(() => window.__insula.target?.at === 1, null, patience);
   assert.match(await page.textContent('.guide .todo'), /button 1/);
+  const angle = () => page.evaluate(() => window.__insula.target.angle_rad);
+  const turned = await angle();
+  await page.keyboard.press('y');
+  await waitFor('the wrist', async () => (await angle()) < 0.5 * turned);
+  check(`the wrist is turned to its target on request (${turned.toFixed(2)} rad)`);
   mock.state.mode = 'test';
   await hidden(page, '.guide');
   check('practice shows targets for the hand and what the wrist must do; a test does not');

@@ -47,20 +47,27 @@ export class GuidePanel {
   private readonly title = el('b');
   private readonly todo = el('p', { class: 'todo' });
   private readonly list = el('ul');
+  private readonly assist = el(
+    'button',
+    { title: 'turn the tool slowly as the ghost is turned; its tip stays (Y)', 'aria-pressed': 'false' },
+    'Turn for me',
+  );
   private shown = '';
 
-  constructor(step: (by: 1 | -1) => void) {
+  constructor(step: (by: 1 | -1) => void, turn: () => void) {
     const back = el('button', { title: 'previous target (Shift + N)' }, '◀');
     const next = el('button', { title: 'next target (N)' }, '▶');
     back.onclick = () => step(-1);
     next.onclick = () => step(1);
-    this.root.append(el('header', {}, this.title, el('span', {}, back, next)), this.todo, this.list);
+    this.assist.onclick = () => turn();
+    this.root.append(el('header', {}, this.title, el('span', {}, this.assist, back, next)), this.todo, this.list);
     this.root.hidden = true;
   }
 
-  /** null: there is no target. */
-  show(view: GuideView | null): void {
+  /** null: there is no target. assists: the tool is being turned to it. */
+  show(view: GuideView | null, assists: boolean): void {
     this.root.hidden = view === null;
+    this.assist.setAttribute('aria-pressed', String(assists));
     if (!view) return;
     const { offset, at, of, todo } = view;
     const near = offset.distanceM < nearM && offset.angleRad < nearRad;

@@ -13,6 +13,7 @@ export interface HandActions {
   chooseHand(hand: number): void;
   releaseHand(hand: number): void;
   toggleLatch(hand: number, button: Button): void;
+  holdHere(hand: number): void;
 }
 
 /** Of the tips in the field, mm; null: not shown, or too far. */
@@ -59,7 +60,10 @@ export class HandPanel {
   private readonly level = el('span', { class: 'level' });
   private readonly fill = el('i');
   private readonly giveBack = el('button', { class: 'give-back', title: 'give the hand back (G)' }, 'Give back');
+  private readonly hold = el('button', { class: 'hold', 'aria-pressed': 'false' });
+  private readonly undo = el('button', { class: 'undo' }, '↶');
   private readonly depth = el('div', { class: 'depth' });
+  private resting = false;
   private readonly latches: HTMLButtonElement[];
 
   constructor(hand: number, actions: HandActions, mayDrive: boolean) {
@@ -68,22 +72,28 @@ export class HandPanel {
     const head = el('button', { class: 'choose', title: 'drive this hand' }, this.name, this.tag);
     head.onclick = () => actions.chooseHand(hand);
     this.giveBack.onclick = () => actions.releaseHand(hand);
+    this.hold.onclick = () => {
+      if (this.resting) actions.chooseHand(hand);
+      else actions.holdHere(hand);
+    };
+    this.undo.onclick = () => this.tray.undo();
     this.latches = ([1, 2] as const).map((b) => {
       const button = el('button', { class: 'latch', 'aria-pressed': 'false', 'data-latch': String(b) });
       button.onclick = () => actions.toggleLatch(hand, b);
       return button;
     });
-    const held = el('div', { class: 'held' }, ...this.latches, this.giveBack);
+    const held = el('div', { class: 'held' }, ...this.latches, this.hold, this.undo, this.giveBack);
     held.hidden = !mayDrive;
     const force = el('span', { class: 'force-text' }, this.level, this.number);
     this.root.append(head, el('div', { class: 'bar' }, this.fill), force, held, this.depth, this.tray.root);
   }
 
-  show({ force, kind, depth, active, taken, buttons }: HandView): void {
+  show({ force, kind, depth, active, taken, resting, buttons }: HandView): void {
     this.root.classList.toggle('active', active);
     this.root.classList.toggle('taken', taken);
     setText(this.tag, taken ? `${kind}, yours` : kind);
     this.giveBack.hidden = !taken;
+    this.showHold(resting);
     setText(this.depth, depth);
     this.latches.forEach((latch, k) => {
       const b = buttons[k] ?? { on: false, latched: false };
@@ -96,5 +106,15 @@ export class HandPanel {
     const level = force === null ? 'good' : forceLevel(force);
     this.root.dataset.level = level;
     setText(this.level, force === null || force < 0.005 ? '' : levelWords[level]);
+  }
+
+  private showHold(resting: boolean): void {
+    this.resting = resting;
+    this.hold.setAttribute('aria-pressed', String(resting));
+    this.hold.title = resting ? 'go on with this hand' : 'hold this hand here and take the other one (X)';
+    setText(this.hold, resting ? '📌 holds' : 'Hold');
+    const undone = this.tray.undone;
+    this.undo.hidden = undone === null;
+    this.undo.title = undone ? `back to: ${undone.title} (Z)` : '';
   }
 }

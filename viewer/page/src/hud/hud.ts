@@ -34,6 +34,8 @@ export interface HudActions extends ViewActions, HandActions {
   chooseItem(item: InventoryItem | null): void;
   /** To another target of the guide. */
   stepGuide(by: 1 | -1): void;
+  /** Begins or ends to turn the tool of the active hand as its target is turned. */
+  turnToTarget(): void;
 }
 
 export interface FrameView {
@@ -47,6 +49,8 @@ export interface FrameView {
   hands: HandState[];
   /** Of the active hand; null: no target is shown. */
   guide: GuideView | null;
+  /** The tool is being turned to its target. */
+  assists: boolean;
   depth: DepthView;
   /** A picture of the scene is there. */
   ready: boolean;
@@ -93,7 +97,10 @@ export class Hud {
       role,
       () => field,
     );
-    this.guide = new GuidePanel((by) => actions.stepGuide(by));
+    this.guide = new GuidePanel(
+      (by) => actions.stepGuide(by),
+      () => actions.turnToTarget(),
+    );
     this.hands = [0, 1].map((h) => new HandPanel(h, actions, mayDrive));
     this.toolList = new ToolList((c) => actions.run(c), mayDrive);
     this.view = new ViewMenu(actions);
@@ -143,6 +150,11 @@ export class Hud {
     this.hands[hand]?.tray.next(step);
   }
 
+  /** Asks for the tool that the hand had before its last exchange. */
+  undoExchange(hand: number): void {
+    this.hands[hand]?.tray.undo();
+  }
+
   showScene(bundle: Bundle): void {
     this.bundle = bundle;
     this.state = null;
@@ -158,11 +170,11 @@ export class Hud {
     this.view.showGlow(shines, bundle.inventory || this.role === 'observer' ? [] : glowCommands(bundle));
   }
 
-  showFrame({ frame, channels, state, active, hands, guide, depth, ready }: FrameView): void {
+  showFrame({ frame, channels, state, active, hands, guide, assists, depth, ready }: FrameView): void {
     if (state && state !== this.state) this.showState(state);
     if (state && !this.bundle?.inventory) this.session.show(state, ready);
     this.state = state;
-    this.guide.show(guide);
+    this.guide.show(guide, assists);
     this.exercise.showClock(state?.elapsedS ?? frame.sim_time_s);
     const forces = this.hands.map((panel, hand) => {
       const tool = this.bundle ? toolInHand(frame, this.bundle, hand) : null;
@@ -184,6 +196,7 @@ export class Hud {
   /** Something that happened once. */
   showEvent(e: SimEvent, nowMs: number): void {
     this.instructor?.addEvent(e.sim_time_s, e.kind, e.id, e.text);
+    if (e.kind === 'reset') for (const h of this.hands) h.tray.forget();
     // What chance or the instructor brings, the trainee sees in the field and not in words.
     if (e.kind === 'command' || e.kind === 'complication' || e.kind === 'read') return;
     if (e.kind === 'refused') {
