@@ -140,7 +140,11 @@ async function toolOf(files: Files, t: Json): Promise<types.ToolData> {
     title: t.title || spoken(t.id),
     hinges,
     picture: t.picture ? files.address(t.picture) : null,
-    properties: list(t.properties).map((p) => ({ name: String(p.name ?? ''), text: propertyText(p) })),
+    properties: list(t.properties).map((p) => ({
+      name: String(p.name ?? ''),
+      text: propertyText(p),
+      value: typeof p.value === 'number' && Number.isFinite(p.value) ? p.value : null,
+    })),
     tags: Array.isArray(t.tags) ? t.tags.map(String) : [],
     parts: await Promise.all(parts),
   };

@@ -31,6 +31,7 @@ import { Stage } from './stage';
 import { status, tellPicture } from './status';
 import { Reading } from './step_data/reading';
 import { ViewModes } from './view_modes';
+import { TakeBack } from './take_back';
 import { quaternion, vector, World } from './world';
 
 const options = parseOptions(location.search);
@@ -40,6 +41,7 @@ const stage = new Stage(document.getElementById('view') as HTMLCanvasElement);
 const { canvas, scene, scope } = stage;
 const highlight = new Highlight();
 scene.add(highlight.root);
+const takeBack = new TakeBack();
 const guiding = new Guiding();
 scene.add(guiding.root);
 const playback = new Playback();
@@ -222,6 +224,7 @@ async function follow(m: SceneInfo): Promise<void> {
     playback.clear();
     hands.releaseAll();
     guiding.begin(bundle);
+    takeBack.begin(bundle);
     scope.setHome(bundle.view);
     build(bundle);
     reading.begin(bundle);
@@ -256,8 +259,9 @@ function draw(now: number): void {
   const presenting = headset.presenting;
   stage.update(Math.min(0.1, pictureMs / 1000), modes.stereo, presenting);
   reading.read(playback.latest);
+  const within = playback.latest ? takeBack.nearest(playback.latest) : null;
   if (world) {
-    world.cues.choice = { plumb: modes.depth, ruler: modes.ruler, hand: hands.active };
+    world.cues.choice = { plumb: modes.depth, ruler: modes.ruler, hand: hands.active, within };
     world.update(playback, now, reading.channels, scope.sight);
     Object.assign(status, world.cues.told);
   }
@@ -281,6 +285,7 @@ function draw(now: number): void {
   const active = mayDrive ? hands.active : -1;
   const picture = {
     world,
+    within,
     frame: playback.latest,
     reading,
     active,

@@ -7,6 +7,7 @@ import type { Hud } from './hud/hud';
 import type { HapticStatus, RenderFrame, SceneInfo } from './lcm';
 import { status } from './status';
 import type { Reading } from './step_data/reading';
+import type { Within } from './take_back';
 import type { World } from './world';
 
 export interface Picture {
@@ -16,6 +17,8 @@ export interface Picture {
   /** Hand that mouse and keyboard drive; -1: none. */
   active: number;
   hands: HandState[];
+  /** What an instrument could take back from the field; null: nothing. */
+  within: Within | null;
   guide: GuideView | null;
   /** The hand whose wrist is being turned to its target; -1: none. */
   assisted: number;
@@ -37,7 +40,7 @@ export interface Streams {
 /** quiet: whether a stream that was last heard then has been silent for so long. */
 export function showHud(
   hud: Hud,
-  { world, frame, reading, active, hands, guide, assisted }: Picture,
+  { world, frame, reading, active, hands, guide, assisted, within }: Picture,
   { link, info, haptic, heard, loadError, graphicsLost, frames }: Streams,
   now: number,
   quiet: (heardMs: number, limitMs: number) => boolean,
@@ -45,7 +48,18 @@ export function showHud(
   const { channels, state } = reading;
   const assists = active >= 0 && assisted === active;
   if (frame && world)
-    hud.showFrame({ frame, channels, state, active, hands, guide, assists, depth: status, ready: status.ready });
+    hud.showFrame({
+      frame,
+      channels,
+      state,
+      active,
+      hands,
+      guide,
+      assists,
+      within,
+      depth: status,
+      ready: status.ready,
+    });
   const freshHaptic = quiet(heard.haptic, 3000) ? null : haptic;
   hud.showMachine(quiet(heard.frame, 2500) ? null : frame, freshHaptic, status.fps, status.quality);
   const alive = link.open && !quiet(heard.frame, 1000);

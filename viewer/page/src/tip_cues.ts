@@ -6,6 +6,8 @@ import { ContactMarks, contactsOfTools } from './contact_marks';
 import { DepthCue } from './depth_cue';
 import { DepthRuler, type RulerMode } from './depth_ruler';
 import type { RenderFrame } from './lcm';
+import { ReachMark } from './reach_mark';
+import type { Within } from './take_back';
 import type { TissueProbe } from './tissue_probe';
 import type { Tool } from './tools';
 
@@ -14,19 +16,22 @@ export interface CueChoice {
   plumb: boolean;
   ruler: RulerMode;
   hand: number;
+  /** What an instrument could take back; null: nothing. */
+  within: Within | null;
 }
 
 const held = 1;
 
 export class TipCues {
   readonly root = new THREE.Group();
-  choice: CueChoice = { plumb: true, ruler: 'off', hand: 1 };
+  choice: CueChoice = { plumb: true, ruler: 'off', hand: 1, within: null };
   private readonly cues = [new DepthCue(), new DepthCue()];
   private readonly ruler = new DepthRuler();
   private readonly marks = new ContactMarks();
+  private readonly reach = new ReachMark();
 
   constructor() {
-    this.root.add(...this.cues.map((c) => c.root), this.ruler.root, this.marks.root);
+    this.root.add(...this.cues.map((c) => c.root), this.ruler.root, this.marks.root, this.reach.root);
   }
 
   /**
@@ -48,7 +53,8 @@ export class TipCues {
     seconds: number,
     sight: Sight,
   ): void {
-    const { plumb, ruler, hand } = this.choice;
+    const { plumb, ruler, hand, within } = this.choice;
+    this.reach.update(within, sight);
     const leading = [0, 1].map((h) => leadingTool(frame, tools, h));
     const tips = leading.map((t) => t?.tips() ?? []);
     const right = sight.axes.x.clone().multiplyScalar(sight.percentM);
@@ -64,6 +70,7 @@ export class TipCues {
     for (const c of this.cues) c.dispose();
     this.ruler.dispose();
     this.marks.dispose();
+    this.reach.dispose();
   }
 }
 

@@ -181,6 +181,16 @@ try {
     timeout: 60_000,
   });
   check('an exchange of tools is undone by one key');
+
+  const { theatre } = mock.state;
+  theatre.run('exchange', 'right right_clip_applier');
+  theatre.run('ask', `right_clip_applier load ${theatre.clips[0]}`);
+  await page.waitForFunction(() => document.querySelector('.tool-list-head b').textContent.length > 16, null, patience);
+  theatre.place(theatre.clips[0]);
+  const reach = () => page.textContent('.hand:nth-child(2) .reach');
+  await waitFor('the way to the clip', async () => /: \d+\.\d mm away, turned by \d+°/.test(await reach()));
+  check(`an empty applier says how far a clip in the field is: ${await reach()}`);
+  theatre.run('exchange', 'right right_dissector');
   await page.keyboard.press('1');
 
   await page.keyboard.press('g');

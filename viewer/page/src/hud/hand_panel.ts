@@ -45,6 +45,8 @@ export interface HandView extends HandState {
   kind: string;
   /** How far its tip is from what; '': nothing is known. */
   depth: string;
+  /** What its tool could take back; '': nothing. */
+  reach: string;
   active: boolean;
 }
 
@@ -63,6 +65,7 @@ export class HandPanel {
   private readonly hold = el('button', { class: 'hold', 'aria-pressed': 'false' });
   private readonly undo = el('button', { class: 'undo' }, '↶');
   private readonly depth = el('div', { class: 'depth' });
+  private readonly reach = el('div', { class: 'depth reach' });
   private resting = false;
   private readonly latches: HTMLButtonElement[];
 
@@ -85,16 +88,18 @@ export class HandPanel {
     const held = el('div', { class: 'held' }, ...this.latches, this.hold, this.undo, this.giveBack);
     held.hidden = !mayDrive;
     const force = el('span', { class: 'force-text' }, this.level, this.number);
-    this.root.append(head, el('div', { class: 'bar' }, this.fill), force, held, this.depth, this.tray.root);
+    this.root.append(head, el('div', { class: 'bar' }, this.fill), force, held, this.depth, this.reach, this.tray.root);
   }
 
-  show({ force, kind, depth, active, taken, resting, buttons }: HandView): void {
+  show({ force, kind, depth, reach, active, taken, resting, buttons }: HandView): void {
     this.root.classList.toggle('active', active);
     this.root.classList.toggle('taken', taken);
     setText(this.tag, taken ? `${kind}, yours` : kind);
     this.giveBack.hidden = !taken;
     this.showHold(resting);
     setText(this.depth, depth);
+    setText(this.reach, reach);
+    this.reach.hidden = reach === '';
     this.latches.forEach((latch, k) => {
       const b = buttons[k] ?? { on: false, latched: false };
       latch.setAttribute('aria-pressed', String(b.on));

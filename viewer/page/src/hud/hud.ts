@@ -8,6 +8,7 @@ import type { InventoryItem } from '../inventory';
 import type { HapticStatus, RenderFrame, SimEvent } from '../lcm';
 import type { Role } from '../options';
 import type { Channels } from '../step_data/channels';
+import { takeBackText, type Within } from '../take_back';
 import { glowCommands } from './commands';
 import { el, setText } from './dom';
 import { ExercisePanel } from './exercise_panel';
@@ -52,6 +53,7 @@ export interface FrameView {
   /** The tool is being turned to its target. */
   assists: boolean;
   depth: DepthView;
+  within: Within | null;
   /** A picture of the scene is there. */
   ready: boolean;
 }
@@ -170,7 +172,7 @@ export class Hud {
     this.view.showGlow(shines, bundle.inventory || this.role === 'observer' ? [] : glowCommands(bundle));
   }
 
-  showFrame({ frame, channels, state, active, hands, guide, assists, depth, ready }: FrameView): void {
+  showFrame({ frame, channels, state, active, hands, guide, assists, depth, within, ready }: FrameView): void {
     if (state && state !== this.state) this.showState(state);
     if (state && !this.bundle?.inventory) this.session.show(state, ready);
     this.state = state;
@@ -181,7 +183,15 @@ export class Hud {
       const data = this.bundle?.tools.find((t) => t.index === tool?.index);
       const force = tool ? Math.hypot(tool.force_N[0]!, tool.force_N[1]!, tool.force_N[2]!) : null;
       const kind = data ? short(data, side(hand)) : '';
-      panel.show({ force, kind, depth: depthText(depth, hand, active), active: hand === active, ...hands[hand]! });
+      const reach = within?.hand === hand ? takeBackText(within) : '';
+      panel.show({
+        force,
+        kind,
+        depth: depthText(depth, hand, active),
+        reach,
+        active: hand === active,
+        ...hands[hand]!,
+      });
       panel.tray.show(data?.id ?? '');
       return force;
     });
