@@ -1,24 +1,32 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Mouse, pen and fingers on the field: they move the active hand, or the microscope.
+// Mouse, pen and fingers on the field: they move the active hand, or the microscope. While a mouse drags one hand, a
+// finger or a pen drags the other, and the other way round.
 import type { Microscope } from './camera';
 import { TwoFingers } from './gestures';
 import type { Hands } from './hands';
+import { FingerBesidePen, PenWrist } from './pen';
 
 const wheelM = 0.0008;
 /** A finger's way across the picture is coarser than a wheel's click. */
 const touchDepthMPerPx = 0.00006;
 const touchSwingRadPerPx = 0.004;
+const fingerRollRadPerPx = 0.008;
 
 interface Pointer {
+  type: string;
+  /** It moves this hand as long as it is down. */
+  hand: number;
   x: number;
   y: number;
   button: number;
   dragged: boolean;
+  wrist: PenWrist;
+  beside: FingerBesidePen;
 }
 
 export class HandPointers {
   private readonly pointers = new Map<number, Pointer>();
-  private readonly fingers = new TwoFingers();
+  private readonly fingers = [new TwoFingers(), new TwoFingers()];
 
   constructor(
     private readonly canvas: HTMLCanvasElement,
@@ -33,14 +41,37 @@ export class HandPointers {
     canvas.addEventListener('contextmenu', (e) => e.preventDefault());
     canvas.addEventListener('dblclick', (e) => focusAt(e.clientX, e.clientY));
     window.addEventListener('blur', () => this.pointers.clear());
+    hands.leaving.push((to) => this.follow(to));
   }
 
   private down(e: PointerEvent): void {
     this.canvas.focus({ preventScroll: true });
     this.canvas.setPointerCapture(e.pointerId);
-    this.pointers.set(e.pointerId, { x: e.clientX, y: e.clientY, button: e.button, dragged: false });
+    const hand = this.handFor(e.pointerType);
+    const { pointerType: type, clientX: x, clientY: y, button } = e;
+    const tools = { wrist: new PenWrist(), beside: new FingerBesidePen() };
+    this.pointers.set(e.pointerId, { type, hand, x, y, button, dragged: false, ...tools });
     if (e.button === 1) e.preventDefault();
-    this.fingers.clear();
+    this.fingers[hand]!.clear();
+  }
+
+  /** Fingers and pen belong together, and the mouse is another device: it has the other hand meanwhile. */
+  private handFor(type: string): number {
+    const mouse = type === 'mouse';
+    const other = [...this.pointers.values()].find((p) => (p.type === 'mouse') !== mouse && p.button === 0);
+    return other ? 1 - other.hand : (this.together(type)[0]?.hand ?? this.hands.active);
+  }
+
+  /** One device goes over to the hand that becomes active; two keep their hands. */
+  private follow(to: number): void {
+    const down = [...this.pointers.values()];
+    if (new Set(down.map((p) => p.hand)).size < 2) for (const p of down) p.hand = to;
+  }
+
+  /** What is down of the same device. */
+  private together(type: string): Pointer[] {
+    const mouse = type === 'mouse';
+    return [...this.pointers.values()].filter((p) => (p.type === 'mouse') === mouse);
   }
 
   private move(e: PointerEvent): void {
@@ -53,36 +84,53 @@ export class HandPointers {
     p.dragged = true;
     p.x = e.clientX;
     p.y = e.clientY;
-    const height = this.canvas.clientHeight;
-    if (this.pointers.size >= 3) this.scope.orbit(dx / 3, dy / 3);
-    else if (this.pointers.size === 2) this.gesture();
-    else if (p.button === 2) this.scope.orbit(dx, dy);
-    else if (p.button === 1) this.scope.pan(dx, dy, height);
-    else if (p.button === 0) this.drag(dx, dy, height, e.shiftKey);
+    const group = this.together(p.type);
+    const pen = group.some((g) => g.type === 'pen');
+    if (group.length >= 3) this.scope.orbit(dx / 3, dy / 3);
+    else if (group.length === 2 && pen && p.type !== 'pen') this.besidePen(p, dx, dy);
+    else if (group.length === 2 && !pen) this.gesture(p.hand, group);
+    else this.single(p, e, dx, dy);
   }
 
-  private gesture(): void {
-    const [a, b] = [...this.pointers.values()];
-    const step = this.fingers.move(a!, b!);
+  private single(p: Pointer, e: PointerEvent, dx: number, dy: number): void {
+    const height = this.canvas.clientHeight;
+    if (p.button === 2) this.scope.orbit(dx, dy);
+    else if (p.button === 1) this.scope.pan(dx, dy, height);
+    else if (p.button === 0) {
+      this.drag(p.hand, dx, dy, height, e.shiftKey);
+      if (p.type !== 'pen') return;
+      const { clockwise, ...lean } = p.wrist.move(e);
+      this.hands.turn(lean, p.hand);
+      this.hands.rollSeen(clockwise, p.hand);
+    }
+  }
+
+  private besidePen(p: Pointer, dx: number, dy: number): void {
+    const step = p.beside.move(dx, dy);
+    if (step?.kind === 'depth') this.hands.move({ out: step.by * touchDepthMPerPx }, p.hand);
+    else if (step) this.hands.rollSeen(step.by * fingerRollRadPerPx, p.hand);
+  }
+
+  private gesture(hand: number, [a, b]: Pointer[]): void {
+    const step = this.fingers[hand]!.move(a!, b!);
     if (!step) return;
     if (step.kind === 'zoom') this.scope.zoom(1 / Math.max(0.2, step.by));
-    else if (step.kind === 'depth') this.hands.move({ out: step.by * touchDepthMPerPx });
-    else if (step.kind === 'swing') this.hands.turn({ swing: step.by * touchSwingRadPerPx });
-    else this.hands.rollSeen(step.by);
+    else if (step.kind === 'depth') this.hands.move({ out: step.by * touchDepthMPerPx }, hand);
+    else if (step.kind === 'swing') this.hands.turn({ swing: step.by * touchSwingRadPerPx }, hand);
+    else this.hands.rollSeen(step.by, hand);
   }
 
-  private drag(dx: number, dy: number, height: number, fine: boolean): void {
-    if (!this.hands.take()) return;
+  private drag(hand: number, dx: number, dy: number, height: number, fine: boolean): void {
+    if (!this.hands.take(hand)) return;
     // At the tip's own depth a pixel of the mouse is a pixel of the tool.
-    const tip = this.hands.hands[this.hands.active]!.p;
-    const depth = this.scope.camera.position.clone().sub(tip).dot(this.scope.axes().z);
+    const depth = this.scope.camera.position.clone().sub(this.hands.hands[hand]!.p).dot(this.scope.axes().z);
     const s = this.scope.metresPerPixel(Math.max(0.02, depth), height) * (fine ? 0.3 : 1);
-    this.hands.move({ right: dx * s, up: -dy * s });
+    this.hands.move({ right: dx * s, up: -dy * s }, hand);
   }
 
   private up(e: PointerEvent): void {
     this.pointers.delete(e.pointerId);
-    this.fingers.clear();
+    for (const f of this.fingers) f.clear();
   }
 
   private wheel(e: WheelEvent): void {

@@ -47,8 +47,8 @@ export class Hands {
   assisted = -1;
   /** What moves hands as long as it is pressed: called before poses go out, with the seconds since the last time. */
   readonly steady: ((dt: number) => void)[] = [];
-  /** What presses buttons for the active hand forgets it when another hand becomes active. */
-  readonly leaving: (() => void)[] = [];
+  /** Called when another hand becomes active, with that hand, and when all are given back. */
+  readonly leaving: ((to: number) => void)[] = [];
   private lastSentMs = 0;
 
   constructor(
@@ -63,7 +63,7 @@ export class Hands {
     if (hand !== this.active) {
       this.hands[this.active]!.latchHeld();
       this.assisted = -1;
-      for (const f of this.leaving) f();
+      for (const f of this.leaving) f(hand);
     }
     this.active = hand;
     // It is taken over as it stands.
@@ -92,7 +92,7 @@ export class Hands {
 
   releaseAll(): void {
     this.hands.forEach((_, hand) => this.release(hand));
-    for (const f of this.leaving) f();
+    for (const f of this.leaving) f(this.active);
   }
 
   /** A button that is on as long as something is pressed. */

@@ -31,9 +31,11 @@ const rows: [string, string][] = [
   ['P', 'pause, resume'],
   ['H or ?', 'this help'],
   ['Esc, Shift + Tab', 'leave the field for the controls; Esc closes a list or this help'],
-  ['one finger, pen', 'move the tool in the picture plane'],
-  ['two fingers', 'slide down or up: deeper or back; turn: roll; slide sideways: swing; pinch: zoom'],
+  ['one finger, pen', 'move the tool in the picture plane; the tool leans and rolls as the pen leans and twists'],
+  ['a finger beside the pen', 'slide up or down: deeper or back; slide sideways: roll'],
+  ['two fingers', 'slide up or down: deeper or back; turn: roll; slide sideways: swing; pinch: zoom'],
   ['three fingers', 'turn the microscope'],
+  ['mouse and finger or pen', 'the mouse drags the active hand, the finger or pen the other one'],
 ];
 
 export class Help {
