@@ -128,6 +128,16 @@ export class Hands {
     h.turn(x, tilt);
   }
 
+  /** A turn about the tip, in the axes of the picture. */
+  rotate(by: THREE.Quaternion, hand: number): void {
+    const h = this.hands[hand]!;
+    if (h.resting || !this.take(hand)) return;
+    const { x, y, z } = this.scope.axes();
+    const picture = new THREE.Quaternion().setFromRotationMatrix(new THREE.Matrix4().makeBasis(x, y, z));
+    h.q.premultiply(picture.clone().multiply(by).multiply(picture.invert())).normalize();
+    if (this.assisted === hand) this.assisted = -1;
+  }
+
   /** A turn as it is seen, rad: clockwise in the picture. */
   rollSeen(clockwise: number, hand = this.active): void {
     const away = this.hands[hand]!.shaft().dot(this.scope.axes().z) < 0;

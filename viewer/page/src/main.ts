@@ -4,17 +4,16 @@ import * as THREE from 'three';
 import { loadBundle } from './bundle';
 import type { Bundle } from './bundle_types';
 import { Connection, socketUrl } from './connection';
+import { ControllerHands } from './controller_hands';
 import { Expected } from './expected';
 import { Graphics } from './graphics';
 import { Guiding } from './guiding';
-import { HandKeys } from './hand_keys';
-import { HandPointers } from './hand_pointers';
+import { listenForHands } from './hand_inputs';
 import { toolInHand } from './hand_tool';
 import { Hands } from './hands';
 import { Headset } from './headset';
 import type { UserCommand } from './hud/commands';
 import { Hud } from './hud/hud';
-import { firstControl } from './hud/focus';
 import { showHud } from './show_hud';
 import './hud/styles';
 import { headsetLines } from './hud/timers';
@@ -154,29 +153,13 @@ const tellHands = () => {
 };
 const wanted = (hand: number) => guiding.wanted(hand);
 const hands: Hands = new Hands(scope, link, { toolPose, wanted }, tellHands, mayDrive);
-new HandPointers(canvas, scope, hands, (x, y) => {
-  if (world) stage.focusAt(x, y);
-});
-new HandKeys(hands, {
-  changed: tellHands,
-  leaveField: () => firstControl(hudRoot)?.focus(),
-  commands: {
-    '1': () => hands.setActive(0),
-    '2': () => hands.setActive(1),
-    g: () => hands.release(hands.active),
-    x: () => hands.holdHere(),
-    y: () => hands.toggleAssist(),
-    z: () => hud.undoExchange(hands.active),
-    v: () => scope.reset(),
-    c: () => {
-      const t = toolPose(hands.active);
-      if (t) scope.focus(t.p);
-    },
-    p: () => run({ command: playback.latest?.paused ? 'resume' : 'pause', argument: '' }),
-    t: (shift) => hud.nextTool(hands.active, shift ? -1 : 1),
-    h: () => hud.toggleHelp(),
-    '?': () => hud.toggleHelp(),
+const controllers = new ControllerHands(hands);
+listenForHands(hands, {
+  ...{ canvas, scope, hud, hudRoot, toolPose, changed: tellHands },
+  focusAt: (x, y) => {
+    if (world) stage.focusAt(x, y);
   },
+  togglePause: () => run({ command: playback.latest?.paused ? 'resume' : 'pause', argument: '' }),
 });
 
 function letHandsGo(): void {
@@ -257,6 +240,7 @@ const pace = new Pace((fps, seconds) => {
 function draw(now: number): void {
   const pictureMs = pace.begin(now);
   const presenting = headset.presenting;
+  controllers.move(headset.controllers);
   stage.update(Math.min(0.1, pictureMs / 1000), modes.stereo, presenting);
   reading.read(playback.latest);
   const within = playback.latest ? takeBack.nearest(playback.latest) : null;

@@ -35,6 +35,7 @@ const rows: [string, string][] = [
   ['a finger beside the pen', 'slide up or down: deeper or back; slide sideways: roll'],
   ['two fingers', 'slide up or down: deeper or back; turn: roll; slide sideways: swing; pinch: zoom'],
   ['three fingers', 'turn the microscope'],
+  ['gamepad', 'each stick moves its hand; with its shoulder button: depth and roll; triggers: button 1'],
   ['mouse and finger or pen', 'the mouse drags the active hand, the finger or pen the other one'],
 ];
 
