@@ -9,7 +9,9 @@ export type RulerMode = 'off' | 'tool' | 'sight';
 export const rulerModes: readonly RulerMode[] = ['off', 'tool', 'sight'];
 
 /** Longest scale, and farthest tips that are gauged, m. */
-export const rulerReachM = 0.03;
+export const rulerReachM = 0.04;
+/** Beside the tip it takes no more of the picture's height than this, in hundredths. */
+const hangingPercent = 36;
 const tickM = 0.001;
 const numbered = 5;
 /** The search along the way is dear. */
@@ -21,18 +23,25 @@ const letters = [1, 0.95, 0.66] as const;
 
 export const millimetres = (m: number): string => `${(1000 * m).toFixed(1)} mm`;
 
-/** Where the scale lies: it begins at `origin` and goes along the unit `along`; ticks lie along the unit `side`. */
+/**
+ * Where the scale lies: it begins at `origin` and goes along the unit `along`; ticks lie along the unit `side`. scale:
+ * how long a metre is drawn, m.
+ */
 export interface RulerPlace {
   origin: THREE.Vector3;
   along: THREE.Vector3;
   side: THREE.Vector3;
+  scale: number;
 }
 
 /** Ends of the scale's strokes, three numbers a point: the scale, its ticks, and a broad stroke where it ends. */
-export function rulerStrokes({ origin, along, side }: RulerPlace, lengthM: number): number[] {
+export function rulerStrokes({ origin, along, side, scale }: RulerPlace, lengthM: number): number[] {
   const out: number[] = [];
   const point = (t: number, s: number) => {
-    const p = origin.clone().addScaledVector(along, t).addScaledVector(side, s);
+    const p = origin
+      .clone()
+      .addScaledVector(along, t * scale)
+      .addScaledVector(side, s);
     out.push(p.x, p.y, p.z);
   };
   point(0, 0);
@@ -48,7 +57,7 @@ export function rulerStrokes({ origin, along, side }: RulerPlace, lengthM: numbe
 
 /**
  * Along the tool: its own axis away from the hand. Along the line of sight nothing of a scale would be seen, so it
- * hangs down in the picture beside the tip, as long as the way is.
+ * hangs down in the picture beside the tip, as long as the way is, or shorter where the picture is too small for that.
  */
 export function rulerPlace(
   mode: 'tool' | 'sight',
@@ -56,12 +65,18 @@ export function rulerPlace(
   shaft: THREE.Vector3,
   axes: { x: THREE.Vector3; y: THREE.Vector3; z: THREE.Vector3 },
   percentM: number,
+  lengthM: number,
 ): RulerPlace {
   if (mode === 'sight')
-    return { origin: tip.clone().addScaledVector(axes.x, 6 * percentM), along: axes.y.clone().negate(), side: axes.x };
+    return {
+      origin: tip.clone().addScaledVector(axes.x, 6 * percentM),
+      along: axes.y.clone().negate(),
+      side: axes.x,
+      scale: Math.min(1, (hangingPercent * percentM) / Math.max(tickM, lengthM)),
+    };
   const along = shaft.clone().negate();
   const side = along.clone().cross(axes.z);
-  return { origin: tip, along, side: side.lengthSq() > 1e-6 ? side.normalize() : axes.x };
+  return { origin: tip, along, side: side.lengthSq() > 1e-6 ? side.normalize() : axes.x, scale: 1 };
 }
 
 /** The way on which the tissue is sought. */
@@ -130,7 +145,7 @@ export class DepthRuler {
     }
     const sight = tip.clone().sub(input.eye).normalize();
     this.seek(input, tip, rulerWay(mode, shaft, sight));
-    const place = rulerPlace(mode, tip, shaft, input.axes, input.percentM);
+    const place = rulerPlace(mode, tip, shaft, input.axes, input.percentM, this.lengthM ?? rulerReachM);
     this.drawScale(place, input);
     this.drawGauge(nearestPair(tips[0] ?? [], tips[1] ?? []), input);
   }
@@ -158,7 +173,7 @@ export class DepthRuler {
     const at = (t: number) =>
       place.origin
         .clone()
-        .addScaledVector(place.along, t)
+        .addScaledVector(place.along, t * place.scale)
         .addScaledVector(place.side, 0.0012 + 1.5 * percentM);
     this.numbers.forEach((n, k) => {
       const t = tickM * numbered * (k + 1);

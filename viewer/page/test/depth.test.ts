@@ -52,7 +52,7 @@ describe('the way to the tissue', () => {
 });
 
 describe('the ruler', () => {
-  const place = { origin: v(0, 0, 0.01), along: v(0, 0, -1), side: v(1, 0, 0) };
+  const place = { origin: v(0, 0, 0.01), along: v(0, 0, -1), side: v(1, 0, 0), scale: 1 };
 
   it('has a tick each millimetre, a long one at five, and ends at the tissue', () => {
     const points = rulerStrokes(place, 0.0063);
@@ -70,17 +70,23 @@ describe('the ruler', () => {
 
   it('goes along the tool from its tip, or hangs in the picture beside it', () => {
     const shaft = v(0, 0.6, 0.8);
-    const tool = rulerPlace('tool', v(0, 0, 0), shaft, axes, 0.001);
+    const tool = rulerPlace('tool', v(0, 0, 0), shaft, axes, 0.001, 0.03);
     expect(tool.along.dot(shaft)).toBeCloseTo(-1, 12);
     expect(tool.side.dot(shaft)).toBeCloseTo(0, 12);
     expect(tool.side.dot(axes.z)).toBeCloseTo(0, 12);
-    const sight = rulerPlace('sight', v(0, 0, 0), shaft, axes, 0.001);
+    const sight = rulerPlace('sight', v(0, 0, 0), shaft, axes, 0.001, 0.03);
     expect(sight.along.dot(axes.z)).toBeCloseTo(0, 12);
     expect(sight.origin.toArray()).toEqual([0.006, 0, 0]);
     expect(rulerWay('tool', shaft, v(0, 0, -1)).dot(shaft)).toBeCloseTo(-1, 12);
     expect(rulerWay('sight', shaft, v(0, 0, -1)).toArray()).toEqual([0, 0, -1]);
+    // In a picture of 20 mm it is drawn shorter, with all of its millimetres.
+    const small = rulerPlace('sight', v(0, 0, 0), shaft, axes, 0.0002, 0.03);
+    expect([sight.scale, small.scale]).toEqual([1, expect.closeTo(0.24, 9)]);
+    const strokes = rulerStrokes(small, 0.03);
+    expect(strokes[4]! - strokes[1]!).toBeCloseTo(-0.0072, 9);
+    expect(strokes).toHaveLength(6 * (1 + 29 + 1));
     // A tool along the line of sight still has a side for its ticks.
-    expect(rulerPlace('tool', v(0, 0, 0), axes.z, axes, 0.001).side.length()).toBeCloseTo(1, 12);
+    expect(rulerPlace('tool', v(0, 0, 0), axes.z, axes, 0.001, 0.03).side.length()).toBeCloseTo(1, 12);
   });
 
   it('gauges the nearest points of two tools', () => {

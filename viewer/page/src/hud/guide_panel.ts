@@ -60,7 +60,11 @@ export class GuidePanel {
     back.onclick = () => step(-1);
     next.onclick = () => step(1);
     this.assist.onclick = () => turn();
-    this.root.append(el('header', {}, this.title, el('span', {}, this.assist, back, next)), this.todo, this.list);
+    this.root.append(
+      el('header', {}, this.title, el('span', {}, back, next)),
+      this.list,
+      el('div', { class: 'guide-foot' }, this.todo, this.assist),
+    );
     this.root.hidden = true;
   }
 
