@@ -84,6 +84,7 @@ function exerciseOf(e: Json): types.ExerciseData {
     guide: list(e.guide).map((g) => ({
       hand: g.hand === 'left' ? 'left' : 'right',
       tool: g.tool ?? '',
+      timeS: Number(g.time_s) || 0,
       p: g.p_m,
       q: g.q,
       button1: g.button1 === true,

@@ -115,6 +115,8 @@ export interface ExerciseData {
 export interface GuidePose {
   hand: 'left' | 'right';
   tool: string;
+  /** When the example is there. */
+  timeS: number;
   p: [number, number, number];
   /** w x y z */
   q: [number, number, number, number];

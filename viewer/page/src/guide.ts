@@ -7,11 +7,14 @@ import type { Bundle, GuidePose } from './bundle_types';
 /** A pose counts as reached within these. */
 const nearM = 0.003;
 const nearRad = THREE.MathUtils.degToRad(15);
+/** The other hand comes first when its target is earlier in the example by more than this. */
+const aheadS = 0.5;
 /** Later poses that may be reached at once, if no button changes on the way. */
 const skipped = 12;
 
 interface Target {
   tool: string;
+  timeS: number;
   p: THREE.Vector3;
   q: THREE.Quaternion;
   button1: boolean;
@@ -67,6 +70,7 @@ const sameButtons = (a: Target, b: Target): boolean => a.button1 === b.button1 &
 
 const targetOf = (g: GuidePose): Target => ({
   tool: g.tool,
+  timeS: g.timeS,
   p: new THREE.Vector3(...g.p),
   q: new THREE.Quaternion(g.q[1], g.q[2], g.q[3], g.q[0]),
   button1: g.button1,
@@ -95,6 +99,14 @@ export class Guide {
     const list = this.targets[hand] ?? [];
     const at = this.at[hand] ?? 0;
     return list[at] ? { target: list[at], at, of: list.length } : null;
+  }
+
+  /** Whether the example moves the other hand before this one reaches its target. */
+  waits(hand: number): boolean {
+    const mine = this.target(hand);
+    const other = this.target(1 - hand);
+    if (!other) return false;
+    return !mine || other.target.timeS < mine.target.timeS - aheadS;
   }
 
   /** To another target, by hand. */

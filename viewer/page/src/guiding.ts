@@ -67,7 +67,7 @@ export class Guiding {
     if (!next) return null;
     const { target, at, of } = next;
     const offset = offsetOf(p, q, target, axes);
-    this.view = { at, of, offset, todo: '' };
+    this.view = { at, of, offset, todo: '', waits: this.guide.waits(hand) };
     if (target.tool !== id) {
       const tool = bundle.tools.find((t) => t.id === target.tool);
       this.view.todo = `Take up the ${tool?.title ?? target.tool}`;

@@ -82,6 +82,7 @@ describe('the guide', () => {
   const axes = { x: new THREE.Vector3(1, 0, 0), y: new THREE.Vector3(0, 1, 0), z: new THREE.Vector3(0, 0, 1) };
   const pose = (p: [number, number, number], button1 = false): GuidePose => ({
     hand: 'right',
+    timeS: 0,
     tool: 'applier',
     p,
     q: [1, 0, 0, 0],
@@ -107,6 +108,19 @@ describe('the guide', () => {
     // Carrying the turns out leads to the target.
     const turned = q.clone().premultiply(new THREE.Quaternion().setFromAxisAngle(axes.z, o.roll));
     expect(turned.angleTo(target.q)).toBeCloseTo(0, 6);
+  });
+
+  it('says when the example moves the other hand first', () => {
+    const guide = new Guide();
+    const when = (hand: 'left' | 'right', x: number, timeS: number): GuidePose => ({ ...pose([x, 0, 0]), hand, timeS });
+    const poses = [when('left', 0, 1), when('left', 0.02, 9), when('right', 0, 4), when('right', 0.02, 9.3)];
+    guide.begin({ exercise: { guide: poses } } as unknown as Bundle);
+    expect([guide.waits(0), guide.waits(1)]).toEqual([false, true]);
+    guide.follow(0, at(0), q, none);
+    expect([guide.waits(0), guide.waits(1)]).toEqual([true, false]);
+    guide.follow(1, at(0), q, none);
+    // At nearly the same time both may go on.
+    expect([guide.waits(0), guide.waits(1)]).toEqual([false, false]);
   });
 
   it('goes on when a pose is reached with its buttons, and skips what lies on the way', () => {

@@ -10,6 +10,8 @@ export interface GuideView {
   offset: Offset;
   /** What the hand shall do that is no movement: "take up the applier", "hold button 1"; '': nothing. */
   todo: string;
+  /** The example moves the other hand before this one reaches its target. */
+  waits: boolean;
 }
 
 const nearM = 0.003;
@@ -45,6 +47,7 @@ export function directions(o: Offset): string[] {
 export class GuidePanel {
   readonly root = el('section', { class: 'panel guide', 'aria-label': 'target' });
   private readonly title = el('b');
+  private readonly waits = el('p', { class: 'waits' }, 'First the other hand: hold this one here (X)');
   private readonly todo = el('p', { class: 'todo' });
   private readonly list = el('ul');
   private readonly assist = el(
@@ -63,6 +66,7 @@ export class GuidePanel {
     this.root.append(
       el('header', {}, this.title, el('span', {}, back, next)),
       this.list,
+      this.waits,
       el('div', { class: 'guide-foot' }, this.todo, this.assist),
     );
     this.root.hidden = true;
@@ -74,6 +78,7 @@ export class GuidePanel {
     this.assist.setAttribute('aria-pressed', String(assists));
     if (!view) return;
     const { offset, at, of, todo } = view;
+    this.waits.hidden = !view.waits;
     const near = offset.distanceM < nearM && offset.angleRad < nearRad;
     setText(this.title, `Target ${at + 1} of ${of}: ${mm(offset.distanceM)}, ${degrees(offset.angleRad)}`);
     setText(this.todo, todo || (near ? '✓ there' : ''));
