@@ -9,9 +9,6 @@ const nearM = 0.003;
 const nearRad = THREE.MathUtils.degToRad(15);
 /** The other hand comes first when its target is earlier in the example by more than this. */
 const aheadS = 0.5;
-/** Later poses that may be reached at once, if no button changes on the way. */
-const skipped = 12;
-
 interface Target {
   tool: string;
   timeS: number;
@@ -66,8 +63,6 @@ export function offsetOf(p: THREE.Vector3, q: THREE.Quaternion, target: Pick<Tar
 const reached = (p: THREE.Vector3, q: THREE.Quaternion, t: Target): boolean =>
   p.distanceTo(t.p) < nearM && 2 * Math.acos(Math.min(1, Math.abs(q.dot(t.q)))) < nearRad;
 
-const sameButtons = (a: Target, b: Target): boolean => a.button1 === b.button1 && a.button2 === b.button2;
-
 const targetOf = (g: GuidePose): Target => ({
   tool: g.tool,
   timeS: g.timeS,
@@ -115,18 +110,15 @@ export class Guide {
     this.at[hand] = Math.max(0, Math.min(last, (this.at[hand] ?? 0) + by));
   }
 
-  /** Goes on when the tool is where it should be with its buttons as they should be, or is at a later pose. */
+  /**
+   * Goes on when the tool is where it should be with its buttons as they should be. No pose is passed over: sweeps come
+   * near much later poses on their way.
+   */
   follow(hand: number, p: THREE.Vector3, q: THREE.Quaternion, buttons: { button1: boolean; button2: boolean }): void {
-    const list = this.targets[hand] ?? [];
-    const from = this.at[hand] ?? 0;
-    for (let k = from; k < Math.min(list.length - 1, from + skipped); k++) {
-      const t = list[k]!;
-      if (!sameButtons(t, list[from]!)) return;
-      const done = t.button1 === buttons.button1 && t.button2 === buttons.button2;
-      if (done && reached(p, q, t)) {
-        this.at[hand] = k + 1;
-        return;
-      }
-    }
+    const at = this.at[hand] ?? 0;
+    const t = this.targets[hand]?.[at];
+    if (!t || at + 1 >= this.targets[hand]!.length) return;
+    const done = t.button1 === buttons.button1 && t.button2 === buttons.button2;
+    if (done && reached(p, q, t)) this.at[hand] = at + 1;
   }
 }

@@ -111,7 +111,7 @@ for (let seed = 1; seed <= seeds; seed++) {
   const running = startSession();
   const browser = await launch();
   try {
-    const page = await browser.newPage({ viewport: { width: 640, height: 420 } });
+    const page = await browser.newPage({ viewport: { width: 480, height: 320 } });
     const url = `http://127.0.0.1:${port + 1}/?quality=low`;
     for (let k = 0; k < 60 && !(await page.goto(url).catch(() => null)); k++) await pause(500);
     await page.waitForFunction(() => window.__insula?.ready, null, patience);
