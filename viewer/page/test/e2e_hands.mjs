@@ -73,7 +73,7 @@ async function practise(person, until) {
     if (here !== turnedFor) tries = 0;
     if (target.degrees > 12 && (here !== turnedFor || tries > 2)) {
       await page.keyboard.press('y');
-      await settled(person);
+      await person.settled();
       if (tries === 0) await person.tremble();
     }
     turnedFor = here;
@@ -96,22 +96,12 @@ function tell({ hand, target, goals, faults }, person) {
   console.log(`   ${seconds} s: hand ${hand}: ${at}; goals ${done}; ${faults.join('; ')}; ${scale}`);
 }
 
-/** Until the tool does not turn any more. */
-async function settled(person) {
-  let last = Infinity;
-  for (let k = 0; k < 20; k++) {
-    const now = (await person.look()).target?.degrees ?? 0;
-    if (Math.abs(now - last) < 1) return;
-    last = now;
-  }
-}
-
 let passed = 0;
 for (let seed = 1; seed <= seeds; seed++) {
   const running = startSession();
   const browser = await launch();
   try {
-    const page = await browser.newPage({ viewport: { width: 480, height: 320 } });
+    const page = await browser.newPage({ viewport: { width: 600, height: 500 } });
     const url = `http://127.0.0.1:${port + 1}/?quality=low`;
     for (let k = 0; k < 60 && !(await page.goto(url).catch(() => null)); k++) await pause(500);
     await page.waitForFunction(() => window.__insula?.ready, null, patience);

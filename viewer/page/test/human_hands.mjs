@@ -26,6 +26,7 @@ function readPanel() {
   const guide = document.querySelector('.guide');
   const ways = {};
   for (const li of document.querySelectorAll('.guide li')) {
+    if (!seen(li)) continue;
     const found = /^\S+ (deeper|back|right|left|up|down|roll|swing|tilt)(?: \((\w)\))? ([\d.]+)/.exec(li.textContent);
     if (found) ways[found[2] && 'QEADRF'.includes(found[2]) ? found[2] : found[1]] = Number(found[3]);
   }
@@ -64,6 +65,18 @@ export class Person {
     return this.page.evaluate(readPanel);
   }
 
+  /** Looks until the tool has come to rest; on a slow machine the picture is late. */
+  async settled() {
+    let last = await this.look();
+    for (let k = 0; k < 12; k++) {
+      const now = await this.look();
+      const still = (what) => Math.abs((now.target?.[what] ?? 0) - (last.target?.[what] ?? 0));
+      last = now;
+      if (still('mm') < 0.15 && still('degrees') < 1) break;
+    }
+    return last;
+  }
+
   /** Normal deviate. */
   error(sd) {
     return sd * Math.sqrt(-2 * Math.log(1 - this.random())) * Math.cos(2 * Math.PI * this.random());
@@ -79,7 +92,7 @@ export class Person {
     const { mouse, keyboard } = this.page;
     const { width, height } = this.page.viewportSize();
     const steps = Math.max(1, Math.ceil(Math.hypot(right, up, out) / stepM));
-    const from = [0.5 * width, 0.4 * height];
+    const from = [0.5 * width, 0.25 * height];
     const px = [right / this.mPerPx, -up / this.mPerPx];
     const clicks = out / wheelM;
     await mouse.move(...from);
@@ -139,11 +152,11 @@ export class Person {
     // Nobody overshoots a short way by its own length.
     const share = Math.min(1, Math.hypot(...way) / (2 * aimM));
     await this.move(way.map((w, k) => w + share * error[k]));
-    const after = await this.look();
+    const after = await this.settled();
     if (far < 0.006 || after.target?.at !== view.target.at) return after;
     const left = this.wayOf(after);
     const gone = Math.hypot(way[0] - left[0] + share * error[0], way[1] - left[1] + share * error[1]);
-    this.mPerPx *= Math.max(0.5, Math.min(2, gone / far));
+    this.mPerPx *= Math.max(0.7, Math.min(1.5, gone / far));
     return after;
   }
 }
