@@ -80,8 +80,12 @@ async function practise(person, until) {
     tries++;
     view = await person.look();
     if (view.target?.at !== target.at || view.hand < 0) continue;
-    if (view.target.mm < 3 && /button/.test(view.todo)) await press(person, view);
-    else if (tries > 12) await page.keyboard.press('n');
+    if (view.target.mm < 3 && /button/.test(view.todo)) {
+      await press(person, view);
+      view = await person.settled();
+      continue;
+    }
+    if (tries > 12) await page.keyboard.press('n');
     view = await person.reach(view);
     if (tries === 1 || process.env.VERBOSE) tell(view, person);
   }

@@ -19,6 +19,9 @@ function chance(seed) {
   return () => (x = (x * 48271) % 2147483647) / 2147483647;
 }
 
+/** Runs in the page: until a picture has been drawn after what was done before. */
+const nextPicture = () => new Promise((r) => requestAnimationFrame(() => requestAnimationFrame(() => r(null))));
+
 /** What the guide's panel says, as a person reads it: mm and degrees by direction. Runs in the page. */
 function readPanel() {
   const seen = (e) => e !== null && e.checkVisibility();
@@ -59,9 +62,10 @@ export class Person {
     this.began = Date.now();
   }
 
-  /** Looks, and takes a moment to understand. */
+  /** Looks at a new picture, and takes a moment to understand. */
   async look() {
     await this.wait(reactionMs);
+    await this.page.evaluate(nextPicture);
     return this.page.evaluate(readPanel);
   }
 
