@@ -84,6 +84,7 @@ function exerciseOf(e: Json): types.ExerciseData {
     guide: list(e.guide).map((g) => ({
       hand: g.hand === 'left' ? 'left' : 'right',
       tool: g.tool ?? '',
+      timeS: Number(g.time_s) || 0,
       p: g.p_m,
       q: g.q,
       button1: g.button1 === true,
@@ -140,7 +141,11 @@ async function toolOf(files: Files, t: Json): Promise<types.ToolData> {
     title: t.title || spoken(t.id),
     hinges,
     picture: t.picture ? files.address(t.picture) : null,
-    properties: list(t.properties).map((p) => ({ name: String(p.name ?? ''), text: propertyText(p) })),
+    properties: list(t.properties).map((p) => ({
+      name: String(p.name ?? ''),
+      text: propertyText(p),
+      value: typeof p.value === 'number' && Number.isFinite(p.value) ? p.value : null,
+    })),
     tags: Array.isArray(t.tags) ? t.tags.map(String) : [],
     parts: await Promise.all(parts),
   };

@@ -71,8 +71,8 @@ export interface ToolData {
   parts: ToolPart[];
   /** Address of its picture, or null. */
   picture: string | null;
-  /** What a list tells of it, as text: "7 mm". */
-  properties: { name: string; text: string }[];
+  /** What a list tells of it, as text: "7 mm". value: in SI; null: it is no number. */
+  properties: { name: string; text: string; value: number | null }[];
   tags: string[];
 }
 
@@ -115,6 +115,8 @@ export interface ExerciseData {
 export interface GuidePose {
   hand: 'left' | 'right';
   tool: string;
+  /** When the example is there. */
+  timeS: number;
   p: [number, number, number];
   /** w x y z */
   q: [number, number, number, number];

@@ -10,6 +10,15 @@ interface Pose {
   distance: number;
 }
 
+/** How the field is looked at, for what is drawn as large as the picture is. */
+export interface Sight {
+  /** Of the picture in the scene: x right, y up, z to the viewer. */
+  axes: { x: THREE.Vector3; y: THREE.Vector3; z: THREE.Vector3 };
+  /** A hundredth of the picture's height at its focus, m. */
+  percentM: number;
+  eye: THREE.Vector3;
+}
+
 export class Microscope {
   readonly camera = new THREE.PerspectiveCamera(30, 1, 0.01, 3);
   readonly lamp = new THREE.SpotLight(0xfff2e2, 3.3, 0, 0.2, 0.8, 0);
@@ -106,9 +115,13 @@ export class Microscope {
     return (2 * distance * Math.tan(THREE.MathUtils.degToRad(this.camera.fov) / 2)) / heightPx;
   }
 
-  /** To the right in the picture, as long as a hundredth of the picture is high at its focus, m. */
-  percentRight(): THREE.Vector3 {
-    return this.axes().x.multiplyScalar(this.metresPerPixel(this.distance, 100));
+  /** A hundredth of the picture's height at its focus, m. */
+  get percentM(): number {
+    return this.metresPerPixel(this.distance, 100);
+  }
+
+  get sight(): Sight {
+    return { axes: this.axes(), percentM: this.percentM, eye: this.camera.position };
   }
 
   update(dt: number, aspect: number): void {

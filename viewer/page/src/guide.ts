@@ -7,11 +7,11 @@ import type { Bundle, GuidePose } from './bundle_types';
 /** A pose counts as reached within these. */
 const nearM = 0.003;
 const nearRad = THREE.MathUtils.degToRad(15);
-/** Later poses that may be reached at once, if no button changes on the way. */
-const skipped = 12;
-
+/** The other hand comes first when its target is earlier in the example by more than this. */
+const aheadS = 0.5;
 interface Target {
   tool: string;
+  timeS: number;
   p: THREE.Vector3;
   q: THREE.Quaternion;
   button1: boolean;
@@ -63,10 +63,9 @@ export function offsetOf(p: THREE.Vector3, q: THREE.Quaternion, target: Pick<Tar
 const reached = (p: THREE.Vector3, q: THREE.Quaternion, t: Target): boolean =>
   p.distanceTo(t.p) < nearM && 2 * Math.acos(Math.min(1, Math.abs(q.dot(t.q)))) < nearRad;
 
-const sameButtons = (a: Target, b: Target): boolean => a.button1 === b.button1 && a.button2 === b.button2;
-
 const targetOf = (g: GuidePose): Target => ({
   tool: g.tool,
+  timeS: g.timeS,
   p: new THREE.Vector3(...g.p),
   q: new THREE.Quaternion(g.q[1], g.q[2], g.q[3], g.q[0]),
   button1: g.button1,
@@ -97,24 +96,29 @@ export class Guide {
     return list[at] ? { target: list[at], at, of: list.length } : null;
   }
 
+  /** Whether the example moves the other hand before this one reaches its target. */
+  waits(hand: number): boolean {
+    const mine = this.target(hand);
+    const other = this.target(1 - hand);
+    if (!other) return false;
+    return !mine || other.target.timeS < mine.target.timeS - aheadS;
+  }
+
   /** To another target, by hand. */
   step(hand: number, by: 1 | -1): void {
     const last = (this.targets[hand]?.length ?? 1) - 1;
     this.at[hand] = Math.max(0, Math.min(last, (this.at[hand] ?? 0) + by));
   }
 
-  /** Goes on when the tool is where it should be with its buttons as they should be, or is at a later pose. */
+  /**
+   * Goes on when the tool is where it should be with its buttons as they should be. No pose is passed over: sweeps come
+   * near much later poses on their way.
+   */
   follow(hand: number, p: THREE.Vector3, q: THREE.Quaternion, buttons: { button1: boolean; button2: boolean }): void {
-    const list = this.targets[hand] ?? [];
-    const from = this.at[hand] ?? 0;
-    for (let k = from; k < Math.min(list.length - 1, from + skipped); k++) {
-      const t = list[k]!;
-      if (!sameButtons(t, list[from]!)) return;
-      const done = t.button1 === buttons.button1 && t.button2 === buttons.button2;
-      if (done && reached(p, q, t)) {
-        this.at[hand] = k + 1;
-        return;
-      }
-    }
+    const at = this.at[hand] ?? 0;
+    const t = this.targets[hand]?.[at];
+    if (!t || at + 1 >= this.targets[hand]!.length) return;
+    const done = t.button1 === buttons.button1 && t.button2 === buttons.button2;
+    if (done && reached(p, q, t)) this.at[hand] = at + 1;
   }
 }

@@ -25,6 +25,8 @@ type TargetStatus = { at: number; of: number; distance_m: number; angle_rad: num
 export class Guiding {
   readonly root: THREE.Group;
   view: GuideView | null = null;
+  /** How the tool of the guided hand should be turned; null: it has no target. */
+  private turn: { hand: number; q: THREE.Quaternion } | null = null;
   private readonly guide = new Guide();
   private readonly ghost = new TargetGhost();
 
@@ -46,8 +48,13 @@ export class Guiding {
     this.guide.step(hand, by);
   }
 
+  /** How the tool of a hand should be turned for its target; null: there is none. */
+  wanted(hand: number): THREE.Quaternion | null {
+    return this.turn?.hand === hand ? this.turn.q : null;
+  }
+
   update({ frame, bundle, hand, axes }: GuidingInput): TargetStatus {
-    this.view = null;
+    this.view = this.turn = null;
     this.ghost.hide();
     const held = frame && bundle && hand >= 0 ? toolInHand(frame, bundle, hand) : null;
     if (!frame || !bundle || !held) return null;
@@ -60,11 +67,12 @@ export class Guiding {
     if (!next) return null;
     const { target, at, of } = next;
     const offset = offsetOf(p, q, target, axes);
-    this.view = { at, of, offset, todo: '' };
+    this.view = { at, of, offset, todo: '', waits: this.guide.waits(hand) };
     if (target.tool !== id) {
       const tool = bundle.tools.find((t) => t.id === target.tool);
       this.view.todo = `Take up the ${tool?.title ?? target.tool}`;
     } else {
+      this.turn = { hand, q: target.q };
       this.view.todo = buttonsToDo(target, buttons);
       if (offset.distanceM > ghostFromM || offset.angleRad > ghostFromRad)
         this.ghost.show(frame, held, target.p, target.q);

@@ -9,6 +9,8 @@ export type Button = 1 | 2;
 
 export class HandPose {
   taken = false;
+  /** It is held where it is; nothing moves it until it is active again. */
+  resting = false;
   readonly p = new THREE.Vector3();
   readonly q = new THREE.Quaternion();
   private readonly held = { 1: false, 2: false };
@@ -58,7 +60,7 @@ export class HandPose {
   }
 
   release(): void {
-    this.taken = false;
+    this.taken = this.resting = false;
     for (const b of [1, 2] as const) this.held[b] = this.kept[b] = false;
   }
 
@@ -71,6 +73,12 @@ export class HandPose {
   /** Direction of the tool's shaft, from the tip. */
   shaft(): THREE.Vector3 {
     return new THREE.Vector3(0, 0, 1).applyQuaternion(this.q);
+  }
+
+  /** Turns about the tip towards an orientation by no more than an angle; true: it is there. */
+  turnTo(wanted: THREE.Quaternion, atMost: number): boolean {
+    this.q.rotateTowards(wanted, atMost).normalize();
+    return this.q.angleTo(wanted) < 1e-6;
   }
 
   /** Turns about the tip, axis in the scene. */

@@ -2,6 +2,7 @@
 // WebXR: in a headset the microscope's stereo picture hangs before the head as a screen, each eye with its own
 // picture, and under it the lines a trainee needs (timers, messages, the training note).
 import * as THREE from 'three';
+import { type Controller, readControllers } from './controller_hands';
 import { Eyepiece, takeBoth, type LensSettings } from './lens';
 
 const screenM = 1.5;
@@ -47,6 +48,15 @@ export class Headset {
 
   get presenting(): boolean {
     return this.renderer.xr.isPresenting;
+  }
+
+  /** Those that are seen in the present picture. */
+  get controllers(): Controller[] {
+    const { xr } = this.renderer;
+    const session = xr.isPresenting ? xr.getSession() : null;
+    const room = xr.getReferenceSpace();
+    const frame = session ? (xr.getFrame() as XRFrame | null) : null;
+    return session && room && frame ? readControllers(session.inputSources, frame, room) : [];
   }
 
   /** pixel_ratio: of the quality level. */

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Puts the page together: connection, scene, microscope, hands, HUD, and the loop that draws.
 import * as THREE from 'three';
-import { bannerText } from './banner';
 import { loadBundle } from './bundle';
 import type { Bundle } from './bundle_types';
 import { Connection, socketUrl } from './connection';
+import { ControllerHands } from './controller_hands';
 import { Expected } from './expected';
 import { Graphics } from './graphics';
 import { Guiding } from './guiding';
+import { listenForHands } from './hand_inputs';
 import { toolInHand } from './hand_tool';
 import { Hands } from './hands';
 import { Headset } from './headset';
 import type { UserCommand } from './hud/commands';
 import { Hud } from './hud/hud';
-import { firstControl } from './hud/focus';
+import { showHud } from './show_hud';
 import './hud/styles';
 import { headsetLines } from './hud/timers';
 import type { HapticStatus, SceneInfo } from './lcm';
@@ -29,6 +30,7 @@ import { Stage } from './stage';
 import { status, tellPicture } from './status';
 import { Reading } from './step_data/reading';
 import { ViewModes } from './view_modes';
+import { TakeBack } from './take_back';
 import { quaternion, vector, World } from './world';
 
 const options = parseOptions(location.search);
@@ -38,6 +40,7 @@ const stage = new Stage(document.getElementById('view') as HTMLCanvasElement);
 const { canvas, scene, scope } = stage;
 const highlight = new Highlight();
 scene.add(highlight.root);
+const takeBack = new TakeBack();
 const guiding = new Guiding();
 scene.add(guiding.root);
 const playback = new Playback();
@@ -102,6 +105,7 @@ const hud = new Hud(
     stereo: (mode) => modes.setStereo(mode, true),
     angle: (deg) => modes.setAngle(deg),
     infrared: (on) => modes.setInfrared(on),
+    nextRuler: () => modes.nextRuler(),
     quality: (name) => {
       watch = new QualityWatch(name === '' ? null : (name as 'low'));
       applyQuality();
@@ -110,7 +114,9 @@ const hud = new Hud(
     releaseHand: (h) => hands.release(h),
     button: (b, on) => hands.press(b, on),
     toggleLatch: (h, b) => hands.toggleLatch(h, b),
+    holdHere: (h) => hands.holdHere(h),
     stepGuide: (by) => guiding.step(hands.active, by),
+    turnToTarget: () => hands.toggleAssist(),
     chooseItem: (item) => {
       highlight.show(item);
       const at = item && middle(item);
@@ -132,35 +138,29 @@ const modes: ViewModes = new ViewModes(options, headset, {
     hudRoot.dataset.stereo = status.stereo = mode;
     hud.view.showStereo(mode, angle, found, presenting);
   },
+  ruler: (mode) => hud.view.showRuler(mode),
   refuse: (why) => hud.refuse(why, performance.now()),
 });
 
-const hands: Hands = new Hands(
-  canvas,
-  scope,
-  link,
-  {
-    toolPose: (hand) => {
-      const t = playback.latest && world ? toolInHand(playback.latest, world.bundle, hand) : null;
-      return t ? { p: vector(t.p_m), q: quaternion(t.q) } : null;
-    },
+const toolPose = (hand: number) => {
+  const t = playback.latest && world ? toolInHand(playback.latest, world.bundle, hand) : null;
+  return t ? { p: vector(t.p_m), q: quaternion(t.q) } : null;
+};
+const tellHands = () => {
+  status.taken = hands.hands.map((h) => h.taken);
+  status.buttons = hands.hands.map((h) => [h.button1, h.button2]);
+  status.active = hands.active;
+};
+const wanted = (hand: number) => guiding.wanted(hand);
+const hands: Hands = new Hands(scope, link, { toolPose, wanted }, tellHands, mayDrive);
+const controllers = new ControllerHands(hands);
+listenForHands(hands, {
+  ...{ canvas, scope, hud, hudRoot, toolPose, changed: tellHands },
+  focusAt: (x, y) => {
+    if (world) stage.focusAt(x, y);
   },
-  {
-    focusAt: (x, y) => {
-      if (world) stage.focusAt(x, y);
-    },
-    togglePause: () => run({ command: playback.latest?.paused ? 'resume' : 'pause', argument: '' }),
-    toggleHelp: () => hud.toggleHelp(),
-    nextTool: (hand, step) => hud.nextTool(hand, step),
-    leaveField: () => firstControl(hudRoot)?.focus(),
-    changed: () => {
-      status.taken = hands.hands.map((h) => h.taken);
-      status.buttons = hands.hands.map((h) => [h.button1, h.button2]);
-      status.active = hands.active;
-    },
-  },
-  mayDrive,
-);
+  togglePause: () => run({ command: playback.latest?.paused ? 'resume' : 'pause', argument: '' }),
+});
 
 function letHandsGo(): void {
   hands.releaseAll();
@@ -169,6 +169,7 @@ function letHandsGo(): void {
 
 listenForShortcuts({
   u: () => modes.toggleDepth(),
+  k: () => modes.nextRuler(),
   l: () => hud.toggleToolList(),
   i: () => modes.setInfrared(!modes.infrared),
   j: () => hud.view.askGlow(),
@@ -206,6 +207,7 @@ async function follow(m: SceneInfo): Promise<void> {
     playback.clear();
     hands.releaseAll();
     guiding.begin(bundle);
+    takeBack.begin(bundle);
     scope.setHome(bundle.view);
     build(bundle);
     reading.begin(bundle);
@@ -238,11 +240,15 @@ const pace = new Pace((fps, seconds) => {
 function draw(now: number): void {
   const pictureMs = pace.begin(now);
   const presenting = headset.presenting;
+  controllers.move(headset.controllers);
   stage.update(Math.min(0.1, pictureMs / 1000), modes.stereo, presenting);
   reading.read(playback.latest);
-  world?.update(playback, now, reading.channels, scope.percentRight());
-  world?.showDepth(modes.depth);
-  status.tip_mm = world?.tipDistancesMm ?? [];
+  const within = playback.latest ? takeBack.nearest(playback.latest) : null;
+  if (world) {
+    world.cues.choice = { plumb: modes.depth, ruler: modes.ruler, hand: hands.active, within };
+    world.update(playback, now, reading.channels, scope.sight);
+    Object.assign(status, world.cues.told);
+  }
   status.target = guiding.update({
     frame: playback.latest,
     bundle: world?.bundle ?? null,
@@ -258,44 +264,21 @@ function draw(now: number): void {
   status.ready = world !== null && playback.frames > 0;
   if (!graphics.lost) status.pictures++;
   pace.count(now, !graphics.lost);
-  if (options.hud) showHud(now, (heardMs, limitMs) => silent(now, heardMs, limitMs, pictureMs));
-}
-
-function showHud(now: number, quiet: (heardMs: number, limitMs: number) => boolean): void {
-  const frame = playback.latest;
-  const { channels, state } = reading;
+  if (!options.hud) return;
+  const quiet = (heardMs: number, limitMs: number) => silent(now, heardMs, limitMs, pictureMs);
   const active = mayDrive ? hands.active : -1;
-  if (frame && world)
-    hud.showFrame({
-      frame,
-      channels,
-      state,
-      active,
-      hands: hands.view(),
-      guide: guiding.view,
-      ready: status.ready,
-    });
-  const freshHaptic = quiet(heard.haptic, 3000) ? null : haptic;
-  hud.showMachine(quiet(heard.frame, 2500) ? null : frame, freshHaptic, status.fps, status.quality);
-  const alive = link.open && !quiet(heard.frame, 1000);
-  hud.showLink(link.open ? (alive ? 'connected' : 'gateway only') : 'disconnected', alive);
-  hud.showBanner(
-    bannerText({
-      graphics: graphics.lost ? graphics.notice(now) : '',
-      connected: link.open,
-      info,
-      infoQuiet: quiet(heard.info, 4000),
-      framesQuiet: quiet(heard.frame, 2500),
-      loadError,
-      built: world !== null,
-      frames: playback.frames,
-      paused: frame?.paused ?? false,
-      still: world?.bundle.inventory != null || hud.session.open,
-    }),
-  );
-  hud.showNotice(info && info.state !== 'error' ? info.message : '');
-  hud.showProblems(status.problems);
-  hud.tick(now);
+  const picture = {
+    world,
+    within,
+    frame: playback.latest,
+    reading,
+    active,
+    hands: hands.view(),
+    guide: guiding.view,
+    assisted: hands.assisted,
+  };
+  const graphicsLost = graphics.lost ? graphics.notice(now) : '';
+  showHud(hud, picture, { link, info, haptic, heard, loadError, graphicsLost, frames: playback.frames }, now, quiet);
 }
 
 hands.start();

@@ -21,6 +21,9 @@ export const status = {
   calls: 0,
   /** Of each hand's tip from the tissue; null: no cue. */
   tip_mm: [] as (number | null)[],
+  /** Of the ruler: from the tip to the tissue, and between both tips; null: not shown, or too far. */
+  ruler_mm: null as number | null,
+  apart_mm: null as number | null,
   stereo: 'off',
   infrared: false,
   presenting: false,

@@ -7,6 +7,8 @@ import { type NodeField, skinOffsets, skinVertex } from './skinning';
 
 /** Vertices of one cell are represented by one of them, m. */
 const cellM = 0.0025;
+/** A way ends this near the tissue, m. */
+const hitM = 0.00005;
 
 export interface Foot {
   /** On the tissue, scene frame, m. */
@@ -20,6 +22,17 @@ export interface Foot {
 interface Vertex {
   place: number[];
   normal: number[];
+}
+
+type Place = Pick<Foot, 'place' | 'normal'>;
+
+/** On the tangent plane of a vertex: between vertices the tissue is nearly flat. */
+function footAt(vertex: THREE.Vector3, normal: THREE.Vector3, point: THREE.Vector3): Foot {
+  const distanceM = point.clone().sub(vertex).dot(normal);
+  const place = point.clone().addScaledVector(normal, -distanceM);
+  // Beside a sharp crest the plane goes past the tissue: then the vertex itself is the place.
+  if (place.distanceTo(vertex) <= cellM) return { place, normal, distanceM };
+  return { place: vertex, normal, distanceM: point.distanceTo(vertex) };
 }
 
 export class TissueProbe {
@@ -71,16 +84,51 @@ export class TissueProbe {
     return found < 0 ? null : this.foot(found, point);
   }
 
-  /** On the tangent plane of a vertex: between vertices the tissue is nearly flat. */
+  /**
+   * How far it is from a point along a unit direction to the tissue, m; null: no tissue within `reach`. The way is
+   * gone in steps no longer than the distance to the tissue (sphere tracing).
+   */
+  along(from: THREE.Vector3, direction: THREE.Vector3, reach: number): number | null {
+    const near = this.beside(from, direction, reach);
+    const point = new THREE.Vector3();
+    for (let t = 0; t <= reach && near.length > 0;) {
+      point.copy(from).addScaledVector(direction, t);
+      let best = near[0]!;
+      for (const v of near) if (v.place.distanceToSquared(point) < best.place.distanceToSquared(point)) best = v;
+      const { distanceM } = footAt(best.place, best.normal, point);
+      if (distanceM < hitM) return t;
+      t += Math.max(hitM, distanceM);
+    }
+    return null;
+  }
+
+  /** Vertices beside the way from a point along a unit direction. */
+  private beside(from: THREE.Vector3, direction: THREE.Vector3, reach: number): Place[] {
+    const spread = 2 * cellM;
+    const way = new THREE.Line3(from, from.clone().addScaledVector(direction, reach));
+    const place = new THREE.Vector3();
+    const closest = new THREE.Vector3();
+    const found: Place[] = [];
+    for (const cell of this.cells) {
+      this.locate(cell[0]!);
+      place.fromArray(this.scratch.place);
+      if (way.closestPointToPoint(place, true, closest).distanceTo(place) > spread) continue;
+      for (const v of cell) {
+        this.locate(v);
+        found.push({
+          place: new THREE.Vector3().fromArray(this.scratch.place),
+          normal: new THREE.Vector3().fromArray(this.scratch.normal),
+        });
+      }
+    }
+    return found;
+  }
+
   private foot(v: number, point: THREE.Vector3): Foot {
     this.locate(v);
     const vertex = new THREE.Vector3().fromArray(this.scratch.place);
     const normal = new THREE.Vector3().fromArray(this.scratch.normal);
-    const distanceM = point.clone().sub(vertex).dot(normal);
-    const place = point.clone().addScaledVector(normal, -distanceM);
-    // Beside a sharp crest the plane goes past the tissue: then the vertex itself is the place.
-    if (place.distanceTo(vertex) <= cellM) return { place, normal, distanceM };
-    return { place: vertex, normal, distanceM: point.distanceTo(vertex) };
+    return footAt(vertex, normal, point);
   }
 
   private distance(v: number, point: THREE.Vector3): number {

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How the field is looked at: one eye or two, in a headset, in infrared; kept in one place for keys, buttons and the
 // address line.
+import { type RulerMode, rulerModes } from './depth_ruler';
 import type { Headset } from './headset';
 import { clampAngle, type StereoMode } from './stereo';
 
 export interface ViewOutputs {
   infrared(on: boolean): void;
   stereo(mode: StereoMode, angleDeg: number, headset: boolean, presenting: boolean): void;
+  ruler(mode: RulerMode): void;
   refuse(why: string): void;
 }
 
@@ -16,6 +18,8 @@ export class ViewModes {
   infrared: boolean;
   /** Whether the depth of the tips is drawn. */
   depth: boolean;
+  /** The scale from the tip of the active hand to the tissue. */
+  ruler: RulerMode = 'off';
   private headsetFound = false;
 
   constructor(
@@ -36,6 +40,7 @@ export class ViewModes {
   tell(): void {
     this.out.infrared(this.infrared);
     this.out.stereo(this.stereo, this.angleDeg, this.headsetFound, this.headset.presenting);
+    this.out.ruler(this.ruler);
   }
 
   setInfrared(on: boolean): void {
@@ -45,6 +50,11 @@ export class ViewModes {
 
   toggleDepth(): void {
     this.depth = !this.depth;
+  }
+
+  nextRuler(): void {
+    this.ruler = rulerModes[(rulerModes.indexOf(this.ruler) + 1) % rulerModes.length]!;
+    this.tell();
   }
 
   setAngle(deg: number): void {

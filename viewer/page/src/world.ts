@@ -2,7 +2,7 @@
 // Everything drawn of one session: built from a bundle, moved by frames, thrown away when the session changes.
 import * as THREE from 'three';
 import type { Bundle } from './bundle_types';
-import { DepthCue } from './depth_cue';
+import type { Sight } from './camera';
 import { DrawableSet } from './drawables/drawable_set';
 import type { RenderFrame } from './lcm';
 import { FieldUniforms } from './materials/field';
@@ -10,12 +10,14 @@ import { pressedCount } from './materials/tissue';
 import type { Playback } from './playback';
 import { Scenery } from './scenery';
 import type { Channels } from './step_data/channels';
+import { TipCues } from './tip_cues';
 import { Tool } from './tools';
 
 export class World {
   readonly root = new THREE.Group();
   /** What is wrong with the newest frame's drawables, one line each. */
   problems: string[] = [];
+  readonly cues = new TipCues();
   private readonly field = new FieldUniforms();
   private readonly tools: Tool[];
   private readonly scenery: Scenery;
@@ -23,8 +25,6 @@ export class World {
   private readonly pulseChannel: string;
   private readonly pressed = Array.from({ length: pressedCount }, () => new THREE.Vector4());
   private infrared = false;
-  private readonly cues = [new DepthCue(), new DepthCue()];
-  private cuesShown = true;
   private lastMs = -1;
 
   constructor(
@@ -37,22 +37,12 @@ export class World {
     for (const t of this.tools) t.addTo(this.root);
     this.drawables = new DrawableSet(bundle, this.field, environment);
     this.pulseChannel = bundle.bodies.find((b) => b.pulseChannel !== '')?.pulseChannel ?? '';
-    this.root.add(this.scenery.root, this.drawables.root, ...this.cues.map((c) => c.root));
+    this.root.add(this.scenery.root, this.drawables.root, this.cues.root);
   }
 
   /** The infrared camera's picture instead of the eye's. */
   setInfrared(on: boolean): void {
     this.infrared = on;
-  }
-
-  /** Plumb lines from the tips of the tools in the hands to the tissue. */
-  showDepth(shown: boolean): void {
-    this.cuesShown = shown;
-  }
-
-  /** Distance of the tip of each hand's tool from the tissue, mm; null: none, or too far. */
-  get tipDistancesMm(): (number | null)[] {
-    return this.cues.map((c) => c.distanceM).map((d) => (d === null ? null : 1000 * d));
   }
 
   /** Simpler shaders and fewer drops for slow machines. */
@@ -70,8 +60,7 @@ export class World {
     this.scenery.setCheap(cheap);
   }
 
-  /** `right`: to the right in the picture, as long as a hundredth of the picture is high at its focus. */
-  update(playback: Playback, nowMs: number, channels: Channels, right: THREE.Vector3): void {
+  update(playback: Playback, nowMs: number, channels: Channels, sight: Sight): void {
     const frame = playback.latest;
     if (!frame) return;
     const dt = this.lastMs < 0 ? 0 : Math.min(1, (nowMs - this.lastMs) / 1000);
@@ -82,26 +71,15 @@ export class World {
     this.updateLight(channels, frame.sim_time_s, dt);
     this.problems = this.drawables.update(playback, t, { dt, seconds: nowMs / 1000 });
     for (const tool of this.tools) moveTool(tool, playback, t);
-    this.cues.forEach((cue, hand) => {
-      const tips = this.cuesShown ? this.leadingTips(frame, hand) : [];
-      cue.update(tips, this.scenery.probes, nowMs / 1000, right);
-    });
+    this.cues.update(frame, this.tools, this.scenery.probes, nowMs / 1000, sight);
   }
 
   dispose(): void {
     this.root.removeFromParent();
     this.scenery.dispose();
     this.drawables.dispose();
-    for (const c of this.cues) c.dispose();
+    this.cues.dispose();
     for (const t of this.tools) t.dispose();
-  }
-
-  /** Of the hand's tool, or of what that tool holds, which reaches farther. */
-  private leadingTips(frame: RenderFrame, hand: number): THREE.Vector3[] {
-    const inHand = frame.tool.filter((t) => t.hand === hand && t.state === held);
-    const tools = inHand.map((t) => this.tools.find((d) => d.data.index === t.index)).filter((t) => t !== undefined);
-    const leading = tools.find((t) => t.data.hand === 'none') ?? tools[0];
-    return leading?.tips() ?? [];
   }
 
   /** Pulse, what shines, and the change between the two pictures. */

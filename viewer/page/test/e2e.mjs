@@ -47,6 +47,16 @@ try {
       `reddish ${(100 * seen.red).toFixed(0)} %)`,
   );
 
+  const depth = () => page.textContent('.hand.active .depth');
+  await waitFor('the distance of the tip in words', async () => /tip (\d+\.\d mm|contact)/.test(await depth()));
+  await page.keyboard.press('k');
+  await page.waitForFunction(() => window.__insula.ruler_mm !== null, null, patience);
+  await waitFor('the ruler and the gauge in words', async () => /ruler .* mm · tips .* apart/.test(await depth()));
+  await page.keyboard.press('k');
+  await page.keyboard.press('k');
+  await page.waitForFunction(() => window.__insula.ruler_mm === null, null, patience);
+  check('at the lowest quality the depth of the tip is shown, and a key puts the ruler there and takes it away');
+
   // The first pictures are brighter, while strands lie over the tissue: what comes back is held against one without
   // them.
   let settled = seen;
@@ -143,6 +153,45 @@ try {
   await page.keyboard.press('Space');
   await waitFor('the latch let go', () => !mock.state.held[0].button1);
   check('a button stays latched while one mouse works with the other hand, is shown, and is let go by its key');
+
+  // The left hand is held where it is by one key, and the right one is taken.
+  await page.keyboard.press('x');
+  await page.waitForFunction(() => window.__insula.active === 1, null, patience);
+  await waitFor('the hold', async () => /holds/.test(await page.textContent('.hand:nth-child(1) .hold')));
+  const stays = [...mock.state.held[0].p_m];
+  await page.keyboard.down('ArrowUp');
+  const level = mock.state.held[1].p_m;
+  await waitFor('the right hand', () => Math.hypot(...mock.state.held[1].p_m.map((x, i) => x - level[i])) > 1e-4);
+  await page.keyboard.up('ArrowUp');
+  assert.deepEqual([...mock.state.held[0].p_m], stays);
+  await page.keyboard.press('1');
+  await waitFor('the end of the hold', async () => /Hold/.test(await page.textContent('.hand:nth-child(1) .hold')));
+  assert.deepEqual([...mock.state.held[0].p_m], stays, 'no jump');
+  check('a hand is held where it is while the other one works, and taken over again without a jump');
+
+  await page.keyboard.press('2');
+  await page.keyboard.press('t');
+  await page.waitForSelector('.tray [data-tool=right_clip_applier][aria-pressed=true]', {
+    state: 'attached',
+    timeout: 60_000,
+  });
+  await page.keyboard.press('z');
+  await page.waitForSelector('.tray [data-tool=right_dissector][aria-pressed=true]', {
+    state: 'attached',
+    timeout: 60_000,
+  });
+  check('an exchange of tools is undone by one key');
+
+  const { theatre } = mock.state;
+  theatre.run('exchange', 'right right_clip_applier');
+  theatre.run('ask', `right_clip_applier load ${theatre.clips[0]}`);
+  await page.waitForFunction(() => document.querySelector('.tool-list-head b').textContent.length > 16, null, patience);
+  theatre.place(theatre.clips[0]);
+  const reach = () => page.textContent('.hand:nth-child(2) .reach');
+  await waitFor('the way to the clip', async () => /: \d+\.\d mm away, turned by \d+°/.test(await reach()));
+  check(`an empty applier says how far a clip in the field is: ${await reach()}`);
+  theatre.run('exchange', 'right right_dissector');
+  await page.keyboard.press('1');
 
   await page.keyboard.press('g');
   await waitFor('the release', () => mock.state.commands.includes('release left'));

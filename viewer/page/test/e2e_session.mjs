@@ -28,6 +28,11 @@ try {
   await page.keyboard.press('n');
   await page.waitForFunction(() => window.__insula.target?.at === 1, null, patience);
   assert.match(await page.textContent('.guide .todo'), /button 1/);
+  const angle = () => page.evaluate(() => window.__insula.target.angle_rad);
+  const turned = await angle();
+  await page.keyboard.press('y');
+  await waitFor('the wrist', async () => (await angle()) < 0.5 * turned);
+  check(`the wrist is turned to its target on request (${turned.toFixed(2)} rad)`);
   mock.state.mode = 'test';
   await hidden(page, '.guide');
   check('practice shows targets for the hand and what the wrist must do; a test does not');
@@ -38,6 +43,7 @@ try {
   await waitFor('the receipt', () => mock.state.commands.includes('read Look at the branch'));
   check('a message stays until it is read, and the instructor hears of it');
 
+  mock.state.theatre.placedAt = 5;
   Object.assign(mock.state, { outcome: 'failed', time: 10.5, mode: 'demonstration' });
   await shown(page, '.dialog.summary');
   Object.assign(mock.state, { report: '/home/a/insula-reports/x/report.html' });
@@ -49,6 +55,12 @@ try {
   const text = await page.textContent('.dialog.summary');
   for (const part of ['not yours', 'reached: ', '0:10.0', 'Hold more gently'])
     assert.ok(text.includes(part), `${part} in ${text}`);
+  await page.setViewportSize({ width: 900, height: 500 });
+  const end = await page.evaluate(endPanel);
+  assert.ok(end.scrolls, 'the list is longer than the window');
+  assert.ok(end.listBottom <= end.answersTop && end.lastBottom <= end.answersTop, JSON.stringify(end));
+  assert.ok(end.answersBottom <= 500, JSON.stringify(end));
+  check('the end scrolls above its answers, and nothing lies below them');
   await click(page, '[data-answer=close]');
   await hidden(page, '.dialog.summary');
   Object.assign(mock.state, { outcome: '', report: '' });
@@ -75,6 +87,20 @@ try {
 } finally {
   await browser.close();
   await mock.stop();
+}
+
+/** Where the end's list and its answers lie, with the list scrolled to its end. */
+function endPanel() {
+  const box = (selector) => document.querySelector(`.dialog.summary ${selector}`).getBoundingClientRect();
+  const list = document.querySelector('.dialog.summary .dialog-content');
+  list.scrollTop = list.scrollHeight;
+  return {
+    scrolls: list.scrollHeight > list.clientHeight + 1,
+    listBottom: box('.dialog-content').bottom,
+    lastBottom: box('.dialog-content > :last-child').bottom,
+    answersTop: box('.answers').top,
+    answersBottom: box('.answers').bottom,
+  };
 }
 
 /** Share of the window that no panel covers, and controls that cannot be brought into it. */

@@ -189,6 +189,23 @@ try {
     eyes.every((e) => e > 8),
     `brightness in the eyes ${eyes}`,
   );
+  const grip = (x) =>
+    page.evaluate((x) => {
+      const buttons = [0, 1, 2, 3, 4].map((b) => ({ pressed: b < 2 }));
+      window.__headset.controllers = [{ handedness: 'left', gripSpace: { x, y: 0, z: 0 }, gamepad: { buttons } }];
+    }, x);
+  await grip(0);
+  await waitFor('the left hand', () => mock.state.held[0]?.button1);
+  const from = [...mock.state.held[0].p_m];
+  await grip(0.05);
+  const way = () => Math.hypot(...[...mock.state.held[0].p_m].map((x, i) => x - from[i]));
+  await waitFor('its way', () => Math.abs(way() - 0.01) < 1e-6);
+  await page.evaluate(() => {
+    window.__headset.controllers = [];
+  });
+  await waitFor('its button off', () => !mock.state.held[0].button1);
+  check('a controller draws its tool along, and lets its button go when it is lost');
+
   await page.evaluate(() => window.__headset.end());
   await page.waitForFunction(() => !window.__insula.presenting && window.__insula.stereo === 'off', null, patience);
   await pictures(3);

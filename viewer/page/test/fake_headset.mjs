@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A made-up WebXR device for the browser test: enough of the interface for three to draw two eyes into the page's own
-// canvas, and a look at what came out. Runs in the page before anything else.
+// canvas, a look at what came out, and controllers that a test moves. Runs in the page before anything else.
 
 // One function, however long: the browser gets its text alone, without anything beside it.
 // eslint-disable-next-line max-lines-per-function
 export function fakeHeadset() {
-  const told = { pictures: 0, eyes: [0, 0], end: () => undefined };
+  // controllers: {handedness, gripSpace: {x, y, z}, gamepad: {buttons: [{pressed}]}}.
+  const told = { pictures: 0, eyes: [0, 0], controllers: [], end: () => undefined };
   window.__headset = told;
   delete window.XRWebGLBinding;
   // Without a real device the browser would never answer.
@@ -78,7 +79,9 @@ export function fakeHeadset() {
     const session = {
       ...e,
       renderState: { baseLayer: null, layers: undefined },
-      inputSources: [],
+      get inputSources() {
+        return told.controllers;
+      },
       enabledFeatures: [],
       visibilityState: 'visible',
       environmentBlendMode: 'opaque',
@@ -92,7 +95,7 @@ export function fakeHeadset() {
           f(t, {
             session,
             getViewerPose: () => ({ views, transform: pose(0), emulatedPosition: false }),
-            getPose: () => null,
+            getPose: (space) => ({ transform: { position: space, orientation: { x: 0, y: 0, z: 0, w: 1 } } }),
           });
           if (session.renderState.baseLayer) {
             told.eyes = brightness(session.renderState.baseLayer.gl);

@@ -82,6 +82,7 @@ describe('the guide', () => {
   const axes = { x: new THREE.Vector3(1, 0, 0), y: new THREE.Vector3(0, 1, 0), z: new THREE.Vector3(0, 0, 1) };
   const pose = (p: [number, number, number], button1 = false): GuidePose => ({
     hand: 'right',
+    timeS: 0,
     tool: 'applier',
     p,
     q: [1, 0, 0, 0],
@@ -109,7 +110,20 @@ describe('the guide', () => {
     expect(turned.angleTo(target.q)).toBeCloseTo(0, 6);
   });
 
-  it('goes on when a pose is reached with its buttons, and skips what lies on the way', () => {
+  it('says when the example moves the other hand first', () => {
+    const guide = new Guide();
+    const when = (hand: 'left' | 'right', x: number, timeS: number): GuidePose => ({ ...pose([x, 0, 0]), hand, timeS });
+    const poses = [when('left', 0, 1), when('left', 0.02, 9), when('right', 0, 4), when('right', 0.02, 9.3)];
+    guide.begin({ exercise: { guide: poses } } as unknown as Bundle);
+    expect([guide.waits(0), guide.waits(1)]).toEqual([false, true]);
+    guide.follow(0, at(0), q, none);
+    expect([guide.waits(0), guide.waits(1)]).toEqual([true, false]);
+    guide.follow(1, at(0), q, none);
+    // At nearly the same time both may go on.
+    expect([guide.waits(0), guide.waits(1)]).toEqual([false, false]);
+  });
+
+  it('goes on when a pose is reached with its buttons, and passes no pose over', () => {
     const guide = new Guide();
     const poses = [pose([0, 0, 0]), pose([0.02, 0, 0]), pose([0.04, 0, 0]), pose([0.04, 0, 0], true)];
     guide.begin({ exercise: { guide: poses } } as unknown as Bundle);
@@ -117,10 +131,19 @@ describe('the guide', () => {
     guide.follow(1, at(0.01), q, none);
     expect(guide.target(1)!.at).toBe(0);
     guide.follow(1, at(0.021), q, none);
-    expect(guide.target(1)!.at).toBe(2);
-    guide.follow(1, at(0.04), q, none);
+    expect(guide.target(1)!.at).toBe(0);
+    for (const x of [0.001, 0.021, 0.04]) guide.follow(1, at(x), q, none);
     expect(guide.target(1)!.at).toBe(3);
     expect(buttonsToDo(guide.target(1)!.target, none)).toBe('At the target: hold button 1 (Space)');
+    // A way to and fro is not cut short where it comes back to.
+    guide.begin({ exercise: { guide: [0, 0.02, 0, 0.02, 0].map((x) => pose([x, 0, 0])) } } as unknown as Bundle);
+    const seen = [0, 0.02, 0, 0.02].map((x) => {
+      // It stays there for a while.
+      for (let k = 0; k < 3; k++) guide.follow(1, at(x), q, none);
+      return guide.target(1)!.at;
+    });
+    expect(seen).toEqual([1, 2, 3, 4]);
+    guide.begin({ exercise: { guide: poses } } as unknown as Bundle);
     const wrong = new THREE.Quaternion().setFromAxisAngle(axes.z, 0.5);
     guide.restart();
     guide.follow(1, at(0), wrong, none);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A question over the field. It keeps the keys to itself until it is answered.
+// A question over the field. It keeps the keys to itself until it is answered. Its content scrolls; its answers stay
+// below it in view.
 import { el } from './dom';
 
 export interface Answer {
@@ -38,7 +39,11 @@ export class Dialog {
     this.cancel = cancel ?? null;
     this.root.setAttribute('aria-label', title);
     const buttons = answers.map((a) => this.makeAnswer(a));
-    this.body.replaceChildren(el('h2', {}, title), ...content, el('div', { class: 'answers' }, ...buttons));
+    this.body.replaceChildren(
+      el('h2', {}, title),
+      el('div', { class: 'dialog-content', tabindex: '0' }, ...content),
+      el('div', { class: 'answers' }, ...buttons),
+    );
     if (this.root.hidden) this.before = document.activeElement;
     this.root.hidden = false;
     (buttons.find((b) => !b.disabled) ?? this.root).focus({ preventScroll: true });

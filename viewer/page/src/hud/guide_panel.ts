@@ -10,6 +10,8 @@ export interface GuideView {
   offset: Offset;
   /** What the hand shall do that is no movement: "take up the applier", "hold button 1"; '': nothing. */
   todo: string;
+  /** The example moves the other hand before this one reaches its target. */
+  waits: boolean;
 }
 
 const nearM = 0.003;
@@ -45,24 +47,38 @@ export function directions(o: Offset): string[] {
 export class GuidePanel {
   readonly root = el('section', { class: 'panel guide', 'aria-label': 'target' });
   private readonly title = el('b');
+  private readonly waits = el('p', { class: 'waits' }, 'First the other hand: hold this one here (X)');
   private readonly todo = el('p', { class: 'todo' });
   private readonly list = el('ul');
+  private readonly assist = el(
+    'button',
+    { title: 'turn the tool slowly as the ghost is turned; its tip stays (Y)', 'aria-pressed': 'false' },
+    'Turn for me',
+  );
   private shown = '';
 
-  constructor(step: (by: 1 | -1) => void) {
+  constructor(step: (by: 1 | -1) => void, turn: () => void) {
     const back = el('button', { title: 'previous target (Shift + N)' }, '◀');
     const next = el('button', { title: 'next target (N)' }, '▶');
     back.onclick = () => step(-1);
     next.onclick = () => step(1);
-    this.root.append(el('header', {}, this.title, el('span', {}, back, next)), this.todo, this.list);
+    this.assist.onclick = () => turn();
+    this.root.append(
+      el('header', {}, this.title, el('span', {}, back, next)),
+      this.list,
+      this.waits,
+      el('div', { class: 'guide-foot' }, this.todo, this.assist),
+    );
     this.root.hidden = true;
   }
 
-  /** null: there is no target. */
-  show(view: GuideView | null): void {
+  /** null: there is no target. assists: the tool is being turned to it. */
+  show(view: GuideView | null, assists: boolean): void {
     this.root.hidden = view === null;
+    this.assist.setAttribute('aria-pressed', String(assists));
     if (!view) return;
     const { offset, at, of, todo } = view;
+    this.waits.hidden = !view.waits;
     const near = offset.distanceM < nearM && offset.angleRad < nearRad;
     setText(this.title, `Target ${at + 1} of ${of}: ${mm(offset.distanceM)}, ${degrees(offset.angleRad)}`);
     setText(this.todo, todo || (near ? '✓ there' : ''));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One hand: its force with a word for how much that is, whether the mouse drives it, its buttons, and its tools.
 import { el, setText } from './dom';
+import { distanceText } from '../depth_cue';
 import type { Button } from '../hand_pose';
 import type { HandState } from '../hands';
 import { forceBar, forceLevel } from './state';
@@ -12,12 +13,40 @@ export interface HandActions {
   chooseHand(hand: number): void;
   releaseHand(hand: number): void;
   toggleLatch(hand: number, button: Button): void;
+  holdHere(hand: number): void;
+}
+
+/** Of the tips in the field, mm; null: not shown, or too far. */
+export interface DepthView {
+  tip_mm: (number | null)[];
+  ruler_mm: number | null;
+  apart_mm: number | null;
+}
+
+/** "tip 3.5 mm · tips 5.2 mm apart"; what belongs to the ruler stands at the active hand. */
+export function depthText(
+  { tip_mm: tips, ruler_mm: ruler, apart_mm: apart }: DepthView,
+  hand: number,
+  active: number,
+): string {
+  const tip = tips[hand] ?? null;
+  return [
+    tip === null ? '' : `tip ${distanceText(tip / 1000)}`,
+    hand !== active || ruler === null ? '' : `ruler ${ruler.toFixed(1)} mm`,
+    hand !== active || apart === null ? '' : `tips ${apart.toFixed(1)} mm apart`,
+  ]
+    .filter((t) => t !== '')
+    .join(' · ');
 }
 
 export interface HandView extends HandState {
   /** N; null: the hand has no tool. */
   force: number | null;
   kind: string;
+  /** How far its tip is from what; '': nothing is known. */
+  depth: string;
+  /** What its tool could take back; '': nothing. */
+  reach: string;
   active: boolean;
 }
 
@@ -33,6 +62,11 @@ export class HandPanel {
   private readonly level = el('span', { class: 'level' });
   private readonly fill = el('i');
   private readonly giveBack = el('button', { class: 'give-back', title: 'give the hand back (G)' }, 'Give back');
+  private readonly hold = el('button', { class: 'hold', 'aria-pressed': 'false' });
+  private readonly undo = el('button', { class: 'undo' }, '↶');
+  private readonly depth = el('div', { class: 'depth' });
+  private readonly reach = el('div', { class: 'depth reach' });
+  private resting = false;
   private readonly latches: HTMLButtonElement[];
 
   constructor(hand: number, actions: HandActions, mayDrive: boolean) {
@@ -41,22 +75,31 @@ export class HandPanel {
     const head = el('button', { class: 'choose', title: 'drive this hand' }, this.name, this.tag);
     head.onclick = () => actions.chooseHand(hand);
     this.giveBack.onclick = () => actions.releaseHand(hand);
+    this.hold.onclick = () => {
+      if (this.resting) actions.chooseHand(hand);
+      else actions.holdHere(hand);
+    };
+    this.undo.onclick = () => this.tray.undo();
     this.latches = ([1, 2] as const).map((b) => {
       const button = el('button', { class: 'latch', 'aria-pressed': 'false', 'data-latch': String(b) });
       button.onclick = () => actions.toggleLatch(hand, b);
       return button;
     });
-    const held = el('div', { class: 'held' }, ...this.latches, this.giveBack);
+    const held = el('div', { class: 'held' }, ...this.latches, this.hold, this.undo, this.giveBack);
     held.hidden = !mayDrive;
     const force = el('span', { class: 'force-text' }, this.level, this.number);
-    this.root.append(head, el('div', { class: 'bar' }, this.fill), force, held, this.tray.root);
+    this.root.append(head, el('div', { class: 'bar' }, this.fill), force, held, this.depth, this.reach, this.tray.root);
   }
 
-  show({ force, kind, active, taken, buttons }: HandView): void {
+  show({ force, kind, depth, reach, active, taken, resting, buttons }: HandView): void {
     this.root.classList.toggle('active', active);
     this.root.classList.toggle('taken', taken);
     setText(this.tag, taken ? `${kind}, yours` : kind);
     this.giveBack.hidden = !taken;
+    this.showHold(resting);
+    setText(this.depth, depth);
+    setText(this.reach, reach);
+    this.reach.hidden = reach === '';
     this.latches.forEach((latch, k) => {
       const b = buttons[k] ?? { on: false, latched: false };
       latch.setAttribute('aria-pressed', String(b.on));
@@ -68,5 +111,15 @@ export class HandPanel {
     const level = force === null ? 'good' : forceLevel(force);
     this.root.dataset.level = level;
     setText(this.level, force === null || force < 0.005 ? '' : levelWords[level]);
+  }
+
+  private showHold(resting: boolean): void {
+    this.resting = resting;
+    this.hold.setAttribute('aria-pressed', String(resting));
+    this.hold.title = resting ? 'go on with this hand' : 'hold this hand here and take the other one (X)';
+    setText(this.hold, resting ? '📌 holds' : 'Hold');
+    const undone = this.tray.undone;
+    this.undo.hidden = undone === null;
+    this.undo.title = undone ? `back to: ${undone.title} (Z)` : '';
   }
 }

@@ -8,12 +8,13 @@ import type { InventoryItem } from '../inventory';
 import type { HapticStatus, RenderFrame, SimEvent } from '../lcm';
 import type { Role } from '../options';
 import type { Channels } from '../step_data/channels';
+import { takeBackText, type Within } from '../take_back';
 import { glowCommands } from './commands';
 import { el, setText } from './dom';
 import { ExercisePanel } from './exercise_panel';
 import { returnFocusToField } from './focus';
 import { GuidePanel, type GuideView } from './guide_panel';
-import { type HandActions, HandPanel } from './hand_panel';
+import { type DepthView, depthText, type HandActions, HandPanel } from './hand_panel';
 import { HapticPanel } from './haptic';
 import { Help } from './help';
 import { InstructorPanel } from './instructor';
@@ -34,6 +35,8 @@ export interface HudActions extends ViewActions, HandActions {
   chooseItem(item: InventoryItem | null): void;
   /** To another target of the guide. */
   stepGuide(by: 1 | -1): void;
+  /** Begins or ends to turn the tool of the active hand as its target is turned. */
+  turnToTarget(): void;
 }
 
 export interface FrameView {
@@ -47,6 +50,10 @@ export interface FrameView {
   hands: HandState[];
   /** Of the active hand; null: no target is shown. */
   guide: GuideView | null;
+  /** The tool is being turned to its target. */
+  assists: boolean;
+  depth: DepthView;
+  within: Within | null;
   /** A picture of the scene is there. */
   ready: boolean;
 }
@@ -92,7 +99,10 @@ export class Hud {
       role,
       () => field,
     );
-    this.guide = new GuidePanel((by) => actions.stepGuide(by));
+    this.guide = new GuidePanel(
+      (by) => actions.stepGuide(by),
+      () => actions.turnToTarget(),
+    );
     this.hands = [0, 1].map((h) => new HandPanel(h, actions, mayDrive));
     this.toolList = new ToolList((c) => actions.run(c), mayDrive);
     this.view = new ViewMenu(actions);
@@ -142,6 +152,11 @@ export class Hud {
     this.hands[hand]?.tray.next(step);
   }
 
+  /** Asks for the tool that the hand had before its last exchange. */
+  undoExchange(hand: number): void {
+    this.hands[hand]?.tray.undo();
+  }
+
   showScene(bundle: Bundle): void {
     this.bundle = bundle;
     this.state = null;
@@ -157,18 +172,26 @@ export class Hud {
     this.view.showGlow(shines, bundle.inventory || this.role === 'observer' ? [] : glowCommands(bundle));
   }
 
-  showFrame({ frame, channels, state, active, hands, guide, ready }: FrameView): void {
+  showFrame({ frame, channels, state, active, hands, guide, assists, depth, within, ready }: FrameView): void {
     if (state && state !== this.state) this.showState(state);
     if (state && !this.bundle?.inventory) this.session.show(state, ready);
     this.state = state;
-    this.guide.show(guide);
+    this.guide.show(guide, assists);
     this.exercise.showClock(state?.elapsedS ?? frame.sim_time_s);
     const forces = this.hands.map((panel, hand) => {
       const tool = this.bundle ? toolInHand(frame, this.bundle, hand) : null;
       const data = this.bundle?.tools.find((t) => t.index === tool?.index);
       const force = tool ? Math.hypot(tool.force_N[0]!, tool.force_N[1]!, tool.force_N[2]!) : null;
       const kind = data ? short(data, side(hand)) : '';
-      panel.show({ force, kind, active: hand === active, ...hands[hand]! });
+      const reach = within?.hand === hand ? takeBackText(within) : '';
+      panel.show({
+        force,
+        kind,
+        depth: depthText(depth, hand, active),
+        reach,
+        active: hand === active,
+        ...hands[hand]!,
+      });
       panel.tray.show(data?.id ?? '');
       return force;
     });
@@ -183,6 +206,7 @@ export class Hud {
   /** Something that happened once. */
   showEvent(e: SimEvent, nowMs: number): void {
     this.instructor?.addEvent(e.sim_time_s, e.kind, e.id, e.text);
+    if (e.kind === 'reset') for (const h of this.hands) h.tray.forget();
     // What chance or the instructor brings, the trainee sees in the field and not in words.
     if (e.kind === 'command' || e.kind === 'complication' || e.kind === 'read') return;
     if (e.kind === 'refused') {

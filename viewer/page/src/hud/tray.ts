@@ -3,12 +3,13 @@
 import type { HandData, ToolData } from '../bundle_types';
 import { el } from './dom';
 import { exchange, type UserCommand } from './commands';
+import { ToolHistory } from './tool_history';
 
 export class Tray {
   readonly root = el('div', { class: 'tray', role: 'group' });
   private buttons: { tool: ToolData; button: HTMLButtonElement }[] = [];
   private hand: HandData | null = null;
-  private held = '';
+  private readonly history = new ToolHistory();
 
   constructor(
     private readonly run: (c: UserCommand) => void,
@@ -17,7 +18,7 @@ export class Tray {
 
   showScene(hand: HandData | null): void {
     this.hand = hand;
-    this.held = '';
+    this.forget();
     this.root.setAttribute('aria-label', `tools of the ${hand?.hand ?? ''} hand`);
     this.buttons = (hand && hand.tools.length > 1 ? hand.tools : []).map((tool) => {
       const button = el(
@@ -38,18 +39,34 @@ export class Tray {
 
   /** id of the tool in hand. */
   show(held: string): void {
-    this.held = held;
+    this.history.see(held);
     for (const { tool, button } of this.buttons) {
       button.setAttribute('aria-pressed', String(tool.id === held));
       button.disabled = !this.mayDrive || tool.id === held;
     }
   }
 
+  /** What an exchange would be undone to; null: nothing. */
+  get undone(): ToolData | null {
+    if (!this.mayDrive) return null;
+    return this.hand?.tools.find((t) => t.id === this.history.before) ?? null;
+  }
+
+  /** Reverses the last exchange of the hand. */
+  undo(): void {
+    if (this.undone) this.run(exchange(this.hand!.hand, this.undone.id));
+  }
+
+  /** The hand begins anew. */
+  forget(): void {
+    this.history.forget();
+  }
+
   /** Asks for the next (or previous) tool of the hand. */
   next(step: 1 | -1): void {
     const tools = this.hand?.tools ?? [];
     if (!this.mayDrive || !this.hand || tools.length < 2) return;
-    const at = tools.findIndex((t) => t.id === this.held);
+    const at = tools.findIndex((t) => t.id === this.history.held);
     this.run(exchange(this.hand.hand, tools[(Math.max(0, at) + step + tools.length) % tools.length]!.id));
   }
 }

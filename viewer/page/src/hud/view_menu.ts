@@ -2,16 +2,18 @@
 // How the field is looked at: quality, stereo and its angle, infrared, headset.
 import { sentence, spoken } from '../bundle';
 import type { CommandData } from '../bundle_types';
+import type { RulerMode } from '../depth_ruler';
 import { levels } from '../quality';
 import { angleRangeDeg, stereoModes, type StereoMode } from '../stereo';
 import { ask, type UserCommand } from './commands';
-import { el } from './dom';
+import { el, setText } from './dom';
 
 export interface ViewActions {
   quality(name: string): void;
   stereo(mode: StereoMode): void;
   angle(deg: number): void;
   infrared(on: boolean): void;
+  nextRuler(): void;
   /** Asks for a command of the scene. */
   run(command: UserCommand): void;
 }
@@ -22,6 +24,8 @@ const stereoNames: Record<StereoMode, string> = {
   anaglyph: 'Red-cyan',
   xr: 'Headset',
 };
+
+const rulerNames: Record<RulerMode, string> = { off: 'Ruler', tool: 'Ruler: along the tool', sight: 'Ruler: in depth' };
 
 export class ViewMenu {
   readonly root = el('div', { class: 'controls view' });
@@ -40,6 +44,10 @@ export class ViewMenu {
     { title: 'infrared picture: what fluoresces (I)', 'aria-pressed': 'false' },
     'Infrared',
   );
+  private readonly ruler = el('button', {
+    title: 'scale from the tip to the tissue: along the tool, along the line of sight, off (K)',
+    'data-ruler': 'off',
+  });
   private readonly glow = el('span', { class: 'glow' });
   private readonly enter = el('button', { title: 'show the picture in the headset' }, 'Enter headset');
 
@@ -62,9 +70,17 @@ export class ViewMenu {
     this.enter.onclick = () => {
       actions.stereo('xr');
     };
-    this.root.append(this.quality, this.stereo, this.angle, this.enter, this.infrared, this.glow);
+    this.ruler.onclick = () => actions.nextRuler();
+    this.root.append(this.quality, this.stereo, this.angle, this.enter, this.ruler, this.infrared, this.glow);
     this.showStereo('off', 5, false, false);
+    this.showRuler('off');
     this.showGlow(false, []);
+  }
+
+  showRuler(mode: RulerMode): void {
+    this.ruler.dataset.ruler = mode;
+    this.ruler.setAttribute('aria-pressed', String(mode !== 'off'));
+    setText(this.ruler, rulerNames[mode]);
   }
 
   showStereo(mode: StereoMode, angleDeg: number, headset: boolean, presenting: boolean): void {

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A person at the page, for tests: sees what stands in the panels, reacts after 300 ms, aims with an error of 2 mm and
+// 10 degrees, and moves by mouse, wheel and keys. Knows no pose and asks nothing but the page's texts.
+
+const reactionMs = 300;
+const aimM = 0.002;
+const aimRad = (10 * Math.PI) / 180;
+const wheelM = 0.0008;
+const keyRadPerS = 0.9;
+/** Longest way between two looks at the hand, m; and how long it takes. */
+const stepM = 0.002;
+const stepMs = 160;
+
+export const pause = (ms) => new Promise((r) => setTimeout(r, ms));
+
+/** Numbers in 0..1, the same ones for the same seed (Park and Miller). */
+function chance(seed) {
+  let x = (seed * 48271 + 11) % 2147483647;
+  return () => (x = (x * 48271) % 2147483647) / 2147483647;
+}
+
+/** Runs in the page: until a picture has been drawn after what was done before. */
+const nextPicture = () => new Promise((r) => requestAnimationFrame(() => requestAnimationFrame(() => r(null))));
+
+/** What the guide's panel says, as a person reads it: mm and degrees by direction. Runs in the page. */
+function readPanel() {
+  const seen = (e) => e !== null && e.checkVisibility();
+  const text = (s) => document.querySelector(s)?.textContent ?? '';
+  const guide = document.querySelector('.guide');
+  const ways = {};
+  for (const li of document.querySelectorAll('.guide li')) {
+    if (!seen(li)) continue;
+    const found = /^\S+ (deeper|back|right|left|up|down|roll|swing|tilt)(?: \((\w)\))? ([\d.]+)/.exec(li.textContent);
+    if (found) ways[found[2] && 'QEADRF'.includes(found[2]) ? found[2] : found[1]] = Number(found[3]);
+  }
+  const title = /Target (\d+) of (\d+): ([\d.]+) mm, (\d+)°/.exec(text('.guide header b'));
+  return {
+    target: seen(guide) && title ? { at: +title[1], of: +title[2], mm: +title[3], degrees: +title[4] } : null,
+    ways,
+    todo: text('.guide .todo'),
+    otherFirst: seen(document.querySelector('.guide .waits')),
+    hand: [...document.querySelectorAll('.hand')].findIndex((h) => h.classList.contains('active')),
+    latched: document.querySelector('.hand.active .latch')?.getAttribute('aria-pressed') === 'true',
+    goals: [...document.querySelectorAll('.goals li')].map((g) => ({
+      text: g.textContent,
+      done: g.classList.contains('done'),
+    })),
+    faults: [...document.querySelectorAll('.faults li')].map((f) => f.textContent),
+    end: seen(document.querySelector('.dialog.summary')) ? text('.dialog.summary h2') : '',
+  };
+}
+
+export class Person {
+  /** pace: 1 is a person's; 0 waits for nothing, for a page that is made up. */
+  constructor(page, seed, pace = 1) {
+    this.page = page;
+    this.wait = (ms) => pause(pace * ms);
+    this.random = chance(seed);
+    // Learnt from what the panel says before and after a movement.
+    this.mPerPx = 0.0001;
+    this.squeezes = false;
+    this.began = Date.now();
+  }
+
+  /** Looks at a new picture, and takes a moment to understand. */
+  async look() {
+    await this.wait(reactionMs);
+    await this.page.evaluate(nextPicture);
+    return this.page.evaluate(readPanel);
+  }
+
+  /** Looks until the tool has come to rest; on a slow machine the picture is late. */
+  async settled() {
+    let last = await this.look();
+    for (let k = 0; k < 12; k++) {
+      const now = await this.look();
+      const still = (what) => Math.abs((now.target?.[what] ?? 0) - (last.target?.[what] ?? 0));
+      last = now;
+      if (still('mm') < 0.15 && still('degrees') < 1) break;
+    }
+    return last;
+  }
+
+  /** Normal deviate. */
+  error(sd) {
+    return sd * Math.sqrt(-2 * Math.log(1 - this.random())) * Math.cos(2 * Math.PI * this.random());
+  }
+
+  /** An error of aim: 2 mm in the root of the mean square over the three directions. */
+  aim() {
+    return [0, 1, 2].map(() => this.error(aimM / Math.sqrt(3)));
+  }
+
+  /** m: to the right, up, to the viewer. Goes on when the hand has got there. */
+  async move([right, up, out]) {
+    const { mouse, keyboard } = this.page;
+    const { width, height } = this.page.viewportSize();
+    const steps = Math.max(1, Math.ceil(Math.hypot(right, up, out) / stepM));
+    const from = [0.5 * width, 0.25 * height];
+    const px = [right / this.mPerPx, -up / this.mPerPx];
+    const clicks = out / wheelM;
+    await mouse.move(...from);
+    await mouse.down();
+    let turned = 0;
+    for (let k = 1; k <= steps; k++) {
+      await mouse.move(from[0] + (px[0] * k) / steps, from[1] + (px[1] * k) / steps);
+      const due = Math.round((clicks * k) / steps) - turned;
+      if (due !== 0) {
+        await keyboard.down('Shift');
+        await mouse.wheel(0, 100 * due);
+        await keyboard.up('Shift');
+        turned += due;
+      }
+      await this.wait(stepMs);
+    }
+    await mouse.up();
+  }
+
+  /** Holds button 1 by its key, or lets it go; a latched one goes off when its key is pressed. */
+  async squeeze(on) {
+    if (on) await this.page.keyboard.down('Space');
+    else if (this.squeezes) await this.page.keyboard.up('Space');
+    else await this.page.keyboard.press('Space');
+    this.squeezes = on;
+  }
+
+  /** Leaves this hand here with what its button does, and takes the other one. */
+  async holdHere() {
+    await this.page.keyboard.press('x');
+    if (this.squeezes) await this.page.keyboard.up('Space');
+    this.squeezes = false;
+  }
+
+  /** Turns the wrist a little wrong: 10 degrees in the root of the mean square over the three turns. */
+  async tremble() {
+    for (const [more, less] of ['eq', 'da', 'fr']) {
+      const rad = this.error(aimRad / Math.sqrt(3));
+      const key = rad > 0 ? more : less;
+      await this.page.keyboard.down(key);
+      await this.wait((1000 * Math.abs(rad)) / keyRadPerS);
+      await this.page.keyboard.up(key);
+    }
+  }
+
+  /** The way that the panel shows, m. */
+  wayOf({ ways }) {
+    const pair = (more, less) => ((ways[more] ?? 0) - (ways[less] ?? 0)) / 1000;
+    return [pair('right', 'left'), pair('up', 'down'), pair('back', 'deeper')];
+  }
+
+  /** One try to reach the target: the way that is shown, with an error; learns how far the mouse goes. */
+  async reach(view) {
+    const way = this.wayOf(view);
+    const error = this.aim();
+    const far = Math.hypot(way[0], way[1]);
+    // Nobody overshoots a short way by its own length.
+    const share = Math.min(1, Math.hypot(...way) / (2 * aimM));
+    await this.move(way.map((w, k) => w + share * error[k]));
+    const after = await this.settled();
+    if (far < 0.006 || after.target?.at !== view.target.at) return after;
+    const left = this.wayOf(after);
+    const gone = Math.hypot(way[0] - left[0] + share * error[0], way[1] - left[1] + share * error[1]);
+    this.mPerPx *= Math.max(0.7, Math.min(1.5, gone / far));
+    return after;
+  }
+}
