@@ -23,8 +23,11 @@ Events: clip_loaded, clip_shut (the jaws no longer hold it open), clip_released,
 */
 #include "plugins/clip/clip_applier.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/base/text.h"
 #include "plugins/clip/touch.h"
@@ -101,6 +104,12 @@ void ClipApplier::lay_down() {
 std::string ClipApplier::why_kept() const {
   return clip_ && clip_->touched() ? "let the clip go, or draw it out of the field, before you lay down the applier"
                                    : "";
+}
+
+std::vector<BodyProperty> ClipApplier::properties() const {
+  const double degrees = alignment() * 180 / std::numbers::pi;
+  return {{"reach", reach(), "m", fmt::format("{:.3g} mm", 1000 * reach())},
+          {"alignment", alignment(), "rad", fmt::format("{:.3g} deg", degrees)}};
 }
 
 double ClipApplier::activity() const {

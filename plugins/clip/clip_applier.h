@@ -56,6 +56,7 @@ class ClipApplier final : public Instrument {
   bool cutting() const override { return false; }
   double activity() const override;
   std::string why_kept() const override;
+  std::vector<BodyProperty> properties() const override;  ///< how near and how straight it must be to take a clip
   void take_up(const Pose& device) override;
   void lay_down() override;
   void free_motion(const StepContext& context) override;

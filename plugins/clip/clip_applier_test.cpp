@@ -107,7 +107,12 @@ TEST(ClipApplier, LetsGoAndTakesBackWithoutAStepOfForce) {
   b.run(grip_home, 1, false, true);
   EXPECT_FALSE(b.clip->holder()) << "the button acts once";
   EXPECT_EQ(b.clip->clip_state().applications, 1);
-  // Away: out of reach.
+  // Away: out of reach, as the applier's properties say.
+  const std::vector<BodyProperty> limits = b.applier->properties();
+  ASSERT_EQ(limits.size(), 2u);
+  EXPECT_LT(limits[0].value, 9e-3);
+  EXPECT_GT(limits[0].value, 2e-3);
+  EXPECT_GT(limits[1].value, 0.35);
   const Pose away = displaced(grip_home, (Vec6() << 0, 0, 9e-3, 0, 0, 0).finished());
   const Pose lying = b.clip->pose();
   b.run(away, 30);
