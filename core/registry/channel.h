@@ -118,8 +118,7 @@ class ChannelBase {
 template <class Q>
 class Channel : public ChannelBase {
  public:
-  Channel(Component* owner, ChannelSpec spec)
-      : ChannelBase(owner, std::move(spec), {Q::name, Q::si, Q::units()}, 1, true) {}
+  Channel(Component* owner, ChannelSpec spec) : ChannelBase(owner, spec, {Q::name, Q::si, Q::units()}, 1, true) {}
   void set(double si) { at(0) = si; }
   double operator()() const { return at(0); }
 };
@@ -128,8 +127,7 @@ class Channel : public ChannelBase {
 template <class Q>
 class Channel<Vec<Q>> : public ChannelBase {
  public:
-  Channel(Component* owner, ChannelSpec spec)
-      : ChannelBase(owner, std::move(spec), {Q::name, Q::si, Q::units()}, 3, true) {}
+  Channel(Component* owner, ChannelSpec spec) : ChannelBase(owner, spec, {Q::name, Q::si, Q::units()}, 3, true) {}
   void set(const Vec3& si) {
     for (int k = 0; k < 3; ++k) at(std::size_t(k)) = si[k];
   }
@@ -141,8 +139,7 @@ class Channel<Vec<Q>> : public ChannelBase {
 template <class Q>
 class ChannelGroup : public ChannelBase {
  public:
-  ChannelGroup(Component* owner, ChannelSpec spec)
-      : ChannelBase(owner, std::move(spec), {Q::name, Q::si, Q::units()}, 1, false) {}
+  ChannelGroup(Component* owner, ChannelSpec spec) : ChannelBase(owner, spec, {Q::name, Q::si, Q::units()}, 1, false) {}
   void declare(std::vector<std::string> names) { set_groups(std::move(names)); }
   void set(std::size_t item, double si) { at(item) = si; }
   double operator()(std::size_t item) const { return at(item); }
