@@ -2,6 +2,7 @@
 // A scale in the field: from a tool's tip down to the tissue, along the tool or along the line of sight, with a tick
 // each millimetre and a number each five. Between the tips of both hands it is a gauge: how far they are apart.
 import * as THREE from 'three';
+import type { Sight } from './camera';
 import { TextSprite } from './text_sprite';
 import type { TissueProbe } from './tissue_probe';
 
@@ -63,7 +64,7 @@ export function rulerPlace(
   mode: 'tool' | 'sight',
   tip: THREE.Vector3,
   shaft: THREE.Vector3,
-  axes: { x: THREE.Vector3; y: THREE.Vector3; z: THREE.Vector3 },
+  axes: Sight['axes'],
   percentM: number,
   lengthM: number,
 ): RulerPlace {
@@ -93,17 +94,13 @@ export function nearestPair(
   return best;
 }
 
-export interface RulerInput {
+export interface RulerInput extends Sight {
   mode: RulerMode;
   /** Of each hand: points that may touch first, scene frame; none: the hand holds nothing. */
   tips: readonly (readonly THREE.Vector3[])[];
   hand: number;
   /** Of the hand's tool, from the tip. */
   shaft: THREE.Vector3 | null;
-  /** Of the picture in the scene, and how high a hundredth of it is at its focus. */
-  axes: { x: THREE.Vector3; y: THREE.Vector3; z: THREE.Vector3 };
-  percentM: number;
-  eye: THREE.Vector3;
   probes: readonly TissueProbe[];
   seconds: number;
 }

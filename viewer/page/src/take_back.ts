@@ -3,6 +3,7 @@
 // turned from how it would be held. Where an instrument holds a thing is learnt while it holds it.
 import * as THREE from 'three';
 import type { Bundle, ToolData } from './bundle_types';
+import { toolState } from './hand_tool';
 import { toolCommands } from './hud/commands';
 import type { RenderFrame } from './lcm';
 
@@ -25,9 +26,6 @@ export interface Within {
   taken: boolean | null;
 }
 
-const onTray = 0;
-const inHand = 1;
-const inField = 2;
 const half = new THREE.Quaternion(0, 0, 1, 0);
 
 const poseOf = (t: FrameTool): Pose => ({
@@ -63,9 +61,9 @@ export class TakeBack {
   nearest(frame: Pick<RenderFrame, 'tool'>): Within | null {
     for (const { holder, tools } of this.offers) {
       const instrument = frame.tool.find((t) => t.index === holder.index);
-      if (!instrument || instrument.state === onTray) continue;
+      if (!instrument || instrument.state === toolState.onTray) continue;
       const things = frame.tool.filter((t) => tools.some((d) => d.index === t.index));
-      const loaded = things.find((t) => t.state === inHand && t.hand === instrument.hand);
+      const loaded = things.find((t) => t.state === toolState.inHand && t.hand === instrument.hand);
       if (loaded) this.grips.set(loaded.index, relative(poseOf(loaded), poseOf(instrument)));
       else return this.nearestOf(holder, instrument, things);
     }
@@ -77,7 +75,7 @@ export class TakeBack {
     const now = poseOf(instrument);
     for (const t of things) {
       const grip = this.grips.get(t.index);
-      if (t.state !== inField || !grip) continue;
+      if (t.state !== toolState.inField || !grip) continue;
       const wanted = compose(poseOf(t), grip);
       const distanceM = wanted.p.distanceTo(now.p);
       if (best && best.distanceM <= distanceM) continue;

@@ -5,6 +5,8 @@ import type { Sight } from './camera';
 import { ContactMarks, contactsOfTools } from './contact_marks';
 import { DepthCue } from './depth_cue';
 import { DepthRuler, type RulerMode } from './depth_ruler';
+import { toolState } from './hand_tool';
+import type { DepthView } from './hud/hand_panel';
 import type { RenderFrame } from './lcm';
 import { ReachMark } from './reach_mark';
 import type { Within } from './take_back';
@@ -19,8 +21,6 @@ export interface CueChoice {
   /** What an instrument could take back; null: nothing. */
   within: Within | null;
 }
-
-const held = 1;
 
 export class TipCues {
   readonly root = new THREE.Group();
@@ -38,7 +38,7 @@ export class TipCues {
    * tip_mm: of the tip of each hand's tool from the tissue; ruler_mm: from the tip to the tissue along the ruler;
    * apart_mm: between both tips. null: not shown, or too far.
    */
-  get told(): { tip_mm: (number | null)[]; ruler_mm: number | null; apart_mm: number | null } {
+  get told(): DepthView {
     return {
       tip_mm: this.cues.map((c) => inMm(c.distanceM)),
       ruler_mm: inMm(this.ruler.lengthM),
@@ -76,7 +76,7 @@ export class TipCues {
 
 /** The hand's tool, or what that tool holds, which reaches farther. */
 function leadingTool(frame: RenderFrame, tools: readonly Tool[], hand: number): Tool | null {
-  const inHand = frame.tool.filter((t) => t.hand === hand && t.state === held);
+  const inHand = frame.tool.filter((t) => t.hand === hand && t.state === toolState.inHand);
   const found = inHand.map((t) => tools.find((d) => d.data.index === t.index)).filter((t) => t !== undefined);
   return found.find((t) => t.data.hand === 'none') ?? found[0] ?? null;
 }

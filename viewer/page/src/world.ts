@@ -4,6 +4,7 @@ import * as THREE from 'three';
 import type { Bundle } from './bundle_types';
 import type { Sight } from './camera';
 import { DrawableSet } from './drawables/drawable_set';
+import { toolState } from './hand_tool';
 import type { RenderFrame } from './lcm';
 import { FieldUniforms } from './materials/field';
 import { pressedCount } from './materials/tissue';
@@ -115,26 +116,23 @@ export class World {
   }
 }
 
-const stowed = 0;
-const held = 1;
-
 function moveTool(tool: Tool, playback: Playback, t: number): void {
   const pair = playback.tool(tool.data.index);
   // On the tray it is not in the picture.
-  if (!pair || pair.b.state === stowed) {
+  if (!pair || pair.b.state === toolState.onTray) {
     tool.hide();
     return;
   }
   const { b } = pair;
   // What just came from the tray was elsewhere a frame ago.
-  const a = pair.a.state === stowed ? b : pair.a;
-  const inHand = b.state === held && b.hand >= 0;
+  const a = pair.a.state === toolState.onTray ? b : pair.a;
+  const inHand = b.state === toolState.inHand && b.hand >= 0;
   tool.setPose({
     p: vector(a.p_m).lerp(vector(b.p_m), t),
     q: quaternion(a.q).slerp(quaternion(b.q), t),
     openingRad: a.opening_rad + (b.opening_rad - a.opening_rad) * t,
     device: inHand ? vector(a.device_p_m).lerp(vector(b.device_p_m), t) : null,
-    onArm: b.state === held && b.hand < 0,
+    onArm: b.state === toolState.inHand && b.hand < 0,
   });
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The drop-down beside an instrument that takes up other tools of the scene: pictures, properties, what it holds,
 // what is already in the field.
+import { toolState } from '../hand_tool';
 import { spoken } from '../bundle';
 import type { Bundle, ToolData } from '../bundle_types';
 import type { RenderFrame } from '../lcm';
@@ -21,8 +22,8 @@ type ToolState = Pick<RenderFrame['tool'][number], 'state' | 'hand'>;
 
 /** What stands beside a tool, and whether it may be asked for; hand: of the instrument. */
 export function toolBadge(tool: ToolState | undefined, hand: number): { text: string; free: boolean } {
-  if (!tool || tool.state === 0) return { text: '', free: true };
-  if (tool.state === 2) return { text: 'in the field', free: false };
+  if (!tool || tool.state === toolState.onTray) return { text: '', free: true };
+  if (tool.state === toolState.inField) return { text: 'in the field', free: false };
   return { text: tool.hand === hand ? 'loaded' : 'taken', free: false };
 }
 
