@@ -175,6 +175,8 @@ std::string opening_exercise(const SceneFacts& f) {
        "reach=\"0.6 mm\"/>\n"
        "  <contact id=\"lobes\" between=\"frontal temporal\" friction=\"0\" tissue_alarm=\"0.8 mm\" "
        "tissue_spacing=\"2 mm\" tissue_max_contacts=\"40\"/>\n"
+       "  <contact id=\"at_floor_and_bone\" between=\"frontal temporal insula window\" friction=\"0\" "
+       "tissue_spacing=\"2 mm\" tissue_max_contacts=\"40\" tissue_max_force=\"0.05 N\"/>\n"
        "  <contact id=\"tools\" between=\"frontal temporal insula window left_suction right_dissector\" "
        "friction=\"0.1\" "
        "spacing=\"1 mm\" max_contacts=\"10\"/>\n\n"

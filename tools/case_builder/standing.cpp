@@ -19,6 +19,7 @@ namespace {
 // The shipped exercises: 0.07 and 0.15 N, 0.1 and 0.3 mm, all of it.
 constexpr double min_force = 0.02, max_force = 1.0;  // N
 constexpr double max_depth = 1.5;                    // mm
+constexpr double max_speed = 100;                    // mm/s; the shipped exercises: 0.00
 constexpr double min_seen = 0.4;
 constexpr double limit = 12;  // mm, within which depths are looked for
 
@@ -133,6 +134,12 @@ Standing standing_of(const Simulation& s) {
     out.arms.push_back(arm);
     hiding.push_back(shape);
   }
+  for (const Body* body : s.bodies())
+    if (const auto* lobe = dynamic_cast<const SoftBody*>(body)) {
+      double speed = 0;
+      for (int i = 0; i < lobe->nodes(); ++i) speed = std::max(speed, 1000 * lobe->v().segment<3>(3 * i).norm());
+      if (speed > max_speed) out.restless.push_back({lobe->id, speed});
+    }
   if (artery && artery->region("sac") >= 0 && s.view()) {
     out.has_sac = true;
     out.seen = seen_of(*artery, 1000 * s.view()->eye(), hiding);
@@ -163,6 +170,8 @@ std::vector<Note> judged(const Standing& standing) {
   if (standing.has_sac)
     tell(standing.seen >= min_seen,
          fmt::format("The microscope sees {:.0f} % of the sac's side towards it.", 100 * standing.seen));
+  for (const RestlessLobe& lobe : standing.restless)
+    tell(false, fmt::format("The {} lobe does not come to rest: {:.0f} mm/s.", lobe.id, lobe.speed));
   for (const std::string& id : standing.in_tissue) tell(false, fmt::format("{} starts within tissue or bone.", id));
   return notes;
 }

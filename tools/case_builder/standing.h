@@ -14,8 +14,14 @@ struct StandingArm {
   double force = 0;      ///< on that, N
   double deepest = 0;    ///< of its corners within a lobe or the floor, mm
 };
+/// A lobe that still moves.
+struct RestlessLobe {
+  std::string id;
+  double speed = 0;  ///< of its fastest node, mm/s
+};
 struct Standing {
   std::vector<StandingArm> arms;
+  std::vector<RestlessLobe> restless;
   double seen = 1;  ///< of the sac's side that faces the microscope, the share that no lobe, bone or arm hides
   bool has_sac = false;
   std::vector<std::string> in_tissue;  ///< hands' tools that start within a lobe, the floor or the bone
