@@ -33,7 +33,7 @@ struct Rig {
   TestDirectory directory;
   std::string motion_file;
   std::unique_ptr<HapticServer> server;
-  insula_lcm::device_state_t state;
+  insula_lcm::device_state_t state{};
   bool state_seen = false;
   std::int64_t session = 100, sequence = 0;
   double sim_time = 0;
@@ -68,7 +68,7 @@ struct Rig {
   }
 
   void send_scene(const std::string& bundle = {}) {
-    insula_lcm::scene_info_t info;
+    insula_lcm::scene_info_t info{};
     info.session = session;
     info.time_us = clock.now_ns() / 1000;
     info.scene = "test.xml";

@@ -136,10 +136,10 @@ class HapticServer {
   ArrivalOrder order_;
   std::string setup_key_;
   std::array<Wish, 2> wishes_{};
-  insula_lcm::scene_info_t scene_info_;
-  insula_lcm::hand_input_t hand_input_;
-  insula_lcm::sim_event_t event_;
-  insula_lcm::user_command_t command_;
+  insula_lcm::scene_info_t scene_info_{};
+  insula_lcm::hand_input_t hand_input_{};
+  insula_lcm::sim_event_t event_{};
+  insula_lcm::user_command_t command_{};
   std::string why_;
 
   // Across threads.

@@ -103,7 +103,7 @@ TEST(Server, ThreeThreadsAtOnce) {
     while (run) server.receive(5);
   });
   std::thread servo([&] { run_servo(server, LoopSettings{}, run); });
-  insula_lcm::scene_info_t info;
+  insula_lcm::scene_info_t info{};
   info.session = engine.session;
   info.state = "running";
   std::vector<std::uint8_t> bytes;

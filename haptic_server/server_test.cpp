@@ -156,7 +156,7 @@ TEST(Server, AHandIsGivenBackOnReleaseAndWhenTheViewerIsLost) {
     EXPECT_GT(rig.server->force(1).norm(), 0.4);
     rig.viewer_holds = false;
     if (released) {
-      insula_lcm::user_command_t command;
+      insula_lcm::user_command_t command{};
       command.command = "release";
       command.argument = "left";
       rig.engine_bus.publish(channel::user_command, rig.encoded(command));

@@ -77,7 +77,7 @@ insula_lcm::render_frame_t sample() {
   m.sim_time_s = 0.5;
   m.bodies = 2;
   for (int i = 0; i < 2; ++i) {
-    insula_lcm::render_body_t b;
+    insula_lcm::render_body_t b{};
     b.index = i;
     b.nodes = 3;
     b.x_m = {{0.f, 0.f, 0.f}, {0.01f, 0.f, 0.f}, {0.f, 0.01f, float(i)}};

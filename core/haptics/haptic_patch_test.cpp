@@ -57,7 +57,7 @@ TEST(HapticPatch, RoundTripIsExact) {
   EXPECT_EQ(got.problem.blocks[patch].normals, 3);
   EXPECT_EQ(got.problem.blocks[last_patch].normals, 1);
   // The bytes are those of the generated class.
-  insula_lcm::haptic_problem_t message;
+  insula_lcm::haptic_problem_t message{};
   ASSERT_EQ(message.decode(bytes.data(), 0, int(bytes.size())), int(bytes.size()));
   EXPECT_EQ(message.block_law[patch], 2);
   EXPECT_EQ(message.block_normals[patch], 3);

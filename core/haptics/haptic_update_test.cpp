@@ -32,7 +32,7 @@ TEST(HapticUpdate, RoundTripIsExact) {
 
 TEST(HapticUpdate, BytesAreThoseOfTheGeneratedClass) {
   const Buffer ours = encoded(make_update(5));
-  insula_lcm::haptic_problem_t message;
+  insula_lcm::haptic_problem_t message{};
   ASSERT_EQ(message.decode(ours.data(), 0, int(ours.size())), int(ours.size()));
   EXPECT_EQ(message.rows, 13);
   EXPECT_EQ(message.tools, 2);

@@ -190,7 +190,7 @@ TEST(Frame, StaysUnderWhatOneMessageCarries) {
   EXPECT_LT(bytes.size(), 120'000u);
   EXPECT_GT(bytes.size(), 12u * 2900);
   std::string why;
-  insula_lcm::render_frame_t back;
+  insula_lcm::render_frame_t back{};
   EXPECT_TRUE(decode(bytes, back, why)) << why;
 }
 

@@ -49,7 +49,7 @@ struct Inputs {
   void subscribe(Bus& bus, SessionReports& reports) {
     bus.subscribe(channel::device_state, [this, &reports](Bytes b) {
       std::string why;
-      insula_lcm::device_state_t m;
+      insula_lcm::device_state_t m{};
       if (!decode(b, m, why)) return;
       const std::int64_t now_us = monotonic_us();
       if (!order.take(m.session, m.sequence, 1000 * now_us)) return;
@@ -59,17 +59,17 @@ struct Inputs {
     });
     bus.subscribe(channel::haptic_status, [&reports](Bytes b) {
       std::string why;
-      insula_lcm::haptic_status_t m;
+      insula_lcm::haptic_status_t m{};
       if (decode(b, m, why)) reports.hear(m);
     });
     bus.subscribe(channel::hand_input, [this](Bytes b) {
       std::string why;
-      insula_lcm::hand_input_t m;
+      insula_lcm::hand_input_t m{};
       if (decode(b, m, why)) driven = true;
     });
     bus.subscribe(channel::user_command, [this](Bytes b) {
       std::string why;
-      insula_lcm::user_command_t m;
+      insula_lcm::user_command_t m{};
       if (!decode(b, m, why)) return;
       if (m.command == "pause") pause = true;
       else if (m.command == "resume") pause = false;

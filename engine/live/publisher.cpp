@@ -65,7 +65,7 @@ void Publisher::again(const Simulation& simulation, std::int64_t pose_time_us) {
 
 void Publisher::events(const std::vector<Event>& events) {
   for (const Event& e : events) {
-    insula_lcm::sim_event_t m;
+    insula_lcm::sim_event_t m{};
     m.session = session_;
     m.sequence = ++event_sequence_;
     m.time_us = monotonic_us();

@@ -51,9 +51,9 @@ class Publisher {
 
   Bus& bus_;
   std::int64_t session_, sequence_ = 0, event_sequence_ = 0, frame_sequence_ = 0, last_info_us_ = 0, failed_ = 0;
-  insula_lcm::scene_info_t info_;
+  insula_lcm::scene_info_t info_{};
   SessionNote note_;
-  insula_lcm::render_frame_t frame_;
+  insula_lcm::render_frame_t frame_{};
   ProblemStamp stamp_;
   ContactFramePrediction predict_frames_;
   Condenser condense_;

@@ -88,7 +88,7 @@ struct EngineListener::State {
 EngineListener::EngineListener(Bus& bus) : bus_(bus), state_(std::make_shared<State>()) {
   bus_.subscribe(channel::scene_info, [state = state_](Bytes b) {
     std::string why;
-    insula_lcm::scene_info_t info;
+    insula_lcm::scene_info_t info{};
     if (decode(b, info, why) && info.state != "ended") state->heard = true;
   });
 }

@@ -57,7 +57,7 @@ TEST(EngineListener, HearsARunningEngineAndNoneThatHasEnded) {
     auto hub = std::make_shared<MemHub>();
     MemBus bus(hub), engine(hub);
     EngineListener listener(bus);
-    insula_lcm::scene_info_t info;
+    insula_lcm::scene_info_t info{};
     info.session = 1;
     info.state = state;
     info.scene = "s.xml";

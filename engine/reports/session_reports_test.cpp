@@ -89,7 +89,7 @@ class SessionReportsTest : public testing::Test {
     return run_live(options, registry_, bus_, stop_);
   }
   void ask(const std::string& command, const std::string& argument = "") {
-    insula_lcm::user_command_t m;
+    insula_lcm::user_command_t m{};
     m.time_us = 1;
     m.sender = "test";
     m.command = command;

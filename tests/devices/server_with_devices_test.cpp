@@ -134,7 +134,7 @@ class ProgramOnTheBus {
     engine_.clock.advance_ns(MonotonicClock().now_ns() - engine_.clock.now_ns());
     engine_.sim_time += 0.016;
     if (step_++ % 30 == 0) {
-      insula_lcm::scene_info_t info;
+      insula_lcm::scene_info_t info{};
       info.session = engine_.session;
       info.time_us = engine_.clock.now_ns() / 1000;
       info.scene = "test.xml";

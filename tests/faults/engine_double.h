@@ -22,7 +22,7 @@ class EngineDouble {
     for (int hand = 0; hand < 2; ++hand) tool_[hand].p = Vec3(hand == 0 ? -0.02 : 0.02, 0, 0.001);
     link.subscribe(channel::device_state, [this](Bytes b) {
       std::string why;
-      insula_lcm::device_state_t state;
+      insula_lcm::device_state_t state{};
       if (decode(b, state, why) && order_.take(state.session, state.sequence, clock_.now_ns())) state_ = state;
     });
   }
@@ -103,7 +103,7 @@ class EngineDouble {
   const Clock& clock_;
   std::int64_t session_, milliseconds_ = 0;
   ArrivalOrder order_;
-  insula_lcm::device_state_t state_;
+  insula_lcm::device_state_t state_{};
   Pose tool_[2];
   Buffer bytes_;
 };

@@ -21,6 +21,13 @@ Json report_below(const fs::path& folder) {
   return {};
 }
 
+/// Live, hands and steps meet at other instants, so values may differ by a little. Counts and grades may not.
+double tolerance(const Json& measure) {
+  const std::string unit = measure.at("unit");
+  const double least = unit == "%" ? 2 : unit == "mm" ? 0.2 : 0;
+  return unit.empty() ? 0 : std::max(least, 0.05 * std::abs(measure.at("value").get<double>()));
+}
+
 void expect_same_end(const Json& live, const Json& headless) {
   EXPECT_EQ(live.at("state"), headless.at("state"));
   ASSERT_EQ(live.at("goals").size(), headless.at("goals").size());
@@ -36,17 +43,19 @@ void expect_same_end(const Json& live, const Json& headless) {
   for (std::size_t i = 0; i < live.at("faults").size(); ++i)
     EXPECT_EQ(live.at("faults")[i].at("count"), headless.at("faults")[i].at("count")) << live.at("faults")[i].at("id");
   ASSERT_EQ(live.at("measures").size(), headless.at("measures").size());
-  EXPECT_GE(live.at("measures").size(), 2u);
+  EXPECT_GE(live.at("measures").size(), 1u);
   for (std::size_t i = 0; i < live.at("measures").size(); ++i) {
     const Json &a = live.at("measures")[i], &b = headless.at("measures")[i];
-    const double value = b.at("value").get<double>();
-    EXPECT_NEAR(a.at("value").get<double>(), value, 0.05 * std::abs(value)) << a.at("id");
+    EXPECT_EQ(a.at("id"), b.at("id"));
+    EXPECT_NEAR(a.at("value").get<double>(), b.at("value").get<double>(), tolerance(b)) << a.at("id");
   }
 }
 
-TEST(Example, EndsLiveAsItDoesHeadless) {
+class Example : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(Example, EndsLiveAsItDoesHeadless) {
   if (!multicast_works()) GTEST_SKIP() << "no multicast on this machine";
-  const fs::path scene = fs::path(INSULA_SOURCE_DIR) / "scenes/training/1_sylvian_fissure.xml";
+  const fs::path scene = fs::path(INSULA_SOURCE_DIR) / "scenes/training" / (std::string(GetParam()) + ".xml");
   PlaySession session;
   ASSERT_EQ(session.start({"--report", (session.folder() / "live").string(), "--motion", "steady"}, scene), "");
   const std::string run = std::string(INSULA_BINARY_DIR) + "/bin/insula run " + scene.string() +
@@ -66,6 +75,10 @@ TEST(Example, EndsLiveAsItDoesHeadless) {
   expect_same_end(live.at("exercise"), headless.at("exercise"));
   EXPECT_EQ(live.at("motion"), "steady");
 }
+
+INSTANTIATE_TEST_SUITE_P(Exercises, Example,
+                         ::testing::Values("1_sylvian_fissure", "2_aneurysm_dissection", "3_clipping", "4_rupture"),
+                         [](const auto& info) { return std::string(info.param).substr(2); });
 
 }  // namespace
 }  // namespace insula::testing

@@ -68,11 +68,11 @@ class Hub {
   Post post_;
 
   // Bus thread.
-  insula_lcm::render_frame_t render_frame_;
-  insula_lcm::scene_info_t scene_info_;
-  insula_lcm::sim_event_t sim_event_;
-  insula_lcm::haptic_status_t haptic_status_;
-  insula_lcm::device_state_t device_state_;
+  insula_lcm::render_frame_t render_frame_{};
+  insula_lcm::scene_info_t scene_info_{};
+  insula_lcm::sim_event_t sim_event_{};
+  insula_lcm::haptic_status_t haptic_status_{};
+  insula_lcm::device_state_t device_state_{};
   std::chrono::steady_clock::time_point next_device_state_{};
 
   // Both threads.

@@ -19,7 +19,7 @@ import './hud/styles';
 import { headsetLines } from './hud/timers';
 import type { HapticStatus, SceneInfo } from './lcm';
 import { Highlight, middle } from './inventory';
-import { parseOptions } from './options';
+import { parseOptions, type QualityName } from './options';
 import { Pace } from './pace';
 import { Playback } from './playback';
 import { levels, QualityWatch } from './quality';
@@ -50,7 +50,9 @@ let info: SceneInfo | null = null;
 let haptic: HapticStatus | null = null;
 /** When each stream was last heard. */
 const heard = { haptic: 0, info: 0, frame: -1e9 };
-let watch = new QualityWatch(options.quality);
+const slowAdvice = softwareAdvice(stage.renderer.getContext());
+const firstLevel: QualityName = slowAdvice === '' ? 'high' : 'draft';
+let watch = new QualityWatch(options.quality, firstLevel);
 let loadError = '';
 let spokenTo = '';
 
@@ -107,7 +109,7 @@ const hud = new Hud(
     infrared: (on) => modes.setInfrared(on),
     nextRuler: () => modes.nextRuler(),
     quality: (name) => {
-      watch = new QualityWatch(name === '' ? null : (name as 'low'));
+      watch = new QualityWatch(name === '' ? null : (name as QualityName), firstLevel);
       applyQuality();
     },
     chooseHand: (h) => hands.setActive(h),
@@ -227,7 +229,7 @@ function applyQuality(): void {
   status.quality = level.name;
   stage.setLevel(level);
   headset.configure(level.lens, 0.75 * level.pixelRatio);
-  world?.setCheap(level.name === 'low');
+  world?.setCheap(level.cheap);
 }
 
 const pace = new Pace((fps, seconds) => {
@@ -285,6 +287,6 @@ hands.start();
 applyQuality();
 modes.tell();
 canvas.focus({ preventScroll: true });
-hud.advise(softwareAdvice(stage.renderer.getContext()));
+hud.advise(slowAdvice);
 // three's own loop: it goes on in a headset, where the window's stands still.
 stage.renderer.setAnimationLoop(draw);

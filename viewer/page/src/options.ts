@@ -4,7 +4,9 @@
 import { clampAngle, type StereoMode, usualAngleDeg } from './stereo';
 
 export type Role = 'trainee' | 'instructor' | 'observer';
-export type QualityName = 'low' | 'medium' | 'high' | 'ultra';
+/** From the fastest picture to the best one. */
+export const qualityNames = ['draft', 'low', 'medium', 'high', 'ultra'] as const;
+export type QualityName = (typeof qualityNames)[number];
 
 export interface Options {
   /**
@@ -35,7 +37,7 @@ export function parseOptions(search: string): Options {
   const angle = q.get('angle');
   return {
     role: role === 'instructor' || role === 'observer' ? role : 'trainee',
-    quality: quality === 'low' || quality === 'medium' || quality === 'high' || quality === 'ultra' ? quality : null,
+    quality: qualityNames.find((name) => name === quality) ?? null,
     hud: !q.has('nohud'),
     freezeAtS: t !== null && t !== '' && Number.isFinite(Number(t)) ? Number(t) : null,
     stereo: stereo === 'sbs' || stereo === 'anaglyph' || stereo === 'xr' ? stereo : 'off',

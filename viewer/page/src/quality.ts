@@ -9,14 +9,26 @@ export interface Level {
   /** Device pixels per CSS pixel, at most. */
   pixelRatio: number;
   shadowSize: number;
+  /** Simpler materials, and shadows of tools alone. */
+  cheap: boolean;
   lens: LensSettings;
 }
 
+const plain: LensSettings = { occlusion: false, depthOfField: false, samples: 0 };
+
+/** In the order of `qualityNames`. `draft` is for pictures that are drawn without a graphics card. */
 export const levels: Level[] = [
-  { name: 'low', pixelRatio: 0.6, shadowSize: 512, lens: { occlusion: false, depthOfField: false, samples: 0 } },
-  { name: 'medium', pixelRatio: 0.85, shadowSize: 1024, lens: { occlusion: false, depthOfField: false, samples: 2 } },
-  { name: 'high', pixelRatio: 1.25, shadowSize: 2048, lens: { occlusion: true, depthOfField: false, samples: 4 } },
-  { name: 'ultra', pixelRatio: 2, shadowSize: 4096, lens: { occlusion: true, depthOfField: true, samples: 4 } },
+  { name: 'draft', pixelRatio: 0.3, shadowSize: 256, cheap: true, lens: plain },
+  { name: 'low', pixelRatio: 0.6, shadowSize: 512, cheap: true, lens: plain },
+  { name: 'medium', pixelRatio: 0.85, shadowSize: 1024, cheap: false, lens: { ...plain, samples: 2 } },
+  { name: 'high', pixelRatio: 1.25, shadowSize: 2048, cheap: false, lens: { ...plain, occlusion: true, samples: 4 } },
+  {
+    name: 'ultra',
+    pixelRatio: 2,
+    shadowSize: 4096,
+    cheap: false,
+    lens: { occlusion: true, depthOfField: true, samples: 4 },
+  },
 ];
 
 const lowFps = 40;

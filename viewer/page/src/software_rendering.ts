@@ -9,7 +9,7 @@ export function adviceFor(renderer: string): string {
   if (!name) return '';
   return (
     `Pictures are slow: this browser draws by software (${name}). Turn on hardware acceleration in its settings, ` +
-    'or choose the quality Low and a small window.'
+    'or keep the quality Draft and a small window.'
   );
 }
 
