@@ -25,7 +25,7 @@ Json report_below(const fs::path& folder) {
 double tolerance(const Json& measure) {
   const std::string unit = measure.at("unit");
   const double least = unit == "%" ? 2 : unit == "mm" ? 0.2 : 0;
-  return unit.empty() ? 0 : std::max(least, 0.05 * std::abs(measure.at("value").get<double>()));
+  return unit.empty() ? 0 : std::max(least, 0.1 * std::abs(measure.at("value").get<double>()));
 }
 
 void expect_same_end(const Json& live, const Json& headless) {
