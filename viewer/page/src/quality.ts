@@ -18,7 +18,7 @@ const plain: LensSettings = { occlusion: false, depthOfField: false, samples: 0 
 
 /** In the order of `qualityNames`. `draft` is for pictures that are drawn without a graphics card. */
 export const levels: Level[] = [
-  { name: 'draft', pixelRatio: 0.3, shadowSize: 256, cheap: true, lens: plain },
+  { name: 'draft', pixelRatio: 0.3, shadowSize: 512, cheap: true, lens: plain },
   { name: 'low', pixelRatio: 0.6, shadowSize: 512, cheap: true, lens: plain },
   { name: 'medium', pixelRatio: 0.85, shadowSize: 1024, cheap: false, lens: { ...plain, samples: 2 } },
   { name: 'high', pixelRatio: 1.25, shadowSize: 2048, cheap: false, lens: { ...plain, occlusion: true, samples: 4 } },
