@@ -68,6 +68,20 @@ TEST(Clipping, AShortClipMovedAlongTheNeckClosesIt) {
   test::expect_well_clipped(o);
 }
 
+TEST(Clipping, ASecondClipBesideAShortOneLeavesLessOfTheNeck) {
+  test::Played one = test::play_motion(clipping_scene, "too_short");
+  test::Played both = test::play_motion(clipping_scene, "second");
+  ASSERT_TRUE(one.ran && both.ran);
+  EXPECT_EQ(both.measures["applications"], 2);
+  EXPECT_GT(one.measures["remnant_pct"], 50);
+  EXPECT_LT(both.measures["remnant_pct"], 0.6 * one.measures["remnant_pct"]);
+  EXPECT_LE(both.measures["grade"], 1);
+  EXPECT_EQ(both.state, ExerciseState::done) << "grade 1 passes";
+  EXPECT_GT(both.measures["superior.flow_pct"], 90);
+  EXPECT_GT(both.measures["inferior.flow_pct"], 90);
+  for (const auto& [fault, count] : both.faults) EXPECT_EQ(count, 0) << fault;
+}
+
 TEST(Clipping, AShutClipThatIsPulledSlipsOff) {
   test::Played o = test::play_motion(clipping_scene, "slipping");
   ASSERT_TRUE(o.ran);

@@ -9,6 +9,7 @@
 3_clipping_too_high     an angled clip across the middle of the dome: half of the sac remains
 3_clipping_too_short    a clip whose tips end within the neck: blood still enters
 3_clipping_replaced     the same clip, taken back, opened, moved along the neck and closed again: the neck is shut
+3_clipping_second       the same clip, and a curved one beside it on the dome's side: less of the neck is left
 3_clipping_slipping     the applier pulls at the shut clip, which slips off the neck
 3_clipping_perforator   blades turned across the superior branch: they close on the perforator behind it too
 4_rupture_steady        the dome ruptures; suction; temporary clip on the parent artery; neck clipped; temporary clip
@@ -37,6 +38,8 @@ NECK = {
 # Tips within the neck, and where the same clip goes when it is moved. The wall then lies differently than at first.
 TOO_SHORT = dict(lift=0, slide=-2.2, turn=6, pitch=6, side=0.3)
 MOVED = dict(lift=-0.2, slide=0.8, turn=6, pitch=6, side=0.3, press=0.3, push=0.1)
+# A curved clip beside the short one. Lower it meets the first one; farther in its tips press on the floor.
+SECOND = dict(lift=1.43, slide=0.4, turn=-6, pitch=5, side=0.33, press=0.12, push=0.2)
 OUT_OF_FIELD = 32.0  # mm along the applier's shaft
 VIEW = (0.93, 0.25, 0.27)  # towards the surgeon
 
@@ -227,14 +230,14 @@ class Field:
         middle = add(add(add(self.vessel["neck"]["centre"], up, lift), outward, -slide), closing, side)
         return clip.applier_pose(middle, turned([-v for v in outward], closing, pitch), closing)
 
-    def placement(self, place):
-        """Pose of the applier with the angled clip across the neck, and the hand's motion while the blades close."""
+    def placement(self, place, clip="angled"):
+        """Pose of the applier with the clip across the neck, and the hand's motion while the blades close."""
         place = dict(place)
         depth, push = place.pop("press"), place.pop("push")
         up = unit(self.vessel["neck"]["normal"])
         outward = turned(across(self.view, up), up, place["turn"])
         motion = add([-depth * v for v in up], outward, -push)
-        return self.neck(Clip("angled"), **place), motion
+        return self.neck(Clip(clip), **place), motion
 
     def clip_neck(self, hand, place=None):
         """The angled clip of the tray across the neck, well placed."""
@@ -290,6 +293,18 @@ def one_clip(path, clip, place, wait=8):
     script.write(path)
 
 
+def second_clip(path, field):
+    """A script of two clips: one with its tips within the neck, then a curved one beside it."""
+    script = Script()
+    script.command(0.1, "ask", "applier load angled")
+    place_clip(script.right, field.neck(Clip("angled"), **TOO_SHORT))
+    script.command(round(script.right.t + 0.1, 3), "ask", "applier load curved")
+    script.right.key(0.3, steady_outside(script), last_q(script))
+    place_clip(script.right, *field.placement(SECOND, "curved"))
+    script.right.key(4, steady_outside(script), last_q(script))
+    script.write(path)
+
+
 def exercise_3(folder):
     field = Field(CASE)
     one_clip(folder / "3_clipping_steady.csv", "angled", field.clip_neck)
@@ -302,6 +317,7 @@ def exercise_3(folder):
     one_clip(folder / "3_clipping_too_high.csv", "angled", at(field.neck(Clip("angled"), 1.6, 1.8, 6)), 4)
     one_clip(folder / "3_clipping_too_short.csv", "angled", at(field.neck(Clip("angled"), **TOO_SHORT)), 4)
     one_clip(folder / "3_clipping_replaced.csv", "angled", field.move_along_neck, 4)
+    second_clip(folder / "3_clipping_second.csv", field)
     one_clip(folder / "3_clipping_slipping.csv", "angled", field.pull_shut_clip, 2)
     beside = field.neck(Clip("angled"), -0.9, 2.2, -45, 2, 1.5)
     one_clip(folder / "3_clipping_perforator.csv", "angled", at(beside), 4)

@@ -106,7 +106,7 @@ for (let seed = 1; seed <= seeds; seed++) {
   const browser = await launch();
   try {
     const page = await browser.newPage({ viewport: { width: 600, height: 500 } });
-    const url = `http://127.0.0.1:${port + 1}/?quality=low`;
+    const url = `http://127.0.0.1:${port + 1}/?quality=draft`;
     for (let k = 0; k < 60 && !(await page.goto(url).catch(() => null)); k++) await pause(500);
     await page.waitForFunction(() => window.__insula?.ready, null, patience);
     for (const button of await page.locator('.toast button').all()) await button.click({ timeout: 60_000 });
