@@ -22,6 +22,7 @@ pass through it: a wet patty of 0.5 mm is much softer than the tissue below it.
 #include <limits>
 #include <optional>
 
+#include "core/collision/search/aabb_tree.h"
 #include "core/mechanics/constraint.h"
 #include "core/mechanics/surface.h"
 #include "core/registry/registry.h"
@@ -89,6 +90,7 @@ class CottonPatty final : public Constraint {
     Vec3 bary;
     double height;  ///< along `out` from the centre, m
   };
+  void list_near();
   Vec3 foot(double i, double j) const;
   std::optional<Hit> highest(const Vec3& foot) const;
   double top_around(int i, int j) const;
@@ -97,6 +99,7 @@ class CottonPatty final : public Constraint {
   static std::size_t at(int i, int j) { return std::size_t(i * across + j); }
 
   Vec3 up_, side_, long_;
+  std::vector<int> near_;  ///< triangles of the surface
   std::vector<Hold> holds_;
 };
 
@@ -109,11 +112,30 @@ void CottonPatty::prepare(PrepareContext& context) {
   side_ = up_.cross(long_);
 }
 
+/// Lists the triangles that a line of the cloth may meet.
+void CottonPatty::list_near() {
+  const TriMesh& mesh = on->rest();
+  // Half a step more than the cloth, which top_around() looks at.
+  const Vec3 half(0.5 * length() * (1 + 1.0 / (lengthwise - 1)), 0.5 * width() * (1 + 1.0 / (across - 1)), reach());
+  Aabb cloth_box;
+  cloth_box.add(half);
+  cloth_box.add(-half);
+  near_.clear();
+  for (int t = 0; t < int(mesh.triangles.size()); ++t) {
+    Aabb box;
+    for (const int v : mesh.triangles[std::size_t(t)]) {
+      const Vec3 x = mesh.vertices[std::size_t(v)] - centre();
+      box.add(Vec3(x.dot(long_), x.dot(side_), x.dot(up_)));
+    }
+    if (box.overlaps(cloth_box)) near_.push_back(t);
+  }
+}
+
 /// Where the line through a foot along `out` meets the surface at rest, highest within reach.
 std::optional<CottonPatty::Hit> CottonPatty::highest(const Vec3& foot) const {
   const TriMesh& mesh = on->rest();
   std::optional<Hit> best;
-  for (int t = 0; t < int(mesh.triangles.size()); ++t) {
+  for (const int t : near_) {
     const auto& n = mesh.triangles[std::size_t(t)];
     const Vec3& a = mesh.vertices[std::size_t(n[0])];
     const Vec3 u = mesh.vertices[std::size_t(n[1])] - a, v = mesh.vertices[std::size_t(n[2])] - a;
@@ -158,16 +180,16 @@ void CottonPatty::stretch(std::vector<double>& height) const {
 void CottonPatty::connect(PrepareContext& context, Simulation&) {
   std::vector<std::optional<Hit>> hits;
   std::vector<double> height;
+  double lowest = reach();
+  list_near();
   for (int i = 0; i < lengthwise; ++i)
     for (int j = 0; j < across; ++j) {
       hits.push_back(highest(foot(i, j)));
       height.push_back(hits.back() ? top_around(i, j) : -reach());
+      if (hits.back()) lowest = std::min(lowest, height.back());
     }
   const std::optional<Hit>& middle = hits[at(lengthwise / 2, across / 2)];
   if (!middle) return error(context, centre, "centre: the surface is not within reach of it along out");
-  const double lowest = *std::min_element(height.begin(), height.end(), [&](double a, double b) {
-    return (a <= -reach() ? reach() : a) < (b <= -reach() ? reach() : b);
-  });
   for (double& z : height) z = std::max(z, lowest);
   stretch(height);
   holds_.clear();

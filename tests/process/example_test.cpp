@@ -21,14 +21,24 @@ Json report_below(const fs::path& folder) {
   return {};
 }
 
+struct Shipped {
+  const char* scene;
+  std::size_t measures;  ///< at least
+  double share = 0.05;   ///< by which a measure may differ
+};
+// The largest opening of the fissure depends on the step in which the tube takes hold.
+const Shipped exercises[] = {
+    {"1_sylvian_fissure", 2, 0.1}, {"2_aneurysm_dissection", 1}, {"3_clipping", 9}, {"4_rupture", 9}};
+void PrintTo(const Shipped& e, std::ostream* out) { *out << e.scene; }
+
 /// Live, hands and steps meet at other instants, so values may differ by a little. Counts and grades may not.
-double tolerance(const Json& measure) {
+double tolerance(const Json& measure, double share) {
   const std::string unit = measure.at("unit");
   const double least = unit == "%" ? 2 : unit == "mm" ? 0.2 : 0;
-  return unit.empty() ? 0 : std::max(least, 0.1 * std::abs(measure.at("value").get<double>()));
+  return unit.empty() ? 0 : std::max(least, share * std::abs(measure.at("value").get<double>()));
 }
 
-void expect_same_end(const Json& live, const Json& headless) {
+void expect_same_end(const Json& live, const Json& headless, const Shipped& exercise) {
   EXPECT_EQ(live.at("state"), headless.at("state"));
   ASSERT_EQ(live.at("goals").size(), headless.at("goals").size());
   for (std::size_t i = 0; i < live.at("goals").size(); ++i) {
@@ -43,19 +53,19 @@ void expect_same_end(const Json& live, const Json& headless) {
   for (std::size_t i = 0; i < live.at("faults").size(); ++i)
     EXPECT_EQ(live.at("faults")[i].at("count"), headless.at("faults")[i].at("count")) << live.at("faults")[i].at("id");
   ASSERT_EQ(live.at("measures").size(), headless.at("measures").size());
-  EXPECT_GE(live.at("measures").size(), 1u);
+  EXPECT_GE(live.at("measures").size(), exercise.measures);
   for (std::size_t i = 0; i < live.at("measures").size(); ++i) {
     const Json &a = live.at("measures")[i], &b = headless.at("measures")[i];
     EXPECT_EQ(a.at("id"), b.at("id"));
-    EXPECT_NEAR(a.at("value").get<double>(), b.at("value").get<double>(), tolerance(b)) << a.at("id");
+    EXPECT_NEAR(a.at("value").get<double>(), b.at("value").get<double>(), tolerance(b, exercise.share)) << a.at("id");
   }
 }
 
-class Example : public ::testing::TestWithParam<const char*> {};
+class Example : public ::testing::TestWithParam<Shipped> {};
 
 TEST_P(Example, EndsLiveAsItDoesHeadless) {
   if (!multicast_works()) GTEST_SKIP() << "no multicast on this machine";
-  const fs::path scene = fs::path(INSULA_SOURCE_DIR) / "scenes/training" / (std::string(GetParam()) + ".xml");
+  const fs::path scene = fs::path(INSULA_SOURCE_DIR) / "scenes/training" / (std::string(GetParam().scene) + ".xml");
   PlaySession session;
   ASSERT_EQ(session.start({"--report", (session.folder() / "live").string(), "--motion", "steady"}, scene), "");
   const std::string run = std::string(INSULA_BINARY_DIR) + "/bin/insula run " + scene.string() +
@@ -72,13 +82,12 @@ TEST_P(Example, EndsLiveAsItDoesHeadless) {
   for (int k = 0; k < 20 && !wait_for(ended); ++k) {
   }
   ASSERT_TRUE(live.is_object()) << "no report of the live example\n" << session.log();
-  expect_same_end(live.at("exercise"), headless.at("exercise"));
+  expect_same_end(live.at("exercise"), headless.at("exercise"), GetParam());
   EXPECT_EQ(live.at("motion"), "steady");
 }
 
-INSTANTIATE_TEST_SUITE_P(Exercises, Example,
-                         ::testing::Values("1_sylvian_fissure", "2_aneurysm_dissection", "3_clipping", "4_rupture"),
-                         [](const auto& info) { return std::string(info.param).substr(2); });
+INSTANTIATE_TEST_SUITE_P(Exercises, Example, ::testing::ValuesIn(exercises),
+                         [](const auto& info) { return std::string(info.param.scene).substr(2); });
 
 }  // namespace
 }  // namespace insula::testing

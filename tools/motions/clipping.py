@@ -284,25 +284,22 @@ def suction_poses(field):
     return add(low, shaft, 28), low, q
 
 
-def one_clip(path, clip, place, wait=8):
-    """A script of one clip: loaded, placed by `place`, then `wait` seconds outside the field."""
+def clips(path, placed, wait):
+    """A script of one clip after the other: each is loaded and placed, then `wait` seconds outside the field.
+
+    placed: pairs of a clip's name and what moves the hand to place it."""
     script = Script()
-    script.command(0.1, "ask", "applier load " + clip)
-    place(script.right)
+    for name, place in placed:
+        script.command(round(script.right.t + 0.1, 3), "ask", "applier load " + name)
+        if script.right.rows:
+            script.right.key(0.3, steady_outside(script), last_q(script))
+        place(script.right)
     script.right.key(wait, steady_outside(script), last_q(script))
     script.write(path)
 
 
-def second_clip(path, field):
-    """A script of two clips: one with its tips within the neck, then a curved one beside it."""
-    script = Script()
-    script.command(0.1, "ask", "applier load angled")
-    place_clip(script.right, field.neck(Clip("angled"), **TOO_SHORT))
-    script.command(round(script.right.t + 0.1, 3), "ask", "applier load curved")
-    script.right.key(0.3, steady_outside(script), last_q(script))
-    place_clip(script.right, *field.placement(SECOND, "curved"))
-    script.right.key(4, steady_outside(script), last_q(script))
-    script.write(path)
+def one_clip(path, clip, place, wait=8):
+    clips(path, [(clip, place)], wait)
 
 
 def exercise_3(folder):
@@ -312,12 +309,15 @@ def exercise_3(folder):
     def at(pose):
         return lambda hand: place_clip(hand, pose)
 
+    short = field.neck(Clip("angled"), **TOO_SHORT)
     across_branch = field.branch(Clip("straight"), "inferior", 0.45, 1.8)
     one_clip(folder / "3_clipping_careless.csv", "straight", at(across_branch), 12)
     one_clip(folder / "3_clipping_too_high.csv", "angled", at(field.neck(Clip("angled"), 1.6, 1.8, 6)), 4)
-    one_clip(folder / "3_clipping_too_short.csv", "angled", at(field.neck(Clip("angled"), **TOO_SHORT)), 4)
+    one_clip(folder / "3_clipping_too_short.csv", "angled", at(short), 4)
     one_clip(folder / "3_clipping_replaced.csv", "angled", field.move_along_neck, 4)
-    second_clip(folder / "3_clipping_second.csv", field)
+    second = field.placement(SECOND, "curved")
+    both = [("angled", at(short)), ("curved", lambda hand: place_clip(hand, *second))]
+    clips(folder / "3_clipping_second.csv", both, 4)
     one_clip(folder / "3_clipping_slipping.csv", "angled", field.pull_shut_clip, 2)
     beside = field.neck(Clip("angled"), -0.9, 2.2, -45, 2, 1.5)
     one_clip(folder / "3_clipping_perforator.csv", "angled", at(beside), 4)
