@@ -119,6 +119,18 @@ class MotionEntry final : public Component {
                     {.name = "guide",
                      .fallback = "false",
                      .doc = "whether pages show its poses as targets while a trainee practises"}};
+  Param<Length> guide_distance{this,
+                               {.name = "guide_distance",
+                                .fallback = "3 mm",
+                                .min = "0.2 mm",
+                                .max = "20 mm",
+                                .doc = "distance from a target of the guide that counts as reached"}};
+  Param<Angle> guide_angle{this,
+                           {.name = "guide_angle",
+                            .fallback = "15 deg",
+                            .min = "1 deg",
+                            .max = "90 deg",
+                            .doc = "turn against a target of the guide that counts as reached"}};
   void prepare(PrepareContext& context) override;
 };
 

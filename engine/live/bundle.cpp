@@ -60,6 +60,10 @@ Json guide_of(const Exercise& exercise, const Simulation& simulation) {
       const Quat& q = g.sample.pose.q;
       out.push_back({{"hand", g.hand == 0 ? "left" : "right"},
                      {"tool", g.tool},
+                     {"command", g.command},
+                     {"argument", g.argument},
+                     {"near_m", motion->guide_distance()},
+                     {"near_rad", motion->guide_angle()},
                      {"time_s", g.time_s},
                      {"p_m", list(g.sample.pose.p)},
                      {"q", {q.w(), q.x(), q.y(), q.z()}},

@@ -77,6 +77,24 @@ std::string tool_at(const Motion& motion, const Simulation& simulation, int hand
   return tool;
 }
 
+/// What the motion has asked of an instrument last by that time, as "command argument"; empty: nothing.
+std::string asked_of(const Motion& motion, const std::string& tool, double time_s) {
+  std::string asked;
+  for (const MotionCommand& c : motion.commands())
+    if (c.verb == "ask" && c.time_s <= time_s && c.argument.starts_with(tool + ' '))
+      asked = c.argument.substr(tool.size() + 1);
+  return asked;
+}
+
+GuidePose pose_of(const Motion& motion, const Simulation& simulation, int hand, const Motion::Key& key) {
+  GuidePose pose{hand, tool_at(motion, simulation, hand, key.time_s), key.time_s, key.sample, "", ""};
+  const std::string asked = asked_of(motion, pose.tool, key.time_s);
+  const std::size_t space = std::min(asked.find(' '), asked.size());
+  pose.command = asked.substr(0, space);
+  pose.argument = asked.substr(std::min(space + 1, asked.size()));
+  return pose;
+}
+
 }  // namespace
 
 std::vector<GuidePose> guide_poses(const Motion& motion, const Simulation& simulation, const TargetSettings& settings) {
@@ -91,8 +109,7 @@ std::vector<GuidePose> guide_poses(const Motion& motion, const Simulation& simul
       needed = marked(keys, s);
     }
     for (std::size_t i = 0; i < keys.size(); ++i)
-      if (needed[i])
-        out.push_back({hand, tool_at(motion, simulation, hand, keys[i].time_s), keys[i].time_s, keys[i].sample});
+      if (needed[i]) out.push_back(pose_of(motion, simulation, hand, keys[i]));
   }
   return out;
 }

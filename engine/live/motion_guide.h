@@ -15,6 +15,8 @@ struct GuidePose {
   std::string tool;  ///< id of the instrument that the motion has in that hand
   double time_s = 0;
   HandSample sample;
+  std::string command;   ///< what the motion has asked of that instrument last, "load": empty if nothing
+  std::string argument;  ///< of that command: "angled"
 };
 
 struct TargetSettings {

@@ -44,6 +44,22 @@ TEST(MotionGuide, KeepsCornersTurnsAndButtons) {
   EXPECT_LT(nearest_corner, 0.0035);
 }
 
+TEST(MotionGuide, ATargetSaysWhatTheMotionAskedOfItsInstrument) {
+  const auto simulation = empty_scene();
+  Motion m;
+  add(m, 0, Vec3::Zero());
+  m.add({0, "exchange", "right hook"});
+  m.add({0.5, "ask", "other load b"});
+  m.add({0.5, "ask", "hook load a"});
+  add(m, 1, Vec3(0.02, 0, 0), 0, true);
+  const auto poses = guide_poses(m, *simulation);
+  ASSERT_EQ(poses.size(), 2u);
+  EXPECT_EQ(poses[1].tool, "hook");
+  EXPECT_EQ(poses[0].command, "");
+  EXPECT_EQ(poses[1].command, "load");
+  EXPECT_EQ(poses[1].argument, "a");
+}
+
 TEST(MotionGuide, ALongMotionHasABoundedNumberOfTargets) {
   const auto simulation = empty_scene();
   Motion m;

@@ -3,8 +3,8 @@
 # blood_flow
 
 Blood flow through a vessel with centrelines, as a network of resistances that follows the deformed wall. Along every
-centreline the wall is cut into material cross-sections (section.h). A station of lumen A, perimeter P and length l
-has
+centreline the wall is cut into material cross-sections (section.h), where it is narrowed also into oblique ones; the
+one that is narrowed most counts. A station of lumen A, perimeter P and length l has
 
     R = 2 mu P^2 l / A^3          (a circle: Poiseuille, 8 mu l / (pi r^4));   closed when A falls below `closed_below`
 of its rest

@@ -9,6 +9,52 @@
 #include "core/base/text.h"
 
 namespace insula {
+namespace {
+
+/// Oblique cross-sections are measured where the perpendicular one has less than this share of its lumen at rest.
+constexpr double narrowed = 0.9;
+constexpr int tilts = 5, azimuths = 12;
+constexpr double tilt_step = std::numbers::pi / 30;  // 6 degrees: half of the width of a blade at 6 mm
+
+/// The cross-sections through a point of a centreline. No larger one than `largest` times the perpendicular one is
+/// taken, since its plane cuts other vessels too.
+std::vector<Cut> cuts_at(const std::vector<Vec3>& vertices, const std::vector<std::array<int, 3>>& wall,
+                         const VecX& rest, const Vec3& at, const Vec3& along, double thickness) {
+  constexpr double largest = 1.5;
+  std::vector<Cut> out;
+  const auto add = [&](const Vec3& normal) {
+    Section section = cut(vertices, wall, at, normal);
+    const Lumen lumen = section.lumen(rest, thickness);
+    if (section.corners.empty() || !(lumen.area > 0)) return;
+    if (!out.empty() && lumen.area > largest * out.front().rest.area) return;
+    out.push_back({std::move(section), lumen});
+  };
+  const Vec3 n = along.normalized(), u = n.unitOrthogonal(), v = n.cross(u);
+  add(n);
+  if (out.empty()) return out;
+  for (int i = 1; i <= tilts; ++i)
+    for (int k = 0; k < azimuths; ++k) {
+      const double azimuth = 2 * std::numbers::pi * k / azimuths, tilt = i * tilt_step;
+      add(std::cos(tilt) * n + std::sin(tilt) * (std::cos(azimuth) * u + std::sin(azimuth) * v));
+    }
+  return out;
+}
+
+/// The lumen of the cross-section that is narrowed most, and its share of its lumen at rest.
+double narrowest_cut(const std::vector<Cut>& cuts, const VecX& q, double thickness, Lumen& now) {
+  now = cuts.front().section.lumen(q, thickness);
+  double share = now.area / cuts.front().rest.area;
+  if (share >= narrowed) return share;
+  for (std::size_t i = 1; i < cuts.size(); ++i) {
+    const Lumen l = cuts[i].section.lumen(q, thickness);
+    if (l.area >= share * cuts[i].rest.area) continue;
+    share = l.area / cuts[i].rest.area;
+    now = l;
+  }
+  return share;
+}
+
+}  // namespace
 
 int VesselGraph::node(const std::string& name, const Vec3& place, const WallModel& model) {
   for (std::size_t i = 0; i < nodes.size(); ++i)
@@ -46,12 +92,12 @@ void VesselGraph::add_stations(Stretch& s, const WallModel::Centreline& line, co
     };
     Station station;
     station.length = length;
-    station.section = cut(vertices, wall, p, point(at + length) - point(at - length));
-    station.rest = station.section.lumen(rest, thickness);
+    station.cuts = cuts_at(vertices, wall, rest, p, point(at + length) - point(at - length), thickness);
+    if (!station.cuts.empty()) station.rest = station.cuts.front().rest;
     // At a junction the plane may cut more vessels than this one.
     const double inner = std::max(r - 0.5 * thickness, 0.3 * r), own = std::numbers::pi * inner * inner;
-    if (station.section.corners.empty() || !(station.rest.area > 0) || (station.rest.area > 4 * own && !s.dead_end)) {
-      station.section.corners.clear();
+    if (station.cuts.empty() || (station.rest.area > 4 * own && !s.dead_end)) {
+      station.cuts.clear();
       station.rest = {own, 2 * std::numbers::pi * inner};
     }
     station.now = station.rest;
@@ -149,8 +195,8 @@ void VesselGraph::measure(const VecX& q, double thickness, double viscosity, dou
   for (Stretch& s : stretches) {
     s.narrowest = 1;
     for (Station& t : s.stations) {
-      if (!t.section.corners.empty()) t.now = t.section.lumen(q, thickness);
-      t.open = t.now.area > closed_below * t.rest.area;
+      t.share = t.cuts.empty() ? 1 : narrowest_cut(t.cuts, q, thickness, t.now);
+      t.open = t.share > closed_below;
       t.resistance = t.open ? resistance_per_length(t.now, viscosity) * t.length : 0;
     }
   }
@@ -162,7 +208,7 @@ void VesselGraph::measure(const VecX& q, double thickness, double viscosity, dou
       const Station& t = s.stations[std::size_t(k)];
       open = open && t.open;
       resistance += t.resistance;
-      s.narrowest = std::min(s.narrowest, t.open ? t.now.area / t.rest.area : 0.0);
+      s.narrowest = std::min(s.narrowest, t.open ? t.share : 0.0);
     }
     b.conductance = open ? 1 / resistance : 0;
   }

@@ -10,11 +10,21 @@
 
 namespace insula {
 
+/// A cross-section and its lumen at rest.
+struct Cut {
+  Section section;
+  Lumen rest;
+};
+
+/// A place of a centreline. A clip may lie across the vessel at any angle, so the wall is cut there in several
+/// directions. The lumen is that of the cross-section that is narrowed most.
 struct Station {
-  Section section;    ///< no corners: the wall could not be cut, and the lumen stays that of the centreline
-  double length = 0;  ///< of its part of the stretch, m
-  Lumen rest;         ///< lumen at rest
+  std::vector<Cut> cuts;  ///< the first one is perpendicular to the centreline, the others are oblique by up to 30
+                          ///< degrees; none: the wall could not be cut, and the lumen stays that of the centreline
+  double length = 0;      ///< of its part of the stretch, m
+  Lumen rest;             ///< lumen of the perpendicular cross-section at rest
   Lumen now;
+  double share = 1;  ///< of the lumen at rest, of the cross-section that is narrowed most
   bool open = true;
   double resistance = 0;  ///< Pa s/m3, of its part
   double dye = 0;
@@ -52,7 +62,7 @@ struct VesselGraph {
   std::string build(const WallModel& model, const std::vector<std::array<int, 3>>& wall, double thickness,
                     double spacing);
   /// Cross-sections and conductances on the current wall. A section below `closed_below` of its lumen at rest is
-  /// closed.
+  /// closed. Oblique ones are measured where the perpendicular one is narrowed.
   void measure(const VecX& q, double thickness, double viscosity, double closed_below);
 
  private:

@@ -41,6 +41,15 @@ class GoalTwoHands final : public ExerciseRule {
                           .max = "10 s",
                           .doc = "a pause of the other hand that is forgiven"}};
 
+  Channel<Scalar> together{this,
+                           {.name = "together",
+                            .doc = "Times that both hands worked together",
+                            .min = "0",
+                            .shown = Shown::none,
+                            .digits = 0,
+                            .measure = true}};
+
+  void prepare(PrepareContext&) override { together.set_bands({double(count()), std::nullopt}, {0.0, std::nullopt}); }
   void declare(PrepareContext& context, const Simulation& simulation, ExerciseLog& log) override {
     goal_ = log.add_goal(id, text());
     structure_.clear();
@@ -62,6 +71,7 @@ class GoalTwoHands final : public ExerciseRule {
       if (e.kind != event() || e.hand < 0 || e.hand > 1) continue;
       if (idle_[std::size_t(1 - e.hand)] <= within() + 1e-9) ++together_;
     }
+    together.set(together_);
     if (together_ >= count()) log.goal(goal_, r.time);
   }
 

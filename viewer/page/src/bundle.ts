@@ -84,6 +84,10 @@ function exerciseOf(e: Json): types.ExerciseData {
     guide: list(e.guide).map((g) => ({
       hand: g.hand === 'left' ? 'left' : 'right',
       tool: g.tool ?? '',
+      command: g.command ?? '',
+      argument: g.argument ?? '',
+      nearM: Number(g.near_m) || 0.003,
+      nearRad: Number(g.near_rad) || 0.26,
       timeS: Number(g.time_s) || 0,
       p: g.p_m,
       q: g.q,

@@ -115,6 +115,12 @@ export interface ExerciseData {
 export interface GuidePose {
   hand: 'left' | 'right';
   tool: string;
+  /** What the example has asked of the tool before, and with which argument; '': nothing. */
+  command: string;
+  argument: string;
+  /** It counts as reached within these. */
+  nearM: number;
+  nearRad: number;
   /** When the example is there. */
   timeS: number;
   p: [number, number, number];

@@ -4,13 +4,16 @@
 import * as THREE from 'three';
 import type { Bundle, GuidePose } from './bundle_types';
 
-/** A pose counts as reached within these. */
-const nearM = 0.003;
-const nearRad = THREE.MathUtils.degToRad(15);
 /** The other hand comes first when its target is earlier in the example by more than this. */
 const aheadS = 0.5;
 interface Target {
   tool: string;
+  /** What the example has asked of that tool, "load", and with which argument; '': nothing. */
+  command: string;
+  argument: string;
+  /** It counts as reached within these. */
+  nearM: number;
+  nearRad: number;
   timeS: number;
   p: THREE.Vector3;
   q: THREE.Quaternion;
@@ -61,10 +64,14 @@ export function offsetOf(p: THREE.Vector3, q: THREE.Quaternion, target: Pick<Tar
 }
 
 const reached = (p: THREE.Vector3, q: THREE.Quaternion, t: Target): boolean =>
-  p.distanceTo(t.p) < nearM && 2 * Math.acos(Math.min(1, Math.abs(q.dot(t.q)))) < nearRad;
+  p.distanceTo(t.p) < t.nearM && 2 * Math.acos(Math.min(1, Math.abs(q.dot(t.q)))) < t.nearRad;
 
 const targetOf = (g: GuidePose): Target => ({
   tool: g.tool,
+  command: g.command,
+  argument: g.argument,
+  nearM: g.nearM,
+  nearRad: g.nearRad,
   timeS: g.timeS,
   p: new THREE.Vector3(...g.p),
   q: new THREE.Quaternion(g.q[1], g.q[2], g.q[3], g.q[0]),

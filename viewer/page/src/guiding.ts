@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Puts the guide together: what the active hand is to reach next, its ghost in the field, and what its panel says.
 import * as THREE from 'three';
-import type { Bundle } from './bundle_types';
+import type { Bundle, ToolData } from './bundle_types';
 import { Guide, offsetOf, type Axes } from './guide';
-import { toolInHand } from './hand_tool';
+import { toolInHand, toolState } from './hand_tool';
+import { toolCommands } from './hud/commands';
 import type { GuideView } from './hud/guide_panel';
 import type { RenderFrame } from './lcm';
 import { TargetGhost } from './target_ghost';
@@ -62,23 +63,38 @@ export class Guiding {
     const q = new THREE.Quaternion(held.q[1], held.q[2], held.q[3], held.q[0]);
     const buttons = { button1: held.button1 !== 0, button2: held.button2 !== 0 };
     const id = bundle.tools.find((t) => t.index === held.index)?.id ?? '';
-    if (this.guide.target(hand)?.target.tool === id) this.guide.follow(hand, p, q, buttons);
+    const before = this.guide.target(hand)?.target;
+    if (before?.tool === id && !toChoose(before, frame, bundle)) this.guide.follow(hand, p, q, buttons);
     const next = this.guide.target(hand);
     if (!next) return null;
     const { target, at, of } = next;
+    const { nearM, nearRad } = target;
     const offset = offsetOf(p, q, target, axes);
-    this.view = { at, of, offset, todo: '', waits: this.guide.waits(hand) };
+    this.view = { at, of, offset, nearM, nearRad, todo: '', waits: this.guide.waits(hand) };
     if (target.tool !== id) {
       const tool = bundle.tools.find((t) => t.id === target.tool);
       this.view.todo = `Take up the ${tool?.title ?? target.tool}`;
     } else {
       this.turn = { hand, q: target.q };
-      this.view.todo = buttonsToDo(target, buttons);
+      const choice = toChoose(target, frame, bundle);
+      this.view.todo = choice ? `Choose from the list: ${choice.title} (L)` : buttonsToDo(target, buttons);
       if (offset.distanceM > ghostFromM || offset.angleRad > ghostFromRad)
         this.ghost.show(frame, held, target.p, target.q);
     }
     return { at, of, distance_m: offset.distanceM, angle_rad: offset.angleRad };
   }
+}
+
+/** What the example has taken from a tool's list of others and still lies on the tray here; null: nothing. */
+export function toChoose(
+  target: { tool: string; command: string; argument: string },
+  frame: Pick<RenderFrame, 'tool'>,
+  bundle: Bundle,
+): ToolData | null {
+  const offer = toolCommands(bundle).find((o) => o.holder.id === target.tool && o.command.name === target.command);
+  const tool = offer?.tools.find((t) => t.id === target.argument);
+  const state = frame.tool.find((t) => t.index === tool?.index)?.state;
+  return tool && state === toolState.onTray ? tool : null;
 }
 
 interface Buttons {

@@ -4,13 +4,14 @@ import * as THREE from 'three';
 import { describe, expect, it } from 'vitest';
 import { TwoFingers } from '../src/gestures';
 import { Guide, offsetOf } from '../src/guide';
-import { buttonsToDo } from '../src/guiding';
+import { buttonsToDo, toChoose } from '../src/guiding';
 import { HandPose } from '../src/hand_pose';
 import { directions } from '../src/hud/guide_panel';
 import { timesText, verdict } from '../src/hud/summary';
 import { keyOf } from '../src/keyboard';
 import { adviceFor } from '../src/software_rendering';
 import type { Bundle, GuidePose } from '../src/bundle_types';
+import type { RenderFrame } from '../src/lcm';
 
 describe('a latch', () => {
   it('keeps what is held when the keys go to the other hand, and lets go on purpose only', () => {
@@ -84,6 +85,10 @@ describe('the guide', () => {
     hand: 'right',
     timeS: 0,
     tool: 'applier',
+    command: '',
+    argument: '',
+    nearM: 0.003,
+    nearRad: 0.26,
     p,
     q: [1, 0, 0, 0],
     button1,
@@ -103,11 +108,38 @@ describe('the guide', () => {
     expect(o.up).toBeCloseTo(-0.02, 12);
     expect(o.out).toBeCloseTo(0.004, 12);
     expect([o.roll, o.turn, o.tilt]).toEqual([0.8, 0, 0].map((x) => expect.closeTo(x, 9) as number));
-    expect(directions(o)[0]).toBe('↓ down 20.0 mm');
-    expect(directions(o)).toContain('↻ roll (E) 46°');
+    expect(directions(o, 0.003, 0.26)[0]).toBe('↓ down 20.0 mm');
+    expect(directions(o, 0.003, 0.26)).toContain('↻ roll (E) 46°');
     // Carrying the turns out leads to the target.
     const turned = q.clone().premultiply(new THREE.Quaternion().setFromAxisAngle(axes.z, o.roll));
     expect(turned.angleTo(target.q)).toBeCloseTo(0, 6);
+  });
+
+  it('says what the example has chosen from the list, until it is off the tray', () => {
+    const tool = (id: string, kind: string, index: number, hand: string) => ({ id, kind, index, hand, title: id });
+    const bundle = {
+      tools: [tool('applier', 'clip_applier', 0, 'right'), tool('short', 'clip', 1, ''), tool('long', 'clip', 2, '')],
+      commands: [{ id: 'applier', element: 'clip_applier', commands: [{ name: 'load', argument: 'clip id' }] }],
+    } as unknown as Bundle;
+    const lying = (...state: number[]) => ({ tool: state.map((s, index) => ({ index, state: s })) }) as RenderFrame;
+    const target = { tool: 'applier', command: 'load', argument: 'long' };
+    expect(toChoose(target, lying(1, 0, 0), bundle)?.id).toBe('long');
+    expect(toChoose(target, lying(1, 0, 1), bundle)).toBeNull();
+    expect(toChoose(target, lying(1, 0, 2), bundle)).toBeNull();
+    expect(toChoose({ ...target, command: '' }, lying(1, 0, 0), bundle)).toBeNull();
+    expect(toChoose({ ...target, argument: 'none' }, lying(1, 0, 0), bundle)).toBeNull();
+  });
+
+  it('counts a target as reached within what it allows', () => {
+    const guide = new Guide();
+    const fine = { ...pose([0, 0, 0]), nearM: 0.001, nearRad: 0.1 };
+    guide.begin({ exercise: { guide: [fine, pose([0.02, 0, 0])] } } as unknown as Bundle);
+    const turned = (rad: number) => new THREE.Quaternion().setFromAxisAngle(axes.z, rad);
+    guide.follow(1, at(0.0012), q, none);
+    guide.follow(1, at(0), turned(0.12), none);
+    expect(guide.target(1)!.at).toBe(0);
+    guide.follow(1, at(0.0008), turned(0.08), none);
+    expect(guide.target(1)!.at).toBe(1);
   });
 
   it('says when the example moves the other hand first', () => {

@@ -16,7 +16,7 @@ function madeUp(mPerPx: number, target: THREE.Vector3) {
     const offset = offsetOf(p, new THREE.Quaternion(), { p: target, q: new THREE.Quaternion() }, axes);
     const ways: Record<string, number> = {};
     // As the panel writes them: no more than four, nothing that is near, tenths of millimetres.
-    for (const line of directions(offset).slice(0, 4)) {
+    for (const line of directions(offset, 0.003, 0.26).slice(0, 4)) {
       const [, name, mm] = /(\w+)(?: \(\w\))? ([\d.]+) mm$/.exec(line)!;
       ways[name!] = Number(mm);
     }

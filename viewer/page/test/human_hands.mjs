@@ -7,6 +7,7 @@ const aimM = 0.002;
 const aimRad = (10 * Math.PI) / 180;
 const wheelM = 0.0008;
 const keyRadPerS = 0.9;
+const keyOfButton = { 1: 'Space', 2: 'b' };
 /** Longest way between two looks at the hand, m; and how long it takes. */
 const stepM = 0.002;
 const stepMs = 160;
@@ -35,7 +36,10 @@ function readPanel() {
   }
   const title = /Target (\d+) of (\d+): ([\d.]+) mm, (\d+)°/.exec(text('.guide header b'));
   return {
-    target: seen(guide) && title ? { at: +title[1], of: +title[2], mm: +title[3], degrees: +title[4] } : null,
+    target:
+      seen(guide) && title
+        ? { at: +title[1], of: +title[2], mm: +title[3], degrees: +title[4], near: guide.dataset.near === 'true' }
+        : null,
     ways,
     todo: text('.guide .todo'),
     otherFirst: seen(document.querySelector('.guide .waits')),
@@ -58,7 +62,7 @@ export class Person {
     this.random = chance(seed);
     // Learnt from what the panel says before and after a movement.
     this.mPerPx = 0.0001;
-    this.squeezes = false;
+    this.held = new Set();
     this.began = Date.now();
   }
 
@@ -116,19 +120,29 @@ export class Person {
     await mouse.up();
   }
 
-  /** Holds button 1 by its key, or lets it go; a latched one goes off when its key is pressed. */
-  async squeeze(on) {
-    if (on) await this.page.keyboard.down('Space');
-    else if (this.squeezes) await this.page.keyboard.up('Space');
-    else await this.page.keyboard.press('Space');
-    this.squeezes = on;
+  /** Holds a button by its key, or lets it go; a latched one goes off when its key is pressed. */
+  async squeeze(button, on) {
+    const key = keyOfButton[button];
+    if (on) await this.page.keyboard.down(key);
+    else if (this.held.has(button)) await this.page.keyboard.up(key);
+    else await this.page.keyboard.press(key);
+    if (on) this.held.add(button);
+    else this.held.delete(button);
   }
 
-  /** Leaves this hand here with what its button does, and takes the other one. */
+  /** Leaves this hand here with what its buttons do, and takes the other one. */
   async holdHere() {
     await this.page.keyboard.press('x');
-    if (this.squeezes) await this.page.keyboard.up('Space');
-    this.squeezes = false;
+    for (const button of this.held) await this.page.keyboard.up(keyOfButton[button]);
+    this.held.clear();
+  }
+
+  /** Opens the list of what an instrument takes up, and clicks the entry of that name. */
+  async choose(title) {
+    await this.page.keyboard.press('l');
+    await this.wait(reactionMs);
+    for (const entry of await this.page.locator('.tool-list [role=option]').all())
+      if ((await entry.locator('b').textContent()) === title) await entry.click();
   }
 
   /** Turns the wrist a little wrong: 10 degrees in the root of the mean square over the three turns. */

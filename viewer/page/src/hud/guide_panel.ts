@@ -8,14 +8,14 @@ export interface GuideView {
   at: number;
   of: number;
   offset: Offset;
+  /** It counts as reached within these. */
+  nearM: number;
+  nearRad: number;
   /** What the hand shall do that is no movement: "take up the applier", "hold button 1"; '': nothing. */
   todo: string;
   /** The example moves the other hand before this one reaches its target. */
   waits: boolean;
 }
-
-const nearM = 0.003;
-const nearRad = (15 * Math.PI) / 180;
 
 interface Direction {
   value: number;
@@ -29,7 +29,7 @@ const mm = (m: number): string => `${(1000 * m).toFixed(1)} mm`;
 const degrees = (rad: number): string => `${Math.round((rad * 180) / Math.PI)}°`;
 
 /** What is still to be done, the largest first; nothing that is near enough. */
-export function directions(o: Offset): string[] {
+export function directions(o: Offset, nearM: number, nearRad: number): string[] {
   const parts: Direction[] = [
     { value: o.out, near: nearM / 2, positive: '⊙ back (S)', negative: '⊗ deeper (W)', text: mm },
     { value: o.right, near: nearM / 2, positive: '→ right', negative: '← left', text: mm },
@@ -77,13 +77,13 @@ export class GuidePanel {
     this.root.hidden = view === null;
     this.assist.setAttribute('aria-pressed', String(assists));
     if (!view) return;
-    const { offset, at, of, todo } = view;
+    const { offset, nearM, nearRad, at, of, todo } = view;
     this.waits.hidden = !view.waits;
     const near = offset.distanceM < nearM && offset.angleRad < nearRad;
     setText(this.title, `Target ${at + 1} of ${of}: ${mm(offset.distanceM)}, ${degrees(offset.angleRad)}`);
     setText(this.todo, todo || (near ? '✓ there' : ''));
     this.root.dataset.near = String(near);
-    const lines = directions(offset).slice(0, 4);
+    const lines = directions(offset, nearM, nearRad).slice(0, 4);
     const key = lines.join('\n');
     if (key === this.shown) return;
     this.shown = key;
