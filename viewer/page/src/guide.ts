@@ -66,6 +66,9 @@ export function offsetOf(p: THREE.Vector3, q: THREE.Quaternion, target: Pick<Tar
 const reached = (p: THREE.Vector3, q: THREE.Quaternion, t: Target): boolean =>
   p.distanceTo(t.p) < t.nearM && 2 * Math.acos(Math.min(1, Math.abs(q.dot(t.q)))) < t.nearRad;
 
+/** A hand that stays where it is for the next button need not be as exact again. */
+const stillFactor = 2;
+
 const targetOf = (g: GuidePose): Target => ({
   tool: g.tool,
   command: g.command,
@@ -79,6 +82,18 @@ const targetOf = (g: GuidePose): Target => ({
   button2: g.button2,
 });
 
+/** Targets of one hand in the order of the example. */
+function targetsOf(poses: GuidePose[]): Target[] {
+  const targets = poses.map(targetOf);
+  for (const [k, t] of targets.entries()) {
+    const before = targets[k - 1];
+    if (!before || !reached(before.p, before.q, { ...t, nearM: 0.5 * t.nearM, nearRad: 0.5 * t.nearRad })) continue;
+    t.nearM *= stillFactor;
+    t.nearRad *= stillFactor;
+  }
+  return targets;
+}
+
 export class Guide {
   private targets: Target[][] = [[], []];
   private at = [0, 0];
@@ -86,8 +101,8 @@ export class Guide {
   begin(bundle: Bundle): void {
     const poses = bundle.exercise?.guide ?? [];
     this.targets = [
-      poses.filter((g) => g.hand === 'left').map(targetOf),
-      poses.filter((g) => g.hand === 'right').map(targetOf),
+      targetsOf(poses.filter((g) => g.hand === 'left')),
+      targetsOf(poses.filter((g) => g.hand === 'right')),
     ];
     this.restart();
   }

@@ -59,7 +59,8 @@ export class Guiding {
     this.ghost.hide();
     const held = frame && bundle && hand >= 0 ? toolInHand(frame, bundle, hand) : null;
     if (!frame || !bundle || !held) return null;
-    const p = new THREE.Vector3(...held.p_m);
+    // The example's poses are of the hand, and the tool stays behind the hand where it presses on something.
+    const p = new THREE.Vector3(...held.device_p_m);
     const q = new THREE.Quaternion(held.q[1], held.q[2], held.q[3], held.q[0]);
     const buttons = { button1: held.button1 !== 0, button2: held.button2 !== 0 };
     const id = bundle.tools.find((t) => t.index === held.index)?.id ?? '';

@@ -8,6 +8,7 @@ import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { launch, patience } from './browser.mjs';
 import { pause, Person } from './human_hands.mjs';
+import { Practice } from './human_practice.mjs';
 
 const root = fileURLToPath(new URL('../../..', import.meta.url));
 const option = (name, otherwise) => {
@@ -47,85 +48,6 @@ async function end(programsRunning) {
   await Promise.all(gone);
 }
 
-/** What the hand does at a target that is reached but for its buttons. */
-async function press(person, view) {
-  for (const [, on, off] of view.todo.matchAll(/hold button (\d)|let button (\d) go/g)) {
-    // A goal may ask to hold on for a while.
-    if (off === '1') await pause(3000);
-    await person.squeeze(Number(on ?? off), Boolean(on));
-    // Blades take their time.
-    if (off) await pause(1000);
-  }
-}
-
-/** Practises until all goals are reached or the time is over. */
-async function practise(person, until) {
-  const { page } = person;
-  /** Of each hand: how many targets it has, and whether it has done them. */
-  const course = [0, 1].map(() => ({ of: 0, done: false }));
-  let turnedFor = '';
-  let tries = 0;
-  let view = await person.look();
-  while (Date.now() < until && view.end === '') {
-    const { target } = view;
-    const here = `${view.hand} ${target?.at}`;
-    if (target === null || view.otherFirst) {
-      await person.holdHere();
-      view = await person.look();
-      continue;
-    }
-    const mine = course[view.hand];
-    const other = course[1 - view.hand];
-    mine.of = target.of;
-    mine.done ||= target.at === target.of && target.near;
-    // All targets are done, but not all goals: the hand that has more of them begins again.
-    if (mine.done && (!other.done || other.of > mine.of)) {
-      await person.holdHere();
-      view = await person.settled();
-      continue;
-    }
-    if (mine.done) {
-      mine.done = false;
-      for (let k = 3; k < target.of; k++) await page.keyboard.press('Shift+N');
-      view = await person.settled();
-      continue;
-    }
-    const choice = /^Choose from the list: (.*) \(L\)$/.exec(view.todo)?.[1];
-    if (choice) {
-      await person.choose(choice);
-      view = await person.settled();
-      continue;
-    }
-    if (here !== turnedFor) tries = 0;
-    if (!target.near && target.degrees > 5 && (here !== turnedFor || tries > 2)) {
-      await page.keyboard.press('y');
-      await person.settled();
-      if (tries === 0) await person.tremble();
-    }
-    turnedFor = here;
-    tries++;
-    view = await person.look();
-    if (view.target?.at !== target.at || view.hand < 0) continue;
-    if (view.target.near && /button/.test(view.todo)) {
-      await press(person, view);
-      view = await person.settled();
-      continue;
-    }
-    if (tries > 12) await page.keyboard.press('n');
-    view = await person.reach(view);
-    if (tries === 1 || process.env.VERBOSE) tell(view, person);
-  }
-  return view;
-}
-
-function tell({ hand, target, goals, faults }, person) {
-  const seconds = ((Date.now() - person.began) / 1000).toFixed(0);
-  const done = goals.map((g) => (g.done ? '+' : '-')).join('');
-  const at = target ? `${target.at}/${target.of}, ${target.mm} mm, ${target.degrees} degrees` : 'no target';
-  const scale = `${(1e6 * person.mPerPx).toFixed(0)} um a pixel`;
-  console.log(`   ${seconds} s: hand ${hand}: ${at}; goals ${done}; ${faults.join('; ')}; ${scale}`);
-}
-
 /**
  * Runs in the page. The person reads the panels and never the field, so it is not drawn: here is no graphics card, and
  * one that draws would take none of the processor's time either.
@@ -146,7 +68,7 @@ for (let seed = first; seed < first + seeds; seed++) {
     for (let k = 0; k < 60 && !(await page.goto(url).catch(() => null)); k++) await pause(500);
     await page.waitForFunction(() => window.__insula?.ready, null, patience);
     for (const button of await page.locator('.toast button').all()) await button.click({ timeout: 60_000 });
-    const view = await practise(new Person(page, seed), Date.now() + 60_000 * minutes);
+    const view = await new Practice(new Person(page, seed)).until(Date.now() + 60_000 * minutes);
     const reached = view.goals.every((g) => g.done);
     if (reached) passed++;
     const goals = view.goals.map((g) => `${g.done ? 'reached' : 'not reached'}: ${g.text}`);

@@ -142,6 +142,19 @@ describe('the guide', () => {
     expect(guide.target(1)!.at).toBe(1);
   });
 
+  it('is less exact for a button of a hand that stays where it is', () => {
+    const guide = new Guide();
+    const fine = (x: number, button1: boolean) => ({ ...pose([x, 0, 0], button1), nearM: 0.001 });
+    guide.begin({ exercise: { guide: [fine(0, true), fine(0.0003, false), fine(0.02, false)] } } as unknown as Bundle);
+    const held = { button1: true, button2: false };
+    guide.follow(1, at(0.0015), q, held);
+    expect(guide.target(1)!.at).toBe(0);
+    guide.follow(1, at(0.0005), q, held);
+    expect(guide.target(1)!.at).toBe(1);
+    guide.follow(1, at(0.0019), q, none);
+    expect(guide.target(1)!.at).toBe(2);
+  });
+
   it('says when the example moves the other hand first', () => {
     const guide = new Guide();
     const when = (hand: 'left' | 'right', x: number, timeS: number): GuidePose => ({ ...pose([x, 0, 0]), hand, timeS });

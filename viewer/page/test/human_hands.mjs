@@ -5,6 +5,10 @@
 const reactionMs = 300;
 const aimM = 0.002;
 const aimRad = (10 * Math.PI) / 180;
+/** Careful hands stop so far before a target, and then go on by so much at most. */
+const stopM = 0.012;
+const shortM = 0.003;
+const carefulM = (distance) => (distance > 1.2 * stopM ? distance - stopM : Math.min(shortM, distance));
 const wheelM = 0.0008;
 const keyRadPerS = 0.9;
 const keyOfButton = { 1: 'Space', 2: 'b' };
@@ -49,6 +53,10 @@ function readPanel() {
       text: g.textContent,
       done: g.classList.contains('done'),
     })),
+    message: text('.message'),
+    /** How far a clip in the field is, and whether it can be taken back. */
+    clipNear: text('.hand.active .reach'),
+    chooses: seen(document.querySelector('.tool-list')),
     faults: [...document.querySelectorAll('.faults li')].map((f) => f.textContent),
     end: seen(document.querySelector('.dialog.summary')) ? text('.dialog.summary h2') : '',
   };
@@ -162,18 +170,24 @@ export class Person {
     return [pair('right', 'left'), pair('up', 'down'), pair('back', 'deeper')];
   }
 
-  /** One try to reach the target: the way that is shown, with an error; learns how far the mouse goes. */
-  async reach(view) {
-    const way = this.wayOf(view);
+  /**
+   * One try to reach the target: the way that is shown, with an error; learns how far the mouse goes. careful: to a
+   * place before it, and then nearer by short movements.
+   */
+  async reach(view, careful = false) {
+    const whole = this.wayOf(view);
+    const distance = Math.hypot(...whole);
+    const length = careful ? carefulM(distance) : distance;
+    const way = whole.map((w) => (distance > 0 ? (w * length) / distance : 0));
     const error = this.aim();
     const far = Math.hypot(way[0], way[1]);
-    // Nobody overshoots a short way by its own length.
-    const share = Math.min(1, Math.hypot(...way) / (2 * aimM));
+    // Nobody overshoots a short way by its own length, and short movements with care err by a quarter of it.
+    const share = Math.min(1, length / ((careful && length < stopM ? 4 : 2) * aimM));
     await this.move(way.map((w, k) => w + share * error[k]));
     const after = await this.settled();
     if (far < 0.006 || after.target?.at !== view.target.at) return after;
     const left = this.wayOf(after);
-    const gone = Math.hypot(way[0] - left[0] + share * error[0], way[1] - left[1] + share * error[1]);
+    const gone = Math.hypot(whole[0] - left[0] + share * error[0], whole[1] - left[1] + share * error[1]);
     this.mPerPx *= Math.max(0.7, Math.min(1.5, gone / far));
     return after;
   }

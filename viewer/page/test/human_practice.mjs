@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How a person at the page practises an exercise: follows the targets of both hands as the guide's panel tells,
+// presses the buttons, chooses clips, and places a clip anew that lies badly.
+import { pause } from './human_hands.mjs';
+
+/** Pictures and programs take a moment; the longer ones are for blades and for goals that ask to hold on. */
+const bladesMs = 2000;
+const holdMs = 5000;
+const neckShut = (view) => view.goals.every((g) => g.done || !/neck/.test(g.text));
+
+export class Practice {
+  constructor(person) {
+    this.person = person;
+    this.page = person.page;
+    /** Of each hand: how many targets it has, and whether it has done them. */
+    this.course = [0, 1].map(() => ({ of: 0, done: false }));
+    this.turnedFor = '';
+    this.tries = 0;
+    /** What was chosen from the list last. */
+    this.loaded = '';
+  }
+
+  /** Practises until all goals are reached or the time is over; returns what the page shows then. */
+  async until(time) {
+    let view = await this.person.look();
+    while (Date.now() < time && view.end === '') view = await this.next(view);
+    return view;
+  }
+
+  /** What is done next, and what is seen after it. */
+  async next(view) {
+    const { target } = view;
+    if (target === null || view.otherFirst) return this.handOver();
+    const mine = this.course[view.hand];
+    const other = this.course[1 - view.hand];
+    mine.of = target.of;
+    mine.done ||= target.at === target.of && target.near;
+    // All targets are done, but not all goals: the hand that has more of them begins again.
+    if (mine.done && other.of > 0 && (!other.done || other.of > mine.of)) return this.handOver();
+    if (mine.done) return this.beginAgain(target, mine);
+    const choice = /^Choose from the list: (.*) \(L\)$/.exec(view.todo)?.[1];
+    if (choice) return this.choose(choice);
+    return this.goTo(target, view);
+  }
+
+  async handOver() {
+    await this.person.holdHere();
+    return this.person.settled();
+  }
+
+  async beginAgain(target, mine) {
+    mine.done = false;
+    for (let k = 3; k < target.of; k++) await this.page.keyboard.press('Shift+N');
+    return this.person.settled();
+  }
+
+  async choose(title) {
+    await this.person.choose(title);
+    this.loaded = title;
+    return this.person.settled();
+  }
+
+  /** One try: turns the wrist, presses what is to be pressed, or moves nearer. */
+  async goTo(target, before) {
+    await this.turn(target, before);
+    const view = await this.person.look();
+    if (view.target?.at !== target.at || view.hand < 0) return view;
+    if (view.target.near && /button/.test(view.todo)) return this.press(view);
+    if (this.tries > 12) await this.page.keyboard.press('n');
+    const after = await this.person.reach(view, view.chooses);
+    if (this.tries === 1 || process.env.VERBOSE) this.tell(after);
+    return after;
+  }
+
+  /** Lets the page turn the wrist, and spoils it a little at a new target. */
+  async turn(target, { hand }) {
+    const here = `${hand} ${target.at}`;
+    if (here !== this.turnedFor) this.tries = 0;
+    if (!target.near && target.degrees > 5 && (here !== this.turnedFor || this.tries > 2)) {
+      await this.page.keyboard.press('y');
+      await this.person.settled();
+      if (this.tries === 0) await this.person.tremble();
+    }
+    this.turnedFor = here;
+    this.tries++;
+  }
+
+  /** What the hand does at a target that is reached but for its buttons. */
+  async press(view) {
+    for (const [, on, off] of view.todo.matchAll(/hold button (\d)|let button (\d) go/g)) {
+      // A goal may ask to hold on for a while.
+      if (off === '1') await pause(3000);
+      await this.person.squeeze(Number(on ?? off), Boolean(on));
+      if (off) await pause(1000);
+    }
+    const clipIsFree = view.chooses && /let button 2 go/.test(view.todo) && !/temporary/i.test(this.loaded);
+    return clipIsFree && !neckShut(view) ? this.placeAgain() : this.person.settled();
+  }
+
+  /** A clip that lies badly is taken back, opened where it is, moved as the message says, and closed again. */
+  async placeAgain() {
+    const { person } = this;
+    for (let k = 0; ; k++) {
+      await pause(holdMs);
+      const view = await person.look();
+      if (neckShut(view) || view.end !== '' || k === 5) return view;
+      await this.button2();
+      await pause(700);
+      await person.squeeze(1, true);
+      await pause(800);
+      const short = /tips end ([\d.]+) mm before/.exec(view.message)?.[1];
+      const deeper = /branch/.test(view.message) ? -0.0007 : Number(short ?? 0) / 1000 + 0.0005;
+      if (process.env.VERBOSE) console.log(`   again, ${deeper} m deeper: ${view.message}; ${view.clipNear}`);
+      await person.move([0, 0, -deeper].map((w) => w + person.error(0.0002)));
+      await pause(500);
+      await person.squeeze(1, false);
+      await pause(bladesMs);
+      await this.button2();
+    }
+  }
+
+  /** What lets a clip go, and takes it back. */
+  async button2() {
+    await this.person.squeeze(2, true);
+    await pause(300);
+    await this.person.squeeze(2, false);
+  }
+
+  tell({ hand, target, goals, faults }) {
+    const { began, mPerPx } = this.person;
+    const seconds = ((Date.now() - began) / 1000).toFixed(0);
+    const done = goals.map((g) => (g.done ? '+' : '-')).join('');
+    const at = target ? `${target.at}/${target.of}, ${target.mm} mm, ${target.degrees} degrees` : 'no target';
+    console.log(`   ${seconds} s: hand ${hand}: ${at}; goals ${done}; ${(1e6 * mPerPx).toFixed(0)} um a pixel`);
+    if (faults.length > 0) console.log(`      ${faults.join('; ')}`);
+  }
+}
