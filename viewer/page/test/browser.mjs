@@ -6,7 +6,8 @@ import { chromium } from 'playwright-core';
 
 export const patience = { timeout: 300_000, polling: 250 };
 
-export function launch() {
+/** more: further arguments of Chromium. */
+export function launch(...more) {
   const executablePath = process.env.CHROMIUM ?? '/usr/bin/chromium';
   if (!existsSync(executablePath)) {
     console.log(`skipped: no browser at ${executablePath}`);
@@ -20,6 +21,7 @@ export function launch() {
       '--use-angle=swiftshader',
       '--enable-unsafe-swiftshader',
       '--ignore-gpu-blocklist',
+      ...more,
     ],
   });
 }

@@ -6,15 +6,17 @@ const reactionMs = 300;
 const aimM = 0.002;
 const aimRad = (10 * Math.PI) / 180;
 /** Careful hands stop so far before a target, and then go on by so much at most. */
-const stopM = 0.012;
+const stopM = 0.006;
 const shortM = 0.003;
 const carefulM = (distance) => (distance > 1.2 * stopM ? distance - stopM : Math.min(shortM, distance));
 const wheelM = 0.0008;
 const keyRadPerS = 0.9;
 const keyOfButton = { 1: 'Space', 2: 'b' };
-/** Longest way between two looks at the hand, m; and how long it takes. */
+/** A hand goes on in steps of this length, m: slowly over short distances, quickly over long ones. */
 const stepM = 0.002;
-const stepMs = 160;
+const stepMs = (distance) => (distance > 0.01 ? 60 : 160);
+/** The mouse's gain is learnt from movements in the picture that are at least so long, m. */
+const learnFromM = 0.0015;
 
 export const pause = (ms) => new Promise((r) => setTimeout(r, ms));
 
@@ -107,7 +109,8 @@ export class Person {
   async move([right, up, out]) {
     const { mouse, keyboard } = this.page;
     const { width, height } = this.page.viewportSize();
-    const steps = Math.max(1, Math.ceil(Math.hypot(right, up, out) / stepM));
+    const distance = Math.hypot(right, up, out);
+    const steps = Math.max(1, Math.ceil(distance / stepM));
     const from = [0.5 * width, 0.25 * height];
     const px = [right / this.mPerPx, -up / this.mPerPx];
     const clicks = out / wheelM;
@@ -123,7 +126,7 @@ export class Person {
         await keyboard.up('Shift');
         turned += due;
       }
-      await this.wait(stepMs);
+      await this.wait(stepMs(distance));
     }
     await mouse.up();
   }
@@ -180,15 +183,18 @@ export class Person {
     const length = careful ? carefulM(distance) : distance;
     const way = whole.map((w) => (distance > 0 ? (w * length) / distance : 0));
     const error = this.aim();
-    const far = Math.hypot(way[0], way[1]);
     // Nobody overshoots a short way by its own length, and short movements with care err by a quarter of it.
     const share = Math.min(1, length / ((careful && length < stopM ? 4 : 2) * aimM));
-    await this.move(way.map((w, k) => w + share * error[k]));
+    const made = way.map((w, k) => w + share * error[k]);
+    await this.move(made);
     const after = await this.settled();
-    if (far < 0.006 || after.target?.at !== view.target.at) return after;
+    const far = Math.hypot(made[0], made[1]);
+    if (far < learnFromM || after.target?.at !== view.target.at) return after;
     const left = this.wayOf(after);
-    const gone = Math.hypot(whole[0] - left[0] + share * error[0], whole[1] - left[1] + share * error[1]);
-    this.mPerPx *= Math.max(0.7, Math.min(1.5, gone / far));
+    const gone = Math.hypot(whole[0] - left[0], whole[1] - left[1]);
+    // The panel is read to a tenth of a millimetre, and leaves out what is near: a short movement teaches less.
+    const certain = Math.min(1, far / 0.006);
+    this.mPerPx *= Math.max(0.7, Math.min(1.5, 1 + certain * (gone / far - 1)));
     return after;
   }
 }

@@ -3,6 +3,8 @@
 // presses the buttons, chooses clips, and places a clip anew that lies badly.
 import { pause } from './human_hands.mjs';
 
+/** Nobody moves on with a wrist that is seen to be turned so wrong. */
+const wrongDegrees = 20;
 /** Pictures and programs take a moment; the longer ones are for blades and for goals that ask to hold on. */
 const bladesMs = 2000;
 const holdMs = 5000;
@@ -76,7 +78,8 @@ export class Practice {
   async turn(target, { hand }) {
     const here = `${hand} ${target.at}`;
     if (here !== this.turnedFor) this.tries = 0;
-    if (!target.near && target.degrees > 5 && (here !== this.turnedFor || this.tries > 2)) {
+    const again = this.tries > 2 || target.degrees > wrongDegrees;
+    if (!target.near && target.degrees > 5 && (here !== this.turnedFor || again)) {
       await this.page.keyboard.press('y');
       await this.person.settled();
       if (this.tries === 0) await this.person.tremble();
