@@ -44,6 +44,11 @@ const VesselState* find(const std::vector<VesselState>& vessels, std::string_vie
 /// Flow over that at rest, as a claim to a person: flow back through a closed branch counts as none.
 double flow_share(const VesselState& v) { return v.flow_at_rest != 0 ? std::max(0.0, v.flow / v.flow_at_rest) : 1; }
 
+bool temporary_on(const std::vector<ClipState>& clips) {
+  return std::any_of(clips.begin(), clips.end(),
+                     [](const ClipState& c) { return c.temporary && !c.on_tray && !c.holder; });
+}
+
 /// The names in `text`, each checked to be a centreline of the vessel.
 std::vector<std::string> vessel_names(PrepareContext& context, const Component& rule, const Param<std::string>& param,
                                       const ShellBody& vessel) {
@@ -218,6 +223,7 @@ class GoalClipped final : public ExerciseRule {
     held_ = good ? held_ + r.h : 0;
     if (good && held_ >= hold()) log.goal(goal_, r.time);
     if (!good && log.goals()[std::size_t(goal_)].done) log.goal_lost(goal_, r.time);
+    missing.temporary = !missing.shut && !missing.remnant && missing.branch >= 0 && temporary_on(clips);
     if (j.clips == 0 || good) missing = {};
     say(missing, j, r, log);
     failed_ = log.state() == ExerciseState::failed;
@@ -236,8 +242,12 @@ class GoalClipped final : public ExerciseRule {
     bool shut = false, remnant = false;
     int branch = -1;  ///< the first branch with too little flow
     double flow = 0;  ///< of that, %
+    /// Nothing else is missing, and a temporary clip is on: nobody can tell yet whether the branch will flow.
+    bool temporary = false;
     bool any() const { return shut || remnant || branch >= 0; }
-    bool same(const Missing& o) const { return shut == o.shut && remnant == o.remnant && branch == o.branch; }
+    bool same(const Missing& o) const {
+      return shut == o.shut && remnant == o.remnant && branch == o.branch && temporary == o.temporary;
+    }
   };
 
   /// Says once what is missing, when that has not changed for a second.
@@ -255,7 +265,8 @@ class GoalClipped final : public ExerciseRule {
     else if (missing.shut) what = "Blood still enters the aneurysm.";
     else if (missing.remnant)
       what = fmt::format("A remnant stands above {:.0f} % of the neck (grade {}).", 100 * j.neck_open, j.grade);
-    if (missing.branch >= 0)
+    if (missing.temporary) what = "The neck is shut: take the temporary clip off.";
+    else if (missing.branch >= 0)
       what += fmt::format("{}The {} branch flows at {:.0f} %.", what.empty() ? "" : " ",
                           branch_names_[std::size_t(missing.branch)], missing.flow);
     log.message(what, r.time);
@@ -307,9 +318,8 @@ class FaultStenosis final : public ExerciseRule {
     reset();
   }
   void observe(const StepReport& r, ExerciseLog& log) override {
-    bool temporary = false;
+    const bool temporary = temporary_on(clips_.now());
     const std::vector<VesselState>& vessels = vessels_.now();
-    for (const ClipState& c : clips_.now()) temporary = temporary || (c.temporary && !c.on_tray && !c.holder);
     for (std::size_t i = 0; i < names_.size(); ++i) {
       const VesselState* b = find(vessels, names_[i]);
       const bool low = b && !temporary && flow_share(*b) < limit();

@@ -41,7 +41,8 @@ class ClippingRules : public ::testing::Test {
     registry.add<FakeClip>("fake_clip", Kind::constraint, "for tests");
     std::ifstream in(example);
     std::string text{std::istreambuf_iterator<char>(in), {}};
-    text.insert(text.find("<exercise"), "<fake_vessels id=\"network\"/><fake_clip id=\"fake\"/>");
+    text.insert(text.find("<exercise"),
+                "<fake_vessels id=\"network\"/><fake_clip id=\"fake\"/><fake_clip id=\"fake_temporary\"/>");
     auto loaded = load_simulation_text(text, example, registry, 1);
     ASSERT_TRUE(loaded.simulation) << loaded.diagnostics.format();
     s = std::move(loaded.simulation);
@@ -220,6 +221,24 @@ TEST_F(ClippingRules, WhatIsMissingIsSaidOnce) {
   network->vessels[3].lumen = 0.3;
   show(1.5);
   EXPECT_EQ(log().last_message(), "Blood still enters the aneurysm.");
+}
+
+TEST_F(ClippingRules, ATemporaryClipIsSaidToComeOffOnceTheNeckIsShut) {
+  // The example's clip is the neck's, the other one that of the parent artery.
+  FakeClip* parent = s->scene().find_as<FakeClip>("fake_temporary");
+  ASSERT_TRUE(parent);
+  parent->state = clip(0);
+  parent->state.temporary = true;
+  pinch(1.5e-3);
+  *in_field = clip(0);
+  network->vessels[3].lumen = 0;
+  network->vessels[2].flow = 0;
+  show(1.5);
+  EXPECT_EQ(log().last_message(), "The neck is shut: take the temporary clip off.");
+  EXPECT_FALSE(log().goals()[0].done);
+  parent->state.on_tray = true;
+  show(1.5);
+  EXPECT_EQ(log().last_message(), "The inferior branch flows at 0 %.") << "now the clip on the neck is what stops it";
 }
 
 TEST_F(ClippingRules, AClipThatMovesOnTheNeckHasSlipped) {

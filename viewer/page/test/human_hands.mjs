@@ -56,6 +56,9 @@ function readPanel() {
       done: g.classList.contains('done'),
     })),
     message: text('.message'),
+    clockS: text('.clock')
+      .split(':')
+      .reduce((s, part) => 60 * s + Number(part), 0),
     /** How far a clip in the field is, and whether it can be taken back. */
     clipNear: text('.hand.active .reach'),
     chooses: seen(document.querySelector('.tool-list')),
@@ -68,7 +71,11 @@ export class Person {
   /** pace: 1 is a person's; 0 waits for nothing, for a page that is made up. */
   constructor(page, seed, pace = 1) {
     this.page = page;
-    this.wait = (ms) => pause(pace * ms);
+    /** Of the exercise's clock, in seconds a second: below 1 on a machine that is too slow for the scene. */
+    this.clockRate = 1;
+    this.seen = null;
+    // Where the exercise is slow, a person whose hands were not would hurry.
+    this.wait = (ms) => pause((pace * ms) / this.clockRate);
     this.random = chance(seed);
     // Learnt from what the panel says before and after a movement.
     this.mPerPx = 0.0001;
@@ -80,7 +87,19 @@ export class Person {
   async look() {
     await this.wait(reactionMs);
     await this.page.evaluate(nextPicture);
-    return this.page.evaluate(readPanel);
+    const view = await this.page.evaluate(readPanel);
+    this.watchClock(view.clockS);
+    return view;
+  }
+
+  /** Learns how fast the exercise's clock goes. */
+  watchClock(clockS) {
+    const seconds = Date.now() / 1000;
+    this.seen ??= { clockS, seconds };
+    const past = seconds - this.seen.seconds;
+    if (past < 2) return;
+    this.clockRate = Math.max(0.1, Math.min(1, (clockS - this.seen.clockS) / past || 1));
+    this.seen = { clockS, seconds };
   }
 
   /** Looks until the tool has come to rest; on a slow machine the picture is late. */

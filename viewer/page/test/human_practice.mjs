@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How a person at the page practises an exercise: follows the targets of both hands as the guide's panel tells,
 // presses the buttons, chooses clips, and places a clip anew that lies badly.
-import { pause } from './human_hands.mjs';
 
 /** Nobody moves on with a wrist that is seen to be turned so wrong. */
 const wrongDegrees = 20;
 /** Pictures and programs take a moment; the longer ones are for blades and for goals that ask to hold on. */
 const bladesMs = 2000;
 const holdMs = 5000;
-const neckShut = (view) => view.goals.every((g) => g.done || !/neck/.test(g.text));
+const neckShut = (view) => view.goals.every((g) => g.done || !/neck/.test(g.text)) || /neck is shut/.test(view.message);
 
 export class Practice {
   constructor(person) {
@@ -70,7 +69,7 @@ export class Practice {
     if (view.target.near && /button/.test(view.todo)) return this.press(view);
     if (this.tries > 12) await this.page.keyboard.press('n');
     const after = await this.person.reach(view, view.chooses);
-    if (this.tries === 1 || process.env.VERBOSE) this.tell(after);
+    if (this.tries === 1) this.tell(after);
     return after;
   }
 
@@ -92,10 +91,11 @@ export class Practice {
   async press(view) {
     for (const [, on, off] of view.todo.matchAll(/hold button (\d)|let button (\d) go/g)) {
       // A goal may ask to hold on for a while.
-      if (off === '1') await pause(3000);
+      if (off === '1') await this.person.wait(3000);
       await this.person.squeeze(Number(on ?? off), Boolean(on));
-      if (off) await pause(1000);
+      if (off) await this.person.wait(bladesMs);
     }
+    this.tell(view, `: ${view.todo}`);
     const clipIsFree = view.chooses && /let button 2 go/.test(view.todo) && !/temporary/i.test(this.loaded);
     return clipIsFree && !neckShut(view) ? this.placeAgain() : this.person.settled();
   }
@@ -104,20 +104,20 @@ export class Practice {
   async placeAgain() {
     const { person } = this;
     for (let k = 0; ; k++) {
-      await pause(holdMs);
+      await person.wait(holdMs);
       const view = await person.look();
       if (neckShut(view) || view.end !== '' || k === 5) return view;
       await this.button2();
-      await pause(700);
+      await person.wait(700);
       await person.squeeze(1, true);
-      await pause(800);
+      await person.wait(800);
       const short = /tips end ([\d.]+) mm before/.exec(view.message)?.[1];
       const deeper = /branch/.test(view.message) ? -0.0007 : Number(short ?? 0) / 1000 + 0.0005;
-      if (process.env.VERBOSE) console.log(`   again, ${deeper} m deeper: ${view.message}; ${view.clipNear}`);
+      this.tell(view, `: again, ${deeper} m deeper`);
       await person.move([0, 0, -deeper].map((w) => w + person.error(0.0002)));
-      await pause(500);
+      await person.wait(500);
       await person.squeeze(1, false);
-      await pause(bladesMs);
+      await person.wait(bladesMs);
       await this.button2();
     }
   }
@@ -125,16 +125,18 @@ export class Practice {
   /** What lets a clip go, and takes it back. */
   async button2() {
     await this.person.squeeze(2, true);
-    await pause(300);
+    await this.person.wait(300);
     await this.person.squeeze(2, false);
   }
 
-  tell({ hand, target, goals, faults }) {
-    const { began, mPerPx } = this.person;
+  tell({ hand, target, goals, faults, message, clipNear }, what = '') {
+    if (!process.env.VERBOSE) return;
+    const { began, mPerPx, clockRate } = this.person;
     const seconds = ((Date.now() - began) / 1000).toFixed(0);
     const done = goals.map((g) => (g.done ? '+' : '-')).join('');
     const at = target ? `${target.at}/${target.of}, ${target.mm} mm, ${target.degrees} degrees` : 'no target';
-    console.log(`   ${seconds} s: hand ${hand}: ${at}; goals ${done}; ${(1e6 * mPerPx).toFixed(0)} um a pixel`);
-    if (faults.length > 0) console.log(`      ${faults.join('; ')}`);
+    const rate = `${(1e6 * mPerPx).toFixed(0)} um a pixel, clock at ${clockRate.toFixed(2)}`;
+    console.log(`   ${seconds} s: hand ${hand}: ${at}${what}; goals ${done}; ${rate}`);
+    console.log(`      ${[...faults, message, clipNear].filter((t) => t !== '').join('; ')}`);
   }
 }
