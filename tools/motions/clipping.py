@@ -38,8 +38,8 @@ NECK = {
 # Tips within the neck, and where the same clip goes when it is moved. The wall then lies differently than at first.
 TOO_SHORT = dict(lift=0, slide=-2.2, turn=6, pitch=6, side=0.3)
 MOVED = dict(lift=-0.2, slide=0.8, turn=6, pitch=6, side=0.3, press=0.3, push=0.1)
-# A curved clip beside the short one. Lower its blades press the wall against the first one with more than 0.3 N; farther
-# in its tips press on the floor; farther aside one blade meets the dome before the other.
+# A curved clip beside the short one. Lower its blades press the wall against the first one with more than 0.3 N;
+# farther in its tips press on the floor; farther aside one blade meets the dome before the other.
 SECOND = dict(lift=1.6, slide=0.3, turn=-6, pitch=5, side=0.1, press=0, push=0)
 OUT_OF_FIELD = 32.0  # mm along the applier's shaft
 VIEW = (0.93, 0.25, 0.27)  # towards the surgeon
