@@ -169,7 +169,8 @@ Json tool_json(const BundleWriter& writer, const RigidBody& body, std::size_t in
               {"id", body.id},
               {"kind", body.element},
               {"hand", instrument ? instrument->hand() : "none"},
-              {"title", title_of(model.name)}};
+              {"title", title_of(model.name)},
+              {"cuts", !model.blade_edges.empty()}};
   if (file && !file->empty() && writer.picture((*file)(), name + "_picture.svg"))
     out["picture"] = name + "_picture.svg";
   out["properties"] = Json::array();

@@ -43,6 +43,12 @@ class GoalStrands final : public ExerciseRule {
                            .display = "%",
                            .digits = 0,
                            .measure = true}};
+  Points left_over{this,
+                   {.name = "left_over",
+                    .doc = "middle of each strand that stands, once a fifth of those to be parted or fewer are left",
+                    .material = "aim",
+                    .value = "integrity of the strand",
+                    .radius = "0.25 mm"}};
 
   void prepare(PrepareContext&) override { divided.set_bands({fraction(), std::nullopt}, {0.0, std::nullopt}); }
   void declare(PrepareContext&, const Simulation& simulation, ExerciseLog& log) override {
@@ -53,6 +59,16 @@ class GoalStrands final : public ExerciseRule {
     const int total = strands_.total(), severed = total - strands_.left();
     if (total > 0) divided.set(double(severed) / total);
     if (total > 0 && severed >= fraction() * total - 1e-9) log.goal(goal_, r.time);
+  }
+  void publish() override {
+    const int total = strands_.total(), left = strands_.left();
+    const double wanted = fraction() * total, missing = wanted - (total - left);
+    const bool few = missing > 1e-9 && missing <= 0.2 * wanted;
+    left_over.resize(few ? std::size_t(left) : 0);
+    if (!few) return;
+    std::size_t k = 0;
+    for (const StrandState& s : strands_.now())
+      if (s.integrity >= 0) left_over.set(k++, 0.5 * (s.a + s.b), s.integrity);
   }
 
  private:
@@ -240,6 +256,7 @@ class TimeLimit final : public ExerciseRule {
 
 INSULA_PLUGIN(exercise_rules) {
   using namespace insula;
+  registry.add_material({"aim", "aim", {0.39, 1, 0.82, 0.6}, 0.5, 0, 0});
   registry.add<GoalStrands>("goal_strands", Kind::exercise_rule, "reached when enough strands are severed");
   registry.add<GoalOpening>("goal_opening", Kind::exercise_rule, "reached when two surfaces are held apart");
   registry.add<FaultForce>("fault_force", Kind::exercise_rule, "counts too much force of a tool on a body");

@@ -125,6 +125,24 @@ TEST_F(Rules, StrandsGoalWantsItsFraction) {
   EXPECT_EQ(s->exercise()->log().state(), ExerciseState::running) << "the other goal is still open";
 }
 
+TEST_F(Rules, TheLastStrandsAreAimsUntilTheGoalIsReached) {
+  Component& rule = *s->scene().find("divide");
+  const DrawableBase& aims = *rule.drawables().at(0);
+  const auto count = [&] {
+    rule.publish();
+    return aims.count();
+  };
+  strands(12);  // half of them are asked for
+  part({0, 1, 2, 3});
+  EXPECT_EQ(count(), 0) << "two of six are missing, which is more than a fifth";
+  part({4});
+  ASSERT_EQ(count(), 7) << "any one of the seven that stand will do";
+  EXPECT_NEAR(aims.data()[0], -0.015, 1e-9) << "of the first one that stands, x";
+  EXPECT_NEAR(aims.data()[2], 0.001, 1e-9) << "its middle";
+  part({5});
+  EXPECT_EQ(count(), 0) << "enough are parted";
+}
+
 TEST_F(Rules, NoStrandsIsNoGoal) {
   show();
   EXPECT_FALSE(goal("divide").done);

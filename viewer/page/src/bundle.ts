@@ -150,6 +150,7 @@ async function toolOf(files: Files, t: Json): Promise<types.ToolData> {
       text: propertyText(p),
       value: typeof p.value === 'number' && Number.isFinite(p.value) ? p.value : null,
     })),
+    cuts: t.cuts === true,
     tags: Array.isArray(t.tags) ? t.tags.map(String) : [],
     parts: await Promise.all(parts),
   };

@@ -67,6 +67,8 @@ export interface ToolData {
   hand: string;
   kind: string;
   title: string;
+  /** It has an edge. */
+  cuts: boolean;
   hinges: HingeData[];
   parts: ToolPart[];
   /** Address of its picture, or null. */

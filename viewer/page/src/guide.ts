@@ -97,6 +97,8 @@ function targetsOf(poses: GuidePose[]): Target[] {
 export class Guide {
   private targets: Target[][] = [[], []];
   private at = [0, 0];
+  /** Whether the last target of a hand has been reached. */
+  private done = [false, false];
 
   begin(bundle: Bundle): void {
     const poses = bundle.exercise?.guide ?? [];
@@ -109,6 +111,12 @@ export class Guide {
 
   restart(): void {
     this.at = [0, 0];
+    this.done = [false, false];
+  }
+
+  /** Whether a hand has followed the example to its end. */
+  ended(hand: number): boolean {
+    return this.done[hand]!;
   }
 
   /** What the hand is to reach next, and which of how many; null: nothing. */
@@ -122,7 +130,7 @@ export class Guide {
   waits(hand: number): boolean {
     const mine = this.target(hand);
     const other = this.target(1 - hand);
-    if (!other) return false;
+    if (!other || this.ended(1 - hand)) return false;
     return !mine || other.target.timeS < mine.target.timeS - aheadS;
   }
 
@@ -130,6 +138,7 @@ export class Guide {
   step(hand: number, by: 1 | -1): void {
     const last = (this.targets[hand]?.length ?? 1) - 1;
     this.at[hand] = Math.max(0, Math.min(last, (this.at[hand] ?? 0) + by));
+    this.done[hand] = false;
   }
 
   /**
@@ -139,8 +148,8 @@ export class Guide {
   follow(hand: number, p: THREE.Vector3, q: THREE.Quaternion, buttons: { button1: boolean; button2: boolean }): void {
     const at = this.at[hand] ?? 0;
     const t = this.targets[hand]?.[at];
-    if (!t || at + 1 >= this.targets[hand]!.length) return;
-    const done = t.button1 === buttons.button1 && t.button2 === buttons.button2;
-    if (done && reached(p, q, t)) this.at[hand] = at + 1;
+    if (!t || t.button1 !== buttons.button1 || t.button2 !== buttons.button2 || !reached(p, q, t)) return;
+    if (at + 1 < this.targets[hand]!.length) this.at[hand] = at + 1;
+    else this.done[hand] = true;
   }
 }

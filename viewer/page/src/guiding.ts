@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Puts the guide together: what the active hand is to reach next, its ghost in the field, and what its panel says.
 import * as THREE from 'three';
+import { Aims } from './aims';
 import type { Bundle, ToolData } from './bundle_types';
 import { Guide, offsetOf, type Axes } from './guide';
 import { toolInHand, toolState } from './hand_tool';
@@ -12,6 +13,8 @@ import { TargetGhost } from './target_ghost';
 /** A tool at its target needs no ghost. */
 const ghostFromM = 0.0015;
 const ghostFromRad = 0.12;
+/** So near to what is left over an edge reaches it by a short sweep. */
+const sweepFromM = 0.0012;
 
 export interface GuidingInput {
   frame: RenderFrame | null;
@@ -24,29 +27,33 @@ export interface GuidingInput {
 type TargetStatus = { at: number; of: number; distance_m: number; angle_rad: number } | null;
 
 export class Guiding {
-  readonly root: THREE.Group;
+  readonly root = new THREE.Group();
   view: GuideView | null = null;
   /** How the tool of the guided hand should be turned; null: it has no target. */
   private turn: { hand: number; q: THREE.Quaternion } | null = null;
   private readonly guide = new Guide();
   private readonly ghost = new TargetGhost();
+  private readonly aims = new Aims();
 
   constructor() {
-    this.root = this.ghost.root;
+    this.root.add(this.ghost.root, this.aims.root);
   }
 
   begin(bundle: Bundle): void {
     this.guide.begin(bundle);
     this.ghost.begin(bundle);
+    this.aims.begin(bundle);
     this.view = null;
   }
 
   restart(): void {
     this.guide.restart();
+    this.aims.restart();
   }
 
   step(hand: number, by: 1 | -1): void {
-    this.guide.step(hand, by);
+    if (this.view?.leftOver && by > 0) this.aims.passOver();
+    else this.guide.step(hand, by);
   }
 
   /** How the tool of a hand should be turned for its target; null: there is none. */
@@ -57,24 +64,30 @@ export class Guiding {
   update({ frame, bundle, hand, axes }: GuidingInput): TargetStatus {
     this.view = this.turn = null;
     this.ghost.hide();
+    this.aims.show([]);
     const held = frame && bundle && hand >= 0 ? toolInHand(frame, bundle, hand) : null;
     if (!frame || !bundle || !held) return null;
     // The example's poses are of the hand, and the tool stays behind the hand where it presses on something.
     const p = new THREE.Vector3(...held.device_p_m);
     const q = new THREE.Quaternion(held.q[1], held.q[2], held.q[3], held.q[0]);
     const buttons = { button1: held.button1 !== 0, button2: held.button2 !== 0 };
-    const id = bundle.tools.find((t) => t.index === held.index)?.id ?? '';
+    const tool = bundle.tools.find((t) => t.index === held.index);
+    const id = tool?.id ?? '';
     const before = this.guide.target(hand)?.target;
     if (before?.tool === id && !toChoose(before, frame, bundle)) this.guide.follow(hand, p, q, buttons);
+    if (tool?.cuts && this.guide.ended(hand)) {
+      const status = this.leadOn(frame, held, p, q, axes);
+      if (status) return status;
+    }
     const next = this.guide.target(hand);
     if (!next) return null;
     const { target, at, of } = next;
     const { nearM, nearRad } = target;
     const offset = offsetOf(p, q, target, axes);
-    this.view = { at, of, offset, nearM, nearRad, todo: '', waits: this.guide.waits(hand) };
+    this.view = { at, of, offset, nearM, nearRad, leftOver: 0, todo: '', waits: this.guide.waits(hand) };
     if (target.tool !== id) {
-      const tool = bundle.tools.find((t) => t.id === target.tool);
-      this.view.todo = `Take up the ${tool?.title ?? target.tool}`;
+      const wanted = bundle.tools.find((t) => t.id === target.tool);
+      this.view.todo = `Take up the ${wanted?.title ?? target.tool}`;
     } else {
       this.turn = { hand, q: target.q };
       const choice = toChoose(target, frame, bundle);
@@ -83,6 +96,27 @@ export class Guiding {
         this.ghost.show(frame, held, target.p, target.q);
     }
     return { at, of, distance_m: offset.distanceM, angle_rad: offset.angleRad };
+  }
+
+  /** After the example: to what it has left over, with the wrist as it is. null: nothing is left. */
+  private leadOn(
+    frame: RenderFrame,
+    held: RenderFrame['tool'][number],
+    p: THREE.Vector3,
+    q: THREE.Quaternion,
+    axes: Axes,
+  ): TargetStatus {
+    const places = this.aims.places(frame);
+    const to = this.aims.choose(places, p);
+    if (!to) return null;
+    this.aims.show(places);
+    const offset = offsetOf(p, q, { p: to, q }, axes);
+    const near = offset.distanceM < sweepFromM;
+    const todo = near ? 'Sweep the edge across it' : '';
+    const leftOver = places.length;
+    this.view = { at: 0, of: 0, leftOver, offset, nearM: sweepFromM, nearRad: Math.PI, todo, waits: false };
+    if (offset.distanceM > ghostFromM) this.ghost.show(frame, held, to, q);
+    return { at: 0, of: 0, distance_m: offset.distanceM, angle_rad: 0 };
   }
 }
 

@@ -168,6 +168,17 @@ describe('the guide', () => {
     expect([guide.waits(0), guide.waits(1)]).toEqual([false, false]);
   });
 
+  it('knows when a hand has followed it to its end, and then keeps no other hand waiting', () => {
+    const guide = new Guide();
+    const when = (hand: 'left' | 'right', x: number, timeS: number): GuidePose => ({ ...pose([x, 0, 0]), hand, timeS });
+    guide.begin({ exercise: { guide: [when('left', 0, 1), when('right', 0, 4)] } } as unknown as Bundle);
+    expect([guide.ended(0), guide.waits(1)]).toEqual([false, true]);
+    guide.follow(0, at(0), q, none);
+    expect([guide.ended(0), guide.waits(1)]).toEqual([true, false]);
+    guide.step(0, -1);
+    expect(guide.ended(0)).toBe(false);
+  });
+
   it('goes on when a pose is reached with its buttons, and passes no pose over', () => {
     const guide = new Guide();
     const poses = [pose([0, 0, 0]), pose([0.02, 0, 0]), pose([0.04, 0, 0]), pose([0.04, 0, 0], true)];

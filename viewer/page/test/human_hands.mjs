@@ -9,6 +9,8 @@ const aimRad = (10 * Math.PI) / 180;
 const stopM = 0.006;
 const shortM = 0.003;
 const carefulM = (distance) => (distance > 1.2 * stopM ? distance - stopM : Math.min(shortM, distance));
+/** Half of a short sweep, m. */
+const sweepM = 0.0015;
 const wheelM = 0.0008;
 const keyRadPerS = 0.9;
 const keyOfButton = { 1: 'Space', 2: 'b' };
@@ -40,12 +42,16 @@ function readPanel() {
     const found = /^\S+ (deeper|back|right|left|up|down|roll|swing|tilt)(?: \((\w)\))? ([\d.]+)/.exec(li.textContent);
     if (found) ways[found[2] && 'QEADRF'.includes(found[2]) ? found[2] : found[1]] = Number(found[3]);
   }
-  const title = /Target (\d+) of (\d+): ([\d.]+) mm, (\d+)°/.exec(text('.guide header b'));
+  const header = text('.guide header b');
+  const title = /Target (\d+) of (\d+): ([\d.]+) mm, (\d+)°/.exec(header);
+  const leftOver = seen(guide) ? /(\d+) left over: ([\d.]+) mm/.exec(header) : null;
   return {
     target:
       seen(guide) && title
         ? { at: +title[1], of: +title[2], mm: +title[3], degrees: +title[4], near: guide.dataset.near === 'true' }
         : null,
+    /** What the example has left over: how many places, and how far the chosen one is. */
+    leftOver: leftOver ? { count: +leftOver[1], mm: +leftOver[2] } : null,
     ways,
     todo: text('.guide .todo'),
     otherFirst: seen(document.querySelector('.guide .waits')),
@@ -107,7 +113,8 @@ export class Person {
     let last = await this.look();
     for (let k = 0; k < 12; k++) {
       const now = await this.look();
-      const still = (what) => Math.abs((now.target?.[what] ?? 0) - (last.target?.[what] ?? 0));
+      const shown = (seen, what) => (seen.target ?? seen.leftOver)?.[what] ?? 0;
+      const still = (what) => Math.abs(shown(now, what) - shown(last, what));
       last = now;
       if (still('mm') < 0.15 && still('degrees') < 1) break;
     }
@@ -148,6 +155,21 @@ export class Person {
       await this.wait(stepMs(distance));
     }
     await mouse.up();
+  }
+
+  /** Across a place and back, in the picture's two directions. */
+  async sweep() {
+    const across = [
+      [1, 0],
+      [-2, 0],
+      [1, 1],
+      [0, -2],
+      [0, 1],
+    ];
+    for (const [right, up] of across) {
+      const error = this.error(0.0003);
+      await this.move([right * sweepM + error, up * sweepM + error, 0]);
+    }
   }
 
   /** Holds a button by its key, or lets it go; a latched one goes off when its key is pressed. */
@@ -208,7 +230,7 @@ export class Person {
     await this.move(made);
     const after = await this.settled();
     const far = Math.hypot(made[0], made[1]);
-    if (far < learnFromM || after.target?.at !== view.target.at) return after;
+    if (far < learnFromM || !view.target || after.target?.at !== view.target.at) return after;
     const left = this.wayOf(after);
     const gone = Math.hypot(whole[0] - left[0], whole[1] - left[1]);
     // The panel is read to a tenth of a millimetre, and leaves out what is near: a short movement teaches less.

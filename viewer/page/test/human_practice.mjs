@@ -19,6 +19,8 @@ export class Practice {
     this.tries = 0;
     /** What was chosen from the list last. */
     this.loaded = '';
+    /** Of what the example has left over: how many places, and how often one was swept in vain. */
+    this.leftOver = this.sweeps = 0;
   }
 
   /** Practises until all goals are reached or the time is over; returns what the page shows then. */
@@ -31,6 +33,7 @@ export class Practice {
   /** What is done next, and what is seen after it. */
   async next(view) {
     const { target } = view;
+    if (view.leftOver) return this.clear(view);
     if (target === null || view.otherFirst) return this.handOver();
     const mine = this.course[view.hand];
     const other = this.course[1 - view.hand];
@@ -42,6 +45,21 @@ export class Practice {
     const choice = /^Choose from the list: (.*) \(L\)$/.exec(view.todo)?.[1];
     if (choice) return this.choose(choice);
     return this.goTo(target, view);
+  }
+
+  /** What the example has left over: goes there, and sweeps the edge across it; passes over what does not give way. */
+  async clear(view) {
+    const { count, mm } = view.leftOver;
+    if (count !== this.leftOver) this.sweeps = 0;
+    this.leftOver = count;
+    this.tell(view, `${count} left over, ${mm} mm`);
+    if (++this.sweeps % 9 === 0) {
+      await this.page.keyboard.press('n');
+      return this.person.settled();
+    }
+    if (mm > 1.2) return this.person.reach(view, true);
+    await this.person.sweep();
+    return this.person.settled();
   }
 
   async handOver() {

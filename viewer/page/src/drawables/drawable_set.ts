@@ -21,6 +21,7 @@ export class DrawableSet {
     const clearness = (d: DrawableData) => materialFor(d).translucency;
     const veiling = pools.reduce<DrawableData | null>((a, d) => (a && clearness(a) <= clearness(d) ? a : d), null);
     for (const { declared, meshes } of bundle.drawables) {
+      if (materialFor(declared).style === 'aim') continue; // aims.ts shows them, and only to who is led there
       const context = { declared, material: materialFor(declared), meshes, field, environment };
       this.all.push({ declared, drawn: makeDrawn({ ...context, veils: declared === veiling }) });
     }

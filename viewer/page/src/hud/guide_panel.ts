@@ -7,6 +7,8 @@ export interface GuideView {
   /** Which target, of how many. */
   at: number;
   of: number;
+  /** How many places the example has left over, of which one is the target; 0: it is the example's own. */
+  leftOver: number;
   offset: Offset;
   /** It counts as reached within these. */
   nearM: number;
@@ -77,10 +79,11 @@ export class GuidePanel {
     this.root.hidden = view === null;
     this.assist.setAttribute('aria-pressed', String(assists));
     if (!view) return;
-    const { offset, nearM, nearRad, at, of, todo } = view;
+    const { offset, nearM, nearRad, at, of, todo, leftOver } = view;
     this.waits.hidden = !view.waits;
     const near = offset.distanceM < nearM && offset.angleRad < nearRad;
-    setText(this.title, `Target ${at + 1} of ${of}: ${mm(offset.distanceM)}, ${degrees(offset.angleRad)}`);
+    const what = leftOver > 0 ? `${leftOver} left over` : `Target ${at + 1} of ${of}`;
+    setText(this.title, `${what}: ${mm(offset.distanceM)}, ${degrees(offset.angleRad)}`);
     setText(this.todo, todo || (near ? '✓ there' : ''));
     this.root.dataset.near = String(near);
     const lines = directions(offset, nearM, nearRad).slice(0, 4);
