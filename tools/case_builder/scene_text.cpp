@@ -223,7 +223,7 @@ std::string dissection_exercise(const SceneFacts& f) {
        limits(f, true) +
        "    <fault_torn id=\"torn\" text=\"A strand tore: divide it with the edge instead\"/>\n"
        "    <fault_rupture id=\"rupture\" text=\"The aneurysm has ruptured\" fails=\"true\"/>\n"
-       "    <time_limit id=\"time\" text=\"Ten minutes are over\" limit=\"600 s\"/>\n";
+       "    <time_limit id=\"time\" text=\"Fifteen minutes are over\" limit=\"900 s\"/>\n";
   if (f.rehearsed) s += "    <motion id=\"steady\" file=\"2_aneurysm_dissection_steady.csv\"/>\n";
   s += "  </exercise>\n</scene>\n";
   return s;

@@ -9,6 +9,9 @@ const bladesMs = 2000;
 const holdMs = 5000;
 const neckShut = (view) => view.goals.every((g) => g.done || !/neck/.test(g.text)) || /neck is shut/.test(view.message);
 
+/** Who works beside an aneurysm moves with care. */
+const isCareful = (view) => view.chooses || view.goals.some((g) => /aneurysm/.test(g.text));
+
 export class Practice {
   constructor(person) {
     this.person = person;
@@ -52,7 +55,7 @@ export class Practice {
     const { count, mm } = view.leftOver;
     if (count !== this.leftOver) this.sweeps = 0;
     this.leftOver = count;
-    this.tell(view, `${count} left over, ${mm} mm`);
+    this.tell(view, `: ${count} left over, ${mm} mm`);
     if (++this.sweeps % 9 === 0) {
       await this.page.keyboard.press('n');
       return this.person.settled();
@@ -86,7 +89,7 @@ export class Practice {
     if (view.target?.at !== target.at || view.hand < 0) return view;
     if (view.target.near && /button/.test(view.todo)) return this.press(view);
     if (this.tries > 12) await this.page.keyboard.press('n');
-    const after = await this.person.reach(view, view.chooses);
+    const after = await this.person.reach(view, isCareful(view));
     if (this.tries === 1) this.tell(after);
     return after;
   }
