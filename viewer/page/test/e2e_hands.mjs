@@ -70,11 +70,16 @@ for (let seed = first; seed < first + seeds; seed++) {
     for (let k = 0; k < 60 && !(await page.goto(url).catch(() => null)); k++) await pause(500);
     await page.waitForFunction(() => window.__insula?.ready, null, patience);
     for (const button of await page.locator('.toast button').all()) await button.click({ timeout: 60_000 });
+    const started = Date.now();
     const view = await new Practice(new Person(page, seed)).until(Date.now() + 60_000 * minutes);
-    const reached = view.goals.every((g) => g.done);
+    const reached = view.goals.length > 0 && view.goals.every((g) => g.done);
     if (reached) passed++;
     const goals = view.goals.map((g) => `${g.done ? 'reached' : 'not reached'}: ${g.text}`);
-    console.log(`${reached ? 'ok ' : 'no '} seed ${seed}: ${[...goals, ...view.faults].join('; ')}`);
+    const seconds = ((Date.now() - started) / 1000).toFixed(0);
+    const end = view.end || 'not at the end';
+    console.log(
+      `${reached ? 'ok ' : 'no '} seed ${seed}, ${seconds} s, ${end}: ${[...goals, ...view.faults].join('; ')}`,
+    );
   } finally {
     await browser.close();
     await end(running);
