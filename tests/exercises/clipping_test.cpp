@@ -23,6 +23,7 @@ TEST_P(ShippedCase, AnAngledClipClosesTheNeckAndSparesTheBranches) {
   EXPECT_EQ(o.events["clip_released"], 1);
   EXPECT_EQ(o.events["rupture"], 0);
   test::expect_well_clipped(o);
+  test::expect_gentle(o);
   EXPECT_GT(o.measures["tip_past_neck"], 0.2);
   EXPECT_LT(o.measures["slit"], 1.0);
   EXPECT_LT(o.channels["heart.sac.pressure"], 1000) << "Pa: the dome is soft";

@@ -27,13 +27,14 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 CASE = "anterior_superior"
 # Where the blades of an angled clip lie across the neck of each artery. The wall moves with the blades, so these are
-# poses of the hand and not of the closed clip. They lie amid the placements that leave no remnant.
+# poses of the hand and not of the closed clip. They lie amid the placements that leave no remnant. The tips point away
+# from the floor of the fissure: as the blades close, the tips move inward and would press on it.
 #   lift, slide, side: of the blades' middle along the dome's axis, from the surgeon inward, and along the closing, mm
 #   turn, pitch: about the dome's axis, and of the tips towards it, degrees
 #   press, push: how much deeper and farther inward the hand is while the blades close, mm
 NECK = {
-    "anterior_superior": dict(lift=-0.4, slide=0.3, turn=6, pitch=6, side=0.3, press=0.3, push=0.1),
-    "narrow_neck": dict(lift=-0.6, slide=0.3, turn=-25, pitch=3, side=0, press=0.4, push=0.1),
+    "anterior_superior": dict(lift=-0.4, slide=0.2, turn=6, pitch=9, side=0.3, press=0.2, push=0),
+    "narrow_neck": dict(lift=-0.6, slide=0, turn=-25, pitch=3, side=0, press=0.2, push=0),
 }
 # Tips within the neck, and where the same clip goes when it is moved. The wall then lies differently than at first.
 TOO_SHORT = dict(lift=0, slide=-2.2, turn=6, pitch=6, side=0.3)
@@ -41,6 +42,15 @@ MOVED = dict(lift=-0.2, slide=0.8, turn=6, pitch=6, side=0.3, press=0.3, push=0.
 # A curved clip beside the short one. Lower its blades press the wall against the first one with more than 0.3 N;
 # farther in its tips press on the floor; farther aside one blade meets the dome before the other.
 SECOND = dict(lift=1.6, slide=0.3, turn=-6, pitch=5, side=0.1, press=0, push=0)
+# The torn dome of exercise 4 is slack: the hand goes a little deeper.
+TORN = dict(NECK[CASE], lift=-0.6)
+# A temporary clip across the parent artery. The flattened wall is half as wide again as the artery, and the blades must
+# reach beyond it on both sides. A curved clip does so as square as this without its tips on the floor; a straight one
+# meets the bone. Nearer to the neck the coil of the neck's clip is in the way.
+PROXIMAL = dict(name="parent", share=0.45, past=-2.4, square=0.5)
+# Where its grip lies when the applier has left: the temporal lobe comes back and turns the clip. The hand that takes it
+# must be nearer to this grip than to that of the clip on the neck.
+PROXIMAL_GRIP = (53.7, 21.4, -14.0)
 OUT_OF_FIELD = 32.0  # mm along the applier's shaft
 VIEW = (0.93, 0.25, 0.27)  # towards the surgeon
 
@@ -267,12 +277,18 @@ class Field:
         hand.key(1.5, add(position, shaft, 8), q)
         hand.key(1.0, outside, q)
 
-    def branch(self, clip, name, share, past, square=1.0):
-        """Blades across a branch, tips `past` beyond its axis; square 1: at right angles, 0: along the view."""
+    def branch(self, clip, name, share, past, square=1.0, grip=None):
+        """Blades across a branch, tips `past` beyond its axis; square 1: at right angles, 0: along the view. `grip`: a
+        point in whose direction the clip's grip has turned about the blades' middle."""
         point, along = self.on_line(name, share)
         outward = unit(add([square * v for v in across(self.view, along)], self.view, 1 - square))
-        middle = add(point, outward, -past)
-        return clip.applier_pose(middle, [-v for v in outward], unit(cross(along, outward)))
+        middle, inward, closing = add(point, outward, -past), [-v for v in outward], unit(cross(along, outward))
+        pose = clip.applier_pose(middle, inward, closing)
+        if grip is None:
+            return pose
+        a, b = unit(add(pose[0], middle, -1)), unit(add(grip, middle, -1))
+        axis, angle = unit(cross(a, b)), math.degrees(math.acos(dot(a, b)))
+        return clip.applier_pose(middle, turned(inward, axis, angle), turned(closing, axis, angle))
 
 
 def suction_poses(field):
@@ -349,15 +365,15 @@ def exercise_4(folder):
 
     script = Script()
     script.command(1, "ask", "bleeding rupture")
-    script.command(0.1, "ask", "applier load temporary_straight")
-    temporary = field.branch(Clip("temporary_straight"), "parent", 0.4, 0.8, 0.1)
+    script.command(0.1, "ask", "applier load temporary_curved")
+    temporary = field.branch(Clip("temporary_curved"), **PROXIMAL)
     place_clip(script.right, temporary, approach=2.0, open_at=9)
     away = add(steady_outside(script), field.view, 30)
     script.right.key(0.8, away, last_q(script))
     script.command(round(script.right.t + 0.2, 3), "ask", "applier load angled")
     script.right.key(0.5, away, last_q(script))
-    field.clip_neck(script.right, dict(NECK[CASE], lift=-0.5))  # a torn dome is slack: a little deeper
-    take_clip(script.right, temporary)
+    field.clip_neck(script.right, TORN)
+    take_clip(script.right, field.branch(Clip("temporary_curved"), **PROXIMAL, grip=PROXIMAL_GRIP))
     script.right.key(8, steady_outside(script), last_q(script))
     suction(script, script.right.t - 14)
     script.write(folder / "4_rupture_steady.csv")
