@@ -16,6 +16,10 @@ Each contact is one block. The gap at the end of the step and its force obey 0 <
 |f_t| <= mu f_n opposes the slip of the step. The block has the normal row, then two tangent rows. Without friction it
 has the normal row alone.
 
+`max_force` bounds the force of one contact of a tool, gap _|_ force in [0, max_force]. Bodies that are pressed harder
+go into one another, and come out when they are let go. Rigid bodies that are wedged among one another would otherwise
+ask for any force. The normal row is then a block of its own, and two tangent rows follow it.
+
     gap(end) = gap(start) + n . (H dq)      n fixed over the step, from b to a
 
 n is the normal at the start of the step. With `linearized_at="end"` it is the normal at the expected end of the step.
@@ -150,28 +154,41 @@ void Contact::build(const StepContext&, ConstraintBuilder& builder) {
       continue;
     }
     p.rows.clear();
-    for (const Proximity& x : p.contacts) {
-      Block block;
-      block.id = row_id(*this, x.key);
-      block.role = BlockRole::contact;
-      if (friction() > 0) {
-        block.law = LawKind::friction;
-        block.friction = friction();
-      } else {
-        block.lower = 0;
-        block.upper = max_contact_force(p);
-      }
-      block.compliance = compliance(p);
-      const int row = builder.add(block);
-      p.rows.push_back(row);
-      builder.violation(row, x.start_gap);
-      add_row(builder, row, p, x, x.normal);
-      if (friction() > 0) {
-        add_row(builder, row + 1, p, x, x.tangent);
-        add_row(builder, row + 2, p, x, x.normal.cross(x.tangent));
-      }
-    }
+    for (const Proximity& x : p.contacts) p.rows.push_back(add_contact(builder, p, x));
   }
+}
+
+// The friction of a bounded contact is a patch of one contact, since a friction block has no bound.
+int Contact::add_contact(ConstraintBuilder& builder, const Pair& p, const Proximity& x) const {
+  Block block;
+  block.id = row_id(*this, x.key);
+  block.role = BlockRole::contact;
+  block.compliance = compliance(p);
+  const bool joined = friction() > 0 && !bounded(p);
+  if (joined) {
+    block.law = LawKind::friction;
+    block.friction = friction();
+  } else {
+    block.lower = 0;
+    block.upper = max_contact_force(p);
+  }
+  const int row = builder.add(block);
+  if (friction() > 0 && !joined) {
+    Block tangents;
+    tangents.id = row_id(*this, std::uint64_t(1) << 43 | x.key);
+    tangents.role = BlockRole::friction;
+    tangents.law = LawKind::patch;
+    tangents.friction = friction();
+    tangents.normals = 1;
+    builder.add(tangents);
+  }
+  builder.violation(row, x.start_gap);
+  add_row(builder, row, p, x, x.normal);
+  if (friction() > 0) {
+    add_row(builder, row + 1, p, x, x.tangent);
+    add_row(builder, row + 2, p, x, x.normal.cross(x.tangent));
+  }
+  return row;
 }
 
 void Contact::finish(const StepContext&, const ConstraintSolution& solution) {

@@ -109,7 +109,7 @@ class Contact final : public Constraint, public StatesLaw {
                           .min = "0 N",
                           .max = "100 N",
                           .doc = "most normal force of one contact of a tool: what is pressed harder goes in, and out "
-                                 "again, instead of dragging the tissue along; with friction only by patches; 0: any"}};
+                                 "again, instead of dragging the tissue along or wedging rigid bodies; 0: any"}};
   Param<Length> tissue_alarm{this,
                              {.name = "tissue_alarm",
                               .fallback = "0.5 mm",
@@ -128,7 +128,7 @@ class Contact final : public Constraint, public StatesLaw {
                                  .fallback = "0 N",
                                  .min = "0 N",
                                  .max = "100 N",
-                                 .doc = "most force of one contact of two surfaces without friction: with more they go "
+                                 .doc = "most normal force of one contact of two surfaces: with more they go "
                                         "through one another, so that what has become entangled comes apart; 0: any"}};
   Param<int> tissue_max_contacts{this,
                                  {.name = "tissue_max_contacts",
@@ -188,10 +188,13 @@ class Contact final : public Constraint, public StatesLaw {
   void add_pairs(Simulation& simulation, Body* a, Body* b);
   void limit_motion(ConstraintBuilder& builder, const Pair& pair) const;
   double max_contact_force(const Pair& pair) const;  ///< of one contact, N
+  bool bounded(const Pair& pair) const { return max_contact_force(pair) < infinite; }
   double compliance(const Pair& pair) const {
     return pair.tool_a && contact_stiffness() > 0 ? 1 / contact_stiffness() : 0.0;
   }  ///< m/N
   void build_patches(ConstraintBuilder& builder, Pair& pair);
+  /// Adds the rows of one contact: the normal, and two tangents if there is friction. Returns the first.
+  int add_contact(ConstraintBuilder& builder, const Pair& pair, const Proximity& x) const;
   void add_row(ConstraintBuilder& builder, int row, const Pair& pair, const Proximity& x, const Vec3& direction) const;
 
   std::vector<Pair> pairs_;

@@ -89,6 +89,29 @@ TEST(ContactLimits, AFootBearsSoMuchAndGoesIn) {
   }
 }
 
+// Friction of a bounded contact has rows of its own. Below the bound the law is the same: the feet stick, then slip.
+TEST(ContactLimits, ABoundThatIsNotReachedChangesNothingWithFriction) {
+  const auto slide = [](const std::string& limit, std::vector<Vec3>& path) {
+    Bench b(test::feet_urdf(5e-3, test::radius), test::ground(), test::upright, R"(friction="0.3" )" + limit);
+    ASSERT_TRUE(b.tool);
+    Pose to = b.tool->home_pose();
+    to.p.z() = test::radius - 1e-3;
+    for (int i = 0; i < 150; ++i) {
+      if (i >= 60) to.p.x() += 2e-5;
+      b.move_to(to);
+      path.push_back(b.tool->pose().p);
+    }
+  };
+  std::vector<Vec3> freely, bounded;
+  slide("", freely);
+  slide(R"(max_force="5 N")", bounded);
+  ASSERT_EQ(freely.size(), bounded.size());
+  ASSERT_FALSE(freely.empty());
+  EXPECT_LT(std::abs(freely[64].x()), 1e-7) << "they stick";
+  EXPECT_GT(freely.back().x(), 0.2e-3) << "they slip";
+  for (std::size_t i = 0; i < freely.size(); ++i) EXPECT_LT((freely[i] - bounded[i]).norm(), 1e-9) << i;
+}
+
 // By vertices, with friction that contacts share.
 TEST(ContactLimits, AVertexUnderABladeBearsSoMuch) {
   constexpr double coupling = 400, dz = 1e-3, bound = 1e-3;

@@ -82,10 +82,6 @@ void Contact::add_pairs(Simulation& simulation, Body* a, Body* b) {
 
 void Contact::connect(PrepareContext& context, Simulation& simulation) {
   const auto& all = between();
-  if (max_force() > 0 && friction() > 0 && !(contact_geometry.is("vertices") && patch() > 0))
-    return error(context, max_force,
-                 "max_force: a contact with friction has a bound only in a patch (contact_geometry=\"vertices\" and "
-                 "patch); or set friction=\"0\"");
   if (all.size() < 2) return error(context, between, "between: contact needs two names or more");
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (dynamic_cast<RigidBody*>(all[i])) continue;

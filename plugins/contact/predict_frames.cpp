@@ -9,7 +9,7 @@ namespace insula {
 void Contact::predict_frames(double steps, std::vector<ContactFrame>& out) const {
   if (!(friction() > 0)) return;  // a single row has no other direction
   for (const Pair& p : pairs_) {
-    if (!p.tool_collider || !p.active()) continue;
+    if (!p.tool_collider || !p.active() || bounded(p)) continue;  // only a friction block has a frame
     const Pose now = p.tool_a->link_pose(p.link_a);
     const Vec6 motion = displacement(p.start, now);
     const auto vertex = [&](double after, int v) -> Vec3 {

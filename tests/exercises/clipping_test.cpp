@@ -67,6 +67,7 @@ TEST(Clipping, AShortClipMovedAlongTheNeckClosesIt) {
   EXPECT_EQ(o.events["clip_taken"], 1);
   EXPECT_EQ(o.measures["applications"], 2);
   test::expect_well_clipped(o);
+  test::expect_gentle(o);
 }
 
 TEST(Clipping, ASecondClipBesideAShortOneLeavesLessOfTheNeck) {

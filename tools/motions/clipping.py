@@ -36,9 +36,8 @@ NECK = {
     "anterior_superior": dict(lift=-0.4, slide=0.2, turn=6, pitch=9, side=0.3, press=0.2, push=0),
     "narrow_neck": dict(lift=-0.6, slide=0, turn=-25, pitch=3, side=0, press=0.2, push=0),
 }
-# Tips within the neck, and where the same clip goes when it is moved. The wall then lies differently than at first.
+# Tips within the neck. When this clip is moved, it goes where a good first one lies.
 TOO_SHORT = dict(lift=0, slide=-2.2, turn=6, pitch=6, side=0.3)
-MOVED = dict(lift=-0.2, slide=0.8, turn=6, pitch=6, side=0.3, press=0.3, push=0.1)
 # A curved clip beside the short one. Lower its blades press the wall against the first one with more than 0.3 N;
 # farther in its tips press on the floor; farther aside one blade meets the dome before the other.
 SECOND = dict(lift=1.6, slide=0.3, turn=-6, pitch=5, side=0.1, press=0, push=0)
@@ -259,7 +258,7 @@ class Field:
         short = self.neck(Clip("angled"), **TOO_SHORT)
         place_clip(hand, short)
         open_where_it_lies(hand, short)
-        close_clip(hand, *self.placement(MOVED))
+        close_clip(hand, *self.placement(NECK[self.case]))
 
     def pull_shut_clip(self, hand):
         """The angled clip well placed, and pulled away before the applier lets it go or opens it."""
