@@ -41,8 +41,8 @@ TOO_SHORT = dict(lift=0, slide=-2.2, turn=6, pitch=6, side=0.3)
 # A curved clip beside the short one. Lower its blades press the wall against the first one with more than 0.3 N;
 # farther in its tips press on the floor; farther aside one blade meets the dome before the other.
 SECOND = dict(lift=1.6, slide=0.3, turn=-6, pitch=5, side=0.1, press=0, push=0)
-# The torn dome of exercise 4 is slack: the hand goes a little deeper.
-TORN = dict(NECK[CASE], lift=-0.6)
+# The torn dome of exercise 4 is slack, and the temporary clip lies beside it: the tips point farther from the floor.
+TORN = dict(NECK[CASE], slide=0, pitch=12)
 # A temporary clip across the parent artery. The flattened wall is half as wide again as the artery, and the blades must
 # reach beyond it on both sides. A curved clip does so as square as this without its tips on the floor; a straight one
 # meets the bone. Nearer to the neck the coil of the neck's clip is in the way.
