@@ -4,12 +4,10 @@
 #pragma once
 #include <memory>
 
-#include "core/haptics/condense.h"
 #include "core/sim/simulation.h"
 #include "engine/command_line/commands.h"
 #include "engine/live/command_script.h"
-#include "engine/live/exchange_pause.h"
-#include "haptic_server/in_process.h"
+#include "engine/live/lockstep_hands.h"
 
 namespace insula {
 
@@ -23,18 +21,15 @@ class HeadlessRun {
   void step();
   /// Returns simulation and hands to the start.
   void reset();
-  const InProcessHaptics& haptics() const { return haptics_; }
+  const InProcessHaptics& haptics() const { return hands_.haptics(); }
   Simulation& simulation() { return simulation_; }
   double haptic_ms() const { return haptic_ms_; }  ///< wall time of the last step's ticks
 
  private:
   Simulation& simulation_;
-  InProcessHaptics haptics_;
+  LockstepHands hands_;
   CommandScript script_;
   double haptic_ms_ = 0;
-  Condenser condense_;
-  ConstraintProblem condensed_;
-  ExchangePause pause_;
 };
 
 /// A scene and one of its motions, ready to run.

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <optional>
 #include <thread>
 
 #include "core/base/input_error.h"
@@ -17,6 +18,7 @@
 #include "core/bus/codec.h"
 #include "engine/live/bundle.h"
 #include "engine/live/command_script.h"
+#include "engine/live/lockstep_hands.h"
 #include "engine/live/notice.h"
 #include "engine/live/publisher.h"
 #include "engine/live/session_mode.h"
@@ -222,6 +224,12 @@ class Pace {
   std::int64_t dropped_ = 0;
 };
 
+/// Persons move the hands: no step waits for a factor, and the servo finds contacts until the next problem comes.
+void prepare_for_persons(Simulation& simulation) {
+  simulation.set_deterministic(false);
+  simulation.set_collision_horizon(Publisher::collision_horizon_steps * simulation.h());
+}
+
 /// One session: the simulation, its inputs and its outputs.
 class LiveSession {
  public:
@@ -257,6 +265,7 @@ class LiveSession {
   void start_again() {
     simulation_.reset();
     commands_.reset();
+    end_demonstration();
     ready_ = over_ = false;
     waiting_since_us_ = 0;
   }
@@ -344,12 +353,39 @@ class LiveSession {
     reports_.note(receipts);
   }
 
+  /// Whether hands of this process follow the motion, step by step: a demonstration that nobody has taken over.
+  bool demonstrates() {
+    const bool lockstep =
+        mode_ == SessionMode::demonstration && ready_ && !inputs_.driven && !inputs_.persons_arm(script_);
+    if (lockstep && !demonstration_) begin_demonstration();
+    if (!lockstep) end_demonstration();
+    return lockstep;
+  }
+  /// From the start, as a run without processes. No person's hand needs contacts beyond the step.
+  void begin_demonstration() {
+    simulation_.reset();
+    commands_.reset();
+    reports_.begin();
+    demonstration_.emplace(simulation_, script_);
+    simulation_.set_deterministic(true);
+    simulation_.set_collision_horizon(0);
+  }
+  void end_demonstration() {
+    if (!demonstration_) return;
+    demonstration_.reset();
+    prepare_for_persons(simulation_);
+  }
+
   /// False if a value of the simulation became non-finite. The simulation has then started again.
   bool step() {
-    const std::int64_t posed = inputs_.apply(simulation_, ready_);
-    const bool follows = mode_ == SessionMode::demonstration && inputs_.follows(script_);
+    const bool lockstep = demonstrates();
+    std::int64_t posed = monotonic_us();
+    if (lockstep) demonstration_->before_step(simulation_);
+    else posed = inputs_.apply(simulation_, ready_);
+    const bool follows = lockstep || (mode_ == SessionMode::demonstration && inputs_.follows(script_));
     commands_.advance(simulation_, follows);
     simulation_.step();
+    if (lockstep) demonstration_->after_step(simulation_);
     if (!simulation_.report().finite) {
       reports_.step(simulation_, posed > 0, follows);
       reports_.end_run(simulation_);
@@ -374,6 +410,7 @@ class LiveSession {
   CommandScript commands_;
   Notice notice_;
   Inputs inputs_;
+  std::optional<LockstepHands> demonstration_;
   bool ready_ = false;  ///< the scripted hands are at their motion
   bool over_ = false;   ///< the wait for them
   std::int64_t waiting_since_us_ = 0;
@@ -387,8 +424,7 @@ int run_live(const LiveOptions& options, const Registry& registry, Bus& bus, con
   if (!said.empty()) std::fputs(said.c_str(), stderr);
   if (!loaded.simulation) return 2;
   Simulation& simulation = *loaded.simulation;
-  simulation.set_deterministic(false);  // persons move the hands, so no step waits for a factor
-  simulation.set_collision_horizon(Publisher::collision_horizon_steps * simulation.h());
+  prepare_for_persons(simulation);
   if (options.seed != 0) simulation.draw_complications(options.seed);
   fs::path motion;
   Motion script;

@@ -43,13 +43,14 @@ class SessionReports {
   void note(const std::vector<Event>& events);
   /// Called before a reset and at the end of the session. Writes a report if there is none yet, then begins a new one.
   void end_run(const Simulation& simulation);
+  /// Begins a new one without a report of what was before.
+  void begin();
   /// Of the passes that begin from now on.
   void set_mode(SessionMode mode) { mode_ = mode; }
   /// Absolute path of the report of this pass; empty until it is written.
   std::string last_report() const;
 
  private:
-  void begin();
   /// The path, shared with the thread that writes.
   struct Written {
     std::mutex mutex;
