@@ -8,7 +8,7 @@ namespace insula {
 
 struct Material {
   std::string name;
-  std::string style = "solid";                      ///< how the page draws it: solid, tissue, wall, fibre, fluid, glass
+  std::string style = "solid";                      ///< how the page draws it: solid, tissue, wall, fibre, sheet, fluid, glass
   std::array<double, 4> rgba{0.75, 0.75, 0.78, 1};  ///< sRGB colour and opacity, 0..1
   double roughness = 0.5;                           ///< 0..1
   double metalness = 0;                             ///< 0..1
