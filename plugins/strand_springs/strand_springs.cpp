@@ -167,6 +167,7 @@ void StrandSprings::generate(PrepareContext& context) {
   }
   if (strands_.empty() && density() > 0)
     error(context, "no strand fits: the surfaces are nowhere closer than max_length within the ball");
+  tell_spun();
 }
 
 void StrandSprings::Blade::place() {
@@ -312,7 +313,10 @@ int StrandSprings::strands_left() const {
 }
 
 void StrandSprings::reset() {
-  if (created_at.is("settled")) strands_.clear();
+  if (created_at.is("settled")) {
+    strands_.clear();
+    tell_spun();
+  }
   for (Strand& s : strands_) {
     s.damage = s.tension = 0;
     s.severed = false;

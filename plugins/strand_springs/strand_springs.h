@@ -2,6 +2,7 @@
 // Fibres of the arachnoid between two bodies, as compliant rows.
 #pragma once
 #include <array>
+#include <functional>
 #include <vector>
 
 #include "core/constraint/stated_law.h"
@@ -14,6 +15,8 @@ namespace insula {
 
 class StrandSprings : public Constraint, public StrandSet, public StatesLaw {
  public:
+  static constexpr std::string_view kind_name = "strand_springs";
+
   Ref<Surface> from{this, {.name = "from", .fallback = "", .doc = "surface where the strands start"}};
   Ref<Surface> to{this, {.name = "to", .fallback = "", .doc = "surface where they end"}};
   Param<AreaDensity> density{this,
@@ -124,6 +127,11 @@ class StrandSprings : public Constraint, public StrandSet, public StatesLaw {
   int strand_count() const override { return count(); }
   StrandState strand(int i) const override;
   bool severed(int i) const override { return strands_[std::size_t(i)].severed; }
+  /// Where a strand begins and ends.
+  const MaterialPoint& beginning(int i) const { return strands_[std::size_t(i)].a; }
+  const MaterialPoint& ending(int i) const { return strands_[std::size_t(i)].b; }
+  /// Calls this whenever the strands have been spun or taken away, outside of steps.
+  void when_spun(std::function<void()> call) { when_spun_.push_back(std::move(call)); }
 
  protected:
   struct Strand {
@@ -157,8 +165,12 @@ class StrandSprings : public Constraint, public StrandSet, public StatesLaw {
     void place();
   };
   void generate(PrepareContext& context);
+  void tell_spun() const {
+    for (const auto& call : when_spun_) call();
+  }
 
   std::vector<Strand> strands_;
+  std::vector<std::function<void()>> when_spun_;
   std::vector<Blade> blades_;  ///< of all instruments
 };
 

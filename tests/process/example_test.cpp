@@ -25,7 +25,8 @@ struct Shipped {
   const char* scene;
   std::size_t measures;  ///< at least
 };
-const Shipped exercises[] = {{"1_sylvian_fissure", 2}, {"2_aneurysm_dissection", 1}, {"3_clipping", 9}, {"4_rupture", 9}};
+const Shipped exercises[] = {
+    {"1_sylvian_fissure", 2}, {"2_aneurysm_dissection", 1}, {"3_clipping", 9}, {"4_rupture", 9}};
 void PrintTo(const Shipped& e, std::ostream* out) { *out << e.scene; }
 
 /// The live report is of the exercise's end, the other one of the motion's. Counts and grades have settled by then.

@@ -67,9 +67,9 @@ class Trainer : public Surgeon {
     // Then it leans on the parent artery.
     double over = 0;
     press(
-        0, left_shaft_, -left_shaft_, [&] { return middle_of("parent"); }, 12 * mm,
+        0, left_shaft_, -left_shaft_, [&] { return Vec3(middle_of("parent") - Vec3(0, 0, 1) * mm); }, 12 * mm,
         [&] {
-          over = force(0, *artery_) > 0.5 ? over + 0.05 : 0;
+          over = force(0, *artery_) > 0.36 ? over + 0.05 : 0;
           return over > 0.15;
         });
     hands_.wait(0.4);

@@ -1,41 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the field's picture is made of, on shapes whose answer is known: which fibres share a membrane, where vessels
-// end, how far a tip is from the tissue, when a wall hangs empty.
+// What the field's picture is made of, on shapes whose answer is known: where vessels end, how far a tip is from the
+// tissue, when a wall hangs empty.
 import * as THREE from 'three';
 import { describe, expect, it } from 'vitest';
 import { distanceText } from '../src/depth_cue';
 import { smoothLines } from '../src/drawables/tubes';
-import { neighbours, spanM } from '../src/drawables/web';
 import { NodeField } from '../src/skinning';
 import { TissueProbe } from '../src/tissue_probe';
 import { fullness } from '../src/wall';
 import { bendEnds, endShift } from '../src/wall_ends';
-
-/** Upright lines, 3 mm long, at places of a plane. */
-const upright = (places: [number, number][]): Float32Array =>
-  Float32Array.from(places.flatMap(([x, y]) => [x, y, 0, x, y, 0.003]));
-
-describe('membranes', () => {
-  const square: [number, number][] = [0, 1, 2].flatMap((i) => [0, 1, 2].map((j): [number, number] => [i, j]));
-  const grid = upright(square.map(([i, j]) => [0.001 * i, 0.00101 * j]));
-
-  it('span the sides of a grid and not what lies behind a third fibre', () => {
-    const pairs = neighbours(grid, () => true, 9);
-    const apart = ([a, b]: [number, number]) =>
-      Math.abs(square[a]![0] - square[b]![0]) + Math.abs(square[a]![1] - square[b]![1]);
-    // All twelve sides, and no pair with a fibre between.
-    expect(pairs.filter((p) => apart(p) === 1)).toHaveLength(12);
-    expect(pairs.filter((p) => apart(p) > 2)).toHaveLength(0);
-    expect(new Set(pairs.map((p) => p.join())).size).toBe(pairs.length);
-    for (const [a, b] of pairs) expect(a).toBeLessThan(b);
-  });
-
-  it('leave out parted fibres and reach no farther than their span', () => {
-    expect(neighbours(grid, (i) => i !== 4, 9).flat()).not.toContain(4);
-    expect(neighbours(upright([[0, 0], [0.99 * spanM, 0]]), () => true, 2)).toHaveLength(1); // prettier-ignore
-    expect(neighbours(upright([[0, 0], [1.01 * spanM, 0]]), () => true, 2)).toHaveLength(0); // prettier-ignore
-  });
-});
 
 describe('smooth lines', () => {
   it('go through the points, and are straight where these are', () => {

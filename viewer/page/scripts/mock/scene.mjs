@@ -152,6 +152,7 @@ export function makeScene(meshes, samples = false) {
   const clips = makeClips(meshes);
   for (const c of clips) tools.push(makeClip(store, c, tools.length));
   const fibres = makeFibres(bodies, field.stations);
+  const pieces = neighbours(bodies, fibres);
   const eye = add(add(scale(sac), out, 0.13), open, -0.015);
   const hands = Object.entries(handTools).map(([hand, ids]) => {
     const of = ids.map((id) => tools.findIndex((t) => t.id === id));
@@ -162,10 +163,10 @@ export function makeScene(meshes, samples = false) {
     view: { eye, target: add(scale(sac), out, -0.002), up: open, fov_deg: 17 },
     ...{ bodies: [...bodies.map((b) => b.json), artery.json], static: fixed, tools, hands, commands, exercise },
     channels: makeChannels(fibres.length),
-    drawables: makeDrawables(fibres.length, (name, array) => store.put(name, array), samples),
+    drawables: makeDrawables(fibres.length, pieces.length, (name, array) => store.put(name, array), samples),
     materials,
   };
-  return { json, files: store.files, bodies, artery, tools, clips, fibres, samples, goals, faults, ...field };
+  return { json, files: store.files, bodies, artery, tools, clips, fibres, pieces, samples, goals, faults, ...field };
 }
 
 /** Pairs of facing surface points across the fissure, from its surface to its depth. */
@@ -191,6 +192,20 @@ function makeFibres(bodies, stations) {
     }
   }
   return fibres.sort((x, y) => x.depth - y.depth);
+}
+
+/** Each fibre and the two that begin nearest to it, once. */
+function neighbours([a], fibres) {
+  const start = ({ va }) => a.fine.subarray(3 * va, 3 * va + 3);
+  const distance = (f, g) => Math.hypot(...sub([...start(f)], [...start(g)]));
+  return fibres.flatMap((f, i) =>
+    fibres
+      .map((g, j) => ({ j, d: distance(f, g) }))
+      .filter(({ j, d }) => j > i && d < 0.004)
+      .sort((x, y) => x.d - y.d)
+      .slice(0, 2)
+      .map(({ j }) => [i, j]),
+  );
 }
 
 function nearest(points, q) {

@@ -16,6 +16,7 @@ export const materials = {
   vessel: { style: 'wall', rgba: [0.6, 0.2, 0.17, 1] },
   bone: { style: 'solid', rgba: [0.73, 0.65, 0.52, 1] },
   arachnoid: { style: 'fibre', rgba: [0.91, 0.88, 0.85, 0.78], roughness: 0.35 },
+  film: { style: 'sheet', rgba: [0.91, 0.88, 0.85, 0.78], roughness: 0.35 },
   blood: { style: 'fluid', rgba: [0.4, 0.02, 0.02, 1] },
   nylon: { style: 'hologram', rgba: [0.1, 0.9, 0.2, 1], roughness: 0.4 },
   pane: { style: 'glass', rgba: [0.6, 0.8, 1, 1], roughness: 0.05 },
@@ -83,7 +84,7 @@ const drawable = (component, name, kind, material, more = {}) => ({
 const threadPoints = 24;
 
 /** put: writes an array into a file of the bundle. */
-export function makeDrawables(fibres, put, samples) {
+export function makeDrawables(fibres, pieces, put, samples) {
   const square = Float32Array.from([0, 0, 0, 0.004, 0, 0, 0.004, 0.004, 0, 0, 0.004, 0]);
   const mesh = (name) => ({
     ...{ vertices: 4, triangles: 2 },
@@ -95,6 +96,7 @@ export function makeDrawables(fibres, put, samples) {
     drawable('bleeding', 'pool', 'plane', 'blood', { rate_channel: 'bleeding.rate' }),
     drawable('bleeding', 'jet', 'polylines', 'blood', { points_per_line: 2, count: 1 }),
     drawable('suture', 'thread', 'polylines', 'nylon', { points_per_line: threadPoints, count: 1, radius_m: 0.0004 }),
+    drawable('arachnoid', 'film', 'polylines', 'film', { points_per_line: 5, count: pieces, radius_m: 0.00005 }),
   ];
   const one = [
     drawable('sample', 'knots', 'points', 'nylon', {
@@ -132,6 +134,15 @@ function thread(scene, time) {
   return out;
 }
 
+/** A piece of film: the tip of its tent, both ends of a fibre, both of its neighbour. Every seventh tents. */
+function piece(scene, fibres, [i, j], k, time) {
+  const [a, b] = [fibres[i], fibres[j]];
+  const whole = a.whole < 0 && b.whole < 0 ? -1 : 1;
+  const middle = scale(add(add(a.p, a.q), add(b.p, b.q)), 0.25);
+  const tip = add(middle, scene.along, k % 7 === 0 ? 0.0008 * (1 + Math.sin(time)) : 0);
+  return [...tip, whole, ...a.p, a.whole, ...a.q, a.whole, ...b.p, b.whole, ...b.q, b.whole];
+}
+
 export function drawableNumbers(scene, theatre, { time, fibres }) {
   const bottom = add(scale(sac), scene.out, -0.004);
   const radius = theatre.height > 1e-5 ? 0.016 : 0;
@@ -143,6 +154,7 @@ export function drawableNumbers(scene, theatre, { time, fibres }) {
     [...add(bottom, scene.out, theatre.height), ...scene.out, radius, strength],
     [...tear, strength, ...add(tear, outward, 0.001), strength],
     thread(scene, time),
+    scene.pieces.flatMap((pair, k) => piece(scene, fibres, pair, k, time)),
   ];
   if (!scene.samples) return out;
   const top = add(scale(sac), scene.out, 0.011);

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Polylines of the style "fibre": each a small bundle of tapered fibres that fans out at its attachments, waves when
 // slack, straightens and reddens when drawn out, thins as its value falls from 1 to 0, and recoils when it is below 0
-// (parted). Fine cross filaments and membranes (sheets.ts) tie neighbours into a web.
+// (parted). Fine cross filaments tie neighbours into a web.
 import * as THREE from 'three';
 import { makeRandom } from '../random';
 import type { DrawableContext, Drawn, Moment } from './drawn';
 import { fadeS, fibreMaterial } from './fibre_material';
-import { type FibreStates, Sheets } from './sheets';
 
 const fibresPerLine = 3;
 const ringsPerHalf = 9;
@@ -28,7 +27,6 @@ interface Fibre {
 export class Fibres implements Drawn {
   readonly root = new THREE.Group();
   private readonly bundle: THREE.Mesh;
-  private readonly sheets: Sheets;
   private readonly geometry = new THREE.InstancedBufferGeometry();
   private readonly radiusM: number;
   private fibres: Fibre[] = [];
@@ -52,8 +50,7 @@ export class Fibres implements Drawn {
     this.bundle.frustumCulled = false;
     this.bundle.receiveShadow = true;
     this.bundle.renderOrder = 2;
-    this.sheets = new Sheets(context);
-    this.root.add(this.sheets.mesh, this.bundle);
+    this.root.add(this.bundle);
   }
 
   update(data: Float32Array, { seconds }: Moment): void {
@@ -63,9 +60,7 @@ export class Fibres implements Drawn {
     if (!this.webbed && n > 0) {
       this.webbed = true;
       this.weave(n);
-      this.sheets.weave(this.states(seconds), n);
     }
-    this.sheets.update(this.states(seconds), n);
     let out = 0;
     this.fibres.forEach((f, index) => {
       if (f.a >= n || f.b >= n) return;
@@ -143,7 +138,6 @@ export class Fibres implements Drawn {
     this.root.removeFromParent();
     this.geometry.dispose();
     (this.bundle.material as THREE.Material).dispose();
-    this.sheets.dispose();
   }
 
   private age(i: number, time: number): number {
@@ -154,10 +148,6 @@ export class Fibres implements Drawn {
   private sag(i: number): number {
     const now = this.length(i);
     return Math.sqrt(Math.max(0, this.restLength[i]! ** 2 - now * now)) * 0.38;
-  }
-
-  private states(seconds: number): FibreStates {
-    return { ends: this.ends, whole: this.whole, age: (i) => this.age(i, seconds), sag: (i) => this.sag(i) };
   }
 
   private along(i: number, t: number, k: number): number {

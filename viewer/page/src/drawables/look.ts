@@ -14,6 +14,7 @@ const wet: Record<string, Wetness> = {
   tissue: { clearcoat: 1, clearcoatRoughness: 0.2 },
   wall: { clearcoat: 1, clearcoatRoughness: 0.12 },
   fibre: { clearcoat: 0.8, clearcoatRoughness: 0.2 },
+  sheet: { clearcoat: 1, clearcoatRoughness: 0.14 },
   fluid: { clearcoat: 0.8, clearcoatRoughness: 0.1 },
   glass: { clearcoat: 1, clearcoatRoughness: 0.03 },
 };

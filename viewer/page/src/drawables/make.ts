@@ -6,6 +6,7 @@ import { Fibres } from './fibres';
 import { FluidPlane } from './fluid_plane';
 import { Jets } from './jets';
 import { Disc, Label, Links, Patch } from './shapes';
+import { Sheets, sheetPoints } from './sheets';
 import { Points, Polylines } from './tubes';
 
 type Maker = (c: DrawableContext) => Drawn;
@@ -23,6 +24,7 @@ const usual: Record<DrawableKind, Maker> = {
 const special: Record<string, Maker> = {
   // A fibre is straight between two points; longer lines are tubes.
   'polylines fibre': (c) => (c.declared.pointsPerLine === 2 ? new Fibres(c) : new Polylines(c)),
+  'polylines sheet': (c) => (c.declared.pointsPerLine === sheetPoints ? new Sheets(c) : new Polylines(c)),
   'polylines fluid': (c) => new Jets(c),
   'plane fluid': (c) => new FluidPlane(c),
 };
