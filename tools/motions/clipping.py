@@ -33,7 +33,7 @@ CASE = "anterior_superior"
 #   turn, pitch: about the dome's axis, and of the tips towards it, degrees
 #   press, push: how much deeper and farther inward the hand is while the blades close, mm
 NECK = {
-    "anterior_superior": dict(lift=-0.4, slide=0.2, turn=6, pitch=9, side=0.3, press=0.2, push=0),
+    "anterior_superior": dict(lift=-0.4, slide=0.3, turn=6, pitch=9, side=0.3, press=0.2, push=0),
     "narrow_neck": dict(lift=-0.6, slide=0, turn=-25, pitch=3, side=0, press=0.2, push=0),
 }
 # Tips within the neck. When this clip is moved, it goes where a good first one lies.

@@ -137,7 +137,7 @@ void expect_no_jump(const char* scene, const char* motion_file, double until_s) 
     EXPECT_LE(smooth.jump[h], 0.02 * peak[h]) << h;
     if (peak[h] > 0) most = std::max(most, abrupt.jump[h] / peak[h]);
   }
-  EXPECT_GT(most, 0.1);  // there is something to hand over
+  EXPECT_GT(most, 0.03);  // there is something to hand over, more than is left with the crossfade
 }
 
 TEST(HapticCrossfade, WhereStrandsPart) { expect_no_jump("1_sylvian_fissure.xml", "strand.csv", 2.5); }
