@@ -70,12 +70,12 @@ const fibrePosition = /* glsl */ `
 const fibreColour = /* glsl */ `#include <color_fragment>
         float pull = v_fibre.y / (v_fibre.y + 0.025);
         float strained = clamp(pull * 0.9 + 0.25 * (1.0 - v_fibre.x), 0.0, 1.0);
-        vec3 fibre = mix(0.72 * diffuseColor.rgb, vec3(0.72, 0.20, 0.15), strained);
+        vec3 fibre = mix(0.66 * diffuseColor.rgb * vec3(1.0, 0.92, 0.86), vec3(0.72, 0.20, 0.15), strained);
         // Attachments take the colour of the pia.
         fibre = mix(fibre, vec3(0.66, 0.33, 0.29), smoothstep(0.72, 1.0, abs(2.0 * v_fibre.w - 1.0)));
         diffuseColor.rgb = fibre;
         float edge_on = 1.0 - abs(dot(normalize(vViewPosition), normalize(vNormal)));
-        diffuseColor.a *= mix(0.30, 0.8, edge_on * edge_on);
+        diffuseColor.a *= mix(0.12, 0.55, edge_on * edge_on);
         if (v_fibre.z >= 0.0) diffuseColor.a *= 1.0 - smoothstep(0.8, ${fadeS.toFixed(1)}, v_fibre.z);`;
 
 /** Colour, opacity and roughness are the material's; a fibre is clearest where it is seen face on. */

@@ -7,7 +7,7 @@ import { makeRandom } from '../random';
 import type { DrawableContext, Drawn, Moment } from './drawn';
 import { fadeS, fibreMaterial } from './fibre_material';
 
-const fibresPerLine = 3;
+const fibresPerLine = 2;
 const ringsPerHalf = 9;
 const sides = 5;
 const wholeMark = Infinity;
@@ -124,8 +124,8 @@ export class Fibres implements Drawn {
           tb: 1,
           radius: this.radiusM * (k === 0 ? 0.5 : 0.2 + 0.16 * random()),
         });
-    // A web has two filaments a line at most.
-    const capacity = count * (fibresPerLine + 2);
+    // A web has one filament a line at most.
+    const capacity = count * (fibresPerLine + 1);
     this.geometry.dispose();
     this.geometry.setAttribute('end_a', (this.endsA = dynamic(capacity, 3)));
     this.geometry.setAttribute('end_b', (this.endsB = dynamic(capacity, 3)));
@@ -159,7 +159,7 @@ export class Fibres implements Drawn {
     return Math.hypot(e[i * 6]! - e[i * 6 + 3]!, e[i * 6 + 1]! - e[i * 6 + 4]!, e[i * 6 + 2]! - e[i * 6 + 5]!);
   }
 
-  /** Cross filaments to the two nearest neighbours. */
+  /** Cross filaments to the nearest neighbour. */
   private weave(n: number): void {
     const random = makeRandom(55);
     for (let i = 0; i < n; i++) {
@@ -171,14 +171,14 @@ export class Fibres implements Drawn {
         if (d < 0.0045) near.push({ j, d });
       }
       near.sort((a, b) => a.d - b.d);
-      for (const { j } of near.slice(0, 2)) {
+      for (const { j } of near.slice(0, 1)) {
         if (j < i && random() < 0.5) continue;
         this.fibres.push({
           a: i,
           b: j,
           ta: 0.15 + 0.7 * random(),
           tb: 0.15 + 0.7 * random(),
-          radius: this.radiusM * 0.2,
+          radius: this.radiusM * 0.14,
         });
       }
     }

@@ -88,8 +88,8 @@ const colour = /* glsl */ `#include <color_fragment>
         line = max(line, 0.7 * (1.0 - smoothstep(0.0, 0.09, abs(noise(v_at * 1.7 + 9.0).x))));
         float facing = abs(dot(normalize(vViewPosition), normalize(vNormal)));
         float edge_on = pow(1.0 - facing, 2.0);
-        float thick = 0.075 + 0.05 * cloud.x + 0.03 * grain.x + 0.15 * line + 0.05 * v_drawn;
-        thick += 0.20 * edge_on;
+        float thick = 0.032 + 0.025 * cloud.x + 0.015 * grain.x + 0.06 * line + 0.04 * v_drawn;
+        thick += 0.07 * edge_on;
         // What is drawn over a tip is folded towards it, whitens, and thins out there.
         float off = length(v_tent.xy);
         float ray = sin(atan(v_tent.y, v_tent.x + 1e-6) * 9.0 + 5.0 * cloud.x + 9.0 * grain.x);
@@ -99,7 +99,7 @@ const colour = /* glsl */ `#include <color_fragment>
         float window = smoothstep(0.16, 0.44, noise(v_at * 0.62 + 21.0).x + 0.25 * grain.x);
         thick *= 1.0 - 0.88 * window * (1.0 - line);
         // It is thickest where it is attached, and thins where it is worn.
-        thick *= mix(1.0, 1.8, smoothstep(0.30, 0.5, abs(film.y - 0.5)));
+        thick *= mix(1.0, 1.5, smoothstep(0.30, 0.5, abs(film.y - 0.5)));
         thick *= 1.0 - 0.75 * v_sheet.z;
         thick = mix(thick, 0.30 + 0.2 * cloud.x, v_sheet.w);
         // A torn piece opens from its tip; a thicker rolled rim and a fringe are left.
@@ -109,7 +109,7 @@ const colour = /* glsl */ `#include <color_fragment>
           thick = mix(thick, 0.42 + 0.2 * grain.x, 0.8 * exp(-rim * rim / 0.006));
         }
         float attached = smoothstep(0.36, 0.5, abs(film.y - 0.5));
-        diffuseColor.rgb = mix(diffuseColor.rgb, vec3(0.72, 0.44, 0.40), 0.45 * attached);
+        diffuseColor.rgb = mix(diffuseColor.rgb, vec3(0.72, 0.44, 0.40), 0.25 + 0.35 * attached);
         diffuseColor.rgb = mix(diffuseColor.rgb, vec3(0.86, 0.83, 0.80), 0.35 * v_drawn * line);
         diffuseColor.a = clamp(diffuseColor.a * thick, 0.0, 0.92);`;
 
@@ -117,7 +117,7 @@ export function sheetMaterial(field: FieldUniforms, material: MaterialData): THR
   const [red, green, blue, alpha] = material.rgba;
   const m = new THREE.MeshPhysicalMaterial({
     // Thinner than a fibre: it takes on more of what lies below.
-    color: new THREE.Color().setRGB(0.86 * red, 0.84 * green, 0.83 * blue, THREE.SRGBColorSpace),
+    color: new THREE.Color().setRGB(0.88 * red, 0.76 * green, 0.71 * blue, THREE.SRGBColorSpace),
     opacity: alpha,
     roughness: Math.max(0.3, material.roughness),
     clearcoat: 1,
@@ -150,7 +150,7 @@ export function sheetMaterial(field: FieldUniforms, material: MaterialData): THR
         `#include <lights_fragment_end>
         // A clear film glistens as a thick one does.
         float gloss = dot(clearcoatSpecularDirect + 0.5 * clearcoatSpecularIndirect, vec3(0.33));
-        diffuseColor.a = clamp(diffuseColor.a + 0.7 * smoothstep(0.06, 0.9, gloss), 0.0, 0.9);`,
+        diffuseColor.a = clamp(diffuseColor.a + 0.5 * smoothstep(0.10, 1.0, gloss), 0.0, 0.9);`,
       );
   };
   m.customProgramCacheKey = () => 'sheets';
