@@ -353,13 +353,9 @@ class LiveSession {
     reports_.note(receipts);
   }
 
-  /// Whether hands of this process follow the motion, step by step: a demonstration that nobody has taken over.
-  bool demonstrates() {
-    const bool lockstep =
-        mode_ == SessionMode::demonstration && ready_ && !inputs_.driven && !inputs_.persons_arm(script_);
-    if (lockstep && !demonstration_) begin_demonstration();
-    if (!lockstep) end_demonstration();
-    return lockstep;
+  /// A demonstration that nobody has taken over: hands of this process follow the motion, step by step.
+  bool demonstrates() const {
+    return mode_ == SessionMode::demonstration && ready_ && !inputs_.driven && !inputs_.persons_arm(script_);
   }
   /// From the start, as a run without processes. No person's hand needs contacts beyond the step.
   void begin_demonstration() {
@@ -378,7 +374,9 @@ class LiveSession {
 
   /// False if a value of the simulation became non-finite. The simulation has then started again.
   bool step() {
-    const bool lockstep = demonstrates();
+    if (!demonstrates()) end_demonstration();
+    else if (!demonstration_) begin_demonstration();
+    const bool lockstep = demonstration_.has_value();
     std::int64_t posed = monotonic_us();
     if (lockstep) demonstration_->before_step(simulation_);
     else posed = inputs_.apply(simulation_, ready_);

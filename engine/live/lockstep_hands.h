@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/haptics/condense.h"
+#include "core/haptics/haptic_update.h"
 #include "core/sim/simulation.h"
 #include "engine/live/exchange_pause.h"
 #include "haptic_server/in_process.h"
@@ -33,12 +34,11 @@ class LockstepHands {
   }
   /// After a step: its problem is that of the next ticks.
   void after_step(const Simulation& simulation) {
-    haptics_.set_problem(condense_(simulation.problem(), most_rows, condensed_), pause_.hands(simulation));
+    haptics_.set_problem(condense_(simulation.problem(), max_problem_rows, condensed_), pause_.hands(simulation));
   }
   const InProcessHaptics& haptics() const { return haptics_; }
 
  private:
-  static constexpr int most_rows = 240;  ///< of a problem in a message
   static std::array<HandHome, 2> homes(const Simulation& simulation) {
     std::array<HandHome, 2> out;
     for (int h = 0; h < 2; ++h)

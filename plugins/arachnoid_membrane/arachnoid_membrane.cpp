@@ -90,8 +90,7 @@ ArachnoidMembrane::Deepest ArachnoidMembrane::deepest(const Piece& piece, const 
   Deepest below, above;  // the lowest point of the tool above the patch, the highest of it
   below.gap = above.gap = infinite;
   const Vec3 middle = patch.middle();
-  double radius = 0;
-  for (const Vec3& c : patch.corner) radius = std::max(radius, (c - middle).norm());
+  const double radius = patch.radius();
   for (const ToolOutline::Ball& ball : tool.balls()) {
     if ((ball.at - middle).norm() > radius + aware + ball.radius) continue;
     BilinearPatch::Foot foot;
@@ -158,11 +157,9 @@ void ArachnoidMembrane::detect(const StepContext&) {
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
     const Piece& piece = pieces_[i];
     BilinearPatch at;
-    double radius = 0;
-    if (piece.holds) {
-      at = patch(piece);
-      for (const Vec3& c : at.corner) radius = std::max(radius, (c - at.middle()).norm());
-    }
+    if (piece.holds) at = patch(piece);
+    const Vec3 middle = piece.holds ? at.middle() : Vec3::Zero();
+    const double radius = piece.holds ? at.radius() : 0;
     for (std::size_t k = 0; k < tools_.size(); ++k) {
       const ToolOutline& tool = tools_[k];
       Tent& t = tent(i, k);
@@ -170,7 +167,7 @@ void ArachnoidMembrane::detect(const StepContext&) {
       t.side_now = 0;
       t.gap = infinite;
       if (!piece.holds || !tool.tool().active()) continue;
-      if ((tool.middle() - at.middle()).norm() > tool.radius() + radius + aware) continue;
+      if ((tool.middle() - middle).norm() > tool.radius() + radius + aware) continue;
       touch(piece, at, tool, t);
       if (tool.tool().cutting()) find_edge(piece, at, tool, t);
     }
@@ -209,10 +206,7 @@ void ArachnoidMembrane::remember_side(std::size_t piece, std::size_t tool) {
     t.side = t.side_now;
     return;
   }
-  const BilinearPatch here = patch(pieces_[piece]);
-  const Vec3 normal = (here.corner[2] + here.corner[3] - here.corner[0] - here.corner[1])
-                          .cross(here.corner[1] + here.corner[3] - here.corner[0] - here.corner[2])
-                          .normalized();
+  const Vec3 normal = patch(pieces_[piece]).normal(0.5, 0.5);
   for (const int other : pieces_[piece].neighbours) {
     const Tent& from = tent(std::size_t(other), tool);
     const double along = from.direction.dot(normal);

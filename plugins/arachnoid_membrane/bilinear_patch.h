@@ -5,6 +5,7 @@
 //
 // s leads across, from the line c0 c1 to the line c2 c3. t leads along the lines. Lengths in metres.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -29,19 +30,29 @@ struct BilinearPatch {
     const std::array<double, 4> w = weights(s, t);
     return w[0] * corner[0] + w[1] * corner[1] + w[2] * corner[2] + w[3] * corner[3];
   }
+  /// Unit, along dx/ds x dx/dt.
+  Vec3 normal(double s, double t) const {
+    return (corner[2] - corner[0] + t * twist()).cross(corner[1] - corner[0] + s * twist()).normalized();
+  }
   Vec3 middle() const { return at(0.5, 0.5); }
+  /// Of the ball about the middle that holds the patch.
+  double radius() const {
+    double out = 0;
+    for (const Vec3& c : corner) out = std::max(out, (c - middle()).norm());
+    return out;
+  }
 
   /// The point of the patch, continued beyond its edges, whose distance to p is stationary: p = at + height normal.
   /// False where Newton's method finds none near the patch. It never allocates.
   bool foot(const Vec3& p, Foot& out) const {
-    const Vec3 twist = corner[0] - corner[1] - corner[2] + corner[3];
+    const Vec3 twisted = twist();
     double s = 0.5, t = 0.5;
     for (int i = 0; i < 20; ++i) {
-      const Vec3 ds = corner[2] - corner[0] + t * twist, dt = corner[1] - corner[0] + s * twist;
+      const Vec3 ds = corner[2] - corner[0] + t * twisted, dt = corner[1] - corner[0] + s * twisted;
       const Vec3 gap = p - at(s, t);
       // Gradient and Hessian of |gap|^2 / 2.
       const double gs = -gap.dot(ds), gt = -gap.dot(dt);
-      const double ss = ds.squaredNorm(), st = ds.dot(dt) - gap.dot(twist), tt = dt.squaredNorm();
+      const double ss = ds.squaredNorm(), st = ds.dot(dt) - gap.dot(twisted), tt = dt.squaredNorm();
       const double det = ss * tt - st * st;
       if (!(det > 1e-6 * ss * tt)) return false;
       const double step_s = (st * gt - tt * gs) / det, step_t = (st * gs - ss * gt) / det;
@@ -52,12 +63,15 @@ struct BilinearPatch {
       out.s = s;
       out.t = t;
       out.at = at(s, t);
-      out.normal = (corner[2] - corner[0] + t * twist).cross(corner[1] - corner[0] + s * twist).normalized();
+      out.normal = normal(s, t);
       out.height = (p - out.at).dot(out.normal);
       return true;
     }
     return false;
   }
+
+ private:
+  Vec3 twist() const { return corner[0] - corner[1] - corner[2] + corner[3]; }  ///< d2x / ds dt
 };
 
 }  // namespace insula

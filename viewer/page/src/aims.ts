@@ -7,29 +7,36 @@ import { materialOf } from './step_data/declarations';
 
 /** Tissue moves: a place so near to the chosen one in a later frame is still that one, m. */
 const sameM = 0.0015;
-const radiusM = 0.0003;
 
 export class Aims {
   /** A mark at each place. */
   readonly root = new THREE.Group();
-  private readonly ball = new THREE.IcosahedronGeometry(radiusM, 2);
+  private readonly ball = new THREE.IcosahedronGeometry(1, 2);
   private readonly look = new THREE.MeshBasicMaterial({
-    color: 0x63ffd1,
     transparent: true,
-    opacity: 0.6,
     // Places in the depth shine through what lies over them.
     depthTest: false,
   });
   private drawables: number[] = [];
+  /** Of the marks. */
+  private radiusM = 0;
   private chosen: THREE.Vector3 | null = null;
   private passed: THREE.Vector3[] = [];
 
   begin(bundle: Bundle): void {
-    this.drawables = bundle.drawables
-      .filter(
-        ({ declared }) => declared.kind === 'points' && materialOf(bundle.materials, declared.material).style === 'aim',
-      )
-      .map(({ declared }) => declared.index);
+    const all = bundle.drawables.map(({ declared }) => ({
+      declared,
+      material: materialOf(bundle.materials, declared.material),
+    }));
+    const aims = all.filter(({ declared, material }) => declared.kind === 'points' && material.style === 'aim');
+    this.drawables = aims.map(({ declared }) => declared.index);
+    const [first] = aims;
+    if (first) {
+      const [r, g, b, opacity] = first.material.rgba;
+      this.look.color.setRGB(r, g, b, THREE.SRGBColorSpace);
+      this.look.opacity = opacity;
+      this.radiusM = first.declared.radiusM;
+    }
     this.restart();
   }
 
@@ -73,6 +80,7 @@ export class Aims {
     this.root.children.forEach((mark, k) => {
       mark.visible = k < places.length;
       if (mark.visible) mark.position.copy(places[k]!);
+      mark.scale.setScalar(this.radiusM);
     });
   }
 }

@@ -6,12 +6,14 @@ import { Aims } from '../src/aims';
 import type { Bundle } from '../src/bundle_types';
 import type { RenderFrame } from '../src/lcm';
 
-const point = (index: number, material: string) => ({ declared: { index, kind: 'points', material } });
+const point = (index: number, material: string) => ({
+  declared: { index, kind: 'points', material, radiusM: 0.00025 },
+});
 const bundle = {
   drawables: [point(0, 'steel'), point(3, 'aim')],
   materials: new Map([
     ['steel', { style: 'solid' }],
-    ['aim', { style: 'aim' }],
+    ['aim', { style: 'aim', rgba: [0.4, 1, 0.8, 0.6] }],
   ]),
 } as unknown as Bundle;
 const frame = (...x: number[]) =>
@@ -54,6 +56,7 @@ describe('the places of an aim', () => {
   it('are marked', () => {
     aims.show(aims.places(frame(0.01, 0.02)));
     expect(aims.root.children.map((m) => m.visible)).toEqual([true, true]);
+    expect(aims.root.children.map((m) => m.scale.x)).toEqual([0.00025, 0.00025]);
     aims.show(aims.places(frame(0.01)));
     expect(aims.root.children.map((m) => m.visible)).toEqual([true, false]);
   });

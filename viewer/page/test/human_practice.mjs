@@ -60,7 +60,7 @@ export class Practice {
       await this.page.keyboard.press('n');
       return this.person.settled();
     }
-    if (mm > 1.2) return this.person.reach(view, true);
+    if (!/^Sweep/.test(view.todo)) return this.person.reach(view, true);
     await this.person.sweep();
     return this.person.settled();
   }
