@@ -121,8 +121,8 @@ std::string field_part(const SceneFacts& f) {
       "max_contacts=\"60\" alarm=\"0.12 mm\" max_correction=\"0.1 mm\"/>\n",
       clips);
   s += fmt::format(
-      "  <contact id=\"clips_in_the_field\" between=\"insula {}\" friction=\"0.2\" spacing=\"2 mm\" max_contacts=\"6\" "
-      "alarm=\"0.5 mm\" max_correction=\"0.2 mm\"/>\n",
+      "  <contact id=\"clips_in_the_field\" between=\"insula {}\" friction=\"0.2\" max_force=\"2 N\" spacing=\"2 mm\" "
+      "max_contacts=\"6\" alarm=\"0.5 mm\" max_correction=\"0.2 mm\"/>\n",
       clips);
   s += fmt::format(
       "  <contact id=\"clips_on_the_lobes\" between=\"frontal temporal {}\" friction=\"0\" max_force=\"0.1 N\" "

@@ -28,7 +28,10 @@ std::string clipping_motion(const ClipPlan& plan) {
 }
 
 std::string rupture_motion(const ClipPlan& plan, const ApplierPose& temporary, const std::string& clip,
-                           const Vec3& neck) {
+                           const artery::Neck& neck) {
+  // Behind the temporary clip the parent is slack. Blades that lay as low as on a full one would take it in.
+  ApplierPose permanent = plan.pose;
+  permanent.tip += 0.3 * neck.diameter * neck.normal;
   MotionScript m;
   m.command(1, "bleeding rupture");
   m.command(0.1, "applier load " + clip);
@@ -38,13 +41,13 @@ std::string rupture_motion(const ClipPlan& plan, const ApplierPose& temporary, c
   m.key(true, 0.8, away);
   m.command(std::round((m.time(true) + 0.2) * 1000) / 1000, "applier load " + plan.clip.name);
   m.key(true, 0.5, away);
-  m.place_clip(plan.pose, out_of_field, 2.5);
+  m.place_clip(permanent, out_of_field, 2.5);
   m.take_clip(temporary);
   m.key(true, 8, drawn_back(temporary, out_of_field));
   // The suction tube, dipped into the field beside the neck.
   const Vec3 shaft = Vec3(0.85, -0.35, 0.39).normalized(),
              flat = (Vec3(0, -0.5, 0.87) - Vec3(0, -0.5, 0.87).dot(shaft) * shaft).normalized();
-  const ApplierPose low{neck + Vec3(0, -7, 0) + 6 * shaft, flat, shaft}, outside = drawn_back(low, 26);
+  const ApplierPose low{neck.centre + Vec3(0, -7, 0) + 6 * shaft, flat, shaft}, outside = drawn_back(low, 26);
   m.key(false, 0.01, outside);
   m.key(false, 1.5, outside);
   m.key(false, 2, low, true);
@@ -100,7 +103,7 @@ void run_scenes(const CaseFolder& folder, const fs::path& project, const Options
       std::find_if(clips.begin(), clips.end(), [&](const ClipShape& c) { return c.name == f.temporary; });
   if (temporary == clips.end()) throw InputError("the library has no clip " + f.temporary);
   write_text(folder.path / "4_rupture_steady.csv",
-             rupture_motion(plan, plan_temporary(v, floor, *temporary), f.temporary, f.neck));
+             rupture_motion(plan, plan_temporary(v, floor, *temporary), f.temporary, *v.neck));
 
   spin_strands(f, folder, o.rehearse, notes, progress);
   if (!o.brain.empty()) try_opening(f, folder, o.rehearse, notes, progress);
