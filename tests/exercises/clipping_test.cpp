@@ -82,6 +82,16 @@ TEST(Clipping, ASecondClipBesideAShortOneLeavesLessOfTheNeck) {
   test::expect_no_harm(both);
 }
 
+TEST(Clipping, AFenestratedClipClosesTheNeckAroundABranch) {
+  test::Played o = test::play_motion(clipping_scene, "branch_in_window");
+  ASSERT_TRUE(o.ran);
+  EXPECT_EQ(o.state, ExerciseState::done);
+  EXPECT_EQ(o.measures["applications"], 1);
+  EXPECT_LT(o.measures["inferior.stenosis_pct"], 20) << "the branch in the window is pinched";
+  test::expect_well_clipped(o);
+  test::expect_gentle(o);
+}
+
 TEST(Clipping, AShutClipThatIsPulledSlipsOff) {
   test::Played o = test::play_motion(clipping_scene, "slipping");
   ASSERT_TRUE(o.ran);

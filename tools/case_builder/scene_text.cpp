@@ -131,11 +131,19 @@ std::string field_part(const SceneFacts& f) {
   return s;
 }
 
+namespace {
+/// The membrane between the strands of an element.
+std::string membrane(const std::string& id, const std::string& strands) {
+  return fmt::format("  <arachnoid_membrane id=\"{}\" strands=\"{}\" stiffness=\"8 N/m\" strength=\"0.012 N\"/>\n", id,
+                     strands);
+}
+}  // namespace
+
 std::string strands(const SceneFacts& f, const std::string& kind) {
   const Vec3 shift = f.strand_shift * to_surgeon, ball = 0.4 * f.neck + 0.6 * f.dome + 1.5 * to_surgeon + shift;
   const double radius = 0.55 * f.dome_reach + 2;
   const bool own = kind == "branches";
-  return fmt::format(
+  const std::string fibres = fmt::format(
       "  <strand_springs id=\"to_{}\" from=\"artery_wall\" to=\"{}\" created_at=\"settled\" centre=\"{}\" "
       "radius=\"{:.1f} mm\" density=\"{:.3g} 1/cm2\" max_length=\"{} mm\" seed=\"{}\"\n"
       "    stiffness=\"40 N/m\" slack=\"1.1\" strength=\"0.04 N\" cut_force=\"0.015 N\" cut_length=\"0.8 mm\" "
@@ -146,6 +154,7 @@ std::string strands(const SceneFacts& f, const std::string& kind) {
       kind == "frontal"    ? 11
       : kind == "temporal" ? 12
                            : 14);
+  return fibres + membrane("membrane_to_" + kind, "to_" + kind);
 }
 
 namespace {
@@ -172,8 +181,9 @@ std::string opening_exercise(const SceneFacts& f) {
   s += "  <strand_springs id=\"arachnoid\" from=\"frontal_surface\" to=\"temporal_surface\" density=\"42 1/cm2\" "
        "max_length=\"4.5 mm\" centre=\"66 3.5 5 mm\" radius=\"10.5 mm\" seed=\"7\"\n"
        "    stiffness=\"6 N/m\" slack=\"1.1\" strength=\"0.02 N\" cut_force=\"0.015 N\" cut_length=\"0.8 mm\" "
-       "reach=\"0.6 mm\"/>\n"
-       "  <contact id=\"lobes\" between=\"frontal temporal\" friction=\"0\" tissue_alarm=\"0.8 mm\" "
+       "reach=\"0.6 mm\"/>\n";
+  s += membrane("membrane", "arachnoid");
+  s += "  <contact id=\"lobes\" between=\"frontal temporal\" friction=\"0\" tissue_alarm=\"0.8 mm\" "
        "tissue_spacing=\"2 mm\" tissue_max_contacts=\"40\"/>\n"
        "  <contact id=\"at_floor_and_bone\" between=\"frontal temporal insula window\" friction=\"0\" "
        "tissue_spacing=\"2 mm\" tissue_max_contacts=\"40\" tissue_max_force=\"0.05 N\"/>\n"

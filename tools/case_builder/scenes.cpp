@@ -78,8 +78,8 @@ void run_scenes(const CaseFolder& folder, const fs::path& project, const Options
   f.name = folder.name;
   f.temporary = "temporary_straight";
   f.clips = {plan.clip.name};
-  for (const char* menu :
-       {"straight", "curved", "angled", "bayonet", "fenestrated", "mini", "temporary_straight", "temporary_curved"})
+  for (const char* menu : {"straight", "curved", "angled", "bayonet", "fenestrated_3_5_stem_90", "mini",
+                           "temporary_straight", "temporary_curved"})
     if (menu != plan.clip.name) f.clips.push_back(menu);
   f.assets = link_assets(folder, project, f.clips);
   const Json wall = read_json(folder.wall() / "notes.json");

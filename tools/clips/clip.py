@@ -28,8 +28,10 @@ class Clip:
         self.row, self.par = row, dict(family, **row.get("set", {}))
         par = self.par
         self.blade_length = sum(x[0] for x in row["blade"])
+        self.stem = row.get("stem", [])
+        self.stem_end = par["leg_length"] + sum(x[0] for x in self.stem)
         self.window = self._window(row["fenestration"]) if "fenestration" in row else None
-        pieces = [[par["leg_length"], 0]]
+        pieces = [[par["leg_length"], 0]] + self.stem
         if self.window:
             pieces.append([2.0 * self.window["half_length"], 0])
         pieces += row.get("shank", [])
@@ -70,7 +72,7 @@ class Clip:
             "fillet": fillet,
             "start": start,
             "half_length": math.sqrt((radius + fillet) ** 2 - (start + fillet) ** 2),
-            "middle": self.par["leg_length"] + math.sqrt((radius + fillet) ** 2 - (start + fillet) ** 2),
+            "middle": self.stem_end + math.sqrt((radius + fillet) ** 2 - (start + fillet) ** 2),
         }
 
     def _window_path(self, steps):
@@ -95,16 +97,29 @@ class Clip:
         k = smooth((f - 0.7) / 0.3)
         return Node(f * par["leg_length"], o, u, mix(0.97 * wire, wx, k), mix(0.97 * wire, wy, k), k)
 
+    def _stem_nodes(self, step):
+        """Nodes of the stem after the legs, at bends every `step` degrees at most."""
+        wx, wy = self.par["ring"] if self.window else self.blade_size(0.0)
+        s, out = self.par["leg_length"], []
+        for piece in self.stem:
+            count = max(1, math.ceil(abs(piece[1]) / step - 1e-9))
+            out += [
+                Node(s + piece[0] * k / count, self._offset(wx), 0.0, wx, wy, 1.0) for k in range(1, count + 1)
+            ]
+            s += piece[0]
+        return out
+
     def nodes(self, fine):
         par, steps = self.par, 9 if fine and not self.window else 8
         out = [self.leg(k / steps) for k in range(steps + 1)]
+        out += self._stem_nodes(18.0 if fine else 25.0)
         wx0, wy0 = self.blade_size(0.0)
         if self.window:
             w = self.window
             for s, o in self._window_path(7 if fine else 8):
                 k = max(0.0, (o - w["start"]) / (w["radius"] - w["start"]))
                 out.append(Node(s, o, 0.0, w["wx"], w["wy"], 1.0 - 0.6 * k))
-            out.append(Node(par["leg_length"] + 2.0 * w["half_length"], w["start"], 0.0, w["wx"], w["wy"], 1.0))
+            out.append(Node(self.stem_end + 2.0 * w["half_length"], w["start"], 0.0, w["wx"], w["wy"], 1.0))
         s = out[-1].s
         for piece in self.row.get("shank", []):
             count = max(1, math.ceil(abs(piece[1]) / (18.0 if fine else 25.0) - 1e-9))
@@ -169,6 +184,7 @@ class Clip:
         out = {"body": [("coil", "hull", self._coil_hull(), self.par["wire"])]}
         for name, side in (("jaw_left", -1.0), ("jaw_right", 1.0)):
             rows = [(f"{name}_leg_{i + 1}", "capsule", x, 0.0) for i, x in enumerate(self._leg_capsules(side))]
+            rows += [(f"{name}_stem_{i + 1}", "capsule", x, 0.0) for i, x in enumerate(self._stem_capsules(side))]
             if self.window:
                 rows += [(f"{name}_ring_{i + 1}", "capsule", x, 0.0) for i, x in enumerate(self._ring_capsules(side))]
             if self.row.get("shank"):
@@ -205,6 +221,13 @@ class Clip:
     def _leg_capsules(self, side):
         points = self._centres([self.leg(f) for f in (0.0, 0.22, 0.52, 0.78, 0.98)], side)
         return [(p, q, self.par["wire"]) for p, q in zip(points, points[1:])]
+
+    def _stem_capsules(self, side):
+        if not self.stem:
+            return []
+        nodes = [self.leg(0.98)] + self._stem_nodes(30.0)
+        points = self._centres(nodes, side)
+        return [(p, q, 0.5 * (n.wx + n.wy)) for p, q, n in zip(points, points[1:], nodes[1:])]
 
     def _ring_capsules(self, side):
         w = self.window

@@ -114,10 +114,10 @@ def clip_block(clip):
         "grip": {"position": instruments.rounded(clip.hinge), "shaft": [0, 0, 1], "flat": [1, 0, 0]},
     }
     if clip.window:
-        centre = clip.line.frame(clip.window["middle"])[0]
+        centre, _, _, across = clip.line.frame(clip.window["middle"])
         out["fenestration"] = {
             "centre": instruments.rounded(tuple(a + b for a, b in zip(centre, clip.shift))),
-            "axis": [0, 1, 0],
+            "axis": instruments.rounded(mul(across, -1.0)),
             "diameter_mm": clip.window["diameter"],
         }
     return out

@@ -10,6 +10,7 @@
 3_clipping_too_short    a clip whose tips end within the neck: blood still enters
 3_clipping_replaced     the same clip, taken back, opened, moved along the neck and closed again: the neck is shut
 3_clipping_second       the same clip, and a curved one beside it on the dome's side: less of the neck is left
+3_clipping_branch_in_window  a fenestrated clip from the side: the inferior branch passes through its window
 3_clipping_slipping     the applier pulls at the shut clip, which slips off the neck
 3_clipping_perforator   blades turned across the superior branch: they close on the perforator behind it too
 4_rupture_steady        the dome ruptures; suction; temporary clip on the parent artery; neck clipped; temporary clip
@@ -24,13 +25,15 @@ import math
 import pathlib
 import sys
 
+from vectors import across, add, cross, dot, quaternion, turned, unit
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 CASE = "anterior_superior"
 # Where the blades of an angled clip lie across the neck of each artery. The wall moves with the blades, so these are
 # poses of the hand and not of the closed clip. They lie amid the placements that leave no remnant. The tips point away
 # from the floor of the fissure: as the blades close, the tips move inward and would press on it.
 #   lift, slide, side: of the blades' middle along the dome's axis, from the surgeon inward, and along the closing, mm
-#   turn, pitch: about the dome's axis, and of the tips towards it, degrees
+#   turn, pitch, roll: about the dome's axis, of the tips towards it, and about the blades, degrees
 #   press, push: how much deeper and farther inward the hand is while the blades close, mm
 NECK = {
     "anterior_superior": dict(lift=-0.4, slide=0.3, turn=6, pitch=9, side=0.3, press=0.2, push=0),
@@ -41,6 +44,11 @@ TOO_SHORT = dict(lift=0, slide=-2.2, turn=6, pitch=6, side=0.3)
 # A curved clip beside the short one. Lower its blades press the wall against the first one with more than 0.3 N;
 # farther in its tips press on the floor; farther aside one blade meets the dome before the other.
 SECOND = dict(lift=1.6, slide=0.3, turn=-6, pitch=5, side=0.1, press=0, push=0)
+# A fenestrated clip from the side of the inferior branch. Its stem stands along the dome's axis. Its window takes the
+# branch, so that the blades' root reaches the edge of the flattened neck. Rolled less, its shaft meets the bone and a
+# blade the floor. Rolled more, or farther aside, a blade meets the bleb.
+FENESTRATED_CLIP = "fenestrated_3_5_stem_90"  # what the tray calls fenestrated
+FENESTRATED = dict(lift=-0.2, slide=-0.6, turn=-91, side=0.3, roll=-12, press=0.3, push=0)
 # The torn dome of exercise 4 is slack, and the temporary clip lies beside it: the tips point farther from the floor.
 TORN = dict(NECK[CASE], slide=0, pitch=12)
 # A temporary clip across the parent artery. The flattened wall is half as wide again as the artery, and the blades must
@@ -52,52 +60,6 @@ PROXIMAL = dict(name="parent", share=0.45, past=-2.4, square=0.5)
 PROXIMAL_GRIP = (53.7, 21.4, -14.0)
 OUT_OF_FIELD = 32.0  # mm along the applier's shaft
 VIEW = (0.93, 0.25, 0.27)  # towards the surgeon
-
-
-def add(a, b, f=1.0):
-    return [x + f * y for x, y in zip(a, b)]
-
-
-def dot(a, b):
-    return sum(x * y for x, y in zip(a, b))
-
-
-def cross(a, b):
-    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-
-
-def unit(a):
-    n = math.sqrt(dot(a, a))
-    return [x / n for x in a]
-
-
-def across(a, n):
-    """The part of a perpendicular to n, unit."""
-    return unit(add(a, n, -dot(a, n)))
-
-
-def turned(v, axis, degrees):
-    """v turned about a unit axis."""
-    a = math.radians(degrees)
-    k = dot(axis, v) * (1 - math.cos(a))
-    return add([math.cos(a) * x + k * y for x, y in zip(v, axis)], cross(axis, v), math.sin(a))
-
-
-def quaternion(x, y, z):
-    """w x y z of the rotation whose columns are x, y, z."""
-    m = [[x[i], y[i], z[i]] for i in range(3)]
-    t = m[0][0] + m[1][1] + m[2][2]
-    q = [
-        math.sqrt(max(0.0, 1 + t)),
-        math.sqrt(max(0.0, 1 + 2 * m[0][0] - t)),
-        math.sqrt(max(0.0, 1 + 2 * m[1][1] - t)),
-        math.sqrt(max(0.0, 1 + 2 * m[2][2] - t)),
-    ]
-    q[1] = math.copysign(q[1], m[2][1] - m[1][2])
-    q[2] = math.copysign(q[2], m[0][2] - m[2][0])
-    q[3] = math.copysign(q[3], m[1][0] - m[0][1])
-    n = math.sqrt(dot(q, q))
-    return [v / n for v in q]
 
 
 class Clip:
@@ -232,12 +194,13 @@ class Field:
         k = min(len(points) - 2, max(1, int(share * (len(points) - 1))))
         return points[k], unit(add(points[k + 1], points[k - 1], -1))
 
-    def neck(self, clip, lift, slide, turn=0.0, pitch=0.0, side=0.0):
+    def neck(self, clip, lift, slide, turn=0.0, pitch=0.0, side=0.0, roll=0.0):
         """Blades across the neck: they come from the surgeon's side. NECK says what the arguments mean."""
         up = unit(self.vessel["neck"]["normal"])
         outward = turned(across(self.view, up), up, turn)
         closing = cross(up, outward)
         middle = add(add(add(self.vessel["neck"]["centre"], up, lift), outward, -slide), closing, side)
+        closing = turned(closing, outward, roll)
         return clip.applier_pose(middle, turned([-v for v in outward], closing, pitch), closing)
 
     def placement(self, place, clip="angled"):
@@ -334,6 +297,8 @@ def exercise_3(folder):
     second = field.placement(SECOND, "curved")
     both = [("angled", at(short)), ("curved", lambda hand: place_clip(hand, *second))]
     clips(folder / "3_clipping_second.csv", both, 4)
+    fenestrated = field.placement(FENESTRATED, FENESTRATED_CLIP)
+    one_clip(folder / "3_clipping_branch_in_window.csv", "fenestrated", lambda hand: place_clip(hand, *fenestrated), 4)
     one_clip(folder / "3_clipping_slipping.csv", "angled", field.pull_shut_clip, 2)
     beside = field.neck(Clip("angled"), -0.9, 2.2, -45, 2, 1.5)
     one_clip(folder / "3_clipping_perforator.csv", "angled", at(beside), 4)

@@ -9,7 +9,7 @@ const wanted = [
   'curved',
   'angled',
   'bayonet',
-  'fenestrated',
+  'fenestrated_3_5_stem_90',
   'mini',
   'temporary_straight',
   'temporary_curved',

@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Vectors as lists of three numbers, and rotations as quaternions w x y z."""
+import math
+
+
+def add(a, b, f=1.0):
+    return [x + f * y for x, y in zip(a, b)]
+
+
+def dot(a, b):
+    return sum(x * y for x, y in zip(a, b))
+
+
+def cross(a, b):
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+
+def unit(a):
+    n = math.sqrt(dot(a, a))
+    return [x / n for x in a]
+
+
+def across(a, n):
+    """The part of a perpendicular to n, unit."""
+    return unit(add(a, n, -dot(a, n)))
+
+
+def turned(v, axis, degrees):
+    """v turned about a unit axis."""
+    a = math.radians(degrees)
+    k = dot(axis, v) * (1 - math.cos(a))
+    return add([math.cos(a) * x + k * y for x, y in zip(v, axis)], cross(axis, v), math.sin(a))
+
+
+def quaternion(x, y, z):
+    """w x y z of the rotation whose columns are x, y, z."""
+    m = [[x[i], y[i], z[i]] for i in range(3)]
+    t = m[0][0] + m[1][1] + m[2][2]
+    q = [
+        math.sqrt(max(0.0, 1 + t)),
+        math.sqrt(max(0.0, 1 + 2 * m[0][0] - t)),
+        math.sqrt(max(0.0, 1 + 2 * m[1][1] - t)),
+        math.sqrt(max(0.0, 1 + 2 * m[2][2] - t)),
+    ]
+    q[1] = math.copysign(q[1], m[2][1] - m[1][2])
+    q[2] = math.copysign(q[2], m[0][2] - m[2][0])
+    q[3] = math.copysign(q[3], m[1][0] - m[0][1])
+    n = math.sqrt(dot(q, q))
+    return [v / n for v in q]
