@@ -16,7 +16,8 @@ with a new release. While a released clip lies on the neck and the goal is not r
 `fault_slipped` counts shut blades that move on the vessel by more than `limit`, because they hold too little of it or
 because the applier pulls at them. Motion of the whole neck, by pulse and by other tools, does not count.
 
-`fault_stenosis` counts a branch whose flow falls below `limit` for longer than `grace` while no temporary clip is on.
+`fault_stenosis` counts a branch whose flow falls below `limit` for longer than `grace` while no temporary clip is on,
+neither released nor shut in an applier. It counts the branch again once it has flowed for as long.
 
 Sources: Sindou, Acevedo, Turjman 1998 (grades); neck_judge.h describes the geometry.
 */
@@ -44,9 +45,11 @@ const VesselState* find(const std::vector<VesselState>& vessels, std::string_vie
 /// Flow over that at rest, as a claim to a person: flow back through a closed branch counts as none.
 double flow_share(const VesselState& v) { return v.flow_at_rest != 0 ? std::max(0.0, v.flow / v.flow_at_rest) : 1; }
 
+/// A temporary clip lies in the field, or an applier holds it shut on something.
 bool temporary_on(const std::vector<ClipState>& clips) {
+  constexpr double pressing = 0.05;  // N; blades that meet only each other press less
   return std::any_of(clips.begin(), clips.end(),
-                     [](const ClipState& c) { return c.temporary && !c.on_tray && !c.holder; });
+                     [](const ClipState& c) { return c.temporary && !c.on_tray && (!c.holder || c.force > pressing); });
 }
 
 /// The names in `text`, each checked to be a centreline of the vessel.
@@ -324,15 +327,17 @@ class FaultStenosis final : public ExerciseRule {
       const VesselState* b = find(vessels, names_[i]);
       const bool low = b && !temporary && flow_share(*b) < limit();
       below_[i] = low ? below_[i] + r.h : 0;
-      if (low && below_[i] > grace() && armed_[i]) {
+      above_[i] = low ? 0 : above_[i] + r.h;
+      if (below_[i] > grace() && armed_[i]) {
         armed_[i] = 0;
         log.fault(fault_, r.time, 100 * flow_share(*b));
       }
-      if (!low) armed_[i] = 1;
+      if (above_[i] > grace()) armed_[i] = 1;  // flow about the limit is one fault, and not one a beat
     }
   }
   void reset() override {
     below_.assign(names_.size(), 0.0);
+    above_.assign(names_.size(), 0.0);
     armed_.assign(names_.size(), 1);
   }
 
@@ -341,7 +346,7 @@ class FaultStenosis final : public ExerciseRule {
   Vessels vessels_;
   int fault_ = 0;
   std::vector<std::string> names_;
-  std::vector<double> below_;
+  std::vector<double> below_, above_;  ///< for how long flow has been below the limit, and not, s
   std::vector<char> armed_;
 };
 

@@ -307,6 +307,13 @@ TEST_F(ClippingRules, AClosedBranchIsOneFault) {
   EXPECT_EQ(log().faults()[0].count, 0);
   show(2);
   EXPECT_EQ(log().faults()[0].count, 1);
+  for (int beat = 0; beat < 5; ++beat) {
+    network->vessels[2].flow = 0.6e-6;
+    show(0.2);
+    network->vessels[2].flow = 0.2e-6;
+    show(2);
+  }
+  EXPECT_EQ(log().faults()[0].count, 1) << "its flow rose above the limit for moments only";
   ClipState temporary = clip(0);
   temporary.temporary = true;
   network->vessels[2].flow = 1e-6;
@@ -315,6 +322,19 @@ TEST_F(ClippingRules, AClosedBranchIsOneFault) {
   network->vessels[2].flow = 0;
   show(2);
   EXPECT_EQ(log().faults()[0].count, 1) << "a temporary clip is meant to";
+  network->vessels[2].flow = 1e-6;
+  show(2);
+  in_field->holder = artery;
+  in_field->force = 0.8;
+  network->vessels[2].flow = 0;
+  show(2);
+  EXPECT_EQ(log().faults()[0].count, 1) << "so is one that the applier has not let go";
+  in_field->on_tray = true;
+  network->vessels[2].flow = 1e-6;
+  show(2);
+  network->vessels[2].flow = 0;
+  show(2);
+  EXPECT_EQ(log().faults()[0].count, 2) << "it had flowed again";
 }
 
 }  // namespace
