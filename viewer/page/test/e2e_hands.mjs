@@ -68,6 +68,7 @@ for (let seed = first; seed < first + seeds; seed++) {
     await page.addInitScript(drawNothing);
     const url = `http://127.0.0.1:${port + 1}/?quality=draft`;
     for (let k = 0; k < 60 && !(await page.goto(url).catch(() => null)); k++) await pause(500);
+    if (running.some((p) => p.exitCode !== null)) throw new Error(`port ${port} or ${port + 1} is taken`);
     await page.waitForFunction(() => window.__insula?.ready, null, patience);
     for (const button of await page.locator('.toast button').all()) await button.click({ timeout: 60_000 });
     const started = Date.now();
