@@ -97,34 +97,32 @@ class Clip:
         k = smooth((f - 0.7) / 0.3)
         return Node(f * par["leg_length"], o, u, mix(0.97 * wire, wx, k), mix(0.97 * wire, wy, k), k)
 
-    def _stem_nodes(self, step):
-        """Nodes of the stem after the legs, at bends every `step` degrees at most."""
-        wx, wy = self.par["ring"] if self.window else self.blade_size(0.0)
-        s, out = self.par["leg_length"], []
-        for piece in self.stem:
-            count = max(1, math.ceil(abs(piece[1]) / step - 1e-9))
-            out += [
-                Node(s + piece[0] * k / count, self._offset(wx), 0.0, wx, wy, 1.0) for k in range(1, count + 1)
-            ]
-            s += piece[0]
+    def _bar_nodes(self, pieces, s, half_extents, step):
+        """Nodes of a bar after `s`, at bends of every `step` degrees at most."""
+        wx, wy = half_extents
+        out = []
+        for length, turn in pieces:
+            count = max(1, math.ceil(abs(turn) / step - 1e-9))
+            out += [Node(s + length * k / count, self._offset(wx), 0.0, wx, wy, 1.0) for k in range(1, count + 1)]
+            s += length
         return out
+
+    def _stem_nodes(self, step):
+        extents = self.par["ring"] if self.window else self.blade_size(0.0)
+        return self._bar_nodes(self.stem, self.par["leg_length"], extents, step)
 
     def nodes(self, fine):
         par, steps = self.par, 9 if fine and not self.window else 8
+        step = 18.0 if fine else 25.0
         out = [self.leg(k / steps) for k in range(steps + 1)]
-        out += self._stem_nodes(18.0 if fine else 25.0)
-        wx0, wy0 = self.blade_size(0.0)
+        out += self._stem_nodes(step)
         if self.window:
             w = self.window
             for s, o in self._window_path(7 if fine else 8):
                 k = max(0.0, (o - w["start"]) / (w["radius"] - w["start"]))
                 out.append(Node(s, o, 0.0, w["wx"], w["wy"], 1.0 - 0.6 * k))
             out.append(Node(self.stem_end + 2.0 * w["half_length"], w["start"], 0.0, w["wx"], w["wy"], 1.0))
-        s = out[-1].s
-        for piece in self.row.get("shank", []):
-            count = max(1, math.ceil(abs(piece[1]) / (18.0 if fine else 25.0) - 1e-9))
-            out += [Node(s + piece[0] * k / count, self._offset(wx0), 0.0, wx0, wy0, 1.0) for k in range(1, count + 1)]
-            s += piece[0]
+        out += self._bar_nodes(self.row.get("shank", []), out[-1].s, self.blade_size(0.0), step)
         most = par["teeth"] - (4 if self.window else 0)  # the window takes its share of the triangles
         teeth = max(2, min(most, round(self.blade_length / 0.7)))
         # The tip is rounded over `dome`; the clamping face stays flat to its end.

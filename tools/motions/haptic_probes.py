@@ -20,7 +20,8 @@ import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import sylvian_fissure as course  # noqa: E402
-from sylvian_fissure import add, cross, dot, orientation, unit  # noqa: E402
+from sylvian_fissure import orientation  # noqa: E402
+from vectors import add, cross, dot, unit  # noqa: E402
 
 OUTPUT = course.ROOT / "scenes" / "haptics"
 KEY_INTERVAL = 0.005  # s

@@ -18,7 +18,8 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import haptic_probes as probes  # noqa: E402
 import sylvian_fissure as course  # noqa: E402
-from sylvian_fissure import add, cross, dot, orientation  # noqa: E402
+from sylvian_fissure import orientation  # noqa: E402
+from vectors import add, cross, dot  # noqa: E402
 
 SURFACE = course.ROOT / "meshes" / "lobes" / "frontal_surface.ply"
 ALONG, LIFT = (-12.0, 12.0), (5.0, 15.0)  # mm, in the fissure's coordinates

@@ -15,6 +15,8 @@ import math
 import pathlib
 import sys
 
+from vectors import add, cross, dot, quaternion, unit
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 FISSURE = ROOT / "meshes" / "lobes" / "fissure.json"
 OUTPUT = ROOT / "scenes" / "training"
@@ -118,23 +120,6 @@ ROUGH_RIGHT = [
 ]
 
 
-def add(a, b, f=1.0):
-    return [x + f * y for x, y in zip(a, b)]
-
-
-def dot(a, b):
-    return sum(x * y for x, y in zip(a, b))
-
-
-def cross(a, b):
-    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-
-
-def unit(a):
-    n = math.sqrt(dot(a, a))
-    return [x / n for x in a]
-
-
 def table(rows, x):
     """Piecewise linear, constant outside."""
     if x <= rows[0][0]:
@@ -187,25 +172,6 @@ class Fissure:
         out = [-x for x in self.inward]
         out = add(out, self.front, math.tan(math.radians(lean["front"])))
         return unit(add(out, self.up, math.tan(math.radians(lean["up"]))))
-
-
-def quaternion(x, y, z):
-    """Of the rotation with these columns; w >= 0."""
-    m = [[x[i], y[i], z[i]] for i in range(3)]
-    q = [0.0] * 4
-    trace = m[0][0] + m[1][1] + m[2][2]
-    if trace > 0:
-        s = 2 * math.sqrt(1 + trace)
-        q = [s / 4, (m[2][1] - m[1][2]) / s, (m[0][2] - m[2][0]) / s, (m[1][0] - m[0][1]) / s]
-    else:
-        i = max(range(3), key=lambda k: m[k][k])
-        j, k = (i + 1) % 3, (i + 2) % 3
-        s = 2 * math.sqrt(1 + m[i][i] - m[j][j] - m[k][k])
-        q[0] = (m[k][j] - m[j][k]) / s
-        q[1 + i] = s / 4
-        q[1 + j] = (m[j][i] + m[i][j]) / s
-        q[1 + k] = (m[k][i] + m[i][k]) / s
-    return q if q[0] >= 0 else [-c for c in q]
 
 
 def orientation(shaft, flat):

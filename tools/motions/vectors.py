@@ -33,17 +33,19 @@ def turned(v, axis, degrees):
 
 
 def quaternion(x, y, z):
-    """w x y z of the rotation whose columns are x, y, z."""
+    """w x y z of the rotation whose columns are x, y, z; w >= 0."""
     m = [[x[i], y[i], z[i]] for i in range(3)]
-    t = m[0][0] + m[1][1] + m[2][2]
-    q = [
-        math.sqrt(max(0.0, 1 + t)),
-        math.sqrt(max(0.0, 1 + 2 * m[0][0] - t)),
-        math.sqrt(max(0.0, 1 + 2 * m[1][1] - t)),
-        math.sqrt(max(0.0, 1 + 2 * m[2][2] - t)),
-    ]
-    q[1] = math.copysign(q[1], m[2][1] - m[1][2])
-    q[2] = math.copysign(q[2], m[0][2] - m[2][0])
-    q[3] = math.copysign(q[3], m[1][0] - m[0][1])
-    n = math.sqrt(dot(q, q))
-    return [v / n for v in q]
+    q = [0.0] * 4
+    trace = m[0][0] + m[1][1] + m[2][2]
+    if trace > 0:
+        s = 2 * math.sqrt(1 + trace)
+        q = [s / 4, (m[2][1] - m[1][2]) / s, (m[0][2] - m[2][0]) / s, (m[1][0] - m[0][1]) / s]
+    else:
+        i = max(range(3), key=lambda k: m[k][k])
+        j, k = (i + 1) % 3, (i + 2) % 3
+        s = 2 * math.sqrt(1 + m[i][i] - m[j][j] - m[k][k])
+        q[0] = (m[k][j] - m[j][k]) / s
+        q[1 + i] = s / 4
+        q[1 + j] = (m[j][i] + m[i][j]) / s
+        q[1 + k] = (m[k][i] + m[i][k]) / s
+    return q if q[0] >= 0 else [-c for c in q]
