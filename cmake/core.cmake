@@ -66,6 +66,7 @@ endfunction()
 file(WRITE ${CMAKE_BINARY_DIR}/rooms.txt "")
 insula_room(base LIBS fmt::fmt spdlog::spdlog Threads::Threads)
 insula_room(xml USES base LIBS EXPAT::EXPAT)
+insula_room(container USES base LIBS PkgConfig::ZSTD ZLIB::ZLIB fmt::fmt)
 insula_room(params USES base LIBS fmt::fmt)
 insula_room(registry USES base params LIBS spdlog::spdlog ${CMAKE_DL_LIBS})
 insula_room(scene USES base params registry xml LIBS fmt::fmt)
@@ -83,4 +84,4 @@ target_include_directories(insula_core SYSTEM PUBLIC ${CHOLMOD_INCLUDE})
 target_compile_definitions(insula_core PUBLIC EIGEN_DONT_PARALLELIZE)
 target_link_libraries(insula_core PUBLIC Eigen3::Eigen fmt::fmt spdlog::spdlog nlohmann_json::nlohmann_json
   EXPAT::EXPAT PkgConfig::ASSIMP PkgConfig::URDFDOM ${CHOLMOD_LIBRARY}
-  Threads::Threads ZLIB::ZLIB ${CMAKE_DL_LIBS})
+  Threads::Threads ZLIB::ZLIB PkgConfig::ZSTD ${CMAKE_DL_LIBS})

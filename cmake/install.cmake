@@ -86,5 +86,5 @@ set(CPACK_DEBIAN_INSULA-DEV_PACKAGE_SHLIBDEPS OFF)
 string(CONCAT CPACK_DEBIAN_INSULA-DEV_PACKAGE_DEPENDS
   "insula (= ${PROJECT_VERSION}), cmake, g++, pkg-config, libeigen3-dev, libsuitesparse-dev, libassimp-dev, "
   "liburdfdom-dev, libconsole-bridge-dev, libexpat1-dev, libspdlog-dev, libfmt-dev, nlohmann-json3-dev, zlib1g-dev, "
-  "libgtest-dev")
+  "libzstd-dev, libgtest-dev")
 include(CPack)

@@ -11,7 +11,7 @@
 namespace insula {
 namespace {
 
-Mat3 stretch_of(const ElementWork& work, int l) {
+Mat3 stretch_of_lane(const ElementWork& work, int l) {
   Mat3 s;
   s << work.s[0][l], work.s[3][l], work.s[4][l], work.s[3][l], work.s[1][l], work.s[5][l], work.s[4][l], work.s[5][l],
       work.s[2][l];
@@ -23,7 +23,7 @@ Mat3 stretch_of(const ElementWork& work, int l) {
 void stiffen(const ElementBatch& e, const ElementWork& work, int l, const BarrierLaw& law, double* force,
              BlockMatrix* stiffness, double scale, bool positive) {
   Eigen::SelfAdjointEigenSolver<Mat3> eigen;
-  eigen.computeDirect(stretch_of(work, l));
+  eigen.computeDirect(stretch_of_lane(work, l));
   const Vec3 stretch = eigen.eigenvalues();
   if (stretch[0] >= law.barrier_stretch) return;
   const Mat3 v = eigen.eigenvectors(), u = matrix_of_lane(work.r, l) * v;
@@ -68,7 +68,7 @@ void stiffen(const ElementBatch& e, const ElementWork& work, int l, const Barrie
 
 double barrier_energy(const ElementBatch& e, const ElementWork& work, int l, const BarrierLaw& law) {
   Eigen::SelfAdjointEigenSolver<Mat3> eigen;
-  eigen.computeDirect(stretch_of(work, l), Eigen::EigenvaluesOnly);
+  eigen.computeDirect(stretch_of_lane(work, l), Eigen::EigenvaluesOnly);
   double sum = 0;
   for (int i = 0; i < 3; ++i) {
     const double short_of = std::max(0.0, law.barrier_stretch - eigen.eigenvalues()[i]);
