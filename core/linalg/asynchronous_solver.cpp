@@ -46,6 +46,7 @@ void AsynchronousSolver::set_rotations(const std::vector<Mat3>& rotation) { rota
 
 bool AsynchronousSolver::factorise(const BlockMatrix& a) {
   a_ = &a;
+  took_ = false;
   if (!usable_) {
     status_ = {};
     if (!front_->factorise(a)) return false;
@@ -59,6 +60,7 @@ bool AsynchronousSolver::factorise(const BlockMatrix& a) {
     if (status_.iterations > enough_iterations || seen_ > poor) ask();
     quality_ = std::min(1.0, 2 * quality_);  // the estimate of an earlier step is less reliable
   }
+  take_next_ = false;
   status_.iterations = 0;
   status_.residual_m = 0;
   lagged_.swap(given_);
@@ -259,7 +261,7 @@ const std::vector<double>& AsynchronousSolver::correct(const BodyRows& rows, con
 
 void AsynchronousSolver::reset() {
   background_.drop();
-  usable_ = false;
+  usable_ = take_next_ = took_ = false;
   quality_ = 1;
   seen_ = 0;
   std::fill(given_.begin(), given_.end(), 0.0);
@@ -275,8 +277,11 @@ void AsynchronousSolver::ask() {
 
 void AsynchronousSolver::take() {
   ++asked_steps_;
-  if (deterministic_ && asked_steps_ < delay()) return;
-  if (background_.take(front_, deterministic_) != BackgroundFactor::Answer::good) return;
+  if (timing_ == FactorTiming::counted && asked_steps_ < delay()) return;
+  if (timing_ == FactorTiming::told && !take_next_) return;
+  const BackgroundFactor::Answer answer = background_.take(front_, timing_ != FactorTiming::when_ready);
+  took_ = answer == BackgroundFactor::Answer::good || answer == BackgroundFactor::Answer::bad;
+  if (answer != BackgroundFactor::Answer::good) return;
   factor_is_new_ = true;
   std::swap(factor_rotation_, requested_rotation_);
   status_.age = asked_steps_;

@@ -40,11 +40,13 @@ class AsynchronousSolver final : public InexactSolver {
   const std::vector<double>& correct(const BodyRows& rows, const double* lambda) override;
   void add_correction(const BodyRows& rows, double* delta) const override { add_rows_of(last_x_.data(), rows, delta); }
   void reset() override;
-  void set_deterministic(bool yes) override { deterministic_ = yes; }
+  void set_timing(FactorTiming timing) override { timing_ = timing; }
+  void take_next() override { take_next_ = true; }
+  bool took() const override { return took_; }
   SolverStatus status() const override { return status_; }
   SolverCost cost() const override { return front_->full.cost(); }
 
-  /// In deterministic mode, a requested factor is put in place this many steps after the request. This is about the
+  /// With counted timing, a requested factor is put in place this many steps after the request. This is about the
   /// time that a busy core needs for it. It is computed from flops and not from a clock, so the same input gives the
   /// same bits.
   int delay() const { return 1 + int(front_->full.cost().factor_flops / 5e8); }
@@ -84,7 +86,8 @@ class AsynchronousSolver final : public InexactSolver {
   double seen_ = 0;     ///< reduction of the error by one iteration, as last measured
   double quality_ = 1;  ///< the same, doubled in every step until it is measured again
   SolverStatus status_;
-  bool deterministic_ = true, usable_ = false;
+  FactorTiming timing_ = FactorTiming::counted;
+  bool usable_ = false, take_next_ = false, took_ = false;
 };
 
 }  // namespace insula

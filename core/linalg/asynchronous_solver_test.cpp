@@ -148,7 +148,7 @@ TEST(AsynchronousSolver, AFactorComesSoManyStepsAfterItWasAskedFor) {
 TEST(AsynchronousSolver, WithoutLeaveToWaitAStepGoesOnWithTheOldFactor) {
   Ready ready(4);
   auto& [s, solver] = ready;
-  solver.set_deterministic(false);
+  solver.set_timing(FactorTiming::when_ready);
   s.fill(turned(0), 3);
   // However long the thread takes, every step has a solution; and at last the factor comes.
   int steps = 0;
@@ -159,6 +159,27 @@ TEST(AsynchronousSolver, WithoutLeaveToWaitAStepGoesOnWithTheOldFactor) {
     ASSERT_TRUE(x.allFinite());
   }
   EXPECT_EQ(solver.status().factors, 2);
+}
+
+TEST(AsynchronousSolver, AToldStepTakesTheFactorThenAndNotBefore) {
+  Ready ready(4);
+  auto& [s, solver] = ready;
+  solver.set_timing(FactorTiming::told);
+  s.fill(turned(0), 3);
+  const int later = 3 * solver.delay() + 5;
+  for (int k = 0; k < later; ++k) {
+    ASSERT_TRUE(solver.factorise(s.a));
+    iterations(solver, s);
+    EXPECT_FALSE(solver.took());
+  }
+  EXPECT_EQ(solver.status().factors, 1);
+  solver.take_next();
+  ASSERT_TRUE(solver.factorise(s.a));
+  EXPECT_TRUE(solver.took());
+  EXPECT_EQ(solver.status().factors, 2);
+  iterations(solver, s);
+  ASSERT_TRUE(solver.factorise(s.a));
+  EXPECT_FALSE(solver.took());
 }
 
 /// Rows of three nodes each, rows of another body between them.

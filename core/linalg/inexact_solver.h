@@ -18,6 +18,13 @@ struct SolverStatus {
   int factors = 0;        ///< number taken into use since the start
 };
 
+/// When a step takes the factor that the background was asked for.
+enum class FactorTiming {
+  counted,     ///< a number of steps after the request; the step may wait for it, so the same input gives the same bits
+  when_ready,  ///< the first step that finds it ready; no step waits
+  told         ///< the step before which take_next() was called; it may wait. For the repetition of a recorded run.
+};
+
 class InexactSolver : public BodySolver {
  public:
   /// The rotation of each node from rest, before the matrix of the same step.
@@ -33,8 +40,11 @@ class InexactSolver : public BodySolver {
   virtual void add_correction(const BodyRows& rows, double* delta) const = 0;
   /// Drops all history: the next matrix is treated as the first.
   virtual void reset() = 0;
-  /// Whether the step may wait for the background, so that the same input gives the same bits. Default: it may.
-  virtual void set_deterministic(bool yes) = 0;
+  virtual void set_timing(FactorTiming timing) = 0;  ///< default: counted
+  /// The coming step takes the requested factor.
+  virtual void take_next() = 0;
+  /// Whether the last step took an answer of the background, be it a factor or a failure.
+  virtual bool took() const = 0;
   virtual SolverStatus status() const = 0;
 
   InexactSolver* inexact() override { return this; }

@@ -22,6 +22,11 @@ std::string_view take_word(std::string_view& text) {
 }  // namespace
 
 std::string Simulation::command(std::string_view verb, std::string_view argument) {
+  if (!stepping_) {
+    SimulationInput& input = note(SimulationInput::Kind::command);
+    input.verb = verb.substr(0, longest_argument);
+    input.argument = argument.substr(0, longest_argument + 1);  // one more: too long is refused again
+  }
   std::string why;
   if (argument.size() > longest_argument) why = "the argument is too long";
   else if (verb == "exchange") why = exchange(argument);

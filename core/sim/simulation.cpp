@@ -52,6 +52,7 @@ void Simulation::step() {
   report_.clear();
   sink_.clear();
   events_.clear();
+  stepping_ = true;
   if (complications_ && context_.step >= 0) complications_->act(*this);
   for (Event& e : commanded_) sink_.emit(std::move(e));
   commanded_.clear();
@@ -70,6 +71,12 @@ void Simulation::step() {
   context_.time += context_.h;
   ++context_.step;
   make_report();
+  stepping_ = false;
+  if (!settling_) {
+    note_factors();
+    inputs_.swap(coming_);
+    coming_.clear();
+  }
   clock.done(stage_publish);
   report_.step_ms = clock.total();
 }

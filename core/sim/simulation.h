@@ -21,6 +21,7 @@
 #include "core/sim/complications.h"
 #include "core/sim/defect_correction.h"
 #include "core/sim/exercise.h"
+#include "core/sim/input.h"
 #include "core/sim/report.h"
 #include "core/sim/settings.h"
 #include "core/sim/structure_forces.h"
@@ -45,7 +46,7 @@ class Simulation {
   ///   message   "text"                        said to the trainee
   /// Returns the reason for a refusal; empty when done. Both results become an event.
   std::string command(std::string_view verb, std::string_view argument);
-  /// Adds an event to the coming step.
+  /// Adds an event to the coming step. For components; a recording does not have it.
   void announce(Event event) { commanded_.push_back(std::move(event)); }
   /// Removes and returns the events that the coming step would announce, for use while the run is paused.
   std::vector<Event> take_announced() { return std::exchange(commanded_, {}); }
@@ -55,9 +56,16 @@ class Simulation {
   void set_deterministic(bool yes);
   /// Time after a step for which its problem already contains the contacts of tools, s. The servo needs them before the
   /// next problem arrives. 0 (default): only contacts of the step and within the alarm distance.
-  void set_collision_horizon(double seconds) { context_.collision_horizon_s = seconds; }
+  void set_collision_horizon(double seconds);
   /// Returns to the start, with the same bits.
   void reset();
+  /// What the last step was given, in order: all that was done by the functions above since the step before it, and the
+  /// factors that it took from the background.
+  const std::vector<SimulationInput>& inputs() const { return inputs_; }
+  /// Does what a recorded run was given. Call repeat_factors() before the first one.
+  void give(const SimulationInput& input);
+  /// From now on, steps take factors from the background only where an input says so, and wait for them.
+  void repeat_factors();
 
   const Scene& scene() const { return *scene_; }
   double h() const { return context_.h; }
@@ -92,10 +100,15 @@ class Simulation {
   const std::vector<Event>& events() const { return events_; }
   /// FNV-1a over the bits of every body's and constraint's state.
   std::uint64_t state_hash() const;
+  /// Sum of the numbers of each moving body's state, in document order: where bits differ, a measure of by how much.
+  void body_sums(std::vector<double>& sums) const;
   /// Kinetic and elastic energy of all bodies, J. It is computed on request, since no step needs it.
   double energy() const;
 
  private:
+  SimulationInput& note(SimulationInput::Kind kind, int index = 0);
+  void set_timing(FactorTiming timing);
+  void note_factors();
   std::string exchange(std::string_view argument);
   std::string ask(std::string_view argument);
   void settle(Diagnostics& diagnostics);
@@ -139,7 +152,11 @@ class Simulation {
     std::array<double, 3> lambda;
   };
   std::vector<Remembered> remembered_;
-  std::vector<Event> commanded_;  ///< between the last step and the next
+  mutable std::vector<double> state_scratch_;
+  std::vector<Event> commanded_;                  ///< between the last step and the next
+  std::vector<SimulationInput> inputs_, coming_;  ///< of the last step, and of the next
+  FactorTiming timing_ = FactorTiming::counted;
+  bool stepping_ = false, settling_ = false;
   double settle_time_ = 0;
   std::vector<std::pair<BodySolver*, int>> parts_;  ///< of the bodies' compliance, in this step
   StepReport report_;

@@ -58,6 +58,8 @@ Simulation::Simulation(std::unique_ptr<Scene> scene, Diagnostics& diagnostics, i
   std::stable_sort(heavy_first_.begin(), heavy_first_.end(),
                    [](DynamicBody* a, DynamicBody* b) { return a->blocks() > b->blocks(); });
   parts_.reserve(8 * bodies_.size());
+  inputs_.reserve(16);
+  coming_.reserve(16);
   builder_ = std::make_unique<ConstraintBuilder>(problem_, bodies_);
   context_.h = scene_->time_step();
   context_.gravity = scene_->gravity();
@@ -89,11 +91,46 @@ Instrument* Simulation::instrument_of(int hand) const {
   return nullptr;
 }
 
+/// An input for the recording of the coming step. What components do within a step is none.
+SimulationInput& Simulation::note(SimulationInput::Kind kind, int index) {
+  coming_.emplace_back();
+  coming_.back().kind = kind;
+  coming_.back().index = index;
+  return coming_.back();
+}
+
 void Simulation::set_hand(int hand, const HandState& state) {
+  note(SimulationInput::Kind::hand, hand).hand = state;
   if (Instrument* i = instrument_of(hand)) i->set_hand(state);
 }
 
+void Simulation::set_collision_horizon(double seconds) {
+  note(SimulationInput::Kind::horizon).seconds = seconds;
+  context_.collision_horizon_s = seconds;
+}
+
+void Simulation::give(const SimulationInput& input) {
+  using InputKind = SimulationInput::Kind;
+  switch (input.kind) {
+    case InputKind::hand: return set_hand(input.index, input.hand);
+    case InputKind::command: command(input.verb, input.argument); return;
+    case InputKind::complications: return draw_complications(input.seed);
+    case InputKind::horizon: return set_collision_horizon(input.seconds);
+    case InputKind::reset: return reset();
+    case InputKind::factor: break;
+  }
+  if (input.index < 0 || input.index >= int(dynamic_bodies_.size())) return;
+  BodySolver* solver = dynamic_bodies_[std::size_t(input.index)]->solver();
+  if (InexactSolver* s = solver ? solver->inexact() : nullptr) s->take_next();
+}
+
+void Simulation::repeat_factors() {
+  timing_ = FactorTiming::told;
+  set_timing(timing_);
+}
+
 void Simulation::reset() {
+  note(SimulationInput::Kind::reset);
   for (DynamicBody* b : dynamic_bodies_) b->reset();
   for (Surface* s : surfaces_) s->update();
   for (Constraint* c : constraints_) c->reset();
@@ -127,17 +164,33 @@ double Simulation::energy() const {
 }
 
 void Simulation::set_deterministic(bool yes) {
+  timing_ = yes ? FactorTiming::counted : FactorTiming::when_ready;
+  set_timing(timing_);
+}
+
+void Simulation::set_timing(FactorTiming timing) {
   for (DynamicBody* b : dynamic_bodies_)
-    if (InexactSolver* s = b->solver() ? b->solver()->inexact() : nullptr) s->set_deterministic(yes);
+    if (InexactSolver* s = b->solver() ? b->solver()->inexact() : nullptr) s->set_timing(timing);
+}
+
+void Simulation::note_factors() {
+  for (std::size_t i = 0; i < dynamic_bodies_.size(); ++i) {
+    BodySolver* solver = dynamic_bodies_[i]->solver();
+    if (InexactSolver* s = solver ? solver->inexact() : nullptr; s && s->took())
+      note(SimulationInput::Kind::factor, int(i));
+  }
 }
 
 void Simulation::draw_complications(std::uint64_t seed) {
+  note(SimulationInput::Kind::complications).seed = seed;
   complication_seed_ = seed;
   if (complications_) complications_->draw(seed, *this);
 }
 
-// The exercise does not observe these steps. Time is negative until it begins.
+// The exercise does not observe these steps. Time is negative until it begins. They have the same bits every time.
 void Simulation::settle(Diagnostics& diagnostics) {
+  settling_ = true;
+  set_timing(FactorTiming::counted);
   const int n = int(std::ceil(settle_time_ / context_.h - 1e-9));
   Exercise* const exercise = exercise_;
   exercise_ = nullptr;
@@ -155,10 +208,24 @@ void Simulation::settle(Diagnostics& diagnostics) {
   events_.clear();
   sink_.clear();
   report_.events.clear();
+  set_timing(timing_);
+  settling_ = false;
+}
+
+void Simulation::body_sums(std::vector<double>& sums) const {
+  sums.clear();
+  for (DynamicBody* b : dynamic_bodies_) {
+    state_scratch_.clear();
+    b->append_state(state_scratch_);
+    double sum = 0;
+    for (double d : state_scratch_) sum += d;
+    sums.push_back(sum);
+  }
 }
 
 std::uint64_t Simulation::state_hash() const {
-  std::vector<double> state;
+  std::vector<double>& state = state_scratch_;
+  state.clear();
   for (DynamicBody* b : dynamic_bodies_) b->append_state(state);
   for (Constraint* c : constraints_) c->append_state(state);
   std::uint64_t hash = 14695981039346656037ull;
