@@ -28,6 +28,15 @@ void walk_render_body(ByteReader& in) {
   in.take_array(in.i32(), 3 * size_f32);
 }
 
+void walk_step_input(ByteReader& in) {
+  in.take(size_i8 + size_i32);   // kind, index
+  in.take(3 * size_i8);          // present, buttons
+  in.take(7 * size_f64);         // p, q
+  in.skip_string();              // verb
+  in.skip_string();              // argument
+  in.take(size_i64 + size_f64);  // seed, seconds
+}
+
 constexpr std::size_t render_tool_bytes =
     size_i32 + 2 * size_i8 + (3 + 4 + 3 + 3) * size_f64 + 2 * size_i8 + 2 * size_f32;
 
@@ -95,6 +104,18 @@ bool well_formed(const insula_lcm::scene_info_t* type, Bytes bytes) {
   return in.at_end();
 }
 
+bool well_formed(const insula_lcm::session_step_t* type, Bytes bytes) {
+  ByteReader in(bytes);
+  if (!starts_as(in, type)) return false;
+  in.take(size_i64 + size_f64 + size_i8);  // number, time, hashed
+  in.take(size_i64 + size_f64);            // hash, energy
+  in.take_array(in.i32(), size_f64);       // body sums
+  const int inputs = in.i32();
+  if (inputs < 0) return false;
+  for (int i = 0; i < inputs && in.ok(); ++i) walk_step_input(in);
+  return in.at_end();
+}
+
 bool well_formed(const insula_lcm::sim_event_t* type, Bytes bytes) {
   ByteReader in(bytes);
   if (!starts_as(in, type)) return false;
@@ -124,6 +145,11 @@ void drop_stale(insula_lcm::render_frame_t& m) {
     m.contact_x_m.clear();
     m.contact_N.clear();
   }
+}
+
+void drop_stale(insula_lcm::session_step_t& m) {
+  if (m.bodies == 0) m.body_sum.clear();
+  if (m.inputs == 0) m.input.clear();
 }
 
 }  // namespace insula

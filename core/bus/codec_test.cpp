@@ -118,6 +118,28 @@ insula_lcm::scene_info_t sample() {
   return m;
 }
 template <>
+insula_lcm::session_step_t sample() {
+  insula_lcm::session_step_t m{};
+  m.number = 61;
+  m.sim_time_s = 1.0167;
+  m.hashed = 1;
+  m.state_hash = -4711;
+  m.energy_J = 2e-6;
+  m.bodies = 2;
+  m.body_sum = {0.25, -3};
+  m.inputs = 2;
+  m.input.resize(2);
+  m.input[0].index = 1;
+  m.input[0].present = 1;
+  m.input[0].p_m[2] = 0.07;
+  set_quaternion(m.input[0].q);
+  m.input[1].kind = 1;
+  set_quaternion(m.input[1].q);
+  m.input[1].verb = "exchange";
+  m.input[1].argument = "right applier";
+  return m;
+}
+template <>
 insula_lcm::sim_event_t sample() {
   insula_lcm::sim_event_t m{};
   m.session = 11;
@@ -146,8 +168,8 @@ Buffer encoded(const T& m) {
 template <class T>
 class Codec : public ::testing::Test {};
 using Types = ::testing::Types<insula_lcm::device_state_t, insula_lcm::hand_input_t, insula_lcm::haptic_status_t,
-                               insula_lcm::render_frame_t, insula_lcm::scene_info_t, insula_lcm::sim_event_t,
-                               insula_lcm::user_command_t>;
+                               insula_lcm::render_frame_t, insula_lcm::scene_info_t, insula_lcm::session_step_t,
+                               insula_lcm::sim_event_t, insula_lcm::user_command_t>;
 TYPED_TEST_SUITE(Codec, Types);
 
 TYPED_TEST(Codec, RoundTrip) {
@@ -202,6 +224,7 @@ TYPED_TEST(Codec, OtherTypesAreRefused) {
   taken += decode<insula_lcm::haptic_status_t>(bytes).has_value();
   taken += decode<insula_lcm::render_frame_t>(bytes).has_value();
   taken += decode<insula_lcm::scene_info_t>(bytes).has_value();
+  taken += decode<insula_lcm::session_step_t>(bytes).has_value();
   taken += decode<insula_lcm::sim_event_t>(bytes).has_value();
   taken += decode<insula_lcm::user_command_t>(bytes).has_value();
   EXPECT_EQ(taken, 1);
@@ -264,6 +287,12 @@ TEST(Plausible, Others) {
   expect_refused<insula_lcm::haptic_status_t>("negative", [](auto& m) { m.missed_ticks = -1; });
   expect_refused<insula_lcm::scene_info_t>("state", [](auto& m) { m.state = "lost"; });
   expect_refused<insula_lcm::scene_info_t>("NUL", [](auto& m) { m.bundle = std::string("a\0b", 3); });
+  expect_refused<insula_lcm::session_step_t>("number", [](auto& m) { m.number = 0; });
+  expect_refused<insula_lcm::session_step_t>("sum", [](auto& m) { m.body_sum[1] = NAN; });
+  expect_refused<insula_lcm::session_step_t>("kind", [](auto& m) { m.input[0].kind = 6; });
+  expect_refused<insula_lcm::session_step_t>("hand", [](auto& m) { m.input[0].index = 2; });
+  expect_refused<insula_lcm::session_step_t>("pose", [](auto& m) { m.input[0].q[0] = 2; });
+  expect_refused<insula_lcm::session_step_t>("inputs", [](auto& m) { m.inputs = 3; });
   expect_refused<insula_lcm::sim_event_t>("kind", [](auto& m) { m.kind = ""; });
   expect_refused<insula_lcm::sim_event_t>("value", [](auto& m) { m.value = NAN; });
   expect_refused<insula_lcm::sim_event_t>("hand", [](auto& m) { m.hand = 2; });

@@ -155,6 +155,26 @@ bool plausible(const insula_lcm::scene_info_t& m, std::string& why) {
   return fail(why, "unknown state");
 }
 
+bool plausible(const insula_lcm::session_step_t& m, std::string& why) {
+  if (!consistent(m)) return fail(why, "counts disagree");
+  if (m.number < 1) return fail(why, "number of the step is not positive");
+  if (!non_negative(m.sim_time_s, max_seconds)) return fail(why, "simulated time out of range");
+  if (!flag_ok(m.hashed)) return fail(why, "flag is neither 0 nor 1");
+  if (!within(&m.energy_J, 1, 1e12) || !within(m.body_sum.data(), m.bodies, 1e12))
+    return fail(why, "state out of range");
+  for (const auto& i : m.input) {
+    if (i.kind < 0 || i.kind > 5) return fail(why, "there is no such kind of input");
+    if (i.index < 0) return fail(why, "negative index");
+    if (!flag_ok(i.present) || !flag_ok(i.button1) || !flag_ok(i.button2)) return fail(why, "flag is neither 0 nor 1");
+    if (i.kind == 0 && i.index > 1) return fail(why, "hand is neither left nor right");
+    if (!within(i.p_m, 3, limits::position_m)) return fail(why, "position out of range");
+    if (!unit_quaternion(i.q)) return fail(why, "orientation is no unit quaternion");
+    if (!text_ok(i.verb, 512) || !text_ok(i.argument, 512)) return fail(why, "text too long");
+    if (!non_negative(i.seconds, max_seconds)) return fail(why, "horizon out of range");
+  }
+  return true;
+}
+
 bool plausible(const insula_lcm::sim_event_t& m, std::string& why) {
   if (m.session < 0 || m.sequence < 0 || m.time_us < 0) return fail(why, "negative session, sequence or time");
   if (!non_negative(m.sim_time_s, max_seconds)) return fail(why, "simulated time out of range");
@@ -178,6 +198,11 @@ bool plausible(const insula_lcm::user_command_t& m, std::string& why) {
 }
 
 bool consistent(const insula_lcm::device_state_t& m) { return m.hands >= 0 && m.hand.size() == std::size_t(m.hands); }
+
+bool consistent(const insula_lcm::session_step_t& m) {
+  return m.bodies >= 0 && m.inputs >= 0 && m.body_sum.size() == std::size_t(m.bodies) &&
+         m.input.size() == std::size_t(m.inputs);
+}
 
 bool consistent(const insula_lcm::render_frame_t& m) {
   const auto all_triples = [](const std::vector<std::vector<float>>& v) {

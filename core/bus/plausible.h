@@ -7,6 +7,7 @@
 #include <insula_lcm/haptic_status_t.hpp>
 #include <insula_lcm/render_frame_t.hpp>
 #include <insula_lcm/scene_info_t.hpp>
+#include <insula_lcm/session_step_t.hpp>
 #include <insula_lcm/sim_event_t.hpp>
 #include <insula_lcm/user_command_t.hpp>
 #include <string>
@@ -19,12 +20,14 @@ bool plausible(const insula_lcm::hand_input_t& message, std::string& why);
 bool plausible(const insula_lcm::haptic_status_t& message, std::string& why);
 bool plausible(const insula_lcm::render_frame_t& message, std::string& why);
 bool plausible(const insula_lcm::scene_info_t& message, std::string& why);
+bool plausible(const insula_lcm::session_step_t& message, std::string& why);
 bool plausible(const insula_lcm::sim_event_t& message, std::string& why);
 bool plausible(const insula_lcm::user_command_t& message, std::string& why);
 
 /// Whether each count equals the size of its vector, so that the generated encoder stays within them.
 bool consistent(const insula_lcm::device_state_t& message);
 bool consistent(const insula_lcm::render_frame_t& message);
+bool consistent(const insula_lcm::session_step_t& message);
 template <class Message>
 bool consistent(const Message&) {
   return true;  // types without counts

@@ -13,5 +13,7 @@ struct EmbeddedFile {
 
 /// Templates of `insula new-plugin`: the files of each kind, and those of "common", which each kind gets or may get.
 std::span<const EmbeddedFile> new_plugin_files();
+/// The declarations of messages, lcm_types/*.lcm.
+std::span<const EmbeddedFile> message_declarations();
 
 }  // namespace insula

@@ -18,6 +18,7 @@
 #include "engine/live/scene_devices.h"
 #include "engine/live/scene_reload.h"
 #include "engine/live/session_lock.h"
+#include "engine/live/session_mode.h"
 #include "engine/live/supervisor.h"
 
 namespace fs = std::filesystem;
@@ -153,6 +154,8 @@ ChildSpec engine_child(const PlayOptions& options, const fs::path& program, cons
   if (options.view) engine.command.emplace_back("--still");
   if (!bundles.empty()) engine.command.insert(engine.command.end(), {"--notice", (bundles / "notice.txt").string()});
   if (!options.report.empty()) engine.command.insert(engine.command.end(), {"--report", options.report.string()});
+  if (!options.record.empty() && !options.view)
+    engine.command.insert(engine.command.end(), {"--record", options.record.string()});
   engine.waits_for_offer = options.reload;
   return engine;
 }

@@ -5,11 +5,13 @@
 #include <cmath>
 #include <fstream>
 
+#include "core/base/input_error.h"
 #include "core/mechanics/shell_body.h"
 #include "core/mechanics/soft_body.h"
 #include "engine/command_line/run.h"
 #include "engine/live/headless.h"
 #include "engine/reports/report_writer.h"
+#include "engine/session/session_recorder.h"
 
 namespace insula {
 namespace {
@@ -45,9 +47,19 @@ int cmd_run(const CommandContext& context, const RunOptions& options) {
   HeadlessRun run(simulation, motion);
   RunRecorder recorder;
   RunSummary summary;
+  std::unique_ptr<SessionRecorder> session;
+  try {
+    if (!options.record.empty())
+      session = std::make_unique<SessionRecorder>(options.record, simulation,
+                                                  SessionAbout{options.scene, options.motion, "headless"});
+  } catch (const InputError& e) {
+    fmt::print(context.err, "error: {}\n", e.what());
+    return 1;
+  }
   int shown = -1;
   for (std::int64_t k = 0; k < steps; ++k) {
     run.step();
+    if (session) session->step(simulation);
     const auto& haptics = run.haptics();
     recorder.record(simulation.report(), simulation.events(),
                     {haptics.hand(0).force.norm(), haptics.hand(1).force.norm()}, simulation.energy());
@@ -65,6 +77,7 @@ int cmd_run(const CommandContext& context, const RunOptions& options) {
     }
     if (!simulation.report().finite) break;
   }
+  if (session) session->close(simulation);
   summary.take(simulation);
   summary.scene = options.scene.string();
   summary.motion = options.motion;
@@ -80,6 +93,10 @@ int cmd_run(const CommandContext& context, const RunOptions& options) {
   fmt::print(context.out, "{:.2f} s simulated in {:.2f} s (real_time_factor {:.2f}), state_hash {:016x}\n",
              simulation.time(), summary.wall_seconds, simulation.time() / std::max(1e-9, summary.wall_seconds),
              summary.state_hash);
+  if (session && !session->failure().empty()) {
+    fmt::print(context.err, "error: the recording has ended early: {}\n", session->failure());
+    return 1;
+  }
   if (!recorder.finite()) {
     fmt::print(context.err, "error: the simulation left the range of numbers at {:.3f} s\n", simulation.time());
     return 1;

@@ -16,6 +16,7 @@ struct RunOptions {
   double duration = 0;           ///< simulated seconds; 0: the motion and one more second, or 10 s without a motion
   std::filesystem::path report;  ///< folder for report.json and report.html; empty: none
   std::filesystem::path export_folder;  ///< folder for the bodies' final nodes as .vtu; empty: none
+  std::filesystem::path record;         ///< session file; empty: none
   int threads = 0;
   std::uint64_t seed = 0;  ///< of the complications; 0: the scene's
   bool quiet = false;
@@ -37,6 +38,7 @@ struct EngineOptions {
   bool standby = false;          ///< load, print standby_line, and wait for SIGUSR1 before anything is sent on the bus
   std::filesystem::path notice;  ///< file whose text viewers show while it is not empty
   std::filesystem::path report;  ///< folder for the session's reports; empty: none
+  std::filesystem::path record;  ///< session file, or folder of a new one; empty: none
   std::string mode;  ///< name of the SessionMode in which it begins; empty: a demonstration if there is a motion
 };
 inline constexpr const char* standby_line = "insula engine stands by";

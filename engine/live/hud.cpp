@@ -59,6 +59,8 @@ std::string hud_json(const Simulation& simulation, const SessionNote& note) {
   add_exercise(j, simulation.exercise(), r.time);
   j["mode"] = name_of(note.mode);
   j["report"] = note.report;
+  j["recording"] = note.recording;
+  j["unrecorded"] = note.unrecorded;
   j["hands"] = SortedJson::array();
   for (int h = 0; h < 2; ++h)
     if (const Instrument* i = simulation.instrument_of(h))

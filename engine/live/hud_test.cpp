@@ -89,9 +89,12 @@ TEST(Hud, TellsOfTheSessionAndOfEachFault) {
       "/s.xml", r, 1);
   ASSERT_TRUE(loaded.simulation) << loaded.diagnostics.format();
   for (int k = 0; k < 40; ++k) loaded.simulation->step();
-  const Json j = Json::parse(hud_json(*loaded.simulation, {SessionMode::demonstration, "/r/report.html"}));
+  const Json j =
+      Json::parse(hud_json(*loaded.simulation, {SessionMode::demonstration, "/r/report.html", "/s/a.insula"}));
   EXPECT_EQ(j.at("mode"), "demonstration");
   EXPECT_EQ(j.at("report"), "/r/report.html");
+  EXPECT_EQ(j.at("recording"), "/s/a.insula");
+  EXPECT_EQ(j.at("unrecorded"), "");
   const Json& fault = j.at("faults").at(0);
   EXPECT_EQ(fault.at("advice"), "Go slower");
   EXPECT_EQ(fault.at("count"), 40);

@@ -23,6 +23,7 @@
 #include "engine/live/publisher.h"
 #include "engine/live/session_mode.h"
 #include "engine/reports/session_reports.h"
+#include "engine/session/live_recording.h"
 
 namespace insula {
 namespace fs = std::filesystem;
@@ -48,8 +49,8 @@ struct Inputs {
   std::vector<std::string> read;                           ///< messages that the trainee has read
   std::vector<std::pair<std::string, std::string>> asked;  ///< command and argument, in order of arrival
 
-  void subscribe(Bus& bus, SessionReports& reports) {
-    bus.subscribe(channel::device_state, [this, &reports](Bytes b) {
+  void subscribe(Bus& bus, SessionReports& reports, LiveRecording& recording) {
+    bus.subscribe(channel::device_state, [this, &reports, &recording](Bytes b) {
       std::string why;
       insula_lcm::device_state_t m{};
       if (!decode(b, m, why)) return;
@@ -58,6 +59,7 @@ struct Inputs {
       devices = std::move(m);
       received_us = now_us;
       reports.hear(devices);
+      recording.hands(b);
     });
     bus.subscribe(channel::haptic_status, [&reports](Bytes b) {
       std::string why;
@@ -234,7 +236,7 @@ void prepare_for_persons(Simulation& simulation) {
 class LiveSession {
  public:
   LiveSession(Simulation& simulation, const LiveOptions& options, Bus& bus, fs::path motion, const Motion& script,
-              Publisher& publisher, SessionReports& reports)
+              Publisher& publisher, SessionReports& reports, LiveRecording& recording)
       : simulation_(simulation),
         options_(options),
         bus_(bus),
@@ -242,8 +244,9 @@ class LiveSession {
         script_(script),
         publisher_(publisher),
         reports_(reports),
+        recording_(recording),
         notice_(options.notice) {
-    inputs_.subscribe(bus, reports);
+    inputs_.subscribe(bus, reports, recording);
     set_mode(first_mode(options, simulation, script));
   }
 
@@ -253,7 +256,7 @@ class LiveSession {
       while (bus_.poll(0) > 0) {
       }
       take_requests();
-      publisher_.note({mode_, reports_.last_report()});
+      publisher_.note({mode_, reports_.last_report(), recording_.file(), recording_.failure()});
       const bool waits = !stands() && wait_for_hands();
       if (stands()) stand_still();
       else if (!waits && !step()) continue;
@@ -295,6 +298,7 @@ class LiveSession {
     const bool shows = mode == SessionMode::demonstration;
     commands_ = CommandScript(shows ? script_.commands() : std::vector<MotionCommand>{});
     reports_.set_mode(mode);
+    recording_.note({{"mode", std::string(name_of(mode)), "", 0, simulation_.time()}});
     publisher_.follow(shows ? motion_ : fs::path());
   }
 
@@ -339,6 +343,7 @@ class LiveSession {
     const std::vector<Event> announced = simulation_.take_announced();  // no step will publish them
     publisher_.events(announced);
     reports_.note(announced);
+    recording_.note(announced);
     publisher_.paused_frame(simulation_);
     publisher_.info("paused", notice_.text());
   }
@@ -351,6 +356,7 @@ class LiveSession {
     if (receipts.empty()) return;
     publisher_.events(receipts);
     reports_.note(receipts);
+    recording_.note(receipts);
   }
 
   /// A demonstration that nobody has taken over: hands of this process follow the motion, step by step.
@@ -384,6 +390,7 @@ class LiveSession {
     commands_.advance(simulation_, follows);
     simulation_.step();
     if (lockstep) demonstration_->after_step(simulation_);
+    recording_.step(simulation_);
     if (!simulation_.report().finite) {
       reports_.step(simulation_, posed > 0, follows);
       reports_.end_run(simulation_);
@@ -405,6 +412,7 @@ class LiveSession {
   SessionMode mode_ = SessionMode::practice;
   Publisher& publisher_;
   SessionReports& reports_;
+  LiveRecording& recording_;
   CommandScript commands_;
   Notice notice_;
   Inputs inputs_;
@@ -435,7 +443,8 @@ int run_live(const LiveOptions& options, const Registry& registry, Bus& bus, con
       simulation.scene().title().empty() ? options.scene.stem().string() : simulation.scene().title();
   Publisher publisher(bus, session, options.scene, bundle, {}, title);
   SessionReports reports(options.report, options.scene, motion.empty() ? "" : options.motion);
-  LiveSession live(simulation, options, bus, motion, script, publisher, reports);
+  LiveRecording recording(options.record, simulation, {options.scene, options.motion, "live"});
+  LiveSession live(simulation, options, bus, motion, script, publisher, reports, recording);
   spdlog::info("\"{}\" runs: {} bodies, {} constraints, step {:.2f} ms", title, simulation.bodies().size(),
                simulation.constraints().size(), simulation.h() * 1000);
   publisher.info("running");
@@ -443,6 +452,7 @@ int run_live(const LiveOptions& options, const Registry& registry, Bus& bus, con
   Pace pace(simulation.h());
   live.run(stop, pace);
   publisher.info("ended");
+  recording.close(simulation);
   reports.end_run(simulation);
   const double wall = pace.seconds();
   spdlog::info(

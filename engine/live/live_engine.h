@@ -26,6 +26,7 @@ struct LiveOptions {
   bool still = false;            ///< only show the scene: time stands still, the bundle has the inventory
   std::filesystem::path notice;  ///< file whose text viewers show over the image while it is not empty; none: nothing
   std::filesystem::path report;  ///< folder for the session's reports (session_reports.h); empty: none
+  std::filesystem::path record;  ///< session file, or the folder of a new one (new_session_file()); empty: none
   /// How the session begins. None: as a demonstration if there is a motion, else as practice. A scene without an
   /// exercise never waits.
   std::optional<SessionMode> mode;

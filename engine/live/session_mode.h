@@ -30,7 +30,9 @@ constexpr std::optional<SessionMode> session_mode(std::string_view name) {
 /// What pages are told of the session beside its exercise.
 struct SessionNote {
   SessionMode mode = SessionMode::practice;
-  std::string report;  ///< path of the last report that was written; empty: none
+  std::string report = {};      ///< path of the last report that was written; empty: none
+  std::string recording = {};   ///< file that the session is recorded into; empty: none
+  std::string unrecorded = {};  ///< why it is not recorded although it should be; empty: all is well
 };
 
 }  // namespace insula

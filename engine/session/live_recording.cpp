@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/session/live_recording.h"
+
+#include <fmt/chrono.h>
+#include <spdlog/spdlog.h>
+
+#include <cstdlib>
+#include <ctime>
+
+#include "core/base/input_error.h"
+#include "engine/session/session_format.h"
+
+namespace insula {
+namespace fs = std::filesystem;
+
+fs::path default_session_folder() {
+  const char* data = std::getenv("XDG_DATA_HOME");
+  const char* home = std::getenv("HOME");
+  const fs::path base = data && *data   ? fs::path(data)
+                        : home && *home ? fs::path(home) / ".local/share"
+                                        : fs::path(".");
+  return fs::absolute(base) / "insula/sessions";
+}
+
+fs::path new_session_file(const fs::path& wanted, const fs::path& scene) {
+  const bool named = wanted.extension() == session::extension;
+  const fs::path folder = named ? fs::absolute(wanted).parent_path() : wanted;
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&now, &local);
+  const std::string stem =
+      named ? wanted.stem().string() : fmt::format("{:%Y%m%d_%H%M%S}_{}", local, scene.stem().string());
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw InputError(folder.string() + ": no folder can be made there: " + error.message());
+  for (int n = 1;; ++n) {
+    const fs::path file = folder / ((n == 1 ? stem : fmt::format("{}_{}", stem, n)) + session::extension);
+    if (!fs::exists(file, error)) return file;
+  }
+}
+
+LiveRecording::LiveRecording(const fs::path& wanted, const Simulation& simulation, const SessionAbout& about) {
+  if (wanted.empty()) return;
+  try {
+    recorder_ = std::make_unique<SessionRecorder>(new_session_file(wanted, about.scene), simulation, about);
+    spdlog::info("recording into {}", recorder_->file().string());
+  } catch (const std::exception& e) {
+    failure_ = e.what();
+    spdlog::error("nothing is recorded: {}. The session goes on", failure_);
+  }
+}
+
+void LiveRecording::step(const Simulation& simulation) {
+  if (!recorder_) return;
+  stepped_ = true;
+  recorder_->step(simulation);
+}
+
+void LiveRecording::note(const std::vector<Event>& events) {
+  if (recorder_) recorder_->note(events);
+}
+
+void LiveRecording::hands(mcap::Bytes device_state) {
+  if (recorder_) recorder_->hands(device_state);
+}
+
+void LiveRecording::close(const Simulation& simulation) {
+  if (!recorder_) return;
+  recorder_->close(simulation);
+  std::error_code ignored;
+  if (!stepped_) fs::remove(recorder_->file(), ignored);
+  recorder_.reset();
+}
+
+std::string LiveRecording::file() const {
+  return recorder_ && recorder_->failure().empty() ? recorder_->file().string() : std::string();
+}
+
+std::string LiveRecording::failure() const { return recorder_ ? recorder_->failure() : failure_; }
+
+}  // namespace insula

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "engine/session/session_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <insula_lcm/device_state_t.hpp>
+
+#include "core/base/input_error.h"
+#include "core/bus/channels.h"
+#include "core/bus/codec.h"
+#include "engine/session/session_format.h"
+
+namespace insula {
+namespace {
+
+constexpr double most_steps = 1e8;  // of a session; a time beyond is damage
+
+template <class Message>
+void read_all(McapReader& file, std::string_view topic, std::int64_t& damaged,
+              const std::function<bool(const Message&)>& take) {
+  const auto channel = file.channel(topic);
+  if (!channel) return;
+  Message message{};
+  std::string why;
+  file.read({*channel}, 0, UINT64_MAX, [&](const McapReader::Message& m) {
+    if (decode(m.data, message, why)) return take(message);
+    ++damaged;
+    return true;
+  });
+}
+
+}  // namespace
+
+SessionReader::SessionReader(const std::filesystem::path& file) : file_(file) {
+  if (!file_.profile().empty() && file_.profile() != session::profile)
+    throw InputError(file.string() + ": is an MCAP file of \"" + file_.profile() + "\", not a session of Insula");
+  if (!file_.descriptions().contains("session"))
+    throw InputError(file.string() + ": does not say which scene was recorded; the file is damaged at its beginning");
+}
+
+std::string SessionReader::about(const std::string& key) const {
+  const mcap::Text& text = file_.descriptions().at("session");
+  const auto found = text.find(key);
+  return found == text.end() ? "" : found->second;
+}
+
+void SessionReader::steps(const std::function<bool(const insula_lcm::session_step_t&)>& take) {
+  read_all(file_, session::step_topic, damaged_, take);
+}
+
+void SessionReader::events(const std::function<bool(const insula_lcm::sim_event_t&)>& take) {
+  read_all(file_, channel::sim_event, damaged_, take);
+}
+
+std::vector<std::array<double, 2>> SessionReader::hand_forces() {
+  std::vector<std::array<double, 2>> out;
+  const auto channel = file_.channel(channel::device_state);
+  const double step_s = std::strtod(about("step_s").c_str(), nullptr);
+  if (!channel || !(step_s > 0)) return out;
+  insula_lcm::device_state_t message{};
+  std::string why;
+  file_.read({*channel}, 0, UINT64_MAX, [&](const McapReader::Message& m) {
+    // A message has the time of the step before it.
+    const double number = std::round(1e-9 * double(m.time_ns) / step_s) + 1;
+    if (number > most_steps || !decode(m.data, message, why)) return true;
+    if (out.size() <= std::size_t(number)) out.resize(std::size_t(number) + 1);
+    for (const auto& h : message.hand)
+      if (h.connected) {
+        double& largest = out[std::size_t(number)][std::size_t(h.hand)];
+        largest = std::max(largest, std::hypot(h.force_N[0], h.force_N[1], h.force_N[2]));
+      }
+    return true;
+  });
+  return out;
+}
+
+SimulationInput input_of(const insula_lcm::step_input_t& m) {
+  SimulationInput out;
+  out.kind = SimulationInput::Kind(m.kind);
+  out.index = m.index;
+  out.hand.present = m.present;
+  out.hand.device.p = Vec3(m.p_m[0], m.p_m[1], m.p_m[2]);
+  out.hand.device.q = Quat(m.q[0], m.q[1], m.q[2], m.q[3]);
+  out.hand.button1 = m.button1;
+  out.hand.button2 = m.button2;
+  out.verb = m.verb;
+  out.argument = m.argument;
+  out.seed = std::uint64_t(m.seed);
+  out.seconds = m.seconds;
+  return out;
+}
+
+}  // namespace insula

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Steps become messages; a thread puts them into the file.
+#include "engine/session/session_recorder.h"
+
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+#include <cmath>
+#include <ctime>
+
+#include "core/base/input_error.h"
+#include "core/bus/channels.h"
+#include "core/bus/codec.h"
+#include "core/linalg/instruction_set.h"
+#include "engine/session/session_files.h"
+#include "engine/session/session_format.h"
+
+namespace insula {
+namespace {
+
+// A chunk is written at least this often, so that a program that dies loses no more.
+constexpr auto flush_period = std::chrono::milliseconds(500);
+// Messages on hands between two steps: a fifth of a second of them.
+constexpr int most_hands = 50;
+
+std::string local_time() {
+  const std::time_t now = std::time(nullptr);
+  std::tm parts{};
+  localtime_r(&now, &parts);
+  char text[40];
+  return {text, std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%S%z", &parts)};
+}
+
+void fill(insula_lcm::step_input_t& to, const SimulationInput& from) {
+  to.kind = std::int8_t(from.kind);
+  to.index = from.index;
+  to.present = from.hand.present;
+  for (int i = 0; i < 3; ++i) to.p_m[i] = from.hand.device.p[i];
+  const Quat& q = from.hand.device.q;
+  to.q[0] = q.w();
+  to.q[1] = q.x();
+  to.q[2] = q.y();
+  to.q[3] = q.z();
+  to.button1 = from.hand.button1;
+  to.button2 = from.hand.button2;
+  to.verb = from.verb;
+  to.argument = from.argument;
+  to.seed = std::int64_t(from.seed);
+  to.seconds = from.seconds;
+}
+
+}  // namespace
+
+std::int64_t SessionRecorder::steps_a_second(double h) { return std::max<std::int64_t>(1, std::lround(1 / h)); }
+
+SessionRecorder::SessionRecorder(const std::filesystem::path& file, const Simulation& simulation,
+                                 const SessionAbout& about)
+    : file_(file), out_(std::make_unique<McapWriter>(file, session::profile, session::library())) {
+  const SceneFileList files = list_scene_files(about.scene);
+  mcap::Text text = {{"scene", about.scene.string()},
+                     {"scene_file", files.scene},
+                     {"scene_folder", files.root.string()},
+                     {"title", simulation.scene().title()},
+                     {"motion", about.motion},
+                     {"mode", about.mode},
+                     {"began", local_time()},
+                     {"step_s", session::exact(simulation.h())},
+                     {"instruction_set", session::instruction_set()},
+                     {"start_hash", session::hex(simulation.state_hash())}};
+  if (const Complications* c = simulation.complications()) text["seed"] = std::to_string(c->drawn_from());
+  out_->describe("session", text);
+  put_scene_files(*out_, files);
+  const auto schema = [&](const char* name) { return out_->add_schema(name, "lcm", session::schema_of(name)); };
+  step_channel_ = out_->add_channel(session::step_topic, schema("session_step_t"), "lcm");
+  event_channel_ = out_->add_channel(std::string(channel::sim_event), schema("sim_event_t"), "lcm");
+  hands_channel_ = out_->add_channel(std::string(channel::device_state), schema("device_state_t"), "lcm");
+  waiting_.reserve(1u << 20);
+  thread_ = std::thread([this] { write_until_closed(); });
+}
+
+SessionRecorder::~SessionRecorder() { finish(); }
+
+void SessionRecorder::step(const Simulation& simulation) {
+  ++number_;
+  time_ns_ = std::uint64_t(std::llround(double(number_) * simulation.h() * 1e9));
+  put_step(simulation, number_ % steps_a_second(simulation.h()) == 0);
+  put_events(simulation.events());
+  hands_left_ = most_hands;
+}
+
+void SessionRecorder::hands(mcap::Bytes device_state) {
+  if (hands_left_-- > 0) put(hands_channel_, device_state);
+}
+
+void SessionRecorder::note(const std::vector<Event>& events) { put_events(events); }
+
+void SessionRecorder::put_events(const std::vector<Event>& events) {
+  for (const Event& e : events) {
+    event_.sequence = ++event_number_;
+    event_.sim_time_s = std::max(0.0, e.time);
+    event_.kind = e.kind;
+    event_.id = e.id;
+    event_.text = e.text;
+    event_.value = e.value;
+    event_.hand = std::int8_t(e.hand);
+    if (encode(event_, scratch_)) put(event_channel_, scratch_);
+  }
+}
+
+void SessionRecorder::put_step(const Simulation& simulation, bool hashed) {
+  insula_lcm::session_step_t& m = message_;
+  m.number = number_;
+  m.sim_time_s = std::max(0.0, simulation.time());
+  m.hashed = hashed && simulation.report().finite;
+  m.state_hash = 0;
+  m.energy_J = 0;
+  m.body_sum.clear();
+  if (m.hashed) {
+    m.state_hash = std::int64_t(simulation.state_hash());
+    m.energy_J = simulation.energy();
+    simulation.body_sums(m.body_sum);
+  }
+  m.bodies = std::int32_t(m.body_sum.size());
+  last_is_hashed_ = m.hashed;
+  const std::vector<SimulationInput>& inputs = simulation.inputs();
+  m.inputs = std::int32_t(inputs.size());
+  m.input.resize(inputs.size());
+  for (std::size_t i = 0; i < inputs.size(); ++i) fill(m.input[i], inputs[i]);
+  if (encode(m, scratch_)) put(step_channel_, scratch_);
+}
+
+void SessionRecorder::put(std::uint16_t channel, mcap::Bytes message) {
+  const std::lock_guard lock(mutex_);
+  if (!failure_.empty() || closing_) return;
+  if (waiting_.size() > most_waiting_bytes) {
+    fail("the disk does not take the recording fast enough");
+    return;
+  }
+  mcap::Put(waiting_).number(channel).number(time_ns_).number(std::uint64_t(message.size())).raw(message);
+}
+
+/// Called with the mutex held.
+void SessionRecorder::fail(const std::string& why) {
+  failure_ = why;
+  spdlog::error("the recording has ended: {}", why);
+}
+
+void SessionRecorder::write_until_closed() {
+  mcap::Buffer taken;
+  taken.reserve(1u << 20);
+  auto flushed = std::chrono::steady_clock::now();
+  for (bool last = false; !last;) {
+    {
+      std::unique_lock lock(mutex_);
+      wake_.wait_for(lock, flush_period / 5, [this] { return closing_; });
+      taken.swap(waiting_);
+      last = closing_ || !failure_.empty();
+    }
+    try {
+      mcap::Take t(taken);
+      while (t.left() > 0) {
+        const auto channel = t.number<std::uint16_t>();
+        const auto time_ns = t.number<std::uint64_t>();
+        out_->write(channel, time_ns, t.raw(t.number<std::uint64_t>()));
+      }
+      if (last) {
+        out_->close();
+      } else if (const auto now = std::chrono::steady_clock::now(); now - flushed > flush_period) {
+        out_->flush();
+        flushed = now;
+      }
+    } catch (const InputError& e) {
+      const std::lock_guard lock(mutex_);
+      fail(e.what());
+      last = true;
+    }
+    taken.clear();
+  }
+}
+
+void SessionRecorder::close(const Simulation& simulation) {
+  // The last step once more with its hash, unless it has it.
+  if (number_ > 0 && !last_is_hashed_ && thread_.joinable()) put_step(simulation, true);
+  finish();
+}
+
+void SessionRecorder::finish() {
+  if (!thread_.joinable()) return;
+  {
+    const std::lock_guard lock(mutex_);
+    closing_ = true;
+  }
+  wake_.notify_all();
+  thread_.join();
+}
+
+std::string SessionRecorder::failure() const {
+  const std::lock_guard lock(mutex_);
+  return failure_;
+}
+
+}  // namespace insula

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Records a run into one file: what the simulation is given in each step, the hash of its state once a second, and its
+// events. docs/sessions.md describes the file.
+//
+// step() copies a few hundred bytes into a buffer. A thread compresses and writes them, so a slow disk never delays a
+// step. When the file cannot be written, the recording ends, failure() says why, and the run continues.
+#pragma once
+#include <condition_variable>
+#include <cstdint>
+#include <filesystem>
+#include <insula_lcm/session_step_t.hpp>
+#include <insula_lcm/sim_event_t.hpp>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "core/container/mcap_writer.h"
+#include "core/sim/simulation.h"
+
+namespace insula {
+
+/// What a session says of itself besides its scene.
+struct SessionAbout {
+  std::filesystem::path scene;
+  std::string motion, mode;  ///< as named by the person; empty: none
+};
+
+class SessionRecorder {
+ public:
+  /// Called after loading, before the first step. Throws InputError if the file cannot be created.
+  SessionRecorder(const std::filesystem::path& file, const Simulation& simulation, const SessionAbout& about);
+  /// Ends the file.
+  ~SessionRecorder();
+  SessionRecorder(const SessionRecorder&) = delete;
+  SessionRecorder& operator=(const SessionRecorder&) = delete;
+
+  /// After each step.
+  void step(const Simulation& simulation);
+  /// Events that belong to no step.
+  void note(const std::vector<Event>& events);
+  /// The haptic server's message on both hands, as it came: poses and the forces that were sent. While no step is made,
+  /// only the first ones are kept.
+  void hands(mcap::Bytes device_state);
+  /// Writes what is left, with the hash of the last step, and ends the file.
+  void close(const Simulation& simulation);
+
+  /// Why the recording has ended early; empty: it has not.
+  std::string failure() const;
+  const std::filesystem::path& file() const { return file_; }
+
+  /// Steps whose hash is kept: the first of each second. They are also the places that a rerun compares.
+  static std::int64_t steps_a_second(double h);
+  /// Memory for messages that the disk has not taken. With more the recording ends.
+  static constexpr std::size_t most_waiting_bytes = 64u << 20;
+
+ private:
+  void put(std::uint16_t channel, mcap::Bytes message);
+  void put_step(const Simulation& simulation, bool hashed);
+  void put_events(const std::vector<Event>& events);
+  void write_until_closed();
+  void finish();
+  void fail(const std::string& why);
+
+  std::filesystem::path file_;
+  std::unique_ptr<McapWriter> out_;  ///< the thread's once it runs
+  std::uint16_t step_channel_ = 0, event_channel_ = 0, hands_channel_ = 0;
+  std::int64_t number_ = 0, event_number_ = 0;
+  std::uint64_t time_ns_ = 0;  ///< of the recording: that of all steps together
+  bool last_is_hashed_ = false;
+  int hands_left_ = 0;  ///< messages on hands that are kept until the next step
+  insula_lcm::session_step_t message_{};
+  insula_lcm::sim_event_t event_{};
+  std::vector<double> state_;
+  std::vector<std::uint8_t> scratch_;
+
+  std::mutex mutable mutex_;
+  std::condition_variable wake_;
+  mcap::Buffer waiting_;  ///< messages one after the other: channel, time, length, bytes
+  std::string failure_;
+  bool closing_ = false;
+  std::thread thread_;
+};
+
+}  // namespace insula
