@@ -40,6 +40,7 @@ class PlaySession {
     // If the supervisor is killed and cannot clean up, its files are removed with the folder.
     ::setenv("XDG_RUNTIME_DIR", folder_.c_str(), 1);
     ::setenv("HOME", folder_.c_str(), 1);  // reports that no test asks for
+    ::unsetenv("XDG_DATA_HOME");           // recordings go below HOME
     ::unsetenv("DISPLAY");
     ::unsetenv("WAYLAND_DISPLAY");
   }

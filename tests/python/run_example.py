@@ -15,7 +15,8 @@ import subprocess
 import sys
 import tempfile
 
-SKIPPED = 77
+from packages import environment, skip
+
 SCENE = """<scene title="Two hands">
   <soft_body id="block" mesh="meshes/examples/block.msh" mesh_unit="mm">
     <corotational_fem/>
@@ -34,38 +35,6 @@ SCENE = """<scene title="Two hands">
 CLIP = """<clip id="straight" model="meshes/clips/straight/straight.urdf"/>
   <clip_applier id="applier" model="meshes/instruments/clip_applier/clip_applier.urdf" hand="right" clips="straight"
                 home="5 0 12 mm" shaft="0 0 1" flat="1 0 0"/>"""
-
-
-def skip(why):
-    print("SKIPPED:", why)
-    sys.exit(SKIPPED)
-
-
-def environment(build):
-    """A virtual environment with the package lcm; kept from one run to the next."""
-    folder = build / "python_venv"
-    python = folder / "bin" / "python"
-    if subprocess.run([python, "-c", "import lcm"], capture_output=True).returncode == 0 if python.exists() else False:
-        return python
-    shutil.rmtree(folder, ignore_errors=True)
-    made = subprocess.run([sys.executable, "-m", "venv", str(folder)], capture_output=True, text=True)
-    if made.returncode != 0:
-        sys.exit("error: no virtual environment (package python3-venv):\n" + made.stdout + made.stderr)
-    got = subprocess.run(
-        [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "lcm"],
-        capture_output=True,
-        text=True,
-    )
-    if got.returncode != 0:
-        if re.search(
-            r"NewConnectionError|ConnectionError|Temporary failure|timed out|No matching distribution"
-            r"|ProxyError|SSLError",
-            got.stdout + got.stderr,
-        ):
-            shutil.rmtree(folder, ignore_errors=True)
-            skip("PyPI cannot be reached, so there is no package lcm:\n" + got.stderr[-500:])
-        sys.exit("error: pip install lcm:\n" + got.stdout + got.stderr)
-    return python
 
 
 def multicast(python, url):

@@ -132,6 +132,8 @@ export async function startMock({
     mode,
     outcome: '',
     report: '',
+    recording: '',
+    unrecorded: '',
   });
   const server = serve(scene, state, dist);
   const sockets = new WebSocketServer({ server, path: '/ws' });

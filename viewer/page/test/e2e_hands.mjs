@@ -30,7 +30,8 @@ if (!existsSync(join(programs, 'gateway'))) {
 function startSession() {
   const own = { LCM_DEFAULT_URL: 'udpm://239.255.76.67:7719?ttl=0', ...process.env };
   const run = (program, ...rest) => spawn(join(programs, program), rest, { env: own, stdio: 'ignore' });
-  const play = ['play', scene, '--no-browser', '--motion', 'none', '--mode', 'practice', '--no-report', '--no-reload'];
+  const still = ['--no-browser', '--no-report', '--no-record', '--no-reload'];
+  const play = ['play', scene, '--motion', 'none', '--mode', 'practice', ...still];
   const session = run('insula', ...play, '--port', String(port));
   const page = [
     '--page',

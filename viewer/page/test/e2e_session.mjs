@@ -37,6 +37,14 @@ try {
   await hidden(page, '.guide');
   check('practice shows targets for the hand and what the wrist must do; a test does not');
 
+  const recordingReads = (words) =>
+    page.waitForFunction((w) => document.querySelector('.recording').textContent === w, words, patience);
+  mock.state.unrecorded = 'the disk is full';
+  await recordingReads('Not recorded: the disk is full');
+  Object.assign(mock.state, { recording: '/s/a.insula', unrecorded: '' });
+  await recordingReads('● Recorded');
+  check('the page shows that it records, or why it does not');
+
   mock.state.theatre.say('message', 'message', 'Look at the branch');
   await page.waitForSelector('.toast.instruction', patience);
   await click(page, '.toast.instruction button');

@@ -59,11 +59,12 @@ describe('hud text', () => {
   it('reads the exercise state', () => {
     const s = parseHud(
       '{"goals":[{"id":"a","text":"A","done":true}],"faults":[{"id":"f","count":2,"times_s":[1.5,null]}],' +
-        '"state":"running","elapsed_s":61.25,"mode":"test","report":"/r/report.html"}',
+        '"state":"running","elapsed_s":61.25,"mode":"test","report":"/r/report.html","recording":"/s/a.insula"}',
     )!;
     expect(s.goals).toEqual([{ id: 'a', text: 'A', done: true }]);
     expect(s.faults).toEqual([{ id: 'f', text: 'f', count: 2, timesS: [1.5], advice: '' }]);
     expect([s.mode, s.report]).toEqual(['test', '/r/report.html']);
+    expect([s.recording, s.unrecorded]).toEqual(['/s/a.insula', '']);
     expect([s.elapsedS, s.message]).toEqual([61.25, '']);
   });
 

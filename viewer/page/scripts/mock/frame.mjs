@@ -50,7 +50,7 @@ export function makeFrame(
   time,
   held,
   theatre,
-  { malformed = false, mode = '', outcome = '', report = '' } = {},
+  { malformed = false, mode = '', outcome = '', report = '', recording = '', unrecorded = '' } = {},
 ) {
   const { bodies, artery } = scene;
   const spread = 0.0085 * ramp(time, 1.5, 14) + 0.0004 * Math.sin(time * 6.3);
@@ -89,6 +89,8 @@ export function makeFrame(
     state: outcome || (left < n * 0.1 && theatre.placedAt !== null ? 'done' : 'running'),
     mode,
     report,
+    recording,
+    unrecorded,
     elapsed_s: time,
     ...theatre.hud(),
   });

@@ -11,6 +11,7 @@ export class ExercisePanel {
   private readonly title = el('h1', {}, 'Insula');
   private readonly clock = el('span', { class: 'clock' }, '0:00.0');
   private readonly mode = el('span', { class: 'mode' });
+  private readonly recording = el('span', { class: 'recording' });
   private readonly text = el('p', { class: 'text' });
   private readonly goals = el('ul', { class: 'goals' });
   private readonly faults = el('ul', { class: 'faults' });
@@ -24,6 +25,7 @@ export class ExercisePanel {
       { class: 'panel exercise' },
       head,
       this.mode,
+      this.recording,
       this.progress.clocks,
       this.goals,
       this.faults,
@@ -48,8 +50,16 @@ export class ExercisePanel {
     setText(this.mode, modeTitles[s.mode] ?? '');
     this.mode.hidden = !modeTitles[s.mode];
     this.mode.dataset.mode = s.mode;
+    this.showRecording(s);
     this.showLists(s.goals, s.faults);
     this.progress.show(s.timers, s.measures);
+  }
+
+  private showRecording({ recording, unrecorded }: HudState): void {
+    setText(this.recording, unrecorded ? `Not recorded: ${unrecorded}` : recording ? '● Recorded' : '');
+    this.recording.title = recording;
+    this.recording.hidden = !recording && !unrecorded;
+    this.recording.classList.toggle('bad', unrecorded !== '');
   }
 
   private showLists(goals: HudState['goals'], faults: HudState['faults']): void {

@@ -39,6 +39,10 @@ export interface HudState {
   mode: string;
   /** Path of the report; '': none yet. */
   report: string;
+  /** File that the session is recorded into; '': none. */
+  recording: string;
+  /** Why it is not recorded although it should be; '': all is well. */
+  unrecorded: string;
   elapsedS: number | null;
   timers: TimerView[];
   measures: MeasureView[];
@@ -73,6 +77,8 @@ export function parseHud(json: string): HudState | null {
     state: text(j.state),
     mode: text(j.mode),
     report: text(j.report),
+    recording: text(j.recording),
+    unrecorded: text(j.unrecorded),
     elapsedS: finite(j.elapsed_s),
     timers: list(j.timers).map((t) => ({
       id: text(t.id),

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A session records by itself; its file has the same bits when it is rerun, also after its engine was killed.
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "tests/process/live_session.h"
+
+namespace insula {
+namespace {
+
+using namespace testing;
+
+class Recording : public LiveSession {
+ protected:
+  /// Exit status of `insula COMMAND`, whose output goes to a file of the session's folder.
+  int insula(const std::string& command) const {
+    const std::string line =
+        std::string(INSULA_BINARY_DIR) + "/bin/insula " + command + " > " + output().string() + " 2>&1";
+    const int status = std::system(line.c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+  fs::path output() const { return session_->folder() / "output.txt"; }
+  std::string said() const {
+    std::ifstream in(output());
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+  nlohmann::json info(const fs::path& file) const {
+    EXPECT_EQ(insula("session info --json " + file.string()), 0) << said();
+    return nlohmann::json::parse(said());
+  }
+  static nlohmann::json report(const fs::path& folder) {
+    std::ifstream in(folder / "report.json");
+    return nlohmann::json::parse(in, nullptr, false);
+  }
+  /// The live session's last one.
+  fs::path last_report() const {
+    fs::path last;
+    for (const auto& entry : fs::directory_iterator(reports())) last = std::max(last, entry.path());
+    return last;
+  }
+  /// Recorded files, the first one first.
+  std::vector<fs::path> files() const {
+    std::vector<fs::path> out;
+    std::error_code none;
+    for (const auto& entry : fs::directory_iterator(session_->folder() / ".local/share/insula/sessions", none))
+      out.push_back(entry.path());
+    std::sort(out.begin(), out.end());
+    return out;
+  }
+};
+
+TEST_F(Recording, IsMadeByItselfAndHasTheSameBitsAgain) {
+  ASSERT_TRUE(watcher_->press(0.1)) << watcher_->force();
+  ASSERT_TRUE(watcher_->asked("exchange", "left spare", "command") ||
+              watcher_->asked("exchange", "left spare", "refused"));
+  watcher_->ask("pause");
+  std::this_thread::sleep_for(300ms);
+  ASSERT_TRUE(watcher_->asked("message", "well done", "message"));
+  watcher_->ask("resume");
+  watcher_->ask("reset");
+  const std::size_t frames = watcher_->frames_now();
+  ASSERT_TRUE(wait_for([&] { return watcher_->frames_now() > frames + 90; }));
+  session_->end();
+  ASSERT_EQ(files().size(), 1u) << session_->log();
+  const auto json = info(files()[0]);
+  EXPECT_EQ(json["title"], "Press");
+  EXPECT_TRUE(json["ended"]);
+  EXPECT_GE(json["resets"], 1);
+  EXPECT_GE(json["commands"], 2);
+  EXPECT_GT(json["steps"], 100);
+  EXPECT_GT(json["device_states"], json["steps"]) << "250 a second and 60";
+  EXPECT_EQ(insula("session verify " + files()[0].string()), 0) << said();
+  const fs::path again = session_->folder() / "again";
+  EXPECT_EQ(insula("rerun " + files()[0].string() + " --report " + again.string()), 0) << said();
+  // The report of the last pass is that of the live session.
+  const nlohmann::json live = report(last_report()), rerun = report(again);
+  for (const char* key : {"steps", "force_on", "state_hash", "channels"}) EXPECT_EQ(live[key], rerun[key]) << key;
+}
+
+TEST_F(Recording, OfAKilledEngineHasAllButTheLastMoment) {
+  ASSERT_TRUE(watcher_->press(0.1)) << watcher_->force();
+  const std::int64_t engine = watcher_->frame_session();
+  ASSERT_TRUE(wait_for([&] { return watcher_->frames_now() > 200; }));
+  const std::size_t frames = watcher_->frames_now();
+  session_->kill_child("engine");
+  ASSERT_TRUE(wait_for([&] { return watcher_->frame_session() != engine && watcher_->frames_now() > 20; }));
+  session_->end();
+  ASSERT_EQ(files().size(), 2u) << session_->log();
+  const auto json = info(files()[0]);
+  EXPECT_FALSE(json["ended"]);
+  // A chunk is written every half a second; a busy machine may be late.
+  EXPECT_GT(double(json["steps"]), double(frames) - 120);
+  EXPECT_EQ(insula("session verify " + files()[0].string()), 1) << said();
+  EXPECT_NE(said().find("was not ended"), std::string::npos);
+  EXPECT_NE(insula("rerun " + files()[0].string()), 2);
+  EXPECT_EQ(said().find("other state"), std::string::npos) << said();
+  EXPECT_EQ(insula("rerun " + files()[1].string()), 0) << said();
+}
+
+}  // namespace
+}  // namespace insula

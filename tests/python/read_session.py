@@ -1,0 +1,77 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Records a run, and reads the file with the package mcap as a stranger would: its summary, topics, attachments and
+messages must agree with what the program says of it.
+
+    read_session.py SOURCE_FOLDER BUILD_FOLDER LCM_GEN
+"""
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+from packages import environment
+
+SCENE = """<scene title="Stylus" time_step="10 ms">
+  <soft_body id="block" mesh="meshes/block.msh" mesh_unit="mm"><corotational_fem/>
+    <fixed region="beyond" centre="0 0 -19 mm" normal="0 0 -1"/><surface/></soft_body>
+</scene>
+"""
+READ = """
+import hashlib, json, sys
+from mcap.reader import make_reader
+sys.path.insert(0, sys.argv[2])
+from insula_lcm import session_step_t
+with open(sys.argv[1], "rb") as file:
+    reader = make_reader(file, validate_crcs=True)
+    summary = reader.get_summary()
+    steps = [session_step_t.decode(m.data) for _, _, m in reader.iter_messages(topics=["STEP"])]
+    about = {m.name: m.metadata for m in reader.iter_metadata()}
+    texts = {a.name: hashlib.sha256(a.data).hexdigest() for a in reader.iter_attachments()}
+    schemas = [s.name + " " + str(b"struct" in s.data) for s in summary.schemas.values()]
+    late = sum(1 for _ in reader.iter_messages(topics=["STEP"], start_time=10**9, end_time=2 * 10**9))
+    print(json.dumps({
+        "messages": summary.statistics.message_count, "schemas": schemas, "about": about, "texts": texts,
+        "last": steps[-1].number, "hash": "%016x" % (steps[-1].state_hash % 2**64), "late": late,
+        "rising": all(a.number <= b.number for a, b in zip(steps, steps[1:]))}))
+"""
+
+
+def expect(what, good):
+    if not good:
+        sys.exit("FAILED: " + what)
+
+
+def main(source, build, lcm_gen):
+    python = environment(build)
+    insula = str(build / "bin/insula")
+    with tempfile.TemporaryDirectory(prefix="insula_session_") as name:
+        folder = pathlib.Path(name)
+        (folder / "meshes").mkdir()
+        (folder / "meshes/block.msh").write_bytes((source / "meshes/examples/block.msh").read_bytes())
+        (folder / "scene.xml").write_text(SCENE, encoding="utf-8")
+        types = folder / "types"
+        subprocess.run([lcm_gen, "-p", "--ppath", str(types), *map(str, (source / "lcm_types").glob("*.lcm"))], check=True)
+        file = folder / "run.insula"
+        run = [insula, "run", str(folder / "scene.xml"), "--duration", "3 s", "--record", str(file)]
+        said = subprocess.run(run, check=True, capture_output=True, text=True).stdout
+        info = json.loads(subprocess.run([insula, "session", "info", "--json", str(file)], check=True,
+                                         capture_output=True, text=True).stdout)
+        got = subprocess.run([python, "-c", READ, str(file), str(types)], capture_output=True, text=True)
+        expect("the package mcap reads the file:\n" + got.stderr, got.returncode == 0)
+        read = json.loads(got.stdout)
+        expect("as many steps", read["last"] == info["steps"] == 300)
+        expect("in order", read["rising"])
+        expect("a second of steps by time", read["late"] == 100)
+        expect("the hash that the run prints: " + said, "state_hash " + read["hash"] in said)
+        expect("its title", read["about"]["session"]["title"] == info["title"] == "Stylus")
+        expect("declarations of messages", read["schemas"] == ["session_step_t True", "sim_event_t True", "device_state_t True"])
+        expect("the scene's text", read["texts"] == {"scene/scene.xml": read["about"]["files"]["scene.xml"]})
+        expect("the mesh by its hash", set(read["about"]["files"]) == {"scene.xml", "meshes/block.msh"})
+        expect("rerun", subprocess.run([insula, "rerun", str(file)], capture_output=True).returncode == 0)
+    print("read as it was written")
+
+
+if __name__ == "__main__":
+    main(pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), sys.argv[3])
