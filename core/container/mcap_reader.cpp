@@ -101,9 +101,37 @@ bool McapReader::read_summary() {
   return true;
 }
 
+/// False if the entry is damaged or leads out of the file.
+bool McapReader::take_index_entry(Op op, Take& t) {
+  const auto inside = [&](std::uint64_t at, std::uint64_t n) { return at <= size_ && n <= size_ - at; };
+  if (op == Op::chunk_index) {
+    Chunk c;
+    c.first_ns = t.number<std::uint64_t>();
+    c.last_ns = t.number<std::uint64_t>();
+    c.start = t.number<std::uint64_t>();
+    c.length = t.number<std::uint64_t>();
+    if (!t.ok() || !inside(c.start, c.length)) return false;
+    chunks_.push_back(c);
+  } else if (op == Op::attachment_index) {
+    Attachment a;
+    a.start = t.number<std::uint64_t>();
+    a.length = t.number<std::uint64_t>();
+    t.raw(24);
+    a.name = t.string();
+    a.media_type = t.string();
+    if (!t.ok() || !inside(a.start, a.length)) return false;
+    attachments_.push_back(std::move(a));
+  } else {
+    const auto at = t.number<std::uint64_t>();
+    const auto n = t.number<std::uint64_t>();
+    if (!t.ok() || !inside(at, n) || n > max_record_bytes) return false;
+    metadata_at_.emplace_back(at, n);
+  }
+  return true;
+}
+
 void McapReader::take_record(Op op, Bytes content, std::uint64_t start, std::uint64_t length) {
   Take t(content);
-  const auto inside = [&](std::uint64_t at, std::uint64_t n) { return at <= size_ && n <= size_ - at; };
   switch (op) {
     case Op::schema: {
       const auto id = t.number<std::uint16_t>();
@@ -123,33 +151,11 @@ void McapReader::take_record(Op op, Bytes content, std::uint64_t start, std::uin
       else note(start, "a channel is damaged");
       break;
     }
-    case Op::chunk_index: {
-      Chunk c;
-      c.first_ns = t.number<std::uint64_t>();
-      c.last_ns = t.number<std::uint64_t>();
-      c.start = t.number<std::uint64_t>();
-      c.length = t.number<std::uint64_t>();
-      if (t.ok() && inside(c.start, c.length)) chunks_.push_back(c);
-      else note(start, "an entry of the index is damaged");
+    case Op::chunk_index:
+    case Op::attachment_index:
+    case Op::metadata_index:
+      if (!take_index_entry(op, t)) note(start, "an entry of the index is damaged");
       break;
-    }
-    case Op::attachment_index: {
-      Attachment a;
-      a.start = t.number<std::uint64_t>();
-      a.length = t.number<std::uint64_t>();
-      t.raw(24);
-      a.name = t.string();
-      a.media_type = t.string();
-      if (t.ok() && inside(a.start, a.length)) attachments_.push_back(std::move(a));
-      else note(start, "an entry of the index is damaged");
-      break;
-    }
-    case Op::metadata_index: {
-      const auto at = t.number<std::uint64_t>();
-      const auto n = t.number<std::uint64_t>();
-      if (t.ok() && inside(at, n) && n <= max_record_bytes) metadata_at_.emplace_back(at, n);
-      break;
-    }
     case Op::attachment: {  // only the head of its content
       t.raw(16);
       Attachment a;

@@ -75,6 +75,7 @@ class McapReader {
   bool read_summary();
   void walk();
   void take_record(mcap::Op op, mcap::Bytes content, std::uint64_t start, std::uint64_t length);
+  bool take_index_entry(mcap::Op op, mcap::Take& entry);
   void note(std::uint64_t at, const std::string& what);
 
   std::filesystem::path file_;

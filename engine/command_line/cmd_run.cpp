@@ -33,6 +33,26 @@ void export_bodies(const Simulation& simulation, const std::filesystem::path& fo
   }
 }
 
+/// False, and a message, if the file cannot be made. No file is wanted: nothing happens.
+bool begin_recording(const CommandContext& context, const RunOptions& options, const Simulation& simulation,
+                     std::unique_ptr<SessionRecorder>& session) {
+  if (options.record.empty()) return true;
+  try {
+    const SessionAbout about{options.scene, options.motion, "headless"};
+    session = std::make_unique<SessionRecorder>(options.record, simulation, about);
+    return true;
+  } catch (const InputError& e) {
+    fmt::print(context.err, "error: {}\n", e.what());
+    return false;
+  }
+}
+
+bool is_whole(const CommandContext& context, const SessionRecorder& session) {
+  const std::string why = session.failure();
+  if (!why.empty()) fmt::print(context.err, "error: the recording has ended early: {}\n", why);
+  return why.empty();
+}
+
 }  // namespace
 
 int cmd_run(const CommandContext& context, const RunOptions& options) {
@@ -48,14 +68,7 @@ int cmd_run(const CommandContext& context, const RunOptions& options) {
   RunRecorder recorder;
   RunSummary summary;
   std::unique_ptr<SessionRecorder> session;
-  try {
-    if (!options.record.empty())
-      session = std::make_unique<SessionRecorder>(options.record, simulation,
-                                                  SessionAbout{options.scene, options.motion, "headless"});
-  } catch (const InputError& e) {
-    fmt::print(context.err, "error: {}\n", e.what());
-    return 1;
-  }
+  if (!begin_recording(context, options, simulation, session)) return 1;
   int shown = -1;
   for (std::int64_t k = 0; k < steps; ++k) {
     run.step();
@@ -93,10 +106,7 @@ int cmd_run(const CommandContext& context, const RunOptions& options) {
   fmt::print(context.out, "{:.2f} s simulated in {:.2f} s (real_time_factor {:.2f}), state_hash {:016x}\n",
              simulation.time(), summary.wall_seconds, simulation.time() / std::max(1e-9, summary.wall_seconds),
              summary.state_hash);
-  if (session && !session->failure().empty()) {
-    fmt::print(context.err, "error: the recording has ended early: {}\n", session->failure());
-    return 1;
-  }
+  if (session && !is_whole(context, *session)) return 1;
   if (!recorder.finite()) {
     fmt::print(context.err, "error: the simulation left the range of numbers at {:.3f} s\n", simulation.time());
     return 1;

@@ -112,8 +112,9 @@ TEST(Hud, HasTheSameKeysWithoutAnExercise) {
   loaded.simulation->step();
   const Json j = Json::parse(hud_json(*loaded.simulation));
   for (const char* key : {"goals", "faults", "timers", "measures", "hands"}) EXPECT_TRUE(j.at(key).is_array()) << key;
-  for (const char* key : {"message", "state", "elapsed_s", "mode", "report"}) EXPECT_TRUE(j.contains(key)) << key;
-  EXPECT_EQ(j.size(), 10u);
+  for (const char* key : {"message", "state", "elapsed_s", "mode", "report", "recording", "unrecorded"})
+    EXPECT_TRUE(j.contains(key)) << key;
+  EXPECT_EQ(j.size(), 12u);
 }
 
 TEST(Frame, CarriesChannelsAndDrawables) {

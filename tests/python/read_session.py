@@ -52,7 +52,8 @@ def main(source, build, lcm_gen):
         (folder / "meshes/block.msh").write_bytes((source / "meshes/examples/block.msh").read_bytes())
         (folder / "scene.xml").write_text(SCENE, encoding="utf-8")
         types = folder / "types"
-        subprocess.run([lcm_gen, "-p", "--ppath", str(types), *map(str, (source / "lcm_types").glob("*.lcm"))], check=True)
+        messages = [str(f) for f in (source / "lcm_types").glob("*.lcm")]
+        subprocess.run([lcm_gen, "-p", "--ppath", str(types), *messages], check=True)
         file = folder / "run.insula"
         run = [insula, "run", str(folder / "scene.xml"), "--duration", "3 s", "--record", str(file)]
         said = subprocess.run(run, check=True, capture_output=True, text=True).stdout
@@ -66,7 +67,8 @@ def main(source, build, lcm_gen):
         expect("a second of steps by time", read["late"] == 100)
         expect("the hash that the run prints: " + said, "state_hash " + read["hash"] in said)
         expect("its title", read["about"]["session"]["title"] == info["title"] == "Stylus")
-        expect("declarations of messages", read["schemas"] == ["session_step_t True", "sim_event_t True", "device_state_t True"])
+        declared = ["session_step_t True", "sim_event_t True", "device_state_t True"]
+        expect("declarations of messages", read["schemas"] == declared)
         expect("the scene's text", read["texts"] == {"scene/scene.xml": read["about"]["files"]["scene.xml"]})
         expect("the mesh by its hash", set(read["about"]["files"]) == {"scene.xml", "meshes/block.msh"})
         expect("rerun", subprocess.run([insula, "rerun", str(file)], capture_output=True).returncode == 0)
