@@ -11,6 +11,15 @@
 #include "core/sim/simulation.h"
 
 namespace insula {
+namespace {
+
+/// Null for a body with an exact solver or none.
+InexactSolver* inexact_solver_of(DynamicBody& body) {
+  BodySolver* solver = body.solver();
+  return solver ? solver->inexact() : nullptr;
+}
+
+}  // namespace
 
 Simulation::Simulation(std::unique_ptr<Scene> scene, Diagnostics& diagnostics, int threads)
     : scene_(std::move(scene)), workers_(threads) {
@@ -120,8 +129,7 @@ void Simulation::give(const SimulationInput& input) {
     case InputKind::factor: break;
   }
   if (input.index < 0 || input.index >= int(dynamic_bodies_.size())) return;
-  BodySolver* solver = dynamic_bodies_[std::size_t(input.index)]->solver();
-  if (InexactSolver* s = solver ? solver->inexact() : nullptr) s->take_next();
+  if (InexactSolver* s = inexact_solver_of(*dynamic_bodies_[std::size_t(input.index)])) s->take_next();
 }
 
 void Simulation::repeat_factors() {
@@ -170,15 +178,13 @@ void Simulation::set_deterministic(bool yes) {
 
 void Simulation::set_timing(FactorTiming timing) {
   for (DynamicBody* b : dynamic_bodies_)
-    if (InexactSolver* s = b->solver() ? b->solver()->inexact() : nullptr) s->set_timing(timing);
+    if (InexactSolver* s = inexact_solver_of(*b)) s->set_timing(timing);
 }
 
 void Simulation::note_factors() {
-  for (std::size_t i = 0; i < dynamic_bodies_.size(); ++i) {
-    BodySolver* solver = dynamic_bodies_[i]->solver();
-    if (InexactSolver* s = solver ? solver->inexact() : nullptr; s && s->took())
+  for (std::size_t i = 0; i < dynamic_bodies_.size(); ++i)
+    if (InexactSolver* s = inexact_solver_of(*dynamic_bodies_[i]); s && s->took())
       note(SimulationInput::Kind::factor, int(i));
-  }
 }
 
 void Simulation::draw_complications(std::uint64_t seed) {

@@ -2,7 +2,6 @@
 // insula session: what a recording contains, and whether it is whole.
 #include <fmt/ostream.h>
 
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "core/base/input_error.h"
@@ -46,7 +45,7 @@ nlohmann::ordered_json read_through(SessionReader& session) {
   json["written_by"] = file.library();
   json["bytes"] = file.bytes();
   json["ended"] = file.ended();
-  json["step_s"] = std::strtod(session.about("step_s").c_str(), nullptr);
+  json["step_s"] = session.step_s();
   json["steps"] = last;
   json["seconds"] = double(last) * double(json["step_s"]);
   json["resets"] = resets;

@@ -25,11 +25,9 @@ fs::path default_session_folder() {
 fs::path new_session_file(const fs::path& wanted, const fs::path& scene) {
   const bool named = wanted.extension() == session::extension;
   const fs::path folder = named ? fs::absolute(wanted).parent_path() : wanted;
-  const std::time_t now = std::time(nullptr);
-  std::tm local{};
-  localtime_r(&now, &local);
   const std::string stem =
-      named ? wanted.stem().string() : fmt::format("{:%Y%m%d_%H%M%S}_{}", local, scene.stem().string());
+      named ? wanted.stem().string()
+            : fmt::format("{:%Y%m%d_%H%M%S}_{}", fmt::localtime(std::time(nullptr)), scene.stem().string());
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw InputError(folder.string() + ": no folder can be made there: " + error.message());

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <random>
 
 #include "core/base/input_error.h"
@@ -76,7 +75,7 @@ RerunResult rerun(SessionReader& session, const Registry& registry, const RerunS
   if (const std::string folder = session.about("scene_folder"); !folder.empty()) places.push_back(folder);
   const ScratchFolder scratch;
   const fs::path scene = restore_scene_files(session.container(), places, scratch.path());
-  const double step_s = std::strtod(session.about("step_s").c_str(), nullptr);
+  const double step_s = session.step_s();
   if (!(step_s >= 0 && step_s < 1)) throw InputError("the recording's step is out of range");
   SimulationResult loaded = load_simulation(scene, registry, settings.threads, step_s);
   if (!loaded.simulation) throw InputError("the recorded scene has errors:\n" + loaded.diagnostics.format());

@@ -45,6 +45,8 @@ std::string SessionReader::about(const std::string& key) const {
   return found == text.end() ? "" : found->second;
 }
 
+double SessionReader::step_s() const { return std::strtod(about("step_s").c_str(), nullptr); }
+
 void SessionReader::steps(const std::function<bool(const insula_lcm::session_step_t&)>& take) {
   read_all(file_, session::step_topic, damaged_, take);
 }
@@ -56,13 +58,13 @@ void SessionReader::events(const std::function<bool(const insula_lcm::sim_event_
 std::vector<std::array<double, 2>> SessionReader::hand_forces() {
   std::vector<std::array<double, 2>> out;
   const auto channel = file_.channel(channel::device_state);
-  const double step_s = std::strtod(about("step_s").c_str(), nullptr);
-  if (!channel || !(step_s > 0)) return out;
+  const double h = step_s();
+  if (!channel || !(h > 0)) return out;
   insula_lcm::device_state_t message{};
   std::string why;
   file_.read({*channel}, 0, UINT64_MAX, [&](const McapReader::Message& m) {
     // A message has the time of the step before it.
-    const double number = std::round(1e-9 * double(m.time_ns) / step_s) + 1;
+    const double number = std::round(1e-9 * double(m.time_ns) / h) + 1;
     if (number > most_steps || !decode(m.data, message, why)) return true;
     if (out.size() <= std::size_t(number)) out.resize(std::size_t(number) + 1);
     for (const auto& h : message.hand)

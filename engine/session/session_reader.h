@@ -20,6 +20,8 @@ class SessionReader {
 
   /// A value of the session's description; empty if it has none.
   std::string about(const std::string& key) const;
+  /// Time step, s; 0 if the recording does not say it.
+  double step_s() const;
   McapReader& container() { return file_; }
   /// All whole steps in order, until `take` returns false. Steps that are no valid messages are counted in damaged().
   void steps(const std::function<bool(const insula_lcm::session_step_t&)>& take);

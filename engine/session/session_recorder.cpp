@@ -2,6 +2,7 @@
 // Steps become messages; a thread puts them into the file.
 #include "engine/session/session_recorder.h"
 
+#include <fmt/chrono.h>
 #include <spdlog/spdlog.h>
 
 #include <chrono>
@@ -11,7 +12,6 @@
 #include "core/base/input_error.h"
 #include "core/bus/channels.h"
 #include "core/bus/codec.h"
-#include "core/linalg/instruction_set.h"
 #include "engine/session/session_files.h"
 #include "engine/session/session_format.h"
 
@@ -23,13 +23,7 @@ constexpr auto flush_period = std::chrono::milliseconds(500);
 // Messages on hands between two steps: a fifth of a second of them.
 constexpr int most_hands = 50;
 
-std::string local_time() {
-  const std::time_t now = std::time(nullptr);
-  std::tm parts{};
-  localtime_r(&now, &parts);
-  char text[40];
-  return {text, std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%S%z", &parts)};
-}
+std::string local_time() { return fmt::format("{:%Y-%m-%dT%H:%M:%S%z}", fmt::localtime(std::time(nullptr))); }
 
 void fill(insula_lcm::step_input_t& to, const SimulationInput& from) {
   to.kind = std::int8_t(from.kind);

@@ -50,7 +50,7 @@ class SessionRecorder {
   std::string failure() const;
   const std::filesystem::path& file() const { return file_; }
 
-  /// Steps whose hash is kept: the first of each second. They are also the places that a rerun compares.
+  /// Number of steps from one kept hash to the next. A rerun compares at these places.
   static std::int64_t steps_a_second(double h);
   /// Memory for messages that the disk has not taken. With more the recording ends.
   static constexpr std::size_t most_waiting_bytes = 64u << 20;
@@ -72,7 +72,6 @@ class SessionRecorder {
   int hands_left_ = 0;  ///< messages on hands that are kept until the next step
   insula_lcm::session_step_t message_{};
   insula_lcm::sim_event_t event_{};
-  std::vector<double> state_;
   std::vector<std::uint8_t> scratch_;
 
   std::mutex mutable mutex_;
