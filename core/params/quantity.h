@@ -43,6 +43,8 @@ INSULA_QUANTITY(SurfaceMass, "mass per area", "kg/m2");            // kg/m2 g/cm
 INSULA_QUANTITY(FoundationModulus, "foundation modulus", "N/m3");  // N/m3 kPa/mm N/mm3
 INSULA_QUANTITY(FlowRate, "flow rate", "m3/s");                    // m3/s ml/s ml/min
 INSULA_QUANTITY(Viscosity, "viscosity", "Pa s");                   // Pa s, mPa s
+INSULA_QUANTITY(Impulse, "impulse", "N s");                        // N s mN s
+INSULA_QUANTITY(ForceRate, "rate of force", "N/s");                // N/s mN/s
 #undef INSULA_QUANTITY
 
 /// Whether any quantity has a unit of this symbol. This distinguishes a wrong unit from a mistyped number.

@@ -18,6 +18,7 @@
 
 #include "core/base/math.h"
 #include "core/params/param.h"
+#include "core/registry/displayed_quantity.h"
 
 namespace insula {
 
@@ -53,10 +54,7 @@ struct ChannelSpec {
 /// Base of every channel, with the data for frame, report and reference.
 class ChannelBase {
  public:
-  struct Quantity {
-    std::string_view name, si;
-    std::span<const Unit> units;
-  };
+  using Quantity = DisplayedQuantity::Quantity;
   /// Throws std::logic_error for a wrong declaration. `single`: one channel. Otherwise there is one for each name of
   /// declare().
   ChannelBase(Component* owner, ChannelSpec spec, Quantity quantity, int size, bool single);
@@ -64,7 +62,7 @@ class ChannelBase {
   ChannelBase& operator=(const ChannelBase&) = delete;
 
   const ChannelSpec& spec() const { return spec_; }
-  const Quantity& quantity() const { return quantity_; }
+  const Quantity& quantity() const { return displayed_.quantity(); }
   int size() const { return size_; }  ///< numbers of a value: 1, or 3 for a vector
   bool single() const { return single_; }
   /// Names of the group's items. A single channel has one item with an empty name.
@@ -91,10 +89,10 @@ class ChannelBase {
   }
   /// 1 within the good band, 0 within the high band or without bands, -1 outside of both.
   int judged(double si) const;
-  std::string_view display_unit() const;           ///< as shown; may be empty
-  double display_scale() const { return scale_; }  ///< shown number = SI value * scale
+  std::string_view display_unit() const { return displayed_.unit(); }  ///< as shown; may be empty
+  double display_scale() const { return displayed_.scale(); }          ///< shown number = SI value * scale
   /// A value as it is shown, with its unit.
-  std::string text(double si) const;
+  std::string text(double si) const { return displayed_.text(si); }
 
  protected:
   void set_groups(std::vector<std::string> names);
@@ -103,14 +101,13 @@ class ChannelBase {
 
  private:
   ChannelSpec spec_;
-  Quantity quantity_;
+  DisplayedQuantity displayed_;
   int size_;
   bool single_;
   std::vector<std::string> groups_;
   std::vector<double> values_;
   std::optional<double> min_, max_;
   Bounds good_, high_;
-  double scale_ = 1;
   const Component* subject_ = nullptr;
 };
 
@@ -118,7 +115,8 @@ class ChannelBase {
 template <class Q>
 class Channel : public ChannelBase {
  public:
-  Channel(Component* owner, ChannelSpec spec) : ChannelBase(owner, spec, {Q::name, Q::si, Q::units()}, 1, true) {}
+  Channel(Component* owner, ChannelSpec spec)
+      : ChannelBase(owner, spec, DisplayedQuantity::quantity_of<Q>(), 1, true) {}
   void set(double si) { at(0) = si; }
   double operator()() const { return at(0); }
 };
@@ -127,7 +125,8 @@ class Channel : public ChannelBase {
 template <class Q>
 class Channel<Vec<Q>> : public ChannelBase {
  public:
-  Channel(Component* owner, ChannelSpec spec) : ChannelBase(owner, spec, {Q::name, Q::si, Q::units()}, 3, true) {}
+  Channel(Component* owner, ChannelSpec spec)
+      : ChannelBase(owner, spec, DisplayedQuantity::quantity_of<Q>(), 3, true) {}
   void set(const Vec3& si) {
     for (int k = 0; k < 3; ++k) at(std::size_t(k)) = si[k];
   }
@@ -139,7 +138,8 @@ class Channel<Vec<Q>> : public ChannelBase {
 template <class Q>
 class ChannelGroup : public ChannelBase {
  public:
-  ChannelGroup(Component* owner, ChannelSpec spec) : ChannelBase(owner, spec, {Q::name, Q::si, Q::units()}, 1, false) {}
+  ChannelGroup(Component* owner, ChannelSpec spec)
+      : ChannelBase(owner, spec, DisplayedQuantity::quantity_of<Q>(), 1, false) {}
   void declare(std::vector<std::string> names) { set_groups(std::move(names)); }
   void set(std::size_t item, double si) { at(item) = si; }
   double operator()(std::size_t item) const { return at(item); }

@@ -22,6 +22,7 @@ std::string_view kind_name(Kind kind) {
     case Kind::complications: return "list of complications";
     case Kind::complication: return "complication";
     case Kind::material: return "material";
+    case Kind::metric: return "metric";
   }
   return "component";
 }

@@ -32,6 +32,7 @@ enum class Kind {
   complications,  ///< random complications: at most one directly under the scene
   complication,   ///< one of these
   material,       ///< appearance by name
+  metric,         ///< figures on skill, owned by an exercise
 };
 std::string_view kind_name(Kind kind);  ///< "force model", "exercise rule", ...
 

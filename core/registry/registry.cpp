@@ -25,6 +25,7 @@ std::vector<Kind> usual_parents(Kind kind) {
     case Kind::force_model:
     case Kind::support: return {Kind::body};
     case Kind::exercise_rule:
+    case Kind::metric:
     case Kind::motion: return {Kind::exercise};
     case Kind::complication: return {Kind::complications};
   }

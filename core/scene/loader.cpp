@@ -46,14 +46,31 @@ void set_time_step(Element& root, double step_s) {
   root.attributes.push_back({"time_step", fmt::format("{:.9g} s", step_s), root.pos, root.pos});
 }
 
-}  // namespace
+/// Puts the exercise of `from` in place of that of `into`.
+void take_exercise(ExpandedScene& into, ExpandedScene& from, const std::filesystem::path& rules, Diagnostics& found) {
+  const auto is_exercise = [](const std::unique_ptr<Element>& e) { return e->name == "exercise"; };
+  auto& theirs = from.root->children;
+  const auto exercise = std::find_if(theirs.begin(), theirs.end(), is_exercise);
+  if (exercise == theirs.end()) return found.error({rules.generic_string(), 0, 0}, "has no <exercise>");
+  std::erase_if((*exercise)->children, [](const std::unique_ptr<Element>& e) { return e->name == "motion"; });
+  std::erase_if(into.root->children, is_exercise);
+  into.root->children.push_back(std::move(*exercise));
+  for (auto& part : from.parts) into.parts.push_back(std::move(part));
+}
 
-LoadResult load_scene_text(std::string_view text, const std::filesystem::path& virtual_path, const Registry& registry,
-                           double time_step_s) {
+/// rules: scene with the exercise; empty: its own.
+LoadResult load_expanded(std::string_view text, const std::filesystem::path& virtual_path, const Registry& registry,
+                         double time_step_s, const std::filesystem::path& rules) {
   LoadResult result;
   Diagnostics found;
   try {
     auto tree = expand_scene(text, virtual_path, found);
+    if (tree.root && !rules.empty()) {
+      std::string other;
+      if (const std::string error = read_text_file(rules.string(), DocumentLimits{}.file_bytes, other); !error.empty())
+        found.error({rules.generic_string(), 0, 0}, error);
+      else if (auto from = expand_scene(other, rules, found); from.root) take_exercise(tree, from, rules, found);
+    }
     if (tree.root && time_step_s > 0) set_time_step(*tree.root, time_step_s);
     if (tree.root) result.scene = SceneBuilder(registry, tree, found).build(virtual_path);
   } catch (const std::exception& e) {
@@ -66,7 +83,19 @@ LoadResult load_scene_text(std::string_view text, const std::filesystem::path& v
   return result;
 }
 
+}  // namespace
+
+LoadResult load_scene_text(std::string_view text, const std::filesystem::path& virtual_path, const Registry& registry,
+                           double time_step_s) {
+  return load_expanded(text, virtual_path, registry, time_step_s, {});
+}
+
 LoadResult load_scene(const std::filesystem::path& file, const Registry& registry, double time_step_s) {
+  return load_scene_with_exercise_of({}, file, registry, time_step_s);
+}
+
+LoadResult load_scene_with_exercise_of(const std::filesystem::path& rules, const std::filesystem::path& file,
+                                       const Registry& registry, double time_step_s) {
   LoadResult result;
   try {
     std::string text;
@@ -74,7 +103,7 @@ LoadResult load_scene(const std::filesystem::path& file, const Registry& registr
       result.diagnostics.error({file.generic_string(), 0, 0}, error);
       return result;
     }
-    return load_scene_text(text, file, registry, time_step_s);
+    return load_expanded(text, file, registry, time_step_s, rules);
   } catch (const std::exception& e) {
     result.diagnostics.error({file.generic_string(), 0, 0}, std::string("cannot be read: ") + e.what());
     return result;

@@ -167,7 +167,47 @@ void Exercise::connect(PrepareContext& context, const Simulation& simulation) {
     r->declare(context, simulation, log_);
     log_.advise(first, r->advice());
   }
+  metric_sets_ = children_of<MetricSet>();
+  for (MetricSet* m : metric_sets_) m->declare(context, simulation);
   add_measures(simulation);
+}
+
+namespace {
+
+/// Whether another component has a metric of that name.
+bool has_namesake(const std::vector<MetricSet*>& sets, const MetricSet& own, const MetricBase& metric) {
+  return std::any_of(sets.begin(), sets.end(), [&](const MetricSet* other) {
+    return other != &own && std::any_of(other->metrics().begin(), other->metrics().end(),
+                                        [&](const MetricBase* m) { return m->spec().name == metric.spec().name; });
+  });
+}
+
+}  // namespace
+
+std::vector<MetricValue> Exercise::metrics() const {
+  std::vector<MetricValue> out;
+  for (MetricSet* set : metric_sets_) {
+    set->evaluate();
+    for (const MetricBase* m : set->metrics()) {
+      const bool each = m->spec().of == Of::each_hand;
+      const std::string prefix = has_namesake(metric_sets_, *set, *m) ? set->id + "." : "";
+      for (std::size_t item = 0; item < m->items().size(); ++item)
+        for (int hand = each ? left_hand : both_hands; hand <= (each ? right_hand : both_hands); ++hand) {
+          const double si = m->value(item, hand);
+          MetricValue& v = out.emplace_back();
+          v.id = prefix + m->id(item);
+          v.text = m->single() ? m->spec().doc : m->spec().doc + ": " + m->items()[item];
+          v.source = m->spec().source;
+          v.hand = hand;
+          v.known = std::isfinite(si);
+          v.value = v.known ? si * m->displayed().scale() : 0;
+          v.unit = m->displayed().unit();
+          v.digits = m->displayed().digits();
+          v.better = m->spec().better;
+        }
+    }
+  }
+  return out;
 }
 
 void Exercise::add_measures(const Simulation& simulation) {
@@ -190,6 +230,7 @@ void Exercise::add_measures(const Simulation& simulation) {
 }
 
 void Exercise::observe(const StepReport& report) {
+  ran_ = log_.state() == ExerciseState::running;
   for (ExerciseRule* r : rules_) r->observe(report, log_);
   for (const Measured& m : measured_) {
     const ChannelBase& c = *m.entry->channel;
@@ -198,9 +239,15 @@ void Exercise::observe(const StepReport& report) {
   }
 }
 
+void Exercise::observe_metrics(const StepReport& report) {
+  if (!ran_) return;
+  for (MetricSet* m : metric_sets_) m->observe(report);
+}
+
 void Exercise::reset() {
   log_.reset();
   for (ExerciseRule* r : rules_) r->reset();
+  for (MetricSet* m : metric_sets_) m->reset();
 }
 
 }  // namespace insula

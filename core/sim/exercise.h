@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/registry/component.h"
+#include "core/sim/metric.h"
 #include "core/sim/report.h"
 
 namespace insula {
@@ -144,11 +145,16 @@ class Exercise final : public Component {
   Param<std::string> text{this, {.name = "text", .fallback = "", .doc = "what the trainee is to do"}};
 
   void connect(PrepareContext& context, const Simulation& simulation);
+  /// After each step: the rules.
   void observe(const StepReport& report);
+  /// After observe(), when the report has the channels that the rules have set: the metrics.
+  void observe_metrics(const StepReport& report);
   void reset();
   ExerciseLog& log() { return log_; }
   const ExerciseLog& log() const { return log_; }
   std::vector<MotionEntry*> motions() const { return children_of<MotionEntry>(); }
+  /// The metrics of the run so far, in document order. They stand still once the exercise has ended.
+  std::vector<MetricValue> metrics() const;
 
  private:
   /// A channel that is a measure, and its number in the log.
@@ -158,7 +164,9 @@ class Exercise final : public Component {
   };
   void add_measures(const Simulation& simulation);
   std::vector<ExerciseRule*> rules_;
+  std::vector<MetricSet*> metric_sets_;
   std::vector<Measured> measured_;
+  bool ran_ = false;  ///< at the start of the step
   ExerciseLog log_;
 };
 

@@ -15,6 +15,7 @@ namespace insula {
 class Body;
 class ChannelTable;
 class Component;
+class Instrument;
 
 enum Stage { stage_free_motion, stage_collision, stage_build, stage_solve, stage_correct, stage_publish, stage_count };
 
@@ -35,6 +36,16 @@ struct ToolReport {
   double contact_force = 0;        ///< norm of the sum of the contact forces on it and on all that it holds, N
 };
 
+/// A hand and the tool in it, at the end of the step.
+struct HandReport {
+  bool present = false;              ///< a device moves it
+  const Instrument* tool = nullptr;  ///< null: none
+  Pose device;                       ///< of the hand, scene frame
+  Pose tip;                          ///< of the tool, scene frame; +z along the shaft to the handle
+  std::array<bool, 2> button{};
+  double contact_force = 0;  ///< ToolReport::contact_force, N
+};
+
 struct StepReport {
   double time = 0;  ///< at the end of the step, s
   double h = 0;
@@ -45,6 +56,7 @@ struct StepReport {
   double defect_m = 0;  ///< largest change of a row in the last pass of defect correction, m; 0: every body is exact
   std::vector<ContactPoint> contacts;
   std::vector<ToolReport> tools;
+  std::array<HandReport, 2> hands;              ///< left, right
   std::vector<StructureForce> structures;       ///< forces of the hands on all structures, document order
   const ChannelTable* channel_table = nullptr;  ///< of the simulation; null: there are no channels
   std::vector<double> channels;                 ///< SI, in the order of the table; NaN: not known now

@@ -210,6 +210,22 @@ void Simulation::report_tool(const Instrument& tool) {
   report_.tools.push_back(t);
 }
 
+void Simulation::report_hands() {
+  report_.hands.fill({});
+  for (const ToolReport& t : report_.tools) {
+    if (t.hand < 0) continue;
+    const auto& tool = static_cast<const Instrument&>(*t.tool);
+    const HandState& state = tool.state();
+    HandReport& h = report_.hands[std::size_t(t.hand)];
+    h.present = state.present;
+    h.tool = &tool;
+    h.device = tool.device();
+    h.tip = tool.pose();
+    h.button = {state.button1, state.button2};
+    h.contact_force = t.contact_force;
+  }
+}
+
 void Simulation::make_report() {
   StepReport& r = report_;
   r.time = context_.time;
@@ -232,12 +248,14 @@ void Simulation::make_report() {
   publish();
   for (Instrument* i : instruments_)
     if (i->active()) report_tool(*i);
+  report_hands();
   r.events = sink_.events();
   events_ = sink_.events();
   if (exercise_) {
     exercise_->log().events.clear();
     exercise_->observe(r);
     channel_table_.read(r.channels);  // with the measures that rules have set
+    exercise_->observe_metrics(r);
     const auto& said = exercise_->log().events.events();
     events_.insert(events_.end(), said.begin(), said.end());
   }

@@ -47,6 +47,10 @@ void check_surfaces(const std::filesystem::path& scene);
 /// run gives the same goals, faults, timers and measures.
 void check_exercise_rule(const std::filesystem::path& scene, const std::string& element);
 
+/// Metrics have unique ids, a text, a source, and finite values or none. They are a function of the reports: evaluate()
+/// neither writes state nor changes later values, and after reset the same run gives the same values.
+void check_metric(const std::filesystem::path& scene, const std::string& element);
+
 /// The contracts above that apply to the element's kind, on its plugin's example.
 void check_element(const std::filesystem::path& scene, const std::string& element);
 

@@ -15,6 +15,7 @@ void check_element(const std::filesystem::path& scene, const std::string& elemen
     case Kind::body: return check_rigid_body(scene, element);
     case Kind::support: return check_support(scene, element);
     case Kind::constraint: return check_rows(scene, element, true);
+    case Kind::metric: return check_metric(scene, element);
     case Kind::instrument: check_instrument(scene, element); return check_rows(scene, element, false);
     case Kind::exercise_rule: return check_exercise_rule(scene, element);
     default: FAIL() << "no contract for a " << kind_name(info->kind) << "; write one in core/testing";

@@ -41,6 +41,9 @@ void describe_step_data(std::ostream& out, const Component& component) {
   for (const EventKind* e : component.event_kinds())
     lines.push_back({e->name(), std::string(e->spec().value), std::string(e->spec().doc)});
   table(out, "events", lines);
+  lines.clear();
+  for (const MetricBase* m : metrics_of(component)) lines.push_back({metric_name(*m), metric_text(*m), m->spec().doc});
+  table(out, "metrics", lines);
 }
 
 }  // namespace

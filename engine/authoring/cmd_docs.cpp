@@ -53,6 +53,12 @@ std::string step_data(const Component& component) {
     for (const EventKind* e : component.event_kinds())
       out += fmt::format("| `{}` | {} | {} |\n", e->name(), cell(e->spec().value), cell(e->spec().doc));
   }
+  if (const auto metrics = metrics_of(component); !metrics.empty()) {
+    out += "\n## Metrics\n\n| metric | quantity | what it is | source |\n|---|---|---|---|\n";
+    for (const MetricBase* m : metrics)
+      out += fmt::format("| `{}` | {} | {} | {} |\n", metric_name(*m), cell(metric_text(*m)), cell(m->spec().doc),
+                         cell(m->spec().source));
+  }
   return out;
 }
 

@@ -41,6 +41,23 @@ std::string channel_text(const ChannelBase& channel) {
   return channel.size() == 3 ? out + ", three numbers" : out;
 }
 
+std::vector<const MetricBase*> metrics_of(const Component& component) {
+  const auto* set = dynamic_cast<const MetricSet*>(&component);
+  return set ? std::vector<const MetricBase*>(set->metrics().begin(), set->metrics().end())
+             : std::vector<const MetricBase*>();
+}
+
+std::string metric_name(const MetricBase& metric) { return metric.spec().name + (metric.single() ? "" : ".<name>"); }
+
+std::string metric_text(const MetricBase& metric) {
+  std::string out(metric.displayed().quantity().name);
+  if (!metric.displayed().unit().empty()) out += " in " + std::string(metric.displayed().unit());
+  out += metric.spec().of == Of::each_hand ? ", of each hand" : ", of both hands";
+  if (metric.spec().better == Better::low) out += ", less is better";
+  if (metric.spec().better == Better::high) out += ", more is better";
+  return out;
+}
+
 std::string drawable_text(const DrawableBase& drawable) {
   return std::string(drawable_kind_name(drawable.kind())) + " of " + drawable.material();
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/registry/registry.h"
+#include "core/sim/metric.h"
 
 namespace insula {
 
@@ -20,6 +21,12 @@ std::vector<const ComponentInfo*> children_of_kind(const Registry& registry, Kin
 std::string channel_name(const ChannelBase& channel);
 /// "pressure in mmHg, 0 mmHg to 300 mmHg", "force in N, three numbers".
 std::string channel_text(const ChannelBase& channel);
+/// The metrics that a component declares; none if it is no MetricSet.
+std::vector<const MetricBase*> metrics_of(const Component& component);
+/// "path_length", "tissue_time.<name>" for one metric of each name of a group.
+std::string metric_name(const MetricBase& metric);
+/// "length in mm, of each hand, less is better".
+std::string metric_text(const MetricBase& metric);
 /// "polylines of arachnoid".
 std::string drawable_text(const DrawableBase& drawable);
 /// The units as an author may write them, "Pa, kPa, MPa, mmHg", or empty.

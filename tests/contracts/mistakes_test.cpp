@@ -78,6 +78,10 @@ const Case cases[] = {
     {"rule_one_id", "two goals or faults have one id"},
     {"rule_forgets_reset", "after reset() the same run is judged otherwise"},
     {"rule_writes", "the exercise changes the simulation's state"},
+    {"metric", ""},
+    {"metric_forgets_reset", "reset() leaves something of the run"},
+    {"metric_changes_by_evaluation", "evaluate() twice gives other values"},
+    {"metric_one_id", "two metrics have one id"},
     {"probe", ""},
     {"probe_busy", "its activity is not within 0 and 1"},
     {"probe_follows_badly", "it does not come to rest at the hand"},
@@ -98,8 +102,8 @@ std::string scene_with(const std::string& element) {
          R"( id="tool" model="meshes/tool/tool.urdf" hand="right" home=")" +
          (is("thread") || is("ball") || is("probe") ? "3 1 6 mm" : "3 1 3 mm") + R"(" shaft="0 0 1" flat="1 0 0"/>)" +
          (is("thread") || is("ball") ? joins : std::string()) +
-         (is("rule") || is("springs") || is("hold") ? R"(<contact between="block tool"/>)" : "") +
-         (is("rule") ? "<exercise title=\"wait\">" + one + "</exercise>" : "") + "</scene>";
+         (is("rule") || is("metric") || is("springs") || is("hold") ? R"(<contact between="block tool"/>)" : "") +
+         (is("rule") || is("metric") ? "<exercise title=\"wait\">" + one + "</exercise>" : "") + "</scene>";
 }
 
 /// Texts of the failures in all contracts that a plugin's test runs.

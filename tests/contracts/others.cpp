@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Supports, exercise rules and instruments with one mistake each.
+// Supports, exercise rules, metrics and instruments with one mistake each.
 #include <algorithm>
 
 #include "core/constraint/stated_law.h"
@@ -57,6 +57,30 @@ class Rule final : public ExerciseRule {
   int goal_ = 0, measure_ = 0, timer_ = 0, count_ = 0;
 };
 
+enum class Counted { right, forgets_reset, changes_by_evaluation, one_id };
+
+/// The time of the run.
+template <Counted C>
+class Count final : public MetricSet {
+ public:
+  Metric<Duration> time{this, {.name = "time", .doc = "time", .source = "tests", .of = Of::both_hands}};
+  MetricGroup<Duration> each{this, {.name = "each", .doc = "time", .source = "tests", .of = Of::both_hands}};
+  void declare(PrepareContext&, const Simulation&) override {
+    if (C == Counted::one_id) each.declare_items({"a", "a"});
+  }
+  void observe(const StepReport& r) override { sum_ += r.h; }
+  void evaluate() override {
+    time.set(sum_);
+    if (C == Counted::changes_by_evaluation) sum_ *= 1.01;
+  }
+  void reset() override {
+    if (C != Counted::forgets_reset) sum_ = 0;
+  }
+
+ private:
+  double sum_ = 0;
+};
+
 enum class Tool { right, busy, follows_badly, forgets_reset, weak_law };
 
 /// An instrument that pulls itself home by a spring while it is in the hand.
@@ -112,6 +136,10 @@ void add_others(Registry& registry) {
   registry.add<Rule<Judged::one_id>>("rule_one_id", Kind::exercise_rule, "rule for tests");
   registry.add<Rule<Judged::forgets_reset>>("rule_forgets_reset", Kind::exercise_rule, "rule for tests");
   registry.add<Rule<Judged::writes>>("rule_writes", Kind::exercise_rule, "rule for tests");
+  registry.add<Count<Counted::right>>("metric", Kind::metric, "metric for tests");
+  registry.add<Count<Counted::forgets_reset>>("metric_forgets_reset", Kind::metric, "metric for tests");
+  registry.add<Count<Counted::changes_by_evaluation>>("metric_changes_by_evaluation", Kind::metric, "metric for tests");
+  registry.add<Count<Counted::one_id>>("metric_one_id", Kind::metric, "metric for tests");
   registry.add<Probe<Tool::right>>("probe", Kind::instrument, "instrument for tests");
   registry.add<Probe<Tool::busy>>("probe_busy", Kind::instrument, "instrument for tests");
   registry.add<Probe<Tool::follows_badly>>("probe_follows_badly", Kind::instrument, "instrument for tests");
