@@ -13,17 +13,21 @@
 
 namespace insula {
 
+bool ChannelWatch::find(PrepareContext& context, const Simulation& simulation, const Component& rule,
+                        const Param<std::string>& channel) {
+  entry_ = simulation.channels().find(channel());
+  if (entry_) return true;
+  const std::string near = nearest_name(channel(), simulation.channels().ids());
+  rule.error(
+      context, channel,
+      "no component publishes the channel " + in_quotes(channel()) +
+          (near.empty() ? "; `insula describe NAME` lists those of an element" : "; did you mean \"" + near + "\"?"));
+  return false;
+}
+
 bool ChannelWatch::connect(PrepareContext& context, const Simulation& simulation, const Component& rule,
                            const Param<std::string>& channel, const Param<std::string>& limit) {
-  entry_ = simulation.channels().find(channel());
-  if (!entry_) {
-    const std::string near = nearest_name(channel(), simulation.channels().ids());
-    rule.error(
-        context, channel,
-        "no component publishes the channel " + in_quotes(channel()) +
-            (near.empty() ? "; `insula describe NAME` lists those of an element" : "; did you mean \"" + near + "\"?"));
-    return false;
-  }
+  if (!find(context, simulation, rule, channel)) return false;
   std::string error;
   const auto& quantity = entry_->channel->quantity();
   const auto value = parse_quantity(limit(), quantity.units, quantity.name, error);

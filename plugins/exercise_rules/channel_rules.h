@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Common part of the two rules on a channel: its name, a comparison and a limit with a unit.
+// Common part of rules and metrics on a channel: its name, a comparison and a limit with a unit.
 #pragma once
 #include <string>
 
@@ -13,9 +13,12 @@ class ChannelWatch {
  public:
   enum class Comparison { above, below };
 
-  /// False if there is an error, which is reported.
+  /// Finds the channel, and reads the limit in a unit of it. False if there is an error, which is reported.
   bool connect(PrepareContext& context, const Simulation& simulation, const Component& rule,
                const Param<std::string>& channel, const Param<std::string>& limit);
+  bool find(PrepareContext& context, const Simulation& simulation, const Component& rule,
+            const Param<std::string>& channel);
+  const ChannelEntry* entry() const { return entry_; }  ///< null: not found
   /// The present value of the channel, or the length of a vector. NaN: not known.
   double value(const StepReport& report) const;
   /// Whether the value is beyond the limit. An unknown value is not.

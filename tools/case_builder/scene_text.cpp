@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/text.h"
 #include "tools/case_builder/place.h"
 
 namespace insula::case_builder {
@@ -51,6 +52,36 @@ std::string weak_spot(const SceneFacts& f, const char* up, int radius_mm, int de
     s += "    <variable name=\"bleb_region\" value=\"sac\"/>\n    <variable name=\"bleb_force\" value=\"1.5 N\"/>\n"
          "    <variable name=\"bleb_sharp_force\" value=\"0.15 N\"/>\n";
   return s + "  </include>\n";
+}
+
+/// Metrics of the hands, and of what the exercise is about.
+std::string metrics(const SceneFacts& f, bool strands, bool vessel) {
+  const auto include = [&](const char* part) {
+    return fmt::format("    <include file=\"{}/{}.xml\"/>\n", f.assets.parts, part);
+  };
+  std::string s = include("metrics");
+  if (strands) s += include("strand_metrics");
+  if (!vessel) return s;
+  if (f.bleb) return s + include("bleeding_metrics");
+  return s + fmt::format(
+                 "    <include file=\"{}/bleeding_metrics.xml\">\n      <variable name=\"dome_regions\" "
+                 "value=\"sac\"/>\n    </include>\n",
+                 f.assets.parts);
+}
+
+/// What the clip left, and how each branch flowed.
+std::string clip_metrics(const SceneFacts& f) {
+  std::string s =
+      "    <event_metric id=\"clips_released\" text=\"Clips let go in the field\" event=\"clip_released\" "
+      "better=\"low\"/>\n"
+      "    <channel_metric id=\"neck_remnant\" text=\"Remnant of the neck at the end\" channel=\"clip.remnant\" "
+      "better=\"low\"/>\n";
+  for (const std::string_view branch : split_blanks(f.branches))
+    s += fmt::format(
+        "    <channel_metric id=\"{0}_flow_least\" text=\"Least flow of {0} over that at rest\" "
+        "channel=\"clip.{0}.flow\" statistic=\"smallest\" better=\"high\"/>\n",
+        branch);
+  return s;
 }
 
 std::string judged(const SceneFacts& f, const char* hold) {
@@ -198,7 +229,7 @@ std::string opening_exercise(const SceneFacts& f) {
        "    <goal_strands id=\"divide\" text=\"Divide all arachnoid strands\" fraction=\"1\"/>\n"
        "    <goal_two_hands id=\"together\" text=\"Divide strands while the suction tube holds a lip aside\" "
        "event=\"strand_cut\" count=\"10\" on=\"frontal temporal\" force=\"0.02 N\"/>\n" +
-       limits(f, false) +
+       limits(f, false) + metrics(f, true, false) +
        "    <fault_torn id=\"torn\" text=\"A strand tore: cut it before you draw the lobe further\"/>\n"
        "    <fault_order id=\"order\" text=\"Too deep too early: divide the strands at the surface first\" "
        "inward=\"-0.946 -0.236 -0.220\" margin=\"5 mm\" allowed=\"6\"/>\n"
@@ -230,7 +261,7 @@ std::string dissection_exercise(const SceneFacts& f) {
        "the dissector's edge: turn the blade across each and sweep it slowly, the outermost first. Keep off the "
        "dome, and pull on nothing.\">\n"
        "    <goal_strands id=\"divide\" text=\"Divide all strands around the aneurysm\" fraction=\"1\"/>\n" +
-       limits(f, true) +
+       limits(f, true) + metrics(f, true, true) +
        "    <fault_torn id=\"torn\" text=\"A strand tore: divide it with the edge instead\"/>\n"
        "    <fault_rupture id=\"rupture\" text=\"The aneurysm has ruptured\" fails=\"true\"/>\n"
        "    <time_limit id=\"time\" text=\"Fifteen minutes are over\" limit=\"900 s\"/>\n";
@@ -249,6 +280,7 @@ std::string clipping_exercise(const SceneFacts& f) {
   s += fmt::format("  <exercise id=\"clipping\" title=\"Clipping\" text=\"{}\">\n", clipping_text);
   s += judged(f, "3 s");
   s += "    <fault_rupture id=\"rupture\" text=\"The dome has ruptured\"/>\n" + limits(f, true) +
+       metrics(f, false, true) + clip_metrics(f) +
        "    <time_limit id=\"time\" text=\"Fifteen minutes are over\" limit=\"900 s\"/>\n"
        "    <motion id=\"steady\" file=\"3_clipping_steady.csv\"/>\n  </exercise>\n</scene>\n";
   return s;
@@ -270,7 +302,8 @@ std::string rupture_exercise(const SceneFacts& f) {
   s += "    <goal_temporary_removed id=\"removed\" text=\"Take the temporary clip off\" rate=\"4 ml/min\"/>\n"
        "    <timer_rupture id=\"since_rupture\" text=\"Since the rupture\" limit=\"300 s\" rate=\"4 ml/min\"/>\n"
        "    <timer_temporary_clip id=\"occlusion\" text=\"Temporary clip\" limit=\"180 s\"/>\n" +
-       limits(f, true) + "    <motion id=\"steady\" file=\"4_rupture_steady.csv\"/>\n  </exercise>\n</scene>\n";
+       limits(f, true) + metrics(f, false, true) + clip_metrics(f) +
+       "    <motion id=\"steady\" file=\"4_rupture_steady.csv\"/>\n  </exercise>\n</scene>\n";
   return s;
 }
 
