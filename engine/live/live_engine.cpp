@@ -265,6 +265,12 @@ class LiveSession {
   }
 
  private:
+  /// What is known of a pass through the exercise that ends here.
+  void end_pass() {
+    recording_.end_pass(simulation_);
+    reports_.end_run(simulation_);
+  }
+
   void start_again() {
     simulation_.reset();
     commands_.reset();
@@ -311,7 +317,7 @@ class LiveSession {
       return;
     }
     inputs_.pause = inputs_.driven = false;
-    reports_.end_run(simulation_);
+    end_pass();
     start_again();
     set_mode(*mode);
     // The haptic server reads the motion before it hears of the start.
@@ -327,7 +333,7 @@ class LiveSession {
     if (inputs_.reset) {
       inputs_.reset = false;
       inputs_.driven = false;  // the haptic server returned the hands to the motion
-      reports_.end_run(simulation_);
+      end_pass();
       start_again();
       spdlog::info("reset");
     }
@@ -393,7 +399,7 @@ class LiveSession {
     recording_.step(simulation_);
     if (!simulation_.report().finite) {
       reports_.step(simulation_, posed > 0, follows);
-      reports_.end_run(simulation_);
+      end_pass();
       spdlog::error("the simulation left the range of numbers at {:.3f} s; it starts again", simulation_.time());
       start_again();
       return false;
@@ -442,8 +448,8 @@ int run_live(const LiveOptions& options, const Registry& registry, Bus& bus, con
   const std::string title =
       simulation.scene().title().empty() ? options.scene.stem().string() : simulation.scene().title();
   Publisher publisher(bus, session, options.scene, bundle, {}, title);
-  SessionReports reports(options.report, options.scene, motion.empty() ? "" : options.motion);
-  LiveRecording recording(options.record, simulation, {options.scene, options.motion, "live"});
+  SessionReports reports(options.report, options.scene, motion.empty() ? "" : options.motion, options.fields);
+  LiveRecording recording(options.record, simulation, {options.scene, options.motion, "live", options.fields});
   LiveSession live(simulation, options, bus, motion, script, publisher, reports, recording);
   spdlog::info("\"{}\" runs: {} bodies, {} constraints, step {:.2f} ms", title, simulation.bodies().size(),
                simulation.constraints().size(), simulation.h() * 1000);

@@ -82,9 +82,11 @@ void Publisher::events(const std::vector<Event>& events) {
 void Publisher::paused_frame(const Simulation& simulation) { frame(simulation, true); }
 
 void Publisher::frame(const Simulation& simulation, bool paused) {
+  const auto every = std::max<std::int64_t>(1, std::llround(metrics_interval_s / simulation.h()));
+  note_.metrics = ++frame_sequence_ % every == 0;
   fill_frame(simulation, frame_, note_);
   frame_.session = session_;
-  frame_.sequence = ++frame_sequence_;
+  frame_.sequence = frame_sequence_;
   frame_.time_us = monotonic_us();
   frame_.paused = paused;
   if (!publish(bus_, channel::render_frame, frame_, scratch_)) ++failed_;

@@ -42,6 +42,8 @@ class Publisher {
   void info(const std::string& state, const std::string& message = "");
   /// The motion that simulated hands follow from now on; empty: none. Sent at once with the next info().
   void follow(const std::filesystem::path& motion);
+  /// Frames have the metrics at this interval, s.
+  static constexpr double metrics_interval_s = 0.2;
   /// What frames say of the session from now on.
   void note(SessionNote note) { note_ = std::move(note); }
   std::int64_t failed() const { return failed_; }

@@ -13,6 +13,7 @@
 
 #include "core/base/input_error.h"
 #include "core/sim/simulation.h"
+#include "engine/reports/metrics_report.h"
 #include "engine/reports/perceptible_forces.h"
 
 namespace insula {
@@ -23,47 +24,6 @@ constexpr std::size_t max_events = 5000;
 constexpr std::size_t max_moments = 2000;
 
 Json mean_max(const std::vector<double>& v) { return {{"mean", mean(v)}, {"max", largest(v)}}; }
-
-Json exercise_json(const std::optional<ExerciseOutcome>& exercise) {
-  Json goals = Json::array(), faults = Json::array(), timers = Json::array(), measures = Json::array();
-  const auto bound = [](const std::optional<double>& b) { return b ? Json(*b) : Json(); };
-  Json out;
-  if (exercise) {
-    for (const auto& g : exercise->log.goals())
-      goals.push_back({{"id", g.id},
-                       {"done", g.done},
-                       {"time_s", g.done ? Json(g.time) : Json()},
-                       {"required", g.required},
-                       {"text", g.text}});
-    for (const auto& f : exercise->log.faults())
-      faults.push_back(
-          {{"id", f.id}, {"count", f.count}, {"times_s", f.times}, {"text", f.text}, {"advice", f.advice}});
-    for (const auto& t : exercise->log.timers())
-      timers.push_back({{"id", t.id},
-                        {"elapsed_s", t.elapsed},
-                        {"longest_s", t.longest},
-                        {"limit_s", t.limit},
-                        {"running", t.running},
-                        {"text", t.text}});
-    for (const auto& m : exercise->log.measures())
-      measures.push_back({{"id", m.id},
-                          {"value", m.known ? Json(m.value) : Json()},
-                          {"unit", m.unit},
-                          {"good", m.good},
-                          {"band", {bound(m.band[0]), bound(m.band[1])}},
-                          {"limit", m.limit},
-                          {"text", m.text}});
-    static constexpr const char* states[] = {"running", "done", "failed"};
-    out["id"] = exercise->id;
-    out["title"] = exercise->title;
-    out["state"] = states[int(exercise->log.state())];
-  }
-  out["goals"] = goals;
-  out["faults"] = faults;
-  out["timers"] = timers;
-  out["measures"] = measures;
-  return out;
-}
 
 Json perceptible_json(const PerceptibleForces& perceptible) {
   Json out = {{"touching_s", perceptible.touching_s},
@@ -262,6 +222,7 @@ std::string report_json(const RunRecorder& recorder, const RunSummary& summary) 
   json["scene"] = summary.scene;
   json["motion"] = summary.motion;
   if (!summary.mode.empty()) json["mode"] = summary.mode;
+  if (!summary.fields.empty()) json["fields"] = summary.fields;
   if (!summary.began.empty()) json["began"] = summary.began;
   json["steps"] = recorder.steps();
   json["steps_per_sample"] = recorder.steps_per_sample();
@@ -287,6 +248,7 @@ std::string report_json(const RunRecorder& recorder, const RunSummary& summary) 
                      {{"left", perceptible_json(perceptible_forces(recorder, 0))},
                       {"right", perceptible_json(perceptible_forces(recorder, 1))}}}};
   json["exercise"] = exercise_json(summary.exercise);
+  json["metrics"] = metrics_json(summary.exercise ? summary.exercise->metrics : std::vector<MetricValue>{});
   if (summary.complications) json["complications"] = complications_json(*summary.complications);
   json["force_on"] = recorder.forces().json();
   json["channels"] = recorder.channels().json();
@@ -307,6 +269,7 @@ void write_report(const std::filesystem::path& dir, const RunRecorder& recorder,
   std::filesystem::create_directories(dir, error);
   if (error) throw InputError(dir.string() + ": cannot be created: " + error.message());
   write(dir / "report.json", report_json(recorder, summary));
+  if (summary.exercise) write(dir / "metrics.csv", metrics_csv(summary.exercise->metrics));
   write(dir / "report.html", report_html(recorder, summary));
   write(dir / "technical.html", technical_html(recorder, summary));
 }

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Collects the results of a run's steps and writes report.json for programs, report.html for people and
-// technical.html for those who look after the machine.
+// Collects the results of a run's steps and writes report.json and metrics.csv for programs, report.html for people
+// and technical.html for those who look after the machine.
 #pragma once
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "core/sim/exercise.h"
 #include "core/sim/report.h"
 #include "engine/reports/channel_record.h"
+#include "engine/reports/exercise_outcome.h"
 #include "engine/reports/force_record.h"
 #include "engine/reports/run_outcome.h"
 
@@ -19,26 +21,19 @@ namespace insula {
 
 class Simulation;
 
-/// Copy of an exercise at the time of the report.
-struct ExerciseOutcome {
-  explicit ExerciseOutcome(const Exercise& exercise)
-      : id(exercise.id), title(exercise.title()), text(exercise.text()), log(exercise.log()) {}
-  std::string id, title, text;
-  ExerciseLog log;
-};
-
 /// Data of a run as a whole. It holds copies, so a report may be written while the simulation continues.
 struct RunSummary {
   /// Takes title, state hash, and the present exercise and complications.
   void take(const Simulation& simulation);
 
-  std::string title;                    ///< of the scene
-  std::string scene, motion;            ///< as named on the command line
-  std::string mode;                     ///< name of a SessionMode; empty: not a live session
-  std::string began;                    ///< local date and time of a live session; empty: none
-  double wall_seconds = 0;              ///< of all steps
-  double fresh_forces_per_s = 0;        ///< number of distinct fresh forces per simulated second of contact
-  std::array<double, 2> max_force_N{};  ///< on the hands: left, right
+  std::string title;                          ///< of the scene
+  std::string scene, motion;                  ///< as named on the command line
+  std::string mode;                           ///< name of a SessionMode; empty: not a live session
+  std::map<std::string, std::string> fields;  ///< what the person says of the session: "person", "level"
+  std::string began;                          ///< local date and time of a live session; empty: none
+  double wall_seconds = 0;                    ///< of all steps
+  double fresh_forces_per_s = 0;              ///< number of distinct fresh forces per simulated second of contact
+  std::array<double, 2> max_force_N{};        ///< on the hands: left, right
   std::uint64_t state_hash = 0;
   std::optional<ExerciseOutcome> exercise;            ///< none if the scene has none
   std::optional<ComplicationsOutcome> complications;  ///< likewise
@@ -134,7 +129,8 @@ std::string report_json(const RunRecorder& recorder, const RunSummary& summary);
 std::string report_html(const RunRecorder& recorder, const RunSummary& summary);
 /// The page for those who look after the machine: times of steps, rows, residuals.
 std::string technical_html(const RunRecorder& recorder, const RunSummary& summary);
-/// Writes report.json, report.html and technical.html into `dir`, which is created. Throws InputError if it cannot.
+/// Writes report.json, metrics.csv, report.html and technical.html into `dir`, which is created. Throws InputError if
+/// it cannot.
 void write_report(const std::filesystem::path& dir, const RunRecorder& recorder, const RunSummary& summary);
 
 }  // namespace insula

@@ -29,10 +29,12 @@ fs::path new_report_folder(const fs::path& root, const std::string& name) {
   throw InputError(root.string() + ": no folder can be made there: " + error.message());
 }
 
-SessionReports::SessionReports(fs::path root, fs::path scene, std::string motion)
+SessionReports::SessionReports(fs::path root, fs::path scene, std::string motion,
+                               std::map<std::string, std::string> fields)
     : root_(std::move(root)),
       scene_(std::move(scene)),
       motion_(std::move(motion)),
+      fields_(std::move(fields)),
       recorder_(root_.empty() ? 0 : RunRecorder::max_samples) {
   if (root_.empty()) return;
   // Reported at the start instead of after an hour of work.
@@ -118,6 +120,7 @@ void SessionReports::write(const Simulation& simulation) {
   summary_.scene = scene_.string();
   summary_.motion = followed_ ? motion_ : "";
   summary_.mode = name_of(mode_);
+  summary_.fields = fields_;
   summary_.fresh_forces_per_s = fresh_forces_per_s();
   const std::tm began = fmt::localtime(began_);
   summary_.began = fmt::format("{:%Y-%m-%d %H:%M:%S}", began);

@@ -9,6 +9,7 @@
 #include <future>
 #include <insula_lcm/device_state_t.hpp>
 #include <insula_lcm/haptic_status_t.hpp>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -28,8 +29,9 @@ std::filesystem::path new_report_folder(const std::filesystem::path& root, const
 class SessionReports {
  public:
   /// root: each report gets a folder there, named by date, time and scene; empty: none are written. motion: that of
-  /// simulated hands.
-  SessionReports(std::filesystem::path root, std::filesystem::path scene, std::string motion);
+  /// simulated hands. fields: RunSummary::fields.
+  SessionReports(std::filesystem::path root, std::filesystem::path scene, std::string motion,
+                 std::map<std::string, std::string> fields = {});
 
   /// Takes the haptic server's messages. The report uses the largest force between two steps, and the mean rate of
   /// fresh forces over the seconds in which a hand had any.
@@ -69,6 +71,7 @@ class SessionReports {
 
   std::filesystem::path root_, scene_;
   std::string motion_;
+  std::map<std::string, std::string> fields_;
   RunRecorder recorder_;
   RunSummary summary_;
   Hands hands_;

@@ -279,6 +279,7 @@ export class Hud {
   }
 
   private showState(s: HudState): void {
+    if (s.metrics !== this.state?.metrics) this.instructor?.showMetrics(s.metrics);
     this.exercise.showState(s);
     if (s.state === 'done' || s.state === 'failed') {
       setText(this.message, s.state === 'done' ? '✓ Exercise complete' : `✗ ${s.message || 'Exercise failed'}`);

@@ -8,13 +8,15 @@ import { ask, message, numberArgument, sceneCommands, takesNumber, type UserComm
 import { ChannelCurves } from './channel_curves';
 import { TimeChart } from './curves';
 import { el } from './dom';
-import { clockText } from './state';
+import { MetricTable } from './metric_table';
+import { clockText, type MetricView } from './state';
 
 const logLines = 120;
 export class InstructorPanel {
   readonly root = el('section', { class: 'panel instructor' });
   private readonly forces = new TimeChart('forces of the hands over ten seconds', 'N', ['left', 'right']);
   private readonly curves = new ChannelCurves();
+  private readonly metrics = new MetricTable('Metrics until now');
   private readonly commands = el('div', { class: 'commands' });
   /** By component and command, what sets a slider to a value that has been set, by whomever. */
   private readonly sliders = new Map<string, { start: number; set: (value: number) => void }>();
@@ -44,6 +46,7 @@ export class InstructorPanel {
       this.log,
       el('h2', {}, 'Forces'),
       this.forces.root,
+      this.metrics.root,
       el('h2', {}, 'Channels'),
       this.curves.root,
     );
@@ -59,6 +62,11 @@ export class InstructorPanel {
       ]),
     );
     this.log.replaceChildren();
+  }
+
+  /** Five times a second. */
+  showMetrics(metrics: readonly MetricView[]): void {
+    this.metrics.show(metrics);
   }
 
   /** forces: of the left and the right hand, N. */

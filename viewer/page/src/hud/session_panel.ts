@@ -63,8 +63,8 @@ export class SessionPanel {
       this.end.close();
       return;
     }
-    // The report's path comes a moment after the end.
-    const key = `${state.state} ${state.report}`;
+    // The last metrics and the report's path come a moment after the end.
+    const key = `${state.state} ${state.report} ${state.metricsAtEnd}`;
     if (key === this.shownEnd) return;
     const first = this.shownEnd === '';
     this.shownEnd = key;

@@ -2,6 +2,7 @@
 // What a trainee reads at the end: goals reached, each fault with its times and what to do, measures beside their
 // limits, clocks, and where the report is. Good and bad have a sign and a word beside their colour.
 import { el } from './dom';
+import { MetricTable } from './metric_table';
 import { valueText } from './progress';
 import type { FaultView, HudState, MeasureView } from './state';
 import { clockText } from './state';
@@ -54,6 +55,12 @@ function measureRow(m: MeasureView): HTMLElement {
   );
 }
 
+function metrics(s: HudState): HTMLElement {
+  const table = new MetricTable('How your hands worked');
+  table.show(s.metrics);
+  return table.root;
+}
+
 export function summaryOf(s: HudState): HTMLElement[] {
   const made = s.faults.filter((f) => f.count > 0);
   const clocks = s.timers.filter((t) => t.elapsedS > 0 && t.limitS > 0);
@@ -79,6 +86,7 @@ export function summaryOf(s: HudState): HTMLElement[] {
         ),
       ),
     ),
+    ...(s.metrics.length > 0 ? [metrics(s)] : []),
     ...(s.report ? [el('p', { class: 'where' }, 'Report: ', el('code', {}, s.report))] : []),
   ];
 }

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The outcome of an exercise in reports for programs: goals, faults, clocks, measures and metrics.
+#pragma once
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/sim/exercise.h"
+
+namespace insula {
+
+/// Copy of an exercise at the time of the report.
+struct ExerciseOutcome {
+  explicit ExerciseOutcome(const Exercise& exercise)
+      : id(exercise.id),
+        title(exercise.title()),
+        text(exercise.text()),
+        log(exercise.log()),
+        metrics(exercise.metrics()) {}
+  std::string id, title, text;
+  ExerciseLog log;
+  std::vector<MetricValue> metrics;
+};
+
+/// {id, title, state, goals, faults, timers, measures}; without an exercise only the lists, empty. The metrics stand
+/// beside it (metrics_report.h).
+nlohmann::ordered_json exercise_json(const std::optional<ExerciseOutcome>& exercise);
+
+}  // namespace insula
