@@ -38,8 +38,6 @@ struct Options : insula::CommandLine {
   insula::RunOptions run;
   insula::EngineOptions engine;
   insula::ReplayOptions replay;
-  insula::RerunOptions rerun;
-  insula::SessionOptions session;
   insula::PlayOptions play;
 };
 
@@ -106,6 +104,7 @@ void add_run(Options& c) {
   command->add_option("--report", o.report, "folder for report.json and report.html");
   command->add_option("--export", o.export_folder, "folder for the bodies' final nodes as .vtu");
   command->add_option("--record", o.record, "session file to record into, usually NAME.insula");
+  insula::add_fields(*command, o.fields);
   add_threads(*command, o.threads);
   add_seed(*command, o.seed);
   command->add_flag("--quiet", o.quiet, "print the last line only");
@@ -129,6 +128,7 @@ void add_engine(Options& c) {
   command->add_option("--report", o.report,
                       "folder for reports of the session, each in a folder of its own named by date and time");
   command->add_option("--record", o.record, "session file to record into (NAME.insula), or a folder for a new one");
+  insula::add_fields(*command, o.fields);
   command->add_option("--mode", o.mode, "how the session begins (default: a demonstration if there is a motion)")
       ->check(CLI::IsMember({"waiting", "demonstration", "practice", "test"}));
   command->add_flag("--keep-bundle", o.keep_bundle, "leave the bundle where it is at the end, for a replay");
@@ -144,29 +144,6 @@ void add_replay(Options& c) {
       ->capture_default_str();
   command->add_flag("--loop", o.loop, "again and again, until Ctrl-C");
   command->callback([&c] { c.chosen = [&](const auto& x) { return insula::cmd_replay(x, c.replay); }; });
-}
-
-void add_sessions(Options& c) {
-  auto* rerun =
-      c.app.add_subcommand("rerun", "the steps of a recorded session again, and whether their bits are the same");
-  rerun->add_option("file", c.rerun.file, "session file")->required();
-  rerun->add_option("--files", c.rerun.places, "folder that has the scene's meshes; may be given several times");
-  rerun->add_option("--report", c.rerun.report, "folder for the report of its last pass through the exercise");
-  add_threads(*rerun, c.rerun.threads);
-  rerun->add_flag("--quiet", c.rerun.quiet, "print the result only");
-  rerun->callback([&c] { c.chosen = [&](const auto& x) { return insula::cmd_rerun(x, c.rerun); }; });
-
-  auto* session = c.app.add_subcommand("session", "what a session file contains, and whether it is whole");
-  session->require_subcommand(1);
-  const auto add = [&](const char* name, const char* doc,
-                       int (*run)(const insula::CommandContext&, const insula::SessionOptions&)) {
-    auto* command = session->add_subcommand(name, doc);
-    command->add_option("file", c.session.file, "session file")->required();
-    command->add_flag("--json", c.session.json, "as JSON");
-    command->callback([&c, run] { c.chosen = [&c, run](const auto& x) { return run(x, c.session); }; });
-  };
-  add("info", "what it contains", insula::cmd_session_info);
-  add("verify", "read all of it, and list what is damaged", insula::cmd_session_verify);
 }
 
 /// What play and view share.
@@ -207,6 +184,7 @@ void add_play(Options& c) {
       "session file to record into (NAME.insula), or a folder for a new one (default: insula/sessions in "
       "the user's data folder)");
   command->add_flag("--no-record", c.no_record, "record nothing");
+  insula::add_fields(*command, o.fields);
   command->add_flag("--no-reload", c.no_reload, "do not load the scene again when one of its files is saved");
   command->callback([&c] {
     c.play.browser = !c.no_browser;
@@ -270,7 +248,7 @@ void add_commands(Options& c) {
   add_devices(c);
   add_run(c);
   add_engine(c);
-  add_sessions(c);
+  insula::add_session_commands(c);
   add_replay(c);
   add_play(c);
   add_view(c);

@@ -11,13 +11,26 @@
 #include "core/bus/bus.h"
 #include "engine/command_line/run.h"
 #include "engine/live/live_engine.h"
+#include "engine/session/session_format.h"
 
 namespace insula {
 
 int cmd_engine(const CommandContext& context, const EngineOptions& o) {
-  LiveOptions options{o.scene,   o.motion, o.bundle_root,        o.duration, o.unthrottled,
-                      o.threads, o.seed,   o.keep_bundle,        o.still,    o.notice,
-                      o.report,  o.record, session_mode(o.mode), {}};
+  LiveOptions options{o.scene,
+                      o.motion,
+                      o.bundle_root,
+                      o.duration,
+                      o.unthrottled,
+                      o.threads,
+                      o.seed,
+                      o.keep_bundle,
+                      o.still,
+                      o.notice,
+                      o.report,
+                      o.record,
+                      session::parse_fields(o.fields),
+                      session_mode(o.mode),
+                      {}};
   const SignalPipe signals{SIGINT, SIGTERM, SIGHUP, SIGUSR1};
   signal(SIGPIPE, SIG_IGN);
 

@@ -11,6 +11,7 @@
 #include "engine/command_line/run.h"
 #include "engine/live/headless.h"
 #include "engine/reports/report_writer.h"
+#include "engine/session/session_format.h"
 #include "engine/session/session_recorder.h"
 
 namespace insula {
@@ -38,7 +39,7 @@ bool begin_recording(const CommandContext& context, const RunOptions& options, c
                      std::unique_ptr<SessionRecorder>& session) {
   if (options.record.empty()) return true;
   try {
-    const SessionAbout about{options.scene, options.motion, "headless"};
+    const SessionAbout about{options.scene, options.motion, "headless", session::parse_fields(options.fields)};
     session = std::make_unique<SessionRecorder>(options.record, simulation, about);
     return true;
   } catch (const InputError& e) {

@@ -7,6 +7,7 @@
 #include "core/base/input_error.h"
 #include "core/bus/channels.h"
 #include "engine/command_line/sessions.h"
+#include "engine/session/session_format.h"
 #include "engine/session/session_reader.h"
 
 namespace insula {
@@ -42,6 +43,17 @@ nlohmann::ordered_json read_through(SessionReader& session) {
   nlohmann::ordered_json json;
   for (const char* key : {"title", "scene", "motion", "mode", "began", "seed", "instruction_set"})
     json[key] = session.about(key);
+  json["fields"] = nlohmann::ordered_json::object();
+  for (const auto& [key, value] : file.descriptions().at("session"))
+    if (key.starts_with(session::field_prefix))
+      json["fields"][key.substr(std::string(session::field_prefix).size())] = value;
+  json["passes"] = nlohmann::ordered_json::array();
+  for (const auto& pass : session.passes())
+    json["passes"].push_back({{"mode", pass.mode},
+                              {"state", pass.state},
+                              {"seconds", pass.time_s},
+                              {"whole", pass.last_of_pass},
+                              {"metrics", pass.values.size()}});
   json["written_by"] = file.library();
   json["bytes"] = file.bytes();
   json["ended"] = file.ended();
@@ -60,8 +72,13 @@ nlohmann::ordered_json read_through(SessionReader& session) {
 
 void print(std::ostream& out, const nlohmann::ordered_json& json) {
   for (const auto& [key, value] : json.items())
-    if (!value.is_array())
+    if (!value.is_array() && !value.is_object())
       fmt::print(out, "{:<16} {}\n", key, value.is_string() ? value.get<std::string>() : value.dump());
+  for (const auto& [name, value] : json["fields"].items())
+    fmt::print(out, "field            {}={}\n", name, value.get<std::string>());
+  for (const auto& pass : json["passes"])
+    fmt::print(out, "pass             {} {} after {:.1f} s\n", pass["mode"].get<std::string>(),
+               pass["state"].get<std::string>(), pass["seconds"].get<double>());
 }
 
 }  // namespace

@@ -6,8 +6,11 @@
 #include <cstdint>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "core/base/input_error.h"
 #include "core/params/option.h"
+#include "engine/session/session_format.h"
 
 namespace insula {
 
@@ -20,6 +23,20 @@ inline QuantityOption seconds(std::string doc) { return {.bare = "s", .min = "0 
 
 inline void add_seed(CLI::App& command, std::uint64_t& seed) {
   command.add_option("--seed", seed, "what complications are drawn from; 0: the scene's own seed");
+}
+
+inline void add_fields(CLI::App& command, std::vector<std::string>& fields) {
+  command
+      .add_option("--field", fields,
+                  "NAME=VALUE, kept in the recording, such as person=P07 or level=expert; may be given several times")
+      ->check([](const std::string& text) {
+        try {
+          session::parse_field(text);
+          return std::string();
+        } catch (const InputError& e) {
+          return std::string(e.what());
+        }
+      });
 }
 
 inline void add_threads(CLI::App& command, int& threads) {

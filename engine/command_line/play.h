@@ -26,8 +26,9 @@ struct PlayOptions {
       keep_bundle;               ///< folder in which the viewer's bundles are kept; empty: they are removed at the end
   std::filesystem::path report;  ///< folder for the session's reports; empty: none
   std::filesystem::path record;  ///< session file, or folder of a new one; empty: nothing is recorded
-  bool reload = true;            ///< loads the scene again when one of its files is saved
-  bool view = false;             ///< shows the scene: time stands still, no hands (insula view)
+  std::vector<std::string> fields;                  ///< NAME=VALUE, of the recording
+  bool reload = true;                               ///< loads the scene again when one of its files is saved
+  bool view = false;                                ///< shows the scene: time stands still, no hands (insula view)
   std::vector<std::filesystem::path> plugin_paths;  ///< shared plugins, or folders of them, for the engine
 };
 

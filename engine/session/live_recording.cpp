@@ -54,6 +54,10 @@ void LiveRecording::step(const Simulation& simulation) {
   recorder_->step(simulation);
 }
 
+void LiveRecording::end_pass(const Simulation& simulation) {
+  if (recorder_ && stepped_) recorder_->end_pass(simulation);
+}
+
 void LiveRecording::note(const std::vector<Event>& events) {
   if (recorder_) recorder_->note(events);
 }

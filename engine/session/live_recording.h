@@ -24,6 +24,8 @@ class LiveRecording {
   LiveRecording(const std::filesystem::path& wanted, const Simulation& simulation, const SessionAbout& about);
   /// After each step.
   void step(const Simulation& simulation);
+  /// Before a reset.
+  void end_pass(const Simulation& simulation);
   /// Events that belong to no step.
   void note(const std::vector<Event>& events);
   /// A message on both hands (SessionRecorder::hands()).

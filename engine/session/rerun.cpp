@@ -77,7 +77,7 @@ RerunResult rerun(SessionReader& session, const Registry& registry, const RerunS
   const fs::path scene = restore_scene_files(session.container(), places, scratch.path());
   const double step_s = session.step_s();
   if (!(step_s >= 0 && step_s < 1)) throw InputError("the recording's step is out of range");
-  SimulationResult loaded = load_simulation(scene, registry, settings.threads, step_s);
+  SimulationResult loaded = load_simulation_with_exercise_of(settings.rules, scene, registry, settings.threads, step_s);
   if (!loaded.simulation) throw InputError("the recorded scene has errors:\n" + loaded.diagnostics.format());
   Simulation& simulation = *loaded.simulation;
 

@@ -29,7 +29,8 @@ struct RerunSettings {
   std::vector<std::filesystem::path> places =
       {};  ///< where meshes are; also searched: the folder of the recording's scene
   int threads = 0;
-  double tolerance = 1e-3;  ///< of largest_change
+  double tolerance = 1e-3;           ///< of largest_change
+  std::filesystem::path rules = {};  ///< scene whose exercise takes the place of the recorded one; empty: none
 };
 
 /// after: called after each step. at_end: after the last one. Both may be empty. Throws InputError if the scene cannot

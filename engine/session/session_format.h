@@ -2,14 +2,28 @@
 // Names and texts of session files, for those who write and those who read them.
 #pragma once
 #include <cstdint>
+#include <map>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 namespace insula::session {
 
 inline constexpr const char* profile = "insula";
 inline constexpr const char* extension = ".insula";
 inline constexpr const char* step_topic = "STEP";  ///< session_step_t; a second one of a number only adds the hash
+
+inline constexpr const char* metrics_topic = "METRICS";    ///< JSON, once a second and at the end of a pass
+inline constexpr const char* channels_topic = "CHANNELS";  ///< JSON, ten times a second
+inline constexpr const char* channel_names = "channels";   ///< description: number in CHANNELS, name and unit
+
+/// In the description, before the names of what a person said of the session.
+inline constexpr const char* field_prefix = "field.";
+/// "level=expert" as name and value. Throws InputError that says what a field must look like.
+std::pair<std::string, std::string> parse_field(const std::string& text);
+/// All of them; the last one of a name counts.
+std::map<std::string, std::string> parse_fields(const std::vector<std::string>& texts);
 
 /// The program that writes, with its version.
 std::string library();

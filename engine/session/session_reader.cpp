@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <insula_lcm/device_state_t.hpp>
+#include <nlohmann/json.hpp>
 
 #include "core/base/input_error.h"
 #include "core/bus/channels.h"
@@ -53,6 +54,44 @@ void SessionReader::steps(const std::function<bool(const insula_lcm::session_ste
 
 void SessionReader::events(const std::function<bool(const insula_lcm::sim_event_t&)>& take) {
   read_all(file_, channel::sim_event, damaged_, take);
+}
+
+std::string SessionReader::field(const std::string& name) const {
+  const std::string said = about(session::field_prefix + name);
+  return said.empty() ? about(name) : said;
+}
+
+void SessionReader::metrics(const std::function<bool(const Metrics&)>& take) {
+  const auto channel = file_.channel(session::metrics_topic);
+  if (!channel) return;
+  file_.read({*channel}, 0, UINT64_MAX, [&](const McapReader::Message& m) {
+    try {
+      const auto json = nlohmann::json::parse(m.data.begin(), m.data.end());
+      Metrics out;
+      out.number = json.at("number");
+      out.pass = json.at("pass");
+      out.time_s = json.at("time_s");
+      out.mode = json.at("mode");
+      out.state = json.at("state");
+      out.last_of_pass = json.at("last_of_pass");
+      for (const auto& v : json.at("metrics"))
+        out.values.push_back({v.at("id"), v.at("hand"), v.at("unit"), v.at("better"), v.at("value")});
+      return take(out);
+    } catch (const nlohmann::json::exception&) {
+      ++damaged_;
+      return true;
+    }
+  });
+}
+
+std::vector<SessionReader::Metrics> SessionReader::passes() {
+  std::vector<Metrics> out;
+  metrics([&](const Metrics& m) {
+    if (out.empty() || out.back().pass != m.pass) out.push_back(m);
+    else out.back() = m;
+    return true;
+  });
+  return out;
 }
 
 std::vector<std::array<double, 2>> SessionReader::hand_forces() {

@@ -20,12 +20,30 @@ class SessionReader {
 
   /// A value of the session's description; empty if it has none.
   std::string about(const std::string& key) const;
+  /// What the person said of the session ("person", "level"), else the value of that key; empty: neither.
+  std::string field(const std::string& name) const;
   /// Time step, s; 0 if the recording does not say it.
   double step_s() const;
   McapReader& container() { return file_; }
   /// All whole steps in order, until `take` returns false. Steps that are no valid messages are counted in damaged().
   void steps(const std::function<bool(const insula_lcm::session_step_t&)>& take);
   void events(const std::function<bool(const insula_lcm::sim_event_t&)>& take);
+  /// The metrics of a moment, as recorded.
+  struct Metrics {
+    std::int64_t number = 0;  ///< of the step
+    int pass = 0;             ///< through the exercise, from 1
+    double time_s = 0;        ///< of the pass
+    std::string mode, state;  ///< state: "running", "done", "failed"
+    bool last_of_pass = false;
+    struct Value {
+      std::string id, hand, unit, better;
+      double value = 0;
+    };
+    std::vector<Value> values;
+  };
+  void metrics(const std::function<bool(const Metrics&)>& take);
+  /// The last ones of each pass, in order.
+  std::vector<Metrics> passes();
   /// The largest force that was sent to each hand, N, before the step of each number from 0; for sessions of persons.
   std::vector<std::array<double, 2>> hand_forces();
   /// Messages that were whole in the file and are not valid.

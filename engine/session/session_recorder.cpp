@@ -5,9 +5,11 @@
 #include <fmt/chrono.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <ctime>
+#include <nlohmann/json.hpp>
 
 #include "core/base/input_error.h"
 #include "core/bus/channels.h"
@@ -49,7 +51,7 @@ std::int64_t SessionRecorder::steps_a_second(double h) { return std::max<std::in
 
 SessionRecorder::SessionRecorder(const std::filesystem::path& file, const Simulation& simulation,
                                  const SessionAbout& about)
-    : file_(file), out_(std::make_unique<McapWriter>(file, session::profile, session::library())) {
+    : file_(file), out_(std::make_unique<McapWriter>(file, session::profile, session::library())), mode_(about.mode) {
   const SceneFileList files = list_scene_files(about.scene);
   mcap::Text text = {{"scene", about.scene.string()},
                      {"scene_file", files.scene},
@@ -61,6 +63,7 @@ SessionRecorder::SessionRecorder(const std::filesystem::path& file, const Simula
                      {"step_s", session::exact(simulation.h())},
                      {"instruction_set", session::instruction_set()},
                      {"start_hash", session::hex(simulation.state_hash())}};
+  for (const auto& [name, value] : about.fields) text[session::field_prefix + name] = value;
   if (const Complications* c = simulation.complications()) text["seed"] = std::to_string(c->drawn_from());
   out_->describe("session", text);
   put_scene_files(*out_, files);
@@ -68,6 +71,12 @@ SessionRecorder::SessionRecorder(const std::filesystem::path& file, const Simula
   step_channel_ = out_->add_channel(session::step_topic, schema("session_step_t"), "lcm");
   event_channel_ = out_->add_channel(std::string(channel::sim_event), schema("sim_event_t"), "lcm");
   hands_channel_ = out_->add_channel(std::string(channel::device_state), schema("device_state_t"), "lcm");
+  metrics_channel_ = out_->add_channel(session::metrics_topic, 0, "json");
+  channels_channel_ = out_->add_channel(session::channels_topic, 0, "json");
+  mcap::Text names;
+  for (const ChannelEntry& e : simulation.channels().entries())
+    names[fmt::format("{:04}", names.size())] = fmt::format("{} {}", e.id, e.channel->quantity().si);
+  out_->describe(session::channel_names, names);
   waiting_.reserve(1u << 20);
   thread_ = std::thread([this] { write_until_closed(); });
 }
@@ -77,8 +86,18 @@ SessionRecorder::~SessionRecorder() { finish(); }
 void SessionRecorder::step(const Simulation& simulation) {
   ++number_;
   time_ns_ = std::uint64_t(std::llround(double(number_) * simulation.h() * 1e9));
-  put_step(simulation, number_ % steps_a_second(simulation.h()) == 0);
+  const std::int64_t a_second = steps_a_second(simulation.h());
+  put_step(simulation, number_ % a_second == 0);
   put_events(simulation.events());
+  if (simulation.steps() == 1) {
+    ++pass_;
+    exercise_state_ = ExerciseState::running;
+  }
+  const Exercise* exercise = simulation.exercise();
+  const bool ended = exercise && exercise->log().state() != exercise_state_;
+  if (ended) exercise_state_ = exercise->log().state();
+  if (ended || number_ % a_second == 0) put_metrics(simulation, ended);
+  if (number_ % std::max<std::int64_t>(1, a_second / channels_a_second) == 0) put_channels(simulation);
   hands_left_ = most_hands;
 }
 
@@ -86,7 +105,48 @@ void SessionRecorder::hands(mcap::Bytes device_state) {
   if (hands_left_-- > 0) put(hands_channel_, device_state);
 }
 
-void SessionRecorder::note(const std::vector<Event>& events) { put_events(events); }
+void SessionRecorder::end_pass(const Simulation& simulation) {
+  if (number_ > 0 && pass_ > 0) put_metrics(simulation, true);
+}
+
+void SessionRecorder::note(const std::vector<Event>& events) {
+  for (const Event& e : events)
+    if (e.kind == "mode") mode_ = e.id;
+  put_events(events);
+}
+
+void SessionRecorder::put_text(std::uint16_t channel, const std::string& text) {
+  put(channel, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+}
+
+void SessionRecorder::put_metrics(const Simulation& simulation, bool last_of_pass) {
+  const Exercise* exercise = simulation.exercise();
+  if (!exercise) return;
+  static constexpr const char* states[] = {"running", "done", "failed"};
+  nlohmann::ordered_json values = nlohmann::ordered_json::array();
+  for (const MetricValue& m : exercise->metrics())
+    if (m.known)
+      values.push_back({{"id", m.id},
+                        {"hand", hand_name(m.hand)},
+                        {"unit", m.unit},
+                        {"value", m.value},
+                        {"better", better_name(m.better)}});
+  const nlohmann::ordered_json message = {{"number", number_},
+                                          {"time_s", simulation.time()},
+                                          {"pass", pass_},
+                                          {"mode", mode_},
+                                          {"state", states[int(exercise->log().state())]},
+                                          {"last_of_pass", last_of_pass},
+                                          {"metrics", std::move(values)}};
+  put_text(metrics_channel_, message.dump());
+}
+
+/// [time in s, values in SI in the order of the description; null: not known].
+void SessionRecorder::put_channels(const Simulation& simulation) {
+  std::string text = fmt::format("[{:.4f}", simulation.time());
+  for (const double v : simulation.report().channels) text += std::isfinite(v) ? fmt::format(",{:.6g}", v) : ",null";
+  put_text(channels_channel_, text + "]");
+}
 
 void SessionRecorder::put_events(const std::vector<Event>& events) {
   for (const Event& e : events) {
@@ -175,6 +235,7 @@ void SessionRecorder::write_until_closed() {
 void SessionRecorder::close(const Simulation& simulation) {
   // The last step once more with its hash, unless it has it.
   if (number_ > 0 && !last_is_hashed_ && thread_.joinable()) put_step(simulation, true);
+  if (thread_.joinable()) end_pass(simulation);
   finish();
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Records a run into one file: what the simulation is given in each step, the hash of its state once a second, and its
-// events. docs/sessions.md describes the file.
+// Records a run into one file: what the simulation is given in each step, the hash of its state and the metrics once a
+// second, channels, and events. docs/sessions.md describes the file.
 //
 // step() copies a few hundred bytes into a buffer. A thread compresses and writes them, so a slow disk never delays a
 // step. When the file cannot be written, the recording ends, failure() says why, and the run continues.
@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <insula_lcm/session_step_t.hpp>
 #include <insula_lcm/sim_event_t.hpp>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -25,6 +26,8 @@ namespace insula {
 struct SessionAbout {
   std::filesystem::path scene;
   std::string motion, mode;  ///< as named by the person; empty: none
+  /// What the person says of the session: "person", "level", ... Names must be those of valid_field().
+  std::map<std::string, std::string> fields = {};
 };
 
 class SessionRecorder {
@@ -38,7 +41,9 @@ class SessionRecorder {
 
   /// After each step.
   void step(const Simulation& simulation);
-  /// Events that belong to no step.
+  /// Before a reset: the metrics of the pass through the exercise that ends.
+  void end_pass(const Simulation& simulation);
+  /// Events that belong to no step. An event "mode" says in which mode the session goes on.
   void note(const std::vector<Event>& events);
   /// The haptic server's message on both hands, as it came: poses and the forces that were sent. While no step is made,
   /// only the first ones are kept.
@@ -52,6 +57,7 @@ class SessionRecorder {
 
   /// Number of steps from one kept hash to the next. A rerun compares at these places.
   static std::int64_t steps_a_second(double h);
+  static constexpr int channels_a_second = 10;
   /// Memory for messages that the disk has not taken. With more the recording ends.
   static constexpr std::size_t most_waiting_bytes = 64u << 20;
 
@@ -59,16 +65,22 @@ class SessionRecorder {
   void put(std::uint16_t channel, mcap::Bytes message);
   void put_step(const Simulation& simulation, bool hashed);
   void put_events(const std::vector<Event>& events);
+  void put_metrics(const Simulation& simulation, bool last_of_pass);
+  void put_channels(const Simulation& simulation);
+  void put_text(std::uint16_t channel, const std::string& text);
   void write_until_closed();
   void finish();
   void fail(const std::string& why);
 
   std::filesystem::path file_;
   std::unique_ptr<McapWriter> out_;  ///< the thread's once it runs
-  std::uint16_t step_channel_ = 0, event_channel_ = 0, hands_channel_ = 0;
+  std::uint16_t step_channel_ = 0, event_channel_ = 0, hands_channel_ = 0, metrics_channel_ = 0, channels_channel_ = 0;
   std::int64_t number_ = 0, event_number_ = 0;
   std::uint64_t time_ns_ = 0;  ///< of the recording: that of all steps together
   bool last_is_hashed_ = false;
+  int pass_ = 0;  ///< number of the pass through the exercise, from 1
+  ExerciseState exercise_state_ = ExerciseState::running;
+  std::string mode_;
   int hands_left_ = 0;  ///< messages on hands that are kept until the next step
   insula_lcm::session_step_t message_{};
   insula_lcm::sim_event_t event_{};
