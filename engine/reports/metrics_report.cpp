@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/reports/csv.h"
 #include "engine/reports/svg_plot.h"
 
 namespace insula {
@@ -13,12 +14,6 @@ std::string shown_value(const MetricValue* m) {
   std::string number = fmt::format("{:.{}f}", m->value, m->digits);
   if (number.front() == '-' && number.find_first_not_of("-0.") == std::string::npos) number.erase(0, 1);
   return m->unit.empty() ? number : number + " " + m->unit;
-}
-
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
-  return out + "\"";
 }
 
 }  // namespace
@@ -66,8 +61,8 @@ std::string metrics_html(const std::vector<MetricValue>& metrics) {
 std::string metrics_csv(const std::vector<MetricValue>& metrics) {
   std::string out = "id,hand,value,unit,better,text\n";
   for (const MetricValue& m : metrics)
-    out += fmt::format("{},{},{},{},{},{}\n", quoted(m.id), hand_name(m.hand),
-                       m.known ? fmt::format("{}", m.value) : "", m.unit, better_name(m.better), quoted(m.text));
+    out += fmt::format("{},{},{},{},{},{}\n", csv_text(m.id), hand_name(m.hand),
+                       m.known ? fmt::format("{}", m.value) : "", m.unit, better_name(m.better), csv_text(m.text));
   return out;
 }
 

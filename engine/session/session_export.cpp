@@ -14,6 +14,7 @@
 #include "core/base/input_error.h"
 #include "core/bus/channels.h"
 #include "core/bus/codec.h"
+#include "engine/reports/csv.h"
 #include "engine/session/session_format.h"
 
 namespace insula {
@@ -32,7 +33,7 @@ class Table {
         columns_(std::move(columns)) {
     if (json_) out_ << "[";
     else
-      for (std::size_t i = 0; i < columns_.size(); ++i) out_ << (i ? "," : "") << quoted(columns_[i]);
+      for (std::size_t i = 0; i < columns_.size(); ++i) out_ << (i ? "," : "") << csv_text(columns_[i]);
   }
   void row(const std::vector<Json>& values) {
     if (json_) {
@@ -44,7 +45,7 @@ class Table {
     out_ << "\n";
     for (std::size_t i = 0; i < values.size(); ++i) {
       out_ << (i ? "," : "");
-      if (values[i].is_string()) out_ << quoted(values[i].get<std::string>());
+      if (values[i].is_string()) out_ << csv_text(values[i].get<std::string>());
       else if (!values[i].is_null()) out_ << values[i].dump();
     }
   }
@@ -56,12 +57,6 @@ class Table {
   }
 
  private:
-  static std::string quoted(const std::string& text) {
-    if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-    std::string out = "\"";
-    for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
-    return out + "\"";
-  }
   fs::path file_;
   std::ofstream out_;
   bool json_;

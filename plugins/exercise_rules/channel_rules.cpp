@@ -4,6 +4,7 @@
 // `grace`, and counts again once the channel has come back by a tenth of the limit.
 #include "plugins/exercise_rules/channel_rules.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/base/text.h"
@@ -12,6 +13,18 @@
 #include "plugins/exercise_rules/register.h"
 
 namespace insula {
+
+void check_event(PrepareContext& context, const Simulation& simulation, const Component& owner,
+                 const Param<std::string>& event) {
+  std::vector<std::string> known;
+  for (const Component* c : simulation.scene().components())
+    for (const EventKind* e : c->event_kinds()) known.push_back(e->name());
+  if (std::find(known.begin(), known.end(), event()) != known.end()) return;
+  const std::string near = nearest_name(event(), known);
+  owner.error(context, event,
+              "no component of the scene has the event " + in_quotes(event()) +
+                  (near.empty() ? "" : "; did you mean " + in_quotes(near) + "?"));
+}
 
 bool ChannelWatch::find(PrepareContext& context, const Simulation& simulation, const Component& rule,
                         const Param<std::string>& channel) {

@@ -8,6 +8,10 @@
 
 namespace insula {
 
+/// Reports an error at the parameter if no component of the scene declares an event of that name.
+void check_event(PrepareContext& context, const Simulation& simulation, const Component& owner,
+                 const Param<std::string>& event);
+
 /// A channel against a limit. Reports a wrong name or unit at its parameter.
 class ChannelWatch {
  public:

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/text.h"
 #include "core/registry/registry.h"
 #include "plugins/exercise_rules/channel_rules.h"
 #include "plugins/exercise_rules/register.h"
@@ -61,7 +60,7 @@ class GoalTwoHands final : public ExerciseRule {
     if (on().empty() == channel().empty())
       return error(context, "needs either \"on\" or \"channel\" to see the other hand's work");
     if (!channel().empty()) watch_.connect(context, simulation, *this, channel, limit);
-    check_event(context, simulation);
+    check_event(context, simulation, *this, event);
     reset();
   }
 
@@ -81,16 +80,6 @@ class GoalTwoHands final : public ExerciseRule {
   }
 
  private:
-  void check_event(PrepareContext& context, const Simulation& simulation) const {
-    std::vector<std::string> known;
-    for (const Component* c : simulation.scene().components())
-      for (const EventKind* e : c->event_kinds()) known.push_back(e->name());
-    if (std::find(known.begin(), known.end(), event()) != known.end()) return;
-    const std::string near = nearest_name(event(), known);
-    error(context, event,
-          "no component of the scene has the event " + in_quotes(event()) +
-              (near.empty() ? "" : "; did you mean " + in_quotes(near) + "?"));
-  }
   /// Whether this hand holds or presses one of the bodies, or the channel is above its limit.
   bool works(const StepReport& r, std::size_t hand) const {
     if (!channel().empty()) return watch_.beyond(watch_.value(r), ChannelWatch::Comparison::above);

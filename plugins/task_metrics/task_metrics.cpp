@@ -14,7 +14,6 @@ exercise runs. The id of an `event_metric` or a `channel_metric` is the name of 
 #include <cmath>
 #include <memory>
 
-#include "core/base/text.h"
 #include "core/registry/registry.h"
 #include "core/sim/metric.h"
 #include "core/sim/simulation.h"
@@ -138,15 +137,7 @@ class EventMetric final : public AuthoredMetric {
       this, {.name = "each_hand", .fallback = "false", .doc = "whether the events of each hand are counted for it"}};
 
   void declare(PrepareContext& context, const Simulation& simulation) override {
-    std::vector<std::string> known;
-    for (const Component* c : simulation.scene().components())
-      for (const EventKind* e : c->event_kinds()) known.push_back(e->name());
-    if (std::find(known.begin(), known.end(), event()) == known.end()) {
-      const std::string near = nearest_name(event(), known);
-      error(context, event,
-            "no component of the scene has the event " + in_quotes(event()) +
-                (near.empty() ? "" : "; did you mean " + in_quotes(near) + "?"));
-    }
+    check_event(context, simulation, *this, event);
     make(DisplayedQuantity::quantity_of<Scalar>(), each_hand() ? Of::each_hand : Of::both_hands, "", 0);
   }
   void observe(const StepReport& r) override {

@@ -14,7 +14,9 @@ class LiveSession : public ::testing::Test {
   void SetUp() override {
     if (!multicast_works()) GTEST_SKIP() << "no multicast on this machine";
     session_ = std::make_unique<PlaySession>();
-    ASSERT_EQ(session_->start({"--report", reports().string()}), "");
+    std::vector<std::string> options{"--report", reports().string()};
+    prepare(options);
+    ASSERT_EQ(session_->start(options), "");
     watcher_ = std::make_unique<Watcher>(session_->url());
     ASSERT_TRUE(wait_for([&] {
       return session_->port() > 0 && watcher_->frames_now() > 20 && watcher_->last() && watcher_->status().rows >= 0;
@@ -26,6 +28,8 @@ class LiveSession : public ::testing::Test {
     if (HasFailure()) std::fputs(session_->log().c_str(), stderr);
   }
 
+  /// Before the session starts: may change its files and its options.
+  virtual void prepare(std::vector<std::string>&) {}
   fs::path reports() const { return session_->folder() / "reports"; }
   /// Number of complete report folders of this session.
   int reports_written() const {

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "tests/process/live_session.h"
 
@@ -15,6 +17,17 @@ using namespace testing;
 
 class Recording : public LiveSession {
  protected:
+  /// Adds an exercise with metrics.
+  void prepare(std::vector<std::string>& options) override {
+    std::stringstream text;
+    text << std::ifstream(scene()).rdbuf();
+    std::string with = text.str();
+    with.insert(with.find("</scene>"),
+                R"(<exercise id="e" title="Press"><hand_metrics/><bimanual_metrics/></exercise>)");
+    std::ofstream(scene()) << with;
+    options.insert(options.end(), {"--mode", "practice", "--field", "person=P07"});
+  }
+  fs::path scene() const { return session_->folder() / "press.xml"; }
   /// Exit status of `insula COMMAND`, whose output goes to a file of the session's folder.
   int insula(const std::string& command) const {
     const std::string line =
@@ -71,12 +84,37 @@ TEST_F(Recording, IsMadeByItselfAndHasTheSameBitsAgain) {
   EXPECT_GE(json["commands"], 2);
   EXPECT_GT(json["steps"], 100);
   EXPECT_GT(json["device_states"], json["steps"]) << "250 a second and 60";
+  EXPECT_EQ(json["fields"]["person"], "P07");
   EXPECT_EQ(insula("session verify " + files()[0].string()), 0) << said();
   const fs::path again = session_->folder() / "again";
   EXPECT_EQ(insula("rerun " + files()[0].string() + " --report " + again.string()), 0) << said();
+  // Every metric that was recorded has the same bits again.
+  EXPECT_EQ(insula("score --json " + files()[0].string()), 0) << said();
+  const auto scored = nlohmann::json::parse(said())[0];
+  EXPECT_GT(scored["metrics_again"]["compared"], 50);
+  EXPECT_EQ(scored["metrics_again"]["different"], 0);
+  EXPECT_EQ(json["passes"].size(), 2u) << "before and after the reset";
   // The report of the last pass is that of the live session.
   const nlohmann::json live = report(last_report()), rerun = report(again);
-  for (const char* key : {"steps", "force_on", "state_hash", "channels"}) EXPECT_EQ(live[key], rerun[key]) << key;
+  EXPECT_EQ(live["fields"]["person"], "P07");
+  for (const char* key : {"steps", "force_on", "state_hash", "channels", "metrics"})
+    EXPECT_EQ(live[key], rerun[key]) << key;
+}
+
+TEST_F(Recording, OfAPersonIsForgottenWithItsReports) {
+  watcher_->ask("reset");
+  ASSERT_TRUE(wait_for([&] { return reports_written() == 1; })) << session_->log();
+  session_->end();
+  ASSERT_EQ(files().size(), 1u);
+  const std::string folders = " --folder " + files()[0].parent_path().string() + " --folder " + reports().string();
+  EXPECT_EQ(insula("session forget P0" + folders), 0);
+  EXPECT_NE(said().find("there is nothing"), std::string::npos) << said();
+  EXPECT_EQ(insula("session forget P07 --list" + folders), 0);
+  EXPECT_NE(said().find(files()[0].string()), std::string::npos);
+  ASSERT_EQ(files().size(), 1u) << "only listed";
+  EXPECT_EQ(insula("session forget P07" + folders), 0);
+  EXPECT_TRUE(files().empty());
+  EXPECT_EQ(reports_written(), 0);
 }
 
 TEST_F(Recording, OfAKilledEngineHasAllButTheLastMoment) {
