@@ -10,6 +10,7 @@ inline constexpr std::string_view haptic_problem = "HAPTIC_PROBLEM";  ///< hapti
 inline constexpr std::string_view device_state = "DEVICE_STATE";      ///< device_state_t, haptic server -> all
 inline constexpr std::string_view haptic_status = "HAPTIC_STATUS";    ///< haptic_status_t, haptic server -> all
 inline constexpr std::string_view render_frame = "RENDER_FRAME";      ///< render_frame_t, engine -> viewers
+inline constexpr std::string_view metrics = "METRICS";                ///< metrics_t, engine -> viewers
 inline constexpr std::string_view scene_info = "SCENE_INFO";          ///< scene_info_t, engine -> all
 inline constexpr std::string_view sim_event = "SIM_EVENT";            ///< sim_event_t, engine -> all
 inline constexpr std::string_view user_command = "USER_COMMAND";      ///< user_command_t, viewer -> engine

@@ -72,6 +72,14 @@ bool well_formed(const insula_lcm::haptic_status_t* type, Bytes bytes) {
   return in.at_end();
 }
 
+bool well_formed(const insula_lcm::metrics_t* type, Bytes bytes) {
+  ByteReader in(bytes);
+  if (!starts_as(in, type)) return false;
+  in.take(2 * size_i64 + size_f64 + size_i8);
+  in.skip_string();
+  return in.at_end();
+}
+
 bool well_formed(const insula_lcm::render_frame_t* type, Bytes bytes) {
   ByteReader in(bytes);
   if (!starts_as(in, type)) return false;

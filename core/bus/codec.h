@@ -13,6 +13,7 @@
 #include <insula_lcm/device_state_t.hpp>
 #include <insula_lcm/hand_input_t.hpp>
 #include <insula_lcm/haptic_status_t.hpp>
+#include <insula_lcm/metrics_t.hpp>
 #include <insula_lcm/render_frame_t.hpp>
 #include <insula_lcm/scene_info_t.hpp>
 #include <insula_lcm/session_step_t.hpp>
@@ -34,6 +35,7 @@ namespace insula {
 bool well_formed(const insula_lcm::device_state_t*, Bytes bytes);
 bool well_formed(const insula_lcm::hand_input_t*, Bytes bytes);
 bool well_formed(const insula_lcm::haptic_status_t*, Bytes bytes);
+bool well_formed(const insula_lcm::metrics_t*, Bytes bytes);
 bool well_formed(const insula_lcm::render_frame_t*, Bytes bytes);
 bool well_formed(const insula_lcm::scene_info_t*, Bytes bytes);
 bool well_formed(const insula_lcm::session_step_t*, Bytes bytes);

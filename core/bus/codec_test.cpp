@@ -109,6 +109,16 @@ insula_lcm::render_frame_t sample() {
   return m;
 }
 template <>
+insula_lcm::metrics_t sample() {
+  insula_lcm::metrics_t m{};
+  m.session = 11;
+  m.time_us = 4'711;
+  m.sim_time_s = 12.5;
+  m.at_end = 1;
+  m.json = R"([{"id":"path_length","hand":"left","unit":"mm","value":12.5,"better":"low"}])";
+  return m;
+}
+template <>
 insula_lcm::scene_info_t sample() {
   insula_lcm::scene_info_t m{};
   m.session = 11;
@@ -168,8 +178,8 @@ Buffer encoded(const T& m) {
 template <class T>
 class Codec : public ::testing::Test {};
 using Types = ::testing::Types<insula_lcm::device_state_t, insula_lcm::hand_input_t, insula_lcm::haptic_status_t,
-                               insula_lcm::render_frame_t, insula_lcm::scene_info_t, insula_lcm::session_step_t,
-                               insula_lcm::sim_event_t, insula_lcm::user_command_t>;
+                               insula_lcm::metrics_t, insula_lcm::render_frame_t, insula_lcm::scene_info_t,
+                               insula_lcm::session_step_t, insula_lcm::sim_event_t, insula_lcm::user_command_t>;
 TYPED_TEST_SUITE(Codec, Types);
 
 TYPED_TEST(Codec, RoundTrip) {
@@ -222,6 +232,7 @@ TYPED_TEST(Codec, OtherTypesAreRefused) {
   taken += decode<insula_lcm::device_state_t>(bytes).has_value();
   taken += decode<insula_lcm::hand_input_t>(bytes).has_value();
   taken += decode<insula_lcm::haptic_status_t>(bytes).has_value();
+  taken += decode<insula_lcm::metrics_t>(bytes).has_value();
   taken += decode<insula_lcm::render_frame_t>(bytes).has_value();
   taken += decode<insula_lcm::scene_info_t>(bytes).has_value();
   taken += decode<insula_lcm::session_step_t>(bytes).has_value();
@@ -285,6 +296,9 @@ TEST(Plausible, Others) {
   expect_refused<insula_lcm::haptic_status_t>("energy", [](auto& m) { m.given_mJ[0] = NAN; });
   expect_refused<insula_lcm::haptic_status_t>("scale", [](auto& m) { m.force_scale = -1; });
   expect_refused<insula_lcm::haptic_status_t>("negative", [](auto& m) { m.missed_ticks = -1; });
+  expect_refused<insula_lcm::metrics_t>("json", [](auto& m) { m.json = "[{"; });
+  expect_refused<insula_lcm::metrics_t>("time", [](auto& m) { m.sim_time_s = NAN; });
+  expect_refused<insula_lcm::metrics_t>("flag", [](auto& m) { m.at_end = 2; });
   expect_refused<insula_lcm::scene_info_t>("state", [](auto& m) { m.state = "lost"; });
   expect_refused<insula_lcm::scene_info_t>("NUL", [](auto& m) { m.bundle = std::string("a\0b", 3); });
   expect_refused<insula_lcm::session_step_t>("number", [](auto& m) { m.number = 0; });

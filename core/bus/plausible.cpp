@@ -145,6 +145,15 @@ bool plausible(const insula_lcm::render_frame_t& m, std::string& why) {
   return true;
 }
 
+bool plausible(const insula_lcm::metrics_t& m, std::string& why) {
+  if (m.session < 0 || m.time_us < 0) return fail(why, "negative session or time");
+  if (!non_negative(m.sim_time_s, max_seconds)) return fail(why, "simulated time out of range");
+  if (!flag_ok(m.at_end)) return fail(why, "flag is neither 0 nor 1");
+  if (!text_ok(m.json, long_text)) return fail(why, "json too long");
+  if (!nlohmann::json::accept(m.json)) return fail(why, "json is no JSON");
+  return true;
+}
+
 bool plausible(const insula_lcm::scene_info_t& m, std::string& why) {
   if (m.session < 0 || m.time_us < 0) return fail(why, "negative session or time");
   for (const std::string* s : {&m.scene, &m.title, &m.bundle, &m.motion})

@@ -5,6 +5,7 @@
 #include <insula_lcm/device_state_t.hpp>
 #include <insula_lcm/hand_input_t.hpp>
 #include <insula_lcm/haptic_status_t.hpp>
+#include <insula_lcm/metrics_t.hpp>
 #include <insula_lcm/render_frame_t.hpp>
 #include <insula_lcm/scene_info_t.hpp>
 #include <insula_lcm/session_step_t.hpp>
@@ -18,6 +19,7 @@ namespace insula {
 bool plausible(const insula_lcm::device_state_t& message, std::string& why);
 bool plausible(const insula_lcm::hand_input_t& message, std::string& why);
 bool plausible(const insula_lcm::haptic_status_t& message, std::string& why);
+bool plausible(const insula_lcm::metrics_t& message, std::string& why);
 bool plausible(const insula_lcm::render_frame_t& message, std::string& why);
 bool plausible(const insula_lcm::scene_info_t& message, std::string& why);
 bool plausible(const insula_lcm::session_step_t& message, std::string& why);

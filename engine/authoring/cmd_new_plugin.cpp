@@ -20,13 +20,14 @@ namespace {
 struct KindText {
   std::string_view kind, name, doc;
 };
-constexpr std::array<KindText, 6> kinds{{
+constexpr std::array<KindText, 7> kinds{{
     {"constraint", "constraint", "a spring from a surface to a place that never moves"},
     {"force", "force model", "springs along the edges of a soft body"},
     {"body", "rigid body", "a rigid body on a spring, with a stop below"},
     {"support", "support", "holds the nodes within a ball"},
     {"instrument", "instrument", "a probe that marks places while the button is held"},
     {"exercise", "rule of exercises", "reached when a tip has stayed at a place"},
+    {"metric", "metric", "how steadily a tip stays at a place"},
 }};
 
 /// "pia_patch" becomes "PiaPatch".
@@ -60,7 +61,7 @@ std::string name_error(const Registry& registry, const std::string& name) {
   // Words that CMake or the base classes reserve.
   for (const std::string_view word :
        {"all", "clean", "constraint", "force_model", "help", "insula", "install", "instrument", "exercise_rule",
-        "package", "part", "include", "variable", "test", "body", "support"})
+        "metric", "package", "part", "include", "variable", "test", "body", "support"})
     if (name == word) return in_quotes(name) + " is a word with a meaning of its own; choose another name";
   return {};
 }

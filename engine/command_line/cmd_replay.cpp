@@ -22,8 +22,8 @@ using Clock = std::chrono::steady_clock;
 
 /// Haptic problems, hands' inputs and commands are not sent, since a device or an engine may be on the bus.
 bool for_viewers(std::string_view name) {
-  constexpr std::array shown{channel::render_frame, channel::scene_info, channel::sim_event, channel::haptic_status,
-                             channel::device_state};
+  constexpr std::array shown{channel::render_frame,  channel::scene_info, channel::sim_event,
+                             channel::haptic_status, channel::metrics,    channel::device_state};
   return std::find(shown.begin(), shown.end(), name) != shown.end();
 }
 

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "engine/reports/metrics_report.h"
-
 namespace insula {
 namespace {
 
@@ -63,7 +61,6 @@ std::string hud_json(const Simulation& simulation, const SessionNote& note) {
   j["report"] = note.report;
   j["recording"] = note.recording;
   j["unrecorded"] = note.unrecorded;
-  if (note.metrics && simulation.exercise()) j["metrics"] = metrics_json(simulation.exercise()->metrics(), false);
   j["hands"] = SortedJson::array();
   for (int h = 0; h < 2; ++h)
     if (const Instrument* i = simulation.instrument_of(h))

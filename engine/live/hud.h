@@ -8,8 +8,8 @@
 
 namespace insula {
 
-/// The hud_json of render_frame_t for the last step. It has the same keys with and without an exercise, except for
-/// "metrics", which the note asks for (docs/scripting.md).
+/// The hud_json of render_frame_t for the last step. It has the same keys with and without an exercise
+/// (docs/scripting.md).
 std::string hud_json(const Simulation& simulation, const SessionNote& note = {});
 
 }  // namespace insula

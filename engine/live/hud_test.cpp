@@ -9,7 +9,6 @@
 
 #include "core/bus/codec.h"
 #include "core/registry/registry.h"
-#include "core/testing/example.h"
 #include "engine/live/frame.h"
 
 namespace insula {
@@ -116,19 +115,6 @@ TEST(Hud, HasTheSameKeysWithoutAnExercise) {
   for (const char* key : {"message", "state", "elapsed_s", "mode", "report", "recording", "unrecorded"})
     EXPECT_TRUE(j.contains(key)) << key;
   EXPECT_EQ(j.size(), 12u);
-}
-
-TEST(Hud, HasTheMetricsWhenItIsAskedForThem) {
-  auto s = test::load(std::filesystem::path(INSULA_SOURCE_DIR) / "plugins/motion_metrics/example.xml");
-  ASSERT_TRUE(s);
-  test::run_script(*s, 30);
-  SessionNote note;
-  EXPECT_FALSE(Json::parse(hud_json(*s, note)).contains("metrics"));
-  note.metrics = true;
-  const Json metrics = Json::parse(hud_json(*s, note)).at("metrics");
-  EXPECT_EQ(metrics.size(), s->exercise()->metrics().size());
-  EXPECT_EQ(metrics.at(0).at("hand"), "left");
-  EXPECT_FALSE(metrics.at(0).contains("source")) << "pages do not show it";
 }
 
 TEST(Frame, CarriesChannelsAndDrawables) {

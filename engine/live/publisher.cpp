@@ -10,6 +10,7 @@
 #include "core/bus/codec.h"
 #include "core/haptics/haptic_update.h"
 #include "engine/live/frame.h"
+#include "engine/reports/metrics_report.h"
 
 namespace insula {
 
@@ -82,14 +83,26 @@ void Publisher::events(const std::vector<Event>& events) {
 void Publisher::paused_frame(const Simulation& simulation) { frame(simulation, true); }
 
 void Publisher::frame(const Simulation& simulation, bool paused) {
-  const auto every = std::max<std::int64_t>(1, std::llround(metrics_interval_s / simulation.h()));
-  note_.metrics = ++frame_sequence_ % every == 0;
   fill_frame(simulation, frame_, note_);
   frame_.session = session_;
-  frame_.sequence = frame_sequence_;
+  frame_.sequence = ++frame_sequence_;
   frame_.time_us = monotonic_us();
   frame_.paused = paused;
   if (!publish(bus_, channel::render_frame, frame_, scratch_)) ++failed_;
+  metrics(simulation);
+}
+
+void Publisher::metrics(const Simulation& simulation) {
+  const Exercise* exercise = simulation.exercise();
+  if (!exercise || frame_.time_us - last_metrics_us_ < std::int64_t(1e6 * metrics_interval_s)) return;
+  last_metrics_us_ = frame_.time_us;
+  metrics_.session = session_;
+  metrics_.time_us = frame_.time_us;
+  metrics_.sim_time_s = std::max(0.0, simulation.time());
+  metrics_.at_end = exercise->log().state() != ExerciseState::running;
+  metrics_.json =
+      metrics_json(exercise->metrics(), false).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  if (!publish(bus_, channel::metrics, metrics_, scratch_)) ++failed_;
 }
 
 }  // namespace insula

@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <insula_lcm/metrics_t.hpp>
 #include <insula_lcm/render_frame_t.hpp>
 #include <insula_lcm/scene_info_t.hpp>
 
@@ -42,7 +43,7 @@ class Publisher {
   void info(const std::string& state, const std::string& message = "");
   /// The motion that simulated hands follow from now on; empty: none. Sent at once with the next info().
   void follow(const std::filesystem::path& motion);
-  /// Frames have the metrics at this interval, s.
+  /// Metrics are sent at this interval, s of the clock.
   static constexpr double metrics_interval_s = 0.2;
   /// What frames say of the session from now on.
   void note(SessionNote note) { note_ = std::move(note); }
@@ -50,12 +51,15 @@ class Publisher {
 
  private:
   void frame(const Simulation& simulation, bool paused);
+  void metrics(const Simulation& simulation);
 
   Bus& bus_;
-  std::int64_t session_, sequence_ = 0, event_sequence_ = 0, frame_sequence_ = 0, last_info_us_ = 0, failed_ = 0;
+  std::int64_t session_, sequence_ = 0, event_sequence_ = 0, frame_sequence_ = 0, last_info_us_ = 0,
+                         last_metrics_us_ = 0, failed_ = 0;
   insula_lcm::scene_info_t info_{};
   SessionNote note_;
   insula_lcm::render_frame_t frame_{};
+  insula_lcm::metrics_t metrics_{};
   ProblemStamp stamp_;
   ContactFramePrediction predict_frames_;
   Condenser condense_;

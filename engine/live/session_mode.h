@@ -33,7 +33,6 @@ struct SessionNote {
   std::string report = {};      ///< path of the last report that was written; empty: none
   std::string recording = {};   ///< file that the session is recorded into; empty: none
   std::string unrecorded = {};  ///< why it is not recorded although it should be; empty: all is well
-  bool metrics = false;         ///< whether this frame has the metrics
 };
 
 }  // namespace insula

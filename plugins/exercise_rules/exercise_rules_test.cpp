@@ -2,6 +2,7 @@
 // Each rule against step reports made by hand: what counts, what is forgiven, what is counted once.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <iterator>
 
@@ -255,6 +256,27 @@ TEST_F(Rules, TornStrandsCountAndCutOnesDoNot) {
   report.events.clear();
   show();
   EXPECT_EQ(faults("torn"), 2);
+}
+
+TEST_F(Rules, TwoHandsFailWhenTheyAreOutOfReach) {
+  report.channels.assign(s->channels().numbers(), std::nan(""));
+  double& standing = report.channels[s->channels().find("strands.standing")->offset];
+  push(lower, 0, 0.1);
+  standing = 2;
+  show();
+  report.events = {{"strand_cut", "strands", "", 0.03, 1, 1}};
+  standing = 1;
+  show();
+  EXPECT_EQ(s->exercise()->log().state(), ExerciseState::running) << "one was cut, and one is left";
+  push(lower, 0, 0);
+  report.events.clear();
+  standing = 0;
+  show();
+  EXPECT_EQ(s->exercise()->log().state(), ExerciseState::failed);
+  EXPECT_EQ(
+      s->exercise()->log().last_message(),
+      "Out of reach: 1 of 2 were done, and 0 are left. Begin again: Divide two strands while the other hand holds "
+      "a block");
 }
 
 TEST_F(Rules, OrderForgivesNeighboursAndAFewThatStand) {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A goal for two hands that work at the same time. It counts the events that one hand causes while the other hand holds
-// or presses tissue, or while a channel shows its work. One hand alone can never reach it.
+// or presses tissue, or while a channel shows its work. One hand alone can never reach it. If too few of what the event
+// needs are left, the exercise fails, so that nobody goes on in vain.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -33,6 +36,12 @@ class GoalTwoHands final : public ExerciseRule {
       {.name = "channel", .fallback = "", .doc = "channel that shows the other hand's work: \"bleeding.sucked\""}};
   Param<std::string> limit{
       this, {.name = "limit", .fallback = "", .doc = "value above which it works, with a unit of the channel"}};
+  Param<std::string> remaining{
+      this,
+      {.name = "remaining",
+       .fallback = "",
+       .doc = "channel that counts how often the event can still happen: \"arachnoid.standing\"; if too few are left, "
+              "the exercise has failed"}};
   Param<Duration> within{this,
                          {.name = "within",
                           .fallback = "0.5 s",
@@ -60,6 +69,7 @@ class GoalTwoHands final : public ExerciseRule {
     if (on().empty() == channel().empty())
       return error(context, "needs either \"on\" or \"channel\" to see the other hand's work");
     if (!channel().empty()) watch_.connect(context, simulation, *this, channel, limit);
+    if (!remaining().empty()) remaining_.find(context, simulation, *this, remaining);
     check_event(context, simulation, *this, event);
     reset();
   }
@@ -71,7 +81,12 @@ class GoalTwoHands final : public ExerciseRule {
       if (idle_[std::size_t(1 - e.hand)] <= within() + 1e-9) ++together_;
     }
     together.set(together_);
-    if (together_ >= count()) log.goal(goal_, r.time);
+    if (together_ >= count()) return log.goal(goal_, r.time);
+    const double left = remaining_.value(r);
+    if (together_ + left < count())
+      log.fail(fmt::format("Out of reach: {} of {} were done, and {:.0f} are left. Begin again: {}", together_, count(),
+                           left, text()),
+               r.time);
   }
 
   void reset() override {
@@ -87,7 +102,7 @@ class GoalTwoHands final : public ExerciseRule {
                        [&](std::size_t i) { return r.structures[i].of_hand[hand].norm() >= force(); });
   }
 
-  ChannelWatch watch_;
+  ChannelWatch watch_, remaining_;
   int goal_ = 0, together_ = 0;
   std::vector<std::size_t> structure_;              ///< among those of the report
   std::array<double, 2> idle_{infinite, infinite};  ///< time since each hand worked, s

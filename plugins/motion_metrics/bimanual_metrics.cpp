@@ -62,29 +62,25 @@ class BimanualMetrics final : public MetricSet {
                                    .digits = 1}};
   Metric<Length> separation_change{this,
                                    {.name = "tip_separation_change",
-                                    .doc = "Change of the tips' distance, standard deviation",
+                                    .doc = "Deviation of the tips' distance",
                                     .source = sources::insula,
                                     .of = Of::both_hands,
                                     .display = "mm",
                                     .digits = 1}};
   Metric<Scalar> simultaneous{this,
                               {.name = "simultaneous_use",
-                               .doc = "Share of the time at work in which both hands work",
+                               .doc = "Simultaneous use",
                                .source = sources::neurotouch,
                                .better = Better::high,
                                .of = Of::both_hands,
                                .display = "%",
                                .digits = 0}};
-  Metric<Scalar> coordination{this,
-                              {.name = "coordination",
-                               .doc = "Correlation of the two hands' speeds, -1 to 1",
-                               .source = sources::hofstad,
-                               .of = Of::both_hands}};
-  Metric<Scalar> dominance{this,
-                           {.name = "dominance",
-                            .doc = "Share of the right hand's path less that of the left hand's, -1 to 1",
-                            .source = sources::hofstad,
-                            .of = Of::both_hands}};
+  Metric<Scalar> coordination{
+      this,
+      {.name = "coordination", .doc = "Coordination of speeds", .source = sources::hofstad, .of = Of::both_hands}};
+  Metric<Scalar> dominance{
+      this,
+      {.name = "dominance", .doc = "Dominance of the right hand", .source = sources::hofstad, .of = Of::both_hands}};
 
   void reset() override { sums_ = {}; }
 

@@ -74,7 +74,7 @@ class HandMetrics final : public MetricSet {
                               .digits = 0}};
   Metric<Scalar> economy{this,
                          {.name = "economy",
-                          .doc = "Economy: straight way of the movements over their path",
+                          .doc = "Economy of movement",
                           .source = sources::hofstad,
                           .better = Better::high,
                           .display = "%",
@@ -87,7 +87,7 @@ class HandMetrics final : public MetricSet {
                             .digits = 0}};
   Metric<Speed> speed_mean{this,
                            {.name = "speed_mean",
-                            .doc = "Mean speed while it moves",
+                            .doc = "Mean speed of movement",
                             .source = sources::hofstad,
                             .display = "mm/s",
                             .digits = 1}};
@@ -100,47 +100,47 @@ class HandMetrics final : public MetricSet {
                             .digits = 0}};
   Metric<Acceleration> acceleration{this,
                                     {.name = "acceleration",
-                                     .doc = "Acceleration, root mean square",
+                                     .doc = "Acceleration (rms)",
                                      .source = sources::hofstad,
                                      .better = Better::low,
                                      .digits = 2}};
   Metric<Scalar> log_jerk{this,
                           {.name = "log_dimensionless_jerk",
-                           .doc = "Smoothness of movements: log dimensionless jerk, nearer to 0 is smoother",
+                           .doc = "Smoothness (log jerk)",
                            .source = sources::balasubramanian,
                            .better = Better::high,
                            .digits = 2}};
   Metric<Scalar> arc_length{this,
                             {.name = "spectral_arc_length",
-                             .doc = "Smoothness of movements: spectral arc length, nearer to 0 is smoother",
+                             .doc = "Smoothness (spectral arc)",
                              .source = sources::balasubramanian,
                              .better = Better::high,
                              .digits = 2}};
   Metric<Length> tremor{this,
                         {.name = "tremor",
-                         .doc = "Tremor: root mean square displacement in its band",
+                         .doc = "Tremor (rms)",
                          .source = sources::harwell,
                          .better = Better::low,
                          .display = "um",
                          .digits = 1}};
   Metric<Angle> turn{this,
                      {.name = "turn",
-                      .doc = "Change of orientation, summed",
+                      .doc = "Turning",
                       .source = sources::cotin,
                       .better = Better::low,
                       .display = "deg",
                       .digits = 0}};
   Metric<Length> depth_travel{this,
                               {.name = "depth_travel",
-                               .doc = "Path of the tip along the tool's shaft",
+                               .doc = "Depth travelled",
                                .source = sources::cotin,
                                .better = Better::low,
                                .display = "mm",
                                .digits = 0}};
   Metric<Scalar> exchanges{this,
                            {.name = "tool_exchanges", .doc = "Tool exchanges", .source = sources::insula, .digits = 0}};
-  Metric<Scalar> presses{
-      this, {.name = "button_presses", .doc = "Times a button was pressed", .source = sources::insula, .digits = 0}};
+  Metric<Scalar> presses{this,
+                         {.name = "button_presses", .doc = "Button presses", .source = sources::insula, .digits = 0}};
   Metric<Duration> button_time{this,
                                {.name = "button_time",
                                 .doc = "Time with a button pressed",
@@ -152,37 +152,34 @@ class HandMetrics final : public MetricSet {
       {.name = "contact_time", .doc = "Time in contact", .source = sources::neurotouch, .display = "s", .digits = 1}};
   Metric<Force> force_mean{this,
                            {.name = "force_mean",
-                            .doc = "Mean force of the tool in contact",
+                            .doc = "Mean force in contact",
                             .source = sources::neurotouch,
                             .better = Better::low,
                             .digits = 3}};
   Metric<Force> force_peak{this,
                            {.name = "force_peak",
-                            .doc = "Largest force of the tool",
+                            .doc = "Largest force",
                             .source = sources::neurotouch,
                             .better = Better::low,
                             .digits = 3}};
   Metric<Force> force_p95{this,
                           {.name = "force_p95",
-                           .doc = "Force of the tool that is exceeded in 5 % of the contact",
+                           .doc = "95th percentile of force",
                            .source = sources::insula,
                            .better = Better::low,
                            .digits = 3}};
   Metric<ForceRate> force_rate{this,
                                {.name = "force_rate",
-                                .doc = "Rate of change of the tool's force, root mean square",
+                                .doc = "Rate of force (rms)",
                                 .source = sources::hofstad,
                                 .better = Better::low,
                                 .digits = 2}};
-  Metric<Impulse> force_impulse{this,
-                                {.name = "force_impulse",
-                                 .doc = "Force of the tool, summed over time",
-                                 .source = sources::neurotouch,
-                                 .better = Better::low,
-                                 .digits = 2}};
+  Metric<Impulse> force_impulse{
+      this,
+      {.name = "force_impulse", .doc = "Impulse", .source = sources::neurotouch, .better = Better::low, .digits = 2}};
   MetricGroup<Duration> tissue_time{
       this,
-      {.name = "tissue_time", .doc = "Time of force on", .source = sources::neurotouch, .display = "s", .digits = 1}};
+      {.name = "tissue_time", .doc = "Time with force on", .source = sources::neurotouch, .display = "s", .digits = 1}};
   MetricGroup<Force> tissue_mean{this,
                                  {.name = "tissue_force_mean",
                                   .doc = "Mean force on",
@@ -197,19 +194,19 @@ class HandMetrics final : public MetricSet {
                                   .digits = 3}};
   MetricGroup<Force> tissue_p95{this,
                                 {.name = "tissue_force_p95",
-                                 .doc = "Force that is exceeded in 5 % of the time of force on",
+                                 .doc = "95th percentile of force on",
                                  .source = sources::insula,
                                  .better = Better::low,
                                  .digits = 3}};
   MetricGroup<ForceRate> tissue_rate{this,
                                      {.name = "tissue_force_rate",
-                                      .doc = "Rate of change of the force, root mean square, on",
+                                      .doc = "Rate of force (rms) on",
                                       .source = sources::hofstad,
                                       .better = Better::low,
                                       .digits = 2}};
   MetricGroup<Impulse> tissue_impulse{this,
                                       {.name = "tissue_impulse",
-                                       .doc = "Force, summed over time, on",
+                                       .doc = "Impulse on",
                                        .source = sources::neurotouch,
                                        .better = Better::low,
                                        .digits = 2}};

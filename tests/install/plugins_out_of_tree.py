@@ -18,7 +18,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import pages  # noqa: E402
 from steps import fail, run, that  # noqa: E402
 
-KINDS = ("constraint", "force", "body", "support", "instrument", "exercise")
+KINDS = ("constraint", "force", "body", "support", "instrument", "exercise", "metric")
 TUTORIALS = {
     "pia_membrane": ("force", ("docs/tutorial-plugin.md", "docs/tutorial-plugin-test.md")),
     "suture": ("constraint", ("docs/tutorial-channels.md",)),

@@ -228,7 +228,8 @@ std::string opening_exercise(const SceneFacts& f) {
        "a=\"frontal_surface\" b=\"temporal_surface\" at=\"67 5 4 mm\" distance=\"5 mm\" hold=\"2 s\"/>\n"
        "    <goal_strands id=\"divide\" text=\"Divide all arachnoid strands\" fraction=\"1\"/>\n"
        "    <goal_two_hands id=\"together\" text=\"Divide strands while the suction tube holds a lip aside\" "
-       "event=\"strand_cut\" count=\"10\" on=\"frontal temporal\" force=\"0.02 N\"/>\n" +
+       "event=\"strand_cut\" count=\"10\" on=\"frontal temporal\" force=\"0.02 N\" "
+       "remaining=\"arachnoid.standing\"/>\n" +
        limits(f, false) + metrics(f, true, false) +
        "    <fault_torn id=\"torn\" text=\"A strand tore: cut it before you draw the lobe further\"/>\n"
        "    <fault_order id=\"order\" text=\"Too deep too early: divide the strands at the surface first\" "

@@ -17,8 +17,9 @@ std::int64_t now_us() {
   return std::chrono::duration_cast<std::chrono::microseconds>(Clock::now().time_since_epoch()).count();
 }
 
-constexpr std::array<std::string_view, topics> channel_of{
-    channel::scene_info, channel::sim_event, channel::render_frame, channel::device_state, channel::haptic_status};
+constexpr std::array<std::string_view, topics> channel_of{channel::scene_info,    channel::sim_event,
+                                                          channel::render_frame,  channel::device_state,
+                                                          channel::haptic_status, channel::metrics};
 
 }  // namespace
 
@@ -27,6 +28,7 @@ Hub::Hub(Bus& bus, Post on_network_thread) : bus_(bus), post_(std::move(on_netwo
   forward(channel::scene_info, Topic::scene_info, scene_info_);
   forward(channel::sim_event, Topic::sim_event, sim_event_);
   forward(channel::haptic_status, Topic::haptic_status, haptic_status_);
+  forward(channel::metrics, Topic::metrics, metrics_);
   forward(channel::device_state, Topic::device_state, device_state_);
 }
 

@@ -10,6 +10,7 @@
 #include <insula_lcm/device_state_t.hpp>
 #include <insula_lcm/hand_input_t.hpp>
 #include <insula_lcm/haptic_status_t.hpp>
+#include <insula_lcm/metrics_t.hpp>
 #include <insula_lcm/render_frame_t.hpp>
 #include <insula_lcm/scene_info_t.hpp>
 #include <insula_lcm/sim_event_t.hpp>
@@ -72,6 +73,7 @@ class Hub {
   insula_lcm::scene_info_t scene_info_{};
   insula_lcm::sim_event_t sim_event_{};
   insula_lcm::haptic_status_t haptic_status_{};
+  insula_lcm::metrics_t metrics_{};
   insula_lcm::device_state_t device_state_{};
   std::chrono::steady_clock::time_point next_device_state_{};
 

@@ -12,8 +12,8 @@
 namespace insula::gateway {
 
 /// In order of urgency.
-enum class Topic { scene_info, sim_event, render_frame, device_state, haptic_status };
-inline constexpr std::size_t topics = 5;
+enum class Topic { scene_info, sim_event, render_frame, device_state, haptic_status, metrics };
+inline constexpr std::size_t topics = 6;
 
 class Outbox {
  public:

@@ -97,6 +97,10 @@ function play(scene, lcm, state, sockets, sceneInfo) {
     const { session, paused } = state;
     Object.assign(f, { session, paused, sequence: state.sequence++, time_us: BigInt(Math.round(now * 1000)) });
     broadcast('RENDER_FRAME', lcm.render_frame_t.encode(f));
+    const metrics = { ...lcm.metrics_t.make(), session, time_us: f.time_us, sim_time_s: state.time };
+    metrics.at_end = state.outcome !== '';
+    metrics.json = JSON.stringify(theatre.metrics());
+    broadcast('METRICS', lcm.metrics_t.encode(metrics));
     sinceStatus += dt;
     if (sinceStatus < 1) return;
     sinceStatus = 0;

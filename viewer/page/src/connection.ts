@@ -9,6 +9,7 @@ export interface Handlers {
   event(m: lcm.SimEvent): void;
   haptic(m: lcm.HapticStatus): void;
   devices(m: lcm.DeviceState): void;
+  metrics(m: lcm.Metrics): void;
   state(open: boolean): void;
 }
 
@@ -97,6 +98,10 @@ export class Connection {
         case 'HAPTIC_STATUS': {
           const m = lcm.haptic_status_t.decode(payload);
           return () => this.handlers.haptic(m);
+        }
+        case 'METRICS': {
+          const m = lcm.metrics_t.decode(payload);
+          return () => this.handlers.metrics(m);
         }
         case 'DEVICE_STATE': {
           const m = lcm.device_state_t.decode(payload);

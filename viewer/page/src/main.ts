@@ -14,6 +14,7 @@ import { Hands } from './hands';
 import { Headset } from './headset';
 import type { UserCommand } from './hud/commands';
 import { Hud } from './hud/hud';
+import { parseMetrics } from './hud/metrics';
 import { showHud } from './show_hud';
 import './hud/styles';
 import { headsetLines } from './hud/timers';
@@ -77,6 +78,10 @@ const link = new Connection(socketUrl(location.href, options.role), {
     // The hands are at home again; what the mouse held before is not taken back there.
     if (m.kind === 'reset' && !ownReset.met(performance.now())) letHandsGo();
     hud.showEvent(m, performance.now());
+  },
+  metrics: (m) => {
+    const values = m.session.toString() === world?.bundle.session ? parseMetrics(m.json) : null;
+    if (values) hud.showMetrics({ values, atEnd: m.at_end });
   },
   haptic: (m) => {
     haptic = m;

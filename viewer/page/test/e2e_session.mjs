@@ -60,6 +60,12 @@ try {
     null,
     patience,
   );
+  await click(page, '.dialog.summary .metrics summary');
+  await page.waitForFunction(
+    () => /Path of the hand\d+ mm\d+ mmless/.test(document.querySelector('.summary .metrics table').textContent),
+    null,
+    patience,
+  );
   const text = await page.textContent('.dialog.summary');
   for (const part of ['not yours', 'reached: ', '0:10.0', 'Hold more gently'])
     assert.ok(text.includes(part), `${part} in ${text}`);

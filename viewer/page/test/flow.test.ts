@@ -16,6 +16,7 @@ import { niceRange, niceTop } from '../src/hud/curves';
 import { label, stepOf } from '../src/hud/instructor';
 import { valueText } from '../src/hud/progress';
 import { metricRows, metricText } from '../src/hud/metric_table';
+import { parseMetrics } from '../src/hud/metrics';
 import { clockText, parseHud } from '../src/hud/state';
 import { timeLeftText, urgency, usedShare } from '../src/hud/timers';
 import { toolBadge, toolFacts } from '../src/hud/tool_list';
@@ -243,29 +244,25 @@ describe('hud text', () => {
     expect(s.timers).toEqual([{ id: 't', text: 'T', elapsedS: 3, limitS: 180, running: true }]);
     expect([s.measures[0]!.good, s.measures[0]!.value, s.hands[0]!.tool]).toEqual([-1, NaN, 'suction']);
   });
-  it('keeps the metrics of an earlier frame, and knows those at the end', () => {
+  it('reads metrics, a row for each, without what nobody did', () => {
     const metrics = [
       { id: 'path', text: 'Path', hand: 'left', value: 12.34, unit: 'mm', digits: 0, better: 'low' },
       { id: 'path', text: 'Path', hand: 'right', value: null, unit: 'mm', digits: 0, better: 'low' },
       { id: 'time', text: 'Time', hand: 'both', value: 3, unit: 's', digits: 1, better: 'low' },
       { id: 'idle', text: 'Idle', hand: 'both', value: 0, unit: 's', digits: 1, better: 'low' },
     ];
-    const first = parseHud(JSON.stringify({ state: 'running', metrics }))!;
-    expect(metricRows(first.metrics)).toEqual([
+    expect(metricRows(parseMetrics(JSON.stringify(metrics))!)).toEqual([
       { id: 'path', text: 'Path', better: 'less', values: ['12 mm', '–'] },
       { id: 'time', text: 'Time', better: 'less', values: ['3.0 s'] },
     ]);
-    const second = parseHud('{"state":"done"}', first)!;
-    expect([second.metrics, second.metricsAtEnd]).toEqual([first.metrics, false]);
-    const third = parseHud(JSON.stringify({ state: 'done', metrics }), second)!;
-    expect([third.metricsAtEnd, parseHud('{"state":"done"}', third)!.metricsAtEnd]).toEqual([true, true]);
     expect(metricText({ value: -0.001, digits: 2, unit: '' })).toBe('0.00');
+    expect([parseMetrics('{'), parseMetrics('{"a":1}')]).toEqual([null, null]);
+    expect(parseMetrics('[null,{"value":"x","hand":"third","digits":99}]')).toMatchObject([
+      { hand: 'both', value: NaN, digits: 6 },
+    ]);
   });
   it('bears nonsense in each of them', () => {
     const s = parseHud('{"timers":[null],"measures":{},"hands":"no"}')!;
     expect([s.timers, s.measures, s.hands]).toEqual([[], [], []]);
-    expect(parseHud('{"metrics":[null,{"value":"x","hand":"third","digits":99}]}')!.metrics).toMatchObject([
-      { hand: 'both', value: NaN, digits: 6 },
-    ]);
   });
 });

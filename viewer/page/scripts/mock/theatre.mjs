@@ -178,6 +178,17 @@ export class Theatre {
     };
   }
 
+  /** How the hands work. */
+  metrics() {
+    const of = (hand, value) => ({ id: 'path_length', text: 'Path of the hand', hand, value, unit: 'mm', digits: 0 });
+    const both = { id: 'tip_separation', text: 'Mean distance of the two tips', hand: 'both', unit: 'mm', digits: 1 };
+    return [
+      { ...of('left', this.time * 3), better: 'low' },
+      { ...of('right', this.time * 8), better: 'low' },
+      { ...both, value: 21.5, better: 'none' },
+    ];
+  }
+
   /** Of hud_json: what the exercise and the hands say. */
   hud() {
     const timers = [

@@ -19,6 +19,7 @@ import { HapticPanel } from './haptic';
 import { Help } from './help';
 import { InstructorPanel } from './instructor';
 import { InventoryPanel } from './inventory_panel';
+import type { Metrics } from './metrics';
 import { NoticePanel } from './notice';
 import { SessionPanel } from './session_panel';
 import type { HudState } from './state';
@@ -203,6 +204,12 @@ export class Hud {
     setText(this.pause, frame.paused ? 'Resume' : 'Pause');
   }
 
+  /** Five times a second. */
+  showMetrics(metrics: Metrics): void {
+    this.instructor?.showMetrics(metrics.values);
+    this.session.showMetrics(metrics);
+  }
+
   /** Something that happened once. */
   showEvent(e: SimEvent, nowMs: number): void {
     this.instructor?.addEvent(e.sim_time_s, e.kind, e.id, e.text);
@@ -279,7 +286,6 @@ export class Hud {
   }
 
   private showState(s: HudState): void {
-    if (s.metrics !== this.state?.metrics) this.instructor?.showMetrics(s.metrics);
     this.exercise.showState(s);
     if (s.state === 'done' || s.state === 'failed') {
       setText(this.message, s.state === 'done' ? '✓ Exercise complete' : `✗ ${s.message || 'Exercise failed'}`);

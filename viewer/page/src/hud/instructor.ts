@@ -9,7 +9,8 @@ import { ChannelCurves } from './channel_curves';
 import { TimeChart } from './curves';
 import { el } from './dom';
 import { MetricTable } from './metric_table';
-import { clockText, type MetricView } from './state';
+import type { MetricView } from './metrics';
+import { clockText } from './state';
 
 const logLines = 120;
 export class InstructorPanel {

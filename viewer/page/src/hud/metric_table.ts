@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How the hands work, in numbers: a row for each metric, a column for each hand. It opens and closes as a whole.
 import { el, setText } from './dom';
-import type { MetricView } from './state';
+import type { MetricView } from './metrics';
 
 /** A row: what it is, and its values. */
 export interface MetricRow {

@@ -5,6 +5,7 @@ import type { Role } from '../options';
 import type { UserCommand } from './commands';
 import { Dialog } from './dialog';
 import { el } from './dom';
+import type { Metrics } from './metrics';
 import type { HudState } from './state';
 import { summaryOf } from './summary';
 
@@ -28,6 +29,7 @@ export class SessionPanel {
   readonly roots: HTMLElement[];
   private bundle: Bundle | null = null;
   private shownEnd = '';
+  private metrics: Metrics = { values: [], atEnd: false };
   private tried = false;
 
   constructor(
@@ -48,9 +50,14 @@ export class SessionPanel {
 
   showScene(bundle: Bundle): void {
     this.bundle = bundle;
+    this.metrics = { values: [], atEnd: false };
     this.shownEnd = '';
     this.start.close();
     this.end.close();
+  }
+
+  showMetrics(metrics: Metrics): void {
+    this.metrics = metrics;
   }
 
   /** ready: a picture of the scene is there. */
@@ -60,11 +67,12 @@ export class SessionPanel {
     const over = state.state === 'done' || state.state === 'failed';
     if (!over) {
       this.shownEnd = '';
+      this.metrics.atEnd = false;
       this.end.close();
       return;
     }
     // The last metrics and the report's path come a moment after the end.
-    const key = `${state.state} ${state.report} ${state.metricsAtEnd}`;
+    const key = `${state.state} ${state.report} ${this.metrics.atEnd}`;
     if (key === this.shownEnd) return;
     const first = this.shownEnd === '';
     this.shownEnd = key;
@@ -123,7 +131,7 @@ export class SessionPanel {
     const again = this.role === 'observer' ? [] : this.answers();
     this.end.show(
       state.state === 'done' ? 'Exercise complete' : 'Exercise failed',
-      summaryOf(state),
+      summaryOf(state, this.metrics.values),
       [...again, { name: 'close', text: 'Look at the field', run: () => undefined }],
       () => undefined,
     );

@@ -30,17 +30,6 @@ export interface FaultView {
   advice: string;
 }
 
-export interface MetricView {
-  id: string;
-  text: string;
-  hand: 'left' | 'right' | 'both';
-  /** NaN: not known. */
-  value: number;
-  unit: string;
-  digits: number;
-  better: string;
-}
-
 export interface HudState {
   goals: { id: string; text: string; done: boolean }[];
   faults: FaultView[];
@@ -57,36 +46,17 @@ export interface HudState {
   elapsedS: number | null;
   timers: TimerView[];
   measures: MeasureView[];
-  /** Of the present frame or an earlier one. */
-  metrics: MetricView[];
-  /** Whether the metrics are those at the end of the exercise. */
-  metricsAtEnd: boolean;
   /** Tool in each hand, by id. */
   hands: { hand: string; tool: string }[];
 }
 
-const finite = (v: unknown): number | null => (typeof v === 'number' && Number.isFinite(v) ? v : null);
-type Json = Record<string, unknown>;
+export const finite = (v: unknown): number | null => (typeof v === 'number' && Number.isFinite(v) ? v : null);
+export type Json = Record<string, unknown>;
 const isObject = (v: unknown): v is Json => typeof v === 'object' && v !== null;
-const list = (v: unknown): Json[] => (Array.isArray(v) ? v.filter(isObject) : []);
-const text = (v: unknown): string => (v === null || v === undefined ? '' : String(v));
+export const list = (v: unknown): Json[] => (Array.isArray(v) ? v.filter(isObject) : []);
+export const text = (v: unknown): string => (v === null || v === undefined ? '' : String(v));
 
-const sides = ['left', 'right', 'both'] as const;
-
-function metric(m: Json): MetricView {
-  return {
-    id: text(m.id),
-    text: text(m.text ?? m.id),
-    hand: sides.find((s) => s === m.hand) ?? 'both',
-    value: finite(m.value) ?? NaN,
-    unit: text(m.unit),
-    digits: Math.min(6, Math.max(0, Math.round(finite(m.digits) ?? 2))),
-    better: text(m.better),
-  };
-}
-
-/** before: the state of the frame before, whose metrics stay if this frame has none. */
-export function parseHud(json: string, before: HudState | null = null): HudState | null {
+export function parseHud(json: string): HudState | null {
   let j: unknown;
   try {
     j = JSON.parse(json);
@@ -125,8 +95,6 @@ export function parseHud(json: string, before: HudState | null = null): HudState
       good: Math.sign(finite(m.good) ?? 0),
       limit: text(m.limit),
     })),
-    metrics: Array.isArray(j.metrics) ? list(j.metrics).map(metric) : (before?.metrics ?? []),
-    metricsAtEnd: text(j.state) !== 'running' && (Array.isArray(j.metrics) || before?.metricsAtEnd === true),
     hands: list(j.hands).map((h) => ({ hand: text(h.hand), tool: text(h.tool) })),
   };
 }

@@ -3,6 +3,7 @@
 // limits, clocks, and where the report is. Good and bad have a sign and a word beside their colour.
 import { el } from './dom';
 import { MetricTable } from './metric_table';
+import type { MetricView } from './metrics';
 import { valueText } from './progress';
 import type { FaultView, HudState, MeasureView } from './state';
 import { clockText } from './state';
@@ -55,13 +56,13 @@ function measureRow(m: MeasureView): HTMLElement {
   );
 }
 
-function metrics(s: HudState): HTMLElement {
+function hands(metrics: readonly MetricView[]): HTMLElement {
   const table = new MetricTable('How your hands worked');
-  table.show(s.metrics);
+  table.show(metrics);
   return table.root;
 }
 
-export function summaryOf(s: HudState): HTMLElement[] {
+export function summaryOf(s: HudState, metrics: readonly MetricView[]): HTMLElement[] {
   const made = s.faults.filter((f) => f.count > 0);
   const clocks = s.timers.filter((t) => t.elapsedS > 0 && t.limitS > 0);
   return [
@@ -86,7 +87,7 @@ export function summaryOf(s: HudState): HTMLElement[] {
         ),
       ),
     ),
-    ...(s.metrics.length > 0 ? [metrics(s)] : []),
+    ...(metrics.length > 0 ? [hands(metrics)] : []),
     ...(s.report ? [el('p', { class: 'where' }, 'Report: ', el('code', {}, s.report))] : []),
   ];
 }

@@ -24,7 +24,7 @@ export class Reading {
   /** Once a frame; the same frame again costs nothing. */
   read(frame: RenderFrame | null): void {
     if (!frame || frame === this.frame) return;
-    if (frame.hud_json !== this.frame?.hud_json) this.state = parseHud(frame.hud_json, this.state) ?? this.state;
+    if (frame.hud_json !== this.frame?.hud_json) this.state = parseHud(frame.hud_json) ?? this.state;
     this.frame = frame;
     this.problem = '';
     try {
