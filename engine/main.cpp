@@ -105,6 +105,7 @@ void add_run(Options& c) {
   command->add_option("--export", o.export_folder, "folder for the bodies' final nodes as .vtu");
   command->add_option("--record", o.record, "session file to record into, usually NAME.insula");
   insula::add_fields(*command, o.fields);
+  insula::add_bands(*command, o.bands, o.band_group);
   add_threads(*command, o.threads);
   add_seed(*command, o.seed);
   command->add_flag("--quiet", o.quiet, "print the last line only");
@@ -129,6 +130,7 @@ void add_engine(Options& c) {
                       "folder for reports of the session, each in a folder of its own named by date and time");
   command->add_option("--record", o.record, "session file to record into (NAME.insula), or a folder for a new one");
   insula::add_fields(*command, o.fields);
+  insula::add_bands(*command, o.bands, o.band_group);
   command->add_option("--mode", o.mode, "how the session begins (default: a demonstration if there is a motion)")
       ->check(CLI::IsMember({"waiting", "demonstration", "practice", "test"}));
   command->add_flag("--keep-bundle", o.keep_bundle, "leave the bundle where it is at the end, for a replay");
@@ -185,6 +187,7 @@ void add_play(Options& c) {
       "the user's data folder)");
   command->add_flag("--no-record", c.no_record, "record nothing");
   insula::add_fields(*command, o.fields);
+  insula::add_bands(*command, o.bands, o.band_group);
   command->add_flag("--no-reload", c.no_reload, "do not load the scene again when one of its files is saved");
   command->callback([&c] {
     c.play.browser = !c.no_browser;

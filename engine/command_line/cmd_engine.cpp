@@ -28,6 +28,8 @@ int cmd_engine(const CommandContext& context, const EngineOptions& o) {
                       o.notice,
                       o.report,
                       o.record,
+                      o.bands,
+                      o.band_group,
                       session::parse_fields(o.fields),
                       session_mode(o.mode),
                       {}};

@@ -156,6 +156,8 @@ ChildSpec engine_child(const PlayOptions& options, const fs::path& program, cons
   if (!options.report.empty()) engine.command.insert(engine.command.end(), {"--report", options.report.string()});
   if (!options.record.empty() && !options.view)
     engine.command.insert(engine.command.end(), {"--record", options.record.string()});
+  if (!options.bands.empty()) engine.command.insert(engine.command.end(), {"--bands", options.bands.string()});
+  if (!options.band_group.empty()) engine.command.insert(engine.command.end(), {"--band-group", options.band_group});
   for (const std::string& field : options.fields) engine.command.insert(engine.command.end(), {"--field", field});
   engine.waits_for_offer = options.reload;
   return engine;

@@ -54,6 +54,19 @@ bool is_whole(const CommandContext& context, const SessionRecorder& session) {
   return why.empty();
 }
 
+/// False, and a message, if the bands cannot be used for this scene.
+bool read_bands(const CommandContext& context, const RunOptions& options, const Simulation& simulation,
+                ReferenceBands& bands) {
+  if (options.bands.empty()) return true;
+  try {
+    bands = bands_for(options.bands, options.band_group, simulation.scene().title());
+    return true;
+  } catch (const InputError& e) {
+    fmt::print(context.err, "error: {}\n", e.what());
+    return false;
+  }
+}
+
 }  // namespace
 
 int cmd_run(const CommandContext& context, const RunOptions& options) {
@@ -69,6 +82,7 @@ int cmd_run(const CommandContext& context, const RunOptions& options) {
   RunRecorder recorder;
   RunSummary summary;
   std::unique_ptr<SessionRecorder> session;
+  if (!read_bands(context, options, simulation, summary.bands)) return 2;
   if (!begin_recording(context, options, simulation, session)) return 1;
   int shown = -1;
   for (std::int64_t k = 0; k < steps; ++k) {

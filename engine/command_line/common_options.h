@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,6 +24,12 @@ inline QuantityOption seconds(std::string doc) { return {.bare = "s", .min = "0 
 
 inline void add_seed(CLI::App& command, std::uint64_t& seed) {
   command.add_option("--seed", seed, "what complications are drawn from; 0: the scene's own seed");
+}
+
+inline void add_bands(CLI::App& command, std::filesystem::path& file, std::string& group) {
+  command.add_option("--bands", file, "file of insula bands --json: the report says where the run lies")
+      ->check(CLI::ExistingFile);
+  command.add_option("--band-group", group, "group whose bands they are (default: the only one)")->needs("--bands");
 }
 
 inline void add_fields(CLI::App& command, std::vector<std::string>& fields) {

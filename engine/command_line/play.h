@@ -26,6 +26,8 @@ struct PlayOptions {
       keep_bundle;               ///< folder in which the viewer's bundles are kept; empty: they are removed at the end
   std::filesystem::path report;  ///< folder for the session's reports; empty: none
   std::filesystem::path record;  ///< session file, or folder of a new one; empty: nothing is recorded
+  std::filesystem::path bands;   ///< of `insula bands --json`, for the reports; empty: none
+  std::string band_group;        ///< whose bands; empty: the only group
   std::vector<std::string> fields;                  ///< NAME=VALUE, of the recording
   bool reload = true;                               ///< loads the scene again when one of its files is saved
   bool view = false;                                ///< shows the scene: time stands still, no hands (insula view)

@@ -17,6 +17,8 @@ struct RunOptions {
   std::filesystem::path report;  ///< folder for report.json and report.html; empty: none
   std::filesystem::path export_folder;  ///< folder for the bodies' final nodes as .vtu; empty: none
   std::filesystem::path record;         ///< session file; empty: none
+  std::filesystem::path bands;          ///< of `insula bands --json`, for the report; empty: none
+  std::string band_group;               ///< whose bands; empty: the only group
   std::vector<std::string> fields;      ///< NAME=VALUE, of the recording
   int threads = 0;
   std::uint64_t seed = 0;  ///< of the complications; 0: the scene's
@@ -40,6 +42,8 @@ struct EngineOptions {
   std::filesystem::path notice;  ///< file whose text viewers show while it is not empty
   std::filesystem::path report;  ///< folder for the session's reports; empty: none
   std::filesystem::path record;  ///< session file, or folder of a new one; empty: none
+  std::filesystem::path bands;   ///< as for run
+  std::string band_group;
   std::vector<std::string> fields;  ///< NAME=VALUE, of the recording
   std::string mode;  ///< name of the SessionMode in which it begins; empty: a demonstration if there is a motion
 };

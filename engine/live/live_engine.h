@@ -28,6 +28,8 @@ struct LiveOptions {
   std::filesystem::path notice;  ///< file whose text viewers show over the image while it is not empty; none: nothing
   std::filesystem::path report;  ///< folder for the session's reports (session_reports.h); empty: none
   std::filesystem::path record;  ///< session file, or the folder of a new one (new_session_file()); empty: none
+  std::filesystem::path bands;   ///< of `insula bands --json`, for the reports; empty: none
+  std::string band_group;        ///< whose bands; empty: the only group
   std::map<std::string, std::string> fields;  ///< what the person says of the session (SessionAbout)
   /// How the session begins. None: as a demonstration if there is a motion, else as practice. A scene without an
   /// exercise never waits.

@@ -33,6 +33,36 @@ nlohmann::ordered_json metrics_json(const std::vector<MetricValue>& metrics, boo
   return out;
 }
 
+void add_bands(nlohmann::ordered_json& json, const std::vector<MetricValue>& metrics, const ReferenceBands& bands) {
+  for (std::size_t i = 0; i < metrics.size(); ++i) {
+    const ReferenceBand* band = bands.find(metrics[i]);
+    if (!band) continue;
+    const auto mark = band->pass_mark ? nlohmann::ordered_json(*band->pass_mark) : nlohmann::ordered_json();
+    json[i]["band"] = {{"group", bands.group()}, {"median", band->median}, {"low", band->low},
+                       {"high", band->high},     {"pass_mark", mark},      {"beyond", beyond_band(metrics[i], *band)}};
+  }
+}
+
+std::string to_work_on_html(const std::vector<MetricValue>& metrics, const ReferenceBands& bands) {
+  if (bands.empty()) return {};
+  std::string out = fmt::format(
+      "<h2>Three things to work on</h2>\n<p class=\"quiet\">What lies farthest beyond the middle half of {} sessions "
+      "of "
+      "the group {}.</p>\n",
+      bands.sessions(), escaped(bands.group()));
+  std::string rows;
+  for (const MetricValue* m : to_work_on(metrics, bands, 3)) {
+    MetricValue low = *m, high = *m;
+    low.value = bands.find(*m)->low;
+    high.value = bands.find(*m)->high;
+    rows += fmt::format("<li><b>{}{}</b>: {}, where the group has {} to {}</li>\n", escaped(m->text),
+                        m->hand == both_hands ? "" : fmt::format(" ({} hand)", hand_name(m->hand)),
+                        escaped(shown_value(m)), escaped(shown_value(&low)), escaped(shown_value(&high)));
+  }
+  return out + (rows.empty() ? "<p class=\"good\">✓ Every metric lies within its band or on its better side.</p>\n"
+                             : "<ol>\n" + rows + "</ol>\n");
+}
+
 std::string metrics_html(const std::vector<MetricValue>& metrics) {
   std::string rows;
   for (std::size_t i = 0; i < metrics.size(); ++i) {

@@ -6,14 +6,20 @@
 #include <vector>
 
 #include "core/sim/metric.h"
+#include "engine/reports/reference_bands.h"
 
 namespace insula {
 
 /// [{id, hand: "left" | "right" | "both", unit, value, better: "high" | "low" | "none", digits, text, source}]. An
 /// unknown value is null. The source is left out on request.
 nlohmann::ordered_json metrics_json(const std::vector<MetricValue>& metrics, bool with_source = true);
+/// Adds to each of these values that has one: "band": {group, median, low, high, pass_mark, beyond}.
+void add_bands(nlohmann::ordered_json& metrics_json, const std::vector<MetricValue>& metrics,
+               const ReferenceBands& bands);
 /// A table with a line for each metric and a column for each hand; empty if nothing is known.
 std::string metrics_html(const std::vector<MetricValue>& metrics);
+/// What lies farthest beyond its band, as a list; empty if there are no bands.
+std::string to_work_on_html(const std::vector<MetricValue>& metrics, const ReferenceBands& bands);
 /// A line for each value: id,hand,value,unit,better,text. An unknown value is empty.
 std::string metrics_csv(const std::vector<MetricValue>& metrics);
 

@@ -299,7 +299,9 @@ std::string report_html(const RunRecorder& recorder, const RunSummary& summary) 
   out += mode_part(summary);
   if (!recorder.finite())
     out += "<p class=\"bad\">The simulation lost its numbers (not finite): nothing below can be relied upon.</p>\n";
-  if (summary.exercise) out += exercise_part(*summary.exercise) + metrics_html(summary.exercise->metrics);
+  if (summary.exercise)
+    out += exercise_part(*summary.exercise) + to_work_on_html(summary.exercise->metrics, summary.bands) +
+           metrics_html(summary.exercise->metrics);
   out += recorder.forces().html() + recorder.channels().html() + recorder.outcome().html();
   if (summary.complications) out += complications_html(*summary.complications);
   out += run_part(recorder, summary, simulated_seconds(recorder));

@@ -15,6 +15,7 @@
 #include "engine/reports/channel_record.h"
 #include "engine/reports/exercise_outcome.h"
 #include "engine/reports/force_record.h"
+#include "engine/reports/reference_bands.h"
 #include "engine/reports/run_outcome.h"
 
 namespace insula {
@@ -29,6 +30,7 @@ struct RunSummary {
   std::string title;                          ///< of the scene
   std::string scene, motion;                  ///< as named on the command line
   std::string mode;                           ///< name of a SessionMode; empty: not a live session
+  ReferenceBands bands;                       ///< for its metrics; empty: none
   std::map<std::string, std::string> fields;  ///< what the person says of the session: "person", "level"
   std::string began;                          ///< local date and time of a live session; empty: none
   double wall_seconds = 0;                    ///< of all steps

@@ -121,6 +121,7 @@ void SessionReports::write(const Simulation& simulation) {
   summary_.motion = followed_ ? motion_ : "";
   summary_.mode = name_of(mode_);
   summary_.fields = fields_;
+  summary_.bands = bands_;
   summary_.fresh_forces_per_s = fresh_forces_per_s();
   const std::tm began = fmt::localtime(began_);
   summary_.began = fmt::format("{:%Y-%m-%d %H:%M:%S}", began);

@@ -33,6 +33,8 @@ class SessionReports {
   SessionReports(std::filesystem::path root, std::filesystem::path scene, std::string motion,
                  std::map<std::string, std::string> fields = {});
 
+  /// Of the reports from now on.
+  void compare_with(ReferenceBands bands) { bands_ = std::move(bands); }
   /// Takes the haptic server's messages. The report uses the largest force between two steps, and the mean rate of
   /// fresh forces over the seconds in which a hand had any.
   void hear(const insula_lcm::device_state_t& hands);
@@ -72,6 +74,7 @@ class SessionReports {
   std::filesystem::path root_, scene_;
   std::string motion_;
   std::map<std::string, std::string> fields_;
+  ReferenceBands bands_;
   RunRecorder recorder_;
   RunSummary summary_;
   Hands hands_;

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "engine/session/live_recording.h"
 
+#include <fcntl.h>
 #include <fmt/chrono.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <cstdlib>
+#include <cstring>
 #include <ctime>
 
 #include "core/base/input_error.h"
@@ -33,7 +37,11 @@ fs::path new_session_file(const fs::path& wanted, const fs::path& scene) {
   if (error) throw InputError(folder.string() + ": no folder can be made there: " + error.message());
   for (int n = 1;; ++n) {
     const fs::path file = folder / ((n == 1 ? stem : fmt::format("{}_{}", stem, n)) + session::extension);
-    if (!fs::exists(file, error)) return file;
+    if (const int made = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644); made >= 0) {
+      ::close(made);
+      return file;
+    }
+    if (errno != EEXIST) throw InputError(file.string() + ": cannot be made: " + std::strerror(errno));
   }
 }
 

@@ -14,7 +14,8 @@ namespace insula {
 std::filesystem::path default_session_folder();
 
 /// `wanted` if it ends in .insula, else a name in that folder made of date, time and the scene's name. A number is
-/// added if the file exists. Creates the folder. Throws InputError if it cannot.
+/// added if the file exists. Creates the folder and the empty file, so that two sessions never have the same one.
+/// Throws InputError if it cannot.
 std::filesystem::path new_session_file(const std::filesystem::path& wanted, const std::filesystem::path& scene);
 
 class LiveRecording {

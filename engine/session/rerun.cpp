@@ -78,7 +78,9 @@ RerunResult rerun(SessionReader& session, const Registry& registry, const RerunS
   const double step_s = session.step_s();
   if (!(step_s >= 0 && step_s < 1)) throw InputError("the recording's step is out of range");
   SimulationResult loaded = load_simulation_with_exercise_of(settings.rules, scene, registry, settings.threads, step_s);
-  if (!loaded.simulation) throw InputError("the recorded scene has errors:\n" + loaded.diagnostics.format());
+  if (!loaded.simulation)
+    throw InputError(std::string(settings.rules.empty() ? "the recorded scene has" : "with these rules the scene has") +
+                     " errors:\n" + loaded.diagnostics.format());
   Simulation& simulation = *loaded.simulation;
 
   RerunResult result;

@@ -194,6 +194,40 @@ TEST_F(Score, TablesHoldWhatWasRecorded) {
   EXPECT_THROW(export_tables(session, folder_.path() / "tables/blocked", "csv"), InputError);
 }
 
+/// Publishes a plain number and a force.
+class Gauge final : public Component {
+ public:
+  Channel<Scalar> count{this, {.name = "count", .doc = "for tests"}};
+  Channel<Vec<Force>> pull{this, {.name = "pull", .doc = "for tests"}};
+  void publish() override {
+    count.set(7);
+    pull.set(Vec3(1, 2, 3));
+  }
+};
+
+TEST_F(Score, ChannelsHaveANameForEachNumber) {
+  Registry registry;
+  register_builtin(registry);
+  registry.add<Gauge>("gauge", Kind::settings, "for tests");
+  const fs::path scene = folder_.write("scene.xml", R"(<scene time_step="50 ms"><gauge id="g"/></scene>)");
+  auto loaded = load_simulation(scene, registry, 1);
+  ASSERT_TRUE(loaded.simulation) << loaded.diagnostics.format();
+  {
+    SessionRecorder recorder(file(), *loaded.simulation, {scene, "", ""});
+    for (int k = 0; k < 2; ++k) {
+      loaded.simulation->step();
+      recorder.step(*loaded.simulation);
+    }
+    recorder.close(*loaded.simulation);
+  }
+  SessionReader session(file());
+  export_tables(session, folder_.path(), "csv");
+  const auto channels = lines_of(folder_.path() / "channels.csv");
+  ASSERT_EQ(channels.size(), 2u);
+  EXPECT_EQ(channels[0], "recorded_s,time_s,g.count,g.pull.x N,g.pull.y N,g.pull.z N");
+  EXPECT_EQ(channels[1], "0.1,0.1,7,1,2,3");
+}
+
 TEST_F(Score, AnLcmLogHoldsEventsAndHands) {
   const auto s = test::load(example);
   ASSERT_TRUE(s);

@@ -75,7 +75,11 @@ SessionRecorder::SessionRecorder(const std::filesystem::path& file, const Simula
   channels_channel_ = out_->add_channel(session::channels_topic, 0, "json");
   mcap::Text names;
   for (const ChannelEntry& e : simulation.channels().entries())
-    names[fmt::format("{:04}", names.size())] = fmt::format("{} {}", e.id, e.channel->quantity().si);
+    for (int k = 0; k < e.size(); ++k) {
+      std::string name = e.size() == 1 ? e.id : fmt::format("{}.{}", e.id, "xyz"[k]);
+      if (const std::string_view unit = e.channel->quantity().si; !unit.empty()) name += fmt::format(" {}", unit);
+      names[fmt::format("{:04}", names.size())] = std::move(name);
+    }
   out_->describe(session::channel_names, names);
   waiting_.reserve(1u << 20);
   thread_ = std::thread([this] { write_until_closed(); });
