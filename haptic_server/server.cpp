@@ -166,12 +166,21 @@ Vec3 HapticServer::force_output(std::size_t i, double dt, bool alive) noexcept {
   return hand.force_output.apply(hand.device->profile(), dt, force, hand.reading.v, up, alive);
 }
 
+namespace {
+TickSample::Hand sample_of(const Pose& device, const Vec3& force) noexcept {
+  const Eigen::Vector3f p = device.p.cast<float>(), f = force.cast<float>();
+  const Eigen::Quaternionf q = device.q.cast<float>();
+  return {{p.x(), p.y(), p.z()}, {q.w(), q.x(), q.y(), q.z()}, {f.x(), f.y(), f.z()}};
+}
+}  // namespace
+
 void HapticServer::tick(std::int64_t due_ns, std::int64_t missed) noexcept {
   const std::int64_t now = clock_.now_ns();
   const double dt = last_tick_ns_ == 0 ? options_.period_s : double(now - last_tick_ns_) * 1e-9;
   last_tick_ns_ = now;
   missed_.fetch_add(missed, std::memory_order_relaxed);
   TickSample sample;
+  sample.time_us = now / 1000;
   sample.lateness_us = float(std::max<std::int64_t>(0, now - due_ns)) * 1e-3f;
 
   setup_ = setups_.take();
@@ -218,6 +227,7 @@ void HapticServer::tick(std::int64_t due_ns, std::int64_t missed) noexcept {
     hand.device->write(hand.gate.force(), hand.gate.torque());
     sample.fresh[i] = alive && wanted.force != hand.last_force;
     hand.last_force = wanted.force;
+    sample.hand[i] = sample_of(hand.reading.pose, hand.gate.force());
     quiet = quiet && hand.gate.force().isZero(0) && hand.gate.torque().isZero(0);
   }
   quiet_.store(quiet, std::memory_order_relaxed);

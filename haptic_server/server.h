@@ -70,6 +70,8 @@ class HapticServer {
   const ServoResult& last() const { return last_; }
   std::int64_t messages_refused() const { return refused_.load(std::memory_order_relaxed); }
 
+  /// A message SERVO_TICKS has this many, so there are about twenty a second.
+  static constexpr int ticks_of_message = 50;
   /// After this time without a session's SCENE_INFO, its arms start without it.
   static constexpr double setup_patience_s = 1.3;
 
@@ -125,6 +127,7 @@ class HapticServer {
   Vec3 force_output(std::size_t hand, double dt, bool alive) noexcept;
   void leave_snapshot(std::int64_t now) noexcept;
   // Publishing thread.
+  void add_tick(const TickSample& sample);
   std::string note(double age_ms) const;
 
   Bus& bus_;
@@ -168,8 +171,9 @@ class HapticServer {
   StatusCollector collector_;
   insula_lcm::haptic_status_t status_{};
   insula_lcm::device_state_t state_{};
+  insula_lcm::servo_ticks_t ticks_{};
   std::int64_t missed_now_ = 0;  ///< missed ticks since the last status
-  std::int64_t status_start_ns_ = 0, status_sequence_ = 0, state_sequence_ = 0;
+  std::int64_t status_start_ns_ = 0, status_sequence_ = 0, state_sequence_ = 0, ticks_sequence_ = 0;
   std::vector<std::uint8_t> scratch_;
 };
 

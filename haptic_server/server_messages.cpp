@@ -124,7 +124,29 @@ bool HapticServer::publish_state() {
 
 void HapticServer::collect() {
   TickSample sample;
-  while (samples_.pop(sample)) collector_.add(sample);
+  while (samples_.pop(sample)) {
+    collector_.add(sample);
+    add_tick(sample);
+  }
+}
+
+void HapticServer::add_tick(const TickSample& sample) {
+  if (ticks_.ticks == 0) ticks_.time_us = sample.time_us;
+  ++ticks_.ticks;
+  ticks_.numbers += numbers_of_tick;
+  ticks_.after_us.push_back(std::int32_t(sample.time_us - ticks_.time_us));
+  for (const TickSample::Hand& hand : sample.hand) {
+    ticks_.hands.insert(ticks_.hands.end(), hand.p_m.begin(), hand.p_m.end());
+    ticks_.hands.insert(ticks_.hands.end(), hand.q.begin(), hand.q.end());
+    ticks_.hands.insert(ticks_.hands.end(), hand.force_N.begin(), hand.force_N.end());
+  }
+  if (ticks_.ticks < ticks_of_message) return;
+  ticks_.session = run_;
+  ticks_.sequence = ++ticks_sequence_;
+  publish(bus_, channel::servo_ticks, ticks_, scratch_);
+  ticks_.ticks = ticks_.numbers = 0;
+  ticks_.after_us.clear();
+  ticks_.hands.clear();
 }
 
 std::string HapticServer::note(double age_ms) const {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 
@@ -35,6 +36,35 @@ TEST(Server, FollowsTheScenesMotionAndFeelsTheTissue) {
   EXPECT_EQ(status.problems_received, 129);
   EXPECT_TRUE(rig.state_seen);
   EXPECT_NEAR(rig.state.hand[0].force_N[2], rig.server->force(0).z(), 0.3);
+}
+
+TEST(Server, TellsEveryTickOfTheServo) {
+  Rig rig;
+  rig.write_motion();
+  rig.send_scene();
+  std::vector<std::int64_t> times_us;
+  std::vector<float> force_z;
+  rig.engine_bus.subscribe(channel::servo_ticks, [&](Bytes b) {
+    insula_lcm::servo_ticks_t m{};
+    std::string why;
+    ASSERT_TRUE(decode(b, m, why)) << why;
+    for (int k = 0; k < m.ticks; ++k) {
+      times_us.push_back(m.time_us + m.after_us[std::size_t(k)]);
+      force_z.push_back(m.hands[std::size_t(numbers_of_tick * k + 9)]);
+    }
+  });
+  std::vector<float> exact;
+  for (int k = 0; k < 1500; ++k) {
+    rig.run(1);
+    exact.push_back(float(rig.server->force(0).z()));
+    if (k % 4 == 0) rig.server->collect();
+  }
+  rig.server->collect();
+  rig.engine_bus.poll(0);
+  ASSERT_EQ(force_z.size(), 1500u);
+  EXPECT_EQ(force_z, exact);
+  EXPECT_GT(*std::max_element(exact.begin(), exact.end()), 0.2f) << "nothing was pressed";
+  for (std::size_t k = 1; k < times_us.size(); ++k) ASSERT_EQ(times_us[k] - times_us[k - 1], 1000);
 }
 
 // Of the hand that cut it, for a moment, along the force that is there; within the gate's limits, as Rig::run checks.

@@ -9,8 +9,16 @@
 
 namespace insula {
 
-/// Data of one tick for the statistics. It is small, since thousands of them pass between threads.
+/// Data of one tick for the statistics and for recordings. It is small, since thousands of them pass between threads.
 struct TickSample {
+  /// Device pose (position m, quaternion w x y z) and force that was sent, N, scene frame; left, right.
+  struct Hand {
+    std::array<float, 3> p_m{};
+    std::array<float, 4> q{1, 0, 0, 0};
+    std::array<float, 3> force_N{};
+  };
+  std::int64_t time_us = 0;
+  std::array<Hand, 2> hand{};
   float lateness_us = 0;
   float solve_us = 0;
   float residual_m = 0;

@@ -112,6 +112,16 @@ bool well_formed(const insula_lcm::scene_info_t* type, Bytes bytes) {
   return in.at_end();
 }
 
+bool well_formed(const insula_lcm::servo_ticks_t* type, Bytes bytes) {
+  ByteReader in(bytes);
+  if (!starts_as(in, type)) return false;
+  in.take(3 * size_i64);
+  const int ticks = in.i32(), numbers = in.i32();
+  in.take_array(ticks, size_i32);
+  in.take_array(numbers, size_f32);
+  return in.at_end();
+}
+
 bool well_formed(const insula_lcm::session_step_t* type, Bytes bytes) {
   ByteReader in(bytes);
   if (!starts_as(in, type)) return false;
@@ -153,6 +163,11 @@ void drop_stale(insula_lcm::render_frame_t& m) {
     m.contact_x_m.clear();
     m.contact_N.clear();
   }
+}
+
+void drop_stale(insula_lcm::servo_ticks_t& m) {
+  if (m.ticks == 0) m.after_us.clear();
+  if (m.numbers == 0) m.hands.clear();
 }
 
 void drop_stale(insula_lcm::session_step_t& m) {

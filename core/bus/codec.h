@@ -16,6 +16,7 @@
 #include <insula_lcm/metrics_t.hpp>
 #include <insula_lcm/render_frame_t.hpp>
 #include <insula_lcm/scene_info_t.hpp>
+#include <insula_lcm/servo_ticks_t.hpp>
 #include <insula_lcm/session_step_t.hpp>
 #include <insula_lcm/sim_event_t.hpp>
 #include <insula_lcm/user_command_t.hpp>
@@ -38,12 +39,14 @@ bool well_formed(const insula_lcm::haptic_status_t*, Bytes bytes);
 bool well_formed(const insula_lcm::metrics_t*, Bytes bytes);
 bool well_formed(const insula_lcm::render_frame_t*, Bytes bytes);
 bool well_formed(const insula_lcm::scene_info_t*, Bytes bytes);
+bool well_formed(const insula_lcm::servo_ticks_t*, Bytes bytes);
 bool well_formed(const insula_lcm::session_step_t*, Bytes bytes);
 bool well_formed(const insula_lcm::sim_event_t*, Bytes bytes);
 bool well_formed(const insula_lcm::user_command_t*, Bytes bytes);
 
 /// Empties vectors whose new count is 0, which the generated decoder leaves unchanged in a reused object.
 void drop_stale(insula_lcm::render_frame_t& message);
+void drop_stale(insula_lcm::servo_ticks_t& message);
 void drop_stale(insula_lcm::session_step_t& message);
 template <class Message>
 void drop_stale(Message&) {}

@@ -128,6 +128,18 @@ insula_lcm::scene_info_t sample() {
   return m;
 }
 template <>
+insula_lcm::servo_ticks_t sample() {
+  insula_lcm::servo_ticks_t m{};
+  m.session = 11;
+  m.time_us = 4'711;
+  m.ticks = 2;
+  m.numbers = 2 * numbers_of_tick;
+  m.after_us = {0, 1'003};
+  for (int k = 0; k < 4; ++k)
+    for (const float v : {0.01f, -0.02f, 0.03f, 0.6f, 0.f, 0.8f, 0.f, 0.1f, -0.2f, 1.5f}) m.hands.push_back(v);
+  return m;
+}
+template <>
 insula_lcm::session_step_t sample() {
   insula_lcm::session_step_t m{};
   m.number = 61;
@@ -179,7 +191,8 @@ template <class T>
 class Codec : public ::testing::Test {};
 using Types = ::testing::Types<insula_lcm::device_state_t, insula_lcm::hand_input_t, insula_lcm::haptic_status_t,
                                insula_lcm::metrics_t, insula_lcm::render_frame_t, insula_lcm::scene_info_t,
-                               insula_lcm::session_step_t, insula_lcm::sim_event_t, insula_lcm::user_command_t>;
+                               insula_lcm::servo_ticks_t, insula_lcm::session_step_t, insula_lcm::sim_event_t,
+                               insula_lcm::user_command_t>;
 TYPED_TEST_SUITE(Codec, Types);
 
 TYPED_TEST(Codec, RoundTrip) {
@@ -235,6 +248,7 @@ TYPED_TEST(Codec, OtherTypesAreRefused) {
   taken += decode<insula_lcm::metrics_t>(bytes).has_value();
   taken += decode<insula_lcm::render_frame_t>(bytes).has_value();
   taken += decode<insula_lcm::scene_info_t>(bytes).has_value();
+  taken += decode<insula_lcm::servo_ticks_t>(bytes).has_value();
   taken += decode<insula_lcm::session_step_t>(bytes).has_value();
   taken += decode<insula_lcm::sim_event_t>(bytes).has_value();
   taken += decode<insula_lcm::user_command_t>(bytes).has_value();
@@ -301,6 +315,10 @@ TEST(Plausible, Others) {
   expect_refused<insula_lcm::metrics_t>("flag", [](auto& m) { m.at_end = 2; });
   expect_refused<insula_lcm::scene_info_t>("state", [](auto& m) { m.state = "lost"; });
   expect_refused<insula_lcm::scene_info_t>("NUL", [](auto& m) { m.bundle = std::string("a\0b", 3); });
+  expect_refused<insula_lcm::servo_ticks_t>("order", [](auto& m) { m.after_us[1] = -1; });
+  expect_refused<insula_lcm::servo_ticks_t>("position", [](auto& m) { m.hands[11] = 11; });
+  expect_refused<insula_lcm::servo_ticks_t>("turn", [](auto& m) { m.hands[3] = 2; });
+  expect_refused<insula_lcm::servo_ticks_t>("force", [](auto& m) { m.hands[39] = NAN; });
   expect_refused<insula_lcm::session_step_t>("number", [](auto& m) { m.number = 0; });
   expect_refused<insula_lcm::session_step_t>("sum", [](auto& m) { m.body_sum[1] = NAN; });
   expect_refused<insula_lcm::session_step_t>("kind", [](auto& m) { m.input[0].kind = 6; });

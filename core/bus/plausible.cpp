@@ -164,6 +164,21 @@ bool plausible(const insula_lcm::scene_info_t& m, std::string& why) {
   return fail(why, "unknown state");
 }
 
+bool plausible(const insula_lcm::servo_ticks_t& m, std::string& why) {
+  if (m.session < 0 || m.sequence < 0 || m.time_us < 0) return fail(why, "negative session, sequence or time");
+  if (!consistent(m) || m.ticks < 1 || m.ticks > 1000) return fail(why, "number of ticks out of range");
+  for (std::size_t i = 0; i < m.after_us.size(); ++i)
+    if (m.after_us[i] < (i == 0 ? 0 : m.after_us[i - 1])) return fail(why, "ticks are not in order");
+  for (std::size_t at = 0; at < m.hands.size(); at += numbers_of_tick / 2) {
+    const float* h = m.hands.data() + at;
+    const double q[4] = {h[3], h[4], h[5], h[6]};
+    if (!within(h, 3, limits::position_m)) return fail(why, "device position out of range");
+    if (!unit_quaternion(q)) return fail(why, "device orientation is no unit quaternion");
+    if (!within(h + 7, 3, 100)) return fail(why, "device force out of range");
+  }
+  return true;
+}
+
 bool plausible(const insula_lcm::session_step_t& m, std::string& why) {
   if (!consistent(m)) return fail(why, "counts disagree");
   if (m.number < 1) return fail(why, "number of the step is not positive");
@@ -208,6 +223,10 @@ bool plausible(const insula_lcm::user_command_t& m, std::string& why) {
 
 bool consistent(const insula_lcm::device_state_t& m) { return m.hands >= 0 && m.hand.size() == std::size_t(m.hands); }
 
+bool consistent(const insula_lcm::servo_ticks_t& m) {
+  return m.ticks >= 0 && m.numbers == numbers_of_tick * m.ticks && m.after_us.size() == std::size_t(m.ticks) &&
+         m.hands.size() == std::size_t(m.numbers);
+}
 bool consistent(const insula_lcm::session_step_t& m) {
   return m.bodies >= 0 && m.inputs >= 0 && m.body_sum.size() == std::size_t(m.bodies) &&
          m.input.size() == std::size_t(m.inputs);

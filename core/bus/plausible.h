@@ -8,6 +8,7 @@
 #include <insula_lcm/metrics_t.hpp>
 #include <insula_lcm/render_frame_t.hpp>
 #include <insula_lcm/scene_info_t.hpp>
+#include <insula_lcm/servo_ticks_t.hpp>
 #include <insula_lcm/session_step_t.hpp>
 #include <insula_lcm/sim_event_t.hpp>
 #include <insula_lcm/user_command_t.hpp>
@@ -22,6 +23,7 @@ bool plausible(const insula_lcm::haptic_status_t& message, std::string& why);
 bool plausible(const insula_lcm::metrics_t& message, std::string& why);
 bool plausible(const insula_lcm::render_frame_t& message, std::string& why);
 bool plausible(const insula_lcm::scene_info_t& message, std::string& why);
+bool plausible(const insula_lcm::servo_ticks_t& message, std::string& why);
 bool plausible(const insula_lcm::session_step_t& message, std::string& why);
 bool plausible(const insula_lcm::sim_event_t& message, std::string& why);
 bool plausible(const insula_lcm::user_command_t& message, std::string& why);
@@ -29,11 +31,15 @@ bool plausible(const insula_lcm::user_command_t& message, std::string& why);
 /// Whether each count equals the size of its vector, so that the generated encoder stays within them.
 bool consistent(const insula_lcm::device_state_t& message);
 bool consistent(const insula_lcm::render_frame_t& message);
+bool consistent(const insula_lcm::servo_ticks_t& message);
 bool consistent(const insula_lcm::session_step_t& message);
 template <class Message>
 bool consistent(const Message&) {
   return true;  // types without counts
 }
+
+/// Numbers of a tick in servo_ticks_t: position, quaternion and force of each hand.
+inline constexpr int numbers_of_tick = 20;
 
 /// Shared with the haptic problem's decoder.
 namespace limits {

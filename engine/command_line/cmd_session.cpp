@@ -13,6 +13,15 @@
 namespace insula {
 namespace {
 
+std::int64_t ticks_of(SessionReader& session) {
+  std::int64_t ticks = 0;
+  session.ticks([&](double, const insula_lcm::servo_ticks_t& m) {
+    ticks += m.ticks;
+    return true;
+  });
+  return ticks;
+}
+
 /// Reads everything, so that all damage is found.
 nlohmann::ordered_json read_through(SessionReader& session) {
   std::int64_t last = 0, resets = 0, commands = 0, hashes = 0, gaps = 0, events = 0;
@@ -35,6 +44,7 @@ nlohmann::ordered_json read_through(SessionReader& session) {
   std::int64_t hands = 0;
   if (const auto channel = file.channel(channel::device_state))
     file.read({*channel}, 0, UINT64_MAX, [&](const auto&) { return ++hands > 0; });
+  const std::int64_t ticks = ticks_of(session);
   for (const auto& a : file.attachments()) file.data(a);
   std::vector<std::string> damage = file.damage();
   if (gaps > 0) damage.push_back(fmt::format("steps are missing in {} places", gaps));
@@ -64,6 +74,7 @@ nlohmann::ordered_json read_through(SessionReader& session) {
   json["commands"] = commands;
   json["events"] = events;
   json["device_states"] = hands;
+  json["servo_ticks"] = ticks;
   json["state_hashes"] = hashes;
   json["files"] = file.descriptions().contains("files") ? file.descriptions().at("files").size() : 0;
   json["damage"] = damage;

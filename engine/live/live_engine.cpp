@@ -61,6 +61,11 @@ struct Inputs {
       reports.hear(devices);
       recording.hands(b);
     });
+    bus.subscribe(channel::servo_ticks, [&recording](Bytes b) {
+      std::string why;
+      insula_lcm::servo_ticks_t m{};
+      if (decode(b, m, why)) recording.ticks(b);
+    });
     bus.subscribe(channel::haptic_status, [&reports](Bytes b) {
       std::string why;
       insula_lcm::haptic_status_t m{};

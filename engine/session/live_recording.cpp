@@ -74,6 +74,10 @@ void LiveRecording::hands(mcap::Bytes device_state) {
   if (recorder_) recorder_->hands(device_state);
 }
 
+void LiveRecording::ticks(mcap::Bytes servo_ticks) {
+  if (recorder_) recorder_->ticks(servo_ticks);
+}
+
 void LiveRecording::close(const Simulation& simulation) {
   if (!recorder_) return;
   recorder_->close(simulation);

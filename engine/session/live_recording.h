@@ -31,6 +31,8 @@ class LiveRecording {
   void note(const std::vector<Event>& events);
   /// A message on both hands (SessionRecorder::hands()).
   void hands(mcap::Bytes device_state);
+  /// A message on the servo's ticks (SessionRecorder::ticks()).
+  void ticks(mcap::Bytes servo_ticks);
   /// At the end of the session.
   void close(const Simulation& simulation);
 

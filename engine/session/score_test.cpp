@@ -178,7 +178,7 @@ TEST_F(Score, TablesHoldWhatWasRecorded) {
   record();
   SessionReader session(file());
   const auto files = export_tables(session, folder_.path() / "tables", "csv");
-  ASSERT_EQ(files.size(), 4u);
+  ASSERT_EQ(files.size(), 5u);
   const auto metrics = lines_of(folder_.path() / "tables/metrics.csv");
   EXPECT_EQ(metrics.at(0), "number,pass,time_s,mode,state,last_of_pass,id,hand,value,unit,better");
   EXPECT_GT(metrics.size(), 100u);

@@ -85,6 +85,26 @@ fs::path export_hands(SessionReader& session, const fs::path& folder, const std:
   return table.close();
 }
 
+fs::path export_servo(SessionReader& session, const fs::path& folder, const std::string& format) {
+  std::vector<std::string> columns = {"received_s", "clock_us"};
+  for (const char* hand : hand_names)
+    for (const char* number : {"px_m", "py_m", "pz_m", "qw", "qx", "qy", "qz", "fx_N", "fy_N", "fz_N"})
+      columns.push_back(fmt::format("{}_{}", hand, number));
+  Table table(folder, "servo", format, columns);
+  std::vector<Json> row(columns.size());
+  session.ticks([&](double received_s, const insula_lcm::servo_ticks_t& m) {
+    for (int k = 0; k < m.ticks; ++k) {
+      row[0] = received_s;
+      row[1] = m.time_us + m.after_us[std::size_t(k)];
+      for (std::size_t n = 0; n < std::size_t(numbers_of_tick); ++n)
+        row[2 + n] = m.hands[std::size_t(numbers_of_tick * k) + n];
+      table.row(row);
+    }
+    return true;
+  });
+  return table.close();
+}
+
 fs::path export_channels(SessionReader& session, const fs::path& folder, const std::string& format) {
   std::vector<std::string> columns = {"recorded_s", "time_s"};
   const auto& described = session.container().descriptions();
@@ -136,14 +156,15 @@ std::vector<fs::path> export_tables(SessionReader& session, const fs::path& fold
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw InputError(folder.string() + ": cannot be created: " + error.message());
-  return {export_hands(session, folder, format), export_channels(session, folder, format),
-          export_metrics(session, folder, format), export_events(session, folder, format)};
+  return {export_hands(session, folder, format), export_servo(session, folder, format),
+          export_channels(session, folder, format), export_metrics(session, folder, format),
+          export_events(session, folder, format)};
 }
 
 std::int64_t export_lcm_log(SessionReader& session, const fs::path& file) {
   std::ofstream out(file, std::ios::binary | std::ios::trunc);
   std::set<std::uint16_t> wanted;
-  for (const auto topic : {channel::device_state, channel::sim_event})
+  for (const auto topic : {channel::device_state, channel::servo_ticks, channel::sim_event})
     if (const auto channel = session.container().channel(topic)) wanted.insert(*channel);
   std::int64_t number = 0;
   session.container().read(wanted, 0, UINT64_MAX, [&](const McapReader::Message& m) {

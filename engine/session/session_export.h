@@ -9,14 +9,14 @@
 
 namespace insula {
 
-/// Writes hands, channels, metrics and events as .csv or .json files into a folder, which is created. Times are
-/// simulated seconds since the recording began, except for time_s of metrics and channels, which begins again with each
-/// pass. format: "csv" or "json". Returns the files. Throws InputError if one cannot be written.
+/// Writes hands, every tick of the servo, channels, metrics and events as .csv or .json files into a folder, which is
+/// created. Times are simulated seconds since the recording began, except for time_s of metrics and channels, which
+/// begins again with each pass. format: "csv" or "json". Returns the files. Throws InputError if one cannot be written.
 std::vector<std::filesystem::path> export_tables(SessionReader& session, const std::filesystem::path& folder,
                                                  const std::string& format);
 
-/// Writes the messages on hands and the events as a log that lcm-logplayer plays. Returns their number. Throws
-/// InputError if it cannot be written.
+/// Writes the messages on hands, on the servo's ticks and the events as a log that lcm-logplayer plays. Returns their
+/// number. Throws InputError if it cannot be written.
 std::int64_t export_lcm_log(SessionReader& session, const std::filesystem::path& file);
 
 }  // namespace insula

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <insula_lcm/device_state_t.hpp>
 #include <nlohmann/json.hpp>
 
 #include "core/base/input_error.h"
@@ -56,6 +55,18 @@ void SessionReader::events(const std::function<bool(const insula_lcm::sim_event_
   read_all(file_, channel::sim_event, damaged_, take);
 }
 
+void SessionReader::ticks(const std::function<bool(double, const insula_lcm::servo_ticks_t&)>& take) {
+  const auto channel = file_.channel(channel::servo_ticks);
+  if (!channel) return;
+  insula_lcm::servo_ticks_t message{};
+  std::string why;
+  file_.read({*channel}, 0, UINT64_MAX, [&](const McapReader::Message& m) {
+    if (decode(m.data, message, why)) return take(1e-9 * double(m.time_ns), message);
+    ++damaged_;
+    return true;
+  });
+}
+
 std::string SessionReader::field(const std::string& name) const {
   const std::string said = about(session::field_prefix + name);
   return said.empty() ? about(name) : said;
@@ -96,21 +107,18 @@ std::vector<SessionReader::Metrics> SessionReader::passes() {
 
 std::vector<std::array<double, 2>> SessionReader::hand_forces() {
   std::vector<std::array<double, 2>> out;
-  const auto channel = file_.channel(channel::device_state);
   const double h = step_s();
-  if (!channel || !(h > 0)) return out;
-  insula_lcm::device_state_t message{};
-  std::string why;
-  file_.read({*channel}, 0, UINT64_MAX, [&](const McapReader::Message& m) {
+  if (!(h > 0)) return out;
+  ticks([&](double received_s, const insula_lcm::servo_ticks_t& m) {
     // A message has the time of the step before it.
-    const double number = std::round(1e-9 * double(m.time_ns) / h) + 1;
-    if (number > most_steps || !decode(m.data, message, why)) return true;
+    const double number = std::round(received_s / h) + 1;
+    if (number > most_steps) return true;
     if (out.size() <= std::size_t(number)) out.resize(std::size_t(number) + 1);
-    for (const auto& h : message.hand)
-      if (h.connected) {
-        double& largest = out[std::size_t(number)][std::size_t(h.hand)];
-        largest = std::max(largest, std::hypot(h.force_N[0], h.force_N[1], h.force_N[2]));
-      }
+    for (std::size_t at = 0; at < m.hands.size(); at += numbers_of_tick / 2) {
+      const float* force = m.hands.data() + at + 7;
+      double& largest = out[std::size_t(number)][at / (numbers_of_tick / 2) % 2];
+      largest = std::max(largest, double(std::hypot(force[0], force[1], force[2])));
+    }
     return true;
   });
   return out;

@@ -3,6 +3,7 @@
 #pragma once
 #include <array>
 #include <functional>
+#include <insula_lcm/servo_ticks_t.hpp>
 #include <insula_lcm/session_step_t.hpp>
 #include <insula_lcm/sim_event_t.hpp>
 #include <optional>
@@ -28,6 +29,8 @@ class SessionReader {
   /// All whole steps in order, until `take` returns false. Steps that are no valid messages are counted in damaged().
   void steps(const std::function<bool(const insula_lcm::session_step_t&)>& take);
   void events(const std::function<bool(const insula_lcm::sim_event_t&)>& take);
+  /// Messages on every tick of the servo, with the simulated time of the recording, s, at which each came.
+  void ticks(const std::function<bool(double, const insula_lcm::servo_ticks_t&)>& take);
   /// The metrics of a moment, as recorded.
   struct Metrics {
     std::int64_t number = 0;  ///< of the step

@@ -71,6 +71,7 @@ SessionRecorder::SessionRecorder(const std::filesystem::path& file, const Simula
   step_channel_ = out_->add_channel(session::step_topic, schema("session_step_t"), "lcm");
   event_channel_ = out_->add_channel(std::string(channel::sim_event), schema("sim_event_t"), "lcm");
   hands_channel_ = out_->add_channel(std::string(channel::device_state), schema("device_state_t"), "lcm");
+  ticks_channel_ = out_->add_channel(std::string(channel::servo_ticks), schema("servo_ticks_t"), "lcm");
   metrics_channel_ = out_->add_channel(session::metrics_topic, 0, "json");
   channels_channel_ = out_->add_channel(session::channels_topic, 0, "json");
   mcap::Text names;
@@ -106,7 +107,12 @@ void SessionRecorder::step(const Simulation& simulation) {
 }
 
 void SessionRecorder::hands(mcap::Bytes device_state) {
-  if (hands_left_-- > 0) put(hands_channel_, device_state);
+  // The servo's ticks have the poses and forces; buttons and names of devices need no 250 messages a second.
+  if (hands_left_-- > 0 && hands_number_++ % kept_hands == 0) put(hands_channel_, device_state);
+}
+
+void SessionRecorder::ticks(mcap::Bytes servo_ticks) {
+  if (hands_left_ > 0) put(ticks_channel_, servo_ticks);
 }
 
 void SessionRecorder::end_pass(const Simulation& simulation) {

@@ -45,9 +45,11 @@ class SessionRecorder {
   void end_pass(const Simulation& simulation);
   /// Events that belong to no step. An event "mode" says in which mode the session goes on.
   void note(const std::vector<Event>& events);
-  /// The haptic server's message on both hands, as it came: poses and the forces that were sent. While no step is made,
-  /// only the first ones are kept.
+  /// The haptic server's message on both hands, as it came: devices, poses, buttons. Every kept_hands-th one is kept, and
+  /// while no step is made only the first ones.
   void hands(mcap::Bytes device_state);
+  /// Every tick of the servo, as it came (servo_ticks_t). Also kept for a moment only while no step is made.
+  void ticks(mcap::Bytes servo_ticks);
   /// Writes what is left, with the hash of the last step, and ends the file.
   void close(const Simulation& simulation);
 
@@ -58,6 +60,7 @@ class SessionRecorder {
   /// Number of steps from one kept hash to the next. A rerun compares at these places.
   static std::int64_t steps_a_second(double h);
   static constexpr int channels_a_second = 10;
+  static constexpr int kept_hands = 4;  ///< of the messages on hands one of so many is kept
   /// Memory for messages that the disk has not taken. With more the recording ends.
   static constexpr std::size_t most_waiting_bytes = 64u << 20;
 
@@ -74,13 +77,15 @@ class SessionRecorder {
 
   std::filesystem::path file_;
   std::unique_ptr<McapWriter> out_;  ///< the thread's once it runs
-  std::uint16_t step_channel_ = 0, event_channel_ = 0, hands_channel_ = 0, metrics_channel_ = 0, channels_channel_ = 0;
+  std::uint16_t step_channel_ = 0, event_channel_ = 0, hands_channel_ = 0, ticks_channel_ = 0, metrics_channel_ = 0,
+                channels_channel_ = 0;
   std::int64_t number_ = 0, event_number_ = 0;
   std::uint64_t time_ns_ = 0;  ///< of the recording: that of all steps together
   bool last_is_hashed_ = false;
   int pass_ = 0;  ///< number of the pass through the exercise, from 1
   ExerciseState exercise_state_ = ExerciseState::running;
   std::string mode_;
+  std::int64_t hands_number_ = 0;
   int hands_left_ = 0;  ///< messages on hands that are kept until the next step
   insula_lcm::session_step_t message_{};
   insula_lcm::sim_event_t event_{};
