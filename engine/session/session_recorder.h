@@ -45,7 +45,7 @@ class SessionRecorder {
   void end_pass(const Simulation& simulation);
   /// Events that belong to no step. An event "mode" says in which mode the session goes on.
   void note(const std::vector<Event>& events);
-  /// The haptic server's message on both hands, as it came: devices, poses, buttons. Every kept_hands-th one is kept, and
+  /// The haptic server's message on both hands, as it came: devices, poses, buttons. One of kept_hands is kept, and
   /// while no step is made only the first ones.
   void hands(mcap::Bytes device_state);
   /// Every tick of the servo, as it came (servo_ticks_t). Also kept for a moment only while no step is made.
