@@ -125,11 +125,13 @@ TEST(SylvianFissure, SteadyHandsCompleteItWithoutAFault) {
   EXPECT_LT(o.max_press, 0.25);
 }
 
-// A steady right hand divides every strand by itself, and a steady left one draws the lobe.
+// A steady left hand draws the lobe. A steady right one divides every strand by itself, so the goal of both hands comes
+// out of reach.
 TEST(SylvianFissure, OneHandAloneDoesNotCompleteIt) {
+  const ExerciseState ends[2] = {ExerciseState::running, ExerciseState::failed};
   for (int hand = 0; hand < 2; ++hand) {
     const Outcome o = perform("steady", hand);
-    EXPECT_EQ(o.state, ExerciseState::running) << "hand " << hand;
+    EXPECT_EQ(o.state, ends[hand]) << "hand " << hand;
     EXPECT_LT(o.goals.at("together"), 0) << "hand " << hand;
   }
 }
