@@ -30,10 +30,12 @@ with open(sys.argv[1], "rb") as file:
     about = {m.name: m.metadata for m in reader.iter_metadata()}
     texts = {a.name: hashlib.sha256(a.data).hexdigest() for a in reader.iter_attachments()}
     schemas = [s.name + " " + str(b"struct" in s.data) for s in summary.schemas.values()]
+    channels = [json.loads(m.data) for _, _, m in reader.iter_messages(topics=["CHANNELS"])]
     late = sum(1 for _ in reader.iter_messages(topics=["STEP"], start_time=10**9, end_time=2 * 10**9))
     print(json.dumps({
         "messages": summary.statistics.message_count, "schemas": schemas, "about": about, "texts": texts,
         "last": steps[-1].number, "hash": "%016x" % (steps[-1].state_hash % 2**64), "late": late,
+        "channels": len(channels), "channel_time": channels[-1][0],
         "rising": all(a.number <= b.number for a, b in zip(steps, steps[1:]))}))
 """
 
@@ -65,9 +67,10 @@ def main(source, build, lcm_gen):
         expect("as many steps", read["last"] == info["steps"] == 300)
         expect("in order", read["rising"])
         expect("a second of steps by time", read["late"] == 100)
+        expect("channels ten times a second", read["channels"] == 30 and abs(read["channel_time"] - 3) < 1e-6)
         expect("the hash that the run prints: " + said, "state_hash " + read["hash"] in said)
         expect("its title", read["about"]["session"]["title"] == info["title"] == "Stylus")
-        declared = ["session_step_t True", "sim_event_t True", "device_state_t True"]
+        declared = ["session_step_t True", "sim_event_t True", "device_state_t True", "servo_ticks_t True"]
         expect("declarations of messages", read["schemas"] == declared)
         expect("the scene's text", read["texts"] == {"scene/scene.xml": read["about"]["files"]["scene.xml"]})
         expect("the mesh by its hash", set(read["about"]["files"]) == {"scene.xml", "meshes/block.msh"})

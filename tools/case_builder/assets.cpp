@@ -26,7 +26,8 @@ Assets link_assets(const CaseFolder& folder, const fs::path& project, const std:
   }
   // A scene may name files below the folder that holds "meshes" alone: the case brings all it needs.
   out = {"meshes", "scenes/parts", "../../lobes", true};
-  for (const char* part : {"fissure.xml", "retracted_fissure.xml", "brain_limits.xml", "vessel_limits.xml", "bleb.xml"})
+  for (const char* part : {"fissure.xml", "retracted_fissure.xml", "brain_limits.xml", "vessel_limits.xml", "bleb.xml",
+                           "metrics.xml", "strand_metrics.xml", "bleeding_metrics.xml"})
     copy_all(root / "scenes/parts" / part, here / "scenes/parts" / part);
   for (const char* tool : {"suction", "dissector", "clip_applier", "retractor"})
     copy_all(root / "meshes/instruments" / tool, here / "meshes/instruments" / tool);
