@@ -57,9 +57,9 @@ int score_one(const CommandContext& context, const ScoreOptions& options, const 
     if (result.rerun.different > 0)
       fmt::print(context.err, "error: {}: the first other state is at {:.2f} s\n", file.string(),
                  result.rerun.first_different_s);
-    if (!result.first_different.empty() && result.rerun.same_instructions)
+    if (result.metrics_wrong())
       fmt::print(context.err, "error: {}: the first other metric is {}\n", file.string(), result.first_different);
-    return result.rerun.good() && (result.metrics_different == 0 || !result.rerun.same_instructions) ? 0 : 1;
+    return result.good() ? 0 : 1;
   } catch (const InputError& e) {
     fmt::print(context.err, "error: {}\n", e.what());
     return 2;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "engine/reports/exercise_outcome.h"
+
 namespace insula {
 namespace {
 
@@ -45,9 +47,7 @@ void add_exercise(SortedJson& j, const Exercise* exercise, double time) {
                              {"good", m.good},
                              {"limit", m.limit}});
   j["message"] = log.last_message();
-  j["state"] = log.state() == ExerciseState::running ? "running"
-               : log.state() == ExerciseState::done  ? "done"
-                                                     : "failed";
+  j["state"] = state_name(log.state());
   if (log.end_time() >= 0) j["elapsed_s"] = rounded(log.end_time(), 3);
 }
 

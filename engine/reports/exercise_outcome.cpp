@@ -5,6 +5,11 @@ namespace insula {
 
 using Json = nlohmann::ordered_json;
 
+const char* state_name(ExerciseState state) {
+  static constexpr const char* names[] = {"running", "done", "failed"};
+  return names[int(state)];
+}
+
 Json exercise_json(const std::optional<ExerciseOutcome>& exercise) {
   Json goals = Json::array(), faults = Json::array(), timers = Json::array(), measures = Json::array();
   const auto bound = [](const std::optional<double>& b) { return b ? Json(*b) : Json(); };
@@ -34,10 +39,9 @@ Json exercise_json(const std::optional<ExerciseOutcome>& exercise) {
                           {"band", {bound(m.band[0]), bound(m.band[1])}},
                           {"limit", m.limit},
                           {"text", m.text}});
-    static constexpr const char* states[] = {"running", "done", "failed"};
     out["id"] = exercise->id;
     out["title"] = exercise->title;
-    out["state"] = states[int(exercise->log.state())];
+    out["state"] = state_name(exercise->log.state());
   }
   out["goals"] = goals;
   out["faults"] = faults;

@@ -23,6 +23,9 @@ struct ExerciseOutcome {
   std::vector<MetricValue> metrics;
 };
 
+/// "running", "done" or "failed".
+const char* state_name(ExerciseState state);
+
 /// {id, title, state, goals, faults, timers, measures}; without an exercise only the lists, empty. The metrics stand
 /// beside it (metrics_report.h).
 nlohmann::ordered_json exercise_json(const std::optional<ExerciseOutcome>& exercise);

@@ -18,17 +18,21 @@ std::string shown_value(const MetricValue* m) {
 
 }  // namespace
 
+nlohmann::ordered_json metric_json(const MetricValue& m) {
+  return {{"id", m.id},
+          {"hand", hand_name(m.hand)},
+          {"unit", m.unit},
+          {"value", m.known ? nlohmann::ordered_json(m.value) : nlohmann::ordered_json()},
+          {"better", better_name(m.better)}};
+}
+
 nlohmann::ordered_json metrics_json(const std::vector<MetricValue>& metrics, bool with_source) {
   auto out = nlohmann::ordered_json::array();
   for (const MetricValue& m : metrics) {
-    out.push_back({{"id", m.id},
-                   {"hand", hand_name(m.hand)},
-                   {"unit", m.unit},
-                   {"value", m.known ? nlohmann::ordered_json(m.value) : nlohmann::ordered_json()},
-                   {"better", better_name(m.better)},
-                   {"digits", m.digits},
-                   {"text", m.text}});
-    if (with_source) out.back()["source"] = m.source;
+    nlohmann::ordered_json& json = out.emplace_back(metric_json(m));
+    json["digits"] = m.digits;
+    json["text"] = m.text;
+    if (with_source) json["source"] = m.source;
   }
   return out;
 }
@@ -47,8 +51,7 @@ std::string to_work_on_html(const std::vector<MetricValue>& metrics, const Refer
   if (bands.empty()) return {};
   std::string out = fmt::format(
       "<h2>Three things to work on</h2>\n<p class=\"quiet\">What lies farthest beyond the middle half of {} sessions "
-      "of "
-      "the group {}.</p>\n",
+      "of the group {}.</p>\n",
       bands.sessions(), escaped(bands.group()));
   std::string rows;
   for (const MetricValue* m : to_work_on(metrics, bands, 3)) {

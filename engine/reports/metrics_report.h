@@ -10,6 +10,8 @@
 
 namespace insula {
 
+/// {id, hand, unit, value, better}, as in metrics_json().
+nlohmann::ordered_json metric_json(const MetricValue& metric);
 /// [{id, hand: "left" | "right" | "both", unit, value, better: "high" | "low" | "none", digits, text, source}]. An
 /// unknown value is null. The source is left out on request.
 nlohmann::ordered_json metrics_json(const std::vector<MetricValue>& metrics, bool with_source = true);

@@ -14,6 +14,8 @@
 #include "core/base/input_error.h"
 #include "core/bus/channels.h"
 #include "core/bus/codec.h"
+#include "engine/reports/exercise_outcome.h"
+#include "engine/reports/metrics_report.h"
 #include "engine/session/session_files.h"
 #include "engine/session/session_format.h"
 
@@ -132,20 +134,14 @@ void SessionRecorder::put_text(std::uint16_t channel, const std::string& text) {
 void SessionRecorder::put_metrics(const Simulation& simulation, bool last_of_pass) {
   const Exercise* exercise = simulation.exercise();
   if (!exercise) return;
-  static constexpr const char* states[] = {"running", "done", "failed"};
   nlohmann::ordered_json values = nlohmann::ordered_json::array();
   for (const MetricValue& m : exercise->metrics())
-    if (m.known)
-      values.push_back({{"id", m.id},
-                        {"hand", hand_name(m.hand)},
-                        {"unit", m.unit},
-                        {"value", m.value},
-                        {"better", better_name(m.better)}});
+    if (m.known) values.push_back(metric_json(m));
   const nlohmann::ordered_json message = {{"number", number_},
                                           {"time_s", simulation.time()},
                                           {"pass", pass_},
                                           {"mode", mode_},
-                                          {"state", states[int(exercise->log().state())]},
+                                          {"state", state_name(exercise->log().state())},
                                           {"last_of_pass", last_of_pass},
                                           {"metrics", std::move(values)}};
   put_text(metrics_channel_, message.dump());
