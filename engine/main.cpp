@@ -139,12 +139,13 @@ void add_engine(Options& c) {
 
 void add_replay(Options& c) {
   auto& o = c.replay;
-  auto* command = c.app.add_subcommand("replay", "a log of lcm-logger onto the bus, for viewers");
-  command->add_option("log", o.log, "log of a session")->required();
-  command->add_option("--speed", o.speed, "times as fast as it was")
+  auto* command = c.app.add_subcommand("replay", "recorded sessions on a page, or a log of lcm-logger onto the bus");
+  command->add_option("files", o.files, "recorded sessions (NAME.insula), or one log of lcm-logger")->required();
+  command->add_option("--port", o.port, "of the page; following ones are tried if it is busy")->capture_default_str();
+  command->add_option("--speed", o.speed, "of a log: times as fast as it was")
       ->check(CLI::Range(0.01, 1000.0))
       ->capture_default_str();
-  command->add_flag("--loop", o.loop, "again and again, until Ctrl-C");
+  command->add_flag("--loop", o.loop, "of a log: again and again, until Ctrl-C");
   command->callback([&c] { c.chosen = [&](const auto& x) { return insula::cmd_replay(x, c.replay); }; });
 }
 

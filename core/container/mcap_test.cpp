@@ -2,6 +2,7 @@
 // An MCAP file comes back as it was written; damaged ones give what is whole.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <random>
@@ -193,6 +194,39 @@ TEST(Mcap, AFullDiskIsSaid) {
   } catch (const InputError& e) {
     EXPECT_NE(std::string(e.what()).find("No space left"), std::string::npos) << e.what();
   }
+}
+
+// A reader that wants one lane unpacks no chunk of another.
+TEST(Mcap, LanesHaveChunksOfTheirOwn) {
+  const TempFolder folder;
+  const auto file = folder.path() / "lanes.mcap";
+  McapWriter w(file, "insula", "test", {.chunk_bytes = 400});
+  const auto fast = w.add_channel("FAST", 0, "json");
+  const auto slow = w.add_channel("SLOW", 0, "json", {}, 1);
+  for (int k = 0; k < 100; ++k) {
+    w.write(fast, std::uint64_t(k) * step_ns, text("fast " + std::to_string(k)));
+    if (k % 10 == 0) w.write(slow, std::uint64_t(k) * step_ns, text("slow " + std::to_string(k)));
+    if (k == 50) w.flush(1);
+  }
+  w.close();
+  McapReader r(file);
+  EXPECT_TRUE(r.ended());
+  std::vector<std::string> of_slow, of_fast;
+  r.read({slow}, 0, UINT64_MAX, [&](const McapReader::Message& m) {
+    of_slow.push_back(said(m.data));
+    return true;
+  });
+  r.read({fast}, 0, UINT64_MAX, [&](const McapReader::Message& m) {
+    of_fast.push_back(said(m.data));
+    return true;
+  });
+  EXPECT_EQ(of_fast.size(), 100U);
+  ASSERT_EQ(of_slow.size(), 10U);
+  EXPECT_EQ(of_slow.front(), "slow 0");
+  EXPECT_EQ(of_slow.back(), "slow 90");
+  // The slow lane has one chunk until it was flushed, and one after it.
+  const auto whole = [](const auto& c) { return c.last_ns - c.first_ns >= 30 * step_ns; };
+  EXPECT_EQ(std::count_if(r.chunks().begin(), r.chunks().end(), whole), 2);
 }
 
 }  // namespace

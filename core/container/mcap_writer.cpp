@@ -38,7 +38,6 @@ McapWriter::McapWriter(const std::filesystem::path& file, const std::string& pro
   std::setvbuf(out_, nullptr, _IONBF, 0);  // records are whole already
   zstd_ = ZSTD_createCCtx();
   ZSTD_CCtx_setParameter(zstd_, ZSTD_c_compressionLevel, options.level);
-  chunk_.reserve(options.chunk_bytes + options.chunk_bytes / 4);
   put(magic);
   scratch_.clear();
   Put(scratch_).string(profile).string(library);
@@ -79,9 +78,15 @@ std::uint16_t McapWriter::add_schema(const std::string& name, const std::string&
 }
 
 std::uint16_t McapWriter::add_channel(const std::string& topic, std::uint16_t schema, const std::string& encoding,
-                                      const Text& metadata) {
-  if (!out_ || channel_.size() == UINT16_MAX) throw InputError(file_.string() + ": no more channels");
+                                      const Text& metadata, std::size_t lane) {
+  if (!out_ || channel_.size() == UINT16_MAX || lane >= max_lanes)
+    throw InputError(file_.string() + ": no more channels");
   channel_.emplace_back();
+  channel_.back().lane = lane;
+  while (lanes_.size() <= lane) {
+    lanes_.emplace_back();
+    lanes_.back().chunk.reserve(options_.chunk_bytes + options_.chunk_bytes / 4);
+  }
   const auto id = std::uint16_t(channel_.size());
   scratch_.clear();
   Put(scratch_).number(id).number(schema).string(topic).string(encoding).text(metadata);
@@ -94,14 +99,15 @@ std::uint16_t McapWriter::add_channel(const std::string& topic, std::uint16_t sc
 void McapWriter::write(std::uint16_t channel, std::uint64_t time_ns, Bytes data) {
   if (!out_) throw InputError(file_.string() + ": is closed");
   Channel& c = channel_.at(std::size_t(channel) - 1);
-  if (chunk_.empty()) open_.first_ns = open_.last_ns = time_ns;
-  open_.first_ns = std::min(open_.first_ns, time_ns);
-  open_.last_ns = std::max(open_.last_ns, time_ns);
+  auto& [open, chunk] = lanes_[c.lane];
+  if (chunk.empty()) open.first_ns = open.last_ns = time_ns;
+  open.first_ns = std::min(open.first_ns, time_ns);
+  open.last_ns = std::max(open.last_ns, time_ns);
   if (messages_ == 0) first_ns_ = time_ns;
   first_ns_ = std::min(first_ns_, time_ns);
   last_ns_ = std::max(last_ns_, time_ns);
-  Put(c.index).number(time_ns).number(std::uint64_t(chunk_.size()));
-  Put(chunk_)
+  Put(c.index).number(time_ns).number(std::uint64_t(chunk.size()));
+  Put(chunk)
       .number(std::uint8_t(Op::message))
       .number(std::uint64_t(message_head + data.size()))
       .number(channel)
@@ -111,43 +117,49 @@ void McapWriter::write(std::uint16_t channel, std::uint64_t time_ns, Bytes data)
       .raw(data);
   ++c.messages;
   ++messages_;
-  if (chunk_.size() >= options_.chunk_bytes) flush();
+  if (chunk.size() >= options_.chunk_bytes) flush(c.lane);
 }
 
 void McapWriter::flush() {
   if (!out_) throw InputError(file_.string() + ": is closed");
-  if (chunk_.empty()) return;
-  packed_.resize(ZSTD_compressBound(chunk_.size()));
-  const std::size_t n = ZSTD_compress2(zstd_, packed_.data(), packed_.size(), chunk_.data(), chunk_.size());
+  for (std::size_t lane = 0; lane < lanes_.size(); ++lane) flush(lane);
+}
+
+void McapWriter::flush(std::size_t lane) {
+  if (!out_) throw InputError(file_.string() + ": is closed");
+  auto& [open, chunk] = lanes_.at(lane);
+  if (chunk.empty()) return;
+  packed_.resize(ZSTD_compressBound(chunk.size()));
+  const std::size_t n = ZSTD_compress2(zstd_, packed_.data(), packed_.size(), chunk.data(), chunk.size());
   if (ZSTD_isError(n)) throw InputError(file_.string() + ": compression failed: " + ZSTD_getErrorName(n));
   packed_.resize(n);
-  open_.start = at_;
-  open_.whole = chunk_.size();
-  open_.packed = n;
+  open.start = at_;
+  open.whole = chunk.size();
+  open.packed = n;
   scratch_.clear();
   Put(scratch_)
-      .number(open_.first_ns)
-      .number(open_.last_ns)
-      .number(open_.whole)
-      .number(crc32(chunk_))
+      .number(open.first_ns)
+      .number(open.last_ns)
+      .number(open.whole)
+      .number(crc32(chunk))
       .string("zstd")
-      .number(open_.packed)
+      .number(open.packed)
       .raw(packed_);
   put_record(Op::chunk, scratch_);
-  open_.length = at_ - open_.start;
-  open_.index_at.clear();
+  open.length = at_ - open.start;
+  open.index_at.clear();
   for (std::size_t k = 0; k < channel_.size(); ++k) {
     Buffer& index = channel_[k].index;
-    if (index.empty()) continue;
-    open_.index_at[std::uint16_t(k + 1)] = at_;
+    if (index.empty() || channel_[k].lane != lane) continue;
+    open.index_at[std::uint16_t(k + 1)] = at_;
     scratch_.clear();
     Put(scratch_).number(std::uint16_t(k + 1)).number(std::uint32_t(index.size())).raw(index);
     put_record(Op::message_index, scratch_);
     index.clear();
   }
-  open_.index_length = at_ - open_.start - open_.length;
-  chunks_.push_back(open_);
-  chunk_.clear();
+  open.index_length = at_ - open.start - open.length;
+  chunks_.push_back(open);
+  chunk.clear();
 }
 
 void McapWriter::attach(const std::string& name, const std::string& media_type, std::uint64_t time_ns, Bytes data) {

@@ -8,7 +8,9 @@
 //   file.close();
 //
 // Chunks are appended whole. A program that dies leaves a file without an index, whose chunks the reader finds. The
-// messages of the open chunk are lost then. Schemas and channels are written in front of the chunks that use them.
+// messages of the open chunks are lost then. Schemas and channels are written in front of the chunks that use them.
+//
+// Channels of one lane share chunks. A reader that wants one lane unpacks no other.
 #pragma once
 #include <cstdio>
 #include <filesystem>
@@ -39,21 +41,23 @@ class McapWriter {
 
   /// Returns its number, from 1. At most 65,535 of them; the same for channels.
   std::uint16_t add_schema(const std::string& name, const std::string& encoding, const std::string& data);
-  /// schema: 0 for none.
+  /// schema: 0 for none. lane: from 0, below max_lanes.
   std::uint16_t add_channel(const std::string& topic, std::uint16_t schema, const std::string& encoding,
-                            const mcap::Text& metadata = {});
-  /// A message at that time, ns. Times should not decrease. It becomes part of the open chunk.
+                            const mcap::Text& metadata = {}, std::size_t lane = 0);
+  static constexpr std::size_t max_lanes = 8;
+  /// A message at that time, ns. Times should not decrease. It becomes part of the open chunk of its channel's lane.
   void write(std::uint16_t channel, std::uint64_t time_ns, mcap::Bytes data);
   void attach(const std::string& name, const std::string& media_type, std::uint64_t time_ns, mcap::Bytes data);
   void describe(const std::string& name, const mcap::Text& metadata);
-  /// Ends the open chunk and gives it to the operating system, which keeps it when this program dies.
+  /// Ends the open chunks and gives them to the operating system, which keeps them when this program dies.
   void flush();
+  /// Ends the open chunk of one lane.
+  void flush(std::size_t lane);
   /// Ends the file with its index.
   void close();
 
   std::uint64_t bytes() const { return at_; }  ///< written to the file
   std::uint64_t messages() const { return messages_; }
-  std::size_t open_bytes() const { return chunk_.size(); }  ///< in the open chunk
 
  private:
   struct ChunkPlace {
@@ -69,8 +73,14 @@ class McapWriter {
     std::string name;
   };
   struct Channel {
+    std::size_t lane = 0;
     std::uint64_t messages = 0;
     mcap::Buffer index;  ///< time and offset of its messages in the open chunk
+  };
+
+  struct Lane {
+    ChunkPlace open;
+    mcap::Buffer chunk;
   };
 
   void put(mcap::Bytes bytes);
@@ -82,8 +92,8 @@ class McapWriter {
   std::FILE* out_ = nullptr;
   ZSTD_CCtx_s* zstd_ = nullptr;
   std::uint64_t at_ = 0, messages_ = 0, first_ns_ = 0, last_ns_ = 0;
-  ChunkPlace open_;
-  mcap::Buffer chunk_, packed_, scratch_;
+  std::vector<Lane> lanes_;
+  mcap::Buffer packed_, scratch_;
   mcap::Buffer schemas_, channels_;  ///< their records, for the summary
   std::uint16_t schema_count_ = 0;
   std::vector<Channel> channel_;  ///< by number less 1

@@ -20,6 +20,8 @@
 #include "engine/live/session_lock.h"
 #include "engine/live/session_mode.h"
 #include "engine/live/supervisor.h"
+#include "engine/session/live_recording.h"
+#include "engine/session/session_format.h"
 
 namespace fs = std::filesystem;
 
@@ -172,13 +174,20 @@ ChildSpec haptic_child(const PlayOptions& options, const fs::path& folder) {
   return server;
 }
 
+/// Where the page finds recorded sessions: beside those that this one becomes.
+std::string session_folder(const PlayOptions& options) {
+  if (options.record.empty()) return default_session_folder().string();
+  const bool file = options.record.extension() == session::extension;
+  return fs::absolute(file ? fs::absolute(options.record).parent_path() : options.record).string();
+}
+
 ChildSpec gateway_child(const PlayOptions& options, const fs::path& folder, const SessionLock& lock,
                         const Supervisor::Print& print) {
   ChildSpec gateway;
   gateway.name = "gateway";
-  const auto command = [program = (folder / "gateway").string(), listen = options.listen,
-                        hosts = options.hosts](int port) {
-    std::vector<std::string> line{program, "--listen", listen, "--port", std::to_string(port)};
+  const auto command = [program = (folder / "gateway").string(), listen = options.listen, hosts = options.hosts,
+                        sessions = session_folder(options)](int port) {
+    std::vector<std::string> line{program, "--listen", listen, "--port", std::to_string(port), "--sessions", sessions};
     for (const std::string& host : hosts) line.insert(line.end(), {"--host", host});
     return line;
   };

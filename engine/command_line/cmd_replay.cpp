@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sends a recorded session to the bus for viewers, without any message that could move a hand.
+// Shows recorded sessions on a page. Sends a log of lcm-logger to the bus for viewers, without any message that could
+// move a hand.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cstdlib>
 #include <ostream>
 #include <thread>
 
@@ -13,6 +15,9 @@
 #include "core/bus/codec.h"
 #include "core/bus/event_log.h"
 #include "engine/command_line/run.h"
+#include "engine/command_line/tool_program.h"
+#include "engine/session/session_format.h"
+#include "engine/session/session_reader.h"
 
 namespace insula {
 namespace {
@@ -38,9 +43,23 @@ void find_bundle(const fs::path& log, std::vector<std::uint8_t>& message) {
   encode(*info, message);
 }
 
-}  // namespace
+/// The gateway serves the page. It has a bus of its own, so that it neither hears nor disturbs a running session.
+int serve_sessions(const CommandContext& context, const ReplayOptions& o) {
+  std::vector<std::string> arguments{"--port", std::to_string(o.port)};
+  for (const fs::path& file : o.files) {
+    try {
+      const SessionReader check(file);
+    } catch (const InputError& e) {
+      context.err << "error: " << e.what() << '\n';
+      return 2;
+    }
+    arguments.insert(arguments.end(), {"--session", fs::absolute(file).string()});
+  }
+  ::setenv("LCM_DEFAULT_URL", "memq://", 1);
+  return run_tool_program("gateway", arguments, "Build it first.", context.err);
+}
 
-int cmd_replay(const CommandContext& context, const ReplayOptions& o) {
+int send_log(const CommandContext& context, const ReplayOptions& o) {
   const auto bus = make_bus();
   if (!bus->good()) {
     context.err << "error: " << bus->error() << '\n';
@@ -51,7 +70,7 @@ int cmd_replay(const CommandContext& context, const ReplayOptions& o) {
   bool bundle_missing = false;
   try {
     do {
-      EventLog log(o.log);
+      EventLog log(o.files.front());
       const auto began = Clock::now();
       first_us = 0;
       for (LogEvent event; log.next(event);) {
@@ -61,7 +80,7 @@ int cmd_replay(const CommandContext& context, const ReplayOptions& o) {
           continue;
         }
         if (event.channel == channel::scene_info) {
-          find_bundle(o.log, event.message);
+          find_bundle(o.files.front(), event.message);
           const auto info = decode<insula_lcm::scene_info_t>(event.message);
           if (info && !bundle_missing && info->state == "running" &&
               !fs::exists(fs::path(info->bundle) / "scene.json")) {
@@ -87,6 +106,17 @@ int cmd_replay(const CommandContext& context, const ReplayOptions& o) {
   }
   context.out << fmt::format("{} messages sent, {} not for viewers\n", sent, left_out);
   return 0;
+}
+
+}  // namespace
+
+int cmd_replay(const CommandContext& context, const ReplayOptions& o) {
+  const auto is_session = [](const fs::path& file) { return file.extension() == session::extension; };
+  const auto sessions = std::count_if(o.files.begin(), o.files.end(), is_session);
+  if (sessions == std::int64_t(o.files.size())) return serve_sessions(context, o);
+  if (sessions == 0 && o.files.size() == 1) return send_log(context, o);
+  context.err << "error: give recorded sessions (NAME.insula), or one log of lcm-logger\n";
+  return 2;
 }
 
 }  // namespace insula

@@ -30,12 +30,14 @@ class RerunReport {
     if (simulation.steps() == 1) {
       recorder_.clear();
       summary_.max_force_N = {};
+      summary_.moments = {};
       summary_.wall_seconds = 0;
     }
     const std::array<double, 2> force = number_ < forces_.size() ? forces_[number_] : std::array<double, 2>{};
     recorder_.record(simulation.report(), simulation.events(), force, simulation.energy());
     for (std::size_t h = 0; h < 2; ++h) summary_.max_force_N[h] = std::max(summary_.max_force_N[h], force[h]);
     summary_.wall_seconds += simulation.report().step_ms / 1000;
+    if (simulation.exercise()) summary_.moments.observe(simulation.time(), *simulation.exercise());
   }
   void write(const Simulation& simulation) {
     if (folder_.empty()) return;

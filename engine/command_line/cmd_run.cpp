@@ -57,9 +57,10 @@ bool is_whole(const CommandContext& context, const SessionRecorder& session) {
 /// False, and a message, if the bands cannot be used for this scene.
 bool read_bands(const CommandContext& context, const RunOptions& options, const Simulation& simulation,
                 ReferenceBands& bands) {
-  if (options.bands.empty()) return true;
+  const std::filesystem::path file = options.bands.empty() ? bands_beside(options.scene) : options.bands;
+  if (file.empty()) return true;
   try {
-    bands = bands_for(options.bands, options.band_group, simulation.scene().title());
+    bands = bands_for(file, options.band_group, simulation.scene().title());
     return true;
   } catch (const InputError& e) {
     fmt::print(context.err, "error: {}\n", e.what());
@@ -92,6 +93,7 @@ int cmd_run(const CommandContext& context, const RunOptions& options) {
     recorder.record(simulation.report(), simulation.events(),
                     {haptics.hand(0).force.norm(), haptics.hand(1).force.norm()}, simulation.energy());
     summary.wall_seconds += simulation.report().step_ms / 1000;
+    if (simulation.exercise()) summary.moments.observe(simulation.time(), *simulation.exercise());
     if (!options.quiet) {
       for (const Event& e : simulation.events())
         fmt::print(context.out, "  {:7.2f} s  {} {} {}\n", e.time, e.kind, e.id, e.text);
@@ -109,6 +111,7 @@ int cmd_run(const CommandContext& context, const RunOptions& options) {
   summary.take(simulation);
   summary.scene = options.scene.string();
   summary.motion = options.motion;
+  summary.recording = options.record.string();
   summary.fresh_forces_per_s = run.haptics().fresh_forces_per_s();
   for (int h = 0; h < 2; ++h) summary.max_force_N[std::size_t(h)] = run.haptics().hand(h).max_force_N;
   try {

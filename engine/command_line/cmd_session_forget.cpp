@@ -51,6 +51,8 @@ int cmd_session_forget(const CommandContext& context, const ForgetOptions& optio
   for (const fs::path& path : found) {
     std::error_code error;
     if (!options.list_only) fs::remove_all(path, error);
+    // What somebody noted while watching it.
+    if (!options.list_only && !error) fs::remove(path.string() + ".notes.json", error);
     if (error) {
       fmt::print(context.err, "error: {} cannot be removed: {}\n", path.string(), error.message());
       status = 1;

@@ -27,7 +27,11 @@ inline void add_seed(CLI::App& command, std::uint64_t& seed) {
 }
 
 inline void add_bands(CLI::App& command, std::filesystem::path& file, std::string& group) {
-  command.add_option("--bands", file, "file of insula bands --json: the report says where the run lies")
+  command
+      .add_option(
+          "--bands", file,
+          "file of insula bands --json, by which the report says where the run lies (default: NAME_bands.json beside "
+          "the scene)")
       ->check(CLI::ExistingFile);
   command.add_option("--band-group", group, "group whose bands they are (default: the only one)")->needs("--bands");
 }

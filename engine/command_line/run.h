@@ -52,11 +52,13 @@ inline constexpr const char* standby_line = "insula engine stands by";
 int cmd_engine(const CommandContext& context, const EngineOptions& options);
 
 struct ReplayOptions {
-  std::filesystem::path log;  ///< of lcm-logger
-  double speed = 1;
-  bool loop = false;
+  std::vector<std::filesystem::path> files;  ///< recorded sessions (NAME.insula), or one log of lcm-logger
+  int port = 8080;                           ///< of the page, for sessions
+  double speed = 1;                          ///< of a log
+  bool loop = false;                         ///< of a log
 };
-/// Sends those messages of a recorded session to the bus that viewers show.
+/// Serves the page of recorded sessions, two of them side by side. A log of lcm-logger instead goes to the bus: those
+/// of its messages that viewers show.
 int cmd_replay(const CommandContext& context, const ReplayOptions& options);
 
 }  // namespace insula

@@ -455,12 +455,13 @@ int run_live(const LiveOptions& options, const Registry& registry, Bus& bus, con
   Publisher publisher(bus, session, options.scene, bundle, {}, title);
   SessionReports reports(options.report, options.scene, motion.empty() ? "" : options.motion, options.fields);
   try {
-    if (!options.bands.empty())
-      reports.compare_with(bands_for(options.bands, options.band_group, simulation.scene().title()));
+    const fs::path bands = options.bands.empty() ? bands_beside(options.scene) : options.bands;
+    if (!bands.empty()) reports.compare_with(bands_for(bands, options.band_group, simulation.scene().title()));
   } catch (const InputError& e) {
     spdlog::error("{}. Reports have no bands", e.what());
   }
   LiveRecording recording(options.record, simulation, {options.scene, options.motion, "live", options.fields});
+  reports.set_recording(recording.file());
   LiveSession live(simulation, options, bus, motion, script, publisher, reports, recording);
   spdlog::info("\"{}\" runs: {} bodies, {} constraints, step {:.2f} ms", title, simulation.bodies().size(),
                simulation.constraints().size(), simulation.h() * 1000);

@@ -47,7 +47,8 @@ void add_bands(nlohmann::ordered_json& json, const std::vector<MetricValue>& met
   }
 }
 
-std::string to_work_on_html(const std::vector<MetricValue>& metrics, const ReferenceBands& bands) {
+std::string to_work_on_html(const std::vector<MetricValue>& metrics, const ReferenceBands& bands,
+                            const MetricMoments& moments) {
   if (bands.empty()) return {};
   std::string out = fmt::format(
       "<h2>Three things to work on</h2>\n<p class=\"quiet\">What lies farthest beyond the middle half of {} sessions "
@@ -58,9 +59,11 @@ std::string to_work_on_html(const std::vector<MetricValue>& metrics, const Refer
     MetricValue low = *m, high = *m;
     low.value = bands.find(*m)->low;
     high.value = bands.find(*m)->high;
-    rows += fmt::format("<li><b>{}{}</b>: {}, where the group has {} to {}</li>\n", escaped(m->text),
+    const std::optional<double> worst_s = moments.worst_s(*m);
+    rows += fmt::format("<li><b>{}{}</b>: {}, where the group has {} to {}{}</li>\n", escaped(m->text),
                         m->hand == both_hands ? "" : fmt::format(" ({} hand)", hand_name(m->hand)),
-                        escaped(shown_value(m)), escaped(shown_value(&low)), escaped(shown_value(&high)));
+                        escaped(shown_value(m)), escaped(shown_value(&low)), escaped(shown_value(&high)),
+                        worst_s ? fmt::format(". It became worse most at {:.0f} s", *worst_s) : "");
   }
   return out + (rows.empty() ? "<p class=\"good\">✓ Every metric lies within its band or on its better side.</p>\n"
                              : "<ol>\n" + rows + "</ol>\n");

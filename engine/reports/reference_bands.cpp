@@ -62,6 +62,13 @@ ReferenceBands bands_for(const std::filesystem::path& file, const std::string& g
   return bands;
 }
 
+std::filesystem::path bands_beside(const std::filesystem::path& scene) {
+  std::filesystem::path file = scene;
+  file.replace_filename(scene.stem().string() + "_bands.json");
+  std::error_code ignored;
+  return std::filesystem::is_regular_file(file, ignored) ? file : std::filesystem::path();
+}
+
 const ReferenceBand* ReferenceBands::find(const MetricValue& metric) const {
   const auto it = bands_.find({metric.id, std::string(hand_name(metric.hand))});
   return it == bands_.end() || it->second.unit != metric.unit ? nullptr : &it->second;

@@ -43,6 +43,9 @@ class ReferenceBands {
 /// exercise.
 ReferenceBands bands_for(const std::filesystem::path& file, const std::string& group, const std::string& title);
 
+/// The bands beside a scene, NAME_bands.json; empty if there are none.
+std::filesystem::path bands_beside(const std::filesystem::path& scene);
+
 /// How far a value lies beyond the middle half on the side that shows less skill, in widths of the half; 0: not beyond.
 /// A metric without a better side counts on both.
 double beyond_band(const MetricValue& metric, const ReferenceBand& band);

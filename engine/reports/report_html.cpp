@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/reports/metrics_report.h"
 #include "engine/reports/perceptible_forces.h"
@@ -215,6 +216,16 @@ std::string force_plots(const RunRecorder& recorder) {
               {{"left", left_colour, s.tool_force_N[0], ""}, {"right", right_colour, s.tool_force_N[1], ""}},
               marks,
               false});
+  std::vector<double> separation_mm = s.separation_m;
+  for (double& v : separation_mm) v *= 1000;
+  if (std::any_of(separation_mm.begin(), separation_mm.end(), [](double v) { return std::isfinite(v); }))
+    out += svg({"Distance of the tips",
+                "time (s)",
+                "distance (mm)",
+                s.time_s,
+                {{"distance", left_colour, std::move(separation_mm), ""}},
+                marks,
+                false});
   return out + channel_plots(recorder, s, marks);
 }
 
@@ -291,6 +302,15 @@ double simulated_seconds(const RunRecorder& recorder) {
   return recorder.samples().empty() ? 0 : double(recorder.samples().back().time_s);
 }
 
+/// This run as the table of own runs needs it.
+OwnRun own_run_of(const RunRecorder& recorder, const RunSummary& summary) {
+  OwnRun run;
+  run.done = summary.exercise->log.state() == ExerciseState::done;
+  run.seconds = simulated_seconds(recorder);
+  for (const FaultState& f : summary.exercise->log.faults()) run.faults += f.count;
+  return run;
+}
+
 }  // namespace
 
 std::string report_html(const RunRecorder& recorder, const RunSummary& summary) {
@@ -300,12 +320,16 @@ std::string report_html(const RunRecorder& recorder, const RunSummary& summary) 
   if (!recorder.finite())
     out += "<p class=\"bad\">The simulation lost its numbers (not finite): nothing below can be relied upon.</p>\n";
   if (summary.exercise)
-    out += exercise_part(*summary.exercise) + to_work_on_html(summary.exercise->metrics, summary.bands) +
+    out += exercise_part(*summary.exercise) +
+           to_work_on_html(summary.exercise->metrics, summary.bands, summary.moments) +
+           own_runs_html(summary.own_runs, own_run_of(recorder, summary), summary.exercise->metrics) +
            metrics_html(summary.exercise->metrics);
   out += recorder.forces().html() + recorder.channels().html() + recorder.outcome().html();
   if (summary.complications) out += complications_html(*summary.complications);
   out += run_part(recorder, summary, simulated_seconds(recorder));
   out += force_plots(recorder) + events_part(recorder, summary);
+  if (!summary.recording.empty())
+    out += fmt::format("<p>To watch this run again: <code>insula replay {}</code></p>\n", escaped(summary.recording));
   out +=
       "<p class=\"quiet\"><a href=\"technical.html\">Times of steps and solver, for those who look after the "
       "machine</a></p>\n";

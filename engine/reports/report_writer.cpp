@@ -72,6 +72,7 @@ void write(const std::filesystem::path& file, const std::string& text) {
 void join(RunRecorder::Sample& a, const RunRecorder::Sample& b) {
   const auto larger = [](auto& x, auto y) { x = std::max(x, y); };
   a.time_s = b.time_s;
+  a.separation_m = b.separation_m;
   a.steps += b.steps;
   for (std::size_t k = 0; k < stage_count; ++k) larger(a.stage_ms[k], b.stage_ms[k]);
   larger(a.step_ms, b.step_ms);
@@ -100,6 +101,7 @@ void RunRecorder::record(const StepReport& r, const std::vector<Event>& events,
   for (std::size_t h = 0; h < 2; ++h) s.hand_force_N[h] = float(hand_force_N[h]);
   for (const auto& t : r.tools)
     if (t.hand == 0 || t.hand == 1) s.tool_force_N[std::size_t(t.hand)] += float(t.contact_force);
+  if (r.hands[0].tool && r.hands[1].tool) s.separation_m = float((r.hands[0].tip.p - r.hands[1].tip.p).norm());
   s.residual_N = float(r.solve.residual_N);
   s.residual_m = float(r.solve.residual_m);
   s.energy_J = float(energy_J);
@@ -200,6 +202,7 @@ RunSeries series_of(const RunRecorder& recorder, std::size_t most) {
     add(out.rows, begin, end, [](const S& s) { return s.rows; });
     add(out.contacts, begin, end, [](const S& s) { return s.contacts; });
     add(out.sweeps, begin, end, [](const S& s) { return s.sweeps; });
+    out.separation_m.push_back(double(samples[end - 1].separation_m));
     for (int c = 0; c < recorder.channels().curves(); ++c)
       out.channels[std::size_t(c)].push_back(recorder.channels().sample(end - 1, c));
     for (std::size_t k = 0; k < stage_count; ++k)

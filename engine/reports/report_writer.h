@@ -3,6 +3,7 @@
 // and technical.html for those who look after the machine.
 #pragma once
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -15,6 +16,8 @@
 #include "engine/reports/channel_record.h"
 #include "engine/reports/exercise_outcome.h"
 #include "engine/reports/force_record.h"
+#include "engine/reports/metric_moments.h"
+#include "engine/reports/own_runs.h"
 #include "engine/reports/reference_bands.h"
 #include "engine/reports/run_outcome.h"
 
@@ -31,6 +34,9 @@ struct RunSummary {
   std::string scene, motion;                  ///< as named on the command line
   std::string mode;                           ///< name of a SessionMode; empty: not a live session
   ReferenceBands bands;                       ///< for its metrics; empty: none
+  MetricMoments moments;                      ///< of its metrics
+  OwnRuns own_runs;                           ///< earlier ones of the same person
+  std::string recording;                      ///< file that the run was recorded into; empty: none
   std::map<std::string, std::string> fields;  ///< what the person says of the session: "person", "level"
   std::string began;                          ///< local date and time of a live session; empty: none
   double wall_seconds = 0;                    ///< of all steps
@@ -53,6 +59,7 @@ class RunRecorder {
     float step_ms = 0;
     std::array<float, 2> hand_force_N{};  ///< sent to the hand
     std::array<float, 2> tool_force_N{};  ///< of all contacts of the hand's tool and of what it holds
+    float separation_m = NAN;             ///< of the tips of both tools, the last one; NaN: there are not two
     float residual_N = 0;
     float residual_m = 0;
     float energy_J = 0;
@@ -106,6 +113,7 @@ struct RunSeries {
   std::vector<std::vector<double>> channels;  ///< by curve of the record, SI
   std::array<std::vector<double>, stage_count> stage_ms;
   std::array<std::vector<double>, 2> hand_force_N, tool_force_N;
+  std::vector<double> separation_m;
 };
 RunSeries series_of(const RunRecorder& recorder, std::size_t most);
 

@@ -19,6 +19,13 @@ namespace fs = std::filesystem;
 
 namespace insula {
 
+namespace {
+std::string person_of(const std::map<std::string, std::string>& fields) {
+  const auto found = fields.find("person");
+  return found == fields.end() ? "" : found->second;
+}
+}  // namespace
+
 fs::path new_report_folder(const fs::path& root, const std::string& name) {
   std::error_code error;
   fs::create_directories(root, error);
@@ -75,6 +82,7 @@ void SessionReports::step(const Simulation& simulation, bool touched, bool follo
   for (std::size_t i = 0; i < 2; ++i) summary_.max_force_N[i] = std::max(summary_.max_force_N[i], force[i]);
   summary_.wall_seconds += simulation.report().step_ms / 1000;
   followed_ = followed;
+  if (exercise) summary_.moments.observe(simulation.time(), *exercise);
   if (exercise && exercise->log().state() != ExerciseState::running) write(simulation);
 }
 
@@ -122,6 +130,7 @@ void SessionReports::write(const Simulation& simulation) {
   summary_.mode = name_of(mode_);
   summary_.fields = fields_;
   summary_.bands = bands_;
+  summary_.recording = recording_;
   summary_.fresh_forces_per_s = fresh_forces_per_s();
   const std::tm began = fmt::localtime(began_);
   summary_.began = fmt::format("{:%Y-%m-%d %H:%M:%S}", began);
@@ -132,9 +141,10 @@ void SessionReports::write(const Simulation& simulation) {
   if (writing_.valid()) writing_.wait();  // folders are created in the order of the runs
   try {
     writing_ = std::async(std::launch::async, [root = root_, name = std::move(name), recorder = std::move(recorder_),
-                                               summary = summary_, failed, done = done_, pass = done_->pass] {
+                                               summary = summary_, failed, done = done_, pass = done_->pass]() mutable {
       try {
         const fs::path folder = new_report_folder(root, name);
+        summary.own_runs = own_runs(root, summary.title, person_of(summary.fields), folder);
         write_report(folder, recorder, summary);
         const fs::path page = fs::absolute(folder / "report.html");
         spdlog::info("report: {}", page.string());

@@ -49,6 +49,8 @@ class SessionReports {
   void end_run(const Simulation& simulation);
   /// Begins a new one without a report of what was before.
   void begin();
+  /// The file that the session is recorded into; empty: none.
+  void set_recording(std::string file) { recording_ = std::move(file); }
   /// Of the passes that begin from now on.
   void set_mode(SessionMode mode) { mode_ = mode; }
   /// Absolute path of the report of this pass; empty until it is written.
@@ -72,7 +74,7 @@ class SessionReports {
   };
 
   std::filesystem::path root_, scene_;
-  std::string motion_;
+  std::string motion_, recording_;
   std::map<std::string, std::string> fields_;
   ReferenceBands bands_;
   RunRecorder recorder_;

@@ -18,6 +18,12 @@ inline constexpr const char* metrics_topic = "METRICS";    ///< JSON, once a sec
 inline constexpr const char* channels_topic = "CHANNELS";  ///< JSON, ten times a second
 inline constexpr const char* channel_names = "channels";   ///< description: number in CHANNELS, name and unit
 
+inline constexpr const char* hands_topic = "HANDS";        ///< JSON, ten times a second
+inline constexpr const char* frame_topic = "FRAME";        ///< render_frame_t without bodies and drawables
+inline constexpr const char* geometry_topic = "GEOMETRY";  ///< bodies and drawables of a frame: picture_codec.h
+inline constexpr const char* geometry_encoding = "insula-geometry";
+inline constexpr const char* bundle_prefix = "bundle/";  ///< attachments with the viewer's scene bundle
+
 /// In the description, before the names of what a person said of the session.
 inline constexpr const char* field_prefix = "field.";
 /// "level=expert" as name and value. Throws InputError that says what a field must look like.

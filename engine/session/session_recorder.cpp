@@ -22,8 +22,10 @@
 namespace insula {
 namespace {
 
-// A chunk is written at least this often, so that a program that dies loses no more.
+// Inputs are written at least this often, so that a program that dies loses no more.
 constexpr auto flush_period = std::chrono::milliseconds(500);
+// What the engine needs again, what a timeline shows, and pictures are read apart.
+constexpr std::size_t input_lane = 0, timeline_lane = 1, picture_lane = 2;
 // Messages on hands between two steps: a fifth of a second of them.
 constexpr int most_hands = 50;
 
@@ -69,13 +71,24 @@ SessionRecorder::SessionRecorder(const std::filesystem::path& file, const Simula
   if (const Complications* c = simulation.complications()) text["seed"] = std::to_string(c->drawn_from());
   out_->describe("session", text);
   put_scene_files(*out_, files);
+  put_bundle(*out_, simulation);
+  add_channels(simulation);
+  waiting_.reserve(1u << 20);
+  thread_ = std::thread([this] { write_until_closed(); });
+}
+
+void SessionRecorder::add_channels(const Simulation& simulation) {
   const auto schema = [&](const char* name) { return out_->add_schema(name, "lcm", session::schema_of(name)); };
   step_channel_ = out_->add_channel(session::step_topic, schema("session_step_t"), "lcm");
-  event_channel_ = out_->add_channel(std::string(channel::sim_event), schema("sim_event_t"), "lcm");
+  event_channel_ = out_->add_channel(std::string(channel::sim_event), schema("sim_event_t"), "lcm", {}, timeline_lane);
   hands_channel_ = out_->add_channel(std::string(channel::device_state), schema("device_state_t"), "lcm");
   ticks_channel_ = out_->add_channel(std::string(channel::servo_ticks), schema("servo_ticks_t"), "lcm");
-  metrics_channel_ = out_->add_channel(session::metrics_topic, 0, "json");
-  channels_channel_ = out_->add_channel(session::channels_topic, 0, "json");
+  metrics_channel_ = out_->add_channel(session::metrics_topic, 0, "json", {}, timeline_lane);
+  channels_channel_ = out_->add_channel(session::channels_topic, 0, "json", {}, timeline_lane);
+  forces_channel_ = out_->add_channel(session::hands_topic, 0, "json", {}, timeline_lane);
+  frame_channel_ = out_->add_channel(session::frame_topic, schema("render_frame_t"), "lcm", {}, picture_lane);
+  geometry_channel_ = out_->add_channel(session::geometry_topic, 0, session::geometry_encoding,
+                                        {{"unit", session::exact(picture::unit)}}, picture_lane);
   mcap::Text names;
   for (const ChannelEntry& e : simulation.channels().entries())
     for (int k = 0; k < e.size(); ++k) {
@@ -84,8 +97,6 @@ SessionRecorder::SessionRecorder(const std::filesystem::path& file, const Simula
       names[fmt::format("{:04}", names.size())] = std::move(name);
     }
   out_->describe(session::channel_names, names);
-  waiting_.reserve(1u << 20);
-  thread_ = std::thread([this] { write_until_closed(); });
 }
 
 SessionRecorder::~SessionRecorder() { finish(); }
@@ -99,12 +110,20 @@ void SessionRecorder::step(const Simulation& simulation) {
   if (simulation.steps() == 1) {
     ++pass_;
     exercise_state_ = ExerciseState::running;
+    picture_.begin_again();
   }
   const Exercise* exercise = simulation.exercise();
   const bool ended = exercise && exercise->log().state() != exercise_state_;
   if (ended) exercise_state_ = exercise->log().state();
   if (ended || number_ % a_second == 0) put_metrics(simulation, ended);
-  if (number_ % std::max<std::int64_t>(1, a_second / channels_a_second) == 0) put_channels(simulation);
+  for (std::size_t hand = 0; hand < 2; ++hand)
+    largest_force_N_[hand] = std::max(largest_force_N_[hand], simulation.report().hands[hand].contact_force);
+  if (number_ % std::max<std::int64_t>(1, a_second / channels_a_second) == 0) {
+    put_channels(simulation);
+    put_hands(simulation);
+  }
+  if ((number_ - 1) % std::max<std::int64_t>(1, a_second / PictureRecorder::pictures_a_second) == 0)
+    put_picture(simulation);
   hands_left_ = most_hands;
 }
 
@@ -154,6 +173,26 @@ void SessionRecorder::put_channels(const Simulation& simulation) {
   put_text(channels_channel_, text + "]");
 }
 
+/// [time in s, largest force of the left and of the right hand on tissue since the last message in N, distance of the
+/// tips in m]; null: no such hand.
+void SessionRecorder::put_hands(const Simulation& simulation) {
+  const auto& hands = simulation.report().hands;
+  std::string text = fmt::format("[{:.4f}", simulation.time());
+  for (std::size_t hand = 0; hand < 2; ++hand)
+    text += hands[hand].present ? fmt::format(",{:.6g}", largest_force_N_[hand]) : ",null";
+  const bool both = hands[0].present && hands[1].present;
+  text += both ? fmt::format(",{:.6g}]", (hands[0].tip.p - hands[1].tip.p).norm()) : ",null]";
+  put_text(forces_channel_, text);
+  largest_force_N_ = {};
+}
+
+void SessionRecorder::put_picture(const Simulation& simulation) {
+  if (!simulation.report().finite) return;
+  picture_.take(simulation, session_mode(mode_).value_or(SessionMode::practice));
+  put(frame_channel_, picture_.frame(), picture_.key());
+  put(geometry_channel_, picture_.geometry());
+}
+
 void SessionRecorder::put_events(const std::vector<Event>& events) {
   for (const Event& e : events) {
     event_.sequence = ++event_number_;
@@ -189,14 +228,15 @@ void SessionRecorder::put_step(const Simulation& simulation, bool hashed) {
   if (encode(m, scratch_)) put(step_channel_, scratch_);
 }
 
-void SessionRecorder::put(std::uint16_t channel, mcap::Bytes message) {
+void SessionRecorder::put(std::uint16_t channel, mcap::Bytes message, bool first_of_chunk) {
   const std::lock_guard lock(mutex_);
   if (!failure_.empty() || closing_) return;
   if (waiting_.size() > most_waiting_bytes) {
     fail("the disk does not take the recording fast enough");
     return;
   }
-  mcap::Put(waiting_).number(channel).number(time_ns_).number(std::uint64_t(message.size())).raw(message);
+  mcap::Put(waiting_).number(channel).number(std::uint8_t(first_of_chunk)).number(time_ns_);
+  mcap::Put(waiting_).number(std::uint64_t(message.size())).raw(message);
 }
 
 /// Called with the mutex held.
@@ -220,13 +260,17 @@ void SessionRecorder::write_until_closed() {
       mcap::Take t(taken);
       while (t.left() > 0) {
         const auto channel = t.number<std::uint16_t>();
+        if (t.number<std::uint8_t>() != 0) {
+          out_->flush(picture_lane);
+          out_->flush(timeline_lane);
+        }
         const auto time_ns = t.number<std::uint64_t>();
         out_->write(channel, time_ns, t.raw(t.number<std::uint64_t>()));
       }
       if (last) {
         out_->close();
       } else if (const auto now = std::chrono::steady_clock::now(); now - flushed > flush_period) {
-        out_->flush();
+        out_->flush(input_lane);
         flushed = now;
       }
     } catch (const InputError& e) {

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Records a run into one file: what the simulation is given in each step, the hash of its state and the metrics once a
-// second, channels, and events. docs/sessions.md describes the file.
+// second, channels, events, and pictures. docs/session-format.md describes the file.
 //
-// step() copies a few hundred bytes into a buffer. A thread compresses and writes them, so a slow disk never delays a
-// step. When the file cannot be written, the recording ends, failure() says why, and the run continues.
+// step() copies a few hundred bytes into a buffer, and ten times a second a picture. A thread compresses and writes
+// them, so a slow disk never delays a step. When the file cannot be written, the recording ends, failure() says why,
+// and the run continues.
 #pragma once
+#include <array>
 #include <condition_variable>
 #include <cstdint>
 #include <filesystem>
@@ -19,6 +21,7 @@
 
 #include "core/container/mcap_writer.h"
 #include "core/sim/simulation.h"
+#include "engine/session/picture_recorder.h"
 
 namespace insula {
 
@@ -65,11 +68,15 @@ class SessionRecorder {
   static constexpr std::size_t most_waiting_bytes = 64u << 20;
 
  private:
-  void put(std::uint16_t channel, mcap::Bytes message);
+  void add_channels(const Simulation& simulation);
+  /// first_of_chunk: messages of its lane before it go to the file before.
+  void put(std::uint16_t channel, mcap::Bytes message, bool first_of_chunk = false);
+  void put_picture(const Simulation& simulation);
   void put_step(const Simulation& simulation, bool hashed);
   void put_events(const std::vector<Event>& events);
   void put_metrics(const Simulation& simulation, bool last_of_pass);
   void put_channels(const Simulation& simulation);
+  void put_hands(const Simulation& simulation);
   void put_text(std::uint16_t channel, const std::string& text);
   void write_until_closed();
   void finish();
@@ -78,22 +85,24 @@ class SessionRecorder {
   std::filesystem::path file_;
   std::unique_ptr<McapWriter> out_;  ///< the thread's once it runs
   std::uint16_t step_channel_ = 0, event_channel_ = 0, hands_channel_ = 0, ticks_channel_ = 0, metrics_channel_ = 0,
-                channels_channel_ = 0;
+                channels_channel_ = 0, forces_channel_ = 0, frame_channel_ = 0, geometry_channel_ = 0;
   std::int64_t number_ = 0, event_number_ = 0;
   std::uint64_t time_ns_ = 0;  ///< of the recording: that of all steps together
   bool last_is_hashed_ = false;
   int pass_ = 0;  ///< number of the pass through the exercise, from 1
   ExerciseState exercise_state_ = ExerciseState::running;
   std::string mode_;
+  std::array<double, 2> largest_force_N_{};  ///< of each hand on tissue since the last message
   std::int64_t hands_number_ = 0;
   int hands_left_ = 0;  ///< messages on hands that are kept until the next step
+  PictureRecorder picture_;
   insula_lcm::session_step_t message_{};
   insula_lcm::sim_event_t event_{};
   std::vector<std::uint8_t> scratch_;
 
   std::mutex mutable mutex_;
   std::condition_variable wake_;
-  mcap::Buffer waiting_;  ///< messages one after the other: channel, time, length, bytes
+  mcap::Buffer waiting_;  ///< messages one after the other: channel, chunk, time, length, bytes
   std::string failure_;
   bool closing_ = false;
   std::thread thread_;

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <fstream>
 #include <iterator>
@@ -11,7 +13,9 @@
 #include "core/bus/codec.h"
 #include "core/testing/block_mesh.h"
 #include "core/testing/example.h"
+#include "engine/live/frame.h"
 #include "engine/live/headless.h"
+#include "engine/session/picture_codec.h"
 #include "engine/session/rerun.h"
 #include "engine/session/session_files.h"
 #include "engine/session/session_format.h"
@@ -102,6 +106,52 @@ TEST_F(Session, HasTheSameBitsWhenItsInputsAreGivenAgain) {
 TEST_F(Session, HasTheSameBitsWithAnyNumberOfThreads) {
   record(2);
   EXPECT_TRUE(again({.threads = 3}).good());
+}
+
+TEST_F(Session, HasPicturesOfItsStepsAndTheirScene) {
+  // What the frames of the same steps were.
+  std::vector<insula_lcm::render_frame_t> frames;
+  {
+    const auto simulation = test::load(scene());
+    SessionRecorder recorder(file(), *simulation, {scene(), "motion", "headless"});
+    HeadlessRun run(*simulation, motion());
+    for (int k = 1; k <= 500; ++k) {
+      run.step();
+      recorder.step(*simulation);
+      if ((k - 1) % 10 == 0) fill_frame(*simulation, frames.emplace_back());
+    }
+    recorder.close(*simulation);
+  }
+  SessionReader session(file());
+  McapReader& container = session.container();
+  const auto frame = container.channel(session::frame_topic), geometry = container.channel(session::geometry_topic);
+  ASSERT_TRUE(frame && geometry);
+  PictureDecoder decoder;
+  insula_lcm::render_frame_t got{};
+  std::string why;
+  std::size_t n = 0;
+  container.read({*frame, *geometry}, 0, UINT64_MAX, [&](const McapReader::Message& m) {
+    if (m.channel == *frame) return decode(m.data, got, why);
+    EXPECT_TRUE(decoder.decode(m.data, got, why)) << why;
+    const insula_lcm::render_frame_t& wanted = frames.at(n++);
+    EXPECT_EQ(got.sim_time_s, wanted.sim_time_s);
+    EXPECT_EQ(got.channel, wanted.channel);
+    EXPECT_EQ(got.tool.size(), wanted.tool.size());
+    EXPECT_EQ(got.tool.at(0).p_m[0], wanted.tool.at(0).p_m[0]);
+    double worst = 0;
+    for (std::size_t i = 0; i < wanted.body.at(0).x_m.size(); ++i)
+      for (std::size_t k = 0; k < 3; ++k)
+        worst = std::max(worst, std::abs(double(got.body.at(0).x_m.at(i).at(k)) - wanted.body[0].x_m[i][k]));
+    EXPECT_LT(worst, picture::unit / 2 + 1e-9);
+    return true;
+  });
+  EXPECT_EQ(n, frames.size()) << why;
+  EXPECT_EQ(n, 50U) << "ten a second";
+  const auto has = [&](const std::string& name) {
+    return std::any_of(container.attachments().begin(), container.attachments().end(),
+                       [&](const auto& a) { return a.name == session::bundle_prefix + name; });
+  };
+  EXPECT_TRUE(has("scene.json.zst"));
 }
 
 // Steps that did not wait for a factor took it when a thread was done with it, at another step in every run.

@@ -13,6 +13,7 @@
 
 #include "viewer/gateway/http_session.h"
 #include "viewer/gateway/hub.h"
+#include "viewer/gateway/static_files.h"
 
 namespace asio = boost::asio;
 using asio::ip::tcp;
@@ -23,10 +24,12 @@ struct Gateway::Impl {
   Impl(Bus& bus, Options o)
       : options(std::move(o)),
         hosts(options.hosts),
+        sessions(options.sessions, options.session_files),
         hub(bus, [this](std::function<void()> f) { asio::post(io, std::move(f)); }) {}
 
   Options options;
   AllowedHosts hosts;
+  Sessions sessions;
   asio::io_context io{1};
   tcp::acceptor acceptor{io};
   asio::steady_timer retry{io};
@@ -70,7 +73,7 @@ void Gateway::Impl::accept() {
   acceptor.async_accept([this](boost::system::error_code error, tcp::socket socket) {
     if (stopping) return;
     if (!error) {
-      std::make_shared<HttpSession>(std::move(socket), hub, hosts, options.page)->start();
+      std::make_shared<HttpSession>(std::move(socket), hub, hosts, options.page, sessions)->start();
       return accept();
     }
     // Out of file descriptors, most likely: wait for some to come back instead of spinning.
@@ -119,6 +122,12 @@ std::string Gateway::url() const {
   std::string host = at == "0.0.0.0" || at == "::" ? "localhost" : at;
   if (host.find(':') != std::string::npos) host = "[" + host + "]";
   return fmt::format("http://{}:{}/", host, impl_->port);
+}
+
+std::string Gateway::sessions_query() const {
+  const std::vector<std::string>& names = impl_->sessions.given();
+  if (names.empty()) return {};
+  return "session=" + percent_encoded(names[0]) + (names.size() > 1 ? "&with=" + percent_encoded(names[1]) : "");
 }
 
 }  // namespace insula::gateway

@@ -13,11 +13,13 @@
 namespace insula::gateway {
 
 struct Options {
-  std::string listen = "127.0.0.1";  ///< address to listen on; 0.0.0.0 admits other machines
-  std::uint16_t port = 8080;         ///< 0: any free one
-  int more_ports = 20;               ///< number of following ports that are tried if this one is busy
-  std::vector<std::string> hosts;    ///< names, besides its addresses, by which pages may address it
-  std::filesystem::path page;        ///< folder with index.html; empty: a note instead of the page
+  std::string listen = "127.0.0.1";                  ///< address to listen on; 0.0.0.0 admits other machines
+  std::uint16_t port = 8080;                         ///< 0: any free one
+  int more_ports = 20;                               ///< number of following ports that are tried if this one is busy
+  std::vector<std::string> hosts;                    ///< names, besides its addresses, by which pages may address it
+  std::filesystem::path page;                        ///< folder with index.html; empty: a note instead of the page
+  std::filesystem::path sessions;                    ///< folder of recorded sessions to offer; empty: none
+  std::vector<std::filesystem::path> session_files;  ///< further ones
 };
 
 class Gateway {
@@ -33,6 +35,8 @@ class Gateway {
   void stop();
   std::uint16_t port() const;  ///< the port in use
   std::string url() const;     ///< for a browser on this machine
+  /// Of the page that shows the given session files, the first two side by side; empty: none were given.
+  std::string sessions_query() const;
 
  private:
   struct Impl;

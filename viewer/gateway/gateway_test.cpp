@@ -108,7 +108,13 @@ class GatewayTest : public ::testing::Test {
     write("bundle/body0_rest.bin", "0123");
     write("bundle/other.bin", "x");
     write("secret", "secret");
+    fs::create_directories(root_ / "sessions");
+    write("sessions/monday 1.insula", "recorded");
+    write("sessions/other.txt", "x");
+    write("given.insula", "given");
     Options options;
+    options.sessions = root_ / "sessions";
+    options.session_files = {root_ / "given.insula"};
     options.port = 0;
     options.page = root_ / "page";
     gateway_ = std::make_unique<Gateway>(gateway_bus_, options);
@@ -122,13 +128,14 @@ class GatewayTest : public ::testing::Test {
   void write(const fs::path& file, std::string_view text) { std::ofstream(root_ / file) << text; }
 
   Response get(const std::string& target, http::verb verb = http::verb::get,
-               const std::vector<std::pair<std::string, std::string>>& fields = {}) {
+               const std::vector<std::pair<std::string, std::string>>& fields = {}, const std::string& content = "") {
     boost::asio::io_context io;
     tcp::socket socket(io);
     socket.connect({boost::asio::ip::make_address("127.0.0.1"), gateway_->port()});
-    http::request<http::empty_body> request{verb, target, 11};
+    http::request<http::string_body> request{verb, target, 11, content};
     request.set(http::field::host, "127.0.0.1");
     for (const auto& [field, value] : fields) request.set(field, value);
+    request.prepare_payload();
     http::write(socket, request);
     beast::flat_buffer buffer;
     http::response_parser<http::string_body> parser;
@@ -231,6 +238,36 @@ TEST_F(GatewayTest, ServesTheBundleOfTheSession) {
   ASSERT_TRUE(eventually([](const auto& h) { return h["session"] == 8; }));
   EXPECT_EQ(get("/bundle/7/scene.json").result_int(), 404u);
   EXPECT_EQ(get("/bundle/8/scene.json").result_int(), 200u);
+}
+
+TEST_F(GatewayTest, OffersRecordedSessions) {
+  fs::last_write_time(root_ / "given.insula", fs::file_time_type::clock::now() - std::chrono::hours(1));
+  const auto listed = nlohmann::json::parse(get("/sessions").body());
+  ASSERT_EQ(listed.size(), 2U);
+  EXPECT_EQ(listed[0]["name"], "monday 1") << "the newest first";
+  EXPECT_EQ(listed[0]["bytes"], 8);
+  EXPECT_EQ(listed[1]["name"], "given");
+  EXPECT_EQ(get("/sessions/monday%201").body(), "recorded");
+  EXPECT_EQ(get("/sessions/given").body(), "given");
+  for (const char* none : {"/sessions/other", "/sessions/..", "/sessions/given/other", "/sessions/given/notes/x"})
+    EXPECT_EQ(get(none).result_int(), 404U) << none;
+  EXPECT_EQ(gateway_->sessions_query(), "session=given");
+}
+
+TEST_F(GatewayTest, KeepsNotesBesideARecording) {
+  EXPECT_EQ(nlohmann::json::parse(get("/sessions/given/notes").body()), nlohmann::json::array());
+  const std::string notes = R"([{"time_s":1.5,"text":"too deep"}])";
+  EXPECT_EQ(get("/sessions/given/notes", http::verb::put, {}, notes).result_int(), 200U);
+  EXPECT_EQ(get("/sessions/given/notes").body(), notes);
+  EXPECT_TRUE(fs::exists(root_ / "given.insula.notes.json"));
+  const std::pair<std::string, std::string> foreign{"Origin", "http://elsewhere.example"};
+  EXPECT_EQ(get("/sessions/given/notes", http::verb::put, {foreign}, "[]").result_int(), 403U);
+  for (const char* bad : {"", "{", "{}", R"([{"text":"when?"}])", R"([{"time_s":"1","text":""}])"})
+    EXPECT_EQ(get("/sessions/given/notes", http::verb::put, {}, bad).result_int(), 400U) << bad;
+  for (const char* fixed : {"/sessions/given", "/sessions", "/index.html"})
+    EXPECT_EQ(get(fixed, http::verb::put, {}, "[]").result_int(), 405U) << fixed;
+  EXPECT_EQ(get("/sessions/given/notes").body(), notes) << "nothing of that was stored";
+  EXPECT_EQ(get("/sessions/given").body(), "given");
 }
 
 TEST_F(GatewayTest, LateJoinersGetTheSceneAtOnceAndEverybodyTheFrames) {

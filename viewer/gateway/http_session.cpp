@@ -24,7 +24,7 @@ std::string_view view(beast::string_view s) { return {s.data(), s.size()}; }
 
 /// A page of another site may open a WebSocket to this one: browsers send its origin, which must be ours. The port may
 /// differ (the page's development server). Programs that are no browsers send no origin.
-bool same_site(const http::request<http::empty_body>& request) {
+bool same_site(const http::request<http::string_body>& request) {
   const std::string_view origin = view(request[http::field::origin]);
   if (origin.empty()) return true;
   const std::size_t scheme = origin.find("://");
@@ -36,13 +36,13 @@ bool same_site(const http::request<http::empty_body>& request) {
 }  // namespace
 
 HttpSession::HttpSession(boost::asio::ip::tcp::socket&& socket, Hub& hub, const AllowedHosts& hosts,
-                         const std::filesystem::path& page)
-    : stream_(std::move(socket)), hub_(hub), hosts_(hosts), page_(page) {}
+                         const std::filesystem::path& page, const Sessions& sessions)
+    : stream_(std::move(socket)), hub_(hub), hosts_(hosts), page_(page), sessions_(sessions) {}
 
 void HttpSession::read() {
   parser_.emplace();
   parser_->header_limit(header_limit);
-  parser_->body_limit(0);
+  parser_->body_limit(Sessions::most_notes_bytes);
   stream_.expires_after(request_timeout);
   http::async_read(stream_, in_, *parser_,
                    [self = shared_from_this()](beast::error_code error, std::size_t) { self->on_read(error); });
@@ -72,17 +72,46 @@ void HttpSession::upgrade(const Request& request) {
   if (request.target() != "/ws" && !request.target().starts_with("/ws?"))
     return send_text(request, http::status::not_found, "text/plain", "no WebSocket here\n");
   if (!same_site(request)) return send_text(request, http::status::forbidden, "text/plain", "foreign origin\n");
-  beast::error_code no_local, no_remote;
-  const auto local = stream_.socket().local_endpoint(no_local), remote = stream_.socket().remote_endpoint(no_remote);
-  const bool here = !no_local && !no_remote && (remote.address().is_loopback() || remote.address() == local.address());
+  const bool here = from_this_machine();
   std::make_shared<WsClient>(std::move(stream_), hub_, rights_of(role_of(view(request.target())), here))
       ->start(request);
 }
 
+bool HttpSession::from_this_machine() const {
+  beast::error_code no_local, no_remote;
+  const auto local = stream_.socket().local_endpoint(no_local), remote = stream_.socket().remote_endpoint(no_remote);
+  return !no_local && !no_remote && (remote.address().is_loopback() || remote.address() == local.address());
+}
+
+/// /sessions, /sessions/NAME, /sessions/NAME/notes. A recording is a person's data and does not leave this machine.
+void HttpSession::answer_session(const Request& request, const std::vector<std::string>& parts) {
+  const auto refuse = [&](http::status status, std::string why) {
+    send_text(request, status, "text/plain; charset=utf-8", std::move(why));
+  };
+  if (!from_this_machine())
+    return refuse(http::status::forbidden, "recorded sessions are only for pages on this machine\n");
+  const bool stores = request.method() == http::verb::put;
+  const bool notes = parts.size() == 3 && parts[2] == "notes";
+  if (stores && !notes) return refuse(http::status::method_not_allowed, "only notes can be stored\n");
+  if (parts.size() == 1) return send_text(request, http::status::ok, "application/json", sessions_.list());
+  const auto file = sessions_.find(parts[1]);
+  if (!file || parts.size() > 3 || (parts.size() == 3 && !notes))
+    return refuse(http::status::not_found, "there is no such session here\n");
+  if (!notes) return send_file(request, *file, "no-store");
+  if (!stores) return send_text(request, http::status::ok, "application/json", Sessions::notes(*file));
+  if (!same_site(request)) return refuse(http::status::forbidden, "foreign origin\n");
+  const std::string why = Sessions::store_notes(*file, request.body());
+  if (!why.empty()) return refuse(http::status::bad_request, why + "\n");
+  send_text(request, http::status::ok, "application/json", "{}\n");
+}
+
 void HttpSession::answer(const Request& request) {
+  auto parts = split_target(view(request.target()));
+  const bool session = parts && parts->front() == "sessions";
+  if (session && request.method() == http::verb::put) return answer_session(request, *parts);
   if (request.method() != http::verb::get && request.method() != http::verb::head)
     return send_text(request, http::status::method_not_allowed, "text/plain", "only GET and HEAD\n");
-  auto parts = split_target(view(request.target()));
+  if (session) return answer_session(request, *parts);
   const auto not_found = [&] { send_text(request, http::status::not_found, "text/plain", "not found\n"); };
   if (!parts) return not_found();
   if (*parts == std::vector<std::string>{"healthz"})

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One HTTP connection: the page, the scene bundle, /healthz, and the upgrade to a WebSocket at /ws.
+// One HTTP connection: the page, the scene bundle, recorded sessions, /healthz, and the upgrade to a WebSocket at /ws.
 #pragma once
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
@@ -9,6 +9,7 @@
 
 #include "viewer/gateway/access.h"
 #include "viewer/gateway/hub.h"
+#include "viewer/gateway/sessions.h"
 
 namespace insula::gateway {
 
@@ -18,16 +19,18 @@ namespace http = beast::http;
 class HttpSession : public std::enable_shared_from_this<HttpSession> {
  public:
   HttpSession(boost::asio::ip::tcp::socket&& socket, Hub& hub, const AllowedHosts& hosts,
-              const std::filesystem::path& page);
+              const std::filesystem::path& page, const Sessions& sessions);
   void start() { read(); }
 
  private:
-  using Request = http::request<http::empty_body>;
+  using Request = http::request<http::string_body>;
   void read();
   void on_read(beast::error_code error);
   bool refuse_foreign(const Request& request);
   void upgrade(const Request& request);
   void answer(const Request& request);
+  void answer_session(const Request& request, const std::vector<std::string>& parts);
+  bool from_this_machine() const;
   void send_text(const Request& request, http::status status, std::string_view type, std::string body);
   void send_file(const Request& request, const std::filesystem::path& file, std::string_view caching,
                  bool packed = false);
@@ -39,8 +42,9 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   Hub& hub_;
   const AllowedHosts& hosts_;
   const std::filesystem::path& page_;
+  const Sessions& sessions_;
   beast::flat_buffer in_;
-  std::optional<http::request_parser<http::empty_body>> parser_;
+  std::optional<http::request_parser<http::string_body>> parser_;
 };
 
 }  // namespace insula::gateway

@@ -23,6 +23,8 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--host", options.hosts,
                  "a name under which other machines' pages may ask for it; may be given several times");
+  app.add_option("--sessions", options.sessions, "folder of recorded sessions that pages of this machine may see");
+  app.add_option("--session", options.session_files, "a recorded session, in addition; may be given several times");
   CLI11_PARSE(app, argc, argv);
   if (exact) options.more_ports = 0;
   if (options.page.empty()) options.page = insula::gateway::find_page();
@@ -46,6 +48,8 @@ int main(int argc, char** argv) {
   }
   if (options.page.empty()) fmt::print("the viewer's page is not built; serving the data alone\n");
   fmt::print("serving {}\n", gateway.url());
+  if (const std::string query = gateway.sessions_query(); !query.empty())
+    fmt::print("recorded sessions at {}replay.html?{}\n", gateway.url(), query);
   std::fflush(stdout);
   ends.wait(-1);
   gateway.stop();

@@ -53,6 +53,19 @@ std::optional<std::vector<std::string>> split_target(std::string_view target) {
   return parts;
 }
 
+std::string percent_encoded(std::string_view text) {
+  static constexpr char digits[] = "0123456789ABCDEF";
+  std::string out;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool plain = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') ||
+                       std::string_view("-._~").find(c) != std::string_view::npos;
+    if (plain) out += c;
+    else out += {'%', digits[byte >> 4], digits[byte & 15]};
+  }
+  return out;
+}
+
 std::optional<fs::path> file_below(const fs::path& root, const std::vector<std::string>& parts) {
   std::error_code error;
   const fs::path base = fs::canonical(root, error);

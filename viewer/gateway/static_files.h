@@ -14,6 +14,9 @@ namespace insula::gateway {
 /// encoding. A trailing slash gives an empty last part.
 std::optional<std::vector<std::string>> split_target(std::string_view target);
 
+/// A text as a value in a query.
+std::string percent_encoded(std::string_view text);
+
 /// The regular file root/parts..., which must lie within root after symbolic links are resolved.
 std::optional<std::filesystem::path> file_below(const std::filesystem::path& root,
                                                 const std::vector<std::string>& parts);

@@ -20,7 +20,7 @@ constexpr int socket_send_buffer = 128 * 1024;
 WsClient::WsClient(beast::tcp_stream&& stream, Hub& hub, Rights rights)
     : ws_(std::move(stream)), hub_(hub), rights_(rights) {}
 
-void WsClient::start(const http::request<http::empty_body>& request) {
+void WsClient::start(const http::request<http::string_body>& request) {
   beast::error_code ignored;
   auto& socket = beast::get_lowest_layer(ws_).socket();
   socket.set_option(asio::ip::tcp::no_delay(true), ignored);

@@ -19,7 +19,7 @@ class WsClient final : public Client, public std::enable_shared_from_this<WsClie
  public:
   WsClient(beast::tcp_stream&& stream, Hub& hub, Rights rights);
   /// Answers the upgrade request and starts the exchange. The client exists until its connection ends.
-  void start(const http::request<http::empty_body>& request);
+  void start(const http::request<http::string_body>& request);
 
   void send(Topic topic, const Message& message) override;
   std::uint64_t dropped() const override { return outbox_.dropped(); }

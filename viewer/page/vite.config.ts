@@ -6,6 +6,11 @@ const gateway = process.env.INSULA_GATEWAY ?? 'http://127.0.0.1:8080';
 
 export default defineConfig({
   base: './',
-  build: { target: 'es2022', chunkSizeWarningLimit: 1500, reportCompressedSize: false },
-  server: { proxy: { '/ws': { target: gateway, ws: true }, '/bundle': gateway } },
+  build: {
+    target: 'es2022',
+    chunkSizeWarningLimit: 1500,
+    reportCompressedSize: false,
+    rollupOptions: { input: ['index.html', 'replay.html'] },
+  },
+  server: { proxy: { '/ws': { target: gateway, ws: true }, '/bundle': gateway, '/sessions': gateway } },
 });

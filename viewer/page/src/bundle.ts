@@ -10,17 +10,36 @@ type Json = Record<string, any>;
 
 const list = (v: unknown): Json[] => (Array.isArray(v) ? (v as Json[]) : []);
 
-/** Files of one bundle. */
-class Files {
+/** Where the files of a bundle come from. */
+export interface BundleSource {
+  /** Under which the browser finds a file, for pictures. */
+  address(name: string): string;
+  read(name: string): Promise<ArrayBuffer>;
+}
+
+/** Files of a folder on the server. */
+export class BundleFolder implements BundleSource {
   constructor(private readonly base: string) {}
 
   address(name: string): string {
-    if (!/^[\w.-]+$/.test(name)) throw new Error(`odd file name in scene.json: ${name}`);
     return this.base + name;
   }
 
+  async read(name: string): Promise<ArrayBuffer> {
+    return (await get(this.address(name))).arrayBuffer();
+  }
+}
+
+/** Files of one bundle. */
+class Files {
+  constructor(private readonly source: BundleSource) {}
+
+  address(name: string): string {
+    return this.source.address(checked(name));
+  }
+
   async json(name: string): Promise<Json> {
-    return (await (await get(this.address(name))).json()) as Json;
+    return JSON.parse(new TextDecoder().decode(await this.source.read(checked(name)))) as Json;
   }
 
   async floats(name: string, n: number): Promise<Float32Array> {
@@ -43,14 +62,19 @@ class Files {
   }
 
   private async bytes(name: string, count: number): Promise<ArrayBuffer> {
-    const data = await (await get(this.address(name))).arrayBuffer();
+    const data = await this.source.read(checked(name));
     if (data.byteLength !== count * 4) throw new Error(`${name}: ${data.byteLength} bytes, expected ${count * 4}`);
     return data;
   }
 }
 
-export async function loadBundle(base: string, session: string): Promise<types.Bundle> {
-  const files = new Files(base);
+function checked(name: string): string {
+  if (!/^[\w.-]+$/.test(name)) throw new Error(`odd file name in scene.json: ${name}`);
+  return name;
+}
+
+export async function loadBundle(source: BundleSource, session: string): Promise<types.Bundle> {
+  const files = new Files(source);
   const json = await files.json('scene.json');
   if (json.version !== 2 && json.version !== 3)
     throw new Error(`scene bundle version ${json.version} is not known to this page`);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Puts the page together: connection, scene, microscope, hands, HUD, and the loop that draws.
 import * as THREE from 'three';
-import { loadBundle } from './bundle';
+import { BundleFolder, loadBundle } from './bundle';
 import type { Bundle } from './bundle_types';
 import { Connection, socketUrl } from './connection';
 import { ControllerHands } from './controller_hands';
@@ -29,6 +29,7 @@ import { silent } from './silence';
 import { softwareAdvice } from './software_rendering';
 import { Stage } from './stage';
 import { status, tellPicture } from './status';
+import type { RunGhost } from './replay/run_ghost';
 import { Reading } from './step_data/reading';
 import { ViewModes } from './view_modes';
 import { TakeBack } from './take_back';
@@ -169,6 +170,13 @@ listenForHands(hands, {
   togglePause: () => run({ command: playback.latest?.paused ? 'resume' : 'pause', argument: '' }),
 });
 
+let ghost: RunGhost | null = null;
+if (options.ghost !== '')
+  void import('./replay/live_ghost')
+    .then((m) => m.openGhost(options.ghost))
+    .then((run) => scene.add((ghost = run).root))
+    .catch((e: unknown) => hud.refuse(`No ghost of ${options.ghost}: ${String(e)}`, performance.now()));
+
 function letHandsGo(): void {
   hands.releaseAll();
   guiding.restart();
@@ -210,7 +218,7 @@ async function follow(m: SceneInfo): Promise<void> {
   if (m.state === 'loading' || m.state === 'error' || session === loading || world?.bundle.session === session) return;
   loading = session;
   try {
-    const bundle = await loadBundle(new URL(`bundle/${session}/`, location.href).href, session);
+    const bundle = await loadBundle(new BundleFolder(new URL(`bundle/${session}/`, location.href).href), session);
     playback.clear();
     hands.releaseAll();
     guiding.begin(bundle);
@@ -256,6 +264,7 @@ function draw(now: number): void {
     world.update(playback, now, reading.channels, scope.sight);
     Object.assign(status, world.cues.told);
   }
+  if (world && playback.latest) ghost?.show(world.bundle, playback.latest.sim_time_s);
   status.target = guiding.update({
     frame: playback.latest,
     bundle: world?.bundle ?? null,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the address line may ask for: ?role= ?quality= ?nohud ?t= ?stereo= ?angle= ?icg ?nodepth
+// What the address line may ask for: ?role= ?quality= ?nohud ?t= ?stereo= ?angle= ?icg ?nodepth ?ghost=
 
 import { clampAngle, type StereoMode, usualAngleDeg } from './stereo';
 
@@ -26,6 +26,8 @@ export interface Options {
   infrared: boolean;
   /** Plumb lines from tips to tissue. */
   depth: boolean;
+  /** Name of a recorded session whose tools are drawn over the exercise; '': none. */
+  ghost: string;
 }
 
 export function parseOptions(search: string): Options {
@@ -44,5 +46,6 @@ export function parseOptions(search: string): Options {
     angleDeg: angle !== null && angle !== '' ? clampAngle(Number(angle)) : usualAngleDeg,
     infrared: q.has('icg'),
     depth: !q.has('nodepth'),
+    ghost: q.get('ghost') ?? '',
   };
 }

@@ -13,6 +13,7 @@ export class Playback {
   private periodMs = 1000 / 60;
   private scratch = new Map<string, Float32Array>();
   private checked = new Map<number, Float32Array>();
+  private share: number | null = null;
 
   push(frame: RenderFrame, nowMs: number): void {
     if (this.latest && (frame.session !== this.latest.session || frame.sequence < this.latest.sequence)) this.clear();
@@ -26,6 +27,14 @@ export class Playback {
     this.frames++;
   }
 
+  /** Shows these two frames, at this place between them, until the next call. */
+  hold(previous: RenderFrame, latest: RenderFrame, share: number): void {
+    if (this.latest !== latest) this.frames++;
+    this.previous = previous;
+    this.latest = latest;
+    this.share = share;
+  }
+
   clear(): void {
     this.latest = this.previous = null;
     this.scratch.clear();
@@ -34,7 +43,7 @@ export class Playback {
 
   /** 0: the previous frame, 1: the newest. */
   blend(nowMs: number): number {
-    return Math.max(0, Math.min(1, (nowMs - this.arrivedMs) / Math.max(1, this.periodMs)));
+    return this.share ?? Math.max(0, Math.min(1, (nowMs - this.arrivedMs) / Math.max(1, this.periodMs)));
   }
 
   /** Blended node positions of a body, or null when the frame has none. The array is reused. */

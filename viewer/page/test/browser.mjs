@@ -4,7 +4,8 @@ import assert from 'node:assert/strict';
 import { existsSync } from 'node:fs';
 import { chromium } from 'playwright-core';
 
-export const patience = { timeout: 300_000, polling: 250 };
+/** Software rendering is slow; INSULA_PATIENCE_MS is for those who wait for a failing test. */
+export const patience = { timeout: Number(process.env.INSULA_PATIENCE_MS ?? 300_000), polling: 250 };
 
 /** more: further arguments of Chromium. */
 export function launch(...more) {

@@ -62,6 +62,13 @@ function hands(metrics: readonly MetricView[]): HTMLElement {
   return table.root;
 }
 
+/** A link to the page of recorded sessions, which opens beside this one. */
+function again(recording: string): HTMLElement {
+  const name = recording.replace(/^.*[\\/]/, '').replace(/\.insula$/, '');
+  const href = `replay.html?session=${encodeURIComponent(name)}`;
+  return el('a', { href, target: '_blank', rel: 'noopener' }, 'Watch this session again');
+}
+
 export function summaryOf(s: HudState, metrics: readonly MetricView[]): HTMLElement[] {
   const made = s.faults.filter((f) => f.count > 0);
   const clocks = s.timers.filter((t) => t.elapsedS > 0 && t.limitS > 0);
@@ -88,6 +95,7 @@ export function summaryOf(s: HudState, metrics: readonly MetricView[]): HTMLElem
       ),
     ),
     ...(metrics.length > 0 ? [hands(metrics)] : []),
+    ...(s.recording ? [el('p', {}, again(s.recording))] : []),
     ...(s.report ? [el('p', { class: 'where' }, 'Report: ', el('code', {}, s.report))] : []),
   ];
 }

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A page about a recorded session, to talk about and to print: what was reached, pictures of key moments, curves of
+// forces and of the distance of the tips, metrics, and notes.
+import { el } from '../hud/dom';
+import { clockText } from '../hud/state';
+import { summaryOf } from '../hud/summary';
+import { extremesByPixel } from './chart';
+import { keyMoments } from './key_moments';
+import type { RecordedSession } from './session';
+import type { SessionView } from './session_view';
+import type { Note } from './source';
+import { type Series, valueAt } from './timeline';
+
+const pictureWide = 360;
+const curveWide = 720;
+const curveHigh = 120;
+const colours = ['#1f6fb2', '#c2410c'];
+
+/** The field at a time, as an image of that width. The view shows that time afterwards. */
+function pictureAt(view: SessionView, timeS: number): HTMLCanvasElement {
+  const source = view.stage.canvas;
+  const high = Math.round((pictureWide * source.height) / Math.max(1, source.width));
+  const picture = el('canvas', { width: String(pictureWide), height: String(high) });
+  view.seek(timeS);
+  // What fades has a second to do so. The context keeps its picture only until the task ends.
+  view.draw(performance.now(), 1);
+  picture.getContext('2d')?.drawImage(source, 0, 0, pictureWide, high);
+  return picture;
+}
+
+function svg(name: string, attributes: Record<string, string>): SVGElement {
+  const e = document.createElementNS('http://www.w3.org/2000/svg', name);
+  for (const [k, v] of Object.entries(attributes)) e.setAttribute(k, v);
+  return e;
+}
+
+/** scale: from the curve's unit to the shown one. */
+function curves(title: string, unit: string, series: readonly Series[], durationS: number, scale = 1): HTMLElement {
+  const top = Math.max(1e-9, ...series.flatMap((s) => [...s.values].filter(Number.isFinite))) * scale;
+  const y = (v: number) => curveHigh - 14 - ((v * scale) / top) * (curveHigh - 26);
+  const chart = svg('svg', { viewBox: `0 0 ${curveWide} ${curveHigh}`, role: 'img', 'aria-label': title });
+  chart.append(svg('line', { x1: '0', x2: String(curveWide), y1: String(y(0)), y2: String(y(0)), stroke: '#999' }));
+  series.forEach((s, k) => {
+    const points = extremesByPixel(s, durationS, curveWide).flatMap((p) => [
+      `${p.x},${y(p.low).toFixed(1)}`,
+      `${p.x},${y(p.high).toFixed(1)}`,
+    ]);
+    chart.append(svg('polyline', { points: points.join(' '), fill: 'none', stroke: colours[k] ?? '#000' }));
+  });
+  const label = svg('text', { x: '2', y: '10', 'font-size': '11' });
+  label.textContent = `${Number(top.toPrecision(2))} ${unit}`;
+  const end = svg('text', { x: String(curveWide), y: String(curveHigh - 2), 'font-size': '11', 'text-anchor': 'end' });
+  end.textContent = clockText(durationS);
+  chart.append(label, end);
+  const legend = series.map((s, k) => {
+    const name = el('span', {}, s.text);
+    name.style.color = colours[k] ?? '#000';
+    return name;
+  });
+  return el('figure', {}, el('figcaption', {}, title, ' ', ...legend), chart);
+}
+
+function metricsTable(series: readonly Series[], timeS: number): HTMLElement {
+  const rows = series
+    .map((s) => ({ ...s, value: valueAt(s, timeS) }))
+    .filter((s) => Number.isFinite(s.value) && s.value !== 0)
+    .map((s) => el('tr', {}, el('td', {}, s.text), el('td', {}, `${Number(s.value.toPrecision(3))} ${s.unit}`)));
+  return el('table', {}, el('tbody', {}, ...rows));
+}
+
+/** Takes the view to each key moment. */
+export function debrief(session: RecordedSession, view: SessionView, notes: readonly Note[]): HTMLElement {
+  const { timeline, durationS } = session;
+  const strip = keyMoments(timeline, durationS).map((m) =>
+    el(
+      'figure',
+      m.bad ? { 'data-bad': 'true' } : {},
+      pictureAt(view, m.timeS),
+      el('figcaption', {}, `${m.bad ? '✗ ' : ''}${clockText(m.timeS)}  ${m.text}`),
+    ),
+  );
+  view.seek(durationS);
+  const state = view.reading.state;
+  const print = el('button', {}, 'Print');
+  print.onclick = () => window.print();
+  const close = el('button', { 'data-answer': 'close' }, 'Back to the recording');
+  const page = el(
+    'article',
+    { class: 'debrief' },
+    el('nav', {}, print, close),
+    el('h1', {}, session.title || session.name),
+    el('p', {}, `Recorded ${session.began}. For training only. No measure of fitness to operate.`),
+    el('section', { class: 'outcome' }, ...(state ? summaryOf({ ...state, recording: '', report: '' }, []) : [])),
+    el('h2', {}, 'Key moments'),
+    el('div', { class: 'strip' }, ...strip),
+    el('h2', {}, 'Hands'),
+    curves('Force on tissue', 'N', timeline.hands.slice(0, 2), durationS),
+    curves('Distance of the tips', 'mm', timeline.hands.slice(2, 3), durationS, 1000),
+    ...(notes.length > 0
+      ? [
+          el('h2', {}, 'Notes'),
+          el('ul', {}, ...notes.map((n) => el('li', {}, el('b', {}, clockText(n.timeS)), ` ${n.text}`))),
+        ]
+      : []),
+    el('h2', {}, 'Metrics'),
+    metricsTable(timeline.metrics, durationS),
+  );
+  close.onclick = () => page.remove();
+  return page;
+}

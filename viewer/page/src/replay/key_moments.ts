@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The moments of a recording that are worth a picture: what happened for the first time, the strongest force of each
+// hand, and the end.
+import type { Series, Timeline } from './timeline';
+
+export interface KeyMoment {
+  timeS: number;
+  text: string;
+  bad: boolean;
+}
+
+/** What is asked for, said or chosen, and not seen in the field. */
+const unseen = new Set(['command', 'refused', 'mode', 'message', 'read', 'reset', 'complication', 'goal_lost']);
+const mostEvents = 7;
+
+function largest(series: Series): { timeS: number; value: number } | null {
+  let best: { timeS: number; value: number } | null = null;
+  series.values.forEach((v, k) => {
+    if (Number.isFinite(v) && v > (best?.value ?? 0)) best = { timeS: series.timesS[k]!, value: v };
+  });
+  return best;
+}
+
+/** In order of time. */
+export function keyMoments(timeline: Timeline, durationS: number): KeyMoment[] {
+  const out: KeyMoment[] = [];
+  const seen = new Set<string>();
+  for (const e of timeline.events) {
+    const key = `${e.kind} ${e.id}`;
+    if (unseen.has(e.kind) || seen.has(key) || out.length >= mostEvents) continue;
+    seen.add(key);
+    out.push({ timeS: e.timeS, text: e.text || e.kind.replace(/_/g, ' '), bad: e.kind === 'fault' });
+  }
+  timeline.hands.slice(0, 2).forEach((hand, k) => {
+    const peak = largest(hand);
+    const side = k === 0 ? 'left' : 'right';
+    if (peak)
+      out.push({ timeS: peak.timeS, text: `Largest force, ${side} hand: ${peak.value.toFixed(2)} N`, bad: false });
+  });
+  out.push({ timeS: durationS, text: 'The end', bad: false });
+  return out.sort((a, b) => a.timeS - b.timeS);
+}

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The tools of a recorded run over the live exercise: ?ghost=NAME. Loaded only when it is asked for.
+import { loadBundle } from '../bundle';
+import { RunGhost } from './run_ghost';
+import { RecordedSession } from './session';
+import { fetchSession } from './source';
+
+/** Throws if there is no such recording, or it cannot be read. */
+export async function openGhost(name: string): Promise<RunGhost> {
+  const session = new RecordedSession(name, await fetchSession(name));
+  return new RunGhost(session, await loadBundle(session.bundle, name));
+}

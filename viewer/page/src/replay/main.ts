@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The page of recorded sessions: replay.html?session=NAME [&with=NAME] [&ghost=NAME] [&t=SECONDS] [&quality=LEVEL].
+// `with` stands beside it in step; the tools of `ghost` are drawn over it. Without a session it asks for one.
+import '../hud/styles';
+import './replay.css';
+import { loadBundle } from '../bundle';
+import { el } from '../hud/dom';
+import { type QualityName, qualityNames } from '../options';
+import { openingPanel } from './opening';
+import { Replay } from './replay';
+import { RunGhost } from './run_ghost';
+import { RecordedSession } from './session';
+import { Side } from './side';
+import { fetchSession, type ListedSession, listSessions } from './source';
+
+const query = new URLSearchParams(location.search);
+const quality: QualityName | null = qualityNames.find((n) => n === query.get('quality')) ?? null;
+const sides = document.getElementById('sides')!;
+const hud = document.getElementById('hud')!;
+const failed = (e: unknown): string => (e instanceof Error ? e.message : String(e));
+
+async function named(name: string): Promise<RecordedSession> {
+  return new RecordedSession(name, await fetchSession(name));
+}
+
+async function open(session: RecordedSession, kept: boolean): Promise<void> {
+  const other = query.get('with');
+  const ghost = query.get('ghost');
+  const shown = [new Side(session, quality)];
+  if (other) shown.push(new Side(await named(other), quality));
+  if (ghost) {
+    const run = await named(ghost);
+    shown[0]!.ghost = new RunGhost(run, await loadBundle(run.bundle, run.name));
+  }
+  hud.replaceChildren();
+  sides.replaceChildren(...shown.map((s) => s.root));
+  document.title = `Insula: ${session.title || session.name}`;
+  await new Replay(hud, shown, kept, query).begin();
+}
+
+async function ask(problem = ''): Promise<void> {
+  let sessions: ListedSession[] = [];
+  try {
+    sessions = await listSessions();
+  } catch (e) {
+    problem ||= `Recordings of this machine cannot be listed: ${failed(e)}`;
+  }
+  const panel = openingPanel(sessions, problem, {
+    title: 'Which session?',
+    named: (name) => {
+      query.set('session', name);
+      location.search = query.toString();
+    },
+    file: (file) => void openFile(file),
+  });
+  hud.replaceChildren(panel);
+}
+
+async function openFile(file: File): Promise<void> {
+  try {
+    const bytes = new Uint8Array(await file.arrayBuffer());
+    await open(new RecordedSession(file.name.replace(/\.(insula|mcap)$/, ''), bytes), false);
+  } catch (e) {
+    await ask(`${file.name}: ${failed(e)}`);
+  }
+}
+
+const wanted = query.get('session');
+if (wanted === null) await ask();
+else {
+  hud.replaceChildren(el('div', { class: 'banner', role: 'status' }, `Opening ${wanted} …`));
+  try {
+    await open(await named(wanted), true);
+  } catch (e) {
+    await ask(`${wanted}: ${failed(e)}`);
+  }
+}

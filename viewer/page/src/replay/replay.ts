@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A replay while it runs: the clock, the fields, the timeline, the keys, and the loop that draws.
+import { el } from '../hud/dom';
+import { returnFocusToField } from '../hud/focus';
+import { isControl, isTyping, keyOf } from '../keyboard';
+import { Pace } from '../pace';
+import type { Mark } from './chart';
+import { debrief } from './debrief';
+import { ReplayClock } from './clock';
+import { MomentsPanel } from './moments_panel';
+import { Notes } from './notes';
+import type { Side } from './side';
+import { download } from './source';
+import { Transport } from './transport';
+import { VideoRecorder } from './video';
+
+/** Events that a person looks for. */
+const shownKinds = new Set(['goal', 'fault', 'message', 'command', 'complication', 'mode', 'refused']);
+/** On narrower windows the list of moments is hidden at first. */
+const narrowPx = 900;
+const stepS = 1;
+const fineStepS = 0.1;
+const shiftStepS = 0.5;
+
+/** What the page tells tests and screenshots about itself, as window.__replay. */
+export interface ReplayStatus {
+  ready: boolean;
+  /** From the page's start until the file was read, and until its first picture was drawn. */
+  read_ms: number;
+  open_ms: number;
+  /** From a jump to its picture: the last one, and the longest. */
+  seek_ms: number;
+  seek_max_ms: number;
+  time_s: number;
+  duration_s: number;
+  pictures: number;
+  video_bytes: number;
+  /** Chunks of the file: those with the timeline, all that were unpacked to open it, and the most for one jump. */
+  timeline_chunks: number;
+  chunks_unpacked_to_open: number;
+  seek_chunks_max: number;
+}
+
+export class Replay {
+  private readonly clock: ReplayClock;
+  private readonly transport: Transport;
+  private readonly moments: MomentsPanel;
+  private readonly notes: Notes;
+  private readonly video: VideoRecorder;
+  private readonly toast = el('div', { class: 'banner', role: 'alert' });
+  private readonly first: Side;
+  private jumpedMs: number | null = null;
+  private readonly status: ReplayStatus = {
+    ...{
+      ready: false,
+      read_ms: 0,
+      open_ms: 0,
+      seek_ms: 0,
+      seek_max_ms: 0,
+      time_s: 0,
+      duration_s: 0,
+      pictures: 0,
+      video_bytes: 0,
+    },
+    ...{ timeline_chunks: 0, chunks_unpacked_to_open: 0, seek_chunks_max: 0 },
+  };
+
+  /** kept: notes are kept beside the recording. */
+  constructor(
+    private readonly hud: HTMLElement,
+    private readonly sides: readonly Side[],
+    kept: boolean,
+    query: URLSearchParams,
+  ) {
+    this.first = sides[0]!;
+    const { session, view } = this.first;
+    this.clock = new ReplayClock(session.durationS);
+    this.clock.seek(Number(query.get('t') ?? 0) || 0);
+    this.notes = new Notes(
+      session.name,
+      kept,
+      () => this.showMarks(),
+      (why) => this.say(why),
+    );
+    this.video = new VideoRecorder(view.stage.canvas, this.clock);
+    this.transport = new Transport(this.clock, session.timeline, {
+      moved: () => this.jumped(),
+      arrows: (on) => sides.forEach((s) => (s.view.arrows.root.visible = on)),
+      note: () => this.askNote(),
+      video: () => void this.recordVideo(),
+      debrief: () => this.showDebrief(),
+      moments: () => this.showMoments(document.body.dataset.moments !== 'on'),
+    });
+    this.moments = new MomentsPanel(
+      (timeS) => this.seek(timeS),
+      (mark) => this.notes.remove(mark.timeS, mark.text),
+    );
+    for (const s of sides) s.shiftS = (s.session.timeline.passesS[0] ?? 0) - (session.timeline.passesS[0] ?? 0);
+    const warning = el('footer', {}, el('span', { class: 'warn' }, 'For training only. Not for patient care.'));
+    const right = el('div', { class: 'column right' }, this.moments.root, ...this.shiftPanel());
+    this.toast.hidden = true;
+    this.showMoments(window.innerWidth > narrowPx);
+    hud.append(right, this.notes.root, this.transport.root, warning, this.toast);
+    hud.parentElement!.dataset.sides = String(sides.length);
+    returnFocusToField(hud, view.stage.canvas);
+    (window as unknown as { __replay: ReplayStatus }).__replay = this.status;
+    window.addEventListener('keydown', (e) => this.key(e));
+  }
+
+  async begin(): Promise<void> {
+    const readMs = performance.now();
+    for (const s of this.sides) await s.open();
+    this.showMarks();
+    if (!this.first.session.ended) this.say('This recording was not ended; it is shown as far as it goes.');
+    void this.notes.load();
+    const pace = new Pace((fps, seconds) => this.sides.forEach((s) => s.view.observe(fps, seconds)));
+    this.first.view.stage.renderer.setAnimationLoop((now: number) => {
+      const ms = pace.begin(now);
+      this.draw(now, Math.min(0.25, ms / 1000));
+      pace.count(now, true);
+      if (!this.status.ready) {
+        this.status.ready = true;
+        this.status.read_ms = readMs;
+        this.status.timeline_chunks = this.first.session.timelineChunks;
+        this.status.chunks_unpacked_to_open = this.first.session.unpackedChunks;
+        this.status.open_ms = performance.now();
+      }
+    });
+  }
+
+  private draw(now: number, dtS: number): void {
+    this.clock.advance(dtS);
+    const { timeS } = this.clock;
+    const unpacked = this.first.session.unpackedChunks;
+    for (const s of this.sides) {
+      s.seek(timeS);
+      s.view.draw(now, Math.min(0.1, dtS));
+    }
+    this.transport.draw(this.video.running);
+    this.moments.at(timeS);
+    if (this.jumpedMs !== null) {
+      this.status.seek_ms = performance.now() - this.jumpedMs;
+      this.status.seek_max_ms = Math.max(this.status.seek_max_ms, this.status.seek_ms);
+      this.status.seek_chunks_max = Math.max(this.status.seek_chunks_max, this.first.session.unpackedChunks - unpacked);
+      this.jumpedMs = null;
+    }
+    this.status.pictures++;
+    this.status.time_s = timeS;
+    this.status.duration_s = this.clock.durationS;
+  }
+
+  private seek(timeS: number): void {
+    this.clock.seek(timeS);
+    this.jumped();
+  }
+
+  private jumped(): void {
+    this.jumpedMs ??= performance.now();
+  }
+
+  private askNote(): void {
+    this.clock.playing = false;
+    this.notes.ask(this.clock.timeS);
+  }
+
+  private showMarks(): void {
+    const events = this.first.session.timeline.events.filter((e) => shownKinds.has(e.kind));
+    const marks: Mark[] = [
+      ...events.map((e) => ({ timeS: e.timeS, kind: e.kind, text: e.text || `${e.kind} ${e.id}` })),
+      ...this.notes.all.map((n) => ({ timeS: n.timeS, kind: 'note', text: n.text })),
+    ];
+    marks.sort((a, b) => a.timeS - b.timeS);
+    this.transport.chart.marks = marks;
+    this.moments.show(marks);
+  }
+
+  private showMoments(on: boolean): void {
+    document.body.dataset.moments = on ? 'on' : 'off';
+  }
+
+  private showDebrief(): void {
+    this.clock.playing = false;
+    this.hud.append(debrief(this.first.session, this.first.view, this.notes.all));
+  }
+
+  private async recordVideo(): Promise<void> {
+    if (this.video.running) return;
+    const stretch = this.clock.stretch ?? { fromS: 0, toS: this.clock.durationS };
+    try {
+      const video = await this.video.record(stretch);
+      this.status.video_bytes = video.size;
+      download(`${this.first.session.name}.webm`, video);
+    } catch (e) {
+      this.say(`No video: ${e instanceof Error ? e.message : String(e)}`);
+    }
+  }
+
+  /** Of two sessions: moves the second one in time. */
+  private shiftPanel(): HTMLElement[] {
+    const second = this.sides[1];
+    if (!second) return [];
+    const text = el('span');
+    const show = () => (text.textContent = `${second.session.name}: ${second.shiftS.toFixed(1)} s`);
+    const shift = (by: number) => {
+      second.shiftS += by;
+      show();
+    };
+    const earlier = el('button', {}, '− 0.5 s');
+    earlier.onclick = () => shift(-shiftStepS);
+    const later = el('button', {}, '+ 0.5 s');
+    later.onclick = () => shift(shiftStepS);
+    show();
+    return [el('section', { class: 'panel shift' }, el('h2', {}, 'Second session'), text, earlier, later)];
+  }
+
+  private say(text: string): void {
+    this.toast.textContent = text;
+    this.toast.hidden = false;
+    setTimeout(() => (this.toast.hidden = true), 6000);
+  }
+
+  private key(e: KeyboardEvent): void {
+    if (isTyping(e.target) || e.ctrlKey || e.metaKey) return;
+    const key = keyOf(e);
+    const { clock } = this;
+    const by = e.shiftKey ? fineStepS : stepS;
+    const commands: Record<string, () => void> = {
+      space: () => clock.toggle(),
+      arrowleft: () => this.seek(clock.timeS - by),
+      arrowright: () => this.seek(clock.timeS + by),
+      home: () => this.seek(0),
+      end: () => this.seek(clock.durationS),
+      arrowup: () => clock.changeSpeed(1),
+      arrowdown: () => clock.changeSpeed(-1),
+      f: () => this.transport.jumpToFault(1),
+      b: () => this.transport.jumpToFault(-1),
+      n: () => this.askNote(),
+      m: () => this.showMoments(document.body.dataset.moments !== 'on'),
+      '[': () => clock.mark('from'),
+      ']': () => clock.mark('to'),
+      v: () => this.sides.forEach((s) => s.view.stage.scope.reset()),
+    };
+    const run = commands[key];
+    // A focused button answers to Space itself.
+    if (!run || (key === 'space' && isControl(e.target))) return;
+    e.preventDefault();
+    run();
+  }
+}

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The field of a recorded session at any time, in a canvas of its own.
+import * as THREE from 'three';
+import { loadBundle } from '../bundle';
+import type { Bundle } from '../bundle_types';
+import { Graphics } from '../graphics';
+import type { QualityName } from '../options';
+import { Playback } from '../playback';
+import { levels, QualityWatch } from '../quality';
+import { softwareAdvice } from '../software_rendering';
+import { Stage } from '../stage';
+import { Reading } from '../step_data/reading';
+import { vector, World } from '../world';
+import { ForceArrows } from './force_arrows';
+import type { Moment } from './pictures';
+import type { RecordedSession } from './session';
+
+export class SessionView {
+  readonly stage: Stage;
+  readonly reading = new Reading();
+  readonly arrows = new ForceArrows();
+  readonly graphics: Graphics;
+  world: World | null = null;
+  /** The picture that is shown; null: none. */
+  moment: Moment | null = null;
+  /** Draws plumb lines and contact marks. */
+  cues = true;
+  private session: RecordedSession | null = null;
+  private readonly playback = new Playback();
+  private readonly watch: QualityWatch;
+
+  constructor(canvas: HTMLCanvasElement, quality: QualityName | null) {
+    this.stage = new Stage(canvas);
+    const advice = softwareAdvice(this.stage.renderer.getContext());
+    this.watch = new QualityWatch(quality, advice === '' ? 'high' : 'draft');
+    this.stage.scene.add(this.arrows.root);
+    this.graphics = new Graphics(canvas, () => {
+      if (this.world) this.build(this.world.bundle);
+    });
+  }
+
+  /** Builds the recorded scene. Throws if the recording lacks a part of it. */
+  async open(session: RecordedSession): Promise<Bundle> {
+    const bundle = await loadBundle(session.bundle, session.name);
+    this.session = session;
+    this.stage.scope.setHome(bundle.view);
+    this.reading.begin(bundle);
+    this.build(bundle);
+    this.applyQuality();
+    return bundle;
+  }
+
+  /** Shows the recording at a time. False: it has no picture there that can be read. */
+  seek(timeS: number): boolean {
+    this.moment = this.session?.pictures.at(timeS) ?? null;
+    if (!this.moment) return false;
+    const { before, after, share } = this.moment;
+    this.playback.hold(before.frame, after.frame, share);
+    this.reading.read(share > 0.5 ? after.frame : before.frame);
+    return true;
+  }
+
+  /** dtS: of the wall clock, for what glides and fades. */
+  draw(nowMs: number, dtS: number): void {
+    this.stage.update(dtS, 'off', false);
+    if (this.world && this.moment) {
+      this.world.cues.choice = { plumb: this.cues, ruler: 'off', hand: 1, within: null };
+      this.world.update(this.playback, nowMs, this.reading.channels, this.stage.scope.sight);
+      this.arrows.update(this.moment, this.world.bundle);
+    }
+    this.stage.render('off', 0);
+  }
+
+  /** Once a second; steps the quality down on a slow machine. */
+  observe(fps: number, seconds: number): void {
+    if (document.visibilityState === 'visible' && !this.graphics.lost && this.watch.observe(fps, seconds))
+      this.applyQuality();
+  }
+
+  get quality(): string {
+    return levels[this.watch.level]!.name;
+  }
+
+  private applyQuality(): void {
+    const level = levels[this.watch.level]!;
+    this.stage.setLevel(level);
+    this.world?.setCheap(level.cheap);
+  }
+
+  private build(bundle: Bundle): void {
+    this.world?.dispose();
+    const room: THREE.Texture = this.stage.light(vector(bundle.view.up));
+    this.world = new World(bundle, this.stage.scope.fieldAxis, room);
+    this.stage.scene.add(this.world.root);
+  }
+}

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One recording on the page: its field, what the exercise said, and its name. Two stand side by side.
+import { el, setText } from '../hud/dom';
+import { ExercisePanel } from '../hud/exercise_panel';
+import { Vitals } from '../hud/vitals';
+import type { QualityName } from '../options';
+import { controlMicroscope } from './microscope_control';
+import type { RunGhost } from './run_ghost';
+import type { RecordedSession } from './session';
+import { SessionView } from './session_view';
+
+export class Side {
+  readonly root: HTMLElement;
+  readonly view: SessionView;
+  /** Added to the time of the page. */
+  shiftS = 0;
+  ghost: RunGhost | null = null;
+  private readonly exercise = new ExercisePanel();
+  private readonly vitals = new Vitals();
+  private readonly problem = el('p', { class: 'bad' });
+
+  constructor(
+    readonly session: RecordedSession,
+    quality: QualityName | null,
+  ) {
+    const canvas = el('canvas', { tabindex: '0', 'aria-label': `recorded field of ${session.name}` });
+    const name = el('h1', { class: 'session-name' }, session.name, el('small', {}, session.began));
+    const left = el('div', { class: 'column left' }, name, this.vitals.root, this.exercise.root, this.problem);
+    this.root = el('div', { class: 'side' }, canvas, left);
+    this.view = new SessionView(canvas, quality);
+    controlMicroscope(this.view.stage);
+  }
+
+  async open(): Promise<void> {
+    const bundle = await this.view.open(this.session);
+    this.exercise.showScene(bundle);
+    this.vitals.showScene(bundle);
+    if (this.ghost) this.view.stage.scene.add(this.ghost.root);
+  }
+
+  /** pageS: of the page. */
+  seek(pageS: number): void {
+    const timeS = Math.min(this.session.durationS, Math.max(0, pageS + this.shiftS));
+    const shown = this.view.seek(timeS);
+    const lines = [...(shown ? [] : ['There is no picture at this time.']), ...this.session.damage];
+    setText(this.problem, lines.join('\n'));
+    const { reading, moment } = this.view;
+    if (!moment) return;
+    const frame = moment.before.frame;
+    if (reading.state) {
+      this.exercise.showState(reading.state);
+      this.exercise.showClock(reading.state.elapsedS ?? frame.sim_time_s);
+    }
+    this.vitals.show(reading.channels, new Set(), frame.sim_time_s);
+    if (this.view.world) this.ghost?.show(this.view.world.bundle, frame.sim_time_s);
+  }
+}

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a recording tells over time: events, forces of the hands, channels and metrics. Times are seconds since the
+// recording began.
+import { finite, type Json, list, text } from '../hud/state';
+import { sim_event_t } from '../lcm';
+import type { Container } from './container';
+
+export interface Happening {
+  timeS: number;
+  kind: string;
+  id: string;
+  text: string;
+}
+
+/** A curve: a value at each time, NaN where it is not known. */
+export interface Series {
+  id: string;
+  text: string;
+  unit: string;
+  timesS: Float64Array;
+  values: Float64Array;
+}
+
+/** Collects the samples of some curves with common times. */
+class Samples {
+  private readonly timesS: number[] = [];
+  private readonly values: number[][] = [];
+
+  add(timeS: number, values: readonly unknown[], size: number): void {
+    while (this.values.length < size) this.values.push(new Array<number>(this.timesS.length).fill(NaN));
+    this.timesS.push(timeS);
+    this.values.forEach((v, k) => v.push(finite(values[k]) ?? NaN));
+  }
+  series(k: number, about: Pick<Series, 'id' | 'text' | 'unit'>): Series {
+    return { ...about, timesS: Float64Array.from(this.timesS), values: Float64Array.from(this.values[k] ?? []) };
+  }
+}
+
+const handCurves = [
+  { id: 'left_force', text: 'Left hand on tissue', unit: 'N' },
+  { id: 'right_force', text: 'Right hand on tissue', unit: 'N' },
+  { id: 'tip_separation', text: 'Distance of the tips', unit: 'm' },
+];
+
+export class Timeline {
+  readonly events: Happening[] = [];
+  /** Forces of the left and the right hand, distance of the tips. */
+  readonly hands: Series[];
+  readonly channels: Series[];
+  readonly metrics: Series[];
+  /** When the exercise began: at the start and after each reset. */
+  readonly passesS: number[] = [];
+
+  constructor(container: Container) {
+    const hands = new Samples();
+    const channels = new Samples();
+    const metrics = new Map<string, { about: Pick<Series, 'id' | 'text' | 'unit'>; samples: Samples }>();
+    const names = [...(container.metadata.get('channels') ?? new Map<string, string>()).values()];
+    let pass = 0;
+    for (const m of container.messages(['SIM_EVENT', 'HANDS', 'CHANNELS', 'METRICS'])) {
+      if (m.topic === 'SIM_EVENT') {
+        this.addEvent(m.timeS, m.data);
+        continue;
+      }
+      const json = parsed(m.data);
+      if (m.topic === 'HANDS' && Array.isArray(json)) hands.add(m.timeS, json.slice(1), handCurves.length);
+      else if (m.topic === 'CHANNELS' && Array.isArray(json)) channels.add(m.timeS, json.slice(1), names.length);
+      else if (m.topic === 'METRICS' && json) {
+        const moment = json as Json;
+        const number = finite(moment.pass) ?? 0;
+        if (number > pass) this.passesS.push(Math.max(0, m.timeS - (finite(moment.time_s) ?? 0)));
+        pass = Math.max(pass, number);
+        for (const value of list(moment.metrics)) addMetric(metrics, m.timeS, value);
+      }
+    }
+    this.hands = handCurves.map((about, k) => hands.series(k, about));
+    this.channels = names.map((name, k) => {
+      const [id = '', unit = ''] = name.split(' ');
+      return channels.series(k, { id, text: id, unit });
+    });
+    this.metrics = [...metrics.values()].map(({ about, samples }) => samples.series(0, about));
+    if (this.passesS.length === 0) this.passesS.push(0);
+  }
+
+  private addEvent(timeS: number, data: Uint8Array): void {
+    try {
+      const e = sim_event_t.decode(data);
+      this.events.push({ timeS, kind: e.kind, id: e.id, text: e.text });
+    } catch {
+      // A damaged one is left out.
+    }
+  }
+
+  /** The next moment after (or before) a time at which a fault was made; null: none. */
+  fault(fromS: number, direction: 1 | -1): Happening | null {
+    const faults = this.events.filter((e) => e.kind === 'fault');
+    const margin = 0.05;
+    return direction > 0
+      ? (faults.find((e) => e.timeS > fromS + margin) ?? null)
+      : (faults.findLast((e) => e.timeS < fromS - margin) ?? null);
+  }
+}
+
+function addMetric(
+  to: Map<string, { about: Pick<Series, 'id' | 'text' | 'unit'>; samples: Samples }>,
+  timeS: number,
+  value: Json,
+): void {
+  const id = `${text(value.id)} ${text(value.hand)}`;
+  let found = to.get(id);
+  if (!found) {
+    const hand = text(value.hand);
+    const words = text(value.id).replace(/[_.]/g, ' ');
+    const about = { id, text: hand === 'both' ? words : `${words}, ${hand}`, unit: text(value.unit) };
+    to.set(id, (found = { about, samples: new Samples() }));
+  }
+  found.samples.add(timeS, [value.value], 1);
+}
+
+function parsed(data: Uint8Array): unknown {
+  try {
+    return JSON.parse(new TextDecoder().decode(data));
+  } catch {
+    return null;
+  }
+}
+
+/** The value that a curve has at a time: that of the last sample; NaN before the first. */
+export function valueAt(series: Series, timeS: number): number {
+  let low = 0;
+  let high = series.timesS.length;
+  while (low < high) {
+    const mid = (low + high) >> 1;
+    if (series.timesS[mid]! <= timeS) low = mid + 1;
+    else high = mid;
+  }
+  return low > 0 ? series.values[low - 1]! : NaN;
+}
