@@ -125,13 +125,15 @@ class MotionEntry final : public Component {
                                 .fallback = "3 mm",
                                 .min = "0.2 mm",
                                 .max = "20 mm",
-                                .doc = "distance from a target of the guide that counts as reached"}};
+                                .doc = "distance from a target of the guide that counts as reached; at least 3 mm "
+                                       "where no button acts"}};
   Param<Angle> guide_angle{this,
                            {.name = "guide_angle",
                             .fallback = "15 deg",
                             .min = "1 deg",
                             .max = "90 deg",
-                            .doc = "turn against a target of the guide that counts as reached"}};
+                            .doc = "turn against a target of the guide that counts as reached; at least 15 deg "
+                                   "where no button acts"}};
   void prepare(PrepareContext& context) override;
 };
 

@@ -68,6 +68,17 @@ bool read_bands(const CommandContext& context, const RunOptions& options, const 
   }
 }
 
+/// The events of a step, and its numbers at every fifth percent. shown: the percent said last.
+void say_step(const CommandContext& context, const Simulation& simulation, int percent, int& shown) {
+  for (const Event& e : simulation.events())
+    fmt::print(context.out, "  {:7.2f} s  {} {} {}\n", e.time, e.kind, e.id, e.text);
+  if (percent / 5 == shown / 5 && shown >= 0) return;
+  shown = percent;
+  fmt::print(context.out, "{:3d} %  {:7.2f} s  {} rows, {} contacts\n", percent, simulation.time(),
+             simulation.report().rows, simulation.report().contacts.size());
+  context.out.flush();
+}
+
 }  // namespace
 
 int cmd_run(const CommandContext& context, const RunOptions& options) {
@@ -94,26 +105,20 @@ int cmd_run(const CommandContext& context, const RunOptions& options) {
                     {haptics.hand(0).force.norm(), haptics.hand(1).force.norm()}, simulation.energy());
     summary.wall_seconds += simulation.report().step_ms / 1000;
     if (simulation.exercise()) summary.moments.observe(simulation.time(), *simulation.exercise());
-    if (!options.quiet) {
-      for (const Event& e : simulation.events())
-        fmt::print(context.out, "  {:7.2f} s  {} {} {}\n", e.time, e.kind, e.id, e.text);
-      const int percent = int(100 * (k + 1) / steps);
-      if (percent / 5 != shown / 5 || shown < 0) {
-        shown = percent;
-        fmt::print(context.out, "{:3d} %  {:7.2f} s  {} rows, {} contacts\n", percent, simulation.time(),
-                   simulation.report().rows, simulation.report().contacts.size());
-        context.out.flush();
-      }
-    }
+    if (!options.quiet) say_step(context, simulation, int(100 * (k + 1) / steps), shown);
     if (!simulation.report().finite) break;
   }
-  if (session) session->close(simulation);
   summary.take(simulation);
   summary.scene = options.scene.string();
   summary.motion = options.motion;
   summary.recording = options.record.string();
   summary.fresh_forces_per_s = run.haptics().fresh_forces_per_s();
   for (int h = 0; h < 2; ++h) summary.max_force_N[std::size_t(h)] = run.haptics().hand(h).max_force_N;
+  if (session) {
+    const nlohmann::json review = {{"pass", session->pass()}, {"review", review_json(review_of(recorder, summary))}};
+    session->review(review.dump());
+    session->close(simulation);
+  }
   try {
     if (!options.report.empty()) write_report(options.report, recorder, summary);
     if (!options.export_folder.empty()) export_bodies(simulation, options.export_folder);

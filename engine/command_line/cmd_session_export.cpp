@@ -4,6 +4,7 @@
 
 #include "core/base/input_error.h"
 #include "engine/command_line/sessions.h"
+#include "engine/session/parquet.h"
 #include "engine/session/session_export.h"
 
 namespace insula {
@@ -19,7 +20,10 @@ int cmd_session_export(const CommandContext& context, const ExportOptions& optio
       const fs::path file = options.folder / (options.file.stem().string() + ".lcmlog");
       fmt::print(context.out, "{}: {} messages\n", file.string(), export_lcm_log(session, file));
     } else {
-      for (const fs::path& file : export_tables(session, options.folder, options.format))
+      const bool parquet = options.format == "parquet";
+      std::vector<fs::path> files = export_tables(session, options.folder, parquet ? "csv" : options.format);
+      if (parquet) files = to_parquet(files);
+      for (const fs::path& file : files)
         fmt::print(context.out, "{}\n", file.string());
     }
     for (const std::string& line : session.container().damage())

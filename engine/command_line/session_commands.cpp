@@ -78,8 +78,8 @@ void add_session(CommandLine& line) {
   auto* exported = session->add_subcommand("export", "tables of hands, channels, metrics and events");
   exported->add_option("file", e->file, "session file")->required();
   exported->add_option("-o,--output", e->folder, "folder to write to")->required();
-  exported->add_option("--format", e->format, "csv and json: one file for each table; lcm: a log of lcm-logger")
-      ->check(CLI::IsMember({"csv", "json", "lcm"}))
+  exported->add_option("--format", e->format, "csv, json, parquet: one file for each table; lcm: a log of lcm-logger")
+      ->check(CLI::IsMember({"csv", "json", "parquet", "lcm"}))
       ->capture_default_str();
   exported->callback(chooses(line, e, cmd_session_export));
 

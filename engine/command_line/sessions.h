@@ -50,7 +50,7 @@ struct SessionOptions {
 struct ExportOptions {
   std::filesystem::path file;
   std::filesystem::path folder;  ///< is created
-  std::string format = "csv";    ///< "csv", "json" or "lcm"
+  std::string format = "csv";    ///< "csv", "json", "parquet" or "lcm"
 };
 /// Writes the tables of a session: hands, channels, metrics, events. Status 0; 1 if a file cannot be written; 2 if it
 /// is no session.

@@ -51,6 +51,9 @@ Json band_of(const MeasureState& m) {
   return out;
 }
 
+// Nobody needs to be nearer to a place that he only passes.
+constexpr double pass_m = 0.003, pass_rad = 0.2618;
+
 /// Targets of the motions that the exercise offers as a guide.
 Json guide_of(const Exercise& exercise, const Simulation& simulation) {
   Json out = Json::array();
@@ -62,8 +65,8 @@ Json guide_of(const Exercise& exercise, const Simulation& simulation) {
                      {"tool", g.tool},
                      {"command", g.command},
                      {"argument", g.argument},
-                     {"near_m", motion->guide_distance()},
-                     {"near_rad", motion->guide_angle()},
+                     {"near_m", g.passes ? std::max(pass_m, motion->guide_distance()) : motion->guide_distance()},
+                     {"near_rad", g.passes ? std::max(pass_rad, motion->guide_angle()) : motion->guide_angle()},
                      {"time_s", g.time_s},
                      {"p_m", list(g.sample.pose.p)},
                      {"q", {q.w(), q.x(), q.y(), q.z()}},

@@ -261,6 +261,7 @@ class LiveSession {
       while (bus_.poll(0) > 0) {
       }
       take_requests();
+      keep_reviews();
       publisher_.note({mode_, reports_.last_report(), recording_.file(), recording_.failure()});
       const bool waits = !stands() && wait_for_hands();
       if (stands()) stand_still();
@@ -269,11 +270,23 @@ class LiveSession {
     }
   }
 
+  /// The last report, whose review goes into the recording.
+  void end() {
+    reports_.end_run(simulation_);
+    reports_.wait();
+    keep_reviews();
+  }
+
  private:
   /// What is known of a pass through the exercise that ends here.
   void end_pass() {
     recording_.end_pass(simulation_);
     reports_.end_run(simulation_);
+  }
+
+  /// The debrief of a recording has the words of the reports.
+  void keep_reviews() {
+    for (const std::string& review : reports_.take_reviews()) recording_.review(review);
   }
 
   void start_again() {
@@ -402,6 +415,7 @@ class LiveSession {
     simulation_.step();
     if (lockstep) demonstration_->after_step(simulation_);
     recording_.step(simulation_);
+    reports_.set_recorded_pass(recording_.pass());
     if (!simulation_.report().finite) {
       reports_.step(simulation_, posed > 0, follows);
       end_pass();
@@ -470,8 +484,8 @@ int run_live(const LiveOptions& options, const Registry& registry, Bus& bus, con
   Pace pace(simulation.h());
   live.run(stop, pace);
   publisher.info("ended");
+  live.end();
   recording.close(simulation);
-  reports.end_run(simulation);
   const double wall = pace.seconds();
   spdlog::info(
       "ended after {:.2f} s simulated in {:.2f} s (real_time_factor {:.2f}), {} steps dropped, {} messages not sent",

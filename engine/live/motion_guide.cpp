@@ -86,8 +86,14 @@ std::string asked_of(const Motion& motion, const std::string& tool, double time_
   return asked;
 }
 
-GuidePose pose_of(const Motion& motion, const Simulation& simulation, int hand, const Motion::Key& key) {
+bool idle(const HandSample& s) { return !s.button1 && !s.button2; }
+
+GuidePose pose_of(const Motion& motion, const Simulation& simulation, int hand, std::size_t at) {
+  const Keys& keys = motion.keys(hand);
+  const Motion::Key& key = keys[at];
   GuidePose pose{hand, tool_at(motion, simulation, hand, key.time_s), key.time_s, key.sample, "", ""};
+  const auto beside = [&](std::size_t i) { return i >= keys.size() || idle(keys[i].sample); };
+  pose.passes = idle(key.sample) && beside(at - 1) && beside(at + 1);
   const std::string asked = asked_of(motion, pose.tool, key.time_s);
   const std::size_t space = std::min(asked.find(' '), asked.size());
   pose.command = asked.substr(0, space);
@@ -109,7 +115,7 @@ std::vector<GuidePose> guide_poses(const Motion& motion, const Simulation& simul
       needed = marked(keys, s);
     }
     for (std::size_t i = 0; i < keys.size(); ++i)
-      if (needed[i]) out.push_back(pose_of(motion, simulation, hand, keys[i]));
+      if (needed[i]) out.push_back(pose_of(motion, simulation, hand, i));
   }
   return out;
 }

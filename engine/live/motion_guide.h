@@ -17,6 +17,8 @@ struct GuidePose {
   HandSample sample;
   std::string command;   ///< what the motion has asked of that instrument last, "load": empty if nothing
   std::string argument;  ///< of that command: "angled"
+  /// No button is on or changes: the hand only goes there on its way.
+  bool passes = false;
 };
 
 struct TargetSettings {

@@ -60,6 +60,21 @@ TEST(MotionGuide, ATargetSaysWhatTheMotionAskedOfItsInstrument) {
   EXPECT_EQ(poses[1].argument, "a");
 }
 
+TEST(MotionGuide, APlaceWhereNoButtonActsIsPassed) {
+  const auto simulation = empty_scene();
+  Motion m;
+  add(m, 0, Vec3::Zero());
+  add(m, 1, Vec3(0.03, 0, 0));     // a turn on the way
+  add(m, 2, Vec3(0.03, 0.03, 0));  // the button comes next
+  add(m, 2.1, Vec3(0.03, 0.03, 0), 0, true);
+  add(m, 3, Vec3(0.06, 0.03, 0), 0, true);  // with the button on
+  add(m, 3.1, Vec3(0.06, 0.03, 0));
+  add(m, 4, Vec3(0.06, 0.06, 0));
+  const auto poses = guide_poses(m, *simulation);
+  ASSERT_GE(poses.size(), 5u);
+  for (const GuidePose& p : poses) EXPECT_EQ(p.passes, p.time_s < 1.5 || p.time_s > 3.5) << p.time_s;
+}
+
 TEST(MotionGuide, ALongMotionHasABoundedNumberOfTargets) {
   const auto simulation = empty_scene();
   Motion m;

@@ -7,16 +7,13 @@
 #include "engine/reports/svg_plot.h"
 
 namespace insula {
-namespace {
 
-std::string shown_value(const MetricValue* m) {
-  if (!m || !m->known) return "";
-  std::string number = fmt::format("{:.{}f}", m->value, m->digits);
+std::string shown_value(const MetricValue& m) {
+  if (!m.known) return "";
+  std::string number = fmt::format("{:.{}f}", m.value, m.digits);
   if (number.front() == '-' && number.find_first_not_of("-0.") == std::string::npos) number.erase(0, 1);
-  return m->unit.empty() ? number : number + " " + m->unit;
+  return m.unit.empty() ? number : number + " " + m.unit;
 }
-
-}  // namespace
 
 nlohmann::ordered_json metric_json(const MetricValue& m) {
   return {{"id", m.id},
@@ -47,28 +44,6 @@ void add_bands(nlohmann::ordered_json& json, const std::vector<MetricValue>& met
   }
 }
 
-std::string to_work_on_html(const std::vector<MetricValue>& metrics, const ReferenceBands& bands,
-                            const MetricMoments& moments) {
-  if (bands.empty()) return {};
-  std::string out = fmt::format(
-      "<h2>Three things to work on</h2>\n<p class=\"quiet\">What lies farthest beyond the middle half of {} sessions "
-      "of the group {}.</p>\n",
-      bands.sessions(), escaped(bands.group()));
-  std::string rows;
-  for (const MetricValue* m : to_work_on(metrics, bands, 3)) {
-    MetricValue low = *m, high = *m;
-    low.value = bands.find(*m)->low;
-    high.value = bands.find(*m)->high;
-    const std::optional<double> worst_s = moments.worst_s(*m);
-    rows += fmt::format("<li><b>{}{}</b>: {}, where the group has {} to {}{}</li>\n", escaped(m->text),
-                        m->hand == both_hands ? "" : fmt::format(" ({} hand)", hand_name(m->hand)),
-                        escaped(shown_value(m)), escaped(shown_value(&low)), escaped(shown_value(&high)),
-                        worst_s ? fmt::format(". It became worse most at {:.0f} s", *worst_s) : "");
-  }
-  return out + (rows.empty() ? "<p class=\"good\">✓ Every metric lies within its band or on its better side.</p>\n"
-                             : "<ol>\n" + rows + "</ol>\n");
-}
-
 std::string metrics_html(const std::vector<MetricValue>& metrics) {
   std::string rows;
   for (std::size_t i = 0; i < metrics.size(); ++i) {
@@ -80,9 +55,9 @@ std::string metrics_html(const std::vector<MetricValue>& metrics) {
     };
     if (!says(&m) && !says(right)) continue;
     const std::string values = m.hand == both_hands
-                                   ? fmt::format("<td class=\"n\" colspan=\"2\">{}</td>", escaped(shown_value(&m)))
+                                   ? fmt::format("<td class=\"n\" colspan=\"2\">{}</td>", escaped(shown_value(m)))
                                    : fmt::format("<td class=\"n\">{}</td><td class=\"n\">{}</td>",
-                                                 escaped(shown_value(&m)), escaped(shown_value(right)));
+                                                 escaped(shown_value(m)), right ? escaped(shown_value(*right)) : "");
     rows += fmt::format("<tr><td>{}</td>{}<td>{}</td></tr>\n", escaped(m.text), values,
                         m.better == Better::low    ? "less"
                         : m.better == Better::high ? "more"

@@ -6,11 +6,12 @@
 #include <vector>
 
 #include "core/sim/metric.h"
-#include "engine/reports/metric_moments.h"
 #include "engine/reports/reference_bands.h"
 
 namespace insula {
 
+/// With its digits and unit; empty if it is not known.
+std::string shown_value(const MetricValue& metric);
 /// {id, hand, unit, value, better}, as in metrics_json().
 nlohmann::ordered_json metric_json(const MetricValue& metric);
 /// [{id, hand: "left" | "right" | "both", unit, value, better: "high" | "low" | "none", digits, text, source}]. An
@@ -21,9 +22,6 @@ void add_bands(nlohmann::ordered_json& metrics_json, const std::vector<MetricVal
                const ReferenceBands& bands);
 /// A table with a line for each metric and a column for each hand; empty if nothing is known.
 std::string metrics_html(const std::vector<MetricValue>& metrics);
-/// What lies farthest beyond its band, as a list with the moments at which it was worst; empty if there are no bands.
-std::string to_work_on_html(const std::vector<MetricValue>& metrics, const ReferenceBands& bands,
-                            const MetricMoments& moments = {});
 /// A line for each value: id,hand,value,unit,better,text. An unknown value is empty.
 std::string metrics_csv(const std::vector<MetricValue>& metrics);
 

@@ -8,8 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/sim/metric.h"
-
 namespace insula {
 
 struct OwnRun {
@@ -29,8 +27,5 @@ struct OwnRuns {
 /// one. Demonstrations and runs without an exercise do not count, nor does `except`.
 OwnRuns own_runs(const std::filesystem::path& folder, const std::string& title, const std::string& person,
                  const std::filesystem::path& except);
-
-/// A table of this run beside the last and the best one; empty if there is none. faults: of this run.
-std::string own_runs_html(const OwnRuns& runs, const OwnRun& now, const std::vector<MetricValue>& metrics);
 
 }  // namespace insula

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "core/testing/temp_folder.h"
+#include "engine/reports/review.h"
 
 namespace insula {
 namespace {
@@ -62,10 +63,16 @@ TEST_F(OwnRunsTest, TheTableSaysWhatHasChanged) {
   const MetricValue path{"path", "Path", "Insula", right_hand, true, 150, "mm", 0, Better::low};
   OwnRun now;
   now.seconds = 40;
-  const std::string html = own_runs_html(find(), now, {path});
+  const Review review = review_of({path}, {}, {}, find(), now);
+  ASSERT_EQ(review.comparison.size(), 4U);
+  EXPECT_EQ(review.comparison[2].change, 1) << "fewer faults";
+  const std::string html = review_html(review);
   for (const char* part : {"1 earlier run of", "Path (right hand)", "✓ better", ">150 mm<", ">200 mm<", ">40.0 s<"})
     EXPECT_NE(html.find(part), std::string::npos) << part << " in " << html;
-  EXPECT_EQ(own_runs_html({}, now, {path}), "");
+  EXPECT_EQ(review_html(review_of({path}, {}, {}, {}, now)), "");
+  const auto json = review_json(review);
+  EXPECT_EQ(json.at("earlier_runs"), 1);
+  EXPECT_EQ(json.at("comparison")[3].at("last"), "200 mm");
 }
 
 }  // namespace

@@ -302,16 +302,16 @@ double simulated_seconds(const RunRecorder& recorder) {
   return recorder.samples().empty() ? 0 : double(recorder.samples().back().time_s);
 }
 
-/// This run as the table of own runs needs it.
-OwnRun own_run_of(const RunRecorder& recorder, const RunSummary& summary) {
-  OwnRun run;
-  run.done = summary.exercise->log.state() == ExerciseState::done;
-  run.seconds = simulated_seconds(recorder);
-  for (const FaultState& f : summary.exercise->log.faults()) run.faults += f.count;
-  return run;
-}
-
 }  // namespace
+
+Review review_of(const RunRecorder& recorder, const RunSummary& summary) {
+  if (!summary.exercise) return {};
+  OwnRun now;
+  now.done = summary.exercise->log.state() == ExerciseState::done;
+  now.seconds = simulated_seconds(recorder);
+  for (const FaultState& f : summary.exercise->log.faults()) now.faults += f.count;
+  return review_of(summary.exercise->metrics, summary.bands, summary.moments, summary.own_runs, now);
+}
 
 std::string report_html(const RunRecorder& recorder, const RunSummary& summary) {
   std::string out = page_head(summary, "report");
@@ -320,9 +320,7 @@ std::string report_html(const RunRecorder& recorder, const RunSummary& summary) 
   if (!recorder.finite())
     out += "<p class=\"bad\">The simulation lost its numbers (not finite): nothing below can be relied upon.</p>\n";
   if (summary.exercise)
-    out += exercise_part(*summary.exercise) +
-           to_work_on_html(summary.exercise->metrics, summary.bands, summary.moments) +
-           own_runs_html(summary.own_runs, own_run_of(recorder, summary), summary.exercise->metrics) +
+    out += exercise_part(*summary.exercise) + review_html(review_of(recorder, summary)) +
            metrics_html(summary.exercise->metrics);
   out += recorder.forces().html() + recorder.channels().html() + recorder.outcome().html();
   if (summary.complications) out += complications_html(*summary.complications);

@@ -252,7 +252,10 @@ std::string report_json(const RunRecorder& recorder, const RunSummary& summary) 
                       {"right", perceptible_json(perceptible_forces(recorder, 1))}}}};
   json["exercise"] = exercise_json(summary.exercise);
   json["metrics"] = metrics_json(summary.exercise ? summary.exercise->metrics : std::vector<MetricValue>{});
-  if (summary.exercise) add_bands(json["metrics"], summary.exercise->metrics, summary.bands);
+  if (summary.exercise) {
+    add_bands(json["metrics"], summary.exercise->metrics, summary.bands);
+    json["review"] = review_json(review_of(recorder, summary));
+  }
   if (summary.complications) json["complications"] = complications_json(*summary.complications);
   json["force_on"] = recorder.forces().json();
   json["channels"] = recorder.channels().json();

@@ -19,6 +19,7 @@
 #include "engine/reports/metric_moments.h"
 #include "engine/reports/own_runs.h"
 #include "engine/reports/reference_bands.h"
+#include "engine/reports/review.h"
 #include "engine/reports/run_outcome.h"
 
 namespace insula {
@@ -135,6 +136,8 @@ std::vector<double> column(const RunRecorder& recorder, Get get) {
   return out;
 }
 
+/// Empty if the scene has no exercise.
+Review review_of(const RunRecorder& recorder, const RunSummary& summary);
 std::string report_json(const RunRecorder& recorder, const RunSummary& summary);
 std::string report_html(const RunRecorder& recorder, const RunSummary& summary);
 /// The page for those who look after the machine: times of steps, rows, residuals.

@@ -111,6 +111,15 @@ std::string SessionReports::last_report() const {
   return done_->path;
 }
 
+std::vector<std::string> SessionReports::take_reviews() {
+  std::lock_guard lock(done_->mutex);
+  return std::exchange(done_->reviews, {});
+}
+
+void SessionReports::wait() {
+  if (writing_.valid()) writing_.wait();
+}
+
 /// The smaller value of the hands that had contact, as in a run.
 double SessionReports::fresh_forces_per_s() const {
   double least = 0;
@@ -138,17 +147,20 @@ void SessionReports::write(const Simulation& simulation) {
   const auto failed = [](const std::exception& e) {
     spdlog::error("a report was not written: {}. The session goes on", e.what());
   };
-  if (writing_.valid()) writing_.wait();  // folders are created in the order of the runs
+  wait();  // folders are created in the order of the runs
   try {
     writing_ = std::async(std::launch::async, [root = root_, name = std::move(name), recorder = std::move(recorder_),
-                                               summary = summary_, failed, done = done_, pass = done_->pass]() mutable {
+                                               summary = summary_, failed, done = done_, pass = done_->pass,
+                                               recorded = recorded_pass_]() mutable {
       try {
         const fs::path folder = new_report_folder(root, name);
         summary.own_runs = own_runs(root, summary.title, person_of(summary.fields), folder);
         write_report(folder, recorder, summary);
         const fs::path page = fs::absolute(folder / "report.html");
         spdlog::info("report: {}", page.string());
+        const nlohmann::ordered_json review{{"pass", recorded}, {"review", review_json(review_of(recorder, summary))}};
         std::lock_guard lock(done->mutex);
+        done->reviews.push_back(review.dump());
         if (done->pass == pass) done->path = page.string();
       } catch (const std::exception& e) {
         failed(e);

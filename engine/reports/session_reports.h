@@ -13,6 +13,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include "core/sim/simulation.h"
 #include "engine/live/session_mode.h"
@@ -51,16 +52,23 @@ class SessionReports {
   void begin();
   /// The file that the session is recorded into; empty: none.
   void set_recording(std::string file) { recording_ = std::move(file); }
+  /// Number of the present pass in the recording; a review says to which pass it belongs.
+  void set_recorded_pass(int pass) { recorded_pass_ = pass; }
   /// Of the passes that begin from now on.
   void set_mode(SessionMode mode) { mode_ = mode; }
   /// Absolute path of the report of this pass; empty until it is written.
   std::string last_report() const;
+  /// Reviews of the reports written since the last call, for the recording: {pass, review} as JSON (review.h).
+  std::vector<std::string> take_reviews();
+  /// Until the report that is being written is there.
+  void wait();
 
  private:
-  /// The path, shared with the thread that writes.
+  /// Shared with the thread that writes.
   struct Written {
     std::mutex mutex;
     std::string path;
+    std::vector<std::string> reviews;
     std::int64_t pass = 0;
   };
 
@@ -84,6 +92,7 @@ class SessionReports {
   SessionMode mode_ = SessionMode::practice;
   std::time_t began_ = 0;
   bool written_ = false, followed_ = false;
+  int recorded_pass_ = 0;
   std::future<void> writing_;  // the destructor waits for it
 };
 

@@ -16,8 +16,10 @@
 #include "core/bus/channels.h"
 #include "core/bus/codec.h"
 #include "core/bus/mem_bus.h"
+#include "core/container/mcap_reader.h"
 #include "core/registry/registry.h"
 #include "engine/live/live_engine.h"
+#include "engine/session/session_format.h"
 
 namespace insula {
 namespace {
@@ -86,6 +88,7 @@ class SessionReportsTest : public testing::Test {
     options.unthrottled = true;
     options.threads = 1;
     options.report = root();
+    options.record = record_;
     return run_live(options, registry_, bus_, stop_);
   }
   void ask(const std::string& command, const std::string& argument = "") {
@@ -132,7 +135,7 @@ class SessionReportsTest : public testing::Test {
   }
   fs::path root() const { return folder_ / "reports"; }
 
-  fs::path folder_;
+  fs::path folder_, record_;
   Registry registry_;
   MemBus bus_;
   std::atomic<bool> stop_{false};
@@ -196,6 +199,27 @@ TEST_F(SessionReportsTest, TheExerciseMayEndAgainAfterAReset) {
   EXPECT_EQ(all[0].at("steps"), 20);
   EXPECT_EQ(all[0].at("state_hash"), all[1].at("state_hash"));
   EXPECT_EQ(all[1].at("steps"), 20);
+}
+
+TEST_F(SessionReportsTest, TheRecordingSaysWhatWasFoundOfEachPass) {
+  on_step_ = [this](int step) {
+    if (step == 30) ask("reset");
+  };
+  record_ = folder_ / "run.insula";
+  ASSERT_EQ(play(0.4, 0.2), 0);
+  McapReader file(record_);
+  std::vector<Json> reviews;
+  file.read({file.channel(session::review_topic).value()}, 0, UINT64_MAX, [&](const McapReader::Message& m) {
+    reviews.push_back(Json::parse(m.data.begin(), m.data.end()));
+    return true;
+  });
+  ASSERT_EQ(reviews.size(), 2u);
+  for (int k = 0; k < 2; ++k) {
+    EXPECT_EQ(reviews[std::size_t(k)].at("pass"), k + 1);
+    EXPECT_EQ(reviews[std::size_t(k)].at("review"), reports()[std::size_t(k)].at("review")) << "as in the report";
+    EXPECT_EQ(reviews[std::size_t(k)].at("review").at("earlier_runs"), k);
+  }
+  EXPECT_EQ(reviews[1]["review"]["comparison"][0]["last"], "✓ yes");
 }
 
 TEST_F(SessionReportsTest, HoldsTheLargestForceBetweenTwoSteps) {

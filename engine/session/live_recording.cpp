@@ -70,6 +70,10 @@ void LiveRecording::note(const std::vector<Event>& events) {
   if (recorder_) recorder_->note(events);
 }
 
+void LiveRecording::review(const std::string& json) {
+  if (recorder_) recorder_->review(json);
+}
+
 void LiveRecording::hands(mcap::Bytes device_state) {
   if (recorder_) recorder_->hands(device_state);
 }

@@ -29,6 +29,10 @@ class LiveRecording {
   void end_pass(const Simulation& simulation);
   /// Events that belong to no step.
   void note(const std::vector<Event>& events);
+  /// What was found of a pass that has ended (SessionRecorder::review()).
+  void review(const std::string& json);
+  /// Number of the present pass, from 1; 0: nothing is recorded.
+  int pass() const { return recorder_ ? recorder_->pass() : 0; }
   /// A message on both hands (SessionRecorder::hands()).
   void hands(mcap::Bytes device_state);
   /// A message on the servo's ticks (SessionRecorder::ticks()).

@@ -86,6 +86,7 @@ void SessionRecorder::add_channels(const Simulation& simulation) {
   metrics_channel_ = out_->add_channel(session::metrics_topic, 0, "json", {}, timeline_lane);
   channels_channel_ = out_->add_channel(session::channels_topic, 0, "json", {}, timeline_lane);
   forces_channel_ = out_->add_channel(session::hands_topic, 0, "json", {}, timeline_lane);
+  review_channel_ = out_->add_channel(session::review_topic, 0, "json", {}, timeline_lane);
   frame_channel_ = out_->add_channel(session::frame_topic, schema("render_frame_t"), "lcm", {}, picture_lane);
   geometry_channel_ = out_->add_channel(session::geometry_topic, 0, session::geometry_encoding,
                                         {{"unit", session::exact(picture::unit)}}, picture_lane);
@@ -188,7 +189,8 @@ void SessionRecorder::put_hands(const Simulation& simulation) {
 
 void SessionRecorder::put_picture(const Simulation& simulation) {
   if (!simulation.report().finite) return;
-  picture_.take(simulation, session_mode(mode_).value_or(SessionMode::practice));
+  // A run without persons has another word for its mode.
+  picture_.take(simulation, session_mode(mode_).value_or(SessionMode::demonstration));
   put(frame_channel_, picture_.frame(), picture_.key());
   put(geometry_channel_, picture_.geometry());
 }

@@ -48,6 +48,10 @@ class SessionRecorder {
   void end_pass(const Simulation& simulation);
   /// Events that belong to no step. An event "mode" says in which mode the session goes on.
   void note(const std::vector<Event>& events);
+  /// {pass, review} of a pass that has ended, as JSON.
+  void review(const std::string& json) { put_text(review_channel_, json); }
+  /// Number of the present pass through the exercise, from 1; 0 before the first step.
+  int pass() const { return pass_; }
   /// The haptic server's message on both hands, as it came: devices, poses, buttons. One of kept_hands is kept, and
   /// while no step is made only the first ones.
   void hands(mcap::Bytes device_state);
@@ -85,11 +89,12 @@ class SessionRecorder {
   std::filesystem::path file_;
   std::unique_ptr<McapWriter> out_;  ///< the thread's once it runs
   std::uint16_t step_channel_ = 0, event_channel_ = 0, hands_channel_ = 0, ticks_channel_ = 0, metrics_channel_ = 0,
-                channels_channel_ = 0, forces_channel_ = 0, frame_channel_ = 0, geometry_channel_ = 0;
+                channels_channel_ = 0, forces_channel_ = 0, frame_channel_ = 0, geometry_channel_ = 0,
+                review_channel_ = 0;
   std::int64_t number_ = 0, event_number_ = 0;
   std::uint64_t time_ns_ = 0;  ///< of the recording: that of all steps together
   bool last_is_hashed_ = false;
-  int pass_ = 0;  ///< number of the pass through the exercise, from 1
+  int pass_ = 0;
   ExerciseState exercise_state_ = ExerciseState::running;
   std::string mode_;
   std::array<double, 2> largest_force_N_{};  ///< of each hand on tissue since the last message

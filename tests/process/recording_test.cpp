@@ -113,8 +113,9 @@ TEST_F(Recording, OfAPersonIsForgottenWithItsReports) {
   EXPECT_EQ(insula("session forget P07 --list" + folders), 0);
   EXPECT_NE(said().find(files()[0].string()), std::string::npos);
   ASSERT_EQ(files().size(), 1u) << "only listed";
+  std::ofstream(files()[0].string() + ".notes.json") << "[]";
   EXPECT_EQ(insula("session forget P07" + folders), 0);
-  EXPECT_TRUE(files().empty());
+  EXPECT_TRUE(files().empty()) << "with the notes beside it";
   EXPECT_EQ(reports_written(), 0);
 }
 
@@ -136,6 +137,22 @@ TEST_F(Recording, OfAKilledEngineHasAllButTheLastMoment) {
   EXPECT_NE(insula("rerun " + files()[0].string()), 2);
   EXPECT_EQ(said().find("other state"), std::string::npos) << said();
   EXPECT_EQ(insula("rerun " + files()[1].string()), 0) << said();
+}
+
+// The other two processes die and come back; the engine's recording knows no gap.
+TEST_F(Recording, IsWholeAlthoughTheHapticServerAndTheGatewayWereKilled) {
+  ASSERT_TRUE(watcher_->press(0.1)) << watcher_->force();
+  for (const char* child : {"haptic_server", "gateway"}) {
+    session_->kill_child(child);
+    const std::size_t frames = watcher_->frames_now();
+    ASSERT_TRUE(wait_for([&] { return watcher_->frames_now() > frames + 60; })) << child;
+  }
+  ASSERT_TRUE(watcher_->press(0.1)) << watcher_->force();
+  session_->end();
+  ASSERT_EQ(files().size(), 1u) << session_->log();
+  EXPECT_TRUE(info(files()[0])["ended"]);
+  EXPECT_EQ(insula("session verify " + files()[0].string()), 0) << said();
+  EXPECT_EQ(insula("rerun " + files()[0].string()), 0) << said();
 }
 
 }  // namespace

@@ -6,7 +6,7 @@ import subprocess
 import sys
 
 SKIPPED = 77
-PACKAGES = ["lcm", "mcap", "zstandard"]
+PACKAGES = ["lcm", "mcap", "pyarrow", "zstandard"]
 
 
 def skip(why):

@@ -6,6 +6,7 @@ messages must agree with what the program says of it.
     read_session.py SOURCE_FOLDER BUILD_FOLDER LCM_GEN
 """
 import json
+import os
 import pathlib
 import subprocess
 import sys
@@ -31,12 +32,20 @@ with open(sys.argv[1], "rb") as file:
     texts = {a.name: hashlib.sha256(a.data).hexdigest() for a in reader.iter_attachments()}
     schemas = [s.name + " " + str(b"struct" in s.data) for s in summary.schemas.values()]
     channels = [json.loads(m.data) for _, _, m in reader.iter_messages(topics=["CHANNELS"])]
+    count = lambda topic: sum(1 for _ in reader.iter_messages(topics=[topic]))
     late = sum(1 for _ in reader.iter_messages(topics=["STEP"], start_time=10**9, end_time=2 * 10**9))
     print(json.dumps({
         "messages": summary.statistics.message_count, "schemas": schemas, "about": about, "texts": texts,
         "last": steps[-1].number, "hash": "%016x" % (steps[-1].state_hash % 2**64), "late": late,
-        "channels": len(channels), "channel_time": channels[-1][0],
+        "pictures": [count("FRAME"), count("GEOMETRY")], "channels": len(channels), "channel_time": channels[-1][0],
         "rising": all(a.number <= b.number for a, b in zip(steps, steps[1:]))}))
+"""
+PARQUET = """
+import sys
+from pyarrow import parquet
+table = parquet.read_table(sys.argv[1])
+times = table.column("time_s")
+print(table.num_rows, times.type, times[-1])
 """
 
 
@@ -70,10 +79,21 @@ def main(source, build, lcm_gen):
         expect("channels ten times a second", read["channels"] == 30 and abs(read["channel_time"] - 3) < 1e-6)
         expect("the hash that the run prints: " + said, "state_hash " + read["hash"] in said)
         expect("its title", read["about"]["session"]["title"] == info["title"] == "Stylus")
-        declared = ["session_step_t True", "sim_event_t True", "device_state_t True", "servo_ticks_t True"]
+        declared = [name + " True" for name in
+                    ("session_step_t", "sim_event_t", "device_state_t", "servo_ticks_t", "render_frame_t")]
         expect("declarations of messages", read["schemas"] == declared)
-        expect("the scene's text", read["texts"] == {"scene/scene.xml": read["about"]["files"]["scene.xml"]})
+        expect("the scene's text", read["texts"]["scene/scene.xml"] == read["about"]["files"]["scene.xml"])
+        expect("the viewer's bundle", "bundle/scene.json.zst" in read["texts"])
+        expect("pictures ten times a second", read["pictures"] == [30, 30])
         expect("the mesh by its hash", set(read["about"]["files"]) == {"scene.xml", "meshes/block.msh"})
+        tables = [insula, "session", "export", str(file), "--format", "parquet", "-o", str(folder / "tables")]
+        exported = subprocess.run(tables, capture_output=True, text=True, env=os.environ | {"INSULA_PYTHON": str(python)})
+        expect("tables as Parquet:\n" + exported.stderr, exported.returncode == 0)
+        rows = subprocess.run([python, "-c", PARQUET, str(folder / "tables/channels.parquet")], check=True,
+                              capture_output=True, text=True).stdout
+        expect("thirty rows of channels: " + rows, rows.split() == ["30", "double", "3.0"])
+        none = subprocess.run(tables, capture_output=True, text=True, env=os.environ | {"INSULA_PYTHON": "/bin/false"})
+        expect("a Python that fails is said", none.returncode == 2 and "error: /bin/false" in none.stderr)
         expect("rerun", subprocess.run([insula, "rerun", str(file)], capture_output=True).returncode == 0)
     print("read as it was written")
 

@@ -30,7 +30,7 @@ describe('protocol', () => {
 
 describe('options', () => {
   it('reads the address line', () => {
-    const plain = { stereo: 'off', angleDeg: 5, infrared: false, depth: true };
+    const plain = { ghost: '', stereo: 'off', angleDeg: 5, infrared: false, depth: true };
     expect(parseOptions('?role=instructor&quality=ultra&nohud&t=4.5')).toEqual({
       role: 'instructor',
       quality: 'ultra',

@@ -145,6 +145,11 @@ describe('timeline', () => {
     sim_event_t.encode({
       ...{ session: 0n, sequence: 1n, time_us: 0n, sim_time_s: 1, kind, id: 'x', text: 'Too deep', value: 0, hand: -1 },
     });
+  const review = {
+    ...{ group: 'experts', sessions: 12, earlier_runs: 1 },
+    to_work_on: [{ text: 'Path', value: '9 mm', low: '1 mm', high: '3 mm', worst_s: 1.5 }, { text: 'Tremor' }],
+    comparison: [{ text: 'Time', now: '40 s', last: '50 s', best: '45 s', change: 1 }],
+  };
   const t = new Timeline(
     new Container(
       new McapBytes()
@@ -152,6 +157,7 @@ describe('timeline', () => {
         .channel(2, 'HANDS')
         .channel(3, 'METRICS')
         .channel(4, 'CHANNELS')
+        .channel(5, 'REVIEW')
         .metadata('channels', { '0000': 'artery.flow m^3/s' })
         .chunk([
           { channel: 2, timeS: 0.1, data: '[0.1,0.5,null,0.02]' },
@@ -162,6 +168,8 @@ describe('timeline', () => {
           { channel: 1, timeS: 6, data: event('fault') },
           { channel: 1, timeS: 7, data: event('goal') },
           { channel: 3, timeS: 8, data: 'no json' },
+          { channel: 5, timeS: 8, data: JSON.stringify({ pass: 2, review }) },
+          { channel: 5, timeS: 8.5, data: '{"pass": 3}' },
         ])
         .end(),
     ),
@@ -174,12 +182,23 @@ describe('timeline', () => {
     expect(t.channels.map((c) => [c.id, c.unit, c.values[0]])).toEqual([['artery.flow', 'm^3/s', 3e-6]]);
   });
   it('has key moments: what happened first, the largest forces, the end', () => {
-    expect(keyMoments(t, 9).map((m) => [m.timeS, m.text, m.bad])).toEqual([
+    expect(keyMoments(t, null, 9).map((m) => [m.timeS, m.text, m.bad])).toEqual([
       [0.1, 'Largest force, left hand: 0.50 N', false],
       [0.4, 'Too deep', true],
       [7, 'Too deep', false],
       [9, 'The end', false],
     ]);
+  });
+  it('has what the engine found of a pass, at times of the recording', () => {
+    const found = t.reviews[0]!;
+    expect([found.pass, found.group, found.sessions, found.earlierRuns]).toEqual([2, 'experts', 12, 1]);
+    expect(found.toWorkOn.map((w) => [w.text, w.worstS])).toEqual([
+      ['Path', 5],
+      ['Tremor', null],
+    ]);
+    expect(found.comparison[0]).toEqual({ text: 'Time', now: '40 s', last: '50 s', best: '45 s', change: 1 });
+    expect(t.reviews[1]).toMatchObject({ pass: 3, group: '', toWorkOn: [], comparison: [] });
+    expect(keyMoments(t, found, 9).map((m) => m.text)).toContain('To work on: Path');
   });
   it('goes from fault to fault, and knows when the exercise began', () => {
     expect(t.fault(0, 1)?.timeS).toBe(0.4);

@@ -124,7 +124,8 @@ export class SessionPanel {
     }
     // A scene that its author has saved again goes on being tried.
     if (this.tried) return this.begin('practice');
-    this.start.show(title, [el('p', {}, exercise?.text ?? ''), note], this.answers());
+    const recorded = el('a', { href: 'replay.html', target: '_blank', rel: 'noopener' }, 'Recorded sessions');
+    this.start.show(title, [el('p', {}, exercise?.text ?? ''), note, recorded], this.answers());
   }
 
   private showEnd(state: HudState): void {

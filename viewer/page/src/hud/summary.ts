@@ -62,11 +62,12 @@ function hands(metrics: readonly MetricView[]): HTMLElement {
   return table.root;
 }
 
-/** A link to the page of recorded sessions, which opens beside this one. */
-function again(recording: string): HTMLElement {
+/** Links to the page of recorded sessions, which opens beside this one. */
+function again(recording: string): HTMLElement[] {
   const name = recording.replace(/^.*[\\/]/, '').replace(/\.insula$/, '');
-  const href = `replay.html?session=${encodeURIComponent(name)}`;
-  return el('a', { href, target: '_blank', rel: 'noopener' }, 'Watch this session again');
+  const session = `replay.html?session=${encodeURIComponent(name)}`;
+  const link = (href: string, text: string) => el('a', { href, target: '_blank', rel: 'noopener' }, text);
+  return [link(`${session}&debrief`, 'Debrief to read and print'), link(session, 'Watch this session again')];
 }
 
 export function summaryOf(s: HudState, metrics: readonly MetricView[]): HTMLElement[] {
@@ -95,7 +96,7 @@ export function summaryOf(s: HudState, metrics: readonly MetricView[]): HTMLElem
       ),
     ),
     ...(metrics.length > 0 ? [hands(metrics)] : []),
-    ...(s.recording ? [el('p', {}, again(s.recording))] : []),
+    ...(s.recording ? again(s.recording).map((link) => el('p', {}, link)) : []),
     ...(s.report ? [el('p', { class: 'where' }, 'Report: ', el('code', {}, s.report))] : []),
   ];
 }

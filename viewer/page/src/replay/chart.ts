@@ -164,10 +164,16 @@ function drawLane(
     });
     c.stroke();
   });
-  c.fillStyle = '#9aa4ad';
   c.font = `${textPx}px sans-serif`;
-  const unit = curves[0]?.unit ?? '';
-  c.fillText(`${Number(high.toPrecision(3))} ${unit}`, 2, top + textPx - 2);
+  c.fillStyle = '#9aa4ad';
+  const scale = `${Number(high.toPrecision(3))} ${curves[0]?.unit ?? ''}  `;
+  c.fillText(scale, 2, top + textPx - 2);
+  let x = 2 + c.measureText(scale).width;
+  curves.forEach((series, k) => {
+    c.fillStyle = colours[firstColour + k] ?? colours[0]!;
+    c.fillText(series.text, x, top + textPx - 2);
+    x += c.measureText(`${series.text}   `).width;
+  });
 }
 
 /** A triangle points down for what was reached, and a cross stands for a fault, so that colour is not alone. */

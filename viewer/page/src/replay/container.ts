@@ -18,7 +18,7 @@ export interface Message {
   data: Uint8Array;
 }
 
-interface Chunk {
+export interface Chunk {
   firstS: number;
   lastS: number;
   /** Bytes before compression, and the checksum of them. */

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A page about a recorded session, to talk about and to print: what was reached, pictures of key moments, curves of
-// forces and of the distance of the tips, metrics, and notes.
+// A page about a recorded session, to talk about and to print: what was reached, what to work on, pictures of key
+// moments, curves of forces and of the distance of the tips, earlier runs, notes, and metrics.
 import { el } from '../hud/dom';
 import { clockText } from '../hud/state';
 import { summaryOf } from '../hud/summary';
@@ -9,22 +9,25 @@ import { keyMoments } from './key_moments';
 import type { RecordedSession } from './session';
 import type { SessionView } from './session_view';
 import type { Note } from './source';
-import { type Series, valueAt } from './timeline';
+import { type Review, type Series, valueAt } from './timeline';
 
 const pictureWide = 360;
+const pictureHigh = 270;
 const curveWide = 720;
 const curveHigh = 120;
 const colours = ['#1f6fb2', '#c2410c'];
 
-/** The field at a time, as an image of that width. The view shows that time afterwards. */
+/** The middle of the field at a time, as an image of that width. The view shows that time afterwards. */
 function pictureAt(view: SessionView, timeS: number): HTMLCanvasElement {
   const source = view.stage.canvas;
-  const high = Math.round((pictureWide * source.height) / Math.max(1, source.width));
-  const picture = el('canvas', { width: String(pictureWide), height: String(high) });
+  const picture = el('canvas', { width: String(pictureWide), height: String(pictureHigh) });
   view.seek(timeS);
   // What fades has a second to do so. The context keeps its picture only until the task ends.
   view.draw(performance.now(), 1);
-  picture.getContext('2d')?.drawImage(source, 0, 0, pictureWide, high);
+  const wide = Math.min(source.width, (source.height * pictureWide) / pictureHigh);
+  const high = (wide * pictureHigh) / pictureWide;
+  const from = [(source.width - wide) / 2, (source.height - high) / 2] as const;
+  picture.getContext('2d')?.drawImage(source, ...from, wide, high, 0, 0, pictureWide, pictureHigh);
   return picture;
 }
 
@@ -60,18 +63,58 @@ function curves(title: string, unit: string, series: readonly Series[], duration
   return el('figure', {}, el('figcaption', {}, title, ' ', ...legend), chart);
 }
 
-function metricsTable(series: readonly Series[], timeS: number): HTMLElement {
+/** What is known and not zero at a time. */
+function metricsList(series: readonly Series[], timeS: number): HTMLElement {
   const rows = series
     .map((s) => ({ ...s, value: valueAt(s, timeS) }))
     .filter((s) => Number.isFinite(s.value) && s.value !== 0)
-    .map((s) => el('tr', {}, el('td', {}, s.text), el('td', {}, `${Number(s.value.toPrecision(3))} ${s.unit}`)));
-  return el('table', {}, el('tbody', {}, ...rows));
+    .map((s) => el('li', {}, el('span', {}, s.text), el('span', {}, `${Number(s.value.toPrecision(3))} ${s.unit}`)));
+  return el('ul', { class: 'figures' }, ...rows);
+}
+
+/** What lies farthest beyond the band of a group, with the moment to look at. */
+function toWorkOn(review: Review): HTMLElement[] {
+  if (review.group === '') return [];
+  const of = `What lies farthest beyond the middle half of ${review.sessions} sessions of the group ${review.group}.`;
+  const things = review.toWorkOn.map((t) =>
+    el(
+      'li',
+      {},
+      el('b', {}, t.text),
+      `: ${t.value}, where the group has ${t.low} to ${t.high}.`,
+      t.worstS === null ? '' : ` Look at ${clockText(t.worstS)}, where it became worse most.`,
+    ),
+  );
+  return [
+    el('h2', {}, 'Three things to work on'),
+    el('p', {}, of),
+    things.length > 0
+      ? el('ol', {}, ...things)
+      : el('p', {}, '✓ Every metric lies within its band or on its better side.'),
+  ];
+}
+
+/** This run beside the person's last and best one. */
+function comparison(review: Review): HTMLElement[] {
+  if (review.comparison.length === 0) return [];
+  const runs = `${review.earlierRuns} earlier run${review.earlierRuns === 1 ? '' : 's'}`;
+  const row = (kind: 'th' | 'td', ...texts: string[]) => el('tr', {}, ...texts.map((t) => el(kind, {}, t)));
+  const signs: Record<string, string> = { '1': ' ✓ better', '-1': ' ✗ worse' };
+  const lines = review.comparison.map((l) =>
+    row('td', l.text + (signs[String(l.change)] ?? ''), l.now, l.last, l.best),
+  );
+  return [
+    el('h2', {}, 'Beside your earlier runs'),
+    el('p', {}, `${runs} of this exercise. The best one reached all goals with the fewest faults, soonest.`),
+    el('table', {}, el('thead', {}, row('th', '', 'This run', 'Last', 'Best')), el('tbody', {}, ...lines)),
+  ];
 }
 
 /** Takes the view to each key moment. */
 export function debrief(session: RecordedSession, view: SessionView, notes: readonly Note[]): HTMLElement {
   const { timeline, durationS } = session;
-  const strip = keyMoments(timeline, durationS).map((m) =>
+  const review = timeline.reviews.at(-1) ?? null;
+  const strip = keyMoments(timeline, review, durationS).map((m) =>
     el(
       'figure',
       m.bad ? { 'data-bad': 'true' } : {},
@@ -91,11 +134,13 @@ export function debrief(session: RecordedSession, view: SessionView, notes: read
     el('h1', {}, session.title || session.name),
     el('p', {}, `Recorded ${session.began}. For training only. No measure of fitness to operate.`),
     el('section', { class: 'outcome' }, ...(state ? summaryOf({ ...state, recording: '', report: '' }, []) : [])),
+    ...(review ? toWorkOn(review) : []),
     el('h2', {}, 'Key moments'),
     el('div', { class: 'strip' }, ...strip),
     el('h2', {}, 'Hands'),
     curves('Force on tissue', 'N', timeline.hands.slice(0, 2), durationS),
     curves('Distance of the tips', 'mm', timeline.hands.slice(2, 3), durationS, 1000),
+    ...(review ? comparison(review) : []),
     ...(notes.length > 0
       ? [
           el('h2', {}, 'Notes'),
@@ -103,7 +148,7 @@ export function debrief(session: RecordedSession, view: SessionView, notes: read
         ]
       : []),
     el('h2', {}, 'Metrics'),
-    metricsTable(timeline.metrics, durationS),
+    metricsList(timeline.metrics, durationS),
   );
   close.onclick = () => page.remove();
   return page;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The moments of a recording that are worth a picture: what happened for the first time, the strongest force of each
-// hand, and the end.
-import type { Series, Timeline } from './timeline';
+// hand, where the things to work on were worst, and the end.
+import type { Review, Series, Timeline } from './timeline';
 
 export interface KeyMoment {
   timeS: number;
@@ -22,7 +22,7 @@ function largest(series: Series): { timeS: number; value: number } | null {
 }
 
 /** In order of time. */
-export function keyMoments(timeline: Timeline, durationS: number): KeyMoment[] {
+export function keyMoments(timeline: Timeline, review: Review | null, durationS: number): KeyMoment[] {
   const out: KeyMoment[] = [];
   const seen = new Set<string>();
   for (const e of timeline.events) {
@@ -37,6 +37,8 @@ export function keyMoments(timeline: Timeline, durationS: number): KeyMoment[] {
     if (peak)
       out.push({ timeS: peak.timeS, text: `Largest force, ${side} hand: ${peak.value.toFixed(2)} N`, bad: false });
   });
+  for (const thing of review?.toWorkOn ?? [])
+    if (thing.worstS !== null) out.push({ timeS: thing.worstS, text: `To work on: ${thing.text}`, bad: false });
   out.push({ timeS: durationS, text: 'The end', bad: false });
   return out.sort((a, b) => a.timeS - b.timeS);
 }

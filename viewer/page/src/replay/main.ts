@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The page of recorded sessions: replay.html?session=NAME [&with=NAME] [&ghost=NAME] [&t=SECONDS] [&quality=LEVEL].
-// `with` stands beside it in step; the tools of `ghost` are drawn over it. Without a session it asks for one.
+// The page of recorded sessions: replay.html?session=NAME [&with=NAME] [&ghost=NAME] [&t=SECONDS] [&quality=LEVEL]
+// [&debrief]. `with` stands beside it in step. The tools of `ghost` are drawn over it. `debrief` begins with the page
+// to print. Without a session it asks for one.
 import '../hud/styles';
 import './replay.css';
 import { loadBundle } from '../bundle';

@@ -2,7 +2,7 @@
 // The recorded pictures by time. Each chunk begins with a complete one, so any moment needs one chunk, or two at the
 // border.
 import { type RenderFrame, render_frame_t } from '../lcm';
-import type { Container, Message } from './container';
+import type { Chunk, Container, Message } from './container';
 import { GeometryDecoder } from './geometry';
 
 const topics = { frame: 'FRAME', geometry: 'GEOMETRY' };
@@ -61,7 +61,7 @@ class ChunkPictures {
 }
 
 export class Pictures {
-  private readonly chunks: ReturnType<Container['chunksOf']>;
+  private readonly chunks: readonly Chunk[];
   private readonly kept = new Map<number, ChunkPictures>();
   private readonly unit: number;
 

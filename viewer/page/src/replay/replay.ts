@@ -9,6 +9,7 @@ import { debrief } from './debrief';
 import { ReplayClock } from './clock';
 import { MomentsPanel } from './moments_panel';
 import { Notes } from './notes';
+import type { RecordedSession } from './session';
 import type { Side } from './side';
 import { download } from './source';
 import { Transport } from './transport';
@@ -28,9 +29,10 @@ export interface ReplayStatus {
   /** From the page's start until the file was read, and until its first picture was drawn. */
   read_ms: number;
   open_ms: number;
-  /** From a jump to its picture: the last one, and the longest. */
+  /** From a jump to its picture: the last one, and the longest; and the longest time to find and decode one. */
   seek_ms: number;
   seek_max_ms: number;
+  decode_max_ms: number;
   time_s: number;
   duration_s: number;
   pictures: number;
@@ -39,6 +41,13 @@ export interface ReplayStatus {
   timeline_chunks: number;
   chunks_unpacked_to_open: number;
   seek_chunks_max: number;
+}
+
+/** The live exercise with this run's tools over it. */
+function ghostLink(kept: boolean, session: RecordedSession): HTMLElement[] {
+  const href = `./?ghost=${encodeURIComponent(session.name)}`;
+  const link = el('a', { href, target: '_blank', rel: 'noopener' }, 'Practise with these tools as a ghost');
+  return kept ? [el('section', { class: 'panel' }, link)] : [];
 }
 
 export class Replay {
@@ -62,7 +71,7 @@ export class Replay {
       pictures: 0,
       video_bytes: 0,
     },
-    ...{ timeline_chunks: 0, chunks_unpacked_to_open: 0, seek_chunks_max: 0 },
+    ...{ decode_max_ms: 0, timeline_chunks: 0, chunks_unpacked_to_open: 0, seek_chunks_max: 0 },
   };
 
   /** kept: notes are kept beside the recording. */
@@ -70,7 +79,7 @@ export class Replay {
     private readonly hud: HTMLElement,
     private readonly sides: readonly Side[],
     kept: boolean,
-    query: URLSearchParams,
+    private readonly query: URLSearchParams,
   ) {
     this.first = sides[0]!;
     const { session, view } = this.first;
@@ -97,7 +106,13 @@ export class Replay {
     );
     for (const s of sides) s.shiftS = (s.session.timeline.passesS[0] ?? 0) - (session.timeline.passesS[0] ?? 0);
     const warning = el('footer', {}, el('span', { class: 'warn' }, 'For training only. Not for patient care.'));
-    const right = el('div', { class: 'column right' }, this.moments.root, ...this.shiftPanel());
+    const right = el(
+      'div',
+      { class: 'column right' },
+      this.moments.root,
+      ...this.shiftPanel(),
+      ...ghostLink(kept, session),
+    );
     this.toast.hidden = true;
     this.showMoments(window.innerWidth > narrowPx);
     hud.append(right, this.notes.root, this.transport.root, warning, this.toast);
@@ -124,6 +139,7 @@ export class Replay {
         this.status.timeline_chunks = this.first.session.timelineChunks;
         this.status.chunks_unpacked_to_open = this.first.session.unpackedChunks;
         this.status.open_ms = performance.now();
+        if (this.query.has('debrief')) this.showDebrief();
       }
     });
   }
@@ -132,14 +148,15 @@ export class Replay {
     this.clock.advance(dtS);
     const { timeS } = this.clock;
     const unpacked = this.first.session.unpackedChunks;
-    for (const s of this.sides) {
-      s.seek(timeS);
-      s.view.draw(now, Math.min(0.1, dtS));
-    }
+    const from = performance.now();
+    for (const s of this.sides) s.seek(timeS);
+    const decodeMs = performance.now() - from;
+    for (const s of this.sides) s.view.draw(now, Math.min(0.1, dtS));
     this.transport.draw(this.video.running);
     this.moments.at(timeS);
     if (this.jumpedMs !== null) {
       this.status.seek_ms = performance.now() - this.jumpedMs;
+      this.status.decode_max_ms = Math.max(this.status.decode_max_ms, decodeMs);
       this.status.seek_max_ms = Math.max(this.status.seek_max_ms, this.status.seek_ms);
       this.status.seek_chunks_max = Math.max(this.status.seek_chunks_max, this.first.session.unpackedChunks - unpacked);
       this.jumpedMs = null;

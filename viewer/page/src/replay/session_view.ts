@@ -77,10 +77,6 @@ export class SessionView {
       this.applyQuality();
   }
 
-  get quality(): string {
-    return levels[this.watch.level]!.name;
-  }
-
   private applyQuality(): void {
     const level = levels[this.watch.level]!;
     this.stage.setLevel(level);

@@ -21,6 +21,20 @@ export interface Series {
   values: Float64Array;
 }
 
+/** What the engine found of a pass through the exercise, in words (engine/reports/review.h). */
+export interface Review {
+  /** Number of the pass, from 1. */
+  pass: number;
+  /** Of the bands; empty: there were none. */
+  group: string;
+  sessions: number;
+  /** worstS: since the recording began; null: not known. */
+  toWorkOn: { text: string; value: string; low: string; high: string; worstS: number | null }[];
+  earlierRuns: number;
+  /** change: since the last run, 1 better, -1 worse. */
+  comparison: { text: string; now: string; last: string; best: string; change: number }[];
+}
+
 /** Collects the samples of some curves with common times. */
 class Samples {
   private readonly timesS: number[] = [];
@@ -50,14 +64,17 @@ export class Timeline {
   readonly metrics: Series[];
   /** When the exercise began: at the start and after each reset. */
   readonly passesS: number[] = [];
+  /** Of passes that have ended, in order. */
+  readonly reviews: Review[];
 
   constructor(container: Container) {
     const hands = new Samples();
     const channels = new Samples();
     const metrics = new Map<string, { about: Pick<Series, 'id' | 'text' | 'unit'>; samples: Samples }>();
     const names = [...(container.metadata.get('channels') ?? new Map<string, string>()).values()];
+    const reviews: Json[] = [];
     let pass = 0;
-    for (const m of container.messages(['SIM_EVENT', 'HANDS', 'CHANNELS', 'METRICS'])) {
+    for (const m of container.messages(['SIM_EVENT', 'HANDS', 'CHANNELS', 'METRICS', 'REVIEW'])) {
       if (m.topic === 'SIM_EVENT') {
         this.addEvent(m.timeS, m.data);
         continue;
@@ -65,6 +82,7 @@ export class Timeline {
       const json = parsed(m.data);
       if (m.topic === 'HANDS' && Array.isArray(json)) hands.add(m.timeS, json.slice(1), handCurves.length);
       else if (m.topic === 'CHANNELS' && Array.isArray(json)) channels.add(m.timeS, json.slice(1), names.length);
+      else if (m.topic === 'REVIEW' && json) reviews.push(json as Json);
       else if (m.topic === 'METRICS' && json) {
         const moment = json as Json;
         const number = finite(moment.pass) ?? 0;
@@ -80,6 +98,7 @@ export class Timeline {
     });
     this.metrics = [...metrics.values()].map(({ about, samples }) => samples.series(0, about));
     if (this.passesS.length === 0) this.passesS.push(0);
+    this.reviews = reviews.map((r) => this.reviewOf(r));
   }
 
   private addEvent(timeS: number, data: Uint8Array): void {
@@ -89,6 +108,27 @@ export class Timeline {
     } catch {
       // A damaged one is left out.
     }
+  }
+
+  private reviewOf(message: Json): Review {
+    const review = (message.review ?? {}) as Json;
+    const pass = finite(message.pass) ?? 1;
+    const beginS = this.passesS[pass - 1] ?? 0;
+    return {
+      pass,
+      group: text(review.group),
+      sessions: finite(review.sessions) ?? 0,
+      toWorkOn: list(review.to_work_on).map((t) => {
+        const worstS = finite(t.worst_s);
+        const words = { text: text(t.text), value: text(t.value), low: text(t.low), high: text(t.high) };
+        return { ...words, worstS: worstS === null ? null : beginS + worstS };
+      }),
+      earlierRuns: finite(review.earlier_runs) ?? 0,
+      comparison: list(review.comparison).map((l) => ({
+        ...{ text: text(l.text), now: text(l.now), last: text(l.last), best: text(l.best) },
+        change: Math.sign(finite(l.change) ?? 0),
+      })),
+    };
   }
 
   /** The next moment after (or before) a time at which a fault was made; null: none. */
