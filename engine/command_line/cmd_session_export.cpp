@@ -23,8 +23,7 @@ int cmd_session_export(const CommandContext& context, const ExportOptions& optio
       const bool parquet = options.format == "parquet";
       std::vector<fs::path> files = export_tables(session, options.folder, parquet ? "csv" : options.format);
       if (parquet) files = to_parquet(files);
-      for (const fs::path& file : files)
-        fmt::print(context.out, "{}\n", file.string());
+      for (const fs::path& file : files) fmt::print(context.out, "{}\n", file.string());
     }
     for (const std::string& line : session.container().damage())
       fmt::print(context.err, "warning: {}: {}\n", options.file.string(), line);

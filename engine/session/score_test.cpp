@@ -2,6 +2,7 @@
 // Recorded metrics and channels; scoring again by the same and by other rules; tables for other programs.
 #include "engine/session/score.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -165,6 +166,34 @@ TEST_F(Score, MetricsThatAreNoneAreCountedAsDamage) {
   SessionReader session(other);
   EXPECT_TRUE(session.passes().empty());
   EXPECT_EQ(session.damaged(), 3);
+}
+
+// As a report: a trainee who looks at the field for a while afterwards does not change the result.
+TEST_F(Score, APassEndsWithItsExercise) {
+  record();
+  const fs::path other = folder_.path() / "other.insula";
+  {
+    SessionReader in(file());
+    McapWriter out(other, session::profile, "test");
+    out.describe("session", in.container().descriptions().at("session"));
+    const auto channel = out.add_channel(session::metrics_topic, 0, "json");
+    const auto moment = [&](int time_s, const char* state) {
+      const std::string text = fmt::format(
+          R"({{"number": {0}, "pass": 1, "time_s": {0}, "mode": "test", "state": "{1}", "last_of_pass": false, "metrics": []}})",
+          time_s, state);
+      out.write(channel, std::uint64_t(time_s) * 1'000'000'000,
+                {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+    };
+    // Its instructor asks for more after the first end.
+    const std::array states{"running", "done", "done", "running", "done", "done"};
+    for (std::size_t k = 0; k < states.size(); ++k) moment(int(k), states[k]);
+    out.close();
+  }
+  SessionReader session(other);
+  const auto passes = session.passes();
+  ASSERT_EQ(passes.size(), 1u);
+  EXPECT_EQ(passes[0].state, "done");
+  EXPECT_EQ(passes[0].time_s, 4);
 }
 
 std::vector<std::string> lines_of(const fs::path& file) {

@@ -18,6 +18,7 @@ inline constexpr const char* metrics_topic = "METRICS";    ///< JSON, once a sec
 inline constexpr const char* channels_topic = "CHANNELS";  ///< JSON, ten times a second
 inline constexpr const char* channel_names = "channels";   ///< description: number in CHANNELS, name and unit
 
+inline constexpr const char* metric_names = "metrics";     ///< description: id of each metric and its name
 inline constexpr const char* review_topic = "REVIEW";      ///< JSON, after a pass: {pass, review} (reports/review.h)
 inline constexpr const char* hands_topic = "HANDS";        ///< JSON, ten times a second
 inline constexpr const char* frame_topic = "FRAME";        ///< render_frame_t without bodies and drawables

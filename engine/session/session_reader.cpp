@@ -99,7 +99,7 @@ std::vector<SessionReader::Metrics> SessionReader::passes() {
   std::vector<Metrics> out;
   metrics([&](const Metrics& m) {
     if (out.empty() || out.back().pass != m.pass) out.push_back(m);
-    else out.back() = m;
+    else if (m.state == "running" || m.state != out.back().state) out.back() = m;
     return true;
   });
   return out;

@@ -45,7 +45,8 @@ class SessionReader {
     std::vector<Value> values;
   };
   void metrics(const std::function<bool(const Metrics&)>& take);
-  /// The last ones of each pass, in order.
+  /// Those with which each pass ended, in order: at the exercise's end, else the last ones. What happens after the end
+  /// does not count, as in reports.
   std::vector<Metrics> passes();
   /// The largest force that was sent to each hand, N, before the step of each number from 0; for sessions of persons.
   std::vector<std::array<double, 2>> hand_forces();

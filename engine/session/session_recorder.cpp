@@ -98,6 +98,10 @@ void SessionRecorder::add_channels(const Simulation& simulation) {
       names[fmt::format("{:04}", names.size())] = std::move(name);
     }
   out_->describe(session::channel_names, names);
+  mcap::Text metrics;
+  if (const Exercise* exercise = simulation.exercise())
+    for (const MetricValue& m : exercise->metrics()) metrics[m.id] = m.text;
+  out_->describe(session::metric_names, metrics);
 }
 
 SessionRecorder::~SessionRecorder() { finish(); }
@@ -281,6 +285,9 @@ void SessionRecorder::write_until_closed() {
       last = true;
     }
     taken.clear();
+    timespec used{};
+    ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &used);
+    writer_cpu_s_ = double(used.tv_sec) + 1e-9 * double(used.tv_nsec);
   }
 }
 

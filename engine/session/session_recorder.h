@@ -7,6 +7,7 @@
 // and the run continues.
 #pragma once
 #include <array>
+#include <atomic>
 #include <condition_variable>
 #include <cstdint>
 #include <filesystem>
@@ -63,6 +64,8 @@ class SessionRecorder {
   /// Why the recording has ended early; empty: it has not.
   std::string failure() const;
   const std::filesystem::path& file() const { return file_; }
+  /// Time of a processor that the thread which compresses and writes has used, s.
+  double writer_cpu_seconds() const { return writer_cpu_s_; }
 
   /// Number of steps from one kept hash to the next. A rerun compares at these places.
   static std::int64_t steps_a_second(double h);
@@ -109,6 +112,7 @@ class SessionRecorder {
   std::condition_variable wake_;
   mcap::Buffer waiting_;  ///< messages one after the other: channel, chunk, time, length, bytes
   std::string failure_;
+  std::atomic<double> writer_cpu_s_ = 0;
   bool closing_ = false;
   std::thread thread_;
 };

@@ -92,7 +92,8 @@ def main(source, build, lcm_gen):
         rows = subprocess.run([python, "-c", PARQUET, str(folder / "tables/channels.parquet")], check=True,
                               capture_output=True, text=True).stdout
         expect("thirty rows of channels: " + rows, rows.split() == ["30", "double", "3.0"])
-        none = subprocess.run(tables, capture_output=True, text=True, env=os.environ | {"INSULA_PYTHON": "/bin/false"})
+        without = os.environ | {"INSULA_PYTHON": "/bin/false"}
+        none = subprocess.run(tables, capture_output=True, text=True, env=without)
         expect("a Python that fails is said", none.returncode == 2 and "error: /bin/false" in none.stderr)
         expect("rerun", subprocess.run([insula, "rerun", str(file)], capture_output=True).returncode == 0)
     print("read as it was written")

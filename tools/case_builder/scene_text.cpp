@@ -136,12 +136,14 @@ std::string field_part(const SceneFacts& f) {
             "home=\"88 -4 10 mm\" shaft=\"0.85 -0.35 0.39\" flat=\"0 -0.5 0.87\" coupling=\"250 N/m\"");
   s += tool(f, "dissector", "probe", "left", "dissector",
             "sharp=\"never\" home=\"88 -4 10 mm\" shaft=\"0.85 -0.35 0.39\" flat=\"0 -0.5 0.87\" coupling=\"250 N/m\"");
-  s += tool(f, "clip_applier", "applier", "right", "clip_applier",
-            fmt::format("home=\"92 26 1 mm\" shaft=\"0.93 0.25 0.27\" flat=\"0 0 1\" coupling=\"500 N/m\" clips=\"{}\"",
-                        clips)
-                .c_str());
+  s += tool(
+      f, "clip_applier", "applier", "right", "clip_applier",
+      fmt::format(
+          "home=\"92 26 1 mm\" shaft=\"0.93 0.35 -0.11\" flat=\"-0.34 0.93 0.12\" coupling=\"500 N/m\" clips=\"{}\"",
+          clips)
+          .c_str());
   s += tool(f, "dissector", "stylus", "right", "dissector",
-            "home=\"92 26 1 mm\" shaft=\"0.93 0.25 0.27\" flat=\"0 0 1\" coupling=\"250 N/m\"");
+            "home=\"92 26 1 mm\" shaft=\"0.93 0.35 -0.11\" flat=\"-0.34 0.93 0.12\" coupling=\"250 N/m\"");
   s += "\n" + weak_spot(f, "0.93 0.25 0.27", 16, 20);
   s += "  <contact id=\"bed\" between=\"artery frontal temporal insula\" friction=\"0\" tissue_alarm=\"0.3 mm\" "
        "tissue_spacing=\"1.5 mm\" tissue_max_contacts=\"12\" tissue_max_force=\"0.05 N\"/>\n"

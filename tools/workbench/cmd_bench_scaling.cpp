@@ -192,7 +192,7 @@ nlohmann::json as_json(const Series& s) {
 }
 
 /// One plot below the other.
-std::string picture(const std::vector<Series>& all) {
+std::string svg_of(const std::vector<Series>& all) {
   std::string inner;
   double y = 0;
   for (const Series& s : all) {
@@ -235,7 +235,7 @@ int cmd_bench_scaling(const CommandContext& context, const ScalingOptions& optio
   if (options.output.empty()) return 0;
   std::error_code ignored;
   std::filesystem::create_directories(options.output, ignored);
-  for (const auto& [name, text] : {std::pair{"scaling.json", j.dump(2) + "\n"}, std::pair{"scaling.svg", picture(all)}})
+  for (const auto& [name, text] : {std::pair{"scaling.json", j.dump(2) + "\n"}, std::pair{"scaling.svg", svg_of(all)}})
     if (!(std::ofstream(options.output / name, std::ios::binary) << text).flush()) {
       fmt::print(context.err, "error: cannot write {}\n", (options.output / name).string());
       return 1;

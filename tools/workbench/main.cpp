@@ -85,6 +85,8 @@ void choose_bench(Options& c) {
     c.chosen = [&](const auto& x) { return insula::cmd_record_problems(x, c.bench); };
   } else if (c.bench.frames) {
     c.chosen = [&](const auto& x) { return insula::cmd_bench_frames(x, c.bench); };
+  } else if (c.bench.recording) {
+    c.chosen = [&](const auto& x) { return insula::cmd_bench_recording(x, c.bench); };
   } else if (c.bench.solvers) {
     c.chosen = [&](const auto& x) { return insula::cmd_bench_solvers(x, c.bench); };
   } else {
@@ -110,6 +112,7 @@ void add_bench(Options& c) {
   add_threads(*command, o.threads);
   command->add_flag("--json", o.json, "print JSON");
   command->add_flag("--frames", o.frames, "the size of the viewer's frames, and the time that they take");
+  command->add_flag("--recording", o.recording, "the time that it takes to record the session, and its size");
   command->add_flag("--solvers", o.solvers, "compare the solvers on the matrices and rows of the step at --from");
   command->add_option("--rows", o.rows, "with --solvers: so many rows of each body at most; 0 takes all")
       ->check(at_least(0));

@@ -31,6 +31,7 @@ struct BenchOptions {
   int threads = 0;
   bool json = false;
   bool frames = false;             ///< measure the viewer's frames instead
+  bool recording = false;          ///< measure a session's recording instead
   bool solvers = false;            ///< compare solvers instead
   int rows = 0;                    ///< of each body, for the comparison of solvers; 0: all of them
   std::filesystem::path record;    ///< folder for the steps' constraint problems, in place of measuring
@@ -41,6 +42,8 @@ struct BenchOptions {
 int cmd_bench(const CommandContext& context, const BenchOptions& options);
 /// Steps a scene as above, sends its frames to nobody, and prints their size and time. Status 0, 1 or 2.
 int cmd_bench_frames(const CommandContext& context, const BenchOptions& options);
+/// Steps a scene as above while it is recorded into a temporary file, and prints what that costs. Status 0, 1 or 2.
+int cmd_bench_recording(const CommandContext& context, const BenchOptions& options);
 /// Steps a scene as above and writes every so manieth constraint problem to a folder. Status 0, 1 or 2.
 int cmd_record_problems(const CommandContext& context, const BenchOptions& options);
 /// Solves the problems of a folder by each method, and measures the rate of sweeps. Status 0 or 2.

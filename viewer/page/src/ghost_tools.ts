@@ -51,7 +51,7 @@ export class GhostTools {
   private bundle: Bundle | null = null;
 
   constructor(color: THREE.ColorRepresentation) {
-    this.material = new THREE.MeshBasicMaterial({ color, transparent: true, opacity: 0.3, depthWrite: false });
+    this.material = new THREE.MeshBasicMaterial({ color, transparent: true, opacity: 0.4, depthWrite: false });
   }
 
   begin(bundle: Bundle): void {

@@ -132,7 +132,11 @@ export function debrief(session: RecordedSession, view: SessionView, notes: read
     { class: 'debrief' },
     el('nav', {}, print, close),
     el('h1', {}, session.title || session.name),
-    el('p', {}, `Recorded ${session.began}. For training only. No measure of fitness to operate.`),
+    el(
+      'p',
+      {},
+      `Recorded ${session.began.slice(0, 16).replace('T', ' ')}. For training only. No measure of fitness to operate.`,
+    ),
     el('section', { class: 'outcome' }, ...(state ? summaryOf({ ...state, recording: '', report: '' }, []) : [])),
     ...(review ? toWorkOn(review) : []),
     el('h2', {}, 'Key moments'),

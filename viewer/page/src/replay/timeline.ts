@@ -72,6 +72,7 @@ export class Timeline {
     const channels = new Samples();
     const metrics = new Map<string, { about: Pick<Series, 'id' | 'text' | 'unit'>; samples: Samples }>();
     const names = [...(container.metadata.get('channels') ?? new Map<string, string>()).values()];
+    const called = container.metadata.get('metrics') ?? new Map<string, string>();
     const reviews: Json[] = [];
     let pass = 0;
     for (const m of container.messages(['SIM_EVENT', 'HANDS', 'CHANNELS', 'METRICS', 'REVIEW'])) {
@@ -88,7 +89,7 @@ export class Timeline {
         const number = finite(moment.pass) ?? 0;
         if (number > pass) this.passesS.push(Math.max(0, m.timeS - (finite(moment.time_s) ?? 0)));
         pass = Math.max(pass, number);
-        for (const value of list(moment.metrics)) addMetric(metrics, m.timeS, value);
+        for (const value of list(moment.metrics)) addMetric(metrics, m.timeS, value, called);
       }
     }
     this.hands = handCurves.map((about, k) => hands.series(k, about));
@@ -145,12 +146,13 @@ function addMetric(
   to: Map<string, { about: Pick<Series, 'id' | 'text' | 'unit'>; samples: Samples }>,
   timeS: number,
   value: Json,
+  called: ReadonlyMap<string, string>,
 ): void {
   const id = `${text(value.id)} ${text(value.hand)}`;
   let found = to.get(id);
   if (!found) {
     const hand = text(value.hand);
-    const words = text(value.id).replace(/[_.]/g, ' ');
+    const words = called.get(text(value.id)) ?? text(value.id).replace(/[_.]/g, ' ');
     const about = { id, text: hand === 'both' ? words : `${words}, ${hand}`, unit: text(value.unit) };
     to.set(id, (found = { about, samples: new Samples() }));
   }
