@@ -54,7 +54,9 @@ foreach(dir physics determinism haptics process scenes_bad)
   insula_test(${dir}_tests SOURCES ${src} LIBS ${test_libs} ${serial})
 endforeach()
 if(TARGET process_tests)  # they start the real programs
-  add_dependencies(process_tests insula insula_workbench haptic_server gateway)
+  add_library(jumping_clock MODULE tests/process/jumping_clock.cpp)
+  set_target_properties(jumping_clock PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/tests PREFIX "")
+  add_dependencies(process_tests insula insula_workbench haptic_server gateway jumping_clock)
 endif()
 # A folder of tests that are no GoogleTest (scripts, fuzzers) registers itself.
 file(GLOB test_lists CONFIGURE_DEPENDS tests/*/CMakeLists.txt)

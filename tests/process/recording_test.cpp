@@ -155,5 +155,35 @@ TEST_F(Recording, IsWholeAlthoughTheHapticServerAndTheGatewayWereKilled) {
   EXPECT_EQ(insula("rerun " + files()[0].string()), 0) << said();
 }
 
+/// Date and time jump by a day and by a week in all processes.
+class RecordingOverClockJumps : public Recording {
+ protected:
+  void prepare(std::vector<std::string>& options) override {
+    Recording::prepare(options);
+    ::setenv("LD_PRELOAD", INSULA_BINARY_DIR "/tests/jumping_clock.so", 1);
+  }
+  void SetUp() override {
+    Recording::SetUp();
+    ::unsetenv("LD_PRELOAD");
+  }
+};
+
+TEST_F(RecordingOverClockJumps, IsWholeAndInOrder) {
+  ASSERT_TRUE(watcher_->press(0.1)) << watcher_->force();
+  const std::size_t frames = watcher_->frames_now();
+  ASSERT_TRUE(wait_for([&] { return watcher_->frames_now() > frames + 300; })) << "five seconds of steps";
+  ASSERT_TRUE(watcher_->press(0.1)) << watcher_->force();
+  session_->end();
+  ASSERT_EQ(files().size(), 1u) << session_->log();
+  const auto json = info(files()[0]);
+  EXPECT_TRUE(json["ended"]);
+  EXPECT_EQ(json["resets"], 0);
+  EXPECT_GE(json["steps"], 300);
+  EXPECT_NEAR(json["seconds"], double(json["steps"]) * double(json["step_s"]), 0.1) << "simulated time has no jump";
+  EXPECT_GT(json["servo_ticks"], 5 * double(json["steps"]));
+  EXPECT_EQ(insula("session verify " + files()[0].string()), 0) << said();
+  EXPECT_EQ(insula("rerun " + files()[0].string()), 0) << said();
+}
+
 }  // namespace
 }  // namespace insula

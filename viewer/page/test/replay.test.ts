@@ -8,7 +8,7 @@ import { Container, ContainerError } from '../src/replay/container';
 import { GeometryDecoder, GeometryError } from '../src/replay/geometry';
 import { keyMoments } from '../src/replay/key_moments';
 import { Pictures } from '../src/replay/pictures';
-import { notesJson, parseNotes } from '../src/replay/source';
+import { notesJson, parseNotes, refuseLarge } from '../src/replay/source';
 import { Timeline, valueAt } from '../src/replay/timeline';
 import { McapBytes } from './mcap_bytes';
 
@@ -135,6 +135,13 @@ describe('pictures', () => {
   });
   it('do not move from before a reset to after it', () => {
     expect(x(pictures(), 1)).toEqual([2, 2, 0]);
+  });
+});
+
+describe('source', () => {
+  it('refuses what a page cannot hold, and says what else reads it', () => {
+    expect(() => refuseLarge(8e7)).not.toThrow();
+    expect(() => refuseLarge(2.34e9)).toThrow(/2\.3 GB.*1 GB.*insula rerun/);
   });
 });
 

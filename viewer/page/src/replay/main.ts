@@ -12,7 +12,7 @@ import { Replay } from './replay';
 import { RunGhost } from './run_ghost';
 import { RecordedSession } from './session';
 import { Side } from './side';
-import { fetchSession, type ListedSession, listSessions } from './source';
+import { fetchSession, type ListedSession, listSessions, refuseLarge } from './source';
 
 const query = new URLSearchParams(location.search);
 const quality: QualityName | null = qualityNames.find((n) => n === query.get('quality')) ?? null;
@@ -59,6 +59,7 @@ async function ask(problem = ''): Promise<void> {
 
 async function openFile(file: File): Promise<void> {
   try {
+    refuseLarge(file.size);
     const bytes = new Uint8Array(await file.arrayBuffer());
     await open(new RecordedSession(file.name.replace(/\.(insula|mcap)$/, ''), bytes), false);
   } catch (e) {

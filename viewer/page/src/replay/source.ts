@@ -26,8 +26,20 @@ export async function listSessions(): Promise<ListedSession[]> {
   return list(await response.json()).map((s) => ({ name: text(s.name), bytes: finite(s.bytes) ?? 0 }));
 }
 
+/** A page holds the whole file in memory. Ten minutes have some 70 MB. */
+const largestBytes = 1e9;
+
+/** Throws if a recording is too large for a page. */
+export function refuseLarge(bytes: number): void {
+  if (bytes <= largestBytes) return;
+  const has = `It has ${(bytes / 1e9).toFixed(1)} GB, and this page shows recordings of up to 1 GB.`;
+  throw new Error(`${has} insula session export, insula score and insula rerun read any size.`);
+}
+
 export async function fetchSession(name: string): Promise<Uint8Array> {
-  return new Uint8Array(await (await answer(fetch(at(name), { cache: 'no-store' }))).arrayBuffer());
+  const response = await answer(fetch(at(name), { cache: 'no-store' }));
+  refuseLarge(Number(response.headers.get('content-length') ?? 0));
+  return new Uint8Array(await response.arrayBuffer());
 }
 
 export function parseNotes(json: unknown): Note[] {
