@@ -65,6 +65,11 @@ export class GhostTools {
     for (const t of this.tools.values()) t.group.visible = false;
   }
 
+  /** Number of tools that are shown. */
+  get shown(): number {
+    return [...this.tools.values()].filter((t) => t.group.visible).length;
+  }
+
   data(index: number): ToolData | null {
     return this.bundle?.tools.find((d) => d.index === index) ?? null;
   }

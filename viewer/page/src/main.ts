@@ -265,6 +265,7 @@ function draw(now: number): void {
     Object.assign(status, world.cues.told);
   }
   if (world && playback.latest) ghost?.show(world.bundle, playback.latest.sim_time_s);
+  status.ghost_tools = ghost?.shown ?? 0;
   status.target = guiding.update({
     frame: playback.latest,
     bundle: world?.bundle ?? null,

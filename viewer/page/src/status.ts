@@ -24,6 +24,8 @@ export const status = {
   /** Of the ruler: from the tip to the tissue, and between both tips; null: not shown, or too far. */
   ruler_mm: null as number | null,
   apart_mm: null as number | null,
+  /** Tools of another run over the field. */
+  ghost_tools: 0,
   stereo: 'off',
   infrared: false,
   presenting: false,

@@ -31,9 +31,9 @@ function record() {
 }
 
 /** The gateway with the page that was built here. */
-async function serve(file) {
+async function serve(file, bus = 'memq://') {
   const page = ['--page', fileURLToPath(new URL('../dist', import.meta.url))];
-  const env = { ...process.env, LCM_DEFAULT_URL: 'memq://' };
+  const env = { ...process.env, LCM_DEFAULT_URL: bus };
   const gateway = spawn(join(programs, 'gateway'), [...page, '--port', '0', '--session', file], { env });
   const address = await new Promise((resolve, reject) => {
     let said = '';
@@ -45,6 +45,35 @@ async function serve(file) {
     gateway.once('exit', () => reject(new Error(`the gateway ended: ${said}`)));
   });
   return { gateway, address };
+}
+
+/** The recorded tools over a live exercise that waits for its beginning. */
+async function ghostOverLive(context) {
+  const bus = `udpm://239.255.76.67:${20000 + (process.pid % 20000)}?ttl=0`;
+  const env = { ...process.env, LCM_DEFAULT_URL: bus };
+  const scene = join(root, 'scenes/training/3_clipping.xml');
+  const quiet = ['--no-browser', '--no-report', '--no-record', '--no-reload', '--port', '0'];
+  const play = ['play', scene, '--motion', 'none', ...quiet];
+  const live = spawn(join(programs, 'insula'), play, { env, stdio: 'ignore' });
+  const { gateway: other, address: there } = await serve(file, bus);
+  try {
+    const page = await context.newPage();
+    const name = new URL(there).searchParams.get('session');
+    await page.goto(new URL(`./?quality=draft&ghost=${name}`, there).href);
+    const seen = () => page.waitForFunction(() => window.__insula?.ready, null, patience).then(() => true);
+    if (!(await seen().catch(() => false))) {
+      assert.equal(await page.evaluate(() => window.__insula.session), '', 'the exercise is heard and not drawn');
+      console.log('skipped: no exercise is heard; this machine has no multicast');
+      return;
+    }
+    await page.waitForFunction(() => window.__insula.ghost_tools > 0, null, patience);
+    check('the tools of a run are a ghost over the live exercise');
+  } finally {
+    other.kill('SIGINT');
+    const ended = new Promise((resolve) => live.once('exit', resolve));
+    live.kill('SIGINT');
+    await ended;
+  }
 }
 
 const status = (page) => page.evaluate(() => ({ ...window.__replay }));
@@ -221,6 +250,7 @@ try {
   await ready(page);
   check('a file is opened from the page');
   assert.deepEqual(errors, []);
+  await ghostOverLive(context);
 } finally {
   await browser.close();
   gateway.kill('SIGINT');

@@ -43,6 +43,11 @@ export class RunGhost {
     }
   }
 
+  /** Number of its tools in the field. */
+  get shown(): number {
+    return this.ghosts.shown;
+  }
+
   private begin(bundle: Bundle): void {
     this.field = bundle;
     this.ghosts.begin(bundle);
