@@ -87,7 +87,8 @@ def main(source, build, lcm_gen):
         expect("pictures ten times a second", read["pictures"] == [30, 30])
         expect("the mesh by its hash", set(read["about"]["files"]) == {"scene.xml", "meshes/block.msh"})
         tables = [insula, "session", "export", str(file), "--format", "parquet", "-o", str(folder / "tables")]
-        exported = subprocess.run(tables, capture_output=True, text=True, env=os.environ | {"INSULA_PYTHON": str(python)})
+        own = os.environ | {"INSULA_PYTHON": str(python)}
+        exported = subprocess.run(tables, capture_output=True, text=True, env=own)
         expect("tables as Parquet:\n" + exported.stderr, exported.returncode == 0)
         rows = subprocess.run([python, "-c", PARQUET, str(folder / "tables/channels.parquet")], check=True,
                               capture_output=True, text=True).stdout
