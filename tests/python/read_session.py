@@ -94,7 +94,6 @@ def main(source, build, lcm_gen):
                               capture_output=True, text=True).stdout
         expect("thirty rows of channels: " + rows, rows.split() == ["30", "double", "3.0"])
         without = os.environ | {"INSULA_PYTHON": "/bin/false"}
-        without = os.environ | {"INSULA_PYTHON": "/bin/false"}
         none = subprocess.run(tables, capture_output=True, text=True, env=without)
         expect("a Python that fails is said", none.returncode == 2 and "error: /bin/false" in none.stderr)
         expect("rerun", subprocess.run([insula, "rerun", str(file)], capture_output=True).returncode == 0)
