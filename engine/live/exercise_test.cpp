@@ -43,6 +43,7 @@ struct Outcome {
   int strands = 0, left = 0, torn = 0, cut = 0;
   double max_force[2] = {0, 0};  ///< of a hand, N
   double max_press = 0;          ///< of one tool on one lobe, N
+  double retraction_s = 0;  ///< metric: with the lips held apart
   bool finite = true;
   Vec3 device[2];
 };
@@ -96,6 +97,8 @@ Outcome perform(const std::string& id, int hand = -1) {
   out.state = log.state();
   for (const FaultState& f : log.faults()) out.faults[f.id] = f.count;
   for (const GoalState& g : log.goals()) out.goals[g.id] = g.done ? g.time : -1;
+  for (const MetricValue& m : s.exercise()->metrics())
+    if (m.id == "retraction_held") out.retraction_s = m.value;
   for (int h = 0; h < 2; ++h) out.device[h] = run.haptics().hand(h).device.p;
   for (int h = 0; h < 2; ++h)
     if (motion.has(h)) {
@@ -118,6 +121,8 @@ TEST(SylvianFissure, SteadyHandsCompleteItWithoutAFault) {
   ASSERT_EQ(o.goals.size(), 3u);
   for (const auto& [id, time] : o.goals) EXPECT_GT(time, 0) << id;
   EXPECT_EQ(o.state, ExerciseState::done);
+  EXPECT_GE(o.retraction_s, 2) << "as the goal asks";
+  EXPECT_LE(o.retraction_s, o.goals.at("divide") + 2);
   for (const double f : o.max_force) {
     EXPECT_GT(f, 0.03) << "a hand that feels nothing";
     EXPECT_LT(f, 0.25);

@@ -100,6 +100,13 @@ class GoalOpening final : public ExerciseRule {
                            .display = "mm",
                            .digits = 1,
                            .measure = true}};
+  Channel<Length> gap{this,
+                      {.name = "gap",
+                       .doc = "Present distance of the lips",
+                       .min = "0 mm",
+                       .shown = Shown::none,
+                       .display = "mm",
+                       .digits = 1}};
 
   void prepare(PrepareContext&) override { opening.set_bands({distance(), std::nullopt}, {0.0, std::nullopt}); }
   void declare(PrepareContext&, const Simulation&, ExerciseLog& log) override {
@@ -111,6 +118,7 @@ class GoalOpening final : public ExerciseRule {
     const double d = (a->body().position(a->points()[va_]) - b->body().position(b->points()[vb_])).norm();
     widest_ = std::max(widest_, d);
     opening.set(widest_);
+    gap.set(d);
     open_ = d >= distance() ? open_ + r.h : 0;
     if (open_ >= hold()) log.goal(goal_, r.time);
   }
