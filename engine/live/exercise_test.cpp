@@ -43,7 +43,7 @@ struct Outcome {
   int strands = 0, left = 0, torn = 0, cut = 0;
   double max_force[2] = {0, 0};  ///< of a hand, N
   double max_press = 0;          ///< of one tool on one lobe, N
-  double retraction_s = 0;  ///< metric: with the lips held apart
+  double retraction_s = 0;       ///< metric: with the lips held apart
   bool finite = true;
   Vec3 device[2];
 };
