@@ -115,8 +115,7 @@ int cmd_run(const CommandContext& context, const RunOptions& options) {
   summary.fresh_forces_per_s = run.haptics().fresh_forces_per_s();
   for (int h = 0; h < 2; ++h) summary.max_force_N[std::size_t(h)] = run.haptics().hand(h).max_force_N;
   if (session) {
-    const nlohmann::json review = {{"pass", session->pass()}, {"review", review_json(review_of(recorder, summary))}};
-    session->review(review.dump());
+    session->review(review_message(session->pass(), review_of(recorder, summary)));
     session->close(simulation);
   }
   try {

@@ -142,4 +142,8 @@ nlohmann::ordered_json review_json(const Review& review) {
   return out;
 }
 
+std::string review_message(int pass, const Review& review) {
+  return nlohmann::ordered_json{{"pass", pass}, {"review", review_json(review)}}.dump();
+}
+
 }  // namespace insula

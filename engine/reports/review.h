@@ -41,5 +41,7 @@ std::string review_html(const Review& review);
 /// {group, sessions, to_work_on: [{text, value, low, high, worst_s | null}], earlier_runs,
 /// comparison: [{text, now, last, best, change}]}.
 nlohmann::ordered_json review_json(const Review& review);
+/// The same for a recording, as text: {pass, review}. pass: its number in the recording.
+std::string review_message(int pass, const Review& review);
 
 }  // namespace insula

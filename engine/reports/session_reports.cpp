@@ -149,23 +149,23 @@ void SessionReports::write(const Simulation& simulation) {
   };
   wait();  // folders are created in the order of the runs
   try {
-    writing_ = std::async(std::launch::async, [root = root_, name = std::move(name), recorder = std::move(recorder_),
-                                               summary = summary_, failed, done = done_, pass = done_->pass,
-                                               recorded = recorded_pass_]() mutable {
-      try {
-        const fs::path folder = new_report_folder(root, name);
-        summary.own_runs = own_runs(root, summary.title, person_of(summary.fields), folder);
-        write_report(folder, recorder, summary);
-        const fs::path page = fs::absolute(folder / "report.html");
-        spdlog::info("report: {}", page.string());
-        const nlohmann::ordered_json review{{"pass", recorded}, {"review", review_json(review_of(recorder, summary))}};
-        std::lock_guard lock(done->mutex);
-        done->reviews.push_back(review.dump());
-        if (done->pass == pass) done->path = page.string();
-      } catch (const std::exception& e) {
-        failed(e);
-      }
-    });
+    writing_ = std::async(std::launch::async,
+                          [root = root_, name = std::move(name), recorder = std::move(recorder_), summary = summary_,
+                           failed, done = done_, pass = done_->pass, recorded = recorded_pass_]() mutable {
+                            try {
+                              const fs::path folder = new_report_folder(root, name);
+                              summary.own_runs = own_runs(root, summary.title, person_of(summary.fields), folder);
+                              write_report(folder, recorder, summary);
+                              const fs::path page = fs::absolute(folder / "report.html");
+                              spdlog::info("report: {}", page.string());
+                              std::string review = review_message(recorded, review_of(recorder, summary));
+                              std::lock_guard lock(done->mutex);
+                              done->reviews.push_back(std::move(review));
+                              if (done->pass == pass) done->path = page.string();
+                            } catch (const std::exception& e) {
+                              failed(e);
+                            }
+                          });
   } catch (const std::system_error& e) {  // no thread is available
     failed(e);
   }

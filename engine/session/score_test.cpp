@@ -45,6 +45,22 @@ class Score : public testing::Test {
     recorder.close(*s);
     return s->exercise()->metrics();
   }
+  /// A recording of the same scene with these metrics, one a second.
+  fs::path with_metrics(const std::vector<std::string>& messages) {
+    record();
+    const fs::path other = folder_.path() / "other.insula";
+    SessionReader in(file());
+    McapWriter out(other, session::profile, "test");
+    out.describe("session", in.container().descriptions().at("session"));
+    const auto channel = out.add_channel(session::metrics_topic, 0, "json");
+    std::uint64_t time_ns = 0;
+    for (const std::string& text : messages) {
+      out.write(channel, time_ns, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+      time_ns += 1'000'000'000;
+    }
+    out.close();
+    return other;
+  }
   fs::path rules(const std::string& exercise) {
     return folder_.write("rules/rules.xml", "<scene>" + exercise + "</scene>");
   }
@@ -152,44 +168,20 @@ TEST_F(Score, AMetricWithOtherBitsIsFound) {
 }
 
 TEST_F(Score, MetricsThatAreNoneAreCountedAsDamage) {
-  record();
-  const fs::path other = folder_.path() / "other.insula";
-  {
-    SessionReader in(file());
-    McapWriter out(other, session::profile, "test");
-    out.describe("session", in.container().descriptions().at("session"));
-    const auto channel = out.add_channel(session::metrics_topic, 0, "json");
-    for (const std::string text : {"{\"metrics\": 3}", "[", "{}"})
-      out.write(channel, 0, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-    out.close();
-  }
-  SessionReader session(other);
+  SessionReader session(with_metrics({"{\"metrics\": 3}", "[", "{}"}));
   EXPECT_TRUE(session.passes().empty());
   EXPECT_EQ(session.damaged(), 3);
 }
 
 // As a report: a trainee who looks at the field for a while afterwards does not change the result.
 TEST_F(Score, APassEndsWithItsExercise) {
-  record();
-  const fs::path other = folder_.path() / "other.insula";
-  {
-    SessionReader in(file());
-    McapWriter out(other, session::profile, "test");
-    out.describe("session", in.container().descriptions().at("session"));
-    const auto channel = out.add_channel(session::metrics_topic, 0, "json");
-    const auto moment = [&](int time_s, const char* state) {
-      const std::string text = fmt::format(
-          R"({{"number": {0}, "pass": 1, "time_s": {0}, "mode": "test", "state": "{1}", "last_of_pass": false, "metrics": []}})",
-          time_s, state);
-      out.write(channel, std::uint64_t(time_s) * 1'000'000'000,
-                {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-    };
-    // Its instructor asks for more after the first end.
-    const std::array states{"running", "done", "done", "running", "done", "done"};
-    for (std::size_t k = 0; k < states.size(); ++k) moment(int(k), states[k]);
-    out.close();
-  }
-  SessionReader session(other);
+  // Its instructor asks for more after the first end.
+  std::vector<std::string> moments;
+  for (const char* state : {"running", "done", "done", "running", "done", "done"})
+    moments.push_back(fmt::format(
+        R"({{"number": {0}, "pass": 1, "time_s": {0}, "mode": "test", "state": "{1}", "last_of_pass": false, "metrics": []}})",
+        moments.size(), state));
+  SessionReader session(with_metrics(moments));
   const auto passes = session.passes();
   ASSERT_EQ(passes.size(), 1u);
   EXPECT_EQ(passes[0].state, "done");

@@ -21,12 +21,6 @@ double factor_ms(const Simulation& simulation) {
   return sum;
 }
 
-double mean(const std::vector<double>& v) {
-  double sum = 0;
-  for (double x : v) sum += x;
-  return v.empty() ? 0.0 : sum / double(v.size());
-}
-
 /// Times and figures of the steps of a run, one value for each step.
 struct BenchRecord {
   std::array<std::vector<double>, stage_count> stage;

@@ -2,10 +2,8 @@
 // insula bench --frames: the size of the viewer's frames, and the time that they take.
 #include <fmt/ostream.h>
 
-#include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
-#include <numeric>
 
 #include "core/bus/channels.h"
 #include "core/bus/codec.h"
@@ -58,13 +56,13 @@ int cmd_bench_frames(const CommandContext& context, const BenchOptions& options)
     context.err << "error: " << bus.error() << '\n';
     return 1;
   }
-  const double mean = std::accumulate(costs.bytes.begin(), costs.bytes.end(), 0.0) / double(costs.bytes.size());
-  const double greatest = *std::max_element(costs.bytes.begin(), costs.bytes.end());
+  const double bytes = mean(costs.bytes);
+  const double greatest = largest(costs.bytes);
   const double report = percentile(costs.report_us, 0.5), frame = percentile(costs.frame_us, 0.5);
   if (options.json) {
     const nlohmann::json j = {{"scene", options.scene.string()},
                               {"steps", options.steps},
-                              {"frame_bytes", {{"mean", mean}, {"max", greatest}}},
+                              {"frame_bytes", {{"mean", bytes}, {"max", greatest}}},
                               {"report_us", {{"p50", report}}},
                               {"frame_us", {{"p50", frame}}}};
     context.out << j.dump(2) << '\n';
@@ -74,7 +72,7 @@ int cmd_bench_frames(const CommandContext& context, const BenchOptions& options)
              "{}  ({} steps)\n  frame: {:.0f} bytes mean, {:.0f} max\n"
              "  report with channels and drawables: {:.1f} us median\n"
              "  frame filled, encoded and sent: {:.1f} us median\n",
-             options.scene.string(), options.steps, mean, greatest, report, frame);
+             options.scene.string(), options.steps, bytes, greatest, report, frame);
   return 0;
 }
 

@@ -3,10 +3,8 @@
 #include <fmt/ostream.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
-#include <numeric>
 
 #include "core/base/input_error.h"
 #include "engine/reports/report_writer.h"
@@ -41,8 +39,6 @@ RecordingCosts measure(HeadlessRun& run, Simulation& simulation, SessionRecorder
   return costs;
 }
 
-double mean_of(const std::vector<double>& v) { return std::accumulate(v.begin(), v.end(), 0.0) / double(v.size()); }
-
 }  // namespace
 
 int cmd_bench_recording(const CommandContext& context, const BenchOptions& options) {
@@ -64,7 +60,7 @@ int cmd_bench_recording(const CommandContext& context, const BenchOptions& optio
     fmt::print(context.err, "error: {}\n", e.what());
     return 1;
   }
-  const double step = mean_of(costs.step_ms), recording = mean_of(costs.recorder_ms);
+  const double step = mean(costs.step_ms), recording = mean(costs.recorder_ms);
   const double writer = costs.writer_ms / options.steps;
   const double ten_minutes_MB = 1e-6 * costs.bytes * 600 / (options.steps * simulation.h());
   if (options.json) {
