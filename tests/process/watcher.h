@@ -140,13 +140,24 @@ class Watcher {
     return s ? std::max(s->force[0].norm(), s->force[1].norm()) : 0;
   }
 
-  /// Lowers both hands in steps of half a millimetre until each has a force of at least `wanted` newtons.
+  /// Lowers both hands in steps of half a millimetre until each has a force of at least `wanted` newtons. Takes the
+  /// hands anew when they were placed meanwhile: a stream of poses from before a placement is ignored.
   bool press(double wanted) {
-    if (holding_.joinable()) {
+    for (const auto end = std::chrono::steady_clock::now() + patience; std::chrono::steady_clock::now() < end;) {
       holding_ = {};
-      std::this_thread::sleep_for(600ms);  // a stream of poses from before a new session is not taken up
+      std::this_thread::sleep_for(600ms);
+      if (last() && press_in_one_stream(wanted)) return true;
     }
-    if (!wait_for([&] { return last().has_value(); })) return false;
+    return false;
+  }
+
+ private:
+  using Turns = std::array<std::array<double, 4>, 2>;
+  Turns turns() const {
+    std::lock_guard lock(mutex_);
+    return quaternion_;
+  }
+  bool press_in_one_stream(double wanted) {
     std::array<Vec3, 2> at = last()->position;
     for (int step = 0; step < 600; ++step) {
       bool enough = true;
@@ -164,13 +175,6 @@ class Watcher {
       std::this_thread::sleep_for(17ms);
     }
     return false;
-  }
-
- private:
-  using Turns = std::array<std::array<double, 4>, 2>;
-  Turns turns() const {
-    std::lock_guard lock(mutex_);
-    return quaternion_;
   }
   void send(const std::array<Vec3, 2>& at, const Turns& turned) {
     for (std::size_t hand = 0; hand < 2; ++hand) {
