@@ -43,6 +43,7 @@ void HapticServer::on_problem(Bytes bytes) {
 void HapticServer::on_scene(Bytes bytes) {
   if (!decode(bytes, scene_info_, why_)) return refuse("SCENE_INFO", why_);
   const auto& info = scene_info_;
+  if (info.session < order_.session()) return;  // from an engine that was replaced
   // The bundle may be incomplete until the scene runs.
   const std::string key = std::to_string(info.session) + "\n" + info.motion + "\n" + info.bundle + "\n" +
                           (info.state == "loading" || info.state == "error" ? info.state : "ready");

@@ -79,6 +79,19 @@ TEST(Server, OldAndDoubledMessagesAreIgnored) {
   EXPECT_EQ(rig.server->publish_status().problems_received, before);
 }
 
+TEST(Server, TheSceneOfAReplacedEngineIsIgnored) {
+  Rig rig;
+  rig.write_motion();
+  rig.send_scene();
+  rig.run(100);
+  rig.session = 5;
+  rig.motion_file = "";
+  rig.send_scene();
+  rig.session = 100;
+  rig.run(1500);
+  EXPECT_GT(rig.server->force(0).norm(), 0.4);  // the script of the engine that counts
+}
+
 TEST(Server, StopsWithForcesAtZero) {
   Rig rig;
   rig.write_motion();

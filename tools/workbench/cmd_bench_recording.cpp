@@ -54,9 +54,11 @@ int cmd_bench_recording(const CommandContext& context, const BenchOptions& optio
     const double before = double(fs::file_size(file));
     costs = measure(run, simulation, recorder, options.steps);
     costs.bytes = double(fs::file_size(file)) - before;
-    fs::remove(file);
     if (!recorder.failure().empty()) throw InputError(recorder.failure());
+    fs::remove(file);
   } catch (const std::exception& e) {
+    std::error_code absent;
+    fs::remove(file, absent);
     fmt::print(context.err, "error: {}\n", e.what());
     return 1;
   }
