@@ -32,6 +32,11 @@ struct ClipState {
     return ends;
   }
   int applications = 0;  ///< number of times it was released in the field
+  /// It lies in the field, or an applier holds it shut on something. Blades that meet only each other press less.
+  bool is_on() const {
+    constexpr double pressing_N = 0.05;
+    return !on_tray && (!holder || force > pressing_N);
+  }
 };
 
 /// A component that is a clip.

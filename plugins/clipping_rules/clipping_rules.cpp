@@ -45,11 +45,8 @@ const VesselState* find(const std::vector<VesselState>& vessels, std::string_vie
 /// Flow over that at rest, as a claim to a person: flow back through a closed branch counts as none.
 double flow_share(const VesselState& v) { return v.flow_at_rest != 0 ? std::max(0.0, v.flow / v.flow_at_rest) : 1; }
 
-/// A temporary clip lies in the field, or an applier holds it shut on something.
 bool temporary_on(const std::vector<ClipState>& clips) {
-  constexpr double pressing = 0.05;  // N; blades that meet only each other press less
-  return std::any_of(clips.begin(), clips.end(),
-                     [](const ClipState& c) { return c.temporary && !c.on_tray && (!c.holder || c.force > pressing); });
+  return std::any_of(clips.begin(), clips.end(), [](const ClipState& c) { return c.temporary && c.is_on(); });
 }
 
 /// The names in `text`, each checked to be a centreline of the vessel.

@@ -8,8 +8,8 @@ Goals and clocks of an intraoperative rupture.
 - `goal_bleeding_stopped` is reached when a tear, once open, has let out no more than `rate` for `hold`.
 - `timer_rupture` runs from the rupture until a permanent clip is on and the bleeding has stopped. Beyond `limit` the
   exercise has failed.
-- `timer_temporary_clip` runs while a temporary clip is on. Beyond `limit` it counts a fault (three minutes: longer
-  occlusion risks a stroke).
+- `timer_temporary_clip` runs while a temporary clip is on, released or held shut on the vessel. Beyond `limit` it
+  counts a fault (three minutes: longer occlusion risks a stroke).
 - `goal_temporary_removed` is reached when a temporary clip that was on is off again, with a permanent clip on and no
   bleeding.
 
@@ -32,17 +32,18 @@ cumulative sum with hysteresis (E. Page, Continuous inspection schemes, Biometri
 namespace insula {
 namespace {
 
-bool released(const ClipState& c) { return !c.on_tray && !c.holder; }
-
 /// Input of these rules: the present clips and bleedings of the scene.
 class Patient {
  public:
   Patient() = default;
   explicit Patient(const Simulation& simulation) : clips_(simulation), bleedings_(simulation) {}
-  bool any_clip(bool temporary) {
-    const auto& clips = clips_.now();
-    return std::any_of(clips.begin(), clips.end(),
-                       [&](const ClipState& c) { return released(c) && c.temporary == temporary; });
+  /// Occludes, whether an applier still holds it or not.
+  bool temporary_on() {
+    return any([](const ClipState& c) { return c.temporary && c.is_on(); });
+  }
+  /// Stays when the hand goes.
+  bool permanent_released() {
+    return any([](const ClipState& c) { return !c.temporary && !c.on_tray && !c.holder; });
   }
   double bleeding_rate() {
     double rate = 0;
@@ -58,6 +59,11 @@ class Patient {
   }
 
  private:
+  bool any(bool (*which)(const ClipState&)) {
+    const auto& clips = clips_.now();
+    return std::any_of(clips.begin(), clips.end(), which);
+  }
+
   Clips clips_;
   Bleedings bleedings_;
 };
@@ -158,7 +164,7 @@ class TimerRupture final : public ExerciseRule {
     const double since = patient_.ruptured_at();
     const bool runs = running_.observe(r.h, patient_.bleeding_rate(), rate());
     if (since < 0) return;
-    const bool mastered = patient_.any_clip(false) && !patient_.any_clip(true) && !runs;
+    const bool mastered = patient_.permanent_released() && !patient_.temporary_on() && !runs;
     if (!mastered) elapsed_ = r.time - since;
     log.timer(timer_, elapsed_, !mastered);
     if (elapsed_ > limit()) log.fail(over(), r.time);
@@ -194,7 +200,7 @@ class TimerTemporaryClip final : public ExerciseRule {
     fault_ = log.add_fault(id + "_over", over());
   }
   void observe(const StepReport& r, ExerciseLog& log) override {
-    const bool on = patient_.any_clip(true);
+    const bool on = patient_.temporary_on();
     elapsed_ = on ? elapsed_ + r.h : 0;
     log.timer(timer_, elapsed_, on);
     if (!on) warned_ = false;
@@ -225,10 +231,10 @@ class GoalTemporaryRemoved final : public ExerciseRule {
     goal_ = log.add_goal(id, text());
   }
   void observe(const StepReport& r, ExerciseLog& log) override {
-    const bool on = patient_.any_clip(true);
+    const bool on = patient_.temporary_on();
     was_on_ = was_on_ || on;
     const bool runs = running_.observe(r.h, patient_.bleeding_rate(), rate());
-    const bool good = was_on_ && !on && patient_.any_clip(false) && !runs;
+    const bool good = was_on_ && !on && patient_.permanent_released() && !runs;
     if (good) log.goal(goal_, r.time);
     if (!good && log.goals()[std::size_t(goal_)].done) log.goal_lost(goal_, r.time);
   }

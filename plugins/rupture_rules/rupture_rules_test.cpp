@@ -202,12 +202,30 @@ TEST_F(RuptureRules, TimeRunsOut) {
   EXPECT_EQ(log().state(), ExerciseState::failed);
 }
 
-TEST_F(RuptureRules, AHeldClipIsNotOn) {
+TEST_F(RuptureRules, AHeldClipIsOnlyOnWhereItPresses) {
   rupture();
   put(1, true);
   clips[1]->holder = s->bodies().front();
   show(1);
   EXPECT_FALSE(timer("occlusion").running);
+  clips[1]->force = 0.5;
+  show(1);
+  EXPECT_TRUE(timer("occlusion").running) << "it occludes before the applier lets it go";
+}
+
+TEST_F(RuptureRules, AClipTakenUpAndStillShutIsNotOffYet) {
+  rupture();
+  put(0, true);
+  put(1, true);
+  bleeding->rate = 0;
+  show(3);
+  clips[1]->holder = s->bodies().front();
+  clips[1]->force = 0.5;
+  show(1);
+  EXPECT_FALSE(done("removed"));
+  clips[1]->force = 0;
+  show(1);
+  EXPECT_TRUE(done("removed"));
 }
 
 }  // namespace

@@ -67,6 +67,8 @@ function readPanel() {
       .reduce((s, part) => 60 * s + Number(part), 0),
     /** How far a clip in the field is, and whether it can be taken back. */
     clipNear: text('.hand.active .reach'),
+    /** The clip in the applier; '': none. */
+    loaded: /^No /.test(text('.tool-list-head b')) ? '' : text('.tool-list-head b'),
     chooses: seen(document.querySelector('.tool-list')),
     faults: [...document.querySelectorAll('.faults li')].map((f) => f.textContent),
     end: seen(document.querySelector('.dialog.summary')) ? text('.dialog.summary h2') : '',

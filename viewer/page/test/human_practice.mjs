@@ -20,8 +20,8 @@ export class Practice {
     this.course = [0, 1].map(() => ({ of: 0, done: false }));
     this.turnedFor = '';
     this.tries = 0;
-    /** What was chosen from the list last. */
-    this.loaded = '';
+    /** What the applier held when it was last told to let go. */
+    this.released = '';
     /** Of what the example has left over: how many places, and how often one was swept in vain. */
     this.leftOver = this.sweeps = 0;
   }
@@ -78,7 +78,6 @@ export class Practice {
 
   async choose(title) {
     await this.person.choose(title);
-    this.loaded = title;
     return this.person.settled();
   }
 
@@ -110,6 +109,7 @@ export class Practice {
 
   /** What the hand does at a target that is reached but for its buttons. */
   async press(view) {
+    if (/hold button 2/.test(view.todo)) this.released = view.loaded;
     for (const [, on, off] of view.todo.matchAll(/hold button (\d)|let button (\d) go/g)) {
       // A goal may ask to hold on for a while.
       if (off === '1') await this.person.wait(3000);
@@ -117,7 +117,8 @@ export class Practice {
       if (off) await this.person.wait(bladesMs);
     }
     this.tell(view, `: ${view.todo}`);
-    const clipIsFree = view.chooses && /let button 2 go/.test(view.todo) && !/temporary/i.test(this.loaded);
+    const permanent = this.released !== '' && !/temporary/i.test(this.released);
+    const clipIsFree = permanent && /let button 2 go/.test(view.todo);
     return clipIsFree && !neckShut(view) ? this.placeAgain() : this.person.settled();
   }
 
