@@ -254,6 +254,25 @@ TEST_F(GatewayTest, OffersRecordedSessions) {
   EXPECT_EQ(gateway_->sessions_query(), "session=given");
 }
 
+TEST_F(GatewayTest, GivesPartsOfARecording) {
+  const auto part = [&](const char* range) { return get("/sessions/given", http::verb::get, {{"Range", range}}); };
+  const Response middle = part("bytes=1-3");
+  EXPECT_EQ(middle.result_int(), 206U);
+  EXPECT_EQ(middle.body(), "ive");
+  EXPECT_EQ(middle[http::field::content_range], "bytes 1-3/5");
+  EXPECT_EQ(part("bytes=3-").body(), "en");
+  EXPECT_EQ(part("bytes=-2").body(), "en");
+  const Response none = part("bytes=5-6");
+  EXPECT_EQ(none.result_int(), 416U);
+  EXPECT_EQ(none[http::field::content_range], "bytes */5");
+  EXPECT_EQ(part("bytes=0-1,3-4").result_int(), 200U) << "several parts are not known; all is given";
+  EXPECT_EQ(get("/sessions/given", http::verb::head)[http::field::content_length], "5");
+  write("given.insula", std::string(5 << 20, 'x'));
+  const Response large = part("bytes=0-5242879");
+  EXPECT_EQ(large.body().size(), 4U << 20) << "a page asks again for the rest";
+  EXPECT_EQ(large[http::field::content_range], "bytes 0-4194303/5242880");
+}
+
 TEST_F(GatewayTest, KeepsNotesBesideARecording) {
   EXPECT_EQ(nlohmann::json::parse(get("/sessions/given/notes").body()), nlohmann::json::array());
   const std::string notes = R"([{"time_s":1.5,"text":"too deep"}])";

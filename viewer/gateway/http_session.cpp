@@ -2,10 +2,15 @@
 // HTTP requests and their answers.
 #include "viewer/gateway/http_session.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <boost/beast/websocket.hpp>
+#include <fstream>
 #include <type_traits>
 
 #include "core/base/text.h"
+#include "viewer/gateway/byte_range.h"
 #include "viewer/gateway/static_files.h"
 #include "viewer/gateway/ws_client.h"
 
@@ -14,6 +19,8 @@ namespace {
 
 constexpr auto request_timeout = std::chrono::seconds(30);
 constexpr std::uint32_t header_limit = 16 * 1024;
+/// A part that takes longer to read would delay pictures. A page asks again for the rest.
+constexpr std::uint64_t most_part_bytes = 4 << 20;
 constexpr std::string_view not_built =
     "<!doctype html><meta charset=utf-8><title>Insula</title><p>The viewer's page is not built. "
     "Run <code>npm ci &amp;&amp; npm run build</code> in <code>viewer/page</code>, then start again.</p>\n";
@@ -97,7 +104,7 @@ void HttpSession::answer_session(const Request& request, const std::vector<std::
   const auto file = sessions_.find(parts[1]);
   if (!file || parts.size() > 3 || (parts.size() == 3 && !notes))
     return refuse(http::status::not_found, "there is no such session here\n");
-  if (!notes) return send_file(request, *file, "no-store");
+  if (!notes) return send_recording(request, *file);
   if (!stores) return send_text(request, http::status::ok, "application/json", Sessions::notes(*file));
   if (!same_site(request)) return refuse(http::status::forbidden, "foreign origin\n");
   const std::string why = Sessions::store_notes(*file, request.body());
@@ -177,6 +184,33 @@ void HttpSession::send_file(const Request& request, const std::filesystem::path&
   http::response<http::file_body> response{std::piecewise_construct, std::make_tuple(std::move(body)),
                                            std::make_tuple(http::status::ok, request.version())};
   set_head(response);
+  response.prepare_payload();
+  send(std::move(response));
+}
+
+void HttpSession::send_recording(const Request& request, const std::filesystem::path& file) {
+  std::error_code error;
+  const std::uint64_t size = fs::file_size(file, error);
+  const auto range = byte_range(view(request[http::field::range]), error ? 0 : size);
+  if (error || !range || request.method() != http::verb::get) return send_file(request, file, "no-store");
+  http::response<http::string_body> response{http::status::partial_content, request.version()};
+  response.set(http::field::content_type, "application/octet-stream");
+  response.set(http::field::cache_control, "no-store");
+  response.set("X-Content-Type-Options", "nosniff");
+  response.keep_alive(request.keep_alive());
+  const std::uint64_t length = std::min(range->length, most_part_bytes);
+  if (length == 0) {
+    response.result(http::status::range_not_satisfiable);
+    response.set(http::field::content_range, fmt::format("bytes */{}", size));
+  } else {
+    std::string bytes(length, '\0');
+    std::ifstream in(file, std::ios::binary);
+    if (!in.seekg(std::streamoff(range->first)) || !in.read(bytes.data(), std::streamsize(length)))
+      return send_text(request, http::status::not_found, "text/plain", "the recording cannot be read\n");
+    const std::uint64_t last = range->first + length - 1;
+    response.set(http::field::content_range, fmt::format("bytes {}-{}/{}", range->first, last, size));
+    response.body() = std::move(bytes);
+  }
   response.prepare_payload();
   send(std::move(response));
 }

@@ -34,6 +34,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   void send_text(const Request& request, http::status status, std::string_view type, std::string body);
   void send_file(const Request& request, const std::filesystem::path& file, std::string_view caching,
                  bool packed = false);
+  /// A part of a file, where the request asks for one; otherwise all of it.
+  void send_recording(const Request& request, const std::filesystem::path& file);
   template <class Response>
   void send(Response&& response);
   void close();

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "viewer/gateway/bundle.h"
+#include "viewer/gateway/byte_range.h"
 #include "viewer/gateway/outbox.h"
 #include "viewer/gateway/static_files.h"
 
@@ -51,6 +52,25 @@ TEST(SplitTarget, EverythingElse) {
                           "/a%0ab"})
     EXPECT_FALSE(split_target(bad).has_value()) << bad;
   EXPECT_FALSE(split_target("/" + std::string(3000, 'a')).has_value());
+}
+
+TEST(ByteRange, PartsOfAFile) {
+  const auto part = [](std::string_view header) {
+    const auto r = byte_range(header, 100);
+    return r ? std::pair(r->first, r->length) : std::pair<std::uint64_t, std::uint64_t>(7777, 0);
+  };
+  using P = std::pair<std::uint64_t, std::uint64_t>;
+  EXPECT_EQ(part("bytes=0-0"), P(0, 1));
+  EXPECT_EQ(part("bytes=10-19"), P(10, 10));
+  EXPECT_EQ(part("bytes=90-1000"), P(90, 10));
+  EXPECT_EQ(part("bytes=90-"), P(90, 10));
+  EXPECT_EQ(part("bytes=-30"), P(70, 30));
+  EXPECT_EQ(part("bytes=-300"), P(0, 100));
+  EXPECT_EQ(part("bytes=100-").second, 0U) << "there are no such bytes";
+  EXPECT_EQ(byte_range("bytes=0-", 0)->length, 0U);
+  for (const char* other : {"", "bytes", "bytes=", "bytes=-", "bytes=3", "bytes=5-4", "bytes=a-5", "bytes=1-5x",
+                            "bytes= 1-2", "bytes=+1-2", "bytes=1-2,4-5", "lines=1-2", "bytes=99999999999999999999-"})
+    EXPECT_FALSE(byte_range(other, 100)) << other;
 }
 
 class Folder : public ::testing::Test {

@@ -13,7 +13,7 @@ const list = (v: unknown): Json[] => (Array.isArray(v) ? (v as Json[]) : []);
 /** Where the files of a bundle come from. */
 export interface BundleSource {
   /** Under which the browser finds a file, for pictures. */
-  address(name: string): string;
+  address(name: string): Promise<string>;
   read(name: string): Promise<ArrayBuffer>;
 }
 
@@ -21,12 +21,12 @@ export interface BundleSource {
 export class BundleFolder implements BundleSource {
   constructor(private readonly base: string) {}
 
-  address(name: string): string {
-    return this.base + name;
+  address(name: string): Promise<string> {
+    return Promise.resolve(this.base + name);
   }
 
   async read(name: string): Promise<ArrayBuffer> {
-    return (await get(this.address(name))).arrayBuffer();
+    return (await get(this.base + name)).arrayBuffer();
   }
 }
 
@@ -34,7 +34,7 @@ export class BundleFolder implements BundleSource {
 class Files {
   constructor(private readonly source: BundleSource) {}
 
-  address(name: string): string {
+  address(name: string): Promise<string> {
     return this.source.address(checked(name));
   }
 
@@ -168,7 +168,7 @@ async function toolOf(files: Files, t: Json): Promise<types.ToolData> {
     kind: t.kind,
     title: t.title || spoken(t.id),
     hinges,
-    picture: t.picture ? files.address(t.picture) : null,
+    picture: t.picture ? await files.address(t.picture) : null,
     properties: list(t.properties).map((p) => ({
       name: String(p.name ?? ''),
       text: propertyText(p),

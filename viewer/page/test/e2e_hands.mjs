@@ -67,6 +67,7 @@ for (let seed = first; seed < first + seeds; seed++) {
   try {
     const page = await browser.newPage({ viewport: { width: 1280, height: 800 } });
     await page.addInitScript(drawNothing);
+    page.on('framenavigated', (f) => console.log(`   the browser shows ${f.url()}`));
     const url = `http://127.0.0.1:${port + 1}/?quality=draft`;
     for (let k = 0; k < 60 && !(await page.goto(url).catch(() => null)); k++) await pause(500);
     if (running.some((p) => p.exitCode !== null)) throw new Error(`port ${port} or ${port + 1} is taken`);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Writes small MCAP files without compression, for tests of their reader.
-import { crc32 } from '../src/replay/container';
+import { crc32 } from '../src/replay/mcap_records';
 
 const utf8 = new TextEncoder();
 
@@ -47,23 +47,34 @@ export interface TestMessage {
   data: Uint8Array | string;
 }
 
+const magic = Uint8Array.of(0x89, 0x4d, 0x43, 0x41, 0x50, 0x30, 0x0d, 0x0a);
+const nsOf = (m: TestMessage): number => Math.round(m.timeS * 1e9);
+
 export class McapBytes {
-  private readonly out = new Out().raw(Uint8Array.of(0x89, 0x4d, 0x43, 0x41, 0x50, 0x30, 0x0d, 0x0a));
+  private readonly out = new Out().raw(magic);
+  /** The records of the summary. */
+  private readonly summary = new Out();
 
   constructor() {
     this.out.raw(record(1, new Out().text('insula').text('test').bytes()));
   }
   channel(id: number, topic: string, metadata: Record<string, string> = {}): this {
-    this.out.raw(record(4, new Out().number(id, 2).number(0, 2).text(topic).text('json').pairs(metadata).bytes()));
+    const one = record(4, new Out().number(id, 2).number(0, 2).text(topic).text('json').pairs(metadata).bytes());
+    this.out.raw(one);
+    this.summary.raw(one);
     return this;
   }
   metadata(name: string, map: Record<string, string>): this {
-    this.out.raw(record(12, new Out().text(name).pairs(map).bytes()));
+    const one = record(12, new Out().text(name).pairs(map).bytes());
+    this.summary.raw(record(13, this.place(one).text(name).bytes()));
+    this.out.raw(one);
     return this;
   }
   attachment(name: string, data: Uint8Array): this {
     const content = new Out().number(0, 16).text(name).text('').number(data.length, 8).raw(data).number(0, 4);
-    this.out.raw(record(9, content.bytes()));
+    const one = record(9, content.bytes());
+    this.summary.raw(record(10, this.place(one).number(0, 16).number(data.length, 8).text(name).text('').bytes()));
+    this.out.raw(one);
     return this;
   }
   /** One chunk with its index. */
@@ -71,26 +82,39 @@ export class McapBytes {
     const inside = new Out();
     for (const m of messages) {
       const data = typeof m.data === 'string' ? utf8.encode(m.data) : m.data;
-      const ns = Math.round(m.timeS * 1e9);
-      inside.raw(record(5, new Out().number(m.channel, 2).number(0, 4).number(ns, 8).number(ns, 8).raw(data).bytes()));
+      const head = new Out().number(m.channel, 2).number(0, 4).number(nsOf(m), 8).number(nsOf(m), 8);
+      inside.raw(record(5, head.raw(data).bytes()));
     }
     const bytes = inside.bytes();
-    const times = messages.map((m) => Math.round(m.timeS * 1e9));
-    const content = new Out().number(Math.min(...times), 8).number(Math.max(...times), 8);
-    content.number(bytes.length, 8).number(crc32(bytes), 4).text('').number(bytes.length, 8).raw(bytes);
-    this.out.raw(record(6, content.bytes()));
-    for (const id of new Set(messages.map((m) => m.channel)))
-      this.out.raw(record(7, new Out().number(id, 2).number(0, 4).bytes()));
+    const times = messages.map(nsOf);
+    const between = () => new Out().number(Math.min(...times), 8).number(Math.max(...times), 8);
+    const content = between().number(bytes.length, 8).number(crc32(bytes), 4).text('').number(bytes.length, 8);
+    const one = record(6, content.raw(bytes).bytes());
+    const ids = [...new Set(messages.map((m) => m.channel))];
+    const indices = new Out();
+    for (const id of ids) indices.number(id, 2).number(0, 8);
+    const place = between().raw(this.place(one).bytes()).number(indices.bytes().length, 4).raw(indices.bytes());
+    this.summary.raw(record(8, place.number(0, 8).text('').number(0, 16).bytes()));
+    this.out.raw(one);
+    for (const id of ids) this.out.raw(record(7, new Out().number(id, 2).number(0, 4).bytes()));
     return this;
   }
   end(): Uint8Array {
-    return new Out()
+    const data = new Out()
       .raw(this.open())
       .raw(record(15, new Out().number(0, 4).bytes()))
       .bytes();
+    const footer = new Out().number(2, 1).number(20, 8).number(data.length, 8).number(0, 8);
+    const covered = new Out().raw(this.summary.bytes()).raw(footer.bytes()).bytes();
+    return new Out().raw(data).raw(covered).number(crc32(covered), 4).raw(magic).bytes();
   }
   /** As a program leaves it that dies. */
   open(): Uint8Array {
     return this.out.bytes();
+  }
+
+  /** Where the next record will be, and its length. */
+  private place(one: Uint8Array): Out {
+    return new Out().number(this.out.bytes().length, 8).number(one.length, 8);
   }
 }

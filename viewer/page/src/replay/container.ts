@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reads an MCAP file (mcap.dev/spec) that lies in memory: whole, without an end, or damaged. The records are walked
-// once; a chunk is unpacked when one of its messages is wanted, and checked against its checksum.
+// Reads an MCAP file where it lies: whole, without an end, or damaged. A chunk is read and unpacked when one of its
+// messages is wanted, and checked against its checksum.
 import { decompress } from 'fzstd';
+import type { ByteSource } from './byte_source';
+import { type Chunk, type ContainerIndex, indexOf } from './container_index';
+import { Bytes, ContainerError, crc32, messageHead, mostChunkBytes, op, recordsOf } from './mcap_records';
 
-const magic = [0x89, 0x4d, 0x43, 0x41, 0x50, 0x30, 0x0d, 0x0a];
-const op = { header: 1, footer: 2, channel: 4, message: 5, chunk: 6, index: 7, attachment: 9, metadata: 12, end: 15 };
-const recordHead = 9;
-const messageHead = 22;
-/** No writer makes larger chunks. */
-const mostChunkBytes = 64 << 20;
-
-export class ContainerError extends Error {}
+/** Chunks that lie so close are read together, up to so many bytes. */
+const gapBytes = 256 << 10;
+const togetherBytes = 4 << 20;
+const mostDamageLines = 100;
 
 export interface Message {
   channel: number;
@@ -18,85 +17,60 @@ export interface Message {
   data: Uint8Array;
 }
 
-export interface Chunk {
-  firstS: number;
-  lastS: number;
-  /** Bytes before compression, and the checksum of them. */
-  size: number;
-  crc: number;
-  compression: string;
-  packed: Uint8Array;
-  /** Channels with messages in it; null: not said, so it may be any. */
-  channels: Set<number> | null;
-}
-
-/** Reads numbers and strings from front to back; throws when the bytes end too early. */
-class Bytes {
-  at = 0;
-  private readonly view: DataView;
-
-  constructor(private readonly bytes: Uint8Array) {
-    this.view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
-  }
-  get left(): number {
-    return this.bytes.length - this.at;
-  }
-  take(n: number): Uint8Array {
-    if (n > this.left) throw new ContainerError('ends too early');
-    this.at += n;
-    return this.bytes.subarray(this.at - n, this.at);
-  }
-  private number(size: number): number {
-    this.take(size);
-    return this.at - size;
-  }
-  u8(): number {
-    return this.view.getUint8(this.number(1));
-  }
-  u16(): number {
-    return this.view.getUint16(this.number(2), true);
-  }
-  u32(): number {
-    return this.view.getUint32(this.number(4), true);
-  }
-  /** Exact up to 2^53. */
-  u64(): number {
-    const low = this.u32();
-    return low + this.u32() * 4294967296;
-  }
-  text(): string {
-    return new TextDecoder().decode(this.take(this.u32()));
-  }
-  pairs(): Map<string, string> {
-    const inside = new Bytes(this.take(this.u32()));
-    const out = new Map<string, string>();
-    while (inside.left > 0) out.set(inside.text(), inside.text());
-    return out;
-  }
+export interface TopicMessage extends Message {
+  topic: string;
 }
 
 export class Container {
-  readonly channels = new Map<string, number>();
-  private readonly said = new Map<string, Map<string, string>>();
-  readonly metadata = new Map<string, Map<string, string>>();
-  readonly attachments = new Map<string, Uint8Array>();
-  /** The file was ended properly. */
-  ended = false;
-  /** What could not be read, one line each. */
-  readonly damage: string[] = [];
-  readonly chunks: Chunk[] = [];
   /** How many chunks were unpacked until now. */
   unpackedChunks = 0;
-  private last: { chunk: Chunk; bytes: Uint8Array } | null = null;
 
-  constructor(private readonly bytes: Uint8Array) {
-    if (magic.some((b, k) => bytes[k] !== b)) throw new ContainerError('this is no recorded session');
-    this.walk();
+  private constructor(
+    private readonly source: ByteSource,
+    private readonly index: ContainerIndex,
+  ) {}
+
+  /** Throws ContainerError when it is no MCAP file. */
+  static async open(source: ByteSource): Promise<Container> {
+    return new Container(source, await indexOf(source));
+  }
+
+  get channels(): ReadonlyMap<string, number> {
+    return this.index.channels;
+  }
+  get metadata(): ReadonlyMap<string, ReadonlyMap<string, string>> {
+    return this.index.metadata;
+  }
+  get chunks(): readonly Chunk[] {
+    return this.index.chunks;
+  }
+  /** The file was ended properly. */
+  get ended(): boolean {
+    return this.index.ended;
+  }
+  /** What could not be read, one line each. */
+  get damage(): readonly string[] {
+    return this.index.damage;
   }
 
   /** What whole numbers of a topic are multiples of; 1 if it does not say. */
   unitOf(topic: string): number {
-    return Number(this.said.get(topic)?.get('unit') ?? 1) || 1;
+    return Number(this.index.said.get(topic)?.get('unit') ?? 1) || 1;
+  }
+
+  has(attachment: string): boolean {
+    return this.index.attachments.has(attachment);
+  }
+
+  /** Throws ContainerError if there is none of that name, or it is damaged. */
+  async attachment(name: string): Promise<Uint8Array> {
+    const place = this.index.attachments.get(name);
+    if (!place) throw new ContainerError(`${name} is missing in the recording`);
+    const r = new Bytes(await this.source.read(place.at, place.length));
+    r.take(16);
+    r.text();
+    r.text();
+    return r.take(r.u64());
   }
 
   /** Chunks with messages of a channel that overlap a time. */
@@ -109,126 +83,91 @@ export class Container {
   }
 
   /** All whole messages of the topics, in the order of the file. */
-  *messages(topics: readonly string[]): Generator<Message & { topic: string }> {
+  async *messages(topics: readonly string[]): AsyncGenerator<TopicMessage> {
     const names = new Map(topics.map((t) => [this.channels.get(t) ?? -1, t]));
     const wanted = new Set(topics.flatMap((t) => this.chunksOf(t)));
-    for (const chunk of this.chunks)
-      if (wanted.has(chunk))
-        for (const m of this.unpack(chunk)) {
+    for (const group of neighbours(this.chunks.filter((c) => wanted.has(c)))) {
+      const at = group[0]!.at;
+      const last = group.at(-1)!;
+      const bytes = await this.source.read(at, last.at + last.length - at);
+      for (const chunk of group)
+        for (const m of this.messagesIn(chunk, bytes.subarray(chunk.at - at, chunk.at - at + chunk.length))) {
           const topic = names.get(m.channel);
           if (topic !== undefined) yield { ...m, topic };
         }
+    }
   }
 
   /** Messages of one chunk; none if it is damaged. */
-  unpack(chunk: Chunk): Message[] {
-    const bytes = this.content(chunk);
+  async unpack(chunk: Chunk): Promise<Message[]> {
+    return this.messagesIn(chunk, await this.source.read(chunk.at, chunk.length));
+  }
+
+  private messagesIn(chunk: Chunk, record: Uint8Array): Message[] {
     const out: Message[] = [];
-    if (!bytes) return out;
-    const records = new Bytes(bytes);
-    while (records.left >= recordHead) {
-      const kind = records.u8();
-      const length = records.u64();
-      if (length > records.left) break;
-      const record = new Bytes(records.take(length));
-      if (kind !== op.message || length < messageHead) continue;
-      const channel = record.u16();
-      record.u32();
-      const timeS = record.u64() * 1e-9;
-      record.u64();
-      out.push({ channel, timeS, data: record.take(record.left) });
+    for (const { kind, content } of recordsOf(this.content(chunk, record))) {
+      if (kind !== op.message || content.length < messageHead) continue;
+      const r = new Bytes(content);
+      const channel = r.u16();
+      r.u32();
+      const timeS = r.u64() * 1e-9;
+      r.u64();
+      out.push({ channel, timeS, data: r.take(r.left) });
     }
     return out;
   }
 
-  private content(chunk: Chunk): Uint8Array | null {
-    if (this.last?.chunk === chunk) return this.last.bytes;
+  /** The records inside a chunk; nothing if it is damaged. */
+  private content(chunk: Chunk, record: Uint8Array): Uint8Array {
     this.unpackedChunks++;
     try {
-      if (chunk.compression !== 'zstd' && chunk.compression !== '')
-        throw new ContainerError(`is compressed by ${chunk.compression}, which this page cannot read`);
-      const bytes = chunk.compression === '' ? chunk.packed : decompress(chunk.packed, new Uint8Array(chunk.size));
-      if (bytes.length !== chunk.size || crc32(bytes) !== chunk.crc) throw new ContainerError('is damaged');
-      this.last = { chunk, bytes };
-      return bytes;
+      return contentOf(record);
     } catch (e) {
       const why = e instanceof ContainerError ? e.message : 'is damaged';
       this.note(`${chunk.firstS.toFixed(1)} s to ${chunk.lastS.toFixed(1)} s ${why}`);
-      return null;
+      return new Uint8Array(0);
     }
   }
 
   private note(line: string): void {
-    if (this.damage.length < 100 && !this.damage.includes(line)) this.damage.push(line);
+    const { damage } = this.index;
+    if (damage.length < mostDamageLines && !damage.includes(line)) damage.push(line);
   }
+}
 
-  private walk(): void {
-    let at = magic.length;
-    while (at + recordHead <= this.bytes.length) {
-      const head = new Bytes(this.bytes.subarray(at, at + recordHead));
-      const kind = head.u8();
-      const length = head.u64();
-      if (kind === op.end) {
-        this.ended = true;
-        return;
-      }
-      if (kind === 0 || length > this.bytes.length - at - recordHead) {
-        this.note('the file is cut off or damaged; what is before can be seen');
-        return;
-      }
-      try {
-        this.record(kind, new Bytes(this.bytes.subarray(at + recordHead, at + recordHead + length)));
-      } catch (e) {
-        if (!(e instanceof ContainerError)) throw e;
-        this.note(`the record at byte ${at} ${e.message}`);
-      }
-      at += recordHead + length;
-    }
-  }
+/** Of a chunk record, unpacked. */
+function contentOf(record: Uint8Array): Uint8Array {
+  const r = new Bytes(record);
+  r.take(16);
+  const size = r.u64();
+  if (size > mostChunkBytes) throw new ContainerError('is larger than any chunk');
+  const crc = r.u32();
+  const compression = r.text();
+  const packed = r.take(r.u64());
+  if (compression !== 'zstd' && compression !== '')
+    throw new ContainerError(`is compressed by ${compression}, which this page cannot read`);
+  const bytes = compression === '' ? packed : decompress(packed, new Uint8Array(size));
+  if (bytes.length !== size || crc32(bytes) !== crc) throw new ContainerError('is damaged');
+  return bytes;
+}
 
-  private record(kind: number, r: Bytes): void {
-    if (kind === op.channel) {
-      const id = r.u16();
-      r.u16();
-      const topic = r.text();
-      r.text();
-      this.channels.set(topic, id);
-      this.said.set(topic, r.pairs());
-    } else if (kind === op.metadata) this.metadata.set(r.text(), r.pairs());
-    else if (kind === op.attachment) {
-      r.u64();
-      r.u64();
-      const name = r.text();
-      r.text();
-      this.attachments.set(name, r.take(r.u64()));
-    } else if (kind === op.chunk) {
-      const times = { firstS: r.u64() * 1e-9, lastS: r.u64() * 1e-9 };
-      const size = r.u64();
-      if (size > mostChunkBytes) throw new ContainerError('is larger than any chunk');
-      const crc = r.u32();
-      const compression = r.text();
-      this.chunks.push({ ...times, size, crc, compression, packed: r.take(r.u64()), channels: null });
-    } else if (kind === op.index) {
-      const chunk = this.chunks[this.chunks.length - 1];
-      if (chunk) (chunk.channels ??= new Set()).add(r.u16());
+/** Chunks in the order of the file, in groups that are read together. */
+function* neighbours(chunks: readonly Chunk[]): Generator<Chunk[]> {
+  let group: Chunk[] = [];
+  for (const c of chunks) {
+    const first = group[0];
+    const last = group.at(-1);
+    const near = first && last && c.at - last.at - last.length < gapBytes && c.at + c.length - first.at < togetherBytes;
+    if (first && !near) {
+      yield group;
+      group = [];
     }
+    group.push(c);
   }
+  if (group.length > 0) yield group;
 }
 
 /** An attachment that was compressed by itself. */
 export function unpacked(attachment: Uint8Array): Uint8Array {
   return decompress(attachment);
-}
-
-const crcTable = Uint32Array.from({ length: 256 }, (_, n) => {
-  let c = n;
-  for (let k = 0; k < 8; k++) c = c & 1 ? 0xedb88320 ^ (c >>> 1) : c >>> 1;
-  return c;
-});
-
-/** Of IEEE 802.3. */
-export function crc32(bytes: Uint8Array): number {
-  let c = 0xffffffff;
-  for (const b of bytes) c = crcTable[(c ^ b) & 0xff]! ^ (c >>> 8);
-  return (c ^ 0xffffffff) >>> 0;
 }

@@ -18,10 +18,10 @@ const curveHigh = 120;
 const colours = ['#1f6fb2', '#c2410c'];
 
 /** The middle of the field at a time, as an image of that width. The view shows that time afterwards. */
-function pictureAt(view: SessionView, timeS: number): HTMLCanvasElement {
+async function pictureAt(view: SessionView, timeS: number): Promise<HTMLCanvasElement> {
   const source = view.stage.canvas;
   const picture = el('canvas', { width: String(pictureWide), height: String(pictureHigh) });
-  view.seek(timeS);
+  view.show(await view.find(timeS));
   // What fades has a second to do so. The context keeps its picture only until the task ends.
   view.draw(performance.now(), 1);
   const wide = Math.min(source.width, (source.height * pictureWide) / pictureHigh);
@@ -111,18 +111,20 @@ function comparison(review: Review): HTMLElement[] {
 }
 
 /** Takes the view to each key moment. */
-export function debrief(session: RecordedSession, view: SessionView, notes: readonly Note[]): HTMLElement {
+export async function debrief(
+  session: RecordedSession,
+  view: SessionView,
+  notes: readonly Note[],
+): Promise<HTMLElement> {
   const { timeline, durationS } = session;
   const review = timeline.reviews.at(-1) ?? null;
-  const strip = keyMoments(timeline, review, durationS).map((m) =>
-    el(
-      'figure',
-      m.bad ? { 'data-bad': 'true' } : {},
-      pictureAt(view, m.timeS),
-      el('figcaption', {}, `${m.bad ? '✗ ' : ''}${clockText(m.timeS)}  ${m.text}`),
-    ),
-  );
-  view.seek(durationS);
+  const strip: HTMLElement[] = [];
+  for (const m of keyMoments(timeline, review, durationS)) {
+    const picture = await pictureAt(view, m.timeS);
+    const caption = el('figcaption', {}, `${m.bad ? '✗ ' : ''}${clockText(m.timeS)}  ${m.text}`);
+    strip.push(el('figure', m.bad ? { 'data-bad': 'true' } : {}, picture, caption));
+  }
+  view.show(await view.find(durationS));
   const state = view.reading.state;
   const print = el('button', {}, 'Print');
   print.onclick = () => window.print();

@@ -3,10 +3,10 @@
 import { loadBundle } from '../bundle';
 import { RunGhost } from './run_ghost';
 import { RecordedSession } from './session';
-import { fetchSession } from './source';
+import { sessionOf } from './source';
 
 /** Throws if there is no such recording, or it cannot be read. */
 export async function openGhost(name: string): Promise<RunGhost> {
-  const session = new RecordedSession(name, await fetchSession(name));
+  const session = await RecordedSession.open(name, await sessionOf(name));
   return new RunGhost(session, await loadBundle(session.bundle, name));
 }

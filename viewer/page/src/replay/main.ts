@@ -7,12 +7,13 @@ import './replay.css';
 import { loadBundle } from '../bundle';
 import { el } from '../hud/dom';
 import { type QualityName, qualityNames } from '../options';
+import { BlobSource } from './byte_source';
 import { openingPanel } from './opening';
 import { Replay } from './replay';
 import { RunGhost } from './run_ghost';
 import { RecordedSession } from './session';
 import { Side } from './side';
-import { fetchSession, type ListedSession, listSessions, refuseLarge } from './source';
+import { type ListedSession, listSessions, sessionOf } from './source';
 
 const query = new URLSearchParams(location.search);
 const quality: QualityName | null = qualityNames.find((n) => n === query.get('quality')) ?? null;
@@ -21,7 +22,7 @@ const hud = document.getElementById('hud')!;
 const failed = (e: unknown): string => (e instanceof Error ? e.message : String(e));
 
 async function named(name: string): Promise<RecordedSession> {
-  return new RecordedSession(name, await fetchSession(name));
+  return RecordedSession.open(name, await sessionOf(name));
 }
 
 async function open(session: RecordedSession, kept: boolean): Promise<void> {
@@ -59,9 +60,8 @@ async function ask(problem = ''): Promise<void> {
 
 async function openFile(file: File): Promise<void> {
   try {
-    refuseLarge(file.size);
-    const bytes = new Uint8Array(await file.arrayBuffer());
-    await open(new RecordedSession(file.name.replace(/\.(insula|mcap)$/, ''), bytes), false);
+    const name = file.name.replace(/\.(insula|mcap)$/, '');
+    await open(await RecordedSession.open(name, new BlobSource(file)), false);
   } catch (e) {
     await ask(`${file.name}: ${failed(e)}`);
   }

@@ -43,6 +43,8 @@ export interface ReplayStatus {
   seek_chunks_max: number;
 }
 
+const reasonOf = (e: unknown): string => (e instanceof Error ? e.message : String(e));
+
 /** The live exercise with this run's tools over it. */
 function ghostLink(kept: boolean, session: RecordedSession): HTMLElement[] {
   const href = `./?ghost=${encodeURIComponent(session.name)}`;
@@ -97,7 +99,7 @@ export class Replay {
       arrows: (on) => sides.forEach((s) => (s.view.arrows.root.visible = on)),
       note: () => this.askNote(),
       video: () => void this.recordVideo(),
-      debrief: () => this.showDebrief(),
+      debrief: () => void this.showDebrief(),
       moments: () => this.showMoments(document.body.dataset.moments !== 'on'),
     });
     this.moments = new MomentsPanel(
@@ -129,37 +131,49 @@ export class Replay {
     if (!this.first.session.ended) this.say('This recording was not ended; it is shown as far as it goes.');
     void this.notes.load();
     const pace = new Pace((fps, seconds) => this.sides.forEach((s) => s.view.observe(fps, seconds)));
-    this.first.view.stage.renderer.setAnimationLoop((now: number) => {
+    let drawing = false;
+    const picture = async (now: number) => {
       const ms = pace.begin(now);
-      this.draw(now, Math.min(0.25, ms / 1000));
+      await this.draw(now, Math.min(0.25, ms / 1000));
       pace.count(now, true);
-      if (!this.status.ready) {
-        this.status.ready = true;
-        this.status.read_ms = readMs;
-        this.status.timeline_chunks = this.first.session.timelineChunks;
-        this.status.chunks_unpacked_to_open = this.first.session.unpackedChunks;
-        this.status.open_ms = performance.now();
-        if (this.query.has('debrief')) this.showDebrief();
-      }
+      if (!this.status.ready) this.opened(readMs);
+    };
+    this.first.view.stage.renderer.setAnimationLoop((now: number) => {
+      if (drawing) return;
+      drawing = true;
+      picture(now)
+        .catch((e: unknown) => this.say(`The recording cannot be read: ${reasonOf(e)}`))
+        .finally(() => (drawing = false));
     });
   }
 
-  private draw(now: number, dtS: number): void {
+  private opened(readMs: number): void {
+    this.status.ready = true;
+    this.status.read_ms = readMs;
+    this.status.timeline_chunks = this.first.session.timelineChunks;
+    this.status.chunks_unpacked_to_open = this.first.session.unpackedChunks;
+    this.status.open_ms = performance.now();
+    if (this.query.has('debrief')) void this.showDebrief();
+  }
+
+  /** What is at hand is drawn at once; a part of the file that is not takes a moment. */
+  private async draw(now: number, dtS: number): Promise<void> {
     this.clock.advance(dtS);
     const { timeS } = this.clock;
     const unpacked = this.first.session.unpackedChunks;
     const from = performance.now();
-    for (const s of this.sides) s.seek(timeS);
+    const { jumpedMs } = this;
+    this.jumpedMs = null;
+    await Promise.all(this.sides.map((s) => s.seek(timeS)));
     const decodeMs = performance.now() - from;
     for (const s of this.sides) s.view.draw(now, Math.min(0.1, dtS));
     this.transport.draw(this.video.running);
     this.moments.at(timeS);
-    if (this.jumpedMs !== null) {
-      this.status.seek_ms = performance.now() - this.jumpedMs;
+    if (jumpedMs !== null) {
+      this.status.seek_ms = performance.now() - jumpedMs;
       this.status.decode_max_ms = Math.max(this.status.decode_max_ms, decodeMs);
       this.status.seek_max_ms = Math.max(this.status.seek_max_ms, this.status.seek_ms);
       this.status.seek_chunks_max = Math.max(this.status.seek_chunks_max, this.first.session.unpackedChunks - unpacked);
-      this.jumpedMs = null;
     }
     this.status.pictures++;
     this.status.time_s = timeS;
@@ -195,9 +209,13 @@ export class Replay {
     document.body.dataset.moments = on ? 'on' : 'off';
   }
 
-  private showDebrief(): void {
+  private async showDebrief(): Promise<void> {
     this.clock.playing = false;
-    this.hud.append(debrief(this.first.session, this.first.view, this.notes.all));
+    try {
+      this.hud.append(await debrief(this.first.session, this.first.view, this.notes.all));
+    } catch (e) {
+      this.say(`The recording cannot be read: ${reasonOf(e)}`);
+    }
   }
 
   private async recordVideo(): Promise<void> {
@@ -208,7 +226,7 @@ export class Replay {
       this.status.video_bytes = video.size;
       download(`${this.first.session.name}.webm`, video);
     } catch (e) {
-      this.say(`No video: ${e instanceof Error ? e.message : String(e)}`);
+      this.say(`No video: ${reasonOf(e)}`);
     }
   }
 

@@ -4,6 +4,7 @@ import type { Bundle } from '../bundle_types';
 import { GhostTools } from '../ghost_tools';
 import { toolState } from '../hand_tool';
 import { quaternion, vector } from '../world';
+import type { Moment } from './pictures';
 import type { RecordedSession } from './session';
 
 export class RunGhost {
@@ -15,6 +16,9 @@ export class RunGhost {
   private idOf: Map<number, string>;
   private readonly beganS: number;
   private field: Bundle | null = null;
+  /** What is drawn, and whether a later one is being read. */
+  private moment: Moment | null = null;
+  private reading = false;
 
   /** recorded: the recording's bundle. */
   constructor(
@@ -29,8 +33,8 @@ export class RunGhost {
   show(bundle: Bundle, timeS: number): void {
     if (bundle !== this.field) this.begin(bundle);
     this.ghosts.hide();
-    const at = this.beganS + timeS;
-    const moment = at <= this.session.durationS ? this.session.pictures.at(at) : null;
+    if (!this.reading) void this.read(this.beganS + timeS);
+    const { moment } = this;
     if (!moment) return;
     for (const b of moment.after.frame.tool) {
       const index = this.indexOf.get(this.idOf.get(b.index) ?? '');
@@ -46,6 +50,19 @@ export class RunGhost {
   /** Number of its tools in the field. */
   get shown(): number {
     return this.ghosts.shown;
+  }
+
+  /** atS: of the recording. */
+  private async read(atS: number): Promise<void> {
+    this.reading = true;
+    try {
+      this.moment = atS <= this.session.durationS ? await this.session.pictures.at(atS) : null;
+    } catch {
+      // The recording cannot be read any more; the ghost is not essential.
+      this.moment = null;
+    } finally {
+      this.reading = false;
+    }
   }
 
   private begin(bundle: Bundle): void {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A recorded session in memory: what it says of itself, its scene, pictures and timeline. Times are seconds since the
+// A recorded session: what it says of itself, its scene, pictures and timeline. Times are seconds since the
 // recording began.
 import type { BundleSource } from '../bundle';
-import { Container, ContainerError, unpacked } from './container';
+import type { ByteSource } from './byte_source';
+import { Container, unpacked } from './container';
+import { ContainerError } from './mcap_records';
 import { Pictures } from './pictures';
 import { Timeline } from './timeline';
 
@@ -12,19 +14,13 @@ const bundlePrefix = 'bundle/';
 class RecordedBundle implements BundleSource {
   constructor(private readonly container: Container) {}
 
-  address(name: string): string {
+  async address(name: string): Promise<string> {
     const type = name.endsWith('.svg') ? 'image/svg+xml' : 'application/octet-stream';
-    return URL.createObjectURL(new Blob([this.bytes(name)], { type }));
+    return URL.createObjectURL(new Blob([await this.read(name)], { type }));
   }
 
-  read(name: string): Promise<ArrayBuffer> {
-    return Promise.resolve(this.bytes(name).buffer);
-  }
-
-  private bytes(name: string): Uint8Array<ArrayBuffer> {
-    const packed = this.container.attachments.get(`${bundlePrefix}${name}.zst`);
-    if (!packed) throw new ContainerError(`${name} is missing in the recording`);
-    return Uint8Array.from(unpacked(packed));
+  async read(name: string): Promise<ArrayBuffer> {
+    return Uint8Array.from(unpacked(await this.container.attachment(`${bundlePrefix}${name}.zst`))).buffer;
   }
 }
 
@@ -32,25 +28,28 @@ export class RecordedSession {
   readonly title: string;
   readonly began: string;
   readonly pictures: Pictures;
-  readonly timeline: Timeline;
   readonly durationS: number;
   readonly bundle: BundleSource;
-  private readonly container: Container;
 
   /** Throws ContainerError when the bytes are no session, or one without pictures. */
-  constructor(
-    readonly name: string,
-    bytes: Uint8Array,
-  ) {
-    this.container = new Container(bytes);
-    const about = this.container.metadata.get('session');
+  static async open(name: string, source: ByteSource): Promise<RecordedSession> {
+    const container = await Container.open(source);
+    const about = container.metadata.get('session');
     if (!about) throw new ContainerError('the recording does not say which scene it has');
-    if (!this.container.attachments.has(`${bundlePrefix}scene.json.zst`))
+    if (!container.has(`${bundlePrefix}scene.json.zst`))
       throw new ContainerError('this recording has no pictures; it was made by an earlier version');
+    return new RecordedSession(name, about, container, await Timeline.read(container));
+  }
+
+  private constructor(
+    readonly name: string,
+    about: ReadonlyMap<string, string>,
+    private readonly container: Container,
+    readonly timeline: Timeline,
+  ) {
     this.title = about.get('title') ?? '';
     this.began = about.get('began') ?? '';
-    this.pictures = new Pictures(this.container);
-    this.timeline = new Timeline(this.container);
+    this.pictures = new Pictures(container);
     this.timelineChunks = this.container.unpackedChunks;
     this.durationS = this.container.chunks.reduce((t, c) => Math.max(t, c.lastS), 0);
     this.bundle = new RecordedBundle(this.container);

@@ -50,11 +50,16 @@ export class SessionView {
     return bundle;
   }
 
-  /** Shows the recording at a time. False: it has no picture there that can be read. */
-  seek(timeS: number): boolean {
-    this.moment = this.session?.pictures.at(timeS) ?? null;
-    if (!this.moment) return false;
-    const { before, after, share } = this.moment;
+  /** What the recording has at a time; null: no picture there that can be read. */
+  async find(timeS: number): Promise<Moment | null> {
+    return (await this.session?.pictures.at(timeS)) ?? null;
+  }
+
+  /** False: there is nothing to show. */
+  show(moment: Moment | null): boolean {
+    this.moment = moment;
+    if (!moment) return false;
+    const { before, after, share } = moment;
     this.playback.hold(before.frame, after.frame, share);
     this.reading.read(share > 0.5 ? after.frame : before.frame);
     return true;

@@ -38,10 +38,10 @@ export class Side {
     if (this.ghost) this.view.stage.scene.add(this.ghost.root);
   }
 
-  /** pageS: of the page. */
-  seek(pageS: number): void {
+  /** Shows the time that the page is at, s. */
+  async seek(pageS: number): Promise<void> {
     const timeS = Math.min(this.session.durationS, Math.max(0, pageS + this.shiftS));
-    const shown = this.view.seek(timeS);
+    const shown = this.view.show(await this.view.find(timeS));
     const lines = [...(shown ? [] : ['There is no picture at this time.']), ...this.session.damage];
     setText(this.problem, lines.join('\n'));
     const { reading, moment } = this.view;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Where recorded sessions come from: the gateway of this machine, or a file that a person chooses.
 import { finite, list, text } from '../hud/state';
+import { answered, type ByteSource, RemoteSource } from './byte_source';
 
 export interface Note {
   timeS: number;
@@ -14,33 +15,14 @@ export interface ListedSession {
 
 const at = (name: string, what = '') => new URL(`sessions/${encodeURIComponent(name)}${what}`, location.href).href;
 
-async function answer(request: Promise<Response>): Promise<Response> {
-  const response = await request;
-  if (!response.ok) throw new Error((await response.text()).trim() || `${response.status} ${response.statusText}`);
-  return response;
-}
-
 /** Newest first. */
 export async function listSessions(): Promise<ListedSession[]> {
-  const response = await answer(fetch(new URL('sessions', location.href), { cache: 'no-store' }));
+  const response = await answered(fetch(new URL('sessions', location.href), { cache: 'no-store' }));
   return list(await response.json()).map((s) => ({ name: text(s.name), bytes: finite(s.bytes) ?? 0 }));
 }
 
-/** A page holds the whole file in memory. Ten minutes have some 70 MB. */
-const largestBytes = 1e9;
-
-/** Throws if a recording is too large for a page. */
-export function refuseLarge(bytes: number): void {
-  if (bytes <= largestBytes) return;
-  const has = `It has ${(bytes / 1e9).toFixed(1)} GB, and this page shows recordings of up to 1 GB.`;
-  throw new Error(`${has} insula session export, insula score and insula rerun read any size.`);
-}
-
-export async function fetchSession(name: string): Promise<Uint8Array> {
-  const response = await answer(fetch(at(name), { cache: 'no-store' }));
-  refuseLarge(Number(response.headers.get('content-length') ?? 0));
-  return new Uint8Array(await response.arrayBuffer());
-}
+/** A recording of the gateway, which is read as far as it is needed. */
+export const sessionOf = (name: string): Promise<ByteSource> => RemoteSource.open(at(name));
 
 export function parseNotes(json: unknown): Note[] {
   return list(json)
@@ -58,12 +40,12 @@ export const notesJson = (notes: readonly Note[]): string =>
 
 /** Notes beside a session of the gateway. */
 export async function fetchNotes(name: string): Promise<Note[]> {
-  return parseNotes(await (await answer(fetch(at(name, '/notes'), { cache: 'no-store' }))).json());
+  return parseNotes(await (await answered(fetch(at(name, '/notes'), { cache: 'no-store' }))).json());
 }
 
 export async function storeNotes(name: string, notes: readonly Note[]): Promise<void> {
   const headers = { 'content-type': 'application/json' };
-  await answer(fetch(at(name, '/notes'), { method: 'PUT', headers, body: notesJson(notes) }));
+  await answered(fetch(at(name, '/notes'), { method: 'PUT', headers, body: notesJson(notes) }));
 }
 
 /** Gives a file to the person. */

@@ -3,7 +3,7 @@
 // recording began.
 import { finite, type Json, list, text } from '../hud/state';
 import { sim_event_t } from '../lcm';
-import type { Container } from './container';
+import type { Container, TopicMessage } from './container';
 
 export interface Happening {
   timeS: number;
@@ -67,15 +67,22 @@ export class Timeline {
   /** Of passes that have ended, in order. */
   readonly reviews: Review[];
 
-  constructor(container: Container) {
+  static async read(container: Container): Promise<Timeline> {
+    const topics = ['SIM_EVENT', 'HANDS', 'CHANNELS', 'METRICS', 'REVIEW'];
+    const messages: TopicMessage[] = [];
+    for await (const m of container.messages(topics)) messages.push(m);
+    return new Timeline(container.metadata, messages);
+  }
+
+  private constructor(metadata: Container['metadata'], messages: readonly TopicMessage[]) {
     const hands = new Samples();
     const channels = new Samples();
     const metrics = new Map<string, { about: Pick<Series, 'id' | 'text' | 'unit'>; samples: Samples }>();
-    const names = [...(container.metadata.get('channels') ?? new Map<string, string>()).values()];
-    const called = container.metadata.get('metrics') ?? new Map<string, string>();
+    const names = [...(metadata.get('channels') ?? new Map<string, string>()).values()];
+    const called = metadata.get('metrics') ?? new Map<string, string>();
     const reviews: Json[] = [];
     let pass = 0;
-    for (const m of container.messages(['SIM_EVENT', 'HANDS', 'CHANNELS', 'METRICS', 'REVIEW'])) {
+    for (const m of messages) {
       if (m.topic === 'SIM_EVENT') {
         this.addEvent(m.timeS, m.data);
         continue;
