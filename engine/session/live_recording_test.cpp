@@ -3,6 +3,7 @@
 #include "engine/session/live_recording.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <set>
 #include <thread>
@@ -33,21 +34,42 @@ TEST(LiveRecording, SessionsThatBeginAtTheSameMomentHaveFilesOfTheirOwn) {
   EXPECT_EQ(all.size(), std::size_t(sessions * each));
 }
 
-TEST(LiveRecording, APlaceThatTakesNoFileEndsNoSession) {
-  const test_files::TempFolder folder;
-  const fs::path file = folder.write("file", "no folder");
-  EXPECT_THROW(new_session_file(file / "sessions", example), InputError);
-  const auto s = test::load(example);
-  ASSERT_TRUE(s);
-  LiveRecording recording(file / "sessions", *s, {example, "", "live"});
+/// No recording can be made in the folder, and the session goes on without one.
+void expect_no_recording(const fs::path& folder, Simulation& s) {
+  EXPECT_THROW(new_session_file(folder, example), InputError);
+  LiveRecording recording(folder, s, {example, "", "live"});
   EXPECT_NE(recording.failure(), "");
   EXPECT_EQ(recording.file(), "");
-  s->step();
-  recording.step(*s);
-  recording.end_pass(*s);
+  s.step();
+  recording.step(s);
+  recording.end_pass(s);
   recording.note({});
-  recording.close(*s);
-  EXPECT_EQ(s->steps(), 1);
+  recording.close(s);
+  EXPECT_EQ(s.steps(), 1);
+}
+
+TEST(LiveRecording, APlaceThatIsNoFolderEndsNoSession) {
+  const test_files::TempFolder folder;
+  const auto s = test::load(example);
+  ASSERT_TRUE(s);
+  expect_no_recording(folder.write("file", "no folder") / "sessions", *s);
+}
+
+TEST(LiveRecording, AReadOnlyFolderEndsNoSession) {
+  const test_files::TempFolder folder;
+  const auto s = test::load(example);
+  ASSERT_TRUE(s);
+  fs::permissions(folder.path(), fs::perms(0555));
+  // The superuser may write everywhere, so this is done as somebody else.
+  constexpr uid_t nobody = 65534;
+  const uid_t user = geteuid();
+  if (user == 0) {
+    ASSERT_EQ(seteuid(nobody), 0);
+  }
+  expect_no_recording(folder.path(), *s);
+  ASSERT_EQ(seteuid(user), 0);
+  EXPECT_TRUE(fs::is_empty(folder.path()));
+  fs::permissions(folder.path(), fs::perms(0755));
 }
 
 TEST(LiveRecording, ASessionWithoutAStepLeavesNoFile) {

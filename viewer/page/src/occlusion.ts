@@ -18,23 +18,76 @@ export interface Tissue {
 }
 
 const reachM = 0.008;
-const curvatureReachM = 0.004;
+/** Nearer surfels count one by one; beyond, those of a cell that face the same way count as one. */
+const nearM = 0.004;
+const cellM = 0.002;
+
+/** Places, unit normals and areas of small discs. */
+interface Surfels {
+  p: Float32Array;
+  n: Float32Array;
+  area: Float32Array;
+}
+
+/** Light that surfels keep away from a place: those within distances from..to of it. */
+class Shade {
+  private readonly grid: PointGrid;
+
+  constructor(
+    private readonly surfels: Surfels,
+    private readonly fromM: number,
+    private readonly toM: number,
+  ) {
+    this.grid = new PointGrid(surfels.p, toM / 2);
+  }
+
+  /** visit: each surfel with its height over the place's plane and its distance, m; v: of the place in p and n. */
+  at(p: Float32Array, n: Float32Array, v: number, visit: (j: number, up: number, d: number) => void): number {
+    const { p: q, n: m, area } = this.surfels;
+    const [x, y, z] = [p[v]!, p[v + 1]!, p[v + 2]!];
+    const [nx, ny, nz] = [n[v]!, n[v + 1]!, n[v + 2]!];
+    const from2 = Math.max(1e-12, this.fromM * this.fromM);
+    let shut = 0;
+    this.grid.near(x, y, z, this.toM, (j, d2) => {
+      if (d2 < from2) return;
+      const d = Math.sqrt(d2);
+      const o = 3 * j;
+      const dx = (q[o]! - x) / d;
+      const dy = (q[o + 1]! - y) / d;
+      const dz = (q[o + 2]! - z) / d;
+      const up = nx * dx + ny * dy + nz * dz;
+      visit(j, up, d);
+      if (up <= 0.02) return;
+      const facing = -(m[o]! * dx + m[o + 1]! * dy + m[o + 2]! * dz);
+      if (facing > 0) shut += (area[j]! * up * facing * (1 - d / reachM)) / (Math.PI * d2 + area[j]!);
+    });
+    return shut;
+  }
+}
+
+const nothing = () => undefined;
 
 export function bakeShading(tissues: Tissue[]): Shading[] {
   const count = tissues.reduce((n, t) => n + t.positions.length / 3, 0);
-  const p = new Float32Array(count * 3);
-  const n = new Float32Array(count * 3);
-  const area = new Float32Array(count);
+  const all: Surfels = {
+    p: new Float32Array(count * 3),
+    n: new Float32Array(count * 3),
+    area: new Float32Array(count),
+  };
   const owner = new Uint8Array(count);
   let at = 0;
   tissues.forEach((t, k) => {
-    p.set(t.positions, at * 3);
-    n.set(t.normals, at * 3);
-    vertexAreas(t, area, at);
+    all.p.set(t.positions, at * 3);
+    all.n.set(t.normals, at * 3);
+    vertexAreas(t, all.area, at);
     owner.fill(k, at, at + t.positions.length / 3);
     at += t.positions.length / 3;
   });
-  const grid = new PointGrid(p, reachM / 2);
+  const near = new Shade(all, 0, nearM);
+  const { groups, of } = coarsened(all);
+  const far = new Shade(groups, nearM, reachM);
+  // What is far darkens all of a group alike.
+  const farShut = groups.area.map((_, g) => far.at(groups.p, groups.n, 3 * g, nothing));
   const out: Shading[] = [];
   at = 0;
   for (let k = 0; k < tissues.length; k++) {
@@ -43,31 +96,14 @@ export function bakeShading(tissues: Tissue[]): Shading[] {
     const convexity = new Float32Array(m);
     for (let i = 0; i < m; i++) {
       const v = (at + i) * 3;
-      const nx = n[v]!;
-      const ny = n[v + 1]!;
-      const nz = n[v + 2]!;
-      let shut = 0;
       let bend = 0;
       let weight = 0;
-      grid.near(p[v]!, p[v + 1]!, p[v + 2]!, reachM, (j, d2) => {
-        if (d2 < 1e-12) return;
-        const d = Math.sqrt(d2);
-        const o = j * 3;
-        const dx = (p[o]! - p[v]!) / d;
-        const dy = (p[o + 1]! - p[v + 1]!) / d;
-        const dz = (p[o + 2]! - p[v + 2]!) / d;
-        const up = nx * dx + ny * dy + nz * dz;
-        const facing = -(n[o]! * dx + n[o + 1]! * dy + n[o + 2]! * dz);
-        if (up > 0.02 && facing > 0) {
-          const fade = 1 - d / reachM;
-          shut += (area[j]! * up * facing * fade) / (Math.PI * d2 + area[j]!);
-        }
-        if (d < curvatureReachM && owner[j] === k) {
-          bend -= up * area[j]!;
-          weight += area[j]!;
-        }
+      const shut = near.at(all.p, all.n, v, (j, up) => {
+        if (owner[j] !== k) return;
+        bend -= up * all.area[j]!;
+        weight += all.area[j]!;
       });
-      openness[i] = 1 / (1 + 2.6 * shut);
+      openness[i] = 1 / (1 + 2.6 * (shut + farShut[of[at + i]!]!));
       convexity[i] = weight > 0 ? Math.max(-1, Math.min(1, (bend / weight) * 3.2)) : 0;
     }
     smooth(tissues[k]!.indices, openness, 1);
@@ -76,6 +112,47 @@ export function bakeShading(tissues: Tissue[]): Shading[] {
     at += m;
   }
   return out;
+}
+
+/**
+ * The surfels of each cell whose normals lie about the same axis as one: mean place and normal, all their area. of: the
+ * group of each surfel.
+ */
+function coarsened({ p, n, area }: Surfels): { groups: Surfels; of: Uint32Array } {
+  const groups = new Map<number, number>();
+  const of = new Uint32Array(area.length);
+  const sums: number[] = [];
+  for (let i = 0; i < area.length; i++) {
+    const v = 3 * i;
+    const [x, y, z] = [Math.abs(n[v]!), Math.abs(n[v + 1]!), Math.abs(n[v + 2]!)];
+    const axis = x > y && x > z ? 0 : y > z ? 1 : 2;
+    let key = 2 * axis + (n[v + axis]! > 0 ? 1 : 0);
+    for (let k = 0; k < 3; k++) key = key * 4096 + ((Math.floor(p[v + k]! / cellM) + 2048) & 4095);
+    let g = groups.get(key);
+    if (g === undefined) {
+      groups.set(key, (g = groups.size));
+      sums.push(0, 0, 0, 0, 0, 0, 0);
+    }
+    of[i] = g;
+    const a = area[i]!;
+    for (let k = 0; k < 3; k++) {
+      sums[7 * g + k]! += a * p[v + k]!;
+      sums[7 * g + 3 + k]! += a * n[v + k]!;
+    }
+    sums[7 * g + 6]! += a;
+  }
+  const size = groups.size;
+  const out: Surfels = { p: new Float32Array(3 * size), n: new Float32Array(3 * size), area: new Float32Array(size) };
+  for (let g = 0; g < size; g++) {
+    const a = sums[7 * g + 6]!;
+    const length = Math.hypot(sums[7 * g + 3]!, sums[7 * g + 4]!, sums[7 * g + 5]!) || 1;
+    for (let k = 0; k < 3; k++) {
+      out.p[3 * g + k] = a > 0 ? sums[7 * g + k]! / a : 0;
+      out.n[3 * g + k] = sums[7 * g + 3 + k]! / length;
+    }
+    out.area[g] = a;
+  }
+  return { groups: out, of };
 }
 
 function vertexAreas(t: Tissue, out: Float32Array, at: number): void {

@@ -36,6 +36,8 @@ export interface SceneryOptions {
 export class Scenery {
   readonly root = new THREE.Group();
   readonly walls: Wall[] = [];
+  /** Bone, dura, drapes: what a first picture can do without. */
+  readonly solids: THREE.Mesh[] = [];
   /** Of all wet surfaces, for distances from tools. */
   readonly probes: TissueProbe[];
   private readonly skins: { index: number; skin: SkinTexture }[] = [];
@@ -112,7 +114,7 @@ export class Scenery {
     material: THREE.Material,
     casts: boolean,
     skin: SkinTexture | null,
-  ): void {
+  ): THREE.Mesh {
     const mesh = new THREE.Mesh(geometry, material);
     mesh.castShadow = casts;
     if (casts) this.casters.push(mesh);
@@ -124,6 +126,7 @@ export class Scenery {
     }
     this.root.add(mesh);
     this.owned.push(geometry, material);
+    return mesh;
   }
 
   private solid(p: Plan): THREE.MeshPhysicalMaterial {
@@ -139,12 +142,12 @@ export class Scenery {
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute('position', new THREE.BufferAttribute(shape.positions, 3));
     geometry.setAttribute('normal', new THREE.BufferAttribute(shape.normals, 3));
-    this.add(geometry, this.solid(p), true, null);
+    this.solids.push(this.add(geometry, this.solid(p), true, null));
   }
 
   private addMovingSolid(p: Plan): void {
     const geometry = smoothGeometry(p);
-    this.add(geometry, this.solid(p), true, p.moving!.skin);
+    this.solids.push(this.add(geometry, this.solid(p), true, p.moving!.skin));
   }
 
   private addStillWall(p: Plan): void {

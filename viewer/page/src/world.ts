@@ -41,6 +41,17 @@ export class World {
     this.root.add(this.scenery.root, this.drawables.root, this.cues.root);
   }
 
+  /** All but tissue, walls and small vessels: a first picture can do without them. */
+  get later(): THREE.Mesh[] {
+    const roots = [...this.scenery.solids, ...this.root.children.filter((c) => c !== this.scenery.root)];
+    const meshes: THREE.Mesh[] = [];
+    for (const root of roots)
+      root.traverse((o) => {
+        if (o instanceof THREE.Mesh) meshes.push(o);
+      });
+    return meshes;
+  }
+
   /** The infrared camera's picture instead of the eye's. */
   setInfrared(on: boolean): void {
     this.infrared = on;

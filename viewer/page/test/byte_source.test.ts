@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Parts of a recording from a server.
 import { afterEach, describe, expect, it, vi } from 'vitest';
-import { RemoteSource } from '../src/replay/byte_source';
+import { BlobSource, BlockSource, RemoteSource } from '../src/replay/byte_source';
 
 describe('remote source', () => {
   /** A server that gives at most seven bytes at once. */
@@ -34,5 +34,36 @@ describe('remote source', () => {
     await expect(RemoteSource.open('x')).rejects.toThrow('there is no such session here');
     vi.stubGlobal('fetch', () => Promise.resolve(new Response('all of it')));
     await expect(RemoteSource.open('x')).rejects.toThrow(/no parts/);
+  });
+});
+
+describe('block source', () => {
+  it('reads small parts that lie side by side with one request, and across blocks', async () => {
+    const bytes = Uint8Array.from({ length: 700_000 }, (_, k) => (k * 7) % 251);
+    const inner = new BlobSource(new Blob([bytes]));
+    let requests = 0;
+    const source = new BlockSource({
+      size: inner.size,
+      read: (at, length) => {
+        requests++;
+        return inner.read(at, length);
+      },
+    });
+    for (const at of [0, 5, 1000, 200_000]) expect(await source.read(at, 9)).toEqual(bytes.slice(at, at + 9));
+    expect(requests).toBe(1);
+    expect(await source.read(262_100, 100)).toEqual(bytes.slice(262_100, 262_200));
+    expect(await source.read(699_990, 10)).toEqual(bytes.slice(699_990));
+    expect(await source.read(10, 600_000)).toEqual(bytes.slice(10, 600_010));
+    await expect(source.read(699_991, 10)).rejects.toThrow(RangeError);
+  });
+  it('asks again for what could not be read', async () => {
+    let works = false;
+    const source = new BlockSource({
+      size: 10,
+      read: (_, length) => (works ? Promise.resolve(new Uint8Array(length)) : Promise.reject(new Error('gone'))),
+    });
+    await expect(source.read(0, 5)).rejects.toThrow('gone');
+    works = true;
+    expect(await source.read(0, 5)).toHaveLength(5);
   });
 });

@@ -24,6 +24,45 @@ export class BlobSource implements ByteSource {
   }
 }
 
+const blockBytes = 1 << 18;
+const keptBlocks = 64;
+
+/** Reads a source by blocks and keeps the last ones: small parts that lie side by side cost one request. */
+export class BlockSource implements ByteSource {
+  readonly size: number;
+  private readonly blocks = new Map<number, Promise<Uint8Array>>();
+
+  constructor(private readonly source: ByteSource) {
+    this.size = source.size;
+  }
+
+  /** What is larger than a block is read as it is. */
+  async read(at: number, length: number): Promise<Uint8Array> {
+    checkRange(this.size, at, length);
+    if (length > blockBytes) return this.source.read(at, length);
+    const out = new Uint8Array(length);
+    const first = Math.floor(at / blockBytes);
+    for (let n = first; n * blockBytes < at + length; n++) {
+      const block = await this.block(n);
+      const from = Math.max(at, n * blockBytes);
+      const to = Math.min(at + length, (n + 1) * blockBytes);
+      out.set(block.subarray(from - n * blockBytes, to - n * blockBytes), from - at);
+    }
+    return out;
+  }
+
+  private block(n: number): Promise<Uint8Array> {
+    const at = n * blockBytes;
+    const found = this.blocks.get(n) ?? this.source.read(at, Math.min(blockBytes, this.size - at));
+    this.blocks.delete(n);
+    this.blocks.set(n, found);
+    if (this.blocks.size > keptBlocks) this.blocks.delete(this.blocks.keys().next().value!);
+    // One that could not be read is asked for again.
+    found.catch(() => this.blocks.delete(n));
+    return found;
+  }
+}
+
 /** Status of an answer for a range beyond the end, as that of an empty file. */
 const noSuchBytes = 416;
 

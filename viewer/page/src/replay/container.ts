@@ -2,7 +2,7 @@
 // Reads an MCAP file where it lies: whole, without an end, or damaged. A chunk is read and unpacked when one of its
 // messages is wanted, and checked against its checksum.
 import { decompress } from 'fzstd';
-import type { ByteSource } from './byte_source';
+import { BlockSource, type ByteSource } from './byte_source';
 import { type Chunk, type ContainerIndex, indexOf } from './container_index';
 import { Bytes, ContainerError, crc32, messageHead, mostChunkBytes, op, recordsOf } from './mcap_records';
 
@@ -31,7 +31,8 @@ export class Container {
   ) {}
 
   /** Throws ContainerError when it is no MCAP file. */
-  static async open(source: ByteSource): Promise<Container> {
+  static async open(file: ByteSource): Promise<Container> {
+    const source = new BlockSource(file);
     return new Container(source, await indexOf(source));
   }
 

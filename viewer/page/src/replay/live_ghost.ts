@@ -8,5 +8,6 @@ import { sessionOf } from './source';
 /** Throws if there is no such recording, or it cannot be read. */
 export async function openGhost(name: string): Promise<RunGhost> {
   const session = await RecordedSession.open(name, await sessionOf(name));
+  await session.readTimeline();
   return new RunGhost(session, await loadBundle(session.bundle, name));
 }

@@ -32,12 +32,14 @@ async function open(session: RecordedSession, kept: boolean): Promise<void> {
   if (other) shown.push(new Side(await named(other), quality));
   if (ghost) {
     const run = await named(ghost);
+    await run.readTimeline();
     shown[0]!.ghost = new RunGhost(run, await loadBundle(run.bundle, run.name));
   }
-  hud.replaceChildren();
   sides.replaceChildren(...shown.map((s) => s.root));
+  for (const s of shown) await s.open();
+  hud.replaceChildren();
   document.title = `Insula: ${session.title || session.name}`;
-  await new Replay(hud, shown, kept, query).begin();
+  new Replay(hud, shown, kept, query).begin();
 }
 
 async function ask(problem = ''): Promise<void> {

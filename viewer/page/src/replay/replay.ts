@@ -26,9 +26,9 @@ const shiftStepS = 0.5;
 /** What the page tells tests and screenshots about itself, as window.__replay. */
 export interface ReplayStatus {
   ready: boolean;
-  /** From the page's start until the file was read, and until its first picture was drawn. */
-  read_ms: number;
+  /** From the page's start until there was a picture to move in, and until it was complete; 0: not yet. */
   open_ms: number;
+  complete_ms: number;
   /** From a jump to its picture: the last one, and the longest; and the longest time to find and decode one. */
   seek_ms: number;
   seek_max_ms: number;
@@ -64,8 +64,8 @@ export class Replay {
   private readonly status: ReplayStatus = {
     ...{
       ready: false,
-      read_ms: 0,
       open_ms: 0,
+      complete_ms: 0,
       seek_ms: 0,
       seek_max_ms: 0,
       time_s: 0,
@@ -124,9 +124,8 @@ export class Replay {
     window.addEventListener('keydown', (e) => this.key(e));
   }
 
-  async begin(): Promise<void> {
-    const readMs = performance.now();
-    for (const s of this.sides) await s.open();
+  /** Draws from now on. */
+  begin(): void {
     this.showMarks();
     if (!this.first.session.ended) this.say('This recording was not ended; it is shown as far as it goes.');
     void this.notes.load();
@@ -136,7 +135,8 @@ export class Replay {
       const ms = pace.begin(now);
       await this.draw(now, Math.min(0.25, ms / 1000));
       pace.count(now, true);
-      if (!this.status.ready) this.opened(readMs);
+      if (!this.status.ready) this.opened();
+      if (this.first.view.complete) this.status.complete_ms ||= performance.now();
     };
     this.first.view.stage.renderer.setAnimationLoop((now: number) => {
       if (drawing) return;
@@ -147,12 +147,11 @@ export class Replay {
     });
   }
 
-  private opened(readMs: number): void {
+  private opened(): void {
     this.status.ready = true;
-    this.status.read_ms = readMs;
     this.status.timeline_chunks = this.first.session.timelineChunks;
     this.status.chunks_unpacked_to_open = this.first.session.unpackedChunks;
-    this.status.open_ms = performance.now();
+    this.status.open_ms = this.first.firstPictureMs;
     if (this.query.has('debrief')) void this.showDebrief();
   }
 

@@ -30,6 +30,7 @@ export class RecordedSession {
   readonly pictures: Pictures;
   readonly durationS: number;
   readonly bundle: BundleSource;
+  private read: Timeline | null = null;
 
   /** Throws ContainerError when the bytes are no session, or one without pictures. */
   static async open(name: string, source: ByteSource): Promise<RecordedSession> {
@@ -38,21 +39,32 @@ export class RecordedSession {
     if (!about) throw new ContainerError('the recording does not say which scene it has');
     if (!container.has(`${bundlePrefix}scene.json.zst`))
       throw new ContainerError('this recording has no pictures; it was made by an earlier version');
-    return new RecordedSession(name, about, container, await Timeline.read(container));
+    return new RecordedSession(name, about, container);
   }
 
   private constructor(
     readonly name: string,
     about: ReadonlyMap<string, string>,
     private readonly container: Container,
-    readonly timeline: Timeline,
   ) {
     this.title = about.get('title') ?? '';
     this.began = about.get('began') ?? '';
     this.pictures = new Pictures(container);
-    this.timelineChunks = this.container.unpackedChunks;
     this.durationS = this.container.chunks.reduce((t, c) => Math.max(t, c.lastS), 0);
     this.bundle = new RecordedBundle(this.container);
+  }
+
+  /** Reads what the timeline has, which may lie all over the file. */
+  async readTimeline(): Promise<void> {
+    const before = this.container.unpackedChunks;
+    this.read = await Timeline.read(this.container);
+    this.timelineChunks = this.container.unpackedChunks - before;
+  }
+
+  /** Throws before it has been read. */
+  get timeline(): Timeline {
+    if (!this.read) throw new Error('the timeline has not been read');
+    return this.read;
   }
 
   /** What of the file cannot be shown, one line each. */
@@ -63,7 +75,7 @@ export class RecordedSession {
   get unpackedChunks(): number {
     return this.container.unpackedChunks;
   }
-  readonly timelineChunks: number;
+  timelineChunks = 0;
   get ended(): boolean {
     return this.container.ended;
   }

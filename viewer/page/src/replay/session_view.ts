@@ -10,6 +10,7 @@ import { levels, QualityWatch } from '../quality';
 import { softwareAdvice } from '../software_rendering';
 import { Stage } from '../stage';
 import { Reading } from '../step_data/reading';
+import { Unveiling } from '../unveiling';
 import { vector, World } from '../world';
 import { ForceArrows } from './force_arrows';
 import type { Moment } from './pictures';
@@ -25,6 +26,8 @@ export class SessionView {
   moment: Moment | null = null;
   /** Draws plumb lines and contact marks. */
   cues = true;
+  /** What the first pictures leave out; null: nothing. */
+  private unveiling: Unveiling | null = null;
   private session: RecordedSession | null = null;
   private readonly playback = new Playback();
   private readonly watch: QualityWatch;
@@ -47,6 +50,7 @@ export class SessionView {
     this.reading.begin(bundle);
     this.build(bundle);
     this.applyQuality();
+    this.unveiling = new Unveiling(this.world!.later);
     return bundle;
   }
 
@@ -74,6 +78,18 @@ export class SessionView {
       this.arrows.update(this.moment, this.world.bundle);
     }
     this.stage.render('off', 0);
+    if (this.unveiling?.next() === false) this.unveiling = null;
+  }
+
+  /** The first picture, of tissue and walls. What else the scene has appears in the next ones. */
+  async drawFirst(timeS: number): Promise<void> {
+    this.show(await this.find(timeS));
+    this.draw(performance.now(), 0);
+  }
+
+  /** Everything that the scene has is drawn. */
+  get complete(): boolean {
+    return this.unveiling === null;
   }
 
   /** Once a second; steps the quality down on a slow machine. */

@@ -12,6 +12,8 @@ import { SessionView } from './session_view';
 export class Side {
   readonly root: HTMLElement;
   readonly view: SessionView;
+  /** From the page's start until there was a picture. */
+  firstPictureMs = 0;
   /** Added to the time of the page. */
   shiftS = 0;
   ghost: RunGhost | null = null;
@@ -33,6 +35,9 @@ export class Side {
 
   async open(): Promise<void> {
     const bundle = await this.view.open(this.session);
+    await this.view.drawFirst(0);
+    this.firstPictureMs = performance.now();
+    await this.session.readTimeline();
     this.exercise.showScene(bundle);
     this.vitals.showScene(bundle);
     if (this.ghost) this.view.stage.scene.add(this.ghost.root);
