@@ -97,3 +97,13 @@ function weldMap(p: Float32Array): Uint32Array {
   }
   return out;
 }
+
+/** a and b of each vertex side by side. */
+export function interleave(a: ArrayLike<number>, b: ArrayLike<number>): Float32Array {
+  const out = new Float32Array(a.length * 2);
+  for (let i = 0; i < a.length; i++) {
+    out[i * 2] = a[i]!;
+    out[i * 2 + 1] = b[i]!;
+  }
+  return out;
+}

@@ -201,6 +201,7 @@ function build(bundle: Bundle): void {
   const room = stage.light(vector(bundle.view.up));
   const from = performance.now();
   world = new World(bundle, scope.fieldAxis, room);
+  world.shade();
   status.build_ms = Math.round(performance.now() - from);
   scene.add(world.root);
   world.setInfrared(modes.infrared);

@@ -2,7 +2,7 @@
 // The surfaces of bodies and of what stands still, each drawn in the style of its material.
 import * as THREE from 'three';
 import type { BodyData, Bundle, SkinnedSurface, SurfaceData } from './bundle_types';
-import { creased, smoothNormals } from './geometry';
+import { creased, interleave, smoothNormals } from './geometry';
 import type { FieldUniforms } from './materials/field';
 import { solidMaterial } from './materials/solid';
 import { type Pressed, tissueLook, tissueMaterial, vesselMaterial } from './materials/tissue';
@@ -33,6 +33,9 @@ export interface SceneryOptions {
   fieldAxis: THREE.Vector3;
 }
 
+/** Gives a surface what was baked for it. */
+type Shade = (shading: Shading) => void;
+
 export class Scenery {
   readonly root = new THREE.Group();
   readonly walls: Wall[] = [];
@@ -45,6 +48,8 @@ export class Scenery {
   private readonly casters: THREE.Mesh[] = [];
   /** What ends of vessels lead into: tissue that stands still. */
   private readonly bed: Float32Array[];
+  /** What is still to be shaded, and how. */
+  private unshaded: { tissue: Tissue; shade: Shade }[] = [];
 
   constructor(
     bundle: Bundle,
@@ -63,8 +68,17 @@ export class Scenery {
     // Solids cast no baked darkness: only wet surfaces are dark where they face each other.
     const wet = plans.filter((p) => p.material.style === 'tissue' || (p.moving && p.material.style === 'wall'));
     this.probes = wet.map(probeOf);
-    const shading = bakeShading(wet.map((p) => p.tissue));
-    for (const p of plans) this.addPlan(p, shading[wet.indexOf(p)] ?? null);
+    for (const p of plans) {
+      const shade = this.addPlan(p);
+      if (shade) this.unshaded.push({ tissue: p.tissue, shade });
+    }
+  }
+
+  /** Darkens folds, and lets small vessels grow. It takes half a second; without it the field is plain. */
+  shade(): void {
+    const shading = bakeShading(this.unshaded.map((u) => u.tissue));
+    this.unshaded.forEach(({ shade }, k) => shade(shading[k]!));
+    this.unshaded = [];
   }
 
   /** Node positions of each body, or null where there are none. */
@@ -100,13 +114,15 @@ export class Scenery {
     }));
   }
 
-  private addPlan(p: Plan, shading: Shading | null): void {
+  /** null: it needs no shading. */
+  private addPlan(p: Plan): Shade | null {
     const { style } = p.material;
-    if (style === 'tissue' && shading) this.addTissue(p, shading);
-    else if (style === 'wall' && p.moving && shading) this.addMovingWall(p, shading);
-    else if (style === 'wall') this.addStillWall(p);
+    if (style === 'tissue') return this.addTissue(p);
+    if (style === 'wall' && p.moving) return this.addMovingWall(p);
+    if (style === 'wall') this.addStillWall(p);
     else if (p.moving) this.addMovingSolid(p);
     else this.addSolid(p);
+    return null;
   }
 
   private add(
@@ -158,22 +174,30 @@ export class Scenery {
     this.add(geometry, vesselMaterial(null, this.options.field), true, null);
   }
 
-  private addMovingWall(p: Plan, shading: Shading): void {
+  private addMovingWall(p: Plan): Shade {
     const { skinned, body, skin } = p.moving!;
     const down = this.options.fieldAxis.clone().negate().toArray();
     const shifts = body.ends.map((end) => endShift(end, this.bed, down));
-    const wall = new Wall(skinned, body, skin, shading.openness, this.options.field, shifts);
+    const wall = new Wall(skinned, body, skin, this.options.field, shifts);
     this.walls.push(wall);
     this.add(wall.geometry, wall.material, true, skin);
+    return ({ openness }) => wall.shade(openness);
   }
 
-  private addTissue(p: Plan, shading: Shading): void {
+  private addTissue(p: Plan): Shade {
     const geometry = smoothGeometry(p);
-    geometry.setAttribute('shading', new THREE.BufferAttribute(interleave(shading.openness, shading.convexity), 2));
+    const n = p.surface.positions.length / 3;
+    geometry.setAttribute(
+      'shading',
+      new THREE.BufferAttribute(interleave(new Float32Array(n).fill(1), new Float32Array(n)), 2),
+    );
     const { pressed, field } = this.options;
     const skin = p.moving?.skin ?? null;
     this.add(geometry, tissueMaterial(tissueLook(p.surface.material, p.material), skin, pressed, field), true, skin);
-    this.addVessels(p, shading);
+    return (shading) => {
+      geometry.setAttribute('shading', new THREE.BufferAttribute(interleave(shading.openness, shading.convexity), 2));
+      this.addVessels(p, shading);
+    };
   }
 
   /** Small vessels on tissue; each follows the tetrahedron of the nearest surface vertex. */
@@ -230,15 +254,6 @@ function smoothGeometry(p: Plan): THREE.BufferGeometry {
     setSkinAttributes(geometry, skinned.skinNodes, skinned.skinWeights, body.rest);
   }
   return geometry;
-}
-
-function interleave(a: ArrayLike<number>, b: ArrayLike<number>): Float32Array {
-  const out = new Float32Array(a.length * 2);
-  for (let i = 0; i < a.length; i++) {
-    out[i * 2] = a[i]!;
-    out[i * 2 + 1] = b[i]!;
-  }
-  return out;
 }
 
 function probeOf(p: Plan): TissueProbe {

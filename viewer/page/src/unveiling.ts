@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Lets the meshes of a new scene appear one shader program after another. A browser takes a tenth of a second or more
+// Lets the meshes of a new scene appear by a few shader programs at a time. A browser takes a tenth of a second or more
 // for each, so a first picture of everything would take seconds.
 import * as THREE from 'three';
+
+/** More hold up the page for longer; fewer need more pictures, which are slow themselves without a graphics card. */
+const programsAPicture = 4;
 
 /** No camera sees this layer. */
 const hiddenLayer = 31;
@@ -26,9 +29,13 @@ export class Unveiling {
     this.groups = [...groups.values()];
   }
 
-  /** After a picture: one more program may draw. False: everything is shown. */
+  /** After a picture: some more programs may draw. False: everything is shown. */
   next(): boolean {
-    for (const mesh of this.groups.shift() ?? []) mesh.layers.set(0);
+    for (let made = 0; made < programsAPicture && this.groups.length > 0;) {
+      const group = this.groups.shift()!;
+      for (const mesh of group) mesh.layers.set(0);
+      if (group.some((m) => m.visible)) made++;
+    }
     return this.groups.length > 0;
   }
 }

@@ -3,7 +3,7 @@
 // each is filled.
 import * as THREE from 'three';
 import type { BodyData, SkinnedSurface } from './bundle_types';
-import { smoothNormals } from './geometry';
+import { interleave, smoothNormals } from './geometry';
 import type { FieldUniforms } from './materials/field';
 import { regionCapacity, wallMaterial } from './materials/wall';
 import { nearestKnown, wallThinness } from './regions';
@@ -36,12 +36,13 @@ export class Wall {
   private readonly pressureOf: (string | null)[];
   private readonly shown = { value: new Float32Array(regionCapacity) };
   private readonly filling = { value: new Float32Array(regionCapacity).fill(1) };
+  /** How much light there is where it goes into the tissue, 0..1 at each vertex. */
+  private readonly lit: Float32Array;
 
   constructor(
     surface: SkinnedSurface,
     body: BodyData,
     skin: SkinTexture,
-    openness: Float32Array,
     field: FieldUniforms,
     /** Where each end of the body bends to. */
     endShifts: [number, number, number][],
@@ -57,14 +58,9 @@ export class Wall {
       this.channelOf.map((c) => c !== null),
     );
     const thin = wallThinness(given, regions, body.regionThicknessM, surface.indices);
-    const wall = new Float32Array(n * 2);
-    // It lies in a gap that was baked shut: that darkness counts by half.
-    for (let i = 0; i < n; i++) {
-      // Where it goes into the tissue no light follows.
-      const sunk = Math.max(0, ...body.ends.map((end) => endShare(surface.positions, 3 * i, end)));
-      wall[i * 2] = (0.5 + 0.5 * openness[i]!) * (1 - 0.85 * sunk);
-      wall[i * 2 + 1] = thin[i]!;
-    }
+    const sunk = (i: number) => Math.max(0, ...body.ends.map((end) => endShare(surface.positions, 3 * i, end)));
+    this.lit = Float32Array.from({ length: n }, (_, i) => 1 - 0.85 * sunk(i));
+    const wall = interleave(this.lit, thin);
     const normals = smoothNormals(positions, surface.indices);
     const shownRegion = Float32Array.from(region, (r) => Math.min(r, regionCapacity - 1));
     this.geometry.setAttribute('position', new THREE.BufferAttribute(positions, 3));
@@ -75,6 +71,13 @@ export class Wall {
     setSkinAttributes(this.geometry, surface.skinNodes, surface.skinWeights, body.rest);
     this.pressureOf = regions.map((r) => body.pressureOfRegion[r] ?? null);
     this.material = wallMaterial(skin, field, this.shown, this.filling);
+  }
+
+  /** openness: of each vertex. It lies in a gap that was baked shut: that darkness counts by half. */
+  shade(openness: Float32Array): void {
+    const wall = this.geometry.getAttribute('wall') as THREE.BufferAttribute;
+    for (let i = 0; i < wall.count; i++) wall.setX(i, (0.5 + 0.5 * openness[i]!) * this.lit[i]!);
+    wall.needsUpdate = true;
   }
 
   /** Values move from frame to frame; the picture follows within a fifth of a second. */

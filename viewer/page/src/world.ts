@@ -41,6 +41,11 @@ export class World {
     this.root.add(this.scenery.root, this.drawables.root, this.cues.root);
   }
 
+  /** Completes the picture of the tissue, in half a second. */
+  shade(): void {
+    this.scenery.shade();
+  }
+
   /** All but tissue, walls and small vessels: a first picture can do without them. */
   get later(): THREE.Mesh[] {
     const roots = [...this.scenery.solids, ...this.root.children.filter((c) => c !== this.scenery.root)];

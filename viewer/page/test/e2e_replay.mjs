@@ -115,7 +115,10 @@ try {
   let s = await status(page);
   assert.ok(s.duration_s > 5, `${s.duration_s} s were recorded`);
   assert.ok(s.chunks_unpacked_to_open <= s.timeline_chunks + 2, JSON.stringify(s));
-  check(`a session of ${s.duration_s.toFixed(0)} s is drawn after ${s.open_ms.toFixed(0)} ms`);
+  await page.waitForFunction(() => window.__replay.complete_ms > 0, null, patience);
+  const { complete_ms: complete } = await status(page);
+  const drawn = `is drawn after ${s.open_ms.toFixed(0)} ms, complete after ${complete.toFixed(0)} ms`;
+  check(`a session of ${s.duration_s.toFixed(0)} s ${drawn}`);
 
   s = await press(page, 'End');
   assert.equal(s.time_s, s.duration_s);

@@ -11,16 +11,18 @@ const meshWith = (key: string) => {
 };
 
 describe('unveiling', () => {
-  it('shows the meshes of one more program after each picture', () => {
-    const [bone, steel, blade] = [meshWith('bone'), meshWith('steel'), meshWith('steel')];
+  it('shows the meshes of four more programs after each picture', () => {
+    const meshes = ['a', 'a', 'b', 'c', 'd', 'e', 'f'].map(meshWith);
     const camera = new THREE.PerspectiveCamera();
-    const seen = () => [bone, steel, blade].map((m) => m.layers.test(camera.layers));
-    const unveiling = new Unveiling([bone, steel, blade]);
-    expect(seen()).toEqual([false, false, false]);
+    const seen = () => meshes.map((m) => (m.layers.test(camera.layers) ? '+' : '-')).join('');
+    // What is not seen costs no program yet.
+    meshes[2]!.visible = false;
+    const unveiling = new Unveiling(meshes);
+    expect(seen()).toBe('-------');
     expect(unveiling.next()).toBe(true);
-    expect(seen()).toEqual([true, false, false]);
+    expect(seen()).toBe('++++++-');
     expect(unveiling.next()).toBe(false);
-    expect(seen()).toEqual([true, true, true]);
+    expect(seen()).toBe('+++++++');
     expect(unveiling.next()).toBe(false);
   });
 });

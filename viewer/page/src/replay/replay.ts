@@ -151,7 +151,7 @@ export class Replay {
     this.status.ready = true;
     this.status.timeline_chunks = this.first.session.timelineChunks;
     this.status.chunks_unpacked_to_open = this.first.session.unpackedChunks;
-    this.status.open_ms = this.first.firstPictureMs;
+    this.status.open_ms = this.first.view.firstPictureMs;
     if (this.query.has('debrief')) void this.showDebrief();
   }
 

@@ -26,6 +26,8 @@ export class SessionView {
   moment: Moment | null = null;
   /** Draws plumb lines and contact marks. */
   cues = true;
+  /** From the page's start until there was a picture. */
+  firstPictureMs = 0;
   /** What the first pictures leave out; null: nothing. */
   private unveiling: Unveiling | null = null;
   private session: RecordedSession | null = null;
@@ -48,8 +50,7 @@ export class SessionView {
     this.session = session;
     this.stage.scope.setHome(bundle.view);
     this.reading.begin(bundle);
-    this.build(bundle);
-    this.applyQuality();
+    this.buildPlain(bundle);
     this.unveiling = new Unveiling(this.world!.later);
     return bundle;
   }
@@ -81,10 +82,14 @@ export class SessionView {
     if (this.unveiling?.next() === false) this.unveiling = null;
   }
 
-  /** The first picture, of tissue and walls. What else the scene has appears in the next ones. */
+  /** The first picture, of plain tissue and walls. What else the scene has appears in the next ones. */
   async drawFirst(timeS: number): Promise<void> {
     this.show(await this.find(timeS));
     this.draw(performance.now(), 0);
+    // Until the browser has shown it.
+    await new Promise((resolve) => requestAnimationFrame(() => setTimeout(resolve)));
+    this.firstPictureMs = performance.now();
+    this.world?.shade();
   }
 
   /** Everything that the scene has is drawn. */
@@ -105,9 +110,15 @@ export class SessionView {
   }
 
   private build(bundle: Bundle): void {
+    this.buildPlain(bundle);
+    this.world?.shade();
+  }
+
+  private buildPlain(bundle: Bundle): void {
     this.world?.dispose();
     const room: THREE.Texture = this.stage.light(vector(bundle.view.up));
     this.world = new World(bundle, this.stage.scope.fieldAxis, room);
     this.stage.scene.add(this.world.root);
+    this.applyQuality();
   }
 }

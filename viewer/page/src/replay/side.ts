@@ -12,8 +12,6 @@ import { SessionView } from './session_view';
 export class Side {
   readonly root: HTMLElement;
   readonly view: SessionView;
-  /** From the page's start until there was a picture. */
-  firstPictureMs = 0;
   /** Added to the time of the page. */
   shiftS = 0;
   ghost: RunGhost | null = null;
@@ -36,7 +34,6 @@ export class Side {
   async open(): Promise<void> {
     const bundle = await this.view.open(this.session);
     await this.view.drawFirst(0);
-    this.firstPictureMs = performance.now();
     await this.session.readTimeline();
     this.exercise.showScene(bundle);
     this.vitals.showScene(bundle);
