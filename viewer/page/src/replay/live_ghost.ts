@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The tools of a recorded run over the live exercise: ?ghost=NAME. Loaded only when it is asked for.
+// The tools of a recorded run over a field: ?ghost=NAME. The live page loads this only when it is asked for.
 import { loadBundle } from '../bundle';
 import { RunGhost } from './run_ghost';
 import { RecordedSession } from './session';

@@ -4,13 +4,12 @@
 // to print. Without a session it asks for one.
 import '../hud/styles';
 import './replay.css';
-import { loadBundle } from '../bundle';
 import { el } from '../hud/dom';
 import { type QualityName, qualityNames } from '../options';
 import { BlobSource } from './byte_source';
+import { openGhost } from './live_ghost';
 import { openingPanel } from './opening';
-import { Replay } from './replay';
-import { RunGhost } from './run_ghost';
+import { Replay, reasonOf } from './replay';
 import { RecordedSession } from './session';
 import { Side } from './side';
 import { type ListedSession, listSessions, sessionOf } from './source';
@@ -19,7 +18,6 @@ const query = new URLSearchParams(location.search);
 const quality: QualityName | null = qualityNames.find((n) => n === query.get('quality')) ?? null;
 const sides = document.getElementById('sides')!;
 const hud = document.getElementById('hud')!;
-const failed = (e: unknown): string => (e instanceof Error ? e.message : String(e));
 
 async function named(name: string): Promise<RecordedSession> {
   return RecordedSession.open(name, await sessionOf(name));
@@ -30,11 +28,7 @@ async function open(session: RecordedSession, kept: boolean): Promise<void> {
   const ghost = query.get('ghost');
   const shown = [new Side(session, quality)];
   if (other) shown.push(new Side(await named(other), quality));
-  if (ghost) {
-    const run = await named(ghost);
-    await run.readTimeline();
-    shown[0]!.ghost = new RunGhost(run, await loadBundle(run.bundle, run.name));
-  }
+  if (ghost) shown[0]!.ghost = await openGhost(ghost);
   sides.replaceChildren(...shown.map((s) => s.root));
   for (const s of shown) await s.open();
   hud.replaceChildren();
@@ -47,7 +41,7 @@ async function ask(problem = ''): Promise<void> {
   try {
     sessions = await listSessions();
   } catch (e) {
-    problem ||= `Recordings of this machine cannot be listed: ${failed(e)}`;
+    problem ||= `Recordings of this machine cannot be listed: ${reasonOf(e)}`;
   }
   const panel = openingPanel(sessions, problem, {
     title: 'Which session?',
@@ -65,7 +59,7 @@ async function openFile(file: File): Promise<void> {
     const name = file.name.replace(/\.(insula|mcap)$/, '');
     await open(await RecordedSession.open(name, new BlobSource(file)), false);
   } catch (e) {
-    await ask(`${file.name}: ${failed(e)}`);
+    await ask(`${file.name}: ${reasonOf(e)}`);
   }
 }
 
@@ -76,6 +70,6 @@ else {
   try {
     await open(await named(wanted), true);
   } catch (e) {
-    await ask(`${wanted}: ${failed(e)}`);
+    await ask(`${wanted}: ${reasonOf(e)}`);
   }
 }

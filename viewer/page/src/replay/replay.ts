@@ -43,7 +43,7 @@ export interface ReplayStatus {
   seek_chunks_max: number;
 }
 
-const reasonOf = (e: unknown): string => (e instanceof Error ? e.message : String(e));
+export const reasonOf = (e: unknown): string => (e instanceof Error ? e.message : String(e));
 
 /** The live exercise with this run's tools over it. */
 function ghostLink(kept: boolean, session: RecordedSession): HTMLElement[] {
