@@ -139,6 +139,31 @@ TEST_F(Recording, OfAKilledEngineHasAllButTheLastMoment) {
   EXPECT_EQ(insula("rerun " + files()[1].string()), 0) << said();
 }
 
+// A saved scene is another scene with its own report, so its engine begins another file. Each has its own scene.
+TEST_F(Recording, OfASceneThatIsSavedHasTwoFilesWithTheSameBitsAgain) {
+  ASSERT_TRUE(watcher_->press(0.1)) << watcher_->force();
+  const std::int64_t first = watcher_->frame_session();
+  std::stringstream text;
+  text << std::ifstream(scene()).rdbuf();
+  std::string with = text.str();
+  const std::string before = "title=\"Press\"";
+  with.replace(with.find(before), before.size(), "title=\"Pressed again\" gravity=\"0 0 -9 m/s2\"");
+  std::ofstream(scene()) << with;
+  ASSERT_TRUE(wait_for([&] { return watcher_->frame_session() != first && watcher_->frames_now() > 60; }))
+      << session_->log();
+  ASSERT_TRUE(watcher_->press(0.1)) << watcher_->force();
+  session_->end();
+  ASSERT_EQ(files().size(), 2u) << session_->log();
+  const std::vector<std::string> titles{"Press", "Pressed again"};
+  for (std::size_t k = 0; k < 2; ++k) {
+    const auto json = info(files()[k]);
+    EXPECT_EQ(json["title"], titles[k]);
+    EXPECT_TRUE(json["ended"]) << titles[k];
+    EXPECT_EQ(insula("session verify " + files()[k].string()), 0) << said();
+    EXPECT_EQ(insula("rerun " + files()[k].string()), 0) << said();
+  }
+}
+
 // The other two processes die and come back; the engine's recording knows no gap.
 TEST_F(Recording, IsWholeAlthoughTheHapticServerAndTheGatewayWereKilled) {
   ASSERT_TRUE(watcher_->press(0.1)) << watcher_->force();
