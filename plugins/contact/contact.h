@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Contact among bodies and tools. contact.cpp describes the law and the scene element.
 #pragma once
+#include <array>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/base/workers.h"
@@ -52,8 +54,8 @@ class Contact final : public Constraint, public StatesLaw {
        .fallback = "0.3 mm",
        .min = "0.05 mm",
        .max = "100 mm",
-       .doc = "a tool that touches a wall (a surface with a thickness) goes on by no more than this in a step; the "
-              "rest of the hand's motion follows in the next ones",
+       .doc = "a tool that touches a wall (a surface with a thickness) goes into it by no more than this in a step; "
+              "the rest follows in the next ones; motion along the wall and away from it is free",
        .formerly = "max_push"}};
   Param<Length> tissue_max_step_displacement{this,
                                              {.name = "tissue_max_step_displacement",
@@ -175,6 +177,7 @@ class Contact final : public Constraint, public StatesLaw {
     const Body* body_b() const { return tool_b ? static_cast<const Body*>(tool_b) : &b->body(); }
   };
   const std::vector<Pair>& pairs() const { return pairs_; }
+  static constexpr std::size_t max_touch_normals = 64;
 
  private:
   /// The work of one thread at a time: a pair, or one direction of a pair of surfaces.
@@ -186,6 +189,18 @@ class Contact final : public Constraint, public StatesLaw {
   void search(const Search& what);
   void expect(Pair& pair, const Pose& free) const;
   void add_pairs(Simulation& simulation, Body* a, Body* b);
+  /// The first touch of a tool in the step.
+  struct Touch {
+    int piece = -1;  ///< -1: none
+    double time = 1;
+    std::size_t count = 0;
+    std::array<Vec3, max_touch_normals> normal;  ///< of the `count` contacts that the piece then has, towards the tool
+    void add(const Vec3& n) {
+      if (count < normal.size()) normal[count++] = n;
+    }
+    std::span<const Vec3> normals() const { return {normal.data(), count}; }
+  };
+  Touch first_touch(const Pair& pair) const;
   void limit_motion(ConstraintBuilder& builder, const Pair& pair) const;
   double max_contact_force(const Pair& pair) const;  ///< of one contact, N
   bool bounded(const Pair& pair) const { return max_contact_force(pair) < infinite; }

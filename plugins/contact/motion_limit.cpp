@@ -6,62 +6,91 @@
 namespace insula {
 namespace {
 constexpr double servo_step_s = 1e-3;  // clients with such short steps get the same limit in each of them
-}
 
-// Tissue responds linearly over a step, but its true motion is nonlinear. A large push would invert a thin wall or the
-// elements of a lobe, and a large slide would leave the region of the detected contacts. So a tool in contact moves by
-// at most max_step_displacement (a wall) or tissue_max_step_displacement. Three rows limit the free motion of three
-// points of the touching piece.
-void Contact::limit_motion(ConstraintBuilder& builder, const Pair& p) const {
-  if (!p.tool_a || !p.b || !p.active() || p.b->body().blocks() == 0) return;
-  const double most = p.b->thickness() > 0 ? max_step_displacement() : tissue_max_step_displacement();
-  int piece = -1;
-  double touch = 1;
-  if (p.tool_collider) {
-    piece = p.tool_collider->touching_piece();
-    touch = p.tool_collider->touch_time();
-  } else {
-    // A contact found in the free motion, or a closed one that continues to close.
-    for (const Proximity& x : p.contacts) {
-      if (x.time == 0) {
-        if (x.gap > 0.1 * alarm()) continue;
-        const Vec3 u = p.tool_a->free_displacement(p.tool_a->link_point(p.link_a, x.local));
-        if (x.normal.dot(u - p.b->collision().free_at(x.triangle, x.bary)) >= 0) continue;
-      }
-      if (x.time < touch) {
-        touch = x.time;
-        piece = x.piece;
-      }
-    }
-  }
-  if (piece < 0) return;
-  const RoundedPiece& r = p.pieces_a[std::size_t(piece)];
-  Vec3 third = r.core.front();
+Vec3 farthest_from_axis(const RoundedPiece& r) {
+  Vec3 out = r.core.front();
   double farthest = -1;
   for (const Vec3& q : r.core) {
     const double s = closest_on_segment(q, r.axis0, r.axis1), d = (r.axis0 + s * (r.axis1 - r.axis0) - q).norm();
-    if (d > farthest) {
-      farthest = d;
-      third = q;
-    }
+    if (d <= farthest) continue;
+    farthest = d;
+    out = q;
   }
+  return out;
+}
+
+/// Part of u against the normals: u minus the nearest motion that none of them opposes (Moreau's decomposition).
+/// The multipliers are found by Hildreth's sweeps.
+Vec3 inward_part(const Vec3& u, std::span<const Vec3> normals) {
+  constexpr int sweeps = 30;
+  std::array<double, Contact::max_touch_normals> multipliers{};
+  Vec3 inward = Vec3::Zero();
+  for (int sweep = 0; sweep < sweeps; ++sweep)
+    for (std::size_t k = 0; k < normals.size(); ++k) {
+      const double next = std::max(0.0, multipliers[k] - normals[k].dot(u - inward));
+      inward -= (next - multipliers[k]) * normals[k];
+      multipliers[k] = next;
+    }
+  return inward;
+}
+
+}  // namespace
+
+// Tissue responds linearly over a step, but its true motion is nonlinear. A large push would invert a thin wall or the
+// elements of a lobe. So the part of a tool's motion that is against its contacts is at most max_step_displacement (a
+// wall) or tissue_max_step_displacement. Three rows limit the free motion of three points of the touching piece. They
+// act along the motion and shorten it as a whole, since a slide down the side of a pit goes in as well. Motion along
+// the surface or away from it has no such part, so a hand that leaves is never pulled.
+void Contact::limit_motion(ConstraintBuilder& builder, const Pair& p) const {
+  if (!p.tool_a || !p.b || !p.active() || p.b->body().blocks() == 0) return;
+  const double most = p.b->thickness() > 0 ? max_step_displacement() : tissue_max_step_displacement();
+  const Touch touch = first_touch(p);
+  if (touch.piece < 0) return;
+  const RoundedPiece& r = p.pieces_a[std::size_t(touch.piece)];
   int count = 0;
-  for (const Vec3& place : {r.axis0, r.axis1, third}) {
+  for (const Vec3& place : {r.axis0, r.axis1, farthest_from_axis(r)}) {
     const MaterialPoint point = p.tool_a->link_point(p.link_a, place);
     const Vec3 u = p.tool_a->free_displacement(point);
-    const double distance = u.norm(), allowed = touch * distance + most;
+    const double distance = u.norm(), inward = inward_part(u, touch.normals()).norm();
     ++count;
-    if (distance <= allowed) continue;
+    if ((1 - touch.time) * inward <= most) continue;
+    const double allowed = (touch.time + most / inward) * distance;
     Block block;
     block.id = row_id(*this, std::uint64_t(1) << 43 | std::uint64_t(&p - pairs_.data()) << 16 |
-                                 std::uint64_t(piece) << 2 | std::uint64_t(count));
+                                 std::uint64_t(touch.piece) << 2 | std::uint64_t(count));
     block.role = BlockRole::stop;
     block.lower = 0;
     const int row = builder.add(block);
     builder.violation(row, allowed);
-    builder.moves(row, most / servo_step_s);
+    builder.moves(row, most / inward * distance / servo_step_s);
     builder.point(row, point, -u / distance);
   }
+}
+
+/// The first touch of the tool in the step: found in the free motion, or of a closed contact that continues to close.
+Contact::Touch Contact::first_touch(const Pair& p) const {
+  Touch touch;
+  if (p.tool_collider) {
+    touch.piece = p.tool_collider->touching_piece();
+    touch.time = p.tool_collider->touch_time();
+    for (const Vec3& n : p.tool_collider->touch_normals()) touch.add(n);
+    return touch;
+  }
+  const auto closed = [&](const Proximity& x) { return x.time > 0 || x.gap <= 0.1 * alarm(); };
+  for (const Proximity& x : p.contacts) {
+    if (!closed(x)) continue;
+    if (x.time == 0) {
+      const Vec3 u = p.tool_a->free_displacement(p.tool_a->link_point(p.link_a, x.local));
+      if (x.normal.dot(u - p.b->collision().free_at(x.triangle, x.bary)) >= 0) continue;
+    }
+    if (x.time < touch.time) {
+      touch.piece = x.piece;
+      touch.time = x.time;
+    }
+  }
+  for (const Proximity& x : p.contacts)
+    if (x.piece == touch.piece && closed(x) && x.time <= touch.time) touch.add(x.normal);
+  return touch;
 }
 
 }  // namespace insula

@@ -8,6 +8,13 @@
 #include "core/collision/shapes/placed_piece.h"
 
 namespace insula {
+namespace {
+
+constexpr std::size_t max_touch_normals = 64;
+
+bool touching(const Proximity& x, const ToolContactSettings& settings) { return x.gap <= 0.1 * settings.alarm; }
+
+}  // namespace
 
 /// Motion of a piece in the step.
 struct ToolCollider::SweptPiece {
@@ -98,6 +105,7 @@ ToolCollider::ToolCollider(const std::vector<ConvexPiece>& pieces, int triangles
   candidates_.reserve(std::size_t(triangles));
   found_.reserve(4096);
   at_end_.reserve(4096);
+  touch_normals_.reserve(max_touch_normals);
 }
 
 void ToolCollider::reset() {
@@ -163,7 +171,7 @@ ToolCollider::Reached ToolCollider::advance(const CollisionMesh& mesh, const Swe
     r.touches = false;
     for (const Proximity& x : found_) {
       const Vec3 v = swept.velocity_of(at, x.local) - mesh.free_at(x.triangle, x.bary);
-      r.touches = r.touches || (x.gap <= 0.1 * settings.alarm && x.normal.dot(v) < 0);
+      r.touches = r.touches || (touching(x, settings) && x.normal.dot(v) < 0);
     }
     if (r.touches || r.time >= swept.horizon) break;
     // Time in which nothing can be touched.
@@ -211,6 +219,7 @@ void ToolCollider::detect(const CollisionMesh& mesh, const Pose& start, const Po
                           const ToolContactSettings& settings, std::vector<Proximity>& out) {
   touch_time_ = 1;
   touching_piece_ = -1;
+  touch_normals_.clear();
   if (mesh.tree().empty()) return;
   const Vec6 motion = displacement(start, free);
   const double horizon = 1 + settings.collision_horizon;
@@ -231,6 +240,10 @@ void ToolCollider::detect(const CollisionMesh& mesh, const Pose& start, const Po
     if (reached.touches && reached.time <= 1 && (touching_piece_ < 0 || reached.time < touch_time_)) {
       touch_time_ = reached.time;
       touching_piece_ = index;
+      touch_normals_.clear();
+      for (const Proximity& x : found_)
+        if (touching(x, settings) && touch_normals_.size() < touch_normals_.capacity())
+          touch_normals_.push_back(x.normal);
     }
     if (reached.time > 0) add_those_on_free_side(settings, out);
     // If contacts were taken at the end, the result of sliding is already known.

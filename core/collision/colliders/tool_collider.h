@@ -74,6 +74,8 @@ class ToolCollider {
   /// did.
   double touch_time() const { return touch_time_; }
   int touching_piece() const { return touching_piece_; }  ///< the first to touch, -1: none
+  /// Of the contacts that it then had, towards the tool.
+  std::span<const Vec3> touch_normals() const { return touch_normals_; }
 
  private:
   struct Candidate {
@@ -110,6 +112,7 @@ class ToolCollider {
   std::vector<Vec3> side_;  ///< per piece: surface normal where it was last near and outside; zero: none known
   double touch_time_ = 1;
   int touching_piece_ = -1;
+  std::vector<Vec3> touch_normals_;
   std::vector<Candidate> candidates_;
   std::vector<Proximity> found_, at_end_;
 };
