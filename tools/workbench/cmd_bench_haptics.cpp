@@ -9,7 +9,9 @@
 #include "core/params/param.h"
 #include "engine/live/live_engine.h"
 #include "engine/live/publisher.h"
+#include "tools/workbench/haptic_results.h"
 #include "tools/workbench/haptic_truth.h"
+#include "tools/workbench/random_probes.h"
 #include "tools/workbench/workbench.h"
 
 namespace insula {
@@ -43,7 +45,11 @@ std::vector<Variant> variants(bool ablation) {
   held.rendering = Rendering::held;
   diagonal.rendering = Rendering::diagonal;
   hindsight.rendering = Rendering::hindsight;
-  std::vector<Variant> out{{"held", held}, {"diagonal of W", diagonal, false}, {"equation 7", servo, false}};
+  std::vector<Variant> out{{"held", held}};
+  if (ablation) {
+    out.push_back({"diagonal of W", diagonal, false});
+    out.push_back({"equation 7", servo, false});
+  }
   const ServoSettings full = ServoSettings::beyond_equation_7();
   if (ablation) {
     servo.servo.substep.incremental_slip = full.substep.incremental_slip;
@@ -63,7 +69,7 @@ std::vector<Variant> variants(bool ablation) {
   }
   servo.servo = full;
   out.push_back({ablation ? "+ force cross-fade" : "servo", servo});
-  if (ablation) out.push_back({"hindsight", hindsight});
+  out.push_back({"hindsight", hindsight});
   return out;
 }
 
@@ -80,46 +86,73 @@ std::vector<RecordedStep> every(std::size_t n, const std::vector<RecordedStep>& 
   return out;
 }
 
-void measure(const CommandContext& context, const HapticBenchOptions& options, Simulation& simulation) {
+/// The probe with the engine at a rate, rendered in each way.
+void measure_at(const HapticBenchOptions& options, double rate, Simulation& engine, const Probe& probe,
+                const ForceTrace& reference, double duration, std::vector<HapticResult>& results) {
   const Latency latency = read_latency(options.latency);
-  const Motion motion = load_motion(find_motion(simulation, options.motion));
-  const double duration = options.duration > 0 ? options.duration : motion.duration();
-  fmt::print(context.out, "{}, {}: {:.2f} s\n", options.scene.string(), options.motion, duration);
-  const ForceTrace reference = reference_forces(simulation, motion, duration);
-  simulation.reset();
-  fmt::print(context.out, "  {:<6}{:<18}{:<7}{:>9}{:>9}{:>9}{:>11}{:>9}\n", "Hz", "rendering", "hand", "peak mN",
-             "rms %", "worst %", "onset ms", "jump %");
+  const auto record = [&](double prediction_horizon_s) {
+    engine.reset();
+    auto steps = record_steps(engine, probe.motion, duration, prediction_horizon_s);
+    if (options.fine) steps = every(std::size_t(std::lround(1e3 / rate)), steps);
+    return steps;
+  };
+  const auto predicted = record(latency.at(1 / rate));
+  const auto plain = options.ablation ? record(-1) : std::vector<RecordedStep>{};
+  for (Variant& v : variants(options.ablation)) {
+    const auto& steps = v.predicted ? predicted : plain;
+    v.settings.latency_s = latency.at(1 / rate);
+    v.settings.jitter = options.jitter;
+    const ForceTrace rendered = replay(steps, probe.motion, duration, v.settings);
+    if (!options.traces.empty())
+      write_traces(
+          options.traces / fmt::format("{}{:.0f}_{}.csv", options.random > 0 ? probe.name + " " : "", rate, v.name),
+          reference, rendered);
+    for (int hand = 0; hand < 2; ++hand) {
+      const auto h = std::size_t(hand);
+      HapticResult r{rate, v.name, probe.name, hand, compare(reference.force[h], rendered.force[h]), rendered.jump[h],
+                     0};
+      for (const Vec3& f : rendered.force[h]) r.rendered_peak_N = std::max(r.rendered_peak_N, f.norm());
+      if (r.truth.counts()) results.push_back(std::move(r));
+    }
+  }
+}
+
+std::vector<HapticResult> measure(const CommandContext& context, const HapticBenchOptions& options,
+                                  Simulation& simulation, const std::vector<Probe>& probes) {
+  std::vector<HapticResult> results;
+  std::vector<ForceTrace> references;
+  const auto duration = [&](const Probe& p) { return options.duration > 0 ? options.duration : p.motion.duration(); };
+  for (const Probe& p : probes) {
+    simulation.reset();
+    references.push_back(reference_forces(simulation, p.motion, duration(p)));
+  }
   for (const double rate : options.rates) {
     const double step_s = options.fine ? 1e-3 : 1 / rate;
     auto engine = open(context, options, step_s);
     if (!engine) throw InputError(fmt::format("it does not open with a step of {:.3g} ms", 1e3 * step_s));
     engine->set_collision_horizon(Publisher::collision_horizon_steps * step_s);
-    const auto record = [&](double prediction_horizon_s) {
-      engine->reset();
-      auto steps = record_steps(*engine, motion, duration, prediction_horizon_s);
-      if (options.fine) steps = every(std::size_t(std::lround(1e3 / rate)), steps);
-      return steps;
-    };
-    const auto predicted = record(latency.at(1 / rate));
-    const auto plain = record(-1);
-    engine.reset();
-    for (Variant& v : variants(options.ablation)) {
-      const auto& steps = v.predicted ? predicted : plain;
-      v.settings.latency_s = latency.at(1 / rate);
-      v.settings.jitter = options.jitter;
-      const ForceTrace rendered = replay(steps, motion, duration, v.settings);
-      if (!options.traces.empty())
-        write_traces(options.traces / fmt::format("{:.0f}_{}.csv", rate, v.name), reference, rendered);
-      for (std::size_t hand = 0; hand < 2; ++hand) {
-        const TruthOfHand t = compare(reference.force[hand], rendered.force[hand]);
-        if (!t.counts()) continue;
-        fmt::print(context.out, "  {:<6.0f}{:<18}{:<7}{:>9.1f}{:>9.2f}{:>9.1f}{:>11.0f}{:>9.1f}\n", rate, v.name,
-                   hand ? "right" : "left", 1e3 * t.peak_N, 100 * t.rms, 100 * t.worst, 1e3 * t.onset_s,
-                   100 * rendered.jump[hand] / t.peak_N);
-      }
-    }
-    context.out.flush();
+    for (std::size_t k = 0; k < probes.size(); ++k)
+      measure_at(options, rate, *engine, probes[k], references[k], duration(probes[k]), results);
   }
+  return results;
+}
+
+void run(const CommandContext& context, const HapticBenchOptions& options, Simulation& simulation) {
+  read_latency(options.latency);  // refused before the long work
+  std::vector<Probe> probes;
+  if (options.random > 0) probes = random_probes(simulation, options.random, options.seed);
+  else probes.push_back({options.motion, load_motion(find_motion(simulation, options.motion))});
+  const auto results = measure(context, options, simulation, probes);
+  if (options.json) {
+    context.out << haptic_json(results) << '\n';
+    return;
+  }
+  if (options.random > 0) {
+    fmt::print(context.out, "{}, {} random probes, seed {}\n", options.scene.string(), options.random, options.seed);
+    return print_percentiles(context.out, results);
+  }
+  fmt::print(context.out, "{}, {}\n", options.scene.string(), options.motion);
+  print_table(context.out, results);
 }
 
 }  // namespace
@@ -128,7 +161,7 @@ int cmd_bench_haptics(const CommandContext& context, const HapticBenchOptions& o
   const auto simulation = open(context, options, 1e-3);
   if (!simulation) return 2;
   try {
-    measure(context, options, *simulation);
+    run(context, options, *simulation);
   } catch (const InputError& e) {
     context.err << options.scene.string() << ": error: " << e.what() << '\n';
     return 2;

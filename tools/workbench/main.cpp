@@ -61,8 +61,16 @@ void add_haptic_bench(CLI::App& bench, Options& c) {
                 "the servo's "
                 "part of the error")
       ->needs(flag);
-  bench.add_flag("--ablation", o.ablation, "with --haptics: what goes beyond equation 7, one after the other")
-      ->needs(flag);
+  auto* ablation =
+      bench.add_flag("--ablation", o.ablation, "with --haptics: what goes beyond equation 7, one after the other")
+          ->needs(flag);
+  auto* random = bench.add_option("--random", o.random,
+                                  "with --haptics: so many taps, drags, presses and squeezes at random places that the "
+                                  "tools reach, in place of a motion");
+  random->check(CLI::Range(1, 10000))->needs(flag)->excludes(ablation);
+  bench.add_option("--seed", o.seed, "with --random: of the places and movements")
+      ->capture_default_str()
+      ->needs(random);
   bench.add_option("--traces", o.traces, "with --haptics: folder for the forces as CSV")->needs(flag);
 }
 
@@ -80,6 +88,7 @@ void choose_bench(Options& c) {
     c.haptics.scene = c.bench.scene;
     c.haptics.motion = c.bench.motion;
     c.haptics.threads = c.bench.threads;
+    c.haptics.json = c.bench.json;
     c.chosen = [&](const auto& x) { return insula::cmd_bench_haptics(x, c.haptics); };
   } else if (!c.bench.record.empty()) {
     c.chosen = [&](const auto& x) { return insula::cmd_record_problems(x, c.bench); };

@@ -2,6 +2,7 @@
 // The workbench's commands: what a scene costs (check), and where the time of a step goes (bench). They are a program
 // of their own, so that a trainee's session carries neither benchmarks nor the cost model.
 #pragma once
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -63,6 +64,9 @@ struct HapticBenchOptions {
   bool fine = false;  ///< the engine steps at 1 kHz whatever the rate, which tells the servo's part of the error from
                       ///< the step's
   std::filesystem::path traces;  ///< folder for the forces as CSV; empty: none
+  int random = 0;                ///< so many random probes in place of the motion; 0: none
+  std::uint64_t seed = 1;        ///< of the probes
+  bool json = false;
   int threads = 0;
 };
 /// Compares the servo's force with the engine's at 1 kHz on the same path of the devices. Status 0, or 2 for bad input.
