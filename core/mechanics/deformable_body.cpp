@@ -27,7 +27,7 @@ void DeformableBody::connect(PrepareContext& context) {
   forces_ = children_of<ForceModel>();
   fixed_.assign(n, 0);
   fix_own_nodes(fixed_);
-  for (Support* s : children_of<Support>()) s->fix(context, rest_nodes(), fixed_);
+  for (Support* s : children_of<Support>()) s->hold(context, rest_nodes(), fixed_);
   free_.assign(n, -1);
   free_count_ = 0;
   for (std::size_t i = 0; i < n; ++i)

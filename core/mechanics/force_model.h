@@ -66,12 +66,22 @@ class ForceModel : public Component {
   virtual void append_state(std::vector<double>&) const {}
 };
 
+/// Base of a condition on the support that owns it: the support holds only nodes that satisfy all of its conditions.
+class Condition : public Component {
+ public:
+  static constexpr std::string_view kind_name = "condition";
+  /// Clears chosen[i] for the nodes that it excludes, and sets none. Rest positions in metres, scene frame.
+  virtual void restrict(PrepareContext&, const std::vector<Vec3>& rest, std::vector<char>& chosen) = 0;
+};
+
 /// Base of every support plugin: selects the fixed nodes of the body that owns it.
 class Support : public Component {
  public:
   static constexpr std::string_view kind_name = "support";
   /// Sets fixed[i] for the nodes that it fixes. Rest positions in metres, scene frame.
   virtual void fix(PrepareContext&, const std::vector<Vec3>& rest, std::vector<char>& fixed) = 0;
+  /// fix() without the nodes that its conditions exclude. If no node is left, this is an error at the support.
+  void hold(PrepareContext& context, const std::vector<Vec3>& rest, std::vector<char>& fixed);
 };
 
 }  // namespace insula

@@ -23,6 +23,7 @@ std::string_view kind_name(Kind kind) {
     case Kind::complication: return "complication";
     case Kind::material: return "material";
     case Kind::metric: return "metric";
+    case Kind::condition: return "condition";
   }
   return "component";
 }

@@ -33,6 +33,7 @@ enum class Kind {
   complication,   ///< one of these
   material,       ///< appearance by name
   metric,         ///< figures on skill, owned by an exercise
+  condition,      ///< narrows the support that owns it
 };
 std::string_view kind_name(Kind kind);  ///< "force model", "exercise rule", ...
 

@@ -28,6 +28,7 @@ std::vector<Kind> usual_parents(Kind kind) {
     case Kind::metric:
     case Kind::motion: return {Kind::exercise};
     case Kind::complication: return {Kind::complications};
+    case Kind::condition: return {Kind::support};
   }
   return {};
 }

@@ -29,8 +29,8 @@ struct ComponentInfo {
 class Registry {
  public:
   /// Adds T as <element>. Its kind determines its parents: body, constraint, instrument, settings and exercise in the
-  /// scene; force_model, support and surface in a body; rules, metrics and motions in an exercise. Throws
-  /// std::logic_error when the element name is taken.
+  /// scene; force_model, support and surface in a body; rules, metrics and motions in an exercise;
+  /// conditions in a support. Throws std::logic_error when the element name is taken.
   template <class T>
   void add(std::string_view element, Kind kind, std::string_view doc) {
     add_info({std::string(element), kind, std::string(doc), {}, current_plugin_, [] { return std::make_unique<T>(); }});

@@ -38,6 +38,8 @@ void check_force_model(const std::filesystem::path& scene, const std::string& el
 void check_rigid_body(const std::filesystem::path& scene, const std::string& element);
 /// Fixes at least one node exactly, leaves others free, and keeps nodes that another support fixes.
 void check_support(const std::filesystem::path& scene, const std::string& element);
+/// Excludes a node of the support that owns it, and adds none.
+void check_condition(const std::filesystem::path& scene, const std::string& element);
 /// The free tool follows the hand, and the coupling force is stiffness times displacement. Its terms for the haptic
 /// loop are symmetric and positive, and predict the free pose for another device pose.
 void check_instrument(const std::filesystem::path& scene, const std::string& element);

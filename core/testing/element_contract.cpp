@@ -14,6 +14,7 @@ void check_element(const std::filesystem::path& scene, const std::string& elemen
     case Kind::force_model: return check_force_model(scene, element);
     case Kind::body: return check_rigid_body(scene, element);
     case Kind::support: return check_support(scene, element);
+    case Kind::condition: return check_condition(scene, element);
     case Kind::constraint: return check_rows(scene, element, true);
     case Kind::metric: return check_metric(scene, element);
     case Kind::instrument: check_instrument(scene, element); return check_rows(scene, element, false);

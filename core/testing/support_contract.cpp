@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contract of supports.
+// Contracts of supports and of their conditions.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -16,8 +16,8 @@ void check_hold(Findings& findings, const Simulation& s, Support& support, const
   Diagnostics diagnostics;
   PrepareContext context{diagnostics, s.h()};
   std::vector<char> held(std::size_t(body.nodes()), 0), all(held.size(), 1);
-  support.fix(context, body.rest_nodes(), held);
-  support.fix(context, body.rest_nodes(), all);
+  support.hold(context, body.rest_nodes(), held);
+  support.hold(context, body.rest_nodes(), all);
   findings.expect(diagnostics.ok(), "hold() reports an error for its own example", diagnostics.format());
   const auto own = std::count_if(held.begin(), held.end(), [](char h) { return h != 0; });
   findings.expect(own > 0, "it holds nothing, expected one node at least");
@@ -60,6 +60,34 @@ void check_support(const std::filesystem::path& scene, const std::string& elemen
       findings.at(body->id);
       check_held(findings, *body);
     }
+}
+
+void check_condition(const std::filesystem::path& scene, const std::string& element) {
+  auto s = load(scene);
+  ASSERT_TRUE(s);
+  Findings findings("<" + element + ">");
+  int found = 0;
+  for (Condition* condition : s->scene().all<Condition>()) {
+    if (condition->element != element) continue;
+    ++found;
+    auto* support = dynamic_cast<Support*>(condition->parent);
+    ASSERT_TRUE(support);
+    const auto* body = dynamic_cast<const DeformableBody*>(support->parent);
+    ASSERT_TRUE(body);
+    findings.at(condition->id);
+    Diagnostics diagnostics;
+    PrepareContext context{diagnostics, s->h()};
+    std::vector<char> own(std::size_t(body->nodes()), 0), none(own.size(), 0);
+    support->fix(context, body->rest_nodes(), own);
+    const auto before = std::count(own.begin(), own.end(), 1);
+    condition->restrict(context, body->rest_nodes(), own);
+    condition->restrict(context, body->rest_nodes(), none);
+    const auto after = std::count(own.begin(), own.end(), 1);
+    findings.expect(diagnostics.ok(), "restrict() reports an error for its own example", diagnostics.format());
+    findings.expect(after < before, "it excludes no node of its support, so its example shows nothing");
+    findings.expect(std::count(none.begin(), none.end(), 1) == 0, "it adds a node that its support does not select");
+  }
+  findings.expect(found > 0, "its example holds none of it");
 }
 
 }  // namespace insula::test

@@ -171,7 +171,7 @@ class Taker {
     std::vector<char> fixed(std::size_t(body->nodes()), 0);
     Diagnostics unused;
     PrepareContext context{unused, simulation_.h()};
-    s.fix(context, body->rest_nodes(), fixed);
+    s.hold(context, body->rest_nodes(), fixed);
     std::vector<Vec3> points;
     for (int i = 0; i < body->nodes(); ++i)
       if (fixed[std::size_t(i)]) points.push_back(node(*body, i));

@@ -8,9 +8,11 @@ Hooke's law. With F the deformation gradient, F = R S (polar), e = S - I:
     energy density   mu |e|^2 + lambda/2 tr(e)^2
     P = R (2 mu e + lambda tr(e) I),   force on node i = -V P b_i,   b_i the rest gradient of its shape function
 
-which is the exact gradient of the energy. Under Hooke's law a stress of a few times E compresses an element
-flat and inverts it. Soft tissue stiffens long before that. A principal stretch s below `barrier_stretch` s0 therefore
-costs in addition
+which is the exact gradient of the energy. R is the rotation nearest to F: the rotation of its polar decomposition. If
+F is inverted, the reflection goes into the smallest stretch. R is not taken from the edges of the element, as SOFA's
+polar method does; the page on validation compares the two. Under Hooke's law a stress of a few times E compresses an
+element flat and inverts it. Soft tissue stiffens long before that. A principal stretch s below `barrier_stretch` s0
+therefore costs in addition
 
     energy density   stiffening E / 2 (s0 - s)^2           (s < s0; nothing above)
 

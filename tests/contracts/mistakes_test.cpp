@@ -74,6 +74,9 @@ const Case cases[] = {
     {"hold", ""},
     {"hold_nothing", "it holds nothing"},
     {"hold_lets_go", "it lets go what another support holds"},
+    {"keep", ""},
+    {"keep_everything", "it excludes no node of its support"},
+    {"keep_more", "it adds a node that its support does not select"},
     {"rule", ""},
     {"rule_one_id", "two goals or faults have one id"},
     {"rule_forgets_reset", "after reset() the same run is judged otherwise"},
@@ -95,7 +98,9 @@ std::string scene_with(const std::string& element) {
   const std::string one = "<" + element + "/>", joins = "<" + element + R"( surface="skin" tool="tool"/>)";
   return R"(<scene>
   <soft_body id="block" mesh="meshes/block.msh" mesh_unit="m"><corotational_fem/>)" +
-         (is("hold") ? one : std::string(R"(<fixed region="beyond" centre="0 0 -9 mm" normal="0 0 -1"/>)")) +
+         (is("hold") ? one
+                     : R"(<fixed region="beyond" centre="0 0 -9 mm" normal="0 0 -1">)" + (is("keep") ? one : "") +
+                           "</fixed>") +
          (is("springs") ? one : "") +
          R"(<surface id="skin"/></soft_body>
   <)" + (is("probe") ? element : std::string("retractor")) +

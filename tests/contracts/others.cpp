@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Supports, exercise rules, metrics and instruments with one mistake each.
+// Supports, conditions, exercise rules, metrics and instruments with one mistake each.
 #include <algorithm>
 
 #include "core/constraint/stated_law.h"
@@ -23,6 +23,20 @@ class Hold final : public Support {
     for (std::size_t i = 0; i < rest.size(); ++i) {
       if (H == Held::lets_go) held[i] = rest[i].z() < low + 1e-6;
       else if (H == Held::right && rest[i].z() < low + 1e-6) held[i] = 1;
+    }
+  }
+};
+
+enum class Kept { right, everything, more };
+
+/// Keeps the half of the body with x >= 0.
+template <Kept K>
+class Keep final : public Condition {
+ public:
+  void restrict(PrepareContext&, const std::vector<Vec3>& rest, std::vector<char>& chosen) override {
+    for (std::size_t i = 0; i < rest.size(); ++i) {
+      if (K != Kept::everything && rest[i].x() < 0) chosen[i] = 0;
+      else if (K == Kept::more) chosen[i] = 1;
     }
   }
 };
@@ -132,6 +146,9 @@ void add_others(Registry& registry) {
   registry.add<Hold<Held::right>>("hold", Kind::support, "support for tests");
   registry.add<Hold<Held::nothing>>("hold_nothing", Kind::support, "support for tests");
   registry.add<Hold<Held::lets_go>>("hold_lets_go", Kind::support, "support for tests");
+  registry.add<Keep<Kept::right>>("keep", Kind::condition, "condition for tests");
+  registry.add<Keep<Kept::everything>>("keep_everything", Kind::condition, "condition for tests");
+  registry.add<Keep<Kept::more>>("keep_more", Kind::condition, "condition for tests");
   registry.add<Rule<Judged::right>>("rule", Kind::exercise_rule, "rule for tests");
   registry.add<Rule<Judged::one_id>>("rule_one_id", Kind::exercise_rule, "rule for tests");
   registry.add<Rule<Judged::forgets_reset>>("rule_forgets_reset", Kind::exercise_rule, "rule for tests");
