@@ -21,11 +21,12 @@ constexpr double key_interval_s = 5e-3;
 constexpr double above_m = 25e-3;  ///< along the shaft, where a tool comes down from
 constexpr double start_m = 5e-3;   ///< over the touch, along the normal, where a probe begins and ends
 constexpr double margin_m = 0.3e-3;
-constexpr double sample_m = 0.5e-3;          ///< of a path that is tested
-constexpr double fine_sample_m = 0.05e-3;    ///< of the last part of it
-constexpr double farthest_touch_m = 2.5e-3;  ///< from the place that was drawn
-constexpr double most_lean = 0.4;            ///< least cosine between normal and shaft
-constexpr int max_attempts = 20000;
+constexpr double path_sample_m = 1e-3;               ///< of a path that is tested
+constexpr double sample_m = 0.5e-3;                  ///< of the last part of it, and of a tool
+constexpr double fine_sample_m = 0.05e-3;            ///< where it touches
+constexpr double farthest_touch_m = 2.5e-3;          ///< from the place that was drawn
+constexpr double least_cosine = 0.4;                 ///< between normal and shaft
+constexpr int max_draws = 20000, max_reaches = 500;  ///< of triangles, and of tests whether a tool reaches one
 
 double minimum_jerk(double s) { return s * s * s * (10 - 15 * s + 6 * s * s); }
 
@@ -36,8 +37,9 @@ struct Balls {
     for (const ConvexPiece& piece : tool.link_pieces(0)) {
       const RoundedPiece r = rounded(piece);
       const Vec3 along = r.axis1 - r.axis0;
-      const int n = 1 + int(along.norm() / sample_m);
-      for (int i = 0; i <= n; ++i) at.emplace_back(r.axis0 + double(i) / n * along, r.bound + r.radius);
+      const double radius = r.bound + r.radius;
+      const int n = 1 + int(along.norm() / std::max(sample_m, radius));
+      for (int i = 0; i <= n; ++i) at.emplace_back(r.axis0 + double(i) / n * along, radius);
     }
   }
 };
@@ -63,17 +65,14 @@ class Reach {
   Vec3 above(const Place& place) const { return start(place) + above_m * shaft_; }
   static Vec3 start(const Place& place) { return place.touch + start_m * place.normal; }
 
+  bool faces(const Vec3& normal) const { return normal.dot(shaft_) >= least_cosine; }
   /// Where the tool touches when it comes to `point` against `normal`; none if it cannot.
   std::optional<Place> to(const Surface& surface, const Vec3& point, const Vec3& normal) const {
-    if (normal.dot(shaft_) < most_lean) return std::nullopt;
     const Vec3 from = point + start_m * normal;
     if (touched(from, margin_m) || touched(from + above_m * shaft_, margin_m)) return std::nullopt;
-    const Surface* met = nullptr;
-    Vec3 at = from;
-    const double down = start_m + 1e-3;
-    for (double s = 0; s < down && !met; s += fine_sample_m) met = touched(at = from - s * normal, 0);
-    Place place{met, at, normal};
-    if (met != &surface || (at - point).norm() > farthest_touch_m) return std::nullopt;
+    const double down = touch_distance(from, -normal, start_m + 1e-3);
+    const Place place{&surface, from - down * normal, normal};
+    if (touched(place.touch, 0) != &surface || (place.touch - point).norm() > farthest_touch_m) return std::nullopt;
     if (!clear(above(place), start(place)) || !clear(home_.p, above(place))) return std::nullopt;
     return place;
   }
@@ -97,8 +96,15 @@ class Reach {
     }
     return nullptr;
   }
+  /// How far the tip goes along a unit direction until the tool touches, at most `most`.
+  double touch_distance(const Vec3& from, const Vec3& direction, double most) const {
+    double s = 0;
+    while (s < most && !touched(from + s * direction, 0)) s += sample_m;
+    for (s = std::max(0.0, s - sample_m); s < most && !touched(from + s * direction, 0);) s += fine_sample_m;
+    return s;
+  }
   bool clear(const Vec3& a, const Vec3& b) const {
-    const int n = 1 + int((b - a).norm() / sample_m);
+    const int n = 1 + int((b - a).norm() / path_sample_m);
     for (int i = 0; i <= n; ++i)
       if (touched(a + double(i) / n * (b - a), margin_m)) return false;
     return true;
@@ -130,7 +136,8 @@ class Places {
   /// A place that the tool reaches. `near`: within so far of that point, and on that surface.
   std::optional<Place> draw(Random& random, const Reach& reach, const Place* near = nullptr) const {
     constexpr double near_m = 25e-3, not_nearer_m = 7e-3;
-    for (int attempt = 0; attempt < max_attempts; ++attempt) {
+    int reaches = 0;
+    for (int draw = 0; draw < max_draws && reaches < max_reaches; ++draw) {
       const double at = random.uniform(0, area_);
       double u = random.uniform(), v = random.uniform();
       if (u + v > 1) {
@@ -149,6 +156,8 @@ class Places {
         if (t.surface != near->surface || distance > near_m || distance < not_nearer_m) continue;
       }
       const Vec3 normal = (b - a).cross(c - a).normalized();
+      if (!reach.faces(normal)) continue;
+      ++reaches;
       if (auto place = reach.to(*t.surface, point, normal)) return place;
     }
     return std::nullopt;
@@ -261,7 +270,8 @@ class Writer {
 
 constexpr std::array<const char*, 4> kinds{"tap", "drag", "press", "squeeze"};
 constexpr std::array<double, 3> paces{1.6, 1.0, 0.6};  ///< slow, as in docs/haptic-truth.md, fast
-constexpr std::size_t squeeze = 3;
+constexpr std::size_t drag = 1, press = 2, squeeze = 3;
+constexpr int max_failures = 8;
 
 class Draw {
  public:
@@ -272,9 +282,13 @@ class Draw {
   }
   bool any() const { return (reach_[0] || reach_[1]) && !(lobes_.empty() && walls_.empty()); }
 
-  std::optional<Probe> make(int number) {
-    const bool wall = !walls_.empty() && (lobes_.empty() || number / int(kinds.size()) % 2 == 1);
-    const std::size_t kind = std::size_t(number) % kinds.size();
+  /// `failed`: how often this number's probe found no place; after a failure it looks on the other surfaces.
+  /// Where two hands do not reach, a squeeze becomes a press.
+  std::optional<Probe> make(int number, int failed) {
+    const bool turn = (number / int(kinds.size()) % 2 == 1) != (failed % 2 == 1);
+    const bool wall = !walls_.empty() && (lobes_.empty() || turn);
+    std::size_t kind = std::size_t(number) % kinds.size();
+    if (kind == squeeze && failed >= max_failures / 2) kind = press;
     const Places& places = wall ? walls_ : lobes_;
     const std::size_t hand = reach_[1] ? 1 : 0;
     const auto place = places.draw(random_, *reach_[hand]);
@@ -284,9 +298,9 @@ class Draw {
     if (kind == squeeze) return both_hands(std::move(probe), writer, places, *place);
     Path path(probe.motion, int(hand), *reach_[hand]);
     approach(path, *reach_[hand], *place, 0);
-    if (kind == 0) writer.tap(path, *place);
-    else if (kind == 1) writer.drag(path, *place);
-    else writer.press(path, *place);
+    if (kind == press) writer.press(path, *place);
+    else if (kind == drag) writer.drag(path, *place);
+    else writer.tap(path, *place);
     return probe;
   }
 
@@ -312,13 +326,12 @@ class Draw {
 }  // namespace
 
 std::vector<Probe> random_probes(Simulation& simulation, int count, std::uint64_t seed) {
-  constexpr int max_failures = 8;
   simulation.step();  // surfaces know where they are
   std::vector<Probe> out;
   Draw draw(simulation, seed);
   int failures = 0;
   while (draw.any() && int(out.size()) < count && failures < max_failures) {
-    if (auto probe = draw.make(int(out.size()))) {
+    if (auto probe = draw.make(int(out.size()), failures)) {
       out.push_back(std::move(*probe));
       failures = 0;
     } else {
