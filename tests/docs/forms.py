@@ -182,6 +182,7 @@ FORMS = (
         "bench_training.xml --solvers",
         "the small scene: CHOLMOD takes seconds for each solve of the large one",
     ),
+    Shorter(r"--random 60\b", "--random 4", "fewer probes"),
     Shorter(r"--steps (600|300|30)\b", "--steps 20", "fewer steps"),
     Shorter(r"^(\./insula bench .* --haptics .*)$", r"\1 --duration 0.1", "the first tenth of a second of the motion"),
     Shorter(r"--scaling --output folder", "--scaling --quick --output folder", "small sizes alone, as the page offers"),
