@@ -30,9 +30,8 @@ expectation changes n alone, not the law.
 Tools are rounded convex pieces. They search ahead along their free motion, so that a contact exists before bodies
 touch (`core/collision/colliders/tool_collider.h`). Surfaces meet by sampled vertices
 (`core/collision/colliders/tissue_collider.h`). A surface with a `thickness` is the middle surface of a wall, and gaps
-are measured to the wall's faces. A tool that touches such a wall goes into it by no more than `max_step_displacement`
-in a step, however fast the hand is. Rows on the tool alone limit it. They act against the normal of the contact, so
-motion along the wall and away from it is free.
+are measured to the wall's faces. A tool that goes into such a wall moves by no more than `max_step_displacement` in a
+step, however fast the hand is. Rows on the tool alone limit it. A tool that leaves the wall is free.
 
 `alarm` is the distance at which a contact enters the problem. The haptic loop needs it too, since it moves the tool
 between steps. Contact forces act on both sides at the same point, on the triangle's side of the gap. A tool's contact

@@ -54,8 +54,8 @@ class Contact final : public Constraint, public StatesLaw {
        .fallback = "0.3 mm",
        .min = "0.05 mm",
        .max = "100 mm",
-       .doc = "a tool that touches a wall (a surface with a thickness) goes into it by no more than this in a step; "
-              "the rest follows in the next ones; motion along the wall and away from it is free",
+       .doc = "a tool that goes into a wall (a surface with a thickness) moves by no more than this in a step; the "
+              "rest follows in the next ones; a tool that leaves the wall is free",
        .formerly = "max_push"}};
   Param<Length> tissue_max_step_displacement{this,
                                              {.name = "tissue_max_step_displacement",

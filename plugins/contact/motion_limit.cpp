@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Limit of a tool's motion at a wall or in tissue in one step.
+#include <algorithm>
+
 #include "core/collision/shapes/closest.h"
 #include "plugins/contact/contact.h"
 
@@ -19,28 +21,13 @@ Vec3 farthest_from_axis(const RoundedPiece& r) {
   return out;
 }
 
-/// Part of u against the normals: u minus the nearest motion that none of them opposes (Moreau's decomposition).
-/// The multipliers are found by Hildreth's sweeps.
-Vec3 inward_part(const Vec3& u, std::span<const Vec3> normals) {
-  constexpr int sweeps = 30;
-  std::array<double, Contact::max_touch_normals> multipliers{};
-  Vec3 inward = Vec3::Zero();
-  for (int sweep = 0; sweep < sweeps; ++sweep)
-    for (std::size_t k = 0; k < normals.size(); ++k) {
-      const double next = std::max(0.0, multipliers[k] - normals[k].dot(u - inward));
-      inward -= (next - multipliers[k]) * normals[k];
-      multipliers[k] = next;
-    }
-  return inward;
-}
-
 }  // namespace
 
 // Tissue responds linearly over a step, but its true motion is nonlinear. A large push would invert a thin wall or the
-// elements of a lobe. So the part of a tool's motion that is against its contacts is at most max_step_displacement (a
-// wall) or tissue_max_step_displacement. Three rows limit the free motion of three points of the touching piece. They
-// act along the motion and shorten it as a whole, since a slide down the side of a pit goes in as well. Motion along
-// the surface or away from it has no such part, so a hand that leaves is never pulled.
+// elements of a lobe, and a large slide would leave the region of the detected contacts. So a tool that goes into what
+// it touches moves by at most max_step_displacement (a wall) or tissue_max_step_displacement. Three rows limit the free
+// motion of three points of the touching piece. A motion that no contact opposes is free, so a hand that leaves is
+// never pulled.
 void Contact::limit_motion(ConstraintBuilder& builder, const Pair& p) const {
   if (!p.tool_a || !p.b || !p.active() || p.b->body().blocks() == 0) return;
   const double most = p.b->thickness() > 0 ? max_step_displacement() : tissue_max_step_displacement();
@@ -51,10 +38,11 @@ void Contact::limit_motion(ConstraintBuilder& builder, const Pair& p) const {
   for (const Vec3& place : {r.axis0, r.axis1, farthest_from_axis(r)}) {
     const MaterialPoint point = p.tool_a->link_point(p.link_a, place);
     const Vec3 u = p.tool_a->free_displacement(point);
-    const double distance = u.norm(), inward = inward_part(u, touch.normals()).norm();
+    const double distance = u.norm(), allowed = touch.time * distance + most;
+    const auto normals = touch.normals();
+    const bool opposed = std::any_of(normals.begin(), normals.end(), [&](const Vec3& n) { return n.dot(u) < 0; });
     ++count;
-    if ((1 - touch.time) * inward <= most) continue;
-    const double allowed = (touch.time + most / inward) * distance;
+    if (!opposed || distance <= allowed) continue;
     Block block;
     block.id = row_id(*this, std::uint64_t(1) << 43 | std::uint64_t(&p - pairs_.data()) << 16 |
                                  std::uint64_t(touch.piece) << 2 | std::uint64_t(count));
@@ -62,7 +50,7 @@ void Contact::limit_motion(ConstraintBuilder& builder, const Pair& p) const {
     block.lower = 0;
     const int row = builder.add(block);
     builder.violation(row, allowed);
-    builder.moves(row, most / inward * distance / servo_step_s);
+    builder.moves(row, most / servo_step_s);
     builder.point(row, point, -u / distance);
   }
 }
