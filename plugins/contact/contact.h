@@ -177,7 +177,6 @@ class Contact final : public Constraint, public StatesLaw {
     const Body* body_b() const { return tool_b ? static_cast<const Body*>(tool_b) : &b->body(); }
   };
   const std::vector<Pair>& pairs() const { return pairs_; }
-  static constexpr std::size_t max_touch_normals = 64;
 
  private:
   /// The work of one thread at a time: a pair, or one direction of a pair of surfaces.
@@ -194,7 +193,8 @@ class Contact final : public Constraint, public StatesLaw {
     int piece = -1;  ///< -1: none
     double time = 1;
     std::size_t count = 0;
-    std::array<Vec3, max_touch_normals> normal;  ///< of the `count` contacts that the piece then has, towards the tool
+    std::array<Vec3, ToolCollider::max_touch_normals>
+        normal;  ///< of the `count` contacts that the piece then has, towards the tool
     void add(const Vec3& n) {
       if (count < normal.size()) normal[count++] = n;
     }

@@ -6,7 +6,6 @@
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "tests/process/live_session.h"
 
@@ -19,15 +18,17 @@ class Recording : public LiveSession {
  protected:
   /// Adds an exercise with metrics.
   void prepare(std::vector<std::string>& options) override {
-    std::stringstream text;
-    text << std::ifstream(scene()).rdbuf();
-    std::string with = text.str();
+    std::string with = scene_text();
     with.insert(with.find("</scene>"),
                 R"(<exercise id="e" title="Press"><hand_metrics/><bimanual_metrics/></exercise>)");
     std::ofstream(scene()) << with;
     options.insert(options.end(), {"--mode", "practice", "--field", "person=P07"});
   }
   fs::path scene() const { return session_->folder() / "press.xml"; }
+  std::string scene_text() const {
+    std::ifstream in(scene());
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
   /// Exit status of `insula COMMAND`, whose output goes to a file of the session's folder.
   int insula(const std::string& command) const {
     const std::string line =
@@ -143,9 +144,7 @@ TEST_F(Recording, OfAKilledEngineHasAllButTheLastMoment) {
 TEST_F(Recording, OfASceneThatIsSavedHasTwoFilesWithTheSameBitsAgain) {
   ASSERT_TRUE(watcher_->press(0.1)) << watcher_->force();
   const std::int64_t first = watcher_->frame_session();
-  std::stringstream text;
-  text << std::ifstream(scene()).rdbuf();
-  std::string with = text.str();
+  std::string with = scene_text();
   const std::string before = "title=\"Press\"";
   with.replace(with.find(before), before.size(), "title=\"Pressed again\" gravity=\"0 0 -9 m/s2\"");
   std::ofstream(scene()) << with;

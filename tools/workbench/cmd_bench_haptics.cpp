@@ -86,12 +86,17 @@ std::vector<RecordedStep> every(std::size_t n, const std::vector<RecordedStep>& 
   return out;
 }
 
+/// A scene that settles does so in every reset, so one that has not been stepped is left as it is.
+void start_again(Simulation& simulation) {
+  if (simulation.steps() > 0) simulation.reset();
+}
+
 /// The probe with the engine at a rate, rendered in each way.
 void measure_at(const HapticBenchOptions& options, double rate, Simulation& engine, const Probe& probe,
                 const ForceTrace& reference, double duration, std::vector<HapticResult>& results) {
   const Latency latency = read_latency(options.latency);
   const auto record = [&](double prediction_horizon_s) {
-    engine.reset();
+    start_again(engine);
     auto steps = record_steps(engine, probe.motion, duration, prediction_horizon_s);
     if (options.fine) steps = every(std::size_t(std::lround(1e3 / rate)), steps);
     return steps;
@@ -123,7 +128,7 @@ std::vector<HapticResult> measure(const CommandContext& context, const HapticBen
   std::vector<ForceTrace> references;
   const auto duration = [&](const Probe& p) { return options.duration > 0 ? options.duration : p.motion.duration(); };
   for (const Probe& p : probes) {
-    simulation.reset();
+    start_again(simulation);
     references.push_back(reference_forces(simulation, p.motion, duration(p)));
   }
   for (const double rate : options.rates) {

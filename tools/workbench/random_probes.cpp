@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "core/base/input_error.h"
@@ -61,7 +62,6 @@ class Reach {
         shaft_(home_.q * Vec3::UnitZ()) {}
 
   const Pose& home() const { return home_; }
-  const Vec3& shaft() const { return shaft_; }
   Vec3 above(const Place& place) const { return start(place) + above_m * shaft_; }
   static Vec3 start(const Place& place) { return place.touch + start_m * place.normal; }
 
@@ -76,7 +76,7 @@ class Reach {
     if (!clear(above(place), start(place)) || !clear(home_.p, above(place))) return std::nullopt;
     return place;
   }
-  /// Points of the shaft with the tip at a place, for the distance of two tools.
+  /// Whether the shafts of two tools at their places keep a distance.
   bool apart(const Place& place, const Reach& other, const Place& others) const {
     constexpr double least_m = 4e-3, length_m = 60e-3;
     for (double s = 0; s < length_m; s += 2e-3)
@@ -190,6 +190,9 @@ class Path {
     }
   }
   void rest(double seconds) { to(at_, seconds); }
+  void rest_until(double time) {
+    if (time > time_) rest(time - time_);
+  }
   double time() const { return time_; }
 
  private:
@@ -208,10 +211,9 @@ class Path {
 /// Time for a way through free space at 0.15 m/s in the mean.
 double free_time(const Vec3& a, const Vec3& b) { return std::max(0.15, (b - a).norm() / 0.15); }
 
-void approach(Path& path, const Reach& reach, const Place& place, double least_time) {
+void approach(Path& path, const Reach& reach, const Place& place) {
   path.to(reach.above(place), free_time(reach.home().p, reach.above(place)));
   path.to(Reach::start(place), free_time(reach.above(place), Reach::start(place)));
-  if (path.time() < least_time) path.rest(least_time - path.time());
 }
 
 /// Depths below the first touch; walls are thin and stiff.
@@ -242,7 +244,7 @@ class Writer {
   }
   /// There and back along the surface.
   void drag(Path& path, const Place& p) {
-    const double angle = random_.uniform(0, 2 * pi);
+    const double angle = random_.uniform(0, 2 * std::numbers::pi);
     const Vec3 x = p.normal.unitOrthogonal(), y = p.normal.cross(x);
     slide(path, p, 2e-3 * (std::cos(angle) * x + std::sin(angle) * y));
   }
@@ -263,7 +265,6 @@ class Writer {
     path.to(pressed, 0.25 * pace_);
     path.to(Reach::start(p), 0.3 * pace_);
   }
-  static constexpr double pi = 3.14159265358979323846;
   Random& random_;
   double pace_;
 };
@@ -297,7 +298,7 @@ class Draw {
     Probe probe{fmt::format("{} {} {}", kinds[kind], place->surface->body().id, number + 1), {}};
     if (kind == squeeze) return both_hands(std::move(probe), writer, places, *place);
     Path path(probe.motion, int(hand), *reach_[hand]);
-    approach(path, *reach_[hand], *place, 0);
+    approach(path, *reach_[hand], *place);
     if (kind == press) writer.press(path, *place);
     else if (kind == drag) writer.drag(path, *place);
     else writer.tap(path, *place);
@@ -310,9 +311,10 @@ class Draw {
     const auto left = places.draw(random_, *reach_[0], &right);
     if (!left || !reach_[1]->apart(right, *reach_[0], *left)) return std::nullopt;
     Path a(probe.motion, 0, *reach_[0]), b(probe.motion, 1, *reach_[1]);
-    approach(a, *reach_[0], *left, 0);
-    approach(b, *reach_[1], right, a.time());
-    if (a.time() < b.time()) a.rest(b.time() - a.time());
+    approach(a, *reach_[0], *left);
+    approach(b, *reach_[1], right);
+    b.rest_until(a.time());
+    a.rest_until(b.time());
     writer.squeeze(a, *left, right);
     writer.squeeze(b, right, *left);
     return probe;

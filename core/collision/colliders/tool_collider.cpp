@@ -10,8 +10,6 @@
 namespace insula {
 namespace {
 
-constexpr std::size_t max_touch_normals = 64;
-
 bool touching(const Proximity& x, const ToolContactSettings& settings) { return x.gap <= 0.1 * settings.alarm; }
 
 }  // namespace
@@ -242,8 +240,7 @@ void ToolCollider::detect(const CollisionMesh& mesh, const Pose& start, const Po
       touching_piece_ = index;
       touch_normals_.clear();
       for (const Proximity& x : found_)
-        if (touching(x, settings) && touch_normals_.size() < touch_normals_.capacity())
-          touch_normals_.push_back(x.normal);
+        if (touching(x, settings) && touch_normals_.size() < max_touch_normals) touch_normals_.push_back(x.normal);
     }
     if (reached.time > 0) add_those_on_free_side(settings, out);
     // If contacts were taken at the end, the result of sliding is already known.

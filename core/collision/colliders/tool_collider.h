@@ -74,7 +74,8 @@ class ToolCollider {
   /// did.
   double touch_time() const { return touch_time_; }
   int touching_piece() const { return touching_piece_; }  ///< the first to touch, -1: none
-  /// Of the contacts that it then had, towards the tool.
+  static constexpr std::size_t max_touch_normals = 64;
+  /// Of the contacts that it then had, towards the tool; at most max_touch_normals.
   std::span<const Vec3> touch_normals() const { return touch_normals_; }
 
  private:
