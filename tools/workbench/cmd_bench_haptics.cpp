@@ -8,6 +8,7 @@
 #include "core/base/input_error.h"
 #include "core/params/param.h"
 #include "engine/live/live_engine.h"
+#include "engine/live/motion_start.h"
 #include "engine/live/publisher.h"
 #include "tools/workbench/haptic_truth.h"
 #include "tools/workbench/workbench.h"
@@ -83,6 +84,7 @@ std::vector<RecordedStep> every(std::size_t n, const std::vector<RecordedStep>& 
 void measure(const CommandContext& context, const HapticBenchOptions& options, Simulation& simulation) {
   const Latency latency = read_latency(options.latency);
   const Motion motion = load_motion(find_motion(simulation, options.motion));
+  check_start(simulation, motion);
   const double duration = options.duration > 0 ? options.duration : motion.duration();
   fmt::print(context.out, "{}, {}: {:.2f} s\n", options.scene.string(), options.motion, duration);
   const ForceTrace reference = reference_forces(simulation, motion, duration);
