@@ -7,6 +7,7 @@
 
 #include "core/base/input_error.h"
 #include "engine/live/live_engine.h"
+#include "engine/live/motion_start.h"
 
 namespace insula {
 
@@ -42,6 +43,12 @@ OpenedRun open_run(const CommandContext& context, const std::filesystem::path& s
       context.err << scene.string() << ": error: " << e.what() << '\n';
       return out;
     }
+  }
+  try {
+    check_start(*loaded.simulation, out.motion);
+  } catch (const InputError& e) {
+    context.err << scene.string() << ": error: " << e.what() << '\n';
+    return out;
   }
   out.simulation = std::move(loaded.simulation);
   return out;

@@ -19,6 +19,7 @@
 #include "engine/live/bundle.h"
 #include "engine/live/command_script.h"
 #include "engine/live/lockstep_hands.h"
+#include "engine/live/motion_start.h"
 #include "engine/live/notice.h"
 #include "engine/live/publisher.h"
 #include "engine/live/session_mode.h"
@@ -179,17 +180,26 @@ fs::path find_motion(const Simulation& simulation, const std::string& wanted) {
 
 namespace {
 
-/// Finds and reads the file of the wanted motion. False if the file that the person named cannot be read.
+/// Finds and reads the file of the wanted motion. False if the file that the person named cannot be read, or the motion
+/// may not start where it does.
 bool load_motion_of(const Simulation& simulation, const std::string& wanted, fs::path& file, Motion& motion) {
   try {
     file = find_motion(simulation, wanted);
-    if (!file.empty()) motion = load_motion(file);
+    if (file.empty()) return true;
+    motion = load_motion(file);
   } catch (const InputError& e) {
     // A scene without the default motion is played by a person.
     if (wanted != "steady") {
       std::fprintf(stderr, "error: %s\n", e.what());
       return false;
     }
+    return true;
+  }
+  try {
+    check_start(simulation, motion);
+  } catch (const InputError& e) {
+    std::fprintf(stderr, "error: %s: %s\n", file.string().c_str(), e.what());
+    return false;
   }
   return true;
 }

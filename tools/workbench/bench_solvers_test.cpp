@@ -3,6 +3,7 @@
 // promises.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -31,7 +32,7 @@ TEST(BenchSolvers, EverySolverAgreesOnTheSameStep) {
   for (const auto& body : j["bodies"]) {
     rows += body["rows"].get<int>();
     EXPECT_LE(body["rows"].get<int>(), 12);
-    ASSERT_EQ(body["solvers"].size(), 4u);
+    ASSERT_EQ(body["solvers"].size(), 3 + 2 * j["blas"].size());
     for (const auto& s : body["solvers"]) {
       const std::string name = s["solver"];
       const double tolerance = name.find("single") != std::string::npos ? 1e-4 : 1e-11;
@@ -45,13 +46,40 @@ TEST(BenchSolvers, EverySolverAgreesOnTheSameStep) {
     }
   }
   EXPECT_GT(rows, 0);
+  ASSERT_FALSE(j["blas"].empty());
+  for (const auto& blas : j["blas"]) {
+    // A column says which BLAS it really used.
+    const std::string name = blas["name"], library = blas["library"];
+    EXPECT_FALSE(library.empty()) << name;
+    EXPECT_EQ(name == "OpenBLAS", library.starts_with("OpenBLAS")) << name << ": " << library;
+    int columns = 0;
+    for (const auto& s : j["bodies"][0]["solvers"])
+      columns += s["solver"].get<std::string>().starts_with("CHOLMOD, " + name);
+    EXPECT_EQ(columns, 2) << name;
+  }
+  const bool open =
+      std::any_of(j["blas"].begin(), j["blas"].end(), [](const auto& b) { return b["name"] == "OpenBLAS"; });
+  EXPECT_EQ(j["remarks"].dump().find("OpenBLAS is not installed") == std::string::npos, open) << j["remarks"];
+}
+
+TEST(BenchSolvers, AFolderWithoutABlasIsRefused) {
+  Registry registry;
+  register_builtin(registry);
+  std::ostringstream out, err;
+  BenchOptions options;
+  options.scene = std::filesystem::path(INSULA_SOURCE_DIR) / "plugins/strand_springs/example.xml";
+  options.motion = "none";
+  options.blas = std::filesystem::path(INSULA_SOURCE_DIR) / "docs";
+  EXPECT_EQ(cmd_bench_solvers({registry, out, err}, options), 2);
+  EXPECT_NE(err.str().find("libblas.so.3"), std::string::npos) << err.str();
 }
 
 TEST(BenchSolvers, BorrowedSolversSayWhenAMatrixIsIndefinite) {
   BlockMatrix a;
   a.set_pattern(2, {{0, 1}});
-  for (const auto& [name, make] : {std::pair{"CHOLMOD", &make_cholmod_solver}, {"Eigen", &make_eigen_solver}}) {
-    const auto s = make();
+  const auto cholmod = load_cholmod({});
+  for (const auto& [name, s] : {std::pair{"CHOLMOD", std::shared_ptr(make_cholmod_solver(cholmod, ReferenceW::full))},
+                                {"Eigen", std::shared_ptr(make_eigen_solver())}}) {
     s->analyse(a);
     for (double pivot : {3.0, -3.0, 3.0}) {
       for (int i = 0; i < 3; ++i) {

@@ -8,6 +8,7 @@
 #include "core/base/input_error.h"
 #include "core/params/param.h"
 #include "engine/live/live_engine.h"
+#include "engine/live/motion_start.h"
 #include "engine/live/publisher.h"
 #include "tools/workbench/haptic_results.h"
 #include "tools/workbench/haptic_truth.h"
@@ -146,7 +147,10 @@ void run(const CommandContext& context, const HapticBenchOptions& options, Simul
   read_latency(options.latency);  // refused before the long work
   std::vector<Probe> probes;
   if (options.random > 0) probes = random_probes(simulation, options.random, options.seed);
-  else probes.push_back({options.motion, load_motion(find_motion(simulation, options.motion))});
+  else {
+    probes.push_back({options.motion, load_motion(find_motion(simulation, options.motion))});
+    check_start(simulation, probes[0].motion);
+  }
   const auto results = measure(context, options, simulation, probes);
   if (options.json) {
     context.out << haptic_json(results) << '\n';

@@ -156,11 +156,37 @@ std::vector<Measured> measure(const Recorded& step, const std::vector<NamedSolve
   return out;
 }
 
-std::vector<NamedSolver> all_solvers() {
+struct NamedLibrary {
+  std::string name;
+  std::shared_ptr<const CholmodLibrary> cholmod;
+};
+
+/// CHOLMOD on the installed BLAS libraries and on the one of the options; remarks on those that are missing.
+std::vector<NamedLibrary> load_libraries(const std::filesystem::path& extra, std::vector<std::string>& remarks) {
+  InstalledBlas blas = installed_blas();
+  if (!extra.empty()) {
+    blas.found.push_back({extra.string(), extra});
+    std::erase_if(blas.missing, [](const std::string& s) { return s.starts_with("OpenBLAS"); });
+  }
+  if (blas.found.empty()) blas.found.push_back({"BLAS of the system", {}});
+  remarks = std::move(blas.missing);
+  std::vector<NamedLibrary> out;
+  for (const BlasFolder& b : blas.found) {
+    NamedLibrary one{b.name, load_cholmod(b.folder)};
+    if (one.cholmod->blas.starts_with("OpenBLAS")) one.name = "OpenBLAS";
+    out.push_back(std::move(one));
+  }
+  return out;
+}
+
+std::vector<NamedSolver> all_solvers(const std::vector<NamedLibrary>& libraries) {
   std::vector<NamedSolver> out;
   out.push_back({"direct", make_direct_solver(false)});
   out.push_back({"direct, single precision", make_direct_solver(true)});
-  out.push_back({"CHOLMOD", make_cholmod_solver()});
+  for (const NamedLibrary& l : libraries) {
+    out.push_back({"CHOLMOD, " + l.name, make_cholmod_solver(l.cholmod, ReferenceW::full)});
+    out.push_back({"CHOLMOD, " + l.name + ", forward W", make_cholmod_solver(l.cholmod, ReferenceW::forward)});
+  }
   out.push_back({"Eigen LDLT", make_eigen_solver()});
   return out;
 }
@@ -191,12 +217,12 @@ nlohmann::json as_json(const Measured& s, const MachineRates& machine) {
 
 void print(std::ostream& out, const Recorded& step, const std::vector<Measured>& all, const MachineRates& machine) {
   fmt::print(out, "\n{}: {} free nodes, {} rows\n", step.body->id, step.body->system().nodes(), step.rows.count());
-  fmt::print(out, "  {:<26}{:>10}{:>10}{:>10}{:>10}{:>11}{:>11}{:>10}{:>11}{:>7}{:>7}{:>7}\n", "solver", "factor ms",
+  fmt::print(out, "  {:<36}{:>10}{:>10}{:>10}{:>10}{:>11}{:>11}{:>10}{:>11}{:>7}{:>7}{:>7}\n", "solver", "factor ms",
              "solve ms", "W ms", "W again", "err solve", "err W", "entries", "fac Mflop", "fac %", "W %", "read %");
   for (const Measured& s : all) {
     const nlohmann::json j = as_json(s, machine);
     fmt::print(
-        out, "  {:<26}{:>10.3f}{:>10.3f}{:>10.3f}{:>10.3f}{:>11.1e}{:>11.1e}{:>10}{:>11.1f}{:>7.0f}{:>7.0f}{:>7.0f}\n",
+        out, "  {:<36}{:>10.3f}{:>10.3f}{:>10.3f}{:>10.3f}{:>11.1e}{:>11.1e}{:>10}{:>11.1f}{:>7.0f}{:>7.0f}{:>7.0f}\n",
         s.name, s.factor_ms, s.solve_ms, s.w_ms, s.again_ms, s.solve_error, s.w_error, s.cost.factor_entries,
         s.cost.factor_flops * 1e-6, 100 * j["factor_share_of_product"].get<double>(),
         100 * j["w_share_of_product"].get<double>(), 100 * j["solve_share_of_read"].get<double>());
@@ -214,6 +240,14 @@ void print(std::ostream& out, const Recorded& step, const std::vector<Measured>&
 int cmd_bench_solvers(const CommandContext& context, const BenchOptions& options) {
   const OpenedRun opened = open_for_measuring(context, options);
   if (!opened.simulation) return 2;
+  std::vector<std::string> remarks;
+  std::vector<NamedLibrary> libraries;
+  try {
+    libraries = load_libraries(options.blas, remarks);
+  } catch (const std::exception& e) {
+    context.err << "error: CHOLMOD cannot be loaded on another BLAS: " << e.what() << '\n';
+    return 2;
+  }
   HeadlessRun run(*opened.simulation, opened.motion);
   warm_up(run, options, opened.simulation->h());
 
@@ -222,26 +256,29 @@ int cmd_bench_solvers(const CommandContext& context, const BenchOptions& options
   j["scene"] = options.scene.string();
   j["time_s"] = opened.simulation->time();
   j["kernels"] = kernels().name;
-  j["blas"] = blas_library();
+  for (const NamedLibrary& l : libraries) j["blas"].push_back({{"name", l.name}, {"library", l.cholmod->blas}});
+  j["remarks"] = remarks;
   j["machine"] = {{"peak_f64", machine.peak_f64},
                   {"peak_f32", machine.peak_f32},
                   {"product_f64", machine.product_f64},
                   {"product_f32", machine.product_f32},
                   {"read", machine.read}};
-  if (!options.json)
+  if (!options.json) {
     fmt::print(context.out,
-               "{} at {:.2f} s  ({} kernels, one thread; CHOLMOD on {})\n"
+               "{} at {:.2f} s  ({} kernels, one thread)\n"
                "this core, Gflop/s: peak {:.0f} (single {:.0f}), dense product of our kernels {:.0f} (single {:.0f}); "
                "reads {:.1f} GB/s\n"
                "%: of the rate of the dense product; of the rate of reading\n",
-               options.scene.string(), opened.simulation->time(), kernels().name, blas_library(),
-               machine.peak_f64 * 1e-9, machine.peak_f32 * 1e-9, machine.product_f64 * 1e-9, machine.product_f32 * 1e-9,
-               machine.read * 1e-9);
+               options.scene.string(), opened.simulation->time(), kernels().name, machine.peak_f64 * 1e-9,
+               machine.peak_f32 * 1e-9, machine.product_f64 * 1e-9, machine.product_f32 * 1e-9, machine.read * 1e-9);
+    for (const NamedLibrary& l : libraries) fmt::print(context.out, "{}: {}\n", l.name, l.cholmod->blas);
+    for (const std::string& remark : remarks) fmt::print(context.out, "{}\n", remark);
+  }
   for (const Body* b : opened.simulation->bodies()) {
     const auto* body = dynamic_cast<const DeformableBody*>(b);
     if (!body || body->system().nodes() == 0) continue;
     const Recorded step = record(*body, options.rows);
-    const std::vector<Measured> all = measure(step, all_solvers());
+    const std::vector<Measured> all = measure(step, all_solvers(libraries));
     nlohmann::json of_body{{"body", body->id}, {"nodes", body->system().nodes()}, {"rows", step.rows.count()}};
     for (const Measured& s : all) of_body["solvers"].push_back(as_json(s, machine));
     j["bodies"].push_back(of_body);

@@ -125,6 +125,8 @@ void add_bench(Options& c) {
   command->add_flag("--solvers", o.solvers, "compare the solvers on the matrices and rows of the step at --from");
   command->add_option("--rows", o.rows, "with --solvers: so many rows of each body at most; 0 takes all")
       ->check(at_least(0));
+  command->add_option("--blas", o.blas, "with --solvers: CHOLMOD also on this folder's libblas.so.3 and liblapack.so.3")
+      ->check(CLI::ExistingDirectory);
   auto* record =
       command->add_option("--record", o.record, "write the steps' constraint problems to this folder instead");
   command->add_option("--every", o.every, "with --record: a problem of so many is written")

@@ -2,11 +2,7 @@
 // CHOLMOD and Eigen as solvers of one body.
 #include "tools/workbench/reference_solvers.h"
 
-#include <cholmod.h>
-#include <dlfcn.h>
-
 #include <Eigen/SparseCholesky>
-#include <filesystem>
 #include <stdexcept>
 
 namespace insula {
@@ -43,32 +39,31 @@ class Expanded {
   Sparse matrix_;
 };
 
-/// Everything but the factor: H^T as a dense matrix, X = A^-1 H^T, W = H X.
+/// Everything but the factor.
 class ReferenceSolver : public ComplianceSolver {
  public:
   void solve(double* x) override {
     one_ = Eigen::Map<VecX>(x, size_);
-    solve_columns(one_);
-    Eigen::Map<VecX>(x, size_) = x_;
+    Eigen::Map<VecX>(x, size_) = solved(one_);
   }
   void begin_compliance(const BodyRows& rows, const std::vector<int>& node_of_block) override {
     const int m = rows.count();
-    h_.setZero(size_, m);
+    entries_of_h_.clear();
     for (int r = 0; r < m; ++r)
       for (int e = rows.start[std::size_t(r)]; e < rows.start[std::size_t(r) + 1]; ++e)
         if (const int node = node_of_block[std::size_t(rows.block[std::size_t(e)])]; node >= 0)
-          h_.block<3, 1>(3 * node, r) += rows.coeff[std::size_t(e)];
+          for (int k = 0; k < 3; ++k) entries_of_h_.emplace_back(3 * node + k, r, rows.coeff[std::size_t(e)][k]);
+    h_.resize(size_, m);
+    h_.setFromTriplets(entries_of_h_.begin(), entries_of_h_.end());
     columns_ = m;
     w_.setZero(m, m);
   }
-  int compliance_parts(ComplianceAct) const override { return columns_ > 0 && size_ > 0 ? 1 : 0; }
-  void compliance_part(ComplianceAct act, int) override {
-    if (act == ComplianceAct::product) {
-      w_.noalias() = h_.transpose() * solved_;
-      return;
-    }
-    solve_columns(h_);
-    solved_ = x_;
+  int compliance_parts(ComplianceAct act) const override {
+    return act == ComplianceAct::product && columns_ > 0 && size_ > 0 ? 1 : 0;
+  }
+  void compliance_part(ComplianceAct, int) override {
+    right_ = h_;
+    compliance(h_, right_, w_);
   }
   void add_compliance(const BodyRows& rows, double* w, int stride) override {
     for (int i = 0; i < columns_; ++i)
@@ -85,53 +80,33 @@ class ReferenceSolver : public ComplianceSolver {
   }
 
  protected:
-  virtual void solve_columns(const MatX& b) = 0;  ///< into x_
-  MatX x_;
+  using Columns = Eigen::Map<const MatX>;
+  /// A^-1 b. The result lives until the next call.
+  virtual Columns solved(const MatX& b) = 0;
+  /// W of the columns of H^T, which are there sparse and dense.
+  virtual void compliance(const Sparse& h, const MatX& dense, MatX& w) { w = h.transpose() * solved(dense); }
   int size_ = 0;
   std::int64_t entries_ = 0;
   double flops_ = 0;
 
  private:
-  MatX one_, h_, solved_, w_;
+  std::vector<Eigen::Triplet<double>> entries_of_h_;
+  Sparse h_;
+  MatX one_, right_, w_;
   int columns_ = 0;
-};
-
-/// CHOLMOD starts threads for loops of microseconds; here no parallel region becomes active while one of these lives.
-class OneThread {
- public:
-  OneThread() : set_(find<void(int)>("omp_set_max_active_levels")) {
-    if (const auto get = find<int()>("omp_get_max_active_levels")) before_ = get();
-    if (set_) set_(0);
-    if (const auto blas = find<void(int)>("openblas_set_num_threads")) blas(1);
-  }
-  ~OneThread() {
-    if (set_) set_(before_);
-  }
-  OneThread(const OneThread&) = delete;
-  OneThread& operator=(const OneThread&) = delete;
-
- private:
-  template <class F>
-  static F* find(const char* name) {
-    return reinterpret_cast<F*>(::dlsym(RTLD_DEFAULT, name));
-  }
-  void (*set_)(int);
-  int before_ = 1;
 };
 
 class CholmodSolver final : public ReferenceSolver {
  public:
-  CholmodSolver() {
-    cholmod_start(&c_);
+  CholmodSolver(std::shared_ptr<const CholmodLibrary> library, ReferenceW w) : library_(std::move(library)), kind_(w) {
+    library_->start(&c_);
     c_.print = 0;
     c_.supernodal = CHOLMOD_SUPERNODAL;
   }
   ~CholmodSolver() override {
     release();
-    cholmod_free_dense(&solution_, &c_);
-    cholmod_free_dense(&work1_, &c_);
-    cholmod_free_dense(&work2_, &c_);
-    cholmod_finish(&c_);
+    for (cholmod_dense** d : {&solution_, &permuted_, &work1_, &work2_}) library_->free_dense(d, &c_);
+    library_->finish(&c_);
   }
   CholmodSolver(const CholmodSolver&) = delete;
   CholmodSolver& operator=(const CholmodSolver&) = delete;
@@ -141,21 +116,44 @@ class CholmodSolver final : public ReferenceSolver {
     size_ = 3 * a.nodes();
     expanded_.pattern(a);
     cholmod_sparse view = sparse_view();
-    factor_ = cholmod_analyze(&view, &c_);
+    factor_ = library_->analyze(&view, &c_);
     if (!factor_) throw std::runtime_error("CHOLMOD's symbolic factorisation failed");
     flops_ = c_.fl;
     entries_ = std::int64_t(c_.lnz);
   }
   bool factorise(const BlockMatrix& a) override {
-    const OneThread guard;
+    library_->one_thread();
     expanded_.values(a);
     cholmod_sparse view = sparse_view();
-    return cholmod_factorize(&view, factor_, &c_) && c_.status == CHOLMOD_OK;
+    return library_->factorize(&view, factor_, &c_) && c_.status == CHOLMOD_OK;
   }
 
  private:
-  void solve_columns(const MatX& b) override {
-    const OneThread guard;
+  Columns solved(const MatX& b) override {
+    library_->one_thread();
+    cholmod_dense right = dense_view(b);
+    system(CHOLMOD_A, right, solution_);
+    return columns_of(solution_);
+  }
+  void compliance(const Sparse& h, const MatX& dense, MatX& w) override {
+    if (kind_ == ReferenceW::full) return ReferenceSolver::compliance(h, dense, w);
+    library_->one_thread();
+    cholmod_dense right = dense_view(dense);
+    system(CHOLMOD_P, right, permuted_);
+    system(CHOLMOD_L, *permuted_, solution_);
+    const int m = int(w.rows()), n = int(solution_->nrow), ld = int(solution_->d);
+    const double one = 1, zero = 0;
+    library_->dsyrk("L", "T", &m, &n, &one, static_cast<const double*>(solution_->x), &ld, &zero, w.data(), &m);
+    w.triangularView<Eigen::StrictlyUpper>() = w.transpose();
+  }
+  void system(int which, cholmod_dense& right, cholmod_dense*& into) {
+    if (!library_->solve2(which, factor_, &right, nullptr, &into, nullptr, &work1_, &work2_, &c_))
+      throw std::runtime_error("CHOLMOD's solve failed");
+  }
+  static Columns columns_of(const cholmod_dense* d) {
+    return {static_cast<const double*>(d->x), Eigen::Index(d->nrow), Eigen::Index(d->ncol)};
+  }
+  static cholmod_dense dense_view(const MatX& b) {
     cholmod_dense right{};
     right.nrow = right.d = std::size_t(b.rows());
     right.ncol = std::size_t(b.cols());
@@ -163,8 +161,7 @@ class CholmodSolver final : public ReferenceSolver {
     right.x = const_cast<double*>(b.data());
     right.xtype = CHOLMOD_REAL;
     right.dtype = CHOLMOD_DOUBLE;
-    cholmod_solve2(CHOLMOD_A, factor_, &right, nullptr, &solution_, nullptr, &work1_, &work2_, &c_);
-    x_ = Eigen::Map<const MatX>(static_cast<const double*>(solution_->x), b.rows(), b.cols());
+    return right;
   }
   cholmod_sparse sparse_view() {
     Sparse& m = expanded_.matrix();
@@ -182,12 +179,14 @@ class CholmodSolver final : public ReferenceSolver {
     return s;
   }
   void release() {
-    if (factor_) cholmod_free_factor(&factor_, &c_);
+    if (factor_) library_->free_factor(&factor_, &c_);
   }
 
+  std::shared_ptr<const CholmodLibrary> library_;
+  ReferenceW kind_;
   cholmod_common c_{};
   cholmod_factor* factor_ = nullptr;
-  cholmod_dense *solution_ = nullptr, *work1_ = nullptr, *work2_ = nullptr;
+  cholmod_dense *solution_ = nullptr, *permuted_ = nullptr, *work1_ = nullptr, *work2_ = nullptr;
   Expanded expanded_;
 };
 
@@ -214,23 +213,20 @@ class EigenSolver final : public ReferenceSolver {
   }
 
  private:
-  void solve_columns(const MatX& b) override { x_ = factor_.solve(b); }
+  Columns solved(const MatX& b) override {
+    x_ = factor_.solve(b);
+    return {x_.data(), x_.rows(), x_.cols()};
+  }
   Expanded expanded_;
   Eigen::SimplicialLDLT<Sparse> factor_;
+  MatX x_;
 };
 
 }  // namespace
 
-std::unique_ptr<ComplianceSolver> make_cholmod_solver() { return std::make_unique<CholmodSolver>(); }
-std::unique_ptr<ComplianceSolver> make_eigen_solver() { return std::make_unique<EigenSolver>(); }
-
-std::string blas_library() {
-  Dl_info info{};
-  void* dgemm = ::dlsym(RTLD_DEFAULT, "dgemm_");
-  if (!dgemm || !::dladdr(dgemm, &info) || !info.dli_fname) return "unknown";
-  std::error_code error;
-  const auto file = std::filesystem::canonical(info.dli_fname, error);
-  return error ? info.dli_fname : (file.parent_path().filename() / file.filename()).string();
+std::unique_ptr<ComplianceSolver> make_cholmod_solver(std::shared_ptr<const CholmodLibrary> library, ReferenceW w) {
+  return std::make_unique<CholmodSolver>(std::move(library), w);
 }
+std::unique_ptr<ComplianceSolver> make_eigen_solver() { return std::make_unique<EigenSolver>(); }
 
 }  // namespace insula

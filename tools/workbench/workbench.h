@@ -35,6 +35,7 @@ struct BenchOptions {
   bool recording = false;          ///< measure a session's recording instead
   bool solvers = false;            ///< compare solvers instead
   int rows = 0;                    ///< of each body, for the comparison of solvers; 0: all of them
+  std::filesystem::path blas;      ///< folder with a further libblas.so.3 for the comparison of solvers; empty: none
   std::filesystem::path record;    ///< folder for the steps' constraint problems, in place of measuring
   int every = 10;                  ///< a problem of so many is written
   std::filesystem::path problems;  ///< folder of such problems, to be solved in place of a scene
