@@ -120,7 +120,7 @@ class Watcher {
     m.sender = "test";
     m.command = command;
     m.argument = argument;
-    publish(out_, channel::user_command, m, scratch_);
+    tell(channel::user_command, m);
   }
   /// Repeats the command until an event of that kind arrives, since messages may be lost.
   bool asked(const std::string& command, const std::string& argument, const std::string& kind) {
@@ -152,6 +152,12 @@ class Watcher {
   }
 
  private:
+  /// Commands and the poses of held hands come from different threads and are encoded into the same bytes.
+  template <class Message>
+  void tell(std::string_view channel, const Message& m) {
+    std::lock_guard lock(sending_);
+    publish(out_, channel, m, scratch_);
+  }
   using Turns = std::array<std::array<double, 4>, 2>;
   Turns turns() const {
     std::lock_guard lock(mutex_);
@@ -183,7 +189,7 @@ class Watcher {
       m.hand = std::int8_t(hand);
       for (int i = 0; i < 3; ++i) m.p_m[i] = at[hand][i];
       for (int i = 0; i < 4; ++i) m.q[i] = turned[hand][std::size_t(i)];
-      publish(out_, channel::hand_input, m, scratch_);
+      tell(channel::hand_input, m);
     }
   }
   /// Keeps the hands there: a hand without news of its viewer would be given back.
@@ -219,7 +225,8 @@ class Watcher {
   std::vector<insula_lcm::sim_event_t> events_;
   insula_lcm::haptic_status_t status_{};
   std::array<std::array<double, 4>, 2> quaternion_{};
-  std::vector<std::uint8_t> scratch_;
+  std::mutex sending_;
+  std::vector<std::uint8_t> scratch_;  ///< guarded by sending_
   std::jthread holding_;  ///< ends first
 };
 
