@@ -205,6 +205,7 @@ function build(bundle: Bundle): void {
   status.build_ms = Math.round(performance.now() - from);
   scene.add(world.root);
   world.setInfrared(modes.infrared);
+  applyQuality();
 }
 
 // Steel would have nothing to mirror and be black.
@@ -227,7 +228,6 @@ async function follow(m: SceneInfo): Promise<void> {
     scope.setHome(bundle.view);
     build(bundle);
     reading.begin(bundle);
-    applyQuality();
     hud.showScene(bundle);
     status.session = session;
     loadError = status.error = '';

@@ -16,6 +16,12 @@ export class Pace {
     return ms;
   }
 
+  /** Time without pictures is not counted. */
+  rest(now: number): void {
+    this.last = this.from = now;
+    this.counted = 0;
+  }
+
   /** drawn: somebody could see it. */
   count(now: number, drawn: boolean): void {
     if (drawn) this.counted++;

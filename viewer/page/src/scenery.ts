@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The surfaces of bodies and of what stands still, each drawn in the style of its material.
 import * as THREE from 'three';
+import { mergeVertices } from 'three/examples/jsm/utils/BufferGeometryUtils.js';
 import type { BodyData, Bundle, SkinnedSurface, SurfaceData } from './bundle_types';
+import { Detail } from './detail';
 import { creased, interleave, smoothNormals } from './geometry';
+import { setCheapMaterial } from './materials/cheap';
 import type { FieldUniforms } from './materials/field';
 import { solidMaterial } from './materials/solid';
 import { type Pressed, tissueLook, tissueMaterial, vesselMaterial } from './materials/tissue';
@@ -46,6 +49,8 @@ export class Scenery {
   private readonly skins: { index: number; skin: SkinTexture }[] = [];
   private readonly owned: { dispose(): void }[] = [];
   private readonly casters: THREE.Mesh[] = [];
+  private readonly detail = new Detail();
+  private cheap = false;
   /** What ends of vessels lead into: tissue that stands still. */
   private readonly bed: Float32Array[];
   /** What is still to be shaded, and how. */
@@ -89,8 +94,10 @@ export class Scenery {
     }
   }
 
-  /** On slow machines only tools cast shadows: those tell where a tip is. */
+  /** On slow machines only tools cast shadows: those tell where a tip is. Surfaces have fewer triangles. */
   setCheap(cheap: boolean): void {
+    this.cheap = cheap;
+    this.detail.setCoarse(cheap);
     for (const mesh of this.casters) mesh.castShadow = !cheap;
   }
 
@@ -132,7 +139,8 @@ export class Scenery {
     skin: SkinTexture | null,
   ): THREE.Mesh {
     const mesh = new THREE.Mesh(geometry, material);
-    mesh.castShadow = casts;
+    setCheapMaterial(material, this.cheap);
+    mesh.castShadow = casts && !this.cheap;
     if (casts) this.casters.push(mesh);
     mesh.receiveShadow = true;
     if (skin) {
@@ -142,6 +150,7 @@ export class Scenery {
     }
     this.root.add(mesh);
     this.owned.push(geometry, material);
+    this.detail.add(geometry);
     return mesh;
   }
 
@@ -155,10 +164,10 @@ export class Scenery {
   private addSolid(p: Plan): void {
     const s = p.surface;
     const shape = creased(s.positions, s.indices, s.material === 'bone' ? 0.75 : 1.1);
-    const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute('position', new THREE.BufferAttribute(shape.positions, 3));
-    geometry.setAttribute('normal', new THREE.BufferAttribute(shape.normals, 3));
-    this.solids.push(this.add(geometry, this.solid(p), true, null));
+    const corners = new THREE.BufferGeometry();
+    corners.setAttribute('position', new THREE.BufferAttribute(shape.positions, 3));
+    corners.setAttribute('normal', new THREE.BufferAttribute(shape.normals, 3));
+    this.solids.push(this.add(mergeVertices(corners, 1e-7), this.solid(p), true, null));
   }
 
   private addMovingSolid(p: Plan): void {

@@ -3,9 +3,12 @@
 import * as THREE from 'three';
 import { Microscope } from './camera';
 import { Lens } from './lens';
-import { makeEnvironment } from './materials/environment';
+import { makeEnvironment, plainRoom } from './materials/environment';
 import type { Level } from './quality';
 import type { StereoMode } from './stereo';
+
+/** Share of the room's light that reaches the field. */
+const roomIntensity = 0.42;
 
 /** What is seen through a gap between the tissues: the depth of the field, not a hole. */
 const depths = { eye: new THREE.Color(0x38100c), infrared: new THREE.Color(0x020303) };
@@ -15,12 +18,17 @@ export class Stage {
   readonly scene = new THREE.Scene();
   readonly scope = new Microscope();
   private readonly lens: Lens;
+  private readonly plain = plainRoom();
+  private room: THREE.Texture | null = null;
+  private fence: WebGLSync | null = null;
 
   constructor(readonly canvas: HTMLCanvasElement) {
     this.renderer = makeRenderer(canvas);
     this.scene.background = depths.eye;
-    this.scene.environmentIntensity = 0.42;
+    this.scene.environmentIntensity = roomIntensity;
+    this.plain.intensity = Math.PI * roomIntensity;
     this.scope.addTo(this.scene);
+    this.scene.add(this.plain);
     this.lens = new Lens(this.renderer);
   }
 
@@ -36,9 +44,11 @@ export class Stage {
 
   /** The room that metal mirrors, anew. */
   light(up: THREE.Vector3): THREE.Texture {
-    const old = this.scene.environment;
+    const old = this.room;
     const room = makeEnvironment(this.renderer, this.scope.fieldAxis, up);
-    this.scene.environment = room;
+    if (!this.plain.visible) this.scene.environment = room;
+    this.plain.position.copy(this.scope.fieldAxis);
+    this.room = room;
     old?.dispose();
     return room;
   }
@@ -49,6 +59,8 @@ export class Stage {
 
   setLevel(level: Level): void {
     const { renderer } = this;
+    this.scene.environment = level.cheap ? null : this.room;
+    this.plain.visible = level.cheap;
     renderer.setPixelRatio(Math.min(window.devicePixelRatio * Math.min(1, level.pixelRatio), level.pixelRatio));
     this.lens.configure(level.lens);
     const lamp = this.scope.lamp;
@@ -79,6 +91,19 @@ export class Stage {
 
   render(mode: StereoMode, angleRad: number): void {
     this.lens.render(this.scene, this.scope.camera, this.scope.distance, mode, angleRad);
+    const gl = this.renderer.getContext() as WebGL2RenderingContext;
+    gl.deleteSync(this.fence);
+    this.fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+  }
+
+  /** The graphics card is done with the last picture. */
+  get done(): boolean {
+    const gl = this.renderer.getContext() as WebGL2RenderingContext;
+    if (!this.fence || gl.isContextLost()) return true;
+    if (gl.getSyncParameter(this.fence, gl.SYNC_STATUS) !== gl.SIGNALED) return false;
+    gl.deleteSync(this.fence);
+    this.fence = null;
+    return true;
   }
 
   /** The point under the pointer becomes the focus. */

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Lets the meshes of a new scene appear by a few shader programs at a time. A browser takes a tenth of a second or more
-// for each, so a first picture of everything would take seconds.
+// for each, so a first picture of everything would take seconds. What is not in the picture yet, such as a clip on the
+// tray, is drawn once without size. Its program is ready when it appears.
 import * as THREE from 'three';
 
 /** More hold up the page for longer; fewer need more pictures, which are slow themselves without a graphics card. */
@@ -12,11 +13,15 @@ const hiddenLayer = 31;
 /** Meshes that share it share a program, as far as one can tell before it is made. */
 function programKey(mesh: THREE.Mesh): string {
   const m = mesh.material as THREE.Material;
-  return `${m.type} ${m.customProgramCacheKey()} ${m.side} ${m.transparent}`;
+  return `${mesh.type} ${m.type} ${m.customProgramCacheKey()} ${m.side} ${m.transparent}`;
 }
 
+const shown = (o: THREE.Object3D | null): boolean => o === null || (o.visible && shown(o.parent));
+
 export class Unveiling {
-  private groups: THREE.Mesh[][];
+  private readonly groups: THREE.Mesh[][];
+  /** Undo what one picture needed. */
+  private undo: (() => void)[] = [];
 
   /** later: what the first picture leaves out. */
   constructor(later: readonly THREE.Mesh[]) {
@@ -29,13 +34,41 @@ export class Unveiling {
     this.groups = [...groups.values()];
   }
 
-  /** After a picture: some more programs may draw. False: everything is shown. */
-  next(): boolean {
-    for (let made = 0; made < programsAPicture && this.groups.length > 0;) {
-      const group = this.groups.shift()!;
+  /** Before a picture is drawn, when its objects are in place: some more programs may draw. */
+  begin(): void {
+    for (const group of this.groups.splice(0, programsAPicture)) {
       for (const mesh of group) mesh.layers.set(0);
-      if (group.some((m) => m.visible)) made++;
+      const mesh = group.find(shown) ?? group[0]!;
+      this.drawAnywhere(mesh);
+      if (!shown(mesh)) this.drawWithoutSize(mesh);
     }
+  }
+
+  /** After the picture. False: everything was drawn. */
+  end(): boolean {
+    for (const undo of this.undo.splice(0)) undo();
     return this.groups.length > 0;
+  }
+
+  /** Outside the picture, too. */
+  private drawAnywhere(mesh: THREE.Mesh): void {
+    const { frustumCulled } = mesh;
+    mesh.frustumCulled = false;
+    this.undo.push(() => (mesh.frustumCulled = frustumCulled));
+  }
+
+  /** Shows it and what it belongs to; the outermost of these, which is not in the picture, has no size meanwhile. */
+  private drawWithoutSize(mesh: THREE.Mesh): void {
+    let outermost: THREE.Object3D = mesh;
+    for (let o: THREE.Object3D | null = mesh; o; o = o.parent) {
+      if (o.visible) continue;
+      const hidden = o;
+      outermost = hidden;
+      hidden.visible = true;
+      this.undo.push(() => (hidden.visible = false));
+    }
+    const size = outermost.scale.clone();
+    outermost.scale.setScalar(0);
+    this.undo.push(() => outermost.scale.copy(size));
   }
 }

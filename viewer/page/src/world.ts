@@ -6,6 +6,7 @@ import type { Sight } from './camera';
 import { DrawableSet } from './drawables/drawable_set';
 import { toolState } from './hand_tool';
 import type { RenderFrame } from './lcm';
+import { setCheapMaterial } from './materials/cheap';
 import { FieldUniforms } from './materials/field';
 import { pressedCount } from './materials/tissue';
 import type { Playback } from './playback';
@@ -65,13 +66,7 @@ export class World {
   /** Simpler shaders and fewer drops for slow machines. */
   setCheap(cheap: boolean): void {
     this.root.traverse((o) => {
-      if (!(o instanceof THREE.Mesh) || !(o.material as THREE.Material).userData.has_cheap) return;
-      const m = o.material as THREE.Material & { defines?: Record<string, unknown> };
-      const defines = (m.defines ??= {});
-      if ('CHEAP' in defines === cheap) return;
-      if (cheap) defines.CHEAP = '';
-      else delete defines.CHEAP;
-      m.needsUpdate = true;
+      if (o instanceof THREE.Mesh) setCheapMaterial(o.material as THREE.Material, cheap);
     });
     this.drawables.setCheap(cheap);
     this.scenery.setCheap(cheap);

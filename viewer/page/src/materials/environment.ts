@@ -57,6 +57,14 @@ function makeDome(): THREE.Mesh {
   return new THREE.Mesh(dome, new THREE.MeshBasicMaterial({ vertexColors: true, side: THREE.BackSide }));
 }
 
+/**
+ * The same light without reflections, for slow machines. It shines from +z in the frame of the field. The colours are
+ * means of the room's light over directions, weighted by the cosine to +z and to -z.
+ */
+export function plainRoom(): THREE.HemisphereLight {
+  return new THREE.HemisphereLight(new THREE.Color(0.8, 0.785, 0.78), new THREE.Color(0.4, 0.29, 0.24));
+}
+
 export function makeEnvironment(
   renderer: THREE.WebGLRenderer,
   towardsEye: THREE.Vector3,

@@ -115,7 +115,10 @@ export function fluidMaterial(
         vec3 tilt = mat3(viewMatrix) * (waves() * (1.0 - 0.8 * crust.x) + 0.5 * rough * crust.x);
         normal = bump(normal, tilt);`,
       )
-      .replace('#include <clearcoat_normal_fragment_maps>', 'clearcoatNormal = bump(clearcoatNormal, tilt);')
+      .replace(
+        '#include <clearcoat_normal_fragment_maps>',
+        '#ifdef USE_CLEARCOAT\nclearcoatNormal = bump(clearcoatNormal, tilt);\n#endif',
+      )
       .replace('#include <opaque_fragment>', fluidOutput)
       .replace('#include <premultiplied_alpha_fragment>', '');
   };

@@ -214,6 +214,7 @@ export function solidMaterial(name: string, o: SolidOptions): THREE.MeshPhysical
         `#include <lights_fragment_end>${rollOff(recipe.metal)}`,
       );
   };
+  m.userData.has_cheap = m.clearcoat > 0;
   m.customProgramCacheKey = () =>
     `solid_${recipes[name] ? name : `plain_${recipe.metal ?? 0}`}_${o.skin ? 'skinned' : ''}_${o.engraving ?? ''}`;
   return m;

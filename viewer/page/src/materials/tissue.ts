@@ -103,9 +103,18 @@ const tissueColour = /* glsl */ `#include <color_fragment>
         diffuseColor.rgb *= tint;`;
 
 const tissueFilm = /* glsl */ `#include <clearcoat_normal_fragment_maps>
+        #ifdef USE_CLEARCOAT
         // The fluid film evens out the finest relief.
         vec3 film = 0.10 * coarse.yzw + 0.15 * middle.yzw + 0.11 * fine.yzw + 0.07 * grain.yzw + 0.16 * ridges;
-        clearcoatNormal = bump(clearcoatNormal, normalMatrix * film);`;
+        clearcoatNormal = bump(clearcoatNormal, normalMatrix * film);
+        #endif`;
+
+const tissueGloss = /* glsl */ `#include <lights_physical_fragment>
+        #ifdef USE_CLEARCOAT
+        material.clearcoatRoughness = clamp(0.21 + 0.10 * coarse.x + 0.04 * fine.x, 0.08, 1.0);
+        // The film is thick in the folds and thin on the crowns.
+        material.clearcoat *= mix(0.62, 1.0, fold);
+        #endif`;
 
 const tissueLight = /* glsl */ `#include <lights_fragment_end>
         // Light scattered below the surface comes out redder where the surface turns away.
@@ -118,8 +127,10 @@ const tissueLight = /* glsl */ `#include <lights_fragment_end>
         reflectedLight.indirectSpecular *= shut;
         reflectedLight.directDiffuse *= mix(0.25, 1.0, openness);
         reflectedLight.directSpecular *= mix(0.15, 1.0, openness);
+        #ifdef USE_CLEARCOAT
         clearcoatSpecularIndirect *= shut;
-        clearcoatSpecularDirect *= mix(0.1, 1.0, shut);`;
+        clearcoatSpecularDirect *= mix(0.1, 1.0, shut);
+        #endif`;
 
 export function tissueMaterial(
   look: TissueLook,
@@ -167,13 +178,7 @@ export function tissueMaterial(
         normal = bump(normal, normalMatrix * relief);`,
       )
       .replace('#include <clearcoat_normal_fragment_maps>', tissueFilm)
-      .replace(
-        '#include <lights_physical_fragment>',
-        `#include <lights_physical_fragment>
-        material.clearcoatRoughness = clamp(0.21 + 0.10 * coarse.x + 0.04 * fine.x, 0.08, 1.0);
-        // The film is thick in the folds and thin on the crowns.
-        material.clearcoat *= mix(0.62, 1.0, fold);`,
-      )
+      .replace('#include <lights_physical_fragment>', tissueGloss)
       .replace('#include <lights_fragment_end>', tissueLight);
   };
   m.userData.has_cheap = true;
@@ -229,17 +234,22 @@ export function vesselMaterial(skin: SkinTexture | null, field: FieldUniforms): 
       .replace(
         '#include <clearcoat_normal_fragment_maps>',
         `#include <clearcoat_normal_fragment_maps>
-        clearcoatNormal = bump(clearcoatNormal, normalMatrix * (0.10 * noise(v_rest * 1.4).yzw));`,
+        #ifdef USE_CLEARCOAT
+        clearcoatNormal = bump(clearcoatNormal, normalMatrix * (0.10 * noise(v_rest * 1.4).yzw));
+        #endif`,
       )
       .replace(
         '#include <lights_fragment_end>',
         `#include <lights_fragment_end>
         reflectedLight.indirectDiffuse *= v_vessel.y;
         reflectedLight.indirectSpecular *= v_vessel.y;
+        #ifdef USE_CLEARCOAT
         clearcoatSpecularIndirect *= v_vessel.y * v_vessel.y;
-        clearcoatSpecularDirect *= mix(0.1, 1.0, v_vessel.y);`,
+        clearcoatSpecularDirect *= mix(0.1, 1.0, v_vessel.y);
+        #endif`,
       );
   };
+  m.userData.has_cheap = true;
   m.customProgramCacheKey = () => `vessel_${skin ? 'skinned' : 'static'}`;
   return m;
 }

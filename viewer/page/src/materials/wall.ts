@@ -65,8 +65,10 @@ const wallLight = /* glsl */ `#include <lights_fragment_end>
         reflectedLight.indirectDiffuse += back * v_wall.x;
         reflectedLight.indirectDiffuse *= v_wall.x;
         reflectedLight.indirectSpecular *= v_wall.x;
+        #ifdef USE_CLEARCOAT
         clearcoatSpecularIndirect *= v_wall.x * v_wall.x;
-        clearcoatSpecularDirect *= mix(0.15, 1.0, v_wall.x);`;
+        clearcoatSpecularDirect *= mix(0.15, 1.0, v_wall.x);
+        #endif`;
 
 const wallVaryings = /* glsl */ `#include <project_vertex>
         int r = int(region + 0.5);
@@ -80,13 +82,17 @@ const wallNormal = /* glsl */ `#include <normal_fragment_maps>
 
 const wallGloss = /* glsl */ `#include <lights_physical_fragment>
         // What hangs empty dries and dulls.
+        #ifdef USE_CLEARCOAT
         material.clearcoat *= mix(0.25, 1.0, v_full);
         material.clearcoatRoughness = mix(0.5, material.clearcoatRoughness, v_full);
+        #endif
         material.roughness = mix(0.85, material.roughness, v_full);`;
 
 const wallFilm = /* glsl */ `#include <clearcoat_normal_fragment_maps>
+        #ifdef USE_CLEARCOAT
         vec3 wave = 0.05 * broad.yzw + 0.035 * middle.yzw + 0.4 * folds * (1.0 - v_full);
-        clearcoatNormal = bump(clearcoatNormal, normalMatrix * wave);`;
+        clearcoatNormal = bump(clearcoatNormal, normalMatrix * wave);
+        #endif`;
 
 const wallDeclarations = /* glsl */ `#include <common>
         ${noiseGlsl}

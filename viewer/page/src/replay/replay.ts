@@ -9,6 +9,7 @@ import { debrief } from './debrief';
 import { ReplayClock } from './clock';
 import { MomentsPanel } from './moments_panel';
 import { Notes } from './notes';
+import { Rest } from './rest';
 import type { RecordedSession } from './session';
 import type { Side } from './side';
 import { download } from './source';
@@ -57,6 +58,9 @@ export class Replay {
   private readonly transport: Transport;
   private readonly moments: MomentsPanel;
   private readonly notes: Notes;
+  private readonly rest: Rest;
+  /** Of a jump whose picture is being drawn. */
+  private seekingMs: number | null = null;
   private readonly video: VideoRecorder;
   private readonly toast = el('div', { class: 'banner', role: 'alert' });
   private readonly first: Side;
@@ -85,6 +89,10 @@ export class Replay {
   ) {
     this.first = sides[0]!;
     const { session, view } = this.first;
+    this.rest = new Rest(
+      window,
+      sides.map((s) => s.view.stage.canvas),
+    );
     this.clock = new ReplayClock(session.durationS);
     this.clock.seek(Number(query.get('t') ?? 0) || 0);
     this.notes = new Notes(
@@ -136,15 +144,33 @@ export class Replay {
       await this.draw(now, Math.min(0.25, ms / 1000));
       pace.count(now, true);
       if (!this.status.ready) this.opened();
-      if (this.first.view.complete) this.status.complete_ms ||= performance.now();
     };
     this.first.view.stage.renderer.setAnimationLoop((now: number) => {
-      if (drawing) return;
+      // A jump waits for one picture at most, and not for a queue of them.
+      if (drawing || !this.sides.every((s) => s.view.stage.done)) return;
+      this.sought();
+      if (this.first.view.complete) this.status.complete_ms ||= performance.now();
+      if (this.moves) this.rest.wake(now);
+      else if (this.rest.still(now)) return pace.rest(now);
       drawing = true;
       picture(now)
         .catch((e: unknown) => this.say(`The recording cannot be read: ${reasonOf(e)}`))
         .finally(() => (drawing = false));
     });
+  }
+
+  /** A picture is done: the time from its jump. */
+  private sought(): void {
+    if (this.seekingMs === null) return;
+    this.status.seek_ms = performance.now() - this.seekingMs;
+    this.status.seek_max_ms = Math.max(this.status.seek_max_ms, this.status.seek_ms);
+    this.seekingMs = null;
+  }
+
+  /** The next picture differs from the last one, whatever a person does. */
+  private get moves(): boolean {
+    const { clock, video } = this;
+    return clock.playing || video.running || this.jumpedMs !== null || this.sides.some((s) => !s.view.complete);
   }
 
   private opened(): void {
@@ -169,9 +195,8 @@ export class Replay {
     this.transport.draw(this.video.running);
     this.moments.at(timeS);
     if (jumpedMs !== null) {
-      this.status.seek_ms = performance.now() - jumpedMs;
+      this.seekingMs = jumpedMs;
       this.status.decode_max_ms = Math.max(this.status.decode_max_ms, decodeMs);
-      this.status.seek_max_ms = Math.max(this.status.seek_max_ms, this.status.seek_ms);
       this.status.seek_chunks_max = Math.max(this.status.seek_chunks_max, this.first.session.unpackedChunks - unpacked);
     }
     this.status.pictures++;
@@ -201,6 +226,7 @@ export class Replay {
     ];
     marks.sort((a, b) => a.timeS - b.timeS);
     this.transport.chart.marks = marks;
+    this.rest.wake();
     this.moments.show(marks);
   }
 
@@ -215,6 +241,7 @@ export class Replay {
     } catch (e) {
       this.say(`The recording cannot be read: ${reasonOf(e)}`);
     }
+    this.rest.wake();
   }
 
   private async recordVideo(): Promise<void> {

@@ -78,8 +78,10 @@ export class SessionView {
       this.world.update(this.playback, nowMs, this.reading.channels, this.stage.scope.sight);
       this.arrows.update(this.moment, this.world.bundle);
     }
+    const unveiling = this.firstPictureMs > 0 ? this.unveiling : null;
+    unveiling?.begin();
     this.stage.render('off', 0);
-    if (this.unveiling?.next() === false) this.unveiling = null;
+    if (unveiling?.end() === false) this.unveiling = null;
   }
 
   /** The first picture, of plain tissue and walls. What else the scene has appears in the next ones. */
