@@ -40,6 +40,13 @@ class SettleSettings final : public Component {
        .min = "0 s",
        .max = "60 s",
        .doc = "simulated time before the exercise begins, in which arms take their places and tissue comes to rest"}};
+  Param<Duration> time_step{this,
+                            {.name = "time_step",
+                             .fallback = "16.6667 ms",
+                             .min = "1 ms",
+                             .max = "50 ms",
+                             .doc = "length of a step until then; friction depends on it, so that the exercise begins "
+                                    "in the same position at any length of its own steps"}};
 };
 
 /// Read by the program that starts the haptic server. The engine itself has no devices.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <stdexcept>
+#include <utility>
 
 #include "core/linalg/inexact_solver.h"
 #include "core/mechanics/deformable_body.h"
@@ -47,7 +48,10 @@ Simulation::Simulation(std::unique_ptr<Scene> scene, Diagnostics& diagnostics, i
     i->start_in_hand(!full[std::size_t(hand)]);
     full[std::size_t(hand)] = true;
   }
-  if (auto s = scene_->all<SettleSettings>(); !s.empty()) settle_time_ = s.front()->time();
+  if (auto s = scene_->all<SettleSettings>(); !s.empty()) {
+    settle_time_ = s.front()->time();
+    settle_step_ = s.front()->time_step();
+  }
   for (DeformableBody* b : scene_->all<DeformableBody>()) b->connect(prepare);
   if (diagnostics.ok()) {
     for (Constraint* c : constraints_) c->connect(prepare, *this);
@@ -197,6 +201,7 @@ void Simulation::draw_complications(std::uint64_t seed) {
 void Simulation::settle(Diagnostics& diagnostics) {
   settling_ = true;
   set_timing(FactorTiming::counted);
+  const double run_step = std::exchange(context_.h, settle_step_);
   const int n = int(std::ceil(settle_time_ / context_.h - 1e-9));
   Exercise* const exercise = exercise_;
   exercise_ = nullptr;
@@ -207,7 +212,8 @@ void Simulation::settle(Diagnostics& diagnostics) {
   }
   exercise_ = exercise;
   for (Surface* s : surfaces_) s->update();
-  PrepareContext prepare{diagnostics, context_.h};
+  context_.h = run_step;
+  PrepareContext prepare{diagnostics, run_step};
   for (Constraint* c : constraints_) c->settled(prepare);
   context_.time = 0;
   context_.step = 0;

@@ -98,6 +98,30 @@ TEST(Determinism, ResetLeadsBackToTheSameBits) {
   }
 }
 
+// Friction remembers the length of steps, so settling has its own.
+TEST(Determinism, AnExerciseBeginsInTheSamePositionAtAnyLengthOfItsSteps) {
+  const auto settled = [](const std::string& time_step, const std::string& settle) {
+    std::string xml = everything();
+    xml.replace(0, std::string("<scene").size(), "<scene time_step=\"" + time_step + "\"");
+    xml.insert(xml.find('\n'), "<settle time=\"0.25 s\"" + settle + "/>");
+    return test::load_text(xml, source / "settled.xml", 1);
+  };
+  const auto state = [](const Simulation& s) {
+    std::vector<double> x;
+    for (const char* id : {"lower", "upper", "arm"}) s.scene().find_as<DynamicBody>(id)->append_state(x);
+    return x;
+  };
+  const auto ten = settled("10 ms", ""), four = settled("4 ms", ""), own = settled("4 ms", " time_step=\"5 ms\"");
+  ASSERT_TRUE(ten && four && own);
+  EXPECT_EQ(state(*ten), state(*four));
+  EXPECT_NE(state(*own), state(*four));
+  // Their own steps have the length that was asked for.
+  four->step();
+  EXPECT_DOUBLE_EQ(four->time(), 0.004);
+  four->reset();
+  EXPECT_EQ(state(*ten), state(*four));
+}
+
 TEST(Determinism, TwoSimulationsInOneProgramDoNotMeet) {
   auto alone = scene(1);
   ASSERT_TRUE(alone);

@@ -25,7 +25,7 @@ function farthest(fine: THREE.BufferGeometry): number {
 
 describe('a coarse surface', () => {
   it('has fewer triangles and lies within a tenth of a millimetre', async () => {
-    const ball = new THREE.SphereGeometry(0.012, 48, 24);
+    const ball = new THREE.SphereGeometry(0.012, 64, 32);
     const fine = ball.index!;
     const detail = new Detail();
     detail.add(ball);
