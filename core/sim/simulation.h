@@ -158,7 +158,7 @@ class Simulation {
   std::vector<SimulationInput> inputs_, coming_;  ///< of the last step, and of the next
   FactorTiming timing_ = FactorTiming::counted;
   bool stepping_ = false, settling_ = false;
-  double settle_time_ = 0, settle_step_ = 0;  ///< s
+  double settle_time_ = 0, settle_step_ = 0;        ///< s
   std::vector<std::pair<BodySolver*, int>> parts_;  ///< of the bodies' compliance, in this step
   StepReport report_;
   std::unique_ptr<StructureForces> structure_forces_;

@@ -49,19 +49,39 @@ solve).
 #include "plugins/contact/contact.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/registry/registry.h"
 #include "core/sim/simulation.h"
 
 namespace insula {
 
+namespace {
+bool presses(const std::vector<Vec3>& forces) {
+  return std::any_of(forces.begin(), forces.end(), [](const Vec3& f) { return f[0] > 0; });
+}
+}  // namespace
+
 // A pressing tool is expected to keep its offset from its free pose of the last step.
 void Contact::expect(Pair& p, const Pose& free) const {
   p.expected.reset();
   if (!p.tool_collider || !linearized_at.is("end")) return;
-  const bool presses = std::any_of(p.forces.begin(), p.forces.end(), [](const Vec3& f) { return f[0] > 0; });
-  if (p.free && presses) p.expected = displaced(free, displacement(*p.free, p.start));
+  if (p.free && presses(p.forces)) p.expected = displaced(free, displacement(*p.free, p.start));
   p.free = free;
+}
+
+// Tools that press each other are expected to keep their offsets from their free poses, too.
+void Contact::search_tools(Pair& p, const Pose& free, const ToolContactSettings& settings) {
+  ToolMotion a{p.start, free}, b{p.tool_b->link_pose(p.link_b), p.tool_b->link_free_pose(p.link_b)};
+  const ToolMotion last_b = p.other.value_or(b);
+  p.other = b;
+  const bool expected = p.free && presses(p.forces);
+  const Pose last_free = std::exchange(p.free, free).value_or(free);
+  if (expected) {
+    a.end = displaced(free, displacement(last_free, p.start));
+    b.end = displaced(b.end, displacement(last_b.end, b.start));
+  }
+  detect_tools(p.pieces_a, a, p.pieces_b, b, settings, p.contacts);
 }
 
 void Contact::search(const Search& what) {
@@ -78,15 +98,16 @@ void Contact::search(const Search& what) {
       settings.one_sided = true;
     }
     p.contacts.clear();
-    if (!p.active()) return p.free.reset();
+    if (!p.active()) {
+      p.other.reset();
+      return p.free.reset();
+    }
     const Pose free = p.tool_a->link_free_pose(p.link_a);
     p.start = p.tool_a->link_pose(p.link_a);
     expect(p, free);
     if (p.expected) settings.expected = &*p.expected;
     const Pose& start = p.start;
-    if (p.tool_b)
-      detect_tools(p.pieces_a, start, free, p.pieces_b, p.tool_b->link_pose(p.link_b),
-                   p.tool_b->link_free_pose(p.link_b), settings, p.contacts);
+    if (p.tool_b) search_tools(p, free, settings);
     else if (p.vertex_collider) p.vertex_collider->detect(p.b->collision(), start, free, settings, p.contacts);
     else p.tool_collider->detect(p.b->collision(), start, free, settings, p.contacts);
     return;
@@ -232,6 +253,7 @@ void Contact::reset() {
     if (p.b_on_a) p.b_on_a->reset();
     if (p.patches) p.patches->reset();
     p.free.reset();
+    p.other.reset();
     p.contacts.clear();
     p.rows.clear();
     p.forces.clear();

@@ -11,6 +11,7 @@
 #include "core/collision/colliders/contact_selection.h"
 #include "core/collision/colliders/tissue_collider.h"
 #include "core/collision/colliders/tool_collider.h"
+#include "core/collision/colliders/tool_pair.h"
 #include "core/collision/colliders/vertex_collider.h"
 #include "core/constraint/stated_law.h"
 #include "core/mechanics/constraint.h"
@@ -166,6 +167,7 @@ class Contact final : public Constraint, public StatesLaw {
     std::unique_ptr<FrictionPatches> patches;  ///< one friction force for neighbouring contacts, or null
     Pose start;                                ///< of the tool, at the start of the last detected step
     std::optional<Pose> free;                  ///< of its free motion in the same step
+    std::optional<ToolMotion> other;  ///< of tool b in the last detected step: its start, and its free pose as the end
     std::optional<Pose> expected;  ///< at the end of that step, for a pressing tool whose contacts are linearised there
     std::vector<int> rows;         ///< first row of each contact
     std::vector<Vec3> forces;      ///< along (normal, tangent, other tangent), N
@@ -187,6 +189,7 @@ class Contact final : public Constraint, public StatesLaw {
   bool owns(Simulation& simulation, const Body* a, const Body* b) const;
   void search(const Search& what);
   void expect(Pair& pair, const Pose& free) const;
+  static void search_tools(Pair& pair, const Pose& free, const ToolContactSettings& settings);
   void add_pairs(Simulation& simulation, Body* a, Body* b);
   /// The first touch of a tool in the step.
   struct Touch {

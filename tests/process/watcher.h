@@ -227,7 +227,7 @@ class Watcher {
   std::array<std::array<double, 4>, 2> quaternion_{};
   std::mutex sending_;
   std::vector<std::uint8_t> scratch_;  ///< guarded by sending_
-  std::jthread holding_;  ///< ends first
+  std::jthread holding_;               ///< ends first
 };
 
 }  // namespace insula::testing

@@ -176,20 +176,6 @@ TEST(ToolCollider, MovingTissueComingAtARestingToolIsSeen) {
   for (const auto& x : found) EXPECT_NEAR(x.start_gap, 0.003, 1e-9);
 }
 
-TEST(ToolCollider, TwoTools) {
-  std::vector<RoundedPiece> a, b;
-  for (const auto& p : rod(0.05, 1e-3)) a.push_back(rounded(p));
-  for (const auto& p : blade()) b.push_back(rounded(p));
-  const Pose at{Vec3(0, 0, 0), Quat::Identity()};
-  const Pose beside{Vec3(0.0018, 0, 0), Quat::Identity()};
-  std::vector<Proximity> out;
-  detect_tools(a, at, at, b, beside, beside, {}, out);
-  ASSERT_EQ(out.size(), 1u);
-  EXPECT_NEAR(out[0].gap, 0.0018 - 1e-3 - 2e-4, 1e-9);
-  EXPECT_NEAR((out[0].normal + Vec3::UnitX()).norm(), 0, 1e-9);
-  EXPECT_NEAR((at.apply(out[0].local) - beside.apply(out[0].other_local)).norm(), 0, 1e-12);
-}
-
 TEST(RoundedPiece, ABladeKeepsItsSize) {
   const RoundedPiece r = rounded(blade()[0]);
   EXPECT_NEAR(r.radius, 0.45 * 4e-4, 1e-12);

@@ -118,10 +118,4 @@ class ToolCollider {
   std::vector<Proximity> found_, at_end_;
 };
 
-/// Two tools: one contact for each pair of pieces that is within the alarm distance, or may come within it in this
-/// step. Pieces whose cores meet are pushed apart along the line between their middles.
-void detect_tools(const std::vector<RoundedPiece>& a, const Pose& a_start, const Pose& a_free,
-                  const std::vector<RoundedPiece>& b, const Pose& b_start, const Pose& b_free,
-                  const ToolContactSettings& settings, std::vector<Proximity>& out);
-
 }  // namespace insula

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cores and radii of tool pieces, and tool against tool.
+// Cores and radii of tool pieces.
 #include <Eigen/Eigenvalues>
 
 #include "core/collision/colliders/tool_collider.h"
-#include "core/collision/shapes/gjk.h"
 
 namespace insula {
 
@@ -61,55 +60,6 @@ RoundedPiece rounded(const ConvexPiece& piece) {
     r.bound = std::max(r.bound, (r.axis0 + s * (r.axis1 - r.axis0) - p).norm());
   }
   return r;
-}
-
-void detect_tools(const std::vector<RoundedPiece>& a, const Pose& a_start, const Pose& a_free,
-                  const std::vector<RoundedPiece>& b, const Pose& b_start, const Pose& b_free,
-                  const ToolContactSettings& settings, std::vector<Proximity>& out) {
-  const Vec6 da = displacement(a_start, a_free), db = displacement(b_start, b_free);
-  std::array<Vec3, 24> pa, pb;
-  for (int i = 0; i < int(a.size()); ++i) {
-    const RoundedPiece& x = a[std::size_t(i)];
-    const Vec3 a0 = a_start.apply(x.axis0), a1 = a_start.apply(x.axis1);
-    for (int j = 0; j < int(b.size()); ++j) {
-      const RoundedPiece& y = b[std::size_t(j)];
-      const Vec3 b0 = b_start.apply(y.axis0), b1 = b_start.apply(y.axis1);
-      const auto speed = [](const Vec6& d, const Vec3& p, const Vec3& origin) {
-        return (d.head<3>() + d.tail<3>().cross(p - origin)).norm();
-      };
-      const double motion = std::max(speed(da, a0, a_start.p), speed(da, a1, a_start.p)) +
-                            std::max(speed(db, b0, b_start.p), speed(db, b1, b_start.p));
-      const double range = settings.alarm + motion;
-      double s, t;
-      closest_segments(a0, a1, b0, b1, s, t);
-      const Vec3 p = a0 + s * (a1 - a0), q = b0 + t * (b1 - b0);
-      if ((p - q).norm() > range + x.radius + x.bound + y.radius + y.bound) continue;
-      for (std::size_t k = 0; k < x.core.size(); ++k) pa[k] = a_start.apply(x.core[k]);
-      for (std::size_t k = 0; k < y.core.size(); ++k) pb[k] = b_start.apply(y.core[k]);
-      const HullDistance d = hull_distance({pa.data(), x.core.size()}, {pb.data(), y.core.size()});
-      const double gap = d.distance - x.radius - y.radius;
-      if (gap > range) continue;
-      Vec3 n = d.a - d.b;
-      if (d.distance < 1e-9) n = p - q;
-      if (n.norm() < 1e-9) n = 0.5 * (a0 + a1 - b0 - b1);
-      if (n.norm() < 1e-12) n = Vec3::UnitZ();
-      n.normalize();
-      Proximity c;
-      c.piece = i;
-      c.other_piece = j;
-      c.normal = n;
-      c.point = d.b + n * y.radius;
-      c.gap = gap;
-      c.start_gap = std::max(gap, -settings.max_correction);
-      c.local = a_start.q.conjugate() * (c.point - a_start.p);
-      c.other_local = b_start.q.conjugate() * (c.point - b_start.p);
-      // Distant pairs count only if the free motion brings them together.
-      const Vec3 va = da.head<3>() + da.tail<3>().cross(c.point - a_start.p);
-      const Vec3 vb = db.head<3>() + db.tail<3>().cross(c.point - b_start.p);
-      if (gap > settings.alarm && gap + n.dot(va - vb) > settings.alarm) continue;
-      out.push_back(c);
-    }
-  }
 }
 
 }  // namespace insula
