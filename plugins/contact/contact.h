@@ -55,8 +55,9 @@ class Contact final : public Constraint, public StatesLaw {
        .fallback = "0.3 mm",
        .min = "0.05 mm",
        .max = "100 mm",
-       .doc = "a tool that goes into a wall (a surface with a thickness) moves by no more than this in a step; the "
-              "rest follows in the next ones; a tool that leaves the wall is free",
+       .doc = "a tool that goes into a wall (a surface with a thickness) moves by no more than this in a step, and one "
+              "in a hand along the wall by up to three times as much; the rest follows in the next ones; a tool that "
+              "leaves the wall is free",
        .formerly = "max_push"}};
   Param<Length> tissue_max_step_displacement{this,
                                              {.name = "tissue_max_step_displacement",
@@ -156,6 +157,7 @@ class Contact final : public Constraint, public StatesLaw {
     RigidBody* tool_a = nullptr;  ///< a is a link of a tool or clip ...
     RigidBody* tool_b = nullptr;
     int link_a = 0, link_b = 0;
+    bool in_hand = false;                             ///< a is in a hand or on the tray
     Surface *a = nullptr, *b = nullptr;               ///< ... or a surface
     std::vector<RoundedPiece> pieces_a, pieces_b;     ///< of the tools
     std::unique_ptr<ToolCollider> tool_collider;      ///< tool against surface, by triangles ...

@@ -7,6 +7,9 @@
 
 namespace insula {
 namespace {
+// Lengths over the limit of the motion inward.
+constexpr double farthest_along = 3;   // of the motion along what is touched
+constexpr double fast = 10;            // of a motion that may meet what no contact was found with
 constexpr double servo_step_s = 1e-3;  // clients with such short steps get the same limit in each of them
 
 Vec3 farthest_from_axis(const RoundedPiece& r) {
@@ -24,13 +27,15 @@ Vec3 farthest_from_axis(const RoundedPiece& r) {
 }  // namespace
 
 // Tissue responds linearly over a step, but its true motion is nonlinear. A large push would invert a thin wall or the
-// elements of a lobe, and a large slide would leave the region of the detected contacts. So a tool that goes into what
-// it touches moves by at most max_step_displacement (a wall) or tissue_max_step_displacement. Three rows limit the free
-// motion of three points of the touching piece. A motion that no contact opposes is free, so a hand that leaves is
-// never pulled.
+// elements of a lobe, and a large slide would leave the region of the detected contacts. So a tool goes into what it
+// touches by at most max_step_displacement (a wall) or tissue_max_step_displacement. A tool in a hand moves along a
+// wall by up to three times as much, since the hand would be held back. Three rows limit the free motion of three
+// points of the touching piece. A motion that no contact opposes is free, so a hand that leaves is never pulled.
 void Contact::limit_motion(ConstraintBuilder& builder, const Pair& p) const {
   if (!p.tool_a || !p.b || !p.active() || p.b->body().blocks() == 0) return;
-  const double most = p.b->thickness() > 0 ? max_step_displacement() : tissue_max_step_displacement();
+  const bool wall = p.b->thickness() > 0;
+  const double deepest = wall ? max_step_displacement() : tissue_max_step_displacement();
+  const double along = wall && p.in_hand ? farthest_along : 1;
   const Touch touch = first_touch(p);
   if (touch.piece < 0) return;
   const RoundedPiece& r = p.pieces_a[std::size_t(touch.piece)];
@@ -38,11 +43,14 @@ void Contact::limit_motion(ConstraintBuilder& builder, const Pair& p) const {
   for (const Vec3& place : {r.axis0, r.axis1, farthest_from_axis(r)}) {
     const MaterialPoint point = p.tool_a->link_point(p.link_a, place);
     const Vec3 u = p.tool_a->free_displacement(point);
-    const double distance = u.norm(), allowed = touch.time * distance + most;
-    const auto normals = touch.normals();
-    const bool opposed = std::any_of(normals.begin(), normals.end(), [&](const Vec3& n) { return n.dot(u) < 0; });
+    const double distance = u.norm();
+    double inward = 0;
+    for (const Vec3& n : touch.normals()) inward = std::max(inward, -n.dot(u));
     ++count;
-    if (!opposed || distance <= allowed) continue;
+    if (inward <= 0) continue;
+    const double ratio = distance < fast * deepest ? std::min(distance / inward, along) : 1;
+    const double most = ratio * deepest, allowed = touch.time * distance + most;
+    if (distance <= allowed) continue;
     Block block;
     block.id = row_id(*this, std::uint64_t(1) << 43 | std::uint64_t(&p - pairs_.data()) << 16 |
                                  std::uint64_t(touch.piece) << 2 | std::uint64_t(count));

@@ -51,6 +51,8 @@ void Contact::add_pairs(Simulation& simulation, Body* a, Body* b) {
         p.tool_a = tool_a;
         p.link_a = i;
         p.b = sb;
+        const auto* instrument = dynamic_cast<const Instrument*>(tool_a);
+        p.in_hand = instrument && instrument->hand_index() >= 0;
         for (const ConvexPiece& piece : tool_a->link_pieces(i)) p.pieces_a.push_back(rounded(piece));
         if (contact_geometry.is("vertices"))
           p.vertex_collider = std::make_unique<VertexCollider>(tool_a->link_pieces(i), sb->triangles(),

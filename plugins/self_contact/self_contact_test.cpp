@@ -144,6 +144,29 @@ TEST(SelfContact, FastBladesPressNoWallThroughTheOtherAndStayOutside) {
   EXPECT_GT(touched, 4 * poses);
 }
 
+// 0.6 mm a step along the vessel, which is twice the limit of motion into a wall: nothing but the wall holds it back.
+TEST(SelfContact, AHandThatDrawsABladeAlongAVesselIsNotHeldBack) {
+  const std::string blade =
+      R"(<retractor id="blade" model="meshes/blade/tool.urdf" hand="right" home="-5 0 2.5 mm" shaft="0 0 1" flat="1 0 0" coupling="250 N/m"/>)";
+  VesselBench b(test::tube(2e-3, 16e-3, 17), 7.6e-3, blade, "blade", R"(friction="0")", R"(thickness="0.3 mm")", 100);
+  ASSERT_TRUE(b.s);
+  const Instrument& tool = *b.s->instrument_of(1);
+  Pose at = tool.home_pose();
+  const auto step = [&](double along, double down) {
+    at.p += Vec3(along, 0, -down);
+    b.hand(1, at);
+    b.s->step();
+  };
+  for (int i = 0; i < 30; ++i) step(0, 0.02e-3);
+  for (int i = 0; i < 30; ++i) step(0, 0);
+  const double pressed = tool.hand_force()[2];
+  ASSERT_GT(pressed, 5e-3);
+  for (int i = 0; i < 12; ++i) {
+    step(0.6e-3, 0);
+    EXPECT_LT(std::abs(tool.hand_force()[0]), 0.02) << "facets of the vessel, step " << i;
+  }
+}
+
 TEST(SelfContact, ASurfaceThatCannotTouchItselfIsRefused) {
   test::SceneFolder folder;
   folder.write("meshes/tube.obj", test::obj_text(test::tube(2e-3, 8e-3, 12)));
