@@ -340,7 +340,7 @@ std::string technical_html(const RunRecorder& recorder, const RunSummary& summar
   const auto rows = column(recorder, [](const S& s) { return s.rows; });
   const auto residual = column(recorder, [](const S& s) { return s.residual_N; });
   std::string out = page_head(summary, "technical page") + "<table><tbody>\n";
-  out += row("steps", fmt::format("{}", recorder.steps()));
+  out += row("steps", fmt::format("{} at {:.4g} Hz", recorder.steps(), summary.step_rate_hz));
   if (recorder.steps_per_sample() > 1)
     out += row("gathered for what follows, each with its largest values",
                fmt::format("{} steps", recorder.steps_per_sample()));

@@ -146,6 +146,7 @@ void RunRecorder::add(const Sample& sample, const std::vector<double>& channels)
 void RunRecorder::clear() { *this = RunRecorder(max_samples_); }
 
 void RunSummary::take(const Simulation& simulation) {
+  step_rate_hz = 1 / simulation.h();
   title = simulation.scene().title();
   state_hash = simulation.state_hash();
   exercise.reset();
@@ -227,6 +228,7 @@ std::string report_json(const RunRecorder& recorder, const RunSummary& summary) 
   if (!summary.mode.empty()) json["mode"] = summary.mode;
   if (!summary.fields.empty()) json["fields"] = summary.fields;
   if (!summary.began.empty()) json["began"] = summary.began;
+  json["step_rate_hz"] = summary.step_rate_hz;
   json["steps"] = recorder.steps();
   json["steps_per_sample"] = recorder.steps_per_sample();
   json["sim_seconds"] = sim_seconds;

@@ -28,11 +28,12 @@ class Simulation;
 
 /// Data of a run as a whole. It holds copies, so a report may be written while the simulation continues.
 struct RunSummary {
-  /// Takes title, state hash, and the present exercise and complications.
+  /// Takes title, step rate, state hash, and the present exercise and complications.
   void take(const Simulation& simulation);
 
   std::string title;                          ///< of the scene
   std::string scene, motion;                  ///< as named on the command line
+  double step_rate_hz = 0;                    ///< of the engine
   std::string mode;                           ///< name of a SessionMode; empty: not a live session
   ReferenceBands bands;                       ///< for its metrics; empty: none
   MetricMoments moments;                      ///< of its metrics

@@ -150,6 +150,7 @@ TEST_F(SessionReportsTest, EndsWithTheExercise) {
   const auto all = reports();
   ASSERT_EQ(all.size(), 1u) << "and wrote no other at its end";
   EXPECT_EQ(all[0].at("steps"), 20);
+  EXPECT_NEAR(all[0].at("step_rate_hz").get<double>(), 100, 1e-9);
   EXPECT_NEAR(all[0].at("sim_seconds").get<double>(), 0.2, 1e-6);
   EXPECT_EQ(all[0].at("title"), "Press");
   EXPECT_EQ(all[0].at("exercise").at("state"), "done");
