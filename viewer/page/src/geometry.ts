@@ -23,12 +23,12 @@ export function smoothNormals(positions: Float32Array, indices: Uint32Array): Fl
   return out;
 }
 
-/** Unindexed triangles with normals smoothed only across edges flatter than `angle`. */
+/** Normals smoothed only across edges flatter than `angle`. Corners at a place with the same normal are one vertex. */
 export function creased(
   positions: Float32Array,
   indices: Uint32Array,
   angle: number,
-): { positions: Float32Array; normals: Float32Array } {
+): { positions: Float32Array; normals: Float32Array; indices: Uint32Array } {
   const weld = weldMap(positions);
   const faces = indices.length / 3;
   const normal = new Float32Array(faces * 3);
@@ -47,14 +47,19 @@ export function creased(
     }
   }
   const limit = Math.cos(angle);
-  const p = new Float32Array(indices.length * 3);
-  const out = new Float32Array(indices.length * 3);
+  const p: number[] = [];
+  const normals: number[] = [];
+  const corners = new Uint32Array(indices.length);
+  // Vertices at each place.
+  const madeFirst = new Int32Array(positions.length / 3).fill(-1);
+  const madeNext: number[] = [];
   for (let c = 0; c < indices.length; c++) {
     const f = Math.floor(c / 3);
+    const w = weld[indices[c]!]!;
     let x = 0;
     let y = 0;
     let z = 0;
-    for (let o = first[weld[indices[c]!]!]!; o >= 0; o = next[o]!) {
+    for (let o = first[w]!; o >= 0; o = next[o]!) {
       const g = Math.floor(o / 3) * 3;
       const dot = unit[g]! * unit[f * 3]! + unit[g + 1]! * unit[f * 3 + 1]! + unit[g + 2]! * unit[f * 3 + 2]!;
       if (dot >= limit) {
@@ -64,12 +69,20 @@ export function creased(
       }
     }
     const l = Math.hypot(x, y, z) || 1;
-    out[c * 3] = x / l;
-    out[c * 3 + 1] = y / l;
-    out[c * 3 + 2] = z / l;
-    for (let k = 0; k < 3; k++) p[c * 3 + k] = positions[indices[c]! * 3 + k]!;
+    const same = (v: number) =>
+      normals[v * 3] === x / l && normals[v * 3 + 1] === y / l && normals[v * 3 + 2] === z / l;
+    let v = madeFirst[w]!;
+    while (v >= 0 && !same(v)) v = madeNext[v]!;
+    if (v < 0) {
+      v = madeNext.length;
+      madeNext.push(madeFirst[w]!);
+      madeFirst[w] = v;
+      normals.push(x / l, y / l, z / l);
+      for (let k = 0; k < 3; k++) p.push(positions[indices[c]! * 3 + k]!);
+    }
+    corners[c] = v;
   }
-  return { positions: p, normals: out };
+  return { positions: Float32Array.from(p), normals: Float32Array.from(normals), indices: corners };
 }
 
 function faceNormal(p: Float32Array, indices: Uint32Array, t: number): [number, number, number] {

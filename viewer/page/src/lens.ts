@@ -94,7 +94,15 @@ export class Lens {
     for (const e of this.eyes) e.configure(settings);
   }
 
-  render(scene: THREE.Scene, camera: THREE.PerspectiveCamera, focus: number, mode: StereoMode, angleRad: number): void {
+  /** scale: pixels of one eye's picture each way, over those of the canvas. */
+  render(
+    scene: THREE.Scene,
+    camera: THREE.PerspectiveCamera,
+    focus: number,
+    mode: StereoMode,
+    angleRad: number,
+    scale = 1,
+  ): void {
     const size = this.renderer.getDrawingBufferSize(new THREE.Vector2());
     if (mode !== this.mode) {
       this.eyes[1]!.drop();
@@ -102,7 +110,8 @@ export class Lens {
     }
     if (mode !== 'sbs' && mode !== 'anaglyph') {
       this.seenBy = camera;
-      this.eyes[0]!.take(this.renderer, scene, camera, focus, size, this.settings.samples);
+      const pixels = size.multiplyScalar(scale).ceil();
+      this.eyes[0]!.take(this.renderer, scene, camera, focus, pixels, this.settings.samples);
       this.triangles = this.renderer.info.render.triangles;
       this.calls = this.renderer.info.render.calls;
       this.show(0, new THREE.Matrix3(), 0);

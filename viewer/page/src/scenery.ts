@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The surfaces of bodies and of what stands still, each drawn in the style of its material.
 import * as THREE from 'three';
-import { mergeVertices } from 'three/examples/jsm/utils/BufferGeometryUtils.js';
 import type { BodyData, Bundle, SkinnedSurface, SurfaceData } from './bundle_types';
 import { Detail } from './detail';
 import { creased, interleave, smoothNormals } from './geometry';
@@ -164,10 +163,11 @@ export class Scenery {
   private addSolid(p: Plan): void {
     const s = p.surface;
     const shape = creased(s.positions, s.indices, s.material === 'bone' ? 0.75 : 1.1);
-    const corners = new THREE.BufferGeometry();
-    corners.setAttribute('position', new THREE.BufferAttribute(shape.positions, 3));
-    corners.setAttribute('normal', new THREE.BufferAttribute(shape.normals, 3));
-    this.solids.push(this.add(mergeVertices(corners, 1e-7), this.solid(p), true, null));
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute('position', new THREE.BufferAttribute(shape.positions, 3));
+    geometry.setAttribute('normal', new THREE.BufferAttribute(shape.normals, 3));
+    geometry.setIndex(new THREE.BufferAttribute(shape.indices, 1));
+    this.solids.push(this.add(geometry, this.solid(p), true, null));
   }
 
   private addMovingSolid(p: Plan): void {

@@ -89,8 +89,9 @@ export class Stage {
     this.scope.update(dt, presenting ? 1 : wide / halves / Math.max(1, high));
   }
 
-  render(mode: StereoMode, angleRad: number): void {
-    this.lens.render(this.scene, this.scope.camera, this.scope.distance, mode, angleRad);
+  /** scale: of the picture in pixels each way, for one that has to come soon. */
+  render(mode: StereoMode, angleRad: number, scale = 1): void {
+    this.lens.render(this.scene, this.scope.camera, this.scope.distance, mode, angleRad, scale);
     const gl = this.renderer.getContext() as WebGL2RenderingContext;
     gl.deleteSync(this.fence);
     this.fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);

@@ -58,6 +58,7 @@ export class Tool {
       const geometry = new THREE.BufferGeometry();
       geometry.setAttribute('position', new THREE.BufferAttribute(shape.positions, 3));
       geometry.setAttribute('normal', new THREE.BufferAttribute(shape.normals, 3));
+      geometry.setIndex(new THREE.BufferAttribute(shape.indices, 1));
       const declared = materials.get(part.material);
       const material = solidMaterial(part.material, {
         field,

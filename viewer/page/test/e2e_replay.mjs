@@ -98,19 +98,22 @@ async function press(page, key) {
   await page.waitForFunction((n) => window.__replay.pictures > n + 1, pictures, patience);
   return status(page);
 }
-const centre = (page) =>
-  page.evaluate(() => {
+/** Sum of a small copy of the field. A canvas can be read in frames that are drawn; Shift alone has them drawn. */
+async function centre(page) {
+  await page.keyboard.press('Shift');
+  return page.evaluate(async () => {
     const canvas = document.querySelector('.side canvas');
     const copy = document.createElement('canvas');
     [copy.width, copy.height] = [64, 48];
     const c = copy.getContext('2d');
-    return new Promise((resolve) =>
-      requestAnimationFrame(() => {
-        c.drawImage(canvas, 0, 0, 64, 48);
-        resolve([...c.getImageData(0, 0, 64, 48).data].reduce((a, b) => a + b, 0));
-      }),
-    );
+    for (;;) {
+      await new Promise((resolve) => requestAnimationFrame(resolve));
+      c.drawImage(canvas, 0, 0, 64, 48);
+      const sum = [...c.getImageData(0, 0, 64, 48).data].reduce((x, y) => x + y, 0);
+      if (sum > 0) return sum;
+    }
   });
+}
 
 const file = given || record();
 const { gateway, address } = await serve(file);

@@ -109,7 +109,14 @@ describe('normals', () => {
       [1, 3, 7, 5],
     ];
     const idx = Uint32Array.from(quads.flatMap(([a, b, c, d]) => [a!, b!, c!, a!, c!, d!]));
-    const flat = creased(p, idx, 0.6).normals;
+    const cube = creased(p, idx, 0.6);
+    const flat = cube.normals;
+    // Four corners of each of six faces, and each triangle where it was.
+    expect(flat.length / 3).toBe(24);
+    cube.indices.forEach((v, c) => {
+      for (let k = 0; k < 3; k++) expect(cube.positions[3 * v + k]).toBe(p[3 * idx[c]! + k]);
+    });
+    expect(creased(p, idx, 3).normals.length / 3).toBe(8);
     for (let i = 0; i < flat.length; i += 3)
       expect(Math.max(...[0, 1, 2].map((k) => Math.abs(flat[i + k]!)))).toBeCloseTo(1, 6);
     const round = smoothNormals(p, idx);

@@ -113,6 +113,7 @@ export class Links implements Drawn {
       const geometry = new THREE.BufferGeometry();
       geometry.setAttribute('position', new THREE.BufferAttribute(shape.positions, 3));
       geometry.setAttribute('normal', new THREE.BufferAttribute(shape.normals, 3));
+      geometry.setIndex(new THREE.BufferAttribute(shape.indices, 1));
       return { geometry, material: lookOf(context, m.rgba) };
     });
   }

@@ -191,7 +191,7 @@ export class Replay {
     this.jumpedMs = null;
     await Promise.all(this.sides.map((s) => s.seek(timeS)));
     const decodeMs = performance.now() - from;
-    for (const s of this.sides) s.view.draw(now, Math.min(0.1, dtS));
+    for (const s of this.sides) s.view.draw(now, Math.min(0.1, dtS), jumpedMs !== null);
     this.transport.draw(this.video.running);
     this.moments.at(timeS);
     if (jumpedMs !== null) {

@@ -70,8 +70,8 @@ export class SessionView {
     return true;
   }
 
-  /** dtS: of the wall clock, for what glides and fades. */
-  draw(nowMs: number, dtS: number): void {
+  /** dtS: of the wall clock, for what glides and fades. soon: fewer pixels on slow machines. */
+  draw(nowMs: number, dtS: number, soon = false): void {
     this.stage.update(dtS, 'off', false);
     if (this.world && this.moment) {
       this.world.cues.choice = { plumb: this.cues, ruler: 'off', hand: 1, within: null };
@@ -80,7 +80,7 @@ export class SessionView {
     }
     const unveiling = this.firstPictureMs > 0 ? this.unveiling : null;
     unveiling?.begin();
-    this.stage.render('off', 0);
+    this.stage.render('off', 0, soon && levels[this.watch.level]!.cheap ? 0.5 : 1);
     if (unveiling?.end() === false) this.unveiling = null;
   }
 
