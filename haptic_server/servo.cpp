@@ -10,6 +10,8 @@
 namespace insula {
 namespace {
 
+constexpr double most_growth = 100;  // of the largest force between steps, from 1 N or more
+
 // Products with the tall Jacobians are spelled out so that nothing can be allocated.
 template <class Jacobian>
 void add_product(const Jacobian& h, const Vec6& x, std::vector<double>& y, int rows) {
@@ -89,6 +91,9 @@ void Servo::set_problem(const ConstraintProblem* problem, const std::array<Pose,
   if (settings_.substep.eliminate_welds) problem_ = &weld_elimination_.eliminate(*problem);
   if (settings_.substep.any()) substep_.begin(*problem_, weld_elimination_.grasped(), age_s);
   workspace_.lambda.resize(std::size_t(problem_->rows));  // within its capacity
+  newton_bound_ = 1;
+  for (const double x : problem_->lambda) newton_bound_ = std::max(newton_bound_, std::abs(x));
+  newton_bound_ *= most_growth;
   const auto known_end = known_.begin() + std::ptrdiff_t(known_count_);
   for (const Block& b : problem_->blocks) {
     const auto found =
@@ -133,6 +138,7 @@ SolveStats Servo::solve_tick(const ServoInput& input, const TickHands& hands) no
   s.newton_soon = true;
   s.newton_unknowns = settings_.newton_unknowns;
   s.newton_sweeps = 0;
+  s.newton_bound = newton_bound_;
   s.max_sweeps =
       int(std::clamp(settings_.max_operations / std::max(1.0, double(n) * n), 1.0, double(settings_.max_sweeps)));
   if (!settings_.substep.any())

@@ -124,6 +124,7 @@ class Servo {
   void force_crossfade(ServoResult& result, double dt) noexcept;
   std::array<ForceCrossfade, 2> force_crossfade_;
   bool fresh_problem_ = false;
+  double newton_bound_ = 0;  ///< of a value of lambda in this problem
   SolveWorkspace workspace_;
   std::vector<double> delta_free_;
   std::vector<double> last_lambda_;

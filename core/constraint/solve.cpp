@@ -143,7 +143,15 @@ constexpr double shortest_step = 0.1;  // smallest fraction of a Newton step tha
 constexpr int smoothing = 3;           // sweeps after a Newton step
 constexpr double min_proximal = 1e-11, max_proximal = 1;
 
-// Newton's method from the sweeps' result, which is kept unless a better one is found.
+double largest(std::span<const double> lambda) {
+  double out = 0;
+  for (const double x : lambda) out = std::max(out, std::abs(x));
+  return out;
+}
+
+// Newton's method from the sweeps' result, which is kept unless a better one is found. Where rows depend on one
+// another, W has a null space. A step along it changes no delta, so the residual does not see it, however large the
+// forces are.
 void newton_on(const ConstraintProblem& p, std::span<const double> free, const SolveSettings& settings,
                const SweepData& data, SolveWorkspace& ws, SolveStats& stats) {
   const auto sweep = sweep_kernels().sweep;
@@ -165,7 +173,8 @@ void newton_on(const ConstraintProblem& p, std::span<const double> free, const S
         SolveStats reached;
         full_delta(p, free, m.trial.data(), ws.current);
         measure_residual(p, m.trial.data(), ws.current.data(), reached);
-        if (!(reached.residual_m < 0.9 * stats.residual_m)) continue;
+        if (!(reached.residual_m < 0.9 * stats.residual_m) || !(largest({m.trial.data(), n}) <= settings.newton_bound))
+          continue;
         better = true;
         stats.residual_m = reached.residual_m;
         stats.method = SolveMethod::newton;

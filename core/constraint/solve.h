@@ -28,6 +28,9 @@ struct SolveSettings {
                                                           ///< bound in a Newton step
   int newton_sweeps =
       32;  ///< conjugate sweeps before another attempt, after a step without success; 0: no further attempt
+  /// A Newton step to a larger value of lambda is not taken. Where rows depend on one another, W has a null space. A
+  /// step along it changes no delta, so the residual does not see it, however large the forces become.
+  double newton_bound = std::numeric_limits<double>::infinity();
 };
 
 enum class SolveMethod : std::uint8_t { sweeps, newton };

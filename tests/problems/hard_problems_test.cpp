@@ -186,5 +186,29 @@ TEST(HardProblems, ContradictionEndsAndStaysFinite) {
   }
 }
 
+// Two rows that are nearly one, and do not quite agree: the exact solution is 10 kN, along the null space of W.
+TEST(HardProblems, NewtonStaysBelowItsBoundWhereRowsDependOnOneAnother) {
+  ConstraintProblem p;
+  p.resize(2);
+  const double w[2][2] = {{1, 1}, {1, 1 + 1e-8}};
+  for (int i = 0; i < 2; ++i) {
+    for (int j = 0; j < 2; ++j) p.w[std::size_t(i * p.stride + j)] = w[i][j];
+    p.blocks.push_back({.id = std::uint64_t(i + 1), .row = i});
+  }
+  p.delta_free = {-1e-3, -1.1e-3};
+  for (const bool soon : {false, true}) {
+    SolveWorkspace ws;
+    ws.reserve(p.rows, true);
+    ws.lambda.assign(2, 0.0);
+    SolveSettings settings{.max_sweeps = 50, .tolerance_m = 1e-12, .max_newton = 5, .newton_soon = soon};
+    settings.newton_bound = 100;
+    solve(p, p.delta_free, settings, ws);
+    for (const double x : ws.lambda) EXPECT_LT(std::abs(x), 100) << soon;
+    settings.newton_bound = 1e5;
+    solve(p, p.delta_free, settings, ws);
+    EXPECT_GT(std::abs(ws.lambda[0]), 5e3) << "otherwise the bound means nothing";
+  }
+}
+
 }  // namespace
 }  // namespace insula
