@@ -13,13 +13,18 @@
 namespace insula {
 namespace {
 
+BenchOptions strands() {
+  BenchOptions options;
+  options.scene = std::filesystem::path(INSULA_SOURCE_DIR) / "plugins/strand_springs/example.xml";
+  options.motion = "none";
+  return options;
+}
+
 TEST(BenchSolvers, EverySolverAgreesOnTheSameStep) {
   Registry registry;
   register_builtin(registry);
   std::ostringstream out, err;
-  BenchOptions options;
-  options.scene = std::filesystem::path(INSULA_SOURCE_DIR) / "plugins/strand_springs/example.xml";
-  options.motion = "none";
+  BenchOptions options = strands();
   options.threads = 1;
   options.json = true;
   options.rows = 12;
@@ -66,9 +71,7 @@ TEST(BenchSolvers, AFolderWithoutABlasIsRefused) {
   Registry registry;
   register_builtin(registry);
   std::ostringstream out, err;
-  BenchOptions options;
-  options.scene = std::filesystem::path(INSULA_SOURCE_DIR) / "plugins/strand_springs/example.xml";
-  options.motion = "none";
+  BenchOptions options = strands();
   options.blas = std::filesystem::path(INSULA_SOURCE_DIR) / "docs";
   EXPECT_EQ(cmd_bench_solvers({registry, out, err}, options), 2);
   EXPECT_NE(err.str().find("libblas.so.3"), std::string::npos) << err.str();

@@ -4,6 +4,7 @@ import * as THREE from 'three';
 import type { BodyData, Bundle, SkinnedSurface, SurfaceData } from './bundle_types';
 import { Detail } from './detail';
 import { creased, interleave, smoothNormals } from './geometry';
+import { indexedGeometry } from './indexed_geometry';
 import { setCheapMaterial } from './materials/cheap';
 import type { FieldUniforms } from './materials/field';
 import { solidMaterial } from './materials/solid';
@@ -162,11 +163,7 @@ export class Scenery {
 
   private addSolid(p: Plan): void {
     const s = p.surface;
-    const shape = creased(s.positions, s.indices, s.material === 'bone' ? 0.75 : 1.1);
-    const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute('position', new THREE.BufferAttribute(shape.positions, 3));
-    geometry.setAttribute('normal', new THREE.BufferAttribute(shape.normals, 3));
-    geometry.setIndex(new THREE.BufferAttribute(shape.indices, 1));
+    const geometry = indexedGeometry(creased(s.positions, s.indices, s.material === 'bone' ? 0.75 : 1.1));
     this.solids.push(this.add(geometry, this.solid(p), true, null));
   }
 
@@ -254,10 +251,7 @@ function skinTubes(
 }
 
 function smoothGeometry(p: Plan): THREE.BufferGeometry {
-  const geometry = new THREE.BufferGeometry();
-  geometry.setAttribute('position', new THREE.BufferAttribute(p.surface.positions, 3));
-  geometry.setAttribute('normal', new THREE.BufferAttribute(p.tissue.normals, 3));
-  geometry.setIndex(new THREE.BufferAttribute(p.surface.indices, 1));
+  const geometry = indexedGeometry(p.tissue);
   if (p.moving) {
     const { skinned, body } = p.moving;
     setSkinAttributes(geometry, skinned.skinNodes, skinned.skinWeights, body.rest);

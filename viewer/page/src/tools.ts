@@ -4,6 +4,7 @@
 import * as THREE from 'three';
 import type { ToolData } from './bundle_types';
 import { creased } from './geometry';
+import { indexedGeometry } from './indexed_geometry';
 import { linkPose } from './link_pose';
 import type { FieldUniforms } from './materials/field';
 import { solidMaterial } from './materials/solid';
@@ -54,11 +55,7 @@ export class Tool {
       this.group.add(l);
     }
     for (const part of data.parts) {
-      const shape = creased(part.positions, part.indices, 0.6);
-      const geometry = new THREE.BufferGeometry();
-      geometry.setAttribute('position', new THREE.BufferAttribute(shape.positions, 3));
-      geometry.setAttribute('normal', new THREE.BufferAttribute(shape.normals, 3));
-      geometry.setIndex(new THREE.BufferAttribute(shape.indices, 1));
+      const geometry = indexedGeometry(creased(part.positions, part.indices, 0.6));
       const declared = materials.get(part.material);
       const material = solidMaterial(part.material, {
         field,

@@ -2,6 +2,7 @@
 // Triangle patches, planes, labels and rigid links, drawn plainly.
 import * as THREE from 'three';
 import { creased } from '../geometry';
+import { indexedGeometry } from '../indexed_geometry';
 import { TextSprite } from '../text_sprite';
 import type { DrawableContext, Drawn } from './drawn';
 import { lookOf, moving } from './look';
@@ -109,11 +110,7 @@ export class Links implements Drawn {
 
   constructor(context: DrawableContext) {
     this.parts = context.meshes.map((m) => {
-      const shape = creased(m.positions, m.indices, 0.6);
-      const geometry = new THREE.BufferGeometry();
-      geometry.setAttribute('position', new THREE.BufferAttribute(shape.positions, 3));
-      geometry.setAttribute('normal', new THREE.BufferAttribute(shape.normals, 3));
-      geometry.setIndex(new THREE.BufferAttribute(shape.indices, 1));
+      const geometry = indexedGeometry(creased(m.positions, m.indices, 0.6));
       return { geometry, material: lookOf(context, m.rgba) };
     });
   }
