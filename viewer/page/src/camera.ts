@@ -10,6 +10,9 @@ interface Pose {
   distance: number;
 }
 
+/** A glide is over when this share of the picture's distance is left, and this angle, rad. */
+const glideEnd = 5e-4;
+
 /** How the field is looked at, for what is drawn as large as the picture is. */
 export interface Sight {
   /** Of the picture in the scene: x right, y up, z to the viewer. */
@@ -122,6 +125,14 @@ export class Microscope {
 
   get sight(): Sight {
     return { axes: this.axes(), percentM: this.percentM, eye: this.camera.position };
+  }
+
+  /** The picture still moves to where it was asked to be. */
+  get gliding(): boolean {
+    const { now, wanted } = this;
+    const angle = Math.abs(wanted.yaw - now.yaw) + Math.abs(wanted.pitch - now.pitch);
+    const length = now.target.distanceTo(wanted.target) + Math.abs(wanted.distance - now.distance);
+    return angle > glideEnd || length > glideEnd * now.distance;
   }
 
   update(dt: number, aspect: number): void {

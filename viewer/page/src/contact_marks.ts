@@ -6,6 +6,8 @@ import { forceLevel } from './hud/state';
 import type { RenderFrame } from './lcm';
 
 export const markCount = 6;
+/** 1/s. */
+const fadeRate = 17;
 /** Weaker contacts have no mark, N. */
 export const leastN = 0.01;
 const colours = { good: 0x5fcf92, high: 0xf0b64a, too_much: 0xf2604f };
@@ -60,12 +62,16 @@ export class ContactMarks {
     });
   }
 
-  /** `towards`: to the viewer; marks face it. They fade, since contacts flicker from step to step. */
-  update(contacts: readonly Contact[], towards: THREE.Vector3): void {
+  /**
+   * towards: to the viewer; marks face it. dt: of the picture before, s. They fade, since contacts flicker from step
+   * to step.
+   */
+  update(contacts: readonly Contact[], towards: THREE.Vector3, dt: number): void {
+    const share = 1 - Math.exp(-fadeRate * dt);
     this.marks.forEach((mark, k) => {
       const c = contacts[k];
       const wanted = c ? 0.85 : 0;
-      mark.material.opacity += 0.25 * (wanted - mark.material.opacity);
+      mark.material.opacity += share * (wanted - mark.material.opacity);
       mark.visible = mark.material.opacity > 0.02;
       mark.quaternion.setFromUnitVectors(new THREE.Vector3(0, 0, 1), towards);
       if (!c) return;

@@ -10,6 +10,9 @@ import type { StereoMode } from './stereo';
 /** Share of the room's light that reaches the field. */
 const roomIntensity = 0.42;
 
+/** Between two questions to the graphics card. */
+const pollMs = 2;
+
 /** What is seen through a gap between the tissues: the depth of the field, not a hole. */
 const depths = { eye: new THREE.Color(0x38100c), infrared: new THREE.Color(0x020303) };
 
@@ -89,12 +92,18 @@ export class Stage {
     this.scope.update(dt, presenting ? 1 : wide / halves / Math.max(1, high));
   }
 
-  /** scale: of the picture in pixels each way, for one that has to come soon. */
+  /** scale: of the picture in pixels each way; below 1, for one that has to come soon, the old shadows stay. */
   render(mode: StereoMode, angleRad: number, scale = 1): void {
+    this.renderer.shadowMap.autoUpdate = scale === 1;
     this.lens.render(this.scene, this.scope.camera, this.scope.distance, mode, angleRad, scale);
     const gl = this.renderer.getContext() as WebGL2RenderingContext;
     gl.deleteSync(this.fence);
     this.fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+  }
+
+  /** Ends when the graphics card is done with the last picture. */
+  async whenDone(): Promise<void> {
+    while (!this.done) await new Promise((resolve) => setTimeout(resolve, pollMs));
   }
 
   /** The graphics card is done with the last picture. */

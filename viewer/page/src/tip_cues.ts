@@ -5,6 +5,7 @@ import type { Sight } from './camera';
 import { ContactMarks, contactsOfTools } from './contact_marks';
 import { DepthCue } from './depth_cue';
 import { DepthRuler, type RulerMode } from './depth_ruler';
+import type { Moment } from './drawables/drawn';
 import { toolState } from './hand_tool';
 import type { DepthView } from './hud/hand_panel';
 import type { RenderFrame } from './lcm';
@@ -50,7 +51,7 @@ export class TipCues {
     frame: RenderFrame,
     tools: readonly Tool[],
     probes: readonly TissueProbe[],
-    seconds: number,
+    { dt, seconds }: Moment,
     sight: Sight,
   ): void {
     const { plumb, ruler, hand, within } = this.choice;
@@ -62,7 +63,7 @@ export class TipCues {
     const shafts = leading.map((t) => (t ? new THREE.Vector3(0, 0, 1).applyQuaternion(t.group.quaternion) : null));
     this.ruler.update({ mode: ruler, tips, hand, shaft: shafts[hand] ?? null, ...sight, probes, seconds });
     const axes = leading.flatMap((t, h) => (t ? [{ tip: t.group.position, shaft: shafts[h]! }] : []));
-    this.marks.update(plumb ? contactsOfTools(frame, axes) : [], sight.axes.z);
+    this.marks.update(plumb ? contactsOfTools(frame, axes) : [], sight.axes.z, dt);
   }
 
   dispose(): void {

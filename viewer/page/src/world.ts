@@ -15,6 +15,12 @@ import type { Channels } from './step_data/channels';
 import { TipCues } from './tip_cues';
 import { Tool } from './tools';
 
+/** Of a picture, for what fades, s. */
+const longestS = 1;
+/** Of dents below the tools, 1/s. */
+const riseRate = 10;
+const fadeRate = 6;
+
 export class World {
   readonly root = new THREE.Group();
   /** What is wrong with the newest frame's drawables, one line each. */
@@ -72,18 +78,21 @@ export class World {
     this.scenery.setCheap(cheap);
   }
 
-  update(playback: Playback, nowMs: number, channels: Channels, sight: Sight): void {
+  /** settled: what fades has done so, and the picture depends on the frame alone. */
+  update(playback: Playback, nowMs: number, channels: Channels, sight: Sight, settled = false): void {
     const frame = playback.latest;
     if (!frame) return;
-    const dt = this.lastMs < 0 ? 0 : Math.min(1, (nowMs - this.lastMs) / 1000);
+    const pastS = this.lastMs < 0 ? 0 : Math.min(longestS, (nowMs - this.lastMs) / 1000);
+    const dt = settled ? Infinity : pastS;
+    const seconds = nowMs / 1000;
     this.lastMs = nowMs;
     const t = playback.blend(nowMs);
     this.scenery.update((body) => playback.nodes(body, t));
-    this.updatePressed(frame);
+    this.updatePressed(frame, dt);
     this.updateLight(channels, frame.sim_time_s, dt);
-    this.problems = this.drawables.update(playback, t, { dt, seconds: nowMs / 1000 });
+    this.problems = this.drawables.update(playback, t, { dt: Math.min(longestS, dt), seconds });
     for (const tool of this.tools) moveTool(tool, playback, t);
-    this.cues.update(frame, this.tools, this.scenery.probes, nowMs / 1000, sight);
+    this.cues.update(frame, this.tools, this.scenery.probes, { dt, seconds }, sight);
   }
 
   dispose(): void {
@@ -110,7 +119,7 @@ export class World {
   }
 
   /** The strongest contacts; they fade in and out, since contacts flicker from step to step. */
-  private updatePressed(frame: RenderFrame): void {
+  private updatePressed(frame: RenderFrame, dt: number): void {
     const order = [...frame.contact_N.keys()]
       .filter((i) => frame.contact_N[i]! > 0.005)
       .sort((a, b) => frame.contact_N[b]! - frame.contact_N[a]!)
@@ -118,10 +127,10 @@ export class World {
     this.pressed.forEach((p, k) => {
       const i = order[k];
       if (i === undefined) {
-        p.w *= 0.9;
+        p.w *= Math.exp(-fadeRate * dt);
         return;
       }
-      const force = p.w + 0.15 * (frame.contact_N[i]! - p.w);
+      const force = p.w + (1 - Math.exp(-riseRate * dt)) * (frame.contact_N[i]! - p.w);
       p.set(frame.contact_x_m[3 * i]!, frame.contact_x_m[3 * i + 1]!, frame.contact_x_m[3 * i + 2]!, force);
     });
   }

@@ -4,22 +4,42 @@ import { describe, expect, it } from 'vitest';
 import { Rest } from '../src/replay/rest';
 
 describe('the rest of a replay', () => {
-  it('begins a while after the last input', () => {
+  it('ends with one picture, a moment after the last input', () => {
+    const page = new EventTarget();
+    const rest = new Rest(page, []);
+    const now = performance.now();
+    expect(rest.due(now)).toBe(false);
+    expect(rest.panels(now)).toBe(false);
+    for (const event of [new Event('keydown'), Object.assign(new Event('pointermove'), { buttons: 1 })]) {
+      page.dispatchEvent(event);
+      expect(rest.due(now + 200)).toBe(false);
+      expect(rest.due(performance.now() + 300)).toBe(true);
+      expect(rest.panels(performance.now() + 300)).toBe(true);
+      rest.begin();
+      expect(rest.due(Number.MAX_VALUE)).toBe(false);
+      expect(rest.panels(performance.now() + 1600)).toBe(false);
+    }
+  });
+
+  it('is put off by further inputs', () => {
+    const rest = new Rest(new EventTarget(), []);
+    rest.input(1000);
+    rest.input(1200);
+    expect(rest.due(1300)).toBe(false);
+    expect(rest.due(1450)).toBe(true);
+  });
+
+  it('ends at once when the picture is no longer right', () => {
     const page = new EventTarget();
     const canvas = new EventTarget();
     const rest = new Rest(page, [canvas]);
-    const now = performance.now();
-    expect(rest.still(now)).toBe(true);
     for (const [target, event] of [
-      [page, new Event('keydown')],
-      [page, new Event('wheel')],
-      [page, Object.assign(new Event('pointermove'), { buttons: 1 })],
-      [canvas, new Event('webglcontextrestored')],
+      [page, 'resize'],
+      [canvas, 'webglcontextrestored'],
     ] as const) {
-      rest.wake(-Infinity);
-      target.dispatchEvent(event);
-      expect(rest.still(now + 1000)).toBe(false);
-      expect(rest.still(performance.now() + 1600)).toBe(true);
+      target.dispatchEvent(new Event(event));
+      expect(rest.due(performance.now())).toBe(true);
+      rest.begin();
     }
   });
 
@@ -27,6 +47,6 @@ describe('the rest of a replay', () => {
     const page = new EventTarget();
     const rest = new Rest(page, []);
     page.dispatchEvent(Object.assign(new Event('pointermove'), { buttons: 0 }));
-    expect(rest.still(performance.now())).toBe(true);
+    expect(rest.due(Number.MAX_VALUE)).toBe(false);
   });
 });

@@ -22,7 +22,7 @@ async function pictureAt(view: SessionView, timeS: number): Promise<HTMLCanvasEl
   const source = view.stage.canvas;
   const picture = el('canvas', { width: String(pictureWide), height: String(pictureHigh) });
   view.show(await view.find(timeS));
-  // What fades has a second to do so. The context keeps its picture only until the task ends.
+  // The context keeps its picture only until the task ends.
   view.draw(performance.now(), 1);
   const wide = Math.min(source.width, (source.height * pictureWide) / pictureHigh);
   const high = (wide * pictureHigh) / pictureWide;

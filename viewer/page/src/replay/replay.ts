@@ -13,6 +13,7 @@ import { Rest } from './rest';
 import type { RecordedSession } from './session';
 import type { Side } from './side';
 import { download } from './source';
+import { freshStatus, type ReplayStatus } from './status';
 import { Transport } from './transport';
 import { VideoRecorder } from './video';
 
@@ -23,26 +24,6 @@ const narrowPx = 900;
 const stepS = 1;
 const fineStepS = 0.1;
 const shiftStepS = 0.5;
-
-/** What the page tells tests and screenshots about itself, as window.__replay. */
-export interface ReplayStatus {
-  ready: boolean;
-  /** From the page's start until there was a picture to move in, and until it was complete; 0: not yet. */
-  open_ms: number;
-  complete_ms: number;
-  /** From a jump to its picture: the last one, and the longest; and the longest time to find and decode one. */
-  seek_ms: number;
-  seek_max_ms: number;
-  decode_max_ms: number;
-  time_s: number;
-  duration_s: number;
-  pictures: number;
-  video_bytes: number;
-  /** Chunks of the file: those with the timeline, all that were unpacked to open it, and the most for one jump. */
-  timeline_chunks: number;
-  chunks_unpacked_to_open: number;
-  seek_chunks_max: number;
-}
 
 export const reasonOf = (e: unknown): string => (e instanceof Error ? e.message : String(e));
 
@@ -59,26 +40,11 @@ export class Replay {
   private readonly moments: MomentsPanel;
   private readonly notes: Notes;
   private readonly rest: Rest;
-  /** Of a jump whose picture is being drawn. */
-  private seekingMs: number | null = null;
   private readonly video: VideoRecorder;
   private readonly toast = el('div', { class: 'banner', role: 'alert' });
   private readonly first: Side;
   private jumpedMs: number | null = null;
-  private readonly status: ReplayStatus = {
-    ...{
-      ready: false,
-      open_ms: 0,
-      complete_ms: 0,
-      seek_ms: 0,
-      seek_max_ms: 0,
-      time_s: 0,
-      duration_s: 0,
-      pictures: 0,
-      video_bytes: 0,
-    },
-    ...{ decode_max_ms: 0, timeline_chunks: 0, chunks_unpacked_to_open: 0, seek_chunks_max: 0 },
-  };
+  private readonly status = freshStatus();
 
   /** kept: notes are kept beside the recording. */
   constructor(
@@ -104,7 +70,10 @@ export class Replay {
     this.video = new VideoRecorder(view.stage.canvas, this.clock);
     this.transport = new Transport(this.clock, session.timeline, {
       moved: () => this.jumped(),
-      arrows: (on) => sides.forEach((s) => (s.view.arrows.root.visible = on)),
+      arrows: (on) => {
+        for (const s of sides) s.view.arrows.root.visible = on;
+        this.rest.wake();
+      },
       note: () => this.askNote(),
       video: () => void this.recordVideo(),
       debrief: () => void this.showDebrief(),
@@ -148,10 +117,12 @@ export class Replay {
     this.first.view.stage.renderer.setAnimationLoop((now: number) => {
       // A jump waits for one picture at most, and not for a queue of them.
       if (drawing || !this.sides.every((s) => s.view.stage.done)) return;
-      this.sought();
       if (this.first.view.complete) this.status.complete_ms ||= performance.now();
-      if (this.moves) this.rest.wake(now);
-      else if (this.rest.still(now)) return pace.rest(now);
+      if (!this.moves && !this.rest.due(now)) {
+        pace.rest(now);
+        if (this.rest.panels(now)) this.transport.draw(this.video.running);
+        return;
+      }
       drawing = true;
       picture(now)
         .catch((e: unknown) => this.say(`The recording cannot be read: ${reasonOf(e)}`))
@@ -159,18 +130,19 @@ export class Replay {
     });
   }
 
-  /** A picture is done: the time from its jump. */
-  private sought(): void {
-    if (this.seekingMs === null) return;
-    this.status.seek_ms = performance.now() - this.seekingMs;
-    this.status.seek_max_ms = Math.max(this.status.seek_max_ms, this.status.seek_ms);
-    this.seekingMs = null;
+  /** Ends when the picture of a jump is done: the time from there. */
+  private async sought(jumpedMs: number): Promise<void> {
+    await Promise.all(this.sides.map((s) => s.view.stage.whenDone()));
+    const { status } = this;
+    status.seek_ms = performance.now() - jumpedMs;
+    status.seek_max_ms = Math.max(status.seek_max_ms, status.seek_ms);
+    status.seeks++;
   }
 
   /** The next picture differs from the last one, whatever a person does. */
   private get moves(): boolean {
     const { clock, video } = this;
-    return clock.playing || video.running || this.jumpedMs !== null || this.sides.some((s) => !s.view.complete);
+    return clock.playing || video.running || this.jumpedMs !== null || this.sides.some((s) => s.view.moves);
   }
 
   private opened(): void {
@@ -183,19 +155,25 @@ export class Replay {
 
   /** What is at hand is drawn at once; a part of the file that is not takes a moment. */
   private async draw(now: number, dtS: number): Promise<void> {
+    const { playing } = this.clock;
     this.clock.advance(dtS);
+    // The end of the recording is drawn as it stands.
+    if (playing && !this.clock.playing) this.rest.wake();
     const { timeS } = this.clock;
     const unpacked = this.first.session.unpackedChunks;
     const from = performance.now();
     const { jumpedMs } = this;
     this.jumpedMs = null;
+    const soon = jumpedMs !== null;
+    if (soon) this.rest.input();
+    else this.rest.begin();
     await Promise.all(this.sides.map((s) => s.seek(timeS)));
     const decodeMs = performance.now() - from;
-    for (const s of this.sides) s.view.draw(now, Math.min(0.1, dtS), jumpedMs !== null);
+    for (const s of this.sides) s.view.draw(now, Math.min(0.1, dtS), { settled: !this.clock.playing, soon });
     this.transport.draw(this.video.running);
     this.moments.at(timeS);
     if (jumpedMs !== null) {
-      this.seekingMs = jumpedMs;
+      void this.sought(jumpedMs);
       this.status.decode_max_ms = Math.max(this.status.decode_max_ms, decodeMs);
       this.status.seek_chunks_max = Math.max(this.status.seek_chunks_max, this.first.session.unpackedChunks - unpacked);
     }
@@ -265,6 +243,7 @@ export class Replay {
     const shift = (by: number) => {
       second.shiftS += by;
       show();
+      this.jumped();
     };
     const earlier = el('button', {}, '− 0.5 s');
     earlier.onclick = () => shift(-shiftStepS);

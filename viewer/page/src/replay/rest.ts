@@ -1,27 +1,48 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether a replay that stands needs further pictures. It does for a while after each input, since views glide and
-// marks fade. Without a graphics card, a jump would otherwise wait for a picture that shows nothing new.
+// When a replay that stands is drawn: once after each change, and not between. Without a graphics card, a jump would
+// otherwise wait for a picture that shows nothing new.
 
-const inputs = ['pointerdown', 'pointerup', 'click', 'dblclick', 'wheel', 'keydown', 'resize', 'visibilitychange'];
-/** By then a glide of the microscope is over. */
-const stillAfterMs = 1500;
+const inputs = ['pointerdown', 'pointerup', 'click', 'dblclick', 'wheel', 'keydown', 'visibilitychange'];
+/** From an input until its picture: jumps that follow each other do not wait for pictures in full detail. */
+const detailAfterMs = 250;
+/** From an input until the panels beside the picture stand. */
+const panelsStandAfterMs = 1500;
 
 export class Rest {
-  private wokenMs = -Infinity;
+  private dueMs = Infinity;
+  private inputMs = -Infinity;
 
   constructor(target: EventTarget, canvases: readonly EventTarget[]) {
-    const wake = () => this.wake();
-    for (const input of inputs) target.addEventListener(input, wake, { capture: true, passive: true });
-    target.addEventListener('pointermove', (e) => (e as PointerEvent).buttons !== 0 && wake(), { capture: true });
-    for (const canvas of canvases) canvas.addEventListener('webglcontextrestored', wake);
+    const input = () => this.input();
+    for (const name of inputs) target.addEventListener(name, input, { capture: true, passive: true });
+    target.addEventListener('pointermove', (e) => (e as PointerEvent).buttons !== 0 && input(), { capture: true });
+    target.addEventListener('resize', () => this.wake());
+    for (const canvas of canvases) canvas.addEventListener('webglcontextrestored', () => this.wake());
   }
 
-  /** Something changed. */
+  /** A person did something: a picture comes when there is no further input for a moment. */
+  input(nowMs = performance.now()): void {
+    this.inputMs = nowMs;
+    this.dueMs = nowMs + detailAfterMs;
+  }
+
+  /** The picture is no longer right. */
   wake(nowMs = performance.now()): void {
-    this.wokenMs = nowMs;
+    this.inputMs = this.dueMs = nowMs;
   }
 
-  still(nowMs: number): boolean {
-    return nowMs - this.wokenMs > stillAfterMs;
+  /** Whether a picture is due. */
+  due(nowMs: number): boolean {
+    return nowMs >= this.dueMs;
+  }
+
+  /** A picture in full detail begins: it shows all that has happened. */
+  begin(): void {
+    this.dueMs = Infinity;
+  }
+
+  /** Panels may still change. */
+  panels(nowMs: number): boolean {
+    return nowMs - this.inputMs < panelsStandAfterMs;
   }
 }

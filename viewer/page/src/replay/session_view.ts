@@ -16,6 +16,9 @@ import { ForceArrows } from './force_arrows';
 import type { Moment } from './pictures';
 import type { RecordedSession } from './session';
 
+/** Pixels each way of the first picture after a jump, on slow machines. */
+const soonScale = 0.4;
+
 export class SessionView {
   readonly stage: Stage;
   readonly reading = new Reading();
@@ -70,17 +73,20 @@ export class SessionView {
     return true;
   }
 
-  /** dtS: of the wall clock, for what glides and fades. soon: fewer pixels on slow machines. */
-  draw(nowMs: number, dtS: number, soon = false): void {
+  /**
+   * dtS: of the wall clock, for what glides and fades. settled: what fades has done so. soon: fewer pixels on slow
+   * machines.
+   */
+  draw(nowMs: number, dtS: number, { settled = true, soon = false } = {}): void {
     this.stage.update(dtS, 'off', false);
     if (this.world && this.moment) {
       this.world.cues.choice = { plumb: this.cues, ruler: 'off', hand: 1, within: null };
-      this.world.update(this.playback, nowMs, this.reading.channels, this.stage.scope.sight);
+      this.world.update(this.playback, nowMs, this.reading.channels, this.stage.scope.sight, settled);
       this.arrows.update(this.moment, this.world.bundle);
     }
     const unveiling = this.firstPictureMs > 0 ? this.unveiling : null;
     unveiling?.begin();
-    this.stage.render('off', 0, soon && levels[this.watch.level]!.cheap ? 0.5 : 1);
+    this.stage.render('off', 0, soon && levels[this.watch.level]!.cheap ? soonScale : 1);
     if (unveiling?.end() === false) this.unveiling = null;
   }
 
@@ -92,6 +98,11 @@ export class SessionView {
     await new Promise((resolve) => requestAnimationFrame(() => setTimeout(resolve)));
     this.firstPictureMs = performance.now();
     this.world?.shade();
+  }
+
+  /** A further picture differs from the last one, whatever a person does. */
+  get moves(): boolean {
+    return !this.complete || this.stage.scope.gliding;
   }
 
   /** Everything that the scene has is drawn. */
