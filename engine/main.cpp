@@ -20,6 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 using insula::add_motion;
+using insula::add_rate;
 using insula::add_seed;
 using insula::add_threads;
 using insula::Duration;
@@ -101,6 +102,7 @@ void add_run(Options& c) {
   insula::add_quantity<Duration>(*command, "--duration", o.duration,
                                  seconds("simulated time (default: the motion and one second more)"));
   add_motion(*command, o.motion);
+  add_rate(*command, o.rate, false);
   command->add_option("--report", o.report, "folder for report.json and report.html");
   command->add_option("--export", o.export_folder, "folder for the bodies' final nodes as .vtu");
   command->add_option("--record", o.record, "session file to record into, usually NAME.insula");
@@ -120,6 +122,7 @@ void add_engine(Options& c) {
   command->add_option("--bundle-dir", o.bundle_root, "folder for the viewer's scene bundles");
   insula::add_quantity<Duration>(*command, "--duration", o.duration,
                                  seconds("end after this simulated time; 0: never"));
+  add_rate(*command, o.rate, true);
   command->add_flag("--unthrottled", o.unthrottled, "as fast as the machine can, for measurements");
   add_threads(*command, o.threads);
   add_seed(*command, o.seed);
@@ -173,6 +176,7 @@ void add_play(Options& c) {
       "simulated");
   command->add_option("--right", o.right, "device of the right hand");
   add_viewer_options(*command, c);
+  add_rate(*command, o.rate, true);
   add_seed(*command, o.seed);
   command->add_option("--keep-bundle", o.keep_bundle,
                       "folder in which the viewer's scene bundles stay, for a replay of a log");

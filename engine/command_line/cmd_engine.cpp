@@ -11,6 +11,7 @@
 #include "core/bus/bus.h"
 #include "engine/command_line/run.h"
 #include "engine/live/live_engine.h"
+#include "engine/live/step_rate.h"
 #include "engine/session/session_format.h"
 
 namespace insula {
@@ -20,6 +21,7 @@ int cmd_engine(const CommandContext& context, const EngineOptions& o) {
                       o.motion,
                       o.bundle_root,
                       o.duration,
+                      read_step_rate(o.rate),
                       o.unthrottled,
                       o.threads,
                       o.seed,

@@ -149,6 +149,7 @@ ChildSpec engine_child(const PlayOptions& options, const fs::path& program, cons
   engine.command.insert(engine.command.end(), {"engine", options.scene.string()});
   if (!options.motion.empty()) engine.command.insert(engine.command.end(), {"--motion", options.motion});
   if (!options.view) engine.command.insert(engine.command.end(), {"--mode", mode_of(options)});
+  if (!options.rate.empty()) engine.command.insert(engine.command.end(), {"--rate", options.rate});
   if (options.seed != 0) engine.command.insert(engine.command.end(), {"--seed", std::to_string(options.seed)});
   if (!options.keep_bundle.empty())
     engine.command.insert(engine.command.end(), {"--bundle-dir", options.keep_bundle.string(), "--keep-bundle"});

@@ -10,6 +10,7 @@
 #include "core/mechanics/soft_body.h"
 #include "engine/command_line/run.h"
 #include "engine/live/headless.h"
+#include "engine/live/step_rate.h"
 #include "engine/reports/report_writer.h"
 #include "engine/session/session_format.h"
 #include "engine/session/session_recorder.h"
@@ -82,7 +83,9 @@ void say_step(const CommandContext& context, const Simulation& simulation, int p
 }  // namespace
 
 int cmd_run(const CommandContext& context, const RunOptions& options) {
-  const OpenedRun opened = open_run(context, options.scene, options.motion, false, options.threads);
+  const double hz = read_step_rate(options.rate).hz;
+  const OpenedRun opened =
+      open_run(context, options.scene, options.motion, false, options.threads, hz > 0 ? 1 / hz : 0);
   if (!opened.simulation) return 2;
   Simulation& simulation = *opened.simulation;
   if (options.seed != 0) simulation.draw_complications(options.seed);

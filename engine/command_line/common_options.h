@@ -11,6 +11,7 @@
 
 #include "core/base/input_error.h"
 #include "core/params/option.h"
+#include "engine/live/step_rate.h"
 #include "engine/session/session_format.h"
 
 namespace insula {
@@ -44,6 +45,22 @@ inline void add_fields(CLI::App& command, std::vector<std::string>& fields) {
         try {
           session::parse_field(text);
           return std::string();
+        } catch (const InputError& e) {
+          return std::string(e.what());
+        }
+      });
+}
+
+/// choice: "auto" is allowed.
+inline void add_rate(CLI::App& command, std::string& rate, bool choice) {
+  const std::string doc = choice ? "steps a second of the engine, or auto: the highest that this machine keeps "
+                                   "(default: the scene's)"
+                                 : "steps a second (default: the scene's)";
+  command.add_option("--rate", rate, doc)
+      ->type_name(choice ? "QUANTITY:{auto}" : "QUANTITY")
+      ->check([choice](const std::string& text) {
+        try {
+          return read_step_rate(text).automatic && !choice ? std::string("auto is for live sessions") : std::string();
         } catch (const InputError& e) {
           return std::string(e.what());
         }

@@ -21,6 +21,7 @@ struct PlayOptions {
   std::string listen = "127.0.0.1";  ///< 0.0.0.0 lets other machines watch
   bool browser = true;               ///< opens a browser if there is a display
   double duration_s = 0;             ///< 0: until Ctrl-C
+  std::string rate;                  ///< steps a second of the engine, or auto; empty: the scene's
   std::uint64_t seed = 0;            ///< of the complications; 0: the scene's
   std::filesystem::path
       keep_bundle;               ///< folder in which the viewer's bundles are kept; empty: they are removed at the end

@@ -14,6 +14,7 @@ struct RunOptions {
   std::filesystem::path scene;
   std::string motion = "none";   ///< id of a motion of the exercise, CSV file, or none
   double duration = 0;           ///< simulated seconds; 0: the motion and one more second, or 10 s without a motion
+  std::string rate;              ///< steps a second; empty: the scene's
   std::filesystem::path report;  ///< folder for report.json and report.html; empty: none
   std::filesystem::path export_folder;  ///< folder for the bodies' final nodes as .vtu; empty: none
   std::filesystem::path record;         ///< session file; empty: none
@@ -33,6 +34,7 @@ struct EngineOptions {
   std::string motion = "steady";
   std::filesystem::path bundle_root;
   double duration = 0;
+  std::string rate;  ///< steps a second, or auto; empty: the scene's
   bool unthrottled = false;
   int threads = 0;
   std::uint64_t seed = 0;

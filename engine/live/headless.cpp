@@ -30,9 +30,9 @@ void HeadlessRun::reset() {
 }
 
 OpenedRun open_run(const CommandContext& context, const std::filesystem::path& scene, const std::string& motion,
-                   bool optional, int threads) {
+                   bool optional, int threads, double time_step_s) {
   OpenedRun out;
-  SimulationResult loaded = load_simulation(scene, context.registry, threads);
+  SimulationResult loaded = load_simulation(scene, context.registry, threads, time_step_s);
   context.err << loaded.diagnostics.format();
   if (!loaded.simulation) return out;
   try {

@@ -38,8 +38,8 @@ struct OpenedRun {
   Motion motion;
 };
 /// Loads a scene and the motion named by id or file (see find_motion). `optional`: an id that the scene does not have
-/// means no motion.
+/// means no motion. time_step_s: in place of the scene's own, 0: as written.
 OpenedRun open_run(const CommandContext& context, const std::filesystem::path& scene, const std::string& motion,
-                   bool optional, int threads);
+                   bool optional, int threads, double time_step_s = 0);
 
 }  // namespace insula

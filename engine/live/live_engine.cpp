@@ -460,7 +460,9 @@ class LiveSession {
 }  // namespace
 
 int run_live(const LiveOptions& options, const Registry& registry, Bus& bus, const std::atomic<bool>& stop) {
-  SimulationResult loaded = load_simulation(options.scene, registry, options.threads);
+  std::string chosen;
+  SimulationResult loaded = load_at_rate(options.scene, registry, options.threads, options.rate, chosen);
+  if (!chosen.empty()) spdlog::info(chosen);
   const std::string said = loaded.diagnostics.format();
   if (!said.empty()) std::fputs(said.c_str(), stderr);
   if (!loaded.simulation) return 2;

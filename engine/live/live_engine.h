@@ -12,6 +12,7 @@
 #include "core/registry/registry.h"
 #include "core/sim/simulation.h"
 #include "engine/live/session_mode.h"
+#include "engine/live/step_rate.h"
 
 namespace insula {
 
@@ -20,6 +21,7 @@ struct LiveOptions {
   std::string motion = "steady";      ///< id of a motion of the exercise, a CSV file, or "none", for simulated hands
   std::filesystem::path bundle_root;  ///< folder for viewer bundles; empty: the user's runtime folder
   double duration = 0;                ///< simulated seconds; 0: until asked to stop
+  StepRate rate;                      ///< of the steps; it stays for the session
   bool unthrottled = false;           ///< as fast as the machine can, for measurements
   int threads = 0;
   std::uint64_t seed = 0;        ///< of the complications; 0: the scene's

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <insula_lcm/sim_event_t.hpp>
 
 #include "core/bus/channels.h"
@@ -61,7 +62,14 @@ void Publisher::again(const Simulation& simulation, std::int64_t pose_time_us) {
   if (!encode_problem(stamp_, problem, pause_.hands(simulation), scratch_) ||
       !bus_.publish(channel::haptic_problem, scratch_))
     ++failed_;
-  frame(simulation, false);
+  if (frame_is_due(simulation)) frame(simulation, false);
+}
+
+bool Publisher::frame_is_due(const Simulation& simulation) {
+  const int every = std::max(1, int(std::lround(1 / (frames_a_second * simulation.h()))));
+  if (frame_sequence_ > 0 && ++steps_since_frame_ < every) return false;
+  steps_since_frame_ = 0;
+  return true;
 }
 
 void Publisher::events(const std::vector<Event>& events) {

@@ -31,9 +31,10 @@ class Publisher {
   Publisher(Bus& bus, std::int64_t session, const std::filesystem::path& scene, const std::filesystem::path& bundle,
             const std::filesystem::path& motion, const std::string& title);
 
-  /// After a step: problem, frame, events. pose_time_us: time stamp of the devices' poses in the step; 0: none.
+  /// After a step: problem, events, and a frame if one is due. pose_time_us: time stamp of the devices' poses in the
+  /// step; 0: none.
   void step(const Simulation& simulation, std::int64_t pose_time_us = 0);
-  /// Problem and frame of the last step once more, while the run waits.
+  /// Problem, and a frame if one is due, of the last step once more, while the run waits.
   void again(const Simulation& simulation, std::int64_t pose_time_us = 0);
   /// Events that belong to no step.
   void events(const std::vector<Event>& events);
@@ -43,6 +44,8 @@ class Publisher {
   void info(const std::string& state, const std::string& message = "");
   /// The motion that simulated hands follow from now on; empty: none. Sent at once with the next info().
   void follow(const std::filesystem::path& motion);
+  /// Frames are sent at about this rate, whatever that of the steps.
+  static constexpr double frames_a_second = 60;
   /// Metrics are sent at this interval, s of the clock.
   static constexpr double metrics_interval_s = 0.2;
   /// What frames say of the session from now on.
@@ -50,6 +53,7 @@ class Publisher {
   std::int64_t failed() const { return failed_; }
 
  private:
+  bool frame_is_due(const Simulation& simulation);
   void frame(const Simulation& simulation, bool paused);
   void metrics(const Simulation& simulation);
 
@@ -58,6 +62,7 @@ class Publisher {
                          last_metrics_us_ = 0, failed_ = 0;
   insula_lcm::scene_info_t info_{};
   SessionNote note_;
+  int steps_since_frame_ = 0;
   insula_lcm::render_frame_t frame_{};
   insula_lcm::metrics_t metrics_{};
   ProblemStamp stamp_;

@@ -33,13 +33,13 @@ struct Played {
 };
 
 /// The motion with this id in the scene's exercise. hand: only that hand's part of it, with all commands; -1: both.
-/// `watch` sees each step's end.
+/// `watch` sees each step's end. time_step_s: in place of the scene's own, 0: as written.
 inline Played play_motion(const std::filesystem::path& scene, const std::string& id, int hand = -1,
-                          const std::function<void(const Simulation&)>& watch = {}) {
+                          const std::function<void(const Simulation&)>& watch = {}, double time_step_s = 0) {
   Played out;
   Registry registry;
   register_builtin(registry);
-  SimulationResult loaded = load_simulation(scene, registry);
+  SimulationResult loaded = load_simulation(scene, registry, 0, time_step_s);
   EXPECT_EQ(loaded.diagnostics.format(), "");
   if (!loaded.simulation || !loaded.simulation->exercise()) return out;
   Simulation& s = *loaded.simulation;
