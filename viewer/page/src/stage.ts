@@ -96,7 +96,7 @@ export class Stage {
   render(mode: StereoMode, angleRad: number, scale = 1): void {
     this.renderer.shadowMap.autoUpdate = scale === 1;
     this.lens.render(this.scene, this.scope.camera, this.scope.distance, mode, angleRad, scale);
-    const gl = this.renderer.getContext() as WebGL2RenderingContext;
+    const { gl } = this;
     gl.deleteSync(this.fence);
     this.fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
   }
@@ -108,12 +108,16 @@ export class Stage {
 
   /** The graphics card is done with the last picture. */
   get done(): boolean {
-    const gl = this.renderer.getContext() as WebGL2RenderingContext;
+    const { gl } = this;
     if (!this.fence || gl.isContextLost()) return true;
     if (gl.getSyncParameter(this.fence, gl.SYNC_STATUS) !== gl.SIGNALED) return false;
     gl.deleteSync(this.fence);
     this.fence = null;
     return true;
+  }
+
+  private get gl(): WebGL2RenderingContext {
+    return this.renderer.getContext() as WebGL2RenderingContext;
   }
 
   /** The point under the pointer becomes the focus. */
