@@ -83,9 +83,8 @@ void say_step(const CommandContext& context, const Simulation& simulation, int p
 }  // namespace
 
 int cmd_run(const CommandContext& context, const RunOptions& options) {
-  const double hz = read_step_rate(options.rate).hz;
   const OpenedRun opened =
-      open_run(context, options.scene, options.motion, false, options.threads, hz > 0 ? 1 / hz : 0);
+      open_run(context, options.scene, options.motion, false, options.threads, read_step_rate(options.rate).step_s());
   if (!opened.simulation) return 2;
   Simulation& simulation = *opened.simulation;
   if (options.seed != 0) simulation.draw_complications(options.seed);

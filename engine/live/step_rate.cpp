@@ -11,6 +11,7 @@
 #include "core/params/option.h"
 #include "core/sim/exercise.h"
 #include "engine/live/headless.h"
+#include "engine/reports/report_writer.h"
 
 namespace insula {
 namespace {
@@ -45,9 +46,7 @@ double trial_step_ms(Simulation& simulation) {
   } while (int(ms.size()) < most_steps &&
            std::chrono::steady_clock::now() - began < std::chrono::duration<double>(trial_s));
   run.reset();
-  const auto at = ms.begin() + std::ptrdiff_t(trial_quantile * double(ms.size()));
-  std::nth_element(ms.begin(), at, ms.end());
-  return *at;
+  return percentile(std::move(ms), trial_quantile);
 }
 
 }  // namespace
@@ -71,15 +70,15 @@ double highest_rate_hz(double step_ms) {
 
 SimulationResult load_at_rate(const std::filesystem::path& scene, const Registry& registry, int threads, StepRate rate,
                               std::string& said) {
-  const double slowest = automatic_rates_hz.back();
-  const double first_hz = rate.automatic ? slowest : rate.hz;
-  SimulationResult loaded = load_simulation(scene, registry, threads, first_hz > 0 ? 1 / first_hz : 0);
+  const StepRate slowest{automatic_rates_hz.back()}, first = rate.automatic ? slowest : rate;
+  SimulationResult loaded = load_simulation(scene, registry, threads, first.step_s());
   if (!rate.automatic || !loaded.simulation) return loaded;
   const double step_ms = trial_step_ms(*loaded.simulation);
-  const double hz = highest_rate_hz(step_ms);
-  said = fmt::format("{} steps a second: a step of the trial takes {:.2f} ms of {:.2f} ms", hz, step_ms, 1000 / hz);
-  if (hz == slowest) return loaded;
-  return load_simulation(scene, registry, threads, 1 / hz);
+  const StepRate chosen{highest_rate_hz(step_ms)};
+  said = fmt::format("{} steps a second: a step of the trial takes {:.2f} ms of {:.2f} ms", chosen.hz, step_ms,
+                     1000 * chosen.step_s());
+  if (chosen.hz == slowest.hz) return loaded;
+  return load_simulation(scene, registry, threads, chosen.step_s());
 }
 
 }  // namespace insula

@@ -14,6 +14,9 @@ namespace insula {
 struct StepRate {
   double hz = 0;           ///< 0: the scene's own
   bool automatic = false;  ///< the highest of automatic_rates_hz that fits; hz is 0
+
+  /// For load_simulation(); 0: the scene's own.
+  double step_s() const { return hz > 0 ? 1 / hz : 0; }
 };
 
 inline constexpr double slowest_rate_hz = 20, fastest_rate_hz = 1000;

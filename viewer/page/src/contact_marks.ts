@@ -2,6 +2,7 @@
 // Where the tools of the hands press on tissue: a ring on each of the strongest places, seen through everything. It
 // is wider the stronger the contact, and has the colour of the hand's force bar.
 import * as THREE from 'three';
+import { glide } from './glide';
 import { forceLevel } from './hud/state';
 import type { RenderFrame } from './lcm';
 
@@ -67,11 +68,10 @@ export class ContactMarks {
    * to step.
    */
   update(contacts: readonly Contact[], towards: THREE.Vector3, dt: number): void {
-    const share = 1 - Math.exp(-fadeRate * dt);
     this.marks.forEach((mark, k) => {
       const c = contacts[k];
       const wanted = c ? 0.85 : 0;
-      mark.material.opacity += share * (wanted - mark.material.opacity);
+      mark.material.opacity = glide(mark.material.opacity, wanted, fadeRate * dt);
       mark.visible = mark.material.opacity > 0.02;
       mark.quaternion.setFromUnitVectors(new THREE.Vector3(0, 0, 1), towards);
       if (!c) return;

@@ -4,6 +4,7 @@
 import * as THREE from 'three';
 import type { BodyData, SkinnedSurface } from './bundle_types';
 import { interleave, smoothNormals } from './geometry';
+import { glide } from './glide';
 import type { FieldUniforms } from './materials/field';
 import { regionCapacity, wallMaterial } from './materials/wall';
 import { nearestKnown, wallThinness } from './regions';
@@ -84,13 +85,13 @@ export class Wall {
   update(channels: Channels, dt: number): void {
     this.channelOf.forEach((id, r) => {
       const before = this.shown.value[r]!;
-      this.shown.value[r] = before + ((id === null ? 0 : share(channels, id)) - before) * (1 - Math.exp(-dt * 5));
+      this.shown.value[r] = glide(before, id === null ? 0 : share(channels, id), 5 * dt);
     });
     // The colour of blood that stays behind changes more slowly than its pressure.
     this.pressureOf.forEach((id, r) => {
       const before = this.filling.value[r]!;
       const wanted = id === null ? 1 : fullness(channels.value(id));
-      this.filling.value[r] = before + (wanted - before) * (1 - Math.exp(-dt * 1.2));
+      this.filling.value[r] = glide(before, wanted, 1.2 * dt);
     });
   }
 

@@ -4,6 +4,7 @@ import * as THREE from 'three';
 import type { Bundle } from './bundle_types';
 import type { Sight } from './camera';
 import { DrawableSet } from './drawables/drawable_set';
+import { glide } from './glide';
 import { toolState } from './hand_tool';
 import type { RenderFrame } from './lcm';
 import { setCheapMaterial } from './materials/cheap';
@@ -109,13 +110,13 @@ export class World {
     f.seconds.value = timeS;
     const phase = channels.value(this.pulseChannel);
     f.pulse.value = phase === null ? 0.5 : pulseShape(phase);
-    f.infrared.value += ((this.infrared ? 1 : 0) - f.infrared.value) * (1 - Math.exp(-dt * 6));
+    f.infrared.value = glide(f.infrared.value, this.infrared ? 1 : 0, 6 * dt);
     let far = 0;
     for (const wall of this.scenery.walls) {
       wall.update(channels, dt);
       far = Math.max(far, wall.mean(channels) ?? 0);
     }
-    f.farGlow.value += (far - f.farGlow.value) * (1 - Math.exp(-dt * 0.9));
+    f.farGlow.value = glide(f.farGlow.value, far, 0.9 * dt);
   }
 
   /** The strongest contacts; they fade in and out, since contacts flicker from step to step. */
@@ -127,10 +128,10 @@ export class World {
     this.pressed.forEach((p, k) => {
       const i = order[k];
       if (i === undefined) {
-        p.w *= Math.exp(-fadeRate * dt);
+        p.w = glide(p.w, 0, fadeRate * dt);
         return;
       }
-      const force = p.w + (1 - Math.exp(-riseRate * dt)) * (frame.contact_N[i]! - p.w);
+      const force = glide(p.w, frame.contact_N[i]!, riseRate * dt);
       p.set(frame.contact_x_m[3 * i]!, frame.contact_x_m[3 * i + 1]!, frame.contact_x_m[3 * i + 2]!, force);
     });
   }

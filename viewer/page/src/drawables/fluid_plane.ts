@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A pool of fluid in the field: its surface, and the veil over what lies below it. A radius of 0 means a dry field.
 import * as THREE from 'three';
+import { glide } from '../glide';
 import { dryLevel, type FieldUniforms } from '../materials/field';
 import { fluidMaterial } from '../materials/fluid';
 import { type FluidLook, fluidLook } from '../materials/fluid_look';
@@ -72,5 +73,3 @@ export class FluidPlane implements Drawn {
     f.fluidOrigin.value.set(this.bottom.x, this.bottom.y, this.bottom.z, radius);
   }
 }
-
-const glide = (from: number, to: number, rate: number): number => from + (to - from) * (1 - Math.exp(-rate));

@@ -135,7 +135,6 @@ export class Replay {
     await Promise.all(this.sides.map((s) => s.view.stage.whenDone()));
     const { status } = this;
     status.seek_ms = performance.now() - jumpedMs;
-    status.seek_max_ms = Math.max(status.seek_max_ms, status.seek_ms);
     status.seeks++;
   }
 

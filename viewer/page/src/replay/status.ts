@@ -6,10 +6,9 @@ export interface ReplayStatus {
   /** From the page's start until there was a picture to move in, and until it was complete; 0: not yet. */
   open_ms: number;
   complete_ms: number;
-  /** Jumps whose picture was drawn; from a jump to its picture: the last one, and the longest. */
+  /** Jumps whose picture was drawn; from the last jump to its picture. */
   seeks: number;
   seek_ms: number;
-  seek_max_ms: number;
   /** The longest time to find and decode one. */
   decode_max_ms: number;
   time_s: number;
@@ -28,7 +27,6 @@ export const freshStatus = (): ReplayStatus => ({
   complete_ms: 0,
   seeks: 0,
   seek_ms: 0,
-  seek_max_ms: 0,
   decode_max_ms: 0,
   time_s: 0,
   duration_s: 0,
