@@ -4,45 +4,64 @@
 import * as THREE from 'three';
 import type { MeshoptSimplifier } from 'meshoptimizer/simplifier';
 
-/** For the distance between the coarse surface and the fine one, m. It is an estimate; distances reach 0.1 mm. */
-const toleranceM = 6e-5;
-
 type Simplifier = typeof MeshoptSimplifier;
-let simplifier: Promise<Simplifier> | null = null;
+let loading: Promise<void> | null = null;
+let simplifier: Simplifier | null = null;
 
 /** It is loaded by pages that need it. */
-async function load(): Promise<Simplifier> {
+async function load(): Promise<void> {
   const { MeshoptSimplifier: loaded } = await import('meshoptimizer/simplifier');
   await loaded.ready;
-  return loaded;
+  simplifier = loaded;
+}
+
+interface Mesh {
+  geometry: THREE.BufferGeometry;
+  fine: THREE.BufferAttribute;
+  /** By tolerance. */
+  coarse: Map<number, THREE.BufferAttribute>;
 }
 
 export class Detail {
-  private readonly meshes: { geometry: THREE.BufferGeometry; fine: THREE.BufferAttribute; coarse?: Uint32Array }[] = [];
-  private coarse = false;
+  private readonly meshes: Mesh[] = [];
+  private toleranceM = 0;
 
   /** An indexed geometry. */
   add(geometry: THREE.BufferGeometry): void {
-    this.meshes.push({ geometry, fine: geometry.index! });
-    if (this.coarse) void this.reduce();
+    this.meshes.push({ geometry, fine: geometry.index!, coarse: new Map() });
+    if (this.toleranceM > 0) this.apply();
   }
 
-  /** Coarse surfaces appear as soon as they are made; until then the fine ones are drawn. */
-  setCoarse(coarse: boolean): void {
-    if (coarse === this.coarse) return;
-    this.coarse = coarse;
-    if (coarse) void this.reduce();
-    else for (const { geometry, fine } of this.meshes) geometry.setIndex(fine);
+  /**
+   * toleranceM: for the distance between the coarse surface and the fine one, as an estimate; distances reach twice
+   * that. 0: the fine surfaces. Coarse ones appear as soon as they are made; until then the fine ones are drawn.
+   */
+  setCoarse(toleranceM: number): void {
+    if (toleranceM === this.toleranceM) return;
+    this.toleranceM = toleranceM;
+    this.apply();
   }
 
-  private async reduce(): Promise<void> {
-    simplifier ??= load();
-    const { simplify } = await simplifier;
-    if (!this.coarse) return;
-    for (const m of this.meshes) {
-      const positions = m.geometry.getAttribute('position').array as Float32Array;
-      m.coarse ??= simplify(Uint32Array.from(m.fine.array), positions, 3, 0, toleranceM, ['ErrorAbsolute'])[0];
-      if (m.geometry.index!.count !== m.coarse.length) m.geometry.setIndex(new THREE.BufferAttribute(m.coarse, 1));
+  private apply(): void {
+    const { toleranceM } = this;
+    if (toleranceM === 0) {
+      for (const { geometry, fine } of this.meshes) geometry.setIndex(fine);
+      return;
+    }
+    if (!simplifier) {
+      loading ??= load();
+      void loading.then(() => this.apply());
+      return;
+    }
+    for (const { geometry, fine, coarse } of this.meshes) {
+      let index = coarse.get(toleranceM);
+      if (!index) {
+        const positions = geometry.getAttribute('position').array as Float32Array;
+        const all = Uint32Array.from(fine.array);
+        const [kept] = simplifier.simplify(all, positions, 3, 0, toleranceM, ['ErrorAbsolute']);
+        coarse.set(toleranceM, (index = new THREE.BufferAttribute(kept, 1)));
+      }
+      if (geometry.index !== index) geometry.setIndex(index);
     }
   }
 }

@@ -103,20 +103,17 @@ export class Lens {
     angleRad: number,
     scale = 1,
   ): void {
-    const size = this.renderer.getDrawingBufferSize(new THREE.Vector2());
     if (mode !== this.mode) {
       this.eyes[1]!.drop();
       this.mode = mode;
     }
     if (mode !== 'sbs' && mode !== 'anaglyph') {
       this.seenBy = camera;
-      const pixels = size.multiplyScalar(scale).ceil();
-      this.eyes[0]!.take(this.renderer, scene, camera, focus, pixels, this.settings.samples);
-      this.triangles = this.renderer.info.render.triangles;
-      this.calls = this.renderer.info.render.calls;
+      this.take(0, scene, camera, focus, scale);
       this.show(0, new THREE.Matrix3(), 0);
       return;
     }
+    const size = this.renderer.getDrawingBufferSize(new THREE.Vector2());
     const each = mode === 'sbs' ? new THREE.Vector2(Math.max(1, Math.floor(size.x / 2)), size.y) : size;
     takeBoth(this.renderer, scene, camera, focus, angleRad, each, this.settings.samples, this.eyes);
     this.triangles = 2 * this.renderer.info.render.triangles;
@@ -137,6 +134,11 @@ export class Lens {
       this.show(1, new THREE.Matrix3().set(...anaglyphRight), 0.25, true);
     }
     this.renderer.autoClear = true;
+  }
+
+  /** Takes a picture of the scale as for one eye and shows nothing; what is shown and picked stays. */
+  rehearse(scene: THREE.Scene, camera: THREE.PerspectiveCamera, focus: number, scale: number): void {
+    this.take(1, scene, camera, focus, scale);
   }
 
   /** Scene point under a pixel, read back from the last picture's depth; null where nothing was drawn. */
@@ -164,6 +166,13 @@ export class Lens {
     one.dispose();
     if (!(texel[0]! > 0 && texel[0]! < 0.99999)) return null;
     return new THREE.Vector3(uv.x * 2 - 1, uv.y * 2 - 1, texel[0]! * 2 - 1).unproject(this.seenBy);
+  }
+
+  private take(eye: number, scene: THREE.Scene, camera: THREE.PerspectiveCamera, focus: number, scale: number): void {
+    const size = this.renderer.getDrawingBufferSize(new THREE.Vector2()).multiplyScalar(scale).ceil();
+    this.eyes[eye]!.take(this.renderer, scene, camera, focus, size, this.settings.samples);
+    this.triangles = this.renderer.info.render.triangles;
+    this.calls = this.renderer.info.render.calls;
   }
 
   private show(eye: number, colours: THREE.Matrix3, greyShare: number, add = false): void {

@@ -243,7 +243,7 @@ function applyQuality(): void {
   status.quality = level.name;
   stage.setLevel(level);
   headset.configure(level.lens, 0.75 * level.pixelRatio);
-  world?.setCheap(level.cheap);
+  world?.setLevel(level);
 }
 
 const pace = new Pace((fps, seconds) => {

@@ -11,6 +11,8 @@ export interface Level {
   shadowSize: number;
   /** Simpler materials, and shadows of tools alone. */
   cheap: boolean;
+  /** Between the drawn surfaces and those with all triangles, m, as an estimate; 0: all triangles. */
+  coarseM: number;
   lens: LensSettings;
 }
 
@@ -18,15 +20,23 @@ const plain: LensSettings = { occlusion: false, depthOfField: false, samples: 0 
 
 /** In the order of `qualityNames`. `draft` is for pictures that are drawn without a graphics card. */
 export const levels: Level[] = [
-  { name: 'draft', pixelRatio: 0.3, shadowSize: 512, cheap: true, lens: plain },
-  { name: 'low', pixelRatio: 0.6, shadowSize: 512, cheap: true, lens: plain },
-  { name: 'medium', pixelRatio: 0.85, shadowSize: 1024, cheap: false, lens: { ...plain, samples: 2 } },
-  { name: 'high', pixelRatio: 1.25, shadowSize: 2048, cheap: false, lens: { ...plain, occlusion: true, samples: 4 } },
+  { name: 'draft', pixelRatio: 0.3, shadowSize: 512, cheap: true, coarseM: 6e-5, lens: plain },
+  { name: 'low', pixelRatio: 0.6, shadowSize: 512, cheap: true, coarseM: 6e-5, lens: plain },
+  { name: 'medium', pixelRatio: 0.85, shadowSize: 1024, cheap: false, coarseM: 0, lens: { ...plain, samples: 2 } },
+  {
+    name: 'high',
+    pixelRatio: 1.25,
+    shadowSize: 2048,
+    cheap: false,
+    coarseM: 0,
+    lens: { ...plain, occlusion: true, samples: 4 },
+  },
   {
     name: 'ultra',
     pixelRatio: 2,
     shadowSize: 4096,
     cheap: false,
+    coarseM: 0,
     lens: { occlusion: true, depthOfField: true, samples: 4 },
   },
 ];

@@ -94,11 +94,14 @@ export class Scenery {
     }
   }
 
-  /** On slow machines only tools cast shadows: those tell where a tip is. Surfaces have fewer triangles. */
+  /** On slow machines only tools cast shadows: those tell where a tip is. */
   setCheap(cheap: boolean): void {
     this.cheap = cheap;
-    this.detail.setCoarse(cheap);
     for (const mesh of this.casters) mesh.castShadow = !cheap;
+  }
+
+  setCoarse(toleranceM: number): void {
+    this.detail.setCoarse(toleranceM);
   }
 
   dispose(): void {

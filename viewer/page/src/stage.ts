@@ -23,7 +23,10 @@ export class Stage {
   private readonly lens: Lens;
   private readonly plain = plainRoom();
   private room: THREE.Texture | null = null;
+  /** Of the last picture, until the graphics card is done with it. */
   private fence: WebGLSync | null = null;
+  private drawn = 0;
+  private doneUpTo = 0;
 
   constructor(readonly canvas: HTMLCanvasElement) {
     this.renderer = makeRenderer(canvas);
@@ -96,14 +99,28 @@ export class Stage {
   render(mode: StereoMode, angleRad: number, scale = 1): void {
     this.renderer.shadowMap.autoUpdate = scale === 1;
     this.lens.render(this.scene, this.scope.camera, this.scope.distance, mode, angleRad, scale);
+    this.fenceNow();
+  }
+
+  /** Draws a picture of that scale for one eye, with the old shadows, and shows nothing. */
+  rehearse(scale: number): void {
+    this.renderer.shadowMap.autoUpdate = false;
+    this.lens.rehearse(this.scene, this.scope.camera, this.scope.distance, scale);
+    this.fenceNow();
+  }
+
+  private fenceNow(): void {
     const { gl } = this;
     gl.deleteSync(this.fence);
     this.fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    this.drawn++;
+    gl.flush();
   }
 
-  /** Ends when the graphics card is done with the last picture. */
+  /** Ends when the graphics card is done with what is the last picture now. */
   async whenDone(): Promise<void> {
-    while (!this.done) await new Promise((resolve) => setTimeout(resolve, pollMs));
+    const { drawn } = this;
+    while (!this.done && this.doneUpTo < drawn) await new Promise((resolve) => setTimeout(resolve, pollMs));
   }
 
   /** The graphics card is done with the last picture. */
@@ -113,6 +130,7 @@ export class Stage {
     if (gl.getSyncParameter(this.fence, gl.SYNC_STATUS) !== gl.SIGNALED) return false;
     gl.deleteSync(this.fence);
     this.fence = null;
+    this.doneUpTo = this.drawn;
     return true;
   }
 

@@ -11,6 +11,7 @@ import { setCheapMaterial } from './materials/cheap';
 import { FieldUniforms } from './materials/field';
 import { pressedCount } from './materials/tissue';
 import type { Playback } from './playback';
+import type { Level } from './quality';
 import { Scenery } from './scenery';
 import type { Channels } from './step_data/channels';
 import { TipCues } from './tip_cues';
@@ -70,13 +71,19 @@ export class World {
     this.infrared = on;
   }
 
-  /** Simpler shaders and fewer drops for slow machines. */
-  setCheap(cheap: boolean): void {
+  /** Simpler shaders, fewer drops and triangles for slow machines. */
+  setLevel({ cheap, coarseM }: Level): void {
     this.root.traverse((o) => {
       if (o instanceof THREE.Mesh) setCheapMaterial(o.material as THREE.Material, cheap);
     });
     this.drawables.setCheap(cheap);
     this.scenery.setCheap(cheap);
+    this.setCoarse(coarseM);
+  }
+
+  /** Between the drawn surfaces and those with all triangles, m, as an estimate; 0: all triangles. */
+  setCoarse(toleranceM: number): void {
+    this.scenery.setCoarse(toleranceM);
   }
 
   /** settled: what fades has done so, and the picture depends on the frame alone. */

@@ -88,7 +88,7 @@ async function rest(page) {
     const { pictures } = await status(page);
     if (pictures === last) return;
     last = pictures;
-    await page.waitForTimeout(700);
+    await page.waitForTimeout(1000);
   }
 }
 /** Presses a key that jumps, and waits until its picture is on the screen. */

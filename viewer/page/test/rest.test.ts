@@ -12,9 +12,9 @@ describe('the rest of a replay', () => {
     expect(rest.panels(now)).toBe(false);
     for (const event of [new Event('keydown'), Object.assign(new Event('pointermove'), { buttons: 1 })]) {
       page.dispatchEvent(event);
-      expect(rest.due(now + 200)).toBe(false);
-      expect(rest.due(performance.now() + 300)).toBe(true);
-      expect(rest.panels(performance.now() + 300)).toBe(true);
+      expect(rest.due(now + 300)).toBe(false);
+      expect(rest.due(performance.now() + 450)).toBe(true);
+      expect(rest.panels(performance.now() + 450)).toBe(true);
       rest.begin();
       expect(rest.due(Number.MAX_VALUE)).toBe(false);
       expect(rest.panels(performance.now() + 1600)).toBe(false);
@@ -25,8 +25,20 @@ describe('the rest of a replay', () => {
     const rest = new Rest(new EventTarget(), []);
     rest.input(1000);
     rest.input(1200);
-    expect(rest.due(1300)).toBe(false);
+    expect(rest.due(1500)).toBe(false);
+    expect(rest.due(1600)).toBe(true);
+  });
+
+  it('is put off for longer while jumps follow each other', () => {
+    const rest = new Rest(new EventTarget(), []);
+    rest.jump(1000);
     expect(rest.due(1450)).toBe(true);
+    rest.jump(1600);
+    expect(rest.due(2350)).toBe(false);
+    expect(rest.due(2450)).toBe(true);
+    rest.begin();
+    rest.jump(4000);
+    expect(rest.due(4450)).toBe(true);
   });
 
   it('ends at once when the picture is no longer right', () => {

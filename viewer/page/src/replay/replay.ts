@@ -117,17 +117,26 @@ export class Replay {
     this.first.view.stage.renderer.setAnimationLoop((now: number) => {
       // A jump waits for one picture at most, and not for a queue of them.
       if (drawing || !this.sides.every((s) => s.view.stage.done)) return;
-      if (this.first.view.complete) this.status.complete_ms ||= performance.now();
-      if (!this.moves && !this.rest.due(now)) {
+      if (this.complete) this.status.complete_ms ||= performance.now();
+      const rests = !this.moves && !this.rest.due(now);
+      if (rests) {
         pace.rest(now);
         if (this.rest.panels(now)) this.transport.draw(this.video.running);
-        return;
+        if (this.complete) return;
       }
       drawing = true;
-      picture(now)
+      (rests ? this.rehearse() : picture(now))
         .catch((e: unknown) => this.say(`The recording cannot be read: ${reasonOf(e)}`))
         .finally(() => (drawing = false));
     });
+  }
+
+  private get complete(): boolean {
+    return this.sides.every((s) => s.view.complete);
+  }
+
+  private async rehearse(): Promise<void> {
+    for (const s of this.sides) await s.view.rehearse();
   }
 
   /** Ends when the picture of a jump is done: the time from there. */
@@ -164,21 +173,27 @@ export class Replay {
     const { jumpedMs } = this;
     this.jumpedMs = null;
     const soon = jumpedMs !== null;
-    if (soon) this.rest.input();
+    if (soon) this.rest.jump();
     else this.rest.begin();
     await Promise.all(this.sides.map((s) => s.seek(timeS)));
     const decodeMs = performance.now() - from;
     for (const s of this.sides) s.view.draw(now, Math.min(0.1, dtS), { settled: !this.clock.playing, soon });
-    this.transport.draw(this.video.running);
-    this.moments.at(timeS);
-    if (jumpedMs !== null) {
-      void this.sought(jumpedMs);
+    if (jumpedMs === null) this.showPanels(timeS);
+    else {
+      // A browser that draws by software draws panels with the same threads as the picture.
+      void this.sought(jumpedMs).then(() => this.showPanels(timeS));
       this.status.decode_max_ms = Math.max(this.status.decode_max_ms, decodeMs);
       this.status.seek_chunks_max = Math.max(this.status.seek_chunks_max, this.first.session.unpackedChunks - unpacked);
     }
     this.status.pictures++;
     this.status.time_s = timeS;
     this.status.duration_s = this.clock.durationS;
+  }
+
+  private showPanels(timeS: number): void {
+    for (const s of this.sides) s.showPanels();
+    this.transport.draw(this.video.running);
+    this.moments.at(timeS);
   }
 
   private seek(timeS: number): void {

@@ -3,14 +3,20 @@
 // otherwise wait for a picture that shows nothing new.
 
 const inputs = ['pointerdown', 'pointerup', 'click', 'dblclick', 'wheel', 'keydown', 'visibilitychange'];
-/** From an input until its picture: jumps that follow each other do not wait for pictures in full detail. */
-const detailAfterMs = 250;
+/** From an input until its picture in full detail. */
+const detailAfterMs = 400;
+/** The same after jumps that follow each other: the next one should not wait for such a picture. */
+const detailAfterJumpsMs = 800;
+/** Between jumps that follow each other, at most. */
+const jumpsFollowMs = 700;
 /** From an input until the panels beside the picture stand. */
 const panelsStandAfterMs = 1500;
 
 export class Rest {
   private dueMs = Infinity;
   private inputMs = -Infinity;
+  private jumpMs = -Infinity;
+  private waitMs = detailAfterMs;
 
   constructor(target: EventTarget, canvases: readonly EventTarget[]) {
     const input = () => this.input();
@@ -23,7 +29,14 @@ export class Rest {
   /** A person did something: a picture comes when there is no further input for a moment. */
   input(nowMs = performance.now()): void {
     this.inputMs = nowMs;
-    this.dueMs = nowMs + detailAfterMs;
+    this.dueMs = nowMs + this.waitMs;
+  }
+
+  /** The picture of a jump was drawn in less detail. */
+  jump(nowMs = performance.now()): void {
+    this.waitMs = nowMs - this.jumpMs < jumpsFollowMs ? detailAfterJumpsMs : detailAfterMs;
+    this.jumpMs = nowMs;
+    this.input(nowMs);
   }
 
   /** The picture is no longer right. */
@@ -39,6 +52,7 @@ export class Rest {
   /** A picture in full detail begins: it shows all that has happened. */
   begin(): void {
     this.dueMs = Infinity;
+    this.waitMs = detailAfterMs;
   }
 
   /** Panels may still change. */

@@ -16,8 +16,15 @@ import { ForceArrows } from './force_arrows';
 import type { Moment } from './pictures';
 import type { RecordedSession } from './session';
 
-/** Pixels each way of the first picture after a jump, on slow machines. */
+/** Of the first picture after a jump, on slow machines: pixels each way, and how far its surfaces are off, m. */
 const soonScale = 0.4;
+const soonCoarseM = 2.5e-4;
+/**
+ * A software renderer compiles each program when it is first drawn into a picture of another kind, and again once its
+ * final form was linked in the background. A jump would wait for it, for up to half a second. So pictures of jumps to
+ * that many times, spread over the recording, are drawn before.
+ */
+const rehearsalCount = 16;
 
 export class SessionView {
   readonly stage: Stage;
@@ -33,6 +40,8 @@ export class SessionView {
   firstPictureMs = 0;
   /** What the first pictures leave out; null: nothing. */
   private unveiling: Unveiling | null = null;
+  /** Still to be done. */
+  private rehearsals = rehearsalCount;
   private session: RecordedSession | null = null;
   private readonly playback = new Playback();
   private readonly watch: QualityWatch;
@@ -79,15 +88,24 @@ export class SessionView {
    */
   draw(nowMs: number, dtS: number, { settled = true, soon = false } = {}): void {
     this.stage.update(dtS, 'off', false);
-    if (this.world && this.moment) {
-      this.world.cues.choice = { plumb: this.cues, ruler: 'off', hand: 1, within: null };
-      this.world.update(this.playback, nowMs, this.reading.channels, this.stage.scope.sight, settled);
-      this.arrows.update(this.moment, this.world.bundle);
-    }
+    this.updateWorld(nowMs, settled);
     const unveiling = this.firstPictureMs > 0 ? this.unveiling : null;
     unveiling?.begin();
-    this.stage.render('off', 0, soon && levels[this.watch.level]!.cheap ? soonScale : 1);
+    const soonest = soon && this.cheap;
+    this.world?.setCoarse(soonest ? soonCoarseM : levels[this.watch.level]!.coarseM);
+    this.stage.render('off', 0, soonest ? soonScale : 1);
     if (unveiling?.end() === false) this.unveiling = null;
+  }
+
+  /** Draws the picture of a jump elsewhere, and shows nothing. The time of the next picture has to be set anew. */
+  async rehearse(): Promise<void> {
+    if (!this.rehearses || !this.session) return;
+    const share = (this.rehearsals - 0.5) / rehearsalCount;
+    this.rehearsals--;
+    if (!this.show(await this.find(share * this.session.durationS))) return;
+    this.updateWorld(performance.now(), true);
+    this.world?.setCoarse(soonCoarseM);
+    this.stage.rehearse(soonScale);
   }
 
   /** The first picture, of plain tissue and walls. What else the scene has appears in the next ones. */
@@ -102,12 +120,12 @@ export class SessionView {
 
   /** A further picture differs from the last one, whatever a person does. */
   get moves(): boolean {
-    return !this.complete || this.stage.scope.gliding;
+    return this.unveiling !== null || this.stage.scope.gliding;
   }
 
-  /** Everything that the scene has is drawn. */
+  /** Everything that the scene has is drawn, and a jump waits for no program. */
   get complete(): boolean {
-    return this.unveiling === null;
+    return this.unveiling === null && !this.rehearses;
   }
 
   /** Once a second; steps the quality down on a slow machine. */
@@ -116,10 +134,25 @@ export class SessionView {
       this.applyQuality();
   }
 
+  private get rehearses(): boolean {
+    return this.cheap && this.unveiling === null && this.rehearsals > 0;
+  }
+
+  private get cheap(): boolean {
+    return levels[this.watch.level]!.cheap;
+  }
+
+  private updateWorld(nowMs: number, settled: boolean): void {
+    if (!this.world || !this.moment) return;
+    this.world.cues.choice = { plumb: this.cues, ruler: 'off', hand: 1, within: null };
+    this.world.update(this.playback, nowMs, this.reading.channels, this.stage.scope.sight, settled);
+    this.arrows.update(this.moment, this.world.bundle);
+  }
+
   private applyQuality(): void {
     const level = levels[this.watch.level]!;
     this.stage.setLevel(level);
-    this.world?.setCheap(level.cheap);
+    this.world?.setLevel(level);
   }
 
   private build(bundle: Bundle): void {

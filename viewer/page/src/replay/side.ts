@@ -40,13 +40,19 @@ export class Side {
     if (this.ghost) this.view.stage.scene.add(this.ghost.root);
   }
 
-  /** Shows the time that the page is at, s. */
+  /** The next picture is that of the time that the page is at, s. */
   async seek(pageS: number): Promise<void> {
     const timeS = Math.min(this.session.durationS, Math.max(0, pageS + this.shiftS));
-    const shown = this.view.show(await this.view.find(timeS));
-    const lines = [...(shown ? [] : ['There is no picture at this time.']), ...this.session.damage];
-    setText(this.problem, lines.join('\n'));
+    this.view.show(await this.view.find(timeS));
+    const { moment, world } = this.view;
+    if (moment && world) this.ghost?.show(world.bundle, moment.before.frame.sim_time_s);
+  }
+
+  /** What the exercise said at the picture's time. */
+  showPanels(): void {
     const { reading, moment } = this.view;
+    const lines = [...(moment ? [] : ['There is no picture at this time.']), ...this.session.damage];
+    setText(this.problem, lines.join('\n'));
     if (!moment) return;
     const frame = moment.before.frame;
     if (reading.state) {
@@ -54,6 +60,5 @@ export class Side {
       this.exercise.showClock(reading.state.elapsedS ?? frame.sim_time_s);
     }
     this.vitals.show(reading.channels, new Set(), frame.sim_time_s);
-    if (this.view.world) this.ghost?.show(this.view.world.bundle, frame.sim_time_s);
   }
 }
