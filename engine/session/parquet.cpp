@@ -38,8 +38,8 @@ void run(const std::vector<std::string>& command) {
     const std::optional<ChildExit> ended = child.reap();
     if (!ended) continue;
     child.finish_output(keep);
-    if (ended->status == 127) throw InputError(command[0] + " cannot be run; Parquet needs Python with pyarrow");
-    if (ended->status != 0) throw InputError(last.empty() ? command[0] + " " + ended->text() : last);
+    if (ended->status == 127) throw InputError(command[1] + " cannot be run; Parquet needs Python with pyarrow");
+    if (ended->status != 0) throw InputError(last.empty() ? command[1] + " " + ended->text() : last);
     return;
   }
 }
@@ -48,7 +48,8 @@ void run(const std::vector<std::string>& command) {
 
 std::vector<fs::path> to_parquet(const std::vector<fs::path>& tables) {
   const char* python = std::getenv("INSULA_PYTHON");
-  std::vector<std::string> command{python && *python ? python : "python3", "-c", program};
+  // env looks for it in the folders of PATH.
+  std::vector<std::string> command{"/usr/bin/env", python && *python ? python : "python3", "-c", program};
   for (const fs::path& table : tables) command.push_back(table.string());
   run(command);
   std::vector<fs::path> out;

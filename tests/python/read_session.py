@@ -93,6 +93,9 @@ def main(source, build, lcm_gen):
         rows = subprocess.run([python, "-c", PARQUET, str(folder / "tables/channels.parquet")], check=True,
                               capture_output=True, text=True).stdout
         expect("thirty rows of channels: " + rows, rows.split() == ["30", "double", "3.0"])
+        path = {"PATH": os.pathsep.join([str(pathlib.Path(python).parent), os.environ["PATH"]])}
+        found = subprocess.run(tables, capture_output=True, text=True, env=os.environ | path)
+        expect("the Python of PATH is found:\n" + found.stderr, found.returncode == 0)
         without = os.environ | {"INSULA_PYTHON": "/bin/false"}
         none = subprocess.run(tables, capture_output=True, text=True, env=without)
         expect("a Python that fails is said", none.returncode == 2 and "error: /bin/false" in none.stderr)
