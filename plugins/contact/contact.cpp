@@ -33,12 +33,6 @@ touch (`core/collision/colliders/tool_collider.h`). Surfaces meet by sampled ver
 are measured to the wall's faces. A tool that goes into such a wall moves by no more than `max_step_displacement` in a
 step, however fast the hand is. Rows on the tool alone limit it. A tool that leaves the wall is free.
 
-Of contacts of a tool that are closer than `spacing` and whose normals differ by less than 40 degrees, one is kept: the
-one with the smallest gap. In a valley, a face that the tool reaches later does not replace the face that it touches
-now.
-
-An overlap of a tool is undone by at most `max_correction` in a step of 1/60 s, and by as much less in a shorter one.
-
 `alarm` is the distance at which a contact enters the problem. The haptic loop needs it too, since it moves the tool
 between steps. Contact forces act on both sides at the same point, on the triangle's side of the gap. A tool's contact
 therefore adds neither a resultant force nor a moment. Between two surfaces the moment is exact once the gap is
@@ -63,9 +57,6 @@ solve).
 namespace insula {
 
 namespace {
-/// max_correction is of steps of this length. Overlaps are undone no faster in shorter ones.
-constexpr double correction_step_s = 1.0 / 60;
-
 bool presses(const std::vector<Vec3>& forces) {
   return std::any_of(forces.begin(), forces.end(), [](const Vec3& f) { return f[0] > 0; });
 }
@@ -99,10 +90,10 @@ void Contact::search(const Search& what) {
     ToolContactSettings settings;
     settings.alarm = alarm();
     settings.collision_horizon = collision_horizon_;
-    settings.max_correction = correction_share_ * max_correction();
+    settings.max_correction = max_correction();
     if (p.b && p.b->thickness() > 0) {
       settings.offset = 0.5 * p.b->thickness();
-      settings.max_correction = std::min(settings.max_correction, max_step_displacement());
+      settings.max_correction = std::min(max_correction(), max_step_displacement());
     } else {
       settings.one_sided = true;
     }
@@ -123,7 +114,6 @@ void Contact::search(const Search& what) {
   }
   TissueContactSettings settings;
   settings.alarm = tissue_alarm();
-  settings.max_correction *= correction_share_;
   settings.offset = 0.5 * (p.a->thickness() + p.b->thickness());
   auto& out = what.reverse ? p.reverse : p.contacts;
   out.clear();
@@ -133,7 +123,6 @@ void Contact::search(const Search& what) {
 
 void Contact::detect(const StepContext& context) {
   collision_horizon_ = context.collision_horizon_s / context.h;
-  correction_share_ = std::min(1.0, context.h / correction_step_s);
   workers_->run(int(searches_.size()), [this](int i) { search(searches_[std::size_t(i)]); });
   // Keys are given in the order of the pairs, for any number of threads.
   for (Pair& p : pairs_) {

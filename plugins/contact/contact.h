@@ -97,9 +97,7 @@ class Contact final : public Constraint, public StatesLaw {
        .fallback = "1 mm",
        .min = "0.001 mm",
        .max = "10 mm",
-       .doc =
-           "an overlap of a tool is undone by no more than this in a step of 1/60 s, and by as much less in a shorter "
-           "one: less is gentler on thin walls",
+       .doc = "an overlap of a tool is undone by no more than this in a step: less is gentler on thin walls",
        .formerly = "recovery"}};
   Param<Stiffness> contact_stiffness{this,
                                      {.name = "contact_stiffness",
@@ -224,7 +222,6 @@ class Contact final : public Constraint, public StatesLaw {
   Workers* workers_ = nullptr;
   std::uint64_t next_key_ = 0;
   double collision_horizon_ = 0;  ///< in this step, in steps
-  double correction_share_ = 1;   ///< of the largest corrections of overlaps, in this step
 };
 
 }  // namespace insula

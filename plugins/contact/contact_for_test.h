@@ -36,15 +36,15 @@ struct Bench {
   Contact* contact = nullptr;
 
   Bench(const std::string& urdf, const TriMesh& ground, const std::string& tool_attributes,
-        const std::string& contact_attributes, const std::string& rest = "", const std::string& scene_attributes = "") {
+        const std::string& contact_attributes, const std::string& rest = "") {
     folder.write("meshes/tool/tool.urdf", urdf);
     folder.write("meshes/ground.obj", obj_text(ground));
-    s = load_text(fmt::format(R"(<scene title="bench" {}>
+    s = load_text(fmt::format(R"(<scene title="bench">
 <obstacle id="ground"><surface mesh="meshes/ground.obj" mesh_unit="m" material="bone"/></obstacle>
 {}<retractor id="tool" model="meshes/tool/tool.urdf" hand="right" {}/>
 <solver max_sweeps="10000" tolerance="1e-14 m"/>
 <contact id="touch" between="tool ground" {}/></scene>)",
-                              scene_attributes, rest, tool_attributes, contact_attributes),
+                              rest, tool_attributes, contact_attributes),
                   folder.path() / "scene.xml");
     if (!s) return;
     tool = s->scene().find_as<Instrument>("tool");

@@ -63,22 +63,6 @@ TEST(ContactLimits, ForceOfALayerUnderABladeWithPatches) {
   EXPECT_NEAR(sum, coupling * (b.tool->pose().p.z() + dz), 1e-6 * coupling * dz);
 }
 
-// Feet deep in the ground: the rows undo so much of the overlap in a step, at every rate at the same speed.
-TEST(ContactLimits, AnOverlapIsUndoneAtTheSameSpeedAtEveryRate) {
-  for (const double hz : {30.0, 60.0, 120.0, 480.0}) {
-    SCOPED_TRACE(hz);
-    Bench b(test::feet_urdf(5e-3, test::radius), test::ground(), test::upright,
-            R"(friction="0" max_force="0.01 N" max_correction="0.2 mm")", "",
-            fmt::format(R"(time_step="{} ms")", 1000 / hz));
-    ASSERT_TRUE(b.tool);
-    Pose down = b.tool->home_pose();
-    down.p.z() = test::radius - 1e-3;
-    for (int i = 0; i < 0.5 * hz + 100; ++i) b.move_to(down);
-    ASSERT_EQ(b.s->report().contacts.size(), 4u);
-    for (const ContactPoint& c : b.s->report().contacts) EXPECT_NEAR(c.gap, -0.2e-3 * std::min(1.0, 60 / hz), 1e-12);
-  }
-}
-
 // Four feet that the hand presses on with more than they bear: the coupling gives what they do bear, and they go in.
 TEST(ContactLimits, AFootBearsSoMuchAndGoesIn) {
   constexpr double coupling = 400, dz = 1e-3;

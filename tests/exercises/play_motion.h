@@ -108,7 +108,7 @@ inline void expect_well_clipped(Played& o) {
 /// delay then does not make a fault of a good motion.
 inline void expect_gentle(const Played& o) {
   EXPECT_EQ(o.lasting_force.size(), 3u);
-  for (const auto& [id, share] : o.lasting_force) EXPECT_LT(share, 0.65) << id;
+  for (const auto& [id, share] : o.lasting_force) EXPECT_LT(share, 0.6) << id;
 }
 
 }  // namespace insula::test

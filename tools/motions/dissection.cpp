@@ -65,16 +65,21 @@ class Trainer : public Surgeon {
     hands_.wait(0.2);
     hands_.move(0.7, left, right);
     // Then it leans on the parent artery.
+    double over = 0;
     press(
-        0, left_shaft_, -outward_, [&] { return middle_of("parent"); }, 12 * mm,
-        [&] { return force(0, *artery_) > 0.36; }, Vec3::UnitZ(), 1 * mm);  // deeper, it slides off
-    hands_.wait(0.7);
+        0, left_shaft_, -left_shaft_, [&] { return Vec3(middle_of("parent") - Vec3(0, 0, 1) * mm); }, 12 * mm,
+        [&] {
+          over = force(0, *artery_) > 0.36 ? over + 0.05 : 0;
+          return over > 0.15;
+        });
+    hands_.wait(0.4);
+    hands_.wait(0.3);
     hands_.move(0.7, left, right);
     // The dissector leans on the frontal lobe.
     const Body* frontal = simulation_.scene().find_as<Body>("frontal");
     if (!frontal) throw InputError("the scene has no frontal lobe");
     const MaterialPoint at = nearest(*frontal, centre_ + Vec3(4, 5, 0) * mm);
-    double over = 0;
+    over = 0;
     press(
         1, outward_, Vec3(-0.3, 0.6, 0.8).normalized(), [&] { return frontal->position(at); }, 16 * mm,
         [&] {
@@ -117,7 +122,7 @@ class Trainer : public Surgeon {
   /// by then, until `enough`.
   template <class Place, class Enough>
   void press(int hand, const Vec3& shaft, const Vec3& direction, Place place, double most, Enough enough,
-             const Vec3& across = Vec3::UnitZ(), double beyond = 1.5 * mm) {
+             const Vec3& across = Vec3::UnitZ()) {
     const auto go_to = [&](double seconds, double depth) {
       Wish w[2] = {hands_.left(), hands_.right()};
       w[hand].pose = tool_pose(place() + depth * direction, shaft, across);
@@ -132,7 +137,7 @@ class Trainer : public Surgeon {
       if (const Body* b = simulation_.scene().find_as<Body>("frontal")) lobe = std::max(lobe, force(hand, *b));
       done = enough();
     }
-    if (done) go_to(0.25, depth + beyond);  // enough also where the arms follow a little differently
+    if (done) go_to(0.25, depth + 1.5 * mm);  // enough also where the arms follow a little differently
     std::printf(
         "%6.2f s pressed to %.1f mm: %s; up to %.3f N on the vessel, %.3f N on the frontal lobe, %d strands stand\n",
         hands_.time(), depth / mm, done ? "done" : "as far as it goes", vessel, lobe, Strands(simulation_).left());

@@ -249,29 +249,6 @@ TEST(ContactSelection, KeepsKeysAndTangentsWhileAContactSlides) {
   EXPECT_EQ(next, 1u);
 }
 
-// In a valley, the row of a face that is reached later is open at the start. Alone it would let the tool sink into the
-// face that is touched now.
-TEST(ContactSelection, AFaceAheadInAValleyDoesNotReplaceTheOneThatIsTouchedNow) {
-  struct Case {
-    double open, height;  // of the face ahead at the start, and of its point above the plane that is touched now, m
-    std::size_t kept;
-  };
-  for (const Case& c : {Case{17e-6, 4e-6, 2}, Case{1e-6, 4e-6, 1}, Case{17e-6, -4e-6, 1}}) {
-    Proximity now, ahead;
-    now.piece = ahead.piece = 0;
-    ahead.point = Vec3(30e-6, 0, c.height);
-    ahead.normal = Vec3(std::sin(0.14), 0, std::cos(0.14));
-    ahead.gap = -1e-6;
-    ahead.start_gap = c.open;
-    std::vector<Proximity> all{now, ahead};
-    ContactSelection selection;
-    std::uint64_t next = 0;
-    selection.select(all, {}, next);
-    EXPECT_EQ(all.size(), c.kept) << c.open << " " << c.height;
-    EXPECT_EQ(all[0].start_gap, c.open) << "the one with the smaller gap comes first";
-  }
-}
-
 TEST(ContactSelection, SpreadsAndCaps) {
   Random r(2);
   std::vector<Proximity> all(400);

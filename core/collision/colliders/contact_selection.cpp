@@ -23,19 +23,10 @@ Vec3 tangent_to(const Vec3& n, const Vec3& wish) {
 namespace {
 Vec3 other_end(const Proximity& x) { return x.point + x.gap * x.normal; }
 
-// Whether k leaves a tool free to go into the face of x. k is reached later in the motion, on the other side of a
-// valley, so its row may be open at the start of the step.
-bool open_in_valley(const Proximity& k, const Proximity& x, double cosine) {
-  constexpr double tolerance_m = 2e-6, same_direction = 0.999;
-  return x.piece >= 0 && cosine < same_direction && k.start_gap > x.start_gap + tolerance_m &&
-         x.normal.dot(k.point - x.point) > 0;
-}
-
 // Whether a kept contact k makes x redundant: the two are alike and near one another.
 bool makes_redundant(const Proximity& k, const Proximity& x, double apart2, bool both_ends) {
   constexpr double cos40 = 0.766;
   const double cosine = k.normal.dot(x.normal);
-  if (open_in_valley(k, x, cosine)) return false;
   // Tissue finds the same contact from both sides, with opposite normals.
   bool alike = x.vertex >= 0 && k.side != x.side ? cosine < -cos40 : cosine > cos40;
   if (both_ends && alike) {
