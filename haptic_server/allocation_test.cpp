@@ -9,6 +9,7 @@
 #include "haptic_server/devices/make_device.h"
 #include "haptic_server/hand_guide.h"
 #include "haptic_server/in_process.h"
+#include "haptic_server/patched_problem_for_test.h"
 #include "haptic_server/problem_for_test.h"
 #include "haptic_server/rig_for_test.h"
 #include "haptic_server/safety_gate.h"
@@ -49,6 +50,29 @@ TEST(Allocation, TheServoDoesNone) {
     EXPECT_EQ(allocations.load() - before, 0);
     EXPECT_GT(sum, 0);
   }
+}
+
+TEST(Allocation, ContactsOnPatchesDoNone) {
+  using namespace testing;
+  const Vec3 centre(0, 0, patched_radius_m - 0.1e-3);
+  const std::array<ConstraintProblem, 3> problems{soft_triangle({}, centre, 1.0 / 60, 0.3, false, 0.01),
+                                                  two_tool_problem(10, 20, 1),
+                                                  soft_triangle({}, centre, 1.0 / 30, 0.3, true)};
+  Servo servo(ServoSettings::beyond_equation_7());
+  ServoInput in;
+  in.connected[1] = true;
+  double sum = 0;
+  const long before = allocations.load();
+  for (std::size_t k = 0; k < 30; ++k) {
+    servo.set_problem(&problems[k % problems.size()]);
+    for (int tick = 0; tick < 10; ++tick) {
+      in.device[1].p = centre + Vec3(1e-4 * tick, 0, -1e-5 * tick);
+      sum += servo.tick(in).hand[1].force.norm();
+    }
+    if (k % 7 == 6) servo.set_problem(nullptr);
+  }
+  EXPECT_EQ(allocations.load() - before, 0);
+  EXPECT_GT(sum, 0);
 }
 
 TEST(Allocation, DevicesGatesAndGuidesDoNone) {

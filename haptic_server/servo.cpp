@@ -40,6 +40,7 @@ bool finite(const Vec6& v) {
 
 Servo::Servo(const ServoSettings& settings)
     : settings_(settings),
+      patch_contacts_(settings.substep.find_contacts ? servo_max_rows : 0),
       weld_elimination_(settings.substep.eliminate_welds ? servo_max_rows : 0),
       substep_(settings.substep, servo_max_rows) {
   workspace_.reserve(servo_max_rows, settings.newton_unknowns > 0);
@@ -53,6 +54,7 @@ void Servo::reset() noexcept {
   known_count_ = 0;
   force_crossfade_ = {};
   substep_.reset();
+  patch_contacts_.reset();
 }
 
 void Servo::force_crossfade(ServoResult& result, double dt) noexcept {
@@ -64,11 +66,11 @@ void Servo::force_crossfade(ServoResult& result, double dt) noexcept {
     }
     Vec6 now;
     now << hand.force, hand.torque;
-    now = force_crossfade_[i](settings_.force_crossfade, fresh_problem_, now, dt);
+    now = force_crossfade_[i](settings_.force_crossfade, fresh_problem_ || fresh_contacts_, now, dt);
     hand.force = now.head<3>();
     hand.torque = now.tail<3>();
   }
-  fresh_problem_ = false;
+  fresh_problem_ = fresh_contacts_ = false;
 }
 
 void Servo::remember_solution() noexcept {
@@ -88,8 +90,12 @@ void Servo::set_problem(const ConstraintProblem* problem, const std::array<Pose,
   if (!problem_) return substep_.reset();
   offset_ = offset;
   fresh_problem_ = true;
-  if (settings_.substep.eliminate_welds) problem_ = &weld_elimination_.eliminate(*problem);
-  if (settings_.substep.any()) substep_.begin(*problem_, weld_elimination_.grasped(), age_s);
+  const bool patches = settings_.substep.find_contacts && !problem->patches.empty();
+  if (settings_.substep.find_contacts) problem_ = &patch_contacts_.begin(*problem);
+  if (settings_.substep.eliminate_welds) problem_ = &weld_elimination_.eliminate(*problem_);
+  if (patches) patch_contacts_.couple(*problem_);
+  if (settings_.substep.any())
+    substep_.begin(*problem_, weld_elimination_.grasped(), age_s, patches ? &patch_contacts_ : nullptr);
   workspace_.lambda.resize(std::size_t(problem_->rows));  // within its capacity
   newton_bound_ = 1;
   for (const double x : problem_->lambda) newton_bound_ = std::max(newton_bound_, std::abs(x));
@@ -144,8 +150,12 @@ SolveStats Servo::solve_tick(const ServoInput& input, const TickHands& hands) no
   if (!settings_.substep.any())
     return solve(*problem_, std::span<const double>(delta_free_.data(), std::size_t(n)), s, workspace_);
   const ConstraintProblem& tick = substep_.next(input.dt_s, hands.moved);
+  // The contacts that this tick has found follow the problem's own rows.
+  workspace_.lambda.resize(std::size_t(tick.rows));  // within its capacity
+  std::copy(tick.lambda.begin() + n, tick.lambda.end(), workspace_.lambda.begin() + n);
   const SolveStats stats = solve(tick, tick.delta_free, s, workspace_);
   substep_.solved(workspace_.lambda, workspace_.delta);
+  if (tick.rows > n) fresh_contacts_ = patch_contacts_.exchanged();
   return stats;
 }
 
@@ -156,7 +166,7 @@ void Servo::find_forces(const ServoInput& input, const TickHands& hands, ServoRe
     const std::size_t index = std::size_t(tool.hand & 1);
     ServoHand& hand = result.hand[index];
     const Vec6 push =
-        transposed_product(in_ticks ? substep_.jacobian(t) : tool.jacobian, workspace_.lambda, problem_->rows);
+        in_ticks ? substep_.pushed(t) : transposed_product(tool.jacobian, workspace_.lambda, problem_->rows);
     if (const GraspingTool* grasping = in_ticks ? substep_.grasping(t) : nullptr) hand.tool = grasping->pose();
     else hand.tool = displaced(tool.free, tool.gain * hands.moved[t] + tool.compliance * push);
     const Vec6 wrench = tool.stiffness * displacement(hands.device[t], hand.tool);

@@ -38,7 +38,8 @@ struct ServoSettings {
                  .extrapolate_tissue = true,
                  .incremental_slip = true,
                  .eliminate_welds = true,
-                 .extrapolate_frames = true};
+                 .extrapolate_frames = true,
+                 .find_contacts = true};
     s.force_crossfade.within_s = 0.005;
     s.force_crossfade.share_per_s = 14;
     s.conjugate = true;
@@ -87,7 +88,8 @@ class Servo {
   /// last solution by block id. A new block starts from the problem's lambda. A problem with more than servo_max_rows
   /// rows counts as none. age_s: time since its device poses, used by the corrections beyond equation 7.
   void set_problem(const ConstraintProblem* problem, const std::array<Pose, 2>& offset = {}, double age_s = 0) noexcept;
-  /// The problem that is solved: the one that was set, or the same without the weld rows of grasped bodies.
+  /// The problem that is solved: the one that was set, or the same without the weld rows of grasped bodies and without
+  /// the rows of surface patches, whose contacts are added in each tick.
   const ConstraintProblem* problem() const { return problem_; }
 
   ServoResult tick(const ServoInput& input) noexcept;
@@ -119,12 +121,14 @@ class Servo {
   ServoSettings settings_;
   const ConstraintProblem* problem_ = nullptr;
   std::array<Pose, 2> offset_;
+  PatchContacts patch_contacts_;
   WeldElimination weld_elimination_;
   SubstepCorrection substep_;
   void force_crossfade(ServoResult& result, double dt) noexcept;
   std::array<ForceCrossfade, 2> force_crossfade_;
   bool fresh_problem_ = false;
-  double newton_bound_ = 0;  ///< of a value of lambda in this problem
+  bool fresh_contacts_ = false;  ///< contacts took over the force of others in this tick
+  double newton_bound_ = 0;      ///< of a value of lambda in this problem
   SolveWorkspace workspace_;
   std::vector<double> delta_free_;
   std::vector<double> last_lambda_;

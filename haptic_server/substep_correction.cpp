@@ -22,9 +22,10 @@ SubstepCorrection::SubstepCorrection(const SubstepCorrectionSettings& settings, 
   tool_coupled_.reserve(std::size_t(max_rows));
 }
 
-void SubstepCorrection::begin(const ConstraintProblem& p, const std::array<GraspedBody, 2>& grasped,
-                              double age_s) noexcept {
+void SubstepCorrection::begin(const ConstraintProblem& p, const std::array<GraspedBody, 2>& grasped, double age_s,
+                              PatchContacts* patches) noexcept {
   step_ = &p;
+  patches_ = patches;
   grasped_ = grasped;
   const std::size_t n = std::size_t(p.rows);
   tick_.resize(p.rows);  // within its capacity, as the blocks
@@ -45,7 +46,7 @@ void SubstepCorrection::begin(const ConstraintProblem& p, const std::array<Grasp
   extrapolation_.begin(p, grasped);
   for (std::size_t t = 0; t < tools(); ++t) {
     moved_[t].setZero();
-    push_[t] = push(t, p.lambda);
+    push_[t] = push(t, p.lambda) + patch_push(t);
     if (grasped_[t].any) grasping_[t].begin(p.tools[t], p.step_s, grasped_[t].velocity, push_[t]);
     else grasping_[t].lose();
   }
@@ -97,6 +98,7 @@ void SubstepCorrection::scale_compliance(double dt) noexcept {
         tick_.w[std::size_t(a) * stride + std::size_t(b)] += sum;
       }
     }
+  if (patches_) patches_->scale(dt, h, settings_.substep_compliance);
   compliance_dt_ = dt;
 }
 
@@ -114,7 +116,8 @@ const ConstraintProblem& SubstepCorrection::next(double dt, const std::array<Vec
   first_ = false;
   if (settings_.extrapolate_frames) extrapolation_.extrapolate(moved);
   for (std::size_t t = 0; t < tools(); ++t) {
-    const Vec6 push_change = settings_.extrapolate_frames ? Vec6(push(t, known_) - push_[t]) : Vec6(Vec6::Zero());
+    const Vec6 push_change =
+        settings_.extrapolate_frames ? Vec6(push(t, known_) + patch_push(t) - push_[t]) : Vec6(Vec6::Zero());
     push_[t] += push_change;
     if (grasped_[t].any) {
       went_[t] = grasping_[t].free_displacement(moved[t]) + give(t) * push_[t];
@@ -136,15 +139,39 @@ const ConstraintProblem& SubstepCorrection::next(double dt, const std::array<Vec
       for (int c = 0; c < 6; ++c) free += extrapolation_.jacobian(t)(int(i), c) * went_[t][c];
     tick_.delta_free[i] = free;
   }
-  return tick_;
+  return patches_ ? with_patches(moved) : tick_;
+}
+
+// Takes the effect of the last forces on patches out of the rows, and adds the rows of the contacts found now.
+const ConstraintProblem& SubstepCorrection::with_patches(const std::array<Vec6, 2>& moved) noexcept {
+  const ConstraintProblem& p = *step_;
+  const std::size_t n = std::size_t(p.rows);
+  patches_->subtract_known({share_.data(), n}, {tick_.delta_free.data(), n});
+  std::array<PatchContacts::Tool, 2> tool;
+  for (std::size_t t = 0; t < tools(); ++t) {
+    const ToolTerms& terms = p.tools[t];
+    tool[t].pose = grasped_[t].any ? displaced(grasping_[t].pose(), went_[t])
+                                   : displaced(terms.free, terms.gain * moved[t] + terms.compliance * push_[t]);
+    tool[t].went = went_[t];
+    tool[t].push = push_[t];
+    tool[t].give = &give(t);
+    tool[t].jacobian = &extrapolation_.jacobian(t);
+    const Vec6 back = give(t) * patches_->push(t);
+    for (const int i : tool_coupled_)
+      for (int c = 0; c < 6; ++c) tick_.delta_free[std::size_t(i)] -= extrapolation_.jacobian(t)(i, c) * back[c];
+  }
+  return patches_->next(tick_, {share_.data(), n}, {known_.data(), n}, {tool.data(), tools()}, dt_,
+                        settings_.extrapolate_tissue);
 }
 
 void SubstepCorrection::solved(std::span<const double> lambda, std::span<const double> delta) noexcept {
   const ConstraintProblem& p = *step_;
+  const std::size_t n = std::size_t(p.rows);
+  if (patches_) patches_->solved(lambda, {share_.data(), n}, {known_.data(), n}, dt_, settings_.substep_compliance);
   // Displacement of the tools: their free displacement, and that by the change of force.
   std::array<Vec6, 2> swept = went_;
   for (std::size_t t = 0; t < tools(); ++t) {
-    const Vec6 now = push(t, lambda);
+    const Vec6 now = push(t, lambda) + patch_push(t);
     swept[t] += give(t) * (now - push_[t]);
     push_[t] = now;
     if (grasped_[t].any) grasping_[t].went(swept[t]);

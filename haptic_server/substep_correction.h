@@ -19,6 +19,7 @@
 #include "core/haptics/weld_elimination.h"
 #include "haptic_server/contact_frame_extrapolation.h"
 #include "haptic_server/grasping_tool.h"
+#include "haptic_server/patch_contacts.h"
 
 namespace insula {
 
@@ -28,8 +29,10 @@ struct SubstepCorrectionSettings {
   bool incremental_slip = false;    ///< friction opposes the slip of the tick instead of that since the step began
   bool eliminate_welds = false;     ///< a grasped body is one with its tool, with the inertia for a tick
   bool extrapolate_frames = false;  ///< contact directions continue to rotate with the tool
+  bool find_contacts = false;       ///< contacts are found anew in each tick, where the problem has surface patches
   bool any() const {
-    return substep_compliance || extrapolate_tissue || incremental_slip || eliminate_welds || extrapolate_frames;
+    return substep_compliance || extrapolate_tissue || incremental_slip || eliminate_welds || extrapolate_frames ||
+           find_contacts;
   }
 };
 
@@ -38,19 +41,24 @@ class SubstepCorrection {
  public:
   SubstepCorrection(const SubstepCorrectionSettings& settings, int max_rows);
 
-  /// Starts a problem from the end of its step, `age_s` ago, without the servo's last solution.
-  void begin(const ConstraintProblem& problem, const std::array<GraspedBody, 2>& grasped, double age_s) noexcept;
+  /// Starts a problem from the end of its step, `age_s` ago, without the servo's last solution. `patches`: contacts
+  /// that were made from the same message; null: none.
+  void begin(const ConstraintProblem& problem, const std::array<GraspedBody, 2>& grasped, double age_s,
+             PatchContacts* patches = nullptr) noexcept;
   /// Makes the next problem independent of the last one. Grasped bodies begin at their poses in that problem.
   void reset() noexcept {
     for (GraspingTool& tool : grasping_) tool.lose();
   }
   /// The problem of the next tick, `dt_s` after the last one; the first one covers the problem's age instead. `moved`:
-  /// displacement of the devices since the problem's poses, tool by tool.
+  /// displacement of the devices since the problem's poses, tool by tool. The first rows are those of the problem.
+  /// Those of contacts on patches follow, and lambda of these is their warm start.
   const ConstraintProblem& next(double dt_s, const std::array<Vec6, 2>& moved) noexcept;
   /// Takes the solution of that problem.
   void solved(std::span<const double> lambda, std::span<const double> delta) noexcept;
   /// The tool after the tick if it grasps a body, else null.
   const GraspingTool* grasping(std::size_t tool) const { return grasped_[tool].any ? &grasping_[tool] : nullptr; }
+  /// Force and moment of all rows on a tool after the tick, about its origin, N and N m.
+  const Vec6& pushed(std::size_t tool) const { return push_[tool]; }
   /// The present rows of the tool in this tick.
   const ContactFrameExtrapolation::Jacobian& jacobian(std::size_t tool) const { return extrapolation_.jacobian(tool); }
 
@@ -58,6 +66,8 @@ class SubstepCorrection {
   void find_tool_coupled_rows() noexcept;
   void scale_compliance(double dt) noexcept;
   Vec6 push(std::size_t tool, std::span<const double> lambda) const noexcept;
+  const ConstraintProblem& with_patches(const std::array<Vec6, 2>& moved) noexcept;
+  Vec6 patch_push(std::size_t tool) const noexcept { return patches_ ? patches_->push(tool) : Vec6(Vec6::Zero()); }
   /// A tool's compliance in the tick.
   const Mat6& give(std::size_t tool) const {
     return grasped_[tool].any ? grasping_[tool].give() : step_->tools[tool].compliance;
@@ -69,12 +79,13 @@ class SubstepCorrection {
   SubstepCorrectionSettings settings_;
   ContactFrameExtrapolation extrapolation_;
   const ConstraintProblem* step_ = nullptr;
+  PatchContacts* patches_ = nullptr;
   ConstraintProblem tick_;  ///< W and delta_free of the tick
   std::vector<double> gap_, rate_, known_, share_;
   std::vector<char> slips_;           ///< tangent rows
   std::vector<int> tool_coupled_;     ///< rows in which a tool has a part
   std::array<Vec6, 2> moved_, went_;  ///< of the free tools, since the problem and in the tick
-  std::array<Vec6, 2> push_;          ///< H_tool^T known
+  std::array<Vec6, 2> push_;          ///< H_tool^T known, and that of the patches' contacts
   std::array<GraspedBody, 2> grasped_;
   std::array<GraspingTool, 2> grasping_;
   double age_ = 0, dt_ = 0, compliance_dt_ = 0;

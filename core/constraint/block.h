@@ -30,7 +30,8 @@ enum class BlockRole : std::uint8_t {
   grip,      ///< a bounded hold of tissue: suction, forceps
   stop,      ///< the end of the range of a joint or of a motion
   pressure,  ///< fluid in a closed wall
-  last = pressure,
+  surface,   ///< displacement of a surface's vertex, without a force of its own (core/constraint/surface_patch.h)
+  last = surface,
 };
 
 struct Block {

@@ -9,6 +9,7 @@
 #include "core/base/math.h"
 #include "core/constraint/aligned.h"
 #include "core/constraint/block.h"
+#include "core/constraint/surface_patch.h"
 
 namespace insula {
 
@@ -45,6 +46,7 @@ struct ConstraintProblem {
       retardation_time;  ///< rows: time constant of the tissue under the row, viscous over elastic modulus, s; 0: none
   std::vector<Block> blocks;     ///< in row order, covering every row once
   std::vector<ToolTerms> tools;  ///< at most two
+  SurfacePatches patches;        ///< for use between steps; empty in the engine's own problem
 
   double w_at(int i, int j) const { return w[std::size_t(i) * stride + j]; }
   /// Sets the number of rows, and zeroes W and all values of rows. Keeps capacity.

@@ -20,20 +20,27 @@ long padded(std::size_t n) { return long((n + 7) / 8 * 8); }
 
 }  // namespace
 
-void Condenser::find_tool_coupled_rows(const ConstraintProblem& full) {
-  tool_coupled_.assign(std::size_t(full.rows), 0);
-  is_weld_.assign(std::size_t(full.rows), 0);
+void Condenser::find_rows_at_tools(const ConstraintProblem& full, std::vector<char>& at_tool) {
+  at_tool.assign(std::size_t(full.rows), 0);
   for (std::size_t t = 0; t < std::min<std::size_t>(full.tools.size(), 2); ++t) {
     for (int r = 0; r < full.rows; ++r)
-      if (!full.tools[t].jacobian.row(r).isZero(0)) tool_coupled_[std::size_t(r)] = 1;
+      if (!full.tools[t].jacobian.row(r).isZero(0)) at_tool[std::size_t(r)] = 1;
     // Contacts of a grasped body count as contacts of the tool, since the servo merges the two
     // (core/haptics/weld_elimination.h).
     const int weld = first_weld_row(full, t);
     for (int r = 0; weld >= 0 && r < full.rows; ++r)
       for (int k = 0; k < weld_rows; ++k)
-        if (full.w_at(r, weld + k) != 0) tool_coupled_[std::size_t(r)] = 1;
-    if (weld >= 0) std::fill_n(is_weld_.begin() + weld, weld_rows, char(1));
+        if (full.w_at(r, weld + k) != 0) at_tool[std::size_t(r)] = 1;
   }
+}
+
+void Condenser::find_tool_coupled_rows(const ConstraintProblem& full) {
+  find_rows_at_tools(full, tool_coupled_);
+  for (const Block& b : full.blocks)
+    if (b.role == BlockRole::surface) tool_coupled_[std::size_t(b.row)] = 1;  // contacts between steps use them
+  is_weld_.assign(std::size_t(full.rows), 0);
+  for (std::size_t t = 0; t < std::min<std::size_t>(full.tools.size(), 2); ++t)
+    if (const int weld = first_weld_row(full, t); weld >= 0) std::fill_n(is_weld_.begin() + weld, weld_rows, char(1));
 }
 
 /// Marks the block's rows that are linear in their present state. Returns its margin.
@@ -166,7 +173,7 @@ void Condenser::add_eliminated(const ConstraintProblem& full, const Block& b) {
 }
 
 /// Copies the kept rows as if all others were held.
-void Condenser::copy_kept(const ConstraintProblem& full, ConstraintProblem& small) const {
+void Condenser::copy_kept(const ConstraintProblem& full, ConstraintProblem& small) {
   const std::size_t rows = kept_.size();
   small.resize(int(rows));
   copy_scalars(full, small);
@@ -187,6 +194,10 @@ void Condenser::copy_kept(const ConstraintProblem& full, ConstraintProblem& smal
     to.jacobian.resize(long(rows), 6);
     for (std::size_t i = 0; i < rows; ++i) to.jacobian.row(long(i)) = from.jacobian.row(kept_[i]);
   }
+  new_row_.assign(std::size_t(full.rows), -1);
+  for (std::size_t i = 0; i < rows; ++i) new_row_[std::size_t(kept_[i])] = int(i);
+  small.patches = full.patches;
+  renumber_rows(small.patches, new_row_);
 }
 
 /// With lambda_E in the unknowns' directions: lambda_E = lambda_E0 - M (r + W_EK (lambda_K - lambda_K0)), M = (W_EE +

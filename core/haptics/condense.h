@@ -10,7 +10,7 @@ namespace insula {
 /// Returns `full` itself if it has at most `max_rows` rows. Otherwise it writes `small` and returns that. Each block is
 /// then kept, eliminated or held.
 /// - Kept: blocks that touch a tool or a body that it grasps, then blocks that are coupled to these and may soon change
-///   their state. Their order stays.
+///   their state. Their order stays. Rows of surface patches count as blocks at a tool.
 /// - Eliminated: blocks that no tool touches, in a state in which their law is the linear equation
 ///   delta_E + C lambda_E = 0. These are pressure, springs, fibres in tension, and contacts that press or stick. For
 ///   sliding friction it is the direction across the slip, which rotates with the slip: C = |delta_t| / |lambda_t|.
@@ -28,6 +28,9 @@ namespace insula {
 class Condenser {
  public:
   const ConstraintProblem& operator()(const ConstraintProblem& full, int max_rows, ConstraintProblem& small);
+
+  /// Marks the rows of blocks that touch a tool or a body that it grasps.
+  static void find_rows_at_tools(const ConstraintProblem& problem, std::vector<char>& at_tool);
 
   /// Beyond this number, the least coupled rows are held, since the cost grows with the cube.
   static constexpr int max_eliminated = 400;
@@ -51,7 +54,7 @@ class Condenser {
   double state(const ConstraintProblem& full, const Block& block);
   void make_groups(const ConstraintProblem& full);
   void choose(const ConstraintProblem& full, int max_rows, ConstraintProblem& small);
-  void copy_kept(const ConstraintProblem& full, ConstraintProblem& small) const;
+  void copy_kept(const ConstraintProblem& full, ConstraintProblem& small);
   void add_eliminated(const ConstraintProblem& full, const Block& block);
   void eliminate(const ConstraintProblem& full, ConstraintProblem& small);
 
@@ -61,7 +64,7 @@ class Condenser {
   std::vector<double> margin_m_;    ///< by block: how far it is from another state; negative: it has no other
   AlignedVector<double> delta_m_, factor_, weights_;
   std::vector<Group> groups_;
-  std::vector<int> chosen_, kept_;
+  std::vector<int> chosen_, kept_, new_row_;
   std::vector<Direction> eliminated_;
 };
 

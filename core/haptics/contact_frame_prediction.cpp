@@ -42,6 +42,11 @@ bool is_of(const ConstraintProblem& p, const ContactFrame& f) {
          f.later.allFinite();
 }
 
+bool is_replaced(const ConstraintProblem& p, int row) {
+  return std::any_of(p.patches.replaced.begin(), p.patches.replaced.end(),
+                     [&](const ReplacedContact& r) { return r.row == row; });
+}
+
 }  // namespace
 
 void rotate_contact_rows(ConstraintProblem& p, int row, const Mat3& q, std::span<double> delta_m) {
@@ -57,13 +62,14 @@ void rotate_contact_rows(ConstraintProblem& p, int row, const Mat3& q, std::span
   for (double* v : {delta_m.data(), p.lambda.data(), p.rate.data()}) turn(v + r, 1);
 }
 
-const ConstraintProblem& ContactFramePrediction::operator()(const Simulation& simulation, double ahead_s) {
+const ConstraintProblem& ContactFramePrediction::operator()(const Simulation& simulation,
+                                                            const ConstraintProblem& problem, double ahead_s) {
   const double steps = ahead_s / simulation.h();
   frames_.clear();
   for (const Constraint* c : simulation.constraints()) c->predict_frames(steps, frames_);
-  std::erase_if(frames_, [&](const ContactFrame& f) { return !is_of(simulation.problem(), f); });
-  if (frames_.empty()) return simulation.problem();
-  predicted_ = simulation.problem();
+  std::erase_if(frames_, [&](const ContactFrame& f) { return !is_of(problem, f) || is_replaced(problem, f.row); });
+  if (frames_.empty()) return problem;
+  predicted_ = problem;
   ConstraintProblem& p = predicted_;
   p.prediction_horizon_steps = steps;
   for (const ContactFrame& f : frames_) block_at(p, f.row)->frame_rotation = rotation_vector(f.ahead, f.later);

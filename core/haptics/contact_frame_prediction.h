@@ -20,9 +20,10 @@ void rotate_contact_rows(ConstraintProblem& problem, int row, const Mat3& q, std
 
 class ContactFramePrediction {
  public:
-  /// The problem of the simulation's last step with its contact frames `ahead_s` (s) after the step, if the tools move
-  /// on as in the step. It is the simulation's own problem if no contact presses. Valid until the next call or step.
-  const ConstraintProblem& operator()(const Simulation& simulation, double ahead_s);
+  /// `problem`, that of the simulation's last step, with its contact frames `ahead_s` (s) after the step, if the tools
+  /// move on as in the step. Contacts that the servo replaces keep their frames. It is `problem` itself if no other
+  /// contact presses. Valid until the next call or step.
+  const ConstraintProblem& operator()(const Simulation& simulation, const ConstraintProblem& problem, double ahead_s);
 
  private:
   ConstraintProblem predicted_;

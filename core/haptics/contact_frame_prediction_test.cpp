@@ -77,7 +77,7 @@ double max_rotation_about_an_edge(double degrees) {
   for (int i = -4; i < 4; ++i) {
     const double angle = (80 - std::max(0, i) * degrees) * std::numbers::pi / 180;
     b.move_to({edge + (radius - pressed) * Vec3(std::cos(angle), 0, std::sin(angle)), b.tool->home_pose().q});
-    for (const Block& block : predict(*b.s, 0.5 * b.s->h()).blocks)
+    for (const Block& block : predict(*b.s, b.s->problem(), 0.5 * b.s->h()).blocks)
       if (i >= 2)
         most = std::max(most, std::hypot(double(block.frame_rotation[0]), double(block.frame_rotation[1]),
                                          double(block.frame_rotation[2])));

@@ -64,6 +64,12 @@ bool find_parts(Bytes bytes, ProblemLayout& l, const char*& why) {
     return false;
   }
   l.jacobian = in.take_array(jacobian_size, 4);
+  if (!in.ok()) return false;
+  l.patches = bytes.last(in.left());
+  if (!skip_patches(in)) {
+    why = "sizes of surface patches out of range";
+    return false;
+  }
   const auto said = std::uint32_t(in.i32());
   if (!in.at_end()) return false;
   why = "damaged on its way: the checksum is wrong";

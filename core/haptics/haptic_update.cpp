@@ -23,6 +23,7 @@ bool has_wire_form(const ConstraintProblem& p) {
   for_each_field(row_fields, [&](const auto& f, std::size_t) { whole = whole && (p.*f.values).size() >= rows; });
   if (!whole) return false;
   if (p.rows > 0 && (p.stride < p.rows || p.w.size() < rows * std::size_t(p.stride))) return false;
+  if (!wire::patches_fit(p.patches)) return false;
   return std::all_of(p.tools.begin(), p.tools.end(), [&](const ToolTerms& t) { return t.jacobian.rows() == p.rows; });
 }
 
@@ -109,6 +110,7 @@ void read_all(const ProblemLayout& l, HapticUpdate& into) {
   for (int b = 0; b < l.blocks; ++b) p.blocks[std::size_t(b)] = l.block_at(b);
   p.tools.resize(std::size_t(l.tools));
   for (int t = 0; t < l.tools; ++t) read_tool(l, t, p.tools[std::size_t(t)], into.offset[std::size_t(t)]);
+  wire::read_patches(l, p.patches);
 }
 
 }  // namespace
@@ -140,6 +142,10 @@ bool encode_problem(const ProblemStamp& stamp, const ConstraintProblem& p, const
   for (const ToolTerms& tool : p.tools)
     for (int i = 0; i < p.rows && stays(tool); ++i)
       for (int c = 0; c < 6; ++c) w.f32(float(tool.jacobian(i, c)));
+  std::array<int, 2> tool_number{-1, -1};
+  for (std::size_t t = 0, number = 0; t < p.tools.size(); ++t)
+    if (stays(p.tools[t])) tool_number[t] = int(number++);
+  wire::write_patches(w, p.patches, tool_number);
   w.i32(0);
   seal_problem(out);
   return true;

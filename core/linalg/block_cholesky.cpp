@@ -21,8 +21,9 @@ void MultifrontalCholesky<Real>::analyse(const BlockMatrix& a) {
   load_ = x_;
   loaded_ = false;
   gathered_.assign(3 * std::size_t(e_.nodes) + slack, Real(0));
-  columns_ = 0;
-  rows_factor_ = -1;
+  rows_.columns = 0;
+  rows_.rows_factor = -1;
+  second_rows_ = {};
 }
 
 template <class Real>

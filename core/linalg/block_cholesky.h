@@ -5,6 +5,7 @@
 // double. After analyse(), nothing is allocated unless the number of rows exceeds all earlier ones.
 #pragma once
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "core/linalg/body_solver.h"
@@ -28,6 +29,8 @@ class MultifrontalCholesky final : public BodySolver {
   int compliance_parts(ComplianceAct act) const override;
   void compliance_part(ComplianceAct act, int part) override;
   void add_compliance(const BodyRows& rows, double* w, int stride) override;
+  bool has_second_rows() const override { return true; }
+  void exchange_rows() override { std::swap(rows_, second_rows_); }
   SolverCost cost() const override;
 
   const Elimination& elimination() const { return e_; }
@@ -54,10 +57,31 @@ class MultifrontalCholesky final : public BodySolver {
   std::vector<Real> load_;                           ///< of the step's motion: L^-1 P load
   bool loaded_ = false;
 
-  // Rows of the last begin_compliance(). `order_` gives the row of each column of Y (-1: a column of zeros). New rows
-  // come first, up to fresh_; then those known from before.
   struct Columns {
     int begin, end;
+  };
+  /// The rows of the last begin_compliance(), and those of the call before, which are valid as long as the factor is
+  /// the same. `order` gives the row of each column of Y (-1: a column of zeros). New rows come first, up to `fresh`;
+  /// then those known from before.
+  struct RowSet {
+    std::vector<Real> y, s;
+    std::vector<Real> of_load;  ///< of each column: minus Y^T load_
+    std::vector<int> order, begin;
+    std::array<std::vector<Columns>, 2> active;  ///< new rows, known rows; for each front
+    RowEntries entries;
+    long ldy = 0, fresh = 0;
+    int columns = 0;
+    std::array<std::vector<int>, 2>
+        part_begin;  ///< of each act: first new column of each part, then the end of the last part
+
+    std::int64_t rows_factor = -1;  ///< number of the factor
+    RowEntries before;
+    std::vector<Real> old_y, old_s;
+    std::vector<int> old_order, old_column, known;  ///< known: the row's number among the earlier rows, or -1
+    std::array<std::vector<Columns>, 2> old_active;
+    long old_ldy = 0;
+    int reused = 0;
+    bool unchanged = false;  ///< all rows are the earlier ones
   };
   void arrange();
   void clear_fresh();
@@ -67,28 +91,11 @@ class MultifrontalCholesky final : public BodySolver {
   void product_columns(int from, int to);
   void load_columns(int group, int from, int to);
   void copy_known_products();
-  std::vector<Real> y_, s_;
-  std::vector<Real> of_load_;                    ///< of each column: minus Y^T load_
+  RowSet rows_, second_rows_;
+  std::int64_t factor_number_ = 0;
   mutable std::vector<Real> lambda_, products_;  ///< scratch of combine()
-  std::vector<int> order_, begin_;
-  std::array<std::vector<Columns>, 2> active_;  ///< new rows, known rows; for each front
-  RowEntries entries_;
-  long ldy_ = 0, fresh_ = 0;
-  int columns_ = 0;
-  std::array<std::vector<int>, 2>
-      part_begin_;            ///< of each act: first new column of each part, then the end of the last part
-  std::vector<double> work_;  ///< of an act: flops of each vector of columns
-
-  // Rows of the call before, valid as long as the factor is the same.
-  std::int64_t factor_number_ = 0, rows_factor_ = -1;
-  RowEntries before_;
-  std::vector<Real> old_y_, old_s_;
-  std::vector<int> old_order_, old_column_, known_,
-      from_;  ///< known_: the row's number among the earlier rows, or -1; from_: scratch
-  std::array<std::vector<Columns>, 2> old_active_;
-  long old_ldy_ = 0;
-  int reused_ = 0;
-  bool unchanged_ = false;  ///< all rows are the earlier ones
+  std::vector<int> from_;                        ///< scratch of copy_known()
+  std::vector<double> work_;                     ///< scratch of share_out(): flops of each vector of columns
 };
 
 extern template class MultifrontalCholesky<double>;

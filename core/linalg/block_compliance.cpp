@@ -16,48 +16,48 @@ namespace insula {
 template <class Real>
 void MultifrontalCholesky<Real>::begin_compliance(const BodyRows& rows, const std::vector<int>& node_of_block) {
   const int m = rows.count();
-  const bool kept = rows_factor_ == factor_number_;
-  columns_ = m;
-  rows_factor_ = m > 0 && e_.nodes > 0 ? factor_number_ : -1;
-  reused_ = 0;
-  unchanged_ = false;
+  const bool kept = rows_.rows_factor == factor_number_;
+  rows_.columns = m;
+  rows_.rows_factor = m > 0 && e_.nodes > 0 ? factor_number_ : -1;
+  rows_.reused = 0;
+  rows_.unchanged = false;
   if (m == 0 || e_.nodes == 0) return;
-  std::swap(entries_, before_);
-  entries_.take(rows, node_of_block, e_.permuted);
-  known_.assign(std::size_t(m), -1);
-  bool same = kept && before_.count() == m;
+  std::swap(rows_.entries, rows_.before);
+  rows_.entries.take(rows, node_of_block, e_.permuted);
+  rows_.known.assign(std::size_t(m), -1);
+  bool same = kept && rows_.before.count() == m;
   for (int r = 0; kept && r < m; ++r) {
-    known_[std::size_t(r)] = before_.find(entries_, r);
-    reused_ += known_[std::size_t(r)] >= 0;
-    same = same && known_[std::size_t(r)] == r;
+    rows_.known[std::size_t(r)] = rows_.before.find(rows_.entries, r);
+    rows_.reused += rows_.known[std::size_t(r)] >= 0;
+    same = same && rows_.known[std::size_t(r)] == r;
   }
-  unchanged_ = same;
+  rows_.unchanged = same;
   if (same) return;
-  if (reused_ > 0) {
-    std::swap(y_, old_y_);
-    std::swap(s_, old_s_);
-    std::swap(order_, old_order_);
-    for (int g = 0; g < 2; ++g) std::swap(active_[g], old_active_[g]);
-    old_column_.assign(std::size_t(before_.count()), -1);
-    for (std::size_t c = 0; c < old_order_.size(); ++c)
-      if (old_order_[c] >= 0) old_column_[std::size_t(old_order_[c])] = int(c);
+  if (rows_.reused > 0) {
+    std::swap(rows_.y, rows_.old_y);
+    std::swap(rows_.s, rows_.old_s);
+    std::swap(rows_.order, rows_.old_order);
+    for (int g = 0; g < 2; ++g) std::swap(rows_.active[g], rows_.old_active[g]);
+    rows_.old_column.assign(std::size_t(rows_.before.count()), -1);
+    for (std::size_t c = 0; c < rows_.old_order.size(); ++c)
+      if (rows_.old_order[c] >= 0) rows_.old_column[std::size_t(rows_.old_order[c])] = int(c);
   }
-  old_ldy_ = ldy_;
+  rows_.old_ldy = rows_.ldy;
   arrange();
-  y_.resize(std::max(y_.size(), 3 * std::size_t(e_.nodes) * std::size_t(ldy_) + slack));
-  s_.resize(std::max(s_.size(), std::size_t(ldy_) * std::size_t(ldy_ + lanes) + slack));
-  of_load_.resize(std::max(of_load_.size(), std::size_t(ldy_) + slack));
+  rows_.y.resize(std::max(rows_.y.size(), 3 * std::size_t(e_.nodes) * std::size_t(rows_.ldy) + slack));
+  rows_.s.resize(std::max(rows_.s.size(), std::size_t(rows_.ldy) * std::size_t(rows_.ldy + lanes) + slack));
+  rows_.of_load.resize(std::max(rows_.of_load.size(), std::size_t(rows_.ldy) + slack));
   clear_fresh();
-  if (reused_ > 0) copy_known();
-  for (long c = 0; c < fresh_; ++c) {
-    const int r = order_[std::size_t(c)];
+  if (rows_.reused > 0) copy_known();
+  for (long c = 0; c < rows_.fresh; ++c) {
+    const int r = rows_.order[std::size_t(c)];
     if (r < 0) continue;
-    for (int e = entries_.start[std::size_t(r)]; e < entries_.start[std::size_t(r) + 1]; ++e) {
-      const Vec3& h = entries_.coeff[std::size_t(e)];
-      Real* to = y_.data() + 3L * entries_.node[std::size_t(e)] * ldy_ + c;
+    for (int e = rows_.entries.start[std::size_t(r)]; e < rows_.entries.start[std::size_t(r) + 1]; ++e) {
+      const Vec3& h = rows_.entries.coeff[std::size_t(e)];
+      Real* to = rows_.y.data() + 3L * rows_.entries.node[std::size_t(e)] * rows_.ldy + c;
       to[0] += Real(h.x());
-      to[ldy_] += Real(h.y());
-      to[2 * ldy_] += Real(h.z());
+      to[rows_.ldy] += Real(h.y());
+      to[2 * rows_.ldy] += Real(h.z());
     }
   }
   share_out();
@@ -67,40 +67,41 @@ void MultifrontalCholesky<Real>::begin_compliance(const BodyRows& rows, const st
 // children.
 template <class Real>
 void MultifrontalCholesky<Real>::arrange() {
-  const int m = columns_;
-  begin_.resize(std::size_t(m));
-  order_.resize(std::size_t(m));
+  const int m = rows_.columns;
+  rows_.begin.resize(std::size_t(m));
+  rows_.order.resize(std::size_t(m));
   for (int r = 0; r < m; ++r) {
     int first = e_.nodes;
-    for (int e = entries_.start[std::size_t(r)]; e < entries_.start[std::size_t(r) + 1]; ++e)
-      first = std::min(first, entries_.node[std::size_t(e)]);
-    begin_[std::size_t(r)] = first;
-    order_[std::size_t(r)] = r;
+    for (int e = rows_.entries.start[std::size_t(r)]; e < rows_.entries.start[std::size_t(r) + 1]; ++e)
+      first = std::min(first, rows_.entries.node[std::size_t(e)]);
+    rows_.begin[std::size_t(r)] = first;
+    rows_.order[std::size_t(r)] = r;
   }
-  std::sort(order_.begin(), order_.end(), [this](int x, int y) {
-    const bool kx = known_[std::size_t(x)] >= 0, ky = known_[std::size_t(y)] >= 0;
+  std::sort(rows_.order.begin(), rows_.order.end(), [this](int x, int y) {
+    const bool kx = rows_.known[std::size_t(x)] >= 0, ky = rows_.known[std::size_t(y)] >= 0;
     if (kx != ky) return ky;
-    const int bx = begin_[std::size_t(x)], by = begin_[std::size_t(y)];
+    const int bx = rows_.begin[std::size_t(x)], by = rows_.begin[std::size_t(y)];
     return bx != by ? bx < by : x < y;
   });
   const auto pad = [](int n) { return (n + lanes - 1) & -lanes; };
-  const int fresh = m - reused_;
-  fresh_ = pad(fresh);
-  ldy_ = fresh_ + pad(reused_);
-  order_.insert(order_.begin() + fresh, std::size_t(fresh_ - fresh), -1);
-  order_.resize(std::size_t(ldy_), -1);
+  const int fresh = m - rows_.reused;
+  rows_.fresh = pad(fresh);
+  rows_.ldy = rows_.fresh + pad(rows_.reused);
+  rows_.order.insert(rows_.order.begin() + fresh, std::size_t(rows_.fresh - fresh), -1);
+  rows_.order.resize(std::size_t(rows_.ldy), -1);
 
-  for (auto& group : active_) group.assign(e_.front.size(), {int(ldy_), 0});
-  for (int c = 0; c < ldy_; ++c) {
-    const int r = order_[std::size_t(c)];
+  for (auto& group : rows_.active) group.assign(e_.front.size(), {int(rows_.ldy), 0});
+  for (int c = 0; c < rows_.ldy; ++c) {
+    const int r = rows_.order[std::size_t(c)];
     if (r < 0) continue;
-    for (int e = entries_.start[std::size_t(r)]; e < entries_.start[std::size_t(r) + 1]; ++e) {
-      Columns& a = active_[c < fresh_ ? 0 : 1][std::size_t(e_.front_of[std::size_t(entries_.node[std::size_t(e)])])];
+    for (int e = rows_.entries.start[std::size_t(r)]; e < rows_.entries.start[std::size_t(r) + 1]; ++e) {
+      Columns& a = rows_.active[c < rows_.fresh ? 0 : 1]
+                               [std::size_t(e_.front_of[std::size_t(rows_.entries.node[std::size_t(e)])])];
       a.begin = std::min(a.begin, c);
       a.end = std::max(a.end, c + 1);
     }
   }
-  for (auto& group : active_)
+  for (auto& group : rows_.active)
     for (std::size_t f = 0; f < e_.front.size(); ++f) {
       Columns& a = group[f];
       if (a.begin >= a.end) continue;
@@ -116,9 +117,9 @@ void MultifrontalCholesky<Real>::arrange() {
 template <class Real>
 void MultifrontalCholesky<Real>::clear_fresh() {
   for (std::size_t f = 0; f < e_.front.size(); ++f)
-    if (const Columns& a = active_[0][f]; a.begin < a.end)
+    if (const Columns& a = rows_.active[0][f]; a.begin < a.end)
       for (int i = 0; i < 3 * e_.front[f].own; ++i)
-        std::memset(y_.data() + (3L * e_.front[f].first + i) * ldy_ + a.begin, 0,
+        std::memset(rows_.y.data() + (3L * e_.front[f].first + i) * rows_.ldy + a.begin, 0,
                     sizeof(Real) * std::size_t(a.end - a.begin));
 }
 
@@ -126,18 +127,19 @@ void MultifrontalCholesky<Real>::clear_fresh() {
 template <class Real>
 void MultifrontalCholesky<Real>::copy_known() {
   for (std::size_t f = 0; f < e_.front.size(); ++f) {
-    const Columns& a = active_[1][f];
+    const Columns& a = rows_.active[1][f];
     if (a.begin >= a.end) continue;
     from_.clear();
     for (int c = a.begin; c < a.end; ++c) {
-      const int r = order_[std::size_t(c)], old = r < 0 ? -1 : old_column_[std::size_t(known_[std::size_t(r)])];
-      const bool there = old >= 0 && ((old >= old_active_[0][f].begin && old < old_active_[0][f].end) ||
-                                      (old >= old_active_[1][f].begin && old < old_active_[1][f].end));
+      const int r = rows_.order[std::size_t(c)],
+                old = r < 0 ? -1 : rows_.old_column[std::size_t(rows_.known[std::size_t(r)])];
+      const bool there = old >= 0 && ((old >= rows_.old_active[0][f].begin && old < rows_.old_active[0][f].end) ||
+                                      (old >= rows_.old_active[1][f].begin && old < rows_.old_active[1][f].end));
       from_.push_back(there ? old : -1);
     }
     for (long row = 3L * e_.front[f].first; row < 3L * (e_.front[f].first + e_.front[f].own); ++row) {
-      Real* to = y_.data() + row * ldy_ + a.begin;
-      const Real* old = old_y_.data() + row * old_ldy_;
+      Real* to = rows_.y.data() + row * rows_.ldy + a.begin;
+      const Real* old = rows_.old_y.data() + row * rows_.old_ldy;
       for (std::size_t c = 0; c < from_.size(); ++c) to[c] = from_[c] >= 0 ? old[from_[c]] : Real(0);
     }
   }
@@ -148,16 +150,16 @@ void MultifrontalCholesky<Real>::copy_known() {
 template <class Real>
 void MultifrontalCholesky<Real>::share_out() {
   constexpr std::size_t cached = std::size_t(2) << 20;
-  const int whole = int(fresh_) / lanes;  // vectors of columns
+  const int whole = int(rows_.fresh) / lanes;  // vectors of columns
   for (const ComplianceAct act : compliance_acts) {
-    auto& begin = part_begin_[std::size_t(act)];
+    auto& begin = rows_.part_begin[std::size_t(act)];
     begin.clear();
     if (whole > 0) begin.push_back(0);
-    if (fresh_ >= 2 * min_part) {
+    if (rows_.fresh >= 2 * min_part) {
       work_.assign(std::size_t(whole), 0.0);
       double all = 0;
       for (std::size_t i = 0; i < e_.front.size(); ++i) {
-        const Columns &a = active_[0][i], &b = active_[1][i];
+        const Columns &a = rows_.active[0][i], &b = rows_.active[1][i];
         const double own = 3 * e_.front[i].own, below = 3 * e_.front[i].rows - own,
                      known = std::max(0, b.end - b.begin);
         for (int c = a.begin; c < a.end; c += lanes) {
@@ -174,14 +176,14 @@ void MultifrontalCholesky<Real>::share_out() {
         done += work_[std::size_t(v)];
       }
     }
-    if (whole > 0) begin.push_back(int(fresh_));
+    if (whole > 0) begin.push_back(int(rows_.fresh));
   }
 }
 
 template <class Real>
 int MultifrontalCholesky<Real>::compliance_parts(ComplianceAct act) const {
-  if (columns_ == 0 || e_.nodes == 0) return 0;
-  const int parts = unchanged_ ? 0 : std::max(0, int(part_begin_[std::size_t(act)].size()) - 1);
+  if (rows_.columns == 0 || e_.nodes == 0) return 0;
+  const int parts = rows_.unchanged ? 0 : std::max(0, int(rows_.part_begin[std::size_t(act)].size()) - 1);
   return act == ComplianceAct::product ? std::max(1, parts)
                                        : parts;  // the first part copies what is known; the load is never known
 }
@@ -189,10 +191,10 @@ int MultifrontalCholesky<Real>::compliance_parts(ComplianceAct act) const {
 template <class Real>
 void MultifrontalCholesky<Real>::compliance_part(ComplianceAct act, int part) {
   [[maybe_unused]] const FlushSubnormals<Real> flush;
-  const auto& begin = part_begin_[std::size_t(act)];
+  const auto& begin = rows_.part_begin[std::size_t(act)];
   if (act == ComplianceAct::product && part == 0) {
-    load_columns(1, int(fresh_), int(ldy_));
-    if (unchanged_) return load_columns(0, 0, int(fresh_));
+    load_columns(1, int(rows_.fresh), int(rows_.ldy));
+    if (rows_.unchanged) return load_columns(0, 0, int(rows_.fresh));
     copy_known_products();
   }
   if (part + 1 >= int(begin.size())) return;
@@ -207,15 +209,15 @@ void MultifrontalCholesky<Real>::forward_columns(int from, int to) {
   const KernelsOf<Real>& k = kernels_of<Real>();
   for (std::size_t i = 0; i < e_.front.size(); ++i) {
     const Front& f = e_.front[i];
-    const int lo = std::max(active_[0][i].begin, from), hi = std::min(active_[0][i].end, to);
+    const int lo = std::max(rows_.active[0][i].begin, from), hi = std::min(rows_.active[0][i].end, to);
     if (lo >= hi) continue;
     const Real* l = panel_.data() + f.panel;
     const int own = 3 * f.own, below = 3 * f.rows - own;
-    Real* x = y_.data() + 3L * f.first * ldy_ + lo;
-    k.lower_solve_rows(l, f.lda, inverse_.data() + 3 * f.first, own, x, ldy_, hi - lo);
+    Real* x = rows_.y.data() + 3L * f.first * rows_.ldy + lo;
+    k.lower_solve_rows(l, f.lda, inverse_.data() + 3 * f.first, own, x, rows_.ldy, hi - lo);
     if (below > 0)
-      k.rows_sub(y_.data() + lo, ldy_, e_.row_scalar.data() + 3 * f.row_begin + own, below, l + own, f.lda, x, ldy_,
-                 own, hi - lo);
+      k.rows_sub(rows_.y.data() + lo, rows_.ldy, e_.row_scalar.data() + 3 * f.row_begin + own, below, l + own, f.lda, x,
+                 rows_.ldy, own, hi - lo);
   }
 }
 
@@ -223,16 +225,17 @@ void MultifrontalCholesky<Real>::forward_columns(int from, int to) {
 template <class Real>
 void MultifrontalCholesky<Real>::product_columns(int from, int to) {
   const KernelsOf<Real>& k = kernels_of<Real>();
-  const int ld = int(ldy_);
+  const int ld = int(rows_.ldy);
   load_columns(0, from, to);
-  std::memset(s_.data() + long(from) * ldy_, 0, sizeof(Real) * std::size_t(to - from) * std::size_t(ldy_));
+  std::memset(rows_.s.data() + long(from) * rows_.ldy, 0,
+              sizeof(Real) * std::size_t(to - from) * std::size_t(rows_.ldy));
   for (std::size_t i = 0; i < e_.front.size(); ++i) {
     const Front& f = e_.front[i];
-    const Columns &a = active_[0][i], &b = active_[1][i];
+    const Columns &a = rows_.active[0][i], &b = rows_.active[1][i];
     const int lo = std::max(a.begin, from), hi = std::min(a.end, to);
     if (lo >= hi) continue;
-    const Real* y = y_.data() + 3L * f.first * ldy_;
-    Real* s = s_.data() + long(lo) * ldy_;
+    const Real* y = rows_.y.data() + 3L * f.first * rows_.ldy;
+    Real* s = rows_.s.data() + long(lo) * rows_.ldy;
     const int own = 3 * f.own;
     k.syrk_add(s + lo, ld, y + lo, ld, hi - lo, own);
     if (hi < a.end) k.gemm_add(s + hi, ld, y + hi, ld, y + lo, ld, a.end - hi, hi - lo, own);
@@ -245,47 +248,47 @@ template <class Real>
 void MultifrontalCholesky<Real>::load_columns(int group, int from, int to) {
   if (!loaded_) return;
   const KernelsOf<Real>& k = kernels_of<Real>();
-  std::fill(of_load_.begin() + from, of_load_.begin() + to, Real(0));
+  std::fill(rows_.of_load.begin() + from, rows_.of_load.begin() + to, Real(0));
   for (std::size_t i = 0; i < e_.front.size(); ++i) {
     const Front& f = e_.front[i];
-    const Columns& a = active_[std::size_t(group)][i];
+    const Columns& a = rows_.active[std::size_t(group)][i];
     const int lo = std::max(a.begin, from), hi = std::min(a.end, to);
     if (lo < hi)
-      k.columns_sub(of_load_.data() + lo, y_.data() + 3L * f.first * ldy_ + lo, ldy_, load_.data() + 3 * f.first,
-                    hi - lo, 3 * f.own);
+      k.columns_sub(rows_.of_load.data() + lo, rows_.y.data() + 3L * f.first * rows_.ldy + lo, rows_.ldy,
+                    load_.data() + 3 * f.first, hi - lo, 3 * f.own);
   }
 }
 
 template <class Real>
 void MultifrontalCholesky<Real>::add_free_motion(const BodyRows& rows, double* delta) const {
-  if (columns_ == 0 || e_.nodes == 0 || !loaded_) return;
-  for (std::size_t c = 0; c < std::size_t(ldy_); ++c)
-    if (order_[c] >= 0) delta[rows.row[std::size_t(order_[c])]] -= double(of_load_[c]);
+  if (rows_.columns == 0 || e_.nodes == 0 || !loaded_) return;
+  for (std::size_t c = 0; c < std::size_t(rows_.ldy); ++c)
+    if (rows_.order[c] >= 0) delta[rows.row[std::size_t(rows_.order[c])]] -= double(rows_.of_load[c]);
 }
 
 template <class Real>
 void MultifrontalCholesky<Real>::copy_known_products() {
-  for (long c = fresh_; c < fresh_ + reused_; ++c)
-    for (long r = c; r < fresh_ + reused_; ++r) {
-      const int oc = old_column_[std::size_t(known_[std::size_t(order_[std::size_t(c)])])],
-                o = old_column_[std::size_t(known_[std::size_t(order_[std::size_t(r)])])];
-      s_[std::size_t(c * ldy_ + r)] =
-          old_s_[std::size_t(std::min(oc, o)) * std::size_t(old_ldy_) + std::size_t(std::max(oc, o))];
+  for (long c = rows_.fresh; c < rows_.fresh + rows_.reused; ++c)
+    for (long r = c; r < rows_.fresh + rows_.reused; ++r) {
+      const int oc = rows_.old_column[std::size_t(rows_.known[std::size_t(rows_.order[std::size_t(c)])])],
+                o = rows_.old_column[std::size_t(rows_.known[std::size_t(rows_.order[std::size_t(r)])])];
+      rows_.s[std::size_t(c * rows_.ldy + r)] =
+          rows_.old_s[std::size_t(std::min(oc, o)) * std::size_t(rows_.old_ldy) + std::size_t(std::max(oc, o))];
     }
 }
 
 template <class Real>
 void MultifrontalCholesky<Real>::add_compliance(const BodyRows& rows, double* w, int stride) {
-  if (columns_ == 0 || e_.nodes == 0) return;
-  const std::size_t ld = std::size_t(ldy_), step = std::size_t(stride);
+  if (rows_.columns == 0 || e_.nodes == 0) return;
+  const std::size_t ld = std::size_t(rows_.ldy), step = std::size_t(stride);
   for (std::size_t c = 0; c < ld; ++c) {
-    if (order_[c] < 0) continue;
-    const std::size_t rc = std::size_t(rows.row[std::size_t(order_[c])]);
-    const Real* from = s_.data() + c * ld;
+    if (rows_.order[c] < 0) continue;
+    const std::size_t rc = std::size_t(rows.row[std::size_t(rows_.order[c])]);
+    const Real* from = rows_.s.data() + c * ld;
     w[rc * step + rc] += double(from[c]);
     for (std::size_t r = c + 1; r < ld; ++r) {
-      if (order_[r] < 0) continue;
-      const std::size_t rr = std::size_t(rows.row[std::size_t(order_[r])]);
+      if (rows_.order[r] < 0) continue;
+      const std::size_t rr = std::size_t(rows.row[std::size_t(rows_.order[r])]);
       w[rc * step + rr] += double(from[r]);
       w[rr * step + rc] += double(from[r]);
     }
@@ -295,18 +298,18 @@ void MultifrontalCholesky<Real>::add_compliance(const BodyRows& rows, double* w,
 template <class Real>
 void MultifrontalCholesky<Real>::combine(const BodyRows& rows, const double* lambda, Real* x) const {
   const KernelsOf<Real>& k = kernels_of<Real>();
-  if (columns_ == 0) return;
-  lambda_.resize(std::size_t(ldy_));
+  if (rows_.columns == 0) return;
+  lambda_.resize(std::size_t(rows_.ldy));
   for (std::size_t c = 0; c < lambda_.size(); ++c)
-    lambda_[c] = order_[c] >= 0 ? Real(lambda[rows.row[std::size_t(order_[c])]]) : Real(0);
+    lambda_[c] = rows_.order[c] >= 0 ? Real(lambda[rows.row[std::size_t(rows_.order[c])]]) : Real(0);
   products_.resize(x_.size());
-  for (const auto& group : active_)
+  for (const auto& group : rows_.active)
     for (std::size_t i = 0; i < e_.front.size(); ++i) {
       const Columns& a = group[i];
       if (a.begin >= a.end) continue;
       const int first = 3 * e_.front[i].first, own = 3 * e_.front[i].own;
-      k.columns_dot(products_.data(), y_.data() + long(first) * ldy_ + a.begin, ldy_, lambda_.data() + a.begin,
-                    a.end - a.begin, own);
+      k.columns_dot(products_.data(), rows_.y.data() + long(first) * rows_.ldy + a.begin, rows_.ldy,
+                    lambda_.data() + a.begin, a.end - a.begin, own);
       for (int r = 0; r < own; ++r) x[first + r] += products_[std::size_t(r)];
     }
 }
@@ -317,10 +320,10 @@ SolverCost MultifrontalCholesky<Real>::cost() const {
   c.factor_entries = e_.entries;
   c.factor_flops = e_.flops;
   c.factor_bytes = 2.0 * sizeof(Real) * double(e_.entries);
-  c.rows_reused = reused_;
+  c.rows_reused = rows_.reused;
   for (std::size_t i = 0; compliance_parts(ComplianceAct::forward) > 0 && i < e_.front.size(); ++i) {
-    const double fresh = std::max(0, active_[0][i].end - active_[0][i].begin),
-                 known = std::max(0, active_[1][i].end - active_[1][i].begin);
+    const double fresh = std::max(0, rows_.active[0][i].end - rows_.active[0][i].begin),
+                 known = std::max(0, rows_.active[1][i].end - rows_.active[1][i].begin);
     const double own = 3 * e_.front[i].own, below = 3 * e_.front[i].rows - own;
     c.compliance_flops += fresh * own * (own + 2 * below + fresh + 2 * known);
   }

@@ -28,6 +28,12 @@ class BodySolver : public ComplianceSolver {
   /// Second half: x := A^-1 (load + H^T lambda), natural order. The rows are those of the last begin_compliance();
   /// lambda is indexed by row number. Without rows it is the free motion.
   virtual void end_motion(const BodyRows& rows, const double* lambda, VecX& x) = 0;
+  /// Whether exchange_rows() works.
+  virtual bool has_second_rows() const { return false; }
+  /// Exchanges the rows of begin_compliance(), with all that was computed from them, for those of a second set. The
+  /// compliance of other rows can thus be computed between two steps without an effect on the step. Exchange them back
+  /// before the next step.
+  virtual void exchange_rows() {}
   /// This solver if its compliance is not exactly that of the step's matrix, otherwise null.
   virtual InexactSolver* inexact() { return nullptr; }
 };

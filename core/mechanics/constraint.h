@@ -8,6 +8,7 @@
 #include "core/constraint/cost_estimate.h"
 #include "core/constraint/problem.h"
 #include "core/mechanics/body.h"
+#include "core/mechanics/patch_candidate.h"
 #include "core/mechanics/step_context.h"
 #include "core/registry/component.h"
 
@@ -93,6 +94,9 @@ class Constraint : public Component {
   /// After a step: appends the frames that its loaded friction contacts will have `steps` steps later. Each belongs to
   /// a block with LawKind::friction of the last step; others are ignored. Default: none are predicted.
   virtual void predict_frames(double /*steps*/, std::vector<ContactFrame>&) const {}
+  /// After a step: appends what is near the tools of the hands, where contacts may be found between steps. Default:
+  /// nothing.
+  virtual void find_patches(std::vector<PatchCandidate>&) const {}
   /// After a step: adds the cost of its search and its rows. Default: the rows of the last step and no search.
   virtual void estimate_cost(CostCounts&) const {}
   virtual void reset() {}

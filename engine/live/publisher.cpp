@@ -58,7 +58,8 @@ void Publisher::again(const Simulation& simulation, std::int64_t pose_time_us) {
   stamp_.step_s = simulation.h();
   stamp_.sim_time_s = simulation.time();
   const double until_rendered_s = std::min(1e-3 * simulation.report().step_ms, simulation.h());  // approximately
-  const ConstraintProblem& problem = condense_(predict_frames_(simulation, until_rendered_s), max_rows, condensed_);
+  const ConstraintProblem& problem = condense_(
+      predict_frames_(simulation, add_patches_(simulation, max_rows), until_rendered_s), max_rows, condensed_);
   if (!encode_problem(stamp_, problem, pause_.hands(simulation), scratch_) ||
       !bus_.publish(channel::haptic_problem, scratch_))
     ++failed_;

@@ -11,6 +11,7 @@
 #include "core/haptics/condense.h"
 #include "core/haptics/contact_frame_prediction.h"
 #include "core/haptics/haptic_update.h"
+#include "core/haptics/surface_patch_builder.h"
 #include "core/sim/simulation.h"
 #include "engine/live/exchange_pause.h"
 #include "engine/live/session_mode.h"
@@ -66,6 +67,7 @@ class Publisher {
   insula_lcm::render_frame_t frame_{};
   insula_lcm::metrics_t metrics_{};
   ProblemStamp stamp_;
+  SurfacePatchBuilder add_patches_;
   ContactFramePrediction predict_frames_;
   Condenser condense_;
   ConstraintProblem condensed_;

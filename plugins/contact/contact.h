@@ -147,6 +147,7 @@ class Contact final : public Constraint, public StatesLaw {
   void finish(const StepContext& context, const ConstraintSolution& solution) override;
   void report(StepReport& report) const override;
   void predict_frames(double steps, std::vector<ContactFrame>& out) const override;
+  void find_patches(std::vector<PatchCandidate>& out) const override;
   void estimate_cost(CostCounts& out) const override;
   void reset() override;
   void append_state(std::vector<double>& out) const override;

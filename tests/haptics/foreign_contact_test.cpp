@@ -110,7 +110,7 @@ TEST_F(ForeignContact, ItsFramesArePredicted) {
   ASSERT_EQ(frames.size(), 1u);
   ASSERT_GT(frames[0].normal.cross(frames[0].ahead).norm(), 0.02) << "nothing turns";
   ContactFramePrediction predict;
-  const ConstraintProblem& p = predict(*s_, ahead * s_->h());
+  const ConstraintProblem& p = predict(*s_, s_->problem(), ahead * s_->h());
   ASSERT_NE(&p, &s_->problem());
   EXPECT_DOUBLE_EQ(p.prediction_horizon_steps, ahead);
   ASSERT_EQ(p.tools.size(), 1u);
@@ -126,7 +126,7 @@ TEST_F(ForeignContact, FramesOfNoBlockOfItsAreLeftOut) {
   ContactFramePrediction predict;
   for (const int wrong : {1, 2, 3, 1000, -1}) {
     contact_->wrong_row = wrong;
-    EXPECT_EQ(&predict(*s_, 0.005), &s_->problem());
+    EXPECT_EQ(&predict(*s_, s_->problem(), 0.005), &s_->problem());
   }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // insula bench --haptics: the servo's force against the engine stepped at 1 kHz.
 #include <fmt/ostream.h>
+#include <array>
 
 #include <algorithm>
 #include <cmath>
@@ -38,7 +39,9 @@ Latency read_latency(std::string text) {
 struct Variant {
   const char* name;
   ReplaySettings settings;
-  bool predicted = true;  ///< contacts turned by the engine to where they are when the problem arrives
+  /// plain: as the step had them; predicted: contacts turned to where they are when the problem arrives; patched: with
+  /// surface patches too.
+  enum Problems { plain, predicted, patched } problems = patched;
 };
 
 std::vector<Variant> variants(bool ablation) {
@@ -48,25 +51,27 @@ std::vector<Variant> variants(bool ablation) {
   hindsight.rendering = Rendering::hindsight;
   std::vector<Variant> out{{"held", held}};
   if (ablation) {
-    out.push_back({"diagonal of W", diagonal, false});
-    out.push_back({"equation 7", servo, false});
+    out.push_back({"diagonal of W", diagonal, Variant::plain});
+    out.push_back({"equation 7", servo, Variant::plain});
   }
   const ServoSettings full = ServoSettings::beyond_equation_7();
   if (ablation) {
     servo.servo.substep.incremental_slip = full.substep.incremental_slip;
-    out.push_back({"+ incremental slip", servo, false});
+    out.push_back({"+ incremental slip", servo, Variant::plain});
     servo.servo.substep.extrapolate_tissue = full.substep.extrapolate_tissue;
-    out.push_back({"+ tissue extrapolation", servo, false});
+    out.push_back({"+ tissue extrapolation", servo, Variant::plain});
     servo.servo.substep.substep_compliance = full.substep.substep_compliance;
-    out.push_back({"+ sub-step compliance", servo, false});
+    out.push_back({"+ sub-step compliance", servo, Variant::plain});
     servo.servo.substep.eliminate_welds = full.substep.eliminate_welds;
-    out.push_back({"+ weld elimination", servo, false});
+    out.push_back({"+ weld elimination", servo, Variant::plain});
     servo.servo.newton_unknowns = full.newton_unknowns;
     servo.servo.conjugate = full.conjugate;
-    out.push_back({"+ Newton", servo, false});
-    out.push_back({"+ contact-frame prediction", servo});
+    out.push_back({"+ Newton", servo, Variant::plain});
+    out.push_back({"+ contact-frame prediction", servo, Variant::predicted});
     servo.servo.substep.extrapolate_frames = full.substep.extrapolate_frames;
-    out.push_back({"+ contact-frame extrapolation", servo});
+    out.push_back({"+ contact-frame extrapolation", servo, Variant::predicted});
+    servo.servo.substep.find_contacts = full.substep.find_contacts;
+    out.push_back({"+ contacts in each tick", servo});
   }
   servo.servo = full;
   out.push_back({ablation ? "+ force cross-fade" : "servo", servo});
@@ -96,16 +101,20 @@ void start_again(Simulation& simulation) {
 void measure_at(const HapticBenchOptions& options, double rate, Simulation& engine, const Probe& probe,
                 const ForceTrace& reference, double duration, std::vector<HapticResult>& results) {
   const Latency latency = read_latency(options.latency);
-  const auto record = [&](double prediction_horizon_s) {
+  const auto record = [&](double prediction_horizon_s, bool patches) {
     start_again(engine);
-    auto steps = record_steps(engine, probe.motion, duration, prediction_horizon_s);
+    auto steps = record_steps(engine, probe.motion, duration, prediction_horizon_s, patches);
     if (options.fine) steps = every(std::size_t(std::lround(1e3 / rate)), steps);
     return steps;
   };
-  const auto predicted = record(latency.at(1 / rate));
-  const auto plain = options.ablation ? record(-1) : std::vector<RecordedStep>{};
+  std::array<std::vector<RecordedStep>, 3> recorded;
+  recorded[Variant::patched] = record(latency.at(1 / rate), true);
+  if (options.ablation) {
+    recorded[Variant::predicted] = record(latency.at(1 / rate), false);
+    recorded[Variant::plain] = record(-1, false);
+  }
   for (Variant& v : variants(options.ablation)) {
-    const auto& steps = v.predicted ? predicted : plain;
+    const auto& steps = recorded[v.problems];
     v.settings.latency_s = latency.at(1 / rate);
     v.settings.jitter = options.jitter;
     const ForceTrace rendered = replay(steps, probe.motion, duration, v.settings);

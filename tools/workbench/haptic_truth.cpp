@@ -13,6 +13,7 @@
 #include "core/haptics/condense.h"
 #include "core/haptics/contact_frame_prediction.h"
 #include "core/haptics/haptic_update.h"
+#include "core/haptics/surface_patch_builder.h"
 #include "engine/live/command_script.h"
 #include "engine/live/exchange_pause.h"
 #include "engine/live/publisher.h"
@@ -106,12 +107,13 @@ ForceTrace reference_forces(Simulation& simulation, const Motion& motion, double
 }
 
 std::vector<RecordedStep> record_steps(Simulation& simulation, const Motion& motion, double duration_s,
-                                       double prediction_horizon_s) {
+                                       double prediction_horizon_s, bool patches) {
   std::vector<RecordedStep> out;
   Driven driven(simulation, motion);
   ExchangePause pause;
   Condenser condense;
   ContactFramePrediction predict;
+  SurfacePatchBuilder add_patches;
   ProblemStamp stamp;
   ConstraintProblem condensed;
   std::vector<std::uint8_t> bytes;
@@ -123,8 +125,10 @@ std::vector<RecordedStep> record_steps(Simulation& simulation, const Motion& mot
     step.force = {driven.force(0), driven.force(1)};
     stamp.step_s = simulation.h();
     stamp.sim_time_s = simulation.time();
+    const ConstraintProblem& step_problem =
+        patches ? add_patches(simulation, Publisher::max_rows) : simulation.problem();
     const ConstraintProblem& sent =
-        condense(prediction_horizon_s >= 0 ? predict(simulation, prediction_horizon_s) : simulation.problem(),
+        condense(prediction_horizon_s >= 0 ? predict(simulation, step_problem, prediction_horizon_s) : step_problem,
                  Publisher::max_rows, condensed);
     if (!encode_problem(stamp, sent, pause.hands(simulation), bytes) || !decode_problem(bytes, step.update, why))
       out.pop_back();

@@ -39,11 +39,11 @@ struct RecordedStep {
 /// The engine stepped at 1 kHz over `duration_s` of the motion. Throws InputError, as record_steps does, when the
 /// engine refuses a command of the motion: what is measured would be something else.
 ForceTrace reference_forces(Simulation& simulation, const Motion& motion, double duration_s);
-/// Its problems at the rate of the simulation's own step, condensed, encoded and decoded as on the bus; with contacts
-/// turned to where tools are so long after the step (core/haptics/contact_frame_prediction.h), negative: as they were
-/// in it.
+/// Its problems at the rate of the simulation's own step, condensed, encoded and decoded as on the bus. Contacts are
+/// turned to where tools are so long after the step (core/haptics/contact_frame_prediction.h); negative: as they were
+/// in it. `patches`: with surface patches (core/haptics/surface_patch_builder.h).
 std::vector<RecordedStep> record_steps(Simulation& simulation, const Motion& motion, double duration_s,
-                                       double prediction_horizon_s = -1);
+                                       double prediction_horizon_s = -1, bool patches = false);
 
 enum class Rendering { servo, held, diagonal, hindsight };
 

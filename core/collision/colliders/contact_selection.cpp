@@ -115,6 +115,12 @@ void ContactSelection::identify(double spacing2, std::uint64_t& next_key) {
   last_.swap(next_);
 }
 
+void ContactSelection::follow(std::span<const Proximity> chosen, double spacing, std::uint64_t& next_key) {
+  for (Known& k : last_) k.taken = false;
+  kept_.assign(chosen.begin(), chosen.end());
+  identify(spacing * spacing, next_key);
+}
+
 void ContactSelection::select(std::vector<Proximity>& all, const SelectionSettings& settings, std::uint64_t& next_key) {
   for (Known& k : last_) k.taken = false;
   rank(all, settings);

@@ -8,6 +8,7 @@
 // serve the warm start.
 #pragma once
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/collision/proximity.h"
@@ -27,6 +28,9 @@ class ContactSelection {
   /// Reduces `all` (in any reproducible order) in place and fills in keys and tangents. `next_key` counts up for every
   /// new contact. Allocates only to grow.
   void select(std::vector<Proximity>& all, const SelectionSettings& settings, std::uint64_t& next_key);
+  /// Continues from another selection's contacts, as if select() had returned them. Those that it knows keep their
+  /// keys. Of each, piece, local, normal and tangent are used.
+  void follow(std::span<const Proximity> chosen, double spacing, std::uint64_t& next_key);
   void reset() { last_.clear(); }
   /// Reserves memory for so many proximities before a selection and contacts after it.
   void reserve(std::size_t before, std::size_t after);

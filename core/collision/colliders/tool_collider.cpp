@@ -97,13 +97,30 @@ struct ToolCollider::Reached {
   bool at_end = false;  ///< its contacts of the start were taken at the step's end
 };
 
-ToolCollider::ToolCollider(const std::vector<ConvexPiece>& pieces, int triangles) {
-  for (const ConvexPiece& p : pieces) pieces_.push_back(rounded(p));
+ToolCollider::ToolCollider(const std::vector<ConvexPiece>& pieces, int triangles)
+    : ToolCollider(pieces.size(), triangles) {
+  for (const ConvexPiece& p : pieces) add_piece() = rounded(p);
+}
+
+ToolCollider::ToolCollider(std::size_t most_pieces, int triangles) : pieces_(most_pieces) {
+  for (RoundedPiece& p : pieces_) p.core.reserve(RoundedPiece::max_core);
   reset();
   candidates_.reserve(std::size_t(triangles));
-  found_.reserve(4096);
-  at_end_.reserve(4096);
+  const std::size_t room = std::min<std::size_t>(4096, (RoundedPiece::max_core + 2) * std::size_t(triangles));
+  found_.reserve(room);  // of one piece
+  at_end_.reserve(room);
   touch_normals_.reserve(max_touch_normals);
+}
+
+void ToolCollider::clear_pieces() {
+  used_ = 0;
+  reset();
+}
+
+RoundedPiece& ToolCollider::add_piece() {
+  RoundedPiece& piece = pieces_[used_++];
+  piece.core.clear();
+  return piece;
 }
 
 void ToolCollider::reset() {
@@ -135,24 +152,11 @@ void ToolCollider::add(Proximity x, const ToolContactSettings& settings, std::ve
 bool ToolCollider::take_contacts_of_start(const CollisionMesh& mesh, const SweptPiece& swept,
                                           const ToolContactSettings& settings, std::vector<Proximity>& out) {
   const bool ends = swept.expected && found_at_end(mesh, *swept.expected, settings);
-  Vec3& side = side_[std::size_t(swept.index)];
-  drop_wrong_exits(found_, side, settings.offset);
-  double least = 1e300;
-  Vec3 nearest = Vec3::Zero();
-  bool deep = false;
-  for (const Proximity& x : found_) {
-    deep = deep || x.gap < -0.9 * swept.radius();
-    if (x.gap < least) {
-      least = x.gap;
-      nearest = x.normal;
-    }
-  }
-  deep_[std::size_t(swept.index)] = deep;
-  const bool at_end = ends && !deep;
+  drop_wrong_exits(found_, side_[std::size_t(swept.index)], settings.offset);
+  const bool deep = remember_side(swept.index, swept.radius()), at_end = ends && !deep;
   if (at_end) out.insert(out.end(), at_end_.begin(), at_end_.end());
   else
     for (const Proximity& x : found_) add(x, settings, out);
-  if (least > -0.9 * swept.radius()) side = nearest;  // zero if nothing is near
   return at_end;
 }
 
@@ -222,7 +226,7 @@ void ToolCollider::detect(const CollisionMesh& mesh, const Pose& start, const Po
   const Vec6 motion = displacement(start, free);
   const double horizon = 1 + settings.collision_horizon;
   const Pose end = displaced(start, horizon * motion);
-  for (int index = 0; index < int(pieces_.size()); ++index) {
+  for (int index = 0; index < int(used_); ++index) {
     SweptPiece swept(pieces_[std::size_t(index)], index, start, motion, end, horizon, settings.offset);
     char& deep = deep_[std::size_t(index)];
     const double range = deep ? std::max(settings.alarm, settings.max_depth - swept.radius()) : settings.alarm;

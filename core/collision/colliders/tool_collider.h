@@ -60,15 +60,27 @@ struct RoundedPiece {
 };
 RoundedPiece rounded(const ConvexPiece& piece);
 struct PlacedPiece;
+struct CoreDistance;
 
 /// One tool and one surface. Remembers which pieces overlapped in the last step, since their search reaches deeper, and
 /// their sides. Allocates only in the constructor, as long as `out` has capacity.
 class ToolCollider {
  public:
   ToolCollider(const std::vector<ConvexPiece>& pieces, int triangles);
+  /// For pieces that change, at most so many; none at first.
+  ToolCollider(std::size_t most_pieces, int triangles);
+  /// Forgets all pieces and what it remembers of them. add_piece() returns the next one, to be filled in within the
+  /// capacity of its core. Neither allocates.
+  void clear_pieces();
+  RoundedPiece& add_piece();
+  std::span<const RoundedPiece> pieces() const { return {pieces_.data(), used_}; }
   /// Appends to `out`, piece by piece, in an order that depends on the arguments alone.
   void detect(const CollisionMesh& mesh, const Pose& start, const Pose& free, const ToolContactSettings& settings,
               std::vector<Proximity>& out);
+  /// The contacts at this pose and the mesh's positions alone, with all of the mesh's triangles as candidates, for a
+  /// mesh of few triangles. Those beyond the capacity of `out` are left out.
+  void detect_at(const CollisionMesh& mesh, const Pose& pose, const ToolContactSettings& settings,
+                 std::vector<Proximity>& out);
   void reset();
   /// Time in the last detect's step at which a piece first touched while it moved inward in its free motion; 1: none
   /// did.
@@ -98,17 +110,17 @@ class ToolCollider {
   void add_those_on_free_side(const ToolContactSettings& settings, std::vector<Proximity>& out) const;
   static void add(Proximity x, const ToolContactSettings& settings, std::vector<Proximity>& out);
   // Contacts at a moment (tool_contacts.cpp).
-  struct Narrow;
   struct ContactsOfTriangle;
-  static Narrow closest(std::span<const Vec3> core, const std::array<Vec3, 3>& tri, double limit);
   static bool within_range(Candidate& k, const PlacedPiece& at, const std::array<Vec3, 3>& tri, double range,
-                           Narrow& n);
+                           CoreDistance& n);
+  bool remember_side(int piece, double radius);
   void evaluate(const CollisionMesh& mesh, const PlacedPiece& at, const ToolContactSettings& settings, double range,
                 std::vector<Proximity>& found);
   bool found_at_end(const CollisionMesh& mesh, const PlacedPiece& expected, const ToolContactSettings& settings);
   void drop_wrong_exits(std::vector<Proximity>& found, const Vec3& side, double offset) const;
 
   std::vector<RoundedPiece> pieces_;
+  std::size_t used_ = 0;    ///< of the pieces
   std::vector<char> deep_;  ///< per piece: overlapped in the last step
   std::vector<Vec3> side_;  ///< per piece: surface normal where it was last near and outside; zero: none known
   double touch_time_ = 1;

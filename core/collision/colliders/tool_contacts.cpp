@@ -3,37 +3,10 @@
 #include <array>
 #include <cmath>
 
-#include "core/collision/shapes/gjk.h"
+#include "core/collision/shapes/core_triangle.h"
 #include "core/collision/shapes/placed_piece.h"
 
 namespace insula {
-
-/// Closest points of a piece's core and of a triangle.
-struct ToolCollider::Narrow {
-  double distance = 0;  ///< of the core, unsigned
-  Vec3 p, c, bary;
-};
-
-// Exact if no farther than `limit`, else no more than the distance.
-ToolCollider::Narrow ToolCollider::closest(std::span<const Vec3> core, const std::array<Vec3, 3>& tri, double limit) {
-  Narrow r;
-  if (core.size() <= 2) {
-    const ClosestPair q = core.size() == 1 ? point_triangle(core[0], tri[0], tri[1], tri[2])
-                                           : segment_triangle(core[0], core[1], tri[0], tri[1], tri[2]);
-    r.distance = std::sqrt(q.distance2);
-    r.p = q.p;
-    r.c = q.c;
-    r.bary = q.bary;
-    return r;
-  }
-  const HullDistance d = hull_distance(core, tri, limit);
-  r.distance = d.distance;
-  r.p = d.a;
-  r.c = d.b;
-  r.bary.setZero();
-  for (int k = 0; k < d.count; ++k) r.bary[d.index[k]] += d.weight[k];
-  return r;
-}
 
 namespace {
 
@@ -75,13 +48,13 @@ struct ToolCollider::ContactsOfTriangle {
   }
 
   /// Adds the contact of a core that intersects this triangle. It is pushed out along the normal by the core's depth.
-  void add_intersecting(const Narrow& n) const {
+  void add_intersecting(const CoreDistance& n) const {
     double deepest = 0;
     for (const Vec3& q : at.core()) deepest = std::max(deepest, face.dot(tri[0] - q));
     add(triangle, n.bary, n.c, face, -at.radius - std::min(deepest, settings.max_correction));
   }
 
-  void add_nearest(const Narrow& n, const Vec3& side) const {
+  void add_nearest(const CoreDistance& n, const Vec3& side) const {
     const double t = at.time, clear = n.distance - at.radius;
     const Vec3 d = (n.p - n.c) / n.distance;
     const TriangleFeature f = feature_of(n.bary);
@@ -110,7 +83,7 @@ struct ToolCollider::ContactsOfTriangle {
 
 // Updates a candidate's bounds for the pose of the piece. False if it is out of range.
 bool ToolCollider::within_range(Candidate& k, const PlacedPiece& at, const std::array<Vec3, 3>& tri, double range,
-                                Narrow& n) {
+                                CoreDistance& n) {
   const bool on_path = at.shift.norm() == 0 && !at.expected;
   // First a cheap bound: sphere around the triangle, segment in the core.
   const Vec3 centre = (tri[0] + tri[1] + tri[2]) / 3;
@@ -120,7 +93,7 @@ bool ToolCollider::within_range(Candidate& k, const PlacedPiece& at, const std::
   const double axis = (at.axis0 + s * (at.axis1 - at.axis0) - centre).norm();
   double clear = axis - std::sqrt(reach2) - at.bound - at.radius;
   if (clear <= range) {
-    n = closest(at.core(), tri, at.radius + range);
+    n = core_triangle(at.core(), tri, at.radius + range);
     clear = n.distance - at.radius;
   }
   if (on_path) {
@@ -140,7 +113,7 @@ void ToolCollider::evaluate(const CollisionMesh& mesh, const PlacedPiece& at, co
     if (k.clear - (at.expected ? k.to_end : k.speed * std::abs(t - k.time)) - slid > range) continue;
     const auto& v = mesh.triangle(k.triangle);
     const std::array<Vec3, 3> tri{mesh.vertex(v[0], t), mesh.vertex(v[1], t), mesh.vertex(v[2], t)};
-    Narrow n;
+    CoreDistance n;
     if (!within_range(k, at, tri, range, n)) continue;
     const ContactsOfTriangle contacts{mesh, at, settings, k.triangle, tri, mesh.face_normal(k.triangle, t), found};
     if (n.distance < 1e-9) {
@@ -169,6 +142,42 @@ void ToolCollider::drop_wrong_exits(std::vector<Proximity>& found, const Vec3& s
   for (const Proximity& x : found)
     if (!behind(x) || (x.normal.dot(side) >= -0.2 && x.normal.dot(out) >= 0.3)) found[kept++] = x;
   found.resize(kept);
+}
+
+// Keeps whether the piece is behind the surface, and the side on which it is near. Returns the first.
+bool ToolCollider::remember_side(int piece, double radius) {
+  const double depth = -0.9 * radius;
+  double least = 1e300;
+  Vec3 nearest = Vec3::Zero();
+  bool deep = false;
+  for (const Proximity& x : found_) {
+    deep = deep || x.gap < depth;
+    if (x.gap < least) {
+      least = x.gap;
+      nearest = x.normal;
+    }
+  }
+  deep_[std::size_t(piece)] = deep;
+  if (least > depth) side_[std::size_t(piece)] = nearest;  // zero if nothing is near
+  return deep;
+}
+
+void ToolCollider::detect_at(const CollisionMesh& mesh, const Pose& pose, const ToolContactSettings& settings,
+                             std::vector<Proximity>& out) {
+  for (int index = 0; index < int(used_); ++index) {
+    candidates_.clear();  // their bounds are those of a piece
+    for (int t = 0; t < mesh.triangle_count(); ++t) candidates_.push_back({t, 0, 0, 0, 0});
+    const RoundedPiece& piece = pieces_[std::size_t(index)];
+    const PlacedPiece at(piece, index, pose, pose, 0, Vec3::Zero(), settings.offset);
+    const double range =
+        deep_[std::size_t(index)] ? std::max(settings.alarm, settings.max_depth - at.radius) : settings.alarm;
+    found_.clear();
+    evaluate(mesh, at, settings, range, found_);
+    drop_wrong_exits(found_, side_[std::size_t(index)], settings.offset);
+    remember_side(index, at.radius);
+    for (const Proximity& x : found_)
+      if (out.size() < out.capacity()) add(x, settings, out);
+  }
 }
 
 // Writes the contacts of a piece at its expected pose at the end of the step into at_end_. False if there are none, or

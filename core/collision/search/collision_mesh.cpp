@@ -56,6 +56,39 @@ void CollisionMesh::build(std::span<const Vec3> rest, std::span<const std::array
   }
 }
 
+void CollisionMesh::reserve_few(std::size_t vertices, std::size_t triangles) {
+  triangles_.reserve(triangles);
+  across_.reserve(triangles);
+  ring_start_.reserve(vertices + 1);
+  ring_.reserve(3 * triangles);
+}
+
+void CollisionMesh::build_few(std::span<const Vec3> positions, std::span<const std::array<int, 3>> triangles) {
+  triangles_.assign(triangles.begin(), triangles.end());
+  positions_ = positions;
+  free_ = {};
+  ring_start_.assign(positions.size() + 1, 0);
+  for (const auto& t : triangles_)
+    for (int v : t) ++ring_start_[std::size_t(v) + 1];
+  std::partial_sum(ring_start_.begin(), ring_start_.end(), ring_start_.begin());
+  ring_.resize(triangles_.size() * 3);
+  // Filling moves each start to its end, that is to the next start.
+  for (std::size_t i = triangles_.size(); i-- > 0;)
+    for (int v : triangles_[i]) ring_[std::size_t(--ring_start_[std::size_t(v) + 1])] = int(i);
+  for (std::size_t v = 0; v + 1 < ring_start_.size(); ++v) ring_start_[v] = ring_start_[v + 1];
+  ring_start_.back() = int(ring_.size());
+  across_.assign(triangles_.size(), {-1, -1, -1});
+  for (std::size_t i = 0; i < triangles_.size(); ++i)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int from = triangles_[i][k], to = triangles_[i][(k + 1) % 3];
+      for (const int other : triangles_around(from)) {
+        const auto& t = triangles_[std::size_t(other)];
+        for (std::size_t c = 0; c < 3 && across_[i][k] < 0; ++c)
+          if (t[c] == to && t[(c + 1) % 3] == from) across_[i][k] = other;
+      }
+    }
+}
+
 void CollisionMesh::keep_positions() {
   if (last_.empty()) last_.assign(positions_.begin(), positions_.end());
 }
@@ -186,7 +219,7 @@ bool CollisionMesh::locally_closest(int tri, const TriangleFeature& f, const Vec
 NearestPoint CollisionMesh::nearest(const Vec3& p, double t, double limit, const Vec3* side) const {
   NearestPoint e;
   double bound2 = limit * limit * (1 + 1e-9);
-  tree_.nearest(p, bound2, [&](int tri, double& least2) {
+  const auto look = [&](int tri, double& least2) {
     if (side && face_normal(tri, t).dot(*side) < 0.2) return;
     const auto& v = triangle(tri);
     const ClosestPair q = point_triangle(p, vertex(v[0], t), vertex(v[1], t), vertex(v[2], t));
@@ -195,7 +228,10 @@ NearestPoint CollisionMesh::nearest(const Vec3& p, double t, double limit, const
     e.triangle = tri;
     e.bary = q.bary;
     e.point = q.c;
-  });
+  };
+  if (tree_.empty())
+    for (int t = 0; t < triangle_count(); ++t) look(t, bound2);
+  else tree_.nearest(p, bound2, look);
   if (e.triangle < 0) return e;
   const Vec3 normal = pseudo_normal(e.triangle, feature_of(e.bary), t);
   const Vec3 d = e.point - p;

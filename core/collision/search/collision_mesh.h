@@ -34,6 +34,11 @@ class CollisionMesh {
   /// Triangles are counter-clockwise seen from outside. Closed surfaces and open sheets (one-sided, facing along their
   /// normals) are allowed.
   void build(std::span<const Vec3> rest, std::span<const std::array<int, 3>> triangles);
+  /// Adjacency of a few triangles, without a box tree or regions: for normals, locally_closest() and nearest() alone.
+  /// The arrays of positions must exist until the next call. Does not allocate up to the numbers of reserve_few().
+  void build_few(std::span<const Vec3> positions, std::span<const std::array<int, 3>> triangles);
+  void reserve_few(std::size_t vertices, std::size_t triangles);
+  void move_few(std::span<const Vec3> positions) { positions_ = positions; }  ///< of as many vertices
   /// Takes this step's positions and free displacements (empty: a fixed surface) and refits the tree. The arrays must
   /// exist until the next update.
   void update(std::span<const Vec3> positions, std::span<const Vec3> free);
@@ -96,6 +101,8 @@ class CollisionMesh {
   /// be the surface point closest to p. The product of the normal with p - c has the sign of the distance of p
   /// (Baerentzen, Aanaes 2005).
   Vec3 pseudo_normal(int tri, const TriangleFeature& f, double t = 0) const;
+  /// Neighbour across the edge that starts at that corner; -1 at a border.
+  int across(int tri, int corner) const { return across_[std::size_t(tri)][std::size_t(corner)]; }
   /// Whether c is also closest on the neighbouring triangles. c is the point of this triangle that is closest to
   /// something in direction d (unit, from c). No step from c into a neighbour may lead along d by more than `slack` (a
   /// sine).
