@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/constraint/problem_fields.h"
+#include "haptic_server/tick_share.h"
 
 namespace insula {
 namespace {
@@ -186,7 +187,7 @@ void PatchContacts::couple(const ConstraintProblem& p) noexcept {
 
 void PatchContacts::scale(double dt, double h, bool substep_compliance) noexcept {
   for (std::size_t i = 0; i < share_.size(); ++i)
-    share_[i] = substep_compliance && h > 0 ? std::sqrt(dt / (beta_[i] + dt) * (h + beta_[i]) / h) : 1.0;
+    share_[i] = substep_compliance && h > 0 ? tick_share(dt, h, beta_[i]) : 1.0;
 }
 
 void PatchContacts::subtract_known(std::span<const double> share, std::span<double> delta_free) const noexcept {

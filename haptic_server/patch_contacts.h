@@ -33,7 +33,6 @@ class PatchContacts {
   const ConstraintProblem& begin(const ConstraintProblem& problem) noexcept;
   /// The problem that the ticks use: what begin() returned, or the same without some of its blocks.
   void couple(const ConstraintProblem& problem) noexcept;
-  bool any() const noexcept { return vertex_rows_ > 0 || patches_ != nullptr; }
   /// Force and moment of the patches' contacts on a tool in the last tick, about the tool's origin, N and N m.
   const Vec6& push(std::size_t tool) const noexcept { return push_[tool]; }
 
@@ -56,7 +55,6 @@ class PatchContacts {
   /// Takes the solution of that problem: moves the vertices. `known` and `share` as before.
   void solved(std::span<const double> lambda, std::span<const double> share, std::span<const double> known, double dt_s,
               bool substep_compliance) noexcept;
-  std::size_t contacts() const noexcept { return contacts_.size(); }
   /// Whether a contact that pressed in the tick before is not among those of this one. Its force has jumped to others.
   bool exchanged() const noexcept { return exchanged_; }
 

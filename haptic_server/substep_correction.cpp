@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "haptic_server/tick_share.h"
+
 namespace insula {
 namespace {
 
@@ -79,7 +81,7 @@ void SubstepCorrection::scale_compliance(double dt) noexcept {
   const double h = p.step_s;
   for (std::size_t i = 0; i < n; ++i) {
     const double beta = p.retardation_time[i];
-    share_[i] = settings_.substep_compliance && h > 0 ? std::sqrt(dt / (beta + dt) * (h + beta) / h) : 1.0;
+    share_[i] = settings_.substep_compliance && h > 0 ? tick_share(dt, h, beta) : 1.0;
   }
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = 0; j < n; ++j) tick_.w[i * stride + j] = share_[i] * share_[j] * p.w_at(int(i), int(j));

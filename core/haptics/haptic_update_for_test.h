@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <insula_lcm/haptic_problem_t.hpp>
 #include <random>
 
 #include "core/constraint/problem_fields.h"
@@ -116,6 +117,16 @@ inline Buffer encoded(const HapticUpdate& u) {
   Buffer out;
   EXPECT_TRUE(encode_problem(u, out));
   return out;
+}
+
+/// The bytes are those of the generated class. Returns the message that it reads.
+inline insula_lcm::haptic_problem_t expect_generated_form(const Buffer& bytes) {
+  insula_lcm::haptic_problem_t message{};
+  EXPECT_EQ(message.decode(bytes.data(), 0, int(bytes.size())), int(bytes.size()));
+  Buffer theirs(std::size_t(message.getEncodedSize()));
+  EXPECT_EQ(message.encode(theirs.data(), 0, int(theirs.size())), int(theirs.size()));
+  EXPECT_EQ(bytes, theirs);
+  return message;
 }
 
 inline void expect_equal(const HapticUpdate& a, const HapticUpdate& b) {

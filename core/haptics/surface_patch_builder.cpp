@@ -6,14 +6,14 @@
 
 #include "core/constraint/problem_fields.h"
 #include "core/haptics/condense.h"
+#include "core/haptics/patch_collider.h"
 #include "core/linalg/body_solver.h"
 #include "core/mechanics/deformable_body.h"
 
 namespace insula {
 namespace {
 
-constexpr std::size_t most_triangles = 128;  // of a patch
-constexpr std::size_t most_offers = 600;     // that are looked at
+constexpr std::size_t most_offers = 600;  // that are looked at
 
 bool moves(const Surface& s) { return s.body().blocks() > 0; }
 
@@ -61,7 +61,8 @@ void SurfacePatchBuilder::choose(int moving_vertices) {
     const bool taken = std::any_of(chosen_.begin(), chosen_.end(), [&](const Chosen& k) {
       return k.candidate == o.candidate && k.triangle == o.triangle;
     });
-    if (taken || count[o.candidate] == most_triangles || chosen_.size() == SurfacePatches::max_triangles) continue;
+    if (taken || count[o.candidate] == PatchCollider::most_triangles || chosen_.size() == SurfacePatches::max_triangles)
+      continue;
     const auto& corner = surface.triangles()[std::size_t(o.triangle)];
     const auto fresh =
         int(std::count_if(corner.begin(), corner.end(), [&](int v) { return index_of(surface, v) < 0; }));

@@ -90,10 +90,9 @@ void Contact::search(const Search& what) {
     ToolContactSettings settings;
     settings.alarm = alarm();
     settings.collision_horizon = collision_horizon_;
-    settings.max_correction = max_correction();
+    settings.max_correction = max_correction_of(p);
     if (p.b && p.b->thickness() > 0) {
       settings.offset = 0.5 * p.b->thickness();
-      settings.max_correction = std::min(max_correction(), max_step_displacement());
     } else {
       settings.one_sided = true;
     }
@@ -132,9 +131,7 @@ void Contact::detect(const StepContext& context) {
           p.vertex_collider && p.b->thickness() > 0 ? 0.0 : spacing();  // all of a wall's vertices are kept out
       choice.advantage = 0.2 * alarm();
       choice.max_contacts = max_contacts();
-      // A jaw is one piece and may use all contacts. Of several pieces, each gets at most half.
-      choice.max_per_piece =
-          p.single_piece() || p.vertex_collider ? max_contacts() : std::max(2, (max_contacts() + 1) / 2);
+      choice.max_per_piece = max_contacts_per_piece(p);
     } else {
       choice.spacing = tissue_spacing();
       choice.advantage = 0.5 * tissue_alarm();
@@ -146,6 +143,15 @@ void Contact::detect(const StepContext& context) {
     }
     p.selection.select(p.contacts, choice, next_key_);
   }
+}
+
+double Contact::max_correction_of(const Pair& p) const {
+  return p.b && p.b->thickness() > 0 ? std::min(max_correction(), max_step_displacement()) : max_correction();
+}
+
+// A jaw is one piece and may use all contacts. Of several pieces, each gets at most half.
+int Contact::max_contacts_per_piece(const Pair& p) const {
+  return p.single_piece() || p.vertex_collider ? max_contacts() : std::max(2, (max_contacts() + 1) / 2);
 }
 
 double Contact::max_contact_force(const Pair& p) const {

@@ -208,6 +208,8 @@ class Contact final : public Constraint, public StatesLaw {
   };
   Touch first_touch(const Pair& pair) const;
   void limit_motion(ConstraintBuilder& builder, const Pair& pair) const;
+  double max_correction_of(const Pair& pair) const;  ///< of an overlap of a tool in a step, m
+  int max_contacts_per_piece(const Pair& pair) const;
   double max_contact_force(const Pair& pair) const;  ///< of one contact, N
   bool bounded(const Pair& pair) const { return max_contact_force(pair) < infinite; }
   double compliance(const Pair& pair) const {

@@ -91,10 +91,9 @@ void Contact::find_patches(std::vector<PatchCandidate>& out) const {
     near.law.alarm_m = alarm();
     near.law.spacing_m = spacing();
     near.law.half_thickness_m = half_thickness;
-    near.law.max_correction_m =
-        half_thickness > 0 ? std::min(max_correction(), max_step_displacement()) : max_correction();
+    near.law.max_correction_m = max_correction_of(p);
     near.law.max_contacts = max_contacts();
-    near.law.max_per_piece = p.single_piece() ? max_contacts() : std::max(2, (max_contacts() + 1) / 2);
+    near.law.max_per_piece = max_contacts_per_piece(p);
     out.push_back(std::move(near));
   }
 }
