@@ -86,8 +86,10 @@ function play(scene, lcm, state, sockets, sceneInfo) {
     const dt = (now - last) / 1000;
     last = now;
     if (state.mode === 'waiting') state.paused = true;
-    if (!state.paused) state.time += dt;
-    if (!state.paused) theatre.step(state.time, dt);
+    if (!state.paused && !state.frozen) {
+      state.time += dt;
+      theatre.step(state.time, dt);
+    }
     const at = { session: state.session, sequence: state.sequence, sim_time_s: state.time, value: 0 };
     for (const said of theatre.said.splice(0))
       broadcast('SIM_EVENT', lcm.sim_event_t.encode(Object.assign(lcm.sim_event_t.make(), said, at)));

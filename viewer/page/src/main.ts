@@ -210,7 +210,7 @@ function build(bundle: Bundle): void {
 
 // Steel would have nothing to mirror and be black.
 const graphics = new Graphics(canvas, () => {
-  if (world) build(world.bundle);
+  if (world) world.setEnvironment(stage.light(vector(world.bundle.view.up)));
 });
 
 /** Loads the bundle of a new session, once; tries again when it fails. */

@@ -66,6 +66,14 @@ export class World {
     return meshes;
   }
 
+  /** Another picture of the room, in all that mirrors it. */
+  setEnvironment(room: THREE.Texture): void {
+    this.root.traverse((o) => {
+      const material = o instanceof THREE.Mesh ? (o.material as THREE.MeshStandardMaterial) : null;
+      if (material?.envMap) material.envMap = room;
+    });
+  }
+
   /** The infrared camera's picture instead of the eye's. */
   setInfrared(on: boolean): void {
     this.infrared = on;

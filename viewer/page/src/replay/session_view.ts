@@ -52,7 +52,7 @@ export class SessionView {
     this.watch = new QualityWatch(quality, advice === '' ? 'high' : 'draft');
     this.stage.scene.add(this.arrows.root);
     this.graphics = new Graphics(canvas, () => {
-      if (this.world) this.build(this.world.bundle);
+      if (this.world) this.world.setEnvironment(this.stage.light(vector(this.world.bundle.view.up)));
     });
   }
 
@@ -62,7 +62,7 @@ export class SessionView {
     this.session = session;
     this.stage.scope.setHome(bundle.view);
     this.reading.begin(bundle);
-    this.buildPlain(bundle);
+    this.build(bundle);
     this.unveiling = new Unveiling(this.world!.later);
     return bundle;
   }
@@ -156,11 +156,6 @@ export class SessionView {
   }
 
   private build(bundle: Bundle): void {
-    this.buildPlain(bundle);
-    this.world?.shade();
-  }
-
-  private buildPlain(bundle: Bundle): void {
     this.world?.dispose();
     const room: THREE.Texture = this.stage.light(vector(bundle.view.up));
     this.world = new World(bundle, this.stage.scope.fieldAxis, room);
