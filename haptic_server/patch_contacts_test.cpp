@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "core/collision/shapes/shapes_for_test.h"
 #include "haptic_server/patched_problem_for_test.h"
 #include "haptic_server/servo.h"
 
@@ -122,6 +123,102 @@ TEST(PatchContacts, ForcesOfAClosedPathDoNoWorkWithoutFriction) {
   }
   EXPECT_GT(stored, 1e-6);
   EXPECT_NEAR(work, 0, 1e-4 * stored);
+}
+
+/// A rigid tube about y, or a sphere, of this radius, as few triangles on the side of +z.
+constexpr double round_m = 1.5e-3;
+struct Round {
+  std::vector<Vec3> vertices, normals;
+  std::vector<std::array<int, 3>> triangles;
+  bool sphere = false;
+  /// From the axis or the centre, unit.
+  Vec3 out(const Vec3& p) const { return (sphere ? p : Vec3(p.x(), 0, p.z())).normalized(); }
+};
+
+Round round_tube() {
+  constexpr int sides = 8, rings = 5;  // on half of the tube
+  Round r;
+  for (int j = 0; j < rings; ++j)
+    for (int i = 0; i <= sides; ++i) {
+      const double a = M_PI * i / sides;
+      r.normals.emplace_back(-std::cos(a), 0, std::sin(a));
+      r.vertices.push_back(round_m * r.normals.back() + Vec3(0, 0.8e-3 * (j - rings / 2), 0));
+    }
+  const auto at = [](int j, int i) { return j * (sides + 1) + i; };
+  for (int j = 0; j + 1 < rings; ++j)
+    for (int i = 0; i < sides; ++i) {
+      r.triangles.push_back({at(j, i), at(j, i + 1), at(j + 1, i)});
+      r.triangles.push_back({at(j, i + 1), at(j + 1, i + 1), at(j + 1, i)});
+    }
+  for (auto& t : r.triangles) std::swap(t[1], t[2]);
+  const auto& t = r.triangles[0];
+  const Vec3 n = (r.vertices[std::size_t(t[1])] - r.vertices[std::size_t(t[0])])
+                     .cross(r.vertices[std::size_t(t[2])] - r.vertices[std::size_t(t[0])]);
+  if (n.dot(r.normals[std::size_t(t[0])]) < 0)
+    for (auto& u : r.triangles) std::swap(u[1], u[2]);
+  return r;
+}
+
+Round round_sphere() {
+  const TriMesh all = shapes::sphere(Vec3::Zero(), round_m, 3);
+  Round r;
+  r.sphere = true;
+  std::vector<int> number(all.vertices.size(), -1);
+  for (const auto& t : all.triangles) {
+    Vec3 middle = Vec3::Zero();
+    for (const int v : t) middle += all.vertices[std::size_t(v)] / 3;
+    if (middle.z() < 0.72 * round_m) continue;
+    auto& to = r.triangles.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto v = std::size_t(t[k]);
+      if (number[v] < 0) {
+        number[v] = int(r.vertices.size());
+        r.vertices.push_back(all.vertices[v]);
+        r.normals.push_back(all.vertices[v].normalized());
+      }
+      to[k] = number[v];
+    }
+  }
+  return r;
+}
+
+// The facets are 29 um high on the tube, which are 9 mN on this coupling.
+TEST(PatchContacts, ABallDrawnAlongACurvedSurfaceFeelsItsCurvatureWithoutFacets) {
+  for (const Round& round : {round_tube(), round_sphere()}) {
+    const double reach = round_m + patched_radius_m, depth = 0.1e-3;
+    const double most = round.sphere ? 0.5 : 1.2;  // radians to each side
+    const auto device = [&](double a) {
+      const double turned = 0.2 + 0.4 * a;  // the path is oblique
+      const Vec3 p = (reach - depth) * Vec3(std::sin(a), 0, std::cos(a));
+      return round.sphere ? Vec3(p.x() * std::cos(turned), p.x() * std::sin(turned), p.z())
+                          : Vec3(p + 1e-3 * Vec3(0, a, 0));
+    };
+    ConstraintProblem p;
+    p.resize(0);
+    p.step_s = 1.0 / 60;
+    p.tools.push_back(ball_tool(device(-most), 0));
+    testing::add_patch(p, round.vertices, round.triangles, 1e-9);
+    p.patches.patches[0].curved = 1;
+    for (std::size_t v = 0; v < round.normals.size(); ++v) p.patches.vertices[v].weighted_normal = round.normals[v];
+    Servo servo(exact());
+    servo.set_problem(&p, {}, 1e-3);
+    double least = 1e300, largest = 0, work = 0;
+    Vec3 last = servo.tick(at(device(-most))).hand[1].force;
+    const int ticks = 4000;
+    for (int k = 1; k <= 2 * ticks; ++k) {  // there and back
+      const auto angle = [&](int i) { return most * (1 - std::abs(2.0 * (i - ticks) / ticks)); };
+      const Vec3 x = device(angle(k)), force = servo.tick(at(x)).hand[1].force;
+      least = std::min(least, force.norm());
+      largest = std::max(largest, force.norm());
+      EXPECT_LT(force.normalized().cross(round.out(x)).norm(), 0.02) << k;
+      work += 0.5 * (force + last).dot(x - device(angle(k - 1)));
+      last = force;
+    }
+    EXPECT_LT(largest - least, 0.3e-3) << (round.sphere ? "sphere" : "tube");
+    EXPECT_NEAR(0.5 * (largest + least), 300 * depth, 0.02 * 300 * depth);
+    // A tick's normal is that of the tick before, which is first order in the length of a tick.
+    EXPECT_NEAR(work, 0, 5e-5 * 300 * depth * 4 * most * reach);
+  }
 }
 
 }  // namespace

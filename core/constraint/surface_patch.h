@@ -19,6 +19,8 @@ namespace insula {
 struct PatchVertex {
   int row = -1;                  ///< first of its three rows; -1: it cannot move
   Vec3 position = Vec3::Zero();  ///< at the end of the step
+  /// CollisionMesh::weighted_normal() of the whole surface at the start of the step.
+  Vec3 weighted_normal = Vec3::Zero();
   bool operator==(const PatchVertex&) const = default;
 };
 
@@ -53,6 +55,7 @@ struct SurfacePatch {
   std::uint64_t id = 0;  ///< stable from step to step, unique in a problem
   int tool = 0;          ///< of ConstraintProblem::tools
   double friction = 0;
+  int curved = 0;                 ///< 1: its triangles are curved as the vertices' normals say
   double compliance_m_per_N = 0;  ///< of a contact, along the normal
   double alarm_m = 0, spacing_m = 0, half_thickness_m = 0, max_correction_m = 0;
   int max_contacts = 0, max_per_piece = 0;

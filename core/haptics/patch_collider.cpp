@@ -20,6 +20,7 @@ PatchCollider::PatchCollider() : collider_(most_pieces, int(most_triangles)) {
   mesh_.reserve_few(SurfacePatches::max_vertices, most_triangles);
   selection_.reserve(most_found, most_contacts);
   triangles_.reserve(most_triangles);
+  weighted_normals_.reserve(SurfacePatches::max_vertices);
   open_.reserve(most_triangles);
   piece_index_.reserve(most_pieces);
   touched_.reserve(most_pieces);
@@ -40,6 +41,8 @@ void PatchCollider::set(const SurfacePatches& all, const SurfacePatch& patch) {
   fresh_ = true;
   triangles_.clear();
   open_.clear();
+  weighted_normals_.clear();
+  for (const PatchVertex& v : all.vertices) weighted_normals_.push_back(v.weighted_normal);
   for (int i = 0; i < patch.triangles && triangles_.size() < most_triangles; ++i) {
     const PatchTriangle& t = all.triangles[std::size_t(patch.first_triangle + i)];
     triangles_.push_back({t.corner[0], t.corner[1], t.corner[2]});
@@ -97,12 +100,13 @@ void PatchCollider::add_beside(const Pose& tool, int piece, std::vector<Proximit
 void PatchCollider::detect(const Pose& tool, std::span<const Vec3> vertices, std::vector<Proximity>& out,
                            std::uint64_t& next_key) {
   out.clear();
-  if (std::exchange(fresh_, false)) mesh_.build_few(vertices, triangles_);
+  if (std::exchange(fresh_, false)) mesh_.build_few(vertices, triangles_, weighted_normals_);
   else mesh_.move_few(vertices);
   ToolContactSettings settings;
   settings.alarm = patch_.alarm_m;
   settings.max_correction = patch_.max_correction_m;
   settings.offset = patch_.half_thickness_m;
+  settings.curved = patch_.curved != 0;
   collider_.detect_at(mesh_, tool, settings, out);
   for (int i = 0; i < int(piece_index_.size()); ++i) {
     if (!touched_[std::size_t(i)]) continue;

@@ -54,6 +54,7 @@ requires std::same_as<std::remove_const_t<V>, PatchVertex>
 void fields(Io& io, V& v) {
   io.template number<std::int16_t>(v.row);
   io.template vector<double>(v.position);
+  io.template vector<double>(v.weighted_normal);
 }
 template <class Io, class T>
 requires std::same_as<std::remove_const_t<T>, PatchTriangle>
@@ -88,6 +89,7 @@ requires std::same_as<std::remove_const_t<P>, SurfacePatch>
 void fields(Io& io, P& p) {
   io.template number<std::int64_t>(p.id);
   io.template number<std::int8_t>(p.tool);
+  io.template number<std::int8_t>(p.curved);
   for (auto* x :
        {&p.friction, &p.compliance_m_per_N, &p.alarm_m, &p.spacing_m, &p.half_thickness_m, &p.max_correction_m})
     io.template number<double>(*x);
@@ -150,7 +152,8 @@ struct Check {
     ++vertices;
     const auto row = std::size_t(std::max(0, v.row));
     const bool moves = v.row >= 0 && v.row + 3 <= layout.rows && surface[row] && surface[row + 1] && surface[row + 2];
-    return vector_ok(v.position, limits::position_m) && (v.row == -1 || moves);
+    return vector_ok(v.position, limits::position_m) && v.weighted_normal.allFinite() &&
+           v.weighted_normal.norm() < 1 + 1e-9 && (v.row == -1 || moves);
   }
   bool operator()(const PatchTriangle& t) {
     ++triangles;
@@ -176,12 +179,13 @@ struct Check {
     const auto known = ids.begin() + std::ptrdiff_t(patches);
     if (std::find(ids.begin(), known, p.id) != known) return false;
     ids[patches++] = p.id;
-    return p.tool >= 0 && p.tool < layout.tools && p.friction > 0 && p.friction <= max_friction &&
-           p.compliance_m_per_N >= 0 && p.compliance_m_per_N <= max_contact_compliance && length_ok(p.alarm_m, 1e-6) &&
-           length_ok(p.spacing_m) && length_ok(p.half_thickness_m) && length_ok(p.max_correction_m) &&
-           p.max_contacts >= 1 && p.max_contacts <= max_contacts && p.max_per_piece >= 1 &&
-           p.max_per_piece <= max_contacts && range_ok(p.first_triangle, p.triangles, triangles) &&
-           range_ok(p.first_piece, p.pieces, pieces) && range_ok(p.first_replaced, p.replaced, replaced);
+    return p.tool >= 0 && p.tool < layout.tools && (p.curved == 0 || p.curved == 1) && p.friction > 0 &&
+           p.friction <= max_friction && p.compliance_m_per_N >= 0 && p.compliance_m_per_N <= max_contact_compliance &&
+           length_ok(p.alarm_m, 1e-6) && length_ok(p.spacing_m) && length_ok(p.half_thickness_m) &&
+           length_ok(p.max_correction_m) && p.max_contacts >= 1 && p.max_contacts <= max_contacts &&
+           p.max_per_piece >= 1 && p.max_per_piece <= max_contacts &&
+           range_ok(p.first_triangle, p.triangles, triangles) && range_ok(p.first_piece, p.pieces, pieces) &&
+           range_ok(p.first_replaced, p.replaced, replaced);
   }
 };
 

@@ -28,6 +28,8 @@ HapticUpdate patched_update(unsigned seed) {
   SurfacePatches& s = p.patches;
   s.vertices = {
       {vertex_row, Vec3(0.01, 0.02, 0.03)}, {vertex_row + 3, Vec3(0.02, 0.02, 0.03)}, {-1, Vec3(0.01, 0.03, 0)}};
+  s.vertices[0].weighted_normal = Vec3(0, 0, 1);
+  s.vertices[1].weighted_normal = Vec3(0.3, 0.2, 0.1);
   s.triangles = {{{0, 1, 2}, 5}, {{0, 2, 1}, 0}};
   s.core = {Vec3(0, 0, 0.001), Vec3(0, 0, 0.011), Vec3(0, 0.002, 0)};
   PatchPiece shaft;
@@ -47,6 +49,7 @@ HapticUpdate patched_update(unsigned seed) {
   SurfacePatch patch;
   patch.id = 12345;
   patch.tool = 1;
+  patch.curved = 1;
   patch.friction = 0.2;
   patch.compliance_m_per_N = 1e-3;
   patch.alarm_m = 1e-3;
@@ -100,6 +103,8 @@ TEST(SurfacePatchWire, WhatRefersToNothingOrIsOutOfRangeIsRefused) {
       {"negative row", [](Patches& s) { s.vertices[1].row = -2; }},
       {"vertex far away", [](Patches& s) { s.vertices[0].position.x() = 1e3; }},
       {"vertex that is no number", [](Patches& s) { s.vertices[0].position.x() = NAN; }},
+      {"normal that is too long", [](Patches& s) { s.vertices[0].weighted_normal.x() = 0.1; }},
+      {"normal that is no number", [](Patches& s) { s.vertices[0].weighted_normal.x() = NAN; }},
       {"corner that is not there", [](Patches& s) { s.triangles[0].corner[2] = 3; }},
       {"negative corner", [](Patches& s) { s.triangles[0].corner[2] = -1; }},
       {"the same corner twice", [](Patches& s) { s.triangles[0].corner[2] = 0; }},
@@ -117,6 +122,7 @@ TEST(SurfacePatchWire, WhatRefersToNothingOrIsOutOfRangeIsRefused) {
       {"tool that is not there", [](Patches& s) { s.patches[0].tool = 7; }},
       {"friction", [](Patches& s) { s.patches[0].friction = 11; }},
       {"no friction", [](Patches& s) { s.patches[0].friction = 0; }},
+      {"neither flat nor curved", [](Patches& s) { s.patches[0].curved = 2; }},
       {"compliance", [](Patches& s) { s.patches[0].compliance_m_per_N = -1; }},
       {"alarm", [](Patches& s) { s.patches[0].alarm_m = 0; }},
       {"spacing", [](Patches& s) { s.patches[0].spacing_m = 1; }},

@@ -27,6 +27,10 @@ Surfaces are then expected where their motion in the last step leads them. A too
 its free pose. A tool that slides over an edge thus meets the new face in the step in which it gets there. A wrong
 expectation changes n alone, not the law.
 
+With `curved`, a tool meets a surface that is curved between its vertices as the normals there say
+(`core/collision/shapes/curved_triangle.h`). Its contact with a round wall then has the direction and the gap of a round
+body. With flat triangles, a tool that is drawn along a round wall feels each facet.
+
 Tools are rounded convex pieces. They search ahead along their free motion, so that a contact exists before bodies
 touch (`core/collision/colliders/tool_collider.h`). Surfaces meet by sampled vertices
 (`core/collision/colliders/tissue_collider.h`). A surface with a `thickness` is the middle surface of a wall, and gaps
@@ -91,6 +95,7 @@ void Contact::search(const Search& what) {
     settings.alarm = alarm();
     settings.collision_horizon = collision_horizon_;
     settings.max_correction = max_correction_of(p);
+    settings.curved = curved();
     if (p.b && p.b->thickness() > 0) {
       settings.offset = 0.5 * p.b->thickness();
     } else {

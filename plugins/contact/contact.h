@@ -84,6 +84,12 @@ class Contact final : public Constraint, public StatesLaw {
               "or where tool and surface are expected at its end, which is nearer to the truth where a tool slides "
               "over what turns, and for long steps most",
        .formerly = "taken_at"}};
+  Param<bool> curved{
+      this,
+      {.name = "curved",
+       .fallback = "false",
+       .doc = "by triangles: whether a tool meets a surface that is curved between its vertices, as the normals there "
+              "say, in place of flat triangles; sharp edges stay sharp"}};
   Param<Length> patch{
       this,
       {.name = "patch",

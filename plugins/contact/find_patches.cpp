@@ -88,6 +88,7 @@ void Contact::find_patches(std::vector<PatchCandidate>& out) const {
     near.law.id = row_id(*this, std::uint64_t(3) << 42 | std::uint64_t(&p - pairs_.data()));
     near.law.friction = friction();
     near.law.compliance_m_per_N = compliance(p);
+    near.law.curved = curved() ? 1 : 0;
     near.law.alarm_m = alarm();
     near.law.spacing_m = spacing();
     near.law.half_thickness_m = half_thickness;

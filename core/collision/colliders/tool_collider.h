@@ -23,6 +23,9 @@
 // is pushed to the nearest point of the surface, as long as it is no deeper than max_depth. A core that passes through
 // a triangle is pushed along its normal.
 //
+// Contacts with a `curved` surface are found on its flat triangles and moved to the nearest point of the curved ones.
+// A core behind the surface keeps the direction of its flat contact.
+//
 // A hollow body that is pressed flat is thinner than a blade. What is behind its one wall is soon nearest to the other
 // wall. So each piece remembers the side of the surface on which it was last outside, and never leaves towards the
 // opposite side.
@@ -43,6 +46,7 @@ struct ToolContactSettings {
   double collision_horizon = 0;  ///< in steps: the tool's motion is followed this far beyond the step
   double max_depth = 5e-3;       ///< cores farther behind the surface are not pushed out, m
   bool one_sided = false;  ///< vertices: those behind a blade that presses a body from the front return to its front
+  bool curved = false;     ///< triangles are curved as the surface's normals say (curved_contact.h)
   double offset = 0;       ///< the surface is the middle of a wall of twice this thickness, m
   const Pose* expected =
       nullptr;  ///< of the tool at the end of the step, scene frame; null: contacts of the start are taken at the start

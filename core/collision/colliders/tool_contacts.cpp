@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/collision/colliders/curved_contact.h"
 #include "core/collision/shapes/core_triangle.h"
 #include "core/collision/shapes/placed_piece.h"
 
@@ -47,11 +48,25 @@ struct ToolCollider::ContactsOfTriangle {
     found.push_back(x);
   }
 
+  /// Adds a contact in front of the surface, of all of the core or of a corner.
+  void add_outside(std::span<const Vec3> core, const Vec3& bary, const Vec3& c, const Vec3& normal, double gap) const {
+    if (!settings.curved) return add(triangle, bary, c, normal, gap);
+    const CurvedContact x = nearest_on_curved(mesh, at.time, core, triangle, bary);
+    if (x.distance - at.radius > settings.alarm || x.distance < -settings.max_depth) return;
+    add(x.triangle, x.bary, mesh.point(x.triangle, x.bary, at.time), x.normal, x.distance - at.radius);
+  }
+
+  /// Adds a contact of a core that is behind the flat surface.
+  void add_inside(int on, const Vec3& bary, const Vec3& c, const Vec3& normal, double gap) const {
+    if (settings.curved) gap -= normal.dot(bulge_at(mesh, at.time, on, bary));
+    add(on, bary, c, normal, gap);
+  }
+
   /// Adds the contact of a core that intersects this triangle. It is pushed out along the normal by the core's depth.
   void add_intersecting(const CoreDistance& n) const {
     double deepest = 0;
     for (const Vec3& q : at.core()) deepest = std::max(deepest, face.dot(tri[0] - q));
-    add(triangle, n.bary, n.c, face, -at.radius - std::min(deepest, settings.max_correction));
+    add_inside(triangle, n.bary, n.c, face, -at.radius - std::min(deepest, settings.max_correction));
   }
 
   void add_nearest(const CoreDistance& n, const Vec3& side) const {
@@ -62,12 +77,12 @@ struct ToolCollider::ContactsOfTriangle {
     const bool under = settings.offset > 0 && d.dot(face) > 0.8;
     if (!under && !mesh.locally_closest(triangle, f, d, t, 1e-6)) return;
     const bool outside = d.dot(mesh.pseudo_normal(triangle, f, t)) >= 0;
-    if (outside && clear <= settings.alarm) add(triangle, n.bary, n.c, d, clear);
+    if (outside && clear <= settings.alarm) add_outside(at.core(), n.bary, n.c, d, clear);
     if (outside || n.distance > settings.max_depth) return;
     // The core may be in front of another triangle. The nearest of all decides and gives the direction out.
     NearestPoint e = mesh.nearest(n.p, t, n.distance);
     if (e.behind && e.outward.dot(side) < -0.2) e = mesh.nearest(n.p, t, settings.max_depth, &side);
-    if (e.triangle >= 0 && e.behind) add(e.triangle, e.bary, e.point, e.outward, -e.distance - at.radius);
+    if (e.triangle >= 0 && e.behind) add_inside(e.triangle, e.bary, e.point, e.outward, -e.distance - at.radius);
   }
 
   /// Adds the corners of the core that are right above the triangle.
@@ -76,7 +91,7 @@ struct ToolCollider::ContactsOfTriangle {
       const double h = face.dot(q - tri[0]);
       if (h <= 0 || h - at.radius > settings.alarm) continue;
       Vec3 bary;
-      if (above(q, tri, face, bary)) add(triangle, bary, q - h * face, face, h - at.radius);
+      if (above(q, tri, face, bary)) add_outside({&q, 1}, bary, q - h * face, face, h - at.radius);
     }
   }
 };

@@ -63,9 +63,11 @@ void CollisionMesh::reserve_few(std::size_t vertices, std::size_t triangles) {
   ring_.reserve(3 * triangles);
 }
 
-void CollisionMesh::build_few(std::span<const Vec3> positions, std::span<const std::array<int, 3>> triangles) {
+void CollisionMesh::build_few(std::span<const Vec3> positions, std::span<const std::array<int, 3>> triangles,
+                              std::span<const Vec3> weighted_normals) {
   triangles_.assign(triangles.begin(), triangles.end());
   positions_ = positions;
+  weighted_normals_ = weighted_normals;
   free_ = {};
   ring_start_.assign(positions.size() + 1, 0);
   for (const auto& t : triangles_)
@@ -157,6 +159,16 @@ Vec3 CollisionMesh::vertex_normal(int v, double t) const {
   }
   const double l = sum.norm();
   return l > 0 ? Vec3(sum / l) : Vec3(Vec3::UnitZ());
+}
+
+Vec3 CollisionMesh::weighted_normal(int v, double t) const {
+  if (!weighted_normals_.empty()) return weighted_normals_[std::size_t(v)];
+  constexpr double smooth = 0.839, sharp = 0.743;  // cosines of 33 and 42 degrees; a tube of six sides has 30
+  const Vec3 n = vertex_normal(v, t);
+  double least = 1;
+  for (const int tri : triangles_around(v)) least = std::min(least, n.dot(face_normal(tri, t)));
+  const double x = std::clamp((least - sharp) / (smooth - sharp), 0.0, 1.0);
+  return std::sqrt(x * x * (3 - 2 * x)) * n;
 }
 
 Vec3 CollisionMesh::rough_normal(int v) const {

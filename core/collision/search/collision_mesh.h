@@ -36,7 +36,9 @@ class CollisionMesh {
   void build(std::span<const Vec3> rest, std::span<const std::array<int, 3>> triangles);
   /// Adjacency of a few triangles, without a box tree or regions: for normals, locally_closest() and nearest() alone.
   /// The arrays of positions must exist until the next call. Does not allocate up to the numbers of reserve_few().
-  void build_few(std::span<const Vec3> positions, std::span<const std::array<int, 3>> triangles);
+  /// weighted_normals: as weighted_normal() returns them from then on; empty: as the triangles say.
+  void build_few(std::span<const Vec3> positions, std::span<const std::array<int, 3>> triangles,
+                 std::span<const Vec3> weighted_normals = {});
   void reserve_few(std::size_t vertices, std::size_t triangles);
   void move_few(std::span<const Vec3> positions) { positions_ = positions; }  ///< of as many vertices
   /// Takes this step's positions and free displacements (empty: a fixed surface) and refits the tree. The arrays must
@@ -96,7 +98,10 @@ class CollisionMesh {
   }
   Vec3 face_normal(int tri, double t = 0) const;  ///< unit
   Vec3 vertex_normal(int v, double t = 0) const;  ///< unit, weighted by angle
-  Vec3 rough_normal(int v) const;                 ///< unit, weighted by area, at the start of the step
+  /// vertex_normal() times the square root of a weight: 1 where the surface is smooth, 0 at a sharp corner, whose
+  /// triangles are more than 42 degrees from it.
+  Vec3 weighted_normal(int v, double t = 0) const;
+  Vec3 rough_normal(int v) const;  ///< unit, weighted by area, at the start of the step
   /// Outward unit normal of the feature: of a face, the mean of an edge's faces, or angle-weighted at a vertex. Let c
   /// be the surface point closest to p. The product of the normal with p - c has the sign of the distance of p
   /// (Baerentzen, Aanaes 2005).
@@ -131,7 +136,7 @@ class CollisionMesh {
   RegionMotion motion_;
   PerRegion room_{};  ///< how far each region's vertices may move before one leaves its boxes in the tree, m
   long updates_ = 0;
-  std::span<const Vec3> positions_, free_;
+  std::span<const Vec3> positions_, free_, weighted_normals_;
 };
 
 }  // namespace insula
