@@ -19,7 +19,7 @@ namespace insula {
 struct PatchVertex {
   int row = -1;                  ///< first of its three rows; -1: it cannot move
   Vec3 position = Vec3::Zero();  ///< at the end of the step
-  /// CollisionMesh::weighted_normal() of the whole surface at the start of the step.
+  /// CollisionMesh::weighted_normal() of the whole surface at the start of the step; 0 if no patch there is curved.
   Vec3 weighted_normal = Vec3::Zero();
   bool operator==(const PatchVertex&) const = default;
 };

@@ -42,7 +42,8 @@ void PatchCollider::set(const SurfacePatches& all, const SurfacePatch& patch) {
   triangles_.clear();
   open_.clear();
   weighted_normals_.clear();
-  for (const PatchVertex& v : all.vertices) weighted_normals_.push_back(v.weighted_normal);
+  if (patch.curved != 0)
+    for (const PatchVertex& v : all.vertices) weighted_normals_.push_back(v.weighted_normal);
   for (int i = 0; i < patch.triangles && triangles_.size() < most_triangles; ++i) {
     const PatchTriangle& t = all.triangles[std::size_t(patch.first_triangle + i)];
     triangles_.push_back({t.corner[0], t.corner[1], t.corner[2]});

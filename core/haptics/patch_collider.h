@@ -46,7 +46,7 @@ class PatchCollider {
   CollisionMesh mesh_;
   ContactSelection selection_;
   std::vector<std::array<int, 3>> triangles_;
-  std::vector<Vec3> weighted_normals_;  ///< of all vertices of the patches
+  std::vector<Vec3> weighted_normals_;  ///< of all vertices of the patches; empty: not curved
   std::vector<std::uint8_t> open_;
   bool fresh_ = false;            ///< the mesh is that of an earlier patch
   std::vector<int> piece_index_;  ///< of the collider's pieces

@@ -84,7 +84,10 @@ void SurfacePatchBuilder::add_vertices(int row) {
     PatchVertex& to = patches_.vertices.emplace_back();
     to.position = moves(*v.surface) ? v.surface->body().position(v.surface->points()[std::size_t(v.vertex)])
                                     : v.surface->positions()[std::size_t(v.vertex)];
-    to.weighted_normal = v.surface->collision().weighted_normal(v.vertex);
+    const bool curved = std::any_of(candidates_.begin(), candidates_.end(), [&](const PatchCandidate& c) {
+      return c.surface == v.surface && c.law.curved != 0;
+    });
+    if (curved) to.weighted_normal = v.surface->collision().weighted_normal(v.vertex);
     if (!v.surface->body().can_move(v.surface->points()[std::size_t(v.vertex)])) continue;
     to.row = row;
     row += 3;

@@ -12,14 +12,7 @@ namespace {
 
 using shapes::Random;
 
-struct Scene {
-  TriMesh shape;
-  CollisionMesh mesh;
-  explicit Scene(TriMesh s) : shape(std::move(s)) {
-    mesh.build(shape.vertices, shape.triangles);
-    mesh.update(shape.vertices, {});
-  }
-};
+using Scene = shapes::Still;
 
 std::vector<ConvexPiece> ball(double radius) { return {{"ball", {Vec3::Zero()}, radius}}; }
 std::vector<ConvexPiece> rod(double length, double radius) {

@@ -17,34 +17,9 @@ namespace {
 
 constexpr double radius_m = 1.5e-3, ball_m = 0.5e-3;
 
-/// A surface at rest.
-struct Still {
-  TriMesh shape;
-  CollisionMesh mesh;
+using shapes::Still;
 
-  explicit Still(TriMesh s) : shape(std::move(s)) {
-    mesh.build(shape.vertices, shape.triangles);
-    mesh.update(shape.vertices, {});
-  }
-};
-
-/// A tube about z, open at its ends, whose wall has so many flat sides.
-TriMesh tube(int sides, double stagger) {
-  constexpr int rings = 11;
-  TriMesh m;
-  for (int r = 0; r < rings; ++r)
-    for (int i = 0; i < sides; ++i) {
-      const double a = 2 * std::numbers::pi * (i + stagger * r) / sides;
-      m.vertices.emplace_back(radius_m * std::cos(a), radius_m * std::sin(a), 1e-3 * (r - rings / 2));
-    }
-  const auto at = [&](int r, int i) { return r * sides + i % sides; };
-  for (int r = 0; r + 1 < rings; ++r)
-    for (int i = 0; i < sides; ++i) {
-      m.triangles.push_back({at(r, i), at(r, i + 1), at(r + 1, i)});
-      m.triangles.push_back({at(r, i + 1), at(r + 1, i + 1), at(r + 1, i)});
-    }
-  return m;
-}
+TriMesh tube(int sides, double stagger) { return shapes::tube(radius_m, sides, 11, 1e-3, stagger); }
 
 ToolCollider ball() { return {{ConvexPiece{"", {Vec3::Zero()}, ball_m}}, 4096}; }
 

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Small closed meshes and reproducible random numbers for the tests of collision.
+// Small meshes and reproducible random numbers for the tests of collision.
 #pragma once
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <random>
 #include <utility>
 
+#include "core/collision/search/collision_mesh.h"
 #include "core/model/mesh.h"
 
 namespace insula::shapes {
@@ -76,6 +78,34 @@ inline TriMesh sphere(const Vec3& centre, double radius, int level) {
   for (Vec3& v : m.vertices) v = centre + radius * v;
   return m;
 }
+
+/// A tube about z, open at its ends, of so many rings with a distance of `apart`. Each ring has `sides` vertices and is
+/// turned by `stagger` of a side against the last one.
+inline TriMesh tube(double radius, int sides, int rings, double apart, double stagger) {
+  TriMesh m;
+  for (int r = 0; r < rings; ++r)
+    for (int i = 0; i < sides; ++i) {
+      const double a = 2 * std::numbers::pi * (i + stagger * r) / sides;
+      m.vertices.emplace_back(radius * std::cos(a), radius * std::sin(a), apart * (r - rings / 2));
+    }
+  const auto at = [&](int r, int i) { return r * sides + i % sides; };
+  for (int r = 0; r + 1 < rings; ++r)
+    for (int i = 0; i < sides; ++i) {
+      m.triangles.push_back({at(r, i), at(r, i + 1), at(r + 1, i)});
+      m.triangles.push_back({at(r, i + 1), at(r + 1, i + 1), at(r + 1, i)});
+    }
+  return m;
+}
+
+/// A surface at rest.
+struct Still {
+  TriMesh shape;
+  CollisionMesh mesh;
+  explicit Still(TriMesh s) : shape(std::move(s)) {
+    mesh.build(shape.vertices, shape.triangles);
+    mesh.update(shape.vertices, {});
+  }
+};
 
 class Random {
  public:
