@@ -55,9 +55,15 @@ TEST(Allocation, TheServoDoesNone) {
 TEST(Allocation, ContactsOnPatchesDoNone) {
   using namespace testing;
   const Vec3 centre(0, 0, patched_radius_m - 0.1e-3);
-  const std::array<ConstraintProblem, 3> problems{soft_triangle({}, centre, 1.0 / 60, 0.3, false, 0.01),
-                                                  two_tool_problem(10, 20, 1),
-                                                  soft_triangle({}, centre, 1.0 / 30, 0.3, true)};
+  std::array<ConstraintProblem, 3> problems{soft_triangle({}, centre, 1.0 / 60, 0.3, false, 0.01),
+                                            two_tool_problem(10, 20, 1),
+                                            soft_triangle({}, centre, 1.0 / 30, 0.3, true)};
+  for (ConstraintProblem& p : problems) {  // and modes
+    p.step_s = 1.0 / 60;
+    p.reduced.add_group(std::vector<ReducedModel::Mode>(ReducedModel::max_modes, {1e-5, 1e-3, 0.01, 0}),
+                        std::size_t(p.rows));
+    for (double& x : p.reduced.participation) x = 1e-3;
+  }
   Servo servo(ServoSettings::beyond_equation_7());
   ServoInput in;
   in.connected[1] = true;

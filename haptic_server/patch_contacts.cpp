@@ -21,6 +21,7 @@ PatchContacts::PatchContacts(int max_rows)
   const auto rows = std::size_t(max_rows);
   for (ConstraintProblem* p : {&rest_, &tick_}) {
     p->resize(max_rows);
+    p->reduced.reserve(rows);
     p->blocks.reserve(rows);
     p->tools.resize(2);
     for (ToolTerms& t : p->tools) t.jacobian.setZero(max_rows, 6);
@@ -31,7 +32,8 @@ PatchContacts::PatchContacts(int max_rows)
   source_.reserve(most_values);
   w_vv_.assign(most_values * most_values, 0.0);
   w_vr_.assign(most_values * rows, 0.0);
-  for (auto* v : {&beta_, &share_, &rate_, &force_, &free_, &back_, &change_}) v->reserve(most_values);
+  for (auto* v : {&beta_, &share_, &rate_, &force_, &free_, &back_, &change_, &modal_}) v->reserve(most_values);
+  contact_participation_.reserve(most_contacts * 3 * ReducedModel::max_modes);
   position_.reserve(SurfacePatches::max_vertices);
   ahead_.reserve(SurfacePatches::max_vertices);
   axes_.assign(most_contacts * 3 * most_values, 0.0);
@@ -41,7 +43,8 @@ PatchContacts::PatchContacts(int max_rows)
 }
 
 void PatchContacts::reset() noexcept {
-  problem_ = nullptr;
+  problem_ = rows_ = nullptr;
+  dynamics_ = nullptr;
   patches_ = nullptr;
   vertex_rows_ = 0;
   contacts_.clear();
@@ -88,6 +91,7 @@ const ConstraintProblem& PatchContacts::begin(const ConstraintProblem& p) noexce
     if (!dropped_[std::size_t(i)]) kept_.push_back(i);
   rest_.resize(int(kept_.size()));  // within its capacity
   copy_scalars(p, rest_);
+  rest_.reduced.take_modes(p.reduced, kept_.size());
   rest_.blocks.clear();
   int row = 0;
   for (Block b : p.blocks) {
@@ -129,7 +133,7 @@ void PatchContacts::take_vertices(const ConstraintProblem& p) noexcept {
   ahead_.assign(position_.begin(), position_.end());
   vertex_rows_ = int(source_.size());
   const auto n = source_.size();
-  for (auto* v : {&share_, &force_, &free_, &back_, &change_}) v->assign(n, 0.0);
+  for (auto* v : {&share_, &force_, &free_, &back_, &change_, &modal_}) v->assign(n, 0.0);
   rate_.resize(n);
   beta_.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
@@ -172,6 +176,8 @@ void PatchContacts::take_replaced(const ConstraintProblem& p) noexcept {
 }
 
 void PatchContacts::couple(const ConstraintProblem& p) noexcept {
+  rows_ = &p;
+  dynamics_ = nullptr;
   if (!patches_) return;
   std::size_t from = 0;
   for (const Block& b : p.blocks) {
@@ -190,12 +196,43 @@ void PatchContacts::scale(double dt, double h, bool substep_compliance) noexcept
     share_[i] = substep_compliance && h > 0 ? tick_share(dt, h, beta_[i]) : 1.0;
 }
 
+void PatchContacts::begin_dynamics(ReducedDynamics* dynamics) noexcept {
+  dynamics_ = dynamics;
+  if (!dynamics_) return;
+  const std::size_t n = source_.size(), modes = dynamics_->modes();
+  const auto dot = [&](const double* a, const double* b) {
+    double sum = 0;
+    for (std::size_t s = 0; s < modes; ++s) sum += a[s] * b[s];
+    return sum;
+  };
+  for (std::size_t i = 0; i < n; ++i) {
+    const double* p = participation(i);
+    for (std::size_t j = 0; j < n; ++j) w_vv_[i * n + j] -= dot(p, participation(j));
+    for (std::size_t r = 0; r < std::size_t(rows_->rows); ++r)
+      w_vr_[i * std::size_t(max_rows_) + r] -= dot(p, rows_->reduced.row(r));
+    rate_[i] -= dynamics_->rate(p);
+  }
+}
+
+void PatchContacts::add_forces() noexcept {
+  for (std::size_t i = 0; i < force_.size(); ++i)
+    if (force_[i] != 0) dynamics_->add_force(participation(i), force_[i]);
+}
+
 void PatchContacts::subtract_known(std::span<const double> share, std::span<double> delta_free) const noexcept {
   for (std::size_t i = 0; i < force_.size(); ++i) {
     const double f = share_[i] * force_[i];
     if (f == 0) continue;
     for (std::size_t r = 0; r < delta_free.size(); ++r) delta_free[r] -= share[r] * vr(i, r) * f;
   }
+  if (!dynamics_) return;
+  std::array<double, ReducedModel::max_modes> by_vertices{};
+  for (std::size_t i = 0; i < force_.size(); ++i)
+    for (std::size_t s = 0; s < dynamics_->modes() && force_[i] != 0; ++s)
+      by_vertices[s] += participation(i)[s] * force_[i];
+  for (std::size_t r = 0; r < delta_free.size(); ++r)
+    for (std::size_t s = 0; s < dynamics_->modes(); ++s)
+      delta_free[r] -= rows_->reduced.row(r)[s] * dynamics_->compliance()[s] * by_vertices[s];
 }
 
 Vec3 PatchContacts::at(const Contact& c, const std::vector<double>& values) const noexcept {
@@ -227,6 +264,41 @@ void PatchContacts::find_contacts(std::span<const Tool> tools, int room) noexcep
     collider_of(patch.id).detect(tool.pose, ahead_, found_, next_key_);
     for (const Proximity& x : found_)
       if (contacts_.size() < most_contacts && 3 * (int(contacts_.size()) + 1) <= room) add_contact(patch, x, tool);
+  }
+}
+
+void PatchContacts::find_participations() noexcept {
+  const std::size_t modes = dynamics_->modes();
+  contact_participation_.assign(3 * contacts_.size() * modes, 0.0);  // within its capacity
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    const Contact& x = contacts_[c];
+    for (std::size_t i = 0; i < 3; ++i)
+      for (int a = 0; a < 3 && x.slot[i] >= 0; ++a) {
+        const double* p = participation(std::size_t(x.slot[i] + a));
+        for (int k = 0; k < 3; ++k) {
+          const double weight = -x.directions(k, a) * x.bary[long(i)];
+          double* out = contact_participation_.data() + (3 * c + std::size_t(k)) * modes;
+          for (std::size_t s = 0; s < modes; ++s) out[s] += weight * p[s];
+        }
+      }
+  }
+}
+
+// The modes' part in W of the contacts' rows.
+void PatchContacts::add_modal_compliance(std::size_t rows) noexcept {
+  find_participations();
+  const std::size_t modes = dynamics_->modes(), stride = std::size_t(tick_.stride);
+  std::array<double, ReducedModel::max_modes> scaled;
+  for (std::size_t c = 0; c < 3 * contacts_.size(); ++c) {
+    const double* own = contact_participation_.data() + c * modes;
+    for (std::size_t s = 0; s < modes; ++s) scaled[s] = own[s] * dynamics_->compliance()[s];
+    for (std::size_t r = 0; r < rows + c + 1; ++r) {
+      const double* p = r < rows ? rows_->reduced.row(r) : contact_participation_.data() + (r - rows) * modes;
+      double sum = 0;
+      for (std::size_t s = 0; s < modes; ++s) sum += scaled[s] * p[s];
+      tick_.w[(rows + c) * stride + r] += sum;
+      if (r != rows + c) tick_.w[r * stride + rows + c] += sum;
+    }
   }
 }
 
@@ -304,6 +376,10 @@ const ConstraintProblem& PatchContacts::next(const ConstraintProblem& rows, std:
     for (std::size_t j = 0; j < n; ++j) sum += vv(i, j) * share_[j] * force_[j];
     for (std::size_t r = 0; r < nr; ++r) sum += vr(i, r) * share[r] * known[r];
     back_[i] = -share_[i] * sum;
+    if (!dynamics_) continue;
+    modal_[i] = dynamics_->displacement(participation(i));
+    free_[i] += modal_[i];
+    back_[i] -= dynamics_->response(participation(i));
   }
   for (std::size_t v = 0; v < position_.size(); ++v) {
     ahead_[v] = position_[v];
@@ -337,13 +413,13 @@ const ConstraintProblem& PatchContacts::next(const ConstraintProblem& rows, std:
         for (int k = 0; k < 3; ++k) tick_.lambda[std::size_t(b.row + k)] = r.lambda[k];
   }
   write_compliance(rows, share, tools);
+  if (dynamics_) add_modal_compliance(nr);
   write_free(rows.rows, tools);
   return tick_;
 }
 
-void PatchContacts::solved(std::span<const double> lambda, std::span<const double> share, std::span<const double> known,
-                           double dt, bool substep_compliance) noexcept {
-  const auto n = std::size_t(vertex_rows_), nr = known.size();
+void PatchContacts::take_forces(std::span<const double> lambda, std::size_t nr) noexcept {
+  const auto n = std::size_t(vertex_rows_);
   for (std::size_t i = 0; i < n; ++i) change_[i] = -force_[i];
   std::fill(force_.begin(), force_.end(), 0.0);
   push_ = {Vec6::Zero(), Vec6::Zero()};
@@ -364,6 +440,11 @@ void PatchContacts::solved(std::span<const double> lambda, std::span<const doubl
         for (int a = 0; a < 3; ++a) force_[std::size_t(x.slot[i] + a)] -= x.bary[long(i)] * f[a];
   }
   for (std::size_t i = 0; i < n; ++i) change_[i] = share_[i] * (change_[i] + force_[i]);
+}
+
+void PatchContacts::move(std::span<const double> lambda, std::span<const double> share, std::span<const double> known,
+                         double dt, bool substep_compliance) noexcept {
+  const auto n = std::size_t(vertex_rows_), nr = known.size();
   for (std::size_t v = 0; v < position_.size(); ++v) {
     if (slots_[v] < 0) continue;
     for (int a = 0; a < 3; ++a) {
@@ -371,9 +452,9 @@ void PatchContacts::solved(std::span<const double> lambda, std::span<const doubl
       double sum = 0;
       for (std::size_t j = 0; j < n; ++j) sum += vv(i, j) * change_[j];
       for (std::size_t r = 0; r < nr; ++r) sum += vr(i, r) * share[r] * (lambda[r] - known[r]);
-      const double moved = free_[i] + share_[i] * sum;
+      const double moved = free_[i] - modal_[i] + share_[i] * sum;
       if (substep_compliance) rate_[i] = moved / dt;
-      position_[v][a] += moved;
+      position_[v][a] += moved + (dynamics_ ? dynamics_->displacement(participation(i)) : 0);
     }
   }
 }

@@ -17,6 +17,7 @@
 
 #include "core/constraint/problem.h"
 #include "core/haptics/patch_collider.h"
+#include "haptic_server/reduced_dynamics.h"
 
 namespace insula {
 
@@ -52,9 +53,16 @@ class PatchContacts {
   const ConstraintProblem& next(const ConstraintProblem& rows, std::span<const double> share,
                                 std::span<const double> known, std::span<const Tool> tools, double dt_s,
                                 bool extrapolate) noexcept;
-  /// Takes the solution of that problem: moves the vertices. `known` and `share` as before.
-  void solved(std::span<const double> lambda, std::span<const double> share, std::span<const double> known, double dt_s,
-              bool substep_compliance) noexcept;
+  /// Takes the forces of that problem's solution; `rows`: number of the rows before those of the contacts.
+  void take_forces(std::span<const double> lambda, std::size_t rows) noexcept;
+  /// Moves the vertices by them. Modes must have advanced. `known` and `share` as before.
+  void move(std::span<const double> lambda, std::span<const double> share, std::span<const double> known, double dt_s,
+            bool substep_compliance) noexcept;
+
+  /// Splits the vertices' W and rates into those of the modes and the rest. Call it after couple(); null: no modes.
+  void begin_dynamics(ReducedDynamics* dynamics) noexcept;
+  /// Adds the forces on the vertices to those of the modes.
+  void add_forces() noexcept;
   /// Whether a contact that pressed in the tick before is not among those of this one. Its force has jumped to others.
   bool exchanged() const noexcept { return exchanged_; }
 
@@ -91,9 +99,15 @@ class PatchContacts {
   double vv(std::size_t i, std::size_t j) const noexcept { return w_vv_[i * std::size_t(vertex_rows_) + j]; }
   double vr(std::size_t i, std::size_t row) const noexcept { return w_vr_[i * std::size_t(max_rows_) + row]; }
 
+  /// Of one of the vertices' values.
+  const double* participation(std::size_t i) const noexcept { return problem_->reduced.row(std::size_t(source_[i])); }
+  void find_participations() noexcept;
+  void add_modal_compliance(std::size_t rows) noexcept;
+
   int max_rows_;
-  const ConstraintProblem* problem_ = nullptr;
-  const SurfacePatches* patches_ = nullptr;  ///< null: none
+  const ConstraintProblem *problem_ = nullptr, *rows_ = nullptr;  ///< of the message; that the ticks use
+  ReducedDynamics* dynamics_ = nullptr;                           ///< null: none
+  const SurfacePatches* patches_ = nullptr;                       ///< null: none
   ConstraintProblem rest_, tick_;
   Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor> spare_;
   std::vector<int> kept_;            ///< rows of the problem in rest_
@@ -102,7 +116,8 @@ class PatchContacts {
   std::vector<int> source_;          ///< of the values: row of the problem
   int vertex_rows_ = 0;              ///< values of moving vertices, n
   std::vector<double> w_vv_, w_vr_;  ///< n x n; n x max_rows
-  std::vector<double> beta_, share_, rate_, force_, free_, back_, change_;
+  std::vector<double> beta_, share_, rate_, force_, free_, back_, change_, modal_;
+  std::vector<double> contact_participation_;  ///< of the contacts' rows, rows x modes
   std::vector<Vec3> position_, ahead_;
   std::vector<double> axes_;  ///< of each contact, three rows of n: compliance from its place to the vertices
   std::array<Vec6, 2> push_{Vec6::Zero(), Vec6::Zero()};

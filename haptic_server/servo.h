@@ -39,7 +39,8 @@ struct ServoSettings {
                  .incremental_slip = true,
                  .eliminate_welds = true,
                  .extrapolate_frames = true,
-                 .find_contacts = true};
+                 .find_contacts = true,
+                 .reduced_dynamics = true};
     s.force_crossfade.within_s = 0.005;
     s.force_crossfade.share_per_s = 14;
     s.conjugate = true;

@@ -22,6 +22,8 @@ SubstepCorrection::SubstepCorrection(const SubstepCorrectionSettings& settings, 
   for (auto* v : {&gap_, &rate_, &known_, &share_}) v->assign(std::size_t(max_rows), 0.0);
   slips_.assign(std::size_t(max_rows), 0);
   tool_coupled_.reserve(std::size_t(max_rows));
+  touching_.reserve(std::size_t(max_rows));
+  w_residual_.reserve(tick_.w.size());
 }
 
 void SubstepCorrection::begin(const ConstraintProblem& p, const std::array<GraspedBody, 2>& grasped, double age_s,
@@ -46,6 +48,7 @@ void SubstepCorrection::begin(const ConstraintProblem& p, const std::array<Grasp
   }
   find_tool_coupled_rows();
   extrapolation_.begin(p, grasped);
+  begin_dynamics();
   for (std::size_t t = 0; t < tools(); ++t) {
     moved_[t].setZero();
     push_[t] = push(t, p.lambda) + patch_push(t);
@@ -55,6 +58,53 @@ void SubstepCorrection::begin(const ConstraintProblem& p, const std::array<Grasp
   age_ = std::isfinite(age_s) ? age_s : 0;
   compliance_dt_ = 0;
   first_ = true;
+}
+
+// Splits W and the rates into those of the modes and the rest.
+void SubstepCorrection::begin_dynamics() noexcept {
+  const ConstraintProblem& p = *step_;
+  const ReducedModel& model = p.reduced;
+  const bool used =
+      settings_.reduced_dynamics && settings_.substep_compliance && settings_.extrapolate_tissue && !model.empty();
+  dynamics_.begin(used ? &model : nullptr, p.step_s);
+  if (patches_) patches_->begin_dynamics(dynamics_.any() ? &dynamics_ : nullptr);
+  if (!dynamics_.any()) return;
+  const std::size_t n = std::size_t(p.rows);
+  w_residual_.assign(p.w.begin(), p.w.begin() + std::ptrdiff_t(n) * p.stride);  // within its capacity
+  std::array<double, ReducedModel::max_modes> minus_one;
+  minus_one.fill(-1);
+  add_modes(w_residual_.data(), minus_one);
+  for (std::size_t i = 0; i < n; ++i) {
+    rate_[i] -= dynamics_.rate(model.row(i));
+    dynamics_.add_force(model.row(i), known_[i]);
+  }
+  if (patches_) patches_->add_forces();
+  dynamics_.forces_are_of_the_problem();
+}
+
+// w += g diag(weight) g^T, group by group.
+void SubstepCorrection::add_modes(double* w, std::span<const double> weight) noexcept {
+  const ReducedModel& model = step_->reduced;
+  const std::size_t n = std::size_t(step_->rows), stride = std::size_t(step_->stride);
+  for (const ReducedModel::Group& g : model.groups) {
+    touching_.clear();
+    for (std::size_t i = 0; i < n; ++i)
+      if (model.touches(i, g)) touching_.push_back(int(i));
+    const auto first = std::size_t(g.first), count = std::size_t(g.modes);
+    for (std::size_t a = 0; a < touching_.size(); ++a) {
+      const auto i = std::size_t(touching_[a]);
+      std::array<double, ReducedModel::max_modes> scaled;
+      for (std::size_t s = 0; s < count; ++s) scaled[s] = model.row(i)[first + s] * weight[first + s];
+      for (std::size_t b = 0; b <= a; ++b) {
+        const auto j = std::size_t(touching_[b]);
+        const double* other = model.row(j) + first;
+        double sum = 0;
+        for (std::size_t s = 0; s < count; ++s) sum += scaled[s] * other[s];
+        w[i * stride + j] += sum;
+        if (i != j) w[j * stride + i] += sum;
+      }
+    }
+  }
 }
 
 void SubstepCorrection::find_tool_coupled_rows() noexcept {
@@ -83,8 +133,13 @@ void SubstepCorrection::scale_compliance(double dt) noexcept {
     const double beta = p.retardation_time[i];
     share_[i] = settings_.substep_compliance && h > 0 ? tick_share(dt, h, beta) : 1.0;
   }
+  const double* w = dynamics_.any() ? w_residual_.data() : p.w.data();
   for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t j = 0; j < n; ++j) tick_.w[i * stride + j] = share_[i] * share_[j] * p.w_at(int(i), int(j));
+    for (std::size_t j = 0; j < n; ++j) tick_.w[i * stride + j] = share_[i] * share_[j] * w[i * stride + j];
+  if (dynamics_.any()) {
+    dynamics_.set_tick(dt);
+    add_modes(tick_.w.data(), dynamics_.compliance());
+  }
   for (std::size_t t = 0; t < tools(); ++t)
     for (const int a : tool_coupled_) {
       Vec6 step = Vec6::Zero(), tick = Vec6::Zero();
@@ -129,8 +184,10 @@ const ConstraintProblem& SubstepCorrection::next(double dt, const std::array<Vec
     went_[t] = free - moved_[t] + give(t) * push_change;
     moved_[t] = free;
   }
+  dynamics_.predict();
   for (std::size_t i = 0; i < n; ++i) {
     double free = start(i);
+    if (dynamics_.any()) free += dynamics_.displacement(p.reduced.row(i));
     if (settings_.extrapolate_tissue) {
       const double beta = p.retardation_time[i], last = settings_.substep_compliance ? dt_ : p.step_s;
       free += beta / (beta + last) * dt_ * rate_[i];
@@ -169,7 +226,14 @@ const ConstraintProblem& SubstepCorrection::with_patches(const std::array<Vec6, 
 void SubstepCorrection::solved(std::span<const double> lambda, std::span<const double> delta) noexcept {
   const ConstraintProblem& p = *step_;
   const std::size_t n = std::size_t(p.rows);
-  if (patches_) patches_->solved(lambda, {share_.data(), n}, {known_.data(), n}, dt_, settings_.substep_compliance);
+  if (patches_) patches_->take_forces(lambda, n);
+  if (dynamics_.any()) {
+    dynamics_.clear_force();
+    for (std::size_t i = 0; i < n; ++i) dynamics_.add_force(p.reduced.row(i), lambda[i]);
+    if (patches_) patches_->add_forces();
+    dynamics_.advance();
+  }
+  if (patches_) patches_->move(lambda, {share_.data(), n}, {known_.data(), n}, dt_, settings_.substep_compliance);
   // Displacement of the tools: their free displacement, and that by the change of force.
   std::array<Vec6, 2> swept = went_;
   for (std::size_t t = 0; t < tools(); ++t) {
@@ -178,8 +242,9 @@ void SubstepCorrection::solved(std::span<const double> lambda, std::span<const d
     push_[t] = now;
     if (grasped_[t].any) grasping_[t].went(swept[t]);
   }
-  for (std::size_t i = 0; i < std::size_t(p.rows); ++i) {
+  for (std::size_t i = 0; i < n; ++i) {
     double tissue = delta[i] - start(i);
+    if (dynamics_.any()) tissue -= dynamics_.displacement(p.reduced.row(i));
     for (std::size_t t = 0; t < tools(); ++t)
       for (int c = 0; c < 6; ++c) tissue -= extrapolation_.jacobian(t)(int(i), c) * swept[t][c];
     if (settings_.substep_compliance) rate_[i] = tissue / dt_;

@@ -20,6 +20,7 @@
 #include "haptic_server/contact_frame_extrapolation.h"
 #include "haptic_server/grasping_tool.h"
 #include "haptic_server/patch_contacts.h"
+#include "haptic_server/reduced_dynamics.h"
 
 namespace insula {
 
@@ -30,6 +31,7 @@ struct SubstepCorrectionSettings {
   bool eliminate_welds = false;     ///< a grasped body is one with its tool, with the inertia for a tick
   bool extrapolate_frames = false;  ///< contact directions continue to rotate with the tool
   bool find_contacts = false;       ///< contacts are found anew in each tick, where the problem has surface patches
+  bool reduced_dynamics = false;    ///< tissue has inertia, where the problem has a reduced model; needs the first two
   bool any() const {
     return substep_compliance || extrapolate_tissue || incremental_slip || eliminate_welds || extrapolate_frames ||
            find_contacts;
@@ -64,6 +66,8 @@ class SubstepCorrection {
 
  private:
   void find_tool_coupled_rows() noexcept;
+  void begin_dynamics() noexcept;
+  void add_modes(double* w, std::span<const double> weight) noexcept;
   void scale_compliance(double dt) noexcept;
   Vec6 push(std::size_t tool, std::span<const double> lambda) const noexcept;
   const ConstraintProblem& with_patches(const std::array<Vec6, 2>& moved) noexcept;
@@ -81,8 +85,11 @@ class SubstepCorrection {
   const ConstraintProblem* step_ = nullptr;
   PatchContacts* patches_ = nullptr;
   ConstraintProblem tick_;  ///< W and delta_free of the tick
+  ReducedDynamics dynamics_;
+  AlignedVector<double> w_residual_;  ///< W of the step without that of the modes, as W
   std::vector<double> gap_, rate_, known_, share_;
   std::vector<char> slips_;           ///< tangent rows
+  std::vector<int> touching_;         ///< rows that touch a body
   std::vector<int> tool_coupled_;     ///< rows in which a tool has a part
   std::array<Vec6, 2> moved_, went_;  ///< of the free tools, since the problem and in the tick
   std::array<Vec6, 2> push_;          ///< H_tool^T known, and that of the patches' contacts

@@ -9,6 +9,7 @@
 #include "core/base/math.h"
 #include "core/constraint/aligned.h"
 #include "core/constraint/block.h"
+#include "core/constraint/reduced_model.h"
 #include "core/constraint/surface_patch.h"
 
 namespace insula {
@@ -47,9 +48,10 @@ struct ConstraintProblem {
   std::vector<Block> blocks;     ///< in row order, covering every row once
   std::vector<ToolTerms> tools;  ///< at most two
   SurfacePatches patches;        ///< for use between steps; empty in the engine's own problem
+  ReducedModel reduced;          ///< the same
 
   double w_at(int i, int j) const { return w[std::size_t(i) * stride + j]; }
-  /// Sets the number of rows, and zeroes W and all values of rows. Keeps capacity.
+  /// Sets the number of rows, zeroes W and all values of rows, and removes the reduced model. Keeps capacity.
   void resize(int n);
 };
 

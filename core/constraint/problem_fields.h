@@ -92,9 +92,11 @@ constexpr void for_each_field(const Fields& fields, F&& f) {
       fields);
 }
 
-/// Copies row `s` of `from` to row `d` of `to`, except for W and the tools' Jacobians.
+/// Copies row `s` of `from` to row `d` of `to`, except for W and the tools' Jacobians. With a reduced model, `to` must
+/// have the modes of `from`.
 inline void copy_row(const ConstraintProblem& from, std::size_t s, ConstraintProblem& to, std::size_t d) {
   for_each_field(row_fields, [&](const auto& f, std::size_t) { (to.*f.values)[d] = (from.*f.values)[s]; });
+  if (!to.reduced.empty()) std::copy_n(from.reduced.row(s), from.reduced.modes.size(), to.reduced.row(d));
 }
 
 /// Copies the values that a problem has once.

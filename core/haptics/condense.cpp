@@ -8,6 +8,7 @@
 #include "core/constraint/problem_fields.h"
 #include "core/constraint/solve.h"
 #include "core/constraint/sweep.h"
+#include "core/haptics/condense_modes.h"
 #include "core/haptics/weld_elimination.h"
 
 namespace insula {
@@ -177,6 +178,7 @@ void Condenser::copy_kept(const ConstraintProblem& full, ConstraintProblem& smal
   const std::size_t rows = kept_.size();
   small.resize(int(rows));
   copy_scalars(full, small);
+  small.reduced.take_modes(full.reduced, rows);
   for (std::size_t i = 0; i < rows; ++i) {
     const std::size_t s = std::size_t(kept_[i]);
     double free = full.delta_free[s];
@@ -200,15 +202,10 @@ void Condenser::copy_kept(const ConstraintProblem& full, ConstraintProblem& smal
   renumber_rows(small.patches, new_row_);
 }
 
-/// With lambda_E in the unknowns' directions: lambda_E = lambda_E0 - M (r + W_EK (lambda_K - lambda_K0)), M = (W_EE +
-/// C)^-1, r = delta_E + C lambda_E of the full solution. With W_EE + C = U^T U, Y = U^-T W_EK and z = U^-T r:
-///   W' = W_KK - Y^T Y,   delta_free' = (all others held) - Y^T (z - Y lambda_K0)
-void Condenser::eliminate(const ConstraintProblem& full, ConstraintProblem& small) {
-  const auto combine = sweep_kernels().combine;
-  const std::size_t n = eliminated_.size(), k = kept_.size();
-  const long kept_at = padded(n), r_at = kept_at + small.stride, width = r_at + 8;
+/// A row for each eliminated unknown: W_EE + C, W_EK, r, and its part in the modes.
+void Condenser::fill_factor(const ConstraintProblem& full, long kept_at, long r_at, long modes_at, long width) {
+  const std::size_t n = eliminated_.size(), k = kept_.size(), modes = full.reduced.modes.size();
   factor_.assign(n * std::size_t(width), 0.0);
-  weights_.assign(std::max(n, k) + 8, 0.0);
   const auto row = [&](std::size_t j) { return factor_.data() + long(j) * width; };
   const auto w_to = [&](const Direction& d, int c) {
     const double w = d.along[0] * full.w_at(d.row, c);
@@ -223,8 +220,26 @@ void Condenser::eliminate(const ConstraintProblem& full, ConstraintProblem& smal
     }
     for (std::size_t i = 0; i < k; ++i) row(j)[kept_at + long(i)] = w_to(d, kept_[i]);
     row(j)[r_at] = d.free;
+    for (std::size_t m = 0; m < modes; ++m) {
+      row(j)[modes_at + long(m)] = d.along[0] * full.reduced.row(std::size_t(d.row))[m];
+      if (d.along[1] != 0) row(j)[modes_at + long(m)] += d.along[1] * full.reduced.row(std::size_t(d.row) + 1)[m];
+    }
     row(j)[j] += d.compliance;
   }
+}
+
+/// With lambda_E in the unknowns' directions: lambda_E = lambda_E0 - M (r + W_EK (lambda_K - lambda_K0)), M = (W_EE +
+/// C)^-1, r = delta_E + C lambda_E of the full solution. With W_EE + C = U^T U, Y = U^-T W_EK and z = U^-T r:
+///   W' = W_KK - Y^T Y,   delta_free' = (all others held) - Y^T (z - Y lambda_K0)
+/// A reduced model takes part in the same pass, with Z = U^-T g_E (core/haptics/condense_modes.h).
+void Condenser::eliminate(const ConstraintProblem& full, ConstraintProblem& small) {
+  const auto combine = sweep_kernels().combine;
+  const std::size_t n = eliminated_.size(), k = kept_.size();
+  const std::size_t modes = full.reduced.modes.size();
+  const long kept_at = padded(n), r_at = kept_at + small.stride, modes_at = r_at + 8, width = modes_at + padded(modes);
+  weights_.assign(std::max(n, k) + 8, 0.0);
+  fill_factor(full, kept_at, r_at, modes_at, width);
+  const auto row = [&](std::size_t j) { return factor_.data() + long(j) * width; };
   // Computes each row of U from those above it. W_EK and r become Y and z in the same pass.
   for (std::size_t j = 0; j < n; ++j) {
     const long from = long(j / 8 * 8);
@@ -248,14 +263,19 @@ void Condenser::eliminate(const ConstraintProblem& full, ConstraintProblem& smal
     for (std::size_t j = 0; j < n; ++j) weights_[j] = -row(j)[kept_at + long(i)];
     combine(w + from, factor_.data() + kept_at + from, width, weights_.data(), int(n), int(small.stride - from));
   }
+  if (modes > 0)
+    condense_modes({factor_.data(), n, std::size_t(width), std::size_t(kept_at), std::size_t(modes_at)}, k,
+                   small.reduced);
   // A row that depends only on the eliminated rows has no compliance of its own. Rounding must not give it a small or
   // negative one.
   for (std::size_t i = 0; i < k; ++i) {
     double* w = small.w.data() + i * std::size_t(small.stride);
     if (w[i] > 1e-10 * full.w_at(kept_[i], kept_[i])) continue;
     std::fill(w + i, w + k, 0.0);
+    std::fill_n(small.reduced.row(i), small.reduced.modes.size(), 0.0);
     for (std::size_t r = 0; r < i; ++r) small.w[r * std::size_t(small.stride) + i] = 0;
   }
+  small.reduced.limit(0, k, [&](std::size_t i) { return small.w_at(int(i), int(i)); });
   for (std::size_t i = 0; i < k; ++i)
     for (std::size_t c = i + 1; c < k; ++c)
       small.w[c * std::size_t(small.stride) + i] = small.w[i * std::size_t(small.stride) + c];

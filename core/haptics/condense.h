@@ -56,6 +56,7 @@ class Condenser {
   void choose(const ConstraintProblem& full, int max_rows, ConstraintProblem& small);
   void copy_kept(const ConstraintProblem& full, ConstraintProblem& small);
   void add_eliminated(const ConstraintProblem& full, const Block& block);
+  void fill_factor(const ConstraintProblem& full, long kept_at, long r_at, long modes_at, long width);
   void eliminate(const ConstraintProblem& full, ConstraintProblem& small);
 
   std::vector<char> tool_coupled_;  ///< by row of the full problem

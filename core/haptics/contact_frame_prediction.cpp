@@ -59,6 +59,8 @@ void rotate_contact_rows(ConstraintProblem& p, int row, const Mat3& q, std::span
   for (std::size_t i = 0; i < n; ++i) turn(&p.w[i * stride + r], 1);
   for (ToolTerms& tool : p.tools)
     for (long c = 0; c < 6; ++c) turn(tool.jacobian.data() + 6 * row + c, 6);
+  const std::size_t modes = p.reduced.modes.size();
+  for (std::size_t s = 0; s < modes; ++s) turn(p.reduced.row(r) + s, modes);
   for (double* v : {delta_m.data(), p.lambda.data(), p.rate.data()}) turn(v + r, 1);
 }
 

@@ -70,6 +70,11 @@ bool find_parts(Bytes bytes, ProblemLayout& l, const char*& why) {
     why = "sizes of surface patches out of range";
     return false;
   }
+  l.reduced = bytes.last(in.left());
+  if (!skip_reduced_model(in, l.rows)) {
+    why = "sizes of the reduced model out of range";
+    return false;
+  }
   const auto said = std::uint32_t(in.i32());
   if (!in.at_end()) return false;
   why = "damaged on its way: the checksum is wrong";

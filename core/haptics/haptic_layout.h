@@ -9,6 +9,7 @@
 #include "core/bus/byte_io.h"
 #include "core/constraint/problem_fields.h"
 #include "core/haptics/patch_wire.h"
+#include "core/haptics/reduced_wire.h"
 
 namespace insula::wire {
 
@@ -28,7 +29,8 @@ struct ProblemLayout {
   double step_s, sim_time_s, prediction_horizon_steps;
   int rows, blocks, tools;
   const std::uint8_t *w, *tool, *jacobian;
-  Bytes patches;                                                                        ///< from the first list on
+  Bytes patches;  ///< from the first list on
+  Bytes reduced;  ///< from the number of bodies on
   std::array<const std::uint8_t*, std::tuple_size_v<decltype(row_fields)>> row_values;  ///< in the order of row_fields
   std::array<const std::uint8_t*, std::tuple_size_v<decltype(block_fields)>>
       block_values;  ///< in the order of block_fields

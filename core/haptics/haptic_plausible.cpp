@@ -155,7 +155,8 @@ bool tools_ok(const ProblemLayout& l, const char*& why) {
 }  // namespace
 
 bool plausible_problem(const ProblemLayout& l, const char*& why) {
-  return header_ok(l, why) && matrix_ok(l, why) && blocks_ok(l, why) && tools_ok(l, why) && plausible_patches(l, why);
+  return header_ok(l, why) && matrix_ok(l, why) && blocks_ok(l, why) && tools_ok(l, why) && plausible_patches(l, why) &&
+         plausible_reduced_model(l, why);
 }
 
 }  // namespace insula::wire

@@ -23,7 +23,7 @@ bool has_wire_form(const ConstraintProblem& p) {
   for_each_field(row_fields, [&](const auto& f, std::size_t) { whole = whole && (p.*f.values).size() >= rows; });
   if (!whole) return false;
   if (p.rows > 0 && (p.stride < p.rows || p.w.size() < rows * std::size_t(p.stride))) return false;
-  if (!wire::patches_fit(p.patches)) return false;
+  if (!wire::patches_fit(p.patches) || !wire::reduced_model_fits(p.reduced, p.rows)) return false;
   return std::all_of(p.tools.begin(), p.tools.end(), [&](const ToolTerms& t) { return t.jacobian.rows() == p.rows; });
 }
 
@@ -111,6 +111,7 @@ void read_all(const ProblemLayout& l, HapticUpdate& into) {
   p.tools.resize(std::size_t(l.tools));
   for (int t = 0; t < l.tools; ++t) read_tool(l, t, p.tools[std::size_t(t)], into.offset[std::size_t(t)]);
   wire::read_patches(l, p.patches);
+  wire::read_reduced_model(l, p.reduced);
 }
 
 }  // namespace
@@ -146,6 +147,7 @@ bool encode_problem(const ProblemStamp& stamp, const ConstraintProblem& p, const
   for (std::size_t t = 0, number = 0; t < p.tools.size(); ++t)
     if (stays(p.tools[t])) tool_number[t] = int(number++);
   wire::write_patches(w, p.patches, tool_number);
+  wire::write_reduced_model(w, p.reduced, p.rows);
   w.i32(0);
   seal_problem(out);
   return true;

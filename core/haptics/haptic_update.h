@@ -55,6 +55,7 @@ void seal_problem(std::vector<std::uint8_t>& message);
 /// - Directions rotate by at most 1 rad in a step about any axis.
 /// - There are at most two tools, with distinct hands, unit quaternions, and symmetric compliance and stiffness with a
 ///   non-negative diagonal.
+/// - The modes of a reduced model are passive, and no row moves more by them than W says.
 /// - Surface patches refer to rows, vertices, triangles, pieces and tools that exist. Their lengths are at most 0.1 m.
 /// On failure `into` does not change, and `why` has the reason. Allocates only when `into` must grow, its Jacobians
 /// change size, or the message is refused.

@@ -179,7 +179,6 @@ void SurfacePatchBuilder::add_compliance(const ConstraintProblem& step) {
   ConstraintProblem& p = extended_;
   const std::size_t n = std::size_t(p.rows), f = std::size_t(step.rows), stride = std::size_t(p.stride);
   w_.assign(n * stride, 0.0);
-  bodies_.clear();
   for (std::size_t i = 0; i < vertices_.size(); ++i) {
     auto* body = dynamic_cast<DeformableBody*>(&vertices_[i].surface->body());
     if (patches_.vertices[i].row >= 0 && std::find(bodies_.begin(), bodies_.end(), body) == bodies_.end())
@@ -204,6 +203,7 @@ void SurfacePatchBuilder::add_compliance(const ConstraintProblem& step) {
     solver.add_compliance(body_rows_, w_.data(), p.stride);
     solver.exchange_rows();
     body->add_rate(vertex_rows_, p.rate.data());
+    reduced_.add(*body, body_rows_, w_.data(), p);
   }
   for (std::size_t i = f; i < n; ++i)
     for (std::size_t j = 0; j < n; ++j) {
@@ -213,8 +213,26 @@ void SurfacePatchBuilder::add_compliance(const ConstraintProblem& step) {
     }
 }
 
+void SurfacePatchBuilder::compute_modes() {
+  for (DeformableBody* body : bodies_) {
+    loaded_.clear();
+    for (const SurfacePatch& patch : patches_.patches)
+      for (int t = patch.first_triangle; t < patch.first_triangle + patch.triangles; ++t)
+        for (const int k : patches_.triangles[std::size_t(t)].corner) {
+          const PatchVertex& v = patches_.vertices[std::size_t(k)];
+          const Surface& s = *vertices_[std::size_t(k)].surface;
+          const auto known = [&](const ReducedBasis::Loaded& l) { return l.row == v.row && l.tool == patch.tool; };
+          if (v.row >= 0 && &s.body() == body && std::none_of(loaded_.begin(), loaded_.end(), known))
+            loaded_.push_back({s.points()[std::size_t(vertices_[std::size_t(k)].vertex)], v.row, patch.tool});
+        }
+    reduced_.compute(*body, *body->solver(), loaded_, w_.data(), extended_.stride);
+  }
+}
+
 const ConstraintProblem& SurfacePatchBuilder::operator()(const Simulation& simulation, int max_rows) {
   const ConstraintProblem& step = simulation.problem();
+  reduced_.begin(simulation.steps());
+  bodies_.clear();
   candidates_.clear();
   for (const Constraint* c : simulation.constraints()) c->find_patches(candidates_);
   std::erase_if(candidates_, [&](const PatchCandidate& c) { return tool_index(step, c.tool) < 0 || !usable(c); });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Adds the surface patches near the tools to a step's problem (core/constraint/surface_patch.h), so that the servo can
-// find contacts between steps.
+// find contacts between steps, and the reduced dynamic model of their bodies.
 //
 // Constraints offer triangles (Constraint::find_patches). The nearest ones are taken until the rows of their vertices
 // fill the problem. The compliance of these rows comes from the factor of the step. It is computed in the solver's
@@ -8,6 +8,7 @@
 #pragma once
 #include <vector>
 
+#include "core/haptics/reduced_model_builder.h"
 #include "core/sim/simulation.h"
 
 namespace insula {
@@ -20,6 +21,10 @@ class SurfacePatchBuilder {
   /// Patches get the rows that are free up to `max_rows`, or those of least_vertices; less if rows at the tools need
   /// the room. Valid until the next call or step. Not thread-safe with the step.
   const ConstraintProblem& operator()(const Simulation& simulation, int max_rows);
+
+  /// Computes the modes of the bodies near the tools, for the next problem. Call it when a problem has been sent,
+  /// before the next step. Without it, problems have no reduced model.
+  void compute_modes();
 
   static constexpr int least_vertices = 24, most_vertices = 40, most_fixed_vertices = 96;
 
@@ -47,6 +52,8 @@ class SurfacePatchBuilder {
   std::vector<Chosen> order_, chosen_;
   std::vector<Vertex> vertices_;
   std::vector<DeformableBody*> bodies_;
+  ReducedModelBuilder reduced_;
+  std::vector<ReducedBasis::Loaded> loaded_;
   BodyRows body_rows_, vertex_rows_;
   std::vector<double> w_;
   std::vector<char> at_tool_;

@@ -76,6 +76,7 @@ WeldElimination::WeldElimination(int max_rows) {
   for (auto* rows : {&body_, &tool_, &both_}) rows->assign(std::size_t(max_rows), Vec6::Zero());
   for (ConstraintProblem& p : reduced_) {
     p.resize(max_rows);
+    p.reduced.reserve(std::size_t(max_rows));
     p.blocks.reserve(std::size_t(max_rows));
     p.tools.resize(2);
     for (ToolTerms& t : p.tools) t.jacobian.setZero(max_rows, 6);
@@ -96,6 +97,7 @@ const ConstraintProblem& WeldElimination::eliminate(const ConstraintProblem& pro
 void WeldElimination::copy_rest(const ConstraintProblem& from, int first, ConstraintProblem& to) noexcept {
   to.resize(from.rows - weld_rows);  // within its capacity
   copy_scalars(from, to);
+  to.reduced.take_modes(from.reduced, std::size_t(to.rows));
   to.blocks.clear();
   for (Block b : from.blocks) {
     if (b.row >= first && b.row < first + weld_rows) continue;

@@ -57,6 +57,7 @@ class DeformableBody : public DynamicBody {
   VecX& v() { return v_; }
   double step_length() const { return step_; }  ///< of the current step, s
   const std::vector<double>& node_mass() const { return mass_; }
+  const std::vector<double>& node_damping() const { return damping_; }  ///< Rayleigh mass damping, kg/s
   const std::vector<char>& fixed() const { return fixed_; }
   const std::vector<int>& free_of_node() const { return free_; }  ///< node -> block of the system matrix, -1 when fixed
   const std::vector<ForceModel*>& forces() const { return forces_; }
@@ -91,6 +92,7 @@ class DeformableBody : public DynamicBody {
   void add_rate(const BodyRows& rows, double* rate) const override;
   void finish(const StepContext& context, const ConstraintSolution& solution) override;
   double retardation_time(const MaterialPoint& p) const override;
+  double retardation_time_of_node(int i) const { return retardation_time_[std::size_t(i)]; }  ///< s
   void reset() override;
   double energy() const override;
   bool finite() const override { return v_.allFinite(); }  // and so is q, the sum of all h v

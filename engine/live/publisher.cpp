@@ -48,6 +48,7 @@ void Publisher::follow(const std::filesystem::path& motion) {
 void Publisher::step(const Simulation& simulation, std::int64_t pose_time_us) {
   again(simulation, pose_time_us);
   events(simulation.events());
+  add_patches_.compute_modes();
 }
 
 void Publisher::again(const Simulation& simulation, std::int64_t pose_time_us) {

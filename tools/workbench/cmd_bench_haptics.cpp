@@ -40,7 +40,7 @@ struct Variant {
   const char* name;
   ReplaySettings settings;
   /// plain: as the step had them; predicted: contacts turned to where they are when the problem arrives; patched: with
-  /// surface patches too.
+  /// surface patches and reduced models too.
   enum Problems { plain, predicted, patched } problems = patched;
 };
 
@@ -72,6 +72,8 @@ std::vector<Variant> variants(bool ablation) {
     out.push_back({"+ contact-frame extrapolation", servo, Variant::predicted});
     servo.servo.substep.find_contacts = full.substep.find_contacts;
     out.push_back({"+ contacts in each tick", servo});
+    servo.servo.substep.reduced_dynamics = full.substep.reduced_dynamics;
+    out.push_back({"+ reduced dynamics", servo});
   }
   servo.servo = full;
   out.push_back({ablation ? "+ force cross-fade" : "servo", servo});

@@ -132,6 +132,7 @@ std::vector<RecordedStep> record_steps(Simulation& simulation, const Motion& mot
                  Publisher::max_rows, condensed);
     if (!encode_problem(stamp, sent, pause.hands(simulation), bytes) || !decode_problem(bytes, step.update, why))
       out.pop_back();
+    add_patches.compute_modes();
   }
   return out;
 }
