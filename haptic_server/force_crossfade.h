@@ -32,9 +32,10 @@ class ForceCrossfade {
       slope_ = s.within_s > 0 ? size(s, gap_) / s.within_s : 0;
     } else {
       gap_ *= 1 - met(now - now_);
-      const double left = size(s, gap_), step = std::min(slope_, std::max(s.min_N_s, s.share_per_s * peak_)) * dt_s;
-      gap_ *= s.within_s > 0 && left > step ? 1 - step / left : 0;
     }
+    // It begins in the first tick, so that this force is a new one too.
+    const double left = size(s, gap_), step = std::min(slope_, std::max(s.min_N_s, s.share_per_s * peak_)) * dt_s;
+    gap_ *= s.within_s > 0 && left > step ? 1 - step / left : 0;
     now_ = now;
     last_ = now + gap_;
     peak_ = std::max({size(s, last_), size(s, now_), peak_ * std::exp(-dt_s / s.peak_lasts_s)});

@@ -84,6 +84,7 @@ const ConstraintProblem& ContactFramePrediction::operator()(const Simulation& si
     rotate_contact_rows(p, f.row, rotation(f.normal, f.tangent, f.ahead), delta_m_);
     delta_m_[std::size_t(f.row)] = gap;  // a pressing contact keeps its gap
   }
+  p.reduced.limit(0, n, [&](std::size_t i) { return p.w_at(int(i), int(i)); });
   work_.assign(std::size_t(p.stride), 0.0);
   sweep_kernels().combine(work_.data(), p.w.data(), p.stride, p.lambda.data(), p.rows, p.stride);
   for (std::size_t i = 0; i < n; ++i) p.delta_free[i] = delta_m_[i] - work_[i];

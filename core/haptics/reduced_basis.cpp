@@ -160,7 +160,7 @@ void ReducedBasis::observe(const DeformableBody& body) {
   momentum_ = momentum;
 }
 
-void ReducedBasis::add(const DeformableBody& body, const BodyRows& rows, const double* w,
+void ReducedBasis::add(const DeformableBody& body, const BodyRows& rows, std::span<const double> compliance,
                        ConstraintProblem& problem) const {
   ReducedModel& model = problem.reduced;
   const auto first = std::size_t(model.size());
@@ -172,7 +172,7 @@ void ReducedBasis::add(const DeformableBody& body, const BodyRows& rows, const d
         for (std::size_t s = 0; s < modes_.size(); ++s)
           g[s] += rows.coeff[std::size_t(e)].dot(v_.col(long(s)).segment<3>(3 * f));
   }
-  model.limit(first, std::size_t(problem.rows), [&](std::size_t i) { return w[i * std::size_t(problem.stride) + i]; });
+  model.limit(first, std::size_t(problem.rows), [&](std::size_t i) { return compliance[i]; });
 }
 
 }  // namespace insula

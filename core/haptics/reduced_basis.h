@@ -36,9 +36,10 @@ class ReducedBasis {
 
   /// Takes the body's velocity and inertia at the end of a step. Call it once after each step.
   void observe(const DeformableBody& body);
-  /// Adds the modes to a problem, with the participations of the body's rows. `w`: compliance of these rows by the body
-  /// alone, with the stride of the problem.
-  void add(const DeformableBody& body, const BodyRows& rows, const double* w, ConstraintProblem& problem) const;
+  /// Adds the modes to a problem, with the participations of the body's rows. `compliance`: of each of the problem's
+  /// rows by the body alone, m/N.
+  void add(const DeformableBody& body, const BodyRows& rows, std::span<const double> compliance,
+           ConstraintProblem& problem) const;
 
   static constexpr int loads_of_tool = 4, levels = 3;
 

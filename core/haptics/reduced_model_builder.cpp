@@ -10,12 +10,13 @@ void ReducedModelBuilder::begin(long step) {
   step_ = step;
 }
 
-void ReducedModelBuilder::add(const DeformableBody& body, const BodyRows& rows, const double* w, ConstraintProblem& p) {
+void ReducedModelBuilder::add(const DeformableBody& body, const BodyRows& rows, std::span<const double> compliance,
+                              ConstraintProblem& p) {
   Entry& e = basis_[&body];
   if (!again_ && e.step != step_ - 1) e.basis.clear();
   e.step = step_;
   if (!again_) e.basis.observe(body);
-  e.basis.add(body, rows, w, p);
+  e.basis.add(body, rows, compliance, p);
 }
 
 }  // namespace insula

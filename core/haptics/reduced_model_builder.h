@@ -15,8 +15,9 @@ class ReducedModelBuilder {
  public:
   /// Begins the problem of a step with this number. A gap since the last one makes all bodies start anew.
   void begin(long step);
-  /// Adds a body's modes to the problem. `w`: compliance of its rows by the body alone, `stride` numbers a row.
-  void add(const DeformableBody& body, const BodyRows& rows, const double* w, ConstraintProblem& problem);
+  /// Adds a body's modes to the problem. `compliance`: of each of the problem's rows by the body alone, m/N.
+  void add(const DeformableBody& body, const BodyRows& rows, std::span<const double> compliance,
+           ConstraintProblem& problem);
   /// Computes the modes of a body of this problem for the next one, with the factor of the last step.
   void compute(const DeformableBody& body, BodySolver& solver, std::span<const ReducedBasis::Loaded> loaded,
                const double* w, int stride) {

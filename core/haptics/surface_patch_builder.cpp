@@ -179,6 +179,7 @@ void SurfacePatchBuilder::add_compliance(const ConstraintProblem& step) {
   ConstraintProblem& p = extended_;
   const std::size_t n = std::size_t(p.rows), f = std::size_t(step.rows), stride = std::size_t(p.stride);
   w_.assign(n * stride, 0.0);
+  own_.assign(n, 0.0);
   for (std::size_t i = 0; i < vertices_.size(); ++i) {
     auto* body = dynamic_cast<DeformableBody*>(&vertices_[i].surface->body());
     if (patches_.vertices[i].row >= 0 && std::find(bodies_.begin(), bodies_.end(), body) == bodies_.end())
@@ -200,10 +201,12 @@ void SurfacePatchBuilder::add_compliance(const ConstraintProblem& step) {
     solver.exchange_rows();
     body->begin_compliance(body_rows_);
     solver.compute_parts();
+    for (std::size_t i = 0; i < n; ++i) own_[i] = -w_[i * stride + i];
     solver.add_compliance(body_rows_, w_.data(), p.stride);
+    for (std::size_t i = 0; i < n; ++i) own_[i] += w_[i * stride + i];
     solver.exchange_rows();
     body->add_rate(vertex_rows_, p.rate.data());
-    reduced_.add(*body, body_rows_, w_.data(), p);
+    reduced_.add(*body, body_rows_, own_, p);
   }
   for (std::size_t i = f; i < n; ++i)
     for (std::size_t j = 0; j < n; ++j) {

@@ -55,7 +55,7 @@ class SurfacePatchBuilder {
   ReducedModelBuilder reduced_;
   std::vector<ReducedBasis::Loaded> loaded_;
   BodyRows body_rows_, vertex_rows_;
-  std::vector<double> w_;
+  std::vector<double> w_, own_;  ///< by bodies with patches: W; its diagonal by one body
   std::vector<char> at_tool_;
 };
 

@@ -9,6 +9,7 @@
 
 #include "core/constraint/solve.h"
 #include "core/haptics/condense.h"
+#include "core/haptics/contact_frame_prediction.h"
 #include "core/haptics/haptic_update.h"
 #include "core/sim/motion.h"
 #include "core/testing/example.h"
@@ -162,6 +163,24 @@ TEST_F(SurfacePatchBuilderTest, AStepWithAClipDoesNotDependOnPatches) {
     }
   }
   for (std::size_t k = 0; k < hashes[0].size(); ++k) ASSERT_EQ(hashes[0][k], hashes[1][k]) << k;
+}
+
+TEST_F(SurfacePatchBuilderTest, EveryMessageOfAnExerciseIsAccepted) {
+  // Both hands part the lobes and cut strands, which are rows of two bodies.
+  load("1_sylvian_fissure", "../training/1_sylvian_fissure_steady");
+  CommandScript script(motion_.commands());
+  ContactFramePrediction predict;
+  int modelled = 0;
+  while (s_->time() < 12) {
+    script.advance(*s_);
+    step();
+    const ConstraintProblem& p = build_(*s_, 200);
+    modelled += p.reduced.groups.size() > 1;
+    expect_message(predict(*s_, p, 3e-3));
+    if (HasFatalFailure()) return;
+    build_.compute_modes();
+  }
+  EXPECT_GT(modelled, 100);
 }
 
 TEST_F(SurfacePatchBuilderTest, CondensedProblemsKeepThePatchesOfTheRowsThatStay) {
