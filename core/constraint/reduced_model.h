@@ -36,6 +36,7 @@ struct ReducedModel {
   std::vector<Group> groups;          ///< in order, covering every mode once
   std::vector<double> participation;  ///< rows x modes, row-major, m/J^(1/2)
 
+  static constexpr double negligible = 1e-3;  ///< share of a row's compliance
   static constexpr std::size_t max_modes_of_body = 24, max_groups = 4, max_modes = 72;
 
   bool empty() const { return modes.empty(); }
@@ -72,7 +73,7 @@ struct ReducedModel {
     return true;
   }
   /// Scales the modes from `first` on so that they move no row more than w(row), its whole compliance by their bodies.
-  /// Modes of an older factor may do so.
+  /// Modes of an older factor may do so. Rows that hardly move with them are taken out.
   template <class Compliance>
   void limit(std::size_t first, std::size_t rows, Compliance&& w) {
     double most = 1;
@@ -81,10 +82,13 @@ struct ReducedModel {
       for (std::size_t s = first; s < modes.size(); ++s) own += row(i)[s] * row(i)[s];
       if (const double whole = w(i); own > most * whole) most = own / whole;  // infinite for a row that cannot move
     }
-    if (most == 1) return;
     const double scale = std::sqrt(1 / most);
-    for (std::size_t i = 0; i < rows; ++i)
-      for (std::size_t s = first; s < modes.size(); ++s) row(i)[s] *= scale;
+    for (std::size_t i = 0; i < rows; ++i) {
+      double own = 0;
+      for (std::size_t s = first; s < modes.size(); ++s) own += row(i)[s] * row(i)[s];
+      const double by = own > negligible * w(i) ? scale : 0;
+      for (std::size_t s = first; s < modes.size(); ++s) row(i)[s] *= by;
+    }
   }
   bool touches(std::size_t row_number, const Group& g) const {
     const double* p = row(row_number) + g.first;

@@ -52,9 +52,9 @@ void ReducedBasis::add_loads(const DeformableBody& body, std::span<const Loaded>
     unit.col(k) =
         size_of.eigenvectors().col(kept[std::size_t(k)]) / std::sqrt(size_of.eigenvalues()[kept[std::size_t(k)]]);
   const Eigen::SelfAdjointEigenSolver<Columns> best(Columns(unit.transpose() * ritz * unit));
-  const long taken = std::min<long>(loads_of_tool, unit.cols());
+  const long taken = std::min<long>(size_.loads_of_tool, unit.cols());
   const Columns chosen = load * unit * best.eigenvectors().rightCols(taken);
-  for (long k = 0; k < taken && columns_ < x_.cols() / levels; ++k, ++columns_) {
+  for (long k = 0; k < taken && columns_ < x_.cols() / size_.levels; ++k, ++columns_) {
     auto column = ax_.col(columns_);
     column.setZero();
     for (long i = 0; i < n; ++i) {
@@ -72,9 +72,9 @@ void ReducedBasis::compute(const DeformableBody& body, BodySolver& solver, std::
   const long free = 3 * long(body.system().nodes());
   const double h = body.step_length();
   if (loaded.empty() || free == 0 || !(h > 0)) return;
-  constexpr long most = long(ReducedModel::max_modes_of_body) / levels;
-  x_.resize(free, most * levels);
-  ax_.resize(free, most * levels);
+  const long most = long(ReducedModel::max_modes_of_body) / size_.levels * size_.levels;
+  x_.resize(free, most);
+  ax_.resize(free, most);
   columns_ = 0;
   for (int tool = 0; tool < 2; ++tool) add_loads(body, loaded, w, stride, tool);
   if (columns_ == 0) return;
@@ -83,7 +83,7 @@ void ReducedBasis::compute(const DeformableBody& body, BodySolver& solver, std::
     if (const int b = body.free_of_node()[std::size_t(i)]; b >= 0)
       mass_.segment<3>(3 * b).setConstant(body.node_mass()[std::size_t(i)]);
   const int loads = columns_;
-  for (int k = 0; k < loads * levels; ++k) {
+  for (int k = 0; k < loads * size_.levels; ++k) {
     if (k >= loads) ax_.col(k) = mass_.cwiseProduct(x_.col(k - loads));
     x_.col(k) = ax_.col(k);
     solver.solve(x_.col(k).data());
@@ -96,7 +96,7 @@ void ReducedBasis::compute(const DeformableBody& body, BodySolver& solver, std::
     x_.col(k) *= scale;
     ax_.col(k) *= scale;
   }
-  columns_ = loads * levels;
+  columns_ = loads * size_.levels;
   find_modes(body, h);
   velocity_.resize(free);
   gather(body, body.v(), velocity_);

@@ -2,7 +2,7 @@
 // The modes of one body for a reduced dynamic model (core/constraint/reduced_model.h).
 //
 // The modes span the block Krylov space of the loads B near the tools, with the factor of the step:
-//   span{A^-1 B, A^-1 M A^-1 B, (A^-1 M)^2 A^-1 B}
+//   span{A^-1 B, A^-1 M A^-1 B, ...}
 // The reduced body then has the first moments of the whole body's answer to these loads, about the frequency of the
 // step (Bai, Su 2005, doi:10.1137/040605552). Modes of the whole body, or of a part of it that is held at an interface
 // (Craig, Bampton 1968), need many more for a load at a point. Modes of a nonlinear material (Barbic, James 2008) are
@@ -21,6 +21,13 @@ namespace insula {
 
 class ReducedBasis {
  public:
+  /// More of either changes no error of docs/haptic-truth.md by a tenth.
+  struct Size {
+    int loads_of_tool = 3;
+    int levels = 2;  ///< powers of A^-1 M, from 0 on
+  };
+  explicit ReducedBasis(Size size) : size_(size) {}
+  ReducedBasis() : ReducedBasis(Size{}) {}
   /// A vertex that a tool may touch. It has three rows.
   struct Loaded {
     MaterialPoint point;
@@ -41,8 +48,6 @@ class ReducedBasis {
   void add(const DeformableBody& body, const BodyRows& rows, std::span<const double> compliance,
            ConstraintProblem& problem) const;
 
-  static constexpr int loads_of_tool = 4, levels = 3;
-
  private:
   using Columns = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic>;
   struct Damping {
@@ -51,6 +56,7 @@ class ReducedBasis {
   void add_loads(const DeformableBody& body, std::span<const Loaded> loaded, const double* w, int stride, int tool);
   void find_modes(const DeformableBody& body, double h);
 
+  Size size_;
   Columns x_, ax_;       ///< Krylov vectors, and A times them; 3 values a free node
   int columns_ = 0;      ///< of these
   Columns v_, av_, mv_;  ///< modes V, A V, M V

@@ -89,6 +89,8 @@ MatX by_modes(const ReducedModel& m, int rows, double dt) {
   return g * d.asDiagonal() * g.transpose();
 }
 
+constexpr ReducedBasis::Size all{.loads_of_tool = 4, .levels = 3};
+
 /// Eight free nodes, four of them for each tool: 24 values, and as many modes. It is so large that its inertia is about
 /// its stiffness.
 Sample small_block() {
@@ -102,7 +104,7 @@ TEST(ReducedBasis, AllModesAreTheBody) {
   Sample block = small_block();
   for (int n = 0; n < 5; ++n) block.step(h);
   const MatX w = block.step(h);
-  ReducedBasis basis;
+  ReducedBasis basis(all);
   basis.compute(*block.body, *block.body->solver(), block.loaded, w.data(), int(w.rows()));
   basis.observe(*block.body);
   ConstraintProblem p = problem_with(w);
@@ -119,7 +121,7 @@ TEST(ReducedBasis, TheEndOfAStepContinuesAsTheBodyDoes) {
   for (int n = 0; n < 5; ++n) block.step(h);
   block.body->external.setZero();
   MatX w = block.step(h);
-  ReducedBasis basis;
+  ReducedBasis basis(all);
   basis.compute(*block.body, *block.body->solver(), block.loaded, w.data(), int(w.rows()));
   w = block.step(h);
   basis.observe(*block.body);
@@ -156,7 +158,7 @@ TEST(ReducedBasis, AFewModesAnswerWhereAToolTouches) {
   basis.observe(*block.body);
   ConstraintProblem p = problem_with(w);
   basis.add(*block.body, block.rows, diagonal(w), p);
-  EXPECT_EQ(p.reduced.size(), ReducedBasis::loads_of_tool * ReducedBasis::levels);
+  EXPECT_EQ(p.reduced.size(), ReducedBasis::Size{}.loads_of_tool * ReducedBasis::Size{}.levels);
   const MatX residual = w - by_modes(p.reduced, p.rows, h);
   EXPECT_GT(Eigen::SelfAdjointEigenSolver<MatX>(residual).eigenvalues().minCoeff(), -1e-9 * w.norm());
   const double share = tick_s / (brain.rayleigh_stiffness + tick_s) * (h + brain.rayleigh_stiffness) / h;
@@ -166,7 +168,7 @@ TEST(ReducedBasis, AFewModesAnswerWhereAToolTouches) {
     VecX load = VecX::Zero(p.rows);
     for (int i = k; i < p.rows; i += 3) load[i] = 1;
     const double whole = load.dot(truth * load);
-    EXPECT_NEAR(load.dot(with * load), whole, 0.02 * whole) << k;
+    EXPECT_NEAR(load.dot(with * load), whole, 0.03 * whole) << k;
     EXPECT_GT(std::abs(load.dot(without * load) - whole), 0.1 * whole) << k;
   }
 }

@@ -14,6 +14,7 @@ namespace insula {
 namespace {
 
 constexpr std::size_t most_offers = 600;  // that are looked at
+constexpr int rows_for_modes = 6;         // whose place in the message a reduced model takes
 
 bool moves(const Surface& s) { return s.body().blocks() > 0; }
 
@@ -243,6 +244,7 @@ const ConstraintProblem& SurfacePatchBuilder::operator()(const Simulation& simul
   // Rows at the tools stay when the problem is condensed, and so do those of the vertices.
   Condenser::find_rows_at_tools(step, at_tool_);
   const auto at_tools = int(std::count(at_tool_.begin(), at_tool_.end(), char(1)));
+  max_rows -= rows_for_modes;
   const int room = (max_rows - at_tools) / 3, free = std::max((max_rows - step.rows) / 3, least_vertices);
   choose(std::clamp(std::min(free, room), 0, most_vertices));
   patches_.clear();

@@ -56,7 +56,7 @@ class SurfacePatchBuilderTest : public ::testing::Test {
     const std::array<bool, 2> none{};
     ASSERT_TRUE(encode_problem(update, condense_(problem, 200, condensed_), none, bytes_));
     ASSERT_TRUE(decode_problem(bytes_, got, why_)) << s_->time() << " s: " << why_;
-    EXPECT_LT(bytes_.size(), 120'000u);
+    ASSERT_LT(bytes_.size(), 120'000u) << s_->time() << " s";
   }
   Condenser condense_;
   ConstraintProblem condensed_;
